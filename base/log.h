@@ -1,0 +1,99 @@
+/**
+ * @file
+ * Logging: one line a message, a level per module, a sink the owner chooses.
+ *
+ * Each .c file that logs defines GZ_LOG_MODULE before its first use:
+ *
+ *     #define GZ_LOG_MODULE "replay"
+ *     gz_warn(log, "short line: %zu of %d fields", fields, expected);
+ *
+ * Messages do not end with a newline. A NULL log is allowed everywhere and silent.
+ */
+#ifndef GZ_BASE_LOG_H
+#define GZ_BASE_LOG_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum gz_log_level {
+	GZ_LOG_DEBUG,
+	GZ_LOG_INFO,
+	GZ_LOG_WARN,
+	GZ_LOG_ERROR,
+};
+
+/**
+ * Receives one finished message.
+ *
+ * @param user     the pointer given to gz_log_init()
+ * @param level    its level
+ * @param module   the GZ_LOG_MODULE of the file that spoke
+ * @param message  text without newline, valid during the call only
+ *
+ * Called on whichever thread logged; must be thread-safe.
+ */
+typedef void gz_log_sink(void *user, enum gz_log_level level, const char *module,
+			 const char *message);
+
+/** Longest level rule text that gz_log_init() keeps, with its final NUL, bytes. */
+#define GZ_LOG_RULES_SIZE 256
+
+/** A log. Owned by the caller; must outlive all who use it; read-only after gz_log_init(). */
+struct gz_log {
+	gz_log_sink *sink;
+	void *user;
+	char rules[GZ_LOG_RULES_SIZE]; /**< "replay:debug,*:warn" */
+};
+
+/**
+ * Prepare @p log.
+ *
+ * @param[out] log  filled
+ * @param sink      where messages go; NULL for gz_log_to_stderr()
+ * @param user      passed to @p sink
+ * @param rules     levels per module, "module:level,*:level"; levels are debug, info, warn, error;
+ *                  the first rule that fits counts; NULL takes the environment's GZ_LOG, and
+ *                  "*:info" where that is unset. Unreadable rules are ignored.
+ */
+void gz_log_init(struct gz_log *log, gz_log_sink *sink, void *user, const char *rules);
+
+/** A sink that writes "gazecast: error: replay: message" to stderr, one write a line. */
+void gz_log_to_stderr(void *user, enum gz_log_level level, const char *module, const char *message);
+
+/** Whether @p log would pass a message on. False for NULL. */
+bool gz_log_wants(const struct gz_log *log, enum gz_log_level level, const char *module);
+
+/** Format and pass on; call it by the macros below, which check the level first. */
+__attribute__((format(printf, 4, 5))) void gz_log_write(const struct gz_log *log,
+							enum gz_log_level level, const char *module,
+							const char *format, ...);
+
+#define GZ_LOG_AT(log, level, ...)                                                \
+	do {                                                                      \
+		if (gz_log_wants((log), (level), GZ_LOG_MODULE))                  \
+			gz_log_write((log), (level), GZ_LOG_MODULE, __VA_ARGS__); \
+	} while (0)
+
+#define gz_debug(log, ...) GZ_LOG_AT(log, GZ_LOG_DEBUG, __VA_ARGS__)
+#define gz_info(log, ...)  GZ_LOG_AT(log, GZ_LOG_INFO, __VA_ARGS__)
+#define gz_warn(log, ...)  GZ_LOG_AT(log, GZ_LOG_WARN, __VA_ARGS__)
+#define gz_err(log, ...)   GZ_LOG_AT(log, GZ_LOG_ERROR, __VA_ARGS__)
+
+/** Lets one message through per interval. Zero-initialised is ready. One thread at a time. */
+struct gz_ratelimit {
+	int64_t next_ns;
+	uint64_t dropped; /**< since the last one let through */
+};
+
+/**
+ * Whether a message may pass now.
+ *
+ * @param limit        its state; counts what it holds back
+ * @param now_ns       host time
+ * @param interval_ns  least time between two messages
+ * @param[out] out_dropped  messages held back since the last one; written only on true
+ */
+bool gz_ratelimit_pass(struct gz_ratelimit *limit, int64_t now_ns, int64_t interval_ns,
+		       uint64_t *out_dropped);
+
+#endif

@@ -1,0 +1,86 @@
+# Compiler settings and the three kinds of target: a folder's library, a program, a test.
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+	set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(gz_settings INTERFACE)
+target_compile_definitions(gz_settings INTERFACE _GNU_SOURCE)
+target_compile_options(gz_settings INTERFACE -Wall -Wextra -Wshadow -Wpointer-arith -Wundef
+	-Wwrite-strings -Wvla
+	$<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
+	$<$<BOOL:${GAZECAST_WERROR}>:-Werror>
+	# Results must not depend on how the compiler fuses or reorders floating point.
+	-ffp-contract=off -fno-math-errno)
+if(GAZECAST_SANITIZE)
+	target_compile_options(gz_settings INTERFACE -fsanitize=${GAZECAST_SANITIZE}
+		-fno-omit-frame-pointer -fno-sanitize-recover=all)
+	target_link_options(gz_settings INTERFACE -fsanitize=${GAZECAST_SANITIZE})
+endif()
+if(GAZECAST_FUZZ)
+	target_compile_options(gz_settings INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# gz_module(NAME SOURCES file... [USES target...] [PRIVATE_USES target...]): the library gz_NAME.
+# Headers are included by their path from the top: "protocol/gaze.h".
+function(gz_module name)
+	cmake_parse_arguments(M "" "" "SOURCES;USES;PRIVATE_USES" ${ARGN})
+	add_library(gz_${name} STATIC ${M_SOURCES})
+	target_include_directories(gz_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+	target_link_libraries(gz_${name} PUBLIC ${M_USES} PRIVATE ${M_PRIVATE_USES} gz_settings)
+endfunction()
+
+# gz_program(NAME SOURCES file... [USES target...]): an installed program.
+function(gz_program name)
+	cmake_parse_arguments(P "" "" "SOURCES;USES" ${ARGN})
+	add_executable(${name} ${P_SOURCES})
+	target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+	target_link_libraries(${name} PRIVATE ${P_USES} gz_settings)
+	target_compile_definitions(${name} PRIVATE GAZECAST_VERSION="${PROJECT_VERSION}")
+	install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# gz_test(FOLDER NAME [USES target...] [LABELS label...] [TIMEOUT s] [SOURCES more...]):
+# tests/FOLDER/test_NAME.c becomes the test FOLDER.NAME, labelled quick unless LABELS says otherwise.
+# A test that cannot run where it is exits 77 and counts as skipped.
+function(gz_test folder name)
+	cmake_parse_arguments(T "" "TIMEOUT" "USES;LABELS;SOURCES" ${ARGN})
+	if(NOT T_LABELS)
+		set(T_LABELS quick)
+	endif()
+	if(NOT T_TIMEOUT)
+		set(T_TIMEOUT 60)
+	endif()
+	set(target test_${folder}_${name})
+	add_executable(${target} test_${name}.c ${T_SOURCES})
+	target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/tests")
+	target_link_libraries(${target} PRIVATE ${T_USES} PkgConfig::CMOCKA gz_settings)
+	add_test(NAME ${folder}.${name} COMMAND ${target})
+	set_tests_properties(${folder}.${name} PROPERTIES TIMEOUT ${T_TIMEOUT} SKIP_RETURN_CODE 77
+		LABELS "${T_LABELS}")
+endfunction()
+
+# gz_fuzz(NAME [USES target...]): tests/fuzz/fuzz_NAME.c defines LLVMFuzzerTestOneInput. With
+# GAZECAST_FUZZ it becomes a libFuzzer program; always, its corpus tests/fuzz/corpus/NAME/ is run as
+# the test fuzz.NAME.
+function(gz_fuzz name)
+	cmake_parse_arguments(F "" "" "USES" ${ARGN})
+	set(target fuzz_${name})
+	add_executable(${target} fuzz_${name}.c)
+	target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
+	target_link_libraries(${target} PRIVATE ${F_USES} gz_settings)
+	if(GAZECAST_FUZZ)
+		target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+		set(arguments -runs=0 "${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name}")
+	else()
+		target_sources(${target} PRIVATE corpus_main.c)
+		set(arguments "${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name}")
+	endif()
+	add_test(NAME fuzz.${name} COMMAND ${target} ${arguments})
+	set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 60 LABELS "fuzz;quick")
+endfunction()

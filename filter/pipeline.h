@@ -1,0 +1,89 @@
+/**
+ * @file
+ * From sample to fixation: validate, combine, despike, classify, smooth. Pure steps over a state:
+ * no I/O, no clock, no allocation; every timeout runs on sample time, so that replaying a log gives
+ * the same messages bit for bit. The daemon runs it live; the viewer and the benchmark run it over
+ * a log in process.
+ */
+#ifndef GZ_FILTER_PIPELINE_H
+#define GZ_FILTER_PIPELINE_H
+
+#include <stddef.h>
+
+#include "base/option.h"
+#include "base/result.h"
+#include "filter/classify.h"
+#include "filter/combine.h"
+#include "filter/despike.h"
+#include "filter/smooth.h"
+#include "filter/validate.h"
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+
+/** Every setting of the pipeline; written into each log's header. */
+struct gz_pipeline_params {
+	struct gz_validate_params validate;
+	struct gz_combine_params combine;
+	struct gz_despike_params despike;
+	struct gz_classify_params classify;
+	struct gz_smooth_params smooth;
+};
+
+/** Table over struct gz_pipeline_params; keys are "pipeline.<name>". */
+extern const struct gz_option gz_pipeline_options[];
+extern const size_t gz_pipeline_option_count;
+
+/** The table's presets. */
+struct gz_pipeline_params gz_pipeline_default_params(void);
+
+/** The whole state of the pipeline; plain data, may be copied to try something out. */
+struct gz_pipeline {
+	struct gz_pipeline_params params;
+	struct gz_display display;
+	struct gz_validate_state validate;
+	struct gz_combine_state combine;
+	struct gz_despike_state despike;
+	struct gz_classify_state classify;
+	struct gz_smooth_state smooth;
+};
+
+/** Most fixation messages of one step: the end of one and the onset of the next. */
+#define GZ_PIPELINE_FIXATIONS_MAX 2
+
+/** What one sample brought about. */
+struct gz_pipeline_output {
+	struct gz_gaze gaze;         /**< always filled; publish_ns is 0, for the sender to set */
+	enum gz_rejection rejection; /**< NONE if the sample was good */
+	size_t fixation_count;       /**< fixations[] to publish, in order */
+	struct gz_fixation fixations[GZ_PIPELINE_FIXATIONS_MAX];
+	size_t blink_count; /**< 0 or 1 */
+	struct gz_blink blinks[1];
+	size_t saccade_count; /**< 0 or 1 */
+	struct gz_saccade saccades[1];
+};
+
+/**
+ * Put the pipeline into its start state.
+ *
+ * @param params   NULL for the defaults
+ * @param display  must be valid (gz_display_valid())
+ */
+void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_params *params,
+		      const struct gz_display *display);
+
+/**
+ * Take one sample.
+ *
+ * @param[out] out  always filled; every number in it is finite, but for fields documented as NaN
+ *                  where unmeasured, and its time is never before that of an earlier output
+ *
+ * A sample not newer than the last is rejected and leaves the state as it was.
+ * Does not allocate. Threads: one at a time per pipeline.
+ */
+void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,
+		      struct gz_pipeline_output *out);
+
+/** Sample-to-sample RMS within fixations so far, degrees; NaN before there was one. */
+double gz_pipeline_noise_deg(const struct gz_pipeline *pipeline);
+
+#endif

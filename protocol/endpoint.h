@@ -1,0 +1,38 @@
+/**
+ * @file
+ * Where the daemon's sockets are: the runtime directory and the names in it.
+ */
+#ifndef GZ_PROTOCOL_ENDPOINT_H
+#define GZ_PROTOCOL_ENDPOINT_H
+
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+
+#define GZ_ENDPOINT_SIZE        256                     /**< bytes of an endpoint with its NUL */
+#define GZ_CONTROL_TCP_ENDPOINT "tcp://127.0.0.1:50020" /**< Pupil Remote's port */
+
+/**
+ * Find the runtime directory: $XDG_RUNTIME_DIR/gazecast, else /run/gazecast where that exists, else
+ * /tmp/gazecast-UID. GAZECAST_RUNTIME_DIR, if set, comes before all of them.
+ *
+ * @retval GZ_OK        @p text holds the path; it need not exist
+ * @retval GZ_ERR_FULL  @p size is too small
+ */
+enum gz_result gz_runtime_directory(char *text, size_t size);
+
+/**
+ * Make the directory 0700 if it is missing, and check that nobody else can replace what is in it:
+ * a real directory, ours (or /run/gazecast), not writable by others.
+ *
+ * @retval GZ_ERR_ACCESS  someone else's or too open; logged with the remedy
+ * @retval GZ_ERR_IO      cannot be made; logged
+ */
+enum gz_result gz_runtime_directory_prepare(const char *path, const struct gz_log *log);
+
+/** "ipc://<directory>/<name>": names are "stream", "latest", "control", "inlet". GZ_ERR_FULL if too
+ *  long for a socket path (107 bytes) or for @p size. */
+enum gz_result gz_endpoint_ipc(const char *directory, const char *name, char *text, size_t size);
+
+#endif

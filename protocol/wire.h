@@ -1,0 +1,83 @@
+/**
+ * @file
+ * Messages as MessagePack, with the topics and keys of docs/protocol.md (Pupil Core's where it has
+ * a word for a thing). Encoding writes into the caller's buffer and allocates nothing; decoding
+ * walks the bytes for bounds before msgpack-c sees them and tolerates unknown keys.
+ */
+#ifndef GZ_PROTOCOL_WIRE_H
+#define GZ_PROTOCOL_WIRE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/result.h"
+#include "protocol/gaze.h"
+
+#define GZ_TOPIC_GAZE       "gaze."
+#define GZ_TOPIC_GAZE_BOTH  "gaze.3d.01."
+#define GZ_TOPIC_GAZE_RIGHT "gaze.3d.0."
+#define GZ_TOPIC_GAZE_LEFT  "gaze.3d.1."
+#define GZ_TOPIC_SURFACES   "surfaces."
+#define GZ_TOPIC_FIXATIONS  "fixations"
+#define GZ_TOPIC_BLINKS     "blinks"
+#define GZ_TOPIC_SACCADES   "saccades"
+#define GZ_TOPIC_STATUS     "status"
+
+/** Room that any one encoded message fits in, bytes. */
+#define GZ_WIRE_MESSAGE_SIZE 4096
+
+/** Nesting deeper than this is refused. */
+#define GZ_WIRE_DEPTH_MAX 8
+
+/** Bytes of one encoded message. */
+struct gz_wire_message {
+	size_t size;
+	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
+};
+
+/** The topic of a gaze message by which eyes took part. Static text. */
+const char *gz_wire_gaze_topic(const struct gz_gaze *gaze);
+
+/*
+ * Encoders. Each fills @p out_message; display is needed for gaze_point_3d and phi and theta.
+ * They return GZ_OK, or GZ_ERR_FULL where names are too long for one message (a bug, not a state
+ * that input can cause). Threads: any; nothing is shared.
+ */
+enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_display *display,
+				   struct gz_wire_message *out_message);
+/** @param surface_name  the <name> of "surfaces.<name>" */
+enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *surface_name,
+				      struct gz_wire_message *out_message);
+enum gz_result gz_wire_encode_fixation(const struct gz_fixation *fixation,
+				       struct gz_wire_message *out_message);
+enum gz_result gz_wire_encode_blink(const struct gz_blink *blink,
+				    struct gz_wire_message *out_message);
+enum gz_result gz_wire_encode_saccade(const struct gz_saccade *saccade,
+				      struct gz_wire_message *out_message);
+enum gz_result gz_wire_encode_status(const struct gz_status *status,
+				     struct gz_wire_message *out_message);
+
+/**
+ * Check that @p bytes are one whole MessagePack value: no count above the bytes left, no nesting
+ * beyond GZ_WIRE_DEPTH_MAX, nothing behind it. Must precede msgpack-c, which allocates by claims.
+ *
+ * @retval GZ_OK            well formed
+ * @retval GZ_ERR_PROTOCOL  not
+ */
+enum gz_result gz_wire_check(const void *bytes, size_t size);
+
+/*
+ * Decoders. Unknown keys are skipped, missing ones leave NaN, 0 or the enum's first value; a gaze
+ * map from Pupil Capture (norm_pos, confidence, timestamp, base_data only) decodes too. They return
+ * GZ_OK, or GZ_ERR_PROTOCOL with *out untouched. They may allocate within msgpack-c, at most a
+ * small multiple of @p size.
+ */
+enum gz_result gz_wire_decode_gaze(const void *bytes, size_t size, struct gz_gaze *out_gaze);
+enum gz_result gz_wire_decode_fixation(const void *bytes, size_t size,
+				       struct gz_fixation *out_fixation);
+enum gz_result gz_wire_decode_blink(const void *bytes, size_t size, struct gz_blink *out_blink);
+enum gz_result gz_wire_decode_saccade(const void *bytes, size_t size,
+				      struct gz_saccade *out_saccade);
+enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_status *out_status);
+
+#endif

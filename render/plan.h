@@ -1,0 +1,142 @@
+/**
+ * @file
+ * The foveation plan: which rays are cast and how long their steps are. A method only emits tiles;
+ * one kernel per backend casts them and one reconstruction fills the pixels between
+ * (docs/foveation.md).
+ *
+ * A tile is a block of GZ_TILE_EDGE x GZ_TILE_EDGE rays, a spacing of G pixels apart, whose
+ * positions are multiples of G: the lattice is fixed to the screen, not to the gaze. Lattice point
+ * (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G), which may lie up to G
+ * - 1 pixels beyond the right and lower edge, so that every pixel lies between four points.
+ */
+#ifndef GZ_RENDER_PLAN_H
+#define GZ_RENDER_PLAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/option.h"
+#include "base/result.h"
+#include "protocol/display.h"
+
+#define GZ_TILE_EDGE       4
+#define GZ_SPACING_MAX     16 /**< pixels */
+#define GZ_PLAN_LAYERS_MAX 5
+#define GZ_PLAN_STEPS_MAX  32
+
+enum gz_method {
+	GZ_METHOD_STANDARD, /**< every pixel */
+	GZ_METHOD_MDC, /**< Bauer 2018, 3.2.4: a fine square at the gaze, half resolution outside */
+	GZ_METHOD_DDC, /**< Bauer 2018, 3.2.5: two ellipses, three spacings */
+	GZ_METHOD_ACUITY, /**< what the eye can resolve at each eccentricity */
+	GZ_METHOD_COUNT,
+};
+
+/** "standard", "mdc", "ddc", "acuity"; NULL-terminated. */
+extern const char *const gz_method_names[];
+
+/** When steps grow with distance from the gaze. */
+enum gz_step_rule {
+	GZ_STEP_METHOD, /**< as the method says: acuity 1, 1.5, 2, 3, 4 for spacings 1 to 16; others
+			   1 */
+	GZ_STEP_NONE,   /**< 1 everywhere */
+	GZ_STEP_DISTANCE, /**< Bauer 2018, 3.2.3: sampling rate max(sf * sr, floor), sf = 1 - d /
+			     diagonal, unchanged within 10 px */
+	GZ_STEP_ACUITY, /**< 1, 1.5, 2, 3, 4 by the spacing the eye can resolve, whatever is cast */
+};
+
+extern const char *const gz_step_rule_names[];
+
+/** Everything a method can be told; the table's keys are "foveation.<name>". */
+struct gz_foveation {
+	int method;               /**< enum gz_method */
+	int step_rule;            /**< enum gz_step_rule */
+	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
+	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
+	double mdc_square_px;     /**< edge of the fine square */
+	int mdc_spacing;          /**< outside it */
+	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse */
+	double ddc_middle_px[2];  /**< semi-axes of the middle ellipse */
+	int ddc_spacing[3];       /**< inner, middle, outer */
+	double step_floor;        /**< least sampling rate as a share of the full one, (0, 1] */
+};
+
+/** Table over struct gz_foveation. */
+extern const struct gz_option gz_foveation_options[];
+extern const size_t gz_foveation_option_count;
+
+/** The table's presets. */
+struct gz_foveation gz_foveation_default(void);
+
+/** One block of rays. */
+struct gz_tile {
+	uint16_t x, y; /**< pixel of the first ray; multiples of spacing * GZ_TILE_EDGE */
+	uint8_t layer; /**< index into the plan's layers: gives the spacing */
+	uint8_t step;  /**< index into the plan's step multipliers */
+};
+
+/** How pixels are made of lattice points. */
+enum gz_reconstruction {
+	GZ_RECONSTRUCT_DIRECT,  /**< one layer of spacing 1 is the picture */
+	GZ_RECONSTRUCT_PYRAMID, /**< layer k has spacing 2^k; a finer lattice is filled from the
+				   next coarser */
+	GZ_RECONSTRUCT_REGIONS, /**< each pixel takes the first layer whose region holds it,
+				   bilinearly */
+};
+
+/** Where a layer of a region plan shows: a pixel belongs to it if its centre is inside. */
+enum gz_region_shape { GZ_REGION_ALL, GZ_REGION_RECTANGLE, GZ_REGION_ELLIPSE };
+
+struct gz_region {
+	enum gz_region_shape shape;
+	double centre_px[2];
+	double half_px[2]; /**< half edges or semi-axes */
+};
+
+/** One lattice of a plan. */
+struct gz_plan_layer {
+	int spacing;
+	int columns, rows; /**< lattice points */
+	struct gz_region region;
+};
+
+/** A plan. Zero-initialised is empty; keep it from frame to frame so that its arrays are reused. */
+struct gz_plan {
+	int width, height;
+	enum gz_reconstruction reconstruction;
+	int layer_count;
+	struct gz_plan_layer layers[GZ_PLAN_LAYERS_MAX];
+	int step_count;
+	float steps[GZ_PLAN_STEPS_MAX]; /**< multipliers of the scene's step, 1 or more */
+	size_t tile_count, tile_capacity;
+	struct gz_tile *tiles; /**< in an order that keeps neighbours together */
+	uint64_t ray_count;    /**< lattice points that the tiles cast */
+};
+
+/**
+ * Make the plan of one frame.
+ *
+ * @param foveation      method and parameters, within the table's ranges
+ * @param display        geometry of the picture: its mm and distance; the picture fills it
+ * @param gaze           normalised; may lie outside [0, 1]; NaN or infinite counts as lost: the
+ * centre
+ * @param width, height  picture, px, 1 to GZ_IMAGE_SIDE_MAX
+ * @param[in,out] plan   overwritten; its array grows where needed
+ * @retval GZ_ERR_INVAL   a size or parameter out of range
+ * @retval GZ_ERR_NO_MEM  no room for the tiles
+ *
+ * Threads: one at a time per plan.
+ */
+enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct gz_display *display,
+			    struct gz_point gaze, int width, int height, struct gz_plan *plan);
+
+/** Free the tiles and zero the plan. */
+void gz_plan_free(struct gz_plan *plan);
+
+/** Spacing in pixels, not rounded, that the eye resolves at a pixel: omega(e) / 2 by the geometry,
+ * the smaller of both directions on the flat screen (docs/foveation.md). */
+double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
+			    struct gz_point gaze, struct gz_point pixel, int width, int height);
+
+#endif

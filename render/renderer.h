@@ -1,0 +1,112 @@
+/**
+ * @file
+ * The renderer: volume, transfer function, camera and plan to picture, by one of the backends.
+ */
+#ifndef GZ_RENDER_RENDERER_H
+#define GZ_RENDER_RENDERER_H
+
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/camera.h"
+#include "render/image.h"
+#include "render/plan.h"
+#include "render/transfer.h"
+#include "render/volume.h"
+
+enum gz_interpolation { GZ_INTERPOLATION_TRILINEAR, GZ_INTERPOLATION_NEAREST };
+
+/** How rays are integrated. */
+struct gz_ray_params {
+	double ray_sampling_rate; /**< samples per voxel length at full resolution, 0.05 to 32 */
+	int interpolation;        /**< enum gz_interpolation */
+	double background[3];     /**< [0, 1] each */
+};
+
+/** What one frame cost. */
+struct gz_frame_stats {
+	uint64_t rays;    /**< cast, those that miss the volume included */
+	uint64_t samples; /**< voxel interpolations done */
+	double cast_ms;
+	double reconstruct_ms;
+};
+
+struct gz_renderer;
+
+/** Settings of a backend. */
+struct gz_renderer_params {
+	int threads;      /**< cpu: 0 = one per processor, else 1 to 256 */
+	const char *simd; /**< cpu: NULL or "auto", else "portable", "avx2", "avx512" */
+};
+
+/** What a backend must provide. Every table is const and has static storage. */
+struct gz_renderer_ops {
+	const char *name; /**< "cpu", "gl" */
+	enum gz_result (*create)(const struct gz_renderer_params *params, const struct gz_log *log,
+				 struct gz_renderer **out_renderer);
+	/** Borrow @p volume until the next call or destroy; build what skipping needs. */
+	enum gz_result (*set_volume)(struct gz_renderer *renderer, const struct gz_volume *volume);
+	/** Copy @p transfer; needs a volume. */
+	enum gz_result (*set_transfer)(struct gz_renderer *renderer,
+				       const struct gz_transfer *transfer);
+	/** See gz_renderer_render(). */
+	enum gz_result (*render)(struct gz_renderer *renderer, const struct gz_camera *camera,
+				 const struct gz_ray_params *rays, const struct gz_plan *plan,
+				 struct gz_image *image, struct gz_frame_stats *out_stats);
+	/** One line for reports: "avx512, 2 threads". */
+	const char *(*describe)(const struct gz_renderer *renderer);
+	void (*destroy)(struct gz_renderer *renderer);
+};
+
+/** Common head of every renderer; a backend's own struct starts with one. */
+struct gz_renderer {
+	const struct gz_renderer_ops *ops;
+	const struct gz_log *log;
+};
+
+/** All backends of this build, NULL-terminated; the first is the default. */
+extern const struct gz_renderer_ops *const gz_backends[];
+
+/**
+ * Make a renderer.
+ *
+ * @param backend  name of one of gz_backends; NULL or "auto" for the best there is
+ * @param params   NULL for the defaults
+ * @param[out] out_renderer  owned by the caller: gz_renderer_destroy()
+ * @retval GZ_ERR_NOT_FOUND    no such backend; logged with those there are
+ * @retval GZ_ERR_UNSUPPORTED  this machine cannot run it (or that SIMD path); logged
+ */
+enum gz_result gz_renderer_create(const char *backend, const struct gz_renderer_params *params,
+				  const struct gz_log *log, struct gz_renderer **out_renderer);
+
+/** Show @p volume, borrowed until the next call or destroy. The transfer function must be set anew.
+ */
+enum gz_result gz_renderer_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume);
+
+/** Use @p transfer (copied). GZ_ERR_INVAL before a volume is set. */
+enum gz_result gz_renderer_set_transfer(struct gz_renderer *renderer,
+					const struct gz_transfer *transfer);
+
+/**
+ * Cast the plan's rays and reconstruct the picture. Every pixel is written.
+ *
+ * @param plan   made for the size of the picture wanted
+ * @param image  resized to the plan's size
+ * @param[out] out_stats  may be NULL
+ * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
+ * @retval GZ_ERR_NO_MEM  no room for the picture
+ *
+ * The same inputs give the same bits, for any number of threads. Threads: one at a time per
+ * renderer.
+ */
+enum gz_result gz_renderer_render(struct gz_renderer *renderer, const struct gz_camera *camera,
+				  const struct gz_ray_params *rays, const struct gz_plan *plan,
+				  struct gz_image *image, struct gz_frame_stats *out_stats);
+
+const char *gz_renderer_describe(const struct gz_renderer *renderer);
+
+/** Destroy and set to NULL. Accepts a pointer to NULL. */
+void gz_renderer_destroy(struct gz_renderer **renderer);
+
+#endif

@@ -1,0 +1,64 @@
+/**
+ * @file
+ * Scenes: an INI file that says what is shown and how. Whatever a panel can set has a key here.
+ */
+#ifndef GZ_RENDER_SCENE_H
+#define GZ_RENDER_SCENE_H
+
+#include <stdbool.h>
+
+#include "base/log.h"
+#include "base/option.h"
+#include "base/result.h"
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+#include "render/camera.h"
+#include "render/plan.h"
+#include "render/renderer.h"
+#include "render/transfer.h"
+#include "render/volume.h"
+
+/** The settings of a scene, as its table reads them. */
+struct gz_scene_settings {
+	char volume_file[GZ_PATH_SIZE]; /**< empty for a procedural volume */
+	int volume_procedural;          /**< enum gz_procedural + 1; 0 = none */
+	int dims[3];                    /**< raw and procedural */
+	int type;                       /**< enum gz_raw_type */
+	int endian;                     /**< 0 little, 1 big */
+	double spacing[3];
+	char transfer_file[GZ_PATH_SIZE];
+	struct gz_camera camera;
+	struct gz_ray_params rays;
+	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
+	int shading;                /**< 0 = none */
+	struct gz_foveation foveation;
+	struct gz_display display;
+};
+
+/** A scene, loaded. */
+struct gz_scene {
+	struct gz_scene_settings settings;
+	bool has_display; /**< the scene says what the display is */
+	struct gz_volume volume;
+	struct gz_transfer transfer;
+};
+
+/** The tables over struct gz_scene_settings: "volume.file", "camera.eye", … */
+size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_binding *out_bindings,
+			 size_t room);
+
+/**
+ * Read a scene with its volume and transfer function. Relative paths are looked up beside the
+ * scene, then under $GAZECAST_DATA.
+ *
+ * @param[out] out_scene  filled; the caller frees it with gz_scene_free()
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_IO, GZ_ERR_UNSUPPORTED, GZ_ERR_NO_MEM  logged,
+ * one line with the remedy
+ */
+enum gz_result gz_scene_load(const char *path, const struct gz_log *log,
+			     struct gz_scene *out_scene);
+
+/** Free what it holds and zero it. */
+void gz_scene_free(struct gz_scene *scene);
+
+#endif

@@ -1,0 +1,128 @@
+/**
+ * @file
+ * A scalar volume in memory, turned to RAS+, and the loaders that make one.
+ *
+ * World frame: the box has the edges dims * spacing / max(dims * spacing), centred at the origin;
+ * data sit at voxel centres; z is up. Voxel length = the smallest spacing.
+ */
+#ifndef GZ_RENDER_VOLUME_H
+#define GZ_RENDER_VOLUME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/result.h"
+
+/** How voxels are stored. Loaders turn every other type into one of these without loss where that
+ *  can be: signed integers by an offset that goes into the intercept, wider ones as float. */
+enum gz_voxel_type {
+	GZ_VOXEL_U8,
+	GZ_VOXEL_U16, /**< host byte order */
+	GZ_VOXEL_F32, /**< finite: NaN and infinities in a file become the least finite value,
+			 logged */
+	GZ_VOXEL_TYPE_COUNT,
+};
+
+/** Bytes of one voxel. */
+size_t gz_voxel_size(enum gz_voxel_type type);
+
+/** Longest edge of a volume, voxels. */
+#define GZ_VOLUME_DIM_MAX 16384
+
+/** Bytes readable behind the last voxel, so that wide loads need no edge case. */
+#define GZ_VOLUME_PADDING 64
+
+/** A volume. Read-only once loaded; may be shared by threads. */
+struct gz_volume {
+	int dims[3];       /**< voxels along x (right), y (front), z (up): x varies fastest */
+	double spacing[3]; /**< between voxel centres, mm or whatever the file has; above 0 */
+	enum gz_voxel_type type;
+	void *voxels; /**< dims[0] * dims[1] * dims[2] of them, and GZ_VOLUME_PADDING bytes */
+	double slope; /**< data value = slope * stored + intercept; not 0 */
+	double intercept;
+	double stored_min, stored_max; /**< over all voxels */
+	bool oriented;                 /**< the file told where right, front and up are */
+};
+
+/** Type names of raw files. */
+enum gz_raw_type {
+	GZ_RAW_UINT8,
+	GZ_RAW_INT8,
+	GZ_RAW_UINT16,
+	GZ_RAW_INT16,
+	GZ_RAW_UINT32,
+	GZ_RAW_INT32,
+	GZ_RAW_FLOAT32,
+	GZ_RAW_FLOAT64,
+	GZ_RAW_TYPE_COUNT,
+};
+
+/** "uint8", … NULL-terminated, in the order of enum gz_raw_type. */
+extern const char *const gz_raw_type_names[];
+
+/** What a headerless file needs to be told. */
+struct gz_raw_layout {
+	int dims[3];
+	enum gz_raw_type type;
+	bool big_endian;
+	double spacing[3];
+};
+
+/**
+ * Load a volume; the kind follows from the name: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw,
+ * .raw.zst, and .zst or .gz round raw data.
+ *
+ * @param path        file
+ * @param raw         layout of a headerless file; must be NULL for files that have a header
+ * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
+ * @retval GZ_ERR_NOT_FOUND    no such file; logged
+ * @retval GZ_ERR_FORMAT       truncated, oversized, contradictory, wrong type; logged with the
+ * remedy
+ * @retval GZ_ERR_UNSUPPORTED  a kind, dimension or encoding that is not read; logged
+ * @retval GZ_ERR_NO_MEM       logged with the size asked for
+ *
+ * Peak memory is the volume and a small buffer: slices are turned and converted as they are read.
+ */
+enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
+			      const struct gz_log *log, struct gz_volume *out_volume);
+
+/** Volumes made by a formula, for scenes that need no file. */
+enum gz_procedural {
+	GZ_PROCEDURAL_SHELLS,    /**< nested shells with spherical harmonics, like a small atom */
+	GZ_PROCEDURAL_SUPERNOVA, /**< turbulent filaments round a hollow centre, float */
+	GZ_PROCEDURAL_COUNT,
+};
+
+/** "shells", "supernova"; NULL-terminated. */
+extern const char *const gz_procedural_names[];
+
+/** Make a procedural volume of @p dims voxels, each 1 to GZ_VOLUME_DIM_MAX; the same bits each
+ * time. */
+enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
+				  const struct gz_log *log, struct gz_volume *out_volume);
+
+/**
+ * Allocate voxels for a volume whose dims, spacing and type are set, and clear the padding. Voxels
+ * are aligned to 64 bytes. slope becomes 1, intercept 0. GZ_ERR_INVAL for dims out of range or
+ * spacing not finite and above 0; GZ_ERR_NO_MEM.
+ */
+enum gz_result gz_volume_allocate(struct gz_volume *volume);
+
+/** Find stored_min and stored_max. */
+void gz_volume_find_range(struct gz_volume *volume);
+
+/** Free the voxels and zero the struct. Accepts a zeroed one. */
+void gz_volume_free(struct gz_volume *volume);
+
+/** Number of voxels. */
+size_t gz_volume_voxel_count(const struct gz_volume *volume);
+
+/** Half the edges of the world box. */
+void gz_volume_half_extent(const struct gz_volume *volume, double out_half[3]);
+
+/** The voxel length, in world units. */
+double gz_volume_voxel_length(const struct gz_volume *volume);
+
+#endif
