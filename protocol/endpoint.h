@@ -23,8 +23,9 @@
 enum gz_result gz_runtime_directory(char *text, size_t size);
 
 /**
- * Make the directory 0700 if it is missing, and check that nobody else can replace what is in it:
- * a real directory, ours (or /run/gazecast), not writable by others.
+ * Make the directory 0700 if it is missing, and check that nobody else can reach what is in it: a
+ * real directory, not a link, ours, without access for group or others. /run/gazecast, which only
+ * root can make, may be anybody's and readable by its group (0750).
  *
  * @retval GZ_ERR_ACCESS  someone else's or too open; logged with the remedy
  * @retval GZ_ERR_IO      cannot be made; logged

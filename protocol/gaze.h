@@ -64,7 +64,8 @@ struct gz_sample {
 /** A sample with every measurement NaN, nothing valid, times and seq 0, no device time. */
 struct gz_sample gz_sample_unmeasured(void);
 
-/** Whether the device measured no eye by itself, only the common point. */
+/** Whether the device measured only the common point and nothing of either eye. False where it
+ *  measured nothing at all. */
 bool gz_sample_combined_only(const struct gz_sample *sample);
 
 /** One eye of a gaze message. */

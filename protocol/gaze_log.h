@@ -17,8 +17,9 @@
 
 #define GZ_GAZE_LOG_SETTINGS_MAX 128 /**< settings a header can hold */
 #define GZ_GAZE_LOG_VALUE_SIZE   128 /**< bytes of a setting's value with its NUL */
-#define GZ_GAZE_LOG_LINE_SIZE    2048 /**< longest line with its newline, bytes; longer is malformed \
-				       */
+#define GZ_GAZE_LOG_LINE_SIZE                                                                    \
+	2048                      /**< longest line with its newline, bytes; longer is malformed \
+				   */
 #define GZ_GAZE_LOG_TEXT_SIZE 512 /**< bytes of a mark's or gap's text, unescaped, with its NUL */
 
 /** One "#pipeline.<key> <value>" line: key is given without "pipeline.". */

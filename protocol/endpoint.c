@@ -1,0 +1,95 @@
+#include "protocol/endpoint.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#define GZ_LOG_MODULE "endpoint"
+
+/* Made by the service manager, for a daemon that serves every user in its group. */
+#define SYSTEM_DIRECTORY "/run/gazecast"
+
+static enum gz_result fits(int length, size_t size)
+{
+	return length >= 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+}
+
+static bool is_directory(const char *path)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+enum gz_result gz_runtime_directory(char *text, size_t size)
+{
+	const char *chosen = getenv("GAZECAST_RUNTIME_DIR");
+	if (chosen && *chosen)
+		return fits(snprintf(text, size, "%s", chosen), size);
+	/* The XDG base directory specification asks to ignore a path that is not absolute. */
+	const char *session = getenv("XDG_RUNTIME_DIR");
+	if (session && session[0] == '/')
+		return fits(snprintf(text, size, "%s/gazecast", session), size);
+	if (is_directory(SYSTEM_DIRECTORY))
+		return fits(snprintf(text, size, "%s", SYSTEM_DIRECTORY), size);
+	return fits(snprintf(text, size, "/tmp/gazecast-%ld", (long)getuid()), size);
+}
+
+/* Whether nobody else can reach into what @p status describes. */
+static enum gz_result check_directory(const char *path, const struct stat *status,
+				      const struct gz_log *log)
+{
+	/* Only root can put something at /run/gazecast, so there the owner says nothing, and its
+	 * group may read. */
+	bool system = strcmp(path, SYSTEM_DIRECTORY) == 0;
+	mode_t refused = system ? S_IWGRP | S_IRWXO : S_IRWXG | S_IRWXO;
+	if (!system && status->st_uid != geteuid()) {
+		gz_err(log,
+		       "%s belongs to user %ld, not to us (%ld): remove it, or name another "
+		       "directory in GAZECAST_RUNTIME_DIR",
+		       path, (long)status->st_uid, (long)geteuid());
+		return GZ_ERR_ACCESS;
+	}
+	if (status->st_mode & refused) {
+		gz_err(log, "%s is open to others (mode %03o): run chmod %s %s", path,
+		       (unsigned)(status->st_mode & 0777), system ? "750" : "700", path);
+		return GZ_ERR_ACCESS;
+	}
+	return GZ_OK;
+}
+
+enum gz_result gz_runtime_directory_prepare(const char *path, const struct gz_log *log)
+{
+	if (mkdir(path, 0700) != 0 && errno != EEXIST) {
+		gz_err(log, "cannot make %s: %s; name another directory in GAZECAST_RUNTIME_DIR",
+		       path, strerror(errno));
+		return GZ_ERR_IO;
+	}
+	/* lstat: a link could be pointed elsewhere after this check. */
+	struct stat status;
+	if (lstat(path, &status) != 0) {
+		gz_err(log, "cannot look at %s: %s", path, strerror(errno));
+		return GZ_ERR_IO;
+	}
+	if (!S_ISDIR(status.st_mode)) {
+		gz_err(log,
+		       "%s is no directory: remove it, or name another in GAZECAST_RUNTIME_DIR",
+		       path);
+		return GZ_ERR_ACCESS;
+	}
+	return check_directory(path, &status, log);
+}
+
+enum gz_result gz_endpoint_ipc(const char *directory, const char *name, char *text, size_t size)
+{
+	/* sun_path holds the path and its NUL. */
+	size_t path_size = sizeof((struct sockaddr_un *)NULL)->sun_path;
+	if (strlen(directory) + 1 + strlen(name) + 1 > path_size)
+		return GZ_ERR_FULL;
+	return fits(snprintf(text, size, "ipc://%s/%s", directory, name), size);
+}
