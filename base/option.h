@@ -4,7 +4,8 @@
  * and the settings written into a gaze log are all made from it.
  *
  * Nothing is clamped: unknown keys, trailing text, NaN, values out of range and a key given twice
- * are refused with "file:line: key: what is wrong, what is allowed".
+ * are refused with "file:line: key: what is wrong, what is allowed". Programs leave LC_NUMERIC at
+ * "C".
  */
 #ifndef GZ_BASE_OPTION_H
 #define GZ_BASE_OPTION_H
@@ -80,13 +81,17 @@ const struct gz_option *gz_options_find(const struct gz_option_binding *bindings
 					const char *key, size_t *out_binding);
 
 /**
- * Read an INI file: "[section]" and "name = value" make the key "section.name"; ';' and '#' begin
- * comments. Values are set in order; on failure earlier ones stay set.
+ * Read an INI file: "[section]" and "name = value" make the key "section.name". A line that begins
+ * with ';' or '#' is a comment, and so is what follows a ';' after a blank. Blanks around a line, a
+ * name or a value do not count; a value ends with its line. Lines hold at most 199 bytes (inih's
+ * INI_MAX_LINE), section names 49, files 1 MiB. Values are set in order; on failure earlier ones
+ * stay set.
  *
  * @retval GZ_OK             read
  * @retval GZ_ERR_NOT_FOUND  no such file; logged
  * @retval GZ_ERR_IO         cannot be read; logged
  * @retval GZ_ERR_FORMAT     refused; logged with file, line, key and remedy
+ * @retval GZ_ERR_NO_MEM     nothing is set
  */
 enum gz_result gz_options_read_file(const struct gz_option_binding *bindings, size_t count,
 				    const char *path, const struct gz_log *log);
@@ -99,7 +104,9 @@ enum gz_result gz_options_read_text(const struct gz_option_binding *bindings, si
 
 /**
  * Read a command line: "--key value", "--key=value", "--key" for a BOOL, "--" ends options.
- * Dashes and underscores in a key are the same ("--rate-hz" is "rate_hz").
+ * Dashes and underscores in a key are the same ("--rate-hz" is "rate_hz"). A value may begin with
+ * one dash ("--turn -3"), with two only after '='. "-" alone is no option. A BOOL takes a value
+ * only by '=' ("--cross=no").
  *
  * @param argc, argv     as main() has them; argv[0] is skipped
  * @param[out] out_positional  arguments that are no options, in order, pointing into @p argv;
