@@ -31,8 +31,8 @@ void gz_image_free(struct gz_image *image);
 enum gz_result gz_image_write_png(const struct gz_image *image, const char *path,
 				  const struct gz_log *log);
 
-/** Read any PNG as RGBA, alpha forced to 255. GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM:
- * logged. */
+/** Read any PNG as RGBA, alpha forced to 255; what @p out_image held (zeroed: nothing) is freed.
+ * GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM: logged. */
 enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 				 struct gz_image *out_image);
 
