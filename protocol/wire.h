@@ -23,8 +23,14 @@
 #define GZ_TOPIC_SACCADES   "saccades"
 #define GZ_TOPIC_STATUS     "status"
 
+/** What "method" says in our pupil and fixation maps. */
+#define GZ_WIRE_METHOD "gazecast"
+
 /** Room that any one encoded message fits in, bytes. */
 #define GZ_WIRE_MESSAGE_SIZE 4096
+
+/** Bytes at the end of a gaze map that hold publish_ns: its key (11) and an int 64 (9). */
+#define GZ_WIRE_PUBLISH_SIZE 20
 
 /** Nesting deeper than this is refused. */
 #define GZ_WIRE_DEPTH_MAX 8
@@ -35,16 +41,29 @@ struct gz_wire_message {
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
 };
 
-/** The topic of a gaze message by which eyes took part. Static text. */
+/**
+ * The topic of a gaze message by which eyes took part: the valid ones; both where neither is valid
+ * or the device gives one point for both. Static text.
+ */
 const char *gz_wire_gaze_topic(const struct gz_gaze *gaze);
 
 /*
- * Encoders. Each fills @p out_message; display is needed for gaze_point_3d and phi and theta.
- * They return GZ_OK, or GZ_ERR_FULL where names are too long for one message (a bug, not a state
- * that input can cause). Threads: any; nothing is shared.
+ * Encoders. Each fills @p out_message. They return GZ_OK, or GZ_ERR_FULL with an empty message
+ * where names are too long for one message (a bug, not a state that input can cause). Equal
+ * arguments give equal bytes. Numbers that are not finite are sent as nil. Threads: any; nothing is
+ * shared.
+ */
+
+/**
+ * The map of a gaze message. Its last GZ_WIRE_PUBLISH_SIZE bytes are the key publish_ns and its
+ * value: two messages that agree in all bytes before them differ in nothing else, which is how
+ * replays are compared.
+ *
+ * @param display  for gaze_point_3d, phi and theta; must be valid
  */
 enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_display *display,
 				   struct gz_wire_message *out_message);
+
 /** @param surface_name  the <name> of "surfaces.<name>" */
 enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *surface_name,
 				      struct gz_wire_message *out_message);
