@@ -15,6 +15,7 @@
 #include "filter/classify.h"
 #include "filter/combine.h"
 #include "filter/despike.h"
+#include "filter/messages.h"
 #include "filter/smooth.h"
 #include "filter/validate.h"
 #include "protocol/display.h"
@@ -45,19 +46,22 @@ struct gz_pipeline {
 	struct gz_despike_state despike;
 	struct gz_classify_state classify;
 	struct gz_smooth_state smooth;
+	struct gz_messages_state messages;
+	int64_t host_ns;    /**< of the newest output; no output is before it */
+	double noise2_deg2; /**< mean square step within fixations, degrees squared */
+	double noise_weight;
+	struct gz_point noise_point; /**< newest good point of the running fixation */
+	bool noise_started;
 };
-
-/** Most fixation messages of one step: the end of one and the onset of the next. */
-#define GZ_PIPELINE_FIXATIONS_MAX 2
 
 /** What one sample brought about. */
 struct gz_pipeline_output {
 	struct gz_gaze gaze;         /**< always filled; publish_ns is 0, for the sender to set */
 	enum gz_rejection rejection; /**< NONE if the sample was good */
 	size_t fixation_count;       /**< fixations[] to publish, in order */
-	struct gz_fixation fixations[GZ_PIPELINE_FIXATIONS_MAX];
-	size_t blink_count; /**< 0 or 1 */
-	struct gz_blink blinks[1];
+	struct gz_fixation fixations[GZ_FIXATION_MESSAGES_MAX];
+	size_t blink_count; /**< blinks[] to publish, in order */
+	struct gz_blink blinks[GZ_BLINK_MESSAGES_MAX];
 	size_t saccade_count; /**< 0 or 1 */
 	struct gz_saccade saccades[1];
 };

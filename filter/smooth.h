@@ -1,0 +1,49 @@
+/**
+ * @file
+ * Fifth step: a point that rests while the eye rests. Within a fixation a recursive mean whose
+ * window grows from one sample to window_ms; a saccade passes unsmoothed; pursuit by an
+ * alpha-beta tracker, which follows constant velocity without lag.
+ */
+#ifndef GZ_FILTER_SMOOTH_H
+#define GZ_FILTER_SMOOTH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+
+/** Settings; presets and sources stand in pipeline_options.c. */
+struct gz_smooth_params {
+	double window_ms;    /**< longest window of the mean, ms */
+	double pursuit_ms;   /**< time constant of the alpha-beta tracker, ms */
+	double drift_factor; /**< the mean lets go when it is so many times the usual distance off
+			      */
+	double drift_deg;    /**< and at least so far, degrees */
+};
+
+/** Zero-initialised is the start state. */
+struct gz_smooth_state {
+	bool started;          /**< whether the rest holds something */
+	enum gz_event mode;    /**< how the last good sample was smoothed */
+	int64_t time_ns;       /**< of the last good sample */
+	double place[2];       /**< display sides */
+	double velocity[2];    /**< display sides a second; pursuit only */
+	double window_s;       /**< the mean's window so far */
+	double offset[2];      /**< short mean of measured minus given place, display sides */
+	double usual_deg;      /**< usual distance between measured and given place, degrees */
+	struct gz_point point; /**< what was given last */
+};
+
+/**
+ * Smooth one point.
+ *
+ * @param event  the label given at once
+ * @param valid  false: @p point is not looked at, and the last place is held
+ * @return always finite; (0.5, 0.5) before the first good sample
+ */
+struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+			       const struct gz_display *display, enum gz_event event,
+			       int64_t time_ns, bool valid, struct gz_point point);
+
+#endif

@@ -1,0 +1,61 @@
+/**
+ * @file
+ * First step: which samples, and which eyes of a sample, may be believed. A pure step over a state;
+ * the caller counts the reasons.
+ */
+#ifndef GZ_FILTER_VALIDATE_H
+#define GZ_FILTER_VALIDATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+
+/** Settings; presets and sources stand in pipeline_options.c. */
+struct gz_validate_params {
+	double margin;             /**< how far outside [0, 1] a point may lie, display sides */
+	double max_velocity_deg_s; /**< faster than an eye turns, degrees a second */
+	double jump_deg;           /**< a step this small is never too fast: noise, degrees */
+	double max_disparity_deg;  /**< greatest angle between the two eyes' points, degrees */
+	double min_confidence;     /**< [0, 1]; below it an eye is not used */
+};
+
+/** Zero-initialised is the start state. */
+struct gz_validate_state {
+	bool started;           /**< whether time_ns holds something */
+	bool placed;            /**< whether point and point_ns hold something */
+	int64_t time_ns;        /**< of the newest sample, good or not */
+	int64_t point_ns;       /**< of the newest good sample */
+	struct gz_point point;  /**< where it was */
+	double disparity_mm[2]; /**< slow mean of left minus right on the display, mm */
+	bool has_disparity;
+};
+
+/** What may be used of a sample. */
+struct gz_validate_output {
+	enum gz_rejection rejection; /**< NONE if at least one eye or the common point is good */
+	bool combined;               /**< use the common point; the eyes were not measured */
+	bool eye_good[GZ_EYE_COUNT]; /**< use this eye */
+};
+
+/**
+ * Judge one sample.
+ *
+ * An eye is good if the tracker says so, its confidence is not below the limit (NaN counts as not
+ * measured, and passes), and its point is finite and on the display but for the margin. Two good
+ * eyes must not disagree by more than max_disparity_deg beyond their usual disparity; the sample
+ * must not be farther from the last good one than max_velocity_deg_s allows for the time between,
+ * plus jump_deg, so that a tracker that really jumped is believed again after a few milliseconds.
+ * The reason told is the first one of: time, then of the better eye tracker, confidence,
+ * not_finite, off_screen, then disparity, velocity.
+ *
+ * @param state    a sample not newer than the last (GZ_REJECT_TIME) leaves it as it was
+ * @param display  valid
+ */
+struct gz_validate_output gz_validate_step(struct gz_validate_state *state,
+					   const struct gz_validate_params *params,
+					   const struct gz_display *display,
+					   const struct gz_sample *sample);
+
+#endif
