@@ -1,0 +1,159 @@
+#include "check.h"
+
+#include "base/option.h"
+
+#include <string.h>
+
+#include "captured_log.h"
+#include "option_sample.h"
+
+enum { MOST_ARGUMENTS = 8 };
+
+struct run {
+	struct settings settings;
+	bool given[SAMPLE_COUNT];
+	const char *positional[MOST_ARGUMENTS];
+	int positional_count;
+	struct captured_log captured;
+};
+
+/* Reads @p arguments, NULL-terminated and without argv[0]. */
+static enum gz_result read_into(struct run *run, bool takes_positional,
+				const char *const *arguments)
+{
+	char copies[MOST_ARGUMENTS][64];
+	char *argv[MOST_ARGUMENTS + 1] = { (char[]) { "program" } };
+	int argc = 1;
+	*run = (struct run) { .positional_count = -1 };
+	captured_log_init(&run->captured, "*:debug");
+	for (; arguments[argc - 1]; argc++) {
+		assert_true(argc < MOST_ARGUMENTS);
+		snprintf(copies[argc], sizeof copies[argc], "%s", arguments[argc - 1]);
+		argv[argc] = copies[argc];
+	}
+	const struct gz_option_binding binding = sample_binding(&run->settings, run->given);
+	enum gz_result result = gz_options_read_arguments(
+		&binding, 1, argc, argv, takes_positional ? run->positional : NULL,
+		takes_positional ? &run->positional_count : NULL, &run->captured.log);
+	for (int i = 0; i < run->positional_count; i++) {
+		for (int a = 1; a < argc; a++) {
+			if (run->positional[i] == argv[a]) /* outlives this call's copies */
+				run->positional[i] = arguments[a - 1];
+		}
+	}
+	return result;
+}
+
+static void arguments_set_values_in_both_spellings(void **state)
+{
+	(void)state;
+	struct run run;
+	const char *const arguments[] = {
+		"--publish.port", "2000", "--size=640x480", "--show-cross", "--camera.eye",
+		"-1 -2 3",        NULL
+	};
+	assert_int_equal(read_into(&run, false, arguments), GZ_OK);
+	assert_int_equal(run.settings.port, 2000);
+	assert_int_equal(run.settings.size[0], 640);
+	assert_int_equal(run.settings.size[1], 480);
+	assert_true(run.settings.cross);
+	assert_true(run.settings.eye[0] == -1 && run.settings.eye[2] == 3);
+	for (int i = 0; i < SAMPLE_COUNT; i++)
+		assert_int_equal(run.given[i], i == PORT || i == SIZE || i == CROSS || i == EYE);
+}
+
+static void arguments_bool_takes_a_value_only_by_equals(void **state)
+{
+	(void)state;
+	struct run run;
+	const char *const off[] = { "--show_cross=no", NULL };
+	const char *const loose[] = { "--show_cross", "no", NULL };
+	assert_int_equal(read_into(&run, false, off), GZ_OK);
+	assert_false(run.settings.cross);
+	assert_true(run.given[CROSS]);
+	assert_int_equal(read_into(&run, true, loose), GZ_OK);
+	assert_true(run.settings.cross);
+	assert_int_equal(run.positional_count, 1);
+	assert_string_equal(run.positional[0], "no");
+}
+
+static void arguments_positional_come_in_order(void **state)
+{
+	(void)state;
+	struct run run;
+	const char *const arguments[] = { "watch", "--publish.port", "2000", "-",
+					  "--",    "--size",         NULL };
+	assert_int_equal(read_into(&run, true, arguments), GZ_OK);
+	assert_int_equal(run.positional_count, 3);
+	assert_string_equal(run.positional[0], "watch");
+	assert_string_equal(run.positional[1], "-");
+	assert_string_equal(run.positional[2], "--size");
+}
+
+static void arguments_none_is_fine(void **state)
+{
+	(void)state;
+	struct run run;
+	const char *const arguments[] = { NULL };
+	assert_int_equal(read_into(&run, true, arguments), GZ_OK);
+	assert_int_equal(run.positional_count, 0);
+}
+
+static void arguments_refusals_name_option_and_remedy(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *arguments[5], *message;
+	} refusals[] = {
+		{ { "--publish.port", "80" }, "--publish.port: 80 is outside 1024 to 65535" },
+		{ { "--publish.port" }, "--publish.port: needs a value: TCP port (1024 to 65535)" },
+		{ { "--publish.port", "--size" },
+		  "--publish.port: needs a value: TCP port (1024 to 65535)" },
+		{ { "--publish.port=" }, "--publish.port: 0 of 1 numbers given; give 1" },
+		{ { "--publish.prt", "2000" },
+		  "--publish.prt: unknown option; did you mean --publish.port?" },
+		{ { "--port", "2000" }, "--port: unknown option; did you mean --publish.port?" },
+		{ { "--velocity" }, "--velocity: unknown option; --help lists them all" },
+		{ { "--size", "1x1", "--size=2x2" }, "--size: given twice; keep one of the two" },
+		{ { "--show-cross", "--show_cross" },
+		  "--show_cross: given twice; keep one of the two" },
+		{ { "-x" }, "-x: options begin with two dashes; --help lists them all" },
+		{ { "file" }, "file: not an option; --help lists what can be given" },
+		{ { "--=5" }, "--: unknown option; --help lists them all" },
+	};
+	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
+		struct run run;
+		assert_int_equal(read_into(&run, false, refusals[i].arguments), GZ_ERR_INVAL);
+		assert_string_equal(run.captured.last, refusals[i].message);
+		assert_int_equal(run.captured.messages, 1);
+	}
+}
+
+static void arguments_key_too_long_for_any_is_refused(void **state)
+{
+	(void)state;
+	struct run run = { 0 };
+	char key[300] = "--";
+	char program[] = "program";
+	char *argv[] = { program, key, NULL };
+	memset(key + 2, 'k', sizeof key - 3);
+	captured_log_init(&run.captured, "*:debug");
+	const struct gz_option_binding binding = sample_binding(&run.settings, NULL);
+	assert_int_equal(
+		gz_options_read_arguments(&binding, 1, 2, argv, NULL, NULL, &run.captured.log),
+		GZ_ERR_INVAL);
+	assert_int_equal(run.captured.messages, 1);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(arguments_set_values_in_both_spellings),
+		cmocka_unit_test(arguments_bool_takes_a_value_only_by_equals),
+		cmocka_unit_test(arguments_positional_come_in_order),
+		cmocka_unit_test(arguments_none_is_fine),
+		cmocka_unit_test(arguments_refusals_name_option_and_remedy),
+		cmocka_unit_test(arguments_key_too_long_for_any_is_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
