@@ -30,6 +30,7 @@ struct gz_option_reader {
 enum gz_result gz_option_reader_init(struct gz_option_reader *reader,
 				     const struct gz_option_binding *bindings, size_t count);
 
+/** Free what gz_option_reader_init() allocated. */
 void gz_option_reader_free(struct gz_option_reader *reader);
 
 /**

@@ -55,6 +55,7 @@ struct gz_client_counters {
 	bool connected;     /**< a daemon's socket is connected now */
 };
 
+/** Copy what was counted since gz_client_open(). Never blocks. */
 void gz_client_get_counters(struct gz_client *client, struct gz_client_counters *out_counters);
 
 /** Close and set to NULL; returns at once. Accepts a pointer to NULL. */

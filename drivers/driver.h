@@ -112,6 +112,7 @@ enum gz_result gz_device_start(struct gz_device *device);
 enum gz_result gz_device_read(struct gz_device *device, int timeout_ms,
 			      struct gz_sample *out_sample);
 
+/** See info and counters of struct gz_device_ops. Threads: the one that reads. */
 void gz_device_get_info(const struct gz_device *device, struct gz_device_info *out_info);
 void gz_device_get_counters(const struct gz_device *device,
 			    struct gz_device_counters *out_counters);

@@ -151,6 +151,7 @@ enum gz_tracker_state {
 	GZ_TRACKER_STATE_COUNT,
 };
 
+/** Its name on the wire; static text. */
 const char *gz_tracker_state_name(enum gz_tracker_state state);
 
 enum gz_recording_state {
@@ -160,6 +161,7 @@ enum gz_recording_state {
 	GZ_RECORDING_STATE_COUNT,
 };
 
+/** Its name on the wire; static text. */
 const char *gz_recording_state_name(enum gz_recording_state state);
 
 /** How the tick of the device's clock was found. */
@@ -170,6 +172,7 @@ enum gz_clock_tick {
 	GZ_CLOCK_TICK_COUNT,
 };
 
+/** Its name on the wire; static text. */
 const char *gz_clock_tick_name(enum gz_clock_tick tick);
 
 /** How device time maps to host time. */

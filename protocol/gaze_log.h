@@ -121,6 +121,7 @@ const struct gz_gaze_log_header *gz_gaze_log_header(const struct gz_gaze_log_rea
 enum gz_result gz_gaze_log_read(struct gz_gaze_log_reader *reader,
 				struct gz_gaze_log_record *out_record);
 
+/** How the log ended; certain once gz_gaze_log_read() has returned GZ_ERR_END. */
 enum gz_gaze_log_ending gz_gaze_log_ending(const struct gz_gaze_log_reader *reader);
 
 /** Close and set to NULL. Accepts a pointer to NULL. */

@@ -104,6 +104,7 @@ enum gz_result gz_renderer_render(struct gz_renderer *renderer, const struct gz_
 				  const struct gz_ray_params *rays, const struct gz_plan *plan,
 				  struct gz_image *image, struct gz_frame_stats *out_stats);
 
+/** One line for people: the kernel chosen and its threads. Owned by the renderer. */
 const char *gz_renderer_describe(const struct gz_renderer *renderer);
 
 /** Destroy and set to NULL. Accepts a pointer to NULL. */

@@ -1,19 +1,18 @@
-# Fails if a header declares a function without a comment right before it.
+# Fails if a header declares a function without a comment right before it. Declarations that follow
+# each other without an empty line share the comment before the first.
 #   awk -f documented.awk header...
-# A declaration begins in column 0 and holds "name(" on its first or second line; macros, typedefs
-# of function types and inline functions count as well as plain prototypes.
-FNR == 1 { before = ""; within = 0 }
+FNR == 1 { covered = 0; within = 0 }
 
+# The rest of a declaration or of an inline function's body.
 within {
-	if (/;[ \t]*$/ || /^}/)
+	if (/;[ \t]*$/ && !body || /^}/)
 		within = 0
-	before = ""
 	next
 }
 
-/^[a-z_].*[a-z0-9_]+\(/ && !/^typedef struct/ && !/^extern "C"/ {
+/^[a-z_].*[a-z0-9_]+\(/ && !/^extern "C"/ {
 	functions++
-	if (before !~ /\*\/[ \t]*$/) {
+	if (!covered) {
 		name = $0
 		gsub(/__attribute__\(\([^;]*\)\)\)? */, "", name)
 		sub(/\(.*/, "", name)
@@ -23,11 +22,11 @@ within {
 		faults++
 	}
 	within = !/;[ \t]*$/
-	before = ""
+	body = /^static inline/
 	next
 }
 
-/[^ \t]/ { before = $0 }
+{ covered = /\*\/[ \t]*$/ }
 
 END {
 	if (!functions) {
