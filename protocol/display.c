@@ -4,8 +4,6 @@
 
 #define DEG_PER_RAD 57.295779513082320877
 
-static const int SIDE_MAX_PX = 32768;
-
 struct gz_display gz_display_default(int width_px, int height_px)
 {
 	/* 50.4 degrees between the left and right edges, as the header says. */
@@ -26,7 +24,7 @@ static bool is_length(double mm)
 
 static bool is_side(int px)
 {
-	return px >= 1 && px <= SIDE_MAX_PX;
+	return px >= 1 && px <= GZ_DISPLAY_SIDE_MAX_PX;
 }
 
 bool gz_display_valid(const struct gz_display *display)

@@ -15,6 +15,9 @@ struct gz_point {
 	float x, y;
 };
 
+/** Most pixels a side of a display may have. */
+#define GZ_DISPLAY_SIDE_MAX_PX 32768
+
 /** A flat display seen from straight in front of its centre. */
 struct gz_display {
 	int px[2];          /**< pixels, width and height; 1 to 32768 */

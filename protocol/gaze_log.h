@@ -22,6 +22,9 @@
 				   */
 #define GZ_GAZE_LOG_TEXT_SIZE 512 /**< bytes of a mark's or gap's text, unescaped, with its NUL */
 
+/** Room that any header fits in, with its NUL, bytes. */
+#define GZ_GAZE_LOG_HEADER_SIZE 49152
+
 /** One "#pipeline.<key> <value>" line: key is given without "pipeline.". */
 struct gz_gaze_log_setting {
 	char key[GZ_NAME_SIZE];
@@ -61,6 +64,9 @@ struct gz_gaze_log_record {
 /**
  * Print the header's lines into @p text, with the version line first.
  *
+ * A key is followed by one blank, several numbers are parted by tabs; a line "#columns" names the
+ * columns. Texts are escaped as marks are. Doubles keep their bits.
+ *
  * @param[out] out_length  bytes written, without the NUL that follows
  * @retval GZ_ERR_FULL  @p size is too small
  */
@@ -69,8 +75,11 @@ enum gz_result gz_gaze_log_print_header(const struct gz_gaze_log_header *header,
 
 /**
  * Print one record as its line with the newline. GZ_GAZE_LOG_LINE_SIZE bytes always suffice. A
- * SAMPLE whose lost_before is not 0 does not print its gap: that is a record of its own. Does not
- * allocate. @retval GZ_ERR_FULL  @p size is too small
+ * SAMPLE whose lost_before is not 0 does not print its gap: that is a record of its own. An
+ * infinite number is "inf" or "-inf"; NaN is an empty field. Whatever locale is set, the decimal
+ * point is a point. Does not allocate.
+ *
+ * @retval GZ_ERR_FULL  @p size is too small
  */
 enum gz_result gz_gaze_log_print_record(const struct gz_gaze_log_record *record, char *text,
 					size_t size, size_t *out_length);
@@ -114,8 +123,8 @@ const struct gz_gaze_log_header *gz_gaze_log_header(const struct gz_gaze_log_rea
  * @retval GZ_OK          *out_record is filled
  * @retval GZ_ERR_END     the log is over, whole or cut; gz_gaze_log_ending() tells; a cut or
  * corrupted one was logged once, as a warning with the number of samples found
- * @retval GZ_ERR_FORMAT  a malformed line in the middle; logged with file:line; the line is skipped
- * and the next call goes on behind it
+ * @retval GZ_ERR_FORMAT  a malformed line in the middle; logged with file:line (the first ten of a
+ * log); the line is skipped and the next call goes on behind it
  * @retval GZ_ERR_IO      reading failed; logged
  */
 enum gz_result gz_gaze_log_read(struct gz_gaze_log_reader *reader,
