@@ -1,0 +1,243 @@
+#include "client/stream.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "client/subscriber.h"
+#include "protocol/wire.h"
+
+#define GZ_LOG_MODULE "client"
+
+struct gz_stream {
+	struct gz_subscriber subscriber;
+	zmq_msg_t payload; /**< of the message read last */
+	bool counts_gaps;  /**< every gaze topic is subscribed to */
+	bool has_seq;      /**< last_seq is of this connection */
+	uint64_t last_seq;
+	uint64_t seq_connection; /**< the connection that last_seq came by */
+	struct gz_stream_counters counters;
+	struct gz_ratelimit malformed_limit;
+};
+
+/* The part that all gaze topics begin with. */
+#define GAZE_TOPICS_COMMON "gaze.3d."
+
+static bool covers_gaze(const char *const *topics)
+{
+	if (!topics)
+		return true;
+	for (; *topics; topics++)
+		if (strncmp(GAZE_TOPICS_COMMON, *topics, strlen(*topics)) == 0)
+			return true;
+	return false;
+}
+
+enum gz_result gz_stream_open(const char *endpoint, const char *const *topics,
+			      const struct gz_log *log, struct gz_stream **out_stream)
+{
+	struct gz_stream *stream = calloc(1, sizeof *stream);
+	if (!stream)
+		return GZ_ERR_NO_MEM;
+	zmq_msg_init(&stream->payload);
+	const struct gz_subscriber_params params = {
+		.endpoint = endpoint,
+		.channel = "stream",
+		.topics = topics && topics[0] ? topics : NULL,
+	};
+	stream->counts_gaps = covers_gaze(params.topics);
+	enum gz_result result = gz_subscriber_open(&stream->subscriber, &params, log);
+	if (result != GZ_OK) {
+		gz_stream_close(&stream);
+		return result;
+	}
+	*out_stream = stream;
+	return GZ_OK;
+}
+
+/* Read one frame. Returns whether there was one and tells whether more of its message follow. */
+static bool take_frame(struct gz_stream *stream, zmq_msg_t *frame, bool *out_more)
+{
+	if (zmq_msg_recv(frame, stream->subscriber.socket, ZMQ_DONTWAIT) < 0)
+		return false;
+	*out_more = zmq_msg_more(frame);
+	return true;
+}
+
+/* Read one message. Returns whether there was one; *out_frames is its count of frames. */
+static bool take_frames(struct gz_stream *stream, zmq_msg_t *topic, int *out_frames)
+{
+	bool more = false;
+	if (!take_frame(stream, topic, &more))
+		return false;
+	int frames = 1;
+	while (more && take_frame(stream, &stream->payload, &more))
+		frames++;
+	*out_frames = frames;
+	return true;
+}
+
+static enum gz_message_kind kind_of(const char *topic)
+{
+	if (strncmp(topic, GZ_TOPIC_GAZE, strlen(GZ_TOPIC_GAZE)) == 0)
+		return GZ_MESSAGE_GAZE;
+	if (strcmp(topic, GZ_TOPIC_FIXATIONS) == 0)
+		return GZ_MESSAGE_FIXATION;
+	if (strcmp(topic, GZ_TOPIC_BLINKS) == 0)
+		return GZ_MESSAGE_BLINK;
+	if (strcmp(topic, GZ_TOPIC_SACCADES) == 0)
+		return GZ_MESSAGE_SACCADE;
+	if (strcmp(topic, GZ_TOPIC_STATUS) == 0)
+		return GZ_MESSAGE_STATUS;
+	return GZ_MESSAGE_OTHER;
+}
+
+static enum gz_result decode_payload(struct gz_message *message)
+{
+	switch (message->kind) {
+	case GZ_MESSAGE_GAZE:
+		return gz_wire_decode_gaze(message->bytes, message->size, &message->gaze);
+	case GZ_MESSAGE_FIXATION:
+		return gz_wire_decode_fixation(message->bytes, message->size, &message->fixation);
+	case GZ_MESSAGE_BLINK:
+		return gz_wire_decode_blink(message->bytes, message->size, &message->blink);
+	case GZ_MESSAGE_SACCADE:
+		return gz_wire_decode_saccade(message->bytes, message->size, &message->saccade);
+	case GZ_MESSAGE_STATUS:
+		return gz_wire_decode_status(message->bytes, message->size, &message->status);
+	case GZ_MESSAGE_OTHER:
+		return gz_wire_check(message->bytes, message->size);
+	}
+	return GZ_ERR_PROTOCOL;
+}
+
+/* A topic of our kind: short, without a NUL in it. */
+static enum gz_result decode_topic(zmq_msg_t *frame, struct gz_message *message)
+{
+	size_t size = zmq_msg_size(frame);
+	if (size >= sizeof message->topic || memchr(zmq_msg_data(frame), '\0', size))
+		return GZ_ERR_PROTOCOL;
+	memcpy(message->topic, zmq_msg_data(frame), size);
+	message->topic[size] = '\0';
+	return GZ_OK;
+}
+
+static enum gz_result decode(struct gz_stream *stream, zmq_msg_t *topic, int frames,
+			     struct gz_message *message)
+{
+	memset(message, 0, sizeof *message);
+	if (frames != 2 || decode_topic(topic, message) != GZ_OK)
+		return GZ_ERR_PROTOCOL;
+	message->kind = kind_of(message->topic);
+	message->bytes = zmq_msg_data(&stream->payload);
+	message->size = zmq_msg_size(&stream->payload);
+	message->received_ns = gz_clock_now_ns();
+	return decode_payload(message);
+}
+
+/* How many gaze messages were missed before number @p seq. What was sent while there was no
+ * connection is not counted: it may be another daemon, which numbers anew. */
+static uint64_t count_gap(struct gz_stream *stream, uint64_t seq)
+{
+	gz_subscriber_take_events(&stream->subscriber);
+	bool comparable = stream->counts_gaps && stream->has_seq &&
+			  stream->seq_connection == stream->subscriber.connections;
+	uint64_t lost = comparable && seq > stream->last_seq ? seq - stream->last_seq - 1 : 0;
+	stream->has_seq = true;
+	stream->last_seq = seq;
+	stream->seq_connection = stream->subscriber.connections;
+	stream->counters.lost += lost;
+	return lost;
+}
+
+static void count_malformed(struct gz_stream *stream)
+{
+	uint64_t dropped;
+	stream->counters.malformed++;
+	if (gz_ratelimit_pass(&stream->malformed_limit, gz_clock_now_ns(), GZ_NS_PER_S, &dropped))
+		gz_warn(stream->subscriber.log,
+			"%s: a malformed message is dropped (%llu so far): is this a stream?",
+			stream->subscriber.endpoint,
+			(unsigned long long)stream->counters.malformed);
+}
+
+/* GZ_OK with a message, GZ_ERR_PROTOCOL after a malformed one, GZ_ERR_TIMEOUT if none waits. */
+static enum gz_result take_message(struct gz_stream *stream, struct gz_message *out_message)
+{
+	zmq_msg_t topic;
+	zmq_msg_init(&topic);
+	enum gz_result result = GZ_ERR_TIMEOUT;
+	struct gz_message message;
+	int frames;
+	if (take_frames(stream, &topic, &frames))
+		result = decode(stream, &topic, frames, &message);
+	zmq_msg_close(&topic);
+	if (result == GZ_ERR_PROTOCOL)
+		count_malformed(stream);
+	if (result != GZ_OK)
+		return result;
+	stream->counters.received++;
+	if (message.kind == GZ_MESSAGE_GAZE)
+		message.lost = count_gap(stream, message.gaze.seq);
+	*out_message = message;
+	return GZ_OK;
+}
+
+/* Wait until something can be read or @p deadline_ns. Returns whether to look again. */
+static bool wait_readable(struct gz_stream *stream, int64_t deadline_ns)
+{
+	int64_t left_ns = deadline_ns - gz_clock_now_ns();
+	if (left_ns <= 0)
+		return false;
+	zmq_pollitem_t items[] = {
+		{ .socket = stream->subscriber.socket, .events = ZMQ_POLLIN },
+		{ .socket = stream->subscriber.monitor, .events = ZMQ_POLLIN },
+	};
+	long timeout_ms = (long)((left_ns + GZ_NS_PER_MS - 1) / GZ_NS_PER_MS);
+	if (zmq_poll(items, 2, timeout_ms) < 0)
+		return false; /* a signal: the caller may have to end */
+	gz_subscriber_take_events(&stream->subscriber);
+	return true;
+}
+
+enum gz_result gz_stream_read(struct gz_stream *stream, int timeout_ms,
+			      struct gz_message *out_message)
+{
+	if (timeout_ms < 0)
+		return GZ_ERR_INVAL;
+	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	do {
+		/* A flood of malformed messages must not hold the caller beyond its deadline. */
+		enum gz_result result = take_message(stream, out_message);
+		if (result == GZ_OK)
+			return GZ_OK;
+		if (result == GZ_ERR_PROTOCOL && gz_clock_now_ns() >= deadline_ns)
+			return GZ_ERR_TIMEOUT;
+	} while (wait_readable(stream, deadline_ns));
+	return GZ_ERR_TIMEOUT;
+}
+
+void gz_stream_get_counters(struct gz_stream *stream, struct gz_stream_counters *out_counters)
+{
+	gz_subscriber_take_events(&stream->subscriber);
+	stream->counters.connected = stream->subscriber.connected;
+	stream->counters.connections = stream->subscriber.connections;
+	*out_counters = stream->counters;
+}
+
+const char *gz_stream_endpoint(const struct gz_stream *stream)
+{
+	return stream->subscriber.endpoint;
+}
+
+void gz_stream_close(struct gz_stream **stream)
+{
+	if (!*stream)
+		return;
+	zmq_msg_close(&(*stream)->payload);
+	gz_subscriber_close(&(*stream)->subscriber);
+	free(*stream);
+	*stream = NULL;
+}
