@@ -1,0 +1,29 @@
+/**
+ * @file
+ * Numbers in text from outside, read the same in every locale.
+ */
+#ifndef GZ_RENDER_NUMBER_H
+#define GZ_RENDER_NUMBER_H
+
+#include <stdbool.h>
+
+/**
+ * Read one decimal number that is the whole of @p word: no blanks, no "nan", "inf" or hexadecimal.
+ *
+ * @param[out] out_value  finite; written only on true
+ */
+bool gz_number_parse(const char *word, double *out_value);
+
+/** As gz_number_parse() for a whole number that an int64_t holds; decimal digits and a sign. */
+bool gz_number_parse_whole(const char *word, long long *out_value);
+
+/**
+ * Cut the first word off @p *text, which is moved behind it.
+ *
+ * @param[in,out] text     NUL-terminated; changed: the blank behind the word becomes its NUL
+ * @param         blanks   what separates words
+ * @return the word, or NULL where only blanks are left
+ */
+char *gz_number_next_word(char **text, const char *blanks);
+
+#endif

@@ -1,0 +1,195 @@
+/* Volumes made by a formula. Only + - * / and sqrt are used, which IEEE 754 rounds in one way, and
+ * nothing is fused (cmake/GzTargets.cmake): the voxels are the same bits on every machine. Shapes
+ * and numbers are chosen by eye. */
+#include <math.h>
+#include <stdint.h>
+
+#include "render/volume.h"
+
+#define GZ_LOG_MODULE "volume"
+
+const char *const gz_procedural_names[] = { "shells", "supernova", NULL };
+
+/* 1 at t = 0, falling smoothly to 0 at |t| = 1 and beyond. */
+static double bump(double t)
+{
+	double u = 1 - t * t;
+	return u > 0 ? u * u : 0;
+}
+
+static double clamp01(double x)
+{
+	return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+static double smooth(double t)
+{
+	return t * t * (3 - 2 * t);
+}
+
+/* Real spherical harmonics without their constants, of a unit vector: degree 2 and 4 (tesseral and
+ * cubic) and 6 (tesseral). */
+static double harmonic_2(double z)
+{
+	return (3 * z * z - 1) / 2;
+}
+
+static double harmonic_4(double x, double y)
+{
+	double x2 = x * x, y2 = y * y;
+	return x2 * x2 - 6 * x2 * y2 + y2 * y2;
+}
+
+static double harmonic_cubic(double x, double y, double z)
+{
+	double x2 = x * x, y2 = y * y, z2 = z * z;
+	return x2 * x2 + y2 * y2 + z2 * z2 - 0.6;
+}
+
+static double harmonic_6(double x, double y)
+{
+	double x2 = x * x, y2 = y * y;
+	return (x2 - y2) * (x2 * x2 - 14 * x2 * y2 + y2 * y2);
+}
+
+/* Nested shells round a core, each denser than the one outside it, each bent by one harmonic. */
+static double shells_at(const double p[3])
+{
+	double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+	double s = r > 1e-9 ? 1 / r : 0;
+	double x = p[0] * s, y = p[1] * s, z = p[2] * s;
+	double outer = bump((r - 0.80 - 0.13 * harmonic_6(x, y)) / 0.09);
+	double third = bump((r - 0.58 - 0.12 * harmonic_4(x, y) * (1 + z) / 2) / 0.08);
+	double second = bump((r - 0.38 - 0.10 * harmonic_cubic(x, y, z)) / 0.07);
+	double inner = bump((r - 0.21 - 0.05 * harmonic_2(z)) / 0.06);
+	double core = bump(r / 0.13);
+	double v = 0.30 * outer;
+	v = v > 0.48 * third ? v : 0.48 * third;
+	v = v > 0.66 * second ? v : 0.66 * second;
+	v = v > 0.83 * inner ? v : 0.83 * inner;
+	return v > core ? v : core;
+}
+
+/* One of 12 directions at a lattice point, by an integer hash, times the offset from it: Perlin,
+ * "Improving noise", SIGGRAPH 2002; the hash is the finaliser of MurmurHash3. */
+static double gradient(int32_t x, int32_t y, int32_t z, const double d[3])
+{
+	uint32_t h =
+		(uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ (uint32_t)z * 0xc2b2ae3du;
+	h ^= h >> 16;
+	h *= 0x85ebca6bu;
+	h ^= h >> 13;
+	h *= 0xc2b2ae35u;
+	h ^= h >> 16;
+	uint32_t edge = h % 12;
+	double a = d[edge >> 2], b = d[((edge >> 2) + 1) % 3];
+	return ((edge & 1) ? -a : a) + ((edge & 2) ? -b : b);
+}
+
+static double fade(double t)
+{
+	return t * t * t * (t * (t * 6 - 15) + 10);
+}
+
+static double mix(double a, double b, double t)
+{
+	return a + t * (b - a);
+}
+
+/* Gradient noise, about -1 to 1. */
+static double noise(const double p[3])
+{
+	int32_t cell[3];
+	double d[3], w[3], corner[8];
+	for (int i = 0; i < 3; i++) {
+		double whole = floor(p[i]);
+		cell[i] = (int32_t)whole;
+		d[i] = p[i] - whole;
+		w[i] = fade(d[i]);
+	}
+	for (int c = 0; c < 8; c++) {
+		int dx = c & 1, dy = c >> 1 & 1, dz = c >> 2;
+		double offset[3] = { d[0] - dx, d[1] - dy, d[2] - dz };
+		corner[c] = gradient(cell[0] + dx, cell[1] + dy, cell[2] + dz, offset);
+	}
+	double low = mix(mix(corner[0], corner[1], w[0]), mix(corner[2], corner[3], w[0]), w[1]);
+	double high = mix(mix(corner[4], corner[5], w[0]), mix(corner[6], corner[7], w[0]), w[1]);
+	return mix(low, high, w[2]);
+}
+
+/* Sum of octaves of ridges: sharp where the noise crosses zero. About 0 to 1. */
+static double ridges(const double p[3], int octaves)
+{
+	double sum = 0, weight = 0.5, carry = 1, q[3] = { p[0], p[1], p[2] };
+	for (int k = 0; k < octaves; k++) {
+		double ridge = 1 - fabs(noise(q));
+		ridge = ridge * ridge * carry;
+		sum += weight * ridge;
+		carry = clamp01(2 * ridge); /* fine ridges only on coarse ones */
+		weight *= 0.5;
+		for (int i = 0; i < 3; i++)
+			q[i] = 2.03 * q[i] + 17.7;
+	}
+	return clamp01(sum);
+}
+
+/* Filaments in a thick shell whose radius billows, and a small bright remnant. */
+static double supernova_at(const double p[3])
+{
+	double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+	if (r >= 1)
+		return 0;
+	double remnant = bump(r / 0.10);
+	if (r < 0.12)
+		return 0.9 * remnant;
+	double coarse[3] = { 1.7 * p[0] + 5.2, 1.7 * p[1] + 1.3, 1.7 * p[2] + 9.1 };
+	double billow = noise(coarse);
+	double shell = bump((r - 0.62 - 0.16 * billow) / 0.30);
+	if (shell <= 0)
+		return 0;
+	double fine[3] = { 3.1 * p[0] + 0.8 * billow, 3.1 * p[1] - 0.6 * billow, 3.1 * p[2] };
+	double filament = ridges(fine, 4);
+	return shell * smooth(clamp01((filament - 0.35) / 0.6));
+}
+
+static void fill_row(struct gz_volume *volume, enum gz_procedural which, int y, int z)
+{
+	const int *dims = volume->dims;
+	int longest = dims[0] > dims[1] ? dims[0] : dims[1];
+	longest = longest > dims[2] ? longest : dims[2];
+	size_t row = ((size_t)z * (size_t)dims[1] + (size_t)y) * (size_t)dims[0];
+	for (int x = 0; x < dims[0]; x++) {
+		double p[3] = { (double)(2 * x + 1 - dims[0]) / longest,
+				(double)(2 * y + 1 - dims[1]) / longest,
+				(double)(2 * z + 1 - dims[2]) / longest };
+		if (which == GZ_PROCEDURAL_SHELLS)
+			((uint8_t *)volume->voxels)[row + (size_t)x] =
+				(uint8_t)(255 * shells_at(p) + 0.5);
+		else
+			((float *)volume->voxels)[row + (size_t)x] = (float)supernova_at(p);
+	}
+}
+
+enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
+				  const struct gz_log *log, struct gz_volume *out_volume)
+{
+	struct gz_volume volume = { .dims = { dims[0], dims[1], dims[2] },
+				    .spacing = { 1, 1, 1 },
+				    .oriented = true };
+	if ((unsigned)which >= GZ_PROCEDURAL_COUNT)
+		return GZ_ERR_INVAL;
+	volume.type = which == GZ_PROCEDURAL_SHELLS ? GZ_VOXEL_U8 : GZ_VOXEL_F32;
+	enum gz_result result = gz_volume_allocate(&volume);
+	if (result != GZ_OK) {
+		gz_err(log, "%s: cannot make %d x %d x %d voxels: %s; choose smaller dims",
+		       gz_procedural_names[which], dims[0], dims[1], dims[2],
+		       gz_result_text(result));
+		return result;
+	}
+	for (int z = 0; z < dims[2]; z++)
+		for (int y = 0; y < dims[1]; y++)
+			fill_row(&volume, which, y, z);
+	gz_volume_find_range(&volume);
+	*out_volume = volume;
+	return GZ_OK;
+}

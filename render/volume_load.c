@@ -1,0 +1,55 @@
+/* Which loader reads a file, by its name. */
+#include <stddef.h>
+
+#include "render/file_path.h"
+#include "render/volume.h"
+#include "render/volume_loaders.h"
+
+#define GZ_LOG_MODULE "volume"
+
+/* The loaders of files that have a header. */
+static const struct {
+	const char *ending;
+	enum gz_result (*load)(const char *path, const struct gz_log *log,
+			       struct gz_volume *out_volume);
+} with_header[] = {
+	{ ".nii", gz_volume_load_nifti },     { ".nii.gz", gz_volume_load_nifti },
+	{ ".nrrd", gz_volume_load_nrrd },     { ".nhdr", gz_volume_load_nrrd },
+	{ ".mhd", gz_volume_load_metaimage }, { ".mha", gz_volume_load_metaimage },
+};
+
+/* Headerless ones; the header kinds have been tried before. */
+static const struct {
+	const char *ending;
+	enum gz_coding coding;
+} headerless[] = {
+	{ ".zst", GZ_CODING_ZSTD },
+	{ ".gz", GZ_CODING_ZLIB },
+	{ ".raw", GZ_CODING_PLAIN },
+};
+
+enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
+			      const struct gz_log *log, struct gz_volume *out_volume)
+{
+	for (size_t i = 0; i < sizeof with_header / sizeof with_header[0]; i++) {
+		if (!gz_path_ends(path, with_header[i].ending))
+			continue;
+		if (!raw)
+			return with_header[i].load(path, log, out_volume);
+		gz_err(log, "%s: has a header; leave out dims, type, endian and spacing", path);
+		return GZ_ERR_INVAL;
+	}
+	for (size_t i = 0; i < sizeof headerless / sizeof headerless[0]; i++) {
+		if (!gz_path_ends(path, headerless[i].ending))
+			continue;
+		if (raw)
+			return gz_volume_load_raw(path, headerless[i].coding, raw, log, out_volume);
+		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
+		return GZ_ERR_INVAL;
+	}
+	gz_err(log,
+	       "%s: unknown kind of volume; .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw, "
+	       ".raw.zst and .raw.gz are read",
+	       path);
+	return GZ_ERR_UNSUPPORTED;
+}
