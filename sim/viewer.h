@@ -35,7 +35,7 @@ struct gz_viewer_truth {
 	struct gz_point point; /**< where the eyes look, also behind closed lids */
 	enum gz_event event;   /**< FIXATION, SACCADE, PURSUIT or BLINK */
 	double velocity_deg_s; /**< of the eyes, without tremor */
-	uint64_t fixation;     /**< counts fixations from 0: the one running, or the next one */
+	uint64_t fixation;     /**< counts fixations from 0: the one running, or the last one */
 	bool microsaccade;     /**< a microsaccade runs; event is FIXATION */
 };
 
@@ -46,12 +46,20 @@ struct gz_viewer_saccade {
 	double begin_s, duration_s;
 };
 
-/** Fixational movement, renewed every few milliseconds on a grid in time. */
+/** Microsaccades of the running fixation, as offsets from its place to the right and down. */
+struct gz_viewer_microsaccade {
+	double from_deg[2], to_deg[2]; /**< before and after the newest one */
+	double amplitude_deg;
+	double begin_s, end_s;
+	double next_s; /**< when the next one is due; infinite if none is */
+};
+
+/** Drift and tremor; the drift is renewed on a grid in time. */
 struct gz_viewer_jitter {
-	double grid_s;      /**< time of @p drift[1] */
-	double drift[2][2]; /**< drift offset before and after, degrees, along two tangents */
+	double grid_s;      /**< time of drift[axis][1] */
+	double drift[2][2]; /**< per axis, one grid step before and at grid_s, degrees */
 	double velocity[2]; /**< degrees a second */
-	double phase[2];    /**< of the tremor, radians */
+	double phase[2];    /**< of the tremor, turns */
 };
 
 /** A viewer. Plain data but for targets, which is borrowed; gz_viewer_init() fills it. */
@@ -61,20 +69,17 @@ struct gz_viewer {
 	const struct gz_targets *targets; /**< borrowed; NULL: free viewing */
 	struct gz_random random;          /**< of the plan: what is done when */
 	struct gz_random jitter_random;   /**< of the fixational movement */
-	enum gz_event phase;              /**< FIXATION, SACCADE or PURSUIT */
+	enum gz_event phase;              /**< FIXATION, SACCADE, PURSUIT or BLINK */
 	double begin_s, end_s;            /**< of the phase, since the viewer's start */
 	double now_s;
 	int64_t start_ns;
 	double place[3];     /**< unit vector: where the fixation or pursuit started */
 	double direction[3]; /**< unit tangent: where the pursuit goes */
 	double pursuit_rad_s;
-	struct gz_viewer_saccade saccade;
-	struct gz_viewer_saccade microsaccade; /**< running, or the last one of this fixation */
-	double next_microsaccade_s;
-	double micro_offset[2]; /**< degrees: sum of finished microsaccades */
+	struct gz_viewer_saccade saccade; /**< running, or the last one */
+	struct gz_viewer_microsaccade micro;
 	struct gz_viewer_jitter jitter;
-	double blink_begin_s, blink_end_s; /**< the running or next one */
-	double next_pursuit_s;
+	double next_blink_s, next_pursuit_s; /**< when due; infinite if never */
 	uint64_t fixation_count;
 	double inhibition[GZ_TARGETS_MAX]; /**< per target, [0, 1]: just looked at */
 };
@@ -97,11 +102,12 @@ void gz_viewer_init(struct gz_viewer *viewer, const struct gz_viewer_params *par
 struct gz_viewer_truth gz_viewer_advance(struct gz_viewer *viewer, int64_t time_ns);
 
 /**
- * Peak velocity of a saccade: V = 900 (1 - exp(-A / 14)), degrees a second.
+ * Peak velocity of a saccade: V = 900 (1 - exp(-A / 11)), degrees a second.
  *
  * The main sequence's saturating form is Bahill, Clark and Stark, "The main sequence, a tool for
  * studying human eye movements", Mathematical Biosciences 24, 1975; 900 is the highest speed of
- * Bauer 2018, section 2.2; 14 degrees is chosen within the published spread (10 to 16).
+ * Bauer 2018, section 2.2; 11 degrees is chosen within the published spread (10 to 16), so that
+ * peak over mean velocity stays between 1.7 and 2.5 with the durations below.
  */
 double gz_main_sequence_peak_deg_s(double amplitude_deg);
 

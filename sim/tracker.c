@@ -1,0 +1,289 @@
+#define GZ_LOG_MODULE "sim"
+
+#include "sim/tracker.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "sim/sphere.h"
+
+#define TWO_PI 6.28318530717958647693
+
+/* Geometry of the head: half the mean pupil distance of adults, 63 mm (Dodgson 2004). */
+static const double EYE_SIDE_MM = 31.5;
+
+/* Pupil: mean, slow swing and its rate, measurement noise; chosen within the usual 2 to 8 mm. */
+static const double PUPIL_MM = 3.5;
+static const double PUPIL_SWING_MM = 0.3;
+static const double PUPIL_SWING_HZ = 0.1;
+static const double PUPIL_NOISE_MM = 0.01;
+
+/* How long an eye stays lost: mean, chosen. */
+static const double EYE_LOSS_S = 0.05;
+
+/* How far a spike jumps; chosen. */
+static const double SPIKE_MIN_DEG = 2;
+static const double SPIKE_MAX_DEG = 8;
+
+struct gz_sim_tracker {
+	struct gz_sim_params params;
+	struct gz_display display;
+	struct gz_targets targets;
+	struct gz_viewer viewer;
+	struct gz_random noise; /**< of the measurement */
+	struct gz_random fate;  /**< of loss and latency */
+	double offset_deg[GZ_EYE_COUNT][2];
+	bool eye_lost[GZ_EYE_COUNT];
+	int64_t start_ns;
+	int64_t newest_ns;  /**< exposure of the newest sample */
+	int64_t arrival_ns; /**< of the newest sample */
+	uint64_t exposures; /**< taken so far, lost ones too */
+	uint64_t delivered;
+};
+
+static bool happens(struct gz_random *random, double probability)
+{
+	return gz_random_uniform(random) < probability;
+}
+
+static enum gz_result check_params(const struct gz_sim_params *params, const struct gz_log *log)
+{
+	/* What the table refuses in a file is refused here too: print and parse each value. */
+	for (size_t i = 0; i < gz_sim_option_count; i++) {
+		const struct gz_option *option = &gz_sim_options[i];
+		struct gz_sim_params scratch;
+		char text[GZ_PATH_SIZE + 64], message[256] = "value cannot be printed";
+		enum gz_result r = gz_option_format(option, params, text, sizeof text);
+		if (r == GZ_OK)
+			r = gz_option_parse(option, text, &scratch, message, sizeof message);
+		if (r != GZ_OK) {
+			gz_err(log, "%s: %s", option->key, message);
+			return GZ_ERR_INVAL;
+		}
+	}
+	if (params->targets[0] != '\0' && params->picture[0] != '\0') {
+		gz_err(log, "sim.targets and sim.picture are both given; leave one out");
+		return GZ_ERR_INVAL;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result load_targets(const struct gz_sim_params *params, const struct gz_log *log,
+				   struct gz_targets *out_targets)
+{
+	if (params->targets[0] != '\0')
+		return gz_targets_load(params->targets, log, out_targets);
+	if (params->picture[0] != '\0')
+		return gz_targets_from_png(params->picture, log, out_targets);
+	out_targets->count = 0;
+	return GZ_OK;
+}
+
+enum gz_result gz_sim_tracker_create(const struct gz_sim_params *params, int64_t start_ns,
+				     const struct gz_log *log, struct gz_sim_tracker **out_tracker)
+{
+	enum gz_result r = check_params(params, log);
+	if (r != GZ_OK)
+		return r;
+	struct gz_sim_tracker *tracker = calloc(1, sizeof *tracker);
+	if (!tracker)
+		return GZ_ERR_NO_MEM;
+	r = load_targets(params, log, &tracker->targets);
+	if (r != GZ_OK) {
+		gz_sim_tracker_destroy(&tracker);
+		return r;
+	}
+	uint64_t seed = (uint64_t)params->seed;
+	tracker->params = *params;
+	tracker->display = (struct gz_display) {
+		.px = { params->display_px[0], params->display_px[1] },
+		.mm = { params->display_mm[0], params->display_mm[1] },
+		.distance_mm = params->distance_mm,
+	};
+	tracker->noise = gz_random_seeded(seed, 3);
+	tracker->fate = gz_random_seeded(seed, 4);
+	tracker->start_ns = tracker->newest_ns = start_ns;
+	tracker->arrival_ns = start_ns;
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
+		for (int axis = 0; axis < 2; axis++)
+			tracker->offset_deg[eye][axis] =
+				params->offset_deg * gz_random_normal(&tracker->noise);
+	gz_viewer_init(&tracker->viewer, &params->viewer, &tracker->display, &tracker->targets,
+		       seed, start_ns);
+	*out_tracker = tracker;
+	return GZ_OK;
+}
+
+/** Exposure of the next sample that arrives. */
+static int64_t next_exposure(struct gz_sim_tracker *tracker, uint32_t *out_lost)
+{
+	*out_lost = 0;
+	for (;;) {
+		double since_ns = (double)tracker->exposures++ * 1e9 / tracker->params.rate_hz;
+		if (!happens(&tracker->fate, tracker->params.loss))
+			return tracker->start_ns + (int64_t)floor(since_ns + 0.5);
+		*out_lost += 1;
+	}
+}
+
+/** Follow which eyes are not found: a two-state chain with the wanted share of lost time. */
+static void lose_eyes(struct gz_sim_tracker *tracker)
+{
+	double share = tracker->params.eye_loss / GZ_EYE_COUNT; /* each eye has its half of it */
+	double period_s = 1 / tracker->params.rate_hz;
+	double leave = period_s < EYE_LOSS_S ? period_s / EYE_LOSS_S : 1;
+	double enter = leave * share / (1 - share);
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++) {
+		bool change = happens(&tracker->fate, tracker->eye_lost[eye] ? leave : enter);
+		if (change)
+			tracker->eye_lost[eye] = !tracker->eye_lost[eye];
+	}
+}
+
+static void spike_offset(struct gz_sim_tracker *tracker, double out_deg[2])
+{
+	out_deg[0] = out_deg[1] = 0;
+	if (!happens(&tracker->fate, tracker->params.spikes))
+		return;
+	double length = gz_random_between(&tracker->fate, SPIKE_MIN_DEG, SPIKE_MAX_DEG);
+	double angle = gz_random_between(&tracker->fate, 0, TWO_PI);
+	out_deg[0] = length * gz_portable_cos(angle);
+	out_deg[1] = length * gz_portable_sin(angle);
+}
+
+static struct gz_point disturbed(const struct gz_display *display, struct gz_point truth,
+				 const double offset_deg[2])
+{
+	double direction[3];
+	gz_sphere_from_point(display, truth.x, truth.y, direction);
+	gz_sphere_offset(direction, offset_deg, direction);
+	return gz_sphere_to_point(display, direction);
+}
+
+/** Where the eye is and whither it looks; frame: display centre, +y up, +z towards the viewer. */
+static void place_eye(const struct gz_display *display, int index, struct gz_eye_sample *eye)
+{
+	double origin[3] = { index == GZ_EYE_RIGHT ? EYE_SIDE_MM : -EYE_SIDE_MM, 0,
+			     display->distance_mm };
+	double to[3] = { (eye->point.x - 0.5) * display->mm[0] - origin[0],
+			 -(eye->point.y - 0.5) * display->mm[1] - origin[1], -origin[2] };
+	double length = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
+	for (int i = 0; i < 3; i++) {
+		eye->origin_mm[i] = (float)origin[i];
+		eye->direction[i] = (float)(to[i] / length);
+	}
+}
+
+static double pupil_at(struct gz_sim_tracker *tracker, double since_s)
+{
+	double turns = PUPIL_SWING_HZ * since_s;
+	return PUPIL_MM + PUPIL_SWING_MM * gz_portable_sin(TWO_PI * (turns - floor(turns))) +
+	       PUPIL_NOISE_MM * gz_random_normal(&tracker->noise);
+}
+
+/** Measure one eye; @p seen false draws the same random numbers, and measures nothing. */
+static void measure_eye(struct gz_sim_tracker *tracker, int index, struct gz_point truth,
+			const double spike_deg[2], bool seen, struct gz_eye_sample *eye)
+{
+	double offset_deg[2];
+	for (int axis = 0; axis < 2; axis++)
+		offset_deg[axis] = tracker->offset_deg[index][axis] + spike_deg[axis] +
+				   tracker->params.noise_deg * gz_random_normal(&tracker->noise);
+	double pupil_mm = pupil_at(tracker, gz_ns_to_s(tracker->newest_ns - tracker->start_ns));
+	if (!seen) {
+		eye->confidence = 0;
+		return;
+	}
+	eye->valid = true;
+	eye->confidence = 1;
+	eye->pupil_mm = (float)pupil_mm;
+	eye->point = disturbed(&tracker->display, truth, offset_deg);
+	place_eye(&tracker->display, index, eye);
+}
+
+/** The common point: the mean of the eyes that were found. */
+static void join_eyes(struct gz_sample *sample)
+{
+	float x = 0, y = 0, count = 0;
+	for (int i = 0; i < GZ_EYE_COUNT; i++) {
+		if (!sample->eye[i].valid)
+			continue;
+		x += sample->eye[i].point.x;
+		y += sample->eye[i].point.y;
+		count++;
+	}
+	sample->valid = count > 0;
+	if (sample->valid)
+		sample->point = (struct gz_point) { x / count, y / count };
+}
+
+static void measure(struct gz_sim_tracker *tracker, const struct gz_viewer_truth *truth,
+		    struct gz_sample *sample)
+{
+	bool open = truth->event != GZ_EVENT_BLINK;
+	double spike_deg[2];
+	lose_eyes(tracker);
+	spike_offset(tracker, spike_deg);
+	for (int i = 0; i < GZ_EYE_COUNT; i++)
+		measure_eye(tracker, i, truth->point, spike_deg, open && !tracker->eye_lost[i],
+			    &sample->eye[i]);
+	join_eyes(sample);
+	if (tracker->params.combined_only) {
+		struct gz_sample empty = gz_sample_unmeasured();
+		memcpy(sample->eye, empty.eye, sizeof sample->eye);
+	}
+}
+
+static int64_t device_time_ns(const struct gz_sim_tracker *tracker, int64_t host_ns)
+{
+	int64_t since_ns = host_ns - tracker->start_ns;
+	double gained_ns = (double)since_ns * tracker->params.clock_skew_ppm * 1e-6;
+	int64_t offset_ns = (int64_t)floor(tracker->params.clock_offset_ms * 1e6 + 0.5);
+	return since_ns + offset_ns + (int64_t)floor(gained_ns + 0.5);
+}
+
+void gz_sim_tracker_next(struct gz_sim_tracker *tracker, struct gz_sim_sample *out)
+{
+	const struct gz_sim_params *p = &tracker->params;
+	struct gz_sample sample = gz_sample_unmeasured();
+	sample.host_ns = tracker->newest_ns = next_exposure(tracker, &sample.lost_before);
+	sample.device_ns = device_time_ns(tracker, sample.host_ns);
+	sample.seq = tracker->delivered++;
+	struct gz_viewer_truth truth = gz_viewer_advance(&tracker->viewer, sample.host_ns);
+	measure(tracker, &truth, &sample);
+
+	double latency_ms =
+		p->latency_ms + p->latency_jitter_ms * gz_random_exponential(&tracker->fate);
+	int64_t arrival_ns = sample.host_ns + (int64_t)floor(latency_ms * 1e6 + 0.5);
+	if (arrival_ns > tracker->arrival_ns)
+		tracker->arrival_ns = arrival_ns;
+	*out = (struct gz_sim_sample) {
+		.sample = sample,
+		.arrival_ns = tracker->arrival_ns,
+		.truth = truth,
+	};
+}
+
+struct gz_display gz_sim_tracker_display(const struct gz_sim_tracker *tracker)
+{
+	return tracker->display;
+}
+
+struct gz_clock_status gz_sim_tracker_clock(const struct gz_sim_tracker *tracker)
+{
+	return (struct gz_clock_status) {
+		.offset_ns = tracker->newest_ns - device_time_ns(tracker, tracker->newest_ns),
+		.skew_ppm = tracker->params.clock_skew_ppm,
+		.tick = GZ_CLOCK_DECLARED,
+	};
+}
+
+void gz_sim_tracker_destroy(struct gz_sim_tracker **tracker)
+{
+	if (!tracker)
+		return;
+	free(*tracker);
+	*tracker = NULL;
+}
