@@ -43,9 +43,31 @@ struct gz_scene {
 	struct gz_transfer transfer;
 };
 
-/** The tables over struct gz_scene_settings: "volume.file", "camera.eye", … */
+/** Tables that gz_scene_bindings() gives. */
+#define GZ_SCENE_BINDINGS 2
+
+/**
+ * The tables over struct gz_scene_settings: "volume.file", "camera.eye", …
+ *
+ * @param settings           what the bindings set; must outlive them
+ * @param[out] out_bindings  the first @p room of them; no flags of what was given
+ * @param room               GZ_SCENE_BINDINGS for all
+ * @return GZ_SCENE_BINDINGS
+ */
 size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_binding *out_bindings,
 			 size_t room);
+
+/**
+ * Read the settings of a scene from text, without its files.
+ *
+ * @param name  stands for the file in messages
+ * @param[out] out_settings     every setting, given or preset
+ * @param[out] out_has_display  the text says what the display is
+ * @retval GZ_ERR_FORMAT  refused; logged with file, line or key, and remedy
+ */
+enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
+			      const struct gz_log *log, struct gz_scene_settings *out_settings,
+			      bool *out_has_display);
 
 /**
  * Read a scene with its volume and transfer function. Relative paths are looked up beside the

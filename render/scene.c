@@ -1,0 +1,397 @@
+#include "render/scene.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/file_path.h"
+
+#define GZ_LOG_MODULE "scene"
+
+/* Edge of a procedural volume whose dims are not given, voxels. Chosen: made in a blink. */
+#define PROCEDURAL_EDGE 128
+
+_Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
+
+static const char *const procedural_names[] = { "none", "shells", "supernova", NULL };
+static const char *const endian_names[] = { "little", "big", NULL };
+static const char *const projection_names[] = { "perspective", "orthographic", NULL };
+static const char *const interpolation_names[] = { "trilinear", "nearest", NULL };
+static const char *const shading_names[] = { "none", NULL };
+
+#define AT(field) offsetof(struct gz_scene_settings, field)
+
+/* In the order of scene_options. */
+enum {
+	VOLUME_FILE,
+	VOLUME_PROCEDURAL,
+	VOLUME_DIMS,
+	VOLUME_TYPE,
+	VOLUME_ENDIAN,
+	VOLUME_SPACING,
+	TRANSFER_FILE,
+	CAMERA_EYE,
+	CAMERA_LOOK_AT,
+	CAMERA_UP,
+	CAMERA_FOV,
+	CAMERA_HEIGHT,
+	CAMERA_PROJECTION,
+	RENDER_BACKGROUND,
+	RENDER_RAY_SAMPLING,
+	RENDER_IMAGE_SAMPLING,
+	RENDER_INTERPOLATION,
+	RENDER_SHADING,
+	DISPLAY_PX,
+	DISPLAY_MM,
+	DISPLAY_DISTANCE,
+	SCENE_OPTION_COUNT,
+};
+
+static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
+	[VOLUME_FILE] = { .key = "volume.file",
+			  .type = GZ_OPTION_STRING,
+			  .offset = AT(volume_file),
+			  .max = GZ_PATH_SIZE,
+			  .preset = "",
+			  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, or raw data; "
+				  "beside the scene, else under $GAZECAST_DATA" },
+	[VOLUME_PROCEDURAL] = { .key = "volume.procedural",
+				.type = GZ_OPTION_CHOICE,
+				.offset = AT(volume_procedural),
+				.choices = procedural_names,
+				.preset = "none",
+				.help = "a volume made by a formula, no file" },
+	[VOLUME_DIMS] = { .key = "volume.dims",
+			  .type = GZ_OPTION_INT,
+			  .offset = AT(dims),
+			  .min = 1,
+			  .max = GZ_VOLUME_DIM_MAX,
+			  .count = 3,
+			  .help = "voxels along x, y, z; for raw files and procedural volumes" },
+	[VOLUME_TYPE] = { .key = "volume.type",
+			  .type = GZ_OPTION_CHOICE,
+			  .offset = AT(type),
+			  .choices = gz_raw_type_names,
+			  .help = "type of voxel; for raw files" },
+	[VOLUME_ENDIAN] = { .key = "volume.endian",
+			    .type = GZ_OPTION_CHOICE,
+			    .offset = AT(endian),
+			    .choices = endian_names,
+			    .preset = "little",
+			    .help = "byte order; for raw files" },
+	[VOLUME_SPACING] = { .key = "volume.spacing",
+			     .type = GZ_OPTION_DOUBLE,
+			     .offset = AT(spacing),
+			     .min = 1e-9,
+			     .max = 1e9,
+			     .count = 3,
+			     .preset = "1 1 1",
+			     .help = "between voxels along x, y, z, mm; for raw files" },
+	[TRANSFER_FILE] = { .key = "transfer.file",
+			    .type = GZ_OPTION_STRING,
+			    .offset = AT(transfer_file),
+			    .max = GZ_PATH_SIZE,
+			    .preset = "",
+			    .help = "transfer function, .tf; looked up as volume.file" },
+	[CAMERA_EYE] = { .key = "camera.eye",
+			 .type = GZ_OPTION_DOUBLE,
+			 .offset = AT(camera.eye),
+			 .min = -1e6,
+			 .max = 1e6,
+			 .count = 3,
+			 .preset = "0 -2 0",
+			 .help = "where it stands; the volume's longest edge is 1, centred at 0" },
+	[CAMERA_LOOK_AT] = { .key = "camera.look_at",
+			     .type = GZ_OPTION_DOUBLE,
+			     .offset = AT(camera.look_at),
+			     .min = -1e6,
+			     .max = 1e6,
+			     .count = 3,
+			     .preset = "0 0 0",
+			     .help = "what is in the picture's centre" },
+	[CAMERA_UP] = { .key = "camera.up",
+			.type = GZ_OPTION_DOUBLE,
+			.offset = AT(camera.up),
+			.min = -1e6,
+			.max = 1e6,
+			.count = 3,
+			.preset = "0 0 1",
+			.help = "what points upwards in the picture" },
+	[CAMERA_FOV] = { .key = "camera.fov_deg",
+			 .type = GZ_OPTION_DOUBLE,
+			 .offset = AT(camera.fov_deg),
+			 .min = 0.01,
+			 .max = 179,
+			 .preset = "40",
+			 .help = "vertical field of view, degrees; perspective" },
+	[CAMERA_HEIGHT] = { .key = "camera.height",
+			    .type = GZ_OPTION_DOUBLE,
+			    .offset = AT(camera.height),
+			    .min = 1e-6,
+			    .max = 1e6,
+			    .preset = "1.5",
+			    .help = "of the view, world units; orthographic" },
+	[CAMERA_PROJECTION] = { .key = "camera.projection",
+				.type = GZ_OPTION_CHOICE,
+				.offset = AT(camera.projection),
+				.choices = projection_names,
+				.preset = "perspective",
+				.help = "how far things look smaller" },
+	[RENDER_BACKGROUND] = { .key = "render.background",
+				.type = GZ_OPTION_DOUBLE,
+				.offset = AT(rays.background),
+				.min = 0,
+				.max = 1,
+				.count = 3,
+				.preset = "0 0 0",
+				.help = "red, green, blue" },
+	[RENDER_RAY_SAMPLING] = { .key = "render.ray_sampling_rate",
+				  .type = GZ_OPTION_DOUBLE,
+				  .offset = AT(rays.ray_sampling_rate),
+				  .min = 0.05,
+				  .max = 32,
+				  .preset = "1.5",
+				  .help = "samples per voxel length" },
+	[RENDER_IMAGE_SAMPLING] = { .key = "render.image_sampling_rate",
+				    .type = GZ_OPTION_DOUBLE,
+				    .offset = AT(image_sampling_rate),
+				    .min = 0.1,
+				    .max = 4,
+				    .preset = "1",
+				    .help = "rays per pixel edge" },
+	[RENDER_INTERPOLATION] = { .key = "render.interpolation",
+				   .type = GZ_OPTION_CHOICE,
+				   .offset = AT(rays.interpolation),
+				   .choices = interpolation_names,
+				   .preset = "trilinear",
+				   .help = "between voxels" },
+	[RENDER_SHADING] = { .key = "render.shading",
+			     .type = GZ_OPTION_CHOICE,
+			     .offset = AT(shading),
+			     .choices = shading_names,
+			     .preset = "none",
+			     .help = "how light falls" },
+	[DISPLAY_PX] = { .key = "display.px",
+			 .type = GZ_OPTION_INT,
+			 .offset = AT(display.px),
+			 .min = 1,
+			 .max = 32768,
+			 .count = 2,
+			 .help = "width and height of the display, pixels" },
+	[DISPLAY_MM] = { .key = "display.mm",
+			 .type = GZ_OPTION_DOUBLE,
+			 .offset = AT(display.mm),
+			 .min = 1,
+			 .max = 100000,
+			 .count = 2,
+			 .help = "width and height of the display, mm" },
+	[DISPLAY_DISTANCE] = { .key = "display.distance_mm",
+			       .type = GZ_OPTION_DOUBLE,
+			       .offset = AT(display.distance_mm),
+			       .min = 1,
+			       .max = 100000,
+			       .help = "from the eye to the display's centre, mm" },
+};
+
+size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_binding *out_bindings,
+			 size_t room)
+{
+	const struct gz_option_binding bindings[GZ_SCENE_BINDINGS] = {
+		{ scene_options, SCENE_OPTION_COUNT, settings, NULL },
+		{ gz_foveation_options, gz_foveation_option_count, &settings->foveation, NULL },
+	};
+	size_t count = room < GZ_SCENE_BINDINGS ? room : GZ_SCENE_BINDINGS;
+	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
+	return GZ_SCENE_BINDINGS;
+}
+
+/* A scene in reading. */
+struct reader {
+	const char *name;
+	const struct gz_log *log;
+	struct gz_scene_settings *settings;
+	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
+	bool given[SCENE_OPTION_COUNT];
+};
+
+static enum gz_result refuse(const struct reader *reader, int option, const char *what)
+{
+	gz_err(reader->log, "%s: %s: %s", reader->name, scene_options[option].key, what);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result begin(struct reader *reader, const char *name, const struct gz_log *log,
+			    struct gz_scene_settings *settings)
+{
+	*reader = (struct reader) { .name = name, .log = log, .settings = settings };
+	*settings = (struct gz_scene_settings) { 0 };
+	gz_scene_bindings(settings, reader->bindings, GZ_SCENE_BINDINGS);
+	reader->bindings[0].given = reader->given;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS && result == GZ_OK; i++)
+		result = gz_options_preset(&reader->bindings[i]);
+	return result;
+}
+
+static bool given_raw(const struct reader *reader)
+{
+	return reader->given[VOLUME_TYPE] || reader->given[VOLUME_ENDIAN] ||
+	       reader->given[VOLUME_SPACING];
+}
+
+static enum gz_result check_volume(const struct reader *reader)
+{
+	const struct gz_scene_settings *settings = reader->settings;
+	bool file = settings->volume_file[0] != '\0', made = settings->volume_procedural != 0;
+	if (file && made)
+		return refuse(reader, VOLUME_FILE, "given with volume.procedural; keep one");
+	if (!file && !made)
+		return refuse(reader, VOLUME_FILE,
+			      "not given; name a volume, or set volume.procedural");
+	if (made && given_raw(reader))
+		return refuse(reader, VOLUME_PROCEDURAL,
+			      "takes dims only; leave out type, endian and spacing");
+	if (file && (given_raw(reader) || reader->given[VOLUME_DIMS]) &&
+	    !(reader->given[VOLUME_DIMS] && reader->given[VOLUME_TYPE]))
+		return refuse(reader, VOLUME_DIMS,
+			      "a raw file needs both dims and type; other files none of them");
+	return GZ_OK;
+}
+
+static enum gz_result check_camera(const struct reader *reader)
+{
+	struct gz_ray_frame rays;
+	if (gz_camera_rays(&reader->settings->camera, 1, 1, &rays) == GZ_OK)
+		return GZ_OK;
+	return refuse(reader, CAMERA_EYE, "is where camera.look_at is; move one of them");
+}
+
+static enum gz_result check_display(const struct reader *reader, bool *out_has_display)
+{
+	bool px = reader->given[DISPLAY_PX], mm = reader->given[DISPLAY_MM];
+	bool distance = reader->given[DISPLAY_DISTANCE];
+	*out_has_display = px && mm && distance;
+	if (px == mm && mm == distance)
+		return GZ_OK;
+	return refuse(reader, px ? mm ? DISPLAY_DISTANCE : DISPLAY_MM : DISPLAY_PX,
+		      "not given; px, mm and distance_mm go together");
+}
+
+static enum gz_result check(const struct reader *reader, bool *out_has_display)
+{
+	enum gz_result result = check_volume(reader);
+	if (result == GZ_OK && !reader->settings->transfer_file[0])
+		result = refuse(reader, TRANSFER_FILE,
+				"not given; name a .tf file (docs/scenes.md says what is in it)");
+	if (result == GZ_OK)
+		result = check_camera(reader);
+	if (result == GZ_OK)
+		result = check_display(reader, out_has_display);
+	return result;
+}
+
+enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
+			      const struct gz_log *log, struct gz_scene_settings *out_settings,
+			      bool *out_has_display)
+{
+	struct gz_scene_settings settings;
+	struct reader reader;
+	bool has_display = false;
+	enum gz_result result = begin(&reader, name, log, &settings);
+	if (result == GZ_OK)
+		result = gz_options_read_text(reader.bindings, GZ_SCENE_BINDINGS, name, text, size,
+					      log);
+	if (result == GZ_OK)
+		result = check(&reader, &has_display);
+	if (result != GZ_OK)
+		return result;
+	*out_settings = settings;
+	*out_has_display = has_display;
+	return GZ_OK;
+}
+
+/* Beside the scene, then under $GAZECAST_DATA. */
+static enum gz_result find_file(const struct reader *reader, int option, const char *name,
+				char out_path[GZ_PATH_SIZE])
+{
+	const char *data = getenv("GAZECAST_DATA");
+	if (gz_path_beside(reader->name, name, out_path, GZ_PATH_SIZE) == GZ_OK &&
+	    access(out_path, F_OK) == 0)
+		return GZ_OK;
+	if (name[0] == '/') {
+		gz_err(reader->log, "%s: %s: no file %s; install it or correct the name",
+		       reader->name, scene_options[option].key, name);
+		return GZ_ERR_NOT_FOUND;
+	}
+	if (data && *data) {
+		int length = snprintf(out_path, GZ_PATH_SIZE, "%s/%s", data, name);
+		if (length > 0 && length < GZ_PATH_SIZE && access(out_path, F_OK) == 0)
+			return GZ_OK;
+	}
+	gz_err(reader->log,
+	       "%s: %s: %s is neither beside the scene nor under GAZECAST_DATA (%s); put it there "
+	       "or set the variable",
+	       reader->name, scene_options[option].key, name, data && *data ? data : "not set");
+	return GZ_ERR_NOT_FOUND;
+}
+
+static enum gz_result make_procedural(const struct reader *reader, struct gz_volume *out_volume)
+{
+	static const int preset[3] = { PROCEDURAL_EDGE, PROCEDURAL_EDGE, PROCEDURAL_EDGE };
+	const int *dims = reader->given[VOLUME_DIMS] ? reader->settings->dims : preset;
+	enum gz_procedural which = (enum gz_procedural)(reader->settings->volume_procedural - 1);
+	return gz_volume_generate(which, dims, reader->log, out_volume);
+}
+
+static enum gz_result load_volume(const struct reader *reader, struct gz_volume *out_volume)
+{
+	const struct gz_scene_settings *settings = reader->settings;
+	char path[GZ_PATH_SIZE];
+	if (settings->volume_procedural)
+		return make_procedural(reader, out_volume);
+	enum gz_result result = find_file(reader, VOLUME_FILE, settings->volume_file, path);
+	if (result != GZ_OK)
+		return result;
+	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
+				     .big_endian = settings->endian == 1 };
+	memcpy(raw.dims, settings->dims, sizeof raw.dims);
+	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
+	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, reader->log,
+			      out_volume);
+}
+
+static enum gz_result load_transfer(const struct reader *reader, struct gz_transfer *out_transfer)
+{
+	char path[GZ_PATH_SIZE];
+	enum gz_result result =
+		find_file(reader, TRANSFER_FILE, reader->settings->transfer_file, path);
+	return result == GZ_OK ? gz_transfer_load(path, reader->log, out_transfer) : result;
+}
+
+enum gz_result gz_scene_load(const char *path, const struct gz_log *log, struct gz_scene *out_scene)
+{
+	struct gz_scene scene = { 0 };
+	struct reader reader;
+	enum gz_result result = begin(&reader, path, log, &scene.settings);
+	if (result == GZ_OK)
+		result = gz_options_read_file(reader.bindings, GZ_SCENE_BINDINGS, path, log);
+	if (result == GZ_OK)
+		result = check(&reader, &scene.has_display);
+	if (result == GZ_OK)
+		result = load_transfer(&reader, &scene.transfer);
+	if (result == GZ_OK)
+		result = load_volume(&reader, &scene.volume);
+	if (result != GZ_OK) {
+		gz_scene_free(&scene);
+		return result;
+	}
+	*out_scene = scene;
+	return GZ_OK;
+}
+
+void gz_scene_free(struct gz_scene *scene)
+{
+	gz_volume_free(&scene->volume);
+	*scene = (struct gz_scene) { 0 };
+}
