@@ -1,0 +1,66 @@
+/**
+ * @file
+ * A publisher that a test holds in its hand, and the directory its socket lives in.
+ */
+#ifndef GZ_TESTS_CLIENT_PUBLISHER_H
+#define GZ_TESTS_CLIENT_PUBLISHER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+#include "protocol/endpoint.h"
+#include "protocol/gaze.h"
+
+/** Long enough for anything that should happen at once, also on a busy machine, ns. */
+#define PATIENCE_NS INT64_C(10000000000)
+
+/** Make a fresh directory and name it in GAZECAST_RUNTIME_DIR. A cmocka group setup. */
+int runtime_directory_make(void **state);
+
+/** Remove it with what is in it. A cmocka group teardown. */
+int runtime_directory_remove(void **state);
+
+struct publisher {
+	void *context;
+	void *socket;
+};
+
+/** Bind @p channel ("latest", "stream") in the runtime directory. Asserts. */
+void publisher_open(struct publisher *publisher, const char *channel);
+
+/** Bind @p endpoint itself. Asserts. */
+void publisher_open_at(struct publisher *publisher, const char *endpoint);
+
+/** Send one message of one frame. */
+void publisher_send_frame(struct publisher *publisher, const void *bytes, size_t size);
+
+/** Send one message of a topic frame and another. */
+void publisher_send(struct publisher *publisher, const char *topic, const void *bytes, size_t size);
+
+/** Send a gaze as the latest channel does. */
+void publisher_send_latest(struct publisher *publisher, const struct gz_gaze *gaze);
+
+/** Send a gaze as the stream does. */
+void publisher_send_gaze(struct publisher *publisher, const struct gz_gaze *gaze);
+
+/** Close and forget. */
+void publisher_close(struct publisher *publisher);
+
+/** A gaze of both eyes at (x, y), numbered @p seq, sampled and sent now. */
+struct gz_gaze gaze_at(uint64_t seq, float x, float y);
+
+/**
+ * A process that binds @p channel and sends a gaze each millisecond, as the latest channel does if
+ * @p channel is "latest", until it is killed.
+ *
+ * @param first_seq  number of its first gaze
+ * @return its id; it has bound when this returns
+ */
+pid_t publisher_process_start(const char *channel, uint64_t first_seq);
+
+/** Kill it without a warning and wait until it is gone. */
+void publisher_process_kill(pid_t process);
+
+#endif
