@@ -60,13 +60,11 @@ static void keep(struct gz_client *client, const struct gz_gaze *gaze)
 	client->has_gaze = true;
 }
 
-/* Whether there was a message to take. */
-static bool take_message(struct gz_client *client)
+static void take_message(struct gz_client *client)
 {
 	zmq_msg_t message;
 	zmq_msg_init(&message);
-	bool taken = zmq_msg_recv(&message, client->subscriber.socket, ZMQ_DONTWAIT) >= 0;
-	if (taken) {
+	if (zmq_msg_recv(&message, client->subscriber.socket, ZMQ_DONTWAIT) >= 0) {
 		struct gz_gaze gaze;
 		client->counters.received++;
 		if (gz_wire_decode_gaze(zmq_msg_data(&message), zmq_msg_size(&message), &gaze) ==
@@ -76,7 +74,6 @@ static bool take_message(struct gz_client *client)
 			count_malformed(client);
 	}
 	zmq_msg_close(&message);
-	return taken;
 }
 
 int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
@@ -94,9 +91,9 @@ int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
 enum gz_result gz_client_latest(struct gz_client *client, struct gz_gaze *out_gaze,
 				int64_t *out_age_ns)
 {
-	gz_subscriber_take_events(&client->subscriber);
 	/* One message is all a conflated socket holds. */
 	take_message(client);
+	gz_subscriber_take_events(&client->subscriber);
 	if (!client->has_gaze)
 		return GZ_ERR_TIMEOUT;
 	*out_gaze = client->gaze;

@@ -196,6 +196,8 @@ static bool wait_readable(struct gz_stream *stream, int64_t deadline_ns)
 		{ .socket = stream->subscriber.monitor, .events = ZMQ_POLLIN },
 	};
 	long timeout_ms = (long)((left_ns + GZ_NS_PER_MS - 1) / GZ_NS_PER_MS);
+	if (timeout_ms > GZ_SUBSCRIBER_EVENTS_MS)
+		timeout_ms = GZ_SUBSCRIBER_EVENTS_MS;
 	if (zmq_poll(items, 2, timeout_ms) < 0)
 		return false; /* a signal: the caller may have to end */
 	gz_subscriber_take_events(&stream->subscriber);

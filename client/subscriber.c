@@ -5,6 +5,8 @@
 #include <string.h>
 #include <zmq.h>
 
+#include "base/clock.h"
+
 #define GZ_LOG_MODULE "client"
 
 /* Chosen: libzmq waits this and up to as much again before each new attempt, so a daemon that
@@ -13,6 +15,9 @@ enum { RECONNECT_MS = 50 };
 
 /* Chosen: over TCP a peer can vanish without a word; three silent seconds end the connection. */
 enum { HEARTBEAT_MS = 1000, HEARTBEAT_TIMEOUT_MS = 3000 };
+
+/* Chosen: longer than any handshake takes. */
+#define RETRY_NS (2 * GZ_NS_PER_S)
 
 /* Chosen: our messages are at most 4 KiB, Pupil Capture's a few more; libzmq drops a connection
  * that announces a larger one. */
@@ -93,6 +98,7 @@ static enum gz_result find_endpoint(struct gz_subscriber *subscriber,
 
 static enum gz_result connect_socket(struct gz_subscriber *subscriber)
 {
+	subscriber->retry_ns = gz_clock_now_ns() + RETRY_NS;
 	if (zmq_connect(subscriber->socket, subscriber->endpoint) == 0)
 		return GZ_OK;
 	gz_err(subscriber->log, "%s: %s; an endpoint looks like ipc:///path or tcp://host:port",
@@ -135,6 +141,20 @@ static int next_event(void *monitor)
 	return number;
 }
 
+/* libzmq ends a connection for good when the peer breaks the protocol or sends too much. */
+static void renew(struct gz_subscriber *subscriber)
+{
+	if (subscriber->connected) {
+		subscriber->retry_ns = 0;
+	} else if (subscriber->retry_ns == 0) {
+		subscriber->retry_ns = gz_clock_now_ns() + RETRY_NS;
+	} else if (gz_clock_now_ns() >= subscriber->retry_ns) {
+		/* Fails where libzmq has ended that connection already. */
+		zmq_disconnect(subscriber->socket, subscriber->endpoint);
+		connect_socket(subscriber);
+	}
+}
+
 void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 {
 	int event;
@@ -149,6 +169,7 @@ void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 		}
 		subscriber->connected = connected;
 	}
+	renew(subscriber);
 }
 
 void gz_subscriber_close(struct gz_subscriber *subscriber)

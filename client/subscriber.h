@@ -30,7 +30,11 @@ struct gz_subscriber {
 	char endpoint[GZ_ENDPOINT_SIZE];
 	bool connected;
 	uint64_t connections; /**< times that a publisher was found */
+	int64_t retry_ns;     /**< when to connect anew if there is no connection until then */
 };
+
+/** How often gz_subscriber_take_events() must be called for a connection to be kept up, ms. */
+enum { GZ_SUBSCRIBER_EVENTS_MS = 500 };
 
 /**
  * Open and start to connect; succeeds also while nobody publishes.
@@ -43,7 +47,10 @@ enum gz_result gz_subscriber_open(struct gz_subscriber *subscriber,
 				  const struct gz_subscriber_params *params,
 				  const struct gz_log *log);
 
-/** Take in what happened to the connection since the last call. Never blocks. */
+/**
+ * Take in what happened to the connection since the last call, and renew it where libzmq has given
+ * it up: it does not reconnect to a publisher that sent something it must refuse. Never blocks.
+ */
 void gz_subscriber_take_events(struct gz_subscriber *subscriber);
 
 /** Close all that is open; returns at once. */
