@@ -20,10 +20,12 @@ struct gz_text {
 	bool full;
 };
 
+/** Begin an empty text in @p size bytes at @p bytes, the caller's, NUL included. */
 void gz_text_begin(struct gz_text *text, char *bytes, size_t size);
 /** GZ_OK with the length written, or GZ_ERR_FULL. */
 enum gz_result gz_text_end(struct gz_text *text, size_t *out_length);
 
+/** Append as printf() does. Numbers with a decimal point have functions of their own. */
 __attribute__((format(printf, 2, 3))) void gz_text_print(struct gz_text *text, const char *format,
 							 ...);
 /** Backslash, tab, newline and carriage return become two characters each. */
@@ -41,6 +43,7 @@ void gz_text_normalise_decimal_point(char *number);
  * hexadecimal, nothing that does not fit the type.
  */
 
+/** Decimal, with a '-' where negative. */
 bool gz_field_int64(const char *field, int64_t *out_value);
 /** Digits only, no sign. */
 bool gz_field_uint64(const char *field, uint64_t *out_value);

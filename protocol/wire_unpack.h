@@ -35,10 +35,13 @@ const msgpack_object *gz_unpack_map(struct gz_unpack *unpack, const msgpack_obje
 const msgpack_object *gz_unpack_array(struct gz_unpack *unpack, const msgpack_object *map,
 				      const char *key);
 
+/** Text of at most @p size - 1 bytes without a NUL. */
 void gz_unpack_text(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    char *out_text, size_t size);
+/** true or false; integers are no booleans. */
 void gz_unpack_bool(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    bool *out_value);
+/** An integer within the type; a real is none. */
 void gz_unpack_int64(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		     int64_t *out_value);
 void gz_unpack_uint64(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
