@@ -162,7 +162,8 @@ void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 		bool connected = event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
 		if (connected) {
 			subscriber->connections++;
-			gz_debug(subscriber->log, "connected to %s", subscriber->endpoint);
+			if (subscriber->connections > 1)
+				gz_info(subscriber->log, "%s is back", subscriber->endpoint);
 		} else if (subscriber->connected) {
 			gz_info(subscriber->log, "lost %s: waiting for it to return",
 				subscriber->endpoint);
