@@ -1,0 +1,185 @@
+#include "check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/captured_log.h"
+#include "render/volume.h"
+
+static struct gz_volume volume_of(int x, int y, int z, enum gz_voxel_type type)
+{
+	return (struct gz_volume) { .dims = { x, y, z }, .spacing = { 1, 1, 1 }, .type = type };
+}
+
+static void allocated_volume_is_aligned_and_padded_with_zeros(void **state)
+{
+	(void)state;
+	struct gz_volume v = volume_of(7, 5, 3, GZ_VOXEL_U16);
+	assert_int_equal(gz_volume_allocate(&v), GZ_OK);
+	assert_int_equal((uintptr_t)v.voxels % 64, 0);
+	assert_int_equal(gz_volume_voxel_count(&v), 105);
+	for (size_t i = 0; i < GZ_VOLUME_PADDING; i++)
+		assert_int_equal(((uint8_t *)v.voxels)[210 + i], 0);
+	assert_true(v.slope == 1 && v.intercept == 0);
+	gz_volume_free(&v);
+	assert_null(v.voxels);
+	gz_volume_free(&v);
+}
+
+static void dims_and_spacing_out_of_range_are_refused(void **state)
+{
+	(void)state;
+	static const int bad_dims[] = { 0, -1, GZ_VOLUME_DIM_MAX + 1 };
+	static const double bad_spacing[] = { 0, -1, NAN, INFINITY };
+	for (size_t i = 0; i < 3; i++) {
+		for (int axis = 0; axis < 3; axis++) {
+			struct gz_volume v = volume_of(4, 4, 4, GZ_VOXEL_U8);
+			v.dims[axis] = bad_dims[i];
+			assert_int_equal(gz_volume_allocate(&v), GZ_ERR_INVAL);
+			assert_null(v.voxels);
+		}
+	}
+	for (size_t i = 0; i < 4; i++) {
+		struct gz_volume v = volume_of(4, 4, 4, GZ_VOXEL_U8);
+		v.spacing[1] = bad_spacing[i];
+		assert_int_equal(gz_volume_allocate(&v), GZ_ERR_INVAL);
+	}
+	struct gz_volume v = volume_of(4, 4, 4, GZ_VOXEL_TYPE_COUNT);
+	assert_int_equal(gz_volume_allocate(&v), GZ_ERR_INVAL);
+}
+
+static void volume_larger_than_the_machine_is_no_memory(void **state)
+{
+	(void)state;
+	struct gz_volume v =
+		volume_of(GZ_VOLUME_DIM_MAX, GZ_VOLUME_DIM_MAX, GZ_VOLUME_DIM_MAX, GZ_VOXEL_F32);
+	assert_int_equal(gz_volume_allocate(&v), GZ_ERR_NO_MEM);
+	assert_null(v.voxels);
+}
+
+/* Extremes at each place of an odd number of voxels, so that no lane is left out. */
+static void range_is_found_wherever_the_extremes_are(void **state)
+{
+	(void)state;
+	struct gz_volume v = volume_of(37, 1, 1, GZ_VOXEL_U8);
+	assert_int_equal(gz_volume_allocate(&v), GZ_OK);
+	for (int at = 0; at < 37; at++) {
+		uint8_t *voxels = v.voxels;
+		memset(voxels, 100, 37);
+		voxels[at] = 200;
+		voxels[36 - at] = at == 18 ? 200 : 7;
+		gz_volume_find_range(&v);
+		assert_int_equal((int)v.stored_max, 200);
+		assert_int_equal((int)v.stored_min, at == 18 ? 100 : 7);
+	}
+	gz_volume_free(&v);
+}
+
+static void range_of_wider_types_is_found(void **state)
+{
+	(void)state;
+	struct gz_volume v = volume_of(19, 1, 1, GZ_VOXEL_U16);
+	assert_int_equal(gz_volume_allocate(&v), GZ_OK);
+	for (int i = 0; i < 19; i++)
+		((uint16_t *)v.voxels)[i] = (uint16_t)(65535 - 1000 * i);
+	gz_volume_find_range(&v);
+	assert_true(v.stored_min == 47535 && v.stored_max == 65535);
+	gz_volume_free(&v);
+
+	v = volume_of(19, 1, 1, GZ_VOXEL_F32);
+	assert_int_equal(gz_volume_allocate(&v), GZ_OK);
+	for (int i = 0; i < 19; i++)
+		((float *)v.voxels)[i] = -0.5f * (float)i;
+	gz_volume_find_range(&v);
+	assert_true(v.stored_min == -9 && v.stored_max == 0);
+	gz_volume_free(&v);
+}
+
+static void longest_edge_of_the_box_is_one(void **state)
+{
+	(void)state;
+	struct gz_volume v = volume_of(100, 50, 20, GZ_VOXEL_U8);
+	v.spacing[0] = 0.5;
+	v.spacing[2] = 5; /* edges 50, 50, 100 */
+	double half[3];
+	gz_volume_half_extent(&v, half);
+	assert_true(half[0] == 0.25 && half[1] == 0.25 && half[2] == 0.5);
+	assert_true(gz_volume_voxel_length(&v) == 0.005);
+}
+
+static uint64_t hash_of(const struct gz_volume *v)
+{
+	uint64_t hash = 14695981039346656037u; /* FNV-1a */
+	size_t size = gz_volume_voxel_count(v) * gz_voxel_size(v->type);
+	for (size_t i = 0; i < size; i++)
+		hash = (hash ^ ((const uint8_t *)v->voxels)[i]) * 1099511628211u;
+	return hash;
+}
+
+static void procedural_volumes_are_the_same_bits_everywhere(void **state)
+{
+	(void)state;
+	static const struct {
+		enum gz_procedural which;
+		enum gz_voxel_type type;
+		uint64_t hash;
+	} cases[] = {
+		{ GZ_PROCEDURAL_SHELLS, GZ_VOXEL_U8, 0xd4eab45406fc8c41 },
+		{ GZ_PROCEDURAL_SUPERNOVA, GZ_VOXEL_F32, 0x9deb32d3a6a708d0 },
+	};
+	static const int dims[3] = { 40, 36, 30 };
+	for (size_t i = 0; i < 2; i++) {
+		struct gz_volume v;
+		assert_int_equal(gz_volume_generate(cases[i].which, dims, NULL, &v), GZ_OK);
+		assert_int_equal(v.type, cases[i].type);
+		assert_true(v.stored_min == 0);
+		assert_true(v.stored_max > 0.8);
+		assert_int_equal(hash_of(&v), cases[i].hash);
+		gz_volume_free(&v);
+	}
+}
+
+static void procedural_volume_of_bad_dims_is_refused_with_a_line(void **state)
+{
+	(void)state;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	struct gz_volume v = { 0 };
+	assert_int_equal(
+		gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, &log.log, &v),
+		GZ_ERR_INVAL);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "0 x 4 x 4"));
+	assert_int_equal(
+		gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, &log.log, &v),
+		GZ_ERR_INVAL);
+	assert_null(v.voxels);
+}
+
+static void names_match_their_enums(void **state)
+{
+	(void)state;
+	int raw = 0, procedural = 0;
+	while (gz_raw_type_names[raw])
+		raw++;
+	while (gz_procedural_names[procedural])
+		procedural++;
+	assert_int_equal(raw, GZ_RAW_TYPE_COUNT);
+	assert_int_equal(procedural, GZ_PROCEDURAL_COUNT);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(allocated_volume_is_aligned_and_padded_with_zeros),
+		cmocka_unit_test(dims_and_spacing_out_of_range_are_refused),
+		cmocka_unit_test(volume_larger_than_the_machine_is_no_memory),
+		cmocka_unit_test(range_is_found_wherever_the_extremes_are),
+		cmocka_unit_test(range_of_wider_types_is_found),
+		cmocka_unit_test(longest_edge_of_the_box_is_one),
+		cmocka_unit_test(procedural_volumes_are_the_same_bits_everywhere),
+		cmocka_unit_test(procedural_volume_of_bad_dims_is_refused_with_a_line),
+		cmocka_unit_test(names_match_their_enums),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
