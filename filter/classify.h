@@ -24,22 +24,24 @@
 
 /** Settings; presets and sources stand in pipeline_options.c. */
 struct gz_classify_params {
-	double final_delay_ms;     /**< age at which a label becomes certain, ms */
-	double velocity_window_ms; /**< width of the window for the certain label, ms */
-	double fast_window_ms;     /**< width of the trailing window for the label at once, ms */
-	double noise_memory_s;     /**< time constant of the noise estimate, s */
-	double peak_factor;        /**< peak threshold over the noise, no unit */
-	double onset_factor;       /**< onset and end threshold over the noise, no unit */
-	double min_peak_deg_s;     /**< least peak threshold, degrees a second */
-	double min_onset_deg_s;    /**< least onset and end threshold, degrees a second */
-	double end_fraction;       /**< a saccade ends below this part of its peak velocity */
-	double saccade_min_ms;     /**< shorter ones are not saccades, ms */
-	double saccade_max_ms;     /**< longer ones are ended, ms */
-	double glissade_ms;        /**< after a saccade, for so long, ms, ... */
-	double glissade_fraction;  /**< ... only this part of its peak begins another */
-	double fixation_min_ms;    /**< shorter ones are not announced, ms */
-	double pursuit_window_ms;  /**< over which slow movement is measured, ms */
+	double final_delay_ms;         /**< oldest age at which a label becomes certain, ms */
+	double velocity_window_ms;     /**< width of the window for the certain label, ms */
+	double quick_window_ms;        /**< width of the trailing one for the label at once, ms */
+	double noise_memory_s;         /**< time constant of the noise estimate, s */
+	double peak_factor;            /**< peak threshold over the noise, no unit */
+	double onset_factor;           /**< onset and end threshold over the noise, no unit */
+	double min_peak_deg_s;         /**< least peak threshold, degrees a second */
+	double min_onset_deg_s;        /**< least onset and end threshold, degrees a second */
+	double end_fraction;           /**< a saccade ends below this part of its peak velocity */
+	double turn_fraction;          /**< and where it gathers speed again below this part */
+	double saccade_max_ms;         /**< longer ones are ended, ms */
+	double glissade_ms;            /**< after a saccade, for so long, ms, ... */
+	double glissade_fraction;      /**< ... only this part of its peak begins another */
+	double fixation_min_ms;        /**< shorter ones are not announced, ms */
+	double pursuit_window_ms;      /**< over which slow movement is measured, ms */
 	double pursuit_velocity_deg_s; /**< where fixation and pursuit are equally likely */
+	double pursuit_habit;          /**< weight of the intervals before, no unit */
+	double pursuit_hysteresis;     /**< evidence needed to change one's mind, no unit */
 	double dropout_ms;             /**< shorter losses are not blinks, ms */
 	double blink_max_ms;           /**< longer ones are lost, ms */
 };
@@ -47,83 +49,116 @@ struct gz_classify_params {
 /** Samples kept: final delay and half a window at 2000 Hz, and some. A power of two. */
 #define GZ_CLASSIFY_RING 128
 
-/** Slow movement is followed over bins of some milliseconds. A power of two. */
+/** Slow movement is followed over so many bins at most. A power of two. */
 #define GZ_CLASSIFY_BINS 32
 
 /** One sample in the ring. */
 struct gz_classify_entry {
 	uint64_t seq;
 	int64_t time_ns;
-	double direction_deg[3]; /**< unit vector from the eye, times 180/pi: differences are angles
-				    in degrees */
+	double direction_deg[3]; /**< gz_direction_deg() */
 	struct gz_point point;
-	double speed_deg_s; /**< once known */
+	float confidence;
 	bool valid;
-	enum gz_event event; /**< the label given at once */
+	bool after_loss;   /**< good, and a blink, a loss or the beginning lies just before it */
+	double fast_deg_s; /**< speed with the slow movement taken off, once measured */
 };
 
-/** A saccade or the interval after it, as the certain labels see it. */
+/** What the certain labels go by. */
 struct gz_classify_machine {
-	enum gz_event event;    /**< the certain label of the newest certain sample */
-	int64_t since_ns;       /**< when that label began */
+	enum gz_event event;    /**< of the newest certain sample */
+	int64_t valid_ns;       /**< newest certain good sample */
+	bool any_valid;         /**< whether there was one */
+	int64_t since_ns;       /**< when the running saccade began */
+	int64_t saccade_end_ns; /**< when the last saccade ended */
+	bool had_saccade;       /**< since the last loss */
 	double peak_deg_s;      /**< of the running saccade, or of the last one */
-	double last_deg_s;      /**< speed one sample ago */
-	int64_t saccade_end_ns; /**< of the last saccade */
-	bool had_saccade;
-	double pursuit_odds; /**< log odds of pursuit against fixation */
-	double habit_odds;   /**< what the intervals before were: where pursuit_odds starts */
+	double pursuit;         /**< evidence for pursuit against fixation, 0 is even */
+	double habit;           /**< what the intervals before were: -1 fixation to 1 pursuit */
 };
 
-/** Mean place over one bin. */
+/** Mean place over some milliseconds between saccades. */
 struct gz_classify_bin {
-	int64_t time_ns;
-	double direction_deg[3];
-	double weight;
+	int64_t start_ns;
+	double time_sum_s; /**< of time since start_ns */
+	double direction_sum_deg[3];
+	double count;
+};
+
+/** Slow movement since the last saccade or loss. */
+struct gz_classify_slow {
+	struct gz_classify_bin bins[GZ_CLASSIFY_BINS];
+	uint64_t bin_count;       /**< begun since then; the last one is still being filled */
+	double velocity_deg_s[3]; /**< slope over the window; the one before the saccade until there
+				     is a new one */
+	double span_s;            /**< time that the slope rests on */
+};
+
+/** The label given at once. */
+struct gz_classify_quick {
+	bool saccade;
+	double noise_deg_s; /**< median of the trailing speed outside saccades */
+	double peak_deg_s;  /**< of the running saccade */
+	int64_t since_ns;
 };
 
 /** Zero-initialised is the start state: lost, no sample yet. Plain data. */
 struct gz_classify_state {
 	struct gz_classify_entry ring[GZ_CLASSIFY_RING];
-	uint64_t count;      /**< samples taken; the newest is ring[(count - 1) % RING] */
-	uint64_t certain;    /**< samples whose label is certain */
-	double period_ns;    /**< time between samples, measured */
-	int64_t valid_ns;    /**< of the newest good sample */
-	bool any_valid;      /**< whether there ever was one */
-	double noise_deg_s;  /**< median speed outside saccades */
-	double noise_time_s; /**< how long it was learnt */
-	bool fast_saccade;   /**< the label at once is saccade */
-	double fast_peak_deg_s;
-	int64_t fast_since_ns;
-	enum gz_event now; /**< the newest label given at once */
+	uint64_t count;     /**< samples taken; sample i is ring[i % RING] */
+	uint64_t measured;  /**< samples whose speed is known */
+	uint64_t certain;   /**< samples whose label is certain */
+	double period_ns;   /**< time between samples, measured; 0 before the second */
+	int64_t valid_ns;   /**< newest good sample */
+	bool any_valid;     /**< whether there was one */
+	enum gz_event now;  /**< label given at once to the newest sample */
+	double noise_deg_s; /**< median speed outside saccades */
+	struct gz_classify_quick quick;
 	struct gz_classify_machine machine;
-	struct gz_classify_bin bins[GZ_CLASSIFY_BINS];
-	uint64_t bin_count;   /**< since the last saccade or loss */
-	double slow_deg_s[3]; /**< slow movement of the eye */
+	struct gz_classify_slow slow;
+};
+
+/** One sample to label. */
+struct gz_classify_input {
+	uint64_t seq;
+	int64_t time_ns;       /**< newer than that of the last sample */
+	bool valid;            /**< whether point was measured and believed */
+	struct gz_point point; /**< not looked at unless valid */
+	float confidence;      /**< [0, 1] */
+};
+
+/** A sample whose label is now certain. */
+struct gz_classify_final {
+	uint64_t seq;
+	int64_t time_ns;
+	enum gz_event event;
+	bool valid;
+	bool after_loss; /**< a blink, a loss or the beginning lies between it and the one before */
+	struct gz_point point;
+	float confidence;
+	double peak_deg_s; /**< of the running saccade, or of the last one */
 };
 
 /** What one sample brought about. */
 struct gz_classify_output {
 	enum gz_event event;   /**< of this sample, as known now */
 	double velocity_deg_s; /**< of the eye, finite, 0 or more */
-	bool final_known;      /**< whether the rest holds something */
-	uint64_t final_seq;    /**< this or an earlier sample: its label is now certain; where a
-				  step makes several certain, the newest; the others keep theirs */
-	int64_t final_ns;
-	enum gz_event final_event;
-	bool final_valid;            /**< it was a good measurement */
-	struct gz_point final_point; /**< where it was */
+	bool resumed;          /**< first good sample after a blink or loss */
+	int64_t last_valid_ns; /**< the good sample before that, or, while blinking, the last one */
+	bool final_known;      /**< whether final holds something */
+	struct gz_classify_final final; /**< this or an earlier sample. Where a step makes several
+					   certain, the newest: the ones passed over keep the label
+					   they were given at once */
 };
 
 /**
  * Label one sample.
  *
- * @param seq, time_ns  of the sample; time_ns newer than that of the last
- * @param valid    whether @p point was measured and believed; else @p point is not looked at
  * @param display  valid
  */
 struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 					   const struct gz_classify_params *params,
-					   const struct gz_display *display, uint64_t seq,
-					   int64_t time_ns, bool valid, struct gz_point point);
+					   const struct gz_display *display,
+					   const struct gz_classify_input *input);
 
 #endif

@@ -22,12 +22,10 @@ struct gz_combine_params {
 /** What is learnt of one eye. */
 struct gz_combine_eye {
 	bool seen;             /**< whether point and time_ns hold something */
-	bool has_offset;       /**< whether offset holds something */
 	struct gz_point point; /**< its newest good point */
 	int64_t time_ns;
-	double offset[2];    /**< to add to its points, display sides */
-	double step2;        /**< mean square sample-to-sample step, display sides squared */
-	double step2_weight; /**< how much of step2 was learnt, [0, 1] */
+	double offset[2]; /**< to add to its points, display sides */
+	double step_deg;  /**< median sample-to-sample step, degrees: its noise; 0 if not known */
 };
 
 /** Zero-initialised is the start state. */
@@ -44,7 +42,8 @@ struct gz_combine_state {
  * @param[out] out_confidence  mean of the used eyes' confidences; 1 where none is measured
  */
 void gz_combine_step(struct gz_combine_state *state, const struct gz_combine_params *params,
-		     const struct gz_sample *sample, const struct gz_validate_output *valid,
-		     struct gz_point *out_point, float *out_confidence);
+		     const struct gz_display *display, const struct gz_sample *sample,
+		     const struct gz_validate_output *valid, struct gz_point *out_point,
+		     float *out_confidence);
 
 #endif

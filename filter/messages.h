@@ -22,25 +22,35 @@
 /** Shortest time between two messages of a lasting fixation, ns: 30 a second. */
 #define GZ_FIXATION_INTERVAL_NS INT64_C(33333334)
 
+/** Directions in which a fixation's outermost samples are kept: dispersion is then at most 8 %
+ *  short (cos 22.5 degrees) of the greatest distance. */
+#define GZ_FIXATION_DIRECTIONS 8
+
+/** The running fixation. */
+struct gz_messages_fixation {
+	bool running;
+	bool announced; /**< its onset was sent */
+	uint64_t id;
+	int64_t onset_ns, last_ns; /**< first and newest sample */
+	int64_t sent_ns;           /**< newest message about it, sample time */
+	uint64_t count;            /**< samples */
+	double sum[2];             /**< of their points */
+	double confidence_sum;
+	struct gz_point outermost[GZ_FIXATION_DIRECTIONS];
+};
+
+/** The running saccade. */
+struct gz_messages_saccade {
+	bool running;
+	int64_t start_ns;
+	struct gz_point start;
+};
+
 /** Zero-initialised is the start state. */
 struct gz_messages_state {
-	bool running;                /**< a fixation runs */
-	bool announced;              /**< and its onset was sent */
-	struct gz_fixation fixation; /**< as it would be sent now */
-	uint64_t samples;            /**< of it */
-	double sum[2];               /**< of their points */
-	double confidence_sum;
-	struct gz_point box[2];   /**< smallest and greatest coordinates of it */
-	int64_t last_ns;          /**< its newest sample */
-	int64_t sent_ns;          /**< newest message about it, sample time */
-	struct gz_point previous; /**< newest good certain sample */
-	int64_t previous_ns;
-	bool has_previous;
-	bool in_saccade;
-	struct gz_saccade saccade; /**< the running one so far */
-	bool in_blink;             /**< an onset was sent, the offset not yet */
-	int64_t valid_ns;          /**< newest good sample */
-	bool any_valid;
+	struct gz_messages_fixation fixation;
+	struct gz_messages_saccade saccade;
+	bool in_blink; /**< an onset was sent, the offset not yet */
 };
 
 /** Messages of one step, in order. */
@@ -56,19 +66,18 @@ struct gz_messages {
 /**
  * Take the labels of one sample.
  *
+ * A fixation's id is the seq of its first sample. Its first message comes when it has lasted
+ * fixation_min_ms, the next ones at most 30 a second, the last one, final, at its end; a shorter
+ * one is never told. A blink's onset is the newest good sample before it, its offset the first good
+ * one after; one that grows too long to be a blink ends, with confidence 0, where that is seen. A
+ * saccade is told at its end; one that a blink cuts off is not.
+ *
  * @param label       what gz_classify_step() answered
  * @param time_ns     of the newest sample
- * @param confidence  of the newest sample, [0, 1]
- * @param fixation_min_ns  shorter fixations are not announced
  * @param[out] out    always filled
- *
- * A fixation's id is the seq of its first sample. Its first message comes when it has lasted
- * fixation_min_ns, the next ones at most 30 a second, the last one, final, at its end. A blink's
- * onset is the newest good sample before it, its offset the first good one after; a blink that
- * turns out too long to be one ends with confidence 0. A saccade is told at its end.
  */
-void gz_messages_step(struct gz_messages_state *state, const struct gz_display *display,
-		      int64_t fixation_min_ns, const struct gz_classify_output *label,
-		      int64_t time_ns, float confidence, struct gz_messages *out);
+void gz_messages_step(struct gz_messages_state *state, const struct gz_classify_params *params,
+		      const struct gz_display *display, const struct gz_classify_output *label,
+		      int64_t time_ns, struct gz_messages *out);
 
 #endif

@@ -37,6 +37,14 @@ extern const size_t gz_pipeline_option_count;
 /** The table's presets. */
 struct gz_pipeline_params gz_pipeline_default_params(void);
 
+/** Noise within fixations, as status tells it. */
+struct gz_pipeline_noise {
+	bool in_fixation; /**< whether last holds something */
+	struct gz_point last;
+	double mean_square_deg2; /**< of sample-to-sample steps */
+	double count;            /**< of them, up to a limit: older ones fade */
+};
+
 /** The whole state of the pipeline; plain data, may be copied to try something out. */
 struct gz_pipeline {
 	struct gz_pipeline_params params;
@@ -47,11 +55,11 @@ struct gz_pipeline {
 	struct gz_classify_state classify;
 	struct gz_smooth_state smooth;
 	struct gz_messages_state messages;
-	int64_t host_ns;    /**< of the newest output; no output is before it */
-	double noise2_deg2; /**< mean square step within fixations, degrees squared */
-	double noise_weight;
-	struct gz_point noise_point; /**< newest good point of the running fixation */
-	bool noise_started;
+	struct gz_pipeline_noise noise;
+	int64_t host_ns;     /**< of the newest output */
+	bool started;        /**< whether there was one */
+	enum gz_event event; /**< of the newest output */
+	struct gz_point point;
 };
 
 /** What one sample brought about. */
@@ -81,7 +89,9 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
  * @param[out] out  always filled; every number in it is finite, but for fields documented as NaN
  *                  where unmeasured, and its time is never before that of an earlier output
  *
- * A sample not newer than the last is rejected and leaves the state as it was.
+ * A sample not newer than the last is rejected (GZ_REJECT_TIME) and leaves the state as it was; its
+ * message says what was said last, with confidence 0. While blinking or lost the point holds its
+ * last place; before any good sample it is (0.5, 0.5), lost.
  * Does not allocate. Threads: one at a time per pipeline.
  */
 void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,

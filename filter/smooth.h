@@ -22,6 +22,10 @@ struct gz_smooth_params {
 	double drift_deg;    /**< and at least so far, degrees */
 };
 
+/** After a longer time without a good sample smoothing begins anew, ns. Chosen: half of the
+ * shortest blink. */
+#define GZ_SMOOTH_GAP_NS INT64_C(50000000)
+
 /** Zero-initialised is the start state. */
 struct gz_smooth_state {
 	bool started;          /**< whether the rest holds something */

@@ -21,15 +21,22 @@ struct gz_validate_params {
 	double min_confidence;     /**< [0, 1]; below it an eye is not used */
 };
 
+/** What validity is judged against: the right eye, the left eye, the common point. */
+enum { GZ_VALIDATE_PLACES = GZ_EYE_COUNT + 1 };
+
+/** Newest good place of an eye or of the common point. */
+struct gz_validate_place {
+	bool known; /**< whether the rest holds something */
+	int64_t time_ns;
+	struct gz_point point;
+};
+
 /** Zero-initialised is the start state. */
 struct gz_validate_state {
 	bool started;           /**< whether time_ns holds something */
-	bool placed;            /**< whether point and point_ns hold something */
 	int64_t time_ns;        /**< of the newest sample, good or not */
-	int64_t point_ns;       /**< of the newest good sample */
-	struct gz_point point;  /**< where it was */
 	double disparity_mm[2]; /**< slow mean of left minus right on the display, mm */
-	bool has_disparity;
+	struct gz_validate_place place[GZ_VALIDATE_PLACES];
 };
 
 /** What may be used of a sample. */
@@ -42,13 +49,16 @@ struct gz_validate_output {
 /**
  * Judge one sample.
  *
- * An eye is good if the tracker says so, its confidence is not below the limit (NaN counts as not
- * measured, and passes), and its point is finite and on the display but for the margin. Two good
- * eyes must not disagree by more than max_disparity_deg beyond their usual disparity; the sample
- * must not be farther from the last good one than max_velocity_deg_s allows for the time between,
- * plus jump_deg, so that a tracker that really jumped is believed again after a few milliseconds.
- * The reason told is the first one of: time, then of the better eye tracker, confidence,
- * not_finite, off_screen, then disparity, velocity.
+ * An eye is good if the tracker says so, its confidence is not below the limit (NaN is not
+ * measured, and passes), its point is finite and on the display but for the margin, and not farther
+ * from its last good one than max_velocity_deg_s allows for the time between, plus jump_deg: after
+ * a real jump it is believed again within milliseconds. Two good eyes must not disagree by more
+ * than max_disparity_deg beyond their usual disparity, which is learnt over a second also where it
+ * is too large, so that a badly calibrated tracker is not refused for ever. Where neither eye's
+ * point was measured the common point is judged in the same way.
+ *
+ * The reason told is of the eye that came farthest in the order tracker, confidence, not_finite,
+ * off_screen, velocity.
  *
  * @param state    a sample not newer than the last (GZ_REJECT_TIME) leaves it as it was
  * @param display  valid

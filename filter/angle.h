@@ -1,0 +1,60 @@
+/**
+ * @file
+ * Angles and running medians, as the steps share them. Only + - * / and sqrt, which give the same
+ * bits everywhere.
+ */
+#ifndef GZ_FILTER_ANGLE_H
+#define GZ_FILTER_ANGLE_H
+
+#include <math.h>
+
+#include "protocol/display.h"
+
+#define GZ_DEG_PER_RAD 57.295779513082320877
+
+/**
+ * Unit vector from the eye to a point of the display, times 180 / pi: the distance between two of
+ * them is the angle between them in degrees (the chord: 0.03 % short at 5 degrees, 1 % at 28).
+ */
+static inline void gz_direction_deg(const struct gz_display *display, struct gz_point point,
+				    double out_deg[3])
+{
+	double mm[3];
+	gz_display_to_mm(display, point, mm);
+	double scale = GZ_DEG_PER_RAD / sqrt(mm[0] * mm[0] + mm[1] * mm[1] + mm[2] * mm[2]);
+	for (int i = 0; i < 3; i++)
+		out_deg[i] = scale * mm[i];
+}
+
+/** Length of a vector. */
+static inline double gz_length3(const double v[3])
+{
+	return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/** Angle between two points of the display, degrees, as a chord. */
+static inline double gz_chord_deg(const struct gz_display *display, struct gz_point a,
+				  struct gz_point b)
+{
+	double u[3], v[3];
+	gz_direction_deg(display, a, u);
+	gz_direction_deg(display, b, v);
+	double d[3] = { u[0] - v[0], u[1] - v[1], u[2] - v[2] };
+	return gz_length3(d);
+}
+
+/**
+ * Follow the median of a positive quantity value by value: up by the part @p gain where the value
+ * is above, down where it is below, so that as many lie above as below; single large values count
+ * no more than any other. The stochastic approximation of Robbins and Monro (1951) on a log scale.
+ *
+ * @param median  so far; 0 begins with @p value
+ */
+static inline double gz_follow_median(double median, double value, double gain)
+{
+	if (median <= 0)
+		return value;
+	return value > median ? median * (1 + gain) : median / (1 + gain);
+}
+
+#endif

@@ -1,0 +1,105 @@
+/* Presets and their sources. */
+#include "filter/pipeline.h"
+
+#define VALIDATE(field) offsetof(struct gz_pipeline_params, validate.field)
+#define COMBINE(field)  offsetof(struct gz_pipeline_params, combine.field)
+#define DESPIKE(field)  offsetof(struct gz_pipeline_params, despike.field)
+#define CLASSIFY(field) offsetof(struct gz_pipeline_params, classify.field)
+#define SMOOTH(field)   offsetof(struct gz_pipeline_params, smooth.field)
+#define REAL(key, offset, min, max, preset, help)                                          \
+	{                                                                                  \
+		"pipeline." key, GZ_OPTION_DOUBLE, offset, min, max, 0, NULL, preset, help \
+	}
+
+/* Sources, where the help does not say it:
+ *
+ * max_velocity_deg_s  eyes turn at up to 900 degrees a second (Bauer 2018, section 2.2)
+ * peak_factor         lambda = 6 of Engbert and Kliegl 2003; their sigma is the median speed here
+ * onset_factor        half of it: 3 instead of 6 standard deviations in Nyström and Holmqvist 2010
+ * blink_max_ms        the longest blink of Stern, Walrath and Goldstein 1984, 400 ms, and some
+ * window_ms           the shortest fixation of Bauer 2018, section 2.2
+ * the others          chosen on recordings that two people labelled (Andersson et al. 2017) and on
+ *                     simulated ones: tests/filter/bench_filter.c prints what they reach
+ */
+const struct gz_option gz_pipeline_options[] = {
+	REAL("margin", VALIDATE(margin), 0, 10, "0.25",
+	     "how far outside the display a point may lie, display sides"),
+	REAL("max_velocity_deg_s", VALIDATE(max_velocity_deg_s), 100, 100000, "1000",
+	     "faster than an eye turns, degrees a second"),
+	REAL("jump_deg", VALIDATE(jump_deg), 0, 180, "2",
+	     "a step this small is never too fast: noise, degrees"),
+	REAL("max_disparity_deg", VALIDATE(max_disparity_deg), 0.1, 180, "5",
+	     "greatest unusual angle between the eyes' points, degrees"),
+	REAL("min_confidence", VALIDATE(min_confidence), 0, 1, "0.6",
+	     "an eye with less confidence is not used"),
+	REAL("offset_ms", COMBINE(offset_ms), 1, 100000, "100",
+	     "time constant of learning the eyes' offset from each other, ms"),
+	REAL("noise_ms", COMBINE(noise_ms), 1, 100000, "2000",
+	     "time constant of learning each eye's noise, ms"),
+	REAL("despike_delay_ms", DESPIKE(max_delay_ms), 0, 100, "4",
+	     "longest hold of a possible spike, ms; 0 switches it off"),
+	REAL("despike_deg", DESPIKE(threshold_deg), 0, 180, "0.4",
+	     "smaller departures are no spikes, degrees"),
+	REAL("despike_factor", DESPIKE(noise_factor), 0, 1000, "8",
+	     "nor are those below this multiple of the usual step"),
+	REAL("final_delay_ms", CLASSIFY(final_delay_ms), 0, 100, "10",
+	     "oldest age at which a label becomes certain, ms"),
+	REAL("velocity_window_ms", CLASSIFY(velocity_window_ms), 1, 100, "10",
+	     "width of the window over which speed is measured, ms"),
+	REAL("quick_window_ms", CLASSIFY(quick_window_ms), 1, 100, "6",
+	     "the same for the label given at once, trailing, ms"),
+	REAL("noise_memory_s", CLASSIFY(noise_memory_s), 0.01, 1000, "2",
+	     "time constant of the noise estimate, s"),
+	REAL("peak_factor", CLASSIFY(peak_factor), 0, 100, "6",
+	     "a saccade's peak over the median speed"),
+	REAL("onset_factor", CLASSIFY(onset_factor), 0, 100, "3",
+	     "a saccade's onset and end over the median speed"),
+	REAL("min_peak_deg_s", CLASSIFY(min_peak_deg_s), 1, 1000, "30",
+	     "least peak velocity of a saccade, degrees a second"),
+	REAL("min_onset_deg_s", CLASSIFY(min_onset_deg_s), 1, 1000, "18",
+	     "least velocity at its onset and end, degrees a second"),
+	REAL("end_fraction", CLASSIFY(end_fraction), 0, 1, "0.1",
+	     "a saccade ends below this part of its peak velocity"),
+	REAL("turn_fraction", CLASSIFY(turn_fraction), 0, 1, "0.5",
+	     "and where it gathers speed again below this part"),
+	REAL("saccade_max_ms", CLASSIFY(saccade_max_ms), 10, 1000, "200", "longest saccade, ms"),
+	REAL("glissade_ms", CLASSIFY(glissade_ms), 0, 1000, "40",
+	     "how long after a saccade the eye may ring, ms"),
+	REAL("glissade_fraction", CLASSIFY(glissade_fraction), 0, 10, "0.5",
+	     "part of the saccade's peak up to which that is no other saccade"),
+	REAL("fixation_min_ms", CLASSIFY(fixation_min_ms), 0, 1000, "40",
+	     "shorter fixations are not announced, ms"),
+	REAL("pursuit_window_ms", CLASSIFY(pursuit_window_ms), 20, 250, "120",
+	     "over which slow movement is measured, ms"),
+	REAL("pursuit_velocity_deg_s", CLASSIFY(pursuit_velocity_deg_s), 0.1, 100, "4",
+	     "where fixation and pursuit are equally likely, degrees a second"),
+	REAL("pursuit_habit", CLASSIFY(pursuit_habit), 0, 10, "0.3",
+	     "weight of the fixations and pursuits before"),
+	REAL("pursuit_hysteresis", CLASSIFY(pursuit_hysteresis), 0, 10, "0.1",
+	     "evidence needed to change between fixation and pursuit"),
+	REAL("dropout_ms", CLASSIFY(dropout_ms), 0, 100, "10", "shorter losses are not blinks, ms"),
+	REAL("blink_max_ms", CLASSIFY(blink_max_ms), 10, 10000, "500",
+	     "longer losses are not blinks but lost gaze, ms"),
+	REAL("smooth_window_ms", SMOOTH(window_ms), 0, 1000, "100",
+	     "longest window of the mean within a fixation, ms"),
+	REAL("smooth_pursuit_ms", SMOOTH(pursuit_ms), 0, 1000, "25",
+	     "time constant within a pursuit, ms"),
+	REAL("smooth_drift_factor", SMOOTH(drift_factor), 0, 1000, "3",
+	     "the mean lets go at this multiple of the usual distance"),
+	REAL("smooth_drift_deg", SMOOTH(drift_deg), 0, 180, "0.2",
+	     "and at least at this distance, degrees"),
+};
+
+const size_t gz_pipeline_option_count = sizeof gz_pipeline_options / sizeof gz_pipeline_options[0];
+
+struct gz_pipeline_params gz_pipeline_default_params(void)
+{
+	struct gz_pipeline_params params = { .validate = { .margin = 0 } };
+	struct gz_option_binding binding = {
+		.options = gz_pipeline_options,
+		.count = gz_pipeline_option_count,
+		.target = &params,
+	};
+	(void)gz_options_preset(&binding); /* that every preset parses is a test's matter */
+	return params;
+}
