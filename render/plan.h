@@ -4,10 +4,14 @@
  * one kernel per backend casts them and one reconstruction fills the pixels between
  * (docs/foveation.md).
  *
- * A tile is a block of GZ_TILE_EDGE x GZ_TILE_EDGE rays, a spacing of G pixels apart, whose
- * positions are multiples of G: the lattice is fixed to the screen, not to the gaze. Lattice point
- * (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G), which may lie up to G
- * - 1 pixels beyond the right and lower edge, so that every pixel lies between four points.
+ * A tile is a block of GZ_TILE_EDGE x GZ_TILE_EDGE rays whose positions are multiples of a spacing
+ * of G pixels: the lattice is fixed to the screen, not to the gaze. A square tile takes every point
+ * of its block; a quincunx tile takes every second one, like the black fields of a chessboard,
+ * which is a lattice of spacing G * sqrt(2) turned by 45 degrees: the rung between G and 2G.
+ *
+ * Lattice point (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G), which
+ * may lie beyond the right and lower edge of the picture, so that every pixel lies between four
+ * points.
  */
 #ifndef GZ_RENDER_PLAN_H
 #define GZ_RENDER_PLAN_H
@@ -38,12 +42,16 @@ extern const char *const gz_method_names[];
 
 /** When steps grow with distance from the gaze. */
 enum gz_step_rule {
-	GZ_STEP_METHOD, /**< as the method says: acuity 1, 1.5, 2, 3, 4 for spacings 1 to 16; others
-			   1 */
-	GZ_STEP_NONE,   /**< 1 everywhere */
-	GZ_STEP_DISTANCE, /**< Bauer 2018, 3.2.3: sampling rate max(sf * sr, floor), sf = 1 - d /
-			     diagonal, unchanged within 10 px */
-	GZ_STEP_ACUITY, /**< 1, 1.5, 2, 3, 4 by the spacing the eye can resolve, whatever is cast */
+	/** As the method says: acuity by ACUITY, the others by NONE. */
+	GZ_STEP_METHOD,
+	/** 1 everywhere. */
+	GZ_STEP_NONE,
+	/** Bauer 2018, 3.2.3: sampling rate max(sf * sr, floor), sf = 1 - d / diagonal, unchanged
+	 *  within 10 px of the gaze. */
+	GZ_STEP_DISTANCE,
+	/** 1, 1.5, 2, 3, 4 where the eye resolves spacings of 1, 2, 4, 8, 16 px, and means between.
+	 */
+	GZ_STEP_ACUITY,
 };
 
 extern const char *const gz_step_rule_names[];
@@ -69,12 +77,24 @@ extern const size_t gz_foveation_option_count;
 /** The table's presets. */
 struct gz_foveation gz_foveation_default(void);
 
+/** Which points of its block a tile takes. */
+enum gz_tile_pattern {
+	GZ_TILE_SQUARE,   /**< ray (c, r) at x + c * G, y + r * G */
+	GZ_TILE_QUINCUNX, /**< ray (c, r) at x + (2c + r mod 2) * G, y + r * G: pyramids only */
+	GZ_TILE_PATTERN_COUNT,
+};
+
 /** One block of rays. */
 struct gz_tile {
-	uint16_t x, y; /**< pixel of the first ray; multiples of spacing * GZ_TILE_EDGE */
-	uint8_t layer; /**< index into the plan's layers: gives the spacing */
-	uint8_t step;  /**< index into the plan's step multipliers */
+	uint16_t x, y;   /**< pixel of the first ray; multiples of spacing * GZ_TILE_EDGE */
+	uint8_t layer;   /**< index into the plan's layers: gives the spacing */
+	uint8_t step;    /**< index into the plan's step multipliers */
+	uint8_t pattern; /**< enum gz_tile_pattern */
 };
+
+/** Columns and rows of a tile's rays, in spacings from its first: ray i = r * GZ_TILE_EDGE + c. */
+extern const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE];
+extern const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE];
 
 /** How pixels are made of lattice points. */
 enum gz_reconstruction {
@@ -130,6 +150,14 @@ struct gz_plan {
  */
 enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, int width, int height, struct gz_plan *plan);
+
+/**
+ * Which rays of a tile are cast: those whose point lies on its layer's lattice or, in a pyramid, on
+ * that of a coarser layer beyond it.
+ *
+ * @return bit r * GZ_TILE_EDGE + c for the ray at column c, row r of the tile
+ */
+uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *tile);
 
 /** Free the tiles and zero the plan. */
 void gz_plan_free(struct gz_plan *plan);
