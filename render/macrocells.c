@@ -1,0 +1,151 @@
+#include "render/macrocells.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int minimum(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+static int maximum(int a, int b)
+{
+	return a > b ? a : b;
+}
+
+/* Least and greatest of one row of voxels. Written out by type, so that each is a plain loop that
+ * compilers turn into vector code. */
+#define DEFINE_ROW_RANGE(name, type)                                               \
+	static void name(const void *voxels, size_t from, int count, float *least, \
+			 float *greatest)                                          \
+	{                                                                          \
+		const type *row = (const type *)voxels + from;                     \
+		type low = row[0], high = row[0];                                  \
+		for (int i = 1; i < count; i++) {                                  \
+			low = row[i] < low ? row[i] : low;                         \
+			high = row[i] > high ? row[i] : high;                      \
+		}                                                                  \
+		*least = (float)low < *least ? (float)low : *least;                \
+		*greatest = (float)high > *greatest ? (float)high : *greatest;     \
+	}
+
+DEFINE_ROW_RANGE(row_range_u8, uint8_t)
+DEFINE_ROW_RANGE(row_range_u16, uint16_t)
+DEFINE_ROW_RANGE(row_range_f32, float)
+
+typedef void row_range(const void *voxels, size_t from, int count, float *least, float *greatest);
+
+static row_range *const row_ranges[GZ_VOXEL_TYPE_COUNT] = {
+	[GZ_VOXEL_U8] = row_range_u8,
+	[GZ_VOXEL_U16] = row_range_u16,
+	[GZ_VOXEL_F32] = row_range_f32,
+};
+
+/* The voxels of a cell along one axis. */
+static void cell_span(int cell, int dim, int *out_from, int *out_to)
+{
+	*out_from = maximum(cell * GZ_MACROCELL_EDGE - 1, 0);
+	*out_to = minimum(cell * GZ_MACROCELL_EDGE + GZ_MACROCELL_EDGE, dim - 1);
+}
+
+static void find_cell(const struct gz_volume *volume, struct gz_macrocells *cells,
+		      const int cell[3])
+{
+	int from[3], to[3];
+	for (int axis = 0; axis < 3; axis++)
+		cell_span(cell[axis], volume->dims[axis], &from[axis], &to[axis]);
+	const size_t row = (size_t)volume->dims[0], slice = row * (size_t)volume->dims[1];
+	float least = 3.4e38F, greatest = -3.4e38F;
+	for (int z = from[2]; z <= to[2]; z++)
+		for (int y = from[1]; y <= to[1]; y++)
+			row_ranges[volume->type](volume->voxels,
+						 (size_t)z * slice + (size_t)y * row +
+							 (size_t)from[0],
+						 to[0] - from[0] + 1, &least, &greatest);
+	const size_t index = ((size_t)cell[2] * (size_t)cells->dims[1] + (size_t)cell[1]) *
+				     (size_t)cells->dims[0] +
+			     (size_t)cell[0];
+	cells->least[index] = least;
+	cells->greatest[index] = greatest;
+}
+
+static size_t cell_count(const struct gz_macrocells *cells)
+{
+	return (size_t)cells->dims[0] * (size_t)cells->dims[1] * (size_t)cells->dims[2];
+}
+
+enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_macrocells *cells)
+{
+	gz_macrocells_free(cells);
+	for (int axis = 0; axis < 3; axis++)
+		cells->dims[axis] =
+			(volume->dims[axis] + GZ_MACROCELL_EDGE - 1) / GZ_MACROCELL_EDGE;
+	const size_t count = cell_count(cells);
+	cells->least = malloc(count * sizeof *cells->least);
+	cells->greatest = malloc(count * sizeof *cells->greatest);
+	cells->distance = calloc(count + 4, 1);
+	if (!cells->least || !cells->greatest || !cells->distance) {
+		gz_macrocells_free(cells);
+		return GZ_ERR_NO_MEM;
+	}
+	for (int z = 0; z < cells->dims[2]; z++)
+		for (int y = 0; y < cells->dims[1]; y++)
+			for (int x = 0; x < cells->dims[0]; x++)
+				find_cell(volume, cells, (const int[3]) { x, y, z });
+	return GZ_OK;
+}
+
+/*
+ * One axis of the distance: d[i] = min over j of max(|i - j|, before[j]). The Chebyshev distance is
+ * separable in this form, and since |before| of neighbours differ by any amount, a window that
+ * grows only while it can still win bounds the work by the answer.
+ */
+static void relax_line(uint8_t *line, size_t stride, int count, uint8_t *before)
+{
+	for (int i = 0; i < count; i++)
+		before[i] = line[(size_t)i * stride];
+	for (int i = 0; i < count; i++) {
+		int best = before[i];
+		for (int away = 1; away < best; away++) {
+			const int left = i - away >= 0 ? before[i - away] : 255;
+			const int right = i + away < count ? before[i + away] : 255;
+			best = minimum(best, maximum(away, minimum(left, right)));
+		}
+		line[(size_t)i * stride] = (uint8_t)best;
+	}
+}
+
+static void relax_axis(struct gz_macrocells *cells, int axis)
+{
+	const size_t strides[3] = {
+		1,
+		(size_t)cells->dims[0],
+		(size_t)cells->dims[0] * (size_t)cells->dims[1],
+	};
+	const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+	uint8_t before[GZ_VOLUME_DIM_MAX / GZ_MACROCELL_EDGE];
+	for (int j = 0; j < cells->dims[v]; j++)
+		for (int i = 0; i < cells->dims[u]; i++)
+			relax_line(cells->distance + (size_t)j * strides[v] +
+					   (size_t)i * strides[u],
+				   strides[axis], cells->dims[axis], before);
+}
+
+void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table)
+{
+	const size_t count = cell_count(cells);
+	for (size_t i = 0; i < count; i++)
+		cells->distance[i] =
+			gz_transfer_table_shows(table, cells->least[i], cells->greatest[i]) ? 0
+											    : 255;
+	for (int axis = 0; axis < 3; axis++)
+		relax_axis(cells, axis);
+}
+
+void gz_macrocells_free(struct gz_macrocells *cells)
+{
+	free(cells->least);
+	free(cells->greatest);
+	free(cells->distance);
+	*cells = (struct gz_macrocells) { 0 };
+}
