@@ -1,0 +1,80 @@
+/**
+ * @file
+ * Casting one tile of rays on a processor: what the kernels are given, and the kernels there are.
+ */
+#ifndef GZ_RENDER_CPU_CAST_H
+#define GZ_RENDER_CPU_CAST_H
+
+#include <stdint.h>
+
+#include "render/plan.h"
+#include "render/transfer_table.h"
+#include "render/volume.h"
+
+#define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
+
+/** A ray ends when less than this share of the light behind it would come through. */
+#define GZ_TRANSMITTANCE_END (1.0F / 1024)
+
+/** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel
+ *  coordinates: voxel i along an axis spans [i, i + 1), its datum sits at i + 1/2. */
+struct gz_cast {
+	/* volume */
+	const void *voxels;
+	float dims[3];
+	int32_t last[3];   /**< greatest index of the lower of two neighbours: max(dims - 2, 0) */
+	int32_t stride[3]; /**< in voxels; 0 along an axis of one voxel, x excepted */
+	/* macrocells */
+	const uint8_t *distance;
+	float cell_last[3]; /**< greatest cell index */
+	int32_t cell_stride[3];
+	/* transfer function */
+	float entry_scale, entry_bias;
+	const uint32_t *colour;
+	const float *extinction;
+	const float *opacity[GZ_PLAN_STEPS_MAX]; /**< a table for each step of the plan */
+	/* rays of pixel (x, y): see struct gz_ray_frame */
+	float origin00[3], origin_dx[3], origin_dy[3];
+	float direction00[3], direction_dx[3], direction_dy[3];
+	float world_per_voxel[3];               /**< to measure lengths in world units */
+	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
+	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the same in voxel lengths */
+	float background[3];
+};
+
+/** One tile as the kernels take it. */
+struct gz_cast_tile {
+	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS]; /**< pixels of its rays */
+	int step;
+	uint32_t active; /**< bit i: cast ray i */
+};
+
+/**
+ * Cast a tile.
+ *
+ * @param[out] out_pixels  R, G, B, 255 in memory order; written for all rays, meaningful for active
+ * ones
+ * @return voxel interpolations done
+ *
+ * A ray's colour depends on its pixel, spacing aside, and on its step alone: not on the tile.
+ */
+typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct gz_cast_tile *tile,
+				       uint32_t out_pixels[GZ_TILE_RAYS]);
+
+/** One instruction set's kernels, by voxel type and interpolation. */
+struct gz_cast_kernels {
+	const char *name;
+	gz_cast_tile_function *tile[GZ_VOXEL_TYPE_COUNT][2];
+};
+
+extern const struct gz_cast_kernels gz_cast_portable;
+#ifdef GZ_CAST_X86
+extern const struct gz_cast_kernels gz_cast_avx2;
+extern const struct gz_cast_kernels gz_cast_avx512;
+#endif
+
+/** Kernels by name, or the best this processor runs for NULL or "auto". NULL if it runs none of
+ * that name. */
+const struct gz_cast_kernels *gz_cast_kernels_find(const char *name);
+
+#endif

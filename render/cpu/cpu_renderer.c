@@ -1,0 +1,328 @@
+#include "render/cpu/cpu_renderer.h"
+
+#include <math.h>
+#include <stdalign.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "render/cpu/cast.h"
+#include "render/cpu/lattice.h"
+#include "render/cpu/reconstruct.h"
+#include "render/cpu/workers.h"
+#include "render/macrocells.h"
+
+#define GZ_LOG_MODULE "cpu"
+
+/* Tiles one thread takes at a time. Chosen: enough to hide the counter, few enough to balance the
+ * ends. */
+enum { TILES_A_PART = 16 };
+
+/* A worker's own count, a cache line apart from the next. */
+struct sample_count {
+	alignas(64) uint64_t samples;
+};
+
+struct cpu_renderer {
+	struct gz_renderer base;
+	struct gz_workers *workers;
+	const struct gz_cast_kernels *kernels;
+	const struct gz_volume *volume; /* borrowed */
+	struct gz_macrocells cells;
+	bool has_transfer;
+	struct gz_transfer_table table;
+	/* opacity tables, made for these step lengths (voxel lengths); 0 = none yet */
+	double opacity_length[GZ_PLAN_STEPS_MAX];
+	float (*opacity)[GZ_TRANSFER_TABLE_SIZE];
+	struct gz_lattices lattices;
+	struct sample_count counts[GZ_WORKERS_MAX];
+	char description[64];
+};
+
+/* What the workers are given. */
+struct cast_job {
+	struct gz_cast cast;
+	const struct gz_plan *plan;
+	const struct gz_lattices *lattices;
+	gz_cast_tile_function *tile;
+	struct sample_count *counts;
+};
+
+static struct cpu_renderer *cpu_of(struct gz_renderer *renderer)
+{
+	return (struct cpu_renderer *)renderer;
+}
+
+static void cpu_destroy(struct gz_renderer *renderer)
+{
+	struct cpu_renderer *cpu = cpu_of(renderer);
+	gz_workers_destroy(&cpu->workers);
+	gz_macrocells_free(&cpu->cells);
+	gz_lattices_free(&cpu->lattices);
+	free(cpu->opacity);
+	free(cpu);
+}
+
+static enum gz_result start(struct cpu_renderer *cpu, const struct gz_renderer_params *params)
+{
+	cpu->kernels = gz_cast_kernels_find(params->simd);
+	if (!cpu->kernels) {
+		gz_err(cpu->base.log,
+		       "this processor does not run '%s': take auto, portable, avx2 or avx512",
+		       params->simd);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = gz_workers_create(params->threads, &cpu->workers);
+	if (result != GZ_OK) {
+		gz_err(cpu->base.log, "cannot start %d threads: %s", params->threads,
+		       gz_result_text(result));
+		return result;
+	}
+	snprintf(cpu->description, sizeof cpu->description, "%s, %d threads", cpu->kernels->name,
+		 gz_workers_count(cpu->workers));
+	return GZ_OK;
+}
+
+static enum gz_result cpu_create(const struct gz_renderer_params *params, const struct gz_log *log,
+				 struct gz_renderer **out_renderer)
+{
+	/* The counters are aligned, so the struct is. */
+	struct cpu_renderer *cpu = aligned_alloc(alignof(struct cpu_renderer), sizeof *cpu);
+	if (!cpu)
+		return GZ_ERR_NO_MEM;
+	memset(cpu, 0, sizeof *cpu);
+	cpu->base = (struct gz_renderer) { .ops = &gz_cpu_renderer_ops, .log = log };
+	cpu->opacity = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->opacity);
+	const enum gz_result result = cpu->opacity ? start(cpu, params) : GZ_ERR_NO_MEM;
+	if (result != GZ_OK) {
+		cpu_destroy(&cpu->base);
+		return result;
+	}
+	*out_renderer = &cpu->base;
+	return GZ_OK;
+}
+
+static enum gz_result cpu_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)
+{
+	struct cpu_renderer *cpu = cpu_of(renderer);
+	cpu->volume = NULL;
+	cpu->has_transfer = false;
+	/* Gathers take 32-bit signed indices. */
+	if (gz_volume_voxel_count(volume) > INT32_MAX) {
+		gz_err(renderer->log,
+		       "a volume of %d x %d x %d voxels is beyond the cpu backend's 2^31",
+		       volume->dims[0], volume->dims[1], volume->dims[2]);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = gz_macrocells_build(volume, &cpu->cells);
+	if (result != GZ_OK) {
+		gz_err(renderer->log, "no memory for the macrocells of the volume");
+		return result;
+	}
+	cpu->volume = volume;
+	return GZ_OK;
+}
+
+static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
+				       const struct gz_transfer *transfer)
+{
+	struct cpu_renderer *cpu = cpu_of(renderer);
+	if (!cpu->volume)
+		return GZ_ERR_INVAL;
+	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
+	gz_macrocells_classify(&cpu->cells, &cpu->table);
+	memset(cpu->opacity_length, 0, sizeof cpu->opacity_length);
+	cpu->has_transfer = true;
+	return GZ_OK;
+}
+
+static void fill_volume(const struct cpu_renderer *cpu, struct gz_cast *cast)
+{
+	const struct gz_volume *volume = cpu->volume;
+	const int32_t strides[3] = {
+		1,
+		volume->dims[0],
+		volume->dims[0] * volume->dims[1],
+	};
+	const int32_t cell_strides[3] = {
+		1,
+		cpu->cells.dims[0],
+		cpu->cells.dims[0] * cpu->cells.dims[1],
+	};
+	const double longest = fmax(
+		fmax(volume->dims[0] * volume->spacing[0], volume->dims[1] * volume->spacing[1]),
+		volume->dims[2] * volume->spacing[2]);
+	cast->voxels = volume->voxels;
+	cast->distance = cpu->cells.distance;
+	for (int axis = 0; axis < 3; axis++) {
+		cast->dims[axis] = (float)volume->dims[axis];
+		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
+		/* With one voxel there is no neighbour to step to. */
+		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? strides[axis] : 0;
+		cast->cell_last[axis] = (float)(cpu->cells.dims[axis] - 1);
+		cast->cell_stride[axis] = cell_strides[axis];
+		cast->world_per_voxel[axis] = (float)(volume->spacing[axis] / longest);
+	}
+}
+
+static void fill_rays(const struct cpu_renderer *cpu, const struct gz_ray_frame *rays,
+		      struct gz_cast *cast)
+{
+	double half[3];
+	gz_volume_half_extent(cpu->volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		const double per_world = cpu->volume->dims[axis] / (2 * half[axis]);
+		cast->origin00[axis] = (float)((rays->origin00[axis] + half[axis]) * per_world);
+		cast->origin_dx[axis] = (float)(rays->origin_dx[axis] * per_world);
+		cast->origin_dy[axis] = (float)(rays->origin_dy[axis] * per_world);
+		cast->direction00[axis] = (float)(rays->direction00[axis] * per_world);
+		cast->direction_dx[axis] = (float)(rays->direction_dx[axis] * per_world);
+		cast->direction_dy[axis] = (float)(rays->direction_dy[axis] * per_world);
+	}
+}
+
+static void fill_transfer(struct cpu_renderer *cpu, const struct gz_plan *plan,
+			  const struct gz_ray_params *rays, struct gz_cast *cast)
+{
+	cast->entry_scale = (float)cpu->table.scale;
+	cast->entry_bias = (float)cpu->table.bias;
+	cast->colour = cpu->table.colour;
+	cast->extinction = cpu->table.extinction;
+	for (int i = 0; i < plan->step_count; i++) {
+		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		if (cpu->opacity_length[i] != length) {
+			gz_transfer_table_opacities(&cpu->table, length, cpu->opacity[i]);
+			cpu->opacity_length[i] = length;
+		}
+		cast->opacity[i] = cpu->opacity[i];
+		cast->voxel_lengths[i] = (float)length;
+		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
+	}
+	for (int channel = 0; channel < 3; channel++)
+		cast->background[channel] = (float)rays->background[channel];
+}
+
+static void store(const struct gz_lattice *lattice, int x, int y, uint32_t pixel)
+{
+	const int column = x / lattice->spacing, row = y / lattice->spacing;
+	if (column < lattice->columns && row < lattice->rows)
+		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
+}
+
+/* Where ray i of a tile goes. */
+static void tile_ray(const struct gz_plan *plan, const struct gz_tile *tile, int i, int *x, int *y)
+{
+	const int spacing = plan->layers[tile->layer].spacing;
+	*x = tile->x + gz_tile_columns[tile->pattern][i] * spacing;
+	*y = tile->y + gz_tile_rows[i] * spacing;
+}
+
+static void store_tile(const struct cast_job *job, const struct gz_tile *tile,
+		       const uint32_t pixels[GZ_TILE_RAYS])
+{
+	const bool pyramid = job->plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
+	const int last = pyramid ? job->plan->layer_count - 1 : tile->layer;
+	for (int i = 0; i < GZ_TILE_RAYS; i++) {
+		int x, y;
+		tile_ray(job->plan, tile, i, &x, &y);
+		store(&job->lattices->layers[tile->layer], x, y, pixels[i]);
+		/* A point of a pyramid may be a point of coarser lattices too. */
+		for (int layer = tile->layer + 1; layer <= last; layer++) {
+			const struct gz_lattice *lattice = &job->lattices->layers[layer];
+			if ((x | y) & (lattice->spacing - 1))
+				break;
+			store(lattice, x, y, pixels[i]);
+		}
+	}
+}
+
+static void cast_part(void *user, size_t part, int worker)
+{
+	const struct cast_job *job = user;
+	const size_t from = part * TILES_A_PART;
+	const size_t to = from + TILES_A_PART < job->plan->tile_count ? from + TILES_A_PART
+								      : job->plan->tile_count;
+	for (size_t i = from; i < to; i++) {
+		const struct gz_tile *tile = &job->plan->tiles[i];
+		struct gz_cast_tile rays = {
+			.step = tile->step,
+			.active = gz_plan_tile_active(job->plan, tile),
+		};
+		for (int ray = 0; ray < GZ_TILE_RAYS; ray++) {
+			int x, y;
+			tile_ray(job->plan, tile, ray, &x, &y);
+			rays.x[ray] = (float)x;
+			rays.y[ray] = (float)y;
+		}
+		uint32_t pixels[GZ_TILE_RAYS];
+		job->counts[worker].samples += job->tile(&job->cast, &rays, pixels);
+		store_tile(job, tile, pixels);
+	}
+}
+
+static uint64_t cast_tiles(struct cpu_renderer *cpu, struct cast_job *job)
+{
+	memset(cpu->counts, 0, sizeof cpu->counts);
+	gz_workers_run(cpu->workers, cast_part, job,
+		       (job->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
+	uint64_t samples = 0;
+	for (int i = 0; i < gz_workers_count(cpu->workers); i++)
+		samples += cpu->counts[i].samples;
+	return samples;
+}
+
+static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_camera *camera,
+				 const struct gz_ray_params *rays, const struct gz_plan *plan,
+				 struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct cpu_renderer *cpu = cpu_of(renderer);
+	if (!cpu->volume || !cpu->has_transfer)
+		return GZ_ERR_INVAL;
+	struct gz_ray_frame ray_frame;
+	enum gz_result result = gz_camera_rays(camera, plan->width, plan->height, &ray_frame);
+	if (result == GZ_OK)
+		result = gz_image_resize(image, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = gz_lattices_prepare(&cpu->lattices, plan, image);
+	if (result != GZ_OK)
+		return result;
+
+	const int64_t start_ns = gz_clock_now_ns();
+	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
+	struct cast_job job = {
+		.plan = plan,
+		.lattices = &cpu->lattices,
+		.tile = cpu->kernels->tile[cpu->volume->type][nearest],
+		.counts = cpu->counts,
+	};
+	fill_volume(cpu, &job.cast);
+	fill_rays(cpu, &ray_frame, &job.cast);
+	fill_transfer(cpu, plan, rays, &job.cast);
+	const uint64_t samples = cast_tiles(cpu, &job);
+	const int64_t cast_ns = gz_clock_now_ns();
+	gz_reconstruct(plan, &cpu->lattices, cpu->workers, image);
+	if (out_stats)
+		*out_stats = (struct gz_frame_stats) {
+			.rays = plan->ray_count,
+			.samples = samples,
+			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
+			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+		};
+	return GZ_OK;
+}
+
+static const char *cpu_describe(const struct gz_renderer *renderer)
+{
+	return ((const struct cpu_renderer *)renderer)->description;
+}
+
+const struct gz_renderer_ops gz_cpu_renderer_ops = {
+	.name = "cpu",
+	.create = cpu_create,
+	.set_volume = cpu_set_volume,
+	.set_transfer = cpu_set_transfer,
+	.render = cpu_render,
+	.describe = cpu_describe,
+	.destroy = cpu_destroy,
+};

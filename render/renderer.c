@@ -1,0 +1,79 @@
+#include "render/renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "render/cpu/cpu_renderer.h"
+
+#define GZ_LOG_MODULE "render"
+
+const struct gz_renderer_ops *const gz_backends[] = { &gz_cpu_renderer_ops, NULL };
+
+static const struct gz_renderer_ops *find_backend(const char *name)
+{
+	if (!name || strcmp(name, "auto") == 0)
+		return gz_backends[0];
+	for (size_t i = 0; gz_backends[i]; i++)
+		if (strcmp(gz_backends[i]->name, name) == 0)
+			return gz_backends[i];
+	return NULL;
+}
+
+enum gz_result gz_renderer_create(const char *backend, const struct gz_renderer_params *params,
+				  const struct gz_log *log, struct gz_renderer **out_renderer)
+{
+	static const struct gz_renderer_params defaults = { 0 };
+	const struct gz_renderer_ops *ops = find_backend(backend);
+	if (!ops) {
+		char names[128] = "auto";
+		for (size_t i = 0; gz_backends[i]; i++) {
+			strncat(names, ", ", sizeof names - strlen(names) - 1);
+			strncat(names, gz_backends[i]->name, sizeof names - strlen(names) - 1);
+		}
+		gz_err(log, "no backend '%s': there are %s", backend, names);
+		return GZ_ERR_NOT_FOUND;
+	}
+	return ops->create(params ? params : &defaults, log, out_renderer);
+}
+
+enum gz_result gz_renderer_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)
+{
+	return renderer->ops->set_volume(renderer, volume);
+}
+
+enum gz_result gz_renderer_set_transfer(struct gz_renderer *renderer,
+					const struct gz_transfer *transfer)
+{
+	return renderer->ops->set_transfer(renderer, transfer);
+}
+
+static bool ray_params_valid(const struct gz_ray_params *rays)
+{
+	for (int channel = 0; channel < 3; channel++)
+		if (!(rays->background[channel] >= 0 && rays->background[channel] <= 1))
+			return false;
+	return rays->ray_sampling_rate >= GZ_RAY_SAMPLING_RATE_MIN &&
+	       rays->ray_sampling_rate <= GZ_RAY_SAMPLING_RATE_MAX;
+}
+
+enum gz_result gz_renderer_render(struct gz_renderer *renderer, const struct gz_camera *camera,
+				  const struct gz_ray_params *rays, const struct gz_plan *plan,
+				  struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	if (!ray_params_valid(rays) || plan->layer_count < 1)
+		return GZ_ERR_INVAL;
+	return renderer->ops->render(renderer, camera, rays, plan, image, out_stats);
+}
+
+const char *gz_renderer_describe(const struct gz_renderer *renderer)
+{
+	return renderer->ops->describe(renderer);
+}
+
+void gz_renderer_destroy(struct gz_renderer **renderer)
+{
+	if (!*renderer)
+		return;
+	(*renderer)->ops->destroy(*renderer);
+	*renderer = NULL;
+}
