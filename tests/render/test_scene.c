@@ -1,0 +1,263 @@
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/captured_log.h"
+#include "render/scene.h"
+#include "volume_files.h"
+
+#define VOLUME   "[volume]\nprocedural = shells\ndims = 12 10 8\n"
+#define TRANSFER "[transfer]\nfile = ramp.tf\n"
+#define SCENE    VOLUME TRANSFER
+
+static struct gz_scene_settings parsed(const char *text, bool *out_has_display)
+{
+	struct gz_scene_settings settings;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	if (gz_scene_parse("s.scene", text, strlen(text), &log.log, &settings, out_has_display) !=
+	    GZ_OK)
+		fail_msg("refused: %s", log.last);
+	return settings;
+}
+
+static void every_preset_parses(void **state)
+{
+	(void)state;
+	struct gz_scene_settings settings = { 0 };
+	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
+	assert_int_equal(gz_scene_bindings(&settings, bindings, GZ_SCENE_BINDINGS),
+			 GZ_SCENE_BINDINGS);
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++)
+		assert_int_equal(gz_options_preset(&bindings[i]), GZ_OK);
+	assert_true(settings.camera.eye[1] == -2 && settings.camera.up[2] == 1);
+	assert_true(settings.camera.fov_deg == 40 && settings.image_sampling_rate == 1);
+	assert_true(settings.rays.ray_sampling_rate == 1.5);
+	assert_int_equal(settings.camera.projection, GZ_PROJECTION_PERSPECTIVE);
+	assert_int_equal(settings.foveation.method, gz_foveation_default().method);
+}
+
+/* Each choice's index must be the enum it stands for. */
+static void choices_are_in_the_order_of_their_enums(void **state)
+{
+	(void)state;
+	bool display;
+	struct gz_scene_settings s =
+		parsed("[volume]\nprocedural = supernova\n" TRANSFER
+		       "[camera]\nprojection = orthographic\n[render]\ninterpolation = nearest\n",
+		       &display);
+	assert_int_equal(s.volume_procedural, GZ_PROCEDURAL_SUPERNOVA + 1);
+	assert_int_equal(s.camera.projection, GZ_PROJECTION_ORTHOGRAPHIC);
+	assert_int_equal(s.rays.interpolation, GZ_INTERPOLATION_NEAREST);
+	s = parsed("[volume]\nfile = a.raw\ndims = 1 2 3\ntype = float64\nendian = big\n" TRANSFER,
+		   &display);
+	assert_int_equal(s.type, GZ_RAW_FLOAT64);
+	assert_int_equal(s.endian, 1);
+	assert_int_equal(s.dims[2], 3);
+	assert_false(display);
+}
+
+static void every_section_is_read(void **state)
+{
+	(void)state;
+	bool display = false;
+	struct gz_scene_settings s =
+		parsed(SCENE "[camera]\neye = 1 2 3 ; a comment\nlook_at = 0.5 0 0\nup = 0 1 0\n"
+			     "fov_deg = 30.5\nheight = 2\n[render]\nbackground = 0.1 0.2 0.3\n"
+			     "ray_sampling_rate = 2\nimage_sampling_rate = 0.5\nshading = none\n"
+			     "[foveation]\nmethod = acuity\n"
+			     "[display]\npx = 1920 1080\nmm = 520 290\ndistance_mm = 650\n",
+		       &display);
+	assert_true(s.camera.eye[2] == 3 && s.camera.look_at[0] == 0.5 && s.camera.up[1] == 1);
+	assert_true(s.camera.fov_deg == 30.5 && s.camera.height == 2);
+	assert_true(s.rays.background[2] == 0.3 && s.rays.ray_sampling_rate == 2);
+	assert_true(s.image_sampling_rate == 0.5);
+	assert_int_equal(s.foveation.method, GZ_METHOD_ACUITY);
+	assert_true(display);
+	assert_int_equal(s.display.px[0], 1920);
+	assert_true(s.display.mm[1] == 290 && s.display.distance_mm == 650);
+}
+
+struct refusal {
+	const char *text, *words;
+};
+
+static const struct refusal refusals[] = {
+	{ "", "s.scene: volume.file: not given; name a volume" },
+	{ VOLUME, "s.scene: transfer.file: not given; name a .tf file" },
+	{ TRANSFER, "s.scene: volume.file: not given; name a volume" },
+	{ "[volume]\nfile = a.nii\nprocedural = shells\n" TRANSFER,
+	  "s.scene: volume.file: given with volume.procedural; keep one" },
+	{ "[volume]\nprocedural = shells\ntype = uint8\n" TRANSFER,
+	  "s.scene: volume.procedural: takes dims only" },
+	{ "[volume]\nfile = a.raw\ndims = 1 1 1\n" TRANSFER,
+	  "s.scene: volume.dims: a raw file needs both dims and type" },
+	{ "[volume]\nfile = a.nii\nspacing = 1 1 1\n" TRANSFER,
+	  "s.scene: volume.dims: a raw file needs both dims and type" },
+	{ SCENE "[camera]\neye = 0 0 0\n", "s.scene: camera.eye: is where camera.look_at is" },
+	{ SCENE "[display]\npx = 10 10\n", "s.scene: display.mm: not given; px, mm and" },
+	{ SCENE "[display]\nmm = 10 10\ndistance_mm = 1\n", "s.scene: display.px: not given" },
+	{ SCENE "[camera]\nfov_deg = 180\n", "s.scene:7: camera.fov_deg: 180 is outside" },
+	{ SCENE "[camera]\nfov_deg = nan\n", "s.scene:7: camera.fov_deg: nan is not a number" },
+	{ SCENE "[camera]\neye = 1 2\n", "s.scene:7: camera.eye: 2 of 3 numbers given" },
+	{ SCENE "[camera]\nfov = 40\n", "s.scene:7: camera.fov: " },
+	{ SCENE "[clip]\nx = 1\n", "s.scene:7: clip.x: " },
+	{ SCENE "[render]\nray_sampling_rate = 0\n", "s.scene:7: render.ray_sampling_rate: 0 is" },
+	{ SCENE "[render]\nbackground = 0 0 1.5\n", "s.scene:7: render.background: 1.5 is" },
+	{ SCENE "[render]\nshading = phong\n", "s.scene:7: render.shading: phong is not" },
+	{ SCENE "[render]\nray_sampling_rate = 1\nray_sampling_rate = 1\n", "s.scene:8: " },
+	{ "[volume]\ndims = 0 1 1\n", "s.scene:2: volume.dims: 0 is outside 1 to 16384" },
+	{ "[volume]\ndims = 1 1 99999\n", "s.scene:2: volume.dims: 99999 is outside" },
+	{ "[volume]\nspacing = 1 1 0\n", "s.scene:2: volume.spacing: 0 is outside" },
+	{ "[volume]\nspacing = 1 1 -1\n", "s.scene:2: volume.spacing: -1 is outside" },
+	{ "[volume]\ntype = int64\n", "s.scene:2: volume.type: int64 is not uint8" },
+	{ "nonsense\n", "s.scene:1: " },
+};
+
+static void each_refusal_names_place_and_remedy(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof refusals / sizeof refusals[0]; i++) {
+		struct gz_scene_settings s = { .shading = 42 };
+		struct captured_log log;
+		bool display = true;
+		const char *text = refusals[i].text;
+		captured_log_init(&log, NULL);
+		enum gz_result result =
+			gz_scene_parse("s.scene", text, strlen(text), &log.log, &s, &display);
+		if (result != GZ_ERR_FORMAT || log.messages != 1 ||
+		    !strstr(log.last, refusals[i].words))
+			fail_msg("result %d, %d lines, \"%s\" lacks \"%s\"", result, log.messages,
+				 log.last, refusals[i].words);
+		assert_int_equal(s.shading, 42);
+		assert_true(display);
+	}
+}
+
+static void scene_is_loaded_with_what_it_names(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	const char *path = files_write_text("a.scene", SCENE, NULL, 0);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_OK);
+	assert_int_equal(scene.volume.dims[0], 12);
+	assert_int_equal(scene.volume.dims[2], 8);
+	assert_int_equal(scene.transfer.count, 2);
+	assert_false(scene.has_display);
+	gz_scene_free(&scene);
+	assert_null(scene.volume.voxels);
+	gz_scene_free(&scene);
+	assert_int_equal(log.messages, 0);
+}
+
+static void procedural_volume_without_dims_has_128_a_side(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	const char *path =
+		files_write_text("p.scene", "[volume]\nprocedural = shells\n" TRANSFER, NULL, 0);
+	assert_int_equal(gz_scene_load(path, NULL, &scene), GZ_OK);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(scene.volume.dims[i], 128);
+	gz_scene_free(&scene);
+}
+
+static void file_is_looked_for_beside_the_scene_then_under_the_data_folder(void **state)
+{
+	(void)state;
+	static const char text[] = "[volume]\nfile = v.raw\ndims = 2 2 1\ntype = uint8\n"
+				   "spacing = 1 1 2\n" TRANSFER;
+	char data[512];
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	snprintf(data, sizeof data, "%s", files_folder());
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	const char *path = files_write_text("d.scene", text, NULL, 0);
+	unsetenv("GAZECAST_DATA");
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "d.scene: volume.file: v.raw is neither beside the scene "
+					 "nor under GAZECAST_DATA (not set)"));
+	files_write("v.raw", "abcd", 4);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_OK);
+	assert_true(scene.volume.spacing[2] == 2);
+	gz_scene_free(&scene);
+
+	/* The same scene from elsewhere finds both under the variable. */
+	char elsewhere[] = "/tmp/gazecast-scene-XXXXXX";
+	int fd = mkstemp(elsewhere);
+	assert_true(fd >= 0);
+	assert_int_equal(write(fd, text, strlen(text)), (ssize_t)strlen(text));
+	close(fd);
+	setenv("GAZECAST_DATA", data, 1);
+	enum gz_result result = gz_scene_load(elsewhere, &log.log, &scene);
+	unlink(elsewhere);
+	unsetenv("GAZECAST_DATA");
+	assert_int_equal(result, GZ_OK);
+	gz_scene_free(&scene);
+}
+
+static void missing_files_are_named_with_a_remedy(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_scene_load(files_path("none.scene"), &log.log, &scene),
+			 GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "none.scene"));
+	const char *path =
+		files_write_text("n.scene", VOLUME "[transfer]\nfile = no.tf\n", NULL, 0);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "transfer.file: no.tf is neither beside the scene"));
+	path = files_write_text("n.scene", "[volume]\nfile = /no/where.nii\n" TRANSFER, NULL, 0);
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "volume.file: no file /no/where.nii; install it"));
+	assert_int_equal(log.messages, 3);
+}
+
+static void broken_parts_break_the_scene_with_one_line(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	files_write_text("bad.tf", "0 0 0 0\n", NULL, 0);
+	const char *path =
+		files_write_text("b.scene", VOLUME "[transfer]\nfile = bad.tf\n", NULL, 0);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_FORMAT);
+	assert_non_null(strstr(log.last, "bad.tf:1: point: write five numbers"));
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	files_write("short.raw", "abc", 3);
+	path = files_write_text("b.scene",
+				"[volume]\nfile = short.raw\ndims = 2 2 1\ntype = uint8\n" TRANSFER,
+				NULL, 0);
+	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_FORMAT);
+	assert_non_null(strstr(log.last, "short.raw: truncated"));
+	assert_int_equal(log.messages, 2);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_preset_parses),
+		cmocka_unit_test(choices_are_in_the_order_of_their_enums),
+		cmocka_unit_test(every_section_is_read),
+		cmocka_unit_test(each_refusal_names_place_and_remedy),
+		cmocka_unit_test(scene_is_loaded_with_what_it_names),
+		cmocka_unit_test(procedural_volume_without_dims_has_128_a_side),
+		cmocka_unit_test(file_is_looked_for_beside_the_scene_then_under_the_data_folder),
+		cmocka_unit_test(missing_files_are_named_with_a_remedy),
+		cmocka_unit_test(broken_parts_break_the_scene_with_one_line),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
