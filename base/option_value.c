@@ -169,7 +169,7 @@ static void store_numbers(const struct gz_option *option, const double *values, 
 static enum gz_result parse_numbers(const struct gz_option *option, const char *text, void *field,
 				    char *message, size_t message_size)
 {
-	double values[MOST_NUMBERS];
+	double values[MOST_NUMBERS] = { 0 };
 	int wanted = gz_option_count(option);
 	if (wanted > MOST_NUMBERS)
 		return refuse(message, message_size, "more than %d numbers", MOST_NUMBERS);
@@ -201,7 +201,7 @@ static enum gz_result parse_numbers(const struct gz_option *option, const char *
 static enum gz_result parse_size(const struct gz_option *option, const char *text, void *field,
 				 char *message, size_t message_size)
 {
-	double values[2];
+	double values[2] = { 0 };
 	const char *cross = strchr(text, 'x');
 	if (!cross || cross == text || !cross[1] || strlen(text) > 32)
 		return refuse(message, message_size,
