@@ -21,8 +21,15 @@ within {
 			FILENAME, FNR, name
 		faults++
 	}
+	covered = 2
 	within = !/;[ \t]*$/
 	body = /^static inline/
+	next
+}
+
+# A comment on a group of declarations may stand apart from the first.
+/^$/ {
+	covered = covered == 1
 	next
 }
 
