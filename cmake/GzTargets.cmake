@@ -45,6 +45,11 @@ function(gz_program name)
 	install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+set(gz_test_environment "")
+if(GAZECAST_SANITIZE MATCHES thread)
+	set(gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp")
+endif()
+
 # gz_test(FOLDER NAME [USES target...] [LABELS label...] [TIMEOUT s] [SOURCES more...]):
 # tests/FOLDER/test_NAME.c becomes the test FOLDER.NAME, labelled quick unless LABELS says otherwise.
 # A test that cannot run where it is exits 77 and counts as skipped.
@@ -62,7 +67,7 @@ function(gz_test folder name)
 	target_link_libraries(${target} PRIVATE ${T_USES} PkgConfig::CMOCKA gz_settings)
 	add_test(NAME ${folder}.${name} COMMAND ${target})
 	set_tests_properties(${folder}.${name} PROPERTIES TIMEOUT ${T_TIMEOUT} SKIP_RETURN_CODE 77
-		LABELS "${T_LABELS}")
+		LABELS "${T_LABELS}" ENVIRONMENT "${gz_test_environment}")
 endfunction()
 
 # gz_fuzz(NAME [USES target...]): tests/fuzz/fuzz_NAME.c defines LLVMFuzzerTestOneInput. With
