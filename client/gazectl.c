@@ -8,10 +8,7 @@
 #define GZ_LOG_MODULE "gazectl"
 
 static const struct gazectl_command *const commands[] = {
-	&gazectl_status,
-	&gazectl_watch,
-	&gazectl_record,
-	&gazectl_stop,
+	&gazectl_status, &gazectl_watch, &gazectl_record, &gazectl_stop, &gazectl_inspect,
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -86,6 +86,13 @@ void publisher_send_gaze(struct publisher *publisher, const struct gz_gaze *gaze
 	publisher_send(publisher, gz_wire_gaze_topic(gaze), message.bytes, message.size);
 }
 
+void publisher_send_status(struct publisher *publisher, const struct gz_status *status)
+{
+	struct gz_wire_message message;
+	assert_int_equal(gz_wire_encode_status(status, &message), GZ_OK);
+	publisher_send(publisher, GZ_TOPIC_STATUS, message.bytes, message.size);
+}
+
 void publisher_close(struct publisher *publisher)
 {
 	if (publisher->socket)

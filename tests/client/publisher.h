@@ -45,6 +45,9 @@ void publisher_send_latest(struct publisher *publisher, const struct gz_gaze *ga
 /** Send a gaze as the stream does. */
 void publisher_send_gaze(struct publisher *publisher, const struct gz_gaze *gaze);
 
+/** Send a status. */
+void publisher_send_status(struct publisher *publisher, const struct gz_status *status);
+
 /** Close and forget. */
 void publisher_close(struct publisher *publisher);
 

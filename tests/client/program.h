@@ -1,0 +1,32 @@
+/**
+ * @file
+ * A program under test: started with arguments, its output collected.
+ */
+#ifndef GZ_TESTS_CLIENT_PROGRAM_H
+#define GZ_TESTS_CLIENT_PROGRAM_H
+
+#include <stddef.h>
+#include <sys/types.h>
+
+/** A running or finished program. */
+struct program {
+	pid_t process;
+	int out, err; /**< pipes */
+	int status;   /**< its exit status; -1 if a signal ended it */
+	char out_text[16384], err_text[4096];
+	size_t out_size, err_size;
+};
+
+/** Start @p arguments[0] with @p arguments, NULL-terminated. Asserts. */
+void program_start(struct program *program, const char *const *arguments);
+
+/** Collect output until @p text stands in what came on stdout or stderr. Asserts that it comes. */
+void program_wait_for(struct program *program, const char *text);
+
+/** Collect output to its end and the exit status. Kills it and fails after 20 s. */
+void program_finish(struct program *program);
+
+/** program_start() and program_finish(). */
+void program_run(struct program *program, const char *const *arguments);
+
+#endif
