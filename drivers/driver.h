@@ -70,8 +70,8 @@ struct gz_driver {
 	const char *name;                /**< as in "--driver name" */
 	const char *help;                /**< one line */
 	const struct gz_option *options; /**< keys "<name>.<setting>"; NULL if there are none */
-	size_t option_count;
-	size_t settings_size; /**< bytes of the struct that the options point into */
+	const size_t *option_count;      /**< by address: some tables stand in other folders */
+	size_t settings_size;            /**< bytes of the struct that the options point into */
 
 	/**
 	 * Open a device.

@@ -36,6 +36,8 @@ const struct gz_option gz_sim_options[] = {
 	  "how much faster the device clock runs than the host's, parts per million" },
 	{ "sim.combined_only", GZ_OPTION_BOOL, AT(combined_only), 0, 0, 0, NULL, "false",
 	  "deliver one point for both eyes" },
+	{ "sim.realtime", GZ_OPTION_BOOL, AT(realtime), 0, 0, 0, NULL, "true",
+	  "deliver samples as time passes; no: as fast as they are read" },
 	{ "sim.display_px", GZ_OPTION_SIZE, AT(display_px), 1, 32768, 0, NULL, "1920x1080",
 	  "the simulated display, pixels" },
 	{ "sim.display_mm", GZ_OPTION_DOUBLE, AT(display_mm), 10, 10000, 2, NULL, "564.677 317.631",

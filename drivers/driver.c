@@ -1,0 +1,56 @@
+#include "drivers/driver.h"
+
+#include <string.h>
+
+#include "drivers/replay/replay_driver.h"
+#include "drivers/sim/sim_driver.h"
+#include "drivers/template/template_driver.h"
+
+const struct gz_driver *const gz_drivers[] = {
+	&gz_driver_sim,
+	&gz_driver_replay,
+	&gz_driver_template,
+	NULL,
+};
+
+const struct gz_driver *gz_driver_find(const char *name)
+{
+	for (size_t i = 0; gz_drivers[i]; i++) {
+		if (strcmp(gz_drivers[i]->name, name) == 0)
+			return gz_drivers[i];
+	}
+	return NULL;
+}
+
+enum gz_result gz_device_start(struct gz_device *device)
+{
+	return device->ops->start(device);
+}
+
+enum gz_result gz_device_read(struct gz_device *device, int timeout_ms,
+			      struct gz_sample *out_sample)
+{
+	if (timeout_ms < 0)
+		return GZ_ERR_INVAL;
+	return device->ops->read(device, timeout_ms, out_sample);
+}
+
+void gz_device_get_info(const struct gz_device *device, struct gz_device_info *out_info)
+{
+	*out_info = (struct gz_device_info) { 0 };
+	device->ops->info(device, out_info);
+}
+
+void gz_device_get_counters(const struct gz_device *device, struct gz_device_counters *out_counters)
+{
+	*out_counters = (struct gz_device_counters) { 0 };
+	device->ops->counters(device, out_counters);
+}
+
+void gz_device_destroy(struct gz_device **device)
+{
+	if (!device || !*device)
+		return;
+	(*device)->ops->destroy(*device);
+	*device = NULL;
+}

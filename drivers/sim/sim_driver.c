@@ -1,0 +1,169 @@
+#include "drivers/sim/sim_driver.h"
+
+#include <stdlib.h>
+#include <sys/prctl.h>
+
+#include "base/clock.h"
+#include "drivers/clock_model.h"
+#include "sim/tracker.h"
+
+#define GZ_LOG_MODULE "sim"
+
+/* A reader that was held up for longer than this does not get what it missed: a tracker's buffers
+ * end somewhere, too. Chosen: two seconds, above any scheduling delay. */
+static const int64_t BACKLOG_NS = 2 * GZ_NS_PER_S;
+
+struct sim_device {
+	struct gz_device base;
+	struct gz_sim_params params;
+	struct gz_sim_tracker *tracker;
+	struct gz_clock_model clock;
+	struct gz_sim_sample next; /* not delivered yet; its times count from start_ns */
+	int64_t start_ns;
+	uint64_t seq;
+	uint64_t lost;
+	uint32_t skipped; /* lost since the last delivered sample, beyond next's own */
+};
+
+static struct sim_device *of(struct gz_device *device)
+{
+	return (struct sim_device *)device;
+}
+
+static enum gz_result sim_start(struct gz_device *device)
+{
+	struct sim_device *sim = of(device);
+	/* The default of 50 us would show as jitter in every sample's delivery. */
+	if (prctl(PR_SET_TIMERSLACK, 1) != 0)
+		gz_debug(device->log, "timer slack stays as it is; samples come less evenly");
+	sim->start_ns = gz_clock_now_ns();
+	gz_sim_tracker_next(sim->tracker, &sim->next);
+	return GZ_OK;
+}
+
+static uint32_t add_saturated(uint32_t a, uint32_t b)
+{
+	return a > UINT32_MAX - b ? UINT32_MAX : a + b;
+}
+
+/* Leave out what a reader that slept for long has missed. */
+static void skip_backlog(struct sim_device *sim, int64_t now_ns)
+{
+	while (now_ns - (sim->start_ns + sim->next.arrival_ns) > BACKLOG_NS) {
+		sim->skipped = add_saturated(sim->skipped, sim->next.sample.lost_before);
+		sim->skipped = add_saturated(sim->skipped, 1);
+		gz_sim_tracker_next(sim->tracker, &sim->next);
+	}
+}
+
+/* Host time as any driver finds it: from the device's clock and the arrivals. The simulator knows
+ * the constant delay, as the maker of a tracker does. */
+static int64_t modelled_host_ns(struct sim_device *sim, int64_t arrival_ns)
+{
+	bool jumped;
+	int64_t host_ns =
+		gz_clock_model_step(&sim->clock, sim->next.sample.device_ns, arrival_ns, &jumped);
+	if (jumped)
+		gz_warn(sim->base.log, "the device's clock jumped; its fit begins again");
+	return host_ns - (int64_t)(sim->params.latency_ms * (double)GZ_NS_PER_MS);
+}
+
+static void deliver(struct sim_device *sim, struct gz_sample *out_sample)
+{
+	int64_t arrival_ns = sim->start_ns + sim->next.arrival_ns;
+	*out_sample = sim->next.sample;
+	out_sample->host_ns = sim->start_ns + sim->next.sample.host_ns;
+	if (sim->params.clock_skew_ppm != 0)
+		out_sample->host_ns = modelled_host_ns(sim, arrival_ns);
+	out_sample->seq = sim->seq++;
+	out_sample->lost_before = add_saturated(sim->next.sample.lost_before, sim->skipped);
+	sim->lost += out_sample->lost_before;
+	sim->skipped = 0;
+	gz_sim_tracker_next(sim->tracker, &sim->next);
+}
+
+static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
+			       struct gz_sample *out_sample)
+{
+	struct sim_device *sim = of(device);
+	if (sim->params.realtime) {
+		int64_t now_ns = gz_clock_now_ns();
+		skip_backlog(sim, now_ns);
+		int64_t deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
+		int64_t due_ns = sim->start_ns + sim->next.arrival_ns;
+		if (due_ns > deadline_ns) {
+			gz_clock_sleep_until_ns(deadline_ns);
+			return GZ_ERR_TIMEOUT;
+		}
+		gz_clock_sleep_until_ns(due_ns);
+	}
+	deliver(sim, out_sample);
+	return GZ_OK;
+}
+
+static void sim_info(const struct gz_device *device, struct gz_device_info *out_info)
+{
+	const struct sim_device *sim = (const struct sim_device *)device;
+	*out_info = (struct gz_device_info) {
+		.name = "sim",
+		.rate_hz = sim->params.rate_hz,
+		.has_display = true,
+		.display = gz_sim_tracker_display(sim->tracker),
+	};
+}
+
+static void sim_counters(const struct gz_device *device, struct gz_device_counters *out_counters)
+{
+	const struct sim_device *sim = (const struct sim_device *)device;
+	*out_counters = (struct gz_device_counters) {
+		.lost = sim->lost,
+		.clock = gz_clock_model_status(&sim->clock, GZ_CLOCK_DECLARED),
+	};
+	if (sim->params.clock_skew_ppm == 0) {
+		out_counters->clock = gz_sim_tracker_clock(sim->tracker);
+		out_counters->clock.offset_ns += sim->start_ns;
+	}
+}
+
+static void sim_destroy(struct gz_device *device)
+{
+	struct sim_device *sim = of(device);
+	gz_sim_tracker_destroy(&sim->tracker);
+	free(sim);
+}
+
+static const struct gz_device_ops sim_ops = {
+	.start = sim_start,
+	.read = sim_read,
+	.info = sim_info,
+	.counters = sim_counters,
+	.destroy = sim_destroy,
+};
+
+static enum gz_result sim_create(const void *settings, const struct gz_log *log,
+				 struct gz_device **out_device)
+{
+	struct sim_device *sim = calloc(1, sizeof *sim);
+	if (!sim)
+		return GZ_ERR_NO_MEM;
+	sim->base = (struct gz_device) { .ops = &sim_ops, .log = log };
+	sim->params = *(const struct gz_sim_params *)settings;
+	enum gz_result result = gz_sim_tracker_create(&sim->params, 0, log, &sim->tracker);
+	if (result != GZ_OK) {
+		sim_destroy(&sim->base);
+		return result;
+	}
+	*out_device = &sim->base;
+	return GZ_OK;
+}
+
+_Static_assert(sizeof(struct gz_sim_params) <= GZ_DRIVER_SETTINGS_SIZE, "settings fit");
+
+const struct gz_driver gz_driver_sim = {
+	.name = "sim",
+	.help = "a simulated viewer; needs no device",
+	.options = gz_sim_options,
+	.option_count = &gz_sim_option_count,
+	.settings_size = sizeof(struct gz_sim_params),
+	.create = sim_create,
+};
