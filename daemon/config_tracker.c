@@ -1,0 +1,138 @@
+/* Settings that depend on what the tracker, or a recording, says. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "daemon/config.h"
+
+#define GZ_LOG_MODULE "config"
+
+/* Pixels where nobody knows them. */
+enum { DEFAULT_WIDTH_PX = 1920, DEFAULT_HEIGHT_PX = 1080 };
+
+struct gz_display gz_config_display(const struct gz_config *config,
+				    const struct gz_device_info *info)
+{
+	/* A recording was made on the display it names, whatever the configuration file says. */
+	bool fixed = info->recorded && info->has_display;
+	bool px = config->display_px[0] > 0 && config->display_px[1] > 0 &&
+		  (!fixed || config->display_given[0]);
+	bool mm = config->display_mm[0] > 0 && config->display_mm[1] > 0 &&
+		  (!fixed || config->display_given[1]);
+	bool distance = config->distance_mm > 0 && (!fixed || config->display_given[2]);
+	struct gz_display display =
+		gz_display_default(px ? config->display_px[0] : DEFAULT_WIDTH_PX,
+				   px ? config->display_px[1] : DEFAULT_HEIGHT_PX);
+	if (info->has_display)
+		display = info->display;
+	if (px)
+		memcpy(display.px, config->display_px, sizeof display.px);
+	if (mm)
+		memcpy(display.mm, config->display_mm, sizeof display.mm);
+	if (distance)
+		display.distance_mm = config->distance_mm;
+	return display;
+}
+
+static enum gz_result apply_setting(const struct gz_config *config,
+				    const struct gz_gaze_log_setting *setting,
+				    const struct gz_log *log, struct gz_pipeline_params *params)
+{
+	char key[GZ_NAME_SIZE + sizeof "pipeline."];
+	char message[256];
+	snprintf(key, sizeof key, "pipeline.%s", setting->key);
+	struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count, params,
+					     NULL };
+	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
+	if (!option) {
+		gz_warn(log, "the recording has %s %s, which this version does not know", key,
+			setting->value);
+		return GZ_OK;
+	}
+	if (config->pipeline_given[option - gz_pipeline_options])
+		return GZ_OK;
+	if (gz_option_parse(option, setting->value, params, message, sizeof message) == GZ_OK)
+		return GZ_OK;
+	gz_err(log, "the recording's %s: %s; give another with --%s", key, message, key);
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_config_pipeline(const struct gz_config *config,
+				  const struct gz_gaze_log_header *recorded,
+				  const struct gz_log *log, struct gz_pipeline_params *out_params)
+{
+	struct gz_pipeline_params params = config->pipeline;
+	for (size_t i = 0; recorded && i < recorded->setting_count; i++) {
+		enum gz_result result = apply_setting(config, &recorded->settings[i], log, &params);
+		if (result != GZ_OK)
+			return result;
+	}
+	*out_params = params;
+	return GZ_OK;
+}
+
+void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
+				 struct gz_gaze_log_header *header)
+{
+	static const char prefix[] = "pipeline.";
+	header->setting_count = 0;
+	for (size_t i = 0; i < gz_pipeline_option_count && i < GZ_GAZE_LOG_SETTINGS_MAX; i++) {
+		const struct gz_option *option = &gz_pipeline_options[i];
+		struct gz_gaze_log_setting *setting = &header->settings[header->setting_count];
+		snprintf(setting->key, sizeof setting->key, "%s", option->key + sizeof prefix - 1);
+		if (gz_option_format(option, params, setting->value, sizeof setting->value) ==
+		    GZ_OK)
+			header->setting_count++;
+	}
+}
+
+/* The user's data directory (XDG base directory specification). */
+static bool data_directory(char *text, size_t size)
+{
+	const char *data = getenv("XDG_DATA_HOME");
+	const char *home = getenv("HOME");
+	int length = -1;
+	if (data && data[0] == '/')
+		length = snprintf(text, size, "%s/gazecast", data);
+	else if (home && home[0] == '/')
+		length = snprintf(text, size, "%s/.local/share/gazecast", home);
+	return length > 0 && (size_t)length < size;
+}
+
+/* mkdir -p, 0700: what is recorded there is nobody else's. */
+static bool make_directories(char *path)
+{
+	for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+		*slash = '\0';
+		bool made = mkdir(path, 0700) == 0 || errno == EEXIST;
+		*slash = '/';
+		if (!made)
+			return false;
+	}
+	return mkdir(path, 0700) == 0 || errno == EEXIST;
+}
+
+static bool is_directory(const char *path)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+enum gz_result gz_config_recording_directory(const struct gz_config *config,
+					     const struct gz_log *log, char *text, size_t size)
+{
+	if (config->recording_directory[0]) {
+		snprintf(text, size, "%s", config->recording_directory);
+		if (is_directory(text))
+			return GZ_OK;
+		gz_err(log, "recording.directory: %s is no directory; make it, or name another",
+		       text);
+		return GZ_ERR_NOT_FOUND;
+	}
+	if (data_directory(text, size) && make_directories(text) && is_directory(text))
+		return GZ_OK;
+	gz_err(log, "no directory for recordings in the user's data directory; name one with "
+		    "--recording.directory DIR");
+	return GZ_ERR_NOT_FOUND;
+}

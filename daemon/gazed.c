@@ -1,0 +1,193 @@
+/* gazed: puts the parts together, and takes them apart again in the other order. */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include "daemon/config.h"
+#include "daemon/lock.h"
+#include "daemon/publisher.h"
+#include "daemon/recorder.h"
+#include "daemon/recording_name.h"
+#include "daemon/requests.h"
+#include "daemon/service.h"
+
+#define GZ_LOG_MODULE "gazed"
+
+/* Everything that lives as long as the daemon. */
+struct daemon {
+	struct gz_config config;
+	struct gz_log log;
+	char directory[GZ_PATH_SIZE];
+	int lock_fd;
+	int signal_fd;
+	void *context;
+	struct gz_publisher *publisher;
+	struct gz_recorder *recorder;
+	struct gz_requests *requests;
+	struct gz_service *service;
+};
+
+/* Signals that end the daemon become readable; blocked before any thread starts, so that all
+ * threads have them blocked. A file beyond the size limit, or a reader that left, is an error like
+ * others. */
+static enum gz_result catch_signals(struct daemon *daemon)
+{
+	sigset_t ending;
+	sigemptyset(&ending);
+	sigaddset(&ending, SIGTERM);
+	sigaddset(&ending, SIGINT);
+	sigaddset(&ending, SIGHUP);
+	signal(SIGXFSZ, SIG_IGN);
+	signal(SIGPIPE, SIG_IGN);
+	sigprocmask(SIG_BLOCK, &ending, NULL);
+	daemon->signal_fd = signalfd(-1, &ending, SFD_CLOEXEC | SFD_NONBLOCK);
+	if (daemon->signal_fd >= 0)
+		return GZ_OK;
+	gz_err(&daemon->log, "no signals: %s", strerror(errno));
+	return GZ_ERR_IO;
+}
+
+static enum gz_result take_directory(struct daemon *daemon)
+{
+	enum gz_result result = gz_runtime_directory(daemon->directory, sizeof daemon->directory);
+	if (result != GZ_OK) {
+		gz_err(&daemon->log, "the runtime directory's path is too long; set "
+				     "GAZECAST_RUNTIME_DIR");
+		return result;
+	}
+	result = gz_runtime_directory_prepare(daemon->directory, &daemon->log);
+	if (result == GZ_OK)
+		result = gz_lock_take(daemon->directory, &daemon->log, &daemon->lock_fd);
+	return result;
+}
+
+static enum gz_result open_sockets(struct daemon *daemon)
+{
+	daemon->context = zmq_ctx_new();
+	if (!daemon->context)
+		return GZ_ERR_NO_MEM;
+	enum gz_result result = gz_publisher_create(daemon->context, daemon->directory,
+						    daemon->config.tcp == GZ_TCP_LOOPBACK,
+						    &daemon->log, &daemon->publisher);
+	if (result == GZ_OK)
+		result = gz_recorder_create(&daemon->log, &daemon->recorder);
+	if (result != GZ_OK)
+		return result;
+	const struct gz_requests_parts parts = {
+		.config = &daemon->config,
+		.context = daemon->context,
+		.directory = daemon->directory,
+		.publisher = daemon->publisher,
+		.recorder = daemon->recorder,
+		.log = &daemon->log,
+	};
+	return gz_requests_create(&parts, &daemon->requests);
+}
+
+/* --record: from the very first sample. */
+static enum gz_result record_from_start(struct daemon *daemon)
+{
+	char directory[GZ_PATH_SIZE], path[GZ_PATH_SIZE], message[GZ_PATH_SIZE + 256];
+	int fd;
+	if (!daemon->config.record[0])
+		return GZ_OK;
+	enum gz_result result = gz_config_recording_directory(&daemon->config, &daemon->log,
+							      directory, sizeof directory);
+	if (result != GZ_OK)
+		return result;
+	result = gz_recording_create(directory, daemon->config.record, &fd, path, message,
+				     sizeof message);
+	if (result != GZ_OK) {
+		gz_err(&daemon->log, "--record: %s", message);
+		return result;
+	}
+	return gz_service_record(daemon->service, fd, path);
+}
+
+static enum gz_result start(struct daemon *daemon)
+{
+	enum gz_result result = catch_signals(daemon);
+	if (result == GZ_OK)
+		result = take_directory(daemon);
+	if (result == GZ_OK)
+		result = open_sockets(daemon);
+	if (result != GZ_OK)
+		return result;
+	const struct gz_service_parts parts = {
+		.config = &daemon->config,
+		.context = daemon->context,
+		.publisher = daemon->publisher,
+		.recorder = daemon->recorder,
+		.log = &daemon->log,
+	};
+	result = gz_service_create(&parts, &daemon->service);
+	if (result == GZ_OK)
+		result = record_from_start(daemon);
+	if (result == GZ_OK)
+		result = gz_service_start(daemon->service);
+	return result;
+}
+
+static void say_hello(const struct daemon *daemon)
+{
+	int port = gz_publisher_port(daemon->publisher);
+	gz_info(&daemon->log, "gazed %s with %s, stream at ipc://%s/stream", GAZECAST_VERSION,
+		daemon->config.driver, daemon->directory);
+	if (port > 0)
+		gz_info(&daemon->log,
+			"for Pupil's clients: control at %s, stream at "
+			"tcp://127.0.0.1:%d",
+			daemon->config.control, port);
+}
+
+static void stop(struct daemon *daemon)
+{
+	gz_service_destroy(&daemon->service);
+	gz_recorder_destroy(&daemon->recorder);
+	gz_requests_destroy(&daemon->requests);
+	gz_publisher_destroy(&daemon->publisher);
+	if (daemon->context)
+		zmq_ctx_term(daemon->context);
+	if (daemon->signal_fd >= 0)
+		close(daemon->signal_fd);
+	if (daemon->lock_fd >= 0)
+		close(daemon->lock_fd);
+}
+
+static enum gz_result serve(struct daemon *daemon)
+{
+	enum gz_result result = start(daemon);
+	if (result == GZ_OK) {
+		say_hello(daemon);
+		result = gz_requests_run(daemon->requests, daemon->signal_fd);
+		gz_requests_quit_service(daemon->requests);
+	}
+	stop(daemon);
+	return result;
+}
+
+int main(int argc, char **argv)
+{
+	struct daemon *daemon = calloc(1, sizeof *daemon);
+	if (!daemon)
+		return EXIT_FAILURE;
+	daemon->lock_fd = -1;
+	daemon->signal_fd = -1;
+	gz_log_init(&daemon->log, NULL, NULL, NULL);
+	enum gz_result result = gz_config_read(argc, argv, &daemon->log, &daemon->config);
+	if (result == GZ_OK && daemon->config.help)
+		gz_config_print_help(&daemon->config, stdout);
+	else if (result == GZ_OK && daemon->config.version)
+		puts("gazed " GAZECAST_VERSION);
+	else if (result == GZ_OK && daemon->config.print_config)
+		gz_config_print_file(&daemon->config, stdout);
+	else if (result == GZ_OK)
+		result = serve(daemon);
+	free(daemon);
+	return result == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+}

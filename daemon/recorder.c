@@ -1,0 +1,350 @@
+#include "daemon/recorder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "daemon/log_writer.h"
+#include "daemon/ring.h"
+
+#define GZ_LOG_MODULE "recorder"
+
+/* Who may write the shared fields of a recording follows from the phase: the pushing thread while
+ * it is IDLE or FAILED, the recorder's thread otherwise. */
+enum phase {
+	PHASE_IDLE,
+	PHASE_RUNNING,
+	PHASE_FINISHING,
+	PHASE_FAILED,
+};
+
+struct gz_recorder {
+	const struct gz_log *log;
+	struct gz_ring *ring;
+	pthread_t thread;
+	bool has_thread;
+	int wake_fd;  /* tells the thread that a recording began or shall end */
+	int event_fd; /* tells others that the phase changed */
+	atomic_int phase;
+	atomic_bool quit;
+	atomic_uint_fast64_t samples;
+
+	/* See enum phase. */
+	uint32_t session;
+	int fd;
+	char path[GZ_PATH_SIZE];
+	struct gz_gaze_log_header header;
+
+	/* Guards error alone, which is read and written once in a recording. */
+	pthread_mutex_t error_mutex;
+	char error[GZ_REASON_SIZE];
+
+	/* The pushing thread's. */
+	uint64_t missing; /* samples that found the ring full since the last record */
+
+	/* The recorder's thread's. */
+	struct gz_log_writer writer;
+	int64_t next_sync_ns;
+};
+
+static void signal_event(int fd)
+{
+	uint64_t one = 1;
+	ssize_t n = write(fd, &one, sizeof one);
+	(void)n; /* fails only where it is signalled already */
+}
+
+static enum phase phase_of(const struct gz_recorder *recorder)
+{
+	return (enum phase)atomic_load_explicit(&recorder->phase, memory_order_acquire);
+}
+
+static void set_phase(struct gz_recorder *recorder, enum phase phase)
+{
+	atomic_store_explicit(&recorder->phase, phase, memory_order_release);
+	signal_event(recorder->event_fd);
+}
+
+static void set_error(struct gz_recorder *recorder, const char *text)
+{
+	pthread_mutex_lock(&recorder->error_mutex);
+	snprintf(recorder->error, sizeof recorder->error, "%s", text);
+	pthread_mutex_unlock(&recorder->error_mutex);
+}
+
+/* The recording cannot go on; what is in the file stays. */
+static void fail(struct gz_recorder *recorder, int error)
+{
+	char text[GZ_REASON_SIZE];
+	const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
+				     ? "make room and record anew"
+				     : "check the disk and record anew";
+	snprintf(text, sizeof text, "%s; %s", strerror(error), remedy);
+	gz_err(recorder->log, "%s: recording stopped after %llu samples: %s", recorder->path,
+	       (unsigned long long)recorder->writer.samples, text);
+	/* A file that does not even hold its header is of no use to anyone. */
+	if (recorder->writer.size == 0)
+		unlink(recorder->path);
+	close(recorder->fd);
+	atomic_store(&recorder->samples, recorder->writer.samples);
+	set_error(recorder, text);
+	set_phase(recorder, PHASE_FAILED);
+}
+
+/* Make the new name in its directory survive a power failure, too. */
+static void sync_directory(const struct gz_recorder *recorder)
+{
+	char directory[GZ_PATH_SIZE];
+	snprintf(directory, sizeof directory, "%s", recorder->path);
+	char *slash = strrchr(directory, '/');
+	if (slash)
+		slash[slash == directory] = '\0';
+	else
+		snprintf(directory, sizeof directory, ".");
+	int fd = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0)
+		return;
+	if (fsync(fd) != 0)
+		gz_debug(recorder->log, "%s: cannot be synced: %s", directory, strerror(errno));
+	close(fd);
+}
+
+static enum gz_result open_recording(struct gz_recorder *recorder)
+{
+	enum gz_result result =
+		gz_log_writer_begin(&recorder->writer, recorder->fd, &recorder->header);
+	if (result == GZ_OK)
+		result = gz_log_writer_flush(&recorder->writer);
+	if (result == GZ_OK)
+		sync_directory(recorder);
+	recorder->next_sync_ns = gz_clock_now_ns();
+	return result;
+}
+
+/* What the ring holds of this recording into the file; what is left of an earlier one is dropped.
+ */
+static enum gz_result drain(struct gz_recorder *recorder)
+{
+	const struct gz_ring_slot *slot;
+	enum gz_result result = GZ_OK;
+	while (result == GZ_OK && (slot = gz_ring_front(recorder->ring))) {
+		if (slot->session == recorder->session)
+			result = gz_log_writer_add(&recorder->writer, &slot->record);
+		gz_ring_pop(recorder->ring);
+	}
+	if (result == GZ_OK)
+		result = gz_log_writer_flush(&recorder->writer);
+	atomic_store_explicit(&recorder->samples, recorder->writer.samples, memory_order_relaxed);
+	return result;
+}
+
+static enum gz_result sync_file(struct gz_recorder *recorder)
+{
+	/* A pipe or /dev/null has nothing to sync. */
+	if (fdatasync(recorder->fd) != 0 && errno != EINVAL && errno != EROFS)
+		return GZ_ERR_IO;
+	recorder->next_sync_ns = gz_clock_now_ns() + GZ_RECORDER_SYNC_MS * GZ_NS_PER_MS;
+	return GZ_OK;
+}
+
+static enum gz_result finish(struct gz_recorder *recorder)
+{
+	enum gz_result result = drain(recorder);
+	if (result == GZ_OK)
+		result = gz_log_writer_end(&recorder->writer);
+	if (result == GZ_OK)
+		result = sync_file(recorder);
+	if (result != GZ_OK)
+		return result;
+	close(recorder->fd);
+	atomic_store(&recorder->samples, recorder->writer.samples);
+	gz_info(recorder->log, "%s: %llu samples recorded", recorder->path,
+		(unsigned long long)recorder->writer.samples);
+	set_phase(recorder, PHASE_IDLE);
+	return GZ_OK;
+}
+
+static void wait_for_work(struct gz_recorder *recorder, int timeout_ms)
+{
+	struct pollfd wake = { .fd = recorder->wake_fd, .events = POLLIN };
+	uint64_t count;
+	if (poll(&wake, 1, timeout_ms) > 0 && read(recorder->wake_fd, &count, sizeof count) < 0)
+		return; /* another wake-up took it: there is none */
+}
+
+/* One recording from its header to its end. */
+static void record(struct gz_recorder *recorder)
+{
+	enum gz_result result = open_recording(recorder);
+	while (result == GZ_OK && phase_of(recorder) == PHASE_RUNNING) {
+		wait_for_work(recorder, GZ_RECORDER_DRAIN_MS);
+		result = drain(recorder);
+		if (result == GZ_OK && gz_clock_now_ns() >= recorder->next_sync_ns)
+			result = sync_file(recorder);
+	}
+	if (result == GZ_OK)
+		result = finish(recorder);
+	if (result != GZ_OK)
+		fail(recorder, result == GZ_ERR_IO ? errno : EINVAL);
+}
+
+static void *run(void *user)
+{
+	struct gz_recorder *recorder = user;
+	for (;;) {
+		enum phase phase = phase_of(recorder);
+		if (phase == PHASE_RUNNING || phase == PHASE_FINISHING)
+			record(recorder);
+		else if (atomic_load(&recorder->quit))
+			return NULL;
+		else
+			wait_for_work(recorder, -1);
+	}
+}
+
+enum gz_result gz_recorder_create(const struct gz_log *log, struct gz_recorder **out_recorder)
+{
+	struct gz_recorder *recorder = calloc(1, sizeof *recorder);
+	if (!recorder)
+		return GZ_ERR_NO_MEM;
+	recorder->log = log;
+	pthread_mutex_init(&recorder->error_mutex, NULL);
+	recorder->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	recorder->event_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	enum gz_result result = gz_ring_create(GZ_RECORDER_RING, &recorder->ring);
+	if (result == GZ_OK && (recorder->wake_fd < 0 || recorder->event_fd < 0))
+		result = GZ_ERR_IO;
+	if (result == GZ_OK && pthread_create(&recorder->thread, NULL, run, recorder) != 0)
+		result = GZ_ERR_NO_MEM;
+	if (result != GZ_OK) {
+		gz_err(log, "no recorder: %s", gz_result_text(result));
+		gz_recorder_destroy(&recorder);
+		return result;
+	}
+	recorder->has_thread = true;
+	*out_recorder = recorder;
+	return GZ_OK;
+}
+
+int gz_recorder_event_fd(const struct gz_recorder *recorder)
+{
+	return recorder->event_fd;
+}
+
+void gz_recorder_get_status(const struct gz_recorder *recorder, struct gz_recorder_status *out)
+{
+	enum phase phase = phase_of(recorder);
+	*out = (struct gz_recorder_status) {
+		.state = phase == PHASE_IDLE     ? GZ_RECORDING_OFF
+			 : phase == PHASE_FAILED ? GZ_RECORDING_FAILED
+						 : GZ_RECORDING_ON,
+		.finishing = phase == PHASE_FINISHING,
+		.samples = atomic_load(&recorder->samples),
+	};
+	if (phase != PHASE_FAILED)
+		return;
+	struct gz_recorder *writable = (struct gz_recorder *)recorder;
+	pthread_mutex_lock(&writable->error_mutex);
+	memcpy(out->error, recorder->error, sizeof out->error);
+	pthread_mutex_unlock(&writable->error_mutex);
+}
+
+enum gz_result gz_recorder_start(struct gz_recorder *recorder, int fd, const char *path,
+				 const struct gz_gaze_log_header *header)
+{
+	enum phase phase = phase_of(recorder);
+	if (phase == PHASE_RUNNING || phase == PHASE_FINISHING)
+		return GZ_ERR_BUSY;
+	recorder->session++;
+	recorder->fd = fd;
+	recorder->missing = 0;
+	snprintf(recorder->path, sizeof recorder->path, "%s", path);
+	recorder->header = *header;
+	atomic_store(&recorder->samples, 0);
+	set_phase(recorder, PHASE_RUNNING);
+	signal_event(recorder->wake_fd);
+	return GZ_OK;
+}
+
+void gz_recorder_get_path(const struct gz_recorder *recorder, char *path)
+{
+	memcpy(path, recorder->path, sizeof recorder->path);
+}
+
+bool gz_recorder_running(const struct gz_recorder *recorder)
+{
+	return phase_of(recorder) == PHASE_RUNNING;
+}
+
+/* Say in the log what the ring had no room for, before what comes after it. */
+static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
+{
+	struct gz_gaze_log_record gap = {
+		.kind = GZ_GAZE_LOG_GAP,
+		.host_ns = host_ns,
+		.missing = recorder->missing,
+		.text = "the disk was too slow",
+	};
+	gz_ring_push(recorder->ring, recorder->session, &gap);
+	gz_warn(recorder->log, "%s: %llu samples are missing: the disk was too slow",
+		recorder->path, (unsigned long long)recorder->missing);
+	recorder->missing = 0;
+}
+
+void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_record *record)
+{
+	if (!gz_recorder_running(recorder))
+		return;
+	bool sample = record->kind == GZ_GAZE_LOG_SAMPLE;
+	/* After a loss there must be room for the gap, too; and one slot stays free for it. */
+	size_t needed = recorder->missing ? 3 : 2;
+	if (gz_ring_room(recorder->ring) < needed) {
+		recorder->missing += sample;
+		return;
+	}
+	if (recorder->missing)
+		push_gap(recorder, sample ? record->sample.host_ns : record->host_ns);
+	gz_ring_push(recorder->ring, recorder->session, record);
+}
+
+void gz_recorder_stop(struct gz_recorder *recorder)
+{
+	int running = PHASE_RUNNING;
+	if (!gz_recorder_running(recorder))
+		return;
+	if (recorder->missing)
+		push_gap(recorder, gz_clock_now_ns());
+	/* Unless it failed in between. */
+	atomic_compare_exchange_strong(&recorder->phase, &running, PHASE_FINISHING);
+	signal_event(recorder->event_fd);
+	signal_event(recorder->wake_fd);
+}
+
+void gz_recorder_destroy(struct gz_recorder **recorder)
+{
+	if (!recorder || !*recorder)
+		return;
+	struct gz_recorder *r = *recorder;
+	if (r->has_thread) {
+		gz_recorder_stop(r);
+		atomic_store(&r->quit, true);
+		signal_event(r->wake_fd);
+		pthread_join(r->thread, NULL);
+	}
+	if (r->wake_fd >= 0)
+		close(r->wake_fd);
+	if (r->event_fd >= 0)
+		close(r->event_fd);
+	gz_ring_destroy(&r->ring);
+	pthread_mutex_destroy(&r->error_mutex);
+	free(r);
+	*recorder = NULL;
+}

@@ -1,0 +1,42 @@
+#include "daemon/remote.h"
+
+#include <string.h>
+
+/* Requests that are a word alone. "R" stands here, too: a recording without a name. */
+static const struct {
+	const char *word;
+	enum gz_remote_kind kind;
+} words[] = {
+	{ "R", GZ_REMOTE_RECORD },
+	{ "r", GZ_REMOTE_STOP },
+	{ "t", GZ_REMOTE_TIME },
+	{ "T", GZ_REMOTE_SET_TIME },
+	{ "v", GZ_REMOTE_VERSION },
+	{ "SUB_PORT", GZ_REMOTE_STREAM_PORT },
+	{ "PUB_PORT", GZ_REMOTE_INLET_PORT },
+	{ "LATEST_PORT", GZ_REMOTE_LATEST_PORT },
+	{ "C", GZ_REMOTE_CALIBRATE },
+	{ "c", GZ_REMOTE_CALIBRATION_STOP },
+};
+
+void gz_remote_parse(const void *bytes, size_t size, struct gz_remote_request *out)
+{
+	char text[GZ_REMOTE_REQUEST_SIZE];
+	*out = (struct gz_remote_request) { .kind = GZ_REMOTE_UNKNOWN };
+	if (size >= sizeof text || memchr(bytes, '\0', size))
+		return;
+	memcpy(text, bytes, size);
+	text[size] = '\0';
+	char *blank = strchr(text, ' ');
+	const char *argument = blank ? blank + 1 : "";
+	if (blank)
+		*blank = '\0';
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+		if (strcmp(words[i].word, text) == 0)
+			out->kind = words[i].kind;
+	}
+	if (out->kind == GZ_REMOTE_RECORD)
+		memcpy(out->name, argument, strlen(argument) + 1);
+	else if (blank && out->kind != GZ_REMOTE_SET_TIME)
+		out->kind = GZ_REMOTE_UNKNOWN;
+}

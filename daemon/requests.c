@@ -1,0 +1,363 @@
+#include "daemon/requests.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "daemon/command.h"
+#include "daemon/recording_name.h"
+#include "daemon/remote.h"
+
+#define GZ_LOG_MODULE "control"
+
+/* Longest request accepted; libzmq drops who sends more. */
+static const int64_t REQUEST_SIZE_MAX = 65536;
+
+/* Room for an answer with its NUL: a path and a sentence. */
+enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
+
+/* What the answer that is owed waits for. */
+enum pending {
+	PENDING_NONE,
+	PENDING_START, /* the service's answer */
+	PENDING_STOP,  /* the same, and then the recorder's end */
+	PENDING_FINISH,
+};
+
+struct gz_requests {
+	struct gz_requests_parts parts;
+	void *control;  /* REP */
+	void *commands; /* PAIR, to the service */
+	int stream_port;
+	int latest_port;
+	enum pending pending;
+	uint32_t number; /* of the newest command */
+	int pending_fd;
+	char pending_path[GZ_PATH_SIZE];
+	int64_t deadline_ns;
+	bool ended;
+	enum gz_result failure; /* of the service */
+};
+
+static void answer(struct gz_requests *requests, const char *text)
+{
+	requests->pending = PENDING_NONE;
+	if (zmq_send(requests->control, text, strlen(text), ZMQ_DONTWAIT) < 0)
+		gz_debug(requests->parts.log, "an answer found nobody: %s", zmq_strerror(errno));
+}
+
+static void answer_port(struct gz_requests *requests, int port, const char *channel)
+{
+	char text[ANSWER_SIZE];
+	if (port > 0)
+		snprintf(text, sizeof text, "%d", port);
+	else
+		snprintf(text, sizeof text, "TCP is off; subscribe to ipc://%s/%s",
+			 requests->parts.directory, channel);
+	answer(requests, text);
+}
+
+static bool send_command(struct gz_requests *requests, const struct gz_command *command)
+{
+	return zmq_send(requests->commands, command, sizeof *command, ZMQ_DONTWAIT) ==
+	       (int)sizeof *command;
+}
+
+static void wait_for_service(struct gz_requests *requests, enum pending pending)
+{
+	requests->pending = pending;
+	requests->deadline_ns = gz_clock_now_ns() + GZ_REQUESTS_PATIENCE_MS * GZ_NS_PER_MS;
+}
+
+static void start_recording(struct gz_requests *requests, const char *name)
+{
+	char directory[GZ_PATH_SIZE], text[ANSWER_SIZE];
+	struct gz_command command = { .kind = GZ_COMMAND_RECORD, .number = ++requests->number };
+	struct gz_recorder_status status;
+	gz_recorder_get_status(requests->parts.recorder, &status);
+	if (status.state == GZ_RECORDING_ON) {
+		answer(requests, "a recording is running; end it with r first");
+		return;
+	}
+	if (gz_config_recording_directory(requests->parts.config, requests->parts.log, directory,
+					  sizeof directory) != GZ_OK) {
+		answer(requests, "there is no directory for recordings; see "
+				 "recording.directory");
+		return;
+	}
+	if (gz_recording_create(directory, name, &command.fd, command.path, text, sizeof text) !=
+	    GZ_OK) {
+		gz_warn(requests->parts.log, "recording %s", text);
+		answer(requests, text);
+		return;
+	}
+	if (!send_command(requests, &command)) {
+		close(command.fd);
+		unlink(command.path);
+		answer(requests, "the daemon is busy; try again");
+		return;
+	}
+	requests->pending_fd = command.fd;
+	memcpy(requests->pending_path, command.path, sizeof requests->pending_path);
+	wait_for_service(requests, PENDING_START);
+}
+
+static void stop_recording(struct gz_requests *requests)
+{
+	struct gz_command command = { .kind = GZ_COMMAND_STOP, .number = ++requests->number };
+	struct gz_recorder_status status;
+	gz_recorder_get_status(requests->parts.recorder, &status);
+	if (status.state != GZ_RECORDING_ON)
+		answer(requests, "no recording is running");
+	else if (!send_command(requests, &command))
+		answer(requests, "the daemon is busy; try again");
+	else
+		wait_for_service(requests, PENDING_STOP);
+}
+
+static void serve_request(struct gz_requests *requests, const struct gz_remote_request *request)
+{
+	char text[ANSWER_SIZE];
+	switch (request->kind) {
+	case GZ_REMOTE_RECORD:
+		start_recording(requests, request->name);
+		return;
+	case GZ_REMOTE_STOP:
+		stop_recording(requests);
+		return;
+	case GZ_REMOTE_TIME:
+		snprintf(text, sizeof text, "%.9f", gz_ns_to_s(gz_clock_now_ns()));
+		answer(requests, text);
+		return;
+	case GZ_REMOTE_SET_TIME:
+		answer(requests, "time is this machine's monotonic clock, which cannot be "
+				 "set; ask for it with t and keep the difference");
+		return;
+	case GZ_REMOTE_VERSION:
+		answer(requests, GAZECAST_VERSION);
+		return;
+	case GZ_REMOTE_STREAM_PORT:
+		answer_port(requests, requests->stream_port, "stream");
+		return;
+	case GZ_REMOTE_LATEST_PORT:
+		answer_port(requests, requests->latest_port, "latest");
+		return;
+	case GZ_REMOTE_INLET_PORT:
+		answer(requests, "this daemon takes no messages from clients");
+		return;
+	case GZ_REMOTE_CALIBRATE:
+	case GZ_REMOTE_CALIBRATION_STOP:
+		answer(requests, "this tracker is calibrated by its own software, not by "
+				 "gazed");
+		return;
+	case GZ_REMOTE_UNKNOWN:
+		answer(requests, "unknown command");
+		return;
+	}
+}
+
+/* One request, of which the first frame counts and a second one makes it unknown. */
+static void take_request(struct gz_requests *requests)
+{
+	zmq_msg_t frame;
+	struct gz_remote_request request;
+	zmq_msg_init(&frame);
+	if (zmq_msg_recv(&frame, requests->control, ZMQ_DONTWAIT) < 0) {
+		zmq_msg_close(&frame);
+		return;
+	}
+	gz_remote_parse(zmq_msg_data(&frame), zmq_msg_size(&frame), &request);
+	while (zmq_msg_more(&frame) && zmq_msg_recv(&frame, requests->control, ZMQ_DONTWAIT) >= 0)
+		request.kind = GZ_REMOTE_UNKNOWN;
+	zmq_msg_close(&frame);
+	serve_request(requests, &request);
+}
+
+/* The service's word on the newest command. */
+static void take_answer(struct gz_requests *requests, enum gz_result result)
+{
+	char text[ANSWER_SIZE];
+	if (requests->pending == PENDING_STOP) {
+		requests->pending = PENDING_FINISH;
+		return;
+	}
+	if (result == GZ_OK) {
+		if (requests->pending == PENDING_START)
+			answer(requests, "OK");
+		return;
+	}
+	/* A file that nobody writes into would only puzzle. */
+	close(requests->pending_fd);
+	unlink(requests->pending_path);
+	snprintf(text, sizeof text, "not recording: %s", gz_result_text(result));
+	if (requests->pending == PENDING_START)
+		answer(requests, text);
+}
+
+static void take_notices(struct gz_requests *requests)
+{
+	struct gz_notice notice;
+	while (zmq_recv(requests->commands, &notice, sizeof notice, ZMQ_DONTWAIT) ==
+	       (int)sizeof notice) {
+		if (notice.kind == GZ_NOTICE_ENDED)
+			requests->ended = true;
+		else if (notice.kind == GZ_NOTICE_FAILED)
+			requests->failure = notice.result;
+		else if (notice.number == requests->number)
+			take_answer(requests, notice.result);
+	}
+}
+
+/* A recording was asked to end: the answer comes when it has, so that its file is whole by then. */
+static void check_finished(struct gz_requests *requests)
+{
+	char text[ANSWER_SIZE];
+	struct gz_recorder_status status;
+	if (requests->pending != PENDING_FINISH)
+		return;
+	gz_recorder_get_status(requests->parts.recorder, &status);
+	if (status.state == GZ_RECORDING_OFF) {
+		answer(requests, "OK");
+	} else if (status.state == GZ_RECORDING_FAILED) {
+		snprintf(text, sizeof text, "failed: %s", status.error);
+		answer(requests, text);
+	}
+}
+
+/* Late is not wrong: what was asked for is under way, and status tells when it is done. */
+static long milliseconds_left(struct gz_requests *requests)
+{
+	if (requests->pending == PENDING_NONE)
+		return -1;
+	int64_t left_ns = requests->deadline_ns - gz_clock_now_ns();
+	if (left_ns > 0)
+		return (long)(left_ns / GZ_NS_PER_MS) + 1;
+	answer(requests, "OK");
+	return 0;
+}
+
+static void forget_event(int fd)
+{
+	uint64_t count;
+	ssize_t n = read(fd, &count, sizeof count);
+	(void)n;
+}
+
+enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
+{
+	zmq_pollitem_t items[] = {
+		{ .fd = signal_fd, .events = ZMQ_POLLIN },
+		{ .fd = gz_recorder_event_fd(requests->parts.recorder), .events = ZMQ_POLLIN },
+		{ .socket = requests->commands, .events = ZMQ_POLLIN },
+		{ .socket = requests->control, .events = ZMQ_POLLIN },
+	};
+	for (;;) {
+		long timeout_ms = milliseconds_left(requests);
+		/* A REP socket owes its answer before it takes the next request. */
+		int count = requests->pending == PENDING_NONE ? 4 : 3;
+		if (zmq_poll(items, count, timeout_ms) < 0 && errno != EINTR)
+			return GZ_ERR_IO;
+		if (items[0].revents)
+			return GZ_OK;
+		if (items[1].revents)
+			forget_event(items[1].fd);
+		take_notices(requests);
+		check_finished(requests);
+		bool leave = requests->ended && requests->parts.config->exit_at_end;
+		if (leave || requests->failure != GZ_OK)
+			return requests->failure;
+		if (requests->pending == PENDING_NONE)
+			take_request(requests);
+	}
+}
+
+void gz_requests_quit_service(struct gz_requests *requests)
+{
+	struct gz_command command = { .kind = GZ_COMMAND_QUIT };
+	/* Waits where the queue is full: the service empties it. */
+	zmq_send(requests->commands, &command, sizeof command, 0);
+}
+
+static enum gz_result bind_control(struct gz_requests *requests)
+{
+	const struct gz_requests_parts *parts = &requests->parts;
+	char endpoint[GZ_ENDPOINT_SIZE];
+	enum gz_result result =
+		gz_endpoint_ipc(parts->directory, "control", endpoint, sizeof endpoint);
+	if (result != GZ_OK) {
+		gz_err(parts->log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
+		       parts->directory);
+		return result;
+	}
+	if (zmq_bind(requests->control, endpoint) != 0) {
+		gz_err(parts->log, "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR",
+		       endpoint, zmq_strerror(errno));
+		return GZ_ERR_IO;
+	}
+	if (parts->config->tcp == GZ_TCP_OFF ||
+	    zmq_bind(requests->control, parts->config->control) == 0)
+		return GZ_OK;
+	if (errno == EADDRINUSE) {
+		gz_err(parts->log,
+		       "%s is taken, perhaps by Pupil Capture or another gazed; stop that, or use "
+		       "--control tcp://127.0.0.1:PORT, or --tcp off",
+		       parts->config->control);
+		return GZ_ERR_BUSY;
+	}
+	gz_err(parts->log, "cannot bind %s: %s; use --control tcp://127.0.0.1:PORT, or --tcp off",
+	       parts->config->control, zmq_strerror(errno));
+	return GZ_ERR_INVAL;
+}
+
+static enum gz_result open_sockets(struct gz_requests *requests)
+{
+	int linger = 0, control_linger = GZ_REQUESTS_PATIENCE_MS;
+	requests->control = zmq_socket(requests->parts.context, ZMQ_REP);
+	requests->commands = zmq_socket(requests->parts.context, ZMQ_PAIR);
+	if (!requests->control || !requests->commands ||
+	    zmq_setsockopt(requests->control, ZMQ_MAXMSGSIZE, &REQUEST_SIZE_MAX,
+			   sizeof REQUEST_SIZE_MAX) != 0 ||
+	    zmq_setsockopt(requests->control, ZMQ_LINGER, &control_linger, sizeof control_linger) !=
+		    0 ||
+	    zmq_setsockopt(requests->commands, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
+	    zmq_bind(requests->commands, GZ_COMMAND_ENDPOINT) != 0) {
+		gz_err(requests->parts.log, "no control socket: %s", zmq_strerror(errno));
+		return GZ_ERR_IO;
+	}
+	return bind_control(requests);
+}
+
+enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
+				  struct gz_requests **out_requests)
+{
+	struct gz_requests *requests = calloc(1, sizeof *requests);
+	if (!requests)
+		return GZ_ERR_NO_MEM;
+	requests->parts = *parts;
+	requests->stream_port = gz_publisher_port(parts->publisher);
+	requests->latest_port = gz_publisher_latest_port(parts->publisher);
+	enum gz_result result = open_sockets(requests);
+	if (result != GZ_OK) {
+		gz_requests_destroy(&requests);
+		return result;
+	}
+	*out_requests = requests;
+	return GZ_OK;
+}
+
+void gz_requests_destroy(struct gz_requests **requests)
+{
+	if (!requests || !*requests)
+		return;
+	if ((*requests)->control)
+		zmq_close((*requests)->control);
+	if ((*requests)->commands)
+		zmq_close((*requests)->commands);
+	free(*requests);
+	*requests = NULL;
+}

@@ -1,0 +1,372 @@
+#include "daemon/service.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "daemon/command.h"
+#include "daemon/messages.h"
+#include "daemon/rate_meter.h"
+#include "daemon/tracker.h"
+
+#define GZ_LOG_MODULE "service"
+
+/* Commands taken between two samples, so that a flood of them does not delay the stream. */
+enum { COMMANDS_AT_ONCE = 8 };
+
+struct gz_service {
+	struct gz_service_parts parts;
+	void *commands; /* the PAIR socket */
+	pthread_t thread;
+	bool has_thread;
+	bool quit;
+	bool waiting; /* for readers, before the tracker starts */
+	struct gz_tracker tracker;
+	uint64_t opened; /* the tracker's device that maker was made for */
+	struct gz_message_maker maker;
+	struct gz_rate_meter rate;
+	uint64_t rejected[GZ_REJECT_COUNT];
+	int64_t host_ns;   /* newest sample's */
+	int64_t care_ns;   /* when to look after everything else */
+	int64_t status_ns; /* when the next status is due */
+	/* Of the last status sent: a change is told at once. */
+	enum gz_tracker_state told_tracker;
+	enum gz_recording_state told_recording;
+	uint32_t told_subscribers;
+	/* Large, and used for one sample at a time. */
+	struct gz_outgoing_batch batch;
+	struct gz_gaze_log_header header;
+	struct gz_command command;
+};
+
+/* The display or the settings may be other ones with a device that has returned. A log knows one
+ * display and one set of settings, so a recording ends where they change. */
+static enum gz_result adopt_device(struct gz_service *service)
+{
+	const struct gz_service_parts *parts = &service->parts;
+	const struct gz_device_info *info = &service->tracker.info;
+	struct gz_pipeline_params params;
+	struct gz_display display = gz_config_display(parts->config, info);
+	if (!gz_display_valid(&display)) {
+		gz_err(parts->log,
+		       "%s: its display cannot be; give display.px, display.mm and "
+		       "display.distance_mm",
+		       info->name);
+		return GZ_ERR_INVAL;
+	}
+	enum gz_result result =
+		gz_config_pipeline(parts->config, info->recorded, parts->log, &params);
+	if (result != GZ_OK)
+		return result;
+	bool same = service->opened > 0 &&
+		    memcmp(&display, &service->maker.pipeline.display, sizeof display) == 0;
+	service->opened = service->tracker.opened;
+	if (same)
+		return GZ_OK;
+	if (gz_recorder_running(parts->recorder)) {
+		gz_warn(parts->log, "another display: the recording ends here");
+		gz_recorder_stop(parts->recorder);
+	}
+	gz_message_maker_init(&service->maker, parts->config, &params, &display);
+	return GZ_OK;
+}
+
+enum gz_result gz_service_create(const struct gz_service_parts *parts,
+				 struct gz_service **out_service)
+{
+	const void *settings;
+	struct gz_service *service = calloc(1, sizeof *service);
+	if (!service)
+		return GZ_ERR_NO_MEM;
+	service->parts = *parts;
+	service->waiting = parts->config->wait_readers > 0;
+	const struct gz_driver *driver = gz_config_driver(parts->config, &settings);
+	enum gz_result result = gz_tracker_open(&service->tracker, driver, settings, parts->log);
+	if (result == GZ_OK)
+		result = adopt_device(service);
+	if (result != GZ_OK) {
+		gz_service_destroy(&service);
+		return result;
+	}
+	*out_service = service;
+	return GZ_OK;
+}
+
+static void describe(struct gz_service *service)
+{
+	struct gz_gaze_log_header *header = &service->header;
+	const struct gz_device_info *info = &service->tracker.info;
+	*header = (struct gz_gaze_log_header) {
+		.rate_hz = info->rate_hz,
+		.has_display = true,
+		.display = service->maker.pipeline.display,
+	};
+	snprintf(header->tracker, sizeof header->tracker, "%s", info->name);
+	snprintf(header->serial, sizeof header->serial, "%s", info->serial);
+	snprintf(header->software, sizeof header->software, "gazed %s", GAZECAST_VERSION);
+	time_t now = time(NULL);
+	struct tm utc;
+	gmtime_r(&now, &utc);
+	strftime(header->started, sizeof header->started, "%Y-%m-%dT%H:%M:%SZ", &utc);
+	gz_config_describe_pipeline(&service->maker.pipeline.params, header);
+}
+
+/* A log begins with the pipeline in its start state, because that is how its replay begins: what
+ * the pipeline has learnt before the first recorded sample is nowhere in the log. */
+enum gz_result gz_service_record(struct gz_service *service, int fd, const char *path)
+{
+	describe(service);
+	enum gz_result result =
+		gz_recorder_start(service->parts.recorder, fd, path, &service->header);
+	if (result != GZ_OK)
+		return result;
+	gz_message_maker_reset(&service->maker);
+	return GZ_OK;
+}
+
+static void record_gap(struct gz_service *service, int64_t host_ns, uint64_t missing,
+		       const char *reason)
+{
+	struct gz_gaze_log_record gap = { .kind = GZ_GAZE_LOG_GAP,
+					  .host_ns = host_ns,
+					  .missing = missing };
+	snprintf(gap.text, sizeof gap.text, "%s", reason);
+	gz_recorder_push(service->parts.recorder, &gap);
+}
+
+static void record_sample(struct gz_service *service, const struct gz_sample *sample)
+{
+	if (!gz_recorder_running(service->parts.recorder))
+		return;
+	if (sample->lost_before > 0)
+		record_gap(service, sample->host_ns, sample->lost_before, "lost by the tracker");
+	struct gz_gaze_log_record record;
+	record.kind = GZ_GAZE_LOG_SAMPLE;
+	record.sample = *sample;
+	gz_recorder_push(service->parts.recorder, &record);
+}
+
+static void serve_sample(struct gz_service *service, const struct gz_sample *sample)
+{
+	gz_message_maker_step(&service->maker, sample, gz_clock_now_ns(), &service->batch);
+	gz_publisher_send(service->parts.publisher, &service->batch);
+	service->rejected[service->batch.rejection]++;
+	record_sample(service, sample);
+	gz_rate_meter_step(&service->rate, sample->host_ns);
+	service->host_ns = sample->host_ns;
+}
+
+static void notify(struct gz_service *service, enum gz_notice_kind kind, uint32_t number,
+		   enum gz_result result)
+{
+	struct gz_notice notice = { kind, number, result };
+	zmq_send(service->commands, &notice, sizeof notice, ZMQ_DONTWAIT);
+}
+
+static void obey(struct gz_service *service, const struct gz_command *command)
+{
+	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
+	enum gz_result result = GZ_OK;
+	switch (command->kind) {
+	case GZ_COMMAND_RECORD:
+		result = gz_service_record(service, command->fd, command->path);
+		notify(service, GZ_NOTICE_ANSWER, command->number, result);
+		return;
+	case GZ_COMMAND_STOP:
+		gz_recorder_stop(service->parts.recorder);
+		notify(service, GZ_NOTICE_ANSWER, command->number, result);
+		return;
+	case GZ_COMMAND_MARK:
+		memcpy(mark.text, command->text, sizeof mark.text);
+		gz_recorder_push(service->parts.recorder, &mark);
+		return;
+	case GZ_COMMAND_SEND: /* see take_commands() */
+		return;
+	case GZ_COMMAND_QUIT:
+		service->quit = true;
+		return;
+	}
+}
+
+/* A message from the inlet: the topic came with the command, the body is the frame behind it. */
+static void resend(struct gz_service *service)
+{
+	zmq_msg_t body;
+	zmq_msg_init(&body);
+	if (zmq_msg_recv(&body, service->commands, ZMQ_DONTWAIT) >= 0)
+		gz_publisher_send_one(service->parts.publisher, service->command.text,
+				      zmq_msg_data(&body), zmq_msg_size(&body));
+	zmq_msg_close(&body);
+}
+
+static void take_commands(struct gz_service *service)
+{
+	for (int i = 0; i < COMMANDS_AT_ONCE; i++) {
+		int size = zmq_recv(service->commands, &service->command, sizeof service->command,
+				    ZMQ_DONTWAIT);
+		if (size != (int)sizeof service->command)
+			return;
+		if (service->command.kind == GZ_COMMAND_SEND)
+			resend(service);
+		else
+			obey(service, &service->command);
+	}
+}
+
+static void fill_status(struct gz_service *service, struct gz_status *status)
+{
+	const struct gz_tracker *tracker = &service->tracker;
+	struct gz_recorder_status recorder;
+	gz_recorder_get_status(service->parts.recorder, &recorder);
+	*status = (struct gz_status) {
+		.rate_hz_nominal = tracker->info.rate_hz,
+		.samples = tracker->samples,
+		.lost = tracker->counters.lost,
+		.clock = tracker->counters.clock,
+		.noise_deg = gz_pipeline_noise_deg(&service->maker.pipeline),
+		.display = service->maker.pipeline.display,
+		.subscribers = gz_publisher_subscribers(service->parts.publisher),
+		.version = GAZECAST_VERSION,
+	};
+	status->tracker.state = tracker->state;
+	if (tracker->state == GZ_TRACKER_RUNNING)
+		status->rate_hz_measured = gz_rate_meter_take(&service->rate);
+	memcpy(status->tracker.name, tracker->info.name, sizeof status->tracker.name);
+	memcpy(status->tracker.serial, tracker->info.serial, sizeof status->tracker.serial);
+	memcpy(status->tracker.reason, tracker->reason, sizeof status->tracker.reason);
+	memcpy(status->rejected, service->rejected, sizeof status->rejected);
+	status->recording.state = recorder.state;
+	status->recording.samples = recorder.samples;
+	memcpy(status->recording.error, recorder.error, sizeof status->recording.error);
+	if (recorder.state != GZ_RECORDING_OFF)
+		gz_recorder_get_path(service->parts.recorder, status->recording.file);
+}
+
+static void send_status(struct gz_service *service)
+{
+	struct gz_status status;
+	gz_tracker_update_counters(&service->tracker);
+	fill_status(service, &status);
+	struct gz_wire_message *message = &service->batch.item[0].body;
+	if (gz_wire_encode_status(&status, message) == GZ_OK)
+		gz_publisher_send_one(service->parts.publisher, GZ_TOPIC_STATUS, message->bytes,
+				      message->size);
+	service->told_tracker = status.tracker.state;
+	service->told_recording = status.recording.state;
+	service->told_subscribers = status.subscribers;
+}
+
+static bool status_changed(const struct gz_service *service)
+{
+	struct gz_recorder_status recorder;
+	gz_recorder_get_status(service->parts.recorder, &recorder);
+	return service->told_tracker != service->tracker.state ||
+	       service->told_recording != recorder.state ||
+	       service->told_subscribers != gz_publisher_subscribers(service->parts.publisher);
+}
+
+/* What is not done for every sample. */
+static void take_care(struct gz_service *service, int64_t now_ns)
+{
+	if (now_ns < service->care_ns)
+		return;
+	service->care_ns = now_ns + GZ_SERVICE_CARE_MS * GZ_NS_PER_MS;
+	gz_publisher_update(service->parts.publisher);
+	if (service->waiting && gz_publisher_subscriptions(service->parts.publisher) >=
+					(uint32_t)service->parts.config->wait_readers)
+		service->waiting = false;
+	if (now_ns >= service->status_ns || status_changed(service)) {
+		send_status(service);
+		service->status_ns = now_ns + GZ_SERVICE_STATUS_MS * GZ_NS_PER_MS;
+	}
+}
+
+static void end_replay(struct gz_service *service)
+{
+	gz_info(service->parts.log, "the replay is over after %llu samples",
+		(unsigned long long)service->tracker.samples);
+	gz_recorder_stop(service->parts.recorder);
+	notify(service, GZ_NOTICE_ENDED, 0, GZ_OK);
+}
+
+/* Tell the log and the pipeline of what the tracker's state has become. */
+static void follow_tracker(struct gz_service *service, enum gz_tracker_state before)
+{
+	enum gz_tracker_state state = service->tracker.state;
+	if (service->tracker.opened != service->opened && adopt_device(service) != GZ_OK) {
+		notify(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
+		service->quit = true;
+		return;
+	}
+	if (state != before && state == GZ_TRACKER_LOST)
+		record_gap(service, service->host_ns, 0, service->tracker.reason);
+}
+
+static void serve(struct gz_service *service)
+{
+	struct gz_sample sample;
+	enum gz_tracker_state before = service->tracker.state;
+	enum gz_result result = gz_tracker_read(&service->tracker, GZ_SERVICE_WAIT_MS, &sample);
+	follow_tracker(service, before);
+	if (service->quit)
+		return;
+	if (result == GZ_OK)
+		serve_sample(service, &sample);
+	else if (result == GZ_ERR_END)
+		end_replay(service);
+}
+
+static void *run(void *user)
+{
+	struct gz_service *service = user;
+	while (!service->quit) {
+		take_commands(service);
+		take_care(service, gz_clock_now_ns());
+		if (service->waiting)
+			gz_clock_sleep_until_ns(gz_clock_now_ns() +
+						GZ_SERVICE_WAIT_MS * GZ_NS_PER_MS);
+		else
+			serve(service);
+	}
+	gz_recorder_stop(service->parts.recorder);
+	send_status(service);
+	gz_tracker_close(&service->tracker);
+	return NULL;
+}
+
+enum gz_result gz_service_start(struct gz_service *service)
+{
+	int linger = 0;
+	service->commands = zmq_socket(service->parts.context, ZMQ_PAIR);
+	if (!service->commands ||
+	    zmq_setsockopt(service->commands, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
+	    zmq_connect(service->commands, GZ_COMMAND_ENDPOINT) != 0) {
+		gz_err(service->parts.log, "no command socket: %s", zmq_strerror(errno));
+		return GZ_ERR_IO;
+	}
+	if (pthread_create(&service->thread, NULL, run, service) != 0) {
+		gz_err(service->parts.log, "no thread for samples: %s", strerror(errno));
+		return GZ_ERR_NO_MEM;
+	}
+	service->has_thread = true;
+	return GZ_OK;
+}
+
+void gz_service_destroy(struct gz_service **service)
+{
+	if (!service || !*service)
+		return;
+	struct gz_service *s = *service;
+	if (s->has_thread)
+		pthread_join(s->thread, NULL);
+	if (s->commands)
+		zmq_close(s->commands);
+	gz_tracker_close(&s->tracker);
+	free(s);
+	*service = NULL;
+}
