@@ -1,0 +1,187 @@
+#include "view/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+/* Half the cross's arms and half its thickness, px (chosen: seen at arm's length, hides little). */
+enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
+
+struct gz_frame_maker {
+	const struct gz_log *log;
+	struct gz_scene scene;
+	struct gz_renderer *renderer;
+	struct gz_plan plan;
+	struct gz_image cast;  /* at the rays' resolution, only where that is not the picture's */
+	struct gz_image image; /* the finished picture */
+};
+
+static enum gz_result start_renderer(struct gz_frame_maker *maker,
+				     const struct gz_view_options *options)
+{
+	const struct gz_renderer_params params = { .threads = options->threads,
+						   .simd = options->simd };
+	enum gz_result r =
+		gz_renderer_create(options->backend, &params, maker->log, &maker->renderer);
+	if (r == GZ_OK)
+		r = gz_renderer_set_volume(maker->renderer, &maker->scene.volume);
+	if (r == GZ_OK)
+		r = gz_renderer_set_transfer(maker->renderer, &maker->scene.transfer);
+	if (r == GZ_ERR_NO_MEM)
+		gz_err(maker->log, "no memory for the renderer; close other programs or take a "
+				   "smaller volume");
+	return r;
+}
+
+enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
+				     const struct gz_log *log, struct gz_frame_maker **out_maker)
+{
+	struct gz_frame_maker *maker = calloc(1, sizeof *maker);
+	if (!maker)
+		return GZ_ERR_NO_MEM;
+	maker->log = log;
+	enum gz_result r = gz_scene_load(options->scene, log, &maker->scene);
+	if (r == GZ_OK)
+		r = gz_view_options_apply(options, &maker->scene.settings);
+	if (r == GZ_OK)
+		r = start_renderer(maker, options);
+	if (r != GZ_OK) {
+		gz_frame_maker_destroy(&maker);
+		return r;
+	}
+	*out_maker = maker;
+	return GZ_OK;
+}
+
+const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
+{
+	return &maker->scene;
+}
+
+const char *gz_frame_maker_backend(const struct gz_frame_maker *maker)
+{
+	return gz_renderer_describe(maker->renderer);
+}
+
+/* Pixels of the rays' grid along a side; 0 where that is no picture. */
+static int cast_side(int side, double rate)
+{
+	double scaled = round(side * rate);
+	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
+}
+
+/* Rays first, then, where the scene asks for more or fewer rays than pixels, the picture. */
+static enum gz_result cast_picture(struct gz_frame_maker *maker,
+				   const struct gz_frame_request *request,
+				   struct gz_frame_stats *out_stats)
+{
+	bool direct = maker->plan.width == request->width && maker->plan.height == request->height;
+	struct gz_image *target = direct ? &maker->image : &maker->cast;
+	enum gz_result r =
+		gz_renderer_render(maker->renderer, request->camera, &maker->scene.settings.rays,
+				   &maker->plan, target, out_stats);
+	if (r != GZ_OK || direct)
+		return r;
+	int64_t start_ns = gz_clock_now_ns();
+	r = gz_image_resize(&maker->image, request->width, request->height);
+	if (r == GZ_OK)
+		gz_image_resample(&maker->cast, &maker->image);
+	out_stats->reconstruct_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return r;
+}
+
+static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			   struct gz_frame_record *record)
+{
+	double rate = maker->scene.settings.image_sampling_rate;
+	int width = cast_side(request->width, rate), height = cast_side(request->height, rate);
+	if (width == 0 || height == 0) {
+		gz_err(maker->log,
+		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
+		       "rate or the size",
+		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
+		return GZ_ERR_INVAL;
+	}
+	struct gz_point gaze =
+		request->gaze.known ? request->gaze.point : (struct gz_point) { NAN, NAN };
+	struct gz_frame_stats stats;
+	int64_t start_ns = gz_clock_now_ns();
+	enum gz_result r = gz_plan_make(request->foveation, request->display, gaze, width, height,
+					&maker->plan);
+	int64_t planned_ns = gz_clock_now_ns();
+	if (r == GZ_OK)
+		r = cast_picture(maker, request, &stats);
+	if (r != GZ_OK) {
+		gz_err(maker->log, "cannot render %dx%d: %s; see the scene's camera and size",
+		       width, height, gz_result_text(r));
+		return r;
+	}
+	record->total_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	record->plan_ms = gz_ns_to_ms(planned_ns - start_ns);
+	record->cast_ms = stats.cast_ms;
+	record->reconstruct_ms = stats.reconstruct_ms;
+	record->rays = stats.rays;
+	record->samples = stats.samples;
+	return GZ_OK;
+}
+
+enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			     struct gz_image **out_image, struct gz_frame_record *out_record)
+{
+	struct gz_frame_record record = {
+		.method = gz_method_names[request->foveation->method],
+		.backend = maker->renderer->ops->name,
+		.width = request->width,
+		.height = request->height,
+		.gaze_known = request->gaze.known,
+		.gaze = request->gaze.point,
+		.age_known = request->gaze.known && request->gaze.has_age,
+		.gaze_age_ms = gz_ns_to_ms(request->gaze.age_ns),
+	};
+	enum gz_result r = make(maker, request, &record);
+	if (r != GZ_OK)
+		return r;
+	*out_image = &maker->image;
+	*out_record = record;
+	return GZ_OK;
+}
+
+static void fill(struct gz_image *image, int left, int top, int right, int bottom)
+{
+	static const uint8_t colour[4] = { 255, 64, 64, 255 };
+	for (int y = top < 0 ? 0 : top; y <= bottom && y < image->height; y++) {
+		for (int x = left < 0 ? 0 : left; x <= right && x < image->width; x++)
+			memcpy(image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x),
+			       colour, sizeof colour);
+	}
+}
+
+void gz_frame_draw_cross(struct gz_image *image, struct gz_point at)
+{
+	double x = floor((double)at.x * image->width), y = floor((double)at.y * image->height);
+	if (!(x >= -CROSS_ARM_PX && x < image->width + CROSS_ARM_PX) ||
+	    !(y >= -CROSS_ARM_PX && y < image->height + CROSS_ARM_PX))
+		return;
+	int column = (int)x, row = (int)y;
+	fill(image, column - CROSS_ARM_PX, row - CROSS_HALF_PX, column + CROSS_ARM_PX,
+	     row + CROSS_HALF_PX);
+	fill(image, column - CROSS_HALF_PX, row - CROSS_ARM_PX, column + CROSS_HALF_PX,
+	     row + CROSS_ARM_PX);
+}
+
+void gz_frame_maker_destroy(struct gz_frame_maker **maker)
+{
+	if (!maker || !*maker)
+		return;
+	gz_renderer_destroy(&(*maker)->renderer);
+	gz_plan_free(&(*maker)->plan);
+	gz_image_free(&(*maker)->cast);
+	gz_image_free(&(*maker)->image);
+	gz_scene_free(&(*maker)->scene);
+	free(*maker);
+	*maker = NULL;
+}

@@ -1,0 +1,64 @@
+/**
+ * @file
+ * One frame: gaze to plan to picture, with what each step cost. Headless and window share it.
+ */
+#ifndef GZ_VIEW_FRAME_H
+#define GZ_VIEW_FRAME_H
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/image.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+#include "view/gaze_source.h"
+#include "view/options.h"
+#include "view/stats.h"
+
+/** A scene with the renderer that shows it. */
+struct gz_frame_maker;
+
+/** What one frame is to be. */
+struct gz_frame_request {
+	const struct gz_camera *camera;
+	const struct gz_foveation *foveation;
+	const struct gz_display *display; /**< of the picture: it fills this one */
+	struct gz_gaze_reading gaze;      /**< on that display */
+	int width, height;                /**< of the finished picture, px */
+};
+
+/**
+ * Load the scene that the options name, apply their overrides, and make a renderer for it.
+ *
+ * @param options  borrowed until the call returns
+ * @param log      borrowed, outlives the maker
+ * @param[out] out_maker  owned by the caller: gz_frame_maker_destroy()
+ * @return what gz_scene_load() and gz_renderer_create() return; logged
+ */
+enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
+				     const struct gz_log *log, struct gz_frame_maker **out_maker);
+
+/** The scene as loaded and overridden. Valid until the maker is destroyed. */
+const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
+
+/** One line about the backend: "cpu: avx2, 2 threads". Valid until the maker is destroyed. */
+const char *gz_frame_maker_backend(const struct gz_frame_maker *maker);
+
+/**
+ * Render one frame. A gaze that is not known counts as lost: the plan's centre is the picture's.
+ *
+ * @param[out] out_image   the picture, owned by the maker, valid until the next call
+ * @param[out] out_record  what it cost
+ * @retval GZ_ERR_INVAL   the picture at the scene's image_sampling_rate is too large or vanishes,
+ *                        or the camera is none; logged
+ * @retval GZ_ERR_NO_MEM  no room; logged
+ */
+enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			     struct gz_image **out_image, struct gz_frame_record *out_record);
+
+/** Draw a cross at a place of the display that the picture fills; nothing where it is outside. */
+void gz_frame_draw_cross(struct gz_image *image, struct gz_point at);
+
+/** Destroy and set to NULL. Accepts a pointer to NULL. */
+void gz_frame_maker_destroy(struct gz_frame_maker **maker);
+
+#endif

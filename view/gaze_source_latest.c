@@ -1,0 +1,128 @@
+/* A daemon's latest channel as a source; its status, on the stream beside it, tells the display. */
+#include "view/gaze_source.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "client/client.h"
+#include "client/stream.h"
+#include "protocol/endpoint.h"
+#include "protocol/wire.h"
+
+struct latest_source {
+	struct gz_gaze_source base;
+	struct gz_client *client;
+	struct gz_stream *status; /* NULL where the stream's endpoint cannot be told */
+	bool has_display;
+	struct gz_display display;
+};
+
+static void take_status(struct latest_source *self)
+{
+	struct gz_message message;
+	while (self->status && gz_stream_read(self->status, 0, &message) == GZ_OK) {
+		if (message.kind != GZ_MESSAGE_STATUS || !gz_display_valid(&message.status.display))
+			continue;
+		self->display = message.status.display;
+		self->has_display = true;
+	}
+}
+
+static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
+			struct gz_gaze_reading *out_reading)
+{
+	(void)time_ns;
+	struct latest_source *self = (struct latest_source *)source;
+	struct gz_gaze gaze;
+	struct gz_client_counters counters;
+	int64_t age_ns;
+	struct gz_gaze_reading reading = { 0 };
+	if (gz_client_latest(self->client, &gaze, &age_ns) == GZ_OK) {
+		reading.known = true;
+		reading.point = gaze.point;
+		reading.has_age = true;
+		reading.age_ns = age_ns;
+		reading.has_event = true;
+		reading.event = gaze.event;
+	}
+	gz_client_get_counters(self->client, &counters);
+	reading.connected = counters.connected;
+	take_status(self);
+	*out_reading = reading;
+}
+
+static bool latest_display(struct gz_gaze_source *source, struct gz_display *out_display)
+{
+	const struct latest_source *self = (const struct latest_source *)source;
+	if (self->has_display)
+		*out_display = self->display;
+	return self->has_display;
+}
+
+static void latest_destroy(struct gz_gaze_source *source)
+{
+	struct latest_source *self = (struct latest_source *)source;
+	gz_client_close(&self->client);
+	gz_stream_close(&self->status);
+	free(self);
+}
+
+static const struct gz_gaze_source_ops latest_ops = {
+	.name = "daemon",
+	.live = true,
+	.read = latest_read,
+	.display = latest_display,
+	.destroy = latest_destroy,
+};
+
+/* Where no status can be had, none is waited for. */
+static const struct gz_gaze_source_ops latest_alone_ops = {
+	.name = "daemon",
+	.live = true,
+	.read = latest_read,
+	.destroy = latest_destroy,
+};
+
+/* The stream beside a latest channel: the same folder. A TCP port says nothing about another. */
+static bool stream_beside(const char *latest, char *text, size_t size)
+{
+	static const char name[] = "/latest";
+	size_t length = strlen(latest), tail = sizeof name - 1;
+	if (strncmp(latest, "ipc://", 6) != 0 || length < tail ||
+	    strcmp(latest + length - tail, name) != 0)
+		return false;
+	int written = snprintf(text, size, "%.*s/stream", (int)(length - tail), latest);
+	return written > 0 && (size_t)written < size;
+}
+
+static enum gz_result open_status(struct latest_source *self, const char *endpoint,
+				  const struct gz_log *log)
+{
+	static const char *const topics[] = { GZ_TOPIC_STATUS, NULL };
+	char stream[GZ_ENDPOINT_SIZE];
+	if (endpoint && !stream_beside(endpoint, stream, sizeof stream))
+		return GZ_OK;
+	self->base.ops = &latest_ops;
+	return gz_stream_open(endpoint ? stream : NULL, topics, log, &self->status);
+}
+
+enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *log,
+				     struct gz_gaze_source **out_source)
+{
+	struct latest_source *self = calloc(1, sizeof *self);
+	if (!self)
+		return GZ_ERR_NO_MEM;
+	self->base.ops = &latest_alone_ops;
+	if (endpoint && !endpoint[0])
+		endpoint = NULL;
+	enum gz_result r = gz_client_open(endpoint, log, &self->client);
+	if (r == GZ_OK)
+		r = open_status(self, endpoint, log);
+	if (r != GZ_OK) {
+		latest_destroy(&self->base);
+		return r;
+	}
+	*out_source = &self->base;
+	return GZ_OK;
+}

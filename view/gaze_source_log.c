@@ -1,0 +1,167 @@
+/* A gaze log as a source: the reader and the pipeline step on as the frames' time does. */
+#include "view/gaze_source.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "filter/pipeline.h"
+#include "protocol/gaze_log.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+struct log_source {
+	struct gz_gaze_source base;
+	const struct gz_log *log;
+	struct gz_gaze_log_reader *reader;
+	struct gz_pipeline pipeline;
+	bool has_display; /* the log's own, not the default */
+	struct gz_display display;
+	int64_t start_ns;         /* host_ns of the first sample */
+	bool pending_known;       /* a sample has been read that its time has not come for */
+	struct gz_sample pending; /* only then */
+	struct gz_gaze_reading reading;
+	int64_t shown_ns; /* host_ns of the sample in reading */
+};
+
+/* The next sample into pending; marks, gaps and unreadable lines are stepped over. */
+static void fetch(struct log_source *self)
+{
+	struct gz_gaze_log_record record;
+	self->pending_known = false;
+	for (;;) {
+		enum gz_result r = gz_gaze_log_read(self->reader, &record);
+		if (r == GZ_ERR_FORMAT)
+			continue; /* logged by the reader; it goes on behind the line */
+		if (r != GZ_OK)
+			return;
+		if (record.kind != GZ_GAZE_LOG_SAMPLE)
+			continue;
+		self->pending = record.sample;
+		self->pending_known = true;
+		return;
+	}
+}
+
+static void step(struct log_source *self)
+{
+	struct gz_pipeline_output output;
+	gz_pipeline_step(&self->pipeline, &self->pending, &output);
+	self->reading = (struct gz_gaze_reading) {
+		.known = true,
+		.point = output.gaze.point,
+		.has_age = true,
+		.connected = true,
+		.has_event = true,
+		.event = output.gaze.event,
+	};
+	self->shown_ns = self->pending.host_ns;
+	fetch(self);
+}
+
+static void log_read(struct gz_gaze_source *source, int64_t time_ns,
+		     struct gz_gaze_reading *out_reading)
+{
+	struct log_source *self = (struct log_source *)source;
+	int64_t now_ns = self->start_ns + time_ns;
+	while (self->pending_known && self->pending.host_ns <= now_ns)
+		step(self);
+	self->reading.age_ns = now_ns - self->shown_ns;
+	*out_reading = self->reading;
+}
+
+static bool log_display(struct gz_gaze_source *source, struct gz_display *out_display)
+{
+	const struct log_source *self = (const struct log_source *)source;
+	if (self->has_display)
+		*out_display = self->display;
+	return self->has_display;
+}
+
+static void log_destroy(struct gz_gaze_source *source)
+{
+	struct log_source *self = (struct log_source *)source;
+	gz_gaze_log_close(&self->reader);
+	free(self);
+}
+
+static const struct gz_gaze_source_ops log_ops = {
+	.name = "log",
+	.live = false,
+	.read = log_read,
+	.display = log_display,
+	.destroy = log_destroy,
+};
+
+/* One "#pipeline." line; a setting that this version does not have changes nothing here. */
+static enum gz_result take_setting(const struct gz_gaze_log_setting *setting, const char *path,
+				   const struct gz_log *log, struct gz_pipeline_params *params)
+{
+	const struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count,
+						   params, NULL };
+	char key[GZ_NAME_SIZE + sizeof "pipeline."];
+	char message[256];
+	snprintf(key, sizeof key, "pipeline.%s", setting->key);
+	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
+	if (!option) {
+		gz_warn(log, "%s: #%s %s: this version has no such setting; going on without", path,
+			key, setting->value);
+		return GZ_OK;
+	}
+	if (gz_option_parse(option, setting->value, params, message, sizeof message) == GZ_OK)
+		return GZ_OK;
+	gz_err(log, "%s: #%s: %s; correct the line to play the log", path, key, message);
+	return GZ_ERR_FORMAT;
+}
+
+/* The settings that the recording was made with, over the defaults. */
+static enum gz_result take_settings(const struct gz_gaze_log_header *header, const char *path,
+				    const struct gz_log *log, struct gz_pipeline_params *params)
+{
+	*params = gz_pipeline_default_params();
+	for (size_t i = 0; i < header->setting_count; i++) {
+		enum gz_result r = take_setting(&header->settings[i], path, log, params);
+		if (r != GZ_OK)
+			return r;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result prepare(struct log_source *self, const char *path)
+{
+	const struct gz_gaze_log_header *header = gz_gaze_log_header(self->reader);
+	struct gz_pipeline_params params;
+	enum gz_result r = take_settings(header, path, self->log, &params);
+	if (r != GZ_OK)
+		return r;
+	self->has_display = header->has_display && gz_display_valid(&header->display);
+	/* Only its angles matter here, and those of the default are the same at any size. */
+	self->display = self->has_display ? header->display : gz_display_default(1920, 1080);
+	gz_pipeline_init(&self->pipeline, &params, &self->display);
+	fetch(self);
+	if (!self->pending_known) {
+		gz_err(self->log, "%s: holds no sample; record for longer, or give another log",
+		       path);
+		return GZ_ERR_FORMAT;
+	}
+	self->start_ns = self->pending.host_ns;
+	return GZ_OK;
+}
+
+enum gz_result gz_gaze_source_log(const char *path, const struct gz_log *log,
+				  struct gz_gaze_source **out_source)
+{
+	struct log_source *self = calloc(1, sizeof *self);
+	if (!self)
+		return GZ_ERR_NO_MEM;
+	self->base.ops = &log_ops;
+	self->log = log;
+	enum gz_result r = gz_gaze_log_open(path, log, &self->reader);
+	if (r == GZ_OK)
+		r = prepare(self, path);
+	if (r != GZ_OK) {
+		log_destroy(&self->base);
+		return r;
+	}
+	*out_source = &self->base;
+	return GZ_OK;
+}

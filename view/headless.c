@@ -1,0 +1,218 @@
+#include "view/headless.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "view/frame.h"
+#include "view/gaze_source.h"
+#include "view/stats.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+/* How long the first frame waits for a daemon's first message (chosen: a local connection stands
+ * within some ms; a tracker that starts needs longer than anyone waits), for its display (chosen:
+ * status comes once a second), and how often it looks. */
+#define FIRST_GAZE_WAIT_NS   (500 * GZ_NS_PER_MS)
+#define FIRST_STATUS_WAIT_NS (1200 * GZ_NS_PER_MS)
+#define FIRST_GAZE_POLL_NS   (1 * GZ_NS_PER_MS)
+
+enum { LINE_SIZE = 512 };
+
+/* Set by the handler; the only state a signal can reach. */
+static volatile sig_atomic_t signal_seen;
+
+struct headless {
+	const struct gz_view_options *options;
+	const struct gz_log *log;
+	struct gz_frame_maker *maker;
+	struct gz_gaze_source *source;
+	struct gz_stats_file *stats;
+	struct gz_camera camera;
+	int64_t start_ns;
+	bool silence_told; /* that a daemon says nothing was said */
+};
+
+static void on_signal(int number)
+{
+	signal_seen = number;
+}
+
+static void catch_signals(void)
+{
+	struct sigaction action = { .sa_handler = on_signal };
+	sigemptyset(&action.sa_mask);
+	signal_seen = 0;
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+}
+
+static enum gz_result open_source(const struct gz_gaze_choice *choice, const struct gz_log *log,
+				  struct gz_gaze_source **out_source)
+{
+	switch (choice->kind) {
+	case GZ_GAZE_LATEST:
+		return gz_gaze_source_latest(choice->text, log, out_source);
+	case GZ_GAZE_LOG:
+		return gz_gaze_source_log(choice->text, log, out_source);
+	case GZ_GAZE_CENTRE: /* set anew before each frame */
+	case GZ_GAZE_FIXED:
+	case GZ_GAZE_MOUSE:
+		break;
+	}
+	return gz_gaze_source_fixed(choice->point, out_source);
+}
+
+/* Where the camera's look_at is in the picture; its middle if the eye cannot see it. */
+static struct gz_point centre_of(const struct headless *self)
+{
+	struct gz_point centre = { 0.5f, 0.5f };
+	gz_camera_project(&self->camera, self->options->size_px[0], self->options->size_px[1],
+			  self->camera.look_at, &centre);
+	return centre;
+}
+
+static struct gz_display display_now(struct headless *self)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(self->maker);
+	struct gz_display known;
+	const struct gz_display *best = NULL;
+	if (scene->has_display)
+		best = &scene->settings.display;
+	else if (gz_gaze_source_display(self->source, &known))
+		best = &known;
+	return gz_view_display(self->options, best, self->options->size_px[0],
+			       self->options->size_px[1]);
+}
+
+static struct gz_gaze_reading gaze_now(struct headless *self, int frame)
+{
+	struct gz_gaze_reading reading;
+	double period_ns = (double)GZ_NS_PER_S / self->options->fps;
+	gz_gaze_source_read(self->source, (int64_t)((double)frame * period_ns), &reading);
+	if (self->options->gaze.kind == GZ_GAZE_CENTRE)
+		reading.point = centre_of(self);
+	if (!reading.known && !self->silence_told) {
+		const char *endpoint = self->options->gaze.text;
+		gz_warn(self->log,
+			"no gaze from %s yet; going on with the plan at the centre (start gazed, "
+			"or see gazectl status)",
+			endpoint[0] ? endpoint : "the local daemon");
+		self->silence_told = true;
+	}
+	return reading;
+}
+
+static bool display_settled(struct headless *self)
+{
+	const struct gz_view_options *options = self->options;
+	struct gz_display display;
+	return gz_frame_maker_scene(self->maker)->has_display ||
+	       (options->display_mm[0] > 0 && options->display_distance_mm > 0) ||
+	       gz_gaze_source_display(self->source, &display);
+}
+
+/* A daemon that runs gets the time to answer, so that the first frames are not blind and have the
+ * geometry of those that follow. */
+static void await_daemon(struct headless *self)
+{
+	int64_t start_ns = gz_clock_now_ns(), now_ns = start_ns;
+	struct gz_gaze_reading reading;
+	while (!signal_seen) {
+		gz_gaze_source_read(self->source, 0, &reading);
+		if (reading.known && (display_settled(self) || !self->source->ops->display))
+			return;
+		if (now_ns - start_ns > (reading.known ? FIRST_STATUS_WAIT_NS : FIRST_GAZE_WAIT_NS))
+			return;
+		now_ns += FIRST_GAZE_POLL_NS;
+		gz_clock_sleep_until_ns(now_ns);
+	}
+}
+
+static enum gz_result write_picture(struct headless *self, struct gz_image *image,
+				    const struct gz_frame_record *record, int frame)
+{
+	char path[GZ_PATH_SIZE];
+	if (!self->options->out[0])
+		return GZ_OK;
+	if (self->options->cross && record->gaze_known)
+		gz_frame_draw_cross(image, record->gaze);
+	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
+	if (r != GZ_OK) {
+		gz_err(self->log, "--out: the name of picture %d is too long; shorten it", frame);
+		return r;
+	}
+	return gz_image_write_png(image, path, self->log);
+}
+
+static enum gz_result print_line(const struct headless *self, const struct gz_frame_record *record)
+{
+	char line[LINE_SIZE];
+	gz_frame_record_print(record, line, sizeof line);
+	if (puts(line) >= 0 && fflush(stdout) == 0)
+		return GZ_OK;
+	gz_err(self->log, "cannot write to stdout: %s; give it a place with room", strerror(errno));
+	return GZ_ERR_IO;
+}
+
+static enum gz_result one_frame(struct headless *self, int frame)
+{
+	double period_ns = (double)GZ_NS_PER_S / self->options->fps;
+	if (self->source->ops->live)
+		gz_clock_sleep_until_ns(self->start_ns + (int64_t)((double)frame * period_ns));
+	struct gz_frame_request request = {
+		.camera = &self->camera,
+		.foveation = &gz_frame_maker_scene(self->maker)->settings.foveation,
+		.gaze = gaze_now(self, frame),
+		.width = self->options->size_px[0],
+		.height = self->options->size_px[1],
+	};
+	struct gz_display display = display_now(self);
+	request.display = &display;
+	struct gz_frame_record record;
+	struct gz_image *image;
+	enum gz_result r = gz_frame_make(self->maker, &request, &image, &record);
+	if (r == GZ_OK)
+		r = print_line(self, &record);
+	if (r == GZ_OK && self->stats)
+		r = gz_stats_add(self->stats, &record);
+	if (r == GZ_OK)
+		r = write_picture(self, image, &record, frame);
+	gz_camera_turn(&self->camera, self->options->turn_deg);
+	return r;
+}
+
+static enum gz_result all_frames(struct headless *self)
+{
+	enum gz_result r = GZ_OK;
+	if (self->source->ops->live)
+		await_daemon(self);
+	self->start_ns = gz_clock_now_ns();
+	for (int frame = 0; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
+		r = one_frame(self, frame);
+	return r;
+}
+
+enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
+				int *out_signal)
+{
+	struct headless self = { .options = options, .log = log };
+	catch_signals();
+	/* The gaze first: a log that cannot be read is known sooner than a volume is loaded. */
+	enum gz_result r = open_source(&options->gaze, log, &self.source);
+	if (r == GZ_OK)
+		r = gz_frame_maker_create(options, log, &self.maker);
+	if (r == GZ_OK && options->stats[0])
+		r = gz_stats_open(options->stats, log, &self.stats);
+	if (r == GZ_OK) {
+		self.camera = gz_frame_maker_scene(self.maker)->settings.camera;
+		r = all_frames(&self);
+	}
+	gz_stats_close(&self.stats);
+	gz_frame_maker_destroy(&self.maker);
+	gz_gaze_source_destroy(&self.source);
+	*out_signal = signal_seen;
+	return r;
+}

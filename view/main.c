@@ -1,0 +1,42 @@
+/* gazeview: shows a volume, sharp where someone looks. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/log.h"
+#include "view/headless.h"
+#include "view/options.h"
+#include "view/window.h"
+
+/* What a shell reports for a process that a signal ended. */
+enum { EXIT_SIGNAL = 128 };
+
+static int run(const struct gz_view_options *options, const struct gz_log *log)
+{
+	int signal_number = 0;
+	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
+					     : gz_view_window(options, log);
+	if (r != GZ_OK)
+		return EXIT_FAILURE;
+	return signal_number ? EXIT_SIGNAL + signal_number : EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
+	struct gz_log log;
+	gz_log_init(&log, NULL, NULL, NULL);
+	struct gz_view_options *options = calloc(1, sizeof *options);
+	if (!options)
+		return EXIT_FAILURE;
+	int status = EXIT_FAILURE;
+	if (gz_view_options_read(argc, argv, &log, options) == GZ_OK) {
+		status = EXIT_SUCCESS;
+		if (options->help)
+			gz_view_options_print_help(stdout);
+		else if (options->version)
+			puts("gazeview " GAZECAST_VERSION);
+		else
+			status = run(options, &log);
+	}
+	free(options);
+	return status;
+}

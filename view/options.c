@@ -1,0 +1,479 @@
+#include "view/options.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/image.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+#define AT(field) offsetof(struct gz_view_options, field)
+
+const struct gz_option gz_view_option_table[] = {
+	{ .key = "scene",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(scene),
+	  .max = GZ_PATH_SIZE,
+	  .help = "scene file to show; may also stand alone, without --scene" },
+	{ .key = "headless",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(headless),
+	  .preset = "false",
+	  .help = "render without a window" },
+	{ .key = "size",
+	  .type = GZ_OPTION_SIZE,
+	  .offset = AT(size_px),
+	  .min = 1,
+	  .max = GZ_IMAGE_SIDE_MAX,
+	  .preset = "1280x720",
+	  .help = "picture, px" },
+	{ .key = "gaze",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(gaze_text),
+	  .max = GZ_PATH_SIZE,
+	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, the endpoint of a latest "
+		  "channel "
+		  "or FILE.gzl; without it centre if headless, else daemon" },
+	{ .key = "fps",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(fps),
+	  .min = 0.01,
+	  .max = 10000,
+	  .preset = "60",
+	  .help = "frames a second of gaze time" },
+	{ .key = "method",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(method),
+	  .choices = gz_method_names,
+	  .help = "foveation method; without it the scene's" },
+	{ .key = "backend",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(backend),
+	  .max = GZ_NAME_SIZE,
+	  .preset = "auto",
+	  .help = "what casts the rays: cpu, or auto for the best there is" },
+	{ .key = "threads",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(threads),
+	  .min = 0,
+	  .max = 256,
+	  .preset = "0",
+	  .help = "threads of the cpu backend; 0 takes one a processor" },
+	{ .key = "simd",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(simd),
+	  .max = GZ_NAME_SIZE,
+	  .preset = "auto",
+	  .help = "instructions of the cpu backend: auto, portable, avx2, avx512" },
+	{ .key = "frames",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(frames),
+	  .min = 1,
+	  .max = 100000000,
+	  .preset = "1",
+	  .help = "pictures to render headless" },
+	{ .key = "out",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(out),
+	  .max = GZ_PATH_SIZE,
+	  .help = "PNG to write, headless; for several frames a pattern such as frame-%04d.png" },
+	{ .key = "stats",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(stats),
+	  .max = GZ_PATH_SIZE,
+	  .help = "JSON file for what each frame cost, headless" },
+	{ .key = "turn",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(turn_deg),
+	  .min = -360,
+	  .max = 360,
+	  .preset = "0",
+	  .help = "turn the camera by so many degrees a frame" },
+	{ .key = "cross",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(cross),
+	  .preset = "false",
+	  .help = "draw a cross at the gaze" },
+	{ .key = "fullscreen",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(fullscreen),
+	  .preset = "false",
+	  .help = "start the window full screen" },
+	{ .key = "vsync",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(vsync),
+	  .preset = "true",
+	  .help = "the window waits for the display's refresh" },
+	{ .key = "gaze-fills-window",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(gaze_fills_window),
+	  .preset = "false",
+	  .help = "the daemon's gaze spans the window instead of the monitor it is on" },
+	{ .key = "display-px",
+	  .type = GZ_OPTION_SIZE,
+	  .offset = AT(display_px),
+	  .min = 1,
+	  .max = 32768,
+	  .help = "display, px; headless the picture fills it" },
+	{ .key = "display-mm",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(display_mm),
+	  .min = 1,
+	  .max = 100000,
+	  .count = 2,
+	  .help = "display's width and height, mm, as \"565 318\"" },
+	{ .key = "distance-mm",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(display_distance_mm),
+	  .min = 1,
+	  .max = 100000,
+	  .help = "from the eye to the display, mm" },
+	{ .key = "help",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(help),
+	  .preset = "false",
+	  .help = "print this and exit" },
+	{ .key = "version",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(version),
+	  .preset = "false",
+	  .help = "print the version and exit" },
+};
+
+const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
+
+static bool starts_with(const char *text, const char *start)
+{
+	return strncmp(text, start, strlen(start)) == 0;
+}
+
+/* What a scene shows is up to its file, and the display has options of its own; the rest of a
+ * scene's keys can be given here. */
+struct scene_tables {
+	struct gz_option options[GZ_SCENE_BINDINGS][GZ_VIEW_SCENE_KEYS_MAX];
+	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
+};
+
+static void pick_scene_tables(struct gz_scene_settings *settings, struct scene_tables *tables)
+{
+	gz_scene_bindings(settings, tables->bindings, GZ_SCENE_BINDINGS);
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+		struct gz_option_binding *binding = &tables->bindings[i];
+		size_t picked = 0;
+		for (size_t k = 0; k < binding->count && picked < GZ_VIEW_SCENE_KEYS_MAX; k++) {
+			const struct gz_option *option = &binding->options[k];
+			if (starts_with(option->key, "volume.") ||
+			    starts_with(option->key, "transfer.") ||
+			    starts_with(option->key, "display."))
+				continue;
+			tables->options[i][picked++] = *option;
+		}
+		binding->options = tables->options[i];
+		binding->count = picked;
+	}
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+	size_t length = strlen(text), tail = strlen(end);
+	return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+/* One finite number up to @p end; strtod() alone would also take blanks, hex and "inf". */
+static bool parse_number(const char *text, char end, float *out_value, const char **out_rest)
+{
+	size_t length = strspn(text, "+-.0123456789eE");
+	if (length == 0 || text[length] != end)
+		return false;
+	char *stop;
+	float value = strtof(text, &stop);
+	if (stop != text + length || !isfinite(value))
+		return false;
+	*out_value = value;
+	*out_rest = stop + (end != '\0');
+	return true;
+}
+
+static bool parse_point(const char *text, struct gz_point *out_point)
+{
+	struct gz_point point;
+	const char *rest;
+	if (!parse_number(text, ',', &point.x, &rest) || !parse_number(rest, '\0', &point.y, &rest))
+		return false;
+	*out_point = point;
+	return true;
+}
+
+enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
+				    struct gz_gaze_choice *out_choice)
+{
+	struct gz_gaze_choice choice = { .kind = GZ_GAZE_CENTRE };
+	if (strlen(text) >= sizeof choice.text) {
+		gz_err(log, "--gaze: too long; at most %zu bytes are taken",
+		       sizeof choice.text - 1);
+		return GZ_ERR_INVAL;
+	}
+	if (strcmp(text, "mouse") == 0) {
+		choice.kind = GZ_GAZE_MOUSE;
+	} else if (strcmp(text, "daemon") == 0) {
+		choice.kind = GZ_GAZE_LATEST;
+	} else if (starts_with(text, "ipc://") || starts_with(text, "tcp://")) {
+		choice.kind = GZ_GAZE_LATEST;
+		strcpy(choice.text, text);
+	} else if (ends_with(text, ".gzl")) {
+		choice.kind = GZ_GAZE_LOG;
+		strcpy(choice.text, text);
+	} else if (parse_point(text, &choice.point)) {
+		choice.kind = GZ_GAZE_FIXED;
+	} else if (strcmp(text, "centre") != 0) {
+		gz_err(log,
+		       "--gaze %s: not understood; give two finite numbers as 0.5,0.5, or centre, "
+		       "daemon, mouse, ipc://..., tcp://... or FILE.gzl",
+		       text);
+		return GZ_ERR_INVAL;
+	}
+	*out_choice = choice;
+	return GZ_OK;
+}
+
+/* The whole of a pattern's grammar, in one place. */
+struct pattern {
+	size_t start, end; /* of the conversion; equal if there is none */
+	bool zeros;
+	int width;
+	int conversions;
+};
+
+static bool scan_pattern(const char *text, struct pattern *out_pattern)
+{
+	struct pattern pattern = { 0 };
+	for (size_t i = 0; text[i]; i++) {
+		if (text[i] != '%')
+			continue;
+		if (text[i + 1] == '%') {
+			i++;
+			continue;
+		}
+		size_t at = i + 1;
+		pattern.start = i;
+		pattern.zeros = text[at] == '0';
+		at += pattern.zeros;
+		pattern.width = 0;
+		if (text[at] >= '1' && text[at] <= '9')
+			pattern.width = text[at++] - '0';
+		if (text[at] != 'd')
+			return false;
+		pattern.end = at + 1;
+		pattern.conversions++;
+		i = at;
+	}
+	*out_pattern = pattern;
+	return true;
+}
+
+enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz_log *log)
+{
+	struct pattern scanned;
+	if (!scan_pattern(pattern, &scanned)) {
+		gz_err(log,
+		       "--out %s: only %%d, %%4d or %%04d (width 1 to 9) may follow a percent "
+		       "sign; "
+		       "write %%%% for the sign itself",
+		       pattern);
+		return GZ_ERR_INVAL;
+	}
+	if (scanned.conversions > 1) {
+		gz_err(log, "--out %s: the frame number stands there %d times; once is enough",
+		       pattern, scanned.conversions);
+		return GZ_ERR_INVAL;
+	}
+	if (frames > 1 && scanned.conversions == 0) {
+		gz_err(log, "--out %s: %d frames need a number in the name, as in frame-%%04d.png",
+		       pattern, frames);
+		return GZ_ERR_INVAL;
+	}
+	return GZ_OK;
+}
+
+enum gz_result gz_pattern_format(const char *pattern, int number, char *path, size_t size)
+{
+	struct pattern scanned;
+	if (!scan_pattern(pattern, &scanned) || scanned.conversions > 1)
+		return GZ_ERR_INVAL;
+	size_t used = 0;
+	for (size_t i = 0; pattern[i]; i++) {
+		if (used + 1 >= size)
+			return GZ_ERR_FULL;
+		if (scanned.conversions == 1 && i == scanned.start) {
+			int length =
+				snprintf(path + used, size - used, scanned.zeros ? "%0*d" : "%*d",
+					 scanned.width, number);
+			if (length < 0 || (size_t)length >= size - used)
+				return GZ_ERR_FULL;
+			used += (size_t)length;
+			i = scanned.end - 1;
+			continue;
+		}
+		i += pattern[i] == '%'; /* "%%" */
+		path[used++] = pattern[i];
+	}
+	path[used] = '\0';
+	return GZ_OK;
+}
+
+struct gz_display gz_view_display(const struct gz_view_options *options,
+				  const struct gz_display *known, int width, int height)
+{
+	struct gz_display display = known ? *known : gz_display_default(width, height);
+	if (options->display_px[0] > 0)
+		memcpy(display.px, options->display_px, sizeof display.px);
+	if (options->display_mm[0] > 0)
+		memcpy(display.mm, options->display_mm, sizeof display.mm);
+	if (options->display_distance_mm > 0)
+		display.distance_mm = options->display_distance_mm;
+	return display;
+}
+
+static enum gz_result take_positional(struct gz_view_options *options, const char *const *arguments,
+				      int count, const struct gz_log *log)
+{
+	if (count == 0)
+		return GZ_OK;
+	if (count > 1 || options->scene[0]) {
+		gz_err(log, "%s: one scene at a time; remove it, or the other one",
+		       arguments[count - 1]);
+		return GZ_ERR_INVAL;
+	}
+	if (strlen(arguments[0]) >= sizeof options->scene) {
+		gz_err(log, "scene: the path is longer than %zu bytes; move it",
+		       sizeof options->scene - 1);
+		return GZ_ERR_INVAL;
+	}
+	strcpy(options->scene, arguments[0]);
+	return GZ_OK;
+}
+
+/* Headless output asked for together with a window, a mouse without one, and the like. */
+static enum gz_result check_together(const struct gz_view_options *options,
+				     const struct gz_log *log)
+{
+	if (!options->scene[0]) {
+		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
+		return GZ_ERR_INVAL;
+	}
+	if (options->headless && options->gaze.kind == GZ_GAZE_MOUSE) {
+		gz_err(log, "--gaze mouse: there is no mouse without a window; leave out "
+			    "--headless, or give X,Y");
+		return GZ_ERR_INVAL;
+	}
+	if (!options->headless && (options->out[0] || options->stats[0])) {
+		gz_err(log, "--%s: only written without a window; add --headless",
+		       options->out[0] ? "out" : "stats");
+		return GZ_ERR_INVAL;
+	}
+	return options->out[0] ? gz_pattern_check(options->out, options->frames, log) : GZ_OK;
+}
+
+/* --method is short for --foveation.method; both at once say nothing certain. */
+static enum gz_result check_method_once(const struct gz_view_options *options,
+					const struct scene_tables *tables, const struct gz_log *log)
+{
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS && options->method >= 0; i++) {
+		for (size_t k = 0; k < tables->bindings[i].count; k++) {
+			if (options->scene_given[i][k] &&
+			    strcmp(tables->options[i][k].key, "foveation.method") == 0) {
+				gz_err(log, "--method: --foveation.method says that too; give one "
+					    "of them");
+				return GZ_ERR_INVAL;
+			}
+		}
+	}
+	return GZ_OK;
+}
+
+static enum gz_result read_arguments(int argc, char *const *argv, struct scene_tables *tables,
+				     const struct gz_log *log, struct gz_view_options *options)
+{
+	struct gz_option_binding bindings[1 + GZ_SCENE_BINDINGS] = {
+		{ gz_view_option_table, gz_view_option_count, options, NULL },
+	};
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+		bindings[1 + i] = tables->bindings[i];
+		bindings[1 + i].given = options->scene_given[i];
+	}
+	const char **positional = calloc((size_t)argc + 1, sizeof *positional);
+	int positional_count = 0;
+	if (!positional)
+		return GZ_ERR_NO_MEM;
+	enum gz_result r = gz_options_preset(&bindings[0]);
+	if (r == GZ_OK)
+		r = gz_options_read_arguments(bindings, 1 + GZ_SCENE_BINDINGS, argc, argv,
+					      positional, &positional_count, log);
+	if (r == GZ_OK && !options->help && !options->version)
+		r = take_positional(options, positional, positional_count, log);
+	free(positional);
+	return r;
+}
+
+enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz_log *log,
+				    struct gz_view_options *out_options)
+{
+	struct scene_tables tables;
+	memset(out_options, 0, sizeof *out_options);
+	out_options->method = -1;
+	pick_scene_tables(&out_options->scene_settings, &tables);
+	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
+	if (r != GZ_OK || out_options->help || out_options->version)
+		return r;
+	const char *gaze = out_options->gaze_text;
+	if (!gaze[0])
+		gaze = out_options->headless ? "centre" : "daemon";
+	r = gz_gaze_choice_parse(gaze, log, &out_options->gaze);
+	if (r == GZ_OK)
+		r = check_method_once(out_options, &tables, log);
+	return r == GZ_OK ? check_together(out_options, log) : r;
+}
+
+enum gz_result gz_view_options_apply(const struct gz_view_options *options,
+				     struct gz_scene_settings *settings)
+{
+	struct gz_scene_settings given = options->scene_settings;
+	struct scene_tables from, to;
+	pick_scene_tables(&given, &from);
+	pick_scene_tables(settings, &to);
+	char text[GZ_PATH_SIZE];
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+		for (size_t k = 0; k < from.bindings[i].count; k++) {
+			const struct gz_option *option = &from.options[i][k];
+			if (!options->scene_given[i][k])
+				continue;
+			enum gz_result r = gz_option_format(option, from.bindings[i].target, text,
+							    sizeof text);
+			if (r == GZ_OK)
+				r = gz_option_parse(option, text, to.bindings[i].target, NULL, 0);
+			if (r != GZ_OK)
+				return r;
+		}
+	}
+	if (options->method >= 0)
+		settings->foveation.method = options->method;
+	return GZ_OK;
+}
+
+void gz_view_options_print_help(FILE *out)
+{
+	const struct gz_option_binding own = { gz_view_option_table, gz_view_option_count, NULL,
+					       NULL };
+	struct gz_scene_settings settings;
+	struct scene_tables tables;
+	pick_scene_tables(&settings, &tables);
+	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
+	      "  gazeview SCENE\n"
+	      "  gazeview --headless --scene SCENE --out frame.png\n\n",
+	      out);
+	gz_options_print_help(&own, 1, out);
+	fputs("\nKeys of the scene; given here they come before the scene's own:\n\n", out);
+	gz_options_print_help(tables.bindings, GZ_SCENE_BINDINGS, out);
+}

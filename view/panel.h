@@ -1,0 +1,44 @@
+/**
+ * @file
+ * What is drawn over the picture: the text line, the list of keys, the cross. Dear ImGui behind a C
+ * interface; the one C++ file of the project is panel.cpp.
+ */
+#ifndef GZ_VIEW_PANEL_H
+#define GZ_VIEW_PANEL_H
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct GLFWwindow;
+
+/** What to draw. Places are in the window's screen coordinates, as GLFW's cursor is. */
+struct gz_panel_content {
+	const char *line; /**< UTF-8, top left */
+	bool warn;        /**< the line tells of something to see to: amber */
+	const char *keys; /**< lines to show in a box; NULL for none */
+	bool cross;       /**< draw one at cross_at */
+	float cross_at[2];
+};
+
+/**
+ * Set up. The window's OpenGL context must be current; callbacks that the window has stay in force
+ * and are called first.
+ *
+ * @return false if Dear ImGui cannot be set up
+ */
+bool gz_panel_init(struct GLFWwindow *window);
+
+/** Draw into the current framebuffer. Only between gz_panel_init() and gz_panel_free(). */
+void gz_panel_draw(const struct gz_panel_content *content);
+
+/** Take down what gz_panel_init() set up; nothing if it did not. */
+void gz_panel_free(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,252 @@
+#include "view/window.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include <GLFW/glfw3.h>
+
+#include "base/clock.h"
+#include "view/panel.h"
+#include "view/window_state.h"
+
+#define GZ_LOG_MODULE "window"
+
+/* A gaze that moves less than this keeps its plan, degrees (chosen: a tenth of what good trackers
+ * err by, a fiftieth of the fovea), so that a still eye sees a still picture. */
+#define DEAD_BAND_DEG 0.05
+/* Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
+#define SILENT_NS GZ_NS_PER_S
+
+/* A running age is drawn anew no more often than this (chosen: readable, and cheap). */
+#define LINE_INTERVAL_NS (GZ_NS_PER_S / 2)
+
+/* The reason of GLFW's last failure, for the one line that tells of it. */
+static const char *glfw_reason(void)
+{
+	const char *reason = NULL;
+	glfwGetError(&reason);
+	return reason ? reason : "no reason given";
+}
+
+static enum gz_result open_display(const struct gz_log *log)
+{
+	if (glfwInit())
+		return GZ_OK;
+	gz_err(log,
+	       "no window: %s; set DISPLAY to an X server, or render without one by --headless",
+	       glfw_reason());
+	return GZ_ERR_NO_DEVICE;
+}
+
+static enum gz_result open_context(struct gz_window *window)
+{
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+	glfwWindowHint(GLFW_DEPTH_BITS, 0);
+	glfwWindowHint(GLFW_STENCIL_BITS, 0);
+	window->glfw = glfwCreateWindow(window->options->size_px[0], window->options->size_px[1],
+					"gazeview", NULL, NULL);
+	if (!window->glfw) {
+		gz_err(window->log,
+		       "no window with OpenGL 3.3: %s; update the graphics driver, or use "
+		       "--headless",
+		       glfw_reason());
+		return GZ_ERR_UNSUPPORTED;
+	}
+	glfwMakeContextCurrent(window->glfw);
+	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
+	GLenum failure = glewInit();
+	if (failure != GLEW_OK || !GLEW_VERSION_3_3) {
+		gz_err(window->log,
+		       "no window with OpenGL 3.3: %s; update the graphics driver, or use "
+		       "--headless",
+		       failure != GLEW_OK ? (const char *)glewGetErrorString(failure)
+					  : "the driver has less");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	glfwSwapInterval(window->options->vsync ? 1 : 0);
+	return GZ_OK;
+}
+
+static enum gz_result open_drawing(struct gz_window *window)
+{
+	enum gz_result r = gz_quad_init(&window->quad, window->log);
+	if (r != GZ_OK)
+		return r;
+	gz_window_input_attach(window);
+	if (gz_panel_init(window->glfw))
+		return GZ_OK;
+	gz_err(window->log, "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
+			    "--headless");
+	return GZ_ERR_UNSUPPORTED;
+}
+
+static void print_gaze(const struct gz_window_gaze *gaze, bool mouse_chosen, char *text,
+		       size_t size)
+{
+	const struct gz_gaze_reading *reading = &gaze->reading;
+	if (gaze->missing)
+		snprintf(text, size, "no daemon (start gazed): mouse");
+	else if (mouse_chosen || !reading->has_age)
+		snprintf(text, size, "%s", gaze->source);
+	else if (reading->age_ns > SILENT_NS)
+		snprintf(text, size, "%s, silent", gaze->source);
+	else
+		snprintf(text, size, "%s %.0f ms %s", gaze->source, gz_ns_to_ms(reading->age_ns),
+			 reading->has_event ? gz_event_name(reading->event) : "");
+}
+
+/* The line that belongs to the frame on the screen; whether it says something new. */
+static bool update_line(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	char state[96], line[GZ_WINDOW_LINE_SIZE];
+	const struct gz_frame_record *record = &window->record;
+	print_gaze(gaze, window->mouse_chosen, state, sizeof state);
+	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms  %llu rays  |  gaze: %s  |  H: keys",
+		 record->method, record->width, record->height, record->total_ms,
+		 (unsigned long long)record->rays, state);
+	bool changed = strcmp(line, window->line) != 0;
+	memcpy(window->line, line, sizeof line);
+	window->line_missing = gaze->missing;
+	return changed;
+}
+
+static bool gaze_moved(const struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	const struct gz_gaze_reading *shown = &window->shown;
+	if (gaze->reading.known != shown->known ||
+	    memcmp(&gaze->display, &window->shown_display, sizeof gaze->display) != 0)
+		return true;
+	return gaze->reading.known && !(gz_display_angle_deg(&gaze->display, gaze->reading.point,
+							     shown->point) <= DEAD_BAND_DEG);
+}
+
+static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
+			   int height)
+{
+	const struct gz_frame_request request = {
+		.camera = &window->camera,
+		.foveation = &window->foveation,
+		.display = &gaze->display,
+		.gaze = gaze->reading,
+		.width = width,
+		.height = height,
+	};
+	struct gz_image *image;
+	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
+	if (r != GZ_OK)
+		return r;
+	gz_quad_upload(&window->quad, image);
+	window->shown = gaze->reading;
+	window->shown_display = gaze->display;
+	window->cast_needed = false;
+	return GZ_OK;
+}
+
+static void present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
+		    int height)
+{
+	int columns, rows;
+	glfwGetWindowSize(window->glfw, &columns, &rows);
+	const struct gz_panel_content content = {
+		.line = window->line,
+		.warn = gaze->missing ||
+			(gaze->reading.has_age && gaze->reading.age_ns > SILENT_NS),
+		.keys = window->keys_shown ? gz_window_keys_text() : NULL,
+		.cross = window->cross && gaze->reading.known,
+		.cross_at = { gaze->reading.point.x * (float)columns,
+			      gaze->reading.point.y * (float)rows },
+	};
+	gz_quad_draw(&window->quad, width, height);
+	gz_panel_draw(&content);
+	glfwSwapBuffers(window->glfw);
+	window->present_needed = false;
+}
+
+/* One turn of the loop: cast and draw what has changed since the last one. */
+static enum gz_result refresh(struct gz_window *window)
+{
+	struct gz_window_gaze gaze;
+	int width, height;
+	glfwGetFramebufferSize(window->glfw, &width, &height);
+	if (width < 1 || height < 1) /* minimised */
+		return GZ_OK;
+	if (window->options->turn_deg != 0) {
+		gz_camera_turn(&window->camera, window->options->turn_deg);
+		window->cast_needed = true;
+	}
+	gz_window_gaze_now(window, width, height, &gaze);
+	bool must_cast = window->cast_needed || gaze_moved(window, &gaze);
+	bool cross_moved = window->cross && memcmp(&gaze.reading.point, &window->cross_drawn,
+						   sizeof window->cross_drawn) != 0;
+	if (must_cast) {
+		enum gz_result r = cast(window, &gaze, width, height);
+		if (r != GZ_OK)
+			return r;
+	}
+	bool age_runs = gaze.reading.has_age && gaze.reading.age_ns <= SILENT_NS;
+	bool line_due = must_cast || !age_runs || gz_clock_now_ns() >= window->line_due_ns;
+	bool line_changed = line_due && update_line(window, &gaze);
+	if (must_cast || cross_moved || line_changed || window->present_needed) {
+		window->line_due_ns = gz_clock_now_ns() + LINE_INTERVAL_NS;
+		window->cross_drawn = gaze.reading.point;
+		present(window, &gaze, width, height);
+	}
+	return GZ_OK;
+}
+
+static enum gz_result loop(struct gz_window *window)
+{
+	window->start_ns = gz_clock_now_ns();
+	window->cast_needed = true;
+	if (window->options->fullscreen)
+		gz_window_toggle_fullscreen(window);
+	while (!glfwWindowShouldClose(window->glfw)) {
+		enum gz_result r = refresh(window);
+		if (r != GZ_OK)
+			return r;
+		glfwWaitEventsTimeout(gz_window_gaze_patience_s(window));
+	}
+	return GZ_OK;
+}
+
+static void close_window(struct gz_window *window)
+{
+	if (window->glfw) {
+		gz_panel_free();
+		gz_quad_free(&window->quad);
+		glfwDestroyWindow(window->glfw);
+	}
+	glfwTerminate();
+	gz_frame_maker_destroy(&window->maker);
+	gz_gaze_source_destroy(&window->source);
+	gz_gaze_source_destroy(&window->mouse);
+}
+
+enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log)
+{
+	struct gz_window window = { .options = options, .log = log, .cross = options->cross };
+	/* The display first: without one there is no use in loading. */
+	enum gz_result r = open_display(log);
+	if (r != GZ_OK)
+		return r;
+	r = gz_window_gaze_open(&window);
+	if (r == GZ_OK)
+		r = gz_frame_maker_create(options, log, &window.maker);
+	if (r == GZ_OK) {
+		window.camera = gz_frame_maker_scene(window.maker)->settings.camera;
+		window.foveation = gz_frame_maker_scene(window.maker)->settings.foveation;
+		r = open_context(&window);
+	}
+	if (r == GZ_OK)
+		r = open_drawing(&window);
+	if (r == GZ_OK)
+		r = loop(&window);
+	close_window(&window);
+	return r;
+}

@@ -1,0 +1,86 @@
+/**
+ * @file
+ * What the window's parts share: window.c runs the loop, window_gaze.c says where the gaze is,
+ * window_input.c turns keys and mouse into changes. Internal to view/.
+ */
+#ifndef GZ_VIEW_WINDOW_STATE_H
+#define GZ_VIEW_WINDOW_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "view/frame.h"
+#include "view/gaze_source.h"
+#include "view/options.h"
+#include "view/quad.h"
+
+enum { GZ_WINDOW_LINE_SIZE = 256 };
+
+/** The window of gz_view_window(). */
+struct gz_window {
+	const struct gz_view_options *options;
+	const struct gz_log *log;
+	struct GLFWwindow *glfw;
+	struct gz_frame_maker *maker;
+	struct gz_quad quad;
+
+	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
+	struct gz_gaze_source *mouse;
+	bool mouse_chosen; /**< M: the mouse, though there is another source */
+	int64_t start_ns;  /**< of a log's time */
+
+	struct gz_camera camera;
+	struct gz_foveation foveation;
+	bool cross;
+	bool keys_shown;
+
+	bool dragging;
+	bool cursor_known;
+	double cursor[2];      /**< screen coordinates of the window */
+	int windowed_place[4]; /**< x y w h to return to from full screen */
+
+	bool cast_needed;    /**< camera, method or size has changed */
+	bool present_needed; /**< what lies over the picture has changed */
+
+	/** The frame on the screen. */
+	struct gz_frame_record record;
+	struct gz_gaze_reading shown;
+	struct gz_display shown_display;
+	struct gz_point cross_drawn;
+	int64_t line_due_ns; /**< when the line's running numbers are next worth a redraw */
+	bool line_missing;   /**< the line says that there is no daemon */
+	char line[GZ_WINDOW_LINE_SIZE];
+};
+
+/** The gaze of one moment, on the picture. */
+struct gz_window_gaze {
+	struct gz_gaze_reading reading; /**< its point is on the picture */
+	struct gz_display display;      /**< of the picture: it fills this one */
+	const char *source;             /**< "daemon", "mouse", … */
+	bool missing; /**< the daemon asked for is not there; the mouse stands in */
+};
+
+/** Make the sources that --gaze asks for. @return what the source's maker returns; logged. */
+enum gz_result gz_window_gaze_open(struct gz_window *window);
+
+/** Where the gaze is now, on a framebuffer of @p width times @p height px. */
+void gz_window_gaze_now(struct gz_window *window, int width, int height,
+			struct gz_window_gaze *out_gaze);
+
+/** Seconds until the gaze must be looked at again, if no event comes before. */
+double gz_window_gaze_patience_s(const struct gz_window *window);
+
+/** Listen to keys, buttons, cursor, wheel and size. Before gz_panel_init(), which chains them. */
+void gz_window_input_attach(struct gz_window *window);
+
+/** What H and ? show. Static text. */
+const char *gz_window_keys_text(void);
+
+/** Into full screen on the monitor that the window is on, or back. */
+void gz_window_toggle_fullscreen(struct gz_window *window);
+
+/** The monitor that holds the middle of the window, or the primary one; NULL if there is none. */
+struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw);
+
+#endif
