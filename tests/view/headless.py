@@ -1,0 +1,216 @@
+"""gazeview --headless, run as its users run it.
+
+headless.py GAZEVIEW SCENES-FOLDER
+"""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from picture import read_png, run, write_scene
+
+GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
+PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
+SCENE = write_scene(PLACE.name, SCENES)
+METHODS = ("standard", "mdc", "ddc", "acuity")
+KEYS = (
+    "method backend width height rays samples plan_ms cast_ms reconstruct_ms total_ms gaze "
+    "gaze_age_ms"
+).split()
+LINE = re.compile(
+    r"(\w+) (\d+)x(\d+) rays (\d+) samples (\d+) plan ([\d.]+) cast ([\d.]+) reconstruct ([\d.]+) "
+    r"total ([\d.]+) ms gaze age (-|[\d.]+ ms)$"
+)
+
+
+class Headless(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory(prefix="gazecast-test-headless-")
+        self.addCleanup(self.place.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.place.name, name)
+
+    def render(self, *more, size="96x64"):
+        return run(GAZEVIEW, "--headless", "--scene", SCENE, "--size", size, *more)
+
+    def good(self, *more, **options):
+        done = self.render(*more, **options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def frames(self, name="stats.json"):
+        with open(self.path(name), encoding="utf-8") as source:
+            whole = json.load(source)
+        self.assertEqual(list(whole), ["frames"])
+        return whole["frames"]
+
+    def refused(self, done, word):
+        self.assertGreater(done.returncode, 0)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn(word, done.stderr)
+
+    def test_every_method_writes_its_pictures_lines_and_statistics(self):
+        pictures = {}
+        for method in METHODS:
+            name = method + ".json"
+            done = self.good(
+                "--method", method, "--frames", 2, "--turn", 20, "--out",
+                self.path(method + "-%03d.png"), "--stats", self.path(name),
+            )
+            lines, frames = done.stdout.splitlines(), self.frames(name)
+            self.assertEqual((len(lines), len(frames)), (2, 2))
+            for line, frame in zip(lines, frames):
+                self.assertEqual(list(frame), KEYS)
+                said = LINE.match(line)
+                self.assertIsNotNone(said, line)
+                self.assertEqual(said[1], method)
+                self.assertEqual(frame["method"], method)
+                self.assertEqual((frame["width"], frame["height"]), (96, 64))
+                self.assertEqual((int(said[4]), int(said[5])), (frame["rays"], frame["samples"]))
+                self.assertGreater(frame["samples"], 0)
+                parts = frame["plan_ms"] + frame["cast_ms"] + frame["reconstruct_ms"]
+                self.assertLessEqual(parts, frame["total_ms"] + 0.01)
+                self.assertEqual(frame["gaze"], [0.5, 0.5])
+                self.assertIsNone(frame["gaze_age_ms"])
+            both = [read_png(self.path("%s-%03d.png" % (method, i))) for i in (0, 1)]
+            self.assertEqual((both[0].width, both[0].height), (96, 64))
+            self.assertFalse(both[0] == both[1], "the camera did not turn")
+            pictures[method] = both[0]
+        colours = {pictures["standard"].at(x, y) for x in range(96) for y in range(64)}
+        self.assertGreater(len(colours), 50, "nothing is to be seen")
+
+    def test_standard_casts_every_pixel_and_foveation_fewer(self):
+        for method in METHODS:
+            self.good("--method", method, "--stats", self.path(method), size="640x360")
+        rays = {method: self.frames(method)[0]["rays"] for method in METHODS}
+        self.assertEqual(rays["standard"], 640 * 360)
+        for method in METHODS[1:]:
+            self.assertLess(rays[method], rays["standard"])
+
+    def test_picture_at_the_gaze_is_the_standard_one_and_elsewhere_not(self):
+        for method in ("standard", "acuity"):
+            self.good(
+                "--method", method, "--gaze", "0.3,0.5", "--out", self.path(method + ".png"),
+                size="640x360",
+            )
+        sharp, foveated = (read_png(self.path(m + ".png")) for m in ("standard", "acuity"))
+        x, y, r = 192, 180, 24  # 1.9 degrees of the default display
+        fovea = (x - r, y - r, x + r, y + r)
+        beside = (400, 60, 520, 300)
+        self.assertTrue(sharp.part(*fovea) == foveated.part(*fovea), "not sharp at the gaze")
+        self.assertFalse(sharp.part(*beside) == foveated.part(*beside), "sharp beside it")
+
+    def test_same_command_gives_the_same_picture(self):
+        for name, threads in (("a.png", 1), ("b.png", 2)):
+            self.good("--threads", threads, "--gaze", "0.9,0.1", "--out", self.path(name))
+        with open(self.path("a.png"), "rb") as a, open(self.path("b.png"), "rb") as b:
+            self.assertTrue(a.read() == b.read())
+
+    def test_image_sampling_rate_changes_the_rays_and_not_the_size(self):
+        for rate in (0.5, 1, 2):
+            name = "%g" % rate
+            self.good(
+                "--render.image_sampling_rate", rate, "--method", "standard", "--stats",
+                self.path(name), "--out", self.path(name + ".png"),
+            )
+            frame, picture = self.frames(name)[0], read_png(self.path(name + ".png"))
+            self.assertEqual(frame["rays"], round(96 * rate) * round(64 * rate))
+            self.assertEqual((frame["width"], frame["height"]), (96, 64))
+            self.assertEqual((picture.width, picture.height), (96, 64))
+
+    def test_cross_is_drawn_at_the_gaze(self):
+        self.good("--gaze", "0.25,0.75", "--cross", "--out", self.path("cross.png"))
+        self.assertEqual(read_png(self.path("cross.png")).at(24, 48), (255, 64, 64))
+        for gaze in ("0,0", "1,1", "-5,0.5", "1e9,-1e9"):
+            self.good("--gaze", gaze, "--cross", "--out", self.path("edge.png"))
+
+    def test_gaze_outside_the_picture_is_kept_as_it_is(self):
+        for method in METHODS:
+            self.good("--gaze", "-0.5,1.75", "--method", method, "--stats", self.path("stats.json"))
+            self.assertEqual(self.frames()[0]["gaze"], [-0.5, 1.75])
+
+    def test_distance_to_the_display_changes_the_plan(self):
+        for name, distance in (("near", 300), ("far", 3000)):
+            self.good(
+                "--method", "acuity", "--display-mm", "565 318", "--distance-mm", distance,
+                "--stats", self.path(name), size="640x360",
+            )
+        # From afar the same pixels are finer than the eye.
+        self.assertLess(self.frames("far")[0]["rays"], self.frames("near")[0]["rays"])
+
+    def test_endpoint_without_a_daemon_goes_on_with_no_gaze_and_says_so_once(self):
+        endpoint = "ipc://" + self.path("latest")
+        done = self.good(
+            "--gaze", endpoint, "--frames", 4, "--fps", 200, "--stats", self.path("stats.json")
+        )
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn(endpoint, done.stderr)
+        frames = self.frames()
+        self.assertEqual(len(frames), 4)
+        for frame in frames:
+            self.assertIsNone(frame["gaze"])
+            self.assertIsNone(frame["gaze_age_ms"])
+
+    def test_what_cannot_work_is_refused_in_one_line(self):
+        for words, said in (
+            (("--gaze", "nan,0.5"), "--gaze"),
+            (("--gaze", "0.5,inf"), "--gaze"),
+            (("--gaze", "tcp://"), "tcp://"),
+            (("--gaze", self.path("none.gzl")), "none.gzl"),
+            (("--backend", "vulkan"), "vulkan"),
+            (("--simd", "mmx"), "mmx"),
+            (("--frames", "2", "--out", "same.png"), "same.png"),
+            (("--out", "%s.png"), "%s.png"),
+            (("--stats", "/no/such/folder/s.json"), "/no/such/folder/s.json"),
+            (("--method", "blur"), "acuity"),
+        ):
+            with self.subTest(words=words):
+                self.refused(self.render(*words), said)
+        for size in ("0x5", "5", "16384x16385"):
+            self.refused(self.render(size=size), "size")
+        self.refused(
+            self.render("--render.image_sampling_rate", 4, size="16384x64"), "image_sampling_rate"
+        )
+        self.refused(run(GAZEVIEW, "--headless", "--scene", self.path("no.scene")), "no.scene")
+        self.refused(run(GAZEVIEW, "--headless"), "--scene")
+
+    def test_picture_that_cannot_be_written_ends_it_and_the_statistics_still_parse(self):
+        done = self.render(
+            "--out", "/no/such/folder/f-%d.png", "--frames", 5, "--stats", self.path("stats.json")
+        )
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("/no/such/folder/f-0.png", done.stderr)
+        self.assertLessEqual(len(self.frames()), 1)
+
+    def test_signal_ends_it_between_frames_and_the_statistics_parse(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            process = subprocess.Popen(
+                [GAZEVIEW, "--headless", "--scene", SCENE, "--size", "96x64", "--frames",
+                 "1000000", "--stats", self.path("stats.json")],
+                stdout=subprocess.PIPE, text=True,
+            )
+            for _ in range(3):
+                self.assertRegex(process.stdout.readline(), LINE)
+            process.send_signal(number)
+            process.communicate(timeout=20)
+            kill = number == signal.SIGKILL
+            self.assertEqual(process.returncode, -number if kill else 128 + number)
+            self.assertGreaterEqual(len(self.frames()), 2)
+
+    def test_help_and_version_go_to_stdout(self):
+        for word, said in (("--help", "--gaze"), ("--version", "gazeview ")):
+            done = run(GAZEVIEW, word)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn(said, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)

@@ -1,0 +1,96 @@
+"""What the tests of gazeview share: reading its PNGs without a library, and running it."""
+
+import os
+import struct
+import subprocess
+import sys
+import zlib
+
+SKIPPED = 77
+
+
+def skip(reason):
+    print("skipped:", reason)
+    sys.exit(SKIPPED)
+
+
+def write_scene(folder, scenes):
+    """The installed procedural scene with a small volume, which is made in a blink."""
+    with open(os.path.join(scenes, "shells.scene"), encoding="utf-8") as source:
+        text = source.read()
+    assert "dims = 192 192 192" in text and "file = shells.tf" in text
+    text = text.replace("dims = 192 192 192", "dims = 64 64 64")
+    text = text.replace("file = shells.tf", "file = " + os.path.join(scenes, "shells.tf"))
+    path = os.path.join(folder, "small.scene")
+    with open(path, "w", encoding="utf-8") as out:
+        out.write(text)
+    return path
+
+
+class Picture:
+    """An 8-bit RGB picture, rows of bytes."""
+
+    def __init__(self, width, height, rows):
+        self.width, self.height, self.rows = width, height, rows
+
+    def at(self, x, y):
+        return tuple(self.rows[y][3 * x : 3 * x + 3])
+
+    def part(self, left, top, right, bottom):
+        """All bytes of a rectangle, right and bottom not included."""
+        return b"".join(bytes(self.rows[y][3 * left : 3 * right]) for y in range(top, bottom))
+
+    def __eq__(self, other):
+        return (self.width, self.height) == (other.width, other.height) and all(
+            bytes(a) == bytes(b) for a, b in zip(self.rows, other.rows)
+        )
+
+
+def paeth(a, b, c):
+    p = a + b - c
+    return min((a, b, c), key=lambda v: abs(p - v))
+
+
+def unfilter(kind, row, above):
+    for i in range(len(row)):
+        left = row[i - 3] if i >= 3 else 0
+        corner = above[i - 3] if i >= 3 else 0
+        if kind == 1:
+            row[i] = (row[i] + left) & 255
+        elif kind == 2:
+            row[i] = (row[i] + above[i]) & 255
+        elif kind == 3:
+            row[i] = (row[i] + (left + above[i]) // 2) & 255
+        elif kind == 4:
+            row[i] = (row[i] + paeth(left, above[i], corner)) & 255
+
+
+def read_png(path):
+    with open(path, "rb") as source:
+        data = source.read()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is no PNG"
+    at, packed, size = 8, b"", None
+    while at < len(data):
+        (length,), kind = struct.unpack(">I", data[at : at + 4]), data[at + 4 : at + 8]
+        body = data[at + 8 : at + 8 + length]
+        if kind == b"IHDR":
+            size = struct.unpack(">IIBBBBB", body)
+        elif kind == b"IDAT":
+            packed += body
+        at += 12 + length
+    width, height = size[:2]
+    assert size[2:] == (8, 2, 0, 0, 0), "not 8-bit RGB: %r" % (size,)
+    raw, rows, above = zlib.decompress(packed), [], bytearray(3 * width)
+    for y in range(height):
+        start = y * (3 * width + 1)
+        row = bytearray(raw[start + 1 : start + 1 + 3 * width])
+        unfilter(raw[start], row, above)
+        rows.append(row)
+        above = row
+    return Picture(width, height, rows)
+
+
+def run(*command, **options):
+    return subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, timeout=50, **options
+    )

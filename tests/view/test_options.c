@@ -1,0 +1,333 @@
+/* gazeview's command line: what it takes, what it refuses and with which words. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/captured_log.h"
+#include "view/options.h"
+
+enum { ARGUMENTS_MAX = 24 };
+
+static struct captured_log captured;
+static struct gz_view_options options;
+
+/* A command line of words separated by single blanks. */
+static enum gz_result read_line(const char *line)
+{
+	static char text[4096];
+	static char name[] = "gazeview";
+	char *argv[ARGUMENTS_MAX] = { name };
+	int argc = 1;
+	snprintf(text, sizeof text, "%s", line);
+	for (char *word = strtok(text, " "); word && argc < ARGUMENTS_MAX; word = strtok(NULL, " "))
+		argv[argc++] = word;
+	captured_log_init(&captured, "*:debug");
+	return gz_view_options_read(argc, argv, &captured.log, &options);
+}
+
+/* Refused, in one message that names @p word. */
+static void assert_refused(const char *line, const char *word)
+{
+	assert_int_equal(read_line(line), GZ_ERR_INVAL);
+	assert_int_equal(captured.messages, 1);
+	assert_int_equal(captured.level, GZ_LOG_ERROR);
+	assert_null(strchr(captured.last, '\n'));
+	if (!strstr(captured.last, word))
+		fail_msg("\"%s\": the message lacks \"%s\": %s", line, word, captured.last);
+}
+
+static void command_line_of_the_manual_is_read(void **state)
+{
+	(void)state;
+	assert_int_equal(
+		read_line("--headless --scene a.scene --size 640x360 --gaze 0.25,0.75 "
+			  "--fps 60 --method mdc --backend cpu --frames 9 --out f-%04d.png "
+			  "--stats s.json --turn 0.01"),
+		GZ_OK);
+	assert_true(options.headless);
+	assert_string_equal(options.scene, "a.scene");
+	assert_int_equal(options.size_px[0], 640);
+	assert_int_equal(options.size_px[1], 360);
+	assert_int_equal(options.gaze.kind, GZ_GAZE_FIXED);
+	assert_true(options.gaze.point.x == 0.25f && options.gaze.point.y == 0.75f);
+	assert_int_equal(options.method, GZ_METHOD_MDC);
+	assert_int_equal(options.frames, 9);
+	assert_true(options.turn_deg == 0.01);
+	assert_int_equal(captured.messages, 0);
+}
+
+static void scene_may_stand_alone(void **state)
+{
+	(void)state;
+	assert_int_equal(read_line("a.scene --headless"), GZ_OK);
+	assert_string_equal(options.scene, "a.scene");
+	assert_refused("a.scene b.scene --headless", "b.scene");
+	assert_refused("a.scene --scene b.scene", "a.scene");
+	assert_refused("--headless", "--scene");
+}
+
+static void gaze_without_option_is_centre_headless_and_daemon_in_a_window(void **state)
+{
+	(void)state;
+	assert_int_equal(read_line("a.scene --headless"), GZ_OK);
+	assert_int_equal(options.gaze.kind, GZ_GAZE_CENTRE);
+	assert_int_equal(read_line("a.scene"), GZ_OK);
+	assert_int_equal(options.gaze.kind, GZ_GAZE_LATEST);
+	assert_string_equal(options.gaze.text, "");
+}
+
+static void gaze_texts_choose_their_sources(void **state)
+{
+	(void)state;
+	const struct {
+		const char *text;
+		enum gz_gaze_kind kind;
+	} cases[] = {
+		{ "centre", GZ_GAZE_CENTRE },
+		{ "mouse", GZ_GAZE_MOUSE },
+		{ "daemon", GZ_GAZE_LATEST },
+		{ "ipc:///tmp/x/latest", GZ_GAZE_LATEST },
+		{ "tcp://127.0.0.1:5000", GZ_GAZE_LATEST },
+		{ "a/b.gzl", GZ_GAZE_LOG },
+		{ "0,1", GZ_GAZE_FIXED },
+		{ "-0.5,1.5", GZ_GAZE_FIXED },
+		{ "1e-3,.5", GZ_GAZE_FIXED },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct gz_gaze_choice choice;
+		assert_int_equal(gz_gaze_choice_parse(cases[i].text, NULL, &choice), GZ_OK);
+		if (choice.kind != cases[i].kind)
+			fail_msg("%s: kind %d, expected %d", cases[i].text, (int)choice.kind,
+				 (int)cases[i].kind);
+	}
+}
+
+static void gaze_that_is_no_finite_pair_is_refused(void **state)
+{
+	(void)state;
+	const char *const bad[] = { "nan,0.5", "0.5,nan", "inf,0",     "0,-inf",  "0.5",
+				    "0.5,",    ",0.5",    "0.5,0.5,",  "0.5;0.5", "0x1,0.5",
+				    "1e99,0",  "a,b",     "0.5,0.5 x", "",        "udp://1",
+				    "center",  "log.gzl2" };
+	for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+		struct gz_gaze_choice choice = { .kind = GZ_GAZE_LOG };
+		captured_log_init(&captured, "*:debug");
+		if (gz_gaze_choice_parse(bad[i], &captured.log, &choice) != GZ_ERR_INVAL)
+			fail_msg("\"%s\" was taken", bad[i]);
+		assert_int_equal(captured.messages, 1);
+		assert_non_null(strstr(captured.last, "--gaze"));
+		assert_int_equal(choice.kind, GZ_GAZE_LOG);
+	}
+}
+
+static void values_outside_their_range_are_refused(void **state)
+{
+	(void)state;
+	assert_refused("a.scene --size 0x100", "size");
+	assert_refused("a.scene --size 640", "size");
+	assert_refused("a.scene --size 640x480x2", "size");
+	assert_refused("a.scene --size 99999x100", "size");
+	assert_refused("a.scene --fps 0", "fps");
+	assert_refused("a.scene --fps nan", "fps");
+	assert_refused("a.scene --frames 0", "frames");
+	assert_refused("a.scene --frames 12abc", "frames");
+	assert_refused("a.scene --method blur", "acuity");
+	assert_refused("a.scene --turn 400", "turn");
+	assert_refused("a.scene --threads 1000", "threads");
+	assert_refused("a.scene --distance-mm -1", "distance");
+	assert_refused("a.scene --no-such-thing", "no-such-thing");
+	assert_refused("a.scene --frames 2 --frames 3", "frames");
+}
+
+static void options_that_contradict_each_other_are_refused(void **state)
+{
+	(void)state;
+	assert_refused("a.scene --headless --gaze mouse", "mouse");
+	assert_refused("a.scene --out a.png", "--headless");
+	assert_refused("a.scene --stats a.json", "--headless");
+	assert_refused("a.scene --headless --method mdc --foveation.method ddc",
+		       "foveation.method");
+}
+
+static void what_a_scene_shows_cannot_be_overridden(void **state)
+{
+	(void)state;
+	assert_refused("a.scene --volume.file b.nii", "volume.file");
+	assert_refused("a.scene --transfer.file b.tf", "transfer.file");
+}
+
+static void scene_keys_given_come_before_the_scenes_own(void **state)
+{
+	(void)state;
+	static struct gz_scene_settings settings;
+	settings.camera.fov_deg = 40;
+	settings.camera.height = 7;
+	settings.foveation = gz_foveation_default();
+	settings.foveation.method = GZ_METHOD_DDC;
+	double floor = settings.foveation.step_floor;
+	assert_int_equal(read_line("a.scene --headless --camera.fov_deg 33.25 "
+				   "--foveation.mdc_square_px 123 --method acuity"),
+			 GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_true(settings.camera.fov_deg == 33.25);
+	assert_true(settings.foveation.mdc_square_px == 123);
+	assert_int_equal(settings.foveation.method, GZ_METHOD_ACUITY);
+	assert_true(settings.camera.height == 7);
+	assert_true(settings.foveation.step_floor == floor);
+}
+
+static void scene_without_overrides_stays_as_it_is(void **state)
+{
+	(void)state;
+	static struct gz_scene_settings settings, before;
+	settings.camera.fov_deg = 40;
+	settings.foveation.method = GZ_METHOD_MDC;
+	before = settings;
+	assert_int_equal(read_line("a.scene --headless"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_memory_equal(&settings, &before, sizeof settings);
+}
+
+static void pattern_puts_the_number_where_it_stands(void **state)
+{
+	(void)state;
+	const struct {
+		const char *pattern;
+		int number;
+		const char *expected;
+	} cases[] = {
+		{ "f-%04d.png", 7, "f-0007.png" },
+		{ "f-%d.png", 12345, "f-12345.png" },
+		{ "%3d", 5, "  5" },
+		{ "%01d%%.png", 3, "3%.png" },
+		{ "plain.png", 9, "plain.png" },
+		{ "%%d.png", 9, "%d.png" },
+		{ "%02d/x", 123, "123/x" },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		char path[64];
+		assert_int_equal(
+			gz_pattern_format(cases[i].pattern, cases[i].number, path, sizeof path),
+			GZ_OK);
+		assert_string_equal(path, cases[i].expected);
+	}
+}
+
+static void pattern_with_anything_but_one_number_is_refused(void **state)
+{
+	(void)state;
+	const char *const bad[] = {
+		"%s.png",   "%n.png", "%ld.png", "%-4d.png", "%10d.png", "%",
+		"%d%d.png", "a%.png", "%*d",     "%4$d",     "%0x",      "% d"
+	};
+	for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+		char path[64] = "untouched";
+		captured_log_init(&captured, "*:debug");
+		if (gz_pattern_check(bad[i], 1, &captured.log) != GZ_ERR_INVAL)
+			fail_msg("\"%s\" was taken", bad[i]);
+		assert_int_equal(captured.messages, 1);
+		assert_int_equal(gz_pattern_format(bad[i], 1, path, sizeof path), GZ_ERR_INVAL);
+		assert_string_equal(path, "untouched");
+	}
+	assert_int_equal(gz_pattern_check("one.png", 2, NULL), GZ_ERR_INVAL);
+	assert_int_equal(gz_pattern_check("one.png", 1, NULL), GZ_OK);
+	assert_int_equal(gz_pattern_check("%d.png", 2, NULL), GZ_OK);
+	assert_refused("a.scene --headless --frames 2 --out one.png", "one.png");
+}
+
+static void pattern_that_does_not_fit_is_refused(void **state)
+{
+	(void)state;
+	char path[8];
+	assert_int_equal(gz_pattern_format("1234567", 0, path, sizeof path), GZ_OK);
+	assert_int_equal(gz_pattern_format("12345678", 0, path, sizeof path), GZ_ERR_FULL);
+	assert_int_equal(gz_pattern_format("1234%d", 1000, path, sizeof path), GZ_ERR_FULL);
+	assert_int_equal(gz_pattern_format("%9d", 1, path, sizeof path), GZ_ERR_FULL);
+}
+
+static void display_fields_given_come_before_those_known(void **state)
+{
+	(void)state;
+	const struct gz_display known = { .px = { 800, 600 },
+					  .mm = { 400, 300 },
+					  .distance_mm = 700 };
+	assert_int_equal(read_line("a.scene --headless --distance-mm 500"), GZ_OK);
+	struct gz_display display = gz_view_display(&options, &known, 640, 480);
+	assert_true(display.distance_mm == 500);
+	assert_true(display.mm[0] == 400 && display.mm[1] == 300);
+	display = gz_view_display(&options, NULL, 640, 480);
+	struct gz_display preset = gz_display_default(640, 480);
+	assert_true(display.distance_mm == 500);
+	assert_true(display.mm[0] == preset.mm[0]);
+}
+
+/* Print the help into memory. */
+static char *help_text(void)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	assert_non_null(out);
+	gz_view_options_print_help(out);
+	fclose(out);
+	return text;
+}
+
+static void help_names_every_option_and_every_key_that_can_be_given(void **state)
+{
+	(void)state;
+	char *text = help_text();
+	for (size_t i = 0; i < gz_view_option_count; i++)
+		assert_non_null(strstr(text, gz_view_option_table[i].key));
+	struct gz_scene_settings settings;
+	struct gz_option_binding tables[GZ_SCENE_BINDINGS];
+	gz_scene_bindings(&settings, tables, GZ_SCENE_BINDINGS);
+	int hidden = 0;
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+		for (size_t k = 0; k < tables[i].count; k++) {
+			const char *key = tables[i].options[k].key;
+			bool taken = strncmp(key, "volume.", 7) != 0 &&
+				     strncmp(key, "transfer.", 9) != 0 &&
+				     strncmp(key, "display.", 8) != 0;
+			if (taken != (strstr(text, key) != NULL))
+				fail_msg("--help and %s disagree", key);
+			hidden += !taken;
+		}
+	}
+	assert_true(hidden > 0);
+	free(text);
+}
+
+static void help_and_version_need_no_scene(void **state)
+{
+	(void)state;
+	assert_int_equal(read_line("--help"), GZ_OK);
+	assert_true(options.help);
+	assert_int_equal(read_line("--version"), GZ_OK);
+	assert_true(options.version);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(command_line_of_the_manual_is_read),
+		cmocka_unit_test(scene_may_stand_alone),
+		cmocka_unit_test(gaze_without_option_is_centre_headless_and_daemon_in_a_window),
+		cmocka_unit_test(gaze_texts_choose_their_sources),
+		cmocka_unit_test(gaze_that_is_no_finite_pair_is_refused),
+		cmocka_unit_test(values_outside_their_range_are_refused),
+		cmocka_unit_test(options_that_contradict_each_other_are_refused),
+		cmocka_unit_test(what_a_scene_shows_cannot_be_overridden),
+		cmocka_unit_test(scene_keys_given_come_before_the_scenes_own),
+		cmocka_unit_test(scene_without_overrides_stays_as_it_is),
+		cmocka_unit_test(pattern_puts_the_number_where_it_stands),
+		cmocka_unit_test(pattern_with_anything_but_one_number_is_refused),
+		cmocka_unit_test(pattern_that_does_not_fit_is_refused),
+		cmocka_unit_test(display_fields_given_come_before_those_known),
+		cmocka_unit_test(help_names_every_option_and_every_key_that_can_be_given),
+		cmocka_unit_test(help_and_version_need_no_scene),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,272 @@
+"""gazeview's window, driven by keys and mouse under Xvfb with Mesa's software OpenGL.
+
+window.py GAZEVIEW SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from picture import Picture, run, skip, write_scene
+
+GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
+SHOTS = sys.argv[3] if len(sys.argv) > 3 else None
+PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
+SCENE = write_scene(PLACE.name, SCENES)
+SCREEN = (900, 700)
+SIZE = (480, 320)
+CROSS = (255, 64, 64)
+LINE_HEIGHT = 40  # the text line is above
+
+for tool in ("Xvfb", "xdotool", "ffmpeg"):
+    if not shutil.which(tool):
+        skip(tool + " is not installed")
+
+
+def start_server():
+    """An X server on a display that is free; it says which."""
+    read, write = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "%dx%dx24" % SCREEN, "-nolisten", "tcp",
+         "-noreset"],
+        pass_fds=(write,), stderr=subprocess.DEVNULL,
+    )
+    os.close(write)
+    with os.fdopen(read) as number:
+        display = number.readline().strip()
+    if not display:
+        skip("Xvfb does not start")
+    return server, ":" + display
+
+
+class Window(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server, display = start_server()
+        cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
+        cls.environment = dict(
+            os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
+            GAZECAST_RUNTIME_DIR=cls.place.name,
+        )
+        cls.environment.pop("WAYLAND_DISPLAY", None)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.terminate()
+        cls.server.wait()
+        cls.place.cleanup()
+
+    def setUp(self):
+        self.viewer = None
+        self.addCleanup(self.stop)
+
+    def stop(self):
+        if self.viewer and self.viewer.poll() is None:
+            self.viewer.kill()
+        if self.viewer:
+            self.viewer.communicate()
+
+    def tool(self, *words):
+        done = run("xdotool", *words, env=self.environment)
+        self.assertEqual(done.returncode, 0, "xdotool %r: %s" % (words, done.stderr))
+        return done.stdout
+
+    def start(self, *more):
+        self.tool("mousemove", *SCREEN)
+        self.viewer = subprocess.Popen(
+            [GAZEVIEW, SCENE, "--size", "%dx%d" % SIZE, *more], env=self.environment,
+            stderr=subprocess.PIPE, text=True,
+        )
+        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
+                    "^gazeview$", env=self.environment)
+        self.assertEqual(found.returncode, 0, "no window appears")
+        self.window = found.stdout.split()[0]
+        self.until(lambda p: len({p.at(x, y) for x in range(100, 380, 4)
+                                  for y in range(60, 300, 4)}) > 20, "a first picture")
+
+    def grab(self):
+        done = subprocess.run(
+            ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
+             "%dx%d" % SCREEN, "-i", self.environment["DISPLAY"], "-frames:v", "1", "-f",
+             "rawvideo", "-pix_fmt", "rgb24", "-"],
+            capture_output=True, timeout=20, env=self.environment,
+        )
+        width, height = SCREEN
+        self.assertEqual(len(done.stdout), 3 * width * height, done.stderr)
+        rows = [done.stdout[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
+        return Picture(width, height, rows)
+
+    def until(self, good, what):
+        """The first screenshot that @good accepts; whoever waits longer than 15 s has failed."""
+        deadline = time.monotonic() + 15
+        while True:
+            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
+            picture = self.grab()
+            if good(picture):
+                break
+            self.assertLess(time.monotonic(), deadline, "never came: " + what)
+        if SHOTS:
+            name = "%s-%s.png" % (self.id().rsplit("_test_", 1)[-1].split(".")[-1], what)
+            subprocess.run(
+                ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24",
+                 "-video_size", "%dx%d" % SCREEN, "-i", "-",
+                 os.path.join(SHOTS, name.replace(" ", "-"))],
+                input=b"".join(bytes(row) for row in picture.rows), check=True,
+            )
+        return picture
+
+    def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
+        return picture.part(0, LINE_HEIGHT, width, height)
+
+    def until_changed(self, before, what):
+        old = self.below_line(before)
+        return self.until(lambda p: self.below_line(p) != old, what)
+
+    def move(self, x, y):
+        self.tool("mousemove", "--window", self.window, x, y)
+
+    def cross_at(self, picture, x, y):
+        """A red upright cross whose middle is there, to a pixel or two."""
+        arms = ((0, 0), (8, 0), (-8, 0), (0, 8), (0, -8))
+        return any(
+            all(picture.at(x + a + i, y + b + j) == CROSS for a, b in arms)
+            for i in (-1, 0, 1) for j in (-1, 0, 1)
+        )
+
+    def test_cross_comes_by_key_follows_the_mouse_and_goes(self):
+        self.start("--gaze", "mouse")
+        self.move(150, 200)
+        self.tool("key", "c")
+        self.until(lambda p: self.cross_at(p, 150, 200), "cross at the mouse")
+        self.move(330, 120)
+        picture = self.until(lambda p: self.cross_at(p, 330, 120), "cross moved")
+        self.assertFalse(self.cross_at(picture, 150, 200))
+        self.tool("key", "c")
+        self.until(lambda p: not self.cross_at(p, 330, 120), "no cross")
+
+    def test_keys_choose_the_methods_and_each_has_its_own_picture(self):
+        self.start("--gaze", "mouse")
+        self.move(20, 60)  # most of the window is far from there
+        pictures = {}
+        before = self.grab()
+        for key in ("1", "3", "2", "4", "1"):
+            self.tool("key", key)
+            # The line names the method, so it always changes; the picture follows with it.
+            old = before.part(0, 0, SIZE[0], LINE_HEIGHT)
+            before = self.until(
+                lambda p: p.part(0, 0, SIZE[0], LINE_HEIGHT) != old, "method " + key
+            )
+            if key == "1" and key in pictures:
+                self.assertTrue(pictures[key] == self.below_line(before), "1 is not 1")
+            pictures[key] = self.below_line(before)
+        self.assertEqual(len(set(pictures.values())), 4)
+
+    def test_moved_gaze_makes_its_place_sharp(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.move(100, 100)
+        sharp = self.grab()
+        self.tool("key", "4")
+        place = (320, 140, 380, 200)
+        self.until(lambda p: p.part(*place) != sharp.part(*place), "blurred there")
+        self.move(350, 170)
+        self.until(lambda p: p.part(340, 160, 360, 180) == sharp.part(340, 160, 360, 180),
+                   "sharp there")
+
+    def test_drag_turns_wheel_zooms_and_r_brings_both_back(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.move(240, 160)
+        first = self.grab()
+        self.tool("mousedown", 1)
+        self.move(320, 180)
+        turned = self.until_changed(first, "turned")
+        self.tool("mouseup", 1)
+        self.move(240, 160)
+        self.tool("click", 4)
+        self.until_changed(turned, "zoomed")
+        self.tool("key", "r")
+        self.until(lambda p: self.below_line(p) == self.below_line(first), "as at first")
+
+    def test_h_shows_the_keys_and_hides_them(self):
+        self.start("--gaze", "mouse")
+        before = self.grab()
+        self.tool("key", "h")
+        self.until_changed(before, "keys shown")
+        self.tool("key", "question")
+        self.until(lambda p: self.below_line(p) == self.below_line(before), "keys hidden")
+
+    def test_resized_window_is_filled(self):
+        self.start("--gaze", "0.5,0.5", "--render.background", "0.2 0.4 0.6")
+        self.tool("windowsize", self.window, 700, 500)
+        self.until(lambda p: p.at(697, 497) == (51, 102, 153) and p.at(697, 45) == (51, 102, 153),
+                   "larger picture")
+        self.tool("windowsize", self.window, 1, 1)
+        self.tool("windowsize", self.window, 300, 200)
+        self.until(lambda p: p.at(297, 197) == (51, 102, 153) and p.at(310, 100) == (0, 0, 0),
+                   "smaller picture")
+
+    def test_full_screen_by_key_and_back(self):
+        self.start("--gaze", "0.5,0.5", "--render.background", "0.2 0.4 0.6")
+        self.move(100, 100)
+        self.tool("key", "f")
+        self.until(lambda p: p.at(897, 697) == (51, 102, 153), "full screen")
+        self.tool("key", "f")
+        self.until(lambda p: p.at(897, 697) == (0, 0, 0), "a window again")
+
+    def test_without_a_daemon_it_says_so_and_takes_the_mouse(self):
+        self.start("--cross")
+        self.move(200, 150)
+        picture = self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
+        amber = sum(
+            r > 180 and 100 < g < 220 and b < 120
+            for r, g, b in (picture.at(x, y) for x in range(8, 470) for y in range(8, 30))
+        )
+        self.assertGreater(amber, 100, "the line is not amber")
+
+    def test_still_window_takes_no_processor_time(self):
+        self.start("--gaze", "mouse")
+        self.move(200, 150)
+        self.tool("key", "c")
+        self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
+
+        def ticks():
+            with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
+                fields = stat.read().rsplit(")", 1)[1].split()
+            return int(fields[11]) + int(fields[12])
+
+        before, start = ticks(), time.monotonic()
+        time.sleep(2)  # what is measured is a rest
+        used = (ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)
+        self.assertLess(used, 0.03)
+
+    def test_escape_and_q_end_it(self):
+        for key in ("Escape", "q"):
+            self.start("--gaze", "mouse")
+            self.move(200, 150)
+            self.tool("key", key)
+            self.assertEqual(self.viewer.wait(timeout=15), 0)
+            self.assertEqual(self.viewer.communicate()[1], "")
+            self.viewer = None
+
+    def test_no_display_is_one_line_with_the_way_without_one(self):
+        environment = dict(self.environment)
+        del environment["DISPLAY"]
+        done = run(GAZEVIEW, SCENE, env=environment)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("--headless", done.stderr)
+
+    def test_old_opengl_is_one_line_with_the_way_without_it(self):
+        environment = dict(self.environment, MESA_GL_VERSION_OVERRIDE="2.1")
+        done = run(GAZEVIEW, SCENE, env=environment)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("OpenGL 3.3", done.stderr)
+        self.assertIn("--headless", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
