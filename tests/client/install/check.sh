@@ -20,7 +20,7 @@ export PKG_CONFIG_PATH
 flags=$(pkg-config --cflags --libs gazecast)
 program=$source/tests/client/install/latest.c
 # shellcheck disable=SC2086
-"$cc" -std=c17 -Wall -Wextra -Werror -o "$place/latest" "$program" $flags
+"$cc" -std=c17 -Wall -Wextra -Werror -o "$place/reader" "$program" $flags
 # shellcheck disable=SC2086
 "$cxx" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only "$program" $flags
 
@@ -39,6 +39,6 @@ done
 
 "$publisher" "ipc://$place/latest" &
 publisher_id=$!
-LD_LIBRARY_PATH=$(dirname "$library") timeout 20 "$place/latest" "ipc://$place/latest" >"$place/out"
+LD_LIBRARY_PATH=$(dirname "$library") timeout 20 "$place/reader" "ipc://$place/latest" >"$place/out"
 cat "$place/out"
 grep -q '^0.250 0.750, [0-9.]* ms ago$' "$place/out" || fail "the program did not print the gaze"
