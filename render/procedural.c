@@ -52,22 +52,27 @@ static double harmonic_6(double x, double y)
 	return (x2 - y2) * (x2 * x2 - 14 * x2 * y2 + y2 * y2);
 }
 
-/* Nested shells round a core, each denser than the one outside it, each bent by one harmonic. */
+/* Nested shells round a core, each denser than the one outside it and bent by one harmonic; the two
+ * outer ones open between their lobes, so that the inner ones show. */
 static double shells_at(const double p[3])
 {
 	double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
 	double s = r > 1e-9 ? 1 / r : 0;
 	double x = p[0] * s, y = p[1] * s, z = p[2] * s;
-	double outer = bump((r - 0.80 - 0.13 * harmonic_6(x, y)) / 0.09);
-	double third = bump((r - 0.58 - 0.12 * harmonic_4(x, y) * (1 + z) / 2) / 0.08);
-	double second = bump((r - 0.38 - 0.10 * harmonic_cubic(x, y, z)) / 0.07);
-	double inner = bump((r - 0.21 - 0.05 * harmonic_2(z)) / 0.06);
-	double core = bump(r / 0.13);
-	double v = 0.30 * outer;
-	v = v > 0.48 * third ? v : 0.48 * third;
-	v = v > 0.66 * second ? v : 0.66 * second;
-	v = v > 0.83 * inner ? v : 0.83 * inner;
-	return v > core ? v : core;
+	double six = harmonic_6(x, y), four = harmonic_4(x, y), cubic = harmonic_cubic(x, y, z);
+	double petals = smooth(clamp01(0.45 + 1.1 * six + 0.5 * z * z));
+	double bands = smooth(clamp01(0.55 + 2.2 * cubic));
+	double layers[5] = {
+		0.30 * petals * bump((r - 0.78 - 0.16 * six) / 0.07),
+		0.48 * bands * bump((r - 0.58 - 0.12 * four * (1 + z)) / 0.06),
+		0.66 * bump((r - 0.38 - 0.14 * cubic) / 0.055),
+		0.83 * bump((r - 0.21 - 0.05 * harmonic_2(z)) / 0.05),
+		bump(r / 0.13),
+	};
+	double densest = 0;
+	for (int i = 0; i < 5; i++)
+		densest = layers[i] > densest ? layers[i] : densest;
+	return densest;
 }
 
 /* One of 12 directions at a lattice point, by an integer hash, times the offset from it: Perlin,
