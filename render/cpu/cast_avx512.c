@@ -1,5 +1,5 @@
-/* The kernel for one instruction set; compiled with its flags. The vocabulary comes before the kernel that
- * speaks it. */
+/* The kernel for one instruction set; compiled with its flags. The vocabulary comes before the
+ * kernel that speaks it. */
 #include "render/cpu/simd_avx512.h"
 
 #include "render/cpu/cast_kernel.h"

@@ -177,8 +177,11 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 	vf k = half;
 	vf until = vf_set(-1);
 	uint32_t samples = 0;
-	vm active = vm_and(rays->hit, vf_less(k, end));
-	while (vm_any(active)) {
+	vm alive = rays->hit;
+	for (;;) {
+		const vm active = vm_and(alive, vf_less(k, end));
+		if (!vm_any(active))
+			break;
 		const vm asks = vm_but(active, vf_less(k, until));
 		if (vm_any(asks)) {
 			vf leave;
@@ -186,12 +189,10 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 			/* To the first sample at or behind the empty box's far side; at least one
 			 * on. */
 			const vf ahead = vf_max(vf_ceil(leave - k), vf_set(1));
-			until = vf_select(vm_but(asks, empty), leave, until);
 			k = vf_select(empty, k + ahead, k);
-			/* A sample that rounding puts just behind its own cell's end is still
-			 * taken. */
-			until = vf_select(vm_but(asks, empty), vf_max(until, k + half), until);
-			active = vm_and(active, vf_less(k, end));
+			/* A sample that rounding puts just behind its own cell's end is taken too.
+			 */
+			until = vf_select(vm_but(asks, empty), vf_max(leave, k + half), until);
 		}
 		const vm takes = vm_and(active, vf_less(k, until));
 		if (!vm_any(takes))
@@ -202,8 +203,8 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		const vm visible = vf_less(vf_set(0), opacity);
 		if (vm_any(visible)) {
 			composite(cast, entry, opacity, visible, light);
-			active = vm_and(active,
-					vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+			alive = vm_and(alive,
+				       vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 		}
 		k = vf_select(takes, k + vf_set(1), k);
 	}

@@ -1,6 +1,6 @@
 /*
- * Sixteen lanes of AVX-512 (F, BW, DQ, VL). The vocabulary of the kernel: vf floats, vi 32-bit integers,
- * vm a mask.
+ * Sixteen lanes of AVX-512 (F, BW, DQ, VL). The vocabulary of the kernel: vf floats, vi 32-bit
+ * integers, vm a mask.
  */
 #include <immintrin.h>
 #include <stdint.h>
@@ -13,40 +13,130 @@ typedef __mmask16 vm;
 
 #define SIMD static inline __attribute__((always_inline))
 
-SIMD vf vf_set(float x) { return _mm512_set1_ps(x); }
-SIMD vf vf_load(const float *x) { return _mm512_loadu_ps(x); }
-SIMD vf vf_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
-SIMD vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
-SIMD vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
-SIMD vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
-SIMD vf vf_ceil(vf a) { return _mm512_roundscale_ps(a, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC); }
-SIMD vf vf_floor(vf a) { return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); }
-SIMD vf vf_abs(vf a) { return _mm512_abs_ps(a); }
-SIMD vf vf_select(vm m, vf yes, vf no) { return _mm512_mask_blend_ps(m, no, yes); }
-SIMD vf vf_from_i(vi a) { return _mm512_cvtepi32_ps(a); }
-SIMD vf vf_bits(vi a) { return _mm512_castsi512_ps(a); }
-SIMD vi vi_set(int32_t x) { return _mm512_set1_epi32(x); }
-SIMD vi vi_load(const int32_t *x) { return _mm512_loadu_si512(x); }
-SIMD void vi_store(uint32_t *x, vi a) { _mm512_storeu_si512(x, a); }
-SIMD vi vi_trunc(vf a) { return _mm512_cvttps_epi32(a); }
-SIMD vi vi_round(vf a) { return _mm512_cvtps_epi32(a); }
-SIMD vi vi_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
-SIMD vi vi_mul(vi a, vi b) { return _mm512_mullo_epi32(a, b); }
-SIMD vi vi_and(vi a, vi b) { return _mm512_and_si512(a, b); }
-SIMD vi vi_or(vi a, vi b) { return _mm512_or_si512(a, b); }
-SIMD vi vi_min(vi a, vi b) { return _mm512_min_epi32(a, b); }
+SIMD vf vf_set(float x)
+{
+	return _mm512_set1_ps(x);
+}
+SIMD vf vf_load(const float *x)
+{
+	return _mm512_loadu_ps(x);
+}
+SIMD vf vf_fma(vf a, vf b, vf c)
+{
+	return _mm512_fmadd_ps(a, b, c);
+}
+SIMD vf vf_min(vf a, vf b)
+{
+	return _mm512_min_ps(a, b);
+}
+SIMD vf vf_max(vf a, vf b)
+{
+	return _mm512_max_ps(a, b);
+}
+SIMD vf vf_sqrt(vf a)
+{
+	return _mm512_sqrt_ps(a);
+}
+SIMD vf vf_ceil(vf a)
+{
+	return _mm512_roundscale_ps(a, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
+}
+SIMD vf vf_floor(vf a)
+{
+	return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+SIMD vf vf_abs(vf a)
+{
+	return _mm512_abs_ps(a);
+}
+SIMD vf vf_select(vm m, vf yes, vf no)
+{
+	return _mm512_mask_blend_ps(m, no, yes);
+}
+SIMD vf vf_from_i(vi a)
+{
+	return _mm512_cvtepi32_ps(a);
+}
+SIMD vf vf_bits(vi a)
+{
+	return _mm512_castsi512_ps(a);
+}
+SIMD vi vi_set(int32_t x)
+{
+	return _mm512_set1_epi32(x);
+}
+SIMD vi vi_load(const int32_t *x)
+{
+	return _mm512_loadu_si512(x);
+}
+SIMD void vi_store(uint32_t *x, vi a)
+{
+	_mm512_storeu_si512(x, a);
+}
+SIMD vi vi_trunc(vf a)
+{
+	return _mm512_cvttps_epi32(a);
+}
+SIMD vi vi_round(vf a)
+{
+	return _mm512_cvtps_epi32(a);
+}
+SIMD vi vi_add(vi a, vi b)
+{
+	return _mm512_add_epi32(a, b);
+}
+SIMD vi vi_mul(vi a, vi b)
+{
+	return _mm512_mullo_epi32(a, b);
+}
+SIMD vi vi_and(vi a, vi b)
+{
+	return _mm512_and_si512(a, b);
+}
+SIMD vi vi_or(vi a, vi b)
+{
+	return _mm512_or_si512(a, b);
+}
+SIMD vi vi_min(vi a, vi b)
+{
+	return _mm512_min_epi32(a, b);
+}
 #define vi_shift_right(a, n) _mm512_srli_epi32((a), (n))
 #define vi_shift_left(a, n)  _mm512_slli_epi32((a), (n))
-SIMD vm vf_less(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-SIMD vm vi_nonzero(vi a) { return _mm512_test_epi32_mask(a, a); }
-SIMD vm vm_and(vm a, vm b) { return (vm)(a & b); }
-SIMD vm vm_or(vm a, vm b) { return (vm)(a | b); }
-SIMD vm vm_but(vm a, vm b) { return (vm)(a & ~b); }
-SIMD int vm_any(vm a) { return a != 0; }
-SIMD uint32_t vm_count(vm a) { return (uint32_t)__builtin_popcount(a); }
-SIMD vm vm_from_bits(uint32_t bits) { return (vm)bits; }
+SIMD vm vf_less(vf a, vf b)
+{
+	return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+SIMD vm vi_nonzero(vi a)
+{
+	return _mm512_test_epi32_mask(a, a);
+}
+SIMD vm vm_and(vm a, vm b)
+{
+	return (vm)(a & b);
+}
+SIMD vm vm_or(vm a, vm b)
+{
+	return (vm)(a | b);
+}
+SIMD vm vm_but(vm a, vm b)
+{
+	return (vm)(a & ~b);
+}
+SIMD int vm_any(vm a)
+{
+	return a != 0;
+}
+SIMD uint32_t vm_count(vm a)
+{
+	return (uint32_t)__builtin_popcount(a);
+}
+SIMD vm vm_from_bits(uint32_t bits)
+{
+	return (vm)bits;
+}
 /* 32 bits from base + index * scale bytes; lanes outside the mask are zero and touch no memory. */
-#define vi_gather(base, index, scale, mask)                                                        \
+#define vi_gather(base, index, scale, mask) \
 	_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (index), (base), (scale))
-#define vf_gather(base, index, mask)                                                               \
+#define vf_gather(base, index, mask) \
 	_mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (index), (base), 4)

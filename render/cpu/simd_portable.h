@@ -1,5 +1,5 @@
-/* Sixteen lanes by the compiler's own vectors, which it turns into what the processor has: the vocabulary
- * of simd_avx512.h. A mask is all ones or all zeros a lane. */
+/* Sixteen lanes by the compiler's own vectors, which it turns into what the processor has: the
+ * vocabulary of simd_avx512.h. A mask is all ones or all zeros a lane. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -15,38 +15,137 @@ typedef vi vm;
 
 #define EACH_LANE for (int lane = 0; lane < SIMD_LANES; lane++)
 
-SIMD vf vf_set(float x) { return x - (vf){ 0 }; }
-SIMD vi vi_set(int32_t x) { return x - (vi){ 0 }; }
-SIMD vf vf_load(const float *x) { vf a; memcpy(&a, x, sizeof a); return a; }
-SIMD vi vi_load(const int32_t *x) { vi a; memcpy(&a, x, sizeof a); return a; }
-SIMD void vi_store(uint32_t *x, vi a) { memcpy(x, &a, sizeof a); }
-SIMD vf vf_select(vm m, vf yes, vf no) { return (vf)((m & (vi)yes) | (~m & (vi)no)); }
-SIMD vf vf_fma(vf a, vf b, vf c) { return a * b + c; }
-SIMD vf vf_min(vf a, vf b) { return vf_select(a < b, a, b); }
-SIMD vf vf_max(vf a, vf b) { return vf_select(a > b, a, b); }
-SIMD vf vf_sqrt(vf a) { EACH_LANE a[lane] = sqrtf(a[lane]); return a; }
-SIMD vf vf_ceil(vf a) { EACH_LANE a[lane] = ceilf(a[lane]); return a; }
-SIMD vf vf_floor(vf a) { EACH_LANE a[lane] = floorf(a[lane]); return a; }
-SIMD vf vf_abs(vf a) { return (vf)((vi)a & 0x7FFFFFFF); }
-SIMD vf vf_from_i(vi a) { return __builtin_convertvector(a, vf); }
-SIMD vf vf_bits(vi a) { return (vf)a; }
-SIMD vi vi_trunc(vf a) { return __builtin_convertvector(a, vi); }
+SIMD vf vf_set(float x)
+{
+	return x - (vf) { 0 };
+}
+SIMD vi vi_set(int32_t x)
+{
+	return x - (vi) { 0 };
+}
+SIMD vf vf_load(const float *x)
+{
+	vf a;
+	memcpy(&a, x, sizeof a);
+	return a;
+}
+SIMD vi vi_load(const int32_t *x)
+{
+	vi a;
+	memcpy(&a, x, sizeof a);
+	return a;
+}
+SIMD void vi_store(uint32_t *x, vi a)
+{
+	memcpy(x, &a, sizeof a);
+}
+SIMD vf vf_select(vm m, vf yes, vf no)
+{
+	return (vf)((m & (vi)yes) | (~m & (vi)no));
+}
+SIMD vf vf_fma(vf a, vf b, vf c)
+{
+	return a * b + c;
+}
+SIMD vf vf_min(vf a, vf b)
+{
+	return vf_select(a < b, a, b);
+}
+SIMD vf vf_max(vf a, vf b)
+{
+	return vf_select(a > b, a, b);
+}
+SIMD vf vf_sqrt(vf a)
+{
+	EACH_LANE a[lane] = sqrtf(a[lane]);
+	return a;
+}
+SIMD vf vf_ceil(vf a)
+{
+	EACH_LANE a[lane] = ceilf(a[lane]);
+	return a;
+}
+SIMD vf vf_floor(vf a)
+{
+	EACH_LANE a[lane] = floorf(a[lane]);
+	return a;
+}
+SIMD vf vf_abs(vf a)
+{
+	return (vf)((vi)a & 0x7FFFFFFF);
+}
+SIMD vf vf_from_i(vi a)
+{
+	return __builtin_convertvector(a, vf);
+}
+SIMD vf vf_bits(vi a)
+{
+	return (vf)a;
+}
+SIMD vi vi_trunc(vf a)
+{
+	return __builtin_convertvector(a, vi);
+}
 /* To nearest; only ever asked of values from 0 up. */
-SIMD vi vi_round(vf a) { return vi_trunc(a + 0.5F); }
-SIMD vi vi_add(vi a, vi b) { return (vi)((vu)a + (vu)b); }
-SIMD vi vi_mul(vi a, vi b) { return (vi)((vu)a * (vu)b); }
-SIMD vi vi_and(vi a, vi b) { return a & b; }
-SIMD vi vi_or(vi a, vi b) { return a | b; }
-SIMD vi vi_min(vi a, vi b) { const vi m = a < b; return (m & a) | (~m & b); }
+SIMD vi vi_round(vf a)
+{
+	return vi_trunc(a + 0.5F);
+}
+SIMD vi vi_add(vi a, vi b)
+{
+	return (vi)((vu)a + (vu)b);
+}
+SIMD vi vi_mul(vi a, vi b)
+{
+	return (vi)((vu)a * (vu)b);
+}
+SIMD vi vi_and(vi a, vi b)
+{
+	return a & b;
+}
+SIMD vi vi_or(vi a, vi b)
+{
+	return a | b;
+}
+SIMD vi vi_min(vi a, vi b)
+{
+	const vi m = a < b;
+	return (m & a) | (~m & b);
+}
 #define vi_shift_right(a, n) ((vi)((vu)(a) >> (n)))
 #define vi_shift_left(a, n)  ((vi)((vu)(a) << (n)))
-SIMD vm vf_less(vf a, vf b) { return a < b; }
-SIMD vm vi_nonzero(vi a) { return a != 0; }
-SIMD vm vm_and(vm a, vm b) { return a & b; }
-SIMD vm vm_or(vm a, vm b) { return a | b; }
-SIMD vm vm_but(vm a, vm b) { return a & ~b; }
-SIMD int vm_any(vm a) { int32_t any = 0; EACH_LANE any |= a[lane]; return any != 0; }
-SIMD uint32_t vm_count(vm a) { int32_t sum = 0; EACH_LANE sum -= a[lane]; return (uint32_t)sum; }
+SIMD vm vf_less(vf a, vf b)
+{
+	return a < b;
+}
+SIMD vm vi_nonzero(vi a)
+{
+	return a != 0;
+}
+SIMD vm vm_and(vm a, vm b)
+{
+	return a & b;
+}
+SIMD vm vm_or(vm a, vm b)
+{
+	return a | b;
+}
+SIMD vm vm_but(vm a, vm b)
+{
+	return a & ~b;
+}
+SIMD int vm_any(vm a)
+{
+	int32_t any = 0;
+	EACH_LANE any |= a[lane];
+	return any != 0;
+}
+SIMD uint32_t vm_count(vm a)
+{
+	int32_t sum = 0;
+	EACH_LANE sum -= a[lane];
+	return (uint32_t)sum;
+}
 SIMD vm vm_from_bits(uint32_t bits)
 {
 	vm a = { 0 };

@@ -1,0 +1,129 @@
+#include "oracle.h"
+
+#include <math.h>
+#include <stdint.h>
+
+static double voxel(const struct gz_volume *volume, int x, int y, int z)
+{
+	const int *dims = volume->dims;
+	x = x < 0 ? 0 : x >= dims[0] ? dims[0] - 1 : x;
+	y = y < 0 ? 0 : y >= dims[1] ? dims[1] - 1 : y;
+	z = z < 0 ? 0 : z >= dims[2] ? dims[2] - 1 : z;
+	const size_t index =
+		((size_t)z * (size_t)dims[1] + (size_t)y) * (size_t)dims[0] + (size_t)x;
+	if (volume->type == GZ_VOXEL_U8)
+		return ((const uint8_t *)volume->voxels)[index];
+	if (volume->type == GZ_VOXEL_U16)
+		return ((const uint16_t *)volume->voxels)[index];
+	return (double)((const float *)volume->voxels)[index];
+}
+
+double oracle_sample(const struct gz_volume *volume, int interpolation, const double at[3])
+{
+	if (interpolation == GZ_INTERPOLATION_NEAREST)
+		return voxel(volume, (int)floor(at[0]), (int)floor(at[1]), (int)floor(at[2]));
+	const double x = at[0] - 0.5, y = at[1] - 0.5, z = at[2] - 0.5;
+	const int i = (int)floor(x), j = (int)floor(y), k = (int)floor(z);
+	double sum = 0;
+	for (int corner = 0; corner < 8; corner++) {
+		const int di = corner & 1, dj = corner >> 1 & 1, dk = corner >> 2;
+		const double wx = di ? x - i : 1 - (x - i);
+		const double wy = dj ? y - j : 1 - (y - j);
+		const double wz = dk ? z - k : 1 - (z - k);
+		sum += wx * wy * wz * voxel(volume, i + di, j + dj, k + dk);
+	}
+	return sum;
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void normalise(double a[3])
+{
+	const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+	for (int axis = 0; axis < 3; axis++)
+		a[axis] /= length;
+}
+
+static void make_ray(const struct gz_camera *camera, int width, int height, int x, int y,
+		     double origin[3], double direction[3])
+{
+	double forward[3], right[3], up[3];
+	for (int axis = 0; axis < 3; axis++)
+		forward[axis] = camera->look_at[axis] - camera->eye[axis];
+	normalise(forward);
+	cross(forward, camera->up, right);
+	normalise(right);
+	cross(right, forward, up);
+	const bool flat = camera->projection == GZ_PROJECTION_ORTHOGRAPHIC;
+	const double view = flat ? camera->height : 2 * tan(camera->fov_deg * M_PI / 360);
+	const double u = (x + 0.5 - 0.5 * width) / height * view;
+	const double v = (0.5 * height - y - 0.5) / height * view;
+	for (int axis = 0; axis < 3; axis++) {
+		const double aside = u * right[axis] + v * up[axis];
+		origin[axis] = camera->eye[axis] + (flat ? aside : 0);
+		direction[axis] = forward[axis] + (flat ? 0 : aside);
+	}
+	normalise(direction);
+}
+
+void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
+		  int height, int x, int y, double out_rgb[3])
+{
+	double longest = 0, least = INFINITY;
+	for (int axis = 0; axis < 3; axis++) {
+		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);
+		least = fmin(least, volume->spacing[axis]);
+	}
+	const double step = least / longest / rays->ray_sampling_rate;
+
+	double origin[3], direction[3], enter = 0, leave = INFINITY;
+	make_ray(camera, width, height, x, y, origin, direction);
+	for (int axis = 0; axis < 3; axis++) {
+		const double half = volume->dims[axis] * volume->spacing[axis] / longest / 2;
+		if (direction[axis] == 0) {
+			if (fabs(origin[axis]) > half)
+				leave = -1;
+			continue;
+		}
+		const double a = (-half - origin[axis]) / direction[axis];
+		const double b = (half - origin[axis]) / direction[axis];
+		enter = fmax(enter, fmin(a, b));
+		leave = fmin(leave, fmax(a, b));
+	}
+
+	const double first = volume->slope * volume->stored_min + volume->intercept;
+	const double second = volume->slope * volume->stored_max + volume->intercept;
+	const double low = transfer->has_range ? transfer->range[0] : fmin(first, second);
+	const double high = transfer->has_range ? transfer->range[1] : fmax(first, second);
+
+	double through = 1;
+	out_rgb[0] = out_rgb[1] = out_rgb[2] = 0;
+	for (double from = enter; from < leave && through >= 1.0 / 1024;) {
+		const double to = fmin(from + step, leave), middle = (from + to) / 2;
+		double at[3];
+		for (int axis = 0; axis < 3; axis++) {
+			const double half =
+				volume->dims[axis] * volume->spacing[axis] / longest / 2;
+			at[axis] = (origin[axis] + middle * direction[axis] + half) * longest /
+				   volume->spacing[axis];
+		}
+		const double stored = oracle_sample(volume, rays->interpolation, at);
+		const double value = volume->slope * stored + volume->intercept;
+		double rgba[4];
+		gz_transfer_evaluate(transfer, high > low ? (value - low) / (high - low) : 0, rgba);
+		const double voxel_lengths = (to - from) / (least / longest);
+		const double opacity = 1 - pow(1 - rgba[3], voxel_lengths);
+		for (int channel = 0; channel < 3; channel++)
+			out_rgb[channel] += through * opacity * rgba[channel];
+		through *= 1 - opacity;
+		from = to;
+	}
+	for (int channel = 0; channel < 3; channel++)
+		out_rgb[channel] += through * rays->background[channel];
+}

@@ -1,0 +1,124 @@
+#include "small_scene.h"
+
+/* cmocka.h wants these before it */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+static void put(struct gz_volume *volume, size_t index, double share)
+{
+	if (volume->type == GZ_VOXEL_U8)
+		((uint8_t *)volume->voxels)[index] = (uint8_t)lround(share * 255);
+	else if (volume->type == GZ_VOXEL_U16)
+		((uint16_t *)volume->voxels)[index] = (uint16_t)lround(share * 60000);
+	else
+		((float *)volume->voxels)[index] = (float)(share * 3 - 1);
+}
+
+static struct small_scene base_scene(int nx, int ny, int nz, enum gz_voxel_type type)
+{
+	struct small_scene scene = {
+		.volume = { .dims = { nx, ny, nz }, .spacing = { 1, 1, 1 }, .type = type },
+		.camera = { .eye = { 0.8, 1.3, 0.35 },
+			    .up = { 0, 0, 1 },
+			    .fov_deg = 40,
+			    .height = 1.2 },
+		.rays = { .ray_sampling_rate = 1.5 },
+		.foveation = gz_foveation_default(),
+		.gaze = { 0.5F, 0.5F },
+	};
+	assert_int_equal(gz_volume_allocate(&scene.volume), GZ_OK);
+	return scene;
+}
+
+struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type type)
+{
+	struct small_scene scene = base_scene(nx, ny, nz, type);
+	size_t index = 0;
+	for (int z = 0; z < nz; z++)
+		for (int y = 0; y < ny; y++)
+			for (int x = 0; x < nx; x++) {
+				const double u = (x + 0.5) / nx, v = (y + 0.5) / ny,
+					     w = (z + 0.5) / nz;
+				const double wave = sin(9 * u + 4 * v * v) * cos(7 * w - 3 * u * v);
+				const double inside = u + 0.4 * w > 0.6 ? 1 : 0;
+				put(&scene.volume, index++, inside * (0.5 + 0.5 * wave));
+			}
+	gz_volume_find_range(&scene.volume);
+	scene.transfer = (struct gz_transfer){
+		.count = 4,
+		.points = {
+			{ 0, { 0, 0, 0 }, 0 },
+			{ 0.2, { 0.3, 0.1, 0.9 }, 0 },
+			{ 0.6, { 0.8, 0.6, 0.2 }, 0.06 },
+			{ 1, { 1, 1, 0.8 }, 0.3 },
+		},
+	};
+	return scene;
+}
+
+struct small_scene small_scene_constant(int edge, double opacity)
+{
+	struct small_scene scene = base_scene(edge, edge, edge, GZ_VOXEL_U8);
+	for (size_t i = 0; i < gz_volume_voxel_count(&scene.volume); i++)
+		put(&scene.volume, i, 0.5);
+	gz_volume_find_range(&scene.volume);
+	scene.transfer = (struct gz_transfer) {
+		.count = 1,
+		.points = { { 0.5, { 0.9, 0.6, 0.3 }, opacity } },
+	};
+	return scene;
+}
+
+struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
+					 const char *simd)
+{
+	const struct gz_renderer_params params = { .threads = threads, .simd = simd };
+	struct gz_renderer *renderer = NULL;
+	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	return renderer;
+}
+
+void small_scene_render(struct gz_renderer *renderer, const struct small_scene *scene, int width,
+			int height, struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	const struct gz_display display =
+		scene->display.px[0] ? scene->display : gz_display_default(width, height);
+	struct gz_plan plan = { 0 };
+	assert_int_equal(
+		gz_plan_make(&scene->foveation, &display, scene->gaze, width, height, &plan),
+		GZ_OK);
+	assert_int_equal(
+		gz_renderer_render(renderer, &scene->camera, &scene->rays, &plan, image, out_stats),
+		GZ_OK);
+	gz_plan_free(&plan);
+}
+
+int image_difference(const struct gz_image *a, const struct gz_image *b, int *out_x, int *out_y)
+{
+	int worst = 0;
+	assert_int_equal(a->width, b->width);
+	assert_int_equal(a->height, b->height);
+	for (int i = 0; i < a->width * a->height * 4; i++) {
+		const int difference = abs(a->pixels[i] - b->pixels[i]);
+		if (difference > worst) {
+			worst = difference;
+			*out_x = i / 4 % a->width;
+			*out_y = i / 4 / a->width;
+		}
+	}
+	return worst;
+}
+
+void small_scene_free(struct small_scene *scene)
+{
+	gz_volume_free(&scene->volume);
+}

@@ -1,0 +1,40 @@
+/**
+ * @file
+ * Small volumes, cameras and frames for the renderer's tests.
+ */
+#ifndef GZ_TESTS_RENDER_SMALL_SCENE_H
+#define GZ_TESTS_RENDER_SMALL_SCENE_H
+
+#include "render/renderer.h"
+
+/** What a test renders. */
+struct small_scene {
+	struct gz_volume volume;
+	struct gz_transfer transfer;
+	struct gz_camera camera;
+	struct gz_ray_params rays;
+	struct gz_foveation foveation;
+	struct gz_display display;
+	struct gz_point gaze;
+};
+
+/** Waves in a box: smooth, without symmetry, with empty space on one side. */
+struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type type);
+
+/** Every voxel the same, @p opacity per voxel length. */
+struct small_scene small_scene_constant(int edge, double opacity);
+
+/** A renderer with the scene's volume and transfer function; fails the test where that fails. */
+struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
+					 const char *simd);
+
+/** Render a frame; fails the test where that fails. */
+void small_scene_render(struct gz_renderer *renderer, const struct small_scene *scene, int width,
+			int height, struct gz_image *image, struct gz_frame_stats *out_stats);
+
+/** Greatest difference of any channel of any pixel, 0 to 255, and where. */
+int image_difference(const struct gz_image *a, const struct gz_image *b, int *out_x, int *out_y);
+
+void small_scene_free(struct small_scene *scene);
+
+#endif

@@ -1,0 +1,364 @@
+/* The kernels: against the oracle, against each other, and over threads. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "oracle.h"
+#include "small_scene.h"
+
+static const char *const sets[] = { "portable", "avx2", "avx512" };
+
+static bool runs_here(const char *set)
+{
+	const struct gz_renderer_params params = { .threads = 1, .simd = set };
+	struct gz_renderer *renderer = NULL;
+	const bool runs = gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK;
+	gz_renderer_destroy(&renderer);
+	return runs;
+}
+
+/* Render by one instruction set and hold every pixel against the oracle. */
+static void check_set(struct small_scene *scene, const char *set, int width, int height)
+{
+	struct gz_renderer *renderer = small_scene_renderer(scene, 2, set);
+	struct gz_image image = { 0 };
+	scene->foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(renderer, scene, width, height, &image, NULL);
+	for (int y = 0; y < height; y++)
+		for (int x = 0; x < width; x++) {
+			const uint8_t *pixel = image.pixels + 4 * (y * width + x);
+			double rgb[3];
+			oracle_pixel(&scene->volume, &scene->transfer, &scene->camera, &scene->rays,
+				     width, height, x, y, rgb);
+			for (int channel = 0; channel < 3; channel++)
+				/* half a grey level is rounding, the other half the tables' */
+				if (fabs(pixel[channel] - 255 * rgb[channel]) > 1)
+					fail_msg("%s: pixel %d %d channel %d: %d, oracle %.3f", set,
+						 x, y, channel, pixel[channel], 255 * rgb[channel]);
+			assert_int_equal(pixel[3], 255);
+		}
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&image);
+}
+
+static void check(struct small_scene *scene, int width, int height)
+{
+	for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++)
+		if (runs_here(sets[i]))
+			check_set(scene, sets[i], width, height);
+	small_scene_free(scene);
+}
+
+static void cast_of_8_bit_data_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(40, 33, 27, GZ_VOXEL_U8);
+	check(&scene, 61, 47);
+}
+
+static void cast_of_16_bit_data_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(40, 33, 27, GZ_VOXEL_U16);
+	check(&scene, 61, 47);
+}
+
+static void cast_of_float_data_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(40, 33, 27, GZ_VOXEL_F32);
+	check(&scene, 61, 47);
+}
+
+static void cast_over_a_bright_background_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	scene.rays.background[0] = 1;
+	scene.rays.background[1] = 0.7;
+	scene.rays.background[2] = 0.2;
+	check(&scene, 40, 40);
+}
+
+static void cast_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces(void **state)
+{
+	(void)state;
+	/* Where a sample lies within rounding of a face, either voxel is right: count, not forbid.
+	 */
+	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	scene.rays.interpolation = GZ_INTERPOLATION_NEAREST;
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	enum { SIDE = 64 };
+	for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+		if (!runs_here(sets[i]))
+			continue;
+		struct gz_renderer *renderer = small_scene_renderer(&scene, 1, sets[i]);
+		struct gz_image image = { 0 };
+		small_scene_render(renderer, &scene, SIDE, SIDE, &image, NULL);
+		int off = 0;
+		for (int p = 0; p < SIDE * SIDE; p++) {
+			double rgb[3];
+			oracle_pixel(&scene.volume, &scene.transfer, &scene.camera, &scene.rays,
+				     SIDE, SIDE, p % SIDE, p / SIDE, rgb);
+			off += fabs(image.pixels[4 * p] - 255 * rgb[0]) > 1;
+		}
+		if (off > SIDE * SIDE / 1000)
+			fail_msg("%s: %d pixels off", sets[i], off);
+		gz_renderer_destroy(&renderer);
+		gz_image_free(&image);
+	}
+	small_scene_free(&scene);
+}
+
+static void cast_orthographic_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 30, 18, GZ_VOXEL_U8);
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	check(&scene, 50, 38);
+}
+
+static void cast_along_an_axis_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	memcpy(scene.camera.eye, (double[3]) { 0, -2, 0 }, sizeof scene.camera.eye);
+	scene.camera.height = 1.0937; /* no ray on a voxel's face */
+	check(&scene, 41, 41);
+}
+
+static void cast_from_inside_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(30, 30, 30, GZ_VOXEL_U8);
+	memcpy(scene.camera.eye, (double[3]) { 0.13, 0.21, 0.07 }, sizeof scene.camera.eye);
+	memcpy(scene.camera.look_at, (double[3]) { -0.3, -0.2, 0.1 }, sizeof scene.camera.look_at);
+	check(&scene, 40, 40);
+}
+
+static void cast_from_a_face_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(30, 30, 30, GZ_VOXEL_U8);
+	memcpy(scene.camera.eye, (double[3]) { 0.5, 0.03, 0.04 }, sizeof scene.camera.eye);
+	check(&scene, 40, 40);
+}
+
+static void cast_of_anisotropic_voxels_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(32, 32, 8, GZ_VOXEL_U8);
+	scene.volume.spacing[2] = 10;
+	check(&scene, 48, 48);
+}
+
+static void cast_of_flat_and_single_voxels_equals_the_oracle(void **state)
+{
+	(void)state;
+	static const int dims[][3] = { { 1, 1, 1 },   { 1, 1, 40 },  { 40, 1, 1 },
+				       { 1, 40, 40 }, { 40, 40, 1 }, { 2, 2, 2 } };
+	for (size_t i = 0; i < sizeof dims / sizeof dims[0]; i++) {
+		struct small_scene scene =
+			small_scene_waves(dims[i][0], dims[i][1], dims[i][2], GZ_VOXEL_U8);
+		/* Constant data is all "least": let that show. */
+		scene.transfer.points[0].opacity = 0.2;
+		check(&scene, 37, 31);
+	}
+}
+
+static void cast_with_a_given_range_and_falling_slope_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U16);
+	scene.volume.slope = -0.25;
+	scene.volume.intercept = 9000;
+	scene.transfer.has_range = true;
+	scene.transfer.range[0] = -2000;
+	scene.transfer.range[1] = 8000;
+	check(&scene, 40, 40);
+}
+
+static void cast_of_opaque_and_of_transparent_matter_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene opaque = small_scene_constant(20, 1);
+	check(&opaque, 33, 33);
+	struct small_scene transparent = small_scene_constant(20, 0);
+	transparent.rays.background[1] = 0.5;
+	check(&transparent, 33, 33);
+}
+
+static void cast_is_the_same_bits_for_any_number_of_threads(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(50, 41, 60, GZ_VOXEL_U8);
+	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+		struct gz_image first = { 0 };
+		uint64_t samples = 0;
+		scene.foveation.method = method;
+		for (int threads = 1; threads <= 7; threads += 2) {
+			struct gz_renderer *renderer = small_scene_renderer(&scene, threads, NULL);
+			struct gz_image image = { 0 };
+			struct gz_frame_stats stats;
+			small_scene_render(renderer, &scene, 317, 203, &image, &stats);
+			if (threads == 1) {
+				first = image;
+				samples = stats.samples;
+			} else {
+				assert_memory_equal(first.pixels, image.pixels, 317 * 203 * 4);
+				assert_int_equal(stats.samples, samples);
+				gz_image_free(&image);
+			}
+			gz_renderer_destroy(&renderer);
+		}
+		gz_image_free(&first);
+	}
+	small_scene_free(&scene);
+}
+
+static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(50, 41, 60, GZ_VOXEL_U8);
+	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+		struct gz_image first = { 0 };
+		scene.foveation.method = method;
+		for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
+			if (!runs_here(sets[i]))
+				continue;
+			struct gz_renderer *renderer = small_scene_renderer(&scene, 2, sets[i]);
+			struct gz_image image = { 0 };
+			int x = 0, y = 0;
+			small_scene_render(renderer, &scene, 317, 203, &image, NULL);
+			if (i == 0)
+				first = image;
+			else if (image_difference(&first, &image, &x, &y) > 1)
+				fail_msg("%s, %s: pixel %d %d differs", gz_method_names[method],
+					 sets[i], x, y);
+			if (i > 0)
+				gz_image_free(&image);
+			gz_renderer_destroy(&renderer);
+		}
+		gz_image_free(&first);
+	}
+	small_scene_free(&scene);
+}
+
+static void constant_box_keeps_its_brightness_for_any_step(void **state)
+{
+	(void)state;
+	/* The Voronoi method's periphery is too transparent, because its opacity ignores the step.
+	 */
+	struct small_scene scene = small_scene_constant(64, 0.013);
+	struct gz_image reference = { 0 };
+	scene.rays.ray_sampling_rate = 8;
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	small_scene_render(renderer, &scene, 200, 160, &reference, NULL);
+	static const double rates[] = { 0.25, 0.37, 1, 1.5, 3 };
+	for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+		struct gz_image image = { 0 };
+		int x = 0, y = 0;
+		scene.rays.ray_sampling_rate = rates[i];
+		small_scene_render(renderer, &scene, 200, 160, &image, NULL);
+		const int difference = image_difference(&reference, &image, &x, &y);
+		if (difference > 1)
+			fail_msg("rate %g: pixel %d %d differs by %d", rates[i], x, y, difference);
+		gz_image_free(&image);
+	}
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&reference);
+	small_scene_free(&scene);
+}
+
+static void empty_space_takes_no_samples(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(64, 0);
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_image image = { 0 };
+	struct gz_frame_stats stats;
+	small_scene_render(renderer, &scene, 64, 64, &image, &stats);
+	assert_int_equal(stats.samples, 0);
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&image);
+	small_scene_free(&scene);
+}
+
+static void unknown_backend_and_instruction_set_are_refused(void **state)
+{
+	(void)state;
+	struct gz_renderer *renderer = NULL;
+	assert_int_equal(gz_renderer_create("quantum", NULL, NULL, &renderer), GZ_ERR_NOT_FOUND);
+	const struct gz_renderer_params params = { .simd = "mmx" };
+	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_ERR_UNSUPPORTED);
+	const struct gz_renderer_params threads = { .threads = 100000 };
+	assert_int_equal(gz_renderer_create("cpu", &threads, NULL, &renderer), GZ_ERR_INVAL);
+	assert_null(renderer);
+}
+
+static void render_without_volume_or_with_bad_parameters_is_refused(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(8, 8, 8, GZ_VOXEL_U8);
+	struct gz_renderer *renderer = NULL;
+	struct gz_image image = { 0 };
+	struct gz_plan plan = { 0 };
+	const struct gz_display display = gz_display_default(16, 16);
+	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, 16, 16, &plan),
+			 GZ_OK);
+	assert_int_equal(gz_renderer_create(NULL, NULL, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
+	assert_int_equal(
+		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		GZ_ERR_INVAL);
+	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_OK);
+	struct gz_camera camera = scene.camera;
+	camera.fov_deg = NAN;
+	assert_int_equal(gz_renderer_render(renderer, &camera, &scene.rays, &plan, &image, NULL),
+			 GZ_ERR_INVAL);
+	struct gz_ray_params rays = scene.rays;
+	rays.ray_sampling_rate = NAN;
+	assert_int_equal(gz_renderer_render(renderer, &scene.camera, &rays, &plan, &image, NULL),
+			 GZ_ERR_INVAL);
+	gz_plan_free(&plan);
+	gz_image_free(&image);
+	gz_renderer_destroy(&renderer);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(cast_of_8_bit_data_equals_the_oracle),
+		cmocka_unit_test(cast_of_16_bit_data_equals_the_oracle),
+		cmocka_unit_test(cast_of_float_data_equals_the_oracle),
+		cmocka_unit_test(cast_over_a_bright_background_equals_the_oracle),
+		cmocka_unit_test(cast_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces),
+		cmocka_unit_test(cast_orthographic_equals_the_oracle),
+		cmocka_unit_test(cast_along_an_axis_equals_the_oracle),
+		cmocka_unit_test(cast_from_inside_equals_the_oracle),
+		cmocka_unit_test(cast_from_a_face_equals_the_oracle),
+		cmocka_unit_test(cast_of_anisotropic_voxels_equals_the_oracle),
+		cmocka_unit_test(cast_of_flat_and_single_voxels_equals_the_oracle),
+		cmocka_unit_test(cast_with_a_given_range_and_falling_slope_equals_the_oracle),
+		cmocka_unit_test(cast_of_opaque_and_of_transparent_matter_equals_the_oracle),
+		cmocka_unit_test(cast_is_the_same_bits_for_any_number_of_threads),
+		cmocka_unit_test(cast_by_every_instruction_set_agrees_within_one_grey_level),
+		cmocka_unit_test(constant_box_keeps_its_brightness_for_any_step),
+		cmocka_unit_test(empty_space_takes_no_samples),
+		cmocka_unit_test(unknown_backend_and_instruction_set_are_refused),
+		cmocka_unit_test(render_without_volume_or_with_bad_parameters_is_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,259 @@
+/* Where rays go. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/image.h"
+#include "render/plan.h"
+
+static struct gz_plan make(int method, struct gz_point gaze, int width, int height)
+{
+	struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(width, height);
+	struct gz_plan plan = { 0 };
+	foveation.method = method;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, width, height, &plan), GZ_OK);
+	return plan;
+}
+
+/* How often each point of each lattice is cast. */
+static void check_tiles(const struct gz_plan *plan)
+{
+	/* coarser lattices reach beyond the finer ones */
+	enum { MARGIN = 4 * GZ_TILE_EDGE * GZ_SPACING_MAX };
+	uint8_t *cast[GZ_PLAN_LAYERS_MAX];
+	uint64_t rays = 0;
+	for (int i = 0; i < plan->layer_count; i++)
+		cast[i] = calloc((size_t)(plan->layers[i].columns + MARGIN) *
+					 (size_t)(plan->layers[i].rows + MARGIN),
+				 1);
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		assert_in_range(tile->layer, 0, plan->layer_count - 1);
+		assert_in_range(tile->step, 0, plan->step_count - 1);
+		const struct gz_plan_layer *layer = &plan->layers[tile->layer];
+		assert_int_equal(tile->x % (layer->spacing * GZ_TILE_EDGE), 0);
+		assert_int_equal(tile->y % (layer->spacing * GZ_TILE_EDGE), 0);
+		const uint32_t active = gz_plan_tile_active(plan, tile);
+		for (int ray = 0; ray < 16; ray++) {
+			if (!(active >> ray & 1))
+				continue;
+			const int column =
+				tile->x / layer->spacing + gz_tile_columns[tile->pattern][ray];
+			const int row = tile->y / layer->spacing + gz_tile_rows[ray];
+			assert_in_range(column, 0, layer->columns + MARGIN - 1);
+			assert_in_range(row, 0, layer->rows + MARGIN - 1);
+			uint8_t *count =
+				&cast[tile->layer][row * (layer->columns + MARGIN) + column];
+			if (++*count != 1)
+				fail_msg("layer %d point %d %d cast twice", tile->layer, column,
+					 row);
+			rays++;
+		}
+	}
+	assert_int_equal(rays, plan->ray_count);
+	for (int i = 0; i < plan->layer_count; i++)
+		free(cast[i]);
+}
+
+static void every_point_is_cast_at_most_once_for_any_size_and_gaze(void **state)
+{
+	(void)state;
+	static const int sizes[][2] = { { 1, 1 },    { 7, 3 },   { 64, 64 },   { 65, 63 },
+					{ 8191, 1 }, { 1, 700 }, { 317, 203 }, { 1920, 1080 } };
+	static const struct gz_point gazes[] = { { 0.5F, 0.5F }, { 0, 0 },     { 1, 1 },
+						 { -3, 0.2F },   { 0.3F, 40 }, { NAN, 0.5F },
+						 { INFINITY, 0 } };
+	for (int method = 0; method < GZ_METHOD_COUNT; method++)
+		for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
+			for (size_t j = 0; j < sizeof gazes / sizeof gazes[0]; j++) {
+				struct gz_plan plan =
+					make(method, gazes[j], sizes[i][0], sizes[i][1]);
+				check_tiles(&plan);
+				gz_plan_free(&plan);
+			}
+}
+
+static void standard_casts_each_pixel(void **state)
+{
+	(void)state;
+	struct gz_plan plan = make(GZ_METHOD_STANDARD, (struct gz_point) { 0.5F, 0.5F }, 317, 203);
+	assert_int_equal(plan.ray_count, 317 * 203);
+	gz_plan_free(&plan);
+}
+
+static void acuity_is_never_coarser_than_the_eye_resolves(void **state)
+{
+	(void)state;
+	const struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(1920, 1080);
+	const struct gz_point gazes[] = { { 0.5F, 0.45F }, { 0.02F, 0.97F }, { 1.2F, 0.5F } };
+	for (size_t g = 0; g < 3; g++) {
+		struct gz_plan plan = make(GZ_METHOD_ACUITY, gazes[g], 1920, 1080);
+		for (size_t i = 0; i < plan.tile_count; i++) {
+			const struct gz_tile *tile = &plan.tiles[i];
+			const int lattice = plan.layers[tile->layer].spacing;
+			const double spacing =
+				lattice * (tile->pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1);
+			for (int ray = 0; ray < 16; ray++) {
+				const double x =
+					tile->x + gz_tile_columns[tile->pattern][ray] * lattice;
+				const double y = tile->y + gz_tile_rows[ray] * lattice;
+				const struct gz_point at = { (float)((x + 0.5) / 1920),
+							     (float)((y + 0.5) / 1080) };
+				const double resolved = gz_acuity_spacing_px(
+					&foveation, &display, gazes[g], at, 1920, 1080);
+				if (spacing > 1 && spacing > resolved * 1.001)
+					fail_msg("at %g %g: spacing %g, eye resolves %g", x, y,
+						 spacing, resolved);
+			}
+		}
+		gz_plan_free(&plan);
+	}
+}
+
+static void acuity_is_full_resolution_where_the_display_limits_the_eye(void **state)
+{
+	(void)state;
+	/* The eye resolves 2 px on the default display from 4.1 degrees on at 1920 px, 3.4 at
+	 * 2263, 1.6 at 3840: the flat screen has fewer pixels a degree at its centre than on
+	 * average. */
+	static const struct {
+		int width, height;
+		double until_deg;
+	} cases[] = { { 1920, 1080, 4.15 }, { 2263, 1306, 3.4 }, { 3840, 2160, 1.6 } };
+	for (size_t i = 0; i < 3; i++) {
+		const struct gz_foveation foveation = gz_foveation_default();
+		const struct gz_display display =
+			gz_display_default(cases[i].width, cases[i].height);
+		const struct gz_point gaze = { 0.5F, 0.5F };
+		const double px_per_deg = gz_display_px_per_deg(&display);
+		for (int side = 0; side < 2; side++) {
+			const double deg = cases[i].until_deg + (side ? 0.15 : -0.15);
+			const struct gz_point at = {
+				0.5F + (float)(deg * px_per_deg / cases[i].width), 0.5F
+			};
+			const double spacing = gz_acuity_spacing_px(
+				&foveation, &display, gaze, at, cases[i].width, cases[i].height);
+			if (side ? spacing < 2 : spacing >= 2)
+				fail_msg("%d px: %g px at %g degrees", cases[i].width, spacing,
+					 deg);
+		}
+	}
+}
+
+static void acuity_takes_few_rays(void **state)
+{
+	(void)state;
+	/* A ladder of powers of two takes 10.5 % at 1080p; the quincunx rungs must do better. */
+	struct gz_plan plan = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.45F }, 1920, 1080);
+	if (plan.ray_count > 0.09 * 1920 * 1080)
+		fail_msg("%llu rays", (unsigned long long)plan.ray_count);
+	gz_plan_free(&plan);
+	plan = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.45F }, 3840, 2160);
+	if (plan.ray_count > 0.025 * 3840 * 2160)
+		fail_msg("%llu rays", (unsigned long long)plan.ray_count);
+	gz_plan_free(&plan);
+}
+
+static void mdc_casts_a_quarter_outside_its_square(void **state)
+{
+	(void)state;
+	struct gz_plan plan = make(GZ_METHOD_MDC, (struct gz_point) { 0.5F, 0.5F }, 1600, 1200);
+	const double expected = 350 * 350 + (1600 * 1200 - 350 * 350) / 4.0;
+	if (fabs((double)plan.ray_count / expected - 1) > 0.03)
+		fail_msg("%llu rays, about %g expected", (unsigned long long)plan.ray_count,
+			 expected);
+	gz_plan_free(&plan);
+}
+
+static void distance_rule_lengthens_steps_up_to_its_floor(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(1000, 1000);
+	struct gz_plan plan = { 0 };
+	foveation.method = GZ_METHOD_STANDARD;
+	foveation.step_rule = GZ_STEP_DISTANCE;
+	assert_int_equal(
+		gz_plan_make(&foveation, &display, (struct gz_point) { 0, 0 }, 1000, 1000, &plan),
+		GZ_OK);
+	const double diagonal = hypot(1000, 1000);
+	for (size_t i = 0; i < plan.tile_count; i++) {
+		/* the gaze lies on the corner of the first pixel, positions are of pixel centres */
+		const double d = hypot(plan.tiles[i].x + 0.5, plan.tiles[i].y + 0.5);
+		const double step = (double)plan.steps[plan.tiles[i].step];
+		const double allowed = 1 / fmax(1 - d / diagonal, 0.25);
+		/* one rung of the ladder, 4^(1/31), is the most it may fall short */
+		if (step > allowed * 1.0001 || step < allowed / 1.06)
+			fail_msg("at %g px: step %g, rule says %g", d, step, allowed);
+		if (d <= 10)
+			assert_true(step == 1);
+	}
+	assert_true(fabs((double)plan.steps[plan.step_count - 1] - 4) < 1e-5);
+	gz_plan_free(&plan);
+}
+
+static void plan_refuses_what_is_out_of_range(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = gz_foveation_default();
+	struct gz_display display = gz_display_default(10, 10);
+	const struct gz_point gaze = { 0.5F, 0.5F };
+	struct gz_plan plan = { 0 };
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 0, 10, &plan), GZ_ERR_INVAL);
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 10, GZ_IMAGE_SIDE_MAX + 1, &plan),
+			 GZ_ERR_INVAL);
+	foveation.acuity_slope = NAN;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 10, 10, &plan), GZ_ERR_INVAL);
+	foveation = gz_foveation_default();
+	foveation.method = GZ_METHOD_DDC;
+	foveation.ddc_spacing[2] = 0;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 10, 10, &plan), GZ_ERR_INVAL);
+	foveation = gz_foveation_default();
+	display.distance_mm = 0;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 10, 10, &plan), GZ_ERR_INVAL);
+	gz_plan_free(&plan);
+}
+
+static void trembling_gaze_moves_no_lattice(void **state)
+{
+	(void)state;
+	struct gz_plan a = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.5F }, 1920, 1080);
+	struct gz_plan b = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5005F, 0.5F }, 1920, 1080);
+	size_t same = 0, j = 0;
+	for (size_t i = 0; i < a.tile_count; i++)
+		for (size_t k = j; k < b.tile_count && k < j + 40; k++)
+			if (memcmp(&a.tiles[i], &b.tiles[k], sizeof a.tiles[i]) == 0) {
+				same++;
+				j = k + 1;
+				break;
+			}
+	if (same < a.tile_count * 9 / 10)
+		fail_msg("only %zu of %zu tiles stay", same, a.tile_count);
+	gz_plan_free(&a);
+	gz_plan_free(&b);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_point_is_cast_at_most_once_for_any_size_and_gaze),
+		cmocka_unit_test(standard_casts_each_pixel),
+		cmocka_unit_test(acuity_is_never_coarser_than_the_eye_resolves),
+		cmocka_unit_test(acuity_is_full_resolution_where_the_display_limits_the_eye),
+		cmocka_unit_test(acuity_takes_few_rays),
+		cmocka_unit_test(mdc_casts_a_quarter_outside_its_square),
+		cmocka_unit_test(distance_rule_lengthens_steps_up_to_its_floor),
+		cmocka_unit_test(plan_refuses_what_is_out_of_range),
+		cmocka_unit_test(trembling_gaze_moves_no_lattice),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
