@@ -47,7 +47,7 @@ endfunction()
 
 set(gz_test_environment "")
 if(GAZECAST_SANITIZE MATCHES thread)
-	set(gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp")
+	set(gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp:die_after_fork=0")
 endif()
 
 # gz_test(FOLDER NAME [USES target...] [LABELS label...] [TIMEOUT s] [SOURCES more...]):
