@@ -126,7 +126,7 @@ enum gazectl_exit gazectl_request(struct gz_control *control, const char *reques
 	gazectl_make_printable(out_reply);
 	if (strncmp(out_reply, "OK", 2) == 0)
 		return GAZECTL_DONE;
-	gz_err(log, "the daemon refused: %s", out_reply);
+	gz_err(log, "the daemon answers: %s", out_reply);
 	return GAZECTL_FAILED;
 }
 

@@ -1,7 +1,6 @@
 /* gazectl record and gazectl stop: the daemon's recording. */
 #include "client/gazectl.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -94,32 +93,20 @@ static enum gazectl_exit run_record(int argc, char *const *argv, const struct gz
 	return status;
 }
 
-static enum gazectl_exit report_stopped(struct gz_stream *stream, const struct gz_log *log)
-{
-	struct gz_status status;
-	if (!wait_recording(stream, GZ_RECORDING_OFF, &status))
-		return GAZECTL_DONE;
-	if (status.recording.state == GZ_RECORDING_FAILED) {
-		gz_err(log, "the recording had failed before: %s; %s holds %" PRIu64 " samples",
-		       status.recording.error, status.recording.file, status.recording.samples);
-		return GAZECTL_FAILED;
-	}
-	if (status.recording.file[0])
-		printf("%s\n", status.recording.file);
-	return GAZECTL_DONE;
-}
-
 static enum gazectl_exit stop(struct gz_control *control, const struct gz_log *log)
 {
 	char reply[GZ_CONTROL_REPLY_SIZE];
 	struct gz_stream *stream = NULL;
+	struct gz_status before = { 0 };
 	enum gazectl_exit status = gazectl_open_stream(control, status_topics, log, &stream);
 	if (status != GAZECTL_DONE)
 		return status;
-	status = gazectl_request(control, "r", log, reply);
-	if (status == GAZECTL_DONE)
-		status = report_stopped(stream, log);
+	/* The file's name is in the status as long as it is written to. */
+	gazectl_next_status(stream, gz_clock_now_ns() + STATUS_PATIENCE_NS, &before);
 	gz_stream_close(&stream);
+	status = gazectl_request(control, "r", log, reply);
+	if (status == GAZECTL_DONE && before.recording.file[0])
+		puts(before.recording.file);
 	return status;
 }
 

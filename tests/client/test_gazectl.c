@@ -45,6 +45,7 @@ static void answer(struct daemon *daemon)
 	} else if (strcmp(request, "r") == 0) {
 		reply = "OK";
 		daemon->status.recording.state = GZ_RECORDING_OFF;
+		daemon->status.recording.file[0] = '\0';
 	}
 	zmq_send(daemon->control, reply, strlen(reply), 0);
 }
@@ -274,9 +275,9 @@ static void refusal_is_passed_on(void **state)
 	daemon.refuses = true;
 	daemon_run(&daemon);
 	RUN("record", "my-name");
-	assert_refused(1, "the daemon refused: no: the disk is ?[31mfull");
+	assert_refused(1, "the daemon answers: no: the disk is ?[31mfull");
 	RUN("stop");
-	assert_refused(1, "the daemon refused: no");
+	assert_refused(1, "the daemon answers: no");
 	daemon_stop(&daemon);
 }
 
