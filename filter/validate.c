@@ -139,12 +139,20 @@ static bool eye_point_measured(const struct gz_eye_sample *eye)
 	return eye->valid || !isnan(eye->point.x) || !isnan(eye->point.y);
 }
 
+/* CLOCK_MONOTONIC begins at 0. Times of a damaged log may be any; with these, no difference between
+ * two of them, nor a few of those summed, overflows: a century and more. */
+static bool time_is_usable(int64_t time_ns)
+{
+	return time_ns >= 0 && time_ns <= INT64_MAX / 2;
+}
+
 struct gz_validate_output gz_validate_step(struct gz_validate_state *state,
 					   const struct gz_validate_params *params,
 					   const struct gz_display *display,
 					   const struct gz_sample *sample)
 {
-	if (state->started && sample->host_ns <= state->time_ns)
+	if (!time_is_usable(sample->host_ns) ||
+	    (state->started && sample->host_ns <= state->time_ns))
 		return (struct gz_validate_output) { .rejection = GZ_REJECT_TIME };
 	double step_s = state->started ? gz_ns_to_s(sample->host_ns - state->time_ns) : 0;
 	state->started = true;

@@ -126,36 +126,26 @@ struct gz_gaze gaze_at(uint64_t seq, float x, float y)
 	return gaze;
 }
 
-static void publish_until_killed(const char *channel, uint64_t seq, int ready)
-{
-	struct publisher publisher;
-	publisher_open(&publisher, channel);
-	if (write(ready, "", 1) != 1)
-		_exit(1);
-	for (;; seq++) {
-		struct gz_gaze gaze = gaze_at(seq, 0.25f, 0.75f);
-		if (strcmp(channel, "latest") == 0)
-			publisher_send_latest(&publisher, &gaze);
-		else
-			publisher_send_gaze(&publisher, &gaze);
-		gz_clock_sleep_until_ns(gaze.host_ns + GZ_NS_PER_MS);
-	}
-}
-
 pid_t publisher_process_start(const char *channel, uint64_t first_seq)
 {
-	int ready[2];
-	assert_int_equal(pipe(ready), 0);
+	char endpoint[GZ_ENDPOINT_SIZE], seq[32], byte;
+	int bound[2];
+	assert_int_equal(
+		gz_endpoint_ipc(getenv("GAZECAST_RUNTIME_DIR"), channel, endpoint, sizeof endpoint),
+		GZ_OK);
+	snprintf(seq, sizeof seq, "%llu", (unsigned long long)first_seq);
+	assert_int_equal(pipe(bound), 0);
 	pid_t process = fork();
 	assert_true(process >= 0);
 	if (process == 0) {
 		prctl(PR_SET_PDEATHSIG, SIGKILL); /* a failed assertion leaves nobody behind */
-		publish_until_killed(channel, first_seq, ready[1]);
+		dup2(bound[1], STDOUT_FILENO);
+		execl(PUBLISH, PUBLISH, endpoint, channel, seq, (char *)NULL);
+		_exit(127);
 	}
-	close(ready[1]);
-	char byte;
-	assert_int_equal(read(ready[0], &byte, 1), 1);
-	close(ready[0]);
+	close(bound[1]);
+	assert_int_equal(read(bound[0], &byte, 1), 1);
+	close(bound[0]);
 	return process;
 }
 
