@@ -1,6 +1,6 @@
 /**
  * @file
- * Angles and running medians, as the steps share them. Only + - * / and sqrt, which give the same
+ * Angles, as the steps share them. Only + - * / and sqrt, which give the same
  * bits everywhere.
  */
 #ifndef GZ_FILTER_ANGLE_H
@@ -41,20 +41,6 @@ static inline double gz_chord_deg(const struct gz_display *display, struct gz_po
 	gz_direction_deg(display, b, v);
 	double d[3] = { u[0] - v[0], u[1] - v[1], u[2] - v[2] };
 	return gz_length3(d);
-}
-
-/**
- * Follow the median of a positive quantity value by value: up by the part @p gain where the value
- * is above, down where it is below, so that as many lie above as below; single large values count
- * no more than any other. The stochastic approximation of Robbins and Monro (1951) on a log scale.
- *
- * @param median  so far; 0 begins with @p value
- */
-static inline double gz_follow_median(double median, double value, double gain)
-{
-	if (median <= 0)
-		return value;
-	return value > median ? median * (1 + gain) : median / (1 + gain);
 }
 
 #endif

@@ -78,8 +78,8 @@ static void look_quickly(struct gz_classify_state *state, const struct gz_classi
 			 const struct gz_classify_entry *entry, double speed_deg_s)
 {
 	struct gz_classify_quick *quick = &state->quick;
-	double peak = fmax(params->min_peak_deg_s, params->peak_factor * quick->noise_deg_s);
-	double end = fmax(params->min_onset_deg_s, params->onset_factor * quick->noise_deg_s);
+	double peak = params->peak_base_deg_s + params->peak_factor * quick->noise_deg_s.value;
+	double end = params->onset_base_deg_s + params->onset_factor * quick->noise_deg_s.value;
 	if (entry->after_loss)
 		quick->saccade = false;
 	if (quick->saccade) {
@@ -96,8 +96,7 @@ static void look_quickly(struct gz_classify_state *state, const struct gz_classi
 		return;
 	}
 	double gain = state->period_ns / (params->noise_memory_s * 1e9);
-	quick->noise_deg_s =
-		gz_follow_median(quick->noise_deg_s, speed_deg_s + 1e-3, fmin(gain, 0.1));
+	gz_median_follow(&quick->noise_deg_s, speed_deg_s, gain);
 }
 
 static enum gz_event quick_event(const struct gz_classify_state *state,

@@ -19,31 +19,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "filter/median.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 
 /** Settings; presets and sources stand in pipeline_options.c. */
 struct gz_classify_params {
-	double final_delay_ms;         /**< oldest age at which a label becomes certain, ms */
-	double velocity_window_ms;     /**< width of the window for the certain label, ms */
-	double quick_window_ms;        /**< width of the trailing one for the label at once, ms */
-	double noise_memory_s;         /**< time constant of the noise estimate, s */
-	double peak_factor;            /**< peak threshold over the noise, no unit */
-	double onset_factor;           /**< onset and end threshold over the noise, no unit */
-	double min_peak_deg_s;         /**< least peak threshold, degrees a second */
-	double min_onset_deg_s;        /**< least onset and end threshold, degrees a second */
-	double end_fraction;           /**< a saccade ends below this part of its peak velocity */
-	double turn_fraction;          /**< and where it gathers speed again below this part */
-	double saccade_max_ms;         /**< longer ones are ended, ms */
-	double glissade_ms;            /**< after a saccade, for so long, ms, ... */
-	double glissade_fraction;      /**< ... only this part of its peak begins another */
-	double fixation_min_ms;        /**< shorter ones are not announced, ms */
-	double pursuit_window_ms;      /**< over which slow movement is measured, ms */
-	double pursuit_velocity_deg_s; /**< where fixation and pursuit are equally likely */
-	double pursuit_habit;          /**< weight of the intervals before, no unit */
-	double pursuit_hysteresis;     /**< evidence needed to change one's mind, no unit */
-	double dropout_ms;             /**< shorter losses are not blinks, ms */
-	double blink_max_ms;           /**< longer ones are lost, ms */
+	double final_delay_ms;     /**< oldest age at which a label becomes certain, ms */
+	double velocity_window_ms; /**< width of the window for the certain label, ms */
+	double quick_window_ms;    /**< width of the trailing one for the label at once, ms */
+	double noise_memory_s;     /**< time constant of the noise estimate, s */
+	double peak_factor;        /**< of the noise in the peak threshold, no unit */
+	double onset_factor;       /**< of the noise in the onset and end threshold, no unit */
+	double peak_base_deg_s;    /**< peak threshold without noise, degrees a second */
+	double onset_base_deg_s;   /**< onset and end threshold without noise, the same */
+	double end_fraction;       /**< a saccade ends below this part of its peak velocity */
+	double turn_fraction;      /**< and where it gathers speed again below this part */
+	double saccade_max_ms;     /**< longer ones are ended, ms */
+	double glissade_ms;        /**< after a saccade, for so long, ms, ... */
+	double glissade_fraction;  /**< ... only this part of its peak begins another */
+	double fixation_min_ms;    /**< shorter ones are not announced, ms */
+	double pursuit_window_ms;  /**< over which slow movement is measured, ms */
+	double pursuit_deg;        /**< slow movement where fixation and pursuit are equally likely,
+				      degrees */
+	double pursuit_habit_s;    /**< time constant of the habit, s */
+	double pursuit_habit;      /**< weight of the intervals before, no unit */
+	double pursuit_hysteresis; /**< evidence needed to change one's mind, no unit */
+	double dropout_ms;         /**< shorter losses are not blinks, ms */
+	double blink_max_ms;       /**< longer ones are lost, ms */
 };
 
 /** Samples kept: final delay and half a window at 2000 Hz, and some. A power of two. */
@@ -97,22 +100,22 @@ struct gz_classify_slow {
 /** The label given at once. */
 struct gz_classify_quick {
 	bool saccade;
-	double noise_deg_s; /**< median of the trailing speed outside saccades */
-	double peak_deg_s;  /**< of the running saccade */
+	struct gz_median noise_deg_s; /**< of the trailing speed outside saccades */
+	double peak_deg_s;            /**< of the running saccade */
 	int64_t since_ns;
 };
 
 /** Zero-initialised is the start state: lost, no sample yet. Plain data. */
 struct gz_classify_state {
 	struct gz_classify_entry ring[GZ_CLASSIFY_RING];
-	uint64_t count;     /**< samples taken; sample i is ring[i % RING] */
-	uint64_t measured;  /**< samples whose speed is known */
-	uint64_t certain;   /**< samples whose label is certain */
-	double period_ns;   /**< time between samples, measured; 0 before the second */
-	int64_t valid_ns;   /**< newest good sample */
-	bool any_valid;     /**< whether there was one */
-	enum gz_event now;  /**< label given at once to the newest sample */
-	double noise_deg_s; /**< median speed outside saccades */
+	uint64_t count;               /**< samples taken; sample i is ring[i % RING] */
+	uint64_t measured;            /**< samples whose speed is known */
+	uint64_t certain;             /**< samples whose label is certain */
+	double period_ns;             /**< time between samples, measured; 0 before the second */
+	int64_t valid_ns;             /**< newest good sample */
+	bool any_valid;               /**< whether there was one */
+	enum gz_event now;            /**< label given at once to the newest sample */
+	struct gz_median noise_deg_s; /**< speed outside saccades */
 	struct gz_classify_quick quick;
 	struct gz_classify_machine machine;
 	struct gz_classify_slow slow;

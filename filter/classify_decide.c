@@ -6,17 +6,20 @@
 #include "filter/angle.h"
 #include "filter/classify_internal.h"
 
-/* How much of an interval's outcome enters the habit: chosen, the last four or so count. */
-static const double HABIT_GAIN = 0.25;
+/* That the eye hardly moves says something once it was watched for so long: chosen. */
+static const double SPAN_FULL_S = 0.1;
 
-/* Slow movement is believed in full once it rests on so much time: chosen. */
-static const double SPAN_FULL_S = 0.08;
+/* How long the eye rings after a saccade, when its movement says nothing of pursuit: chosen. */
+static const int64_t RINGING_NS = 60 * GZ_NS_PER_MS;
+
+/* The way of an eye counts as far as it is beyond so many deviations of noise: chosen. */
+static const double NOISE_DEVIATIONS = 2;
 
 static double peak_threshold(const struct gz_classify_state *state,
 			     const struct gz_classify_params *params, int64_t time_ns)
 {
 	const struct gz_classify_machine *machine = &state->machine;
-	double threshold = fmax(params->min_peak_deg_s, params->peak_factor * state->noise_deg_s);
+	double threshold = params->peak_base_deg_s + params->peak_factor * state->noise_deg_s.value;
 	double since_ms = gz_ns_to_ms(time_ns - machine->saccade_end_ns);
 	if (machine->had_saccade && since_ms < params->glissade_ms)
 		threshold = fmax(threshold, params->glissade_fraction * machine->peak_deg_s);
@@ -26,7 +29,7 @@ static double peak_threshold(const struct gz_classify_state *state,
 static double onset_threshold(const struct gz_classify_state *state,
 			      const struct gz_classify_params *params)
 {
-	return fmax(params->min_onset_deg_s, params->onset_factor * state->noise_deg_s);
+	return params->onset_base_deg_s + params->onset_factor * state->noise_deg_s.value;
 }
 
 /** Whether a saccade begins: faster than the onset threshold from here on up to a peak. */
@@ -73,15 +76,6 @@ static enum gz_event interval_event(const struct gz_classify_machine *machine)
 	return machine->pursuit > 0 ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
 }
 
-/** The interval that ends now was a fixation or a pursuit: the next one is likely the same. */
-static void learn_habit(struct gz_classify_machine *machine)
-{
-	if (machine->event != GZ_EVENT_FIXATION && machine->event != GZ_EVENT_PURSUIT)
-		return;
-	double outcome = machine->event == GZ_EVENT_PURSUIT ? 1 : -1;
-	machine->habit += HABIT_GAIN * (outcome - machine->habit);
-}
-
 static void begin_interval(struct gz_classify_state *state, const struct gz_classify_params *params)
 {
 	struct gz_classify_machine *machine = &state->machine;
@@ -93,22 +87,62 @@ static void begin_interval(struct gz_classify_state *state, const struct gz_clas
 static void begin_saccade(struct gz_classify_state *state, const struct gz_classify_entry *entry)
 {
 	struct gz_classify_machine *machine = &state->machine;
-	learn_habit(machine);
 	machine->event = GZ_EVENT_SACCADE;
 	machine->since_ns = entry->time_ns;
 	machine->peak_deg_s = entry->fast_deg_s;
 }
 
-/** Weigh the slow movement: fixation or pursuit. */
+/**
+ * What noise alone makes of the way of an eye at rest: standard deviation of both axes together.
+ *
+ * The slope through n samples dt apart has the deviation s sqrt(12 / (n (n^2 - 1))) / dt for
+ * samples of the deviation s. That gives s from the usual speed over the short window, whose median
+ * is sqrt(2 ln 2) of the deviation of an axis (Rayleigh), and from s that of the long slope.
+ */
+static double way_noise_deg(const struct gz_classify_state *state,
+			    const struct gz_classify_params *params)
+{
+	double period_s = state->period_ns * 1e-9;
+	double half = floor(params->velocity_window_ms * 0.5e-3 / period_s + 0.25);
+	double n = gz_classify_delay(state, params) > 0 ? 2 * fmax(half, 1) + 1 : 2;
+	double many = fmax(2, state->slow.span_s / period_s);
+	double axis_deg_s = state->noise_deg_s.value / 1.17741002;
+	double axis_deg = axis_deg_s * period_s * sqrt(n * (n * n - 1) / many);
+	return axis_deg * 1.41421356;
+}
+
+/**
+ * What the slow movement says, -1 fixation to 1 pursuit. Drift wanders about a place however long a
+ * fixation lasts; pursuit goes on and on: how far it has come tells more than how fast it is. This
+ * is the tangens hyperbolicus of half the logarithm of the way over the even way.
+ */
+static double evidence_of(const struct gz_classify_state *state,
+			  const struct gz_classify_params *params)
+{
+	double way_deg = gz_length3(state->slow.velocity_deg_s) * state->slow.span_s;
+	double noise_deg = NOISE_DEVIATIONS * way_noise_deg(state, params);
+	way_deg = sqrt(fmax(0, way_deg * way_deg - noise_deg * noise_deg));
+	return (way_deg - params->pursuit_deg) / (way_deg + params->pursuit_deg);
+}
+
+/** What the eyes did in the last seconds, they are likely to do next. */
+static void learn_habit(struct gz_classify_state *state, const struct gz_classify_params *params)
+{
+	if (state->slow.span_s < SPAN_FULL_S)
+		return;
+	struct gz_classify_machine *machine = &state->machine;
+	double gain = state->period_ns / (params->pursuit_habit_s * 1e9);
+	machine->habit += fmin(gain, 1) * (evidence_of(state, params) - machine->habit);
+}
+
+/** Fixation or pursuit? */
 static void weigh(struct gz_classify_state *state, const struct gz_classify_params *params)
 {
 	struct gz_classify_machine *machine = &state->machine;
-	double speed = gz_length3(state->slow.velocity_deg_s);
-	double even = params->pursuit_velocity_deg_s;
-	/* From -1 to 1, the tangens hyperbolicus of half the logarithm of speed / even. */
-	double evidence = (speed - even) / (speed + even);
-	double trust = fmin(1, state->slow.span_s / SPAN_FULL_S);
-	machine->pursuit = trust * evidence + params->pursuit_habit * machine->habit;
+	double evidence = evidence_of(state, params);
+	if (evidence < 0)
+		evidence *= fmin(1, state->slow.span_s / SPAN_FULL_S);
+	machine->pursuit = evidence + params->pursuit_habit * machine->habit;
 	double needed = params->pursuit_hysteresis;
 	if (machine->event == GZ_EVENT_FIXATION && machine->pursuit > needed)
 		machine->event = GZ_EVENT_PURSUIT;
@@ -121,10 +155,14 @@ static void go_on_interval(struct gz_classify_state *state, const struct gz_clas
 			   const struct gz_classify_entry *entry)
 {
 	double gain = state->period_ns / (params->noise_memory_s * 1e9);
-	state->noise_deg_s =
-		gz_follow_median(state->noise_deg_s, entry->fast_deg_s + 1e-3, fmin(gain, 0.1));
-	if (gz_classify_slow_step(&state->slow, params, entry))
+	gz_median_follow(&state->noise_deg_s, entry->fast_deg_s, gain);
+	const struct gz_classify_machine *machine = &state->machine;
+	bool ringing =
+		machine->had_saccade && entry->time_ns - machine->saccade_end_ns < RINGING_NS;
+	bool steady = entry->fast_deg_s < peak_threshold(state, params, entry->time_ns) / 2;
+	if (!ringing && steady && gz_classify_slow_step(&state->slow, params, entry))
 		weigh(state, params);
+	learn_habit(state, params);
 }
 
 static void decide_good(struct gz_classify_state *state, const struct gz_classify_params *params,
@@ -135,7 +173,6 @@ static void decide_good(struct gz_classify_state *state, const struct gz_classif
 	bool anew = entry->after_loss || machine->event == GZ_EVENT_BLINK ||
 		    machine->event == GZ_EVENT_LOST;
 	if (anew) {
-		learn_habit(machine);
 		machine->had_saccade = false;
 		memset(state->slow.velocity_deg_s, 0, sizeof state->slow.velocity_deg_s);
 		begin_interval(state, params);
@@ -177,7 +214,6 @@ static void decide_missing(struct gz_classify_state *state, const struct gz_clas
 	struct gz_classify_machine *machine = &state->machine;
 	if (!within_loss(state, params, index))
 		return; /* goes on as before */
-	learn_habit(machine);
 	double since_ms = gz_ns_to_ms(gz_classify_at(state, index)->time_ns - machine->valid_ns);
 	bool blink = machine->any_valid && since_ms <= params->blink_max_ms;
 	machine->event = blink ? GZ_EVENT_BLINK : GZ_EVENT_LOST;

@@ -7,9 +7,9 @@
 #include "filter/classify_internal.h"
 
 /* Width of a bin: chosen, some samples at 500 Hz, and a dozen of them in the window. */
-static const int64_t BIN_NS = 8 * GZ_NS_PER_MS;
+static const int64_t BIN_NS = 20 * GZ_NS_PER_MS;
 
-/* Least bins for a slope: chosen. */
+/* Least bins for a slope: chosen, 40 to 50 ms; less would take the eye's ringing for movement. */
 static const double SLOPE_MIN_COUNT = 3;
 
 /** Sums for the slope of a line. */

@@ -25,8 +25,8 @@ static void learn_noise(struct gz_combine_eye *eye, const struct gz_combine_para
 	int64_t step_ns = time_ns - eye->time_ns;
 	if (eye->seen && step_ns <= STEP_MAX_NS) {
 		double step_deg = gz_chord_deg(display, eye->point, point);
-		eye->step_deg = gz_follow_median(eye->step_deg, fmax(step_deg, LEAST_STEP_DEG),
-						 gain_of(gz_ns_to_s(step_ns), params->noise_ms));
+		gz_median_follow(&eye->step_deg, fmax(step_deg, LEAST_STEP_DEG),
+				 gain_of(gz_ns_to_s(step_ns), params->noise_ms));
 	}
 }
 
@@ -37,7 +37,7 @@ static void share_out(const struct gz_combine_state *state, const bool good[GZ_E
 	double noise[GZ_EYE_COUNT], sum = 0;
 	bool known = true;
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
-		noise[i] = state->eye[i].step_deg;
+		noise[i] = state->eye[i].step_deg.value;
 		known = known && noise[i] > 0;
 	}
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {

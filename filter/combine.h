@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "filter/median.h"
 #include "filter/validate.h"
 #include "protocol/gaze.h"
 
@@ -24,8 +25,8 @@ struct gz_combine_eye {
 	bool seen;             /**< whether point and time_ns hold something */
 	struct gz_point point; /**< its newest good point */
 	int64_t time_ns;
-	double offset[2]; /**< to add to its points, display sides */
-	double step_deg;  /**< median sample-to-sample step, degrees: its noise; 0 if not known */
+	double offset[2];          /**< to add to its points, display sides */
+	struct gz_median step_deg; /**< sample-to-sample step, degrees: its noise */
 };
 
 /** Zero-initialised is the start state. */

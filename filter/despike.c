@@ -30,7 +30,7 @@ static bool departs(const struct gz_despike_state *state, const struct gz_despik
 		    const struct gz_display *display, const double step_mm[2])
 {
 	double limit_deg =
-		fmax(params->threshold_deg, params->noise_factor * state->usual_step_deg);
+		fmax(params->threshold_deg, params->noise_factor * state->step_deg.value);
 	if (length_deg(display, step_mm) <= limit_deg)
 		return false;
 	if (!state->stepped)
@@ -50,9 +50,8 @@ static struct gz_point accept(struct gz_despike_state *state, const struct gz_di
 {
 	difference_mm(display, state->clean, point, state->step_mm);
 	state->stepped = true;
-	state->usual_step_deg =
-		gz_follow_median(state->usual_step_deg, length_deg(display, state->step_mm),
-				 step_s / (step_s + USUAL_S));
+	gz_median_follow(&state->step_deg, length_deg(display, state->step_mm),
+			 step_s / (step_s + USUAL_S));
 	state->clean = point;
 	state->held = 0;
 	return point;
@@ -91,7 +90,7 @@ static struct gz_point begin(struct gz_despike_state *state, int64_t time_ns, st
 		.started = true,
 		.time_ns = time_ns,
 		.clean = point,
-		.usual_step_deg = state->usual_step_deg,
+		.step_deg = state->step_deg,
 		.dropped_count = state->dropped_count,
 	};
 	return point;

@@ -17,6 +17,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "filter/median.h"
 #include "protocol/display.h"
 
 /** Settings; presets and sources stand in pipeline_options.c. */
@@ -28,16 +29,16 @@ struct gz_despike_params {
 
 /** Zero-initialised is the start state. */
 struct gz_despike_state {
-	int held;               /**< samples being held back: 0, 1 or 2 */
-	bool started;           /**< whether clean and time_ns hold something */
-	bool stepped;           /**< whether step_deg holds something */
-	int64_t time_ns;        /**< of the newest sample */
-	int64_t held_ns;        /**< of the first held sample */
-	struct gz_point clean;  /**< newest point known not to be a spike */
-	struct gz_point spike;  /**< newest held point */
-	double step_mm[2];      /**< last step between clean points, mm on the display */
-	double usual_step_deg;  /**< median step, degrees, tracked sample by sample */
-	uint64_t dropped_count; /**< samples found to be spikes so far */
+	int held;                  /**< samples being held back: 0, 1 or 2 */
+	bool started;              /**< whether clean and time_ns hold something */
+	bool stepped;              /**< whether step_deg holds something */
+	int64_t time_ns;           /**< of the newest sample */
+	int64_t held_ns;           /**< of the first held sample */
+	struct gz_point clean;     /**< newest point known not to be a spike */
+	struct gz_point spike;     /**< newest held point */
+	double step_mm[2];         /**< last step between clean points, mm on the display */
+	struct gz_median step_deg; /**< usual step, degrees */
+	uint64_t dropped_count;    /**< samples found to be spikes so far */
 };
 
 /**

@@ -14,8 +14,9 @@
 /* Sources, where the help does not say it:
  *
  * max_velocity_deg_s  eyes turn at up to 900 degrees a second (Bauer 2018, section 2.2)
- * peak_factor         lambda = 6 of Engbert and Kliegl 2003; their sigma is the median speed here
- * onset_factor        half of it: 3 instead of 6 standard deviations in Nyström and Holmqvist 2010
+ * peak_factor         Engbert and Kliegl 2003 take 6 standard deviations of each axis, which are 5
+ *                     medians of the speed
+ * onset_factor        under half of it: 3 against 6 deviations in Nyström and Holmqvist 2010
  * blink_max_ms        the longest blink of Stern, Walrath and Goldstein 1984, 400 ms, and some
  * window_ms           the shortest fixation of Bauer 2018, section 2.2
  * the others          chosen on recordings that two people labelled (Andersson et al. 2017) and on
@@ -46,21 +47,21 @@ const struct gz_option gz_pipeline_options[] = {
 	     "oldest age at which a label becomes certain, ms"),
 	REAL("velocity_window_ms", CLASSIFY(velocity_window_ms), 1, 100, "10",
 	     "width of the window over which speed is measured, ms"),
-	REAL("quick_window_ms", CLASSIFY(quick_window_ms), 1, 100, "6",
+	REAL("quick_window_ms", CLASSIFY(quick_window_ms), 1, 100, "8",
 	     "the same for the label given at once, trailing, ms"),
 	REAL("noise_memory_s", CLASSIFY(noise_memory_s), 0.01, 1000, "2",
 	     "time constant of the noise estimate, s"),
-	REAL("peak_factor", CLASSIFY(peak_factor), 0, 100, "6",
-	     "a saccade's peak over the median speed"),
-	REAL("onset_factor", CLASSIFY(onset_factor), 0, 100, "3",
-	     "a saccade's onset and end over the median speed"),
-	REAL("min_peak_deg_s", CLASSIFY(min_peak_deg_s), 1, 1000, "30",
-	     "least peak velocity of a saccade, degrees a second"),
-	REAL("min_onset_deg_s", CLASSIFY(min_onset_deg_s), 1, 1000, "18",
-	     "least velocity at its onset and end, degrees a second"),
+	REAL("peak_factor", CLASSIFY(peak_factor), 0, 100, "5",
+	     "what the median speed adds to the peak threshold"),
+	REAL("onset_factor", CLASSIFY(onset_factor), 0, 100, "2",
+	     "what it adds to the onset and end threshold"),
+	REAL("peak_base_deg_s", CLASSIFY(peak_base_deg_s), 1, 1000, "20",
+	     "peak threshold of a saccade without noise, degrees a second"),
+	REAL("onset_base_deg_s", CLASSIFY(onset_base_deg_s), 1, 1000, "10",
+	     "onset and end threshold without noise, degrees a second"),
 	REAL("end_fraction", CLASSIFY(end_fraction), 0, 1, "0.1",
 	     "a saccade ends below this part of its peak velocity"),
-	REAL("turn_fraction", CLASSIFY(turn_fraction), 0, 1, "0.5",
+	REAL("turn_fraction", CLASSIFY(turn_fraction), 0, 1, "0",
 	     "and where it gathers speed again below this part"),
 	REAL("saccade_max_ms", CLASSIFY(saccade_max_ms), 10, 1000, "200", "longest saccade, ms"),
 	REAL("glissade_ms", CLASSIFY(glissade_ms), 0, 1000, "40",
@@ -69,13 +70,15 @@ const struct gz_option gz_pipeline_options[] = {
 	     "part of the saccade's peak up to which that is no other saccade"),
 	REAL("fixation_min_ms", CLASSIFY(fixation_min_ms), 0, 1000, "40",
 	     "shorter fixations are not announced, ms"),
-	REAL("pursuit_window_ms", CLASSIFY(pursuit_window_ms), 20, 250, "120",
+	REAL("pursuit_window_ms", CLASSIFY(pursuit_window_ms), 20, 600, "450",
 	     "over which slow movement is measured, ms"),
-	REAL("pursuit_velocity_deg_s", CLASSIFY(pursuit_velocity_deg_s), 0.1, 100, "4",
-	     "where fixation and pursuit are equally likely, degrees a second"),
-	REAL("pursuit_habit", CLASSIFY(pursuit_habit), 0, 10, "0.3",
+	REAL("pursuit_deg", CLASSIFY(pursuit_deg), 0.01, 100, "0.4",
+	     "slow movement where fixation and pursuit are equally likely, degrees"),
+	REAL("pursuit_habit_s", CLASSIFY(pursuit_habit_s), 0.01, 1000, "1",
+	     "how long fixations and pursuits before are remembered, s"),
+	REAL("pursuit_habit", CLASSIFY(pursuit_habit), 0, 10, "1.5",
 	     "weight of the fixations and pursuits before"),
-	REAL("pursuit_hysteresis", CLASSIFY(pursuit_hysteresis), 0, 10, "0.1",
+	REAL("pursuit_hysteresis", CLASSIFY(pursuit_hysteresis), 0, 10, "0.25",
 	     "evidence needed to change between fixation and pursuit"),
 	REAL("dropout_ms", CLASSIFY(dropout_ms), 0, 100, "10", "shorter losses are not blinks, ms"),
 	REAL("blink_max_ms", CLASSIFY(blink_max_ms), 10, 10000, "500",
@@ -86,7 +89,7 @@ const struct gz_option gz_pipeline_options[] = {
 	     "time constant within a pursuit, ms"),
 	REAL("smooth_drift_factor", SMOOTH(drift_factor), 0, 1000, "3",
 	     "the mean lets go at this multiple of the usual distance"),
-	REAL("smooth_drift_deg", SMOOTH(drift_deg), 0, 180, "0.2",
+	REAL("smooth_drift_deg", SMOOTH(drift_deg), 0, 180, "0.5",
 	     "and at least at this distance, degrees"),
 };
 

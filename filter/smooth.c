@@ -34,10 +34,9 @@ static bool moved_away(struct gz_smooth_state *state, const struct gz_smooth_par
 	double now[2] = { point.x - state->place[0], point.y - state->place[1] };
 	for (int axis = 0; axis < 2; axis++)
 		state->offset[axis] += NOTICE * (now[axis] - state->offset[axis]);
-	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg);
+	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg.value);
 	bool moved = offset_deg(display, state->offset) > limit_deg;
-	state->usual_deg = gz_follow_median(state->usual_deg, offset_deg(display, now) + 1e-6,
-					    step_s / (step_s + USUAL_S));
+	gz_median_follow(&state->usual_deg, offset_deg(display, now), step_s / (step_s + USUAL_S));
 	return moved;
 }
 

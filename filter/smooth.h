@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "filter/median.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 
@@ -28,15 +29,15 @@ struct gz_smooth_params {
 
 /** Zero-initialised is the start state. */
 struct gz_smooth_state {
-	bool started;          /**< whether the rest holds something */
-	enum gz_event mode;    /**< how the last good sample was smoothed */
-	int64_t time_ns;       /**< of the last good sample */
-	double place[2];       /**< display sides */
-	double velocity[2];    /**< display sides a second; pursuit only */
-	double window_s;       /**< the mean's window so far */
-	double offset[2];      /**< short mean of measured minus given place, display sides */
-	double usual_deg;      /**< usual distance between measured and given place, degrees */
-	struct gz_point point; /**< what was given last */
+	bool started;               /**< whether the rest holds something */
+	enum gz_event mode;         /**< how the last good sample was smoothed */
+	int64_t time_ns;            /**< of the last good sample */
+	double place[2];            /**< display sides */
+	double velocity[2];         /**< display sides a second; pursuit only */
+	double window_s;            /**< the mean's window so far */
+	double offset[2];           /**< short mean of measured minus given place, display sides */
+	struct gz_median usual_deg; /**< distance between measured and given place, degrees */
+	struct gz_point point;      /**< what was given last */
 };
 
 /**
