@@ -77,7 +77,9 @@ struct gz_raw_layout {
  * @param path        file
  * @param raw         layout of a headerless file; must be NULL for files that have a header
  * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
+ * @retval GZ_ERR_INVAL        @p raw is missing or must not be given; logged
  * @retval GZ_ERR_NOT_FOUND    no such file; logged
+ * @retval GZ_ERR_IO           it cannot be read; logged
  * @retval GZ_ERR_FORMAT       truncated, oversized, contradictory, wrong type; logged with the
  * remedy
  * @retval GZ_ERR_UNSUPPORTED  a kind, dimension or encoding that is not read; logged
