@@ -178,11 +178,12 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 	vf until = vf_set(-1);
 	uint32_t samples = 0;
 	vm alive = rays->hit;
+	vm inside = vm_but(alive, alive); /* the last sample showed something: no cell to ask for */
 	for (;;) {
 		const vm active = vm_and(alive, vf_less(k, end));
 		if (!vm_any(active))
 			break;
-		const vm asks = vm_but(active, vf_less(k, until));
+		const vm asks = vm_but(active, vm_or(inside, vf_less(k, until)));
 		if (vm_any(asks)) {
 			vf leave;
 			const vm empty = vm_and(look_up_cell(cast, rays, k, asks, &leave), asks);
@@ -194,13 +195,14 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 			 */
 			until = vf_select(vm_but(asks, empty), vf_max(leave, k + half), until);
 		}
-		const vm takes = vm_and(active, vf_less(k, until));
+		const vm takes = vm_and(active, vm_or(inside, vf_less(k, until)));
 		if (!vm_any(takes))
 			continue;
 		samples += vm_count(takes);
 		const vi entry = entry_of(cast, sample_at(cast, type, nearest, rays, k, takes));
 		const vf opacity = vf_gather(cast->opacity[step], entry, takes);
 		const vm visible = vf_less(vf_set(0), opacity);
+		inside = visible;
 		if (vm_any(visible)) {
 			composite(cast, entry, opacity, visible, light);
 			alive = vm_and(alive,
