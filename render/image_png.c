@@ -12,9 +12,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Chosen: on rendered frames level 3 writes three times as fast as zlib's default of 6 and makes
- * files a few percent larger. */
-#define PNG_COMPRESSION_LEVEL 3
+/* Measured on a rendered head of 1024 x 1024 pixels: level 2 takes a quarter of the time of zlib's
+ * default of 6 and a quarter more bytes; the filter "up" saves a tenth of them over "sub". */
+#define PNG_COMPRESSION_LEVEL 2
 
 static void on_png_error(png_structp png, png_const_charp message)
 {
@@ -35,7 +35,7 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 		return false;
 	png_init_io(png, file);
 	png_set_compression_level(png, PNG_COMPRESSION_LEVEL);
-	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
 	png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
 		     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
 		     PNG_FILTER_TYPE_DEFAULT);
