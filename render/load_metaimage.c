@@ -1,5 +1,5 @@
 /* MetaImage (.mha, .mhd): the tags of itk.org/Wiki/MetaIO/Documentation. Its coordinates are LPS,
- * as ITK takes them. */
+ * as ITK takes them. MetaIO itself is C++, comes with ITK or VTK only and reads whole arrays. */
 #include <math.h>
 #include <string.h>
 #include <strings.h>
