@@ -304,8 +304,9 @@ void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_rec
 	if (!gz_recorder_running(recorder))
 		return;
 	bool sample = record->kind == GZ_GAZE_LOG_SAMPLE;
-	/* After a loss there must be room for the gap, too; and one slot stays free for it. */
-	size_t needed = recorder->missing ? 3 : 2;
+	/* One slot stays free for a gap. After a loss there must be much room again, so that a disk
+	 * that is just too slow leaves few long gaps rather than many short ones. */
+	size_t needed = recorder->missing ? GZ_RECORDER_RING / 2 : 2;
 	if (gz_ring_room(recorder->ring) < needed) {
 		recorder->missing += sample;
 		return;
