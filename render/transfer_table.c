@@ -52,19 +52,22 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 		const double width = range[1] - range[0];
 		double rgba[4];
 		gz_transfer_evaluate(transfer, width != 0 ? (value - range[0]) / width : 0, rgba);
-		out_table->extinction[i] = (float)log2(1 - rgba[3]);
-		out_table->colour[i] = pack_colour(rgba);
+		out_table->entries[i].extinction = (float)log2(1 - rgba[3]);
+		out_table->entries[i].colour = pack_colour(rgba);
 		out_table->visible_before[i + 1] =
 			(uint16_t)(out_table->visible_before[i] + (rgba[3] > 0));
 	}
 }
 
-void gz_transfer_table_opacities(const struct gz_transfer_table *table, double length,
-				 float out_opacity[GZ_TRANSFER_TABLE_SIZE])
+void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
+			    struct gz_transfer_entry out_entries[GZ_TRANSFER_TABLE_SIZE])
 {
 	for (int i = 0; i <= LAST; i++) {
-		const double exponent = length * table->extinction[i];
-		out_opacity[i] = table->extinction[i] < 0 ? (float)-expm1(exponent * M_LN2) : 0;
+		const double extinction = (double)table->entries[i].extinction;
+		out_entries[i] = (struct gz_transfer_entry) {
+			.opacity = extinction < 0 ? (float)-expm1(length * extinction * M_LN2) : 0,
+			.colour = table->entries[i].colour,
+		};
 	}
 }
 

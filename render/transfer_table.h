@@ -13,22 +13,29 @@
 #include "render/transfer.h"
 #include "render/volume.h"
 
-/** Entries of a table. Chosen: 16 between two grey levels of 8-bit data; opacity and colour at the
- *  nearest entry, 16 KiB each, so that the used part stays in the first-level cache. */
+/** Entries of a table. Chosen: 16 between two grey levels of 8-bit data, so that the nearest entry
+ * is near enough; 32 KiB, of which a scene uses a part, stay close to the processor. */
 #define GZ_TRANSFER_TABLE_SIZE 4096
+
+/** What one look-up brings. */
+struct gz_transfer_entry {
+	/** By table: the opacity of one step, [0, 1], or log2 of the transparency of one voxel
+	 * length, 0 or less, from which a step of length d (in voxel lengths) has the opacity 1 -
+	 * exp2(d * extinction): the correction for the step in a form without powers. */
+	union {
+		float opacity;
+		float extinction;
+	};
+	uint32_t colour; /**< 11 bits of red, 11 of green, 10 of blue, from the top */
+};
 
 /** Entry i stands for the stored value low + i * (high - low) / (SIZE - 1); values beyond are
  * clamped. */
 struct gz_transfer_table {
 	double scale, bias; /**< entry = stored * scale + bias */
-	/** log2 of the transparency of one voxel length, 0 or less; a step of length d (in voxel
-	 * lengths) has the opacity 1 - exp2(d * extinction): architecture's correction, in a form
-	 * without powers. */
-	float extinction[GZ_TRANSFER_TABLE_SIZE];
-	/** 11 bits of red, 11 of green, 10 of blue, from the top. */
-	uint32_t colour[GZ_TRANSFER_TABLE_SIZE];
+	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE]; /**< with extinction */
 	/** Number of entries before i with any opacity: a range of values shows iff the count grows
-	 * over it. */
+	 *  over it. */
 	uint16_t visible_before[GZ_TRANSFER_TABLE_SIZE + 1];
 };
 
@@ -36,9 +43,9 @@ struct gz_transfer_table {
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table);
 
-/** Opacities of a step of @p length voxel lengths, one an entry. */
-void gz_transfer_table_opacities(const struct gz_transfer_table *table, double length,
-				 float out_opacity[GZ_TRANSFER_TABLE_SIZE]);
+/** The entries with the opacity of a step of @p length voxel lengths. */
+void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
+			    struct gz_transfer_entry out_entries[GZ_TRANSFER_TABLE_SIZE]);
 
 /** Whether any stored value from @p least to @p greatest has opacity. */
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest);

@@ -30,9 +30,9 @@ struct gz_cast {
 	int32_t cell_stride[3];
 	/* transfer function */
 	float entry_scale, entry_bias;
-	const uint32_t *colour;
-	const float *extinction;
-	const float *opacity[GZ_PLAN_STEPS_MAX]; /**< a table for each step of the plan */
+	const struct gz_transfer_entry *extinction; /**< per voxel length */
+	const struct gz_transfer_entry
+		*step_table[GZ_PLAN_STEPS_MAX]; /**< one for each step of the plan */
 	/* rays of pixel (x, y): see struct gz_ray_frame */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];

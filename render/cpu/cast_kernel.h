@@ -115,10 +115,8 @@ SIMD vf exp2_negative(vf x)
 }
 
 /* Add a sample's colour where it has opacity. */
-SIMD void composite(const struct gz_cast *cast, vi entry, vf opacity, vm visible,
-		    struct light *light)
+SIMD void composite(vi colour, vf opacity, vm visible, struct light *light)
 {
-	const vi colour = vi_gather(cast->colour, entry, 4, visible);
 	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
 	const vf red = vf_from_i(vi_shift_right(colour, 21));
 	const vf green = vf_from_i(vi_and(vi_shift_right(colour, 10), vi_set(2047)));
@@ -200,11 +198,13 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 			continue;
 		samples += vm_count(takes);
 		const vi entry = entry_of(cast, sample_at(cast, type, nearest, rays, k, takes));
-		const vf opacity = vf_gather(cast->opacity[step], entry, takes);
+		vf opacity;
+		vi colour;
+		gather_pair(cast->step_table[step], entry, takes, &opacity, &colour);
 		const vm visible = vf_less(vf_set(0), opacity);
 		inside = visible;
 		if (vm_any(visible)) {
-			composite(cast, entry, opacity, visible, light);
+			composite(colour, opacity, visible, light);
 			alive = vm_and(alive,
 				       vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 		}
@@ -227,11 +227,13 @@ SIMD uint32_t march_rest(const struct gz_cast *cast, enum gz_voxel_type type, in
 	if (!vm_any(mask))
 		return 0;
 	const vi entry = entry_of(cast, sample_at(cast, type, nearest, rays, k, mask));
-	const vf extinction = vf_gather(cast->extinction, entry, mask);
+	vf extinction;
+	vi colour;
+	gather_pair(cast->extinction, entry, mask, &extinction, &colour);
 	const vf length = rays->rest * vf_set(cast->voxel_lengths[step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
-	composite(cast, entry, opacity, visible, light);
+	composite(colour, opacity, visible, light);
 	return vm_count(mask);
 }
 

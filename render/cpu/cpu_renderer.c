@@ -32,9 +32,9 @@ struct cpu_renderer {
 	struct gz_macrocells cells;
 	bool has_transfer;
 	struct gz_transfer_table table;
-	/* opacity tables, made for these step lengths (voxel lengths); 0 = none yet */
-	double opacity_length[GZ_PLAN_STEPS_MAX];
-	float (*opacity)[GZ_TRANSFER_TABLE_SIZE];
+	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
+	double step_length[GZ_PLAN_STEPS_MAX];
+	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -60,7 +60,7 @@ static void cpu_destroy(struct gz_renderer *renderer)
 	gz_workers_destroy(&cpu->workers);
 	gz_macrocells_free(&cpu->cells);
 	gz_lattices_free(&cpu->lattices);
-	free(cpu->opacity);
+	free(cpu->step_table);
 	free(cpu);
 }
 
@@ -93,8 +93,8 @@ static enum gz_result cpu_create(const struct gz_renderer_params *params, const 
 		return GZ_ERR_NO_MEM;
 	memset(cpu, 0, sizeof *cpu);
 	cpu->base = (struct gz_renderer) { .ops = &gz_cpu_renderer_ops, .log = log };
-	cpu->opacity = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->opacity);
-	const enum gz_result result = cpu->opacity ? start(cpu, params) : GZ_ERR_NO_MEM;
+	cpu->step_table = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->step_table);
+	const enum gz_result result = cpu->step_table ? start(cpu, params) : GZ_ERR_NO_MEM;
 	if (result != GZ_OK) {
 		cpu_destroy(&cpu->base);
 		return result;
@@ -132,7 +132,7 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 		return GZ_ERR_INVAL;
 	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
 	gz_macrocells_classify(&cpu->cells, &cpu->table);
-	memset(cpu->opacity_length, 0, sizeof cpu->opacity_length);
+	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
@@ -187,15 +187,14 @@ static void fill_transfer(struct cpu_renderer *cpu, const struct gz_plan *plan,
 {
 	cast->entry_scale = (float)cpu->table.scale;
 	cast->entry_bias = (float)cpu->table.bias;
-	cast->colour = cpu->table.colour;
-	cast->extinction = cpu->table.extinction;
+	cast->extinction = cpu->table.entries;
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
-		if (cpu->opacity_length[i] != length) {
-			gz_transfer_table_opacities(&cpu->table, length, cpu->opacity[i]);
-			cpu->opacity_length[i] = length;
+		if (cpu->step_length[i] != length) {
+			gz_transfer_table_step(&cpu->table, length, cpu->step_table[i]);
+			cpu->step_length[i] = length;
 		}
-		cast->opacity[i] = cpu->opacity[i];
+		cast->step_table[i] = cpu->step_table[i];
 		cast->voxel_lengths[i] = (float)length;
 		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
 	}

@@ -141,3 +141,20 @@ SIMD vm vm_from_bits(uint32_t bits)
 				    _mm256_castps_si256(mask), (scale))
 #define vf_gather(base, index, mask) \
 	_mm256_mask_i32gather_ps(_mm256_setzero_ps(), (base), (index), (mask), 4)
+/* Two 32-bit words from base + index * 8 bytes; zero outside the mask. */
+SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second)
+{
+	const vi wide = _mm256_castps_si256(mask);
+	const vi low = _mm256_mask_i32gather_epi64(
+		_mm256_setzero_si256(), (const long long *)base, _mm256_castsi256_si128(index),
+		_mm256_cvtepi32_epi64(_mm256_castsi256_si128(wide)), 8);
+	const vi high = _mm256_mask_i32gather_epi64(
+		_mm256_setzero_si256(), (const long long *)base, _mm256_extracti128_si256(index, 1),
+		_mm256_cvtepi32_epi64(_mm256_extracti128_si256(wide, 1)), 8);
+	/* shuffles work in halves: put the quarters in order afterwards */
+	const vf a = _mm256_castsi256_ps(low), b = _mm256_castsi256_ps(high);
+	const __m256d evens = _mm256_castps_pd(_mm256_shuffle_ps(a, b, 0x88));
+	const __m256d odds = _mm256_castps_pd(_mm256_shuffle_ps(a, b, 0xDD));
+	*first = _mm256_castpd_ps(_mm256_permute4x64_pd(evens, 0xD8));
+	*second = _mm256_castpd_si256(_mm256_permute4x64_pd(odds, 0xD8));
+}

@@ -140,3 +140,17 @@ SIMD vm vm_from_bits(uint32_t bits)
 	_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), (mask), (index), (base), (scale))
 #define vf_gather(base, index, mask) \
 	_mm512_mask_i32gather_ps(_mm512_setzero_ps(), (mask), (index), (base), 4)
+/* Two 32-bit words from base + index * 8 bytes; zero outside the mask. */
+SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second)
+{
+	const vi evens =
+		_mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+	const vi odds =
+		_mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+	const vi low = _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), (__mmask8)mask,
+						   _mm512_castsi512_si256(index), base, 8);
+	const vi high = _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), (__mmask8)(mask >> 8),
+						    _mm512_extracti64x4_epi64(index, 1), base, 8);
+	*first = vf_bits(_mm512_permutex2var_epi32(low, evens, high));
+	*second = _mm512_permutex2var_epi32(low, odds, high);
+}

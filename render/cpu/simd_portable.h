@@ -167,3 +167,9 @@ SIMD vf vf_gather(const float *base, vi index, vm mask)
 {
 	return vf_bits(vi_gather(base, index, 4, mask));
 }
+/* Two 32-bit words from base + index * 8 bytes; zero outside the mask. */
+SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second)
+{
+	*first = vf_bits(vi_gather(base, index, 8, mask));
+	*second = vi_gather((const char *)base + 4, index, 8, mask);
+}

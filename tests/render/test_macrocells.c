@@ -101,19 +101,19 @@ static void table_follows_the_transfer_function(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U16);
 	static struct gz_transfer_table table;
-	static float opacity[GZ_TRANSFER_TABLE_SIZE];
+	static struct gz_transfer_entry step[GZ_TRANSFER_TABLE_SIZE];
 	gz_transfer_table_bake(&scene.transfer, &scene.volume, &table);
-	gz_transfer_table_opacities(&table, 2.5, opacity);
+	gz_transfer_table_step(&table, 2.5, step);
 	for (int i = 0; i < GZ_TRANSFER_TABLE_SIZE; i++) {
 		double rgba[4];
 		gz_transfer_evaluate(&scene.transfer, (double)i / (GZ_TRANSFER_TABLE_SIZE - 1),
 				     rgba);
 		const double exact = gz_transfer_opacity_over(rgba[3], 2.5);
-		if (fabs((double)opacity[i] - exact) > 1e-6)
-			fail_msg("entry %d: %g, not %g", i, (double)opacity[i], exact);
-		assert_true(fabs((table.colour[i] >> 21) / 2047.0 - rgba[0]) < 0.0003);
-		assert_true(fabs((table.colour[i] >> 10 & 2047) / 2047.0 - rgba[1]) < 0.0003);
-		assert_true(fabs((table.colour[i] & 1023) / 1023.0 - rgba[2]) < 0.0006);
+		if (fabs((double)step[i].opacity - exact) > 1e-6)
+			fail_msg("entry %d: %g, not %g", i, (double)step[i].opacity, exact);
+		assert_true(fabs((step[i].colour >> 21) / 2047.0 - rgba[0]) < 0.0003);
+		assert_true(fabs((step[i].colour >> 10 & 2047) / 2047.0 - rgba[1]) < 0.0003);
+		assert_true(fabs((step[i].colour & 1023) / 1023.0 - rgba[2]) < 0.0006);
 	}
 	small_scene_free(&scene);
 }
