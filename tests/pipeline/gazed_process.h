@@ -1,0 +1,101 @@
+/**
+ * @file
+ * The real daemon as a child process with a runtime directory of its own, and what a test needs to
+ * talk with it.
+ */
+#ifndef GZ_TESTS_PIPELINE_GAZED_PROCESS_H
+#define GZ_TESTS_PIPELINE_GAZED_PROCESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+#include "protocol/gaze.h"
+
+/** A place for daemons: a runtime directory and one for recordings. */
+struct gazed_place {
+	char directory[64];
+	char recordings[80];
+};
+
+/** Make both directories. */
+void gazed_place_make(struct gazed_place *place);
+
+/** Remove both with all that is in them. */
+void gazed_place_remove(struct gazed_place *place);
+
+/** A daemon. */
+struct gazed_process {
+	pid_t pid;
+	char log[128]; /**< file with what it says */
+};
+
+/** How a daemon is started. */
+struct gazed_start {
+	const struct gazed_place *place;
+	const char *const *arguments; /**< NULL-terminated; after what every test needs */
+	uint64_t file_size_max;       /**< bytes a file may grow to; 0: as many as may be */
+};
+
+/**
+ * Start gazed without TCP unless @p start's arguments say otherwise, with a configuration of
+ * presets.
+ */
+void gazed_spawn(const struct gazed_start *start, struct gazed_process *out);
+
+/** Wait until its control socket answers; fails the test after 20 s or when it exits. */
+void gazed_wait_ready(const struct gazed_place *place, struct gazed_process *process);
+
+/** Wait for its end, 20 s at most. @return exit status, or -signal */
+int gazed_wait_exit(struct gazed_process *process);
+
+/** Send @p signal and wait for the end. */
+int gazed_stop(struct gazed_process *process, int signal);
+
+/** What it has said so far; static buffer. */
+const char *gazed_said(const struct gazed_process *process);
+
+/** One request over the control socket; the answer in a static buffer; fails the test after 5 s.
+ *  @param[out] out_ms  how long it took; may be NULL */
+const char *gazed_request(const struct gazed_place *place, const char *request, double *out_ms);
+
+/** One message of the stream. */
+struct received {
+	char topic[80];
+	size_t size;
+	unsigned char *bytes;
+};
+
+/** A reader of the stream that keeps what it receives. */
+struct reader {
+	void *context;
+	void *socket;
+	struct received *messages;
+	size_t count;
+	size_t room;
+	size_t gaze_count;       /**< gaze messages among them */
+	uint64_t newest_seq;     /**< of the newest gaze */
+	struct gz_status status; /**< the newest one */
+	size_t status_count;
+};
+
+/** Subscribe to @p topic of the stream of @p place, also before the daemon runs. */
+void reader_open(struct reader *reader, const struct gazed_place *place, const char *topic);
+
+/** Receive one message, @p timeout_ms at most. @return whether one came */
+bool reader_receive(struct reader *reader, int timeout_ms);
+
+/** Receive until there are @p count gaze messages; fails the test if none comes for 20 s. */
+void reader_receive_gaze(struct reader *reader, size_t count);
+
+/** Receive until the daemon's recording is in @p state; fails the test after 20 s. */
+void reader_wait_recording(struct reader *reader, enum gz_recording_state state);
+
+/** Receive what there still is, until nothing comes for @p quiet_ms. */
+void reader_drain(struct reader *reader, int quiet_ms);
+
+/** Close and free. */
+void reader_close(struct reader *reader);
+
+#endif

@@ -1,0 +1,477 @@
+/* The daemon as its users meet it: a process, its sockets, its signals and its files. */
+#include "check.h"
+
+#include <arpa/inet.h>
+#include <math.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "gazed_process.h"
+#include "protocol/gaze_log.h"
+#include "protocol/wire.h"
+
+static struct gazed_place place;
+
+static int set_up(void **state)
+{
+	(void)state;
+	gazed_place_make(&place);
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	gazed_place_remove(&place);
+	return 0;
+}
+
+static struct gazed_process spawn(const char *const *arguments)
+{
+	struct gazed_process process;
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &process);
+	return process;
+}
+
+#define SPAWN(...) spawn((const char *const[]) { __VA_ARGS__, NULL })
+
+/* What is in a log, and how it ended. */
+struct found {
+	uint64_t samples, first_seq, last_seq;
+	enum gz_gaze_log_ending ending;
+};
+
+static struct found read_log(const char *name)
+{
+	char path[256];
+	struct gz_gaze_log_reader *reader = NULL;
+	struct gz_gaze_log_record record;
+	struct found found = { 0 };
+	enum gz_result result;
+	snprintf(path, sizeof path, "%s/%s", place.recordings, name);
+	assert_int_equal(gz_gaze_log_open(path, NULL, &reader), GZ_OK);
+	while ((result = gz_gaze_log_read(reader, &record)) == GZ_OK) {
+		if (record.kind != GZ_GAZE_LOG_SAMPLE)
+			continue;
+		if (found.samples++ == 0)
+			found.first_seq = record.sample.seq;
+		found.last_seq = record.sample.seq;
+	}
+	assert_int_equal(result, GZ_ERR_END);
+	found.ending = gz_gaze_log_ending(reader);
+	gz_gaze_log_close(&reader);
+	return found;
+}
+
+static void gazed_starts_at_once_and_ends_cleanly_on_each_signal(void **state)
+{
+	(void)state;
+	const int signals[] = { SIGTERM, SIGINT, SIGHUP };
+	for (size_t i = 0; i < 3; i++) {
+		int64_t begin_ns = gz_clock_now_ns();
+		struct gazed_process gazed = SPAWN("--driver", "sim");
+		gazed_wait_ready(&place, &gazed);
+		double ready_ms = gz_ns_to_ms(gz_clock_now_ns() - begin_ns);
+		print_message("           answers after %.0f ms\n", ready_ms);
+		assert_true(ready_ms < 2000);
+		assert_int_equal(gazed_stop(&gazed, signals[i]), 0);
+	}
+}
+
+static void gazed_answers_every_letter_within_100_ms(void **state)
+{
+	(void)state;
+	static const char *const requests[][2] = {
+		{ "v", GAZECAST_VERSION },
+		{ "T 5", "time is this machine's monotonic clock, which cannot be set; ask for it "
+			 "with t and keep the difference" },
+		{ "C", "this tracker is calibrated by its own software, not by gazed" },
+		{ "c", "this tracker is calibrated by its own software, not by gazed" },
+		{ "bogus", "unknown command" },
+		{ "", "unknown command" },
+		{ "r", "no recording is running" },
+		{ "R ../x", "that is no name for a recording; allowed: 1 to 64 of A-Z a-z 0-9 . _ "
+			    "-" },
+		{ "R one", "OK" },
+		{ "R two", "a recording is running; end it with r first" },
+		{ "r", "OK" },
+		{ "R", "OK" },
+		{ "r", "OK" },
+	};
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "1200");
+	gazed_wait_ready(&place, &gazed);
+	for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+		double ms;
+		assert_string_equal(gazed_request(&place, requests[i][0], &ms), requests[i][1]);
+		if (ms > 100)
+			fail_msg("\"%s\" took %g ms", requests[i][0], ms);
+	}
+	double seconds = atof(gazed_request(&place, "t", NULL));
+	assert_true(fabs(seconds - gz_ns_to_s(gz_clock_now_ns())) < 1);
+	assert_non_null(strstr(gazed_request(&place, "SUB_PORT", NULL), "/stream"));
+	assert_non_null(strstr(gazed_request(&place, "LATEST_PORT", NULL), "/latest"));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_int_equal(read_log("one.gzl").ending, GZ_GAZE_LOG_WHOLE);
+}
+
+static void gazed_ports_of_tcp_lead_to_the_stream(void **state)
+{
+	(void)state;
+	struct gazed_process gazed = SPAWN("--control", "tcp://127.0.0.1:*");
+	gazed_wait_ready(&place, &gazed);
+	int port = atoi(gazed_request(&place, "SUB_PORT", NULL));
+	assert_in_range(port, 1024, 65535);
+	char endpoint[64], topic[80];
+	void *context = zmq_ctx_new(), *socket = zmq_socket(context, ZMQ_SUB);
+	int timeout_ms = 20000, linger = 0;
+	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", port);
+	zmq_setsockopt(socket, ZMQ_SUBSCRIBE, "gaze.", 5);
+	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
+	zmq_setsockopt(socket, ZMQ_LINGER, &linger, sizeof linger);
+	assert_int_equal(zmq_connect(socket, endpoint), 0);
+	int length = zmq_recv(socket, topic, sizeof topic, 0);
+	zmq_close(socket);
+	zmq_ctx_term(context);
+	assert_true(length > 8);
+	assert_memory_equal(topic, "gaze.3d.", 8);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
+static size_t count_topic(const struct reader *reader, const char *topic)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < reader->count; i++)
+		count += strcmp(reader->messages[i].topic, topic) == 0;
+	return count;
+}
+
+static void gazed_stream_carries_every_topic_and_the_status(void **state)
+{
+	(void)state;
+	struct reader reader;
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--stream.surfaces", "screen other");
+	reader_open(&reader, &place, "");
+	reader_receive_gaze(&reader, 1200);
+	assert_true(count_topic(&reader, "surfaces.screen") >= 1199);
+	assert_true(count_topic(&reader, "surfaces.other") >= 1199);
+	assert_true(count_topic(&reader, "fixations") > 5);
+	assert_true(count_topic(&reader, "saccades") > 0);
+	assert_true(reader.status_count >= 2);
+	const struct gz_status *status = &reader.status;
+	assert_string_equal(status->tracker.name, "sim");
+	assert_int_equal(status->tracker.state, GZ_TRACKER_RUNNING);
+	assert_true(status->rate_hz_nominal == 500);
+	assert_true(status->rate_hz_measured > 250 && status->rate_hz_measured < 600);
+	assert_true(status->samples > 500);
+	assert_int_equal(status->subscribers, 1);
+	assert_string_equal(status->version, GAZECAST_VERSION);
+	assert_int_equal(status->recording.state, GZ_RECORDING_OFF);
+	assert_int_equal(status->clock.tick, GZ_CLOCK_DECLARED);
+	assert_true(gz_display_valid(&status->display));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&reader);
+}
+
+static void gazed_latest_is_one_frame_and_the_newest(void **state)
+{
+	(void)state;
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "1000");
+	char endpoint[128];
+	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
+	void *context = zmq_ctx_new(), *socket = zmq_socket(context, ZMQ_SUB);
+	int timeout_ms = 20000, linger = 0, conflate = 1, more;
+	size_t more_size = sizeof more;
+	snprintf(endpoint, sizeof endpoint, "ipc://%s/latest", place.directory);
+	zmq_setsockopt(socket, ZMQ_CONFLATE, &conflate, sizeof conflate);
+	zmq_setsockopt(socket, ZMQ_SUBSCRIBE, "", 0);
+	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
+	zmq_setsockopt(socket, ZMQ_LINGER, &linger, sizeof linger);
+	gazed_wait_ready(&place, &gazed);
+	assert_int_equal(zmq_connect(socket, endpoint), 0);
+	struct gz_gaze gaze, last = { 0 };
+	for (int i = 0; i < 20; i++) {
+		int size = zmq_recv(socket, bytes, sizeof bytes, 0);
+		assert_true(size > 0);
+		zmq_getsockopt(socket, ZMQ_RCVMORE, &more, &more_size);
+		assert_int_equal(more, 0);
+		assert_int_equal(gz_wire_decode_gaze(bytes, (size_t)size, &gaze), GZ_OK);
+		assert_true(i == 0 || gaze.seq > last.seq);
+		assert_true(gz_clock_now_ns() - gaze.publish_ns < GZ_NS_PER_S);
+		last = gaze;
+		/* A reader slower than the tracker: it finds the newest all the same. */
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + 5 * GZ_NS_PER_MS);
+	}
+	zmq_close(socket);
+	zmq_ctx_term(context);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
+/* The next message from @p i on that is not a status. */
+static size_t skip_status(const struct reader *reader, size_t i)
+{
+	while (i < reader->count && strcmp(reader->messages[i].topic, "status") == 0)
+		i++;
+	return i;
+}
+
+/* The place of the gaze message of sample @p seq. */
+static size_t find_gaze(const struct reader *reader, uint64_t seq)
+{
+	for (size_t i = 0; i < reader->count; i++) {
+		const struct received *message = &reader->messages[i];
+		struct gz_gaze gaze;
+		if (strncmp(message->topic, "gaze.", 5) == 0 &&
+		    gz_wire_decode_gaze(message->bytes, message->size, &gaze) == GZ_OK &&
+		    gaze.seq == seq)
+			return i;
+	}
+	fail_msg("no gaze of sample %llu", (unsigned long long)seq);
+	return 0;
+}
+
+static bool same_message(const struct received *a, const struct received *b)
+{
+	size_t ignored = strncmp(a->topic, "gaze.", 5) == 0 ? GZ_WIRE_PUBLISH_SIZE : 0;
+	return strcmp(a->topic, b->topic) == 0 && a->size == b->size &&
+	       memcmp(a->bytes, b->bytes, a->size - ignored) == 0;
+}
+
+/* All messages of @p replay, but for status, against those of @p live from its message @p from on.
+ */
+static void compare(const struct reader *live, size_t from, const struct reader *replay)
+{
+	size_t a = skip_status(live, from), b = skip_status(replay, 0), compared = 0;
+	while (b < replay->count) {
+		if (a == live->count)
+			fail_msg("the live stream ends after %zu messages", compared);
+		if (!same_message(&live->messages[a], &replay->messages[b]))
+			fail_msg("message %zu differs: %s and %s", compared,
+				 live->messages[a].topic, replay->messages[b].topic);
+		compared++;
+		a = skip_status(live, a + 1);
+		b = skip_status(replay, b + 1);
+	}
+	print_message("           %zu messages are the same\n", compared);
+}
+
+/* Play @p name and keep all that comes of it. */
+static void replay_log(const char *name, struct reader *reader)
+{
+	char path[256];
+	snprintf(path, sizeof path, "%s/%s", place.recordings, name);
+	reader_open(reader, &place, "");
+	struct gazed_process gazed =
+		SPAWN("--driver", "replay", "--replay.file", path, "--replay.speed", "4",
+		      "--wait-readers", "1", "--exit-at-end");
+	while (reader->status_count == 0 || reader->status.tracker.state != GZ_TRACKER_ENDED)
+		assert_true(reader_receive(reader, 20000));
+	assert_int_equal(gazed_wait_exit(&gazed), 0);
+	reader_drain(reader, 100);
+}
+
+static void gazed_replay_gives_the_live_messages_bit_for_bit(void **state)
+{
+	(void)state;
+	struct reader live, replay;
+	reader_open(&live, &place, "");
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "live",
+		      "--pipeline.margin", "0.2", "--display.distance_mm", "650");
+	reader_receive_gaze(&live, 1500);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_drain(&live, 100);
+	struct found found = read_log("live.gzl");
+	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
+	assert_int_equal(found.samples, live.gaze_count);
+	replay_log("live.gzl", &replay);
+	assert_int_equal(replay.gaze_count, live.gaze_count);
+	compare(&live, 0, &replay);
+	/* And the other way round: the live stream had nothing more. */
+	compare(&replay, 0, &live);
+	reader_close(&live);
+	reader_close(&replay);
+}
+
+static void gazed_recording_begun_in_mid_stream_replays_bit_for_bit(void **state)
+{
+	(void)state;
+	struct reader live, replay;
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "500");
+	reader_open(&live, &place, "");
+	reader_receive_gaze(&live, 400);
+	assert_string_equal(gazed_request(&place, "R middle", NULL), "OK");
+	reader_receive_gaze(&live, 1400);
+	assert_string_equal(gazed_request(&place, "r", NULL), "OK");
+	struct found found = read_log("middle.gzl"); /* whole by the time of the answer */
+	reader_receive_gaze(&live, live.gaze_count + 600);
+	assert_int_equal(gazed_stop(&gazed, SIGINT), 0);
+	reader_drain(&live, 100);
+	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
+	assert_true(found.first_seq > 300 && found.samples > 800);
+	replay_log("middle.gzl", &replay);
+	assert_int_equal(replay.gaze_count, found.samples);
+	compare(&live, find_gaze(&live, found.first_seq), &replay);
+	reader_close(&live);
+	reader_close(&replay);
+}
+
+static void gazed_second_one_in_a_directory_is_refused_and_harms_nothing(void **state)
+{
+	(void)state;
+	struct reader reader;
+	struct gazed_process first = SPAWN("--driver", "sim");
+	gazed_wait_ready(&place, &first);
+	struct gazed_process second = SPAWN("--driver", "sim");
+	assert_int_equal(gazed_wait_exit(&second), 1);
+	assert_non_null(strstr(gazed_said(&second), "already serves"));
+	assert_non_null(strstr(gazed_said(&second), "GAZECAST_RUNTIME_DIR"));
+	reader_open(&reader, &place, "gaze.");
+	reader_receive_gaze(&reader, 10);
+	reader_close(&reader);
+	assert_int_equal(gazed_stop(&first, SIGTERM), 0);
+	/* And the directory is free again. */
+	struct gazed_process third = SPAWN("--driver", "sim");
+	gazed_wait_ready(&place, &third);
+	assert_int_equal(gazed_stop(&third, SIGTERM), 0);
+}
+
+static void gazed_taken_endpoint_is_refused_with_the_remedy(void **state)
+{
+	(void)state;
+	struct sockaddr_in address = { .sin_family = AF_INET,
+				       .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+	socklen_t size = sizeof address;
+	char endpoint[64];
+	int taken = socket(AF_INET, SOCK_STREAM, 0);
+	assert_int_equal(bind(taken, (struct sockaddr *)&address, sizeof address), 0);
+	assert_int_equal(listen(taken, 1), 0);
+	assert_int_equal(getsockname(taken, (struct sockaddr *)&address, &size), 0);
+	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", ntohs(address.sin_port));
+	struct gazed_process gazed = SPAWN("--control", endpoint);
+	assert_int_equal(gazed_wait_exit(&gazed), 1);
+	close(taken);
+	const char *said = gazed_said(&gazed);
+	assert_non_null(strstr(said, endpoint));
+	assert_non_null(strstr(said, "is taken"));
+	assert_non_null(strstr(said, "--tcp off"));
+	assert_ptr_equal(strchr(said, '\n'), said + strlen(said) - 1); /* one line */
+}
+
+static void gazed_refuses_bad_configuration_in_one_line(void **state)
+{
+	(void)state;
+	char path[128];
+	snprintf(path, sizeof path, "%s/bad.conf", place.directory);
+	FILE *file = fopen(path, "w");
+	fputs("[tracker]\ndriver = sim\n[sim]\nrate_hz = many\n", file);
+	fclose(file);
+	const char *const refusals[][3] = {
+		{ "--bogus", "1", "--bogus: unknown option" },
+		{ "--config", path, "bad.conf:4: sim.rate_hz: many" },
+		{ "--driver", "replay", "--replay.file" },
+		{ "--record", "a/b", "that is no name" },
+		{ "--sim.targets", "/nonexistent", "/nonexistent" },
+	};
+	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
+		struct gazed_process gazed = SPAWN(refusals[i][0], refusals[i][1]);
+		assert_int_equal(gazed_wait_exit(&gazed), 1);
+		const char *said = gazed_said(&gazed);
+		if (!strstr(said, refusals[i][2]) || strchr(said, '\n') != said + strlen(said) - 1)
+			fail_msg("%s %s: said: %s", refusals[i][0], refusals[i][1], said);
+	}
+}
+
+static void gazed_killed_loses_no_more_than_a_second_of_the_recording(void **state)
+{
+	(void)state;
+	struct reader reader;
+	reader_open(&reader, &place, "");
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "killed");
+	reader_receive_gaze(&reader, 1500);
+	assert_int_equal(gazed_stop(&gazed, SIGKILL), -SIGKILL);
+	reader_drain(&reader, 100);
+	struct found found = read_log("killed.gzl");
+	assert_int_equal(found.ending, GZ_GAZE_LOG_CUT);
+	if (found.samples + 500 < reader.gaze_count)
+		fail_msg("%llu of %zu samples are in the log", (unsigned long long)found.samples,
+			 reader.gaze_count);
+	/* The sockets and the lock that it left behind are in nobody's way. */
+	struct gazed_process next = SPAWN("--driver", "sim");
+	gazed_wait_ready(&place, &next);
+	assert_int_equal(gazed_stop(&next, SIGTERM), 0);
+	reader_close(&reader);
+}
+
+static void gazed_full_disk_stops_the_recording_and_not_the_stream(void **state)
+{
+	(void)state;
+	struct reader reader;
+	struct gazed_process gazed;
+	const char *const arguments[] = { "--sim.rate_hz", "500", "--record", "full", NULL };
+	reader_open(&reader, &place, "");
+	gazed_spawn(&(struct gazed_start) { &place, arguments, 40000 }, &gazed);
+	reader_wait_recording(&reader, GZ_RECORDING_FAILED);
+	assert_non_null(strstr(reader.status.recording.error, "File too large"));
+	assert_non_null(strstr(reader.status.recording.file, "full.gzl"));
+	uint64_t in_file = reader.status.recording.samples;
+	reader_receive_gaze(&reader, reader.gaze_count + 500);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	struct found found = read_log("full.gzl");
+	assert_int_equal(found.samples, in_file);
+	assert_true(found.samples > 50);
+	assert_true(found.ending == GZ_GAZE_LOG_WHOLE || found.ending == GZ_GAZE_LOG_CUT);
+	reader_close(&reader);
+}
+
+static void gazed_reader_that_stops_reading_delays_nobody(void **state)
+{
+	(void)state;
+	struct reader lively, dead;
+	int small = 1;
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "2000");
+	reader_open(&lively, &place, "gaze.");
+	reader_open(&dead, &place, "");
+	zmq_setsockopt(dead.socket, ZMQ_RCVHWM, &small, sizeof small);
+	reader_receive_gaze(&lively, 8000); /* the dead one's queues are long full */
+	struct gz_gaze first, last;
+	assert_int_equal(
+		gz_wire_decode_gaze(lively.messages[0].bytes, lively.messages[0].size, &first),
+		GZ_OK);
+	assert_int_equal(
+		gz_wire_decode_gaze(lively.messages[7999].bytes, lively.messages[7999].size, &last),
+		GZ_OK);
+	assert_int_equal(last.seq - first.seq, 7999); /* nothing is missing */
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&lively);
+	reader_close(&dead);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(gazed_starts_at_once_and_ends_cleanly_on_each_signal),
+		cmocka_unit_test(gazed_answers_every_letter_within_100_ms),
+		cmocka_unit_test(gazed_ports_of_tcp_lead_to_the_stream),
+		cmocka_unit_test(gazed_stream_carries_every_topic_and_the_status),
+		cmocka_unit_test(gazed_latest_is_one_frame_and_the_newest),
+		cmocka_unit_test(gazed_replay_gives_the_live_messages_bit_for_bit),
+		cmocka_unit_test(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
+		cmocka_unit_test(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),
+		cmocka_unit_test(gazed_taken_endpoint_is_refused_with_the_remedy),
+		cmocka_unit_test(gazed_refuses_bad_configuration_in_one_line),
+		cmocka_unit_test(gazed_killed_loses_no_more_than_a_second_of_the_recording),
+		cmocka_unit_test(gazed_full_disk_stops_the_recording_and_not_the_stream),
+		cmocka_unit_test(gazed_reader_that_stops_reading_delays_nobody),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
