@@ -12,6 +12,13 @@
 
 #define GZ_LOG_MODULE "gazectl"
 
+/* ECMA-48, EL, behind a carriage return. */
+#define ERASE_LINE "\r\033[K"
+/* DEC private mode 7: a line longer than the terminal is wide is cut, so that one erasure is
+ * enough. */
+#define WRAP_OFF "\033[?7l"
+#define WRAP_ON  "\033[?7h"
+
 /* Chosen: as often as an eye can follow numbers that change. */
 #define REFRESH_NS (GZ_NS_PER_S / 20)
 
@@ -150,12 +157,14 @@ static void show(struct watch *watch, struct gz_message *message)
 	}
 	if (too_soon(watch, message))
 		return;
+	bool replaces = message->kind == GZ_MESSAGE_GAZE && !message->lost;
 	if (watch->line_open)
-		fputs("\r\033[K", stdout); /* ECMA-48, EL: erase to the end of the line */
+		fputs(ERASE_LINE, stdout);
+	if (replaces)
+		fputs(WRAP_OFF, stdout);
 	print_message(message);
-	watch->line_open = message->kind == GZ_MESSAGE_GAZE && !message->lost;
-	if (!watch->line_open)
-		putchar('\n');
+	fputs(replaces ? WRAP_ON : "\n", stdout);
+	watch->line_open = replaces;
 	fflush(stdout);
 }
 

@@ -11,18 +11,27 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include "base/clock.h"
 
 static struct program daemon_program, program; /* large: not for the stack */
 
-static void daemon_start(const char *rate_hz)
+/* With its sockets in the runtime directory and, if @p control is not NULL, on TCP. */
+static void daemon_start_with_tcp(const char *rate_hz, const char *control)
 {
 	const char *directory = getenv("GAZECAST_RUNTIME_DIR");
 	program_start(&daemon_program,
-		      (const char *const[]) { GAZED, "--tcp", "off", "--recording.directory",
-					      directory, "--sim.rate_hz", rate_hz, NULL });
+		      (const char *const[]) {
+			      GAZED, "--tcp", control ? "loopback" : "off", "--control",
+			      control ? control : GZ_CONTROL_TCP_ENDPOINT, "--recording.directory",
+			      directory, "--sim.rate_hz", rate_hz, NULL });
 	program_wait_for(&daemon_program, "sim delivers samples");
+}
+
+static void daemon_start(const char *rate_hz)
+{
+	daemon_start_with_tcp(rate_hz, NULL);
 }
 
 static void daemon_end(int signal_number, int expected_status)
@@ -124,6 +133,40 @@ static void watch_survives_a_killed_daemon(void **state)
 	assert_done();
 }
 
+/* An endpoint on a port that was free a moment ago. */
+static void find_free_endpoint(char endpoint[GZ_ENDPOINT_SIZE])
+{
+	void *context = zmq_ctx_new();
+	void *socket = zmq_socket(context, ZMQ_REP);
+	size_t size = GZ_ENDPOINT_SIZE;
+	assert_int_equal(zmq_bind(socket, "tcp://127.0.0.1:*"), 0);
+	assert_int_equal(zmq_getsockopt(socket, ZMQ_LAST_ENDPOINT, endpoint, &size), 0);
+	zmq_close(socket);
+	zmq_ctx_term(context);
+}
+
+static void watch_over_tcp_follows_the_stream_to_another_port(void **state)
+{
+	(void)state;
+	char endpoint[GZ_ENDPOINT_SIZE];
+	find_free_endpoint(endpoint);
+	daemon_start_with_tcp("500", endpoint);
+	program_start(&program, (const char *const[]) { GAZECTL, "watch", "gaze", "--endpoint",
+							endpoint, NULL });
+	program_wait_for(&program, " gaze ");
+	daemon_end(SIGKILL, -1);
+	program_wait_for(&program, "waiting for it to return");
+	daemon_start_with_tcp("500", endpoint);
+	/* The port is the system's choice: nearly always another one. */
+	program.out_size = 0;
+	program.out_text[0] = '\0';
+	program_wait_for(&program, " gaze ");
+	kill(program.process, SIGINT);
+	program_finish(&program);
+	daemon_end(SIGTERM, 0);
+	assert_done();
+}
+
 static void latest_is_young_at_any_pace_of_the_reader(void **state)
 {
 	(void)state;
@@ -173,6 +216,7 @@ int main(void)
 		cmocka_unit_test(recording_is_whole_and_holds_what_was_sent),
 		cmocka_unit_test(recording_name_outside_the_rules_is_refused),
 		cmocka_unit_test(watch_survives_a_killed_daemon),
+		cmocka_unit_test(watch_over_tcp_follows_the_stream_to_another_port),
 		cmocka_unit_test(latest_is_young_at_any_pace_of_the_reader),
 		cmocka_unit_test(python_reader_prints_the_gaze),
 	};
