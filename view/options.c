@@ -221,10 +221,10 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 		choice.kind = GZ_GAZE_LATEST;
 	} else if (starts_with(text, "ipc://") || starts_with(text, "tcp://")) {
 		choice.kind = GZ_GAZE_LATEST;
-		strcpy(choice.text, text);
+		memcpy(choice.text, text, strlen(text) + 1);
 	} else if (ends_with(text, ".gzl")) {
 		choice.kind = GZ_GAZE_LOG;
-		strcpy(choice.text, text);
+		memcpy(choice.text, text, strlen(text) + 1);
 	} else if (parse_point(text, &choice.point)) {
 		choice.kind = GZ_GAZE_FIXED;
 	} else if (strcmp(text, "centre") != 0) {
@@ -351,7 +351,7 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 		       sizeof options->scene - 1);
 		return GZ_ERR_INVAL;
 	}
-	strcpy(options->scene, arguments[0]);
+	memcpy(options->scene, arguments[0], strlen(arguments[0]) + 1);
 	return GZ_OK;
 }
 

@@ -44,7 +44,7 @@ static void print_number(double value, const char *format, char text[NUMBER_SIZE
 	if (isfinite(value))
 		snprintf(text, NUMBER_SIZE, format, value);
 	else
-		strcpy(text, "null");
+		snprintf(text, NUMBER_SIZE, "null");
 }
 
 static void print_gaze(const struct gz_frame_record *record, char *text, size_t size)

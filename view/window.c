@@ -116,11 +116,22 @@ static bool update_line(struct gz_window *window, const struct gz_window_gaze *g
 	return changed;
 }
 
+static bool same_display(const struct gz_display *a, const struct gz_display *b)
+{
+	return a->px[0] == b->px[0] && a->px[1] == b->px[1] && a->mm[0] == b->mm[0] &&
+	       a->mm[1] == b->mm[1] && a->distance_mm == b->distance_mm;
+}
+
+static bool same_point(struct gz_point a, struct gz_point b)
+{
+	return a.x == b.x && a.y == b.y;
+}
+
 static bool gaze_moved(const struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_gaze_reading *shown = &window->shown;
 	if (gaze->reading.known != shown->known ||
-	    memcmp(&gaze->display, &window->shown_display, sizeof gaze->display) != 0)
+	    !same_display(&gaze->display, &window->shown_display))
 		return true;
 	return gaze->reading.known && !(gz_display_angle_deg(&gaze->display, gaze->reading.point,
 							     shown->point) <= DEAD_BAND_DEG);
@@ -182,8 +193,7 @@ static enum gz_result refresh(struct gz_window *window)
 	}
 	gz_window_gaze_now(window, width, height, &gaze);
 	bool must_cast = window->cast_needed || gaze_moved(window, &gaze);
-	bool cross_moved = window->cross && memcmp(&gaze.reading.point, &window->cross_drawn,
-						   sizeof window->cross_drawn) != 0;
+	bool cross_moved = window->cross && !same_point(gaze.reading.point, window->cross_drawn);
 	if (must_cast) {
 		enum gz_result r = cast(window, &gaze, width, height);
 		if (r != GZ_OK)
@@ -207,10 +217,13 @@ static enum gz_result loop(struct gz_window *window)
 	if (window->options->fullscreen)
 		gz_window_toggle_fullscreen(window);
 	while (!glfwWindowShouldClose(window->glfw)) {
+		int64_t start_ns = gz_clock_now_ns();
 		enum gz_result r = refresh(window);
 		if (r != GZ_OK)
 			return r;
-		glfwWaitEventsTimeout(gz_window_gaze_patience_s(window));
+		/* What the frame took is not waited for again. */
+		double spent_s = gz_ns_to_s(gz_clock_now_ns() - start_ns);
+		glfwWaitEventsTimeout(fmax(0, gz_window_gaze_patience_s(window) - spent_s));
 	}
 	return GZ_OK;
 }
