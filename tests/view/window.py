@@ -1,6 +1,6 @@
 """gazeview's window, driven by keys and mouse under Xvfb with Mesa's software OpenGL.
 
-window.py GAZEVIEW SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+window.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
 import os
@@ -13,8 +13,8 @@ import unittest
 
 from picture import Picture, run, skip, write_scene
 
-GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
-SHOTS = sys.argv[3] if len(sys.argv) > 3 else None
+GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
+SHOTS = sys.argv[4] if len(sys.argv) > 4 else None
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
 SCENE = write_scene(PLACE.name, SCENES)
 SCREEN = (900, 700)
@@ -64,14 +64,27 @@ class Window(unittest.TestCase):
         cls.place.cleanup()
 
     def setUp(self):
-        self.viewer = None
+        self.viewer = self.daemon = None
         self.addCleanup(self.stop)
+        self.addCleanup(self.stop_daemon)
 
     def stop(self):
         if self.viewer and self.viewer.poll() is None:
             self.viewer.kill()
         if self.viewer:
             self.viewer.communicate()
+
+    def start_daemon(self):
+        self.daemon = subprocess.Popen(
+            [GAZED, "--driver=sim", "--tcp=off", "--sim.blinks_per_min=0"], env=self.environment,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def stop_daemon(self):
+        if self.daemon:
+            self.daemon.terminate()
+            self.daemon.wait()
+        self.daemon = None
 
     def tool(self, *words):
         done = run("xdotool", *words, env=self.environment)
@@ -223,11 +236,41 @@ class Window(unittest.TestCase):
         self.start("--cross")
         self.move(200, 150)
         picture = self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
-        amber = sum(
+        self.assertTrue(self.amber(picture), "the line is not amber")
+
+    def amber(self, picture):
+        return 100 < sum(
             r > 180 and 100 < g < 220 and b < 120
             for r, g, b in (picture.at(x, y) for x in range(8, 470) for y in range(8, 30))
         )
-        self.assertGreater(amber, 100, "the line is not amber")
+
+    def test_daemon_leads_the_gaze_and_may_die_and_return(self):
+        self.start_daemon()
+        self.start("--cross", "--gaze-fills-window")
+        self.move(60, 280)
+        place = (60, 280)
+        for what in ("cross led by the daemon", "cross led elsewhere"):
+            old = place
+            picture = self.until(
+                lambda p: not self.amber(p) and self.red_middle(p) not in (None, old), what
+            )
+            place = self.red_middle(picture)
+        self.stop_daemon()
+        self.until(lambda p: self.amber(p) and self.cross_at(p, 60, 280), "mouse stands in")
+        self.start_daemon()
+        self.until(lambda p: not self.amber(p) and not self.cross_at(p, 60, 280), "daemon again")
+        self.tool("key", "m")
+        self.until(lambda p: not self.amber(p) and self.cross_at(p, 60, 280), "mouse by choice")
+
+    def red_middle(self, picture):
+        """The middle of all that has the cross's colour, or None."""
+        places = [
+            (x, y) for y in range(LINE_HEIGHT, SIZE[1], 2) for x in range(SIZE[0])
+            if picture.at(x, y) == CROSS
+        ]
+        if not places:
+            return None
+        return tuple(sum(place[i] for place in places) // len(places) for i in (0, 1))
 
     def test_still_window_takes_no_processor_time(self):
         self.start("--gaze", "mouse")
