@@ -37,6 +37,12 @@ enum gz_result gz_plan_add(struct gz_plan *plan, struct gz_tile tile);
  * the eye. */
 int gz_acuity_rung(double spacing_px);
 
+/** Set ray_count from the tiles. */
+void gz_plan_count_rays(struct gz_plan *plan);
+
+/** Set the step multipliers that the context's rule asks for. */
+void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *plan);
+
 /** A layer whose lattice spans the picture. */
 struct gz_plan_layer gz_plan_layer_make(int width, int height, int spacing,
 					struct gz_region region);
