@@ -37,6 +37,15 @@ void program_start(struct program *program, const char *const *arguments)
 	program->err = err[0];
 }
 
+void program_kill(struct program *program)
+{
+	if (program->process > 0) {
+		kill(program->process, SIGKILL);
+		waitpid(program->process, NULL, 0);
+	}
+	program->process = 0;
+}
+
 /* Append what can be read; false at the end of the file. */
 static bool collect(int file, char *text, size_t room, size_t *size)
 {
@@ -68,8 +77,7 @@ static bool collect_both(struct program *program, int64_t deadline_ns)
 		program->err = -1;
 	}
 	if (gz_clock_now_ns() > deadline_ns) {
-		kill(program->process, SIGKILL);
-		waitpid(program->process, NULL, 0);
+		program_kill(program);
 		fail_msg("the program goes on; it printed:\n%s\n%s", program->out_text,
 			 program->err_text);
 	}
@@ -92,6 +100,7 @@ void program_finish(struct program *program)
 		;
 	int status;
 	assert_int_equal(waitpid(program->process, &status, 0), program->process);
+	program->process = 0;
 	program->status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

@@ -10,9 +10,9 @@
 
 /** A running or finished program. */
 struct program {
-	pid_t process;
-	int out, err; /**< pipes */
-	int status;   /**< its exit status; -1 if a signal ended it */
+	pid_t process; /**< 0 when it is gone */
+	int out, err;  /**< pipes */
+	int status;    /**< its exit status; -1 if a signal ended it */
 	char out_text[16384], err_text[4096];
 	size_t out_size, err_size;
 };
@@ -25,6 +25,9 @@ void program_wait_for(struct program *program, const char *text);
 
 /** Collect output to its end and the exit status. Kills it and fails after 20 s. */
 void program_finish(struct program *program);
+
+/** Kill it if it still runs: for the teardown of a test that failed half-way. */
+void program_kill(struct program *program);
 
 /** program_start() and program_finish(). */
 void program_run(struct program *program, const char *const *arguments);

@@ -45,6 +45,15 @@ static void daemon_end(int signal_number, int expected_status)
 
 #define RUN(...) program_run(&program, (const char *const[]) { GAZECTL, __VA_ARGS__, NULL })
 
+/* A test that fails half-way leaves nobody behind for the next one. */
+static int kill_programs(void **state)
+{
+	(void)state;
+	program_kill(&program);
+	program_kill(&daemon_program);
+	return 0;
+}
+
 static void assert_contains(const char *text, const char *part)
 {
 	if (!strstr(text, part))
@@ -209,16 +218,18 @@ static void python_reader_prints_the_gaze(void **state)
 	assert_contains(program.out_text, "  y 0.");
 }
 
+#define TEST(function) cmocka_unit_test_teardown(function, kill_programs)
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(status_tells_of_the_simulator),
-		cmocka_unit_test(recording_is_whole_and_holds_what_was_sent),
-		cmocka_unit_test(recording_name_outside_the_rules_is_refused),
-		cmocka_unit_test(watch_survives_a_killed_daemon),
-		cmocka_unit_test(watch_over_tcp_follows_the_stream_to_another_port),
-		cmocka_unit_test(latest_is_young_at_any_pace_of_the_reader),
-		cmocka_unit_test(python_reader_prints_the_gaze),
+		TEST(status_tells_of_the_simulator),
+		TEST(recording_is_whole_and_holds_what_was_sent),
+		TEST(recording_name_outside_the_rules_is_refused),
+		TEST(watch_survives_a_killed_daemon),
+		TEST(watch_over_tcp_follows_the_stream_to_another_port),
+		TEST(latest_is_young_at_any_pace_of_the_reader),
+		TEST(python_reader_prints_the_gaze),
 	};
 	return cmocka_run_group_tests(tests, runtime_directory_make, runtime_directory_remove);
 }
