@@ -1,6 +1,7 @@
 #include "view/headless.h"
 
 #include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -87,11 +88,17 @@ static struct gz_display display_now(struct headless *self)
 			       self->options->size_px[1]);
 }
 
+/* Time of a frame after the first, whole ns. Dividing last keeps whole results exact: a sample at
+ * the very time of a frame belongs to it. */
+static int64_t frame_time_ns(const struct headless *self, int frame)
+{
+	return (int64_t)floor((double)frame * (double)GZ_NS_PER_S / self->options->fps);
+}
+
 static struct gz_gaze_reading gaze_now(struct headless *self, int frame)
 {
 	struct gz_gaze_reading reading;
-	double period_ns = (double)GZ_NS_PER_S / self->options->fps;
-	gz_gaze_source_read(self->source, (int64_t)((double)frame * period_ns), &reading);
+	gz_gaze_source_read(self->source, frame_time_ns(self, frame), &reading);
 	if (self->options->gaze.kind == GZ_GAZE_CENTRE)
 		reading.point = centre_of(self);
 	if (!reading.known && !self->silence_told) {
@@ -159,9 +166,8 @@ static enum gz_result print_line(const struct headless *self, const struct gz_fr
 
 static enum gz_result one_frame(struct headless *self, int frame)
 {
-	double period_ns = (double)GZ_NS_PER_S / self->options->fps;
 	if (self->source->ops->live)
-		gz_clock_sleep_until_ns(self->start_ns + (int64_t)((double)frame * period_ns));
+		gz_clock_sleep_until_ns(self->start_ns + frame_time_ns(self, frame));
 	struct gz_frame_request request = {
 		.camera = &self->camera,
 		.foveation = &gz_frame_maker_scene(self->maker)->settings.foveation,

@@ -145,6 +145,31 @@ class Headless(unittest.TestCase):
         # From afar the same pixels are finer than the eye.
         self.assertLess(self.frames("far")[0]["rays"], self.frames("near")[0]["rays"])
 
+    def write_log(self, name, samples):
+        """A gaze log without an end; a sample (host_ns, x) is one point for both eyes, (x, 0.5)."""
+        no_eye = "\t\t\t0" + "\t" * 8
+        with open(self.path(name), "w", encoding="utf-8") as out:
+            out.write("#gazecast-log 1\n#tracker synthetic\n#rate_hz 100\n")
+            for seq, (host_ns, x) in enumerate(samples):
+                out.write("%d\t\t%d\t%g\t0.5\t1%s\n" % (seq, host_ns, x, 2 * no_eye))
+
+    def test_log_shows_in_frame_k_the_last_sample_until_k_over_fps(self):
+        # Ten ms apart, so that every third frame is at the very time of a sample, but for frame 3,
+        # which is one ns before; the eye jumps at 45 ms.
+        times = [10**9 + 10**7 * i + (i == 5) for i in range(90)]
+        self.write_log("short.gzl", [(t, 0.25 if t < 1045000000 else 0.75) for t in times])
+        self.good(
+            "--gaze", self.path("short.gzl"), "--fps", 60, "--frames", 60, "--stats",
+            self.path("stats.json"), size="16x16",
+        )
+        frames = self.frames()
+        for k, frame in enumerate(frames):
+            now = 10**9 + k * 10**9 // 60
+            last = max(t for t in times if t <= now)
+            self.assertAlmostEqual(frame["gaze_age_ms"], (now - last) * 1e-6, places=3)
+        for frame in frames[:4]:
+            self.assertLess(abs(frame["gaze"][0] - 0.25), 0.01)
+
     def test_endpoint_without_a_daemon_goes_on_with_no_gaze_and_says_so_once(self):
         endpoint = "ipc://" + self.path("latest")
         done = self.good(
