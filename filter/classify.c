@@ -13,7 +13,7 @@ static const double PERIOD_GAIN = 1.0 / 16;
 /* A label waits for whole samples; this part of one is kept back for jitter of time stamps. */
 static const double DELAY_SLACK = 0.15;
 
-/* Good samples may lie so many periods apart without a blink: one is missing at most. */
+/* At any rate one sample may be missing without a blink; half a period is for jitter. */
 static const double DROPOUT_PERIODS = 1.5;
 
 double gz_classify_dropout_ns(const struct gz_classify_state *state,
@@ -57,8 +57,9 @@ static struct gz_classify_entry *take(struct gz_classify_state *state,
 	if (state->count > 0)
 		learn_period(state,
 			     input->time_ns - gz_classify_at(state, state->count - 1)->time_ns);
-	bool gap = !state->any_valid || (double)(input->time_ns - state->valid_ns) >
-						gz_classify_dropout_ns(state, params);
+	bool gap = !state->any_valid ||
+		   (double)(input->time_ns - state->valid_ns) >
+			   gz_classify_dropout_ns(state, params) + state->period_ns;
 	struct gz_classify_entry *entry = gz_classify_at(state, state->count++);
 	*entry = (struct gz_classify_entry) {
 		.seq = input->seq,

@@ -14,7 +14,8 @@ static inline struct gz_classify_entry *gz_classify_at(struct gz_classify_state 
 	return &state->ring[index % GZ_CLASSIFY_RING];
 }
 
-/** Longest time between good samples that is not a blink, ns. */
+/** Longest time since the last good sample, for one without, that is not a blink, ns. From good
+ *  sample to good sample one period more. */
 double gz_classify_dropout_ns(const struct gz_classify_state *state,
 			      const struct gz_classify_params *params);
 
