@@ -149,18 +149,25 @@ void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, co
 
 void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch)
 {
-	for (size_t i = 0; i < batch->count; i++) {
+	/* Sending to nobody costs system calls, too. Who has just come is seen at the next update.
+	 */
+	for (size_t i = 0; publisher->stream.connections > 0 && i < batch->count; i++) {
 		const struct gz_outgoing *item = &batch->item[i];
 		gz_publisher_send_one(publisher, item->topic, item->body.bytes, item->body.size);
 	}
 	const struct gz_wire_message *gaze = &batch->item[0].body;
-	zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
+	if (publisher->latest.connections > 0)
+		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
 }
 
 /* A monitor's event: a frame of u16 event and u32 value, in the host's order, and one of the
  * address (zmq_socket_monitor(3)). */
 static void update_connections(struct channel *channel)
 {
+	int events;
+	size_t size = sizeof events;
+	/* A socket takes note of new connections when it is used: here, where nothing is sent. */
+	zmq_getsockopt(channel->socket, ZMQ_EVENTS, &events, &size);
 	unsigned char frame[6];
 	char address[GZ_ENDPOINT_SIZE];
 	while (zmq_recv(channel->monitor, frame, sizeof frame, ZMQ_DONTWAIT) == sizeof frame) {

@@ -31,9 +31,10 @@ struct gz_service {
 	struct gz_message_maker maker;
 	struct gz_rate_meter rate;
 	uint64_t rejected[GZ_REJECT_COUNT];
-	int64_t host_ns;   /* newest sample's */
-	int64_t care_ns;   /* when to look after everything else */
-	int64_t status_ns; /* when the next status is due */
+	int64_t host_ns;     /* newest sample's */
+	int64_t commands_ns; /* when to look for commands */
+	int64_t care_ns;     /* when to look after everything else */
+	int64_t status_ns;   /* when the next status is due */
 	/* Of the last status sent: a change is told at once. */
 	enum gz_tracker_state told_tracker;
 	enum gz_recording_state told_recording;
@@ -204,8 +205,11 @@ static void resend(struct gz_service *service)
 	zmq_msg_close(&body);
 }
 
-static void take_commands(struct gz_service *service)
+static void take_commands(struct gz_service *service, int64_t now_ns)
 {
+	if (now_ns < service->commands_ns)
+		return;
+	service->commands_ns = now_ns + GZ_SERVICE_COMMANDS_MS * GZ_NS_PER_MS;
 	for (int i = 0; i < COMMANDS_AT_ONCE; i++) {
 		int size = zmq_recv(service->commands, &service->command, sizeof service->command,
 				    ZMQ_DONTWAIT);
@@ -325,8 +329,9 @@ static void *run(void *user)
 {
 	struct gz_service *service = user;
 	while (!service->quit) {
-		take_commands(service);
-		take_care(service, gz_clock_now_ns());
+		int64_t now_ns = gz_clock_now_ns();
+		take_commands(service, now_ns);
+		take_care(service, now_ns);
 		if (service->waiting)
 			gz_clock_sleep_until_ns(gz_clock_now_ns() +
 						GZ_SERVICE_WAIT_MS * GZ_NS_PER_MS);

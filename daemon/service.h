@@ -16,6 +16,10 @@
  * the 100 ms of a request. */
 #define GZ_SERVICE_WAIT_MS 10
 
+/** How often commands are looked for while samples come, ms. Chosen: looking costs a system call,
+ * which is not spent on every sample of a fast tracker. */
+#define GZ_SERVICE_COMMANDS_MS 5
+
 /** How often connections and states are looked at, ms. */
 #define GZ_SERVICE_CARE_MS 50
 
