@@ -19,6 +19,7 @@ struct gz_plan_context {
 	double distance_mm;
 };
 
+/** Prepare the context of a frame; a gaze that is NaN or infinite becomes the centre. */
 struct gz_plan_context gz_plan_context_make(const struct gz_foveation *foveation,
 					    const struct gz_display *display, struct gz_point gaze,
 					    int width, int height);

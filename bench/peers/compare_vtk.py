@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+"""Full-resolution frames of a scene by VTK's ray casters and by gazeview, in turn.
+
+    apt-get install python3-vtk9 python3-numpy zstd xvfb xauth
+    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene
+
+Both cast one ray a pixel at the scene's sampling rate without shading while the camera turns by 0.01 degrees
+a frame, so that nothing is reused. Prints the median milliseconds of each, their ratio, and the peak
+signal-to-noise ratio between the two pictures of the scene's own camera. VTK knows no orientation and puts the
+box between the outer voxel centres, so pictures of oriented volumes differ by that.
+"""
+import argparse
+import configparser
+import json
+import math
+import os
+import statistics
+import subprocess
+import tempfile
+import time
+
+import numpy
+import vtk
+from vtk.util import numpy_support
+
+NUMPY_TYPES = {"uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4", "int32": "i4",
+               "float32": "f4", "float64": "f8"}
+
+
+def read_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scene")
+    parser.add_argument("--mapper", choices=["cpu", "gpu"], default="cpu")
+    parser.add_argument("--size", default="1024x1024")
+    parser.add_argument("--pairs", type=int, default=3, help="rounds of three frames each")
+    parser.add_argument("--gazeview", default="build/release/view/gazeview")
+    return parser.parse_args()
+
+
+class Scene:
+    """The keys of a .scene that both programs understand."""
+
+    def __init__(self, path):
+        self.folder = os.path.dirname(os.path.abspath(path))
+        self.keys = configparser.ConfigParser(inline_comment_prefixes=(";",))
+        self.keys.read(path)
+
+    def text(self, section, key, default=None):
+        return self.keys.get(section, key, fallback=default)
+
+    def numbers(self, section, key, default):
+        return [float(word) for word in self.text(section, key, default).split()]
+
+    def file(self, section):
+        name = self.text(section, "file")
+        for folder in (self.folder, os.environ.get("GAZECAST_DATA", "")):
+            path = os.path.join(folder, name)
+            if os.path.exists(path):
+                return path
+        raise SystemExit(f"{name}: neither beside the scene nor under GAZECAST_DATA")
+
+
+def load_raw(scene, path):
+    read = subprocess.run(["zstd", "-dcq", path], check=True, stdout=subprocess.PIPE).stdout \
+        if path.endswith(".zst") else open(path, "rb").read()
+    order = ">" if scene.text("volume", "endian", "little") == "big" else "<"
+    kind = NUMPY_TYPES[scene.text("volume", "type")]
+    voxels = numpy.frombuffer(read, dtype=order + kind).astype(kind)
+    image = vtk.vtkImageData()
+    image.SetDimensions(*[int(n) for n in scene.text("volume", "dims").split()])
+    image.SetSpacing(*scene.numbers("volume", "spacing", "1 1 1"))
+    image.GetPointData().SetScalars(numpy_support.numpy_to_vtk(voxels, deep=1))
+    return image
+
+
+def load_volume(scene):
+    path = scene.file("volume")
+    if scene.text("volume", "dims"):
+        return load_raw(scene, path)
+    readers = {".nii": vtk.vtkNIFTIImageReader, ".nii.gz": vtk.vtkNIFTIImageReader, ".nrrd": vtk.vtkNrrdReader,
+               ".mhd": vtk.vtkMetaImageReader, ".mha": vtk.vtkMetaImageReader}
+    reader = next(make for ending, make in readers.items() if path.endswith(ending))()
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def place_volume(image):
+    """Our world: the longest edge is 1, the box is centred. Returns the voxel length."""
+    dims, spacing = image.GetDimensions(), image.GetSpacing()
+    longest = max(d * s for d, s in zip(dims, spacing))
+    image.SetSpacing(*[s / longest for s in spacing])
+    image.SetOrigin(*[-(d - 1) * s / longest / 2 for d, s in zip(dims, spacing)])
+    return min(spacing) / longest
+
+
+def load_transfer(scene, image, voxel):
+    low, high = image.GetScalarRange()
+    colour, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    for line in open(scene.file("transfer"), encoding="utf-8"):
+        words = line.split("#")[0].split()
+        if words and words[0] == "range":
+            low, high = float(words[1]), float(words[2])
+        elif words and words[0] != "interpolation":
+            value, red, green, blue, alpha = [float(word) for word in words]
+            colour.AddRGBPoint(low + value * (high - low), red, green, blue)
+            opacity.AddPoint(low + value * (high - low), alpha)
+    look = vtk.vtkVolumeProperty()
+    look.SetColor(colour)
+    look.SetScalarOpacity(opacity)
+    look.SetScalarOpacityUnitDistance(voxel)
+    look.SetInterpolationTypeToLinear()
+    look.ShadeOff()
+    return look
+
+
+def make_mapper(kind, image, step):
+    if kind == "cpu":
+        mapper = vtk.vtkFixedPointVolumeRayCastMapper()
+        mapper.SetNumberOfThreads(os.cpu_count())
+    else:
+        mapper = vtk.vtkGPUVolumeRayCastMapper()
+        mapper.UseJitteringOff()
+    mapper.SetInputData(image)
+    mapper.SetAutoAdjustSampleDistances(0)
+    mapper.LockSampleDistanceToInputSpacingOff()
+    mapper.SetSampleDistance(step)
+    mapper.SetImageSampleDistance(1)
+    return mapper
+
+
+class VtkWindow:
+    def __init__(self, scene, kind, width, height):
+        image = load_volume(scene)
+        voxel = place_volume(image)
+        volume = vtk.vtkVolume()
+        step = voxel / float(scene.text("render", "ray_sampling_rate", "1.5"))
+        volume.SetMapper(make_mapper(kind, image, step))
+        volume.SetProperty(load_transfer(scene, image, voxel))
+        renderer = vtk.vtkRenderer()
+        renderer.AddVolume(volume)
+        renderer.SetBackground(*scene.numbers("render", "background", "0 0 0"))
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(width, height)
+        self.window.AddRenderer(renderer)
+        self.camera = renderer.GetActiveCamera()
+        self.camera.SetPosition(*scene.numbers("camera", "eye", "0 -2 0"))
+        self.camera.SetFocalPoint(*scene.numbers("camera", "look_at", "0 0 0"))
+        self.camera.SetViewUp(*scene.numbers("camera", "up", "0 0 1"))
+        self.camera.SetViewAngle(float(scene.text("camera", "fov_deg", "40")))
+        renderer.ResetCameraClippingRange()
+
+    def picture(self):
+        self.window.Render()
+        grab = vtk.vtkWindowToImageFilter()
+        grab.SetInput(self.window)
+        grab.ReadFrontBufferOff()
+        grab.Update()
+        return pixels_of(grab.GetOutput())
+
+    def frame_ms(self):
+        self.camera.Azimuth(0.01)
+        probe = vtk.vtkUnsignedCharArray()
+        start = time.perf_counter()
+        self.window.Render()
+        self.window.GetPixelData(0, 0, 1, 1, 1, probe, 0)
+        return (time.perf_counter() - start) * 1e3
+
+
+def pixels_of(image):
+    width, height, _ = image.GetDimensions()
+    flat = numpy_support.vtk_to_numpy(image.GetPointData().GetScalars())
+    return flat.reshape(height, width, -1)[::-1, :, :3].astype(float)
+
+
+def run_gazeview(arguments, frames):
+    """Milliseconds of each frame but the first, and the first frame's picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([arguments.gazeview, "--headless", "--scene", arguments.scene, "--size", arguments.size,
+                        "--gaze", "centre", "--method", "standard", "--backend", "cpu", "--turn", "0.01",
+                        "--frames", str(frames), "--out", folder + "/%d.png", "--stats", folder + "/stats.json"],
+                       check=True, stdout=subprocess.DEVNULL)
+        reader = vtk.vtkPNGReader()
+        reader.SetFileName(min((os.path.join(folder, f) for f in os.listdir(folder) if f.endswith(".png")),
+                               key=lambda f: int(os.path.basename(f)[:-4])))
+        reader.Update()
+        stats = json.load(open(folder + "/stats.json", encoding="utf-8"))
+        return [frame["total_ms"] for frame in stats["frames"][1:]], pixels_of(reader.GetOutput())
+
+
+def main():
+    arguments = read_arguments()
+    width, height = [int(side) for side in arguments.size.split("x")]
+    peer = VtkWindow(Scene(arguments.scene), arguments.mapper, width, height)
+    their_picture = peer.picture()
+    ours, theirs = [], []
+    for _ in range(arguments.pairs):
+        theirs += [peer.frame_ms() for _ in range(3)]
+        times, our_picture = run_gazeview(arguments, 4)
+        ours += times
+    error = numpy.mean((our_picture - their_picture) ** 2)
+    psnr = 10 * math.log10(255 ** 2 / error) if error else math.inf
+    print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.mapper} {arguments.size}: {statistics.median(theirs):.1f} ms")
+    print(f"gazeview standard cpu {arguments.size}: {statistics.median(ours):.1f} ms")
+    print(f"ratio {statistics.median(theirs) / statistics.median(ours):.2f}")
+    print(f"psnr_db {psnr:.2f}")
+
+
+if __name__ == "__main__":
+    main()
