@@ -60,7 +60,7 @@ static size_t bind(struct gz_config *config, bool *own_given, bool *pipeline_giv
 	bindings[count++] =
 		(struct gz_option_binding) { gz_pipeline_options, gz_pipeline_option_count,
 					     &config->pipeline, pipeline_given };
-	for (size_t i = 0; gz_drivers[i] && i < GZ_CONFIG_DRIVERS_MAX; i++) {
+	for (size_t i = 0; i < GZ_CONFIG_DRIVERS_MAX && gz_drivers[i]; i++) {
 		if (!gz_drivers[i]->options)
 			continue;
 		bindings[count++] =

@@ -32,7 +32,7 @@ struct gz_sim_params {
 	double clock_offset_ms;   /**< device clock at the start, ms */
 	double clock_skew_ppm;    /**< device clock over host clock, parts per million */
 	bool combined_only;       /**< deliver one point for both eyes */
-	bool realtime;            /**< for the driver: deliver as time passes, not as fast as read */
+	bool realtime; /**< for the driver: deliver as time passes, not as fast as read */
 	int display_px[2];
 	double display_mm[2];
 	double distance_mm;
