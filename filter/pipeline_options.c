@@ -87,8 +87,12 @@ const struct gz_option gz_pipeline_options[] = {
 	     "longest window of the mean within a fixation, ms"),
 	REAL("smooth_pursuit_ms", SMOOTH(pursuit_ms), 0, 1000, "25",
 	     "time constant within a pursuit, ms"),
-	REAL("smooth_drift_factor", SMOOTH(drift_factor), 0, 1000, "3",
+	REAL("smooth_drift_factor", SMOOTH(drift_factor), 0, 1000, "5",
 	     "the mean lets go at this multiple of the usual distance"),
+	REAL("smooth_leave_factor", SMOOTH(leave_factor), 0, 1000, "4",
+	     "a saccade is followed from this multiple of the usual distance on"),
+	REAL("smooth_leave_deg", SMOOTH(leave_deg), 0, 180, "0.2",
+	     "and from at least this distance on, degrees"),
 	REAL("smooth_drift_deg", SMOOTH(drift_deg), 0, 180, "0.5",
 	     "and at least at this distance, degrees"),
 };

@@ -53,6 +53,16 @@ static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smoot
 	state->place[1] += gain * (point.y - state->place[1]);
 }
 
+/** Whether the eye, said to be in a saccade, is still within the noise of where it rested: a false
+ *  alarm as far as one can see. */
+static bool has_not_left(const struct gz_smooth_state *state, const struct gz_smooth_params *params,
+			 const struct gz_display *display, struct gz_point point)
+{
+	double away[2] = { point.x - state->place[0], point.y - state->place[1] };
+	double limit_deg = fmax(params->leave_deg, params->leave_factor * state->usual_deg.value);
+	return offset_deg(display, away) < limit_deg;
+}
+
 /** Fading memory of order one: Brookner, "Tracking and Kalman filtering made easy", 1998, section
  *  1.2.6: alpha = 1 - theta^2, beta = (1 - theta)^2. */
 static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth_params *params,
@@ -72,9 +82,11 @@ static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth
 	state->offset[0] = state->offset[1] = 0;
 }
 
-static void smooth_by_mode(struct gz_smooth_state *state, const struct gz_smooth_params *params,
-			   const struct gz_display *display, enum gz_event event, double step_s,
-			   struct gz_point point)
+/** @return how it was smoothed */
+static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
+				    const struct gz_smooth_params *params,
+				    const struct gz_display *display, enum gz_event event,
+				    double step_s, struct gz_point point)
 {
 	switch (event) {
 	case GZ_EVENT_FIXATION:
@@ -87,10 +99,19 @@ static void smooth_by_mode(struct gz_smooth_state *state, const struct gz_smooth
 	case GZ_EVENT_PURSUIT:
 		smooth_pursuit(state, params, step_s, point);
 		break;
+	case GZ_EVENT_SACCADE:
+		if (state->mode == GZ_EVENT_FIXATION &&
+		    has_not_left(state, params, display, point)) {
+			smooth_fixation(state, params, display, step_s, point);
+			return GZ_EVENT_FIXATION;
+		}
+		place_at(state, point);
+		break;
 	default:
 		place_at(state, point);
 		break;
 	}
+	return event;
 }
 
 struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_smooth_params *params,
@@ -105,7 +126,7 @@ struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_sm
 	if (!state->started || step_ns <= 0 || step_ns > GZ_SMOOTH_GAP_NS)
 		place_at(state, point);
 	else
-		smooth_by_mode(state, params, display, event, gz_ns_to_s(step_ns), point);
+		event = smooth_by_mode(state, params, display, event, gz_ns_to_s(step_ns), point);
 	state->started = true;
 	state->mode = event;
 	state->time_ns = time_ns;

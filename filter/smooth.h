@@ -20,6 +20,9 @@ struct gz_smooth_params {
 	double pursuit_ms;   /**< time constant of the alpha-beta tracker, ms */
 	double drift_factor; /**< the mean lets go when it is so many times the usual distance off
 			      */
+	double leave_factor; /**< a saccade is followed from this multiple of the usual distance on
+			      */
+	double leave_deg;    /**< and from at least this far, degrees */
 	double drift_deg;    /**< and at least so far, degrees */
 };
 

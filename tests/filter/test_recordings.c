@@ -1,6 +1,7 @@
 /*
  * What the pipeline reaches on recordings that people labelled. Any option of the pipeline may be
- * given on the command line, to try it out.
+ * given on the command line, to try it out. Fails where lag, landing or distance are not as wanted,
+ * or saccades agree less than they did.
  */
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,7 @@ enum { SKIPPED = 77, LIST_MAX = 4096 };
 struct stimulus {
 	const char *name;
 	double saccade_kappa, fixation_kappa; /**< wanted */
+	double saccade_floor, fixation_floor; /**< a little under what was reached before */
 	const char *files[12];                /**< without coder; NULL-terminated */
 };
 
@@ -25,17 +27,23 @@ static const struct stimulus STIMULI[] = {
 	{ "img",
 	  0.80,
 	  0.70,
+	  0.82,
+	  0.68,
 	  { "img_TH34_img_Europe", "img_TH34_img_vy", "img_TL20_img_konijntjes",
 	    "img_UH21_img_Rome", "img_UH29_img_Europe", "img_UL23_img_Europe",
 	    "img_UL43_img_Rome" } },
 	{ "dots",
 	  0.78,
 	  0.63,
+	  0.74,
+	  0.55,
 	  { "dots_TH20_trial1", "dots_TL22_trial17", "dots_UH21_trial17", "dots_UH25_trial1",
 	    "dots_UL27_trial17" } },
 	{ "video",
 	  0.79,
 	  0.45,
+	  0.80,
+	  0.29,
 	  { "video_TH34_video_BergoDalbana", "video_TL30_video_triple_jump",
 	    "video_UH21_video_BergoDalbana", "video_UL23_video_triple_jump" } },
 };
@@ -308,6 +316,19 @@ static void print_measures(const struct stimulus *stimulus, struct measures *m)
 	       list_part(&m->landing_deg, 0.5), list_part(&m->landing_deg, 0.9));
 }
 
+/** Whether what must hold does. */
+static bool good_enough(const struct stimulus *stimulus, struct measures *m)
+{
+	double distance = sqrt(m->smooth_off2 / m->raw_off2);
+	double lag = list_part(&m->onset_lag, 0.5), landing = list_part(&m->landing_deg, 0.5);
+	bool good = distance <= 1 && lag <= 2 && !(landing > 0.5) &&
+		    mean_kappa(m->certain, 0) >= stimulus->saccade_floor &&
+		    mean_kappa(m->certain, 1) >= stimulus->fixation_floor;
+	if (!good)
+		printf("%s: worse than it must be\n", stimulus->name);
+	return good;
+}
+
 int main(int argc, char **argv)
 {
 	const char *data = getenv("GAZECAST_DATA");
@@ -322,6 +343,7 @@ int main(int argc, char **argv)
 					     NULL };
 	if (gz_options_read_arguments(&binding, 1, argc, argv, NULL, NULL, &log) != GZ_OK)
 		return 2;
+	int failures = 0;
 	char folder[512];
 	snprintf(folder, sizeof folder, "%s/gaze/andersson2017", data);
 	for (size_t i = 0; i < sizeof STIMULI / sizeof STIMULI[0]; i++) {
@@ -330,6 +352,7 @@ int main(int argc, char **argv)
 		if (!measure_stimulus(&STIMULI[i], folder, &params, &m))
 			return SKIPPED;
 		print_measures(&STIMULI[i], &m);
+		failures += !good_enough(&STIMULI[i], &m);
 	}
-	return 0;
+	return failures > 0;
 }

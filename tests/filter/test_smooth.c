@@ -64,6 +64,18 @@ static void saccade_passes_unsmoothed(void **state)
 	assert_true(step(&s, GZ_EVENT_FIXATION, 70, true, 0.52f).x == 0.52f);
 }
 
+static void false_alarm_of_a_saccade_does_not_move_the_point(void **state)
+{
+	(void)state;
+	struct gz_smooth_state s = { .started = false };
+	float noise[] = { 0.001f, -0.0012f, 0.0008f, -0.0006f, 0 };
+	for (int k = 0; k < 100; k++)
+		(void)step(&s, GZ_EVENT_FIXATION, k, true, 0.3f + noise[k % 5]);
+	for (int k = 100; k < 110; k++)
+		CHECK_BETWEEN(step(&s, GZ_EVENT_SACCADE, k, true, 0.3f + noise[k % 5]).x, 0.2996,
+			      0.3004);
+}
+
 static void pursuit_is_followed_without_steady_lag(void **state)
 {
 	(void)state;
@@ -122,6 +134,7 @@ int main(void)
 		cmocka_unit_test(nothing_known_is_the_centre),
 		cmocka_unit_test(fixation_becomes_steadier_the_longer_it_lasts),
 		cmocka_unit_test(saccade_passes_unsmoothed),
+		cmocka_unit_test(false_alarm_of_a_saccade_does_not_move_the_point),
 		cmocka_unit_test(pursuit_is_followed_without_steady_lag),
 		cmocka_unit_test(the_mean_lets_go_of_an_unnoticed_movement),
 		cmocka_unit_test(invalid_sample_holds_the_place),
