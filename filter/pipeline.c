@@ -36,11 +36,11 @@ static struct gz_gaze_eye eye_message(const struct gz_eye_sample *eye, bool good
 static struct gz_gaze message_of(const struct gz_pipeline *pipeline, const struct gz_sample *sample,
 				 const struct gz_validate_output *valid)
 {
-	bool late = pipeline->started && sample->host_ns < pipeline->host_ns;
+	bool usable = valid->rejection != GZ_REJECT_TIME;
 	struct gz_gaze gaze = {
 		.seq = sample->seq,
 		.device_ns = sample->device_ns,
-		.host_ns = late ? pipeline->host_ns : sample->host_ns,
+		.host_ns = usable ? sample->host_ns : pipeline->host_ns,
 		.point = pipeline->point,
 		.raw = { NAN, NAN },
 		.event = pipeline->event,
@@ -125,7 +125,6 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	out->gaze.confidence = input.valid ? input.confidence : 0;
 	out->gaze.point = gz_smooth_step(&pipeline->smooth, &params->smooth, display, label.event,
 					 input.time_ns, input.valid, input.point);
-	pipeline->started = true;
 	pipeline->host_ns = sample->host_ns;
 	pipeline->event = label.event;
 	pipeline->point = out->gaze.point;

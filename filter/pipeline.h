@@ -56,8 +56,7 @@ struct gz_pipeline {
 	struct gz_smooth_state smooth;
 	struct gz_messages_state messages;
 	struct gz_pipeline_noise noise;
-	int64_t host_ns;     /**< of the newest output */
-	bool started;        /**< whether there was one */
+	int64_t host_ns;     /**< of the newest output; 0 before it */
 	enum gz_event event; /**< of the newest output */
 	struct gz_point point;
 };
@@ -90,9 +89,9 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
  *                  where unmeasured, and its time is never before that of an earlier output
  *
  * A sample not newer than the last is rejected (GZ_REJECT_TIME) and leaves the state as it was; its
- * message says what was said last, with confidence 0. While blinking or lost the point holds its
- * last place; before any good sample it is (0.5, 0.5), lost.
- * Does not allocate. Threads: one at a time per pipeline.
+ * message says what was said last, with its time and confidence 0. While blinking or lost the point
+ * holds its last place; before any good sample it is (0.5, 0.5), lost. Does not allocate. Threads:
+ * one at a time per pipeline.
  */
 void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,
 		      struct gz_pipeline_output *out);

@@ -60,7 +60,8 @@ struct gz_validate_output {
  * The reason told is of the eye that came farthest in the order tracker, confidence, not_finite,
  * off_screen, velocity.
  *
- * @param state    a sample not newer than the last (GZ_REJECT_TIME) leaves it as it was
+ * @param state    a sample not newer than the last, before 0 or after INT64_MAX / 2, which no clock
+ *                 reaches (GZ_REJECT_TIME), leaves it as it was
  * @param display  valid
  */
 struct gz_validate_output gz_validate_step(struct gz_validate_state *state,

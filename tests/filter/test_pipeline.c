@@ -144,6 +144,33 @@ static void sample_not_newer_changes_nothing(void **state)
 	viewing_close(&viewing);
 }
 
+static void damaged_times_never_bring_time_back(void **state)
+{
+	(void)state;
+	static const int64_t damaged_ns[] = { INT64_MAX,         INT64_MIN,     -1, 0,
+					      INT64_MAX / 2 + 1, INT64_MIN + 1, 1 };
+	struct gz_sim_params params = sim_params(500);
+	struct viewing viewing;
+	viewing_open(&viewing, &params);
+	int64_t last_ns = 0;
+	for (int k = 0; k < 700; k++) {
+		gz_sim_tracker_next(viewing.tracker, &viewing.in);
+		struct gz_sample damaged = viewing.in.sample;
+		damaged.host_ns = damaged_ns[k % 7];
+		if (k % 7 != 3 || k > 10) { /* 0 is good as the first time of all */
+			gz_pipeline_step(&viewing.pipeline, &damaged, &viewing.out);
+			assert_int_equal(viewing.out.rejection, GZ_REJECT_TIME);
+			check_output(&viewing, last_ns);
+			last_ns = viewing.out.gaze.host_ns;
+		}
+		gz_pipeline_step(&viewing.pipeline, &viewing.in.sample, &viewing.out);
+		assert_int_not_equal(viewing.out.rejection, GZ_REJECT_TIME);
+		check_output(&viewing, last_ns);
+		last_ns = viewing.out.gaze.host_ns;
+	}
+	viewing_close(&viewing);
+}
+
 static void copied_state_goes_on_in_the_same_way(void **state)
 {
 	(void)state;
@@ -349,6 +376,7 @@ int main(void)
 		cmocka_unit_test(wild_samples_give_finite_numbers),
 		cmocka_unit_test(before_any_good_sample_gaze_is_lost_at_the_centre),
 		cmocka_unit_test(sample_not_newer_changes_nothing),
+		cmocka_unit_test(damaged_times_never_bring_time_back),
 		cmocka_unit_test(copied_state_goes_on_in_the_same_way),
 		cmocka_unit_test(certain_labels_come_in_order_within_10_ms),
 		cmocka_unit_test(an_eye_dropping_out_does_not_move_the_point),
