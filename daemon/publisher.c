@@ -149,9 +149,10 @@ void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, co
 
 void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch)
 {
-	/* Sending to nobody costs system calls, too. Who has just come is seen at the next update.
-	 */
-	for (size_t i = 0; publisher->stream.connections > 0 && i < batch->count; i++) {
+	/* Sending to nobody costs system calls, too. Who has just come is seen at the next update;
+	 * of a connection and its subscription either may be seen first. */
+	bool listened = publisher->stream.connections > 0 || publisher->subscriptions > 0;
+	for (size_t i = 0; listened && i < batch->count; i++) {
 		const struct gz_outgoing *item = &batch->item[i];
 		gz_publisher_send_one(publisher, item->topic, item->body.bytes, item->body.size);
 	}

@@ -24,9 +24,10 @@ enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
 /* What the answer that is owed waits for. */
 enum pending {
 	PENDING_NONE,
-	PENDING_START, /* the service's answer */
-	PENDING_STOP,  /* the same, and then the recorder's end */
-	PENDING_FINISH,
+	PENDING_START,   /* the service's answer */
+	PENDING_STOP,    /* the same, and then the recorder's end */
+	PENDING_FINISH,  /* that end */
+	PENDING_RESTART, /* that end, before the next recording may begin */
 };
 
 struct gz_requests {
@@ -39,6 +40,7 @@ struct gz_requests {
 	uint32_t number; /* of the newest command */
 	int pending_fd;
 	char pending_path[GZ_PATH_SIZE];
+	char pending_name[GZ_REMOTE_REQUEST_SIZE];
 	int64_t deadline_ns;
 	bool ended;
 	enum gz_result failure; /* of the service */
@@ -80,6 +82,11 @@ static void start_recording(struct gz_requests *requests, const char *name)
 	struct gz_command command = { .kind = GZ_COMMAND_RECORD, .number = ++requests->number };
 	struct gz_recorder_status status;
 	gz_recorder_get_status(requests->parts.recorder, &status);
+	if (status.finishing) {
+		snprintf(requests->pending_name, sizeof requests->pending_name, "%s", name);
+		wait_for_service(requests, PENDING_RESTART);
+		return;
+	}
 	if (status.state == GZ_RECORDING_ON) {
 		answer(requests, "a recording is running; end it with r first");
 		return;
@@ -218,12 +225,16 @@ static void check_finished(struct gz_requests *requests)
 {
 	char text[ANSWER_SIZE];
 	struct gz_recorder_status status;
-	if (requests->pending != PENDING_FINISH)
+	if (requests->pending != PENDING_FINISH && requests->pending != PENDING_RESTART)
 		return;
 	gz_recorder_get_status(requests->parts.recorder, &status);
-	if (status.state == GZ_RECORDING_OFF) {
+	if (status.state == GZ_RECORDING_ON)
+		return;
+	if (requests->pending == PENDING_RESTART) {
+		start_recording(requests, requests->pending_name);
+	} else if (status.state == GZ_RECORDING_OFF) {
 		answer(requests, "OK");
-	} else if (status.state == GZ_RECORDING_FAILED) {
+	} else {
 		snprintf(text, sizeof text, "failed: %s", status.error);
 		answer(requests, text);
 	}
@@ -237,7 +248,9 @@ static long milliseconds_left(struct gz_requests *requests)
 	int64_t left_ns = requests->deadline_ns - gz_clock_now_ns();
 	if (left_ns > 0)
 		return (long)(left_ns / GZ_NS_PER_MS) + 1;
-	answer(requests, "OK");
+	answer(requests, requests->pending == PENDING_RESTART
+				 ? "the last recording is still being written; try again"
+				 : "OK");
 	return 0;
 }
 

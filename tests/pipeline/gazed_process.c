@@ -25,6 +25,31 @@
 
 enum { ARGUMENTS_MAX = 32 };
 
+/* Daemons of one test that have not been waited for. */
+static pid_t running[8];
+
+static void note_running(pid_t from, pid_t to)
+{
+	for (size_t i = 0; i < sizeof running / sizeof *running; i++) {
+		if (running[i] == from) {
+			running[i] = to;
+			return;
+		}
+	}
+	fail_msg("too many daemons in one test");
+}
+
+void gazed_kill_all(void)
+{
+	for (size_t i = 0; i < sizeof running / sizeof *running; i++) {
+		if (running[i] == 0)
+			continue;
+		kill(running[i], SIGKILL);
+		waitpid(running[i], NULL, 0);
+		running[i] = 0;
+	}
+}
+
 void gazed_place_make(struct gazed_place *place)
 {
 	snprintf(place->directory, sizeof place->directory, "/tmp/gz_gazed_XXXXXX");
@@ -108,6 +133,7 @@ void gazed_spawn(const struct gazed_start *start, struct gazed_process *out)
 	assert_true(out->pid >= 0);
 	if (out->pid == 0)
 		become_gazed(start, out, argv);
+	note_running(0, out->pid);
 }
 
 const char *gazed_said(const struct gazed_process *process)
@@ -166,8 +192,10 @@ void gazed_wait_ready(const struct gazed_place *place, struct gazed_process *pro
 	while (gz_clock_now_ns() < deadline_ns) {
 		if (request_within(place, "v", 50, NULL))
 			return;
-		if (waitpid(process->pid, NULL, WNOHANG) != 0)
+		if (waitpid(process->pid, NULL, WNOHANG) != 0) {
+			note_running(process->pid, 0);
 			fail_msg("gazed ended: %s", gazed_said(process));
+		}
 	}
 	fail_msg("gazed does not answer: %s", gazed_said(process));
 }
@@ -179,13 +207,13 @@ int gazed_wait_exit(struct gazed_process *process)
 	int fd = (int)syscall(SYS_pidfd_open, process->pid, 0);
 	struct pollfd end = { .fd = fd, .events = POLLIN };
 	if (fd >= 0 && poll(&end, 1, (int)(PATIENCE_NS / GZ_NS_PER_MS)) == 0) {
-		kill(process->pid, SIGKILL);
-		waitpid(process->pid, &status, 0);
+		gazed_kill_all();
 		fail_msg("gazed does not end: %s", gazed_said(process));
 	}
 	if (fd >= 0)
 		close(fd);
 	assert_int_equal(waitpid(process->pid, &status, 0), process->pid);
+	note_running(process->pid, 0);
 	return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 

@@ -44,6 +44,9 @@ struct gazed_start {
  */
 void gazed_spawn(const struct gazed_start *start, struct gazed_process *out);
 
+/** Kill what a failed test has left running. */
+void gazed_kill_all(void);
+
 /** Wait until its control socket answers; fails the test after 20 s or when it exits. */
 void gazed_wait_ready(const struct gazed_place *place, struct gazed_process *process);
 

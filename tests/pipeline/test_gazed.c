@@ -18,6 +18,13 @@
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
+/* How many times slower than a daemon of its own a sanitizer's may be. */
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+enum { SLOWNESS = 10 };
+#else
+enum { SLOWNESS = 1 };
+#endif
+
 static struct gazed_place place;
 
 static int set_up(void **state)
@@ -30,6 +37,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
 	(void)state;
+	gazed_kill_all();
 	gazed_place_remove(&place);
 	return 0;
 }
@@ -110,8 +118,12 @@ static void gazed_answers_every_letter_within_100_ms(void **state)
 	gazed_wait_ready(&place, &gazed);
 	for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
 		double ms;
-		assert_string_equal(gazed_request(&place, requests[i][0], &ms), requests[i][1]);
-		if (ms > 100)
+		const char *answer = gazed_request(&place, requests[i][0], &ms);
+		/* A disk that takes its time to sync. */
+		while (strstr(answer, "still being written"))
+			answer = gazed_request(&place, requests[i][0], &ms);
+		assert_string_equal(answer, requests[i][1]);
+		if (ms > 100 * SLOWNESS)
 			fail_msg("\"%s\" took %g ms", requests[i][0], ms);
 	}
 	double seconds = atof(gazed_request(&place, "t", NULL));
@@ -456,22 +468,25 @@ static void gazed_reader_that_stops_reading_delays_nobody(void **state)
 	reader_close(&dead);
 }
 
+/* Each in a place of its own, so that a failed one is in nobody's way. */
+#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(gazed_starts_at_once_and_ends_cleanly_on_each_signal),
-		cmocka_unit_test(gazed_answers_every_letter_within_100_ms),
-		cmocka_unit_test(gazed_ports_of_tcp_lead_to_the_stream),
-		cmocka_unit_test(gazed_stream_carries_every_topic_and_the_status),
-		cmocka_unit_test(gazed_latest_is_one_frame_and_the_newest),
-		cmocka_unit_test(gazed_replay_gives_the_live_messages_bit_for_bit),
-		cmocka_unit_test(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
-		cmocka_unit_test(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),
-		cmocka_unit_test(gazed_taken_endpoint_is_refused_with_the_remedy),
-		cmocka_unit_test(gazed_refuses_bad_configuration_in_one_line),
-		cmocka_unit_test(gazed_killed_loses_no_more_than_a_second_of_the_recording),
-		cmocka_unit_test(gazed_full_disk_stops_the_recording_and_not_the_stream),
-		cmocka_unit_test(gazed_reader_that_stops_reading_delays_nobody),
+		TEST(gazed_starts_at_once_and_ends_cleanly_on_each_signal),
+		TEST(gazed_answers_every_letter_within_100_ms),
+		TEST(gazed_ports_of_tcp_lead_to_the_stream),
+		TEST(gazed_stream_carries_every_topic_and_the_status),
+		TEST(gazed_latest_is_one_frame_and_the_newest),
+		TEST(gazed_replay_gives_the_live_messages_bit_for_bit),
+		TEST(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
+		TEST(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),
+		TEST(gazed_taken_endpoint_is_refused_with_the_remedy),
+		TEST(gazed_refuses_bad_configuration_in_one_line),
+		TEST(gazed_killed_loses_no_more_than_a_second_of_the_recording),
+		TEST(gazed_full_disk_stops_the_recording_and_not_the_stream),
+		TEST(gazed_reader_that_stops_reading_delays_nobody),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, NULL, NULL);
 }
