@@ -13,8 +13,8 @@
 #include "daemon/recorder.h"
 
 /** How long an answer waits for what was asked to have happened, ms; then it says that it goes on.
- * Chosen: below the 100 ms in which a client may count on an answer. */
-#define GZ_REQUESTS_PATIENCE_MS 80
+ * Chosen: well below the 100 ms in which a client may count on an answer. */
+#define GZ_REQUESTS_PATIENCE_MS 50
 
 /** What requests work with, borrowed. */
 struct gz_requests_parts {

@@ -309,11 +309,19 @@ void reader_drain(struct reader *reader, int quiet_ms)
 		;
 }
 
+void reader_hang_up(struct reader *reader)
+{
+	if (!reader->socket)
+		return;
+	zmq_close(reader->socket);
+	zmq_ctx_term(reader->context);
+	reader->socket = NULL;
+}
+
 void reader_close(struct reader *reader)
 {
+	reader_hang_up(reader);
 	for (size_t i = 0; i < reader->count; i++)
 		free(reader->messages[i].bytes);
 	free(reader->messages);
-	zmq_close(reader->socket);
-	zmq_ctx_term(reader->context);
 }

@@ -98,6 +98,10 @@ void reader_wait_recording(struct reader *reader, enum gz_recording_state state)
 /** Receive what there still is, until nothing comes for @p quiet_ms. */
 void reader_drain(struct reader *reader, int quiet_ms);
 
+/** Stop listening, and keep what was received. A reader that listens comes back to the next daemon.
+ */
+void reader_hang_up(struct reader *reader);
+
 /** Close and free. */
 void reader_close(struct reader *reader);
 
