@@ -1,10 +1,10 @@
-/* Sixteen lanes by the compiler's own vectors, which it turns into what the processor has: the
- * vocabulary of simd_avx512.h. A mask is all ones or all zeros a lane. */
+/* Four lanes, as most processors have, by the compiler's own vectors: the vocabulary of
+ * simd_avx512.h. A mask is all ones or all zeros a lane. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#define SIMD_LANES 16
+#define SIMD_LANES 4
 
 typedef float vf __attribute__((vector_size(4 * SIMD_LANES)));
 typedef int32_t vi __attribute__((vector_size(4 * SIMD_LANES)));
