@@ -19,14 +19,33 @@ die() {
 	exit 1
 }
 
+child=
+
+# start_child COMMAND...: start it in a process group of its own, so that stop_child ends all of it.
+start_child() {
+	set -m
+	"$@" &
+	child=$!
+	set +m
+}
+
+stop_child() {
+	[ -z "$child" ] || kill -TERM -- "-$child" 2>/dev/null || true
+	child=
+}
+
+trap stop_child EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
+
 # run_step NAME COMMAND...: run a long command with its output in build/logs/NAME.log, showing the last
 # line now and then; on failure show the end of the log and return the command's status.
 run_step() {
 	local name=$1 log=$logs/$1.log every=10 begin=$SECONDS status=0 last
 	shift
 	[ -t 1 ] && every=1
-	"$@" >"$log" 2>&1 </dev/null &
-	local child=$! next=$((SECONDS + every))
+	start_child "$@" >"$log" 2>&1 </dev/null
+	local next=$((SECONDS + every))
 	while kill -0 "$child" 2>/dev/null; do
 		sleep 0.2
 		[ $SECONDS -ge $next ] || continue
@@ -39,6 +58,7 @@ run_step() {
 		fi
 	done
 	wait "$child" || status=$?
+	child=
 	[ -t 1 ] && printf '\r\033[K'
 	if [ "$status" -eq 0 ]; then
 		say "$name: done in $((SECONDS - begin)) s"
