@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "daemon/command.h"
+#include "daemon/inlet.h"
 #include "daemon/recording_name.h"
 #include "daemon/remote.h"
 
@@ -20,6 +21,9 @@ static const int64_t REQUEST_SIZE_MAX = 65536;
 
 /* Room for an answer with its NUL: a path and a sentence. */
 enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
+
+/* Messages of clients passed on before requests are looked at again. */
+enum { MESSAGES_AT_ONCE = 32 };
 
 /* What the answer that is owed waits for. */
 enum pending {
@@ -34,6 +38,8 @@ struct gz_requests {
 	struct gz_requests_parts parts;
 	void *control;  /* REP */
 	void *commands; /* PAIR, to the service */
+	struct gz_inlet *inlet;
+	struct gz_inlet_message message; /* large, and used for one at a time */
 	int stream_port;
 	int latest_port;
 	enum pending pending;
@@ -59,7 +65,7 @@ static void answer_port(struct gz_requests *requests, int port, const char *chan
 	if (port > 0)
 		snprintf(text, sizeof text, "%d", port);
 	else
-		snprintf(text, sizeof text, "TCP is off; subscribe to ipc://%s/%s",
+		snprintf(text, sizeof text, "TCP is off; use ipc://%s/%s",
 			 requests->parts.directory, channel);
 	answer(requests, text);
 }
@@ -155,7 +161,7 @@ static void serve_request(struct gz_requests *requests, const struct gz_remote_r
 		answer_port(requests, requests->latest_port, "latest");
 		return;
 	case GZ_REMOTE_INLET_PORT:
-		answer(requests, "this daemon takes no messages from clients");
+		answer_port(requests, gz_inlet_port(requests->inlet), "inlet");
 		return;
 	case GZ_REMOTE_CALIBRATE:
 	case GZ_REMOTE_CALIBRATION_STOP:
@@ -254,6 +260,29 @@ static long milliseconds_left(struct gz_requests *requests)
 	return 0;
 }
 
+/* A client's message: to all readers, and into the log if it is an annotation. Where the service
+ * does not keep up with clients, their messages are dropped: samples come first. */
+static void pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
+{
+	struct gz_command command = { .kind = GZ_COMMAND_MARK, .host_ns = message->mark_ns };
+	if (message->is_mark) {
+		memcpy(command.text, message->mark, sizeof command.text);
+		send_command(requests, &command);
+	}
+	command.kind = GZ_COMMAND_SEND;
+	memcpy(command.text, message->topic, sizeof message->topic);
+	if (zmq_send(requests->commands, &command, sizeof command, ZMQ_SNDMORE | ZMQ_DONTWAIT) >= 0)
+		zmq_send(requests->commands, message->body, message->size, ZMQ_DONTWAIT);
+}
+
+static void take_messages(struct gz_requests *requests)
+{
+	for (int i = 0;
+	     i < MESSAGES_AT_ONCE && gz_inlet_receive(requests->inlet, &requests->message) == GZ_OK;
+	     i++)
+		pass_on(requests, &requests->message);
+}
+
 static void forget_event(int fd)
 {
 	uint64_t count;
@@ -267,12 +296,13 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 		{ .fd = signal_fd, .events = ZMQ_POLLIN },
 		{ .fd = gz_recorder_event_fd(requests->parts.recorder), .events = ZMQ_POLLIN },
 		{ .socket = requests->commands, .events = ZMQ_POLLIN },
+		{ .socket = gz_inlet_socket(requests->inlet), .events = ZMQ_POLLIN },
 		{ .socket = requests->control, .events = ZMQ_POLLIN },
 	};
 	for (;;) {
 		long timeout_ms = milliseconds_left(requests);
 		/* A REP socket owes its answer before it takes the next request. */
-		int count = requests->pending == PENDING_NONE ? 4 : 3;
+		int count = requests->pending == PENDING_NONE ? 5 : 4;
 		if (zmq_poll(items, count, timeout_ms) < 0 && errno != EINTR)
 			return GZ_ERR_IO;
 		if (items[0].revents)
@@ -281,6 +311,7 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 			forget_event(items[1].fd);
 		take_notices(requests);
 		check_finished(requests);
+		take_messages(requests);
 		bool leave = requests->ended && requests->parts.config->exit_at_end;
 		if (leave || requests->failure != GZ_OK)
 			return requests->failure;
@@ -355,6 +386,10 @@ enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 	requests->stream_port = gz_publisher_port(parts->publisher);
 	requests->latest_port = gz_publisher_latest_port(parts->publisher);
 	enum gz_result result = open_sockets(requests);
+	if (result == GZ_OK)
+		result = gz_inlet_create(parts->context, parts->directory,
+					 parts->config->tcp == GZ_TCP_LOOPBACK, parts->log,
+					 &requests->inlet);
 	if (result != GZ_OK) {
 		gz_requests_destroy(&requests);
 		return result;
@@ -367,6 +402,7 @@ void gz_requests_destroy(struct gz_requests **requests)
 {
 	if (!requests || !*requests)
 		return;
+	gz_inlet_destroy(&(*requests)->inlet);
 	if ((*requests)->control)
 		zmq_close((*requests)->control);
 	if ((*requests)->commands)

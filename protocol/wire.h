@@ -22,6 +22,7 @@
 #define GZ_TOPIC_BLINKS     "blinks"
 #define GZ_TOPIC_SACCADES   "saccades"
 #define GZ_TOPIC_STATUS     "status"
+#define GZ_TOPIC_ANNOTATION "annotation"
 
 /** What "method" says in our pupil and fixation maps. */
 #define GZ_WIRE_METHOD "gazecast"
@@ -31,6 +32,9 @@
 
 /** Bytes at the end of a gaze map that hold publish_ns: its key (11) and an int 64 (9). */
 #define GZ_WIRE_PUBLISH_SIZE 20
+
+/** Bytes of an annotation's label with its NUL; longer ones are refused. */
+#define GZ_ANNOTATION_LABEL_SIZE 256
 
 /** Nesting deeper than this is refused. */
 #define GZ_WIRE_DEPTH_MAX 8
@@ -108,5 +112,17 @@ enum gz_result gz_wire_decode_saccade(const void *bytes, size_t size,
 				      struct gz_saccade *out_saccade);
 /** The display may be one that gz_display_valid() refuses: a daemon may not know it. */
 enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_status *out_status);
+
+/** What a client says of a moment, as Pupil's annotations have it. */
+struct gz_annotation {
+	char label[GZ_ANNOTATION_LABEL_SIZE];
+	bool has_time;
+	int64_t time_ns;     /**< if has_time */
+	int64_t duration_ns; /**< 0 for a moment */
+};
+
+/** A map with "label", and where given "timestamp" s and "duration" s. As the decoders above. */
+enum gz_result gz_wire_decode_annotation(const void *bytes, size_t size,
+					 struct gz_annotation *out_annotation);
 
 #endif

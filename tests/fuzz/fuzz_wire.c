@@ -70,5 +70,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	if (gz_wire_decode_saccade(data, size, &saccade) == GZ_OK)
 		require(saccade.duration_ns >= 0);
 	gz_wire_decode_blink(data, size, &blink);
+	struct gz_annotation annotation;
+	gz_wire_decode_annotation(data, size, &annotation);
 	return 0;
 }

@@ -134,6 +134,7 @@ static void gazed_answers_every_letter_within_100_ms(void **state)
 	assert_true(fabs(seconds - gz_ns_to_s(gz_clock_now_ns())) < 1);
 	assert_non_null(strstr(gazed_request(&place, "SUB_PORT", NULL), "/stream"));
 	assert_non_null(strstr(gazed_request(&place, "LATEST_PORT", NULL), "/latest"));
+	assert_non_null(strstr(gazed_request(&place, "PUB_PORT", NULL), "/inlet"));
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 	assert_int_equal(read_log("one.gzl").ending, GZ_GAZE_LOG_WHOLE);
 }
@@ -342,6 +343,54 @@ static void gazed_recording_begun_in_mid_stream_replays_bit_for_bit(void **state
 	reader_close(&replay);
 }
 
+static size_t count_marks(const char *name, const char *text)
+{
+	char path[256];
+	struct gz_gaze_log_reader *reader = NULL;
+	struct gz_gaze_log_record record;
+	size_t count = 0;
+	snprintf(path, sizeof path, "%s/%s", place.recordings, name);
+	assert_int_equal(gz_gaze_log_open(path, NULL, &reader), GZ_OK);
+	while (gz_gaze_log_read(reader, &record) == GZ_OK)
+		count += record.kind == GZ_GAZE_LOG_MARK && strcmp(record.text, text) == 0;
+	gz_gaze_log_close(&reader);
+	return count;
+}
+
+static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void **state)
+{
+	(void)state;
+	static const char go[] = "\x81\xa5label\xa2go"; /* {"label": "go"} */
+	char endpoint[128];
+	struct reader reader;
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "marked");
+	reader_open(&reader, &place, "");
+	reader_receive_gaze(&reader, 10);
+	snprintf(endpoint, sizeof endpoint, "ipc://%s/inlet", place.directory);
+	void *context = zmq_ctx_new(), *socket = zmq_socket(context, ZMQ_XPUB);
+	int timeout_ms = 20000;
+	unsigned char subscription[8];
+	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
+	assert_int_equal(zmq_connect(socket, endpoint), 0);
+	/* What is sent before the daemon has subscribed would be lost. */
+	assert_true(zmq_recv(socket, subscription, sizeof subscription, 0) >= 0);
+	/* A forged gaze, which goes nowhere, and then the annotation. */
+	zmq_send(socket, "gaze.forged", 11, ZMQ_SNDMORE);
+	zmq_send(socket, go, sizeof go - 1, 0);
+	zmq_send(socket, "annotation", 10, ZMQ_SNDMORE);
+	zmq_send(socket, go, sizeof go - 1, 0);
+	while (count_topic(&reader, "annotation") == 0)
+		assert_true(reader_receive(&reader, 20000));
+	zmq_close(socket);
+	zmq_ctx_term(context);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_int_equal(count_topic(&reader, "gaze.forged"), 0);
+	assert_non_null(strstr(gazed_said(&gazed), "topic of the daemon's own"));
+	assert_int_equal(count_marks("marked.gzl", "go"), 1);
+	reader_close(&reader);
+}
+
 static void gazed_second_one_in_a_directory_is_refused_and_harms_nothing(void **state)
 {
 	(void)state;
@@ -487,6 +536,7 @@ int main(void)
 		TEST(gazed_latest_is_one_frame_and_the_newest),
 		TEST(gazed_replay_gives_the_live_messages_bit_for_bit),
 		TEST(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
+		TEST(gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers),
 		TEST(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),
 		TEST(gazed_taken_endpoint_is_refused_with_the_remedy),
 		TEST(gazed_refuses_bad_configuration_in_one_line),

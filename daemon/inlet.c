@@ -1,0 +1,201 @@
+#include "daemon/inlet.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "protocol/endpoint.h"
+#include "protocol/wire.h"
+
+#define GZ_LOG_MODULE "inlet"
+
+/* Messages kept while the daemon is busy; libzmq drops what is beyond. */
+enum { QUEUE = 256 };
+
+struct gz_inlet {
+	const struct gz_log *log;
+	void *socket;
+	int port;
+	struct gz_ratelimit complaints;
+};
+
+static bool begins_with(const char *text, const char *beginning)
+{
+	return strncmp(text, beginning, strlen(beginning)) == 0;
+}
+
+static bool is_own_topic(const char *topic)
+{
+	static const char *const own[] = { GZ_TOPIC_GAZE,   GZ_TOPIC_SURFACES, GZ_TOPIC_FIXATIONS,
+					   GZ_TOPIC_BLINKS, GZ_TOPIC_SACCADES, GZ_TOPIC_STATUS,
+					   "pupil." };
+	for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
+		if (begins_with(topic, own[i]))
+			return true;
+	}
+	return false;
+}
+
+static enum gz_result take_mark(const void *body, size_t size, int64_t now_ns,
+				struct gz_inlet_message *out_message)
+{
+	struct gz_annotation annotation;
+	enum gz_result result = gz_wire_decode_annotation(body, size, &annotation);
+	if (result != GZ_OK)
+		return result;
+	out_message->is_mark = true;
+	out_message->mark_ns = annotation.has_time ? annotation.time_ns : now_ns;
+	if (annotation.duration_ns > 0)
+		snprintf(out_message->mark, sizeof out_message->mark, "%s, duration %.9g s",
+			 annotation.label, gz_ns_to_s(annotation.duration_ns));
+	else
+		snprintf(out_message->mark, sizeof out_message->mark, "%s", annotation.label);
+	return GZ_OK;
+}
+
+enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *body,
+			      size_t body_size, int64_t now_ns,
+			      struct gz_inlet_message *out_message)
+{
+	char text[GZ_INLET_TOPIC_SIZE];
+	if (topic_size == 0 || topic_size >= sizeof text || memchr(topic, '\0', topic_size) ||
+	    body_size > GZ_INLET_SIZE_MAX || gz_wire_check(body, body_size) != GZ_OK)
+		return GZ_ERR_PROTOCOL;
+	memcpy(text, topic, topic_size);
+	text[topic_size] = '\0';
+	if (is_own_topic(text))
+		return GZ_ERR_ACCESS;
+	if (begins_with(text, GZ_TOPIC_ANNOTATION)) {
+		struct gz_inlet_message mark;
+		if (take_mark(body, body_size, now_ns, &mark) != GZ_OK)
+			return GZ_ERR_PROTOCOL;
+		out_message->mark_ns = mark.mark_ns;
+		memcpy(out_message->mark, mark.mark, sizeof mark.mark);
+	}
+	out_message->is_mark = begins_with(text, GZ_TOPIC_ANNOTATION);
+	memcpy(out_message->topic, text, sizeof text);
+	memcpy(out_message->body, body, body_size);
+	out_message->size = body_size;
+	return GZ_OK;
+}
+
+static void complain(struct gz_inlet *inlet, enum gz_result result)
+{
+	uint64_t held_back;
+	if (!gz_ratelimit_pass(&inlet->complaints, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
+		return;
+	gz_warn(inlet->log, "client bug: a message that %s; dropped (%llu more since last told)",
+		result == GZ_ERR_ACCESS ? "has a topic of the daemon's own"
+					: "is not a topic and a MessagePack map",
+		(unsigned long long)held_back);
+}
+
+/* Receive one message's frames. @return how many there were, 0 if there is no message */
+static int receive_frames(struct gz_inlet *inlet, zmq_msg_t *topic, zmq_msg_t *body)
+{
+	int frames = 0;
+	bool more = true;
+	while (more) {
+		zmq_msg_t *frame = frames == 0 ? topic : body;
+		if (zmq_msg_recv(frame, inlet->socket, ZMQ_DONTWAIT) < 0)
+			break;
+		frames++;
+		more = zmq_msg_more(frame) != 0;
+	}
+	return frames;
+}
+
+enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message *out_message)
+{
+	zmq_msg_t topic, body;
+	zmq_msg_init(&topic);
+	zmq_msg_init(&body);
+	enum gz_result result = GZ_ERR_TIMEOUT;
+	/* No more than a queue of bad ones at a time. */
+	for (int i = 0; i < QUEUE && result != GZ_OK; i++) {
+		int frames = receive_frames(inlet, &topic, &body);
+		if (frames == 0)
+			break;
+		result = frames != 2 ? GZ_ERR_PROTOCOL
+				     : gz_inlet_judge(zmq_msg_data(&topic), zmq_msg_size(&topic),
+						      zmq_msg_data(&body), zmq_msg_size(&body),
+						      gz_clock_now_ns(), out_message);
+		if (result != GZ_OK)
+			complain(inlet, result);
+	}
+	zmq_msg_close(&topic);
+	zmq_msg_close(&body);
+	return result == GZ_OK ? GZ_OK : GZ_ERR_TIMEOUT;
+}
+
+static enum gz_result open_socket(struct gz_inlet *inlet, void *context, const char *endpoint,
+				  bool tcp)
+{
+	char bound[GZ_ENDPOINT_SIZE] = "";
+	size_t size = sizeof bound;
+	int queue = QUEUE, linger = 0;
+	int64_t size_max = GZ_INLET_SIZE_MAX;
+	inlet->socket = zmq_socket(context, ZMQ_SUB);
+	if (!inlet->socket ||
+	    zmq_setsockopt(inlet->socket, ZMQ_RCVHWM, &queue, sizeof queue) != 0 ||
+	    zmq_setsockopt(inlet->socket, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
+	    zmq_setsockopt(inlet->socket, ZMQ_MAXMSGSIZE, &size_max, sizeof size_max) != 0 ||
+	    zmq_setsockopt(inlet->socket, ZMQ_SUBSCRIBE, "", 0) != 0 ||
+	    zmq_bind(inlet->socket, endpoint) != 0 ||
+	    (tcp && zmq_bind(inlet->socket, "tcp://127.0.0.1:*") != 0) ||
+	    zmq_getsockopt(inlet->socket, ZMQ_LAST_ENDPOINT, bound, &size) != 0) {
+		gz_err(inlet->log,
+		       "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR, or --tcp off",
+		       endpoint, zmq_strerror(errno));
+		return GZ_ERR_IO;
+	}
+	const char *colon = strrchr(bound, ':');
+	inlet->port = tcp && colon ? atoi(colon + 1) : 0;
+	return GZ_OK;
+}
+
+enum gz_result gz_inlet_create(void *context, const char *directory, bool tcp,
+			       const struct gz_log *log, struct gz_inlet **out_inlet)
+{
+	char endpoint[GZ_ENDPOINT_SIZE];
+	enum gz_result result = gz_endpoint_ipc(directory, "inlet", endpoint, sizeof endpoint);
+	if (result != GZ_OK) {
+		gz_err(log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
+		       directory);
+		return result;
+	}
+	struct gz_inlet *inlet = calloc(1, sizeof *inlet);
+	if (!inlet)
+		return GZ_ERR_NO_MEM;
+	inlet->log = log;
+	result = open_socket(inlet, context, endpoint, tcp);
+	if (result != GZ_OK) {
+		gz_inlet_destroy(&inlet);
+		return result;
+	}
+	*out_inlet = inlet;
+	return GZ_OK;
+}
+
+int gz_inlet_port(const struct gz_inlet *inlet)
+{
+	return inlet->port;
+}
+
+void *gz_inlet_socket(const struct gz_inlet *inlet)
+{
+	return inlet->socket;
+}
+
+void gz_inlet_destroy(struct gz_inlet **inlet)
+{
+	if (!inlet || !*inlet)
+		return;
+	if ((*inlet)->socket)
+		zmq_close((*inlet)->socket);
+	free(*inlet);
+	*inlet = NULL;
+}

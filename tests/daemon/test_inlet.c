@@ -1,0 +1,91 @@
+#include "check.h"
+
+#include <string.h>
+
+#include "base/clock.h"
+#include "daemon/inlet.h"
+
+/* {"label": "go", "timestamp": 12.5} */
+static const char annotation[] =
+	"\x82\xa5label\xa2go\xa9timestamp\xcb\x40\x29\x00\x00\x00\x00\x00\x00";
+/* {"label": "go", "duration": 2} */
+static const char lasting[] = "\x82\xa5label\xa2go\xa8"
+			      "duration\x02";
+/* {"subject": "x"} */
+static const char notification[] = "\x81\xa7subject\xa1x";
+
+static struct gz_inlet_message message;
+
+static enum gz_result judge(const char *topic, const void *body, size_t size)
+{
+	return gz_inlet_judge(topic, strlen(topic), body, size, 77, &message);
+}
+
+static void inlet_annotation_becomes_a_mark(void **state)
+{
+	(void)state;
+	assert_int_equal(judge("annotation", annotation, sizeof annotation - 1), GZ_OK);
+	assert_true(message.is_mark);
+	assert_int_equal(message.mark_ns, 12 * GZ_NS_PER_S + GZ_NS_PER_S / 2);
+	assert_string_equal(message.mark, "go");
+	assert_string_equal(message.topic, "annotation");
+	assert_int_equal(message.size, sizeof annotation - 1);
+	assert_memory_equal(message.body, annotation, message.size);
+	assert_int_equal(judge("annotation.player", lasting, sizeof lasting - 1), GZ_OK);
+	assert_int_equal(message.mark_ns, 77);
+	assert_string_equal(message.mark, "go, duration 2 s");
+}
+
+static void inlet_notification_passes_and_is_no_mark(void **state)
+{
+	(void)state;
+	assert_int_equal(judge("notify.x", notification, sizeof notification - 1), GZ_OK);
+	assert_false(message.is_mark);
+	assert_string_equal(message.topic, "notify.x");
+}
+
+static void inlet_topics_of_the_daemon_are_refused(void **state)
+{
+	(void)state;
+	static const char *const topics[] = { "gaze.3d.01.", "gaze.",     "surfaces.screen",
+					      "fixations",   "blinks",    "saccades",
+					      "status",      "pupil.0.3d" };
+	for (size_t i = 0; i < sizeof topics / sizeof *topics; i++)
+		assert_int_equal(judge(topics[i], notification, sizeof notification - 1),
+				 GZ_ERR_ACCESS);
+}
+
+static void inlet_anything_else_is_refused_and_writes_nothing(void **state)
+{
+	(void)state;
+	static unsigned char large[GZ_INLET_SIZE_MAX + 1];
+	char topic[GZ_INLET_TOPIC_SIZE + 1];
+	memset(topic, 'x', sizeof topic);
+	topic[GZ_INLET_TOPIC_SIZE] = '\0';
+	strcpy(message.topic, "untouched");
+	assert_int_equal(judge("", notification, sizeof notification - 1), GZ_ERR_PROTOCOL);
+	assert_int_equal(judge(topic, notification, sizeof notification - 1), GZ_ERR_PROTOCOL);
+	assert_int_equal(
+		gz_inlet_judge("a\0b", 3, notification, sizeof notification - 1, 0, &message),
+		GZ_ERR_PROTOCOL);
+	assert_int_equal(judge("notify.x", "", 0), GZ_ERR_PROTOCOL);
+	assert_int_equal(judge("notify.x", large, sizeof large), GZ_ERR_PROTOCOL);
+	/* An array that claims four thousand million elements. */
+	assert_int_equal(judge("notify.x", "\xdd\xff\xff\xff\xff", 5), GZ_ERR_PROTOCOL);
+	for (size_t size = 0; size < sizeof annotation - 1; size++)
+		assert_int_equal(judge("annotation", annotation, size), GZ_ERR_PROTOCOL);
+	assert_int_equal(judge("annotation", notification, sizeof notification - 1),
+			 GZ_ERR_PROTOCOL);
+	assert_string_equal(message.topic, "untouched");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(inlet_annotation_becomes_a_mark),
+		cmocka_unit_test(inlet_notification_passes_and_is_no_mark),
+		cmocka_unit_test(inlet_topics_of_the_daemon_are_refused),
+		cmocka_unit_test(inlet_anything_else_is_refused_and_writes_nothing),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
