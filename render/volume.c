@@ -26,6 +26,13 @@ size_t gz_volume_voxel_count(const struct gz_volume *volume)
 	return (size_t)volume->dims[0] * (size_t)volume->dims[1] * (size_t)volume->dims[2];
 }
 
+double gz_volume_edge_lengths(const int dims[3], const double spacing[3])
+{
+	const double least = fmin(spacing[0], fmin(spacing[1], spacing[2]));
+	return fmax(dims[0] * (spacing[0] / least),
+		    fmax(dims[1] * (spacing[1] / least), dims[2] * (spacing[2] / least)));
+}
+
 static bool layout_valid(const struct gz_volume *volume)
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -34,7 +41,9 @@ static bool layout_valid(const struct gz_volume *volume)
 		if (!isfinite(volume->spacing[axis]) || volume->spacing[axis] <= 0)
 			return false;
 	}
-	return gz_voxel_size(volume->type) != 0;
+	return gz_volume_edge_lengths(volume->dims, volume->spacing) <=
+		       GZ_VOLUME_EDGE_LENGTHS_MAX &&
+	       gz_voxel_size(volume->type) != 0;
 }
 
 /* Asking for more than the machine has would succeed on a kernel that overcommits, and fail by a

@@ -31,6 +31,11 @@ size_t gz_voxel_size(enum gz_voxel_type type);
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 
+/** Longest edge of a volume in voxel lengths, which anisotropic spacing stretches. Chosen: four
+ * times GZ_VOLUME_DIM_MAX; at the finest sampling a ray across the box then has less than 2^22
+ * samples, so that their number and a half is exact in single precision. */
+#define GZ_VOLUME_EDGE_LENGTHS_MAX 65536
+
 /** Bytes readable behind the last voxel, so that wide loads need no edge case. */
 #define GZ_VOLUME_PADDING 64
 
@@ -107,8 +112,9 @@ enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
 
 /**
  * Allocate voxels for a volume whose dims, spacing and type are set, and clear the padding. Voxels
- * are aligned to 64 bytes. slope becomes 1, intercept 0. GZ_ERR_INVAL for dims out of range or
- * spacing not finite and above 0; GZ_ERR_NO_MEM.
+ * are aligned to 64 bytes. slope becomes 1, intercept 0. GZ_ERR_INVAL for dims out of range,
+ * spacing not finite and above 0, or an edge of more than GZ_VOLUME_EDGE_LENGTHS_MAX;
+ * GZ_ERR_NO_MEM.
  */
 enum gz_result gz_volume_allocate(struct gz_volume *volume);
 
@@ -117,6 +123,9 @@ void gz_volume_find_range(struct gz_volume *volume);
 
 /** Free the voxels and zero the struct. Accepts a zeroed one. */
 void gz_volume_free(struct gz_volume *volume);
+
+/** The longest edge in voxel lengths, of any dims and spacing above 0. */
+double gz_volume_edge_lengths(const int dims[3], const double spacing[3]);
 
 /** Number of voxels. */
 size_t gz_volume_voxel_count(const struct gz_volume *volume);

@@ -70,6 +70,15 @@ static enum gz_result check_layout(const struct gz_import_layout *layout, const 
 			return GZ_ERR_FORMAT;
 		}
 	}
+	const double lengths = gz_volume_edge_lengths(layout->dims, layout->spacing);
+	if (!(lengths <= GZ_VOLUME_EDGE_LENGTHS_MAX)) {
+		gz_err(log,
+		       "%s: spacing %g %g %g makes the longest edge %g times the finest spacing; "
+		       "allowed: %d; correct the spacing or resample the volume",
+		       path, layout->spacing[0], layout->spacing[1], layout->spacing[2], lengths,
+		       GZ_VOLUME_EDGE_LENGTHS_MAX);
+		return GZ_ERR_FORMAT;
+	}
 	if (!isfinite(layout->slope) || layout->slope == 0 || !isfinite(layout->intercept)) {
 		gz_err(log, "%s: values scaled by %g and %g; they must be finite, the first not 0",
 		       path, layout->slope, layout->intercept);

@@ -86,6 +86,24 @@ static void raw_of_impossible_layout_is_refused(void **state)
 	}
 }
 
+/* A ray along the long side would take more steps than can be counted. */
+static void raw_of_spacing_too_uneven_is_refused(void **state)
+{
+	(void)state;
+	const char *path = files_write("u.raw", zeros, sizeof zeros);
+	struct gz_raw_layout raw = layout_of(2, 2, 2, GZ_RAW_UINT8);
+	raw.spacing[0] = 1e-5;
+	check_refused(path, &raw, GZ_ERR_FORMAT, "makes the longest edge 200000 times");
+	raw.spacing[0] = 2.0 / 65537;
+	check_refused(path, &raw, GZ_ERR_FORMAT, "allowed: 65536; correct the spacing");
+	raw.spacing[0] = 2.0 / GZ_VOLUME_EDGE_LENGTHS_MAX;
+	struct captured_log log;
+	struct gz_volume volume;
+	captured_log_init(&log, "*:error");
+	assert_int_equal(gz_volume_load(path, &raw, &log.log, &volume), GZ_OK);
+	gz_volume_free(&volume);
+}
+
 static void raw_shorter_than_its_layout_is_refused_before_memory_is_taken(void **state)
 {
 	(void)state;
@@ -386,6 +404,7 @@ int main(void)
 		cmocka_unit_test(file_that_is_none_is_refused),
 		cmocka_unit_test(kind_must_be_known_and_fit_the_layout),
 		cmocka_unit_test(raw_of_impossible_layout_is_refused),
+		cmocka_unit_test(raw_of_spacing_too_uneven_is_refused),
 		cmocka_unit_test(raw_shorter_than_its_layout_is_refused_before_memory_is_taken),
 		cmocka_unit_test(compressed_claim_beyond_the_best_ratio_is_refused),
 		cmocka_unit_test(compressed_data_cut_anywhere_are_refused),
