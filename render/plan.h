@@ -114,6 +114,10 @@ struct gz_region {
 	double half_px[2]; /**< half edges or semi-axes */
 };
 
+/** Whether a pixel belongs to a region. Plan and reconstruction both ask here, so that rounding at
+ * a rim cannot make them differ. Never turns true again farther from the centre along an axis. */
+bool gz_region_holds(const struct gz_region *region, double x, double y);
+
 /** One lattice of a plan. */
 struct gz_plan_layer {
 	int spacing;

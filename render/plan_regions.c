@@ -11,33 +11,31 @@ struct block {
 	double x0, y0, x1, y1;
 };
 
-static double excess(const struct gz_region *region, double x, double y)
+bool gz_region_holds(const struct gz_region *region, double x, double y)
 {
+	if (region->shape == GZ_REGION_ALL)
+		return true;
 	const double u = (x - region->centre_px[0]) / region->half_px[0];
 	const double v = (y - region->centre_px[1]) / region->half_px[1];
 	if (region->shape == GZ_REGION_ELLIPSE)
-		return u * u + v * v;
-	return fmax(fabs(u), fabs(v));
+		return u * u + v * v <= 1;
+	return fmax(fabs(u), fabs(v)) <= 1;
 }
 
 static bool region_touches(const struct gz_region *region, const struct block *block)
 {
-	if (region->shape == GZ_REGION_ALL)
-		return true;
 	const double x = fmin(fmax(region->centre_px[0], block->x0), block->x1);
 	const double y = fmin(fmax(region->centre_px[1], block->y0), block->y1);
-	return excess(region, x, y) <= 1;
+	return gz_region_holds(region, x, y);
 }
 
 /* Every shape is convex: a block is inside if its corners are. */
-static bool region_holds(const struct gz_region *region, const struct block *block)
+static bool region_holds_block(const struct gz_region *region, const struct block *block)
 {
-	if (region->shape == GZ_REGION_ALL)
-		return true;
-	return excess(region, block->x0, block->y0) <= 1 &&
-	       excess(region, block->x1, block->y0) <= 1 &&
-	       excess(region, block->x0, block->y1) <= 1 &&
-	       excess(region, block->x1, block->y1) <= 1;
+	return gz_region_holds(region, block->x0, block->y0) &&
+	       gz_region_holds(region, block->x1, block->y0) &&
+	       gz_region_holds(region, block->x0, block->y1) &&
+	       gz_region_holds(region, block->x1, block->y1);
 }
 
 /* Whether a pixel that one of the tile's lattice points reaches shows this layer. */
@@ -54,7 +52,7 @@ static bool tile_shows(const struct gz_plan *plan, int layer, int x, int y)
 	if (!region_touches(&plan->layers[layer].region, &block))
 		return false;
 	for (int earlier = 0; earlier < layer; earlier++)
-		if (region_holds(&plan->layers[earlier].region, &block))
+		if (region_holds_block(&plan->layers[earlier].region, &block))
 			return false;
 	return true;
 }

@@ -85,8 +85,20 @@ static void region_columns(const struct gz_region *region, int y, int width, int
 	}
 	if (region->shape == GZ_REGION_ELLIPSE)
 		half *= sqrt(1 - v * v);
-	*out_from = (int)fmin(fmax(ceil(region->centre_px[0] - half), 0), width);
-	*out_to = (int)fmin(fmax(floor(region->centre_px[0] + half) + 1, 0), width);
+	int from = (int)fmin(fmax(ceil(region->centre_px[0] - half), 0), width);
+	int to = (int)fmin(fmax(floor(region->centre_px[0] + half) + 1, 0), width);
+	/* The formula rounds in its own way: the region itself decides on the columns at its rim.
+	 */
+	while (from < to && !gz_region_holds(region, from, y))
+		from++;
+	while (from > 0 && gz_region_holds(region, from - 1, y))
+		from--;
+	while (to > from && !gz_region_holds(region, to - 1, y))
+		to--;
+	while (to < width && gz_region_holds(region, to, y))
+		to++;
+	*out_from = from;
+	*out_to = to;
 }
 
 /* One row from layer to layer: the first takes its columns, the next what is left on both sides. */

@@ -18,6 +18,17 @@ static const struct gz_point gazes[] = {
 	{ 0.5F, 3 },    { NAN, 0.5F }, { 0.2F, INFINITY }, { 1e30F, -1e30F },
 };
 
+static void check_grey(const struct gz_image *image, uint8_t grey, const char *what, size_t gaze)
+{
+	for (int i = 0; i < image->width * image->height; i++) {
+		const uint8_t *p = image->pixels + 4 * i;
+		if (p[0] != grey || p[1] != grey || p[2] != grey || p[3] != 255)
+			fail_msg("%s %dx%d gaze %zu: pixel %d %d is %d, not %d", what, image->width,
+				 image->height, gaze, i % image->width, i / image->width, p[0],
+				 grey);
+	}
+}
+
 static void every_pixel_of_every_method_is_written_for_any_gaze(void **state)
 {
 	(void)state;
@@ -39,16 +50,33 @@ static void every_pixel_of_every_method_is_written_for_any_gaze(void **state)
 				scene.foveation.method = method;
 				scene.gaze = gazes[g];
 				small_scene_render(renderer, &scene, width, height, &image, NULL);
-				for (int i = 0; i < width * height; i++) {
-					const uint8_t *p = image.pixels + 4 * i;
-					if (p[0] != grey || p[1] != grey || p[2] != grey ||
-					    p[3] != 255)
-						fail_msg("%s %dx%d gaze %zu: pixel %d %d is %d, "
-							 "not %d",
-							 gz_method_names[method], width, height, g,
-							 i % width, i / width, p[0], grey);
-				}
+				check_grey(&image, grey, gz_method_names[method], g);
 			}
+	gz_image_free(&image);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+/* Pixels whose centres lie on an ellipse to the last bit, 3/5 and 4/5 of its axes from the middle
+ * of an odd picture, in turn at each place of the tiles that the rim crosses. */
+static void pixels_on_the_very_rim_of_a_region_are_written(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(8, 0);
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image image = { 0 };
+	scene.foveation.method = GZ_METHOD_DDC;
+	for (int axis = 0; axis < 2; axis++)
+		scene.foveation.ddc_inner_px[axis] = axis ? 40 : 50;
+	scene.foveation.ddc_middle_px[0] = scene.foveation.ddc_middle_px[1] = 90;
+	for (int round = 0; round < 64; round++) {
+		const int width = 61 + 2 * (round % 8), height = 201 + 2 * (round / 8);
+		const uint8_t grey = (uint8_t)(round + 1);
+		for (int c = 0; c < 3; c++)
+			scene.rays.background[c] = grey / 255.0;
+		small_scene_render(renderer, &scene, width, height, &image, NULL);
+		check_grey(&image, grey, "rim", 0);
+	}
 	gz_image_free(&image);
 	gz_renderer_destroy(&renderer);
 	small_scene_free(&scene);
@@ -215,6 +243,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_pixel_of_every_method_is_written_for_any_gaze),
+		cmocka_unit_test(pixels_on_the_very_rim_of_a_region_are_written),
 		cmocka_unit_test(methods_equal_standard_in_their_inner_region),
 		cmocka_unit_test(constant_box_keeps_its_brightness_by_every_method_and_step_rule),
 		cmocka_unit_test(foveated_picture_stays_near_the_full_one_everywhere),
