@@ -49,6 +49,7 @@ struct gz_recorder {
 
 	/* The pushing thread's. */
 	uint64_t missing; /* samples that found the ring full since the last record */
+	struct gz_ratelimit complaints;
 
 	/* The recorder's thread's. */
 	struct gz_log_writer writer;
@@ -284,6 +285,11 @@ bool gz_recorder_running(const struct gz_recorder *recorder)
 	return phase_of(recorder) == PHASE_RUNNING;
 }
 
+bool gz_recorder_has_room(const struct gz_recorder *recorder)
+{
+	return gz_ring_room(recorder->ring) >= GZ_RECORDER_RING / 2;
+}
+
 /* Say in the log what the ring had no room for, before what comes after it. */
 static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
 {
@@ -293,9 +299,14 @@ static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
 		.missing = recorder->missing,
 		.text = "the disk was too slow",
 	};
+	uint64_t held_back;
 	gz_ring_push(recorder->ring, recorder->session, &gap);
-	gz_warn(recorder->log, "%s: %llu samples are missing: the disk was too slow",
-		recorder->path, (unsigned long long)recorder->missing);
+	if (gz_ratelimit_pass(&recorder->complaints, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
+		gz_warn(recorder->log,
+			"%s: %llu samples are missing: the disk was too slow (%llu more gaps since "
+			"last told)",
+			recorder->path, (unsigned long long)recorder->missing,
+			(unsigned long long)held_back);
 	recorder->missing = 0;
 }
 

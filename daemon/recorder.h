@@ -74,6 +74,9 @@ void gz_recorder_get_path(const struct gz_recorder *recorder, char *path);
 /** Whether records are taken. */
 bool gz_recorder_running(const struct gz_recorder *recorder);
 
+/** Whether half of the ring is free: a source that can wait need not lose anything. */
+bool gz_recorder_has_room(const struct gz_recorder *recorder);
+
 /** Hand over a record; nothing happens while no recording runs. Never waits. */
 void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_record *record);
 

@@ -325,6 +325,15 @@ static void serve(struct gz_service *service)
 		end_replay(service);
 }
 
+/* A live tracker waits for nobody. A source that delivers on demand, faster than any disk, waits
+ * until it can be recorded whole. */
+static bool must_wait_for_recorder(const struct gz_service *service)
+{
+	const struct gz_recorder *recorder = service->parts.recorder;
+	return service->tracker.info.on_demand && gz_recorder_running(recorder) &&
+	       !gz_recorder_has_room(recorder);
+}
+
 static void *run(void *user)
 {
 	struct gz_service *service = user;
@@ -332,7 +341,7 @@ static void *run(void *user)
 		int64_t now_ns = gz_clock_now_ns();
 		take_commands(service, now_ns);
 		take_care(service, now_ns);
-		if (service->waiting)
+		if (service->waiting || must_wait_for_recorder(service))
 			gz_clock_sleep_until_ns(gz_clock_now_ns() +
 						GZ_SERVICE_WAIT_MS * GZ_NS_PER_MS);
 		else

@@ -21,6 +21,7 @@ struct gz_device_info {
 	char name[GZ_NAME_SIZE];   /**< "sim", or the product's name */
 	char serial[GZ_NAME_SIZE]; /**< empty if it has none */
 	double rate_hz;            /**< nominal; 0 if unknown */
+	bool on_demand; /**< delivers as fast as it is read, and loses nothing by being read late */
 	bool has_display;
 	struct gz_display display;
 	/** Not NULL if this device plays a recording: the pipeline then takes its settings from

@@ -125,6 +125,7 @@ static void replay_info(const struct gz_device *device, struct gz_device_info *o
 	const struct replay_device *replay = (const struct replay_device *)device;
 	const struct gz_gaze_log_header *header = gz_gaze_log_header(replay->reader);
 	out_info->rate_hz = header->rate_hz;
+	out_info->on_demand = replay->speed == 0;
 	out_info->has_display = header->has_display;
 	out_info->display = header->display;
 	out_info->recorded = header;

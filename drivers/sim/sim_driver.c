@@ -107,6 +107,7 @@ static void sim_info(const struct gz_device *device, struct gz_device_info *out_
 	*out_info = (struct gz_device_info) {
 		.name = "sim",
 		.rate_hz = sim->params.rate_hz,
+		.on_demand = !sim->params.realtime,
 		.has_display = true,
 		.display = gz_sim_tracker_display(sim->tracker),
 	};

@@ -500,6 +500,36 @@ static void gazed_full_disk_stops_the_recording_and_not_the_stream(void **state)
 	reader_close(&reader);
 }
 
+static size_t count_gaps(const char *name, const char *reason)
+{
+	char path[256];
+	struct gz_gaze_log_reader *reader = NULL;
+	struct gz_gaze_log_record record;
+	size_t count = 0;
+	snprintf(path, sizeof path, "%s/%s", place.recordings, name);
+	assert_int_equal(gz_gaze_log_open(path, NULL, &reader), GZ_OK);
+	while (gz_gaze_log_read(reader, &record) == GZ_OK)
+		count += record.kind == GZ_GAZE_LOG_GAP && strstr(record.text, reason);
+	gz_gaze_log_close(&reader);
+	return count;
+}
+
+static void gazed_source_faster_than_the_disk_is_recorded_whole(void **state)
+{
+	(void)state;
+	struct reader reader;
+	struct gazed_process gazed = SPAWN("--sim.realtime=no", "--record", "fast");
+	reader_open(&reader, &place, "status");
+	while (reader.status_count == 0 || reader.status.recording.samples < 30000)
+		assert_true(reader_receive(&reader, 20000));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&reader);
+	struct found found = read_log("fast.gzl");
+	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
+	assert_int_equal(found.samples, found.last_seq - found.first_seq + 1);
+	assert_int_equal(count_gaps("fast.gzl", "too slow"), 0);
+}
+
 static void gazed_reader_that_stops_reading_delays_nobody(void **state)
 {
 	(void)state;
@@ -542,6 +572,7 @@ int main(void)
 		TEST(gazed_refuses_bad_configuration_in_one_line),
 		TEST(gazed_killed_loses_no_more_than_a_second_of_the_recording),
 		TEST(gazed_full_disk_stops_the_recording_and_not_the_stream),
+		TEST(gazed_source_faster_than_the_disk_is_recorded_whole),
 		TEST(gazed_reader_that_stops_reading_delays_nobody),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
