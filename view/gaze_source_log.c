@@ -58,14 +58,27 @@ static void step(struct log_source *self)
 	fetch(self);
 }
 
+/* Times of a log are anybody's: what does not fit stays at the end of time. */
+static int64_t later(int64_t time_ns, int64_t by_ns)
+{
+	int64_t sum;
+	return __builtin_add_overflow(time_ns, by_ns, &sum) ? INT64_MAX : sum;
+}
+
+static int64_t elapsed(int64_t from_ns, int64_t to_ns)
+{
+	int64_t difference;
+	return __builtin_sub_overflow(to_ns, from_ns, &difference) ? INT64_MAX : difference;
+}
+
 static void log_read(struct gz_gaze_source *source, int64_t time_ns,
 		     struct gz_gaze_reading *out_reading)
 {
 	struct log_source *self = (struct log_source *)source;
-	int64_t now_ns = self->start_ns + time_ns;
+	int64_t now_ns = later(self->start_ns, time_ns);
 	while (self->pending_known && self->pending.host_ns <= now_ns)
 		step(self);
-	self->reading.age_ns = now_ns - self->shown_ns;
+	self->reading.age_ns = elapsed(self->shown_ns, now_ns);
 	*out_reading = self->reading;
 }
 

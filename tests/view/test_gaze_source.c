@@ -60,7 +60,7 @@ static struct gz_gaze_log_header header_of_log(void)
 	return header;
 }
 
-static void write_log(const struct gz_gaze_log_header *header, int samples)
+static FILE *begin_log(const struct gz_gaze_log_header *header)
 {
 	static char text[65536];
 	size_t length;
@@ -68,6 +68,14 @@ static void write_log(const struct gz_gaze_log_header *header, int samples)
 	assert_non_null(out);
 	assert_int_equal(gz_gaze_log_print_header(header, text, sizeof text, &length), GZ_OK);
 	fwrite(text, 1, length, out);
+	return out;
+}
+
+static void write_log(const struct gz_gaze_log_header *header, int samples)
+{
+	static char text[65536];
+	size_t length;
+	FILE *out = begin_log(header);
 	for (int i = 0; i < samples; i++) {
 		struct gz_gaze_log_record record = { .kind = GZ_GAZE_LOG_SAMPLE,
 						     .sample = sample_at(i) };
@@ -148,6 +156,33 @@ static void log_holds_its_point_through_a_blink(void **state)
 	assert_true(within.known);
 	assert_true(fabsf(within.point.x - before.point.x) < 0.01f);
 	assert_true(fabsf(within.point.y - before.point.y) < 0.01f);
+	gz_gaze_source_destroy(&source);
+}
+
+static void log_of_times_at_the_ends_of_the_clock_is_read(void **state)
+{
+	(void)state;
+	static const int64_t times_ns[] = { INT64_MAX - 30, INT64_MAX, INT64_MIN };
+	struct gz_gaze_log_header header = header_of_log();
+	struct gz_gaze_source *source = NULL;
+	struct gz_gaze_reading reading;
+	FILE *out = begin_log(&header);
+	for (int i = 0; i < 3; i++) {
+		char text[4096];
+		size_t length;
+		struct gz_gaze_log_record record = { .kind = GZ_GAZE_LOG_SAMPLE,
+						     .sample = sample_at(i) };
+		record.sample.host_ns = times_ns[i];
+		assert_int_equal(gz_gaze_log_print_record(&record, text, sizeof text, &length),
+				 GZ_OK);
+		fwrite(text, 1, length, out);
+	}
+	assert_int_equal(fclose(out), 0);
+	assert_int_equal(gz_gaze_source_log(path, NULL, &source), GZ_OK);
+	gz_gaze_source_read(source, 20, &reading);
+	assert_true(reading.known && reading.age_ns == 20);
+	gz_gaze_source_read(source, 40, &reading); /* all three have come; the last is the oldest */
+	assert_true(reading.known && reading.age_ns == INT64_MAX);
 	gz_gaze_source_destroy(&source);
 }
 
@@ -286,6 +321,7 @@ int main(void)
 		cmocka_unit_test(log_shows_the_last_sample_at_or_before_each_frame),
 		cmocka_unit_test(log_at_the_very_time_of_a_sample_shows_it),
 		cmocka_unit_test(log_holds_its_point_through_a_blink),
+		cmocka_unit_test(log_of_times_at_the_ends_of_the_clock_is_read),
 		cmocka_unit_test(log_brings_its_own_display),
 		cmocka_unit_test(log_with_a_setting_the_pipeline_refuses_is_refused),
 		cmocka_unit_test(log_without_a_sample_is_refused),
