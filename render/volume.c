@@ -38,7 +38,8 @@ static bool layout_valid(const struct gz_volume *volume)
 	for (int axis = 0; axis < 3; axis++) {
 		if (volume->dims[axis] < 1 || volume->dims[axis] > GZ_VOLUME_DIM_MAX)
 			return false;
-		if (!isfinite(volume->spacing[axis]) || volume->spacing[axis] <= 0)
+		if (!isfinite(volume->dims[axis] * volume->spacing[axis]) ||
+		    volume->spacing[axis] <= 0)
 			return false;
 	}
 	return gz_volume_edge_lengths(volume->dims, volume->spacing) <=

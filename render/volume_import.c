@@ -64,9 +64,11 @@ static enum gz_result check_layout(const struct gz_import_layout *layout, const 
 			return GZ_ERR_FORMAT;
 		}
 		double spacing = layout->spacing[axis];
-		if (!isfinite(spacing) || spacing <= 0) {
-			gz_err(log, "%s: spacing %g along axis %d; it must be above 0", path,
-			       spacing, axis + 1);
+		if (!isfinite(layout->dims[axis] * spacing) || spacing <= 0) {
+			gz_err(log,
+			       "%s: spacing %g along axis %d; it must be above 0, and the edge "
+			       "finite",
+			       path, spacing, axis + 1);
 			return GZ_ERR_FORMAT;
 		}
 	}
@@ -251,20 +253,28 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 	return result;
 }
 
-/* Also brings the decoder to its checksum. */
-static enum gz_result check_end(struct gz_byte_stream *stream, const struct import *import)
+/* Also brings the decoder to its checksum: bytes too many are often the first sign of damage. They
+ * are followed for as long again as the voxels, no farther. */
+static enum gz_result check_end(struct gz_byte_stream *stream, const struct import *import,
+				uint64_t bytes)
 {
-	uint8_t byte;
+	uint8_t scrap[4096];
+	uint64_t more = 0;
 	size_t got = 0;
 	if (import->layout->more_follows)
 		return GZ_OK;
-	enum gz_result result = gz_byte_stream_read(stream, &byte, 1, &got);
-	if (result == GZ_OK && got > 0)
+	do {
+		enum gz_result result = gz_byte_stream_read(stream, scrap, sizeof scrap, &got);
+		if (result != GZ_OK)
+			return result;
+		more += got;
+	} while (got == sizeof scrap && more < bytes);
+	if (more > 0)
 		gz_warn(import->log,
 			"%s: data go on behind the last voxel and are left out; are dims and type "
 			"right?",
 			import->path);
-	return result;
+	return GZ_OK;
 }
 
 /* Replace what is not finite by the least finite value. */
@@ -334,7 +344,7 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	if (result == GZ_OK)
 		result = read_voxels(stream, &import, count);
 	if (result == GZ_OK)
-		result = check_end(stream, &import);
+		result = check_end(stream, &import, count * import.conversion->size);
 	if (result == GZ_OK)
 		result = make_finite(&import);
 	if (result == GZ_OK) {

@@ -84,6 +84,9 @@ static void raw_of_impossible_layout_is_refused(void **state)
 		raw.spacing[2] = spacings[i];
 		check_refused(path, &raw, GZ_ERR_FORMAT, "along axis 3; it must be above 0");
 	}
+	raw = layout_of(2, 2, 2, GZ_RAW_UINT8);
+	raw.spacing[0] = raw.spacing[1] = raw.spacing[2] = 1e308;
+	check_refused(path, &raw, GZ_ERR_FORMAT, "along axis 1; it must be above 0, and the edge");
 }
 
 /* A ray along the long side would take more steps than can be counted. */
@@ -127,6 +130,17 @@ static void compressed_claim_beyond_the_best_ratio_is_refused(void **state)
 	check_refused(files_write("c.raw.gz", packed, size), &raw, GZ_ERR_FORMAT, "truncated");
 	size = ZSTD_compress(packed, sizeof packed, zeros, sizeof zeros, 3);
 	check_refused(files_write("c.raw.zst", packed, size), &raw, GZ_ERR_FORMAT, "truncated");
+}
+
+/* The layout takes a part of the data only, and what lies behind does not match the checksum. */
+static void damage_behind_the_last_voxel_is_refused(void **state)
+{
+	(void)state;
+	uint8_t packed[8192];
+	struct gz_raw_layout raw = layout_of(16, 16, 15, GZ_RAW_UINT8);
+	size_t size = files_deflate(zeros, sizeof zeros, 31, packed, sizeof packed);
+	packed[size - 5] ^= 1; /* gzip ends in the sum and the length, 4 bytes each */
+	check_refused(files_write("d.raw.gz", packed, size), &raw, GZ_ERR_FORMAT, "damaged");
 }
 
 static void compressed_data_cut_anywhere_are_refused(void **state)
@@ -407,6 +421,7 @@ int main(void)
 		cmocka_unit_test(raw_of_spacing_too_uneven_is_refused),
 		cmocka_unit_test(raw_shorter_than_its_layout_is_refused_before_memory_is_taken),
 		cmocka_unit_test(compressed_claim_beyond_the_best_ratio_is_refused),
+		cmocka_unit_test(damage_behind_the_last_voxel_is_refused),
 		cmocka_unit_test(compressed_data_cut_anywhere_are_refused),
 		cmocka_unit_test(damaged_compressed_data_are_refused),
 		cmocka_unit_test(values_without_a_finite_one_are_refused),
