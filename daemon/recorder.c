@@ -131,12 +131,16 @@ static enum gz_result open_recording(struct gz_recorder *recorder)
 }
 
 /* What the ring holds of this recording into the file; what is left of an earlier one is dropped.
- */
+ * One ring's worth at most: a source as fast as this loop would never let it end, and what was
+ * written must be counted and synced now and then. */
 static enum gz_result drain(struct gz_recorder *recorder)
 {
 	const struct gz_ring_slot *slot;
 	enum gz_result result = GZ_OK;
-	while (result == GZ_OK && (slot = gz_ring_front(recorder->ring))) {
+	for (int i = 0; i < GZ_RECORDER_RING && result == GZ_OK; i++) {
+		slot = gz_ring_front(recorder->ring);
+		if (!slot)
+			break;
 		if (slot->session == recorder->session)
 			result = gz_log_writer_add(&recorder->writer, &slot->record);
 		gz_ring_pop(recorder->ring);
@@ -158,6 +162,7 @@ static enum gz_result sync_file(struct gz_recorder *recorder)
 
 static enum gz_result finish(struct gz_recorder *recorder)
 {
+	/* Nothing is pushed any more: one ring's worth is all there is. */
 	enum gz_result result = drain(recorder);
 	if (result == GZ_OK)
 		result = gz_log_writer_end(&recorder->writer);
