@@ -212,7 +212,7 @@ static enum gz_result open_file(struct gz_gaze_log_reader *reader, const char *p
 		return GZ_OK;
 	}
 	enum gz_result result = errno == ENOENT ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
-	gz_err(reader->log, "cannot open %s: %s", path, strerror(errno));
+	gz_err(reader->log, "cannot open %s: %s; check the path", path, strerror(errno));
 	return result;
 }
 

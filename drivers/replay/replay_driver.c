@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 
 #include "base/clock.h"
 
@@ -155,6 +156,20 @@ static const struct gz_device_ops replay_ops = {
 	.destroy = replay_destroy,
 };
 
+/* Opening or reading a FIFO could block for ever. */
+static enum gz_result open_file(const char *path, const struct gz_log *log,
+				struct gz_gaze_log_reader **out_reader)
+{
+	struct stat status;
+	if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
+		gz_err(log, "%s is no regular file; name a gaze log with --replay.file", path);
+		return GZ_ERR_INVAL;
+	}
+	enum gz_result result = gz_gaze_log_open(path, log, out_reader);
+	/* A device is worth waiting for; a file that cannot be read does not get better. */
+	return result == GZ_ERR_IO ? GZ_ERR_INVAL : result;
+}
+
 static enum gz_result replay_create(const void *settings, const struct gz_log *log,
 				    struct gz_device **out_device)
 {
@@ -168,7 +183,7 @@ static enum gz_result replay_create(const void *settings, const struct gz_log *l
 		return GZ_ERR_NO_MEM;
 	replay->base = (struct gz_device) { .ops = &replay_ops, .log = log };
 	replay->speed = wanted->speed;
-	enum gz_result result = gz_gaze_log_open(wanted->file, log, &replay->reader);
+	enum gz_result result = open_file(wanted->file, log, &replay->reader);
 	if (result != GZ_OK) {
 		replay_destroy(&replay->base);
 		return result;

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/captured_log.h"
@@ -184,7 +185,17 @@ static void replay_without_a_file_or_of_no_log_is_refused(void **state)
 	assert_non_null(strstr(captured.last, "--replay.file"));
 	assert_int_equal(gz_option_parse(file, "/nonexistent.gzl", settings, NULL, 0), GZ_OK);
 	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_NOT_FOUND);
-	assert_int_equal(gz_option_parse(file, "/dev/null", settings, NULL, 0), GZ_OK);
+	/* Neither waits: a directory cannot be read, and a FIFO's other end may never come. */
+	char fifo[] = "/tmp/gz_replay_XXXXXX";
+	assert_non_null(mkdtemp(fifo));
+	assert_int_equal(gz_option_parse(file, fifo, settings, NULL, 0), GZ_OK);
+	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_INVAL);
+	assert_int_equal(rmdir(fifo), 0);
+	assert_int_equal(mkfifo(fifo, 0600), 0);
+	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_INVAL);
+	assert_non_null(strstr(captured.last, "no regular file"));
+	unlink(fifo);
+	assert_int_equal(gz_option_parse(file, "/proc/self/status", settings, NULL, 0), GZ_OK);
 	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_FORMAT);
 	assert_null(device);
 }
