@@ -315,6 +315,14 @@ static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
 	recorder->missing = 0;
 }
 
+/* Samples that the log will not hold where @p record finds no room. */
+static uint64_t missing_with(const struct gz_gaze_log_record *record)
+{
+	return record->kind == GZ_GAZE_LOG_SAMPLE ? 1
+	       : record->kind == GZ_GAZE_LOG_GAP  ? record->missing
+						  : 0;
+}
+
 void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_record *record)
 {
 	if (!gz_recorder_running(recorder))
@@ -324,7 +332,7 @@ void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_rec
 	 * that is just too slow leaves few long gaps rather than many short ones. */
 	size_t needed = recorder->missing ? GZ_RECORDER_RING / 2 : 2;
 	if (gz_ring_room(recorder->ring) < needed) {
-		recorder->missing += sample;
+		recorder->missing += missing_with(record);
 		return;
 	}
 	if (recorder->missing)
