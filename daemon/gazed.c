@@ -1,5 +1,6 @@
 /* gazed: puts the parts together, and takes them apart again in the other order. */
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -171,8 +172,33 @@ static enum gz_result serve(struct daemon *daemon)
 	return result;
 }
 
+/* A descriptor of 0 to 2 that was handed over closed would become a socket or a recording, and what
+ * is logged would go into it. */
+static bool claim_standard_streams(void)
+{
+	int fd;
+	do
+		fd = open("/dev/null", O_RDWR);
+	while (fd >= 0 && fd <= STDERR_FILENO);
+	if (fd < 0)
+		return false;
+	close(fd);
+	return true;
+}
+
+/* Whether all that was printed has reached its file. */
+static enum gz_result finish_printing(const struct gz_log *log)
+{
+	if (fflush(stdout) == 0 && !ferror(stdout))
+		return GZ_OK;
+	gz_err(log, "cannot write to standard output: is its disk full?");
+	return GZ_ERR_IO;
+}
+
 int main(int argc, char **argv)
 {
+	if (!claim_standard_streams())
+		return EXIT_FAILURE;
 	struct daemon *daemon = calloc(1, sizeof *daemon);
 	if (!daemon)
 		return EXIT_FAILURE;
@@ -188,6 +214,8 @@ int main(int argc, char **argv)
 		gz_config_print_file(&daemon->config, stdout);
 	else if (result == GZ_OK)
 		result = serve(daemon);
+	if (result == GZ_OK)
+		result = finish_printing(&daemon->log);
 	free(daemon);
 	return result == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }

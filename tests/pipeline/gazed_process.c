@@ -118,6 +118,8 @@ static void become_gazed(const struct gazed_start *start, const struct gazed_pro
 	if (fd < 0 || dup2(fd, STDERR_FILENO) < 0 ||
 	    (start->file_size_max && setrlimit(RLIMIT_FSIZE, &limit) != 0))
 		_exit(126);
+	for (fd = 0; start->without_streams && fd <= STDERR_FILENO; fd++)
+		close(fd);
 	execv(GAZED_PROGRAM, (char **)argv);
 	_exit(127);
 }

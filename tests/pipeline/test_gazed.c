@@ -486,7 +486,10 @@ static void gazed_full_disk_stops_the_recording_and_not_the_stream(void **state)
 	struct gazed_process gazed;
 	const char *const arguments[] = { "--sim.rate_hz", "500", "--record", "full", NULL };
 	reader_open(&reader, &place, "");
-	gazed_spawn(&(struct gazed_start) { &place, arguments, 40000 }, &gazed);
+	gazed_spawn(&(struct gazed_start) { .place = &place,
+					    .arguments = arguments,
+					    .file_size_max = 40000 },
+		    &gazed);
 	reader_wait_recording(&reader, GZ_RECORDING_FAILED);
 	assert_non_null(strstr(reader.status.recording.error, "File too large"));
 	assert_non_null(strstr(reader.status.recording.file, "full.gzl"));
@@ -553,6 +556,26 @@ static void gazed_reader_that_stops_reading_delays_nobody(void **state)
 	reader_close(&dead);
 }
 
+static void gazed_started_with_closed_streams_logs_into_no_socket(void **state)
+{
+	(void)state;
+	const char *const arguments[] = { "--record", "silent", NULL };
+	const struct gazed_start start = { .place = &place,
+					   .arguments = arguments,
+					   .without_streams = true };
+	struct gazed_process gazed;
+	gazed_spawn(&start, &gazed);
+	gazed_wait_ready(&place, &gazed);
+	for (int fd = 0; fd <= STDERR_FILENO; fd++) {
+		char link[64], target[128] = "";
+		snprintf(link, sizeof link, "/proc/%ld/fd/%d", (long)gazed.pid, fd);
+		assert_true(readlink(link, target, sizeof target - 1) > 0);
+		assert_string_equal(target, "/dev/null");
+	}
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_int_equal(read_log("silent.gzl").ending, GZ_GAZE_LOG_WHOLE);
+}
+
 /* Each in a place of its own, so that a failed one is in nobody's way. */
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
@@ -574,6 +597,7 @@ int main(void)
 		TEST(gazed_full_disk_stops_the_recording_and_not_the_stream),
 		TEST(gazed_source_faster_than_the_disk_is_recorded_whole),
 		TEST(gazed_reader_that_stops_reading_delays_nobody),
+		TEST(gazed_started_with_closed_streams_logs_into_no_socket),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
