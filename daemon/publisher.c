@@ -74,6 +74,8 @@ static enum gz_result open_channel(void *context, struct channel *channel, int t
 	zmq_setsockopt(channel->socket, ZMQ_MAXMSGSIZE, &SUBSCRIPTION_SIZE_MAX,
 		       sizeof SUBSCRIPTION_SIZE_MAX);
 	set_int(channel->monitor, ZMQ_LINGER, 0);
+	/* At a limit libzmq would block its I/O thread, and with it every reader. */
+	set_int(channel->monitor, ZMQ_RCVHWM, 0);
 	if (zmq_socket_monitor(channel->socket, monitor_endpoint,
 			       ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED) != 0 ||
 	    zmq_connect(channel->monitor, monitor_endpoint) != 0)
