@@ -196,7 +196,7 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	}
 	int result = measure(directory, seconds);
-	static const char *const names[] = { "stream", "latest", "control", "lock" };
+	static const char *const names[] = { "stream", "latest", "control", "inlet", "lock" };
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
 		snprintf(path, sizeof path, "%s/%s", directory, names[i]);
 		unlink(path);
