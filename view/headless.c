@@ -41,9 +41,12 @@ static void on_signal(int number)
 	signal_seen = number;
 }
 
+/* Once each: a second signal of a kind ends the program in the middle of a frame that takes too
+ * long.
+ */
 static void catch_signals(void)
 {
-	struct sigaction action = { .sa_handler = on_signal };
+	struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
 	sigemptyset(&action.sa_mask);
 	signal_seen = 0;
 	sigaction(SIGINT, &action, NULL);

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from picture import read_png, run, write_scene
@@ -229,6 +230,24 @@ class Headless(unittest.TestCase):
             kill = number == signal.SIGKILL
             self.assertEqual(process.returncode, -number if kill else 128 + number)
             self.assertGreaterEqual(len(self.frames()), 2)
+
+    def test_second_signal_ends_a_frame_that_takes_too_long(self):
+        process = subprocess.Popen(
+            [GAZEVIEW, "--headless", "--scene", SCENE, "--size", "8192x8192", "--method",
+             "standard", "--render.ray_sampling_rate", "32", "--stats", self.path("stats.json")],
+            stdout=subprocess.PIPE, text=True,
+        )
+        deadline = time.monotonic() + 20
+        while not os.path.exists(self.path("stats.json")) and time.monotonic() < deadline:
+            time.sleep(0.01)  # polled: the frame has no other sign of having begun
+        while process.poll() is None and time.monotonic() < deadline:
+            process.send_signal(signal.SIGTERM)
+            time.sleep(0.01)
+        ended = process.poll()
+        process.kill()
+        process.communicate()
+        self.assertEqual(ended, -signal.SIGTERM)
+        self.assertEqual(self.frames(), [])
 
     def test_help_and_version_go_to_stdout(self):
         for word, said in (("--help", "--gaze"), ("--version", "gazeview ")):
