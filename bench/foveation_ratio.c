@@ -2,7 +2,9 @@
  * Whole frames at full resolution and foveated, in turn in one run, and the ratio of their medians.
  * The camera turns by 0.01 degrees a frame and nothing is reused.
  *
- *   foveation_ratio SCENE WIDTHxHEIGHT[,...] [METHOD] [PAIRS] [SIMD]
+ *   foveation_ratio SCENE WIDTHxHEIGHT[,...] [METHOD] [PAIRS] [SIMD] [PICTURE.png]
+ *
+ * PICTURE is the last foveated frame.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,7 +122,8 @@ int main(int argc, char **argv)
 {
 	if (argc < 3) {
 		fprintf(stderr,
-			"usage: %s SCENE WIDTHxHEIGHT[,WIDTHxHEIGHT] [METHOD] [PAIRS] [SIMD]\n",
+			"usage: %s SCENE WIDTHxHEIGHT[,WIDTHxHEIGHT] [METHOD] [PAIRS] [SIMD] "
+			"[PICTURE.png]\n",
 			argv[0]);
 		return 2;
 	}

@@ -62,11 +62,6 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 	return &maker->scene;
 }
 
-const char *gz_frame_maker_backend(const struct gz_frame_maker *maker)
-{
-	return gz_renderer_describe(maker->renderer);
-}
-
 /* Pixels of the rays' grid along a side; 0 where that is no picture. */
 static int cast_side(int side, double rate)
 {

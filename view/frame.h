@@ -40,9 +40,6 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 /** The scene as loaded and overridden. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 
-/** One line about the backend: "cpu: avx2, 2 threads". Valid until the maker is destroyed. */
-const char *gz_frame_maker_backend(const struct gz_frame_maker *maker);
-
 /**
  * Render one frame. A gaze that is not known counts as lost: the plan's centre is the picture's.
  *

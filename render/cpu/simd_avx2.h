@@ -63,10 +63,6 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm256_set1_epi32(x);
 }
-SIMD vi vi_load(const int32_t *x)
-{
-	return _mm256_loadu_si256((const __m256i *)x);
-}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm256_storeu_si256((__m256i *)x, a);

@@ -65,10 +65,6 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm512_set1_epi32(x);
 }
-SIMD vi vi_load(const int32_t *x)
-{
-	return _mm512_loadu_si512(x);
-}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm512_storeu_si512(x, a);

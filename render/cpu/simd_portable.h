@@ -29,12 +29,6 @@ SIMD vf vf_load(const float *x)
 	memcpy(&a, x, sizeof a);
 	return a;
 }
-SIMD vi vi_load(const int32_t *x)
-{
-	vi a;
-	memcpy(&a, x, sizeof a);
-	return a;
-}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	memcpy(x, &a, sizeof a);
