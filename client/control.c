@@ -54,10 +54,11 @@ static enum gz_result check_endpoint(struct gz_control *control)
 {
 	void *socket = connect_socket(control, 1);
 	if (!socket) {
+		int error = errno;
 		gz_err(control->log,
 		       "%s: %s; an endpoint looks like ipc:///path or tcp://host:port",
-		       control->endpoint, zmq_strerror(errno));
-		return errno == ENOMEM || errno == EMFILE ? GZ_ERR_NO_MEM : GZ_ERR_INVAL;
+		       control->endpoint, zmq_strerror(error));
+		return error == ENOMEM || error == EMFILE ? GZ_ERR_NO_MEM : GZ_ERR_INVAL;
 	}
 	zmq_close(socket);
 	return GZ_OK;

@@ -27,15 +27,12 @@ static size_t write_all(int fd, const unsigned char *bytes, size_t size)
 	return done;
 }
 
-static uint64_t count_samples(const unsigned char *lines, size_t size, uint64_t *out_others)
+static uint64_t count_samples(const unsigned char *lines, size_t size)
 {
 	uint64_t samples = 0;
 	const unsigned char *end = lines + size;
-	*out_others = 0;
 	while (lines < end) {
-		bool other = *lines == '#' || *lines == '!';
-		samples += !other;
-		*out_others += other;
+		samples += *lines != '#' && *lines != '!';
 		const unsigned char *newline = memchr(lines, '\n', (size_t)(end - lines));
 		lines = newline ? newline + 1 : end;
 	}
@@ -45,9 +42,8 @@ static uint64_t count_samples(const unsigned char *lines, size_t size, uint64_t 
 /* Count the first @p size bytes of the buffer, whole lines, as written. */
 static void account(struct gz_log_writer *writer, size_t size)
 {
-	uint64_t others;
 	writer->crc = (uint32_t)crc32(writer->crc, writer->buffer, (uInt)size);
-	writer->samples += count_samples(writer->buffer, size, &others);
+	writer->samples += count_samples(writer->buffer, size);
 	writer->size += size;
 }
 
@@ -69,10 +65,7 @@ static void salvage(struct gz_log_writer *writer, size_t done)
 {
 	const unsigned char *newline = done ? memrchr(writer->buffer, '\n', done) : NULL;
 	size_t whole = newline ? (size_t)(newline + 1 - writer->buffer) : 0;
-	uint64_t others;
 	account(writer, whole);
-	writer->lines_lost = count_samples(writer->buffer + whole, writer->used - whole, &others);
-	writer->lines_lost += others;
 	off_t size = (off_t)writer->size;
 	bool cut = ftruncate(writer->fd, size) == 0 && lseek(writer->fd, size, SEEK_SET) == size;
 	if (cut && write_end(writer) != GZ_OK && ftruncate(writer->fd, size) != 0)
@@ -86,7 +79,6 @@ enum gz_result gz_log_writer_begin(struct gz_log_writer *writer, int fd,
 	writer->crc = (uint32_t)crc32(0, NULL, 0);
 	writer->size = 0;
 	writer->samples = 0;
-	writer->lines_lost = 0;
 	writer->used = 0;
 	return gz_gaze_log_print_header(header, (char *)writer->buffer, sizeof writer->buffer,
 					&writer->used);

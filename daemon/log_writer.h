@@ -18,10 +18,9 @@
 /** A log being written; zero-initialised is none. */
 struct gz_log_writer {
 	int fd;
-	uint32_t crc;        /**< of all whole lines in the file */
-	uint64_t size;       /**< bytes of them */
-	uint64_t samples;    /**< samples among them */
-	uint64_t lines_lost; /**< lines that no longer fitted on the disk */
+	uint32_t crc;     /**< of all whole lines in the file */
+	uint64_t size;    /**< bytes of them */
+	uint64_t samples; /**< samples among them */
 	size_t used;
 	unsigned char buffer[GZ_LOG_WRITER_BUFFER];
 };
