@@ -1,8 +1,9 @@
 /* Prints what the gaze daemon costs and how late its messages are: gazed with the simulator at
- * 1200 Hz and two readers of everything on the stream. Late is counted from the moment at which the
- * simulated tracker's sample was due at the driver to the moment at which a reader has its message.
+ * 1200 Hz and two readers of the stream, of everything on it or of one topic. Late is counted from
+ * the moment at which the simulated tracker's sample was due at the driver to the moment at which a
+ * reader has its message.
  *
- * usage: gaze_latency [SECONDS] */
+ * usage: gaze_latency [SECONDS [TOPIC]] */
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -28,7 +29,7 @@ static const double LATENCY_TARGET_MS = 0.3;
 
 struct reader {
 	pthread_t thread;
-	const char *directory;
+	const char *directory, *topic;
 	size_t wanted; /* gaze messages, after the warm-up */
 	size_t count;
 	double *latency_ms;
@@ -36,7 +37,7 @@ struct reader {
 	uint64_t messages;
 };
 
-static void *open_socket(void *context, const char *directory)
+static void *open_socket(void *context, const char *directory, const char *topic)
 {
 	char endpoint[256];
 	int unlimited = 0, timeout_ms = 5000, again_ms = 10;
@@ -45,7 +46,7 @@ static void *open_socket(void *context, const char *directory)
 	zmq_setsockopt(socket, ZMQ_RCVHWM, &unlimited, sizeof unlimited);
 	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
 	zmq_setsockopt(socket, ZMQ_RECONNECT_IVL, &again_ms, sizeof again_ms);
-	zmq_setsockopt(socket, ZMQ_SUBSCRIBE, "", 0);
+	zmq_setsockopt(socket, ZMQ_SUBSCRIBE, topic, strlen(topic));
 	zmq_connect(socket, endpoint);
 	return socket;
 }
@@ -66,7 +67,7 @@ static void *read_stream(void *user)
 {
 	struct reader *reader = user;
 	void *context = zmq_ctx_new();
-	void *socket = open_socket(context, reader->directory);
+	void *socket = open_socket(context, reader->directory, reader->topic);
 	char topic[80];
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
 	int linger = 0;
@@ -151,13 +152,14 @@ static void print_reader(int number, struct reader *reader)
 	       LATENCY_TARGET_MS, p99_ms < LATENCY_TARGET_MS ? "met" : "missed");
 }
 
-static int measure(const char *directory, double seconds)
+static int measure(const char *directory, double seconds, const char *topic)
 {
 	struct reader readers[READERS];
 	bool complete = true;
 	pid_t pid = spawn(directory);
 	for (int i = 0; i < READERS; i++) {
 		readers[i] = (struct reader) { .directory = directory,
+					       .topic = topic,
 					       .wanted = (size_t)(seconds * RATE_HZ) };
 		readers[i].latency_ms = calloc(readers[i].wanted, sizeof(double));
 		if (!readers[i].latency_ms ||
@@ -174,8 +176,8 @@ static int measure(const char *directory, double seconds)
 	double part = (cpu_seconds(pid) - cpu_s) / (gz_ns_to_s(gz_clock_now_ns()) - begin_s);
 	kill(pid, SIGTERM);
 	waitpid(pid, NULL, 0);
-	printf("gazed at %d Hz, %d readers of all topics: %.2f %% of a core (target %.0f %%: %s)\n",
-	       RATE_HZ, READERS, 100 * part, 100 * CPU_TARGET,
+	printf("gazed at %d Hz, %d readers of '%s': %.2f %% of a core (target %.0f %%: %s)\n",
+	       RATE_HZ, READERS, topic, 100 * part, 100 * CPU_TARGET,
 	       part < CPU_TARGET ? "met" : "missed");
 	printf("a thread that only wakes %d times a second: %.2f %% of a core here and now\n",
 	       RATE_HZ, 100 * bare_wake_share());
@@ -192,10 +194,10 @@ int main(int argc, char **argv)
 	double seconds = argc > 1 ? atof(argv[1]) : 10;
 	char directory[] = "/tmp/gz_latency_XXXXXX", path[64];
 	if (!(seconds >= 1 && seconds <= 3600) || !mkdtemp(directory)) {
-		fputs("usage: gaze_latency [SECONDS], 1 to 3600\n", stderr);
+		fputs("usage: gaze_latency [SECONDS [TOPIC]], 1 to 3600 s\n", stderr);
 		return EXIT_FAILURE;
 	}
-	int result = measure(directory, seconds);
+	int result = measure(directory, seconds, argc > 2 ? argv[2] : "");
 	static const char *const names[] = { "stream", "latest", "control", "inlet", "lock" };
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
 		snprintf(path, sizeof path, "%s/%s", directory, names[i]);
