@@ -72,6 +72,13 @@ enum gz_result gz_option_format(const struct gz_option *option, const void *targ
 				size_t size);
 
 /**
+ * Whether the option's value in @p target is one that gz_option_parse() could have set: every
+ * number in its range and not NaN, a choice among its names, a string that ends within its buffer.
+ * For structs that a program filled itself. Does not allocate.
+ */
+bool gz_option_holds(const struct gz_option *option, const void *target);
+
+/**
  * Find an option by its key.
  *
  * @param[out] out_binding  index of the binding that has it; may be NULL

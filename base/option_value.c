@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/option.h"
 #include "base/option_internal.h"
 
@@ -121,17 +122,10 @@ static bool parse_int(const char *word, long *out_value)
 	return true;
 }
 
-static bool parse_double(const char *word, double *out_value)
+/* False for NaN. */
+static bool in_range(const struct gz_option *option, double value)
 {
-	char *end;
-	/* Decimal only: strtod() would also read "nan", "inf" and hexadecimal. */
-	if (word[strspn(word, "+-.eE0123456789")] != '\0')
-		return false;
-	double value = strtod(word, &end);
-	if (end == word || *end || !isfinite(value))
-		return false;
-	*out_value = value;
-	return true;
+	return value >= option->min && value <= option->max;
 }
 
 /* One number of an INT, DOUBLE or SIZE, within its range. */
@@ -140,7 +134,7 @@ static enum gz_result parse_number(const struct gz_option *option, const char *w
 {
 	long whole = 0;
 	bool is_double = option->type == GZ_OPTION_DOUBLE;
-	if (is_double ? !parse_double(word, out_value) : !parse_int(word, &whole))
+	if (is_double ? !gz_number_parse(word, out_value) : !parse_int(word, &whole))
 		return refuse_value(option, word,
 				    is_double ? "is not a number; allowed:"
 					      : "is not a whole number; allowed:",
@@ -150,7 +144,7 @@ static enum gz_result parse_number(const struct gz_option *option, const char *w
 			return refuse_range(option, word, message, message_size);
 		*out_value = (double)whole;
 	}
-	if (!(*out_value >= option->min && *out_value <= option->max))
+	if (!in_range(option, *out_value))
 		return refuse_range(option, word, message, message_size);
 	return GZ_OK;
 }
@@ -282,7 +276,10 @@ static void format_double(double value, char *text, size_t size)
 {
 	for (int digits = 6; digits <= 17; digits++) {
 		snprintf(text, size, "%.*g", digits, value);
-		if (strtod(text, NULL) == value)
+		if (isfinite(value))
+			gz_number_normalise_point(text);
+		double back;
+		if (gz_number_parse(text, &back) && back == value)
 			return;
 	}
 }
@@ -330,4 +327,41 @@ enum gz_result gz_option_format(const struct gz_option *option, const void *targ
 		return GZ_ERR_FULL;
 	memcpy(text, whole, strlen(whole) + 1);
 	return GZ_OK;
+}
+
+static bool numbers_hold(const struct gz_option *option, const void *field)
+{
+	for (int i = 0; i < gz_option_count(option); i++) {
+		const double value = option->type == GZ_OPTION_DOUBLE ? ((const double *)field)[i]
+								      : ((const int *)field)[i];
+		if (!in_range(option, value))
+			return false;
+	}
+	return true;
+}
+
+static bool choice_holds(const struct gz_option *option, int index)
+{
+	for (int i = 0; option->choices[i]; i++)
+		if (i == index)
+			return true;
+	return false;
+}
+
+bool gz_option_holds(const struct gz_option *option, const void *target)
+{
+	const void *field = (const char *)target + option->offset;
+	switch (option->type) {
+	case GZ_OPTION_BOOL:
+		return true;
+	case GZ_OPTION_STRING:
+		return memchr(field, '\0', (size_t)option->max) != NULL;
+	case GZ_OPTION_CHOICE:
+		return choice_holds(option, *(const int *)field);
+	case GZ_OPTION_INT:
+	case GZ_OPTION_DOUBLE:
+	case GZ_OPTION_SIZE:
+		return numbers_hold(option, field);
+	}
+	return false;
 }

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 /* Room for any number printed here: sign, 17 digits, point of up to 6 bytes, exponent. */
 enum { NUMBER_SIZE = 48 };
 
@@ -53,18 +55,6 @@ void gz_text_print_escaped(struct gz_text *text, const char *plain)
 	}
 }
 
-void gz_text_normalise_decimal_point(char *number)
-{
-	static const char others[] = "0123456789+-e";
-	size_t before = strspn(number, others);
-	if (number[before] == '\0')
-		return;
-	/* What is neither digit, sign nor exponent is the point; it may be several bytes. */
-	const char *after = number + before + strcspn(number + before, others);
-	number[before] = '.';
-	memmove(number + before + 1, after, strlen(after) + 1);
-}
-
 void gz_text_print_float(struct gz_text *text, float value)
 {
 	if (isnan(value))
@@ -75,7 +65,7 @@ void gz_text_print_float(struct gz_text *text, float value)
 	}
 	char number[NUMBER_SIZE];
 	snprintf(number, sizeof number, "%.9g", (double)value);
-	gz_text_normalise_decimal_point(number);
+	gz_number_normalise_point(number);
 	gz_text_print(text, "%s", number);
 }
 
@@ -85,7 +75,7 @@ void gz_text_print_double(struct gz_text *text, double value)
 	snprintf(number, sizeof number, "%.15g", value);
 	if (strtod(number, NULL) != value)
 		snprintf(number, sizeof number, "%.17g", value);
-	gz_text_normalise_decimal_point(number);
+	gz_number_normalise_point(number);
 	gz_text_print(text, "%s", number);
 }
 

@@ -35,9 +35,6 @@ void gz_text_print_float(struct gz_text *text, float value);
 /** Fifteen digits where they keep @p value exactly, else seventeen. */
 void gz_text_print_double(struct gz_text *text, double value);
 
-/** Put '.' where snprintf() printed another decimal point of whatever length. */
-void gz_text_normalise_decimal_point(char *number);
-
 /*
  * Readers of one field. They take all of @p field or refuse it: no blanks around a number, no
  * hexadecimal, nothing that does not fit the type.

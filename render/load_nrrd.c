@@ -5,8 +5,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/number.h"
 #include "render/file_path.h"
-#include "render/number.h"
 #include "render/text_head.h"
 #include "render/volume_loaders.h"
 #include "render/voxel_source.h"

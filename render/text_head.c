@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "render/byte_stream.h"
-#include "render/number.h"
 
 #define GZ_LOG_MODULE "volume"
 

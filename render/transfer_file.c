@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/number.h"
+#include "base/number.h"
 #include "render/transfer.h"
 
 #define GZ_LOG_MODULE "transfer"

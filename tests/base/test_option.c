@@ -312,6 +312,45 @@ static void printed_file_never_holds_a_value_that_would_read_back_otherwise(void
 	}
 }
 
+static struct settings presets(void)
+{
+	struct settings settings = { 0 };
+	const struct gz_option_binding binding = {
+		.options = sample_options,
+		.count = sizeof sample_options / sizeof *sample_options,
+		.target = &settings,
+	};
+	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	return settings;
+}
+
+static void every_preset_holds(void **state)
+{
+	(void)state;
+	const struct settings settings = presets();
+	for (size_t i = 0; i < sizeof sample_options / sizeof *sample_options; i++)
+		if (!gz_option_holds(&sample_options[i], &settings))
+			fail_msg("%s does not hold", sample_options[i].key);
+}
+
+static void value_that_no_text_could_set_does_not_hold(void **state)
+{
+	(void)state;
+	struct settings settings = presets();
+	settings.smoothing_hz = NAN;
+	settings.eye[2] = 10.001;
+	settings.port = 1023;
+	settings.size[1] = 16385;
+	settings.method = 4;
+	memset(settings.name, 'x', sizeof settings.name);
+	static const int bad[] = { SMOOTHING, EYE, PORT, SIZE, METHOD, NAME };
+	for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+		if (gz_option_holds(&sample_options[bad[i]], &settings))
+			fail_msg("%s holds", sample_options[bad[i]].key);
+	settings.method = -1;
+	assert_false(gz_option_holds(&sample_options[METHOD], &settings));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -327,6 +366,8 @@ int main(void)
 		cmocka_unit_test(format_is_as_short_as_it_can_be),
 		cmocka_unit_test(format_into_too_little_room_is_full_and_empty),
 		cmocka_unit_test(find_names_option_and_binding),
+		cmocka_unit_test(every_preset_holds),
+		cmocka_unit_test(value_that_no_text_could_set_does_not_hold),
 		cmocka_unit_test(help_has_one_aligned_line_per_option),
 		cmocka_unit_test(printed_file_reads_back_to_the_same_settings),
 		cmocka_unit_test(printed_file_never_holds_a_value_that_would_read_back_otherwise),

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "base/number.h"
 #include "protocol/gaze_log_text.h"
 #include "protocol/sample_log.h"
 
@@ -157,7 +158,7 @@ static void number_with_another_decimal_point_gets_a_point(void **state)
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		char number[32];
 		snprintf(number, sizeof number, "%s", cases[i][0]);
-		gz_text_normalise_decimal_point(number);
+		gz_number_normalise_point(number);
 		assert_string_equal(number, cases[i][1]);
 	}
 }

@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -223,6 +224,23 @@ static void plan_refuses_what_is_out_of_range(void **state)
 	gz_plan_free(&plan);
 }
 
+static void plan_does_not_depend_on_the_locale(void **state)
+{
+	(void)state;
+	/* An application may have set a locale whose decimal point is a comma. */
+	static const char *const commas[] = { "de_DE.UTF-8", "de_DE", "fr_FR.UTF-8",
+					      "nl_NL.UTF-8" };
+	const char *found = NULL;
+	for (size_t i = 0; !found && i < sizeof commas / sizeof *commas; i++)
+		found = setlocale(LC_NUMERIC, commas[i]);
+	if (!found)
+		skip();
+	struct gz_plan plan = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.5F }, 64, 64);
+	setlocale(LC_NUMERIC, "C");
+	assert_true(plan.tile_count > 0);
+	gz_plan_free(&plan);
+}
+
 static void trembling_gaze_moves_no_lattice(void **state)
 {
 	(void)state;
@@ -253,6 +271,7 @@ int main(void)
 		cmocka_unit_test(mdc_casts_a_quarter_outside_its_square),
 		cmocka_unit_test(distance_rule_lengthens_steps_up_to_its_floor),
 		cmocka_unit_test(plan_refuses_what_is_out_of_range),
+		cmocka_unit_test(plan_does_not_depend_on_the_locale),
 		cmocka_unit_test(trembling_gaze_moves_no_lattice),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

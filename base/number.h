@@ -1,9 +1,9 @@
 /**
  * @file
- * Numbers in text from outside, read the same in every locale.
+ * Numbers in text, read and printed the same in every locale.
  */
-#ifndef GZ_RENDER_NUMBER_H
-#define GZ_RENDER_NUMBER_H
+#ifndef GZ_BASE_NUMBER_H
+#define GZ_BASE_NUMBER_H
 
 #include <stdbool.h>
 
@@ -16,6 +16,14 @@ bool gz_number_parse(const char *word, double *out_value);
 
 /** As gz_number_parse() for a whole number that an int64_t holds; decimal digits and a sign. */
 bool gz_number_parse_whole(const char *word, long long *out_value);
+
+/**
+ * Make the decimal point of a number that printf() printed by "%g" a full stop, whatever the locale
+ * has.
+ *
+ * @param[in,out] number  NUL-terminated; digits, sign, exponent and at most one point
+ */
+void gz_number_normalise_point(char *number);
 
 /**
  * Cut the first word off @p *text, which is moved behind it.

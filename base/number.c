@@ -1,4 +1,4 @@
-#include "render/number.h"
+#include "base/number.h"
 
 #include <errno.h>
 #include <locale.h>
@@ -35,6 +35,18 @@ bool gz_number_parse_whole(const char *word, long long *out_value)
 		return false;
 	*out_value = value;
 	return true;
+}
+
+void gz_number_normalise_point(char *number)
+{
+	static const char others[] = "0123456789+-e";
+	size_t before = strspn(number, others);
+	if (number[before] == '\0')
+		return;
+	/* What is neither digit, sign nor exponent is the point; it may be several bytes. */
+	const char *after = number + before + strcspn(number + before, others);
+	number[before] = '.';
+	memmove(number + before + 1, after, strlen(after) + 1);
 }
 
 char *gz_number_next_word(char **text, const char *blanks)
