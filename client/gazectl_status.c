@@ -39,14 +39,6 @@ __attribute__((format(printf, 2, 3))) static void row(const char *name, const ch
 	va_end(arguments);
 }
 
-static uint64_t count_rejected(const struct gz_status *status)
-{
-	uint64_t sum = 0;
-	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
-		sum += status->rejected[i];
-	return sum;
-}
-
 static void print_tracker(const struct gz_status *status)
 {
 	const char *reason = status->tracker.reason, *serial = status->tracker.serial;
@@ -63,17 +55,30 @@ static void print_rate(const struct gz_status *status)
 		row("rate", "%.1f Hz measured", status->rate_hz_measured);
 }
 
-static void print_rejected(const struct gz_status *status)
+static const char *rejection_name(int reason)
+{
+	return gz_rejection_name((enum gz_rejection)reason);
+}
+
+static const char *malformed_name(int reason)
+{
+	return gz_malformed_name((enum gz_malformed)reason);
+}
+
+/* The sum of @p counts, and each that is not 0 by its name. */
+static void print_reasons(const char *name, const uint64_t *counts, int first, int count,
+			  const char *(*reason_name)(int reason))
 {
 	char text[512] = "";
 	size_t used = 0;
-	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
-		if (status->rejected[i] && used < sizeof text)
+	uint64_t sum = 0;
+	for (int i = first; i < count; i++) {
+		sum += counts[i];
+		if (counts[i] && used < sizeof text)
 			used += (size_t)snprintf(text + used, sizeof text - used, "%s%s %" PRIu64,
-						 used ? ", " : " (",
-						 gz_rejection_name((enum gz_rejection)i),
-						 status->rejected[i]);
-	row("rejected", "%" PRIu64 "%s%s", count_rejected(status), text, used ? ")" : "");
+						 used ? ", " : " (", reason_name(i), counts[i]);
+	}
+	row(name, "%" PRIu64 "%s%s", sum, text, used ? ")" : "");
 }
 
 static void print_clock(const struct gz_clock_status *clock)
@@ -117,7 +122,9 @@ static void print_table(const struct gz_status *status, const char *endpoint)
 	print_rate(status);
 	row("samples", "%" PRIu64, status->samples);
 	row("lost", "%" PRIu64, status->lost);
-	print_rejected(status);
+	print_reasons("rejected", status->rejected, GZ_REJECT_NONE + 1, GZ_REJECT_COUNT,
+		      rejection_name);
+	print_reasons("malformed", status->malformed, 0, GZ_MALFORMED_COUNT, malformed_name);
 	print_clock(&status->clock);
 	if (isfinite(status->noise_deg))
 		row("noise", "%.3f deg from sample to sample (RMS within fixations)",
@@ -147,7 +154,11 @@ static void print_json_tracker(struct gz_json *json, const struct gz_status *sta
 	gz_json_uint(json, "lost", status->lost);
 	gz_json_begin(json, "rejected");
 	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
-		gz_json_uint(json, gz_rejection_name((enum gz_rejection)i), status->rejected[i]);
+		gz_json_uint(json, rejection_name(i), status->rejected[i]);
+	gz_json_end(json);
+	gz_json_begin(json, "malformed");
+	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
+		gz_json_uint(json, malformed_name(i), status->malformed[i]);
 	gz_json_end(json);
 }
 

@@ -21,6 +21,8 @@ static const struct gz_option options[] = {
 	  "print a configuration file with the present settings and leave" },
 	{ "driver", GZ_OPTION_STRING, AT(driver), 0, GZ_NAME_SIZE, 0, NULL, NULL,
 	  "short for --tracker.driver" },
+	{ "tracker", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, NULL,
+	  "short for --tracker.choice" },
 	{ "tcp", GZ_OPTION_CHOICE, AT(tcp), 0, 0, 0, tcp_names, NULL, "short for --network.tcp" },
 	{ "control", GZ_OPTION_STRING, AT(control), 0, GZ_ENDPOINT_SIZE, 0, NULL, NULL,
 	  "short for --network.control" },
@@ -32,6 +34,8 @@ static const struct gz_option options[] = {
 	  "start the tracker once the stream has so many subscriptions" },
 	{ "tracker.driver", GZ_OPTION_STRING, AT(driver), 0, GZ_NAME_SIZE, 0, NULL, "sim",
 	  "which driver: sim, replay or template" },
+	{ "tracker.choice", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, "",
+	  "name or serial number of the tracker, where there are several; empty: the first" },
 	{ "network.tcp", GZ_OPTION_CHOICE, AT(tcp), 0, 0, 0, tcp_names, "loopback",
 	  "TCP for Pupil's clients, open to every user of this machine; or local sockets only" },
 	{ "network.control", GZ_OPTION_STRING, AT(control), 0, GZ_ENDPOINT_SIZE, 0, NULL,
@@ -127,6 +131,7 @@ static enum gz_result read_arguments(struct gz_config *config, int argc, char *c
 				     const struct gz_log *log)
 {
 	static const char *const shorts[][2] = { { "driver", "tracker.driver" },
+						 { "tracker", "tracker.choice" },
 						 { "tcp", "network.tcp" },
 						 { "control", "network.control" } };
 	struct gz_option_binding bindings[BINDINGS_MAX];

@@ -47,6 +47,7 @@ struct gz_config {
 	char record[GZ_NAME_SIZE]; /**< record from the first sample under this name; empty: no */
 
 	char driver[GZ_NAME_SIZE];
+	char tracker[GZ_NAME_SIZE];             /**< name or serial of one of several; empty: any */
 	int tcp;                                /**< enum gz_tcp */
 	char control[GZ_ENDPOINT_SIZE];         /**< TCP endpoint of the control socket */
 	char surfaces[256];                     /**< names, separated by blanks */

@@ -87,7 +87,8 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 	service->parts = *parts;
 	service->waiting = parts->config->wait_readers > 0;
 	const struct gz_driver *driver = gz_config_driver(parts->config, &settings);
-	enum gz_result result = gz_tracker_open(&service->tracker, driver, settings, parts->log);
+	const struct gz_driver_host host = { .log = parts->log, .choice = parts->config->tracker };
+	enum gz_result result = gz_tracker_open(&service->tracker, driver, settings, &host);
 	if (result == GZ_OK)
 		result = adopt_device(service);
 	if (result != GZ_OK) {
@@ -244,6 +245,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 	memcpy(status->tracker.serial, tracker->info.serial, sizeof status->tracker.serial);
 	memcpy(status->tracker.reason, tracker->reason, sizeof status->tracker.reason);
 	memcpy(status->rejected, service->rejected, sizeof status->rejected);
+	memcpy(status->malformed, tracker->counters.malformed, sizeof status->malformed);
 	status->recording.state = recorder.state;
 	status->recording.samples = recorder.samples;
 	memcpy(status->recording.error, recorder.error, sizeof status->recording.error);

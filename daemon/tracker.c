@@ -28,9 +28,12 @@ static bool may_appear(enum gz_result result)
 }
 
 /* The driver logs why it fails; while a device is being waited for that is known, and silent. */
-static enum gz_result open_device(struct gz_tracker *tracker, const struct gz_log *log)
+static enum gz_result open_device(struct gz_tracker *tracker, bool silent)
 {
-	enum gz_result result = tracker->driver->create(tracker->settings, log, &tracker->device);
+	struct gz_driver_host host = tracker->host;
+	if (silent)
+		host.log = NULL;
+	enum gz_result result = tracker->driver->create(tracker->settings, &host, &tracker->device);
 	if (result == GZ_OK) {
 		tracker->started = false;
 		tracker->opened++;
@@ -40,11 +43,11 @@ static enum gz_result open_device(struct gz_tracker *tracker, const struct gz_lo
 }
 
 enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_driver *driver,
-			       const void *settings, const struct gz_log *log)
+			       const void *settings, const struct gz_driver_host *host)
 {
-	*tracker = (struct gz_tracker) { .driver = driver, .settings = settings, .log = log };
+	*tracker = (struct gz_tracker) { .driver = driver, .settings = settings, .host = *host };
 	snprintf(tracker->info.name, sizeof tracker->info.name, "%s", driver->name);
-	enum gz_result result = open_device(tracker, log);
+	enum gz_result result = open_device(tracker, false);
 	if (result == GZ_OK) {
 		set_state(tracker, GZ_TRACKER_STARTING, "");
 		return GZ_OK;
@@ -52,7 +55,7 @@ enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_drive
 	if (!may_appear(result))
 		return result;
 	set_state(tracker, GZ_TRACKER_ABSENT, gz_result_text(result));
-	gz_warn(log, "%s is looked for until it appears", driver->name);
+	gz_warn(host->log, "%s is looked for until it appears", driver->name);
 	pause_before_retry(tracker);
 	return GZ_OK;
 }
@@ -64,7 +67,8 @@ void gz_tracker_update_counters(struct gz_tracker *tracker)
 		return;
 	gz_device_get_counters(tracker->device, &now);
 	tracker->counters.lost = tracker->base.lost + now.lost;
-	tracker->counters.malformed = tracker->base.malformed + now.malformed;
+	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
+		tracker->counters.malformed[i] = tracker->base.malformed[i] + now.malformed[i];
 	tracker->counters.clock = now.clock;
 }
 
@@ -82,7 +86,7 @@ static void lose_device(struct gz_tracker *tracker, enum gz_result result)
 	bool was_there = tracker->samples > 0;
 	drop_device(tracker);
 	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, gz_result_text(result));
-	gz_warn(tracker->log, "%s is gone (%s); waiting for it", tracker->info.name,
+	gz_warn(tracker->host.log, "%s is gone (%s); waiting for it", tracker->info.name,
 		gz_result_text(result));
 	pause_before_retry(tracker);
 }
@@ -96,7 +100,7 @@ static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 			return GZ_ERR_TIMEOUT;
 		}
 		gz_clock_sleep_until_ns(tracker->retry_ns);
-		enum gz_result result = open_device(tracker, NULL);
+		enum gz_result result = open_device(tracker, true);
 		if (result != GZ_OK) {
 			pause_before_retry(tracker);
 			return GZ_ERR_TIMEOUT;
@@ -120,7 +124,7 @@ static void take(struct gz_tracker *tracker, struct gz_sample *sample)
 		/* Some devices know more of themselves once they stream. */
 		gz_device_get_info(tracker->device, &tracker->info);
 		set_state(tracker, GZ_TRACKER_RUNNING, "");
-		gz_info(tracker->log, "%s delivers samples", tracker->info.name);
+		gz_info(tracker->host.log, "%s delivers samples", tracker->info.name);
 	}
 	tracker->arrival_ns = gz_clock_now_ns();
 	tracker->pause_ns = 0;
@@ -136,7 +140,7 @@ static void notice_silence(struct gz_tracker *tracker)
 	    silent_ns < GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS)
 		return;
 	set_state(tracker, GZ_TRACKER_LOST, "no samples for a second");
-	gz_warn(tracker->log, "%s: no samples for a second", tracker->info.name);
+	gz_warn(tracker->host.log, "%s: no samples for a second", tracker->info.name);
 }
 
 enum gz_result gz_tracker_read(struct gz_tracker *tracker, int timeout_ms,

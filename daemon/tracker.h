@@ -26,7 +26,7 @@
 struct gz_tracker {
 	const struct gz_driver *driver;
 	const void *settings;
-	const struct gz_log *log;
+	struct gz_driver_host host;
 	struct gz_device *device; /**< NULL while there is none */
 	bool started;
 	enum gz_tracker_state state;
@@ -48,11 +48,11 @@ struct gz_tracker {
  * again later.
  *
  * @param settings  borrowed; as the driver's options filled them
- * @param log       borrowed
+ * @param host      copied; what it points to is borrowed
  * @return GZ_OK, or what the driver's create() answers to settings that cannot work; logged
  */
 enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_driver *driver,
-			       const void *settings, const struct gz_log *log);
+			       const void *settings, const struct gz_driver_host *host);
 
 /**
  * Wait for the next sample; opens and starts the device where that is due. Numbers go on where a

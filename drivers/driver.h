@@ -31,8 +31,8 @@ struct gz_device_info {
 
 /** Counters a driver keeps; they never run backwards. */
 struct gz_device_counters {
-	uint64_t lost;      /**< samples the device or the link lost */
-	uint64_t malformed; /**< reports that were not understood */
+	uint64_t lost;                          /**< samples the device or the link lost */
+	uint64_t malformed[GZ_MALFORMED_COUNT]; /**< reports that were not understood */
 	struct gz_clock_status clock;
 };
 
@@ -63,6 +63,26 @@ struct gz_device {
 	const struct gz_log *log; /**< borrowed; may be NULL */
 };
 
+/** What the daemon lends to a driver for as long as its device is open. */
+struct gz_driver_host {
+	const struct gz_log *log; /**< may be NULL */
+	/** Name or serial number of the device to take where there are several; NULL or empty: the
+	 * first usable one. Drivers that know only one place to look ignore it. */
+	const char *choice;
+};
+
+/** A tracker that is there, whether or not it can be used. */
+struct gz_device_entry {
+	char name[GZ_NAME_SIZE];   /**< the product's name */
+	char serial[GZ_NAME_SIZE]; /**< empty if it has none, or if it cannot be read */
+	char place[GZ_NAME_SIZE];  /**< where it is: "/dev/hidraw0", "usb 1-2" */
+	bool usable;
+	char reason[GZ_REASON_SIZE]; /**< why it is not usable and what to do; empty if it is */
+};
+
+/** Most devices that one driver lists. */
+#define GZ_DEVICE_ENTRIES_MAX 16
+
 /** Room for one driver's settings, bytes. */
 #define GZ_DRIVER_SETTINGS_SIZE 4096
 
@@ -78,13 +98,25 @@ struct gz_driver {
 	 * Open a device.
 	 *
 	 * @param settings  the struct that the options filled; NULL only if there are no options
+	 * @param host      borrowed, outlives the device
 	 * @param[out] out_device  owned by the caller: gz_device_destroy()
 	 * @retval GZ_ERR_NO_DEVICE  none there; logged with what to do
 	 * @retval GZ_ERR_ACCESS, GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM, GZ_ERR_INVAL
 	 * logged
 	 */
-	enum gz_result (*create)(const void *settings, const struct gz_log *log,
+	enum gz_result (*create)(const void *settings, const struct gz_driver_host *host,
 				 struct gz_device **out_device);
+
+	/**
+	 * List the devices that are there now, in the order in which create() would try them. May
+	 * block for some 100 ms; opens nothing that another program may be using. NULL for a driver
+	 * that has nothing to look for.
+	 *
+	 * @param[out] out_entries  room for GZ_DEVICE_ENTRIES_MAX; devices beyond are left out
+	 * @return how many were written
+	 */
+	size_t (*list)(const void *settings, const struct gz_driver_host *host,
+		       struct gz_device_entry *out_entries);
 };
 
 /** All drivers of this build, NULL-terminated. */

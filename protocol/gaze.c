@@ -46,6 +46,25 @@ const char *gz_rejection_name(enum gz_rejection rejection)
 	return "unknown";
 }
 
+const char *gz_malformed_name(enum gz_malformed malformed)
+{
+	switch (malformed) {
+	case GZ_MALFORMED_SHORT:
+		return "short";
+	case GZ_MALFORMED_LONG:
+		return "long";
+	case GZ_MALFORMED_STALE:
+		return "stale";
+	case GZ_MALFORMED_SYNTAX:
+		return "syntax";
+	case GZ_MALFORMED_VALUE:
+		return "value";
+	case GZ_MALFORMED_COUNT:
+		break;
+	}
+	return "unknown";
+}
+
 const char *gz_tracker_state_name(enum gz_tracker_state state)
 {
 	switch (state) {

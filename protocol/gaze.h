@@ -142,6 +142,19 @@ enum gz_rejection {
 /** "tracker", "not_finite", "off_screen", …: the keys of status.rejected; "none" for NONE. */
 const char *gz_rejection_name(enum gz_rejection rejection);
 
+/** What was wrong with bytes that a driver received and could not turn into a sample. */
+enum gz_malformed {
+	GZ_MALFORMED_SHORT,  /**< fewer bytes than its kind has */
+	GZ_MALFORMED_LONG,   /**< more than its kind has, or than there is room for */
+	GZ_MALFORMED_STALE,  /**< sent before: a counter or time that does not advance */
+	GZ_MALFORMED_SYNTAX, /**< not the tracker's language: magic, framing, nesting, encoding */
+	GZ_MALFORMED_VALUE,  /**< well formed, but a field is missing or cannot be */
+	GZ_MALFORMED_COUNT,
+};
+
+/** "short", "long", "stale", "syntax", "value": the keys of status.malformed; static text. */
+const char *gz_malformed_name(enum gz_malformed malformed);
+
 enum gz_tracker_state {
 	GZ_TRACKER_ABSENT, /**< looked for, not there */
 	GZ_TRACKER_STARTING,
@@ -200,6 +213,7 @@ struct gz_status {
 	uint64_t samples;        /**< delivered by the driver */
 	uint64_t lost;           /**< missed by the device or on the way to the daemon */
 	uint64_t rejected[GZ_REJECT_COUNT];
+	uint64_t malformed[GZ_MALFORMED_COUNT]; /**< reports that became no sample */
 	struct gz_clock_status clock;
 	double noise_deg; /**< sample-to-sample RMS within fixations; NaN before the first */
 	struct gz_display display;

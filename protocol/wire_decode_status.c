@@ -44,6 +44,10 @@ static void take_counts(struct gz_unpack *unpack, struct gz_status *status)
 	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
 		gz_unpack_uint64(unpack, rejected, gz_rejection_name((enum gz_rejection)i),
 				 &status->rejected[i]);
+	const msgpack_object *malformed = gz_unpack_map(unpack, unpack->map, "malformed");
+	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
+		gz_unpack_uint64(unpack, malformed, gz_malformed_name((enum gz_malformed)i),
+				 &status->malformed[i]);
 }
 
 static void take_clock(struct gz_unpack *unpack, struct gz_clock_status *clock)

@@ -72,6 +72,9 @@ static void pack_counts(struct gz_pack *pack, const struct gz_status *status)
 	gz_pack_map(pack, "rejected", GZ_REJECT_COUNT - 1);
 	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
 		gz_pack_uint(pack, gz_rejection_name((enum gz_rejection)i), status->rejected[i]);
+	gz_pack_map(pack, "malformed", GZ_MALFORMED_COUNT);
+	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
+		gz_pack_uint(pack, gz_malformed_name((enum gz_malformed)i), status->malformed[i]);
 }
 
 static void pack_clock(struct gz_pack *pack, const struct gz_clock_status *clock)
@@ -107,9 +110,9 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 11);
+	gz_pack_map(&pack, NULL, 12);
 	pack_tracker(&pack, status);
-	pack_counts(&pack, status); /* rate_hz, samples, lost, rejected */
+	pack_counts(&pack, status); /* rate_hz, samples, lost, rejected, malformed */
 	pack_clock(&pack, &status->clock);
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
 	pack_display(&pack, &status->display);

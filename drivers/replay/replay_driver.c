@@ -38,7 +38,7 @@ struct replay_device {
 	int64_t last_host_ns; /* recorded time of the sample before */
 	uint64_t gap;         /* missing since the sample before */
 	uint64_t lost;
-	uint64_t malformed;
+	uint64_t malformed[GZ_MALFORMED_COUNT];
 };
 
 static struct replay_device *of(struct gz_device *device)
@@ -59,7 +59,7 @@ static enum gz_result find_next(struct replay_device *replay, int64_t deadline_n
 	while (!replay->has_next) {
 		enum gz_result result = gz_gaze_log_read(replay->reader, &replay->record);
 		if (result == GZ_ERR_FORMAT) {
-			replay->malformed++;
+			replay->malformed[GZ_MALFORMED_SYNTAX]++;
 			if (gz_clock_now_ns() >= deadline_ns)
 				return GZ_ERR_TIMEOUT;
 			continue;
@@ -138,7 +138,7 @@ static void replay_counters(const struct gz_device *device, struct gz_device_cou
 {
 	const struct replay_device *replay = (const struct replay_device *)device;
 	out_counters->lost = replay->lost;
-	out_counters->malformed = replay->malformed;
+	memcpy(out_counters->malformed, replay->malformed, sizeof out_counters->malformed);
 }
 
 static void replay_destroy(struct gz_device *device)
@@ -170,9 +170,10 @@ static enum gz_result open_file(const char *path, const struct gz_log *log,
 	return result == GZ_ERR_IO ? GZ_ERR_INVAL : result;
 }
 
-static enum gz_result replay_create(const void *settings, const struct gz_log *log,
+static enum gz_result replay_create(const void *settings, const struct gz_driver_host *host,
 				    struct gz_device **out_device)
 {
+	const struct gz_log *log = host->log;
 	const struct replay_settings *wanted = settings;
 	if (!wanted->file[0]) {
 		gz_err(log, "no gaze log to play; name one with --replay.file FILE.gzl");

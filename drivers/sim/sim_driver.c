@@ -141,9 +141,10 @@ static const struct gz_device_ops sim_ops = {
 	.destroy = sim_destroy,
 };
 
-static enum gz_result sim_create(const void *settings, const struct gz_log *log,
+static enum gz_result sim_create(const void *settings, const struct gz_driver_host *host,
 				 struct gz_device **out_device)
 {
+	const struct gz_log *log = host->log;
 	struct sim_device *sim = calloc(1, sizeof *sim);
 	if (!sim)
 		return GZ_ERR_NO_MEM;

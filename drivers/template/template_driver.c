@@ -47,7 +47,7 @@ struct template_device {
 	uint32_t counter; /* of the newest report */
 	uint64_t seq;
 	uint64_t lost;
-	uint64_t malformed;
+	uint64_t malformed[GZ_MALFORMED_COUNT];
 };
 
 static struct template_device *of(struct gz_device *device)
@@ -97,7 +97,7 @@ static enum gz_result fill(struct template_device *device)
 static void resynchronise(struct template_device *device)
 {
 	uint64_t held_back;
-	device->malformed++;
+	device->malformed[GZ_MALFORMED_SYNTAX]++;
 	if (gz_ratelimit_pass(&device->complaints, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
 		gz_warn(device->base.log,
 			"device bug: bytes that are no report (%llu more times since last told)",
@@ -175,9 +175,9 @@ static void template_counters(const struct gz_device *base, struct gz_device_cou
 	const struct template_device *device = (const struct template_device *)base;
 	*out_counters = (struct gz_device_counters) {
 		.lost = device->lost,
-		.malformed = device->malformed,
 		.clock = gz_clock_model_status(&device->clock, GZ_CLOCK_DECLARED),
 	};
+	memcpy(out_counters->malformed, device->malformed, sizeof out_counters->malformed);
 }
 
 /* Also right for a device that create() gave up half-way. */
@@ -210,9 +210,10 @@ static enum gz_result refuse_path(const char *path, const struct gz_log *log)
 	}
 }
 
-static enum gz_result template_create(const void *settings, const struct gz_log *log,
+static enum gz_result template_create(const void *settings, const struct gz_driver_host *host,
 				      struct gz_device **out_device)
 {
+	const struct gz_log *log = host->log;
 	const struct template_settings *wanted = settings;
 	if (!wanted->path[0]) {
 		gz_err(log, "no device named; name one with --template.path PATH");

@@ -78,6 +78,7 @@ static struct gz_status some_status(void)
 		.version = "0.1.0",
 	};
 	status.rejected[GZ_REJECT_VELOCITY] = 3;
+	status.malformed[GZ_MALFORMED_SHORT] = 2;
 	return status;
 }
 
@@ -212,6 +213,7 @@ static void status_is_a_table(void **state)
 		"samples      1234\n",
 		"lost         5\n",
 		"rejected     3 (velocity 3)\n",
+		"malformed    2 (short 2)\n",
 		"clock        declared tick",
 		"noise        0.125 deg",
 		"display      1920x1080 px",

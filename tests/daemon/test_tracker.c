@@ -12,6 +12,8 @@
 #include "drivers/template/template_protocol.h"
 
 /* The device is the template's: a FIFO that this test writes reports into. */
+static const struct gz_driver_host nothing = { 0 };
+
 static char directory[64], path[128];
 static _Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
 
@@ -71,7 +73,7 @@ static void tracker_that_vanishes_is_lost_and_returns_with_numbers_going_on(void
 	struct gz_tracker tracker;
 	struct gz_sample sample;
 	/* Absent at first. */
-	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), settings, NULL),
+	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), settings, &nothing),
 			 GZ_OK);
 	assert_int_equal(tracker.state, GZ_TRACKER_ABSENT);
 	assert_true(tracker.reason[0] != '\0');
@@ -112,7 +114,7 @@ static void tracker_that_falls_silent_is_lost_until_it_speaks(void **state)
 	struct gz_sample sample;
 	assert_int_equal(mkfifo(path, 0600), 0);
 	int fd = open(path, O_RDWR | O_CLOEXEC);
-	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), settings, NULL),
+	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), settings, &nothing),
 			 GZ_OK);
 	assert_int_equal(tracker.state, GZ_TRACKER_STARTING);
 	send_report(fd, 0);
@@ -133,9 +135,9 @@ static void tracker_whose_settings_cannot_work_is_refused_at_once(void **state)
 	(void)state;
 	struct gz_tracker tracker;
 	static _Alignas(max_align_t) unsigned char none[GZ_DRIVER_SETTINGS_SIZE];
-	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), none, NULL),
+	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), none, &nothing),
 			 GZ_ERR_INVAL);
-	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("replay"), none, NULL),
+	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("replay"), none, &nothing),
 			 GZ_ERR_INVAL);
 	gz_tracker_close(&tracker);
 }

@@ -123,7 +123,8 @@ static void tear_down(struct stage *stage)
 static struct gz_device *create(struct stage *stage)
 {
 	struct gz_device *device = NULL;
-	enum gz_result result = stage->driver->create(stage->settings, NULL, &device);
+	enum gz_result result =
+		stage->driver->create(stage->settings, &(struct gz_driver_host) { 0 }, &device);
 	if (result != GZ_OK)
 		fail_msg("%s: %s", stage->driver->name, gz_result_text(result));
 	assert_non_null(device);
@@ -213,7 +214,8 @@ static void check_samples(struct stage *stage)
 		lost += sample.lost_before;
 		gz_device_get_counters(device, &counters);
 		assert_true(counters.lost >= before.lost);
-		assert_true(counters.malformed >= before.malformed);
+		for (int reason = 0; reason < GZ_MALFORMED_COUNT; reason++)
+			assert_true(counters.malformed[reason] >= before.malformed[reason]);
 		assert_true(counters.clock.tick < GZ_CLOCK_TICK_COUNT);
 		assert_int_equal(counters.lost, lost);
 		last = sample;
@@ -343,7 +345,8 @@ static void driver_refuses_what_is_not_there(void **state)
 		stage.driver = driver;
 		assert_int_equal(gz_options_preset(&binding), GZ_OK);
 		set_option(&stage, refusals[i].key, refusals[i].text);
-		enum gz_result result = driver->create(stage.settings, NULL, &device);
+		enum gz_result result =
+			driver->create(stage.settings, &(struct gz_driver_host) { 0 }, &device);
 		if (result != refusals[i].result)
 			fail_msg("%s %s: %s, expected %s", refusals[i].key, refusals[i].text,
 				 gz_result_text(result), gz_result_text(refusals[i].result));
@@ -386,7 +389,7 @@ static void template_of_nothing_but_garbage_keeps_to_the_timeout(void **state)
 	assert_int_equal(gz_device_read(device, 20, &sample), GZ_ERR_TIMEOUT);
 	assert_int_equal(gz_device_read(device, 0, &sample), GZ_ERR_TIMEOUT);
 	gz_device_get_counters(device, &counters);
-	assert_true(counters.malformed > 0);
+	assert_true(counters.malformed[GZ_MALFORMED_SYNTAX] > 0);
 	gz_device_destroy(&device);
 }
 

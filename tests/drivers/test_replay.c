@@ -41,7 +41,7 @@ static struct gz_device *open_replay(const char *speed)
 	assert_int_equal(gz_option_parse(gz_options_find(&binding, 1, "replay.speed", NULL), speed,
 					 settings, NULL, 0),
 			 GZ_OK);
-	assert_int_equal(driver->create(settings, NULL, &device), GZ_OK);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { 0 }, &device), GZ_OK);
 	assert_int_equal(gz_device_start(device), GZ_OK);
 	return device;
 }
@@ -114,7 +114,7 @@ static void replay_skips_and_counts_lines_that_are_no_records(void **state)
 	assert_int_equal(gz_device_read(device, 100, &sample), GZ_OK);
 	assert_int_equal(sample.seq, 1);
 	gz_device_get_counters(device, &counters);
-	assert_int_equal(counters.malformed, 1);
+	assert_int_equal(counters.malformed[GZ_MALFORMED_SYNTAX], 1);
 	gz_device_destroy(&device);
 }
 
@@ -181,22 +181,32 @@ static void replay_without_a_file_or_of_no_log_is_refused(void **state)
 	struct gz_device *device = NULL;
 	captured_log_init(&captured, NULL);
 	assert_int_equal(gz_options_preset(&binding), GZ_OK);
-	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_INVAL);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
+					&device),
+			 GZ_ERR_INVAL);
 	assert_non_null(strstr(captured.last, "--replay.file"));
 	assert_int_equal(gz_option_parse(file, "/nonexistent.gzl", settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_NOT_FOUND);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
+					&device),
+			 GZ_ERR_NOT_FOUND);
 	/* Neither waits: a directory cannot be read, and a FIFO's other end may never come. */
 	char fifo[] = "/tmp/gz_replay_XXXXXX";
 	assert_non_null(mkdtemp(fifo));
 	assert_int_equal(gz_option_parse(file, fifo, settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_INVAL);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
+					&device),
+			 GZ_ERR_INVAL);
 	assert_int_equal(rmdir(fifo), 0);
 	assert_int_equal(mkfifo(fifo, 0600), 0);
-	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_INVAL);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
+					&device),
+			 GZ_ERR_INVAL);
 	assert_non_null(strstr(captured.last, "no regular file"));
 	unlink(fifo);
 	assert_int_equal(gz_option_parse(file, "/proc/self/status", settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &captured.log, &device), GZ_ERR_FORMAT);
+	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
+					&device),
+			 GZ_ERR_FORMAT);
 	assert_null(device);
 }
 

@@ -343,8 +343,10 @@ static void status_has_the_documented_keys(void **state)
 	msgpack_unpacked unpacked;
 	assert_int_equal(gz_wire_encode_status(&status, &message), GZ_OK);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
-	assert_keys(map, "tracker rate_hz samples lost rejected clock noise_deg display recording "
-			 "subscribers version");
+	assert_keys(
+		map,
+		"tracker rate_hz samples lost rejected malformed clock noise_deg display recording "
+		"subscribers version");
 	assert_keys(value_of(map, "tracker"), "name serial state reason");
 	assert_keys(value_of(map, "rate_hz"), "nominal measured");
 	assert_keys(value_of(map, "rejected"),
@@ -355,6 +357,9 @@ static void status_has_the_documented_keys(void **state)
 	assert_text(value_of(value_of(map, "tracker"), "state"), "lost");
 	assert_number(value_of(value_of(map, "rejected"), "tracker"), 1);
 	assert_number(value_of(value_of(map, "rejected"), "confidence"), 7);
+	assert_keys(value_of(map, "malformed"), "short long stale syntax value");
+	assert_number(value_of(value_of(map, "malformed"), "short"), 11);
+	assert_number(value_of(value_of(map, "malformed"), "value"), 15);
 	assert_numbers(value_of(value_of(map, "display"), "px"), (double[]) { 1920, 1080 }, 2);
 	assert_text(value_of(value_of(map, "recording"), "file"), "/data/a.gzl");
 	msgpack_unpacked_destroy(&unpacked);
@@ -424,6 +429,8 @@ static void longest_messages_fit(void **state)
 	fill(status.version, sizeof status.version);
 	for (int i = 0; i < GZ_REJECT_COUNT; i++)
 		status.rejected[i] = UINT64_MAX;
+	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
+		status.malformed[i] = UINT64_MAX;
 	status.samples = status.lost = status.recording.samples = UINT64_MAX;
 	status.clock.offset_ns = INT64_MIN;
 	status.subscribers = UINT32_MAX;
