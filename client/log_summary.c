@@ -174,6 +174,11 @@ static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header
 			gz_warn(log, "%s %s: %s; the default stands in", key,
 				header->settings[i].value, message);
 	}
+	char reason[256];
+	if (gz_pipeline_check_params(&params, reason, sizeof reason) != GZ_OK) {
+		gz_warn(log, "%s; the default stands in", reason);
+		params.correct = gz_pipeline_default_params().correct;
+	}
 	return params;
 }
 

@@ -226,6 +226,11 @@ static enum gz_result check(struct gz_config *config, const struct gz_log *log)
 		       config->control);
 		return GZ_ERR_INVAL;
 	}
+	char message[256];
+	if (gz_pipeline_check_params(&config->pipeline, message, sizeof message) != GZ_OK) {
+		gz_err(log, "%s", message);
+		return GZ_ERR_INVAL;
+	}
 	return split_surfaces(config, log);
 }
 

@@ -68,6 +68,12 @@ enum gz_result gz_config_pipeline(const struct gz_config *config,
 		if (result != GZ_OK)
 			return result;
 	}
+	char message[256];
+	enum gz_result checked = gz_pipeline_check_params(&params, message, sizeof message);
+	if (checked != GZ_OK) {
+		gz_err(log, "%s", message);
+		return checked;
+	}
 	*out_params = params;
 	return GZ_OK;
 }

@@ -108,13 +108,15 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	const struct gz_display *display = &pipeline->display;
 	struct gz_validate_output valid =
 		gz_validate_step(&pipeline->validate, &params->validate, display, sample);
+	struct gz_sample corrected = *sample;
+	gz_correct_step(&params->correct, &corrected);
 	*out = (struct gz_pipeline_output) { .rejection = valid.rejection };
-	out->gaze = message_of(pipeline, sample, &valid);
+	out->gaze = message_of(pipeline, &corrected, &valid);
 	if (valid.rejection == GZ_REJECT_TIME)
 		return;
 
 	struct gz_messages messages;
-	struct gz_classify_input input = join(pipeline, sample, &valid, &out->gaze.raw);
+	struct gz_classify_input input = join(pipeline, &corrected, &valid, &out->gaze.raw);
 	struct gz_classify_output label =
 		gz_classify_step(&pipeline->classify, &params->classify, display, &input);
 	gz_messages_step(&pipeline->messages, &params->classify, display, &label, input.time_ns,

@@ -1,9 +1,9 @@
 /**
  * @file
- * From sample to fixation: validate, combine, despike, classify, smooth. Pure steps over a state:
- * no I/O, no clock, no allocation; every timeout runs on sample time, so that replaying a log gives
- * the same messages bit for bit. The daemon runs it live; the viewer and the benchmark run it over
- * a log in process.
+ * From sample to fixation: validate, correct, combine, despike, classify, smooth. Pure steps over a
+ * state: no I/O, no clock, no allocation; every timeout runs on sample time, so that replaying a
+ * log gives the same messages bit for bit. The daemon runs it live; the viewer and the benchmark
+ * run it over a log in process.
  */
 #ifndef GZ_FILTER_PIPELINE_H
 #define GZ_FILTER_PIPELINE_H
@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "filter/classify.h"
 #include "filter/combine.h"
+#include "filter/correct.h"
 #include "filter/despike.h"
 #include "filter/messages.h"
 #include "filter/smooth.h"
@@ -24,6 +25,7 @@
 /** Every setting of the pipeline; written into each log's header. */
 struct gz_pipeline_params {
 	struct gz_validate_params validate;
+	struct gz_correct_params correct;
 	struct gz_combine_params combine;
 	struct gz_despike_params despike;
 	struct gz_classify_params classify;
@@ -36,6 +38,17 @@ extern const size_t gz_pipeline_option_count;
 
 /** The table's presets. */
 struct gz_pipeline_params gz_pipeline_default_params(void);
+
+/**
+ * Check what the table cannot say of a single setting: that the correction keeps two dimensions.
+ *
+ * @param[out] message  on failure: the setting, what is wrong and what is allowed, one line
+ * @param message_size  bytes of @p message
+ * @retval GZ_OK         the pipeline may run with them
+ * @retval GZ_ERR_INVAL  it may not
+ */
+enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params, char *message,
+					size_t message_size);
 
 /** Noise within fixations, as status tells it. */
 struct gz_pipeline_noise {
@@ -76,7 +89,8 @@ struct gz_pipeline_output {
 /**
  * Put the pipeline into its start state.
  *
- * @param params   NULL for the defaults
+ * @param params   in the ranges of the table, and passed gz_pipeline_check_params(); NULL for the
+ *                 defaults
  * @param display  must be valid (gz_display_valid())
  */
 void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_params *params,

@@ -1,7 +1,10 @@
 /* Presets and their sources. */
+#include <stdio.h>
+
 #include "filter/pipeline.h"
 
 #define VALIDATE(field) offsetof(struct gz_pipeline_params, validate.field)
+#define CORRECT(field)  offsetof(struct gz_pipeline_params, correct.field)
 #define COMBINE(field)  offsetof(struct gz_pipeline_params, combine.field)
 #define DESPIKE(field)  offsetof(struct gz_pipeline_params, despike.field)
 #define CLASSIFY(field) offsetof(struct gz_pipeline_params, classify.field)
@@ -10,6 +13,13 @@
 	{                                                                                  \
 		"pipeline." key, GZ_OPTION_DOUBLE, offset, min, max, 0, NULL, preset, help \
 	}
+
+#define AFFINE(key, offset, preset, help)                                                 \
+	{                                                                                 \
+		"pipeline." key, GZ_OPTION_DOUBLE, offset, -10, 10, 3, NULL, preset, help \
+	}
+
+static const char *const EYES[] = { "both", "left", "right", NULL };
 
 /* Sources, where the help does not say it:
  *
@@ -33,6 +43,8 @@ const struct gz_option gz_pipeline_options[] = {
 	     "greatest unusual angle between the eyes' points, degrees"),
 	REAL("min_confidence", VALIDATE(min_confidence), 0, 1, "0.6",
 	     "an eye with less confidence is not used"),
+	{ "pipeline.eyes", GZ_OPTION_CHOICE, VALIDATE(eyes), 0, 0, 0, EYES, "both",
+	  "eyes that are used, where the tracker tells them apart" },
 	REAL("offset_ms", COMBINE(offset_ms), 1, 100000, "100",
 	     "time constant of learning the eyes' offset from each other, ms"),
 	REAL("noise_ms", COMBINE(noise_ms), 1, 100000, "2000",
@@ -95,6 +107,10 @@ const struct gz_option gz_pipeline_options[] = {
 	     "and from at least this distance on, degrees"),
 	REAL("smooth_drift_deg", SMOOTH(drift_deg), 0, 180, "0.5",
 	     "and at least at this distance, degrees"),
+	AFFINE("correction.x", CORRECT(x), "0 1 0",
+	       "a b c of x' = a + b x + c y, the corrected point, display sides"),
+	AFFINE("correction.y", CORRECT(y), "0 0 1",
+	       "a b c of y' = a + b x + c y, the corrected point, display sides"),
 };
 
 const size_t gz_pipeline_option_count = sizeof gz_pipeline_options / sizeof gz_pipeline_options[0];
@@ -109,4 +125,16 @@ struct gz_pipeline_params gz_pipeline_default_params(void)
 	};
 	(void)gz_options_preset(&binding); /* that every preset parses is a test's matter */
 	return params;
+}
+
+enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params, char *message,
+					size_t message_size)
+{
+	if (gz_correct_usable(&params->correct))
+		return GZ_OK;
+	snprintf(message, message_size,
+		 "pipeline.correction: x and y as given leave no area, or are not finite; b of x "
+		 "times c of y less c of x times b of y must be at least %g",
+		 GZ_CORRECT_LEAST_AREA);
+	return GZ_ERR_INVAL;
 }

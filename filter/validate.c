@@ -109,6 +109,12 @@ static struct gz_validate_output judge_common(struct gz_validate_state *state,
 	return out;
 }
 
+static bool wanted(const struct gz_validate_params *params, int eye)
+{
+	return params->eyes == GZ_VALIDATE_EYES_BOTH ||
+	       (params->eyes == GZ_VALIDATE_EYES_LEFT) == (eye == GZ_EYE_LEFT);
+}
+
 static struct gz_validate_output judge_eyes(struct gz_validate_state *state,
 					    const struct gz_validate_params *params,
 					    const struct gz_display *display, double step_s,
@@ -116,6 +122,8 @@ static struct gz_validate_output judge_eyes(struct gz_validate_state *state,
 {
 	struct gz_validate_output out = { .rejection = GZ_REJECT_TRACKER };
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
+		if (!wanted(params, i))
+			continue;
 		const struct gz_eye_sample *eye = &sample->eye[i];
 		struct measurement m = { eye->point, eye->valid, eye->confidence };
 		enum gz_rejection rejection = judge(state, i, params, display, &m);

@@ -12,6 +12,13 @@
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 
+/** Which eyes are used. A tracker that gives only a common point is used with any. */
+enum gz_validate_eyes {
+	GZ_VALIDATE_EYES_BOTH,
+	GZ_VALIDATE_EYES_LEFT,
+	GZ_VALIDATE_EYES_RIGHT,
+};
+
 /** Settings; presets and sources stand in pipeline_options.c. */
 struct gz_validate_params {
 	double margin;             /**< how far outside [0, 1] a point may lie, display sides */
@@ -19,6 +26,7 @@ struct gz_validate_params {
 	double jump_deg;           /**< a step this small is never too fast: noise, degrees */
 	double max_disparity_deg;  /**< greatest angle between the two eyes' points, degrees */
 	double min_confidence;     /**< [0, 1]; below it an eye is not used */
+	int eyes;                  /**< enum gz_validate_eyes */
 };
 
 /** What validity is judged against: the right eye, the left eye, the common point. */
@@ -56,6 +64,8 @@ struct gz_validate_output {
  * than max_disparity_deg beyond their usual disparity, which is learnt over a second also where it
  * is too large, so that a badly calibrated tracker is not refused for ever. Where neither eye's
  * point was measured the common point is judged in the same way.
+ *
+ * An eye that is not to be used is as one that is not there.
  *
  * The reason told is of the eye that came farthest in the order tracker, confidence, not_finite,
  * off_screen, velocity.

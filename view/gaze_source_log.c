@@ -136,7 +136,11 @@ static enum gz_result take_settings(const struct gz_gaze_log_header *header, con
 		if (r != GZ_OK)
 			return r;
 	}
-	return GZ_OK;
+	char message[256];
+	enum gz_result r = gz_pipeline_check_params(params, message, sizeof message);
+	if (r != GZ_OK)
+		gz_err(log, "%s: %s", path, message);
+	return r == GZ_OK ? GZ_OK : GZ_ERR_FORMAT;
 }
 
 static enum gz_result prepare(struct log_source *self, const char *path)

@@ -164,6 +164,26 @@ static void config_pipeline_described_in_a_header_reads_back_the_same(void **sta
 	assert_memory_equal(&params, &wanted, sizeof params);
 }
 
+static void config_correction_without_area_is_refused(void **state)
+{
+	(void)state;
+	static struct gz_gaze_log_header header;
+	struct gz_pipeline_params params;
+	assert_int_equal(READ("--config", "/dev/null", "--pipeline.correction.x", "0.5 0 0"),
+			 GZ_ERR_INVAL);
+	assert_non_null(strstr(captured.last, "pipeline.correction"));
+	assert_int_equal(READ("--config", "/dev/null", "--pipeline.correction.x", "0.5 1 inf"),
+			 GZ_ERR_INVAL);
+	header.setting_count = 1;
+	header.settings[0] = (struct gz_gaze_log_setting) { "correction.y", "0 1 0" };
+	assert_int_equal(READ("--config", "/dev/null"), GZ_OK);
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params),
+			 GZ_ERR_INVAL);
+	header.settings[0] = (struct gz_gaze_log_setting) { "correction.y", "0.25 0 0.5" };
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_true(params.correct.y[0] == 0.25 && params.correct.y[2] == 0.5);
+}
+
 /* The printed file, without a path. */
 static size_t print_file(char *text, size_t size)
 {
@@ -243,6 +263,7 @@ int main(void)
 		cmocka_unit_test(config_control_endpoint_does_not_matter_without_tcp),
 		cmocka_unit_test(config_display_is_the_best_known),
 		cmocka_unit_test(config_pipeline_of_a_recording_comes_from_its_header),
+		cmocka_unit_test(config_correction_without_area_is_refused),
 		cmocka_unit_test(config_pipeline_described_in_a_header_reads_back_the_same),
 		cmocka_unit_test(
 			config_installed_file_is_the_printed_one_and_parses_to_the_presets),

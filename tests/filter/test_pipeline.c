@@ -355,6 +355,7 @@ static void every_preset_parses_and_prints_the_same(void **state)
 {
 	(void)state;
 	struct gz_pipeline_params params;
+	size_t covered = 0;
 	for (size_t i = 0; i < gz_pipeline_option_count; i++) {
 		const struct gz_option *option = &gz_pipeline_options[i];
 		char message[256] = "", text[64];
@@ -364,9 +365,12 @@ static void every_preset_parses_and_prints_the_same(void **state)
 			fail_msg("%s: %s", option->key, message);
 		assert_int_equal(gz_option_format(option, &params, text, sizeof text), GZ_OK);
 		assert_string_equal(text, option->preset);
+		covered += option->type == GZ_OPTION_DOUBLE
+				   ? sizeof(double) * (size_t)(option->count ? option->count : 1)
+				   : sizeof(double); /* an int and what aligns the next field */
 	}
 	/* Every field has its option: the table covers the whole struct. */
-	assert_int_equal(gz_pipeline_option_count * sizeof(double), sizeof params);
+	assert_int_equal(covered, sizeof params);
 }
 
 int main(void)

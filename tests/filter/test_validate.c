@@ -181,6 +181,43 @@ static void common_point_is_judged_where_no_eye_was_measured(void **state)
 	assert_int_equal(judge(&s, &sample), GZ_REJECT_TRACKER);
 }
 
+static void an_eye_that_is_not_wanted_is_not_looked_at(void **state)
+{
+	(void)state;
+	struct gz_validate_state s = { .started = false };
+	struct gz_sample sample = good_sample(1, 0.5f, 0.5f);
+	params.eyes = GZ_VALIDATE_EYES_LEFT;
+	struct gz_validate_output out = gz_validate_step(&s, &params, &display, &sample);
+	assert_int_equal(out.rejection, GZ_REJECT_NONE);
+	assert_true(out.eye_good[GZ_EYE_LEFT] && !out.eye_good[GZ_EYE_RIGHT]);
+	params.eyes = GZ_VALIDATE_EYES_RIGHT;
+	sample = good_sample(2, 0.5f, 0.5f);
+	sample.eye[GZ_EYE_RIGHT].valid = false; /* the left one does not stand in */
+	assert_int_equal(judge(&s, &sample), GZ_REJECT_TRACKER);
+	sample = good_sample(3, 0.5f, 0.5f);
+	sample.eye[GZ_EYE_LEFT].point.x = 5; /* nor do its faults count */
+	out = gz_validate_step(&s, &params, &display, &sample);
+	assert_int_equal(out.rejection, GZ_REJECT_NONE);
+	assert_true(out.eye_good[GZ_EYE_RIGHT] && !out.eye_good[GZ_EYE_LEFT]);
+	params.eyes = GZ_VALIDATE_EYES_BOTH;
+}
+
+static void a_tracker_with_one_point_for_both_eyes_is_used_with_any_choice(void **state)
+{
+	(void)state;
+	for (int eyes = GZ_VALIDATE_EYES_BOTH; eyes <= GZ_VALIDATE_EYES_RIGHT; eyes++) {
+		struct gz_validate_state s = { .started = false };
+		struct gz_sample sample = gz_sample_unmeasured();
+		sample.host_ns = 1000000;
+		sample.valid = true;
+		sample.point = (struct gz_point) { 0.5f, 0.5f };
+		params.eyes = eyes;
+		struct gz_validate_output out = gz_validate_step(&s, &params, &display, &sample);
+		assert_true(out.combined && out.rejection == GZ_REJECT_NONE);
+	}
+	params.eyes = GZ_VALIDATE_EYES_BOTH;
+}
+
 int main(void)
 {
 	static const struct CMUnitTest tests[] = {
@@ -193,6 +230,8 @@ int main(void)
 		cmocka_unit_test(fastest_saccade_passes),
 		cmocka_unit_test(sudden_disparity_is_refused_and_a_lasting_one_learnt),
 		cmocka_unit_test(common_point_is_judged_where_no_eye_was_measured),
+		cmocka_unit_test(an_eye_that_is_not_wanted_is_not_looked_at),
+		cmocka_unit_test(a_tracker_with_one_point_for_both_eyes_is_used_with_any_choice),
 	};
 	return cmocka_run_group_tests_name("filter.validate", tests, setup, NULL);
 }
