@@ -1,0 +1,209 @@
+/* The daemon with trackers that misbehave and with more readers than anybody has. */
+#include "check.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "drivers/template/template_protocol.h"
+#include "gazed_process.h"
+#include "protocol/wire.h"
+
+/* A thread sanitizer takes half a second for each context of libzmq. */
+#if defined __SANITIZE_THREAD__
+#define READERS 8
+#else
+#define READERS 64
+#endif
+#define TEXT_OF(number) #number
+#define TEXT(number)    TEXT_OF(number)
+
+static struct gazed_place place;
+static char fifo[128];
+
+/* What plays the tracker: the template's reports through a FIFO. */
+static struct {
+	int fd;
+	uint32_t counter;
+	uint32_t clock_us;
+} tracker;
+
+static int set_up(void **state)
+{
+	(void)state;
+	gazed_place_make(&place);
+	snprintf(fifo, sizeof fifo, "%s/fifo", place.directory);
+	/* Open for both, so that neither end waits for the other. */
+	if (mkfifo(fifo, 0600) != 0)
+		return -1;
+	tracker.fd = open(fifo, O_RDWR | O_CLOEXEC);
+	tracker.counter = 0;
+	tracker.clock_us = 0;
+	return tracker.fd >= 0 ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	gazed_kill_all();
+	close(tracker.fd);
+	unlink(fifo);
+	gazed_place_remove(&place);
+	return 0;
+}
+
+static struct gazed_process spawn_with_tracker(void)
+{
+	const char *const arguments[] = { "--driver", "template",           "--template.path",
+					  fifo,       "--template.rate_hz", "500",
+					  NULL };
+	struct gazed_process process;
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &process);
+	gazed_wait_ready(&place, &process);
+	return process;
+}
+
+/* A good report @p step_us after the last by the device's clock, 2 ms by ours. */
+static void send_report(int32_t step_us)
+{
+	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
+	tracker.clock_us += (uint32_t)step_us;
+	struct gz_template_report report = { .counter = tracker.counter++,
+					     .clock_us = tracker.clock_us,
+					     .found = { true, true },
+					     .point = { { 0.5f, 0.5f }, { 0.5f, 0.5f } } };
+	gz_template_print(&report, bytes);
+	assert_int_equal(write(tracker.fd, bytes, sizeof bytes), sizeof bytes);
+	gz_clock_sleep_until_ns(gz_clock_now_ns() + 2 * GZ_NS_PER_MS);
+}
+
+static struct gz_gaze gaze_of(const struct received *message)
+{
+	struct gz_gaze gaze = { 0 };
+	assert_int_equal(gz_wire_decode_gaze(message->bytes, message->size, &gaze), GZ_OK);
+	return gaze;
+}
+
+static bool is_gaze(const struct received *message)
+{
+	return strncmp(message->topic, GZ_TOPIC_GAZE, strlen(GZ_TOPIC_GAZE)) == 0;
+}
+
+static void wait_status(struct reader *reader, uint64_t samples)
+{
+	int64_t deadline_ns = gz_clock_now_ns() + 20 * GZ_NS_PER_S;
+	while (reader->status_count == 0 || reader->status.samples < samples) {
+		reader_receive(reader, 1000);
+		if (gz_clock_now_ns() > deadline_ns)
+			fail_msg("%llu samples by the status, waited for %llu",
+				 (unsigned long long)reader->status.samples,
+				 (unsigned long long)samples);
+	}
+}
+
+static void gazed_tracker_that_sends_garbage_is_heard_between_it_and_counted(void **state)
+{
+	(void)state;
+	enum { ROUNDS = 100 };
+	struct reader reader;
+	unsigned char garbage[257];
+	unsigned random = 1;
+	struct gazed_process gazed = spawn_with_tracker();
+	reader_open(&reader, &place, "");
+	for (int round = 0; round < ROUNDS; round++) {
+		for (size_t i = 0; i < sizeof garbage; i++) {
+			random = random * 1664525u + 1013904223u;
+			garbage[i] = (unsigned char)(random >> 24);
+		}
+		size_t size = 1 + (random >> 8) % sizeof garbage;
+		assert_int_equal(write(tracker.fd, garbage, size), (ssize_t)size);
+		/* What garbage leaves in the buffer may cost the first report behind it. */
+		for (int i = 0; i < 3; i++)
+			send_report(2000);
+	}
+	wait_status(&reader, 2 * ROUNDS);
+	assert_in_range(reader.status.samples, 2 * ROUNDS, 3 * ROUNDS);
+	assert_true(reader.status.malformed[GZ_MALFORMED_SYNTAX] >= ROUNDS / 2);
+	assert_int_equal(reader.status.tracker.state, GZ_TRACKER_RUNNING);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&reader);
+}
+
+static void gazed_device_clock_that_jumps_or_runs_back_never_turns_the_streams_time(void **state)
+{
+	(void)state;
+	static const int32_t jumps_us[] = { 10000000, -5000000, 0, -2000, 2000000000 };
+	enum { BETWEEN = 100, JUMPS = sizeof jumps_us / sizeof *jumps_us };
+	struct reader reader;
+	struct gazed_process gazed = spawn_with_tracker();
+	reader_open(&reader, &place, "");
+	while (reader.status_count == 0)
+		reader_receive(&reader, 1000);
+	for (int jump = 0; jump < JUMPS; jump++) {
+		for (int i = 0; i < BETWEEN; i++)
+			send_report(2000);
+		send_report(jumps_us[jump]);
+	}
+	for (int i = 0; i < BETWEEN; i++)
+		send_report(2000);
+	reader_receive_gaze(&reader, JUMPS * (BETWEEN + 1) + BETWEEN);
+	int64_t newest_ns = 0;
+	uint64_t good = 0;
+	for (size_t i = 0; i < reader.count; i++) {
+		if (!is_gaze(&reader.messages[i]))
+			continue;
+		struct gz_gaze gaze = gaze_of(&reader.messages[i]);
+		if (gaze.host_ns < newest_ns || gaze.host_ns > gaze.publish_ns)
+			fail_msg("sample %llu at %lld, after %lld, sent at %lld",
+				 (unsigned long long)gaze.seq, (long long)gaze.host_ns,
+				 (long long)newest_ns, (long long)gaze.publish_ns);
+		newest_ns = gaze.host_ns;
+		good += gaze.confidence > 0;
+	}
+	/* Each jump may cost some samples at the same time as the last, not the stream. */
+	if (good < JUMPS * (BETWEEN - 10) + BETWEEN)
+		fail_msg("%llu good samples of %zu", (unsigned long long)good, reader.gaze_count);
+	assert_non_null(strstr(gazed_said(&gazed), "clock jumped"));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&reader);
+}
+
+static void gazed_serves_many_readers_without_a_gap(void **state)
+{
+	(void)state;
+	enum { WANTED = 300 };
+	static struct reader readers[READERS];
+	struct gazed_process gazed;
+	const char *const arguments[] = { "--sim.rate_hz", "250", "--wait-readers", TEXT(READERS),
+					  NULL };
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &gazed);
+	for (int i = 0; i < READERS; i++)
+		reader_open(&readers[i], &place, "gaze.");
+	for (int i = 0; i < READERS; i++) {
+		reader_receive_gaze(&readers[i], WANTED);
+		if (readers[i].newest_seq != WANTED - 1)
+			fail_msg("reader %d: message %d is of sample %llu", i, WANTED,
+				 (unsigned long long)readers[i].newest_seq);
+	}
+	gazed_request(&place, "t", NULL);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	for (int i = 0; i < READERS; i++)
+		reader_close(&readers[i]);
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(gazed_tracker_that_sends_garbage_is_heard_between_it_and_counted),
+		TEST(gazed_device_clock_that_jumps_or_runs_back_never_turns_the_streams_time),
+		TEST(gazed_serves_many_readers_without_a_gap),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
