@@ -75,11 +75,24 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 		out_message->mark_ns = mark.mark_ns;
 		memcpy(out_message->mark, mark.mark, sizeof mark.mark);
 	}
+	bool is_notification = begins_with(text, GZ_TOPIC_NOTIFY);
+	if (is_notification &&
+	    gz_wire_decode_notification(body, body_size, &out_message->notification) != GZ_OK)
+		return GZ_ERR_PROTOCOL;
+	out_message->is_notification = is_notification;
 	out_message->is_mark = begins_with(text, GZ_TOPIC_ANNOTATION);
 	memcpy(out_message->topic, text, sizeof text);
 	memcpy(out_message->body, body, body_size);
 	out_message->size = body_size;
 	return GZ_OK;
+}
+
+const char *gz_inlet_refusal(enum gz_result result)
+{
+	return result == GZ_ERR_ACCESS
+		       ? "refused: the topic is the daemon's own"
+		       : "refused: a message is a topic and one MessagePack map; an annotation has "
+			 "a label, a notification a subject";
 }
 
 static void complain(struct gz_inlet *inlet, enum gz_result result)
@@ -93,41 +106,41 @@ static void complain(struct gz_inlet *inlet, enum gz_result result)
 		(unsigned long long)held_back);
 }
 
-/* Receive one message's frames. @return how many there were, 0 if there is no message */
-static int receive_frames(struct gz_inlet *inlet, zmq_msg_t *topic, zmq_msg_t *body)
+int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
 {
-	int frames = 0;
+	int count = 0;
 	bool more = true;
 	while (more) {
-		zmq_msg_t *frame = frames == 0 ? topic : body;
-		if (zmq_msg_recv(frame, inlet->socket, ZMQ_DONTWAIT) < 0)
+		zmq_msg_t *frame = &frames[count == 0 ? 0 : 1];
+		if (zmq_msg_recv(frame, socket, ZMQ_DONTWAIT) < 0)
 			break;
-		frames++;
+		count++;
 		more = zmq_msg_more(frame) != 0;
 	}
-	return frames;
+	return count;
 }
 
 enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message *out_message)
 {
-	zmq_msg_t topic, body;
-	zmq_msg_init(&topic);
-	zmq_msg_init(&body);
+	zmq_msg_t frame[2];
+	zmq_msg_init(&frame[0]);
+	zmq_msg_init(&frame[1]);
 	enum gz_result result = GZ_ERR_TIMEOUT;
 	/* No more than a queue of bad ones at a time. */
 	for (int i = 0; i < QUEUE && result != GZ_OK; i++) {
-		int frames = receive_frames(inlet, &topic, &body);
+		int frames = gz_inlet_receive_frames(inlet->socket, frame);
 		if (frames == 0)
 			break;
-		result = frames != 2 ? GZ_ERR_PROTOCOL
-				     : gz_inlet_judge(zmq_msg_data(&topic), zmq_msg_size(&topic),
-						      zmq_msg_data(&body), zmq_msg_size(&body),
-						      gz_clock_now_ns(), out_message);
+		result = frames != 2
+				 ? GZ_ERR_PROTOCOL
+				 : gz_inlet_judge(zmq_msg_data(&frame[0]), zmq_msg_size(&frame[0]),
+						  zmq_msg_data(&frame[1]), zmq_msg_size(&frame[1]),
+						  gz_clock_now_ns(), out_message);
 		if (result != GZ_OK)
 			complain(inlet, result);
 	}
-	zmq_msg_close(&topic);
-	zmq_msg_close(&body);
+	zmq_msg_close(&frame[0]);
+	zmq_msg_close(&frame[1]);
 	return result == GZ_OK ? GZ_OK : GZ_ERR_TIMEOUT;
 }
 

@@ -8,10 +8,12 @@
 #define GZ_DAEMON_INLET_H
 
 #include <stdbool.h>
+#include <zmq.h>
 
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/command.h"
+#include "protocol/wire_notification.h"
 
 /** Largest message, bytes. Chosen: Pupil's notifications are far smaller. */
 #define GZ_INLET_SIZE_MAX 16384
@@ -30,6 +32,8 @@ struct gz_inlet_message {
 	bool is_mark; /**< the next two hold something */
 	int64_t mark_ns;
 	char mark[GZ_GAZE_LOG_TEXT_SIZE];
+	bool is_notification; /**< the next one holds something */
+	struct gz_notification notification;
 };
 
 /**
@@ -56,11 +60,25 @@ void *gz_inlet_socket(const struct gz_inlet *inlet);
  * @param now_ns             host time: of a mark whose annotation has no time
  * @param[out] out_message   written on success only
  * @retval GZ_ERR_ACCESS    the topic is the daemon's own
- * @retval GZ_ERR_PROTOCOL  no topic, too long, or no MessagePack; an annotation without a label
+ * @retval GZ_ERR_PROTOCOL  no topic, too long, or no MessagePack; an annotation without a label, a
+ *                          notification without a subject
  */
 enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *body,
 			      size_t body_size, int64_t now_ns,
 			      struct gz_inlet_message *out_message);
+
+/** What to tell a client whose message was refused with @p result by gz_inlet_judge(); static text.
+ */
+const char *gz_inlet_refusal(enum gz_result result);
+
+/**
+ * Receive the frames of one message without waiting; of more than two the last one stays.
+ *
+ * @param socket  a ZeroMQ socket
+ * @param frames  initialised; the caller's to close
+ * @return how many there were, 0 if there is no message
+ */
+int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2]);
 
 /**
  * Take one message that is let in; others are dropped, and told of once a second. Never waits.

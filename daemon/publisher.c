@@ -26,6 +26,7 @@ struct gz_publisher {
 	struct channel stream;
 	struct channel latest;
 	uint32_t subscriptions;
+	uint32_t pupil_subscriptions; /* those of them that take pupil messages */
 	int port;
 	int latest_port;
 };
@@ -149,6 +150,20 @@ void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, co
 	zmq_send(publisher->stream.socket, bytes, size, ZMQ_DONTWAIT);
 }
 
+/* Pupil's "pupil." messages: parts of the gaze message, sent on their own to who asks for them. */
+static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_message *gaze)
+{
+	static const char *const topics[GZ_EYE_COUNT] = {
+		[GZ_EYE_RIGHT] = GZ_TOPIC_PUPIL_RIGHT,
+		[GZ_EYE_LEFT] = GZ_TOPIC_PUPIL_LEFT,
+	};
+	for (int i = 0; i < GZ_EYE_COUNT; i++) {
+		if (gaze->pupil[i].size > 0)
+			gz_publisher_send_one(publisher, topics[i], gaze->bytes + gaze->pupil[i].at,
+					      gaze->pupil[i].size);
+	}
+}
+
 void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch)
 {
 	/* Sending to nobody costs system calls, too. Who has just come is seen at the next update;
@@ -159,6 +174,8 @@ void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_
 		gz_publisher_send_one(publisher, item->topic, item->body.bytes, item->body.size);
 	}
 	const struct gz_wire_message *gaze = &batch->item[0].body;
+	if (publisher->pupil_subscriptions > 0)
+		send_pupils(publisher, gaze);
 	if (publisher->latest.connections > 0)
 		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
 }
@@ -184,17 +201,34 @@ static void update_connections(struct channel *channel)
 	}
 }
 
+static bool takes_pupils(const unsigned char *topic, size_t size)
+{
+	return (size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
+		memcmp(topic, GZ_TOPIC_PUPIL_RIGHT, size) == 0) ||
+	       (size < sizeof GZ_TOPIC_PUPIL_LEFT && memcmp(topic, GZ_TOPIC_PUPIL_LEFT, size) == 0);
+}
+
+static void count(uint32_t *counter, bool more)
+{
+	if (more)
+		++*counter;
+	else if (*counter > 0)
+		--*counter;
+}
+
 /* A subscription's frame is 1 and the topic, the end of one 0 and the topic. */
 static void update_subscriptions(struct gz_publisher *publisher)
 {
-	unsigned char frame[1] = { 2 };
-	for (int i = 0; i < SUBSCRIPTIONS_AT_ONCE &&
-			zmq_recv(publisher->stream.socket, frame, sizeof frame, ZMQ_DONTWAIT) >= 0;
-	     i++) {
-		if (frame[0] == 1)
-			publisher->subscriptions++;
-		else if (frame[0] == 0 && publisher->subscriptions > 0)
-			publisher->subscriptions--;
+	unsigned char frame[1 + sizeof GZ_TOPIC_PUPIL_RIGHT];
+	for (int i = 0; i < SUBSCRIPTIONS_AT_ONCE; i++) {
+		int size = zmq_recv(publisher->stream.socket, frame, sizeof frame, ZMQ_DONTWAIT);
+		if (size < 0)
+			return;
+		if (size == 0 || frame[0] > 1)
+			continue;
+		count(&publisher->subscriptions, frame[0] == 1);
+		if (takes_pupils(frame + 1, (size_t)size - 1))
+			count(&publisher->pupil_subscriptions, frame[0] == 1);
 	}
 }
 

@@ -40,3 +40,33 @@ void gz_remote_parse(const void *bytes, size_t size, struct gz_remote_request *o
 	else if (blank && out->kind != GZ_REMOTE_SET_TIME)
 		out->kind = GZ_REMOTE_UNKNOWN;
 }
+
+enum gz_remote_notice gz_remote_notice(const char *subject)
+{
+	static const struct {
+		const char *subject;
+		enum gz_remote_notice notice;
+	} subjects[] = {
+		{ GZ_SUBJECT_RECORDING_START, GZ_REMOTE_NOTICE_RECORD },
+		{ GZ_SUBJECT_RECORDING_STOP, GZ_REMOTE_NOTICE_STOP },
+		{ GZ_SUBJECT_CALIBRATION_START, GZ_REMOTE_NOTICE_CALIBRATE },
+		{ GZ_SUBJECT_SHOULD_DOC, GZ_REMOTE_NOTICE_DOC },
+	};
+	for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
+		if (strcmp(subjects[i].subject, subject) == 0)
+			return subjects[i].notice;
+	}
+	return GZ_REMOTE_NOTICE_OTHER;
+}
+
+const char *gz_remote_doc(void)
+{
+	return "Requests of one frame: R [name], r, t, v, SUB_PORT, PUB_PORT, LATEST_PORT; T, C "
+	       "and "
+	       "c are refused.\n"
+	       "Notifications that are obeyed: recording.should_start (session_name), "
+	       "recording.should_stop, meta.should_doc; calibration.should_start is answered by "
+	       "calibration.failed. All others are passed on to every reader.\n"
+	       "Notifications that are sent: recording.started, recording.stopped, "
+	       "calibration.failed, meta.doc.";
+}

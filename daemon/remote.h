@@ -7,6 +7,8 @@
 
 #include <stddef.h>
 
+#include "protocol/wire_notification.h"
+
 /** Longest request that is understood, bytes with a NUL. */
 #define GZ_REMOTE_REQUEST_SIZE 256
 
@@ -38,5 +40,20 @@ struct gz_remote_request {
  * @param[out] out     always filled
  */
 void gz_remote_parse(const void *bytes, size_t size, struct gz_remote_request *out);
+
+/** What a notification asks the daemon for. */
+enum gz_remote_notice {
+	GZ_REMOTE_NOTICE_OTHER,     /**< nothing: for other readers, or of no meaning here */
+	GZ_REMOTE_NOTICE_RECORD,    /**< "recording.should_start", with session_name */
+	GZ_REMOTE_NOTICE_STOP,      /**< "recording.should_stop" */
+	GZ_REMOTE_NOTICE_CALIBRATE, /**< "calibration.should_start" */
+	GZ_REMOTE_NOTICE_DOC,       /**< "meta.should_doc": say what is understood */
+};
+
+/** What @p subject asks for. */
+enum gz_remote_notice gz_remote_notice(const char *subject);
+
+/** What the daemon understands, as it tells to who asks by "meta.should_doc"; static text. */
+const char *gz_remote_doc(void);
 
 #endif

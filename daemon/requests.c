@@ -43,11 +43,15 @@ struct gz_requests {
 	int stream_port;
 	int latest_port;
 	enum pending pending;
+	bool owed;       /* a client waits for an answer; else a notification has asked */
 	uint32_t number; /* of the newest command */
 	int pending_fd;
 	char pending_path[GZ_PATH_SIZE];
 	char pending_name[GZ_REMOTE_REQUEST_SIZE];
 	int64_t deadline_ns;
+	/* Asked for by a notification while something was pending: done next. */
+	enum gz_remote_notice deferred;
+	char deferred_name[GZ_SESSION_NAME_SIZE];
 	bool ended;
 	enum gz_result failure; /* of the service */
 };
@@ -55,6 +59,13 @@ struct gz_requests {
 static void answer(struct gz_requests *requests, const char *text)
 {
 	requests->pending = PENDING_NONE;
+	if (!requests->owed) {
+		/* Nobody waits: whoever sent a notification finds it in the log. */
+		if (strcmp(text, "OK") != 0)
+			gz_warn(requests->parts.log, "a notification: %s", text);
+		return;
+	}
+	requests->owed = false;
 	if (zmq_send(requests->control, text, strlen(text), ZMQ_DONTWAIT) < 0)
 		gz_debug(requests->parts.log, "an answer found nobody: %s", zmq_strerror(errno));
 }
@@ -133,6 +144,36 @@ static void stop_recording(struct gz_requests *requests)
 		wait_for_service(requests, PENDING_STOP);
 }
 
+/* To all readers of the stream. Where the service does not keep up with clients, their messages are
+ * dropped: samples come first. */
+static void send_to_readers(struct gz_requests *requests, const char *topic, const void *body,
+			    size_t size)
+{
+	struct gz_command command = { .kind = GZ_COMMAND_SEND };
+	snprintf(command.text, sizeof command.text, "%s", topic);
+	if (zmq_send(requests->commands, &command, sizeof command, ZMQ_SNDMORE | ZMQ_DONTWAIT) >= 0)
+		zmq_send(requests->commands, body, size, ZMQ_DONTWAIT);
+}
+
+static const char no_calibration[] = "this tracker is calibrated by its own software, not by gazed";
+
+/* Who has asked for a calibration may wait for how it ends. */
+static void tell_calibration_failed(struct gz_requests *requests)
+{
+	struct gz_wire_message message;
+	if (gz_wire_encode_calibration_failed(no_calibration, gz_clock_now_ns(), &message) == GZ_OK)
+		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_CALIBRATION_FAILED,
+				message.bytes, message.size);
+}
+
+static void tell_doc(struct gz_requests *requests)
+{
+	struct gz_wire_message message;
+	if (gz_wire_encode_doc("gazed", gz_remote_doc(), &message) == GZ_OK)
+		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_DOC, message.bytes,
+				message.size);
+}
+
 static void serve_request(struct gz_requests *requests, const struct gz_remote_request *request)
 {
 	char text[ANSWER_SIZE];
@@ -164,31 +205,16 @@ static void serve_request(struct gz_requests *requests, const struct gz_remote_r
 		answer_port(requests, gz_inlet_port(requests->inlet), "inlet");
 		return;
 	case GZ_REMOTE_CALIBRATE:
+		answer(requests, no_calibration);
+		tell_calibration_failed(requests);
+		return;
 	case GZ_REMOTE_CALIBRATION_STOP:
-		answer(requests, "this tracker is calibrated by its own software, not by "
-				 "gazed");
+		answer(requests, no_calibration);
 		return;
 	case GZ_REMOTE_UNKNOWN:
 		answer(requests, "unknown command");
 		return;
 	}
-}
-
-/* One request, of which the first frame counts and a second one makes it unknown. */
-static void take_request(struct gz_requests *requests)
-{
-	zmq_msg_t frame;
-	struct gz_remote_request request;
-	zmq_msg_init(&frame);
-	if (zmq_msg_recv(&frame, requests->control, ZMQ_DONTWAIT) < 0) {
-		zmq_msg_close(&frame);
-		return;
-	}
-	gz_remote_parse(zmq_msg_data(&frame), zmq_msg_size(&frame), &request);
-	while (zmq_msg_more(&frame) && zmq_msg_recv(&frame, requests->control, ZMQ_DONTWAIT) >= 0)
-		request.kind = GZ_REMOTE_UNKNOWN;
-	zmq_msg_close(&frame);
-	serve_request(requests, &request);
 }
 
 /* The service's word on the newest command. */
@@ -260,8 +286,49 @@ static long milliseconds_left(struct gz_requests *requests)
 	return 0;
 }
 
-/* A client's message: to all readers, and into the log if it is an annotation. Where the service
- * does not keep up with clients, their messages are dropped: samples come first. */
+/* What a notification asks for, once it can be done. */
+static void obey_deferred(struct gz_requests *requests)
+{
+	enum gz_remote_notice notice = requests->deferred;
+	if (requests->pending != PENDING_NONE)
+		return;
+	requests->deferred = GZ_REMOTE_NOTICE_OTHER;
+	if (notice == GZ_REMOTE_NOTICE_RECORD)
+		start_recording(requests, requests->deferred_name);
+	else if (notice == GZ_REMOTE_NOTICE_STOP)
+		stop_recording(requests);
+}
+
+static void obey_notification(struct gz_requests *requests,
+			      const struct gz_notification *notification)
+{
+	enum gz_remote_notice notice = gz_remote_notice(notification->subject);
+	switch (notice) {
+	case GZ_REMOTE_NOTICE_RECORD:
+	case GZ_REMOTE_NOTICE_STOP:
+		if (requests->deferred != GZ_REMOTE_NOTICE_OTHER) {
+			gz_warn(requests->parts.log, "%s: too many at once; not obeyed",
+				notification->subject);
+			return;
+		}
+		requests->deferred = notice;
+		memcpy(requests->deferred_name, notification->session_name,
+		       sizeof requests->deferred_name);
+		obey_deferred(requests);
+		return;
+	case GZ_REMOTE_NOTICE_CALIBRATE:
+		tell_calibration_failed(requests);
+		return;
+	case GZ_REMOTE_NOTICE_DOC:
+		tell_doc(requests);
+		return;
+	case GZ_REMOTE_NOTICE_OTHER:
+		return;
+	}
+}
+
+/* A client's message: to all readers, into the log if it is an annotation, and obeyed if it is a
+ * notification for the daemon. */
 static void pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_MARK, .host_ns = message->mark_ns };
@@ -269,10 +336,9 @@ static void pass_on(struct gz_requests *requests, const struct gz_inlet_message 
 		memcpy(command.text, message->mark, sizeof command.text);
 		send_command(requests, &command);
 	}
-	command.kind = GZ_COMMAND_SEND;
-	memcpy(command.text, message->topic, sizeof message->topic);
-	if (zmq_send(requests->commands, &command, sizeof command, ZMQ_SNDMORE | ZMQ_DONTWAIT) >= 0)
-		zmq_send(requests->commands, message->body, message->size, ZMQ_DONTWAIT);
+	send_to_readers(requests, message->topic, message->body, message->size);
+	if (message->is_notification)
+		obey_notification(requests, &message->notification);
 }
 
 static void take_messages(struct gz_requests *requests)
@@ -281,6 +347,42 @@ static void take_messages(struct gz_requests *requests)
 	     i < MESSAGES_AT_ONCE && gz_inlet_receive(requests->inlet, &requests->message) == GZ_OK;
 	     i++)
 		pass_on(requests, &requests->message);
+}
+
+/* A message of two frames on the control socket: as on the inlet, but confirmed. */
+static void serve_message(struct gz_requests *requests, zmq_msg_t *topic, zmq_msg_t *body)
+{
+	struct gz_inlet_message *message = &requests->message;
+	enum gz_result result =
+		gz_inlet_judge(zmq_msg_data(topic), zmq_msg_size(topic), zmq_msg_data(body),
+			       zmq_msg_size(body), gz_clock_now_ns(), message);
+	if (result != GZ_OK) {
+		answer(requests, gz_inlet_refusal(result));
+		return;
+	}
+	answer(requests, message->is_notification ? "Notification received" : "Message forwarded.");
+	pass_on(requests, message);
+}
+
+/* One request: a frame of text, or a topic and a MessagePack map. */
+static void take_request(struct gz_requests *requests)
+{
+	zmq_msg_t frames[2];
+	struct gz_remote_request request;
+	zmq_msg_init(&frames[0]);
+	zmq_msg_init(&frames[1]);
+	int count = gz_inlet_receive_frames(requests->control, frames);
+	requests->owed = count > 0;
+	if (count == 1) {
+		gz_remote_parse(zmq_msg_data(&frames[0]), zmq_msg_size(&frames[0]), &request);
+		serve_request(requests, &request);
+	} else if (count == 2) {
+		serve_message(requests, &frames[0], &frames[1]);
+	} else if (count > 2) {
+		answer(requests, gz_inlet_refusal(GZ_ERR_PROTOCOL));
+	}
+	zmq_msg_close(&frames[0]);
+	zmq_msg_close(&frames[1]);
 }
 
 static void forget_event(int fd)
@@ -311,6 +413,7 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 			forget_event(items[1].fd);
 		take_notices(requests);
 		check_finished(requests);
+		obey_deferred(requests);
 		take_messages(requests);
 		bool leave = requests->ended && requests->parts.config->exit_at_end;
 		if (leave || requests->failure != GZ_OK)

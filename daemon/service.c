@@ -13,6 +13,7 @@
 #include "daemon/messages.h"
 #include "daemon/rate_meter.h"
 #include "daemon/tracker.h"
+#include "protocol/wire_notification.h"
 
 #define GZ_LOG_MODULE "service"
 
@@ -39,6 +40,7 @@ struct gz_service {
 	enum gz_tracker_state told_tracker;
 	enum gz_recording_state told_recording;
 	uint32_t told_subscribers;
+	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was notified; empty: none */
 	/* Large, and used for one sample at a time. */
 	struct gz_outgoing_batch batch;
 	struct gz_gaze_log_header header;
@@ -118,6 +120,46 @@ static void describe(struct gz_service *service)
 	gz_config_describe_pipeline(&service->maker.pipeline.params, header);
 }
 
+static void send_notification(struct gz_service *service, const char *topic)
+{
+	const struct gz_wire_message *message = &service->batch.item[0].body;
+	gz_publisher_send_one(service->parts.publisher, topic, message->bytes, message->size);
+}
+
+/* Pupil's clients wait for these two, whoever has asked for a recording. */
+static void notify_stopped(struct gz_service *service)
+{
+	if (service->told_path[0] == '\0')
+		return;
+	if (gz_wire_encode_recording_stopped(service->told_path, &service->batch.item[0].body) ==
+	    GZ_OK)
+		send_notification(service, GZ_TOPIC_NOTIFY GZ_SUBJECT_RECORDING_STOPPED);
+	service->told_path[0] = '\0';
+}
+
+/* Finished, not only asked to be: whoever is told may open the file. */
+static bool recording_is_over(const struct gz_service *service)
+{
+	struct gz_recorder_status status;
+	gz_recorder_get_status(service->parts.recorder, &status);
+	return status.state != GZ_RECORDING_ON;
+}
+
+static void notify_started(struct gz_service *service, const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	char session[GZ_PATH_SIZE];
+	notify_stopped(service); /* of one that has just ended */
+	snprintf(service->told_path, sizeof service->told_path, "%s", path);
+	snprintf(session, sizeof session, "%s", slash ? slash + 1 : path);
+	char *dot = strrchr(session, '.');
+	if (dot)
+		*dot = '\0';
+	if (gz_wire_encode_recording_started(path, session, gz_clock_now_ns(),
+					     &service->batch.item[0].body) == GZ_OK)
+		send_notification(service, GZ_TOPIC_NOTIFY GZ_SUBJECT_RECORDING_STARTED);
+}
+
 /* A log begins with the pipeline in its start state, because that is how its replay begins: what
  * the pipeline has learnt before the first recorded sample is nowhere in the log. */
 enum gz_result gz_service_record(struct gz_service *service, int fd, const char *path)
@@ -128,6 +170,7 @@ enum gz_result gz_service_record(struct gz_service *service, int fd, const char 
 	if (result != GZ_OK)
 		return result;
 	gz_message_maker_reset(&service->maker);
+	notify_started(service, path);
 	return GZ_OK;
 }
 
@@ -286,6 +329,8 @@ static void take_care(struct gz_service *service, int64_t now_ns)
 	if (service->waiting && gz_publisher_subscriptions(service->parts.publisher) >=
 					(uint32_t)service->parts.config->wait_readers)
 		service->waiting = false;
+	if (recording_is_over(service))
+		notify_stopped(service);
 	if (now_ns >= service->status_ns || status_changed(service)) {
 		send_status(service);
 		service->status_ns = now_ns + GZ_SERVICE_STATUS_MS * GZ_NS_PER_MS;
@@ -350,6 +395,7 @@ static void *run(void *user)
 			serve(service);
 	}
 	gz_recorder_stop(service->parts.recorder);
+	notify_stopped(service);
 	send_status(service);
 	gz_tracker_close(&service->tracker);
 	return NULL;

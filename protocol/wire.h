@@ -13,16 +13,18 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 
-#define GZ_TOPIC_GAZE       "gaze."
-#define GZ_TOPIC_GAZE_BOTH  "gaze.3d.01."
-#define GZ_TOPIC_GAZE_RIGHT "gaze.3d.0."
-#define GZ_TOPIC_GAZE_LEFT  "gaze.3d.1."
-#define GZ_TOPIC_SURFACES   "surfaces."
-#define GZ_TOPIC_FIXATIONS  "fixations"
-#define GZ_TOPIC_BLINKS     "blinks"
-#define GZ_TOPIC_SACCADES   "saccades"
-#define GZ_TOPIC_STATUS     "status"
-#define GZ_TOPIC_ANNOTATION "annotation"
+#define GZ_TOPIC_GAZE        "gaze."
+#define GZ_TOPIC_GAZE_BOTH   "gaze.3d.01."
+#define GZ_TOPIC_GAZE_RIGHT  "gaze.3d.0."
+#define GZ_TOPIC_GAZE_LEFT   "gaze.3d.1."
+#define GZ_TOPIC_PUPIL_RIGHT "pupil.0.3d"
+#define GZ_TOPIC_PUPIL_LEFT  "pupil.1.3d"
+#define GZ_TOPIC_SURFACES    "surfaces."
+#define GZ_TOPIC_FIXATIONS   "fixations"
+#define GZ_TOPIC_BLINKS      "blinks"
+#define GZ_TOPIC_SACCADES    "saccades"
+#define GZ_TOPIC_STATUS      "status"
+#define GZ_TOPIC_ANNOTATION  "annotation"
 
 /** What "method" says in our pupil and fixation maps. */
 #define GZ_WIRE_METHOD "gazecast"
@@ -42,6 +44,12 @@
 /** Bytes of one encoded message. */
 struct gz_wire_message {
 	size_t size;
+	/** In a gaze message where its pupil maps stand, by eye: each is also a whole message, of
+	 * topic GZ_TOPIC_PUPIL_RIGHT or _LEFT. Size 0 where there is none. */
+	struct {
+		size_t at;
+		size_t size;
+	} pupil[GZ_EYE_COUNT];
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
 };
 

@@ -27,7 +27,9 @@ enum gz_result gz_wire_encode_blink(const struct gz_blink *blink,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 3);
+	gz_pack_map(&pack, NULL, 5);
+	gz_pack_text(&pack, "topic", GZ_TOPIC_BLINKS);
+	gz_pack_array(&pack, "base_data", 0);
 	gz_pack_text(&pack, "type", blink->onset ? "onset" : "offset");
 	gz_pack_time(&pack, "timestamp", blink->time_ns);
 	gz_pack_float(&pack, "confidence", blink->confidence);

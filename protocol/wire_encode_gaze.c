@@ -86,8 +86,10 @@ static void pack_pupil(struct gz_pack *pack, const struct gz_gaze *gaze, enum gz
 	const struct gz_gaze_eye *eye = &gaze->eye[index];
 	float confidence = eye_confidence(gaze, eye);
 	struct gz_point point = eye_point(gaze, eye);
+	size_t begin = pack->message->size;
 	gz_pack_map(pack, NULL, 11);
-	gz_pack_text(pack, "topic", index == GZ_EYE_RIGHT ? "pupil.0.3d" : "pupil.1.3d");
+	gz_pack_text(pack, "topic",
+		     index == GZ_EYE_RIGHT ? GZ_TOPIC_PUPIL_RIGHT : GZ_TOPIC_PUPIL_LEFT);
 	gz_pack_int(pack, "id", index);
 	gz_pack_norm_pos(pack, point);
 	gz_pack_float(pack, "diameter", eye->pupil_mm * DIAMETER_PER_MM);
@@ -97,6 +99,8 @@ static void pack_pupil(struct gz_pack *pack, const struct gz_gaze *gaze, enum gz
 	gz_pack_float(pack, "confidence", confidence);
 	gz_pack_time(pack, "timestamp", gaze->host_ns);
 	gz_pack_text(pack, "method", GZ_WIRE_METHOD);
+	pack->message->pupil[index].at = begin;
+	pack->message->pupil[index].size = pack->message->size - begin;
 }
 
 /* What Pupil's gaze map holds. */
@@ -168,12 +172,14 @@ enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *su
 				      struct gz_wire_message *out_message)
 {
 	/* Pupil names the gaze on a surface so. */
-	char topic[32];
-	snprintf(topic, sizeof topic, "%son_surface", gz_wire_gaze_topic(gaze));
+	char topic[32], surface_topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
+	snprintf(topic, sizeof topic, "%s_on_surface", gz_wire_gaze_topic(gaze));
+	snprintf(surface_topic, sizeof surface_topic, GZ_TOPIC_SURFACES "%s", surface_name);
 
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 3);
+	gz_pack_map(&pack, NULL, 4);
+	gz_pack_text(&pack, "topic", surface_topic);
 	gz_pack_text(&pack, "name", surface_name);
 	gz_pack_time(&pack, "timestamp", gaze->host_ns);
 	gz_pack_array(&pack, "gaze_on_surfaces", 1);

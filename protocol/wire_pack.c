@@ -22,6 +22,7 @@ static int append(void *user, const char *bytes, size_t size)
 void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message)
 {
 	message->size = 0;
+	memset(message->pupil, 0, sizeof message->pupil);
 	pack->message = message;
 	pack->full = false;
 	msgpack_packer_init(&pack->packer, pack, append);
@@ -32,6 +33,7 @@ enum gz_result gz_pack_end(struct gz_pack *pack)
 	if (!pack->full)
 		return GZ_OK;
 	pack->message->size = 0;
+	memset(pack->message->pupil, 0, sizeof pack->message->pupil);
 	return GZ_ERR_FULL;
 }
 

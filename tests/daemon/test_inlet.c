@@ -42,6 +42,10 @@ static void inlet_notification_passes_and_is_no_mark(void **state)
 	assert_int_equal(judge("notify.x", notification, sizeof notification - 1), GZ_OK);
 	assert_false(message.is_mark);
 	assert_string_equal(message.topic, "notify.x");
+	assert_true(message.is_notification);
+	assert_string_equal(message.notification.subject, "x");
+	assert_int_equal(judge("custom", notification, sizeof notification - 1), GZ_OK);
+	assert_false(message.is_notification);
 }
 
 static void inlet_topics_of_the_daemon_are_refused(void **state)
@@ -76,6 +80,7 @@ static void inlet_anything_else_is_refused_and_writes_nothing(void **state)
 		assert_int_equal(judge("annotation", annotation, size), GZ_ERR_PROTOCOL);
 	assert_int_equal(judge("annotation", notification, sizeof notification - 1),
 			 GZ_ERR_PROTOCOL);
+	assert_int_equal(judge("notify.x", annotation, sizeof annotation - 1), GZ_ERR_PROTOCOL);
 	assert_string_equal(message.topic, "untouched");
 }
 

@@ -63,11 +63,44 @@ static void remote_anything_else_is_unknown(void **state)
 	}
 }
 
+static void remote_notifications_for_the_daemon_are_told_from_others(void **state)
+{
+	(void)state;
+	assert_int_equal(gz_remote_notice("recording.should_start"), GZ_REMOTE_NOTICE_RECORD);
+	assert_int_equal(gz_remote_notice("recording.should_stop"), GZ_REMOTE_NOTICE_STOP);
+	assert_int_equal(gz_remote_notice("calibration.should_start"), GZ_REMOTE_NOTICE_CALIBRATE);
+	assert_int_equal(gz_remote_notice("meta.should_doc"), GZ_REMOTE_NOTICE_DOC);
+	static const char *const others[] = { "",
+					      "recording",
+					      "recording.started",
+					      "recording.should_start.1",
+					      "eye_process.should_start.0",
+					      "set_detection_mapping_mode",
+					      "service_process.should_stop" };
+	for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+		assert_int_equal(gz_remote_notice(others[i]), GZ_REMOTE_NOTICE_OTHER);
+}
+
+static void remote_doc_names_what_is_obeyed(void **state)
+{
+	(void)state;
+	static const char *const words[] = { "SUB_PORT",
+					     "PUB_PORT",
+					     "recording.should_start",
+					     "recording.should_stop",
+					     "calibration.should_start",
+					     "meta.should_doc" };
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+		assert_non_null(strstr(gz_remote_doc(), words[i]));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(remote_letters_are_understood),
 		cmocka_unit_test(remote_anything_else_is_unknown),
+		cmocka_unit_test(remote_notifications_for_the_daemon_are_told_from_others),
+		cmocka_unit_test(remote_doc_names_what_is_obeyed),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -220,6 +220,29 @@ static void gaze_ends_in_publish_time_of_fixed_width(void **state)
 	assert_memory_not_equal(message.bytes, first.bytes, same);
 }
 
+static void gaze_shows_where_its_pupil_maps_stand(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze = sample_gaze();
+	struct gz_wire_message message, pupil = { 0 };
+	msgpack_unpacked unpacked;
+	encode_gaze(&gaze, &message);
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++) {
+		pupil.size = message.pupil[eye].size;
+		assert_in_range(pupil.size, 1, message.size - message.pupil[eye].at);
+		memcpy(pupil.bytes, message.bytes + message.pupil[eye].at, pupil.size);
+		const msgpack_object *map = unpack_map(&pupil, &unpacked);
+		assert_text(value_of(map, "topic"),
+			    eye == GZ_EYE_RIGHT ? "pupil.0.3d" : "pupil.1.3d");
+		assert_int_equal(value_of(map, "id")->via.u64, eye);
+		msgpack_unpacked_destroy(&unpacked);
+	}
+	gaze.eye[GZ_EYE_RIGHT].valid = false;
+	encode_gaze(&gaze, &message);
+	assert_int_equal(message.pupil[GZ_EYE_RIGHT].size, 0);
+	assert_true(message.pupil[GZ_EYE_LEFT].size > 0);
+}
+
 static void surface_refers_to_its_gaze_by_topic_and_time(void **state)
 {
 	(void)state;
@@ -232,13 +255,14 @@ static void surface_refers_to_its_gaze_by_topic_and_time(void **state)
 	const msgpack_object *gaze_map = unpack_map(&gaze_message, &gaze_unpacked);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
 	double time_s = value_of(gaze_map, "timestamp")->via.f64;
-	assert_keys(map, "name timestamp gaze_on_surfaces");
+	assert_keys(map, "topic name timestamp gaze_on_surfaces");
+	assert_text(value_of(map, "topic"), "surfaces.screen");
 	assert_text(value_of(map, "name"), "screen");
 	assert_number(value_of(map, "timestamp"), time_s);
 	assert_int_equal(value_of(map, "gaze_on_surfaces")->via.array.size, 1);
 	const msgpack_object *on = &value_of(map, "gaze_on_surfaces")->via.array.ptr[0];
 	assert_keys(on, "topic norm_pos confidence on_surf base_data timestamp");
-	assert_text(value_of(on, "topic"), "gaze.3d.1.on_surface");
+	assert_text(value_of(on, "topic"), "gaze.3d.1._on_surface");
 	assert_numbers(value_of(on, "norm_pos"), (double[]) { 0.75, 0.75 }, 2);
 	assert_number(value_of(on, "timestamp"), time_s);
 	const msgpack_object *base = value_of(on, "base_data");
@@ -308,7 +332,7 @@ static void blink_has_the_documented_keys(void **state)
 		blink.onset = onset;
 		assert_int_equal(gz_wire_encode_blink(&blink, &message), GZ_OK);
 		const msgpack_object *map = unpack_map(&message, &unpacked);
-		assert_keys(map, "type timestamp confidence");
+		assert_keys(map, "topic base_data type timestamp confidence");
 		assert_text(value_of(map, "type"), onset ? "onset" : "offset");
 		msgpack_unpacked_destroy(&unpacked);
 	}
@@ -481,6 +505,7 @@ int main(void)
 		cmocka_unit_test(gaze_topic_tells_which_eyes_took_part),
 		cmocka_unit_test(gaze_unmeasured_is_nil_and_never_nan),
 		cmocka_unit_test(gaze_ends_in_publish_time_of_fixed_width),
+		cmocka_unit_test(gaze_shows_where_its_pupil_maps_stand),
 		cmocka_unit_test(surface_refers_to_its_gaze_by_topic_and_time),
 		cmocka_unit_test(surface_is_left_past_any_edge),
 		cmocka_unit_test(fixation_has_the_documented_keys_and_units),

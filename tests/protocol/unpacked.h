@@ -5,6 +5,7 @@
 #ifndef GZ_TESTS_PROTOCOL_UNPACKED_H
 #define GZ_TESTS_PROTOCOL_UNPACKED_H
 
+#include <math.h>
 #include <msgpack.h>
 #include <stdio.h>
 #include <string.h>
