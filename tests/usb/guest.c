@@ -1,0 +1,51 @@
+#include "check.h"
+
+#include "guest.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+
+static void write_file(const char *path, const char *text)
+{
+	int fd = open(path, O_WRONLY | O_CLOEXEC);
+	ssize_t written = fd >= 0 ? write(fd, text, strlen(text)) : -1;
+	int error = errno;
+	if (fd >= 0)
+		close(fd);
+	if (written != (ssize_t)strlen(text))
+		fail_msg("writing \"%s\" to %s: %s", text, path, strerror(error));
+}
+
+/* What CLOCK_MONOTONIC leaves out: the time asleep. */
+static int64_t asleep_ns(void)
+{
+	struct timespec all, awake;
+	clock_gettime(CLOCK_BOOTTIME, &all);
+	clock_gettime(CLOCK_MONOTONIC, &awake);
+	return (all.tv_sec - awake.tv_sec) * GZ_NS_PER_S + all.tv_nsec - awake.tv_nsec;
+}
+
+int64_t guest_suspend(void)
+{
+	int64_t before_ns = asleep_ns();
+	write_file("/sys/class/rtc/rtc0/wakealarm", "0");
+	write_file("/sys/class/rtc/rtc0/wakealarm", "+3");
+	write_file("/sys/power/state", "mem");
+	return asleep_ns() - before_ns;
+}
+
+void guest_wait_for_file(const char *path, bool wanted)
+{
+	int64_t deadline_ns = gz_clock_now_ns() + 10 * GZ_NS_PER_S;
+	while ((access(path, F_OK) == 0) != wanted) {
+		if (gz_clock_now_ns() > deadline_ns)
+			fail_msg("%s %s", path, wanted ? "does not appear" : "does not go");
+		usleep(10000);
+	}
+}

@@ -1,0 +1,17 @@
+/**
+ * @file
+ * What tests do to the guest they run in.
+ */
+#ifndef GZ_TESTS_USB_GUEST_H
+#define GZ_TESTS_USB_GUEST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Suspend the machine to RAM; its clock wakes it after 2 to 3 s. @return how long it slept, ns */
+int64_t guest_suspend(void);
+
+/** Wait until @p path is there, or is not; fails the test after 10 s. */
+void guest_wait_for_file(const char *path, bool wanted);
+
+#endif

@@ -1,0 +1,174 @@
+#include "check.h"
+
+#include "hid_function.h"
+
+#include <linux/hid.h>
+#include <string.h>
+
+enum {
+	REPORT_FEATURE = 3,
+	REPORT_CAPABILITIES = 0x11,
+	REPORT_CONFIGURATION = 0x12,
+	REPORT_STATUS = 0x13,
+	REPORT_CONTROL = 0x14,
+	STATUS_READY = 1,
+	DESCRIPTOR_HID = 0x21,
+	DESCRIPTOR_REPORT = 0x22,
+};
+
+/* The end of a collection that never began. */
+static const uint8_t broken_descriptor[] = { 0x05, 0x12, 0x09, 0x01, 0xC0, 0xC0, 0x81, 0x02 };
+
+static size_t report_descriptor(const struct hid_function *tracker, const uint8_t **out_bytes)
+{
+	if (tracker->broken_descriptor) {
+		*out_bytes = broken_descriptor;
+		return sizeof broken_descriptor;
+	}
+	*out_bytes = hid_layout_reference.descriptor;
+	return hid_layout_reference.descriptor_size;
+}
+
+static void put(uint8_t *bytes, int size, uint32_t value)
+{
+	for (int i = 0; i < size; i++)
+		bytes[i] = (uint8_t)(value >> (8 * i));
+}
+
+/* A feature report, with its ID. */
+static ssize_t get_feature(struct hid_function *tracker, uint8_t id, uint8_t *report)
+{
+	tracker->feature_reads++;
+	report[0] = id;
+	switch (id) {
+	case REPORT_CAPABILITIES:
+		report[1] = 1; /* fine gaze */
+		put(report + 2, 4, 500000);
+		put(report + 6, 4, 650000);
+		put(report + 10, 4, 900000);
+		put(report + 14, 4, 600000);
+		put(report + 18, 4, 400000);
+		return 22;
+	case REPORT_CONFIGURATION:
+		put(report + 11, 4, (uint32_t)tracker->screen_um[0]);
+		put(report + 15, 4, (uint32_t)tracker->screen_um[1]);
+		return 19;
+	case REPORT_STATUS:
+		report[1] = STATUS_READY;
+		put(report + 2, 2, MADE_RATE_HZ);
+		return 4;
+	default:
+		return -1;
+	}
+}
+
+static ssize_t get_descriptor(struct hid_function *tracker, uint8_t type, uint8_t *bytes)
+{
+	const uint8_t *descriptor;
+	size_t size = report_descriptor(tracker, &descriptor);
+	if (type != DESCRIPTOR_REPORT)
+		return -1;
+	memcpy(bytes, descriptor, size);
+	return (ssize_t)size;
+}
+
+static ssize_t get(void *player, const struct usb_ctrlrequest *request, uint8_t *bytes)
+{
+	struct hid_function *tracker = player;
+	uint8_t high = (uint8_t)(request->wValue >> 8), low = (uint8_t)request->wValue;
+	if (request->bRequest == USB_REQ_GET_DESCRIPTOR &&
+	    (request->bRequestType & USB_TYPE_MASK) == USB_TYPE_STANDARD)
+		return get_descriptor(tracker, high, bytes);
+	if (request->bRequest == HID_REQ_GET_REPORT && high == REPORT_FEATURE &&
+	    !tracker->refuses_features)
+		return get_feature(tracker, low, bytes);
+	return -1;
+}
+
+static int set(void *player, const struct usb_ctrlrequest *request, const uint8_t *bytes,
+	       size_t size)
+{
+	struct hid_function *tracker = player;
+	if (request->bRequest == HID_REQ_SET_REPORT &&
+	    request->wValue == (REPORT_FEATURE << 8 | REPORT_CONTROL) && size == 2 &&
+	    bytes[0] == REPORT_CONTROL) {
+		tracker->mode = bytes[1];
+		tracker->mode_requests++;
+	}
+	return 0;
+}
+
+static const struct functionfs_player calls = { .get = get, .set = set };
+
+/* The interface, HID and endpoint descriptors (HID 1.11, section 7.1). 64 bytes a packet: what full
+ * speed allows, so that the reference's report of 65 bytes takes two. */
+static void start_function(struct hid_function *tracker, const char *serial)
+{
+	const uint8_t *unused;
+	size_t size = report_descriptor(tracker, &unused);
+	const uint8_t bytes[] = {
+		9,
+		USB_DT_INTERFACE,
+		0,
+		0,
+		1,
+		USB_CLASS_HID,
+		0,
+		0,
+		0,
+		9,
+		DESCRIPTOR_HID,
+		0x11,
+		0x01,
+		0,
+		1,
+		DESCRIPTOR_REPORT,
+		size & 0xFF,
+		(uint8_t)(size >> 8),
+		7,
+		USB_DT_ENDPOINT,
+		0x81,
+		USB_ENDPOINT_XFER_INT,
+		64,
+		0,
+		4,
+	};
+	const struct functionfs_descriptors descriptors = {
+		.bytes = bytes,
+		.size = sizeof bytes,
+		.count = 3,
+		.endpoints = 1,
+	};
+	tracker->function = (struct functionfs) { .calls = &calls, .player = tracker };
+	functionfs_start(&tracker->function, &tracker->gadget, serial, &descriptors);
+}
+
+static bool send_sample(void *argument, const struct made_sample *sample)
+{
+	struct hid_function *tracker = argument;
+	uint8_t report[HID_REPORT_MAX] = { 0 };
+	hid_layout_reference.encode(sample, report);
+	return functionfs_send(&tracker->function, report, hid_layout_reference.report_size);
+}
+
+void hid_function_plug(struct hid_function *tracker, int controller, const char *name,
+		       const char *serial)
+{
+	struct gadget_identity identity = { 0x1209, 0x0002, "Gazecast", name, serial };
+	tracker->made = true;
+	tracker->stream = (struct made_stream) { .send = send_sample, .tracker = tracker };
+	gadget_make(&tracker->gadget, controller, &identity);
+	start_function(tracker, serial);
+	gadget_plug(&tracker->gadget);
+}
+
+void hid_function_remove(struct hid_function *tracker)
+{
+	if (!tracker->made)
+		return;
+	tracker->stream.stop = true;
+	gadget_remove(&tracker->gadget);
+	made_stream_stop(&tracker->stream);
+	functionfs_stop(&tracker->function);
+	*tracker = (struct hid_function) { 0 };
+}

@@ -1,0 +1,74 @@
+#include "check.h"
+
+#include "made_gaze.h"
+
+#include <time.h>
+
+/* Up and down between 0 and 1 with @p period samples. */
+static double wander(uint64_t number, uint64_t period)
+{
+	double phase = (double)(number % period) / (double)period;
+	return phase < 0.5 ? 2 * phase : 2 - 2 * phase;
+}
+
+struct made_sample made_gaze(uint64_t number)
+{
+	return (struct made_sample) {
+		.number = number,
+		.device_us = MADE_CLOCK_START_US + (int64_t)number * MADE_PERIOD_US,
+		.x = 0.25 + 0.5 * wander(number, 1700),
+		.y = 0.3 + 0.4 * wander(number, 1100),
+	};
+}
+
+struct made_sample made_gaze_at(int64_t device_ns)
+{
+	int64_t since_us = device_ns / 1000 - MADE_CLOCK_START_US;
+	return made_gaze((uint64_t)((since_us + MADE_PERIOD_US / 2) / MADE_PERIOD_US));
+}
+
+static int64_t boottime_us(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_BOOTTIME, &now);
+	return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+static void *run(void *argument)
+{
+	struct made_stream *stream = argument;
+	struct timespec pause = { .tv_nsec = 500000 };
+	uint64_t next = 0;
+	while (!stream->stop) {
+		uint64_t number = (uint64_t)(boottime_us() - stream->start_us) / MADE_PERIOD_US;
+		if (number < next) {
+			nanosleep(&pause, NULL);
+			continue;
+		}
+		next = number + 1;
+		struct made_sample sample = made_gaze(number);
+		if (stream->send(stream->tracker, &sample))
+			stream->sent++;
+		else
+			stream->refused++;
+	}
+	return NULL;
+}
+
+void made_stream_start(struct made_stream *stream)
+{
+	stream->stop = false;
+	if (stream->start_us == 0)
+		stream->start_us = boottime_us();
+	assert_int_equal(pthread_create(&stream->thread, NULL, run, stream), 0);
+	stream->running = true;
+}
+
+void made_stream_stop(struct made_stream *stream)
+{
+	if (!stream->running)
+		return;
+	stream->stop = true;
+	pthread_join(stream->thread, NULL);
+	stream->running = false;
+}
