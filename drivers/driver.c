@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "drivers/gazepoint/gazepoint_driver.h"
 #include "drivers/replay/replay_driver.h"
 #include "drivers/sim/sim_driver.h"
 #include "drivers/template/template_driver.h"
@@ -9,6 +10,7 @@
 const struct gz_driver *const gz_drivers[] = {
 	&gz_driver_sim,
 	&gz_driver_replay,
+	&gz_driver_gazepoint,
 	&gz_driver_template,
 	NULL,
 };

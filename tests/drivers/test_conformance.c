@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "drivers/driver.h"
 #include "drivers/template/template_protocol.h"
+#include "gazepoint_server.h"
 #include "made_log.h"
 
 /* Samples read of each driver. */
@@ -32,6 +33,8 @@ struct stage {
 	pthread_t player;
 	bool has_player;
 	atomic_bool quit;
+	struct gazepoint_server server;
+	bool has_server;
 };
 
 static void set_option(struct stage *stage, const char *key, const char *text)
@@ -93,6 +96,15 @@ static void prepare_template(struct stage *stage)
 	stage->has_player = true;
 }
 
+static void prepare_gazepoint(struct stage *stage)
+{
+	char port[16];
+	gazepoint_server_start(&stage->server, &(struct gazepoint_play) { .stream = true }, 0);
+	snprintf(port, sizeof port, "%d", stage->server.port);
+	set_option(stage, "gazepoint.port", port);
+	stage->has_server = true;
+}
+
 /* The driver's presets, and what it needs beyond. */
 static void set_up(struct stage *stage, const struct gz_driver *driver)
 {
@@ -106,10 +118,14 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 		prepare_replay(stage);
 	else if (strcmp(driver->name, "template") == 0)
 		prepare_template(stage);
+	else if (strcmp(driver->name, "gazepoint") == 0)
+		prepare_gazepoint(stage);
 }
 
 static void tear_down(struct stage *stage)
 {
+	if (stage->has_server)
+		gazepoint_server_stop(&stage->server);
 	if (!stage->has_player)
 		return;
 	atomic_store(&stage->quit, true);
@@ -332,6 +348,7 @@ static void driver_refuses_what_is_not_there(void **state)
 		{ "sim", "sim.picture", "/dev/null", GZ_ERR_FORMAT },
 		{ "replay", "replay.file", "", GZ_ERR_INVAL },
 		{ "replay", "replay.file", "/nonexistent", GZ_ERR_NOT_FOUND },
+		{ "gazepoint", "gazepoint.host", "256.256.256.256", GZ_ERR_NO_DEVICE },
 		{ "template", "template.path", "", GZ_ERR_INVAL },
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
 	};

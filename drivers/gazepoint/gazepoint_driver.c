@@ -1,0 +1,443 @@
+#include "drivers/gazepoint/gazepoint_driver.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "drivers/clock_model.h"
+#include "drivers/gazepoint/gazepoint_link.h"
+#include "drivers/gazepoint/gazepoint_protocol.h"
+
+#define GZ_LOG_MODULE "gazepoint"
+
+/* One line a second about anything that may repeat is enough to see that something is wrong. */
+#define COMPLAINT_NS GZ_NS_PER_S
+
+/* What is asked for before the stream. The frequency comes last: with its answer all are there. */
+#define QUESTIONS                        \
+	"<GET ID=\"PRODUCT_ID\" />\r\n"  \
+	"<GET ID=\"SERIAL_ID\" />\r\n"   \
+	"<GET ID=\"SCREEN_SIZE\" />\r\n" \
+	"<GET ID=\"TIME_TICK_FREQUENCY\" />\r\n"
+
+#define ENABLE(what) "<SET ID=\"ENABLE_SEND_" what "\" STATE=\"1\" />\r\n"
+
+/* Older versions refuse what they do not know, and send the rest. The data come last. */
+static const char enable_stream[] = ENABLE("COUNTER") ENABLE("TIME") ENABLE("TIME_TICK")
+	ENABLE("POG_LEFT") ENABLE("POG_RIGHT") ENABLE("POG_BEST") ENABLE("EYE_LEFT")
+		ENABLE("EYE_RIGHT") ENABLE("PUPILMM") ENABLE("DATA");
+
+static const char disable_stream[] = "<SET ID=\"ENABLE_SEND_DATA\" STATE=\"0\" />\r\n";
+
+struct gazepoint_settings {
+	char host[GZ_NAME_SIZE];
+	int port;
+};
+
+#define AT(field) offsetof(struct gazepoint_settings, field)
+
+static const struct gz_option gazepoint_options[] = {
+	{ "gazepoint.host", GZ_OPTION_STRING, AT(host), 0, GZ_NAME_SIZE, 0, NULL, "127.0.0.1",
+	  "name or address of the machine that runs Gazepoint Control" },
+	{ "gazepoint.port", GZ_OPTION_INT, AT(port), 1, 65535, 0, NULL, "4242",
+	  "TCP port of Gazepoint Control" },
+};
+
+static const size_t gazepoint_option_count = sizeof gazepoint_options / sizeof *gazepoint_options;
+
+struct gazepoint_device {
+	struct gz_device base;
+	struct gz_device_info info;
+	int fd; /* -1 while closed */
+	struct gz_gazepoint_framer framer;
+	struct gz_gazepoint_xml *xml;
+	struct gz_clock_model clock;
+	struct gz_ratelimit complaints;
+	struct gz_ratelimit jumps;
+	int64_t frequency_hz; /* of TIME_TICK; 0 if not known */
+	bool clock_answered;  /* whether or not the frequency is known, no better will come */
+	bool refused;         /* the server does not send data */
+	int64_t arrival_ns;   /* of the newest bytes */
+	bool has_counter;
+	long long counter; /* of the newest data record */
+	enum gz_clock_tick tick;
+	uint64_t seq;
+	uint64_t lost;
+	uint64_t malformed[GZ_MALFORMED_COUNT];
+};
+
+static struct gazepoint_device *of(struct gz_device *device)
+{
+	return (struct gazepoint_device *)device;
+}
+
+static void count_malformed(struct gazepoint_device *device, enum gz_malformed reason)
+{
+	uint64_t held_back;
+	device->malformed[reason]++;
+	if (gz_ratelimit_pass(&device->complaints, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
+		gz_warn(device->base.log,
+			"a record that cannot be used: %s (%llu more since last told)",
+			gz_malformed_name(reason), (unsigned long long)held_back);
+}
+
+static void take_screen(struct gazepoint_device *device, const struct gz_gazepoint_record *answer)
+{
+	double side_max = GZ_DISPLAY_SIDE_MAX_PX;
+	bool good = answer->width >= 1 && answer->width <= side_max && answer->height >= 1 &&
+		    answer->height <= side_max;
+	if (!good) {
+		count_malformed(device, GZ_MALFORMED_VALUE);
+		return;
+	}
+	device->info.has_display = true;
+	device->info.display = gz_display_default((int)answer->width, (int)answer->height);
+}
+
+static void take_frequency(struct gazepoint_device *device, long long sent)
+{
+	device->clock_answered = true;
+	device->frequency_hz = gz_gazepoint_frequency_hz(sent);
+	if (device->frequency_hz == 0)
+		gz_warn(device->base.log, "a tick frequency of %lld cannot be; TIME is used", sent);
+}
+
+static void take_ack(struct gazepoint_device *device, const struct gz_gazepoint_record *answer)
+{
+	struct gz_device_info *info = &device->info;
+	if (strcmp(answer->id, "PRODUCT_ID") == 0) {
+		if (answer->value[0])
+			snprintf(info->name, sizeof info->name, "Gazepoint %.48s", answer->value);
+		if (answer->rate_hz > 0 && answer->rate_hz <= 2000)
+			info->rate_hz = answer->rate_hz;
+	} else if (strcmp(answer->id, "SERIAL_ID") == 0) {
+		memcpy(info->serial, answer->value, sizeof info->serial);
+	} else if (strcmp(answer->id, "SCREEN_SIZE") == 0) {
+		take_screen(device, answer);
+	} else if (strcmp(answer->id, "TIME_TICK_FREQUENCY") == 0) {
+		take_frequency(device, answer->frequency);
+	}
+}
+
+static void take_nack(struct gazepoint_device *device, const struct gz_gazepoint_record *answer)
+{
+	if (strcmp(answer->id, "ENABLE_SEND_DATA") == 0) {
+		gz_err(device->base.log, "%s sends no data; is a tracker connected to it?",
+		       device->info.name);
+		device->refused = true;
+		return;
+	}
+	if (strcmp(answer->id, "TIME_TICK_FREQUENCY") == 0)
+		device->clock_answered = true;
+	gz_info(device->base.log, "this version of Gazepoint Control has no %s", answer->id);
+}
+
+/* Seconds since the server's start or its last calibration. */
+static bool seconds_ns(double time_s, int64_t *out_ns)
+{
+	if (!(fabs(time_s) <= 9e9))
+		return false;
+	*out_ns = llrint(time_s * 1e9);
+	return true;
+}
+
+/* The best clock that the record has. */
+static void stamp(struct gazepoint_device *device, const struct gz_gazepoint_record *record,
+		  struct gz_sample *sample)
+{
+	bool jumped = false;
+	bool told = record->has_tick && device->frequency_hz > 0 &&
+		    gz_gazepoint_tick_ns(record->tick, device->frequency_hz, &sample->device_ns);
+	if (!told)
+		told = seconds_ns(record->time_s, &sample->device_ns);
+	device->tick = told ? GZ_CLOCK_DECLARED : GZ_CLOCK_NONE;
+	sample->host_ns = device->arrival_ns;
+	if (told)
+		sample->host_ns = gz_clock_model_step(&device->clock, sample->device_ns,
+						      device->arrival_ns, &jumped);
+	uint64_t held_back;
+	if (jumped &&
+	    gz_ratelimit_pass(&device->jumps, device->arrival_ns, COMPLAINT_NS, &held_back))
+		gz_warn(device->base.log,
+			"the tracker's clock jumped; its fit begins again (%llu more since last "
+			"told)",
+			(unsigned long long)held_back);
+}
+
+/* @return false for a record that was there before */
+static bool follow_counter(struct gazepoint_device *device,
+			   const struct gz_gazepoint_record *record, uint32_t *out_lost)
+{
+	bool known = device->has_counter && record->has_counter;
+	*out_lost = 0;
+	if (known && record->counter == device->counter)
+		return false;
+	/* A counter that runs backwards is a server that began anew: nothing is known to be lost.
+	 */
+	if (known && record->counter > device->counter && record->counter <= INT32_MAX &&
+	    device->counter >= 0)
+		*out_lost = (uint32_t)(record->counter - device->counter - 1);
+	device->has_counter = record->has_counter;
+	device->counter = record->counter;
+	return true;
+}
+
+static void take_eye(const struct gz_gazepoint_record *record, int side,
+		     struct gz_eye_sample *out_eye)
+{
+	const struct gz_gazepoint_eye *eye = &record->eye[side];
+	out_eye->point = (struct gz_point) { (float)eye->point[0], (float)eye->point[1] };
+	out_eye->valid = record->has_eye[side] && eye->valid;
+	if (eye->pupil_mm_valid)
+		out_eye->pupil_mm = (float)eye->pupil_mm;
+	else if (eye->origin_valid)
+		out_eye->pupil_mm = (float)(eye->pupil_m * 1000);
+	for (int i = 0; i < 3 && eye->origin_valid; i++)
+		out_eye->origin_mm[i] = (float)(eye->origin_m[i] * 1000);
+}
+
+/* @return GZ_ERR_PROTOCOL where it becomes no sample */
+static enum gz_result to_sample(struct gazepoint_device *device,
+				const struct gz_gazepoint_record *record,
+				struct gz_sample *out_sample)
+{
+	struct gz_sample sample = gz_sample_unmeasured();
+	if (!record->has_best && !record->has_eye[0] && !record->has_eye[1]) {
+		count_malformed(device, GZ_MALFORMED_VALUE);
+		return GZ_ERR_PROTOCOL;
+	}
+	if (!follow_counter(device, record, &sample.lost_before)) {
+		count_malformed(device, GZ_MALFORMED_STALE);
+		return GZ_ERR_PROTOCOL;
+	}
+	stamp(device, record, &sample);
+	sample.point = (struct gz_point) { (float)record->best[0], (float)record->best[1] };
+	sample.valid = record->best_valid;
+	for (int side = 0; side < GZ_EYE_COUNT; side++)
+		take_eye(record, side, &sample.eye[side]);
+	device->lost += sample.lost_before;
+	sample.seq = device->seq++;
+	*out_sample = sample;
+	return GZ_OK;
+}
+
+/* The next record that became a sample. GZ_ERR_TIMEOUT: more bytes are needed. */
+static enum gz_result take_record(struct gazepoint_device *device, bool streaming,
+				  struct gz_sample *out_sample)
+{
+	const char *text;
+	size_t size;
+	enum gz_malformed reason = GZ_MALFORMED_LONG;
+	struct gz_gazepoint_record record;
+	enum gz_result result = gz_gazepoint_framer_next(&device->framer, &text, &size);
+	if (result == GZ_OK)
+		result = gz_gazepoint_parse(device->xml, text, size, &record, &reason);
+	if (result == GZ_ERR_PROTOCOL)
+		count_malformed(device, reason);
+	if (result != GZ_OK)
+		return result;
+	if (record.kind == GZ_GAZEPOINT_DATA)
+		return streaming && device->clock_answered ? to_sample(device, &record, out_sample)
+							   : GZ_ERR_PROTOCOL;
+	if (record.kind == GZ_GAZEPOINT_ACK)
+		take_ack(device, &record);
+	else if (record.kind == GZ_GAZEPOINT_NACK)
+		take_nack(device, &record);
+	return device->refused ? GZ_ERR_NO_DEVICE : GZ_ERR_PROTOCOL;
+}
+
+static enum gz_result gone(struct gazepoint_device *device, const char *why)
+{
+	gz_warn(device->base.log, "%s has gone: %s", device->info.name, why);
+	close(device->fd);
+	device->fd = -1;
+	return GZ_ERR_NO_DEVICE;
+}
+
+/* Wait for bytes and take them in. */
+static enum gz_result fill(struct gazepoint_device *device, int64_t deadline_ns)
+{
+	size_t size;
+	int64_t silent_ns = device->arrival_ns + GZ_GAZEPOINT_SILENCE_MS * GZ_NS_PER_MS;
+	if (device->fd < 0)
+		return GZ_ERR_NO_DEVICE;
+	bool soon = silent_ns < deadline_ns;
+	enum gz_result result = gz_gazepoint_link_wait(device->fd, soon ? silent_ns : deadline_ns);
+	if (result == GZ_ERR_TIMEOUT && gz_clock_now_ns() >= silent_ns)
+		return gone(device, "it says nothing; is Gazepoint Control at gazepoint.host?");
+	if (result != GZ_OK)
+		return result;
+	char *room = gz_gazepoint_framer_room(&device->framer, &size);
+	result = gz_gazepoint_link_receive(device->fd, room, size, &size);
+	if (result == GZ_ERR_NO_DEVICE)
+		return gone(device, errno ? strerror(errno) : "it closed the connection");
+	if (result == GZ_OK) {
+		device->arrival_ns = gz_clock_now_ns();
+		gz_gazepoint_framer_add(&device->framer, size);
+	}
+	return result;
+}
+
+/* No allocation, no lock. */
+static enum gz_result gazepoint_read(struct gz_device *base, int timeout_ms,
+				     struct gz_sample *out_sample)
+{
+	struct gazepoint_device *device = of(base);
+	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	for (;;) {
+		enum gz_result result = take_record(device, true, out_sample);
+		if (result == GZ_OK || result == GZ_ERR_NO_DEVICE)
+			return result;
+		if (result == GZ_ERR_TIMEOUT)
+			result = fill(device, deadline_ns);
+		if (result == GZ_ERR_NO_DEVICE)
+			return result;
+		/* What becomes no sample must not hold the caller. */
+		if (result != GZ_OK && gz_clock_now_ns() >= deadline_ns)
+			return GZ_ERR_TIMEOUT;
+	}
+}
+
+/* Ask who is there, and wait a little for the answers. A server that takes longer is believed to
+ * answer later. */
+static enum gz_result ask(struct gazepoint_device *device)
+{
+	struct gz_sample unused;
+	int64_t deadline_ns = gz_clock_now_ns() + GZ_GAZEPOINT_ANSWER_MS * GZ_NS_PER_MS;
+	enum gz_result result = gz_gazepoint_link_send(device->fd, QUESTIONS, sizeof QUESTIONS - 1);
+	if (result != GZ_OK)
+		return gone(device, "it takes no commands");
+	while (!device->clock_answered) {
+		result = take_record(device, false, &unused);
+		if (result == GZ_ERR_TIMEOUT)
+			result = fill(device, deadline_ns);
+		if (result == GZ_ERR_NO_DEVICE)
+			return result;
+		if (gz_clock_now_ns() >= deadline_ns)
+			return GZ_OK;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result gazepoint_start(struct gz_device *base)
+{
+	struct gazepoint_device *device = of(base);
+	/* What has not come by now is not waited for: without a frequency there is TIME. */
+	device->clock_answered = true;
+	device->arrival_ns = gz_clock_now_ns();
+	if (device->fd < 0)
+		return GZ_ERR_NO_DEVICE;
+	if (gz_gazepoint_link_send(device->fd, enable_stream, sizeof enable_stream - 1) != GZ_OK)
+		return gone(device, "it takes no commands");
+	return GZ_OK;
+}
+
+static void gazepoint_info(const struct gz_device *base, struct gz_device_info *out_info)
+{
+	*out_info = ((const struct gazepoint_device *)base)->info;
+}
+
+static void gazepoint_counters(const struct gz_device *base,
+			       struct gz_device_counters *out_counters)
+{
+	const struct gazepoint_device *device = (const struct gazepoint_device *)base;
+	*out_counters = (struct gz_device_counters) {
+		.lost = device->lost,
+		.clock = gz_clock_model_status(&device->clock, device->tick),
+	};
+	memcpy(out_counters->malformed, device->malformed, sizeof out_counters->malformed);
+}
+
+static void gazepoint_destroy(struct gz_device *base)
+{
+	struct gazepoint_device *device = of(base);
+	if (device->fd >= 0) {
+		/* A courtesy: the server would find out by itself. */
+		gz_gazepoint_link_send(device->fd, disable_stream, sizeof disable_stream - 1);
+		close(device->fd);
+	}
+	gz_gazepoint_xml_destroy(&device->xml);
+	free(device);
+}
+
+static const struct gz_device_ops gazepoint_ops = {
+	.start = gazepoint_start,
+	.read = gazepoint_read,
+	.info = gazepoint_info,
+	.counters = gazepoint_counters,
+	.destroy = gazepoint_destroy,
+};
+
+static enum gz_result open_link(struct gazepoint_device *device,
+				const struct gazepoint_settings *settings)
+{
+	char reason[GZ_GAZEPOINT_LINK_REASON_SIZE];
+	enum gz_result result = gz_gazepoint_link_open(
+		settings->host, settings->port, GZ_GAZEPOINT_CONNECT_MS, &device->fd, reason);
+	if (result != GZ_OK)
+		gz_err(device->base.log,
+		       "cannot reach %s, port %d: %s; start Gazepoint Control there, or check "
+		       "gazepoint.host and gazepoint.port",
+		       settings->host, settings->port, reason);
+	return result;
+}
+
+static enum gz_result gazepoint_create(const void *settings, const struct gz_driver_host *host,
+				       struct gz_device **out_device)
+{
+	struct gazepoint_device *device = calloc(1, sizeof *device);
+	if (!device)
+		return GZ_ERR_NO_MEM;
+	device->base = (struct gz_device) { .ops = &gazepoint_ops, .log = host->log };
+	device->fd = -1;
+	device->info = (struct gz_device_info) { .name = "Gazepoint" };
+	device->arrival_ns = gz_clock_now_ns();
+	enum gz_result result = gz_gazepoint_xml_create(&device->xml);
+	if (result == GZ_OK)
+		result = open_link(device, settings);
+	if (result == GZ_OK)
+		result = ask(device);
+	if (result != GZ_OK) {
+		gazepoint_destroy(&device->base);
+		return result;
+	}
+	*out_device = &device->base;
+	return GZ_OK;
+}
+
+/* Knocks; several clients may be connected to a server at a time. */
+static size_t gazepoint_list(const void *settings, const struct gz_driver_host *host,
+			     struct gz_device_entry *out_entries)
+{
+	const struct gazepoint_settings *wanted = settings;
+	char reason[GZ_GAZEPOINT_LINK_REASON_SIZE];
+	int fd;
+	struct gz_device_entry *entry = &out_entries[0];
+	(void)host;
+	*entry = (struct gz_device_entry) { .name = "Gazepoint Control" };
+	snprintf(entry->place, sizeof entry->place, "%.50s port %d", wanted->host, wanted->port);
+	entry->usable = gz_gazepoint_link_open(wanted->host, wanted->port, GZ_GAZEPOINT_CONNECT_MS,
+					       &fd, reason) == GZ_OK;
+	if (entry->usable)
+		close(fd);
+	else
+		snprintf(entry->reason, sizeof entry->reason,
+			 "%.80s; start Gazepoint Control, or see gazepoint.host", reason);
+	return 1;
+}
+
+_Static_assert(sizeof(struct gazepoint_settings) <= GZ_DRIVER_SETTINGS_SIZE, "settings fit");
+
+const struct gz_driver gz_driver_gazepoint = {
+	.name = "gazepoint",
+	.help = "Gazepoint GP3 and GP3 HD, through Gazepoint Control over TCP",
+	.options = gazepoint_options,
+	.option_count = &gazepoint_option_count,
+	.settings_size = sizeof(struct gazepoint_settings),
+	.create = gazepoint_create,
+	.list = gazepoint_list,
+};

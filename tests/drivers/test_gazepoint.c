@@ -1,0 +1,357 @@
+/* The Gazepoint driver against a server of ours, well behaved and not. */
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "drivers/gazepoint/gazepoint_driver.h"
+#include "drivers/gazepoint/gazepoint_protocol.h"
+#include "gazepoint_server.h"
+
+/* Patience for what must come, ms; a server that is there never needs it. */
+enum { PATIENCE_MS = 5000 };
+
+static struct gazepoint_server server;
+static union {
+	unsigned char bytes[GZ_DRIVER_SETTINGS_SIZE];
+	max_align_t align;
+} settings;
+
+static void set_option(const char *key, const char *text)
+{
+	struct gz_option_binding binding = { gz_driver_gazepoint.options,
+					     *gz_driver_gazepoint.option_count, &settings, NULL };
+	char message[256];
+	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
+	if (gz_option_parse(option, text, &settings, message, sizeof message) != GZ_OK)
+		fail_msg("%s", message);
+}
+
+static void point_at(int port)
+{
+	struct gz_option_binding binding = { gz_driver_gazepoint.options,
+					     *gz_driver_gazepoint.option_count, &settings, NULL };
+	char text[16];
+	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	snprintf(text, sizeof text, "%d", port);
+	set_option("gazepoint.port", text);
+}
+
+static struct gz_device *open_device(void)
+{
+	struct gz_device *device = NULL;
+	const struct gz_driver_host host = { 0 };
+	enum gz_result result = gz_driver_gazepoint.create(&settings, &host, &device);
+	if (result != GZ_OK)
+		fail_msg("create: %s", gz_result_text(result));
+	return device;
+}
+
+/* A started device at a server that plays @p play. */
+static struct gz_device *begin(const struct gazepoint_play *play)
+{
+	gazepoint_server_start(&server, play, 0);
+	point_at(server.port);
+	struct gz_device *device = open_device();
+	assert_int_equal(gz_device_start(device), GZ_OK);
+	return device;
+}
+
+static void end(struct gz_device *device)
+{
+	gz_device_destroy(&device);
+	gazepoint_server_stop(&server);
+}
+
+static enum gz_result read_patiently(struct gz_device *device, struct gz_sample *out_sample)
+{
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
+	enum gz_result result;
+	do
+		result = gz_device_read(device, 20, out_sample);
+	while (result == GZ_ERR_TIMEOUT && gz_clock_now_ns() < deadline_ns);
+	return result;
+}
+
+static struct gz_sample read_one(struct gz_device *device)
+{
+	struct gz_sample sample;
+	enum gz_result result = read_patiently(device, &sample);
+	if (result != GZ_OK)
+		fail_msg("no sample: %s", gz_result_text(result));
+	return sample;
+}
+
+static uint64_t malformed(const struct gz_device *device, enum gz_malformed reason)
+{
+	struct gz_device_counters counters;
+	gz_device_get_counters(device, &counters);
+	return counters.malformed[reason];
+}
+
+static void tracker_tells_who_it_is_before_it_streams(void **state)
+{
+	(void)state;
+	struct gz_device_info info;
+	gazepoint_server_start(&server, &(struct gazepoint_play) { .stream = true }, 0);
+	point_at(server.port);
+	struct gz_device *device = open_device();
+	gz_device_get_info(device, &info);
+	assert_string_equal(info.name, "Gazepoint GP3HD");
+	assert_string_equal(info.serial, "13&7");
+	assert_true(info.rate_hz == 150);
+	assert_true(info.has_display && gz_display_valid(&info.display));
+	assert_int_equal(info.display.px[0], 2560);
+	assert_int_equal(info.display.px[1], 1440);
+	end(device);
+}
+
+static void record_becomes_a_sample_in_our_units(void **state)
+{
+	(void)state;
+	struct gz_device *device = begin(&(struct gazepoint_play) { .stream = true });
+	struct gz_device_counters counters;
+	struct gz_sample sample = read_one(device);
+	assert_int_equal(sample.seq, 0);
+	assert_true(sample.valid && sample.point.x == 0.5f && sample.point.y == 0.5f);
+	assert_true(sample.eye[GZ_EYE_LEFT].point.x == 0.4f);
+	assert_true(sample.eye[GZ_EYE_RIGHT].point.x == 0.6f);
+	assert_false(sample.eye[GZ_EYE_LEFT].valid); /* every third is not, the first one too */
+	assert_true(sample.eye[GZ_EYE_RIGHT].valid);
+	assert_true(fabsf(sample.eye[GZ_EYE_LEFT].pupil_mm - 3.1f) < 1e-6f);
+	assert_true(fabsf(sample.eye[GZ_EYE_LEFT].origin_mm[0] + 30) < 1e-4f);
+	assert_true(fabsf(sample.eye[GZ_EYE_RIGHT].origin_mm[2] - 600) < 1e-3f);
+	assert_true(isnan(sample.eye[GZ_EYE_LEFT].direction[0]));
+	/* 5e9 ticks of 10 MHz */
+	assert_true(sample.device_ns == 500 * GZ_NS_PER_S);
+	assert_true(read_one(device).device_ns == 500 * GZ_NS_PER_S + 2 * GZ_NS_PER_MS);
+	gz_device_get_counters(device, &counters);
+	assert_int_equal(counters.clock.tick, GZ_CLOCK_DECLARED);
+	end(device);
+}
+
+static void counter_tells_what_was_lost(void **state)
+{
+	(void)state;
+	struct gz_device *device = begin(&(struct gazepoint_play) { .stream = true });
+	struct gz_device_counters counters;
+	uint32_t lost = 0;
+	for (int i = 0; i < 120; i++)
+		lost += read_one(device).lost_before;
+	gz_device_get_counters(device, &counters);
+	/* Of 0 to 122 are 49 and 99 not sent, and 69 cannot be read. */
+	assert_int_equal(lost, 3);
+	assert_int_equal(counters.lost, 3);
+	assert_int_equal(counters.malformed[GZ_MALFORMED_SYNTAX], 1);
+	end(device);
+}
+
+#define REC(counter, more) \
+	"<REC CNT=\"" counter "\" BPOGX=\"0.5\" BPOGY=\"0.5\" BPOGV=\"1\" " more "/>\r\n"
+
+static void records_in_pieces_and_many_at_once_are_the_same(void **state)
+{
+	(void)state;
+	static const char script[] = REC("1", "") REC("2", "") REC("3", "") REC("4", "");
+	static const size_t chunks[] = { 0, 1, 7, 50 };
+	for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+		struct gz_device *device =
+			begin(&(struct gazepoint_play) { .script = script, .chunk = chunks[i] });
+		for (uint64_t seq = 0; seq < 4; seq++) {
+			struct gz_sample sample = read_one(device);
+			assert_int_equal(sample.seq, seq);
+			assert_int_equal(sample.lost_before, 0);
+			assert_true(gz_sample_combined_only(&sample));
+		}
+		end(device);
+	}
+}
+
+static void what_cannot_be_used_is_counted_by_its_reason(void **state)
+{
+	(void)state;
+	static const char script[] = "garbage\r\n\x01\x02\xff\r\n" REC("1", "") REC("1",
+										    "TIME=\"3\" ")
+		REC("2", "LPOGX=\"x\" ") "<REC CNT=\"3\"/>\r\n<CAL ID=\"x\"/>\r\n" REC("5", "");
+	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
+	assert_int_equal(read_one(device).lost_before, 0);
+	/* 2 and 3 came, but told nothing; 4 never did. */
+	assert_int_equal(read_one(device).lost_before, 3);
+	assert_int_equal(malformed(device, GZ_MALFORMED_SYNTAX), 2);
+	assert_int_equal(malformed(device, GZ_MALFORMED_STALE), 1);
+	assert_int_equal(malformed(device, GZ_MALFORMED_VALUE), 2);
+	assert_int_equal(malformed(device, GZ_MALFORMED_LONG), 0);
+	end(device);
+}
+
+static void record_without_end_is_bounded_and_keeps_to_the_timeout(void **state)
+{
+	(void)state;
+	static char script[8 * GZ_GAZEPOINT_RECORD_MAX];
+	static const char last[] = "\r\n" REC("1", "");
+	memset(script, '<', sizeof script);
+	memcpy(script + sizeof script - (sizeof last - 1), last, sizeof last - 1);
+	struct gz_device *device = begin(&(struct gazepoint_play) {
+		.script = script, .script_size = sizeof script, .chunk = 1000 });
+	assert_int_equal(read_one(device).seq, 0);
+	assert_int_equal(malformed(device, GZ_MALFORMED_LONG), 1);
+	struct gz_sample sample;
+	assert_int_equal(gz_device_read(device, 1, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(gz_device_read(device, 0, &sample), GZ_ERR_TIMEOUT);
+	end(device);
+}
+
+static void counter_that_runs_backwards_begins_anew(void **state)
+{
+	(void)state;
+	static const char script[] = REC("100", "") REC("-9223372036854775808", "")
+		REC("9223372036854775807", "") REC("1", "") REC("3", "");
+	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
+	for (int i = 0; i < 4; i++)
+		assert_int_equal(read_one(device).lost_before, 0);
+	assert_int_equal(read_one(device).lost_before, 1);
+	end(device);
+}
+
+static void without_ticks_the_time_counts_and_without_time_the_arrival(void **state)
+{
+	(void)state;
+	static const char script[] = REC("1", "TIME=\"1.5\" TIME_TICK=\"77\" ")
+		REC("2", "TIME=\"1.25\" ") REC("3", "") REC("4", "TIME=\"1e300\" ");
+	struct gz_device_counters counters;
+	struct gz_device *device = begin(
+		&(struct gazepoint_play) { .script = script, .refuses = "TIME_TICK_FREQUENCY" });
+	assert_true(read_one(device).device_ns == 1500 * GZ_NS_PER_MS);
+	/* A calibration sets TIME back. */
+	assert_true(read_one(device).device_ns == 1250 * GZ_NS_PER_MS);
+	struct gz_sample sample = read_one(device);
+	assert_true(sample.device_ns == GZ_NO_DEVICE_TIME);
+	assert_true(sample.host_ns <= gz_clock_now_ns());
+	gz_device_get_counters(device, &counters);
+	assert_int_equal(counters.clock.tick, GZ_CLOCK_NONE);
+	assert_true(read_one(device).device_ns == GZ_NO_DEVICE_TIME);
+	end(device);
+}
+
+static void frequency_that_cannot_be_is_not_believed(void **state)
+{
+	(void)state;
+	static const char script[] = REC("1", "TIME=\"1.5\" TIME_TICK=\"77\" ");
+	struct gz_device *device =
+		begin(&(struct gazepoint_play) { .script = script, .frequency = "0" });
+	assert_true(read_one(device).device_ns == 1500 * GZ_NS_PER_MS);
+	end(device);
+}
+
+static void what_an_older_version_refuses_is_done_without(void **state)
+{
+	(void)state;
+	struct gz_device *device =
+		begin(&(struct gazepoint_play) { .stream = true, .refuses = "PUPILMM" });
+	assert_true(read_one(device).valid);
+	end(device);
+}
+
+static void server_that_refuses_data_is_no_device(void **state)
+{
+	(void)state;
+	struct gz_sample sample;
+	struct gz_device *device =
+		begin(&(struct gazepoint_play) { .stream = true, .refuses = "SEND_DATA" });
+	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	end(device);
+}
+
+static void server_that_dies_is_told_and_returns(void **state)
+{
+	(void)state;
+	struct gz_sample sample;
+	static const char script[] = REC("1", "") "<REC CNT=\"2\"";
+	struct gz_device *device =
+		begin(&(struct gazepoint_play) { .script = script, .hang_up = true });
+	read_one(device);
+	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
+	int port = server.port;
+	end(device);
+	/* While it is away. */
+	const struct gz_driver_host host = { 0 };
+	device = NULL;
+	assert_int_equal(gz_driver_gazepoint.create(&settings, &host, &device), GZ_ERR_NO_DEVICE);
+	assert_null(device);
+	gazepoint_server_start(&server, &(struct gazepoint_play) { .stream = true }, port);
+	device = open_device();
+	assert_int_equal(gz_device_start(device), GZ_OK);
+	assert_int_equal(read_one(device).seq, 0);
+	end(device);
+}
+
+static void server_that_answers_nothing_is_waited_for_no_longer_than_promised(void **state)
+{
+	(void)state;
+	struct gz_sample sample;
+	gazepoint_server_start(&server, &(struct gazepoint_play) { .mute = true }, 0);
+	point_at(server.port);
+	int64_t begin_ns = gz_clock_now_ns();
+	struct gz_device *device = open_device();
+	int64_t took_ns = gz_clock_now_ns() - begin_ns;
+	if (took_ns < GZ_GAZEPOINT_ANSWER_MS * GZ_NS_PER_MS || took_ns > 2 * GZ_NS_PER_S)
+		fail_msg("took %g ms", gz_ns_to_ms(took_ns));
+	assert_int_equal(gz_device_start(device), GZ_OK);
+	assert_int_equal(gz_device_read(device, 5, &sample), GZ_ERR_TIMEOUT);
+	end(device);
+}
+
+static void list_says_whether_the_server_is_there(void **state)
+{
+	(void)state;
+	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
+	const struct gz_driver_host host = { 0 };
+	gazepoint_server_start(&server, &(struct gazepoint_play) { 0 }, 0);
+	point_at(server.port);
+	assert_int_equal(gz_driver_gazepoint.list(&settings, &host, entries), 1);
+	assert_true(entries[0].usable);
+	assert_string_equal(entries[0].reason, "");
+	gazepoint_server_stop(&server);
+	assert_int_equal(gz_driver_gazepoint.list(&settings, &host, entries), 1);
+	assert_false(entries[0].usable);
+	if (!strstr(entries[0].reason, "refused") || !strstr(entries[0].reason, "gazepoint.host"))
+		fail_msg("%s", entries[0].reason);
+}
+
+static void host_that_is_not_known_is_no_device(void **state)
+{
+	(void)state;
+	const struct gz_driver_host host = { 0 };
+	struct gz_device *device = NULL;
+	point_at(1);
+	set_option("gazepoint.host", "256.256.256.256");
+	assert_int_equal(gz_driver_gazepoint.create(&settings, &host, &device), GZ_ERR_NO_DEVICE);
+	assert_null(device);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(tracker_tells_who_it_is_before_it_streams),
+		cmocka_unit_test(record_becomes_a_sample_in_our_units),
+		cmocka_unit_test(counter_tells_what_was_lost),
+		cmocka_unit_test(records_in_pieces_and_many_at_once_are_the_same),
+		cmocka_unit_test(what_cannot_be_used_is_counted_by_its_reason),
+		cmocka_unit_test(record_without_end_is_bounded_and_keeps_to_the_timeout),
+		cmocka_unit_test(counter_that_runs_backwards_begins_anew),
+		cmocka_unit_test(without_ticks_the_time_counts_and_without_time_the_arrival),
+		cmocka_unit_test(frequency_that_cannot_be_is_not_believed),
+		cmocka_unit_test(what_an_older_version_refuses_is_done_without),
+		cmocka_unit_test(server_that_refuses_data_is_no_device),
+		cmocka_unit_test(server_that_dies_is_told_and_returns),
+		cmocka_unit_test(server_that_answers_nothing_is_waited_for_no_longer_than_promised),
+		cmocka_unit_test(list_says_whether_the_server_is_there),
+		cmocka_unit_test(host_that_is_not_known_is_no_device),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
