@@ -64,7 +64,7 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 	(void)state;
 	static const char *const refusals[][4] = {
 		{ "--bogus", "1", NULL, "--bogus: unknown option" },
-		{ "--driver", "eyes", NULL, "no driver eyes; allowed: sim, replay, template" },
+		{ "--driver", "eyes", NULL, "no driver eyes; allowed: sim, replay, " },
 		{ "--driver=sim", "--tracker.driver=sim", NULL, "--tracker.driver: given twice" },
 		{ "--control", "tcp://0.0.0.0:50020", NULL, "no loopback address" },
 		{ "--control", "tcp://192.168.1.2:50020", NULL, "no loopback address" },
