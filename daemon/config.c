@@ -33,7 +33,7 @@ static const struct gz_option options[] = {
 	{ "wait-readers", GZ_OPTION_INT, AT(wait_readers), 0, 1000, 0, NULL, "0",
 	  "start the tracker once the stream has so many subscriptions" },
 	{ "tracker.driver", GZ_OPTION_STRING, AT(driver), 0, GZ_NAME_SIZE, 0, NULL, "sim",
-	  "which driver: sim, replay or template" },
+	  "which driver; `gazectl devices` lists the trackers that are there" },
 	{ "tracker.choice", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, "",
 	  "name or serial number of the tracker, where there are several; empty: the first" },
 	{ "network.tcp", GZ_OPTION_CHOICE, AT(tcp), 0, 0, 0, tcp_names, "loopback",

@@ -13,8 +13,11 @@
 
 #include "base/clock.h"
 #include "drivers/driver.h"
+#include "drivers/psvr2/psvr2_link.h"
+#include "drivers/psvr2/psvr2_packet.h"
 #include "drivers/template/template_protocol.h"
 #include "gazepoint_server.h"
+#include "fake_libusb.h"
 #include "made_log.h"
 
 /* Samples read of each driver. */
@@ -105,12 +108,40 @@ static void prepare_gazepoint(struct stage *stage)
 	stage->has_server = true;
 }
 
+/* Plays a headset at 500 Hz. Every 50th packet is lost, every 70th is damaged. */
+static size_t play_psvr2(void *user, unsigned char *bytes, size_t room)
+{
+	uint32_t *frame = user;
+	struct gz_psvr2_packet packet = {
+		.device_ns = *frame * 2 * GZ_NS_PER_MS,
+		.frame = *frame,
+		.combined = { true, true, { 0 }, { 0, 0, 1 } },
+	};
+	assert_true(room >= GZ_PSVR2_PACKET_SIZE);
+	gz_psvr2_print(&packet, bytes);
+	if (*frame % 70 == 69)
+		bytes[0] ^= 0xff;
+	return (*frame)++ % 50 == 49 ? 0 : GZ_PSVR2_PACKET_SIZE;
+}
+
+static void prepare_psvr2(void)
+{
+	static uint32_t frame;
+	frame = UINT32_MAX - 100; /* wraps on the way */
+	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
+	fake_usb.packet = play_psvr2;
+	fake_usb.user = &frame;
+	fake_usb.period_ns = 2 * GZ_NS_PER_MS;
+	fake_usb.due_ns = gz_clock_now_ns();
+}
+
 /* The driver's presets, and what it needs beyond. */
 static void set_up(struct stage *stage, const struct gz_driver *driver)
 {
 	struct gz_option_binding binding = { driver->options, *driver->option_count,
 					     stage->settings, NULL };
 	memset(stage, 0, sizeof *stage);
+	fake_usb_reset();
 	stage->driver = driver;
 	assert_true(driver->settings_size <= sizeof stage->settings);
 	assert_int_equal(gz_options_preset(&binding), GZ_OK);
@@ -120,6 +151,8 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 		prepare_template(stage);
 	else if (strcmp(driver->name, "gazepoint") == 0)
 		prepare_gazepoint(stage);
+	else if (strcmp(driver->name, "psvr2") == 0)
+		prepare_psvr2();
 }
 
 static void tear_down(struct stage *stage)
@@ -351,8 +384,10 @@ static void driver_refuses_what_is_not_there(void **state)
 		{ "gazepoint", "gazepoint.host", "256.256.256.256", GZ_ERR_NO_DEVICE },
 		{ "template", "template.path", "", GZ_ERR_INVAL },
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
+		{ "psvr2", "psvr2.screen_distance_mm", "600", GZ_ERR_NO_DEVICE },
 	};
 	static struct stage stage;
+	fake_usb_reset();
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
 		struct gz_device *device = NULL;
 		const struct gz_driver *driver = gz_driver_find(refusals[i].driver);

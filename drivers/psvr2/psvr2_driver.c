@@ -1,0 +1,365 @@
+#include "drivers/psvr2/psvr2_driver.h"
+
+#include <libusb.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "drivers/clock_model.h"
+#include "drivers/psvr2/psvr2_link.h"
+#include "drivers/psvr2/psvr2_packet.h"
+#include "drivers/psvr2/psvr2_screen.h"
+#include "drivers/usb/usb_device.h"
+
+#define GZ_LOG_MODULE "psvr2"
+
+static const char fallback_name[] = "PlayStation VR2";
+
+struct psvr2_settings {
+	struct gz_psvr2_screen_params screen;
+	int screen_px[2];
+};
+
+#define AT(field) offsetof(struct psvr2_settings, field)
+
+/* The presets are gz_display_default(): 50.4 degrees wide at 600 mm. */
+static const struct gz_option psvr2_options[] = {
+	{ "psvr2.screen_distance_mm", GZ_OPTION_DOUBLE, AT(screen.distance_mm), 10, 100000, 0, NULL,
+	  "600", "from between the lenses straight ahead to the screen's centre, mm" },
+	{ "psvr2.screen_offset_mm", GZ_OPTION_DOUBLE, AT(screen.offset_mm), -100000, 100000, 2,
+	  NULL, "0 0", "from there to the screen's centre, to the right and down, mm" },
+	{ "psvr2.screen_mm", GZ_OPTION_DOUBLE, AT(screen.size_mm), 10, 100000, 2, NULL,
+	  "564.677 317.631", "the screen's width and height, mm" },
+	{ "psvr2.screen_turn_deg", GZ_OPTION_DOUBLE, AT(screen.turn_deg), -180, 180, 3, NULL,
+	  "0 0 0",
+	  "turn of the screen about its centre, degrees: right side nearer, lower edge nearer, "
+	  "clockwise" },
+	{ "psvr2.screen_px", GZ_OPTION_SIZE, AT(screen_px), 1, 32768, 0, NULL, "1920x1080",
+	  "the screen's pixels" },
+};
+
+static const size_t psvr2_option_count = sizeof psvr2_options / sizeof *psvr2_options;
+
+struct psvr2_device {
+	struct gz_device base;
+	libusb_context *context;
+	libusb_device_handle *handle;
+	bool claimed;
+	struct gz_psvr2_link *link;
+	struct gz_psvr2_screen screen;
+	struct gz_display display;
+	struct gz_usb_device usb;
+	struct gz_clock_model clock;
+	int64_t device_ns; /* of the newest packet */
+	uint32_t frame;
+	uint64_t seq;
+	uint64_t lost;
+	uint64_t stale;
+};
+
+static struct psvr2_device *of(struct gz_device *device)
+{
+	return (struct psvr2_device *)device;
+}
+
+static enum gz_result psvr2_start(struct gz_device *base)
+{
+	struct psvr2_device *device = of(base);
+	enum gz_result result =
+		gz_psvr2_link_create(device->context, device->handle, base->log, &device->link);
+	return result == GZ_OK ? gz_psvr2_link_start(device->link) : result;
+}
+
+/* A packet of which nothing is new: the same frame again, or one from before. A counter that began
+ * anew has a clock that did, too, or goes on in time. */
+static bool is_stale(const struct psvr2_device *device, const struct gz_psvr2_packet *packet)
+{
+	uint32_t ahead = packet->frame - device->frame;
+	if (device->seq == 0)
+		return false;
+	if (ahead == 0)
+		return true;
+	int64_t back_ns = device->device_ns - packet->device_ns;
+	return ahead > INT32_MAX && back_ns >= 0 && back_ns < GZ_NS_PER_S;
+}
+
+static uint32_t frames_lost(const struct psvr2_device *device, uint32_t frame)
+{
+	uint32_t between = frame - device->frame - 1;
+	return device->seq == 0 || between > INT32_MAX ? 0 : between;
+}
+
+static void fill_eye(const struct psvr2_device *device, const struct gz_psvr2_eye *measured,
+		     struct gz_eye_sample *eye)
+{
+	struct gz_point point;
+	if (measured->has_pupil)
+		eye->pupil_mm = measured->pupil_mm;
+	if (measured->ray.has_origin)
+		memcpy(eye->origin_mm, measured->ray.origin_mm, sizeof eye->origin_mm);
+	if (measured->ray.has_direction)
+		memcpy(eye->direction, measured->ray.direction, sizeof eye->direction);
+	if (!gz_psvr2_screen_meet(&device->screen, &measured->ray, &point))
+		return;
+	eye->point = point;
+	eye->valid = !measured->blink;
+}
+
+static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival *arrival,
+		      struct gz_sample *out_sample)
+{
+	bool jumped;
+	const struct gz_psvr2_packet *packet = &arrival->packet;
+	struct gz_sample sample = gz_sample_unmeasured();
+	sample.device_ns = packet->device_ns;
+	sample.host_ns =
+		gz_clock_model_step(&device->clock, sample.device_ns, arrival->arrival_ns, &jumped);
+	if (jumped)
+		gz_warn(device->base.log, "the headset's clock jumped; its fit begins again");
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
+		fill_eye(device, &packet->eye[eye], &sample.eye[eye]);
+	bool both_shut = packet->eye[0].blink && packet->eye[1].blink;
+	if (gz_psvr2_screen_meet(&device->screen, &packet->combined, &sample.point))
+		sample.valid = !both_shut;
+	sample.lost_before = frames_lost(device, packet->frame);
+	sample.seq = device->seq++;
+	device->lost += sample.lost_before;
+	device->frame = packet->frame;
+	device->device_ns = packet->device_ns;
+	*out_sample = sample;
+}
+
+static enum gz_result psvr2_read(struct gz_device *base, int timeout_ms,
+				 struct gz_sample *out_sample)
+{
+	struct psvr2_device *device = of(base);
+	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	for (;;) {
+		struct gz_psvr2_arrival arrival;
+		enum gz_result result = gz_psvr2_link_next(device->link, deadline_ns, &arrival);
+		if (result != GZ_OK)
+			return result;
+		if (!is_stale(device, &arrival.packet)) {
+			to_sample(device, &arrival, out_sample);
+			return GZ_OK;
+		}
+		device->stale++;
+		/* A device that repeats itself without end must not hold the caller. */
+		if (gz_clock_now_ns() >= deadline_ns)
+			return GZ_ERR_TIMEOUT;
+	}
+}
+
+static void psvr2_info(const struct gz_device *base, struct gz_device_info *out_info)
+{
+	const struct psvr2_device *device = (const struct psvr2_device *)base;
+	*out_info = (struct gz_device_info) { .has_display = true, .display = device->display };
+	memcpy(out_info->name, device->usb.name, sizeof out_info->name);
+	memcpy(out_info->serial, device->usb.serial, sizeof out_info->serial);
+}
+
+static void psvr2_counters(const struct gz_device *base, struct gz_device_counters *out_counters)
+{
+	const struct psvr2_device *device = (const struct psvr2_device *)base;
+	*out_counters = (struct gz_device_counters) {
+		.lost = device->lost,
+		.clock = gz_clock_model_status(&device->clock, GZ_CLOCK_DECLARED),
+	};
+	if (device->link)
+		memcpy(out_counters->malformed, gz_psvr2_link_malformed(device->link),
+		       sizeof out_counters->malformed);
+	out_counters->malformed[GZ_MALFORMED_STALE] = device->stale;
+}
+
+static void close_handle(struct psvr2_device *device)
+{
+	if (device->claimed)
+		libusb_release_interface(device->handle, GZ_PSVR2_INTERFACE);
+	if (device->handle)
+		libusb_close(device->handle);
+	device->claimed = false;
+	device->handle = NULL;
+}
+
+static void psvr2_destroy(struct gz_device *base)
+{
+	struct psvr2_device *device = of(base);
+	gz_psvr2_link_destroy(&device->link);
+	close_handle(device);
+	if (device->context)
+		libusb_exit(device->context);
+	free(device);
+}
+
+static const struct gz_device_ops psvr2_ops = {
+	.start = psvr2_start,
+	.read = psvr2_read,
+	.info = psvr2_info,
+	.counters = psvr2_counters,
+	.destroy = psvr2_destroy,
+};
+
+static void describe(libusb_device *usb, struct gz_usb_device *out_device)
+{
+	gz_usb_describe(usb, out_device);
+	if (!out_device->name[0])
+		snprintf(out_device->name, sizeof out_device->name, "%s", fallback_name);
+}
+
+static bool is_psvr2(const struct gz_usb_device *usb)
+{
+	return usb->vendor == GZ_PSVR2_VENDOR && usb->product == GZ_PSVR2_PRODUCT;
+}
+
+static enum gz_result refuse(const struct psvr2_device *device, const char *what, int error)
+{
+	const struct gz_log *log = device->base.log;
+	enum gz_result result = gz_usb_result(error);
+	switch (result) {
+	case GZ_ERR_ACCESS:
+		gz_err(log, "%s at %s: no permission for %s; %s", device->usb.name,
+		       device->usb.place, device->usb.node, GZ_USB_PERMISSION_REMEDY);
+		return result;
+	case GZ_ERR_BUSY:
+		gz_err(log, "%s at %s: another program holds its eye tracker; end that one",
+		       device->usb.name, device->usb.place);
+		return result;
+	default:
+		gz_err(log, "%s at %s: cannot %s: %s; plug it in again", device->usb.name,
+		       device->usb.place, what, libusb_error_name(error));
+		return result;
+	}
+}
+
+static enum gz_result open_device(struct psvr2_device *device, libusb_device *usb)
+{
+	int error = libusb_open(usb, &device->handle);
+	if (error != LIBUSB_SUCCESS) {
+		device->handle = NULL;
+		return refuse(device, "open it", error);
+	}
+	/* Not offered everywhere, and needed only where some kernel driver took the interface. */
+	libusb_set_auto_detach_kernel_driver(device->handle, 1);
+	error = libusb_claim_interface(device->handle, GZ_PSVR2_INTERFACE);
+	if (error == LIBUSB_SUCCESS) {
+		device->claimed = true;
+		return GZ_OK;
+	}
+	enum gz_result result = refuse(device, "claim its interface", error);
+	close_handle(device);
+	return result;
+}
+
+/* Take the first that can be opened. Others are named, so that one knows what to choose among. */
+static enum gz_result open_one(struct psvr2_device *device, libusb_device *const *list,
+			       const char *choice)
+{
+	const struct gz_log *log = device->base.log;
+	enum gz_result first = GZ_ERR_NO_DEVICE;
+	struct gz_usb_device other;
+	int seen = 0;
+	for (size_t i = 0; list[i]; i++) {
+		describe(list[i], &other);
+		if (!is_psvr2(&other))
+			continue;
+		seen++;
+		if (device->handle || !gz_usb_is_chosen(&other, choice)) {
+			gz_info(log, "not used: %s %s at %s", other.name, other.serial,
+				other.place);
+			continue;
+		}
+		device->usb = other;
+		enum gz_result result = open_device(device, list[i]);
+		if (result != GZ_OK && first == GZ_ERR_NO_DEVICE)
+			first = result;
+	}
+	if (device->handle)
+		return GZ_OK;
+	if (seen == 0)
+		gz_err(log, "no %s on USB; plug one in", fallback_name);
+	else if (first == GZ_ERR_NO_DEVICE)
+		gz_err(log, "no %s is called %s; `gazectl devices` lists them", fallback_name,
+		       choice ? choice : "");
+	return first;
+}
+
+static enum gz_result find_and_open(struct psvr2_device *device, const char *choice)
+{
+	libusb_device **list;
+	int error = libusb_init(&device->context);
+	if (error != LIBUSB_SUCCESS) {
+		device->context = NULL;
+		gz_err(device->base.log, "no USB here: %s", libusb_error_name(error));
+		return gz_usb_result(error);
+	}
+	ssize_t count = libusb_get_device_list(device->context, &list);
+	if (count < 0) {
+		gz_err(device->base.log, "no list of USB devices: %s",
+		       libusb_error_name((int)count));
+		return gz_usb_result((int)count);
+	}
+	enum gz_result result = open_one(device, list, choice);
+	libusb_free_device_list(list, 1);
+	return result;
+}
+
+static enum gz_result psvr2_create(const void *settings, const struct gz_driver_host *host,
+				   struct gz_device **out_device)
+{
+	const struct psvr2_settings *wanted = settings;
+	struct psvr2_device *device = calloc(1, sizeof *device);
+	if (!device)
+		return GZ_ERR_NO_MEM;
+	device->base = (struct gz_device) { .ops = &psvr2_ops, .log = host->log };
+	device->screen = gz_psvr2_screen_make(&wanted->screen);
+	device->display = (struct gz_display) {
+		.px = { wanted->screen_px[0], wanted->screen_px[1] },
+		.mm = { wanted->screen.size_mm[0], wanted->screen.size_mm[1] },
+		.distance_mm = wanted->screen.distance_mm,
+	};
+	enum gz_result result = find_and_open(device, host->choice);
+	if (result != GZ_OK) {
+		psvr2_destroy(&device->base);
+		return result;
+	}
+	*out_device = &device->base;
+	return GZ_OK;
+}
+
+static size_t psvr2_list(const void *settings, const struct gz_driver_host *host,
+			 struct gz_device_entry *out_entries)
+{
+	libusb_context *context;
+	libusb_device **list;
+	struct gz_usb_device usb;
+	size_t count = 0;
+	(void)settings;
+	int error = libusb_init(&context);
+	if (error != LIBUSB_SUCCESS) {
+		gz_warn(host->log, "no USB here: %s", libusb_error_name(error));
+		return 0;
+	}
+	if (libusb_get_device_list(context, &list) >= 0) {
+		for (size_t i = 0; list[i] && count < GZ_DEVICE_ENTRIES_MAX; i++) {
+			describe(list[i], &usb);
+			if (is_psvr2(&usb))
+				gz_usb_list_entry(&usb, GZ_PSVR2_INTERFACE, &out_entries[count++]);
+		}
+		libusb_free_device_list(list, 1);
+	}
+	libusb_exit(context);
+	return count;
+}
+
+_Static_assert(sizeof(struct psvr2_settings) <= GZ_DRIVER_SETTINGS_SIZE, "settings fit");
+
+const struct gz_driver gz_driver_psvr2 = {
+	.name = "psvr2",
+	.help = "the eye tracker of a PlayStation VR2 on USB",
+	.options = psvr2_options,
+	.option_count = &psvr2_option_count,
+	.settings_size = sizeof(struct psvr2_settings),
+	.create = psvr2_create,
+	.list = psvr2_list,
+};
