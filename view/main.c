@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "view/headless.h"
 #include "view/options.h"
+#include "view/target_window.h"
 #include "view/window.h"
 
 /* What a shell reports for a process that a signal ended. */
@@ -13,6 +14,8 @@ enum { EXIT_SIGNAL = 128 };
 static int run(const struct gz_view_options *options, const struct gz_log *log)
 {
 	int signal_number = 0;
+	if (options->target.targets[0])
+		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
 					     : gz_view_window(options, log);
 	if (r != GZ_OK)

@@ -144,6 +144,9 @@ const struct gz_option gz_view_option_table[] = {
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
 
+/* Tables of gazeview's own: the one above and that of the targets. */
+enum { OWN_BINDINGS = 2 };
+
 static bool starts_with(const char *text, const char *start)
 {
 	return strncmp(text, start, strlen(start)) == 0;
@@ -355,10 +358,22 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 	return GZ_OK;
 }
 
+/* Targets are for somebody who sits there and sees nothing else. */
+static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
+{
+	const char *other = options->scene[0] ? "a scene" : options->headless ? "--headless" : NULL;
+	if (!other)
+		return GZ_OK;
+	gz_err(log, "--targets: %s cannot go with it; remove one of them", other);
+	return GZ_ERR_INVAL;
+}
+
 /* Headless output asked for together with a window, a mouse without one, and the like. */
 static enum gz_result check_together(const struct gz_view_options *options,
 				     const struct gz_log *log)
 {
+	if (options->target.targets[0])
+		return check_targets(options, log);
 	if (!options->scene[0]) {
 		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
@@ -396,12 +411,13 @@ static enum gz_result check_method_once(const struct gz_view_options *options,
 static enum gz_result read_arguments(int argc, char *const *argv, struct scene_tables *tables,
 				     const struct gz_log *log, struct gz_view_options *options)
 {
-	struct gz_option_binding bindings[1 + GZ_SCENE_BINDINGS] = {
+	struct gz_option_binding bindings[OWN_BINDINGS + GZ_SCENE_BINDINGS] = {
 		{ gz_view_option_table, gz_view_option_count, options, NULL },
+		{ gz_target_option_table, gz_target_option_count, &options->target, NULL },
 	};
 	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
-		bindings[1 + i] = tables->bindings[i];
-		bindings[1 + i].given = options->scene_given[i];
+		bindings[OWN_BINDINGS + i] = tables->bindings[i];
+		bindings[OWN_BINDINGS + i].given = options->scene_given[i];
 	}
 	const char **positional = calloc((size_t)argc + 1, sizeof *positional);
 	int positional_count = 0;
@@ -409,8 +425,10 @@ static enum gz_result read_arguments(int argc, char *const *argv, struct scene_t
 		return GZ_ERR_NO_MEM;
 	enum gz_result r = gz_options_preset(&bindings[0]);
 	if (r == GZ_OK)
-		r = gz_options_read_arguments(bindings, 1 + GZ_SCENE_BINDINGS, argc, argv,
-					      positional, &positional_count, log);
+		r = gz_options_preset(&bindings[1]);
+	if (r == GZ_OK)
+		r = gz_options_read_arguments(bindings, OWN_BINDINGS + GZ_SCENE_BINDINGS, argc,
+					      argv, positional, &positional_count, log);
 	if (r == GZ_OK && !options->help && !options->version)
 		r = take_positional(options, positional, positional_count, log);
 	free(positional);
@@ -464,16 +482,19 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 
 void gz_view_options_print_help(FILE *out)
 {
-	const struct gz_option_binding own = { gz_view_option_table, gz_view_option_count, NULL,
-					       NULL };
+	const struct gz_option_binding own[OWN_BINDINGS] = {
+		{ gz_view_option_table, gz_view_option_count, NULL, NULL },
+		{ gz_target_option_table, gz_target_option_count, NULL, NULL },
+	};
 	struct gz_scene_settings settings;
 	struct scene_tables tables;
 	pick_scene_tables(&settings, &tables);
 	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
 	      "  gazeview SCENE\n"
-	      "  gazeview --headless --scene SCENE --out frame.png\n\n",
+	      "  gazeview --headless --scene SCENE --out frame.png\n"
+	      "  gazeview --targets 9\n\n",
 	      out);
-	gz_options_print_help(&own, 1, out);
+	gz_options_print_help(own, OWN_BINDINGS, out);
 	fputs("\nKeys of the scene; given here they come before the scene's own:\n\n", out);
 	gz_options_print_help(tables.bindings, GZ_SCENE_BINDINGS, out);
 }

@@ -15,6 +15,7 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/scene.h"
+#include "view/target_options.h"
 
 /** Most keys of one scene table that the command line takes. */
 #define GZ_VIEW_SCENE_KEYS_MAX 64
@@ -60,6 +61,8 @@ struct gz_view_options {
 	int display_px[2];          /**< 0: not given */
 	double display_mm[2];       /**< 0: not given */
 	double display_distance_mm; /**< 0: not given */
+
+	struct gz_target_options target; /**< targets instead of a scene, where any are named */
 
 	/** Scene keys given on the command line, to be copied over what the scene file says. */
 	struct gz_scene_settings scene_settings;

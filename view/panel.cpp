@@ -1,5 +1,9 @@
 #include "view/panel.h"
 
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+
 #include <imgui.h>
 
 #include <backends/imgui_impl_glfw.h>
@@ -14,6 +18,7 @@ namespace
 constexpr float MARGIN = 8;
 constexpr float PADDING = 5;
 constexpr float CROSS_ARM = 12;
+constexpr float MESSAGE_SCALE = 2;
 
 float interface_scale(GLFWwindow *window)
 {
@@ -48,6 +53,19 @@ void draw_cross(ImDrawList *list, float x, float y)
 	}
 }
 
+void begin_frame()
+{
+	ImGui_ImplOpenGL3_NewFrame();
+	ImGui_ImplGlfw_NewFrame();
+	ImGui::NewFrame();
+}
+
+void end_frame()
+{
+	ImGui::Render();
+	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
 } // namespace
 
 bool gz_panel_init(GLFWwindow *window)
@@ -71,9 +89,7 @@ bool gz_panel_init(GLFWwindow *window)
 
 void gz_panel_draw(const struct gz_panel_content *content)
 {
-	ImGui_ImplOpenGL3_NewFrame();
-	ImGui_ImplGlfw_NewFrame();
-	ImGui::NewFrame();
+	begin_frame();
 	/* Straight into the draw list: a window would need a second frame to find its size. */
 	ImDrawList *list = ImGui::GetForegroundDrawList();
 	if (content->cross)
@@ -82,8 +98,24 @@ void gz_panel_draw(const struct gz_panel_content *content)
 	float below = draw_text(list, MARGIN, content->line, colour);
 	if (content->keys)
 		draw_text(list, below + PADDING, content->keys, IM_COL32(235, 235, 235, 255));
-	ImGui::Render();
-	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+	end_frame();
+}
+
+void gz_panel_draw_message(const char *text)
+{
+	begin_frame();
+	ImDrawList *list = ImGui::GetForegroundDrawList();
+	ImFont *font = ImGui::GetFont();
+	float height = MESSAGE_SCALE * ImGui::GetFontSize();
+	ImVec2 room = ImGui::GetIO().DisplaySize;
+	float y = (room.y - font->CalcTextSizeA(height, FLT_MAX, 0, text).y) / 2;
+	for (const char *line = text, *end; *line; line = *end ? end + 1 : end, y += height) {
+		end = line + strcspn(line, "\n");
+		float width = font->CalcTextSizeA(height, FLT_MAX, 0, line, end).x;
+		list->AddText(font, height, ImVec2(floorf((room.x - width) / 2), floorf(y)),
+			      IM_COL32(20, 20, 20, 255), line, end);
+	}
+	end_frame();
 }
 
 void gz_panel_free(void)

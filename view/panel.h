@@ -34,6 +34,10 @@ bool gz_panel_init(struct GLFWwindow *window);
 /** Draw into the current framebuffer. Only between gz_panel_init() and gz_panel_free(). */
 void gz_panel_draw(const struct gz_panel_content *content);
 
+/** Draw @p text, UTF-8, over the middle of the current framebuffer: each line centred, dark, in
+ * twice the interface's size. Only between gz_panel_init() and gz_panel_free(). */
+void gz_panel_draw_message(const char *text);
+
 /** Take down what gz_panel_init() set up; nothing if it did not. */
 void gz_panel_free(void);
 

@@ -1,64 +1,19 @@
 #include "view/quad.h"
 
-#include <string.h>
-
 #include <GL/glew.h>
 
-#define GZ_LOG_MODULE "window"
+#include "view/gl_program.h"
 
 /* Made from shaders/ when the program is built. */
 extern const char gz_glsl_quad_vert[];
 extern const char gz_glsl_quad_frag[];
 
-enum { MESSAGE_SIZE = 400 };
-
-static GLuint compile(GLenum kind, const char *name, const char *source, const struct gz_log *log)
-{
-	GLuint shader = glCreateShader(kind);
-	GLint good = GL_FALSE;
-	glShaderSource(shader, 1, &source, NULL);
-	glCompileShader(shader);
-	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-	if (good)
-		return shader;
-	char message[MESSAGE_SIZE] = "";
-	glGetShaderInfoLog(shader, sizeof message, NULL, message);
-	message[strcspn(message, "\n")] = '\0';
-	gz_err(log, "the OpenGL driver refuses %s: %s; update it, or use --headless", name,
-	       message);
-	glDeleteShader(shader);
-	return 0;
-}
-
-static GLuint link_program(const struct gz_log *log)
-{
-	GLuint vertex = compile(GL_VERTEX_SHADER, "quad.vert", gz_glsl_quad_vert, log);
-	GLuint fragment =
-		vertex ? compile(GL_FRAGMENT_SHADER, "quad.frag", gz_glsl_quad_frag, log) : 0;
-	GLuint program = 0;
-	if (fragment) {
-		GLint good = GL_FALSE;
-		program = glCreateProgram();
-		glAttachShader(program, vertex);
-		glAttachShader(program, fragment);
-		glLinkProgram(program);
-		glGetProgramiv(program, GL_LINK_STATUS, &good);
-		if (!good) {
-			gz_err(log, "the OpenGL driver does not link quad.vert and quad.frag; "
-				    "update it, or use --headless");
-			glDeleteProgram(program);
-			program = 0;
-		}
-	}
-	glDeleteShader(vertex); /* 0 is ignored */
-	glDeleteShader(fragment);
-	return program;
-}
-
 enum gz_result gz_quad_init(struct gz_quad *quad, const struct gz_log *log)
 {
+	const struct gz_gl_shader vertex = { "quad.vert", gz_glsl_quad_vert };
+	const struct gz_gl_shader fragment = { "quad.frag", gz_glsl_quad_frag };
 	*quad = (struct gz_quad) { 0 };
-	quad->program = link_program(log);
+	quad->program = gz_gl_program(&vertex, &fragment, log);
 	if (!quad->program)
 		return GZ_ERR_UNSUPPORTED;
 	glGenVertexArrays(1, &quad->vertices);
