@@ -8,7 +8,8 @@
 #define GZ_LOG_MODULE "gazectl"
 
 static const struct gazectl_command *const commands[] = {
-	&gazectl_status, &gazectl_watch, &gazectl_record, &gazectl_stop, &gazectl_inspect,
+	&gazectl_status, &gazectl_watch,   &gazectl_record,
+	&gazectl_stop,   &gazectl_inspect, &gazectl_validate,
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
@@ -63,7 +64,7 @@ static void print_help(FILE *out)
 			commands[i]->summary);
 	fputs("\n`gazectl COMMAND --help` tells the options of each; gazectl(1) tells all.\n"
 	      "exit status: 0 done, 1 failed or refused, 2 usage, 3 no daemon answers, "
-	      "4 the log is cut or corrupted\n",
+	      "4 the log is cut or corrupted, 5 the check was cancelled\n",
 	      out);
 }
 

@@ -24,6 +24,7 @@ enum gazectl_exit {
 	GAZECTL_USAGE = 2,     /**< a command line that is not understood */
 	GAZECTL_NO_DAEMON = 3, /**< nobody answers at the endpoint */
 	GAZECTL_DAMAGED = 4,   /**< inspect: the log is cut or corrupted */
+	GAZECTL_CANCELLED = 5, /**< validate: by the Escape key or a signal */
 };
 
 /** One command. Tables are const and have static storage. */
@@ -45,6 +46,7 @@ extern const struct gazectl_command gazectl_watch;
 extern const struct gazectl_command gazectl_record;
 extern const struct gazectl_command gazectl_stop;
 extern const struct gazectl_command gazectl_inspect;
+extern const struct gazectl_command gazectl_validate;
 
 /** Most arguments that a command line may have. Chosen: more than any use needs. */
 enum { GAZECTL_ARGUMENTS_MAX = 64 };
