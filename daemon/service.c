@@ -13,6 +13,7 @@
 #include "daemon/messages.h"
 #include "daemon/rate_meter.h"
 #include "daemon/tracker.h"
+#include "drivers/usb/usb_watch.h"
 #include "protocol/wire_notification.h"
 
 #define GZ_LOG_MODULE "service"
@@ -28,7 +29,8 @@ struct gz_service {
 	bool quit;
 	bool waiting; /* for readers, before the tracker starts */
 	struct gz_tracker tracker;
-	uint64_t opened; /* the tracker's device that maker was made for */
+	struct gz_usb_watch *watch; /* NULL where nobody tells what is plugged in */
+	uint64_t opened;            /* the tracker's device that maker was made for */
 	struct gz_message_maker maker;
 	struct gz_rate_meter rate;
 	uint64_t rejected[GZ_REJECT_COUNT];
@@ -90,7 +92,11 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 	service->waiting = parts->config->wait_readers > 0;
 	const struct gz_driver *driver = gz_config_driver(parts->config, &settings);
 	const struct gz_driver_host host = { .log = parts->log, .choice = parts->config->tracker };
+	/* Before the first look, so that nothing arrives between the two. */
+	if (driver->on_usb)
+		gz_usb_watch_create(GZ_UDEV_CONTROL, parts->log, &service->watch);
 	enum gz_result result = gz_tracker_open(&service->tracker, driver, settings, &host);
+	gz_tracker_watch(&service->tracker, gz_usb_watch_fd(service->watch));
 	if (result == GZ_OK)
 		result = adopt_device(service);
 	if (result != GZ_OK) {
@@ -429,6 +435,7 @@ void gz_service_destroy(struct gz_service **service)
 	if (s->commands)
 		zmq_close(s->commands);
 	gz_tracker_close(&s->tracker);
+	gz_usb_watch_destroy(&s->watch);
 	free(s);
 	*service = NULL;
 }

@@ -1,6 +1,8 @@
 #include "daemon/tracker.h"
 
+#include <poll.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 
@@ -27,25 +29,59 @@ static bool may_appear(enum gz_result result)
 	       result == GZ_ERR_IO;
 }
 
-/* The driver logs why it fails; while a device is being waited for that is known, and silent. */
-static enum gz_result open_device(struct gz_tracker *tracker, bool silent)
+/* The driver logs why it fails. While a device is being waited for that is known. */
+static void relay(void *user, enum gz_log_level level, const char *module, const char *message)
+{
+	struct gz_tracker *tracker = user;
+	const struct gz_log *log = tracker->host.log;
+	if (!atomic_load(&tracker->looking)) {
+		if (gz_log_wants(log, level, module))
+			gz_log_write(log, level, module, "%s", message);
+	} else if (level >= GZ_LOG_WARN) {
+		snprintf(tracker->remark, sizeof tracker->remark, "%s", message);
+	}
+}
+
+static enum gz_result create(struct gz_tracker *tracker)
 {
 	struct gz_driver_host host = tracker->host;
-	if (silent)
-		host.log = NULL;
-	enum gz_result result = tracker->driver->create(tracker->settings, &host, &tracker->device);
-	if (result == GZ_OK) {
-		tracker->started = false;
-		tracker->opened++;
-		gz_device_get_info(tracker->device, &tracker->info);
+	host.log = &tracker->relay;
+	return tracker->driver->create(tracker->settings, &host, &tracker->device);
+}
+
+/* Silent, but where the reason has changed: a device that was missing may be there now and not ours
+ * to open. */
+static enum gz_result look_again(struct gz_tracker *tracker)
+{
+	tracker->remark[0] = '\0';
+	atomic_store(&tracker->looking, true);
+	enum gz_result result = create(tracker);
+	atomic_store(&tracker->looking, false);
+	if (result != GZ_OK && result != tracker->result && tracker->remark[0]) {
+		gz_warn(tracker->host.log, "%s", tracker->remark);
+		set_state(tracker, tracker->state, tracker->remark);
 	}
 	return result;
+}
+
+static enum gz_result open_device(struct gz_tracker *tracker, bool again)
+{
+	tracker->result = again ? look_again(tracker) : create(tracker);
+	if (tracker->result != GZ_OK)
+		return tracker->result;
+	tracker->started = false;
+	tracker->opened++;
+	gz_device_get_info(tracker->device, &tracker->info);
+	return GZ_OK;
 }
 
 enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_driver *driver,
 			       const void *settings, const struct gz_driver_host *host)
 {
-	*tracker = (struct gz_tracker) { .driver = driver, .settings = settings, .host = *host };
+	*tracker = (struct gz_tracker) {
+		.driver = driver, .settings = settings, .host = *host, .arrivals_fd = -1
+	};
+	gz_log_init(&tracker->relay, relay, tracker, "*:debug");
 	snprintf(tracker->info.name, sizeof tracker->info.name, "%s", driver->name);
 	enum gz_result result = open_device(tracker, false);
 	if (result == GZ_OK) {
@@ -58,6 +94,11 @@ enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_drive
 	gz_warn(host->log, "%s is looked for until it appears", driver->name);
 	pause_before_retry(tracker);
 	return GZ_OK;
+}
+
+void gz_tracker_watch(struct gz_tracker *tracker, int arrivals_fd)
+{
+	tracker->arrivals_fd = tracker->driver->on_usb ? arrivals_fd : -1;
 }
 
 void gz_tracker_update_counters(struct gz_tracker *tracker)
@@ -81,31 +122,60 @@ static void drop_device(struct gz_tracker *tracker)
 	tracker->started = false;
 }
 
+/* People call it so. */
+static const char *loss_text(enum gz_result result)
+{
+	return result == GZ_ERR_NO_DEVICE ? "unplugged" : gz_result_text(result);
+}
+
 static void lose_device(struct gz_tracker *tracker, enum gz_result result)
 {
 	bool was_there = tracker->samples > 0;
 	drop_device(tracker);
-	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, gz_result_text(result));
+	tracker->result = result;
+	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, loss_text(result));
 	gz_warn(tracker->host.log, "%s is gone (%s); waiting for it", tracker->info.name,
-		gz_result_text(result));
+		loss_text(result));
 	pause_before_retry(tracker);
+}
+
+/* Wait until @p until_ns. Returns whether something was plugged in before. */
+static bool wait_for_arrival(struct gz_tracker *tracker, int64_t until_ns)
+{
+	uint64_t arrivals;
+	struct pollfd poll_fd = { .fd = tracker->arrivals_fd, .events = POLLIN };
+	int64_t left_ns = until_ns - gz_clock_now_ns();
+	if (tracker->arrivals_fd < 0) {
+		gz_clock_sleep_until_ns(until_ns);
+		return false;
+	}
+	if (left_ns < 0)
+		left_ns = 0;
+	struct timespec timeout = { .tv_sec = (time_t)(left_ns / GZ_NS_PER_S),
+				    .tv_nsec = (long)(left_ns % GZ_NS_PER_S) };
+	return ppoll(&poll_fd, 1, &timeout, NULL) > 0 &&
+	       read(tracker->arrivals_fd, &arrivals, sizeof arrivals) == sizeof arrivals;
+}
+
+/* Look for the device, if that is due before the deadline. */
+static enum gz_result find_device(struct gz_tracker *tracker, int64_t deadline_ns)
+{
+	bool due = tracker->retry_ns <= deadline_ns;
+	if (wait_for_arrival(tracker, due ? tracker->retry_ns : deadline_ns))
+		tracker->pause_ns = GZ_TRACKER_PAUSE_ARRIVAL_MS * GZ_NS_PER_MS;
+	else if (!due)
+		return GZ_ERR_TIMEOUT;
+	if (open_device(tracker, true) == GZ_OK)
+		return GZ_OK;
+	pause_before_retry(tracker);
+	return GZ_ERR_TIMEOUT;
 }
 
 /* Open and start as far as that is due. */
 static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 {
-	if (!tracker->device) {
-		if (tracker->retry_ns > deadline_ns) {
-			gz_clock_sleep_until_ns(deadline_ns);
-			return GZ_ERR_TIMEOUT;
-		}
-		gz_clock_sleep_until_ns(tracker->retry_ns);
-		enum gz_result result = open_device(tracker, true);
-		if (result != GZ_OK) {
-			pause_before_retry(tracker);
-			return GZ_ERR_TIMEOUT;
-		}
-	}
+	if (!tracker->device && find_device(tracker, deadline_ns) != GZ_OK)
+		return GZ_ERR_TIMEOUT;
 	if (tracker->started)
 		return GZ_OK;
 	enum gz_result result = gz_device_start(tracker->device);
@@ -115,6 +185,7 @@ static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 	}
 	tracker->started = true;
 	tracker->arrival_ns = gz_clock_now_ns();
+	set_state(tracker, GZ_TRACKER_STARTING, "");
 	return GZ_OK;
 }
 

@@ -6,6 +6,7 @@
 #ifndef GZ_DAEMON_TRACKER_H
 #define GZ_DAEMON_TRACKER_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,11 +19,15 @@
 #define GZ_TRACKER_PAUSE_MIN_MS 250
 #define GZ_TRACKER_PAUSE_MAX_MS 4000
 
+/** The same once something was plugged in, ms: its device node may follow a moment later. Chosen:
+ * the kernel and udev take some 10 ms. */
+#define GZ_TRACKER_PAUSE_ARRIVAL_MS 20
+
 /** A running device that is silent for so long counts as lost, ms. Chosen: longer than the longest
  * blink, for trackers that send nothing while no eye is seen. */
 #define GZ_TRACKER_SILENCE_MS 1000
 
-/** A tracker. Zero-initialised is none; gz_tracker_open() fills it. */
+/** A tracker. Zero-initialised is none; gz_tracker_open() fills it, and it stays where it is. */
 struct gz_tracker {
 	const struct gz_driver *driver;
 	const void *settings;
@@ -33,8 +38,13 @@ struct gz_tracker {
 	char reason[GZ_REASON_SIZE]; /**< why it does not run; empty while it does */
 	uint64_t opened;             /**< devices opened so far: info is of the newest one */
 	struct gz_device_info info;
+	int arrivals_fd; /**< see gz_tracker_watch() */
 	int64_t pause_ns;
-	int64_t retry_ns;   /**< when to look for the device again */
+	int64_t retry_ns;      /**< when to look for the device again */
+	enum gz_result result; /**< of the last look for it; told again where it changes */
+	struct gz_log relay;   /**< what the driver logs to */
+	atomic_bool looking;   /**< then it goes into remark, else on to host.log */
+	char remark[GZ_REASON_SIZE];
 	int64_t arrival_ns; /**< newest sample, or start */
 	uint64_t seq_base;  /**< added to the device's numbers */
 	uint64_t next_seq;
@@ -53,6 +63,13 @@ struct gz_tracker {
  */
 enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_driver *driver,
 			       const void *settings, const struct gz_driver_host *host);
+
+/**
+ * Look for a missing device at once when something arrives, if its driver is one for USB.
+ *
+ * @param arrivals_fd  an eventfd that becomes readable then; borrowed; -1 for none. It is read.
+ */
+void gz_tracker_watch(struct gz_tracker *tracker, int arrivals_fd);
 
 /**
  * Wait for the next sample; opens and starts the device where that is due. Numbers go on where a

@@ -93,6 +93,7 @@ struct gz_driver {
 	const struct gz_option *options; /**< keys "<name>.<setting>"; NULL if there are none */
 	const size_t *option_count;      /**< by address: some tables stand in other folders */
 	size_t settings_size;            /**< bytes of the struct that the options point into */
+	bool on_usb; /**< its devices are plugged into USB: an arrival there is a reason to look */
 
 	/**
 	 * Open a device.

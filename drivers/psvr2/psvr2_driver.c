@@ -360,6 +360,7 @@ const struct gz_driver gz_driver_psvr2 = {
 	.options = psvr2_options,
 	.option_count = &psvr2_option_count,
 	.settings_size = sizeof(struct psvr2_settings),
+	.on_usb = true,
 	.create = psvr2_create,
 	.list = psvr2_list,
 };

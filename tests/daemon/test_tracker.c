@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/eventfd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -142,12 +143,175 @@ static void tracker_whose_settings_cannot_work_is_refused_at_once(void **state)
 	gz_tracker_close(&tracker);
 }
 
+/* A driver on USB whose device is there when the test says so. */
+static struct {
+	enum gz_result answer;
+	int looks;
+} port;
+
+static enum gz_result port_start(struct gz_device *device)
+{
+	(void)device;
+	return GZ_OK;
+}
+
+static enum gz_result port_read(struct gz_device *device, int timeout_ms,
+				struct gz_sample *out_sample)
+{
+	(void)device;
+	(void)timeout_ms;
+	*out_sample = gz_sample_unmeasured();
+	return port.answer;
+}
+
+static void port_info(const struct gz_device *device, struct gz_device_info *out_info)
+{
+	(void)device;
+	strcpy(out_info->name, "port");
+}
+
+static void port_counters(const struct gz_device *device, struct gz_device_counters *out_counters)
+{
+	(void)device;
+	(void)out_counters;
+}
+
+static void port_destroy(struct gz_device *device)
+{
+	(void)device;
+}
+
+static const struct gz_device_ops port_ops = { port_start, port_read, port_info, port_counters,
+					       port_destroy };
+
+static enum gz_result port_create(const void *unused, const struct gz_driver_host *host,
+				  struct gz_device **out_device)
+{
+	static struct gz_device device;
+	(void)unused;
+	port.looks++;
+	if (port.answer != GZ_OK) {
+		gz_log_write(host->log, GZ_LOG_ERROR, "port", "%s",
+			     port.answer == GZ_ERR_ACCESS ? "install the rule" : "plug it in");
+		return port.answer;
+	}
+	device = (struct gz_device) { &port_ops, host->log };
+	*out_device = &device;
+	return GZ_OK;
+}
+
+static const struct gz_driver port_driver = { .name = "port",
+					      .on_usb = true,
+					      .create = port_create };
+
+static void arrive(int fd)
+{
+	assert_int_equal(eventfd_write(fd, 1), 0);
+}
+
+static void tracker_on_usb_is_looked_for_at_once_when_something_arrives(void **state)
+{
+	(void)state;
+	struct gz_tracker tracker;
+	struct gz_sample sample;
+	int fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	port.answer = GZ_ERR_NO_DEVICE;
+	port.looks = 0;
+	assert_int_equal(gz_tracker_open(&tracker, &port_driver, NULL, &nothing), GZ_OK);
+	gz_tracker_watch(&tracker, fd);
+	/* Long unplugged: the next look would come in an hour. */
+	tracker.pause_ns = GZ_TRACKER_PAUSE_MAX_MS * GZ_NS_PER_MS;
+	tracker.retry_ns = gz_clock_now_ns() + 3600 * GZ_NS_PER_S;
+	assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(port.looks, 1);
+	/* Something else arrives, or it is not ready yet: one look at once, and more soon. */
+	arrive(fd);
+	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(port.looks, 2);
+	assert_true(tracker.retry_ns < gz_clock_now_ns() + GZ_TRACKER_PAUSE_MIN_MS * GZ_NS_PER_MS);
+	tracker.retry_ns = gz_clock_now_ns() + 3600 * GZ_NS_PER_S;
+	port.answer = GZ_OK;
+	arrive(fd);
+	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_OK);
+	assert_int_equal(tracker.state, GZ_TRACKER_RUNNING);
+	/* Unplugged, and back. */
+	port.answer = GZ_ERR_NO_DEVICE;
+	assert_int_equal(gz_tracker_read(&tracker, 10, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(tracker.state, GZ_TRACKER_LOST);
+	assert_string_equal(tracker.reason, "unplugged");
+	tracker.retry_ns = gz_clock_now_ns() + 3600 * GZ_NS_PER_S;
+	port.answer = GZ_OK;
+	arrive(fd);
+	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_OK);
+	assert_int_equal(tracker.state, GZ_TRACKER_RUNNING);
+	assert_int_equal(sample.seq, 1);
+	gz_tracker_close(&tracker);
+	close(fd);
+}
+
+static void arrivals_do_not_matter_to_a_tracker_that_is_not_on_usb(void **state)
+{
+	(void)state;
+	struct gz_tracker tracker;
+	struct gz_sample sample;
+	static const struct gz_driver elsewhere = { .name = "elsewhere", .create = port_create };
+	int fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	port.answer = GZ_ERR_NO_DEVICE;
+	port.looks = 0;
+	assert_int_equal(gz_tracker_open(&tracker, &elsewhere, NULL, &nothing), GZ_OK);
+	gz_tracker_watch(&tracker, fd);
+	tracker.retry_ns = gz_clock_now_ns() + 3600 * GZ_NS_PER_S;
+	arrive(fd);
+	assert_int_equal(gz_tracker_read(&tracker, 5, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(port.looks, 1);
+	gz_tracker_close(&tracker);
+	close(fd);
+}
+
+static int told_rule, told_plug;
+
+static void count_told(void *user, enum gz_log_level level, const char *module, const char *message)
+{
+	(void)user;
+	(void)level;
+	(void)module;
+	told_rule += strstr(message, "install the rule") != NULL;
+	told_plug += strstr(message, "plug it in") != NULL;
+}
+
+static void why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes(void **state)
+{
+	(void)state;
+	struct gz_log log;
+	struct gz_tracker tracker;
+	struct gz_sample sample;
+	const struct gz_driver_host host = { .log = &log };
+	gz_log_init(&log, count_told, NULL, "*:info");
+	port.answer = GZ_ERR_NO_DEVICE;
+	assert_int_equal(gz_tracker_open(&tracker, &port_driver, NULL, &host), GZ_OK);
+	assert_int_equal(told_plug, 1);
+	for (int i = 0; i < 6; i++) {
+		if (i == 3)
+			port.answer = GZ_ERR_ACCESS;
+		tracker.retry_ns = 0;
+		assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+	}
+	assert_int_equal(told_plug, 1);
+	assert_int_equal(told_rule, 1);
+	assert_string_equal(tracker.reason, "install the rule");
+	assert_int_equal(tracker.state, GZ_TRACKER_ABSENT);
+	gz_tracker_close(&tracker);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(tracker_that_vanishes_is_lost_and_returns_with_numbers_going_on),
 		cmocka_unit_test(tracker_that_falls_silent_is_lost_until_it_speaks),
 		cmocka_unit_test(tracker_whose_settings_cannot_work_is_refused_at_once),
+		cmocka_unit_test(tracker_on_usb_is_looked_for_at_once_when_something_arrives),
+		cmocka_unit_test(arrivals_do_not_matter_to_a_tracker_that_is_not_on_usb),
+		cmocka_unit_test(why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
 }

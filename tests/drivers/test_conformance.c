@@ -16,8 +16,8 @@
 #include "drivers/psvr2/psvr2_link.h"
 #include "drivers/psvr2/psvr2_packet.h"
 #include "drivers/template/template_protocol.h"
-#include "gazepoint_server.h"
 #include "fake_libusb.h"
+#include "gazepoint_server.h"
 #include "made_log.h"
 
 /* Samples read of each driver. */
