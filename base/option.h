@@ -103,6 +103,12 @@ const struct gz_option *gz_options_find(const struct gz_option_binding *bindings
 enum gz_result gz_options_read_file(const struct gz_option_binding *bindings, size_t count,
 				    const char *path, const struct gz_log *log);
 
+/**
+ * The line of the INI file @p path that gives @p key, for messages about values that each by itself
+ * were fine: 0 if none does, or if the file cannot be read.
+ */
+int gz_options_file_line(const char *path, const char *key);
+
 /** As gz_options_read_file() over @p size bytes at @p text; @p name stands for the file in
  * messages. */
 enum gz_result gz_options_read_text(const struct gz_option_binding *bindings, size_t count,

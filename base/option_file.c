@@ -23,6 +23,8 @@ struct pass {
 	const char *rest, *end;
 	int line;
 	bool value_expected; /* the last line was neither blank, comment nor section */
+	const char *wanted;  /* the key that is looked for, where nothing is read */
+	int wanted_line;
 	enum gz_result result;
 };
 
@@ -118,6 +120,11 @@ static int take_value(void *user, const char *section, const char *name, const c
 		return 0;
 	}
 	snprintf(key, sizeof key, "%s.%s", section, name);
+	if (pass->wanted) {
+		if (strcmp(key, pass->wanted) == 0)
+			pass->wanted_line = pass->line;
+		return 1;
+	}
 	if (gz_option_reader_set(&pass->reader, key, value, pass->line, &first, message,
 				 sizeof message) == GZ_OK)
 		return 1;
@@ -190,4 +197,22 @@ enum gz_result gz_options_read_file(const struct gz_option_binding *bindings, si
 		result = gz_options_read_text(bindings, count, path, text, size, log);
 	free(text);
 	return result;
+}
+
+int gz_options_file_line(const char *path, const char *key)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *file = fopen(path, "rb");
+	if (!file)
+		return 0;
+	enum gz_result result = read_whole(file, path, NULL, &text, &size);
+	fclose(file);
+	if (result != GZ_OK)
+		return 0;
+	struct pass pass = { .name = path, .rest = text, .end = text + size, .wanted = key };
+	if (size > 0)
+		ini_parse_stream(next_line, &pass, take_value, &pass);
+	free(text);
+	return pass.wanted_line;
 }

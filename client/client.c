@@ -20,24 +20,43 @@ struct gz_client {
 	struct gz_ratelimit malformed_limit;
 };
 
-enum gz_result gz_client_open(const char *endpoint, const struct gz_log *log,
-			      struct gz_client **out_client)
+static enum gz_result open_client(const struct gz_subscriber_params *params,
+				  const struct gz_log *log, struct gz_client **out_client)
 {
 	struct gz_client *client = calloc(1, sizeof *client);
 	if (!client)
 		return GZ_ERR_NO_MEM;
-	const struct gz_subscriber_params params = {
-		.endpoint = endpoint,
-		.channel = "latest",
-		.conflate = true,
-	};
-	enum gz_result result = gz_subscriber_open(&client->subscriber, &params, log);
+	enum gz_result result = gz_subscriber_open(&client->subscriber, params, log);
 	if (result != GZ_OK) {
 		gz_client_close(&client);
 		return result;
 	}
 	*out_client = client;
 	return GZ_OK;
+}
+
+enum gz_result gz_client_open(const char *endpoint, const struct gz_log *log,
+			      struct gz_client **out_client)
+{
+	const struct gz_subscriber_params params = {
+		.endpoint = endpoint,
+		.channel = "latest",
+		.conflate = true,
+		.find_keys = true,
+	};
+	return open_client(&params, log, out_client);
+}
+
+enum gz_result gz_client_open_with_keys(const char *endpoint, const struct gz_keys *keys,
+					const struct gz_log *log, struct gz_client **out_client)
+{
+	const struct gz_subscriber_params params = {
+		.endpoint = endpoint,
+		.channel = "latest",
+		.conflate = true,
+		.keys = keys,
+	};
+	return open_client(&params, log, out_client);
 }
 
 static void count_malformed(struct gz_client *client)

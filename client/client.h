@@ -11,6 +11,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "client/keys.h"
 #include "protocol/gaze.h"
 
 #ifdef __cplusplus
@@ -28,11 +29,16 @@ struct gz_client;
  * @param[out] out_client  owned by the caller: gz_client_close()
  * @retval GZ_ERR_INVAL   @p endpoint is no ZeroMQ endpoint; logged
  * @retval GZ_ERR_NO_MEM  no room for memory, sockets or threads; logged
+ * @return else as gz_keys_find(), which is asked for keys
  *
  * Succeeds also while no daemon runs. Starts ZeroMQ's two threads.
  */
 enum gz_result gz_client_open(const char *endpoint, const struct gz_log *log,
 			      struct gz_client **out_client);
+
+/** As gz_client_open() with @p keys, copied, and no others; NULL connects without any. */
+enum gz_result gz_client_open_with_keys(const char *endpoint, const struct gz_keys *keys,
+					const struct gz_log *log, struct gz_client **out_client);
 
 /**
  * The newest gaze. Never blocks. Its time is on this machine's CLOCK_MONOTONIC if the daemon runs

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <zmq.h>
 
+#include "base/clock.h"
+#include "client/handshake.h"
 #include "protocol/endpoint.h"
 
 #define GZ_LOG_MODULE "client"
@@ -14,6 +16,8 @@ struct gz_control {
 	void *context;
 	const struct gz_log *log;
 	char endpoint[GZ_ENDPOINT_SIZE];
+	bool has_keys;
+	struct gz_keys keys;
 };
 
 static enum gz_result find_endpoint(struct gz_control *control, const char *endpoint)
@@ -22,16 +26,11 @@ static enum gz_result find_endpoint(struct gz_control *control, const char *endp
 		int length = snprintf(control->endpoint, GZ_ENDPOINT_SIZE, "%s", endpoint);
 		return length > 0 && length < GZ_ENDPOINT_SIZE ? GZ_OK : GZ_ERR_INVAL;
 	}
-	char directory[GZ_ENDPOINT_SIZE];
-	if (gz_runtime_directory(directory, sizeof directory) != GZ_OK)
-		return GZ_ERR_INVAL;
-	return gz_endpoint_ipc(directory, "control", control->endpoint, GZ_ENDPOINT_SIZE) == GZ_OK
-		       ? GZ_OK
-		       : GZ_ERR_INVAL;
+	return gz_endpoint_find("control", control->log, control->endpoint, GZ_ENDPOINT_SIZE);
 }
 
 /* A REQ socket of its own for each request: one whose reply never came can be used no more. */
-static void *connect_socket(struct gz_control *control, int timeout_ms)
+static void *open_socket(struct gz_control *control, int timeout_ms)
 {
 	void *socket = zmq_socket(control->context, ZMQ_REQ);
 	if (!socket)
@@ -42,7 +41,7 @@ static void *connect_socket(struct gz_control *control, int timeout_ms)
 	zmq_setsockopt(socket, ZMQ_SNDTIMEO, &timeout_ms, sizeof timeout_ms);
 	const int64_t bytes_max = GZ_CONTROL_REPLY_SIZE;
 	zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &bytes_max, sizeof bytes_max);
-	if (zmq_connect(socket, control->endpoint) == 0)
+	if (gz_handshake_use_keys(socket, gz_control_keys(control)))
 		return socket;
 	int error = errno;
 	zmq_close(socket);
@@ -52,9 +51,11 @@ static void *connect_socket(struct gz_control *control, int timeout_ms)
 
 static enum gz_result check_endpoint(struct gz_control *control)
 {
-	void *socket = connect_socket(control, 1);
-	if (!socket) {
+	void *socket = open_socket(control, 1);
+	if (!socket || zmq_connect(socket, control->endpoint) != 0) {
 		int error = errno;
+		if (socket)
+			zmq_close(socket);
 		gz_err(control->log,
 		       "%s: %s; an endpoint looks like ipc:///path or tcp://host:port",
 		       control->endpoint, zmq_strerror(error));
@@ -64,17 +65,22 @@ static enum gz_result check_endpoint(struct gz_control *control)
 	return GZ_OK;
 }
 
-enum gz_result gz_control_open(const char *endpoint, const struct gz_log *log,
-			       struct gz_control **out_control)
+enum gz_result gz_control_open_with_keys(const char *endpoint, const struct gz_keys *keys,
+					 const struct gz_log *log, struct gz_control **out_control)
 {
 	struct gz_control *control = calloc(1, sizeof *control);
 	if (!control)
 		return GZ_ERR_NO_MEM;
 	control->log = log;
+	control->has_keys = keys != NULL;
+	if (keys)
+		control->keys = *keys;
 	enum gz_result result = find_endpoint(control, endpoint);
-	if (result != GZ_OK)
+	if (result == GZ_ERR_FULL || result == GZ_ERR_INVAL) {
 		gz_err(log, "an endpoint has 1 to %d bytes, and a local one at most 107",
 		       GZ_ENDPOINT_SIZE - 1);
+		result = GZ_ERR_INVAL;
+	}
 	if (result == GZ_OK) {
 		control->context = zmq_ctx_new();
 		result = control->context ? check_endpoint(control) : GZ_ERR_NO_MEM;
@@ -87,10 +93,23 @@ enum gz_result gz_control_open(const char *endpoint, const struct gz_log *log,
 	return GZ_OK;
 }
 
+enum gz_result gz_control_open(const char *endpoint, const struct gz_log *log,
+			       struct gz_control **out_control)
+{
+	struct gz_keys keys;
+	enum gz_result result = gz_keys_find(endpoint, NULL, NULL, log, &keys);
+	if (result != GZ_OK && result != GZ_ERR_NOT_FOUND)
+		return result;
+	result = gz_control_open_with_keys(endpoint, result == GZ_OK ? &keys : NULL, log,
+					   out_control);
+	explicit_bzero(&keys, sizeof keys);
+	return result;
+}
+
 static enum gz_result receive_reply(void *socket, char *out_reply)
 {
 	char reply[GZ_CONTROL_REPLY_SIZE];
-	int size = zmq_recv(socket, reply, sizeof reply, 0);
+	int size = zmq_recv(socket, reply, sizeof reply, ZMQ_DONTWAIT);
 	if (size < 0)
 		return GZ_ERR_TIMEOUT;
 	int more = 0;
@@ -103,18 +122,60 @@ static enum gz_result receive_reply(void *socket, char *out_reply)
 	return GZ_OK;
 }
 
+/* What the monitor has told. That the other side hung up may also be its end, after which it
+ * returns: that is waited for; of the others it is certain that nothing will come. */
+static enum gz_handshake_fault take_faults(const struct gz_control *control, void *monitor,
+					   enum gz_handshake_fault known)
+{
+	struct gz_monitor_event event;
+	while ((event = gz_handshake_next_event(monitor)).number != 0) {
+		enum gz_handshake_fault fault = gz_handshake_fault_of(&event, control->has_keys);
+		if (fault != GZ_HANDSHAKE_FINE)
+			known = fault;
+	}
+	return known;
+}
+
+static enum gz_result wait_reply(const struct gz_control *control, void *socket, void *monitor,
+				 int timeout_ms, char *out_reply)
+{
+	zmq_pollitem_t items[] = { { .socket = socket, .events = ZMQ_POLLIN },
+				   { .socket = monitor, .events = ZMQ_POLLIN } };
+	enum gz_handshake_fault fault = GZ_HANDSHAKE_FINE;
+	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	while (fault <= GZ_HANDSHAKE_ENDED) {
+		int64_t left_ns = deadline_ns - gz_clock_now_ns();
+		if (left_ns <= 0 ||
+		    (zmq_poll(items, 2, (long)(left_ns / GZ_NS_PER_MS) + 1) < 0 && errno != EINTR))
+			break;
+		if (items[0].revents)
+			return receive_reply(socket, out_reply);
+		fault = take_faults(control, monitor, fault);
+	}
+	if (fault == GZ_HANDSHAKE_FINE || (fault == GZ_HANDSHAKE_ENDED && !control->has_keys))
+		return GZ_ERR_TIMEOUT;
+	gz_handshake_log(fault, control->endpoint, gz_control_keys(control), control->log);
+	return GZ_ERR_ACCESS;
+}
+
 enum gz_result gz_control_request(struct gz_control *control, const char *request, int timeout_ms,
 				  char out_reply[GZ_CONTROL_REPLY_SIZE])
 {
 	if (timeout_ms < 1)
 		return GZ_ERR_INVAL;
-	void *socket = connect_socket(control, timeout_ms);
-	if (!socket)
-		return GZ_ERR_NO_MEM;
-	enum gz_result result = GZ_ERR_TIMEOUT;
-	if (zmq_send(socket, request, strlen(request), 0) >= 0)
-		result = receive_reply(socket, out_reply);
-	zmq_close(socket);
+	void *socket = open_socket(control, timeout_ms);
+	void *monitor = socket ? gz_handshake_open_monitor(control->context, socket, 0) : NULL;
+	enum gz_result result = GZ_ERR_NO_MEM;
+	if (monitor && zmq_connect(socket, control->endpoint) == 0)
+		result = zmq_send(socket, request, strlen(request), 0) >= 0
+				 ? wait_reply(control, socket, monitor, timeout_ms, out_reply)
+				 : GZ_ERR_TIMEOUT;
+	if (socket)
+		zmq_socket_monitor(socket, NULL, 0);
+	if (monitor)
+		zmq_close(monitor);
+	if (socket)
+		zmq_close(socket);
 	return result;
 }
 
@@ -162,6 +223,11 @@ enum gz_result gz_control_stream_endpoint(struct gz_control *control, int timeou
 	return GZ_OK;
 }
 
+const struct gz_keys *gz_control_keys(const struct gz_control *control)
+{
+	return control->has_keys ? &control->keys : NULL;
+}
+
 const char *gz_control_endpoint(const struct gz_control *control)
 {
 	return control->endpoint;
@@ -173,6 +239,7 @@ void gz_control_close(struct gz_control **control)
 		return;
 	if ((*control)->context)
 		zmq_ctx_term((*control)->context);
+	explicit_bzero(&(*control)->keys, sizeof(*control)->keys);
 	free(*control);
 	*control = NULL;
 }

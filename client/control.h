@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "client/keys.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,11 +33,16 @@ struct gz_control;
  * @param[out] out_control  owned by the caller: gz_control_close()
  * @retval GZ_ERR_INVAL   @p endpoint is no ZeroMQ endpoint; logged
  * @retval GZ_ERR_NO_MEM  no room; logged
+ * @return else as gz_keys_find(), which is asked for keys
  *
  * Succeeds also while no daemon runs.
  */
 enum gz_result gz_control_open(const char *endpoint, const struct gz_log *log,
 			       struct gz_control **out_control);
+
+/** As gz_control_open() with @p keys, copied, and no others; NULL connects without any. */
+enum gz_result gz_control_open_with_keys(const char *endpoint, const struct gz_keys *keys,
+					 const struct gz_log *log, struct gz_control **out_control);
 
 /**
  * Send @p request and wait for its reply. A daemon that is gone or hangs costs the timeout and
@@ -48,6 +54,7 @@ enum gz_result gz_control_open(const char *endpoint, const struct gz_log *log,
  *                        command that was carried out is answered with text beginning "OK"; a
  *                        refusal says why
  * @retval GZ_ERR_TIMEOUT   no reply: most likely no daemon runs there
+ * @retval GZ_ERR_ACCESS    the daemon refuses our keys, or we its; logged with the remedy
  * @retval GZ_ERR_PROTOCOL  the reply is too long or holds a NUL
  * @retval GZ_ERR_INVAL     @p timeout_ms is below 1
  * @retval GZ_ERR_NO_MEM    no room for a socket
@@ -67,6 +74,10 @@ enum gz_result gz_control_request(struct gz_control *control, const char *reques
  */
 enum gz_result gz_control_stream_endpoint(struct gz_control *control, int timeout_ms, char *text,
 					  size_t size);
+
+/** The keys in use, NULL for none: those that its stream needs, too. Valid until the control is
+ *  closed. */
+const struct gz_keys *gz_control_keys(const struct gz_control *control);
 
 /** The endpoint in use. Valid until the control is closed. */
 const char *gz_control_endpoint(const struct gz_control *control);

@@ -20,6 +20,7 @@ extern "C" {
 #include "base/result.h"
 #include "client/client.h"
 #include "client/control.h"
+#include "client/keys.h"
 #include "client/stream.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"

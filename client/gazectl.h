@@ -47,6 +47,7 @@ extern const struct gazectl_command gazectl_record;
 extern const struct gazectl_command gazectl_stop;
 extern const struct gazectl_command gazectl_inspect;
 extern const struct gazectl_command gazectl_validate;
+extern const struct gazectl_command gazectl_keygen;
 
 /** Most arguments that a command line may have. Chosen: more than any use needs. */
 enum { GAZECTL_ARGUMENTS_MAX = 64 };
@@ -60,11 +61,14 @@ struct gazectl_operands {
 /** Options that every command which asks the daemon has; the first member of its settings. */
 struct gazectl_common {
 	bool help;
-	char endpoint[256]; /**< of the control socket; empty for the local daemon */
+	char endpoint[256];   /**< of the control socket; empty for the local daemon */
+	char keys[1024];      /**< directory of keys; empty for the usual places */
+	char server_key[128]; /**< the daemon's public key; empty: see known_servers */
 };
 
 /* clang-format off */
-/** The rows that begin the table of a command which asks the daemon: "--help", "--endpoint". */
+/** The rows that begin the table of a command which asks the daemon: "--help", "--endpoint",
+ *  "--keys", "--server-key". */
 #define GAZECTL_COMMON_OPTIONS                                                                   \
 	GAZECTL_HELP_OPTION,                                                                     \
 	{ .key = "endpoint",                                                                     \
@@ -72,7 +76,20 @@ struct gazectl_common {
 	  .offset = offsetof(struct gazectl_common, endpoint),                                   \
 	  .max = sizeof((struct gazectl_common *)NULL)->endpoint,                                \
 	  .preset = "",                                                                          \
-	  .help = "the daemon's control socket, as tcp://127.0.0.1:50020; empty for the local one" }
+	  .help = "the daemon's control socket, as tcp://127.0.0.1:50020; empty for the local one" }, \
+	{ .key = "keys",                                                                         \
+	  .type = GZ_OPTION_STRING,                                                              \
+	  .offset = offsetof(struct gazectl_common, keys),                                       \
+	  .max = sizeof((struct gazectl_common *)NULL)->keys,                                    \
+	  .preset = "",                                                                          \
+	  .help = "directory of client_key and known_servers; empty: gazecast in the user's "    \
+		  "configuration directory" },                                                   \
+	{ .key = "server-key",                                                                   \
+	  .type = GZ_OPTION_STRING,                                                              \
+	  .offset = offsetof(struct gazectl_common, server_key),                                 \
+	  .max = sizeof((struct gazectl_common *)NULL)->server_key,                              \
+	  .preset = "",                                                                          \
+	  .help = "the daemon's public key; empty: as known_servers says" }
 
 /** The row "--help", for the others. */
 #define GAZECTL_HELP_OPTION                                                                      \

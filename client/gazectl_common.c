@@ -67,7 +67,16 @@ void gazectl_report_no_daemon(const char *endpoint, const struct gz_log *log)
 enum gz_result gazectl_open_control(const struct gazectl_common *common, const struct gz_log *log,
 				    struct gz_control **out_control)
 {
-	return gz_control_open(common->endpoint[0] ? common->endpoint : NULL, log, out_control);
+	struct gz_keys keys;
+	const char *endpoint = common->endpoint[0] ? common->endpoint : NULL;
+	enum gz_result result =
+		gz_keys_find(endpoint, common->keys, common->server_key, log, &keys);
+	if (result != GZ_OK && result != GZ_ERR_NOT_FOUND)
+		return result;
+	result = gz_control_open_with_keys(endpoint, result == GZ_OK ? &keys : NULL, log,
+					   out_control);
+	explicit_bzero(&keys, sizeof keys);
+	return result;
 }
 
 static bool wait_connected(struct gz_stream *stream)
@@ -92,13 +101,16 @@ enum gazectl_exit gazectl_open_stream(struct gz_control *control, const char *co
 		gazectl_report_no_daemon(gz_control_endpoint(control), log);
 		return GAZECTL_NO_DAEMON;
 	}
+	if (result == GZ_ERR_ACCESS)
+		return GAZECTL_FAILED;
 	if (result != GZ_OK) {
 		gz_err(log, "%s tells no port of its stream: set tcp = loopback in gazed.conf",
 		       gz_control_endpoint(control));
 		return GAZECTL_FAILED;
 	}
 	struct gz_stream *stream;
-	if (gz_stream_open(endpoint, topics, log, &stream) != GZ_OK)
+	if (gz_stream_open_with_keys(endpoint, topics, gz_control_keys(control), log, &stream) !=
+	    GZ_OK)
 		return GAZECTL_FAILED;
 	if (!wait_connected(stream)) {
 		gazectl_report_no_daemon(gz_control_endpoint(control), log);
@@ -118,6 +130,8 @@ enum gazectl_exit gazectl_request(struct gz_control *control, const char *reques
 		gazectl_report_no_daemon(gz_control_endpoint(control), log);
 		return GAZECTL_NO_DAEMON;
 	}
+	if (result == GZ_ERR_ACCESS)
+		return GAZECTL_FAILED;
 	if (result != GZ_OK) {
 		gz_err(log, "%s: %s: is this the control socket of gazed?",
 		       gz_control_endpoint(control), gz_result_text(result));

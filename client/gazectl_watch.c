@@ -187,7 +187,8 @@ static void follow_port(struct watch *watch)
 	struct gz_stream *stream = NULL;
 	if (gz_control_stream_endpoint(watch->control, 200, endpoint, sizeof endpoint) != GZ_OK ||
 	    strcmp(endpoint, gz_stream_endpoint(watch->stream)) == 0 ||
-	    gz_stream_open(endpoint, watch->topics, watch->log, &stream) != GZ_OK)
+	    gz_stream_open_with_keys(endpoint, watch->topics, gz_control_keys(watch->control),
+				     watch->log, &stream) != GZ_OK)
 		return;
 	gz_info(watch->log, "the stream has moved to %s", endpoint);
 	watch->lost += counters.lost;

@@ -35,26 +35,46 @@ static bool covers_gaze(const char *const *topics)
 	return false;
 }
 
-enum gz_result gz_stream_open(const char *endpoint, const char *const *topics,
-			      const struct gz_log *log, struct gz_stream **out_stream)
+static enum gz_result open_stream(const struct gz_subscriber_params *params,
+				  const struct gz_log *log, struct gz_stream **out_stream)
 {
 	struct gz_stream *stream = calloc(1, sizeof *stream);
 	if (!stream)
 		return GZ_ERR_NO_MEM;
 	zmq_msg_init(&stream->payload);
-	const struct gz_subscriber_params params = {
-		.endpoint = endpoint,
-		.channel = "stream",
-		.topics = topics && topics[0] ? topics : NULL,
-	};
-	stream->counts_gaps = covers_gaze(params.topics);
-	enum gz_result result = gz_subscriber_open(&stream->subscriber, &params, log);
+	stream->counts_gaps = covers_gaze(params->topics);
+	enum gz_result result = gz_subscriber_open(&stream->subscriber, params, log);
 	if (result != GZ_OK) {
 		gz_stream_close(&stream);
 		return result;
 	}
 	*out_stream = stream;
 	return GZ_OK;
+}
+
+enum gz_result gz_stream_open(const char *endpoint, const char *const *topics,
+			      const struct gz_log *log, struct gz_stream **out_stream)
+{
+	const struct gz_subscriber_params params = {
+		.endpoint = endpoint,
+		.channel = "stream",
+		.topics = topics && topics[0] ? topics : NULL,
+		.find_keys = true,
+	};
+	return open_stream(&params, log, out_stream);
+}
+
+enum gz_result gz_stream_open_with_keys(const char *endpoint, const char *const *topics,
+					const struct gz_keys *keys, const struct gz_log *log,
+					struct gz_stream **out_stream)
+{
+	const struct gz_subscriber_params params = {
+		.endpoint = endpoint,
+		.channel = "stream",
+		.topics = topics && topics[0] ? topics : NULL,
+		.keys = keys,
+	};
+	return open_stream(&params, log, out_stream);
 }
 
 /* Read one frame. Returns whether there was one and tells whether more of its message follow. */

@@ -14,6 +14,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "client/keys.h"
 #include "protocol/gaze.h"
 
 #ifdef __cplusplus
@@ -58,12 +59,18 @@ struct gz_message {
  * @param[out] out_stream  owned by the caller: gz_stream_close()
  * @retval GZ_ERR_INVAL   @p endpoint is no ZeroMQ endpoint; logged
  * @retval GZ_ERR_NO_MEM  no room for memory, sockets or threads; logged
+ * @return else as gz_keys_find(), which is asked for keys
  *
  * Succeeds also while no daemon runs; messages sent before the connection stands are not seen and
  * do not count as lost.
  */
 enum gz_result gz_stream_open(const char *endpoint, const char *const *topics,
 			      const struct gz_log *log, struct gz_stream **out_stream);
+
+/** As gz_stream_open() with @p keys, copied, and no others; NULL connects without any. */
+enum gz_result gz_stream_open_with_keys(const char *endpoint, const char *const *topics,
+					const struct gz_keys *keys, const struct gz_log *log,
+					struct gz_stream **out_stream);
 
 /**
  * Wait for the next message.

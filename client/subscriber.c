@@ -58,20 +58,12 @@ static bool subscribe(void *socket, const char *const *topics)
 	return true;
 }
 
-/* The monitor tells of connections over a PAIR inside this process. Its queue has no limit: libzmq
- * would block its I/O thread at one, and only whole handshakes and their ends are written to it. */
 static bool open_monitor(struct gz_subscriber *subscriber)
 {
-	char address[64];
-	snprintf(address, sizeof address, "inproc://gazecast-monitor-%p",
-		 (void *)subscriber->socket);
-	if (zmq_socket_monitor(subscriber->socket, address,
-			       ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED) != 0)
-		return false;
-	subscriber->monitor = zmq_socket(subscriber->context, ZMQ_PAIR);
-	return subscriber->monitor && set_int(subscriber->monitor, ZMQ_LINGER, 0) &&
-	       set_int(subscriber->monitor, ZMQ_RCVHWM, 0) &&
-	       zmq_connect(subscriber->monitor, address) == 0;
+	subscriber->monitor =
+		gz_handshake_open_monitor(subscriber->context, subscriber->socket,
+					  ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED);
+	return subscriber->monitor != NULL;
 }
 
 static enum gz_result find_endpoint(struct gz_subscriber *subscriber,
@@ -86,14 +78,28 @@ static enum gz_result find_endpoint(struct gz_subscriber *subscriber,
 		       GZ_ENDPOINT_SIZE - 1, length);
 		return GZ_ERR_INVAL;
 	}
-	char directory[GZ_ENDPOINT_SIZE];
-	if (gz_runtime_directory(directory, sizeof directory) != GZ_OK ||
-	    gz_endpoint_ipc(directory, params->channel, text, GZ_ENDPOINT_SIZE) != GZ_OK) {
-		gz_err(subscriber->log, "the runtime directory's path is too long for a socket: "
-					"set GAZECAST_RUNTIME_DIR to a shorter one");
-		return GZ_ERR_INVAL;
+	enum gz_result result =
+		gz_endpoint_find(params->channel, subscriber->log, text, GZ_ENDPOINT_SIZE);
+	if (result != GZ_ERR_FULL)
+		return result;
+	gz_err(subscriber->log, "the runtime directory's path is too long for a socket: "
+				"set GAZECAST_RUNTIME_DIR to a shorter one");
+	return GZ_ERR_INVAL;
+}
+
+static enum gz_result find_keys(struct gz_subscriber *subscriber,
+				const struct gz_subscriber_params *params)
+{
+	if (params->keys) {
+		subscriber->keys = *params->keys;
+		subscriber->has_keys = true;
 	}
-	return GZ_OK;
+	if (params->keys || !params->find_keys)
+		return GZ_OK;
+	enum gz_result result =
+		gz_keys_find(subscriber->endpoint, NULL, NULL, subscriber->log, &subscriber->keys);
+	subscriber->has_keys = result == GZ_OK;
+	return result == GZ_ERR_NOT_FOUND ? GZ_OK : result;
 }
 
 static enum gz_result connect_socket(struct gz_subscriber *subscriber)
@@ -112,33 +118,22 @@ enum gz_result gz_subscriber_open(struct gz_subscriber *subscriber,
 {
 	*subscriber = (struct gz_subscriber) { .log = log };
 	enum gz_result result = find_endpoint(subscriber, params);
+	if (result == GZ_OK)
+		result = find_keys(subscriber, params);
 	if (result != GZ_OK)
 		return result;
 	subscriber->context = zmq_ctx_new();
 	if (subscriber->context)
 		subscriber->socket = zmq_socket(subscriber->context, ZMQ_SUB);
 	if (!subscriber->socket || !set_options(subscriber, params->conflate) ||
+	    !gz_handshake_use_keys(subscriber->socket,
+				   subscriber->has_keys ? &subscriber->keys : NULL) ||
 	    !subscribe(subscriber->socket, params->topics) || !open_monitor(subscriber)) {
 		gz_err(log, "cannot make a socket for %s: %s", subscriber->endpoint,
 		       zmq_strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	return connect_socket(subscriber);
-}
-
-/* Event number of the next monitor message, or 0 if there is none. */
-static int next_event(void *monitor)
-{
-	unsigned char event[6]; /* 16 bits number, 32 bits value, in this machine's byte order */
-	int size = zmq_recv(monitor, event, sizeof event, ZMQ_DONTWAIT);
-	if (size < 0)
-		return 0;
-	char address[1];
-	zmq_recv(monitor, address, sizeof address, ZMQ_DONTWAIT); /* second frame: the endpoint */
-	uint16_t number = 0;
-	if (size >= (int)sizeof number)
-		memcpy(&number, event, sizeof number);
-	return number;
 }
 
 /* libzmq ends a connection for good when the peer breaks the protocol or sends too much. */
@@ -155,12 +150,32 @@ static void renew(struct gz_subscriber *subscriber)
 	}
 }
 
+/* The same fault is told once a minute: libzmq tries again and again. */
+static void tell(struct gz_subscriber *subscriber, enum gz_handshake_fault fault)
+{
+	uint64_t dropped;
+	if (fault != subscriber->told)
+		subscriber->telling = (struct gz_ratelimit) { 0 };
+	subscriber->told = fault;
+	if (gz_ratelimit_pass(&subscriber->telling, gz_clock_now_ns(), 60 * GZ_NS_PER_S, &dropped))
+		gz_handshake_log(fault, subscriber->endpoint,
+				 subscriber->has_keys ? &subscriber->keys : NULL, subscriber->log);
+}
+
 void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 {
-	int event;
-	while ((event = next_event(subscriber->monitor)) != 0) {
-		bool connected = event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
+	for (;;) {
+		struct gz_monitor_event event = gz_handshake_next_event(subscriber->monitor);
+		enum gz_handshake_fault fault = gz_handshake_fault_of(&event, subscriber->has_keys);
+		if (event.number == 0)
+			break;
+		if (fault != GZ_HANDSHAKE_FINE) {
+			tell(subscriber, fault);
+			continue;
+		}
+		bool connected = event.number == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
 		if (connected) {
+			subscriber->told = GZ_HANDSHAKE_FINE;
 			subscriber->connections++;
 			if (subscriber->connections > 1)
 				gz_info(subscriber->log, "%s is back", subscriber->endpoint);
@@ -183,5 +198,6 @@ void gz_subscriber_close(struct gz_subscriber *subscriber)
 		zmq_close(subscriber->socket);
 	if (subscriber->context)
 		zmq_ctx_term(subscriber->context);
+	explicit_bzero(&subscriber->keys, sizeof subscriber->keys);
 	*subscriber = (struct gz_subscriber) { 0 };
 }

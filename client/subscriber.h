@@ -11,14 +11,18 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "client/handshake.h"
+#include "client/keys.h"
 #include "protocol/endpoint.h"
 
 /** What gz_subscriber_open() is to do. */
 struct gz_subscriber_params {
-	const char *endpoint;      /**< NULL finds the local daemon's channel @p channel */
-	const char *channel;       /**< "latest" or "stream" */
-	const char *const *topics; /**< prefixes, NULL-terminated; NULL for everything */
-	bool conflate;             /**< hold the newest message only; one-frame channels only */
+	const char *endpoint;       /**< NULL finds the local daemon's channel @p channel */
+	const char *channel;        /**< "latest" or "stream" */
+	const char *const *topics;  /**< prefixes, NULL-terminated; NULL for everything */
+	const struct gz_keys *keys; /**< copied; NULL: none */
+	bool find_keys;             /**< as gz_keys_find() has them, where @p keys is NULL */
+	bool conflate;              /**< hold the newest message only; one-frame channels only */
 };
 
 /** A connection. One thread at a time. All zero is a closed one. */
@@ -28,6 +32,10 @@ struct gz_subscriber {
 	void *monitor; /**< PAIR: what happens to the connection */
 	const struct gz_log *log;
 	char endpoint[GZ_ENDPOINT_SIZE];
+	bool has_keys;
+	struct gz_keys keys;
+	enum gz_handshake_fault told; /**< the fault logged last */
+	struct gz_ratelimit telling;
 	bool connected;
 	uint64_t connections; /**< times that a publisher was found */
 	int64_t retry_ns;     /**< when to connect anew if there is no connection until then */
@@ -42,6 +50,7 @@ enum { GZ_SUBSCRIBER_EVENTS_MS = 500 };
  * @param[out] subscriber  filled; closed by gz_subscriber_close(), also after a failure
  * @retval GZ_ERR_INVAL   the endpoint or a topic is refused; logged
  * @retval GZ_ERR_NO_MEM  no room for context, sockets or monitor; logged
+ * @return else as gz_keys_find() and gz_endpoint_find(); logged
  */
 enum gz_result gz_subscriber_open(struct gz_subscriber *subscriber,
 				  const struct gz_subscriber_params *params,

@@ -1,13 +1,14 @@
 #include "daemon/config.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "daemon/config_check.h"
+
 #define GZ_LOG_MODULE "config"
 
-static const char *const tcp_names[] = { "off", "loopback", NULL };
+static const char *const tcp_names[] = { "off", "loopback", "curve", NULL };
 
 #define AT(field) offsetof(struct gz_config, field)
 
@@ -37,9 +38,26 @@ static const struct gz_option options[] = {
 	{ "tracker.choice", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, "",
 	  "name or serial number of the tracker, where there are several; empty: the first" },
 	{ "network.tcp", GZ_OPTION_CHOICE, AT(tcp), 0, 0, 0, tcp_names, "loopback",
-	  "TCP for Pupil's clients, open to every user of this machine; or local sockets only" },
-	{ "network.control", GZ_OPTION_STRING, AT(control), 0, GZ_ENDPOINT_SIZE, 0, NULL,
-	  GZ_CONTROL_TCP_ENDPOINT, "where Pupil Remote's letters are taken; a loopback address" },
+	  "loopback: for Pupil's clients and every user of this machine; curve: for clients with a "
+	  "key, also on other machines; off: local sockets only" },
+	{ "network.address", GZ_OPTION_STRING, AT(address), 0, GZ_NAME_SIZE, 0, NULL, "127.0.0.1",
+	  "this machine's address that TCP is bound to, * for all; another than loopback takes tcp "
+	  "= "
+	  "curve" },
+	{ "network.control", GZ_OPTION_STRING, AT(control), 0, GZ_ENDPOINT_SIZE, 0, NULL, "",
+	  "where Pupil Remote's letters are taken, tcp://ADDRESS:PORT; empty: port 50020 of the "
+	  "address above" },
+	{ "network.stream_port", GZ_OPTION_INT, AT(stream_port), 0, 65535, 0, NULL, "0",
+	  "TCP port of the stream; 0: the system chooses, and SUB_PORT tells" },
+	{ "network.latest_port", GZ_OPTION_INT, AT(latest_port), 0, 65535, 0, NULL, "0",
+	  "TCP port of the latest gaze; 0: the system chooses, and LATEST_PORT tells" },
+	{ "network.inlet_port", GZ_OPTION_INT, AT(inlet_port), 0, 65535, 0, NULL, "0",
+	  "TCP port for clients' messages; 0: the system chooses, and PUB_PORT tells" },
+	{ "network.keys", GZ_OPTION_STRING, AT(key_directory), 0, GZ_PATH_SIZE, 0, NULL, "",
+	  "directory of server_key and authorized_keys; empty: gazecast in the user's "
+	  "configuration directory, else in the system's" },
+	{ "daemon.user", GZ_OPTION_STRING, AT(user), 0, GZ_NAME_SIZE, 0, NULL, "",
+	  "user to become where root has started the daemon; empty: stay who started it" },
 	{ "stream.surfaces", GZ_OPTION_STRING, AT(surfaces), 0, 256, 0, NULL,
 	  "screen psychopy_iohub_surface", "names that the screen is published under; at most 8" },
 	{ "recording.directory", GZ_OPTION_STRING, AT(recording_directory), 0, GZ_PATH_SIZE, 0,
@@ -53,6 +71,7 @@ static const struct gz_option options[] = {
 };
 
 enum { OPTION_COUNT = sizeof options / sizeof *options };
+_Static_assert(OPTION_COUNT <= GZ_CONFIG_OPTIONS_MAX, "room for what was given");
 enum { BINDINGS_MAX = 2 + GZ_CONFIG_DRIVERS_MAX };
 
 /* The tables that make up the configuration, bound to @p config. */
@@ -106,23 +125,23 @@ static bool find_file(char *path, size_t size)
 static enum gz_result read_file(struct gz_config *config, const char *chosen,
 				const struct gz_log *log)
 {
-	char path[GZ_PATH_SIZE];
 	struct gz_option_binding bindings[BINDINGS_MAX];
 	size_t count = bind(config, NULL, NULL, bindings);
+	char *path = config->file_read;
 	if (chosen[0])
-		return gz_options_read_file(bindings, count, chosen, log);
-	if (!find_file(path, sizeof path))
-		return GZ_OK;
-	gz_info(log, "configuration from %s", path);
-	return gz_options_read_file(bindings, count, path, log);
+		snprintf(path, sizeof config->file_read, "%s", chosen);
+	else if (find_file(path, sizeof config->file_read))
+		gz_info(log, "configuration from %s", path);
+	else
+		path[0] = '\0';
+	return path[0] ? gz_options_read_file(bindings, count, path, log) : GZ_OK;
 }
 
-/* Whether option @p key was given; the key is one of this file's table. */
-static bool given(const bool *own_given, const char *key)
+bool gz_config_given(const struct gz_config *config, const char *key)
 {
 	for (size_t i = 0; i < OPTION_COUNT; i++) {
 		if (strcmp(options[i].key, key) == 0)
-			return own_given[i];
+			return config->own_given[i];
 	}
 	return false;
 }
@@ -135,103 +154,25 @@ static enum gz_result read_arguments(struct gz_config *config, int argc, char *c
 						 { "tcp", "network.tcp" },
 						 { "control", "network.control" } };
 	struct gz_option_binding bindings[BINDINGS_MAX];
-	bool own_given[OPTION_COUNT] = { false };
+	memset(config->own_given, 0, sizeof config->own_given);
 	memset(config->pipeline_given, 0, sizeof config->pipeline_given);
-	size_t count = bind(config, own_given, config->pipeline_given, bindings);
+	size_t count = bind(config, config->own_given, config->pipeline_given, bindings);
 	enum gz_result result =
 		gz_options_read_arguments(bindings, count, argc, argv, NULL, NULL, log);
 	if (result != GZ_OK)
 		return result;
 	for (size_t i = 0; i < sizeof shorts / sizeof *shorts; i++) {
-		if (given(own_given, shorts[i][0]) && given(own_given, shorts[i][1])) {
+		if (gz_config_given(config, shorts[i][0]) &&
+		    gz_config_given(config, shorts[i][1])) {
 			gz_err(log, "--%s: given twice, as --%s too; keep one", shorts[i][1],
 			       shorts[i][0]);
 			return GZ_ERR_INVAL;
 		}
 	}
-	config->display_given[0] = given(own_given, "display.px");
-	config->display_given[1] = given(own_given, "display.mm");
-	config->display_given[2] = given(own_given, "display.distance_mm");
+	config->display_given[0] = gz_config_given(config, "display.px");
+	config->display_given[1] = gz_config_given(config, "display.mm");
+	config->display_given[2] = gz_config_given(config, "display.distance_mm");
 	return GZ_OK;
-}
-
-static bool is_surface_name(const char *word, size_t length)
-{
-	for (size_t i = 0; i < length; i++) {
-		if (!isalnum((unsigned char)word[i]) && !strchr("._-", word[i]))
-			return false;
-	}
-	return length > 0 && length < GZ_NAME_SIZE;
-}
-
-static enum gz_result split_surfaces(struct gz_config *config, const struct gz_log *log)
-{
-	const char *word = config->surfaces;
-	for (;;) {
-		word += strspn(word, " \t");
-		size_t length = strcspn(word, " \t");
-		if (length == 0)
-			return GZ_OK;
-		if (!is_surface_name(word, length)) {
-			gz_err(log,
-			       "stream.surfaces: %.*s is no name; allowed: letters, digits, . _ -, "
-			       "at most %d bytes",
-			       (int)length, word, GZ_NAME_SIZE - 1);
-			return GZ_ERR_INVAL;
-		}
-		if (config->surface_count == GZ_SURFACES_MAX) {
-			gz_err(log, "stream.surfaces: more than %d names; leave some out",
-			       GZ_SURFACES_MAX);
-			return GZ_ERR_INVAL;
-		}
-		memcpy(config->surface[config->surface_count], word, length);
-		config->surface[config->surface_count++][length] = '\0';
-		word += length;
-	}
-}
-
-/* Gaze is biometric data: nothing but this machine may reach an endpoint without keys. */
-static bool is_loopback(const char *endpoint)
-{
-	static const char *const allowed[] = { "tcp://127.", "tcp://localhost:", "tcp://[::1]:" };
-	for (size_t i = 0; i < sizeof allowed / sizeof *allowed; i++) {
-		if (strncmp(endpoint, allowed[i], strlen(allowed[i])) == 0)
-			return true;
-	}
-	return false;
-}
-
-static void list_drivers(char *text, size_t size)
-{
-	size_t used = 0;
-	for (size_t i = 0; gz_drivers[i] && used < size; i++) {
-		int n = snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "",
-				 gz_drivers[i]->name);
-		used += n > 0 ? (size_t)n : 0;
-	}
-}
-
-static enum gz_result check(struct gz_config *config, const struct gz_log *log)
-{
-	if (!gz_driver_find(config->driver)) {
-		char names[256];
-		list_drivers(names, sizeof names);
-		gz_err(log, "tracker.driver: no driver %s; allowed: %s", config->driver, names);
-		return GZ_ERR_INVAL;
-	}
-	if (config->tcp == GZ_TCP_LOOPBACK && !is_loopback(config->control)) {
-		gz_err(log,
-		       "network.control: %s is no loopback address, and others may not listen in; "
-		       "use tcp://127.0.0.1:PORT, or --tcp off for local sockets only",
-		       config->control);
-		return GZ_ERR_INVAL;
-	}
-	char message[256];
-	if (gz_pipeline_check_params(&config->pipeline, message, sizeof message) != GZ_OK) {
-		gz_err(log, "%s", message);
-		return GZ_ERR_INVAL;
-	}
-	return split_surfaces(config, log);
 }
 
 enum gz_result gz_config_read(int argc, char *const *argv, const struct gz_log *log,
@@ -251,7 +192,9 @@ enum gz_result gz_config_read(int argc, char *const *argv, const struct gz_log *
 		result = read_file(out_config, file, log);
 	if (result == GZ_OK)
 		result = read_arguments(out_config, argc, argv, log);
-	return result == GZ_OK ? check(out_config, log) : result;
+	if (result == GZ_OK)
+		result = gz_config_check_arguments(out_config, argc, argv, log);
+	return result == GZ_OK ? gz_config_check(out_config, log) : result;
 }
 
 void gz_config_print_help(struct gz_config *config, FILE *out)

@@ -23,10 +23,14 @@
 /** Most drivers of a build whose settings can be kept. */
 #define GZ_CONFIG_DRIVERS_MAX 16
 
-/** Where Pupil's clients may connect. */
+/** Most options of the daemon's own. */
+#define GZ_CONFIG_OPTIONS_MAX 64
+
+/** Who may connect by TCP. */
 enum gz_tcp {
 	GZ_TCP_OFF,
-	GZ_TCP_LOOPBACK,
+	GZ_TCP_LOOPBACK, /**< at addresses of this machine alone, without keys */
+	GZ_TCP_CURVE,    /**< anywhere, for clients whose key is known */
 };
 
 /** Settings of one driver, as its options filled them. */
@@ -47,10 +51,14 @@ struct gz_config {
 	char record[GZ_NAME_SIZE]; /**< record from the first sample under this name; empty: no */
 
 	char driver[GZ_NAME_SIZE];
-	char tracker[GZ_NAME_SIZE];             /**< name or serial of one of several; empty: any */
-	int tcp;                                /**< enum gz_tcp */
-	char control[GZ_ENDPOINT_SIZE];         /**< TCP endpoint of the control socket */
-	char surfaces[256];                     /**< names, separated by blanks */
+	char tracker[GZ_NAME_SIZE];     /**< name or serial of one of several; empty: any */
+	int tcp;                        /**< enum gz_tcp */
+	char address[GZ_NAME_SIZE];     /**< of this machine, where TCP is bound */
+	char control[GZ_ENDPOINT_SIZE]; /**< as given; empty: see control_endpoint */
+	int stream_port, latest_port, inlet_port; /**< 0: the system chooses */
+	char key_directory[GZ_PATH_SIZE];         /**< empty: the usual places */
+	char user[GZ_NAME_SIZE]; /**< to become where root has started; empty: stay */
+	char surfaces[256];      /**< names, separated by blanks */
 	char recording_directory[GZ_PATH_SIZE]; /**< empty: the user's data directory */
 	int display_px[2];                      /**< 0 0: as the tracker says */
 	double display_mm[2];                   /**< 0 0: as the tracker says */
@@ -59,8 +67,12 @@ struct gz_config {
 	union gz_driver_settings driver_settings[GZ_CONFIG_DRIVERS_MAX];
 
 	/* Made of the above. */
+	char file_read[GZ_PATH_SIZE];            /**< the configuration file; empty: none */
+	char control_endpoint[GZ_ENDPOINT_SIZE]; /**< TCP endpoint of the control socket */
 	size_t surface_count;
 	char surface[GZ_SURFACES_MAX][GZ_NAME_SIZE];
+	bool own_given[GZ_CONFIG_OPTIONS_MAX];         /**< on the command line, options but those
+							  of the pipeline and of drivers */
 	bool pipeline_given[GZ_GAZE_LOG_SETTINGS_MAX]; /**< on the command line */
 	bool display_given[3];                         /**< px, mm, distance; on the command line */
 };

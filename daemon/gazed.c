@@ -27,6 +27,7 @@ struct daemon {
 	int lock_fd;
 	int signal_fd;
 	void *context;
+	struct gz_network network;
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
 	struct gz_requests *requests;
@@ -72,9 +73,15 @@ static enum gz_result open_sockets(struct daemon *daemon)
 	daemon->context = zmq_ctx_new();
 	if (!daemon->context)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = gz_publisher_create(daemon->context, daemon->directory,
-						    daemon->config.tcp == GZ_TCP_LOOPBACK,
-						    &daemon->log, &daemon->publisher);
+	daemon->network = (struct gz_network) {
+		.config = &daemon->config,
+		.directory = daemon->directory,
+		.context = daemon->context,
+		.log = &daemon->log,
+	};
+	enum gz_result result = gz_network_open(&daemon->network);
+	if (result == GZ_OK)
+		result = gz_publisher_create(&daemon->network, &daemon->publisher);
 	if (result == GZ_OK)
 		result = gz_recorder_create(&daemon->log, &daemon->recorder);
 	if (result != GZ_OK)
@@ -83,11 +90,13 @@ static enum gz_result open_sockets(struct daemon *daemon)
 		.config = &daemon->config,
 		.context = daemon->context,
 		.directory = daemon->directory,
+		.network = &daemon->network,
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
 		.log = &daemon->log,
 	};
-	return gz_requests_create(&parts, &daemon->requests);
+	result = gz_requests_create(&parts, &daemon->requests);
+	return result == GZ_OK ? gz_guard_start(daemon->network.guard) : result;
 }
 
 /* --record: from the very first sample. */
@@ -140,10 +149,10 @@ static void say_hello(const struct daemon *daemon)
 	gz_info(&daemon->log, "gazed %s with %s, stream at ipc://%s/stream", GAZECAST_VERSION,
 		daemon->config.driver, daemon->directory);
 	if (port > 0)
-		gz_info(&daemon->log,
-			"for Pupil's clients: control at %s, stream at "
-			"tcp://127.0.0.1:%d",
-			daemon->config.control, port);
+		gz_info(&daemon->log, "%s: control at %s, stream at tcp://%s:%d",
+			daemon->config.tcp == GZ_TCP_CURVE ? "for clients with a key"
+							   : "for Pupil's clients",
+			daemon->config.control_endpoint, daemon->config.address, port);
 }
 
 static void stop(struct daemon *daemon)
@@ -152,6 +161,7 @@ static void stop(struct daemon *daemon)
 	gz_recorder_destroy(&daemon->recorder);
 	gz_requests_destroy(&daemon->requests);
 	gz_publisher_destroy(&daemon->publisher);
+	gz_network_close(&daemon->network);
 	if (daemon->context)
 		zmq_ctx_term(daemon->context);
 	if (daemon->signal_fd >= 0)

@@ -144,47 +144,31 @@ enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message 
 	return result == GZ_OK ? GZ_OK : GZ_ERR_TIMEOUT;
 }
 
-static enum gz_result open_socket(struct gz_inlet *inlet, void *context, const char *endpoint,
-				  bool tcp)
+static enum gz_result open_socket(struct gz_inlet *inlet, const struct gz_network *network)
 {
-	char bound[GZ_ENDPOINT_SIZE] = "";
-	size_t size = sizeof bound;
+	char endpoint[GZ_ENDPOINT_SIZE];
 	int queue = QUEUE, linger = 0;
 	int64_t size_max = GZ_INLET_SIZE_MAX;
-	inlet->socket = zmq_socket(context, ZMQ_SUB);
+	inlet->socket = zmq_socket(network->context, ZMQ_SUB);
 	if (!inlet->socket ||
 	    zmq_setsockopt(inlet->socket, ZMQ_RCVHWM, &queue, sizeof queue) != 0 ||
 	    zmq_setsockopt(inlet->socket, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
 	    zmq_setsockopt(inlet->socket, ZMQ_MAXMSGSIZE, &size_max, sizeof size_max) != 0 ||
-	    zmq_setsockopt(inlet->socket, ZMQ_SUBSCRIBE, "", 0) != 0 ||
-	    zmq_bind(inlet->socket, endpoint) != 0 ||
-	    (tcp && zmq_bind(inlet->socket, "tcp://127.0.0.1:*") != 0) ||
-	    zmq_getsockopt(inlet->socket, ZMQ_LAST_ENDPOINT, bound, &size) != 0) {
-		gz_err(inlet->log,
-		       "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR, or --tcp off",
-		       endpoint, zmq_strerror(errno));
+	    zmq_setsockopt(inlet->socket, ZMQ_SUBSCRIBE, "", 0) != 0) {
+		gz_err(inlet->log, "no socket: %s", zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
-	const char *colon = strrchr(bound, ':');
-	inlet->port = tcp && colon ? atoi(colon + 1) : 0;
-	return GZ_OK;
+	gz_network_endpoint(network, network->config->inlet_port, endpoint);
+	return gz_network_bind(network, inlet->socket, "inlet", endpoint, &inlet->port, NULL);
 }
 
-enum gz_result gz_inlet_create(void *context, const char *directory, bool tcp,
-			       const struct gz_log *log, struct gz_inlet **out_inlet)
+enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet **out_inlet)
 {
-	char endpoint[GZ_ENDPOINT_SIZE];
-	enum gz_result result = gz_endpoint_ipc(directory, "inlet", endpoint, sizeof endpoint);
-	if (result != GZ_OK) {
-		gz_err(log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
-		       directory);
-		return result;
-	}
 	struct gz_inlet *inlet = calloc(1, sizeof *inlet);
 	if (!inlet)
 		return GZ_ERR_NO_MEM;
-	inlet->log = log;
-	result = open_socket(inlet, context, endpoint, tcp);
+	inlet->log = network->log;
+	enum gz_result result = open_socket(inlet, network);
 	if (result != GZ_OK) {
 		gz_inlet_destroy(&inlet);
 		return result;
@@ -207,8 +191,10 @@ void gz_inlet_destroy(struct gz_inlet **inlet)
 {
 	if (!inlet || !*inlet)
 		return;
-	if ((*inlet)->socket)
+	if ((*inlet)->socket) {
+		zmq_socket_monitor((*inlet)->socket, NULL, 0);
 		zmq_close((*inlet)->socket);
+	}
 	free(*inlet);
 	*inlet = NULL;
 }

@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/command.h"
+#include "daemon/network.h"
 #include "protocol/wire_notification.h"
 
 /** Largest message, bytes. Chosen: Pupil's notifications are far smaller. */
@@ -37,14 +38,12 @@ struct gz_inlet_message {
 };
 
 /**
- * Bind the channel "inlet" in the runtime directory and, where @p tcp, on a port of 127.0.0.1 that
- * the system chooses.
+ * Bind the channel "inlet".
  *
- * @param context  a ZeroMQ context; outlives the inlet
- * @retval GZ_ERR_IO, GZ_ERR_FULL, GZ_ERR_NO_MEM  logged
+ * @param network  how; its context, guard and log outlive the inlet
+ * @return GZ_OK, GZ_ERR_IO, GZ_ERR_NO_MEM, or as gz_network_bind(); logged
  */
-enum gz_result gz_inlet_create(void *context, const char *directory, bool tcp,
-			       const struct gz_log *log, struct gz_inlet **out_inlet);
+enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet **out_inlet);
 
 /** The TCP port, 0 without TCP. */
 int gz_inlet_port(const struct gz_inlet *inlet);

@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/messages.h"
+#include "daemon/network.h"
 
 /** Messages kept for a reader of the stream (ZMQ_SNDHWM). Chosen: half a second of everything at
  * 1200 Hz, about 1.5 MB. */
@@ -29,14 +30,13 @@
 struct gz_publisher;
 
 /**
- * Bind the channels "stream" and "latest" in the runtime directory and, where @p tcp, on ports of
- * 127.0.0.1 that the system chooses.
+ * Bind the channels "stream" and "latest".
  *
- * @param context  a ZeroMQ context; outlives the publisher
- * @retval GZ_ERR_BUSY, GZ_ERR_IO, GZ_ERR_FULL  an endpoint cannot be had; logged with the remedy
+ * @param network  how; its guard and its context outlive the publisher
+ * @return GZ_OK, GZ_ERR_NO_MEM, or as gz_network_bind(); logged
  */
-enum gz_result gz_publisher_create(void *context, const char *directory, bool tcp,
-				   const struct gz_log *log, struct gz_publisher **out_publisher);
+enum gz_result gz_publisher_create(const struct gz_network *network,
+				   struct gz_publisher **out_publisher);
 
 /** The stream's TCP port, 0 without TCP. */
 int gz_publisher_port(const struct gz_publisher *publisher);
@@ -54,7 +54,7 @@ void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, co
 /** Take note of who came and went. Never waits; call it some times a second. */
 void gz_publisher_update(struct gz_publisher *publisher);
 
-/** Connections of both channels, at the last update. */
+/** Connections of both channels, now. */
 uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher);
 
 /** Subscriptions of the stream, at the last update: one for each topic of each reader. */

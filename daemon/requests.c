@@ -430,37 +430,6 @@ void gz_requests_quit_service(struct gz_requests *requests)
 	zmq_send(requests->commands, &command, sizeof command, 0);
 }
 
-static enum gz_result bind_control(struct gz_requests *requests)
-{
-	const struct gz_requests_parts *parts = &requests->parts;
-	char endpoint[GZ_ENDPOINT_SIZE];
-	enum gz_result result =
-		gz_endpoint_ipc(parts->directory, "control", endpoint, sizeof endpoint);
-	if (result != GZ_OK) {
-		gz_err(parts->log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
-		       parts->directory);
-		return result;
-	}
-	if (zmq_bind(requests->control, endpoint) != 0) {
-		gz_err(parts->log, "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR",
-		       endpoint, zmq_strerror(errno));
-		return GZ_ERR_IO;
-	}
-	if (parts->config->tcp == GZ_TCP_OFF ||
-	    zmq_bind(requests->control, parts->config->control) == 0)
-		return GZ_OK;
-	if (errno == EADDRINUSE) {
-		gz_err(parts->log,
-		       "%s is taken, perhaps by Pupil Capture or another gazed; stop that, or use "
-		       "--control tcp://127.0.0.1:PORT, or --tcp off",
-		       parts->config->control);
-		return GZ_ERR_BUSY;
-	}
-	gz_err(parts->log, "cannot bind %s: %s; use --control tcp://127.0.0.1:PORT, or --tcp off",
-	       parts->config->control, zmq_strerror(errno));
-	return GZ_ERR_INVAL;
-}
-
 static enum gz_result open_sockets(struct gz_requests *requests)
 {
 	int linger = 0, control_linger = GZ_REQUESTS_PATIENCE_MS;
@@ -476,7 +445,9 @@ static enum gz_result open_sockets(struct gz_requests *requests)
 		gz_err(requests->parts.log, "no control socket: %s", zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
-	return bind_control(requests);
+	int port;
+	return gz_network_bind(requests->parts.network, requests->control, "control",
+			       requests->parts.config->control_endpoint, &port, NULL);
 }
 
 enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
@@ -490,9 +461,7 @@ enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 	requests->latest_port = gz_publisher_latest_port(parts->publisher);
 	enum gz_result result = open_sockets(requests);
 	if (result == GZ_OK)
-		result = gz_inlet_create(parts->context, parts->directory,
-					 parts->config->tcp == GZ_TCP_LOOPBACK, parts->log,
-					 &requests->inlet);
+		result = gz_inlet_create(parts->network, &requests->inlet);
 	if (result != GZ_OK) {
 		gz_requests_destroy(&requests);
 		return result;
@@ -506,8 +475,10 @@ void gz_requests_destroy(struct gz_requests **requests)
 	if (!requests || !*requests)
 		return;
 	gz_inlet_destroy(&(*requests)->inlet);
-	if ((*requests)->control)
+	if ((*requests)->control) {
+		zmq_socket_monitor((*requests)->control, NULL, 0);
 		zmq_close((*requests)->control);
+	}
 	if ((*requests)->commands)
 		zmq_close((*requests)->commands);
 	free(*requests);

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/config.h"
+#include "daemon/network.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
 
@@ -21,6 +22,7 @@ struct gz_requests_parts {
 	const struct gz_config *config;
 	void *context;                        /**< ZeroMQ */
 	const char *directory;                /**< the runtime directory */
+	const struct gz_network *network;     /**< how to bind; needed at creation alone */
 	const struct gz_publisher *publisher; /**< its ports are asked for once, at creation */
 	const struct gz_recorder *recorder;
 	const struct gz_log *log;
@@ -33,8 +35,7 @@ struct gz_requests;
  * Bind the control socket, in the runtime directory and, where the configuration has TCP, at
  * network.control; and GZ_COMMAND_ENDPOINT.
  *
- * @retval GZ_ERR_BUSY  network.control is taken; logged with the remedy
- * @retval GZ_ERR_INVAL, GZ_ERR_IO, GZ_ERR_FULL, GZ_ERR_NO_MEM  logged
+ * @return GZ_OK, GZ_ERR_IO, GZ_ERR_NO_MEM, or as gz_network_bind(); logged
  */
 enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 				  struct gz_requests **out_requests);

@@ -40,13 +40,61 @@ enum gz_result gz_runtime_directory(char *text, size_t size)
 	return fits(snprintf(text, size, "/tmp/gazecast-%ld", (long)getuid()), size);
 }
 
+bool gz_runtime_directory_is_shared(const char *path)
+{
+	return strcmp(path, SYSTEM_DIRECTORY) == 0;
+}
+
+static bool has_socket(const char *directory, const char *name)
+{
+	char path[sizeof((struct sockaddr_un *)NULL)->sun_path];
+	struct stat status;
+	return fits(snprintf(path, sizeof path, "%s/%s", directory, name), sizeof path) == GZ_OK &&
+	       stat(path, &status) == 0 && S_ISSOCK(status.st_mode);
+}
+
+/* Anyone may make a directory in /tmp. */
+static enum gz_result check_owner(const char *path, const struct gz_log *log)
+{
+	struct stat status;
+	bool others =
+		lstat(path, &status) == 0 &&
+		(!S_ISDIR(status.st_mode) || (status.st_uid != geteuid() && status.st_uid != 0));
+	if (!others)
+		return GZ_OK;
+	gz_err(log,
+	       "%s belongs to another user, who may be playing the daemon: remove it, or name the "
+	       "daemon's directory in GAZECAST_RUNTIME_DIR",
+	       path);
+	return GZ_ERR_ACCESS;
+}
+
+enum gz_result gz_endpoint_find(const char *name, const struct gz_log *log, char *text, size_t size)
+{
+	char directory[GZ_ENDPOINT_SIZE], own[64];
+	const char *chosen = getenv("GAZECAST_RUNTIME_DIR");
+	enum gz_result result = gz_runtime_directory(directory, sizeof directory);
+	if (result != GZ_OK)
+		return result;
+	if ((chosen && *chosen) || has_socket(directory, name))
+		return gz_endpoint_ipc(directory, name, text, size);
+	snprintf(own, sizeof own, "/tmp/gazecast-%ld", (long)getuid());
+	if (has_socket(SYSTEM_DIRECTORY, name))
+		snprintf(directory, sizeof directory, "%s", SYSTEM_DIRECTORY);
+	else if (has_socket(own, name))
+		snprintf(directory, sizeof directory, "%s", own);
+	if (strcmp(directory, own) == 0)
+		result = check_owner(own, log);
+	return result == GZ_OK ? gz_endpoint_ipc(directory, name, text, size) : result;
+}
+
 /* Whether nobody else can reach into what @p status describes. */
 static enum gz_result check_directory(const char *path, const struct stat *status,
 				      const struct gz_log *log)
 {
 	/* Only root can put something at /run/gazecast, so there the owner says nothing, and its
 	 * group may read. */
-	bool system = strcmp(path, SYSTEM_DIRECTORY) == 0;
+	bool system = gz_runtime_directory_is_shared(path);
 	mode_t refused = system ? S_IWGRP | S_IRWXO : S_IRWXG | S_IRWXO;
 	if (!system && status->st_uid != geteuid()) {
 		gz_err(log,

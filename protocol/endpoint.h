@@ -5,6 +5,7 @@
 #ifndef GZ_PROTOCOL_ENDPOINT_H
 #define GZ_PROTOCOL_ENDPOINT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/log.h"
@@ -31,6 +32,21 @@ enum gz_result gz_runtime_directory(char *text, size_t size);
  * @retval GZ_ERR_IO      cannot be made; logged
  */
 enum gz_result gz_runtime_directory_prepare(const char *path, const struct gz_log *log);
+
+/** Whether @p path is /run/gazecast, whose sockets its group may use. */
+bool gz_runtime_directory_is_shared(const char *path);
+
+/**
+ * Where a reader finds the local daemon's socket @p name: in the first of the runtime directories
+ * that has it (GAZECAST_RUNTIME_DIR, if set, is the only one), so that the daemon of the user comes
+ * before that of the system; where none has it yet, where the user's daemon will bind it. In
+ * /tmp/gazecast-UID only if that is ours or root's: anyone could have made it, to play the daemon.
+ *
+ * @retval GZ_ERR_FULL    the path is too long for a socket or for @p size
+ * @retval GZ_ERR_ACCESS  /tmp/gazecast-UID is somebody else's; logged
+ */
+enum gz_result gz_endpoint_find(const char *name, const struct gz_log *log, char *text,
+				size_t size);
 
 /** "ipc://<directory>/<name>": names are "stream", "latest", "control", "inlet". GZ_ERR_FULL if too
  *  long for a socket path (107 bytes) or for @p size. */

@@ -33,7 +33,7 @@ static void config_presets_are_what_the_options_say(void **state)
 	assert_int_equal(READ("--config", "/dev/null"), GZ_OK);
 	assert_string_equal(gz_config_driver(&config, &settings)->name, "sim");
 	assert_int_equal(config.tcp, GZ_TCP_LOOPBACK);
-	assert_string_equal(config.control, "tcp://127.0.0.1:50020");
+	assert_string_equal(config.control_endpoint, "tcp://127.0.0.1:50020");
 	assert_int_equal(config.surface_count, 2);
 	assert_string_equal(config.surface[0], "screen");
 	assert_string_equal(config.surface[1], "psychopy_iohub_surface");
@@ -68,7 +68,7 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 		{ "--driver=sim", "--tracker.driver=sim", NULL, "--tracker.driver: given twice" },
 		{ "--control", "tcp://0.0.0.0:50020", NULL, "no loopback address" },
 		{ "--control", "tcp://192.168.1.2:50020", NULL, "no loopback address" },
-		{ "--tcp", "curve", NULL, "off or loopback" },
+		{ "--tcp", "curve", NULL, "off, loopback or curve" },
 		{ "--stream.surfaces", "a/b", NULL, "a/b is no name" },
 		{ "--stream.surfaces", "1 2 3 4 5 6 7 8 9", NULL, "more than 8 names" },
 		{ "--config", "/nonexistent.conf", NULL, "/nonexistent.conf: no such file" },

@@ -1,0 +1,380 @@
+#include "daemon/guard.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include "base/clock.h"
+#include "daemon/address_limit.h"
+#include "daemon/authorized_keys.h"
+#include "daemon/zap.h"
+
+#define GZ_LOG_MODULE "security"
+
+/* RFC 27: where libzmq asks. */
+#define ZAP_ENDPOINT "inproc://zeromq.zap.01"
+
+/* Connections in their handshake whose address is kept. Chosen: handshakes are short; of more at a
+ * time the address is told as "?". */
+enum { PEERS_MAX = 64 };
+
+/* Requests or events taken before the other sockets are looked at. */
+enum { AT_ONCE = 64 };
+
+/* What is told of an address, each kind once a minute. */
+enum notice { LET_IN, UNKNOWN_KEY, WRONG_SERVER_KEY, WITHOUT_KEYS, NO_HANDSHAKE };
+
+/* A connection that may still fail. */
+struct peer {
+	int fd; /* -1: free */
+	char address[GZ_ADDRESS_SIZE];
+};
+
+struct gz_connections {
+	struct gz_guard *guard;
+	const char *name;
+	void *monitor; /* PAIR */
+	_Atomic uint32_t count;
+	bool failing; /* a handshake has failed, and its connection ends with the next event */
+	enum notice failure;
+	struct peer peers[PEERS_MAX];
+};
+
+struct gz_guard {
+	const struct gz_log *log;
+	void *context;
+	void *zap;   /* REP; NULL: nobody needs a key */
+	int quit_fd; /* eventfd */
+	pthread_t thread;
+	bool has_thread;
+	size_t socket_count;
+	struct gz_connections sockets[GZ_GUARD_SOCKETS_MAX];
+	struct gz_authorized_keys authorized;
+	struct gz_address_limit told;
+};
+
+uint32_t gz_connections_count(const struct gz_connections *connections)
+{
+	return atomic_load_explicit(&connections->count, memory_order_relaxed);
+}
+
+/* Whether @p notice may be logged of @p address now; " (12 more since last told)" or nothing. */
+static bool may_tell(struct gz_guard *guard, const char *address, enum notice notice, char *more,
+		     size_t size)
+{
+	uint64_t dropped;
+	if (!gz_address_limit_pass(&guard->told, address, notice, gz_clock_now_ns(), &dropped))
+		return false;
+	more[0] = '\0';
+	if (dropped > 0)
+		snprintf(more, size, " (%llu more times since last told)",
+			 (unsigned long long)dropped);
+	return true;
+}
+
+/* May the client come in? */
+static bool judge(struct gz_guard *guard, const struct gz_zap_request *request)
+{
+	char more[64];
+	const struct gz_known_key *known =
+		gz_authorized_keys_find(&guard->authorized, request->key);
+	if (!may_tell(guard, request->address, known ? LET_IN : UNKNOWN_KEY, more, sizeof more))
+		return known != NULL;
+	if (known)
+		gz_info(guard->log, "%s is let in with the key of \"%s\"%s", request->address,
+			known->name, more);
+	else
+		gz_warn(guard->log,
+			"%s is refused: its key is not in %s; to let it in, add the line %s%s",
+			request->address, guard->authorized.path, request->key, more);
+	return known != NULL;
+}
+
+static void send_text(void *socket, const char *text, bool more)
+{
+	zmq_send(socket, text, strlen(text), ZMQ_DONTWAIT | (more ? ZMQ_SNDMORE : 0));
+}
+
+/* RFC 27: version, request id, status code, status text, user id, metadata. */
+static void answer(struct gz_guard *guard, const struct gz_zap_request *request, const char *code,
+		   const char *text)
+{
+	send_text(guard->zap, "1.0", true);
+	zmq_send(guard->zap, request->id, request->id_size, ZMQ_DONTWAIT | ZMQ_SNDMORE);
+	send_text(guard->zap, code, true);
+	send_text(guard->zap, text, true);
+	send_text(guard->zap, "", true);
+	send_text(guard->zap, "", false);
+}
+
+/* Answer one request. @return whether there was one */
+static bool take_request(struct gz_guard *guard)
+{
+	zmq_msg_t messages[GZ_ZAP_FRAMES + 1]; /* the last one for whatever is too much */
+	struct gz_zap_frame frames[GZ_ZAP_FRAMES + 1];
+	struct gz_zap_request request;
+	size_t count = 0;
+	bool more = true;
+	for (int i = 0; i <= GZ_ZAP_FRAMES; i++)
+		zmq_msg_init(&messages[i]);
+	while (more) {
+		size_t i = count < GZ_ZAP_FRAMES ? count : GZ_ZAP_FRAMES;
+		if (zmq_msg_recv(&messages[i], guard->zap, ZMQ_DONTWAIT) < 0)
+			break;
+		more = zmq_msg_more(&messages[i]) != 0;
+		frames[i] = (struct gz_zap_frame) { zmq_msg_data(&messages[i]),
+						    zmq_msg_size(&messages[i]) };
+		count = i + 1;
+	}
+	if (count > 0) {
+		enum gz_result result = gz_zap_parse(frames, count, &request);
+		bool welcome = result == GZ_OK && judge(guard, &request);
+		answer(guard, &request, welcome ? "200" : "400",
+		       welcome ? "OK" : "this key is not authorised");
+	}
+	for (int i = 0; i <= GZ_ZAP_FRAMES; i++)
+		zmq_msg_close(&messages[i]);
+	return count > 0;
+}
+
+static struct peer *find_peer(struct gz_connections *connections, int fd)
+{
+	for (int i = 0; i < PEERS_MAX; i++) {
+		if (connections->peers[i].fd == fd)
+			return &connections->peers[i];
+	}
+	return NULL;
+}
+
+/* The address at the other end; false for a local one and for one that has left. */
+static bool address_of(int fd, char *text, size_t size)
+{
+	struct sockaddr_storage peer;
+	socklen_t length = sizeof peer;
+	if (getpeername(fd, (struct sockaddr *)&peer, &length) != 0)
+		return false;
+	const void *address = NULL;
+	if (peer.ss_family == AF_INET)
+		address = &((const struct sockaddr_in *)&peer)->sin_addr;
+	else if (peer.ss_family == AF_INET6)
+		address = &((const struct sockaddr_in6 *)&peer)->sin6_addr;
+	return address && inet_ntop(peer.ss_family, address, text, (socklen_t)size) != NULL;
+}
+
+static void accept_peer(struct gz_connections *connections, int fd)
+{
+	atomic_fetch_add_explicit(&connections->count, 1, memory_order_relaxed);
+	if (!connections->guard->zap)
+		return;
+	char address[GZ_ADDRESS_SIZE];
+	struct peer *peer = find_peer(connections, fd);
+	if (!peer)
+		peer = find_peer(connections, -1);
+	if (!peer || !address_of(fd, address, sizeof address))
+		return;
+	peer->fd = fd;
+	memcpy(peer->address, address, sizeof address);
+}
+
+static const char *describe(enum notice failure)
+{
+	switch (failure) {
+	case WRONG_SERVER_KEY:
+		return "it holds another server key than this daemon's; give it the line that "
+		       "gazectl keygen --server prints";
+	case WITHOUT_KEYS:
+		return "it comes without keys; run gazectl keygen --client there";
+	default:
+		return "what it says is no handshake of CurveZMQ; is it a client of gazed?";
+	}
+}
+
+static void tell_failure(struct gz_connections *connections, const char *address)
+{
+	char more[64];
+	if (may_tell(connections->guard, address, connections->failure, more, sizeof more))
+		gz_warn(connections->guard->log, "%s at socket %s is refused: %s%s", address,
+			connections->name, describe(connections->failure), more);
+}
+
+static void end_peer(struct gz_connections *connections, int fd)
+{
+	struct peer *peer = find_peer(connections, fd);
+	if (gz_connections_count(connections) > 0)
+		atomic_fetch_sub_explicit(&connections->count, 1, memory_order_relaxed);
+	if (connections->failing)
+		tell_failure(connections, peer ? peer->address : "?");
+	connections->failing = false;
+	if (peer)
+		peer->fd = -1;
+}
+
+static void fail_handshake(struct gz_connections *connections, int error)
+{
+	connections->failing = true;
+	connections->failure =
+		error == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC ? WRONG_SERVER_KEY : WITHOUT_KEYS;
+}
+
+/* One event: a frame of u16 number and u32 value, in the host's order, and one of the socket's own
+ * address (zmq_socket_monitor(3)). There is one I/O thread, which tells of a failed handshake and
+ * of the end of its connection without another event between them. @return whether there was one */
+static bool take_event(struct gz_connections *connections)
+{
+	unsigned char frame[6];
+	char address[1];
+	if (zmq_recv(connections->monitor, frame, sizeof frame, ZMQ_DONTWAIT) != sizeof frame)
+		return false;
+	uint16_t event;
+	int32_t value;
+	memcpy(&event, frame, sizeof event);
+	memcpy(&value, frame + sizeof event, sizeof value);
+	zmq_recv(connections->monitor, address, sizeof address, ZMQ_DONTWAIT);
+	if (event == ZMQ_EVENT_ACCEPTED)
+		accept_peer(connections, value);
+	else if (event == ZMQ_EVENT_DISCONNECTED)
+		end_peer(connections, value);
+	else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL)
+		fail_handshake(connections, value);
+	return true;
+}
+
+static void take_all(struct gz_guard *guard)
+{
+	bool more = true;
+	for (int i = 0; more && i < AT_ONCE; i++) {
+		more = guard->zap && take_request(guard);
+		for (size_t s = 0; s < guard->socket_count; s++)
+			more = take_event(&guard->sockets[s]) || more;
+	}
+}
+
+static void *run(void *user)
+{
+	struct gz_guard *guard = user;
+	zmq_pollitem_t items[2 + GZ_GUARD_SOCKETS_MAX];
+	int count = 0;
+	items[count++] = (zmq_pollitem_t) { .fd = guard->quit_fd, .events = ZMQ_POLLIN };
+	for (size_t i = 0; i < guard->socket_count; i++)
+		items[count++] = (zmq_pollitem_t) { .socket = guard->sockets[i].monitor,
+						    .events = ZMQ_POLLIN };
+	if (guard->zap)
+		items[count++] = (zmq_pollitem_t) { .socket = guard->zap, .events = ZMQ_POLLIN };
+	for (;;) {
+		if (zmq_poll(items, count, -1) < 0 && errno != EINTR)
+			return NULL;
+		if (items[0].revents)
+			return NULL;
+		take_all(guard);
+	}
+}
+
+static void set_int(void *socket, int option, int value)
+{
+	zmq_setsockopt(socket, option, &value, sizeof value);
+}
+
+static enum gz_result open_zap(struct gz_guard *guard, const char *authorized_keys)
+{
+	enum gz_result result =
+		gz_authorized_keys_open(&guard->authorized, authorized_keys, guard->log);
+	if (result != GZ_OK)
+		return result;
+	guard->zap = zmq_socket(guard->context, ZMQ_REP);
+	if (guard->zap)
+		set_int(guard->zap, ZMQ_LINGER, 0);
+	if (guard->zap && zmq_bind(guard->zap, ZAP_ENDPOINT) == 0)
+		return GZ_OK;
+	gz_err(guard->log, "no socket for authentication: %s", zmq_strerror(errno));
+	return GZ_ERR_IO;
+}
+
+enum gz_result gz_guard_create(void *context, const char *authorized_keys, const struct gz_log *log,
+			       struct gz_guard **out_guard)
+{
+	struct gz_guard *guard = calloc(1, sizeof *guard);
+	if (!guard)
+		return GZ_ERR_NO_MEM;
+	guard->context = context;
+	guard->log = log;
+	guard->quit_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	enum gz_result result = guard->quit_fd >= 0 ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result == GZ_OK && authorized_keys)
+		result = open_zap(guard, authorized_keys);
+	if (result != GZ_OK) {
+		gz_guard_destroy(&guard);
+		return result;
+	}
+	*out_guard = guard;
+	return GZ_OK;
+}
+
+/* A monitor tells of connections; it must listen before the socket is bound. */
+enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
+			      const struct gz_connections **out_connections)
+{
+	char endpoint[64];
+	if (guard->socket_count == GZ_GUARD_SOCKETS_MAX)
+		return GZ_ERR_FULL;
+	struct gz_connections *connections = &guard->sockets[guard->socket_count++];
+	connections->guard = guard;
+	connections->name = name;
+	for (int i = 0; i < PEERS_MAX; i++)
+		connections->peers[i].fd = -1;
+	connections->monitor = zmq_socket(guard->context, ZMQ_PAIR);
+	int events = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED;
+	if (guard->zap)
+		events |= ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
+	snprintf(endpoint, sizeof endpoint, "inproc://monitor-%s", name);
+	if (connections->monitor) {
+		set_int(connections->monitor, ZMQ_LINGER, 0);
+		/* At a limit libzmq would block its I/O thread, and with it every reader. */
+		set_int(connections->monitor, ZMQ_RCVHWM, 0);
+	}
+	if (!connections->monitor || zmq_socket_monitor(socket, endpoint, events) != 0 ||
+	    zmq_connect(connections->monitor, endpoint) != 0) {
+		gz_err(guard->log, "no monitor for socket %s: %s", name, zmq_strerror(errno));
+		return GZ_ERR_IO;
+	}
+	*out_connections = connections;
+	return GZ_OK;
+}
+
+enum gz_result gz_guard_start(struct gz_guard *guard)
+{
+	if (pthread_create(&guard->thread, NULL, run, guard) != 0) {
+		gz_err(guard->log, "no thread for authentication: %s", strerror(errno));
+		return GZ_ERR_NO_MEM;
+	}
+	guard->has_thread = true;
+	pthread_setname_np(guard->thread, "gazed-guard");
+	return GZ_OK;
+}
+
+void gz_guard_destroy(struct gz_guard **guard)
+{
+	if (!guard || !*guard)
+		return;
+	struct gz_guard *g = *guard;
+	uint64_t one = 1;
+	if (g->has_thread && write(g->quit_fd, &one, sizeof one) == sizeof one)
+		pthread_join(g->thread, NULL);
+	for (size_t i = 0; i < g->socket_count; i++) {
+		if (g->sockets[i].monitor)
+			zmq_close(g->sockets[i].monitor);
+	}
+	if (g->zap)
+		zmq_close(g->zap);
+	if (g->quit_fd >= 0)
+		close(g->quit_fd);
+	free(g);
+	*guard = NULL;
+}

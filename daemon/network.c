@@ -1,0 +1,176 @@
+#include "daemon/network.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <zmq.h>
+
+#include "protocol/endpoint.h"
+#include "protocol/key_file.h"
+
+#define GZ_LOG_MODULE "network"
+
+/* RFC 27: names what the keys are for. */
+static const char zap_domain[] = "gazecast";
+
+/* How long a client may take to show its key, ms. Chosen: some round trips across the world. */
+enum { HANDSHAKE_MS = 5000 };
+
+/* A machine that vanished from the network is forgotten, and its queue freed, after so long without
+ * a sign of life, ms. Chosen: libzmq 4.2 and later answer by themselves. */
+enum { HEARTBEAT_MS = 5000, HEARTBEAT_TIMEOUT_MS = 20000 };
+
+/* @param[out] path  of the secret key */
+static enum gz_result read_keys(struct gz_network *network, char path[GZ_PATH_SIZE])
+{
+	const char *directory = network->config->key_directory;
+	if (!zmq_has("curve")) {
+		gz_err(network->log, "network.tcp: this libzmq was built without CURVE; use "
+				     "loopback or off, or a libzmq with libsodium");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	enum gz_result result = gz_key_file_find(directory, GZ_SERVER_KEY_FILE, path, GZ_PATH_SIZE);
+	if (result == GZ_OK)
+		result = gz_key_file_read_secret(path, network->log, network->keys.secret_text);
+	if (result == GZ_ERR_NOT_FOUND)
+		gz_err(network->log,
+		       "network.tcp: curve needs a key, and %s is not there; run gazectl keygen "
+		       "--server, or use --tcp loopback",
+		       path);
+	if (result != GZ_OK)
+		return result;
+	if (zmq_curve_public(network->keys.public_text, network->keys.secret_text) == 0)
+		return GZ_OK;
+	gz_err(network->log, "%s holds no key that libzmq takes: %s", path, zmq_strerror(errno));
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_network_open(struct gz_network *network)
+{
+	char path[GZ_PATH_SIZE], authorized[GZ_PATH_SIZE + sizeof GZ_AUTHORIZED_KEYS_FILE];
+	bool curve = network->config->tcp == GZ_TCP_CURVE;
+	if (curve) {
+		enum gz_result result = read_keys(network, path);
+		if (result != GZ_OK)
+			return result;
+		/* Beside the key. */
+		snprintf(authorized, sizeof authorized, "%.*s%s",
+			 (int)(strlen(path) - strlen(GZ_SERVER_KEY_FILE)), path,
+			 GZ_AUTHORIZED_KEYS_FILE);
+	}
+	return gz_guard_create(network->context, curve ? authorized : NULL, network->log,
+			       &network->guard);
+}
+
+void gz_network_endpoint(const struct gz_network *network, int port, char text[GZ_ENDPOINT_SIZE])
+{
+	if (port > 0)
+		snprintf(text, GZ_ENDPOINT_SIZE, "tcp://%s:%d", network->config->address, port);
+	else
+		snprintf(text, GZ_ENDPOINT_SIZE, "tcp://%s:*", network->config->address);
+}
+
+static enum gz_result bind_local(const struct gz_network *network, void *socket, const char *name)
+{
+	char endpoint[GZ_ENDPOINT_SIZE];
+	static const char scheme[] = "ipc://";
+	enum gz_result result =
+		gz_endpoint_ipc(network->directory, name, endpoint, sizeof endpoint);
+	if (result != GZ_OK) {
+		gz_err(network->log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
+		       network->directory);
+		return result;
+	}
+	if (zmq_bind(socket, endpoint) != 0) {
+		gz_err(network->log, "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR",
+		       endpoint, zmq_strerror(errno));
+		return errno == EADDRINUSE ? GZ_ERR_BUSY : GZ_ERR_IO;
+	}
+	/* The directory says who comes in; to connect takes the right to write. */
+	if (chmod(endpoint + sizeof scheme - 1,
+		  gz_runtime_directory_is_shared(network->directory) ? 0660 : 0600) == 0)
+		return GZ_OK;
+	gz_err(network->log, "cannot open %s to its readers: %s", endpoint, strerror(errno));
+	return GZ_ERR_IO;
+}
+
+static bool set_int(void *socket, int option, int value)
+{
+	return zmq_setsockopt(socket, option, &value, sizeof value) == 0;
+}
+
+/* Holds for what is bound from now on: the local socket was bound before and needs no key. */
+static enum gz_result demand_keys(const struct gz_network *network, void *socket)
+{
+	if (set_int(socket, ZMQ_CURVE_SERVER, 1) &&
+	    zmq_setsockopt(socket, ZMQ_CURVE_SECRETKEY, network->keys.secret_text,
+			   GZ_KEY_TEXT_SIZE) == 0 &&
+	    zmq_setsockopt(socket, ZMQ_ZAP_DOMAIN, zap_domain, sizeof zap_domain - 1) == 0 &&
+	    set_int(socket, ZMQ_HANDSHAKE_IVL, HANDSHAKE_MS) &&
+	    set_int(socket, ZMQ_HEARTBEAT_IVL, HEARTBEAT_MS) &&
+	    set_int(socket, ZMQ_HEARTBEAT_TIMEOUT, HEARTBEAT_TIMEOUT_MS))
+		return GZ_OK;
+	gz_err(network->log, "libzmq does not take the keys: %s", zmq_strerror(errno));
+	return GZ_ERR_UNSUPPORTED;
+}
+
+static int port_of(void *socket)
+{
+	char endpoint[GZ_ENDPOINT_SIZE] = "";
+	size_t size = sizeof endpoint;
+	if (zmq_getsockopt(socket, ZMQ_LAST_ENDPOINT, endpoint, &size) != 0)
+		return 0;
+	const char *colon = strrchr(endpoint, ':');
+	return colon ? atoi(colon + 1) : 0;
+}
+
+static enum gz_result bind_tcp(const struct gz_network *network, void *socket, const char *name,
+			       const char *endpoint, int *out_port)
+{
+	enum gz_result result = GZ_OK;
+	if (network->config->tcp == GZ_TCP_CURVE)
+		result = demand_keys(network, socket);
+	/* Of no effect where the address is IPv4. */
+	bool bound = result == GZ_OK && set_int(socket, ZMQ_IPV6, strchr(endpoint, '[') != NULL) &&
+		     zmq_bind(socket, endpoint) == 0;
+	if (bound)
+		*out_port = port_of(socket);
+	if (bound || result != GZ_OK)
+		return result;
+	if (errno == EADDRINUSE) {
+		gz_err(network->log,
+		       "%s is taken, perhaps by Pupil Capture or another gazed; stop that, or give "
+		       "%s another port (network.%s), or use --tcp off",
+		       endpoint, name, strcmp(name, "control") == 0 ? "control" : "*_port");
+		return GZ_ERR_BUSY;
+	}
+	gz_err(network->log,
+	       "cannot bind %s: %s; network.address must be an address of this machine, and "
+	       "network.control tcp://ADDRESS:PORT; or use --tcp off",
+	       endpoint, zmq_strerror(errno));
+	return GZ_ERR_INVAL;
+}
+
+enum gz_result gz_network_bind(const struct gz_network *network, void *socket, const char *name,
+			       const char *endpoint, int *out_port,
+			       const struct gz_connections **out_connections)
+{
+	const struct gz_connections *connections;
+	enum gz_result result = gz_guard_watch(network->guard, socket, name, &connections);
+	*out_port = 0;
+	if (result == GZ_OK)
+		result = bind_local(network, socket, name);
+	if (result == GZ_OK && network->config->tcp != GZ_TCP_OFF)
+		result = bind_tcp(network, socket, name, endpoint, out_port);
+	if (result == GZ_OK && out_connections)
+		*out_connections = connections;
+	return result;
+}
+
+void gz_network_close(struct gz_network *network)
+{
+	gz_guard_destroy(&network->guard);
+	explicit_bzero(&network->keys, sizeof network->keys);
+}
