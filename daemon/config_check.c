@@ -12,6 +12,9 @@
 /* Port of the control socket where none is given: Pupil Remote's. */
 enum { CONTROL_PORT = 50020 };
 
+/* Chosen: no display's pixels are twice as wide as high, nor twice as high as wide. */
+#define PIXEL_ASPECT_MAX 2.0
+
 /* A check in progress. */
 struct check {
 	struct gz_config *config;
@@ -119,14 +122,23 @@ static enum gz_result check_display(const struct check *check)
 			      "%g %g is half a display; give width and height, or 0 0 for the "
 			      "tracker's",
 			      mm[0], mm[1]);
-	struct gz_display display = { .px = { px[0], px[1] },
-				      .mm = { mm[0], mm[1] },
-				      .distance_mm = config->distance_mm };
-	if (px[0] > 0 && mm[0] > 0 && display.distance_mm > 0 && !gz_display_valid(&display))
-		return refuse(check, "display.mm",
-			      "%dx%d px, %g x %g mm seen from %g mm is no display; measure again",
-			      px[0], px[1], mm[0], mm[1], display.distance_mm);
-	return GZ_OK;
+	bool both = px[0] > 0 && mm[0] > 0;
+	double aspect = both ? mm[0] / px[0] / (mm[1] / px[1]) : 1;
+	if (aspect >= 1 / PIXEL_ASPECT_MAX && aspect <= PIXEL_ASPECT_MAX)
+		return GZ_OK;
+	return refuse(check, "display.mm",
+		      "%g x %g mm is no display of %dx%d pixels; are width and height swapped?",
+		      mm[0], mm[1], px[0], px[1]);
+}
+
+static enum gz_result check_pipeline(const struct check *check)
+{
+	char message[256];
+	enum gz_result result =
+		gz_pipeline_check_params(&check->config->pipeline, message, sizeof message);
+	if (result != GZ_OK)
+		gz_err(check->log, "%s", message);
+	return result == GZ_OK ? GZ_OK : GZ_ERR_INVAL;
 }
 
 /* The host of "tcp://HOST:PORT" and where its port begins; NULL if it is something else. */
@@ -216,6 +228,8 @@ enum gz_result gz_config_check(struct gz_config *config, const struct gz_log *lo
 		result = check_network(&check);
 	if (result == GZ_OK)
 		result = check_display(&check);
+	if (result == GZ_OK)
+		result = check_pipeline(&check);
 	return result == GZ_OK ? split_surfaces(&check) : result;
 }
 

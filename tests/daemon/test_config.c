@@ -68,7 +68,18 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 		{ "--driver=sim", "--tracker.driver=sim", NULL, "--tracker.driver: given twice" },
 		{ "--control", "tcp://0.0.0.0:50020", NULL, "no loopback address" },
 		{ "--control", "tcp://192.168.1.2:50020", NULL, "no loopback address" },
-		{ "--tcp", "curve", NULL, "off, loopback or curve" },
+		{ "--tcp", "all", NULL, "off, loopback or curve" },
+		{ "--network.address=*", NULL, NULL, "--network.address: * is no loopback" },
+		{ "--network.address=127.0.0.1.example", NULL, NULL, "no loopback address" },
+		{ "--network.address", "", NULL, "--network.address: empty" },
+		{ "--control", "ipc:///tmp/control", NULL, "is no tcp://ADDRESS:PORT" },
+		{ "--network.stream_port=4000", "--network.inlet_port=4000", NULL,
+		  "--network.inlet_port: 4000 is the port of network.stream_port, too" },
+		{ "--network.latest_port=50020", NULL, NULL, "the port of network.control, too" },
+		{ "--stream.surfaces", "a b a", NULL, "a is there twice" },
+		{ "--display.px=0x1080", NULL, NULL, "0x1080 is half a display" },
+		{ "--display.mm=500 0", NULL, NULL, "500 0 is half a display" },
+		{ "--replay.speed=2", NULL, NULL, "--replay.speed: a setting of driver replay" },
 		{ "--stream.surfaces", "a/b", NULL, "a/b is no name" },
 		{ "--stream.surfaces", "1 2 3 4 5 6 7 8 9", NULL, "more than 8 names" },
 		{ "--config", "/nonexistent.conf", NULL, "/nonexistent.conf: no such file" },
@@ -83,6 +94,59 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 			fail_msg("%s: %s, %d messages: %s", refusals[i][0], gz_result_text(result),
 				 captured.messages, captured.last);
 	}
+}
+
+static enum gz_result read_text(const char *text, char *path)
+{
+	int fd = mkstemp(path);
+	assert_int_equal(write(fd, text, strlen(text)), strlen(text));
+	close(fd);
+	enum gz_result result = READ("--config", path);
+	unlink(path);
+	return result;
+}
+
+/* Each value by itself is fine. */
+static void config_contradictions_in_a_file_are_told_with_file_and_line(void **state)
+{
+	(void)state;
+	static const char *const refusals[][2] = {
+		{ "[network]\n; all\naddress = *\n", ":3: network.address: * is no loopback" },
+		{ "[network]\ncontrol = tcp://10.0.0.1:50020\n", ":2: network.control: tcp://10" },
+		{ "[network]\nstream_port = 9\nlatest_port = 9\n",
+		  ":3: network.latest_port: 9 is" },
+		{ "[display]\nmm = 0 300\n", ":2: display.mm: 0 300 is half a display" },
+		{ "[display]\npx = 1920x1080\nmm = 300 530\n", ":3: display.mm: 300 x 530 mm" },
+		{ "[stream]\nsurfaces = x x\n", ":2: stream.surfaces: x is there twice" },
+		{ "[tracker]\ndriver = eyes\n", ":2: tracker.driver: no driver eyes" },
+	};
+	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
+		char path[] = "/tmp/gz_config_XXXXXX", wanted[160];
+		enum gz_result result = read_text(refusals[i][0], path);
+		snprintf(wanted, sizeof wanted, "%s%s", path, refusals[i][1]);
+		if (result == GZ_OK || captured.messages != 1 || !strstr(captured.last, wanted))
+			fail_msg("%s: %s, %d messages: %s, not %s", refusals[i][0],
+				 gz_result_text(result), captured.messages, captured.last, wanted);
+	}
+}
+
+static void config_settings_of_other_drivers_may_stay_in_a_file(void **state)
+{
+	(void)state;
+	char path[] = "/tmp/gz_config_XXXXXX";
+	assert_int_equal(read_text("[replay]\nspeed = 2\n", path), GZ_OK);
+}
+
+static void config_control_is_at_pupils_port_of_the_address(void **state)
+{
+	(void)state;
+	assert_int_equal(READ("--config=/dev/null", "--tcp=curve", "--network.address=*"), GZ_OK);
+	assert_string_equal(config.control_endpoint, "tcp://*:50020");
+	assert_int_equal(READ("--config=/dev/null", "--network.address=[::1]"), GZ_OK);
+	assert_string_equal(config.control_endpoint, "tcp://[::1]:50020");
+	assert_int_equal(READ("--config=/dev/null", "--tcp=curve", "--control=tcp://eth0:7"),
+			 GZ_OK);
+	assert_string_equal(config.control_endpoint, "tcp://eth0:7");
 }
 
 static void config_surfaces_may_be_none(void **state)
@@ -259,6 +323,9 @@ int main(void)
 		cmocka_unit_test(config_presets_are_what_the_options_say),
 		cmocka_unit_test(config_command_line_has_the_last_word_over_the_file),
 		cmocka_unit_test(config_refusals_say_what_and_what_to_do),
+		cmocka_unit_test(config_contradictions_in_a_file_are_told_with_file_and_line),
+		cmocka_unit_test(config_settings_of_other_drivers_may_stay_in_a_file),
+		cmocka_unit_test(config_control_is_at_pupils_port_of_the_address),
 		cmocka_unit_test(config_surfaces_may_be_none),
 		cmocka_unit_test(config_control_endpoint_does_not_matter_without_tcp),
 		cmocka_unit_test(config_display_is_the_best_known),
