@@ -20,8 +20,9 @@
 /** What gazectl exits with; gazectl(1) lists the same. */
 enum gazectl_exit {
 	GAZECTL_DONE = 0,
-	GAZECTL_FAILED = 1,    /**< the daemon refused, or a file cannot be read */
-	GAZECTL_USAGE = 2,     /**< a command line that is not understood */
+	GAZECTL_FAILED =
+		1,         /**< the daemon refused, no tracker can be used, a file cannot be read */
+	GAZECTL_USAGE = 2, /**< a command line that is not understood */
 	GAZECTL_NO_DAEMON = 3, /**< nobody answers at the endpoint */
 	GAZECTL_DAMAGED = 4,   /**< inspect: the log is cut or corrupted */
 	GAZECTL_CANCELLED = 5, /**< validate: by the Escape key or a signal */
@@ -41,6 +42,7 @@ struct gazectl_command {
 	enum gazectl_exit (*run)(int argc, char *const *argv, const struct gz_log *log);
 };
 
+extern const struct gazectl_command gazectl_devices;
 extern const struct gazectl_command gazectl_status;
 extern const struct gazectl_command gazectl_watch;
 extern const struct gazectl_command gazectl_record;

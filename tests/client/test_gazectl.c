@@ -142,7 +142,7 @@ static void help_and_version_are_printed(void **state)
 	(void)state;
 	RUN("--help");
 	assert_done();
-	const char *commands[] = { "status", "watch", "record", "stop", "inspect" };
+	const char *commands[] = { "devices", "status", "watch", "record", "stop", "inspect" };
 	for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
 		char usage[64];
 		RUN("--help");
