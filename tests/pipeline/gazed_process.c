@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <grp.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -117,6 +118,9 @@ static void become_gazed(const struct gazed_start *start, const struct gazed_pro
 	struct rlimit limit = { start->file_size_max, start->file_size_max };
 	if (fd < 0 || dup2(fd, STDERR_FILENO) < 0 ||
 	    (start->file_size_max && setrlimit(RLIMIT_FSIZE, &limit) != 0))
+		_exit(126);
+	if (start->user && (setgroups(0, NULL) != 0 || setgid(start->user) != 0 ||
+			    setuid(start->user) != 0))
 		_exit(126);
 	for (fd = 0; start->without_streams && fd <= STDERR_FILENO; fd++)
 		close(fd);

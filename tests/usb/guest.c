@@ -49,3 +49,11 @@ void guest_wait_for_file(const char *path, bool wanted)
 		usleep(10000);
 	}
 }
+
+void guest_wait_for_count(const _Atomic uint32_t *count, uint32_t wanted)
+{
+	int64_t deadline_ns = gz_clock_now_ns() + 10 * GZ_NS_PER_S;
+	while (*count < wanted && gz_clock_now_ns() < deadline_ns)
+		usleep(1000);
+	assert_true(*count >= wanted);
+}

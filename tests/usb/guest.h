@@ -14,4 +14,7 @@ int64_t guest_suspend(void);
 /** Wait until @p path is there, or is not; fails the test after 10 s. */
 void guest_wait_for_file(const char *path, bool wanted);
 
+/** Wait until @p count is at least @p wanted; fails the test after 10 s. */
+void guest_wait_for_count(const _Atomic uint32_t *count, uint32_t wanted);
+
 #endif

@@ -166,9 +166,8 @@ void hid_function_remove(struct hid_function *tracker)
 {
 	if (!tracker->made)
 		return;
-	tracker->stream.stop = true;
-	gadget_remove(&tracker->gadget);
 	made_stream_stop(&tracker->stream);
+	gadget_remove(&tracker->gadget);
 	functionfs_stop(&tracker->function);
 	*tracker = (struct hid_function) { 0 };
 }

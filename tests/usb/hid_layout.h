@@ -15,7 +15,8 @@
 /** Room for any report of these layouts. */
 #define HID_REPORT_MAX 128
 
-/** The eyes of every sample that has them, mm right of, below and before the screen's centre. */
+/** The eyes of every sample that has them, mm right of and below the screen's top left corner, and
+ * before it. */
 #define HID_LEFT_EYE_MM             \
 	{                           \
 		-32.0, -50.0, 610.0 \

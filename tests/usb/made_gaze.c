@@ -2,6 +2,7 @@
 
 #include "made_gaze.h"
 
+#include <signal.h>
 #include <time.h>
 
 /* Up and down between 0 and 1 with @p period samples. */
@@ -55,8 +56,16 @@ static void *run(void *argument)
 	return NULL;
 }
 
+static void wake(int signal)
+{
+	(void)signal;
+}
+
 void made_stream_start(struct made_stream *stream)
 {
+	/* Without SA_RESTART: it ends a write that waits. */
+	const struct sigaction action = { .sa_handler = wake };
+	sigaction(SIGUSR1, &action, NULL);
 	stream->stop = false;
 	if (stream->start_us == 0)
 		stream->start_us = boottime_us();
@@ -66,9 +75,16 @@ void made_stream_start(struct made_stream *stream)
 
 void made_stream_stop(struct made_stream *stream)
 {
+	struct timespec deadline;
 	if (!stream->running)
 		return;
 	stream->stop = true;
-	pthread_join(stream->thread, NULL);
+	/* It may wait for a host that reads no more. */
+	do {
+		pthread_kill(stream->thread, SIGUSR1);
+		clock_gettime(CLOCK_REALTIME, &deadline);
+		deadline.tv_sec += deadline.tv_nsec / 980000000;
+		deadline.tv_nsec = (deadline.tv_nsec + 20000000) % 1000000000;
+	} while (pthread_timedjoin_np(stream->thread, NULL, &deadline) != 0);
 	stream->running = false;
 }

@@ -323,13 +323,14 @@ void psvr2_gadget_plug(struct psvr2_gadget *headset, const char *serial)
 
 void psvr2_gadget_unplug(struct psvr2_gadget *headset)
 {
-	int endpoint = headset->endpoint;
+	/* GadgetFS cannot let the device go while somebody writes to it. */
+	made_stream_stop(&headset->stream);
 	headset->stop = true;
 	pthread_join(headset->thread, NULL);
-	headset->endpoint = -1;
 	close(headset->control); /* the host sees it go here */
-	if (endpoint >= 0)
-		close(endpoint);
+	if (headset->endpoint >= 0)
+		close(headset->endpoint);
+	headset->endpoint = -1;
 	headset->plugged = false;
 }
 
@@ -343,10 +344,8 @@ void psvr2_gadget_stall(struct psvr2_gadget *headset)
 
 void psvr2_gadget_remove(struct psvr2_gadget *headset)
 {
-	headset->stream.stop = true;
 	if (headset->plugged)
 		psvr2_gadget_unplug(headset);
-	made_stream_stop(&headset->stream);
 	umount(FOLDER);
 	*headset = (struct psvr2_gadget) { .endpoint = -1 };
 }

@@ -44,7 +44,7 @@ struct psvr2_gadget {
  *  two seconds. There can be one. */
 void psvr2_gadget_plug(struct psvr2_gadget *headset, const char *serial);
 
-/** Pull it out, with its stream, if it runs, going on; psvr2_gadget_plug() plugs it in again. */
+/** Stop its stream and pull it out; psvr2_gadget_plug() plugs it in again. */
 void psvr2_gadget_unplug(struct psvr2_gadget *headset);
 
 /** Lay out the packet of @p sample. */

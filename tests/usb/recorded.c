@@ -35,7 +35,7 @@ struct recorded recorded_read(const char *recordings, const char *name)
 		} else if (record.kind == GZ_GAZE_LOG_SAMPLE) {
 			count_sample(&recorded, &record.sample, &last_ns);
 		} else if (record.kind == GZ_GAZE_LOG_GAP) {
-			recorded.gaps++;
+			recorded.outages += record.missing == 0;
 			recorded.missing += record.missing;
 		}
 	}

@@ -13,8 +13,8 @@
 struct recorded {
 	uint64_t samples;
 	uint64_t first_seq, last_seq;
-	uint64_t gaps;      /**< records */
-	uint64_t missing;   /**< samples that they tell of */
+	uint64_t outages;   /**< gap records without a number of samples: the tracker was gone */
+	uint64_t missing;   /**< samples that gap records tell of */
 	int64_t longest_ns; /**< longest time between two samples, host time */
 	int64_t backwards;  /**< samples whose host time is not after the one before */
 	uint64_t malformed; /**< lines */

@@ -47,15 +47,6 @@ static void read_report(int fd, uint8_t *report, size_t size)
 	assert_int_equal(read(fd, report, size), size);
 }
 
-/* What a control transfer carried is known soon after it is over. */
-static void wait_for_count(const _Atomic uint32_t *count, uint32_t wanted)
-{
-	int64_t deadline_ns = gz_clock_now_ns() + 5 * GZ_NS_PER_S;
-	while (*count < wanted && gz_clock_now_ns() < deadline_ns)
-		usleep(1000);
-	assert_int_equal(*count, wanted);
-}
-
 static void hid_reports_arrive_as_they_were_sent(void **state)
 {
 	(void)state;
@@ -96,7 +87,7 @@ static void a_hid_function_answers_feature_requests_and_sends_reports(void **sta
 	assert_int_equal(configuration[11] | configuration[12] << 8 | configuration[13] << 16,
 			 500000);
 	assert_int_equal(ioctl(fd, HIDIOCSFEATURE(sizeof mode), mode), sizeof mode);
-	wait_for_count(&function.mode_requests, 1);
+	guest_wait_for_count(&function.mode_requests, 1);
 	assert_int_equal(function.mode, 3);
 	struct made_sample sample = made_gaze(9);
 	hid_layout_reference.encode(&sample, sent);
@@ -153,8 +144,8 @@ static void a_headset_streams_once_it_is_switched_on(void **state)
 			 LIBUSB_ERROR_PIPE);
 	assert_int_equal(libusb_clear_halt(handle, 0x85), 0);
 	switch_stream(handle, 2);
-	wait_for_count(&headset.on, 1);
-	wait_for_count(&headset.off, 1);
+	guest_wait_for_count(&headset.on, 1);
+	guest_wait_for_count(&headset.off, 1);
 	assert_int_equal(headset.unknown, 0);
 	libusb_close(handle);
 	libusb_exit(context);

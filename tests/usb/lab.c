@@ -1,0 +1,213 @@
+#include "check.h"
+
+#include "lab.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "protocol/wire.h"
+
+/* So much before a sample was due the fit of its clock may put it: a machine that is emulated on a
+ * busy one delivers its first samples with delays that vary by many milliseconds. */
+#define EARLY_NS (20 * GZ_NS_PER_MS)
+
+enum { ARGUMENTS_MAX = 20, PATIENCE_MS = 20000 };
+
+void lab_open(struct lab *lab)
+{
+	*lab = (struct lab) { 0 };
+	gazed_place_make(&lab->place);
+	assert_int_equal(chown(lab->place.directory, LAB_USER, LAB_USER), 0);
+	assert_int_equal(chown(lab->place.recordings, LAB_USER, LAB_USER), 0);
+	reader_open(&lab->reader, &lab->place, "");
+}
+
+void lab_start(struct lab *lab, bool as_user, const char *const *arguments)
+{
+	const char *all[ARGUMENTS_MAX] = { "--display.mm", "500 300", "--display.px", "1000x600" };
+	size_t count = 4;
+	for (; *arguments; arguments++) {
+		assert_true(count < ARGUMENTS_MAX - 1);
+		all[count++] = *arguments;
+	}
+	/* What the ordinary user could not make, it need not. */
+	if (!as_user)
+		assert_int_equal(chown(lab->place.directory, 0, 0), 0);
+	struct gazed_start start = {
+		.place = &lab->place,
+		.arguments = all,
+		.user = as_user ? LAB_USER : 0,
+	};
+	gazed_spawn(&start, &lab->gazed);
+	gazed_wait_ready(&lab->place, &lab->gazed);
+}
+
+void lab_stop(struct lab *lab)
+{
+	int status = gazed_stop(&lab->gazed, SIGTERM);
+	if (status != 0)
+		fail_msg("gazed ended with %d: %s", status, lab_said(lab));
+}
+
+void lab_close(struct lab *lab)
+{
+	if (!lab->place.directory[0])
+		return;
+	reader_close(&lab->reader);
+	gazed_kill_all();
+	gazed_place_remove(&lab->place);
+	*lab = (struct lab) { 0 };
+}
+
+const char *lab_said(const struct lab *lab)
+{
+	return gazed_said(&lab->gazed);
+}
+
+void lab_expect_said(const struct lab *lab, const char *text)
+{
+	if (!strstr(lab_said(lab), text))
+		fail_msg("not logged: \"%s\"; but:\n%s", text, lab_said(lab));
+}
+
+/* Receive one message. @return whether it was a gaze, then in lab->gaze */
+static bool receive(struct lab *lab)
+{
+	struct reader *reader = &lab->reader;
+	uint64_t before = reader->gaze_count;
+	if (!reader_receive(reader, PATIENCE_MS))
+		fail_msg("nothing comes; tracker is %s (%s); gazed said:\n%s",
+			 gz_tracker_state_name(reader->status.tracker.state),
+			 reader->status.tracker.reason, lab_said(lab));
+	const struct received *message = &reader->messages[reader->count - 1];
+	if (reader->gaze_count == before)
+		return false;
+	assert_int_equal(gz_wire_decode_gaze(message->bytes, message->size, &lab->gaze), GZ_OK);
+	return true;
+}
+
+static void check_patience(const struct lab *lab, int64_t begin_ns, const char *what)
+{
+	if (gz_clock_now_ns() - begin_ns > PATIENCE_MS * GZ_NS_PER_MS)
+		fail_msg("no %s; tracker is %s (%s); gazed said:\n%s", what,
+			 gz_tracker_state_name(lab->reader.status.tracker.state),
+			 lab->reader.status.tracker.reason, lab_said(lab));
+}
+
+void lab_next_gaze(struct lab *lab)
+{
+	int64_t begin_ns = gz_clock_now_ns();
+	while (!receive(lab))
+		check_patience(lab, begin_ns, "gaze");
+}
+
+/* CLOCK_MONOTONIC at which sample @p number was due, ns; right since the last suspend. */
+static int64_t due_ns(const struct made_stream *stream, uint64_t number)
+{
+	struct timespec all, awake;
+	clock_gettime(CLOCK_BOOTTIME, &all);
+	clock_gettime(CLOCK_MONOTONIC, &awake);
+	int64_t asleep_ns = (all.tv_sec - awake.tv_sec) * GZ_NS_PER_S + all.tv_nsec - awake.tv_nsec;
+	return (stream->start_us + (int64_t)number * MADE_PERIOD_US) * GZ_NS_PER_US - asleep_ns;
+}
+
+static struct made_sample true_sample(const struct lab_truth *truth, const struct gz_gaze *gaze)
+{
+	if (truth->has_clock)
+		return made_gaze_at(gaze->device_ns);
+	int64_t since_ns = gaze->host_ns - due_ns(truth->stream, 0);
+	return made_gaze((uint64_t)(since_ns / GZ_NS_PER_US / MADE_PERIOD_US));
+}
+
+static void compare_one(const struct lab_truth *truth, const struct gz_gaze *gaze)
+{
+	struct made_sample sample = true_sample(truth, gaze);
+	double off_x = gaze->raw.x - sample.x, off_y = gaze->raw.y - sample.y;
+	int64_t late_ns = gaze->host_ns - due_ns(truth->stream, sample.number);
+	if (truth->has_clock)
+		assert_true(llabs(gaze->device_ns / GZ_NS_PER_US - sample.device_us) <= 1000);
+	if (isnan(off_x) || fabs(off_x) > truth->tolerance || fabs(off_y) > truth->tolerance)
+		fail_msg("sample %" PRIu64 " is at %f %f, was sent at %f %f, confidence %f",
+			 sample.number, gaze->raw.x, gaze->raw.y, sample.x, sample.y,
+			 (double)gaze->confidence);
+	if (late_ns < -EARLY_NS || late_ns > truth->delay_ns)
+		fail_msg("sample %" PRIu64 " is %f ms late", sample.number, gz_ns_to_ms(late_ns));
+	/* Smoothing does not lead away. */
+	assert_true(fabs(gaze->point.x - sample.x) < 0.05 && fabs(gaze->point.y - sample.y) < 0.05);
+}
+
+void lab_compare(struct lab *lab, const struct lab_truth *truth, uint64_t count)
+{
+	for (uint64_t i = 0; i < count; i++) {
+		struct gz_gaze before = lab->gaze;
+		lab_next_gaze(lab);
+		compare_one(truth, &lab->gaze);
+		if (lab->compared++ == 0)
+			continue;
+		if (lab->gaze.seq <= before.seq || lab->gaze.host_ns <= before.host_ns)
+			fail_msg("sample %" PRIu64 " at %" PRId64 " follows %" PRIu64
+				 " at %" PRId64,
+				 lab->gaze.seq, lab->gaze.host_ns, before.seq, before.host_ns);
+	}
+}
+
+void lab_wait_state(struct lab *lab, enum gz_tracker_state state)
+{
+	int64_t begin_ns = gz_clock_now_ns();
+	while (lab->reader.status_count == 0 || lab->reader.status.tracker.state != state) {
+		receive(lab);
+		check_patience(lab, begin_ns, gz_tracker_state_name(state));
+	}
+}
+
+void lab_wait_malformed(struct lab *lab, enum gz_malformed kind, uint64_t count)
+{
+	int64_t begin_ns = gz_clock_now_ns();
+	while (lab->reader.status_count == 0 || lab->reader.status.malformed[kind] < count) {
+		receive(lab);
+		check_patience(lab, begin_ns, gz_malformed_name(kind));
+	}
+	assert_int_equal(lab->reader.status.malformed[kind], count);
+}
+
+/* In the child: gazectl as that user. */
+static void become_gazectl(bool as_user, int out)
+{
+	dup2(out, STDOUT_FILENO);
+	dup2(out, STDERR_FILENO);
+	if (as_user && (setgid(LAB_USER) != 0 || setuid(LAB_USER) != 0))
+		_exit(126);
+	execl("/usr/bin/gazectl", "gazectl", "devices", (char *)NULL);
+	_exit(127);
+}
+
+const char *lab_devices(const struct lab *lab, bool as_user)
+{
+	static char text[4096];
+	int pipes[2], status;
+	size_t length = 0;
+	ssize_t size;
+	(void)lab;
+	assert_int_equal(pipe(pipes), 0);
+	pid_t process = fork();
+	if (process == 0)
+		become_gazectl(as_user, pipes[1]);
+	close(pipes[1]);
+	while ((size = read(pipes[0], text + length, sizeof text - 1 - length)) > 0)
+		length += (size_t)size;
+	text[length] = '\0';
+	close(pipes[0]);
+	assert_int_equal(waitpid(process, &status, 0), process);
+	print_message("%s", text);
+	if (!WIFEXITED(status) || WEXITSTATUS(status) > 1)
+		fail_msg("gazectl devices ended with status 0x%x: %s", status, text);
+	return text;
+}
