@@ -40,6 +40,7 @@ struct gz_service {
 	int64_t status_ns;   /* when the next status is due */
 	/* Of the last status sent: a change is told at once. */
 	enum gz_tracker_state told_tracker;
+	const char *told_trouble;
 	enum gz_recording_state told_recording;
 	uint32_t told_subscribers;
 	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was notified; empty: none */
@@ -91,7 +92,12 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 	service->parts = *parts;
 	service->waiting = parts->config->wait_readers > 0;
 	const struct gz_driver *driver = gz_config_driver(parts->config, &settings);
-	const struct gz_driver_host host = { .log = parts->log, .choice = parts->config->tracker };
+	const struct gz_config *config = parts->config;
+	const struct gz_driver_host host = {
+		.log = parts->log,
+		.choice = config->tracker,
+		.display_mm = { config->display_mm[0], config->display_mm[1] },
+	};
 	/* Before the first look, so that nothing arrives between the two. */
 	if (driver->on_usb)
 		gz_usb_watch_create(GZ_UDEV_CONTROL, parts->log, &service->watch);
@@ -292,7 +298,9 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		status->rate_hz_measured = gz_rate_meter_take(&service->rate);
 	memcpy(status->tracker.name, tracker->info.name, sizeof status->tracker.name);
 	memcpy(status->tracker.serial, tracker->info.serial, sizeof status->tracker.serial);
-	memcpy(status->tracker.reason, tracker->reason, sizeof status->tracker.reason);
+	snprintf(status->tracker.reason, sizeof status->tracker.reason, "%s",
+		 !tracker->reason[0] && tracker->counters.trouble ? tracker->counters.trouble
+								  : tracker->reason);
 	memcpy(status->rejected, service->rejected, sizeof status->rejected);
 	memcpy(status->malformed, tracker->counters.malformed, sizeof status->malformed);
 	status->recording.state = recorder.state;
@@ -312,6 +320,7 @@ static void send_status(struct gz_service *service)
 		gz_publisher_send_one(service->parts.publisher, GZ_TOPIC_STATUS, message->bytes,
 				      message->size);
 	service->told_tracker = status.tracker.state;
+	service->told_trouble = service->tracker.counters.trouble;
 	service->told_recording = status.recording.state;
 	service->told_subscribers = status.subscribers;
 }
@@ -321,6 +330,7 @@ static bool status_changed(const struct gz_service *service)
 	struct gz_recorder_status recorder;
 	gz_recorder_get_status(service->parts.recorder, &recorder);
 	return service->told_tracker != service->tracker.state ||
+	       service->told_trouble != service->tracker.counters.trouble ||
 	       service->told_recording != recorder.state ||
 	       service->told_subscribers != gz_publisher_subscribers(service->parts.publisher);
 }
@@ -337,6 +347,7 @@ static void take_care(struct gz_service *service, int64_t now_ns)
 		service->waiting = false;
 	if (recording_is_over(service))
 		notify_stopped(service);
+	gz_tracker_update_counters(&service->tracker);
 	if (now_ns >= service->status_ns || status_changed(service)) {
 		send_status(service);
 		service->status_ns = now_ns + GZ_SERVICE_STATUS_MS * GZ_NS_PER_MS;

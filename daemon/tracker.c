@@ -111,11 +111,13 @@ void gz_tracker_update_counters(struct gz_tracker *tracker)
 	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
 		tracker->counters.malformed[i] = tracker->base.malformed[i] + now.malformed[i];
 	tracker->counters.clock = now.clock;
+	tracker->counters.trouble = now.trouble;
 }
 
 static void drop_device(struct gz_tracker *tracker)
 {
 	gz_tracker_update_counters(tracker);
+	tracker->counters.trouble = NULL;
 	tracker->base = tracker->counters;
 	tracker->seq_base = tracker->next_seq;
 	gz_device_destroy(&tracker->device);

@@ -167,6 +167,12 @@ int64_t gz_clock_model_step(struct gz_clock_model *model, int64_t device_ns, int
 	return answer(model, first, model->first_arrival_ns + (int64_t)after, arrival_ns);
 }
 
+void gz_clock_model_restart(struct gz_clock_model *model)
+{
+	/* Nothing is newer than this. */
+	model->device_ns = INT64_MAX;
+}
+
 struct gz_clock_status gz_clock_model_status(const struct gz_clock_model *model,
 					     enum gz_clock_tick tick)
 {

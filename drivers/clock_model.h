@@ -74,6 +74,10 @@ struct gz_clock_model {
 int64_t gz_clock_model_step(struct gz_clock_model *model, int64_t device_ns, int64_t arrival_ns,
 			    bool *out_jumped);
 
+/** Begin a new segment with the next sample, because what device times mean has changed. Host times
+ * go on. */
+void gz_clock_model_restart(struct gz_clock_model *model);
+
 /**
  * The fit at the newest sample. sigma_ns is the RMS distance of the window's least delayed samples
  * from the line. @p tick is passed on.

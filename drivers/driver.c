@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "drivers/gazepoint/gazepoint_driver.h"
+#include "drivers/hid/hid_driver.h"
 #include "drivers/psvr2/psvr2_driver.h"
 #include "drivers/replay/replay_driver.h"
 #include "drivers/sim/sim_driver.h"
@@ -11,6 +12,7 @@
 const struct gz_driver *const gz_drivers[] = {
 	&gz_driver_sim,
 	&gz_driver_replay,
+	&gz_driver_hid,
 	&gz_driver_gazepoint,
 	&gz_driver_template,
 	&gz_driver_psvr2,

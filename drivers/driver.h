@@ -34,6 +34,9 @@ struct gz_device_counters {
 	uint64_t lost;                          /**< samples the device or the link lost */
 	uint64_t malformed[GZ_MALFORMED_COUNT]; /**< reports that were not understood */
 	struct gz_clock_status clock;
+	/** Why what it delivers is of no use now, and what to do; static text. NULL while all is
+	 * well. */
+	const char *trouble;
 };
 
 /** What a driver must provide. Every table is const and has static storage. */
@@ -69,6 +72,9 @@ struct gz_driver_host {
 	/** Name or serial number of the device to take where there are several; NULL or empty: the
 	 * first usable one. Drivers that know only one place to look ignore it. */
 	const char *choice;
+	/** The display's size as configured, mm; 0 0 where it is not. For devices that measure in
+	 * millimetres and do not know their screen. */
+	double display_mm[2];
 };
 
 /** A tracker that is there, whether or not it can be used. */

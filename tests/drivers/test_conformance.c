@@ -18,6 +18,8 @@
 #include "drivers/template/template_protocol.h"
 #include "fake_libusb.h"
 #include "gazepoint_server.h"
+#include "hid_made.h"
+#include "hid_played.h"
 #include "made_log.h"
 
 /* Samples read of each driver. */
@@ -38,6 +40,8 @@ struct stage {
 	atomic_bool quit;
 	struct gazepoint_server server;
 	bool has_server;
+	int number; /* of the played HID device */
+	bool plays_hid;
 };
 
 static void set_option(struct stage *stage, const char *key, const char *text)
@@ -135,6 +139,41 @@ static void prepare_psvr2(void)
 	fake_usb.due_ns = gz_clock_now_ns();
 }
 
+/* Plays a tracker of the HID class at 500 Hz whose clock wraps. Every 70th report is cut. */
+static void *play_hid(void *user)
+{
+	struct stage *stage = user;
+	int64_t begin_ns = gz_clock_now_ns();
+	for (uint32_t i = 0; !atomic_load(&stage->quit); i++) {
+		struct hid_made_sample sample = {
+			.time_us = UINT32_MAX - 100000 + 2000 * (uint64_t)i,
+			.gaze = { 100000 + (int32_t)i, 50000 },
+			.left = { 70000, 60000, 600000 },
+			.right = { 130000, 60000, 600000 },
+		};
+		unsigned char bytes[128];
+		size_t size = hid_made_report(HID_LAYOUT_BYTES, &sample, bytes);
+		gz_clock_sleep_until_ns(begin_ns + (int64_t)i * 2 * GZ_NS_PER_MS);
+		hid_played_send(stage->number, bytes, i % 70 == 69 ? 9 : size);
+	}
+	return NULL;
+}
+
+static void prepare_hid(struct stage *stage)
+{
+	struct hid_made made = { 0 };
+	unsigned char bytes[64];
+	hid_made_tracker(&made, HID_LAYOUT_BYTES);
+	stage->number = hid_played_plug("Made", "1", made.bytes, made.size);
+	hid_played_set_feature(stage->number, 0x12, bytes,
+			       hid_made_configuration(HID_LAYOUT_BYTES, 500000, 300000, bytes));
+	hid_played_set_feature(stage->number, 0x13, bytes,
+			       hid_made_status(HID_LAYOUT_BYTES, 1, 500, bytes));
+	atomic_store(&stage->quit, false);
+	assert_int_equal(pthread_create(&stage->player, NULL, play_hid, stage), 0);
+	stage->plays_hid = true;
+}
+
 /* The driver's presets, and what it needs beyond. */
 static void set_up(struct stage *stage, const struct gz_driver *driver)
 {
@@ -142,6 +181,7 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 					     stage->settings, NULL };
 	memset(stage, 0, sizeof *stage);
 	fake_usb_reset();
+	hid_played_reset();
 	stage->driver = driver;
 	assert_true(driver->settings_size <= sizeof stage->settings);
 	assert_int_equal(gz_options_preset(&binding), GZ_OK);
@@ -153,12 +193,18 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 		prepare_gazepoint(stage);
 	else if (strcmp(driver->name, "psvr2") == 0)
 		prepare_psvr2();
+	else if (strcmp(driver->name, "hid") == 0)
+		prepare_hid(stage);
 }
 
 static void tear_down(struct stage *stage)
 {
 	if (stage->has_server)
 		gazepoint_server_stop(&stage->server);
+	if (stage->plays_hid) {
+		atomic_store(&stage->quit, true);
+		pthread_join(stage->player, NULL);
+	}
 	if (!stage->has_player)
 		return;
 	atomic_store(&stage->quit, true);
@@ -382,12 +428,14 @@ static void driver_refuses_what_is_not_there(void **state)
 		{ "replay", "replay.file", "", GZ_ERR_INVAL },
 		{ "replay", "replay.file", "/nonexistent", GZ_ERR_NOT_FOUND },
 		{ "gazepoint", "gazepoint.host", "256.256.256.256", GZ_ERR_NO_DEVICE },
+		{ "hid", "hid.eye_positions", "no", GZ_ERR_NO_DEVICE },
 		{ "template", "template.path", "", GZ_ERR_INVAL },
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
 		{ "psvr2", "psvr2.screen_distance_mm", "600", GZ_ERR_NO_DEVICE },
 	};
 	static struct stage stage;
 	fake_usb_reset();
+	hid_played_reset();
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
 		struct gz_device *device = NULL;
 		const struct gz_driver *driver = gz_driver_find(refusals[i].driver);
