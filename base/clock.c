@@ -10,14 +10,6 @@ int64_t gz_clock_now_ns(void)
 	return (int64_t)t.tv_sec * GZ_NS_PER_S + t.tv_nsec;
 }
 
-int64_t gz_clock_suspended_ns(void)
-{
-	struct timespec t;
-	int64_t before_ns = gz_clock_now_ns();
-	clock_gettime(CLOCK_BOOTTIME, &t);
-	return (int64_t)t.tv_sec * GZ_NS_PER_S + t.tv_nsec - before_ns;
-}
-
 void gz_clock_sleep_until_ns(int64_t deadline_ns)
 {
 	if (deadline_ns <= 0)

@@ -14,10 +14,6 @@
 /** Now on CLOCK_MONOTONIC, ns. Threads: any. */
 int64_t gz_clock_now_ns(void);
 
-/** How long the machine has slept since it started, ns: CLOCK_MONOTONIC stands still then. Threads:
- *  any. */
-int64_t gz_clock_suspended_ns(void);
-
 /**
  * Sleep until CLOCK_MONOTONIC reads at least @p deadline_ns; returns at once if it already does.
  * A signal does not shorten the sleep. Threads: any.

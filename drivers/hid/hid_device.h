@@ -35,7 +35,7 @@ struct gz_hid_device {
 	/* Its mode. */
 	bool mode_set; /**< mode_before is to be restored */
 	unsigned mode_before;
-	int64_t suspended_ns;  /**< gz_clock_suspended_ns() when the mode was set */
+	int64_t suspended_ns;  /**< gz_suspended_ns() when the mode was set */
 	int64_t look_after_ns; /**< when to look whether the machine slept */
 
 	/* Its samples. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/suspend.h"
 #include "drivers/hid/hid_device.h"
 #include "drivers/hid/hid_usages.h"
 
@@ -152,7 +153,7 @@ static enum gz_result send_mode(struct gz_hid_device *device, unsigned mode, uns
 void gz_hid_setup_start(struct gz_hid_device *device)
 {
 	unsigned before = 0;
-	device->suspended_ns = gz_clock_suspended_ns();
+	device->suspended_ns = gz_suspended_ns();
 	switch (send_mode(device, wanted_mode(device), &before)) {
 	case GZ_OK:
 		if (!device->mode_set)
@@ -173,7 +174,7 @@ void gz_hid_setup_look_after(struct gz_hid_device *device, int64_t now_ns)
 	if (now_ns < device->look_after_ns)
 		return;
 	device->look_after_ns = now_ns + LOOK_AFTER_NS;
-	if (gz_clock_suspended_ns() - device->suspended_ns < SLEEP_NS)
+	if (gz_suspended_ns() - device->suspended_ns < SLEEP_NS)
 		return;
 	gz_info(device->base.log, "%s: the machine slept; its mode is set again",
 		device->entry.name);

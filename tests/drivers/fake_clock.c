@@ -15,8 +15,3 @@ void gz_clock_sleep_until_ns(int64_t deadline_ns)
 	if (deadline_ns > now_ns)
 		now_ns = deadline_ns;
 }
-
-int64_t gz_clock_suspended_ns(void)
-{
-	return 0;
-}
