@@ -8,8 +8,8 @@
 #define GZ_LOG_MODULE "gazectl"
 
 static const struct gazectl_command *const commands[] = {
-	&gazectl_devices, &gazectl_status,  &gazectl_watch,    &gazectl_record,
-	&gazectl_stop,    &gazectl_inspect, &gazectl_validate, &gazectl_keygen,
+	&gazectl_devices, &gazectl_status,   &gazectl_watch,  &gazectl_record,  &gazectl_stop,
+	&gazectl_inspect, &gazectl_validate, &gazectl_keygen, &gazectl_convert,
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -24,7 +24,7 @@ enum gazectl_exit {
 		1,         /**< the daemon refused, no tracker can be used, a file cannot be read */
 	GAZECTL_USAGE = 2, /**< a command line that is not understood */
 	GAZECTL_NO_DAEMON = 3, /**< nobody answers at the endpoint */
-	GAZECTL_DAMAGED = 4,   /**< inspect: the log is cut or corrupted */
+	GAZECTL_DAMAGED = 4,   /**< inspect, convert: the log is cut or corrupted */
 	GAZECTL_CANCELLED = 5, /**< validate: by the Escape key or a signal */
 };
 
@@ -50,6 +50,7 @@ extern const struct gazectl_command gazectl_stop;
 extern const struct gazectl_command gazectl_inspect;
 extern const struct gazectl_command gazectl_validate;
 extern const struct gazectl_command gazectl_keygen;
+extern const struct gazectl_command gazectl_convert;
 
 /** Most arguments that a command line may have. Chosen: more than any use needs. */
 enum { GAZECTL_ARGUMENTS_MAX = 64 };

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "client/convert/output_file.h"
+#include "client/log_picture.h"
 #include "client/log_summary.h"
 
 #define GZ_LOG_MODULE "gazectl"
@@ -15,6 +17,8 @@
 struct inspect_settings {
 	struct gazectl_common common;
 	bool json;
+	bool force;
+	char picture[GZ_PATH_SIZE];
 };
 
 static const struct gz_option inspect_options[] = {
@@ -24,6 +28,17 @@ static const struct gz_option inspect_options[] = {
 	  .offset = offsetof(struct inspect_settings, json),
 	  .preset = "false",
 	  .help = "print JSON" },
+	{ .key = "picture",
+	  .type = GZ_OPTION_STRING,
+	  .offset = offsetof(struct inspect_settings, picture),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "draw the path and the fixations into this file (.svg)" },
+	{ .key = "force",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = offsetof(struct inspect_settings, force),
+	  .preset = "false",
+	  .help = "replace a picture that is there" },
 };
 
 static const char *ending_name(enum gz_gaze_log_ending ending)
@@ -50,7 +65,8 @@ static void print_header(const struct gz_gaze_log_header *header)
 {
 	printf("tracker      %s%s%s\n", header->tracker, header->serial[0] ? " " : "",
 	       header->serial);
-	printf("recorded     %s by %s\n", header->started, header->software);
+	printf("recorded     %s%sby %s\n", header->started, header->started[0] ? " " : "",
+	       header->software);
 	if (header->has_display)
 		printf("display      %dx%d px, %gx%g mm, %g mm away\n", header->display.px[0],
 		       header->display.px[1], header->display.mm[0], header->display.mm[1],
@@ -291,8 +307,36 @@ static void print_table(const struct gz_gaze_log_header *header, struct gz_log_s
 	print_marks(summary);
 }
 
-static enum gazectl_exit inspect(struct gz_gaze_log_reader *reader, bool json,
-				 const struct gz_log *log)
+static enum gz_result draw(const char *path, const struct gz_log_summary *summary, FILE *out)
+{
+	struct gz_gaze_log_reader *reader = NULL;
+	const char *slash = strrchr(path, '/');
+	/* The first reading has said all there is to say of it. */
+	enum gz_result result = gz_gaze_log_open(path, NULL, &reader);
+	if (result == GZ_OK)
+		result = gz_log_picture(reader, slash ? slash + 1 : path, summary->first_ns,
+					summary->last_ns, NULL, out);
+	gz_gaze_log_close(&reader);
+	return result;
+}
+
+static enum gz_result write_picture(const struct inspect_settings *settings, const char *path,
+				    const struct gz_log_summary *summary, const struct gz_log *log)
+{
+	struct gz_output_file file;
+	enum gz_result result =
+		gz_output_begin(&file, settings->picture, settings->force, GZ_OUTPUT_TEXT, log);
+	if (result != GZ_OK)
+		return result;
+	result = draw(path, summary, file.text);
+	if (result != GZ_OK)
+		gz_err(log, "no picture of %s: %s", path, gz_result_text(result));
+	enum gz_result ended = gz_output_end(&file, result == GZ_OK, log);
+	return result == GZ_OK ? ended : result;
+}
+
+static enum gazectl_exit inspect(struct gz_gaze_log_reader *reader, const char *path,
+				 const struct inspect_settings *settings, const struct gz_log *log)
 {
 	struct gz_log_summary *summary = malloc(sizeof *summary);
 	enum gz_result result = summary ? gz_log_summarize(reader, log, summary) : GZ_ERR_NO_MEM;
@@ -300,11 +344,13 @@ static enum gazectl_exit inspect(struct gz_gaze_log_reader *reader, bool json,
 	if (result != GZ_OK) {
 		gz_err(log, "the log cannot be read to its end: %s", gz_result_text(result));
 	} else {
-		if (json)
+		if (settings->json)
 			print_json(gz_gaze_log_header(reader), summary);
 		else
 			print_table(gz_gaze_log_header(reader), summary);
 		status = summary->ending == GZ_GAZE_LOG_WHOLE ? GAZECTL_DONE : GAZECTL_DAMAGED;
+		if (settings->picture[0] && write_picture(settings, path, summary, log) != GZ_OK)
+			status = GAZECTL_FAILED;
 	}
 	free(summary);
 	return status;
@@ -325,7 +371,7 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	struct gz_gaze_log_reader *reader = NULL;
 	if (gz_gaze_log_open(operands.items[0], log, &reader) != GZ_OK)
 		return GAZECTL_FAILED;
-	status = inspect(reader, settings.json, log);
+	status = inspect(reader, operands.items[0], &settings, log);
 	gz_gaze_log_close(&reader);
 	return status;
 }

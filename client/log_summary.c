@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "client/log_pipeline.h"
 #include "filter/pipeline.h"
 
 #define GZ_LOG_MODULE "summary"
@@ -55,12 +56,14 @@ static enum gz_result add_time(struct summarizer *s, int64_t host_ns)
 
 static void add_validity(struct gz_log_summary *summary, const struct gz_sample *sample)
 {
-	summary->valid += sample->valid;
+	bool valid = sample->valid;
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		const struct gz_eye_sample *eye = &sample->eye[i];
 		summary->eye_measured[i] |= eye->valid || isfinite(eye->point.x);
 		summary->eye_valid[i] += eye->valid;
+		valid |= eye->valid;
 	}
+	summary->valid += valid;
 }
 
 static void add_to_pipeline(struct summarizer *s, const struct gz_sample *sample)
@@ -155,43 +158,6 @@ static void finish(struct summarizer *s)
 	summary->noise_deg = gz_pipeline_noise_deg(&s->pipeline);
 }
 
-/* The settings that the log was recorded with, where this pipeline knows them. */
-static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header *header,
-						 const struct gz_log *log)
-{
-	struct gz_pipeline_params params = gz_pipeline_default_params();
-	const struct gz_option_binding binding = {
-		.options = gz_pipeline_options,
-		.count = gz_pipeline_option_count,
-		.target = &params,
-	};
-	for (size_t i = 0; i < header->setting_count; i++) {
-		char key[GZ_NAME_SIZE + 16], message[256] = "unknown";
-		snprintf(key, sizeof key, "pipeline.%s", header->settings[i].key);
-		const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
-		if (!option || gz_option_parse(option, header->settings[i].value, &params, message,
-					       sizeof message) != GZ_OK)
-			gz_warn(log, "%s %s: %s; the default stands in", key,
-				header->settings[i].value, message);
-	}
-	char reason[256];
-	if (gz_pipeline_check_params(&params, reason, sizeof reason) != GZ_OK) {
-		gz_warn(log, "%s; the default stands in", reason);
-		params.correct = gz_pipeline_default_params().correct;
-	}
-	return params;
-}
-
-static void start_pipeline(struct gz_pipeline *pipeline, const struct gz_gaze_log_header *header,
-			   const struct gz_log *log)
-{
-	struct gz_pipeline_params params = recorded_params(header, log);
-	struct gz_display display = gz_display_default(1920, 1080);
-	if (header->has_display)
-		display = header->display;
-	gz_pipeline_init(pipeline, &params, &display);
-}
-
 static enum gz_result read_records(struct summarizer *s, struct gz_gaze_log_reader *reader)
 {
 	for (;;) {
@@ -216,7 +182,7 @@ enum gz_result gz_log_summarize(struct gz_gaze_log_reader *reader, const struct 
 	struct summarizer *s = calloc(1, sizeof *s);
 	if (!s)
 		return GZ_ERR_NO_MEM;
-	start_pipeline(&s->pipeline, gz_gaze_log_header(reader), log);
+	gz_log_pipeline_init(&s->pipeline, gz_gaze_log_header(reader), log);
 	enum gz_result result = read_records(s, reader);
 	if (result == GZ_OK) {
 		finish(s);

@@ -47,7 +47,7 @@ struct gz_log_summary {
 	double rate_hz;         /**< samples taken by the tracker over time, missing ones too; 0 if
 				     fewer than two */
 	uint64_t gaps, missing; /**< gap records, and the samples they tell of */
-	uint64_t valid;         /**< samples whose common point is valid */
+	uint64_t valid;         /**< samples with a valid point of any eye, or of both together */
 	bool eye_measured[GZ_EYE_COUNT];
 	uint64_t eye_valid[GZ_EYE_COUNT];
 	struct gz_log_intervals intervals;

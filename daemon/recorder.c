@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "daemon/log_writer.h"
 #include "daemon/ring.h"
+#include "protocol/gaze_log_writer.h"
 
 #define GZ_LOG_MODULE "recorder"
 
@@ -52,7 +52,7 @@ struct gz_recorder {
 	struct gz_ratelimit complaints;
 
 	/* The recorder's thread's. */
-	struct gz_log_writer writer;
+	struct gz_gaze_log_writer writer;
 	int64_t next_sync_ns;
 };
 
@@ -121,9 +121,9 @@ static void sync_directory(const struct gz_recorder *recorder)
 static enum gz_result open_recording(struct gz_recorder *recorder)
 {
 	enum gz_result result =
-		gz_log_writer_begin(&recorder->writer, recorder->fd, &recorder->header);
+		gz_gaze_log_writer_begin(&recorder->writer, recorder->fd, &recorder->header);
 	if (result == GZ_OK)
-		result = gz_log_writer_flush(&recorder->writer);
+		result = gz_gaze_log_writer_flush(&recorder->writer);
 	if (result == GZ_OK)
 		sync_directory(recorder);
 	recorder->next_sync_ns = gz_clock_now_ns();
@@ -142,11 +142,11 @@ static enum gz_result drain(struct gz_recorder *recorder)
 		if (!slot)
 			break;
 		if (slot->session == recorder->session)
-			result = gz_log_writer_add(&recorder->writer, &slot->record);
+			result = gz_gaze_log_writer_add(&recorder->writer, &slot->record);
 		gz_ring_pop(recorder->ring);
 	}
 	if (result == GZ_OK)
-		result = gz_log_writer_flush(&recorder->writer);
+		result = gz_gaze_log_writer_flush(&recorder->writer);
 	atomic_store_explicit(&recorder->samples, recorder->writer.samples, memory_order_relaxed);
 	return result;
 }
@@ -165,7 +165,7 @@ static enum gz_result finish(struct gz_recorder *recorder)
 	/* Nothing is pushed any more: one ring's worth is all there is. */
 	enum gz_result result = drain(recorder);
 	if (result == GZ_OK)
-		result = gz_log_writer_end(&recorder->writer);
+		result = gz_gaze_log_writer_end(&recorder->writer);
 	if (result == GZ_OK)
 		result = sync_file(recorder);
 	if (result != GZ_OK)

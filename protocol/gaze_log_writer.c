@@ -1,4 +1,4 @@
-#include "daemon/log_writer.h"
+#include "protocol/gaze_log_writer.h"
 
 #include <errno.h>
 #include <string.h>
@@ -40,14 +40,14 @@ static uint64_t count_samples(const unsigned char *lines, size_t size)
 }
 
 /* Count the first @p size bytes of the buffer, whole lines, as written. */
-static void account(struct gz_log_writer *writer, size_t size)
+static void account(struct gz_gaze_log_writer *writer, size_t size)
 {
 	writer->crc = (uint32_t)crc32(writer->crc, writer->buffer, (uInt)size);
 	writer->samples += count_samples(writer->buffer, size);
 	writer->size += size;
 }
 
-static enum gz_result write_end(struct gz_log_writer *writer)
+static enum gz_result write_end(struct gz_gaze_log_writer *writer)
 {
 	char line[END_LINE_SIZE];
 	size_t length = 0;
@@ -61,7 +61,7 @@ static enum gz_result write_end(struct gz_log_writer *writer)
 
 /* The disk took only @p done bytes of the buffer: cut the file behind the last whole line. The
  * bytes thereby freed usually hold the line that ends it. */
-static void salvage(struct gz_log_writer *writer, size_t done)
+static void salvage(struct gz_gaze_log_writer *writer, size_t done)
 {
 	const unsigned char *newline = done ? memrchr(writer->buffer, '\n', done) : NULL;
 	size_t whole = newline ? (size_t)(newline + 1 - writer->buffer) : 0;
@@ -72,8 +72,8 @@ static void salvage(struct gz_log_writer *writer, size_t done)
 		return; /* a line without its end is left, which readers drop */
 }
 
-enum gz_result gz_log_writer_begin(struct gz_log_writer *writer, int fd,
-				   const struct gz_gaze_log_header *header)
+enum gz_result gz_gaze_log_writer_begin(struct gz_gaze_log_writer *writer, int fd,
+					const struct gz_gaze_log_header *header)
 {
 	writer->fd = fd;
 	writer->crc = (uint32_t)crc32(0, NULL, 0);
@@ -84,7 +84,7 @@ enum gz_result gz_log_writer_begin(struct gz_log_writer *writer, int fd,
 					&writer->used);
 }
 
-enum gz_result gz_log_writer_flush(struct gz_log_writer *writer)
+enum gz_result gz_gaze_log_writer_flush(struct gz_gaze_log_writer *writer)
 {
 	if (writer->used == 0)
 		return GZ_OK;
@@ -101,11 +101,11 @@ enum gz_result gz_log_writer_flush(struct gz_log_writer *writer)
 	return GZ_OK;
 }
 
-enum gz_result gz_log_writer_add(struct gz_log_writer *writer,
-				 const struct gz_gaze_log_record *record)
+enum gz_result gz_gaze_log_writer_add(struct gz_gaze_log_writer *writer,
+				      const struct gz_gaze_log_record *record)
 {
 	if (sizeof writer->buffer - writer->used < GZ_GAZE_LOG_LINE_SIZE) {
-		enum gz_result result = gz_log_writer_flush(writer);
+		enum gz_result result = gz_gaze_log_writer_flush(writer);
 		if (result != GZ_OK)
 			return result;
 	}
@@ -118,9 +118,9 @@ enum gz_result gz_log_writer_add(struct gz_log_writer *writer,
 	return result;
 }
 
-enum gz_result gz_log_writer_end(struct gz_log_writer *writer)
+enum gz_result gz_gaze_log_writer_end(struct gz_gaze_log_writer *writer)
 {
-	enum gz_result result = gz_log_writer_flush(writer);
+	enum gz_result result = gz_gaze_log_writer_flush(writer);
 	if (result != GZ_OK)
 		return result;
 	result = write_end(writer);

@@ -1,0 +1,343 @@
+/* Readers of other programs' recordings: what becomes of each field, and what is refused. */
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "client/convert/recording_format.h"
+#include "tests/base/captured_log.h"
+
+enum { RECORDS_MAX = 32 };
+
+static struct {
+	struct gz_gaze_log_header header;
+	size_t headers, count;
+	struct gz_gaze_log_record record[RECORDS_MAX];
+} taken;
+
+static enum gz_result take_header(void *user, const struct gz_gaze_log_header *header)
+{
+	(void)user;
+	taken.header = *header;
+	taken.headers++;
+	assert_int_equal(taken.count, 0);
+	return GZ_OK;
+}
+
+static enum gz_result take_record(void *user, const struct gz_gaze_log_record *record)
+{
+	(void)user;
+	assert_int_equal(taken.headers, 1);
+	if (taken.count < RECORDS_MAX)
+		taken.record[taken.count] = *record;
+	taken.count++;
+	return GZ_OK;
+}
+
+static const struct gz_recording_sink sink = { NULL, take_header, take_record };
+
+static struct gz_convert_settings settings;
+static struct gz_convert_counts counts;
+static struct captured_log captured;
+
+static int set_up(void **state)
+{
+	(void)state;
+	memset(&taken, 0, sizeof taken);
+	captured_log_init(&captured, NULL);
+	settings = (struct gz_convert_settings) { .name = "file", .log = &captured.log };
+	counts = (struct gz_convert_counts) { 0 };
+	return 0;
+}
+
+static enum gz_result read_text(const struct gz_recording_reader *reader, const char *text)
+{
+	struct gz_text_lines *lines = NULL;
+	assert_int_equal(gz_text_lines_open_memory(text, strlen(text), &lines), GZ_OK);
+	enum gz_result result = reader->read(lines, &settings, &sink, &counts);
+	gz_text_lines_close(&lines);
+	return result;
+}
+
+static const struct gz_sample *sample(size_t index)
+{
+	assert_true(index < taken.count);
+	assert_int_equal(taken.record[index].kind, GZ_GAZE_LOG_SAMPLE);
+	return &taken.record[index].sample;
+}
+
+static void assert_near(double value, double wanted)
+{
+	if (!(fabs(value - wanted) <= 1e-6))
+		fail_msg("%.9g, wanted %.9g", value, wanted);
+}
+
+/* Two blocks at 2000 Hz, where two samples show the same millisecond. */
+static const char eyelink_text[] =
+	"** CONVERTED FROM a.edf using edfapi\n"
+	"MSG\t90 !CAL before anything\n"
+	"MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
+	"START\t100 \tLEFT\tRIGHT\tSAMPLES\tEVENTS\n"
+	"SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t2000.00\tTRACKING\tCR\tFILTER\t2\n"
+	"100\t  512.0\t  384.0\t 1037.0\t  102.4\t  76.8\t 900.0\t.....\n"
+	"100\t  512.0\t  384.0\t 1037.0\t   .\t   .\t    0.0\t.....\n"
+	"EFIX L   100 101 2 512.0 384.0 1037\n"
+	"MSG\t101 a mark with\ta tab\n"
+	"nonsense\n"
+	"1e9x\t1\t2\t3\t4\t5\t6\n"
+	"END\t102 \tSAMPLES\tEVENTS\tRES\t 38.54\t 31.12\n"
+	"MSG\t150 between\n"
+	"200\t 1\t 2\t 3\t 4\t 5\t 6\n"
+	"START\t300 \tRIGHT\tSAMPLES\tEVENTS\n"
+	"SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
+	"300.5\t  -10.24\t  384.0\t 1037.0\t...\n";
+
+static void eyelink_samples_marks_and_pauses_are_read(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, eyelink_text), GZ_OK);
+	assert_int_equal(counts.samples, 3);
+	assert_int_equal(counts.skipped, 1);
+	assert_string_equal(taken.header.tracker, "EyeLink");
+	assert_near(taken.header.rate_hz, 2000);
+	assert_false(taken.header.has_display); /* nobody knows its size */
+	assert_int_equal(taken.count, 6);
+	assert_int_equal(sample(0)->host_ns, 100 * GZ_NS_PER_MS);
+	assert_int_equal(sample(1)->host_ns, 100 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
+	assert_true(sample(0)->eye[GZ_EYE_LEFT].valid && sample(0)->eye[GZ_EYE_RIGHT].valid);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.x, 0.5);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.y, 0.5);
+	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].point.x, 0.1);
+	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].point.y, 0.1);
+	assert_true(isnan(sample(0)->eye[GZ_EYE_LEFT].pupil_mm)); /* no unit of length */
+	assert_false(sample(1)->eye[GZ_EYE_RIGHT].valid);
+	assert_int_equal(taken.record[2].kind, GZ_GAZE_LOG_MARK);
+	assert_string_equal(taken.record[2].text, "a mark with\ta tab");
+	assert_string_equal(taken.record[3].text, "between");
+	assert_int_equal(taken.record[4].kind, GZ_GAZE_LOG_GAP);
+	assert_int_equal(taken.record[4].host_ns, 300 * GZ_NS_PER_MS);
+	assert_int_equal(sample(5)->host_ns, 300 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
+	assert_false(sample(5)->eye[GZ_EYE_LEFT].valid);
+	assert_near((double)sample(5)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* past the edge */
+}
+
+static void eyelink_display_is_complete_with_what_the_user_knows(void **state)
+{
+	(void)state;
+	settings.display_mm[0] = 380;
+	settings.display_mm[1] = 300;
+	settings.distance_mm = 670;
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, eyelink_text), GZ_OK);
+	assert_true(taken.header.has_display);
+	assert_int_equal(taken.header.display.px[0], 1024);
+	assert_int_equal(taken.header.display.px[1], 768);
+}
+
+static void eyelink_of_no_gaze_or_no_screen_is_refused_with_the_remedy(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_eyelink,
+				   "START\t1 \tLEFT\nSAMPLES\tHREF\tLEFT\tRATE\t500\n1\t2\t3\t4\n"),
+			 GZ_ERR_UNSUPPORTED);
+	assert_non_null(strstr(captured.last, "file:2"));
+	assert_non_null(strstr(captured.last, "edf2asc"));
+	assert_int_equal(read_text(&gz_recording_reader_eyelink,
+				   "START\t1 \tLEFT\nSAMPLES\tGAZE\tLEFT\tRATE\t500\n1\t2\t3\t4\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "--display.px"));
+}
+
+static void pupil_points_are_turned_and_eyes_told_apart(void **state)
+{
+	(void)state;
+	static const char text[] =
+		"\xef\xbb\xbfgaze_timestamp,world_index,confidence,norm_pos_x,norm_pos_y,base_data,"
+		"eye_center0_3d_x,eye_center0_3d_y,eye_center0_3d_z,gaze_normal0_x,gaze_normal0_y,"
+		"gaze_normal0_z\r\n"
+		"1216.218711,347,0.75,0.25,0.1,1216.2-0 1216.3-1,1,2,3,0,0,1\r\n"
+		"1216.228711,347,0,0.25,0.1,1216.2-1,,,,,,\r\n"
+		"later,347,1,0.25,0.1,,,,,,,\r\n"
+		"1216.3,347,1.5,0.25,0.1,,,,,,,\r\n";
+	assert_int_equal(read_text(&gz_recording_reader_pupil, text), GZ_OK);
+	assert_int_equal(counts.samples, 2);
+	assert_int_equal(counts.skipped, 2);
+	assert_non_null(strstr(captured.last, "scene camera"));
+	const struct gz_eye_sample *right = &sample(0)->eye[GZ_EYE_RIGHT];
+	const struct gz_eye_sample *left = &sample(0)->eye[GZ_EYE_LEFT];
+	assert_int_equal(sample(0)->host_ns, 1216218711000);
+	assert_near((double)right->point.x, 0.25);
+	assert_near((double)right->point.y, 0.9); /* from the top */
+	assert_near((double)right->confidence, 0.75);
+	assert_near((double)right->origin_mm[2], 3);
+	assert_near((double)right->direction[2], 1);
+	assert_true(left->valid && isnan(left->origin_mm[0]));
+	assert_false(sample(1)->eye[GZ_EYE_RIGHT].valid); /* only eye 1 was there */
+	assert_true(isnan(sample(1)->eye[GZ_EYE_RIGHT].confidence));
+	assert_false(sample(1)->eye[GZ_EYE_LEFT].valid); /* confidence 0 */
+}
+
+static void pupil_without_its_columns_is_refused(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_pupil, "gaze_timestamp,norm_pos_x\n1,2\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "norm_pos_y"));
+	assert_int_equal(read_text(&gz_recording_reader_pupil, ""), GZ_ERR_FORMAT);
+	assert_int_equal(taken.headers, 0);
+}
+
+static void tobii_pro_lab_is_read_by_the_names_of_its_columns(void **state)
+{
+	(void)state;
+	static const char text[] =
+		"Recording timestamp [\xce\xbcs]\tSensor\tEvent\tEyetracker timestamp [\xce\xbcs]\t"
+		"Recording resolution width\tRecording resolution height\t"
+		"Gaze point left X [DACS px]\tGaze point left Y [DACS px]\t"
+		"Gaze point right X [DACS px]\tGaze point right Y [DACS px]\t"
+		"Pupil diameter left [mm]\tValidity left\tValidity right\t"
+		"Eye position left X [DACSmm]\tEye position left Y [DACSmm]\t"
+		"Eye position left Z [DACSmm]\n"
+		"1000\t\tRecordingStart\t\t1920\t1080\t\t\t\t\t\t\t\t\t\t\n"
+		"2000\tEye Tracker\t\t900\t1920\t1080\t960\t540\t480\t270\t\"3,5\"\tValid\tInvalid"
+		"\t-20\t10\t650,25\n"
+		"2500\tMouse\t\t\t1920\t1080\t\t\t\t\t\t\t\t\t\t\n"
+		"3000\tEye Tracker\t\t1900\t1920\t1080\t\t\t\t\t\tInvalid\tInvalid\t\t\t\n";
+	assert_int_equal(read_text(&gz_recording_reader_tobii, text), GZ_OK);
+	assert_int_equal(counts.samples, 2);
+	assert_int_equal(taken.count, 3);
+	assert_string_equal(taken.record[0].text, "RecordingStart");
+	assert_int_equal(sample(1)->host_ns, 2000 * GZ_NS_PER_US);
+	assert_int_equal(sample(1)->device_ns, 900 * GZ_NS_PER_US);
+	const struct gz_eye_sample *left = &sample(1)->eye[GZ_EYE_LEFT];
+	assert_true(left->valid);
+	assert_near((double)left->point.x, 0.5);
+	assert_near((double)left->point.y, 0.5);
+	assert_near((double)left->pupil_mm, 3.5);
+	assert_near((double)left->origin_mm[2], 650.25);
+	assert_false(sample(1)->eye[GZ_EYE_RIGHT].valid);
+	assert_near((double)sample(1)->eye[GZ_EYE_RIGHT].point.x, 0.25);
+	assert_false(sample(2)->eye[GZ_EYE_LEFT].valid);
+}
+
+static void tobii_studio_and_the_matlab_matrices_are_read(void **state)
+{
+	(void)state;
+	settings.display_px[0] = 1000;
+	settings.display_px[1] = 500;
+	assert_int_equal(
+		read_text(&gz_recording_reader_tobii,
+			  "RecordingTimestamp\tGazePointLeftX (ADCSpx)\tGazePointLeftY (ADCSpx)\t"
+			  "ValidityLeft\tPupilLeft\n12\t100\t50\t0\t4,1\n15\t100\t50\t4\t\n"),
+		GZ_OK);
+	assert_int_equal(sample(0)->host_ns, 12 * GZ_NS_PER_MS);
+	assert_int_equal(sample(0)->device_ns, GZ_NO_DEVICE_TIME);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.x, 0.1);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.y, 0.1);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].pupil_mm, 4.1);
+	assert_false(sample(1)->eye[GZ_EYE_LEFT].valid);
+	set_up(NULL);
+	assert_int_equal(
+		read_text(&gz_recording_reader_tobii,
+			  "Time\tRGazePos2dx\tRGazePos2dy\tRValidity\tRPupilDm\tRelTimestamp\n"
+			  "7284782021\t.4\t.6\t1\t4.3\t3.5\n"),
+		GZ_OK);
+	assert_int_equal(sample(0)->device_ns, 7284782021 * GZ_NS_PER_US);
+	assert_int_equal(sample(0)->host_ns, 3500 * GZ_NS_PER_US);
+	assert_true(sample(0)->eye[GZ_EYE_RIGHT].valid);
+	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].point.y, 0.6);
+}
+
+static void tobii_without_a_display_or_times_is_refused_with_the_remedy(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_tobii,
+				   "RecordingTimestamp\tGazePointLeftX (ADCSpx)\t"
+				   "GazePointLeftY (ADCSpx)\n12\t100\t50\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "--display.px"));
+	assert_int_equal(read_text(&gz_recording_reader_tobii,
+				   "GazePointLeftX (ADCSpx)\tGazePointLeftY (ADCSpx)\n100\t50\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "timestamp"));
+	assert_int_equal(taken.headers, 0);
+}
+
+static void formats_are_recognised_by_their_first_line(void **state)
+{
+	(void)state;
+	assert_ptr_equal(gz_recording_reader_recognise("** CONVERTED FROM x.edf"),
+			 &gz_recording_reader_eyelink);
+	assert_ptr_equal(gz_recording_reader_recognise(
+				 "timestamp,confidence,norm_pos_x,norm_pos_y,base_data"),
+			 &gz_recording_reader_pupil);
+	assert_ptr_equal(gz_recording_reader_recognise(
+				 "Recording timestamp [ms]\tGaze point left X [DACS px]"),
+			 &gz_recording_reader_tobii);
+	assert_null(gz_recording_reader_recognise("time,x,y"));
+	assert_null(gz_recording_reader_recognise(""));
+	assert_ptr_equal(gz_recording_reader_find("tobii"), &gz_recording_reader_tobii);
+	assert_null(gz_recording_reader_find("tobi"));
+	assert_ptr_equal(gz_recording_writer_of("a_physio.tsv.gz"), &gz_recording_writer_bids);
+	assert_null(gz_recording_writer_of(".gzl"));
+}
+
+static void line_too_long_is_skipped_and_the_next_one_read(void **state)
+{
+	(void)state;
+	size_t size = GZ_TEXT_LINE_SIZE + 100;
+	char *text = malloc(size + 64), *line;
+	assert_non_null(text);
+	memset(text, 'a', size);
+	strcpy(text + size, "\nsecond\r\nlast");
+	struct gz_text_lines *lines = NULL;
+	assert_int_equal(gz_text_lines_open_memory(text, strlen(text), &lines), GZ_OK);
+	assert_int_equal(gz_text_lines_next(lines, &line), GZ_ERR_FULL);
+	assert_int_equal(gz_text_lines_next(lines, &line), GZ_OK);
+	assert_string_equal(line, "second");
+	gz_text_lines_again(lines);
+	assert_int_equal(gz_text_lines_next(lines, &line), GZ_OK);
+	assert_string_equal(line, "second");
+	assert_int_equal(gz_text_lines_number(lines), 2);
+	assert_int_equal(gz_text_lines_next(lines, &line), GZ_OK);
+	assert_string_equal(line, "last");
+	assert_int_equal(gz_text_lines_next(lines, &line), GZ_ERR_END);
+	gz_text_lines_close(&lines);
+	free(text);
+}
+
+static void text_that_is_no_utf_8_is_mended_and_cut_between_characters(void **state)
+{
+	(void)state;
+	char text[8];
+	gz_text_copy(text, sizeof text,
+		     "a\xff"
+		     "b\xc3");
+	assert_string_equal(text, "a?b?");
+	gz_text_copy(text, sizeof text, "123456\xc3\xa4");
+	assert_string_equal(text, "123456");
+	gz_text_copy(text, sizeof text, "12345\xc3\xa4");
+	assert_string_equal(text, "12345\xc3\xa4");
+}
+
+#define TEST(function) cmocka_unit_test_setup(function, set_up)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(eyelink_samples_marks_and_pauses_are_read),
+		TEST(eyelink_display_is_complete_with_what_the_user_knows),
+		TEST(eyelink_of_no_gaze_or_no_screen_is_refused_with_the_remedy),
+		TEST(pupil_points_are_turned_and_eyes_told_apart),
+		TEST(pupil_without_its_columns_is_refused),
+		TEST(tobii_pro_lab_is_read_by_the_names_of_its_columns),
+		TEST(tobii_studio_and_the_matlab_matrices_are_read),
+		TEST(tobii_without_a_display_or_times_is_refused_with_the_remedy),
+		TEST(formats_are_recognised_by_their_first_line),
+		TEST(line_too_long_is_skipped_and_the_next_one_read),
+		TEST(text_that_is_no_utf_8_is_mended_and_cut_between_characters),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
