@@ -103,6 +103,16 @@ static void print_display(const struct gz_display *display)
 	    gz_display_angle_deg(display, left, right));
 }
 
+static void print_correction(const struct gz_status *status)
+{
+	const double *x = status->correction.x, *y = status->correction.y;
+	if (x[0] == 0 && x[1] == 1 && x[2] == 0 && y[0] == 0 && y[1] == 0 && y[2] == 1)
+		row("correction", "none");
+	else
+		row("correction", "x' = %.4g %+.4g x %+.4g y, y' = %.4g %+.4g x %+.4g y", x[0],
+		    x[1], x[2], y[0], y[1], y[2]);
+}
+
 static void print_recording(const struct gz_status *status)
 {
 	const char *state = gz_recording_state_name(status->recording.state);
@@ -132,6 +142,7 @@ static void print_table(const struct gz_status *status, const char *endpoint)
 	else
 		row("noise", "unknown: no fixation yet");
 	print_display(&status->display);
+	print_correction(status);
 	print_recording(status);
 	row("subscribers", "%" PRIu32, status->subscribers);
 	row("version", "%s", status->version);
@@ -172,6 +183,22 @@ static void print_json_clock(struct gz_json *json, const struct gz_clock_status 
 	gz_json_end(json);
 }
 
+static void print_json_map(struct gz_json *json, const char *key, const double map[3])
+{
+	gz_json_begin_list(json, key);
+	for (int i = 0; i < 3; i++)
+		gz_json_double(json, NULL, map[i]);
+	gz_json_end_list(json);
+}
+
+static void print_json_correction(struct gz_json *json, const struct gz_status *status)
+{
+	gz_json_begin(json, "correction");
+	print_json_map(json, "x", status->correction.x);
+	print_json_map(json, "y", status->correction.y);
+	gz_json_end(json);
+}
+
 static void print_json_recording(struct gz_json *json, const struct gz_status *status)
 {
 	gz_json_begin(json, "recording");
@@ -190,6 +217,7 @@ static void print_json(const struct gz_status *status, const char *endpoint)
 	print_json_clock(&json, &status->clock);
 	gz_json_double(&json, "noise_deg", status->noise_deg);
 	gazectl_json_display(&json, "display", &status->display);
+	print_json_correction(&json, status);
 	print_json_recording(&json, status);
 	gz_json_uint(&json, "subscribers", status->subscribers);
 	gz_json_text(&json, "version", status->version);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "client/gazectl_correction.h"
 #include "client/validation.h"
 #include "client/validation_report.h"
 #include "client/viewer_process.h"
@@ -38,8 +39,9 @@ struct validate_settings {
 	char targets[GZ_PATH_SIZE];
 	double duration_s;
 	int order, seed, advance;
-	bool instructions, windowed, json;
+	bool instructions, windowed, json, correct, forget;
 	char out[GZ_PATH_SIZE], picture[GZ_PATH_SIZE], gazeview[GZ_PATH_SIZE];
+	char directory[GZ_PATH_SIZE];
 };
 
 #define AT(field) offsetof(struct validate_settings, field)
@@ -65,6 +67,12 @@ static const struct gz_option validate_options[] = {
 	  "write the JSON into this file, too" },
 	{ "picture", GZ_OPTION_STRING, AT(picture), 0, GZ_PATH_SIZE, 0, NULL, "",
 	  "draw targets and samples into this SVG file" },
+	{ "correct", GZ_OPTION_BOOL, AT(correct), 0, 0, 0, NULL, "false",
+	  "store the correction if it helps, without asking" },
+	{ "forget", GZ_OPTION_BOOL, AT(forget), 0, 0, 0, NULL, "false",
+	  "show nothing, but remove the correction that is stored" },
+	{ "directory", GZ_OPTION_STRING, AT(directory), 0, GZ_PATH_SIZE, 0, NULL, "",
+	  "where corrections are; empty: gazecast/corrections in the user's configuration" },
 	{ "gazeview", GZ_OPTION_STRING, AT(gazeview), 0, GZ_PATH_SIZE, 0, NULL, "",
 	  "program that shows the targets; empty: gazeview beside gazectl, or in PATH" },
 };
@@ -73,6 +81,7 @@ static const struct gz_option validate_options[] = {
 struct validate {
 	const struct validate_settings *settings;
 	const struct gz_log *log;
+	struct gz_control *control;
 	struct gz_stream *stream;
 	struct gz_viewer_process viewer;
 	struct gz_validation *result;
@@ -92,6 +101,12 @@ static enum gazectl_exit check_tracker(const struct validate *validate)
 		       "%s is %s%s%s: nothing to check; see gazectl status, then try again",
 		       status->tracker.name[0] ? status->tracker.name : "the tracker",
 		       gz_tracker_state_name(status->tracker.state), reason[0] ? ": " : "", reason);
+		return GAZECTL_FAILED;
+	}
+	if (status->recording.state == GZ_RECORDING_ON &&
+	    (validate->settings->correct || validate->settings->forget)) {
+		gz_err(validate->log, "a recording is running, which another correction would end: "
+				      "end it first, with gazectl stop");
 		return GAZECTL_FAILED;
 	}
 	if (gz_display_valid(&status->display))
@@ -352,36 +367,76 @@ static enum gazectl_exit report(const struct validate *validate)
 	return status;
 }
 
-static enum gazectl_exit show_and_collect(struct validate *validate)
+/* Whether the person at the terminal wants it. */
+static bool ask(void)
 {
+	char answer[16];
+	fputs("\nStore this correction, so that the daemon applies it from now on? [y/N] ", stdout);
+	fflush(stdout);
+	return fgets(answer, sizeof answer, stdin) && (answer[0] == 'y' || answer[0] == 'Y');
+}
+
+static bool wants_correction(const struct validate *validate)
+{
+	const struct validate_settings *settings = validate->settings;
+	if (settings->correct)
+		return true;
+	return validate->result->fit.helps && !settings->json && isatty(STDIN_FILENO) &&
+	       isatty(STDOUT_FILENO) &&
+	       validate->result->status.recording.state != GZ_RECORDING_ON && ask();
+}
+
+static struct gazectl_correction correction_of(const struct validate *validate)
+{
+	return (struct gazectl_correction) {
+		.control = validate->control,
+		.stream = validate->stream,
+		.log = validate->log,
+		.directory = validate->settings->directory,
+	};
+}
+
+static enum gazectl_exit conclude(const struct validate *validate)
+{
+	const struct gazectl_correction correction = correction_of(validate);
+	enum gz_result result = gz_validation_evaluate(validate->result);
+	if (result != GZ_OK) {
+		gz_err(validate->log, "cannot evaluate the check: %s", gz_result_text(result));
+		return GAZECTL_FAILED;
+	}
+	enum gazectl_exit status = report(validate);
+	if (status == GAZECTL_DONE && wants_correction(validate))
+		status = gazectl_correction_store(&correction, validate->result);
+	return status;
+}
+
+static enum gazectl_exit check_or_forget(struct validate *validate)
+{
+	const struct gazectl_correction correction = correction_of(validate);
 	enum gazectl_exit status = await_tracker(validate);
 	if (status != GAZECTL_DONE)
 		return status;
+	if (validate->settings->forget)
+		return gazectl_correction_forget(&correction, &validate->result->status);
 	gazectl_catch_signals();
 	note_start(validate->result);
 	if (start_viewer(validate) != GZ_OK)
 		return GAZECTL_FAILED;
 	status = collect(validate);
 	gz_viewer_process_end(&validate->viewer);
-	if (status != GAZECTL_DONE)
-		return status;
-	enum gz_result result = gz_validation_evaluate(validate->result);
-	if (result == GZ_OK)
-		return report(validate);
-	gz_err(validate->log, "cannot evaluate the check: %s", gz_result_text(result));
-	return GAZECTL_FAILED;
+	return status == GAZECTL_DONE ? conclude(validate) : status;
 }
 
 static enum gazectl_exit run_check(const struct validate_settings *settings,
 				   struct gz_control *control, const struct gz_log *log)
 {
 	static const char *const topics[] = { GZ_TOPIC_GAZE, GZ_TOPIC_STATUS, NULL };
-	struct validate validate = { .settings = settings, .log = log };
+	struct validate validate = { .settings = settings, .log = log, .control = control };
 	enum gazectl_exit status = gazectl_open_stream(control, topics, log, &validate.stream);
 	if (status != GAZECTL_DONE)
 		return status;
 	validate.result = calloc(1, sizeof *validate.result);
-	status = validate.result ? show_and_collect(&validate) : GAZECTL_FAILED;
+	status = validate.result ? check_or_forget(&validate) : GAZECTL_FAILED;
 	if (validate.result)
 		gz_gaze_trace_clear(&validate.result->trace);
 	free(validate.result);

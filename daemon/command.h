@@ -15,17 +15,18 @@
 
 /** Asked of the thread that serves samples. */
 enum gz_command_kind {
-	GZ_COMMAND_RECORD, /**< into fd and path */
-	GZ_COMMAND_STOP,   /**< the recording */
-	GZ_COMMAND_MARK,   /**< text into the log */
-	GZ_COMMAND_SEND,   /**< a message on the stream: topic in text, body behind this struct */
+	GZ_COMMAND_RECORD,  /**< into fd and path */
+	GZ_COMMAND_STOP,    /**< the recording */
+	GZ_COMMAND_MARK,    /**< text into the log */
+	GZ_COMMAND_CORRECT, /**< take up the stored correction, which may have changed */
+	GZ_COMMAND_SEND,    /**< a message on the stream: topic in text, body behind this struct */
 	GZ_COMMAND_QUIT,
 };
 
 /** A command. */
 struct gz_command {
 	enum gz_command_kind kind;
-	uint32_t number; /**< RECORD, STOP: repeated in the answer */
+	uint32_t number; /**< RECORD, STOP, CORRECT: repeated in the answer */
 	int fd;          /**< RECORD: the taker's, but where it refuses */
 	int64_t host_ns; /**< MARK */
 	char path[GZ_PATH_SIZE];

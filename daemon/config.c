@@ -37,6 +37,10 @@ static const struct gz_option options[] = {
 	  "which driver; `gazectl devices` lists the trackers that are there" },
 	{ "tracker.choice", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, "",
 	  "name or serial number of the tracker, where there are several; empty: the first" },
+	{ "tracker.corrections", GZ_OPTION_STRING, AT(corrections), 0, GZ_PATH_SIZE, 0, NULL, "",
+	  "directory of the corrections that gazectl validate stores; empty: gazecast/corrections "
+	  "in "
+	  "the user's and the system's configuration; none: they are not used" },
 	{ "network.tcp", GZ_OPTION_CHOICE, AT(tcp), 0, 0, 0, tcp_names, "loopback",
 	  "loopback: for Pupil's clients and every user of this machine; curve: for clients with a "
 	  "key, also on other machines; off: local sockets only" },

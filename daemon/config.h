@@ -52,6 +52,7 @@ struct gz_config {
 
 	char driver[GZ_NAME_SIZE];
 	char tracker[GZ_NAME_SIZE];     /**< name or serial of one of several; empty: any */
+	char corrections[GZ_PATH_SIZE]; /**< directory; empty: the usual ones; "none" */
 	int tcp;                        /**< enum gz_tcp */
 	char address[GZ_NAME_SIZE];     /**< of this machine, where TCP is bound */
 	char control[GZ_ENDPOINT_SIZE]; /**< as given; empty: see control_endpoint */
@@ -90,6 +91,15 @@ struct gz_config {
  */
 enum gz_result gz_config_read(int argc, char *const *argv, const struct gz_log *log,
 			      struct gz_config *out_config);
+
+/**
+ * Take the stored correction that belongs to a tracker and its display into @p params. A recording
+ * keeps that of its header, and one given on the command line stays. A file that cannot be used is
+ * logged, and nothing is corrected by it.
+ */
+void gz_config_correction(const struct gz_config *config, const struct gz_device_info *info,
+			  const struct gz_display *display, const struct gz_log *log,
+			  struct gz_pipeline_params *params);
 
 /** Print every option with its meaning, for --help. */
 void gz_config_print_help(struct gz_config *config, FILE *out);

@@ -15,6 +15,7 @@ static const struct {
 	{ "SUB_PORT", GZ_REMOTE_STREAM_PORT },
 	{ "PUB_PORT", GZ_REMOTE_INLET_PORT },
 	{ "LATEST_PORT", GZ_REMOTE_LATEST_PORT },
+	{ "CORRECTION", GZ_REMOTE_CORRECTION },
 	{ "C", GZ_REMOTE_CALIBRATE },
 	{ "c", GZ_REMOTE_CALIBRATION_STOP },
 };
@@ -61,7 +62,8 @@ enum gz_remote_notice gz_remote_notice(const char *subject)
 
 const char *gz_remote_doc(void)
 {
-	return "Requests of one frame: R [name], r, t, v, SUB_PORT, PUB_PORT, LATEST_PORT; T, C "
+	return "Requests of one frame: R [name], r, t, v, SUB_PORT, PUB_PORT, LATEST_PORT, "
+	       "CORRECTION; T, C "
 	       "and "
 	       "c are refused.\n"
 	       "Notifications that are obeyed: recording.should_start (session_name), "

@@ -23,6 +23,7 @@ enum gz_remote_kind {
 	GZ_REMOTE_STREAM_PORT,      /**< "SUB_PORT" */
 	GZ_REMOTE_INLET_PORT,       /**< "PUB_PORT" */
 	GZ_REMOTE_LATEST_PORT,      /**< "LATEST_PORT", ours */
+	GZ_REMOTE_CORRECTION,       /**< "CORRECTION", ours */
 	GZ_REMOTE_CALIBRATE,        /**< "C" */
 	GZ_REMOTE_CALIBRATION_STOP, /**< "c" */
 };

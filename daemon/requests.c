@@ -28,6 +28,7 @@ enum { MESSAGES_AT_ONCE = 32 };
 /* What the answer that is owed waits for. */
 enum pending {
 	PENDING_NONE,
+	PENDING_CORRECT, /* the service's answer */
 	PENDING_START,   /* the service's answer */
 	PENDING_STOP,    /* the same, and then the recorder's end */
 	PENDING_FINISH,  /* that end */
@@ -174,6 +175,16 @@ static void tell_doc(struct gz_requests *requests)
 				message.size);
 }
 
+/* The file that holds it may have changed. */
+static void take_up_correction(struct gz_requests *requests)
+{
+	struct gz_command command = { .kind = GZ_COMMAND_CORRECT, .number = ++requests->number };
+	if (!send_command(requests, &command))
+		answer(requests, "the daemon is busy; try again");
+	else
+		wait_for_service(requests, PENDING_CORRECT);
+}
+
 static void serve_request(struct gz_requests *requests, const struct gz_remote_request *request)
 {
 	char text[ANSWER_SIZE];
@@ -204,6 +215,9 @@ static void serve_request(struct gz_requests *requests, const struct gz_remote_r
 	case GZ_REMOTE_INLET_PORT:
 		answer_port(requests, gz_inlet_port(requests->inlet), "inlet");
 		return;
+	case GZ_REMOTE_CORRECTION:
+		take_up_correction(requests);
+		return;
 	case GZ_REMOTE_CALIBRATE:
 		answer(requests, no_calibration);
 		tell_calibration_failed(requests);
@@ -226,7 +240,7 @@ static void take_answer(struct gz_requests *requests, enum gz_result result)
 		return;
 	}
 	if (result == GZ_OK) {
-		if (requests->pending == PENDING_START)
+		if (requests->pending == PENDING_START || requests->pending == PENDING_CORRECT)
 			answer(requests, "OK");
 		return;
 	}

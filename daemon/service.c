@@ -69,13 +69,16 @@ static enum gz_result adopt_device(struct gz_service *service)
 		gz_config_pipeline(parts->config, info->recorded, parts->log, &params);
 	if (result != GZ_OK)
 		return result;
+	gz_config_correction(parts->config, info, &display, parts->log, &params);
+	const struct gz_pipeline *pipeline = &service->maker.pipeline;
 	bool same = service->opened > 0 &&
-		    memcmp(&display, &service->maker.pipeline.display, sizeof display) == 0;
+		    memcmp(&display, &pipeline->display, sizeof display) == 0 &&
+		    memcmp(&params.correct, &pipeline->params.correct, sizeof params.correct) == 0;
 	service->opened = service->tracker.opened;
 	if (same)
 		return GZ_OK;
 	if (gz_recorder_running(parts->recorder)) {
-		gz_warn(parts->log, "another display: the recording ends here");
+		gz_warn(parts->log, "another display or correction: the recording ends here");
 		gz_recorder_stop(parts->recorder);
 	}
 	gz_message_maker_init(&service->maker, parts->config, &params, &display);
@@ -242,6 +245,13 @@ static void obey(struct gz_service *service, const struct gz_command *command)
 		memcpy(mark.text, command->text, sizeof mark.text);
 		gz_recorder_push(service->parts.recorder, &mark);
 		return;
+	case GZ_COMMAND_CORRECT:
+		if (service->tracker.opened > 0)
+			(void)adopt_device(service); /* the display is as it was */
+		service->status_ns = 0;              /* tell what is in force now */
+		service->care_ns = 0;
+		notify(service, GZ_NOTICE_ANSWER, command->number, GZ_OK);
+		return;
 	case GZ_COMMAND_SEND: /* see take_commands() */
 		return;
 	case GZ_COMMAND_QUIT:
@@ -293,6 +303,9 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		.subscribers = gz_publisher_subscribers(service->parts.publisher),
 		.version = GAZECAST_VERSION,
 	};
+	const struct gz_correct_params *correct = &service->maker.pipeline.params.correct;
+	memcpy(status->correction.x, correct->x, sizeof status->correction.x);
+	memcpy(status->correction.y, correct->y, sizeof status->correction.y);
 	status->tracker.state = tracker->state;
 	if (tracker->state == GZ_TRACKER_RUNNING)
 		status->rate_hz_measured = gz_rate_meter_take(&service->rate);

@@ -217,6 +217,11 @@ struct gz_status {
 	struct gz_clock_status clock;
 	double noise_deg; /**< sample-to-sample RMS within fixations; NaN before the first */
 	struct gz_display display;
+	/** The affine map that the tracker's points have passed: a b c of x' = a + b x + c y, and
+	 * the same for y', in display sides; 0 1 0 and 0 0 1 change nothing. */
+	struct {
+		double x[3], y[3];
+	} correction;
 	struct {
 		enum gz_recording_state state;
 		char file[GZ_PATH_SIZE];

@@ -77,6 +77,13 @@ static void take_display(struct gz_unpack *unpack, struct gz_display *display)
 	gz_unpack_double(unpack, map, "distance_mm", 0, DBL_MAX, &display->distance_mm);
 }
 
+static void take_correction(struct gz_unpack *unpack, struct gz_status *status)
+{
+	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "correction");
+	gz_unpack_doubles(unpack, map, "x", status->correction.x, 3);
+	gz_unpack_doubles(unpack, map, "y", status->correction.y, 3);
+}
+
 static void take_recording(struct gz_unpack *unpack, struct gz_status *status)
 {
 	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "recording");
@@ -92,7 +99,10 @@ static void take_recording(struct gz_unpack *unpack, struct gz_status *status)
 
 enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_status *out_status)
 {
-	struct gz_status status = { .noise_deg = NAN };
+	struct gz_status status = {
+		.noise_deg = NAN,
+		.correction = { .x = { 0, 1, 0 }, .y = { 0, 0, 1 } },
+	};
 	uint64_t subscribers = 0;
 	struct gz_unpack unpack;
 	gz_unpack_begin(&unpack, bytes, size);
@@ -101,6 +111,7 @@ enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_s
 	take_clock(&unpack, &status.clock);
 	gz_unpack_double(&unpack, unpack.map, "noise_deg", 0, DBL_MAX, &status.noise_deg);
 	take_display(&unpack, &status.display);
+	take_correction(&unpack, &status);
 	take_recording(&unpack, &status);
 	gz_unpack_uint64(&unpack, unpack.map, "subscribers", &subscribers);
 	if (subscribers > UINT32_MAX)

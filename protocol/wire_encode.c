@@ -98,6 +98,13 @@ static void pack_display(struct gz_pack *pack, const struct gz_display *display)
 	gz_pack_double(pack, "distance_mm", display->distance_mm);
 }
 
+static void pack_correction(struct gz_pack *pack, const struct gz_status *status)
+{
+	gz_pack_map(pack, "correction", 2);
+	gz_pack_doubles(pack, "x", status->correction.x, 3);
+	gz_pack_doubles(pack, "y", status->correction.y, 3);
+}
+
 static void pack_recording(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "recording", 4);
@@ -112,12 +119,13 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 12);
+	gz_pack_map(&pack, NULL, 13);
 	pack_tracker(&pack, status);
 	pack_counts(&pack, status); /* rate_hz, samples, lost, rejected, malformed */
 	pack_clock(&pack, &status->clock);
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
 	pack_display(&pack, &status->display);
+	pack_correction(&pack, status);
 	pack_recording(&pack, status);
 	gz_pack_uint(&pack, "subscribers", status->subscribers);
 	gz_pack_text(&pack, "version", status->version);

@@ -1,0 +1,186 @@
+#include "protocol/correction_file.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/option.h"
+
+#define GZ_LOG_MODULE "correction"
+
+#define AT(field) offsetof(struct gz_correction_file, field)
+
+/* Sizes that differ by less are the same: what a wire or a text has done to a number. */
+static const double SAME = 1e-6;
+
+static const struct gz_option keys[] = {
+	{ "correction.tracker", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, NULL,
+	  "name of the tracker" },
+	{ "correction.serial", GZ_OPTION_STRING, AT(serial), 0, GZ_NAME_SIZE, 0, NULL, NULL,
+	  "its serial number" },
+	{ "correction.display_px", GZ_OPTION_SIZE, AT(display_px), 1, GZ_DISPLAY_SIDE_MAX_PX, 0,
+	  NULL, NULL, "the display, pixels" },
+	{ "correction.display_mm", GZ_OPTION_DOUBLE, AT(display_mm), 1e-3, 1e9, 2, NULL, NULL,
+	  "its width and height, mm" },
+	{ "correction.distance_mm", GZ_OPTION_DOUBLE, AT(distance_mm), 1e-3, 1e9, 0, NULL, NULL,
+	  "from the eyes to its centre, mm" },
+	{ "correction.x", GZ_OPTION_DOUBLE, AT(x), -10, 10, 3, NULL, NULL,
+	  "a b c of x' = a + b x + c y, display sides" },
+	{ "correction.y", GZ_OPTION_DOUBLE, AT(y), -10, 10, 3, NULL, NULL,
+	  "a b c of y' = a + b x + c y, display sides" },
+	{ "correction.measured", GZ_OPTION_STRING, AT(measured), 0, GZ_NAME_SIZE, 0, NULL, NULL,
+	  "when it was measured, UTC" },
+	{ "correction.before_deg", GZ_OPTION_DOUBLE, AT(before_deg), 0, 360, 0, NULL, NULL,
+	  "mean error of the targets before, degrees" },
+	{ "correction.after_deg", GZ_OPTION_DOUBLE, AT(after_deg), 0, 360, 0, NULL, NULL,
+	  "and after, by leave-one-out cross-validation, degrees" },
+};
+
+enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
+
+void gz_correction_name(const char *name, char out_name[GZ_NAME_SIZE])
+{
+	size_t i = 0;
+	for (; name[i] && i < GZ_NAME_SIZE - 1; i++) {
+		unsigned char c = (unsigned char)name[i];
+		bool plain = c < 128 && (isalnum(c) || c == '-' || (c == '.' && i > 0));
+		out_name[i] = plain ? (char)c : '_';
+	}
+	out_name[i] = '\0';
+}
+
+enum gz_result gz_correction_directory(char *text, size_t size)
+{
+	const char *configuration = getenv("XDG_CONFIG_HOME");
+	const char *home = getenv("HOME");
+	int length;
+	if (configuration && configuration[0] == '/')
+		length = snprintf(text, size, "%s/gazecast/corrections", configuration);
+	else if (home && home[0] == '/')
+		length = snprintf(text, size, "%s/.config/gazecast/corrections", home);
+	else
+		return GZ_ERR_NOT_FOUND;
+	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+}
+
+enum gz_result gz_correction_path(const char *directory, const char *tracker, const char *serial,
+				  const struct gz_display *display, char *text, size_t size)
+{
+	char name[GZ_NAME_SIZE], number[GZ_NAME_SIZE];
+	gz_correction_name(tracker, name);
+	gz_correction_name(serial, number);
+	int length = snprintf(text, size, "%s/%s%s%s-%dx%d-%.0fx%.0fmm-%.0fmm.ini", directory, name,
+			      number[0] ? "-" : "", number, display->px[0], display->px[1],
+			      display->mm[0], display->mm[1], display->distance_mm);
+	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+}
+
+enum gz_result gz_correction_read(const char *path, const struct gz_log *log,
+				  struct gz_correction_file *out_file)
+{
+	struct gz_correction_file file = { .before_deg = 0 };
+	bool given[KEY_COUNT] = { false };
+	const struct gz_option_binding binding = { keys, KEY_COUNT, &file, given };
+	if (access(path, F_OK) != 0)
+		return GZ_ERR_NOT_FOUND;
+	enum gz_result result = gz_options_read_file(&binding, 1, path, log);
+	if (result != GZ_OK)
+		return result;
+	for (size_t i = 0; i < KEY_COUNT; i++) {
+		if (given[i])
+			continue;
+		gz_err(log, "%s: %s is missing; measure it anew with gazectl validate --correct",
+		       path, keys[i].key);
+		return GZ_ERR_FORMAT;
+	}
+	*out_file = file;
+	return GZ_OK;
+}
+
+static bool same(double a, double b)
+{
+	return fabs(a - b) <= SAME * fmax(fabs(a), fabs(b));
+}
+
+bool gz_correction_fits(const struct gz_correction_file *file, const char *tracker,
+			const char *serial, const struct gz_display *display)
+{
+	char name[GZ_NAME_SIZE], number[GZ_NAME_SIZE];
+	gz_correction_name(tracker, name);
+	gz_correction_name(serial, number);
+	return strcmp(file->tracker, name) == 0 && strcmp(file->serial, number) == 0 &&
+	       file->display_px[0] == display->px[0] && file->display_px[1] == display->px[1] &&
+	       same(file->display_mm[0], display->mm[0]) &&
+	       same(file->display_mm[1], display->mm[1]) &&
+	       same(file->distance_mm, display->distance_mm);
+}
+
+/* All directories that @p path names before its last slash, 0700: configuration is its owner's. */
+static bool make_directories(const char *path)
+{
+	char text[GZ_PATH_SIZE + 64];
+	if (strlen(path) >= sizeof text)
+		return false;
+	memcpy(text, path, strlen(path) + 1);
+	for (char *slash = strchr(text + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+		*slash = '\0';
+		if (mkdir(text, 0700) != 0 && errno != EEXIST)
+			return false;
+		*slash = '/';
+	}
+	return true;
+}
+
+static bool print_file(FILE *out, const struct gz_correction_file *file)
+{
+	fputs("; A correction of a tracker's gaze, measured by gazectl validate. gazed applies it "
+	      "to\n; this tracker on this display; gazectl validate --forget removes it.\n"
+	      "[correction]\n",
+	      out);
+	for (size_t i = 0; i < KEY_COUNT; i++) {
+		char text[128];
+		if (gz_option_format(&keys[i], file, text, sizeof text) != GZ_OK)
+			return false;
+		fprintf(out, "%s = %s\n", strchr(keys[i].key, '.') + 1, text);
+	}
+	return fflush(out) == 0 && !ferror(out) && fsync(fileno(out)) == 0;
+}
+
+static bool write_beside(const char *path, const struct gz_correction_file *file)
+{
+	char beside[GZ_PATH_SIZE + 64];
+	int length = snprintf(beside, sizeof beside, "%s.new", path);
+	if (length < 0 || (size_t)length >= sizeof beside) {
+		errno = ENAMETOOLONG;
+		return false;
+	}
+	FILE *out = fopen(beside, "w");
+	if (!out)
+		return false;
+	bool good = print_file(out, file);
+	good = fclose(out) == 0 && good;
+	good = good && rename(beside, path) == 0;
+	if (!good) {
+		int reason = errno;
+		unlink(beside);
+		errno = reason;
+	}
+	return good;
+}
+
+enum gz_result gz_correction_write(const char *path, const struct gz_correction_file *file,
+				   const struct gz_log *log)
+{
+	if (make_directories(path) && write_beside(path, file))
+		return GZ_OK;
+	bool refused = errno == EACCES || errno == EPERM || errno == EROFS;
+	gz_err(log, "cannot write %s: %s; name another directory with --directory", path,
+	       strerror(errno));
+	return refused ? GZ_ERR_ACCESS : GZ_ERR_IO;
+}
