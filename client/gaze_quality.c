@@ -54,18 +54,29 @@ static uint64_t missing_between(int64_t from_ns, int64_t to_ns, int64_t period_n
 	return periods > GAP_PERIODS ? (uint64_t)floor(periods - 0.5) : 0;
 }
 
+/* At the ends: samples a whole number of periods from the first or last one that would still lie
+ * in the time. */
+static uint64_t missing_at_ends(const struct gz_quality_input *input)
+{
+	double period_ns = (double)input->period_ns;
+	double whole_ns = (double)(input->end_ns - input->begin_ns);
+	if (input->count == 0)
+		return (uint64_t)floor(whole_ns / period_ns + 0.5);
+	double before_ns = (double)(input->samples[0].host_ns - input->begin_ns);
+	double after_ns = (double)(input->end_ns - input->samples[input->count - 1].host_ns);
+	return (uint64_t)fmax(0, floor(before_ns / period_ns)) +
+	       (uint64_t)fmax(0, ceil(after_ns / period_ns) - 1);
+}
+
 static uint64_t count_missing(const struct gz_quality_input *input)
 {
 	if (input->period_ns <= 0 || input->end_ns <= input->begin_ns)
 		return 0;
-	int64_t last_ns = input->begin_ns - input->period_ns / 2;
-	uint64_t missing = 0;
-	for (size_t i = 0; i < input->count; i++) {
-		missing += missing_between(last_ns, input->samples[i].host_ns, input->period_ns);
-		last_ns = input->samples[i].host_ns;
-	}
-	return missing +
-	       missing_between(last_ns, input->end_ns + input->period_ns / 2, input->period_ns);
+	uint64_t missing = missing_at_ends(input);
+	for (size_t i = 1; i < input->count; i++)
+		missing += missing_between(input->samples[i - 1].host_ns, input->samples[i].host_ns,
+					   input->period_ns);
+	return missing;
 }
 
 /* Sums over the samples used: of offsets from the target, and of their squares. */

@@ -162,6 +162,14 @@ static struct gz_point disturbed(const struct gz_display *display, struct gz_poi
 	return gz_sphere_to_point(display, direction);
 }
 
+/** Where a tracker with this calibration believes the place to be. The presets change no bit. */
+static struct gz_point miscalibrated(const struct gz_sim_params *params, struct gz_point point)
+{
+	const double *x = params->calibration_x, *y = params->calibration_y;
+	return (struct gz_point) { (float)(x[0] + x[1] * point.x + x[2] * point.y),
+				   (float)(y[0] + y[1] * point.x + y[2] * point.y) };
+}
+
 /** Where the eye is and whither it looks; frame: display centre, +y up, +z towards the viewer. */
 static void place_eye(const struct gz_display *display, int index, struct gz_eye_sample *eye)
 {
@@ -199,7 +207,8 @@ static void measure_eye(struct gz_sim_tracker *tracker, int index, struct gz_poi
 	eye->valid = true;
 	eye->confidence = 1;
 	eye->pupil_mm = (float)pupil_mm;
-	eye->point = disturbed(&tracker->display, truth, offset_deg);
+	eye->point =
+		miscalibrated(&tracker->params, disturbed(&tracker->display, truth, offset_deg));
 	place_eye(&tracker->display, index, eye);
 }
 

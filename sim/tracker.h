@@ -24,10 +24,13 @@ struct gz_sim_params {
 	double rate_hz;    /**< 30 to 2000 */
 	double noise_deg;  /**< standard deviation of each eye's point, each axis, degrees */
 	double offset_deg; /**< standard deviation of each eye's constant error, degrees */
-	double loss;       /**< fraction of samples that never arrive, [0, 1) */
-	double eye_loss;   /**< fraction of samples in which one eye is not found, [0, 1) */
-	double spikes;     /**< fraction of samples that jump for one sample, [0, 1) */
-	double latency_ms; /**< from exposure to delivery, ms */
+	double calibration_x[3]; /**< a b c: every place is told at x' = a + b x + c y instead of x,
+				  */
+	double calibration_y[3]; /**< and at y' likewise: a tracker that is calibrated badly */
+	double loss;             /**< fraction of samples that never arrive, [0, 1) */
+	double eye_loss;         /**< fraction of samples in which one eye is not found, [0, 1) */
+	double spikes;           /**< fraction of samples that jump for one sample, [0, 1) */
+	double latency_ms;       /**< from exposure to delivery, ms */
 	double latency_jitter_ms; /**< mean of what is added to it at random, ms */
 	double clock_offset_ms;   /**< device clock at the start, ms */
 	double clock_skew_ppm;    /**< device clock over host clock, parts per million */

@@ -86,6 +86,7 @@ static inline struct gz_status sample_status(void)
 		.clock = { -123456789, 12.5, 800.25, GZ_CLOCK_ESTIMATED },
 		.noise_deg = 0.05,
 		.display = sample_display(),
+		.correction = { { 0.01, 1.02, -0.003 }, { 0.004, 0.005, 0.98 } },
 		.recording = { GZ_RECORDING_FAILED, "/data/a.gzl", 999, "disk full" },
 		.subscribers = 2,
 		.version = "0.1.0",

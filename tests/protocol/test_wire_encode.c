@@ -367,10 +367,9 @@ static void status_has_the_documented_keys(void **state)
 	msgpack_unpacked unpacked;
 	assert_int_equal(gz_wire_encode_status(&status, &message), GZ_OK);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
-	assert_keys(
-		map,
-		"tracker rate_hz samples lost rejected malformed clock noise_deg display recording "
-		"subscribers version");
+	assert_keys(map, "tracker rate_hz samples lost rejected malformed clock noise_deg display "
+			 "correction recording "
+			 "subscribers version");
 	assert_keys(value_of(map, "tracker"), "name serial state reason");
 	assert_keys(value_of(map, "rate_hz"), "nominal measured");
 	assert_keys(value_of(map, "rejected"),

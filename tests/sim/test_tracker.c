@@ -235,6 +235,32 @@ static void combined_only_measures_no_eye(void **state)
 	gz_sim_tracker_destroy(&tracker);
 }
 
+static void calibration_moves_what_is_told_and_leaves_the_truth(void **state)
+{
+	(void)state;
+	struct gz_sim_params params = clean_params(250);
+	params.viewer.blinks_per_min = 0;
+	struct gz_sim_tracker *good = tracker_of(&params);
+	params.calibration_x[0] = 0.02;
+	params.calibration_x[1] = 1.1;
+	params.calibration_y[1] = -0.05;
+	struct gz_sim_tracker *bad = tracker_of(&params);
+	for (int i = 0; i < 2000; i++) {
+		struct gz_sim_sample a, b;
+		gz_sim_tracker_next(good, &a);
+		gz_sim_tracker_next(bad, &b);
+		assert_memory_equal(&a.truth.point, &b.truth.point, sizeof a.truth.point);
+		for (int eye = 0; eye < GZ_EYE_COUNT; eye++) {
+			struct gz_point p = a.sample.eye[eye].point, q = b.sample.eye[eye].point;
+			CHECK_BETWEEN(q.x - (0.02 + 1.1 * p.x), -1e-6, 1e-6);
+			CHECK_BETWEEN(q.y - (p.y - 0.05 * p.x), -1e-6, 1e-6);
+		}
+		CHECK_BETWEEN(b.sample.point.x - (0.02 + 1.1 * a.sample.point.x), -1e-6, 1e-6);
+	}
+	gz_sim_tracker_destroy(&good);
+	gz_sim_tracker_destroy(&bad);
+}
+
 static void eyes_look_from_their_place_to_the_point(void **state)
 {
 	(void)state;
@@ -328,6 +354,7 @@ int main(void)
 		cmocka_unit_test(noise_and_eye_loss_are_as_wanted),
 		cmocka_unit_test(blinks_measure_nothing),
 		cmocka_unit_test(combined_only_measures_no_eye),
+		cmocka_unit_test(calibration_moves_what_is_told_and_leaves_the_truth),
 		cmocka_unit_test(eyes_look_from_their_place_to_the_point),
 		cmocka_unit_test(device_clock_has_its_offset_and_skew),
 		cmocka_unit_test(arrival_follows_exposure_by_the_latency),
