@@ -5,6 +5,7 @@
 #include "drivers/gazepoint/gazepoint_driver.h"
 #include "drivers/hid/hid_driver.h"
 #include "drivers/psvr2/psvr2_driver.h"
+#include "drivers/pupil/pupil_driver.h"
 #include "drivers/replay/replay_driver.h"
 #include "drivers/sim/sim_driver.h"
 #include "drivers/template/template_driver.h"
@@ -14,6 +15,7 @@ const struct gz_driver *const gz_drivers[] = {
 	&gz_driver_replay,
 	&gz_driver_hid,
 	&gz_driver_gazepoint,
+	&gz_driver_pupil,
 	&gz_driver_template,
 	&gz_driver_psvr2,
 	NULL,

@@ -109,10 +109,32 @@ enum gz_result gz_wire_check(const void *bytes, size_t size);
 
 /**
  * A gaze map of ours, or of Pupil Capture (norm_pos, confidence, timestamp, base_data): there the
- * point is norm_pos turned to our origin, and the eyes in base_data are the valid ones. The eyes'
- * directions do not travel and are NaN; their origins are NaN where a distance stood in.
+ * point is norm_pos turned to our origin, the eyes in base_data are the valid ones, and their
+ * origins and directions are eye_center(s)_3d and gaze_normal(s)_3d, in the frame of the scene
+ * camera. Of our maps the eyes' directions do not travel and are NaN; their origins are NaN where a
+ * distance stood in.
  */
 enum gz_result gz_wire_decode_gaze(const void *bytes, size_t size, struct gz_gaze *out_gaze);
+
+/** One entry of "gaze_on_surfaces". */
+struct gz_surface_gaze {
+	struct gz_point point; /**< on the surface, origin top left */
+	bool on_surface;       /**< within its edges, as the sender says */
+	float confidence;      /**< NaN where it has none */
+	int64_t time_ns;       /**< of the gaze message that it was mapped from */
+};
+
+/**
+ * A surface map: what Pupil Capture's surface tracker, or a daemon of ours, says of gaze on it.
+ *
+ * @param max             room at @p out_gaze
+ * @param[out] out_gaze   its entries; undefined after a failure
+ * @param[out] out_count  how many; written on success only
+ * @retval GZ_ERR_FULL    more than @p max; *out_count is untouched
+ */
+enum gz_result gz_wire_decode_surface(const void *bytes, size_t size,
+				      struct gz_surface_gaze *out_gaze, size_t max,
+				      size_t *out_count);
 enum gz_result gz_wire_decode_fixation(const void *bytes, size_t size,
 				       struct gz_fixation *out_fixation);
 enum gz_result gz_wire_decode_blink(const void *bytes, size_t size, struct gz_blink *out_blink);

@@ -71,6 +71,32 @@ static void take_pupil(struct gz_unpack *unpack, const msgpack_object *pupil,
 	gz_unpack_float(unpack, pupil, "diameter_3d", 0, FLT_MAX, &eye->pupil_mm);
 }
 
+/* Pupil Capture's own words for an eye, in the frame of its scene camera: beside base_data, by the
+ * eye's number where both took part, alone where one did. A direction of no length says nothing. */
+static void take_vectors(struct gz_unpack *unpack, struct gz_gaze *gaze)
+{
+	static const char *const number[GZ_EYE_COUNT] = { "0", "1" };
+	const msgpack_object *map = unpack->map;
+	const msgpack_object *centers = gz_unpack_map(unpack, map, "eye_centers_3d");
+	const msgpack_object *normals = gz_unpack_map(unpack, map, "gaze_normals_3d");
+	for (int i = 0; i < GZ_EYE_COUNT; i++) {
+		struct gz_gaze_eye *eye = &gaze->eye[i];
+		bool alone = eye->valid && !gaze->eye[1 - i].valid;
+		double origin[3], normal[3];
+		if (gz_unpack_doubles(unpack, alone ? map : centers,
+				      alone ? "eye_center_3d" : number[i], origin, 3))
+			for (int k = 0; k < 3; k++)
+				eye->origin_mm[k] = (float)origin[k];
+		if (!gz_unpack_doubles(unpack, alone ? map : normals,
+				       alone ? "gaze_normal_3d" : number[i], normal, 3))
+			continue;
+		double length =
+			sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+		for (int k = 0; k < 3 && length > 0 && isfinite(length); k++)
+			eye->direction[k] = (float)(normal[k] / length);
+	}
+}
+
 static void take_eyes(struct gz_unpack *unpack, struct gz_gaze *gaze)
 {
 	bool ours[GZ_EYE_COUNT] = {
@@ -83,6 +109,7 @@ static void take_eyes(struct gz_unpack *unpack, struct gz_gaze *gaze)
 		if (pupil->type == MSGPACK_OBJECT_MAP) /* else a reference, as surfaces have */
 			take_pupil(unpack, pupil, ours, gaze);
 	}
+	take_vectors(unpack, gaze);
 }
 
 /* Ours if it is there, else Pupil's. A gaze must be somewhere at some time. */

@@ -1,0 +1,358 @@
+/* Sources: Pupil Labs' Network API and data formats, docs.pupil-labs.com/core/developer/. */
+#include "drivers/pupil/pupil_driver.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "drivers/pupil/pupil_link.h"
+#include "drivers/pupil/pupil_message.h"
+
+#define GZ_LOG_MODULE "pupil"
+
+/* One line about bad messages a second is enough to see that something is wrong. */
+#define COMPLAINT_NS GZ_NS_PER_S
+
+/* How long create() waits for an answer, and start() for the clocks, ms: below the 200 that start()
+ * may take, and enough for a network of some ms. */
+enum { CREATE_MS = 150, START_MS = 150, LIST_MS = 100 };
+
+/* Silence that is told of although requests are answered, ns: longer than a scene takes to find its
+ * markers again. */
+static const int64_t SILENCE_NS = 5 * GZ_NS_PER_S;
+
+/* Older than the newest sample by this, ns, is no matter of two eyes matched out of order. */
+static const int64_t LONG_PAST_NS = GZ_NS_PER_S / 2;
+
+struct pupil_settings {
+	char address[GZ_ENDPOINT_SIZE];
+	char surface[GZ_NAME_SIZE];
+	double confidence;
+};
+
+#define AT(field) offsetof(struct pupil_settings, field)
+
+static const struct gz_option pupil_options[] = {
+	{ "pupil.address", GZ_OPTION_STRING, AT(address), 0, GZ_ENDPOINT_SIZE, 0, NULL,
+	  GZ_CONTROL_TCP_ENDPOINT, "Pupil Remote, tcp://HOST:PORT" },
+	{ "pupil.surface", GZ_OPTION_STRING, AT(surface), 0, GZ_NAME_SIZE, 0, NULL, "screen",
+	  "surface that is the screen; empty: gaze as it comes, of Pupil Core on its scene "
+	  "camera" },
+	{ "pupil.confidence", GZ_OPTION_DOUBLE, AT(confidence), 0, 1, 0, NULL, "0.6",
+	  "gaze and eyes of less are invalid" },
+};
+
+static const size_t pupil_option_count = sizeof pupil_options / sizeof *pupil_options;
+
+struct pupil_device {
+	struct gz_device base;
+	struct gz_pupil_link link;
+	char surface_topic[GZ_PUPIL_TOPIC_SIZE]; /* empty: gaze as it comes */
+	double confidence;
+	struct gz_pupil_memory memory;
+	struct gz_pupil_entries entries;
+	struct gz_pupil_order order;
+	struct gz_ratelimit complaints;
+	uint64_t jumps;    /* of the link's that are known */
+	int64_t sample_ns; /* arrival of the newest sample, or start */
+	bool told_silence;
+	uint64_t seq;
+	uint64_t lost;
+	uint64_t malformed[GZ_MALFORMED_COUNT];
+};
+
+static struct pupil_device *of(struct gz_device *device)
+{
+	return (struct pupil_device *)device;
+}
+
+static enum gz_result pupil_start(struct gz_device *base)
+{
+	struct pupil_device *device = of(base);
+	const char *surface = device->surface_topic[0] ? device->surface_topic : NULL;
+	enum gz_result result = gz_pupil_link_subscribe(&device->link, GZ_TOPIC_GAZE, surface);
+	if (result != GZ_OK)
+		return result;
+	device->sample_ns = gz_clock_now_ns();
+	gz_pupil_link_synchronise(&device->link, device->sample_ns + START_MS * GZ_NS_PER_MS);
+	return GZ_OK;
+}
+
+static void refuse(struct pupil_device *device, enum gz_malformed reason)
+{
+	uint64_t held_back;
+	device->malformed[reason]++;
+	if (reason == GZ_MALFORMED_STALE)
+		return; /* common: Pupil's two eyes are matched out of order */
+	if (gz_ratelimit_pass(&device->complaints, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
+		gz_warn(device->base.log,
+			"%s sends messages that are not understood: %s (%llu more since last told)",
+			device->link.address, gz_malformed_name(reason),
+			(unsigned long long)held_back);
+}
+
+/* Not newer by so much that Pupil's clock may have been set back. */
+static bool is_long_past(const struct pupil_device *device, int64_t pupil_ns)
+{
+	int64_t past_ns;
+	return __builtin_sub_overflow(device->order.pupil_ns, pupil_ns, &past_ns) ||
+	       past_ns > LONG_PAST_NS;
+}
+
+/* Times on both clocks, the number, and what is missing before. */
+static enum gz_result finish(struct pupil_device *device, struct gz_pupil_gaze *gaze,
+			     int64_t arrival_ns)
+{
+	struct gz_sample *sample = &gaze->sample;
+	bool believed;
+	uint32_t missing;
+	if (device->jumps != device->link.jumps)
+		gz_pupil_order_restart(&device->order);
+	device->jumps = device->link.jumps;
+	enum gz_result result = gz_pupil_order_step(&device->order, gaze, &missing);
+	if (result != GZ_OK) {
+		if (is_long_past(device, sample->device_ns))
+			gz_pupil_link_doubt_clock(&device->link, arrival_ns);
+		return result;
+	}
+	sample->host_ns =
+		gz_pupil_clock_map(&device->link.clock, sample->device_ns, arrival_ns, &believed);
+	if (!believed)
+		gz_pupil_link_doubt_clock(&device->link, arrival_ns);
+	sample->lost_before = missing;
+	sample->seq = device->seq++;
+	device->lost += missing;
+	device->sample_ns = arrival_ns;
+	device->told_silence = false;
+	return GZ_OK;
+}
+
+/* The next entry of the newest surface message that is a sample. */
+static enum gz_result next_sample(struct pupil_device *device, struct gz_sample *out_sample)
+{
+	struct gz_pupil_gaze gaze;
+	int64_t now_ns = gz_clock_now_ns();
+	while (gz_pupil_next_entry(&device->entries, &device->memory, device->confidence, &gaze) ==
+	       GZ_OK) {
+		if (finish(device, &gaze, now_ns) == GZ_OK) {
+			*out_sample = gaze.sample;
+			return GZ_OK;
+		}
+		refuse(device, GZ_MALFORMED_STALE);
+	}
+	return GZ_ERR_TIMEOUT;
+}
+
+static enum gz_result take_gaze(struct pupil_device *device, const void *bytes, size_t size,
+				struct gz_sample *out_sample)
+{
+	struct gz_pupil_gaze gaze;
+	enum gz_malformed reason;
+	if (gz_pupil_read_gaze(bytes, size, device->confidence, &gaze, &reason) != GZ_OK) {
+		refuse(device, reason);
+		return GZ_ERR_TIMEOUT;
+	}
+	if (device->surface_topic[0]) {
+		gz_pupil_remember(&device->memory, &gaze);
+		return GZ_ERR_TIMEOUT;
+	}
+	if (finish(device, &gaze, gz_clock_now_ns()) != GZ_OK) {
+		refuse(device, GZ_MALFORMED_STALE);
+		return GZ_ERR_TIMEOUT;
+	}
+	*out_sample = gaze.sample;
+	return GZ_OK;
+}
+
+static enum gz_result take_surface(struct pupil_device *device, const void *bytes, size_t size,
+				   struct gz_sample *out_sample)
+{
+	enum gz_malformed reason;
+	if (gz_pupil_read_surface(bytes, size, &device->entries, &reason) == GZ_OK)
+		return next_sample(device, out_sample);
+	refuse(device, reason);
+	return GZ_ERR_TIMEOUT;
+}
+
+/* Whether the topic is that of the surface, and not of one whose name begins like it. */
+static bool is_surface(const struct pupil_device *device, const char *topic, size_t size)
+{
+	return size == strlen(device->surface_topic) &&
+	       memcmp(topic, device->surface_topic, size) == 0;
+}
+
+/* One message. @return GZ_ERR_TIMEOUT where it is no sample */
+static enum gz_result take_message(struct pupil_device *device, zmq_msg_t frames[2], int count,
+				   struct gz_sample *out_sample)
+{
+	const char *topic = zmq_msg_data(&frames[0]);
+	size_t topic_size = zmq_msg_size(&frames[0]);
+	const void *body = zmq_msg_data(&frames[1]);
+	size_t size = zmq_msg_size(&frames[1]);
+	if (count != 2) {
+		refuse(device, count < 2 ? GZ_MALFORMED_SHORT : GZ_MALFORMED_LONG);
+		return GZ_ERR_TIMEOUT;
+	}
+	if (device->surface_topic[0] && is_surface(device, topic, topic_size))
+		return take_surface(device, body, size, out_sample);
+	if (topic_size >= strlen(GZ_TOPIC_GAZE) &&
+	    memcmp(topic, GZ_TOPIC_GAZE, strlen(GZ_TOPIC_GAZE)) == 0)
+		return take_gaze(device, body, size, out_sample);
+	return GZ_ERR_TIMEOUT; /* a surface whose name begins like ours */
+}
+
+static enum gz_result receive(struct pupil_device *device, struct gz_sample *out_sample)
+{
+	zmq_msg_t frames[2];
+	int count = 0, more = 1;
+	zmq_msg_init(&frames[0]);
+	zmq_msg_init(&frames[1]);
+	while (more) {
+		zmq_msg_t *frame = &frames[count > 0];
+		if (zmq_msg_recv(frame, device->link.stream, ZMQ_DONTWAIT) < 0)
+			break;
+		count++;
+		more = zmq_msg_more(frame);
+	}
+	enum gz_result result = GZ_ERR_TIMEOUT;
+	if (count > 0)
+		result = take_message(device, frames, count, out_sample);
+	zmq_msg_close(&frames[0]);
+	zmq_msg_close(&frames[1]);
+	return result;
+}
+
+static void notice_silence(struct pupil_device *device)
+{
+	if (device->told_silence || gz_clock_now_ns() - device->sample_ns < SILENCE_NS)
+		return;
+	device->told_silence = true;
+	gz_warn(device->base.log, "%s answers, but sends no gaze%s%s; %s", device->link.address,
+		device->surface_topic[0] ? " on " : "", device->surface_topic,
+		device->surface_topic[0]
+			? "calibrate, and define that surface in its surface tracker"
+			: "is it calibrated, and are its eye cameras on?");
+}
+
+/* Wait for a message that is a sample. No allocation of ours, no lock. */
+static enum gz_result pupil_read(struct gz_device *base, int timeout_ms,
+				 struct gz_sample *out_sample)
+{
+	struct pupil_device *device = of(base);
+	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	if (next_sample(device, out_sample) == GZ_OK)
+		return GZ_OK;
+	for (;;) {
+		enum gz_result result = gz_pupil_link_wait(&device->link, deadline_ns);
+		if (result == GZ_OK)
+			result = receive(device, out_sample);
+		if (result == GZ_OK)
+			return GZ_OK;
+		if (result == GZ_ERR_NO_DEVICE) {
+			gz_warn(device->base.log, "%s does not answer any more",
+				device->link.address);
+			return GZ_ERR_NO_DEVICE;
+		}
+		/* Garbage without end must not hold the caller. */
+		if (gz_clock_now_ns() >= deadline_ns) {
+			notice_silence(device);
+			return GZ_ERR_TIMEOUT;
+		}
+	}
+}
+
+static void pupil_info(const struct gz_device *base, struct gz_device_info *out_info)
+{
+	(void)base;
+	*out_info = (struct gz_device_info) { .name = "pupil" };
+}
+
+static void pupil_counters(const struct gz_device *base, struct gz_device_counters *out_counters)
+{
+	const struct pupil_device *device = (const struct pupil_device *)base;
+	*out_counters = (struct gz_device_counters) {
+		.lost = device->lost,
+		.clock = gz_pupil_clock_status(&device->link.clock),
+	};
+	memcpy(out_counters->malformed, device->malformed, sizeof out_counters->malformed);
+}
+
+static void pupil_destroy(struct gz_device *base)
+{
+	struct pupil_device *device = of(base);
+	gz_pupil_link_close(&device->link);
+	free(device);
+}
+
+static const struct gz_device_ops pupil_ops = {
+	.start = pupil_start,
+	.read = pupil_read,
+	.info = pupil_info,
+	.counters = pupil_counters,
+	.destroy = pupil_destroy,
+};
+
+static enum gz_result pupil_create(const void *settings, const struct gz_driver_host *host,
+				   struct gz_device **out_device)
+{
+	const struct pupil_settings *wanted = settings;
+	if (!gz_pupil_address_valid(wanted->address)) {
+		gz_err(host->log, "pupil.address: \"%s\" is not tcp://HOST:PORT", wanted->address);
+		return GZ_ERR_INVAL;
+	}
+	struct pupil_device *device = calloc(1, sizeof *device);
+	if (!device)
+		return GZ_ERR_NO_MEM;
+	device->base = (struct gz_device) { .ops = &pupil_ops, .log = host->log };
+	device->confidence = wanted->confidence;
+	if (wanted->surface[0])
+		snprintf(device->surface_topic, sizeof device->surface_topic,
+			 GZ_TOPIC_SURFACES "%s", wanted->surface);
+	enum gz_result result =
+		gz_pupil_link_open(&device->link, wanted->address, CREATE_MS, host->log);
+	if (result != GZ_OK) {
+		pupil_destroy(&device->base);
+		return result;
+	}
+	*out_device = &device->base;
+	return GZ_OK;
+}
+
+/* A gazed answers like a Pupil Capture, but knows one word more. One is not listed, because the
+ * address that is preset may be our own daemon's. */
+static size_t pupil_list(const void *settings, const struct gz_driver_host *host,
+			 struct gz_device_entry *out_entries)
+{
+	const struct pupil_settings *wanted = settings;
+	struct gz_pupil_link link;
+	char version[32], latest[32];
+	(void)host;
+	if (!gz_pupil_address_valid(wanted->address) ||
+	    gz_pupil_link_open(&link, wanted->address, LIST_MS, NULL) != GZ_OK)
+		return 0;
+	bool is_pupil =
+		gz_pupil_link_ask(&link, "LATEST_PORT", LIST_MS, latest, sizeof latest) == GZ_OK &&
+		(latest[0] < '0' || latest[0] > '9') &&
+		gz_pupil_link_ask(&link, "v", LIST_MS, version, sizeof version) == GZ_OK;
+	gz_pupil_link_close(&link);
+	if (!is_pupil)
+		return 0;
+	out_entries[0] = (struct gz_device_entry) { .usable = true };
+	snprintf(out_entries[0].name, sizeof out_entries[0].name, "Pupil Capture %s", version);
+	snprintf(out_entries[0].place, sizeof out_entries[0].place, "%.*s", GZ_NAME_SIZE - 1,
+		 wanted->address);
+	return 1;
+}
+
+_Static_assert(sizeof(struct pupil_settings) <= GZ_DRIVER_SETTINGS_SIZE, "settings fit");
+
+const struct gz_driver gz_driver_pupil = {
+	.name = "pupil",
+	.help = "Pupil Core through Pupil Capture, or another gazed, over the network",
+	.options = pupil_options,
+	.option_count = &pupil_option_count,
+	.settings_size = sizeof(struct pupil_settings),
+	.create = pupil_create,
+	.list = pupil_list,
+};
