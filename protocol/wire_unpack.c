@@ -32,13 +32,22 @@ static bool text_equals(const msgpack_object *object, const char *text)
 	       memcmp(object->via.str.ptr, text, object->via.str.size) == 0;
 }
 
+/* A whole number of one digit is as good as its text: Pupil Capture before 2.0 numbers eyes so. */
+static bool key_equals(const msgpack_object *object, const char *key)
+{
+	if (object->type == MSGPACK_OBJECT_POSITIVE_INTEGER)
+		return object->via.u64 <= 9 && key[0] == '0' + (char)object->via.u64 &&
+		       key[1] == '\0';
+	return text_equals(object, key);
+}
+
 const msgpack_object *gz_unpack_find(const msgpack_object *map, const char *key)
 {
 	if (!map)
 		return NULL;
 	for (uint32_t i = 0; i < map->via.map.size; i++) {
 		const msgpack_object_kv *pair = &map->via.map.ptr[i];
-		if (text_equals(&pair->key, key))
+		if (key_equals(&pair->key, key))
 			return pair->val.type == MSGPACK_OBJECT_NIL ? NULL : &pair->val;
 	}
 	return NULL;

@@ -25,7 +25,7 @@ void gz_unpack_begin(struct gz_unpack *unpack, const void *bytes, size_t size);
 /** GZ_OK, or GZ_ERR_PROTOCOL if anything was refused. */
 enum gz_result gz_unpack_end(struct gz_unpack *unpack);
 
-/** The value of @p key, or NULL if it is missing or nil. NULL for a NULL @p map: an absent map has
+/** The value of @p key, or NULL if it is missing or nil. A key of one digit may also be a number. NULL for a NULL @p map: an absent map has
  *  no keys. */
 const msgpack_object *gz_unpack_find(const msgpack_object *map, const char *key);
 

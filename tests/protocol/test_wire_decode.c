@@ -233,12 +233,29 @@ static void numbers(struct built *built, const char *name, size_t count, const d
 		msgpack_pack_double(&built->packer, values[i]);
 }
 
-/* A binocular gaze map with the keys that Pupil Capture 3 sends. */
-static void build_pupil_capture_gaze(struct built *built)
+/* A vector for each eye, by its number: as text, or as a number where @p old. */
+static void vectors(struct built *built, const char *name, bool old, const double right[3],
+		    const double left[3])
+{
+	msgpack_pack_map(key(built, name), 2);
+	for (int eye = 0; eye < 2; eye++) {
+		const double *vector = eye == 0 ? right : left;
+		if (old)
+			msgpack_pack_int(&built->packer, eye);
+		else
+			msgpack_pack_str_with_body(&built->packer, eye == 0 ? "0" : "1", 1);
+		msgpack_pack_array(&built->packer, 3);
+		for (int i = 0; i < 3; i++)
+			msgpack_pack_double(&built->packer, vector[i]);
+	}
+}
+
+/* A binocular gaze map with the keys that Pupil Capture 3 sends, or one before 2.0. */
+static void build_pupil_capture_gaze(struct built *built, bool old)
 {
 	build(built, 8);
-	numbers(built, "eye_centers_3d", 2, (double[]) { 20, -20 });
-	numbers(built, "gaze_normals_3d", 2, (double[]) { 0.1, 0.2 });
+	vectors(built, "eye_centers_3d", old, (double[]) { 20, 1, -2 }, (double[]) { -20, 1, -2 });
+	vectors(built, "gaze_normals_3d", old, (double[]) { 0, 0, 1 }, (double[]) { 0.6, 0, 0.8 });
 	numbers(built, "gaze_point_3d", 3, (double[]) { 10, -20, 600 });
 	numbers(built, "norm_pos", 2, (double[]) { 0.375, 0.875 });
 	text(built, "topic", "gaze.3d.01.");
@@ -263,12 +280,11 @@ static void build_pupil_capture_gaze(struct built *built)
 	}
 }
 
-static void gaze_of_pupil_capture_decodes(void **state)
+static void check_pupil_capture_gaze(bool old)
 {
-	(void)state;
 	struct built built;
 	struct gz_gaze gaze;
-	build_pupil_capture_gaze(&built);
+	build_pupil_capture_gaze(&built, old);
 	assert_int_equal(gz_wire_decode_gaze(built.buffer.data, built.buffer.size, &gaze), GZ_OK);
 	assert_float_same(gaze.point.x, 0.375f);
 	assert_float_same(gaze.point.y, 0.125f);
@@ -285,13 +301,57 @@ static void gaze_of_pupil_capture_decodes(void **state)
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		assert_true(gaze.eye[i].valid);
 		assert_float_same(gaze.eye[i].point.x, NAN); /* not on the display */
-		assert_float_same(gaze.eye[i].origin_mm[2], NAN);
+		assert_float_same(gaze.eye[i].origin_mm[2], -2);
 	}
+	assert_float_same(gaze.eye[GZ_EYE_RIGHT].origin_mm[0], 20);
+	assert_float_same(gaze.eye[GZ_EYE_LEFT].origin_mm[0], -20);
+	assert_float_same(gaze.eye[GZ_EYE_RIGHT].direction[2], 1);
+	assert_float_same(gaze.eye[GZ_EYE_LEFT].direction[0], 0.6f);
 	assert_float_same(gaze.eye[GZ_EYE_RIGHT].pupil_mm, 3.5f);
 	assert_float_same(gaze.eye[GZ_EYE_LEFT].pupil_mm, 4.5f);
 	assert_float_same(gaze.eye[GZ_EYE_RIGHT].confidence, 0.75f);
 	assert_float_same(gaze.eye[GZ_EYE_LEFT].confidence, 0.5f);
 	msgpack_sbuffer_destroy(&built.buffer);
+}
+
+static void gaze_of_pupil_capture_decodes(void **state)
+{
+	(void)state;
+	check_pupil_capture_gaze(false);
+	check_pupil_capture_gaze(true);
+}
+
+static void surface_entries_decode(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze = sample_gaze();
+	struct gz_wire_message message;
+	struct gz_surface_gaze entries[2];
+	size_t count = 77;
+	assert_int_equal(gz_wire_encode_surface(&gaze, "screen", &message), GZ_OK);
+	assert_int_equal(gz_wire_decode_surface(message.bytes, message.size, entries, 0, &count),
+			 GZ_ERR_FULL);
+	assert_int_equal(count, 77);
+	assert_int_equal(gz_wire_decode_surface(message.bytes, message.size, entries, 2, &count),
+			 GZ_OK);
+	assert_int_equal(count, 1);
+	assert_float_same(entries[0].point.x, gaze.point.x);
+	assert_float_same(entries[0].point.y, gaze.point.y);
+	assert_float_same(entries[0].confidence, gaze.confidence);
+	assert_true(entries[0].on_surface);
+	assert_true(llabs(entries[0].time_ns - gaze.host_ns) < 1000);
+	for (size_t size = 0; size < message.size; size++)
+		assert_int_equal(gz_wire_decode_surface(message.bytes, size, entries, 2, &count),
+				 GZ_ERR_PROTOCOL);
+	/* No list, a list of numbers, an entry without a time. */
+	assert_int_equal(gz_wire_decode_surface("\x80", 1, entries, 2, &count), GZ_ERR_PROTOCOL);
+	static const char of_numbers[] = "\x81\xb0gaze_on_surfaces\x91\x01";
+	assert_int_equal(
+		gz_wire_decode_surface(of_numbers, sizeof of_numbers - 1, entries, 2, &count),
+		GZ_ERR_PROTOCOL);
+	static const char timeless[] = "\x81\xb0gaze_on_surfaces\x91\x81\xa8norm_pos\x92\x00\x00";
+	assert_int_equal(gz_wire_decode_surface(timeless, sizeof timeless - 1, entries, 2, &count),
+			 GZ_ERR_PROTOCOL);
 }
 
 static void gaze_with_the_least_keys_decodes(void **state)
@@ -577,6 +637,7 @@ int main(void)
 		cmocka_unit_test(status_comes_back_as_it_was_sent),
 		cmocka_unit_test(status_of_each_state_comes_back),
 		cmocka_unit_test(gaze_of_pupil_capture_decodes),
+		cmocka_unit_test(surface_entries_decode),
 		cmocka_unit_test(gaze_with_the_least_keys_decodes),
 		cmocka_unit_test(gaze_with_a_wrong_value_is_refused_and_nothing_written),
 		cmocka_unit_test(nan_from_another_sender_is_not_measured),
