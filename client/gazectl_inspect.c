@@ -178,6 +178,15 @@ static void print_intervals(const struct gz_log_intervals *intervals)
 	print_histogram(intervals);
 }
 
+/* Where the viewer's window was; nothing where no viewer told. */
+static void print_window(const struct gz_log_summary *summary)
+{
+	const int *px = summary->window_px;
+	if (summary->windows > 0)
+		printf("window       %dx%d px at %d, %d at last, of %" PRIu64 " places\n", px[2],
+		       px[3], px[0], px[1], summary->windows);
+}
+
 static void print_marks(struct gz_log_summary *summary)
 {
 	printf("marks        %" PRIu64 "\n", summary->mark_count);
@@ -267,6 +276,17 @@ static void print_json_intervals(struct gz_json *json, const struct gz_log_inter
 	gz_json_end(json);
 }
 
+static void print_json_window(struct gz_json *json, const struct gz_log_summary *summary)
+{
+	gz_json_uint(json, "window_count", summary->windows);
+	if (summary->windows == 0)
+		return;
+	gz_json_begin_list(json, "window_px");
+	for (int i = 0; i < 4; i++)
+		gz_json_int(json, NULL, summary->window_px[i]);
+	gz_json_end_list(json);
+}
+
 static void print_json_marks(struct gz_json *json, const struct gz_log_summary *summary)
 {
 	gz_json_uint(json, "mark_count", summary->mark_count);
@@ -289,6 +309,7 @@ static void print_json(const struct gz_gaze_log_header *header,
 	print_json_extent(&json, summary, header->rate_hz);
 	print_json_quality(&json, summary);
 	print_json_intervals(&json, &summary->intervals);
+	print_json_window(&json, summary);
 	print_json_marks(&json, summary);
 	gz_json_end(&json);
 }
@@ -304,6 +325,7 @@ static void print_table(const struct gz_gaze_log_header *header, struct gz_log_s
 	print_extent(summary, header->rate_hz);
 	print_quality(summary);
 	print_intervals(&summary->intervals);
+	print_window(summary);
 	print_marks(summary);
 }
 

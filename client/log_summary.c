@@ -109,6 +109,8 @@ static enum gz_result add_record(struct summarizer *s, const struct gz_gaze_log_
 		add_mark(&s->summary, record);
 		return GZ_OK;
 	case GZ_GAZE_LOG_WINDOW:
+		s->summary.windows++;
+		memcpy(s->summary.window_px, record->window_px, sizeof record->window_px);
 		return GZ_OK;
 	}
 	return GZ_OK;

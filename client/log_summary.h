@@ -57,6 +57,9 @@ struct gz_log_summary {
 	uint64_t rejected[GZ_REJECT_COUNT];
 	uint64_t fixations, saccades, blinks;
 
+	uint64_t windows; /**< places of a viewer's window told */
+	int window_px[4]; /**< the last of them: x y w h */
+
 	uint64_t mark_count;
 	struct gz_log_summary_mark marks[GZ_LOG_SUMMARY_MARKS];
 };

@@ -6,6 +6,8 @@
 #ifndef GZ_DAEMON_COMMAND_H
 #define GZ_DAEMON_COMMAND_H
 
+#include <stdbool.h>
+
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "protocol/gaze_log.h"
@@ -20,15 +22,18 @@ enum gz_command_kind {
 	GZ_COMMAND_MARK,    /**< text into the log */
 	GZ_COMMAND_CORRECT, /**< take up the stored correction, which may have changed */
 	GZ_COMMAND_SEND,    /**< a message on the stream: topic in text, body behind this struct */
+	GZ_COMMAND_WINDOW,  /**< where a viewer's window is, or that it is closed */
 	GZ_COMMAND_QUIT,
 };
 
 /** A command. */
 struct gz_command {
 	enum gz_command_kind kind;
-	uint32_t number; /**< RECORD, STOP, CORRECT: repeated in the answer */
-	int fd;          /**< RECORD: the taker's, but where it refuses */
-	int64_t host_ns; /**< MARK */
+	uint32_t number;  /**< RECORD, STOP, CORRECT: repeated in the answer */
+	int fd;           /**< RECORD: the taker's, but where it refuses */
+	int64_t host_ns;  /**< MARK, WINDOW */
+	bool has_window;  /**< WINDOW: false once it is closed */
+	int window_px[4]; /**< WINDOW: x y w h */
 	char path[GZ_PATH_SIZE];
 	char text[GZ_GAZE_LOG_TEXT_SIZE];
 };

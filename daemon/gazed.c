@@ -30,6 +30,7 @@ struct daemon {
 	struct gz_network network;
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
+	struct gz_pointer_feed *pointer;
 	struct gz_requests *requests;
 	struct gz_service *service;
 };
@@ -84,6 +85,8 @@ static enum gz_result open_sockets(struct daemon *daemon)
 		result = gz_publisher_create(&daemon->network, &daemon->publisher);
 	if (result == GZ_OK)
 		result = gz_recorder_create(&daemon->log, &daemon->recorder);
+	if (result == GZ_OK)
+		result = gz_pointer_feed_create(&daemon->pointer);
 	if (result != GZ_OK)
 		return result;
 	const struct gz_requests_parts parts = {
@@ -93,6 +96,7 @@ static enum gz_result open_sockets(struct daemon *daemon)
 		.network = &daemon->network,
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
+		.pointer = daemon->pointer,
 		.log = &daemon->log,
 	};
 	result = gz_requests_create(&parts, &daemon->requests);
@@ -133,6 +137,7 @@ static enum gz_result start(struct daemon *daemon)
 		.context = daemon->context,
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
+		.pointer = daemon->pointer,
 		.log = &daemon->log,
 	};
 	result = gz_service_create(&parts, &daemon->service);
@@ -160,6 +165,7 @@ static void stop(struct daemon *daemon)
 	gz_service_destroy(&daemon->service);
 	gz_recorder_destroy(&daemon->recorder);
 	gz_requests_destroy(&daemon->requests);
+	gz_pointer_feed_destroy(&daemon->pointer);
 	gz_publisher_destroy(&daemon->publisher);
 	gz_network_close(&daemon->network);
 	if (daemon->context)

@@ -56,6 +56,23 @@ static enum gz_result take_mark(const void *body, size_t size, int64_t now_ns,
 	return GZ_OK;
 }
 
+static enum gz_result take_viewer(const char *topic, const void *body, size_t size,
+				  struct gz_inlet_message *out_message)
+{
+	bool is_pointer = strcmp(topic, GZ_TOPIC_POINTER) == 0;
+	bool is_window = strcmp(topic, GZ_TOPIC_WINDOW) == 0;
+	enum gz_result result = GZ_OK;
+	if (is_pointer)
+		result = gz_wire_decode_pointer(body, size, &out_message->pointer);
+	else if (is_window)
+		result = gz_wire_decode_window(body, size, &out_message->window);
+	if (result != GZ_OK)
+		return result;
+	out_message->is_pointer = is_pointer;
+	out_message->is_window = is_window;
+	return GZ_OK;
+}
+
 enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *body,
 			      size_t body_size, int64_t now_ns,
 			      struct gz_inlet_message *out_message)
@@ -79,6 +96,9 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 	if (is_notification &&
 	    gz_wire_decode_notification(body, body_size, &out_message->notification) != GZ_OK)
 		return GZ_ERR_PROTOCOL;
+	enum gz_result viewer = take_viewer(text, body, body_size, out_message);
+	if (viewer != GZ_OK)
+		return viewer;
 	out_message->is_notification = is_notification;
 	out_message->is_mark = begins_with(text, GZ_TOPIC_ANNOTATION);
 	memcpy(out_message->topic, text, sizeof text);

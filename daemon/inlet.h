@@ -1,7 +1,8 @@
 /**
  * @file
  * What clients may say to all readers of the stream, as over Pupil's PUB_PORT: messages of two
- * frames, topic and MessagePack map. Annotations also become marks in the log. Topics that are the
+ * frames, topic and MessagePack map. Annotations also become marks in the log; a viewer's window
+ * goes there, too, and its pointer to the driver of that name. Topics that are the
  * daemon's own are refused: nobody but a tracker says where somebody looks.
  */
 #ifndef GZ_DAEMON_INLET_H
@@ -15,6 +16,7 @@
 #include "daemon/command.h"
 #include "daemon/network.h"
 #include "protocol/wire_notification.h"
+#include "protocol/wire_viewer.h"
 
 /** Largest message, bytes. Chosen: Pupil's notifications are far smaller. */
 #define GZ_INLET_SIZE_MAX 16384
@@ -35,6 +37,10 @@ struct gz_inlet_message {
 	char mark[GZ_GAZE_LOG_TEXT_SIZE];
 	bool is_notification; /**< the next one holds something */
 	struct gz_notification notification;
+	bool is_pointer; /**< the next one holds something */
+	struct gz_viewer_pointer pointer;
+	bool is_window; /**< the next one holds something */
+	struct gz_viewer_window window;
 };
 
 /**
@@ -60,7 +66,7 @@ void *gz_inlet_socket(const struct gz_inlet *inlet);
  * @param[out] out_message   written on success only
  * @retval GZ_ERR_ACCESS    the topic is the daemon's own
  * @retval GZ_ERR_PROTOCOL  no topic, too long, or no MessagePack; an annotation without a label, a
- *                          notification without a subject
+ *                          notification without a subject, a pointer or window that cannot be
  */
 enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *body,
 			      size_t body_size, int64_t now_ns,

@@ -13,6 +13,7 @@
 #include "daemon/inlet.h"
 #include "daemon/recording_name.h"
 #include "daemon/remote.h"
+#include "daemon/viewer.h"
 
 #define GZ_LOG_MODULE "control"
 
@@ -24,6 +25,10 @@ enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
 
 /* Messages of clients passed on before requests are looked at again. */
 enum { MESSAGES_AT_ONCE = 32 };
+
+/* How often it is told that a viewer's pointer goes nowhere. Chosen: it does so sixty times a
+ * second, and may be meant for later. */
+#define UNREAD_POINTER_NS (60 * GZ_NS_PER_S)
 
 /* What the answer that is owed waits for. */
 enum pending {
@@ -53,6 +58,7 @@ struct gz_requests {
 	/* Asked for by a notification while something was pending: done next. */
 	enum gz_remote_notice deferred;
 	char deferred_name[GZ_SESSION_NAME_SIZE];
+	struct gz_ratelimit unread_pointer;
 	bool ended;
 	enum gz_result failure; /* of the service */
 };
@@ -341,11 +347,45 @@ static void obey_notification(struct gz_requests *requests,
 	}
 }
 
-/* A client's message: to all readers, into the log if it is an annotation, and obeyed if it is a
- * notification for the daemon. */
+/* The pointer goes to the driver of that name, and to nobody else: what comes of it is gaze. */
+static void take_pointer(struct gz_requests *requests, const struct gz_viewer_pointer *pointer)
+{
+	const struct gz_requests_parts *parts = &requests->parts;
+	uint64_t held_back;
+	int64_t now_ns = gz_clock_now_ns();
+	struct gz_pointer_report report = gz_viewer_report(pointer, now_ns);
+	if (strcmp(parts->config->driver, "pointer") == 0)
+		gz_pointer_feed_put(parts->pointer, &report);
+	else if (gz_ratelimit_pass(&requests->unread_pointer, now_ns, UNREAD_POINTER_NS,
+				   &held_back))
+		gz_warn(parts->log,
+			"a viewer sends its pointer, but the tracker is %s; for gaze by mouse use "
+			"--driver pointer",
+			parts->config->driver);
+}
+
+static void take_window(struct gz_requests *requests, const struct gz_viewer_window *window)
+{
+	struct gz_command command = {
+		.kind = GZ_COMMAND_WINDOW,
+		.host_ns = gz_viewer_time_ns(window->has_time, window->time_ns, gz_clock_now_ns()),
+		.has_window = window->known,
+	};
+	memcpy(command.window_px, window->rect_px, sizeof command.window_px);
+	send_command(requests, &command);
+}
+
+/* A client's message: to all readers, into the log if it is an annotation or a window, and obeyed
+ * if it is a notification for the daemon. */
 static void pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_MARK, .host_ns = message->mark_ns };
+	if (message->is_pointer) {
+		take_pointer(requests, &message->pointer);
+		return;
+	}
+	if (message->is_window)
+		take_window(requests, &message->window);
 	if (message->is_mark) {
 		memcpy(command.text, message->mark, sizeof command.text);
 		send_command(requests, &command);

@@ -12,6 +12,7 @@
 #include "daemon/network.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
+#include "drivers/pointer/pointer_feed.h"
 
 /** How long an answer waits for what was asked to have happened, ms; then it says that it goes on.
  * Chosen: well below the 100 ms in which a client may count on an answer. */
@@ -25,6 +26,7 @@ struct gz_requests_parts {
 	const struct gz_network *network;     /**< how to bind; needed at creation alone */
 	const struct gz_publisher *publisher; /**< its ports are asked for once, at creation */
 	const struct gz_recorder *recorder;
+	struct gz_pointer_feed *pointer; /**< takes what viewers tell of their pointers */
 	const struct gz_log *log;
 };
 

@@ -13,6 +13,7 @@
 #include "daemon/messages.h"
 #include "daemon/rate_meter.h"
 #include "daemon/tracker.h"
+#include "daemon/viewer.h"
 #include "drivers/usb/usb_watch.h"
 #include "protocol/wire_notification.h"
 
@@ -33,6 +34,7 @@ struct gz_service {
 	uint64_t opened;            /* the tracker's device that maker was made for */
 	struct gz_message_maker maker;
 	struct gz_rate_meter rate;
+	struct gz_viewer_place viewer;
 	uint64_t rejected[GZ_REJECT_COUNT];
 	int64_t host_ns;     /* newest sample's */
 	int64_t commands_ns; /* when to look for commands */
@@ -99,6 +101,7 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 	const struct gz_driver_host host = {
 		.log = parts->log,
 		.choice = config->tracker,
+		.pointer = parts->pointer,
 		.display_mm = { config->display_mm[0], config->display_mm[1] },
 	};
 	/* Before the first look, so that nothing arrives between the two. */
@@ -185,6 +188,9 @@ enum gz_result gz_service_record(struct gz_service *service, int fd, const char 
 	if (result != GZ_OK)
 		return result;
 	gz_message_maker_reset(&service->maker);
+	struct gz_gaze_log_record window;
+	if (gz_viewer_place_at_start(&service->viewer, gz_clock_now_ns(), &window))
+		gz_recorder_push(service->parts.recorder, &window);
 	notify_started(service, path);
 	return GZ_OK;
 }
@@ -228,6 +234,14 @@ static void notify(struct gz_service *service, enum gz_notice_kind kind, uint32_
 	zmq_send(service->commands, &notice, sizeof notice, ZMQ_DONTWAIT);
 }
 
+static void follow_window(struct gz_service *service, const struct gz_command *command)
+{
+	struct gz_gaze_log_record window;
+	const int *rect_px = command->has_window ? command->window_px : NULL;
+	if (gz_viewer_place_step(&service->viewer, rect_px, command->host_ns, &window))
+		gz_recorder_push(service->parts.recorder, &window);
+}
+
 static void obey(struct gz_service *service, const struct gz_command *command)
 {
 	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
@@ -253,6 +267,9 @@ static void obey(struct gz_service *service, const struct gz_command *command)
 		notify(service, GZ_NOTICE_ANSWER, command->number, GZ_OK);
 		return;
 	case GZ_COMMAND_SEND: /* see take_commands() */
+		return;
+	case GZ_COMMAND_WINDOW:
+		follow_window(service, command);
 		return;
 	case GZ_COMMAND_QUIT:
 		service->quit = true;

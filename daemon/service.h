@@ -11,6 +11,7 @@
 #include "daemon/config.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
+#include "drivers/pointer/pointer_feed.h"
 
 /** Longest wait for a sample before commands are looked at, ms. Chosen: an answer comes well within
  * the 100 ms of a request. */
@@ -32,6 +33,7 @@ struct gz_service_parts {
 	void *context; /**< ZeroMQ; GZ_COMMAND_ENDPOINT is bound in it */
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
+	struct gz_pointer_feed *pointer; /**< lent to the driver */
 	const struct gz_log *log;
 };
 

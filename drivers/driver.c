@@ -4,6 +4,7 @@
 
 #include "drivers/gazepoint/gazepoint_driver.h"
 #include "drivers/hid/hid_driver.h"
+#include "drivers/pointer/pointer_driver.h"
 #include "drivers/psvr2/psvr2_driver.h"
 #include "drivers/pupil/pupil_driver.h"
 #include "drivers/replay/replay_driver.h"
@@ -11,14 +12,9 @@
 #include "drivers/template/template_driver.h"
 
 const struct gz_driver *const gz_drivers[] = {
-	&gz_driver_sim,
-	&gz_driver_replay,
-	&gz_driver_hid,
-	&gz_driver_gazepoint,
-	&gz_driver_pupil,
-	&gz_driver_template,
-	&gz_driver_psvr2,
-	NULL,
+	&gz_driver_sim,      &gz_driver_replay,    &gz_driver_hid,
+	&gz_driver_pointer,  &gz_driver_gazepoint, &gz_driver_pupil,
+	&gz_driver_template, &gz_driver_psvr2,     NULL,
 };
 
 const struct gz_driver *gz_driver_find(const char *name)

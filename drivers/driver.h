@@ -15,6 +15,7 @@
 #include "protocol/gaze_log.h"
 
 struct gz_device;
+struct gz_pointer_feed;
 
 /** What is known of an open device. */
 struct gz_device_info {
@@ -75,6 +76,9 @@ struct gz_driver_host {
 	/** The display's size as configured, mm; 0 0 where it is not. For devices that measure in
 	 * millimetres and do not know their screen. */
 	double display_mm[2];
+	/** What the viewer's pointer does; the driver is the one that takes out. NULL where nobody
+	 * tells of it. */
+	struct gz_pointer_feed *pointer;
 };
 
 /** A tracker that is there, whether or not it can be used. */

@@ -179,8 +179,8 @@ bool gz_unpack_doubles(struct gz_unpack *unpack, const msgpack_object *map, cons
 	const msgpack_object *array = gz_unpack_array(unpack, map, key);
 	if (!array)
 		return false;
-	double numbers[3];
-	bool good = array->via.array.size == count && count <= 3;
+	double numbers[4];
+	bool good = array->via.array.size == count && count <= 4;
 	for (size_t i = 0; good && i < count; i++)
 		good = as_number(&array->via.array.ptr[i], &numbers[i]) && !isinf(numbers[i]);
 	if (!good) {

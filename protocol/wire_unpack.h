@@ -52,7 +52,7 @@ void gz_unpack_double(struct gz_unpack *unpack, const msgpack_object *map, const
 		      double min, double max, double *out_value);
 void gz_unpack_float(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		     double min, double max, float *out_value);
-/** @p count numbers; @return whether they were there. An array of another length is refused. */
+/** @p count numbers, at most 4; @return whether they were there. An array of another length is refused. */
 bool gz_unpack_doubles(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		       double *out_values, size_t count);
 

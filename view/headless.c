@@ -64,6 +64,7 @@ static enum gz_result open_source(const struct gz_gaze_choice *choice, const str
 	case GZ_GAZE_CENTRE: /* set anew before each frame */
 	case GZ_GAZE_FIXED:
 	case GZ_GAZE_MOUSE:
+	case GZ_GAZE_POINTER:
 		break;
 	}
 	return gz_gaze_source_fixed(choice->point, out_source);

@@ -33,9 +33,10 @@ const struct gz_option gz_view_option_table[] = {
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(gaze_text),
 	  .max = GZ_PATH_SIZE,
-	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, the endpoint of a latest "
-		  "channel "
-		  "or FILE.gzl; without it centre if headless, else daemon" },
+	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, pointer (the mouse by way of "
+		  "gazed "
+		  "--driver pointer), the endpoint of a latest channel or FILE.gzl; without it "
+		  "centre if headless, else daemon" },
 	{ .key = "fps",
 	  .type = GZ_OPTION_DOUBLE,
 	  .offset = AT(fps),
@@ -220,6 +221,8 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 	}
 	if (strcmp(text, "mouse") == 0) {
 		choice.kind = GZ_GAZE_MOUSE;
+	} else if (strcmp(text, "pointer") == 0) {
+		choice.kind = GZ_GAZE_POINTER;
 	} else if (strcmp(text, "daemon") == 0) {
 		choice.kind = GZ_GAZE_LATEST;
 	} else if (starts_with(text, "ipc://") || starts_with(text, "tcp://")) {
@@ -233,7 +236,7 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 	} else if (strcmp(text, "centre") != 0) {
 		gz_err(log,
 		       "--gaze %s: not understood; give two finite numbers as 0.5,0.5, or centre, "
-		       "daemon, mouse, ipc://..., tcp://... or FILE.gzl",
+		       "daemon, mouse, pointer, ipc://..., tcp://... or FILE.gzl",
 		       text);
 		return GZ_ERR_INVAL;
 	}
@@ -378,9 +381,13 @@ static enum gz_result check_together(const struct gz_view_options *options,
 		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}
-	if (options->headless && options->gaze.kind == GZ_GAZE_MOUSE) {
-		gz_err(log, "--gaze mouse: there is no mouse without a window; leave out "
-			    "--headless, or give X,Y");
+	bool by_mouse =
+		options->gaze.kind == GZ_GAZE_MOUSE || options->gaze.kind == GZ_GAZE_POINTER;
+	if (options->headless && by_mouse) {
+		gz_err(log,
+		       "--gaze %s: there is no mouse without a window; leave out --headless, or "
+		       "give X,Y",
+		       options->gaze_text);
 		return GZ_ERR_INVAL;
 	}
 	if (!options->headless && (options->out[0] || options->stats[0])) {

@@ -24,9 +24,10 @@
 enum gz_gaze_kind {
 	GZ_GAZE_CENTRE, /**< where the camera's look_at appears */
 	GZ_GAZE_FIXED,
-	GZ_GAZE_MOUSE,  /**< window only */
-	GZ_GAZE_LATEST, /**< a daemon's latest channel */
-	GZ_GAZE_LOG,    /**< a gaze log, through the daemon's pipeline in process */
+	GZ_GAZE_MOUSE,   /**< window only */
+	GZ_GAZE_POINTER, /**< the mouse, through the local daemon's pointer driver; window only */
+	GZ_GAZE_LATEST,  /**< a daemon's latest channel */
+	GZ_GAZE_LOG,     /**< a gaze log, through the daemon's pipeline in process */
 };
 
 /** --gaze, understood. */
@@ -90,8 +91,8 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings);
 
 /**
- * Understand a --gaze text: "centre", "mouse", "daemon", "X,Y", an endpoint (ipc://, tcp://) or the
- * name of a .gzl file.
+ * Understand a --gaze text: "centre", "mouse", "pointer", "daemon", "X,Y", an endpoint (ipc://,
+ * tcp://) or the name of a .gzl file.
  *
  * @retval GZ_ERR_INVAL  none of these, or a number that is not finite; logged
  */

@@ -9,6 +9,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
+#include "client/viewer_link.h"
 #include "view/panel.h"
 #include "view/window_state.h"
 
@@ -218,6 +219,7 @@ static enum gz_result loop(struct gz_window *window)
 		gz_window_toggle_fullscreen(window);
 	while (!glfwWindowShouldClose(window->glfw)) {
 		int64_t start_ns = gz_clock_now_ns();
+		gz_window_report(window);
 		enum gz_result r = refresh(window);
 		if (r != GZ_OK)
 			return r;
@@ -239,6 +241,7 @@ static void close_window(struct gz_window *window)
 	gz_frame_maker_destroy(&window->maker);
 	gz_gaze_source_destroy(&window->source);
 	gz_gaze_source_destroy(&window->mouse);
+	gz_viewer_link_close(&window->link);
 }
 
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log)
@@ -249,6 +252,8 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 	if (r != GZ_OK)
 		return r;
 	r = gz_window_gaze_open(&window);
+	if (r == GZ_OK)
+		r = gz_window_report_open(&window);
 	if (r == GZ_OK)
 		r = gz_frame_maker_create(options, log, &window.maker);
 	if (r == GZ_OK) {

@@ -4,8 +4,8 @@
 
 #include "base/clock.h"
 
-/* How often an absent daemon is looked for, s (chosen: a returning one is seen at once, at no
- * cost). */
+/* How often an absent daemon is looked for, and one that is not looked at is told of the window, s
+ * (chosen: a returning one is seen at once, at no cost). */
 #define ABSENT_PATIENCE_S 0.25
 /* Without anything live: only events change the picture. */
 #define STILL_PATIENCE_S 10.0
@@ -16,6 +16,7 @@ static enum gz_result open_named(struct gz_window *window)
 	switch (choice->kind) {
 	case GZ_GAZE_MOUSE:
 		return GZ_OK;
+	case GZ_GAZE_POINTER:
 	case GZ_GAZE_LATEST:
 		return gz_gaze_source_latest(choice->text, window->log, &window->source);
 	case GZ_GAZE_LOG:
@@ -52,14 +53,9 @@ struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw)
 	return glfwGetPrimaryMonitor();
 }
 
-/* The window's content as a part of its monitor: corner and size, 0 to 1. */
-struct share {
-	double x, y, width, height;
-};
-
-static struct share window_share(struct GLFWwindow *glfw)
+struct gz_window_share gz_window_share(struct GLFWwindow *glfw)
 {
-	const struct share whole = { 0, 0, 1, 1 };
+	const struct gz_window_share whole = { 0, 0, 1, 1 };
 	GLFWmonitor *monitor = gz_window_monitor(glfw);
 	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
 	int x, y, left, top, width, height;
@@ -68,7 +64,7 @@ static struct share window_share(struct GLFWwindow *glfw)
 		return whole;
 	glfwGetWindowPos(glfw, &x, &y);
 	glfwGetMonitorPos(monitor, &left, &top);
-	return (struct share) {
+	return (struct gz_window_share) {
 		.x = (double)(x - left) / mode->width,
 		.y = (double)(y - top) / mode->height,
 		.width = (double)width / mode->width,
@@ -79,8 +75,8 @@ static struct share window_share(struct GLFWwindow *glfw)
 /* The geometry of the picture. A known display's window is a part of it; the default is made to
  * fit the picture. */
 static struct gz_display picture_display(const struct gz_window *window,
-					 struct gz_gaze_source *source, const struct share *share,
-					 int width, int height)
+					 struct gz_gaze_source *source,
+					 const struct gz_window_share *share, int width, int height)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	const struct gz_view_options *options = window->options;
@@ -103,7 +99,7 @@ static struct gz_display picture_display(const struct gz_window *window,
 void gz_window_gaze_now(struct gz_window *window, int width, int height,
 			struct gz_window_gaze *out_gaze)
 {
-	struct share share = { 0, 0, 1, 1 };
+	struct gz_window_share share = { 0, 0, 1, 1 };
 	struct gz_window_gaze gaze = { .source = "mouse" };
 	struct gz_gaze_source *source = window->source;
 	bool use_mouse = !source || window->mouse_chosen;
@@ -116,12 +112,13 @@ void gz_window_gaze_now(struct gz_window *window, int width, int height,
 		gz_gaze_source_read(window->mouse, 0, &gaze.reading);
 		source = window->source ? window->source : window->mouse;
 		if (!window->options->gaze_fills_window)
-			share = window_share(window->glfw);
+			share = gz_window_share(window->glfw);
 	} else {
-		gaze.source = source->ops->name;
+		gaze.source = window->options->gaze.kind == GZ_GAZE_POINTER ? "pointer"
+									    : source->ops->name;
 		/* A tracker's gaze is on the monitor, of which the window is a part. */
 		if (source->ops->live && !window->options->gaze_fills_window) {
-			share = window_share(window->glfw);
+			share = gz_window_share(window->glfw);
 			struct gz_point *point = &gaze.reading.point;
 			point->x = (float)((point->x - share.x) / share.width);
 			point->y = (float)((point->y - share.y) / share.height);
@@ -138,7 +135,7 @@ double gz_window_gaze_patience_s(const struct gz_window *window)
 	if (window->options->turn_deg != 0)
 		return frame_s;
 	if (!source || window->mouse_chosen)
-		return STILL_PATIENCE_S;
+		return window->link ? ABSENT_PATIENCE_S : STILL_PATIENCE_S;
 	if (window->options->gaze.kind == GZ_GAZE_LOG)
 		return frame_s;
 	if (!source->ops->live)

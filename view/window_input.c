@@ -150,6 +150,11 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 	move_gaze(window);
 }
 
+static void on_enter(GLFWwindow *glfw, int entered)
+{
+	window_of(glfw)->cursor_inside = entered == GLFW_TRUE;
+}
+
 static void on_wheel(GLFWwindow *glfw, double right, double up)
 {
 	(void)right;
@@ -183,12 +188,15 @@ void gz_window_input_attach(struct gz_window *window)
 	glfwSetCharCallback(glfw, on_character);
 	glfwSetMouseButtonCallback(glfw, on_button);
 	glfwSetCursorPosCallback(glfw, on_cursor);
+	glfwSetCursorEnterCallback(glfw, on_enter);
 	glfwSetScrollCallback(glfw, on_wheel);
 	glfwSetFramebufferSizeCallback(glfw, on_size);
 	glfwSetWindowRefreshCallback(glfw, on_damage);
 	/* A mouse that already rests in the window is a gaze before it moves. */
 	glfwGetCursorPos(glfw, &x, &y);
 	glfwGetWindowSize(glfw, &width, &height);
-	if (x >= 0 && y >= 0 && x < width && y < height)
+	if (x >= 0 && y >= 0 && x < width && y < height) {
+		on_enter(glfw, GLFW_TRUE);
 		on_cursor(glfw, x, y);
+	}
 }

@@ -27,6 +27,8 @@ struct gz_window {
 
 	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
 	struct gz_gaze_source *mouse;
+	struct gz_viewer_link
+		*link;     /**< to the daemon's inlet; NULL where there is nothing to tell */
 	bool mouse_chosen; /**< M: the mouse, though there is another source */
 	int64_t start_ns;  /**< of a log's time */
 
@@ -37,6 +39,7 @@ struct gz_window {
 
 	bool dragging;
 	bool cursor_known;
+	bool cursor_inside;    /**< the window's content is what the mouse is over */
 	double cursor[2];      /**< screen coordinates of the window */
 	int windowed_place[4]; /**< x y w h to return to from full screen */
 
@@ -60,6 +63,21 @@ struct gz_window_gaze {
 	const char *source;             /**< "daemon", "mouse", … */
 	bool missing; /**< the daemon asked for is not there; the mouse stands in */
 };
+
+/** The window's content as a part of its monitor: corner and size, 0 to 1. */
+struct gz_window_share {
+	double x, y, width, height;
+};
+
+/** Where the window is; the whole monitor where that cannot be told. */
+struct gz_window_share gz_window_share(struct GLFWwindow *glfw);
+
+/** Connect to the daemon that the gaze comes from, to tell it of the window and, where the gaze is
+ * the pointer, of that. @return what gz_viewer_link_open() returns; logged */
+enum gz_result gz_window_report_open(struct gz_window *window);
+
+/** Tell what has changed. Waits for nobody. */
+void gz_window_report(struct gz_window *window);
 
 /** Make the sources that --gaze asks for. @return what the source's maker returns; logged. */
 enum gz_result gz_window_gaze_open(struct gz_window *window);

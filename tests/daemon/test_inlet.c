@@ -59,6 +59,29 @@ static void inlet_topics_of_the_daemon_are_refused(void **state)
 				 GZ_ERR_ACCESS);
 }
 
+static void inlet_viewer_tells_its_pointer_and_its_window(void **state)
+{
+	(void)state;
+	/* {"point": [0, 1], "timestamp": 12.5} and {"rect": [1, 2, 3, 4]} */
+	static const char pointer[] =
+		"\x82\xa5point\x92\x00\x01\xa9timestamp\xcb\x40\x29\0\0\0\0\0";
+	static const char window[] = "\x81\xa4rect\x94\x01\x02\x03\x04";
+	assert_int_equal(judge("pointer", pointer, sizeof pointer), GZ_OK);
+	assert_true(message.is_pointer && message.pointer.known && !message.is_window);
+	assert_true(message.pointer.point.y == 1 &&
+		    message.pointer.time_ns == 12500 * GZ_NS_PER_MS);
+	assert_int_equal(judge("window", window, sizeof window - 1), GZ_OK);
+	assert_true(message.is_window && message.window.known && !message.is_pointer);
+	assert_int_equal(message.window.rect_px[3], 4);
+	assert_int_equal(judge("notify.x", notification, sizeof notification - 1), GZ_OK);
+	assert_false(message.is_window || message.is_pointer);
+	/* Only these topics, and only what they can hold. */
+	assert_int_equal(judge("windows", window, sizeof window - 1), GZ_OK);
+	assert_false(message.is_window);
+	assert_int_equal(judge("window", "\x81\xa4rect\x01", 7), GZ_ERR_PROTOCOL);
+	assert_int_equal(judge("pointer", "\x81\xa5point\x01", 8), GZ_ERR_PROTOCOL);
+}
+
 static void inlet_anything_else_is_refused_and_writes_nothing(void **state)
 {
 	(void)state;
@@ -90,6 +113,7 @@ int main(void)
 		cmocka_unit_test(inlet_annotation_becomes_a_mark),
 		cmocka_unit_test(inlet_notification_passes_and_is_no_mark),
 		cmocka_unit_test(inlet_topics_of_the_daemon_are_refused),
+		cmocka_unit_test(inlet_viewer_tells_its_pointer_and_its_window),
 		cmocka_unit_test(inlet_anything_else_is_refused_and_writes_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "drivers/driver.h"
+#include "drivers/pointer/pointer_feed.h"
 #include "drivers/psvr2/psvr2_link.h"
 #include "drivers/psvr2/psvr2_packet.h"
 #include "drivers/template/template_protocol.h"
@@ -44,6 +45,7 @@ struct stage {
 	int number; /* of the played HID device */
 	bool plays_hid;
 	struct pupil_capture capture;
+	struct gz_driver_host host;
 };
 
 static void set_option(struct stage *stage, const char *key, const char *text)
@@ -185,6 +187,16 @@ static void prepare_hid(struct stage *stage)
 	stage->plays_hid = true;
 }
 
+static void prepare_pointer(struct stage *stage)
+{
+	set_option(stage, "pointer.rate_hz", "500");
+	assert_int_equal(gz_pointer_feed_create(&stage->host.pointer), GZ_OK);
+	const struct gz_pointer_report report = { .host_ns = gz_clock_now_ns(),
+						  .known = true,
+						  .point = { 0.5f, 0.5f } };
+	assert_true(gz_pointer_feed_put(stage->host.pointer, &report));
+}
+
 /* The driver's presets, and what it needs beyond. */
 static void set_up(struct stage *stage, const struct gz_driver *driver)
 {
@@ -202,6 +214,8 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 		prepare_template(stage);
 	else if (strcmp(driver->name, "gazepoint") == 0)
 		prepare_gazepoint(stage);
+	else if (strcmp(driver->name, "pointer") == 0)
+		prepare_pointer(stage);
 	else if (strcmp(driver->name, "psvr2") == 0)
 		prepare_psvr2();
 	else if (strcmp(driver->name, "hid") == 0)
@@ -212,6 +226,7 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 
 static void tear_down(struct stage *stage)
 {
+	gz_pointer_feed_destroy(&stage->host.pointer);
 	if (stage->has_server)
 		gazepoint_server_stop(&stage->server);
 	if (stage->plays_hid) {
@@ -236,8 +251,7 @@ static struct gz_device *create(struct stage *stage)
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
 	/* One that is asked over a network may answer late on a busy machine. */
 	do
-		result = stage->driver->create(stage->settings, &(struct gz_driver_host) { 0 },
-					       &device);
+		result = stage->driver->create(stage->settings, &stage->host, &device);
 	while (result == GZ_ERR_NO_DEVICE && stage->capture.context &&
 	       gz_clock_now_ns() < deadline_ns);
 	if (result != GZ_OK)

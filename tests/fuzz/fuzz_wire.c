@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "protocol/wire.h"
+#include "protocol/wire_viewer.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -70,6 +71,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	if (gz_wire_decode_saccade(data, size, &saccade) == GZ_OK)
 		require(saccade.duration_ns >= 0);
 	gz_wire_decode_blink(data, size, &blink);
+	struct gz_viewer_pointer pointer;
+	if (gz_wire_decode_pointer(data, size, &pointer) == GZ_OK && pointer.known)
+		require(isfinite(pointer.point.x) && isfinite(pointer.point.y));
+	struct gz_viewer_window window;
+	if (gz_wire_decode_window(data, size, &window) == GZ_OK && window.known)
+		require(window.rect_px[2] > 0 && window.rect_px[3] > 0);
 	struct gz_annotation annotation;
 	gz_wire_decode_annotation(data, size, &annotation);
 	return 0;

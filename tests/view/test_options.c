@@ -87,6 +87,7 @@ static void gaze_texts_choose_their_sources(void **state)
 	} cases[] = {
 		{ "centre", GZ_GAZE_CENTRE },
 		{ "mouse", GZ_GAZE_MOUSE },
+		{ "pointer", GZ_GAZE_POINTER },
 		{ "daemon", GZ_GAZE_LATEST },
 		{ "ipc:///tmp/x/latest", GZ_GAZE_LATEST },
 		{ "tcp://127.0.0.1:5000", GZ_GAZE_LATEST },
@@ -145,6 +146,7 @@ static void options_that_contradict_each_other_are_refused(void **state)
 {
 	(void)state;
 	assert_refused("a.scene --headless --gaze mouse", "mouse");
+	assert_refused("a.scene --headless --gaze pointer", "pointer");
 	assert_refused("a.scene --out a.png", "--headless");
 	assert_refused("a.scene --stats a.json", "--headless");
 	assert_refused("a.scene --headless --method mdc --foveation.method ddc",

@@ -15,6 +15,7 @@ from picture import Picture, run, skip, write_scene
 
 GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
 SHOTS = sys.argv[4] if len(sys.argv) > 4 else None
+GAZECTL = os.environ.get("GAZECTL", "gazectl")
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
 SCENE = write_scene(PLACE.name, SCENES)
 SCREEN = (900, 700)
@@ -74,9 +75,10 @@ class Window(unittest.TestCase):
         if self.viewer:
             self.viewer.communicate()
 
-    def start_daemon(self):
+    def start_daemon(self, *more):
+        more = more or ("--driver=sim", "--sim.blinks_per_min=0")
         self.daemon = subprocess.Popen(
-            [GAZED, "--driver=sim", "--tcp=off", "--sim.blinks_per_min=0"], env=self.environment,
+            [GAZED, "--tcp=off", *more], env=self.environment,
             stderr=subprocess.DEVNULL,
         )
 
@@ -261,6 +263,55 @@ class Window(unittest.TestCase):
         self.until(lambda p: not self.amber(p) and not self.cross_at(p, 60, 280), "daemon again")
         self.tool("key", "m")
         self.until(lambda p: not self.amber(p) and self.cross_at(p, 60, 280), "mouse by choice")
+
+    def log_lines(self, kind):
+        """The fields of all records of that kind, once the recording is whole."""
+        names = os.listdir(self.recordings.name)
+        self.assertEqual(len(names), 1, names)
+        with open(os.path.join(self.recordings.name, names[0]), encoding="utf-8") as log:
+            lines = log.read().splitlines()
+        self.assertTrue(lines[-1].startswith("#end "), lines[-1])
+        return [line.split("\t") for line in lines if line.startswith(kind + "\t")]
+
+    def test_pointer_goes_through_the_daemon_and_leads_the_gaze(self):
+        self.start_daemon("--driver=pointer", "--sim.blinks_per_min=0")
+        self.start("--gaze", "pointer", "--cross")
+        for x, y in ((150, 200), (330, 120)):
+            self.move(x, y)
+            picture = self.until(
+                lambda p: not self.amber(p) and self.near(self.red_middle(p), (x, y)),
+                "cross at the pointer %d" % x)
+        # Out of the window: the last place holds.
+        self.tool("mousemove", *SCREEN)
+        self.until(lambda p: self.near(self.red_middle(p), (330, 120)), "cross stays")
+        # A daemon with another tracker is no pointer, and one that is gone leaves the mouse.
+        self.stop_daemon()
+        self.move(150, 200)
+        self.until(lambda p: self.amber(p) and self.cross_at(p, 150, 200), "mouse stands in")
+
+    def near(self, place, wanted):
+        return place and all(abs(a - b) <= 3 for a, b in zip(place, wanted))
+
+    def test_window_is_told_to_the_log_at_start_when_moved_and_when_resized(self):
+        self.recordings = tempfile.TemporaryDirectory(prefix="gazecast-test-recordings-")
+        self.addCleanup(self.recordings.cleanup)
+        self.start_daemon("--driver=sim", "--recording.directory=" + self.recordings.name)
+        self.start("--gaze", "daemon")
+        self.until(lambda p: not self.amber(p), "a daemon")
+        time.sleep(1.2)  # the window is told each second, so the daemon knows it by now
+        done = run(GAZECTL, "record", "later", env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.tool("windowmove", self.window, 100, 50)
+        self.until(lambda p: p.at(50, 25) == (0, 0, 0), "moved")
+        self.tool("windowsize", self.window, 500, 400)
+        self.until(lambda p: p.at(590, 440) != (0, 0, 0), "resized")
+        time.sleep(0.5)
+        self.stop_daemon()
+        rects = [line[2:] for line in self.log_lines("!window")]
+        self.assertEqual(rects[0], ["0", "0", "480", "320"])
+        self.assertEqual(rects[-1], ["100", "50", "500", "400"])
+        self.assertIn(["100", "50", "480", "320"], rects)
+        self.assertLess(len(rects), 12)
 
     def red_middle(self, picture):
         """The middle of all that has the cross's colour, or None."""
