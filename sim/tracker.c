@@ -275,6 +275,11 @@ void gz_sim_tracker_next(struct gz_sim_tracker *tracker, struct gz_sim_sample *o
 	};
 }
 
+void gz_sim_tracker_follow(struct gz_sim_tracker *tracker, const struct gz_point *point)
+{
+	gz_viewer_follow(&tracker->viewer, point);
+}
+
 struct gz_display gz_sim_tracker_display(const struct gz_sim_tracker *tracker)
 {
 	return tracker->display;

@@ -83,6 +83,9 @@ enum gz_result gz_sim_tracker_create(const struct gz_sim_params *params, int64_t
  */
 void gz_sim_tracker_next(struct gz_sim_tracker *tracker, struct gz_sim_sample *out);
 
+/** Let the viewer look at one place; see gz_viewer_follow(). Threads: as gz_sim_tracker_next(). */
+void gz_sim_tracker_follow(struct gz_sim_tracker *tracker, const struct gz_point *point);
+
 /** The display that the viewer looks at. */
 struct gz_display gz_sim_tracker_display(const struct gz_sim_tracker *tracker);
 

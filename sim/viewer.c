@@ -49,6 +49,14 @@ static const double LANDING_FRACTION = 0.05;
 /* How much a target's inhibition of return keeps from one fixation to the next; chosen. */
 static const double INHIBITION_KEEP = 0.75;
 
+/* Following: how soon the eye leaves for a new place (saccadic latency, 200 ms; Carpenter 1988),
+ * how far from it it may rest, and for how long until that is looked at again; the latter two
+ * chosen. Below REACH_DEG a saccade has no landing error. */
+static const double FOLLOW_LATENCY_S = 0.2;
+static const double FOLLOW_REST_DEG = 0.1;
+static const double FOLLOW_REST_S = 0.5;
+static const double FOLLOW_REACH_DEG = 2;
+
 enum { TRIES = 40 };
 
 double gz_main_sequence_peak_deg_s(double amplitude_deg)
@@ -175,6 +183,17 @@ static void inhibit(struct gz_viewer *viewer, size_t chosen)
 	viewer->inhibition[chosen] = 1;
 }
 
+/** Where a saccade to @p aim ends. */
+static void land_near(struct gz_viewer *viewer, const double from[3], const double aim[3],
+		      double out_landing[3])
+{
+	double error_deg =
+		LANDING_DEG + LANDING_FRACTION * DEG_PER_RAD * gz_sphere_angle(from, aim);
+	double offset[2] = { error_deg * gz_random_normal(&viewer->random),
+			     error_deg * gz_random_normal(&viewer->random) };
+	gz_sphere_offset(aim, offset, out_landing);
+}
+
 static void target_landing(struct gz_viewer *viewer, const double from[3], double out_landing[3])
 {
 	size_t chosen = draw_target(viewer);
@@ -182,11 +201,20 @@ static void target_landing(struct gz_viewer *viewer, const double from[3], doubl
 	struct gz_point point = viewer->targets->target[chosen].point;
 	double aim[3];
 	gz_sphere_from_point(&viewer->display, point.x, point.y, aim);
-	double error_deg =
-		LANDING_DEG + LANDING_FRACTION * DEG_PER_RAD * gz_sphere_angle(from, aim);
-	double offset[2] = { error_deg * gz_random_normal(&viewer->random),
-			     error_deg * gz_random_normal(&viewer->random) };
-	gz_sphere_offset(aim, offset, out_landing);
+	land_near(viewer, from, aim, out_landing);
+}
+
+static double angle_to_aim_deg(const struct gz_viewer *viewer)
+{
+	return gz_sphere_angle(viewer->place, viewer->aim) * DEG_PER_RAD;
+}
+
+static void aim_landing(struct gz_viewer *viewer, const double from[3], double out_landing[3])
+{
+	if (angle_to_aim_deg(viewer) > FOLLOW_REACH_DEG)
+		land_near(viewer, from, viewer->aim, out_landing);
+	else
+		memcpy(out_landing, viewer->aim, sizeof viewer->aim);
 }
 
 static bool has_targets(const struct gz_viewer *viewer)
@@ -244,7 +272,9 @@ static void settle(struct gz_viewer *viewer)
 static void begin_saccade(struct gz_viewer *viewer)
 {
 	double landing[3];
-	if (has_targets(viewer))
+	if (viewer->follows)
+		aim_landing(viewer, viewer->place, landing);
+	else if (has_targets(viewer))
 		target_landing(viewer, viewer->place, landing);
 	else
 		free_landing(viewer, viewer->place, landing);
@@ -291,11 +321,22 @@ static bool begin_pursuit(struct gz_viewer *viewer)
 	return false;
 }
 
+/** The fixation goes on. */
+static void rest(struct gz_viewer *viewer)
+{
+	plan_microsaccade(viewer, viewer->end_s + MICRO_AFTER_S);
+	viewer->end_s += FOLLOW_REST_S;
+}
+
 static void after_fixation(struct gz_viewer *viewer)
 {
 	settle(viewer);
 	if (viewer->end_s >= viewer->next_blink_s)
 		begin_blink(viewer);
+	else if (viewer->follows && angle_to_aim_deg(viewer) <= FOLLOW_REST_DEG)
+		rest(viewer);
+	else if (viewer->follows)
+		begin_saccade(viewer);
 	else if (viewer->end_s < viewer->next_pursuit_s || !begin_pursuit(viewer))
 		begin_saccade(viewer);
 }
@@ -469,6 +510,18 @@ void gz_viewer_init(struct gz_viewer *viewer, const struct gz_viewer_params *par
 	viewer->next_pursuit_s = next_after(&viewer->random, 0, params->pursuits_per_min);
 	begin_fixation(viewer);
 	viewer->fixation_count = 0; /* the first has the number 0 */
+}
+
+void gz_viewer_follow(struct gz_viewer *viewer, const struct gz_point *point)
+{
+	viewer->follows = point != NULL;
+	if (!point)
+		return;
+	gz_sphere_from_point(&viewer->display, point->x, point->y, viewer->aim);
+	double leave_s = viewer->now_s + FOLLOW_LATENCY_S;
+	bool rests = viewer->phase == GZ_EVENT_FIXATION || viewer->phase == GZ_EVENT_PURSUIT;
+	if (rests && viewer->end_s > leave_s && viewer->micro.end_s < leave_s)
+		viewer->end_s = leave_s;
 }
 
 struct gz_viewer_truth gz_viewer_advance(struct gz_viewer *viewer, int64_t time_ns)

@@ -81,6 +81,8 @@ struct gz_viewer {
 	struct gz_viewer_jitter jitter;
 	double next_blink_s, next_pursuit_s; /**< when due; infinite if never */
 	uint64_t fixation_count;
+	bool follows;                      /**< looks at aim alone; see gz_viewer_follow() */
+	double aim[3];                     /**< unit vector */
 	double inhibition[GZ_TARGETS_MAX]; /**< per target, [0, 1]: just looked at */
 };
 
@@ -100,6 +102,15 @@ void gz_viewer_init(struct gz_viewer *viewer, const struct gz_viewer_params *par
  * Does not allocate. Time of the call: in proportion to the time skipped.
  */
 struct gz_viewer_truth gz_viewer_advance(struct gz_viewer *viewer, int64_t time_ns);
+
+/**
+ * Look at one place until told otherwise: after a reaction time the eye goes there, in one saccade
+ * with the usual landing error and a second one that corrects it, and rests, with drift,
+ * microsaccades and blinks. What is steered like this is no longer a matter of the seed alone.
+ *
+ * @param point  finite, on the display or beside it; NULL: as before
+ */
+void gz_viewer_follow(struct gz_viewer *viewer, const struct gz_point *point);
 
 /**
  * Peak velocity of a saccade: V = 900 (1 - exp(-A / 11)), degrees a second.

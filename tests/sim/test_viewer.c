@@ -261,6 +261,40 @@ static void a_single_target_is_fixated_for_ever(void **state)
 	}
 }
 
+/* Told where to look while it views freely. */
+static void a_viewer_that_follows_rests_on_its_aim_until_it_is_free_again(void **state)
+{
+	(void)state;
+	struct gz_viewer_params params = gz_sim_default_params().viewer;
+	struct gz_display display = gz_display_default(1920, 1080);
+	static const struct gz_point aims[] = { { 0.9f, 0.1f }, { 0.1f, 0.9f }, { 0.5f, 0.5f } };
+	params.blinks_per_min = 0;
+	struct gz_viewer viewer;
+	gz_viewer_init(&viewer, &params, &display, NULL, 3, START_NS);
+	int64_t ns = START_NS;
+	for (size_t i = 0; i < sizeof aims / sizeof aims[0]; i++) {
+		double sum_deg = 0;
+		gz_viewer_advance(&viewer, ns += GZ_NS_PER_S);
+		gz_viewer_follow(&viewer, &aims[i]);
+		gz_viewer_advance(&viewer, ns += GZ_NS_PER_S);
+		for (int k = 0; k < 2000; k++) {
+			struct gz_viewer_truth truth = gz_viewer_advance(&viewer, ns += STEP_NS);
+			double deg = gz_display_angle_deg(&display, truth.point, aims[i]);
+			CHECK_BETWEEN(deg, 0, 1.2); /* a microsaccade and some drift */
+			sum_deg += deg / 2000;
+		}
+		CHECK_BETWEEN(sum_deg, 0, 0.5);
+	}
+	gz_viewer_follow(&viewer, NULL);
+	double farthest_deg = 0;
+	for (int k = 0; k < 5000; k++) {
+		struct gz_viewer_truth truth = gz_viewer_advance(&viewer, ns += STEP_NS);
+		farthest_deg =
+			fmax(farthest_deg, gz_display_angle_deg(&display, truth.point, aims[2]));
+	}
+	CHECK_BETWEEN(farthest_deg, 2, 60);
+}
+
 int main(void)
 {
 	static const struct CMUnitTest tests[] = {
@@ -273,6 +307,7 @@ int main(void)
 		cmocka_unit_test(gaze_stays_on_small_and_large_displays),
 		cmocka_unit_test(targets_are_looked_at_by_weight),
 		cmocka_unit_test(a_single_target_is_fixated_for_ever),
+		cmocka_unit_test(a_viewer_that_follows_rests_on_its_aim_until_it_is_free_again),
 	};
 	return cmocka_run_group_tests_name("sim.viewer", tests, NULL, NULL);
 }
