@@ -9,7 +9,9 @@
  * a multiple of the median speed (Engbert and Kliegl, "Microsaccades uncover the orientation of
  * covert attention", Vision Research 43, 2003, p. 1037), with a higher one for the peak than for
  * onset and end (Nyström and Holmqvist, "An adaptive algorithm for fixation, saccade, and glissade
- * detection in eyetracking data", Behavior Research Methods 42, 2010). Between saccades, the slow
+ * detection in eyetracking data", Behavior Research Methods 42, 2010). It ends where the eye no
+ * longer goes on in the direction that it had at the peak, so that the eye's ringing, which turns
+ * back first, is no part of it. Between saccades, the slow
  * movement tells pursuit from fixation. Samples without a good measurement are a blink up to
  * blink_max_ms, then lost, on sample time.
  */
@@ -34,9 +36,11 @@ struct gz_classify_params {
 	double peak_base_deg_s;    /**< peak threshold without noise, degrees a second */
 	double onset_base_deg_s;   /**< onset and end threshold without noise, the same */
 	double end_fraction;       /**< a saccade ends below this part of its peak velocity */
-	double turn_fraction;      /**< and where it gathers speed again below this part */
-	double saccade_max_ms;     /**< longer ones are ended, ms */
-	double glissade_ms;        /**< after a saccade, for so long, ms, ... */
+	double end_ms;         /**< and so long after it fell below, ms: the last of the movement,
+				  which the velocity's window looks beyond */
+	double turn_fraction;  /**< and where it gathers speed again below this part */
+	double saccade_max_ms; /**< longer ones are ended, ms */
+	double glissade_ms;    /**< after a saccade, for so long, ms, ... */
 	double glissade_fraction;  /**< ... only this part of its peak begins another */
 	double fixation_min_ms;    /**< shorter ones are not announced, ms */
 	double pursuit_window_ms;  /**< over which slow movement is measured, ms */
@@ -63,8 +67,9 @@ struct gz_classify_entry {
 	struct gz_point point;
 	float confidence;
 	bool valid;
-	bool after_loss;   /**< good, and a blink, a loss or the beginning lies just before it */
-	double fast_deg_s; /**< speed with the slow movement taken off, once measured */
+	bool after_loss; /**< good, and a blink, a loss or the beginning lies just before it */
+	double velocity_deg_s[3]; /**< with the slow movement taken off, once measured */
+	double fast_deg_s;        /**< its length */
 };
 
 /** What the certain labels go by. */
@@ -76,6 +81,9 @@ struct gz_classify_machine {
 	int64_t saccade_end_ns; /**< when the last saccade ended */
 	bool had_saccade;       /**< since the last loss */
 	double peak_deg_s;      /**< of the running saccade, or of the last one */
+	bool slowed;            /**< the running saccade fell below its end threshold, ... */
+	int64_t slowed_ns;      /**< ... at this time */
+	double heading[3];      /**< unit vector along the running saccade's velocity at its peak */
 	double pursuit;         /**< evidence for pursuit against fixation, 0 is even */
 	double habit;           /**< what the intervals before were: -1 fixation to 1 pursuit */
 };

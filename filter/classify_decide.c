@@ -52,15 +52,41 @@ static bool saccade_begins(struct gz_classify_state *state, const struct gz_clas
 	return false;
 }
 
+/** Speed in the direction that the running saccade had at its peak. */
+static double along(const struct gz_classify_machine *machine,
+		    const struct gz_classify_entry *entry)
+{
+	double sum = 0;
+	for (int i = 0; i < 3; i++)
+		sum += machine->heading[i] * entry->velocity_deg_s[i];
+	return sum;
+}
+
+/** Remember how fast the running saccade is, and where it goes, at its fastest. */
+static void follow_peak(struct gz_classify_machine *machine, const struct gz_classify_entry *entry)
+{
+	if (entry->fast_deg_s <= machine->peak_deg_s)
+		return;
+	machine->peak_deg_s = entry->fast_deg_s;
+	for (int i = 0; i < 3; i++)
+		machine->heading[i] = entry->velocity_deg_s[i] / entry->fast_deg_s;
+}
+
 /** Whether the running saccade is over at this sample. */
 static bool saccade_ends(struct gz_classify_state *state, const struct gz_classify_params *params,
 			 uint64_t index)
 {
-	const struct gz_classify_machine *machine = &state->machine;
+	struct gz_classify_machine *machine = &state->machine;
 	const struct gz_classify_entry *entry = gz_classify_at(state, index);
-	double speed = entry->fast_deg_s;
-	if (speed <
-	    fmax(onset_threshold(state, params), params->end_fraction * machine->peak_deg_s))
+	double speed = along(machine, entry);
+	double end =
+		fmax(onset_threshold(state, params), params->end_fraction * machine->peak_deg_s);
+	if (speed < end && !machine->slowed) {
+		machine->slowed = true;
+		machine->slowed_ns = entry->time_ns;
+	}
+	double after_ns = (double)(entry->time_ns - machine->slowed_ns) + 0.5 * state->period_ns;
+	if (machine->slowed && after_ns >= params->end_ms * 1e6)
 		return true;
 	if (gz_ns_to_ms(entry->time_ns - machine->since_ns) > params->saccade_max_ms)
 		return true;
@@ -68,7 +94,7 @@ static bool saccade_ends(struct gz_classify_state *state, const struct gz_classi
 	 */
 	return speed < params->turn_fraction * machine->peak_deg_s && index + 1 < state->measured &&
 	       gz_classify_at(state, index + 1)->valid &&
-	       gz_classify_at(state, index + 1)->fast_deg_s > speed;
+	       along(machine, gz_classify_at(state, index + 1)) > speed;
 }
 
 static enum gz_event interval_event(const struct gz_classify_machine *machine)
@@ -89,7 +115,9 @@ static void begin_saccade(struct gz_classify_state *state, const struct gz_class
 	struct gz_classify_machine *machine = &state->machine;
 	machine->event = GZ_EVENT_SACCADE;
 	machine->since_ns = entry->time_ns;
-	machine->peak_deg_s = entry->fast_deg_s;
+	machine->peak_deg_s = 0;
+	machine->slowed = false;
+	follow_peak(machine, entry);
 }
 
 /**
@@ -178,7 +206,7 @@ static void decide_good(struct gz_classify_state *state, const struct gz_classif
 		begin_interval(state, params);
 	}
 	if (machine->event == GZ_EVENT_SACCADE) {
-		machine->peak_deg_s = fmax(machine->peak_deg_s, entry->fast_deg_s);
+		follow_peak(machine, entry);
 		if (!saccade_ends(state, params, index))
 			return;
 		machine->had_saccade = true;

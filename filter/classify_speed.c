@@ -111,12 +111,11 @@ void gz_classify_measure(struct gz_classify_state *state, const struct gz_classi
 		entry->fast_deg_s = 0;
 		if (!entry->valid)
 			continue;
-		double velocity[3];
 		struct gz_classify_window window = { half_ns, half_ns };
-		gz_classify_velocity(state, state->measured, window, velocity);
+		gz_classify_velocity(state, state->measured, window, entry->velocity_deg_s);
 		for (int i = 0; i < 3; i++)
-			velocity[i] -= state->slow.velocity_deg_s[i];
-		entry->fast_deg_s = gz_length3(velocity);
+			entry->velocity_deg_s[i] -= state->slow.velocity_deg_s[i];
+		entry->fast_deg_s = gz_length3(entry->velocity_deg_s);
 	}
 }
 
