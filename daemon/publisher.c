@@ -24,6 +24,7 @@ struct gz_publisher {
 	struct channel stream;
 	struct channel latest;
 	uint32_t subscriptions;
+	uint64_t arrivals;
 	uint32_t pupil_subscriptions; /* those of them that take pupil messages */
 	int port;
 	int latest_port;
@@ -174,6 +175,7 @@ static void update_subscriptions(struct gz_publisher *publisher)
 		if (size == 0 || frame[0] > 1)
 			continue;
 		count(&publisher->subscriptions, frame[0] == 1);
+		publisher->arrivals += frame[0] == 1;
 		if (takes_pupils(frame + 1, (size_t)size - 1))
 			count(&publisher->pupil_subscriptions, frame[0] == 1);
 	}
@@ -195,6 +197,11 @@ uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher)
 uint32_t gz_publisher_subscriptions(const struct gz_publisher *publisher)
 {
 	return publisher->subscriptions;
+}
+
+uint64_t gz_publisher_arrivals(const struct gz_publisher *publisher)
+{
+	return publisher->arrivals;
 }
 
 static void close_channel(struct channel *channel)

@@ -60,6 +60,9 @@ uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher);
 /** Subscriptions of the stream, at the last update: one for each topic of each reader. */
 uint32_t gz_publisher_subscriptions(const struct gz_publisher *publisher);
 
+/** Subscriptions of the stream since the start, at the last update. */
+uint64_t gz_publisher_arrivals(const struct gz_publisher *publisher);
+
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_publisher_destroy(struct gz_publisher **publisher);
 

@@ -45,6 +45,7 @@ struct gz_service {
 	const char *told_trouble;
 	enum gz_recording_state told_recording;
 	uint32_t told_subscribers;
+	uint64_t told_arrivals;       /* who has just come need not wait for a second */
 	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was notified; empty: none */
 	/* Large, and used for one sample at a time. */
 	struct gz_outgoing_batch batch;
@@ -353,6 +354,7 @@ static void send_status(struct gz_service *service)
 	service->told_trouble = service->tracker.counters.trouble;
 	service->told_recording = status.recording.state;
 	service->told_subscribers = status.subscribers;
+	service->told_arrivals = gz_publisher_arrivals(service->parts.publisher);
 }
 
 static bool status_changed(const struct gz_service *service)
@@ -362,7 +364,8 @@ static bool status_changed(const struct gz_service *service)
 	return service->told_tracker != service->tracker.state ||
 	       service->told_trouble != service->tracker.counters.trouble ||
 	       service->told_recording != recorder.state ||
-	       service->told_subscribers != gz_publisher_subscribers(service->parts.publisher);
+	       service->told_subscribers != gz_publisher_subscribers(service->parts.publisher) ||
+	       service->told_arrivals != gz_publisher_arrivals(service->parts.publisher);
 }
 
 /* What is not done for every sample. */

@@ -198,6 +198,26 @@ static void gazed_stream_carries_every_topic_and_the_status(void **state)
 	reader_close(&reader);
 }
 
+static void gazed_newcomers_do_not_wait_for_the_next_second_s_status(void **state)
+{
+	(void)state;
+	enum { NEWCOMERS = 12 };
+	struct gazed_process gazed = SPAWN("--driver", "sim");
+	gazed_wait_ready(&place, &gazed);
+	int64_t begin_ns = gz_clock_now_ns();
+	for (int i = 0; i < NEWCOMERS; i++) {
+		struct reader reader;
+		reader_open(&reader, &place, GZ_TOPIC_STATUS);
+		assert_true(reader_receive(&reader, 5000));
+		reader_close(&reader);
+	}
+	/* Each would wait for most of a second, on average. */
+	double seconds = gz_ns_to_s(gz_clock_now_ns() - begin_ns);
+	if (seconds > NEWCOMERS / 2.0)
+		fail_msg("%d newcomers waited %.1f s", NEWCOMERS, seconds);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
 static void gazed_latest_is_one_frame_and_the_newest(void **state)
 {
 	(void)state;
@@ -586,6 +606,7 @@ int main(void)
 		TEST(gazed_answers_every_letter_within_100_ms),
 		TEST(gazed_ports_of_tcp_lead_to_the_stream),
 		TEST(gazed_stream_carries_every_topic_and_the_status),
+		TEST(gazed_newcomers_do_not_wait_for_the_next_second_s_status),
 		TEST(gazed_latest_is_one_frame_and_the_newest),
 		TEST(gazed_replay_gives_the_live_messages_bit_for_bit),
 		TEST(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
