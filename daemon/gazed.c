@@ -11,6 +11,8 @@
 
 #include "daemon/config.h"
 #include "daemon/lock.h"
+#include "daemon/notify.h"
+#include "daemon/privileges.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
 #include "daemon/recording_name.h"
@@ -26,6 +28,7 @@ struct daemon {
 	char directory[GZ_PATH_SIZE];
 	int lock_fd;
 	int signal_fd;
+	struct gz_notify notify;
 	void *context;
 	struct gz_network network;
 	struct gz_publisher *publisher;
@@ -125,7 +128,10 @@ static enum gz_result record_from_start(struct daemon *daemon)
 
 static enum gz_result start(struct daemon *daemon)
 {
-	enum gz_result result = catch_signals(daemon);
+	gz_notify_open(&daemon->notify, &daemon->log);
+	enum gz_result result = gz_privileges_drop(daemon->config.user, &daemon->log);
+	if (result == GZ_OK)
+		result = catch_signals(daemon);
 	if (result == GZ_OK)
 		result = take_directory(daemon);
 	if (result == GZ_OK)
@@ -138,6 +144,7 @@ static enum gz_result start(struct daemon *daemon)
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
 		.pointer = daemon->pointer,
+		.notify = &daemon->notify,
 		.log = &daemon->log,
 	};
 	result = gz_service_create(&parts, &daemon->service);
@@ -170,6 +177,7 @@ static void stop(struct daemon *daemon)
 	gz_network_close(&daemon->network);
 	if (daemon->context)
 		zmq_ctx_term(daemon->context);
+	gz_notify_close(&daemon->notify);
 	if (daemon->signal_fd >= 0)
 		close(daemon->signal_fd);
 	if (daemon->lock_fd >= 0)
@@ -182,6 +190,7 @@ static enum gz_result serve(struct daemon *daemon)
 	if (result == GZ_OK) {
 		say_hello(daemon);
 		result = gz_requests_run(daemon->requests, daemon->signal_fd);
+		gz_notify_stopping(&daemon->notify);
 		gz_requests_quit_service(daemon->requests);
 	}
 	stop(daemon);
@@ -220,6 +229,7 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	daemon->lock_fd = -1;
 	daemon->signal_fd = -1;
+	daemon->notify.fd = -1;
 	gz_log_init(&daemon->log, NULL, NULL, NULL);
 	enum gz_result result = gz_config_read(argc, argv, &daemon->log, &daemon->config);
 	if (result == GZ_OK && daemon->config.help)

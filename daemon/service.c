@@ -341,6 +341,16 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		gz_recorder_get_path(service->parts.recorder, status->recording.file);
 }
 
+/* For `systemctl status`. */
+static void notify_manager(const struct gz_service *service, const struct gz_status *status)
+{
+	char text[sizeof status->tracker.name + sizeof status->tracker.reason + 64];
+	snprintf(text, sizeof text, "%s: %s%s%s", status->tracker.name,
+		 gz_tracker_state_name(status->tracker.state),
+		 status->tracker.reason[0] ? ", " : "", status->tracker.reason);
+	gz_notify_status(service->parts.notify, text);
+}
+
 static void send_status(struct gz_service *service)
 {
 	struct gz_status status;
@@ -350,6 +360,8 @@ static void send_status(struct gz_service *service)
 	if (gz_wire_encode_status(&status, message) == GZ_OK)
 		gz_publisher_send_one(service->parts.publisher, GZ_TOPIC_STATUS, message->bytes,
 				      message->size);
+	if (service->told_tracker != status.tracker.state)
+		notify_manager(service, &status);
 	service->told_tracker = status.tracker.state;
 	service->told_trouble = service->tracker.counters.trouble;
 	service->told_recording = status.recording.state;
@@ -374,6 +386,7 @@ static void take_care(struct gz_service *service, int64_t now_ns)
 	if (now_ns < service->care_ns)
 		return;
 	service->care_ns = now_ns + GZ_SERVICE_CARE_MS * GZ_NS_PER_MS;
+	gz_notify_alive(service->parts.notify, now_ns);
 	gz_publisher_update(service->parts.publisher);
 	if (service->waiting && gz_publisher_subscriptions(service->parts.publisher) >=
 					(uint32_t)service->parts.config->wait_readers)
@@ -466,6 +479,7 @@ enum gz_result gz_service_start(struct gz_service *service)
 		return GZ_ERR_NO_MEM;
 	}
 	service->has_thread = true;
+	pthread_setname_np(service->thread, "gazed-serve");
 	return GZ_OK;
 }
 

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/config.h"
+#include "daemon/notify.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
 #include "drivers/pointer/pointer_feed.h"
@@ -34,6 +35,7 @@ struct gz_service_parts {
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
 	struct gz_pointer_feed *pointer; /**< lent to the driver */
+	struct gz_notify *notify;        /**< told that samples are served */
 	const struct gz_log *log;
 };
 

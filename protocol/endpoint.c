@@ -12,9 +12,6 @@
 
 #define GZ_LOG_MODULE "endpoint"
 
-/* Made by the service manager, for a daemon that serves every user in its group. */
-#define SYSTEM_DIRECTORY "/run/gazecast"
-
 static enum gz_result fits(int length, size_t size)
 {
 	return length >= 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
@@ -35,14 +32,14 @@ enum gz_result gz_runtime_directory(char *text, size_t size)
 	const char *session = getenv("XDG_RUNTIME_DIR");
 	if (session && session[0] == '/')
 		return fits(snprintf(text, size, "%s/gazecast", session), size);
-	if (is_directory(SYSTEM_DIRECTORY))
-		return fits(snprintf(text, size, "%s", SYSTEM_DIRECTORY), size);
+	if (is_directory(GZ_SYSTEM_RUNTIME_DIRECTORY))
+		return fits(snprintf(text, size, "%s", GZ_SYSTEM_RUNTIME_DIRECTORY), size);
 	return fits(snprintf(text, size, "/tmp/gazecast-%ld", (long)getuid()), size);
 }
 
 bool gz_runtime_directory_is_shared(const char *path)
 {
-	return strcmp(path, SYSTEM_DIRECTORY) == 0;
+	return strcmp(path, GZ_SYSTEM_RUNTIME_DIRECTORY) == 0;
 }
 
 static bool has_socket(const char *directory, const char *name)
@@ -79,8 +76,8 @@ enum gz_result gz_endpoint_find(const char *name, const struct gz_log *log, char
 	if ((chosen && *chosen) || has_socket(directory, name))
 		return gz_endpoint_ipc(directory, name, text, size);
 	snprintf(own, sizeof own, "/tmp/gazecast-%ld", (long)getuid());
-	if (has_socket(SYSTEM_DIRECTORY, name))
-		snprintf(directory, sizeof directory, "%s", SYSTEM_DIRECTORY);
+	if (has_socket(GZ_SYSTEM_RUNTIME_DIRECTORY, name))
+		snprintf(directory, sizeof directory, "%s", GZ_SYSTEM_RUNTIME_DIRECTORY);
 	else if (has_socket(own, name))
 		snprintf(directory, sizeof directory, "%s", own);
 	if (strcmp(directory, own) == 0)

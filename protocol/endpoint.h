@@ -11,8 +11,10 @@
 #include "base/log.h"
 #include "base/result.h"
 
-#define GZ_ENDPOINT_SIZE        256                     /**< bytes of an endpoint with its NUL */
-#define GZ_CONTROL_TCP_ENDPOINT "tcp://127.0.0.1:50020" /**< Pupil Remote's port */
+#define GZ_ENDPOINT_SIZE 256 /**< bytes of an endpoint with its NUL */
+/** Made by the service manager, for a daemon that serves every user in its group. */
+#define GZ_SYSTEM_RUNTIME_DIRECTORY "/run/gazecast"
+#define GZ_CONTROL_TCP_ENDPOINT     "tcp://127.0.0.1:50020" /**< Pupil Remote's port */
 
 /**
  * Find the runtime directory: $XDG_RUNTIME_DIR/gazecast, else /run/gazecast where that exists, else
