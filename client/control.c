@@ -122,39 +122,44 @@ static enum gz_result receive_reply(void *socket, char *out_reply)
 	return GZ_OK;
 }
 
-/* What the monitor has told. That the other side hung up may also be its end, after which it
- * returns: that is waited for; of the others it is certain that nothing will come. */
-static enum gz_handshake_fault take_faults(const struct gz_control *control, void *monitor,
-					   enum gz_handshake_fault known)
+/* A reply that is waited for. */
+struct wait {
+	void *socket;
+	void *monitor;
+	enum gz_handshake_fault fault; /* the last one told */
+	int hang_ups;
+};
+
+/* Whether the monitor tells that no reply will come. */
+static bool is_hopeless(const struct gz_control *control, struct wait *wait)
 {
 	struct gz_monitor_event event;
-	while ((event = gz_handshake_next_event(monitor)).number != 0) {
+	while ((event = gz_handshake_next_event(wait->monitor)).number != 0) {
 		enum gz_handshake_fault fault = gz_handshake_fault_of(&event, control->has_keys);
 		if (fault != GZ_HANDSHAKE_FINE)
-			known = fault;
+			wait->fault = fault;
+		wait->hang_ups += fault == GZ_HANDSHAKE_ENDED;
 	}
-	return known;
+	return wait->fault > GZ_HANDSHAKE_ENDED || wait->hang_ups >= GZ_HANDSHAKE_HANG_UPS;
 }
 
-static enum gz_result wait_reply(const struct gz_control *control, void *socket, void *monitor,
+static enum gz_result wait_reply(const struct gz_control *control, struct wait *wait,
 				 int timeout_ms, char *out_reply)
 {
-	zmq_pollitem_t items[] = { { .socket = socket, .events = ZMQ_POLLIN },
-				   { .socket = monitor, .events = ZMQ_POLLIN } };
-	enum gz_handshake_fault fault = GZ_HANDSHAKE_FINE;
+	zmq_pollitem_t items[] = { { .socket = wait->socket, .events = ZMQ_POLLIN },
+				   { .socket = wait->monitor, .events = ZMQ_POLLIN } };
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
-	while (fault <= GZ_HANDSHAKE_ENDED) {
+	while (!is_hopeless(control, wait)) {
 		int64_t left_ns = deadline_ns - gz_clock_now_ns();
 		if (left_ns <= 0 ||
 		    (zmq_poll(items, 2, (long)(left_ns / GZ_NS_PER_MS) + 1) < 0 && errno != EINTR))
 			break;
 		if (items[0].revents)
-			return receive_reply(socket, out_reply);
-		fault = take_faults(control, monitor, fault);
+			return receive_reply(wait->socket, out_reply);
 	}
-	if (fault == GZ_HANDSHAKE_FINE || (fault == GZ_HANDSHAKE_ENDED && !control->has_keys))
+	if (wait->fault == GZ_HANDSHAKE_FINE)
 		return GZ_ERR_TIMEOUT;
-	gz_handshake_log(fault, control->endpoint, gz_control_keys(control), control->log);
+	gz_handshake_log(wait->fault, control->endpoint, gz_control_keys(control), control->log);
 	return GZ_ERR_ACCESS;
 }
 
@@ -164,11 +169,14 @@ enum gz_result gz_control_request(struct gz_control *control, const char *reques
 	if (timeout_ms < 1)
 		return GZ_ERR_INVAL;
 	void *socket = open_socket(control, timeout_ms);
-	void *monitor = socket ? gz_handshake_open_monitor(control->context, socket, 0) : NULL;
+	void *monitor =
+		socket ? gz_handshake_open_monitor(control->context, socket, control->endpoint, 0)
+		       : NULL;
+	struct wait wait = { .socket = socket, .monitor = monitor };
 	enum gz_result result = GZ_ERR_NO_MEM;
 	if (monitor && zmq_connect(socket, control->endpoint) == 0)
 		result = zmq_send(socket, request, strlen(request), 0) >= 0
-				 ? wait_reply(control, socket, monitor, timeout_ms, out_reply)
+				 ? wait_reply(control, &wait, timeout_ms, out_reply)
 				 : GZ_ERR_TIMEOUT;
 	if (socket)
 		zmq_socket_monitor(socket, NULL, 0);

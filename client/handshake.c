@@ -18,15 +18,15 @@ bool gz_handshake_use_keys(void *socket, const struct gz_keys *keys)
 
 /* The monitor tells over a PAIR inside this process. Its queue has no limit: libzmq would block its
  * I/O thread at one, and only handshakes and their ends are written to it. */
-void *gz_handshake_open_monitor(void *context, void *socket, int events)
+void *gz_handshake_open_monitor(void *context, void *socket, const char *endpoint, int events)
 {
 	char address[64];
 	const int zero = 0;
 	snprintf(address, sizeof address, "inproc://gazecast-monitor-%p", socket);
-	if (zmq_socket_monitor(socket, address,
-			       events | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
-				       ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
-				       ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) != 0)
+	if (strncmp(endpoint, "tcp:", 4) == 0)
+		events |= ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+			  ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+	if (zmq_socket_monitor(socket, address, events) != 0)
 		return NULL;
 	void *monitor = zmq_socket(context, ZMQ_PAIR);
 	if (!monitor)
@@ -78,12 +78,16 @@ void gz_handshake_log(enum gz_handshake_fault fault, const char *endpoint,
 	case GZ_HANDSHAKE_ENDED:
 		if (keys)
 			gz_err(log,
-			       "%s hangs up on our greeting: its server key is most likely another "
-			       "than ours, %s; look it up there and mend known_servers",
+			       "%s hangs up on our greeting: most likely its server key is another "
+			       "than ours, %s, or it has none; look there and mend known_servers",
 			       endpoint, keys->server_key);
 		else
-			gz_warn(log, "%s hangs up on our greeting: is it a socket of gazed?",
-				endpoint);
+			gz_err(log,
+			       "%s hangs up on our greeting; a gazed with tcp = curve wants keys: "
+			       "run "
+			       "gazectl keygen --client, and put the line that gazectl keygen "
+			       "--server printed there into known_servers",
+			       endpoint);
 		return;
 	case GZ_HANDSHAKE_REFUSED:
 		gz_err(log, "%s refuses our key; add this line to authorized_keys there: %s",

@@ -32,8 +32,17 @@ struct gz_monitor_event {
  *  libzmq takes them */
 bool gz_handshake_use_keys(void *socket, const struct gz_keys *keys);
 
-/** Open a monitor of @p socket for @p events and for failed handshakes. NULL: errno tells. */
-void *gz_handshake_open_monitor(void *context, void *socket, int events);
+/** Times that the other side must hang up before we believe that it means us: once may be its end,
+ * after which it returns. */
+enum { GZ_HANDSHAKE_HANG_UPS = 3 };
+
+/**
+ * Open a monitor of @p socket, which connects to @p endpoint, for @p events and, where that is
+ * tcp://, for failed handshakes: local sockets have no keys.
+ *
+ * @return the PAIR socket, or NULL: errno tells
+ */
+void *gz_handshake_open_monitor(void *context, void *socket, const char *endpoint, int events);
 
 /** Take the next event of @p monitor. Never waits. */
 struct gz_monitor_event gz_handshake_next_event(void *monitor);

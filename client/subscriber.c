@@ -60,9 +60,9 @@ static bool subscribe(void *socket, const char *const *topics)
 
 static bool open_monitor(struct gz_subscriber *subscriber)
 {
-	subscriber->monitor =
-		gz_handshake_open_monitor(subscriber->context, subscriber->socket,
-					  ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED);
+	subscriber->monitor = gz_handshake_open_monitor(
+		subscriber->context, subscriber->socket, subscriber->endpoint,
+		ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED);
 	return subscriber->monitor != NULL;
 }
 
@@ -154,6 +154,8 @@ static void renew(struct gz_subscriber *subscriber)
 static void tell(struct gz_subscriber *subscriber, enum gz_handshake_fault fault)
 {
 	uint64_t dropped;
+	if (fault == GZ_HANDSHAKE_ENDED && ++subscriber->hang_ups < GZ_HANDSHAKE_HANG_UPS)
+		return;
 	if (fault != subscriber->told)
 		subscriber->telling = (struct gz_ratelimit) { 0 };
 	subscriber->told = fault;
@@ -176,6 +178,7 @@ void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 		bool connected = event.number == ZMQ_EVENT_HANDSHAKE_SUCCEEDED;
 		if (connected) {
 			subscriber->told = GZ_HANDSHAKE_FINE;
+			subscriber->hang_ups = 0;
 			subscriber->connections++;
 			if (subscriber->connections > 1)
 				gz_info(subscriber->log, "%s is back", subscriber->endpoint);

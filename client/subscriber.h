@@ -36,6 +36,7 @@ struct gz_subscriber {
 	struct gz_keys keys;
 	enum gz_handshake_fault told; /**< the fault logged last */
 	struct gz_ratelimit telling;
+	int hang_ups; /**< in handshakes, since the last connection */
 	bool connected;
 	uint64_t connections; /**< times that a publisher was found */
 	int64_t retry_ns;     /**< when to connect anew if there is no connection until then */

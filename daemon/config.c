@@ -150,6 +150,12 @@ bool gz_config_given(const struct gz_config *config, const char *key)
 	return false;
 }
 
+static void set_given(struct gz_config *config, const char *key)
+{
+	for (size_t i = 0; i < OPTION_COUNT; i++)
+		config->own_given[i] = config->own_given[i] || strcmp(options[i].key, key) == 0;
+}
+
 static enum gz_result read_arguments(struct gz_config *config, int argc, char *const *argv,
 				     const struct gz_log *log)
 {
@@ -172,6 +178,8 @@ static enum gz_result read_arguments(struct gz_config *config, int argc, char *c
 			       shorts[i][0]);
 			return GZ_ERR_INVAL;
 		}
+		if (gz_config_given(config, shorts[i][0]))
+			set_given(config, shorts[i][1]);
 	}
 	config->display_given[0] = gz_config_given(config, "display.px");
 	config->display_given[1] = gz_config_given(config, "display.mm");
