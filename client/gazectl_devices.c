@@ -68,12 +68,13 @@ static enum gz_result read_settings(struct gz_config *config, const struct gz_lo
 static void ask_drivers(struct devices *devices, const struct gz_log *log)
 {
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	const struct gz_driver_host host = { .log = log };
+	const void *settings[GZ_CONFIG_DRIVERS_MAX];
+	const struct gz_driver_host host = { .log = log, .settings = settings };
+	gz_config_all_settings(&devices->config, settings);
 	for (int i = 0; i < GZ_CONFIG_DRIVERS_MAX && gz_drivers[i]; i++) {
 		if (!gz_drivers[i]->list)
 			continue;
-		size_t count = gz_drivers[i]->list(devices->config.driver_settings[i].bytes, &host,
-						   entries);
+		size_t count = gz_drivers[i]->list(settings[i], &host, entries);
 		for (size_t j = 0; j < count; j++)
 			add(devices, gz_drivers[i]->name, &entries[j]);
 	}

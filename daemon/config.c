@@ -34,7 +34,7 @@ static const struct gz_option options[] = {
 	{ "wait-readers", GZ_OPTION_INT, AT(wait_readers), 0, 1000, 0, NULL, "0",
 	  "start the tracker once the stream has so many subscriptions" },
 	{ "tracker.driver", GZ_OPTION_STRING, AT(driver), 0, GZ_NAME_SIZE, 0, NULL, "sim",
-	  "which driver; `gazectl devices` lists the trackers that are there" },
+	  "which driver; auto: that of the tracker that is there, see `gazectl devices`" },
 	{ "tracker.choice", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, "",
 	  "name or serial number of the tracker, where there are several; empty: the first" },
 	{ "tracker.corrections", GZ_OPTION_STRING, AT(corrections), 0, GZ_PATH_SIZE, 0, NULL, "",
@@ -217,6 +217,9 @@ void gz_config_print_help(struct gz_config *config, FILE *out)
 	      "Keys with a dot may also stand in the configuration file.\n\n",
 	      out);
 	gz_options_print_help(bindings, bind(config, NULL, NULL, bindings), out);
+	fputs("\ndrivers:\n", out);
+	for (size_t i = 0; gz_drivers[i]; i++)
+		fprintf(out, "  %-10s %s\n", gz_drivers[i]->name, gz_drivers[i]->help);
 }
 
 void gz_config_print_file(struct gz_config *config, FILE *out)
@@ -227,6 +230,13 @@ void gz_config_print_file(struct gz_config *config, FILE *out)
 	      "has the last word.\n\n",
 	      out);
 	gz_options_print_file(bindings, bind(config, NULL, NULL, bindings), out);
+}
+
+void gz_config_all_settings(const struct gz_config *config,
+			    const void *out_settings[GZ_CONFIG_DRIVERS_MAX])
+{
+	for (size_t i = 0; i < GZ_CONFIG_DRIVERS_MAX; i++)
+		out_settings[i] = config->driver_settings[i].bytes;
 }
 
 const struct gz_driver *gz_config_driver(const struct gz_config *config, const void **out_settings)

@@ -107,6 +107,11 @@ void gz_config_print_help(struct gz_config *config, FILE *out);
 /** Print a commented configuration file with the present values, for --print-config. */
 void gz_config_print_file(struct gz_config *config, FILE *out);
 
+/** The settings of each of gz_drivers[], in that order, as struct gz_driver_host has them; they
+ * point into @p config. */
+void gz_config_all_settings(const struct gz_config *config,
+			    const void *out_settings[GZ_CONFIG_DRIVERS_MAX]);
+
 /** The chosen driver, never NULL after a successful gz_config_read(), and its settings. */
 const struct gz_driver *gz_config_driver(const struct gz_config *config, const void **out_settings);
 

@@ -244,6 +244,8 @@ static bool is_setting_of(const char *argument, const char *driver)
 enum gz_result gz_config_check_arguments(const struct gz_config *config, int argc,
 					 char *const *argv, const struct gz_log *log)
 {
+	if (strcmp(config->driver, "auto") == 0)
+		return GZ_OK; /* it may come to use any of them */
 	for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
 		for (size_t d = 0; gz_drivers[d]; d++) {
 			const char *driver = gz_drivers[d]->name;

@@ -30,6 +30,7 @@ struct gz_service {
 	bool quit;
 	bool waiting; /* for readers, before the tracker starts */
 	struct gz_tracker tracker;
+	const void *driver_settings[GZ_CONFIG_DRIVERS_MAX];
 	struct gz_usb_watch *watch; /* NULL where nobody tells what is plugged in */
 	uint64_t opened;            /* the tracker's device that maker was made for */
 	struct gz_message_maker maker;
@@ -104,7 +105,9 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 		.choice = config->tracker,
 		.pointer = parts->pointer,
 		.display_mm = { config->display_mm[0], config->display_mm[1] },
+		.settings = service->driver_settings,
 	};
+	gz_config_all_settings(config, service->driver_settings);
 	/* Before the first look, so that nothing arrives between the two. */
 	if (driver->on_usb)
 		gz_usb_watch_create(GZ_UDEV_CONTROL, parts->log, &service->watch);

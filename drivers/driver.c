@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "drivers/auto/auto_driver.h"
 #include "drivers/gazepoint/gazepoint_driver.h"
 #include "drivers/hid/hid_driver.h"
 #include "drivers/pointer/pointer_driver.h"
@@ -11,11 +12,20 @@
 #include "drivers/sim/sim_driver.h"
 #include "drivers/template/template_driver.h"
 
+/* clang-format off: one a line, because everybody adds to it. Players first, then what is on USB. */
 const struct gz_driver *const gz_drivers[] = {
-	&gz_driver_sim,      &gz_driver_replay,    &gz_driver_hid,
-	&gz_driver_pointer,  &gz_driver_gazepoint, &gz_driver_pupil,
-	&gz_driver_template, &gz_driver_psvr2,     NULL,
+	&gz_driver_sim,
+	&gz_driver_replay,
+	&gz_driver_auto,
+	&gz_driver_hid,
+	&gz_driver_psvr2,
+	&gz_driver_gazepoint,
+	&gz_driver_pupil,
+	&gz_driver_pointer,
+	&gz_driver_template,
+	NULL,
 };
+/* clang-format on */
 
 const struct gz_driver *gz_driver_find(const char *name)
 {

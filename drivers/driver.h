@@ -67,9 +67,9 @@ struct gz_device {
 	const struct gz_log *log; /**< borrowed; may be NULL */
 };
 
-/** What the daemon lends to a driver for as long as its device is open. */
+/** What the daemon lends to a driver. */
 struct gz_driver_host {
-	const struct gz_log *log; /**< may be NULL */
+	const struct gz_log *log; /**< may be NULL; outlives the device */
 	/** Name or serial number of the device to take where there are several; NULL or empty: the
 	 * first usable one. Drivers that know only one place to look ignore it. */
 	const char *choice;
@@ -79,6 +79,9 @@ struct gz_driver_host {
 	/** What the viewer's pointer does; the driver is the one that takes out. NULL where nobody
 	 * tells of it. */
 	struct gz_pointer_feed *pointer;
+	/** For a driver that opens devices of others: the settings of each of gz_drivers[], in that
+	 * order; NULL where they are not known. */
+	const void *const *settings;
 };
 
 /** A tracker that is there, whether or not it can be used. */
@@ -109,7 +112,7 @@ struct gz_driver {
 	 * Open a device.
 	 *
 	 * @param settings  the struct that the options filled; NULL only if there are no options
-	 * @param host      borrowed, outlives the device
+	 * @param host      read during the call
 	 * @param[out] out_device  owned by the caller: gz_device_destroy()
 	 * @retval GZ_ERR_NO_DEVICE  none there; logged with what to do
 	 * @retval GZ_ERR_ACCESS, GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM, GZ_ERR_INVAL
