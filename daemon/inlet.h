@@ -22,7 +22,7 @@
 #define GZ_INLET_SIZE_MAX 16384
 
 /** Longest topic with its NUL, bytes. */
-#define GZ_INLET_TOPIC_SIZE 80
+#define GZ_INLET_TOPIC_SIZE 256
 
 /** The inlet. One thread. */
 struct gz_inlet;

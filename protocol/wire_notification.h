@@ -22,7 +22,7 @@
 #define GZ_SUBJECT_DOC                "meta.doc"
 
 /** Bytes of a subject with its NUL; longer ones are refused. */
-#define GZ_SUBJECT_SIZE 80
+#define GZ_SUBJECT_SIZE 240
 
 /** Bytes of a session's name with its NUL; longer ones are refused. */
 #define GZ_SESSION_NAME_SIZE 256
