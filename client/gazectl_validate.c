@@ -14,6 +14,7 @@
 #include "client/gazectl_correction.h"
 #include "client/validation.h"
 #include "client/validation_report.h"
+#include "client/viewer_link.h"
 #include "client/viewer_process.h"
 #include "protocol/wire.h"
 
@@ -84,6 +85,7 @@ struct validate {
 	struct gz_control *control;
 	struct gz_stream *stream;
 	struct gz_viewer_process viewer;
+	struct gz_viewer_link *link; /* to a simulated viewer; NULL where somebody else looks */
 	struct gz_validation *result;
 	bool finished;       /* all targets were shown */
 	bool cancelled;      /* by the person in front of the display */
@@ -163,6 +165,27 @@ static enum gz_result start_viewer(struct validate *validate)
 				       validate->log);
 }
 
+/* Nobody sits before a simulated tracker: its viewer is told where the targets are. */
+static void open_link(struct validate *validate)
+{
+	static const char control[] = "/control";
+	char endpoint[GZ_PATH_SIZE];
+	const char *own = gz_control_endpoint(validate->control);
+	size_t length = strlen(own);
+	if (strcmp(validate->result->status.tracker.name, "sim") != 0 || length < sizeof control ||
+	    length >= sizeof endpoint || strcmp(own + length - strlen(control), control) != 0)
+		return;
+	snprintf(endpoint, sizeof endpoint, "%.*s/latest", (int)(length - strlen(control)), own);
+	if (gz_viewer_link_open(endpoint, validate->log, &validate->link) != GZ_OK)
+		gz_warn(validate->log, "the simulated viewer is not told of the targets");
+}
+
+static void tell_simulated_viewer(struct validate *validate, const struct gz_point *point)
+{
+	if (validate->link)
+		gz_viewer_link_pointer(validate->link, point, gz_clock_now_ns());
+}
+
 static struct gz_validation_target *newest_target(struct validate *validate)
 {
 	size_t count = validate->result->target_count;
@@ -184,6 +207,7 @@ static enum gazectl_exit take_shown(struct validate *validate, const struct gz_v
 		.shown_ns = event->time_ns,
 		.hidden_ns = event->time_ns,
 	};
+	tell_simulated_viewer(validate, &event->point);
 	return GAZECTL_DONE;
 }
 
@@ -422,8 +446,11 @@ static enum gazectl_exit check_or_forget(struct validate *validate)
 	note_start(validate->result);
 	if (start_viewer(validate) != GZ_OK)
 		return GAZECTL_FAILED;
+	open_link(validate);
 	status = collect(validate);
 	gz_viewer_process_end(&validate->viewer);
+	tell_simulated_viewer(validate, NULL);
+	gz_viewer_link_close(&validate->link);
 	return status == GAZECTL_DONE ? conclude(validate) : status;
 }
 

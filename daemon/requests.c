@@ -347,14 +347,16 @@ static void obey_notification(struct gz_requests *requests,
 	}
 }
 
-/* The pointer goes to the driver of that name, and to nobody else: what comes of it is gaze. */
+/* The pointer goes to the driver of that name, or to the simulated viewer, who looks there; and to
+ * nobody else: what comes of it is gaze. */
 static void take_pointer(struct gz_requests *requests, const struct gz_viewer_pointer *pointer)
 {
 	const struct gz_requests_parts *parts = &requests->parts;
 	uint64_t held_back;
 	int64_t now_ns = gz_clock_now_ns();
 	struct gz_pointer_report report = gz_viewer_report(pointer, now_ns);
-	if (strcmp(parts->config->driver, "pointer") == 0)
+	const char *driver = parts->config->driver;
+	if (strcmp(driver, "pointer") == 0 || strcmp(driver, "sim") == 0)
 		gz_pointer_feed_put(parts->pointer, &report);
 	else if (gz_ratelimit_pass(&requests->unread_pointer, now_ns, UNREAD_POINTER_NS,
 				   &held_back))

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "drivers/clock_model.h"
+#include "drivers/pointer/pointer_feed.h"
 #include "sim/tracker.h"
 
 #define GZ_LOG_MODULE "sim"
@@ -22,7 +23,8 @@ struct sim_device {
 	int64_t start_ns;
 	uint64_t seq;
 	uint64_t lost;
-	uint32_t skipped; /* lost since the last delivered sample, beyond next's own */
+	struct gz_pointer_feed *feed; /* the host's; NULL where nobody tells where to look */
+	uint32_t skipped;             /* lost since the last delivered sample, beyond next's own */
 };
 
 static struct sim_device *of(struct gz_device *device)
@@ -82,6 +84,15 @@ static void deliver(struct sim_device *sim, struct gz_sample *out_sample)
 	gz_sim_tracker_next(sim->tracker, &sim->next);
 }
 
+/* Whoever shows targets to the simulated viewer tells where they are as a viewer tells of its
+ * pointer. */
+static void follow_reports(struct sim_device *sim)
+{
+	struct gz_pointer_report report;
+	while (sim->feed && gz_pointer_feed_take(sim->feed, gz_clock_now_ns(), &report))
+		gz_sim_tracker_follow(sim->tracker, report.known ? &report.point : NULL);
+}
+
 static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
 			       struct gz_sample *out_sample)
 {
@@ -97,6 +108,7 @@ static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
 		}
 		gz_clock_sleep_until_ns(due_ns);
 	}
+	follow_reports(sim);
 	deliver(sim, out_sample);
 	return GZ_OK;
 }
@@ -149,6 +161,7 @@ static enum gz_result sim_create(const void *settings, const struct gz_driver_ho
 	if (!sim)
 		return GZ_ERR_NO_MEM;
 	sim->base = (struct gz_device) { .ops = &sim_ops, .log = log };
+	sim->feed = host->pointer;
 	sim->params = *(const struct gz_sim_params *)settings;
 	enum gz_result result = gz_sim_tracker_create(&sim->params, 0, log, &sim->tracker);
 	if (result != GZ_OK) {
