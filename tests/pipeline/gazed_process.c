@@ -119,7 +119,7 @@ static void become_gazed(const struct gazed_start *start, const struct gazed_pro
 	if (fd < 0 || dup2(fd, STDERR_FILENO) < 0 ||
 	    (start->file_size_max && setrlimit(RLIMIT_FSIZE, &limit) != 0))
 		_exit(126);
-	if (start->user && (setgroups(0, NULL) != 0 || setgid(start->user) != 0 ||
+	if (start->user && (setgroups(1, &start->group) != 0 || setgid(start->user) != 0 ||
 			    setuid(start->user) != 0))
 		_exit(126);
 	for (fd = 0; start->without_streams && fd <= STDERR_FILENO; fd++)

@@ -37,7 +37,8 @@ struct gazed_start {
 	const char *const *arguments; /**< NULL-terminated; after what every test needs */
 	uint64_t file_size_max;       /**< bytes a file may grow to; 0: as many as may be */
 	bool without_streams;         /**< with standard input, output and error closed */
-	unsigned int user;            /**< whom it runs as, and as which group; 0: as the test */
+	uid_t user;                   /**< whom it runs as, and as which group; 0: as the test */
+	gid_t group;                  /**< a further group, with user */
 };
 
 /**

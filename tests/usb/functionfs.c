@@ -59,7 +59,9 @@ static void answer(struct functionfs *function, const struct usb_ctrlrequest *re
 				     (size_t)size < wanted ? (size_t)size : wanted);
 		return;
 	}
-	ssize_t size = read(function->control, bytes, wanted);
+	ssize_t size = function->refuses_data && wanted > 0
+			       ? write(function->control, bytes, 0)
+			       : read(function->control, bytes, wanted);
 	if (size >= 0)
 		function->calls->set(function->player, request, bytes, (size_t)size);
 }

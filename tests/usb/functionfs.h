@@ -24,9 +24,9 @@ struct functionfs_player {
 	/** The host wants data. @return bytes put into @p bytes, or -1 to stall. */
 	ssize_t (*get)(void *player, const struct usb_ctrlrequest *request, uint8_t *bytes);
 
-	/** The host sends data. @return 0, or -1 to stall if there was none. */
-	int (*set)(void *player, const struct usb_ctrlrequest *request, const uint8_t *bytes,
-		   size_t size);
+	/** The host has sent data. */
+	void (*set)(void *player, const struct usb_ctrlrequest *request, const uint8_t *bytes,
+		    size_t size);
 };
 
 /** A function with one IN endpoint that matters, its newest one. */
@@ -41,6 +41,7 @@ struct functionfs {
 	atomic_bool stop;
 	_Atomic int error;   /**< errno of what went wrong on the thread; 0 */
 	atomic_bool enabled; /**< the host has configured the device */
+	bool refuses_data;   /**< control transfers by which the host sends something are stalled */
 };
 
 /** What a function is made of. */

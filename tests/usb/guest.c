@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -56,4 +57,16 @@ void guest_wait_for_count(const _Atomic uint32_t *count, uint32_t wanted)
 	while (*count < wanted && gz_clock_now_ns() < deadline_ns)
 		usleep(1000);
 	assert_true(*count >= wanted);
+}
+
+void guest_install_udev_rules(void)
+{
+	assert_int_equal(system("cp /usr/share/gazecast/udev/*.rules /etc/udev/rules.d/ && "
+				"udevadm control --reload"),
+			 0);
+}
+
+void guest_remove_udev_rules(void)
+{
+	assert_int_equal(system("rm -f /etc/udev/rules.d/*.rules; udevadm control --reload"), 0);
 }

@@ -17,4 +17,9 @@ void guest_wait_for_file(const char *path, bool wanted);
 /** Wait until @p count is at least @p wanted; fails the test after 10 s. */
 void guest_wait_for_count(const _Atomic uint32_t *count, uint32_t wanted);
 
+/** Install the project's udev rules, as a user of the machine would; and take them away, also where
+ *  they are not installed. Devices plugged in before keep what they have. */
+void guest_install_udev_rules(void);
+void guest_remove_udev_rules(void);
+
 #endif

@@ -57,6 +57,9 @@ static ssize_t get_feature(struct hid_function *tracker, uint8_t id, uint8_t *re
 		report[1] = STATUS_READY;
 		put(report + 2, 2, MADE_RATE_HZ);
 		return 4;
+	case REPORT_CONTROL:
+		report[1] = (uint8_t)tracker->mode;
+		return 2;
 	default:
 		return -1;
 	}
@@ -68,6 +71,7 @@ static ssize_t get_descriptor(struct hid_function *tracker, uint8_t type, uint8_
 	size_t size = report_descriptor(tracker, &descriptor);
 	if (type != DESCRIPTOR_REPORT)
 		return -1;
+	tracker->descriptor_reads++;
 	memcpy(bytes, descriptor, size);
 	return (ssize_t)size;
 }
@@ -85,8 +89,8 @@ static ssize_t get(void *player, const struct usb_ctrlrequest *request, uint8_t 
 	return -1;
 }
 
-static int set(void *player, const struct usb_ctrlrequest *request, const uint8_t *bytes,
-	       size_t size)
+static void set(void *player, const struct usb_ctrlrequest *request, const uint8_t *bytes,
+		size_t size)
 {
 	struct hid_function *tracker = player;
 	if (request->bRequest == HID_REQ_SET_REPORT &&
@@ -95,7 +99,6 @@ static int set(void *player, const struct usb_ctrlrequest *request, const uint8_
 		tracker->mode = bytes[1];
 		tracker->mode_requests++;
 	}
-	return 0;
 }
 
 static const struct functionfs_player calls = { .get = get, .set = set };
@@ -139,7 +142,11 @@ static void start_function(struct hid_function *tracker, const char *serial)
 		.count = 3,
 		.endpoints = 1,
 	};
-	tracker->function = (struct functionfs) { .calls = &calls, .player = tracker };
+	tracker->function = (struct functionfs) {
+		.calls = &calls,
+		.player = tracker,
+		.refuses_data = tracker->refuses_features,
+	};
 	functionfs_start(&tracker->function, &tracker->gadget, serial, &descriptors);
 }
 
@@ -156,6 +163,7 @@ void hid_function_plug(struct hid_function *tracker, int controller, const char 
 {
 	struct gadget_identity identity = { 0x1209, 0x0002, "Gazecast", name, serial };
 	tracker->made = true;
+	tracker->mode = 4; /* head position, of no use here */
 	tracker->stream = (struct made_stream) { .send = send_sample, .tracker = tracker };
 	gadget_make(&tracker->gadget, controller, &identity);
 	start_function(tracker, serial);

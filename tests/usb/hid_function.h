@@ -24,8 +24,9 @@ struct hid_function {
 	struct functionfs function;
 	struct made_stream stream;
 	bool made;
-	_Atomic uint32_t mode; /**< of the newest Device Mode Request; 0 before the first */
+	_Atomic uint32_t mode; /**< of the newest Device Mode Request; 4 before the first */
 	_Atomic uint32_t mode_requests;
+	_Atomic uint32_t descriptor_reads;
 	_Atomic uint32_t feature_reads; /**< GET_REPORT of a feature report */
 };
 

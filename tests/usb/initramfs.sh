@@ -10,7 +10,7 @@ shift 3
 here=$(cd "$(dirname "$0")" && pwd)
 
 rm -rf "$stage"
-mkdir -p "$stage"/{bin,dev,etc,lib/modules,lib/systemd,lib/udev/rules.d,proc,root,run,sys,tmp,usr/bin}
+mkdir -p "$stage"/{bin,dev,etc,lib/modules,lib/systemd,lib/udev/rules.d,etc/udev/rules.d,usr/share/gazecast/udev,proc,root,run,sys,tmp,usr/bin}
 cp "$here/guest/init" "$stage/init"
 cp "$here/guest/passwd" "$here/guest/group" "$stage/etc/"
 cp "$(command -v busybox)" "$stage/bin/busybox"
@@ -20,7 +20,7 @@ cp "$udevadm" "$stage/usr/bin/udevadm"
 ln -s /usr/bin/udevadm "$stage/bin/udevadm"
 ln -s /usr/bin/udevadm "$stage/lib/systemd/systemd-udevd"
 cp /lib/udev/rules.d/50-udev-default.rules "$stage/lib/udev/rules.d/"
-find "$rules" -maxdepth 1 -name '*.rules' -exec cp {} "$stage/lib/udev/rules.d/" \;
+find "$rules" -name '*.rules' -exec cp {} "$stage/usr/share/gazecast/udev/" \;
 
 for program in "$@"; do
 	cp "$program" "$stage/usr/bin/"

@@ -2,6 +2,7 @@
 
 #include "lab.h"
 
+#include <grp.h>
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>
@@ -15,11 +16,13 @@
 #include "base/clock.h"
 #include "protocol/wire.h"
 
-/* So much before a sample was due the fit of its clock may put it: a machine that is emulated on a
- * busy one delivers its first samples with delays that vary by many milliseconds. */
-#define EARLY_NS (20 * GZ_NS_PER_MS)
+/* Between when a sample was due and its host time. On a busy machine an emulated one delivers
+ * samples with delays that vary by 100 ms; the fit of a clock's first second can be off by that in
+ * both directions. How well clocks are fitted is tested elsewhere. */
+#define EARLY_NS (100 * GZ_NS_PER_MS)
+#define LATE_NS  GZ_NS_PER_S
 
-enum { ARGUMENTS_MAX = 20, PATIENCE_MS = 20000 };
+enum { PATIENCE_MS = 20000, FILLERS_MAX = 1000 };
 
 void lab_open(struct lab *lab)
 {
@@ -32,19 +35,14 @@ void lab_open(struct lab *lab)
 
 void lab_start(struct lab *lab, bool as_user, const char *const *arguments)
 {
-	const char *all[ARGUMENTS_MAX] = { "--display.mm", "500 300", "--display.px", "1000x600" };
-	size_t count = 4;
-	for (; *arguments; arguments++) {
-		assert_true(count < ARGUMENTS_MAX - 1);
-		all[count++] = *arguments;
-	}
 	/* What the ordinary user could not make, it need not. */
 	if (!as_user)
 		assert_int_equal(chown(lab->place.directory, 0, 0), 0);
 	struct gazed_start start = {
 		.place = &lab->place,
-		.arguments = all,
+		.arguments = arguments,
 		.user = as_user ? LAB_USER : 0,
+		.group = LAB_GROUP,
 	};
 	gazed_spawn(&start, &lab->gazed);
 	gazed_wait_ready(&lab->place, &lab->gazed);
@@ -138,24 +136,49 @@ static void compare_one(const struct lab_truth *truth, const struct gz_gaze *gaz
 		fail_msg("sample %" PRIu64 " is at %f %f, was sent at %f %f, confidence %f",
 			 sample.number, gaze->raw.x, gaze->raw.y, sample.x, sample.y,
 			 (double)gaze->confidence);
-	if (late_ns < -EARLY_NS || late_ns > truth->delay_ns)
+	if (late_ns < -EARLY_NS || late_ns > LATE_NS)
 		fail_msg("sample %" PRIu64 " is %f ms late", sample.number, gz_ns_to_ms(late_ns));
 	/* Smoothing does not lead away. */
 	assert_true(fabs(gaze->point.x - sample.x) < 0.05 && fabs(gaze->point.y - sample.y) < 0.05);
 }
 
+/* What a driver puts where a tracker that leaves out what it cannot measure sent nothing. */
+static bool is_filler(const struct gz_gaze *gaze)
+{
+	return gaze->device_ns == GZ_NO_DEVICE_TIME && isnan(gaze->raw.x) &&
+	       !gaze->eye[GZ_EYE_LEFT].valid && !gaze->eye[GZ_EYE_RIGHT].valid;
+}
+
+static void compare_order(const struct gz_gaze *before, const struct gz_gaze *gaze)
+{
+	if (gaze->seq <= before->seq || gaze->host_ns <= before->host_ns)
+		fail_msg("sample %" PRIu64 " at %" PRId64 " follows %" PRIu64 " at %" PRId64,
+			 gaze->seq, gaze->host_ns, before->seq, before->host_ns);
+}
+
 void lab_compare(struct lab *lab, const struct lab_truth *truth, uint64_t count)
 {
-	for (uint64_t i = 0; i < count; i++) {
+	uint64_t fillers = 0;
+	while (count > 0) {
 		struct gz_gaze before = lab->gaze;
 		lab_next_gaze(lab);
-		compare_one(truth, &lab->gaze);
-		if (lab->compared++ == 0)
+		if (lab->compared++ > 0)
+			compare_order(&before, &lab->gaze);
+		if (is_filler(&lab->gaze)) {
+			assert_true(++fillers < FILLERS_MAX);
 			continue;
-		if (lab->gaze.seq <= before.seq || lab->gaze.host_ns <= before.host_ns)
-			fail_msg("sample %" PRIu64 " at %" PRId64 " follows %" PRIu64
-				 " at %" PRId64,
-				 lab->gaze.seq, lab->gaze.host_ns, before.seq, before.host_ns);
+		}
+		compare_one(truth, &lab->gaze);
+		count--;
+	}
+}
+
+void lab_wait(struct lab *lab, bool (*done)(const struct lab *lab), const char *what)
+{
+	int64_t begin_ns = gz_clock_now_ns();
+	while (!done(lab)) {
+		receive(lab);
+		check_patience(lab, begin_ns, what);
 	}
 }
 
@@ -183,7 +206,9 @@ static void become_gazectl(bool as_user, int out)
 {
 	dup2(out, STDOUT_FILENO);
 	dup2(out, STDERR_FILENO);
-	if (as_user && (setgid(LAB_USER) != 0 || setuid(LAB_USER) != 0))
+	const gid_t group = LAB_GROUP;
+	if (as_user &&
+	    (setgroups(1, &group) != 0 || setgid(LAB_USER) != 0 || setuid(LAB_USER) != 0))
 		_exit(126);
 	execl("/usr/bin/gazectl", "gazectl", "devices", (char *)NULL);
 	_exit(127);

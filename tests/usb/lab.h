@@ -12,8 +12,9 @@
 #include "pipeline/gazed_process.h"
 #include "protocol/gaze.h"
 
-/** The ordinary user of the guest. */
-#define LAB_USER 1000
+/** The ordinary user of the guest, and the group whose members may use trackers. */
+#define LAB_USER  1000
+#define LAB_GROUP 2000
 
 /** A daemon and its reader. */
 struct lab {
@@ -27,9 +28,15 @@ struct lab {
 /** Make the daemon's folders and subscribe. */
 void lab_open(struct lab *lab);
 
+/** The screen of made_gaze.h, for trackers that do not know theirs. */
+#define LAB_SCREEN "--display.mm", "500 300"
+
 /** Start the daemon with these arguments, NULL at the end, as LAB_USER or as root, and wait until
- * it answers. The screen is that of made_gaze.h. */
+ *  it answers. */
 void lab_start(struct lab *lab, bool as_user, const char *const *arguments);
+
+/** The same as root, arguments given one by one. */
+#define LAB_START(lab, ...) lab_start(lab, false, (const char *const[]) { __VA_ARGS__, NULL })
 
 /** End it by SIGTERM; fails the test where it does not end well. */
 void lab_stop(struct lab *lab);
@@ -51,17 +58,20 @@ struct lab_truth {
 	const struct made_stream *stream;
 	bool has_clock;   /**< the tracker stamps its samples */
 	double tolerance; /**< of the point as measured, screen sides; by how it is stored */
-	int64_t delay_ns; /**< longest between when a sample was due and its host_ns */
 };
 
 /** Receive @p count gaze messages, and fail the test unless they are what the tracker sent: numbers
  *  that count up, times that advance, points as they were where the tracker's clock says. */
 void lab_compare(struct lab *lab, const struct lab_truth *truth, uint64_t count);
 
+/** Receive until @p done says so of the lab; fails the test, naming @p what, after 20 s. */
+void lab_wait(struct lab *lab, bool (*done)(const struct lab *lab), const char *what);
+
 /** Receive until status tells this state; fails the test after 20 s. */
 void lab_wait_state(struct lab *lab, enum gz_tracker_state state);
 
-/** Receive until status has counted @p count malformed reports of this kind; fails after 20 s. */
+/** Receive until status has counted @p count malformed reports of this kind; fails after 20 s, and
+ *  where there are more. */
 void lab_wait_malformed(struct lab *lab, enum gz_malformed kind, uint64_t count);
 
 /** What `gazectl devices` prints; as LAB_USER or as root; static buffer. */

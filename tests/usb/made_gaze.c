@@ -16,7 +16,9 @@ struct made_sample made_gaze(uint64_t number)
 {
 	return (struct made_sample) {
 		.number = number,
-		.device_us = MADE_CLOCK_START_US + (int64_t)number * MADE_PERIOD_US,
+		/* No exposure is quite on time. */
+		.device_us = MADE_CLOCK_START_US + (int64_t)number * MADE_PERIOD_US +
+			     (int64_t)(number * 37 % 101 * 15),
 		.x = 0.25 + 0.5 * wander(number, 1700),
 		.y = 0.3 + 0.4 * wander(number, 1100),
 	};

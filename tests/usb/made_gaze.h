@@ -25,7 +25,7 @@
 /** One sample of the truth. */
 struct made_sample {
 	uint64_t number;
-	int64_t device_us; /**< MADE_CLOCK_START_US + number * MADE_PERIOD_US */
+	int64_t device_us; /**< MADE_CLOCK_START_US + number * MADE_PERIOD_US, up to 1.5 ms later */
 	double x, y;       /**< fractions of the screen from its top left corner */
 };
 

@@ -18,7 +18,6 @@ static const struct lab_truth truth = {
 	.stream = &headset.stream,
 	.has_clock = true,
 	.tolerance = 1e-4,
-	.delay_ns = 100 * GZ_NS_PER_MS,
 };
 
 static int set_up(void **state)
@@ -38,11 +37,8 @@ static int tear_down(void **state)
 
 static void start_daemon(void)
 {
-	const char *const arguments[] = {
-		"--driver", "psvr2", "--psvr2.screen_distance_mm", "600", "--psvr2.screen_mm",
-		"500 300",  NULL,
-	};
-	lab_start(&lab, false, arguments);
+	LAB_START(&lab, "--driver", "psvr2", "--psvr2.screen_distance_mm", "600",
+		  "--psvr2.screen_mm", "500 300");
 }
 
 static void plug_in(void)
@@ -167,6 +163,20 @@ static void stalled_endpoint_is_brought_back(void **state)
 	lab_stop(&lab);
 }
 
+static void headset_is_listed(void **state)
+{
+	(void)state;
+	assert_null(strstr(lab_devices(&lab, false), "VR-123"));
+	plug_in();
+	start_daemon();
+	lab_compare(&lab, &truth, 20);
+	const char *text = lab_devices(&lab, false);
+	assert_non_null(strstr(text, "PlayStation VR2"));
+	assert_non_null(strstr(text, "VR-123"));
+	lab_compare(&lab, &truth, 20);
+	lab_stop(&lab);
+}
+
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
 int main(void)
@@ -177,6 +187,7 @@ int main(void)
 		TEST(headset_may_come_go_and_come_again_at_any_time),
 		TEST(packets_that_are_none_are_counted_and_the_stream_goes_on),
 		TEST(stalled_endpoint_is_brought_back),
+		TEST(headset_is_listed),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
