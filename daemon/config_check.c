@@ -220,12 +220,39 @@ static enum gz_result check_network(const struct check *check)
 	return result == GZ_OK ? check_ports(check, atoi(port)) : result;
 }
 
+/* Whether the driver pupil would listen to this daemon itself, which says nothing then. */
+static enum gz_result check_pupil(const struct check *check)
+{
+	const struct gz_config *config = check->config;
+	const void *settings;
+	char address[GZ_ENDPOINT_SIZE], host[GZ_ENDPOINT_SIZE], own_host[GZ_ENDPOINT_SIZE];
+	const struct gz_driver *driver = gz_config_driver(config, &settings);
+	const struct gz_option_binding binding = { driver->options, *driver->option_count,
+						   (void *)settings, NULL };
+	const struct gz_option *option = gz_options_find(&binding, 1, "pupil.address", NULL);
+	if (!option || config->tcp == GZ_TCP_OFF ||
+	    gz_option_format(option, settings, address, sizeof address) != GZ_OK)
+		return GZ_OK;
+	const char *port = split_endpoint(address, host, sizeof host);
+	const char *own_port = split_endpoint(config->control_endpoint, own_host, sizeof own_host);
+	bool local = is_loopback(host) || strcmp(host, "localhost") == 0;
+	if (!port || !own_port || strcmp(port, own_port) != 0 ||
+	    (strcmp(host, own_host) != 0 && !local))
+		return GZ_OK;
+	return refuse(check, "pupil.address",
+		      "%s is where this daemon's own requests are; move those with --control "
+		      "tcp://127.0.0.1:PORT or --tcp off, or give another machine's address",
+		      address);
+}
+
 enum gz_result gz_config_check(struct gz_config *config, const struct gz_log *log)
 {
 	const struct check check = { config, log };
 	enum gz_result result = check_driver(&check);
 	if (result == GZ_OK)
 		result = check_network(&check);
+	if (result == GZ_OK)
+		result = check_pupil(&check);
 	if (result == GZ_OK)
 		result = check_display(&check);
 	if (result == GZ_OK)

@@ -85,6 +85,10 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 		{ "--config", "/nonexistent.conf", NULL, "/nonexistent.conf: no such file" },
 		{ "--sim.rate_hz", "5000", NULL, "5000 is outside 30 to 2000" },
 		{ "--display.mm", "nan 1", NULL, "display.mm" },
+		{ "--driver=pupil", NULL, NULL,
+		  "pupil.address: tcp://127.0.0.1:50020 is where this" },
+		{ "--driver=pupil", "--pupil.address=tcp://localhost:7",
+		  "--control=tcp://127.0.0.1:7", "--pupil.address: tcp://localhost:7 is where" },
 		{ "file.gzl", NULL, NULL, "file.gzl" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
@@ -128,6 +132,14 @@ static void config_contradictions_in_a_file_are_told_with_file_and_line(void **s
 			fail_msg("%s: %s, %d messages: %s, not %s", refusals[i][0],
 				 gz_result_text(result), captured.messages, captured.last, wanted);
 	}
+}
+
+static void config_pupil_may_be_anywhere_but_at_the_daemons_own_socket(void **state)
+{
+	(void)state;
+	assert_int_equal(READ("--driver=pupil", "--control=tcp://127.0.0.1:50021"), GZ_OK);
+	assert_int_equal(READ("--driver=pupil", "--tcp=off"), GZ_OK);
+	assert_int_equal(READ("--driver=pupil", "--pupil.address=tcp://10.0.0.1:50020"), GZ_OK);
 }
 
 static void config_settings_of_other_drivers_may_stay_in_a_file(void **state)
@@ -324,6 +336,7 @@ int main(void)
 		cmocka_unit_test(config_command_line_has_the_last_word_over_the_file),
 		cmocka_unit_test(config_refusals_say_what_and_what_to_do),
 		cmocka_unit_test(config_contradictions_in_a_file_are_told_with_file_and_line),
+		cmocka_unit_test(config_pupil_may_be_anywhere_but_at_the_daemons_own_socket),
 		cmocka_unit_test(config_settings_of_other_drivers_may_stay_in_a_file),
 		cmocka_unit_test(config_control_is_at_pupils_port_of_the_address),
 		cmocka_unit_test(config_surfaces_may_be_none),
