@@ -6,6 +6,9 @@
 #define WIDTH_PX  1200.0
 #define MARGIN_PX 60.0
 
+/* From a target's circle to its label, px (chosen). */
+#define LABEL_PX 16.0
+
 /* Samples drawn of one target at most: chosen, more make one blot. */
 enum { SAMPLES_MAX = 400 };
 
@@ -70,10 +73,10 @@ static void draw_mean(const struct frame *frame, const struct gz_validation_targ
 	fprintf(frame->out,
 		"<path d=\"M%.1f %.1fL%.1f %.1f\" class=\"offset\"/>\n"
 		"<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" class=\"mean\"/>\n"
-		"<text x=\"%.1f\" y=\"%.1f\">%.2f°</text>\n",
+		"<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%.2f°</text>\n",
 		x_of(frame, target->point), y_of(frame, target->point), x, y, x, y,
-		x_of(frame, target->point) + 12, y_of(frame, target->point) - 12,
-		quality->accuracy_deg);
+		x_of(frame, target->point),
+		y_of(frame, target->point) + frame->px_per_deg + LABEL_PX, quality->accuracy_deg);
 }
 
 static void begin(const struct frame *frame)
@@ -109,6 +112,11 @@ void gz_validation_draw(const struct gz_validation *validation, FILE *out)
 	/* Above every sample. */
 	for (size_t i = 0; i < validation->target_count; i++)
 		draw_mean(&frame, &validation->target[i]);
+	if (both->targets == 0) {
+		fprintf(out, "<text x=\"%.1f\" y=\"%.1f\">%s: no samples</text>\n</svg>\n",
+			MARGIN_PX, MARGIN_PX / 2, validation->started);
+		return;
+	}
 	fprintf(out,
 		"<text x=\"%.1f\" y=\"%.1f\">%s: accuracy %.2f°, RMS-S2S %.3f°, SD %.3f°, loss "
 		"%.1f %%; the dashed circles are 1° in radius at the middle of the display</text>\n"

@@ -257,6 +257,8 @@ static void begin_fixation(struct gz_viewer *viewer)
 		duration_s =
 			FIXATION_MIN_S + mean_s * gz_random_gamma(&viewer->random, DURATION_SHAPE);
 	} while (duration_s > FIXATION_MAX_S);
+	if (viewer->follows && angle_to_aim_deg(viewer) > FOLLOW_REST_DEG)
+		duration_s = FOLLOW_LATENCY_S; /* it has missed, and looks again */
 	begin_phase(viewer, GZ_EVENT_FIXATION, duration_s);
 	viewer->fixation_count++;
 	plan_microsaccade(viewer, viewer->begin_s + MICRO_AFTER_S);

@@ -12,6 +12,7 @@ import time
 import unittest
 
 from picture import Picture, run, skip, write_scene
+from xserver import start_server
 
 GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
 SHOTS = sys.argv[4] if len(sys.argv) > 4 else None
@@ -28,26 +29,10 @@ for tool in ("Xvfb", "xdotool", "ffmpeg"):
         skip(tool + " is not installed")
 
 
-def start_server():
-    """An X server on a display that is free; it says which."""
-    read, write = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "%dx%dx24" % SCREEN, "-nolisten", "tcp",
-         "-noreset"],
-        pass_fds=(write,), stderr=subprocess.DEVNULL,
-    )
-    os.close(write)
-    with os.fdopen(read) as number:
-        display = number.readline().strip()
-    if not display:
-        skip("Xvfb does not start")
-    return server, ":" + display
-
-
 class Window(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server, display = start_server()
+        cls.server, display = start_server(SCREEN)
         cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
         cls.environment = dict(
             os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
