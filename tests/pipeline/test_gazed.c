@@ -252,10 +252,11 @@ static void gazed_latest_is_one_frame_and_the_newest(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* The next message from @p i on that is not a status. */
-static size_t skip_status(const struct reader *reader, size_t i)
+/* The next message from @p i on that the pipeline made: no status, no notification. */
+static size_t skip_others(const struct reader *reader, size_t i)
 {
-	while (i < reader->count && strcmp(reader->messages[i].topic, "status") == 0)
+	while (i < reader->count && (strcmp(reader->messages[i].topic, "status") == 0 ||
+				     strncmp(reader->messages[i].topic, "notify.", 7) == 0))
 		i++;
 	return i;
 }
@@ -282,20 +283,21 @@ static bool same_message(const struct received *a, const struct received *b)
 	       memcmp(a->bytes, b->bytes, a->size - ignored) == 0;
 }
 
-/* All messages of @p replay, but for status, against those of @p live from its message @p from on.
+/* All that the pipeline made in @p replay against those of @p live from its message @p from on.
  */
 static void compare(const struct reader *live, size_t from, const struct reader *replay)
 {
-	size_t a = skip_status(live, from), b = skip_status(replay, 0), compared = 0;
+	size_t a = skip_others(live, from), b = skip_others(replay, 0), compared = 0;
 	while (b < replay->count) {
 		if (a == live->count)
-			fail_msg("the live stream ends after %zu messages", compared);
+			fail_msg("the live stream ends after %zu messages, before %s", compared,
+				 replay->messages[b].topic);
 		if (!same_message(&live->messages[a], &replay->messages[b]))
 			fail_msg("message %zu differs: %s and %s", compared,
 				 live->messages[a].topic, replay->messages[b].topic);
 		compared++;
-		a = skip_status(live, a + 1);
-		b = skip_status(replay, b + 1);
+		a = skip_others(live, a + 1);
+		b = skip_others(replay, b + 1);
 	}
 	print_message("           %zu messages are the same\n", compared);
 }

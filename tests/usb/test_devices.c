@@ -146,6 +146,47 @@ static void tracker_whose_descriptor_makes_no_sense_is_named_and_hurts_nobody(vo
 	lab_stop(&lab);
 }
 
+static void ordinary_user_is_told_of_the_udev_rule_and_served_once_it_is_there(void **state)
+{
+	(void)state;
+	const char *const arguments[] = { "--driver", "hid", LAB_SCREEN, NULL };
+	plug_first();
+	guest_wait_for_file("/dev/hidraw0", true);
+	lab_start(&lab, true, arguments);
+	lab_wait_state(&lab, GZ_TRACKER_ABSENT);
+	print_message("           without the rule: %s\n", lab.reader.status.tracker.reason);
+	lab_expect_said(&lab, "70-gazecast.rules");
+	expect_listed("GazeLab 200", "70-gazecast.rules", true);
+	gadget_unplug(&first.gadget);
+	guest_wait_for_file("/dev/hidraw0", false);
+	guest_install_udev_rules();
+	gadget_plug(&first.gadget);
+	lab_compare(&lab, &first_truth, 50);
+	expect_listed("GazeLab 200", "    usable", true);
+	lab_stop(&lab);
+}
+
+static void ordinary_user_uses_a_headset_with_the_udev_rule(void **state)
+{
+	(void)state;
+	const char *const arguments[] = { "--driver", "psvr2", "--psvr2.screen_mm", "500 300",
+					  NULL };
+	psvr2_gadget_plug(&headset, "VR-123");
+	made_stream_start(&headset.stream);
+	lab_start(&lab, true, arguments);
+	lab_wait_state(&lab, GZ_TRACKER_ABSENT);
+	print_message("           without the rule: %s\n", lab.reader.status.tracker.reason);
+	expect_listed("PlayStation VR2", "70-gazecast.rules", true);
+	lab_expect_said(&lab, "70-gazecast.rules");
+	psvr2_gadget_unplug(&headset);
+	guest_install_udev_rules();
+	psvr2_gadget_plug(&headset, "VR-123");
+	made_stream_start(&headset.stream);
+	lab_compare(&lab, &headset_truth, 50);
+	expect_listed("PlayStation VR2", "VR-123", true);
+	lab_stop(&lab);
+}
+
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
 int main(void)
@@ -154,6 +195,8 @@ int main(void)
 		TEST(of_two_trackers_the_one_is_used_that_is_named),
 		TEST(tracker_that_is_named_is_waited_for_and_no_other_taken),
 		TEST(tracker_whose_descriptor_makes_no_sense_is_named_and_hurts_nobody),
+		TEST(ordinary_user_is_told_of_the_udev_rule_and_served_once_it_is_there),
+		TEST(ordinary_user_uses_a_headset_with_the_udev_rule),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
