@@ -2,10 +2,15 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
+#include "base/clock.h"
 #include "protocol/key_file.h"
 
 #define GZ_LOG_MODULE "security"
+
+/* Chosen: some kernel ticks. */
+#define FRESH_NS (50 * GZ_NS_PER_MS)
 
 static bool same_time(const struct timespec *a, const struct timespec *b)
 {
@@ -20,13 +25,24 @@ static bool same_file(const struct stat *a, const struct stat *b)
 	       same_time(&a->st_mtim, &b->st_mtim) && same_time(&a->st_ctim, &b->st_ctim);
 }
 
-static enum gz_result read_again(struct gz_authorized_keys *keys)
+static enum gz_result read_again(struct gz_authorized_keys *keys, const struct gz_log *log)
 {
 	enum gz_result result =
-		gz_key_file_read_list(keys->path, GZ_KEY_LIST_AUTHORIZED, keys->log, &keys->list);
+		gz_key_file_read_list(keys->path, GZ_KEY_LIST_AUTHORIZED, log, &keys->list);
 	if (result != GZ_OK)
 		keys->list.count = 0;
 	return result;
+}
+
+/* Whether the file may be written once more without a sign of it: file systems' times move on by
+ * kernel ticks, at most 10 ms apart. */
+static bool is_fresh(const struct stat *status)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_REALTIME, &now);
+	int64_t age_ns = (now.tv_sec - status->st_ctim.tv_sec) * GZ_NS_PER_S + now.tv_nsec -
+			 status->st_ctim.tv_nsec;
+	return age_ns < FRESH_NS;
 }
 
 /* @return whether there was something new, whose first reading ended with *out_result */
@@ -35,11 +51,13 @@ static bool look(struct gz_authorized_keys *keys, enum gz_result *out_result)
 	struct stat status = { 0 };
 	if (stat(keys->path, &status) != 0)
 		status = (struct stat) { 0 };
-	if (same_file(&status, &keys->read))
+	bool same = same_file(&status, &keys->read);
+	if (same && !keys->fresh)
 		return false;
 	keys->read = status;
-	*out_result = read_again(keys);
-	return true;
+	keys->fresh = is_fresh(&status);
+	*out_result = read_again(keys, same ? NULL : keys->log);
+	return !same;
 }
 
 enum gz_result gz_authorized_keys_open(struct gz_authorized_keys *keys, const char *path,

@@ -6,6 +6,7 @@
 #ifndef GZ_DAEMON_AUTHORIZED_KEYS_H
 #define GZ_DAEMON_AUTHORIZED_KEYS_H
 
+#include <stdbool.h>
 #include <sys/stat.h>
 
 #include "base/log.h"
@@ -18,6 +19,7 @@ struct gz_authorized_keys {
 	const struct gz_log *log;
 	struct gz_key_list list;
 	struct stat read; /**< of the file when it was read; all zero: there was none */
+	bool fresh;       /**< it had just been written then, and may change unseen */
 };
 
 /**

@@ -5,7 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/captured_log.h"
@@ -170,6 +173,81 @@ static void endpoint_longer_than_a_socket_path_is_refused(void **state)
 	assert_int_equal(gz_endpoint_ipc("/a", "b", text, strlen("ipc:///a/b")), GZ_ERR_FULL);
 }
 
+/* A socket @p name in @p directory. */
+static void make_socket(const char *directory, const char *name)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+	snprintf(address.sun_path, sizeof address.sun_path, "%s/%s", directory, name);
+	int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+	assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
+	close(fd);
+}
+
+static void reader_finds_the_daemon_of_its_user(void **state)
+{
+	struct folder *folder = *state;
+	char found[GZ_ENDPOINT_SIZE], wanted[128];
+	unsetenv("GAZECAST_RUNTIME_DIR");
+	setenv("XDG_RUNTIME_DIR", folder->path, 1);
+	assert_int_equal(mkdir(folder->inside, 0700), 0);
+	make_socket(folder->inside, "latest");
+	assert_int_equal(gz_endpoint_find("latest", &folder->captured.log, found, sizeof found),
+			 GZ_OK);
+	snprintf(wanted, sizeof wanted, "ipc://%s/latest", folder->inside);
+	assert_string_equal(found, wanted);
+	snprintf(wanted, sizeof wanted, "%s/latest", folder->inside);
+	unlink(wanted);
+	unsetenv("XDG_RUNTIME_DIR");
+}
+
+static void reader_waits_where_the_daemon_of_its_user_will_be(void **state)
+{
+	struct folder *folder = *state;
+	char found[GZ_ENDPOINT_SIZE], wanted[128];
+	struct stat status;
+	if (stat(GZ_SYSTEM_RUNTIME_DIRECTORY "/latest", &status) == 0)
+		skip(); /* a daemon of this machine is there */
+	unsetenv("GAZECAST_RUNTIME_DIR");
+	setenv("XDG_RUNTIME_DIR", folder->path, 1);
+	assert_int_equal(gz_endpoint_find("no-such", &folder->captured.log, found, sizeof found),
+			 GZ_OK);
+	snprintf(wanted, sizeof wanted, "ipc://%s/no-such", folder->inside);
+	assert_string_equal(found, wanted);
+	unsetenv("XDG_RUNTIME_DIR");
+}
+
+/* Somebody makes the directory in /tmp before the user's daemon does. */
+static void reader_refuses_a_directory_in_tmp_that_is_anothers(void **state)
+{
+	(void)state;
+	enum { USER = 54321, OTHER = 54322 };
+	struct stat status;
+	static const char path[] = "/tmp/gazecast-54321";
+	if (geteuid() != 0 || stat(GZ_SYSTEM_RUNTIME_DIRECTORY, &status) == 0)
+		skip(); /* only root can play both */
+	assert_int_equal(mkdir(path, 0755), 0);
+	for (int theirs = 0; theirs < 2; theirs++) {
+		int ended;
+		assert_int_equal(chown(path, theirs ? OTHER : USER, 0), 0);
+		pid_t reader = fork();
+		if (reader == 0) {
+			char found[GZ_ENDPOINT_SIZE];
+			unsetenv("GAZECAST_RUNTIME_DIR");
+			unsetenv("XDG_RUNTIME_DIR");
+			if (setuid(USER) != 0)
+				_exit(2);
+			_exit(gz_endpoint_find("latest", NULL, found, sizeof found) ==
+					      (theirs ? GZ_ERR_ACCESS : GZ_OK)
+				      ? 0
+				      : 1);
+		}
+		assert_int_equal(waitpid(reader, &ended, 0), reader);
+		if (ended != 0)
+			fail_msg("theirs %d: %x", theirs, ended);
+	}
+	assert_int_equal(rmdir(path), 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -190,6 +268,11 @@ int main(void)
 						remove_folder),
 		cmocka_unit_test(endpoint_is_directory_and_name),
 		cmocka_unit_test(endpoint_longer_than_a_socket_path_is_refused),
+		cmocka_unit_test_setup_teardown(reader_finds_the_daemon_of_its_user, make_folder,
+						remove_folder),
+		cmocka_unit_test_setup_teardown(reader_waits_where_the_daemon_of_its_user_will_be,
+						make_folder, remove_folder),
+		cmocka_unit_test(reader_refuses_a_directory_in_tmp_that_is_anothers),
 	};
 	return cmocka_run_group_tests_name("endpoint", tests, NULL, NULL);
 }
