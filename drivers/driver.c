@@ -11,6 +11,7 @@
 #include "drivers/replay/replay_driver.h"
 #include "drivers/sim/sim_driver.h"
 #include "drivers/template/template_driver.h"
+#include "drivers/tobii/tobii_driver.h"
 
 /* clang-format off: one a line, because everybody adds to it. Players first, then what is on USB. */
 const struct gz_driver *const gz_drivers[] = {
@@ -19,6 +20,7 @@ const struct gz_driver *const gz_drivers[] = {
 	&gz_driver_auto,
 	&gz_driver_hid,
 	&gz_driver_psvr2,
+	&gz_driver_tobii,
 	&gz_driver_gazepoint,
 	&gz_driver_pupil,
 	&gz_driver_pointer,

@@ -1,6 +1,7 @@
 /* What every driver must do, asked of every entry of gz_drivers[]. */
 #include "check.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -23,6 +24,7 @@
 #include "hid_played.h"
 #include "made_log.h"
 #include "pupil_capture.h"
+#include "tobii_stand_in.h"
 
 /* Samples read of each driver. */
 enum { SAMPLES = 200 };
@@ -197,6 +199,22 @@ static void prepare_pointer(struct stage *stage)
 	assert_true(gz_pointer_feed_put(stage->host.pointer, &report));
 }
 
+static void prepare_tobii(struct stage *stage)
+{
+	/* The driver's own dlopen() of the same file gives the same library. */
+	void *library = dlopen(TOBII_STAND_IN, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+	void *address = library ? dlsym(library, TOBII_STAND_IN_CONTROL) : NULL;
+	tobii_stand_in_control_function *control;
+	assert_non_null(address);
+	memcpy(&control, &address, sizeof control);
+	control()->trackers = 1;
+	control()->rate_hz = 500;
+	control()->system_zero_us = 1000000;
+	control()->device_zero_us = -1000000;
+	set_option(stage, "tobii.library", TOBII_STAND_IN);
+	dlclose(library);
+}
+
 /* The driver's presets, and what it needs beyond. */
 static void set_up(struct stage *stage, const struct gz_driver *driver)
 {
@@ -216,6 +234,8 @@ static void set_up(struct stage *stage, const struct gz_driver *driver)
 		prepare_gazepoint(stage);
 	else if (strcmp(driver->name, "pointer") == 0)
 		prepare_pointer(stage);
+	else if (strcmp(driver->name, "tobii") == 0)
+		prepare_tobii(stage);
 	else if (strcmp(driver->name, "psvr2") == 0)
 		prepare_psvr2();
 	else if (strcmp(driver->name, "hid") == 0)
@@ -468,6 +488,8 @@ static void driver_refuses_what_is_not_there(void **state)
 		{ "hid", "hid.eye_positions", "no", GZ_ERR_NO_DEVICE },
 		{ "pupil", "pupil.address", "tcp://127.0.0.1", GZ_ERR_INVAL },
 		{ "pupil", "pupil.address", "tcp://127.0.0.1:1", GZ_ERR_NO_DEVICE },
+		{ "tobii", "tobii.library", "/nonexistent.so", GZ_ERR_NOT_FOUND },
+		{ "tobii", "tobii.library", "libm.so.6", GZ_ERR_FORMAT },
 		{ "template", "template.path", "", GZ_ERR_INVAL },
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
 		{ "psvr2", "psvr2.screen_distance_mm", "600", GZ_ERR_NO_DEVICE },
