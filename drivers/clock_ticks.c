@@ -94,7 +94,8 @@ static void add_to_window(struct gz_clock_ticks *ticks, int64_t arrival_ns)
 	double x = (double)counted;
 	double y = (double)(arrival_ns - window->first_arrival_ns);
 	window->repeats += counted == window->last_x;
-	window->common = common_divisor((uint64_t)(counted - window->last_x), window->common);
+	uint64_t step = (uint64_t)counted - (uint64_t)window->last_x;
+	window->common = common_divisor(step, window->common);
 	window->last_x = counted;
 	window->n++;
 	window->x += x;

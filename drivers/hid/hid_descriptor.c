@@ -119,11 +119,15 @@ static void resolve_limits(struct limit min, struct limit max, int64_t *out_min,
 }
 
 /* The exponent is a signed nibble (6.2.2.7); some write a signed byte. */
-static int exponent_of(const struct item *item)
+static bool take_exponent(struct parser *parser, const struct item *item)
 {
+	int64_t exponent = sign_extended(item->data, item->size);
 	if (item->data <= 0xf)
-		return item->data < 8 ? (int)item->data : (int)item->data - 16;
-	return (int)sign_extended(item->data, item->size);
+		exponent = item->data < 8 ? (int64_t)item->data : (int64_t)item->data - 16;
+	if (exponent < INT8_MIN || exponent > INT8_MAX)
+		return refuse(parser, item->at, "a unit exponent that is not -128 to 127");
+	parser->globals.unit_exponent = (int)exponent;
+	return true;
 }
 
 static bool push(struct parser *parser, const struct item *item)
@@ -178,8 +182,7 @@ static bool take_global(struct parser *parser, const struct item *item)
 		globals->physical_max = limit;
 		return true;
 	case GLOBAL_UNIT_EXPONENT:
-		globals->unit_exponent = exponent_of(item);
-		return true;
+		return take_exponent(parser, item);
 	case GLOBAL_UNIT:
 		globals->unit = item->data;
 		return true;

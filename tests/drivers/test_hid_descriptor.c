@@ -282,6 +282,7 @@ static void descriptor_that_contradicts_itself_is_refused_with_the_reason(void *
 		{ "without a push", { HID_POP, 0, -1 } },
 		{ "ID that is not", { HID_ID, 0, -1 } },
 		{ "ID that is not", { HID_ID, 256, -1 } },
+		{ "unit exponent", { HID_EXPONENT, 256, -1 } },
 		{ "page beyond", { HID_PAGE, 0x10000, -1 } },
 		{ "no size", { HID_SIZE, 0, HID_USAGE, 1, HID_INPUT, 2, -1 } },
 		{ "beside one without",
