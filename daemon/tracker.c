@@ -29,34 +29,41 @@ static bool may_appear(enum gz_result result)
 	       result == GZ_ERR_IO;
 }
 
-/* The driver logs why it fails. While a device is being waited for that is known. */
+/* What the driver says when it fails is the reason that the status tells. While a device is being
+ * waited for it has been logged before. */
 static void relay(void *user, enum gz_log_level level, const char *module, const char *message)
 {
 	struct gz_tracker *tracker = user;
 	const struct gz_log *log = tracker->host.log;
-	if (!atomic_load(&tracker->looking)) {
-		if (gz_log_wants(log, level, module))
-			gz_log_write(log, level, module, "%s", message);
-	} else if (level >= GZ_LOG_WARN) {
+	if (atomic_load(&tracker->looking) && level >= GZ_LOG_WARN)
 		snprintf(tracker->remark, sizeof tracker->remark, "%s", message);
-	}
+	if (!atomic_load(&tracker->silent) && gz_log_wants(log, level, module))
+		gz_log_write(log, level, module, "%s", message);
 }
 
 static enum gz_result create(struct gz_tracker *tracker)
 {
 	struct gz_driver_host host = tracker->host;
 	host.log = &tracker->relay;
-	return tracker->driver->create(tracker->settings, &host, &tracker->device);
+	tracker->remark[0] = '\0';
+	atomic_store(&tracker->looking, true);
+	enum gz_result result = tracker->driver->create(tracker->settings, &host, &tracker->device);
+	atomic_store(&tracker->looking, false);
+	return result;
+}
+
+static const char *remark_or(const struct gz_tracker *tracker, const char *otherwise)
+{
+	return tracker->remark[0] ? tracker->remark : otherwise;
 }
 
 /* Silent, but where the reason has changed: a device that was missing may be there now and not ours
  * to open. */
 static enum gz_result look_again(struct gz_tracker *tracker)
 {
-	tracker->remark[0] = '\0';
-	atomic_store(&tracker->looking, true);
+	atomic_store(&tracker->silent, true);
 	enum gz_result result = create(tracker);
-	atomic_store(&tracker->looking, false);
+	atomic_store(&tracker->silent, false);
 	if (result != GZ_OK && result != tracker->result && tracker->remark[0]) {
 		gz_warn(tracker->host.log, "%s", tracker->remark);
 		set_state(tracker, tracker->state, tracker->remark);
@@ -90,7 +97,7 @@ enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_drive
 	}
 	if (!may_appear(result))
 		return result;
-	set_state(tracker, GZ_TRACKER_ABSENT, gz_result_text(result));
+	set_state(tracker, GZ_TRACKER_ABSENT, remark_or(tracker, gz_result_text(result)));
 	gz_warn(host->log, "%s is looked for until it appears", driver->name);
 	pause_before_retry(tracker);
 	return GZ_OK;

@@ -43,7 +43,8 @@ struct gz_tracker {
 	int64_t retry_ns;      /**< when to look for the device again */
 	enum gz_result result; /**< of the last look for it; told again where it changes */
 	struct gz_log relay;   /**< what the driver logs to */
-	atomic_bool looking;   /**< then it goes into remark, else on to host.log */
+	atomic_bool looking;   /**< what it logs goes into remark */
+	atomic_bool silent;    /**< and not on to host.log */
 	char remark[GZ_REASON_SIZE];
 	int64_t arrival_ns; /**< newest sample, or start */
 	uint64_t seq_base;  /**< added to the device's numbers */

@@ -290,6 +290,7 @@ static void why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes(void
 	port.answer = GZ_ERR_NO_DEVICE;
 	assert_int_equal(gz_tracker_open(&tracker, &port_driver, NULL, &host), GZ_OK);
 	assert_int_equal(told_plug, 1);
+	assert_string_equal(tracker.reason, "plug it in");
 	for (int i = 0; i < 6; i++) {
 		if (i == 3)
 			port.answer = GZ_ERR_ACCESS;

@@ -187,6 +187,25 @@ static void ordinary_user_uses_a_headset_with_the_udev_rule(void **state)
 	lab_stop(&lab);
 }
 
+static void auto_takes_what_is_plugged_in_whatever_it_is(void **state)
+{
+	(void)state;
+	LAB_START(&lab, "--driver", "auto", "--psvr2.screen_mm", "500 300", LAB_SCREEN);
+	lab_wait_state(&lab, GZ_TRACKER_ABSENT);
+	lab_expect_said(&lab, "plug one in");
+	psvr2_gadget_plug(&headset, "VR-123");
+	made_stream_start(&headset.stream);
+	lab_compare(&lab, &headset_truth, 50);
+	psvr2_gadget_unplug(&headset);
+	lab_wait_state(&lab, GZ_TRACKER_LOST);
+	assert_string_equal(lab.reader.status.tracker.reason, "unplugged");
+	plug_first();
+	lab_compare(&lab, &first_truth, 50);
+	lab_wait_state(&lab, GZ_TRACKER_RUNNING);
+	assert_string_equal(lab.reader.status.tracker.name, "GazeLab 200");
+	lab_stop(&lab);
+}
+
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
 int main(void)
@@ -194,6 +213,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		TEST(of_two_trackers_the_one_is_used_that_is_named),
 		TEST(tracker_that_is_named_is_waited_for_and_no_other_taken),
+		TEST(auto_takes_what_is_plugged_in_whatever_it_is),
 		TEST(tracker_whose_descriptor_makes_no_sense_is_named_and_hurts_nobody),
 		TEST(ordinary_user_is_told_of_the_udev_rule_and_served_once_it_is_there),
 		TEST(ordinary_user_uses_a_headset_with_the_udev_rule),
