@@ -314,6 +314,7 @@ class NetworkClientTest(ClientTest):
         self.assertEqual(self.client.remote.recv_string(), "Message forwarded.")
         self.assertEqual(receive_topic(sub, "annotation"), annotation)
         self.assertEqual(self.client.ask("r"), "OK")
+        wait_for(lambda: self.gazed.marks("named-session.gzl"), "no mark in the log")
         (mark_time, text), = self.gazed.marks("named-session.gzl")
         self.assertEqual(text, "by request")
         self.assertAlmostEqual(mark_time, annotation["timestamp"], places=6)
