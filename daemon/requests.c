@@ -405,6 +405,14 @@ static void take_messages(struct gz_requests *requests)
 		pass_on(requests, &requests->message);
 }
 
+/* Whether a recording that is asked for may have its name: told to who waits for an answer. */
+static bool name_may_be(const struct gz_notification *notification)
+{
+	return gz_remote_notice(notification->subject) != GZ_REMOTE_NOTICE_RECORD ||
+	       notification->session_name[0] == '\0' ||
+	       gz_recording_name_valid(notification->session_name);
+}
+
 /* A message of two frames on the control socket: as on the inlet, but confirmed. */
 static void serve_message(struct gz_requests *requests, zmq_msg_t *topic, zmq_msg_t *body)
 {
@@ -414,6 +422,11 @@ static void serve_message(struct gz_requests *requests, zmq_msg_t *topic, zmq_ms
 			       zmq_msg_size(body), gz_clock_now_ns(), message);
 	if (result != GZ_OK) {
 		answer(requests, gz_inlet_refusal(result));
+		return;
+	}
+	if (message->is_notification && !name_may_be(&message->notification)) {
+		answer(requests, "refused: that is no name for a recording; allowed: 1 to 64 of "
+				 "A-Z a-z 0-9 . _ -");
 		return;
 	}
 	answer(requests, message->is_notification ? "Notification received" : "Message forwarded.");

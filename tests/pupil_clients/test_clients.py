@@ -365,9 +365,8 @@ class NetworkApiTest(ClientTest):
     def test_names_stay_in_the_directory(self):
         for name in ("../x", "a/b", "x" * 65, "a b", "ü"):
             self.assertIn("allowed", self.client.ask("R " + name))
-            self.assertEqual(self.client.notify({"subject": "recording.should_start",
-                                                 "session_name": name}),
-                             "Notification received")
+            self.assertIn("allowed", self.client.notify({"subject": "recording.should_start",
+                                                         "session_name": name}))
         self.assertEqual(self.client.ask("r"), "no recording is running")
         self.assertEqual(self.gazed.recordings(), [])
 
