@@ -115,6 +115,7 @@ struct gz_driver {
 	 * @param host      read during the call
 	 * @param[out] out_device  owned by the caller: gz_device_destroy()
 	 * @retval GZ_ERR_NO_DEVICE  none there; logged with what to do
+	 * @retval GZ_ERR_BUSY  another program holds it; logged
 	 * @retval GZ_ERR_ACCESS, GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM, GZ_ERR_INVAL
 	 * logged
 	 */

@@ -23,14 +23,15 @@ struct psvr2_settings {
 
 #define AT(field) offsetof(struct psvr2_settings, field)
 
-/* The presets are gz_display_default(): 50.4 degrees wide at 600 mm. */
+/* The preset distance is that of gz_display_default(). */
 static const struct gz_option psvr2_options[] = {
 	{ "psvr2.screen_distance_mm", GZ_OPTION_DOUBLE, AT(screen.distance_mm), 10, 100000, 0, NULL,
 	  "600", "from between the lenses straight ahead to the screen's centre, mm" },
 	{ "psvr2.screen_offset_mm", GZ_OPTION_DOUBLE, AT(screen.offset_mm), -100000, 100000, 2,
 	  NULL, "0 0", "from there to the screen's centre, to the right and down, mm" },
-	{ "psvr2.screen_mm", GZ_OPTION_DOUBLE, AT(screen.size_mm), 10, 100000, 2, NULL,
-	  "564.677 317.631", "the screen's width and height, mm" },
+	{ "psvr2.screen_mm", GZ_OPTION_DOUBLE, AT(screen.size_mm), 0, 100000, 2, NULL, "0 0",
+	  "the screen's width and height, mm; 0 0: as display.mm, else 50.4 degrees wide at 600 "
+	  "mm" },
 	{ "psvr2.screen_turn_deg", GZ_OPTION_DOUBLE, AT(screen.turn_deg), -180, 180, 3, NULL,
 	  "0 0 0",
 	  "turn of the screen about its centre, degrees: right side nearer, lower edge nearer, "
@@ -304,6 +305,19 @@ static enum gz_result find_and_open(struct psvr2_device *device, const char *cho
 	return result;
 }
 
+/* The screen: its own settings, else the display's, else the one that is assumed everywhere. */
+static struct gz_psvr2_screen_params screen_of(const struct psvr2_settings *wanted,
+					       const struct gz_driver_host *host)
+{
+	struct gz_psvr2_screen_params screen = wanted->screen;
+	struct gz_display assumed = gz_display_default(wanted->screen_px[0], wanted->screen_px[1]);
+	if (screen.size_mm[0] > 0 && screen.size_mm[1] > 0)
+		return screen;
+	bool configured = host->display_mm[0] > 0 && host->display_mm[1] > 0;
+	memcpy(screen.size_mm, configured ? host->display_mm : assumed.mm, sizeof screen.size_mm);
+	return screen;
+}
+
 static enum gz_result psvr2_create(const void *settings, const struct gz_driver_host *host,
 				   struct gz_device **out_device)
 {
@@ -312,11 +326,12 @@ static enum gz_result psvr2_create(const void *settings, const struct gz_driver_
 	if (!device)
 		return GZ_ERR_NO_MEM;
 	device->base = (struct gz_device) { .ops = &psvr2_ops, .log = host->log };
-	device->screen = gz_psvr2_screen_make(&wanted->screen);
+	struct gz_psvr2_screen_params screen = screen_of(wanted, host);
+	device->screen = gz_psvr2_screen_make(&screen);
 	device->display = (struct gz_display) {
 		.px = { wanted->screen_px[0], wanted->screen_px[1] },
-		.mm = { wanted->screen.size_mm[0], wanted->screen.size_mm[1] },
-		.distance_mm = wanted->screen.distance_mm,
+		.mm = { screen.size_mm[0], screen.size_mm[1] },
+		.distance_mm = screen.distance_mm,
 	};
 	enum gz_result result = find_and_open(device, host->choice);
 	if (result != GZ_OK) {

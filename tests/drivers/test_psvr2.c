@@ -365,6 +365,23 @@ static void psvr2_second_headset_is_taken_where_the_first_is_held(void **state)
 	finish(&device);
 }
 
+static void psvr2_screen_without_a_size_of_its_own_is_the_configured_display(void **state)
+{
+	(void)state;
+	struct gz_device *device = NULL;
+	struct gz_device_info info;
+	struct gz_driver_host host = { .display_mm = { 500, 300 } };
+	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
+	assert_int_equal(gz_driver_find("psvr2")->create(settings, &host, &device), GZ_OK);
+	gz_device_get_info(device, &info);
+	assert_true(info.display.mm[0] == 500 && info.display.mm[1] == 300);
+	finish(&device);
+	assert_int_equal(create(NULL, &device), GZ_OK);
+	gz_device_get_info(device, &info);
+	assert_float_equal(info.display.mm[0], 564.677, 1e-2);
+	finish(&device);
+}
+
 static void psvr2_that_does_not_switch_on_fails_to_start(void **state)
 {
 	(void)state;
@@ -414,6 +431,7 @@ int main(void)
 		TEST(psvr2_unplugged_while_it_is_reset_says_so),
 		TEST(psvr2_that_cannot_be_had_is_refused_with_the_remedy),
 		TEST(psvr2_second_headset_is_taken_where_the_first_is_held),
+		TEST(psvr2_screen_without_a_size_of_its_own_is_the_configured_display),
 		TEST(psvr2_that_does_not_switch_on_fails_to_start),
 		TEST(psvr2_list_tells_what_is_there_and_why_it_cannot_be_used),
 	};
