@@ -158,11 +158,9 @@ static void take_eye(const struct eyelink *eyelink, const struct gz_text_fields 
 	const double *r = eyelink->rectangle_px;
 	double x_px = gz_text_field_number(fields, first);
 	double y_px = gz_text_field_number(fields, first + 1);
-	eye->valid = isfinite(x_px) && isfinite(y_px);
-	if (!eye->valid)
-		return;
-	eye->point.x = (float)((x_px - r[0]) / (r[2] - r[0] + 1));
-	eye->point.y = (float)((y_px - r[1]) / (r[3] - r[1] + 1));
+	eye->point = gz_recording_point((x_px - r[0]) / (r[2] - r[0] + 1),
+					(y_px - r[1]) / (r[3] - r[1] + 1));
+	eye->valid = isfinite(eye->point.x);
 }
 
 static enum gz_result take_sample(struct eyelink *eyelink, char *line)

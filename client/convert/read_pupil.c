@@ -91,9 +91,9 @@ static bool take_sample(const struct gz_text_fields *fields, const size_t column
 		take_eye(fields, &columns[e == GZ_EYE_RIGHT ? CENTER0 : CENTER1],
 			 &columns[e == GZ_EYE_RIGHT ? NORMAL0 : NORMAL1], eye);
 		eye->confidence = (float)confidence;
-		eye->point = (struct gz_point) { (float)x, (float)(1 - y) };
+		eye->point = gz_recording_point(x, 1 - y);
 		/* Pupil itself calls a datum of confidence 0 no measurement. */
-		eye->valid = confidence > 0 && isfinite(x) && isfinite(y);
+		eye->valid = confidence > 0 && isfinite(eye->point.x);
 	}
 	return true;
 }

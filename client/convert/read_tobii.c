@@ -199,9 +199,7 @@ static struct gz_point take_point(const struct tobii *tobii, const size_t *colum
 		x = number(tobii, columns[X_MM]) / known->display_mm[0];
 		y = number(tobii, columns[Y_MM]) / known->display_mm[1];
 	}
-	if (!isfinite(x) || !isfinite(y))
-		return (struct gz_point) { NAN, NAN };
-	return (struct gz_point) { (float)x, (float)y };
+	return gz_recording_point(x, y);
 }
 
 static void take_eye(const struct tobii *tobii, const size_t *columns, struct gz_eye_sample *eye)

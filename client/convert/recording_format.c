@@ -1,5 +1,6 @@
 #include "client/convert/recording_format.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -66,4 +67,11 @@ struct gz_gaze_log_header gz_recording_header(const struct gz_convert_settings *
 	if (!header.has_display)
 		header.display = (struct gz_display) { 0 };
 	return header;
+}
+
+struct gz_point gz_recording_point(double x, double y)
+{
+	if (!(fabs(x) <= 1000) || !(fabs(y) <= 1000))
+		return (struct gz_point) { NAN, NAN };
+	return (struct gz_point) { (float)x, (float)y };
 }

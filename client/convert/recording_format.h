@@ -118,4 +118,8 @@ extern const struct gz_recording_writer gz_recording_writer_bids;
 struct gz_gaze_log_header gz_recording_header(const struct gz_convert_settings *settings,
 					      const char *tracker);
 
+/** A point in parts of the display; NaN in both where either is not finite, or farther from it than
+ * a thousand displays (chosen: no tracker says so, and a float holds it). */
+struct gz_point gz_recording_point(double x, double y);
+
 #endif
