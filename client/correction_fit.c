@@ -124,9 +124,10 @@ static double mean_error_deg(const struct work *work, const struct gz_correct_pa
 static double cross_errors(const struct work *work, enum gz_fit_model model, double *out_deg)
 {
 	double sum = 0, n = 0;
+	for (size_t i = 0; i < work->count; i++)
+		out_deg[i] = NAN;
 	for (size_t i = 0; i < work->count; i++) {
 		struct gz_correct_params map;
-		out_deg[i] = NAN;
 		if (!work->used[i])
 			continue;
 		if (!fit_model(work, model, i, &map))
@@ -166,7 +167,7 @@ static int compare_doubles(const void *a, const void *b)
 
 static double median_of(const double *deg, size_t count)
 {
-	double sorted[GZ_FIT_TARGETS_MAX];
+	double sorted[GZ_FIT_TARGETS_MAX] = { 0 };
 	size_t n = 0;
 	for (size_t i = 0; i < count; i++)
 		if (isfinite(deg[i]))
@@ -178,7 +179,7 @@ static double median_of(const double *deg, size_t count)
 /* Leave out the worst pair if it is none of the others' kind. */
 static bool leave_worst_out(const struct work *work, enum gz_fit_model model, bool *used)
 {
-	double deg[GZ_FIT_TARGETS_MAX];
+	double deg[GZ_FIT_TARGETS_MAX] = { 0 };
 	if (!isfinite(cross_errors(work, model, deg)))
 		return false;
 	size_t worst = work->count;
@@ -239,7 +240,7 @@ void gz_fit_correction(const struct gz_display *display, const struct gz_fit_pai
 struct gz_correct_params gz_fit_compose(const struct gz_correct_params *first,
 					const struct gz_correct_params *second)
 {
-	struct gz_correct_params both;
+	struct gz_correct_params both = IDENTITY;
 	const double *const lines[2] = { second->x, second->y };
 	double *const out[2] = { both.x, both.y };
 	for (int axis = 0; axis < 2; axis++) {

@@ -56,7 +56,6 @@ enum gz_result gz_gaze_trace_add(struct gz_gaze_trace *trace, const struct gz_ga
 	}
 	if (gaze->final_known)
 		take_label(trace, gaze->final_seq, gaze->final_event);
-	trace->combined = gaze->combined;
 	return GZ_OK;
 }
 

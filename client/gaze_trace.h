@@ -6,7 +6,6 @@
 #ifndef GZ_CLIENT_GAZE_TRACE_H
 #define GZ_CLIENT_GAZE_TRACE_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/result.h"
@@ -27,7 +26,6 @@ struct gz_gaze_trace {
 	struct gz_gaze_trace_sample *items;
 	size_t count;
 	size_t room;
-	bool combined; /**< the newest one had one point for both eyes */
 };
 
 /**

@@ -85,7 +85,7 @@ struct validate {
 	struct gz_control *control;
 	struct gz_stream *stream;
 	struct gz_viewer_process viewer;
-	struct gz_viewer_link *link; /* to a simulated viewer; NULL where somebody else looks */
+	struct gz_viewer_link *link; /* to the daemon's inlet; NULL where that cannot be told */
 	struct gz_validation *result;
 	bool finished;       /* all targets were shown */
 	bool cancelled;      /* by the person in front of the display */
@@ -165,25 +165,36 @@ static enum gz_result start_viewer(struct validate *validate)
 				       validate->log);
 }
 
-/* Nobody sits before a simulated tracker: its viewer is told where the targets are. */
+/* To the daemon's inlet, where that is on this machine: a recording that runs is told of the
+ * targets, and so is the viewer of a simulated tracker, before which nobody sits. */
 static void open_link(struct validate *validate)
 {
 	static const char control[] = "/control";
-	char endpoint[GZ_PATH_SIZE];
+	char latest[GZ_PATH_SIZE];
 	const char *own = gz_control_endpoint(validate->control);
-	size_t length = strlen(own);
-	if (strcmp(validate->result->status.tracker.name, "sim") != 0 || length < sizeof control ||
-	    length >= sizeof endpoint || strcmp(own + length - strlen(control), control) != 0)
+	size_t length = strlen(own), tail = strlen(control);
+	if (length < tail || length >= sizeof latest - 1 ||
+	    strcmp(own + length - tail, control) != 0)
 		return;
-	snprintf(endpoint, sizeof endpoint, "%.*s/latest", (int)(length - strlen(control)), own);
-	if (gz_viewer_link_open(endpoint, validate->log, &validate->link) != GZ_OK)
-		gz_warn(validate->log, "the simulated viewer is not told of the targets");
+	snprintf(latest, sizeof latest, "%.*s/latest", (int)(length - tail), own);
+	if (gz_viewer_link_open(latest, validate->log, &validate->link) != GZ_OK)
+		gz_warn(validate->log, "a recording will not be told of the targets");
 }
 
 static void tell_simulated_viewer(struct validate *validate, const struct gz_point *point)
 {
-	if (validate->link)
+	if (validate->link && strcmp(validate->result->status.tracker.name, "sim") == 0)
 		gz_viewer_link_pointer(validate->link, point, gz_clock_now_ns());
+}
+
+static void tell_recording(struct validate *validate, const struct gz_viewer_event *event)
+{
+	char label[GZ_ANNOTATION_LABEL_SIZE];
+	if (!validate->link)
+		return;
+	snprintf(label, sizeof label, "validate: target %zu of %zu at %.4g %.4g", event->index + 1,
+		 event->count, event->point.x, event->point.y);
+	gz_viewer_link_annotate(validate->link, label, event->time_ns);
 }
 
 static struct gz_validation_target *newest_target(struct validate *validate)
@@ -208,6 +219,7 @@ static enum gazectl_exit take_shown(struct validate *validate, const struct gz_v
 		.hidden_ns = event->time_ns,
 	};
 	tell_simulated_viewer(validate, &event->point);
+	tell_recording(validate, event);
 	return GAZECTL_DONE;
 }
 
@@ -335,6 +347,9 @@ static enum gazectl_exit collect(struct validate *validate)
 			status = take_message(validate, &message);
 		if (status == GAZECTL_DONE && gz_clock_now_ns() >= listen_ns) {
 			status = listen_to_viewer(validate);
+			/* Again, for who has not heard it: sent when it is due. */
+			if (validate->result->target_count > 0)
+				tell_simulated_viewer(validate, &newest_target(validate)->point);
 			listen_ns = gz_clock_now_ns() + LISTEN_NS;
 		}
 		if (status != GAZECTL_DONE)

@@ -168,6 +168,10 @@ static void write_setting(struct gz_json *json, const struct gz_validation *vali
 	write_doubles(json, "mm", status->display.mm, 2);
 	gz_json_double(json, "distance_mm", status->display.distance_mm);
 	gz_json_end(json);
+	gz_json_begin(json, "correction_in_force");
+	write_doubles(json, "x", status->correction.x, 3);
+	write_doubles(json, "y", status->correction.y, 3);
+	gz_json_end(json);
 }
 
 static void write_target(struct gz_json *json, const struct gz_validation_target *target,

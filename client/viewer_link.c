@@ -131,6 +131,18 @@ void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], in
 		send_window(link, &window);
 }
 
+void gz_viewer_link_annotate(struct gz_viewer_link *link, const char *label, int64_t time_ns)
+{
+	struct gz_wire_message message;
+	struct gz_annotation annotation = { .has_time = true, .time_ns = time_ns };
+	size_t length = strlen(label);
+	if (length >= sizeof annotation.label)
+		return;
+	memcpy(annotation.label, label, length + 1);
+	if (gz_wire_encode_annotation(&annotation, &message) == GZ_OK)
+		send_message(link, GZ_TOPIC_ANNOTATION, &message);
+}
+
 void gz_viewer_link_close(struct gz_viewer_link **link)
 {
 	if (!link || !*link)

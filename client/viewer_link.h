@@ -1,6 +1,6 @@
 /**
  * @file
- * What a viewer tells the daemon of itself: where its pointer is and where its window is. Sent to
+ * What a viewer tells the daemon: where its pointer is, where its window is, what it shows. Sent to
  * the inlet beside the daemon's latest channel; nothing is sent while no daemon runs, and nobody is
  * waited for.
  */
@@ -45,6 +45,12 @@ void gz_viewer_link_pointer(struct gz_viewer_link *link, const struct gz_point *
 /** The window's content is at @p rect_px, x y w h on the display. Sent where it has changed, or has
  * not been sent for GZ_VIEWER_LINK_WINDOW_NS. */
 void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], int64_t now_ns);
+
+/** Say something of a moment to all readers; it becomes a mark in a recording that runs.
+ *
+ * @param label    up to GZ_ANNOTATION_LABEL_SIZE - 1 bytes; longer ones are not sent
+ * @param time_ns  host time */
+void gz_viewer_link_annotate(struct gz_viewer_link *link, const char *label, int64_t time_ns);
 
 /** Tell that the window is closed, close and set to NULL. Waits 100 ms at most, and only where a
  * daemon is connected that does not read. Accepts a pointer to NULL. */

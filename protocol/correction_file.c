@@ -47,7 +47,7 @@ enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
 void gz_correction_name(const char *name, char out_name[GZ_NAME_SIZE])
 {
 	size_t i = 0;
-	for (; name[i] && i < GZ_NAME_SIZE - 1; i++) {
+	for (; i < GZ_NAME_SIZE - 1 && name[i]; i++) {
 		unsigned char c = (unsigned char)name[i];
 		bool plain = c < 128 && (isalnum(c) || c == '-' || (c == '.' && i > 0));
 		out_name[i] = plain ? (char)c : '_';

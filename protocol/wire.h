@@ -151,6 +151,11 @@ struct gz_annotation {
 	int64_t duration_ns; /**< 0 for a moment */
 };
 
+/** {"topic": "annotation", "label", "timestamp" s if it has one, "duration" s}: as Pupil's clients
+ * send them. As the encoders above. */
+enum gz_result gz_wire_encode_annotation(const struct gz_annotation *annotation,
+					 struct gz_wire_message *out_message);
+
 /** A map with "label", and where given "timestamp" s and "duration" s. As the decoders above. */
 enum gz_result gz_wire_decode_annotation(const void *bytes, size_t size,
 					 struct gz_annotation *out_annotation);

@@ -131,3 +131,17 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 	gz_pack_text(&pack, "version", status->version);
 	return gz_pack_end(&pack);
 }
+
+enum gz_result gz_wire_encode_annotation(const struct gz_annotation *annotation,
+					 struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, annotation->has_time ? 4 : 3);
+	gz_pack_text(&pack, "topic", GZ_TOPIC_ANNOTATION);
+	gz_pack_text(&pack, "label", annotation->label);
+	if (annotation->has_time)
+		gz_pack_time(&pack, "timestamp", annotation->time_ns);
+	gz_pack_double(&pack, "duration", gz_ns_to_s(annotation->duration_ns));
+	return gz_pack_end(&pack);
+}

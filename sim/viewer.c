@@ -337,9 +337,8 @@ static void after_fixation(struct gz_viewer *viewer)
 		begin_blink(viewer);
 	else if (viewer->follows && angle_to_aim_deg(viewer) <= FOLLOW_REST_DEG)
 		rest(viewer);
-	else if (viewer->follows)
-		begin_saccade(viewer);
-	else if (viewer->end_s < viewer->next_pursuit_s || !begin_pursuit(viewer))
+	else if (viewer->follows || viewer->end_s < viewer->next_pursuit_s ||
+		 !begin_pursuit(viewer))
 		begin_saccade(viewer);
 }
 
@@ -516,13 +515,15 @@ void gz_viewer_init(struct gz_viewer *viewer, const struct gz_viewer_params *par
 
 void gz_viewer_follow(struct gz_viewer *viewer, const struct gz_point *point)
 {
+	double aim[3] = { 0, 0, 1 };
+	if (point)
+		gz_sphere_from_point(&viewer->display, point->x, point->y, aim);
+	bool news = !viewer->follows || memcmp(aim, viewer->aim, sizeof aim) != 0;
 	viewer->follows = point != NULL;
-	if (!point)
-		return;
-	gz_sphere_from_point(&viewer->display, point->x, point->y, viewer->aim);
+	memcpy(viewer->aim, aim, sizeof aim);
 	double leave_s = viewer->now_s + FOLLOW_LATENCY_S;
 	bool rests = viewer->phase == GZ_EVENT_FIXATION || viewer->phase == GZ_EVENT_PURSUIT;
-	if (rests && viewer->end_s > leave_s && viewer->micro.end_s < leave_s)
+	if (point && news && rests && viewer->end_s > leave_s && viewer->micro.end_s < leave_s)
 		viewer->end_s = leave_s;
 }
 

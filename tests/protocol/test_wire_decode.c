@@ -625,11 +625,31 @@ static void gaze_cut_anywhere_is_refused(void **state)
 		assert_int_equal(gz_wire_decode_gaze(message.bytes, size, &back), GZ_ERR_PROTOCOL);
 }
 
+static void annotation_comes_back_as_it_was_sent(void **state)
+{
+	(void)state;
+	struct gz_annotation sent = { .label = "target 3 of 9", .duration_ns = 1500000000 }, back;
+	struct gz_wire_message message;
+	for (int i = 0; i < 2; i++) {
+		sent.has_time = i == 1;
+		sent.time_ns = i == 1 ? 123456789012345 : 0;
+		memset(&back, 0, sizeof back);
+		assert_int_equal(gz_wire_encode_annotation(&sent, &message), GZ_OK);
+		assert_int_equal(gz_wire_decode_annotation(message.bytes, message.size, &back),
+				 GZ_OK);
+		assert_string_equal(back.label, sent.label);
+		assert_int_equal(back.has_time, sent.has_time);
+		assert_true(back.time_ns == sent.time_ns);
+		assert_true(back.duration_ns == sent.duration_ns);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gaze_comes_back_as_it_was_sent),
 		cmocka_unit_test(gaze_of_each_event_comes_back),
+		cmocka_unit_test(annotation_comes_back_as_it_was_sent),
 		cmocka_unit_test(gaze_unmeasured_comes_back_as_nan),
 		cmocka_unit_test(fixation_comes_back_as_it_was_sent),
 		cmocka_unit_test(blink_comes_back_as_it_was_sent),

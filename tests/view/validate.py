@@ -155,6 +155,10 @@ class Validate(unittest.TestCase):
 
     def test_known_error_is_measured_stored_and_gone_afterwards(self):
         self.start_simulator()
+        self.assertEqual(run(GAZECTL, "record", "check", env=self.environment).returncode, 0)
+        marked = self.measure()
+        self.assertEqual(run(GAZECTL, "stop", env=self.environment).returncode, 0)
+        self.check_marks(marked["targets"])
         before = self.measure("--correct")
         self.assertEqual(len(before["targets"]), 5)
         for target in before["targets"]:
@@ -188,6 +192,16 @@ class Validate(unittest.TestCase):
         self.check_stored()
         self.check_recorded()
         self.check_forgotten()
+
+    def check_marks(self, targets):
+        """A recording knows what was shown when."""
+        with open(os.path.join(self.place, "check.gzl"), encoding="utf-8") as log:
+            marks = [line.split("\t") for line in log if line.startswith("!mark")]
+        self.assertEqual(len(marks), len(targets), marks)
+        for i, (mark, target) in enumerate(zip(marks, targets)):
+            self.assertLess(abs(int(mark[1]) - target["shown_ns"]), 1000)
+            x, y = target["point"]
+            self.assertEqual(mark[2].strip(), "validate: target %d of 5 at %.4g %.4g" % (i + 1, x, y))
 
     def status(self):
         done = run(GAZECTL, "status", "--json", env=self.environment)
