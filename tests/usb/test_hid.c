@@ -78,11 +78,10 @@ static void tracker_of_this_layout_is_understood(void **state)
 	const double left_mm[3] = HID_LEFT_EYE_MM, right_mm[3] = HID_RIGHT_EYE_MM;
 	struct lab_truth what = truth;
 	what.has_clock = layout->device_tick_us > 0;
-	/* Positions of 0.1 mm; and without a clock, how far gaze moves while a sample is late. */
-	what.tolerance = !what.has_clock ? 0.15 : layout->device_tick_us > 1 ? 4e-4 : 1e-4;
+	what.tolerance = layout->device_tick_us > 1 ? 4e-4 : 1e-4; /* 0.1 mm, or less */
 	plug_in(layout);
 	start_daemon();
-	lab_compare(&lab, &what, 300);
+	lab_compare(&lab, &what, 200);
 	lab_wait_state(&lab, GZ_TRACKER_RUNNING);
 	assert_string_equal(lab.reader.status.tracker.name, "GazeLab 200");
 	assert_string_equal(lab.reader.status.tracker.serial, "GL-7");
@@ -106,7 +105,7 @@ static void tracker_tells_its_screen_and_rate_and_is_told_what_to_send(void **st
 	hid_function_plug(&function, 0, "GazeLab Pro", "GP-1");
 	made_stream_start(&function.stream);
 	LAB_START(&lab, "--driver", "hid");
-	lab_compare(&lab, &function_truth, 200);
+	lab_compare(&lab, &function_truth, 100);
 	lab_wait_state(&lab, GZ_TRACKER_RUNNING);
 	const struct gz_status *status = &lab.reader.status;
 	assert_true(fabs(status->display.mm[0] - 500) < 0.01);
@@ -143,14 +142,14 @@ static void tracker_may_come_go_and_come_again_at_any_time(void **state)
 	print_message("           first gaze %.1f s after the plug\n",
 		      gz_ns_to_s(gz_clock_now_ns() - plugged_ns));
 	assert_string_equal(gazed_request(&lab.place, "R replug", NULL), "OK");
-	lab_compare(&lab, &truth, 200);
-	for (int i = 0; i < 3; i++) {
+	lab_compare(&lab, &truth, 50);
+	for (int i = 0; i < 2; i++) {
 		uint64_t last_seq = lab.gaze.seq;
 		gadget_unplug(&tracker.gadget);
 		lab_wait_state(&lab, GZ_TRACKER_LOST);
 		gadget_plug(&tracker.gadget);
 		lab_wait_state(&lab, GZ_TRACKER_RUNNING);
-		lab_compare(&lab, &truth, 100);
+		lab_compare(&lab, &truth, 50);
 		assert_true(lab.gaze.seq > last_seq);
 	}
 	assert_string_equal(gazed_request(&lab.place, "r", NULL), "OK");
@@ -160,7 +159,7 @@ static void tracker_may_come_go_and_come_again_at_any_time(void **state)
 		      (int)found.samples, (int)found.outages, (int)found.missing);
 	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
 	assert_int_equal(found.backwards, 0);
-	assert_int_equal(found.outages, 3);
+	assert_int_equal(found.outages, 2);
 }
 
 /* Noise may be well formed: its times and points are what it is, and a clock that leapt is found to
@@ -168,10 +167,13 @@ static void tracker_may_come_go_and_come_again_at_any_time(void **state)
 static void wait_for_truth(void)
 {
 	int good = 0;
-	while (good < 200) {
+	while (good < 50) {
 		lab_next_gaze(&lab);
 		struct made_sample sample = made_gaze_at(lab.gaze.device_ns);
-		good = fabs(lab.gaze.raw.x - sample.x) < 1e-3 ? good + 1 : 0;
+		if (fabs(lab.gaze.raw.x - sample.x) < 1e-3)
+			good++;
+		else if (lab.gaze.device_ns != GZ_NO_DEVICE_TIME)
+			good = 0;
 	}
 }
 
@@ -240,8 +242,8 @@ static void stalled_endpoint_is_brought_back(void **state)
 	functionfs_stall(&function.function);
 	made_stream_start(&function.stream);
 	int64_t begin_ns = gz_clock_now_ns();
-	lab_compare(&lab, &function_truth, 100);
-	print_message("           100 samples %.2f s after the stall\n",
+	lab_compare(&lab, &function_truth, 50);
+	print_message("           50 samples %.2f s after the stall\n",
 		      gz_ns_to_s(gz_clock_now_ns() - begin_ns));
 	lab_stop(&lab);
 }
@@ -252,14 +254,14 @@ static void tracker_whose_clock_runs_on_in_suspend_is_timed_right_afterwards(voi
 	plug_in(&hid_layout_reference);
 	start_daemon();
 	assert_string_equal(gazed_request(&lab.place, "R nap", NULL), "OK");
-	lab_compare(&lab, &truth, 400);
+	lab_compare(&lab, &truth, 300);
 	uint64_t last_seq = lab.gaze.seq;
 	int64_t offset_ns = lab.gaze.host_ns - lab.gaze.device_ns;
 	int64_t slept_ns = guest_suspend();
 	/* What was on its way then is compared with a clock that has stood still since. */
 	for (int i = 0; i < 50; i++)
 		lab_next_gaze(&lab);
-	lab_compare(&lab, &truth, 400);
+	lab_compare(&lab, &truth, 100);
 	int64_t moved_ns = lab.gaze.host_ns - lab.gaze.device_ns - offset_ns;
 	print_message("           asleep for %.3f s, the clocks moved by %.3f s\n",
 		      gz_ns_to_s(slept_ns), gz_ns_to_s(moved_ns));
