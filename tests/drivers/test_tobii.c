@@ -133,8 +133,8 @@ static void gaze_data_become_samples(void **state)
 	assert_true(isnan(first.eye[GZ_EYE_RIGHT].direction[0]));
 	const struct gz_eye_sample *left = &second.eye[GZ_EYE_LEFT];
 	const struct gz_eye_sample *right = &second.eye[GZ_EYE_RIGHT];
-	assert_true(left->valid && left->point.x == 0.25f && left->point.y == 0.5f);
-	assert_true(right->valid && right->point.x == 0.75f);
+	assert_true(left->valid && left->point.x == 0.49f && left->point.y == 0.5f);
+	assert_true(right->valid && right->point.x == 0.51f);
 	assert_true(left->pupil_mm == 3.25f && right->pupil_mm == 3.5f);
 	assert_true(left->origin_mm[0] == -100 && left->origin_mm[2] == 630);
 	assert_true(left->direction[0] == 0 && left->direction[2] == -1);

@@ -73,7 +73,9 @@ typedef void NotificationCallback(Notification *, void *);
 
 enum { OK = 0, FAILED = 1, NOTIFY_LOST = 0, NOTIFY_DISPLAY = 6 };
 
-static struct tobii_stand_in control;
+static struct tobii_stand_in control = { .trackers = 1,
+					 .rate_hz = 500,
+					 .display_mm = { 520, 290 } };
 static EyeTracker trackers[2] = {
 	{ "tet-tcp://169.254.1.1", "Left desk", "TPSP1-01", "Tobii Pro Spectrum" },
 	{ "tobii-prp://TPFC2-02", "", "TPFC2-02", "Tobii Pro Fusion" },
@@ -222,10 +224,10 @@ static void send_gaze(long number, int64_t taken_ns)
 {
 	bool found = number % 3 != 0;
 	GazeData gaze = {
-		.left_eye = { .gaze_point = { { 0.25f, 0.5f }, { -100, 200, 30 }, VALID },
+		.left_eye = { .gaze_point = { { 0.49f, 0.5f }, { -100, 200, 30 }, VALID },
 			      .pupil_data = { 3.25f, VALID },
 			      .gaze_origin = { { -100, 200, 630 }, { 0.4f, 0.5f, 0.6f }, VALID } },
-		.right_eye = { .gaze_point = { { 0.75f, 0.5f }, { 130, 200, 30 }, VALID },
+		.right_eye = { .gaze_point = { { 0.51f, 0.5f }, { 130, 200, 30 }, VALID },
 			       .pupil_data = { 3.5f, VALID },
 			       .gaze_origin = { { 30, 200, 630 }, { 0.6f, 0.5f, 0.6f }, VALID } },
 		.device_time_stamp = taken_ns / 1000 + control.device_zero_us,
