@@ -88,7 +88,7 @@ enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_drive
 	*tracker = (struct gz_tracker) {
 		.driver = driver, .settings = settings, .host = *host, .arrivals_fd = -1
 	};
-	gz_log_init(&tracker->relay, relay, tracker, "*:debug");
+	gz_log_init(&tracker->relay, relay, tracker, host->log ? host->log->rules : "*:warn");
 	snprintf(tracker->info.name, sizeof tracker->info.name, "%s", driver->name);
 	enum gz_result result = open_device(tracker, false);
 	if (result == GZ_OK) {

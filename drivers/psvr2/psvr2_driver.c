@@ -52,6 +52,7 @@ struct psvr2_device {
 	struct gz_display display;
 	struct gz_usb_device usb;
 	struct gz_clock_model clock;
+	struct gz_ratelimit jumps;
 	int64_t device_ns; /* of the newest packet */
 	uint32_t frame;
 	uint64_t seq;
@@ -107,6 +108,16 @@ static void fill_eye(const struct psvr2_device *device, const struct gz_psvr2_ey
 	eye->valid = !measured->blink;
 }
 
+static void tell_of_jump(struct psvr2_device *device)
+{
+	uint64_t held_back;
+	if (gz_ratelimit_pass(&device->jumps, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
+		gz_warn(device->base.log,
+			"the headset's clock jumped; its fit begins again (%llu more times since "
+			"last told)",
+			(unsigned long long)held_back);
+}
+
 static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival *arrival,
 		      struct gz_sample *out_sample)
 {
@@ -117,7 +128,7 @@ static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival
 	sample.host_ns =
 		gz_clock_model_step(&device->clock, sample.device_ns, arrival->arrival_ns, &jumped);
 	if (jumped)
-		gz_warn(device->base.log, "the headset's clock jumped; its fit begins again");
+		tell_of_jump(device);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		fill_eye(device, &packet->eye[eye], &sample.eye[eye]);
 	bool both_shut = packet->eye[0].blink && packet->eye[1].blink;

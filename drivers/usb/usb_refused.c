@@ -60,8 +60,9 @@ static void add(struct list *list, const char *directory)
 	if (!entry->name[0])
 		snprintf(entry->name, sizeof entry->name, "HID device without a name");
 	snprintf(entry->reason, sizeof entry->reason,
-		 "the kernel refuses its HID report descriptor (dmesg says why); ask its maker for "
-		 "other firmware");
+		 "the kernel did not take this HID device (dmesg says why); if it is an eye "
+		 "tracker, "
+		 "its report descriptor is at fault: ask its maker");
 	list->count++;
 }
 
@@ -109,10 +110,20 @@ static void visit_hid(struct list *list, const char *name, const char *directory
 	add(list, interface);
 }
 
+/* Where it is not loaded it refuses nobody. */
+static bool is_loaded(const char *sysfs, const char *driver)
+{
+	char path[PATH_MAX];
+	snprintf(path, sizeof path, "%s/bus/%s", sysfs, driver);
+	return access(path, F_OK) == 0;
+}
+
 size_t gz_usb_list_refused(const char *sysfs, struct gz_device_entry *out_entries, size_t room)
 {
 	struct list list = { out_entries, 0, room };
-	for_each(sysfs, "usb", &list, visit_interface);
-	for_each(sysfs, "hid", &list, visit_hid);
+	if (is_loaded(sysfs, "usb/drivers/usbhid"))
+		for_each(sysfs, "usb", &list, visit_interface);
+	if (is_loaded(sysfs, "hid/drivers/hid-generic"))
+		for_each(sysfs, "hid", &list, visit_hid);
 	return list.count;
 }

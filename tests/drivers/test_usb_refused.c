@@ -78,9 +78,10 @@ static int make_sysfs(void **state)
 	snprintf(root, sizeof root, "/tmp/gz_sysfs_XXXXXX");
 	if (!mkdtemp(root))
 		return -1;
-	static const char *const directories[] = {
-		"devices", "bus", "bus/usb", "bus/usb/devices", "bus/hid", "bus/hid/devices"
-	};
+	static const char *const directories[] = { "devices",         "bus",
+						   "bus/usb",         "bus/usb/devices",
+						   "bus/usb/drivers", "bus/hid",
+						   "bus/hid/devices", "bus/hid/drivers" };
 	for (size_t i = 0; i < sizeof directories / sizeof *directories; i++)
 		make_directory(directories[i]);
 	return 0;
@@ -124,6 +125,10 @@ static void refused_devices_are_named_and_others_are_not(void **state)
 	make_device("1-6", "\n", "\n");
 	make_file("devices/1-6/1-6:1.0/bInterfaceClass", "03\n");
 
+	/* A kernel without HID drivers refuses nobody. */
+	assert_int_equal(gz_usb_list_refused(root, entries, 8), 0);
+	make_directory("bus/usb/drivers/usbhid");
+	make_directory("bus/hid/drivers/hid-generic");
 	size_t count = gz_usb_list_refused(root, entries, 8);
 	assert_int_equal(count, 3);
 	const struct gz_device_entry *entry = find(entries, count, "usb 1-1");
