@@ -146,8 +146,9 @@ enum gz_hid_reading gz_hid_value_raw(const struct gz_hid_value *value, const uns
 	if (!value->present || value->at > size * 8 || value->bits > size * 8 - value->at)
 		return GZ_HID_READ_WRONG;
 	uint64_t bits = gz_hid_bits(bytes, size, value->at, value->bits);
-	if (value->is_signed && value->bits < 64 && bits >> (value->bits - 1) & 1)
-		bits |= UINT64_MAX << value->bits;
+	uint64_t sign = value->bits > 0 ? UINT64_C(1) << (value->bits - 1) : 0;
+	if (value->is_signed && bits & sign)
+		bits |= ~(sign - 1);
 	int64_t raw = (int64_t)bits;
 	if (value->has_range && (raw < value->raw_min || raw > value->raw_max))
 		return value->nullable ? GZ_HID_READ_NULL : GZ_HID_READ_WRONG;

@@ -423,7 +423,7 @@ static void hid_silence_is_filled_in_and_time_goes_on(void **state)
 	int number = plug(HID_LAYOUT_BYTES, "Made", "");
 	struct gz_device *device = open_device();
 	struct hid_made_sample sent = looked;
-	struct gz_sample sample = { 0 }, last = { 0 };
+	struct gz_sample sample, last = { 0 };
 	/* A burst, as after a stall, is read before silence is spoken of. */
 	for (int i = 0; i < 20; i++, sent.time_us += 8333)
 		send_sample(number, HID_LAYOUT_BYTES, &sent);
