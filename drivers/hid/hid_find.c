@@ -54,8 +54,8 @@ static void judge_access(struct gz_hid_found *found)
 		return;
 	case GZ_ERR_ACCESS:
 		set_unusable(found, GZ_ERR_ACCESS,
-			     "no permission; install etc/udev/70-gazecast.rules and plug it in "
-			     "again");
+			     "no permission; install the udev rule 70-gazecast.rules, then plug "
+			     "the tracker in again");
 		return;
 	default:
 		set_unusable(found, GZ_ERR_NO_DEVICE, "it has just gone");
