@@ -55,7 +55,24 @@ static void *open_socket(struct gz_pupil_link *link, int type, int64_t size_max)
 	set_int(socket, ZMQ_RCVHWM, QUEUE);
 	set_int(socket, ZMQ_IPV6, 1);
 	zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &size_max, sizeof size_max);
-	return socket;
+	if (gz_pupil_keys_apply(&link->keys, socket))
+		return socket;
+	zmq_close(socket);
+	return NULL;
+}
+
+static int host_length(const char *address)
+{
+	return (int)(strrchr(address, ':') - address);
+}
+
+static enum gz_result find_keys(struct gz_pupil_link *link)
+{
+	char host[GZ_ENDPOINT_SIZE];
+	int scheme = (int)strlen("tcp://");
+	snprintf(host, sizeof host, "%.*s", host_length(link->address) - scheme,
+		 link->address + scheme);
+	return gz_pupil_keys_find(host, link->log, &link->keys);
 }
 
 /* A new socket has no answers to questions of the last one. */
@@ -75,11 +92,11 @@ static enum gz_result open_control(struct gz_pupil_link *link)
 static enum gz_result open_stream(struct gz_pupil_link *link)
 {
 	char endpoint[GZ_ENDPOINT_SIZE + 16];
-	int host_length = (int)(strrchr(link->address, ':') - link->address);
 	if (link->stream)
 		zmq_close(link->stream);
 	link->stream = open_socket(link, ZMQ_SUB, GZ_PUPIL_MESSAGE_MAX);
-	snprintf(endpoint, sizeof endpoint, "%.*s:%d", host_length, link->address, link->port);
+	snprintf(endpoint, sizeof endpoint, "%.*s:%d", host_length(link->address), link->address,
+		 link->port);
 	for (int i = 0; link->stream && i < 2; i++) {
 		if (link->topics[i][0])
 			zmq_setsockopt(link->stream, ZMQ_SUBSCRIBE, link->topics[i],
@@ -282,13 +299,21 @@ enum gz_result gz_pupil_link_open(struct gz_pupil_link *link, const char *addres
 	link->context = zmq_ctx_new();
 	if (!link->context)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = open_control(link);
+	enum gz_result result = find_keys(link);
+	if (result == GZ_OK)
+		result = open_control(link);
 	int64_t deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
 	while (result == GZ_OK && link->port == 0 && !link->told_reply &&
 	       gz_clock_now_ns() < deadline_ns)
 		wait_once(link, false, deadline_ns);
 	if (result == GZ_OK && link->port == 0) {
-		if (!link->told_reply)
+		if (!link->told_reply && link->keys.server[0])
+			gz_err(log,
+			       "no daemon with the key of known_servers answers at %s; start it, "
+			       "or "
+			       "have it let our key in, or check pupil.address",
+			       address);
+		else if (!link->told_reply)
 			gz_err(log,
 			       "nobody answers at %s; start Pupil Capture with its Network API, or "
 			       "check pupil.address",
@@ -318,4 +343,5 @@ void gz_pupil_link_close(struct gz_pupil_link *link)
 	if (link->context)
 		zmq_ctx_term(link->context);
 	link->control = link->stream = link->context = NULL;
+	explicit_bzero(&link->keys, sizeof link->keys);
 }

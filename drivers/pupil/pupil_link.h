@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "drivers/pupil/pupil_clock.h"
+#include "drivers/pupil/pupil_keys.h"
 #include "protocol/endpoint.h"
 
 /** Time between two rounds of clock comparison, ns (Pupil's network_time_sync.py). */
@@ -48,6 +49,7 @@ struct gz_pupil_link {
 	void *control; /**< DEALER, where a REQ would be stuck without an answer */
 	void *stream;  /**< SUB; NULL before gz_pupil_link_subscribe() */
 	char address[GZ_ENDPOINT_SIZE];
+	struct gz_pupil_keys keys;
 	char topics[2][GZ_PUPIL_TOPIC_SIZE]; /**< "" for none */
 	int port;                            /**< of the stream; 0 while not known */
 	struct gz_pupil_clock clock;
@@ -68,12 +70,14 @@ struct gz_pupil_link {
 bool gz_pupil_address_valid(const char *address);
 
 /**
- * Connect to Pupil Remote and wait until it tells the stream's port.
+ * Connect to Pupil Remote, with keys where gz_pupil_keys_find() has some, and wait until it tells
+ * the stream's port.
  *
  * @param address   as gz_pupil_address_valid() has it
  * @param log       borrowed, outlives the link; may be NULL
  * @retval GZ_ERR_NO_DEVICE  nobody answers within @p timeout_ms, or not with a port; logged
  * @retval GZ_ERR_NO_MEM, GZ_ERR_INVAL  logged
+ * @retval GZ_ERR_ACCESS, GZ_ERR_FORMAT, GZ_ERR_IO, GZ_ERR_FULL  keys cannot be had; logged
  */
 enum gz_result gz_pupil_link_open(struct gz_pupil_link *link, const char *address, int timeout_ms,
 				  const struct gz_log *log);

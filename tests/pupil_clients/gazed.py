@@ -34,18 +34,18 @@ def die_with_parent():
 class Gazed:
     """Runs until close(); its recordings are in .place."""
 
-    def __init__(self, program, *arguments):
+    def __init__(self, program, *arguments, awaited="delivers samples", **variables):
         self.place = tempfile.mkdtemp(prefix="gz_pupil_")
         self.port = free_port()
         self.log_path = os.path.join(self.place, "stderr")
-        environment = dict(os.environ, GAZECAST_RUNTIME_DIR=self.place)
+        environment = dict(os.environ, GAZECAST_RUNTIME_DIR=self.place, **variables)
         with open(self.log_path, "w") as log:
             self.process = subprocess.Popen(
                 [program, "--control", f"tcp://127.0.0.1:{self.port}",
                  "--recording.directory", self.place, *arguments],
                 env=environment, stderr=log, preexec_fn=die_with_parent)
         try:
-            wait_for(lambda: "delivers samples" in self.log() or self.process.poll() is not None,
+            wait_for(lambda: awaited in self.log() or self.process.poll() is not None,
                      "gazed does not begin")
             assert self.process.poll() is None, self.log()
         except BaseException:

@@ -1,11 +1,15 @@
 """Calls of Pupil's clients in their order, made to the real gazed: docs/pupil-clients.md names them.
 
-usage: test_clients.py GAZED [TEST...]
+usage: test_clients.py GAZED GAZECTL [TEST...]
 """
 import collections
 import math
+import os
+import shutil
 import socket
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -14,7 +18,7 @@ from gazed import Bisector, Client, Gazed, PATIENCE_S, receive, receive_topic, w
 import msgpack
 import zmq
 
-GAZED = sys.argv.pop(1)
+GAZED, GAZECTL = sys.argv.pop(1), sys.argv.pop(1)
 
 
 class ClientTest(unittest.TestCase):
@@ -476,6 +480,7 @@ class ChainTest(ClientTest):
                     second.close()
 
     def compare(self, client):
+        """That both say the same of the same moments."""
         first = self.client.subscribe("gaze.")
         second = client.subscribe("gaze.")
         raw = {}
@@ -499,6 +504,68 @@ class ChainTest(ClientTest):
                     self.assertEqual(gaze[eye]["point"], origin[eye]["point"])
                     self.assertEqual(gaze[eye]["pupil_mm"], origin[eye]["pupil_mm"])
             same += 1
+
+
+class CurveTest(unittest.TestCase):
+    """The same with keys, as between two machines."""
+
+    def setUp(self):
+        self.place = tempfile.mkdtemp(prefix="gz_pupil_")
+        self.addCleanup(shutil.rmtree, self.place)
+        for kind in ("server", "client"):
+            os.mkdir(self.path(kind), 0o700)
+        subprocess.run([GAZECTL, "keygen", "--server", "--directory",
+                        self.path("server", "gazecast")],
+                       check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([GAZECTL, "keygen", "--client", "test", "--directory",
+                        self.path("client", "gazecast")],
+                       check=True, stdout=subprocess.DEVNULL)
+
+    def path(self, *names):
+        return os.path.join(self.place, *names)
+
+    def key(self, kind):
+        with open(self.path(kind, "gazecast", kind + "_key.pub")) as file:
+            return next(line for line in file if line.strip() and line[0] != "#").split()[0]
+
+    def write(self, text, *names):
+        with open(os.open(self.path(*names), os.O_CREAT | os.O_WRONLY, 0o600), "w") as file:
+            file.write(text)
+
+    def start_first(self):
+        first = Gazed(GAZED, "--tcp", "curve", "--network.keys", self.path("server", "gazecast"))
+        self.addCleanup(first.close)
+        return first
+
+    def start_second(self, first, awaited="pupil delivers samples"):
+        second = Gazed(GAZED, "--driver", "pupil", "--pupil.address",
+                       f"tcp://127.0.0.1:{first.port}", awaited=awaited,
+                       XDG_CONFIG_HOME=self.path("client"))
+        self.addCleanup(second.close)
+        return second
+
+    def test_daemon_that_is_let_in_reads_the_other(self):
+        self.write(self.key("client") + " test\n", "server", "gazecast", "authorized_keys")
+        self.write("127.0.0.1 " + self.key("server") + "\n",
+                   "client", "gazecast", "known_servers")
+        second = self.start_second(self.start_first())
+        client = Client(second)
+        self.addCleanup(client.close)
+        gaze = client.subscribe("gaze.")
+        for _ in range(20):
+            receive(gaze)
+
+    def test_daemon_that_is_not_let_in_says_so_and_waits(self):
+        self.write("", "server", "gazecast", "authorized_keys")
+        self.write("127.0.0.1 " + self.key("server") + "\n",
+                   "client", "gazecast", "known_servers")
+        second = self.start_second(self.start_first(), "is looked for until it appears")
+        self.assertIn("no daemon with the key of known_servers answers", second.log())
+
+    def test_daemon_without_keys_is_not_served(self):
+        self.write(self.key("client") + " test\n", "server", "gazecast", "authorized_keys")
+        second = self.start_second(self.start_first(), "is looked for until it appears")
+        self.assertIn("nobody answers at", second.log())
 
 
 if __name__ == "__main__":
