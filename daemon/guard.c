@@ -157,7 +157,7 @@ static struct peer *find_peer(struct gz_connections *connections, int fd)
 /* The address at the other end; false for a local one and for one that has left. */
 static bool address_of(int fd, char *text, size_t size)
 {
-	struct sockaddr_storage peer;
+	struct sockaddr_storage peer = { 0 };
 	socklen_t length = sizeof peer;
 	if (getpeername(fd, (struct sockaddr *)&peer, &length) != 0)
 		return false;
@@ -260,6 +260,7 @@ static void take_all(struct gz_guard *guard)
 static void *run(void *user)
 {
 	struct gz_guard *guard = user;
+	pthread_setname_np(pthread_self(), "gazed-guard");
 	zmq_pollitem_t items[2 + GZ_GUARD_SOCKETS_MAX];
 	int count = 0;
 	items[count++] = (zmq_pollitem_t) { .fd = guard->quit_fd, .events = ZMQ_POLLIN };
@@ -355,7 +356,6 @@ enum gz_result gz_guard_start(struct gz_guard *guard)
 		return GZ_ERR_NO_MEM;
 	}
 	guard->has_thread = true;
-	pthread_setname_np(guard->thread, "gazed-guard");
 	return GZ_OK;
 }
 

@@ -450,6 +450,7 @@ static bool must_wait_for_recorder(const struct gz_service *service)
 static void *run(void *user)
 {
 	struct gz_service *service = user;
+	pthread_setname_np(pthread_self(), "gazed-serve");
 	while (!service->quit) {
 		int64_t now_ns = gz_clock_now_ns();
 		take_commands(service, now_ns);
@@ -482,7 +483,6 @@ enum gz_result gz_service_start(struct gz_service *service)
 		return GZ_ERR_NO_MEM;
 	}
 	service->has_thread = true;
-	pthread_setname_np(service->thread, "gazed-serve");
 	return GZ_OK;
 }
 
