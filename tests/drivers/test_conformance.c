@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "allocations.h"
 #include "base/clock.h"
 #include "drivers/driver.h"
 #include "drivers/pointer/pointer_feed.h"
@@ -446,6 +447,33 @@ static void driver_keeps_to_the_timeout_and_writes_nothing_without_a_sample(void
 	for_every_driver(check_timeouts);
 }
 
+static void check_allocations(struct stage *stage)
+{
+	/* Its messages are received and unpacked by libraries that allocate for each. */
+	if (strcmp(stage->driver->name, "pupil") == 0)
+		return;
+	struct gz_device *device = create(stage);
+	struct gz_sample sample;
+	assert_int_equal(gz_device_start(device), GZ_OK);
+	/* What is done once is done by then. */
+	for (int i = 0; i < SAMPLES / 10; i++)
+		read_one(stage, device, &sample);
+	long before = allocations_of_this_thread();
+	for (int i = 0; i < SAMPLES / 2; i++)
+		read_one(stage, device, &sample);
+	long after = allocations_of_this_thread();
+	if (after != before)
+		fail_msg("%s: %ld allocations for %d samples", stage->driver->name, after - before,
+			 SAMPLES / 2);
+	gz_device_destroy(&device);
+}
+
+static void driver_reads_without_allocating(void **state)
+{
+	(void)state;
+	for_every_driver(check_allocations);
+}
+
 static void check_destroy(struct stage *stage)
 {
 	struct gz_device *device = create(stage);
@@ -579,6 +607,7 @@ int main(void)
 		cmocka_unit_test(driver_delivers_samples_in_order_and_counts_what_is_lost),
 		cmocka_unit_test(driver_host_time_is_the_monotonic_clock_and_not_ahead_of_it),
 		cmocka_unit_test(driver_keeps_to_the_timeout_and_writes_nothing_without_a_sample),
+		cmocka_unit_test(driver_reads_without_allocating),
 		cmocka_unit_test(driver_is_destroyed_at_any_stage),
 		cmocka_unit_test(driver_refuses_what_is_not_there),
 		cmocka_unit_test(template_that_is_unplugged_says_so),

@@ -116,6 +116,25 @@ static void gazepoint_that_is_absent_is_waited_for(void **state)
 	gazepoint_server_stop(&server);
 }
 
+static void gazepoint_that_says_nothing_is_given_up_and_tried_again(void **state)
+{
+	(void)state;
+	char port[16];
+	const struct gazepoint_play play = { .mute = true };
+	gazepoint_server_start(&server, &play, 0);
+	snprintf(port, sizeof port, "%d", server.port);
+	struct gazed_process gazed = SPAWN("--driver", "gazepoint", "--gazepoint.port", port);
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	while (atomic_load(&server.connections) < 2) {
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + 10 * GZ_NS_PER_MS);
+		if (gz_clock_now_ns() > deadline_ns)
+			fail_msg("%d connections", atomic_load(&server.connections));
+	}
+	assert_non_null(strstr(gazed_said(&gazed), "it says nothing"));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	gazepoint_server_stop(&server);
+}
+
 static void tobii_library_is_played_and_its_absence_refused(void **state)
 {
 	(void)state;
@@ -243,6 +262,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		TEST(gazepoint_server_may_die_and_return_and_numbers_go_on),
 		TEST(gazepoint_that_is_absent_is_waited_for),
+		TEST(gazepoint_that_says_nothing_is_given_up_and_tried_again),
 		TEST(tobii_library_is_played_and_its_absence_refused),
 		TEST(pointer_leads_the_gaze_and_is_let_go),
 		TEST(window_is_recorded_at_once_and_at_the_start_of_a_later_recording),
