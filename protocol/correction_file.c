@@ -121,16 +121,18 @@ bool gz_correction_fits(const struct gz_correction_file *file, const char *track
 	       same(file->distance_mm, display->distance_mm);
 }
 
-/* All directories that @p path names before its last slash, 0700: configuration is its owner's. */
+/* All directories that @p path names before its last slash. A user's configuration is his alone;
+ * what root writes is for services that are not root. */
 static bool make_directories(const char *path)
 {
 	char text[GZ_PATH_SIZE + 64];
+	mode_t mode = geteuid() == 0 ? 0755 : 0700;
 	if (strlen(path) >= sizeof text)
 		return false;
 	memcpy(text, path, strlen(path) + 1);
 	for (char *slash = strchr(text + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
 		*slash = '\0';
-		if (mkdir(text, 0700) != 0 && errno != EEXIST)
+		if (mkdir(text, mode) != 0 && errno != EEXIST)
 			return false;
 		*slash = '/';
 	}

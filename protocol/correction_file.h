@@ -74,8 +74,8 @@ bool gz_correction_fits(const struct gz_correction_file *file, const char *track
 			const char *serial, const struct gz_display *display);
 
 /**
- * Write a file, with the directories that it needs (0700): the old one stays until the new one is
- * on the disk.
+ * Write a file, with the directories that it needs (0700, root's 0755): the old one stays until the
+ * new one is on the disk.
  *
  * @retval GZ_ERR_ACCESS  not allowed; logged
  * @retval GZ_ERR_IO      anything else; logged

@@ -8,6 +8,7 @@ import glob
 import json
 import math
 import os
+import pty
 import shutil
 import signal
 import subprocess
@@ -295,6 +296,34 @@ class Validate(unittest.TestCase):
 
         self.until(lambda: abs(width() - 0.6 * px_per_deg) <= 2.5, "a disc of 0.6 degrees")
         self.assertLess(self.dot, 20)
+
+    def answer(self, text):
+        """A check on a terminal, its question answered with @text. -> what the terminal showed"""
+        ours, theirs = pty.openpty()
+        gazectl = subprocess.Popen(
+            self.words("--instructions=no"), env=self.environment, stdin=theirs, stdout=theirs,
+            stderr=theirs,
+        )
+        os.close(theirs)
+        shown = b""
+        while b"[y/N]" not in shown:
+            shown += os.read(ours, 4096)
+        os.write(ours, text.encode())
+        try:
+            while True:
+                shown += os.read(ours, 4096)
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        self.assertEqual(gazectl.wait(timeout=PATIENCE_S), 0, shown)
+        return shown.decode()
+
+    def test_terminal_is_asked_whether_to_store(self):
+        self.start_simulator()
+        self.answer("\n")
+        self.assertEqual(self.stored(), [])
+        self.assertIn("and in force", self.answer("y\n"))
+        self.assertEqual(len(self.stored()), 1)
 
     def test_space_begins_and_escape_cancels(self):
         self.start_simulator()
