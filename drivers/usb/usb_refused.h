@@ -15,8 +15,8 @@
 #define GZ_SYSFS "/sys"
 
 /**
- * List USB interfaces of class HID that have no driver, and HID devices on USB that have none; where
- * the kernel has its drivers for them at all.
+ * List USB interfaces of class HID that have no driver, and HID devices on USB that have none;
+ * where the kernel has its drivers for them at all.
  *
  * @param sysfs  GZ_SYSFS
  * @param[out] out_entries  none of them usable

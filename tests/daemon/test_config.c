@@ -149,6 +149,27 @@ static void config_settings_of_other_drivers_may_stay_in_a_file(void **state)
 	assert_int_equal(read_text("[replay]\nspeed = 2\n", path), GZ_OK);
 }
 
+static void config_of_auto_takes_the_settings_of_any_driver(void **state)
+{
+	(void)state;
+	const void *all[GZ_CONFIG_DRIVERS_MAX], *settings;
+	size_t i = 0;
+	assert_int_equal(
+		READ("--driver=auto", "--gazepoint.port=4243", "--psvr2.screen_mm=500 300"), GZ_OK);
+	assert_string_equal(gz_config_driver(&config, &settings)->name, "auto");
+	gz_config_all_settings(&config, all);
+	while (strcmp(gz_drivers[i]->name, "psvr2") != 0)
+		i++;
+	const struct gz_option_binding binding = { gz_drivers[i]->options,
+						   *gz_drivers[i]->option_count, (void *)all[i],
+						   NULL };
+	char text[64];
+	assert_int_equal(gz_option_format(gz_options_find(&binding, 1, "psvr2.screen_mm", NULL),
+					  all[i], text, sizeof text),
+			 GZ_OK);
+	assert_string_equal(text, "500 300");
+}
+
 static void config_control_is_at_pupils_port_of_the_address(void **state)
 {
 	(void)state;
@@ -338,6 +359,7 @@ int main(void)
 		cmocka_unit_test(config_contradictions_in_a_file_are_told_with_file_and_line),
 		cmocka_unit_test(config_pupil_may_be_anywhere_but_at_the_daemons_own_socket),
 		cmocka_unit_test(config_settings_of_other_drivers_may_stay_in_a_file),
+		cmocka_unit_test(config_of_auto_takes_the_settings_of_any_driver),
 		cmocka_unit_test(config_control_is_at_pupils_port_of_the_address),
 		cmocka_unit_test(config_surfaces_may_be_none),
 		cmocka_unit_test(config_control_endpoint_does_not_matter_without_tcp),
