@@ -41,14 +41,16 @@ struct gz_classify_params {
 	double turn_fraction;  /**< and where it gathers speed again below this part */
 	double saccade_max_ms; /**< longer ones are ended, ms */
 	double glissade_ms;    /**< after a saccade, for so long, ms, ... */
-	double glissade_fraction;  /**< ... only this part of its peak begins another */
-	double fixation_min_ms;    /**< shorter ones are not announced, ms */
-	double pursuit_window_ms;  /**< over which slow movement is measured, ms */
-	double pursuit_deg;        /**< slow movement where fixation and pursuit are equally likely,
-				      degrees */
-	double pursuit_habit_s;    /**< time constant of the habit, s */
-	double pursuit_habit;      /**< weight of the intervals before, no unit */
-	double pursuit_hysteresis; /**< evidence needed to change one's mind, no unit */
+	double glissade_fraction;     /**< ... only this part of its peak begins another */
+	double fixation_min_ms;       /**< shorter ones are not announced, ms */
+	double pursuit_window_ms;     /**< over which slow movement is measured, ms */
+	double fixation_spread_deg;   /**< deviation of a fixation's places on an axis, degrees */
+	double fixation_drift_deg2_s; /**< what its variance grows by, square degrees a second */
+	double pursuit_speed_deg_s;   /**< usual size of a pursuit's speed on an axis */
+	double pursuit_factor_max; /**< most that one stretch between saccades tells of the next */
+	double pursuit_scenes;     /**< part of scenes that have something to follow, [0, 1] */
+	double pursuit_begins;     /**< there: how often pursuit follows on fixation, [0, 1] */
+	double pursuit_hysteresis; /**< odds needed to change one's mind, 1 or more */
 	double dropout_ms;         /**< shorter losses are not blinks, ms */
 	double blink_max_ms;       /**< longer ones are lost, ms */
 };
@@ -57,7 +59,10 @@ struct gz_classify_params {
 #define GZ_CLASSIFY_RING 128
 
 /** Slow movement is followed over so many bins at most. A power of two. */
-#define GZ_CLASSIFY_BINS 32
+#define GZ_CLASSIFY_BINS 64
+
+/** States of the eye and the scene: each rests or moves. */
+#define GZ_CLASSIFY_BELIEFS 4
 
 /** One sample in the ring. */
 struct gz_classify_entry {
@@ -84,8 +89,9 @@ struct gz_classify_machine {
 	bool slowed;            /**< the running saccade fell below its end threshold, ... */
 	int64_t slowed_ns;      /**< ... at this time */
 	double heading[3];      /**< unit vector along the running saccade's velocity at its peak */
-	double pursuit;         /**< evidence for pursuit against fixation, 0 is even */
-	double habit;           /**< what the intervals before were: -1 fixation to 1 pursuit */
+	bool believes;          /**< whether the next two hold something */
+	double belief[GZ_CLASSIFY_BELIEFS]; /**< probabilities before the running stretch */
+	double pursuit_factor;              /**< Bayes factor of pursuit against fixation in it */
 };
 
 /** Mean place over some milliseconds between saccades. */

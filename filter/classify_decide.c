@@ -6,14 +6,8 @@
 #include "filter/angle.h"
 #include "filter/classify_internal.h"
 
-/* That the eye hardly moves says something once it was watched for so long: chosen. */
-static const double SPAN_FULL_S = 0.1;
-
 /* How long the eye rings after a saccade, when its movement says nothing of pursuit: chosen. */
-static const int64_t RINGING_NS = 60 * GZ_NS_PER_MS;
-
-/* The way of an eye counts as far as it is beyond so many deviations of noise: chosen. */
-static const double NOISE_DEVIATIONS = 2;
+static const int64_t RINGING_NS = 40 * GZ_NS_PER_MS;
 
 static double peak_threshold(const struct gz_classify_state *state,
 			     const struct gz_classify_params *params, int64_t time_ns)
@@ -97,19 +91,6 @@ static bool saccade_ends(struct gz_classify_state *state, const struct gz_classi
 	       along(machine, gz_classify_at(state, index + 1)) > speed;
 }
 
-static enum gz_event interval_event(const struct gz_classify_machine *machine)
-{
-	return machine->pursuit > 0 ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
-}
-
-static void begin_interval(struct gz_classify_state *state, const struct gz_classify_params *params)
-{
-	struct gz_classify_machine *machine = &state->machine;
-	gz_classify_slow_restart(&state->slow);
-	machine->pursuit = params->pursuit_habit * machine->habit - 1e-9;
-	machine->event = interval_event(machine);
-}
-
 static void begin_saccade(struct gz_classify_state *state, const struct gz_classify_entry *entry)
 {
 	struct gz_classify_machine *machine = &state->machine;
@@ -118,64 +99,6 @@ static void begin_saccade(struct gz_classify_state *state, const struct gz_class
 	machine->peak_deg_s = 0;
 	machine->slowed = false;
 	follow_peak(machine, entry);
-}
-
-/**
- * What noise alone makes of the way of an eye at rest: standard deviation of both axes together.
- *
- * The slope through n samples dt apart has the deviation s sqrt(12 / (n (n^2 - 1))) / dt for
- * samples of the deviation s. That gives s from the usual speed over the short window, whose median
- * is sqrt(2 ln 2) of the deviation of an axis (Rayleigh), and from s that of the long slope.
- */
-static double way_noise_deg(const struct gz_classify_state *state,
-			    const struct gz_classify_params *params)
-{
-	double period_s = state->period_ns * 1e-9;
-	double half = floor(params->velocity_window_ms * 0.5e-3 / period_s + 0.25);
-	double n = gz_classify_delay(state, params) > 0 ? 2 * fmax(half, 1) + 1 : 2;
-	double many = fmax(2, state->slow.span_s / period_s);
-	double axis_deg_s = state->noise_deg_s.value / 1.17741002;
-	double axis_deg = axis_deg_s * period_s * sqrt(n * (n * n - 1) / many);
-	return axis_deg * 1.41421356;
-}
-
-/**
- * What the slow movement says, -1 fixation to 1 pursuit. Drift wanders about a place however long a
- * fixation lasts; pursuit goes on and on: how far it has come tells more than how fast it is. This
- * is the tangens hyperbolicus of half the logarithm of the way over the even way.
- */
-static double evidence_of(const struct gz_classify_state *state,
-			  const struct gz_classify_params *params)
-{
-	double way_deg = gz_length3(state->slow.velocity_deg_s) * state->slow.span_s;
-	double noise_deg = NOISE_DEVIATIONS * way_noise_deg(state, params);
-	way_deg = sqrt(fmax(0, way_deg * way_deg - noise_deg * noise_deg));
-	return (way_deg - params->pursuit_deg) / (way_deg + params->pursuit_deg);
-}
-
-/** What the eyes did in the last seconds, they are likely to do next. */
-static void learn_habit(struct gz_classify_state *state, const struct gz_classify_params *params)
-{
-	if (state->slow.span_s < SPAN_FULL_S)
-		return;
-	struct gz_classify_machine *machine = &state->machine;
-	double gain = state->period_ns / (params->pursuit_habit_s * 1e9);
-	machine->habit += fmin(gain, 1) * (evidence_of(state, params) - machine->habit);
-}
-
-/** Fixation or pursuit? */
-static void weigh(struct gz_classify_state *state, const struct gz_classify_params *params)
-{
-	struct gz_classify_machine *machine = &state->machine;
-	double evidence = evidence_of(state, params);
-	if (evidence < 0)
-		evidence *= fmin(1, state->slow.span_s / SPAN_FULL_S);
-	machine->pursuit = evidence + params->pursuit_habit * machine->habit;
-	double needed = params->pursuit_hysteresis;
-	if (machine->event == GZ_EVENT_FIXATION && machine->pursuit > needed)
-		machine->event = GZ_EVENT_PURSUIT;
-	else if (machine->event == GZ_EVENT_PURSUIT && machine->pursuit < -needed)
-		machine->event = GZ_EVENT_FIXATION;
 }
 
 /** A sample between saccades. */
@@ -189,8 +112,7 @@ static void go_on_interval(struct gz_classify_state *state, const struct gz_clas
 		machine->had_saccade && entry->time_ns - machine->saccade_end_ns < RINGING_NS;
 	bool steady = entry->fast_deg_s < peak_threshold(state, params, entry->time_ns) / 2;
 	if (!ringing && steady && gz_classify_slow_step(&state->slow, params, entry))
-		weigh(state, params);
-	learn_habit(state, params);
+		gz_classify_weigh(state, params);
 }
 
 static void decide_good(struct gz_classify_state *state, const struct gz_classify_params *params,
@@ -203,7 +125,7 @@ static void decide_good(struct gz_classify_state *state, const struct gz_classif
 	if (anew) {
 		machine->had_saccade = false;
 		memset(state->slow.velocity_deg_s, 0, sizeof state->slow.velocity_deg_s);
-		begin_interval(state, params);
+		gz_classify_begin_interval(state, params, machine->event == GZ_EVENT_LOST);
 	}
 	if (machine->event == GZ_EVENT_SACCADE) {
 		follow_peak(machine, entry);
@@ -211,7 +133,7 @@ static void decide_good(struct gz_classify_state *state, const struct gz_classif
 			return;
 		machine->had_saccade = true;
 		machine->saccade_end_ns = entry->time_ns;
-		begin_interval(state, params);
+		gz_classify_begin_interval(state, params, false);
 		go_on_interval(state, params, entry);
 	} else if (saccade_begins(state, params, index)) {
 		begin_saccade(state, entry);

@@ -43,6 +43,18 @@ void gz_classify_measure(struct gz_classify_state *state, const struct gz_classi
 enum gz_event gz_classify_decide(struct gz_classify_state *state,
 				 const struct gz_classify_params *params, uint64_t index);
 
+/**
+ * A stretch between saccades begins: take what the last one was into the odds, and say what this
+ * one is on these alone.
+ *
+ * @param forget  the last one says nothing, nor those before
+ */
+void gz_classify_begin_interval(struct gz_classify_state *state,
+				const struct gz_classify_params *params, bool forget);
+
+/** Fixation or pursuit, now that the slow movement was measured anew? */
+void gz_classify_weigh(struct gz_classify_state *state, const struct gz_classify_params *params);
+
 /** Forget the slow movement's bins, at a saccade or loss. */
 void gz_classify_slow_restart(struct gz_classify_slow *slow);
 

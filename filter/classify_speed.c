@@ -6,11 +6,11 @@
 #include "filter/angle.h"
 #include "filter/classify_internal.h"
 
-/* Width of a bin: chosen, some samples at 500 Hz, and a dozen of them in the window. */
-static const int64_t BIN_NS = 20 * GZ_NS_PER_MS;
+/* Width of a bin: chosen, as long as a certain label waits; 600 ms of them fit the ring. */
+static const int64_t BIN_NS = 10 * GZ_NS_PER_MS;
 
-/* Least bins for a slope: chosen, 40 to 50 ms; less would take the eye's ringing for movement. */
-static const double SLOPE_MIN_COUNT = 3;
+/* Least time for a slope: chosen; less would take the eye's ringing for movement. */
+static const double SLOPE_LEAST_S = 0.035;
 
 /** Sums for the slope of a line. */
 struct line {
@@ -135,7 +135,7 @@ static void measure_slope(struct gz_classify_slow *slow, double window_s, int64_
 {
 	struct line line = { .count = 0 };
 	const struct gz_classify_bin *newest = bin_at(slow, slow->bin_count - 1);
-	double oldest_s = 0;
+	double oldest_s = 0, newest_s = 0;
 	for (uint64_t k = 0; k < slow->bin_count && k < GZ_CLASSIFY_BINS; k++) {
 		const struct gz_classify_bin *bin = bin_at(slow, slow->bin_count - 1 - k);
 		double age_s = gz_ns_to_s(now_ns - bin->start_ns) - bin->time_sum_s / bin->count;
@@ -147,11 +147,12 @@ static void measure_slope(struct gz_classify_slow *slow, double window_s, int64_
 				   newest->direction_sum_deg[i] / newest->count;
 		line_add(&line, -age_s, place);
 		oldest_s = age_s;
+		newest_s = k == 0 ? age_s : newest_s;
 	}
 	double slope[3];
-	if (line.count >= SLOPE_MIN_COUNT && line_slope(&line, slope)) {
+	if (line.count >= 2 && oldest_s - newest_s >= SLOPE_LEAST_S && line_slope(&line, slope)) {
 		memcpy(slow->velocity_deg_s, slope, sizeof slope);
-		slow->span_s = oldest_s;
+		slow->span_s = oldest_s - newest_s;
 	}
 }
 
