@@ -5,13 +5,18 @@
 #include "base/clock.h"
 #include "filter/angle.h"
 
-/* How much of each new distance enters the short mean that notices a movement: chosen, so that one
- * stray sample does not, and two or three in a row do. */
-static const double NOTICE = 0.5;
+/* Time constant of the short mean that notices a movement: chosen, so that one stray sample does
+ * not count for much. */
+static const double NOTICE_S = 0.01;
 
 /* Time constant of the usual distance: chosen, some fixations long. */
 static const double USUAL_S = 1.0;
 
+/* Of white noise, a distance from the mean is this part of a distance between two samples: one
+ * deviation against that of a difference. */
+static const double STEP_PART = 0.70710678118654752;
+
+/** Begin anew at a point. */
 static void place_at(struct gz_smooth_state *state, struct gz_point point)
 {
 	state->place[0] = point.x;
@@ -21,34 +26,52 @@ static void place_at(struct gz_smooth_state *state, struct gz_point point)
 	state->window_s = 0;
 }
 
+/** Begin anew at a point, and let what is given glide there. */
+static void glide_to(struct gz_smooth_state *state, struct gz_point point)
+{
+	state->glide[0] += state->place[0] - point.x;
+	state->glide[1] += state->place[1] - point.y;
+	place_at(state, point);
+}
+
+/** Begin anew at a point at once. */
+static void jump_to(struct gz_smooth_state *state, struct gz_point point)
+{
+	state->glide[0] = state->glide[1] = 0;
+	place_at(state, point);
+}
+
 static double offset_deg(const struct gz_display *display, const double offset[2])
 {
 	double x_mm = offset[0] * display->mm[0], y_mm = offset[1] * display->mm[1];
 	return sqrt(x_mm * x_mm + y_mm * y_mm) / display->distance_mm * GZ_DEG_PER_RAD;
 }
 
-/** Follow how far the measured points usually are, and notice when the eye has moved. */
-static bool moved_away(struct gz_smooth_state *state, const struct gz_smooth_params *params,
-		       const struct gz_display *display, double step_s, struct gz_point point)
+/** Follow how far the measured points are from the place, and what of it is noise. */
+static void measure_offset(struct gz_smooth_state *state, const struct gz_display *display,
+			   double step_s, struct gz_point point)
 {
 	double now[2] = { point.x - state->place[0], point.y - state->place[1] };
+	double gain = step_s / (step_s + NOTICE_S);
 	for (int axis = 0; axis < 2; axis++)
-		state->offset[axis] += NOTICE * (now[axis] - state->offset[axis]);
-	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg.value);
-	bool moved = offset_deg(display, state->offset) > limit_deg;
-	gz_median_follow(&state->usual_deg, offset_deg(display, now), step_s / (step_s + USUAL_S));
-	return moved;
+		state->offset[axis] += gain * (now[axis] - state->offset[axis]);
+	/* From step to step, so that a slow movement does not pass for noise. */
+	double step[2] = { point.x - state->measured[0], point.y - state->measured[1] };
+	gz_median_follow(&state->usual_deg, STEP_PART * offset_deg(display, step),
+			 step_s / (step_s + USUAL_S));
 }
 
+/** The mean of a window that has grown since the eye came to rest, and is shorter the more the
+ *  place lags behind. */
 static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			    const struct gz_display *display, double step_s, struct gz_point point)
 {
-	if (moved_away(state, params, display, step_s, point)) {
-		place_at(state, point);
-		return;
-	}
+	measure_offset(state, display, step_s, point);
+	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg.value);
+	double lag = offset_deg(display, state->offset) / limit_deg;
 	state->window_s = fmin(state->window_s + step_s, params->window_ms * 1e-3);
-	double gain = step_s / (state->window_s + step_s);
+	double window_s = fmax(state->window_s / (1 + lag * lag), params->start_ms * 1e-3);
+	double gain = step_s / (window_s + step_s);
 	state->place[0] += gain * (point.x - state->place[0]);
 	state->place[1] += gain * (point.y - state->place[1]);
 }
@@ -82,6 +105,25 @@ static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth
 	state->offset[0] = state->offset[1] = 0;
 }
 
+/** Follow a saccade: one that is still small, and may be noise, by gliding, so that the place goes
+ *  on should the eye come back; a larger one at once. */
+static void follow_saccade(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+			   const struct gz_display *display, double step_s, struct gz_point point)
+{
+	double away[2] = { point.x - state->place[0], point.y - state->place[1] };
+	if (state->mode != GZ_EVENT_SACCADE)
+		state->passing = false;
+	if (offset_deg(display, away) > params->pass_deg)
+		state->passing = true;
+	if (state->passing) {
+		jump_to(state, point);
+		return;
+	}
+	double constant_s = params->glide_ms * 1e-3;
+	for (int axis = 0; axis < 2; axis++)
+		state->glide[axis] += step_s / constant_s * away[axis]; /* glide() does the rest */
+}
+
 /** @return how it was smoothed */
 static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 				    const struct gz_smooth_params *params,
@@ -90,14 +132,14 @@ static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 {
 	switch (event) {
 	case GZ_EVENT_FIXATION:
-		if (state->mode != GZ_EVENT_PURSUIT && state->mode != GZ_EVENT_FIXATION)
-			place_at(state, point);
-		else
-			smooth_fixation(state, params, display, step_s, point);
+		smooth_fixation(state, params, display, step_s, point);
 		state->velocity[0] = state->velocity[1] = 0;
 		break;
 	case GZ_EVENT_PURSUIT:
-		smooth_pursuit(state, params, step_s, point);
+		if (state->mode == GZ_EVENT_FIXATION)
+			glide_to(state, point);
+		else
+			smooth_pursuit(state, params, step_s, point);
 		break;
 	case GZ_EVENT_SACCADE:
 		if (state->mode == GZ_EVENT_FIXATION &&
@@ -105,13 +147,22 @@ static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 			smooth_fixation(state, params, display, step_s, point);
 			return GZ_EVENT_FIXATION;
 		}
-		place_at(state, point);
+		follow_saccade(state, params, display, step_s, point);
 		break;
 	default:
-		place_at(state, point);
+		jump_to(state, point);
 		break;
 	}
 	return event;
+}
+
+/** What is left of the glide after a step. */
+static void glide(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+		  double step_s)
+{
+	double constant_s = params->glide_ms * 1e-3;
+	for (int axis = 0; axis < 2; axis++)
+		state->glide[axis] *= constant_s / (constant_s + step_s);
 }
 
 struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_smooth_params *params,
@@ -123,13 +174,19 @@ struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_sm
 	if (!valid)
 		return state->point;
 	int64_t step_ns = time_ns - state->time_ns;
-	if (!state->started || step_ns <= 0 || step_ns > GZ_SMOOTH_GAP_NS)
-		place_at(state, point);
-	else
+	if (!state->started || step_ns <= 0 || step_ns > GZ_SMOOTH_GAP_NS ||
+	    state->mode == GZ_EVENT_BLINK || state->mode == GZ_EVENT_LOST) {
+		jump_to(state, point);
+	} else {
 		event = smooth_by_mode(state, params, display, event, gz_ns_to_s(step_ns), point);
+		glide(state, params, gz_ns_to_s(step_ns));
+	}
 	state->started = true;
 	state->mode = event;
 	state->time_ns = time_ns;
-	state->point = (struct gz_point) { (float)state->place[0], (float)state->place[1] };
+	state->measured[0] = point.x;
+	state->measured[1] = point.y;
+	state->point = (struct gz_point) { (float)(state->place[0] + state->glide[0]),
+					   (float)(state->place[1] + state->glide[1]) };
 	return state->point;
 }
