@@ -31,6 +31,7 @@ struct gz_hid_device {
 	double optimum_mm;   /**< distance; 0 while unknown */
 	double rate_hz;      /**< 0 while unknown */
 	int state;           /**< enum gz_hid_state, or any number */
+	bool slow;           /**< it takes seconds to answer, and is asked nothing more */
 
 	/* Its mode. */
 	bool mode_set; /**< mode_before is to be restored */

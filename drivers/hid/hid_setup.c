@@ -15,8 +15,27 @@ static const int64_t LOOK_AFTER_NS = 500 * GZ_NS_PER_MS;
 /* A machine that slept at all did so for longer, ns. */
 static const int64_t SLEEP_NS = 10 * GZ_NS_PER_MS;
 
+/* Longest time to answer, ns. Chosen: a control transfer takes milliseconds. */
+static const int64_t SLOW_NS = GZ_NS_PER_S;
+
 /* Screens that differ by less are the same, mm. */
 static const double SAME_MM = 0.5;
+
+/* A device that hangs holds the asker until the system gives up: 5 s each time. */
+static enum gz_result ask(struct gz_hid_device *device, uint8_t id, size_t *out_size)
+{
+	if (device->slow)
+		return GZ_ERR_IO;
+	int64_t begin_ns = gz_clock_now_ns();
+	enum gz_result result = gz_hid_port_get_feature(device->port, id, device->feature,
+							device->feature_size, out_size);
+	device->slow = gz_clock_now_ns() - begin_ns > SLOW_NS;
+	if (device->slow)
+		gz_warn(device->base.log,
+			"%s: it takes seconds to answer, and is asked nothing more",
+			device->entry.name);
+	return result;
+}
 
 /* Get the report that holds a quantity. @return bytes behind its ID, 0 if there is none */
 static size_t get(struct gz_hid_device *device, enum gz_hid_quantity quantity)
@@ -25,9 +44,7 @@ static size_t get(struct gz_hid_device *device, enum gz_hid_quantity quantity)
 	uint8_t id = device->tracker.values[quantity].report_id;
 	if (gz_hid_tracker_bytes(&device->tracker, quantity) == 0)
 		return 0;
-	if (gz_hid_port_get_feature(device->port, id, device->feature, device->feature_size,
-				    &size) != GZ_OK ||
-	    device->feature[0] != id) {
+	if (ask(device, id, &size) != GZ_OK || device->feature[0] != id) {
 		gz_debug(device->base.log, "%s: feature report %u is not answered",
 			 device->entry.name, id);
 		return 0;
@@ -98,6 +115,9 @@ static void ask_status(struct gz_hid_device *device)
 	if (size > 0 && gz_hid_value_raw(&values[GZ_HID_STATE], device->feature + 1, size,
 					 &state) == GZ_HID_READ)
 		device->state = state >= 0 && state <= INT32_MAX ? (int)state : 0;
+	if (device->state >= GZ_HID_STATE_CONFIGURING)
+		gz_warn(device->base.log, "%s: %s", device->entry.name,
+			gz_hid_setup_trouble(device));
 	size = get(device, GZ_HID_RATE);
 	if (size > 0 && gz_hid_value_read(&values[GZ_HID_RATE], device->feature + 1, size,
 					  &rate_hz) == GZ_HID_READ)

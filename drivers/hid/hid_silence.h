@@ -6,8 +6,9 @@
  *
  * Therefore, once nothing has come for three sample periods, each missing sample is filled in with
  * one where nothing was measured, at its place in time and one period late at the earliest, so that
- * one that is merely late finds its place free. Fillers are samples like any other: numbered,
- * judged, recorded. Pure.
+ * one that is merely late finds its place free. Where the link brings samples in bursts, the usual
+ * gap between them is waited for as well. Fillers are samples like any other: numbered, judged,
+ * recorded. Pure.
  */
 #ifndef GZ_DRIVERS_HID_SILENCE_H
 #define GZ_DRIVERS_HID_SILENCE_H
@@ -24,6 +25,7 @@ struct gz_hid_silence {
 	double nominal_ns; /**< period that the device states; 0 if it does not. Set by the owner */
 	double measured_ns; /**< period from sample to sample */
 	int steps;          /**< that measured_ns rests on */
+	double gap_ns;      /**< longest usual time from arrival to arrival */
 	int64_t host_ns;    /**< of the newest sample of the device */
 	int64_t arrival_ns; /**< when it came */
 	int64_t filled;     /**< fillers since then */
@@ -38,8 +40,8 @@ int64_t gz_hid_silence_due_ns(const struct gz_hid_silence *silence);
 /** Fill in the next one. @return its time */
 int64_t gz_hid_silence_fill(struct gz_hid_silence *silence);
 
-/** The sample period, ns: as measured, as stated until enough is measured, at most 1/30 s where
- *  neither is known. */
+/** The sample period, ns: as measured; until enough is measured 1/30 s, or the stated one where
+ * that is longer. */
 double gz_hid_silence_period_ns(const struct gz_hid_silence *silence);
 
 #endif

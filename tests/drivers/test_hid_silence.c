@@ -10,14 +10,30 @@
 
 static const int64_t BEGIN_NS = 1000 * GZ_NS_PER_S;
 
-/* So many samples at a rate, the last one at the time returned. */
+/* So many samples at a rate, and the fillers that the driver would make between them.
+ * @return when the last sample was */
+static int64_t stream_from(struct gz_hid_silence *silence, int64_t begin_ns, double rate_hz,
+			   int count, int *out_fillers)
+{
+	int64_t ns = begin_ns;
+	*out_fillers = 0;
+	for (int i = 0; i < count; i++) {
+		ns = begin_ns + (int64_t)(1e9 * i / rate_hz);
+		int64_t arrival_ns = ns + 2 * GZ_NS_PER_MS;
+		while (gz_hid_silence_due_ns(silence) < arrival_ns) {
+			gz_hid_silence_fill(silence);
+			++*out_fillers;
+		}
+		gz_hid_silence_sample(silence, ns, arrival_ns);
+	}
+	return ns;
+}
+
 static int64_t stream(struct gz_hid_silence *silence, double rate_hz, int count)
 {
-	int64_t ns = BEGIN_NS;
-	for (int i = 0; i < count; i++) {
-		ns = BEGIN_NS + (int64_t)(1e9 * i / rate_hz);
-		gz_hid_silence_sample(silence, ns, ns + 2 * GZ_NS_PER_MS);
-	}
+	int fillers;
+	int64_t ns = stream_from(silence, BEGIN_NS, rate_hz, count, &fillers);
+	assert_int_equal(fillers, 0);
 	return ns;
 }
 
@@ -64,6 +80,19 @@ static void silence_is_measured_by_the_rate_that_is_and_not_by_the_stated_one(vo
 	assert_true(fabs(gz_hid_silence_period_ns(&unknown) - 1e9 / 30) < 1);
 }
 
+static void silence_is_none_once_a_tracker_has_become_slower(void **state)
+{
+	(void)state;
+	struct gz_hid_silence silence = { 0 };
+	int fillers;
+	int64_t ns = stream(&silence, 120, 200);
+	/* From 120 to 30 Hz: for less than a second that looks like blinks. */
+	ns = stream_from(&silence, ns + 33333333, 30, 30, &fillers);
+	assert_true(fillers > 0);
+	stream_from(&silence, ns + 33333333, 30, 60, &fillers);
+	assert_int_equal(fillers, 0);
+}
+
 static void silence_and_lost_samples_do_not_stretch_the_period(void **state)
 {
 	(void)state;
@@ -75,6 +104,30 @@ static void silence_and_lost_samples_do_not_stretch_the_period(void **state)
 	assert_true(fabs(gz_hid_silence_period_ns(&silence) - 1e7) < 1e4);
 	gz_hid_silence_sample(&silence, ns + GZ_NS_PER_S + 3 * 10000000, ns + 2 * GZ_NS_PER_S);
 	assert_true(gz_hid_silence_period_ns(&silence) < 1.1e7);
+}
+
+static void silence_between_bursts_is_none(void **state)
+{
+	(void)state;
+	/* 250 Hz, four at a time. */
+	struct gz_hid_silence silence = { 0 };
+	int early = 0;
+	for (int i = 0; i < 400; i++) {
+		int64_t ns = BEGIN_NS + i * 4 * GZ_NS_PER_MS;
+		int64_t arrival_ns = BEGIN_NS + (i / 4 + 1) * 16 * GZ_NS_PER_MS;
+		early += i >= 20 && gz_hid_silence_due_ns(&silence) <= arrival_ns;
+		gz_hid_silence_sample(&silence, ns, arrival_ns);
+	}
+	assert_int_equal(early, 0);
+	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns <= 21 * GZ_NS_PER_MS);
+	/* One stall is forgotten. */
+	stream(&silence, 250, 1);
+	gz_hid_silence_sample(&silence, BEGIN_NS + 4 * GZ_NS_PER_MS, BEGIN_NS + GZ_NS_PER_S);
+	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns > 40 * GZ_NS_PER_MS);
+	for (int i = 2; i < 150; i++)
+		gz_hid_silence_sample(&silence, BEGIN_NS + i * 4 * GZ_NS_PER_MS,
+				      BEGIN_NS + GZ_NS_PER_S + i * 4 * GZ_NS_PER_MS);
+	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns < 13 * GZ_NS_PER_MS);
 }
 
 /* What the pipeline says of a tracker that falls silent for @p silent_ms. */
@@ -133,6 +186,8 @@ int main(void)
 		cmocka_unit_test(silence_before_the_first_sample_is_none),
 		cmocka_unit_test(silence_begins_after_three_periods_and_is_filled_one_a_period),
 		cmocka_unit_test(silence_is_measured_by_the_rate_that_is_and_not_by_the_stated_one),
+		cmocka_unit_test(silence_between_bursts_is_none),
+		cmocka_unit_test(silence_is_none_once_a_tracker_has_become_slower),
 		cmocka_unit_test(silence_and_lost_samples_do_not_stretch_the_period),
 		cmocka_unit_test(
 			silence_is_a_blink_after_three_periods_and_lost_after_half_a_second),
