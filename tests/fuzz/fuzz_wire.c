@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "protocol/wire.h"
+#include "protocol/wire_notification.h"
 #include "protocol/wire_viewer.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -54,6 +55,19 @@ static void check_status(const struct gz_status *status)
 	require(again.samples == status->samples);
 }
 
+static void check_surface(const uint8_t *data, size_t size)
+{
+	struct gz_surface_gaze entries[16];
+	size_t count = 0;
+	if (gz_wire_decode_surface(data, size, entries, 16, &count) != GZ_OK)
+		return;
+	require(count <= 16);
+	for (size_t i = 0; i < count; i++) {
+		require(isfinite(entries[i].point.x) && isfinite(entries[i].point.y));
+		require(!(entries[i].confidence < 0) && !(entries[i].confidence > 1));
+	}
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct gz_gaze gaze;
@@ -77,6 +91,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	struct gz_viewer_window window;
 	if (gz_wire_decode_window(data, size, &window) == GZ_OK && window.known)
 		require(window.rect_px[2] > 0 && window.rect_px[3] > 0);
+	check_surface(data, size);
+	struct gz_notification notification;
+	if (gz_wire_decode_notification(data, size, &notification) == GZ_OK)
+		require(notification.subject[0] != '\0');
 	struct gz_annotation annotation;
 	gz_wire_decode_annotation(data, size, &annotation);
 	return 0;
