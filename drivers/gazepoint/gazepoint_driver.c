@@ -60,7 +60,7 @@ struct gazepoint_device {
 	struct gz_ratelimit jumps;
 	int64_t frequency_hz; /* of TIME_TICK; 0 if not known */
 	bool clock_answered;  /* whether or not the frequency is known, no better will come */
-	bool refused;         /* the server does not send data */
+	bool over;            /* nothing more is to be had of this connection */
 	int64_t arrival_ns;   /* of the newest bytes */
 	bool has_counter;
 	long long counter; /* of the newest data record */
@@ -128,12 +128,28 @@ static void take_nack(struct gazepoint_device *device, const struct gz_gazepoint
 	if (strcmp(answer->id, "ENABLE_SEND_DATA") == 0) {
 		gz_err(device->base.log, "%s sends no data; is a tracker connected to it?",
 		       device->info.name);
-		device->refused = true;
+		device->over = true;
 		return;
 	}
 	if (strcmp(answer->id, "TIME_TICK_FREQUENCY") == 0)
 		device->clock_answered = true;
 	gz_info(device->base.log, "this version of Gazepoint Control has no %s", answer->id);
+}
+
+/* Of several trackers, each at its screen, another one has become the active one. A display is for
+ * as long as a device is open. */
+static void take_update(struct gazepoint_device *device, const struct gz_gazepoint_record *update)
+{
+	const int *px = device->info.display.px;
+	bool same =
+		!device->info.has_display || (update->width == px[0] && update->height == px[1]);
+	if (same) {
+		gz_info(device->base.log, "another tracker is the active one now");
+		return;
+	}
+	gz_warn(device->base.log, "another tracker with another screen is the active one now; it "
+				  "is opened anew");
+	device->over = true;
 }
 
 /* Seconds since the server's start or its last calibration. */
@@ -247,7 +263,9 @@ static enum gz_result take_record(struct gazepoint_device *device, bool streamin
 		take_ack(device, &record);
 	else if (record.kind == GZ_GAZEPOINT_NACK)
 		take_nack(device, &record);
-	return device->refused ? GZ_ERR_NO_DEVICE : GZ_ERR_PROTOCOL;
+	else if (record.kind == GZ_GAZEPOINT_UPDATE)
+		take_update(device, &record);
+	return device->over ? GZ_ERR_NO_DEVICE : GZ_ERR_PROTOCOL;
 }
 
 static enum gz_result gone(struct gazepoint_device *device, const char *why)
@@ -288,6 +306,8 @@ static enum gz_result gazepoint_read(struct gz_device *base, int timeout_ms,
 {
 	struct gazepoint_device *device = of(base);
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	if (device->over)
+		return GZ_ERR_NO_DEVICE;
 	for (;;) {
 		enum gz_result result = take_record(device, true, out_sample);
 		if (result == GZ_OK || result == GZ_ERR_NO_DEVICE)

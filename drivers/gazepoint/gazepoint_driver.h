@@ -3,9 +3,10 @@
  * Gazepoint GP3 and GP3 HD, through Gazepoint Control's server (TCP, port 4242), on this machine or
  * another. What it says: gazepoint_protocol.h.
  *
- * Connecting never waits longer than GZ_GAZEPOINT_CONNECT_MS (but for a host's name, which the
- * system looks up). A server that goes away, or says nothing for GZ_GAZEPOINT_SILENCE_MS, is a
- * device that is unplugged: the daemon closes it and looks for it again, with growing pauses.
+ * Connecting never waits longer than GZ_GAZEPOINT_CONNECT_MS; the look-up of a host's name may take
+ * some seconds where no name server answers. A server that goes away, or says nothing for
+ * GZ_GAZEPOINT_SILENCE_MS, is a device that is unplugged: the daemon closes it and looks for it
+ * again, with growing pauses.
  */
 #ifndef GZ_DRIVERS_GAZEPOINT_DRIVER_H
 #define GZ_DRIVERS_GAZEPOINT_DRIVER_H

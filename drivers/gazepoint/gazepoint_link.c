@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <resolv.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -68,12 +69,25 @@ static int try_address(const struct addrinfo *address, int timeout_ms, int *out_
 	return 0;
 }
 
+/* The system's own limits for the look-up of a name are tens of seconds where no name server
+ * answers; here, for this thread, it is a second for each. */
+static void limit_lookup(void)
+{
+#ifdef __GLIBC__
+	if (res_init() != 0)
+		return;
+	_res.retrans = 1;
+	_res.retry = 1;
+#endif
+}
+
 enum gz_result gz_gazepoint_link_open(const char *host, int port, int timeout_ms, int *out_fd,
 				      char *out_reason)
 {
 	const struct addrinfo hints = { .ai_socktype = SOCK_STREAM };
 	struct addrinfo *addresses;
 	char service[16];
+	limit_lookup();
 	snprintf(service, sizeof service, "%d", port);
 	int failure = getaddrinfo(host, service, &hints, &addresses);
 	if (failure != 0) {

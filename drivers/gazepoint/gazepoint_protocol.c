@@ -132,6 +132,12 @@ static const struct field answer_fields[] = {
 	{ NULL, REAL, 0, 0, 0 },
 };
 
+static const struct field screen_fields[] = {
+	{ "WIDTH", REAL, AT(width), 0, 0 },
+	{ "HEIGHT", REAL, AT(height), 0, 0 },
+	{ NULL, REAL, 0, 0, 0 },
+};
+
 static const struct field no_fields[] = { { NULL, REAL, 0, 0, 0 } };
 
 static struct gz_gazepoint_record unmeasured(void)
@@ -217,6 +223,10 @@ static const struct field *fields_of(struct gz_gazepoint_record *record, const c
 	if (strcmp(name, "ACK") == 0 || strcmp(name, "NACK") == 0) {
 		record->kind = name[0] == 'A' ? GZ_GAZEPOINT_ACK : GZ_GAZEPOINT_NACK;
 		return answer_fields;
+	}
+	if (strcmp(name, "UPDATE") == 0) {
+		record->kind = GZ_GAZEPOINT_UPDATE;
+		return screen_fields;
 	}
 	record->kind = GZ_GAZEPOINT_OTHER;
 	return no_fields;

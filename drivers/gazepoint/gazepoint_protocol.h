@@ -4,9 +4,10 @@
  *
  * The language is "Open Gaze API by Gazepoint", version 2.8 of March 2025 (Gazepoint API.pdf,
  * gazept.com): XML elements, each ended by CR LF (section 2.4). ACK and NACK answer GET and SET
- * (2.3); REC is a data record (section 5); CAL and UPDATE are passed over. Coordinates are
- * fractions of the screen, origin top left (5.4 to 5.7); eyes are metres from the camera (5.11);
- * pupils are millimetres in LPMM (5.16) and metres in LPUPILD (5.11); flags are 0 or 1.
+ * (2.3); REC is a data record (section 5); UPDATE tells of several trackers (6); CAL is passed
+ * over. Coordinates are fractions of the screen, origin top left (5.4 to 5.7); eyes are metres from
+ * the camera (5.11); pupils are millimetres in LPMM (5.16) and metres in LPUPILD (5.11); flags are
+ * 0 or 1.
  */
 #ifndef GZ_DRIVERS_GAZEPOINT_PROTOCOL_H
 #define GZ_DRIVERS_GAZEPOINT_PROTOCOL_H
@@ -53,10 +54,11 @@ enum gz_result gz_gazepoint_framer_next(struct gz_gazepoint_framer *framer, cons
 
 /** What a record is. */
 enum gz_gazepoint_kind {
-	GZ_GAZEPOINT_DATA,  /**< REC */
-	GZ_GAZEPOINT_ACK,   /**< what was asked for is so */
-	GZ_GAZEPOINT_NACK,  /**< what was asked for is refused or unknown */
-	GZ_GAZEPOINT_OTHER, /**< any other element */
+	GZ_GAZEPOINT_DATA,   /**< REC */
+	GZ_GAZEPOINT_ACK,    /**< what was asked for is so */
+	GZ_GAZEPOINT_NACK,   /**< what was asked for is refused or unknown */
+	GZ_GAZEPOINT_UPDATE, /**< another of several trackers is the active one now (section 6) */
+	GZ_GAZEPOINT_OTHER,  /**< any other element */
 };
 
 /** One eye of a data record; numbers that were not sent are NaN, flags false. */
@@ -83,7 +85,7 @@ struct gz_gazepoint_record {
 	bool has_best;
 	bool has_eye[GZ_EYE_COUNT];
 	struct gz_gazepoint_eye eye[GZ_EYE_COUNT];
-	/* ACK and NACK */
+	/* ACK and NACK; UPDATE has width and height only */
 	char id[GZ_GAZEPOINT_ID_SIZE];
 	char value[GZ_NAME_SIZE]; /**< empty if not sent or too long */
 	long long frequency;      /**< FREQ as sent; 0 if not sent */

@@ -113,8 +113,8 @@ static enum gz_result parse(struct gz_gazepoint_xml *xml, const char *text, size
 	XML_SetStartDoctypeDeclHandler(visit->parser, refuse_type);
 	enum XML_Status status = XML_Parse(visit->parser, text, (int)size, XML_TRUE);
 	/* An element that is not closed is one, too: Expat then misses its end only. */
-	bool whole = status == XML_STATUS_OK ||
-		     XML_GetErrorCode(visit->parser) == XML_ERROR_NO_ELEMENTS;
+	bool whole =
+		status == XML_STATUS_OK || XML_GetErrorCode(visit->parser) == XML_ERROR_NO_ELEMENTS;
 	XML_ParserFree(visit->parser);
 	return whole && visit->elements == 1 ? GZ_OK : GZ_ERR_PROTOCOL;
 }

@@ -266,6 +266,21 @@ static void server_that_refuses_data_is_no_device(void **state)
 	end(device);
 }
 
+static void other_screen_opens_it_anew_and_the_same_does_not(void **state)
+{
+	(void)state;
+	static const char script[] =
+		"<UPDATE ACTIVE_ID=\"1\" MAX_ID=\"2\" WIDTH=\"2560\" HEIGHT=\"1440\" >\r\n" REC(
+			"1", "") "<UPDATE ACTIVE_ID=\"2\" MAX_ID=\"2\" WIDTH=\"1920\" "
+				 "HEIGHT=\"1080\" >\r\n" REC("2", "");
+	struct gz_sample sample;
+	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
+	assert_true(read_one(device).valid);
+	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
+	end(device);
+}
+
 static void server_that_dies_is_told_and_returns(void **state)
 {
 	(void)state;
@@ -348,6 +363,7 @@ int main(void)
 		cmocka_unit_test(frequency_that_cannot_be_is_not_believed),
 		cmocka_unit_test(what_an_older_version_refuses_is_done_without),
 		cmocka_unit_test(server_that_refuses_data_is_no_device),
+		cmocka_unit_test(other_screen_opens_it_anew_and_the_same_does_not),
 		cmocka_unit_test(server_that_dies_is_told_and_returns),
 		cmocka_unit_test(server_that_answers_nothing_is_waited_for_no_longer_than_promised),
 		cmocka_unit_test(list_says_whether_the_server_is_there),

@@ -96,7 +96,10 @@ static void answers_say_what_was_asked(void **state)
 	check_near(record.height, 1080);
 	check_parses("<NACK ID=\"ENABLE_SEND_DATA\"/>", GZ_GAZEPOINT_NACK);
 	/* As the API's document has it: not closed. */
-	check_parses("<UPDATE ACTIVE_ID=\"1\" MAX_ID=\"2\" >", GZ_GAZEPOINT_OTHER);
+	check_parses("<UPDATE ACTIVE_ID=\"1\" MAX_ID=\"2\" X=\"0\" Y=\"0\" WIDTH=\"1280\" >",
+		     GZ_GAZEPOINT_UPDATE);
+	check_near(record.width, 1280);
+	assert_true(isnan(record.height));
 	check_parses("<CAL ID=\"CALIB_START_PT\" PT=\"x\" />", GZ_GAZEPOINT_OTHER);
 }
 
