@@ -22,8 +22,8 @@
 /* RFC 27: where libzmq asks. */
 #define ZAP_ENDPOINT "inproc://zeromq.zap.01"
 
-/* Connections in their handshake whose address is kept. Chosen: handshakes are short; of more at a
- * time the address is told as "?". */
+/* Newest connections whose address is kept. Chosen: handshakes are short, and only where they fail
+ * the address is told; if more are under way at a time, that of some is not. */
 enum { PEERS_MAX = 64 };
 
 /* Requests or events taken before the other sockets are looked at. */
@@ -45,7 +45,8 @@ struct gz_connections {
 	_Atomic uint32_t count;
 	bool failing; /* a handshake has failed, and its connection ends with the next event */
 	enum notice failure;
-	struct peer peers[PEERS_MAX];
+	unsigned next_peer;           /* where the next one goes */
+	struct peer peers[PEERS_MAX]; /* the newest */
 };
 
 struct gz_guard {
@@ -176,9 +177,11 @@ static void accept_peer(struct gz_connections *connections, int fd)
 		return;
 	char address[GZ_ADDRESS_SIZE];
 	struct peer *peer = find_peer(connections, fd);
+	/* In the place of the oldest, whose handshake is over. */
 	if (!peer)
-		peer = find_peer(connections, -1);
-	if (!peer || !address_of(fd, address, sizeof address))
+		peer = &connections->peers[connections->next_peer++ % PEERS_MAX];
+	peer->fd = -1;
+	if (!address_of(fd, address, sizeof address))
 		return;
 	peer->fd = fd;
 	memcpy(peer->address, address, sizeof address);
@@ -211,7 +214,7 @@ static void end_peer(struct gz_connections *connections, int fd)
 	if (gz_connections_count(connections) > 0)
 		atomic_fetch_sub_explicit(&connections->count, 1, memory_order_relaxed);
 	if (connections->failing)
-		tell_failure(connections, peer ? peer->address : "?");
+		tell_failure(connections, peer ? peer->address : "somebody who has left already");
 	connections->failing = false;
 	if (peer)
 		peer->fd = -1;

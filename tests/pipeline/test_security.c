@@ -290,14 +290,15 @@ static void curve_wrong_server_key_is_logged_once_on_both_sides(void **state)
 	memcpy(wrong.server_key, wrong.public_key, sizeof wrong.server_key);
 	authorize(keys.public_key);
 	struct gazed_process gazed = start_curve();
-	/* libzmq tries again some twenty times in this while. */
-	assert_int_equal(ask(&wrong, 1000), GZ_ERR_ACCESS);
-	assert_non_null(strstr(captured.last, "most likely its server key is another"));
+	must_be_refused(&wrong, "most likely its server key is another");
 	assert_int_equal(captured.messages, 1);
+	for (int i = 0; i < ATTEMPTS; i++)
+		must_be_refused(&wrong, "most likely its server key is another");
 	wait_said(&gazed, "127.0.0.1 at socket control is refused: it holds another server key");
-	assert_int_equal(ask(&wrong, 500), GZ_ERR_ACCESS);
 	must_be_let_in(&keys);
-	if (count_said(&gazed, "it holds another server key") != 1)
+	/* Of whom it was too late to ask for the address there is one more line at most. */
+	if (count_said(&gazed, "127.0.0.1 at socket control is refused") != 1 ||
+	    count_said(&gazed, "it holds another server key") > 2)
 		fail_msg("not once: %s", gazed_said(&gazed));
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
