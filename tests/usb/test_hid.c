@@ -248,6 +248,70 @@ static void stalled_endpoint_is_brought_back(void **state)
 	lab_stop(&lab);
 }
 
+static bool is_blink(const struct lab *now)
+{
+	return now->gaze.event == GZ_EVENT_BLINK;
+}
+
+static bool is_lost(const struct lab *now)
+{
+	return now->gaze.event == GZ_EVENT_LOST;
+}
+
+static bool is_seen(const struct lab *now)
+{
+	return now->gaze.confidence > 0;
+}
+
+/* The class sends nothing while it sees no eye. */
+static void tracker_that_falls_silent_blinks_and_is_lost_until_it_goes_on(void **state)
+{
+	(void)state;
+	plug_in(&hid_layout_reference);
+	start_daemon();
+	lab_compare(&lab, &truth, 100);
+	made_stream_stop(&tracker.stream);
+	lab_wait(&lab, is_blink, "a blink");
+	lab_wait(&lab, is_lost, "loss of the eyes");
+	lab_wait_state(&lab, GZ_TRACKER_RUNNING);
+	assert_int_equal(lab.gaze.device_ns, GZ_NO_DEVICE_TIME);
+	made_stream_start(&tracker.stream);
+	lab_wait(&lab, is_seen, "its gaze");
+	lab_compare(&lab, &truth, 50);
+	assert_int_equal(lab.reader.status.lost, 0);
+	lab_stop(&lab);
+}
+
+static bool is_uncalibrated(const struct lab *now)
+{
+	return strstr(now->reader.status.tracker.reason, "calibrated for the user") != NULL;
+}
+
+static bool is_well(const struct lab *now)
+{
+	return now->reader.status.tracker.reason[0] == '\0';
+}
+
+static void tracker_that_tells_its_trouble_is_told_in_the_status(void **state)
+{
+	(void)state;
+	static const unsigned char uncalibrated[] = { 0x13, 4, 100, 0 },
+				   ready[] = { 0x13, 1, 100, 0 };
+	plug_in(&hid_layout_reference);
+	start_daemon();
+	lab_compare(&lab, &truth, 20);
+	lab_wait(&lab, is_well, "a status without trouble");
+	made_stream_stop(&tracker.stream);
+	hid_gadget_send(&tracker, uncalibrated, sizeof uncalibrated);
+	lab_wait(&lab, is_uncalibrated, "a status that names the trouble");
+	hid_gadget_send(&tracker, ready, sizeof ready);
+	lab_wait(&lab, is_well, "a status without trouble");
+	made_stream_start(&tracker.stream);
+	lab_wait(&lab, is_seen, "its gaze");
+	lab_compare(&lab, &truth, 20);
+	lab_stop(&lab);
+}
+
 static void tracker_whose_clock_runs_on_in_suspend_is_timed_right_afterwards(void **state)
 {
 	(void)state;
@@ -296,6 +360,8 @@ int main(void)
 		TEST(reports_that_cannot_be_are_counted_and_the_stream_goes_on),
 		TEST(report_longer_than_described_does_no_harm),
 		TEST(stalled_endpoint_is_brought_back),
+		TEST(tracker_that_falls_silent_blinks_and_is_lost_until_it_goes_on),
+		TEST(tracker_that_tells_its_trouble_is_told_in_the_status),
 		TEST(tracker_whose_clock_runs_on_in_suspend_is_timed_right_afterwards),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
