@@ -25,16 +25,18 @@ static enum gz_result make_room(struct gz_gaze_trace *trace)
 	return GZ_OK;
 }
 
-static void take_label(struct gz_gaze_trace *trace, uint64_t seq, enum gz_event event)
+static void take_label(struct gz_gaze_trace *trace, uint64_t first, uint64_t last,
+		       enum gz_event event)
 {
 	size_t reach = trace->count < LABEL_REACH ? trace->count : LABEL_REACH;
 	for (size_t i = 1; i <= reach; i++) {
 		struct gz_gaze_trace_sample *item = &trace->items[trace->count - i];
-		if (item->sample.seq != seq)
+		if (item->sample.seq < first)
+			return;
+		if (item->sample.seq > last)
 			continue;
 		item->event = event;
 		item->sample.fixating = event == GZ_EVENT_FIXATION;
-		return;
 	}
 }
 
@@ -55,7 +57,8 @@ enum gz_result gz_gaze_trace_add(struct gz_gaze_trace *trace, const struct gz_ga
 								   : (struct gz_point) { NAN, NAN };
 	}
 	if (gaze->final_known)
-		take_label(trace, gaze->final_seq, gaze->final_event);
+		take_label(trace, gaze->final_seq - gaze->final_span, gaze->final_seq,
+			   gaze->final_event);
 	return GZ_OK;
 }
 

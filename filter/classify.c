@@ -135,27 +135,39 @@ static double trailing_speed(struct gz_classify_state *state,
 	return gz_length3(velocity);
 }
 
-/** Make labels certain that have waited long enough. */
+/** Whether the next label has waited long enough. */
+static bool is_due(struct gz_classify_state *state, const struct gz_classify_params *params)
+{
+	if (state->decided)
+		return true;
+	int64_t now_ns = gz_classify_at(state, state->count - 1)->time_ns;
+	int64_t time_ns = gz_classify_at(state, state->certain)->time_ns;
+	return state->count - 1 - state->certain >= gz_classify_delay(state, params) ||
+	       gz_ns_to_ms(now_ns - time_ns) > params->final_delay_ms;
+}
+
+/** Make labels certain that are due, as long as they are the same. */
 static void finish(struct gz_classify_state *state, const struct gz_classify_params *params,
 		   struct gz_classify_output *out)
 {
-	int64_t now_ns = gz_classify_at(state, state->count - 1)->time_ns;
-	uint64_t delay = gz_classify_delay(state, params);
-	while (state->certain < state->count) {
+	while (state->certain < state->count && out->final_count < GZ_CLASSIFY_FINALS_MAX &&
+	       is_due(state, params)) {
 		const struct gz_classify_entry *entry = gz_classify_at(state, state->certain);
-		bool old = gz_ns_to_ms(now_ns - entry->time_ns) > params->final_delay_ms;
-		if (state->count - 1 - state->certain < delay && !old)
+		if (!state->decided) {
+			gz_classify_measure(state, params, state->certain + 1, true);
+			(void)gz_classify_decide(state, params, state->certain);
+		}
+		enum gz_event event = state->machine.event;
+		state->decided =
+			out->final_count > 0 && (event != out->final[0].event || entry->after_loss);
+		if (state->decided)
 			return;
-		gz_classify_measure(state, params, state->certain + 1, true);
-		enum gz_event event = gz_classify_decide(state, params, state->certain);
-		bool after_loss = out->final.after_loss || entry->after_loss;
-		out->final_known = true;
-		out->final = (struct gz_classify_final) {
+		out->final[out->final_count++] = (struct gz_classify_final) {
 			.seq = entry->seq,
 			.time_ns = entry->time_ns,
 			.event = event,
 			.valid = entry->valid,
-			.after_loss = after_loss,
+			.after_loss = entry->after_loss,
 			.point = entry->point,
 			.confidence = entry->confidence,
 			.peak_deg_s = state->machine.peak_deg_s,
@@ -169,7 +181,10 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 					   const struct gz_display *display,
 					   const struct gz_classify_input *input)
 {
-	struct gz_classify_output out = { .last_valid_ns = state->valid_ns };
+	struct gz_classify_output out;
+	out.last_valid_ns = state->valid_ns;
+	out.velocity_deg_s = 0;
+	out.final_count = 0; /* what lies beyond is not looked at */
 	const struct gz_classify_entry *entry = take(state, params, display, input);
 	out.resumed = entry->after_loss && state->any_valid;
 	if (entry->valid) {
@@ -181,8 +196,8 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 	gz_classify_measure(state, params, state->count, false);
 	finish(state, params, &out);
 	state->now = quick_event(state, params, entry);
-	if (out.final_known && out.final.seq == entry->seq)
-		state->now = out.final.event;
+	if (out.final_count > 0 && out.final[out.final_count - 1].seq == entry->seq)
+		state->now = out.final[out.final_count - 1].event;
 	out.event = state->now;
 	return out;
 }

@@ -19,6 +19,7 @@
 #define GZ_FILTER_CLASSIFY_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "filter/median.h"
@@ -125,6 +126,7 @@ struct gz_classify_state {
 	uint64_t count;               /**< samples taken; sample i is ring[i % RING] */
 	uint64_t measured;            /**< samples whose speed is known */
 	uint64_t certain;             /**< samples whose label is certain */
+	bool decided;                 /**< and that of the next one, which waits for another step */
 	double period_ns;             /**< time between samples, measured; 0 before the second */
 	int64_t valid_ns;             /**< newest good sample */
 	bool any_valid;               /**< whether there was one */
@@ -144,6 +146,9 @@ struct gz_classify_input {
 	float confidence;      /**< [0, 1] */
 };
 
+/** Most labels that one step makes certain. Chosen: it is one but after a gap. */
+#define GZ_CLASSIFY_FINALS_MAX 16
+
 /** A sample whose label is now certain. */
 struct gz_classify_final {
 	uint64_t seq;
@@ -162,10 +167,10 @@ struct gz_classify_output {
 	double velocity_deg_s; /**< of the eye, finite, 0 or more */
 	bool resumed;          /**< first good sample after a blink or loss */
 	int64_t last_valid_ns; /**< the good sample before that, or, while blinking, the last one */
-	bool final_known;      /**< whether final holds something */
-	struct gz_classify_final final; /**< this or an earlier sample. Where a step makes several
-					   certain, the newest: the ones passed over keep the label
-					   they were given at once */
+	size_t final_count;    /**< final[] holds so many, in order, this or earlier samples: every
+				  sample is in one step's, once. They have one label; where more
+				  become certain at once, the rest come with the next samples */
+	struct gz_classify_final final[GZ_CLASSIFY_FINALS_MAX];
 };
 
 /**

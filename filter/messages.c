@@ -149,9 +149,9 @@ void gz_messages_step(struct gz_messages_state *state, const struct gz_classify_
 		      int64_t time_ns, struct gz_messages *out)
 {
 	*out = (struct gz_messages) { .fixation_count = 0 };
-	if (label->final_known) {
-		follow_fixation(&state->fixation, params, display, &label->final, time_ns, out);
-		follow_saccade(&state->saccade, display, &label->final, out);
+	for (size_t i = 0; i < label->final_count; i++) {
+		follow_fixation(&state->fixation, params, display, &label->final[i], time_ns, out);
+		follow_saccade(&state->saccade, display, &label->final[i], out);
 	}
 	follow_blink(state, params, label, time_ns, out);
 }

@@ -96,9 +96,12 @@ static void take_label(const struct gz_classify_output *label, struct gz_gaze *g
 {
 	gaze->event = label->event;
 	gaze->velocity_deg_s = (float)label->velocity_deg_s;
-	gaze->final_known = label->final_known;
-	gaze->final_seq = label->final.seq;
-	gaze->final_event = label->final.event;
+	gaze->final_known = label->final_count > 0;
+	if (!gaze->final_known)
+		return;
+	gaze->final_seq = label->final[label->final_count - 1].seq;
+	gaze->final_span = gaze->final_seq - label->final[0].seq;
+	gaze->final_event = label->final[0].event;
 }
 
 void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,

@@ -89,7 +89,9 @@ struct gz_gaze {
 	float confidence;      /**< [0, 1]; 0 while blinking or lost */
 	enum gz_event event;   /**< as known now */
 	bool final_known;      /**< whether the next two fields hold something */
-	uint64_t final_seq;    /**< an earlier sample whose label is now certain */
+	uint64_t final_seq;    /**< this or an earlier sample, whose label is now certain */
+	uint64_t final_span; /**< the label holds from final_seq - final_span on: 0 but after a gap,
+				when several become certain at once */
 	enum gz_event final_event;
 	float velocity_deg_s; /**< finite, 0 or more */
 	bool combined;        /**< the device gave one point, not two eyes */

@@ -29,6 +29,12 @@ static void take_event_final(struct gz_unpack *unpack, struct gz_gaze *gaze)
 	gz_unpack_uint64(unpack, map, "seq", &gaze->final_seq);
 	if (!gaze->final_known) /* half of it says nothing */
 		unpack->refused = true;
+	uint64_t first = gaze->final_seq;
+	gz_unpack_uint64(unpack, map, "first", &first);
+	if (first > gaze->final_seq)
+		unpack->refused = true;
+	else
+		gaze->final_span = gaze->final_seq - first;
 }
 
 /* Our own map of an eye. @return whether it is there */

@@ -135,9 +135,11 @@ static void pack_own_keys(struct gz_pack *pack, const struct gz_gaze *gaze)
 	gz_pack_point(pack, "raw", gaze->raw);
 	gz_pack_text(pack, "event", gz_event_name(gaze->event));
 	if (gaze->final_known) {
-		gz_pack_map(pack, "event_final", 2);
+		gz_pack_map(pack, "event_final", gaze->final_span > 0 ? 3 : 2);
 		gz_pack_uint(pack, "seq", gaze->final_seq);
 		gz_pack_text(pack, "event", gz_event_name(gaze->final_event));
+		if (gaze->final_span > 0)
+			gz_pack_uint(pack, "first", gaze->final_seq - gaze->final_span);
 	}
 	gz_pack_float(pack, "velocity_deg_s", gaze->velocity_deg_s);
 	gz_pack_uint(pack, "seq", gaze->seq);

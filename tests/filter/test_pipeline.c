@@ -5,6 +5,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "sim/random.h"
+
 static bool finite_point(struct gz_point p)
 {
 	return isfinite(p.x) && isfinite(p.y);
@@ -210,16 +212,49 @@ static void certain_labels_come_in_order_within_10_ms(void **state)
 			if (!viewing.out.gaze.final_known)
 				continue;
 			uint64_t seq = viewing.out.gaze.final_seq;
+			assert_int_equal(seq - viewing.out.gaze.final_span, next);
 			double age_ms = gz_ns_to_ms(times_ns[k] - times_ns[seq]);
 			CHECK_BETWEEN(age_ms, 0, 10.0001);
 			if (k > 20) /* the rate is known by then */
-				assert_int_equal(seq, next);
+				assert_int_equal(viewing.out.gaze.final_span, 0);
 			next = seq + 1;
 		}
 		CHECK_BETWEEN((double)count - (double)next, 0, 20);
 		viewing_close(&viewing);
 	}
 	free(times_ns);
+}
+
+static void each_sample_gets_one_certain_label_whatever_the_gaps(void **state)
+{
+	(void)state;
+	static const double rates_hz[] = { 60, 250, 500, 2000 };
+	for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
+		struct gz_sim_params params = sim_params(rates_hz[i]);
+		struct viewing viewing;
+		viewing_open(&viewing, &params);
+		struct gz_random random = gz_random_seeded(3, i);
+		uint64_t given = 0, next = 0, backlog = 0, spans = 0;
+		for (int k = 0; k < 40000; k++) {
+			gz_sim_tracker_next(viewing.tracker, &viewing.in);
+			if (gz_random_uniform(&random) < 0.1) /* lost on the way */
+				continue;
+			viewing.in.sample.seq = given++;
+			gz_pipeline_step(&viewing.pipeline, &viewing.in.sample, &viewing.out);
+			const struct gz_gaze *gaze = &viewing.out.gaze;
+			if (gaze->final_known) {
+				assert_int_equal(gaze->final_seq - gaze->final_span, next);
+				next = gaze->final_seq + 1;
+				spans += gaze->final_span > 0;
+			}
+			backlog = given - next > backlog ? given - next : backlog;
+		}
+		if (rates_hz[i] > 200)
+			assert_true(spans > 100);
+		/* 10 ms, and what a gap leaves over */
+		CHECK_BETWEEN((double)backlog, 0, 10 * rates_hz[i] * 1e-3 + 4);
+		viewing_close(&viewing);
+	}
 }
 
 static void an_eye_dropping_out_does_not_move_the_point(void **state)
@@ -383,6 +418,7 @@ int main(void)
 		cmocka_unit_test(damaged_times_never_bring_time_back),
 		cmocka_unit_test(copied_state_goes_on_in_the_same_way),
 		cmocka_unit_test(certain_labels_come_in_order_within_10_ms),
+		cmocka_unit_test(each_sample_gets_one_certain_label_whatever_the_gaps),
 		cmocka_unit_test(an_eye_dropping_out_does_not_move_the_point),
 		cmocka_unit_test(saccades_are_found_at_any_rate),
 		cmocka_unit_test(a_resting_eye_gives_a_resting_point),

@@ -138,8 +138,8 @@ static bool run_pipeline(struct run *run, const struct gz_pipeline_params *param
 		run->smooth[i] = out.gaze.point;
 		run->raw[i] = run->recording.sample[i].point;
 		run->at_once[i] = run->certain[i] = out.gaze.event;
-		if (out.gaze.final_known)
-			run->certain[out.gaze.final_seq] = out.gaze.final_event;
+		for (uint64_t k = 0; out.gaze.final_known && k <= out.gaze.final_span; k++)
+			run->certain[out.gaze.final_seq - k] = out.gaze.final_event;
 	}
 	return true;
 }

@@ -76,8 +76,9 @@ static int run(const struct gz_sim_params *sim, const struct gz_pipeline_params 
 		for (int i = 0; i < COUNT; i++) {
 			gz_pipeline_step(&pipeline, &in[i].sample, &out[i]);
 			certain[i] = out[i].gaze.event;
-			if (out[i].gaze.final_known)
-				certain[out[i].gaze.final_seq] = out[i].gaze.final_event;
+			const struct gz_gaze *g = &out[i].gaze;
+			for (uint64_t k = 0; g->final_known && k <= g->final_span; k++)
+				certain[g->final_seq - k] = g->final_event;
 		}
 		sums->step_ns = (double)(thread_ns() - begin_ns) / COUNT;
 		for (int i = 0; i < COUNT; i++) {

@@ -28,6 +28,7 @@ static inline struct gz_gaze sample_gaze(void)
 		.event = GZ_EVENT_SACCADE,
 		.final_known = true,
 		.final_seq = 1099511627700,
+		.final_span = 3,
 		.final_event = GZ_EVENT_PURSUIT,
 		.velocity_deg_s = 123.4f,
 		.eye = { { { 0.74f, 0.24f }, 3.5f, true, 0.9f, { 31, -2, 480 }, { NAN, NAN, NAN } },

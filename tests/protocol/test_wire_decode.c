@@ -30,6 +30,7 @@ static void assert_same_gaze(const struct gz_gaze *a, const struct gz_gaze *b)
 	assert_int_equal(a->event, b->event);
 	assert_int_equal(a->final_known, b->final_known);
 	assert_true(a->final_seq == b->final_seq);
+	assert_true(a->final_span == b->final_span);
 	assert_int_equal(a->final_event, b->final_event);
 	assert_float_same(a->velocity_deg_s, b->velocity_deg_s);
 	assert_int_equal(a->combined, b->combined);
@@ -66,7 +67,7 @@ static void gaze_of_each_event_comes_back(void **state)
 		struct gz_gaze gaze = sample_gaze(), back;
 		gaze.event = (enum gz_event)event;
 		gaze.final_known = false;
-		gaze.final_seq = 0;
+		gaze.final_seq = gaze.final_span = 0;
 		gaze.final_event = GZ_EVENT_FIXATION;
 		gaze.combined = event % 2;
 		assert_int_equal(gz_wire_encode_gaze(&gaze, &display, &message), GZ_OK);
@@ -423,6 +424,13 @@ static void event_final_without_event(struct built *b)
 	msgpack_pack_map(key(b, "event_final"), 1);
 	msgpack_pack_int(key(b, "seq"), 1);
 }
+static void event_final_first_after_last(struct built *b)
+{
+	msgpack_pack_map(key(b, "event_final"), 3);
+	msgpack_pack_int(key(b, "seq"), 1);
+	text(b, "event", "blink");
+	msgpack_pack_int(key(b, "first"), 2);
+}
 static void velocity_negative(struct built *b)
 {
 	number(b, "velocity_deg_s", -1);
@@ -482,6 +490,7 @@ static void gaze_with_a_wrong_value_is_refused_and_nothing_written(void **state)
 		event_a_number,
 		event_final_without_seq,
 		event_final_without_event,
+		event_final_first_after_last,
 		velocity_negative,
 		velocity_infinite,
 		seq_negative,

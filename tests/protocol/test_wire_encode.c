@@ -32,7 +32,7 @@ static void gaze_has_the_documented_keys_and_no_other(void **state)
 	encode_gaze(&gaze, &message);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
 	assert_keys(map, GAZE_KEYS);
-	assert_keys(value_of(map, "event_final"), "seq event");
+	assert_keys(value_of(map, "event_final"), "seq event first");
 	assert_keys(value_of(map, "eye0"), "point pupil_mm valid");
 	assert_keys(value_of(map, "eye1"), "point pupil_mm valid");
 	const msgpack_object *pupils = value_of(map, "base_data");
@@ -68,6 +68,7 @@ static void gaze_values_are_those_of_the_message(void **state)
 	assert_text(value_of(map, "event"), "saccade");
 	assert_number(value_of(value_of(map, "event_final"), "seq"), 1099511627700);
 	assert_text(value_of(value_of(map, "event_final"), "event"), "pursuit");
+	assert_number(value_of(value_of(map, "event_final"), "first"), 1099511627697);
 	assert_number(value_of(map, "velocity_deg_s"), 123.4f);
 	assert_number(value_of(map, "seq"), 1099511627776);
 	assert_number(value_of(map, "device_ns"), -77);
