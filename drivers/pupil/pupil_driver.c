@@ -14,9 +14,10 @@
 /* One line about bad messages a second is enough to see that something is wrong. */
 #define COMPLAINT_NS GZ_NS_PER_S
 
-/* How long create() waits for an answer, and start() for the clocks, ms: below the 200 that start()
- * may take, and enough for a network of some ms. */
-enum { CREATE_MS = 150, START_MS = 150, LIST_MS = 100 };
+/* How long create() waits for the first answer, start() for the clocks, list() and create() for
+ * other answers and create() for a status, ms: enough for a network of some ms. What does not come
+ * in time is done without. */
+enum { CREATE_MS = 150, START_MS = 150, LIST_MS = 100, ASK_MS = 150, STATUS_MS = 500 };
 
 /* Silence that is told of although requests are answered, ns: longer than a scene takes to find its
  * markers again. */
@@ -48,6 +49,7 @@ static const size_t pupil_option_count = sizeof pupil_options / sizeof *pupil_op
 struct pupil_device {
 	struct gz_device base;
 	struct gz_pupil_link link;
+	struct gz_device_info info;
 	char surface_topic[GZ_PUPIL_TOPIC_SIZE]; /* empty: gaze as it comes */
 	double confidence;
 	struct gz_pupil_memory memory;
@@ -264,8 +266,7 @@ static enum gz_result pupil_read(struct gz_device *base, int timeout_ms,
 
 static void pupil_info(const struct gz_device *base, struct gz_device_info *out_info)
 {
-	(void)base;
-	*out_info = (struct gz_device_info) { .name = "pupil" };
+	*out_info = ((const struct pupil_device *)base)->info;
 }
 
 static void pupil_counters(const struct gz_device *base, struct gz_device_counters *out_counters)
@@ -293,6 +294,37 @@ static const struct gz_device_ops pupil_ops = {
 	.destroy = pupil_destroy,
 };
 
+/* Whether a gazed answers: that knows a word more than Pupil Remote. */
+static bool is_gazed(struct gz_pupil_link *link, int timeout_ms)
+{
+	char latest[32];
+	return gz_pupil_link_ask(link, "LATEST_PORT", timeout_ms, latest, sizeof latest) == GZ_OK &&
+	       latest[0] >= '0' && latest[0] <= '9';
+}
+
+/* Who is there, and what another gazed knows of its tracker and its display. */
+static void introduce(struct pupil_device *device)
+{
+	struct gz_device_info *info = &device->info;
+	struct gz_status status;
+	char version[32];
+	snprintf(info->name, sizeof info->name, "pupil");
+	if (!is_gazed(&device->link, ASK_MS)) {
+		if (gz_pupil_link_ask(&device->link, "v", ASK_MS, version, sizeof version) == GZ_OK)
+			snprintf(info->name, sizeof info->name, "Pupil Capture %s", version);
+		return;
+	}
+	if (gz_pupil_link_status(&device->link, STATUS_MS, &status) != GZ_OK)
+		return;
+	if (status.tracker.name[0])
+		memcpy(info->name, status.tracker.name, sizeof info->name);
+	memcpy(info->serial, status.tracker.serial, sizeof info->serial);
+	info->rate_hz = status.rate_hz_nominal;
+	info->has_display = gz_display_valid(&status.display);
+	if (info->has_display)
+		info->display = status.display;
+}
+
 static enum gz_result pupil_create(const void *settings, const struct gz_driver_host *host,
 				   struct gz_device **out_device)
 {
@@ -315,26 +347,24 @@ static enum gz_result pupil_create(const void *settings, const struct gz_driver_
 		pupil_destroy(&device->base);
 		return result;
 	}
+	introduce(device);
 	*out_device = &device->base;
 	return GZ_OK;
 }
 
-/* A gazed answers like a Pupil Capture, but knows one word more. One is not listed, because the
- * address that is preset may be our own daemon's. */
+/* A gazed is not listed, because the address that is preset may be our own daemon's. */
 static size_t pupil_list(const void *settings, const struct gz_driver_host *host,
 			 struct gz_device_entry *out_entries)
 {
 	const struct pupil_settings *wanted = settings;
 	struct gz_pupil_link link;
-	char version[32], latest[32];
+	char version[32];
 	(void)host;
 	if (!gz_pupil_address_valid(wanted->address) ||
 	    gz_pupil_link_open(&link, wanted->address, LIST_MS, NULL) != GZ_OK)
 		return 0;
-	bool is_pupil =
-		gz_pupil_link_ask(&link, "LATEST_PORT", LIST_MS, latest, sizeof latest) == GZ_OK &&
-		(latest[0] < '0' || latest[0] > '9') &&
-		gz_pupil_link_ask(&link, "v", LIST_MS, version, sizeof version) == GZ_OK;
+	bool is_pupil = !is_gazed(&link, LIST_MS) &&
+			gz_pupil_link_ask(&link, "v", LIST_MS, version, sizeof version) == GZ_OK;
 	gz_pupil_link_close(&link);
 	if (!is_pupil)
 		return 0;

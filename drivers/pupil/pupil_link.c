@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/number.h"
+#include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "pupil"
 
@@ -285,7 +286,48 @@ enum gz_result gz_pupil_link_ask(struct gz_pupil_link *link, const char *questio
 	answer[0] = '\0';
 	send_request(link, GZ_PUPIL_REQUEST_NONE, question);
 	zmq_poll(&item, 1, timeout_ms);
-	return item.revents && receive_answer(link, answer, size) ? GZ_OK : GZ_ERR_TIMEOUT;
+	if (item.revents && receive_answer(link, answer, size))
+		return GZ_OK;
+	open_control(link); /* a late answer must not be taken for that to another question */
+	return GZ_ERR_TIMEOUT;
+}
+
+/* The newest message's second frame, if it is a status. */
+static enum gz_result receive_status(struct gz_pupil_link *link, struct gz_status *out_status)
+{
+	zmq_msg_t frame;
+	enum gz_result result = GZ_ERR_TIMEOUT;
+	zmq_msg_init(&frame);
+	for (int i = 0; zmq_msg_recv(&frame, link->stream, ZMQ_DONTWAIT) >= 0; i++) {
+		if (i == 1)
+			result = gz_wire_decode_status(zmq_msg_data(&frame), zmq_msg_size(&frame),
+						       out_status);
+		if (!zmq_msg_more(&frame))
+			break;
+	}
+	zmq_msg_close(&frame);
+	return result;
+}
+
+enum gz_result gz_pupil_link_status(struct gz_pupil_link *link, int timeout_ms,
+				    struct gz_status *out_status)
+{
+	int64_t now_ns = gz_clock_now_ns(), deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
+	snprintf(link->topics[0], sizeof link->topics[0], GZ_TOPIC_STATUS);
+	enum gz_result result = open_stream(link);
+	if (result == GZ_OK)
+		result = GZ_ERR_TIMEOUT;
+	zmq_pollitem_t item = { .socket = link->stream, .events = ZMQ_POLLIN };
+	while (link->stream && result != GZ_OK && now_ns < deadline_ns) {
+		zmq_poll(&item, 1, milliseconds_until(deadline_ns, now_ns));
+		if (item.revents)
+			result = receive_status(link, out_status);
+		now_ns = gz_clock_now_ns();
+	}
+	if (link->stream)
+		zmq_close(link->stream);
+	link->stream = NULL;
+	return result == GZ_ERR_PROTOCOL ? GZ_ERR_TIMEOUT : result;
 }
 
 enum gz_result gz_pupil_link_open(struct gz_pupil_link *link, const char *address, int timeout_ms,

@@ -18,6 +18,7 @@
 #include "drivers/pupil/pupil_clock.h"
 #include "drivers/pupil/pupil_keys.h"
 #include "protocol/endpoint.h"
+#include "protocol/gaze.h"
 
 /** Time between two rounds of clock comparison, ns (Pupil's network_time_sync.py). */
 #define GZ_PUPIL_ROUND_NS INT64_C(10000000000)
@@ -106,7 +107,17 @@ void gz_pupil_link_synchronise(struct gz_pupil_link *link, int64_t deadline_ns);
 /** Samples do not fit the clock: compare soon, at most once a second. */
 void gz_pupil_link_doubt_clock(struct gz_pupil_link *link, int64_t now_ns);
 
-/** Ask one question and wait for its answer, on a link that is used for nothing else.
+/**
+ * What another gazed says of itself, on a link that is not yet subscribed.
+ *
+ * @param[out] out_status  written on success only
+ * @retval GZ_ERR_TIMEOUT  nothing within @p timeout_ms
+ * @retval GZ_ERR_IO       no socket; logged
+ */
+enum gz_result gz_pupil_link_status(struct gz_pupil_link *link, int timeout_ms,
+				    struct gz_status *out_status);
+
+/** Ask one question and wait for its answer, on a link that is not yet subscribed.
  *  @param[out] answer  NUL-terminated, empty on failure
  *  @retval GZ_ERR_TIMEOUT  none */
 enum gz_result gz_pupil_link_ask(struct gz_pupil_link *link, const char *question, int timeout_ms,

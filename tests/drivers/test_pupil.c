@@ -109,6 +109,9 @@ static void gaze_of_two_eyes_becomes_samples(void **state)
 	(void)state;
 	struct gz_sample sample;
 	connect_device("");
+	struct gz_device_info info;
+	gz_device_get_info(device, &info);
+	assert_false(info.has_display);
 	for (uint64_t i = 0; i < 20; i++) {
 		read_one(&sample);
 		assert_int_equal(sample.seq, i);

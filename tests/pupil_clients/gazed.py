@@ -73,6 +73,8 @@ class Gazed:
         except subprocess.TimeoutExpired:
             self.process.kill()
             raise
+        if not os.path.exists(self.place):
+            return
         text = self.log()
         shutil.rmtree(self.place)
         assert status == 0, f"gazed left with {status}: {text}"

@@ -479,6 +479,23 @@ class ChainTest(ClientTest):
                     client.close()
                     second.close()
 
+    def test_display_and_tracker_are_those_of_the_first(self):
+        self.gazed.close()
+        self.gazed = Gazed(GAZED, "--display.px=1280x720", "--display.mm=310 175",
+                           "--display.distance_mm=555", "--sim.rate_hz=240")
+        self.addCleanup(self.gazed.close)
+        second = Gazed(GAZED, "--driver", "pupil", "--pupil.address",
+                       f"tcp://127.0.0.1:{self.gazed.port}")
+        self.addCleanup(second.close)
+        client = Client(second)
+        self.addCleanup(client.close)
+        status = receive_topic(client.subscribe("status"), "status")
+        self.assertEqual(status["display"]["px"], [1280, 720])
+        self.assertEqual(status["display"]["mm"], [310, 175])
+        self.assertEqual(status["display"]["distance_mm"], 555)
+        self.assertEqual(status["tracker"]["name"], "sim")
+        self.assertEqual(status["rate_hz"]["nominal"], 240)
+
     def compare(self, client):
         """That both say the same of the same moments."""
         first = self.client.subscribe("gaze.")
@@ -537,7 +554,7 @@ class CurveTest(unittest.TestCase):
         self.addCleanup(first.close)
         return first
 
-    def start_second(self, first, awaited="pupil delivers samples"):
+    def start_second(self, first, awaited="delivers samples"):
         second = Gazed(GAZED, "--driver", "pupil", "--pupil.address",
                        f"tcp://127.0.0.1:{first.port}", awaited=awaited,
                        XDG_CONFIG_HOME=self.path("client"))
