@@ -244,12 +244,13 @@ static enum gazectl_exit collect(struct gazectl_validation *validate)
 
 enum gazectl_exit gazectl_validate_collect(struct gazectl_validation *validate)
 {
-	if (start_viewer(validate) != GZ_OK)
-		return GAZECTL_FAILED;
-	open_link(validate);
-	enum gazectl_exit status = collect(validate);
-	gz_viewer_process_end(&validate->viewer);
-	tell_simulated_viewer(validate, NULL);
+	enum gazectl_exit status = GAZECTL_FAILED;
+	open_link(validate); /* first: it takes a moment until it stands */
+	if (start_viewer(validate) == GZ_OK) {
+		status = collect(validate);
+		gz_viewer_process_end(&validate->viewer);
+		tell_simulated_viewer(validate, NULL);
+	}
 	gz_viewer_link_close(&validate->link);
 	return status;
 }

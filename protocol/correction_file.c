@@ -81,6 +81,19 @@ enum gz_result gz_correction_path(const char *directory, const char *tracker, co
 	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
 }
 
+/* Every key must have been there. */
+static enum gz_result check_given(const bool *given, const char *name, const struct gz_log *log)
+{
+	for (size_t i = 0; i < KEY_COUNT; i++) {
+		if (given[i])
+			continue;
+		gz_err(log, "%s: %s is missing; measure it anew with gazectl validate --correct",
+		       name, keys[i].key);
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
+}
+
 enum gz_result gz_correction_read(const char *path, const struct gz_log *log,
 				  struct gz_correction_file *out_file)
 {
@@ -90,17 +103,25 @@ enum gz_result gz_correction_read(const char *path, const struct gz_log *log,
 	if (access(path, F_OK) != 0)
 		return GZ_ERR_NOT_FOUND;
 	enum gz_result result = gz_options_read_file(&binding, 1, path, log);
-	if (result != GZ_OK)
-		return result;
-	for (size_t i = 0; i < KEY_COUNT; i++) {
-		if (given[i])
-			continue;
-		gz_err(log, "%s: %s is missing; measure it anew with gazectl validate --correct",
-		       path, keys[i].key);
-		return GZ_ERR_FORMAT;
-	}
-	*out_file = file;
-	return GZ_OK;
+	if (result == GZ_OK)
+		result = check_given(given, path, log);
+	if (result == GZ_OK)
+		*out_file = file;
+	return result;
+}
+
+enum gz_result gz_correction_parse(const char *name, const char *text, size_t size,
+				   const struct gz_log *log, struct gz_correction_file *out_file)
+{
+	struct gz_correction_file file = { .before_deg = 0 };
+	bool given[KEY_COUNT] = { false };
+	const struct gz_option_binding binding = { keys, KEY_COUNT, &file, given };
+	enum gz_result result = gz_options_read_text(&binding, 1, name, text, size, log);
+	if (result == GZ_OK)
+		result = check_given(given, name, log);
+	if (result == GZ_OK)
+		*out_file = file;
+	return result;
 }
 
 static bool same(double a, double b)

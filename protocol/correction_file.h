@@ -69,6 +69,11 @@ enum gz_result gz_correction_path(const char *directory, const char *tracker, co
 enum gz_result gz_correction_read(const char *path, const struct gz_log *log,
 				  struct gz_correction_file *out_file);
 
+/** As gz_correction_read() over @p size bytes at @p text; @p name stands for the file in messages.
+ */
+enum gz_result gz_correction_parse(const char *name, const char *text, size_t size,
+				   const struct gz_log *log, struct gz_correction_file *out_file);
+
 /** Whether a correction was measured with this tracker and this display, sizes to a millionth. */
 bool gz_correction_fits(const struct gz_correction_file *file, const char *tracker,
 			const char *serial, const struct gz_display *display);
