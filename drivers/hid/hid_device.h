@@ -37,7 +37,8 @@ struct gz_hid_device {
 	bool mode_set; /**< mode_before is to be restored */
 	unsigned mode_before;
 	int64_t suspended_ns;  /**< gz_suspended_ns() when the mode was set */
-	int64_t look_after_ns; /**< when to look whether the machine slept */
+	int64_t look_after_ns; /**< when to look after it again */
+	bool was_set_up;       /**< its screen may be another one now */
 
 	/* Its samples. */
 	struct gz_clock_ticks clock;
@@ -45,7 +46,9 @@ struct gz_hid_device {
 	int64_t host_ns; /**< newest sample delivered */
 	uint64_t seq;
 	uint64_t malformed[GZ_MALFORMED_COUNT];
-	struct gz_ratelimit complaints;
+	struct gz_ratelimit complaints; /**< of reports */
+	struct gz_ratelimit jumps;
+	struct gz_ratelimit changes; /**< of its state */
 
 	size_t report_size;    /**< room in report and last */
 	size_t last_size;      /**< of the newest tracking report; 0 before it */
@@ -63,15 +66,17 @@ struct gz_hid_device {
  */
 void gz_hid_setup_ask(struct gz_hid_device *device, const double fallback_mm[2]);
 
-/** Ask for the screen again. @return whether it is another one, which is then not taken over */
-bool gz_hid_setup_screen_changed(struct gz_hid_device *device);
-
 /** Request gaze, and eye positions if they are wanted; keeps what was set before. */
 void gz_hid_setup_start(struct gz_hid_device *device);
 
-/** Request it anew if the machine slept since, because the device may have been without power. Call
- *  it often. */
-void gz_hid_setup_look_after(struct gz_hid_device *device, int64_t now_ns);
+/**
+ * Look after what is not a sample, twice a second; call it often. Requests the mode anew if the
+ * machine slept, because the device may have been without power. Asks for the screen again if the
+ * device was set up meanwhile.
+ *
+ * @retval GZ_ERR_NO_DEVICE  it was set up for another screen, and must be opened anew; logged
+ */
+enum gz_result gz_hid_setup_look_after(struct gz_hid_device *device, int64_t now_ns);
 
 /** Restore the mode. */
 void gz_hid_setup_stop(struct gz_hid_device *device);

@@ -9,7 +9,7 @@
 
 #define GZ_LOG_MODULE "hid"
 
-/* How often to look whether the machine slept. Chosen: soon after, at no cost. */
+/* How often to look after the device. Chosen: soon enough, at no cost. */
 static const int64_t LOOK_AFTER_NS = 500 * GZ_NS_PER_MS;
 
 /* A machine that slept at all did so for longer, ns. */
@@ -131,7 +131,7 @@ void gz_hid_setup_ask(struct gz_hid_device *device, const double fallback_mm[2])
 	ask_status(device);
 }
 
-bool gz_hid_setup_screen_changed(struct gz_hid_device *device)
+static bool has_another_screen(struct gz_hid_device *device)
 {
 	if (device->settings.screen_mm[0] > 0 && device->settings.screen_mm[1] > 0)
 		return false;
@@ -189,16 +189,24 @@ void gz_hid_setup_start(struct gz_hid_device *device)
 	}
 }
 
-void gz_hid_setup_look_after(struct gz_hid_device *device, int64_t now_ns)
+enum gz_result gz_hid_setup_look_after(struct gz_hid_device *device, int64_t now_ns)
 {
 	if (now_ns < device->look_after_ns)
-		return;
+		return GZ_OK;
 	device->look_after_ns = now_ns + LOOK_AFTER_NS;
-	if (gz_suspended_ns() - device->suspended_ns < SLEEP_NS)
-		return;
-	gz_info(device->base.log, "%s: the machine slept; its mode is set again",
+	if (gz_suspended_ns() - device->suspended_ns >= SLEEP_NS) {
+		gz_info(device->base.log, "%s: the machine slept; its mode is set again",
+			device->entry.name);
+		gz_hid_setup_start(device);
+	}
+	if (!device->was_set_up)
+		return GZ_OK;
+	device->was_set_up = false;
+	if (!has_another_screen(device))
+		return GZ_OK;
+	gz_warn(device->base.log, "%s: it was set up for another screen; it is opened anew",
 		device->entry.name);
-	gz_hid_setup_start(device);
+	return GZ_ERR_NO_DEVICE;
 }
 
 void gz_hid_setup_stop(struct gz_hid_device *device)

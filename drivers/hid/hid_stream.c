@@ -8,7 +8,7 @@
 
 #define GZ_LOG_MODULE "hid"
 
-/* One line about bad reports a second is enough to see that something is wrong. */
+/* One line of a kind a second is enough to see that something is wrong. */
 #define COMPLAINT_NS GZ_NS_PER_S
 
 static void count_malformed(struct gz_hid_device *device, enum gz_malformed malformed, size_t size)
@@ -23,21 +23,23 @@ static void count_malformed(struct gz_hid_device *device, enum gz_malformed malf
 			(unsigned long long)held_back);
 }
 
-/* The same report again, time and all. */
+/* The same report again, time and all, of a clock that is known to run: some never set it. */
 static bool is_stale(struct gz_hid_device *device, const struct gz_hid_input_report *report,
 		     size_t size)
 {
-	bool same = report->has_ticks && size == device->last_size &&
+	bool runs = device->clock.settled && device->clock.tick != GZ_CLOCK_NONE;
+	bool same = report->has_ticks && runs && size == device->last_size &&
 		    memcmp(device->report, device->last, size) == 0;
 	memcpy(device->last, device->report, size);
 	device->last_size = size;
 	return same;
 }
 
-static void tell(const struct gz_hid_device *device, enum gz_clock_finding finding)
+static void tell(struct gz_hid_device *device, enum gz_clock_finding finding)
 {
 	const struct gz_log *log = device->base.log;
 	const char *name = device->entry.name;
+	uint64_t held_back;
 	switch (finding) {
 	case GZ_CLOCK_FOUND_NOTHING:
 		return;
@@ -53,7 +55,11 @@ static void tell(const struct gz_hid_device *device, enum gz_clock_finding findi
 		gz_warn(log, "%s: its clock is too coarse; times of arrival are used", name);
 		return;
 	case GZ_CLOCK_FOUND_JUMP:
-		gz_warn(log, "%s: its clock jumped; its fit begins again", name);
+		if (gz_ratelimit_pass(&device->jumps, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
+			gz_warn(log,
+				"%s: its clock jumped; its fit begins again (%llu more since last "
+				"told)",
+				name, (unsigned long long)held_back);
 		return;
 	}
 }
@@ -121,23 +127,21 @@ static void fill_silence(struct gz_hid_device *device, struct gz_sample *out_sam
 	*out_sample = sample;
 }
 
-/* GZ_ERR_NO_DEVICE where the device is another one now. */
-static enum gz_result take_status(struct gz_hid_device *device,
-				  const struct gz_hid_input_report *report)
+static void take_status(struct gz_hid_device *device, const struct gz_hid_input_report *report)
 {
+	uint64_t held_back;
 	if (report->has_rate)
 		device->rate_hz = gz_hid_believed_rate(report->rate_hz);
 	device->silence.nominal_ns = device->rate_hz > 0 ? 1e9 / device->rate_hz : 0;
 	if (!report->has_state || report->state == device->state)
-		return GZ_OK;
+		return;
 	device->state = report->state;
+	device->was_set_up = device->was_set_up || report->state == GZ_HID_STATE_READY;
 	const char *trouble = gz_hid_setup_trouble(device);
-	gz_info(device->base.log, "%s: %s", device->entry.name, trouble ? trouble : "it is ready");
-	if (report->state != GZ_HID_STATE_READY || !gz_hid_setup_screen_changed(device))
-		return GZ_OK;
-	gz_warn(device->base.log, "%s: it was set up for another screen; it is opened anew",
-		device->entry.name);
-	return GZ_ERR_NO_DEVICE;
+	if (gz_ratelimit_pass(&device->changes, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
+		gz_info(device->base.log, "%s: %s (%llu more changes since last told)",
+			device->entry.name, trouble ? trouble : "it is ready",
+			(unsigned long long)held_back);
 }
 
 /* GZ_OK with a sample, GZ_ERR_TIMEOUT without one. */
@@ -156,7 +160,8 @@ static enum gz_result take_report(struct gz_hid_device *device, size_t size,
 		to_sample(device, &report, arrival_ns, out_sample);
 		return GZ_OK;
 	case GZ_HID_INPUT_STATUS:
-		return take_status(device, &report) == GZ_OK ? GZ_ERR_TIMEOUT : GZ_ERR_NO_DEVICE;
+		take_status(device, &report);
+		return GZ_ERR_TIMEOUT;
 	case GZ_HID_INPUT_MALFORMED:
 		count_malformed(device, report.malformed, size);
 		return GZ_ERR_TIMEOUT;
@@ -182,9 +187,11 @@ enum gz_result gz_hid_stream_read(struct gz_hid_device *device, int timeout_ms,
 	for (;;) {
 		size_t size;
 		int64_t due_ns = gz_hid_silence_due_ns(&device->silence);
-		gz_hid_setup_look_after(device, now_ns);
+		enum gz_result result = gz_hid_setup_look_after(device, now_ns);
+		if (result != GZ_OK)
+			return result;
 		/* What has arrived counts before silence does, however late it is read. */
-		enum gz_result result = gz_hid_port_read(
+		result = gz_hid_port_read(
 			device->port, device->report, device->report_size,
 			ms_until(now_ns, due_ns < deadline_ns ? due_ns : deadline_ns), &size);
 		if (result == GZ_OK)

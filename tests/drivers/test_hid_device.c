@@ -357,7 +357,10 @@ static void hid_device_set_up_for_another_screen_is_opened_anew(void **state)
 	hid_played_set_feature(number, bytes[0], bytes, size);
 	size = hid_made_status(HID_LAYOUT_BYTES, GZ_HID_STATE_READY, 120, bytes);
 	hid_played_send(number, bytes, size);
-	assert_int_equal(gz_device_read(device, 1000, &sample), GZ_ERR_NO_DEVICE);
+	assert_int_equal(gz_device_read(device, 20, &sample), GZ_ERR_TIMEOUT);
+	((struct gz_hid_device *)device)->look_after_ns = 0; /* half a second later */
+	assert_int_equal(gz_device_read(device, 20, &sample), GZ_ERR_NO_DEVICE);
+	expect_told("opened anew");
 	gz_device_destroy(&device);
 	struct gz_device_info info;
 	device = open_device();
@@ -377,6 +380,7 @@ static void hid_bad_reports_are_counted_by_their_reason(void **state)
 	size_t size = hid_made_report(HID_LAYOUT_BYTES, &sent, bytes);
 	assert_true(hid_played_send(number, bytes, size));
 	read_sample(device);
+	((struct gz_hid_device *)device)->clock.settled = true;
 	assert_true(hid_played_send(number, bytes, size));     /* the same again */
 	assert_true(hid_played_send(number, bytes, size - 1)); /* short */
 	assert_true(hid_played_send(number, bytes, size + 1)); /* long */
@@ -399,6 +403,24 @@ static void hid_bad_reports_are_counted_by_their_reason(void **state)
 	assert_int_equal(counters.malformed[GZ_MALFORMED_SYNTAX], 1);
 	assert_int_equal(counters.malformed[GZ_MALFORMED_VALUE], 1);
 	expect_told("device bug");
+	gz_device_destroy(&device);
+}
+
+static void hid_tracker_that_never_sets_its_time_is_read_all_the_same(void **state)
+{
+	(void)state;
+	int number = plug(HID_LAYOUT_BYTES, "Made", "");
+	struct gz_device *device = open_device();
+	struct hid_made_sample sent = looked;
+	sent.time_us = 0;
+	int64_t last_ns = 0;
+	for (int i = 0; i < 50; i++) {
+		send_sample(number, HID_LAYOUT_BYTES, &sent);
+		struct gz_sample sample = read_sample(device);
+		assert_true(sample.valid && sample.host_ns > last_ns);
+		last_ns = sample.host_ns;
+	}
+	assert_int_equal(counters_of(device).malformed[GZ_MALFORMED_STALE], 0);
 	gz_device_destroy(&device);
 }
 
@@ -578,6 +600,8 @@ int main(void)
 		cmocka_unit_test_setup(hid_trouble_follows_the_status_report, set_up),
 		cmocka_unit_test_setup(hid_device_set_up_for_another_screen_is_opened_anew, set_up),
 		cmocka_unit_test_setup(hid_bad_reports_are_counted_by_their_reason, set_up),
+		cmocka_unit_test_setup(hid_tracker_that_never_sets_its_time_is_read_all_the_same,
+				       set_up),
 		cmocka_unit_test_setup(hid_nothing_but_garbage_keeps_to_the_timeout, set_up),
 		cmocka_unit_test_setup(hid_silence_is_filled_in_and_time_goes_on, set_up),
 		cmocka_unit_test_setup(hid_unplugged_is_gone, set_up),
