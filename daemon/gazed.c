@@ -158,6 +158,7 @@ static enum gz_result start(struct daemon *daemon)
 static void say_hello(const struct daemon *daemon)
 {
 	int port = gz_publisher_port(daemon->publisher);
+	gz_privileges_advise(&daemon->log);
 	gz_info(&daemon->log, "gazed %s with %s, stream at ipc://%s/stream", GAZECAST_VERSION,
 		daemon->config.driver, daemon->directory);
 	if (port > 0)

@@ -60,13 +60,8 @@ static void change_environment(const struct passwd *user)
 enum gz_result gz_privileges_drop(const char *user, const struct gz_log *log)
 {
 	prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-	if (!user[0]) {
-		if (geteuid() == 0)
-			gz_warn(log,
-				"running as root, which nothing here needs: set user in section "
-				"[daemon] of gazed.conf, or use the systemd unit");
+	if (!user[0])
 		return GZ_OK;
-	}
 	const struct passwd *wanted = getpwnam(user);
 	if (!wanted || wanted->pw_uid == 0) {
 		gz_err(log, "daemon.user: %s %s; make it by systemd-sysusers, or name another",
@@ -88,4 +83,11 @@ enum gz_result gz_privileges_drop(const char *user, const struct gz_log *log)
 	change_environment(wanted);
 	gz_info(log, "running as user %s", user);
 	return GZ_OK;
+}
+
+void gz_privileges_advise(const struct gz_log *log)
+{
+	if (geteuid() == 0)
+		gz_warn(log, "running as root, which nothing here needs: set user in section "
+			     "[daemon] of gazed.conf, or use the systemd unit");
 }
