@@ -35,7 +35,8 @@ static void *open_socket(struct gz_control *control, int timeout_ms)
 	void *socket = zmq_socket(control->context, ZMQ_REQ);
 	if (!socket)
 		return NULL;
-	const int zero = 0;
+	const int zero = 0, ipv6 = strchr(control->endpoint, '[') != NULL;
+	zmq_setsockopt(socket, ZMQ_IPV6, &ipv6, sizeof ipv6);
 	zmq_setsockopt(socket, ZMQ_LINGER, &zero, sizeof zero);
 	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
 	zmq_setsockopt(socket, ZMQ_SNDTIMEO, &timeout_ms, sizeof timeout_ms);

@@ -40,6 +40,9 @@ static bool set_options(const struct gz_subscriber *subscriber, bool conflate)
 		   set_int(socket, ZMQ_RCVHWM, RECEIVE_MESSAGES_MAX) &&
 		   zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &message_bytes_max,
 				  sizeof message_bytes_max) == 0;
+	/* An address in brackets; names are looked up as ever. */
+	if (set && strchr(subscriber->endpoint, '['))
+		set = set_int(socket, ZMQ_IPV6, 1);
 	if (set && conflate)
 		set = set_int(socket, ZMQ_CONFLATE, 1);
 	if (set && strncmp(subscriber->endpoint, "tcp:", 4) == 0)

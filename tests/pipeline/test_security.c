@@ -245,6 +245,36 @@ static void curve_authorised_client_reads_stream_latest_and_control(void **state
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
+static void curve_serves_ipv6_as_well(void **state)
+{
+	(void)state;
+	char endpoint[64];
+	const struct sockaddr_in6 loopback = { .sin6_family = AF_INET6,
+					       .sin6_addr = IN6ADDR_LOOPBACK_INIT };
+	int fd = socket(AF_INET6, SOCK_STREAM, 0);
+	bool there = fd >= 0 && bind(fd, (const struct sockaddr *)&loopback, sizeof loopback) == 0;
+	if (fd >= 0)
+		close(fd);
+	if (!there)
+		skip(); /* this machine has no IPv6 */
+	authorize(read_key(client_directory, GZ_CLIENT_KEY_FILE));
+	snprintf(endpoint, sizeof endpoint, "tcp://[::1]:%d", free_port());
+	snprintf(control, sizeof control, "%s", endpoint);
+	struct gz_keys keys = own_keys();
+	struct gazed_process gazed =
+		spawn((const char *const[]) { "--tcp=curve", "--control", control, "--network.keys",
+					      server_directory, "--network.address=[::1]", NULL });
+	gazed_wait_ready(&place, &gazed);
+	must_be_let_in(&keys);
+	assert_int_equal(count_said(&gazed, "::1 is let in with the key"), 1);
+	struct gz_client *client;
+	snprintf(endpoint, sizeof endpoint, "tcp://[::1]:%d", port_by("LATEST_PORT"));
+	assert_int_equal(gz_client_open_with_keys(endpoint, &keys, &captured.log, &client), GZ_OK);
+	receive_latest(client);
+	gz_client_close(&client);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
 static void curve_unknown_key_is_refused_each_time_and_logged_once(void **state)
 {
 	(void)state;
@@ -519,6 +549,7 @@ int main(void)
 		return 77;
 	const struct CMUnitTest tests[] = {
 		TEST(curve_authorised_client_reads_stream_latest_and_control),
+		TEST(curve_serves_ipv6_as_well),
 		TEST(curve_unknown_key_is_refused_each_time_and_logged_once),
 		TEST(curve_unknown_key_hears_nothing_of_the_stream),
 		TEST(curve_wrong_server_key_is_logged_once_on_both_sides),
