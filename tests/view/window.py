@@ -259,7 +259,7 @@ class Window(unittest.TestCase):
         return [line.split("\t") for line in lines if line.startswith(kind + "\t")]
 
     def test_pointer_goes_through_the_daemon_and_leads_the_gaze(self):
-        self.start_daemon("--driver=pointer", "--sim.blinks_per_min=0")
+        self.start_daemon("--driver=pointer")
         self.start("--gaze", "pointer", "--cross")
         for x, y in ((150, 200), (330, 120)):
             self.move(x, y)
