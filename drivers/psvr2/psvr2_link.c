@@ -13,7 +13,7 @@
 	((uint8_t)(LIBUSB_REQUEST_TYPE_VENDOR | LIBUSB_RECIPIENT_ENDPOINT | LIBUSB_ENDPOINT_OUT))
 
 /* Longest wait for the answer to a request, ms: within start, when asking again, and at the end. */
-enum { START_TIMEOUT_MS = 150, KEEPALIVE_TIMEOUT_MS = 500, STOP_TIMEOUT_MS = 100 };
+enum { START_TIMEOUT_MS = 150, KEEPALIVE_TIMEOUT_MS = 500, STOP_TIMEOUT_MS = 200 };
 
 /* How long transfers may take to return at the end. */
 static const int64_t STOP_PATIENCE_NS = GZ_NS_PER_S;

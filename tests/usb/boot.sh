@@ -26,7 +26,7 @@ console=$scratch/console.log
 rm -rf "$scratch/root"
 
 # The first serial line is the test's, the second one the kernel's.
-timeout -k 5 110 qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 512 \
+timeout -k 5 200 qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 512 \
 	-nodefaults -display none -nic none -no-reboot \
 	-kernel "$kernel/vmlinuz" -initrd "$scratch/initramfs" \
 	-append "console=ttyS1 rdinit=/init panic=-1 test=/usr/bin/$name" \

@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/suspend.h"
 
 static void write_file(const char *path, const char *text)
 {
@@ -23,22 +23,13 @@ static void write_file(const char *path, const char *text)
 		fail_msg("writing \"%s\" to %s: %s", text, path, strerror(error));
 }
 
-/* What CLOCK_MONOTONIC leaves out: the time asleep. */
-static int64_t asleep_ns(void)
-{
-	struct timespec all, awake;
-	clock_gettime(CLOCK_BOOTTIME, &all);
-	clock_gettime(CLOCK_MONOTONIC, &awake);
-	return (all.tv_sec - awake.tv_sec) * GZ_NS_PER_S + all.tv_nsec - awake.tv_nsec;
-}
-
 int64_t guest_suspend(void)
 {
-	int64_t before_ns = asleep_ns();
+	int64_t before_ns = gz_suspended_ns();
 	write_file("/sys/class/rtc/rtc0/wakealarm", "0");
 	write_file("/sys/class/rtc/rtc0/wakealarm", "+3");
 	write_file("/sys/power/state", "mem");
-	return asleep_ns() - before_ns;
+	return gz_suspended_ns() - before_ns;
 }
 
 void guest_wait_for_file(const char *path, bool wanted)
