@@ -14,6 +14,10 @@
  * end somewhere, too. Chosen: two seconds, above any scheduling delay. */
 static const int64_t BACKLOG_NS = 2 * GZ_NS_PER_S;
 
+/* A viewer that nobody has told where to look for so long looks where it likes again. Chosen: as
+ * the preset of pointer.timeout_ms. */
+static const int64_t FOLLOW_PATIENCE_NS = GZ_NS_PER_S;
+
 struct sim_device {
 	struct gz_device base;
 	struct gz_sim_params params;
@@ -24,6 +28,7 @@ struct sim_device {
 	uint64_t seq;
 	uint64_t lost;
 	struct gz_pointer_feed *feed; /* the host's; NULL where nobody tells where to look */
+	int64_t told_ns;              /* when somebody last did; 0: nobody, or it is forgotten */
 	uint32_t skipped;             /* lost since the last delivered sample, beyond next's own */
 };
 
@@ -89,8 +94,15 @@ static void deliver(struct sim_device *sim, struct gz_sample *out_sample)
 static void follow_reports(struct sim_device *sim)
 {
 	struct gz_pointer_report report;
-	while (sim->feed && gz_pointer_feed_take(sim->feed, gz_clock_now_ns(), &report))
+	int64_t now_ns = sim->feed ? gz_clock_now_ns() : 0;
+	while (sim->feed && gz_pointer_feed_take(sim->feed, now_ns, &report)) {
 		gz_sim_tracker_follow(sim->tracker, report.known ? &report.point : NULL);
+		sim->told_ns = report.known ? now_ns : 0;
+	}
+	if (sim->told_ns == 0 || now_ns - sim->told_ns < FOLLOW_PATIENCE_NS)
+		return;
+	gz_sim_tracker_follow(sim->tracker, NULL);
+	sim->told_ns = 0;
 }
 
 static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
