@@ -387,6 +387,55 @@ static void curve_authorized_keys_are_read_again_when_they_change(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
+/* Refused clients that come again at once, each of them for as long as the test lasts. */
+static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **state)
+{
+	(void)state;
+	enum { CLIENTS = 32, SAMPLES = 1000 };
+	char endpoint[64];
+	struct gz_keys keys = own_keys();
+	struct gazed_process gazed = spawn((const char *const[]) {
+		"--tcp=curve", "--control", control, "--network.keys", server_directory,
+		"--sim.rate_hz", "500", "--sim.loss", "0", NULL });
+	gazed_wait_ready(&place, &gazed);
+	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", port_by("SUB_PORT"));
+	void *context = zmq_ctx_new(), *flood[CLIENTS];
+	const int linger = 0, again_ms = 1;
+	for (int i = 0; i < CLIENTS; i++) {
+		/* Half of them with an unknown key, which libzmq gives up, half with a wrong one.
+		 */
+		const char *server = i % 2 ? keys.public_key : keys.server_key;
+		flood[i] = zmq_socket(context, ZMQ_SUB);
+		zmq_setsockopt(flood[i], ZMQ_LINGER, &linger, sizeof linger);
+		zmq_setsockopt(flood[i], ZMQ_RECONNECT_IVL, &again_ms, sizeof again_ms);
+		zmq_setsockopt(flood[i], ZMQ_CURVE_SERVERKEY, server, GZ_KEY_TEXT_SIZE);
+		zmq_setsockopt(flood[i], ZMQ_CURVE_PUBLICKEY, keys.public_key, GZ_KEY_TEXT_SIZE);
+		zmq_setsockopt(flood[i], ZMQ_CURVE_SECRETKEY, keys.secret_key, GZ_KEY_TEXT_SIZE);
+		assert_int_equal(zmq_connect(flood[i], endpoint), 0);
+	}
+	struct gz_stream *stream;
+	struct gz_stream_counters counters = { 0 };
+	struct gz_message message;
+	assert_int_equal(gz_stream_open(NULL, NULL, &captured.log, &stream), GZ_OK);
+	for (int samples = 0; samples < SAMPLES;) {
+		assert_int_equal(
+			gz_stream_read(stream, (int)(PATIENCE_NS / GZ_NS_PER_MS), &message), GZ_OK);
+		samples += message.kind == GZ_MESSAGE_GAZE;
+	}
+	gz_stream_get_counters(stream, &counters);
+	assert_int_equal(counters.lost, 0);
+	gz_stream_close(&stream);
+	for (int i = 0; i < CLIENTS; i++)
+		zmq_close(flood[i]);
+	zmq_ctx_term(context);
+	/* One line for each reason, and one for who had left before it was asked for its address.
+	 */
+	if (count_said(&gazed, "is refused") > 3)
+		fail_msg("%s", gazed_said(&gazed));
+	assert_int_equal(count_said(&gazed, "127.0.0.1 is refused: its key is not in"), 1);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
 static void curve_local_sockets_need_no_key(void **state)
 {
 	(void)state;
@@ -556,6 +605,7 @@ int main(void)
 		TEST(curve_client_without_keys_is_told_what_it_needs),
 		TEST(client_with_keys_is_told_that_the_daemon_has_none),
 		TEST(curve_authorized_keys_are_read_again_when_they_change),
+		TEST(curve_flood_of_refused_clients_takes_nothing_from_a_reader),
 		TEST(curve_local_sockets_need_no_key),
 		TEST(curve_peer_of_an_older_protocol_hears_nothing),
 		TEST(curve_without_a_safe_secret_key_is_refused_at_start),
