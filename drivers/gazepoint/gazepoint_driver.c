@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "drivers/clock_model.h"
+#include "drivers/clock_ticks.h"
 #include "drivers/gazepoint/gazepoint_link.h"
 #include "drivers/gazepoint/gazepoint_protocol.h"
 
@@ -16,6 +17,9 @@
 
 /* One line a second about anything that may repeat is enough to see that something is wrong. */
 #define COMPLAINT_NS GZ_NS_PER_S
+
+/* Of TIME_TICK: a signed integer of 64 bits. */
+enum { TICK_BITS = 64 };
 
 /* What is asked for before the stream. The frequency comes last: with its answer all are there. */
 #define QUESTIONS                        \
@@ -55,13 +59,16 @@ struct gazepoint_device {
 	int fd; /* -1 while closed */
 	struct gz_gazepoint_framer framer;
 	struct gz_gazepoint_xml *xml;
-	struct gz_clock_model clock;
+	struct gz_clock_ticks ticks; /* TIME_TICK */
+	struct gz_clock_model clock; /* TIME, where there are no ticks to use */
 	struct gz_ratelimit complaints;
 	struct gz_ratelimit jumps;
-	int64_t frequency_hz; /* of TIME_TICK; 0 if not known */
-	bool clock_answered;  /* whether or not the frequency is known, no better will come */
-	bool over;            /* nothing more is to be had of this connection */
-	int64_t arrival_ns;   /* of the newest bytes */
+	bool by_ticks;       /* the newest record was stamped by them */
+	int64_t stamp_ns;    /* arrival of the newest record, each a little later */
+	int64_t host_ns;     /* newest sample's */
+	bool clock_answered; /* whether or not the frequency is known, no better will come */
+	bool over;           /* nothing more is to be had of this connection */
+	int64_t arrival_ns;  /* of the newest bytes */
 	bool has_counter;
 	long long counter; /* of the newest data record */
 	enum gz_clock_tick tick;
@@ -101,9 +108,11 @@ static void take_screen(struct gazepoint_device *device, const struct gz_gazepoi
 static void take_frequency(struct gazepoint_device *device, long long sent)
 {
 	device->clock_answered = true;
-	device->frequency_hz = gz_gazepoint_frequency_hz(sent);
-	if (device->frequency_hz == 0)
+	int64_t frequency_hz = gz_gazepoint_frequency_hz(sent);
+	if (frequency_hz == 0)
 		gz_warn(device->base.log, "a tick frequency of %lld cannot be; TIME is used", sent);
+	else
+		gz_clock_ticks_init(&device->ticks, TICK_BITS, 1e9 / (double)frequency_hz);
 }
 
 static void take_ack(struct gazepoint_device *device, const struct gz_gazepoint_record *answer)
@@ -161,27 +170,80 @@ static bool seconds_ns(double time_s, int64_t *out_ns)
 	return true;
 }
 
-/* The best clock that the record has. */
-static void stamp(struct gazepoint_device *device, const struct gz_gazepoint_record *record,
-		  struct gz_sample *sample)
+static void tell_jump(struct gazepoint_device *device)
 {
-	bool jumped = false;
-	bool told = record->has_tick && device->frequency_hz > 0 &&
-		    gz_gazepoint_tick_ns(record->tick, device->frequency_hz, &sample->device_ns);
-	if (!told)
-		told = seconds_ns(record->time_s, &sample->device_ns);
-	device->tick = told ? GZ_CLOCK_DECLARED : GZ_CLOCK_NONE;
-	sample->host_ns = device->arrival_ns;
-	if (told)
-		sample->host_ns = gz_clock_model_step(&device->clock, sample->device_ns,
-						      device->arrival_ns, &jumped);
 	uint64_t held_back;
-	if (jumped &&
-	    gz_ratelimit_pass(&device->jumps, device->arrival_ns, COMPLAINT_NS, &held_back))
+	if (gz_ratelimit_pass(&device->jumps, device->arrival_ns, COMPLAINT_NS, &held_back))
 		gz_warn(device->base.log,
 			"the tracker's clock jumped; its fit begins again (%llu more since last "
 			"told)",
 			(unsigned long long)held_back);
+}
+
+static void tell_finding(struct gazepoint_device *device, enum gz_clock_finding finding)
+{
+	const struct gz_clock_ticks *ticks = &device->ticks;
+	switch (finding) {
+	case GZ_CLOCK_FOUND_NOTHING:
+	case GZ_CLOCK_FOUND_DECLARED:
+		return;
+	case GZ_CLOCK_FOUND_ESTIMATED:
+		gz_warn(device->base.log,
+			"its clock ticks every %g ns by times of arrival; it states %g",
+			ticks->tick_ns, ticks->declared_ns);
+		return;
+	case GZ_CLOCK_FOUND_COARSE:
+		gz_warn(device->base.log, "its clock is too coarse; times of arrival are used");
+		return;
+	case GZ_CLOCK_FOUND_JUMP:
+		tell_jump(device);
+		return;
+	}
+}
+
+static void stamp_by_ticks(struct gazepoint_device *device, long long tick,
+			   struct gz_sample *sample)
+{
+	struct gz_clock_stamp stamp =
+		gz_clock_ticks_step(&device->ticks, (uint64_t)tick, device->stamp_ns);
+	sample->device_ns = stamp.device_ns;
+	sample->host_ns = stamp.host_ns;
+	device->tick = device->ticks.tick;
+	tell_finding(device, stamp.finding);
+}
+
+static void stamp_by_time(struct gazepoint_device *device, double time_s, struct gz_sample *sample)
+{
+	bool jumped = false;
+	device->tick = GZ_CLOCK_NONE;
+	sample->host_ns = device->stamp_ns;
+	if (!seconds_ns(time_s, &sample->device_ns))
+		return;
+	device->tick = GZ_CLOCK_DECLARED;
+	sample->host_ns =
+		gz_clock_model_step(&device->clock, sample->device_ns, device->stamp_ns, &jumped);
+	if (jumped)
+		tell_jump(device);
+}
+
+/* The best clock that the record has: ticks whose length is known, else seconds, else ticks of a
+ * length that can be found out. Records may come together, but were not taken together: of those
+ * the later ones count a nanosecond more. */
+static void stamp(struct gazepoint_device *device, const struct gz_gazepoint_record *record,
+		  struct gz_sample *sample)
+{
+	int64_t after_ns = device->stamp_ns + 1;
+	device->stamp_ns = device->arrival_ns > after_ns ? device->arrival_ns : after_ns;
+	device->by_ticks =
+		record->has_tick && (device->ticks.declared_ns > 0 || isnan(record->time_s));
+	if (device->by_ticks)
+		stamp_by_ticks(device, record->tick, sample);
+	else
+		stamp_by_time(device, record->time_s, sample);
+	/* Where records change between these, time goes on all the same. */
+	if (sample->host_ns < device->host_ns)
+		sample->host_ns = device->host_ns;
+	device->host_ns = sample->host_ns;
 }
 
 /* @return false for a record that was there before */
@@ -367,7 +429,8 @@ static void gazepoint_counters(const struct gz_device *base,
 	const struct gazepoint_device *device = (const struct gazepoint_device *)base;
 	*out_counters = (struct gz_device_counters) {
 		.lost = device->lost,
-		.clock = gz_clock_model_status(&device->clock, device->tick),
+		.clock = device->by_ticks ? gz_clock_ticks_status(&device->ticks)
+					  : gz_clock_model_status(&device->clock, device->tick),
 	};
 	memcpy(out_counters->malformed, device->malformed, sizeof out_counters->malformed);
 }
@@ -415,6 +478,7 @@ static enum gz_result gazepoint_create(const void *settings, const struct gz_dri
 	device->base = (struct gz_device) { .ops = &gazepoint_ops, .log = host->log };
 	device->fd = -1;
 	device->info = (struct gz_device_info) { .name = "Gazepoint" };
+	gz_clock_ticks_init(&device->ticks, TICK_BITS, 0);
 	device->arrival_ns = gz_clock_now_ns();
 	enum gz_result result = gz_gazepoint_xml_create(&device->xml);
 	if (result == GZ_OK)

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "base/clock.h"
 #include "base/number.h"
 
 char *gz_gazepoint_framer_room(struct gz_gazepoint_framer *framer, size_t *out_size)
@@ -277,14 +276,4 @@ int64_t gz_gazepoint_frequency_hz(long long sent)
 	if (believable((double)sent))
 		return sent;
 	return believable(bits) ? llround(bits) : 0;
-}
-
-bool gz_gazepoint_tick_ns(long long tick, int64_t frequency_hz, int64_t *out_ns)
-{
-	/* Neither product overflows: the rest is below 9e9. */
-	long long seconds = tick / frequency_hz, rest = tick % frequency_hz;
-	if (seconds > 9000000000 || seconds < -9000000000)
-		return false;
-	*out_ns = seconds * GZ_NS_PER_S + rest * GZ_NS_PER_S / frequency_hz;
-	return true;
 }

@@ -116,13 +116,4 @@ enum gz_result gz_gazepoint_parse(struct gz_gazepoint_xml *xml, const char *reco
  */
 int64_t gz_gazepoint_frequency_hz(long long sent);
 
-/**
- * @p tick as nanoseconds.
- *
- * @param frequency_hz  as gz_gazepoint_frequency_hz() says, not 0
- * @param[out] out_ns   written only on true
- * @return whether it fits
- */
-bool gz_gazepoint_tick_ns(long long tick, int64_t frequency_hz, int64_t *out_ns);
-
 #endif

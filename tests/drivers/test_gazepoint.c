@@ -237,6 +237,20 @@ static void without_ticks_the_time_counts_and_without_time_the_arrival(void **st
 	end(device);
 }
 
+static void ticks_of_no_stated_frequency_are_not_device_time_until_it_is_found_out(void **state)
+{
+	(void)state;
+	static const char script[] = REC("1", "TIME_TICK=\"77\" ") REC("2", "TIME_TICK=\"78\" ");
+	struct gz_device_counters counters;
+	struct gz_device *device = begin(
+		&(struct gazepoint_play) { .script = script, .refuses = "TIME_TICK_FREQUENCY" });
+	for (int i = 0; i < 2; i++)
+		assert_true(read_one(device).device_ns == GZ_NO_DEVICE_TIME);
+	gz_device_get_counters(device, &counters);
+	assert_int_equal(counters.clock.tick, GZ_CLOCK_NONE);
+	end(device);
+}
+
 static void frequency_that_cannot_be_is_not_believed(void **state)
 {
 	(void)state;
@@ -360,6 +374,8 @@ int main(void)
 		cmocka_unit_test(record_without_end_is_bounded_and_keeps_to_the_timeout),
 		cmocka_unit_test(counter_that_runs_backwards_begins_anew),
 		cmocka_unit_test(without_ticks_the_time_counts_and_without_time_the_arrival),
+		cmocka_unit_test(
+			ticks_of_no_stated_frequency_are_not_device_time_until_it_is_found_out),
 		cmocka_unit_test(frequency_that_cannot_be_is_not_believed),
 		cmocka_unit_test(what_an_older_version_refuses_is_done_without),
 		cmocka_unit_test(server_that_refuses_data_is_no_device),

@@ -192,22 +192,6 @@ static void frequency_may_be_the_bits_of_a_double(void **state)
 	assert_true(gz_gazepoint_frequency_hz(INT64_MAX) == 0);
 }
 
-static void ticks_become_nanoseconds_without_overflow(void **state)
-{
-	(void)state;
-	int64_t ns = 0;
-	assert_true(gz_gazepoint_tick_ns(25000001, 10000000, &ns));
-	assert_true(ns == 2500000100);
-	assert_true(gz_gazepoint_tick_ns(-25000001, 10000000, &ns));
-	assert_true(ns == -2500000100);
-	assert_true(gz_gazepoint_tick_ns(INT64_MAX, 9000000000, &ns));
-	assert_true(ns == 1024819115206086200);
-	ns = 5;
-	assert_false(gz_gazepoint_tick_ns(INT64_MAX, 1000, &ns));
-	assert_false(gz_gazepoint_tick_ns(INT64_MIN, 1000, &ns));
-	assert_true(ns == 5);
-}
-
 /* Feeds @p size bytes in pieces of @p piece and tells what comes out, a letter for each result. */
 static void frame(const char *bytes, size_t size, size_t piece, char *out, size_t out_size)
 {
@@ -295,7 +279,6 @@ int main(void)
 		cmocka_unit_test(one_bad_record_does_not_harm_the_next),
 		cmocka_unit_test(memory_suffices_for_the_longest_record),
 		cmocka_unit_test(frequency_may_be_the_bits_of_a_double),
-		cmocka_unit_test(ticks_become_nanoseconds_without_overflow),
 		cmocka_unit_test(records_come_out_however_they_arrive),
 		cmocka_unit_test(records_that_are_too_long_are_told_once_and_skipped),
 	};
