@@ -119,6 +119,11 @@ static int take_value(void *user, const char *section, const char *name, const c
 		refuse_line(pass, "a value before the first section; begin with [section]");
 		return 0;
 	}
+	/* inih sees a comment behind a blank alone: "name =; text" would be a value. */
+	if (value[0] == ';') {
+		refuse_line(pass, "a value that begins with ';'; put a blank before a comment");
+		return 0;
+	}
 	snprintf(key, sizeof key, "%s.%s", section, name);
 	if (pass->wanted) {
 		if (strcmp(key, pass->wanted) == 0)

@@ -131,14 +131,31 @@ static enum gz_result check_display(const struct check *check)
 		      mm[0], mm[1], px[0], px[1]);
 }
 
+/* The line of the file that gives the pipeline's setting @p key, where the command line does not;
+ * else 0. */
+static int pipeline_line(const struct gz_config *config, const char *key)
+{
+	for (size_t i = 0; i < gz_pipeline_option_count; i++) {
+		if (strcmp(gz_pipeline_options[i].key, key) == 0 && config->pipeline_given[i])
+			return 0;
+	}
+	return config->file_read[0] ? gz_options_file_line(config->file_read, key) : 0;
+}
+
 static enum gz_result check_pipeline(const struct check *check)
 {
 	char message[256];
-	enum gz_result result =
-		gz_pipeline_check_params(&check->config->pipeline, message, sizeof message);
-	if (result != GZ_OK)
+	const struct gz_config *config = check->config;
+	if (gz_pipeline_check_params(&config->pipeline, message, sizeof message) == GZ_OK)
+		return GZ_OK;
+	int line = pipeline_line(config, "pipeline.correction.x");
+	if (line == 0)
+		line = pipeline_line(config, "pipeline.correction.y");
+	if (line > 0)
+		gz_err(check->log, "%s:%d: %s", config->file_read, line, message);
+	else
 		gz_err(check->log, "%s", message);
-	return result == GZ_OK ? GZ_OK : GZ_ERR_INVAL;
+	return GZ_ERR_INVAL;
 }
 
 /* The host of "tcp://HOST:PORT" and where its port begins; NULL if it is something else. */

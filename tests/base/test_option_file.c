@@ -66,6 +66,8 @@ static const char *const refusals[][2] = {
 	  "gz.conf:2: filter.smoothing: nan is not a number; allowed: 0.1 to 100" },
 	{ "[filter]\nsmoothing = 1 # no\n",
 	  "gz.conf:2: filter.smoothing: unexpected \"# no\" after 1 number" },
+	{ "[publish]\nname =; none\n",
+	  "gz.conf:2: a value that begins with ';'; put a blank before a comment" },
 	{ "[filter]\nsmoothing =\n", "gz.conf:2: filter.smoothing: 0 of 1 numbers given; give 1" },
 	{ "[filter]\nsmothing = 1\n",
 	  "gz.conf:2: filter.smothing: unknown key; did you mean filter.smoothing?" },

@@ -122,6 +122,7 @@ static void config_contradictions_in_a_file_are_told_with_file_and_line(void **s
 		{ "[display]\nmm = 0 300\n", ":2: display.mm: 0 300 is half a display" },
 		{ "[display]\npx = 1920x1080\nmm = 300 530\n", ":3: display.mm: 300 x 530 mm" },
 		{ "[stream]\nsurfaces = x x\n", ":2: stream.surfaces: x is there twice" },
+		{ "[pipeline]\ncorrection.y = 0 1 0\n", ":2: pipeline.correction: x and y" },
 		{ "[tracker]\ndriver = eyes\n", ":2: tracker.driver: no driver eyes" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
