@@ -15,6 +15,7 @@ pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 # msgpack-c is "msgpack" up to version 4 and "msgpack-c" from 5 on.
 pkg_search_module(MSGPACK REQUIRED IMPORTED_TARGET msgpack-c msgpack)
 if(BUILD_TESTING)
+	pkg_check_modules(UMOCKDEV REQUIRED IMPORTED_TARGET umockdev-1.0)
 	pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
 endif()
 

@@ -14,16 +14,55 @@ static hid_device *device_of(struct gz_hid_port *port)
 	return (hid_device *)port;
 }
 
-/* A name from a device: what is not printable ASCII, and would not fit a log or a terminal, becomes
- * a question mark; blanks at its end go. */
+static const char *node_of(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+/* A name comes from the device. What is not printable ASCII, and would not fit a log or a terminal,
+ * becomes a question mark; blanks at its end go. */
+static void put(char name[GZ_NAME_SIZE], size_t at, char c)
+{
+	name[at] = c >= ' ' && c <= '~' ? c : '?';
+}
+
+static void end(char name[GZ_NAME_SIZE], size_t n)
+{
+	while (n > 0 && name[n - 1] == ' ')
+		n--;
+	name[n] = '\0';
+}
+
+/* Names from hidapi, which has none where the locale cannot hold it. */
 static void copy_name(const wchar_t *wide, char name[GZ_NAME_SIZE])
 {
 	size_t n = 0;
 	for (; wide && wide[n] && n < GZ_NAME_SIZE - 1; n++)
-		name[n] = wide[n] >= L' ' && wide[n] <= L'~' ? (char)wide[n] : '?';
-	while (n > 0 && name[n - 1] == ' ')
-		n--;
-	name[n] = '\0';
+		put(name, n, wide[n] > 0 && wide[n] < 0x80 ? (char)wide[n] : '?');
+	end(name, n);
+}
+
+/* And from the kernel: "HID_NAME=...", maker and product. */
+static void copy_kernel_name(const char *path, char name[GZ_NAME_SIZE])
+{
+	static const char key[] = "HID_NAME=";
+	char file[128], text[1024] = "";
+	size_t n = 0;
+	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/uevent", node_of(path));
+	int fd = open(file, O_RDONLY | O_CLOEXEC);
+	ssize_t size = fd >= 0 ? read(fd, text, sizeof text - 1) : 0;
+	if (fd >= 0)
+		close(fd);
+	text[size > 0 ? size : 0] = '\0';
+	const char *line = strstr(text, key);
+	if (!line)
+		return;
+	const char *value = line + sizeof key - 1;
+	size_t length = strcspn(value, "\n");
+	for (; n < length && n < GZ_NAME_SIZE - 1; n++)
+		put(name, n, value[n]);
+	end(name, n);
 }
 
 static bool is_listed(const struct gz_hid_port_entry *entries, size_t count, const char *path)
@@ -53,6 +92,8 @@ size_t gz_hid_port_list(struct gz_hid_port_entry *out_entries)
 		copy_name(info->product_string, entry->name);
 		copy_name(info->serial_number, entry->serial);
 		if (!entry->name[0])
+			copy_kernel_name(info->path, entry->name);
+		if (!entry->name[0])
 			snprintf(entry->name, sizeof entry->name, "%04x:%04x", info->vendor_id,
 				 info->product_id);
 	}
@@ -63,9 +104,7 @@ size_t gz_hid_port_list(struct gz_hid_port_entry *out_entries)
 enum gz_result gz_hid_port_descriptor(const char *path, unsigned char *out_bytes, size_t *out_size)
 {
 	char file[128];
-	const char *node = strrchr(path, '/');
-	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/report_descriptor",
-		 node ? node + 1 : path);
+	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/report_descriptor", node_of(path));
 	int fd = open(file, O_RDONLY | O_CLOEXEC);
 	if (fd < 0)
 		return GZ_ERR_NO_DEVICE;
