@@ -15,7 +15,7 @@
 /* Descriptors as FunctionFS takes them: a header, then those of full and of high speed. */
 static size_t lay_out(const struct functionfs_descriptors *descriptors, uint8_t *out, size_t room)
 {
-	uint32_t flags = FUNCTIONFS_HAS_FS_DESC | FUNCTIONFS_HAS_HS_DESC | descriptors->flags;
+	uint32_t flags = FUNCTIONFS_HAS_FS_DESC | FUNCTIONFS_HAS_HS_DESC;
 	struct usb_functionfs_descs_head_v2 head = {
 		.magic = FUNCTIONFS_DESCRIPTORS_MAGIC_V2,
 		.flags = flags,
@@ -66,24 +66,6 @@ static void answer(struct functionfs *function, const struct usb_ctrlrequest *re
 		function->calls->set(function->player, request, bytes, (size_t)size);
 }
 
-static void take_event(struct functionfs *function, const struct usb_functionfs_event *event)
-{
-	switch (event->type) {
-	case FUNCTIONFS_ENABLE:
-		function->enabled = true;
-		break;
-	case FUNCTIONFS_DISABLE:
-	case FUNCTIONFS_UNBIND:
-		function->enabled = false;
-		break;
-	case FUNCTIONFS_SETUP:
-		answer(function, &event->u.setup);
-		break;
-	default:
-		break;
-	}
-}
-
 static void *play(void *argument)
 {
 	struct functionfs *function = argument;
@@ -93,10 +75,8 @@ static void *play(void *argument)
 		if (poll(&ready, 1, 20) <= 0)
 			continue;
 		ssize_t size = read(function->control, &event, sizeof event);
-		if (size == (ssize_t)sizeof event)
-			take_event(function, &event);
-		else if (size < 0 && errno != EAGAIN && errno != EINTR && errno != EIDRM)
-			function->error = errno;
+		if (size == (ssize_t)sizeof event && event.type == FUNCTIONFS_SETUP)
+			answer(function, &event.u.setup);
 	}
 	return NULL;
 }

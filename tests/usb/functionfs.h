@@ -39,14 +39,11 @@ struct functionfs {
 	pthread_t thread;
 	bool running;
 	atomic_bool stop;
-	_Atomic int error;   /**< errno of what went wrong on the thread; 0 */
-	atomic_bool enabled; /**< the host has configured the device */
-	bool refuses_data;   /**< control transfers by which the host sends something are stalled */
+	bool refuses_data; /**< control transfers by which the host sends something are stalled */
 };
 
 /** What a function is made of. */
 struct functionfs_descriptors {
-	uint32_t flags;    /**< FUNCTIONFS_ALL_CTRL_RECIP …, or 0 */
 	const void *bytes; /**< interface and endpoint descriptors, the same at every speed */
 	size_t size;
 	uint32_t count; /**< descriptors in @p bytes */

@@ -150,12 +150,12 @@ static void start_function(struct hid_function *tracker, const char *serial)
 	functionfs_start(&tracker->function, &tracker->gadget, serial, &descriptors);
 }
 
-static bool send_sample(void *argument, const struct made_sample *sample)
+static void send_sample(void *argument, const struct made_sample *sample)
 {
 	struct hid_function *tracker = argument;
 	uint8_t report[HID_REPORT_MAX] = { 0 };
 	hid_layout_reference.encode(sample, report);
-	return functionfs_send(&tracker->function, report, hid_layout_reference.report_size);
+	functionfs_send(&tracker->function, report, hid_layout_reference.report_size);
 }
 
 void hid_function_plug(struct hid_function *tracker, int controller, const char *name,

@@ -27,12 +27,14 @@ static int open_node(const char *folder)
 	return fd;
 }
 
-static bool send_sample(void *argument, const struct made_sample *sample)
+static void send_sample(void *argument, const struct made_sample *sample)
 {
 	struct hid_gadget *tracker = argument;
 	uint8_t report[HID_REPORT_MAX] = { 0 };
 	tracker->layout->encode(sample, report);
-	return write(tracker->fd, report, tracker->layout->report_size) > 0;
+	/* Refused while the one before still waits for the host. */
+	ssize_t ignored = write(tracker->fd, report, tracker->layout->report_size);
+	(void)ignored;
 }
 
 void hid_gadget_plug(struct hid_gadget *tracker, int controller, const struct hid_layout *layout,

@@ -221,43 +221,26 @@ static void encode_point(const struct made_sample *sample, uint8_t *report)
 #define DESCRIPTOR(bytes) .descriptor = (bytes), .descriptor_size = sizeof(bytes)
 
 const struct hid_layout hid_layout_reference = {
-	.name = "reference",
-	DESCRIPTOR(reference_descriptor),
-	.report_size = 65,
-	.device_tick_us = 1,
-	.has_eyes = true,
+	DESCRIPTOR(reference_descriptor), .report_size = 65, .device_tick_us = 1, .has_eyes = true,
 	.encode = encode_reference,
 };
 
 const struct hid_layout hid_layout_padded = {
-	.name = "padded",
-	DESCRIPTOR(padded_descriptor),
-	.report_size = 48,
-	.device_tick_us = 1,
-	.has_eyes = true,
+	DESCRIPTOR(padded_descriptor), .report_size = 48, .device_tick_us = 1, .has_eyes = true,
 	.encode = encode_padded,
 };
 
 const struct hid_layout hid_layout_wide = {
-	.name = "wide timestamp",
-	DESCRIPTOR(wide_descriptor),
-	.report_size = 41,
-	.device_tick_us = 0.1,
-	.has_eyes = true,
+	DESCRIPTOR(wide_descriptor), .report_size = 41, .device_tick_us = 0.1, .has_eyes = true,
 	.encode = encode_wide,
 };
 
 const struct hid_layout hid_layout_coarse = {
-	.name = "coarse",
-	DESCRIPTOR(coarse_descriptor),
-	.report_size = 21,
-	.device_tick_us = 1000,
-	.has_eyes = true,
+	DESCRIPTOR(coarse_descriptor), .report_size = 21, .device_tick_us = 1000, .has_eyes = true,
 	.encode = encode_coarse,
 };
 
 const struct hid_layout hid_layout_point = {
-	.name = "point only",
 	DESCRIPTOR(point_descriptor),
 	.report_size = 8,
 	.encode = encode_point,

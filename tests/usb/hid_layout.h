@@ -28,7 +28,6 @@
 
 /** One maker's idea. */
 struct hid_layout {
-	const char *name;
 	const uint8_t *descriptor;
 	size_t descriptor_size;
 	size_t report_size;    /**< of the input report, with its ID */

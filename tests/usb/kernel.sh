@@ -14,6 +14,11 @@ skip() {
 	exit 77
 }
 
+# reason: what apt says is wrong, in one line.
+reason() {
+	grep -m 1 -E '^(W|E): Failed|^E:' "$folder/apt.log" || tail -n 1 "$folder/apt.log"
+}
+
 # The lists of this system may be missing or old: the second try uses lists of our own.
 private=(-o "Dir::State::Lists=$folder/apt/lists" -o "Dir::Cache=$folder/apt/cache"
 	-o APT::Sandbox::User= -o Debug::NoLocking=1)
@@ -33,8 +38,8 @@ done
 rm -rf "$folder"
 mkdir -p "$folder/apt/lists/partial" "$folder/apt/cache/archives/partial"
 if ! download -o APT::Sandbox::User=; then
-	apt-get "${private[@]}" update >"$folder/apt.log" 2>&1 && download "${private[@]}" ||
-		skip "the kernel behind $meta cannot be downloaded: $(tail -n 1 "$folder/apt.log")"
+	apt-get "${private[@]}" --error-on=any update >"$folder/apt.log" 2>&1 && download "${private[@]}" ||
+		skip "the kernel behind $meta cannot be downloaded: $(reason)"
 fi
 dpkg-deb --fsys-tarfile "$folder"/linux-image-*.deb | tar -x -C "$folder" --wildcards \
 	'./boot/vmlinuz-*' './lib/modules/*/modules.*' './lib/modules/*/kernel/drivers/usb/*' \

@@ -75,6 +75,6 @@ void lab_wait_state(struct lab *lab, enum gz_tracker_state state);
 void lab_wait_malformed(struct lab *lab, enum gz_malformed kind, uint64_t count);
 
 /** What `gazectl devices` prints; as LAB_USER or as root; static buffer. */
-const char *lab_devices(const struct lab *lab, bool as_user);
+const char *lab_devices(bool as_user);
 
 #endif

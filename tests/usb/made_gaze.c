@@ -50,10 +50,7 @@ static void *run(void *argument)
 		}
 		next = number + 1;
 		struct made_sample sample = made_gaze(number);
-		if (stream->send(stream->tracker, &sample))
-			stream->sent++;
-		else
-			stream->refused++;
+		stream->send(stream->tracker, &sample);
 	}
 	return NULL;
 }

@@ -39,15 +39,13 @@ struct made_sample made_gaze_at(int64_t device_ns);
  *  the host is suspended or the stream stopped; what is due then is never sent. Zero-initialised is
  *  none. */
 struct made_stream {
-	/** Called with each sample that is due. @return whether it went out */
-	bool (*send)(void *tracker, const struct made_sample *sample);
+	/** Called with each sample that is due; one that does not go out is lost. */
+	void (*send)(void *tracker, const struct made_sample *sample);
 	void *tracker;
 	pthread_t thread;
 	bool running;
 	atomic_bool stop;
 	_Atomic int64_t start_us; /**< CLOCK_BOOTTIME at which sample 0 was due */
-	_Atomic uint64_t sent;
-	_Atomic uint64_t refused; /**< samples that did not go out */
 };
 
 /** Begin, or go on. */

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -191,6 +192,17 @@ static void answer_in(struct psvr2_gadget *headset, const struct usb_ctrlrequest
 			     size < request->wLength ? (size_t)size : request->wLength);
 }
 
+/* The data may still be on their way. */
+static ssize_t read_data(struct psvr2_gadget *headset, uint8_t *bytes, size_t wanted)
+{
+	const struct timespec pause = { .tv_nsec = 200000 };
+	ssize_t size;
+	while ((size = read(headset->control, bytes, wanted)) < 0 && errno == EAGAIN &&
+	       !headset->stop)
+		nanosleep(&pause, NULL);
+	return size;
+}
+
 static void answer_out(struct psvr2_gadget *headset, const struct usb_ctrlrequest *request)
 {
 	uint8_t bytes[CONTROL_MAX] = { 0 };
@@ -198,7 +210,7 @@ static void answer_out(struct psvr2_gadget *headset, const struct usb_ctrlreques
 	bool vendors = (request->bRequestType & USB_TYPE_MASK) == USB_TYPE_VENDOR;
 	if (!vendors && request->bRequest == USB_REQ_SET_CONFIGURATION && headset->endpoint < 0)
 		open_endpoint(headset);
-	ssize_t size = read(headset->control, bytes, wanted);
+	ssize_t size = read_data(headset, bytes, wanted);
 	if (vendors)
 		note_request(headset, request, bytes, size);
 }
@@ -291,15 +303,15 @@ bool psvr2_gadget_send(struct psvr2_gadget *headset, const void *packet, size_t 
 	return fd >= 0 && write(fd, packet, size) == (ssize_t)size;
 }
 
-static bool send_sample(void *argument, const struct made_sample *sample)
+static void send_sample(void *argument, const struct made_sample *sample)
 {
 	struct psvr2_gadget *headset = argument;
 	uint8_t packet[PSVR2_PACKET_SIZE];
 	int64_t on_ns = headset->on_ns;
 	if (on_ns == 0 || gz_clock_now_ns() - on_ns > ON_NS)
-		return false;
+		return;
 	psvr2_gadget_encode(headset, sample, packet);
-	return psvr2_gadget_send(headset, packet, sizeof packet);
+	psvr2_gadget_send(headset, packet, sizeof packet);
 }
 
 void psvr2_gadget_plug(struct psvr2_gadget *headset, const char *serial)

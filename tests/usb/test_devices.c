@@ -85,7 +85,7 @@ static const char *listed(const char *text, const char *name)
 
 static void expect_listed(const char *name, const char *what, bool as_user)
 {
-	const char *lines = listed(lab_devices(&lab, as_user), name);
+	const char *lines = listed(lab_devices(as_user), name);
 	if (!strstr(lines, what))
 		fail_msg("\"%s\" is not said of %s:\n%s", what, name, lines);
 }
