@@ -8,7 +8,7 @@
  * is the Bayes factor (Kass and Raftery, "Bayes factors", Journal of the American Statistical
  * Association 90, 1995). It is bounded, since a fixation may slip, by a small saccade that was not
  * noticed or by the tracker, and what is followed may stand still; but not where the eye went
- * farther than any fixation slips.
+ * farther than any fixation slips, and less where it hardly went anywhere.
  *
  * Its prior odds come from what the eye did between the saccades before, by a Markov chain with a
  * step at each saccade (forward algorithm: Rabiner, "A tutorial on hidden Markov models", Proc.
@@ -103,7 +103,9 @@ static struct factors bayes_factors(const struct gz_classify_state *state,
 	double bounded = fmax(1 / max, fmin(factor, max));
 	/* Not the whole densities: that slips lie wide apart makes none of them a pursuit. */
 	double sure = faded(way_deg, following) / faded(way_deg, slipping);
-	return (struct factors) { fmin(fmax(bounded, sure), FACTOR_MAX), bounded };
+	double here =
+		sure > max ? fmin(sure, FACTOR_MAX) : fmax(1 / (max * max), fmin(factor, max));
+	return (struct factors) { here, bounded };
 }
 
 static void scale(double belief[STATES])
