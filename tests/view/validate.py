@@ -194,10 +194,19 @@ class Validate(unittest.TestCase):
         self.check_recorded()
         self.check_forgotten()
 
+    def log(self, name):
+        """The lines of a recording, which may still be on its way to the disk."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            with open(os.path.join(self.place, name + ".gzl"), encoding="utf-8") as log:
+                lines = log.readlines()
+            if lines and lines[-1].startswith("#end"):
+                return lines
+            self.assertLess(time.monotonic(), deadline, "the recording has no end")
+
     def check_marks(self, targets):
         """A recording knows what was shown when."""
-        with open(os.path.join(self.place, "check.gzl"), encoding="utf-8") as log:
-            marks = [line.split("\t") for line in log if line.startswith("!mark")]
+        marks = [line.split("\t") for line in self.log("check") if line.startswith("!mark")]
         self.assertEqual(len(marks), len(targets), marks)
         for i, (mark, target) in enumerate(zip(marks, targets)):
             self.assertLess(abs(int(mark[1]) - target["shown_ns"]), 1000)
@@ -240,12 +249,11 @@ class Validate(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("recording", refused.stderr)
         self.assertEqual(run(GAZECTL, "stop", env=self.environment).returncode, 0)
-        with open(os.path.join(self.place, "r.gzl"), encoding="utf-8") as log:
-            for axis in "xy":
-                line = next(l for l in log if l.startswith("#pipeline.correction." + axis))
-                written = [float(word) for word in line.split()[1:]]
-                for a, b in zip(written, correction[axis]):
-                    self.assertAlmostEqual(a, b, delta=1e-9)
+        for axis in "xy":
+            line = next(l for l in self.log("r") if l.startswith("#pipeline.correction." + axis))
+            written = [float(word) for word in line.split()[1:]]
+            for a, b in zip(written, correction[axis]):
+                self.assertAlmostEqual(a, b, delta=1e-9)
 
     def check_forgotten(self):
         done = self.validate("--forget")
@@ -348,7 +356,9 @@ class Validate(unittest.TestCase):
     def test_space_bar_brings_the_next_target(self):
         self.start_simulator()
         gazectl = self.start_validate("--advance=space", "--json")
+        deadline = time.monotonic() + 2 * PATIENCE_S
         while gazectl.poll() is None:
+            self.assertLess(time.monotonic(), deadline, "it does not end")
             if run("xdotool", "key", "space", env=self.environment).returncode != 0:
                 break
             time.sleep(0.2)  # a person who presses the key again and again
@@ -386,6 +396,7 @@ class Validate(unittest.TestCase):
         done = run(GAZECTL, "watch", "gaze", "--count", "800", env=self.environment)
         self.assertEqual(done.returncode, 0)
         self.assertEqual(run(GAZECTL, "stop", env=self.environment).returncode, 0)
+        self.log("r")
         self.stop_daemon()
         log = os.path.join(self.place, "r.gzl")
         self.start_daemon("--driver=replay", "--replay.file", log)
