@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "client/convert/recording_format.h"
+#include "client/gazectl/convert/recording_format.h"
 #include "tests/base/captured_log.h"
 
 enum { RECORDS_MAX = 32 };

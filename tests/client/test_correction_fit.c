@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "client/correction_fit.h"
+#include "client/gazectl/validate/correction_fit.h"
 
 #define CHECK_NEAR(got, wanted, within)                                          \
 	do {                                                                     \

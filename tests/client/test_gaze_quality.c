@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "client/gaze_quality.h"
+#include "client/gazectl/validate/gaze_quality.h"
 
 #define CHECK_NEAR(got, wanted, within)                                          \
 	do {                                                                     \

@@ -1,6 +1,6 @@
 #include "check.h"
 
-#include "client/json.h"
+#include "client/gazectl/json.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "check.h"
 
-#include "client/log_summary.h"
+#include "client/gazectl/inspect/log_summary.h"
 #include "log_text.h"
 
 #include <math.h>

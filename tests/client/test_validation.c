@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "client/validation.h"
-#include "client/viewer_process.h"
+#include "client/gazectl/validate/validation.h"
+#include "client/gazectl/validate/viewer_process.h"
 
 #define MS INT64_C(1000000)
 

@@ -10,7 +10,7 @@
 #include <zlib.h>
 
 #include "base/clock.h"
-#include "client/convert/recording_format.h"
+#include "client/gazectl/convert/recording_format.h"
 #include "filter/pipeline.h"
 #include "tests/base/captured_log.h"
 

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "client/convert/recording_format.h"
+#include "client/gazectl/convert/recording_format.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "client/viewer_process.h"
+#include "client/gazectl/validate/viewer_process.h"
 #include "protocol/correction_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -1,0 +1,262 @@
+/* gazectl convert: recordings of other programs to gaze logs, and gaze logs to theirs. */
+#include "client/gazectl/gazectl.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "client/gazectl/convert/recording_format.h"
+
+#define GZ_LOG_MODULE "gazectl"
+
+struct convert_settings {
+	struct gazectl_common common;
+	char from[16];
+	char to[16];
+	bool force;
+	int display_px[2];
+	double display_mm[2];
+	double distance_mm;
+	double rate_hz;
+};
+
+#define AT(field) offsetof(struct convert_settings, field)
+
+static const struct gz_option convert_options[] = {
+	GAZECTL_HELP_OPTION,
+	{ "from", GZ_OPTION_STRING, AT(from), 0, 16, 0, NULL, "",
+	  "gzl, pupil, eyelink or tobii; empty: as the file looks" },
+	{ "to", GZ_OPTION_STRING, AT(to), 0, 16, 0, NULL, "",
+	  "gzl, csv or bids; empty: as OUTPUT ends" },
+	{ "force", GZ_OPTION_BOOL, AT(force), 0, 0, 0, NULL, "false",
+	  "replace files that are there" },
+	{ "display.px", GZ_OPTION_SIZE, AT(display_px), 0, GZ_DISPLAY_SIDE_MAX_PX, 0, NULL, "0x0",
+	  "the display, pixels; 0x0: as the file says" },
+	{ "display.mm", GZ_OPTION_DOUBLE, AT(display_mm), 0, 100000, 2, NULL, "0 0",
+	  "its width and height, mm; 0 0: as the file says" },
+	{ "display.distance_mm", GZ_OPTION_DOUBLE, AT(distance_mm), 0, 100000, 0, NULL, "0",
+	  "from the eyes to its centre, mm; 0: as the file says" },
+	{ "rate-hz", GZ_OPTION_DOUBLE, AT(rate_hz), 0, 100000, 0, NULL, "0",
+	  "the tracker's nominal rate, Hz; 0: as the file says" },
+};
+
+/* One conversion. */
+struct conversion {
+	const struct convert_settings *settings;
+	const char *input;
+	const struct gz_log *log;
+	struct gz_recording_sink sink;
+	struct gz_convert_counts counts;
+	uint64_t gaps, marks;
+	bool damaged; /* a gaze log that is cut or corrupted */
+};
+
+static enum gz_result pass_header(void *user, const struct gz_gaze_log_header *header)
+{
+	struct conversion *conversion = user;
+	return conversion->sink.header(conversion->sink.user, header);
+}
+
+static enum gz_result pass_record(void *user, const struct gz_gaze_log_record *record)
+{
+	struct conversion *conversion = user;
+	conversion->gaps += record->kind == GZ_GAZE_LOG_GAP;
+	conversion->marks += record->kind == GZ_GAZE_LOG_MARK;
+	return conversion->sink.record(conversion->sink.user, record);
+}
+
+/* What the command line says of the display comes before what a gaze log says. */
+static struct gz_gaze_log_header adjusted(const struct gz_gaze_log_header *read,
+					  const struct convert_settings *settings)
+{
+	struct gz_gaze_log_header header = *read;
+	if (settings->display_px[0] > 0 && settings->display_px[1] > 0)
+		memcpy(header.display.px, settings->display_px, sizeof header.display.px);
+	if (settings->display_mm[0] > 0 && settings->display_mm[1] > 0)
+		memcpy(header.display.mm, settings->display_mm, sizeof header.display.mm);
+	if (settings->distance_mm > 0)
+		header.display.distance_mm = settings->distance_mm;
+	if (settings->rate_hz > 0)
+		header.rate_hz = settings->rate_hz;
+	header.has_display = gz_display_valid(&header.display);
+	return header;
+}
+
+static enum gz_result read_gzl(struct conversion *conversion)
+{
+	struct gz_gaze_log_reader *reader = NULL;
+	struct gz_gaze_log_record record;
+	enum gz_result result = gz_gaze_log_open(conversion->input, conversion->log, &reader);
+	if (result != GZ_OK)
+		return result;
+	struct gz_gaze_log_header header =
+		adjusted(gz_gaze_log_header(reader), conversion->settings);
+	result = pass_header(conversion, &header);
+	while (result == GZ_OK) {
+		result = gz_gaze_log_read(reader, &record);
+		if (result == GZ_OK) {
+			conversion->counts.samples += record.kind == GZ_GAZE_LOG_SAMPLE;
+			result = pass_record(conversion, &record);
+		} else if (result == GZ_ERR_FORMAT) {
+			conversion->counts.skipped++;
+			result = GZ_OK;
+		}
+	}
+	conversion->damaged = gz_gaze_log_ending(reader) != GZ_GAZE_LOG_WHOLE;
+	gz_gaze_log_close(&reader);
+	return result == GZ_ERR_END ? GZ_OK : result;
+}
+
+static enum gz_result read_foreign(struct conversion *conversion, struct gz_text_lines *lines,
+				   const struct gz_recording_reader *reader)
+{
+	const struct convert_settings *given = conversion->settings;
+	const char *slash = strrchr(conversion->input, '/');
+	const struct gz_convert_settings settings = {
+		.display_px = { given->display_px[0], given->display_px[1] },
+		.display_mm = { given->display_mm[0], given->display_mm[1] },
+		.distance_mm = given->distance_mm,
+		.rate_hz = given->rate_hz,
+		.name = slash ? slash + 1 : conversion->input,
+		.log = conversion->log,
+	};
+	const struct gz_recording_sink sink = { conversion, pass_header, pass_record };
+	enum gz_result result = reader->read(lines, &settings, &sink, &conversion->counts);
+	if (result == GZ_ERR_IO && conversion->counts.samples == 0)
+		gz_err(conversion->log, "%s cannot be read", conversion->input);
+	return result;
+}
+
+/* The reader that --from names, or that the first line with text on it shows. NULL stands for a
+ * gaze log, as does false for none. */
+static bool choose_reader(const struct conversion *conversion, struct gz_text_lines *lines,
+			  const struct gz_recording_reader **out_reader)
+{
+	const char *from = conversion->settings->from;
+	char *line;
+	*out_reader = NULL;
+	if (strcmp(from, "gzl") == 0)
+		return true;
+	if (from[0]) {
+		*out_reader = gz_recording_reader_find(from);
+		if (!*out_reader)
+			gz_err(conversion->log,
+			       "--from %s: no such format; allowed: gzl, pupil, eyelink, tobii",
+			       from);
+		return *out_reader != NULL;
+	}
+	enum gz_result result;
+	do
+		result = gz_text_lines_next(lines, &line);
+	while (result == GZ_OK && !line[0]);
+	if (result == GZ_OK) {
+		gz_text_lines_again(lines);
+		if (gz_text_begins(line, "#gazecast-log"))
+			return true;
+		*out_reader = gz_recording_reader_recognise(line);
+		if (*out_reader)
+			return true;
+	}
+	gz_err(conversion->log,
+	       "%s looks like no recording that is known; say which with --from pupil, eyelink, "
+	       "tobii or gzl",
+	       conversion->input);
+	return false;
+}
+
+static enum gz_result read_input(struct conversion *conversion)
+{
+	struct gz_text_lines *lines = NULL;
+	const struct gz_recording_reader *reader;
+	enum gz_result result = gz_text_lines_open(conversion->input, &lines);
+	if (result != GZ_OK) {
+		gz_err(conversion->log, "%s: %s", conversion->input, gz_result_text(result));
+		return result;
+	}
+	if (!choose_reader(conversion, lines, &reader))
+		result = GZ_ERR_FORMAT;
+	else if (reader)
+		result = read_foreign(conversion, lines, reader);
+	else
+		result = read_gzl(conversion);
+	gz_text_lines_close(&lines);
+	return result;
+}
+
+static const struct gz_recording_writer *choose_writer(const char *to, const char *output,
+						       const struct gz_log *log)
+{
+	const struct gz_recording_writer *writer =
+		to[0] ? gz_recording_writer_find(to) : gz_recording_writer_of(output);
+	if (!writer && to[0])
+		gz_err(log, "--to %s: no such format; allowed: gzl, csv, bids", to);
+	else if (!writer)
+		gz_err(log,
+		       "%s: which format? End it in .gzl, .csv or _physio.tsv.gz, or give --to",
+		       output);
+	return writer;
+}
+
+static void report(const struct conversion *conversion, const char *output)
+{
+	printf("%s: %" PRIu64 " samples, %" PRIu64 " gaps, %" PRIu64 " marks", output,
+	       conversion->counts.samples, conversion->gaps, conversion->marks);
+	if (conversion->counts.skipped)
+		printf("; %" PRIu64 " lines could not be read and were left out",
+		       conversion->counts.skipped);
+	putchar('\n');
+}
+
+static enum gazectl_exit convert(struct conversion *conversion, const char *output)
+{
+	const struct convert_settings *settings = conversion->settings;
+	const struct gz_recording_writer *writer =
+		choose_writer(settings->to, output, conversion->log);
+	if (!writer)
+		return GAZECTL_USAGE;
+	if (writer->open(output, settings->force, conversion->log, &conversion->sink) != GZ_OK)
+		return GAZECTL_USAGE;
+	enum gz_result result = read_input(conversion);
+	if (result == GZ_OK && conversion->counts.samples == 0) {
+		gz_err(conversion->log, "%s holds no sample", conversion->input);
+		result = GZ_ERR_FORMAT;
+	}
+	enum gz_result ended = writer->close(&conversion->sink, result == GZ_OK);
+	if (result != GZ_OK || ended != GZ_OK)
+		return GAZECTL_FAILED;
+	report(conversion, output);
+	return conversion->damaged ? GAZECTL_DAMAGED : GAZECTL_DONE;
+}
+
+static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+{
+	struct convert_settings settings;
+	struct gazectl_operands operands;
+	enum gazectl_exit status;
+	if (!gazectl_read_arguments(&gazectl_convert, argc, argv, log, &settings, &operands,
+				    &status))
+		return status;
+	if (operands.count < 2) {
+		gz_err(log, "from what to what? gazectl convert INPUT OUTPUT");
+		return GAZECTL_USAGE;
+	}
+	struct conversion conversion = { .settings = &settings,
+					 .input = operands.items[0],
+					 .log = log };
+	return convert(&conversion, operands.items[1]);
+}
+
+const struct gazectl_command gazectl_convert = {
+	.name = "convert",
+	.operands = "INPUT OUTPUT",
+	.operands_max = 2,
+	.summary = "convert recordings from and to gaze logs",
+	.details =
+		"Reads gaze logs, Pupil's gaze_positions.csv, EyeLink's .asc and Tobii's .tsv, "
+		"plain or gzip; writes\ngaze logs (.gzl), tables (.csv) and BIDS "
+		"(_physio.tsv.gz). Where a file does not tell its display,\ngive it: angles need "
+		"one.\n",
+	.options = convert_options,
+	.option_count = sizeof convert_options / sizeof convert_options[0],
+	.run = run,
+};

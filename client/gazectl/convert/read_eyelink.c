@@ -1,0 +1,246 @@
+/* EyeLink recordings as edf2asc writes them (.asc), of gaze positions: SR Research's "EyeLink 1000
+ * User Manual", section "ASC file format". Sample lines are a time in ms and, for each eye that was
+ * tracked, left before right, x and y in pixels and the pupil's size in a unit of its own; what
+ * follows (velocities, resolution, head target, flags) is left out. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "client/gazectl/convert/recording_format.h"
+
+#define GZ_LOG_MODULE "eyelink"
+
+struct eyelink {
+	struct gz_text_lines *lines;
+	const struct gz_convert_settings *settings;
+	const struct gz_recording_sink *sink;
+	struct gz_convert_counts *counts;
+	bool eye[GZ_EYE_COUNT];
+	double rate_hz;
+	double rectangle_px[4]; /* left, top, right, bottom of the screen's pixels, inclusive */
+	bool has_rectangle;
+	bool sent_header;
+	bool recording; /* within a block */
+	double last_ms;
+	int same_ms; /* samples before this one that show the same whole millisecond */
+	uint64_t seq;
+	struct gz_gaze_log_record record; /* large */
+};
+
+static bool recognises(const char *line)
+{
+	return strncmp(line, "** CONVERTED FROM", 17) == 0 ||
+	       strncmp(line, "** VERSION: EYELINK", 19) == 0;
+}
+
+static int64_t ns_of_ms(double ms)
+{
+	return (int64_t)llround(ms * (double)GZ_NS_PER_MS);
+}
+
+static bool is_time_ms(double ms)
+{
+	return ms >= 0 && ms < 1e12;
+}
+
+static enum gz_result send_header(struct eyelink *eyelink)
+{
+	struct gz_convert_settings settings = *eyelink->settings;
+	if (eyelink->sent_header)
+		return GZ_OK;
+	eyelink->sent_header = true;
+	if (settings.rate_hz == 0)
+		settings.rate_hz = eyelink->rate_hz;
+	for (int i = 0; i < 2 && eyelink->has_rectangle; i++)
+		if (settings.display_px[i] == 0)
+			settings.display_px[i] =
+				(int)(eyelink->rectangle_px[2 + i] - eyelink->rectangle_px[i] + 1);
+	struct gz_gaze_log_header header = gz_recording_header(&settings, "EyeLink");
+	return eyelink->sink->header(eyelink->sink->user, &header);
+}
+
+static enum gz_result send(struct eyelink *eyelink)
+{
+	enum gz_result result = send_header(eyelink);
+	return result == GZ_OK ? eyelink->sink->record(eyelink->sink->user, &eyelink->record)
+			       : result;
+}
+
+/* "GAZE_COORDS <left> <top> <right> <bottom>", and the same of the display. */
+static void take_rectangle(struct eyelink *eyelink, const char *text)
+{
+	double r[4];
+	if (gz_text_begins(text, "GAZE_COORDS "))
+		text += strlen("GAZE_COORDS ");
+	else if (gz_text_begins(text, "DISPLAY_COORDS "))
+		text += strlen("DISPLAY_COORDS ");
+	else
+		return;
+	for (int i = 0; i < 4; i++)
+		if (!gz_text_take_number(&text, &r[i]) || fabs(r[i]) > GZ_DISPLAY_SIDE_MAX_PX)
+			return;
+	if (r[2] <= r[0] || r[3] <= r[1])
+		return;
+	memcpy(eyelink->rectangle_px, r, sizeof r);
+	eyelink->has_rectangle = true;
+}
+
+/* "MSG <time> <text>": screen coordinates, or a mark. */
+static enum gz_result take_message(struct eyelink *eyelink, const char *text)
+{
+	double ms;
+	if (!gz_text_take_number(&text, &ms) || !is_time_ms(ms))
+		return GZ_OK;
+	take_rectangle(eyelink, text);
+	/* What is said before the first sample waits for nothing: the header needs the rate. */
+	if (!eyelink->sent_header)
+		return GZ_OK;
+	eyelink->record.kind = GZ_GAZE_LOG_MARK;
+	eyelink->record.host_ns = ns_of_ms(ms);
+	gz_text_copy(eyelink->record.text, sizeof eyelink->record.text, text);
+	return send(eyelink);
+}
+
+/* "SAMPLES GAZE LEFT RIGHT … RATE 500.00 …" */
+static enum gz_result take_samples_line(struct eyelink *eyelink, char *line)
+{
+	struct gz_text_fields fields;
+	bool gaze = false;
+	eyelink->eye[GZ_EYE_LEFT] = eyelink->eye[GZ_EYE_RIGHT] = false;
+	gz_text_split(line, ' ', &fields);
+	for (size_t i = 1; i < fields.count; i++) {
+		const char *word = fields.field[i];
+		gaze |= strcmp(word, "GAZE") == 0;
+		eyelink->eye[GZ_EYE_LEFT] |= strcmp(word, "LEFT") == 0;
+		eyelink->eye[GZ_EYE_RIGHT] |= strcmp(word, "RIGHT") == 0;
+		double rate_hz = gz_text_field_number(&fields, i + 1);
+		if (strcmp(word, "RATE") == 0 && rate_hz > 0 && rate_hz <= 1e5)
+			eyelink->rate_hz = rate_hz;
+	}
+	if (gaze)
+		return GZ_OK;
+	gz_err(eyelink->settings->log,
+	       "%s:%llu: its samples are no gaze positions; convert it with edf2asc's gaze output",
+	       eyelink->settings->name, (unsigned long long)gz_text_lines_number(eyelink->lines));
+	return GZ_ERR_UNSUPPORTED;
+}
+
+static enum gz_result begin_block(struct eyelink *eyelink, const char *text)
+{
+	double ms;
+	bool first = !eyelink->sent_header;
+	if (!gz_text_take_number(&text, &ms) || !is_time_ms(ms))
+		ms = eyelink->last_ms;
+	eyelink->recording = true;
+	eyelink->last_ms = -1;
+	if (first)
+		return GZ_OK;
+	eyelink->record.kind = GZ_GAZE_LOG_GAP;
+	eyelink->record.host_ns = ns_of_ms(ms);
+	eyelink->record.missing = 0;
+	snprintf(eyelink->record.text, sizeof eyelink->record.text, "recording was paused");
+	return send(eyelink);
+}
+
+/* At 2000 Hz two samples show the same millisecond. */
+static int64_t time_ns(struct eyelink *eyelink, double ms)
+{
+	double period_ms = eyelink->rate_hz > 0 ? 1000 / eyelink->rate_hz : 0;
+	eyelink->same_ms = ms == eyelink->last_ms && period_ms < 1 ? eyelink->same_ms + 1 : 0;
+	eyelink->last_ms = ms;
+	return ns_of_ms(ms + eyelink->same_ms * period_ms);
+}
+
+static void take_eye(const struct eyelink *eyelink, const struct gz_text_fields *fields,
+		     size_t first, struct gz_eye_sample *eye)
+{
+	const double *r = eyelink->rectangle_px;
+	double x_px = gz_text_field_number(fields, first);
+	double y_px = gz_text_field_number(fields, first + 1);
+	eye->point = gz_recording_point((x_px - r[0]) / (r[2] - r[0] + 1),
+					(y_px - r[1]) / (r[3] - r[1] + 1));
+	eye->valid = isfinite(eye->point.x);
+}
+
+static enum gz_result take_sample(struct eyelink *eyelink, char *line)
+{
+	struct gz_text_fields fields;
+	gz_text_split(line, ' ', &fields);
+	double ms = gz_text_field_number(&fields, 0);
+	if (!is_time_ms(ms) || fields.count < 4) {
+		eyelink->counts->skipped++;
+		return GZ_OK;
+	}
+	if (!eyelink->has_rectangle) {
+		gz_err(eyelink->settings->log,
+		       "%s: no GAZE_COORDS before its samples: give the screen with --display.px "
+		       "WxH",
+		       eyelink->settings->name);
+		return GZ_ERR_FORMAT;
+	}
+	struct gz_sample *sample = &eyelink->record.sample;
+	*sample = gz_sample_unmeasured();
+	sample->seq = eyelink->seq++;
+	sample->host_ns = sample->device_ns = time_ns(eyelink, ms);
+	size_t first = 1;
+	for (int eye = GZ_EYE_LEFT; eye >= GZ_EYE_RIGHT; eye--) {
+		if (!eyelink->eye[eye])
+			continue;
+		take_eye(eyelink, &fields, first, &sample->eye[eye]);
+		first += 3;
+	}
+	eyelink->record.kind = GZ_GAZE_LOG_SAMPLE;
+	eyelink->counts->samples++;
+	return send(eyelink);
+}
+
+static enum gz_result take_line(struct eyelink *eyelink, char *line)
+{
+	if (line[0] >= '0' && line[0] <= '9')
+		return eyelink->recording ? take_sample(eyelink, line) : GZ_OK;
+	if (strncmp(line, "MSG", 3) == 0)
+		return take_message(eyelink, line + 3);
+	if (strncmp(line, "SAMPLES", 7) == 0)
+		return take_samples_line(eyelink, line);
+	if (strncmp(line, "START", 5) == 0)
+		return begin_block(eyelink, line + 5);
+	if (strncmp(line, "END", 3) == 0)
+		eyelink->recording = false;
+	/* Events are the tracker's opinion of its samples; the rest is settings. */
+	return GZ_OK;
+}
+
+static enum gz_result read_eyelink(struct gz_text_lines *lines,
+				   const struct gz_convert_settings *settings,
+				   const struct gz_recording_sink *sink,
+				   struct gz_convert_counts *counts)
+{
+	struct eyelink eyelink = {
+		.lines = lines, .settings = settings, .sink = sink, .counts = counts, .last_ms = -1
+	};
+	if (settings->display_px[0] > 0 && settings->display_px[1] > 0) {
+		eyelink.rectangle_px[2] = settings->display_px[0] - 1;
+		eyelink.rectangle_px[3] = settings->display_px[1] - 1;
+		eyelink.has_rectangle = true;
+	}
+	char *line;
+	enum gz_result result;
+	while ((result = gz_text_lines_next(lines, &line)) == GZ_OK || result == GZ_ERR_FULL) {
+		if (result == GZ_ERR_FULL) {
+			counts->skipped++;
+			continue;
+		}
+		result = take_line(&eyelink, line);
+		if (result != GZ_OK)
+			return result;
+	}
+	return result == GZ_ERR_END ? GZ_OK : result;
+}
+
+const struct gz_recording_reader gz_recording_reader_eyelink = {
+	.name = "eyelink",
+	.help = "EyeLink .asc, of gaze positions",
+	.recognises = recognises,
+	.read = read_eyelink,
+};

@@ -1,0 +1,195 @@
+/* Writes tables for spreadsheets and statistics: samples, one a line, and, where there are any,
+ * gaps, marks and window positions in a second file beside it. An empty field was not measured. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/number.h"
+#include "client/gazectl/convert/recording_format.h"
+#include "client/gazectl/output_file.h"
+
+#define GZ_LOG_MODULE "csv"
+
+struct gz_recording_output {
+	const struct gz_log *log;
+	bool overwrite;
+	char path[GZ_PATH_SIZE];
+	struct gz_output_file samples;
+	struct gz_output_file events;
+};
+
+static void put_float(FILE *out, float value)
+{
+	char text[32];
+	fputc(',', out);
+	if (!isfinite(value))
+		return;
+	snprintf(text, sizeof text, "%.9g", (double)value);
+	gz_number_normalise_point(text);
+	fputs(text, out);
+}
+
+/* Nanoseconds as seconds, every digit kept. */
+static void put_time(FILE *out, int64_t ns)
+{
+	uint64_t size = ns < 0 ? -(uint64_t)ns : (uint64_t)ns;
+	fprintf(out, "%s%" PRIu64 ".%09" PRIu64, ns < 0 ? "-" : "", size / GZ_NS_PER_S,
+		size % GZ_NS_PER_S);
+}
+
+static void put_eye(FILE *out, const struct gz_eye_sample *eye)
+{
+	put_float(out, eye->point.x);
+	put_float(out, eye->point.y);
+	fprintf(out, ",%d", eye->valid);
+	put_float(out, eye->confidence);
+	put_float(out, eye->pupil_mm);
+	for (int i = 0; i < 3; i++)
+		put_float(out, eye->origin_mm[i]);
+	for (int i = 0; i < 3; i++)
+		put_float(out, eye->direction[i]);
+}
+
+static void put_sample(FILE *out, const struct gz_sample *sample)
+{
+	fprintf(out, "%" PRIu64 ",", sample->seq);
+	put_time(out, sample->host_ns);
+	fputc(',', out);
+	if (sample->device_ns != GZ_NO_DEVICE_TIME)
+		put_time(out, sample->device_ns);
+	put_float(out, sample->point.x);
+	put_float(out, sample->point.y);
+	fprintf(out, ",%d", sample->valid);
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
+		put_eye(out, &sample->eye[eye]);
+	fputc('\n', out);
+}
+
+/* RFC 4180: quotes round the field, quotes within it twice. */
+static void put_text(FILE *out, const char *text)
+{
+	fputc('"', out);
+	for (; *text; text++) {
+		if (*text == '"')
+			fputc('"', out);
+		fputc(*text, out);
+	}
+	fputc('"', out);
+}
+
+static enum gz_result check(const struct gz_recording_output *output,
+			    const struct gz_output_file *file)
+{
+	if (!ferror(file->text))
+		return GZ_OK;
+	gz_err(output->log, "cannot write %s: is its disk full?", file->path);
+	return GZ_ERR_IO;
+}
+
+static enum gz_result begin(void *user, const struct gz_gaze_log_header *header)
+{
+	(void)header;
+	struct gz_recording_output *output = user;
+	enum gz_result result = gz_output_begin(&output->samples, output->path, output->overwrite,
+						GZ_OUTPUT_TEXT, output->log);
+	if (result != GZ_OK)
+		return result;
+	FILE *out = output->samples.text;
+	fputs("seq,host_s,device_s,gaze_x,gaze_y,gaze_valid", out);
+	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
+		fprintf(out,
+			",eye%d_x,eye%d_y,eye%d_valid,eye%d_confidence,eye%d_pupil_mm"
+			",eye%d_origin_x_mm,eye%d_origin_y_mm,eye%d_origin_z_mm"
+			",eye%d_dir_x,eye%d_dir_y,eye%d_dir_z",
+			eye, eye, eye, eye, eye, eye, eye, eye, eye, eye, eye);
+	fputc('\n', out);
+	return check(output, &output->samples);
+}
+
+/* "NAME.csv" has its events in "NAME_events.csv". */
+static enum gz_result begin_events(struct gz_recording_output *output)
+{
+	char path[GZ_PATH_SIZE + 16];
+	size_t stem = strlen(output->path) - strlen(".csv");
+	snprintf(path, sizeof path, "%.*s_events.csv", (int)stem, output->path);
+	enum gz_result result = gz_output_begin(&output->events, path, output->overwrite,
+						GZ_OUTPUT_TEXT, output->log);
+	if (result == GZ_OK)
+		fputs("host_s,kind,text\n", output->events.text);
+	return result;
+}
+
+static enum gz_result add_event(struct gz_recording_output *output,
+				const struct gz_gaze_log_record *record)
+{
+	enum gz_result result = output->events.open ? GZ_OK : begin_events(output);
+	if (result != GZ_OK)
+		return result;
+	FILE *out = output->events.text;
+	char text[GZ_GAZE_LOG_TEXT_SIZE + 64];
+	put_time(out, record->host_ns);
+	if (record->kind == GZ_GAZE_LOG_GAP) {
+		fputs(",gap,", out);
+		snprintf(text, sizeof text, "%" PRIu64 " samples missing: %s", record->missing,
+			 record->text);
+	} else if (record->kind == GZ_GAZE_LOG_WINDOW) {
+		fputs(",window,", out);
+		snprintf(text, sizeof text, "%d %d %d %d", record->window_px[0],
+			 record->window_px[1], record->window_px[2], record->window_px[3]);
+	} else {
+		fputs(",mark,", out);
+		snprintf(text, sizeof text, "%s", record->text);
+	}
+	put_text(out, text);
+	fputc('\n', out);
+	return check(output, &output->events);
+}
+
+static enum gz_result add(void *user, const struct gz_gaze_log_record *record)
+{
+	struct gz_recording_output *output = user;
+	if (record->kind != GZ_GAZE_LOG_SAMPLE)
+		return add_event(output, record);
+	put_sample(output->samples.text, &record->sample);
+	return check(output, &output->samples);
+}
+
+static enum gz_result open_csv(const char *path, bool overwrite, const struct gz_log *log,
+			       struct gz_recording_sink *out_sink)
+{
+	if (gz_recording_writer_of(path) != &gz_recording_writer_csv) {
+		gz_err(log, "%s: a table's name ends in .csv", path);
+		return GZ_ERR_INVAL;
+	}
+	struct gz_recording_output *output = calloc(1, sizeof *output);
+	if (!output)
+		return GZ_ERR_NO_MEM;
+	output->log = log;
+	output->overwrite = overwrite;
+	snprintf(output->path, sizeof output->path, "%s", path);
+	out_sink->user = output;
+	out_sink->header = begin;
+	out_sink->record = add;
+	return GZ_OK;
+}
+
+static enum gz_result close_csv(struct gz_recording_sink *sink, bool complete)
+{
+	struct gz_recording_output *output = sink->user;
+	enum gz_result result = gz_output_end(&output->samples, complete, output->log);
+	enum gz_result events =
+		gz_output_end(&output->events, complete && result == GZ_OK, output->log);
+	free(output);
+	sink->user = NULL;
+	return result != GZ_OK ? result : events;
+}
+
+const struct gz_recording_writer gz_recording_writer_csv = {
+	.name = "csv",
+	.ending = ".csv",
+	.help = "table of samples, with _events.csv beside it for marks and gaps",
+	.open = open_csv,
+	.close = close_csv,
+};
