@@ -12,6 +12,7 @@
 #include "daemon/config.h"
 #include "daemon/lock.h"
 #include "daemon/notify.h"
+#include "daemon/open_files.h"
 #include "daemon/privileges.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
@@ -129,6 +130,7 @@ static enum gz_result record_from_start(struct daemon *daemon)
 static enum gz_result start(struct daemon *daemon)
 {
 	gz_notify_open(&daemon->notify, &daemon->log);
+	gz_open_files_allow(&daemon->log);
 	enum gz_result result = gz_privileges_drop(daemon->config.user, &daemon->log);
 	if (result == GZ_OK)
 		result = catch_signals(daemon);

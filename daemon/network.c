@@ -15,7 +15,8 @@
 /* RFC 27: names what the keys are for. */
 static const char zap_domain[] = "gazecast";
 
-/* How long a client may take to show its key, ms. Chosen: some round trips across the world. */
+/* How long a client may take to introduce itself, ms; then its connection is closed. Chosen: some
+ * round trips across the world. */
 enum { HANDSHAKE_MS = 5000 };
 
 /* A machine that vanished from the network is forgotten, and its queue freed, after so long without
@@ -108,7 +109,6 @@ static enum gz_result demand_keys(const struct gz_network *network, void *socket
 	    zmq_setsockopt(socket, ZMQ_CURVE_SECRETKEY, network->keys.secret_text,
 			   GZ_KEY_TEXT_SIZE) == 0 &&
 	    zmq_setsockopt(socket, ZMQ_ZAP_DOMAIN, zap_domain, sizeof zap_domain - 1) == 0 &&
-	    set_int(socket, ZMQ_HANDSHAKE_IVL, HANDSHAKE_MS) &&
 	    set_int(socket, ZMQ_HEARTBEAT_IVL, HEARTBEAT_MS) &&
 	    set_int(socket, ZMQ_HEARTBEAT_TIMEOUT, HEARTBEAT_TIMEOUT_MS))
 		return GZ_OK;
@@ -133,7 +133,8 @@ static enum gz_result bind_tcp(const struct gz_network *network, void *socket, c
 	if (network->config->tcp == GZ_TCP_CURVE)
 		result = demand_keys(network, socket);
 	/* Of no effect where the address is IPv4. */
-	bool bound = result == GZ_OK && set_int(socket, ZMQ_IPV6, strchr(endpoint, '[') != NULL) &&
+	bool bound = result == GZ_OK && set_int(socket, ZMQ_HANDSHAKE_IVL, HANDSHAKE_MS) &&
+		     set_int(socket, ZMQ_IPV6, strchr(endpoint, '[') != NULL) &&
 		     zmq_bind(socket, endpoint) == 0;
 	if (bound)
 		*out_port = port_of(socket);

@@ -11,8 +11,11 @@
 /* Readers send subscriptions alone: a topic's length, and some. */
 static const int64_t SUBSCRIPTION_SIZE_MAX = 1024;
 
-/* Looked at in one update, so that a reader that floods us with them does not stop the stream. */
-enum { SUBSCRIPTIONS_AT_ONCE = 256 };
+/* Looked at in one update, so that a reader that floods us with them does not stop the stream.
+ * Chosen: more than one can send meanwhile, because libzmq keeps the others; it takes a
+ * millisecond.
+ */
+enum { SUBSCRIPTIONS_AT_ONCE = 8192 };
 
 /* A socket and who is connected to it. */
 struct channel {

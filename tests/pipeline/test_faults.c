@@ -1,11 +1,16 @@
 /* The daemon with trackers that misbehave and with more readers than anybody has. */
 #include "check.h"
 
+#include <arpa/inet.h>
+#include <errno.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -196,6 +201,49 @@ static void gazed_serves_many_readers_without_a_gap(void **state)
 		reader_close(&readers[i]);
 }
 
+/* As many connections as a client might forget to close. */
+static void connect_idly(int port, int *sockets, int count)
+{
+	struct sockaddr_in address = { .sin_family = AF_INET,
+				       .sin_port = htons((uint16_t)port),
+				       .sin_addr = { htonl(INADDR_LOOPBACK) } };
+	for (int i = 0; i < count; i++) {
+		sockets[i] = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+		assert_true(sockets[i] >= 0);
+		assert_return_code(connect(sockets[i], (struct sockaddr *)&address, sizeof address),
+				   errno);
+	}
+}
+
+static void gazed_with_more_connections_than_its_soft_limit_of_files_goes_on(void **state)
+{
+	(void)state;
+	enum { SOFT = 100, IDLE = 300 };
+	int idle[IDLE];
+	struct reader reader;
+	struct rlimit before, low;
+	struct gazed_process gazed;
+	assert_return_code(getrlimit(RLIMIT_NOFILE, &before), errno);
+	if (before.rlim_max < 2 * IDLE)
+		skip(); /* there is nothing to raise */
+	const char *const arguments[] = { "--control", "tcp://127.0.0.1:*", NULL };
+	low = (struct rlimit) { .rlim_cur = SOFT, .rlim_max = before.rlim_max };
+	assert_return_code(setrlimit(RLIMIT_NOFILE, &low), errno);
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &gazed);
+	low.rlim_cur = before.rlim_max < 1024 ? before.rlim_max : 1024;
+	assert_return_code(setrlimit(RLIMIT_NOFILE, &low), errno);
+	gazed_wait_ready(&place, &gazed);
+	connect_idly(atoi(gazed_request(&place, "SUB_PORT", NULL)), idle, IDLE);
+	reader_open(&reader, &place, "gaze.");
+	reader_receive_gaze(&reader, 100);
+	reader_close(&reader);
+	assert_string_equal(gazed_request(&place, "R idle", NULL), "OK");
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	for (int i = 0; i < IDLE; i++)
+		close(idle[i]);
+	assert_return_code(setrlimit(RLIMIT_NOFILE, &before), errno);
+}
+
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
 int main(void)
@@ -204,6 +252,7 @@ int main(void)
 		TEST(gazed_tracker_that_sends_garbage_is_heard_between_it_and_counted),
 		TEST(gazed_device_clock_that_jumps_or_runs_back_never_turns_the_streams_time),
 		TEST(gazed_serves_many_readers_without_a_gap),
+		TEST(gazed_with_more_connections_than_its_soft_limit_of_files_goes_on),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
