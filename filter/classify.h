@@ -11,9 +11,9 @@
  * onset and end (Nyström and Holmqvist, "An adaptive algorithm for fixation, saccade, and glissade
  * detection in eyetracking data", Behavior Research Methods 42, 2010). It ends where the eye no
  * longer goes on in the direction that it had at the peak, so that the eye's ringing, which turns
- * back first, is no part of it. Between saccades, the slow
- * movement tells pursuit from fixation. Samples without a good measurement are a blink up to
- * blink_max_ms, then lost, on sample time.
+ * back first, is no part of it. Between saccades, the slow movement tells pursuit from fixation
+ * (classify_pursuit.c). Samples without a good measurement are a blink up to blink_max_ms, then
+ * lost, on sample time.
  */
 #ifndef GZ_FILTER_CLASSIFY_H
 #define GZ_FILTER_CLASSIFY_H

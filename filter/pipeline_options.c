@@ -30,7 +30,9 @@ static const char *const EYES[] = { "both", "left", "right", NULL };
  * blink_max_ms        the longest blink of Stern, Walrath and Goldstein 1984, 400 ms, and some
  * window_ms           the shortest fixation of Bauer 2018, section 2.2
  * the others          chosen on recordings that two people labelled (Andersson et al. 2017) and on
- *                     simulated ones: tests/filter/bench_filter.c prints what they reach
+ *                     simulated ones: bench/gaze_filter.c prints what they reach
+ * fixation_..., pursuit_...  chosen so by bench/gaze_filter_fit.c, on a plateau
+ * end_ms              half the window over which speed is measured, less a sample at 500 Hz
  */
 const struct gz_option gz_pipeline_options[] = {
 	REAL("margin", VALIDATE(margin), 0, 10, "0.25",
