@@ -332,9 +332,10 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		status->rate_hz_measured = gz_rate_meter_take(&service->rate);
 	memcpy(status->tracker.name, tracker->info.name, sizeof status->tracker.name);
 	memcpy(status->tracker.serial, tracker->info.serial, sizeof status->tracker.serial);
+	/* A device that is there knows better what is wrong with it. */
+	bool open = tracker->state == GZ_TRACKER_STARTING || !tracker->reason[0];
 	snprintf(status->tracker.reason, sizeof status->tracker.reason, "%s",
-		 !tracker->reason[0] && tracker->counters.trouble ? tracker->counters.trouble
-								  : tracker->reason);
+		 open && tracker->counters.trouble ? tracker->counters.trouble : tracker->reason);
 	memcpy(status->rejected, service->rejected, sizeof status->rejected);
 	memcpy(status->malformed, tracker->counters.malformed, sizeof status->malformed);
 	status->recording.state = recorder.state;

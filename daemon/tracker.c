@@ -63,7 +63,9 @@ static enum gz_result look_again(struct gz_tracker *tracker)
 {
 	atomic_store(&tracker->silent, true);
 	enum gz_result result = create(tracker);
-	atomic_store(&tracker->silent, false);
+	if (result != GZ_OK)
+		tracker->barren = false;
+	atomic_store(&tracker->silent, tracker->barren);
 	if (result != GZ_OK && result != tracker->result && tracker->remark[0]) {
 		gz_warn(tracker->host.log, "%s", tracker->remark);
 		set_state(tracker, tracker->state, tracker->remark);
@@ -77,6 +79,7 @@ static enum gz_result open_device(struct gz_tracker *tracker, bool again)
 	if (tracker->result != GZ_OK)
 		return tracker->result;
 	tracker->started = false;
+	tracker->delivered = false;
 	tracker->opened++;
 	gz_device_get_info(tracker->device, &tracker->info);
 	return GZ_OK;
@@ -132,19 +135,25 @@ static void drop_device(struct gz_tracker *tracker)
 }
 
 /* People call it so. */
-static const char *loss_text(enum gz_result result)
+static const char *loss_text(const struct gz_tracker *tracker, enum gz_result result)
 {
-	return result == GZ_ERR_NO_DEVICE ? "unplugged" : gz_result_text(result);
+	if (result != GZ_ERR_NO_DEVICE)
+		return gz_result_text(result);
+	return tracker->driver->on_usb ? "unplugged" : "its connection is lost";
 }
 
+/* One that can be opened and never delivers, again and again, is told of once. */
 static void lose_device(struct gz_tracker *tracker, enum gz_result result)
 {
-	bool was_there = tracker->samples > 0;
+	bool was_there = tracker->samples > 0, told = tracker->barren;
+	const char *text = loss_text(tracker, result);
 	drop_device(tracker);
+	tracker->barren = !tracker->delivered;
 	tracker->result = result;
-	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, loss_text(result));
-	gz_warn(tracker->host.log, "%s is gone (%s); waiting for it", tracker->info.name,
-		loss_text(result));
+	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, text);
+	if (!told)
+		gz_warn(tracker->host.log, "%s is gone (%s); waiting for it", tracker->info.name,
+			text);
 	pause_before_retry(tracker);
 }
 
@@ -183,8 +192,11 @@ static enum gz_result find_device(struct gz_tracker *tracker, int64_t deadline_n
 /* Open and start as far as that is due. */
 static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 {
-	if (!tracker->device && find_device(tracker, deadline_ns) != GZ_OK)
-		return GZ_ERR_TIMEOUT;
+	if (!tracker->device) {
+		int64_t patience_ns = deadline_ns + GZ_TRACKER_SLOW_MS * GZ_NS_PER_MS;
+		if (find_device(tracker, deadline_ns) != GZ_OK || gz_clock_now_ns() > patience_ns)
+			return GZ_ERR_TIMEOUT;
+	}
 	if (tracker->started)
 		return GZ_OK;
 	enum gz_result result = gz_device_start(tracker->device);
@@ -204,6 +216,9 @@ static void take(struct gz_tracker *tracker, struct gz_sample *sample)
 		/* Some devices know more of themselves once they stream. */
 		gz_device_get_info(tracker->device, &tracker->info);
 		set_state(tracker, GZ_TRACKER_RUNNING, "");
+		tracker->delivered = true;
+		tracker->barren = false;
+		atomic_store(&tracker->silent, false);
 		gz_info(tracker->host.log, "%s delivers samples", tracker->info.name);
 	}
 	tracker->arrival_ns = gz_clock_now_ns();
@@ -216,8 +231,11 @@ static void take(struct gz_tracker *tracker, struct gz_sample *sample)
 static void notice_silence(struct gz_tracker *tracker)
 {
 	int64_t silent_ns = gz_clock_now_ns() - tracker->arrival_ns;
-	if (tracker->state != GZ_TRACKER_RUNNING ||
-	    silent_ns < GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS)
+	if (silent_ns < GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS)
+		return;
+	if (tracker->state == GZ_TRACKER_STARTING && !tracker->reason[0])
+		set_state(tracker, GZ_TRACKER_STARTING, "it is there, and has sent nothing yet");
+	if (tracker->state != GZ_TRACKER_RUNNING)
 		return;
 	set_state(tracker, GZ_TRACKER_LOST, "no samples for a second");
 	gz_warn(tracker->host.log, "%s: no samples for a second", tracker->info.name);

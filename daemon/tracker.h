@@ -27,6 +27,10 @@
  * blink, for trackers that send nothing while no eye is seen. */
 #define GZ_TRACKER_SILENCE_MS 1000
 
+/** Opening that takes so long comes alone, ms: the caller has other duties between it and starting.
+ * Chosen: far above what a device that is well takes. */
+#define GZ_TRACKER_SLOW_MS 1000
+
 /** A tracker. Zero-initialised is none; gz_tracker_open() fills it, and it stays where it is. */
 struct gz_tracker {
 	const struct gz_driver *driver;
@@ -34,6 +38,8 @@ struct gz_tracker {
 	struct gz_driver_host host;
 	struct gz_device *device; /**< NULL while there is none */
 	bool started;
+	bool delivered; /**< this device has */
+	bool barren;    /**< the one before had not when it was lost, which was told */
 	enum gz_tracker_state state;
 	char reason[GZ_REASON_SIZE]; /**< why it does not run; empty while it does */
 	uint64_t opened;             /**< devices opened so far: info is of the newest one */

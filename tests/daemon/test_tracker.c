@@ -146,13 +146,15 @@ static void tracker_whose_settings_cannot_work_is_refused_at_once(void **state)
 /* A driver on USB whose device is there when the test says so. */
 static struct {
 	enum gz_result answer;
+	enum gz_result start; /* what its start answers */
 	int looks;
 } port;
 
 static enum gz_result port_start(struct gz_device *device)
 {
-	(void)device;
-	return GZ_OK;
+	if (port.start != GZ_OK)
+		gz_log_write(device->log, GZ_LOG_ERROR, "port", "it does not start");
+	return port.start;
 }
 
 static enum gz_result port_read(struct gz_device *device, int timeout_ms,
@@ -268,7 +270,7 @@ static void arrivals_do_not_matter_to_a_tracker_that_is_not_on_usb(void **state)
 	close(fd);
 }
 
-static int told_rule, told_plug;
+static int told_rule, told_plug, told_start, told_gone;
 
 static void count_told(void *user, enum gz_log_level level, const char *module, const char *message)
 {
@@ -277,6 +279,64 @@ static void count_told(void *user, enum gz_log_level level, const char *module, 
 	(void)module;
 	told_rule += strstr(message, "install the rule") != NULL;
 	told_plug += strstr(message, "plug it in") != NULL;
+	told_start += strstr(message, "it does not start") != NULL;
+	told_gone += strstr(message, "is gone") != NULL;
+}
+
+static void tracker_that_is_there_and_never_starts_is_told_of_once_until_it_has_delivered(
+	void **state)
+{
+	(void)state;
+	struct gz_log log;
+	struct gz_tracker tracker;
+	struct gz_sample sample;
+	const struct gz_driver_host host = { .log = &log };
+	gz_log_init(&log, count_told, NULL, "*:info");
+	told_start = told_gone = 0;
+	port.answer = GZ_OK;
+	port.start = GZ_ERR_IO;
+	assert_int_equal(gz_tracker_open(&tracker, &port_driver, NULL, &host), GZ_OK);
+	for (int round = 1; round <= 2; round++) {
+		for (int i = 0; i < 5; i++) {
+			tracker.retry_ns = 0;
+			assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+		}
+		assert_int_equal(told_start, round);
+		assert_int_equal(told_gone, 2 * round - 1);
+		port.start = GZ_OK;
+		tracker.retry_ns = 0;
+		assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_OK);
+		port.answer = GZ_ERR_NO_DEVICE;
+		assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+		assert_int_equal(told_gone, 2 * round);
+		port.answer = GZ_OK;
+		port.start = GZ_ERR_IO;
+	}
+	port.start = GZ_OK;
+	gz_tracker_close(&tracker);
+}
+
+static void tracker_that_never_sends_anything_has_a_reason_to_tell(void **state)
+{
+	(void)state;
+	struct gz_tracker tracker;
+	struct gz_sample sample;
+	assert_int_equal(mkfifo(path, 0600), 0);
+	int fd = open(path, O_RDWR | O_CLOEXEC);
+	assert_int_equal(gz_tracker_open(&tracker, gz_driver_find("template"), settings, &nothing),
+			 GZ_OK);
+	assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+	assert_string_equal(tracker.reason, "");
+	tracker.arrival_ns -= GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS;
+	assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
+	assert_int_equal(tracker.state, GZ_TRACKER_STARTING);
+	assert_non_null(strstr(tracker.reason, "sent nothing"));
+	send_report(fd, 0);
+	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_OK);
+	assert_string_equal(tracker.reason, "");
+	gz_tracker_close(&tracker);
+	close(fd);
+	unlink(path);
 }
 
 static void why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes(void **state)
@@ -312,6 +372,9 @@ int main(void)
 		cmocka_unit_test(tracker_whose_settings_cannot_work_is_refused_at_once),
 		cmocka_unit_test(tracker_on_usb_is_looked_for_at_once_when_something_arrives),
 		cmocka_unit_test(arrivals_do_not_matter_to_a_tracker_that_is_not_on_usb),
+		cmocka_unit_test(
+			tracker_that_is_there_and_never_starts_is_told_of_once_until_it_has_delivered),
+		cmocka_unit_test(tracker_that_never_sends_anything_has_a_reason_to_tell),
 		cmocka_unit_test(why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes),
 	};
 	return cmocka_run_group_tests(tests, set_up, tear_down);
