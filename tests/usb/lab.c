@@ -20,7 +20,7 @@
  * samples with delays that vary by 100 ms; the fit of a clock's first second can be off by that in
  * both directions. How well clocks are fitted is tested elsewhere. */
 #define EARLY_NS (100 * GZ_NS_PER_MS)
-#define LATE_NS  GZ_NS_PER_S
+#define LATE_NS  (3 * GZ_NS_PER_S)
 
 enum { PATIENCE_MS = 20000, FILLERS_MAX = 1000 };
 
