@@ -30,6 +30,8 @@ static enum gz_log_level threshold(const struct gz_log *log, const char *module)
 		size_t length = strcspn(rule, ",");
 		const char *colon = memchr(rule, ':', length);
 		enum gz_log_level level;
+		if (!colon && parse_level(rule, length, &level))
+			return level;
 		if (colon && parse_level(colon + 1, length - (size_t)(colon + 1 - rule), &level)) {
 			size_t name = (size_t)(colon - rule);
 			bool any = name == 1 && rule[0] == '*';

@@ -51,7 +51,8 @@ struct gz_log {
  * @param[out] log  filled
  * @param sink      where messages go; NULL for gz_log_to_stderr()
  * @param user      passed to @p sink
- * @param rules     levels per module, "module:level,*:level"; levels are debug, info, warn, error;
+ * @param rules     levels per module, "module:level,*:level", or a level
+ *                  alone for all; levels are debug, info, warn, error;
  *                  the first rule that fits counts; NULL takes the environment's GZ_LOG, and
  *                  "*:info" where that is unset. Unreadable rules are ignored.
  */

@@ -203,7 +203,7 @@ enum gz_result gz_correction_write(const char *path, const struct gz_correction_
 	if (make_directories(path) && write_beside(path, file))
 		return GZ_OK;
 	bool refused = errno == EACCES || errno == EPERM || errno == EROFS;
-	gz_err(log, "cannot write %s: %s; name another directory with --directory", path,
+	gz_err(log, "cannot write %s: %s; name another directory with --corrections", path,
 	       strerror(errno));
 	return refused ? GZ_ERR_ACCESS : GZ_ERR_IO;
 }

@@ -151,13 +151,15 @@ static enum gazectl_exit show(const struct devices_settings *settings,
 		print_json(devices);
 	else
 		print_text(devices);
+	fflush(stdout); /* what is said of the list comes behind it, also in a file */
 	for (int i = 0; i < devices->count; i++)
 		if (devices->items[i].entry.usable)
 			return GAZECTL_DONE;
 	if (devices->count == 0)
 		gz_err(log, "no tracker found: plug one in; gazed --driver sim plays one");
 	else
-		gz_err(log, "no tracker can be used; each line above says what to do");
+		gz_err(log, "no tracker can be used; the list says what to do, and gazed --driver "
+			    "sim plays one");
 	return GAZECTL_FAILED;
 }
 

@@ -60,7 +60,7 @@ static void print_help(FILE *out)
 	      "recordings.\n\ncommands:\n",
 	      out);
 	for (int i = 0; i < COMMAND_COUNT; i++)
-		fprintf(out, "  %-8s %-12s %s\n", commands[i]->name, commands[i]->operands,
+		fprintf(out, "  %-8s %-13s %s\n", commands[i]->name, commands[i]->operands,
 			commands[i]->summary);
 	fputs("\n`gazectl COMMAND --help` tells the options of each; gazectl(1) tells all.\n"
 	      "exit status: 0 done, 1 failed or refused, 2 usage, 3 no daemon answers, "

@@ -29,8 +29,8 @@ static const struct gz_option options[] = {
 	  "make the key by which a daemon proves itself" },
 	{ "client", GZ_OPTION_STRING, AT(client), 0, GZ_KEY_NAME_SIZE, 0, NULL, "",
 	  "make the key of a client; its name, as anna@desk, tells people whose it is" },
-	{ "directory", GZ_OPTION_STRING, AT(directory), 0, PATH_SIZE, 0, NULL, "",
-	  "where to; empty: gazecast in the user's configuration directory" },
+	{ "keys", GZ_OPTION_STRING, AT(directory), 0, PATH_SIZE, 0, NULL, "",
+	  "directory they go to; empty: gazecast in the user's configuration directory" },
 	{ "owner", GZ_OPTION_STRING, AT(owner), 0, 64, 0, NULL, "",
 	  "user that the files are given to, for root alone; empty: who makes them" },
 };
@@ -70,7 +70,7 @@ static enum gz_result choose_files(struct keygen *keygen)
 	else
 		result = gz_key_directory(keygen->directory, sizeof keygen->directory);
 	if (result != GZ_OK) {
-		gz_err(keygen->log, "no configuration directory: name one with --directory");
+		gz_err(keygen->log, "no configuration directory: name one with --keys");
 		return result;
 	}
 	snprintf(keygen->secret_path, sizeof keygen->secret_path, "%s/%s", keygen->directory, name);

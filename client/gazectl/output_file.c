@@ -39,6 +39,15 @@ enum gz_result gz_output_begin(struct gz_output_file *file, const char *path, bo
 	return GZ_OK;
 }
 
+enum gz_result gz_output_check_svg(const char *path, const struct gz_log *log)
+{
+	size_t length = strlen(path);
+	if (length == 0 || (length > 4 && strcmp(path + length - 4, ".svg") == 0))
+		return GZ_OK;
+	gz_err(log, "--picture: pictures are SVG; end %s in .svg", path);
+	return GZ_ERR_INVAL;
+}
+
 /* Whether all of it has reached the file. */
 static bool finish(struct gz_output_file *file)
 {

@@ -42,6 +42,13 @@ enum gz_result gz_output_begin(struct gz_output_file *file, const char *path, bo
 			       enum gz_output_kind kind, const struct gz_log *log);
 
 /**
+ * Whether @p path is a name for a picture, which is SVG whatever it is called. "" is none and good.
+ *
+ * @retval GZ_ERR_INVAL  it ends in something else; logged with the remedy
+ */
+enum gz_result gz_output_check_svg(const char *path, const struct gz_log *log);
+
+/**
  * End: give the file its name if @p complete, else remove it. Does nothing to one that is none.
  *
  * @retval GZ_ERR_IO  not all of it could be written: removed; logged

@@ -50,6 +50,15 @@ static void log_rule_names_match_whole(void **state)
 	assert_false(gz_log_wants(&captured.log, GZ_LOG_WARN, "replay"));
 }
 
+static void log_level_alone_is_for_all_modules(void **state)
+{
+	(void)state;
+	struct captured_log captured;
+	captured_log_init(&captured, "replay:error,debug");
+	assert_true(gz_log_wants(&captured.log, GZ_LOG_DEBUG, "any"));
+	assert_false(gz_log_wants(&captured.log, GZ_LOG_WARN, "replay"));
+}
+
 static void log_unreadable_rules_are_ignored(void **state)
 {
 	(void)state;
@@ -160,6 +169,7 @@ int main(void)
 		cmocka_unit_test(log_without_rules_takes_the_environment),
 		cmocka_unit_test(log_first_rule_that_fits_counts),
 		cmocka_unit_test(log_rule_names_match_whole),
+		cmocka_unit_test(log_level_alone_is_for_all_modules),
 		cmocka_unit_test(log_unreadable_rules_are_ignored),
 		cmocka_unit_test(log_rules_longer_than_their_room_are_cut),
 		cmocka_unit_test(log_message_arrives_formatted_once),

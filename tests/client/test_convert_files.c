@@ -200,6 +200,17 @@ static void picture_shows_each_fixation_and_the_path(void **state)
 	assert_non_null(strstr(program.err_text, "--force"));
 }
 
+static void picture_that_is_called_no_svg_is_refused_before_anything_is_written(void **state)
+{
+	(void)state;
+	const char *from = in_directory("a.gzl"), *to = in_directory("a.png");
+	write_log(from);
+	struct program program = GAZECTL_RUN("inspect", "--picture", to, from);
+	assert_int_equal(program.status, 2);
+	assert_non_null(strstr(program.err_text, ".svg"));
+	assert_int_equal(access(to, F_OK), -1);
+}
+
 /* Lines of samples, counted in another way: they begin with a digit. */
 static size_t sample_lines(const char *path)
 {
@@ -251,6 +262,7 @@ int main(void)
 		TEST(files_that_are_there_are_kept_unless_forced),
 		TEST(what_cannot_be_converted_is_refused_and_leaves_nothing),
 		TEST(picture_shows_each_fixation_and_the_path),
+		TEST(picture_that_is_called_no_svg_is_refused_before_anything_is_written),
 		TEST(recordings_of_real_trackers_are_converted_whole),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

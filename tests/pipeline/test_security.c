@@ -92,7 +92,7 @@ static int set_up(void **state)
 	snprintf(control, sizeof control, "tcp://127.0.0.1:%d", free_port());
 	/* Where the client's library looks. */
 	setenv("XDG_CONFIG_HOME", place.directory, 1);
-	GAZECTL_RUN("keygen", "--server", "--directory", server_directory);
+	GAZECTL_RUN("keygen", "--server", "--keys", server_directory);
 	assert_int_equal(program.status, 0);
 	GAZECTL_RUN("keygen", "--client", "anna@desk");
 	assert_int_equal(program.status, 0);
@@ -536,13 +536,13 @@ static void keygen_writes_safe_files_and_keeps_what_is_there(void **state)
 	snprintf(path, sizeof path, "%s/server_key", server_directory);
 	assert_int_equal(stat(path, &status), 0);
 	assert_int_equal(status.st_mode & 0777, 0600);
-	GAZECTL_RUN("keygen", "--server", "--directory", server_directory);
+	GAZECTL_RUN("keygen", "--server", "--keys", server_directory);
 	assert_int_equal(program.status, 1);
 	assert_non_null(strstr(program.err_text, "server_key exists and is kept"));
 	assert_string_equal(read_key(server_directory, GZ_SERVER_KEY_FILE), before);
 	/* Half of a pair is left alone, too, and not made whole by another's half. */
 	assert_int_equal(unlink(path), 0);
-	GAZECTL_RUN("keygen", "--server", "--directory", server_directory);
+	GAZECTL_RUN("keygen", "--server", "--keys", server_directory);
 	assert_int_equal(program.status, 1);
 	assert_non_null(strstr(program.err_text, "server_key.pub exists and is kept"));
 	assert_int_not_equal(access(path, F_OK), 0);
@@ -550,7 +550,7 @@ static void keygen_writes_safe_files_and_keeps_what_is_there(void **state)
 	assert_int_equal(program.status, 2);
 	GAZECTL_RUN("keygen", "--server", "--client", "both");
 	assert_int_equal(program.status, 2);
-	GAZECTL_RUN("keygen", "--client", "no\nname", "--directory", server_directory);
+	GAZECTL_RUN("keygen", "--client", "no\nname", "--keys", server_directory);
 	assert_int_equal(program.status, 2);
 }
 

@@ -171,7 +171,7 @@ static void place_that_cannot_be_written_is_told(void **state)
 	assert_true(gz_correction_write(path, &file, &captured.log) != GZ_OK);
 	assert_int_equal(captured.messages, 1);
 	assert_non_null(strstr(captured.last, "/proc/gazecast/correction.ini"));
-	assert_non_null(strstr(captured.last, "--directory"));
+	assert_non_null(strstr(captured.last, "--corrections"));
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)

@@ -531,10 +531,10 @@ class CurveTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.place)
         for kind in ("server", "client"):
             os.mkdir(self.path(kind), 0o700)
-        subprocess.run([GAZECTL, "keygen", "--server", "--directory",
+        subprocess.run([GAZECTL, "keygen", "--server", "--keys",
                         self.path("server", "gazecast")],
                        check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([GAZECTL, "keygen", "--client", "test", "--directory",
+        subprocess.run([GAZECTL, "keygen", "--client", "test", "--keys",
                         self.path("client", "gazecast")],
                        check=True, stdout=subprocess.DEVNULL)
 

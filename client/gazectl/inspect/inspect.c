@@ -390,6 +390,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 		gz_err(log, "which file? Name a .gzl: gazectl inspect FILE");
 		return GAZECTL_USAGE;
 	}
+	if (gz_output_check_svg(settings.picture, log) != GZ_OK)
+		return GAZECTL_USAGE;
 	struct gz_gaze_log_reader *reader = NULL;
 	if (gz_gaze_log_open(operands.items[0], log, &reader) != GZ_OK)
 		return GAZECTL_FAILED;

@@ -30,7 +30,7 @@ static enum gz_result find_path(const struct gazectl_correction *correction,
 	if (result != GZ_OK)
 		gz_err(correction->log,
 		       "no directory for corrections: %s; name one with "
-		       "--directory DIR",
+		       "--corrections DIR",
 		       gz_result_text(result));
 	return result;
 }
@@ -58,7 +58,7 @@ static enum gazectl_exit apply(const struct gazectl_correction *correction,
 	gz_err(correction->log,
 	       "the daemon does not follow: it reads its corrections elsewhere "
 	       "(tracker.corrections "
-	       "in gazed.conf, and --directory here), or was given one on its command line; %s",
+	       "in gazed.conf, and --corrections here), or was given one on its command line; %s",
 	       path);
 	return GAZECTL_FAILED;
 }

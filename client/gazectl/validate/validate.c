@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "client/gazectl/output_file.h"
 #include "client/gazectl/validate/correction.h"
 #include "client/gazectl/validate/validation_report.h"
 #include "protocol/wire.h"
@@ -49,8 +50,8 @@ static const struct gz_option validate_options[] = {
 	  "store the correction if it helps, without asking" },
 	{ "forget", GZ_OPTION_BOOL, AT(forget), 0, 0, 0, NULL, "false",
 	  "show nothing, but remove the correction that is stored" },
-	{ "directory", GZ_OPTION_STRING, AT(directory), 0, GZ_PATH_SIZE, 0, NULL, "",
-	  "where corrections are; empty: gazecast/corrections in the user's configuration" },
+	{ "corrections", GZ_OPTION_STRING, AT(directory), 0, GZ_PATH_SIZE, 0, NULL, "",
+	  "directory of corrections; empty: gazecast/corrections in the user's configuration" },
 	{ "gazeview", GZ_OPTION_STRING, AT(gazeview), 0, GZ_PATH_SIZE, 0, NULL, "",
 	  "program that shows the targets; empty: gazeview beside gazectl, or in PATH" },
 };
@@ -230,6 +231,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	if (!gazectl_read_arguments(&gazectl_validate, argc, argv, log, &settings, &operands,
 				    &status))
 		return status;
+	if (gz_output_check_svg(settings.picture, log) != GZ_OK)
+		return GAZECTL_USAGE;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
 		return GAZECTL_USAGE;
