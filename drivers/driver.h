@@ -93,6 +93,11 @@ struct gz_device_entry {
 	char reason[GZ_REASON_SIZE]; /**< why it is not usable and what to do; empty if it is */
 };
 
+/** A number of samples or frames that leaps ahead farther than this is of a device that began anew,
+ * or garbage, and says nothing of what was lost. Chosen: a minute of the fastest tracker; one that
+ * is silent for a second counts as lost itself. */
+#define GZ_LOST_AT_ONCE_MAX 120000
+
 /** Most devices that one driver lists. */
 #define GZ_DEVICE_ENTRIES_MAX 16
 

@@ -257,7 +257,7 @@ static bool follow_counter(struct gazepoint_device *device,
 	/* A counter that runs backwards is a server that began anew: nothing is known to be lost.
 	 */
 	if (known && record->counter > device->counter && record->counter <= INT32_MAX &&
-	    device->counter >= 0)
+	    device->counter >= 0 && record->counter - device->counter <= GZ_LOST_AT_ONCE_MAX)
 		*out_lost = (uint32_t)(record->counter - device->counter - 1);
 	device->has_counter = record->has_counter;
 	device->counter = record->counter;

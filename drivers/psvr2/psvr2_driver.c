@@ -89,7 +89,7 @@ static bool is_stale(const struct psvr2_device *device, const struct gz_psvr2_pa
 static uint32_t frames_lost(const struct psvr2_device *device, uint32_t frame)
 {
 	uint32_t between = frame - device->frame - 1;
-	return device->seq == 0 || between > INT32_MAX ? 0 : between;
+	return device->seq == 0 || between > GZ_LOST_AT_ONCE_MAX ? 0 : between;
 }
 
 static void fill_eye(const struct psvr2_device *device, const struct gz_psvr2_eye *measured,

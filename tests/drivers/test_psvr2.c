@@ -198,6 +198,16 @@ static void psvr2_frames_that_did_not_arrive_are_lost(void **state)
 		assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
 		assert_int_equal(sample.lost_before, steps[i].lost_before);
 	}
+	/* One frame's number is garbage. */
+	struct gz_psvr2_packet leap = packet_of(0x40000000), back = packet_of(6);
+	leap.device_ns = 4 * GZ_NS_PER_MS;
+	back.device_ns = 5 * GZ_NS_PER_MS;
+	deliver(&leap);
+	deliver(&back);
+	for (int i = 0; i < 2; i++) {
+		assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
+		assert_int_equal(sample.lost_before, 0);
+	}
 	/* A headset that began anew: its clock, too. */
 	struct gz_psvr2_packet anew = packet_of(1);
 	anew.device_ns = -10 * GZ_NS_PER_S;
