@@ -91,7 +91,7 @@ static bool judge(struct gz_guard *guard, const struct gz_zap_request *request)
 		return known != NULL;
 	if (known)
 		gz_info(guard->log, "%s is let in with the key of \"%s\"%s", request->address,
-			known->name, more);
+			known->name[0] ? known->name : request->key, more);
 	else
 		gz_warn(guard->log,
 			"%s is refused: its key is not in %s; to let it in, add the line %s%s",

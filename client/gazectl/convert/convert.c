@@ -170,7 +170,8 @@ static enum gz_result read_input(struct conversion *conversion)
 	const struct gz_recording_reader *reader;
 	enum gz_result result = gz_text_lines_open(conversion->input, &lines);
 	if (result != GZ_OK) {
-		gz_err(conversion->log, "%s: %s", conversion->input, gz_result_text(result));
+		gz_err(conversion->log, "cannot open %s: %s; check the path", conversion->input,
+		       gz_result_text(result));
 		return result;
 	}
 	if (!choose_reader(conversion, lines, &reader))
@@ -252,8 +253,8 @@ const struct gazectl_command gazectl_convert = {
 	.operands_max = 2,
 	.summary = "convert recordings from and to gaze logs",
 	.details =
-		"Reads gaze logs, Pupil's gaze_positions.csv, EyeLink's .asc and Tobii's .tsv, "
-		"plain or gzip; writes\ngaze logs (.gzl), tables (.csv) and BIDS "
+		"Reads gaze logs, and, plain or gzip, Pupil's gaze_positions.csv, EyeLink's .asc "
+		"and Tobii's .tsv;\nwrites gaze logs (.gzl), tables (.csv) and BIDS "
 		"(_physio.tsv.gz). Where a file does not tell its display,\ngive it: angles need "
 		"one.\n",
 	.options = convert_options,
