@@ -37,6 +37,10 @@ static const char enable_stream[] = ENABLE("COUNTER") ENABLE("TIME") ENABLE("TIM
 
 static const char disable_stream[] = "<SET ID=\"ENABLE_SEND_DATA\" STATE=\"0\" />\r\n";
 
+/* Where the API's documentation has the server. */
+#define USUAL_HOST "127.0.0.1"
+#define USUAL_PORT "4242"
+
 struct gazepoint_settings {
 	char host[GZ_NAME_SIZE];
 	int port;
@@ -45,9 +49,9 @@ struct gazepoint_settings {
 #define AT(field) offsetof(struct gazepoint_settings, field)
 
 static const struct gz_option gazepoint_options[] = {
-	{ "gazepoint.host", GZ_OPTION_STRING, AT(host), 0, GZ_NAME_SIZE, 0, NULL, "127.0.0.1",
+	{ "gazepoint.host", GZ_OPTION_STRING, AT(host), 0, GZ_NAME_SIZE, 0, NULL, USUAL_HOST,
 	  "name or address of the machine that runs Gazepoint Control" },
-	{ "gazepoint.port", GZ_OPTION_INT, AT(port), 1, 65535, 0, NULL, "4242",
+	{ "gazepoint.port", GZ_OPTION_INT, AT(port), 1, 65535, 0, NULL, USUAL_PORT,
 	  "TCP port of Gazepoint Control" },
 };
 
@@ -494,6 +498,13 @@ static enum gz_result gazepoint_create(const void *settings, const struct gz_dri
 }
 
 /* Knocks; several clients may be connected to a server at a time. */
+/* Where nobody has said where the server is, and none is at the usual place, there is nothing to
+ * tell. */
+static bool is_at_the_usual_place(const struct gazepoint_settings *settings)
+{
+	return strcmp(settings->host, USUAL_HOST) == 0 && settings->port == atoi(USUAL_PORT);
+}
+
 static size_t gazepoint_list(const void *settings, const struct gz_driver_host *host,
 			     struct gz_device_entry *out_entries)
 {
@@ -508,6 +519,8 @@ static size_t gazepoint_list(const void *settings, const struct gz_driver_host *
 					       &fd, reason) == GZ_OK;
 	if (entry->usable)
 		close(fd);
+	else if (is_at_the_usual_place(wanted))
+		return 0;
 	else
 		snprintf(entry->reason, sizeof entry->reason,
 			 "%.80s; start Gazepoint Control, or see gazepoint.host", reason);

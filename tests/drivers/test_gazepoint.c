@@ -352,6 +352,17 @@ static void list_says_whether_the_server_is_there(void **state)
 		fail_msg("%s", entries[0].reason);
 }
 
+static void list_leaves_out_a_server_that_nobody_has_named(void **state)
+{
+	(void)state;
+	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
+	const struct gz_driver_host host = { 0 };
+	point_at(4242);
+	size_t count = gz_driver_gazepoint.list(&settings, &host, entries);
+	if (count > 0 && !entries[0].usable)
+		fail_msg("%s", entries[0].reason);
+}
+
 static void host_that_is_not_known_is_no_device(void **state)
 {
 	(void)state;
@@ -383,6 +394,7 @@ int main(void)
 		cmocka_unit_test(server_that_dies_is_told_and_returns),
 		cmocka_unit_test(server_that_answers_nothing_is_waited_for_no_longer_than_promised),
 		cmocka_unit_test(list_says_whether_the_server_is_there),
+		cmocka_unit_test(list_leaves_out_a_server_that_nobody_has_named),
 		cmocka_unit_test(host_that_is_not_known_is_no_device),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
