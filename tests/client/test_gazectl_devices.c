@@ -89,11 +89,13 @@ static void devices_that_cannot_be_used_are_listed_with_the_reason(void **state)
 static void devices_are_asked_with_presets_where_the_configuration_is_refused(void **state)
 {
 	(void)state;
-	configure("[gazepoint]\nport = everywhere\n");
+	configure("[gazepoint]\nhost = 127.0.0.2\nport = everywhere\n");
 	RUN("--json");
-	assert_contains(program.err_text, "gazed.conf:2: gazepoint.port");
+	assert_contains(program.err_text, "gazed.conf:3: gazepoint.port");
 	assert_contains(program.err_text, "presets");
-	assert_contains(program.out_text, "port 4242");
+	assert_contains(program.out_text, "\"devices\"");
+	if (strstr(program.out_text, "127.0.0.2"))
+		fail_msg("half of a refused configuration counts:\n%s", program.out_text);
 }
 
 int main(void)
