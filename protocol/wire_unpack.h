@@ -25,8 +25,8 @@ void gz_unpack_begin(struct gz_unpack *unpack, const void *bytes, size_t size);
 /** GZ_OK, or GZ_ERR_PROTOCOL if anything was refused. */
 enum gz_result gz_unpack_end(struct gz_unpack *unpack);
 
-/** The value of @p key, or NULL if it is missing or nil. A key of one digit may also be a number. NULL for a NULL @p map: an absent map has
- *  no keys. */
+/** The value of @p key, or NULL if it is missing or nil. A key of one digit may also be a number.
+ * NULL for a NULL @p map: an absent map has no keys. */
 const msgpack_object *gz_unpack_find(const msgpack_object *map, const char *key);
 
 /** As gz_unpack_find() for a map, an array. */
@@ -52,7 +52,8 @@ void gz_unpack_double(struct gz_unpack *unpack, const msgpack_object *map, const
 		      double min, double max, double *out_value);
 void gz_unpack_float(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		     double min, double max, float *out_value);
-/** @p count numbers, at most 4; @return whether they were there. An array of another length is refused. */
+/** @p count numbers, at most 4; @return whether they were there. An array of another length is
+ * refused. */
 bool gz_unpack_doubles(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		       double *out_values, size_t count);
 

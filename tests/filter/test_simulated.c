@@ -107,9 +107,9 @@ static int run(const struct gz_sim_params *sim, const struct gz_pipeline_params 
 
 static void print_sums(double rate_hz, const struct sums *s)
 {
-	printf("%6.0f  %6.3f %6.3f %6.3f %6.3f   %7.3f %7.3f   %7.3f %7.3f   %5.0f %5.0f\n", rate_hz,
-	       kappa(s, GZ_EVENT_SACCADE), kappa(s, GZ_EVENT_FIXATION), kappa(s, GZ_EVENT_PURSUIT),
-	       kappa(s, GZ_EVENT_BLINK), sqrt(s->raw_off2 / s->fixated),
+	printf("%6.0f  %6.3f %6.3f %6.3f %6.3f   %7.3f %7.3f   %7.3f %7.3f   %5.0f %5.0f\n",
+	       rate_hz, kappa(s, GZ_EVENT_SACCADE), kappa(s, GZ_EVENT_FIXATION),
+	       kappa(s, GZ_EVENT_PURSUIT), kappa(s, GZ_EVENT_BLINK), sqrt(s->raw_off2 / s->fixated),
 	       sqrt(s->smooth_off2 / s->fixated), sqrt(s->raw_step2 / s->fixated),
 	       sqrt(s->smooth_step2 / s->fixated), s->median_ns, s->late_ns);
 }
