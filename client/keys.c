@@ -40,24 +40,6 @@ static bool host_of(const char *endpoint, char *host, size_t size)
 	return true;
 }
 
-static enum gz_result find_server(const char *host, const char *directory, const struct gz_log *log,
-				  struct gz_keys *keys)
-{
-	char path[PATH_SIZE];
-	struct gz_key_list list;
-	enum gz_result result =
-		gz_key_file_find(directory, GZ_KNOWN_SERVERS_FILE, path, sizeof path);
-	if (result == GZ_OK)
-		result = gz_key_file_read_list(path, GZ_KEY_LIST_SERVERS, log, &list);
-	if (result != GZ_OK)
-		return result;
-	const struct gz_known_key *known = gz_key_list_find_host(&list, host);
-	if (!known)
-		return GZ_ERR_NOT_FOUND;
-	memcpy(keys->server_key, known->key, sizeof keys->server_key);
-	return GZ_OK;
-}
-
 static enum gz_result find_own(const char *directory, const struct gz_log *log,
 			       struct gz_keys *keys)
 {
@@ -88,7 +70,7 @@ enum gz_result gz_keys_find(const char *endpoint, const char *directory, const c
 	if (!host_of(endpoint, host, sizeof host))
 		return GZ_ERR_NOT_FOUND;
 	if (!server_key || !server_key[0]) {
-		result = find_server(host, directory, log, &keys);
+		result = gz_key_file_find_server(directory, host, log, keys.server_key);
 	} else if (gz_key_valid(server_key, strlen(server_key))) {
 		memcpy(keys.server_key, server_key, sizeof keys.server_key);
 	} else {

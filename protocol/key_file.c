@@ -191,6 +191,29 @@ enum gz_result gz_key_file_read_list(const char *path, enum gz_key_list_kind kin
 	return result;
 }
 
+enum gz_result gz_key_file_find_server(const char *directory, const char *host,
+				       const struct gz_log *log, char out_key[GZ_KEY_TEXT_SIZE])
+{
+	char path[PATH_SIZE];
+	enum gz_result result =
+		gz_key_file_find(directory, GZ_KNOWN_SERVERS_FILE, path, sizeof path);
+	if (result != GZ_OK)
+		return result;
+	struct gz_key_list *list = malloc(sizeof *list); /* large */
+	if (!list)
+		return GZ_ERR_NO_MEM;
+	result = gz_key_file_read_list(path, GZ_KEY_LIST_SERVERS, log, list);
+	if (result == GZ_OK) {
+		const struct gz_known_key *known = gz_key_list_find_host(list, host);
+		if (known)
+			memcpy(out_key, known->key, GZ_KEY_TEXT_SIZE);
+		else
+			result = GZ_ERR_NOT_FOUND;
+	}
+	free(list);
+	return result;
+}
+
 enum gz_result gz_key_directory_make(const char *directory, const struct gz_log *log)
 {
 	char path[PATH_SIZE];

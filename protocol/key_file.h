@@ -64,6 +64,18 @@ enum gz_result gz_key_file_read_secret(const char *path, const struct gz_log *lo
 enum gz_result gz_key_file_read_list(const char *path, enum gz_key_list_kind kind,
 				     const struct gz_log *log, struct gz_key_list *out_list);
 
+/**
+ * The public key of the daemon on @p host, from GZ_KNOWN_SERVERS_FILE.
+ *
+ * @param directory     as for gz_key_file_find()
+ * @param host          name or address as the file has it, without brackets
+ * @param[out] out_key  written only on GZ_OK
+ * @retval GZ_ERR_NOT_FOUND  there is no such file, or it does not name the host; not logged
+ * @return else as gz_key_file_find() and gz_key_file_read_list()
+ */
+enum gz_result gz_key_file_find_server(const char *directory, const char *host,
+				       const struct gz_log *log, char out_key[GZ_KEY_TEXT_SIZE]);
+
 /** Make @p directory and what is missing above it, 0700. GZ_ERR_IO is logged;
  *  GZ_ERR_FULL: the path is longer than 4095 bytes. */
 enum gz_result gz_key_directory_make(const char *directory, const struct gz_log *log);

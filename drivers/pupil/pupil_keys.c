@@ -1,6 +1,5 @@
 #include "drivers/pupil/pupil_keys.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <zmq.h>
 
@@ -8,25 +7,6 @@
 #include "protocol/key_file.h"
 
 #define GZ_LOG_MODULE "pupil"
-
-static enum gz_result find_server(const char *host, const struct gz_log *log,
-				  struct gz_pupil_keys *keys)
-{
-	char path[GZ_PATH_SIZE];
-	enum gz_result result = gz_key_file_find(NULL, GZ_KNOWN_SERVERS_FILE, path, sizeof path);
-	if (result != GZ_OK)
-		return result;
-	struct gz_key_list *list = malloc(sizeof *list); /* large */
-	if (!list)
-		return GZ_ERR_NO_MEM;
-	result = gz_key_file_read_list(path, GZ_KEY_LIST_SERVERS, log, list);
-	const struct gz_known_key *known =
-		result == GZ_OK ? gz_key_list_find_host(list, host) : NULL;
-	if (known)
-		memcpy(keys->server, known->key, sizeof keys->server);
-	free(list);
-	return result;
-}
 
 static enum gz_result find_own(const struct gz_log *log, struct gz_key_pair *own)
 {
@@ -60,7 +40,7 @@ enum gz_result gz_pupil_keys_find(const char *host, const struct gz_log *log,
 		length = 0;
 	memcpy(bare, host, length);
 	bare[length] = '\0';
-	enum gz_result result = find_server(bare, log, &keys);
+	enum gz_result result = gz_key_file_find_server(NULL, bare, log, keys.server);
 	if (result == GZ_ERR_NOT_FOUND)
 		result = GZ_OK;
 	if (result == GZ_OK && keys.server[0])
