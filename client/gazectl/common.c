@@ -175,18 +175,3 @@ bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,
 	}
 	return false;
 }
-
-void gazectl_json_display(struct gz_json *json, const char *key, const struct gz_display *display)
-{
-	gz_json_begin(json, key);
-	gz_json_begin_list(json, "px");
-	gz_json_int(json, NULL, display->px[0]);
-	gz_json_int(json, NULL, display->px[1]);
-	gz_json_end_list(json);
-	gz_json_begin_list(json, "mm");
-	gz_json_double(json, NULL, display->mm[0]);
-	gz_json_double(json, NULL, display->mm[1]);
-	gz_json_end_list(json);
-	gz_json_double(json, "distance_mm", display->distance_mm);
-	gz_json_end(json);
-}

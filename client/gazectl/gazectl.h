@@ -145,9 +145,6 @@ enum gazectl_exit gazectl_request(struct gz_control *control, const char *reques
 bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,
 			 struct gz_status *out_status);
 
-/** Write a display's geometry as the object @p key. */
-void gazectl_json_display(struct gz_json *json, const char *key, const struct gz_display *display);
-
 /** Log that nobody answers at @p endpoint, with the remedy. */
 void gazectl_report_no_daemon(const char *endpoint, const struct gz_log *log);
 

@@ -139,3 +139,18 @@ void gz_json_bool(struct gz_json *json, const char *key, bool value)
 	begin_value(json, key);
 	fputs(value ? "true" : "false", json->out);
 }
+
+void gz_json_display(struct gz_json *json, const char *key, const struct gz_display *display)
+{
+	gz_json_begin(json, key);
+	gz_json_begin_list(json, "px");
+	gz_json_int(json, NULL, display->px[0]);
+	gz_json_int(json, NULL, display->px[1]);
+	gz_json_end_list(json);
+	gz_json_begin_list(json, "mm");
+	gz_json_double(json, NULL, display->mm[0]);
+	gz_json_double(json, NULL, display->mm[1]);
+	gz_json_end_list(json);
+	gz_json_double(json, "distance_mm", display->distance_mm);
+	gz_json_end(json);
+}

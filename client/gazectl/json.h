@@ -10,6 +10,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "protocol/display.h"
+
 /** A value being written. Zero-initialised but for out is ready. */
 struct gz_json {
 	FILE *out;
@@ -36,5 +38,8 @@ void gz_json_int(struct gz_json *json, const char *key, int64_t value);
 void gz_json_uint(struct gz_json *json, const char *key, uint64_t value);
 /** true or false. */
 void gz_json_bool(struct gz_json *json, const char *key, bool value);
+
+/** A display's geometry: an object of px, mm and distance_mm. */
+void gz_json_display(struct gz_json *json, const char *key, const struct gz_display *display);
 
 #endif

@@ -216,7 +216,7 @@ static void print_json(const struct gz_status *status, const char *endpoint)
 	print_json_tracker(&json, status);
 	print_json_clock(&json, &status->clock);
 	gz_json_double(&json, "noise_deg", status->noise_deg);
-	gazectl_json_display(&json, "display", &status->display);
+	gz_json_display(&json, "display", &status->display);
 	print_json_correction(&json, status);
 	print_json_recording(&json, status);
 	gz_json_uint(&json, "subscribers", status->subscribers);

@@ -209,7 +209,7 @@ static void print_json_header(struct gz_json *json, const struct gz_gaze_log_hea
 	gz_json_text(json, "started", header->started);
 	gz_json_text(json, "software", header->software);
 	if (header->has_display)
-		gazectl_json_display(json, "display", &header->display);
+		gz_json_display(json, "display", &header->display);
 	gz_json_begin(json, "pipeline");
 	for (size_t i = 0; i < header->setting_count; i++)
 		gz_json_text(json, header->settings[i].key, header->settings[i].value);

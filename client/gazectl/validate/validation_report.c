@@ -160,14 +160,7 @@ static void write_setting(struct gz_json *json, const struct gz_validation *vali
 	gz_json_double(json, "nominal", status->rate_hz_nominal);
 	gz_json_double(json, "measured", status->rate_hz_measured);
 	gz_json_end(json);
-	gz_json_begin(json, "display");
-	gz_json_begin_list(json, "px");
-	gz_json_int(json, NULL, status->display.px[0]);
-	gz_json_int(json, NULL, status->display.px[1]);
-	gz_json_end_list(json);
-	write_doubles(json, "mm", status->display.mm, 2);
-	gz_json_double(json, "distance_mm", status->display.distance_mm);
-	gz_json_end(json);
+	gz_json_display(json, "display", &status->display);
 	gz_json_begin(json, "correction_in_force");
 	write_doubles(json, "x", status->correction.x, 3);
 	write_doubles(json, "y", status->correction.y, 3);
