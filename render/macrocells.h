@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 #include "render/transfer_table.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 #define GZ_MACROCELL_EDGE 8 /**< voxels */
 

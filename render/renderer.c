@@ -47,20 +47,11 @@ enum gz_result gz_renderer_set_transfer(struct gz_renderer *renderer,
 	return renderer->ops->set_transfer(renderer, transfer);
 }
 
-static bool ray_params_valid(const struct gz_ray_params *rays)
-{
-	for (int channel = 0; channel < 3; channel++)
-		if (!(rays->background[channel] >= 0 && rays->background[channel] <= 1))
-			return false;
-	return rays->ray_sampling_rate >= GZ_RAY_SAMPLING_RATE_MIN &&
-	       rays->ray_sampling_rate <= GZ_RAY_SAMPLING_RATE_MAX;
-}
-
 enum gz_result gz_renderer_render(struct gz_renderer *renderer, const struct gz_camera *camera,
 				  const struct gz_ray_params *rays, const struct gz_plan *plan,
 				  struct gz_image *image, struct gz_frame_stats *out_stats)
 {
-	if (!ray_params_valid(rays) || plan->layer_count < 1)
+	if (!gz_ray_params_valid(rays) || plan->layer_count < 1)
 		return GZ_ERR_INVAL;
 	return renderer->ops->render(renderer, camera, rays, plan, image, out_stats);
 }

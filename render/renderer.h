@@ -11,23 +11,10 @@
 #include "base/result.h"
 #include "render/camera.h"
 #include "render/image.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
+#include "render/ray_params.h"
 #include "render/transfer.h"
-#include "render/volume.h"
-
-/** Limits of ray_sampling_rate. Chosen: a step of 20 voxels shows nothing, one of 1/32 changes no
- *  picture. */
-#define GZ_RAY_SAMPLING_RATE_MIN 0.05
-#define GZ_RAY_SAMPLING_RATE_MAX 32
-
-enum gz_interpolation { GZ_INTERPOLATION_TRILINEAR, GZ_INTERPOLATION_NEAREST };
-
-/** How rays are integrated. */
-struct gz_ray_params {
-	double ray_sampling_rate; /**< samples per voxel length at full resolution */
-	int interpolation;        /**< enum gz_interpolation */
-	double background[3];     /**< [0, 1] each */
-};
+#include "render/volume/volume.h"
 
 /** What one frame cost. */
 struct gz_frame_stats {

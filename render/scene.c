@@ -17,8 +17,6 @@ _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option write
 static const char *const procedural_names[] = { "none", "shells", "supernova", NULL };
 static const char *const endian_names[] = { "little", "big", NULL };
 static const char *const projection_names[] = { "perspective", "orthographic", NULL };
-static const char *const interpolation_names[] = { "trilinear", "nearest", NULL };
-static const char *const shading_names[] = { "none", NULL };
 
 #define AT(field) offsetof(struct gz_scene_settings, field)
 
@@ -37,11 +35,7 @@ enum {
 	CAMERA_FOV,
 	CAMERA_HEIGHT,
 	CAMERA_PROJECTION,
-	RENDER_BACKGROUND,
-	RENDER_RAY_SAMPLING,
 	RENDER_IMAGE_SAMPLING,
-	RENDER_INTERPOLATION,
-	RENDER_SHADING,
 	DISPLAY_PX,
 	DISPLAY_MM,
 	DISPLAY_DISTANCE,
@@ -138,21 +132,6 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 				.choices = projection_names,
 				.preset = "perspective",
 				.help = "how far things look smaller" },
-	[RENDER_BACKGROUND] = { .key = "render.background",
-				.type = GZ_OPTION_DOUBLE,
-				.offset = AT(rays.background),
-				.min = 0,
-				.max = 1,
-				.count = 3,
-				.preset = "0 0 0",
-				.help = "red, green, blue" },
-	[RENDER_RAY_SAMPLING] = { .key = "render.ray_sampling_rate",
-				  .type = GZ_OPTION_DOUBLE,
-				  .offset = AT(rays.ray_sampling_rate),
-				  .min = 0.05,
-				  .max = 32,
-				  .preset = "1.5",
-				  .help = "samples per voxel length" },
 	[RENDER_IMAGE_SAMPLING] = { .key = "render.image_sampling_rate",
 				    .type = GZ_OPTION_DOUBLE,
 				    .offset = AT(image_sampling_rate),
@@ -160,18 +139,6 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 				    .max = 4,
 				    .preset = "1",
 				    .help = "rays per pixel edge" },
-	[RENDER_INTERPOLATION] = { .key = "render.interpolation",
-				   .type = GZ_OPTION_CHOICE,
-				   .offset = AT(rays.interpolation),
-				   .choices = interpolation_names,
-				   .preset = "trilinear",
-				   .help = "between voxels" },
-	[RENDER_SHADING] = { .key = "render.shading",
-			     .type = GZ_OPTION_CHOICE,
-			     .offset = AT(shading),
-			     .choices = shading_names,
-			     .preset = "none",
-			     .help = "how light falls" },
 	[DISPLAY_PX] = { .key = "display.px",
 			 .type = GZ_OPTION_INT,
 			 .offset = AT(display.px),
@@ -199,6 +166,7 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 {
 	const struct gz_option_binding bindings[GZ_SCENE_BINDINGS] = {
 		{ scene_options, SCENE_OPTION_COUNT, settings, NULL },
+		{ gz_ray_options, gz_ray_option_count, &settings->rays, NULL },
 		{ gz_foveation_options, gz_foveation_option_count, &settings->foveation, NULL },
 	};
 	size_t count = room < GZ_SCENE_BINDINGS ? room : GZ_SCENE_BINDINGS;
@@ -267,6 +235,17 @@ static enum gz_result check_camera(const struct reader *reader)
 	return refuse(reader, CAMERA_EYE, "is where camera.look_at is; move one of them");
 }
 
+static enum gz_result check_rays(const struct reader *reader)
+{
+	if (gz_ray_params_valid(&reader->settings->rays))
+		return GZ_OK;
+	gz_err(reader->log,
+	       "%s: clip.least must be below clip.greatest along each axis, and light.direction "
+	       "must not be 0 0 0",
+	       reader->name);
+	return GZ_ERR_FORMAT;
+}
+
 static enum gz_result check_display(const struct reader *reader, bool *out_has_display)
 {
 	bool px = reader->given[DISPLAY_PX], mm = reader->given[DISPLAY_MM];
@@ -286,6 +265,8 @@ static enum gz_result check(const struct reader *reader, bool *out_has_display)
 				"not given; name a .tf file (docs/scenes.md says what is in it)");
 	if (result == GZ_OK)
 		result = check_camera(reader);
+	if (result == GZ_OK)
+		result = check_rays(reader);
 	if (result == GZ_OK)
 		result = check_display(reader, out_has_display);
 	return result;

@@ -13,10 +13,10 @@
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 #include "render/camera.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 #include "render/renderer.h"
 #include "render/transfer.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 /** The settings of a scene, as its table reads them. */
 struct gz_scene_settings {
@@ -30,7 +30,6 @@ struct gz_scene_settings {
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
-	int shading;                /**< 0 = none */
 	struct gz_foveation foveation;
 	struct gz_display display;
 };
@@ -44,7 +43,7 @@ struct gz_scene {
 };
 
 /** Tables that gz_scene_bindings() gives. */
-#define GZ_SCENE_BINDINGS 2
+#define GZ_SCENE_BINDINGS 3
 
 /**
  * The tables over struct gz_scene_settings: "volume.file", "camera.eye", …

@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 #include "render/transfer.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 /** Entries of a table. Chosen: 16 between two grey levels of 8-bit data, so that the nearest entry
  * is near enough; 32 KiB, of which a scene uses a part, stay close to the processor. */

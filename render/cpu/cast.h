@@ -7,9 +7,9 @@
 
 #include <stdint.h>
 
-#include "render/plan.h"
+#include "render/plan/plan.h"
 #include "render/transfer_table.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 #define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
 

@@ -10,7 +10,7 @@
 
 #include "base/result.h"
 #include "render/image.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 /** The points of one layer. The first layer of spacing 1 lies in the
  *  picture itself. */

@@ -29,7 +29,7 @@ static struct small_scene base_scene(int nx, int ny, int nz, enum gz_voxel_type 
 			    .up = { 0, 0, 1 },
 			    .fov_deg = 40,
 			    .height = 1.2 },
-		.rays = { .ray_sampling_rate = 1.5 },
+		.rays = gz_ray_params_default(),
 		.foveation = gz_foveation_default(),
 		.gaze = { 0.5F, 0.5F },
 	};

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "render/image.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 static struct gz_plan make(int method, struct gz_point gaze, int width, int height)
 {

@@ -108,6 +108,9 @@ static const struct refusal refusals[] = {
 	{ SCENE "[clip]\nx = 1\n", "s.scene:7: clip.x: " },
 	{ SCENE "[render]\nray_sampling_rate = 0\n", "s.scene:7: render.ray_sampling_rate: 0 is" },
 	{ SCENE "[render]\nbackground = 0 0 1.5\n", "s.scene:7: render.background: 1.5 is" },
+	{ SCENE "[clip]\nleast = 0 0.5 0\ngreatest = 1 0.5 1\n",
+	  "s.scene: clip.least must be below clip.greatest" },
+	{ SCENE "[light]\ndirection = 0 0 0\n", "light.direction must not be 0 0 0" },
 	{ SCENE "[render]\nshading = phong\n", "s.scene:7: render.shading: phong is not" },
 	{ SCENE "[render]\nray_sampling_rate = 1\nray_sampling_rate = 1\n", "s.scene:8: " },
 	{ "[volume]\ndims = 0 1 1\n", "s.scene:2: volume.dims: 0 is outside 1 to 16384" },
@@ -122,7 +125,7 @@ static void each_refusal_names_place_and_remedy(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < sizeof refusals / sizeof refusals[0]; i++) {
-		struct gz_scene_settings s = { .shading = 42 };
+		struct gz_scene_settings s = { .rays.shading = 42 };
 		struct captured_log log;
 		bool display = true;
 		const char *text = refusals[i].text;
@@ -133,7 +136,7 @@ static void each_refusal_names_place_and_remedy(void **state)
 		    !strstr(log.last, refusals[i].words))
 			fail_msg("result %d, %d lines, \"%s\" lacks \"%s\"", result, log.messages,
 				 log.last, refusals[i].words);
-		assert_int_equal(s.shading, 42);
+		assert_int_equal(s.rays.shading, 42);
 		assert_true(display);
 	}
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/captured_log.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 static struct gz_volume volume_of(int x, int y, int z, enum gz_voxel_type type)
 {

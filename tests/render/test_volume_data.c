@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 /* Voxels at (x/2, y/2, z/2), (x/3, y/2, 2z/3), (2x/3, y/4, z/2). */
 struct expectation {

@@ -9,7 +9,7 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 #include "volume_files.h"
 
 #define X     3

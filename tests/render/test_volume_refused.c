@@ -10,7 +10,7 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/volume.h"
+#include "render/volume/volume.h"
 #include "volume_files.h"
 
 static const uint8_t zeros[4096];

@@ -1,11 +1,11 @@
-#include "render/text_head.h"
+#include "render/volume/text_head.h"
 
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/number.h"
-#include "render/byte_stream.h"
+#include "render/volume/byte_stream.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -13,8 +13,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/byte_stream.h"
-#include "render/volume.h"
+#include "render/volume/byte_stream.h"
+#include "render/volume/volume.h"
 
 /** What a file says of its voxels. Axes are the file's own, the fastest first. */
 struct gz_import_layout {

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "render/file_path.h"
-#include "render/volume_import.h"
-#include "render/volume_loaders.h"
+#include "render/volume/volume_import.h"
+#include "render/volume/volume_loaders.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -1,4 +1,4 @@
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "render/byte_stream.h"
+#include "render/volume/byte_stream.h"
 
 #include <errno.h>
 #include <fcntl.h>

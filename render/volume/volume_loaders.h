@@ -7,8 +7,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/byte_stream.h"
-#include "render/volume.h"
+#include "render/volume/byte_stream.h"
+#include "render/volume/volume.h"
 
 /** NIfTI-1 in one file, .nii or .nii.gz. sform before qform; of a series, the first volume. */
 enum gz_result gz_volume_load_nifti(const char *path, const struct gz_log *log,

@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 /* A block of pixels, corners included. */
 struct block {

@@ -5,7 +5,7 @@
 #ifndef GZ_RENDER_PLAN_EMIT_H
 #define GZ_RENDER_PLAN_EMIT_H
 
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 /** What a method needs to know of a frame. */
 struct gz_plan_context {

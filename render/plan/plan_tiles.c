@@ -1,6 +1,6 @@
 #include <stdlib.h>
 
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE] = {
 	[GZ_TILE_SQUARE] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 },

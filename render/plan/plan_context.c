@@ -6,7 +6,7 @@
  */
 #include <math.h>
 
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 static const double deg_per_rad = 57.29577951308232;
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -1,9 +1,9 @@
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 #include <stdlib.h>
 
 #include "render/image.h"
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 /* The table is the one place that knows the ranges. */
 static bool parameters_valid(const struct gz_foveation *foveation)

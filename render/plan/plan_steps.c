@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 /* Spacings of the rungs: powers of two, and from 2 on the quincunx between them. Chosen: none
  * between 1 and 2, where the display, not the eye, is the limit and the picture shall equal the

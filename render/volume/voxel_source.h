@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "protocol/gaze.h"
-#include "render/byte_stream.h"
-#include "render/volume_import.h"
+#include "render/volume/byte_stream.h"
+#include "render/volume/volume_import.h"
 
 /** Skip that puts the voxels at the end of the file. */
 #define GZ_SKIP_TO_END (-1)

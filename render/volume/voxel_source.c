@@ -1,4 +1,4 @@
-#include "render/voxel_source.h"
+#include "render/volume/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -7,9 +7,9 @@
 
 #include "base/number.h"
 #include "render/file_path.h"
-#include "render/text_head.h"
-#include "render/volume_loaders.h"
-#include "render/voxel_source.h"
+#include "render/volume/text_head.h"
+#include "render/volume/volume_loaders.h"
+#include "render/volume/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 

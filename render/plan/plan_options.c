@@ -1,5 +1,5 @@
 #include "render/image.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
 const char *const gz_method_names[] = { "standard", "mdc", "ddc", "acuity", NULL };
 const char *const gz_step_rule_names[] = { "method", "none", "distance", "acuity", NULL };

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "render/volume.h"
+#include "render/volume/volume.h"
 
 /** How one type of number is read. */
 struct gz_voxel_conversion {

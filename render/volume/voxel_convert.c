@@ -1,4 +1,4 @@
-#include "render/voxel_convert.h"
+#include "render/volume/voxel_convert.h"
 
 #include <string.h>
 

@@ -1,11 +1,11 @@
-#include "render/volume_import.h"
+#include "render/volume/volume_import.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/voxel_convert.h"
+#include "render/volume/voxel_convert.h"
 
 #define GZ_LOG_MODULE "volume"
 

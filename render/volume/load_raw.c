@@ -1,8 +1,8 @@
 /* Volumes without a header: plain, .zst or .gz. */
 #include <string.h>
 
-#include "render/volume_import.h"
-#include "render/volume_loaders.h"
+#include "render/volume/volume_import.h"
+#include "render/volume/volume_loaders.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -2,8 +2,8 @@
 #include <stddef.h>
 
 #include "render/file_path.h"
-#include "render/volume.h"
-#include "render/volume_loaders.h"
+#include "render/volume/volume.h"
+#include "render/volume/volume_loaders.h"
 
 #define GZ_LOG_MODULE "volume"
 

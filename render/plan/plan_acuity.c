@@ -1,7 +1,7 @@
 /*
  * The acuity method: a quadtree of tiles, split while the eye resolves more than a tile would show.
  */
-#include "render/plan_emit.h"
+#include "render/plan/plan_emit.h"
 
 enum { LEVELS = 5 };
 

@@ -1,0 +1,94 @@
+/*
+ * From a place along the rays to the value there and its entry in the transfer function.
+ * A part of the kernel: see cast_kernel.h.
+ */
+#ifndef GZ_RENDER_CPU_CAST_FETCH_H
+#define GZ_RENDER_CPU_CAST_FETCH_H
+
+#include "render/cpu/cast.h"
+#include "render/cpu/cast_rays.h"
+
+/* Two neighbours along x, as floats: one 32-bit load where both fit. */
+SIMD void load_pair(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask, vf *low,
+		    vf *high)
+{
+	if (type == GZ_VOXEL_U8) {
+		const vi pair = vi_gather(cast->voxels, index, 1, mask);
+		*low = vf_from_i(vi_and(pair, vi_set(0xFF)));
+		*high = vf_from_i(vi_and(vi_shift_right(pair, 8), vi_set(0xFF)));
+	} else if (type == GZ_VOXEL_U16) {
+		const vi pair = vi_gather(cast->voxels, index, 2, mask);
+		*low = vf_from_i(vi_and(pair, vi_set(0xFFFF)));
+		*high = vf_from_i(vi_shift_right(pair, 16));
+	} else {
+		const float *voxels = cast->voxels;
+		*low = vf_gather(voxels, index, mask);
+		*high = vf_gather(voxels + 1, index, mask);
+	}
+}
+
+SIMD vf mix(vf a, vf b, vf share)
+{
+	return vf_fma(share, b - a, a);
+}
+
+SIMD vf load_row(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask, vf share)
+{
+	vf low, high;
+	load_pair(cast, type, index, mask, &low, &high);
+	return mix(low, high, share);
+}
+
+SIMD vf sample_trilinear(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
+			 vm mask)
+{
+	vf share[3];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const vf top = vf_set(cast->dims[axis] - 1);
+		const vf place = vf_min(vf_max(at[axis] - vf_set(0.5F), vf_set(0)), top);
+		index[axis] = vi_min(vi_trunc(place), vi_set(cast->last[axis]));
+		share[axis] = place - vf_from_i(index[axis]);
+	}
+	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
+	const vi i00 = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
+	const vi i01 = vi_add(i00, up_z);
+	const vf v00 = load_row(cast, type, i00, mask, share[0]);
+	const vf v10 = load_row(cast, type, vi_add(i00, up_y), mask, share[0]);
+	const vf v01 = load_row(cast, type, i01, mask, share[0]);
+	const vf v11 = load_row(cast, type, vi_add(i01, up_y), mask, share[0]);
+	return mix(mix(v00, v10, share[1]), mix(v01, v11, share[1]), share[2]);
+}
+
+SIMD vf sample_nearest(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
+{
+	vi index = vi_set(0);
+	for (int axis = 0; axis < 3; axis++) {
+		const vf top = vf_set(cast->dims[axis] - 1);
+		const vf place = vf_min(vf_max(vf_floor(at[axis]), vf_set(0)), top);
+		index = vi_add(index, vi_mul(vi_trunc(place), vi_set(cast->stride[axis])));
+	}
+	vf low, high;
+	load_pair(cast, type, index, mask, &low, &high);
+	return low;
+}
+
+SIMD vf sample_at(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+		  const struct rays *rays, vf k, vm mask)
+{
+	vf at[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->start[axis]);
+	return nearest ? sample_nearest(cast, type, at, mask)
+		       : sample_trilinear(cast, type, at, mask);
+}
+
+/* The transfer function's entry for a sample. */
+SIMD vi entry_of(const struct gz_cast *cast, vf stored)
+{
+	const vf entry = vf_fma(stored, vf_set(cast->entry_scale), vf_set(cast->entry_bias));
+	const vf last = vf_set(GZ_TRANSFER_TABLE_SIZE - 1);
+	return vi_round(vf_min(vf_max(entry, vf_set(0)), last));
+}
+
+#endif
