@@ -10,10 +10,9 @@
 #include <stdint.h>
 
 #include "base/result.h"
+#include "render/cast_constants.h"
 #include "render/transfer_table.h"
 #include "render/volume/volume.h"
-
-#define GZ_MACROCELL_EDGE 8 /**< voxels */
 
 /** Cell (i, j, k) covers voxels [8i - 1, 8i + 8] along x, and so on: every voxel that an
  * interpolation within the cell, or half a voxel around it, can touch. */

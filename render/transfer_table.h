@@ -10,12 +10,9 @@
 #include <stdint.h>
 
 #include "base/result.h"
+#include "render/cast_constants.h"
 #include "render/transfer.h"
 #include "render/volume/volume.h"
-
-/** Entries of a table. Chosen: 16 between two grey levels of 8-bit data, so that the nearest entry
- * is near enough; 32 KiB, of which a scene uses a part, stay close to the processor. */
-#define GZ_TRANSFER_TABLE_SIZE 4096
 
 /** What one look-up brings. */
 struct gz_transfer_entry {

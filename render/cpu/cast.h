@@ -7,14 +7,12 @@
 
 #include <stdint.h>
 
+#include "render/cast_constants.h"
 #include "render/plan/plan.h"
 #include "render/transfer_table.h"
 #include "render/volume/volume.h"
 
 #define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
-
-/** A ray ends when less than this share of the light behind it would come through. */
-#define GZ_TRANSMITTANCE_END (1.0F / 1024)
 
 /** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel
  *  coordinates: voxel i along an axis spans [i, i + 1), its datum sits at i + 1/2. */

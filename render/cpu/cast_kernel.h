@@ -64,7 +64,7 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 SIMD uint32_t march_rest(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
 			 const struct rays *rays, struct light *light)
 {
-	vm mask = vm_and(rays->hit, vf_less(vf_set(1e-4F), rays->rest));
+	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), rays->rest));
 	mask = vm_and(mask, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	if (!vm_any(mask))
 		return 0;

@@ -23,11 +23,9 @@
 #include "base/option.h"
 #include "base/result.h"
 #include "protocol/display.h"
+#include "render/cast_constants.h"
 
-#define GZ_TILE_EDGE       4
-#define GZ_SPACING_MAX     16 /**< pixels */
-#define GZ_PLAN_LAYERS_MAX 5
-#define GZ_PLAN_STEPS_MAX  32
+#define GZ_SPACING_MAX 16 /**< pixels */
 
 enum gz_method {
 	GZ_METHOD_STANDARD, /**< every pixel */
