@@ -31,6 +31,8 @@ const char *gz_result_text(enum gz_result result)
 		return "end of stream";
 	case GZ_ERR_FULL:
 		return "no space left";
+	case GZ_ERR_CANCELLED:
+		return "stopped on request";
 	}
 	return "unknown result";
 }

@@ -21,6 +21,7 @@ enum gz_result {
 	GZ_ERR_BUSY = -11,        /**< somebody else holds it: an endpoint, a lock, a recording */
 	GZ_ERR_END = -12,         /**< the stream or file has ended; not a fault */
 	GZ_ERR_FULL = -13,        /**< no room left: disk, buffer, queue */
+	GZ_ERR_CANCELLED = -14,   /**< the caller asked it to stop before its end */
 };
 
 /**

@@ -131,7 +131,7 @@ int main(int argc, char **argv)
 	if (bench.pairs < 1 || bench.pairs > PAIRS_MAX)
 		bench.pairs = 5;
 	gz_log_init(&bench.log, NULL, NULL, NULL);
-	if (gz_scene_load(argv[1], &bench.log, &bench.scene) != GZ_OK)
+	if (gz_scene_load(argv[1], NULL, &bench.log, &bench.scene) != GZ_OK)
 		return 1;
 	const struct gz_renderer_params params = { .simd = argc > 5 ? argv[5] : NULL };
 	int failed = 1;

@@ -67,7 +67,8 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			  .type = GZ_OPTION_CHOICE,
 			  .offset = AT(type),
 			  .choices = gz_raw_type_names,
-			  .help = "type of voxel; for raw files" },
+			  .help = "type of voxel; for raw files, and uint8, uint16 or float32 "
+				  "for procedural volumes" },
 	[VOLUME_ENDIAN] = { .key = "volume.endian",
 			    .type = GZ_OPTION_CHOICE,
 			    .offset = AT(endian),
@@ -177,6 +178,7 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 /* A scene in reading. */
 struct reader {
 	const char *name;
+	const struct gz_loading *loading;
 	const struct gz_log *log;
 	struct gz_scene_settings *settings;
 	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
@@ -208,18 +210,37 @@ static bool given_raw(const struct reader *reader)
 	       reader->given[VOLUME_SPACING];
 }
 
+/* The type of voxel of a procedural volume; false if there is none of that type. */
+static bool made_type(const struct reader *reader, enum gz_voxel_type *out_type)
+{
+	const struct gz_scene_settings *settings = reader->settings;
+	if (!reader->given[VOLUME_TYPE]) {
+		*out_type =
+			gz_procedural_type((enum gz_procedural)(settings->volume_procedural - 1));
+		return true;
+	}
+	*out_type = settings->type == GZ_RAW_UINT8    ? GZ_VOXEL_U8
+		    : settings->type == GZ_RAW_UINT16 ? GZ_VOXEL_U16
+						      : GZ_VOXEL_F32;
+	return *out_type != GZ_VOXEL_F32 || settings->type == GZ_RAW_FLOAT32;
+}
+
 static enum gz_result check_volume(const struct reader *reader)
 {
 	const struct gz_scene_settings *settings = reader->settings;
 	bool file = settings->volume_file[0] != '\0', made = settings->volume_procedural != 0;
+	enum gz_voxel_type type;
 	if (file && made)
 		return refuse(reader, VOLUME_FILE, "given with volume.procedural; keep one");
 	if (!file && !made)
 		return refuse(reader, VOLUME_FILE,
 			      "not given; name a volume, or set volume.procedural");
-	if (made && given_raw(reader))
+	if (made && (reader->given[VOLUME_ENDIAN] || reader->given[VOLUME_SPACING]))
 		return refuse(reader, VOLUME_PROCEDURAL,
-			      "takes dims only; leave out type, endian and spacing");
+			      "takes dims and type only; leave out endian and spacing");
+	if (made && !made_type(reader, &type))
+		return refuse(reader, VOLUME_TYPE,
+			      "a procedural volume has uint8, uint16 or float32");
 	if (file && (given_raw(reader) || reader->given[VOLUME_DIMS]) &&
 	    !(reader->given[VOLUME_DIMS] && reader->given[VOLUME_TYPE]))
 		return refuse(reader, VOLUME_DIMS,
@@ -322,7 +343,10 @@ static enum gz_result make_procedural(const struct reader *reader, struct gz_vol
 	static const int preset[3] = { PROCEDURAL_EDGE, PROCEDURAL_EDGE, PROCEDURAL_EDGE };
 	const int *dims = reader->given[VOLUME_DIMS] ? reader->settings->dims : preset;
 	enum gz_procedural which = (enum gz_procedural)(reader->settings->volume_procedural - 1);
-	return gz_volume_generate(which, dims, reader->log, out_volume);
+	enum gz_voxel_type type;
+	if (!made_type(reader, &type))
+		return GZ_ERR_INVAL; /* refused before */
+	return gz_volume_generate(which, dims, type, reader->loading, reader->log, out_volume);
 }
 
 static enum gz_result load_volume(const struct reader *reader, struct gz_volume *out_volume)
@@ -338,8 +362,8 @@ static enum gz_result load_volume(const struct reader *reader, struct gz_volume 
 				     .big_endian = settings->endian == 1 };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
-	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, reader->log,
-			      out_volume);
+	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, reader->loading,
+			      reader->log, out_volume);
 }
 
 static enum gz_result load_transfer(const struct reader *reader, struct gz_transfer *out_transfer)
@@ -350,11 +374,13 @@ static enum gz_result load_transfer(const struct reader *reader, struct gz_trans
 	return result == GZ_OK ? gz_transfer_load(path, reader->log, out_transfer) : result;
 }
 
-enum gz_result gz_scene_load(const char *path, const struct gz_log *log, struct gz_scene *out_scene)
+enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
+			     const struct gz_log *log, struct gz_scene *out_scene)
 {
 	struct gz_scene scene = { 0 };
 	struct reader reader;
 	enum gz_result result = begin(&reader, path, log, &scene.settings);
+	reader.loading = loading;
 	if (result == GZ_OK)
 		result = gz_options_read_file(reader.bindings, GZ_SCENE_BINDINGS, path, log);
 	if (result == GZ_OK)

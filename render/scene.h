@@ -72,12 +72,14 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
  * Read a scene with its volume and transfer function. Relative paths are looked up beside the
  * scene, then under $GAZECAST_DATA.
  *
+ * @param loading  of the volume: see gz_volume_load(); NULL for nobody to tell, and in memory
  * @param[out] out_scene  filled; the caller frees it with gz_scene_free()
  * @retval GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_IO, GZ_ERR_UNSUPPORTED, GZ_ERR_NO_MEM  logged,
  * one line with the remedy
+ * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
  */
-enum gz_result gz_scene_load(const char *path, const struct gz_log *log,
-			     struct gz_scene *out_scene);
+enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
+			     const struct gz_log *log, struct gz_scene *out_scene);
 
 /** Free what it holds and zero it. */
 void gz_scene_free(struct gz_scene *scene);

@@ -44,7 +44,7 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	if (!maker)
 		return GZ_ERR_NO_MEM;
 	maker->log = log;
-	enum gz_result r = gz_scene_load(options->scene, log, &maker->scene);
+	enum gz_result r = gz_scene_load(options->scene, NULL, log, &maker->scene);
 	if (r == GZ_OK)
 		r = gz_view_options_apply(options, &maker->scene.settings);
 	if (r == GZ_OK)

@@ -10,8 +10,8 @@
 #include "render/cpu/cast.h"
 #include "render/cpu/lattice.h"
 #include "render/cpu/reconstruct.h"
-#include "render/cpu/workers.h"
 #include "render/macrocells.h"
+#include "render/workers.h"
 
 #define GZ_LOG_MODULE "cpu"
 

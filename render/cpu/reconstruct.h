@@ -6,7 +6,7 @@
 #define GZ_RENDER_CPU_RECONSTRUCT_H
 
 #include "render/cpu/lattice.h"
-#include "render/cpu/workers.h"
+#include "render/workers.h"
 
 /** Fill every pixel of @p image that was not cast. The same bits for any number of threads. */
 void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattices,

@@ -279,8 +279,8 @@ static enum gz_result finish_layout(struct metaimage *meta)
 	return !meta->has_matrix && meta->anatomical[0] ? use_letters(meta) : GZ_OK;
 }
 
-enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_log *log,
-					struct gz_volume *out_volume)
+enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_loading *loading,
+					const struct gz_log *log, struct gz_volume *out_volume)
 {
 	struct metaimage meta = { .layout = gz_import_layout_default() };
 	enum gz_result result = gz_text_head_open(&meta.head, path, log);
@@ -289,7 +289,8 @@ enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_log *l
 	if (result == GZ_OK)
 		result = finish_layout(&meta);
 	if (result == GZ_OK)
-		result = gz_voxel_source_import(&meta.source, &meta.layout, log, out_volume);
+		result = gz_voxel_source_import(&meta.source, &meta.layout, loading, log,
+						out_volume);
 	gz_text_head_free(&meta.head);
 	return result;
 }

@@ -197,8 +197,8 @@ static enum gz_result read_header(struct nifti_file *file, struct gz_byte_stream
 	return result;
 }
 
-enum gz_result gz_volume_load_nifti(const char *path, const struct gz_log *log,
-				    struct gz_volume *out_volume)
+enum gz_result gz_volume_load_nifti(const char *path, const struct gz_loading *loading,
+				    const struct gz_log *log, struct gz_volume *out_volume)
 {
 	struct nifti_file file = { .path = path, .log = log, .layout = gz_import_layout_default() };
 	enum gz_coding coding = gz_path_ends(path, ".gz") ? GZ_CODING_ZLIB : GZ_CODING_PLAIN;
@@ -210,7 +210,7 @@ enum gz_result gz_volume_load_nifti(const char *path, const struct gz_log *log,
 	if (result == GZ_OK)
 		result = gz_byte_stream_skip(stream, offset - HEADER_SIZE);
 	if (result == GZ_OK)
-		result = gz_volume_import(stream, &file.layout, path, log, out_volume);
+		result = gz_volume_import(stream, &file.layout, path, loading, log, out_volume);
 	gz_byte_stream_close(&stream);
 	return result;
 }

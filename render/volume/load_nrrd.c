@@ -383,8 +383,8 @@ static enum gz_result skip_lines(struct nrrd *nrrd)
 	return result;
 }
 
-enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_log *log,
-				   struct gz_volume *out_volume)
+enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_loading *loading,
+				   const struct gz_log *log, struct gz_volume *out_volume)
 {
 	struct nrrd nrrd = { .layout = gz_import_layout_default(), .sign = { 1, 1, 1 } };
 	enum gz_result result = gz_text_head_open(&nrrd.head, path, log);
@@ -401,7 +401,8 @@ enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_log *log,
 	if (result == GZ_OK)
 		result = skip_lines(&nrrd);
 	if (result == GZ_OK)
-		result = gz_voxel_source_import(&nrrd.source, &nrrd.layout, log, out_volume);
+		result = gz_voxel_source_import(&nrrd.source, &nrrd.layout, loading, log,
+						out_volume);
 	gz_text_head_free(&nrrd.head);
 	return result;
 }

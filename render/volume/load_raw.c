@@ -7,8 +7,8 @@
 #define GZ_LOG_MODULE "volume"
 
 enum gz_result gz_volume_load_raw(const char *path, enum gz_coding coding,
-				  const struct gz_raw_layout *raw, const struct gz_log *log,
-				  struct gz_volume *out_volume)
+				  const struct gz_raw_layout *raw, const struct gz_loading *loading,
+				  const struct gz_log *log, struct gz_volume *out_volume)
 {
 	struct gz_import_layout layout = gz_import_layout_default();
 	if ((unsigned)raw->type >= GZ_RAW_TYPE_COUNT) {
@@ -23,7 +23,7 @@ enum gz_result gz_volume_load_raw(const char *path, enum gz_coding coding,
 	struct gz_byte_stream *stream = NULL;
 	enum gz_result result = gz_byte_stream_open(path, coding, 0, log, &stream);
 	if (result == GZ_OK)
-		result = gz_volume_import(stream, &layout, path, log, out_volume);
+		result = gz_volume_import(stream, &layout, path, loading, log, out_volume);
 	gz_byte_stream_close(&stream);
 	return result;
 }

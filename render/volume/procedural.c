@@ -2,9 +2,11 @@
  * nothing is fused (cmake/GzTargets.cmake): the voxels are the same bits on every machine. Shapes
  * and numbers are chosen by eye. */
 #include <math.h>
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "render/volume/volume.h"
+#include "render/workers.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -157,9 +159,36 @@ static double supernova_at(const double p[3])
 	return shell * smooth(clamp01((filament - 0.35) / 0.6));
 }
 
-static void fill_row(struct gz_volume *volume, enum gz_procedural which, int y, int z)
+/* What the formulas give, 0 to 1, times this is the data value. */
+static double value_scale(enum gz_procedural which)
 {
+	return which == GZ_PROCEDURAL_SHELLS ? 255 : 1;
+}
+
+/* What all threads that make one volume share. */
+struct making {
+	enum gz_procedural which;
+	struct gz_volume *volume;
+	const struct gz_loading *loading;
+	atomic_int slices_done;
+	atomic_bool stopped;
+};
+
+static void put(struct gz_volume *volume, size_t index, double value, double scale)
+{
+	if (volume->type == GZ_VOXEL_U8)
+		((uint8_t *)volume->voxels)[index] = (uint8_t)(255 * value + 0.5);
+	else if (volume->type == GZ_VOXEL_U16)
+		((uint16_t *)volume->voxels)[index] = (uint16_t)(65535 * value + 0.5);
+	else
+		((float *)volume->voxels)[index] = (float)(scale * value);
+}
+
+static void fill_row(const struct making *making, int y, int z)
+{
+	struct gz_volume *volume = making->volume;
 	const int *dims = volume->dims;
+	const double scale = value_scale(making->which);
 	int longest = dims[0] > dims[1] ? dims[0] : dims[1];
 	longest = longest > dims[2] ? longest : dims[2];
 	size_t row = ((size_t)z * (size_t)dims[1] + (size_t)y) * (size_t)dims[0];
@@ -167,33 +196,69 @@ static void fill_row(struct gz_volume *volume, enum gz_procedural which, int y, 
 		double p[3] = { (double)(2 * x + 1 - dims[0]) / longest,
 				(double)(2 * y + 1 - dims[1]) / longest,
 				(double)(2 * z + 1 - dims[2]) / longest };
-		if (which == GZ_PROCEDURAL_SHELLS)
-			((uint8_t *)volume->voxels)[row + (size_t)x] =
-				(uint8_t)(255 * shells_at(p) + 0.5);
-		else
-			((float *)volume->voxels)[row + (size_t)x] = (float)supernova_at(p);
+		double value =
+			making->which == GZ_PROCEDURAL_SHELLS ? shells_at(p) : supernova_at(p);
+		put(volume, row + (size_t)x, value, scale);
 	}
 }
 
+/* One slice. The thread that asked for the volume also tells how far it is. */
+static void fill_slice(void *user, size_t part, int worker)
+{
+	struct making *making = user;
+	const int *dims = making->volume->dims;
+	for (int y = 0; y < dims[1] && !atomic_load(&making->stopped); y++) {
+		const double share = (double)atomic_load(&making->slices_done) / dims[2];
+		if (worker == 0 &&
+		    !gz_loading_goes_on(making->loading, share, gz_procedural_names[making->which]))
+			atomic_store(&making->stopped, true);
+		fill_row(making, y, (int)part);
+	}
+	atomic_fetch_add(&making->slices_done, 1);
+}
+
+static enum gz_result fill(struct making *making)
+{
+	struct gz_workers *workers = NULL;
+	enum gz_result result = gz_workers_create(0, &workers);
+	if (result != GZ_OK)
+		return result;
+	gz_workers_run(workers, fill_slice, making, (size_t)making->volume->dims[2]);
+	gz_workers_destroy(&workers);
+	return atomic_load(&making->stopped) ? GZ_ERR_CANCELLED : GZ_OK;
+}
+
+enum gz_voxel_type gz_procedural_type(enum gz_procedural which)
+{
+	return which == GZ_PROCEDURAL_SHELLS ? GZ_VOXEL_U8 : GZ_VOXEL_F32;
+}
+
 enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
+				  enum gz_voxel_type type, const struct gz_loading *loading,
 				  const struct gz_log *log, struct gz_volume *out_volume)
 {
+	static const double steps[GZ_VOXEL_TYPE_COUNT] = { 255, 65535, 0 };
 	struct gz_volume volume = { .dims = { dims[0], dims[1], dims[2] },
 				    .spacing = { 1, 1, 1 },
+				    .type = type,
 				    .oriented = true };
-	if ((unsigned)which >= GZ_PROCEDURAL_COUNT)
+	if ((unsigned)which >= GZ_PROCEDURAL_COUNT || (unsigned)type >= GZ_VOXEL_TYPE_COUNT)
 		return GZ_ERR_INVAL;
-	volume.type = which == GZ_PROCEDURAL_SHELLS ? GZ_VOXEL_U8 : GZ_VOXEL_F32;
-	enum gz_result result = gz_volume_allocate(&volume);
+	struct making making = { .which = which, .volume = &volume, .loading = loading };
+	enum gz_result result = gz_volume_allocate_in(&volume, loading ? loading->scratch : NULL);
+	if (result == GZ_OK && steps[type] > 0)
+		volume.slope = value_scale(which) / steps[type];
+	if (result == GZ_OK)
+		result = fill(&making);
 	if (result != GZ_OK) {
-		gz_err(log, "%s: cannot make %d x %d x %d voxels: %s; choose smaller dims",
-		       gz_procedural_names[which], dims[0], dims[1], dims[2],
-		       gz_result_text(result));
+		if (result != GZ_ERR_CANCELLED)
+			gz_err(log, "%s: cannot make %d x %d x %d voxels: %s; choose smaller dims",
+			       gz_procedural_names[which], dims[0], dims[1], dims[2],
+			       gz_result_text(result));
+		if (volume.voxels)
+			gz_volume_free(&volume);
 		return result;
 	}
-	for (int z = 0; z < dims[2]; z++)
-		for (int y = 0; y < dims[1]; y++)
-			fill_row(&volume, which, y, z);
 	gz_volume_find_range(&volume);
 	*out_volume = volume;
 	return GZ_OK;

@@ -6,6 +6,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "render/volume/scratch.h"
+
 /* Chosen: from here on, pages of 2 MiB spare the renderer most address translation misses. */
 #define HUGE_PAGE   ((size_t)2 << 20)
 #define HUGE_FROM   ((size_t)32 << 20)
@@ -55,12 +57,8 @@ static bool fits_machine(size_t bytes)
 	return pages <= 0 || page <= 0 || bytes / (size_t)page < (size_t)pages;
 }
 
-enum gz_result gz_volume_allocate(struct gz_volume *volume)
+static enum gz_result allocate_memory(size_t used, void **out_voxels)
 {
-	if (!layout_valid(volume))
-		return GZ_ERR_INVAL;
-	/* At most 2^42 voxels of 4 bytes: no overflow. */
-	size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
 	size_t align = used >= HUGE_FROM ? HUGE_PAGE : SMALL_ALIGN;
 	size_t bytes = (used + GZ_VOLUME_PADDING + align - 1) / align * align;
 	if (!fits_machine(bytes))
@@ -71,10 +69,30 @@ enum gz_result gz_volume_allocate(struct gz_volume *volume)
 	if (align == HUGE_PAGE)
 		(void)madvise(voxels, bytes, MADV_HUGEPAGE); /* only a hint */
 	memset((char *)voxels + used, 0, GZ_VOLUME_PADDING);
-	volume->voxels = voxels;
+	*out_voxels = voxels;
+	return GZ_OK;
+}
+
+enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const char *scratch)
+{
+	if (!layout_valid(volume))
+		return GZ_ERR_INVAL;
+	/* At most 2^42 voxels of 4 bytes: no overflow. */
+	const size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
+	const size_t mapped = scratch ? used + GZ_VOLUME_PADDING : 0;
+	const enum gz_result result = scratch ? gz_scratch_map(scratch, mapped, &volume->voxels)
+					      : allocate_memory(used, &volume->voxels);
+	if (result != GZ_OK)
+		return result;
+	volume->mapped = mapped;
 	volume->slope = 1;
 	volume->intercept = 0;
 	return GZ_OK;
+}
+
+enum gz_result gz_volume_allocate(struct gz_volume *volume)
+{
+	return gz_volume_allocate_in(volume, NULL);
 }
 
 /* Least and greatest in RANGE_LANES independent lanes, which is what lets a compiler use SIMD. */
@@ -130,7 +148,10 @@ void gz_volume_find_range(struct gz_volume *volume)
 
 void gz_volume_free(struct gz_volume *volume)
 {
-	free(volume->voxels);
+	if (volume->mapped)
+		(void)munmap(volume->voxels, volume->mapped);
+	else
+		free(volume->voxels);
 	*volume = (struct gz_volume) { 0 };
 }
 

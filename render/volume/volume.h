@@ -14,6 +14,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/volume/loading.h"
 
 /** How voxels are stored. Loaders turn every other type into one of these without loss where that
  *  can be: signed integers by an offset that goes into the intercept, wider ones as float. */
@@ -49,6 +50,7 @@ struct gz_volume {
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels */
 	bool oriented;                 /**< the file told where right, front and up are */
+	size_t mapped; /**< bytes of a scratch file that voxels are; 0: they are in memory */
 };
 
 /** Type names of raw files. */
@@ -81,6 +83,8 @@ struct gz_raw_layout {
  *
  * @param path        file
  * @param raw         layout of a headerless file; must be NULL for files that have a header
+ * @param loading     who is told how far it is, and where the voxels are kept; NULL for nobody and
+ * in memory
  * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
  * @retval GZ_ERR_INVAL        @p raw is missing or must not be given; logged
  * @retval GZ_ERR_NOT_FOUND    no such file; logged
@@ -89,11 +93,13 @@ struct gz_raw_layout {
  * remedy
  * @retval GZ_ERR_UNSUPPORTED  a kind, dimension or encoding that is not read; logged
  * @retval GZ_ERR_NO_MEM       logged with the size asked for
+ * @retval GZ_ERR_CANCELLED    @p loading said so; not logged
  *
  * Peak memory is the volume and a small buffer: slices are turned and converted as they are read.
  */
 enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
-			      const struct gz_log *log, struct gz_volume *out_volume);
+			      const struct gz_loading *loading, const struct gz_log *log,
+			      struct gz_volume *out_volume);
 
 /** Volumes made by a formula, for scenes that need no file. */
 enum gz_procedural {
@@ -105,9 +111,23 @@ enum gz_procedural {
 /** "shells", "supernova"; NULL-terminated. */
 extern const char *const gz_procedural_names[];
 
-/** Make a procedural volume of @p dims voxels, each 1 to GZ_VOLUME_DIM_MAX; the same bits each
- * time. */
+/** The type of voxel that a procedural volume has unless told otherwise. */
+enum gz_voxel_type gz_procedural_type(enum gz_procedural which);
+
+/**
+ * Make a procedural volume, on all processors; the same bits each time.
+ *
+ * @param dims     voxels, each 1 to GZ_VOLUME_DIM_MAX
+ * @param type     of voxel. Integers span the formula's values, which are 0 to 255 for shells and 0
+ * to 1 for supernova: data values are the same for every type, but for rounding
+ * @param loading  see gz_volume_load()
+ * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
+ * @retval GZ_ERR_INVAL      @p which, @p dims or @p type out of range; dims are logged
+ * @retval GZ_ERR_NO_MEM     logged
+ * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ */
 enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
+				  enum gz_voxel_type type, const struct gz_loading *loading,
 				  const struct gz_log *log, struct gz_volume *out_volume);
 
 /**
@@ -117,6 +137,10 @@ enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
  * GZ_ERR_NO_MEM.
  */
 enum gz_result gz_volume_allocate(struct gz_volume *volume);
+
+/** As gz_volume_allocate(), in a nameless file in the folder @p scratch, whose blocks are reserved
+ *  first; NULL: in memory. Further errors: GZ_ERR_FULL where the disk has no room, GZ_ERR_IO. */
+enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const char *scratch);
 
 /** Find stored_min and stored_max. */
 void gz_volume_find_range(struct gz_volume *volume);

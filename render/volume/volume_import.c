@@ -47,6 +47,7 @@ struct import {
 	const struct gz_import_layout *layout;
 	const struct gz_voxel_conversion *conversion;
 	const char *path;
+	const struct gz_loading *loading;
 	const struct gz_log *log;
 	struct gz_volume *volume;
 	bool swap;
@@ -171,12 +172,19 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 		volume->spacing[map->world[axis]] = layout->spacing[axis];
 	}
 	volume->type = import->conversion->type;
-	if (gz_volume_allocate(volume) != GZ_OK) {
+	const char *scratch = import->loading ? import->loading->scratch : NULL;
+	const enum gz_result result = gz_volume_allocate_in(volume, scratch);
+	if (result != GZ_OK) {
 		double mib = (double)gz_volume_voxel_count(volume) *
 			     (double)gz_voxel_size(volume->type) / (1 << 20);
-		gz_err(import->log, "%s: no memory for %.0f MiB of voxels; use a smaller volume",
-		       import->path, mib);
-		return GZ_ERR_NO_MEM;
+		if (scratch)
+			gz_err(import->log, "%s: no %.0f MiB for voxels in %s: %s; make room there",
+			       import->path, mib, scratch, gz_result_text(result));
+		else
+			gz_err(import->log,
+			       "%s: no memory for %.0f MiB of voxels; use a smaller volume",
+			       import->path, mib);
+		return result;
 	}
 	volume->oriented = layout->oriented;
 	volume->slope = layout->slope;
@@ -240,7 +248,11 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 		size_t wanted =
 			count - index < CHUNK_NUMBERS ? (size_t)(count - index) : CHUNK_NUMBERS;
 		size_t got = 0;
-		result = gz_byte_stream_read(stream, numbers, wanted * size, &got);
+		if (gz_loading_goes_on(import->loading, (double)index / (double)count,
+				       import->path))
+			result = gz_byte_stream_read(stream, numbers, wanted * size, &got);
+		else
+			result = GZ_ERR_CANCELLED;
 		if (result == GZ_OK && got < wanted * size)
 			result = refuse_truncated(import, index * size + got, count * size);
 		if (result != GZ_OK)
@@ -318,7 +330,8 @@ static enum gz_result check_range(const struct import *import)
 
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				const struct gz_import_layout *layout, const char *path,
-				const struct gz_log *log, struct gz_volume *out_volume)
+				const struct gz_loading *loading, const struct gz_log *log,
+				struct gz_volume *out_volume)
 {
 	const uint16_t one = 1;
 	bool host_big_endian = *(const uint8_t *)&one == 0;
@@ -327,6 +340,7 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	struct import import = { .layout = layout,
 				 .conversion = &gz_voxel_conversions[layout->type],
 				 .path = path,
+				 .loading = loading,
 				 .log = log,
 				 .volume = &volume,
 				 .swap = layout->big_endian != host_big_endian };

@@ -40,14 +40,17 @@ size_t gz_raw_type_size(enum gz_raw_type type);
  *
  * @param stream  at the first voxel
  * @param layout  checked here: any number may stand in it
- * @param path    for messages
+ * @param path    for messages, and for @p loading
+ * @param loading  see gz_volume_load()
  * @param[out] out_volume  the caller frees it with gz_volume_free()
  * @retval GZ_ERR_FORMAT  dims, spacing, directions, slope or length of the data are wrong; logged
  * @retval GZ_ERR_IO      logged
  * @retval GZ_ERR_NO_MEM  logged with the size asked for
+ * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
  */
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				const struct gz_import_layout *layout, const char *path,
-				const struct gz_log *log, struct gz_volume *out_volume);
+				const struct gz_loading *loading, const struct gz_log *log,
+				struct gz_volume *out_volume);
 
 #endif

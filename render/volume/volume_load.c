@@ -10,8 +10,8 @@
 /* The loaders of files that have a header. */
 static const struct {
 	const char *ending;
-	enum gz_result (*load)(const char *path, const struct gz_log *log,
-			       struct gz_volume *out_volume);
+	enum gz_result (*load)(const char *path, const struct gz_loading *loading,
+			       const struct gz_log *log, struct gz_volume *out_volume);
 } with_header[] = {
 	{ ".nii", gz_volume_load_nifti },     { ".nii.gz", gz_volume_load_nifti },
 	{ ".nrrd", gz_volume_load_nrrd },     { ".nhdr", gz_volume_load_nrrd },
@@ -29,13 +29,14 @@ static const struct {
 };
 
 enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
-			      const struct gz_log *log, struct gz_volume *out_volume)
+			      const struct gz_loading *loading, const struct gz_log *log,
+			      struct gz_volume *out_volume)
 {
 	for (size_t i = 0; i < sizeof with_header / sizeof with_header[0]; i++) {
 		if (!gz_path_ends(path, with_header[i].ending))
 			continue;
 		if (!raw)
-			return with_header[i].load(path, log, out_volume);
+			return with_header[i].load(path, loading, log, out_volume);
 		gz_err(log, "%s: has a header; leave out dims, type, endian and spacing", path);
 		return GZ_ERR_INVAL;
 	}
@@ -43,7 +44,8 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 		if (!gz_path_ends(path, headerless[i].ending))
 			continue;
 		if (raw)
-			return gz_volume_load_raw(path, headerless[i].coding, raw, log, out_volume);
+			return gz_volume_load_raw(path, headerless[i].coding, raw, loading, log,
+						  out_volume);
 		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
 		return GZ_ERR_INVAL;
 	}

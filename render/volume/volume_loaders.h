@@ -11,20 +11,20 @@
 #include "render/volume/volume.h"
 
 /** NIfTI-1 in one file, .nii or .nii.gz. sform before qform; of a series, the first volume. */
-enum gz_result gz_volume_load_nifti(const char *path, const struct gz_log *log,
-				    struct gz_volume *out_volume);
+enum gz_result gz_volume_load_nifti(const char *path, const struct gz_loading *loading,
+				    const struct gz_log *log, struct gz_volume *out_volume);
 
 /** NRRD, attached (.nrrd) or detached (.nhdr); encodings raw and gzip. */
-enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_log *log,
-				   struct gz_volume *out_volume);
+enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_loading *loading,
+				   const struct gz_log *log, struct gz_volume *out_volume);
 
 /** MetaImage, .mha or .mhd; plain or zlib. */
-enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_log *log,
-					struct gz_volume *out_volume);
+enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_loading *loading,
+					const struct gz_log *log, struct gz_volume *out_volume);
 
 /** Numbers without a header. */
 enum gz_result gz_volume_load_raw(const char *path, enum gz_coding coding,
-				  const struct gz_raw_layout *raw, const struct gz_log *log,
-				  struct gz_volume *out_volume);
+				  const struct gz_raw_layout *raw, const struct gz_loading *loading,
+				  const struct gz_log *log, struct gz_volume *out_volume);
 
 #endif

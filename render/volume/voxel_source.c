@@ -20,7 +20,8 @@ static uint64_t skip_of(const struct gz_voxel_source *source, const struct gz_im
 
 enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
 				      const struct gz_import_layout *layout,
-				      const struct gz_log *log, struct gz_volume *out_volume)
+				      const struct gz_loading *loading, const struct gz_log *log,
+				      struct gz_volume *out_volume)
 {
 	struct gz_byte_stream *stream = NULL;
 	if (source->skip == GZ_SKIP_TO_END && source->coding != GZ_CODING_PLAIN) {
@@ -33,7 +34,7 @@ enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
 	if (result == GZ_OK)
 		result = gz_byte_stream_skip(stream, skip_of(source, layout, stream));
 	if (result == GZ_OK)
-		result = gz_volume_import(stream, layout, source->path, log, out_volume);
+		result = gz_volume_import(stream, layout, source->path, loading, log, out_volume);
 	gz_byte_stream_close(&stream);
 	return result;
 }

@@ -27,6 +27,7 @@ struct gz_voxel_source {
  * and gz_volume_import(), all logged. */
 enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
 				      const struct gz_import_layout *layout,
-				      const struct gz_log *log, struct gz_volume *out_volume);
+				      const struct gz_loading *loading, const struct gz_log *log,
+				      struct gz_volume *out_volume);
 
 #endif

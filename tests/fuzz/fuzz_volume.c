@@ -85,7 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	require(fwrite(data + 1, 1, size - 1, file) == size - 1);
 	require(fclose(file) == 0);
 	bool headerless = strstr(name, ".raw") != NULL;
-	if (gz_volume_load(path, headerless ? &raw : NULL, NULL, &volume) == GZ_OK) {
+	if (gz_volume_load(path, headerless ? &raw : NULL, NULL, NULL, &volume) == GZ_OK) {
 		check_volume(&volume);
 		gz_volume_free(&volume);
 	}

@@ -65,7 +65,7 @@ static void pictures_of_every_method_stay_what_they_were(void **state)
 	struct gz_log log;
 	struct gz_scene scene;
 	gz_log_init(&log, NULL, NULL, NULL);
-	assert_int_equal(gz_scene_load(SCENE, &log, &scene), GZ_OK);
+	assert_int_equal(gz_scene_load(SCENE, NULL, &log, &scene), GZ_OK);
 	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
 		struct gz_image image = { 0 };
 		char path[1024];

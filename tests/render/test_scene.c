@@ -92,8 +92,10 @@ static const struct refusal refusals[] = {
 	{ TRANSFER, "s.scene: volume.file: not given; name a volume" },
 	{ "[volume]\nfile = a.nii\nprocedural = shells\n" TRANSFER,
 	  "s.scene: volume.file: given with volume.procedural; keep one" },
-	{ "[volume]\nprocedural = shells\ntype = uint8\n" TRANSFER,
-	  "s.scene: volume.procedural: takes dims only" },
+	{ "[volume]\nprocedural = shells\nendian = big\n" TRANSFER,
+	  "s.scene: volume.procedural: takes dims and type only" },
+	{ "[volume]\nprocedural = shells\ntype = int16\n" TRANSFER,
+	  "s.scene: volume.type: a procedural volume has uint8, uint16 or float32" },
 	{ "[volume]\nfile = a.raw\ndims = 1 1 1\n" TRANSFER,
 	  "s.scene: volume.dims: a raw file needs both dims and type" },
 	{ "[volume]\nfile = a.nii\nspacing = 1 1 1\n" TRANSFER,
@@ -149,7 +151,7 @@ static void scene_is_loaded_with_what_it_names(void **state)
 	captured_log_init(&log, NULL);
 	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
 	const char *path = files_write_text("a.scene", SCENE, NULL, 0);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_OK);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_OK);
 	assert_int_equal(scene.volume.dims[0], 12);
 	assert_int_equal(scene.volume.dims[2], 8);
 	assert_int_equal(scene.transfer.count, 2);
@@ -167,7 +169,7 @@ static void procedural_volume_without_dims_has_128_a_side(void **state)
 	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
 	const char *path =
 		files_write_text("p.scene", "[volume]\nprocedural = shells\n" TRANSFER, NULL, 0);
-	assert_int_equal(gz_scene_load(path, NULL, &scene), GZ_OK);
+	assert_int_equal(gz_scene_load(path, NULL, NULL, &scene), GZ_OK);
 	for (int i = 0; i < 3; i++)
 		assert_int_equal(scene.volume.dims[i], 128);
 	gz_scene_free(&scene);
@@ -186,11 +188,11 @@ static void file_is_looked_for_beside_the_scene_then_under_the_data_folder(void 
 	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
 	const char *path = files_write_text("d.scene", text, NULL, 0);
 	unsetenv("GAZECAST_DATA");
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "d.scene: volume.file: v.raw is neither beside the scene "
 					 "nor under GAZECAST_DATA (not set)"));
 	files_write("v.raw", "abcd", 4);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_OK);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_OK);
 	assert_true(scene.volume.spacing[2] == 2);
 	gz_scene_free(&scene);
 
@@ -201,7 +203,7 @@ static void file_is_looked_for_beside_the_scene_then_under_the_data_folder(void 
 	assert_int_equal(write(fd, text, strlen(text)), (ssize_t)strlen(text));
 	close(fd);
 	setenv("GAZECAST_DATA", data, 1);
-	enum gz_result result = gz_scene_load(elsewhere, &log.log, &scene);
+	enum gz_result result = gz_scene_load(elsewhere, NULL, &log.log, &scene);
 	unlink(elsewhere);
 	unsetenv("GAZECAST_DATA");
 	assert_int_equal(result, GZ_OK);
@@ -214,16 +216,16 @@ static void missing_files_are_named_with_a_remedy(void **state)
 	struct gz_scene scene;
 	struct captured_log log;
 	captured_log_init(&log, NULL);
-	assert_int_equal(gz_scene_load(files_path("none.scene"), &log.log, &scene),
+	assert_int_equal(gz_scene_load(files_path("none.scene"), NULL, &log.log, &scene),
 			 GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "none.scene"));
 	const char *path =
 		files_write_text("n.scene", VOLUME "[transfer]\nfile = no.tf\n", NULL, 0);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "transfer.file: no.tf is neither beside the scene"));
 	path = files_write_text("n.scene", "[volume]\nfile = /no/where.nii\n" TRANSFER, NULL, 0);
 	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "volume.file: no file /no/where.nii; install it"));
 	assert_int_equal(log.messages, 3);
 }
@@ -237,14 +239,14 @@ static void broken_parts_break_the_scene_with_one_line(void **state)
 	files_write_text("bad.tf", "0 0 0 0\n", NULL, 0);
 	const char *path =
 		files_write_text("b.scene", VOLUME "[transfer]\nfile = bad.tf\n", NULL, 0);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_FORMAT);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_FORMAT);
 	assert_non_null(strstr(log.last, "bad.tf:1: point: write five numbers"));
 	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
 	files_write("short.raw", "abc", 3);
 	path = files_write_text("b.scene",
 				"[volume]\nfile = short.raw\ndims = 2 2 1\ntype = uint8\n" TRANSFER,
 				NULL, 0);
-	assert_int_equal(gz_scene_load(path, &log.log, &scene), GZ_ERR_FORMAT);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_FORMAT);
 	assert_non_null(strstr(log.last, "short.raw: truncated"));
 	assert_int_equal(log.messages, 2);
 }

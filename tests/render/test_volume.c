@@ -130,7 +130,9 @@ static void procedural_volumes_are_the_same_bits_everywhere(void **state)
 	static const int dims[3] = { 40, 36, 30 };
 	for (size_t i = 0; i < 2; i++) {
 		struct gz_volume v;
-		assert_int_equal(gz_volume_generate(cases[i].which, dims, NULL, &v), GZ_OK);
+		assert_int_equal(
+			gz_volume_generate(cases[i].which, dims, cases[i].type, NULL, NULL, &v),
+			GZ_OK);
 		assert_int_equal(v.type, cases[i].type);
 		assert_true(v.stored_min == 0);
 		assert_true(v.stored_max > 0.8);
@@ -145,14 +147,14 @@ static void procedural_volume_of_bad_dims_is_refused_with_a_line(void **state)
 	struct captured_log log;
 	captured_log_init(&log, NULL);
 	struct gz_volume v = { 0 };
-	assert_int_equal(
-		gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, &log.log, &v),
-		GZ_ERR_INVAL);
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, GZ_VOXEL_U8,
+					    NULL, &log.log, &v),
+			 GZ_ERR_INVAL);
 	assert_int_equal(log.messages, 1);
 	assert_non_null(strstr(log.last, "0 x 4 x 4"));
-	assert_int_equal(
-		gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, &log.log, &v),
-		GZ_ERR_INVAL);
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, GZ_VOXEL_U8,
+					    NULL, &log.log, &v),
+			 GZ_ERR_INVAL);
 	assert_null(v.voxels);
 }
 

@@ -195,7 +195,8 @@ static void every_volume_has_the_values_of_its_file(void **state)
 			print_message("not there: %s\n", path);
 			continue;
 		}
-		if (gz_volume_load(path, e->headerless ? &raw : NULL, &log.log, &v) != GZ_OK ||
+		if (gz_volume_load(path, e->headerless ? &raw : NULL, NULL, &log.log, &v) !=
+			    GZ_OK ||
 		    log.messages)
 			fail_msg("%s", log.last);
 		check_volume(e, &v);

@@ -27,7 +27,7 @@ static struct gz_volume loaded(const char *path, const struct gz_raw_layout *raw
 	struct gz_volume volume = { 0 };
 	struct captured_log log;
 	captured_log_init(&log, "*:warn");
-	if (gz_volume_load(path, raw, &log.log, &volume) != GZ_OK)
+	if (gz_volume_load(path, raw, NULL, &log.log, &volume) != GZ_OK)
 		fail_msg("refused: %s", log.last);
 	if (log.messages != 0)
 		fail_msg("not silent: %s", log.last);
@@ -217,8 +217,9 @@ static void what_is_not_finite_becomes_the_least_with_one_warning(void **state)
 	struct captured_log log;
 	struct gz_volume v;
 	captured_log_init(&log, NULL);
-	assert_int_equal(gz_volume_load(files_write("n.raw", bad, sizeof bad), &raw, &log.log, &v),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_load(files_write("n.raw", bad, sizeof bad), &raw, NULL, &log.log, &v),
+		GZ_OK);
 	assert_int_equal(log.messages, 1);
 	assert_non_null(strstr(log.last, "3 values are NaN or infinite"));
 	static const double expected[] = { 3, -2, -2, -2, -2, 7 };
@@ -227,8 +228,9 @@ static void what_is_not_finite_becomes_the_least_with_one_warning(void **state)
 	assert_true(v.stored_min == -2 && v.stored_max == 7);
 	gz_volume_free(&v);
 	raw.type = GZ_RAW_FLOAT64;
-	assert_int_equal(gz_volume_load(files_write("w.raw", wide, sizeof wide), &raw, NULL, &v),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_load(files_write("w.raw", wide, sizeof wide), &raw, NULL, NULL, &v),
+		GZ_OK);
 	assert_true(value_at(&v, 1, 0, 0) == -2 && value_at(&v, 3, 0, 0) == -2);
 	gz_volume_free(&v);
 }
@@ -241,9 +243,9 @@ static void trailing_data_are_left_out_with_a_warning(void **state)
 	struct captured_log log;
 	struct gz_volume v;
 	captured_log_init(&log, NULL);
-	assert_int_equal(
-		gz_volume_load(files_write("l.raw", longer, sizeof longer), &raw_u8, &log.log, &v),
-		GZ_OK);
+	assert_int_equal(gz_volume_load(files_write("l.raw", longer, sizeof longer), &raw_u8, NULL,
+					&log.log, &v),
+			 GZ_OK);
 	assert_int_equal(log.level, GZ_LOG_WARN);
 	assert_non_null(strstr(log.last, "data go on behind the last voxel"));
 	check_straight(&v);
@@ -350,7 +352,8 @@ static void nifti_series_gives_its_first_volume_and_says_so(void **state)
 	sample.dim[0] = 4;
 	sample.dim[4] = 2;
 	captured_log_init(&log, NULL);
-	assert_int_equal(gz_volume_load(nifti_write("4.nii", &sample), NULL, &log.log, &v), GZ_OK);
+	assert_int_equal(gz_volume_load(nifti_write("4.nii", &sample), NULL, NULL, &log.log, &v),
+			 GZ_OK);
 	assert_int_equal(log.messages, 1);
 	assert_non_null(strstr(log.last, "the first is shown"));
 	assert_int_equal((int)value_at(&v, 2, 1, 0), 12);

@@ -108,7 +108,7 @@ static long peak_of(const char *name, const struct gz_raw_layout *raw)
 		struct gz_volume volume;
 		struct gz_log log;
 		gz_log_init(&log, NULL, NULL, "*:warn");
-		_exit(gz_volume_load(path, raw, &log, &volume) == GZ_OK ? 0 : 1);
+		_exit(gz_volume_load(path, raw, NULL, &log, &volume) == GZ_OK ? 0 : 1);
 	}
 	struct rusage usage;
 	int status = -1;

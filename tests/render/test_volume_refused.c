@@ -27,7 +27,7 @@ static void check_refused(const char *path, const struct gz_raw_layout *raw, enu
 	struct captured_log log;
 	struct gz_volume volume = { .slope = 42 };
 	captured_log_init(&log, "*:error");
-	enum gz_result got = gz_volume_load(path, raw, &log.log, &volume);
+	enum gz_result got = gz_volume_load(path, raw, NULL, &log.log, &volume);
 	if (got != result || log.messages != 1 || !strstr(log.last, words) ||
 	    strchr(log.last, '\n'))
 		fail_msg("%s: result %d instead of %d, %d lines, \"%s\" lacks \"%s\"", path, got,
@@ -103,7 +103,7 @@ static void raw_of_spacing_too_uneven_is_refused(void **state)
 	struct captured_log log;
 	struct gz_volume volume;
 	captured_log_init(&log, "*:error");
-	assert_int_equal(gz_volume_load(path, &raw, &log.log, &volume), GZ_OK);
+	assert_int_equal(gz_volume_load(path, &raw, NULL, &log.log, &volume), GZ_OK);
 	gz_volume_free(&volume);
 }
 
@@ -159,7 +159,8 @@ static void compressed_data_cut_anywhere_are_refused(void **state)
 			struct captured_log log;
 			captured_log_init(&log, "*:error");
 			files_write(name, packed, cut);
-			enum gz_result got = gz_volume_load(files_path(name), &raw, &log.log, &v);
+			enum gz_result got =
+				gz_volume_load(files_path(name), &raw, NULL, &log.log, &v);
 			if (got != GZ_ERR_FORMAT || log.messages != 1)
 				fail_msg("%s cut at %zu of %zu: result %d, \"%s\"", name, cut, size,
 					 got, log.last);

@@ -2,8 +2,8 @@
  * @file
  * A fixed set of threads that share out the parts of one job at a time.
  */
-#ifndef GZ_RENDER_CPU_WORKERS_H
-#define GZ_RENDER_CPU_WORKERS_H
+#ifndef GZ_RENDER_WORKERS_H
+#define GZ_RENDER_WORKERS_H
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-#include "render/cpu/workers.h"
+#include "render/workers.h"
 
 #include <pthread.h>
 #include <sched.h>
