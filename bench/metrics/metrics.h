@@ -12,7 +12,7 @@
 
 #include "base/result.h"
 #include "protocol/display.h"
-#include "render/cpu/workers.h"
+#include "render/workers.h"
 #include "render/image.h"
 
 /** One number a pixel, row by row from the top. Zero-initialised is empty. */
