@@ -233,7 +233,7 @@ static int set_up(struct bench *bench, int argc, char **argv)
 		return -1;
 	}
 	gz_log_init(&bench->log, NULL, NULL, NULL);
-	if (gz_scene_load(argv[1], &bench->log, &bench->scene) != GZ_OK ||
+	if (gz_scene_load(argv[1], NULL, &bench->log, &bench->scene) != GZ_OK ||
 	    parse_methods(bench, argc > 3 ? argv[3] : "acuity") != 0)
 		return -1;
 	bench->display = bench->scene.has_display ? bench->scene.settings.display
