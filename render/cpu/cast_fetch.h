@@ -39,17 +39,23 @@ SIMD vf load_row(const struct gz_cast *cast, enum gz_voxel_type type, vi index, 
 	return mix(low, high, share);
 }
 
+/* The lower of two neighbours along an axis and the share of the other. */
+SIMD vi clamp_place(const struct gz_cast *cast, int axis, vf at, vf *share)
+{
+	const vf place = vf_min(vf_max(at, vf_set(0)), vf_set(cast->dims[axis] - 1));
+	const vi index = vi_min(vi_trunc(place), vi_set(cast->last[axis]));
+	*share = place - vf_from_i(index);
+	return index;
+}
+
+/* At places counted from the first datum: 0 to dims - 1. */
 SIMD vf sample_trilinear(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
 			 vm mask)
 {
 	vf share[3];
 	vi index[3];
-	for (int axis = 0; axis < 3; axis++) {
-		const vf top = vf_set(cast->dims[axis] - 1);
-		const vf place = vf_min(vf_max(at[axis] - vf_set(0.5F), vf_set(0)), top);
-		index[axis] = vi_min(vi_trunc(place), vi_set(cast->last[axis]));
-		share[axis] = place - vf_from_i(index[axis]);
-	}
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
 	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
 	const vi i00 = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
 	const vi i01 = vi_add(i00, up_z);
@@ -65,7 +71,7 @@ SIMD vf sample_nearest(const struct gz_cast *cast, enum gz_voxel_type type, cons
 	vi index = vi_set(0);
 	for (int axis = 0; axis < 3; axis++) {
 		const vf top = vf_set(cast->dims[axis] - 1);
-		const vf place = vf_min(vf_max(vf_floor(at[axis]), vf_set(0)), top);
+		const vf place = vf_min(vf_max(vf_floor(at[axis] + vf_set(0.5F)), vf_set(0)), top);
 		index = vi_add(index, vi_mul(vi_trunc(place), vi_set(cast->stride[axis])));
 	}
 	vf low, high;
@@ -78,17 +84,16 @@ SIMD vf sample_at(const struct gz_cast *cast, enum gz_voxel_type type, int neare
 {
 	vf at[3];
 	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, rays->delta[axis], rays->start[axis]);
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
 	return nearest ? sample_nearest(cast, type, at, mask)
 		       : sample_trilinear(cast, type, at, mask);
 }
 
 /* The transfer function's entry for a sample. */
-SIMD vi entry_of(const struct gz_cast *cast, vf stored)
+SIMD vi entry_of(vf scale, vf bias, vf value)
 {
-	const vf entry = vf_fma(stored, vf_set(cast->entry_scale), vf_set(cast->entry_bias));
 	const vf last = vf_set(GZ_TRANSFER_TABLE_SIZE - 1);
-	return vi_round(vf_min(vf_max(entry, vf_set(0)), last));
+	return vi_round(vf_min(vf_max(vf_fma(value, scale, bias), vf_set(0)), last));
 }
 
 #endif

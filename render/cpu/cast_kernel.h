@@ -8,54 +8,78 @@
  * for its length. k is a count, so skipping empty space never shifts the phase.
  */
 #include "render/cpu/cast.h"
+#ifdef SIMD_BLOCKS
+#include "render/cpu/cast_block.h"
+#else
+#include "render/cpu/cast_scattered.h"
+#endif
 #include "render/cpu/cast_fetch.h"
 #include "render/cpu/cast_light.h"
 #include "render/cpu/cast_rays.h"
 #include "render/cpu/cast_skip.h"
 
-/* All whole segments. */
+/* What a value becomes an entry of the transfer function by. */
+struct look_up {
+	vf scale, bias;
+};
+
+SIMD struct look_up look_up_of(const struct gz_cast *cast, enum gz_voxel_type type, int nearest)
+{
+	float scale = cast->entry_scale, bias = cast->entry_bias;
+	if (!nearest) {
+		bias += FETCH_OFFSET(type) * scale;
+		scale /= FETCH_UNIT(type);
+	}
+	return (struct look_up) { vf_set(scale), vf_set(bias) };
+}
+
+/* Let the lanes that ask know how far their samples show something; put them behind what is empty.
+ */
+SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k, vf *until)
+{
+	vf leave;
+	const vm empty = vm_and(look_up_cell(cast, rays, *k, asks, &leave), asks);
+	/* A sample that rounding puts just behind its own cell's end is taken too. */
+	*until = vf_select(vm_but(asks, empty), vf_max(leave, *k + vf_set(0.5F)), *until);
+	/* To the first sample at or behind the empty box's far side; at least one on. */
+	const vf ahead = vf_max(vf_ceil(leave - *k), vf_set(1));
+	*k = vf_select(empty, *k + ahead, *k);
+}
+
+/* All whole segments. Which sample comes next depends on the cells alone, not on what samples show,
+ * so that one need not be finished before the next begins. */
 SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
 		    const struct rays *rays, struct light *light)
 {
+	const struct look_up look_up = look_up_of(cast, type, nearest);
 	const vf end = rays->count; /* k + 1/2 < count */
-	const vf half = vf_set(0.5F);
-	vf k = half;
-	vf until = vf_set(-1);
+	vf k = vf_set(0.5F);
+	vf until = vf_set(-1); /* samples before it are taken */
+	struct block block;
+	block_clear(&block);
 	uint32_t samples = 0;
 	vm alive = rays->hit;
-	vm inside = vm_but(alive, alive); /* the last sample showed something: no cell to ask for */
 	for (;;) {
-		const vm active = vm_and(alive, vf_less(k, end));
-		if (!vm_any(active))
-			break;
-		const vm asks = vm_but(active, vm_or(inside, vf_less(k, until)));
-		if (vm_any(asks)) {
-			vf leave;
-			const vm empty = vm_and(look_up_cell(cast, rays, k, asks, &leave), asks);
-			/* To the first sample at or behind the empty box's far side; at least one
-			 * on. */
-			const vf ahead = vf_max(vf_ceil(leave - k), vf_set(1));
-			k = vf_select(empty, k + ahead, k);
-			/* A sample that rounding puts just behind its own cell's end is taken too.
-			 */
-			until = vf_select(vm_but(asks, empty), vf_max(leave, k + half), until);
-		}
-		const vm takes = vm_and(active, vm_or(inside, vf_less(k, until)));
-		if (!vm_any(takes))
+		const vm asks = vm_but(vm_and(alive, vf_less(k, end)), vf_less(k, until));
+		if (vm_any(asks))
+			look_ahead(cast, rays, asks, &k, &until);
+		const vm running = vf_less(k, end);
+		const vm takes = vm_and(running, vf_less(k, until));
+		const vm needed = vm_and(takes, alive);
+		if (!vm_any(needed)) {
+			if (!vm_any(vm_and(running, alive)))
+				break;
 			continue;
-		samples += vm_count(takes);
-		const vi entry = entry_of(cast, sample_at(cast, type, nearest, rays, k, takes));
+		}
+		samples += vm_count(needed);
+		const vf value = fetch_sample(cast, type, nearest, rays, k, needed, &block);
+		const vi entry = entry_of(look_up.scale, look_up.bias, value);
+		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->step_table[step], entry, takes, &opacity, &colour);
-		const vm visible = vf_less(vf_set(0), opacity);
-		inside = visible;
-		if (vm_any(visible)) {
-			composite(colour, opacity, visible, light);
-			alive = vm_and(alive,
-				       vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
-		}
-		k = vf_select(takes, k + vf_set(1), k);
+		gather_pair(cast->step_table[step], entry, needed, &opacity, &colour);
+		composite(colour, opacity, needed, light);
+		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	}
 	return samples;
 }
@@ -73,7 +97,8 @@ SIMD uint32_t march_rest(const struct gz_cast *cast, enum gz_voxel_type type, in
 	mask = vm_but(mask, look_up_cell(cast, rays, k, mask, &leave));
 	if (!vm_any(mask))
 		return 0;
-	const vi entry = entry_of(cast, sample_at(cast, type, nearest, rays, k, mask));
+	const vi entry = entry_of(vf_set(cast->entry_scale), vf_set(cast->entry_bias),
+				  sample_at(cast, type, nearest, rays, k, mask));
 	vf extinction;
 	vi colour;
 	gather_pair(cast->extinction, entry, mask, &extinction, &colour);

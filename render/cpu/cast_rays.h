@@ -7,9 +7,10 @@
 
 #include "render/cpu/cast.h"
 
-/* One chunk of lanes: its rays in voxel coordinates, position = start + k * delta. */
+/* One chunk of lanes: its rays in voxel coordinates, position = start + k * delta; counted from the
+ * first datum, datum + k * delta. */
 struct rays {
-	vf start[3], delta[3], inverse[3];
+	vf start[3], datum[3], delta[3], inverse[3];
 	vf count; /* whole segments */
 	vf rest;  /* of a segment, at the end; [0, 1) */
 	vm hit;
@@ -50,8 +51,10 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vm activ
 	const vf length = vf_select(rays->hit, leave - enter, vf_set(0));
 	rays->count = vf_floor(length);
 	rays->rest = length - rays->count;
-	for (int axis = 0; axis < 3; axis++)
+	for (int axis = 0; axis < 3; axis++) {
 		rays->start[axis] = vf_fma(enter, rays->delta[axis], origin[axis]);
+		rays->datum[axis] = vf_fma(enter, rays->delta[axis], origin[axis] - vf_set(0.5F));
+	}
 }
 
 #endif

@@ -4,8 +4,10 @@
  */
 #include <immintrin.h>
 #include <stdint.h>
+#include <string.h>
 
-#define SIMD_LANES 16
+#define SIMD_LANES  16
+#define SIMD_BLOCKS /* registers hold a block of voxels: cast_block.h */
 
 typedef __m512 vf;
 typedef __m512i vi;

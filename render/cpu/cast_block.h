@@ -1,0 +1,272 @@
+/*
+ * A block of 4 x 4 x 4 voxels in registers, from which all lanes take their eight neighbours by
+ * permutation. Rays of a tile lie close together, so that one block serves all of them for a sample
+ * or several, where gathers would fetch each voxel many times over.
+ * A part of the kernel, for AVX-512: see cast_kernel.h.
+ *
+ * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication takes both
+ * of a lane: finer than single-precision places are beyond 256 voxels. Values that leave here are
+ * in units of 1 / FETCH_UNIT, 16-bit ones less 32768: both go into the look-up's scale. A value
+ * does not depend on whether it came by block or by gather.
+ */
+#ifndef GZ_RENDER_CPU_CAST_BLOCK_H
+#define GZ_RENDER_CPU_CAST_BLOCK_H
+
+#include "render/cpu/cast.h"
+#include "render/cpu/cast_fetch.h"
+#include "render/cpu/cast_rays.h"
+
+enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE };
+
+/* Misses in excess of hits after which a tile's rays lie too far apart to go on trying. */
+enum { BLOCK_PATIENCE = 8 };
+
+#define FETCH_UNIT(type)   ((type) == GZ_VOXEL_F32 ? 1.0F : 32767.0F)
+#define FETCH_OFFSET(type) ((type) == GZ_VOXEL_U16 ? 32768.0F : 0.0F)
+
+struct block {
+	vf base[3]; /* index of its first voxel, the same in all lanes */
+	union {
+		vi words[2]; /* 8 and 16 bit */
+		vf slices[BLOCK_EDGE];
+	};
+	int misses;
+};
+
+SIMD void block_clear(struct block *block)
+{
+	*block = (struct block) { 0 };
+	block->base[0] = vf_set(-1e9F); /* nothing lies in it */
+}
+
+SIMD int block_index(const struct gz_cast *cast, int axis, int index)
+{
+	const int top = (int)cast->dims[axis] - 1;
+	return index < 0 ? 0 : index > top ? top : index;
+}
+
+/* At the volume's rim: what lies beyond repeats the last voxel. */
+static __attribute__((noinline)) void block_copy_rim(const struct gz_cast *cast,
+						     enum gz_voxel_type type, const int base[3],
+						     void *out)
+{
+	for (int i = 0; i < BLOCK_VOXELS; i++) {
+		const int x = block_index(cast, 0, base[0] + i % BLOCK_EDGE);
+		const int y = block_index(cast, 1, base[1] + i / BLOCK_EDGE % BLOCK_EDGE);
+		const int z = block_index(cast, 2, base[2] + i / BLOCK_EDGE / BLOCK_EDGE);
+		const int64_t from =
+			x + (int64_t)y * cast->stride[1] + (int64_t)z * cast->stride[2];
+		if (type == GZ_VOXEL_U8)
+			((uint8_t *)out)[i] = ((const uint8_t *)cast->voxels)[from];
+		else if (type == GZ_VOXEL_U16)
+			((uint16_t *)out)[i] = ((const uint16_t *)cast->voxels)[from];
+		else
+			((float *)out)[i] = ((const float *)cast->voxels)[from];
+	}
+}
+
+/* Rows of four voxels, stride apart: one slice. */
+SIMD __m128i block_slice_u8(const uint8_t *from, int64_t stride)
+{
+	int32_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * stride, sizeof rows[y]);
+	return _mm_setr_epi32(rows[0], rows[1], rows[2], rows[3]);
+}
+
+SIMD __m256i block_slice_u16(const uint16_t *from, int64_t stride)
+{
+	int64_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * stride, sizeof rows[y]);
+	return _mm256_setr_epi64x(rows[0], rows[1], rows[2], rows[3]);
+}
+
+SIMD vf block_slice_f32(const float *from, int64_t stride)
+{
+	vf slice = _mm512_castps128_ps512(_mm_loadu_ps(from));
+	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + stride), 1);
+	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + 2 * stride), 2);
+	return _mm512_insertf32x4(slice, _mm_loadu_ps(from + 3 * stride), 3);
+}
+
+/* All of a block, from rows and slices that lie these strides apart. */
+SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int64_t slice,
+		     struct block *block)
+{
+	if (type == GZ_VOXEL_F32) {
+		for (int z = 0; z < BLOCK_EDGE; z++)
+			block->slices[z] = block_slice_f32((const float *)from + z * slice, row);
+		return;
+	}
+	for (int half = 0; half < 2; half++) {
+		const int64_t low = 2 * half * slice, high = low + slice;
+		if (type == GZ_VOXEL_U8) {
+			const uint8_t *voxels = from;
+			block->words[half] = _mm512_cvtepu8_epi16(
+				_mm256_set_m128i(block_slice_u8(voxels + high, row),
+						 block_slice_u8(voxels + low, row)));
+		} else {
+			const uint16_t *voxels = from;
+			const vi words = _mm512_inserti64x4(
+				_mm512_castsi256_si512(block_slice_u16(voxels + low, row)),
+				block_slice_u16(voxels + high, row), 1);
+			/* multiplications take signed words */
+			block->words[half] =
+				_mm512_xor_si512(words, _mm512_set1_epi16((int16_t)0x8000));
+		}
+	}
+}
+
+/* Move the block to where the lanes are, reaching as far ahead as it can. */
+SIMD void block_move(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
+		     const vf at[3], vm mask, struct block *block)
+{
+	int base[3];
+	int within = 1;
+	for (int axis = 0; axis < 3; axis++) {
+		const int forward = _mm512_cvtss_f32(rays->delta[axis]) > 0;
+		const float edge = forward ? _mm512_mask_reduce_min_ps(mask, at[axis])
+					   : _mm512_mask_reduce_max_ps(mask, at[axis]);
+		const float whole = __builtin_floorf(edge);
+		base[axis] = (int)whole - (forward ? 0 : BLOCK_EDGE - 2);
+		within &= base[axis] >= 0 && base[axis] + BLOCK_EDGE <= (int)cast->dims[axis];
+		block->base[axis] = vf_set((float)base[axis]);
+	}
+	if (within) {
+		const int64_t first = base[0] + (int64_t)base[1] * cast->stride[1] +
+				      (int64_t)base[2] * cast->stride[2];
+		const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
+		block_load(type, (const char *)cast->voxels + first * bytes, cast->stride[1],
+			   cast->stride[2], block);
+	} else {
+		float rim[BLOCK_VOXELS]; /* as large as the largest type */
+		block_copy_rim(cast, type, base, rim);
+		block_load(type, rim, BLOCK_EDGE, BLOCK_EDGE * BLOCK_EDGE, block);
+	}
+}
+
+/* Places within the block; whether those of all lanes of the mask lie in it. */
+SIMD int block_places(const struct block *block, const vf at[3], vm mask, vf places[3])
+{
+	for (int axis = 0; axis < 3; axis++)
+		places[axis] = at[axis] - block->base[axis];
+	/* As unsigned numbers, floats from 0 up have their order and negative ones lie above. */
+	const vi most = _mm512_max_epu32(
+		_mm512_castps_si512(places[0]),
+		_mm512_max_epu32(_mm512_castps_si512(places[1]), _mm512_castps_si512(places[2])));
+	const vi end = _mm512_castps_si512(vf_set(BLOCK_EDGE - 1));
+	return _mm512_mask_cmpge_epu32_mask(mask, most, end) == 0;
+}
+
+/* Weights of two words: the share of the higher one above, the rest below. */
+SIMD vi word_weights(vf share)
+{
+	const vi high = _mm512_cvtps_epi32(share * vf_set(32767));
+	const vi both = _mm512_or_si512(_mm512_slli_epi32(high, 16), high);
+	return _mm512_xor_si512(both, _mm512_set1_epi32(0x7FFF));
+}
+
+SIMD vf mix_words(vi words, vi weights)
+{
+	return _mm512_cvtepi32_ps(_mm512_madd_epi16(words, weights));
+}
+
+/* Four pairs of words, in the order (y, z) = 00, 10, 01, 11. */
+SIMD vf mix_pairs(const vi pairs[4], const vf share[3])
+{
+	const vi weights = word_weights(share[0]);
+	const vf v00 = mix_words(pairs[0], weights), v10 = mix_words(pairs[1], weights);
+	const vf v01 = mix_words(pairs[2], weights), v11 = mix_words(pairs[3], weights);
+	return mix(mix(v00, v10, share[1]), mix(v01, v11, share[1]), share[2]);
+}
+
+SIMD vf block_sample_words(const struct block *block, const vf whole[3], const vf share[3])
+{
+	/* Index of a word in the lower half of each lane, of the next in the upper. */
+	const float both = 65537;
+	const vi first = _mm512_cvtps_epi32(vf_fma(
+		whole[2], vf_set(16 * both),
+		vf_fma(whole[1], vf_set(4 * both), vf_fma(whole[0], vf_set(both), vf_set(65536)))));
+	static const int offset[4] = { 0, 4 * 65537, 16 * 65537, 20 * 65537 };
+	vi pairs[4];
+	for (int i = 0; i < 4; i++)
+		pairs[i] = _mm512_permutex2var_epi16(
+			block->words[0], vi_add(first, vi_set(offset[i])), block->words[1]);
+	return mix_pairs(pairs, share);
+}
+
+SIMD vf block_voxel_f32(const struct block *block, vi index)
+{
+	const vf low = _mm512_permutex2var_ps(block->slices[0], index, block->slices[1]);
+	const vf high = _mm512_permutex2var_ps(block->slices[2], index, block->slices[3]);
+	return vf_select(_mm512_test_epi32_mask(index, vi_set(BLOCK_VOXELS / 2)), high, low);
+}
+
+SIMD vf block_sample_f32(const struct block *block, const vf whole[3], const vf share[3])
+{
+	const vi first = _mm512_cvtps_epi32(
+		vf_fma(whole[2], vf_set(16), vf_fma(whole[1], vf_set(4), whole[0])));
+	vf rows[4];
+	for (int i = 0; i < 4; i++) {
+		const vi index = vi_add(first, vi_set((i & 1) * 4 + (i >> 1) * 16));
+		rows[i] = mix(block_voxel_f32(block, index),
+			      block_voxel_f32(block, vi_add(index, vi_set(1))), share[0]);
+	}
+	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+}
+
+/* The same values by gathers, for lanes that lie far apart. */
+SIMD vf gather_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
+{
+	vf share[3];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
+	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
+	vi row[4];
+	row[0] = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
+	row[1] = vi_add(row[0], up_y);
+	row[2] = vi_add(row[0], up_z);
+	row[3] = vi_add(row[1], up_z);
+	vi pairs[4];
+	for (int i = 0; i < 4; i++) {
+		if (type == GZ_VOXEL_U8) {
+			const vi bytes = vi_gather(cast->voxels, row[i], 1, mask);
+			pairs[i] = vi_or(vi_and(bytes, vi_set(0xFF)),
+					 vi_shift_left(vi_and(bytes, vi_set(0xFF00)), 8));
+		} else {
+			pairs[i] = _mm512_xor_si512(vi_gather(cast->voxels, row[i], 2, mask),
+						    vi_set((int32_t)0x80008000));
+		}
+	}
+	return mix_pairs(pairs, share);
+}
+
+/* The value at sample k of the lanes of mask, in FETCH_UNITs. */
+SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+		     const struct rays *rays, vf k, vm mask, struct block *block)
+{
+	if (nearest)
+		return sample_at(cast, type, nearest, rays, k, mask);
+	vf at[3], places[3], whole[3], share[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	int fits = block_places(block, at, mask, places);
+	if (__builtin_expect(!fits && block->misses < BLOCK_PATIENCE, 0)) {
+		block_move(cast, type, rays, at, mask, block);
+		fits = block_places(block, at, mask, places);
+		block->misses += fits ? -(block->misses > 0) : 1;
+	}
+	if (__builtin_expect(!fits, 0))
+		return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
+					    : gather_sample(cast, type, at, mask);
+	for (int axis = 0; axis < 3; axis++) {
+		whole[axis] = vf_floor(places[axis]);
+		share[axis] = places[axis] - whole[axis];
+	}
+	return type == GZ_VOXEL_F32 ? block_sample_f32(block, whole, share)
+				    : block_sample_words(block, whole, share);
+}
+
+#endif

@@ -1,0 +1,34 @@
+/*
+ * Every lane fetches its own eight neighbours: the stand-in for cast_block.h where an instruction
+ * set has no permutation that wide.
+ * A part of the kernel: see cast_kernel.h.
+ */
+#ifndef GZ_RENDER_CPU_CAST_SCATTERED_H
+#define GZ_RENDER_CPU_CAST_SCATTERED_H
+
+#include "render/cpu/cast.h"
+#include "render/cpu/cast_fetch.h"
+#include "render/cpu/cast_rays.h"
+
+#define FETCH_UNIT(type)   ((void)(type), 1.0F)
+#define FETCH_OFFSET(type) ((void)(type), 0.0F)
+
+/* Nothing is kept from sample to sample. */
+struct block {
+	int none;
+};
+
+SIMD void block_clear(struct block *block)
+{
+	block->none = 0;
+}
+
+/* The value at sample k of the lanes of mask. */
+SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+		     const struct rays *rays, vf k, vm mask, struct block *block)
+{
+	(void)block;
+	return sample_at(cast, type, nearest, rays, k, mask);
+}
+
+#endif
