@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "view/loading_bar.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -44,7 +45,10 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	if (!maker)
 		return GZ_ERR_NO_MEM;
 	maker->log = log;
-	enum gz_result r = gz_scene_load(options->scene, NULL, log, &maker->scene);
+	struct gz_loading_bar bar;
+	gz_loading_bar_begin(&bar, log);
+	enum gz_result r = gz_scene_load(options->scene, &bar.loading, log, &maker->scene);
+	gz_loading_bar_end(&bar);
 	if (r == GZ_OK)
 		r = gz_view_options_apply(options, &maker->scene.settings);
 	if (r == GZ_OK)

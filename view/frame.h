@@ -32,7 +32,8 @@ struct gz_frame_request {
  * @param options  borrowed until the call returns
  * @param log      borrowed, outlives the maker
  * @param[out] out_maker  owned by the caller: gz_frame_maker_destroy()
- * @return what gz_scene_load() and gz_renderer_create() return; logged
+ * @return what gz_scene_load() and gz_renderer_create() return; logged but for GZ_ERR_CANCELLED,
+ * which a signal while loading gives
  */
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 				     const struct gz_log *log, struct gz_frame_maker **out_maker);

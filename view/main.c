@@ -18,9 +18,9 @@ static int run(const struct gz_view_options *options, const struct gz_log *log)
 		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
 					     : gz_view_window(options, log);
-	if (r != GZ_OK)
-		return EXIT_FAILURE;
-	return signal_number ? EXIT_SIGNAL + signal_number : EXIT_SUCCESS;
+	if (signal_number && (r == GZ_OK || r == GZ_ERR_CANCELLED))
+		return EXIT_SIGNAL + signal_number;
+	return r == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)

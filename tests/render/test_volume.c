@@ -141,6 +141,29 @@ static void procedural_volumes_are_the_same_bits_everywhere(void **state)
 	}
 }
 
+static void procedural_volume_has_the_same_data_in_every_type(void **state)
+{
+	(void)state;
+	static const int dims[3] = { 20, 18, 16 };
+	for (int which = 0; which < GZ_PROCEDURAL_COUNT; which++) {
+		struct gz_volume v[GZ_VOXEL_TYPE_COUNT];
+		for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+			assert_int_equal(gz_volume_generate((enum gz_procedural)which, dims,
+							    (enum gz_voxel_type)type, NULL, NULL,
+							    &v[type]),
+					 GZ_OK);
+		for (size_t i = 0; i < gz_volume_voxel_count(&v[0]); i++) {
+			const double exact = (double)((const float *)v[GZ_VOXEL_F32].voxels)[i];
+			const double bytes = v[0].slope * ((const uint8_t *)v[0].voxels)[i];
+			const double words = v[1].slope * ((const uint16_t *)v[1].voxels)[i];
+			assert_true(fabs(bytes - exact) <= 0.501 * v[0].slope);
+			assert_true(fabs(words - exact) <= 0.501 * v[1].slope);
+		}
+		for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+			gz_volume_free(&v[type]);
+	}
+}
+
 static void procedural_volume_of_bad_dims_is_refused_with_a_line(void **state)
 {
 	(void)state;
@@ -180,6 +203,7 @@ int main(void)
 		cmocka_unit_test(range_of_wider_types_is_found),
 		cmocka_unit_test(longest_edge_of_the_box_is_one),
 		cmocka_unit_test(procedural_volumes_are_the_same_bits_everywhere),
+		cmocka_unit_test(procedural_volume_has_the_same_data_in_every_type),
 		cmocka_unit_test(procedural_volume_of_bad_dims_is_refused_with_a_line),
 		cmocka_unit_test(names_match_their_enums),
 	};

@@ -526,9 +526,67 @@ static void metaimage_frame_is_left_posterior_superior(void **state)
 	}
 }
 
+struct told {
+	int times;
+	double last;
+	int stop_at;
+};
+
+static bool tell(void *user, double share, const char *what)
+{
+	struct told *told = user;
+	assert_true(share >= told->last && share <= 1);
+	assert_non_null(strstr(what, "told.raw"));
+	told->last = share;
+	return ++told->times != told->stop_at;
+}
+
+static void loading_is_told_and_stopped(void **state)
+{
+	(void)state;
+	static uint8_t bytes[64 * 64 * 32];
+	static const struct gz_raw_layout raw = { .dims = { 64, 64, 32 }, .spacing = { 1, 1, 1 } };
+	const char *path = files_write("told.raw", bytes, sizeof bytes);
+	struct told told = { 0 };
+	struct gz_loading loading = { .report = tell, .user = &told };
+	struct gz_volume v = { 0 };
+	assert_int_equal(gz_volume_load(path, &raw, &loading, NULL, &v), GZ_OK);
+	assert_true(told.times > 1);
+	gz_volume_free(&v);
+	told = (struct told) { .stop_at = 2 };
+	assert_int_equal(gz_volume_load(path, &raw, &loading, NULL, &v), GZ_ERR_CANCELLED);
+	assert_null(v.voxels);
+	assert_int_equal(told.times, 2);
+}
+
+static void scratch_folder_holds_the_same_voxels(void **state)
+{
+	(void)state;
+	uint8_t bytes[5 * 4 * 3];
+	for (size_t i = 0; i < sizeof bytes; i++)
+		bytes[i] = (uint8_t)(7 * i);
+	static const struct gz_raw_layout raw = { .dims = { 5, 4, 3 }, .spacing = { 1, 1, 1 } };
+	const char *path = files_write("s.raw", bytes, sizeof bytes);
+	struct gz_loading loading = { .scratch = files_folder() };
+	struct gz_volume v = { 0 };
+	assert_int_equal(gz_volume_load(path, &raw, &loading, NULL, &v), GZ_OK);
+	assert_true(v.mapped > 0);
+	assert_memory_equal(v.voxels, bytes, sizeof bytes);
+	gz_volume_free(&v);
+
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	loading.scratch = "/nowhere/at/all";
+	assert_int_equal(gz_volume_load(path, &raw, &loading, &log.log, &v), GZ_ERR_NOT_FOUND);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "/nowhere/at/all"));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(loading_is_told_and_stopped),
+		cmocka_unit_test(scratch_folder_holds_the_same_voxels),
 		cmocka_unit_test(raw_plain_gzip_and_zstd_are_the_same),
 		cmocka_unit_test(gzip_members_and_zstd_frames_are_joined),
 		cmocka_unit_test(large_compressed_volume_is_read_whole),
