@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
+#include "render/attention/attention.h"
 #include "render/camera.h"
 #include "render/plan/plan.h"
 #include "render/renderer.h"
@@ -31,6 +32,7 @@ struct gz_scene_settings {
 	struct gz_ray_params rays;
 	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
 	struct gz_foveation foveation;
+	struct gz_attention_params attention;
 	struct gz_display display;
 };
 
@@ -43,7 +45,7 @@ struct gz_scene {
 };
 
 /** Tables that gz_scene_bindings() gives. */
-#define GZ_SCENE_BINDINGS 3
+#define GZ_SCENE_BINDINGS 4
 
 /**
  * The tables over struct gz_scene_settings: "volume.file", "camera.eye", …

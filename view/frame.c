@@ -16,6 +16,11 @@ struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
 	struct gz_renderer *renderer;
+	struct gz_attention attention;
+	struct gz_gaze_reading reading; /* that the attention took last */
+	struct gz_focus focus;          /* that it made of it */
+	struct gz_focus made;           /* of the last frame made */
+	bool any_made;
 	struct gz_plan plan;
 	struct gz_image cast;  /* at the rays' resolution, only where that is not the picture's */
 	struct gz_image image; /* the finished picture */
@@ -45,6 +50,9 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	if (!maker)
 		return GZ_ERR_NO_MEM;
 	maker->log = log;
+	const struct gz_attention_params attention = gz_attention_default();
+	gz_attention_init(&maker->attention, &attention);
+	maker->focus = maker->attention.focus;
 	struct gz_loading_bar bar;
 	gz_loading_bar_begin(&bar, log);
 	enum gz_result r = gz_scene_load(options->scene, &bar.loading, log, &maker->scene);
@@ -66,6 +74,30 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 	return &maker->scene;
 }
 
+bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
+		     const struct gz_gaze_reading *reading, const struct gz_display *display,
+		     int64_t time_ns)
+{
+	const struct gz_attention_gaze gaze = {
+		.known = reading->known,
+		.point = reading->point,
+		.has_age = reading->has_age,
+		.age_ns = reading->age_ns,
+		.has_event = reading->has_event,
+		.event = reading->event,
+		.noise_deg = reading->noise_deg,
+	};
+	gz_attention_set_params(&maker->attention, params);
+	maker->reading = *reading;
+	maker->focus = gz_attention_step(&maker->attention, &gaze, display, time_ns);
+	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made);
+}
+
+bool gz_frame_settled(const struct gz_frame_maker *maker)
+{
+	return gz_attention_settled(&maker->attention);
+}
+
 /* Pixels of the rays' grid along a side; 0 where that is no picture. */
 static int cast_side(int side, double rate)
 {
@@ -81,8 +113,8 @@ static enum gz_result cast_picture(struct gz_frame_maker *maker,
 	bool direct = maker->plan.width == request->width && maker->plan.height == request->height;
 	struct gz_image *target = direct ? &maker->image : &maker->cast;
 	enum gz_result r =
-		gz_renderer_render(maker->renderer, request->camera, &maker->scene.settings.rays,
-				   &maker->plan, target, out_stats);
+		gz_renderer_render(maker->renderer, &request->settings->camera,
+				   &request->settings->rays, &maker->plan, target, out_stats);
 	if (r != GZ_OK || direct)
 		return r;
 	int64_t start_ns = gz_clock_now_ns();
@@ -96,7 +128,7 @@ static enum gz_result cast_picture(struct gz_frame_maker *maker,
 static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			   struct gz_frame_record *record)
 {
-	double rate = maker->scene.settings.image_sampling_rate;
+	double rate = request->settings->image_sampling_rate;
 	int width = cast_side(request->width, rate), height = cast_side(request->height, rate);
 	if (width == 0 || height == 0) {
 		gz_err(maker->log,
@@ -105,12 +137,10 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
 		return GZ_ERR_INVAL;
 	}
-	struct gz_point gaze =
-		request->gaze.known ? request->gaze.point : (struct gz_point) { NAN, NAN };
 	struct gz_frame_stats stats;
 	int64_t start_ns = gz_clock_now_ns();
-	enum gz_result r = gz_plan_make(request->foveation, request->display, gaze, width, height,
-					&maker->plan);
+	enum gz_result r = gz_plan_make(&request->settings->foveation, request->display,
+					maker->focus.point, width, height, &maker->plan);
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);
@@ -128,22 +158,46 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	return GZ_OK;
 }
 
-enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
-			     struct gz_image **out_image, struct gz_frame_record *out_record)
+/* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. */
+static void tell_spent(struct gz_frame_maker *maker, double total_ms)
 {
-	struct gz_frame_record record = {
-		.method = gz_method_names[request->foveation->method],
+	if (gz_attention_spent(&maker->attention, total_ms))
+		gz_warn(maker->log,
+			"attention.budget_ms %g is out of reach: the coarsest plan took %.1f ms; "
+			"allow more time, or lower the size or render.ray_sampling_rate",
+			maker->attention.params.budget_ms, total_ms);
+}
+
+static struct gz_frame_record begin_record(const struct gz_frame_maker *maker,
+					   const struct gz_frame_request *request)
+{
+	const struct gz_gaze_reading *reading = &maker->reading;
+	return (struct gz_frame_record) {
+		.method = gz_method_names[request->settings->foveation.method],
 		.backend = maker->renderer->ops->name,
 		.width = request->width,
 		.height = request->height,
-		.gaze_known = request->gaze.known,
-		.gaze = request->gaze.point,
-		.age_known = request->gaze.known && request->gaze.has_age,
-		.gaze_age_ms = gz_ns_to_ms(request->gaze.age_ns),
+		.gaze_known = reading->known,
+		.gaze = reading->point,
+		.age_known = reading->known && reading->has_age,
+		.gaze_age_ms = gz_ns_to_ms(reading->age_ns),
+		.attention = gz_attention_state_name(maker->attention.state),
+		.focus = maker->focus,
+		.budget_ms = maker->attention.params.budget_ms,
 	};
+}
+
+enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			     struct gz_image **out_image, struct gz_frame_record *out_record)
+{
+	struct gz_frame_record record = begin_record(maker, request);
 	enum gz_result r = make(maker, request, &record);
 	if (r != GZ_OK)
 		return r;
+	maker->made = maker->focus;
+	maker->any_made = true;
+	tell_spent(maker, record.total_ms);
+	record.budget = gz_budget_state_name(maker->attention.budget.state);
 	*out_image = &maker->image;
 	*out_record = record;
 	return GZ_OK;

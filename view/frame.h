@@ -1,6 +1,7 @@
 /**
  * @file
- * One frame: gaze to plan to picture, with what each step cost. Headless and window share it.
+ * One frame: gaze to attention to plan to picture, with what each step cost. Headless and window
+ * share it.
  */
 #ifndef GZ_VIEW_FRAME_H
 #define GZ_VIEW_FRAME_H
@@ -19,11 +20,9 @@ struct gz_frame_maker;
 
 /** What one frame is to be. */
 struct gz_frame_request {
-	const struct gz_camera *camera;
-	const struct gz_foveation *foveation;
-	const struct gz_display *display; /**< of the picture: it fills this one */
-	struct gz_gaze_reading gaze;      /**< on that display */
-	int width, height;                /**< of the finished picture, px */
+	const struct gz_scene_settings *settings; /**< all but volume, transfer and display count */
+	const struct gz_display *display;         /**< of the picture: it fills this one */
+	int width, height;                        /**< of the finished picture, px */
 };
 
 /**
@@ -42,7 +41,23 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 
 /**
- * Render one frame. A gaze that is not known counts as lost: the plan's centre is the picture's.
+ * Let the attention (render/attention/attention.h) take the gaze of the next frame.
+ *
+ * @param reading  its point is on @p display
+ * @param time_ns  of the frame, from any origin: a log's own time, else the host's
+ * @return whether the plan of the next frame differs from that of the last one made; true before
+ *         the first
+ */
+bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
+		     const struct gz_gaze_reading *reading, const struct gz_display *display,
+		     int64_t time_ns);
+
+/** Whether the plan stays as it is while the gaze does; else gz_frame_attend() is due each frame.
+ */
+bool gz_frame_settled(const struct gz_frame_maker *maker);
+
+/**
+ * Render one frame, sharp where gz_frame_attend() left it; before the first in the centre.
  *
  * @param[out] out_image   the picture, owned by the maker, valid until the next call
  * @param[out] out_record  what it cost

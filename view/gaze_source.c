@@ -1,5 +1,6 @@
 #include "view/gaze_source.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* A point somebody else sets: once for "fixed", by every motion for "mouse". */
@@ -18,6 +19,7 @@ static void point_read(struct gz_gaze_source *source, int64_t time_ns,
 		.known = self->known,
 		.point = self->point,
 		.connected = true,
+		.noise_deg = NAN,
 	};
 }
 

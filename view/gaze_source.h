@@ -26,6 +26,7 @@ struct gz_gaze_reading {
 	bool connected;      /**< whoever gives the gaze is there now; true where nobody need be */
 	bool has_event;      /**< the source tells what the eye does */
 	enum gz_event event; /**< only with has_event */
+	double noise_deg;    /**< of the tracker, sample to sample; NaN where not known */
 };
 
 struct gz_gaze_source;

@@ -1,6 +1,7 @@
 /* A daemon's latest channel as a source; its status, on the stream beside it, tells the display. */
 #include "view/gaze_source.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,7 @@ struct latest_source {
 	struct gz_gaze_source base;
 	struct gz_client *client;
 	struct gz_stream *status; /* NULL where the stream's endpoint cannot be told */
+	double noise_deg;         /* as status tells it; NaN before that */
 	bool has_display;
 	struct gz_display display;
 };
@@ -22,7 +24,10 @@ static void take_status(struct latest_source *self)
 {
 	struct gz_message message;
 	while (self->status && gz_stream_read(self->status, 0, &message) == GZ_OK) {
-		if (message.kind != GZ_MESSAGE_STATUS || !gz_display_valid(&message.status.display))
+		if (message.kind != GZ_MESSAGE_STATUS)
+			continue;
+		self->noise_deg = message.status.noise_deg;
+		if (!gz_display_valid(&message.status.display))
 			continue;
 		self->display = message.status.display;
 		self->has_display = true;
@@ -49,6 +54,7 @@ static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
 	gz_client_get_counters(self->client, &counters);
 	reading.connected = counters.connected;
 	take_status(self);
+	reading.noise_deg = self->noise_deg;
 	*out_reading = reading;
 }
 
@@ -114,6 +120,7 @@ enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *
 	if (!self)
 		return GZ_ERR_NO_MEM;
 	self->base.ops = &latest_alone_ops;
+	self->noise_deg = NAN;
 	if (endpoint && !endpoint[0])
 		endpoint = NULL;
 	enum gz_result r = gz_client_open(endpoint, log, &self->client);

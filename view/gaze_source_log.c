@@ -53,6 +53,7 @@ static void step(struct log_source *self)
 		.connected = true,
 		.has_event = true,
 		.event = output.gaze.event,
+		.noise_deg = gz_pipeline_noise_deg(&self->pipeline),
 	};
 	self->shown_ns = self->pending.host_ns;
 	fetch(self);

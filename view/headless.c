@@ -31,7 +31,7 @@ struct headless {
 	struct gz_frame_maker *maker;
 	struct gz_gaze_source *source;
 	struct gz_stats_file *stats;
-	struct gz_camera camera;
+	struct gz_scene_settings settings; /* the camera turns */
 	int64_t start_ns;
 	bool silence_told; /* that a daemon says nothing was said */
 };
@@ -74,8 +74,9 @@ static enum gz_result open_source(const struct gz_gaze_choice *choice, const str
 static struct gz_point centre_of(const struct headless *self)
 {
 	struct gz_point centre = { 0.5f, 0.5f };
-	gz_camera_project(&self->camera, self->options->size_px[0], self->options->size_px[1],
-			  self->camera.look_at, &centre);
+	const struct gz_camera *camera = &self->settings.camera;
+	gz_camera_project(camera, self->options->size_px[0], self->options->size_px[1],
+			  camera->look_at, &centre);
 	return centre;
 }
 
@@ -172,15 +173,16 @@ static enum gz_result one_frame(struct headless *self, int frame)
 {
 	if (self->source->ops->live)
 		gz_clock_sleep_until_ns(self->start_ns + frame_time_ns(self, frame));
-	struct gz_frame_request request = {
-		.camera = &self->camera,
-		.foveation = &gz_frame_maker_scene(self->maker)->settings.foveation,
-		.gaze = gaze_now(self, frame),
+	const struct gz_gaze_reading gaze = gaze_now(self, frame);
+	const struct gz_display display = display_now(self);
+	const struct gz_frame_request request = {
+		.settings = &self->settings,
+		.display = &display,
 		.width = self->options->size_px[0],
 		.height = self->options->size_px[1],
 	};
-	struct gz_display display = display_now(self);
-	request.display = &display;
+	gz_frame_attend(self->maker, &self->settings.attention, &gaze, &display,
+			self->source->ops->live ? gz_clock_now_ns() : frame_time_ns(self, frame));
 	struct gz_frame_record record;
 	struct gz_image *image;
 	enum gz_result r = gz_frame_make(self->maker, &request, &image, &record);
@@ -190,7 +192,7 @@ static enum gz_result one_frame(struct headless *self, int frame)
 		r = gz_stats_add(self->stats, &record);
 	if (r == GZ_OK)
 		r = write_picture(self, image, &record, frame);
-	gz_camera_turn(&self->camera, self->options->turn_deg);
+	gz_camera_turn(&self->settings.camera, self->options->turn_deg);
 	return r;
 }
 
@@ -205,6 +207,16 @@ static enum gz_result all_frames(struct headless *self)
 	return r;
 }
 
+/* A replay is the same each time, but for what depends on how fast the machine is. */
+static void warn_of_budget(const struct headless *self)
+{
+	if (self->settings.attention.budget_ms > 0 && !self->source->ops->live)
+		gz_warn(self->log,
+			"attention.budget_ms %g: the pictures depend on how fast this machine is; "
+			"set it to 0 for the same ones each time",
+			self->settings.attention.budget_ms);
+}
+
 enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
 				int *out_signal)
 {
@@ -217,7 +229,8 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	if (r == GZ_OK && options->stats[0])
 		r = gz_stats_open(options->stats, log, &self.stats);
 	if (r == GZ_OK) {
-		self.camera = gz_frame_maker_scene(self.maker)->settings.camera;
+		self.settings = gz_frame_maker_scene(self.maker)->settings;
+		warn_of_budget(&self);
 		r = all_frames(&self);
 	}
 	gz_stats_close(&self.stats);

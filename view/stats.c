@@ -11,7 +11,7 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* One entry, with room to spare: eight numbers, two short names. */
+/* One entry, with room to spare: a dozen numbers, four short names. */
 enum { ENTRY_SIZE = 1024, NUMBER_SIZE = 40 };
 
 static const char head[] = "{\"frames\": [";
@@ -47,34 +47,49 @@ static void print_number(double value, const char *format, char text[NUMBER_SIZE
 		snprintf(text, NUMBER_SIZE, "null");
 }
 
-static void print_gaze(const struct gz_frame_record *record, char *text, size_t size)
+static void print_point(struct gz_point point, char *text, size_t size)
 {
-	if (record->gaze_known && isfinite(record->gaze.x) && isfinite(record->gaze.y))
-		snprintf(text, size, "[%.9g, %.9g]", (double)record->gaze.x,
-			 (double)record->gaze.y);
+	if (isfinite(point.x) && isfinite(point.y))
+		snprintf(text, size, "[%.9g, %.9g]", (double)point.x, (double)point.y);
 	else
 		snprintf(text, size, "null");
+}
+
+/* What the plan was made of; a comma before it. */
+static void print_attention(const struct gz_frame_record *record, char *text, size_t size)
+{
+	char focus[2 * NUMBER_SIZE], scale[NUMBER_SIZE], widen[NUMBER_SIZE], budget[NUMBER_SIZE];
+	print_point(record->focus.point, focus, sizeof focus);
+	print_number(record->focus.scale, "%.6g", scale);
+	print_number(record->focus.widen, "%.6g", widen);
+	print_number(record->budget_ms > 0 ? record->budget_ms : NAN, "%.6g", budget);
+	snprintf(text, size,
+		 ", \"attention\": \"%s\", \"focus\": %s, \"scale\": %s, \"widen\": %s, "
+		 "\"budget_ms\": %s, \"budget\": \"%s\"",
+		 record->attention, focus, scale, widen, budget, record->budget);
 }
 
 static int print_entry(const struct gz_frame_record *record, bool first, char *text, size_t size)
 {
 	char plan[NUMBER_SIZE], cast[NUMBER_SIZE], reconstruct[NUMBER_SIZE], total[NUMBER_SIZE];
-	char age[NUMBER_SIZE], gaze[2 * NUMBER_SIZE];
+	char age[NUMBER_SIZE], gaze[2 * NUMBER_SIZE], attention[10 * NUMBER_SIZE];
 	print_number(record->plan_ms, "%.4f", plan);
 	print_number(record->cast_ms, "%.4f", cast);
 	print_number(record->reconstruct_ms, "%.4f", reconstruct);
 	print_number(record->total_ms, "%.4f", total);
 	print_number(record->age_known ? record->gaze_age_ms : NAN, "%.4f", age);
-	print_gaze(record, gaze, sizeof gaze);
+	const struct gz_point unknown = { NAN, NAN };
+	print_point(record->gaze_known ? record->gaze : unknown, gaze, sizeof gaze);
+	print_attention(record, attention, sizeof attention);
 	return snprintf(text, size,
 			"%s\n{\"method\": \"%s\", \"backend\": \"%s\", \"width\": %d, \"height\": "
 			"%d, \"rays\": %llu, \"samples\": %llu, \"plan_ms\": %s, \"cast_ms\": %s, "
 			"\"reconstruct_ms\": %s, \"total_ms\": %s, \"gaze\": %s, \"gaze_age_ms\": "
-			"%s}%s",
+			"%s%s}%s",
 			first ? "" : ",", record->method, record->backend, record->width,
 			record->height, (unsigned long long)record->rays,
 			(unsigned long long)record->samples, plan, cast, reconstruct, total, gaze,
-			age, tail);
+			age, attention, tail);
 }
 
 /* All of it at @p at, in one write where the system allows: a reader never sees half an entry. */

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "protocol/display.h"
+#include "render/attention/attention.h"
 
 /** One frame. Strings are static or outlive the record. */
 struct gz_frame_record {
@@ -27,7 +28,11 @@ struct gz_frame_record {
 	bool gaze_known;
 	struct gz_point gaze;
 	bool age_known;
-	double gaze_age_ms; /**< when the plan was made */
+	double gaze_age_ms;    /**< when the plan was made */
+	const char *attention; /**< what the plan went by: gz_attention_state_name() */
+	struct gz_focus focus; /**< what the plan was made of */
+	double budget_ms;      /**< 0: none */
+	const char *budget;    /**< how that went: gz_budget_state_name() */
 };
 
 /**

@@ -15,9 +15,6 @@
 
 #define GZ_LOG_MODULE "window"
 
-/* A gaze that moves less than this keeps its plan, degrees (chosen: a tenth of what good trackers
- * err by, a fiftieth of the fovea), so that a still eye sees a still picture. */
-#define DEAD_BAND_DEG 0.05
 /* Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
 #define SILENT_NS GZ_NS_PER_S
 
@@ -128,24 +125,20 @@ static bool same_point(struct gz_point a, struct gz_point b)
 	return a.x == b.x && a.y == b.y;
 }
 
-static bool gaze_moved(const struct gz_window *window, const struct gz_window_gaze *gaze)
+/* Whether where the picture is sharp, or what it is on, is another than in the one shown. */
+static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	const struct gz_gaze_reading *shown = &window->shown;
-	if (gaze->reading.known != shown->known ||
-	    !same_display(&gaze->display, &window->shown_display))
-		return true;
-	return gaze->reading.known && !(gz_display_angle_deg(&gaze->display, gaze->reading.point,
-							     shown->point) <= DEAD_BAND_DEG);
+	bool moved = gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
+				     &gaze->display, gz_clock_now_ns());
+	return moved || !same_display(&gaze->display, &window->shown_display);
 }
 
 static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
 			   int height)
 {
 	const struct gz_frame_request request = {
-		.camera = &window->camera,
-		.foveation = &window->foveation,
+		.settings = &window->settings,
 		.display = &gaze->display,
-		.gaze = gaze->reading,
 		.width = width,
 		.height = height,
 	};
@@ -154,7 +147,6 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 	if (r != GZ_OK)
 		return r;
 	gz_quad_upload(&window->quad, image);
-	window->shown = gaze->reading;
 	window->shown_display = gaze->display;
 	window->cast_needed = false;
 	return GZ_OK;
@@ -189,11 +181,11 @@ static enum gz_result refresh(struct gz_window *window)
 	if (width < 1 || height < 1) /* minimised */
 		return GZ_OK;
 	if (window->options->turn_deg != 0) {
-		gz_camera_turn(&window->camera, window->options->turn_deg);
+		gz_camera_turn(&window->settings.camera, window->options->turn_deg);
 		window->cast_needed = true;
 	}
 	gz_window_gaze_now(window, width, height, &gaze);
-	bool must_cast = window->cast_needed || gaze_moved(window, &gaze);
+	bool must_cast = gaze_moved(window, &gaze) || window->cast_needed;
 	bool cross_moved = window->cross && !same_point(gaze.reading.point, window->cross_drawn);
 	if (must_cast) {
 		enum gz_result r = cast(window, &gaze, width, height);
@@ -257,8 +249,7 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 	if (r == GZ_OK)
 		r = gz_frame_maker_create(options, log, &window.maker);
 	if (r == GZ_OK) {
-		window.camera = gz_frame_maker_scene(window.maker)->settings.camera;
-		window.foveation = gz_frame_maker_scene(window.maker)->settings.foveation;
+		window.settings = gz_frame_maker_scene(window.maker)->settings;
 		r = open_context(&window);
 	}
 	if (r == GZ_OK)

@@ -48,7 +48,7 @@ void gz_window_toggle_fullscreen(struct gz_window *window)
 
 static void choose_method(struct gz_window *window, int method)
 {
-	window->foveation.method = method;
+	window->settings.foveation.method = method;
 	window->cast_needed = true;
 }
 
@@ -70,7 +70,7 @@ static void press_letter(struct gz_window *window, int letter)
 		window->keys_shown = !window->keys_shown;
 		break;
 	case 'r':
-		window->camera = gz_frame_maker_scene(window->maker)->settings.camera;
+		window->settings.camera = gz_frame_maker_scene(window->maker)->settings.camera;
 		window->cast_needed = true;
 		break;
 	case 'q':
@@ -120,7 +120,7 @@ static void drag(struct gz_window *window, double right, double down, int height
 {
 	double deg = DRAG_DEG_PER_HEIGHT / height;
 	/* The volume follows the hand, so the eye goes the other way. */
-	gz_camera_orbit(&window->camera, -right * deg, -down * deg);
+	gz_camera_orbit(&window->settings.camera, -right * deg, -down * deg);
 	window->cast_needed = true;
 }
 
@@ -159,7 +159,7 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 {
 	(void)right;
 	struct gz_window *window = window_of(glfw);
-	gz_camera_zoom(&window->camera, pow(ZOOM_PER_NOTCH, up));
+	gz_camera_zoom(&window->settings.camera, pow(ZOOM_PER_NOTCH, up));
 	window->cast_needed = true;
 }
 

@@ -32,8 +32,7 @@ struct gz_window {
 	bool mouse_chosen; /**< M: the mouse, though there is another source */
 	int64_t start_ns;  /**< of a log's time */
 
-	struct gz_camera camera;
-	struct gz_foveation foveation;
+	struct gz_scene_settings settings; /**< as the user has changed them */
 	bool cross;
 	bool keys_shown;
 
@@ -48,7 +47,6 @@ struct gz_window {
 
 	/** The frame on the screen. */
 	struct gz_frame_record record;
-	struct gz_gaze_reading shown;
 	struct gz_display shown_display;
 	struct gz_point cross_drawn;
 	int64_t line_due_ns; /**< when the line's running numbers are next worth a redraw */

@@ -21,7 +21,7 @@ SCENE = write_scene(PLACE.name, SCENES)
 METHODS = ("standard", "mdc", "ddc", "acuity")
 KEYS = (
     "method backend width height rays samples plan_ms cast_ms reconstruct_ms total_ms gaze "
-    "gaze_age_ms"
+    "gaze_age_ms attention focus scale widen budget_ms budget"
 ).split()
 LINE = re.compile(
     r"(\w+) (\d+)x(\d+) rays (\d+) samples (\d+) plan ([\d.]+) cast ([\d.]+) reconstruct ([\d.]+) "

@@ -28,6 +28,10 @@ static const struct gz_frame_record frame = {
 	.gaze = { 0.25f, -0.5f },
 	.age_known = true,
 	.gaze_age_ms = 3.5,
+	.attention = "fixation",
+	.focus = { .point = { 0.25f, -0.5f }, .scale = 1.5, .widen = 0.25 },
+	.budget_ms = 12,
+	.budget = "over",
 };
 
 static int make_folder(void **state)
@@ -94,7 +98,9 @@ static void file_is_whole_after_each_frame(void **state)
 		text, "{\"method\": \"acuity\", \"backend\": \"cpu\", \"width\": 640, \"height\": "
 		      "360, \"rays\": 12345, \"samples\": 9876543210, \"plan_ms\": 0.2500, "
 		      "\"cast_ms\": 10.5000, \"reconstruct_ms\": 1.2500, \"total_ms\": 12.1250, "
-		      "\"gaze\": [0.25, -0.5], \"gaze_age_ms\": 3.5000}"));
+		      "\"gaze\": [0.25, -0.5], \"gaze_age_ms\": 3.5000, \"attention\": "
+		      "\"fixation\", \"focus\": [0.25, -0.5], \"scale\": 1.5, \"widen\": 0.25, "
+		      "\"budget_ms\": 12, \"budget\": \"over\"}"));
 }
 
 static void what_is_not_there_is_null(void **state)
@@ -103,13 +109,18 @@ static void what_is_not_there_is_null(void **state)
 	struct gz_stats_file *file = NULL;
 	struct gz_frame_record blind = frame;
 	blind.gaze_known = blind.age_known = false;
+	blind.focus.point = (struct gz_point) { NAN, NAN };
+	blind.budget_ms = 0;
+	blind.budget = "off";
 	blind.cast_ms = NAN;
 	blind.total_ms = INFINITY;
 	assert_int_equal(gz_stats_open(path, NULL, &file), GZ_OK);
 	assert_int_equal(gz_stats_add(file, &blind), GZ_OK);
 	gz_stats_close(&file);
 	const char *text = content();
-	assert_non_null(strstr(text, "\"gaze\": null, \"gaze_age_ms\": null}"));
+	assert_non_null(strstr(text, "\"gaze\": null, \"gaze_age_ms\": null, "));
+	assert_non_null(strstr(text, "\"focus\": null, \"scale\": 1.5"));
+	assert_non_null(strstr(text, "\"budget_ms\": null, \"budget\": \"off\"}"));
 	assert_non_null(strstr(text, "\"cast_ms\": null"));
 	assert_non_null(strstr(text, "\"total_ms\": null"));
 	assert_null(strstr(text, "nan"));

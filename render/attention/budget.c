@@ -1,0 +1,195 @@
+#include "render/attention/budget.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More frames than 5 % of the window. */
+#define OVER_MIN (GZ_BUDGET_WINDOW / 20 + 1)
+/* Frames that come so soon after one another are one cause. */
+#define OVER_SPAN (OVER_MIN + 1)
+
+/* What one rung costs at most: rays go with the scale's square, 2^(2/4). */
+#define RUNG_COST 1.4142135623730951
+
+/* What is aimed at, as a share of the budget. Chosen: with one rung's cost, frames may vary by a
+ * tenth without a change. */
+#define AIM 0.9
+
+/* The same for the rungs that are left out at once, since not all of a frame goes with its rays. */
+#define LEAP_AIM 0.8
+
+/* Clearly cheaper than when a finer rung failed (chosen). */
+#define CHEAPER 0.8
+
+/* Most doublings of the time before a finer rung is tried again (chosen: 40 * 2^8 frames are some
+ * minutes). */
+#define FAILS_MAX 8
+
+static const char *const state_names[] = { "off", "within", "over", "limit" };
+_Static_assert(sizeof state_names / sizeof state_names[0] == GZ_BUDGET_STATE_COUNT,
+	       "a name for each state");
+
+const char *gz_budget_state_name(enum gz_budget_state state)
+{
+	return state_names[state];
+}
+
+void gz_budget_init(struct gz_budget *budget, double budget_ms)
+{
+	*budget = (struct gz_budget) { .budget_ms = budget_ms };
+	budget->state = budget_ms > 0 ? GZ_BUDGET_WITHIN : GZ_BUDGET_OFF;
+	for (int rung = 0; rung < GZ_BUDGET_RUNGS; rung++)
+		budget->tries[rung].before_ms = INFINITY;
+}
+
+double gz_budget_scale(const struct gz_budget *budget)
+{
+	return exp2(budget->rung * 0.25);
+}
+
+static void keep(struct gz_budget *budget, double frame_ms)
+{
+	if (budget->count == GZ_BUDGET_WINDOW) {
+		budget->count--;
+		memmove(budget->frames_ms, budget->frames_ms + 1,
+			sizeof budget->frames_ms - sizeof budget->frames_ms[0]);
+	}
+	budget->frames_ms[budget->count++] = frame_ms;
+}
+
+static int count_over(const struct gz_budget *budget, int newest)
+{
+	int over = 0;
+	int first = budget->count > newest ? budget->count - newest : 0;
+	for (int i = first; i < budget->count; i++)
+		over += budget->frames_ms[i] > budget->budget_ms;
+	return over;
+}
+
+static int ascending(const void *a, const void *b)
+{
+	double left = *(const double *)a, right = *(const double *)b;
+	return (left > right) - (left < right);
+}
+
+/* So that OVER_MIN - 1 of the newest frames are above it: of a whole window the percentile. */
+static double upper_ms(const struct gz_budget *budget, int newest)
+{
+	double sorted[GZ_BUDGET_WINDOW];
+	memcpy(sorted, budget->frames_ms + budget->count - newest,
+	       (size_t)newest * sizeof sorted[0]);
+	qsort(sorted, (size_t)newest, sizeof sorted[0], ascending);
+	return sorted[newest - OVER_MIN];
+}
+
+static void choose(struct gz_budget *budget, int rung)
+{
+	budget->rung = rung;
+	budget->count = 0;
+	budget->waited = 0;
+}
+
+/* As many rungs as the frames were too slow, if they come in a row; else 0. */
+static int rungs_needed(const struct gz_budget *budget)
+{
+	int newest = budget->count < OVER_SPAN ? budget->count : OVER_SPAN;
+	if (count_over(budget, newest) < OVER_MIN)
+		return 0;
+	double excess = upper_ms(budget, newest) / (LEAP_AIM * budget->budget_ms);
+	double rungs = ceil(log(excess) / log(RUNG_COST));
+	return rungs < 1 ? 1 : rungs > GZ_BUDGET_RUNGS ? GZ_BUDGET_RUNGS : (int)rungs;
+}
+
+static void count_failure(struct gz_budget *budget, int from)
+{
+	if (budget->tries[from].fails < FAILS_MAX)
+		budget->tries[from].fails++;
+}
+
+/* A rung on trial that has to be left tells of the one that it was tried from. */
+static void end_trial(struct gz_budget *budget)
+{
+	if (budget->tried_from > 0)
+		count_failure(budget, budget->tried_from);
+	budget->tried_from = 0;
+}
+
+/* Now and then a slow frame: one rung, and no hurry back. */
+static void go_one_coarser(struct gz_budget *budget)
+{
+	end_trial(budget);
+	choose(budget, budget->rung + 1);
+	budget->tries[budget->rung].before_ms = AIM * budget->budget_ms / RUNG_COST;
+	count_failure(budget, budget->rung);
+}
+
+/* @return true the first time that there is no coarser rung. */
+static bool go_coarser(struct gz_budget *budget)
+{
+	if (budget->rung == GZ_BUDGET_RUNGS - 1) {
+		bool first = !budget->limit_told;
+		budget->state = GZ_BUDGET_LIMIT;
+		budget->limit_told = true;
+		return first;
+	}
+	int needed = rungs_needed(budget);
+	if (needed == 0) {
+		go_one_coarser(budget);
+		return false;
+	}
+	int rung = budget->rung + needed;
+	end_trial(budget);
+	choose(budget, rung < GZ_BUDGET_RUNGS ? rung : GZ_BUDGET_RUNGS - 1);
+	return false;
+}
+
+static bool may_try(struct gz_budget *budget, double percentile_ms)
+{
+	int rung = budget->rung;
+	if (percentile_ms < CHEAPER * budget->tries[rung].before_ms)
+		budget->tries[rung].fails = 0; /* another scene */
+	return budget->tries[rung].fails == 0 || budget->waited >= 1 << budget->tries[rung].fails;
+}
+
+/* To the finest rung that would still be fast enough; after a failure only to the next. */
+static void try_finer(struct gz_budget *budget)
+{
+	double percentile_ms = upper_ms(budget, GZ_BUDGET_WINDOW);
+	double ms = percentile_ms * RUNG_COST, aim_ms = AIM * budget->budget_ms;
+	int from = budget->rung, rung = from;
+	budget->waited++;
+	if (!may_try(budget, percentile_ms))
+		return;
+	int least = budget->tries[from].fails > 0 ? from - 1 : 0;
+	for (; rung > least && ms <= aim_ms; ms *= RUNG_COST)
+		rung--;
+	if (rung == from)
+		return;
+	budget->tries[from].before_ms = percentile_ms;
+	choose(budget, rung);
+	budget->tried_from = from;
+}
+
+/* A whole window that was fast enough: what was on trial has passed. */
+static void take_window(struct gz_budget *budget)
+{
+	budget->tried_from = 0;
+	if (budget->rung > 0)
+		try_finer(budget);
+	budget->count = 0;
+}
+
+bool gz_budget_step(struct gz_budget *budget, double frame_ms)
+{
+	if (budget->state == GZ_BUDGET_OFF || !(frame_ms >= 0) || !isfinite(frame_ms))
+		return false;
+	keep(budget, frame_ms);
+	if (budget->state != GZ_BUDGET_LIMIT || frame_ms <= budget->budget_ms)
+		budget->state = frame_ms > budget->budget_ms ? GZ_BUDGET_OVER : GZ_BUDGET_WITHIN;
+	if (count_over(budget, GZ_BUDGET_WINDOW) >= OVER_MIN)
+		return go_coarser(budget);
+	if (budget->count == GZ_BUDGET_WINDOW)
+		take_window(budget);
+	return false;
+}

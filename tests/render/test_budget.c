@@ -1,0 +1,222 @@
+/* A time to keep, against models of what frames cost. */
+#include "check.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/attention/budget.h"
+#include "sim/random.h"
+
+/* ms = fixed + rays * each: rays of the fovea stay, the others go with the scale's square. */
+struct cost {
+	double fixed_ms;
+	double fovea_ms;   /* rays in the fovea, as ms */
+	double outside_ms; /* the others at full detail */
+	double jitter;     /* frames vary by up to this share */
+	double outliers;   /* share of frames that take twice as long */
+};
+
+static double cost_ms(const struct cost *cost, double scale, struct gz_random *random)
+{
+	double ms = cost->fixed_ms + cost->fovea_ms + cost->outside_ms / (scale * scale);
+	ms *= 1 + cost->jitter * (2 * gz_random_uniform(random) - 1);
+	return gz_random_uniform(random) < cost->outliers ? 2 * ms : ms;
+}
+
+struct run {
+	int changes;   /* of the scale */
+	int over;      /* frames above the budget */
+	int last_over; /* the last of them; -1: none */
+	double least, greatest;
+	int told; /* that the budget is out of reach */
+};
+
+static struct run run(struct gz_budget *budget, const struct cost *cost, int frames,
+		      struct gz_random *random)
+{
+	struct run run = { .last_over = -1, .least = INFINITY };
+	double before = gz_budget_scale(budget);
+	for (int i = 0; i < frames; i++) {
+		double scale = gz_budget_scale(budget), ms = cost_ms(cost, scale, random);
+		run.changes += scale != before;
+		if (ms > budget->budget_ms) {
+			run.over++;
+			run.last_over = i;
+		}
+		run.least = fmin(run.least, scale);
+		run.greatest = fmax(run.greatest, scale);
+		before = scale;
+		run.told += gz_budget_step(budget, ms);
+	}
+	return run;
+}
+
+static void no_budget_is_full_detail_whatever_it_takes(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	gz_budget_init(&budget, 0);
+	for (int i = 0; i < 100; i++) {
+		assert_false(gz_budget_step(&budget, 1e6));
+		assert_true(gz_budget_scale(&budget) == 1);
+	}
+	assert_int_equal(budget.state, GZ_BUDGET_OFF);
+}
+
+static void frames_that_keep_it_stay_at_full_detail(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	struct gz_random random;
+	const struct cost cost = { 1, 1, 7, 0.05, 0.01 };
+	random = gz_random_seeded(1, 0);
+	gz_budget_init(&budget, 10);
+	struct run held = run(&budget, &cost, 2000, &random);
+	assert_true(held.greatest == 1);
+	assert_int_equal(held.changes, 0);
+}
+
+static void dearer_scene_is_answered_within_few_frames(void **state)
+{
+	(void)state;
+	for (int times = 2; times <= 8; times++) {
+		struct gz_budget budget;
+		struct gz_random random;
+		const struct cost cheap = { 1, 1, 7, 0.05, 0 };
+		const struct cost dear = { 1, 1, 8.0 * times, 0.05, 0 };
+		random = gz_random_seeded((uint64_t)times, 0);
+		gz_budget_init(&budget, 10);
+		run(&budget, &cheap, 100, &random);
+		struct run answer = run(&budget, &dear, 400, &random);
+		if (answer.over > 9 || answer.last_over > 12 || answer.told)
+			fail_msg("%d times as dear: %d frames over, the last was %d", times,
+				 answer.over, answer.last_over);
+	}
+}
+
+static void percentile_is_kept_and_the_scale_comes_to_rest(void **state)
+{
+	(void)state;
+	for (int k = 0; k < 60; k++) {
+		struct gz_budget budget;
+		struct gz_random random;
+		const struct cost cost = { 0.2 * (k % 5), 0.5 * (k % 4), 5.0 + 3 * k,
+					   0.02 * (k % 6), 0.01 * (k % 3) };
+		random = gz_random_seeded((uint64_t)k, 0);
+		gz_budget_init(&budget, 10);
+		struct run first = run(&budget, &cost, 200, &random);
+		struct run later = run(&budget, &cost, 2000, &random);
+		if (later.over > 2000 / 20 || later.changes > (cost.outliers > 0 ? 8 : 2))
+			fail_msg("model %d: first %d changes; then %d of 2000 frames over, %d "
+				 "changes between %g and %g",
+				 k, first.changes, later.over, later.changes, later.least,
+				 later.greatest);
+		/* Nor does it waste what there is: within two rungs of what would be enough. */
+		double enough = cost.outside_ms / (10 - cost.fixed_ms - cost.fovea_ms);
+		if (later.least > 1 && later.least > 1.9 * sqrt(enough) * (1 + cost.jitter))
+			fail_msg("model %d: %g, though %g would do", k, later.least, sqrt(enough));
+	}
+}
+
+static void cheaper_scene_brings_the_detail_back(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	struct gz_random random;
+	const struct cost dear = { 1, 1, 100, 0.05, 0 }, cheap = { 1, 1, 4, 0.05, 0 };
+	random = gz_random_seeded(5, 0);
+	gz_budget_init(&budget, 10);
+	for (int round = 0; round < 5; round++) {
+		run(&budget, &dear, 300, &random);
+		assert_true(gz_budget_scale(&budget) > 3);
+		struct run back = run(&budget, &cheap, 300, &random);
+		if (gz_budget_scale(&budget) != 1 || back.over > 0)
+			fail_msg("round %d: %g after 300 cheap frames", round,
+				 gz_budget_scale(&budget));
+	}
+}
+
+/* Spacings of whole pixels: a rung finer may cost twice as much, which no rule foresees. */
+static double stair_ms(double scale)
+{
+	double spacing = floor(2 * scale);
+	return 1 + 80 / (spacing * spacing);
+}
+
+static void cost_that_leaps_is_tried_ever_more_rarely(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	gz_budget_init(&budget, 9); /* 21 at spacing 2, 9.9 at 3, 6 at 4 */
+	int over = 0, late_over = 0;
+	for (int i = 0; i < 20000; i++) {
+		double ms = stair_ms(gz_budget_scale(&budget));
+		over += ms > 9;
+		late_over += ms > 9 && i > 10000;
+		assert_false(gz_budget_step(&budget, ms));
+	}
+	assert_in_range(over, 3, 60);
+	assert_in_range(late_over, 0, 12);
+}
+
+static void budget_out_of_reach_is_told_once(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	struct gz_random random;
+	const struct cost cost = { 20, 1, 50, 0.05, 0 }, cheap = { 1, 1, 1, 0, 0 };
+	random = gz_random_seeded(9, 0);
+	gz_budget_init(&budget, 10);
+	struct run held = run(&budget, &cost, 1000, &random);
+	assert_int_equal(held.told, 1);
+	assert_int_equal(budget.state, GZ_BUDGET_LIMIT);
+	assert_true(gz_budget_scale(&budget) == GZ_BUDGET_SCALE_MAX);
+	struct run back = run(&budget, &cheap, 500, &random);
+	assert_true(gz_budget_scale(&budget) == 1);
+	assert_int_equal(budget.state, GZ_BUDGET_WITHIN);
+	struct run again = run(&budget, &cost, 1000, &random);
+	assert_int_equal(back.told + again.told, 0);
+	assert_int_equal(budget.state, GZ_BUDGET_LIMIT);
+}
+
+static void times_that_are_none_count_for_nothing(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	gz_budget_init(&budget, 10);
+	for (int i = 0; i < 100; i++) {
+		gz_budget_step(&budget, NAN);
+		gz_budget_step(&budget, INFINITY);
+		gz_budget_step(&budget, -1);
+	}
+	assert_true(gz_budget_scale(&budget) == 1);
+	assert_int_equal(budget.state, GZ_BUDGET_WITHIN);
+	gz_budget_step(&budget, 11);
+	assert_int_equal(budget.state, GZ_BUDGET_OVER);
+}
+
+static void one_slow_frame_in_a_second_changes_nothing(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	gz_budget_init(&budget, 10);
+	for (int i = 0; i < 6000; i++)
+		gz_budget_step(&budget, i % 30 == 7 ? 80 : 8);
+	assert_true(gz_budget_scale(&budget) == 1);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(no_budget_is_full_detail_whatever_it_takes),
+		cmocka_unit_test(frames_that_keep_it_stay_at_full_detail),
+		cmocka_unit_test(dearer_scene_is_answered_within_few_frames),
+		cmocka_unit_test(percentile_is_kept_and_the_scale_comes_to_rest),
+		cmocka_unit_test(cheaper_scene_brings_the_detail_back),
+		cmocka_unit_test(cost_that_leaps_is_tried_ever_more_rarely),
+		cmocka_unit_test(budget_out_of_reach_is_told_once),
+		cmocka_unit_test(times_that_are_none_count_for_nothing),
+		cmocka_unit_test(one_slow_frame_in_a_second_changes_nothing),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
