@@ -26,3 +26,12 @@ find_library(NIFTI_ZNZ_LIBRARY znz REQUIRED)
 add_library(gz_nifti INTERFACE)
 target_include_directories(gz_nifti SYSTEM INTERFACE "${NIFTI_INCLUDE_DIR}")
 target_link_libraries(gz_nifti INTERFACE "${NIFTI_IO_LIBRARY}" "${NIFTI_ZNZ_LIBRARY}" ZLIB::ZLIB m)
+
+# DCMTK's own CMake package names all its parts and what they need; data sets and decoders are enough.
+find_path(DCMTK_INCLUDE_DIR dcmtk/dcmdata/dctk.h REQUIRED)
+add_library(gz_dcmtk INTERFACE)
+target_include_directories(gz_dcmtk SYSTEM INTERFACE "${DCMTK_INCLUDE_DIR}")
+foreach(part dcmjpeg dcmjpls dcmdata oflog ofstd)
+	find_library(DCMTK_${part}_LIBRARY ${part} REQUIRED)
+	target_link_libraries(gz_dcmtk INTERFACE "${DCMTK_${part}_LIBRARY}")
+endforeach()

@@ -48,7 +48,9 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			  .offset = AT(volume_file),
 			  .max = GZ_PATH_SIZE,
 			  .preset = "",
-			  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, or raw data; "
+			  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, DICOM (.dcm or "
+				  "a "
+				  "folder), or raw data; "
 				  "beside the scene, else under $GAZECAST_DATA" },
 	[VOLUME_PROCEDURAL] = { .key = "volume.procedural",
 				.type = GZ_OPTION_CHOICE,

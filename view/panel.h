@@ -1,7 +1,7 @@
 /**
  * @file
  * What is drawn over the picture: the text line, the list of keys, the cross. Dear ImGui behind a C
- * interface; the one C++ file of the project is panel.cpp.
+ * interface; its C++ stays in panel.cpp.
  */
 #ifndef GZ_VIEW_PANEL_H
 #define GZ_VIEW_PANEL_H

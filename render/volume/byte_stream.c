@@ -26,6 +26,8 @@ struct gz_byte_stream {
 	const char *path;
 	const struct gz_log *log;
 	enum gz_coding coding;
+	gz_byte_source *source; /* of plain bytes, in place of the file */
+	void *source_user;
 	int fd;
 	uint64_t stored; /* bytes of the file from the offset on */
 	uint8_t *input;  /* compressed bytes read, of which [input_at, input_size) are left */
@@ -106,6 +108,26 @@ enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint
 		gz_byte_stream_close(&stream);
 		return result;
 	}
+	*out_stream = stream;
+	return GZ_OK;
+}
+
+enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t bound,
+				   const char *path, const struct gz_log *log,
+				   struct gz_byte_stream **out_stream)
+{
+	struct gz_byte_stream *stream = calloc(1, sizeof *stream);
+	if (!stream) {
+		gz_err(log, "%s: no memory to read it", path);
+		return GZ_ERR_NO_MEM;
+	}
+	stream->path = path;
+	stream->log = log;
+	stream->coding = GZ_CODING_PLAIN;
+	stream->source = source;
+	stream->source_user = user;
+	stream->stored = bound;
+	stream->fd = -1;
 	*out_stream = stream;
 	return GZ_OK;
 }
@@ -202,6 +224,8 @@ static enum gz_result step_zstd(struct gz_byte_stream *stream, uint8_t *buffer, 
 enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, size_t size,
 				   size_t *out_got)
 {
+	if (stream->source)
+		return stream->source(stream->source_user, buffer, size, out_got);
 	if (stream->coding == GZ_CODING_PLAIN)
 		return read_file(stream, buffer, size, out_got);
 	size_t got = 0;

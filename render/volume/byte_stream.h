@@ -21,6 +21,9 @@ enum gz_coding {
 
 struct gz_byte_stream;
 
+/** Bytes from elsewhere: as gz_byte_stream_read(), and it logs. */
+typedef enum gz_result gz_byte_source(void *user, void *buffer, size_t size, size_t *out_got);
+
 /**
  * Open a file for reading from @p offset on.
  *
@@ -37,6 +40,19 @@ struct gz_byte_stream;
  */
 enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint64_t offset,
 				   const struct gz_log *log, struct gz_byte_stream **out_stream);
+
+/**
+ * A stream over bytes that a function gives.
+ *
+ * @param user   handed to @p source
+ * @param bound  the most bytes that can come
+ * @param path   what the bytes are of, for messages; borrowed until it is closed, as @p log
+ * @param[out] out_stream  owned by the caller: gz_byte_stream_close()
+ * @retval GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t bound,
+				   const char *path, const struct gz_log *log,
+				   struct gz_byte_stream **out_stream);
 
 /**
  * The most bytes that can come out of the whole stream: exact for GZ_CODING_PLAIN, else what the

@@ -79,7 +79,8 @@ struct gz_raw_layout {
 
 /**
  * Load a volume; the kind follows from the name: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw,
- * .raw.zst, and .zst or .gz round raw data.
+ * .raw.zst, and .zst or .gz round raw data; .dcm, a file that says it is DICOM, or a folder of one
+ * DICOM series.
  *
  * @param path        file
  * @param raw         layout of a headerless file; must be NULL for files that have a header

@@ -2,6 +2,7 @@
 #include <stddef.h>
 
 #include "render/file_path.h"
+#include "render/volume/dicom_series.h"
 #include "render/volume/volume.h"
 #include "render/volume/volume_loaders.h"
 
@@ -16,6 +17,7 @@ static const struct {
 	{ ".nii", gz_volume_load_nifti },     { ".nii.gz", gz_volume_load_nifti },
 	{ ".nrrd", gz_volume_load_nrrd },     { ".nhdr", gz_volume_load_nrrd },
 	{ ".mhd", gz_volume_load_metaimage }, { ".mha", gz_volume_load_metaimage },
+	{ ".dcm", gz_volume_load_dicom },
 };
 
 /* Headerless ones; the header kinds have been tried before. */
@@ -49,9 +51,12 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
 		return GZ_ERR_INVAL;
 	}
+	/* Names of DICOM files often say nothing. */
+	if (!raw && gz_dicom_is(path))
+		return gz_volume_load_dicom(path, loading, log, out_volume);
 	gz_err(log,
 	       "%s: unknown kind of volume; .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw, "
-	       ".raw.zst and .raw.gz are read",
+	       ".raw.zst, .raw.gz and DICOM (.dcm, or its folder) are read",
 	       path);
 	return GZ_ERR_UNSUPPORTED;
 }

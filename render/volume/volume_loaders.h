@@ -22,6 +22,10 @@ enum gz_result gz_volume_load_nrrd(const char *path, const struct gz_loading *lo
 enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_loading *loading,
 					const struct gz_log *log, struct gz_volume *out_volume);
 
+/** A DICOM series: a folder, one file of it, or a file of several frames. */
+enum gz_result gz_volume_load_dicom(const char *path, const struct gz_loading *loading,
+				    const struct gz_log *log, struct gz_volume *out_volume);
+
 /** Numbers without a header. */
 enum gz_result gz_volume_load_raw(const char *path, enum gz_coding coding,
 				  const struct gz_raw_layout *raw, const struct gz_loading *loading,

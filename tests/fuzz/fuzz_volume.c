@@ -14,8 +14,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static const char *const names[] = { "a.nii", "a.nii.gz", "a.nrrd",    "a.nhdr",
-				     "a.mha", "a.mhd",    "a.raw.zst", "a.raw.gz" };
+static const char *const names[] = { "a.nii", "a.nii.gz",  "a.nrrd",   "a.nhdr", "a.mha",
+				     "a.mhd", "a.raw.zst", "a.raw.gz", "a.dcm" };
 #define NAME_COUNT (sizeof names / sizeof names[0])
 
 static char folder[64];
