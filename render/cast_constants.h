@@ -30,4 +30,15 @@
  *  changes a pixel. */
 #define GZ_LAST_SEGMENT_LEAST 1e-4F
 
+/** Cosine of the angle between a surface and the view from which on the surface counts as seen from
+ * that side. Chosen: 3.6 degrees, the rim of a ball that is .2 % of its radius. */
+#define GZ_LIGHT_FACING 0.0625F
+/** Gradient at which light has half its effect, of the transfer function's range per voxel length.
+ * Chosen: a step of .6 % is the noise of the scans at hand, edges have 5 % and more. */
+#define GZ_LIGHT_GRADIENT 0.006F
+
+/** The linear congruential step of gz_ray_jitter()'s hash (Press et al., Numerical Recipes, 7.1). */
+#define GZ_JITTER_MULTIPLIER 1664525U
+#define GZ_JITTER_INCREMENT 1013904223U
+
 #endif

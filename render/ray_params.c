@@ -1,5 +1,9 @@
 #include "render/ray_params.h"
 
+#include <stdint.h>
+
+#include "render/cast_constants.h"
+
 static const char *const interpolation_names[] = { "trilinear", "nearest", NULL };
 static const char *const integration_names[] = { "sampled", "preintegrated", NULL };
 static const char *const shading_names[] = { "none", "gradient", NULL };
@@ -40,7 +44,7 @@ const struct gz_option gz_ray_options[] = {
 	  .help = "how small highlights are" },
 	{ "light.occlusion", GZ_OPTION_DOUBLE, AT(light.occlusion), 0, 1, .preset = "0",
 	  .help = "how much of the ambient light what lies around may take" },
-	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(light.occlusion_radius), 1, 64,
+	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(light.occlusion_radius), 2, 64,
 	  .preset = "8", .help = "how far around, voxel lengths" },
 	{ "clip.least", GZ_OPTION_DOUBLE, AT(clip.least), 0, 1, .count = 3, .preset = "0 0 0",
 	  .help = "where the part that is shown begins: shares of the box along x, y, z" },
@@ -71,4 +75,21 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 			return false;
 	const double *direction = rays->light.direction;
 	return direction[0] != 0 || direction[1] != 0 || direction[2] != 0;
+}
+
+float gz_ray_jitter(int x, int y, int seed)
+{
+	if (seed == 0)
+		return 0;
+	uint32_t a = (uint32_t)x * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	uint32_t b = (uint32_t)y * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	uint32_t c = (uint32_t)seed * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	a += b * c;
+	b += c * a;
+	c += a * b;
+	a ^= a >> 16;
+	b ^= b >> 16;
+	c ^= c >> 16;
+	a += b * c;
+	return (float)(a >> 8) * 0x1p-24F;
 }

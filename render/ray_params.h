@@ -37,14 +37,22 @@ enum gz_light_frame {
 };
 
 /**
- * One light, far away and white, and how surfaces answer it. With N the unit gradient of the data
- * (world units, central differences one voxel to each side), L towards the light and H halfway
- * between L and the ray back to the eye, a sample's colour c becomes
+ * One light, far away and white, and how surfaces answer it. At a sample with the colour c let
  *
- *   c * (ambient * (1 - occlusion) + diffuse * |N.L|) + specular * |N.H|^shininess
+ *   g = gradient of the data in world directions, in units of the transfer function's value (0 to 1
+ *       over its range) per voxel length: along each axis the central difference between what lies
+ *       one voxel to either side, interpolated as the samples are, clamped at the box
+ *   N = g / |g|, V towards the eye along the ray, L towards the light, H halfway between V and L
+ *   f = clamp(N.V / GZ_LIGHT_FACING, -1, 1): which side the eye sees; both are lit alike
+ *   d = max(f * N.L, 0)
+ *   s = |N.H|^shininess * min(d / GZ_LIGHT_FACING, 1)                        (Blinn 1977)
+ *   lit = c * (ambient * (1 - occlusion * o) + diffuse * d) + specular * s
+ *   w = |g|^2 / (|g|^2 + GZ_LIGHT_GRADIENT^2)
  *
- * clamped to [0, 1] a channel (Blinn 1977). Both sides of a surface are lit. Where the gradient is
- * too small to have a direction, c stays as it is. Nothing of it changes opacity.
+ * with o what lies around, see render/occlusion.h. The sample's colour becomes c + w (lit - c),
+ * clamped to [0, 1] a channel: where the gradient is too small to have a direction, c stays as it
+ * is. Nothing of it changes opacity. f and s are ramps, not steps, because a side that is seen edge
+ * on would otherwise be bright or dark by chance. The constants are in render/cast_constants.h.
  */
 struct gz_light {
 	double direction[3];               /**< towards the light; any length but 0 */
@@ -56,8 +64,12 @@ struct gz_light {
 	double occlusion_radius; /**< how far around, voxel lengths */
 };
 
-/** The part of the box that is shown: shares of its edges, 0 to 1 along x, y, z, least below
- *  greatest. Samples stay where they are without it. */
+/**
+ * The part of the box that is shown: shares of its edges, 0 to 1 along x, y, z, least below
+ * greatest. A ray is cut into segments from where it enters the whole box, so samples stay where
+ * they are without it; a segment that a face of the clip box cuts is sampled in the middle of what
+ * is left of it and has the opacity of that length, as the last segment of every ray.
+ */
 struct gz_clip_box {
 	double least[3], greatest[3];
 };
@@ -70,8 +82,8 @@ struct gz_ray_params {
 	int shading;              /**< enum gz_shading */
 	bool levels;              /**< where steps and rays lie more than a voxel apart, sample a
 				     coarser level of the volume (Levoy and Whitaker 1990) */
-	int jitter; /**< seed of a shift of each ray's samples, up to half a step; 0 = none */
-	double background[3]; /**< [0, 1] each */
+	int jitter;               /**< seed of gz_ray_jitter(); 0 = none */
+	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
 	struct gz_clip_box clip;
 };
@@ -86,5 +98,18 @@ struct gz_ray_params gz_ray_params_default(void);
 /** Whether every field is within its range, as the table would have it, and the box holds
  *  something. */
 bool gz_ray_params_valid(const struct gz_ray_params *rays);
+
+/**
+ * By how much the segments of the ray through pixel (x, y) begin before it enters the box, [0, 1)
+ * of a step: the first segment then is what lies within the box, treated as one cut by a clip face.
+ * 24 bits of a hash of x, y and the seed: the first component of pcg3d (Jarzynski and Olano, Hash
+ * Functions for GPU Rendering, JCGT 9(3), 2020), in arithmetic modulo 2^32 the same everywhere:
+ *
+ *   a, b, c = each of x, y, seed * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT
+ *   a += b c;  b += c a;  c += a b;  each ^= itself >> 16;  a += b c;  the shift is (a >> 8) / 2^24
+ *
+ * 0 for a seed of 0.
+ */
+float gz_ray_jitter(int x, int y, int seed);
 
 #endif

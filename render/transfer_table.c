@@ -43,6 +43,8 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 	double low, high;
 	table_span(range, volume, &low, &high);
 
+	out_table->value_per_stored =
+		range[1] != range[0] ? volume->slope / (range[1] - range[0]) : 0;
 	out_table->scale = high > low ? LAST / (high - low) : 0;
 	out_table->bias = -low * out_table->scale;
 	out_table->visible_before[0] = 0;

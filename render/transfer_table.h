@@ -29,7 +29,9 @@ struct gz_transfer_entry {
 /** Entry i stands for the stored value low + i * (high - low) / (SIZE - 1); values beyond are
  * clamped. */
 struct gz_transfer_table {
-	double scale, bias; /**< entry = stored * scale + bias */
+	double scale, bias;      /**< entry = stored * scale + bias */
+	double value_per_stored; /**< by what the function's value, 0 to 1 over its range, grows
+				    with the stored one; 0 for a range without width */
 	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE]; /**< with extinction */
 	/** Number of entries before i with any opacity: a range of values shows iff the count grows
 	 *  over it. */
