@@ -382,7 +382,7 @@ gz_result reader::decode(const slice &s)
 	DcmElement *element = nullptr;
 	DcmPixelData *pixel_data = nullptr;
 	if (data.findAndGetElement(DCM_PixelData, element).good())
-		pixel_data = OFstatic_cast(DcmPixelData *, element);
+		pixel_data = dynamic_cast<DcmPixelData *>(element); /* a VR may lie */
 	OFString colour;
 	const OFCondition done =
 		pixel_data ? pixel_data->getUncompressedFrame(
