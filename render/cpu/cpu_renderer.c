@@ -155,7 +155,7 @@ static void fill_volume(const struct cpu_renderer *cpu, int index, struct gz_cas
 	double half[3];
 	gz_volume_half_extent(cpu->volume, half);
 	cast->voxels = volume->voxels;
-	cast->distance = cells->distance;
+	cast->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
 		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
 		cast->box[axis] = (float)box;
