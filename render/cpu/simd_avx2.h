@@ -126,6 +126,10 @@ SIMD uint32_t vm_count(vm a)
 {
 	return (uint32_t)__builtin_popcount((unsigned)_mm256_movemask_ps(a));
 }
+SIMD vm vm_all(void)
+{
+	return _mm256_castsi256_ps(_mm256_set1_epi32(-1));
+}
 SIMD vm vm_from_bits(uint32_t bits)
 {
 	const vi bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);

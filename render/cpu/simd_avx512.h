@@ -129,6 +129,10 @@ SIMD uint32_t vm_count(vm a)
 {
 	return (uint32_t)__builtin_popcount(a);
 }
+SIMD vm vm_all(void)
+{
+	return (vm)0xFFFF;
+}
 SIMD vm vm_from_bits(uint32_t bits)
 {
 	return (vm)bits;

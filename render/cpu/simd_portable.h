@@ -140,6 +140,10 @@ SIMD uint32_t vm_count(vm a)
 	EACH_LANE sum -= a[lane];
 	return (uint32_t)sum;
 }
+SIMD vm vm_all(void)
+{
+	return vi_set(-1);
+}
 SIMD vm vm_from_bits(uint32_t bits)
 {
 	vm a = { 0 };
