@@ -63,6 +63,10 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm256_set1_epi32(x);
 }
+SIMD void vf_store(float *x, vf a)
+{
+	_mm256_storeu_ps(x, a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm256_storeu_si256((__m256i *)x, a);

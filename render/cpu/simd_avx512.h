@@ -67,6 +67,10 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm512_set1_epi32(x);
 }
+SIMD void vf_store(float *x, vf a)
+{
+	_mm512_storeu_ps(x, a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm512_storeu_si512(x, a);

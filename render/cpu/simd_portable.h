@@ -29,6 +29,10 @@ SIMD vf vf_load(const float *x)
 	memcpy(&a, x, sizeof a);
 	return a;
 }
+SIMD void vf_store(float *x, vf a)
+{
+	memcpy(x, &a, sizeof a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	memcpy(x, &a, sizeof a);
