@@ -26,6 +26,25 @@ if(GAZECAST_FUZZ)
 	target_compile_options(gz_settings INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# gz_embed_texts(OUT PREFIX file...): each file as a C source that defines PREFIX<name>, an array of bytes with
+# a final NUL; <name> is the file's without folder, its dots underscores. OUT lists the sources.
+function(gz_embed_texts out prefix)
+	set(sources "")
+	foreach(file ${ARGN})
+		get_filename_component(name "${file}" NAME)
+		string(REPLACE "." "_" symbol "${prefix}${name}")
+		add_custom_command(
+			OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${name}.c"
+			COMMAND "${CMAKE_COMMAND}" "-DIN=${CMAKE_CURRENT_SOURCE_DIR}/${file}"
+				"-DOUT=${CMAKE_CURRENT_BINARY_DIR}/${name}.c" "-DNAME=${symbol}"
+				-P "${PROJECT_SOURCE_DIR}/cmake/embed_text.cmake"
+			DEPENDS "${file}" "${PROJECT_SOURCE_DIR}/cmake/embed_text.cmake"
+			VERBATIM)
+		list(APPEND sources "${CMAKE_CURRENT_BINARY_DIR}/${name}.c")
+	endforeach()
+	set(${out} "${sources}" PARENT_SCOPE)
+endfunction()
+
 # gz_module(NAME SOURCES file... [USES target...] [PRIVATE_USES target...]): the library gz_NAME.
 # Headers are included by their path from the top: "protocol/gaze.h".
 function(gz_module name)
@@ -88,16 +107,4 @@ function(gz_fuzz name)
 	endif()
 	add_test(NAME fuzz.${name} COMMAND ${target} ${arguments})
 	set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 60 LABELS "fuzz;quick")
-endfunction()
-
-# gz_cast_flags(FILE SET): compile FILE of this folder for one instruction set of the cpu backend.
-function(gz_cast_flags file set)
-	if(set STREQUAL avx2)
-		set(flags -mavx2 -mfma)
-	elseif(set STREQUAL avx512)
-		set(flags -mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
-	else() # wide vectors are passed only between functions that are inlined into each other
-		set(flags -Wno-psabi)
-	endif()
-	set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}")
 endfunction()

@@ -37,8 +37,9 @@
  * Chosen: a step of .6 % is the noise of the scans at hand, edges have 5 % and more. */
 #define GZ_LIGHT_GRADIENT 0.006F
 
-/** The linear congruential step of gz_ray_jitter()'s hash (Press et al., Numerical Recipes, 7.1). */
+/** The linear congruential step of gz_ray_jitter()'s hash (Press et al., Numerical Recipes, 7.1).
+ */
 #define GZ_JITTER_MULTIPLIER 1664525U
-#define GZ_JITTER_INCREMENT 1013904223U
+#define GZ_JITTER_INCREMENT  1013904223U
 
 #endif

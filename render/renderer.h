@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_RENDERER_H
 #define GZ_RENDER_RENDERER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -25,11 +26,18 @@ struct gz_frame_stats {
 };
 
 struct gz_renderer;
+struct gz_gl_context;
 
 /** Settings of a backend. */
 struct gz_renderer_params {
 	int threads;      /**< cpu: 0 = one per processor, else 1 to 256 */
 	const char *simd; /**< cpu: NULL or "auto", else "portable", "avx2", "avx512" */
+	/** gl: where it draws, borrowed, outlives the renderer; NULL = headless, from EGL. A
+	 * program with windows must give a window's (render/gl/gl_context.h). */
+	struct gz_gl_context *gl_context;
+	bool gl_hardware_only;  /**< gl: refuse OpenGL that a processor works out */
+	int gl_volume_edge_max; /**< gl: refuse volumes with a longer edge, voxels, as a driver
+				     with smaller textures does; 0 = the driver's own limit */
 };
 
 /** What a backend must provide. Every table is const and has static storage. */
@@ -46,6 +54,8 @@ struct gz_renderer_ops {
 	enum gz_result (*render)(struct gz_renderer *renderer, const struct gz_camera *camera,
 				 const struct gz_ray_params *rays, const struct gz_plan *plan,
 				 struct gz_image *image, struct gz_frame_stats *out_stats);
+	/** Optional: see gz_renderer_picture_texture(). */
+	unsigned (*picture_texture)(const struct gz_renderer *renderer);
 	/** One line for reports: "avx512, 2 threads". */
 	const char *(*describe)(const struct gz_renderer *renderer);
 	void (*destroy)(struct gz_renderer *renderer);
@@ -57,13 +67,14 @@ struct gz_renderer {
 	const struct gz_log *log;
 };
 
-/** All backends of this build, NULL-terminated; the first is the default. */
+/** All backends of this build, NULL-terminated; in the order that "auto" tries them. */
 extern const struct gz_renderer_ops *const gz_backends[];
 
 /**
  * Make a renderer.
  *
- * @param backend  name of one of gz_backends; NULL or "auto" for the best there is
+ * @param backend  name of one of gz_backends; NULL or "auto" for gl where a GPU does its work, else
+ *                 cpu, which beats OpenGL on a processor about three times
  * @param params   NULL for the defaults
  * @param[out] out_renderer  owned by the caller: gz_renderer_destroy()
  * @retval GZ_ERR_NOT_FOUND    no such backend; logged with those there are
@@ -84,17 +95,25 @@ enum gz_result gz_renderer_set_transfer(struct gz_renderer *renderer,
  * Cast the plan's rays and reconstruct the picture. Every pixel is written.
  *
  * @param plan   made for the size of the picture wanted
- * @param image  resized to the plan's size
+ * @param image  resized to the plan's size; NULL leaves the picture on the device: see
+ *               gz_renderer_picture_texture()
  * @param[out] out_stats  may be NULL
  * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
- * @retval GZ_ERR_NO_MEM  no room for the picture
+ * @retval GZ_ERR_NO_MEM  no room for the picture; gl: on the graphics device, logged
+ * @retval GZ_ERR_UNSUPPORTED  gl: something it cannot do is asked for; logged
+ * @retval GZ_ERR_NO_DEVICE    gl: the context is lost; logged. Destroy the renderer; cpu can go on
  *
- * The same inputs give the same bits, for any number of threads. Threads: one at a time per
- * renderer.
+ * The same inputs give the same bits, for any number of threads; gl: on the same device and driver.
+ * Threads: one at a time per renderer.
  */
 enum gz_result gz_renderer_render(struct gz_renderer *renderer, const struct gz_camera *camera,
 				  const struct gz_ray_params *rays, const struct gz_plan *plan,
 				  struct gz_image *image, struct gz_frame_stats *out_stats);
+
+/** OpenGL's name of the texture, RGBA8 with row 0 on top, that the last picture without an image is
+ *  in: of the renderer's context, valid until the next frame. 0 where the backend has none, and
+ * then pictures need an image. */
+unsigned gz_renderer_picture_texture(const struct gz_renderer *renderer);
 
 /** One line for people: the kernel chosen and its threads. Owned by the renderer. */
 const char *gz_renderer_describe(const struct gz_renderer *renderer);

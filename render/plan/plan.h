@@ -116,6 +116,11 @@ struct gz_region {
  * a rim cannot make them differ. Never turns true again farther from the centre along an axis. */
 bool gz_region_holds(const struct gz_region *region, double x, double y);
 
+/** Columns of row @p y of a picture of @p width px that a region holds: [*out_from, *out_to), empty
+ *  if none. */
+void gz_region_columns(const struct gz_region *region, int y, int width, int *out_from,
+		       int *out_to);
+
 /** One lattice of a plan. */
 struct gz_plan_layer {
 	int spacing;

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void put(struct gz_volume *volume, size_t index, double share)
 {
@@ -76,12 +77,49 @@ struct small_scene small_scene_constant(int edge, double opacity)
 	return scene;
 }
 
+const char *small_scene_backend(void)
+{
+	const char *backend = getenv("GZ_TEST_BACKEND");
+	return backend ? backend : "cpu";
+}
+
+const char *const *small_scene_simd_sets(void)
+{
+	static const char *const cpu[] = { "portable", "avx2", "avx512" };
+	static const char *sets[4];
+	size_t count = 0;
+	if (sets[0])
+		return sets;
+	for (size_t i = 0; i < sizeof cpu / sizeof cpu[0]; i++) {
+		const struct gz_renderer_params params = { .threads = 1, .simd = cpu[i] };
+		struct gz_renderer *renderer = NULL;
+		if (strcmp(small_scene_backend(), "cpu") == 0 &&
+		    gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK)
+			sets[count++] = cpu[i];
+		gz_renderer_destroy(&renderer);
+	}
+	if (!sets[0])
+		sets[0] = "auto";
+	return sets;
+}
+
+bool small_scene_backend_runs(void)
+{
+	struct gz_log log;
+	struct gz_renderer *renderer = NULL;
+	gz_log_init(&log, NULL, NULL, NULL);
+	const bool runs = gz_renderer_create(small_scene_backend(), NULL, &log, &renderer) == GZ_OK;
+	gz_renderer_destroy(&renderer);
+	return runs;
+}
+
 struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
 					 const char *simd)
 {
 	const struct gz_renderer_params params = { .threads = threads, .simd = simd };
 	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_create(small_scene_backend(), &params, NULL, &renderer),
+			 GZ_OK);
 	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
 	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;

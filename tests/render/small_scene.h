@@ -24,6 +24,17 @@ struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type 
 /** Every voxel the same, @p opacity per voxel length. */
 struct small_scene small_scene_constant(int edge, double opacity);
 
+/** The backend that this run tests: "cpu", unless the environment's GZ_TEST_BACKEND says otherwise.
+ */
+const char *small_scene_backend(void);
+
+/** The settings by which this machine can run that backend, NULL-terminated: the cpu's instruction
+ *  sets; one, NULL-like "auto", for gl. */
+const char *const *small_scene_simd_sets(void);
+
+/** Whether that backend runs here at all; says why on stderr if it does not. */
+bool small_scene_backend_runs(void);
+
 /** A renderer with the scene's volume and transfer function; fails the test where that fails. */
 struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
 					 const char *simd);

@@ -1,0 +1,49 @@
+/**
+ * @file
+ * What the shaders are told of a frame: the uniform block of shaders/frame.glsl, byte for byte by
+ * the rules of std140, and the numbers of OpenGL's binding points.
+ */
+#ifndef GZ_RENDER_GL_FRAME_BLOCK_H
+#define GZ_RENDER_GL_FRAME_BLOCK_H
+
+#include <stdint.h>
+
+#include "render/cast_constants.h"
+
+/* Plain numbers: they are pasted into the shaders' text. */
+
+/** Invocations of a work-group of rays: four tiles. Chosen: a warp of 32 or a wave of 64 is full,
+ *  and rays of neighbouring tiles take similar ways. */
+#define GZ_GL_GROUP_SIZE 64
+/** Rays of all tile patterns together. */
+#define GZ_GL_TILE_POINTS 32
+/** Counters that work-groups add their samples to, each to its own in turn, so that few wait for
+ *  each other; summed when they are read. A power of two. */
+#define GZ_GL_COUNT_SLOTS 1024
+
+/** Binding points. */
+enum gz_gl_texture_unit { GZ_GL_UNIT_VOXELS, GZ_GL_UNIT_DISTANCE, GZ_GL_UNIT_TRANSFER };
+enum gz_gl_storage {
+	GZ_GL_STORAGE_TILES,
+	GZ_GL_STORAGE_POINTS,
+	GZ_GL_STORAGE_COUNTS,
+	GZ_GL_STORAGE_SPANS,
+};
+
+/** The block. Vectors of three have a fourth component that nobody reads. */
+struct gz_gl_frame_block {
+	float origin00[4], origin_dx[4], origin_dy[4];          /**< voxel coordinates */
+	float direction00[4], direction_dx[4], direction_dy[4]; /**< of rays of pixels */
+	float world_per_voxel[4];
+	float dims[4];
+	float cell_last[4];  /**< greatest index of a macrocell */
+	float background[4]; /**< [0, 1] */
+	float transfer[4];   /**< scale and bias from stored value to entry */
+	int32_t last[4];     /**< greatest index of the lower of two neighbouring voxels */
+	uint32_t plan[4];    /**< layers; 1 for a pyramid; width; height */
+	float steps[GZ_PLAN_STEPS_MAX][4];          /**< world units, voxel lengths */
+	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];     /**< first point, columns, rows, spacing */
+	uint32_t tile_points[GZ_GL_TILE_POINTS][4]; /**< column and row of a tile's rays */
+};
+
+#endif

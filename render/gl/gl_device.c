@@ -1,0 +1,79 @@
+#include "render/gl/gl_device.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include <GL/glew.h>
+
+/* Names that processors doing a GPU's work go by. */
+static bool is_software(const char *renderer)
+{
+	static const char *const names[] = { "llvmpipe", "softpipe", "swrast",
+					     "Software Rasterizer", "SwiftShader" };
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+		if (strstr(renderer, names[i]))
+			return true;
+	return false;
+}
+
+static int64_t limit_of(GLenum name)
+{
+	GLint64 value = 0;
+	glGetInteger64v(name, &value);
+	return value;
+}
+
+enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, size_t size)
+{
+	struct gz_gl_device device = { 0 };
+	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
+	const GLenum failure = glewInit();
+	/* Without an X display GLEW misses GLX after it has loaded all of OpenGL. */
+	if (failure != GLEW_OK && failure != GLEW_ERROR_NO_GLX_DISPLAY) {
+		snprintf(reason, size, "%s", (const char *)glewGetErrorString(failure));
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const char *renderer = (const char *)glGetString(GL_RENDERER);
+	GLint major = 0, minor = 0;
+	glGetIntegerv(GL_MAJOR_VERSION, &major);
+	glGetIntegerv(GL_MINOR_VERSION, &minor);
+	renderer = renderer ? renderer : "unknown";
+	if (major < 4 || (major == 4 && minor < 3)) {
+		snprintf(reason, size, "%.100s has OpenGL %d.%d, not 4.3", renderer, major, minor);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	snprintf(device.description, sizeof device.description, "gl: %.120s, %d.%d", renderer,
+		 major, minor);
+	device.software = is_software(renderer);
+	device.tells_loss = GLEW_ARB_robustness && glGetGraphicsResetStatusARB;
+	device.volume_edge_max = (int)limit_of(GL_MAX_3D_TEXTURE_SIZE);
+	device.storage_max = limit_of(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+	GLint groups = 0;
+	glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
+	device.groups_max = groups;
+	while (glGetError() != GL_NO_ERROR) /* of GLEW's questions */
+		;
+	*out_device = device;
+	return GZ_OK;
+}
+
+enum gz_result gz_gl_device_errors(const struct gz_gl_device *device)
+{
+	enum gz_result result = GZ_OK;
+	if (device->tells_loss && glGetGraphicsResetStatusARB() != GL_NO_ERROR)
+		return GZ_ERR_NO_DEVICE;
+	/* A lost context may report errors for ever: look at a few. */
+	for (int i = 0; i < 16; i++) {
+		const GLenum error = glGetError();
+		if (error == GL_NO_ERROR)
+			return result;
+		if (error == GL_CONTEXT_LOST)
+			return GZ_ERR_NO_DEVICE;
+		if (error == GL_OUT_OF_MEMORY)
+			result = GZ_ERR_NO_MEM;
+		else if (result == GZ_OK)
+			result = GZ_ERR_UNSUPPORTED;
+	}
+	return GZ_ERR_NO_DEVICE;
+}

@@ -1,0 +1,238 @@
+#include "render/gl/gl_frame.h"
+
+#include <string.h>
+
+#include <GL/glew.h>
+
+#define GZ_LOG_MODULE "gl"
+
+_Static_assert(GZ_GL_TILE_POINTS == GZ_TILE_PATTERN_COUNT * GZ_TILE_EDGE * GZ_TILE_EDGE,
+	       "the block has a point for each ray of each pattern");
+_Static_assert(GZ_PLAN_LAYERS_MAX <= 8 && GZ_TILE_PATTERN_COUNT <= 32 && GZ_PLAN_STEPS_MAX <= 256,
+	       "a tile's numbers fit the bits they are packed into");
+
+/* Make room for @p size bytes; what was there is lost. */
+static void reserve(struct gz_gl_buffer *buffer, size_t size, GLenum usage)
+{
+	if (!buffer->name)
+		glGenBuffers(1, &buffer->name);
+	if (size <= buffer->size)
+		return;
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->name);
+	glBufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, NULL, usage);
+	buffer->size = size;
+}
+
+/* Memory to write @p size bytes into; what was there is lost, and frames that still read it keep
+ * theirs. NULL where the device has none. Until glUnmapBuffer(GL_SHADER_STORAGE_BUFFER). */
+static void *map_new(struct gz_gl_buffer *buffer, size_t size)
+{
+	reserve(buffer, size, GL_STREAM_DRAW);
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->name);
+	return glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size,
+				GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
+}
+
+/* The first layer of spacing 1 is the picture itself. A second one, by odd parameters, has room of
+ * its own, so that no two rays write one pixel. */
+static size_t lay_out(const struct gz_plan *plan, struct gz_gl_frame_block *block)
+{
+	size_t next = (size_t)plan->width * (size_t)plan->height;
+	bool picture_taken = false;
+	for (int i = 0; i < plan->layer_count; i++) {
+		const struct gz_plan_layer *layer = &plan->layers[i];
+		uint32_t *out = block->layers[i];
+		const bool is_picture = layer->spacing == 1 && !picture_taken;
+		out[0] = is_picture ? 0 : (uint32_t)next;
+		out[1] = (uint32_t)layer->columns;
+		out[2] = (uint32_t)layer->rows;
+		out[3] = (uint32_t)layer->spacing;
+		if (!is_picture)
+			next += (size_t)layer->columns * (size_t)layer->rows;
+		picture_taken |= is_picture;
+	}
+	return next;
+}
+
+/* Counting sort by layer and pattern keeps the plan's order within each: neighbours stay together,
+ * and a pass over one kind takes one range. */
+static void sort_ranges(struct gz_gl_frame *frame, const struct gz_plan *plan)
+{
+	memset(frame->ranges, 0, sizeof frame->ranges);
+	for (size_t i = 0; i < plan->tile_count; i++)
+		frame->ranges[plan->tiles[i].layer][plan->tiles[i].pattern].count++;
+	size_t first = 0;
+	for (int layer = 0; layer < GZ_PLAN_LAYERS_MAX; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++) {
+			frame->ranges[layer][pattern].first = first;
+			first += frame->ranges[layer][pattern].count;
+		}
+}
+
+static void pack_tiles(const struct gz_gl_frame *frame, const struct gz_plan *plan,
+		       uint32_t (*out_words)[2])
+{
+	size_t next[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
+	for (int layer = 0; layer < GZ_PLAN_LAYERS_MAX; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
+			next[layer][pattern] = frame->ranges[layer][pattern].first;
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		uint32_t *words = out_words[next[tile->layer][tile->pattern]++];
+		words[0] = (uint32_t)tile->x | (uint32_t)tile->y << 16;
+		words[1] = (uint32_t)tile->layer | (uint32_t)tile->pattern << 3 |
+			   (uint32_t)tile->step << 8 | gz_plan_tile_active(plan, tile) << 16;
+	}
+}
+
+static enum gz_result no_room(enum gz_result result, const struct gz_plan *plan,
+			      const struct gz_log *log)
+{
+	gz_err(log, "the graphics device has no room for a picture of %d x %d px", plan->width,
+	       plan->height);
+	return result;
+}
+
+enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				   const struct gz_plan *plan, struct gz_gl_frame_block *block,
+				   const struct gz_log *log)
+{
+	const size_t bytes = lay_out(plan, block) * sizeof(uint32_t);
+	if ((int64_t)bytes > device->storage_max) {
+		gz_err(log,
+		       "a picture of %d x %d px takes %zu MiB, beyond the %zu MiB of this OpenGL's "
+		       "storage buffers; take a smaller one, or --backend cpu",
+		       plan->width, plan->height, bytes >> 20, (size_t)device->storage_max >> 20);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	reserve(&frame->block, sizeof *block, GL_STREAM_DRAW);
+	reserve(&frame->points, bytes, GL_DYNAMIC_COPY);
+	reserve(&frame->counts, GZ_GL_COUNT_SLOTS * sizeof(uint32_t), GL_DYNAMIC_READ);
+	enum gz_result result = gz_gl_device_errors(device);
+	if (result != GZ_OK) {
+		frame->points.size = 0;
+		return no_room(result, plan, log);
+	}
+	if (plan->tile_count > 0) {
+		void *words = map_new(&frame->tiles, plan->tile_count * sizeof(uint32_t[2]));
+		if (!words) {
+			frame->tiles.size = 0;
+			gz_gl_device_errors(device);
+			return no_room(GZ_ERR_NO_MEM, plan, log);
+		}
+		sort_ranges(frame, plan);
+		pack_tiles(frame, plan, words);
+		glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+	}
+	return GZ_OK;
+}
+
+enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				 const struct gz_plan *plan, const struct gz_log *log)
+{
+	const size_t rows = (size_t)plan->layer_count * (size_t)plan->height;
+	int32_t(*span)[2] = map_new(&frame->spans, rows * sizeof *span);
+	if (!span) {
+		frame->spans.size = 0;
+		gz_gl_device_errors(device);
+		return no_room(GZ_ERR_NO_MEM, plan, log);
+	}
+	for (int layer = 0; layer < plan->layer_count; layer++)
+		for (int y = 0; y < plan->height; y++, span++)
+			gz_region_columns(&plan->layers[layer].region, y, plan->width, &(*span)[0],
+					  &(*span)[1]);
+	glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_SPANS, frame->spans.name);
+	return GZ_OK;
+}
+
+void gz_gl_frame_begin(struct gz_gl_frame *frame, const struct gz_gl_frame_block *block)
+{
+	static const uint32_t zeros[GZ_GL_COUNT_SLOTS];
+	glBindBuffer(GL_UNIFORM_BUFFER, frame->block.name);
+	glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof *block, block);
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, frame->counts.name);
+	glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zeros, zeros);
+	glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame->block.name);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_TILES, frame->tiles.name);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_POINTS, frame->points.name);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_COUNTS, frame->counts.name);
+}
+
+enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				struct gz_image *image)
+{
+	const size_t bytes = (size_t)image->width * (size_t)image->height * 4;
+	struct gz_gl_buffer *source = &frame->points;
+	if (!device->software) {
+		/* By memory that both can reach; a processor's points are there already. */
+		reserve(&frame->staging, bytes, GL_STREAM_READ);
+		glBindBuffer(GL_COPY_READ_BUFFER, frame->points.name);
+		glBindBuffer(GL_COPY_WRITE_BUFFER, frame->staging.name);
+		glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0,
+				    (GLsizeiptr)bytes);
+		source = &frame->staging;
+	}
+	glBindBuffer(GL_COPY_READ_BUFFER, source->name);
+	const void *points =
+		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+	if (!points) {
+		const enum gz_result result = gz_gl_device_errors(device);
+		return result == GZ_OK ? GZ_ERR_NO_MEM : result;
+	}
+	memcpy(image->pixels, points, bytes);
+	glUnmapBuffer(GL_COPY_READ_BUFFER);
+	return GZ_OK;
+}
+
+void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height)
+{
+	if (frame->picture_width != width || frame->picture_height != height) {
+		if (frame->picture)
+			glDeleteTextures(1, &frame->picture);
+		glGenTextures(1, &frame->picture);
+		glBindTexture(GL_TEXTURE_2D, frame->picture);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
+		frame->picture_width = width;
+		frame->picture_height = height;
+	}
+	glBindBuffer(GL_PIXEL_UNPACK_BUFFER, frame->points.name);
+	glBindTexture(GL_TEXTURE_2D, frame->picture);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, NULL);
+	glBindTexture(GL_TEXTURE_2D, 0);
+	glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame)
+{
+	uint32_t counts[GZ_GL_COUNT_SLOTS] = { 0 };
+	uint64_t sum = 0;
+	glBindBuffer(GL_COPY_READ_BUFFER, frame->counts.name);
+	glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof counts, counts);
+	for (int i = 0; i < GZ_GL_COUNT_SLOTS; i++)
+		sum += counts[i];
+	return sum;
+}
+
+size_t gz_gl_frame_bytes(const struct gz_gl_frame *frame)
+{
+	return frame->block.size + frame->tiles.size + frame->points.size + frame->counts.size +
+	       frame->spans.size + frame->staging.size +
+	       (size_t)frame->picture_width * (size_t)frame->picture_height * 4;
+}
+
+void gz_gl_frame_free(struct gz_gl_frame *frame)
+{
+	const GLuint buffers[] = { frame->block.name,  frame->tiles.name, frame->points.name,
+				   frame->counts.name, frame->spans.name, frame->staging.name };
+	/* The block's is made before all others; without it GLEW may have no functions yet. */
+	if (frame->block.name)
+		glDeleteBuffers(sizeof buffers / sizeof buffers[0], buffers);
+	if (frame->picture)
+		glDeleteTextures(1, &frame->picture);
+	*frame = (struct gz_gl_frame) { 0 };
+}

@@ -1,0 +1,74 @@
+/**
+ * @file
+ * The buffers of a frame: tiles, lattice points, counts, and what brings the picture back. They are
+ * kept from frame to frame and grow where needed. All calls need the context current.
+ */
+#ifndef GZ_RENDER_GL_GL_FRAME_H
+#define GZ_RENDER_GL_GL_FRAME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/gl/frame_block.h"
+#include "render/gl/gl_device.h"
+#include "render/image.h"
+#include "render/plan/plan.h"
+
+/** A buffer of the device; zero-initialised is none. */
+struct gz_gl_buffer {
+	unsigned name;
+	size_t size; /**< bytes */
+};
+
+/** Tiles of one kind, one after the other in the buffer of tiles. */
+struct gz_gl_tile_range {
+	size_t first, count;
+};
+
+/** Zero-initialised is empty. */
+struct gz_gl_frame {
+	struct gz_gl_buffer block, tiles, points, counts, spans, staging;
+	/** Where tiles of a layer and pattern lie: sorted by layer, then by pattern. */
+	struct gz_gl_tile_range ranges[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
+	unsigned picture; /**< texture, RGBA8; 0 until one was asked for */
+	int picture_width, picture_height;
+};
+
+/**
+ * Make room for a plan's frame and give the device its tiles; lays out the lattices in @p block.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  more lattice points than a storage buffer holds; logged with the
+ * limit
+ * @retval GZ_ERR_NO_MEM       the device has no room; logged
+ */
+enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				   const struct gz_plan *plan, struct gz_gl_frame_block *block,
+				   const struct gz_log *log);
+
+/** Give the device the columns of each row that each region of a plan has (gz_region_columns()),
+ * and bind them. GZ_ERR_NO_MEM: logged. */
+enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				 const struct gz_plan *plan, const struct gz_log *log);
+
+/** Give the device the finished block, clear the counts, bind everything. */
+void gz_gl_frame_begin(struct gz_gl_frame *frame, const struct gz_gl_frame_block *block);
+
+/** Bring the picture into @p image, which has its size. GZ_ERR_NO_MEM, GZ_ERR_NO_DEVICE. */
+enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				struct gz_image *image);
+
+/** Bring the picture into the texture, on the device. */
+void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height);
+
+/** Sum of all counts: waits for the frame. */
+uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame);
+
+/** Bytes of the device's memory that @p frame holds. */
+size_t gz_gl_frame_bytes(const struct gz_gl_frame *frame);
+
+/** Delete all of it and zero the struct. */
+void gz_gl_frame_free(struct gz_gl_frame *frame);
+
+#endif

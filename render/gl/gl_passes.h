@@ -1,0 +1,45 @@
+/**
+ * @file
+ * The compute passes of a frame: casting the tiles, and reconstruction. All calls need the context
+ * current and the frame begun (gl_frame.h).
+ */
+#ifndef GZ_RENDER_GL_GL_PASSES_H
+#define GZ_RENDER_GL_GL_PASSES_H
+
+#include <stdbool.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/gl/gl_device.h"
+#include "render/gl/gl_frame.h"
+#include "render/plan/plan.h"
+
+/** Programs, made when they are first needed; names of OpenGL, 0: none yet. */
+struct gz_gl_passes {
+	unsigned cast[2][2]; /**< by whether voxels are float, and by nearest */
+	unsigned fill, quincunx, regions;
+};
+
+/**
+ * Cast all tiles.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  the driver refuses the shader; logged
+ */
+enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
+			  const struct gz_plan *plan, bool voxels_float, bool nearest,
+			  const struct gz_log *log);
+
+/**
+ * Fill what was not cast.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  the driver refuses a shader; logged
+ * @retval GZ_ERR_NO_MEM       the device has no room; logged
+ */
+enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl_device *device,
+				 struct gz_gl_frame *frame, const struct gz_plan *plan,
+				 const struct gz_log *log);
+
+/** Delete the programs and zero the struct. */
+void gz_gl_passes_free(struct gz_gl_passes *passes);
+
+#endif

@@ -1,0 +1,345 @@
+#include "render/gl/gl_renderer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/gl/context_egl.h"
+#include "render/gl/gl_device.h"
+#include "render/gl/gl_frame.h"
+#include "render/gl/gl_passes.h"
+#include "render/gl/gl_timer.h"
+#include "render/gl/gl_volume.h"
+#include "render/macrocells.h"
+#include "render/voxel_rays.h"
+
+#define GZ_LOG_MODULE "gl"
+
+enum { REASON_SIZE = 200 };
+
+/* Moments of a frame. */
+enum { MARK_START, MARK_CAST, MARK_END };
+
+struct gl_renderer {
+	struct gz_renderer base;
+	struct gz_gl_context *context;
+	struct gz_gl_context *own_context; /* the same, where this renderer made it */
+	struct gz_gl_device device;
+	const struct gz_volume *volume; /* borrowed */
+	struct gz_macrocells cells;
+	bool has_transfer;
+	struct gz_transfer_table table;
+	struct gz_gl_volume textures;
+	struct gz_gl_frame frame;
+	struct gz_gl_passes passes;
+	struct gz_gl_timer timer;
+};
+
+static struct gl_renderer *gl_of(struct gz_renderer *renderer)
+{
+	return (struct gl_renderer *)renderer;
+}
+
+static enum gz_result enter(struct gl_renderer *gl)
+{
+	const enum gz_result result = gl->context->ops->make_current(gl->context);
+	if (result != GZ_OK)
+		gz_err(gl->base.log, "the OpenGL context cannot be used any more");
+	return result;
+}
+
+static void leave(struct gl_renderer *gl)
+{
+	gl->context->ops->release(gl->context);
+}
+
+static void gl_destroy(struct gz_renderer *renderer)
+{
+	struct gl_renderer *gl = gl_of(renderer);
+	/* What a lost context held is gone with it. */
+	if (gl->context && gl->context->ops->make_current(gl->context) == GZ_OK) {
+		gz_gl_volume_free(&gl->textures);
+		gz_gl_frame_free(&gl->frame);
+		gz_gl_passes_free(&gl->passes);
+		gz_gl_timer_free(&gl->timer);
+		leave(gl);
+	}
+	gz_gl_context_destroy(&gl->own_context);
+	gz_macrocells_free(&gl->cells);
+	free(gl);
+}
+
+/* The context that was given, or one of its own. */
+static enum gz_result open_context(struct gl_renderer *gl, const struct gz_renderer_params *params,
+				   char *reason)
+{
+	gl->context = params->gl_context;
+	if (gl->context)
+		return GZ_OK;
+	const enum gz_result result =
+		gz_gl_context_egl(params->gl_hardware_only, &gl->own_context, reason, REASON_SIZE);
+	gl->context = gl->own_context;
+	return result;
+}
+
+static enum gz_result open_device(struct gl_renderer *gl, const struct gz_renderer_params *params,
+				  char *reason)
+{
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_device_open(&gl->device, reason, REASON_SIZE);
+	leave(gl);
+	if (result == GZ_OK && gl->device.software && params->gl_hardware_only) {
+		snprintf(reason, REASON_SIZE, "%.120s is software", gl->device.description);
+		result = GZ_ERR_UNSUPPORTED;
+	}
+	if (params->gl_volume_edge_max > 0 &&
+	    params->gl_volume_edge_max < gl->device.volume_edge_max)
+		gl->device.volume_edge_max = params->gl_volume_edge_max;
+	return result;
+}
+
+static enum gz_result gl_create(const struct gz_renderer_params *params, const struct gz_log *log,
+				struct gz_renderer **out_renderer)
+{
+	char reason[REASON_SIZE] = "its context cannot be made current";
+	struct gl_renderer *gl = calloc(1, sizeof *gl);
+	if (!gl)
+		return GZ_ERR_NO_MEM;
+	gl->base = (struct gz_renderer) { .ops = &gz_gl_renderer_ops, .log = log };
+	enum gz_result result = open_context(gl, params, reason);
+	if (result == GZ_OK)
+		result = open_device(gl, params, reason);
+	if (result != GZ_OK) {
+		/* Who only tries takes cpu then; who insists must be told what to do. */
+		if (params->gl_hardware_only)
+			gz_debug(log, "cpu casts the rays: %s", reason);
+		else
+			gz_err(log,
+			       "no OpenGL 4.3: %s; update the graphics driver, or take "
+			       "--backend cpu",
+			       reason);
+		gl_destroy(&gl->base);
+		return result;
+	}
+	*out_renderer = &gl->base;
+	return GZ_OK;
+}
+
+static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)
+{
+	struct gl_renderer *gl = gl_of(renderer);
+	gl->volume = NULL;
+	gl->has_transfer = false;
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_volume_load(&gl->textures, &gl->device, volume, renderer->log);
+	leave(gl);
+	if (result != GZ_OK)
+		return result;
+	result = gz_macrocells_build(volume, &gl->cells);
+	if (result != GZ_OK) {
+		gz_err(renderer->log, "no memory for the macrocells of the volume");
+		return result;
+	}
+	gl->volume = volume;
+	return GZ_OK;
+}
+
+static enum gz_result gl_set_transfer(struct gz_renderer *renderer,
+				      const struct gz_transfer *transfer)
+{
+	struct gl_renderer *gl = gl_of(renderer);
+	if (!gl->volume)
+		return GZ_ERR_INVAL;
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	gz_transfer_table_bake(transfer, gl->volume, &gl->table);
+	gz_macrocells_classify(&gl->cells, &gl->table);
+	gz_gl_volume_classify(&gl->textures, &gl->cells);
+	result = gz_gl_device_errors(&gl->device);
+	leave(gl);
+	gl->has_transfer = result == GZ_OK;
+	if (result != GZ_OK)
+		gz_err(renderer->log, "the graphics device did not take the transfer function: %s",
+		       gz_result_text(result));
+	return result;
+}
+
+static void to_floats(const double source[3], float out[4])
+{
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = (float)source[axis];
+}
+
+static void fill_rays(const struct gl_renderer *gl, const struct gz_ray_frame *world,
+		      struct gz_gl_frame_block *block)
+{
+	struct gz_voxel_rays rays;
+	gz_voxel_rays_make(gl->volume, world, &rays);
+	to_floats(rays.frame.origin00, block->origin00);
+	to_floats(rays.frame.origin_dx, block->origin_dx);
+	to_floats(rays.frame.origin_dy, block->origin_dy);
+	to_floats(rays.frame.direction00, block->direction00);
+	to_floats(rays.frame.direction_dx, block->direction_dx);
+	to_floats(rays.frame.direction_dy, block->direction_dy);
+	to_floats(rays.world_per_voxel, block->world_per_voxel);
+	for (int axis = 0; axis < 3; axis++) {
+		const int dim = gl->volume->dims[axis];
+		block->dims[axis] = (float)dim;
+		block->last[axis] = dim > 1 ? dim - 2 : 0;
+		block->cell_last[axis] = (float)(gl->cells.dims[axis] - 1);
+	}
+}
+
+static void fill_transfer(struct gl_renderer *gl, const struct gz_plan *plan,
+			  const struct gz_ray_params *rays, struct gz_gl_frame_block *block)
+{
+	const double voxel_length = gz_volume_voxel_length(gl->volume);
+	block->transfer[0] = (float)gl->table.scale;
+	block->transfer[1] = (float)gl->table.bias;
+	for (int i = 0; i < plan->step_count; i++) {
+		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		gz_gl_volume_step_row(&gl->textures, &gl->table, i, length);
+		block->steps[i][0] = (float)(length * voxel_length);
+		block->steps[i][1] = (float)length;
+	}
+	gz_gl_volume_step_row(&gl->textures, &gl->table, GZ_PLAN_STEPS_MAX, 1);
+	to_floats(rays->background, block->background);
+}
+
+static void fill_plan(const struct gz_plan *plan, struct gz_gl_frame_block *block)
+{
+	block->plan[0] = (uint32_t)plan->layer_count;
+	block->plan[1] = plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
+	block->plan[2] = (uint32_t)plan->width;
+	block->plan[3] = (uint32_t)plan->height;
+	enum { RAYS = GZ_TILE_EDGE * GZ_TILE_EDGE };
+	for (int i = 0; i < GZ_GL_TILE_POINTS; i++) {
+		block->tile_points[i][0] = gz_tile_columns[i / RAYS][i % RAYS];
+		block->tile_points[i][1] = gz_tile_rows[i % RAYS];
+	}
+}
+
+/* What this backend does not do yet; NULL where it does all that is asked for. */
+static const char *unsupported(const struct gz_ray_params *rays)
+{
+	if (rays->shading != GZ_SHADING_NONE)
+		return "render.shading";
+	if (rays->integration != GZ_INTEGRATION_SAMPLED)
+		return "render.integration";
+	if (rays->levels)
+		return "render.levels";
+	if (rays->jitter != 0)
+		return "render.jitter";
+	for (int axis = 0; axis < 3; axis++)
+		if (rays->clip.least[axis] > 0 || rays->clip.greatest[axis] < 1)
+			return "clip";
+	return NULL;
+}
+
+static enum gz_result refuse(const struct gl_renderer *gl, const struct gz_ray_params *rays)
+{
+	const char *what = unsupported(rays);
+	if (!what)
+		return GZ_OK;
+	gz_err(gl->base.log, "the gl backend does not do %s; take --backend cpu", what);
+	return GZ_ERR_UNSUPPORTED;
+}
+
+/* All passes of a frame. */
+static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_frame *world,
+			   const struct gz_ray_params *rays, const struct gz_plan *plan)
+{
+	struct gz_gl_frame_block block = { 0 };
+	const struct gz_log *log = gl->base.log;
+	enum gz_result result = gz_gl_frame_prepare(&gl->frame, &gl->device, plan, &block, log);
+	if (result != GZ_OK)
+		return result;
+	fill_rays(gl, world, &block);
+	fill_transfer(gl, plan, rays, &block);
+	fill_plan(plan, &block);
+	gz_gl_frame_begin(&gl->frame, &block);
+	gz_gl_volume_bind(&gl->textures);
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
+	result = gz_gl_cast(&gl->passes, &gl->device, plan, gl->volume->type == GZ_VOXEL_F32,
+			    rays->interpolation == GZ_INTERPOLATION_NEAREST, log);
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
+	if (result == GZ_OK)
+		result = gz_gl_reconstruct(&gl->passes, &gl->device, &gl->frame, plan, log);
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_END);
+	return result;
+}
+
+/* The picture to where it is wanted, and whether all went well. */
+static enum gz_result deliver(struct gl_renderer *gl, const struct gz_plan *plan,
+			      struct gz_image *image)
+{
+	enum gz_result result = GZ_OK;
+	if (image)
+		result = gz_gl_frame_read(&gl->frame, &gl->device, image);
+	else
+		gz_gl_frame_to_texture(&gl->frame, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = gz_gl_device_errors(&gl->device);
+	if (result != GZ_OK)
+		gz_err(gl->base.log, "%s failed a frame: %s", gl->device.description,
+		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result));
+	return result;
+}
+
+static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_camera *camera,
+				const struct gz_ray_params *rays, const struct gz_plan *plan,
+				struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct gl_renderer *gl = gl_of(renderer);
+	struct gz_ray_frame world;
+	if (!gl->volume || !gl->has_transfer)
+		return GZ_ERR_INVAL;
+	enum gz_result result = refuse(gl, rays);
+	if (result == GZ_OK)
+		result = gz_camera_rays(camera, plan->width, plan->height, &world);
+	if (result == GZ_OK && image)
+		result = gz_image_resize(image, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = draw(gl, &world, rays, plan);
+	if (result == GZ_OK)
+		result = deliver(gl, plan, image);
+	if (result == GZ_OK && out_stats)
+		*out_stats = (struct gz_frame_stats) {
+			.rays = plan->ray_count,
+			.samples = gz_gl_frame_samples(&gl->frame),
+			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
+			.reconstruct_ms =
+				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),
+		};
+	leave(gl);
+	return result;
+}
+
+static unsigned gl_picture_texture(const struct gz_renderer *renderer)
+{
+	return ((const struct gl_renderer *)renderer)->frame.picture;
+}
+
+static const char *gl_describe(const struct gz_renderer *renderer)
+{
+	return ((const struct gl_renderer *)renderer)->device.description;
+}
+
+const struct gz_renderer_ops gz_gl_renderer_ops = {
+	.name = "gl",
+	.create = gl_create,
+	.set_volume = gl_set_volume,
+	.set_transfer = gl_set_transfer,
+	.render = gl_render,
+	.picture_texture = gl_picture_texture,
+	.describe = gl_describe,
+	.destroy = gl_destroy,
+};

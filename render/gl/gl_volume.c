@@ -1,0 +1,153 @@
+#include "render/gl/gl_volume.h"
+
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include "render/gl/frame_block.h"
+
+#define GZ_LOG_MODULE "gl"
+
+/* Bytes handed to the driver at a time, which may copy them first. Chosen: a small part of any
+ * volume that matters, large beside the cost of a call. */
+#define UPLOAD_BYTES ((size_t)64 << 20)
+
+/* How a voxel type lies in a texture. */
+struct texel_format {
+	GLenum internal, external, type;
+};
+
+static const struct texel_format formats[GZ_VOXEL_TYPE_COUNT] = {
+	[GZ_VOXEL_U8] = { GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE },
+	[GZ_VOXEL_U16] = { GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT },
+	[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT },
+};
+
+/* A texture without filtering or levels, bound to @p target. */
+static GLuint make_texture(GLenum target)
+{
+	GLuint texture = 0;
+	glGenTextures(1, &texture);
+	glBindTexture(target, texture);
+	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+	glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+	return texture;
+}
+
+/* Voxels to the bound texture, a few slices at a time. */
+static void upload(const struct gz_volume *volume, const struct texel_format *format)
+{
+	const int *dims = volume->dims;
+	const size_t slice = (size_t)dims[0] * (size_t)dims[1] * gz_voxel_size(volume->type);
+	const int slices = slice < UPLOAD_BYTES ? (int)(UPLOAD_BYTES / slice) : 1;
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	for (int z = 0; z < dims[2]; z += slices)
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1],
+				z + slices < dims[2] ? slices : dims[2] - z, format->external,
+				format->type, (const char *)volume->voxels + (size_t)z * slice);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
+static enum gz_result refuse_edge(const struct gz_gl_device *device, const struct gz_volume *volume,
+				  const struct gz_log *log)
+{
+	for (int axis = 0; axis < 3; axis++)
+		if (volume->dims[axis] > device->volume_edge_max) {
+			gz_err(log,
+			       "a volume of %d x %d x %d voxels is beyond this OpenGL's 3D "
+			       "textures of %d; take --backend cpu",
+			       volume->dims[0], volume->dims[1], volume->dims[2],
+			       device->volume_edge_max);
+			return GZ_ERR_UNSUPPORTED;
+		}
+	return GZ_OK;
+}
+
+enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+				 const struct gz_volume *volume, const struct gz_log *log)
+{
+	gz_gl_volume_free(gl);
+	enum gz_result result = refuse_edge(device, volume, log);
+	if (result != GZ_OK)
+		return result;
+	const struct texel_format *format = &formats[volume->type];
+	gl->voxels = make_texture(GL_TEXTURE_3D);
+	glTexStorage3D(GL_TEXTURE_3D, 1, format->internal, volume->dims[0], volume->dims[1],
+		       volume->dims[2]);
+	result = gz_gl_device_errors(device);
+	if (result == GZ_OK) {
+		upload(volume, format);
+		result = gz_gl_device_errors(device);
+	}
+	glBindTexture(GL_TEXTURE_3D, 0);
+	if (result != GZ_OK) {
+		gz_err(log,
+		       "no room on the graphics device for %zu MiB of voxels; take --backend cpu",
+		       gz_volume_voxel_count(volume) * gz_voxel_size(volume->type) >> 20);
+		gz_gl_volume_free(gl);
+	}
+	return result;
+}
+
+void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells)
+{
+	if (!gl->distance) {
+		gl->distance = make_texture(GL_TEXTURE_3D);
+		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R8UI, cells->dims[0], cells->dims[1],
+			       cells->dims[2]);
+	}
+	glBindTexture(GL_TEXTURE_3D, gl->distance);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, cells->dims[0], cells->dims[1], cells->dims[2],
+			GL_RED_INTEGER, GL_UNSIGNED_BYTE, cells->distance);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glBindTexture(GL_TEXTURE_3D, 0);
+	memset(gl->row_length, 0, sizeof gl->row_length);
+}
+
+void gz_gl_volume_step_row(struct gz_gl_volume *gl, const struct gz_transfer_table *table, int row,
+			   double length)
+{
+	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE];
+	if (gl->row_length[row] == length)
+		return;
+	if (!gl->transfer) {
+		gl->transfer = make_texture(GL_TEXTURE_2D);
+		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
+			       GZ_PLAN_STEPS_MAX + 1);
+	}
+	const struct gz_transfer_entry *source = table->entries;
+	if (row < GZ_PLAN_STEPS_MAX) {
+		gz_transfer_table_step(table, length, entries);
+		source = entries;
+	}
+	/* An entry is two 32-bit words, a float's bits and a colour. */
+	glBindTexture(GL_TEXTURE_2D, gl->transfer);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, row, GZ_TRANSFER_TABLE_SIZE, 1, GL_RG_INTEGER,
+			GL_UNSIGNED_INT, source);
+	glBindTexture(GL_TEXTURE_2D, 0);
+	gl->row_length[row] = length;
+}
+
+void gz_gl_volume_bind(const struct gz_gl_volume *gl)
+{
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_DISTANCE);
+	glBindTexture(GL_TEXTURE_3D, gl->distance);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_TRANSFER);
+	glBindTexture(GL_TEXTURE_2D, gl->transfer);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_VOXELS);
+	glBindTexture(GL_TEXTURE_3D, gl->voxels);
+}
+
+void gz_gl_volume_free(struct gz_gl_volume *gl)
+{
+	const GLuint textures[] = { gl->voxels, gl->distance, gl->transfer };
+	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
+	 */
+	if (gl->voxels || gl->distance || gl->transfer)
+		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
+	*gl = (struct gz_gl_volume) { 0 };
+}

@@ -1,0 +1,147 @@
+// Rays of tiles, front to back: the same samples, ends and colours as the cpu backend's kernel
+// (render/cpu/cast_kernel.h). A ray is cut into segments of one step from where it enters the box, a sample
+// in the middle of each; the last segment is what is left. k counts steps, so skipping never shifts a sample.
+layout(local_size_x = GROUP_SIZE) in;
+
+layout(binding = 1) uniform usampler3D distances;
+
+layout(std430, binding = 2) buffer Counts
+{
+	uint counts[];
+};
+
+struct Ray {
+	vec3 start, delta, inverse; // voxel coordinates; position = start + k * delta
+	float count;                // whole segments
+	float rest;                 // of a segment, at the end
+};
+
+struct Light {
+	vec3 colour;
+	float through;
+};
+
+Ray set_up_ray(vec2 pixel, float step_length)
+{
+	vec3 origin = fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
+	vec3 direction =
+		fma(vec3(pixel.y), direction_dy.xyz, fma(vec3(pixel.x), direction_dx.xyz, direction00.xyz));
+	vec3 raw = direction * (step_length / length(direction * world_per_voxel.xyz));
+	Ray ray;
+	ray.delta = mix(raw, vec3(1e-12), lessThan(abs(raw), vec3(1e-12)));
+	ray.inverse = 1.0 / ray.delta;
+	vec3 a = -origin * ray.inverse, b = (dims.xyz - origin) * ray.inverse;
+	vec3 near = min(a, b), far = max(a, b);
+	float enter = max(max(near.x, near.y), max(near.z, 0.0));
+	float span = max(min(min(far.x, far.y), far.z) - enter, 0.0);
+	ray.count = floor(span);
+	ray.rest = span - ray.count;
+	ray.start = fma(vec3(enter), ray.delta, origin);
+	return ray;
+}
+
+// Whether the macrocell at k is empty; until: up to which k it lasts and, if it is, those around it too.
+bool look_up_cell(Ray ray, float k, out float until)
+{
+	vec3 at = fma(vec3(k), ray.delta, ray.start);
+	vec3 cell = floor(clamp(at * (1.0 / float(GZ_MACROCELL_EDGE)), vec3(0.0), cell_last.xyz));
+	uint away = texelFetch(distances, ivec3(cell), 0).r;
+	float reach = max(float(away), 1.0);
+	vec3 edge = mix(cell + (1.0 - reach), cell + reach, greaterThan(ray.delta, vec3(0.0)));
+	vec3 leave = (edge * float(GZ_MACROCELL_EDGE) - ray.start) * ray.inverse;
+	until = min(min(leave.x, leave.y), leave.z);
+	return away > 0U;
+}
+
+void composite(uint colour, float opacity, inout Light light)
+{
+	float weight = light.through * opacity;
+	light.colour = fma(vec3(weight), unpack_colour(colour), light.colour);
+	light.through -= weight;
+}
+
+// On to the first occupied cell, if there is one; then all its samples, and on while something shows. Two
+// loops in turn, so that rays that skip and rays that sample do not wait for each other at every step.
+uint march(Ray ray, int step_index, inout Light light)
+{
+	uint samples = 0U;
+	float k = 0.5;
+	while (k < ray.count) {
+		float until = 0.0;
+		bool found = false;
+		while (!found && k < ray.count) {
+			found = !look_up_cell(ray, k, until);
+			k += found ? 0.0 : max(ceil(until - k), 1.0);
+		}
+		until = max(until, k + 0.5);
+		bool inside = found;
+		while (inside && k < ray.count) {
+			int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+			uvec2 look = texelFetch(transfer, ivec2(entry, step_index), 0).rg;
+			float opacity = uintBitsToFloat(look.x);
+			composite(look.y, opacity, light);
+			samples++;
+			k += 1.0;
+			inside = opacity > 0.0 || k < until;
+			if (light.through <= GZ_TRANSMITTANCE_END)
+				return samples;
+		}
+	}
+	return samples;
+}
+
+// What is left behind the whole segments.
+uint march_rest(Ray ray, float voxel_lengths, inout Light light)
+{
+	float k = fma(ray.rest, 0.5, ray.count), until;
+	if (ray.rest <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END ||
+		look_up_cell(ray, k, until))
+		return 0U;
+	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+	uvec2 look = texelFetch(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX), 0).rg;
+	float extinction = uintBitsToFloat(look.x);
+	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * ray.rest * voxel_lengths) : 0.0, light);
+	return 1U;
+}
+
+uint to_pixel(Light light)
+{
+	vec3 colour = fma(vec3(light.through), background.xyz,
+		light.colour * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
+	uvec3 bytes = uvec3(fma(clamp(colour, 0.0, 1.0), vec3(255.0), vec3(0.5)));
+	return bytes.r | bytes.g << 8 | bytes.b << 16 | 0xFF000000U;
+}
+
+// Into its lattice and, in a pyramid, into those coarser ones that have the point too.
+void store(Tile tile, uvec2 at, uint pixel)
+{
+	uint end = plan.y == 1U ? plan.x : tile.layer + 1U;
+	for (uint i = tile.layer; i < end; i++) {
+		uvec4 layer = layers[i];
+		uvec2 place = at / layer.w;
+		if (place * layer.w != at)
+			return;
+		if (place.x < layer.y && place.y < layer.z)
+			points[layer.x + place.y * layer.y + place.x] = pixel;
+	}
+}
+
+void main()
+{
+	uint index = first_item + gl_GlobalInvocationID.x / TILE_RAYS;
+	uint ray_index = gl_LocalInvocationID.x % TILE_RAYS;
+	if (index >= item_end)
+		return;
+	Tile tile = unpack_tile(tiles[index]);
+	if ((tile.active_rays >> ray_index & 1U) == 0U)
+		return;
+	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
+	vec2 step_lengths = steps[tile.step].xy;
+	Ray ray = set_up_ray(vec2(at), step_lengths.x);
+	Light light = Light(vec3(0.0), 1.0);
+	uint samples = march(ray, int(tile.step), light);
+	samples += march_rest(ray, step_lengths.y, light);
+	store(tile, at, to_pixel(light));
+	if (samples > 0U)
+		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);
+}

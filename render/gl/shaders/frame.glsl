@@ -1,0 +1,45 @@
+// What every shader knows of the frame: struct gz_gl_frame_block of frame_block.h, and the points of all
+// lattices, one after the other. The picture is the first width * height of them.
+layout(std140, binding = 0) uniform Frame
+{
+	vec4 origin00, origin_dx, origin_dy;
+	vec4 direction00, direction_dx, direction_dy;
+	vec4 world_per_voxel;
+	vec4 dims;
+	vec4 cell_last;
+	vec4 background;
+	vec4 transfer_map;
+	ivec4 last_voxel;
+	uvec4 plan; // layers, 1 for a pyramid, width, height
+	vec4 steps[GZ_PLAN_STEPS_MAX];
+	uvec4 layers[GZ_PLAN_LAYERS_MAX]; // first point, columns, rows, spacing
+	uvec4 tile_points[TILE_POINTS];
+};
+
+layout(std430, binding = 1) buffer Points
+{
+	uint points[]; // R, G, B, A from the lowest byte
+};
+
+// Tiles: the position of the first ray, 16 bits of x below 16 of y; layer in 3 bits, pattern in 5, step in
+// 8, and a bit for each ray that is cast.
+layout(std430, binding = 0) readonly buffer Tiles
+{
+	uvec2 tiles[];
+};
+
+layout(location = 0) uniform uint first_item; // of this dispatch
+layout(location = 1) uniform uint item_end;
+
+const uint TILE_RAYS = uint(GZ_TILE_EDGE * GZ_TILE_EDGE);
+
+struct Tile {
+	uvec2 at;
+	uint layer, pattern, step, active_rays;
+};
+
+Tile unpack_tile(uvec2 word)
+{
+	return Tile(uvec2(word.x & 0xFFFFU, word.x >> 16), word.y & 7U, word.y >> 3 & 31U,
+		word.y >> 8 & 255U, word.y >> 16);
+}
