@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "view/caster.h"
 #include "view/loading_bar.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -15,7 +16,7 @@ enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
 struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
-	struct gz_renderer *renderer;
+	struct gz_caster caster;
 	struct gz_attention attention;
 	struct gz_gaze_reading reading; /* that the attention took last */
 	struct gz_focus focus;          /* that it made of it */
@@ -25,23 +26,6 @@ struct gz_frame_maker {
 	struct gz_image cast;  /* at the rays' resolution, only where that is not the picture's */
 	struct gz_image image; /* the finished picture */
 };
-
-static enum gz_result start_renderer(struct gz_frame_maker *maker,
-				     const struct gz_view_options *options)
-{
-	const struct gz_renderer_params params = { .threads = options->threads,
-						   .simd = options->simd };
-	enum gz_result r =
-		gz_renderer_create(options->backend, &params, maker->log, &maker->renderer);
-	if (r == GZ_OK)
-		r = gz_renderer_set_volume(maker->renderer, &maker->scene.volume);
-	if (r == GZ_OK)
-		r = gz_renderer_set_transfer(maker->renderer, &maker->scene.transfer);
-	if (r == GZ_ERR_NO_MEM)
-		gz_err(maker->log, "no memory for the renderer; close other programs or take a "
-				   "smaller volume");
-	return r;
-}
 
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 				     const struct gz_log *log, struct gz_frame_maker **out_maker)
@@ -59,14 +43,19 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	gz_loading_bar_end(&bar);
 	if (r == GZ_OK)
 		r = gz_view_options_apply(options, &maker->scene.settings);
-	if (r == GZ_OK)
-		r = start_renderer(maker, options);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
 		return r;
 	}
 	*out_maker = maker;
 	return GZ_OK;
+}
+
+enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
+				    const struct gz_view_options *options,
+				    struct gz_gl_context *gl_context)
+{
+	return gz_caster_start(&maker->caster, options, gl_context, &maker->scene, maker->log);
 }
 
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
@@ -112,9 +101,8 @@ static enum gz_result cast_picture(struct gz_frame_maker *maker,
 {
 	bool direct = maker->plan.width == request->width && maker->plan.height == request->height;
 	struct gz_image *target = direct ? &maker->image : &maker->cast;
-	enum gz_result r =
-		gz_renderer_render(maker->renderer, &request->settings->camera,
-				   &request->settings->rays, &maker->plan, target, out_stats);
+	enum gz_result r = gz_caster_render(&maker->caster, request->settings, &maker->plan,
+					    direct && request->on_device, target, out_stats);
 	if (r != GZ_OK || direct)
 		return r;
 	int64_t start_ns = gz_clock_now_ns();
@@ -174,7 +162,6 @@ static struct gz_frame_record begin_record(const struct gz_frame_maker *maker,
 	const struct gz_gaze_reading *reading = &maker->reading;
 	return (struct gz_frame_record) {
 		.method = gz_method_names[request->settings->foveation.method],
-		.backend = maker->renderer->ops->name,
 		.width = request->width,
 		.height = request->height,
 		.gaze_known = reading->known,
@@ -198,9 +185,15 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	maker->any_made = true;
 	tell_spent(maker, record.total_ms);
 	record.budget = gz_budget_state_name(maker->attention.budget.state);
-	*out_image = &maker->image;
+	record.backend = maker->caster.renderer->ops->name; /* cpu may have taken over */
+	*out_image = maker->caster.on_device ? NULL : &maker->image;
 	*out_record = record;
 	return GZ_OK;
+}
+
+unsigned gz_frame_texture(const struct gz_frame_maker *maker)
+{
+	return gz_renderer_picture_texture(maker->caster.renderer);
 }
 
 static void fill(struct gz_image *image, int left, int top, int right, int bottom)
@@ -230,7 +223,7 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 {
 	if (!maker || !*maker)
 		return;
-	gz_renderer_destroy(&(*maker)->renderer);
+	gz_caster_free(&(*maker)->caster);
 	gz_plan_free(&(*maker)->plan);
 	gz_image_free(&(*maker)->cast);
 	gz_image_free(&(*maker)->image);

@@ -23,19 +23,31 @@ struct gz_frame_request {
 	const struct gz_scene_settings *settings; /**< all but volume, transfer and display count */
 	const struct gz_display *display;         /**< of the picture: it fills this one */
 	int width, height;                        /**< of the finished picture, px */
+	bool on_device; /**< leave the picture on the graphics device if it is made there */
 };
 
 /**
- * Load the scene that the options name, apply their overrides, and make a renderer for it.
+ * Load the scene that the options name, and apply their overrides.
  *
  * @param options  borrowed until the call returns
  * @param log      borrowed, outlives the maker
  * @param[out] out_maker  owned by the caller: gz_frame_maker_destroy()
- * @return what gz_scene_load() and gz_renderer_create() return; logged but for GZ_ERR_CANCELLED,
+ * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED,
  * which a signal while loading gives
  */
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 				     const struct gz_log *log, struct gz_frame_maker **out_maker);
+
+/**
+ * Make the renderer, before the first frame.
+ *
+ * @param options     as before; outlives the maker
+ * @param gl_context  of the window that shows the pictures, outlives the maker; NULL without one
+ * @return what gz_caster_start() returns; logged
+ */
+enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
+				    const struct gz_view_options *options,
+				    struct gz_gl_context *gl_context);
 
 /** The scene as loaded and overridden. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
@@ -59,7 +71,8 @@ bool gz_frame_settled(const struct gz_frame_maker *maker);
 /**
  * Render one frame, sharp where gz_frame_attend() left it; before the first in the centre.
  *
- * @param[out] out_image   the picture, owned by the maker, valid until the next call
+ * @param[out] out_image   the picture, owned by the maker, valid until the next call; NULL where
+ *                         it stayed on the device: see gz_frame_texture()
  * @param[out] out_record  what it cost
  * @retval GZ_ERR_INVAL   the picture at the scene's image_sampling_rate is too large or vanishes,
  *                        or the camera is none; logged
@@ -67,6 +80,10 @@ bool gz_frame_settled(const struct gz_frame_maker *maker);
  */
 enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			     struct gz_image **out_image, struct gz_frame_record *out_record);
+
+/** OpenGL's name of the texture with the last picture that stayed on the device, valid until the
+ * next frame. */
+unsigned gz_frame_texture(const struct gz_frame_maker *maker);
 
 /** Draw a cross at a place of the display that the picture fills; nothing where it is outside. */
 void gz_frame_draw_cross(struct gz_image *image, struct gz_point at);

@@ -226,6 +226,8 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	enum gz_result r = open_source(&options->gaze, log, &self.source);
 	if (r == GZ_OK)
 		r = gz_frame_maker_create(options, log, &self.maker);
+	if (r == GZ_OK)
+		r = gz_frame_maker_start(self.maker, options, NULL);
 	if (r == GZ_OK && options->stats[0])
 		r = gz_stats_open(options->stats, log, &self.stats);
 	if (r == GZ_OK) {

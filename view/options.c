@@ -54,7 +54,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .offset = AT(backend),
 	  .max = GZ_NAME_SIZE,
 	  .preset = "auto",
-	  .help = "what casts the rays: cpu, or auto for the best there is" },
+	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto: gl where a GPU does its "
+		  "work" },
 	{ .key = "threads",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(threads),

@@ -28,6 +28,7 @@ enum gz_result gz_quad_init(struct gz_quad *quad, const struct gz_log *log)
 
 void gz_quad_upload(struct gz_quad *quad, const struct gz_image *image)
 {
+	quad->shown = quad->texture;
 	glBindTexture(GL_TEXTURE_2D, quad->texture);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	if (quad->width != image->width || quad->height != image->height) {
@@ -41,6 +42,11 @@ void gz_quad_upload(struct gz_quad *quad, const struct gz_image *image)
 			GL_UNSIGNED_BYTE, image->pixels);
 }
 
+void gz_quad_show(struct gz_quad *quad, unsigned texture)
+{
+	quad->shown = texture;
+}
+
 void gz_quad_draw(const struct gz_quad *quad, int width, int height)
 {
 	glViewport(0, 0, width, height);
@@ -48,7 +54,7 @@ void gz_quad_draw(const struct gz_quad *quad, int width, int height)
 	glUseProgram(quad->program);
 	glBindVertexArray(quad->vertices);
 	glActiveTexture(GL_TEXTURE0);
-	glBindTexture(GL_TEXTURE_2D, quad->texture);
+	glBindTexture(GL_TEXTURE_2D, quad->shown);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

@@ -12,6 +12,7 @@
 
 struct gz_quad {
 	unsigned program, vertices, texture; /**< names of OpenGL; 0: none */
+	unsigned shown;                      /**< texture: the one above, or another's */
 	int width, height;                   /**< of the texture, px */
 };
 
@@ -20,6 +21,9 @@ enum gz_result gz_quad_init(struct gz_quad *quad, const struct gz_log *log);
 
 /** Give the texture the picture's content. */
 void gz_quad_upload(struct gz_quad *quad, const struct gz_image *image);
+
+/** Show another's texture, which stays theirs, from now on. */
+void gz_quad_show(struct gz_quad *quad, unsigned texture);
 
 /** Draw over a viewport of @p width times @p height px. */
 void gz_quad_draw(const struct gz_quad *quad, int width, int height);

@@ -4,8 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <GL/glew.h>
-
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
@@ -21,54 +19,14 @@
 /* A running age is drawn anew no more often than this (chosen: readable, and cheap). */
 #define LINE_INTERVAL_NS (GZ_NS_PER_S / 2)
 
-/* The reason of GLFW's last failure, for the one line that tells of it. */
-static const char *glfw_reason(void)
-{
-	const char *reason = NULL;
-	glfwGetError(&reason);
-	return reason ? reason : "no reason given";
-}
-
 static enum gz_result open_display(const struct gz_log *log)
 {
 	if (glfwInit())
 		return GZ_OK;
 	gz_err(log,
 	       "no window: %s; set DISPLAY to an X server, or render without one by --headless",
-	       glfw_reason());
+	       gz_window_glfw_reason());
 	return GZ_ERR_NO_DEVICE;
-}
-
-static enum gz_result open_context(struct gz_window *window)
-{
-	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-	glfwWindowHint(GLFW_DEPTH_BITS, 0);
-	glfwWindowHint(GLFW_STENCIL_BITS, 0);
-	window->glfw = glfwCreateWindow(window->options->size_px[0], window->options->size_px[1],
-					"gazeview", NULL, NULL);
-	if (!window->glfw) {
-		gz_err(window->log,
-		       "no window with OpenGL 3.3: %s; update the graphics driver, or use "
-		       "--headless",
-		       glfw_reason());
-		return GZ_ERR_UNSUPPORTED;
-	}
-	glfwMakeContextCurrent(window->glfw);
-	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
-	GLenum failure = glewInit();
-	if (failure != GLEW_OK || !GLEW_VERSION_3_3) {
-		gz_err(window->log,
-		       "no window with OpenGL 3.3: %s; update the graphics driver, or use "
-		       "--headless",
-		       failure != GLEW_OK ? (const char *)glewGetErrorString(failure)
-					  : "the driver has less");
-		return GZ_ERR_UNSUPPORTED;
-	}
-	glfwSwapInterval(window->options->vsync ? 1 : 0);
-	return GZ_OK;
 }
 
 static enum gz_result open_drawing(struct gz_window *window)
@@ -141,12 +99,16 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 		.display = &gaze->display,
 		.width = width,
 		.height = height,
+		.on_device = true,
 	};
 	struct gz_image *image;
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
 	if (r != GZ_OK)
 		return r;
-	gz_quad_upload(&window->quad, image);
+	if (image)
+		gz_quad_upload(&window->quad, image);
+	else
+		gz_quad_show(&window->quad, gz_frame_texture(window->maker));
 	window->shown_display = gaze->display;
 	window->cast_needed = false;
 	return GZ_OK;
@@ -224,13 +186,14 @@ static enum gz_result loop(struct gz_window *window)
 
 static void close_window(struct gz_window *window)
 {
+	/* The renderer may live in the window's context. */
+	gz_frame_maker_destroy(&window->maker);
 	if (window->glfw) {
 		gz_panel_free();
 		gz_quad_free(&window->quad);
 		glfwDestroyWindow(window->glfw);
 	}
 	glfwTerminate();
-	gz_frame_maker_destroy(&window->maker);
 	gz_gaze_source_destroy(&window->source);
 	gz_gaze_source_destroy(&window->mouse);
 	gz_viewer_link_close(&window->link);
@@ -250,8 +213,10 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 		r = gz_frame_maker_create(options, log, &window.maker);
 	if (r == GZ_OK) {
 		window.settings = gz_frame_maker_scene(window.maker)->settings;
-		r = open_context(&window);
+		r = gz_window_context_open(&window);
 	}
+	if (r == GZ_OK)
+		r = gz_frame_maker_start(window.maker, options, &window.context.base);
 	if (r == GZ_OK)
 		r = open_drawing(&window);
 	if (r == GZ_OK)

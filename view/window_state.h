@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "base/log.h"
+#include "render/gl/gl_context.h"
 #include "view/frame.h"
 #include "view/gaze_source.h"
 #include "view/options.h"
@@ -17,11 +18,18 @@
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
+/** The window's OpenGL context as the gl backend takes it. */
+struct gz_window_context {
+	struct gz_gl_context base;
+	struct GLFWwindow *glfw;
+};
+
 /** The window of gz_view_window(). */
 struct gz_window {
 	const struct gz_view_options *options;
 	const struct gz_log *log;
 	struct GLFWwindow *glfw;
+	struct gz_window_context context;
 	struct gz_frame_maker *maker;
 	struct gz_quad quad;
 
@@ -66,6 +74,13 @@ struct gz_window_gaze {
 struct gz_window_share {
 	double x, y, width, height;
 };
+
+/** The reason of GLFW's last failure, for the one line that tells of it. */
+const char *gz_window_glfw_reason(void);
+
+/** Open the window, with OpenGL 4.3 where the gl backend may use it and the driver has it, else
+ *  with 3.3, and make its context current. GZ_ERR_UNSUPPORTED: not even that; logged. */
+enum gz_result gz_window_context_open(struct gz_window *window);
 
 /** Where the window is; the whole monitor where that cannot be told. */
 struct gz_window_share gz_window_share(struct GLFWwindow *glfw);
