@@ -25,6 +25,7 @@ struct errors {
 struct series {
 	char name[64];
 	struct gz_foveation foveation;
+	struct gz_ray_params ray_params;
 	double time_ms[POINTS_MAX];
 	double plan_ms, cast_ms, reconstruct_ms, rays, samples;
 	struct errors errors;
@@ -66,9 +67,8 @@ static int frame(struct bench *bench, int method, struct gz_point gaze, double *
 			 &bench->plan) != GZ_OK)
 		return -1;
 	const int64_t plan_ns = gz_clock_now_ns();
-	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera,
-			       &bench->scene.settings.rays, &bench->plan, &bench->images[method],
-			       &stats) != GZ_OK)
+	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera, &series->ray_params,
+			       &bench->plan, &bench->images[method], &stats) != GZ_OK)
 		return -1;
 	*out_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	const double share = 1.0 / (bench->points * bench->repeats);
@@ -166,7 +166,8 @@ static int run(struct bench *bench)
 	double unused;
 	if (frame(bench, 0, point_of_path(0.5), &unused) != 0) /* warms up */
 		return -1;
-	bench->series[0] = (struct series) { .foveation = bench->series[0].foveation };
+	bench->series[0] = (struct series) { .foveation = bench->series[0].foveation,
+					     .ray_params = bench->series[0].ray_params };
 	strcpy(bench->series[0].name, "standard");
 	for (int i = 0; i < bench->points; i++) {
 		const struct gz_point gaze = point_of_path((i + 0.5) / bench->points);
@@ -183,27 +184,37 @@ static int run(struct bench *bench)
 	return 0;
 }
 
-/* "method", or "method:option=value:…" with options of the section [foveation]. */
+/* Set "key" of a section by the table of its options. False where there is no such key or value. */
+static bool parse_option(const struct gz_option *options, size_t count, const char *section,
+			 const char *key, const char *value, void *target)
+{
+	char full[128];
+	snprintf(full, sizeof full, "%s.%s", section, key);
+	for (size_t i = 0; i < count; i++)
+		if (strcmp(options[i].key, full) == 0)
+			return gz_option_parse(&options[i], value, target, NULL, 0) == GZ_OK;
+	return false;
+}
+
+/* "method", or "method:option=value:…" with options of the sections [foveation] and [render]. */
 static int parse_method(struct bench *bench, char *text)
 {
 	struct series *series = &bench->series[bench->method_count];
 	series->foveation = bench->scene.settings.foveation;
+	series->ray_params = bench->scene.settings.rays;
 	snprintf(series->name, sizeof series->name, "%s", text);
-	char *rest = NULL, key[128];
+	char *rest = NULL;
 	for (char *part = strtok_r(text, ":", &rest); part; part = strtok_r(NULL, ":", &rest)) {
-		const char *equals = strchr(part, '=');
-		const int length = equals ? (int)(equals - part) : 0;
-		snprintf(key, sizeof key, "foveation.%.*s", length, part);
+		char *equals = strchr(part, '=');
+		const char *key = equals ? part : "method";
 		const char *value = equals ? equals + 1 : part;
-		bool found = false;
-		for (size_t i = 0; i < gz_foveation_option_count && !found; i++) {
-			const struct gz_option *option = &gz_foveation_options[i];
-			found = strcmp(option->key, equals ? key : "foveation.method") == 0 &&
-				gz_option_parse(option, value, &series->foveation, NULL, 0) ==
-					GZ_OK;
-		}
-		if (!found) {
-			fprintf(stderr, "no such method or option: %s\n", part);
+		if (equals)
+			*equals = '\0';
+		if (!parse_option(gz_foveation_options, gz_foveation_option_count, "foveation", key,
+				  value, &series->foveation) &&
+		    !parse_option(gz_ray_options, gz_ray_option_count, "render", key, value,
+				  &series->ray_params)) {
+			fprintf(stderr, "no such method or option: %s, or not %s\n", key, value);
 			return -1;
 		}
 	}

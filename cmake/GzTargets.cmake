@@ -108,3 +108,15 @@ function(gz_fuzz name)
 	add_test(NAME fuzz.${name} COMMAND ${target} ${arguments})
 	set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 60 LABELS "fuzz;quick")
 endfunction()
+
+# gz_cast_flags(FILE SET): compile FILE of this folder for one instruction set of the cpu backend.
+function(gz_cast_flags file set)
+	if(set STREQUAL avx2)
+		set(flags -mavx2 -mfma)
+	elseif(set STREQUAL avx512)
+		set(flags -mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512)
+	else() # wide vectors are passed only between functions that are inlined into each other
+		set(flags -Wno-psabi)
+	endif()
+	set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}")
+endfunction()

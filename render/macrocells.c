@@ -84,7 +84,8 @@ enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_mac
 	cells->least = malloc(count * sizeof *cells->least);
 	cells->greatest = malloc(count * sizeof *cells->greatest);
 	cells->distance = calloc(count + 4, 1);
-	if (!cells->least || !cells->greatest || !cells->distance) {
+	cells->reach = calloc(count + 4, 1);
+	if (!cells->least || !cells->greatest || !cells->distance || !cells->reach) {
 		gz_macrocells_free(cells);
 		return GZ_ERR_NO_MEM;
 	}
@@ -115,31 +116,44 @@ static void relax_line(uint8_t *line, size_t stride, int count, uint8_t *before)
 	}
 }
 
-static void relax_axis(struct gz_macrocells *cells, int axis)
+static void relax_axis(const int dims[3], int axis, uint8_t *distance)
 {
 	const size_t strides[3] = {
 		1,
-		(size_t)cells->dims[0],
-		(size_t)cells->dims[0] * (size_t)cells->dims[1],
+		(size_t)dims[0],
+		(size_t)dims[0] * (size_t)dims[1],
 	};
 	const int u = (axis + 1) % 3, v = (axis + 2) % 3;
 	uint8_t before[GZ_VOLUME_DIM_MAX / GZ_MACROCELL_EDGE];
-	for (int j = 0; j < cells->dims[v]; j++)
-		for (int i = 0; i < cells->dims[u]; i++)
-			relax_line(cells->distance + (size_t)j * strides[v] +
-					   (size_t)i * strides[u],
-				   strides[axis], cells->dims[axis], before);
+	for (int j = 0; j < dims[v]; j++)
+		for (int i = 0; i < dims[u]; i++)
+			relax_line(distance + (size_t)j * strides[v] + (size_t)i * strides[u],
+				   strides[axis], dims[axis], before);
+}
+
+/* Chebyshev distance to the nearest cell that is 0; the others are 255. */
+static void relax(const int dims[3], uint8_t *distance)
+{
+	for (int axis = 0; axis < 3; axis++)
+		relax_axis(dims, axis, distance);
 }
 
 void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table)
 {
 	const size_t count = cell_count(cells);
-	for (size_t i = 0; i < count; i++)
-		cells->distance[i] =
-			gz_transfer_table_shows(table, cells->least[i], cells->greatest[i]) ? 0
-											    : 255;
-	for (int axis = 0; axis < 3; axis++)
-		relax_axis(cells, axis);
+	for (size_t i = 0; i < count; i++) {
+		const bool shows =
+			gz_transfer_table_shows(table, cells->least[i], cells->greatest[i]);
+		cells->distance[i] = shows ? 0 : 255;
+		cells->reach[i] = shows ? 255 : 0;
+	}
+	relax(cells->dims, cells->distance);
+	relax(cells->dims, cells->reach);
+	for (size_t i = 0; i < count; i++) {
+		const int empty = minimum(cells->distance[i], GZ_REACH_MAX);
+		const int full = minimum(cells->reach[i], GZ_REACH_MAX);
+		cells->reach[i] = (uint8_t)(GZ_REACH_BORDER + empty - full);
+	}
 }
 
 void gz_macrocells_free(struct gz_macrocells *cells)
@@ -147,5 +161,6 @@ void gz_macrocells_free(struct gz_macrocells *cells)
 	free(cells->least);
 	free(cells->greatest);
 	free(cells->distance);
+	free(cells->reach);
 	*cells = (struct gz_macrocells) { 0 };
 }

@@ -14,6 +14,10 @@
 #include "render/transfer_table.h"
 #include "render/volume/volume.h"
 
+/** Between cells of reach where something shows, below, and empty ones. */
+#define GZ_REACH_BORDER 128
+#define GZ_REACH_MAX    127
+
 /** Cell (i, j, k) covers voxels [8i - 1, 8i + 8] along x, and so on: every voxel that an
  * interpolation within the cell, or half a voxel around it, can touch. */
 struct gz_macrocells {
@@ -21,6 +25,9 @@ struct gz_macrocells {
 	float *least, *greatest; /**< stored values */
 	uint8_t *distance; /**< 0 = something shows; else the Chebyshev distance in cells, at most
 			      255, to the nearest cell where something shows. 4 bytes of padding */
+	uint8_t *reach; /**< how far a ray may go before it must ask again: GZ_REACH_BORDER + that
+			   distance for an empty cell, GZ_REACH_BORDER - the distance to the nearest
+			   empty cell for another, both at most GZ_REACH_MAX. 4 bytes of padding */
 };
 
 /** Find the values of all cells; @p cells must be zeroed or hold an earlier result. GZ_ERR_NO_MEM.

@@ -19,11 +19,13 @@
 struct gz_cast {
 	/* volume */
 	const void *voxels;
+	float box[3]; /**< far corner of the volume's box; dims but for a coarser level of odd size
+		       */
 	float dims[3];
 	int32_t last[3];   /**< greatest index of the lower of two neighbours: max(dims - 2, 0) */
 	int32_t stride[3]; /**< in voxels; 0 along an axis of one voxel, x excepted */
 	/* macrocells */
-	const uint8_t *distance;
+	const uint8_t *reach;
 	float cell_last[3]; /**< greatest cell index */
 	int32_t cell_stride[3];
 	/* transfer function */

@@ -77,7 +77,7 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->step_table[step], entry, needed, &opacity, &colour);
+		gather_pair(cast->step_table[step], entry, vm_all(), &opacity, &colour);
 		composite(colour, opacity, needed, light);
 		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	}

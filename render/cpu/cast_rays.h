@@ -41,7 +41,7 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vm activ
 		const vf delta = vf_select(vf_less(vf_abs(raw), least), least, raw);
 		const vf inverse = vf_set(1) / delta;
 		const vf a = (vf_set(0) - origin[axis]) * inverse;
-		const vf b = (vf_set(cast->dims[axis]) - origin[axis]) * inverse;
+		const vf b = (vf_set(cast->box[axis]) - origin[axis]) * inverse;
 		enter = vf_max(enter, vf_min(a, b));
 		leave = vf_min(leave, vf_max(a, b));
 		rays->delta[axis] = delta;

@@ -9,8 +9,7 @@
 #include "render/cpu/cast_rays.h"
 #include "render/macrocells.h"
 
-/* Distance field at k: *leap says how many samples may be skipped, *until up to which k (from
- * above) the cell at hand lasts. Lanes in a cell where something shows have a leap of 0. */
+/* The cell at k: which lanes' are empty, and up to which k (from above) all samples are alike. */
 SIMD vm look_up_cell(const struct gz_cast *cast, const struct rays *rays, vf k, vm mask, vf *until)
 {
 	vi index = vi_set(0);
@@ -23,10 +22,10 @@ SIMD vm look_up_cell(const struct gz_cast *cast, const struct rays *rays, vf k, 
 		index = vi_add(index,
 			       vi_mul(vi_trunc(cell[axis]), vi_set(cast->cell_stride[axis])));
 	}
-	const vi distance = vi_and(vi_gather(cast->distance, index, 1, mask), vi_set(0xFF));
-	/* A distance of d says that d - 1 cells to each side are empty too. An occupied cell has
-	 * itself. */
-	const vf reach = vf_max(vf_from_i(distance), vf_set(1));
+	const vf away = vf_from_i(vi_and(vi_gather(cast->reach, index, 1, mask), vi_set(0xFF))) -
+			vf_set(GZ_REACH_BORDER);
+	/* A distance of d says that the cells less than d away are of the same kind. */
+	const vf reach = vf_abs(away);
 	vf leave = vf_set(3e38F);
 	for (int axis = 0; axis < 3; axis++) {
 		const vm forward = vf_less(vf_set(0), rays->delta[axis]);
@@ -35,7 +34,7 @@ SIMD vm look_up_cell(const struct gz_cast *cast, const struct rays *rays, vf k, 
 		leave = vf_min(leave, (edge - rays->start[axis]) * rays->inverse[axis]);
 	}
 	*until = leave;
-	return vi_nonzero(distance);
+	return vf_less(vf_set(0), away);
 }
 
 #endif

@@ -8,9 +8,9 @@
 
 #include "base/clock.h"
 #include "render/cpu/cast.h"
+#include "render/cpu/detail.h"
 #include "render/cpu/lattice.h"
 #include "render/cpu/reconstruct.h"
-#include "render/macrocells.h"
 #include "render/workers.h"
 
 #define GZ_LOG_MODULE "cpu"
@@ -29,7 +29,7 @@ struct cpu_renderer {
 	struct gz_workers *workers;
 	const struct gz_cast_kernels *kernels;
 	const struct gz_volume *volume; /* borrowed */
-	struct gz_macrocells cells;
+	struct gz_detail detail;
 	bool has_transfer;
 	struct gz_transfer_table table;
 	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
@@ -42,7 +42,10 @@ struct cpu_renderer {
 
 /* What the workers are given. */
 struct cast_job {
-	struct gz_cast cast;
+	struct gz_cast casts[GZ_LEVELS_MAX]; /* of each level of detail */
+	const struct gz_levels *levels;
+	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
+			       */
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
@@ -58,7 +61,7 @@ static void cpu_destroy(struct gz_renderer *renderer)
 {
 	struct cpu_renderer *cpu = cpu_of(renderer);
 	gz_workers_destroy(&cpu->workers);
-	gz_macrocells_free(&cpu->cells);
+	gz_detail_free(&cpu->detail);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_table);
 	free(cpu);
@@ -115,7 +118,7 @@ static enum gz_result cpu_set_volume(struct gz_renderer *renderer, const struct 
 		       volume->dims[0], volume->dims[1], volume->dims[2]);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	const enum gz_result result = gz_macrocells_build(volume, &cpu->cells);
+	const enum gz_result result = gz_detail_start(&cpu->detail, volume);
 	if (result != GZ_OK) {
 		gz_err(renderer->log, "no memory for the macrocells of the volume");
 		return result;
@@ -131,48 +134,49 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 	if (!cpu->volume)
 		return GZ_ERR_INVAL;
 	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
-	gz_macrocells_classify(&cpu->cells, &cpu->table);
+	gz_detail_classify(&cpu->detail, &cpu->table);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
 
-static void fill_volume(const struct cpu_renderer *cpu, struct gz_cast *cast)
+/* A level of detail, in its own voxel coordinates. */
+static void fill_volume(const struct cpu_renderer *cpu, int index, struct gz_cast *cast)
 {
-	const struct gz_volume *volume = cpu->volume;
+	const struct gz_level *level = &cpu->detail.levels.level[index];
+	const struct gz_volume *volume = &level->volume;
+	const struct gz_macrocells *cells = &cpu->detail.cells[index];
 	const int32_t strides[3] = {
 		1,
 		volume->dims[0],
 		volume->dims[0] * volume->dims[1],
 	};
-	const int32_t cell_strides[3] = {
-		1,
-		cpu->cells.dims[0],
-		cpu->cells.dims[0] * cpu->cells.dims[1],
-	};
-	const double longest = fmax(
-		fmax(volume->dims[0] * volume->spacing[0], volume->dims[1] * volume->spacing[1]),
-		volume->dims[2] * volume->spacing[2]);
+	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
+	double half[3];
+	gz_volume_half_extent(cpu->volume, half);
 	cast->voxels = volume->voxels;
-	cast->distance = cpu->cells.distance;
+	cast->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
+		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
+		cast->box[axis] = (float)box;
 		cast->dims[axis] = (float)volume->dims[axis];
 		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
 		/* With one voxel there is no neighbour to step to. */
 		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? strides[axis] : 0;
-		cast->cell_last[axis] = (float)(cpu->cells.dims[axis] - 1);
+		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		cast->cell_stride[axis] = cell_strides[axis];
-		cast->world_per_voxel[axis] = (float)(volume->spacing[axis] / longest);
+		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box);
 	}
 }
 
-static void fill_rays(const struct cpu_renderer *cpu, const struct gz_ray_frame *rays,
+static void fill_rays(const struct cpu_renderer *cpu, int index, const struct gz_ray_frame *rays,
 		      struct gz_cast *cast)
 {
+	const int *factor = cpu->detail.levels.level[index].factor;
 	double half[3];
 	gz_volume_half_extent(cpu->volume, half);
 	for (int axis = 0; axis < 3; axis++) {
-		const double per_world = cpu->volume->dims[axis] / (2 * half[axis]);
+		const double per_world = cpu->volume->dims[axis] / (2 * half[axis]) / factor[axis];
 		cast->origin00[axis] = (float)((rays->origin00[axis] + half[axis]) * per_world);
 		cast->origin_dx[axis] = (float)(rays->origin_dx[axis] * per_world);
 		cast->origin_dy[axis] = (float)(rays->origin_dy[axis] * per_world);
@@ -236,6 +240,15 @@ static void store_tile(const struct cast_job *job, const struct gz_tile *tile,
 	}
 }
 
+/* Which level of detail a tile takes. */
+static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
+{
+	const double apart = tile->pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1;
+	return gz_levels_choose(job->levels,
+				apart * job->plan->layers[tile->layer].spacing * job->pixel_lengths,
+				(double)job->casts[0].voxel_lengths[tile->step]);
+}
+
 static void cast_part(void *user, size_t part, int worker)
 {
 	const struct cast_job *job = user;
@@ -255,7 +268,8 @@ static void cast_part(void *user, size_t part, int worker)
 			rays.y[ray] = (float)y;
 		}
 		uint32_t pixels[GZ_TILE_RAYS];
-		job->counts[worker].samples += job->tile(&job->cast, &rays, pixels);
+		job->counts[worker].samples +=
+			job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
 		store_tile(job, tile, pixels);
 	}
 }
@@ -269,6 +283,40 @@ static uint64_t cast_tiles(struct cpu_renderer *cpu, struct cast_job *job)
 	for (int i = 0; i < gz_workers_count(cpu->workers); i++)
 		samples += cpu->counts[i].samples;
 	return samples;
+}
+
+/* Whether any tile of a plan may take a coarser level, as far as spacings and steps go. */
+static bool wants_levels(const struct gz_plan *plan, const struct gz_ray_params *rays,
+			 double pixel_lengths)
+{
+	int spacing = 0;
+	float step = 0;
+	for (int i = 0; i < plan->layer_count; i++)
+		spacing = plan->layers[i].spacing > spacing ? plan->layers[i].spacing : spacing;
+	for (int i = 0; i < plan->step_count; i++)
+		step = plan->steps[i] > step ? plan->steps[i] : step;
+	return fmin(M_SQRT2 * spacing * pixel_lengths, (double)step / rays->ray_sampling_rate) >=
+	       M_SQRT2;
+}
+
+static void fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
+		       const struct gz_ray_frame *ray_frame, const struct gz_ray_params *rays,
+		       struct cast_job *job)
+{
+	const double pixel_lengths =
+		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->height);
+	const bool coarser = rays->levels && rays->interpolation == GZ_INTERPOLATION_TRILINEAR &&
+			     wants_levels(job->plan, rays, pixel_lengths);
+	if (coarser)
+		gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
+	job->levels = &cpu->detail.levels;
+	job->pixel_lengths = coarser ? pixel_lengths : 0;
+	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
+	for (int i = 0; i < (coarser ? job->levels->count : 1); i++) {
+		job->casts[i] = job->casts[0];
+		fill_volume(cpu, i, &job->casts[i]);
+		fill_rays(cpu, i, ray_frame, &job->casts[i]);
+	}
 }
 
 static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_camera *camera,
@@ -295,9 +343,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 		.tile = cpu->kernels->tile[cpu->volume->type][nearest],
 		.counts = cpu->counts,
 	};
-	fill_volume(cpu, &job.cast);
-	fill_rays(cpu, &ray_frame, &job.cast);
-	fill_transfer(cpu, plan, rays, &job.cast);
+	fill_casts(cpu, camera, &ray_frame, rays, &job);
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, cpu->workers, image);

@@ -63,6 +63,10 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm256_set1_epi32(x);
 }
+SIMD void vf_store(float *x, vf a)
+{
+	_mm256_storeu_ps(x, a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm256_storeu_si256((__m256i *)x, a);
@@ -125,6 +129,10 @@ SIMD int vm_any(vm a)
 SIMD uint32_t vm_count(vm a)
 {
 	return (uint32_t)__builtin_popcount((unsigned)_mm256_movemask_ps(a));
+}
+SIMD vm vm_all(void)
+{
+	return _mm256_castsi256_ps(_mm256_set1_epi32(-1));
 }
 SIMD vm vm_from_bits(uint32_t bits)
 {

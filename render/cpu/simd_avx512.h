@@ -67,6 +67,10 @@ SIMD vi vi_set(int32_t x)
 {
 	return _mm512_set1_epi32(x);
 }
+SIMD void vf_store(float *x, vf a)
+{
+	_mm512_storeu_ps(x, a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm512_storeu_si512(x, a);
@@ -128,6 +132,10 @@ SIMD int vm_any(vm a)
 SIMD uint32_t vm_count(vm a)
 {
 	return (uint32_t)__builtin_popcount(a);
+}
+SIMD vm vm_all(void)
+{
+	return (vm)0xFFFF;
 }
 SIMD vm vm_from_bits(uint32_t bits)
 {

@@ -29,6 +29,10 @@ SIMD vf vf_load(const float *x)
 	memcpy(&a, x, sizeof a);
 	return a;
 }
+SIMD void vf_store(float *x, vf a)
+{
+	memcpy(x, &a, sizeof a);
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	memcpy(x, &a, sizeof a);
@@ -139,6 +143,10 @@ SIMD uint32_t vm_count(vm a)
 	int32_t sum = 0;
 	EACH_LANE sum -= a[lane];
 	return (uint32_t)sum;
+}
+SIMD vm vm_all(void)
+{
+	return vi_set(-1);
 }
 SIMD vm vm_from_bits(uint32_t bits)
 {

@@ -75,6 +75,15 @@ void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *tran
 		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
 		  int height, int x, int y, double out_rgb[3])
 {
+	const struct gz_level level = { .volume = *volume, .factor = { 1, 1, 1 } };
+	oracle_level_pixel(volume, &level, transfer, camera, rays, width, height, x, y, out_rgb);
+}
+
+void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *level,
+			const struct gz_transfer *transfer, const struct gz_camera *camera,
+			const struct gz_ray_params *rays, int width, int height, int x, int y,
+			double out_rgb[3])
+{
 	double longest = 0, least = INFINITY;
 	for (int axis = 0; axis < 3; axis++) {
 		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);
@@ -111,9 +120,9 @@ void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *tran
 			const double half =
 				volume->dims[axis] * volume->spacing[axis] / longest / 2;
 			at[axis] = (origin[axis] + middle * direction[axis] + half) * longest /
-				   volume->spacing[axis];
+				   volume->spacing[axis] / level->factor[axis];
 		}
-		const double stored = oracle_sample(volume, rays->interpolation, at);
+		const double stored = oracle_sample(&level->volume, rays->interpolation, at);
 		const double value = volume->slope * stored + volume->intercept;
 		double rgba[4];
 		gz_transfer_evaluate(transfer, high > low ? (value - low) / (high - low) : 0, rgba);

@@ -7,11 +7,18 @@
 #define GZ_TESTS_RENDER_ORACLE_H
 
 #include "render/renderer.h"
+#include "render/volume/levels.h"
 
 /** Colour of pixel (x, y), each channel [0, 1]. */
 void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
 		  int height, int x, int y, double out_rgb[3]);
+
+/** The same with samples of a coarser level of @p volume. */
+void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *level,
+			const struct gz_transfer *transfer, const struct gz_camera *camera,
+			const struct gz_ray_params *rays, int width, int height, int x, int y,
+			double out_rgb[3]);
 
 /** The stored value at a place in voxel coordinates. */
 double oracle_sample(const struct gz_volume *volume, int interpolation, const double at[3]);

@@ -1,0 +1,36 @@
+/**
+ * @file
+ * The levels of detail of the cpu backend: the pyramid of volumes with the macrocells of each.
+ */
+#ifndef GZ_RENDER_CPU_DETAIL_H
+#define GZ_RENDER_CPU_DETAIL_H
+
+#include "base/log.h"
+#include "render/macrocells.h"
+#include "render/volume/levels.h"
+
+/** Zero-initialised holds nothing. Coarser levels are made when a frame first asks for one. */
+struct gz_detail {
+	struct gz_levels levels;
+	struct gz_macrocells cells[GZ_LEVELS_MAX]; /**< of each level there is */
+	bool failed;                               /**< no memory for the coarser ones: said once */
+};
+
+/** Begin with a volume, borrowed, and its macrocells; frees what was. GZ_ERR_NO_MEM: holds nothing.
+ */
+enum gz_result gz_detail_start(struct gz_detail *detail, const struct gz_volume *volume);
+
+/** Classify the macrocells of all levels there are. */
+void gz_detail_classify(struct gz_detail *detail, const struct gz_transfer_table *table);
+
+/**
+ * Make and classify the coarser levels unless they are there. Without memory for them the full
+ * volume stays the only level, and @p log gets one line.
+ */
+void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
+			   const struct gz_transfer_table *table, const struct gz_log *log);
+
+/** Free and zero. */
+void gz_detail_free(struct gz_detail *detail);
+
+#endif
