@@ -11,7 +11,7 @@
 /** Rays along a tile's edge. */
 #define GZ_TILE_EDGE 4
 /** Most lattices of a plan. */
-#define GZ_PLAN_LAYERS_MAX 5
+#define GZ_PLAN_LAYERS_MAX 6
 /** Most step multipliers of a plan. */
 #define GZ_PLAN_STEPS_MAX 32
 

@@ -25,7 +25,11 @@ void gz_reconstruct_block(const struct gz_lattice *coarse, const struct gz_latti
  *  neighbours in the same lattice. Parameters as above. */
 void gz_reconstruct_quincunx(const struct gz_lattice *lattice, int x, int y, int width, int height);
 
-/** Pixels from @p x0 up to, not including, @p x1 of row @p y, bilinearly from one lattice. */
-void gz_reconstruct_span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *row);
+/** Pixels from @p x0 up to, not including, @p x1 of row @p y, bilinearly from one lattice.
+ *
+ *  @param x0, x1    within the lattice's span; x0 < x1
+ *  @param[out] out  the first pixel's place
+ */
+void gz_reconstruct_span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *out);
 
 #endif

@@ -20,39 +20,61 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/log.h"
 #include "base/option.h"
 #include "base/result.h"
 #include "protocol/display.h"
+#include "protocol/gaze.h"
 #include "render/cast_constants.h"
 
-#define GZ_SPACING_MAX 16 /**< pixels */
+#define GZ_SPACING_MAX         16 /**< px: of a region's lattice */
+#define GZ_PYRAMID_SPACING_MAX 32 /**< px: of a pyramid's coarsest lattice, a power of two */
 
 enum gz_method {
 	GZ_METHOD_STANDARD, /**< every pixel */
 	GZ_METHOD_MDC, /**< Bauer 2018, 3.2.4: a fine square at the gaze, half resolution outside */
 	GZ_METHOD_DDC, /**< Bauer 2018, 3.2.5: two ellipses, three spacings */
-	GZ_METHOD_ACUITY, /**< what the eye can resolve at each eccentricity */
+	GZ_METHOD_ACUITY,  /**< what the eye can resolve at each eccentricity */
+	GZ_METHOD_MDC3,    /**< mdc with a third, outer region */
+	GZ_METHOD_UNIFORM, /**< every n-th pixel, whatever the gaze: for comparison */
+	GZ_METHOD_TABLE,   /**< spacing and step by eccentricity from a table of the user's */
 	GZ_METHOD_COUNT,
 };
 
-/** "standard", "mdc", "ddc", "acuity"; NULL-terminated. */
+/** "standard", "mdc", "ddc", "acuity", "mdc3", "uniform", "table"; NULL-terminated. */
 extern const char *const gz_method_names[];
 
 /** When steps grow with distance from the gaze. */
 enum gz_step_rule {
-	/** As the method says: acuity by ACUITY, the others by NONE. */
+	/** As the method says: acuity by ACUITY, table by its own column, the others by NONE. */
 	GZ_STEP_METHOD,
 	/** 1 everywhere. */
 	GZ_STEP_NONE,
 	/** Bauer 2018, 3.2.3: sampling rate max(sf * sr, floor), sf = 1 - d / diagonal, unchanged
 	 *  within 10 px of the gaze. */
 	GZ_STEP_DISTANCE,
-	/** 1, 1.5, 2, 3, 4 where the eye resolves spacings of 1, 2, 4, 8, 16 px, and means between.
-	 */
+	/** Grows with the spacing that the eye resolves: docs/foveation.md. */
 	GZ_STEP_ACUITY,
 };
 
 extern const char *const gz_step_rule_names[];
+
+#define GZ_SPACING_TABLE_MAX 64 /**< rows. Chosen: more than a curve needs */
+
+/** One row of a user's table. */
+struct gz_spacing_row {
+	double eccentricity_deg; /**< 0 to 180 */
+	double spacing;          /**< px or degrees, above 0 */
+	double step;             /**< multiplier of the scene's step, 1 to 16 */
+};
+
+/** Spacing and step by eccentricity: linear between rows, constant beyond the first and last.
+ *  Eccentricities rise from row to row; spacings and steps never fall. */
+struct gz_spacing_table {
+	bool in_deg; /**< spacings are degrees of visual angle, else pixels of the picture */
+	int count;   /**< rows; 0 = no table */
+	struct gz_spacing_row rows[GZ_SPACING_TABLE_MAX];
+};
 
 /** Everything a method can be told; the table's keys are "foveation.<name>". */
 struct gz_foveation {
@@ -60,12 +82,18 @@ struct gz_foveation {
 	int step_rule;            /**< enum gz_step_rule */
 	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
-	double mdc_square_px;     /**< edge of the fine square */
-	int mdc_spacing;          /**< outside it */
-	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse */
+	double mdc_square_px;     /**< edge of the fine square, px of the picture */
+	int mdc_spacing;          /**< outside it, in rays as all spacings */
+	double mdc3_square_px;    /**< edge of the square round which mdc3's third region begins */
+	int mdc3_spacing;         /**< of the third region */
+	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse, px of the picture */
 	double ddc_middle_px[2];  /**< semi-axes of the middle ellipse */
 	int ddc_spacing[3];       /**< inner, middle, outer */
-	double step_floor;        /**< least sampling rate as a share of the full one, (0, 1] */
+	double blend_px;          /**< band at borders of mdc, mdc3, ddc; 0 = a hard border */
+	int uniform_spacing;
+	double step_floor; /**< least sampling rate as a share of the full one, (0, 1] */
+	char table_file[GZ_PATH_SIZE]; /**< the user's table; empty if there is none */
+	struct gz_spacing_table table; /**< what that file says: gz_spacing_table_load() */
 };
 
 /** Table over struct gz_foveation. */
@@ -100,7 +128,8 @@ enum gz_reconstruction {
 	GZ_RECONSTRUCT_PYRAMID, /**< layer k has spacing 2^k; a finer lattice is filled from the
 				   next coarser */
 	GZ_RECONSTRUCT_REGIONS, /**< each pixel takes the first layer whose region holds it,
-				   bilinearly */
+				   bilinearly; within its blend band the layers behind shine
+				   through by gz_region_weight() */
 };
 
 /** Where a layer of a region plan shows: a pixel belongs to it if its centre is inside. */
@@ -110,6 +139,7 @@ struct gz_region {
 	enum gz_region_shape shape;
 	double centre_px[2];
 	double half_px[2]; /**< half edges or semi-axes */
+	double blend_px;   /**< width of the band inside the rim where the layer fades; 0 = none */
 };
 
 /** Whether a pixel belongs to a region. Plan and reconstruction both ask here, so that rounding at
@@ -121,6 +151,14 @@ bool gz_region_holds(const struct gz_region *region, double x, double y);
 void gz_region_columns(const struct gz_region *region, int y, int width, int *out_from,
 		       int *out_to);
 
+/**
+ * Share of a layer in a pixel of its region, [0, 1]; what is left goes to the layers behind, by the
+ * same rule. 1 without a band, 0 outside; within the band it is
+ * (1 - r) * min(half_px) / blend_px, where r is max(|u|, |v|) for a rectangle and
+ * sqrt(u * u + v * v) for an ellipse, (u, v) = (position - centre_px) / half_px.
+ */
+double gz_region_weight(const struct gz_region *region, double x, double y);
+
 /** One lattice of a plan. */
 struct gz_plan_layer {
 	int spacing;
@@ -128,7 +166,35 @@ struct gz_plan_layer {
 	struct gz_region region;
 };
 
-/** A plan. Zero-initialised is empty; keep it from frame to frame so that its arrays are reused. */
+/** Whether a table keeps what struct gz_spacing_table promises. */
+bool gz_spacing_table_valid(const struct gz_spacing_table *table);
+
+#define GZ_PLAN_SCALE_MAX     64
+#define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
+
+/** What is asked of one frame's plan. gz_plan_request_make() gives it with nothing special. */
+struct gz_plan_request {
+	const struct gz_foveation *foveation; /**< within the table's ranges */
+	const struct gz_display *display;     /**< of the picture, which fills it */
+	struct gz_point gaze; /**< normalised; may lie outside [0, 1]; NaN or infinite counts as
+				 lost: the centre */
+	int width, height;    /**< rays along each side, 1 to GZ_IMAGE_SIDE_MAX */
+	double rays_per_px;   /**< rays per edge of a pixel of the picture, 1/16 to 16: what sizes
+				 in px are multiplied by */
+	/**
+	 * A budget's handle, 1 to GZ_PLAN_SCALE_MAX: the cost falls as it rises. Spacings outside
+	 * the fovea (2.5 degrees round the gaze; for regions, the first one) grow by up to
+	 * GZ_PLAN_SCALE_OUTSIDE, steadily from 2.5 to 5 degrees, and steps with them; past that,
+	 * everything grows by scale / GZ_PLAN_SCALE_OUTSIDE, the fovea too. `standard` ignores it.
+	 */
+	double scale;
+	/** How lost the gaze is, [0, 1]: 0 trusts it, 1 is a uniform plan of at most the same cost.
+	 *  `standard` and `uniform` are what they are. */
+	double widen;
+};
+
+/** A plan. Zero-initialised is empty; keep it from frame to frame so that its arrays are reused,
+ *  and one for each kind of frame, so that a plan that nothing has changed is not made again. */
 struct gz_plan {
 	int width, height;
 	enum gz_reconstruction reconstruction;
@@ -139,22 +205,33 @@ struct gz_plan {
 	size_t tile_count, tile_capacity;
 	struct gz_tile *tiles; /**< in an order that keeps neighbours together */
 	uint64_t ray_count;    /**< lattice points that the tiles cast */
+	uint64_t serial;       /**< changes whenever the plan does; 0 before the first */
+	struct {
+		struct gz_plan_request request; /**< its pointers are not followed */
+		struct gz_foveation foveation;
+		struct gz_display display;
+		bool valid;
+	} made_for; /**< what the tiles were made for */
 };
 
+/** A request with one ray a pixel, scale 1 and widen 0. Borrows what it points to. */
+struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,
+					    const struct gz_display *display, struct gz_point gaze,
+					    int width, int height);
+
 /**
- * Make the plan of one frame.
+ * Make the plan of one frame, or leave it as it is where it was made for the same request.
  *
- * @param foveation      method and parameters, within the table's ranges
- * @param display        geometry of the picture: its mm and distance; the picture fills it
- * @param gaze           normalised; may lie outside [0, 1]; NaN or infinite counts as lost: the
- * centre
- * @param width, height  picture, px, 1 to GZ_IMAGE_SIDE_MAX
+ * @param request        borrowed until the call returns
  * @param[in,out] plan   overwritten; its array grows where needed
- * @retval GZ_ERR_INVAL   a size or parameter out of range
+ * @retval GZ_ERR_INVAL   a size or parameter out of range, or the method table without a table
  * @retval GZ_ERR_NO_MEM  no room for the tiles
  *
  * Threads: one at a time per plan.
  */
+enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_plan *plan);
+
+/** gz_plan_update() of gz_plan_request_make(). */
 enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, int width, int height, struct gz_plan *plan);
 
@@ -173,5 +250,26 @@ void gz_plan_free(struct gz_plan *plan);
  * the smaller of both directions on the flat screen (docs/foveation.md). */
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, struct gz_point pixel, int width, int height);
+
+/**
+ * Read a table of spacings from text: docs/scenes.md has the grammar.
+ *
+ * @param name  stands for the file in messages
+ * @param[out] out_table  1 row or more
+ * @retval GZ_ERR_FORMAT  refused; logged with line and remedy
+ */
+enum gz_result gz_spacing_table_parse(const char *name, const char *text, size_t size,
+				      const struct gz_log *log, struct gz_spacing_table *out_table);
+
+/**
+ * Read a table of spacings from a file.
+ *
+ * @retval GZ_ERR_NOT_FOUND  no such file; logged
+ * @retval GZ_ERR_IO         cannot be read; logged
+ * @retval GZ_ERR_FORMAT     refused; logged with line and remedy
+ * @retval GZ_ERR_NO_MEM     logged
+ */
+enum gz_result gz_spacing_table_load(const char *path, const struct gz_log *log,
+				     struct gz_spacing_table *out_table);
 
 #endif

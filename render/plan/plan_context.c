@@ -9,65 +9,182 @@
 #include "render/plan/plan_emit.h"
 
 static const double deg_per_rad = 57.29577951308232;
+static const double fovea_deg = 2.5;      /* docs/architecture.md */
+static const double full_scale_deg = 5.0; /* chosen: a fovea's radius farther */
 
-struct gz_plan_context gz_plan_context_make(const struct gz_foveation *foveation,
-					    const struct gz_display *display, struct gz_point gaze,
-					    int width, int height)
+static void curve_add(struct gz_plan_curve *curve, double at_deg, double value)
 {
+	const int i = curve->count++;
+	curve->at_rad[i] = at_deg / deg_per_rad;
+	curve->value[i] = value;
+	curve->slope[i] = 0;
+	if (i > 0)
+		curve->slope[i - 1] =
+			(value - curve->value[i - 1]) / (curve->at_rad[i] - curve->at_rad[i - 1]);
+}
+
+static double curve_at(const struct gz_plan_curve *curve, double rad)
+{
+	int i = 0;
+	while (i + 1 < curve->count && rad >= curve->at_rad[i + 1])
+		i++;
+	return curve->value[i] + curve->slope[i] * fmax(rad - curve->at_rad[i], 0);
+}
+
+static void set_acuity_curve(struct gz_plan_context *context)
+{
+	const double from_deg = context->foveation->acuity_foveal_deg;
+	const double to_deg = from_deg + 180 * context->foveation->acuity_slope;
+	curve_add(&context->spacing, 0, from_deg / 2 / deg_per_rad);
+	curve_add(&context->spacing, 180, to_deg / 2 / deg_per_rad);
+}
+
+static void set_table_curves(struct gz_plan_context *context)
+{
+	const struct gz_spacing_table *table = &context->foveation->table;
+	context->spacing_in_px = !table->in_deg;
+	const double unit = table->in_deg ? 1 / deg_per_rad : context->rays_per_px;
+	for (int i = 0; i < table->count; i++) {
+		const struct gz_spacing_row *row = &table->rows[i];
+		curve_add(&context->spacing, row->eccentricity_deg, row->spacing * unit);
+		curve_add(&context->step, row->eccentricity_deg, row->step);
+	}
+}
+
+static enum gz_plan_steps steps_of(const struct gz_foveation *foveation)
+{
+	switch ((enum gz_step_rule)foveation->step_rule) {
+	case GZ_STEP_DISTANCE:
+		return GZ_STEPS_DISTANCE;
+	case GZ_STEP_ACUITY:
+		return GZ_STEPS_RUNG;
+	case GZ_STEP_METHOD:
+		if (foveation->method == GZ_METHOD_ACUITY)
+			return GZ_STEPS_RUNG;
+		return foveation->method == GZ_METHOD_TABLE ? GZ_STEPS_TABLE : GZ_STEPS_ONE;
+	default:
+		return GZ_STEPS_ONE;
+	}
+}
+
+/* All but the curves. */
+static void context_begin(const struct gz_plan_request *request,
+			  struct gz_plan_context *out_context)
+{
+	const struct gz_display *display = request->display;
+	const int width = request->width, height = request->height;
 	/* A gaze that is not a place counts as lost: the centre stands in. */
+	struct gz_point gaze = request->gaze;
 	if (!isfinite(gaze.x) || !isfinite(gaze.y))
 		gaze = (struct gz_point) { 0.5F, 0.5F };
-	struct gz_plan_context context = {
-		.foveation = foveation,
+	*out_context = (struct gz_plan_context) {
+		.foveation = request->foveation,
 		.width = width,
 		.height = height,
+		.rays_per_px = request->rays_per_px,
 		.gaze_px = { gaze.x * (double)width - 0.5, gaze.y * (double)height - 0.5 },
-		.step_rule = (enum gz_step_rule)foveation->step_rule,
+		.steps = steps_of(request->foveation),
 		.px_mm = { display->mm[0] / width, display->mm[1] / height },
 		.centre_px = { 0.5 * width - 0.5, 0.5 * height - 0.5 },
 		.distance_mm = display->distance_mm,
+		.rays_per_mm = 1 / fmax(display->mm[0] / width, display->mm[1] / height),
+		.scale_all = fmax(request->scale / GZ_PLAN_SCALE_OUTSIDE, 1),
+		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
+		.widen = request->widen,
 	};
-	if (context.step_rule == GZ_STEP_METHOD)
-		context.step_rule =
-			foveation->method == GZ_METHOD_ACUITY ? GZ_STEP_ACUITY : GZ_STEP_NONE;
 	double mm[3];
 	gz_display_to_mm(display, gaze, mm);
 	const double length = hypot(hypot(mm[0], mm[1]), mm[2]);
 	for (int axis = 0; axis < 3; axis++)
-		context.gaze_mm[axis] = mm[axis] / length;
-	return context;
+		out_context->gaze_unit[axis] = mm[axis] / length;
+}
+
+void gz_plan_context_make(const struct gz_plan_request *request,
+			  struct gz_plan_context *out_context)
+{
+	context_begin(request, out_context);
+	if (request->foveation->method == GZ_METHOD_TABLE)
+		set_table_curves(out_context);
+	else
+		set_acuity_curve(out_context);
 }
 
 /*
- * Spacing by geometry: eccentricity e from the angle between the directions to gaze and pixel; at
- * the distance |p| from the eye, a length of s mm across the line of sight spans s / |p| rad. Along
- * the radius a flat screen is oblique and the same length spans less, so the finer of both
- * directions is the one across.
+ * The angle whose chord on the unit sphere is c, 2 asin(c / 2), by the first terms of its series.
+ * All terms are positive, so the angle is never overstated; it falls short by less than 1e-6 at 20
+ * degrees and by .3 % at 90.
+ */
+static double angle_of_chord(double c2)
+{
+	return sqrt(c2) * (1 + c2 * (1.0 / 24 + c2 * (3.0 / 640 + c2 * (5.0 / 7168))));
+}
+
+/* How much coarser a budget makes this eccentricity. */
+static double scale_at(const struct gz_plan_context *context, double eccentricity_rad)
+{
+	const double beyond =
+		(eccentricity_rad * deg_per_rad - fovea_deg) / (full_scale_deg - fovea_deg);
+	const double share = beyond < 0 ? 0 : beyond > 1 ? 1 : beyond;
+	return context->scale_all * (1 + (context->scale_outside - 1) * share);
+}
+
+/* Densities of rays, not spacings, are mixed: then the cost of the mixture is the mixture of the
+ * costs. As less is known of the gaze, a spacing is rounded to the nearest rung instead of down. */
+static double widened(const struct gz_plan_context *context, double spacing_px)
+{
+	const double quarter_octave = 1.189207115002721;
+	const double w = context->widen;
+	const double density = (1 - w) / (spacing_px * spacing_px) +
+			       w / (context->uniform_px * context->uniform_px);
+	return (1 + w * (quarter_octave - 1)) / sqrt(density);
+}
+
+/* Angle between the gaze and a position, and how far from the eye the position is. */
+static double eccentricity_at(const struct gz_plan_context *context, double x, double y,
+			      double *out_length_mm)
+{
+	const double *gaze = context->gaze_unit;
+	const double x_mm = (x - context->centre_px[0]) * context->px_mm[0];
+	const double y_mm = (y - context->centre_px[1]) * context->px_mm[1];
+	const double z_mm = context->distance_mm;
+	const double length = sqrt(x_mm * x_mm + y_mm * y_mm + z_mm * z_mm);
+	const double cosine = (x_mm * gaze[0] + y_mm * gaze[1] + z_mm * gaze[2]) / length;
+	*out_length_mm = length;
+	return angle_of_chord(fmax(2 - 2 * cosine, 0));
+}
+
+/*
+ * Spacing by geometry: at the distance |p| from the eye, a length of s mm across the line of sight
+ * spans s / |p| rad. Along the radius a flat screen is oblique and the same length spans less, so
+ * the finer of both directions is the one across.
  */
 double gz_plan_spacing_at(const struct gz_plan_context *context, double x, double y)
 {
-	const double mm[3] = {
-		(x - context->centre_px[0]) * context->px_mm[0],
-		(y - context->centre_px[1]) * context->px_mm[1],
-		context->distance_mm,
-	};
-	const double length = sqrt(mm[0] * mm[0] + mm[1] * mm[1] + mm[2] * mm[2]);
-	double cosine = (mm[0] * context->gaze_mm[0] + mm[1] * context->gaze_mm[1] +
-			 mm[2] * context->gaze_mm[2]) /
-			length;
-	cosine = cosine > 1 ? 1 : cosine;
-	const double eccentricity_deg = acos(cosine) * deg_per_rad;
-	const double omega_deg = context->foveation->acuity_slope * eccentricity_deg +
-				 context->foveation->acuity_foveal_deg;
-	const double px_mm = fmax(context->px_mm[0], context->px_mm[1]);
-	return omega_deg / 2 / deg_per_rad * length / px_mm;
+	double length_mm;
+	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
+	double spacing = curve_at(&context->spacing, eccentricity);
+	if (!context->spacing_in_px)
+		spacing *= length_mm * context->rays_per_mm;
+	if (context->scale_all * context->scale_outside > 1)
+		spacing *= scale_at(context, eccentricity);
+	return context->widen > 0 ? widened(context, spacing) : spacing;
+}
+
+double gz_plan_table_step_at(const struct gz_plan_context *context, double x, double y)
+{
+	double length_mm;
+	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
+	return curve_at(&context->step, eccentricity) * scale_at(context, eccentricity);
 }
 
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, struct gz_point pixel, int width, int height)
 {
-	const struct gz_plan_context context =
-		gz_plan_context_make(foveation, display, gaze, width, height);
+	struct gz_plan_context context;
+	const struct gz_plan_request request =
+		gz_plan_request_make(foveation, display, gaze, width, height);
+	context_begin(&request, &context);
+	set_acuity_curve(&context);
 	return gz_plan_spacing_at(&context, pixel.x * (double)width - 0.5,
 				  pixel.y * (double)height - 0.5);
 }

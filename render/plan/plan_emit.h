@@ -7,39 +7,68 @@
 
 #include "render/plan/plan.h"
 
+/** A function of eccentricity: linear between knots, constant beyond the first and last. */
+struct gz_plan_curve {
+	int count;
+	double at_rad[GZ_SPACING_TABLE_MAX], value[GZ_SPACING_TABLE_MAX];
+	double slope[GZ_SPACING_TABLE_MAX]; /**< from knot i to i + 1 */
+};
+
+/** Where steps come from, once GZ_STEP_METHOD is resolved. */
+enum gz_plan_steps {
+	GZ_STEPS_ONE,      /**< 1 everywhere */
+	GZ_STEPS_DISTANCE, /**< Bauer's rule */
+	GZ_STEPS_RUNG,     /**< by the rung of the spacing that context.spacing gives */
+	GZ_STEPS_TABLE,    /**< the user's column */
+};
+
 /** What a method needs to know of a frame. */
 struct gz_plan_context {
 	const struct gz_foveation *foveation;
 	int width, height;
-	double gaze_px[2];           /**< where pixel centres are whole numbers; may lie outside */
-	enum gz_step_rule step_rule; /**< resolved: never GZ_STEP_METHOD */
-	double gaze_mm[3];           /**< unit vector from the eye to the gaze */
-	double px_mm[2];             /**< size of a pixel */
-	double centre_px[2];         /**< foot of the eye on the picture */
+	double rays_per_px;
+	double gaze_px[2]; /**< in rays, where their centres are whole numbers; may lie outside */
+	enum gz_plan_steps steps;
+	double gaze_unit[3]; /**< from the eye to the gaze */
+	double px_mm[2];     /**< from ray to ray */
+	double centre_px[2]; /**< foot of the eye on the picture */
 	double distance_mm;
+	double rays_per_mm;           /**< along the axis where they are fewer */
+	struct gz_plan_curve spacing; /**< angles, rad, or pixels */
+	bool spacing_in_px;
+	struct gz_plan_curve step;       /**< of a table */
+	double scale_all, scale_outside; /**< factors of spacings: everywhere, past the fovea */
+	double widen;
+	double uniform_px; /**< spacing of the uniform plan that widen goes to, once it is known */
 };
 
 /** Prepare the context of a frame; a gaze that is NaN or infinite becomes the centre. */
-struct gz_plan_context gz_plan_context_make(const struct gz_foveation *foveation,
-					    const struct gz_display *display, struct gz_point gaze,
-					    int width, int height);
+void gz_plan_context_make(const struct gz_plan_request *request,
+			  struct gz_plan_context *out_context);
 
-/** Spacing in px that the eye resolves at pixel position (x, y), which need not be whole. */
+/** Spacing in px asked for at position (x, y), in rays and not necessarily whole: what the eye
+ *  resolves, or the user's table, as scaled and widened. Grows with distance from the gaze. */
 double gz_plan_spacing_at(const struct gz_plan_context *context, double x, double y);
 
-/** Append a tile. GZ_ERR_NO_MEM. */
-enum gz_result gz_plan_add(struct gz_plan *plan, struct gz_tile tile);
+/** Step multiplier by the user's table at a position. */
+double gz_plan_table_step_at(const struct gz_plan_context *context, double x, double y);
 
-/** Rungs of the acuity ladder: spacings 1, 2, 2 sqrt 2, 4, 4 sqrt 2, 8, 8 sqrt 2, 16, each with its
- * step. */
-#define GZ_ACUITY_RUNGS 8
+/** Make room for @p count more tiles. GZ_ERR_NO_MEM. */
+enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count);
+
+/** Append a tile, for which there must be room, if it casts anything. */
+void gz_plan_append(struct gz_plan *plan, struct gz_tile tile);
+
+/** Rungs of the ladder of spacings: 1, 2, 2 sqrt 2, 4, ... 16 sqrt 2, 32, each with its step. */
+#define GZ_LADDER_RUNGS 10
+
+/** Spacings of the rungs, px. Rung 2k - 1 is the square lattice of layer k, rung 2k its quincunx;
+ *  rung 0 is layer 0. */
+extern const double gz_ladder_px[GZ_LADDER_RUNGS];
 
 /** The coarsest rung whose spacing is at most @p spacing_px; 0 below 2 px, where the display limits
  * the eye. */
-int gz_acuity_rung(double spacing_px);
-
-/** Set ray_count from the tiles. */
-void gz_plan_count_rays(struct gz_plan *plan);
+int gz_ladder_rung(double spacing_px);
 
 /** Set the step multipliers that the context's rule asks for. */
 void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *plan);
@@ -53,10 +82,12 @@ struct gz_plan_layer gz_plan_layer_make(int width, int height, int spacing,
 int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
 		     int y, int edge);
 
-/* One method each; they fill layers, reconstruction and tiles. */
-enum gz_result gz_plan_standard(const struct gz_plan_context *context, struct gz_plan *plan);
-enum gz_result gz_plan_mdc(const struct gz_plan_context *context, struct gz_plan *plan);
-enum gz_result gz_plan_ddc(const struct gz_plan_context *context, struct gz_plan *plan);
-enum gz_result gz_plan_acuity(const struct gz_plan_context *context, struct gz_plan *plan);
+/* The methods; they fill layers, reconstruction and tiles. */
+
+/** Nested regions: standard, uniform, mdc, mdc3, ddc. */
+enum gz_result gz_plan_regions(const struct gz_plan_context *context, struct gz_plan *plan);
+
+/** A spacing for each eccentricity: acuity, table. */
+enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *plan);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * Methods of nested regions: the full picture, and those of Bauer 2018. A layer's tiles are emitted
- * where a pixel that shows the layer has one of its four lattice points.
+ * Methods of nested regions: the full picture, a uniform one, and those of Bauer 2018. A layer's
+ * tiles are emitted where a pixel that shows the layer has one of its four lattice points.
  */
 #include <math.h>
 
@@ -22,6 +22,27 @@ bool gz_region_holds(const struct gz_region *region, double x, double y)
 	return fmax(fabs(u), fabs(v)) <= 1;
 }
 
+/* Distance from the middle of a shape to its rim is 1. */
+static double region_radius(const struct gz_region *region, double x, double y)
+{
+	const double u = (x - region->centre_px[0]) / region->half_px[0];
+	const double v = (y - region->centre_px[1]) / region->half_px[1];
+	if (region->shape == GZ_REGION_ELLIPSE)
+		return sqrt(u * u + v * v);
+	return fmax(fabs(u), fabs(v));
+}
+
+double gz_region_weight(const struct gz_region *region, double x, double y)
+{
+	if (!gz_region_holds(region, x, y))
+		return 0;
+	if (region->shape == GZ_REGION_ALL || region->blend_px <= 0)
+		return 1;
+	const double least_px = fmin(region->half_px[0], region->half_px[1]);
+	const double inside_px = (1 - region_radius(region, x, y)) * least_px;
+	return fmin(fmax(inside_px / region->blend_px, 0), 1);
+}
+
 static bool region_touches(const struct gz_region *region, const struct block *block)
 {
 	const double x = fmin(fmax(region->centre_px[0], block->x0), block->x1);
@@ -29,112 +50,215 @@ static bool region_touches(const struct gz_region *region, const struct block *b
 	return gz_region_holds(region, x, y);
 }
 
-/* Every shape is convex: a block is inside if its corners are. */
-static bool region_holds_block(const struct gz_region *region, const struct block *block)
+static bool region_hides(const struct gz_region *region, double x, double y)
 {
-	return gz_region_holds(region, block->x0, block->y0) &&
-	       gz_region_holds(region, block->x1, block->y0) &&
-	       gz_region_holds(region, block->x0, block->y1) &&
-	       gz_region_holds(region, block->x1, block->y1);
+	return gz_region_weight(region, x, y) >= 1;
 }
 
-/* Whether a pixel that one of the tile's lattice points reaches shows this layer. */
-static bool tile_shows(const struct gz_plan *plan, int layer, int x, int y)
+/* Every shape is convex: a block is inside if its corners are. */
+static bool region_hides_block(const struct gz_region *region, const struct block *block)
+{
+	return region_hides(region, block->x0, block->y0) &&
+	       region_hides(region, block->x1, block->y0) &&
+	       region_hides(region, block->x0, block->y1) &&
+	       region_hides(region, block->x1, block->y1);
+}
+
+/* How much of a layer shows in a block of its tiles. */
+enum shows { SHOWS_NOTHING, SHOWS_PARTLY, SHOWS_WHOLLY };
+
+/* Whether pixels that lattice points of this block of tiles reach show this layer. */
+static enum shows tiles_show(const struct gz_plan *plan, int layer, int x, int y, int edge)
 {
 	const int reach = plan->layers[layer].spacing - 1;
-	const int span = (GZ_TILE_EDGE - 1) * plan->layers[layer].spacing + reach;
+	const struct gz_region *region = &plan->layers[layer].region;
 	const struct block block = {
 		fmax(x - reach, 0),
 		fmax(y - reach, 0),
-		fmin(x + span, plan->width - 1),
-		fmin(y + span, plan->height - 1),
+		fmin(x + edge - 1, plan->width - 1),
+		fmin(y + edge - 1, plan->height - 1),
 	};
-	if (!region_touches(&plan->layers[layer].region, &block))
-		return false;
-	for (int earlier = 0; earlier < layer; earlier++)
-		if (region_holds_block(&plan->layers[earlier].region, &block))
-			return false;
-	return true;
+	if (!region_touches(region, &block))
+		return SHOWS_NOTHING;
+	bool beside_others = true;
+	for (int earlier = 0; earlier < layer; earlier++) {
+		if (region_hides_block(&plan->layers[earlier].region, &block))
+			return SHOWS_NOTHING;
+		if (region_touches(&plan->layers[earlier].region, &block))
+			beside_others = false;
+	}
+	return region->shape == GZ_REGION_ALL && beside_others ? SHOWS_WHOLLY : SHOWS_PARTLY;
 }
 
-/* Tiles in blocks of 16 x 16, so that neighbours on the screen are neighbours in time and share the
+/* Tiles along an edge of a block: neighbours on the screen are neighbours in time and share the
  * cache. */
-static enum gz_result emit_layer(const struct gz_plan_context *context, struct gz_plan *plan,
-				 int layer)
+enum { TILES_A_BLOCK = 16 };
+
+static void emit_block(const struct gz_plan_context *context, struct gz_plan *plan, int layer,
+		       int x0, int y0)
 {
-	enum { TILES_A_BLOCK = 16 };
 	const struct gz_plan_layer *lattice = &plan->layers[layer];
 	const int edge = GZ_TILE_EDGE * lattice->spacing;
 	const int right = (lattice->columns - 1) * lattice->spacing;
 	const int bottom = (lattice->rows - 1) * lattice->spacing;
-	const int block = TILES_A_BLOCK * edge;
-	for (int i = 0, blocks_x = right / block + 1; i < blocks_x * (bottom / block + 1); i++) {
-		const int x0 = i % blocks_x * block, y0 = i / blocks_x * block;
-		for (int y = y0; y <= bottom && y < y0 + block; y += edge)
-			for (int x = x0; x <= right && x < x0 + block; x += edge) {
-				if (!tile_shows(plan, layer, x, y))
-					continue;
-				const struct gz_tile tile = {
-					.x = (uint16_t)x,
-					.y = (uint16_t)y,
-					.layer = (uint8_t)layer,
-					.step = (uint8_t)gz_plan_step_for(context, plan, x, y,
-									  edge),
-				};
-				enum gz_result result = gz_plan_add(plan, tile);
-				if (result != GZ_OK)
-					return result;
-			}
-	}
+	const enum shows shows = tiles_show(plan, layer, x0, y0, TILES_A_BLOCK * edge);
+	if (shows == SHOWS_NOTHING)
+		return;
+	for (int y = y0; y <= bottom && y < y0 + TILES_A_BLOCK * edge; y += edge)
+		for (int x = x0; x <= right && x < x0 + TILES_A_BLOCK * edge; x += edge) {
+			if (shows == SHOWS_PARTLY &&
+			    tiles_show(plan, layer, x, y, edge) == SHOWS_NOTHING)
+				continue;
+			gz_plan_append(plan, (struct gz_tile) {
+						     .x = (uint16_t)x,
+						     .y = (uint16_t)y,
+						     .layer = (uint8_t)layer,
+						     .step = (uint8_t)gz_plan_step_for(
+							     context, plan, x, y, edge),
+					     });
+		}
+}
+
+static enum gz_result emit_layer(const struct gz_plan_context *context, struct gz_plan *plan,
+				 int layer)
+{
+	const struct gz_plan_layer *lattice = &plan->layers[layer];
+	const int block = TILES_A_BLOCK * GZ_TILE_EDGE * lattice->spacing;
+	const int right = (lattice->columns - 1) * lattice->spacing;
+	const int bottom = (lattice->rows - 1) * lattice->spacing;
+	for (int y = 0; y <= bottom; y += block)
+		for (int x = 0; x <= right; x += block) {
+			const enum gz_result result =
+				gz_plan_reserve(plan, (size_t)TILES_A_BLOCK * TILES_A_BLOCK);
+			if (result != GZ_OK)
+				return result;
+			emit_block(context, plan, layer, x, y);
+		}
 	return GZ_OK;
 }
 
-static enum gz_result emit_layers(const struct gz_plan_context *context, struct gz_plan *plan)
-{
-	enum gz_result result = GZ_OK;
-	for (int layer = 0; layer < plan->layer_count && result == GZ_OK; layer++)
-		result = emit_layer(context, plan, layer);
-	return result;
-}
-
 static void add_layer(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
-		      enum gz_region_shape shape, const double half_px[2])
+		      enum gz_region_shape shape, double half_x_px, double half_y_px)
 {
-	const struct gz_region region = {
+	const double rays = context->rays_per_px;
+	struct gz_region region = {
 		.shape = shape,
 		.centre_px = { context->gaze_px[0], context->gaze_px[1] },
-		.half_px = { half_px[0], half_px[1] },
+		.half_px = { half_x_px * rays, half_y_px * rays },
 	};
+	if (shape != GZ_REGION_ALL)
+		region.blend_px = fmin(context->foveation->blend_px * rays,
+				       fmin(region.half_px[0], region.half_px[1]));
 	plan->layers[plan->layer_count++] =
 		gz_plan_layer_make(context->width, context->height, spacing, region);
 }
 
-static const double everywhere[2] = { 1, 1 };
-
-enum gz_result gz_plan_standard(const struct gz_plan_context *context, struct gz_plan *plan)
+static void add_everywhere(const struct gz_plan_context *context, struct gz_plan *plan, int spacing)
 {
-	plan->reconstruction = GZ_RECONSTRUCT_DIRECT;
-	add_layer(context, plan, 1, GZ_REGION_ALL, everywhere);
-	return emit_layers(context, plan);
+	add_layer(context, plan, spacing, GZ_REGION_ALL, 1, 1);
 }
 
-enum gz_result gz_plan_mdc(const struct gz_plan_context *context, struct gz_plan *plan)
+static void add_square(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
+		       double edge_px)
 {
-	const double half = context->foveation->mdc_square_px / 2;
-	plan->reconstruction = GZ_RECONSTRUCT_REGIONS;
-	add_layer(context, plan, 1, GZ_REGION_RECTANGLE, (const double[2]) { half, half });
-	add_layer(context, plan, context->foveation->mdc_spacing, GZ_REGION_ALL, everywhere);
-	return emit_layers(context, plan);
+	add_layer(context, plan, spacing, GZ_REGION_RECTANGLE, edge_px / 2, edge_px / 2);
 }
 
-enum gz_result gz_plan_ddc(const struct gz_plan_context *context, struct gz_plan *plan)
+static void add_ellipse(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
+			const double half_px[2])
+{
+	add_layer(context, plan, spacing, GZ_REGION_ELLIPSE, half_px[0], half_px[1]);
+}
+
+static void add_layers(const struct gz_plan_context *context, struct gz_plan *plan)
 {
 	const struct gz_foveation *foveation = context->foveation;
-	plan->reconstruction = GZ_RECONSTRUCT_REGIONS;
-	add_layer(context, plan, foveation->ddc_spacing[0], GZ_REGION_ELLIPSE,
-		  foveation->ddc_inner_px);
-	add_layer(context, plan, foveation->ddc_spacing[1], GZ_REGION_ELLIPSE,
-		  foveation->ddc_middle_px);
-	add_layer(context, plan, foveation->ddc_spacing[2], GZ_REGION_ALL, everywhere);
-	return emit_layers(context, plan);
+	switch ((enum gz_method)foveation->method) {
+	case GZ_METHOD_UNIFORM:
+		add_everywhere(context, plan, foveation->uniform_spacing);
+		return;
+	case GZ_METHOD_MDC:
+		add_square(context, plan, 1, foveation->mdc_square_px);
+		add_everywhere(context, plan, foveation->mdc_spacing);
+		return;
+	case GZ_METHOD_MDC3:
+		add_square(context, plan, 1, foveation->mdc_square_px);
+		add_square(context, plan, foveation->mdc_spacing, foveation->mdc3_square_px);
+		add_everywhere(context, plan, foveation->mdc3_spacing);
+		return;
+	case GZ_METHOD_DDC:
+		add_ellipse(context, plan, foveation->ddc_spacing[0], foveation->ddc_inner_px);
+		add_ellipse(context, plan, foveation->ddc_spacing[1], foveation->ddc_middle_px);
+		add_everywhere(context, plan, foveation->ddc_spacing[2]);
+		return;
+	default:
+		add_everywhere(context, plan, 1);
+		return;
+	}
+}
+
+static double whole_spacing(double spacing)
+{
+	return fmin(fmax(spacing, 1), GZ_SPACING_MAX);
+}
+
+/* What a budget makes of a layer's spacing: the regions past the first give way first. */
+static double scaled_spacing(const struct gz_plan_context *context, int layer, int layers,
+			     int spacing)
+{
+	const double outside = layer > 0 || layers == 1 ? context->scale_outside : 1;
+	return whole_spacing(round(spacing * outside * context->scale_all));
+}
+
+/* Spacing of the uniform plan that costs no more than the regions, from a grid of places. */
+static double uniform_spacing(const struct gz_plan *plan)
+{
+	enum { GRID = 32 };
+	double density = 0;
+	for (int i = 0; i < GRID * GRID; i++) {
+		const double x = (i % GRID + 0.5) / GRID * plan->width;
+		const double y = (i / GRID + 0.5) / GRID * plan->height;
+		int layer = 0;
+		while (layer + 1 < plan->layer_count &&
+		       !gz_region_holds(&plan->layers[layer].region, x, y))
+			layer++;
+		const double spacing = plan->layers[layer].spacing;
+		density += 1 / (spacing * spacing) / (GRID * GRID);
+	}
+	return whole_spacing(ceil(1 / sqrt(density) - 1e-9));
+}
+
+static void set_spacing(const struct gz_plan_context *context, struct gz_plan *plan, int layer,
+			double spacing)
+{
+	plan->layers[layer] = gz_plan_layer_make(context->width, context->height, (int)spacing,
+						 plan->layers[layer].region);
+}
+
+static void scale_and_widen(const struct gz_plan_context *context, struct gz_plan *plan)
+{
+	const int layers = plan->layer_count;
+	for (int i = 0; i < layers; i++)
+		set_spacing(context, plan, i,
+			    scaled_spacing(context, i, layers, plan->layers[i].spacing));
+	if (context->widen <= 0 || layers == 1)
+		return;
+	const double uniform = uniform_spacing(plan);
+	for (int i = 0; i < layers; i++) {
+		const double own = plan->layers[i].spacing;
+		set_spacing(context, plan, i, round(own + (uniform - own) * context->widen));
+	}
+}
+
+enum gz_result gz_plan_regions(const struct gz_plan_context *context, struct gz_plan *plan)
+{
+	add_layers(context, plan);
+	if (context->foveation->method != GZ_METHOD_STANDARD)
+		scale_and_widen(context, plan);
+	const bool whole = plan->layer_count == 1 && plan->layers[0].spacing == 1;
+	plan->reconstruction = whole ? GZ_RECONSTRUCT_DIRECT : GZ_RECONSTRUCT_REGIONS;
+	enum gz_result result = GZ_OK;
+	for (int layer = 0; layer < plan->layer_count && result == GZ_OK; layer++)
+		result = emit_layer(context, plan, layer);
+	return result;
 }

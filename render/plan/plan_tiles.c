@@ -10,18 +10,27 @@ const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE] = {
 	0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3,
 };
 
-enum gz_result gz_plan_add(struct gz_plan *plan, struct gz_tile tile)
+enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count)
 {
-	if (plan->tile_count == plan->tile_capacity) {
-		size_t capacity = plan->tile_capacity ? 2 * plan->tile_capacity : 4096;
-		struct gz_tile *tiles = realloc(plan->tiles, capacity * sizeof *tiles);
-		if (!tiles)
-			return GZ_ERR_NO_MEM;
-		plan->tiles = tiles;
-		plan->tile_capacity = capacity;
-	}
-	plan->tiles[plan->tile_count++] = tile;
+	const size_t needed = plan->tile_count + count;
+	if (needed <= plan->tile_capacity)
+		return GZ_OK;
+	const size_t capacity = needed > 2 * plan->tile_capacity ? needed : 2 * plan->tile_capacity;
+	struct gz_tile *tiles = realloc(plan->tiles, capacity * sizeof *tiles);
+	if (!tiles)
+		return GZ_ERR_NO_MEM;
+	plan->tiles = tiles;
+	plan->tile_capacity = capacity;
 	return GZ_OK;
+}
+
+void gz_plan_append(struct gz_plan *plan, struct gz_tile tile)
+{
+	const uint32_t active = gz_plan_tile_active(plan, &tile);
+	if (active == 0)
+		return;
+	plan->ray_count += (uint64_t)__builtin_popcount(active);
+	plan->tiles[plan->tile_count++] = tile;
 }
 
 struct gz_plan_layer gz_plan_layer_make(int width, int height, int spacing, struct gz_region region)
@@ -63,12 +72,4 @@ uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *t
 			       tile->y + gz_tile_rows[i] * layer->spacing))
 			active |= 1U << i;
 	return active;
-}
-
-void gz_plan_count_rays(struct gz_plan *plan)
-{
-	plan->ray_count = 0;
-	for (size_t i = 0; i < plan->tile_count; i++)
-		plan->ray_count +=
-			(uint64_t)__builtin_popcount(gz_plan_tile_active(plan, &plan->tiles[i]));
 }

@@ -1,5 +1,16 @@
 #include "small_scene.h"
 
+struct gz_foveation small_scene_foveation(void)
+{
+	struct gz_foveation foveation = gz_foveation_default();
+	foveation.table = (struct gz_spacing_table) {
+		.in_deg = true,
+		.count = 3,
+		.rows = { { 0, 0.01, 1 }, { 3, 0.05, 1 }, { 25, 0.4, 3 } },
+	};
+	return foveation;
+}
+
 /* cmocka.h wants these before it */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,7 +42,7 @@ static struct small_scene base_scene(int nx, int ny, int nz, enum gz_voxel_type 
 			    .fov_deg = 40,
 			    .height = 1.2 },
 		.rays = gz_ray_params_default(),
-		.foveation = gz_foveation_default(),
+		.foveation = small_scene_foveation(),
 		.gaze = { 0.5F, 0.5F },
 	};
 	assert_int_equal(gz_volume_allocate(&scene.volume), GZ_OK);

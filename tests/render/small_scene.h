@@ -7,6 +7,9 @@
 
 #include "render/renderer.h"
 
+/** The default settings with a table of spacings, so that every method has what it needs. */
+struct gz_foveation small_scene_foveation(void);
+
 /** What a test renders. */
 struct small_scene {
 	struct gz_volume volume;

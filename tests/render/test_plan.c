@@ -13,10 +13,11 @@
 
 #include "render/image.h"
 #include "render/plan/plan.h"
+#include "small_scene.h"
 
 static struct gz_plan make(int method, struct gz_point gaze, int width, int height)
 {
-	struct gz_foveation foveation = gz_foveation_default();
+	struct gz_foveation foveation = small_scene_foveation();
 	const struct gz_display display = gz_display_default(width, height);
 	struct gz_plan plan = { 0 };
 	foveation.method = method;
@@ -28,7 +29,7 @@ static struct gz_plan make(int method, struct gz_point gaze, int width, int heig
 static void check_tiles(const struct gz_plan *plan)
 {
 	/* coarser lattices reach beyond the finer ones */
-	enum { MARGIN = 4 * GZ_TILE_EDGE * GZ_SPACING_MAX };
+	enum { MARGIN = 4 * GZ_TILE_EDGE * GZ_PYRAMID_SPACING_MAX };
 	uint8_t *cast[GZ_PLAN_LAYERS_MAX];
 	uint64_t rays = 0;
 	for (int i = 0; i < plan->layer_count; i++)
