@@ -317,7 +317,7 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
 }
 
 /* Beside the scene, then under $GAZECAST_DATA. */
-static enum gz_result find_file(const struct reader *reader, int option, const char *name,
+static enum gz_result find_file(const struct reader *reader, const char *key, const char *name,
 				char out_path[GZ_PATH_SIZE])
 {
 	const char *data = getenv("GAZECAST_DATA");
@@ -326,7 +326,7 @@ static enum gz_result find_file(const struct reader *reader, int option, const c
 		return GZ_OK;
 	if (name[0] == '/') {
 		gz_err(reader->log, "%s: %s: no file %s; install it or correct the name",
-		       reader->name, scene_options[option].key, name);
+		       reader->name, key, name);
 		return GZ_ERR_NOT_FOUND;
 	}
 	if (data && *data) {
@@ -337,7 +337,7 @@ static enum gz_result find_file(const struct reader *reader, int option, const c
 	gz_err(reader->log,
 	       "%s: %s: %s is neither beside the scene nor under GAZECAST_DATA (%s); put it there "
 	       "or set the variable",
-	       reader->name, scene_options[option].key, name, data && *data ? data : "not set");
+	       reader->name, key, name, data && *data ? data : "not set");
 	return GZ_ERR_NOT_FOUND;
 }
 
@@ -358,7 +358,8 @@ static enum gz_result load_volume(const struct reader *reader, struct gz_volume 
 	char path[GZ_PATH_SIZE];
 	if (settings->volume_procedural)
 		return make_procedural(reader, out_volume);
-	enum gz_result result = find_file(reader, VOLUME_FILE, settings->volume_file, path);
+	enum gz_result result =
+		find_file(reader, scene_options[VOLUME_FILE].key, settings->volume_file, path);
 	if (result != GZ_OK)
 		return result;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
@@ -372,9 +373,28 @@ static enum gz_result load_volume(const struct reader *reader, struct gz_volume 
 static enum gz_result load_transfer(const struct reader *reader, struct gz_transfer *out_transfer)
 {
 	char path[GZ_PATH_SIZE];
-	enum gz_result result =
-		find_file(reader, TRANSFER_FILE, reader->settings->transfer_file, path);
+	enum gz_result result = find_file(reader, scene_options[TRANSFER_FILE].key,
+					  reader->settings->transfer_file, path);
 	return result == GZ_OK ? gz_transfer_load(path, reader->log, out_transfer) : result;
+}
+
+enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
+				   struct gz_foveation *foveation)
+{
+	static const char key[] = "foveation.table";
+	const struct reader reader = { .name = scene, .log = log };
+	char path[GZ_PATH_SIZE];
+	if (!foveation->table_file[0]) {
+		if (foveation->method != GZ_METHOD_TABLE)
+			return GZ_OK;
+		gz_err(log,
+		       "%s: %s: not given, and the method is table; name a table of spacings "
+		       "(docs/scenes.md says what is in it)",
+		       scene, key);
+		return GZ_ERR_FORMAT;
+	}
+	enum gz_result result = find_file(&reader, key, foveation->table_file, path);
+	return result == GZ_OK ? gz_spacing_table_load(path, log, &foveation->table) : result;
 }
 
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
@@ -388,6 +408,8 @@ enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 		result = gz_options_read_file(reader.bindings, GZ_SCENE_BINDINGS, path, log);
 	if (result == GZ_OK)
 		result = check(&reader, &scene.has_display);
+	if (result == GZ_OK)
+		result = gz_scene_load_table(path, log, &scene.settings.foveation);
 	if (result == GZ_OK)
 		result = load_transfer(&reader, &scene.transfer);
 	if (result == GZ_OK)

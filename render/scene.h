@@ -83,6 +83,18 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene);
 
+/**
+ * Read the table of spacings that foveation.table names into @p foveation; gz_scene_load() does it
+ * for the scene's own settings, this is for those that something else has changed.
+ *
+ * @param scene  path of the scene beside which the table is looked up first
+ * @retval GZ_OK             read, or none is named and the method needs none
+ * @retval GZ_ERR_FORMAT     the method is table and none is named, or the table is refused; logged
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  logged, one line with the remedy
+ */
+enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
+				   struct gz_foveation *foveation);
+
 /** Free what it holds and zero it. */
 void gz_scene_free(struct gz_scene *scene);
 

@@ -43,6 +43,8 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	gz_loading_bar_end(&bar);
 	if (r == GZ_OK)
 		r = gz_view_options_apply(options, &maker->scene.settings);
+	if (r == GZ_OK)
+		r = gz_scene_load_table(options->scene, log, &maker->scene.settings.foveation);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
 		return r;
@@ -127,8 +129,12 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	}
 	struct gz_frame_stats stats;
 	int64_t start_ns = gz_clock_now_ns();
-	enum gz_result r = gz_plan_make(&request->settings->foveation, request->display,
-					maker->focus.point, width, height, &maker->plan);
+	struct gz_plan_request plan = gz_plan_request_make(
+		&request->settings->foveation, request->display, maker->focus.point, width, height);
+	plan.rays_per_px = rate;
+	plan.scale = maker->focus.scale;
+	plan.widen = maker->focus.widen;
+	enum gz_result r = gz_plan_update(&plan, &maker->plan);
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);

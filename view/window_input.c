@@ -48,6 +48,8 @@ void gz_window_toggle_fullscreen(struct gz_window *window)
 
 static void choose_method(struct gz_window *window, int method)
 {
+	if (method == GZ_METHOD_TABLE && window->settings.foveation.table.count == 0)
+		return; /* the scene has none to show */
 	window->settings.foveation.method = method;
 	window->cast_needed = true;
 }

@@ -28,6 +28,12 @@ static void render(const struct gz_scene *scene, int method, struct gz_image *im
 	foveation.method = method;
 	/* the regions of mdc and ddc are meant for a whole screen */
 	foveation.mdc_square_px = 60;
+	foveation.mdc3_square_px = 150;
+	foveation.blend_px = method == GZ_METHOD_MDC3 ? 12 : 0;
+	foveation.table = (struct gz_spacing_table) {
+		.count = 3,
+		.rows = { { 0, 1, 1 }, { 6, 1.5, 1 }, { 20, 9, 3 } },
+	};
 	foveation.ddc_inner_px[0] = 40;
 	foveation.ddc_inner_px[1] = 30;
 	foveation.ddc_middle_px[0] = 90;
