@@ -16,6 +16,15 @@
  * takes 2.2 * 90 + 21 ms (Carpenter, "Movements of the Eyes", 1988). */
 #define SACCADE_MAX_MS 219
 
+/* After a landing the plan goes on with the gaze for so long: the tracker has yet to find out where
+ * exactly the eye has come to rest, and an update 5 to 60 ms after the movement goes unseen (Bauer
+ * 2018, section 2.2). */
+#define LANDING_MS 60
+
+/* Until a pursuit has lasted so long it may be a label that does not last: chosen, what noise makes
+ * of the end of a saccade. */
+#define PURSUIT_MIN_MS 100
+
 /* A gaze farther off than so many dead bands has not been pursued there: chosen, what an eye covers
  * in the longest pursued frames. */
 #define PURSUIT_MAX_BANDS 4
@@ -126,8 +135,25 @@ static void in_saccade(struct gz_attention *attention, struct gz_point point, do
 		       double band)
 {
 	bool suppressed = for_ms(attention) <= SACCADE_MAX_MS;
-	if (attention->focus.scale > 1 || distance > band)
-		look(attention, point, suppressed ? attention->params.saccade_scale : 1);
+	if (!attention->on_way && distance <= band)
+		return;
+	look(attention, point, suppressed ? attention->params.saccade_scale : 1);
+	attention->on_way = true;
+}
+
+/* At rest in a new place, or soon to be. */
+static void land(struct gz_attention *attention, struct gz_point point)
+{
+	look(attention, point, 1);
+	attention->on_way = false;
+	attention->landed = true;
+	attention->landed_ns = attention->now_ns;
+}
+
+static bool just_landed(const struct gz_attention *attention)
+{
+	return attention->landed &&
+	       gz_ns_to_ms(attention->now_ns - attention->landed_ns) <= LANDING_MS;
 }
 
 /* The plan is drawn along, a dead band behind: it moves as smoothly as the gaze, and for noise not
@@ -152,13 +178,18 @@ static void seen(struct gz_attention *attention, const struct gz_attention_gaze 
 			      ? gz_attention_dead_band_deg(&attention->params, gaze->noise_deg)
 			      : EXACT_BAND_DEG;
 	double distance = distance_deg(attention, gaze, display);
-	bool landed = attention->focus.scale > 1 || !(distance < PURSUIT_MAX_BANDS * band);
+	bool pursued = attention->state == GZ_ATTENTION_PURSUIT &&
+		       for_ms(attention) >= PURSUIT_MIN_MS && distance < PURSUIT_MAX_BANDS * band;
 	if (attention->state == GZ_ATTENTION_SACCADE)
 		in_saccade(attention, gaze->point, distance, band);
-	else if (attention->state == GZ_ATTENTION_PURSUIT && !landed)
-		in_pursuit(attention, gaze->point, distance, band);
-	else if (landed || distance > band)
+	else if (attention->on_way)
+		land(attention, gaze->point);
+	else if (just_landed(attention))
 		look(attention, gaze->point, 1);
+	else if (pursued)
+		in_pursuit(attention, gaze->point, distance, band);
+	else if (distance > band)
+		land(attention, gaze->point);
 }
 
 /* For so long a lost gaze has been lost. A blink that is too long is lost from its end on. */
@@ -173,6 +204,7 @@ static void unseen(struct gz_attention *attention)
 	const struct gz_attention_params *params = &attention->params;
 	double past_ms = lost_for_ms(attention) - params->hold_ms;
 	attention->focus.scale = 1; /* the eye may be open */
+	attention->on_way = attention->landed = false;
 	if (params->widen_ms <= 0 || past_ms < 0)
 		return;
 	attention->state = GZ_ATTENTION_WIDEN;

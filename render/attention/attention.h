@@ -6,7 +6,8 @@
  *
  * - A still eye sees a still picture: the place stays while the gaze is within a dead band of it.
  * - In a saccade, where vision is suppressed, the plan goes with the gaze and is coarser; the first
- *   step that knows of the landing is sharp there.
+ *   step that knows of the landing is sharp there. For 60 ms it goes on with the gaze, while the
+ *   tracker finds out where exactly the eye has come to rest; what changes then goes unseen.
  * - A blink holds everything. A lost gaze holds the place a while; then the plan widens, step by
  *   step, towards rays spread evenly at the same cost, for the eye may be anywhere. The first step
  *   that knows the gaze again is sharp there.
@@ -87,8 +88,11 @@ struct gz_attention {
 	enum gz_attention_state state;
 	enum gz_attention_state said; /**< what the gaze alone said, and said_ns since when */
 	int64_t said_ns;
-	int64_t now_ns; /**< of the newest step */
-	bool started;   /**< there was one */
+	bool on_way;       /**< the plan goes with a saccade */
+	bool landed;       /**< landed_ns holds something */
+	int64_t landed_ns; /**< when the plan last came to rest somewhere else */
+	int64_t now_ns;    /**< of the newest step */
+	bool started;      /**< there was one */
 };
 
 /** Into the start state: no gaze has been seen. @p params within the table's ranges. */
