@@ -17,6 +17,10 @@
 #include "base/log.h"
 #include "base/result.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** How a value reads, and the C type at the option's offset. */
 enum gz_option_type {
 	GZ_OPTION_BOOL,   /**< bool: true/false, yes/no, on/off, 1/0; "--key" alone means true */
@@ -137,5 +141,9 @@ void gz_options_print_help(const struct gz_option_binding *bindings, size_t coun
 
 /** Print a commented INI file: each option's help, range and present value. */
 void gz_options_print_file(const struct gz_option_binding *bindings, size_t count, FILE *out);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

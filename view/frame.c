@@ -152,6 +152,13 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	return GZ_OK;
 }
 
+void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
+{
+	if (!maker->scene.volume.oriented)
+		gz_warn(maker->log, "no letters: the volume does not tell where right, front and "
+				    "up are; give one that does, as NIfTI and DICOM do");
+}
+
 /* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. */
 static void tell_spent(struct gz_frame_maker *maker, double total_ms)
 {

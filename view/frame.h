@@ -85,6 +85,9 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
  * next frame. */
 unsigned gz_frame_texture(const struct gz_frame_maker *maker);
 
+/** Log why no letters can be drawn, where the volume does not tell its sides. */
+void gz_frame_tell_unoriented(const struct gz_frame_maker *maker);
+
 /** Draw a cross at a place of the display that the picture fills; nothing where it is outside. */
 void gz_frame_draw_cross(struct gz_image *image, struct gz_point at);
 

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "view/frame.h"
 #include "view/gaze_source.h"
+#include "view/letters.h"
 #include "view/stats.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -143,6 +144,15 @@ static void await_daemon(struct headless *self)
 	}
 }
 
+/* Nothing where the volume does not tell its sides. */
+static void draw_letters(const struct headless *self, struct gz_image *image)
+{
+	struct gz_letters letters;
+	if (gz_frame_maker_scene(self->maker)->volume.oriented &&
+	    gz_letters_of_camera(&self->settings.camera, &letters) == GZ_OK)
+		gz_letters_draw(&letters, image);
+}
+
 static enum gz_result write_picture(struct headless *self, struct gz_image *image,
 				    const struct gz_frame_record *record, int frame)
 {
@@ -151,6 +161,8 @@ static enum gz_result write_picture(struct headless *self, struct gz_image *imag
 		return GZ_OK;
 	if (self->options->cross && record->gaze_known)
 		gz_frame_draw_cross(image, record->gaze);
+	if (self->options->letters)
+		draw_letters(self, image);
 	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
 	if (r != GZ_OK) {
 		gz_err(self->log, "--out: the name of picture %d is too long; shorten it", frame);
@@ -233,6 +245,8 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	if (r == GZ_OK) {
 		self.settings = gz_frame_maker_scene(self.maker)->settings;
 		warn_of_budget(&self);
+		if (options->letters)
+			gz_frame_tell_unoriented(self.maker);
 		r = all_frames(&self);
 	}
 	gz_stats_close(&self.stats);

@@ -98,6 +98,11 @@ const struct gz_option gz_view_option_table[] = {
 	  .offset = AT(cross),
 	  .preset = "false",
 	  .help = "draw a cross at the gaze" },
+	{ .key = "letters",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(letters),
+	  .preset = "false",
+	  .help = "tell at the picture's edges which side is there: R L A P S I" },
 	{ .key = "fullscreen",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(fullscreen),
@@ -152,32 +157,6 @@ enum { OWN_BINDINGS = 2 };
 static bool starts_with(const char *text, const char *start)
 {
 	return strncmp(text, start, strlen(start)) == 0;
-}
-
-/* What a scene shows is up to its file, and the display has options of its own; the rest of a
- * scene's keys can be given here. */
-struct scene_tables {
-	struct gz_option options[GZ_SCENE_BINDINGS][GZ_VIEW_SCENE_KEYS_MAX];
-	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
-};
-
-static void pick_scene_tables(struct gz_scene_settings *settings, struct scene_tables *tables)
-{
-	gz_scene_bindings(settings, tables->bindings, GZ_SCENE_BINDINGS);
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
-		struct gz_option_binding *binding = &tables->bindings[i];
-		size_t picked = 0;
-		for (size_t k = 0; k < binding->count && picked < GZ_VIEW_SCENE_KEYS_MAX; k++) {
-			const struct gz_option *option = &binding->options[k];
-			if (starts_with(option->key, "volume.") ||
-			    starts_with(option->key, "transfer.") ||
-			    starts_with(option->key, "display."))
-				continue;
-			tables->options[i][picked++] = *option;
-		}
-		binding->options = tables->options[i];
-		binding->count = picked;
-	}
 }
 
 static bool ends_with(const char *text, const char *end)
@@ -401,7 +380,8 @@ static enum gz_result check_together(const struct gz_view_options *options,
 
 /* --method is short for --foveation.method; both at once say nothing certain. */
 static enum gz_result check_method_once(const struct gz_view_options *options,
-					const struct scene_tables *tables, const struct gz_log *log)
+					const struct gz_view_scene_tables *tables,
+					const struct gz_log *log)
 {
 	for (size_t i = 0; i < GZ_SCENE_BINDINGS && options->method >= 0; i++) {
 		for (size_t k = 0; k < tables->bindings[i].count; k++) {
@@ -416,8 +396,9 @@ static enum gz_result check_method_once(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
-static enum gz_result read_arguments(int argc, char *const *argv, struct scene_tables *tables,
-				     const struct gz_log *log, struct gz_view_options *options)
+static enum gz_result read_arguments(int argc, char *const *argv,
+				     struct gz_view_scene_tables *tables, const struct gz_log *log,
+				     struct gz_view_options *options)
 {
 	struct gz_option_binding bindings[OWN_BINDINGS + GZ_SCENE_BINDINGS] = {
 		{ gz_view_option_table, gz_view_option_count, options, NULL },
@@ -446,10 +427,10 @@ static enum gz_result read_arguments(int argc, char *const *argv, struct scene_t
 enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz_log *log,
 				    struct gz_view_options *out_options)
 {
-	struct scene_tables tables;
+	struct gz_view_scene_tables tables;
 	memset(out_options, 0, sizeof *out_options);
 	out_options->method = -1;
-	pick_scene_tables(&out_options->scene_settings, &tables);
+	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
 	if (r != GZ_OK || out_options->help || out_options->version)
 		return r;
@@ -466,9 +447,9 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings)
 {
 	struct gz_scene_settings given = options->scene_settings;
-	struct scene_tables from, to;
-	pick_scene_tables(&given, &from);
-	pick_scene_tables(settings, &to);
+	struct gz_view_scene_tables from, to;
+	gz_view_pick_scene_tables(&given, &from);
+	gz_view_pick_scene_tables(settings, &to);
 	char text[GZ_PATH_SIZE];
 	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
 		for (size_t k = 0; k < from.bindings[i].count; k++) {
@@ -495,8 +476,8 @@ void gz_view_options_print_help(FILE *out)
 		{ gz_target_option_table, gz_target_option_count, NULL, NULL },
 	};
 	struct gz_scene_settings settings;
-	struct scene_tables tables;
-	pick_scene_tables(&settings, &tables);
+	struct gz_view_scene_tables tables;
+	gz_view_pick_scene_tables(&settings, &tables);
 	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
 	      "  gazeview SCENE\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"

@@ -15,10 +15,8 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/scene.h"
+#include "view/scene_tables.h"
 #include "view/target_options.h"
-
-/** Most keys of one scene table that the command line takes. */
-#define GZ_VIEW_SCENE_KEYS_MAX 64
 
 /** Where the gaze comes from. */
 enum gz_gaze_kind {
@@ -56,6 +54,7 @@ struct gz_view_options {
 	char stats[GZ_PATH_SIZE]; /**< empty: none */
 	double turn_deg;
 	bool cross;
+	bool letters;
 	bool fullscreen;
 	bool vsync;
 	bool gaze_fills_window;

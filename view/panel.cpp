@@ -11,6 +11,9 @@
 
 #include <GLFW/glfw3.h>
 
+#include "view/letters.h"
+#include "view/panel_settings.h"
+
 namespace
 {
 
@@ -18,6 +21,8 @@ namespace
 constexpr float MARGIN = 8;
 constexpr float PADDING = 5;
 constexpr float CROSS_ARM = 12;
+constexpr float LETTER_SCALE = 2;
+constexpr float LETTER_MARGIN = 36; /* below the text line */
 constexpr float MESSAGE_SCALE = 2;
 
 float interface_scale(GLFWwindow *window)
@@ -51,6 +56,30 @@ void draw_cross(ImDrawList *list, float x, float y)
 		list->AddLine(ImVec2(x, y - CROSS_ARM), ImVec2(x, y + CROSS_ARM + 1), stroke.colour,
 			      stroke.thickness);
 	}
+}
+
+/* One of them at a place of the window: 0 at the left or top, 1 at the right or bottom. */
+void draw_letter(ImDrawList *list, const char *text, float x, float y)
+{
+	ImFont *font = ImGui::GetFont();
+	float height = LETTER_SCALE * ImGui::GetFontSize();
+	ImVec2 room = ImGui::GetIO().DisplaySize;
+	ImVec2 size = font->CalcTextSizeA(height, FLT_MAX, 0, text);
+	ImVec2 at(floorf(MARGIN + x * (room.x - 2 * MARGIN - size.x)),
+		  floorf(LETTER_MARGIN + y * (room.y - 2 * LETTER_MARGIN - size.y)));
+	const ImVec2 around[] = { { -1, 0 }, { 1, 0 }, { 0, -1 }, { 0, 1 } };
+	for (const ImVec2 &by : around)
+		list->AddText(font, height, ImVec2(at.x + by.x, at.y + by.y),
+			      IM_COL32(0, 0, 0, 255), text);
+	list->AddText(font, height, at, IM_COL32(235, 235, 235, 255), text);
+}
+
+void draw_letters(ImDrawList *list, const gz_letters &letters)
+{
+	draw_letter(list, letters.left, 0, 0.5F);
+	draw_letter(list, letters.right, 1, 0.5F);
+	draw_letter(list, letters.top, 0.5F, 0);
+	draw_letter(list, letters.bottom, 0.5F, 1);
 }
 
 void begin_frame()
@@ -87,11 +116,15 @@ bool gz_panel_init(GLFWwindow *window)
 	return true;
 }
 
-void gz_panel_draw(const struct gz_panel_content *content)
+bool gz_panel_draw(const struct gz_panel_content *content)
 {
 	begin_frame();
+	bool changed = content->settings &&
+		       gz_panel_draw_settings(content->settings, content->settings_count);
 	/* Straight into the draw list: a window would need a second frame to find its size. */
 	ImDrawList *list = ImGui::GetForegroundDrawList();
+	if (content->letters)
+		draw_letters(ImGui::GetBackgroundDrawList(), *content->letters);
 	if (content->cross)
 		draw_cross(list, content->cross_at[0], content->cross_at[1]);
 	ImU32 colour = content->warn ? IM_COL32(255, 190, 60, 255) : IM_COL32(235, 235, 235, 255);
@@ -99,6 +132,17 @@ void gz_panel_draw(const struct gz_panel_content *content)
 	if (content->keys)
 		draw_text(list, below + PADDING, content->keys, IM_COL32(235, 235, 235, 255));
 	end_frame();
+	return changed;
+}
+
+bool gz_panel_has_mouse(void)
+{
+	return ImGui::GetCurrentContext() && ImGui::GetIO().WantCaptureMouse;
+}
+
+bool gz_panel_has_keyboard(void)
+{
+	return ImGui::GetCurrentContext() && ImGui::GetIO().WantTextInput;
 }
 
 void gz_panel_draw_message(const char *text)

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "client/viewer_link.h"
+#include "view/letters.h"
 #include "view/panel.h"
 #include "view/window_state.h"
 
@@ -105,6 +106,9 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
 	if (r != GZ_OK)
 		return r;
+	window->shown = window->settings;
+	window->any_shown = true;
+	window->taken_back = false;
 	if (image)
 		gz_quad_upload(&window->quad, image);
 	else
@@ -114,11 +118,43 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 	return GZ_OK;
 }
 
+/* What the tables cannot say of each value by itself. */
+static bool settings_valid(const struct gz_scene_settings *settings)
+{
+	struct gz_ray_frame rays;
+	return gz_ray_params_valid(&settings->rays) &&
+	       gz_camera_rays(&settings->camera, 1, 1, &rays) == GZ_OK;
+}
+
+/* Values that do not go together stay what they were. */
+static void take_changes(struct gz_window *window, const struct gz_scene_settings *before)
+{
+	if (!settings_valid(&window->settings))
+		window->settings = *before;
+	window->cast_needed = true;
+	gz_window_wake_panel(window);
+}
+
+/* A frame that cannot be made with what the user has set, such as too many rays, is made as the one
+ * before; why has been logged. @return whether there was one */
+static bool take_back(struct gz_window *window)
+{
+	if (!window->any_shown || window->taken_back)
+		return false;
+	window->taken_back = true;
+	window->settings = window->shown;
+	window->cast_needed = true;
+	return true;
+}
+
 static void present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
 		    int height)
 {
 	int columns, rows;
 	glfwGetWindowSize(window->glfw, &columns, &rows);
+	struct gz_letters letters;
+	bool lettered = window->letters && gz_frame_maker_scene(window->maker)->volume.oriented &&
+			gz_letters_of_camera(&window->settings.camera, &letters) == GZ_OK;
 	const struct gz_panel_content content = {
 		.line = window->line,
 		.warn = gaze->missing ||
@@ -127,11 +163,17 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 		.cross = window->cross && gaze->reading.known,
 		.cross_at = { gaze->reading.point.x * (float)columns,
 			      gaze->reading.point.y * (float)rows },
+		.letters = lettered ? &letters : NULL,
+		.settings = window->panel_shown ? window->tables.bindings : NULL,
+		.settings_count = GZ_SCENE_BINDINGS,
 	};
-	gz_quad_draw(&window->quad, width, height);
-	gz_panel_draw(&content);
-	glfwSwapBuffers(window->glfw);
+	const struct gz_scene_settings before = window->settings;
 	window->present_needed = false;
+	gz_quad_draw(&window->quad, width, height);
+	bool changed = gz_panel_draw(&content);
+	glfwSwapBuffers(window->glfw);
+	if (changed)
+		take_changes(window, &before);
 }
 
 /* One turn of the loop: cast and draw what has changed since the last one. */
@@ -140,8 +182,10 @@ static enum gz_result refresh(struct gz_window *window)
 	struct gz_window_gaze gaze;
 	int width, height;
 	glfwGetFramebufferSize(window->glfw, &width, &height);
-	if (width < 1 || height < 1) /* minimised */
+	if (width < 1 || height < 1) { /* minimised */
+		window->panel_frames = 0;
 		return GZ_OK;
+	}
 	if (window->options->turn_deg != 0) {
 		gz_camera_turn(&window->settings.camera, window->options->turn_deg);
 		window->cast_needed = true;
@@ -151,13 +195,15 @@ static enum gz_result refresh(struct gz_window *window)
 	bool cross_moved = window->cross && !same_point(gaze.reading.point, window->cross_drawn);
 	if (must_cast) {
 		enum gz_result r = cast(window, &gaze, width, height);
-		if (r != GZ_OK)
+		if (r != GZ_OK && !take_back(window))
 			return r;
 	}
 	bool age_runs = gaze.reading.has_age && gaze.reading.age_ns <= SILENT_NS;
 	bool line_due = must_cast || !age_runs || gz_clock_now_ns() >= window->line_due_ns;
 	bool line_changed = line_due && update_line(window, &gaze);
-	if (must_cast || cross_moved || line_changed || window->present_needed) {
+	bool panel_due = window->panel_frames > 0;
+	window->panel_frames -= panel_due;
+	if (must_cast || cross_moved || line_changed || window->present_needed || panel_due) {
 		window->line_due_ns = gz_clock_now_ns() + LINE_INTERVAL_NS;
 		window->cross_drawn = gaze.reading.point;
 		present(window, &gaze, width, height);
@@ -201,7 +247,9 @@ static void close_window(struct gz_window *window)
 
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log)
 {
-	struct gz_window window = { .options = options, .log = log, .cross = options->cross };
+	struct gz_window window = {
+		.options = options, .log = log, .cross = options->cross, .letters = options->letters
+	};
 	/* The display first: without one there is no use in loading. */
 	enum gz_result r = open_display(log);
 	if (r != GZ_OK)
@@ -213,6 +261,9 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 		r = gz_frame_maker_create(options, log, &window.maker);
 	if (r == GZ_OK) {
 		window.settings = gz_frame_maker_scene(window.maker)->settings;
+		gz_view_pick_scene_tables(&window.settings, &window.tables);
+		if (options->letters)
+			gz_frame_tell_unoriented(window.maker);
 		r = gz_window_context_open(&window);
 	}
 	if (r == GZ_OK)

@@ -5,6 +5,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include "view/panel.h"
+
 /* A drag over the window's height turns by this much (chosen: half a turn within one sweep). */
 #define DRAG_DEG_PER_HEIGHT 180.0
 /* One notch of the wheel (chosen: seven notches halve the distance). */
@@ -18,6 +20,8 @@ const char *gz_window_keys_text(void)
 	       "R         reset the camera\n"
 	       "C         cross at the gaze\n"
 	       "M         gaze from the mouse or from the daemon\n"
+	       "P         settings\n"
+	       "L         letters: which side is where\n"
 	       "F         full screen\n"
 	       "H or ?    show or hide this\n"
 	       "Esc or Q  quit";
@@ -46,6 +50,14 @@ void gz_window_toggle_fullscreen(struct gz_window *window)
 			     mode->refreshRate);
 }
 
+/* Dear ImGui takes in what happens while it draws, and shows what came of it a frame later. */
+void gz_window_wake_panel(struct gz_window *window)
+{
+	enum { ANSWER_FRAMES = 3 };
+	if (window->panel_shown)
+		window->panel_frames = ANSWER_FRAMES;
+}
+
 static void choose_method(struct gz_window *window, int method)
 {
 	if (method == GZ_METHOD_TABLE && window->settings.foveation.table.count == 0)
@@ -68,6 +80,15 @@ static void press_letter(struct gz_window *window, int letter)
 	case 'f':
 		gz_window_toggle_fullscreen(window);
 		break;
+	case 'p':
+		window->panel_shown = !window->panel_shown;
+		gz_window_wake_panel(window);
+		break;
+	case 'l':
+		window->letters = !window->letters;
+		if (window->letters)
+			gz_frame_tell_unoriented(window->maker);
+		break;
 	case 'h':
 		window->keys_shown = !window->keys_shown;
 		break;
@@ -87,6 +108,9 @@ static void press_letter(struct gz_window *window, int letter)
 static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
 {
 	struct gz_window *window = window_of(glfw);
+	gz_window_wake_panel(window);
+	if (gz_panel_has_keyboard())
+		return;
 	if (action != GLFW_PRESS || (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)))
 		return;
 	if (key == GLFW_KEY_ESCAPE) {
@@ -105,7 +129,8 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods
 static void on_character(GLFWwindow *glfw, unsigned codepoint)
 {
 	struct gz_window *window = window_of(glfw);
-	if (codepoint == '?') {
+	gz_window_wake_panel(window);
+	if (codepoint == '?' && !gz_panel_has_keyboard()) {
 		window->keys_shown = !window->keys_shown;
 		window->present_needed = true;
 	}
@@ -114,8 +139,10 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 {
 	(void)mods;
+	struct gz_window *window = window_of(glfw);
+	gz_window_wake_panel(window);
 	if (button == GLFW_MOUSE_BUTTON_LEFT)
-		window_of(glfw)->dragging = action == GLFW_PRESS;
+		window->dragging = action == GLFW_PRESS && !gz_panel_has_mouse();
 }
 
 static void drag(struct gz_window *window, double right, double down, int height)
@@ -149,7 +176,10 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 	window->cursor[0] = x;
 	window->cursor[1] = y;
 	window->cursor_known = true;
-	move_gaze(window);
+	gz_window_wake_panel(window);
+	/* Whoever changes a setting wants to see what it does where he looked before. */
+	if (!gz_panel_has_mouse())
+		move_gaze(window);
 }
 
 static void on_enter(GLFWwindow *glfw, int entered)
@@ -161,6 +191,9 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 {
 	(void)right;
 	struct gz_window *window = window_of(glfw);
+	gz_window_wake_panel(window);
+	if (gz_panel_has_mouse())
+		return;
 	gz_camera_zoom(&window->settings.camera, pow(ZOOM_PER_NOTCH, up));
 	window->cast_needed = true;
 }

@@ -15,6 +15,7 @@
 #include "view/gaze_source.h"
 #include "view/options.h"
 #include "view/quad.h"
+#include "view/scene_tables.h"
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
@@ -41,8 +42,15 @@ struct gz_window {
 	int64_t start_ns;  /**< of a log's time */
 
 	struct gz_scene_settings settings; /**< as the user has changed them */
+	struct gz_scene_settings shown;    /**< those of the last frame that could be made */
+	bool any_shown;
+	bool taken_back;                    /**< a frame with other settings could not be made */
+	struct gz_view_scene_tables tables; /**< over settings, for the panel */
 	bool cross;
+	bool letters;
 	bool keys_shown;
+	bool panel_shown;
+	int panel_frames; /**< still to be drawn, so that the panel answers what has happened */
 
 	bool dragging;
 	bool cursor_known;
@@ -104,6 +112,9 @@ double gz_window_gaze_patience_s(const struct gz_window *window);
 
 /** Listen to keys, buttons, cursor, wheel and size. Before gz_panel_init(), which chains them. */
 void gz_window_input_attach(struct gz_window *window);
+
+/** Something that the panel may have to answer has happened. */
+void gz_window_wake_panel(struct gz_window *window);
 
 /** What H and ? show. Static text. */
 const char *gz_window_keys_text(void);

@@ -1,0 +1,22 @@
+/**
+ * @file
+ * The panel of settings: a widget for each row of the option tables, under a heading for each
+ * section. Internal to view/; inside a frame of Dear ImGui.
+ */
+#ifndef GZ_VIEW_PANEL_SETTINGS_H
+#define GZ_VIEW_PANEL_SETTINGS_H
+
+#include <cstddef>
+
+#include "base/option.h"
+
+/**
+ * Draw it at the right of the window.
+ *
+ * @param bindings  their targets are changed, each value within its row's range; rows that hold
+ *                  text are left out, and those of foveation methods other than the one chosen
+ * @return whether anything has been changed
+ */
+bool gz_panel_draw_settings(const struct gz_option_binding *bindings, size_t count);
+
+#endif
