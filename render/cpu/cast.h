@@ -36,6 +36,7 @@ struct gz_cast {
 	/* rays of pixel (x, y): see struct gz_ray_frame */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];
+	float clip_least[3], clip_greatest[3];  /**< voxel coordinates */
 	float world_per_voxel[3];               /**< to measure lengths in world units */
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
 	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the same in voxel lengths */
@@ -45,6 +46,7 @@ struct gz_cast {
 /** One tile as the kernels take it. */
 struct gz_cast_tile {
 	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS]; /**< pixels of its rays */
+	float jitter[GZ_TILE_RAYS];             /**< see gz_ray_jitter() */
 	int step;
 	uint32_t active; /**< bit i: cast ray i */
 };

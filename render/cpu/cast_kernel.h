@@ -3,9 +3,10 @@
  * instruction set, behind that set's vocabulary (simd_*.h). Voxel type and interpolation are
  * constants of each instance, so that the compiler drops what it does not need.
  *
- * A ray is cut into segments of one step from where it enters the box; a sample sits in the middle
- * of each, at entry + (k + 1/2) step; the last segment is what is left and its opacity is corrected
- * for its length. k is a count, so skipping empty space never shifts the phase.
+ * A ray is cut into segments of one step from where it enters the box, or a jitter before; a sample
+ * sits in the middle of each, at k + 1/2 steps. Where the box, or the clip box, cuts a segment at
+ * either end of the ray, its sample sits in the middle of what is left and its opacity is corrected
+ * for that length. k is a count, so skipping empty space never shifts the phase.
  */
 #include "render/cpu/cast.h"
 #ifdef SIMD_BLOCKS
@@ -52,8 +53,8 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		    const struct rays *rays, struct light *light)
 {
 	const struct look_up look_up = look_up_of(cast, type, nearest);
-	const vf end = rays->count; /* k + 1/2 < count */
-	vf k = vf_set(0.5F);
+	const vf end = rays->end; /* k + 1/2 < end */
+	vf k = rays->first + vf_set(0.5F);
 	vf until = vf_set(-1); /* samples before it are taken */
 	struct block block;
 	block_clear(&block);
@@ -84,15 +85,14 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 	return samples;
 }
 
-/* What is left behind the whole segments. */
-SIMD uint32_t march_rest(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
-			 const struct rays *rays, struct light *light)
+/* A part of a segment, at either end of the whole ones: around k, of a length in steps. */
+SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
+			 const struct rays *rays, vf k, vf steps, struct light *light)
 {
-	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), rays->rest));
+	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
 	mask = vm_and(mask, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	if (!vm_any(mask))
 		return 0;
-	const vf k = vf_fma(rays->rest, vf_set(0.5F), rays->count);
 	vf leave;
 	mask = vm_but(mask, look_up_cell(cast, rays, k, mask, &leave));
 	if (!vm_any(mask))
@@ -102,7 +102,7 @@ SIMD uint32_t march_rest(const struct gz_cast *cast, enum gz_voxel_type type, in
 	vf extinction;
 	vi colour;
 	gather_pair(cast->extinction, entry, mask, &extinction, &colour);
-	const vf length = rays->rest * vf_set(cast->voxel_lengths[step]);
+	const vf length = steps * vf_set(cast->voxel_lengths[step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
 	composite(colour, opacity, visible, light);
@@ -117,9 +117,13 @@ SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *t
 		const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
 		struct rays rays;
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
-		set_up_rays(cast, tile->step, x, y, vm_from_bits(tile->active >> first), &rays);
+		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
+			    vm_from_bits(tile->active >> first), &rays);
+		samples += march_part(cast, type, nearest, tile->step, &rays, rays.head_at,
+				      rays.head, &light);
 		samples += march(cast, type, nearest, tile->step, &rays, &light);
-		samples += march_rest(cast, type, nearest, tile->step, &rays, &light);
+		samples += march_part(cast, type, nearest, tile->step, &rays,
+				      vf_fma(rays.rest, vf_set(0.5F), rays.end), rays.rest, &light);
 		vi_store(out_pixels + first, to_pixel(cast, &light));
 	}
 	return samples;

@@ -50,6 +50,7 @@ struct cast_job {
 	const struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
 	struct sample_count *counts;
+	int jitter; /* seed */
 };
 
 static struct cpu_renderer *cpu_of(struct gz_renderer *renderer)
@@ -141,7 +142,8 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 }
 
 /* A level of detail, in its own voxel coordinates. */
-static void fill_volume(const struct cpu_renderer *cpu, int index, struct gz_cast *cast)
+static void fill_volume(const struct cpu_renderer *cpu, int index, const struct gz_clip_box *clip,
+			struct gz_cast *cast)
 {
 	const struct gz_level *level = &cpu->detail.levels.level[index];
 	const struct gz_volume *volume = &level->volume;
@@ -159,6 +161,8 @@ static void fill_volume(const struct cpu_renderer *cpu, int index, struct gz_cas
 	for (int axis = 0; axis < 3; axis++) {
 		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
 		cast->box[axis] = (float)box;
+		cast->clip_least[axis] = (float)(clip->least[axis] * box);
+		cast->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
 		cast->dims[axis] = (float)volume->dims[axis];
 		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
 		/* With one voxel there is no neighbour to step to. */
@@ -266,6 +270,7 @@ static void cast_part(void *user, size_t part, int worker)
 			tile_ray(job->plan, tile, ray, &x, &y);
 			rays.x[ray] = (float)x;
 			rays.y[ray] = (float)y;
+			rays.jitter[ray] = gz_ray_jitter(x, y, job->jitter);
 		}
 		uint32_t pixels[GZ_TILE_RAYS];
 		job->counts[worker].samples +=
@@ -314,7 +319,7 @@ static void fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
 	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
 	for (int i = 0; i < (coarser ? job->levels->count : 1); i++) {
 		job->casts[i] = job->casts[0];
-		fill_volume(cpu, i, &job->casts[i]);
+		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
 	}
 }
@@ -342,6 +347,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 		.lattices = &cpu->lattices,
 		.tile = cpu->kernels->tile[cpu->volume->type][nearest],
 		.counts = cpu->counts,
+		.jitter = rays->jitter,
 	};
 	fill_casts(cpu, camera, &ray_frame, rays, &job);
 	const uint64_t samples = cast_tiles(cpu, &job);

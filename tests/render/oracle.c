@@ -71,6 +71,36 @@ static void make_ray(const struct gz_camera *camera, int width, int height, int 
 	normalise(direction);
 }
 
+/* Shorten out_span to where a coordinate of the ray lies between two values. */
+static void cut(double origin, double direction, double low, double high, double out_span[2])
+{
+	if (direction == 0) {
+		if (origin < low || origin > high)
+			out_span[1] = -1;
+		return;
+	}
+	const double a = (low - origin) / direction, b = (high - origin) / direction;
+	out_span[0] = fmax(out_span[0], fmin(a, b));
+	out_span[1] = fmin(out_span[1], fmax(a, b));
+}
+
+/* pcg3d of Jarzynski and Olano, as they print it. */
+static double jitter(int x, int y, int seed)
+{
+	if (seed == 0)
+		return 0;
+	uint32_t v[3] = { (uint32_t)x, (uint32_t)y, (uint32_t)seed };
+	for (int i = 0; i < 3; i++)
+		v[i] = v[i] * 1664525U + 1013904223U;
+	v[0] += v[1] * v[2];
+	v[1] += v[2] * v[0];
+	v[2] += v[0] * v[1];
+	for (int i = 0; i < 3; i++)
+		v[i] ^= v[i] >> 16;
+	v[0] += v[1] * v[2];
+	return floor(v[0] / 256.0) / 16777216;
+}
+
 void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
 		  int height, int x, int y, double out_rgb[3])
@@ -91,19 +121,14 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 	}
 	const double step = least / longest / rays->ray_sampling_rate;
 
-	double origin[3], direction[3], enter = 0, leave = INFINITY;
+	double origin[3], direction[3];
 	make_ray(camera, width, height, x, y, origin, direction);
+	double box[2] = { 0, INFINITY }, shown[2] = { 0, INFINITY };
 	for (int axis = 0; axis < 3; axis++) {
-		const double half = volume->dims[axis] * volume->spacing[axis] / longest / 2;
-		if (direction[axis] == 0) {
-			if (fabs(origin[axis]) > half)
-				leave = -1;
-			continue;
-		}
-		const double a = (-half - origin[axis]) / direction[axis];
-		const double b = (half - origin[axis]) / direction[axis];
-		enter = fmax(enter, fmin(a, b));
-		leave = fmin(leave, fmax(a, b));
+		const double size = volume->dims[axis] * volume->spacing[axis] / longest;
+		cut(origin[axis], direction[axis], -size / 2, size / 2, box);
+		cut(origin[axis], direction[axis], (rays->clip.least[axis] - 0.5) * size,
+		    (rays->clip.greatest[axis] - 0.5) * size, shown);
 	}
 
 	const double first = volume->slope * volume->stored_min + volume->intercept;
@@ -113,8 +138,13 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 
 	double through = 1;
 	out_rgb[0] = out_rgb[1] = out_rgb[2] = 0;
-	for (double from = enter; from < leave && through >= 1.0 / 1024;) {
-		const double to = fmin(from + step, leave), middle = (from + to) / 2;
+	const double start = box[0] - jitter(x, y, rays->jitter) * step;
+	for (int k = 0; start + k * step < shown[1] && through >= 1.0 / 1024; k++) {
+		const double from = fmax(start + k * step, shown[0]);
+		const double to = fmin(start + (k + 1) * step, shown[1]);
+		if (from >= to)
+			continue;
+		const double middle = (from + to) / 2;
 		double at[3];
 		for (int axis = 0; axis < 3; axis++) {
 			const double half =
@@ -131,7 +161,6 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 		for (int channel = 0; channel < 3; channel++)
 			out_rgb[channel] += through * opacity * rgba[channel];
 		through *= 1 - opacity;
-		from = to;
 	}
 	for (int channel = 0; channel < 3; channel++)
 		out_rgb[channel] += through * rays->background[channel];

@@ -1,0 +1,250 @@
+/* The clip box and jitter: where rays are cut. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "oracle_check.h"
+
+static void clip(struct small_scene *scene, const double least[3], const double greatest[3])
+{
+	memcpy(scene->rays.clip.least, least, 3 * sizeof *least);
+	memcpy(scene->rays.clip.greatest, greatest, 3 * sizeof *greatest);
+}
+
+static void look_from(struct small_scene *scene, double x, double y, double z)
+{
+	memcpy(scene->camera.eye, (double[3]) { x, y, z }, 3 * sizeof(double));
+}
+
+static void clip_face_at_each_axis_equals_the_oracle(void **state)
+{
+	(void)state;
+	for (int face = 0; face < 6; face++) {
+		struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+		if (face < 3)
+			scene.rays.clip.least[face] = 0.37;
+		else
+			scene.rays.clip.greatest[face - 3] = 0.61;
+		oracle_check(&scene, 37, 33);
+	}
+}
+
+static void clip_of_every_voxel_type_and_interpolation_equals_the_oracle(void **state)
+{
+	(void)state;
+	static const double least[3] = { 0.3, 0.11, 0.2 }, greatest[3] = { 0.93, 0.8, 0.77 };
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+		for (int nearest = 0; nearest <= 1; nearest++) {
+			struct small_scene scene =
+				small_scene_waves(24, 20, 27, (enum gz_voxel_type)type);
+			clip(&scene, least, greatest);
+			scene.rays.interpolation =
+				nearest ? GZ_INTERPOLATION_NEAREST : GZ_INTERPOLATION_TRILINEAR;
+			/* on a voxel's face either voxel is right */
+			oracle_check_but(&scene, 41, 37, nearest ? 3 : 0);
+			small_scene_free(&scene);
+		}
+}
+
+static void clip_of_anisotropic_voxels_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(32, 30, 8, GZ_VOXEL_U16);
+	scene.volume.spacing[2] = 10;
+	clip(&scene, (const double[3]) { 0.1, 0.2, 0.33 }, (const double[3]) { 1, 0.7, 0.71 });
+	oracle_check(&scene, 40, 37);
+}
+
+static void clip_thinner_than_a_step_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(20, 0.8);
+	scene.rays.ray_sampling_rate = 0.5;
+	clip(&scene, (const double[3]) { 0, 0, 0.5 }, (const double[3]) { 1, 1, 0.52 });
+	oracle_check(&scene, 40, 37);
+}
+
+static void clip_with_the_eye_inside_at_and_beside_it_equals_the_oracle(void **state)
+{
+	(void)state;
+	static const double eyes[][3] = {
+		{ 0.07, 0.05, 0.02 }, /* within what is shown */
+		{ 0.4, 0.05, 0.02 },  /* within the box, outside what is shown */
+		{ 0.15, 0.03, 0.04 }, /* on its face */
+		{ 0.5, 0.03, 0.04 },  /* on the box's */
+	};
+	for (size_t i = 0; i < sizeof eyes / sizeof eyes[0]; i++) {
+		struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+		clip(&scene, (const double[3]) { 0.2, 0.1, 0.2 },
+		     (const double[3]) { 0.65, 0.9, 0.9 });
+		look_from(&scene, eyes[i][0], eyes[i][1], eyes[i][2]);
+		memcpy(scene.camera.look_at, (double[3]) { -0.3, -0.2, 0.1 }, 3 * sizeof(double));
+		oracle_check(&scene, 37, 33);
+	}
+}
+
+static void clip_orthographic_along_an_axis_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	look_from(&scene, 0, -2, 0);
+	scene.camera.height = 1.0937; /* no ray on a voxel's face */
+	clip(&scene, (const double[3]) { 0, 0.43, 0.1 }, (const double[3]) { 0.77, 0.9, 1 });
+	oracle_check(&scene, 41, 41);
+}
+
+static void clip_that_shows_everything_changes_no_bit(void **state)
+{
+	(void)state;
+	/* The clip box as it stands when nothing is set is the whole box: rays cut twice by the
+	 * same faces must be what they were. One beyond the data shows it. */
+	struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+	struct gz_image whole = { 0 }, cut = { 0 };
+	scene.transfer.points[0].opacity = scene.transfer.points[1].opacity = 0;
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 60, 50, &whole, NULL);
+	/* the waves' first voxels along x are empty */
+	scene.rays.clip.least[0] = 0.05;
+	small_scene_render(renderer, &scene, 60, 50, &cut, NULL);
+	assert_memory_equal(whole.pixels, cut.pixels, 60 * 50 * 4);
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&whole);
+	gz_image_free(&cut);
+	small_scene_free(&scene);
+}
+
+static void clip_of_constant_matter_keeps_its_brightness_for_any_step(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(48, 0.02);
+	struct gz_image reference = { 0 };
+	clip(&scene, (const double[3]) { 0.21, 0.3, 0.13 }, (const double[3]) { 0.55, 0.77, 0.64 });
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.rays.ray_sampling_rate = 8;
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 90, 80, &reference, NULL);
+	static const double rates[] = { 0.06, 0.37, 1.5 };
+	for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+		struct gz_image image = { 0 };
+		int x = 0, y = 0;
+		scene.rays.ray_sampling_rate = rates[i];
+		small_scene_render(renderer, &scene, 90, 80, &image, NULL);
+		const int difference = image_difference(&reference, &image, &x, &y);
+		if (difference > 1)
+			fail_msg("rate %g: pixel %d %d differs by %d", rates[i], x, y, difference);
+		gz_image_free(&image);
+	}
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&reference);
+	small_scene_free(&scene);
+}
+
+static void clip_box_that_holds_nothing_is_refused(void **state)
+{
+	(void)state;
+	struct gz_ray_params rays = gz_ray_params_default();
+	assert_true(gz_ray_params_valid(&rays));
+	rays.clip.least[1] = 0.5;
+	rays.clip.greatest[1] = 0.5;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.clip.least[1] = 0.7;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.clip.least[1] = NAN;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.clip.least[1] = -0.1;
+	assert_false(gz_ray_params_valid(&rays));
+}
+
+static void jitter_equals_the_oracle(void **state)
+{
+	(void)state;
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
+		struct small_scene scene = small_scene_waves(24, 20, 27, (enum gz_voxel_type)type);
+		scene.rays.jitter = 7 + 100000 * type;
+		scene.rays.ray_sampling_rate = 0.4;
+		oracle_check(&scene, 41, 37);
+	}
+}
+
+static void jitter_with_clip_from_inside_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	scene.rays.jitter = 2147483647;
+	scene.rays.ray_sampling_rate = 0.3;
+	clip(&scene, (const double[3]) { 0.2, 0.1, 0.2 }, (const double[3]) { 0.65, 0.9, 0.9 });
+	look_from(&scene, 0.07, 0.05, 0.02);
+	memcpy(scene.camera.look_at, (double[3]) { -0.3, -0.2, 0.1 }, 3 * sizeof(double));
+	oracle_check(&scene, 37, 33);
+}
+
+static void jitter_is_even_from_0_to_1_and_changes_with_its_seed(void **state)
+{
+	(void)state;
+	enum { SIDE = 128, BINS = 16 };
+	int bins[BINS] = { 0 }, same = 0;
+	double neighbours = 0;
+	for (int y = 0; y < SIDE; y++)
+		for (int x = 0; x < SIDE; x++) {
+			const float shift = gz_ray_jitter(x, y, 1);
+			assert_true(shift >= 0 && shift < 1);
+			bins[(int)(shift * BINS)]++;
+			same += shift == gz_ray_jitter(x, y, 2);
+			neighbours +=
+				((double)shift - 0.5) * ((double)gz_ray_jitter(x + 1, y, 1) - 0.5);
+		}
+	assert_in_range(same, 0, 2);
+	const int expected = SIDE * SIDE / BINS;
+	for (int i = 0; i < BINS; i++)
+		assert_in_range(bins[i], expected * 9 / 10, expected * 11 / 10);
+	/* as a share of the variance of one */
+	assert_true(fabs(neighbours / (SIDE * SIDE) * 12) < 0.03);
+	assert_true(gz_ray_jitter(3, 5, 0) == 0);
+}
+
+static void jitter_keeps_the_brightness_of_constant_matter(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(48, 0.02);
+	struct gz_image still = { 0 }, jittered = { 0 };
+	int x = 0, y = 0;
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 90, 80, &still, NULL);
+	scene.rays.jitter = 5;
+	scene.rays.ray_sampling_rate = 0.2;
+	small_scene_render(renderer, &scene, 90, 80, &jittered, NULL);
+	assert_in_range(image_difference(&still, &jittered, &x, &y), 0, 1);
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&still);
+	gz_image_free(&jittered);
+	small_scene_free(&scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(clip_face_at_each_axis_equals_the_oracle),
+		cmocka_unit_test(clip_of_every_voxel_type_and_interpolation_equals_the_oracle),
+		cmocka_unit_test(clip_of_anisotropic_voxels_equals_the_oracle),
+		cmocka_unit_test(clip_thinner_than_a_step_equals_the_oracle),
+		cmocka_unit_test(clip_with_the_eye_inside_at_and_beside_it_equals_the_oracle),
+		cmocka_unit_test(clip_orthographic_along_an_axis_equals_the_oracle),
+		cmocka_unit_test(clip_that_shows_everything_changes_no_bit),
+		cmocka_unit_test(clip_of_constant_matter_keeps_its_brightness_for_any_step),
+		cmocka_unit_test(clip_box_that_holds_nothing_is_refused),
+		cmocka_unit_test(jitter_equals_the_oracle),
+		cmocka_unit_test(jitter_with_clip_from_inside_equals_the_oracle),
+		cmocka_unit_test(jitter_is_even_from_0_to_1_and_changes_with_its_seed),
+		cmocka_unit_test(jitter_keeps_the_brightness_of_constant_matter),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
