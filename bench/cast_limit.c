@@ -68,6 +68,7 @@ static void fill_cast(struct bench *bench)
 	for (int axis = 0; axis < 3; axis++) {
 		const double per_world = volume->dims[axis] / (2 * half[axis]);
 		cast->box[axis] = cast->dims[axis] = (float)volume->dims[axis];
+		cast->clip_greatest[axis] = cast->box[axis]; /* the least is 0 */
 		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
 		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? stride : 0;
 		stride *= volume->dims[axis];
