@@ -179,7 +179,7 @@ static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **st
 				first = image;
 			else if (image_difference(&first, &image, &x, &y) > 1)
 				fail_msg("%s, %s: pixel %d %d differs", gz_method_names[method],
-					 simd_sets[i], x, y);
+					 sets[i], x, y);
 			if (i > 0)
 				gz_image_free(&image);
 			gz_renderer_destroy(&renderer);
