@@ -17,6 +17,9 @@
 
 /** Edge of a macrocell, voxels. */
 #define GZ_MACROCELL_EDGE 8
+/** Between cells of reach where something shows, below, and empty ones. */
+#define GZ_REACH_BORDER 128
+#define GZ_REACH_MAX    127
 
 /** Entries of a transfer table. Chosen: 16 between two grey levels of 8-bit data, so that the
  * nearest entry is near enough; 32 KiB, of which a scene uses a part, stay close to the processor.

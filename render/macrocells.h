@@ -14,10 +14,6 @@
 #include "render/transfer_table.h"
 #include "render/volume/volume.h"
 
-/** Between cells of reach where something shows, below, and empty ones. */
-#define GZ_REACH_BORDER 128
-#define GZ_REACH_MAX    127
-
 /** Cell (i, j, k) covers voxels [8i - 1, 8i + 8] along x, and so on: every voxel that an
  * interpolation within the cell, or half a voxel around it, can touch. */
 struct gz_macrocells {

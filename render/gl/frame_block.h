@@ -22,7 +22,7 @@
 #define GZ_GL_COUNT_SLOTS 1024
 
 /** Binding points. */
-enum gz_gl_texture_unit { GZ_GL_UNIT_VOXELS, GZ_GL_UNIT_DISTANCE, GZ_GL_UNIT_TRANSFER };
+enum gz_gl_texture_unit { GZ_GL_UNIT_VOXELS, GZ_GL_UNIT_REACH, GZ_GL_UNIT_TRANSFER };
 enum gz_gl_storage {
 	GZ_GL_STORAGE_TILES,
 	GZ_GL_STORAGE_POINTS,

@@ -1,5 +1,7 @@
 #include "render/gl/gl_passes.h"
 
+#include <stdio.h>
+
 #include <GL/glew.h>
 
 #include "render/gl/compute_program.h"
@@ -18,11 +20,6 @@ extern const char gz_glsl_regions_comp[];
 /* Locations and sizes of the shaders. */
 enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BLOCK_EDGE = 8 };
 enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
-
-static const char *const cast_defines[2][2] = {
-	{ "", "#define NEAREST\n" },
-	{ "#define VOXELS_FLOAT\n", "#define VOXELS_FLOAT\n#define NEAREST\n" },
-};
 
 /* The program, made if there is none yet. */
 static enum gz_result use(unsigned *program, const struct gz_compute_text *text,
@@ -57,15 +54,19 @@ static void await_points(void)
 }
 
 enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
-			  const struct gz_plan *plan, bool voxels_float, bool nearest,
+			  const struct gz_plan *plan, enum gz_voxel_type type, bool nearest,
 			  const struct gz_log *log)
 {
+	char defines[128];
+	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s", 8 * gz_voxel_size(type),
+		 nearest ? "#define NEAREST\n" : "",
+		 device->software ? "#define FETCH_IMAGES\n" : "");
 	const struct gz_compute_text text = {
 		.name = "cast.comp",
-		.defines = cast_defines[voxels_float][nearest],
+		.defines = defines,
 		.parts = { gz_glsl_frame_glsl, gz_glsl_fetch_glsl, gz_glsl_cast_comp },
 	};
-	const enum gz_result result = use(&passes->cast[voxels_float][nearest], &text, log);
+	const enum gz_result result = use(&passes->cast[type][nearest], &text, log);
 	if (result == GZ_OK)
 		dispatch(device, 0, plan->tile_count, TILES_A_GROUP);
 	return result;
@@ -164,11 +165,12 @@ enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl
 
 void gz_gl_passes_free(struct gz_gl_passes *passes)
 {
-	const GLuint programs[] = { passes->cast[0][0], passes->cast[0][1], passes->cast[1][0],
-				    passes->cast[1][1], passes->fill,       passes->quincunx,
-				    passes->regions };
+	const GLuint programs[] = { passes->fill, passes->quincunx, passes->regions };
 	for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);
+	for (int i = 0; i < GZ_VOXEL_TYPE_COUNT * 2; i++)
+		if (passes->cast[i / 2][i % 2])
+			glDeleteProgram(passes->cast[i / 2][i % 2]);
 	*passes = (struct gz_gl_passes) { 0 };
 }

@@ -13,10 +13,11 @@
 #include "render/gl/gl_device.h"
 #include "render/gl/gl_frame.h"
 #include "render/plan/plan.h"
+#include "render/volume/volume.h"
 
 /** Programs, made when they are first needed; names of OpenGL, 0: none yet. */
 struct gz_gl_passes {
-	unsigned cast[2][2]; /**< by whether voxels are float, and by nearest */
+	unsigned cast[GZ_VOXEL_TYPE_COUNT][2]; /**< by voxel type and nearest */
 	unsigned fill, quincunx, regions;
 };
 
@@ -26,7 +27,7 @@ struct gz_gl_passes {
  * @retval GZ_ERR_UNSUPPORTED  the driver refuses the shader; logged
  */
 enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
-			  const struct gz_plan *plan, bool voxels_float, bool nearest,
+			  const struct gz_plan *plan, enum gz_voxel_type type, bool nearest,
 			  const struct gz_log *log);
 
 /**

@@ -263,9 +263,9 @@ static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_frame *wo
 	fill_transfer(gl, plan, rays, &block);
 	fill_plan(plan, &block);
 	gz_gl_frame_begin(&gl->frame, &block);
-	gz_gl_volume_bind(&gl->textures);
+	gz_gl_volume_bind(&gl->textures, gl->volume->type);
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
-	result = gz_gl_cast(&gl->passes, &gl->device, plan, gl->volume->type == GZ_VOXEL_F32,
+	result = gz_gl_cast(&gl->passes, &gl->device, plan, gl->volume->type,
 			    rays->interpolation == GZ_INTERPOLATION_NEAREST, log);
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
 	if (result == GZ_OK)

@@ -1,5 +1,6 @@
 #include "render/gl/gl_volume.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include <GL/glew.h>
@@ -10,16 +11,16 @@
 
 /* Bytes handed to the driver at a time, which may copy them first. Chosen: a small part of any
  * volume that matters, large beside the cost of a call. */
-#define UPLOAD_BYTES ((size_t)64 << 20)
+#define UPLOAD_BYTES ((size_t)16 << 20)
 
-/* How a voxel type lies in a texture. */
+/* What a texel is to OpenGL: 32 bits of whatever voxel type, see shaders/fetch.glsl. */
 struct texel_format {
 	GLenum internal, external, type;
 };
 
 static const struct texel_format formats[GZ_VOXEL_TYPE_COUNT] = {
-	[GZ_VOXEL_U8] = { GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE },
-	[GZ_VOXEL_U16] = { GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT },
+	[GZ_VOXEL_U8] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
+	[GZ_VOXEL_U16] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
 	[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT },
 };
 
@@ -37,18 +38,61 @@ static GLuint make_texture(GLenum target)
 	return texture;
 }
 
-/* Voxels to the bound texture, a few slices at a time. */
-static void upload(const struct gz_volume *volume, const struct texel_format *format)
+/* A row of 8-bit voxels, each with its neighbours along x, y and both. */
+static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, uint32_t *out)
+{
+	for (int x = 0; x + 1 < count; x++)
+		out[x] = (uint32_t)row[x] | (uint32_t)row[x + 1] << 8 |
+			 (uint32_t)next_row[x] << 16 | (uint32_t)next_row[x + 1] << 24;
+	const int last = count - 1;
+	out[last] = row[last] * 0x101U | (next_row[last] * 0x101U) << 16;
+}
+
+/* A row of 16-bit voxels, each with its neighbour along x. */
+static void pack_row_u16(const uint16_t *row, int count, uint32_t *out)
+{
+	for (int x = 0; x + 1 < count; x++)
+		out[x] = (uint32_t)row[x] | (uint32_t)row[x + 1] << 16;
+	out[count - 1] = row[count - 1] * 0x10001U;
+}
+
+/* One slice of texels. */
+static void pack_slice(const struct gz_volume *volume, int z, uint32_t *out)
+{
+	const size_t columns = (size_t)volume->dims[0], rows = (size_t)volume->dims[1];
+	for (size_t y = 0; y < rows; y++, out += columns) {
+		const size_t row = ((size_t)z * rows + y) * columns;
+		const size_t next_row = y + 1 < rows ? row + columns : row;
+		if (volume->type == GZ_VOXEL_U8)
+			pack_row_u8((const uint8_t *)volume->voxels + row,
+				    (const uint8_t *)volume->voxels + next_row, volume->dims[0],
+				    out);
+		else if (volume->type == GZ_VOXEL_U16)
+			pack_row_u16((const uint16_t *)volume->voxels + row, volume->dims[0], out);
+		else
+			memcpy(out, (const float *)volume->voxels + row, columns * sizeof *out);
+	}
+}
+
+/* Voxels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
+static enum gz_result upload(const struct gz_volume *volume, const struct texel_format *format)
 {
 	const int *dims = volume->dims;
-	const size_t slice = (size_t)dims[0] * (size_t)dims[1] * gz_voxel_size(volume->type);
-	const int slices = slice < UPLOAD_BYTES ? (int)(UPLOAD_BYTES / slice) : 1;
-	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-	for (int z = 0; z < dims[2]; z += slices)
-		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1],
-				z + slices < dims[2] ? slices : dims[2] - z, format->external,
-				format->type, (const char *)volume->voxels + (size_t)z * slice);
-	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	const size_t slice = (size_t)dims[0] * (size_t)dims[1];
+	const size_t slice_bytes = slice * sizeof(uint32_t);
+	const int slices = slice_bytes < UPLOAD_BYTES ? (int)(UPLOAD_BYTES / slice_bytes) : 1;
+	uint32_t *texels = malloc(slice_bytes * (size_t)slices);
+	if (!texels)
+		return GZ_ERR_NO_MEM;
+	for (int z = 0; z < dims[2]; z += slices) {
+		const int count = z + slices < dims[2] ? slices : dims[2] - z;
+		for (int i = 0; i < count; i++)
+			pack_slice(volume, z + i, texels + (size_t)i * slice);
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1], count,
+				format->external, format->type, texels);
+	}
+	free(texels);
+	return GZ_OK;
 }
 
 static enum gz_result refuse_edge(const struct gz_gl_device *device, const struct gz_volume *volume,
@@ -79,14 +123,15 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 		       volume->dims[2]);
 	result = gz_gl_device_errors(device);
 	if (result == GZ_OK) {
-		upload(volume, format);
-		result = gz_gl_device_errors(device);
+		result = upload(volume, format);
+		const enum gz_result errors = gz_gl_device_errors(device);
+		result = result == GZ_OK ? errors : result;
 	}
 	glBindTexture(GL_TEXTURE_3D, 0);
 	if (result != GZ_OK) {
 		gz_err(log,
 		       "no room on the graphics device for %zu MiB of voxels; take --backend cpu",
-		       gz_volume_voxel_count(volume) * gz_voxel_size(volume->type) >> 20);
+		       gz_volume_voxel_count(volume) * sizeof(uint32_t) >> 20);
 		gz_gl_volume_free(gl);
 	}
 	return result;
@@ -94,15 +139,15 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 
 void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells)
 {
-	if (!gl->distance) {
-		gl->distance = make_texture(GL_TEXTURE_3D);
+	if (!gl->reach) {
+		gl->reach = make_texture(GL_TEXTURE_3D);
 		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R8UI, cells->dims[0], cells->dims[1],
 			       cells->dims[2]);
 	}
-	glBindTexture(GL_TEXTURE_3D, gl->distance);
+	glBindTexture(GL_TEXTURE_3D, gl->reach);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, cells->dims[0], cells->dims[1], cells->dims[2],
-			GL_RED_INTEGER, GL_UNSIGNED_BYTE, cells->distance);
+			GL_RED_INTEGER, GL_UNSIGNED_BYTE, cells->reach);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	glBindTexture(GL_TEXTURE_3D, 0);
 	memset(gl->row_length, 0, sizeof gl->row_length);
@@ -132,10 +177,15 @@ void gz_gl_volume_step_row(struct gz_gl_volume *gl, const struct gz_transfer_tab
 	gl->row_length[row] = length;
 }
 
-void gz_gl_volume_bind(const struct gz_gl_volume *gl)
+void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 {
-	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_DISTANCE);
-	glBindTexture(GL_TEXTURE_3D, gl->distance);
+	glBindImageTexture(GZ_GL_UNIT_VOXELS, gl->voxels, 0, GL_TRUE, 0, GL_READ_ONLY,
+			   formats[type].internal);
+	glBindImageTexture(GZ_GL_UNIT_REACH, gl->reach, 0, GL_TRUE, 0, GL_READ_ONLY, GL_R8UI);
+	glBindImageTexture(GZ_GL_UNIT_TRANSFER, gl->transfer, 0, GL_FALSE, 0, GL_READ_ONLY,
+			   GL_RG32UI);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_REACH);
+	glBindTexture(GL_TEXTURE_3D, gl->reach);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_TRANSFER);
 	glBindTexture(GL_TEXTURE_2D, gl->transfer);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_VOXELS);
@@ -144,10 +194,10 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl)
 
 void gz_gl_volume_free(struct gz_gl_volume *gl)
 {
-	const GLuint textures[] = { gl->voxels, gl->distance, gl->transfer };
+	const GLuint textures[] = { gl->voxels, gl->reach, gl->transfer };
 	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
 	 */
-	if (gl->voxels || gl->distance || gl->transfer)
+	if (gl->voxels || gl->reach || gl->transfer)
 		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
 	*gl = (struct gz_gl_volume) { 0 };
 }

@@ -14,7 +14,7 @@
 
 /** Textures; names of OpenGL, 0: none. Zero-initialised holds nothing. */
 struct gz_gl_volume {
-	unsigned voxels, distance, transfer;
+	unsigned voxels, reach, transfer;
 	double row_length[GZ_PLAN_STEPS_MAX + 1]; /**< voxel lengths that a row of transfer is for;
 						     0 = none yet */
 };
@@ -35,8 +35,8 @@ void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *
 void gz_gl_volume_step_row(struct gz_gl_volume *gl, const struct gz_transfer_table *table, int row,
 			   double length);
 
-/** Bind all to their units. */
-void gz_gl_volume_bind(const struct gz_gl_volume *gl);
+/** Bind all to their units, of textures and of images. */
+void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type);
 
 /** Delete the textures and zero the struct. */
 void gz_gl_volume_free(struct gz_gl_volume *gl);

@@ -3,8 +3,6 @@
 // in the middle of each; the last segment is what is left. k counts steps, so skipping never shifts a sample.
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(binding = 1) uniform usampler3D distances;
-
 layout(std430, binding = 2) buffer Counts
 {
 	uint counts[];
@@ -40,17 +38,17 @@ Ray set_up_ray(vec2 pixel, float step_length)
 	return ray;
 }
 
-// Whether the macrocell at k is empty; until: up to which k it lasts and, if it is, those around it too.
+// Whether the macrocell at k is empty; until: up to which k all cells are of its kind.
 bool look_up_cell(Ray ray, float k, out float until)
 {
 	vec3 at = fma(vec3(k), ray.delta, ray.start);
 	vec3 cell = floor(clamp(at * (1.0 / float(GZ_MACROCELL_EDGE)), vec3(0.0), cell_last.xyz));
-	uint away = texelFetch(distances, ivec3(cell), 0).r;
-	float reach = max(float(away), 1.0);
+	int away = int(FETCH(reaches, ivec3(cell)).r) - GZ_REACH_BORDER;
+	float reach = float(abs(away));
 	vec3 edge = mix(cell + (1.0 - reach), cell + reach, greaterThan(ray.delta, vec3(0.0)));
 	vec3 leave = (edge * float(GZ_MACROCELL_EDGE) - ray.start) * ray.inverse;
 	until = min(min(leave.x, leave.y), leave.z);
-	return away > 0U;
+	return away > 0;
 }
 
 void composite(uint colour, float opacity, inout Light light)
@@ -60,8 +58,8 @@ void composite(uint colour, float opacity, inout Light light)
 	light.through -= weight;
 }
 
-// On to the first occupied cell, if there is one; then all its samples, and on while something shows. Two
-// loops in turn, so that rays that skip and rays that sample do not wait for each other at every step.
+// On to the first occupied cell, if there is one; then all its samples. Two loops in turn, so that rays that
+// skip and rays that sample do not wait for each other at every step.
 uint march(Ray ray, int step_index, inout Light light)
 {
 	uint samples = 0U;
@@ -73,16 +71,13 @@ uint march(Ray ray, int step_index, inout Light light)
 			found = !look_up_cell(ray, k, until);
 			k += found ? 0.0 : max(ceil(until - k), 1.0);
 		}
-		until = max(until, k + 0.5);
-		bool inside = found;
-		while (inside && k < ray.count) {
+		float end = found ? min(max(until, k + 0.5), ray.count) : 0.0;
+		while (k < end) {
 			int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
-			uvec2 look = texelFetch(transfer, ivec2(entry, step_index), 0).rg;
-			float opacity = uintBitsToFloat(look.x);
-			composite(look.y, opacity, light);
+			uvec2 look = FETCH(transfer, ivec2(entry, step_index)).rg;
+			composite(look.y, uintBitsToFloat(look.x), light);
 			samples++;
 			k += 1.0;
-			inside = opacity > 0.0 || k < until;
 			if (light.through <= GZ_TRANSMITTANCE_END)
 				return samples;
 		}
@@ -98,7 +93,7 @@ uint march_rest(Ray ray, float voxel_lengths, inout Light light)
 		look_up_cell(ray, k, until))
 		return 0U;
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
-	uvec2 look = texelFetch(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX), 0).rg;
+	uvec2 look = FETCH(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX)).rg;
 	float extinction = uintBitsToFloat(look.x);
 	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * ray.rest * voxel_lengths) : 0.0, light);
 	return 1U;

@@ -1,37 +1,69 @@
 // From a place in voxel coordinates to the value there and its entry in the transfer function. Weights are
 // full floats: a sampler's own have 8 bits, which would show against the cpu backend.
-#ifdef VOXELS_FLOAT
+//
+// A texel is 32 bits, which every GPU fetches at its full rate: one float, or a 16-bit voxel and its neighbour
+// along x, or an 8-bit voxel and its neighbours along x, y and both. So a sample takes 8, 4 or 2 fetches.
+//
+// The same words are read as texels or, by FETCH_IMAGES, as those of images, which spares Mesa's processor
+// the arithmetic of levels that the textures do not have.
+#ifdef FETCH_IMAGES
+#define FETCH(from, place) imageLoad(from, place)
+#if VOXEL_BITS == 32
+layout(binding = 0, r32f) readonly uniform image3D voxels;
+#else
+layout(binding = 0, r32ui) readonly uniform uimage3D voxels;
+#endif
+layout(binding = 1, r8ui) readonly uniform uimage3D reaches;
+layout(binding = 2, rg32ui) readonly uniform uimage2D transfer;
+#else
+#define FETCH(from, place) texelFetch(from, place, 0)
+#if VOXEL_BITS == 32
 layout(binding = 0) uniform sampler3D voxels;
 #else
 layout(binding = 0) uniform usampler3D voxels;
 #endif
-
+layout(binding = 1) uniform usampler3D reaches;   // of macrocells
 layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; a row a step
-
-float voxel(ivec3 at)
-{
-	return float(texelFetch(voxels, at, 0).r);
-}
+#endif
 
 #ifdef NEAREST
 float sample_at(vec3 at)
 {
-	return voxel(ivec3(clamp(floor(at), vec3(0.0), dims.xyz - 1.0)));
+	ivec3 place = ivec3(clamp(floor(at), vec3(0.0), dims.xyz - 1.0));
+#if VOXEL_BITS == 32
+	return FETCH(voxels, place).r;
+#else
+	return float(FETCH(voxels, place).r & ((1U << VOXEL_BITS) - 1U));
+#endif
 }
 #else
+// The four voxels of a square: at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+vec4 square(ivec3 low, int high_x, int high_y)
+{
+#if VOXEL_BITS == 8
+	uint texel = FETCH(voxels, low).r;
+	return vec4(uvec4(texel, texel >> 8, texel >> 16, texel >> 24) & 255U);
+#elif VOXEL_BITS == 16
+	uvec2 rows = uvec2(FETCH(voxels, low).r, FETCH(voxels, ivec3(low.x, high_y, low.z)).r);
+	return vec4(rows.x & 0xFFFFU, rows.x >> 16, rows.y & 0xFFFFU, rows.y >> 16);
+#else
+	return vec4(FETCH(voxels, low).r, FETCH(voxels, ivec3(high_x, low.y, low.z)).r,
+		FETCH(voxels, ivec3(low.x, high_y, low.z)).r,
+		FETCH(voxels, ivec3(high_x, high_y, low.z)).r);
+#endif
+}
+
 float sample_at(vec3 at)
 {
 	vec3 place = clamp(at - 0.5, vec3(0.0), dims.xyz - 1.0);
 	ivec3 low = min(ivec3(place), last_voxel.xyz);
 	ivec3 high = min(low + 1, ivec3(dims.xyz) - 1);
 	vec3 share = place - vec3(low);
-	vec4 left = vec4(voxel(low), voxel(ivec3(low.x, high.y, low.z)), voxel(ivec3(low.xy, high.z)),
-		voxel(ivec3(low.x, high.yz)));
-	vec4 right = vec4(voxel(ivec3(high.x, low.yz)), voxel(ivec3(high.xy, low.z)),
-		voxel(ivec3(high.x, low.y, high.z)), voxel(high));
-	vec4 rows = fma(vec4(share.x), right - left, left);
-	vec2 planes = fma(vec2(share.y), rows.yw - rows.xz, rows.xz);
-	return fma(share.z, planes.y - planes.x, planes.x);
+	vec4 near = square(low, high.x, high.y);
+	vec4 far = square(ivec3(low.xy, high.z), high.x, high.y);
+	vec4 plane = fma(vec4(share.z), far - near, near);
+	vec2 row = fma(vec2(share.y), plane.zw - plane.xy, plane.xy);
+	return fma(share.x, row.y - row.x, row.x);
 }
 #endif
 
