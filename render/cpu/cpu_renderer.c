@@ -47,7 +47,7 @@ struct cast_job {
 	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
 			       */
 	const struct gz_plan *plan;
-	const struct gz_lattices *lattices;
+	struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
 	struct sample_count *counts;
 	int jitter; /* seed */
@@ -229,6 +229,8 @@ static void store_tile(const struct cast_job *job, const struct gz_tile *tile,
 		       const uint32_t pixels[GZ_TILE_RAYS])
 {
 	const bool pyramid = job->plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
+	if (pyramid)
+		gz_lattices_mark(job->lattices, tile);
 	const int last = pyramid ? job->plan->layer_count - 1 : tile->layer;
 	for (int i = 0; i < GZ_TILE_RAYS; i++) {
 		int x, y;
@@ -352,7 +354,8 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 	fill_casts(cpu, camera, &ray_frame, rays, &job);
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();
-	gz_reconstruct(plan, &cpu->lattices, cpu->workers, image);
+	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,
+		       image);
 	if (out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,

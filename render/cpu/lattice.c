@@ -1,6 +1,7 @@
 #include "render/cpu/lattice.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Room behind each lattice, so that wide loads at its end stay inside. */
 enum { PADDING_POINTS = 32 };
@@ -25,6 +26,40 @@ static size_t points_outside_picture(const struct gz_plan *plan)
 	return points;
 }
 
+/* Blocks of all tiles: roots of the plan's quadtree, as far as the coarsest lattice reaches. */
+static enum gz_result prepare_blocks(struct gz_lattices *lattices, const struct gz_plan *plan)
+{
+	const struct gz_plan_layer *coarsest = &plan->layers[plan->layer_count - 1];
+	const int blocks_a_root =
+		(GZ_TILE_EDGE * coarsest->spacing + GZ_BLOCK_EDGE - 1) / GZ_BLOCK_EDGE;
+	const int columns = ((coarsest->columns - 1) / GZ_TILE_EDGE + 1) * blocks_a_root;
+	const int rows = ((coarsest->rows - 1) / GZ_TILE_EDGE + 1) * blocks_a_root;
+	const size_t needed = (size_t)columns * (size_t)rows;
+	if (needed > lattices->block_capacity) {
+		uint8_t *blocks = realloc(lattices->blocks, needed);
+		if (!blocks)
+			return GZ_ERR_NO_MEM;
+		lattices->blocks = blocks;
+		lattices->block_capacity = needed;
+	}
+	lattices->block_columns = columns;
+	memset(lattices->blocks, 0, needed);
+	return GZ_OK;
+}
+
+void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile)
+{
+	if (tile->layer == 0)
+		return;
+	const int edge = GZ_TILE_EDGE * lattices->layers[tile->layer].spacing / GZ_BLOCK_EDGE;
+	const size_t width = (size_t)(tile->pattern == GZ_TILE_QUINCUNX ? 2 * edge : edge);
+	uint8_t *row = lattices->blocks +
+		       (ptrdiff_t)(tile->y / GZ_BLOCK_EDGE) * lattices->block_columns +
+		       tile->x / GZ_BLOCK_EDGE;
+	for (int i = 0; i < edge; i++, row += lattices->block_columns)
+		memset(row, 2 * tile->layer + tile->pattern, width);
+}
+
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,
 				   struct gz_image *image)
 {
@@ -35,6 +70,11 @@ enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz
 			return GZ_ERR_NO_MEM;
 		lattices->memory = memory;
 		lattices->capacity = needed;
+	}
+	if (plan->reconstruction == GZ_RECONSTRUCT_PYRAMID) {
+		const enum gz_result result = prepare_blocks(lattices, plan);
+		if (result != GZ_OK)
+			return result;
 	}
 	lattices->count = plan->layer_count;
 	uint32_t *next = lattices->memory;
@@ -59,5 +99,6 @@ enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz
 void gz_lattices_free(struct gz_lattices *lattices)
 {
 	free(lattices->memory);
+	free(lattices->blocks);
 	*lattices = (struct gz_lattices) { 0 };
 }

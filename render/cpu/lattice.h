@@ -20,18 +20,37 @@ struct gz_lattice {
 	int spacing, columns, rows;
 };
 
+/** Edge of the blocks that are filled alike, points of the lattice that is filled: the smallest
+ * tile that leaves points to fill covers as many on the next finer lattice. */
+#define GZ_BLOCK_EDGE 8
+
 /** All layers of a frame. Zero-initialised is empty; keep it from frame to frame. */
 struct gz_lattices {
 	int count;
 	struct gz_lattice layers[GZ_PLAN_LAYERS_MAX];
 	uint32_t *memory; /**< of the layers outside the picture */
 	size_t capacity;  /**< points */
+	/* of a pyramid: for each block of GZ_BLOCK_EDGE x GZ_BLOCK_EDGE pixels, 2 * layer + pattern
+	 * of its tile, 0 where tiles are of layer 0 */
+	uint8_t *blocks;
+	size_t block_capacity;
+	int block_columns;
 };
 
 /** Lay out the layers of @p plan, the first of spacing 1 in @p image, which has the plan's size.
  *  GZ_ERR_NO_MEM. Contents are undefined. */
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,
 				   struct gz_image *image);
+
+/** Note which blocks a tile covers, for the reconstruction of a pyramid. Threads: any number, each
+ * with tiles of its own. */
+void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile);
+
+/** What gz_lattices_mark() noted of block (@p column, @p row): 2 * layer + pattern. */
+static inline int gz_lattices_block(const struct gz_lattices *lattices, int column, int row)
+{
+	return lattices->blocks[(ptrdiff_t)row * lattices->block_columns + column];
+}
 
 /** Free and zero. */
 void gz_lattices_free(struct gz_lattices *lattices);

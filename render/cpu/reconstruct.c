@@ -7,67 +7,25 @@ struct job {
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	uint32_t *pixels;
-	int level; /* pyramid: the lattice being filled */
+	const struct gz_row_filters *filters;
+	int square_columns;
 };
 
-enum {
-	TILES_A_PART = 64, /* chosen: some tens of microseconds of work */
-	ROWS_A_PART = 16,
-};
+enum { ROWS_A_PART = 16 };
 
-/* What a pass over the tiles does with each. */
-typedef void tile_pass(const struct job *job, const struct gz_tile *tile);
-
-static void fill_from_coarser(const struct job *job, const struct gz_tile *tile)
-{
-	const struct gz_lattice *fine = &job->lattices->layers[job->level];
-	if (tile->layer <= job->level)
-		return;
-	const int edge = GZ_TILE_EDGE << (tile->layer - job->level);
-	const int x = tile->x / fine->spacing, y = tile->y / fine->spacing;
-	gz_reconstruct_block(fine + 1, fine, x, y, edge);
-	if (tile->pattern == GZ_TILE_QUINCUNX) /* twice as wide as high */
-		gz_reconstruct_block(fine + 1, fine, x + edge, y, edge);
-}
-
-static void fill_quincunx(const struct job *job, const struct gz_tile *tile)
-{
-	const struct gz_lattice *lattice = &job->lattices->layers[job->level];
-	if (tile->layer == job->level && tile->pattern == GZ_TILE_QUINCUNX)
-		gz_reconstruct_quincunx(lattice, tile->x / lattice->spacing,
-					tile->y / lattice->spacing, 2 * GZ_TILE_EDGE, GZ_TILE_EDGE);
-}
-
-static void pass_over_tiles(const struct job *job, size_t part, tile_pass *pass)
-{
-	const size_t from = part * TILES_A_PART;
-	const size_t to = from + TILES_A_PART < job->plan->tile_count ? from + TILES_A_PART
-								      : job->plan->tile_count;
-	for (size_t i = from; i < to; i++)
-		pass(job, &job->plan->tiles[i]);
-}
-
-static void fill_from_coarser_part(void *user, size_t part, int worker)
+static void fill_square(void *user, size_t part, int worker)
 {
 	(void)worker;
-	pass_over_tiles(user, part, fill_from_coarser);
+	const struct job *job = user;
+	gz_reconstruct_square(job->plan, job->lattices, job->filters,
+			      (int)part % job->square_columns, (int)part / job->square_columns);
 }
 
-static void fill_quincunx_part(void *user, size_t part, int worker)
-{
-	(void)worker;
-	pass_over_tiles(user, part, fill_quincunx);
-}
-
-/* From the coarsest lattice down: first what is coarser than this one, then what is half of it. */
 static void reconstruct_pyramid(struct job *job, struct gz_workers *workers)
 {
-	const size_t parts = (job->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART;
-	for (job->level = job->plan->layer_count - 1; job->level >= 0; job->level--) {
-		if (job->level + 1 < job->plan->layer_count)
-			gz_workers_run(workers, fill_from_coarser_part, job, parts);
-		gz_workers_run(workers, fill_quincunx_part, job, parts);
-	}
+	int rows;
+	gz_reconstruct_squares(job->plan, &job->square_columns, &rows);
+	gz_workers_run(workers, fill_square, job, (size_t)job->square_columns * (size_t)rows);
 }
 
 static void fill_row(const struct job *job, int y, int layer, int x0, int x1, uint32_t *out);
@@ -176,11 +134,13 @@ static void fill_rows(void *user, size_t part, int worker)
 }
 
 void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattices,
-		    struct gz_workers *workers, struct gz_image *image)
+		    const struct gz_row_filters *filters, struct gz_workers *workers,
+		    struct gz_image *image)
 {
 	struct job job = {
 		.plan = plan,
 		.lattices = lattices,
+		.filters = filters,
 		.pixels = (uint32_t *)(void *)image->pixels,
 	};
 	switch (plan->reconstruction) {

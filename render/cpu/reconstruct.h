@@ -8,22 +8,53 @@
 #include "render/cpu/lattice.h"
 #include "render/workers.h"
 
+/** Points that the row filters make at a time: they write, and read, up to the next multiple. */
+#define GZ_ROW_CHUNK 8
+
+/**
+ * The filters of the pyramid, row by row, for one instruction set. All give the same bits. Points
+ * are 4 channels of 8 bits; docs/foveation.md has the formulas.
+ */
+struct gz_row_filters {
+	const char *name; /**< as of gz_cast_kernels */
+	/** @p count points halfway between @p rows[1] and @p rows[2], Catmull-Rom. */
+	void (*cubic_between)(const uint32_t *const rows[4], uint32_t *out, int count);
+	/** @p count points of @p row, each followed by the one halfway to the next, Catmull-Rom:
+	 * one point before and two behind are read. */
+	void (*cubic_double)(const uint32_t *row, uint32_t *out, int count);
+	/** @p count points halfway between two rows, which may be the same, each followed by the
+	 * mean of the four around: one point behind is read. */
+	void (*mean_double)(const uint32_t *above, const uint32_t *below, uint32_t *out, int count);
+	/** @p count points of @p row, of which those number @p first, @p first + 2... are made anew
+	 *  from those 1 and 3 points away along both axes: the mean of Catmull-Rom along each. */
+	void (*cubic_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
+			       int count);
+	/** The same by the mean of the four neighbours. */
+	void (*mean_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
+			      int count);
+};
+
+extern const struct gz_row_filters gz_row_filters_portable;
+#ifdef GZ_CAST_X86
+extern const struct gz_row_filters gz_row_filters_avx2;
+extern const struct gz_row_filters gz_row_filters_avx512;
+#endif
+
+/** The filters for the instruction set of @p name, one of gz_cast_kernels; the portable ones if
+ * there are none of that name. */
+const struct gz_row_filters *gz_row_filters_find(const char *name);
+
 /** Fill every pixel of @p image that was not cast. The same bits for any number of threads. */
 void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattices,
-		    struct gz_workers *workers, struct gz_image *image);
+		    const struct gz_row_filters *filters, struct gz_workers *workers,
+		    struct gz_image *image);
 
-/** Fill a block of the finer lattice from the one of twice its spacing.
- *
- *  @param coarse, fine  neighbours in a pyramid: point i of coarse is point 2i of fine
- *  @param x, y          first point of the block in @p fine; even
- *  @param edge          points to fill along each side; even; cut off at the edge of @p fine
- */
-void gz_reconstruct_block(const struct gz_lattice *coarse, const struct gz_lattice *fine, int x,
-			  int y, int edge);
+/** The squares that the picture of a pyramid is made in: columns and rows. */
+void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows);
 
-/** Fill every second point of a block, those between the points of quincunx tiles, from their four
- *  neighbours in the same lattice. Parameters as above. */
-void gz_reconstruct_quincunx(const struct gz_lattice *lattice, int x, int y, int width, int height);
+/** Fill one of them. Threads: any number, each with squares of its own. */
+void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
+			   const struct gz_row_filters *filters, int column, int row);
 
 /** Pixels from @p x0 up to, not including, @p x1 of row @p y, bilinearly from one lattice.
  *

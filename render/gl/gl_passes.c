@@ -18,7 +18,7 @@ extern const char gz_glsl_quincunx_comp[];
 extern const char gz_glsl_regions_comp[];
 
 /* Locations and sizes of the shaders. */
-enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BLOCK_EDGE = 8 };
+enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BILINEAR = 3, BLOCK_EDGE = 8 };
 enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
 
 /* The program, made if there is none yet. */
@@ -90,14 +90,15 @@ static enum gz_result fill_level(struct gz_gl_passes *passes, const struct gz_gl
 		return result;
 	await_points();
 	glUniform1ui(LEVEL, (GLuint)level);
+	glUniform1ui(BILINEAR, plan->filter == GZ_FILTER_BILINEAR);
 	dispatch(device, first, plan->tile_count - first, 1);
 	return GZ_OK;
 }
 
 /* Points of lattice @p level between those of quincunx tiles. */
 static enum gz_result fill_quincunx(struct gz_gl_passes *passes, const struct gz_gl_device *device,
-				    const struct gz_gl_frame *frame, int level,
-				    const struct gz_log *log)
+				    const struct gz_gl_frame *frame, const struct gz_plan *plan,
+				    int level, const struct gz_log *log)
 {
 	const struct gz_compute_text text = {
 		.name = "quincunx.comp",
@@ -111,6 +112,7 @@ static enum gz_result fill_quincunx(struct gz_gl_passes *passes, const struct gz
 		return result;
 	await_points();
 	glUniform1ui(LEVEL, (GLuint)level);
+	glUniform1ui(BILINEAR, plan->filter == GZ_FILTER_BILINEAR);
 	dispatch(device, range->first, range->count, TILES_A_GROUP);
 	return GZ_OK;
 }
@@ -123,7 +125,7 @@ static enum gz_result fill_pyramid(struct gz_gl_passes *passes, const struct gz_
 	for (int level = plan->layer_count - 1; level >= 0 && result == GZ_OK; level--) {
 		result = fill_level(passes, device, frame, plan, level, log);
 		if (result == GZ_OK)
-			result = fill_quincunx(passes, device, frame, level, log);
+			result = fill_quincunx(passes, device, frame, plan, level, log);
 	}
 	return result;
 }

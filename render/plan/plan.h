@@ -8,6 +8,8 @@
  * of G pixels: the lattice is fixed to the screen, not to the gaze. A square tile takes every point
  * of its block; a quincunx tile takes every second one, like the black fields of a chessboard,
  * which is a lattice of spacing G * sqrt(2) turned by 45 degrees: the rung between G and 2G.
+ * Quincunx tiles lie on layers of spacing 2 or more, and in pairs, one above the other, that fill a
+ * square of 2 * GZ_TILE_EDGE spacings whose corner is a multiple of its edge.
  *
  * Lattice point (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G), which
  * may lie beyond the right and lower edge of the picture, so that every pixel lies between four
@@ -76,10 +78,20 @@ struct gz_spacing_table {
 	struct gz_spacing_row rows[GZ_SPACING_TABLE_MAX];
 };
 
+/** How a pyramid's points between cast ones are made: docs/foveation.md has the formulas. */
+enum gz_filter {
+	GZ_FILTER_CATMULL_ROM, /**< of four points along an axis, clamped to the nearer two */
+	GZ_FILTER_BILINEAR,
+};
+
+/** "catmull_rom", "bilinear"; NULL-terminated. */
+extern const char *const gz_filter_names[];
+
 /** Everything a method can be told; the table's keys are "foveation.<name>". */
 struct gz_foveation {
 	int method;               /**< enum gz_method */
 	int step_rule;            /**< enum gz_step_rule */
+	int filter;               /**< enum gz_filter: of acuity; mdc and ddc are bilinear */
 	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
 	double mdc_square_px;     /**< edge of the fine square, px of the picture */
@@ -198,6 +210,7 @@ struct gz_plan_request {
 struct gz_plan {
 	int width, height;
 	enum gz_reconstruction reconstruction;
+	enum gz_filter filter; /**< of a pyramid */
 	int layer_count;
 	struct gz_plan_layer layers[GZ_PLAN_LAYERS_MAX];
 	int step_count;

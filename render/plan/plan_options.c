@@ -5,6 +5,8 @@ const char *const gz_method_names[] = { "standard", "mdc",     "ddc",   "acuity"
 					"mdc3",     "uniform", "table", NULL };
 const char *const gz_step_rule_names[] = { "method", "none", "distance", "acuity", NULL };
 
+const char *const gz_filter_names[] = { "catmull_rom", "bilinear", NULL };
+
 #define AT(field) offsetof(struct gz_foveation, field)
 
 const struct gz_option gz_foveation_options[] = {
@@ -12,6 +14,8 @@ const struct gz_option gz_foveation_options[] = {
 	  .preset = "acuity", .help = "where rays go" },
 	{ "foveation.step_rule", GZ_OPTION_CHOICE, AT(step_rule), .choices = gz_step_rule_names,
 	  .preset = "method", .help = "when steps along a ray grow" },
+	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,
+	  .preset = "catmull_rom", .help = "acuity: how pixels between rays are made" },
 	{ "foveation.acuity_slope", GZ_OPTION_DOUBLE, AT(acuity_slope), 0.001, 1, .preset = "0.022",
 	  .help = "loss of acuity, degrees per cycle and degree of eccentricity" },
 	{ "foveation.acuity_foveal_deg", GZ_OPTION_DOUBLE, AT(acuity_foveal_deg), 0.001, 1,

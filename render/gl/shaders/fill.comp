@@ -2,21 +2,35 @@
 // work-group a tile.
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(location = 2) uniform uint level;
-
-uint filled(uvec4 coarse, uvec2 place)
+uint filled_bilinear(uvec4 coarse, ivec2 place)
 {
-	uvec2 half_place = place / 2U, odd = place % 2U;
+	ivec2 half_place = place / 2, odd = place % 2;
 	uint here = point_of(coarse, half_place);
-	if (odd.x + odd.y == 0U)
+	if (odd.x + odd.y == 0)
 		return here;
-	if (odd.y == 0U)
-		return mean_of_2(here, point_of(coarse, half_place + uvec2(1U, 0U)));
-	uint below = point_of(coarse, half_place + uvec2(0U, 1U));
-	if (odd.x == 0U)
-		return mean_of_2(here, below);
-	return mean_of_4(here, point_of(coarse, half_place + uvec2(1U, 0U)), below,
-		point_of(coarse, half_place + uvec2(1U, 1U)));
+	uint across = point_of(coarse, half_place + odd);
+	if (odd.x + odd.y == 1)
+		return mean_of_2(here, across);
+	return mean_of_4(here, point_of(coarse, half_place + ivec2(1, 0)),
+		point_of(coarse, half_place + ivec2(0, 1)), across);
+}
+
+// Below a place of a coarse row: halfway to the next.
+uint between_rows(uvec4 coarse, ivec2 place)
+{
+	return cubic(point_of(coarse, place - ivec2(0, 1)), point_of(coarse, place),
+		point_of(coarse, place + ivec2(0, 1)), point_of(coarse, place + ivec2(0, 2)));
+}
+
+uint filled_cubic(uvec4 coarse, ivec2 place)
+{
+	ivec2 half_place = place / 2, odd = place % 2;
+	uint row[4];
+	for (int i = odd.x == 0 ? 1 : 0; i < (odd.x == 0 ? 2 : 4); i++) {
+		ivec2 at = half_place + ivec2(i - 1, 0);
+		row[i] = odd.y == 0 ? point_of(coarse, at) : between_rows(coarse, at);
+	}
+	return odd.x == 0 ? row[1] : cubic(row[0], row[1], row[2], row[3]);
 }
 
 void main()
@@ -28,5 +42,7 @@ void main()
 	uvec2 first = tile.at / fine.w, end = min(first + edges, fine.yz);
 	for (uint y = first.y + gl_LocalInvocationID.y; y < end.y; y += gl_WorkGroupSize.y)
 		for (uint x = first.x + gl_LocalInvocationID.x; x < end.x; x += gl_WorkGroupSize.x)
-			points[fine.x + y * fine.y + x] = filled(coarse, uvec2(x, y));
+			points[fine.x + y * fine.y + x] = bilinear != 0U
+				? filled_bilinear(coarse, ivec2(x, y))
+				: filled_cubic(coarse, ivec2(x, y));
 }

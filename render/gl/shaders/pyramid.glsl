@@ -1,21 +1,49 @@
-// Means of points as the cpu backend takes them: a byte a channel, rounded to nearest.
+// The filters of the pyramid, docs/foveation.md: whole numbers, a byte a channel, the cpu backend's bits.
+layout(location = 2) uniform uint level;
+layout(location = 3) uniform uint bilinear;
+
+ivec4 channels(uint point)
+{
+	return ivec4(uvec4(point, point >> 8, point >> 16, point >> 24) & 255U);
+}
+
+uint packed_point(ivec4 values)
+{
+	uvec4 bits = uvec4(values) << uvec4(0U, 8U, 16U, 24U);
+	return bits.x | bits.y | bits.z | bits.w;
+}
+
 uint mean_of_2(uint a, uint b)
 {
-	const uint even = 0x00FF00FFU;
-	uint low = (a & even) + (b & even) + 0x00010001U;
-	uint high = (a >> 8 & even) + (b >> 8 & even) + 0x00010001U;
-	return (low >> 1 & even) | (high >> 1 & even) << 8;
+	return packed_point((channels(a) + channels(b) + 1) >> 1);
 }
 
 uint mean_of_4(uint a, uint b, uint c, uint d)
 {
-	const uint even = 0x00FF00FFU;
-	uint low = (a & even) + (b & even) + (c & even) + (d & even) + 0x00020002U;
-	uint high = (a >> 8 & even) + (b >> 8 & even) + (c >> 8 & even) + (d >> 8 & even) + 0x00020002U;
-	return (low >> 2 & even) | (high >> 2 & even) << 8;
+	return packed_point((channels(a) + channels(b) + channels(c) + channels(d) + 2) >> 2);
 }
 
-uint point_of(uvec4 layer, uvec2 place)
+// Catmull-Rom halfway between b and c, never outside of them.
+uint cubic(uint a, uint b, uint c, uint d)
 {
-	return points[layer.x + place.y * layer.y + place.x];
+	ivec4 from = channels(b), to = channels(c);
+	ivec4 m = (from + to + 1) >> 1, n = (channels(a) + channels(d) + 1) >> 1;
+	ivec4 value = m + sign(m - n) * ((abs(m - n) + 4) >> 3);
+	return packed_point(clamp(value, min(from, to), max(from, to)));
+}
+
+int mirrored(int i, int count)
+{
+	int period = 2 * (count - 1);
+	if (period == 0)
+		return 0;
+	i = abs(i) % period;
+	return i < count ? i : period - i;
+}
+
+// A point of a lattice, mirrored beyond its rim.
+uint point_of(uvec4 layer, ivec2 place)
+{
+	uint column = uint(mirrored(place.x, int(layer.y))), row = uint(mirrored(place.y, int(layer.z)));
+	return points[layer.x + row * layer.y + column];
 }

@@ -1,26 +1,26 @@
-// The points between those of quincunx tiles, from their four neighbours in the same lattice.
+// The points between those of quincunx tiles, from points 1 and 3 away along both axes of the same
+// lattice.
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(location = 2) uniform uint level;
-
-// On the rim only some neighbours are there: opposite ones, where there are.
-uint mean_around(uvec4 layer, uvec2 at)
+uint along(uvec4 layer, ivec2 at, ivec2 axis)
 {
-	bool left = at.x > 0U, right = at.x + 1U < layer.y;
-	bool above = at.y > 0U, below = at.y + 1U < layer.z;
-	uint west = left ? point_of(layer, at - uvec2(1U, 0U)) : 0U;
-	uint east = right ? point_of(layer, at + uvec2(1U, 0U)) : 0U;
-	uint north = above ? point_of(layer, at - uvec2(0U, 1U)) : 0U;
-	uint south = below ? point_of(layer, at + uvec2(0U, 1U)) : 0U;
-	if (left && right && above && below)
-		return mean_of_4(west, east, north, south);
-	if (left && right)
-		return mean_of_2(west, east);
-	if (above && below)
-		return mean_of_2(north, south);
-	if (left || right)
-		return left ? west : east;
-	return above ? north : south;
+	uint before = point_of(layer, at - axis), behind = point_of(layer, at + axis);
+	if (bilinear != 0U)
+		return mean_of_2(before, behind);
+	return cubic(point_of(layer, at - 3 * axis), before, behind, point_of(layer, at + 3 * axis));
+}
+
+uint between(uvec4 layer, ivec2 at)
+{
+	const ivec2 x = ivec2(1, 0), y = ivec2(0, 1);
+	if (layer.y == 1U) // no neighbours along that axis
+		return along(layer, at, y);
+	if (layer.z == 1U)
+		return along(layer, at, x);
+	if (bilinear != 0U)
+		return mean_of_4(point_of(layer, at - x), point_of(layer, at + x),
+			point_of(layer, at - y), point_of(layer, at + y));
+	return mean_of_2(along(layer, at, x), along(layer, at, y));
 }
 
 void main()
@@ -34,5 +34,5 @@ void main()
 	uvec2 at = tile.at / layer.w + uvec2(0U, ray / uint(GZ_TILE_EDGE));
 	at.x += 2U * (ray % uint(GZ_TILE_EDGE)) + (at.y % 2U == 0U ? 1U : 0U);
 	if (at.x < layer.y && at.y < layer.z)
-		points[layer.x + at.y * layer.y + at.x] = mean_around(layer, at);
+		points[layer.x + at.y * layer.y + at.x] = between(layer, ivec2(at));
 }

@@ -1,0 +1,324 @@
+/* The pyramid against its formulas (docs/foveation.md), written out point by point over whole
+ * lattices. */
+#include "check.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/cpu/cast.h"
+#include "render/cpu/reconstruct.h"
+
+enum { LEVELS_MAX = GZ_PLAN_LAYERS_MAX };
+
+/* A plan and what its rays saw. */
+struct scene {
+	struct gz_plan plan;
+	struct gz_lattices lattices;
+	struct gz_image image;
+};
+
+static uint32_t random_point(uint32_t *state)
+{
+	*state = *state * 1664525 + 1013904223;
+	return *state ^ *state >> 15;
+}
+
+/* Where ray i of a tile lies, px. */
+static void ray_place(const struct gz_plan *plan, const struct gz_tile *tile, int i, int *x, int *y)
+{
+	*x = tile->x + gz_tile_columns[tile->pattern][i] * plan->layers[tile->layer].spacing;
+	*y = tile->y + gz_tile_rows[i] * plan->layers[tile->layer].spacing;
+}
+
+/* Put a point on every lattice that has it, from its tile's layer on. */
+static void put_on_lattices(struct gz_lattices *lattices, int layer, int x, int y, uint32_t colour)
+{
+	for (; layer < lattices->count; layer++) {
+		struct gz_lattice *lattice = &lattices->layers[layer];
+		const int column = x / lattice->spacing, row = y / lattice->spacing;
+		if (x % lattice->spacing == 0 && y % lattice->spacing == 0 &&
+		    column < lattice->columns && row < lattice->rows)
+			lattice->points[(size_t)row * lattice->stride + (size_t)column] = colour;
+	}
+}
+
+/* Every cast point gets a colour at random, or the same; whatever was not cast, another. */
+static void cast_colours(struct scene *scene, uint32_t seed, bool same)
+{
+	const struct gz_plan *plan = &scene->plan;
+	for (int i = 0; i < plan->layer_count; i++) {
+		const struct gz_lattice *lattice = &scene->lattices.layers[i];
+		for (int k = 0; k < lattice->columns * lattice->rows; k++)
+			lattice->points[k] = 0xDEADBEEF;
+	}
+	for (size_t t = 0; t < plan->tile_count; t++) {
+		const struct gz_tile *tile = &plan->tiles[t];
+		gz_lattices_mark(&scene->lattices, tile);
+		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
+			int x, y;
+			ray_place(plan, tile, i, &x, &y);
+			put_on_lattices(&scene->lattices, tile->layer, x, y,
+					same ? seed : random_point(&seed));
+		}
+	}
+}
+
+static void make_scene(const struct gz_foveation *foveation, struct gz_point gaze, int width,
+		       int height, uint32_t seed, bool same, struct scene *scene)
+{
+	/* So near and so wide that small pictures reach all spacings. */
+	struct gz_display display = gz_display_default(width, height);
+	display.mm[0] = width;
+	display.mm[1] = height;
+	display.distance_mm = 100;
+	memset(scene, 0, sizeof *scene);
+	assert_int_equal(gz_plan_make(foveation, &display, gaze, width, height, &scene->plan),
+			 GZ_OK);
+	assert_int_equal(gz_image_resize(&scene->image, width, height), GZ_OK);
+	assert_int_equal(gz_lattices_prepare(&scene->lattices, &scene->plan, &scene->image), GZ_OK);
+	cast_colours(scene, seed, same);
+}
+
+static void free_scene(struct scene *scene)
+{
+	gz_plan_free(&scene->plan);
+	gz_lattices_free(&scene->lattices);
+	gz_image_free(&scene->image);
+}
+
+/* The formulas. */
+
+struct reference {
+	int columns, rows;
+	uint32_t *points;
+	bool *known;
+};
+
+static int mirror(int i, int count)
+{
+	while (count > 1 && (i < 0 || i >= count))
+		i = i < 0 ? -i : 2 * (count - 1) - i;
+	return count > 1 ? i : 0;
+}
+
+static int channel(const struct reference *lattice, int x, int y, int c)
+{
+	x = mirror(x, lattice->columns);
+	y = mirror(y, lattice->rows);
+	return (int)(lattice->points[y * lattice->columns + x] >> (8 * c) & 255);
+}
+
+static int cubic(const int v[4])
+{
+	const int m = (v[1] + v[2] + 1) / 2, n = (v[0] + v[3] + 1) / 2;
+	const int low = v[1] < v[2] ? v[1] : v[2], high = v[1] < v[2] ? v[2] : v[1];
+	const int value = m >= n ? m + (m - n + 4) / 8 : m - (n - m + 4) / 8;
+	return value < low ? low : value > high ? high : value;
+}
+
+/* Along an axis, from points 1 and 3 away. */
+static int along(const struct reference *lattice, int filter, int x, int y, int dx, int dy, int c)
+{
+	const int v[4] = { channel(lattice, x - 3 * dx, y - 3 * dy, c),
+			   channel(lattice, x - dx, y - dy, c), channel(lattice, x + dx, y + dy, c),
+			   channel(lattice, x + 3 * dx, y + 3 * dy, c) };
+	return filter == GZ_FILTER_BILINEAR ? (v[1] + v[2] + 1) / 2 : cubic(v);
+}
+
+static int from_quincunx(const struct reference *lattice, int filter, int x, int y, int c)
+{
+	if (lattice->rows == 1)
+		return along(lattice, filter, x, y, 1, 0, c);
+	if (lattice->columns == 1)
+		return along(lattice, filter, x, y, 0, 1, c);
+	if (filter == GZ_FILTER_BILINEAR)
+		return (channel(lattice, x - 1, y, c) + channel(lattice, x + 1, y, c) +
+			channel(lattice, x, y - 1, c) + channel(lattice, x, y + 1, c) + 2) /
+		       4;
+	return (along(lattice, filter, x, y, 1, 0, c) + along(lattice, filter, x, y, 0, 1, c) + 1) /
+	       2;
+}
+
+/* Halfway between rows j and j + 1 of the coarse lattice. */
+static int between_rows(const struct reference *coarse, int i, int j, int c)
+{
+	return cubic((const int[]) { channel(coarse, i, j - 1, c), channel(coarse, i, j, c),
+				     channel(coarse, i, j + 1, c), channel(coarse, i, j + 2, c) });
+}
+
+static int from_coarser(const struct reference *coarse, int filter, int x, int y, int c)
+{
+	const int i = x / 2, j = y / 2;
+	if (filter == GZ_FILTER_BILINEAR)
+		return (channel(coarse, i, j, c) + channel(coarse, i + x % 2, j, c) +
+			channel(coarse, i, j + y % 2, c) +
+			channel(coarse, i + x % 2, j + y % 2, c) + 2) /
+		       4;
+	int v[4];
+	for (int k = 0; k < 4; k++)
+		v[k] = y % 2 ? between_rows(coarse, i - 1 + k, j, c)
+			     : channel(coarse, i - 1 + k, j, c);
+	return x % 2 ? cubic(v) : v[1];
+}
+
+/* Lattice level of a plan, from the next coarser. */
+static void fill_reference(const struct scene *scene, struct reference *levels, int level)
+{
+	struct reference *fine = &levels[level];
+	const int filter = (int)scene->plan.filter;
+	for (int pass = 0; pass < 2; pass++)
+		for (int k = 0; k < fine->columns * fine->rows; k++) {
+			const int x = k % fine->columns, y = k / fine->columns;
+			const int tile =
+				gz_lattices_block(&scene->lattices, (x / GZ_BLOCK_EDGE) << level,
+						  (y / GZ_BLOCK_EDGE) << level);
+			const bool coarser = tile / 2 > level;
+			if (fine->known[k] || coarser != (pass == 0))
+				continue;
+			uint32_t point = 0;
+			for (int c = 0; c < 4; c++) {
+				const int value =
+					coarser ? from_coarser(&levels[level + 1], filter, x, y, c)
+						: from_quincunx(fine, filter, x, y, c);
+				point |= (uint32_t)value << (8 * c);
+			}
+			fine->points[k] = point;
+		}
+}
+
+static struct reference *make_reference(const struct scene *scene)
+{
+	const struct gz_plan *plan = &scene->plan;
+	struct reference *levels = calloc(LEVELS_MAX, sizeof *levels);
+	for (int i = 0; i < plan->layer_count; i++) {
+		const struct gz_lattice *lattice = &scene->lattices.layers[i];
+		const size_t count = (size_t)lattice->columns * (size_t)lattice->rows;
+		levels[i] = (struct reference) { lattice->columns, lattice->rows, malloc(count * 4),
+						 calloc(count, 1) };
+		memcpy(levels[i].points, lattice->points, count * 4);
+	}
+	for (size_t t = 0; t < plan->tile_count; t++)
+		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
+			int x, y;
+			ray_place(plan, &plan->tiles[t], i, &x, &y);
+			for (int l = plan->tiles[t].layer; l < plan->layer_count; l++) {
+				const int spacing = plan->layers[l].spacing;
+				if (x % spacing == 0 && y % spacing == 0 &&
+				    x / spacing < levels[l].columns && y / spacing < levels[l].rows)
+					levels[l].known[y / spacing * levels[l].columns +
+							x / spacing] = true;
+			}
+		}
+	for (int level = plan->layer_count - 1; level >= 0; level--)
+		fill_reference(scene, levels, level);
+	return levels;
+}
+
+static void free_reference(struct reference *levels)
+{
+	for (int i = 0; i < LEVELS_MAX; i++) {
+		free(levels[i].points);
+		free(levels[i].known);
+	}
+	free(levels);
+}
+
+static void check_equal(const struct scene *scene, const struct reference *picture, const char *set)
+{
+	const uint32_t *pixels = (const uint32_t *)(const void *)scene->image.pixels;
+	for (int k = 0; k < picture->columns * picture->rows; k++)
+		if (pixels[k] != picture->points[k])
+			fail_msg("%s %s %dx%d: pixel %d %d is %08x, not %08x", set,
+				 gz_filter_names[scene->plan.filter], picture->columns,
+				 picture->rows, k % picture->columns, k / picture->columns,
+				 pixels[k], picture->points[k]);
+}
+
+static void pyramid_of_any_size_and_gaze_follows_its_formulas(void **state)
+{
+	(void)state;
+	static const int sizes[][2] = { { 1, 1 },   { 1, 300 },   { 300, 1 },   { 2, 190 },
+					{ 190, 3 }, { 129, 127 }, { 257, 300 }, { 601, 402 } };
+	static const struct gz_point gazes[] = {
+		{ 0.5F, 0.5F }, { 0, 0 }, { 1.4F, 0.3F }, { 0.3F, 0.9F }, { -0.2F, -0.5F }
+	};
+	static const char *const sets[] = { "portable", "avx2", "avx512" };
+	struct gz_workers *workers;
+	assert_int_equal(gz_workers_create(3, &workers), GZ_OK);
+	int quincunx = 0;
+	for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
+		for (size_t g = 0; g < 2 * sizeof gazes / sizeof gazes[0]; g++) {
+			struct gz_foveation foveation = gz_foveation_default();
+			foveation.filter = g % 2 ? GZ_FILTER_BILINEAR : GZ_FILTER_CATMULL_ROM;
+			foveation.acuity_slope = g % 4 < 2 ? 0.05 : 0.022;
+			struct scene scene;
+			make_scene(&foveation, gazes[g / 2], sizes[s][0], sizes[s][1],
+				   (uint32_t)(s + g), false, &scene);
+			for (size_t t = 0; t < scene.plan.tile_count; t++)
+				quincunx += scene.plan.tiles[t].pattern == GZ_TILE_QUINCUNX;
+			struct reference *levels = make_reference(&scene);
+			for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
+				if (!gz_cast_kernels_find(sets[k]))
+					continue;
+				gz_reconstruct(&scene.plan, &scene.lattices,
+					       gz_row_filters_find(sets[k]), workers, &scene.image);
+				check_equal(&scene, &levels[0], sets[k]);
+			}
+			free_reference(levels);
+			free_scene(&scene);
+		}
+	assert_true(quincunx > 100);
+	gz_workers_destroy(&workers);
+}
+
+static void picture_of_one_colour_stays_it(void **state)
+{
+	(void)state;
+	static const uint32_t colours[] = { 0xFF000000, 0xFFFFFFFF, 0xFF010101, 0xFF7F80FE };
+	struct gz_workers *workers;
+	assert_int_equal(gz_workers_create(2, &workers), GZ_OK);
+	for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
+		for (int filter = 0; filter < 2; filter++) {
+			struct gz_foveation foveation = gz_foveation_default();
+			foveation.filter = filter;
+			struct scene scene;
+			make_scene(&foveation, (struct gz_point) { 0.4F, 0.4F }, 301, 207,
+				   colours[i], true, &scene);
+			gz_reconstruct(&scene.plan, &scene.lattices,
+				       gz_row_filters_find("portable"), workers, &scene.image);
+			const uint32_t *pixels = (const uint32_t *)(const void *)scene.image.pixels;
+			for (int k = 0; k < 301 * 207; k++)
+				assert_int_equal(pixels[k], colours[i]);
+			free_scene(&scene);
+		}
+	gz_workers_destroy(&workers);
+}
+
+static void edge_never_rings(void **state)
+{
+	(void)state;
+	const struct gz_row_filters *filters = gz_row_filters_find("portable");
+	uint32_t row[GZ_ROW_CHUNK + 8], made[2 * GZ_ROW_CHUNK];
+	for (int i = 0; i < GZ_ROW_CHUNK + 8; i++)
+		row[i] = i < 8 ? 0xFF000000 : 0xFFFFFFFF;
+	filters->cubic_double(row + 1, made, GZ_ROW_CHUNK);
+	for (int i = 0; i < 2 * GZ_ROW_CHUNK; i++)
+		if (i < 13)
+			assert_int_equal(made[i], 0xFF000000); /* background stays black */
+		else if (i > 13)
+			assert_int_equal(made[i], 0xFFFFFFFF);
+		else
+			assert_int_equal(made[i], 0xFF808080);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(pyramid_of_any_size_and_gaze_follows_its_formulas),
+		cmocka_unit_test(picture_of_one_colour_stays_it),
+		cmocka_unit_test(edge_never_rings),
+	};
+	return cmocka_run_group_tests_name("reconstruct", tests, NULL, NULL);
+}
