@@ -21,6 +21,9 @@ struct gz_frame_maker {
 	struct gz_gaze_reading reading; /* that the attention took last */
 	struct gz_focus focus;          /* that it made of it */
 	struct gz_focus made;           /* of the last frame made */
+	struct {
+		int method, width, height;
+	} spent; /* what the budget's times are of */
 	bool any_made;
 	struct gz_plan plan;
 	struct gz_image cast;  /* at the rays' resolution, only where that is not the picture's */
@@ -159,14 +162,25 @@ void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
 				    "up are; give one that does, as NIfTI and DICOM do");
 }
 
-/* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. */
-static void tell_spent(struct gz_frame_maker *maker, double total_ms)
+/* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. What
+ * another method or size took tells nothing. */
+static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+		       double total_ms)
 {
+	int method = request->settings->foveation.method;
+	bool same = maker->spent.method == method && maker->spent.width == maker->plan.width &&
+		    maker->spent.height == maker->plan.height;
+	if (!same)
+		gz_attention_forget_spent(&maker->attention);
+	maker->spent.method = method;
+	maker->spent.width = maker->plan.width;
+	maker->spent.height = maker->plan.height;
 	if (gz_attention_spent(&maker->attention, total_ms))
 		gz_warn(maker->log,
-			"attention.budget_ms %g is out of reach: the coarsest plan took %.1f ms; "
-			"allow more time, or lower the size or render.ray_sampling_rate",
-			maker->attention.params.budget_ms, total_ms);
+			"attention.budget_ms %g is out of reach: %s took %.1f ms with its coarsest "
+			"plan; allow more time, lower the size or render.ray_sampling_rate, or try "
+			"another method",
+			maker->attention.params.budget_ms, gz_method_names[method], total_ms);
 }
 
 static struct gz_frame_record begin_record(const struct gz_frame_maker *maker,
@@ -196,7 +210,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 		return r;
 	maker->made = maker->focus;
 	maker->any_made = true;
-	tell_spent(maker, record.total_ms);
+	tell_spent(maker, request, record.total_ms);
 	record.budget = gz_budget_state_name(maker->attention.budget.state);
 	record.backend = maker->caster.renderer->ops->name; /* cpu may have taken over */
 	*out_image = maker->caster.on_device ? NULL : &maker->image;

@@ -58,14 +58,24 @@ static void print_gaze(const struct gz_window_gaze *gaze, bool mouse_chosen, cha
 			 reading->has_event ? gz_event_name(reading->event) : "");
 }
 
+/* " of 20, 1.4 times coarser" or nothing. */
+static void print_budget(const struct gz_frame_record *record, char *text, size_t size)
+{
+	text[0] = '\0';
+	if (record->budget_ms > 0)
+		snprintf(text, size, " of %g, %.1f times coarser", record->budget_ms,
+			 record->focus.scale);
+}
+
 /* The line that belongs to the frame on the screen; whether it says something new. */
 static bool update_line(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	char state[96], line[GZ_WINDOW_LINE_SIZE];
+	char state[96], budget[48], line[GZ_WINDOW_LINE_SIZE];
 	const struct gz_frame_record *record = &window->record;
 	print_gaze(gaze, window->mouse_chosen, state, sizeof state);
-	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms  %llu rays  |  gaze: %s  |  H: keys",
-		 record->method, record->width, record->height, record->total_ms,
+	print_budget(record, budget, sizeof budget);
+	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms%s  %llu rays  |  gaze: %s  |  H: keys",
+		 record->method, record->width, record->height, record->total_ms, budget,
 		 (unsigned long long)record->rays, state);
 	bool changed = strcmp(line, window->line) != 0;
 	memcpy(window->line, line, sizeof line);
@@ -122,7 +132,9 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 static bool settings_valid(const struct gz_scene_settings *settings)
 {
 	struct gz_ray_frame rays;
-	return gz_ray_params_valid(&settings->rays) &&
+	const struct gz_foveation *foveation = &settings->foveation;
+	bool table_there = foveation->method != GZ_METHOD_TABLE || foveation->table.count > 0;
+	return table_there && gz_ray_params_valid(&settings->rays) &&
 	       gz_camera_rays(&settings->camera, 1, 1, &rays) == GZ_OK;
 }
 

@@ -192,17 +192,20 @@ static void seen(struct gz_attention *attention, const struct gz_attention_gaze 
 		land(attention, gaze->point);
 }
 
-/* For so long a lost gaze has been lost. A blink that is too long is lost from its end on. */
-static double lost_for_ms(const struct gz_attention *attention)
+/* A blink that is too long is lost from its longest on, anything else from now on. */
+static int64_t lost_since_ns(const struct gz_attention *attention)
 {
-	double blink_ms = attention->said == GZ_ATTENTION_BLINK ? attention->params.blink_ms : 0;
-	return for_ms(attention) - blink_ms;
+	if (attention->said != GZ_ATTENTION_BLINK)
+		return attention->now_ns;
+	return attention->said_ns + (int64_t)(attention->params.blink_ms * (double)GZ_NS_PER_MS);
 }
 
-static void unseen(struct gz_attention *attention)
+static void unseen(struct gz_attention *attention, bool was_lost)
 {
 	const struct gz_attention_params *params = &attention->params;
-	double past_ms = lost_for_ms(attention) - params->hold_ms;
+	if (!was_lost)
+		attention->lost_ns = lost_since_ns(attention);
+	double past_ms = gz_ns_to_ms(attention->now_ns - attention->lost_ns) - params->hold_ms;
 	attention->focus.scale = 1; /* the eye may be open */
 	attention->on_way = attention->landed = false;
 	if (params->widen_ms <= 0 || past_ms < 0)
@@ -235,13 +238,14 @@ struct gz_focus gz_attention_step(struct gz_attention *attention,
 				  const struct gz_attention_gaze *gaze,
 				  const struct gz_display *display, int64_t now_ns)
 {
+	bool was_lost = attention->started && is_lost(attention->state);
 	take_time(attention, state_of(&attention->params, gaze), now_ns);
 	attention->state = attention->said;
 	if (attention->state == GZ_ATTENTION_BLINK &&
 	    for_ms(attention) > attention->params.blink_ms)
 		attention->state = GZ_ATTENTION_HOLD;
 	if (is_lost(attention->state))
-		unseen(attention);
+		unseen(attention, was_lost);
 	else if (attention->state != GZ_ATTENTION_BLINK)
 		seen(attention, gaze, display);
 	return with_budget(attention);
@@ -269,4 +273,9 @@ bool gz_attention_spent(struct gz_attention *attention, double frame_ms)
 	/* In a saccade a frame is cheaper than those that follow. */
 	bool cheap = attention->focus.scale > 1 && frame_ms <= attention->params.budget_ms;
 	return !cheap && gz_budget_step(&attention->budget, frame_ms);
+}
+
+void gz_attention_forget_spent(struct gz_attention *attention)
+{
+	gz_budget_init(&attention->budget, attention->params.budget_ms);
 }

@@ -88,6 +88,7 @@ struct gz_attention {
 	enum gz_attention_state state;
 	enum gz_attention_state said; /**< what the gaze alone said, and said_ns since when */
 	int64_t said_ns;
+	int64_t lost_ns;   /**< since when; only in HOLD and WIDEN */
 	bool on_way;       /**< the plan goes with a saccade */
 	bool landed;       /**< landed_ns holds something */
 	int64_t landed_ns; /**< when the plan last came to rest somewhere else */
@@ -126,5 +127,8 @@ double gz_attention_dead_band_deg(const struct gz_attention_params *params, doub
  * @return true once: when the budget turns out to be out of reach, as by gz_budget_step()
  */
 bool gz_attention_spent(struct gz_attention *attention, double frame_ms);
+
+/** What frames took so far tells nothing of those that follow: full detail again. */
+void gz_attention_forget_spent(struct gz_attention *attention);
 
 #endif

@@ -147,12 +147,14 @@ class Headless(unittest.TestCase):
         self.assertLess(self.frames("far")[0]["rays"], self.frames("near")[0]["rays"])
 
     def write_log(self, name, samples):
-        """A gaze log without an end; a sample (host_ns, x) is one point for both eyes, (x, 0.5)."""
+        """A gaze log without an end; a sample (host_ns, x) is one point for both eyes, (x, 0.5), or
+        none."""
         no_eye = "\t\t\t0" + "\t" * 8
         with open(self.path(name), "w", encoding="utf-8") as out:
             out.write("#gazecast-log 1\n#tracker synthetic\n#rate_hz 100\n")
             for seq, (host_ns, x) in enumerate(samples):
-                out.write("%d\t\t%d\t%g\t0.5\t1%s\n" % (seq, host_ns, x, 2 * no_eye))
+                point = "\t\t0" if x is None else "%g\t0.5\t1" % x
+                out.write("%d\t\t%d\t%s%s\n" % (seq, host_ns, point, 2 * no_eye))
 
     def test_log_shows_in_frame_k_the_last_sample_until_k_over_fps(self):
         # Ten ms apart, so that every third frame is at the very time of a sample, but for frame 3,
@@ -170,6 +172,94 @@ class Headless(unittest.TestCase):
             self.assertAlmostEqual(frame["gaze_age_ms"], (now - last) * 1e-6, places=3)
         for frame in frames[:4]:
             self.assertLess(abs(frame["gaze"][0] - 0.25), 0.01)
+
+    def attention_frames(self, *more, fps=60, frames=240):
+        """Looks left for 1 s, leaps, looks right for 1 s, blinks for .2 s, looks on for .3 s, is
+        not seen any more."""
+        times = [10**9 + 4 * 10**6 * i for i in range(700)]
+        self.write_log("eye.gzl", [
+            (t, None if i >= 625 or 500 <= i < 550 else
+             0.3 + 0.4 * min(max((i - 250) / 12, 0), 1) + 0.0004 * (i * 7 % 5))
+            for i, t in enumerate(times)
+        ])
+        self.good("--gaze", self.path("eye.gzl"), "--fps", fps, "--frames", frames, "--stats",
+                  self.path("stats.json"), *more, size="320x180")
+        return self.frames()
+
+    def test_plan_follows_the_eye_of_a_log_as_it_should(self):
+        frames = self.attention_frames()
+        by_state = {}
+        for frame in frames:
+            by_state.setdefault(frame["attention"], []).append(frame)
+        still = frames[30:59]
+        self.assertEqual({str(f["focus"]) for f in still}, {str(still[0]["focus"])})
+        self.assertEqual({f["rays"] for f in still}, {still[0]["rays"]})
+        self.assertGreater(len({str(f["gaze"]) for f in still}), 1, "the gaze itself trembles")
+        way = by_state["saccade"]
+        self.assertTrue(any(f["scale"] == 2 for f in way))
+        self.assertLess(min(f["rays"] for f in way), still[0]["rays"])
+        landed = frames[75]
+        self.assertEqual((landed["scale"], landed["widen"]), (1, 0))
+        self.assertLess(abs(landed["focus"][0] - 0.7), 0.02)
+        for held in by_state["blink"] + by_state["hold"]:
+            self.assertLess(abs(held["focus"][0] - 0.7), 0.02)
+            self.assertEqual((held["scale"], held["widen"]), (1, 0))
+        self.assertEqual(frames[-1]["attention"], "widen")
+        self.assertEqual(frames[-1]["widen"], 1)
+        self.assertLess(frames[-1]["rays"], 1.1 * still[0]["rays"])
+        self.assertEqual({f["budget"] for f in frames}, {"off"})
+        self.assertEqual({f["budget_ms"] for f in frames}, {None})
+
+    def test_replay_makes_the_same_plans_each_time(self):
+        keys = ("gaze", "focus", "scale", "widen", "attention", "rays", "samples")
+        first, second = (
+            [[frame[key] for key in keys] for frame in self.attention_frames(frames=120)]
+            for _ in range(2)
+        )
+        self.assertEqual(first, second)
+
+    def test_budget_out_of_reach_makes_plans_coarse_and_is_told_once(self):
+        done = self.good(
+            "--attention.budget_ms", 0.001, "--frames", 60, "--stats", self.path("stats.json")
+        )
+        self.assertEqual(done.stderr.count("out of reach"), 1, done.stderr)
+        frames = self.frames()
+        self.assertEqual(frames[0]["scale"], 1)
+        self.assertEqual((frames[-1]["scale"], frames[-1]["budget"]), (64, "limit"))
+        self.assertEqual(frames[-1]["budget_ms"], 0.001)
+        self.assertLess(frames[-1]["rays"], frames[0]["rays"] / 4)
+
+    def test_budget_that_is_kept_changes_nothing(self):
+        self.good(
+            "--attention.budget_ms", 10000, "--frames", 50, "--stats", self.path("stats.json")
+        )
+        for frame in self.frames():
+            self.assertEqual((frame["scale"], frame["budget"]), (1, "within"))
+
+    def test_camera_inside_the_volume_and_along_its_up_makes_a_picture(self):
+        for words in (
+            ("--camera.eye", "0.01 0.02 0.03"),
+            ("--camera.eye", "0 0 2", "--camera.up", "0 0 1"),
+            ("--camera.eye", "0 0 -0.2", "--camera.up", "0 0 0"),
+            ("--camera.eye", "0 -0.5 0"),
+            ("--camera.eye", "0.5 0.5 0.5", "--camera.projection", "orthographic"),
+        ):
+            for method in ("standard", "acuity"):
+                self.good("--method", method, *words, "--out", self.path("in.png"))
+                picture = read_png(self.path("in.png"))
+                colours = {picture.at(x, y) for x in range(96) for y in range(64)}
+                self.assertGreater(len(colours), 20, "%r shows nothing" % (words,))
+
+    def test_letters_stand_in_the_picture_of_an_oriented_volume(self):
+        for name, more in (("plain.png", ()), ("letters.png", ("--letters",))):
+            done = self.good("--out", self.path(name), "--method", "standard", *more,
+                             size="320x180")
+            self.assertEqual(done.stderr, "")
+        plain, letters = (read_png(self.path(n)) for n in ("plain.png", "letters.png"))
+        edges = ((0, 80, 40, 100), (280, 80, 320, 100), (140, 0, 180, 40), (140, 140, 180, 180))
+        for edge in edges:
+            self.assertFalse(plain.part(*edge) == letters.part(*edge), "no letter there")
+        self.assertTrue(plain.part(60, 50, 260, 130) == letters.part(60, 50, 260, 130))
 
     def test_endpoint_without_a_daemon_goes_on_with_no_gaze_and_says_so_once(self):
         endpoint = "ipc://" + self.path("latest")
