@@ -36,13 +36,18 @@ struct gz_gl_frame_block {
 	float direction00[4], direction_dx[4], direction_dy[4]; /**< of rays of pixels */
 	float world_per_voxel[4];
 	float dims[4];
-	float cell_last[4];  /**< greatest index of a macrocell */
-	float background[4]; /**< [0, 1] */
-	float transfer[4];   /**< scale and bias from stored value to entry */
-	int32_t last[4];     /**< greatest index of the lower of two neighbouring voxels */
-	uint32_t plan[4];    /**< layers; 1 for a pyramid; width; height */
+	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
+	float cell_last[4];                    /**< greatest index of a macrocell */
+	float background[4];                   /**< [0, 1] */
+	float transfer[4];                     /**< scale and bias from stored value to entry */
+	int32_t last[4];    /**< greatest index of the lower of two neighbouring voxels */
+	uint32_t jitter[4]; /**< seed of gz_ray_jitter() */
+	uint32_t plan[4];   /**< layers; 1 for a pyramid; width; height */
 	float steps[GZ_PLAN_STEPS_MAX][4];          /**< world units, voxel lengths */
 	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];     /**< first point, columns, rows, spacing */
+	float region_places[GZ_PLAN_LAYERS_MAX][4]; /**< centre, half size, px */
+	float region_fades[GZ_PLAN_LAYERS_MAX][4];  /**< share of a layer per radius from the rim, 0
+						       = all; 1 for an ellipse */
 	uint32_t tile_points[GZ_GL_TILE_POINTS][4]; /**< column and row of a tile's rays */
 };
 

@@ -1,5 +1,6 @@
 #include "render/gl/gl_renderer.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,7 +177,7 @@ static void to_floats(const double source[3], float out[4])
 }
 
 static void fill_rays(const struct gl_renderer *gl, const struct gz_ray_frame *world,
-		      struct gz_gl_frame_block *block)
+		      const struct gz_clip_box *clip, struct gz_gl_frame_block *block)
 {
 	struct gz_voxel_rays rays;
 	gz_voxel_rays_make(gl->volume, world, &rays);
@@ -190,6 +191,8 @@ static void fill_rays(const struct gl_renderer *gl, const struct gz_ray_frame *w
 	for (int axis = 0; axis < 3; axis++) {
 		const int dim = gl->volume->dims[axis];
 		block->dims[axis] = (float)dim;
+		block->clip_least[axis] = (float)(clip->least[axis] * dim);
+		block->clip_greatest[axis] = (float)(clip->greatest[axis] * dim);
 		block->last[axis] = dim > 1 ? dim - 2 : 0;
 		block->cell_last[axis] = (float)(gl->cells.dims[axis] - 1);
 	}
@@ -211,12 +214,26 @@ static void fill_transfer(struct gl_renderer *gl, const struct gz_plan *plan,
 	to_floats(rays->background, block->background);
 }
 
+static void fill_region(const struct gz_region *region, float place[4], float fade[4])
+{
+	for (int axis = 0; axis < 2; axis++) {
+		place[axis] = (float)region->centre_px[axis];
+		place[2 + axis] = (float)region->half_px[axis];
+	}
+	if (region->shape != GZ_REGION_ALL && region->blend_px > 0)
+		fade[0] = (float)(fmin(region->half_px[0], region->half_px[1]) / region->blend_px);
+	fade[1] = region->shape == GZ_REGION_ELLIPSE;
+}
+
 static void fill_plan(const struct gz_plan *plan, struct gz_gl_frame_block *block)
 {
 	block->plan[0] = (uint32_t)plan->layer_count;
 	block->plan[1] = plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
 	block->plan[2] = (uint32_t)plan->width;
 	block->plan[3] = (uint32_t)plan->height;
+	for (int i = 0; i < plan->layer_count; i++)
+		fill_region(&plan->layers[i].region, block->region_places[i],
+			    block->region_fades[i]);
 	enum { RAYS = GZ_TILE_EDGE * GZ_TILE_EDGE };
 	for (int i = 0; i < GZ_GL_TILE_POINTS; i++) {
 		block->tile_points[i][0] = gz_tile_columns[i / RAYS][i % RAYS];
@@ -233,11 +250,6 @@ static const char *unsupported(const struct gz_ray_params *rays)
 		return "render.integration";
 	if (rays->levels)
 		return "render.levels";
-	if (rays->jitter != 0)
-		return "render.jitter";
-	for (int axis = 0; axis < 3; axis++)
-		if (rays->clip.least[axis] > 0 || rays->clip.greatest[axis] < 1)
-			return "clip";
 	return NULL;
 }
 
@@ -259,7 +271,8 @@ static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_frame *wo
 	enum gz_result result = gz_gl_frame_prepare(&gl->frame, &gl->device, plan, &block, log);
 	if (result != GZ_OK)
 		return result;
-	fill_rays(gl, world, &block);
+	fill_rays(gl, world, &rays->clip, &block);
+	block.jitter[0] = (uint32_t)rays->jitter;
 	fill_transfer(gl, plan, rays, &block);
 	fill_plan(plan, &block);
 	gz_gl_frame_begin(&gl->frame, &block);

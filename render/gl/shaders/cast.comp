@@ -1,6 +1,5 @@
-// Rays of tiles, front to back: the same samples, ends and colours as the cpu backend's kernel
-// (render/cpu/cast_kernel.h). A ray is cut into segments of one step from where it enters the box, a sample
-// in the middle of each; the last segment is what is left. k counts steps, so skipping never shifts a sample.
+// Rays of tiles, front to back: the same samples, ends and colours as the cpu backend's kernel, which says how
+// rays are cut into segments (render/cpu/cast_kernel.h).
 layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430, binding = 2) buffer Counts
@@ -10,8 +9,9 @@ layout(std430, binding = 2) buffer Counts
 
 struct Ray {
 	vec3 start, delta, inverse; // voxel coordinates; position = start + k * delta
-	float count;                // whole segments
-	float rest;                 // of a segment, at the end
+	float first, end;           // whole segments: from k = first to k = end
+	float head, head_at;        // length of a part of one before them, and its middle
+	float rest;                 // length of a part of one behind them
 };
 
 struct Light {
@@ -19,8 +19,25 @@ struct Light {
 	float through;
 };
 
-Ray set_up_ray(vec2 pixel, float step_length)
+// gz_ray_jitter() of render/ray_params.h, which says why.
+float jitter_of(uvec2 pixel)
 {
+	if (jitter.x == 0U)
+		return 0.0;
+	uvec3 word = uvec3(pixel, jitter.x) * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	word.x += word.y * word.z;
+	word.y += word.z * word.x;
+	word.z += word.x * word.y;
+	word ^= word >> 16;
+	word.x += word.y * word.z;
+	return float(word.x >> 8) * (1.0 / 16777216.0);
+}
+
+// Where the ray meets the whole box, and where it is within what is shown of it; segments are counted from
+// a share of one before the box.
+Ray set_up_ray(uvec2 at, float step_length)
+{
+	vec2 pixel = vec2(at);
 	vec3 origin = fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
 	vec3 direction =
 		fma(vec3(pixel.y), direction_dy.xyz, fma(vec3(pixel.x), direction_dx.xyz, direction00.xyz));
@@ -28,13 +45,22 @@ Ray set_up_ray(vec2 pixel, float step_length)
 	Ray ray;
 	ray.delta = mix(raw, vec3(1e-12), lessThan(abs(raw), vec3(1e-12)));
 	ray.inverse = 1.0 / ray.delta;
-	vec3 a = -origin * ray.inverse, b = (dims.xyz - origin) * ray.inverse;
+	vec3 box = min(-origin * ray.inverse, (dims.xyz - origin) * ray.inverse);
+	vec3 a = (clip_least.xyz - origin) * ray.inverse, b = (clip_greatest.xyz - origin) * ray.inverse;
 	vec3 near = min(a, b), far = max(a, b);
+	float box_at = max(max(box.x, box.y), max(box.z, 0.0));
 	float enter = max(max(near.x, near.y), max(near.z, 0.0));
-	float span = max(min(min(far.x, far.y), far.z) - enter, 0.0);
-	ray.count = floor(span);
-	ray.rest = span - ray.count;
-	ray.start = fma(vec3(enter), ray.delta, origin);
+	float leave = min(min(far.x, far.y), far.z);
+	float shift = jitter_of(at);
+	bool hit = enter < leave;
+	float from = hit ? enter - box_at + shift : 0.0, to = hit ? leave - box_at + shift : 0.0;
+	ray.first = ceil(from);
+	ray.end = floor(to);
+	ray.head = min(ray.first, to) - from;
+	ray.head_at = fma(ray.head, 0.5, from);
+	// Where all lies within one segment, the head is all there is.
+	ray.rest = ray.end < ray.first ? 0.0 : to - ray.end;
+	ray.start = fma(vec3(box_at - shift), ray.delta, origin);
 	return ray;
 }
 
@@ -63,15 +89,15 @@ void composite(uint colour, float opacity, inout Light light)
 uint march(Ray ray, int step_index, inout Light light)
 {
 	uint samples = 0U;
-	float k = 0.5;
-	while (k < ray.count) {
+	float k = ray.first + 0.5;
+	while (k < ray.end) {
 		float until = 0.0;
 		bool found = false;
-		while (!found && k < ray.count) {
+		while (!found && k < ray.end) {
 			found = !look_up_cell(ray, k, until);
 			k += found ? 0.0 : max(ceil(until - k), 1.0);
 		}
-		float end = found ? min(max(until, k + 0.5), ray.count) : 0.0;
+		float end = found ? min(max(until, k + 0.5), ray.end) : 0.0;
 		while (k < end) {
 			int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
 			uvec2 look = FETCH(transfer, ivec2(entry, step_index)).rg;
@@ -85,17 +111,17 @@ uint march(Ray ray, int step_index, inout Light light)
 	return samples;
 }
 
-// What is left behind the whole segments.
-uint march_rest(Ray ray, float voxel_lengths, inout Light light)
+// A part of a segment, at either end of the whole ones: around k, of a length in steps.
+uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light light)
 {
-	float k = fma(ray.rest, 0.5, ray.count), until;
-	if (ray.rest <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END ||
+	float until;
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END ||
 		look_up_cell(ray, k, until))
 		return 0U;
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
 	uvec2 look = FETCH(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX)).rg;
 	float extinction = uintBitsToFloat(look.x);
-	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * ray.rest * voxel_lengths) : 0.0, light);
+	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0, light);
 	return 1U;
 }
 
@@ -132,10 +158,11 @@ void main()
 		return;
 	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
 	vec2 step_lengths = steps[tile.step].xy;
-	Ray ray = set_up_ray(vec2(at), step_lengths.x);
+	Ray ray = set_up_ray(at, step_lengths.x);
 	Light light = Light(vec3(0.0), 1.0);
-	uint samples = march(ray, int(tile.step), light);
-	samples += march_rest(ray, step_lengths.y, light);
+	uint samples = march_part(ray, ray.head_at, ray.head, step_lengths.y, light);
+	samples += march(ray, int(tile.step), light);
+	samples += march_part(ray, fma(ray.rest, 0.5, ray.end), ray.rest, step_lengths.y, light);
 	store(tile, at, to_pixel(light));
 	if (samples > 0U)
 		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);

@@ -6,13 +6,17 @@ layout(std140, binding = 0) uniform Frame
 	vec4 direction00, direction_dx, direction_dy;
 	vec4 world_per_voxel;
 	vec4 dims;
+	vec4 clip_least, clip_greatest;
 	vec4 cell_last;
 	vec4 background;
 	vec4 transfer_map;
 	ivec4 last_voxel;
+	uvec4 jitter; // seed, 0 = none
 	uvec4 plan; // layers, 1 for a pyramid, width, height
 	vec4 steps[GZ_PLAN_STEPS_MAX];
 	uvec4 layers[GZ_PLAN_LAYERS_MAX]; // first point, columns, rows, spacing
+	vec4 region_places[GZ_PLAN_LAYERS_MAX]; // centre, half size, px
+	vec4 region_fades[GZ_PLAN_LAYERS_MAX];  // by how much per radius, 0 = not; 1 for an ellipse
 	uvec4 tile_points[TILE_POINTS];
 };
 
