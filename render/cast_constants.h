@@ -26,6 +26,11 @@
  */
 #define GZ_TRANSFER_TABLE_SIZE 4096
 
+/** Values at either end of a segment that a pre-integrated table tells apart. Chosen: finer than the
+ * grey levels of 8-bit data; 2 MiB a step length, of which segments, whose ends are seldom far
+ * apart, use what lies near the diagonal. */
+#define GZ_PREINTEGRATED_SIZE 512
+
 /** A ray ends when less than this share of the light behind it would come through. */
 #define GZ_TRANSMITTANCE_END (1.0F / 1024.0F)
 

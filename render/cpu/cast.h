@@ -33,6 +33,10 @@ struct gz_cast {
 	const struct gz_transfer_entry *extinction; /**< per voxel length */
 	const struct gz_transfer_entry
 		*step_table[GZ_PLAN_STEPS_MAX]; /**< one for each step of the plan */
+	/** with pre-integration: a table for each step of the plan, and that of any length
+	 *  (render/transfer_preintegrated.h); else NULL */
+	const struct gz_transfer_entry *preintegrated[GZ_PLAN_STEPS_MAX];
+	const struct gz_transfer_entry *preintegrated_extinction;
 	/* rays of pixel (x, y): see struct gz_ray_frame */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];
@@ -63,10 +67,17 @@ struct gz_cast_tile {
 typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct gz_cast_tile *tile,
 				       uint32_t out_pixels[GZ_TILE_RAYS]);
 
-/** One instruction set's kernels, by voxel type and interpolation. */
+/** What a kernel can do: the plain path stays free of what it seldom needs. */
+enum gz_cast_variant {
+	GZ_CAST_PLAIN,
+	GZ_CAST_RICH, /**< pre-integration */
+	GZ_CAST_VARIANT_COUNT,
+};
+
+/** One instruction set's kernels, by variant, voxel type and interpolation. */
 struct gz_cast_kernels {
 	const char *name;
-	gz_cast_tile_function *tile[GZ_VOXEL_TYPE_COUNT][2];
+	gz_cast_tile_function *tile[GZ_CAST_VARIANT_COUNT][GZ_VOXEL_TYPE_COUNT][2];
 };
 
 extern const struct gz_cast_kernels gz_cast_portable;

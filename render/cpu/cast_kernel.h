@@ -16,23 +16,10 @@
 #endif
 #include "render/cpu/cast_fetch.h"
 #include "render/cpu/cast_light.h"
+#include "render/cpu/cast_look_up.h"
+#include "render/cpu/cast_preintegrated.h"
 #include "render/cpu/cast_rays.h"
 #include "render/cpu/cast_skip.h"
-
-/* What a value becomes an entry of the transfer function by. */
-struct look_up {
-	vf scale, bias;
-};
-
-SIMD struct look_up look_up_of(const struct gz_cast *cast, enum gz_voxel_type type, int nearest)
-{
-	float scale = cast->entry_scale, bias = cast->entry_bias;
-	if (!nearest) {
-		bias += FETCH_OFFSET(type) * scale;
-		scale /= FETCH_UNIT(type);
-	}
-	return (struct look_up) { vf_set(scale), vf_set(bias) };
-}
 
 /* Let the lanes that ask know how far their samples show something; put them behind what is empty.
  */
@@ -109,8 +96,19 @@ SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, in
 	return vm_count(mask);
 }
 
+SIMD uint32_t cast_by_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			      int step, const struct rays *rays, struct light *light)
+{
+	uint32_t samples =
+		march_part(cast, type, nearest, step, rays, rays->head_at, rays->head, light);
+	samples += march(cast, type, nearest, step, rays, light);
+	return samples + march_part(cast, type, nearest, step, rays,
+				    vf_fma(rays->rest, vf_set(0.5F), rays->end), rays->rest, light);
+}
+
 SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *tile,
-			uint32_t out_pixels[GZ_TILE_RAYS], enum gz_voxel_type type, int nearest)
+			uint32_t out_pixels[GZ_TILE_RAYS], enum gz_voxel_type type, int nearest,
+			int rich)
 {
 	uint32_t samples = 0;
 	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
@@ -119,36 +117,48 @@ SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *t
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
 		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
 			    vm_from_bits(tile->active >> first), &rays);
-		samples += march_part(cast, type, nearest, tile->step, &rays, rays.head_at,
-				      rays.head, &light);
-		samples += march(cast, type, nearest, tile->step, &rays, &light);
-		samples += march_part(cast, type, nearest, tile->step, &rays,
-				      vf_fma(rays.rest, vf_set(0.5F), rays.end), rays.rest, &light);
+		samples +=
+			rich && cast->preintegrated_extinction
+				? cast_by_segments(cast, type, nearest, tile->step, &rays, &light)
+				: cast_by_samples(cast, type, nearest, tile->step, &rays, &light);
 		vi_store(out_pixels + first, to_pixel(cast, &light));
 	}
 	return samples;
 }
 
-#define DEFINE_TILE(name, type, nearest)                                                  \
+#define DEFINE_TILE(name, type, nearest, rich)                                            \
 	static uint32_t name(const struct gz_cast *cast, const struct gz_cast_tile *tile, \
 			     uint32_t out_pixels[GZ_TILE_RAYS])                           \
 	{                                                                                 \
-		return cast_tile(cast, tile, out_pixels, type, nearest);                  \
+		return cast_tile(cast, tile, out_pixels, type, nearest, rich);            \
 	}
 
-DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0)
-DEFINE_TILE(tile_u16, GZ_VOXEL_U16, 0)
-DEFINE_TILE(tile_f32, GZ_VOXEL_F32, 0)
-DEFINE_TILE(tile_u8_nearest, GZ_VOXEL_U8, 1)
-DEFINE_TILE(tile_u16_nearest, GZ_VOXEL_U16, 1)
-DEFINE_TILE(tile_f32_nearest, GZ_VOXEL_F32, 1)
+DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0, 0)
+DEFINE_TILE(tile_u16, GZ_VOXEL_U16, 0, 0)
+DEFINE_TILE(tile_f32, GZ_VOXEL_F32, 0, 0)
+DEFINE_TILE(tile_u8_nearest, GZ_VOXEL_U8, 1, 0)
+DEFINE_TILE(tile_u16_nearest, GZ_VOXEL_U16, 1, 0)
+DEFINE_TILE(tile_f32_nearest, GZ_VOXEL_F32, 1, 0)
+DEFINE_TILE(rich_u8, GZ_VOXEL_U8, 0, 1)
+DEFINE_TILE(rich_u16, GZ_VOXEL_U16, 0, 1)
+DEFINE_TILE(rich_f32, GZ_VOXEL_F32, 0, 1)
+DEFINE_TILE(rich_u8_nearest, GZ_VOXEL_U8, 1, 1)
+DEFINE_TILE(rich_u16_nearest, GZ_VOXEL_U16, 1, 1)
+DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, 1)
 
-#define GZ_CAST_KERNELS(set)                                             \
-	{                                                                \
-		.name = set,                                             \
-		.tile = {                                                \
-			[GZ_VOXEL_U8] = { tile_u8, tile_u8_nearest },    \
-			[GZ_VOXEL_U16] = { tile_u16, tile_u16_nearest }, \
-			[GZ_VOXEL_F32] = { tile_f32, tile_f32_nearest }, \
-		},                                                       \
+#define GZ_CAST_KERNELS(set)                                                       \
+	{                                                                          \
+		.name = set,                                                     \
+		.tile = {                                                        \
+			[GZ_CAST_PLAIN] = {                                      \
+				[GZ_VOXEL_U8] = { tile_u8, tile_u8_nearest },    \
+				[GZ_VOXEL_U16] = { tile_u16, tile_u16_nearest }, \
+				[GZ_VOXEL_F32] = { tile_f32, tile_f32_nearest }, \
+			},                                                       \
+			[GZ_CAST_RICH] = {                                       \
+				[GZ_VOXEL_U8] = { rich_u8, rich_u8_nearest },    \
+				[GZ_VOXEL_U16] = { rich_u16, rich_u16_nearest }, \
+				[GZ_VOXEL_F32] = { rich_f32, rich_f32_nearest }, \
+			},                                                       \
+		}, \
 	}

@@ -10,6 +10,7 @@
 #include "render/cpu/cast.h"
 #include "render/cpu/detail.h"
 #include "render/cpu/lattice.h"
+#include "render/cpu/preintegration.h"
 #include "render/cpu/reconstruct.h"
 #include "render/workers.h"
 
@@ -35,6 +36,7 @@ struct cpu_renderer {
 	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
 	double step_length[GZ_PLAN_STEPS_MAX];
 	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
+	struct gz_preintegration preintegration;
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -65,6 +67,7 @@ static void cpu_destroy(struct gz_renderer *renderer)
 	gz_detail_free(&cpu->detail);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_table);
+	gz_preintegration_free(&cpu->preintegration);
 	free(cpu);
 }
 
@@ -137,6 +140,7 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
 	gz_detail_classify(&cpu->detail, &cpu->table);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
+	gz_preintegration_forget(&cpu->preintegration);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
@@ -208,6 +212,24 @@ static void fill_transfer(struct cpu_renderer *cpu, const struct gz_plan *plan,
 	}
 	for (int channel = 0; channel < 3; channel++)
 		cast->background[channel] = (float)rays->background[channel];
+}
+
+/* Tables for segments, where rays are integrated by them. After fill_transfer(). */
+static enum gz_result fill_preintegration(struct cpu_renderer *cpu, const struct gz_plan *plan,
+					  const struct gz_ray_params *rays, struct gz_cast *cast)
+{
+	cast->preintegrated_extinction = NULL;
+	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
+		return GZ_OK;
+	struct gz_preintegration *preintegration = &cpu->preintegration;
+	const enum gz_result result = gz_preintegration_make(
+		preintegration, &cpu->table, cpu->step_length, plan->step_count, cpu->workers);
+	if (result != GZ_OK)
+		return result;
+	cast->preintegrated_extinction = preintegration->extinction;
+	for (int i = 0; i < plan->step_count; i++)
+		cast->preintegrated[i] = preintegration->step[i];
+	return GZ_OK;
 }
 
 static void store(const struct gz_lattice *lattice, int x, int y, uint32_t pixel)
@@ -306,9 +328,9 @@ static bool wants_levels(const struct gz_plan *plan, const struct gz_ray_params 
 	       M_SQRT2;
 }
 
-static void fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
-		       const struct gz_ray_frame *ray_frame, const struct gz_ray_params *rays,
-		       struct cast_job *job)
+static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
+				 const struct gz_ray_frame *ray_frame,
+				 const struct gz_ray_params *rays, struct cast_job *job)
 {
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->height);
@@ -319,11 +341,17 @@ static void fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
 	job->levels = &cpu->detail.levels;
 	job->pixel_lengths = coarser ? pixel_lengths : 0;
 	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
+	const enum gz_result result = fill_preintegration(cpu, job->plan, rays, &job->casts[0]);
+	if (result != GZ_OK) {
+		gz_err(cpu->base.log, "no memory for pre-integrated tables: take sampled");
+		return result;
+	}
 	for (int i = 0; i < (coarser ? job->levels->count : 1); i++) {
 		job->casts[i] = job->casts[0];
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
 	}
+	return GZ_OK;
 }
 
 static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_camera *camera,
@@ -344,14 +372,18 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 
 	const int64_t start_ns = gz_clock_now_ns();
 	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
+	const bool rich = rays->integration == GZ_INTEGRATION_PREINTEGRATED;
+	const enum gz_cast_variant variant = rich ? GZ_CAST_RICH : GZ_CAST_PLAIN;
 	struct cast_job job = {
 		.plan = plan,
 		.lattices = &cpu->lattices,
-		.tile = cpu->kernels->tile[cpu->volume->type][nearest],
+		.tile = cpu->kernels->tile[variant][cpu->volume->type][nearest],
 		.counts = cpu->counts,
 		.jitter = rays->jitter,
 	};
-	fill_casts(cpu, camera, &ray_frame, rays, &job);
+	result = fill_casts(cpu, camera, &ray_frame, rays, &job);
+	if (result != GZ_OK)
+		return result;
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,

@@ -95,6 +95,11 @@ SIMD vi vi_or(vi a, vi b)
 {
 	return _mm256_or_si256(a, b);
 }
+SIMD vi vi_select(vm m, vi yes, vi no)
+{
+	return _mm256_castps_si256(
+		_mm256_blendv_ps(_mm256_castsi256_ps(no), _mm256_castsi256_ps(yes), m));
+}
 SIMD vi vi_min(vi a, vi b)
 {
 	return _mm256_min_epi32(a, b);

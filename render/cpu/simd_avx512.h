@@ -99,6 +99,10 @@ SIMD vi vi_or(vi a, vi b)
 {
 	return _mm512_or_si512(a, b);
 }
+SIMD vi vi_select(vm m, vi yes, vi no)
+{
+	return _mm512_mask_blend_epi32(m, no, yes);
+}
 SIMD vi vi_min(vi a, vi b)
 {
 	return _mm512_min_epi32(a, b);

@@ -105,6 +105,10 @@ SIMD vi vi_or(vi a, vi b)
 {
 	return a | b;
 }
+SIMD vi vi_select(vm m, vi yes, vi no)
+{
+	return (vi)vf_select(m, (vf)yes, (vf)no);
+}
 SIMD vi vi_min(vi a, vi b)
 {
 	const vi m = a < b;

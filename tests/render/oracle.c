@@ -101,6 +101,56 @@ static double jitter(int x, int y, int seed)
 	return floor(v[0] / 256.0) / 16777216;
 }
 
+/* One ray as it goes through the volume. */
+struct oracle_ray {
+	const struct gz_level *level;
+	const struct gz_transfer *transfer;
+	const struct gz_ray_params *rays;
+	double low, high; /* of the transfer function, data values */
+	double origin[3], direction[3];
+	double half[3];      /* of the box, world units */
+	double per_world[3]; /* voxels of the level */
+	double voxel_length; /* world units */
+	double through, rgb[3];
+};
+
+/* What the transfer function is asked for, at a distance along the ray. */
+static double value_at(const struct oracle_ray *ray, double distance)
+{
+	double at[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = (ray->origin[axis] + distance * ray->direction[axis] + ray->half[axis]) *
+			   ray->per_world[axis];
+	const struct gz_volume *volume = &ray->level->volume;
+	const double stored = oracle_sample(volume, ray->rays->interpolation, at);
+	const double value = volume->slope * stored + volume->intercept;
+	return ray->high > ray->low ? (value - ray->low) / (ray->high - ray->low) : 0;
+}
+
+static void blend(struct oracle_ray *ray, double value, double length)
+{
+	double rgba[4];
+	gz_transfer_evaluate(ray->transfer, value, rgba);
+	const double opacity = 1 - pow(1 - rgba[3], length / ray->voxel_length);
+	for (int channel = 0; channel < 3; channel++)
+		ray->rgb[channel] += ray->through * opacity * rgba[channel];
+	ray->through *= 1 - opacity;
+}
+
+/* From one distance along the ray to another: by the value in the middle, or by all between those
+ * at both ends. */
+static void integrate(struct oracle_ray *ray, double from, double to)
+{
+	if (ray->rays->integration == GZ_INTEGRATION_SAMPLED) {
+		blend(ray, value_at(ray, (from + to) / 2), to - from);
+		return;
+	}
+	enum { PARTS = 128 };
+	const double front = value_at(ray, from), back = value_at(ray, to);
+	for (int i = 0; i < PARTS; i++)
+		blend(ray, front + (back - front) * (i + 0.5) / PARTS, (to - from) / PARTS);
+}
+
 void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
 		  int height, int x, int y, double out_rgb[3])
@@ -133,35 +183,28 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 
 	const double first = volume->slope * volume->stored_min + volume->intercept;
 	const double second = volume->slope * volume->stored_max + volume->intercept;
-	const double low = transfer->has_range ? transfer->range[0] : fmin(first, second);
-	const double high = transfer->has_range ? transfer->range[1] : fmax(first, second);
-
-	double through = 1;
-	out_rgb[0] = out_rgb[1] = out_rgb[2] = 0;
+	struct oracle_ray ray = {
+		.level = level,
+		.transfer = transfer,
+		.rays = rays,
+		.low = transfer->has_range ? transfer->range[0] : fmin(first, second),
+		.high = transfer->has_range ? transfer->range[1] : fmax(first, second),
+		.voxel_length = least / longest,
+		.through = 1,
+	};
+	for (int axis = 0; axis < 3; axis++) {
+		ray.origin[axis] = origin[axis];
+		ray.direction[axis] = direction[axis];
+		ray.half[axis] = volume->dims[axis] * volume->spacing[axis] / longest / 2;
+		ray.per_world[axis] = longest / volume->spacing[axis] / level->factor[axis];
+	}
 	const double start = box[0] - jitter(x, y, rays->jitter) * step;
-	for (int k = 0; start + k * step < shown[1] && through >= 1.0 / 1024; k++) {
+	for (int k = 0; start + k * step < shown[1] && ray.through >= 1.0 / 1024; k++) {
 		const double from = fmax(start + k * step, shown[0]);
 		const double to = fmin(start + (k + 1) * step, shown[1]);
-		if (from >= to)
-			continue;
-		const double middle = (from + to) / 2;
-		double at[3];
-		for (int axis = 0; axis < 3; axis++) {
-			const double half =
-				volume->dims[axis] * volume->spacing[axis] / longest / 2;
-			at[axis] = (origin[axis] + middle * direction[axis] + half) * longest /
-				   volume->spacing[axis] / level->factor[axis];
-		}
-		const double stored = oracle_sample(&level->volume, rays->interpolation, at);
-		const double value = volume->slope * stored + volume->intercept;
-		double rgba[4];
-		gz_transfer_evaluate(transfer, high > low ? (value - low) / (high - low) : 0, rgba);
-		const double voxel_lengths = (to - from) / (least / longest);
-		const double opacity = 1 - pow(1 - rgba[3], voxel_lengths);
-		for (int channel = 0; channel < 3; channel++)
-			out_rgb[channel] += through * opacity * rgba[channel];
-		through *= 1 - opacity;
+		if (from < to)
+			integrate(&ray, from, to);
 	}
 	for (int channel = 0; channel < 3; channel++)
-		out_rgb[channel] += through * rays->background[channel];
+		out_rgb[channel] = ray.rgb[channel] + ray.through * rays->background[channel];
 }
