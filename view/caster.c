@@ -58,8 +58,7 @@ enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_op
 		gz_err(log, "no memory for the renderer; close other programs or take a smaller "
 			    "volume");
 	else if (r == GZ_OK)
-		gz_debug(log, "%s: %s", caster->renderer->ops->name,
-			 gz_renderer_describe(caster->renderer));
+		gz_debug(log, "%s", gz_renderer_describe(caster->renderer));
 	return r;
 }
 

@@ -1,0 +1,436 @@
+/* The gl backend beside the cpu's, and what it refuses. */
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <GL/glew.h>
+
+#include "render/gl/compute_program.h"
+#include "render/gl/context_egl.h"
+#include "small_scene.h"
+
+/* Keeps the last message. */
+struct heard {
+	char text[512];
+};
+
+static void hear(void *user, enum gz_log_level level, const char *module, const char *message)
+{
+	struct heard *heard = user;
+	(void)module;
+	if (level >= GZ_LOG_WARN)
+		snprintf(heard->text, sizeof heard->text, "%s", message);
+}
+
+static struct gz_renderer *renderer_of(const char *backend, const struct small_scene *scene)
+{
+	struct gz_renderer *renderer = NULL;
+	assert_int_equal(gz_renderer_create(backend, NULL, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	return renderer;
+}
+
+/* Both backends with one scene. */
+struct pair {
+	struct gz_renderer *cpu, *gl;
+	struct gz_image of_cpu, of_gl;
+};
+
+static struct pair pair_of(const struct small_scene *scene)
+{
+	return (struct pair) { .cpu = renderer_of("cpu", scene), .gl = renderer_of("gl", scene) };
+}
+
+static void pair_free(struct pair *pair)
+{
+	gz_renderer_destroy(&pair->cpu);
+	gz_renderer_destroy(&pair->gl);
+	gz_image_free(&pair->of_cpu);
+	gz_image_free(&pair->of_gl);
+}
+
+/* Pixels that differ by more than a grey level in some channel. */
+static int pixels_apart(const struct gz_image *a, const struct gz_image *b)
+{
+	int apart = 0;
+	for (int i = 0; i < a->width * a->height; i++) {
+		int worst = 0;
+		for (int c = 0; c < 4; c++)
+			worst = (int)fmax(worst, abs(a->pixels[4 * i + c] - b->pixels[4 * i + c]));
+		apart += worst > 1;
+	}
+	return apart;
+}
+
+/* The bound that both backends promise: within 1/255 for 99.9 % of the pixels. */
+static void check_pair(struct pair *pair, const struct small_scene *scene, int width, int height,
+		       const char *what)
+{
+	struct gz_frame_stats cpu, gl;
+	small_scene_render(pair->cpu, scene, width, height, &pair->of_cpu, &cpu);
+	small_scene_render(pair->gl, scene, width, height, &pair->of_gl, &gl);
+	const int apart = pixels_apart(&pair->of_cpu, &pair->of_gl);
+	if (apart * 1000 > width * height)
+		fail_msg("%s, %s: %d of %d pixels differ", what,
+			 gz_method_names[scene->foveation.method], apart, width * height);
+	assert_int_equal(cpu.rays, gl.rays);
+	/* Where rounding puts a sample into the next cell, one more or less is taken. */
+	const double off = fabs((double)cpu.samples - (double)gl.samples);
+	if (off > 2 + 1e-3 * (double)cpu.samples)
+		fail_msg("%s, %s: %llu samples, cpu %llu", what,
+			 gz_method_names[scene->foveation.method], (unsigned long long)gl.samples,
+			 (unsigned long long)cpu.samples);
+	assert_true(gl.cast_ms >= 0 && gl.reconstruct_ms >= 0);
+}
+
+static void check_every_method(struct small_scene *scene, const char *what)
+{
+	struct pair pair = pair_of(scene);
+	for (int method = 0; method < GZ_METHOD_COUNT; method++)
+		for (int nearest = 0; nearest < 2; nearest++) {
+			scene->foveation.method = method;
+			scene->rays.interpolation =
+				nearest ? GZ_INTERPOLATION_NEAREST : GZ_INTERPOLATION_TRILINEAR;
+			check_pair(&pair, scene, 331, 217, what);
+		}
+	pair_free(&pair);
+	small_scene_free(scene);
+}
+
+static void pictures_of_8_bit_data_equal_the_cpus_by_every_method(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(50, 41, 60, GZ_VOXEL_U8);
+	check_every_method(&scene, "8 bits");
+}
+
+static void pictures_of_16_bit_data_equal_the_cpus_by_every_method(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(33, 47, 52, GZ_VOXEL_U16);
+	scene.gaze = (struct gz_point) { 0.2F, 0.9F };
+	check_every_method(&scene, "16 bits");
+}
+
+static void pictures_of_float_data_equal_the_cpus_by_every_method(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(40, 31, 27, GZ_VOXEL_F32);
+	scene.gaze = (struct gz_point) { NAN, 0 };
+	check_every_method(&scene, "float");
+}
+
+static void pictures_from_inside_and_orthographic_equal_the_cpus(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(48, 48, 48, GZ_VOXEL_U8);
+	struct pair pair = pair_of(&scene);
+	memcpy(scene.camera.eye, (double[3]) { 0.1, -0.1, 0.05 }, sizeof scene.camera.eye);
+	check_pair(&pair, &scene, 200, 150, "inside");
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	check_pair(&pair, &scene, 200, 150, "orthographic");
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
+static void pictures_of_any_size_equal_the_cpus(void **state)
+{
+	(void)state;
+	static const int sizes[][2] = { { 1, 1 },    { 2, 1 },     { 1, 300 },  { 17, 16 },
+					{ 1031, 3 }, { 16384, 2 }, { 3, 16384 } };
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	struct pair pair = pair_of(&scene);
+	for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+		scene.foveation.method = GZ_METHOD_ACUITY;
+		check_pair(&pair, &scene, sizes[i][0], sizes[i][1], "size");
+	}
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
+static void new_transfer_function_and_volume_replace_the_old(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(30, 30, 30, GZ_VOXEL_U8);
+	struct small_scene other = small_scene_waves(17, 40, 21, GZ_VOXEL_F32);
+	struct pair pair = pair_of(&scene);
+	check_pair(&pair, &scene, 90, 90, "first");
+	scene.transfer.points[1].opacity = 0.5;
+	scene.transfer.points[3].rgb[0] = 0;
+	assert_int_equal(gz_renderer_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(pair.gl, &scene.transfer), GZ_OK);
+	check_pair(&pair, &scene, 90, 90, "transfer");
+	assert_int_equal(gz_renderer_set_volume(pair.cpu, &other.volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_volume(pair.gl, &other.volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(pair.cpu, &other.transfer), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(pair.gl, &other.transfer), GZ_OK);
+	check_pair(&pair, &other, 90, 90, "volume");
+	pair_free(&pair);
+	small_scene_free(&scene);
+	small_scene_free(&other);
+}
+
+/* A context that a test hands in, and can lose. */
+struct lent_context {
+	struct gz_gl_context base;
+	struct gz_gl_context *egl;
+	bool lost;
+};
+
+static enum gz_result lent_make_current(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	return lent->lost ? GZ_ERR_NO_DEVICE : lent->egl->ops->make_current(lent->egl);
+}
+
+static void lent_release(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	lent->egl->ops->release(lent->egl);
+}
+
+static const struct gz_gl_context_ops lent_ops = { .make_current = lent_make_current,
+						   .release = lent_release };
+
+static struct lent_context lend(void)
+{
+	struct lent_context lent = { .base = { .ops = &lent_ops } };
+	char reason[200];
+	assert_int_equal(gz_gl_context_egl(false, &lent.egl, reason, sizeof reason), GZ_OK);
+	return lent;
+}
+
+static struct gz_renderer *renderer_in(struct lent_context *lent, const struct small_scene *scene,
+				       const struct gz_log *log)
+{
+	const struct gz_renderer_params params = { .gl_context = &lent->base };
+	struct gz_renderer *renderer = NULL;
+	assert_int_equal(gz_renderer_create("gl", &params, log, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	return renderer;
+}
+
+static void picture_left_on_the_device_equals_the_one_read_back(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
+	struct lent_context lent = lend();
+	struct gz_renderer *renderer = renderer_in(&lent, &scene, NULL);
+	struct gz_image image = { 0 };
+	enum { WIDTH = 77, HEIGHT = 50 };
+	uint8_t *pixels = calloc(WIDTH * HEIGHT, 4);
+	for (int round = 0; round < 2; round++) {
+		scene.rays.background[0] = round;
+		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, NULL);
+		small_scene_render(renderer, &scene, WIDTH, HEIGHT, NULL, NULL);
+		const unsigned texture = gz_renderer_picture_texture(renderer);
+		assert_int_not_equal(texture, 0);
+		assert_int_equal(lent.egl->ops->make_current(lent.egl), GZ_OK);
+		glBindTexture(GL_TEXTURE_2D, texture);
+		glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+		assert_int_equal(glGetError(), GL_NO_ERROR);
+		lent.egl->ops->release(lent.egl);
+		assert_memory_equal(pixels, image.pixels, WIDTH * HEIGHT * 4);
+	}
+	free(pixels);
+	gz_image_free(&image);
+	gz_renderer_destroy(&renderer);
+	gz_gl_context_destroy(&lent.egl);
+	small_scene_free(&scene);
+}
+
+static void picture_without_an_image_is_refused_by_the_cpu(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(8, 8, 8, GZ_VOXEL_U8);
+	struct gz_renderer *renderer = renderer_of("cpu", &scene);
+	struct gz_plan plan = { 0 };
+	const struct gz_display display = gz_display_default(16, 16);
+	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, 16, 16, &plan),
+			 GZ_OK);
+	assert_int_equal(
+		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, NULL, NULL),
+		GZ_ERR_INVAL);
+	assert_int_equal(gz_renderer_picture_texture(renderer), 0);
+	gz_plan_free(&plan);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+static void lost_context_is_told_and_the_renderer_can_be_destroyed(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(16, 16, 16, GZ_VOXEL_U8);
+	struct lent_context lent = lend();
+	struct heard heard = { "" };
+	struct gz_log log;
+	gz_log_init(&log, hear, &heard, NULL);
+	struct gz_renderer *renderer = renderer_in(&lent, &scene, &log);
+	struct gz_image image = { 0 };
+	struct gz_plan plan = { 0 };
+	const struct gz_display display = gz_display_default(16, 16);
+	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, 16, 16, &plan),
+			 GZ_OK);
+	lent.lost = true;
+	assert_int_equal(
+		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		GZ_ERR_NO_DEVICE);
+	assert_non_null(strstr(heard.text, "context"));
+	gz_renderer_destroy(&renderer);
+	gz_gl_context_destroy(&lent.egl);
+	gz_plan_free(&plan);
+	gz_image_free(&image);
+	small_scene_free(&scene);
+}
+
+static void volume_beyond_the_texture_limit_is_refused_with_the_limit(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(8, 40, 8, GZ_VOXEL_U8);
+	struct heard heard = { "" };
+	struct gz_log log;
+	gz_log_init(&log, hear, &heard, NULL);
+	const struct gz_renderer_params params = { .gl_volume_edge_max = 39 };
+	struct gz_renderer *renderer = NULL;
+	assert_int_equal(gz_renderer_create("gl", &params, &log, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_ERR_UNSUPPORTED);
+	if (!strstr(heard.text, "of 39") || !strstr(heard.text, "--backend cpu"))
+		fail_msg("'%s' names neither limit nor remedy", heard.text);
+	/* and what fits is taken afterwards */
+	struct small_scene small = small_scene_waves(8, 39, 8, GZ_VOXEL_U8);
+	assert_int_equal(gz_renderer_set_volume(renderer, &small.volume), GZ_OK);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+	small_scene_free(&small);
+}
+
+/* What a process with another environment says of a backend: 0 and how it describes it, or 1 and
+ * why not. */
+static int probe(const char *backend)
+{
+	struct gz_log log;
+	struct gz_renderer *renderer = NULL;
+	gz_log_init(&log, NULL, NULL, NULL);
+	if (gz_renderer_create(backend, NULL, &log, &renderer) != GZ_OK)
+		return 1;
+	fprintf(stderr, "%s: %s\n", renderer->ops->name, gz_renderer_describe(renderer));
+	gz_renderer_destroy(&renderer);
+	return 0;
+}
+
+static int run_probe(const char *environment, const char *backend, char *said, size_t size)
+{
+	char self[512] = "", command[1024];
+	assert_true(readlink("/proc/self/exe", self, sizeof self - 1) > 0);
+	snprintf(command, sizeof command, "%s '%s' --probe %s 2>&1", environment, self, backend);
+	FILE *out = popen(command, "r");
+	assert_non_null(out);
+	said[fread(said, 1, size - 1, out)] = '\0';
+	return WEXITSTATUS(pclose(out));
+}
+
+static void old_or_missing_opengl_is_refused_with_reason_and_remedy(void **state)
+{
+	(void)state;
+	static const char *const environments[][2] = {
+		{ "LIBGL_ALWAYS_SOFTWARE=1 MESA_GL_VERSION_OVERRIDE=3.3", "4.3" },
+		{ "__EGL_VENDOR_LIBRARY_FILENAMES=/no/such/file.json", "EGL" },
+	};
+	for (size_t i = 0; i < sizeof environments / sizeof environments[0]; i++) {
+		char said[512];
+		const int status = run_probe(environments[i][0], "gl", said, sizeof said);
+		if (status != 1 || !strstr(said, environments[i][1]) ||
+		    !strstr(said, "--backend cpu") || strchr(said, '\n') != strrchr(said, '\n'))
+			fail_msg("%s: %d, '%s'", environments[i][0], status, said);
+		assert_int_equal(run_probe(environments[i][0], "auto", said, sizeof said), 0);
+		assert_non_null(strstr(said, "cpu: "));
+	}
+}
+
+static void software_opengl_is_not_what_auto_takes(void **state)
+{
+	(void)state;
+	char said[512];
+	assert_int_equal(run_probe("LIBGL_ALWAYS_SOFTWARE=1", "auto", said, sizeof said), 0);
+	if (!strstr(said, "cpu: ") && strstr(said, "llvmpipe"))
+		fail_msg("auto took '%s'", said);
+	assert_int_equal(run_probe("EGL_PLATFORM=nonsense", "gl", said, sizeof said), 0);
+	assert_non_null(strstr(said, "gl: gl: "));
+}
+
+/* Made from shaders/ when the library is built. */
+extern const char gz_glsl_frame_glsl[], gz_glsl_fetch_glsl[], gz_glsl_pyramid_glsl[],
+	gz_glsl_cast_comp[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[], gz_glsl_regions_comp[];
+
+/* Drivers forgive what the reference compiler does not. */
+static void check_text(const char *defines, const char *const *parts)
+{
+	char path[] = "/tmp/gazecast-shader-XXXXXX.comp", command[128];
+	const int file = mkstemps(path, 5);
+	assert_true(file >= 0);
+	FILE *out = fdopen(file, "w");
+	for (int i = 0; i < gz_compute_head_count; i++)
+		fputs(gz_compute_head[i], out);
+	fputs(defines, out);
+	for (; *parts; parts++)
+		fputs(*parts, out);
+	assert_int_equal(fclose(out), 0);
+	snprintf(command, sizeof command, "glslangValidator -S comp %s", path);
+	const int status = system(command);
+	unlink(path);
+	assert_int_equal(status, 0);
+}
+
+static void shaders_are_valid_for_the_reference_compiler(void **state)
+{
+	(void)state;
+	static const int bits[] = { 8, 16, 32 };
+	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
+		skip();
+	for (size_t i = 0; i < sizeof bits / sizeof bits[0]; i++)
+		for (int variant = 0; variant < 4; variant++) {
+			char defines[128];
+			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s", bits[i],
+				 variant & 1 ? "#define NEAREST\n" : "",
+				 variant & 2 ? "#define FETCH_IMAGES\n" : "");
+			check_text(defines,
+				   (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_fetch_glsl,
+							   gz_glsl_cast_comp, NULL });
+		}
+	const char *const passes[] = { gz_glsl_fill_comp, gz_glsl_quincunx_comp };
+	for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)
+		check_text("", (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl,
+						       passes[i], NULL });
+	check_text("", (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_regions_comp, NULL });
+}
+
+int main(int argc, char **argv)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(pictures_of_8_bit_data_equal_the_cpus_by_every_method),
+		cmocka_unit_test(pictures_of_16_bit_data_equal_the_cpus_by_every_method),
+		cmocka_unit_test(pictures_of_float_data_equal_the_cpus_by_every_method),
+		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),
+		cmocka_unit_test(pictures_of_any_size_equal_the_cpus),
+		cmocka_unit_test(new_transfer_function_and_volume_replace_the_old),
+		cmocka_unit_test(picture_left_on_the_device_equals_the_one_read_back),
+		cmocka_unit_test(picture_without_an_image_is_refused_by_the_cpu),
+		cmocka_unit_test(lost_context_is_told_and_the_renderer_can_be_destroyed),
+		cmocka_unit_test(volume_beyond_the_texture_limit_is_refused_with_the_limit),
+		cmocka_unit_test(old_or_missing_opengl_is_refused_with_reason_and_remedy),
+		cmocka_unit_test(software_opengl_is_not_what_auto_takes),
+		cmocka_unit_test(shaders_are_valid_for_the_reference_compiler),
+	};
+	if (argc == 3 && strcmp(argv[1], "--probe") == 0)
+		return probe(argv[2]);
+	if (probe("gl") != 0)
+		return 77;
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
