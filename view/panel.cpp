@@ -119,8 +119,9 @@ bool gz_panel_init(GLFWwindow *window)
 bool gz_panel_draw(const struct gz_panel_content *content)
 {
 	begin_frame();
-	bool changed = content->settings &&
-		       gz_panel_draw_settings(content->settings, content->settings_count);
+	float below_line = MARGIN + ImGui::GetFontSize() + 3 * PADDING;
+	bool changed = content->settings && gz_panel_draw_settings(below_line, content->settings,
+								   content->settings_count);
 	/* Straight into the draw list: a window would need a second frame to find its size. */
 	ImDrawList *list = ImGui::GetForegroundDrawList();
 	if (content->letters)

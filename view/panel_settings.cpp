@@ -230,13 +230,13 @@ bool draw_section(const rows &all, const gz_option &section, const gz_option *me
 
 } // namespace
 
-bool gz_panel_draw_settings(const struct gz_option_binding *bindings, size_t count)
+bool gz_panel_draw_settings(float top, const struct gz_option_binding *bindings, size_t count)
 {
 	ImVec2 room = ImGui::GetIO().DisplaySize;
 	float scale = ImGui::GetIO().FontGlobalScale;
 	float width = fminf(WIDTH * scale, room.x * 0.8F);
-	ImGui::SetNextWindowPos(ImVec2(room.x - MARGIN, MARGIN), ImGuiCond_Always, ImVec2(1, 0));
-	ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, room.y - 2 * MARGIN));
+	ImGui::SetNextWindowPos(ImVec2(room.x - MARGIN, top), ImGuiCond_Always, ImVec2(1, 0));
+	ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, room.y - top - MARGIN));
 	ImGui::SetNextWindowBgAlpha(0.85F);
 	bool changed = false;
 	if (ImGui::Begin("Settings", nullptr,

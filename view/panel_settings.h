@@ -13,10 +13,11 @@
 /**
  * Draw it at the right of the window.
  *
+ * @param top       where it begins, in the window's screen coordinates
  * @param bindings  their targets are changed, each value within its row's range; rows that hold
  *                  text are left out, and those of foveation methods other than the one chosen
  * @return whether anything has been changed
  */
-bool gz_panel_draw_settings(const struct gz_option_binding *bindings, size_t count);
+bool gz_panel_draw_settings(float top, const struct gz_option_binding *bindings, size_t count);
 
 #endif

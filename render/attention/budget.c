@@ -19,6 +19,9 @@
 /* The same for the rungs that are left out at once, since not all of a frame goes with its rays. */
 #define LEAP_AIM 0.8
 
+/* Most doublings of a leap: from the first rung to the last. */
+#define LEAPS_MAX 4
+
 /* Clearly cheaper than when a finer rung failed (chosen). */
 #define CHEAPER 0.8
 
@@ -85,7 +88,7 @@ static double upper_ms(const struct gz_budget *budget, int newest)
 
 static void choose(struct gz_budget *budget, int rung)
 {
-	budget->rung = rung;
+	budget->rung = rung < GZ_BUDGET_RUNGS ? rung : GZ_BUDGET_RUNGS - 1;
 	budget->count = 0;
 	budget->waited = 0;
 }
@@ -98,7 +101,8 @@ static int rungs_needed(const struct gz_budget *budget)
 		return 0;
 	double excess = upper_ms(budget, newest) / (LEAP_AIM * budget->budget_ms);
 	double rungs = ceil(log(excess) / log(RUNG_COST));
-	return rungs < 1 ? 1 : rungs > GZ_BUDGET_RUNGS ? GZ_BUDGET_RUNGS : (int)rungs;
+	/* What did not help is done twice as far: rays may be the smaller part of a frame. */
+	return (int)fmin(fmax(ldexp(rungs, budget->leaps), 1), GZ_BUDGET_RUNGS);
 }
 
 static void count_failure(struct gz_budget *budget, int from)
@@ -107,18 +111,18 @@ static void count_failure(struct gz_budget *budget, int from)
 		budget->tries[from].fails++;
 }
 
-/* A rung on trial that has to be left tells of the one that it was tried from. */
-static void end_trial(struct gz_budget *budget)
+/* A trial has failed: at least back to where it came from, where all was well. */
+static void end_trial(struct gz_budget *budget, int needed)
 {
-	if (budget->tried_from > 0)
-		count_failure(budget, budget->tried_from);
+	int from = budget->tried_from, rung = budget->rung + needed;
+	count_failure(budget, from);
 	budget->tried_from = 0;
+	choose(budget, rung > from ? rung : from);
 }
 
 /* Now and then a slow frame: one rung, and no hurry back. */
 static void go_one_coarser(struct gz_budget *budget)
 {
-	end_trial(budget);
 	choose(budget, budget->rung + 1);
 	budget->tries[budget->rung].before_ms = AIM * budget->budget_ms / RUNG_COST;
 	count_failure(budget, budget->rung);
@@ -134,13 +138,14 @@ static bool go_coarser(struct gz_budget *budget)
 		return first;
 	}
 	int needed = rungs_needed(budget);
-	if (needed == 0) {
+	if (budget->tried_from > 0)
+		end_trial(budget, needed);
+	else if (needed == 0)
 		go_one_coarser(budget);
-		return false;
-	}
-	int rung = budget->rung + needed;
-	end_trial(budget);
-	choose(budget, rung < GZ_BUDGET_RUNGS ? rung : GZ_BUDGET_RUNGS - 1);
+	else
+		choose(budget, budget->rung + needed);
+	if (needed > 0 && budget->leaps < LEAPS_MAX)
+		budget->leaps++;
 	return false;
 }
 
@@ -175,6 +180,7 @@ static void try_finer(struct gz_budget *budget)
 static void take_window(struct gz_budget *budget)
 {
 	budget->tried_from = 0;
+	budget->leaps = 0;
 	if (budget->rung > 0)
 		try_finer(budget);
 	budget->count = 0;

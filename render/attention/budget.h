@@ -44,6 +44,7 @@ struct gz_budget {
 	bool limit_told;
 	int count; /**< frames since the rung was chosen, up to GZ_BUDGET_WINDOW; the newest last */
 	double frames_ms[GZ_BUDGET_WINDOW];
+	int leaps;  /**< over the budget in a row, since a whole window was not */
 	int waited; /**< whole windows since the rung was chosen */
 
 	/** How it went when the rung was last left for a finer one. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "render/attention/budget.h"
+#include "render/plan/plan.h"
 #include "sim/random.h"
 
 /* ms = fixed + rays * each: rays of the fovea stay, the others go with the scale's square. */
@@ -118,6 +119,45 @@ static void percentile_is_kept_and_the_scale_comes_to_rest(void **state)
 	}
 }
 
+/* The plan's own rays, 150 ns each, the gaze on its way about the picture. */
+static void plans_of_every_method_keep_it_while_the_gaze_moves(void **state)
+{
+	(void)state;
+	static const int methods[] = { GZ_METHOD_ACUITY, GZ_METHOD_MDC, GZ_METHOD_DDC,
+				       GZ_METHOD_MDC3 };
+	const struct gz_display display = gz_display_default(960, 540);
+	for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
+		struct gz_foveation foveation = gz_foveation_default();
+		struct gz_plan plan = { 0 };
+		struct gz_budget budget;
+		int over = 0, changes = 0;
+		double full_ms = 0, before = 1;
+		foveation.method = methods[m];
+		for (int i = -1; i < 600; i++) {
+			struct gz_point gaze = { 0.5f + 0.4f * (float)sin(i * 0.02),
+						 0.5f + 0.3f * (float)sin(i * 0.031) };
+			struct gz_plan_request request =
+				gz_plan_request_make(&foveation, &display, gaze, 960, 540);
+			request.scale = i < 0 ? 1 : gz_budget_scale(&budget);
+			assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+			double ms = 0.2 + (double)plan.ray_count * 1.5e-4;
+			if (i < 0) {
+				full_ms = ms;
+				gz_budget_init(&budget, full_ms / 2);
+				continue;
+			}
+			over += i >= 60 && ms > full_ms / 2;
+			changes += gz_budget_scale(&budget) != before;
+			before = gz_budget_scale(&budget);
+			assert_false(gz_budget_step(&budget, ms));
+		}
+		gz_plan_free(&plan);
+		if (over > 540 / 20 || changes > (methods[m] == GZ_METHOD_ACUITY ? 4 : 20))
+			fail_msg("%s: %d of 540 frames over, %d changes, %g at last",
+				 gz_method_names[methods[m]], over, changes, before);
+	}
+}
+
 static void cheaper_scene_brings_the_detail_back(void **state)
 {
 	(void)state;
@@ -212,6 +252,7 @@ int main(void)
 		cmocka_unit_test(frames_that_keep_it_stay_at_full_detail),
 		cmocka_unit_test(dearer_scene_is_answered_within_few_frames),
 		cmocka_unit_test(percentile_is_kept_and_the_scale_comes_to_rest),
+		cmocka_unit_test(plans_of_every_method_keep_it_while_the_gaze_moves),
 		cmocka_unit_test(cheaper_scene_brings_the_detail_back),
 		cmocka_unit_test(cost_that_leaps_is_tried_ever_more_rarely),
 		cmocka_unit_test(budget_out_of_reach_is_told_once),

@@ -201,6 +201,43 @@ class Window(unittest.TestCase):
         self.tool("key", "question")
         self.until(lambda p: self.below_line(p) == self.below_line(before), "keys hidden")
 
+    def test_settings_are_changed_in_the_panel_while_the_gaze_stays(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.move(100, 300)
+        small = self.grab()
+        self.tool("windowsize", self.window, 700, 500)
+        self.until_changed(small, "larger")
+        self.move(101, 301)
+        time.sleep(0.5)  # the last of several sizes
+        before = self.grab()
+        shown, panel = (100, 50, 310, 490), (330, 40, 680, 200)
+        self.tool("key", "p")
+        self.until(lambda p: p.part(*panel) != before.part(*panel), "settings")
+        self.move(500, 142)  # the heading Clip
+        time.sleep(0.3)
+        folded = self.grab()
+        self.tool("click", 1)
+        self.until(lambda p: p.part(330, 155, 680, 200) != folded.part(330, 155, 680, 200),
+                   "clip box")
+        self.assertTrue(self.grab().part(*shown) == before.part(*shown), "the panel is the mouse's")
+        self.move(515, 165)  # the first slider of least
+        time.sleep(0.3)
+        self.tool("click", 1)
+        self.until(lambda p: p.part(*shown) != before.part(*shown), "clipped")
+        self.tool("key", "p")
+        self.move(101, 300)
+        self.until(lambda p: p.part(600, 40, 690, 60) == before.part(600, 40, 690, 60), "no panel")
+
+    def test_letters_come_and_go(self):
+        self.start("--gaze", "mouse")
+        self.move(20, 60)
+        edge = (450, 140, 478, 180)
+        before = self.grab()
+        self.tool("key", "l")
+        self.until(lambda p: p.part(*edge) != before.part(*edge), "letters")
+        self.tool("key", "l")
+        self.until(lambda p: p.part(*edge) == before.part(*edge), "no letters")
+
     def test_resized_window_is_filled(self):
         self.start("--gaze", "0.5,0.5", "--render.background", "0.2 0.4 0.6")
         self.tool("windowsize", self.window, 700, 500)
