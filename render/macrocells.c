@@ -74,12 +74,11 @@ static size_t cell_count(const struct gz_macrocells *cells)
 	return (size_t)cells->dims[0] * (size_t)cells->dims[1] * (size_t)cells->dims[2];
 }
 
-enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_macrocells *cells)
+enum gz_result gz_macrocells_allocate(const int dims[3], struct gz_macrocells *cells)
 {
 	gz_macrocells_free(cells);
 	for (int axis = 0; axis < 3; axis++)
-		cells->dims[axis] =
-			(volume->dims[axis] + GZ_MACROCELL_EDGE - 1) / GZ_MACROCELL_EDGE;
+		cells->dims[axis] = (dims[axis] + GZ_MACROCELL_EDGE - 1) / GZ_MACROCELL_EDGE;
 	const size_t count = cell_count(cells);
 	cells->least = malloc(count * sizeof *cells->least);
 	cells->greatest = malloc(count * sizeof *cells->greatest);
@@ -89,6 +88,14 @@ enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_mac
 		gz_macrocells_free(cells);
 		return GZ_ERR_NO_MEM;
 	}
+	return GZ_OK;
+}
+
+enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_macrocells *cells)
+{
+	const enum gz_result result = gz_macrocells_allocate(volume->dims, cells);
+	if (result != GZ_OK)
+		return result;
 	for (int z = 0; z < cells->dims[2]; z++)
 		for (int y = 0; y < cells->dims[1]; y++)
 			for (int x = 0; x < cells->dims[0]; x++)

@@ -26,6 +26,10 @@ struct gz_macrocells {
 			   empty cell for another, both at most GZ_REACH_MAX. 4 bytes of padding */
 };
 
+/** Make room for the cells of a volume of @p dims voxels, whose values are found elsewhere; @p
+ * cells must be zeroed or hold an earlier result. GZ_ERR_NO_MEM. */
+enum gz_result gz_macrocells_allocate(const int dims[3], struct gz_macrocells *cells);
+
 /** Find the values of all cells; @p cells must be zeroed or hold an earlier result. GZ_ERR_NO_MEM.
  */
 enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_macrocells *cells);

@@ -23,6 +23,8 @@ struct gz_frame_stats {
 	uint64_t samples; /**< voxel interpolations done */
 	double cast_ms;
 	double reconstruct_ms;
+	uint64_t bricks_coming; /**< of a volume of bricks: sent for and not there yet. While it is
+				   above 0 the same picture, made again, is sharper */
 };
 
 struct gz_renderer;
@@ -32,6 +34,9 @@ struct gz_gl_context;
 struct gz_renderer_params {
 	int threads;      /**< cpu: 0 = one per processor, else 1 to 256 */
 	const char *simd; /**< cpu: NULL or "auto", else "portable", "avx2", "avx512" */
+	/** cpu, of a volume of bricks: each picture waits for all bricks that it shows, or as many
+	 * as have room; else it shows those that are there, coarse ones first. */
+	bool wait_for_bricks;
 	/** gl: where it draws, borrowed, outlives the renderer; NULL = headless, from EGL. A
 	 * program with windows must give a window's (render/gl/gl_context.h). */
 	struct gz_gl_context *gl_context;

@@ -10,9 +10,21 @@
 #include "render/cast_constants.h"
 #include "render/plan/plan.h"
 #include "render/transfer_table.h"
+#include "render/volume/brick_pool.h"
 #include "render/volume/volume.h"
 
 #define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
+
+/** Where the voxels of a volume of bricks are. Its level is the one that a cast is for. */
+struct gz_cast_bricks {
+	/** By brick of the level: room << GZ_BRICK_LEVEL_BITS | the level of the brick there, which
+	 *  is this one or a coarser one. NULL for a volume in memory. */
+	const int32_t *table;
+	float last[3]; /**< greatest number of a brick */
+	int32_t stride[3];
+	/** Voxels of another level along an edge of one of this level, 1 or less. */
+	float scale[3][1 << GZ_BRICK_LEVEL_BITS];
+};
 
 /** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel
  *  coordinates: voxel i along an axis spans [i, i + 1), its datum sits at i + 1/2. */
@@ -24,6 +36,7 @@ struct gz_cast {
 	float dims[3];
 	int32_t last[3];   /**< greatest index of the lower of two neighbours: max(dims - 2, 0) */
 	int32_t stride[3]; /**< in voxels; 0 along an axis of one voxel, x excepted */
+	struct gz_cast_bricks bricks; /**< voxels is where their rooms begin */
 	/* macrocells */
 	const uint8_t *reach;
 	float cell_last[3]; /**< greatest cell index */

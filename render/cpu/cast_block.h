@@ -249,6 +249,10 @@ SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int ne
 {
 	if (nearest)
 		return sample_at(cast, type, nearest, rays, k, mask);
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return (sample_at(cast, type, nearest, rays, k, mask) -
+			vf_set(FETCH_OFFSET(type))) *
+		       vf_set(FETCH_UNIT(type));
 	vf at[3], places[3], whole[3], share[3];
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);

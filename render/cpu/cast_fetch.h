@@ -6,38 +6,9 @@
 #define GZ_RENDER_CPU_CAST_FETCH_H
 
 #include "render/cpu/cast.h"
+#include "render/cpu/cast_bricks.h"
 #include "render/cpu/cast_rays.h"
-
-/* Two neighbours along x, as floats: one 32-bit load where both fit. */
-SIMD void load_pair(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask, vf *low,
-		    vf *high)
-{
-	if (type == GZ_VOXEL_U8) {
-		const vi pair = vi_gather(cast->voxels, index, 1, mask);
-		*low = vf_from_i(vi_and(pair, vi_set(0xFF)));
-		*high = vf_from_i(vi_and(vi_shift_right(pair, 8), vi_set(0xFF)));
-	} else if (type == GZ_VOXEL_U16) {
-		const vi pair = vi_gather(cast->voxels, index, 2, mask);
-		*low = vf_from_i(vi_and(pair, vi_set(0xFFFF)));
-		*high = vf_from_i(vi_shift_right(pair, 16));
-	} else {
-		const float *voxels = cast->voxels;
-		*low = vf_gather(voxels, index, mask);
-		*high = vf_gather(voxels + 1, index, mask);
-	}
-}
-
-SIMD vf mix(vf a, vf b, vf share)
-{
-	return vf_fma(share, b - a, a);
-}
-
-SIMD vf load_row(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask, vf share)
-{
-	vf low, high;
-	load_pair(cast, type, index, mask, &low, &high);
-	return mix(low, high, share);
-}
+#include "render/cpu/cast_voxels.h"
 
 /* The lower of two neighbours along an axis and the share of the other. */
 SIMD vi clamp_place(const struct gz_cast *cast, int axis, vf at, vf *share)
@@ -54,21 +25,20 @@ SIMD vf sample_trilinear(const struct gz_cast *cast, enum gz_voxel_type type, co
 {
 	vf share[3];
 	vi index[3];
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return sample_bricks(cast, type, 0, at, mask);
 	for (int axis = 0; axis < 3; axis++)
 		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
-	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
-	const vi i00 = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
-	const vi i01 = vi_add(i00, up_z);
-	const vf v00 = load_row(cast, type, i00, mask, share[0]);
-	const vf v10 = load_row(cast, type, vi_add(i00, up_y), mask, share[0]);
-	const vf v01 = load_row(cast, type, i01, mask, share[0]);
-	const vf v11 = load_row(cast, type, vi_add(i01, up_y), mask, share[0]);
-	return mix(mix(v00, v10, share[1]), mix(v01, v11, share[1]), share[2]);
+	const vi first = vi_add(vi_add(index[0], vi_mul(index[1], vi_set(cast->stride[1]))),
+				vi_mul(index[2], vi_set(cast->stride[2])));
+	return mix_rows(cast, type, first, cast->stride[1], cast->stride[2], share, mask);
 }
 
 SIMD vf sample_nearest(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
 {
 	vi index = vi_set(0);
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return sample_bricks(cast, type, 1, at, mask);
 	for (int axis = 0; axis < 3; axis++) {
 		const vf top = vf_set(cast->dims[axis] - 1);
 		const vf place = vf_min(vf_max(vf_floor(at[axis] + vf_set(0.5F)), vf_set(0)), top);

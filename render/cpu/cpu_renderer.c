@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/cpu/brick_stream.h"
 #include "render/cpu/cast.h"
 #include "render/cpu/detail.h"
 #include "render/cpu/lattice.h"
@@ -31,6 +32,8 @@ struct cpu_renderer {
 	const struct gz_cast_kernels *kernels;
 	const struct gz_volume *volume; /* borrowed */
 	struct gz_detail detail;
+	struct gz_brick_stream stream; /* of a volume of bricks */
+	bool wait_for_bricks;
 	bool has_transfer;
 	struct gz_transfer_table table;
 	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
@@ -45,6 +48,7 @@ struct cpu_renderer {
 /* What the workers are given. */
 struct cast_job {
 	struct gz_cast casts[GZ_LEVELS_MAX]; /* of each level of detail */
+	int cast_count;
 	const struct gz_levels *levels;
 	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
 			       */
@@ -65,6 +69,7 @@ static void cpu_destroy(struct gz_renderer *renderer)
 	struct cpu_renderer *cpu = cpu_of(renderer);
 	gz_workers_destroy(&cpu->workers);
 	gz_detail_free(&cpu->detail);
+	gz_brick_stream_free(&cpu->stream);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_table);
 	gz_preintegration_free(&cpu->preintegration);
@@ -100,6 +105,7 @@ static enum gz_result cpu_create(const struct gz_renderer_params *params, const 
 		return GZ_ERR_NO_MEM;
 	memset(cpu, 0, sizeof *cpu);
 	cpu->base = (struct gz_renderer) { .ops = &gz_cpu_renderer_ops, .log = log };
+	cpu->wait_for_bricks = params->wait_for_bricks;
 	cpu->step_table = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->step_table);
 	const enum gz_result result = cpu->step_table ? start(cpu, params) : GZ_ERR_NO_MEM;
 	if (result != GZ_OK) {
@@ -115,10 +121,13 @@ static enum gz_result cpu_set_volume(struct gz_renderer *renderer, const struct 
 	struct cpu_renderer *cpu = cpu_of(renderer);
 	cpu->volume = NULL;
 	cpu->has_transfer = false;
+	gz_brick_stream_forget(&cpu->stream);
 	/* Gathers take 32-bit signed indices. */
-	if (gz_volume_voxel_count(volume) > INT32_MAX) {
+	if (!volume->bricks && gz_volume_voxel_count(volume) > INT32_MAX) {
 		gz_err(renderer->log,
-		       "a volume of %d x %d x %d voxels is beyond the cpu backend's 2^31",
+		       "a volume of %d x %d x %d voxels in memory is beyond the cpu backend's "
+		       "2^31; "
+		       "write it as bricks (gazeview --write-volume) and show these",
 		       volume->dims[0], volume->dims[1], volume->dims[2]);
 		return GZ_ERR_UNSUPPORTED;
 	}
@@ -139,6 +148,7 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 		return GZ_ERR_INVAL;
 	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
 	gz_detail_classify(&cpu->detail, &cpu->table);
+	gz_brick_stream_forget(&cpu->stream);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	gz_preintegration_forget(&cpu->preintegration);
 	cpu->has_transfer = true;
@@ -277,6 +287,39 @@ static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
 				(double)job->casts[0].voxel_lengths[tile->step]);
 }
 
+static int level_of(const void *user, const struct gz_tile *tile)
+{
+	return tile_level(user, tile);
+}
+
+/* Have the bricks that there are, and send for those that the picture lacks. */
+static enum gz_result take_bricks(struct cpu_renderer *cpu, const struct gz_camera *camera,
+				  const struct gz_ray_params *rays, struct cast_job *job)
+{
+	const struct gz_plan *plan = job->plan;
+	struct gz_brick_stream_frame frame = {
+		.detail = &cpu->detail,
+		.table = &cpu->table,
+		.plan = plan,
+		.tile_level = job->pixel_lengths > 0 ? level_of : NULL,
+		.user = job,
+		.wait = cpu->wait_for_bricks,
+	};
+	memset(&frame.key, 0, sizeof frame.key);
+	frame.key.camera = *camera;
+	frame.key.focus_px[0] = plan->focus_px[0];
+	frame.key.focus_px[1] = plan->focus_px[1];
+	frame.key.pixel_lengths = job->pixel_lengths;
+	frame.key.ray_sampling_rate = rays->ray_sampling_rate;
+	frame.key.tile_count = plan->tile_count;
+	frame.key.width = plan->width;
+	frame.key.height = plan->height;
+	const enum gz_result result = gz_brick_stream_turn(&cpu->stream, &frame);
+	for (int i = 0; i < job->cast_count && result == GZ_OK; i++)
+		gz_brick_stream_lead(&cpu->stream, &cpu->detail, i, &job->casts[i]);
+	return result;
+}
+
 static void cast_part(void *user, size_t part, int worker)
 {
 	const struct cast_job *job = user;
@@ -346,7 +389,8 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 		gz_err(cpu->base.log, "no memory for pre-integrated tables: take sampled");
 		return result;
 	}
-	for (int i = 0; i < (coarser ? job->levels->count : 1); i++) {
+	job->cast_count = coarser ? job->levels->count : 1;
+	for (int i = 0; i < job->cast_count; i++) {
 		job->casts[i] = job->casts[0];
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
@@ -382,6 +426,8 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 		.jitter = rays->jitter,
 	};
 	result = fill_casts(cpu, camera, &ray_frame, rays, &job);
+	if (result == GZ_OK && cpu->volume->bricks)
+		result = take_bricks(cpu, camera, rays, &job);
 	if (result != GZ_OK)
 		return result;
 	const uint64_t samples = cast_tiles(cpu, &job);
@@ -394,6 +440,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 			.samples = samples,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.bricks_coming = cpu->volume->bricks ? cpu->stream.view.coming : 0,
 		};
 	return GZ_OK;
 }

@@ -1,10 +1,44 @@
 #include "render/cpu/detail.h"
 
+#include "render/brick_cells.h"
+#include "render/volume/brick_pool.h"
+
 #define GZ_LOG_MODULE "cpu"
+
+/* The levels of a file of bricks that one in memory would have too, with the cells of each. */
+static enum gz_result start_bricks(struct gz_detail *detail, const struct gz_volume *volume)
+{
+	const struct gz_brick_file *file = gz_brick_pool_file(volume->bricks);
+	struct gz_macrocells finer = { 0 }, cells = { 0 };
+	enum gz_result result = gz_brick_cells_finest(file, &detail->cells[0]);
+	gz_levels_start(&detail->levels, volume);
+	for (int i = 1; i < file->layout.level_count && result == GZ_OK; i++) {
+		const int before = detail->levels.count - 1;
+		const bool follows = detail->brick_level[before] == i - 1;
+		result = gz_brick_cells_coarser(file, i, follows ? &detail->cells[before] : &finer,
+						&cells);
+		gz_macrocells_free(&finer);
+		if (result == GZ_OK && gz_levels_add(&detail->levels, &file->layout.levels[i])) {
+			detail->brick_level[detail->levels.count - 1] = i;
+			detail->cells[detail->levels.count - 1] = cells;
+		} else {
+			finer = cells;
+		}
+		cells = (struct gz_macrocells) { 0 };
+	}
+	gz_macrocells_free(&finer);
+	return result;
+}
 
 enum gz_result gz_detail_start(struct gz_detail *detail, const struct gz_volume *volume)
 {
 	gz_detail_free(detail);
+	if (volume->bricks) {
+		const enum gz_result started = start_bricks(detail, volume);
+		if (started != GZ_OK)
+			gz_detail_free(detail);
+		return started;
+	}
 	const enum gz_result result = gz_macrocells_build(volume, &detail->cells[0]);
 	if (result == GZ_OK)
 		gz_levels_start(&detail->levels, volume);
@@ -32,7 +66,7 @@ static enum gz_result build(struct gz_detail *detail, struct gz_workers *workers
 void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 			   const struct gz_transfer_table *table, const struct gz_log *log)
 {
-	if (detail->levels.count != 1 || detail->failed)
+	if (detail->levels.count != 1 || detail->failed || detail->levels.level[0].volume.bricks)
 		return;
 	if (build(detail, workers, table) == GZ_OK)
 		return;

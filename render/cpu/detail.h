@@ -14,10 +14,11 @@ struct gz_detail {
 	struct gz_levels levels;
 	struct gz_macrocells cells[GZ_LEVELS_MAX]; /**< of each level there is */
 	bool failed;                               /**< no memory for the coarser ones: said once */
+	int brick_level[GZ_LEVELS_MAX]; /**< which level of a volume of bricks each one is */
 };
 
-/** Begin with a volume, borrowed, and its macrocells; frees what was. GZ_ERR_NO_MEM: holds nothing.
- */
+/** Begin with a volume, borrowed, and its macrocells; frees what was. A volume of bricks has all
+ * its levels at once, without voxels. GZ_ERR_NO_MEM: holds nothing. */
 enum gz_result gz_detail_start(struct gz_detail *detail, const struct gz_volume *volume);
 
 /** Classify the macrocells of all levels there are. */

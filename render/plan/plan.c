@@ -1,5 +1,6 @@
 #include "render/plan/plan.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,10 +79,19 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	return gz_plan_regions(&context, plan);
 }
 
+/* Also where the tiles do not depend on it: bricks are fetched by it. */
+static void aim(const struct gz_plan_request *request, struct gz_plan *plan)
+{
+	const bool known = isfinite(request->gaze.x) && isfinite(request->gaze.y);
+	plan->focus_px[0] = (known ? (double)request->gaze.x : 0.5) * request->width - 0.5;
+	plan->focus_px[1] = (known ? (double)request->gaze.y : 0.5) * request->height - 0.5;
+}
+
 enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_plan *plan)
 {
 	if (!request_valid(request))
 		return GZ_ERR_INVAL;
+	aim(request, plan);
 	if (is_made_for(plan, request))
 		return GZ_OK;
 	plan->made_for.valid = false;

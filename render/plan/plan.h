@@ -209,6 +209,7 @@ struct gz_plan_request {
  *  and one for each kind of frame, so that a plan that nothing has changed is not made again. */
 struct gz_plan {
 	int width, height;
+	double focus_px[2]; /**< what it was made for: the gaze, or the centre where that is lost */
 	enum gz_reconstruction reconstruction;
 	enum gz_filter filter; /**< of a pyramid */
 	int layer_count;

@@ -111,6 +111,24 @@ enum gz_result gz_levels_build(struct gz_levels *levels, struct gz_workers *work
 	return result;
 }
 
+bool gz_levels_add(struct gz_levels *levels, const struct gz_brick_level *brick_level)
+{
+	const struct gz_volume *full = &levels->level[0].volume;
+	struct gz_level level = { .volume = *full };
+	level.volume.bricks = NULL; /* closed with the full volume */
+	for (int axis = 0; axis < 3; axis++) {
+		level.factor[axis] = 1 << brick_level->halvings[axis];
+		level.volume.dims[axis] = brick_level->dims[axis];
+		level.volume.spacing[axis] = full->spacing[axis] * level.factor[axis];
+	}
+	if (levels->count == GZ_LEVELS_MAX ||
+	    !is_an_eighth(&level, &levels->level[levels->count - 1]))
+		return false;
+	level.scale = level_scale(full, &level.volume);
+	levels->level[levels->count++] = level;
+	return true;
+}
+
 void gz_levels_free(struct gz_levels *levels)
 {
 	free_above(levels, 1);

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "render/camera.h"
+#include "render/volume/brick_layout.h"
 #include "render/volume/volume.h"
 #include "render/workers.h"
 
@@ -44,6 +45,13 @@ void gz_levels_start(struct gz_levels *levels, const struct gz_volume *volume);
  * @retval GZ_ERR_NO_MEM  no room; the full volume stays the only level
  */
 enum gz_result gz_levels_build(struct gz_levels *levels, struct gz_workers *workers);
+
+/**
+ * Add a level that a file of bricks has, finest first, without voxels.
+ *
+ * @return false where gz_levels_build() would not keep it, or there are GZ_LEVELS_MAX
+ */
+bool gz_levels_add(struct gz_levels *levels, const struct gz_brick_level *brick_level);
 
 /** Free the coarser levels and zero the struct. */
 void gz_levels_free(struct gz_levels *levels);

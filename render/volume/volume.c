@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "render/volume/brick_pool.h"
 #include "render/volume/scratch.h"
 
 /* Chosen: from here on, pages of 2 MiB spare the renderer most address translation misses. */
@@ -148,6 +149,7 @@ void gz_volume_find_range(struct gz_volume *volume)
 
 void gz_volume_free(struct gz_volume *volume)
 {
+	gz_brick_pool_destroy(&volume->bricks);
 	if (volume->mapped)
 		(void)munmap(volume->voxels, volume->mapped);
 	else

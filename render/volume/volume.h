@@ -40,13 +40,18 @@ size_t gz_voxel_size(enum gz_voxel_type type);
 /** Bytes readable behind the last voxel, so that wide loads need no edge case. */
 #define GZ_VOLUME_PADDING 64
 
-/** A volume. Read-only once loaded; may be shared by threads. */
+struct gz_brick_pool;
+
+/** A volume. Read-only once loaded; may be shared by threads, but for its bricks. */
 struct gz_volume {
 	int dims[3];       /**< voxels along x (right), y (front), z (up): x varies fastest */
 	double spacing[3]; /**< between voxel centres, mm or whatever the file has; above 0 */
 	enum gz_voxel_type type;
-	void *voxels; /**< dims[0] * dims[1] * dims[2] of them, and GZ_VOLUME_PADDING bytes */
-	double slope; /**< data value = slope * stored + intercept; not 0 */
+	void *voxels; /**< dims[0] * dims[1] * dims[2] of them, and GZ_VOLUME_PADDING bytes; NULL
+			 where there are bricks */
+	struct gz_brick_pool *bricks; /**< of a volume that is fetched from a file of bricks as it
+					 is looked at, by one renderer at a time; else NULL */
+	double slope;                 /**< data value = slope * stored + intercept; not 0 */
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels */
 	bool oriented;                 /**< the file told where right, front and up are */
@@ -146,7 +151,7 @@ enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const char *scrat
 /** Find stored_min and stored_max. */
 void gz_volume_find_range(struct gz_volume *volume);
 
-/** Free the voxels and zero the struct. Accepts a zeroed one. */
+/** Free the voxels or close the bricks, and zero the struct. Accepts a zeroed one. */
 void gz_volume_free(struct gz_volume *volume);
 
 /** The longest edge in voxel lengths, of any dims and spacing above 0. */

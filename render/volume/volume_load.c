@@ -17,7 +17,7 @@ static const struct {
 	{ ".nii", gz_volume_load_nifti },     { ".nii.gz", gz_volume_load_nifti },
 	{ ".nrrd", gz_volume_load_nrrd },     { ".nhdr", gz_volume_load_nrrd },
 	{ ".mhd", gz_volume_load_metaimage }, { ".mha", gz_volume_load_metaimage },
-	{ ".dcm", gz_volume_load_dicom },
+	{ ".gzb", gz_volume_load_bricks },    { ".dcm", gz_volume_load_dicom },
 };
 
 /* Headerless ones; the header kinds have been tried before. */

@@ -31,4 +31,8 @@ enum gz_result gz_volume_load_raw(const char *path, enum gz_coding coding,
 				  const struct gz_raw_layout *raw, const struct gz_loading *loading,
 				  const struct gz_log *log, struct gz_volume *out_volume);
 
+/** Bricks, .gzb: the coarse levels are read, the rest when it is looked at. */
+enum gz_result gz_volume_load_bricks(const char *path, const struct gz_loading *loading,
+				     const struct gz_log *log, struct gz_volume *out_volume);
+
 #endif

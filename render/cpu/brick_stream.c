@@ -1,0 +1,120 @@
+#include "render/cpu/brick_stream.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int blocks_along(int px)
+{
+	return (px + GZ_WANTS_BLOCK - 1) / GZ_WANTS_BLOCK;
+}
+
+static int block_of(int px, int count)
+{
+	const int block = px / GZ_WANTS_BLOCK;
+	return block < count - 1 ? block : count - 1;
+}
+
+/* Blocks take the finest level of the tiles that reach into them; a tile's points lie up to this
+ * far from its first. */
+static void take_level(const struct gz_plan *plan, const struct gz_tile *tile, uint8_t level,
+		       uint8_t *blocks)
+{
+	const int columns = blocks_along(plan->width), rows = blocks_along(plan->height);
+	const int spacing = plan->layers[tile->layer].spacing;
+	const int across = 2 * GZ_TILE_EDGE * spacing, down = GZ_TILE_EDGE * spacing;
+	for (int y = block_of(tile->y, rows); y <= block_of(tile->y + down, rows); y++)
+		for (int x = block_of(tile->x, columns); x <= block_of(tile->x + across, columns);
+		     x++) {
+			uint8_t *block = &blocks[y * columns + x];
+			*block = level < *block ? level : *block;
+		}
+}
+
+static enum gz_result find_block_levels(struct gz_brick_stream *stream,
+					const struct gz_brick_stream_frame *frame)
+{
+	const struct gz_plan *plan = frame->plan;
+	const size_t count = (size_t)blocks_along(plan->width) * (size_t)blocks_along(plan->height);
+	if (count > stream->block_capacity) {
+		uint8_t *grown = realloc(stream->block_level, count);
+		if (!grown)
+			return GZ_ERR_NO_MEM;
+		stream->block_level = grown;
+		stream->block_capacity = count;
+	}
+	memset(stream->block_level, GZ_BRICK_LEVELS_MAX, count);
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		const int level = frame->tile_level(frame->user, tile);
+		take_level(plan, tile, (uint8_t)frame->detail->brick_level[level],
+			   stream->block_level);
+	}
+	return GZ_OK;
+}
+
+static enum gz_result find_wants(struct gz_brick_stream *stream,
+				 const struct gz_brick_stream_frame *frame)
+{
+	stream->found = false;
+	enum gz_result result = frame->tile_level ? find_block_levels(stream, frame) : GZ_OK;
+	const struct gz_brick_scene scene = {
+		.volume = &frame->detail->levels.level[0].volume,
+		.table = frame->table,
+		.camera = &frame->key.camera,
+		.width = frame->plan->width,
+		.height = frame->plan->height,
+		.focus_px = frame->plan->focus_px,
+		.block_level = frame->tile_level ? stream->block_level : NULL,
+	};
+	if (result == GZ_OK)
+		result = gz_brick_wants_find(&scene, &stream->wants);
+	stream->found = result == GZ_OK;
+	stream->key = frame->key;
+	return result;
+}
+
+enum gz_result gz_brick_stream_turn(struct gz_brick_stream *stream,
+				    const struct gz_brick_stream_frame *frame)
+{
+	if (!stream->found || memcmp(&stream->key, &frame->key, sizeof stream->key) != 0) {
+		const enum gz_result result = find_wants(stream, frame);
+		if (result != GZ_OK)
+			return result;
+	}
+	gz_brick_pool_turn(frame->detail->levels.level[0].volume.bricks, stream->wants.want,
+			   stream->wants.count, frame->wait, &stream->view);
+	return GZ_OK;
+}
+
+void gz_brick_stream_lead(const struct gz_brick_stream *stream, const struct gz_detail *detail,
+			  int index, struct gz_cast *cast)
+{
+	const struct gz_brick_layout *layout =
+		&gz_brick_pool_file(detail->levels.level[0].volume.bricks)->layout;
+	const struct gz_brick_level *own = &layout->levels[detail->brick_level[index]];
+	struct gz_cast_bricks *bricks = &cast->bricks;
+	cast->voxels = stream->view.voxels;
+	bricks->table = stream->view.table + own->first;
+	bricks->stride[0] = 1;
+	bricks->stride[1] = own->bricks[0];
+	bricks->stride[2] = own->bricks[0] * own->bricks[1];
+	for (int axis = 0; axis < 3; axis++) {
+		bricks->last[axis] = (float)(own->bricks[axis] - 1);
+		for (int level = 0; level < layout->level_count; level++)
+			bricks->scale[axis][level] = ldexpf(
+				1, own->halvings[axis] - layout->levels[level].halvings[axis]);
+	}
+}
+
+void gz_brick_stream_forget(struct gz_brick_stream *stream)
+{
+	stream->found = false;
+}
+
+void gz_brick_stream_free(struct gz_brick_stream *stream)
+{
+	gz_brick_wants_free(&stream->wants);
+	free(stream->block_level);
+	*stream = (struct gz_brick_stream) { 0 };
+}
