@@ -133,6 +133,10 @@ static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct g
 	struct gl_renderer *gl = gl_of(renderer);
 	gl->volume = NULL;
 	gl->has_transfer = false;
+	if (volume->bricks) {
+		gz_err(renderer->log, "a file of bricks is for the cpu backend: take --backend cpu");
+		return GZ_ERR_UNSUPPORTED;
+	}
 	enum gz_result result = enter(gl);
 	if (result != GZ_OK)
 		return result;
