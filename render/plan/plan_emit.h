@@ -59,6 +59,13 @@ enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count);
 /** Append a tile, for which there must be room, if it casts anything. */
 void gz_plan_append(struct gz_plan *plan, struct gz_tile tile);
 
+/** As gz_plan_append() for a tile all of whose points lie on its lattice. */
+static inline void gz_plan_append_whole(struct gz_plan *plan, struct gz_tile tile)
+{
+	plan->ray_count += (uint64_t)GZ_TILE_EDGE * GZ_TILE_EDGE;
+	plan->tiles[plan->tile_count++] = tile;
+}
+
 /** Rungs of the ladder of spacings: 1, 2, 2 sqrt 2, 4, ... 16 sqrt 2, 32, each with its step. */
 #define GZ_LADDER_RUNGS 10
 

@@ -31,13 +31,21 @@ static void append(const struct gz_plan_context *context, struct gz_plan *plan, 
 	const int step = context->steps == GZ_STEPS_RUNG
 				 ? rung
 				 : gz_plan_step_for(context, plan, x, y, GZ_TILE_EDGE << layer);
-	gz_plan_append(plan, (struct gz_tile) {
-				     .x = (uint16_t)x,
-				     .y = (uint16_t)y,
-				     .layer = (uint8_t)layer,
-				     .step = (uint8_t)step,
-				     .pattern = (uint8_t)pattern,
-			     });
+	const struct gz_tile tile = {
+		.x = (uint16_t)x,
+		.y = (uint16_t)y,
+		.layer = (uint8_t)layer,
+		.step = (uint8_t)step,
+		.pattern = (uint8_t)pattern,
+	};
+	/* A quincunx tile is twice as wide as high. */
+	const struct gz_plan_layer *lattice = &plan->layers[layer];
+	const int points = pattern == GZ_TILE_SQUARE ? GZ_TILE_EDGE : 2 * GZ_TILE_EDGE;
+	if (x + (points - 1) * lattice->spacing < lattice->columns * lattice->spacing &&
+	    y + (GZ_TILE_EDGE - 1) * lattice->spacing < lattice->rows * lattice->spacing)
+		gz_plan_append_whole(plan, tile);
+	else
+		gz_plan_append(plan, tile);
 }
 
 /* A node is cast by one square tile of its own level's lattice or, one above the other, by two

@@ -50,12 +50,20 @@ static bool region_touches(const struct gz_region *region, const struct block *b
 	return gz_region_holds(region, x, y);
 }
 
+/* Every shape is convex: a block is inside if its corners are. */
+static bool region_holds_block(const struct gz_region *region, const struct block *block)
+{
+	return gz_region_holds(region, block->x0, block->y0) &&
+	       gz_region_holds(region, block->x1, block->y0) &&
+	       gz_region_holds(region, block->x0, block->y1) &&
+	       gz_region_holds(region, block->x1, block->y1);
+}
+
 static bool region_hides(const struct gz_region *region, double x, double y)
 {
 	return gz_region_weight(region, x, y) >= 1;
 }
 
-/* Every shape is convex: a block is inside if its corners are. */
 static bool region_hides_block(const struct gz_region *region, const struct block *block)
 {
 	return region_hides(region, block->x0, block->y0) &&
@@ -87,36 +95,60 @@ static enum shows tiles_show(const struct gz_plan *plan, int layer, int x, int y
 		if (region_touches(&plan->layers[earlier].region, &block))
 			beside_others = false;
 	}
-	return region->shape == GZ_REGION_ALL && beside_others ? SHOWS_WHOLLY : SHOWS_PARTLY;
+	return beside_others && region_holds_block(region, &block) ? SHOWS_WHOLLY : SHOWS_PARTLY;
 }
 
 /* Tiles along an edge of a block: neighbours on the screen are neighbours in time and share the
- * cache. */
-enum { TILES_A_BLOCK = 16 };
+ * cache. A block of which a part shows is cut into parts of a quarter of its edge. */
+enum { TILES_A_BLOCK = 16, CUTS = 4 };
 
-static void emit_block(const struct gz_plan_context *context, struct gz_plan *plan, int layer,
-		       int x0, int y0)
+static uint8_t step_of(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
+		       int y, int edge)
+{
+	if (context->steps == GZ_STEPS_ONE)
+		return 0;
+	return (uint8_t)gz_plan_step_for(context, plan, x, y, edge);
+}
+
+static void emit_all(const struct gz_plan_context *context, struct gz_plan *plan, int layer, int x0,
+		     int y0, int tiles)
 {
 	const struct gz_plan_layer *lattice = &plan->layers[layer];
 	const int edge = GZ_TILE_EDGE * lattice->spacing;
+	const int last = edge - lattice->spacing; /* from a tile's first point to its last */
 	const int right = (lattice->columns - 1) * lattice->spacing;
 	const int bottom = (lattice->rows - 1) * lattice->spacing;
-	const enum shows shows = tiles_show(plan, layer, x0, y0, TILES_A_BLOCK * edge);
+	const int end_x = x0 + tiles * edge, end_y = y0 + tiles * edge;
+	for (int y = y0; y <= bottom && y < end_y; y += edge)
+		for (int x = x0; x <= right && x < end_x; x += edge) {
+			const struct gz_tile tile = {
+				.x = (uint16_t)x,
+				.y = (uint16_t)y,
+				.layer = (uint8_t)layer,
+				.step = step_of(context, plan, x, y, edge),
+			};
+			if (x + last <= right && y + last <= bottom)
+				gz_plan_append_whole(plan, tile);
+			else
+				gz_plan_append(plan, tile);
+		}
+}
+
+static void emit_block(const struct gz_plan_context *context, struct gz_plan *plan, int layer,
+		       int x0, int y0, int tiles)
+{
+	const int edge = GZ_TILE_EDGE * plan->layers[layer].spacing;
+	const enum shows shows = tiles_show(plan, layer, x0, y0, tiles * edge);
 	if (shows == SHOWS_NOTHING)
 		return;
-	for (int y = y0; y <= bottom && y < y0 + TILES_A_BLOCK * edge; y += edge)
-		for (int x = x0; x <= right && x < x0 + TILES_A_BLOCK * edge; x += edge) {
-			if (shows == SHOWS_PARTLY &&
-			    tiles_show(plan, layer, x, y, edge) == SHOWS_NOTHING)
-				continue;
-			gz_plan_append(plan, (struct gz_tile) {
-						     .x = (uint16_t)x,
-						     .y = (uint16_t)y,
-						     .layer = (uint8_t)layer,
-						     .step = (uint8_t)gz_plan_step_for(
-							     context, plan, x, y, edge),
-					     });
-		}
+	if (shows == SHOWS_WHOLLY || tiles == 1) {
+		emit_all(context, plan, layer, x0, y0, tiles);
+		return;
+	}
+	const int part = tiles / CUTS;
+	for (int i = 0; i < CUTS * CUTS; i++)
+		emit_block(context, plan, layer, x0 + i % CUTS * part * edge,
+			   y0 + i / CUTS * part * edge, part);
 }
 
 static enum gz_result emit_layer(const struct gz_plan_context *context, struct gz_plan *plan,
@@ -132,7 +164,7 @@ static enum gz_result emit_layer(const struct gz_plan_context *context, struct g
 				gz_plan_reserve(plan, (size_t)TILES_A_BLOCK * TILES_A_BLOCK);
 			if (result != GZ_OK)
 				return result;
-			emit_block(context, plan, layer, x, y);
+			emit_block(context, plan, layer, x, y, TILES_A_BLOCK);
 		}
 	return GZ_OK;
 }

@@ -31,7 +31,7 @@ static void make_even_ladder(double top, struct gz_plan *plan)
 /* Steps by rung: docs/foveation.md. Chosen: a step may grow more slowly than the spacing, since
  * errors along a ray show as shape, not only as blur. */
 static const float acuity_steps[GZ_LADDER_RUNGS] = {
-	1, 1.5F, 1.75F, 2, 2.5F, 3, 3.5F, 4, 4.5F, 5,
+	1, 2, 2.5F, 3, 3.5F, 4, 5, 6, 7, 8,
 };
 
 /* Past this a ray sees nothing of a volume. */

@@ -104,7 +104,7 @@ static void picture_flickers_little_while_the_gaze_moves_through_it(void **state
 	for (int method = GZ_METHOD_MDC; method < GZ_METHOD_COUNT; method++) {
 		double sum = 0, most = 0;
 		int most_within = 0;
-		scene.foveation = gz_foveation_default();
+		scene.foveation = small_scene_foveation();
 		scene.foveation.method = method;
 		scene.foveation.mdc_square_px = 80;
 		scene.foveation.ddc_inner_px[0] = scene.foveation.ddc_inner_px[1] = 40;
