@@ -18,9 +18,6 @@
 
 enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE };
 
-/* Misses in excess of hits after which a tile's rays lie too far apart to go on trying. */
-enum { BLOCK_PATIENCE = 8 };
-
 #define FETCH_UNIT(type)   ((type) == GZ_VOXEL_F32 ? 1.0F : 32767.0F)
 #define FETCH_OFFSET(type) ((type) == GZ_VOXEL_U16 ? 32768.0F : 0.0F)
 
@@ -30,39 +27,20 @@ struct block {
 		vi words[2]; /* 8 and 16 bit */
 		vf slices[BLOCK_EDGE];
 	};
-	int misses;
 };
 
-SIMD void block_clear(struct block *block)
-{
-	*block = (struct block) { 0 };
-	block->base[0] = vf_set(-1e9F); /* nothing lies in it */
-}
+/* Where rays that go side by side are: x, y, z of the rearmost, and how far they go in a step. The
+ * block reaches ahead from there. */
+struct block_place {
+	__m128 edge, step;
+	__m128 back; /* from the voxel the edge is in to the block's first */
+};
 
-SIMD int block_index(const struct gz_cast *cast, int axis, int index)
+/* Whether there are blocks to be had: of volumes in one piece and large enough. */
+SIMD int blocks_fit(const struct gz_cast *cast)
 {
-	const int top = (int)cast->dims[axis] - 1;
-	return index < 0 ? 0 : index > top ? top : index;
-}
-
-/* At the volume's rim: what lies beyond repeats the last voxel. */
-static __attribute__((noinline)) void block_copy_rim(const struct gz_cast *cast,
-						     enum gz_voxel_type type, const int base[3],
-						     void *out)
-{
-	for (int i = 0; i < BLOCK_VOXELS; i++) {
-		const int x = block_index(cast, 0, base[0] + i % BLOCK_EDGE);
-		const int y = block_index(cast, 1, base[1] + i / BLOCK_EDGE % BLOCK_EDGE);
-		const int z = block_index(cast, 2, base[2] + i / BLOCK_EDGE / BLOCK_EDGE);
-		const int64_t from =
-			x + (int64_t)y * cast->stride[1] + (int64_t)z * cast->stride[2];
-		if (type == GZ_VOXEL_U8)
-			((uint8_t *)out)[i] = ((const uint8_t *)cast->voxels)[from];
-		else if (type == GZ_VOXEL_U16)
-			((uint16_t *)out)[i] = ((const uint16_t *)cast->voxels)[from];
-		else
-			((float *)out)[i] = ((const float *)cast->voxels)[from];
-	}
+	return !cast->bricks.table && cast->dims[0] >= BLOCK_EDGE && cast->dims[1] >= BLOCK_EDGE &&
+	       cast->dims[2] >= BLOCK_EDGE;
 }
 
 /* Rows of four voxels, stride apart: one slice. */
@@ -118,45 +96,91 @@ SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int
 	}
 }
 
-/* Move the block to where the lanes are, reaching as far ahead as it can. */
-SIMD void block_move(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
-		     const vf at[3], vm mask, struct block *block)
+/* How far behind its rearmost ray an edge is put, voxels, so that rounding and rays that spread
+ * need no new edge at once. Chosen: small beside the voxel or two that tiles span. */
+#define BLOCK_SLACK (1.0F / 32)
+
+SIMD __m128 block_corner(const float corner[3])
 {
-	int base[3];
-	int within = 1;
+	return _mm_setr_ps(corner[0], corner[1], corner[2], 0);
+}
+
+/* Find the edge of the lanes of mask. */
+SIMD struct block_place block_find(const struct rays *rays, const vf at[3], vm mask)
+{
+	float edge[3], step[3], back[3];
 	for (int axis = 0; axis < 3; axis++) {
-		const int forward = _mm512_cvtss_f32(rays->delta[axis]) > 0;
-		const float edge = forward ? _mm512_mask_reduce_min_ps(mask, at[axis])
-					   : _mm512_mask_reduce_max_ps(mask, at[axis]);
-		const float whole = __builtin_floorf(edge);
-		base[axis] = (int)whole - (forward ? 0 : BLOCK_EDGE - 2);
-		within &= base[axis] >= 0 && base[axis] + BLOCK_EDGE <= (int)cast->dims[axis];
-		block->base[axis] = vf_set((float)base[axis]);
+		if (_mm512_cvtss_f32(rays->delta[axis]) > 0) {
+			edge[axis] = _mm512_mask_reduce_min_ps(mask, at[axis]) - BLOCK_SLACK;
+			step[axis] = _mm512_mask_reduce_min_ps(mask, rays->delta[axis]);
+			back[axis] = 0;
+		} else {
+			edge[axis] = _mm512_mask_reduce_max_ps(mask, at[axis]) + BLOCK_SLACK;
+			step[axis] = _mm512_mask_reduce_max_ps(mask, rays->delta[axis]);
+			back[axis] = BLOCK_EDGE - 2;
+		}
 	}
-	if (within) {
-		const int64_t first = base[0] + (int64_t)base[1] * cast->stride[1] +
-				      (int64_t)base[2] * cast->stride[2];
-		const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
-		block_load(type, (const char *)cast->voxels + first * bytes, cast->stride[1],
-			   cast->stride[2], block);
-	} else {
-		float rim[BLOCK_VOXELS]; /* as large as the largest type */
-		block_copy_rim(cast, type, base, rim);
-		block_load(type, rim, BLOCK_EDGE, BLOCK_EDGE * BLOCK_EDGE, block);
+	return (struct block_place) { block_corner(edge), block_corner(step), block_corner(back) };
+}
+
+SIMD void block_advance(struct block_place *place, float steps)
+{
+	place->edge = _mm_fmadd_ps(_mm_set1_ps(steps), place->step, place->edge);
+}
+
+/* Load the block at a place; at the volume's rim, as much of it as lies inside. */
+SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type,
+		     const struct block_place *place, struct block *block)
+{
+	const __m128 last = _mm_sub_ps(_mm_setr_ps(cast->dims[0], cast->dims[1], cast->dims[2], 4),
+				       _mm_set1_ps(BLOCK_EDGE));
+	const __m128 wanted = _mm_sub_ps(_mm_floor_ps(place->edge), place->back);
+	const __m128 base = _mm_min_ps(_mm_max_ps(wanted, _mm_setzero_ps()), last);
+	block->base[0] = _mm512_broadcastss_ps(base);
+	block->base[1] = _mm512_broadcastss_ps(_mm_permute_ps(base, 0x55));
+	block->base[2] = _mm512_broadcastss_ps(_mm_permute_ps(base, 0xAA));
+	const __m128i first = _mm_cvtps_epi32(base);
+	const int64_t row = cast->stride[1], slice = cast->stride[2];
+	const int64_t from = _mm_cvtsi128_si32(first) + _mm_extract_epi32(first, 1) * row +
+			     _mm_extract_epi32(first, 2) * slice;
+	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
+	block_load(type, (const char *)cast->voxels + from * bytes, row, slice, block);
+}
+
+/* Beyond the first and the last datum along an axis, places are those of that datum. */
+SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, vf places[3])
+{
+	const vf most = vf_set(BLOCK_EDGE - 1 - 0x1p-22F);
+	for (int axis = 0; axis < 3; axis++) {
+		const vf last = vf_set(cast->dims[axis] - BLOCK_EDGE);
+		const vm at_first = vf_less(block->base[axis], vf_set(1));
+		const vm at_last = vf_less(last - vf_set(1), block->base[axis]);
+		places[axis] = _mm512_mask_max_ps(places[axis], at_first, places[axis], vf_set(0));
+		places[axis] = _mm512_mask_min_ps(places[axis], at_last, places[axis], most);
 	}
 }
 
-/* Places within the block; whether those of all lanes of the mask lie in it. */
-SIMD int block_places(const struct block *block, const vf at[3], vm mask, vf places[3])
+/* Whether all lanes' places lie in the block. */
+SIMD int block_holds(const vf places[3], vm mask)
 {
-	for (int axis = 0; axis < 3; axis++)
-		places[axis] = at[axis] - block->base[axis];
 	/* As unsigned numbers, floats from 0 up have their order and negative ones lie above. */
 	const vi most = _mm512_max_epu32(
 		_mm512_castps_si512(places[0]),
 		_mm512_max_epu32(_mm512_castps_si512(places[1]), _mm512_castps_si512(places[2])));
 	const vi end = _mm512_castps_si512(vf_set(BLOCK_EDGE - 1));
 	return _mm512_mask_cmpge_epu32_mask(mask, most, end) == 0;
+}
+
+/* Places within the block; whether those of all lanes of the mask lie in it. */
+SIMD int block_places(const struct gz_cast *cast, const struct block *block, const vf at[3],
+		      vm mask, vf places[3])
+{
+	for (int axis = 0; axis < 3; axis++)
+		places[axis] = at[axis] - block->base[axis];
+	if (__builtin_expect(block_holds(places, mask), 1))
+		return 1;
+	block_clamp(cast, block, places);
+	return block_holds(places, mask);
 }
 
 /* Weights of two words: the share of the higher one above, the rest below. */
@@ -243,34 +267,32 @@ SIMD vf gather_sample(const struct gz_cast *cast, enum gz_voxel_type type, const
 	return mix_pairs(pairs, share);
 }
 
-/* The value at sample k of the lanes of mask, in FETCH_UNITs. */
-SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-		     const struct rays *rays, vf k, vm mask, struct block *block)
+/* The values at places within the block, in FETCH_UNITs. */
+SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, const vf places[3])
 {
-	if (nearest)
-		return sample_at(cast, type, nearest, rays, k, mask);
-	if (__builtin_expect(cast->bricks.table != NULL, 0))
-		return (sample_at(cast, type, nearest, rays, k, mask) -
-			vf_set(FETCH_OFFSET(type))) *
-		       vf_set(FETCH_UNIT(type));
-	vf at[3], places[3], whole[3], share[3];
-	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	int fits = block_places(block, at, mask, places);
-	if (__builtin_expect(!fits && block->misses < BLOCK_PATIENCE, 0)) {
-		block_move(cast, type, rays, at, mask, block);
-		fits = block_places(block, at, mask, places);
-		block->misses += fits ? -(block->misses > 0) : 1;
-	}
-	if (__builtin_expect(!fits, 0))
-		return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
-					    : gather_sample(cast, type, at, mask);
+	vf whole[3], share[3];
 	for (int axis = 0; axis < 3; axis++) {
 		whole[axis] = vf_floor(places[axis]);
 		share[axis] = places[axis] - whole[axis];
 	}
 	return type == GZ_VOXEL_F32 ? block_sample_f32(block, whole, share)
 				    : block_sample_words(block, whole, share);
+}
+
+/* The value at sample k of the lanes of mask, in FETCH_UNITs, wherever they are. */
+SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+		     const struct rays *rays, vf k, vm mask)
+{
+	vf at[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	if (nearest)
+		return sample_nearest(cast, type, at, mask);
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return (sample_trilinear(cast, type, at, mask) - vf_set(FETCH_OFFSET(type))) *
+		       vf_set(FETCH_UNIT(type));
+	return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
+				    : gather_sample(cast, type, at, mask);
 }
 
 #endif

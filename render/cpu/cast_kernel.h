@@ -9,12 +9,12 @@
  * for that length. k is a count, so skipping empty space never shifts the phase.
  */
 #include "render/cpu/cast.h"
+#include "render/cpu/cast_fetch.h"
 #ifdef SIMD_BLOCKS
-#include "render/cpu/cast_block.h"
+#include "render/cpu/cast_together.h"
 #else
 #include "render/cpu/cast_scattered.h"
 #endif
-#include "render/cpu/cast_fetch.h"
 #include "render/cpu/cast_light.h"
 #include "render/cpu/cast_look_up.h"
 #include "render/cpu/cast_preintegrated.h"
@@ -34,19 +34,15 @@ SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm ask
 	*k = vf_select(empty, *k + ahead, *k);
 }
 
-/* All whole segments. Which sample comes next depends on the cells alone, not on what samples show,
- * so that one need not be finished before the next begins. */
-SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
-		    const struct rays *rays, struct light *light)
+/* Whole segments from k on, each ray at its own. Which sample comes next depends on the cells
+ * alone, not on what samples show, so that one need not be finished before the next begins. */
+SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			  const struct look_up *look_up, int step, const struct rays *rays, vf k,
+			  vm alive, struct light *light)
 {
-	const struct look_up look_up = look_up_of(cast, type, nearest);
-	const vf end = rays->end; /* k + 1/2 < end */
-	vf k = rays->first + vf_set(0.5F);
-	vf until = vf_set(-1); /* samples before it are taken */
-	struct block block;
-	block_clear(&block);
+	const vf end = rays->end; /* k + 1/2 <= end */
+	vf until = vf_set(-1);    /* samples before it are taken */
 	uint32_t samples = 0;
-	vm alive = rays->hit;
 	for (;;) {
 		const vm asks = vm_but(vm_and(alive, vf_less(k, end)), vf_less(k, until));
 		if (vm_any(asks))
@@ -60,8 +56,8 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 			continue;
 		}
 		samples += vm_count(needed);
-		const vf value = fetch_sample(cast, type, nearest, rays, k, needed, &block);
-		const vi entry = entry_of(look_up.scale, look_up.bias, value);
+		const vf value = fetch_sample(cast, type, nearest, rays, k, needed);
+		const vi entry = entry_of(look_up->scale, look_up->bias, value);
 		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
 		vi colour;
@@ -70,6 +66,23 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	}
 	return samples;
+}
+
+/* All whole segments. */
+SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
+		    const struct rays *rays, struct light *light)
+{
+	const struct look_up look_up = look_up_of(cast, type, nearest);
+	vf k = rays->first + vf_set(0.5F);
+	vm alive = vm_and(rays->hit, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+	uint32_t samples = 0;
+	if (!vm_any(alive))
+		return 0;
+#ifdef SIMD_BLOCKS
+	if (!nearest && blocks_fit(cast))
+		samples = march_together(cast, type, &look_up, step, rays, &k, &alive, light);
+#endif
+	return samples + march_apart(cast, type, nearest, &look_up, step, rays, k, alive, light);
 }
 
 /* A part of a segment, at either end of the whole ones: around k, of a length in steps. */

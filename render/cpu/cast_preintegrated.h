@@ -54,8 +54,6 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 	vf k = rays->first;
 	vf until = vf_set(-1); /* segments that begin before it are taken */
 	vi front = vi_set(0);
-	struct block block;
-	block_clear(&block);
 	uint32_t samples = 0;
 	vm alive = rays->hit;
 	vm known = vm_but(alive, alive); /* front is that of k */
@@ -68,7 +66,7 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 			break;
 		const vm lacks = vm_but(takes, known);
 		if (vm_any(lacks)) {
-			const vf value = fetch_sample(cast, type, nearest, rays, k, lacks, &block);
+			const vf value = fetch_sample(cast, type, nearest, rays, k, lacks);
 			front = vi_select(
 				lacks,
 				preintegrated_cell(entry_of(look_up.scale, look_up.bias, value)),
@@ -76,7 +74,7 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 			samples += vm_count(lacks);
 		}
 		k = vf_select(takes, k + vf_set(1), k);
-		const vf value = fetch_sample(cast, type, nearest, rays, k, takes, &block);
+		const vf value = fetch_sample(cast, type, nearest, rays, k, takes);
 		const vi back = preintegrated_cell(entry_of(look_up.scale, look_up.bias, value));
 		samples += vm_count(takes);
 		vf opacity;

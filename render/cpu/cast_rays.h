@@ -11,6 +11,7 @@
  * first datum, datum + k * delta. */
 struct rays {
 	vf start[3], datum[3], delta[3], inverse[3];
+	vf zero;       /* where k is 0: steps from the origin */
 	vf first, end; /* whole segments: from k = first to k = end */
 	vf head;       /* of a segment, before the first; [0, 1) */
 	vf head_at;    /* its middle */
@@ -82,7 +83,8 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vf shift
 	const struct cuts cuts = cut_rays(cast, origin, rays);
 	rays->hit = vm_and(active, vf_less(cuts.enter, cuts.leave));
 	count_segments(cuts, shift, rays);
-	const vf zero = cuts.box - shift; /* where k is 0 */
+	const vf zero = cuts.box - shift;
+	rays->zero = zero;
 	for (int axis = 0; axis < 3; axis++) {
 		rays->start[axis] = vf_fma(zero, rays->delta[axis], origin[axis]);
 		rays->datum[axis] = vf_fma(zero, rays->delta[axis], origin[axis] - vf_set(0.5F));

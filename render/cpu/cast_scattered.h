@@ -13,21 +13,10 @@
 #define FETCH_UNIT(type)   ((void)(type), 1.0F)
 #define FETCH_OFFSET(type) ((void)(type), 0.0F)
 
-/* Nothing is kept from sample to sample. */
-struct block {
-	int none;
-};
-
-SIMD void block_clear(struct block *block)
-{
-	block->none = 0;
-}
-
 /* The value at sample k of the lanes of mask. */
 SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-		     const struct rays *rays, vf k, vm mask, struct block *block)
+		     const struct rays *rays, vf k, vm mask)
 {
-	(void)block;
 	return sample_at(cast, type, nearest, rays, k, mask);
 }
 
