@@ -5,6 +5,8 @@
 #ifndef GZ_RENDER_CPU_RECONSTRUCT_H
 #define GZ_RENDER_CPU_RECONSTRUCT_H
 
+#include <stdbool.h>
+
 #include "render/cpu/lattice.h"
 #include "render/workers.h"
 
@@ -22,13 +24,18 @@ struct gz_row_filters {
 	/** @p count points of @p row, each followed by the one halfway to the next, Catmull-Rom:
 	 * one point before and two behind are read. */
 	void (*cubic_double)(const uint32_t *row, uint32_t *out, int count);
-	/** @p count points halfway between two rows, which may be the same, each followed by the
-	 * mean of the four around: one point behind is read. */
+	/** @p count points of @p row, each followed by the mean with the next, rounded down: one
+	 * point behind is read. */
+	void (*mean_double_row)(const uint32_t *row, uint32_t *out, int count);
+	/** @p count points halfway between two rows, rounded up, each followed by the mean of the
+	 * four around: one point behind is read. */
 	void (*mean_double)(const uint32_t *above, const uint32_t *below, uint32_t *out, int count);
 	/** @p count points of @p row, of which those number @p first, @p first + 2... are made anew
-	 *  from those 1 and 3 points away along both axes: the mean of Catmull-Rom along each. */
-	void (*cubic_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
-			       int count);
+	 *  from those 1 and 3 points away along both axes: the mean of Catmull-Rom along each,
+	 * rounded
+	 *  @p up or down. */
+	void (*cubic_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, bool up,
+			       uint32_t *out, int count);
 	/** The same by the mean of the four neighbours. */
 	void (*mean_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
 			      int count);

@@ -81,8 +81,10 @@ static void fill_row(struct square *square, int level, int x, int end, int y)
 	uint32_t *to = at(&square->patches[level], x, y);
 	uint32_t *out = level > 0 || (end - x) % (2 * GZ_ROW_CHUNK) == 0 ? to : square->row;
 	if (square->plan->filter == GZ_FILTER_BILINEAR) {
-		const uint32_t *below = y % 2 != 0 ? row + coarse->stride : row;
-		square->filters->mean_double(row, below, out, count);
+		if (y % 2 == 0)
+			square->filters->mean_double_row(row, out, count);
+		else
+			square->filters->mean_double(row, row + coarse->stride, out, count);
 	} else if (y % 2 == 0) {
 		square->filters->cubic_double(row, out, count);
 	} else {
@@ -192,7 +194,8 @@ static void fill_quincunx_row(struct square *square, int level, int x, int end, 
 	if (square->plan->filter == GZ_FILTER_BILINEAR)
 		square->filters->mean_quincunx(row, patch->stride, first, square->row, end - x);
 	else
-		square->filters->cubic_quincunx(row, patch->stride, first, square->row, end - x);
+		square->filters->cubic_quincunx(row, patch->stride, first, y % 2 != 0, square->row,
+						end - x);
 	memcpy(row, square->row, (size_t)(end - x) * 4);
 }
 

@@ -5,6 +5,7 @@
  */
 #include "render/cpu/reconstruct.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 /* Points and bytes at a time. */
@@ -40,21 +41,26 @@ static inline uint8_t mean_of_4(uint8_t a, uint8_t b, uint8_t c, uint8_t d)
 	return (uint8_t)(mean_of_2(first, second) - odd);
 }
 
-/* x / 8, rounded */
-static inline uint8_t eighth(uint8_t x)
+/* (a + b) / 2 */
+static inline uint8_t mean_of_2_down(uint8_t a, uint8_t b)
 {
-	return mean_of_2((uint8_t)(x >> 2), 0);
+	return (uint8_t)(mean_of_2(a, b) - ((a ^ b) & 1));
 }
 
-/* Catmull-Rom at 1/2 between b and c, with a before and d behind: their mean m, and an eighth of
- * what it is above the mean n of a and d; never outside of [b, c]. */
+/* Catmull-Rom at 1/2 between b and c, with a before and d behind; never outside of [b, c]. With m
+ * and n the means of b, c and of a, d it is m and an eighth of m - n, which takes 9 bits: half of
+ * it above -256 takes 8. */
 static inline uint8_t cubic(uint8_t a, uint8_t b, uint8_t c, uint8_t d)
 {
 	const uint8_t m = mean_of_2(b, c), n = mean_of_2(a, d);
-	const uint8_t above = (uint8_t)(greatest(m, n) - n), below = (uint8_t)(greatest(m, n) - m);
+	const uint8_t odd = (b ^ c) & 1; /* m was rounded up */
+	const uint8_t quarter = (uint8_t)(mean_of_2(m, (uint8_t)~n) >> 1);
+	const uint8_t eighth = mean_of_2((uint8_t)(greatest(quarter, odd) - odd), 0);
+	const uint8_t up = (uint8_t)(greatest(eighth, 32) - 32);
+	const uint8_t down = (uint8_t)(32 - least(eighth, 32));
 	const uint8_t room_up = (uint8_t)(greatest(b, c) - m);
 	const uint8_t room_down = (uint8_t)(m - least(b, c));
-	return (uint8_t)(m + least(eighth(above), room_up) - least(eighth(below), room_down));
+	return (uint8_t)(m + least(up, room_up) - least(down, room_down));
 }
 
 static void cubic_between(const uint32_t *const rows[4], uint32_t *out, int count)
@@ -99,6 +105,19 @@ static void cubic_double(const uint32_t *row, uint32_t *out, int count)
 	}
 }
 
+static void mean_double_row(const uint32_t *row, uint32_t *out, int count)
+{
+	for (int i = 0; i < count; i += CHUNK) {
+		const uint8_t *a = bytes_of(row + i);
+		uint8_t values[BYTES];
+		uint32_t odd[CHUNK];
+		for (int k = 0; k < BYTES; k++)
+			values[k] = mean_of_2_down(a[k], a[k + 4]);
+		memcpy(odd, values, sizeof odd);
+		interleave(row + i, odd, out + 2 * (ptrdiff_t)i);
+	}
+}
+
 static void mean_double(const uint32_t *above, const uint32_t *below, uint32_t *out, int count)
 {
 	for (int i = 0; i < count; i += CHUNK) {
@@ -125,9 +144,10 @@ static inline void put_every_second(const uint8_t values[BYTES], const uint32_t 
 		out[k] = ((k & 1) == first) ? made[k] : row[k];
 }
 
-static void cubic_quincunx(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
+static void cubic_quincunx(const uint32_t *row, ptrdiff_t stride, int first, bool up, uint32_t *out,
 			   int count)
 {
+	const uint8_t odd_down = up ? 0 : 1;
 	for (int i = 0; i < count; i += CHUNK) {
 		const uint8_t *p = bytes_of(row + i);
 		const uint8_t *a = bytes_of(row + i - 3 * stride), *b = bytes_of(row + i - stride);
@@ -136,7 +156,7 @@ static void cubic_quincunx(const uint32_t *row, ptrdiff_t stride, int first, uin
 		for (int k = 0; k < BYTES; k++) {
 			const uint8_t along = cubic(p[k - 12], p[k - 4], p[k + 4], p[k + 12]);
 			const uint8_t down = cubic(a[k], b[k], c[k], d[k]);
-			values[k] = mean_of_2(along, down);
+			values[k] = (uint8_t)(mean_of_2(along, down) - ((along ^ down) & odd_down));
 		}
 		put_every_second(values, row + i, first, out + i);
 	}
@@ -159,6 +179,6 @@ static void mean_quincunx(const uint32_t *row, ptrdiff_t stride, int first, uint
 #define GZ_ROW_FILTERS(set)                                                                \
 	{                                                                                  \
 		.name = set, .cubic_between = cubic_between, .cubic_double = cubic_double, \
-		.mean_double = mean_double, .cubic_quincunx = cubic_quincunx,              \
-		.mean_quincunx = mean_quincunx,                                            \
+		.mean_double = mean_double, .mean_double_row = mean_double_row,            \
+		.cubic_quincunx = cubic_quincunx, .mean_quincunx = mean_quincunx,          \
 	}

@@ -114,7 +114,8 @@ static int cubic(const int v[4])
 {
 	const int m = (v[1] + v[2] + 1) / 2, n = (v[0] + v[3] + 1) / 2;
 	const int low = v[1] < v[2] ? v[1] : v[2], high = v[1] < v[2] ? v[2] : v[1];
-	const int value = m >= n ? m + (m - n + 4) / 8 : m - (n - m + 4) / 8;
+	const int eighths = m - n + ((v[1] + v[2]) % 2 ? 0 : 4);
+	const int value = m + (eighths + 256) / 8 - 32; /* rounded down, below 0 too */
 	return value < low ? low : value > high ? high : value;
 }
 
@@ -137,7 +138,8 @@ static int from_quincunx(const struct reference *lattice, int filter, int x, int
 		return (channel(lattice, x - 1, y, c) + channel(lattice, x + 1, y, c) +
 			channel(lattice, x, y - 1, c) + channel(lattice, x, y + 1, c) + 2) /
 		       4;
-	return (along(lattice, filter, x, y, 1, 0, c) + along(lattice, filter, x, y, 0, 1, c) + 1) /
+	return (along(lattice, filter, x, y, 1, 0, c) + along(lattice, filter, x, y, 0, 1, c) +
+		y % 2) /
 	       2;
 }
 
@@ -151,6 +153,8 @@ static int between_rows(const struct reference *coarse, int i, int j, int c)
 static int from_coarser(const struct reference *coarse, int filter, int x, int y, int c)
 {
 	const int i = x / 2, j = y / 2;
+	if (filter == GZ_FILTER_BILINEAR && y % 2 == 0)
+		return (channel(coarse, i, j, c) + channel(coarse, i + x % 2, j, c)) / 2;
 	if (filter == GZ_FILTER_BILINEAR)
 		return (channel(coarse, i, j, c) + channel(coarse, i + x % 2, j, c) +
 			channel(coarse, i, j + y % 2, c) +

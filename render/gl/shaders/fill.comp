@@ -10,7 +10,7 @@ uint filled_bilinear(uvec4 coarse, ivec2 place)
 		return here;
 	uint across = point_of(coarse, half_place + odd);
 	if (odd.x + odd.y == 1)
-		return mean_of_2(here, across);
+		return mean_of_2(here, across, odd.y);
 	return mean_of_4(here, point_of(coarse, half_place + ivec2(1, 0)),
 		point_of(coarse, half_place + ivec2(0, 1)), across);
 }

@@ -13,9 +13,10 @@ uint packed_point(ivec4 values)
 	return bits.x | bits.y | bits.z | bits.w;
 }
 
-uint mean_of_2(uint a, uint b)
+// Rounded up in odd rows and down in even ones.
+uint mean_of_2(uint a, uint b, int row)
 {
-	return packed_point((channels(a) + channels(b) + 1) >> 1);
+	return packed_point((channels(a) + channels(b) + row % 2) >> 1);
 }
 
 uint mean_of_4(uint a, uint b, uint c, uint d)
@@ -28,7 +29,7 @@ uint cubic(uint a, uint b, uint c, uint d)
 {
 	ivec4 from = channels(b), to = channels(c);
 	ivec4 m = (from + to + 1) >> 1, n = (channels(a) + channels(d) + 1) >> 1;
-	ivec4 value = m + sign(m - n) * ((abs(m - n) + 4) >> 3);
+	ivec4 value = m + ((m - n + 4 - 4 * ((from ^ to) & 1)) >> 3);
 	return packed_point(clamp(value, min(from, to), max(from, to)));
 }
 

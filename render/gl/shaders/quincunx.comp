@@ -6,7 +6,7 @@ uint along(uvec4 layer, ivec2 at, ivec2 axis)
 {
 	uint before = point_of(layer, at - axis), behind = point_of(layer, at + axis);
 	if (bilinear != 0U)
-		return mean_of_2(before, behind);
+		return mean_of_2(before, behind, 1);
 	return cubic(point_of(layer, at - 3 * axis), before, behind, point_of(layer, at + 3 * axis));
 }
 
@@ -20,7 +20,7 @@ uint between(uvec4 layer, ivec2 at)
 	if (bilinear != 0U)
 		return mean_of_4(point_of(layer, at - x), point_of(layer, at + x),
 			point_of(layer, at - y), point_of(layer, at + y));
-	return mean_of_2(along(layer, at, x), along(layer, at, y));
+	return mean_of_2(along(layer, at, x), along(layer, at, y), at.y);
 }
 
 void main()
