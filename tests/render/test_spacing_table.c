@@ -1,0 +1,168 @@
+/* Tables of spacings: what is read, and what is refused with which words. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/scene.h"
+
+static char message[512];
+
+static void keep(void *user, enum gz_log_level level, const char *module, const char *text)
+{
+	(void)user;
+	(void)level;
+	(void)module;
+	snprintf(message, sizeof message, "%s", text);
+}
+
+static enum gz_result parse(const char *text, size_t size, struct gz_spacing_table *out)
+{
+	struct gz_log log;
+	gz_log_init(&log, keep, NULL, NULL);
+	message[0] = '\0';
+	return gz_spacing_table_parse("t", text, size, &log, out);
+}
+
+static void rows_unit_and_comments_are_read(void **state)
+{
+	(void)state;
+	static const char text[] = "# mine\n unit deg # angles\r\n0 0.01 1\n\n5\t0.05 1.5\n60 1 4";
+	struct gz_spacing_table table;
+	assert_int_equal(parse(text, strlen(text), &table), GZ_OK);
+	assert_true(table.in_deg);
+	assert_int_equal(table.count, 3);
+	assert_true(table.rows[1].eccentricity_deg == 5 && table.rows[1].spacing == 0.05 &&
+		    table.rows[1].step == 1.5);
+	assert_true(gz_spacing_table_valid(&table));
+}
+
+static void pixels_are_the_unit_unless_told(void **state)
+{
+	(void)state;
+	struct gz_spacing_table table;
+	assert_int_equal(parse("0 1 1\n", 6, &table), GZ_OK);
+	assert_false(table.in_deg);
+	assert_int_equal(table.count, 1);
+}
+
+static void what_is_wrong_is_refused_with_its_line(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *says;
+	} cases[] = {
+		{ "", "t: no row" },
+		{ "# nothing\n", "t: no row" },
+		{ "0 1\n", "t:1: row: write three numbers" },
+		{ "0 1 1 1\n", "t:1: row: more than three" },
+		{ "0 1 1x\n", "t:1: row: write three numbers" },
+		{ "0 nan 1\n", "t:1: row: write three numbers" },
+		{ "0 0x2 1\n", "t:1: row: write three numbers" },
+		{ "zero 1 1\n", "t:1: zero: unknown word" },
+		{ "unit mm\n", "t:1: unit: write px or deg" },
+		{ "unit\n", "t:1: unit: write px or deg" },
+		{ "unit px\nunit px\n", "t:2: unit: given twice" },
+		{ "0 1 1\n0 2 1\n", "t:2: eccentricity: not above" },
+		{ "0 2 1\n5 1 1\n", "t:2: spacing: below" },
+		{ "0 1 2\n5 1 1\n", "t:2: step: below" },
+		{ "-1 1 1\n", "t:1: eccentricity: out of range" },
+		{ "181 1 1\n", "t:1: eccentricity: out of range" },
+		{ "0 0 1\n", "t:1: spacing: out of range" },
+		{ "0 1001 1\n", "t:1: spacing: out of range" },
+		{ "0 1 0.5\n", "t:1: step: out of range" },
+		{ "0 1 17\n", "t:1: step: out of range" },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct gz_spacing_table table = { .count = 77 };
+		assert_int_equal(parse(cases[i].text, strlen(cases[i].text), &table),
+				 GZ_ERR_FORMAT);
+		assert_int_equal(table.count, 77);
+		if (strncmp(message, cases[i].says, strlen(cases[i].says)) != 0)
+			fail_msg("\"%s\": said \"%s\", not \"%s\"", cases[i].text, message,
+				 cases[i].says);
+	}
+}
+
+static void bytes_that_are_no_text_are_refused(void **state)
+{
+	(void)state;
+	char text[400];
+	struct gz_spacing_table table;
+	assert_int_equal(parse("0 1\0001", 6, &table), GZ_ERR_FORMAT);
+	assert_non_null(strstr(message, "NUL"));
+	memset(text, ' ', sizeof text);
+	assert_int_equal(parse(text, sizeof text, &table), GZ_ERR_FORMAT);
+	assert_non_null(strstr(message, "longer than 255"));
+}
+
+static void sixty_five_rows_are_one_too_many(void **state)
+{
+	(void)state;
+	char text[65 * 16];
+	size_t used = 0, full = 0;
+	struct gz_spacing_table table;
+	for (int i = 0; i < GZ_SPACING_TABLE_MAX + 1; i++) {
+		full = used;
+		used += (size_t)snprintf(text + used, sizeof text - used, "%d 1 1\n", i);
+	}
+	assert_int_equal(parse(text, full, &table), GZ_OK);
+	assert_int_equal(table.count, GZ_SPACING_TABLE_MAX);
+	assert_int_equal(parse(text, used, &table), GZ_ERR_FORMAT);
+	assert_non_null(strstr(message, "t:65: row: one too many"));
+}
+
+static void write_file(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+}
+
+static void scene_finds_its_table_beside_itself(void **state)
+{
+	(void)state;
+	char folder[] = "/tmp/gz_table_XXXXXX", scene[64], table[64];
+	struct gz_foveation foveation = gz_foveation_default();
+	struct gz_log log;
+	assert_non_null(mkdtemp(folder));
+	snprintf(scene, sizeof scene, "%s/a.scene", folder);
+	snprintf(table, sizeof table, "%s/mine.txt", folder);
+	write_file(table, "0 1 1\n20 8 3\n");
+	gz_log_init(&log, keep, NULL, NULL);
+	foveation.method = GZ_METHOD_TABLE;
+	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_ERR_FORMAT);
+	assert_non_null(strstr(message, "foveation.table: not given"));
+	strcpy(foveation.table_file, "mine.txt");
+	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_OK);
+	assert_int_equal(foveation.table.count, 2);
+	strcpy(foveation.table_file, "other.txt");
+	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(message, "foveation.table: other.txt is neither"));
+	foveation.method = GZ_METHOD_ACUITY;
+	foveation.table_file[0] = '\0';
+	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_OK);
+	unlink(table);
+	rmdir(folder);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(rows_unit_and_comments_are_read),
+		cmocka_unit_test(pixels_are_the_unit_unless_told),
+		cmocka_unit_test(what_is_wrong_is_refused_with_its_line),
+		cmocka_unit_test(bytes_that_are_no_text_are_refused),
+		cmocka_unit_test(sixty_five_rows_are_one_too_many),
+		cmocka_unit_test(scene_finds_its_table_beside_itself),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
