@@ -58,13 +58,15 @@ static void print_gaze(const struct gz_window_gaze *gaze, bool mouse_chosen, cha
 			 reading->has_event ? gz_event_name(reading->event) : "");
 }
 
-/* " of 20, 1.4 times coarser" or nothing. */
+/* " of 20, 1.4 times coarser", as much of it as there is. */
 static void print_budget(const struct gz_frame_record *record, char *text, size_t size)
 {
 	text[0] = '\0';
-	if (record->budget_ms > 0)
+	if (record->budget_ms > 0 && record->focus.scale > 1)
 		snprintf(text, size, " of %g, %.1f times coarser", record->budget_ms,
 			 record->focus.scale);
+	else if (record->budget_ms > 0)
+		snprintf(text, size, " of %g", record->budget_ms);
 }
 
 /* The line that belongs to the frame on the screen; whether it says something new. */

@@ -182,13 +182,11 @@ static void seen(struct gz_attention *attention, const struct gz_attention_gaze 
 		       for_ms(attention) >= PURSUIT_MIN_MS && distance < PURSUIT_MAX_BANDS * band;
 	if (attention->state == GZ_ATTENTION_SACCADE)
 		in_saccade(attention, gaze->point, distance, band);
-	else if (attention->on_way)
-		land(attention, gaze->point);
-	else if (just_landed(attention))
+	else if (!attention->on_way && just_landed(attention))
 		look(attention, gaze->point, 1);
-	else if (pursued)
+	else if (!attention->on_way && pursued)
 		in_pursuit(attention, gaze->point, distance, band);
-	else if (distance > band)
+	else if (attention->on_way || distance > band)
 		land(attention, gaze->point);
 }
 
