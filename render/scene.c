@@ -251,23 +251,22 @@ static enum gz_result check_volume(const struct reader *reader)
 	return GZ_OK;
 }
 
-static enum gz_result check_camera(const struct reader *reader)
+enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
+				       const struct gz_log *log)
 {
 	struct gz_ray_frame rays;
-	if (gz_camera_rays(&reader->settings->camera, 1, 1, &rays) == GZ_OK)
-		return GZ_OK;
-	return refuse(reader, CAMERA_EYE, "is where camera.look_at is; move one of them");
-}
-
-static enum gz_result check_rays(const struct reader *reader)
-{
-	if (gz_ray_params_valid(&reader->settings->rays))
-		return GZ_OK;
-	gz_err(reader->log,
-	       "%s: clip.least must be below clip.greatest along each axis, and light.direction "
-	       "must not be 0 0 0",
-	       reader->name);
-	return GZ_ERR_FORMAT;
+	if (gz_camera_rays(&settings->camera, 1, 1, &rays) != GZ_OK) {
+		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
+		return GZ_ERR_FORMAT;
+	}
+	if (!gz_ray_params_valid(&settings->rays)) {
+		gz_err(log,
+		       "%s: clip.least must be below clip.greatest along each axis, and "
+		       "light.direction must not be 0 0 0",
+		       name);
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
 }
 
 static enum gz_result check_display(const struct reader *reader, bool *out_has_display)
@@ -288,9 +287,7 @@ static enum gz_result check(const struct reader *reader, bool *out_has_display)
 		result = refuse(reader, TRANSFER_FILE,
 				"not given; name a .tf file (docs/scenes.md says what is in it)");
 	if (result == GZ_OK)
-		result = check_camera(reader);
-	if (result == GZ_OK)
-		result = check_rays(reader);
+		result = gz_scene_settings_check(reader->settings, reader->name, reader->log);
 	if (result == GZ_OK)
 		result = check_display(reader, out_has_display);
 	return result;

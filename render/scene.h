@@ -59,6 +59,18 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 			 size_t room);
 
 /**
+ * Check what the tables cannot say of each value by itself: that the camera looks somewhere, the
+ * clip box holds something and the light has a direction. What volume and display need is not
+ * asked.
+ *
+ * @param name  stands for where they come from in messages
+ * @param log   may be NULL
+ * @retval GZ_ERR_FORMAT  refused; logged with the key and the remedy
+ */
+enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
+				       const struct gz_log *log);
+
+/**
  * Read the settings of a scene from text, without its files.
  *
  * @param name  stands for the file in messages

@@ -47,6 +47,8 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	if (r == GZ_OK)
 		r = gz_view_options_apply(options, &maker->scene.settings);
 	if (r == GZ_OK)
+		r = gz_scene_settings_check(&maker->scene.settings, options->scene, log);
+	if (r == GZ_OK)
 		r = gz_scene_load_table(options->scene, log, &maker->scene.settings.foveation);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);

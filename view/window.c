@@ -133,11 +133,9 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 /* What the tables cannot say of each value by itself. */
 static bool settings_valid(const struct gz_scene_settings *settings)
 {
-	struct gz_ray_frame rays;
 	const struct gz_foveation *foveation = &settings->foveation;
 	bool table_there = foveation->method != GZ_METHOD_TABLE || foveation->table.count > 0;
-	return table_there && gz_ray_params_valid(&settings->rays) &&
-	       gz_camera_rays(&settings->camera, 1, 1, &rays) == GZ_OK;
+	return table_there && gz_scene_settings_check(settings, "settings", NULL) == GZ_OK;
 }
 
 /* Values that do not go together stay what they were. */

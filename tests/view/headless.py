@@ -286,6 +286,10 @@ class Headless(unittest.TestCase):
             (("--out", "%s.png"), "%s.png"),
             (("--stats", "/no/such/folder/s.json"), "/no/such/folder/s.json"),
             (("--method", "blur"), "acuity"),
+            (("--camera.eye", "1 2 3", "--camera.look_at", "1 2 3"), "camera.eye"),
+            (("--clip.least", "0 0.5 0", "--clip.greatest", "1 0.5 1"), "clip.least"),
+            (("--attention.saccade_scale", "0.5"), "saccade_scale"),
+            (("--attention.budget_ms", "-1"), "budget_ms"),
         ):
             with self.subTest(words=words):
                 self.refused(self.render(*words), said)
