@@ -22,7 +22,12 @@
 #define GZ_GL_COUNT_SLOTS 1024
 
 /** Binding points. */
-enum gz_gl_texture_unit { GZ_GL_UNIT_VOXELS, GZ_GL_UNIT_REACH, GZ_GL_UNIT_TRANSFER };
+enum gz_gl_texture_unit {
+	GZ_GL_UNIT_VOXELS,
+	GZ_GL_UNIT_REACH,
+	GZ_GL_UNIT_TRANSFER,
+	GZ_GL_UNIT_SEGMENTS
+};
 enum gz_gl_storage {
 	GZ_GL_STORAGE_TILES,
 	GZ_GL_STORAGE_POINTS,
@@ -35,7 +40,8 @@ struct gz_gl_frame_block {
 	float origin00[4], origin_dx[4], origin_dy[4];          /**< voxel coordinates */
 	float direction00[4], direction_dx[4], direction_dy[4]; /**< of rays of pixels */
 	float world_per_voxel[4];
-	float dims[4];
+	float dims[4]; /**< voxels */
+	float box[4];  /**< far corner: dims but for a coarser level of odd size */
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
 	float cell_last[4];                    /**< greatest index of a macrocell */
 	float background[4];                   /**< [0, 1] */

@@ -58,6 +58,19 @@ enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, 
 	return GZ_OK;
 }
 
+unsigned gz_gl_texture(unsigned target)
+{
+	GLuint texture = 0;
+	glGenTextures(1, &texture);
+	glBindTexture(target, texture);
+	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+	glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+	glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+	return texture;
+}
+
 enum gz_result gz_gl_device_errors(const struct gz_gl_device *device)
 {
 	enum gz_result result = GZ_OK;

@@ -32,6 +32,9 @@ struct gz_gl_device {
  */
 enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, size_t size);
 
+/** A texture without filtering or levels, bound to @p target, one of OpenGL's. */
+unsigned gz_gl_texture(unsigned target);
+
 /** What went wrong since the last call: GZ_OK; GZ_ERR_NO_MEM; GZ_ERR_NO_DEVICE where the context is
  * lost; GZ_ERR_UNSUPPORTED for any other error of OpenGL, of which there should be none. */
 enum gz_result gz_gl_device_errors(const struct gz_gl_device *device);

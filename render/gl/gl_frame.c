@@ -6,9 +6,14 @@
 
 #define GZ_LOG_MODULE "gl"
 
+/* From one level's block to the next: a multiple of what any implementation demands of such places
+ * (GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT is at most 256). */
+enum { BLOCK_STRIDE = (sizeof(struct gz_gl_frame_block) + 255) / 256 * 256 };
+
 _Static_assert(GZ_GL_TILE_POINTS == GZ_TILE_PATTERN_COUNT * GZ_TILE_EDGE * GZ_TILE_EDGE,
 	       "the block has a point for each ray of each pattern");
-_Static_assert(GZ_PLAN_LAYERS_MAX <= 8 && GZ_TILE_PATTERN_COUNT <= 32 && GZ_PLAN_STEPS_MAX <= 256,
+_Static_assert(GZ_PLAN_LAYERS_MAX <= 8 && GZ_TILE_PATTERN_COUNT <= 4 && GZ_LEVELS_MAX <= 8 &&
+		       GZ_PLAN_STEPS_MAX <= 256,
 	       "a tile's numbers fit the bits they are packed into");
 
 /* Make room for @p size bytes; what was there is lost. */
@@ -69,19 +74,33 @@ static void sort_ranges(struct gz_gl_frame *frame, const struct gz_plan *plan)
 		}
 }
 
-static void pack_tiles(const struct gz_gl_frame *frame, const struct gz_plan *plan,
-		       uint32_t (*out_words)[2])
+/* Make a range hold an item. */
+static void widen(struct gz_gl_tile_range *range, size_t item)
+{
+	const size_t end = range->first + range->count;
+	const size_t first = range->count == 0 || item < range->first ? item : range->first;
+	range->count = (range->count > 0 && end > item ? end : item + 1) - first;
+	range->first = first;
+}
+
+/* Tiles into their ranges, each with the level of detail that it takes. */
+static void pack_tiles(struct gz_gl_frame *frame, const struct gz_plan *plan,
+		       const struct gz_gl_tile_levels *levels, uint32_t (*out_words)[2])
 {
 	size_t next[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	for (int layer = 0; layer < GZ_PLAN_LAYERS_MAX; layer++)
 		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
 			next[layer][pattern] = frame->ranges[layer][pattern].first;
+	memset(frame->level_ranges, 0, sizeof frame->level_ranges);
 	for (size_t i = 0; i < plan->tile_count; i++) {
 		const struct gz_tile *tile = &plan->tiles[i];
-		uint32_t *words = out_words[next[tile->layer][tile->pattern]++];
+		const size_t place = next[tile->layer][tile->pattern]++;
+		const unsigned level = levels->of[tile->layer][tile->pattern][tile->step];
+		uint32_t *words = out_words[place];
 		words[0] = (uint32_t)tile->x | (uint32_t)tile->y << 16;
-		words[1] = (uint32_t)tile->layer | (uint32_t)tile->pattern << 3 |
+		words[1] = (uint32_t)tile->layer | (uint32_t)tile->pattern << 3 | level << 5 |
 			   (uint32_t)tile->step << 8 | gz_plan_tile_active(plan, tile) << 16;
+		widen(&frame->level_ranges[level], place);
 	}
 }
 
@@ -94,8 +113,9 @@ static enum gz_result no_room(enum gz_result result, const struct gz_plan *plan,
 }
 
 enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl_device *device,
-				   const struct gz_plan *plan, struct gz_gl_frame_block *block,
-				   const struct gz_log *log)
+				   const struct gz_plan *plan,
+				   const struct gz_gl_tile_levels *levels,
+				   struct gz_gl_frame_block *block, const struct gz_log *log)
 {
 	const size_t bytes = lay_out(plan, block) * sizeof(uint32_t);
 	if ((int64_t)bytes > device->storage_max) {
@@ -105,7 +125,7 @@ enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl
 		       plan->width, plan->height, bytes >> 20, (size_t)device->storage_max >> 20);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	reserve(&frame->block, sizeof *block, GL_STREAM_DRAW);
+	reserve(&frame->block, GZ_LEVELS_MAX * BLOCK_STRIDE, GL_STREAM_DRAW);
 	reserve(&frame->points, bytes, GL_DYNAMIC_COPY);
 	reserve(&frame->counts, GZ_GL_COUNT_SLOTS * sizeof(uint32_t), GL_DYNAMIC_READ);
 	enum gz_result result = gz_gl_device_errors(device);
@@ -121,7 +141,7 @@ enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl
 			return no_room(GZ_ERR_NO_MEM, plan, log);
 		}
 		sort_ranges(frame, plan);
-		pack_tiles(frame, plan, words);
+		pack_tiles(frame, plan, levels, words);
 		glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 	}
 	return GZ_OK;
@@ -146,14 +166,24 @@ enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_d
 	return GZ_OK;
 }
 
-void gz_gl_frame_begin(struct gz_gl_frame *frame, const struct gz_gl_frame_block *block)
+void gz_gl_frame_set_block(struct gz_gl_frame *frame, int level,
+			   const struct gz_gl_frame_block *block)
+{
+	glBindBuffer(GL_UNIFORM_BUFFER, frame->block.name);
+	glBufferSubData(GL_UNIFORM_BUFFER, (GLintptr)(level * BLOCK_STRIDE), sizeof *block, block);
+}
+
+void gz_gl_frame_use_block(const struct gz_gl_frame *frame, int level)
+{
+	glBindBufferRange(GL_UNIFORM_BUFFER, 0, frame->block.name, (GLintptr)(level * BLOCK_STRIDE),
+			  sizeof(struct gz_gl_frame_block));
+}
+
+void gz_gl_frame_begin(struct gz_gl_frame *frame)
 {
 	static const uint32_t zeros[GZ_GL_COUNT_SLOTS];
-	glBindBuffer(GL_UNIFORM_BUFFER, frame->block.name);
-	glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof *block, block);
 	glBindBuffer(GL_SHADER_STORAGE_BUFFER, frame->counts.name);
 	glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zeros, zeros);
-	glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame->block.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_TILES, frame->tiles.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_POINTS, frame->points.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_COUNTS, frame->counts.name);
@@ -190,12 +220,7 @@ void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height)
 	if (frame->picture_width != width || frame->picture_height != height) {
 		if (frame->picture)
 			glDeleteTextures(1, &frame->picture);
-		glGenTextures(1, &frame->picture);
-		glBindTexture(GL_TEXTURE_2D, frame->picture);
-		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-		glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+		frame->picture = gz_gl_texture(GL_TEXTURE_2D);
 		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
 		frame->picture_width = width;
 		frame->picture_height = height;

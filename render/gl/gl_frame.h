@@ -15,6 +15,7 @@
 #include "render/gl/gl_device.h"
 #include "render/image.h"
 #include "render/plan/plan.h"
+#include "render/volume/levels.h"
 
 /** A buffer of the device; zero-initialised is none. */
 struct gz_gl_buffer {
@@ -27,11 +28,18 @@ struct gz_gl_tile_range {
 	size_t first, count;
 };
 
+/** Which level of detail tiles take, by layer, pattern and step. */
+struct gz_gl_tile_levels {
+	uint8_t of[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT][GZ_PLAN_STEPS_MAX];
+};
+
 /** Zero-initialised is empty. */
 struct gz_gl_frame {
 	struct gz_gl_buffer block, tiles, points, counts, spans, staging;
 	/** Where tiles of a layer and pattern lie: sorted by layer, then by pattern. */
 	struct gz_gl_tile_range ranges[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
+	/** From the first to behind the last tile of each level of detail; others lie between. */
+	struct gz_gl_tile_range level_ranges[GZ_LEVELS_MAX];
 	unsigned picture; /**< texture, RGBA8; 0 until one was asked for */
 	int picture_width, picture_height;
 };
@@ -44,16 +52,24 @@ struct gz_gl_frame {
  * @retval GZ_ERR_NO_MEM       the device has no room; logged
  */
 enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl_device *device,
-				   const struct gz_plan *plan, struct gz_gl_frame_block *block,
-				   const struct gz_log *log);
+				   const struct gz_plan *plan,
+				   const struct gz_gl_tile_levels *levels,
+				   struct gz_gl_frame_block *block, const struct gz_log *log);
 
 /** Give the device the columns of each row that each region of a plan has (gz_region_columns()),
  * and bind them. GZ_ERR_NO_MEM: logged. */
 enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_device *device,
 				 const struct gz_plan *plan, const struct gz_log *log);
 
-/** Give the device the finished block, clear the counts, bind everything. */
-void gz_gl_frame_begin(struct gz_gl_frame *frame, const struct gz_gl_frame_block *block);
+/** Give the device the finished block of a level of detail. */
+void gz_gl_frame_set_block(struct gz_gl_frame *frame, int level,
+			   const struct gz_gl_frame_block *block);
+
+/** Let shaders see that block. */
+void gz_gl_frame_use_block(const struct gz_gl_frame *frame, int level);
+
+/** Clear the counts, and bind all buffers but the block. */
+void gz_gl_frame_begin(struct gz_gl_frame *frame);
 
 /** Bring the picture into @p image, which has its size. GZ_ERR_NO_MEM, GZ_ERR_NO_DEVICE. */
 enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,

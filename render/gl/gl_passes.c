@@ -54,22 +54,27 @@ static void await_points(void)
 }
 
 enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
-			  const struct gz_plan *plan, enum gz_voxel_type type, bool nearest,
+			  const struct gz_gl_frame *frame, int level, struct gz_gl_cast_kind kind,
 			  const struct gz_log *log)
 {
 	char defines[128];
-	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s", 8 * gz_voxel_size(type),
-		 nearest ? "#define NEAREST\n" : "",
+	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s",
+		 8 * gz_voxel_size(kind.type), kind.nearest ? "#define NEAREST\n" : "",
+		 kind.segments ? "#define SEGMENTS\n" : "",
 		 device->software ? "#define FETCH_IMAGES\n" : "");
 	const struct gz_compute_text text = {
 		.name = "cast.comp",
 		.defines = defines,
 		.parts = { gz_glsl_frame_glsl, gz_glsl_fetch_glsl, gz_glsl_cast_comp },
 	};
-	const enum gz_result result = use(&passes->cast[type][nearest], &text, log);
-	if (result == GZ_OK)
-		dispatch(device, 0, plan->tile_count, TILES_A_GROUP);
-	return result;
+	const struct gz_gl_tile_range *range = &frame->level_ranges[level];
+	const enum gz_result result =
+		use(&passes->cast[kind.type][kind.nearest][kind.segments], &text, log);
+	if (result != GZ_OK)
+		return result;
+	glUniform1ui(LEVEL, (GLuint)level);
+	dispatch(device, range->first, range->count, TILES_A_GROUP);
+	return GZ_OK;
 }
 
 /* Points of lattice @p level that lie in coarser tiles. */
@@ -167,12 +172,13 @@ enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl
 
 void gz_gl_passes_free(struct gz_gl_passes *passes)
 {
-	const GLuint programs[] = { passes->fill, passes->quincunx, passes->regions };
-	for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++)
+	const GLuint *programs = &passes->cast[0][0][0];
+	for (size_t i = 0; i < sizeof passes->cast / sizeof *programs; i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);
-	for (int i = 0; i < GZ_VOXEL_TYPE_COUNT * 2; i++)
-		if (passes->cast[i / 2][i % 2])
-			glDeleteProgram(passes->cast[i / 2][i % 2]);
+	const GLuint fills[] = { passes->fill, passes->quincunx, passes->regions };
+	for (size_t i = 0; i < sizeof fills / sizeof fills[0]; i++)
+		if (fills[i])
+			glDeleteProgram(fills[i]);
 	*passes = (struct gz_gl_passes) { 0 };
 }

@@ -15,19 +15,26 @@
 #include "render/plan/plan.h"
 #include "render/volume/volume.h"
 
+/** What a cast does; each has a program of its own. */
+struct gz_gl_cast_kind {
+	enum gz_voxel_type type;
+	bool nearest;
+	bool segments; /**< pre-integrated */
+};
+
 /** Programs, made when they are first needed; names of OpenGL, 0: none yet. */
 struct gz_gl_passes {
-	unsigned cast[GZ_VOXEL_TYPE_COUNT][2]; /**< by voxel type and nearest */
+	unsigned cast[GZ_VOXEL_TYPE_COUNT][2][2]; /**< by the members of struct gz_gl_cast_kind */
 	unsigned fill, quincunx, regions;
 };
 
 /**
- * Cast all tiles.
+ * Cast the tiles that take a level of detail, whose block and textures are bound.
  *
  * @retval GZ_ERR_UNSUPPORTED  the driver refuses the shader; logged
  */
 enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
-			  const struct gz_plan *plan, enum gz_voxel_type type, bool nearest,
+			  const struct gz_gl_frame *frame, int level, struct gz_gl_cast_kind kind,
 			  const struct gz_log *log);
 
 /**

@@ -9,10 +9,8 @@
 #include "render/gl/gl_device.h"
 #include "render/gl/gl_frame.h"
 #include "render/gl/gl_passes.h"
+#include "render/gl/gl_scene.h"
 #include "render/gl/gl_timer.h"
-#include "render/gl/gl_volume.h"
-#include "render/macrocells.h"
-#include "render/voxel_rays.h"
 
 #define GZ_LOG_MODULE "gl"
 
@@ -26,11 +24,7 @@ struct gl_renderer {
 	struct gz_gl_context *context;
 	struct gz_gl_context *own_context; /* the same, where this renderer made it */
 	struct gz_gl_device device;
-	const struct gz_volume *volume; /* borrowed */
-	struct gz_macrocells cells;
-	bool has_transfer;
-	struct gz_transfer_table table;
-	struct gz_gl_volume textures;
+	struct gz_gl_scene scene;
 	struct gz_gl_frame frame;
 	struct gz_gl_passes passes;
 	struct gz_gl_timer timer;
@@ -57,16 +51,17 @@ static void leave(struct gl_renderer *gl)
 static void gl_destroy(struct gz_renderer *renderer)
 {
 	struct gl_renderer *gl = gl_of(renderer);
-	/* What a lost context held is gone with it. */
 	if (gl->context && gl->context->ops->make_current(gl->context) == GZ_OK) {
-		gz_gl_volume_free(&gl->textures);
+		gz_gl_scene_free(&gl->scene);
 		gz_gl_frame_free(&gl->frame);
 		gz_gl_passes_free(&gl->passes);
 		gz_gl_timer_free(&gl->timer);
 		leave(gl);
+	} else {
+		/* What a lost context held is gone with it. */
+		gz_gl_scene_forget(&gl->scene);
 	}
 	gz_gl_context_destroy(&gl->own_context);
-	gz_macrocells_free(&gl->cells);
 	free(gl);
 }
 
@@ -131,91 +126,35 @@ static enum gz_result gl_create(const struct gz_renderer_params *params, const s
 static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)
 {
 	struct gl_renderer *gl = gl_of(renderer);
-	gl->volume = NULL;
-	gl->has_transfer = false;
 	if (volume->bricks) {
+		gl->scene.volume = NULL;
 		gz_err(renderer->log, "a file of bricks is for the cpu backend: take --backend cpu");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	enum gz_result result = enter(gl);
 	if (result != GZ_OK)
 		return result;
-	result = gz_gl_volume_load(&gl->textures, &gl->device, volume, renderer->log);
+	result = gz_gl_scene_set_volume(&gl->scene, &gl->device, volume, renderer->log);
 	leave(gl);
-	if (result != GZ_OK)
-		return result;
-	result = gz_macrocells_build(volume, &gl->cells);
-	if (result != GZ_OK) {
-		gz_err(renderer->log, "no memory for the macrocells of the volume");
-		return result;
-	}
-	gl->volume = volume;
-	return GZ_OK;
+	return result;
 }
 
 static enum gz_result gl_set_transfer(struct gz_renderer *renderer,
 				      const struct gz_transfer *transfer)
 {
 	struct gl_renderer *gl = gl_of(renderer);
-	if (!gl->volume)
+	if (!gl->scene.volume)
 		return GZ_ERR_INVAL;
 	enum gz_result result = enter(gl);
 	if (result != GZ_OK)
 		return result;
-	gz_transfer_table_bake(transfer, gl->volume, &gl->table);
-	gz_macrocells_classify(&gl->cells, &gl->table);
-	gz_gl_volume_classify(&gl->textures, &gl->cells);
+	gz_gl_scene_set_transfer(&gl->scene, transfer);
 	result = gz_gl_device_errors(&gl->device);
 	leave(gl);
-	gl->has_transfer = result == GZ_OK;
 	if (result != GZ_OK)
 		gz_err(renderer->log, "the graphics device did not take the transfer function: %s",
 		       gz_result_text(result));
 	return result;
-}
-
-static void to_floats(const double source[3], float out[4])
-{
-	for (int axis = 0; axis < 3; axis++)
-		out[axis] = (float)source[axis];
-}
-
-static void fill_rays(const struct gl_renderer *gl, const struct gz_ray_frame *world,
-		      const struct gz_clip_box *clip, struct gz_gl_frame_block *block)
-{
-	struct gz_voxel_rays rays;
-	gz_voxel_rays_make(gl->volume, world, &rays);
-	to_floats(rays.frame.origin00, block->origin00);
-	to_floats(rays.frame.origin_dx, block->origin_dx);
-	to_floats(rays.frame.origin_dy, block->origin_dy);
-	to_floats(rays.frame.direction00, block->direction00);
-	to_floats(rays.frame.direction_dx, block->direction_dx);
-	to_floats(rays.frame.direction_dy, block->direction_dy);
-	to_floats(rays.world_per_voxel, block->world_per_voxel);
-	for (int axis = 0; axis < 3; axis++) {
-		const int dim = gl->volume->dims[axis];
-		block->dims[axis] = (float)dim;
-		block->clip_least[axis] = (float)(clip->least[axis] * dim);
-		block->clip_greatest[axis] = (float)(clip->greatest[axis] * dim);
-		block->last[axis] = dim > 1 ? dim - 2 : 0;
-		block->cell_last[axis] = (float)(gl->cells.dims[axis] - 1);
-	}
-}
-
-static void fill_transfer(struct gl_renderer *gl, const struct gz_plan *plan,
-			  const struct gz_ray_params *rays, struct gz_gl_frame_block *block)
-{
-	const double voxel_length = gz_volume_voxel_length(gl->volume);
-	block->transfer[0] = (float)gl->table.scale;
-	block->transfer[1] = (float)gl->table.bias;
-	for (int i = 0; i < plan->step_count; i++) {
-		const double length = plan->steps[i] / rays->ray_sampling_rate;
-		gz_gl_volume_step_row(&gl->textures, &gl->table, i, length);
-		block->steps[i][0] = (float)(length * voxel_length);
-		block->steps[i][1] = (float)length;
-	}
-	gz_gl_volume_step_row(&gl->textures, &gl->table, GZ_PLAN_STEPS_MAX, 1);
-	to_floats(rays->background, block->background);
 }
 
 static void fill_region(const struct gz_region *region, float place[4], float fade[4])
@@ -250,10 +189,6 @@ static const char *unsupported(const struct gz_ray_params *rays)
 {
 	if (rays->shading != GZ_SHADING_NONE)
 		return "render.shading";
-	if (rays->integration != GZ_INTEGRATION_SAMPLED)
-		return "render.integration";
-	if (rays->levels)
-		return "render.levels";
 	return NULL;
 }
 
@@ -266,25 +201,53 @@ static enum gz_result refuse(const struct gl_renderer *gl, const struct gz_ray_p
 	return GZ_ERR_UNSUPPORTED;
 }
 
-/* All passes of a frame. */
-static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_frame *world,
-			   const struct gz_ray_params *rays, const struct gz_plan *plan)
+/* The blocks of all levels that tiles take, and what else the passes need. */
+static enum gz_result prepare(struct gl_renderer *gl, const struct gz_camera *camera,
+			      const struct gz_ray_frame *world, const struct gz_ray_params *rays,
+			      const struct gz_plan *plan)
 {
 	struct gz_gl_frame_block block = { 0 };
+	struct gz_gl_tile_levels levels;
 	const struct gz_log *log = gl->base.log;
-	enum gz_result result = gz_gl_frame_prepare(&gl->frame, &gl->device, plan, &block, log);
+	enum gz_result result =
+		gz_gl_scene_prepare(&gl->scene, &gl->device, camera, rays, plan, &levels, log);
+	if (result == GZ_OK)
+		result = gz_gl_frame_prepare(&gl->frame, &gl->device, plan, &levels, &block, log);
 	if (result != GZ_OK)
 		return result;
-	fill_rays(gl, world, &rays->clip, &block);
-	block.jitter[0] = (uint32_t)rays->jitter;
-	fill_transfer(gl, plan, rays, &block);
 	fill_plan(plan, &block);
-	gz_gl_frame_begin(&gl->frame, &block);
-	gz_gl_volume_bind(&gl->textures, gl->volume->type);
+	for (int i = 0; i < gl->scene.level_count; i++) {
+		if (i > 0 && gl->frame.level_ranges[i].count == 0)
+			continue;
+		gz_gl_scene_fill(&gl->scene, i, world, rays, plan, &block);
+		gz_gl_frame_set_block(&gl->frame, i, &block);
+	}
+	gz_gl_frame_begin(&gl->frame);
+	gz_gl_tables_bind(&gl->scene.tables);
+	return GZ_OK;
+}
+
+/* All passes of a frame. */
+static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_params *rays,
+			   const struct gz_plan *plan)
+{
+	const struct gz_log *log = gl->base.log;
+	const struct gz_gl_cast_kind kind = {
+		.type = gl->scene.volume->type,
+		.nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
+		.segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+	};
+	enum gz_result result = GZ_OK;
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
-	result = gz_gl_cast(&gl->passes, &gl->device, plan, gl->volume->type,
-			    rays->interpolation == GZ_INTERPOLATION_NEAREST, log);
+	for (int i = 0; i < gl->scene.level_count && result == GZ_OK; i++) {
+		if (gl->frame.level_ranges[i].count == 0)
+			continue;
+		gz_gl_frame_use_block(&gl->frame, i);
+		gz_gl_volume_bind(&gl->scene.levels[i], kind.type);
+		result = gz_gl_cast(&gl->passes, &gl->device, &gl->frame, i, kind, log);
+	}
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
+	gz_gl_frame_use_block(&gl->frame, 0);
 	if (result == GZ_OK)
 		result = gz_gl_reconstruct(&gl->passes, &gl->device, &gl->frame, plan, log);
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_END);
@@ -314,7 +277,7 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 {
 	struct gl_renderer *gl = gl_of(renderer);
 	struct gz_ray_frame world;
-	if (!gl->volume || !gl->has_transfer)
+	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
 	enum gz_result result = refuse(gl, rays);
 	if (result == GZ_OK)
@@ -325,7 +288,9 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 		result = enter(gl);
 	if (result != GZ_OK)
 		return result;
-	result = draw(gl, &world, rays, plan);
+	result = prepare(gl, camera, &world, rays, plan);
+	if (result == GZ_OK)
+		result = draw(gl, rays, plan);
 	if (result == GZ_OK)
 		result = deliver(gl, plan, image);
 	if (result == GZ_OK && out_stats)

@@ -24,20 +24,6 @@ static const struct texel_format formats[GZ_VOXEL_TYPE_COUNT] = {
 	[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT },
 };
 
-/* A texture without filtering or levels, bound to @p target. */
-static GLuint make_texture(GLenum target)
-{
-	GLuint texture = 0;
-	glGenTextures(1, &texture);
-	glBindTexture(target, texture);
-	glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-	glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-	glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-	glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-	glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
-	return texture;
-}
-
 /* A row of 8-bit voxels, each with its neighbours along x, y and both. */
 static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, uint32_t *out)
 {
@@ -118,7 +104,7 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 	if (result != GZ_OK)
 		return result;
 	const struct texel_format *format = &formats[volume->type];
-	gl->voxels = make_texture(GL_TEXTURE_3D);
+	gl->voxels = gz_gl_texture(GL_TEXTURE_3D);
 	glTexStorage3D(GL_TEXTURE_3D, 1, format->internal, volume->dims[0], volume->dims[1],
 		       volume->dims[2]);
 	result = gz_gl_device_errors(device);
@@ -140,7 +126,7 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells)
 {
 	if (!gl->reach) {
-		gl->reach = make_texture(GL_TEXTURE_3D);
+		gl->reach = gz_gl_texture(GL_TEXTURE_3D);
 		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R8UI, cells->dims[0], cells->dims[1],
 			       cells->dims[2]);
 	}
@@ -150,31 +136,6 @@ void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *
 			GL_RED_INTEGER, GL_UNSIGNED_BYTE, cells->reach);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	glBindTexture(GL_TEXTURE_3D, 0);
-	memset(gl->row_length, 0, sizeof gl->row_length);
-}
-
-void gz_gl_volume_step_row(struct gz_gl_volume *gl, const struct gz_transfer_table *table, int row,
-			   double length)
-{
-	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE];
-	if (gl->row_length[row] == length)
-		return;
-	if (!gl->transfer) {
-		gl->transfer = make_texture(GL_TEXTURE_2D);
-		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
-			       GZ_PLAN_STEPS_MAX + 1);
-	}
-	const struct gz_transfer_entry *source = table->entries;
-	if (row < GZ_PLAN_STEPS_MAX) {
-		gz_transfer_table_step(table, length, entries);
-		source = entries;
-	}
-	/* An entry is two 32-bit words, a float's bits and a colour. */
-	glBindTexture(GL_TEXTURE_2D, gl->transfer);
-	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, row, GZ_TRANSFER_TABLE_SIZE, 1, GL_RG_INTEGER,
-			GL_UNSIGNED_INT, source);
-	glBindTexture(GL_TEXTURE_2D, 0);
-	gl->row_length[row] = length;
 }
 
 void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
@@ -182,22 +143,18 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 	glBindImageTexture(GZ_GL_UNIT_VOXELS, gl->voxels, 0, GL_TRUE, 0, GL_READ_ONLY,
 			   formats[type].internal);
 	glBindImageTexture(GZ_GL_UNIT_REACH, gl->reach, 0, GL_TRUE, 0, GL_READ_ONLY, GL_R8UI);
-	glBindImageTexture(GZ_GL_UNIT_TRANSFER, gl->transfer, 0, GL_FALSE, 0, GL_READ_ONLY,
-			   GL_RG32UI);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_REACH);
 	glBindTexture(GL_TEXTURE_3D, gl->reach);
-	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_TRANSFER);
-	glBindTexture(GL_TEXTURE_2D, gl->transfer);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_VOXELS);
 	glBindTexture(GL_TEXTURE_3D, gl->voxels);
 }
 
 void gz_gl_volume_free(struct gz_gl_volume *gl)
 {
-	const GLuint textures[] = { gl->voxels, gl->reach, gl->transfer };
+	const GLuint textures[] = { gl->voxels, gl->reach };
 	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
 	 */
-	if (gl->voxels || gl->reach || gl->transfer)
+	if (gl->voxels || gl->reach)
 		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
 	*gl = (struct gz_gl_volume) { 0 };
 }

@@ -1,6 +1,6 @@
 /**
  * @file
- * Volume, macrocells and transfer function as textures. All calls need the context current.
+ * A volume and its macrocells as textures. All calls need the context current.
  */
 #ifndef GZ_RENDER_GL_GL_VOLUME_H
 #define GZ_RENDER_GL_GL_VOLUME_H
@@ -9,14 +9,11 @@
 #include "base/result.h"
 #include "render/gl/gl_device.h"
 #include "render/macrocells.h"
-#include "render/transfer_table.h"
 #include "render/volume/volume.h"
 
 /** Textures; names of OpenGL, 0: none. Zero-initialised holds nothing. */
 struct gz_gl_volume {
-	unsigned voxels, reach, transfer;
-	double row_length[GZ_PLAN_STEPS_MAX + 1]; /**< voxel lengths that a row of transfer is for;
-						     0 = none yet */
+	unsigned voxels, reach;
 };
 
 /**
@@ -28,14 +25,10 @@ struct gz_gl_volume {
 enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
 				 const struct gz_volume *volume, const struct gz_log *log);
 
-/** Give the device the distances of classified cells, and forget the transfer tables. */
+/** Give the device the reach of classified cells, always of the same volume. */
 void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells);
 
-/** Make sure that row @p row holds @p table for steps of @p length voxel lengths. */
-void gz_gl_volume_step_row(struct gz_gl_volume *gl, const struct gz_transfer_table *table, int row,
-			   double length);
-
-/** Bind all to their units, of textures and of images. */
+/** Bind both to their units, of textures and of images. */
 void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type);
 
 /** Delete the textures and zero the struct. */

@@ -126,6 +126,26 @@ static void pictures_of_float_data_equal_the_cpus_by_every_method(void **state)
 	check_every_method(&scene, "float");
 }
 
+static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **state)
+{
+	(void)state;
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
+		struct small_scene scene = small_scene_waves(70, 81, 64, type);
+		struct pair pair = pair_of(&scene);
+		scene.foveation.method = GZ_METHOD_ACUITY;
+		scene.rays.jitter = 7;
+		scene.rays.clip.least[0] = 0.2;
+		for (int variant = 0; variant < 4; variant++) {
+			scene.rays.levels = variant & 1;
+			scene.rays.integration =
+				variant & 2 ? GZ_INTEGRATION_PREINTEGRATED : GZ_INTEGRATION_SAMPLED;
+			check_pair(&pair, &scene, 640, 480, scene.rays.levels ? "levels" : "plain");
+		}
+		pair_free(&pair);
+		small_scene_free(&scene);
+	}
+}
+
 static void pictures_from_inside_and_orthographic_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -395,11 +415,12 @@ static void shaders_are_valid_for_the_reference_compiler(void **state)
 	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
 		skip();
 	for (size_t i = 0; i < sizeof bits / sizeof bits[0]; i++)
-		for (int variant = 0; variant < 4; variant++) {
+		for (int variant = 0; variant < 8; variant++) {
 			char defines[128];
-			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s", bits[i],
+			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s%s", bits[i],
 				 variant & 1 ? "#define NEAREST\n" : "",
-				 variant & 2 ? "#define FETCH_IMAGES\n" : "");
+				 variant & 2 ? "#define FETCH_IMAGES\n" : "",
+				 variant & 4 ? "#define SEGMENTS\n" : "");
 			check_text(defines,
 				   (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_fetch_glsl,
 							   gz_glsl_cast_comp, NULL });
@@ -417,6 +438,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(pictures_of_8_bit_data_equal_the_cpus_by_every_method),
 		cmocka_unit_test(pictures_of_16_bit_data_equal_the_cpus_by_every_method),
 		cmocka_unit_test(pictures_of_float_data_equal_the_cpus_by_every_method),
+		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),
 		cmocka_unit_test(pictures_of_any_size_equal_the_cpus),
 		cmocka_unit_test(new_transfer_function_and_volume_replace_the_old),

@@ -2,6 +2,8 @@
 // rays are cut into segments (render/cpu/cast_kernel.h).
 layout(local_size_x = GROUP_SIZE) in;
 
+layout(location = 2) uniform uint detail; // level that this dispatch casts
+
 layout(std430, binding = 2) buffer Counts
 {
 	uint counts[];
@@ -45,10 +47,10 @@ Ray set_up_ray(uvec2 at, float step_length)
 	Ray ray;
 	ray.delta = mix(raw, vec3(1e-12), lessThan(abs(raw), vec3(1e-12)));
 	ray.inverse = 1.0 / ray.delta;
-	vec3 box = min(-origin * ray.inverse, (dims.xyz - origin) * ray.inverse);
+	vec3 whole = min(-origin * ray.inverse, (box.xyz - origin) * ray.inverse);
 	vec3 a = (clip_least.xyz - origin) * ray.inverse, b = (clip_greatest.xyz - origin) * ray.inverse;
 	vec3 near = min(a, b), far = max(a, b);
-	float box_at = max(max(box.x, box.y), max(box.z, 0.0));
+	float box_at = max(max(whole.x, whole.y), max(whole.z, 0.0));
 	float enter = max(max(near.x, near.y), max(near.z, 0.0));
 	float leave = min(min(far.x, far.y), far.z);
 	float shift = jitter_of(at);
@@ -84,6 +86,60 @@ void composite(uint colour, float opacity, inout Light light)
 	light.through -= weight;
 }
 
+#ifdef SEGMENTS
+// Segments instead of samples: colour and opacity by the values at both ends of each, as the cpu backend's
+// render/cpu/cast_preintegrated.h does it and says.
+int cell_at(Ray ray, float k)
+{
+	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start))) / (GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE);
+}
+
+uint march_segments(Ray ray, int step_index, inout Light light)
+{
+	uint samples = 0U;
+	float k = ray.first, until = -1.0;
+	int front = -1; // cell at k; -1 = not known
+	while (k < ray.end) {
+		if (k >= until) {
+			float leave;
+			bool empty = look_up_cell(ray, k, leave);
+			float next = empty ? max(floor(leave), k) : k;
+			front = k < next ? -1 : front;
+			k = next;
+			until = empty ? k + 0.5 : max(leave, k + 0.5);
+		}
+		if (k < ray.end) {
+			if (front < 0) {
+				front = cell_at(ray, k);
+				samples++;
+			}
+			k += 1.0;
+			int back = cell_at(ray, k);
+			samples++;
+			uvec2 look = FETCH(segments, ivec3(back, front, step_index)).rg;
+			composite(look.y, uintBitsToFloat(look.x), light);
+			front = back;
+			if (light.through <= GZ_TRANSMITTANCE_END)
+				return samples;
+		}
+	}
+	return samples;
+}
+
+// A part of a segment: from `from` on, of a length in steps.
+uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Light light)
+{
+	float leave, to = from + part;
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END)
+		return 0U;
+	if (look_up_cell(ray, from, leave) && leave >= to)
+		return 0U;
+	uvec2 look = FETCH(segments, ivec3(cell_at(ray, to), cell_at(ray, from), GZ_PLAN_STEPS_MAX)).rg;
+	float extinction = uintBitsToFloat(look.x);
+	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0, light);
+	return 2U;
+}
+#else
 // On to the first occupied cell, if there is one; then all its samples. Two loops in turn, so that rays that
 // skip and rays that sample do not wait for each other at every step.
 uint march(Ray ray, int step_index, inout Light light)
@@ -124,6 +180,7 @@ uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light l
 	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0, light);
 	return 1U;
 }
+#endif
 
 uint to_pixel(Light light)
 {
@@ -154,15 +211,21 @@ void main()
 	if (index >= item_end)
 		return;
 	Tile tile = unpack_tile(tiles[index]);
-	if ((tile.active_rays >> ray_index & 1U) == 0U)
+	if (tile.detail != detail || (tile.active_rays >> ray_index & 1U) == 0U)
 		return;
 	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
 	vec2 step_lengths = steps[tile.step].xy;
 	Ray ray = set_up_ray(at, step_lengths.x);
 	Light light = Light(vec3(0.0), 1.0);
+#ifdef SEGMENTS
+	uint samples = segment_part(ray, fma(ray.head, -0.5, ray.head_at), ray.head, step_lengths.y, light);
+	samples += march_segments(ray, int(tile.step), light);
+	samples += segment_part(ray, ray.end, ray.rest, step_lengths.y, light);
+#else
 	uint samples = march_part(ray, ray.head_at, ray.head, step_lengths.y, light);
 	samples += march(ray, int(tile.step), light);
 	samples += march_part(ray, fma(ray.rest, 0.5, ray.end), ray.rest, step_lengths.y, light);
+#endif
 	store(tile, at, to_pixel(light));
 	if (samples > 0U)
 		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);

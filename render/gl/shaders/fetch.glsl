@@ -15,6 +15,7 @@ layout(binding = 0, r32ui) readonly uniform uimage3D voxels;
 #endif
 layout(binding = 1, r8ui) readonly uniform uimage3D reaches;
 layout(binding = 2, rg32ui) readonly uniform uimage2D transfer;
+layout(binding = 3, rg32ui) readonly uniform uimage2DArray segments;
 #else
 #define FETCH(from, place) texelFetch(from, place, 0)
 #if VOXEL_BITS == 32
@@ -24,6 +25,8 @@ layout(binding = 0) uniform usampler3D voxels;
 #endif
 layout(binding = 1) uniform usampler3D reaches;   // of macrocells
 layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; a row a step
+// The same of segments, by the cells at their ends; a layer a step.
+layout(binding = 3) uniform usampler2DArray segments;
 #endif
 
 #ifdef NEAREST

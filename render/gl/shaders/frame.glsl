@@ -5,7 +5,8 @@ layout(std140, binding = 0) uniform Frame
 	vec4 origin00, origin_dx, origin_dy;
 	vec4 direction00, direction_dx, direction_dy;
 	vec4 world_per_voxel;
-	vec4 dims;
+	vec4 dims; // voxels
+	vec4 box;  // its far corner: dims, but for a coarser level of an odd size
 	vec4 clip_least, clip_greatest;
 	vec4 cell_last;
 	vec4 background;
@@ -25,8 +26,8 @@ layout(std430, binding = 1) buffer Points
 	uint points[]; // R, G, B, A from the lowest byte
 };
 
-// Tiles: the position of the first ray, 16 bits of x below 16 of y; layer in 3 bits, pattern in 5, step in
-// 8, and a bit for each ray that is cast.
+// Tiles: the position of the first ray, 16 bits of x below 16 of y; layer in 3 bits, pattern in 2, level of
+// detail in 3, step in 8, and a bit for each ray that is cast.
 layout(std430, binding = 0) readonly buffer Tiles
 {
 	uvec2 tiles[];
@@ -39,11 +40,11 @@ const uint TILE_RAYS = uint(GZ_TILE_EDGE * GZ_TILE_EDGE);
 
 struct Tile {
 	uvec2 at;
-	uint layer, pattern, step, active_rays;
+	uint layer, pattern, detail, step, active_rays;
 };
 
 Tile unpack_tile(uvec2 word)
 {
-	return Tile(uvec2(word.x & 0xFFFFU, word.x >> 16), word.y & 7U, word.y >> 3 & 31U,
-		word.y >> 8 & 255U, word.y >> 16);
+	return Tile(uvec2(word.x & 0xFFFFU, word.x >> 16), word.y & 7U, word.y >> 3 & 3U,
+		word.y >> 5 & 7U, word.y >> 8 & 255U, word.y >> 16);
 }

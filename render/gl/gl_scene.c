@@ -1,0 +1,221 @@
+#include "render/gl/gl_scene.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "render/voxel_rays.h"
+
+#define GZ_LOG_MODULE "gl"
+
+static void free_levels(struct gz_gl_scene *scene)
+{
+	for (int i = 0; i < GZ_LEVELS_MAX; i++)
+		gz_gl_volume_free(&scene->levels[i]);
+	scene->level_count = 0;
+}
+
+enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				      const struct gz_volume *volume, const struct gz_log *log)
+{
+	scene->volume = NULL;
+	scene->has_transfer = false;
+	free_levels(scene);
+	enum gz_result result = gz_gl_volume_load(&scene->levels[0], device, volume, log);
+	if (result != GZ_OK)
+		return result;
+	result = gz_detail_start(&scene->detail, volume);
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for the macrocells of the volume");
+		return result;
+	}
+	scene->level_count = 1;
+	scene->volume = volume;
+	return GZ_OK;
+}
+
+void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer)
+{
+	gz_transfer_table_bake(transfer, scene->volume, &scene->table);
+	gz_detail_classify(&scene->detail, &scene->table);
+	for (int i = 0; i < scene->level_count; i++)
+		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+	gz_preintegration_forget(&scene->preintegration);
+	gz_gl_tables_forget(&scene->tables);
+	scene->has_transfer = true;
+}
+
+/* Threads for what processors do; work is done without them where there are none to be had. */
+static struct gz_workers *workers_of(struct gz_gl_scene *scene)
+{
+	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
+		scene->workers = NULL;
+	return scene->workers;
+}
+
+static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				     const struct gz_plan *plan, const struct gz_log *log)
+{
+	double lengths[GZ_PLAN_STEPS_MAX];
+	for (int i = 0; i < plan->step_count; i++) {
+		lengths[i] = plan->steps[i] / rays->ray_sampling_rate;
+		gz_gl_tables_samples(&scene->tables, &scene->table, i, lengths[i]);
+	}
+	gz_gl_tables_samples(&scene->tables, &scene->table, GZ_PLAN_STEPS_MAX, 1);
+	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
+		return GZ_OK;
+	struct gz_preintegration *preintegration = &scene->preintegration;
+	const enum gz_result result = gz_preintegration_make(preintegration, &scene->table, lengths,
+							     plan->step_count, workers_of(scene));
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for pre-integrated tables: take sampled");
+		return result;
+	}
+	for (int i = 0; i < plan->step_count; i++)
+		gz_gl_tables_segments(&scene->tables, i, lengths[i], preintegration->step[i]);
+	gz_gl_tables_segments(&scene->tables, GZ_PLAN_STEPS_MAX, 1, preintegration->extinction);
+	return GZ_OK;
+}
+
+/* Make the coarser levels and give them to the device, unless it has them. */
+static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+			   const struct gz_log *log)
+{
+	if (scene->level_count > 1 || scene->detail.failed)
+		return;
+	gz_detail_make_levels(&scene->detail, workers_of(scene), &scene->table, log);
+	const int count = scene->detail.levels.count;
+	for (int i = 1; i < count; i++) {
+		if (gz_gl_volume_load(&scene->levels[i], device,
+				      &scene->detail.levels.level[i].volume, log) != GZ_OK) {
+			gz_warn(log, "rays take the finest %d levels of the volume alone", i);
+			scene->detail.failed = true; /* said once */
+			return;
+		}
+		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+		scene->level_count = i + 1;
+	}
+}
+
+static double tile_across(const struct gz_plan *plan, int layer, int pattern, double pixel_lengths)
+{
+	const double apart = pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1;
+	return apart * plan->layers[layer].spacing * pixel_lengths;
+}
+
+/* The level of each kind of tile. */
+static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan *plan,
+			  const struct gz_ray_params *rays, double pixel_lengths,
+			  struct gz_gl_tile_levels *out_levels)
+{
+	for (int layer = 0; layer < plan->layer_count; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
+			for (int step = 0; step < plan->step_count; step++) {
+				const int level = gz_levels_choose(
+					&scene->detail.levels,
+					tile_across(plan, layer, pattern, pixel_lengths),
+					plan->steps[step] / rays->ray_sampling_rate);
+				out_levels->of[layer][pattern][step] =
+					(uint8_t)(level < scene->level_count
+							  ? level
+							  : scene->level_count - 1);
+			}
+}
+
+/* Whether any tile may take a coarser level, as far as spacings and steps go. */
+static bool wants_levels(const struct gz_plan *plan, const struct gz_ray_params *rays,
+			 double pixel_lengths)
+{
+	double across = 0, along = 0;
+	if (!rays->levels || rays->interpolation != GZ_INTERPOLATION_TRILINEAR)
+		return false;
+	for (int i = 0; i < plan->layer_count; i++)
+		across = fmax(across, tile_across(plan, i, GZ_TILE_QUINCUNX, pixel_lengths));
+	for (int i = 0; i < plan->step_count; i++)
+		along = fmax(along, plan->steps[i] / rays->ray_sampling_rate);
+	return fmin(across, along) >= M_SQRT2;
+}
+
+enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				   const struct gz_camera *camera, const struct gz_ray_params *rays,
+				   const struct gz_plan *plan, struct gz_gl_tile_levels *out_levels,
+				   const struct gz_log *log)
+{
+	const double pixel_lengths = gz_levels_pixel_lengths(scene->volume, camera, plan->height);
+	memset(out_levels, 0, sizeof *out_levels);
+	if (wants_levels(plan, rays, pixel_lengths)) {
+		prepare_levels(scene, device, log);
+		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
+	}
+	return prepare_tables(scene, rays, plan, log);
+}
+
+static void to_floats(const double source[3], const int divisor[3], float out[4])
+{
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = (float)(source[axis] / divisor[axis]);
+}
+
+static void fill_rays(const struct gz_gl_scene *scene, const int factor[3],
+		      const struct gz_ray_frame *world, struct gz_gl_frame_block *block)
+{
+	struct gz_voxel_rays rays;
+	gz_voxel_rays_make(scene->volume, world, &rays);
+	to_floats(rays.frame.origin00, factor, block->origin00);
+	to_floats(rays.frame.origin_dx, factor, block->origin_dx);
+	to_floats(rays.frame.origin_dy, factor, block->origin_dy);
+	to_floats(rays.frame.direction00, factor, block->direction00);
+	to_floats(rays.frame.direction_dx, factor, block->direction_dx);
+	to_floats(rays.frame.direction_dy, factor, block->direction_dy);
+	for (int axis = 0; axis < 3; axis++)
+		block->world_per_voxel[axis] = (float)(rays.world_per_voxel[axis] * factor[axis]);
+}
+
+static void fill_volume(const struct gz_gl_scene *scene, int index, const struct gz_clip_box *clip,
+			struct gz_gl_frame_block *block)
+{
+	const struct gz_level *level = &scene->detail.levels.level[index];
+	for (int axis = 0; axis < 3; axis++) {
+		const int dim = level->volume.dims[axis];
+		const double box = (double)scene->volume->dims[axis] / level->factor[axis];
+		block->dims[axis] = (float)dim;
+		block->box[axis] = (float)box;
+		block->clip_least[axis] = (float)(clip->least[axis] * box);
+		block->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
+		block->last[axis] = dim > 1 ? dim - 2 : 0;
+		block->cell_last[axis] = (float)(scene->detail.cells[index].dims[axis] - 1);
+	}
+}
+
+void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
+		      const struct gz_ray_params *rays, const struct gz_plan *plan,
+		      struct gz_gl_frame_block *block)
+{
+	const double voxel_length = gz_volume_voxel_length(scene->volume);
+	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
+	fill_volume(scene, level, &rays->clip, block);
+	block->jitter[0] = (uint32_t)rays->jitter;
+	block->transfer[0] = (float)scene->table.scale;
+	block->transfer[1] = (float)scene->table.bias;
+	for (int i = 0; i < plan->step_count; i++) {
+		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		block->steps[i][0] = (float)(length * voxel_length);
+		block->steps[i][1] = (float)length;
+	}
+	for (int channel = 0; channel < 3; channel++)
+		block->background[channel] = (float)rays->background[channel];
+}
+
+void gz_gl_scene_forget(struct gz_gl_scene *scene)
+{
+	gz_detail_free(&scene->detail);
+	gz_preintegration_free(&scene->preintegration);
+	gz_workers_destroy(&scene->workers);
+	*scene = (struct gz_gl_scene) { 0 };
+}
+
+void gz_gl_scene_free(struct gz_gl_scene *scene)
+{
+	free_levels(scene);
+	gz_gl_tables_free(&scene->tables);
+	gz_gl_scene_forget(scene);
+}

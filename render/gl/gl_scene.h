@@ -1,0 +1,69 @@
+/**
+ * @file
+ * What is shown, on the graphics device: the volume with its levels of detail, and the transfer
+ * function. All calls need the context current.
+ */
+#ifndef GZ_RENDER_GL_GL_SCENE_H
+#define GZ_RENDER_GL_GL_SCENE_H
+
+#include <stdbool.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/camera.h"
+#include "render/cpu/detail.h"
+#include "render/cpu/preintegration.h"
+#include "render/gl/frame_block.h"
+#include "render/gl/gl_frame.h"
+#include "render/gl/gl_tables.h"
+#include "render/gl/gl_volume.h"
+#include "render/ray_params.h"
+#include "render/transfer.h"
+
+/** Zero-initialised holds nothing. */
+struct gz_gl_scene {
+	const struct gz_volume *volume; /**< borrowed; NULL: none */
+	bool has_transfer;
+	struct gz_transfer_table table;
+	struct gz_detail detail;
+	struct gz_preintegration preintegration;
+	struct gz_workers *workers;                /**< NULL until there is much to do */
+	struct gz_gl_volume levels[GZ_LEVELS_MAX]; /**< of those that the device has */
+	int level_count;
+	struct gz_gl_tables tables;
+};
+
+/** Show @p volume, borrowed until the next call or gz_gl_scene_free(). @return what
+ *  gz_gl_volume_load() returns, GZ_ERR_NO_MEM; logged */
+enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				      const struct gz_volume *volume, const struct gz_log *log);
+
+/** Use @p transfer (copied); needs a volume. */
+void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer);
+
+/**
+ * Have ready what a frame needs: tables of its steps, and coarser levels where its rays take them.
+ *
+ * @param camera  valid
+ * @param[out] out_levels  which level each kind of tile takes
+ * @retval GZ_ERR_NO_MEM  no room for pre-integrated tables; logged. Without room for coarser levels
+ *                        all rays take the full one
+ */
+enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				   const struct gz_camera *camera, const struct gz_ray_params *rays,
+				   const struct gz_plan *plan, struct gz_gl_tile_levels *out_levels,
+				   const struct gz_log *log);
+
+/** Fill what of @p block belongs to a level: rays and volume in its own voxel coordinates, and what
+ *  all levels share of rays and transfer function. */
+void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
+		      const struct gz_ray_params *rays, const struct gz_plan *plan,
+		      struct gz_gl_frame_block *block);
+
+/** Delete and free all of it, and zero the struct. */
+void gz_gl_scene_free(struct gz_gl_scene *scene);
+
+/** The same without a context, whose textures are gone with it. */
+void gz_gl_scene_forget(struct gz_gl_scene *scene);
+
+#endif
