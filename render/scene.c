@@ -28,6 +28,7 @@ enum {
 	VOLUME_TYPE,
 	VOLUME_ENDIAN,
 	VOLUME_SPACING,
+	VOLUME_MEMORY,
 	TRANSFER_FILE,
 	CAMERA_EYE,
 	CAMERA_LOOK_AT,
@@ -50,7 +51,7 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			  .preset = "",
 			  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, DICOM (.dcm or "
 				  "a "
-				  "folder), or raw data; "
+				  "folder), .gzb, or raw data; "
 				  "beside the scene, else under $GAZECAST_DATA" },
 	[VOLUME_PROCEDURAL] = { .key = "volume.procedural",
 				.type = GZ_OPTION_CHOICE,
@@ -85,6 +86,15 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			     .count = 3,
 			     .preset = "1 1 1",
 			     .help = "between voxels along x, y, z, mm; for raw files" },
+	[VOLUME_MEMORY] = { .key = "volume.memory_mib",
+			    .type = GZ_OPTION_INT,
+			    .offset = AT(memory_mib),
+			    .min = 0,
+			    .max = 1 << 20,
+			    .preset = "0",
+			    .help = "memory for what is looked at of a file of bricks, MiB; 0 "
+				    "takes "
+				    "a quarter of the machine's" },
 	[TRANSFER_FILE] = { .key = "transfer.file",
 			    .type = GZ_OPTION_STRING,
 			    .offset = AT(transfer_file),
@@ -359,12 +369,14 @@ static enum gz_result load_volume(const struct reader *reader, struct gz_volume 
 		find_file(reader, scene_options[VOLUME_FILE].key, settings->volume_file, path);
 	if (result != GZ_OK)
 		return result;
+	struct gz_loading loading = reader->loading ? *reader->loading : (struct gz_loading) { 0 };
+	loading.brick_bytes = (size_t)settings->memory_mib << 20;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
 				     .big_endian = settings->endian == 1 };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
-	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, reader->loading,
-			      reader->log, out_volume);
+	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, &loading, reader->log,
+			      out_volume);
 }
 
 static enum gz_result load_transfer(const struct reader *reader, struct gz_transfer *out_transfer)

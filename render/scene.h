@@ -27,6 +27,7 @@ struct gz_scene_settings {
 	int type;                       /**< enum gz_raw_type */
 	int endian;                     /**< 0 little, 1 big */
 	double spacing[3];
+	int memory_mib; /**< for bricks; 0 = a quarter of the machine's memory */
 	char transfer_file[GZ_PATH_SIZE];
 	struct gz_camera camera;
 	struct gz_ray_params rays;

@@ -43,12 +43,18 @@ enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_op
 	*caster = (struct gz_caster) {
 		.log = log,
 		.scene = scene,
-		.cpu = { .threads = options->threads, .simd = options->simd },
+		.cpu = { .threads = options->threads,
+			 .simd = options->simd,
+			 .wait_for_bricks = options->bricks == GZ_BRICKS_AUTO
+						    ? options->headless
+						    : options->bricks == GZ_BRICKS_WAIT },
 		.chooses = strcmp(options->backend, "auto") == 0,
 	};
 	struct gz_renderer_params params = caster->cpu;
 	params.gl_context = gl_context;
-	enum gz_result r = gz_renderer_create(options->backend, &params, log, &caster->renderer);
+	/* Bricks are for cpu: no use in asking another. */
+	const char *backend = caster->chooses && scene->volume.bricks ? "cpu" : options->backend;
+	enum gz_result r = gz_renderer_create(backend, &params, log, &caster->renderer);
 	if (r == GZ_OK) {
 		r = give_scene(caster);
 		if (caster->chooses && may_replace(caster, r))

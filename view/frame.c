@@ -153,6 +153,7 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	record->cast_ms = stats.cast_ms;
 	record->reconstruct_ms = stats.reconstruct_ms;
 	record->rays = stats.rays;
+	record->bricks_coming = stats.bricks_coming;
 	record->samples = stats.samples;
 	return GZ_OK;
 }

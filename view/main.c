@@ -7,6 +7,7 @@
 #include "view/options.h"
 #include "view/target_window.h"
 #include "view/window.h"
+#include "view/write_volume.h"
 
 /* What a shell reports for a process that a signal ended. */
 enum { EXIT_SIGNAL = 128 };
@@ -16,6 +17,8 @@ static int run(const struct gz_view_options *options, const struct gz_log *log)
 	int signal_number = 0;
 	if (options->target.targets[0])
 		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options->write_volume[0])
+		return gz_view_write_volume(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
 					     : gz_view_window(options, log);
 	if (signal_number && (r == GZ_OK || r == GZ_ERR_CANCELLED))

@@ -11,6 +11,8 @@
 
 #define AT(field) offsetof(struct gz_view_options, field)
 
+static const char *const bricks_names[] = { "auto", "wait", "stream", NULL };
+
 const struct gz_option gz_view_option_table[] = {
 	{ .key = "scene",
 	  .type = GZ_OPTION_STRING,
@@ -86,6 +88,20 @@ const struct gz_option gz_view_option_table[] = {
 	  .offset = AT(stats),
 	  .max = GZ_PATH_SIZE,
 	  .help = "JSON file for what each frame cost, headless" },
+	{ .key = "write-volume",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(write_volume),
+	  .max = GZ_PATH_SIZE,
+	  .help = "write the scene's volume to this file, .gzb (bricks, for volumes larger than "
+		  "the "
+		  "memory) or .nrrd, and show nothing" },
+	{ .key = "bricks",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(bricks),
+	  .choices = bricks_names,
+	  .preset = "auto",
+	  .help = "each picture of a file of bricks waits for all it shows, or streams: coarse "
+		  "first, sharper later; auto waits if headless" },
 	{ .key = "turn",
 	  .type = GZ_OPTION_DOUBLE,
 	  .offset = AT(turn_deg),

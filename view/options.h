@@ -28,6 +28,13 @@ enum gz_gaze_kind {
 	GZ_GAZE_LOG,     /**< a gaze log, through the daemon's pipeline in process */
 };
 
+/** What a picture of a file of bricks does about those that are not there yet. */
+enum gz_bricks_rule {
+	GZ_BRICKS_AUTO, /**< wait without a window, else stream */
+	GZ_BRICKS_WAIT,
+	GZ_BRICKS_STREAM, /**< show coarser ones meanwhile */
+};
+
 /** --gaze, understood. */
 struct gz_gaze_choice {
 	enum gz_gaze_kind kind;
@@ -50,8 +57,10 @@ struct gz_view_options {
 	int threads;
 	char simd[GZ_NAME_SIZE];
 	int frames;
-	char out[GZ_PATH_SIZE];   /**< empty: no pictures are written */
-	char stats[GZ_PATH_SIZE]; /**< empty: none */
+	char out[GZ_PATH_SIZE];          /**< empty: no pictures are written */
+	char stats[GZ_PATH_SIZE];        /**< empty: none */
+	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
+	int bricks;                      /**< enum gz_bricks_rule */
 	double turn_deg;
 	bool cross;
 	bool letters;

@@ -20,6 +20,7 @@ struct gz_frame_record {
 	const char *backend;
 	int width, height;
 	uint64_t rays;
+	uint64_t bricks_coming; /**< see struct gz_frame_stats */
 	uint64_t samples;
 	double plan_ms;
 	double cast_ms;

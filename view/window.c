@@ -17,6 +17,9 @@
 /* Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
 #define SILENT_NS GZ_NS_PER_S
 
+/* How soon a picture is made again of which bricks are still coming (chosen: some have come). */
+#define BRICKS_PATIENCE_S 0.01
+
 /* A running age is drawn anew no more often than this (chosen: readable, and cheap). */
 #define LINE_INTERVAL_NS (GZ_NS_PER_S / 2)
 
@@ -126,7 +129,7 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 	else
 		gz_quad_show(&window->quad, gz_frame_texture(window->maker));
 	window->shown_display = gaze->display;
-	window->cast_needed = false;
+	window->cast_needed = window->record.bricks_coming > 0;
 	return GZ_OK;
 }
 
@@ -237,7 +240,10 @@ static enum gz_result loop(struct gz_window *window)
 			return r;
 		/* What the frame took is not waited for again. */
 		double spent_s = gz_ns_to_s(gz_clock_now_ns() - start_ns);
-		glfwWaitEventsTimeout(fmax(0, gz_window_gaze_patience_s(window) - spent_s));
+		double patience_s = gz_window_gaze_patience_s(window);
+		if (window->cast_needed) /* bricks are coming */
+			patience_s = fmin(patience_s, BRICKS_PATIENCE_S);
+		glfwWaitEventsTimeout(fmax(0, patience_s - spent_s));
 	}
 	return GZ_OK;
 }

@@ -14,6 +14,7 @@ struct gz_brick_stream_key {
 	struct gz_camera camera;
 	double focus_px[2], pixel_lengths, ray_sampling_rate;
 	size_t tile_count;
+	uint64_t plan_serial;
 	int width, height;
 };
 

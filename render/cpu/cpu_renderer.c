@@ -312,6 +312,7 @@ static enum gz_result take_bricks(struct cpu_renderer *cpu, const struct gz_came
 	frame.key.pixel_lengths = job->pixel_lengths;
 	frame.key.ray_sampling_rate = rays->ray_sampling_rate;
 	frame.key.tile_count = plan->tile_count;
+	frame.key.plan_serial = plan->serial;
 	frame.key.width = plan->width;
 	frame.key.height = plan->height;
 	const enum gz_result result = gz_brick_stream_turn(&cpu->stream, &frame);

@@ -1,27 +1,20 @@
 #include "render/volume/brick_write.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
-#include "protocol/gaze.h"
 #include "render/volume/brick_layout.h"
 #include "render/volume/halve.h"
+#include "render/volume/part_file.h"
 
 #define GZ_LOG_MODULE "volume"
 
-#define PART_ENDING ".part"
-
 struct writer {
 	const char *path;
-	char part[GZ_PATH_SIZE + sizeof PART_ENDING]; /* its name until it is whole */
+	struct gz_part_file file;
 	const struct gz_loading *loading;
 	const struct gz_log *log;
-	int fd;
 	size_t voxel_size, brick_bytes;
 	struct gz_brick_layout layout;
 	struct gz_brick_entry *entries;
@@ -30,30 +23,6 @@ struct writer {
 	uint64_t offset; /* where the next brick goes */
 	size_t done;     /* bricks */
 };
-
-static enum gz_result fail(const struct writer *writer, int error)
-{
-	gz_err(writer->log, "%s: cannot be written: %s; make room or choose another place",
-	       writer->path, strerror(error));
-	return error == ENOSPC || error == EDQUOT ? GZ_ERR_FULL : GZ_ERR_IO;
-}
-
-static enum gz_result write_at(const struct writer *writer, const void *bytes, size_t size,
-			       uint64_t offset)
-{
-	const char *from = bytes;
-	while (size > 0) {
-		const ssize_t n = pwrite(writer->fd, from, size, (off_t)offset);
-		if (n < 0 && errno == EINTR)
-			continue;
-		if (n <= 0)
-			return fail(writer, n < 0 ? errno : ENOSPC);
-		from += n;
-		offset += (uint64_t)n;
-		size -= (size_t)n;
-	}
-	return GZ_OK;
-}
 
 static int clamp(int value, int last)
 {
@@ -194,7 +163,8 @@ static enum gz_result write_brick(struct writer *writer, const struct gz_volume 
 	entry->crc = (uint32_t)crc32(0, writer->voxels, (uInt)bytes);
 	entry->offset = writer->offset;
 	writer->offset += writer->brick_bytes;
-	return write_at(writer, writer->voxels, writer->brick_bytes, entry->offset);
+	return gz_part_file_write(&writer->file, writer->voxels, writer->brick_bytes,
+				  entry->offset);
 }
 
 static enum gz_result write_level(struct writer *writer, const struct gz_volume *volume, int number)
@@ -227,8 +197,7 @@ static enum gz_result halve(const struct writer *writer, const struct gz_volume 
 			half.dims[axis] = writer->layout.levels[level].dims[axis];
 			half.spacing[axis] *= 2;
 		}
-	const enum gz_result result =
-		gz_volume_allocate_in(&half, writer->loading ? writer->loading->scratch : NULL);
+	const enum gz_result result = gz_volume_allocate_in(&half, writer->loading);
 	if (result != GZ_OK) {
 		gz_err(writer->log, "%s: no room for the volume at half its resolution: %s",
 		       writer->path, gz_result_text(result));
@@ -268,7 +237,8 @@ static enum gz_result write_index(struct writer *writer, struct gz_brick_header 
 	for (size_t i = 0; i < writer->layout.brick_count; i++)
 		gz_brick_entry_encode(&writer->entries[i], index + i * GZ_BRICK_ENTRY_BYTES);
 	header->index_crc = (uint32_t)crc32_z(0, index, size);
-	const enum gz_result result = write_at(writer, index, size, GZ_BRICK_HEADER_BYTES);
+	const enum gz_result result =
+		gz_part_file_write(&writer->file, index, size, GZ_BRICK_HEADER_BYTES);
 	free(index);
 	return result;
 }
@@ -295,13 +265,13 @@ static enum gz_result write_rest(struct writer *writer, const struct gz_volume *
 	uint8_t bytes[GZ_BRICK_HEADER_BYTES];
 	enum gz_result result = write_index(writer, &header);
 	if (result == GZ_OK)
-		result = write_at(writer, writer->cells, cells,
-				  gz_brick_cells_offset(header.brick_count));
+		result = gz_part_file_write(&writer->file, writer->cells, cells,
+					    gz_brick_cells_offset(header.brick_count));
 	/* A volume of one value has no bricks behind its cells. */
-	if (result == GZ_OK && ftruncate(writer->fd, (off_t)header.file_size) != 0)
-		result = fail(writer, errno);
+	if (result == GZ_OK)
+		result = gz_part_file_resize(&writer->file, header.file_size);
 	gz_brick_header_encode(&header, bytes);
-	return result == GZ_OK ? write_at(writer, bytes, sizeof bytes, 0) : result;
+	return result == GZ_OK ? gz_part_file_write(&writer->file, bytes, sizeof bytes, 0) : result;
 }
 
 static enum gz_result begin(struct writer *writer, const struct gz_volume *volume)
@@ -322,25 +292,12 @@ static enum gz_result begin(struct writer *writer, const struct gz_volume *volum
 		       writer->layout.brick_count);
 		return GZ_ERR_NO_MEM;
 	}
-	const int length =
-		snprintf(writer->part, sizeof writer->part, "%s" PART_ENDING, writer->path);
-	if (length < 0 || (size_t)length >= sizeof writer->part)
-		return fail(writer, ENAMETOOLONG);
-	writer->fd = open(writer->part, O_CREAT | O_TRUNC | O_RDWR | O_CLOEXEC,
-			  S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
-	return writer->fd < 0 ? fail(writer, errno) : GZ_OK;
+	return gz_part_file_open(&writer->file, writer->path, writer->log);
 }
 
 static enum gz_result finish(struct writer *writer, enum gz_result result)
 {
-	if (writer->fd >= 0) {
-		if (close(writer->fd) != 0 && result == GZ_OK)
-			result = fail(writer, errno);
-		if (result == GZ_OK && rename(writer->part, writer->path) != 0)
-			result = fail(writer, errno);
-		if (result != GZ_OK)
-			unlink(writer->part);
-	}
+	result = gz_part_file_close(&writer->file, result);
 	free(writer->entries);
 	free(writer->cells);
 	free(writer->voxels);
@@ -350,7 +307,9 @@ static enum gz_result finish(struct writer *writer, enum gz_result result)
 enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 			       const struct gz_loading *loading, const struct gz_log *log)
 {
-	struct writer writer = { .path = path, .loading = loading, .log = log, .fd = -1 };
+	struct writer writer = {
+		.path = path, .loading = loading, .log = log, .file = { .fd = -1 }
+	};
 	if (!volume->voxels)
 		return GZ_ERR_INVAL;
 	enum gz_result result = begin(&writer, volume);

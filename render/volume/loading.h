@@ -26,6 +26,7 @@ struct gz_loading {
 	/** Folder for a nameless file that the voxels are kept in, so that a volume may be larger
 	 *  than the memory; its blocks are freed with the volume. NULL: in memory. Borrowed. */
 	const char *scratch;
+	size_t scratch_from; /**< bytes: smaller volumes stay in memory all the same */
 	/** Bytes of memory for the bricks of a file of bricks; 0: a quarter of the machine's. */
 	size_t brick_bytes;
 };

@@ -245,7 +245,7 @@ enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
 	if ((unsigned)which >= GZ_PROCEDURAL_COUNT || (unsigned)type >= GZ_VOXEL_TYPE_COUNT)
 		return GZ_ERR_INVAL;
 	struct making making = { .which = which, .volume = &volume, .loading = loading };
-	enum gz_result result = gz_volume_allocate_in(&volume, loading ? loading->scratch : NULL);
+	enum gz_result result = gz_volume_allocate_in(&volume, loading);
 	if (result == GZ_OK && steps[type] > 0)
 		volume.slope = value_scale(which) / steps[type];
 	if (result == GZ_OK)

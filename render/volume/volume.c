@@ -74,12 +74,13 @@ static enum gz_result allocate_memory(size_t used, void **out_voxels)
 	return GZ_OK;
 }
 
-enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const char *scratch)
+enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading)
 {
 	if (!layout_valid(volume))
 		return GZ_ERR_INVAL;
 	/* At most 2^42 voxels of 4 bytes: no overflow. */
 	const size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
+	const char *scratch = loading && used >= loading->scratch_from ? loading->scratch : NULL;
 	const size_t mapped = scratch ? used + GZ_VOLUME_PADDING : 0;
 	const enum gz_result result = scratch ? gz_scratch_map(scratch, mapped, &volume->voxels)
 					      : allocate_memory(used, &volume->voxels);

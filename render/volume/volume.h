@@ -144,9 +144,10 @@ enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
  */
 enum gz_result gz_volume_allocate(struct gz_volume *volume);
 
-/** As gz_volume_allocate(), in a nameless file in the folder @p scratch, whose blocks are reserved
- *  first; NULL: in memory. Further errors: GZ_ERR_FULL where the disk has no room, GZ_ERR_IO. */
-enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const char *scratch);
+/** As gz_volume_allocate(), in a nameless file in the folder of @p loading, whose blocks are
+ * reserved first; without one, or @p loading NULL, in memory. Further errors: GZ_ERR_FULL where the
+ * disk has no room, GZ_ERR_IO. */
+enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading);
 
 /** Find stored_min and stored_max. */
 void gz_volume_find_range(struct gz_volume *volume);

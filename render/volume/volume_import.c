@@ -173,7 +173,7 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 	}
 	volume->type = import->conversion->type;
 	const char *scratch = import->loading ? import->loading->scratch : NULL;
-	const enum gz_result result = gz_volume_allocate_in(volume, scratch);
+	const enum gz_result result = gz_volume_allocate_in(volume, import->loading);
 	if (result != GZ_OK) {
 		double mib = (double)gz_volume_voxel_count(volume) *
 			     (double)gz_voxel_size(volume->type) / (1 << 20);
@@ -182,7 +182,8 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 			       import->path, mib, scratch, gz_result_text(result));
 		else
 			gz_err(import->log,
-			       "%s: no memory for %.0f MiB of voxels; use a smaller volume",
+			       "%s: no memory for %.0f MiB of voxels; write it as bricks (gazeview "
+			       "--write-volume) or use a smaller volume",
 			       import->path, mib);
 		return result;
 	}
