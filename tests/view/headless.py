@@ -301,6 +301,41 @@ class Headless(unittest.TestCase):
         self.refused(run(GAZEVIEW, "--headless", "--scene", self.path("no.scene")), "no.scene")
         self.refused(run(GAZEVIEW, "--headless"), "--scene")
 
+    def write_volume(self, name, *more):
+        return run(GAZEVIEW, "--scene", SCENE, "--write-volume", self.path(name), *more)
+
+    def scene_of(self, name, *lines):
+        """The scene with another volume."""
+        with open(SCENE, encoding="utf-8") as source:
+            sections = re.split(r"^(?=\[)", source.read(), flags=re.M)
+        rest = [section for section in sections if not section.startswith("[volume]")]
+        path = os.path.join(PLACE.name, os.path.basename(self.place.name) + ".scene")
+        with open(path, "w", encoding="utf-8") as scene:
+            scene.write("\n".join(["[volume]", f"file = {self.path(name)}", *lines, *rest]))
+        return path
+
+    def test_volume_written_as_bricks_or_nrrd_looks_the_same(self):
+        self.good("--out", self.path("scene.png"))
+        wanted = read_png(self.path("scene.png"))
+        for name in ("volume.gzb", "volume.nrrd"):
+            done = self.write_volume(name)
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            done = run(GAZEVIEW, "--headless", "--size", "96x64", "--out", self.path("a.png"),
+                       self.scene_of(name))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            got = read_png(self.path("a.png"))
+            pairs = zip(b"".join(map(bytes, got.rows)), b"".join(map(bytes, wanted.rows)))
+            worst = max(abs(a - b) for a, b in pairs)
+            self.assertLessEqual(worst, 1, name)
+
+    def test_volume_that_cannot_be_written_is_refused_in_one_line(self):
+        self.refused(self.write_volume("volume.raw"), ".gzb")
+        self.refused(self.write_volume("no/volume.gzb"), "no/volume.gzb")
+        self.assertEqual(os.listdir(self.place.name), [])
+        self.write_volume("volume.gzb")
+        again = run(GAZEVIEW, "--write-volume", self.path("b.gzb"), self.scene_of("volume.gzb"))
+        self.refused(again, "already")
+
     def test_picture_that_cannot_be_written_ends_it_and_the_statistics_still_parse(self):
         done = self.render(
             "--out", "/no/such/folder/f-%d.png", "--frames", 5, "--stats", self.path("stats.json")
