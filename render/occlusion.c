@@ -146,7 +146,7 @@ static void find_weights(struct job *job, int axis, double radius)
 		job->weights[away + job->reach] = (float)((1 - abs(away) * cell / radius) / sum);
 }
 
-/* Weight one line of cells; along the last axis make of B what is kept away. */
+/* Weight one line of cells. */
 static void weight_line(const struct job *job, uint16_t *cells, size_t stride, int count)
 {
 	uint16_t line[LINE_MAX_CELLS];
@@ -158,8 +158,6 @@ static void weight_line(const struct job *job, uint16_t *cells, size_t stride, i
 		float sum = 0;
 		for (int j = first; j <= last; j++)
 			sum += job->weights[j - i + job->reach] * (float)line[j];
-		if (job->axis == 2)
-			sum = fmaxf(2 * sum - FULL, 0);
 		cells[(size_t)i * stride] = (uint16_t)(fminf(sum, FULL) + 0.5F);
 	}
 }

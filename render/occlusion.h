@@ -14,7 +14,7 @@
  *   those beyond the box counted as empty; its datum sits in its middle.
  * - B is the mean over cells, weighted along each axis by max(0, 1 - distance / R) (voxel lengths),
  *   the three weights multiplied, cells beyond the grid counted as empty
- * - o = clamp(2 B - 1, 0, 1) in each cell, trilinear between their middles.
+ * - o = clamp(2 B - 1, 0, 1) at a sample, with B trilinear between the middles of cells.
  */
 #ifndef GZ_RENDER_OCCLUSION_H
 #define GZ_RENDER_OCCLUSION_H
@@ -31,7 +31,7 @@
 struct gz_occlusion {
 	int dims[3];     /**< cells */
 	int edge[3];     /**< voxels of a cell along each axis: a power of two */
-	uint16_t *cells; /**< o, 65535 for 1; x fastest; GZ_VOLUME_PADDING bytes behind it */
+	uint16_t *cells; /**< B, 65535 for 1; x fastest; GZ_VOLUME_PADDING bytes behind it */
 	size_t capacity;
 };
 

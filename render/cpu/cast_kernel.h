@@ -19,6 +19,7 @@
 #include "render/cpu/cast_look_up.h"
 #include "render/cpu/cast_preintegrated.h"
 #include "render/cpu/cast_rays.h"
+#include "render/cpu/cast_shade.h"
 #include "render/cpu/cast_skip.h"
 
 /* Let the lanes that ask know how far their samples show something; put them behind what is empty.
@@ -58,11 +59,12 @@ SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, i
 		samples += vm_count(needed);
 		const vf value = fetch_sample(cast, type, nearest, rays, k, needed);
 		const vi entry = entry_of(look_up->scale, look_up->bias, value);
+		const vf at = k;
 		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
 		vi colour;
 		gather_pair(cast->step_table[step], entry, vm_all(), &opacity, &colour);
-		composite(colour, opacity, needed, light);
+		composite_at(cast, type, nearest, rays, at, colour, opacity, needed, light);
 		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	}
 	return samples;
@@ -105,7 +107,7 @@ SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, in
 	const vf length = steps * vf_set(cast->voxel_lengths[step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
-	composite(colour, opacity, visible, light);
+	composite_at(cast, type, nearest, rays, k, colour, opacity, visible, light);
 	return vm_count(mask);
 }
 
@@ -127,9 +129,14 @@ SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *t
 	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
 		const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
 		struct rays rays;
+		struct view view;
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
 		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
 			    vm_from_bits(tile->active >> first), &rays);
+		if (rich && cast->light.on) {
+			set_up_view(cast, tile->step, &rays, &view);
+			rays.view = &view;
+		}
 		samples +=
 			rich && cast->preintegrated_extinction
 				? cast_by_segments(cast, type, nearest, tile->step, &rays, &light)

@@ -30,17 +30,33 @@ SIMD vf exp2_negative(vf x)
 	return p * vf_bits(vi_shift_left(vi_trunc(whole + vf_set(127)), 23));
 }
 
+/* A sample's colour: red and green up to 2047, blue up to 1023. */
+struct colour {
+	vf red, green, blue;
+};
+
+SIMD struct colour unpack_colour(vi packed)
+{
+	return (struct colour) {
+		vf_from_i(vi_shift_right(packed, 21)),
+		vf_from_i(vi_and(vi_shift_right(packed, 10), vi_set(2047))),
+		vf_from_i(vi_and(packed, vi_set(1023))),
+	};
+}
+
+SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct light *light)
+{
+	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
+	light->red = vf_fma(weight, colour.red, light->red);
+	light->green = vf_fma(weight, colour.green, light->green);
+	light->blue = vf_fma(weight, colour.blue, light->blue);
+	light->through = light->through - weight;
+}
+
 /* Add a sample's colour where it has opacity. */
 SIMD void composite(vi colour, vf opacity, vm visible, struct light *light)
 {
-	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
-	const vf red = vf_from_i(vi_shift_right(colour, 21));
-	const vf green = vf_from_i(vi_and(vi_shift_right(colour, 10), vi_set(2047)));
-	const vf blue = vf_from_i(vi_and(colour, vi_set(1023)));
-	light->red = vf_fma(weight, red, light->red);
-	light->green = vf_fma(weight, green, light->green);
-	light->blue = vf_fma(weight, blue, light->blue);
-	light->through = light->through - weight;
+	composite_colour(unpack_colour(colour), opacity, visible, light);
 }
 
 SIMD vi to_byte(vf x)

@@ -12,6 +12,7 @@
 #include "render/cpu/cast_light.h"
 #include "render/cpu/cast_look_up.h"
 #include "render/cpu/cast_rays.h"
+#include "render/cpu/cast_shade.h"
 #include "render/cpu/cast_skip.h"
 #include "render/transfer_preintegrated.h"
 
@@ -81,7 +82,8 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 		vi colour;
 		gather_pair(cast->preintegrated[step], preintegrated_pair(front, back), takes,
 			    &opacity, &colour);
-		composite(colour, opacity, takes, light);
+		composite_at(cast, type, nearest, rays, k - vf_set(0.5F), colour, opacity, takes,
+			     light);
 		front = back;
 		known = takes;
 		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
@@ -118,7 +120,8 @@ SIMD uint32_t march_segment_part(const struct gz_cast *cast, enum gz_voxel_type 
 	const vf length = steps * vf_set(cast->voxel_lengths[step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
-	composite(colour, opacity, visible, light);
+	composite_at(cast, type, nearest, rays, vf_fma(steps, vf_set(0.5F), front), colour, opacity,
+		     visible, light);
 	return 2 * vm_count(mask);
 }
 

@@ -5,7 +5,15 @@
 #ifndef GZ_RENDER_CPU_CAST_RAYS_H
 #define GZ_RENDER_CPU_CAST_RAYS_H
 
+#include <stddef.h>
+
 #include "render/cpu/cast.h"
+
+/* What the light on all samples of a ray shares: unit vectors towards the eye, and halfway from
+ * there to the light. */
+struct view {
+	vf eye[3], half[3];
+};
 
 /* One chunk of lanes: its rays in voxel coordinates, position = start + k * delta; counted from the
  * first datum, datum + k * delta. */
@@ -17,6 +25,7 @@ struct rays {
 	vf head_at;    /* its middle */
 	vf rest;       /* of a segment, behind the last; [0, 1) */
 	vm hit;
+	const struct view *view; /* NULL: not lit */
 };
 
 /* Where the rays meet the whole box, and where they are within what is shown of it: k counted from
@@ -80,6 +89,7 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vf shift
 		rays->delta[axis] = delta;
 		rays->inverse[axis] = vf_set(1) / delta;
 	}
+	rays->view = NULL;
 	const struct cuts cuts = cut_rays(cast, origin, rays);
 	rays->hit = vm_and(active, vf_less(cuts.enter, cuts.leave));
 	count_segments(cuts, shift, rays);

@@ -10,6 +10,7 @@
 #include "render/cpu/cast_block.h"
 #include "render/cpu/cast_light.h"
 #include "render/cpu/cast_look_up.h"
+#include "render/cpu/cast_shade.h"
 #include "render/cpu/cast_skip.h"
 
 /* Samples that no block serves, in excess of those one does, after which a tile's rays are taken to
@@ -45,6 +46,7 @@ struct company {
 	struct block block;       /* there */
 	int misses;
 	/* the sample before: not added yet */
+	vf at;
 	vi entry;
 	vm within;
 };
@@ -74,14 +76,15 @@ SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, cons
 }
 
 /* Add the sample that has been waiting. */
-SIMD uint32_t settle(const struct gz_cast *cast, int step, const struct company *company, vm *alive,
+SIMD uint32_t settle(const struct gz_cast *cast, enum gz_voxel_type type, int step,
+		     const struct rays *rays, const struct company *company, vm *alive,
 		     struct light *light)
 {
 	vf opacity;
 	vi colour;
 	const vm needed = vm_and(company->within, *alive);
 	gather_pair(cast->step_table[step], company->entry, vm_all(), &opacity, &colour);
-	composite(colour, opacity, needed, light);
+	composite_at(cast, type, 0, rays, company->at, colour, opacity, needed, light);
 	*alive = vm_and(*alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	return vm_count(needed);
 }
@@ -114,7 +117,7 @@ SIMD uint32_t march_together(const struct gz_cast *cast, enum gz_voxel_type type
 			     const struct look_up *look_up, int step, const struct rays *rays,
 			     vf *out_k, vm *alive, struct light *light)
 {
-	struct company company = { .k = level_start(rays), .entry = vi_set(0) };
+	struct company company = { .k = level_start(rays), .at = vf_set(0), .entry = vi_set(0) };
 	block_take(cast, type, &company.place, &company.block);
 	uint32_t samples = 0;
 	float run = 0; /* samples to take before the cells are asked */
@@ -128,12 +131,13 @@ SIMD uint32_t march_together(const struct gz_cast *cast, enum gz_voxel_type type
 		const vm within =
 			vm_and(vf_less(rays->first, company.k), vf_less(company.k, rays->end));
 		const vf value = fetch_together(cast, type, rays, vm_and(within, *alive), &company);
-		samples += settle(cast, step, &company, alive, light);
+		samples += settle(cast, type, step, rays, &company, alive, light);
 		company.entry = entry_of(look_up->scale, look_up->bias, value);
 		company.within = within;
+		company.at = company.k;
 		company.k = company.k + vf_set(1);
 	}
-	samples += settle(cast, step, &company, alive, light);
+	samples += settle(cast, type, step, rays, &company, alive, light);
 	*out_k = vf_max(company.k, rays->first + vf_set(0.5F)); /* some may not have come there */
 	return samples;
 }

@@ -11,6 +11,7 @@
 #include "render/cpu/cast.h"
 #include "render/cpu/detail.h"
 #include "render/cpu/lattice.h"
+#include "render/cpu/lighting.h"
 #include "render/cpu/preintegration.h"
 #include "render/cpu/reconstruct.h"
 #include "render/workers.h"
@@ -40,6 +41,7 @@ struct cpu_renderer {
 	double step_length[GZ_PLAN_STEPS_MAX];
 	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
 	struct gz_preintegration preintegration;
+	struct gz_lighting lighting;
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -70,6 +72,7 @@ static void cpu_destroy(struct gz_renderer *renderer)
 	gz_workers_destroy(&cpu->workers);
 	gz_detail_free(&cpu->detail);
 	gz_brick_stream_free(&cpu->stream);
+	gz_lighting_free(&cpu->lighting);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_table);
 	gz_preintegration_free(&cpu->preintegration);
@@ -151,6 +154,7 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 	gz_brick_stream_forget(&cpu->stream);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	gz_preintegration_forget(&cpu->preintegration);
+	gz_lighting_forget(&cpu->lighting);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
@@ -395,6 +399,8 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 		job->casts[i] = job->casts[0];
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
+		gz_lighting_fill(&cpu->lighting, cpu->volume, cpu->detail.levels.level[i].factor,
+				 &cpu->table, rays, ray_frame, &job->casts[i].light);
 	}
 	return GZ_OK;
 }
@@ -416,8 +422,13 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 		return result;
 
 	const int64_t start_ns = gz_clock_now_ns();
+	result = gz_lighting_prepare(&cpu->lighting, cpu->volume, &cpu->table, rays, cpu->workers,
+				     renderer->log);
+	if (result != GZ_OK)
+		return result;
 	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
-	const bool rich = rays->integration == GZ_INTEGRATION_PREINTEGRATED;
+	const bool rich = rays->shading != GZ_SHADING_NONE ||
+			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
 	const enum gz_cast_variant variant = rich ? GZ_CAST_RICH : GZ_CAST_PLAIN;
 	struct cast_job job = {
 		.plan = plan,

@@ -59,6 +59,10 @@ SIMD vf vf_bits(vi a)
 {
 	return _mm256_castsi256_ps(a);
 }
+SIMD vi vi_bits(vf a)
+{
+	return _mm256_castps_si256(a);
+}
 SIMD vi vi_set(int32_t x)
 {
 	return _mm256_set1_epi32(x);

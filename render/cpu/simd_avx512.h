@@ -63,6 +63,10 @@ SIMD vf vf_bits(vi a)
 {
 	return _mm512_castsi512_ps(a);
 }
+SIMD vi vi_bits(vf a)
+{
+	return _mm512_castps_si512(a);
+}
 SIMD vi vi_set(int32_t x)
 {
 	return _mm512_set1_epi32(x);

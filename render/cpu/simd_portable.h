@@ -80,6 +80,10 @@ SIMD vf vf_bits(vi a)
 {
 	return (vf)a;
 }
+SIMD vi vi_bits(vf a)
+{
+	return (vi)a;
+}
 SIMD vi vi_trunc(vf a)
 {
 	return __builtin_convertvector(a, vi);

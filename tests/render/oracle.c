@@ -1,5 +1,7 @@
 #include "oracle.h"
 
+#include "oracle_light.h"
+
 #include <math.h>
 #include <stdint.h>
 
@@ -111,16 +113,25 @@ struct oracle_ray {
 	double half[3];      /* of the box, world units */
 	double per_world[3]; /* voxels of the level */
 	double voxel_length; /* world units */
+	const struct gz_volume *volume;
+	const struct gz_camera *camera;
+	const struct oracle_occlusion *occlusion;
 	double through, rgb[3];
 };
+
+/* Voxel coordinates of the level at a distance along the ray. */
+static void place_at(const struct oracle_ray *ray, double distance, double at[3])
+{
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = (ray->origin[axis] + distance * ray->direction[axis] + ray->half[axis]) *
+			   ray->per_world[axis];
+}
 
 /* What the transfer function is asked for, at a distance along the ray. */
 static double value_at(const struct oracle_ray *ray, double distance)
 {
 	double at[3];
-	for (int axis = 0; axis < 3; axis++)
-		at[axis] = (ray->origin[axis] + distance * ray->direction[axis] + ray->half[axis]) *
-			   ray->per_world[axis];
+	place_at(ray, distance, at);
 	const struct gz_volume *volume = &ray->level->volume;
 	const double stored = oracle_sample(volume, ray->rays->interpolation, at);
 	const double value = volume->slope * stored + volume->intercept;
@@ -137,32 +148,48 @@ static void blend(struct oracle_ray *ray, double value, double length)
 	ray->through *= 1 - opacity;
 }
 
+/* The colour of a segment of one opacity, lit by what lies at a distance along the ray. */
+static void light_segment(const struct oracle_ray *ray, double distance, double rgb[3])
+{
+	double at[3];
+	place_at(ray, distance, at);
+	if (ray->rays->shading == GZ_SHADING_GRADIENT)
+		oracle_shade(ray->volume, ray->level, ray->transfer, ray->camera, ray->rays,
+			     ray->occlusion, at, ray->direction, rgb);
+}
+
 /* From one distance along the ray to another: by the value in the middle, or by all between those
- * at both ends. */
+ * at both ends; light is that of the middle. */
 static void integrate(struct oracle_ray *ray, double from, double to)
 {
+	struct oracle_ray segment = *ray; /* alone, as if nothing was before it */
+	segment.through = 1;
+	segment.rgb[0] = segment.rgb[1] = segment.rgb[2] = 0;
 	if (ray->rays->integration == GZ_INTEGRATION_SAMPLED) {
-		blend(ray, value_at(ray, (from + to) / 2), to - from);
-		return;
+		blend(&segment, value_at(ray, (from + to) / 2), to - from);
+	} else {
+		enum { PARTS = 128 };
+		const double front = value_at(ray, from), back = value_at(ray, to);
+		for (int i = 0; i < PARTS; i++)
+			blend(&segment, front + (back - front) * (i + 0.5) / PARTS,
+			      (to - from) / PARTS);
 	}
-	enum { PARTS = 128 };
-	const double front = value_at(ray, from), back = value_at(ray, to);
-	for (int i = 0; i < PARTS; i++)
-		blend(ray, front + (back - front) * (i + 0.5) / PARTS, (to - from) / PARTS);
+	const double opacity = 1 - segment.through;
+	if (opacity <= 0)
+		return;
+	double rgb[3];
+	for (int channel = 0; channel < 3; channel++)
+		rgb[channel] = segment.rgb[channel] / opacity;
+	light_segment(ray, (from + to) / 2, rgb);
+	for (int channel = 0; channel < 3; channel++)
+		ray->rgb[channel] += ray->through * opacity * rgb[channel];
+	ray->through *= segment.through;
 }
 
-void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
-		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
-		  int height, int x, int y, double out_rgb[3])
-{
-	const struct gz_level level = { .volume = *volume, .factor = { 1, 1, 1 } };
-	oracle_level_pixel(volume, &level, transfer, camera, rays, width, height, x, y, out_rgb);
-}
-
-void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *level,
-			const struct gz_transfer *transfer, const struct gz_camera *camera,
-			const struct gz_ray_params *rays, int width, int height, int x, int y,
-			double out_rgb[3])
+static void trace(const struct gz_volume *volume, const struct gz_level *level,
+		  const struct gz_transfer *transfer, const struct gz_camera *camera,
+		  const struct gz_ray_params *rays, const struct oracle_occlusion *occlusion,
+		  int width, int height, int x, int y, double out_rgb[3])
 {
 	double longest = 0, least = INFINITY;
 	for (int axis = 0; axis < 3; axis++) {
@@ -190,6 +217,9 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 		.low = transfer->has_range ? transfer->range[0] : fmin(first, second),
 		.high = transfer->has_range ? transfer->range[1] : fmax(first, second),
 		.voxel_length = least / longest,
+		.volume = volume,
+		.camera = camera,
+		.occlusion = occlusion,
 		.through = 1,
 	};
 	for (int axis = 0; axis < 3; axis++) {
@@ -207,4 +237,28 @@ void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *l
 	}
 	for (int channel = 0; channel < 3; channel++)
 		out_rgb[channel] = ray.rgb[channel] + ray.through * rays->background[channel];
+}
+
+void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
+		  int height, int x, int y, double out_rgb[3])
+{
+	oracle_pixel_occluded(volume, transfer, camera, rays, NULL, width, height, x, y, out_rgb);
+}
+
+void oracle_pixel_occluded(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			   const struct gz_camera *camera, const struct gz_ray_params *rays,
+			   const struct oracle_occlusion *occlusion, int width, int height, int x,
+			   int y, double out_rgb[3])
+{
+	const struct gz_level level = { .volume = *volume, .factor = { 1, 1, 1 } };
+	trace(volume, &level, transfer, camera, rays, occlusion, width, height, x, y, out_rgb);
+}
+
+void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *level,
+			const struct gz_transfer *transfer, const struct gz_camera *camera,
+			const struct gz_ray_params *rays, int width, int height, int x, int y,
+			double out_rgb[3])
+{
+	trace(volume, level, transfer, camera, rays, NULL, width, height, x, y, out_rgb);
 }

@@ -9,10 +9,18 @@
 #include "render/renderer.h"
 #include "render/volume/levels.h"
 
+struct oracle_occlusion;
+
 /** Colour of pixel (x, y), each channel [0, 1]. */
 void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		  const struct gz_camera *camera, const struct gz_ray_params *rays, int width,
 		  int height, int x, int y, double out_rgb[3]);
+
+/** The same with occlusion, which may be NULL: oracle_light.h. */
+void oracle_pixel_occluded(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			   const struct gz_camera *camera, const struct gz_ray_params *rays,
+			   const struct oracle_occlusion *occlusion, int width, int height, int x,
+			   int y, double out_rgb[3]);
 
 /** The same with samples of a coarser level of @p volume. */
 void oracle_level_pixel(const struct gz_volume *volume, const struct gz_level *level,

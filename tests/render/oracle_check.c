@@ -9,8 +9,10 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "oracle.h"
+#include "oracle_light.h"
 
 /* The first channel of a pixel that is off, or 3. Half a grey level is rounding, the other half the
  * tables'. */
@@ -22,8 +24,8 @@ static int channel_off(const uint8_t pixel[4], const double rgb[3])
 	return channel;
 }
 
-static void check_set(const struct small_scene *scene, const char *set, int width, int height,
-		      int pixels_off)
+static void check_set(const struct small_scene *scene, const struct oracle_occlusion *occlusion,
+		      const char *set, int width, int height, int pixels_off)
 {
 	struct gz_renderer *renderer = small_scene_renderer(scene, 2, set);
 	struct gz_image image = { 0 };
@@ -33,8 +35,8 @@ static void check_set(const struct small_scene *scene, const char *set, int widt
 		for (int x = 0; x < width; x++) {
 			const uint8_t *pixel = image.pixels + 4 * (y * width + x);
 			double rgb[3];
-			oracle_pixel(&scene->volume, &scene->transfer, &scene->camera, &scene->rays,
-				     width, height, x, y, rgb);
+			oracle_pixel_occluded(&scene->volume, &scene->transfer, &scene->camera,
+					      &scene->rays, occlusion, width, height, x, y, rgb);
 			const int channel = channel_off(pixel, rgb);
 			if (channel < 3 && ++off > pixels_off)
 				fail_msg("%s: pixel %d %d channel %d: %d, oracle %.3f", set, x, y,
@@ -48,8 +50,13 @@ static void check_set(const struct small_scene *scene, const char *set, int widt
 void oracle_check_but(struct small_scene *scene, int width, int height, int pixels_off)
 {
 	scene->foveation.method = GZ_METHOD_STANDARD;
+	const bool occluded = scene->rays.light.occlusion > 0;
+	struct oracle_occlusion occlusion = { 0 };
+	if (occluded)
+		occlusion = oracle_occlusion_make(&scene->volume, &scene->transfer, &scene->rays);
 	for (const char *const *set = small_scene_simd_sets(); *set; set++)
-		check_set(scene, *set, width, height, pixels_off);
+		check_set(scene, occluded ? &occlusion : NULL, *set, width, height, pixels_off);
+	free(occlusion.cells);
 }
 
 void oracle_check(struct small_scene *scene, int width, int height)

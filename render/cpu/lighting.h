@@ -1,0 +1,51 @@
+/**
+ * @file
+ * Light on the cpu backend: what the kernels take of it, and the grid of occlusion, made anew when
+ * what it depends on has changed.
+ */
+#ifndef GZ_RENDER_CPU_LIGHTING_H
+#define GZ_RENDER_CPU_LIGHTING_H
+
+#include "base/log.h"
+#include "render/camera.h"
+#include "render/cpu/cast.h"
+#include "render/occlusion.h"
+
+/** Zero-initialised holds nothing. */
+struct gz_lighting {
+	struct gz_occlusion occlusion;
+	bool current;            /**< occlusion is that of the transfer function at hand and of: */
+	double radius;           /**< this one */
+	struct gz_clip_box clip; /**< and this one */
+};
+
+/** The volume or the transfer function has changed; memory is kept. */
+void gz_lighting_forget(struct gz_lighting *lighting);
+
+/**
+ * Make the grid of occlusion that a frame asks for, unless it is there.
+ *
+ * @retval GZ_ERR_NO_MEM       there is none; logged
+ * @retval GZ_ERR_UNSUPPORTED  of a volume of bricks, whose voxels are not all at hand; logged
+ */
+enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz_volume *volume,
+				   const struct gz_transfer_table *table,
+				   const struct gz_ray_params *rays, struct gz_workers *workers,
+				   const struct gz_log *log);
+
+/**
+ * What the kernels take, after gz_lighting_prepare().
+ *
+ * @param volume  the whole one
+ * @param factor  by how much coarser the level of detail is, along each axis
+ * @param[out] out_light  borrows from @p lighting until the next gz_lighting_prepare()
+ */
+void gz_lighting_fill(const struct gz_lighting *lighting, const struct gz_volume *volume,
+		      const int factor[3], const struct gz_transfer_table *table,
+		      const struct gz_ray_params *rays, const struct gz_ray_frame *ray_frame,
+		      struct gz_cast_light *out_light);
+
+/** Free and zero. */
+void gz_lighting_free(struct gz_lighting *lighting);
+
+#endif

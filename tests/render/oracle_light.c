@@ -1,0 +1,237 @@
+#include "oracle_light.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "oracle.h"
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void normalise(double a[3])
+{
+	const double length = sqrt(dot(a, a));
+	for (int axis = 0; axis < 3; axis++)
+		a[axis] = length > 0 ? a[axis] / length : 0;
+}
+
+static double clamp(double x, double least, double greatest)
+{
+	return fmin(fmax(x, least), greatest);
+}
+
+static double least_spacing(const struct gz_volume *volume)
+{
+	return fmin(fmin(volume->spacing[0], volume->spacing[1]), volume->spacing[2]);
+}
+
+/* Ends of the transfer function's range, in stored values. */
+static double range_width(const struct gz_volume *volume, const struct gz_transfer *transfer)
+{
+	if (transfer->has_range)
+		return (transfer->range[1] - transfer->range[0]) / volume->slope;
+	return (volume->stored_max - volume->stored_min) * (volume->slope < 0 ? -1 : 1);
+}
+
+static double value_of(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		       double stored)
+{
+	const double a = volume->slope * volume->stored_min + volume->intercept;
+	const double b = volume->slope * volume->stored_max + volume->intercept;
+	const double low = transfer->has_range ? transfer->range[0] : fmin(a, b);
+	const double high = transfer->has_range ? transfer->range[1] : fmax(a, b);
+	const double value = volume->slope * stored + volume->intercept;
+	return high > low ? (value - low) / (high - low) : 0;
+}
+
+static void towards_light(const struct gz_camera *camera, const struct gz_light *light,
+			  double out[3])
+{
+	double forward[3], right[3], up[3];
+	for (int axis = 0; axis < 3; axis++)
+		forward[axis] = camera->look_at[axis] - camera->eye[axis];
+	normalise(forward);
+	cross(forward, camera->up, right);
+	normalise(right);
+	cross(right, forward, up);
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = light->frame == GZ_LIGHT_WORLD
+				    ? light->direction[axis]
+				    : light->direction[0] * right[axis] +
+					      light->direction[1] * up[axis] -
+					      light->direction[2] * forward[axis];
+	normalise(out);
+}
+
+static void gradient(const struct gz_volume *volume, const struct gz_level *level,
+		     const struct gz_transfer *transfer, int interpolation, const double at[3],
+		     double out[3])
+{
+	const double width = range_width(volume, transfer);
+	for (int axis = 0; axis < 3; axis++) {
+		double before[3] = { at[0], at[1], at[2] }, behind[3] = { at[0], at[1], at[2] };
+		before[axis] -= 1;
+		behind[axis] += 1;
+		const double change = oracle_sample(&level->volume, interpolation, behind) -
+				      oracle_sample(&level->volume, interpolation, before);
+		const double voxel_lengths =
+			2 * level->factor[axis] * volume->spacing[axis] / least_spacing(volume);
+		out[axis] = width != 0 ? change / width / voxel_lengths : 0;
+	}
+}
+
+static double occlusion_at(const struct gz_level *level, const struct oracle_occlusion *grid,
+			   const double at[3])
+{
+	double share[3];
+	int index[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const double place = at[axis] * level->factor[axis] / grid->edge[axis] - 0.5;
+		index[axis] = (int)floor(place);
+		share[axis] = place - index[axis];
+	}
+	double sum = 0;
+	for (int corner = 0; corner < 8; corner++) {
+		double weight = 1;
+		int cell[3];
+		for (int axis = 0; axis < 3; axis++) {
+			const int up = corner >> axis & 1;
+			weight *= up ? share[axis] : 1 - share[axis];
+			cell[axis] = (int)clamp(index[axis] + up, 0, grid->dims[axis] - 1);
+		}
+		sum += weight *
+		       grid->cells[(cell[2] * grid->dims[1] + cell[1]) * grid->dims[0] + cell[0]];
+	}
+	return clamp(2 * sum - 1, 0, 1);
+}
+
+void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
+		  const struct gz_transfer *transfer, const struct gz_camera *camera,
+		  const struct gz_ray_params *rays, const struct oracle_occlusion *occlusion,
+		  const double at[3], const double direction[3], double rgb[3])
+{
+	const struct gz_light *light = &rays->light;
+	double g[3], normal[3], to_light[3], to_eye[3], half[3];
+	gradient(volume, level, transfer, rays->interpolation, at, g);
+	towards_light(camera, light, to_light);
+	for (int axis = 0; axis < 3; axis++) {
+		normal[axis] = g[axis];
+		to_eye[axis] = -direction[axis];
+		half[axis] = to_eye[axis] + to_light[axis];
+	}
+	normalise(normal);
+	normalise(half);
+	const double edge = 0.0625, weak = 0.006;
+	const double facing = clamp(dot(normal, to_eye) / edge, -1, 1);
+	const double d = fmax(facing * dot(normal, to_light), 0);
+	const double s = pow(fabs(dot(normal, half)), light->shininess) * fmin(d / edge, 1);
+	const double o = occlusion ? light->occlusion * occlusion_at(level, occlusion, at) : 0;
+	const double weight = dot(g, g) / (dot(g, g) + weak * weak);
+	for (int channel = 0; channel < 3; channel++) {
+		const double lit = rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d) +
+				   light->specular * s;
+		rgb[channel] += weight * (clamp(lit, 0, 1) - rgb[channel]);
+	}
+}
+
+/* What one voxel fills. */
+static double voxel_fills(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			  const struct gz_ray_params *rays, const int voxel[3])
+{
+	double middle[3], rgba[4];
+	for (int axis = 0; axis < 3; axis++) {
+		if (voxel[axis] < 0 || voxel[axis] >= volume->dims[axis])
+			return 0;
+		middle[axis] = voxel[axis] + 0.5;
+		const double share = middle[axis] / volume->dims[axis];
+		if (share < rays->clip.least[axis] || share > rays->clip.greatest[axis])
+			return 0;
+	}
+	const double stored = oracle_sample(volume, GZ_INTERPOLATION_NEAREST, middle);
+	gz_transfer_evaluate(transfer, value_of(volume, transfer, stored), rgba);
+	return 1 - pow(1 - rgba[3], rays->light.occlusion_radius / 2);
+}
+
+static double cell_fills(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			 const struct gz_ray_params *rays, const int edge[3], const int cell[3])
+{
+	double sum = 0;
+	for (int z = 0; z < edge[2]; z++)
+		for (int y = 0; y < edge[1]; y++)
+			for (int x = 0; x < edge[0]; x++)
+				sum += voxel_fills(volume, transfer, rays,
+						   (const int[3]) { cell[0] * edge[0] + x,
+								    cell[1] * edge[1] + y,
+								    cell[2] * edge[2] + z });
+	return sum / (edge[0] * edge[1] * edge[2]);
+}
+
+/* Mean of what cells fill around one of them; filled is 0 beyond the grid. */
+static double mean_around(const struct oracle_occlusion *grid, const double *filled,
+			  const double lengths[3], double radius, const int cell[3])
+{
+	double sum = 0, weights = 0;
+	const int reach = (int)radius;
+	for (int z = -reach; z <= reach; z++)
+		for (int y = -reach; y <= reach; y++)
+			for (int x = -reach; x <= reach; x++) {
+				const int away[3] = { x, y, z };
+				double weight = 1;
+				bool within = true;
+				int there[3];
+				for (int axis = 0; axis < 3; axis++) {
+					const double distance = abs(away[axis]) * lengths[axis];
+					weight *= fmax(0, 1 - distance / radius);
+					there[axis] = cell[axis] + away[axis];
+					within = within && there[axis] >= 0 &&
+						 there[axis] < grid->dims[axis];
+				}
+				weights += weight;
+				if (within)
+					sum += weight *
+					       filled[(there[2] * grid->dims[1] + there[1]) *
+							      grid->dims[0] +
+						      there[0]];
+			}
+	return sum / weights;
+}
+
+struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
+					      const struct gz_transfer *transfer,
+					      const struct gz_ray_params *rays)
+{
+	struct oracle_occlusion grid;
+	const double radius = rays->light.occlusion_radius;
+	double lengths[3];
+	for (int axis = 0; axis < 3; axis++) {
+		/* powers of two: R / 2 at most, but 2 of the finest voxels at least, else 1 */
+		const double ratio = volume->spacing[axis] / least_spacing(volume);
+		const double longest = fmax(2, exp2(floor(log2(radius / 2))));
+		grid.edge[axis] = (int)fmax(1, exp2(floor(log2(longest / ratio))));
+		grid.dims[axis] = (volume->dims[axis] - 1) / grid.edge[axis] + 1;
+		lengths[axis] = grid.edge[axis] * ratio;
+	}
+	const int *dims = grid.dims;
+	const size_t count = (size_t)(dims[0] * dims[1] * dims[2]);
+	double *filled = malloc(count * sizeof *filled);
+	grid.cells = malloc(count * sizeof *grid.cells);
+	for (int i = 0; i < (int)count; i++) {
+		const int cell[3] = { i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1] };
+		filled[i] = cell_fills(volume, transfer, rays, grid.edge, cell);
+	}
+	for (int i = 0; i < (int)count; i++) {
+		const int cell[3] = { i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1] };
+		grid.cells[i] = mean_around(&grid, filled, lengths, radius, cell);
+	}
+	free(filled);
+	return grid;
+}
