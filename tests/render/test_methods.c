@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,8 +35,8 @@ static void every_pixel_of_every_method_is_written_for_any_gaze(void **state)
 	(void)state;
 	/* Nothing in the box: all is background, which changes from frame to frame, so that a
 	 * pixel, or a lattice point, of an earlier frame shows. */
-	static const int sizes[][2] = { { 1, 1 },    { 7, 3 },    { 97, 61 },  { 64, 64 },
-					{ 2, 1031 }, { 1031, 2 }, { 640, 480 } };
+	static const int sizes[][2] = { { 1, 1 },   { 7, 3 },    { 97, 61 },  { 8191, 1 },
+					{ 64, 64 }, { 2, 1031 }, { 1031, 2 }, { 640, 480 } };
 	struct small_scene scene = small_scene_constant(8, 0);
 	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image image = { 0 };
@@ -148,6 +149,7 @@ static void methods_equal_standard_in_their_inner_region(void **state)
 static void constant_box_keeps_its_brightness_by_every_method_and_step_rule(void **state)
 {
 	(void)state;
+	enum { WIDTH = 240, HEIGHT = 180 };
 	struct small_scene scene = small_scene_constant(64, 0.02);
 	/* The box fills the view, so that no outline is interpolated. */
 	memcpy(scene.camera.eye, (double[3]) { 0.1, -0.1, 0.05 }, sizeof scene.camera.eye);
@@ -156,7 +158,7 @@ static void constant_box_keeps_its_brightness_by_every_method_and_step_rule(void
 	struct gz_image reference = { 0 };
 	scene.rays.ray_sampling_rate = 8;
 	scene.foveation.method = GZ_METHOD_STANDARD;
-	small_scene_render(renderer, &scene, 400, 300, &reference, NULL);
+	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &reference, NULL);
 	scene.rays.ray_sampling_rate = 1.5;
 	scene.gaze = (struct gz_point) { 0.1F, 0.2F };
 	for (int method = 0; method < GZ_METHOD_COUNT; method++)
@@ -165,17 +167,17 @@ static void constant_box_keeps_its_brightness_by_every_method_and_step_rule(void
 			int x = 0, y = 0;
 			scene.foveation.method = method;
 			scene.foveation.step_rule = rule;
-			small_scene_render(renderer, &scene, 400, 300, &image, NULL);
+			small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, NULL);
 			/* the depth of the box has edges: interpolating across them is not the
 			 * step's doing, so the mean is held tight and the worst pixel loosely */
 			double sum = 0;
-			for (int i = 0; i < 400 * 300 * 4; i++)
+			for (int i = 0; i < WIDTH * HEIGHT * 4; i++)
 				sum += image.pixels[i] - reference.pixels[i];
 			const int worst = image_difference(&reference, &image, &x, &y);
-			if (fabs(sum / (400 * 300 * 3)) > 0.5 || worst > 3)
+			if (fabs(sum / (WIDTH * HEIGHT * 3)) > 0.5 || worst > 3)
 				fail_msg("%s, steps by %s: mean %g, worst %d at %d %d",
 					 gz_method_names[method], gz_step_rule_names[rule],
-					 sum / (400 * 300 * 3), worst, x, y);
+					 sum / (WIDTH * HEIGHT * 3), worst, x, y);
 			gz_image_free(&image);
 		}
 	gz_image_free(&reference);
@@ -206,6 +208,167 @@ static void foveated_picture_stays_near_the_full_one_everywhere(void **state)
 	}
 	gz_image_free(&full);
 	gz_image_free(&image);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+/* Share of a region in a pixel, by the words of plan.h. */
+static double share_of(const struct gz_region *region, int x, int y)
+{
+	if (region->shape == GZ_REGION_ALL)
+		return 1;
+	const double u = (x - region->centre_px[0]) / region->half_px[0];
+	const double v = (y - region->centre_px[1]) / region->half_px[1];
+	const double r = region->shape == GZ_REGION_ELLIPSE ? hypot(u, v) : fmax(fabs(u), fabs(v));
+	const double px = (1 - r) * fmin(region->half_px[0], region->half_px[1]);
+	return fmin(fmax(px / region->blend_px, 0), 1);
+}
+
+/* Each lattice over the whole picture by the method uniform, mixed in double precision. */
+static void check_bands(struct gz_renderer *renderer, struct small_scene *scene,
+			const struct gz_plan *plan)
+{
+	struct gz_image image = { 0 }, layers[3] = { 0 };
+	int mixed = 0;
+	small_scene_render(renderer, scene, plan->width, plan->height, &image, NULL);
+	const int method = scene->foveation.method;
+	scene->foveation.method = GZ_METHOD_UNIFORM;
+	for (int i = 0; i < plan->layer_count; i++) {
+		scene->foveation.uniform_spacing = plan->layers[i].spacing;
+		small_scene_render(renderer, scene, plan->width, plan->height, &layers[i], NULL);
+	}
+	for (int i = 0; i < plan->width * plan->height * 4; i++) {
+		const int x = i / 4 % plan->width, y = i / 4 / plan->width;
+		double expected = 0, left = 1;
+		for (int k = 0; k < plan->layer_count; k++) {
+			const double share = left * share_of(&plan->layers[k].region, x, y);
+			expected += share * layers[k].pixels[i];
+			left -= share;
+			mixed += share > 0.1 && left > 0.1;
+		}
+		/* weights of 1/256 and a rounding a band */
+		if (fabs(image.pixels[i] - expected) > 2)
+			fail_msg("%s: pixel %d %d is %d, not %g", gz_method_names[method], x, y,
+				 image.pixels[i], expected);
+	}
+	assert_true(mixed > 1000);
+	scene->foveation.method = method;
+	for (int i = 0; i < 3; i++)
+		gz_image_free(&layers[i]);
+	gz_image_free(&image);
+}
+
+static void bands_mix_regions_by_their_weight(void **state)
+{
+	(void)state;
+	enum { WIDTH = 420, HEIGHT = 330 };
+	static const int methods[] = { GZ_METHOD_MDC, GZ_METHOD_MDC3, GZ_METHOD_DDC };
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	struct small_scene scene = small_scene_waves(32, 32, 32, GZ_VOXEL_U8);
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_foveation *f = &scene.foveation;
+	scene.gaze = (struct gz_point) { 0.45F, 0.55F };
+	f->blend_px = 24;
+	f->mdc_square_px = 110;
+	f->mdc_spacing = 3;
+	f->mdc3_square_px = 230;
+	f->mdc3_spacing = 5;
+	memcpy(f->ddc_inner_px, (double[2]) { 70, 50 }, sizeof f->ddc_inner_px);
+	memcpy(f->ddc_middle_px, (double[2]) { 150, 110 }, sizeof f->ddc_middle_px);
+	for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
+		struct gz_plan plan = { 0 };
+		f->method = methods[m];
+		assert_int_equal(gz_plan_make(f, &display, scene.gaze, WIDTH, HEIGHT, &plan),
+				 GZ_OK);
+		check_bands(renderer, &scene, &plan);
+		gz_plan_free(&plan);
+	}
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+enum { BINS = 24 };
+
+/* Mean error against the full picture in bins of pixels. */
+struct error_bins {
+	double sum[BINS];
+	int count[BINS];
+};
+
+static void add_error(struct error_bins *bins, double place, int error)
+{
+	const int bin = (int)floor(place);
+	if (bin < 0 || bin >= BINS)
+		return;
+	bins->sum[bin] += error;
+	bins->count[bin]++;
+}
+
+static double greatest_step(const struct error_bins *bins)
+{
+	double greatest = 0;
+	for (int i = 1; i < BINS; i++)
+		if (bins->count[i] > 300 && bins->count[i - 1] > 300)
+			greatest = fmax(greatest, fabs(bins->sum[i] / bins->count[i] -
+						       bins->sum[i - 1] / bins->count[i - 1]));
+	return greatest;
+}
+
+/* Grey levels by which the mean error of acuity changes at most from one ring to the next, rings
+ * being a twelfth of a pixel's spacing wide, from 1.5 to 3.5 px: the first two borders. For mdc,
+ * rings of 4 px along its square. */
+static double error_step(struct gz_renderer *renderer, struct small_scene *scene,
+			 const struct gz_image *full)
+{
+	const struct gz_display display = gz_display_default(full->width, full->height);
+	struct gz_image image = { 0 };
+	struct error_bins bins = { 0 };
+	const struct gz_foveation *f = &scene->foveation;
+	small_scene_render(renderer, scene, full->width, full->height, &image, NULL);
+	for (int i = 0; i < full->width * full->height; i++) {
+		const int x = i % full->width, y = i / full->width;
+		const struct gz_point at = { (float)((x + 0.5) / full->width),
+					     (float)((y + 0.5) / full->height) };
+		const double dx = fabs(x + 0.5 - (double)scene->gaze.x * full->width);
+		const double dy = fabs(y + 0.5 - (double)scene->gaze.y * full->height);
+		const double place =
+			f->method == GZ_METHOD_MDC
+				? (fmax(dx, dy) - f->mdc_square_px / 2) / 4 + BINS / 2.0
+				: (gz_acuity_spacing_px(f, &display, scene->gaze, at, full->width,
+							full->height) -
+				   1.5) * 12;
+		for (int c = 0; c < 3; c++)
+			add_error(&bins, place,
+				  abs(image.pixels[4 * i + c] - full->pixels[4 * i + c]));
+	}
+	gz_image_free(&image);
+	return greatest_step(&bins);
+}
+
+static void error_grows_without_a_step_across_borders(void **state)
+{
+	(void)state;
+	enum { WIDTH = 480, HEIGHT = 360 };
+	struct small_scene scene = small_scene_waves(32, 32, 32, GZ_VOXEL_U8);
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image full = { 0 };
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &full, NULL);
+	scene.foveation.method = GZ_METHOD_ACUITY;
+	scene.foveation.acuity_slope = 0.1;
+	const double acuity = error_step(renderer, &scene, &full);
+	scene.foveation.method = GZ_METHOD_MDC;
+	scene.foveation.mdc_spacing = 8;
+	scene.foveation.mdc_square_px = 180;
+	const double hard = error_step(renderer, &scene, &full);
+	scene.foveation.blend_px = 48;
+	const double blended = error_step(renderer, &scene, &full);
+	printf("steps of error at borders: acuity %.3f, mdc of spacing 8 %.3f, with a band of 48 "
+	       "px %.3f grey levels\n",
+	       acuity, hard, blended);
+	if (acuity > 0.7 || blended > 0.7 * hard)
+		fail_msg("acuity %g, mdc %g, with a band %g", acuity, hard, blended);
+	gz_image_free(&full);
 	gz_renderer_destroy(&renderer);
 	small_scene_free(&scene);
 }
@@ -256,6 +419,8 @@ int main(void)
 		cmocka_unit_test(methods_equal_standard_in_their_inner_region),
 		cmocka_unit_test(constant_box_keeps_its_brightness_by_every_method_and_step_rule),
 		cmocka_unit_test(foveated_picture_stays_near_the_full_one_everywhere),
+		cmocka_unit_test(bands_mix_regions_by_their_weight),
+		cmocka_unit_test(error_grows_without_a_step_across_borders),
 		cmocka_unit_test(span_of_a_plane_is_the_plane),
 	};
 	if (!small_scene_backend_runs())
