@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "oracle.h"
 #include "render/volume/levels.h"
 #include "small_scene.h"
@@ -86,6 +87,27 @@ static void levels_are_the_same_bits_for_any_number_of_workers(void **state)
 	gz_workers_destroy(&workers);
 	gz_levels_free(&alone);
 	gz_levels_free(&shared);
+	small_scene_free(&scene);
+}
+
+static void levels_of_a_large_volume_are_made_in_one_pass_each(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(256, 0.1);
+	struct gz_levels levels = { 0 };
+	gz_levels_start(&levels, &scene.volume);
+	const int64_t start_ns = gz_clock_now_ns();
+	assert_int_equal(gz_levels_build(&levels, NULL), GZ_OK);
+	print_message("levels of 256^3 bytes: %.1f ms on one core\n",
+		      gz_ns_to_ms(gz_clock_now_ns() - start_ns));
+	assert_int_equal(levels.count, 6); /* 256 to 8 */
+	for (int level = 1; level < levels.count; level++) {
+		const struct gz_volume *volume = &levels.level[level].volume;
+		const uint8_t *voxels = volume->voxels;
+		assert_int_equal(volume->dims[0], 256 >> level);
+		assert_int_equal(voxels[gz_volume_voxel_count(volume) - 1], 128);
+	}
+	gz_levels_free(&levels);
 	small_scene_free(&scene);
 }
 
@@ -302,6 +324,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(levels_halve_until_nothing_is_left_and_take_at_most_a_seventh),
 		cmocka_unit_test(levels_are_the_same_bits_for_any_number_of_workers),
+		cmocka_unit_test(levels_of_a_large_volume_are_made_in_one_pass_each),
 		cmocka_unit_test(level_follows_the_smaller_of_spacing_and_step),
 		cmocka_unit_test(pixels_footprint_is_that_of_the_nearest_point_of_the_box),
 		cmocka_unit_test(cast_of_a_coarser_level_equals_the_oracle),

@@ -401,7 +401,7 @@ static double share_lost(struct gz_renderer *renderer, struct small_scene *scene
 		within += fine->pixels[4 * i] > 60;
 		lost += fine->pixels[4 * i] > 60 && image.pixels[4 * i] < fine->pixels[4 * i] / 2;
 	}
-	assert_true(within > 1000);
+	assert_true(within > 400);
 	gz_image_free(&image);
 	return (double)lost / within;
 }
@@ -427,6 +427,53 @@ static void thin_shell_is_lost_by_samples_but_not_by_segments(void **state)
 		/* a ray that only grazes the shell may dip into it between two ends */
 		if (preintegrated > (step <= 2 ? 0 : 0.005))
 			fail_msg("steps of %d: %g of the shell lost", step, preintegrated);
+	}
+	gz_image_free(&fine);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+/* Wires one voxel thick in empty space, along an axis and askew. One that lies between two samples
+ * is seen by neither, and is no value between those of both: segments lose it as samples do. A
+ * share is bounded, not forbidden. */
+static struct small_scene wire_scene(void)
+{
+	struct small_scene scene = small_scene_waves(64, 64, 64, GZ_VOXEL_U8);
+	uint8_t *voxels = scene.volume.voxels;
+	memset(voxels, 0, gz_volume_voxel_count(&scene.volume));
+	for (int i = 4; i < 60; i++) {
+		voxels[(32 * 64 + 20) * 64 + i] = 255;
+		voxels[((10 + i / 2) * 64 + i) * 64 + 64 - i] = 255;
+	}
+	gz_volume_find_range(&scene.volume);
+	scene.transfer = (struct gz_transfer) {
+		.count = 2,
+		.points = { { 0.1, { 1, 1, 1 }, 0 }, { 0.4, { 1, 1, 1 }, 0.95 } },
+	};
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	return scene;
+}
+
+static void thin_wires_lose_a_bounded_share_of_pixels(void **state)
+{
+	(void)state;
+	struct small_scene scene = wire_scene();
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image fine = { 0 };
+	scene.rays.ray_sampling_rate = 32;
+	small_scene_render(renderer, &scene, 240, 180, &fine, NULL);
+	static const double most[] = { 0.06, 0.5, 0.62, 0.72 };
+	for (int step = 1; step <= 4; step++) {
+		const double sampled =
+			share_lost(renderer, &scene, step, GZ_INTEGRATION_SAMPLED, &fine);
+		const double preintegrated =
+			share_lost(renderer, &scene, step, GZ_INTEGRATION_PREINTEGRATED, &fine);
+		print_message("wires one voxel thick, steps of %d: %.1f %% of their pixels lost by "
+			      "samples, %.1f %% by segments\n",
+			      step, 100 * sampled, 100 * preintegrated);
+		if (sampled > most[step - 1] || preintegrated > most[step - 1])
+			fail_msg("steps of %d: %g lost by samples, %g by segments", step, sampled,
+				 preintegrated);
 	}
 	gz_image_free(&fine);
 	gz_renderer_destroy(&renderer);
@@ -472,6 +519,7 @@ int main(void)
 		cmocka_unit_test(picture_is_the_same_bits_for_any_number_of_threads),
 		cmocka_unit_test(empty_space_takes_no_samples),
 		cmocka_unit_test(thin_shell_is_lost_by_samples_but_not_by_segments),
+		cmocka_unit_test(thin_wires_lose_a_bounded_share_of_pixels),
 		cmocka_unit_test(new_transfer_function_makes_new_tables),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
