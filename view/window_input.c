@@ -15,6 +15,7 @@
 const char *gz_window_keys_text(void)
 {
 	return "1 2 3 4   standard, mdc, ddc, acuity\n"
+	       "5 6 7     mdc3, uniform, table\n"
 	       "drag      turn the camera\n"
 	       "wheel     zoom\n"
 	       "R         reset the camera\n"
