@@ -94,6 +94,11 @@ bool gz_frame_settled(const struct gz_frame_maker *maker)
 	return gz_attention_settled(&maker->attention);
 }
 
+bool gz_frame_refinable(const struct gz_frame_maker *maker)
+{
+	return !gz_budget_at_rest(&maker->attention.budget);
+}
+
 /* Pixels of the rays' grid along a side; 0 where that is no picture. */
 static int cast_side(int side, double rate)
 {

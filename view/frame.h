@@ -68,6 +68,10 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
  */
 bool gz_frame_settled(const struct gz_frame_maker *maker);
 
+/** Whether the same frame again may turn out finer: the time to keep has made it coarse, and a few
+ *  more frames will tell whether it must be. */
+bool gz_frame_refinable(const struct gz_frame_maker *maker);
+
 /**
  * Render one frame, sharp where gz_frame_attend() left it; before the first in the centre.
  *

@@ -206,7 +206,8 @@ static enum gz_result refresh(struct gz_window *window)
 		window->cast_needed = true;
 	}
 	gz_window_gaze_now(window, width, height, &gaze);
-	bool must_cast = gaze_moved(window, &gaze) || window->cast_needed;
+	bool must_cast = gaze_moved(window, &gaze) || window->cast_needed ||
+			 gz_frame_refinable(window->maker);
 	bool cross_moved = window->cross && !same_point(gaze.reading.point, window->cross_drawn);
 	if (must_cast) {
 		enum gz_result r = cast(window, &gaze, width, height);

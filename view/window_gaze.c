@@ -134,7 +134,8 @@ double gz_window_gaze_patience_s(const struct gz_window *window)
 	double frame_s = 1 / window->options->fps;
 	if (window->panel_frames > 0)
 		return 0;
-	if (window->options->turn_deg != 0 || !gz_frame_settled(window->maker))
+	if (window->options->turn_deg != 0 || !gz_frame_settled(window->maker) ||
+	    gz_frame_refinable(window->maker))
 		return frame_s;
 	if (!source || window->mouse_chosen)
 		return window->link ? ABSENT_PATIENCE_S : STILL_PATIENCE_S;

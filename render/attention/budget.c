@@ -199,3 +199,8 @@ bool gz_budget_step(struct gz_budget *budget, double frame_ms)
 		take_window(budget);
 	return false;
 }
+
+bool gz_budget_at_rest(const struct gz_budget *budget)
+{
+	return budget->rung == 0 || budget->waited > 0 || budget->state == GZ_BUDGET_LIMIT;
+}

@@ -68,4 +68,7 @@ double gz_budget_scale(const struct gz_budget *budget);
  */
 bool gz_budget_step(struct gz_budget *budget, double frame_ms);
 
+/** Whether a few more frames like the last would not make it finer. */
+bool gz_budget_at_rest(const struct gz_budget *budget);
+
 #endif

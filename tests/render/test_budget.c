@@ -219,6 +219,25 @@ static void budget_out_of_reach_is_told_once(void **state)
 	assert_int_equal(budget.state, GZ_BUDGET_LIMIT);
 }
 
+static void it_rests_once_a_window_has_told_that_it_must_stay(void **state)
+{
+	(void)state;
+	struct gz_budget budget;
+	gz_budget_init(&budget, 10);
+	assert_true(gz_budget_at_rest(&budget));
+	for (int i = 0; i < 3; i++)
+		gz_budget_step(&budget, 15);
+	assert_true(gz_budget_scale(&budget) > 1);
+	for (int i = 0; i < GZ_BUDGET_WINDOW; i++) {
+		assert_false(gz_budget_at_rest(&budget));
+		gz_budget_step(&budget, 8);
+	}
+	assert_true(gz_budget_scale(&budget) > 1);
+	assert_true(gz_budget_at_rest(&budget));
+	gz_budget_init(&budget, 0);
+	assert_true(gz_budget_at_rest(&budget));
+}
+
 static void times_that_are_none_count_for_nothing(void **state)
 {
 	(void)state;
@@ -256,6 +275,7 @@ int main(void)
 		cmocka_unit_test(cheaper_scene_brings_the_detail_back),
 		cmocka_unit_test(cost_that_leaps_is_tried_ever_more_rarely),
 		cmocka_unit_test(budget_out_of_reach_is_told_once),
+		cmocka_unit_test(it_rests_once_a_window_has_told_that_it_must_stay),
 		cmocka_unit_test(times_that_are_none_count_for_nothing),
 		cmocka_unit_test(one_slow_frame_in_a_second_changes_nothing),
 	};
