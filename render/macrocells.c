@@ -103,46 +103,76 @@ enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_mac
 	return GZ_OK;
 }
 
-/*
- * One axis of the distance: d[i] = min over j of max(|i - j|, before[j]). The Chebyshev distance is
- * separable in this form, and since |before| of neighbours differ by any amount, a window that
- * grows only while it can still win bounds the work by the answer.
- */
-static void relax_line(uint8_t *line, size_t stride, int count, uint8_t *before)
+/* Cells side by side whose lines are searched at once. */
+enum { COLUMNS = 32 };
+
+/* Along x, where the only distances so far are 0 and 255: to the nearest 0. */
+static void relax_row(uint8_t *row, int count)
 {
-	for (int i = 0; i < count; i++)
-		before[i] = line[(size_t)i * stride];
-	for (int i = 0; i < count; i++) {
-		int best = before[i];
-		for (int away = 1; away < best; away++) {
-			const int left = i - away >= 0 ? before[i - away] : 255;
-			const int right = i + away < count ? before[i + away] : 255;
-			best = minimum(best, maximum(away, minimum(left, right)));
-		}
-		line[(size_t)i * stride] = (uint8_t)best;
+	for (int i = 1; i < count; i++)
+		row[i] = (uint8_t)minimum(row[i], row[i - 1] + 1);
+	for (int i = count - 2; i >= 0; i--)
+		row[i] = (uint8_t)minimum(row[i], row[i + 1] + 1);
+}
+
+static uint8_t greatest_of(const uint8_t values[COLUMNS])
+{
+	uint8_t most = 0;
+	for (int c = 0; c < COLUMNS; c++)
+		most = values[c] > most ? values[c] : most;
+	return most;
+}
+
+/* What lies `away` cells before and behind along the line. */
+static void relax_by(uint8_t values[COLUMNS], const uint8_t left[COLUMNS],
+		     const uint8_t right[COLUMNS], uint8_t away)
+{
+	for (int c = 0; c < COLUMNS; c++) {
+		const uint8_t near = left[c] < right[c] ? left[c] : right[c];
+		const uint8_t far = near > away ? near : away;
+		values[c] = values[c] < far ? values[c] : far;
 	}
 }
 
-static void relax_axis(const int dims[3], int axis, uint8_t *distance)
+/*
+ * Lines along y or z: d[i] = min over j of max(|i - j|, before[j]). The Chebyshev distance is
+ * separable in this form. A window that grows only while it can still win bounds the work by the
+ * answer.
+ */
+static void relax_lines(uint8_t *first, size_t stride, int count, int columns)
 {
-	const size_t strides[3] = {
-		1,
-		(size_t)dims[0],
-		(size_t)dims[0] * (size_t)dims[1],
-	};
-	const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-	uint8_t before[GZ_VOLUME_DIM_MAX / GZ_MACROCELL_EDGE];
-	for (int j = 0; j < dims[v]; j++)
-		for (int i = 0; i < dims[u]; i++)
-			relax_line(distance + (size_t)j * strides[v] + (size_t)i * strides[u],
-				   strides[axis], dims[axis], before);
+	uint8_t before[GZ_VOLUME_DIM_MAX / GZ_MACROCELL_EDGE][COLUMNS];
+	uint8_t none[COLUMNS];
+	memset(none, 255, sizeof none);
+	for (int i = 0; i < count; i++) {
+		memset(before[i], 0, sizeof before[i]);
+		memcpy(before[i], first + (size_t)i * stride, (size_t)columns);
+	}
+	for (int i = 0; i < count; i++) {
+		uint8_t values[COLUMNS];
+		memcpy(values, before[i], sizeof values);
+		for (int away = 1; away < greatest_of(values); away++)
+			relax_by(values, i - away >= 0 ? before[i - away] : none,
+				 i + away < count ? before[i + away] : none, (uint8_t)away);
+		memcpy(first + (size_t)i * stride, values, (size_t)columns);
+	}
 }
 
 /* Chebyshev distance to the nearest cell that is 0; the others are 255. */
 static void relax(const int dims[3], uint8_t *distance)
 {
-	for (int axis = 0; axis < 3; axis++)
-		relax_axis(dims, axis, distance);
+	const size_t row = (size_t)dims[0], slice = row * (size_t)dims[1];
+	for (size_t i = 0; i < (size_t)dims[1] * (size_t)dims[2]; i++)
+		relax_row(distance + i * row, dims[0]);
+	for (int x = 0; x < dims[0]; x += COLUMNS) {
+		const int columns = minimum(COLUMNS, dims[0] - x);
+		for (int z = 0; z < dims[2]; z++)
+			relax_lines(distance + (size_t)z * slice + (size_t)x, row, dims[1],
+				    columns);
+		for (int y = 0; y < dims[1]; y++)
+			relax_lines(distance + (size_t)y * row + (size_t)x, slice, dims[2],
+				    columns);
+	}
 }
 
 void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table)

@@ -57,7 +57,7 @@ static void ranges_hold_every_voxel_an_interpolation_can_touch(void **state)
 static void distances_equal_a_search_over_all_cells(void **state)
 {
 	(void)state;
-	struct small_scene scene = small_scene_waves(90, 70, 50, GZ_VOXEL_U8);
+	struct small_scene scene = small_scene_waves(290, 70, 50, GZ_VOXEL_U8);
 	struct gz_macrocells cells = { 0 };
 	static struct gz_transfer_table table;
 	/* only the brightest shows: few cells are occupied */
@@ -70,25 +70,31 @@ static void distances_equal_a_search_over_all_cells(void **state)
 	for (int z = 0; z < cells.dims[2]; z++)
 		for (int y = 0; y < cells.dims[1]; y++)
 			for (int x = 0; x < cells.dims[0]; x++) {
-				int nearest = 255;
+				int nearest = 255, nearest_empty = 255;
 				for (int k = 0; k < cells.dims[2]; k++)
 					for (int j = 0; j < cells.dims[1]; j++)
 						for (int i = 0; i < cells.dims[0]; i++) {
 							const size_t cell =
 								cell_index(&cells, i, j, k);
-							if (!gz_transfer_table_shows(
-								    &table,
-								    (double)cells.least[cell],
-								    (double)cells.greatest[cell]))
-								continue;
 							int d = abs(i - x);
 							d = abs(j - y) > d ? abs(j - y) : d;
 							d = abs(k - z) > d ? abs(k - z) : d;
-							nearest = d < nearest ? d : nearest;
+							int *least =
+								gz_transfer_table_shows(
+									&table,
+									(double)cells.least[cell],
+									(double)cells
+										.greatest[cell])
+									? &nearest
+									: &nearest_empty;
+							*least = d < *least ? d : *least;
 						}
 				occupied += nearest == 0;
 				assert_int_equal(cells.distance[cell_index(&cells, x, y, z)],
 						 nearest);
+				assert_int_equal(cells.reach[cell_index(&cells, x, y, z)],
+						 nearest ? GZ_REACH_BORDER + nearest
+							 : GZ_REACH_BORDER - nearest_empty);
 			}
 	assert_true(occupied > 0);
 	assert_true(occupied < cells.dims[0] * cells.dims[1] * cells.dims[2] / 2);
