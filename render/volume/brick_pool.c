@@ -10,7 +10,7 @@
 
 /* Chosen: enough to keep the threads reading through a frame of 100 ms, few enough that a new gaze
  * is answered at once. */
-#define ERRANDS_MAX 256
+#define ERRANDS_MAX 1024
 /* Chosen: one waits for the disk while the other checks. */
 #define FETCHERS 2
 /* Share of the rooms that coarse levels may keep for good, and the least number of rooms (chosen).
