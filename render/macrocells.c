@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/workers.h"
+
 static int minimum(int a, int b)
 {
 	return a < b ? a : b;
@@ -13,32 +15,56 @@ static int maximum(int a, int b)
 	return a > b ? a : b;
 }
 
-/* Least and greatest of one row of voxels. Written out by type, so that each is a plain loop that
- * compilers turn into vector code. */
-#define DEFINE_ROW_RANGE(name, type)                                               \
-	static void name(const void *voxels, size_t from, int count, float *least, \
-			 float *greatest)                                          \
-	{                                                                          \
-		const type *row = (const type *)voxels + from;                     \
-		type low = row[0], high = row[0];                                  \
-		for (int i = 1; i < count; i++) {                                  \
-			low = row[i] < low ? row[i] : low;                         \
-			high = row[i] > high ? row[i] : high;                      \
-		}                                                                  \
-		*least = (float)low < *least ? (float)low : *least;                \
-		*greatest = (float)high > *greatest ? (float)high : *greatest;     \
+/* Chosen: from here on, in voxels, threads are started for the work. */
+#define PARALLEL_FROM ((size_t)1 << 23)
+
+/* Of each column of several rows of voxels, the least and the greatest. Written out by type, so
+ * that each is a plain loop that compilers turn into vector code. */
+#define DEFINE_COLUMNS(name, type)                                                                \
+	static void name(const void *voxels, size_t from, int count, void *least, void *greatest) \
+	{                                                                                         \
+		const type *restrict row = (const type *)voxels + from;                           \
+		type *restrict low = least, *restrict high = greatest;                            \
+		for (int i = 0; i < count; i++) {                                                 \
+			low[i] = row[i] < low[i] ? row[i] : low[i];                               \
+			high[i] = row[i] > high[i] ? row[i] : high[i];                            \
+		}                                                                                 \
+	}                                                                                         \
+	static void name##_cell(const void *least, const void *greatest, int from, int to,        \
+				float *out_least, float *out_greatest)                            \
+	{                                                                                         \
+		type low = ((const type *)least)[from], high = ((const type *)greatest)[from];    \
+		for (int i = from + 1; i <= to; i++) {                                            \
+			const type l = ((const type *)least)[i];                                  \
+			const type h = ((const type *)greatest)[i];                               \
+			low = l < low ? l : low;                                                  \
+			high = h > high ? h : high;                                               \
+		}                                                                                 \
+		*out_least = (float)low;                                                          \
+		*out_greatest = (float)high;                                                      \
 	}
 
-DEFINE_ROW_RANGE(row_range_u8, uint8_t)
-DEFINE_ROW_RANGE(row_range_u16, uint16_t)
-DEFINE_ROW_RANGE(row_range_f32, float)
+DEFINE_COLUMNS(columns_u8, uint8_t)
+DEFINE_COLUMNS(columns_u16, uint16_t)
+DEFINE_COLUMNS(columns_f32, float)
 
-typedef void row_range(const void *voxels, size_t from, int count, float *least, float *greatest);
+/* How one type of voxel is gone through. */
+static const struct voxel_kind {
+	void (*columns)(const void *voxels, size_t from, int count, void *least, void *greatest);
+	void (*cell)(const void *least, const void *greatest, int from, int to, float *out_least,
+		     float *out_greatest);
+} voxel_kinds[GZ_VOXEL_TYPE_COUNT] = {
+	[GZ_VOXEL_U8] = { columns_u8, columns_u8_cell },
+	[GZ_VOXEL_U16] = { columns_u16, columns_u16_cell },
+	[GZ_VOXEL_F32] = { columns_f32, columns_f32_cell },
+};
 
-static row_range *const row_ranges[GZ_VOXEL_TYPE_COUNT] = {
-	[GZ_VOXEL_U8] = row_range_u8,
-	[GZ_VOXEL_U16] = row_range_u16,
-	[GZ_VOXEL_F32] = row_range_f32,
+/* What the threads that build cells share. */
+struct building {
+	const struct gz_volume *volume;
+	struct gz_macrocells *cells;
+	char *rows; /* of each thread: the least and the greatest of columns */
+	size_t row_bytes;
 };
 
 /* The voxels of a cell along one axis. */
@@ -48,25 +74,56 @@ static void cell_span(int cell, int dim, int *out_from, int *out_to)
 	*out_to = minimum(cell * GZ_MACROCELL_EDGE + GZ_MACROCELL_EDGE, dim - 1);
 }
 
-static void find_cell(const struct gz_volume *volume, struct gz_macrocells *cells,
-		      const int cell[3])
+/* A row of cells along x. */
+static void find_cells(const struct building *job, int y, int z, char *least, char *greatest)
 {
-	int from[3], to[3];
-	for (int axis = 0; axis < 3; axis++)
-		cell_span(cell[axis], volume->dims[axis], &from[axis], &to[axis]);
+	const struct gz_volume *volume = job->volume;
+	const struct voxel_kind *kind = &voxel_kinds[volume->type];
 	const size_t row = (size_t)volume->dims[0], slice = row * (size_t)volume->dims[1];
-	float least = 3.4e38F, greatest = -3.4e38F;
-	for (int z = from[2]; z <= to[2]; z++)
-		for (int y = from[1]; y <= to[1]; y++)
-			row_ranges[volume->type](volume->voxels,
-						 (size_t)z * slice + (size_t)y * row +
-							 (size_t)from[0],
-						 to[0] - from[0] + 1, &least, &greatest);
-	const size_t index = ((size_t)cell[2] * (size_t)cells->dims[1] + (size_t)cell[1]) *
-				     (size_t)cells->dims[0] +
-			     (size_t)cell[0];
-	cells->least[index] = least;
-	cells->greatest[index] = greatest;
+	int from[3], to[3];
+	cell_span(y, volume->dims[1], &from[1], &to[1]);
+	cell_span(z, volume->dims[2], &from[2], &to[2]);
+	const char *first =
+		(const char *)volume->voxels +
+		((size_t)from[2] * slice + (size_t)from[1] * row) * gz_voxel_size(volume->type);
+	memcpy(least, first, job->row_bytes);
+	memcpy(greatest, first, job->row_bytes);
+	for (int k = from[2]; k <= to[2]; k++)
+		for (int j = from[1]; j <= to[1]; j++)
+			kind->columns(volume->voxels, (size_t)k * slice + (size_t)j * row,
+				      volume->dims[0], least, greatest);
+	struct gz_macrocells *cells = job->cells;
+	size_t index = ((size_t)z * (size_t)cells->dims[1] + (size_t)y) * (size_t)cells->dims[0];
+	for (int x = 0; x < cells->dims[0]; x++, index++) {
+		cell_span(x, volume->dims[0], &from[0], &to[0]);
+		kind->cell(least, greatest, from[0], to[0], &cells->least[index],
+			   &cells->greatest[index]);
+	}
+}
+
+static void find_slice(void *user, size_t part, int worker)
+{
+	const struct building *job = user;
+	char *rows = job->rows + 2 * (size_t)worker * job->row_bytes;
+	for (int y = 0; y < job->cells->dims[1]; y++)
+		find_cells(job, y, (int)part, rows, rows + job->row_bytes);
+}
+
+static enum gz_result find_all(struct building *job, struct gz_workers *workers)
+{
+	const size_t threads = workers ? (size_t)gz_workers_count(workers) : 1;
+	const size_t slices = (size_t)job->cells->dims[2];
+	job->row_bytes = (size_t)job->volume->dims[0] * gz_voxel_size(job->volume->type);
+	job->rows = malloc(threads * 2 * job->row_bytes);
+	if (!job->rows)
+		return GZ_ERR_NO_MEM;
+	if (workers)
+		gz_workers_run(workers, find_slice, job, slices);
+	else
+		for (size_t z = 0; z < slices; z++)
+			find_slice(job, z, 0);
+	free(job->rows);
+	return GZ_OK;
 }
 
 static size_t cell_count(const struct gz_macrocells *cells)
@@ -96,11 +153,16 @@ enum gz_result gz_macrocells_build(const struct gz_volume *volume, struct gz_mac
 	const enum gz_result result = gz_macrocells_allocate(volume->dims, cells);
 	if (result != GZ_OK)
 		return result;
-	for (int z = 0; z < cells->dims[2]; z++)
-		for (int y = 0; y < cells->dims[1]; y++)
-			for (int x = 0; x < cells->dims[0]; x++)
-				find_cell(volume, cells, (const int[3]) { x, y, z });
-	return GZ_OK;
+	struct building job = { .volume = volume, .cells = cells };
+	struct gz_workers *workers = NULL;
+	/* Where no thread is to be had, the caller's does it. */
+	if (gz_volume_voxel_count(volume) >= PARALLEL_FROM)
+		(void)gz_workers_create(0, &workers);
+	const enum gz_result found = find_all(&job, workers);
+	gz_workers_destroy(&workers);
+	if (found != GZ_OK)
+		gz_macrocells_free(cells);
+	return found;
 }
 
 /* Cells side by side whose lines are searched at once. */
