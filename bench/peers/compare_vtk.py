@@ -3,6 +3,7 @@
 
     apt-get install python3-vtk9 python3-numpy zstd xvfb xauth
     xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene
+    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene --vtk gpu --backend gl
 
 Both cast one ray a pixel at the scene's sampling rate without shading while the camera turns by 0.01 degrees
 a frame, so that nothing is reused. Prints the median milliseconds of each, their ratio, and the peak
@@ -30,7 +31,8 @@ NUMPY_TYPES = {"uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
-    parser.add_argument("--mapper", choices=["cpu", "gpu"], default="cpu")
+    parser.add_argument("--vtk", choices=["cpu", "gpu"], default="cpu", help="VTK's ray caster")
+    parser.add_argument("--backend", choices=["cpu", "gl"], default="cpu", help="gazeview's")
     parser.add_argument("--size", default="1024x1024")
     parser.add_argument("--pairs", type=int, default=3, help="rounds of three frames each")
     parser.add_argument("--gazeview", default="build/release/view/gazeview")
@@ -179,7 +181,7 @@ def run_gazeview(arguments, frames):
     """Milliseconds of each frame but the first, and the first frame's picture."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([arguments.gazeview, "--headless", "--scene", arguments.scene, "--size", arguments.size,
-                        "--gaze", "centre", "--method", "standard", "--backend", "cpu", "--turn", "0.01",
+                        "--gaze", "centre", "--method", "standard", "--backend", arguments.backend, "--turn", "0.01",
                         "--frames", str(frames), "--out", folder + "/%d.png", "--stats", folder + "/stats.json"],
                        check=True, stdout=subprocess.DEVNULL)
         reader = vtk.vtkPNGReader()
@@ -193,7 +195,7 @@ def run_gazeview(arguments, frames):
 def main():
     arguments = read_arguments()
     width, height = [int(side) for side in arguments.size.split("x")]
-    peer = VtkWindow(Scene(arguments.scene), arguments.mapper, width, height)
+    peer = VtkWindow(Scene(arguments.scene), arguments.vtk, width, height)
     their_picture = peer.picture()
     ours, theirs = [], []
     for _ in range(arguments.pairs):
@@ -202,8 +204,8 @@ def main():
         ours += times
     error = numpy.mean((our_picture - their_picture) ** 2)
     psnr = 10 * math.log10(255 ** 2 / error) if error else math.inf
-    print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.mapper} {arguments.size}: {statistics.median(theirs):.1f} ms")
-    print(f"gazeview standard cpu {arguments.size}: {statistics.median(ours):.1f} ms")
+    print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.vtk} {arguments.size}: {statistics.median(theirs):.1f} ms")
+    print(f"gazeview standard {arguments.backend} {arguments.size}: {statistics.median(ours):.1f} ms")
     print(f"ratio {statistics.median(theirs) / statistics.median(ours):.2f}")
     print(f"psnr_db {psnr:.2f}")
 

@@ -128,7 +128,8 @@ static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct g
 	struct gl_renderer *gl = gl_of(renderer);
 	if (volume->bricks) {
 		gl->scene.volume = NULL;
-		gz_err(renderer->log, "a file of bricks is for the cpu backend: take --backend cpu");
+		gz_err(renderer->log,
+		       "a file of bricks is for the cpu backend: take --backend cpu");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	enum gz_result result = enter(gl);
