@@ -43,10 +43,9 @@ struct gz_gl_frame_block {
 	float dims[4]; /**< voxels */
 	float box[4];  /**< far corner: dims but for a coarser level of odd size */
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
-	float cell_last[4];                    /**< greatest index of a macrocell */
+	float cell_counts[4];                  /**< macrocells */
 	float background[4];                   /**< [0, 1] */
-	float transfer[4];                     /**< scale and bias from stored value to entry */
-	int32_t last[4];    /**< greatest index of the lower of two neighbouring voxels */
+	float transfer[4];  /**< scale and bias from stored value to share of the table */
 	uint32_t jitter[4]; /**< seed of gz_ray_jitter() */
 	uint32_t plan[4];   /**< layers; 1 for a pyramid; width; height */
 	float steps[GZ_PLAN_STEPS_MAX][4];          /**< world units, voxel lengths */

@@ -181,8 +181,7 @@ static void fill_volume(const struct gz_gl_scene *scene, int index, const struct
 		block->box[axis] = (float)box;
 		block->clip_least[axis] = (float)(clip->least[axis] * box);
 		block->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
-		block->last[axis] = dim > 1 ? dim - 2 : 0;
-		block->cell_last[axis] = (float)(scene->detail.cells[index].dims[axis] - 1);
+		block->cell_counts[axis] = (float)scene->detail.cells[index].dims[axis];
 	}
 }
 
@@ -194,8 +193,8 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
 	fill_volume(scene, level, &rays->clip, block);
 	block->jitter[0] = (uint32_t)rays->jitter;
-	block->transfer[0] = (float)scene->table.scale;
-	block->transfer[1] = (float)scene->table.bias;
+	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
+	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		block->steps[i][0] = (float)(length * voxel_length);

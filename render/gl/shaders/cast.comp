@@ -70,7 +70,7 @@ Ray set_up_ray(uvec2 at, float step_length)
 bool look_up_cell(Ray ray, float k, out float until)
 {
 	vec3 at = fma(vec3(k), ray.delta, ray.start);
-	vec3 cell = floor(clamp(at * (1.0 / float(GZ_MACROCELL_EDGE)), vec3(0.0), cell_last.xyz));
+	vec3 cell = floor(clamp(at * (1.0 / float(GZ_MACROCELL_EDGE)), vec3(0.0), top_cell));
 	int away = int(FETCH(reaches, ivec3(cell)).r) - GZ_REACH_BORDER;
 	float reach = float(abs(away));
 	vec3 edge = mix(cell + (1.0 - reach), cell + reach, greaterThan(ray.delta, vec3(0.0)));
@@ -160,8 +160,9 @@ uint march(Ray ray, int step_index, inout Light light)
 			composite(look.y, uintBitsToFloat(look.x), light);
 			samples++;
 			k += 1.0;
-			if (light.through <= GZ_TRANSMITTANCE_END)
-				return samples;
+			bool ends = light.through <= GZ_TRANSMITTANCE_END;
+			end = ends ? 0.0 : end;
+			ray.end = ends ? 0.0 : ray.end;
 		}
 	}
 	return samples;
@@ -214,6 +215,7 @@ void main()
 	if (tile.detail != detail || (tile.active_rays >> ray_index & 1U) == 0U)
 		return;
 	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
+	read_frame();
 	vec2 step_lengths = steps[tile.step].xy;
 	Ray ray = set_up_ray(at, step_lengths.x);
 	Light light = Light(vec3(0.0), 1.0);

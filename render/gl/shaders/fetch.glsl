@@ -29,10 +29,25 @@ layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bit
 layout(binding = 3) uniform usampler2DArray segments;
 #endif
 
+// What every sample needs of the frame, found once a ray: a processor reads a uniform block lane by lane, and
+// compilers take a mere copy of it for the block itself, so each of these is worked out.
+vec3 top_voxel;    // greatest index
+ivec3 lower_voxel; // greatest index of the lower of two neighbours
+vec3 top_cell;
+vec2 entry_map;    // scale and bias from stored value to entry and a half
+
+void read_frame()
+{
+	top_voxel = dims.xyz - 1.0;
+	lower_voxel = max(ivec3(dims.xyz) - 2, 0);
+	top_cell = cell_counts.xyz - 1.0;
+	entry_map = transfer_map.xy * float(GZ_TRANSFER_TABLE_SIZE - 1) + vec2(0.0, 0.5);
+}
+
 #ifdef NEAREST
 float sample_at(vec3 at)
 {
-	ivec3 place = ivec3(clamp(floor(at), vec3(0.0), dims.xyz - 1.0));
+	ivec3 place = ivec3(clamp(floor(at), vec3(0.0), top_voxel));
 #if VOXEL_BITS == 32
 	return FETCH(voxels, place).r;
 #else
@@ -58,9 +73,9 @@ vec4 square(ivec3 low, int high_x, int high_y)
 
 float sample_at(vec3 at)
 {
-	vec3 place = clamp(at - 0.5, vec3(0.0), dims.xyz - 1.0);
-	ivec3 low = min(ivec3(place), last_voxel.xyz);
-	ivec3 high = min(low + 1, ivec3(dims.xyz) - 1);
+	vec3 place = clamp(at - 0.5, vec3(0.0), top_voxel);
+	ivec3 low = min(ivec3(place), lower_voxel);
+	ivec3 high = min(low + 1, ivec3(top_voxel));
 	vec3 share = place - vec3(low);
 	vec4 near = square(low, high.x, high.y);
 	vec4 far = square(ivec3(low.xy, high.z), high.x, high.y);
@@ -73,8 +88,8 @@ float sample_at(vec3 at)
 // The transfer function's entry for a stored value.
 int entry_of(float stored)
 {
-	float entry = fma(stored, transfer_map.x, transfer_map.y);
-	return int(clamp(entry, 0.0, float(GZ_TRANSFER_TABLE_SIZE - 1)) + 0.5);
+	float entry = fma(stored, entry_map.x, entry_map.y);
+	return int(clamp(entry, 0.5, float(GZ_TRANSFER_TABLE_SIZE) - 0.5));
 }
 
 vec3 unpack_colour(uint colour)

@@ -8,10 +8,9 @@ layout(std140, binding = 0) uniform Frame
 	vec4 dims; // voxels
 	vec4 box;  // its far corner: dims, but for a coarser level of an odd size
 	vec4 clip_least, clip_greatest;
-	vec4 cell_last;
+	vec4 cell_counts;
 	vec4 background;
-	vec4 transfer_map;
-	ivec4 last_voxel;
+	vec4 transfer_map; // scale and bias from stored value to share of the table
 	uvec4 jitter; // seed, 0 = none
 	uvec4 plan; // layers, 1 for a pyramid, width, height
 	vec4 steps[GZ_PLAN_STEPS_MAX];
