@@ -130,7 +130,7 @@ void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 	}
 	normalise(normal);
 	normalise(half);
-	const double edge = 0.0625, weak = 0.006;
+	const double edge = 0.0625, weak = 0.02;
 	const double facing = clamp(dot(normal, to_eye) / edge, -1, 1);
 	const double d = fmax(facing * dot(normal, to_light), 0);
 	const double s = pow(fabs(dot(normal, half)), light->shininess) * fmin(d / edge, 1);
