@@ -55,7 +55,7 @@ static void between_rows(const struct span *span, const uint8_t *above, const ui
 }
 
 /* A point in both halves of a vector. */
-static inline pair_i16 load_twice(const uint16_t *point)
+static inline pair_i16 load_twice(const void *point)
 {
 	uint64_t half;
 	memcpy(&half, point, sizeof half);
@@ -63,43 +63,72 @@ static inline pair_i16 load_twice(const uint16_t *point)
 	return (pair_i16)(two_u64) { half, half };
 }
 
-/* Slopes from pixel to pixel. A slope that is no whole number is rounded to the nearest. */
-static inline pair_i16 slope_of(const struct span *span, pair_i16 difference)
+/* Slopes from pixel to pixel within each cell. A slope that is no whole number is rounded to the
+ * nearest. */
+static void find_slopes(const struct span *span, const uint16_t *points, int count,
+			int16_t *restrict out)
 {
-	if (span->shift >= 0)
-		return difference >> span->shift;
-	pair_i16 slope;
-	for (int i = 0; i < PAIR; i++) {
-		const float exact = (float)difference[i] / (float)span->spacing;
-		slope[i] = (int16_t)(exact < 0 ? exact - 0.5F : exact + 0.5F);
+	if (span->shift >= 0) {
+		for (int i = 0; i < count; i++)
+			out[i] = (int16_t)((int16_t)(points[i + CHANNELS] - points[i]) >>
+					   span->shift);
+		return;
 	}
-	return slope;
+	const int32_t share = (1 << 16) / span->spacing;
+	for (int i = 0; i < count; i++)
+		out[i] = (int16_t)(((int16_t)(points[i + CHANNELS] - points[i]) * share +
+				    (1 << 15)) >>
+				   16);
 }
 
-/* Pixels of one cell, two at a time: an odd spacing writes one more, which the next cell puts
- * right. */
-static inline void fill_cell(const struct span *span, const uint16_t *points, uint32_t *out)
+/* Pixels of cells in a row, two at a time: an odd spacing writes one more, which the next cell puts
+ * right. Inlined, so that a spacing known to the compiler costs no loop. */
+static inline __attribute__((always_inline)) void fill_cells(int spacing, const uint16_t *points,
+							     const int16_t *slopes, int cells,
+							     uint32_t *out)
 {
 	static const pair_i16 second = { 0, 0, 0, 0, -1, -1, -1, -1 };
-	const pair_i16 left = load_twice(points);
-	const pair_i16 slope = slope_of(span, load_twice(points + CHANNELS) - left);
 	const pair_u16 half = (pair_u16) { 0 } + (1U << (FRACTION_BITS - 1));
-	pair_u16 sum = (pair_u16)(left + (slope & second)) + half;
-	for (int x = 0; x < span->spacing; x += 2) {
-		const pair_u8 pixels = __builtin_convertvector(sum >> FRACTION_BITS, pair_u8);
-		memcpy(out + x, &pixels, sizeof pixels);
-		sum += (pair_u16)(slope + slope);
+	for (int i = 0; i < cells; i++, out += spacing) {
+		const pair_i16 slope = load_twice(slopes + (ptrdiff_t)CHANNELS * i);
+		const pair_i16 left = load_twice(points + (ptrdiff_t)CHANNELS * i);
+		pair_u16 sum = (pair_u16)(left + (slope & second)) + half;
+		for (int x = 0; x < spacing; x += 2) {
+			const pair_u8 pixels =
+				__builtin_convertvector(sum >> FRACTION_BITS, pair_u8);
+			memcpy(out + x, &pixels, sizeof pixels);
+			sum += (pair_u16)(slope + slope);
+		}
+	}
+}
+
+static void fill_run(int spacing, const uint16_t *points, const int16_t *slopes, int cells,
+		     uint32_t *out)
+{
+	switch (spacing) {
+	case 2:
+		fill_cells(2, points, slopes, cells, out);
+		return;
+	case 4:
+		fill_cells(4, points, slopes, cells, out);
+		return;
+	case 7:
+		fill_cells(7, points, slopes, cells, out);
+		return;
+	default:
+		fill_cells(spacing, points, slopes, cells, out);
+		return;
 	}
 }
 
 /* Those pixels of a cell that begins at pixel `cell_x` which are in [x0, x1). */
-static void fill_part(const struct span *span, const uint16_t *points, int cell_x, int x0, int x1,
-		      uint32_t *out)
+static void fill_part(const struct span *span, const uint16_t *points, const int16_t *slopes,
+		      int cell_x, int x0, int x1, uint32_t *out)
 {
 	uint32_t pixels[GZ_SPACING_MAX + 1];
 	const int from = cell_x > x0 ? cell_x : x0;
 	const int to = cell_x + span->spacing < x1 ? cell_x + span->spacing : x1;
-	fill_cell(span, points, pixels);
+	fill_cells(span->spacing, points, slopes, 1, pixels);
 	memcpy(out + (from - x0), pixels + (from - cell_x), (size_t)(to - from) * sizeof *out);
 }
 
@@ -126,17 +155,24 @@ void gz_reconstruct_span(const struct gz_lattice *lattice, int y, int x0, int x1
 	const struct span span = { lattice->spacing, shift_of(lattice->spacing) };
 	const int last = (x1 - 1) / span.spacing;
 	uint16_t points[CHANNELS * (CELLS_A_CHUNK + 1)];
+	int16_t slopes[CHANNELS * CELLS_A_CHUNK];
 	for (int column = x0 / span.spacing; column <= last; column += CELLS_A_CHUNK) {
 		const int left = last + 1 - column;
 		const int cells = left < CELLS_A_CHUNK ? left : CELLS_A_CHUNK;
 		load_chunk(lattice, &span, y, column, cells, points);
-		for (int i = 0; i < cells; i++) {
-			const int x = (column + i) * span.spacing;
-			const uint16_t *corner = points + (ptrdiff_t)CHANNELS * i;
-			if (x >= x0 && x + span.spacing < x1)
-				fill_cell(&span, corner, out + (x - x0));
-			else
-				fill_part(&span, corner, x, x0, x1, out);
-		}
+		find_slopes(&span, points, CHANNELS * cells, slopes);
+		/* The first cell and the last may be cut, and the last must not write past it. */
+		const int first_whole = column * span.spacing < x0;
+		const int whole = column + cells > last ? cells - 1 : cells;
+		if (first_whole < whole)
+			fill_run(span.spacing, points + (ptrdiff_t)CHANNELS * first_whole,
+				 slopes + (ptrdiff_t)CHANNELS * first_whole, whole - first_whole,
+				 out + ((column + first_whole) * span.spacing - x0));
+		if (first_whole)
+			fill_part(&span, points, slopes, column * span.spacing, x0, x1, out);
+		if (whole < cells && !(first_whole && cells == 1))
+			fill_part(&span, points + (ptrdiff_t)CHANNELS * whole,
+				  slopes + (ptrdiff_t)CHANNELS * whole,
+				  (column + whole) * span.spacing, x0, x1, out);
 	}
 }
