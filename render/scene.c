@@ -182,6 +182,7 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 		{ gz_ray_options, gz_ray_option_count, &settings->rays, NULL },
 		{ gz_foveation_options, gz_foveation_option_count, &settings->foveation, NULL },
 		{ gz_attention_options, gz_attention_option_count, &settings->attention, NULL },
+		{ gz_temporal_options, gz_temporal_option_count, &settings->temporal, NULL },
 	};
 	size_t count = room < GZ_SCENE_BINDINGS ? room : GZ_SCENE_BINDINGS;
 	memcpy(out_bindings, bindings, count * sizeof bindings[0]);

@@ -16,6 +16,7 @@
 #include "render/camera.h"
 #include "render/plan/plan.h"
 #include "render/renderer.h"
+#include "render/temporal.h"
 #include "render/transfer.h"
 #include "render/volume/volume.h"
 
@@ -34,6 +35,7 @@ struct gz_scene_settings {
 	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
 	struct gz_foveation foveation;
 	struct gz_attention_params attention;
+	struct gz_temporal_params temporal;
 	struct gz_display display;
 };
 
@@ -46,7 +48,7 @@ struct gz_scene {
 };
 
 /** Tables that gz_scene_bindings() gives. */
-#define GZ_SCENE_BINDINGS 4
+#define GZ_SCENE_BINDINGS 5
 
 /**
  * The tables over struct gz_scene_settings: "volume.file", "camera.eye", …

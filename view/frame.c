@@ -26,6 +26,8 @@ struct gz_frame_maker {
 	} spent; /* what the budget's times are of */
 	bool any_made;
 	struct gz_plan plan;
+	struct gz_temporal temporal;
+	struct gz_temporal_content content; /* of the frame in the making; its padding stays 0 */
 	struct gz_image cast;  /* at the rays' resolution, only where that is not the picture's */
 	struct gz_image image; /* the finished picture */
 };
@@ -106,15 +108,58 @@ static int cast_side(int side, double rate)
 	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
 }
 
+/* Whether and how earlier frames are kept: the request becomes that of a shifted plan. */
+static enum gz_result begin_keeping(struct gz_frame_maker *maker,
+				    const struct gz_scene_settings *settings,
+				    struct gz_plan_request *plan, struct gz_display *display)
+{
+	if (!settings->temporal.accumulate) {
+		gz_temporal_forget(&maker->temporal);
+		return GZ_OK;
+	}
+	if (maker->scene.volume.bricks) {
+		gz_err(maker->log, "temporal.accumulate: not with a file of bricks, which changes "
+				   "while it is looked at; set it to no");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	memcpy(&maker->content.camera, &settings->camera, sizeof settings->camera);
+	memcpy(&maker->content.rays, &settings->rays, sizeof settings->rays);
+	memcpy(&maker->content.foveation, &settings->foveation, sizeof settings->foveation);
+	return gz_temporal_begin(&maker->temporal, &maker->content, plan, display);
+}
+
+static enum gz_result cast_and_keep(struct gz_frame_maker *maker,
+				    const struct gz_frame_request *request, struct gz_image *target,
+				    struct gz_frame_stats *out_stats)
+{
+	enum gz_result r = gz_caster_render(&maker->caster, request->settings, &maker->plan, false,
+					    &maker->temporal.frame_image, out_stats);
+	int64_t start_ns = gz_clock_now_ns();
+	if (r == GZ_OK)
+		r = gz_temporal_end(&maker->temporal, &request->settings->temporal, &maker->content,
+				    &maker->plan, target);
+	out_stats->reconstruct_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return r;
+}
+
+bool gz_frame_settling(const struct gz_frame_maker *maker)
+{
+	return gz_temporal_settling(&maker->temporal);
+}
+
 /* Rays first, then, where the scene asks for more or fewer rays than pixels, the picture. */
 static enum gz_result cast_picture(struct gz_frame_maker *maker,
 				   const struct gz_frame_request *request,
 				   struct gz_frame_stats *out_stats)
 {
-	bool direct = maker->plan.width == request->width && maker->plan.height == request->height;
+	const struct gz_plan_view *view = &maker->plan.view;
+	bool direct = view->width == request->width && view->height == request->height;
 	struct gz_image *target = direct ? &maker->image : &maker->cast;
-	enum gz_result r = gz_caster_render(&maker->caster, request->settings, &maker->plan,
-					    direct && request->on_device, target, out_stats);
+	enum gz_result r =
+		request->settings->temporal.accumulate
+			? cast_and_keep(maker, request, target, out_stats)
+			: gz_caster_render(&maker->caster, request->settings, &maker->plan,
+					   direct && request->on_device, target, out_stats);
 	if (r != GZ_OK || direct)
 		return r;
 	int64_t start_ns = gz_clock_now_ns();
@@ -144,7 +189,12 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	plan.rays_per_px = rate;
 	plan.scale = maker->focus.scale;
 	plan.widen = maker->focus.widen;
-	enum gz_result r = gz_plan_update(&plan, &maker->plan);
+	struct gz_display display = *request->display;
+	enum gz_result r = begin_keeping(maker, request->settings, &plan, &display);
+	if (r == GZ_OK)
+		r = gz_plan_update(&plan, &maker->plan);
+	if (r == GZ_OK && request->settings->temporal.accumulate)
+		gz_temporal_place(&maker->temporal, &maker->plan);
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);
@@ -260,6 +310,7 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 		return;
 	gz_caster_free(&(*maker)->caster);
 	gz_plan_free(&(*maker)->plan);
+	gz_temporal_free(&(*maker)->temporal);
 	gz_image_free(&(*maker)->cast);
 	gz_image_free(&(*maker)->image);
 	gz_scene_free(&(*maker)->scene);

@@ -72,6 +72,11 @@ bool gz_frame_settled(const struct gz_frame_maker *maker);
  *  more frames will tell whether it must be. */
 bool gz_frame_refinable(const struct gz_frame_maker *maker);
 
+/** Whether further frames that ask for the same would still change the picture:
+ * temporal.accumulate.
+ */
+bool gz_frame_settling(const struct gz_frame_maker *maker);
+
 /**
  * Render one frame, sharp where gz_frame_attend() left it; before the first in the centre.
  *

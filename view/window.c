@@ -104,7 +104,8 @@ static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *ga
 {
 	bool moved = gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
 				     &gaze->display, gz_clock_now_ns());
-	return moved || !same_display(&gaze->display, &window->shown_display);
+	return moved || gz_frame_settling(window->maker) ||
+	       !same_display(&gaze->display, &window->shown_display);
 }
 
 static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze *gaze, int width,

@@ -340,6 +340,8 @@ static void cast_part(void *user, size_t part, int worker)
 		for (int ray = 0; ray < GZ_TILE_RAYS; ray++) {
 			int x, y;
 			tile_ray(job->plan, tile, ray, &x, &y);
+			x -= job->plan->view.shift[0];
+			y -= job->plan->view.shift[1];
 			rays.x[ray] = (float)x;
 			rays.y[ray] = (float)y;
 			rays.jitter[ray] = gz_ray_jitter(x, y, job->jitter);
@@ -381,7 +383,7 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 				 const struct gz_ray_params *rays, struct cast_job *job)
 {
 	const double pixel_lengths =
-		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->height);
+		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->view.height);
 	const bool coarser = rays->levels && rays->interpolation == GZ_INTERPOLATION_TRILINEAR &&
 			     wants_levels(job->plan, rays, pixel_lengths);
 	if (coarser)
@@ -413,7 +415,8 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 	if (!cpu->volume || !cpu->has_transfer)
 		return GZ_ERR_INVAL;
 	struct gz_ray_frame ray_frame;
-	enum gz_result result = gz_camera_rays(camera, plan->width, plan->height, &ray_frame);
+	enum gz_result result =
+		gz_camera_rays(camera, plan->view.width, plan->view.height, &ray_frame);
 	if (result == GZ_OK)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)

@@ -272,6 +272,17 @@ static enum gz_result deliver(struct gl_renderer *gl, const struct gz_plan *plan
 	return result;
 }
 
+/* The plan's pixel (0, 0) is the picture's -shift. */
+static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		rays->origin00[axis] -=
+			shift[0] * rays->origin_dx[axis] + shift[1] * rays->origin_dy[axis];
+		rays->direction00[axis] -=
+			shift[0] * rays->direction_dx[axis] + shift[1] * rays->direction_dy[axis];
+	}
+}
+
 static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_camera *camera,
 				const struct gz_ray_params *rays, const struct gz_plan *plan,
 				struct gz_image *image, struct gz_frame_stats *out_stats)
@@ -282,7 +293,9 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 		return GZ_ERR_INVAL;
 	enum gz_result result = refuse(gl, rays);
 	if (result == GZ_OK)
-		result = gz_camera_rays(camera, plan->width, plan->height, &world);
+		result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
+	if (result == GZ_OK)
+		shift_rays(plan->view.shift, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)

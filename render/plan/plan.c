@@ -68,6 +68,7 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	gz_plan_context_make(request, &context);
 	plan->width = request->width;
 	plan->height = request->height;
+	plan->view = (struct gz_plan_view) { request->width, request->height, { 0, 0 } };
 	plan->filter = (enum gz_filter)request->foveation->filter;
 	plan->tile_count = 0;
 	plan->layer_count = 0;

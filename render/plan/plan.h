@@ -205,10 +205,18 @@ struct gz_plan_request {
 	double widen;
 };
 
+/** Where a plan's pixels lie in the picture that the camera frames: the plan's pixel (x, y) is the
+ *  picture's (x - shift[0], y - shift[1]). */
+struct gz_plan_view {
+	int width, height; /**< of the picture */
+	int shift[2];
+};
+
 /** A plan. Zero-initialised is empty; keep it from frame to frame so that its arrays are reused,
  *  and one for each kind of frame, so that a plan that nothing has changed is not made again. */
 struct gz_plan {
 	int width, height;
+	struct gz_plan_view view; /**< the same size and no shift, unless temporal.h says so */
 	double focus_px[2]; /**< what it was made for: the gaze, or the centre where that is lost */
 	enum gz_reconstruction reconstruction;
 	enum gz_filter filter; /**< of a pyramid */

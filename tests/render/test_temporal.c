@@ -1,0 +1,272 @@
+/* Accumulation over frames: what it reaches, and that nothing of it stays where it should not. */
+#include "check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "render/temporal.h"
+#include "small_scene.h"
+
+enum { WIDTH = 230, HEIGHT = 150 };
+
+/* A scene whose frames are kept, and the same without. */
+struct bench {
+	struct small_scene scene;
+	struct gz_renderer *renderer;
+	struct gz_temporal temporal;
+	struct gz_temporal_params params;
+	struct gz_temporal_content content;
+	struct gz_plan plan;
+	struct gz_image kept, alone, full;
+};
+
+static void begin(struct bench *bench)
+{
+	memset(bench, 0, sizeof *bench);
+	bench->scene = small_scene_waves(40, 44, 36, GZ_VOXEL_U8);
+	bench->scene.display = gz_display_default(WIDTH, HEIGHT);
+	/* Small pixels and an eye that loses acuity fast, so that a small picture has all spacings.
+	 */
+	bench->scene.display.mm[0] = 0.1 * WIDTH;
+	bench->scene.display.mm[1] = 0.1 * HEIGHT;
+	bench->scene.display.distance_mm = 300;
+	bench->scene.foveation.acuity_slope = 0.15;
+	bench->scene.gaze = (struct gz_point) { 0.4F, 0.45F };
+	bench->scene.foveation.method = GZ_METHOD_ACUITY;
+	bench->scene.foveation.step_rule = GZ_STEP_NONE;
+	bench->renderer = small_scene_renderer(&bench->scene, 2, NULL);
+	bench->params = gz_temporal_default();
+	bench->params.accumulate = true;
+}
+
+static void end(struct bench *bench)
+{
+	gz_temporal_free(&bench->temporal);
+	gz_plan_free(&bench->plan);
+	gz_image_free(&bench->kept);
+	gz_image_free(&bench->alone);
+	gz_image_free(&bench->full);
+	gz_renderer_destroy(&bench->renderer);
+	small_scene_free(&bench->scene);
+}
+
+static void keep_frame(struct bench *bench)
+{
+	const struct small_scene *scene = &bench->scene;
+	memcpy(&bench->content.camera, &scene->camera, sizeof scene->camera);
+	memcpy(&bench->content.rays, &scene->rays, sizeof scene->rays);
+	memcpy(&bench->content.foveation, &scene->foveation, sizeof scene->foveation);
+	struct gz_display display = scene->display;
+	struct gz_plan_request request = gz_plan_request_make(&scene->foveation, &scene->display,
+							      scene->gaze, WIDTH, HEIGHT);
+	assert_int_equal(gz_temporal_begin(&bench->temporal, &bench->content, &request, &display),
+			 GZ_OK);
+	assert_int_equal(gz_plan_update(&request, &bench->plan), GZ_OK);
+	gz_temporal_place(&bench->temporal, &bench->plan);
+	assert_int_equal(gz_renderer_render(bench->renderer, &scene->camera, &scene->rays,
+					    &bench->plan, &bench->temporal.frame_image, NULL),
+			 GZ_OK);
+	assert_int_equal(gz_temporal_end(&bench->temporal, &bench->params, &bench->content,
+					 &bench->plan, &bench->kept),
+			 GZ_OK);
+	assert_int_equal(bench->kept.width, WIDTH);
+	assert_int_equal(bench->kept.height, HEIGHT);
+}
+
+static void render_full(struct bench *bench)
+{
+	struct small_scene full = bench->scene;
+	full.foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(bench->renderer, &full, WIDTH, HEIGHT, &bench->full, NULL);
+}
+
+/* Root of the mean squared difference, grey levels. */
+static double error(const struct gz_image *a, const struct gz_image *b)
+{
+	double sum = 0;
+	for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
+		sum += (a->pixels[i] - b->pixels[i]) * (a->pixels[i] - b->pixels[i]);
+	return sqrt(sum / (3 * WIDTH * HEIGHT));
+}
+
+static void still_picture_converges_to_standard(void **state)
+{
+	(void)state;
+	struct bench bench;
+	begin(&bench);
+	render_full(&bench);
+	double last = INFINITY, first = 0;
+	for (int frame = 0; frame < GZ_TEMPORAL_SHIFTS * GZ_TEMPORAL_SHIFTS; frame++) {
+		keep_frame(&bench);
+		const double now = error(&bench.kept, &bench.full);
+		first = frame == 0 ? now : first;
+		if (frame % 32 == 0) {
+			if (now > last)
+				fail_msg("frame %d: error %.4f, before %.4f", frame, now, last);
+			last = now;
+		}
+	}
+	int x, y;
+	const int most = image_difference(&bench.kept, &bench.full, &x, &y);
+	if (first < 0.5 || most != 0)
+		fail_msg("first error %.3f; at the end pixel %d %d differs by %d", first, x, y,
+			 most);
+	assert_false(gz_temporal_settling(&bench.temporal));
+	end(&bench);
+}
+
+static void fovea_is_that_of_standard_in_every_frame(void **state)
+{
+	(void)state;
+	struct bench bench;
+	begin(&bench);
+	for (int frame = 0; frame < 12; frame++) {
+		if (frame >= 6)
+			gz_camera_turn(&bench.scene.camera, 1);
+		render_full(&bench);
+		keep_frame(&bench);
+		const int centre_x = (int)(0.4 * WIDTH), centre_y = (int)(0.45 * HEIGHT);
+		for (int y = centre_y - 4; y < centre_y + 4; y++)
+			assert_memory_equal(bench.kept.pixels + 4 * (y * WIDTH + centre_x - 4),
+					    bench.full.pixels + 4 * (y * WIDTH + centre_x - 4),
+					    4 * 8);
+	}
+	end(&bench);
+}
+
+/* What may change between two frames that share nothing. */
+static void change(struct bench *bench, int what)
+{
+	struct small_scene *scene = &bench->scene;
+	switch (what) {
+	case 0:
+		scene->rays.background[0] = 0.5;
+		break;
+	case 1:
+		scene->rays.clip.least[0] = 0.5;
+		break;
+	case 2:
+		scene->rays.interpolation = GZ_INTERPOLATION_NEAREST;
+		break;
+	case 3:
+		scene->foveation.filter = GZ_FILTER_BILINEAR;
+		break;
+	case 4:
+		scene->foveation.method = GZ_METHOD_MDC;
+		break;
+	default: /* volume or transfer function, of which the caller tells */
+		bench->content.serial++;
+		break;
+	}
+}
+
+static void nothing_stays_after_any_change(void **state)
+{
+	(void)state;
+	for (int what = 0; what < 6; what++) {
+		struct bench bench, fresh;
+		begin(&bench);
+		begin(&fresh);
+		for (int frame = 0; frame < 5; frame++)
+			keep_frame(&bench);
+		change(&bench, what);
+		change(&fresh, what);
+		for (int frame = 0; frame < 3; frame++) {
+			keep_frame(&bench);
+			keep_frame(&fresh);
+			int x, y;
+			const int most = image_difference(&bench.kept, &fresh.kept, &x, &y);
+			if (most != 0)
+				fail_msg("change %d, frame %d: pixel %d %d differs by %d", what,
+					 frame, x, y, most);
+		}
+		end(&bench);
+		end(&fresh);
+	}
+}
+
+/* Mean error with and without while the camera turns. */
+static void turn(double deg, double *out_kept, double *out_alone)
+{
+	enum { BEFORE = 8, FRAMES = 20 };
+	struct bench bench;
+	begin(&bench);
+	*out_kept = *out_alone = 0;
+	for (int frame = 0; frame < FRAMES; frame++) {
+		gz_camera_turn(&bench.scene.camera, deg);
+		keep_frame(&bench);
+		if (frame < BEFORE)
+			continue;
+		render_full(&bench);
+		small_scene_render(bench.renderer, &bench.scene, WIDTH, HEIGHT, &bench.alone, NULL);
+		*out_kept += error(&bench.kept, &bench.full) / (FRAMES - BEFORE);
+		*out_alone += error(&bench.alone, &bench.full) / (FRAMES - BEFORE);
+	}
+	end(&bench);
+}
+
+static void turning_camera_has_less_error_than_without(void **state)
+{
+	(void)state;
+	/* By speed: the share of the error that may be left. */
+	static const struct {
+		double deg, share;
+	} cases[] = { { 0.01, 0.8 }, { 0.1, 0.85 }, { 0.3, 1 }, { 1, 1.02 } };
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		double kept, alone;
+		turn(cases[i].deg, &kept, &alone);
+		if (kept >= cases[i].share * alone)
+			fail_msg("%g degrees a frame: error %.4f with, %.4f without", cases[i].deg,
+				 kept, alone);
+	}
+}
+
+static void leap_of_the_camera_leaves_no_ghost(void **state)
+{
+	(void)state;
+	struct bench bench;
+	begin(&bench);
+	for (int frame = 0; frame < 5; frame++)
+		keep_frame(&bench);
+	gz_camera_turn(&bench.scene.camera, 70);
+	render_full(&bench);
+	small_scene_render(bench.renderer, &bench.scene, WIDTH, HEIGHT, &bench.alone, NULL);
+	for (int frame = 0; frame < 4; frame++) {
+		keep_frame(&bench);
+		const double kept = error(&bench.kept, &bench.full);
+		const double alone = error(&bench.alone, &bench.full);
+		if (kept > 1.1 * alone)
+			fail_msg("frame %d: error %.3f, %.3f without", frame, kept, alone);
+	}
+	end(&bench);
+}
+
+static void picture_too_large_to_be_shifted_is_refused(void **state)
+{
+	(void)state;
+	struct bench bench;
+	begin(&bench);
+	struct gz_display display = bench.scene.display;
+	struct gz_plan_request request =
+		gz_plan_request_make(&bench.scene.foveation, &bench.scene.display, bench.scene.gaze,
+				     GZ_IMAGE_SIDE_MAX, 10);
+	assert_int_equal(gz_temporal_begin(&bench.temporal, &bench.content, &request, &display),
+			 GZ_ERR_INVAL);
+	assert_int_equal(request.width, GZ_IMAGE_SIDE_MAX);
+	end(&bench);
+}
+
+int main(void)
+{
+	if (!small_scene_backend_runs())
+		return 77;
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(still_picture_converges_to_standard),
+		cmocka_unit_test(fovea_is_that_of_standard_in_every_frame),
+		cmocka_unit_test(nothing_stays_after_any_change),
+		cmocka_unit_test(turning_camera_has_less_error_than_without),
+		cmocka_unit_test(leap_of_the_camera_leaves_no_ghost),
+		cmocka_unit_test(picture_too_large_to_be_shifted_is_refused),
+	};
+	return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
+}
