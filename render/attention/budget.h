@@ -5,10 +5,10 @@
  *
  * Scales are rungs, so that a frame's jitter changes no picture. Too slow is seen as soon as it is
  * certain (3 of the last 40 frames, that is more than 5 %), and answered at once by as many rungs
- * as the frames were too slow. A finer rung is tried after 40 frames that would have been fast
- * enough had each of them cost what one rung costs at most; where that failed, or slow frames were
- * strewn among fast ones, not again before the frames are clearly cheaper or, each time, twice as
- * many have passed.
+ * as the frames were too slow, and twice as far where that did not help. A finer rung is tried
+ * after 40 frames that left room for what a rung costs at most. Where that fails, or slow frames
+ * are strewn among fast ones, it is not tried again before the frames are clearly cheaper or, each
+ * time, twice as many have passed.
  */
 #ifndef GZ_RENDER_BUDGET_H
 #define GZ_RENDER_BUDGET_H
