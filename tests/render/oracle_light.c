@@ -221,7 +221,7 @@ struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
 		lengths[axis] = grid.edge[axis] * ratio;
 	}
 	const int *dims = grid.dims;
-	const size_t count = (size_t)(dims[0] * dims[1] * dims[2]);
+	const size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
 	double *filled = malloc(count * sizeof *filled);
 	grid.cells = malloc(count * sizeof *grid.cells);
 	for (int i = 0; i < (int)count; i++) {

@@ -170,6 +170,59 @@ static void shading_with_clip_and_jitter_equals_the_oracle(void **state)
 	}
 }
 
+static void shading_of_opaque_transparent_and_spiky_matter_equals_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene opaque = lit_waves(20, 24, 22, GZ_VOXEL_U8);
+	for (size_t i = 0; i < opaque.transfer.count; i++)
+		opaque.transfer.points[i].opacity = 1;
+	opaque.rays.light.occlusion = 1;
+	oracle_check(&opaque, 41, 37);
+	struct small_scene transparent = lit_waves(20, 24, 22, GZ_VOXEL_U8);
+	for (size_t i = 0; i < transparent.transfer.count; i++)
+		transparent.transfer.points[i].opacity = 0;
+	transparent.rays.background[1] = 0.5;
+	transparent.rays.light.occlusion = 1;
+	oracle_check(&transparent, 41, 37);
+	/* One entry of the table wide, at an entry, and held where data are whole numbers: voxels
+	 * hit it or miss it, whatever the rounding. */
+	struct small_scene spike = lit_waves(20, 24, 22, GZ_VOXEL_U8);
+	spike.volume.stored_min = 0;
+	spike.volume.stored_max = 255; /* entry 2184 is that of 136 */
+	const double entry = 1.0 / (GZ_TRANSFER_TABLE_SIZE - 1);
+	const double value = 2184 * entry;
+	spike.rays.interpolation = GZ_INTERPOLATION_NEAREST;
+	spike.transfer = (struct gz_transfer) {
+		.count = 3,
+		.points = { { value - entry, { 1, 0.5, 0.2 }, 0 },
+			    { value, { 1, 0.5, 0.2 }, 1 },
+			    { value + entry, { 1, 0.5, 0.2 }, 0 } },
+	};
+	oracle_check_but(&spike, 41, 37, 4);
+	small_scene_free(&spike);
+}
+
+static void shading_with_up_along_the_view_shows_a_picture(void **state)
+{
+	(void)state;
+	/* The camera's axes, and with them the light, are those of the axis put in its place. */
+	struct small_scene scene = lit_waves(24, 20, 27, GZ_VOXEL_U8);
+	struct gz_image degenerate = { 0 }, given = { 0 };
+	look_from(&scene, 0, -2, 0);
+	memcpy(scene.camera.up, (double[3]) { 0, 3, 0 }, 3 * sizeof(double));
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 60, 50, &degenerate, NULL);
+	memcpy(scene.camera.up, (double[3]) { 1, 0, 0 }, 3 * sizeof(double));
+	small_scene_render(renderer, &scene, 60, 50, &given, NULL);
+	assert_memory_equal(degenerate.pixels, given.pixels, 60 * 50 * 4);
+	assert_true(degenerate.pixels[4 * (25 * 60 + 30)] > 0);
+	gz_renderer_destroy(&renderer);
+	gz_image_free(&degenerate);
+	gz_image_free(&given);
+	small_scene_free(&scene);
+}
+
 static void shading_of_preintegrated_segments_equals_the_oracle(void **state)
 {
 	(void)state;
@@ -441,6 +494,8 @@ int main(void)
 		cmocka_unit_test(shading_of_flat_and_single_voxels_equals_the_oracle),
 		cmocka_unit_test(shading_with_a_given_range_and_falling_slope_equals_the_oracle),
 		cmocka_unit_test(shading_with_clip_and_jitter_equals_the_oracle),
+		cmocka_unit_test(shading_of_opaque_transparent_and_spiky_matter_equals_the_oracle),
+		cmocka_unit_test(shading_with_up_along_the_view_shows_a_picture),
 		cmocka_unit_test(shading_of_preintegrated_segments_equals_the_oracle),
 		cmocka_unit_test(occlusion_of_every_voxel_type_equals_the_oracle),
 		cmocka_unit_test(occlusion_of_any_radius_equals_the_oracle),
