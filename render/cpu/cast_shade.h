@@ -55,9 +55,10 @@ SIMD vf clamp(vf x, vf least, vf greatest)
 	return vf_min(vf_max(x, least), greatest);
 }
 
-/* The gradient at places counted from the first datum. */
-SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			const vf at[3], vm mask, vf gradient[3])
+/* The gradient's differences at places counted from the first datum, by two samples along each
+ * axis. */
+SIMD void difference_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const vf at[3], vm mask, vf difference[3])
 {
 	for (int axis = 0; axis < 3; axis++) {
 		vf side[2];
@@ -67,8 +68,80 @@ SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int
 			side[i] = nearest ? sample_nearest(cast, type, there, mask)
 					  : sample_trilinear(cast, type, there, mask);
 		}
-		gradient[axis] = (side[1] - side[0]) * vf_set(cast->light.gradient_scale[axis]);
+		difference[axis] = side[1] - side[0];
 	}
+}
+
+/* Four voxels of a row, beginning before the index. */
+SIMD void load_four(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask,
+		    vf row[4])
+{
+	const vi first = vi_add(index, vi_set(-1));
+	if (type == GZ_VOXEL_U8) {
+		const vi four = vi_gather(cast->voxels, first, 1, mask);
+		row[0] = vf_from_i(vi_and(four, vi_set(0xFF)));
+		row[1] = vf_from_i(vi_and(vi_shift_right(four, 8), vi_set(0xFF)));
+		row[2] = vf_from_i(vi_and(vi_shift_right(four, 16), vi_set(0xFF)));
+		row[3] = vf_from_i(vi_shift_right(four, 24));
+	} else {
+		load_pair(cast, type, first, mask, &row[0], &row[1]);
+		load_pair(cast, type, vi_add(index, vi_set(1)), mask, &row[2], &row[3]);
+	}
+}
+
+/* The same trilinear, where all that is needed lies within the data: samples a voxel apart share
+ * most of their voxels. */
+SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
+			    vm mask, vf difference[3])
+{
+	vf share[3], value[4], along[4];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
+	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
+	const vi down_y = vi_set(-cast->stride[1]), down_z = vi_set(-cast->stride[2]);
+	const vi first = vi_add(index[0], vi_add(vi_mul(index[1], up_y), vi_mul(index[2], up_z)));
+	const vi rows[4] = { first, vi_add(first, up_y), vi_add(first, up_z),
+			     vi_add(vi_add(first, up_y), up_z) };
+	for (int i = 0; i < 4; i++) { /* bit 0: y, bit 1: z */
+		vf four[4];
+		load_four(cast, type, rows[i], mask, four);
+		value[i] = mix(four[1], four[2], share[0]);
+		along[i] = mix(four[2], four[3], share[0]) - mix(four[0], four[1], share[0]);
+	}
+	vf across[2], before[2], behind[2];
+	for (int i = 0; i < 2; i++) {
+		const vf low = load_row(cast, type, vi_add(rows[2 * i], down_y), mask, share[0]);
+		const vf high = load_row(cast, type, vi_add(rows[2 * i + 1], up_y), mask, share[0]);
+		across[i] =
+			mix(value[2 * i + 1], high, share[1]) - mix(low, value[2 * i], share[1]);
+		before[i] = load_row(cast, type, vi_add(rows[i], down_z), mask, share[0]);
+		behind[i] = load_row(cast, type, vi_add(rows[i + 2], up_z), mask, share[0]);
+	}
+	const vf lower = mix(value[0], value[1], share[1]);
+	const vf upper = mix(value[2], value[3], share[1]);
+	difference[0] =
+		mix(mix(along[0], along[1], share[1]), mix(along[2], along[3], share[1]), share[2]);
+	difference[1] = mix(across[0], across[1], share[2]);
+	difference[2] = mix(upper, mix(behind[0], behind[1], share[1]), share[2]) -
+			mix(mix(before[0], before[1], share[1]), lower, share[2]);
+}
+
+/* The gradient at places counted from the first datum. */
+SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			const vf at[3], vm mask, vf gradient[3])
+{
+	vm outside = vm_but(mask, mask); /* less than a voxel, and rounding, from the last datum */
+	for (int axis = 0; axis < 3; axis++)
+		outside =
+			vm_or(outside, vm_or(vf_less(at[axis], vf_set(1)),
+					     vf_less(vf_set(cast->dims[axis] - 2.01F), at[axis])));
+	if (nearest || cast->bricks.table || vm_any(vm_and(mask, outside)))
+		difference_samples(cast, type, nearest, at, mask, gradient);
+	else
+		difference_voxels(cast, type, at, mask, gradient);
+	for (int axis = 0; axis < 3; axis++)
+		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }
 
 /* What lies around, at places counted from the first datum: trilinear in the grid of occlusion. */
