@@ -104,6 +104,26 @@ static void picture_of_all_bricks_is_that_of_the_volume_in_memory(void **state)
 	}
 }
 
+static void shaded_clipped_and_preintegrated_it_is_the_same(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(70, 65, 50, GZ_VOXEL_U16);
+	struct small_scene bricks = as_bricks(&scene, 0);
+	scene.rays.shading = GZ_SHADING_GRADIENT;
+	scene.rays.clip.least[0] = 0.2;
+	scene.rays.clip.greatest[2] = 0.7;
+	bricks.rays = scene.rays;
+	check_same(&scene, &bricks, "auto", "shaded");
+	check_same(&scene, &bricks, "portable", "shaded");
+	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	scene.rays.shading = GZ_SHADING_NONE;
+	bricks.rays = scene.rays;
+	check_same(&scene, &bricks, "auto", "pre-integrated");
+	check_same(&scene, &bricks, "portable", "pre-integrated");
+	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
 static void levels_of_detail_are_those_of_the_volume_in_memory(void **state)
 {
 	(void)state;
@@ -359,6 +379,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(picture_of_all_bricks_is_that_of_the_volume_in_memory),
+		cmocka_unit_test(shaded_clipped_and_preintegrated_it_is_the_same),
 		cmocka_unit_test(levels_of_detail_are_those_of_the_volume_in_memory),
 		cmocka_unit_test(eye_inside_sees_the_same),
 		cmocka_unit_test(picture_is_whole_from_the_first_and_sharper_later),
