@@ -145,11 +145,13 @@ static void extend_beyond_rim(const struct patch *patch)
 {
 	for (int i = 1; i <= REACH; i++)
 		for (int y = patch->y0; y < patch->y1; y++) {
+			const int right = patch->x1 - 1 + i;
 			if (patch->x0 == 0)
-				*at(patch, -i, y) = *at(patch, mirrored(-i, patch->columns), y);
+				memcpy(at(patch, -i, y), at(patch, mirrored(-i, patch->columns), y),
+				       4);
 			if (patch->x1 == patch->columns)
-				*at(patch, patch->x1 - 1 + i, y) =
-					*at(patch, mirrored(patch->x1 - 1 + i, patch->columns), y);
+				memcpy(at(patch, right, y),
+				       at(patch, mirrored(right, patch->columns), y), 4);
 		}
 	const size_t row_bytes = (size_t)(patch->x1 - patch->x0 + 2 * REACH) * 4;
 	for (int i = 1; i <= REACH; i++) {
@@ -209,13 +211,15 @@ static void fill_quincunx(struct square *square, int level)
 	const int left = patch->x0 == 0 ? 0 : patch->x0 + REACH;
 	const int right = patch->x1 == patch->columns ? patch->x1 : patch->x1 - REACH;
 	enum fill fill;
-	for (int y = top; y < bottom; y++)
+	for (int y = top, below; y < bottom; y = below) {
+		below = y - y % BLOCK + BLOCK < bottom ? y - y % BLOCK + BLOCK : bottom;
 		for (int x = left, end; x < right; x = end) {
 			end = run_end(square, level, x, y, &fill);
 			end = end < right ? end : right;
-			if (fill == FILL_QUINCUNX)
-				fill_quincunx_row(square, level, x, end, y);
+			for (int row = y; row < below && fill == FILL_QUINCUNX; row++)
+				fill_quincunx_row(square, level, x, end, row);
 		}
+	}
 }
 
 static void fill_level(struct square *square, int level)

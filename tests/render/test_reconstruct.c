@@ -201,13 +201,16 @@ static struct reference *make_reference(const struct scene *scene)
 		const size_t count = (size_t)lattice->columns * (size_t)lattice->rows;
 		levels[i] = (struct reference) { lattice->columns, lattice->rows, malloc(count * 4),
 						 calloc(count, 1) };
+		assert_non_null(levels[i].points);
+		assert_non_null(levels[i].known);
 		memcpy(levels[i].points, lattice->points, count * 4);
 	}
 	for (size_t t = 0; t < plan->tile_count; t++)
 		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
 			int x, y;
 			ray_place(plan, &plan->tiles[t], i, &x, &y);
-			for (int l = plan->tiles[t].layer; l < plan->layer_count; l++) {
+			for (int l = plan->tiles[t].layer; l < plan->layer_count && levels[l].known;
+			     l++) {
 				const int spacing = plan->layers[l].spacing;
 				if (x % spacing == 0 && y % spacing == 0 &&
 				    x / spacing < levels[l].columns && y / spacing < levels[l].rows)
