@@ -35,12 +35,13 @@ SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm ask
 	*k = vf_select(empty, *k + ahead, *k);
 }
 
-/* Whole segments from k on, each ray at its own. Which sample comes next depends on the cells
- * alone, not on what samples show, so that one need not be finished before the next begins. */
+/* All whole segments, each ray for itself. Which sample comes next depends on the cells alone, not
+ * on what samples show, so that one need not be finished before the next begins. */
 SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			  const struct look_up *look_up, int step, const struct rays *rays, vf k,
+			  const struct look_up *look_up, int step, const struct rays *rays,
 			  vm alive, struct light *light)
 {
+	vf k = rays->first + vf_set(0.5F);
 	const vf end = rays->end; /* k + 1/2 <= end */
 	vf until = vf_set(-1);    /* samples before it are taken */
 	uint32_t samples = 0;
@@ -75,16 +76,14 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		    const struct rays *rays, struct light *light)
 {
 	const struct look_up look_up = look_up_of(cast, type, nearest);
-	vf k = rays->first + vf_set(0.5F);
-	vm alive = vm_and(rays->hit, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
-	uint32_t samples = 0;
+	const vm alive = vm_and(rays->hit, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	if (!vm_any(alive))
 		return 0;
 #ifdef SIMD_BLOCKS
 	if (!nearest && blocks_fit(cast))
-		samples = march_together(cast, type, &look_up, step, rays, &k, &alive, light);
+		return march_together(cast, type, &look_up, step, rays, alive, light);
 #endif
-	return samples + march_apart(cast, type, nearest, &look_up, step, rays, k, alive, light);
+	return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
 }
 
 /* A part of a segment, at either end of the whole ones: around k, of a length in steps. */

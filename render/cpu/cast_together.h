@@ -14,7 +14,7 @@
 #include "render/cpu/cast_skip.h"
 
 /* Samples that no block serves, in excess of those one does, after which a tile's rays are taken to
- * be too far apart. Chosen: a tile that crosses the box's edge recovers. */
+ * be too far apart: gathers serve the rest. Chosen: a tile that crosses the box's edge recovers. */
 enum { TOGETHER_PATIENCE = 4 };
 
 /* The first sample of the ray that has its own first, and those of the others that are level with
@@ -32,7 +32,7 @@ SIMD float ask_together(const struct gz_cast *cast, const struct rays *rays, vf 
 {
 	vf leave;
 	const vm full = vm_but(going, look_up_cell(cast, rays, k, going, &leave));
-	const vf ahead = vf_max(vf_ceil(leave - k), vf_set(1));
+	const vf ahead = vf_max(vf_ceil(vf_min(leave, rays->end) - k), vf_set(1));
 	return vm_any(full) ? -_mm512_mask_reduce_max_ps(full, ahead)
 			    : _mm512_mask_reduce_min_ps(going, ahead);
 }
@@ -58,6 +58,8 @@ SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, cons
 	vf at[3], places[3];
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(company->k, rays->delta[axis], rays->datum[axis]);
+	if (__builtin_expect(company->misses >= TOGETHER_PATIENCE, 0))
+		return fetch_sample(cast, type, 0, rays, company->k, needed);
 	struct block block = company->block;
 	if (__builtin_expect(!block_places(cast, &block, at, needed, places), 0)) {
 		company->place = block_find(rays, at, needed);
@@ -104,42 +106,39 @@ SIMD float go_ahead(const struct gz_cast *cast, enum gz_voxel_type type, const s
 		company->k = company->k + vf_set(ahead);
 		skipped += ahead;
 	}
-	if (skipped > 0) {
+	if (skipped > 0 && company->misses < TOGETHER_PATIENCE) {
 		block_advance(&company->place, skipped);
 		block_take(cast, type, &company->place, &company->block);
 	}
 	return -ahead;
 }
 
-/* From the first whole segment to the last or to where the rays turn out to lie too far apart:
- * *out_k says how far each has come. */
+/* All whole segments. */
 SIMD uint32_t march_together(const struct gz_cast *cast, enum gz_voxel_type type,
 			     const struct look_up *look_up, int step, const struct rays *rays,
-			     vf *out_k, vm *alive, struct light *light)
+			     vm alive, struct light *light)
 {
 	struct company company = { .k = level_start(rays), .at = vf_set(0), .entry = vi_set(0) };
 	block_take(cast, type, &company.place, &company.block);
 	uint32_t samples = 0;
 	float run = 0; /* samples to take before the cells are asked */
-	while (company.misses < TOGETHER_PATIENCE && vm_any(*alive)) {
+	while (vm_any(alive)) {
 		if (run <= 0) {
-			run = go_ahead(cast, type, rays, *alive, &company);
+			run = go_ahead(cast, type, rays, alive, &company);
 			if (run <= 0)
 				break;
 		}
 		run -= 1;
 		const vm within =
 			vm_and(vf_less(rays->first, company.k), vf_less(company.k, rays->end));
-		const vf value = fetch_together(cast, type, rays, vm_and(within, *alive), &company);
-		samples += settle(cast, type, step, rays, &company, alive, light);
+		const vf value = fetch_together(cast, type, rays, vm_and(within, alive), &company);
+		samples += settle(cast, type, step, rays, &company, &alive, light);
 		company.entry = entry_of(look_up->scale, look_up->bias, value);
 		company.within = within;
 		company.at = company.k;
 		company.k = company.k + vf_set(1);
 	}
-	samples += settle(cast, type, step, rays, &company, alive, light);
-	*out_k = vf_max(company.k, rays->first + vf_set(0.5F)); /* some may not have come there */
-	return samples;
+	return samples + settle(cast, type, step, rays, &company, &alive, light);
 }
 
 #endif
