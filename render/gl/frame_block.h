@@ -26,7 +26,8 @@ enum gz_gl_texture_unit {
 	GZ_GL_UNIT_VOXELS,
 	GZ_GL_UNIT_REACH,
 	GZ_GL_UNIT_TRANSFER,
-	GZ_GL_UNIT_SEGMENTS
+	GZ_GL_UNIT_SEGMENTS,
+	GZ_GL_UNIT_OCCLUSION
 };
 enum gz_gl_storage {
 	GZ_GL_STORAGE_TILES,
@@ -45,12 +46,19 @@ struct gz_gl_frame_block {
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
 	float cell_counts[4];                  /**< macrocells */
 	float background[4];                   /**< [0, 1] */
-	float transfer[4];  /**< scale and bias from stored value to share of the table */
-	uint32_t jitter[4]; /**< seed of gz_ray_jitter() */
-	uint32_t plan[4];   /**< layers; 1 for a pyramid; width; height */
-	float steps[GZ_PLAN_STEPS_MAX][4];          /**< world units, voxel lengths */
-	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];     /**< first point, columns, rows, spacing */
-	float region_places[GZ_PLAN_LAYERS_MAX][4]; /**< centre, half size, px */
+	float transfer[4];       /**< scale and bias from stored value to share of the table */
+	float light_towards[4];  /**< world directions; share of the ambient light that can be kept
+				    away */
+	float light_terms[4];    /**< ambient, diffuse, specular, shininess */
+	float gradient_scale[4]; /**< see gz_light_gradient_scale(); of the level of detail */
+	float occlusion_scale[4], occlusion_bias[4]; /**< from places counted from the first datum
+							to those counted from the first cell's */
+	float occlusion_last[4];                     /**< greatest index of a cell */
+	uint32_t jitter[4];                          /**< seed of gz_ray_jitter() */
+	uint32_t plan[4];                            /**< layers; 1 for a pyramid; width; height */
+	float steps[GZ_PLAN_STEPS_MAX][4];           /**< world units, voxel lengths */
+	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];      /**< first point, columns, rows, spacing */
+	float region_places[GZ_PLAN_LAYERS_MAX][4];  /**< centre, half size, px */
 	float region_fades[GZ_PLAN_LAYERS_MAX][4];  /**< share of a layer per radius from the rim, 0
 						       = all; 1 for an ellipse */
 	uint32_t tile_points[GZ_GL_TILE_POINTS][4]; /**< column and row of a tile's rays */

@@ -11,6 +11,7 @@
 /* Made from shaders/ when the program is built. */
 extern const char gz_glsl_frame_glsl[];
 extern const char gz_glsl_fetch_glsl[];
+extern const char gz_glsl_shade_glsl[];
 extern const char gz_glsl_pyramid_glsl[];
 extern const char gz_glsl_cast_comp[];
 extern const char gz_glsl_fill_comp[];
@@ -57,19 +58,20 @@ enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device
 			  const struct gz_gl_frame *frame, int level, struct gz_gl_cast_kind kind,
 			  const struct gz_log *log)
 {
-	char defines[128];
-	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s",
+	char defines[160];
+	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), kind.nearest ? "#define NEAREST\n" : "",
-		 kind.segments ? "#define SEGMENTS\n" : "",
+		 kind.segments ? "#define SEGMENTS\n" : "", kind.shaded ? "#define SHADED\n" : "",
 		 device->software ? "#define FETCH_IMAGES\n" : "");
 	const struct gz_compute_text text = {
 		.name = "cast.comp",
 		.defines = defines,
-		.parts = { gz_glsl_frame_glsl, gz_glsl_fetch_glsl, gz_glsl_cast_comp },
+		.parts = { gz_glsl_frame_glsl, gz_glsl_fetch_glsl, gz_glsl_shade_glsl,
+			   gz_glsl_cast_comp },
 	};
 	const struct gz_gl_tile_range *range = &frame->level_ranges[level];
 	const enum gz_result result =
-		use(&passes->cast[kind.type][kind.nearest][kind.segments], &text, log);
+		use(&passes->cast[kind.type][kind.nearest][kind.segments][kind.shaded], &text, log);
 	if (result != GZ_OK)
 		return result;
 	glUniform1ui(LEVEL, (GLuint)level);
@@ -172,7 +174,7 @@ enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl
 
 void gz_gl_passes_free(struct gz_gl_passes *passes)
 {
-	const GLuint *programs = &passes->cast[0][0][0];
+	const GLuint *programs = &passes->cast[0][0][0][0];
 	for (size_t i = 0; i < sizeof passes->cast / sizeof *programs; i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);

@@ -20,11 +20,13 @@ struct gz_gl_cast_kind {
 	enum gz_voxel_type type;
 	bool nearest;
 	bool segments; /**< pre-integrated */
+	bool shaded;
 };
 
 /** Programs, made when they are first needed; names of OpenGL, 0: none yet. */
 struct gz_gl_passes {
-	unsigned cast[GZ_VOXEL_TYPE_COUNT][2][2]; /**< by the members of struct gz_gl_cast_kind */
+	unsigned cast[GZ_VOXEL_TYPE_COUNT][2][2]
+		     [2]; /**< by the members of struct gz_gl_cast_kind */
 	unsigned fill, quincunx, regions;
 };
 

@@ -185,23 +185,6 @@ static void fill_plan(const struct gz_plan *plan, struct gz_gl_frame_block *bloc
 	}
 }
 
-/* What this backend does not do yet; NULL where it does all that is asked for. */
-static const char *unsupported(const struct gz_ray_params *rays)
-{
-	if (rays->shading != GZ_SHADING_NONE)
-		return "render.shading";
-	return NULL;
-}
-
-static enum gz_result refuse(const struct gl_renderer *gl, const struct gz_ray_params *rays)
-{
-	const char *what = unsupported(rays);
-	if (!what)
-		return GZ_OK;
-	gz_err(gl->base.log, "the gl backend does not do %s; take --backend cpu", what);
-	return GZ_ERR_UNSUPPORTED;
-}
-
 /* The blocks of all levels that tiles take, and what else the passes need. */
 static enum gz_result prepare(struct gl_renderer *gl, const struct gz_camera *camera,
 			      const struct gz_ray_frame *world, const struct gz_ray_params *rays,
@@ -224,7 +207,7 @@ static enum gz_result prepare(struct gl_renderer *gl, const struct gz_camera *ca
 		gz_gl_frame_set_block(&gl->frame, i, &block);
 	}
 	gz_gl_frame_begin(&gl->frame);
-	gz_gl_tables_bind(&gl->scene.tables);
+	gz_gl_scene_bind(&gl->scene);
 	return GZ_OK;
 }
 
@@ -237,6 +220,7 @@ static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_params *r
 		.type = gl->scene.volume->type,
 		.nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
 		.segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+		.shaded = rays->shading == GZ_SHADING_GRADIENT,
 	};
 	enum gz_result result = GZ_OK;
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
@@ -291,9 +275,8 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 	struct gz_ray_frame world;
 	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
-	enum gz_result result = refuse(gl, rays);
-	if (result == GZ_OK)
-		result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
+	enum gz_result result =
+		gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
 	if (result == GZ_OK)
 		shift_rays(plan->view.shift, &world);
 	if (result == GZ_OK && image)

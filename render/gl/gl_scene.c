@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <GL/glew.h>
+
 #include "render/voxel_rays.h"
 
 #define GZ_LOG_MODULE "gl"
@@ -40,6 +42,7 @@ void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfe
 	for (int i = 0; i < scene->level_count; i++)
 		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
 	gz_preintegration_forget(&scene->preintegration);
+	gz_lighting_forget(&scene->lighting);
 	gz_gl_tables_forget(&scene->tables);
 	scene->has_transfer = true;
 }
@@ -74,6 +77,42 @@ static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_
 		gz_gl_tables_segments(&scene->tables, i, lengths[i], preintegration->step[i]);
 	gz_gl_tables_segments(&scene->tables, GZ_PLAN_STEPS_MAX, 1, preintegration->extinction);
 	return GZ_OK;
+}
+
+/* Give the device the grid of occlusion, where a frame wants one and has made it anew. */
+static void load_occlusion(struct gz_gl_scene *scene)
+{
+	const struct gz_occlusion *grid = &scene->lighting.occlusion;
+	const int *dims = grid->dims;
+	if (memcmp(scene->occlusion_dims, dims, sizeof scene->occlusion_dims) != 0) {
+		if (scene->occlusion)
+			glDeleteTextures(1, &scene->occlusion);
+		scene->occlusion = gz_gl_texture(GL_TEXTURE_3D);
+		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R16UI, dims[0], dims[1], dims[2]);
+		memcpy(scene->occlusion_dims, dims, sizeof scene->occlusion_dims);
+	}
+	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, dims[0], dims[1], dims[2], GL_RED_INTEGER,
+			GL_UNSIGNED_SHORT, grid->cells);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glBindTexture(GL_TEXTURE_3D, 0);
+}
+
+static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				    const struct gz_log *log)
+{
+	struct gz_lighting *lighting = &scene->lighting;
+	const bool was_current = lighting->current;
+	const double radius = lighting->radius;
+	const struct gz_clip_box clip = lighting->clip;
+	const enum gz_result result = gz_lighting_prepare(lighting, scene->volume, &scene->table,
+							  rays, workers_of(scene), log);
+	if (result == GZ_OK && lighting->current &&
+	    (!was_current || radius != lighting->radius ||
+	     memcmp(&clip, &lighting->clip, sizeof clip) != 0))
+		load_occlusion(scene);
+	return result;
 }
 
 /* Make the coarser levels and give them to the device, unless it has them. */
@@ -146,7 +185,8 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 		prepare_levels(scene, device, log);
 		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
 	}
-	return prepare_tables(scene, rays, plan, log);
+	const enum gz_result result = prepare_light(scene, rays, log);
+	return result == GZ_OK ? prepare_tables(scene, rays, plan, log) : result;
 }
 
 static void to_floats(const double source[3], const int divisor[3], float out[4])
@@ -185,6 +225,35 @@ static void fill_volume(const struct gz_gl_scene *scene, int index, const struct
 	}
 }
 
+static void fill_light(const struct gz_gl_scene *scene, const int factor[3],
+		       const struct gz_ray_frame *world, const struct gz_ray_params *rays,
+		       struct gz_gl_frame_block *block)
+{
+	struct gz_cast_light light;
+	gz_lighting_fill(&scene->lighting, scene->volume, factor, &scene->table, rays, world,
+			 &light);
+	for (int axis = 0; axis < 3; axis++) {
+		block->light_towards[axis] = light.towards[axis];
+		block->gradient_scale[axis] = light.gradient_scale[axis];
+		block->occlusion_scale[axis] = light.cell_scale[axis];
+		block->occlusion_bias[axis] = light.cell_bias[axis];
+		block->occlusion_last[axis] = light.cell_greatest[axis];
+	}
+	block->light_towards[3] = light.cells ? light.occlusion : 0;
+	block->light_terms[0] = light.ambient;
+	block->light_terms[1] = light.diffuse;
+	block->light_terms[2] = light.specular;
+	block->light_terms[3] = light.shininess;
+}
+
+void gz_gl_scene_bind(const struct gz_gl_scene *scene)
+{
+	gz_gl_tables_bind(&scene->tables);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_OCCLUSION);
+	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glActiveTexture(GL_TEXTURE0);
+}
+
 void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
 		      const struct gz_ray_params *rays, const struct gz_plan *plan,
 		      struct gz_gl_frame_block *block)
@@ -192,6 +261,7 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	const double voxel_length = gz_volume_voxel_length(scene->volume);
 	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
 	fill_volume(scene, level, &rays->clip, block);
+	fill_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
 	block->jitter[0] = (uint32_t)rays->jitter;
 	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
 	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
@@ -208,6 +278,7 @@ void gz_gl_scene_forget(struct gz_gl_scene *scene)
 {
 	gz_detail_free(&scene->detail);
 	gz_preintegration_free(&scene->preintegration);
+	gz_lighting_free(&scene->lighting);
 	gz_workers_destroy(&scene->workers);
 	*scene = (struct gz_gl_scene) { 0 };
 }
@@ -216,5 +287,7 @@ void gz_gl_scene_free(struct gz_gl_scene *scene)
 {
 	free_levels(scene);
 	gz_gl_tables_free(&scene->tables);
+	if (scene->occlusion)
+		glDeleteTextures(1, &scene->occlusion);
 	gz_gl_scene_forget(scene);
 }

@@ -12,6 +12,7 @@
 #include "base/result.h"
 #include "render/camera.h"
 #include "render/cpu/detail.h"
+#include "render/cpu/lighting.h"
 #include "render/cpu/preintegration.h"
 #include "render/gl/frame_block.h"
 #include "render/gl/gl_frame.h"
@@ -31,6 +32,9 @@ struct gz_gl_scene {
 	struct gz_gl_volume levels[GZ_LEVELS_MAX]; /**< of those that the device has */
 	int level_count;
 	struct gz_gl_tables tables;
+	struct gz_lighting lighting;
+	unsigned occlusion;    /**< texture of the lighting's grid; 0: none */
+	int occlusion_dims[3]; /**< of the texture */
 };
 
 /** Show @p volume, borrowed until the next call or gz_gl_scene_free(). @return what
@@ -59,6 +63,9 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
 		      const struct gz_ray_params *rays, const struct gz_plan *plan,
 		      struct gz_gl_frame_block *block);
+
+/** Bind tables and light to their units. */
+void gz_gl_scene_bind(const struct gz_gl_scene *scene);
 
 /** Delete and free all of it, and zero the struct. */
 void gz_gl_scene_free(struct gz_gl_scene *scene);

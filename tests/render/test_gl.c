@@ -386,8 +386,9 @@ static void software_opengl_is_not_what_auto_takes(void **state)
 }
 
 /* Made from shaders/ when the library is built. */
-extern const char gz_glsl_frame_glsl[], gz_glsl_fetch_glsl[], gz_glsl_pyramid_glsl[],
-	gz_glsl_cast_comp[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[], gz_glsl_regions_comp[];
+extern const char gz_glsl_frame_glsl[], gz_glsl_fetch_glsl[], gz_glsl_shade_glsl[],
+	gz_glsl_pyramid_glsl[], gz_glsl_cast_comp[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[],
+	gz_glsl_regions_comp[];
 
 /* Drivers forgive what the reference compiler does not. */
 static void check_text(const char *defines, const char *const *parts)
@@ -415,15 +416,16 @@ static void shaders_are_valid_for_the_reference_compiler(void **state)
 	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
 		skip();
 	for (size_t i = 0; i < sizeof bits / sizeof bits[0]; i++)
-		for (int variant = 0; variant < 8; variant++) {
-			char defines[128];
-			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s%s", bits[i],
-				 variant & 1 ? "#define NEAREST\n" : "",
+		for (int variant = 0; variant < 16; variant++) {
+			char defines[160];
+			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s%s%s",
+				 bits[i], variant & 1 ? "#define NEAREST\n" : "",
 				 variant & 2 ? "#define FETCH_IMAGES\n" : "",
-				 variant & 4 ? "#define SEGMENTS\n" : "");
-			check_text(defines,
-				   (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_fetch_glsl,
-							   gz_glsl_cast_comp, NULL });
+				 variant & 4 ? "#define SEGMENTS\n" : "",
+				 variant & 8 ? "#define SHADED\n" : "");
+			check_text(defines, (const char *const[]) {
+						    gz_glsl_frame_glsl, gz_glsl_fetch_glsl,
+						    gz_glsl_shade_glsl, gz_glsl_cast_comp, NULL });
 		}
 	const char *const passes[] = { gz_glsl_fill_comp, gz_glsl_quincunx_comp };
 	for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)

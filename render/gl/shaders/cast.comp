@@ -79,10 +79,16 @@ bool look_up_cell(Ray ray, float k, out float until)
 	return away > 0;
 }
 
-void composite(uint colour, float opacity, inout Light light)
+// Add the colour of what lies at k.
+void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light light)
 {
+	vec3 colour = unpack_colour(packed_colour);
+#ifdef SHADED
+	if (opacity > 0.0)
+		colour = shade(colour, fma(vec3(k), ray.delta, ray.start));
+#endif
 	float weight = light.through * opacity;
-	light.colour = fma(vec3(weight), unpack_colour(colour), light.colour);
+	light.colour = fma(vec3(weight), colour, light.colour);
 	light.through -= weight;
 }
 
@@ -117,7 +123,7 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 			int back = cell_at(ray, k);
 			samples++;
 			uvec2 look = FETCH(segments, ivec3(back, front, step_index)).rg;
-			composite(look.y, uintBitsToFloat(look.x), light);
+			composite(ray, k - 0.5, look.y, uintBitsToFloat(look.x), light);
 			front = back;
 			if (light.through <= GZ_TRANSMITTANCE_END)
 				return samples;
@@ -136,7 +142,8 @@ uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Li
 		return 0U;
 	uvec2 look = FETCH(segments, ivec3(cell_at(ray, to), cell_at(ray, from), GZ_PLAN_STEPS_MAX)).rg;
 	float extinction = uintBitsToFloat(look.x);
-	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0, light);
+	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
+	composite(ray, fma(part, 0.5, from), look.y, opacity, light);
 	return 2U;
 }
 #else
@@ -157,7 +164,7 @@ uint march(Ray ray, int step_index, inout Light light)
 		while (k < end) {
 			int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
 			uvec2 look = FETCH(transfer, ivec2(entry, step_index)).rg;
-			composite(look.y, uintBitsToFloat(look.x), light);
+			composite(ray, k, look.y, uintBitsToFloat(look.x), light);
 			samples++;
 			k += 1.0;
 			bool ends = light.through <= GZ_TRANSMITTANCE_END;
@@ -178,7 +185,8 @@ uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light l
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
 	uvec2 look = FETCH(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX)).rg;
 	float extinction = uintBitsToFloat(look.x);
-	composite(look.y, extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0, light);
+	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
+	composite(ray, k, look.y, opacity, light);
 	return 1U;
 }
 #endif
@@ -219,6 +227,9 @@ void main()
 	vec2 step_lengths = steps[tile.step].xy;
 	Ray ray = set_up_ray(at, step_lengths.x);
 	Light light = Light(vec3(0.0), 1.0);
+#ifdef SHADED
+	set_up_view(ray.delta, step_lengths.x);
+#endif
 #ifdef SEGMENTS
 	uint samples = segment_part(ray, fma(ray.head, -0.5, ray.head_at), ray.head, step_lengths.y, light);
 	samples += march_segments(ray, int(tile.step), light);

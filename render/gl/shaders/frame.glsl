@@ -11,6 +11,10 @@ layout(std140, binding = 0) uniform Frame
 	vec4 cell_counts;
 	vec4 background;
 	vec4 transfer_map; // scale and bias from stored value to share of the table
+	vec4 light_towards; // unit vector in world directions; share of the ambient light that can be kept away
+	vec4 light_terms;   // ambient, diffuse, specular, shininess
+	vec4 gradient_scale;
+	vec4 occlusion_scale, occlusion_bias, occlusion_last; // to places among its cells; greatest index
 	uvec4 jitter; // seed, 0 = none
 	uvec4 plan; // layers, 1 for a pyramid, width, height
 	vec4 steps[GZ_PLAN_STEPS_MAX];
