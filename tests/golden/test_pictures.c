@@ -65,6 +65,39 @@ static void compare(const struct gz_image *image, const char *path)
 	gz_image_free(&golden);
 }
 
+static void check(const struct gz_scene *scene, int method, const char *name,
+		  const struct gz_log *log)
+{
+	struct gz_image image = { 0 };
+	char path[1024];
+	snprintf(path, sizeof path, "%s/%s.png", GOLDEN_FOLDER, name);
+	render(scene, method, &image);
+	if (getenv("GAZECAST_UPDATE_GOLDEN"))
+		assert_int_equal(gz_image_write_png(&image, path, log), GZ_OK);
+	compare(&image, path);
+	gz_image_free(&image);
+}
+
+static void picture_in_the_light_and_cut_open_stays_what_it_was(void **state)
+{
+	(void)state;
+	struct gz_log log;
+	struct gz_scene scene;
+	gz_log_init(&log, NULL, NULL, NULL);
+	assert_int_equal(gz_scene_load(SCENE, NULL, &log, &scene), GZ_OK);
+	struct gz_ray_params *rays = &scene.settings.rays;
+	rays->shading = GZ_SHADING_GRADIENT;
+	rays->light.occlusion = 0.8;
+	rays->integration = GZ_INTEGRATION_PREINTEGRATED;
+	rays->clip.greatest[0] = 0.6;
+	/* the outer shells as walls */
+	for (size_t i = 0; i < scene.transfer.count; i++)
+		if (scene.transfer.points[i].value > 0.4 && scene.transfer.points[i].opacity > 0)
+			scene.transfer.points[i].opacity = 0.9;
+	check(&scene, GZ_METHOD_STANDARD, "light", &log);
+	gz_scene_free(&scene);
+}
+
 static void pictures_of_every_method_stay_what_they_were(void **state)
 {
 	(void)state;
@@ -72,16 +105,8 @@ static void pictures_of_every_method_stay_what_they_were(void **state)
 	struct gz_scene scene;
 	gz_log_init(&log, NULL, NULL, NULL);
 	assert_int_equal(gz_scene_load(SCENE, NULL, &log, &scene), GZ_OK);
-	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
-		struct gz_image image = { 0 };
-		char path[1024];
-		snprintf(path, sizeof path, "%s/%s.png", GOLDEN_FOLDER, gz_method_names[method]);
-		render(&scene, method, &image);
-		if (getenv("GAZECAST_UPDATE_GOLDEN"))
-			assert_int_equal(gz_image_write_png(&image, path, &log), GZ_OK);
-		compare(&image, path);
-		gz_image_free(&image);
-	}
+	for (int method = 0; method < GZ_METHOD_COUNT; method++)
+		check(&scene, method, gz_method_names[method], &log);
 	gz_scene_free(&scene);
 }
 
@@ -89,6 +114,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pictures_of_every_method_stay_what_they_were),
+		cmocka_unit_test(picture_in_the_light_and_cut_open_stays_what_it_was),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
