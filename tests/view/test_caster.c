@@ -1,0 +1,171 @@
+/* What casts the frames: the backend asked for and, where it fails for good, cpu. */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "render/gl/context_egl.h"
+#include "render/small_scene.h"
+#include "view/caster.h"
+
+/* Keeps the messages. */
+struct heard {
+	char text[1024];
+};
+
+static void hear(void *user, enum gz_log_level level, const char *module, const char *message)
+{
+	struct heard *heard = user;
+	const size_t used = strlen(heard->text);
+	(void)module;
+	if (level >= GZ_LOG_INFO)
+		snprintf(heard->text + used, sizeof heard->text - used, "%s\n", message);
+}
+
+/* A context that can be lost. */
+struct lent_context {
+	struct gz_gl_context base;
+	struct gz_gl_context *egl;
+	bool lost;
+};
+
+static enum gz_result lent_make_current(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	return lent->lost ? GZ_ERR_NO_DEVICE : lent->egl->ops->make_current(lent->egl);
+}
+
+static void lent_release(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	lent->egl->ops->release(lent->egl);
+}
+
+static const struct gz_gl_context_ops lent_ops = { .make_current = lent_make_current,
+						   .release = lent_release };
+
+/* A caster over a small scene, with all it needs. */
+struct set_up {
+	struct small_scene small;
+	struct gz_scene scene;
+	struct gz_view_options options;
+	struct gz_plan plan;
+	struct heard heard;
+	struct gz_log log;
+	struct gz_caster caster;
+};
+
+static void set_up(struct set_up *all, const char *backend)
+{
+	memset(all, 0, sizeof *all);
+	all->small = small_scene_waves(20, 24, 18, GZ_VOXEL_U8);
+	all->scene.volume = all->small.volume;
+	all->scene.transfer = all->small.transfer;
+	all->scene.settings.camera = all->small.camera;
+	all->scene.settings.rays = all->small.rays;
+	snprintf(all->options.backend, sizeof all->options.backend, "%s", backend);
+	snprintf(all->options.simd, sizeof all->options.simd, "auto");
+	gz_log_init(&all->log, hear, &all->heard, "info");
+	const struct gz_display display = gz_display_default(64, 48);
+	assert_int_equal(
+		gz_plan_make(&all->small.foveation, &display, all->small.gaze, 64, 48, &all->plan),
+		GZ_OK);
+}
+
+static void take_down(struct set_up *all)
+{
+	gz_caster_free(&all->caster);
+	gz_plan_free(&all->plan);
+	small_scene_free(&all->small);
+}
+
+static void lost_context_costs_no_frame(void **state)
+{
+	(void)state;
+	struct lent_context lent = { .base = { .ops = &lent_ops } };
+	char reason[200];
+	struct set_up all;
+	struct gz_image before = { 0 }, after = { 0 };
+	struct gz_frame_stats stats;
+	assert_int_equal(gz_gl_context_egl(false, &lent.egl, reason, sizeof reason), GZ_OK);
+	set_up(&all, "gl");
+	assert_int_equal(
+		gz_caster_start(&all.caster, &all.options, &lent.base, &all.scene, &all.log),
+		GZ_OK);
+	assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan, false,
+					  &before, &stats),
+			 GZ_OK);
+	assert_int_equal(
+		gz_caster_render(&all.caster, &all.scene.settings, &all.plan, true, &after, &stats),
+		GZ_OK);
+	assert_true(all.caster.on_device);
+	assert_null(after.pixels);
+	lent.lost = true;
+	for (int frame = 0; frame < 2; frame++) {
+		assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan, true,
+						  &after, &stats),
+				 GZ_OK);
+		assert_false(all.caster.on_device);
+		assert_string_equal(all.caster.renderer->ops->name, "cpu");
+		int x = 0, y = 0;
+		assert_true(image_difference(&before, &after, &x, &y) <= 1);
+	}
+	if (!strstr(all.heard.text, "context") || !strstr(all.heard.text, "cpu backend"))
+		fail_msg("'%s' tells neither loss nor remedy", all.heard.text);
+	gz_image_free(&before);
+	gz_image_free(&after);
+	take_down(&all);
+	gz_gl_context_destroy(&lent.egl);
+}
+
+static void auto_takes_the_cpu_where_no_gpu_is_and_says_nothing(void **state)
+{
+	(void)state;
+	struct set_up all;
+	struct gz_image image = { 0 };
+	struct gz_frame_stats stats;
+	set_up(&all, "auto");
+	assert_int_equal(gz_caster_start(&all.caster, &all.options, NULL, &all.scene, &all.log),
+			 GZ_OK);
+	assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan, false,
+					  &image, &stats),
+			 GZ_OK);
+	assert_string_equal(all.heard.text, "");
+	gz_image_free(&image);
+	take_down(&all);
+}
+
+static void wrong_request_is_no_reason_to_take_the_cpu(void **state)
+{
+	(void)state;
+	struct set_up all;
+	struct gz_image image = { 0 };
+	struct gz_frame_stats stats;
+	set_up(&all, "gl");
+	assert_int_equal(gz_caster_start(&all.caster, &all.options, NULL, &all.scene, &all.log),
+			 GZ_OK);
+	all.scene.settings.camera.fov_deg = 0;
+	assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan, false,
+					  &image, &stats),
+			 GZ_ERR_INVAL);
+	assert_string_equal(all.caster.renderer->ops->name, "gl");
+	gz_image_free(&image);
+	take_down(&all);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(lost_context_costs_no_frame),
+		cmocka_unit_test(auto_takes_the_cpu_where_no_gpu_is_and_says_nothing),
+		cmocka_unit_test(wrong_request_is_no_reason_to_take_the_cpu),
+	};
+	struct gz_gl_context *context = NULL;
+	char reason[200];
+	if (gz_gl_context_egl(false, &context, reason, sizeof reason) != GZ_OK) {
+		fprintf(stderr, "skipped: %s\n", reason);
+		return 77;
+	}
+	gz_gl_context_destroy(&context);
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
