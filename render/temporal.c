@@ -151,6 +151,32 @@ static void mark(const struct gz_temporal *temporal, int x, int y, uint8_t how)
 	*cast = how < *cast ? how : *cast;
 }
 
+/* Whether pixel (x, y) of the plan is what a layer says there, and no other. Layers of a pyramid do
+ * not compete. */
+static bool shows_alone(const struct gz_plan *plan, int layer, int x, int y)
+{
+	if (plan->reconstruction != GZ_RECONSTRUCT_REGIONS)
+		return true;
+	for (int before = 0; before < layer; before++)
+		if (gz_region_holds(&plan->layers[before].region, x, y))
+			return false;
+	return gz_region_weight(&plan->layers[layer].region, x, y) >= 1;
+}
+
+/* The pixels of a tile's rays. Rays that are cast for the sake of their neighbours alone, beside
+ * the region of their layer or in its band, show nowhere. */
+static void mark_rays(const struct gz_temporal *temporal, const struct gz_plan *plan,
+		      const struct gz_tile *tile)
+{
+	const int spacing = plan->layers[tile->layer].spacing;
+	for (int ray = 0; ray < GZ_TILE_EDGE * GZ_TILE_EDGE; ray++) {
+		const int x = tile->x + gz_tile_columns[tile->pattern][ray] * spacing;
+		const int y = tile->y + gz_tile_rows[ray] * spacing;
+		if (shows_alone(plan, tile->layer, x, y))
+			mark(temporal, x - temporal->shift[0], y - temporal->shift[1], tile->layer);
+	}
+}
+
 /* How the frame knows each pixel; where tiles lie on each other the finest counts. */
 static void mark_tiles(const struct gz_temporal *temporal, const struct gz_plan *plan)
 {
@@ -164,9 +190,7 @@ static void mark_tiles(const struct gz_temporal *temporal, const struct gz_plan 
 		for (int y = y0; y < y0 + down && spacing > 1; y++)
 			for (int x = x0; x < x0 + across; x++)
 				mark(temporal, x, y, (uint8_t)(BETWEEN + tile->layer));
-		for (int ray = 0; ray < GZ_TILE_EDGE * GZ_TILE_EDGE; ray++)
-			mark(temporal, x0 + gz_tile_columns[tile->pattern][ray] * spacing,
-			     y0 + gz_tile_rows[ray] * spacing, tile->layer);
+		mark_rays(temporal, plan, tile);
 	}
 }
 

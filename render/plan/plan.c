@@ -68,7 +68,6 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	gz_plan_context_make(request, &context);
 	plan->width = request->width;
 	plan->height = request->height;
-	plan->view = (struct gz_plan_view) { request->width, request->height, { 0, 0 } };
 	plan->filter = (enum gz_filter)request->foveation->filter;
 	plan->tile_count = 0;
 	plan->layer_count = 0;
@@ -80,10 +79,12 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	return gz_plan_regions(&context, plan);
 }
 
-/* Also where the tiles do not depend on it: bricks are fetched by it. */
+/* Also where the tiles do not depend on it: bricks are fetched by the focus, and the view may have
+ * been shifted since. */
 static void aim(const struct gz_plan_request *request, struct gz_plan *plan)
 {
 	const bool known = isfinite(request->gaze.x) && isfinite(request->gaze.y);
+	plan->view = (struct gz_plan_view) { request->width, request->height, { 0, 0 } };
 	plan->focus_px[0] = (known ? (double)request->gaze.x : 0.5) * request->width - 0.5;
 	plan->focus_px[1] = (known ? (double)request->gaze.y : 0.5) * request->height - 0.5;
 }

@@ -89,11 +89,14 @@ static double error(const struct gz_image *a, const struct gz_image *b)
 	return sqrt(sum / (3 * WIDTH * HEIGHT));
 }
 
-static void still_picture_converges_to_standard(void **state)
+static void check_still_picture(int method)
 {
-	(void)state;
 	struct bench bench;
 	begin(&bench);
+	bench.scene.foveation.method = method;
+	bench.scene.foveation.ddc_inner_px[0] = bench.scene.foveation.ddc_inner_px[1] = 30;
+	bench.scene.foveation.ddc_middle_px[0] = bench.scene.foveation.ddc_middle_px[1] = 60;
+	bench.scene.foveation.mdc_square_px = 50;
 	render_full(&bench);
 	double last = INFINITY, first = 0;
 	for (int frame = 0; frame < GZ_TEMPORAL_SHIFTS * GZ_TEMPORAL_SHIFTS; frame++) {
@@ -108,11 +111,24 @@ static void still_picture_converges_to_standard(void **state)
 	}
 	int x, y;
 	const int most = image_difference(&bench.kept, &bench.full, &x, &y);
-	if (first < 0.5 || most != 0)
-		fail_msg("first error %.3f; at the end pixel %d %d differs by %d", first, x, y,
-			 most);
+	if (first < 0.1 || most != 0)
+		fail_msg("%s: first error %.3f; at the end pixel %d %d differs by %d",
+			 gz_method_names[method], first, x, y, most);
 	assert_false(gz_temporal_settling(&bench.temporal));
 	end(&bench);
+}
+
+static void still_picture_converges_to_standard(void **state)
+{
+	(void)state;
+	check_still_picture(GZ_METHOD_ACUITY);
+}
+
+static void still_picture_of_regions_converges_to_standard_beside_their_borders(void **state)
+{
+	(void)state;
+	check_still_picture(GZ_METHOD_DDC);
+	check_still_picture(GZ_METHOD_MDC);
 }
 
 static void fovea_is_that_of_standard_in_every_frame(void **state)
@@ -262,6 +278,8 @@ int main(void)
 		return 77;
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(still_picture_converges_to_standard),
+		cmocka_unit_test(
+			still_picture_of_regions_converges_to_standard_beside_their_borders),
 		cmocka_unit_test(fovea_is_that_of_standard_in_every_frame),
 		cmocka_unit_test(nothing_stays_after_any_change),
 		cmocka_unit_test(turning_camera_has_less_error_than_without),
