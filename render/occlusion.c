@@ -189,13 +189,24 @@ static enum gz_result reserve(struct gz_occlusion *occlusion)
 	return occlusion->cells ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
+static void run_parts(struct gz_workers *workers, gz_workers_part *part, struct job *job,
+		      size_t parts)
+{
+	if (workers) {
+		gz_workers_run(workers, part, job, parts);
+		return;
+	}
+	for (size_t i = 0; i < parts; i++)
+		part(job, i, 0);
+}
+
 static void run(struct job *job, double radius, struct gz_workers *workers)
 {
 	const int *dims = job->occlusion->dims;
-	gz_workers_run(workers, fill_part, job, (size_t)dims[1] * (size_t)dims[2]);
+	run_parts(workers, fill_part, job, (size_t)dims[1] * (size_t)dims[2]);
 	for (int axis = 0; axis < 3; axis++) {
 		find_weights(job, axis, radius);
-		gz_workers_run(workers, weight_part, job, (size_t)dims[axis == 2 ? 1 : 2]);
+		run_parts(workers, weight_part, job, (size_t)dims[axis == 2 ? 1 : 2]);
 	}
 }
 

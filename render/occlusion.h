@@ -47,6 +47,7 @@ void gz_occlusion_edges(const struct gz_volume *volume, double radius, int out_e
  *
  * @param table   baked for the volume
  * @param radius  voxel lengths, within the limits of light.occlusion_radius
+ * @param workers who make it; NULL for the calling thread alone
  * @retval GZ_ERR_NO_MEM  the grid is empty
  */
 enum gz_result gz_occlusion_make(const struct gz_volume *volume,

@@ -25,6 +25,7 @@ void gz_lighting_forget(struct gz_lighting *lighting);
 /**
  * Make the grid of occlusion that a frame asks for, unless it is there.
  *
+ * @param workers  who make it; NULL for the calling thread alone
  * @retval GZ_ERR_NO_MEM       there is none; logged
  * @retval GZ_ERR_UNSUPPORTED  of a volume of bricks, whose voxels are not all at hand; logged
  */

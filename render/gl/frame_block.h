@@ -54,11 +54,11 @@ struct gz_gl_frame_block {
 	float occlusion_scale[4], occlusion_bias[4]; /**< from places counted from the first datum
 							to those counted from the first cell's */
 	float occlusion_last[4];                     /**< greatest index of a cell */
-	uint32_t jitter[4];                          /**< seed of gz_ray_jitter() */
-	uint32_t plan[4];                            /**< layers; 1 for a pyramid; width; height */
-	float steps[GZ_PLAN_STEPS_MAX][4];           /**< world units, voxel lengths */
-	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];      /**< first point, columns, rows, spacing */
-	float region_places[GZ_PLAN_LAYERS_MAX][4];  /**< centre, half size, px */
+	uint32_t jitter[4];                /**< seed of gz_ray_jitter(); the plan's shift, px */
+	uint32_t plan[4];                  /**< layers; 1 for a pyramid; width; height */
+	float steps[GZ_PLAN_STEPS_MAX][4]; /**< world units, voxel lengths */
+	uint32_t layers[GZ_PLAN_LAYERS_MAX][4];     /**< first point, columns, rows, spacing */
+	float region_places[GZ_PLAN_LAYERS_MAX][4]; /**< centre, half size, px */
 	float region_fades[GZ_PLAN_LAYERS_MAX][4];  /**< share of a layer per radius from the rim, 0
 						       = all; 1 for an ellipse */
 	uint32_t tile_points[GZ_GL_TILE_POINTS][4]; /**< column and row of a tile's rays */

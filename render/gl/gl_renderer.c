@@ -126,8 +126,8 @@ static enum gz_result gl_create(const struct gz_renderer_params *params, const s
 static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)
 {
 	struct gl_renderer *gl = gl_of(renderer);
+	gl->scene.volume = NULL; /* borrowed until now */
 	if (volume->bricks) {
-		gl->scene.volume = NULL;
 		gz_err(renderer->log,
 		       "a file of bricks is for the cpu backend: take --backend cpu");
 		return GZ_ERR_UNSUPPORTED;

@@ -179,7 +179,8 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 				   const struct gz_plan *plan, struct gz_gl_tile_levels *out_levels,
 				   const struct gz_log *log)
 {
-	const double pixel_lengths = gz_levels_pixel_lengths(scene->volume, camera, plan->height);
+	const double pixel_lengths =
+		gz_levels_pixel_lengths(scene->volume, camera, plan->view.height);
 	memset(out_levels, 0, sizeof *out_levels);
 	if (wants_levels(plan, rays, pixel_lengths)) {
 		prepare_levels(scene, device, log);
@@ -263,6 +264,8 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	fill_volume(scene, level, &rays->clip, block);
 	fill_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
 	block->jitter[0] = (uint32_t)rays->jitter;
+	block->jitter[1] = (uint32_t)plan->view.shift[0];
+	block->jitter[2] = (uint32_t)plan->view.shift[1];
 	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
 	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
 	for (int i = 0; i < plan->step_count; i++) {

@@ -26,7 +26,7 @@ float jitter_of(uvec2 pixel)
 {
 	if (jitter.x == 0U)
 		return 0.0;
-	uvec3 word = uvec3(pixel, jitter.x) * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	uvec3 word = uvec3(pixel - jitter.yz, jitter.x) * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
 	word.x += word.y * word.z;
 	word.y += word.z * word.x;
 	word.z += word.x * word.y;

@@ -15,7 +15,7 @@ layout(std140, binding = 0) uniform Frame
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 gradient_scale;
 	vec4 occlusion_scale, occlusion_bias, occlusion_last; // to places among its cells; greatest index
-	uvec4 jitter; // seed, 0 = none
+	uvec4 jitter; // seed, 0 = none; where the picture begins in the plan, px
 	uvec4 plan; // layers, 1 for a pyramid, width, height
 	vec4 steps[GZ_PLAN_STEPS_MAX];
 	uvec4 layers[GZ_PLAN_LAYERS_MAX]; // first point, columns, rows, spacing
