@@ -136,10 +136,21 @@ SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int
 		outside =
 			vm_or(outside, vm_or(vf_less(at[axis], vf_set(1)),
 					     vf_less(vf_set(cast->dims[axis] - 2.01F), at[axis])));
-	if (nearest || cast->bricks.table || vm_any(vm_and(mask, outside)))
-		difference_samples(cast, type, nearest, at, mask, gradient);
-	else
-		difference_voxels(cast, type, at, mask, gradient);
+	/* The two round differently, so that which one a ray takes must not depend on its
+	 * neighbours.
+	 */
+	const vm inside = vm_but(mask, outside);
+	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
+	if (by_voxels)
+		difference_voxels(cast, type, at, inside, gradient);
+	if (!by_voxels || vm_any(vm_and(mask, outside))) {
+		vf samples[3];
+		difference_samples(cast, type, nearest, at, mask, samples);
+		for (int axis = 0; axis < 3; axis++)
+			gradient[axis] = by_voxels
+						 ? vf_select(outside, samples[axis], gradient[axis])
+						 : samples[axis];
+	}
 	for (int axis = 0; axis < 3; axis++)
 		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }

@@ -459,6 +459,37 @@ static void shading_is_the_same_bits_for_any_number_of_threads(void **state)
 	small_scene_free(&scene);
 }
 
+/* Rays of coarse tiles have other neighbours than those of fine ones. */
+static void lit_rays_have_the_same_colour_in_tiles_of_any_spacing(void **state)
+{
+	(void)state;
+	enum { EDGE = 96 };
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
+		struct small_scene scene = lit_waves(12, 14, 13, (enum gz_voxel_type)type);
+		struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+		struct gz_image full = { 0 }, coarse = { 0 };
+		scene.foveation.method = GZ_METHOD_STANDARD;
+		small_scene_render(renderer, &scene, EDGE, EDGE, &full, NULL);
+		scene.foveation.method = GZ_METHOD_UNIFORM;
+		scene.foveation.uniform_spacing = 3;
+		small_scene_render(renderer, &scene, EDGE, EDGE, &coarse, NULL);
+		for (int y = 0; y < EDGE; y += 3)
+			for (int x = 0; x < EDGE; x += 3) {
+				const int at = 4 * (y * EDGE + x);
+				if (memcmp(full.pixels + at, coarse.pixels + at, 4) != 0)
+					fail_msg("type %d, pixel %d %d: %d %d %d, in a coarse tile "
+						 "%d %d %d",
+						 type, x, y, full.pixels[at], full.pixels[at + 1],
+						 full.pixels[at + 2], coarse.pixels[at],
+						 coarse.pixels[at + 1], coarse.pixels[at + 2]);
+			}
+		gz_image_free(&full);
+		gz_image_free(&coarse);
+		gz_renderer_destroy(&renderer);
+		small_scene_free(&scene);
+	}
+}
+
 static void light_without_direction_or_beyond_its_range_is_refused(void **state)
 {
 	(void)state;
@@ -506,6 +537,7 @@ int main(void)
 		cmocka_unit_test(even_matter_keeps_its_colour),
 		cmocka_unit_test(occlusion_darkens_a_corner_and_leaves_walls),
 		cmocka_unit_test(shading_is_the_same_bits_for_any_number_of_threads),
+		cmocka_unit_test(lit_rays_have_the_same_colour_in_tiles_of_any_spacing),
 		cmocka_unit_test(light_without_direction_or_beyond_its_range_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
