@@ -211,6 +211,12 @@ int main(int argc, char **argv)
 	gz_log_init(&bench.log, NULL, NULL, NULL);
 	if (gz_scene_load(argv[1], NULL, &bench.log, &bench.scene) != GZ_OK)
 		return 1;
+	if (bench.scene.volume.bricks) {
+		fprintf(stderr, "%s: a file of bricks; name a scene whose volume is in memory\n",
+			argv[1]);
+		gz_scene_free(&bench.scene);
+		return 1;
+	}
 	const struct gz_renderer_params params = { .threads = 1,
 						   .simd = argc > 4 ? argv[4] : NULL };
 	int failed = 1;

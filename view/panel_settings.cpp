@@ -66,7 +66,7 @@ bool begins_with(const char *text, const char *start, size_t length)
 }
 
 /* A row named after a method that is not the chosen one: "foveation.mdc_spacing" while that is
- * "ddc". The longest name counts, so that "mdc3" has its own. */
+ * "ddc". The longest name counts, so that "mdc3" has its own; those of "mdc" are its too. */
 bool is_of_another_method(const gz_option &option, const gz_option &method, int chosen)
 {
 	size_t prefix = strlen(METHOD_PREFIX), longest = 0;
@@ -82,7 +82,7 @@ bool is_of_another_method(const gz_option &option, const gz_option &method, int 
 			owner = i;
 		}
 	}
-	return owner >= 0 && owner != chosen;
+	return owner >= 0 && !begins_with(method.choices[chosen], method.choices[owner], longest);
 }
 
 bool draw_numbers(const gz_option &option, void *field, ImGuiDataType type, const void *least,
