@@ -7,7 +7,7 @@
 
 #include "render/brick_wants.h"
 #include "render/cpu/cast.h"
-#include "render/cpu/detail.h"
+#include "render/detail.h"
 
 /** What wants depend on beside the volume and the transfer function. Compared byte by byte. */
 struct gz_brick_stream_key {

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "render/cast_constants.h"
+#include "render/lighting.h"
 #include "render/plan/plan.h"
 #include "render/transfer_table.h"
 #include "render/volume/brick_pool.h"
@@ -25,21 +26,6 @@ struct gz_cast_bricks {
 	int32_t stride[3];
 	/** Voxels of another level along an edge of one of this level, 1 or less. */
 	float scale[3][1 << GZ_BRICK_LEVEL_BITS];
-};
-
-/** One light and how surfaces answer it: struct gz_light, ready for use. */
-struct gz_cast_light {
-	bool on;
-	float towards[3]; /**< unit vector in world directions */
-	float ambient, diffuse, specular, shininess;
-	float gradient_scale[3]; /**< see gz_light_gradient_scale(); of the level of detail */
-	float occlusion;         /**< share of the ambient light that can be kept away */
-	const uint16_t *cells;   /**< struct gz_occlusion; NULL where none is asked for */
-	float cell_scale[3], cell_bias[3]; /**< from places counted from the first datum of the
-					      volume to those counted from the first cell's */
-	float cell_greatest[3];            /**< greatest index of a cell */
-	int32_t cell_last[3];   /**< greatest index of the lower of two: max(dims - 2, 0) */
-	int32_t cell_stride[3]; /**< 0 along an axis of one cell, x excepted */
 };
 
 /** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel

@@ -1,9 +1,9 @@
-#include "render/cpu/detail.h"
+#include "render/detail.h"
 
 #include "render/brick_cells.h"
 #include "render/volume/brick_pool.h"
 
-#define GZ_LOG_MODULE "cpu"
+#define GZ_LOG_MODULE "render"
 
 /* The levels of a file of bricks that one in memory would have too, with the cells of each. */
 static enum gz_result start_bricks(struct gz_detail *detail, const struct gz_volume *volume)

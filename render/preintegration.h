@@ -1,9 +1,9 @@
 /**
  * @file
- * The pre-integrated tables of the cpu backend, made when a frame first asks for a step length.
+ * The pre-integrated tables of a backend, made when a frame first asks for a step length.
  */
-#ifndef GZ_RENDER_CPU_PREINTEGRATION_H
-#define GZ_RENDER_CPU_PREINTEGRATION_H
+#ifndef GZ_RENDER_PREINTEGRATION_H
+#define GZ_RENDER_PREINTEGRATION_H
 
 #include "render/plan/plan.h"
 #include "render/transfer_preintegrated.h"

@@ -1,9 +1,9 @@
 /**
  * @file
- * The levels of detail of the cpu backend: the pyramid of volumes with the macrocells of each.
+ * The levels of detail of a backend: the pyramid of volumes with the macrocells of each.
  */
-#ifndef GZ_RENDER_CPU_DETAIL_H
-#define GZ_RENDER_CPU_DETAIL_H
+#ifndef GZ_RENDER_DETAIL_H
+#define GZ_RENDER_DETAIL_H
 
 #include "base/log.h"
 #include "render/macrocells.h"

@@ -1,10 +1,10 @@
-#include "render/cpu/lighting.h"
+#include "render/lighting.h"
 
 #include <string.h>
 
 #include "render/light.h"
 
-#define GZ_LOG_MODULE "cpu"
+#define GZ_LOG_MODULE "render"
 
 void gz_lighting_forget(struct gz_lighting *lighting)
 {

@@ -1,15 +1,29 @@
 /**
  * @file
- * Light on the cpu backend: what the kernels take of it, and the grid of occlusion, made anew when
- * what it depends on has changed.
+ * Light as the backends take it, and the grid of occlusion, made anew when what it depends on has
+ * changed.
  */
-#ifndef GZ_RENDER_CPU_LIGHTING_H
-#define GZ_RENDER_CPU_LIGHTING_H
+#ifndef GZ_RENDER_LIGHTING_H
+#define GZ_RENDER_LIGHTING_H
 
 #include "base/log.h"
 #include "render/camera.h"
-#include "render/cpu/cast.h"
 #include "render/occlusion.h"
+
+/** One light and how surfaces answer it: struct gz_light, ready for use. */
+struct gz_cast_light {
+	bool on;
+	float towards[3]; /**< unit vector in world directions */
+	float ambient, diffuse, specular, shininess;
+	float gradient_scale[3]; /**< see gz_light_gradient_scale(); of the level of detail */
+	float occlusion;         /**< share of the ambient light that can be kept away */
+	const uint16_t *cells;   /**< struct gz_occlusion; NULL where none is asked for */
+	float cell_scale[3], cell_bias[3]; /**< from places counted from the first datum of the
+					      volume to those counted from the first cell's */
+	float cell_greatest[3];            /**< greatest index of a cell */
+	int32_t cell_last[3];   /**< greatest index of the lower of two: max(dims - 2, 0) */
+	int32_t cell_stride[3]; /**< 0 along an axis of one cell, x excepted */
+};
 
 /** Zero-initialised holds nothing. */
 struct gz_lighting {

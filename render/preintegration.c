@@ -1,4 +1,4 @@
-#include "render/cpu/preintegration.h"
+#include "render/preintegration.h"
 
 #include <stdlib.h>
 
