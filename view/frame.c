@@ -198,11 +198,12 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);
-	if (r != GZ_OK) {
+	/* Whoever does not support it has said what, and what to do. */
+	if (r != GZ_OK && r != GZ_ERR_UNSUPPORTED)
 		gz_err(maker->log, "cannot render %dx%d: %s; see the scene's camera and size",
 		       width, height, gz_result_text(r));
+	if (r != GZ_OK)
 		return r;
-	}
 	record->total_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	record->plan_ms = gz_ns_to_ms(planned_ns - start_ns);
 	record->cast_ms = stats.cast_ms;

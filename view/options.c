@@ -338,11 +338,26 @@ struct gz_display gz_view_display(const struct gz_view_options *options,
 	return display;
 }
 
+/* Scenes' files have "levels = yes", so that it is tried here too. */
+static bool is_switch_value(const char *argument)
+{
+	static const char *const values[] = { "yes", "no", "true", "false", "on", "off" };
+	for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
+		if (strcmp(argument, values[i]) == 0)
+			return true;
+	return false;
+}
+
 static enum gz_result take_positional(struct gz_view_options *options, const char *const *arguments,
 				      int count, const struct gz_log *log)
 {
 	if (count == 0)
 		return GZ_OK;
+	if ((count > 1 || options->scene[0]) && is_switch_value(arguments[count - 1])) {
+		gz_err(log, "%s: a switch takes its value after =, as in --render.levels=%s",
+		       arguments[count - 1], arguments[count - 1]);
+		return GZ_ERR_INVAL;
+	}
 	if (count > 1 || options->scene[0]) {
 		gz_err(log, "%s: one scene at a time; remove it, or the other one",
 		       arguments[count - 1]);

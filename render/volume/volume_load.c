@@ -56,7 +56,7 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 		return gz_volume_load_dicom(path, loading, log, out_volume);
 	gz_err(log,
 	       "%s: unknown kind of volume; .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw, "
-	       ".raw.zst, .raw.gz and DICOM (.dcm, or its folder) are read",
+	       ".raw.zst, .raw.gz, .gzb and DICOM (.dcm, or its folder) are read",
 	       path);
 	return GZ_ERR_UNSUPPORTED;
 }
