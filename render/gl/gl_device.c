@@ -49,7 +49,8 @@ enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, 
 	device.tells_loss = GLEW_ARB_robustness && glGetGraphicsResetStatusARB;
 	device.volume_edge_max = (int)limit_of(GL_MAX_3D_TEXTURE_SIZE);
 	device.storage_max = limit_of(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-	GLint groups = 0;
+	GLint groups =
+		65535; /* the least that OpenGL 4.3 allows; stays where the context is lost */
 	glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
 	device.groups_max = groups;
 	while (glGetError() != GL_NO_ERROR) /* of GLEW's questions */

@@ -243,13 +243,6 @@ uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame)
 	return sum;
 }
 
-size_t gz_gl_frame_bytes(const struct gz_gl_frame *frame)
-{
-	return frame->block.size + frame->tiles.size + frame->points.size + frame->counts.size +
-	       frame->spans.size + frame->staging.size +
-	       (size_t)frame->picture_width * (size_t)frame->picture_height * 4;
-}
-
 void gz_gl_frame_free(struct gz_gl_frame *frame)
 {
 	const GLuint buffers[] = { frame->block.name,  frame->tiles.name, frame->points.name,

@@ -81,9 +81,6 @@ void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height);
 /** Sum of all counts: waits for the frame. */
 uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame);
 
-/** Bytes of the device's memory that @p frame holds. */
-size_t gz_gl_frame_bytes(const struct gz_gl_frame *frame);
-
 /** Delete all of it and zero the struct. */
 void gz_gl_frame_free(struct gz_gl_frame *frame);
 
