@@ -270,14 +270,16 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
 		return GZ_ERR_FORMAT;
 	}
-	if (!gz_ray_params_valid(&settings->rays)) {
-		gz_err(log,
-		       "%s: clip.least must be below clip.greatest along each axis, and "
-		       "light.direction must not be 0 0 0",
-		       name);
-		return GZ_ERR_FORMAT;
-	}
-	return GZ_OK;
+	if (gz_ray_params_valid(&settings->rays))
+		return GZ_OK;
+	const struct gz_clip_box *clip = &settings->rays.clip;
+	bool below = true;
+	for (int axis = 0; axis < 3; axis++)
+		below = below && clip->least[axis] < clip->greatest[axis];
+	gz_err(log, "%s: %s", name,
+	       below ? "light.direction must not be 0 0 0"
+		     : "clip.least must be below clip.greatest along each axis");
+	return GZ_ERR_FORMAT;
 }
 
 static enum gz_result check_display(const struct reader *reader, bool *out_has_display)

@@ -132,8 +132,10 @@ bool read_head(const std::string &name, head &out)
 		return false;
 	DcmFileFormat dicom;
 	if (dicom.loadFile(name.c_str(), EXS_Unknown, EGL_noChange, head_element_max, ERM_fileOnly)
-		    .bad())
+		    .bad()) {
+		out.unreadable = true;
 		return false;
+	}
 	DcmDataset &data = *dicom.getDataset();
 	if (!data.tagExists(DCM_PixelData))
 		return false; /* a DICOMDIR, a report */

@@ -66,8 +66,9 @@ struct head {
 	std::string path, series_uid, description;
 	format numbers;
 	std::vector<slice> slices;
-	uint64_t frames = 0; /* claimed */
-	uint64_t bytes = 0;  /* that its pixel data can hold */
+	uint64_t frames = 0;     /* claimed */
+	uint64_t bytes = 0;      /* that its pixel data can hold */
+	bool unreadable = false; /* not to be parsed: damaged, cut off, or no DICOM at all */
 };
 
 /* What every slice of the data set's file agrees in. */

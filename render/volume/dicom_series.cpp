@@ -60,6 +60,7 @@ class reader
 
       private:
 	gz_result collect();
+	gz_result collect_folder(const std::string &folder);
 	gz_result choose(const std::string &wanted);
 	gz_result check_head(const head &h) const;
 	gz_result join();
@@ -109,19 +110,37 @@ gz_result reader::collect()
 		const size_t slash = path.rfind('/');
 		folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
 	}
+	const gz_result r = collect_folder(folder);
+	return r == GZ_OK ? choose(wanted) : r;
+}
+
+/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
+gz_result reader::collect_folder(const std::string &folder)
+{
 	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
 	if (!entries) {
 		gz_err(log, "%s: cannot read the folder: %s; check its permissions", folder.c_str(),
 		       strerror(errno));
 		return GZ_ERR_IO;
 	}
-	size_t seen = 0;
+	size_t seen = 0, damaged = 0;
+	std::string example;
 	for (dirent *entry; (entry = readdir(entries.get())) && seen < files_max; seen++) {
 		head h;
-		if (entry->d_name[0] != '.' && read_head(folder + "/" + entry->d_name, h))
+		if (entry->d_name[0] == '.')
+			continue;
+		const std::string name = folder + "/" + entry->d_name;
+		if (read_head(name, h))
 			heads.push_back(std::move(h));
+		else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
+			example = name;
 	}
-	return choose(wanted);
+	if (damaged > 0)
+		gz_warn(log,
+			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
+			"again",
+			example.c_str(), damaged);
+	return GZ_OK;
 }
 
 /* Keep one series; with none wanted there must be only one. */

@@ -230,6 +230,21 @@ static void missing_slice_is_refused(void **state)
 	check_refused(files_folder(), GZ_ERR_FORMAT, "is a file missing?");
 }
 
+/* Without the last slice the others lie evenly: only a line tells that one is missing. */
+static void damaged_file_of_a_series_is_named(void **state)
+{
+	(void)state;
+	write_series(SERIES, "s", 4);
+	assert_int_equal(truncate(files_path("s2"), 300), 0);
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	captured_log_init(&log, NULL);
+	const enum gz_result result = gz_volume_load(files_folder(), NULL, NULL, &log.log, &volume);
+	if (result != GZ_OK || log.messages != 1 || !strstr(log.last, "s2: damaged or cut off"))
+		fail_msg("result %d, %d messages: %s", result, (int)log.messages, log.last);
+	gz_volume_free(&volume);
+}
+
 static void what_is_no_grey_stack_is_refused(void **state)
 {
 	(void)state;
@@ -302,6 +317,7 @@ int main(void)
 		cmocka_unit_test_setup(frames_of_one_file_are_slices, empty_folder),
 		cmocka_unit_test_setup(compressed_series_is_that_of_its_plain_one, empty_folder),
 		cmocka_unit_test_setup(missing_slice_is_refused, empty_folder),
+		cmocka_unit_test_setup(damaged_file_of_a_series_is_named, empty_folder),
 		cmocka_unit_test_setup(what_is_no_grey_stack_is_refused, empty_folder),
 		cmocka_unit_test_setup(file_cut_anywhere_or_lying_is_refused_or_whole,
 				       empty_folder),
