@@ -198,7 +198,8 @@ static enum gz_result refresh(struct gz_window *window)
 	struct gz_window_gaze gaze;
 	int width, height;
 	glfwGetFramebufferSize(window->glfw, &width, &height);
-	if (width < 1 || height < 1) { /* minimised */
+	/* Minimised: X11 leaves such a window its size. */
+	if (width < 1 || height < 1 || glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED)) {
 		window->panel_frames = 0;
 		return GZ_OK;
 	}
