@@ -26,8 +26,8 @@
  */
 #define GZ_TRANSFER_TABLE_SIZE 4096
 
-/** Values at either end of a segment that a pre-integrated table tells apart. Chosen: finer than the
- * grey levels of 8-bit data; 2 MiB a step length, of which segments, whose ends are seldom far
+/** Values at either end of a segment that a pre-integrated table tells apart. Chosen: finer than
+ * the grey levels of 8-bit data; 2 MiB a step length, of which segments, whose ends are seldom far
  * apart, use what lies near the diagonal. */
 #define GZ_PREINTEGRATED_SIZE 512
 

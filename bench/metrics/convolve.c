@@ -24,7 +24,7 @@ static int clamp(int value, int last)
 static void filter_row_across(const struct pass *pass, const float *in, float *out)
 {
 	const int radius = pass->kernel->radius;
-	float padded[COLUMNS + 2 * GZ_KERNEL_RADIUS_MAX];
+	float padded[COLUMNS + 2 * GZ_KERNEL_RADIUS_MAX] = { 0 };
 	for (int from = 0; from < pass->width; from += COLUMNS) {
 		const int count = pass->width - from < COLUMNS ? pass->width - from : COLUMNS;
 		for (int i = 0; i < count + 2 * radius; i++)

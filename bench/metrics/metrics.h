@@ -12,8 +12,8 @@
 
 #include "base/result.h"
 #include "protocol/display.h"
-#include "render/workers.h"
 #include "render/image.h"
+#include "render/workers.h"
 
 /** One number a pixel, row by row from the top. Zero-initialised is empty. */
 struct gz_map {

@@ -275,8 +275,7 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 	struct gz_ray_frame world;
 	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
-	enum gz_result result =
-		gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
+	enum gz_result result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
 	if (result == GZ_OK)
 		shift_rays(plan->view.shift, &world);
 	if (result == GZ_OK && image)
