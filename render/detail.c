@@ -1,5 +1,7 @@
 #include "render/detail.h"
 
+#include <math.h>
+
 #include "render/brick_cells.h"
 #include "render/volume/brick_pool.h"
 
@@ -76,6 +78,33 @@ void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 	gz_levels_start(&detail->levels, &volume);
 	for (int i = 1; i < GZ_LEVELS_MAX; i++)
 		gz_macrocells_free(&detail->cells[i]);
+}
+
+/* Between rays of a tile, in pixels. */
+static double pixels_apart(const struct gz_plan *plan, int layer, int pattern)
+{
+	return (pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1) * plan->layers[layer].spacing;
+}
+
+bool gz_detail_wanted(const struct gz_plan *plan, const struct gz_ray_params *rays,
+		      double pixel_lengths)
+{
+	double across = 0, along = 0;
+	if (!rays->levels || rays->interpolation != GZ_INTERPOLATION_TRILINEAR)
+		return false;
+	for (int i = 0; i < plan->layer_count; i++)
+		across = fmax(across, pixels_apart(plan, i, GZ_TILE_QUINCUNX) * pixel_lengths);
+	for (int i = 0; i < plan->step_count; i++)
+		along = fmax(along, (double)plan->steps[i] / rays->ray_sampling_rate);
+	return fmin(across, along) >= M_SQRT2;
+}
+
+int gz_detail_choose(const struct gz_detail *detail, const struct gz_plan *plan,
+		     const struct gz_ray_params *rays, double pixel_lengths, int layer, int pattern,
+		     int step)
+{
+	return gz_levels_choose(&detail->levels, pixels_apart(plan, layer, pattern) * pixel_lengths,
+				(double)plan->steps[step] / rays->ray_sampling_rate);
 }
 
 void gz_detail_free(struct gz_detail *detail)

@@ -7,6 +7,8 @@
 
 #include "base/log.h"
 #include "render/macrocells.h"
+#include "render/plan/plan.h"
+#include "render/ray_params.h"
 #include "render/volume/levels.h"
 
 /** Zero-initialised holds nothing. Coarser levels are made when a frame first asks for one. */
@@ -30,6 +32,25 @@ void gz_detail_classify(struct gz_detail *detail, const struct gz_transfer_table
  */
 void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 			   const struct gz_transfer_table *table, const struct gz_log *log);
+
+/**
+ * Whether any tile of a plan may take a coarser level, as far as spacings and steps go.
+ *
+ * @param pixel_lengths  of gz_levels_pixel_lengths()
+ */
+bool gz_detail_wanted(const struct gz_plan *plan, const struct gz_ray_params *rays,
+		      double pixel_lengths);
+
+/**
+ * The level that tiles of a kind take: gz_levels_choose() by how far their rays and samples lie
+ * apart.
+ *
+ * @param layer, pattern, step  as in struct gz_tile
+ * @param pixel_lengths         of gz_levels_pixel_lengths(); 0 for the full volume
+ */
+int gz_detail_choose(const struct gz_detail *detail, const struct gz_plan *plan,
+		     const struct gz_ray_params *rays, double pixel_lengths, int layer, int pattern,
+		     int step);
 
 /** Free and zero. */
 void gz_detail_free(struct gz_detail *detail);

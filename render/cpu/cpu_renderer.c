@@ -51,7 +51,8 @@ struct cpu_renderer {
 struct cast_job {
 	struct gz_cast casts[GZ_LEVELS_MAX]; /* of each level of detail */
 	int cast_count;
-	const struct gz_levels *levels;
+	const struct gz_detail *detail;
+	const struct gz_ray_params *rays;
 	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
 			       */
 	const struct gz_plan *plan;
@@ -285,10 +286,8 @@ static void store_tile(const struct cast_job *job, const struct gz_tile *tile,
 /* Which level of detail a tile takes. */
 static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
 {
-	const double apart = tile->pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1;
-	return gz_levels_choose(job->levels,
-				apart * job->plan->layers[tile->layer].spacing * job->pixel_lengths,
-				(double)job->casts[0].voxel_lengths[tile->step]);
+	return gz_detail_choose(job->detail, job->plan, job->rays, job->pixel_lengths, tile->layer,
+				tile->pattern, tile->step);
 }
 
 static int level_of(const void *user, const struct gz_tile *tile)
@@ -364,31 +363,17 @@ static uint64_t cast_tiles(struct cpu_renderer *cpu, struct cast_job *job)
 	return samples;
 }
 
-/* Whether any tile of a plan may take a coarser level, as far as spacings and steps go. */
-static bool wants_levels(const struct gz_plan *plan, const struct gz_ray_params *rays,
-			 double pixel_lengths)
-{
-	int spacing = 0;
-	float step = 0;
-	for (int i = 0; i < plan->layer_count; i++)
-		spacing = plan->layers[i].spacing > spacing ? plan->layers[i].spacing : spacing;
-	for (int i = 0; i < plan->step_count; i++)
-		step = plan->steps[i] > step ? plan->steps[i] : step;
-	return fmin(M_SQRT2 * spacing * pixel_lengths, (double)step / rays->ray_sampling_rate) >=
-	       M_SQRT2;
-}
-
 static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camera *camera,
 				 const struct gz_ray_frame *ray_frame,
 				 const struct gz_ray_params *rays, struct cast_job *job)
 {
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->view.height);
-	const bool coarser = rays->levels && rays->interpolation == GZ_INTERPOLATION_TRILINEAR &&
-			     wants_levels(job->plan, rays, pixel_lengths);
+	const bool coarser = gz_detail_wanted(job->plan, rays, pixel_lengths);
 	if (coarser)
 		gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
-	job->levels = &cpu->detail.levels;
+	job->detail = &cpu->detail;
+	job->rays = rays;
 	job->pixel_lengths = coarser ? pixel_lengths : 0;
 	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
 	const enum gz_result result = fill_preintegration(cpu, job->plan, rays, &job->casts[0]);
@@ -396,7 +381,7 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 		gz_err(cpu->base.log, "no memory for pre-integrated tables: take sampled");
 		return result;
 	}
-	job->cast_count = coarser ? job->levels->count : 1;
+	job->cast_count = coarser ? cpu->detail.levels.count : 1;
 	for (int i = 0; i < job->cast_count; i++) {
 		job->casts[i] = job->casts[0];
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);

@@ -135,12 +135,6 @@ static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device 
 	}
 }
 
-static double tile_across(const struct gz_plan *plan, int layer, int pattern, double pixel_lengths)
-{
-	const double apart = pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1;
-	return apart * plan->layers[layer].spacing * pixel_lengths;
-}
-
 /* The level of each kind of tile. */
 static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan *plan,
 			  const struct gz_ray_params *rays, double pixel_lengths,
@@ -149,29 +143,14 @@ static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan 
 	for (int layer = 0; layer < plan->layer_count; layer++)
 		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
 			for (int step = 0; step < plan->step_count; step++) {
-				const int level = gz_levels_choose(
-					&scene->detail.levels,
-					tile_across(plan, layer, pattern, pixel_lengths),
-					plan->steps[step] / rays->ray_sampling_rate);
+				const int level =
+					gz_detail_choose(&scene->detail, plan, rays, pixel_lengths,
+							 layer, pattern, step);
 				out_levels->of[layer][pattern][step] =
 					(uint8_t)(level < scene->level_count
 							  ? level
 							  : scene->level_count - 1);
 			}
-}
-
-/* Whether any tile may take a coarser level, as far as spacings and steps go. */
-static bool wants_levels(const struct gz_plan *plan, const struct gz_ray_params *rays,
-			 double pixel_lengths)
-{
-	double across = 0, along = 0;
-	if (!rays->levels || rays->interpolation != GZ_INTERPOLATION_TRILINEAR)
-		return false;
-	for (int i = 0; i < plan->layer_count; i++)
-		across = fmax(across, tile_across(plan, i, GZ_TILE_QUINCUNX, pixel_lengths));
-	for (int i = 0; i < plan->step_count; i++)
-		along = fmax(along, plan->steps[i] / rays->ray_sampling_rate);
-	return fmin(across, along) >= M_SQRT2;
 }
 
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
@@ -182,7 +161,7 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(scene->volume, camera, plan->view.height);
 	memset(out_levels, 0, sizeof *out_levels);
-	if (wants_levels(plan, rays, pixel_lengths)) {
+	if (gz_detail_wanted(plan, rays, pixel_lengths)) {
 		prepare_levels(scene, device, log);
 		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
 	}
