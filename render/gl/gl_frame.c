@@ -170,12 +170,12 @@ void gz_gl_frame_set_block(struct gz_gl_frame *frame, int level,
 			   const struct gz_gl_frame_block *block)
 {
 	glBindBuffer(GL_UNIFORM_BUFFER, frame->block.name);
-	glBufferSubData(GL_UNIFORM_BUFFER, (GLintptr)(level * BLOCK_STRIDE), sizeof *block, block);
+	glBufferSubData(GL_UNIFORM_BUFFER, (GLintptr)level * BLOCK_STRIDE, sizeof *block, block);
 }
 
 void gz_gl_frame_use_block(const struct gz_gl_frame *frame, int level)
 {
-	glBindBufferRange(GL_UNIFORM_BUFFER, 0, frame->block.name, (GLintptr)(level * BLOCK_STRIDE),
+	glBindBufferRange(GL_UNIFORM_BUFFER, 0, frame->block.name, (GLintptr)level * BLOCK_STRIDE,
 			  sizeof(struct gz_gl_frame_block));
 }
 
