@@ -14,7 +14,6 @@
 
 struct search {
 	const struct gz_brick_scene *scene;
-	const struct gz_brick_file *file;
 	struct gz_brick_wants *wants;
 	double to_picture[3][3]; /* world, less origin, to (x, y, 1) * depth */
 	double origin[3];
@@ -172,7 +171,7 @@ static void add(struct search *search, size_t brick, double weight)
 
 static double weigh(const struct search *search, int level, const struct appearance *seen)
 {
-	const struct gz_brick_layout *layout = &search->file->layout;
+	const struct gz_brick_layout *layout = search->scene->layout;
 	const struct gz_volume *volume = search->scene->volume;
 	const struct gz_brick_level *l =
 		&layout->levels[level + 1 < layout->level_count ? level + 1 : level];
@@ -189,10 +188,10 @@ static double weigh(const struct search *search, int level, const struct appeara
 
 static void visit(struct search *search, int level, const int brick[3])
 {
-	const struct gz_brick_layout *layout = &search->file->layout;
+	const struct gz_brick_layout *layout = search->scene->layout;
 	const struct gz_brick_level *l = &layout->levels[level];
 	const size_t number = gz_brick_number(layout, level, brick);
-	const struct gz_brick_entry *entry = &search->file->entries[number];
+	const struct gz_brick_entry *entry = &search->scene->entries[number];
 	if (search->result != GZ_OK ||
 	    !gz_transfer_table_shows(search->scene->table, (double)entry->least,
 				     (double)entry->greatest))
@@ -237,7 +236,6 @@ enum gz_result gz_brick_wants_find(const struct gz_brick_scene *scene, struct gz
 {
 	struct search search = {
 		.scene = scene,
-		.file = gz_brick_pool_file(scene->volume->bricks),
 		.wants = wants,
 		.result = GZ_OK,
 	};
@@ -245,7 +243,7 @@ enum gz_result gz_brick_wants_find(const struct gz_brick_scene *scene, struct gz
 	const enum gz_result result = begin(&search);
 	if (result != GZ_OK)
 		return result;
-	visit(&search, search.file->layout.level_count - 1, (const int[3]) { 0, 0, 0 });
+	visit(&search, scene->layout->level_count - 1, (const int[3]) { 0, 0, 0 });
 	if (wants->count > 0)
 		qsort(wants->want, wants->count, sizeof *wants->want, heavier_first);
 	return search.result;

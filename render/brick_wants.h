@@ -15,7 +15,7 @@
 #include "render/camera.h"
 #include "render/plan/plan.h"
 #include "render/transfer_table.h"
-#include "render/volume/brick_pool.h"
+#include "render/volume/brick_rooms.h"
 
 /** Edge of the blocks that the picture's levels are told in, px. Chosen: far smaller than what is
  *  worth fetching alone. */
@@ -23,7 +23,9 @@
 
 /** What is to be shown. */
 struct gz_brick_scene {
-	const struct gz_volume *volume; /**< with bricks */
+	const struct gz_volume *volume;
+	const struct gz_brick_layout *layout; /**< of its bricks */
+	const struct gz_brick_entry *entries; /**< by number; only their ranges are looked at */
 	const struct gz_transfer_table *table;
 	const struct gz_camera *camera;
 	int width, height;          /**< of the picture, px */

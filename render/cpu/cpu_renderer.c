@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "render/cpu/brick_stream.h"
+#include "render/brick_stream.h"
 #include "render/cpu/cast.h"
 #include "render/cpu/lattice.h"
 #include "render/cpu/reconstruct.h"
@@ -34,6 +34,7 @@ struct cpu_renderer {
 	const struct gz_volume *volume; /* borrowed */
 	struct gz_detail detail;
 	struct gz_brick_stream stream; /* of a volume of bricks */
+	size_t bricks_coming;          /* of the last picture */
 	bool wait_for_bricks;
 	bool has_transfer;
 	struct gz_transfer_table table;
@@ -295,33 +296,44 @@ static int level_of(const void *user, const struct gz_tile *tile)
 	return tile_level(user, tile);
 }
 
+/* Lead a cast of a level of detail to the bricks that are there. */
+static void lead_to_bricks(const struct gz_brick_layout *layout, int level,
+			   const struct gz_brick_view *view, struct gz_cast *cast)
+{
+	struct gz_brick_lookup lookup;
+	gz_brick_lookup_make(layout, level, &lookup);
+	cast->voxels = view->voxels;
+	cast->bricks.table = view->table + lookup.first;
+	memcpy(cast->bricks.stride, lookup.stride, sizeof lookup.stride);
+	memcpy(cast->bricks.last, lookup.last, sizeof lookup.last);
+	memcpy(cast->bricks.scale, lookup.scale, sizeof lookup.scale);
+}
+
 /* Have the bricks that there are, and send for those that the picture lacks. */
 static enum gz_result take_bricks(struct cpu_renderer *cpu, const struct gz_camera *camera,
 				  const struct gz_ray_params *rays, struct cast_job *job)
 {
-	const struct gz_plan *plan = job->plan;
-	struct gz_brick_stream_frame frame = {
+	const struct gz_brick_file *file = gz_brick_pool_file(cpu->volume->bricks);
+	const struct gz_brick_stream_frame frame = {
 		.detail = &cpu->detail,
+		.layout = &file->layout,
+		.entries = file->entries,
 		.table = &cpu->table,
-		.plan = plan,
+		.plan = job->plan,
+		.key = gz_brick_stream_key_of(camera, rays, job->plan, job->pixel_lengths),
 		.tile_level = job->pixel_lengths > 0 ? level_of : NULL,
 		.user = job,
-		.wait = cpu->wait_for_bricks,
 	};
-	memset(&frame.key, 0, sizeof frame.key);
-	frame.key.camera = *camera;
-	frame.key.focus_px[0] = plan->focus_px[0];
-	frame.key.focus_px[1] = plan->focus_px[1];
-	frame.key.pixel_lengths = job->pixel_lengths;
-	frame.key.ray_sampling_rate = rays->ray_sampling_rate;
-	frame.key.tile_count = plan->tile_count;
-	frame.key.plan_serial = plan->serial;
-	frame.key.width = plan->width;
-	frame.key.height = plan->height;
-	const enum gz_result result = gz_brick_stream_turn(&cpu->stream, &frame);
-	for (int i = 0; i < job->cast_count && result == GZ_OK; i++)
-		gz_brick_stream_lead(&cpu->stream, &cpu->detail, i, &job->casts[i]);
-	return result;
+	const enum gz_result result = gz_brick_stream_find(&cpu->stream, &frame);
+	if (result != GZ_OK)
+		return result;
+	struct gz_brick_view view;
+	gz_brick_pool_turn(cpu->volume->bricks, cpu->stream.wants.want, cpu->stream.wants.count,
+			   cpu->wait_for_bricks, &view);
+	cpu->bricks_coming = view.coming;
+	for (int i = 0; i < job->cast_count; i++)
+		lead_to_bricks(&file->layout, cpu->detail.brick_level[i], &view, &job->casts[i]);
+	return GZ_OK;
 }
 
 static void cast_part(void *user, size_t part, int worker)
@@ -440,7 +452,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 			.samples = samples,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
-			.bricks_coming = cpu->volume->bricks ? cpu->stream.view.coming : 0,
+			.bricks_coming = cpu->volume->bricks ? cpu->bricks_coming : 0,
 		};
 	return GZ_OK;
 }

@@ -69,17 +69,17 @@ void gz_brick_place(const struct gz_brick_layout *layout, size_t number, int *ou
 	*out_level = level;
 }
 
-/* Whether a level's axis is halved to make the next one. */
-static bool halves(const struct gz_brick_layout *layout, int level, int axis)
+/* How often a level's axis is halved to make the next one. */
+static int halvings(const struct gz_brick_layout *layout, int level, int axis)
 {
-	return layout->levels[level + 1].halvings[axis] > layout->levels[level].halvings[axis];
+	return layout->levels[level + 1].halvings[axis] - layout->levels[level].halvings[axis];
 }
 
 void gz_brick_parent(const struct gz_brick_layout *layout, int level, const int brick[3],
 		     int out_parent[3])
 {
 	for (int axis = 0; axis < 3; axis++)
-		out_parent[axis] = halves(layout, level, axis) ? brick[axis] / 2 : brick[axis];
+		out_parent[axis] = brick[axis] >> halvings(layout, level, axis);
 }
 
 void gz_brick_children(const struct gz_brick_layout *layout, int level, const int brick[3],
@@ -87,11 +87,28 @@ void gz_brick_children(const struct gz_brick_layout *layout, int level, const in
 {
 	const struct gz_brick_level *finer = &layout->levels[level - 1];
 	for (int axis = 0; axis < 3; axis++) {
-		const int each = halves(layout, level - 1, axis) ? 2 : 1;
-		const int end = each * (brick[axis] + 1);
-		out_first[axis] = each * brick[axis];
+		const int times = halvings(layout, level - 1, axis);
+		const int end = (brick[axis] + 1) << times;
+		out_first[axis] = brick[axis] << times;
 		out_end[axis] = end < finer->bricks[axis] ? end : finer->bricks[axis];
 	}
+}
+
+void gz_brick_lookup_make(const struct gz_brick_layout *layout, int level,
+			  struct gz_brick_lookup *out_lookup)
+{
+	const struct gz_brick_level *own = &layout->levels[level];
+	struct gz_brick_lookup lookup = {
+		.first = own->first,
+		.stride = { 1, own->bricks[0], own->bricks[0] * own->bricks[1] },
+	};
+	for (int axis = 0; axis < 3; axis++) {
+		lookup.last[axis] = (float)(own->bricks[axis] - 1);
+		for (int other = 0; other < layout->level_count; other++)
+			lookup.scale[axis][other] = ldexpf(
+				1, own->halvings[axis] - layout->levels[other].halvings[axis]);
+	}
+	*out_lookup = lookup;
 }
 
 /* Little-endian numbers, whatever the machine. */

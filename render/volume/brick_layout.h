@@ -61,6 +61,21 @@ void gz_brick_parent(const struct gz_brick_layout *layout, int level, const int 
 void gz_brick_children(const struct gz_brick_layout *layout, int level, const int brick[3],
 		       int out_first[3], int out_end[3]);
 
+/** How a place in the voxel coordinates of a level leads to its brick, and into coarser ones over
+ *  it: brick number first + the sum of stride times the brick along each axis. */
+struct gz_brick_lookup {
+	size_t first;
+	int32_t stride[3];
+	float last[3]; /**< greatest number of a brick */
+	/** Voxels of another level along an edge of one of this level, 1 or less for coarser ones;
+	 *  0 for levels that there are not. */
+	float scale[3][GZ_BRICK_LEVELS_MAX];
+};
+
+/** The lookup of @p level. */
+void gz_brick_lookup_make(const struct gz_brick_layout *layout, int level,
+			  struct gz_brick_lookup *out_lookup);
+
 /** What the index of a file says of one brick. */
 struct gz_brick_entry {
 	uint64_t offset;       /**< of its voxels in the file; 0: every voxel is least */

@@ -13,23 +13,10 @@
 #define ERRANDS_MAX 1024
 /* Chosen: one waits for the disk while the other checks. */
 #define FETCHERS 2
-/* Share of the rooms that coarse levels may keep for good, and the least number of rooms (chosen).
- */
-#define PINNED_SHARE 8
-#define ROOMS_MIN    256
+/* The least number of rooms (chosen). */
+#define ROOMS_MIN 256
 /* Places in the rooms are 32-bit signed indices, as gathers take them. */
 #define ROOMS_MAX ((size_t)(INT32_MAX / GZ_BRICK_VOXELS))
-/* Rooms that are somewhere else than in a room. */
-enum { NOWHERE = -1, UNREADABLE = -2 };
-
-/* What is in a room. */
-struct room {
-	uint32_t brick;
-	bool taken, there, pinned;
-	float weight;    /* when it was last wanted */
-	uint64_t wanted; /* the turn in which it was */
-};
-
 /* To bring a brick into a room, and how that went. */
 struct errand {
 	uint32_t brick;
@@ -42,18 +29,9 @@ struct gz_brick_pool {
 	struct gz_brick_file *file;
 	size_t brick_bytes;
 	/* the rooms: only rooms on an errand are written to, and no table leads to these */
-	size_t room_count, mapped;
+	size_t mapped;
 	uint8_t *voxels;
-	struct room *rooms;
-	/* by a brick's number */
-	int32_t *room_of;
-	int32_t *table;
-	/* of one turn */
-	uint64_t turn;
-	size_t *victims; /* rooms, the least valuable first */
-	size_t victim_count, victim_at;
-	bool victims_known;
-	size_t free_at; /* rooms before it have been taken once */
+	struct gz_brick_rooms rooms;
 	/* between the threads */
 	pthread_mutex_t mutex;
 	pthread_cond_t errand_waits, errand_done;
@@ -88,54 +66,15 @@ static void *fetch(void *argument)
 	return NULL;
 }
 
-/* A brick's entry is its own where it is there, else that of the brick over it; and so on for all
- * bricks under it. */
-static void update_table(struct gz_brick_pool *pool, int level, const int brick[3])
-{
-	const struct gz_brick_layout *layout = &pool->file->layout;
-	const size_t number = gz_brick_number(layout, level, brick);
-	const int32_t room = pool->room_of[number];
-	int32_t entry = 0;
-	if (room >= 0 && pool->rooms[room].there) {
-		entry = room << GZ_BRICK_LEVEL_BITS | level;
-	} else if (level + 1 < layout->level_count) {
-		int parent[3];
-		gz_brick_parent(layout, level, brick, parent);
-		entry = pool->table[gz_brick_number(layout, level + 1, parent)];
-	}
-	if (pool->table[number] == entry)
-		return;
-	pool->table[number] = entry;
-	if (level == 0)
-		return;
-	int first[3], end[3];
-	gz_brick_children(layout, level, brick, first, end);
-	for (int z = first[2]; z < end[2]; z++)
-		for (int y = first[1]; y < end[1]; y++)
-			for (int x = first[0]; x < end[0]; x++)
-				update_table(pool, level - 1, (const int[3]) { x, y, z });
-}
-
-static void update_brick(struct gz_brick_pool *pool, uint32_t number)
-{
-	int level, brick[3];
-	gz_brick_place(&pool->file->layout, number, &level, brick);
-	update_table(pool, level, brick);
-}
-
 /* What an errand has brought. */
 static void let_in(struct gz_brick_pool *pool, const struct errand *errand)
 {
-	struct room *room = &pool->rooms[errand->room];
-	room->there = errand->result == GZ_OK;
-	if (room->there) {
-		update_brick(pool, errand->brick);
+	if (errand->result == GZ_OK) {
+		gz_brick_rooms_let_in(&pool->rooms, errand->room);
 		return;
 	}
 	gz_brick_file_complain(pool->file, errand->brick, errand->result);
-	pool->room_of[errand->brick] = UNREADABLE;
-	room->taken = false;
-	room->wanted = 0;
+	gz_brick_rooms_give_up(&pool->rooms, errand->room);
 }
 
 /* Bring in all that is done; with `wait`, at least one if any is out. Returns how many are out
@@ -157,71 +96,6 @@ static size_t collect(struct gz_brick_pool *pool, bool wait)
 	return out;
 }
 
-/* How much a room's brick is worth in this turn: wanted ones by weight, others less, by age. */
-static double worth(const struct gz_brick_pool *pool, const struct room *room)
-{
-	if (!room->taken)
-		return -1e30;
-	return room->wanted == pool->turn ? (double)room->weight
-					  : (double)room->wanted - (double)pool->turn;
-}
-
-static int compare_worth(const void *a, const void *b, void *user)
-{
-	const struct gz_brick_pool *pool = user;
-	const double left = worth(pool, &pool->rooms[*(const size_t *)a]);
-	const double right = worth(pool, &pool->rooms[*(const size_t *)b]);
-	return left < right ? -1 : left > right;
-}
-
-static void find_victims(struct gz_brick_pool *pool)
-{
-	pool->victim_count = pool->victim_at = 0;
-	for (size_t i = 0; i < pool->room_count; i++) {
-		const struct room *room = &pool->rooms[i];
-		if (!room->pinned && (room->there || !room->taken))
-			pool->victims[pool->victim_count++] = i;
-	}
-	qsort_r(pool->victims, pool->victim_count, sizeof *pool->victims, compare_worth, pool);
-	pool->victims_known = true;
-}
-
-/* A room for a brick of this weight; NOWHERE if all are worth more. */
-static int32_t make_room(struct gz_brick_pool *pool, float weight)
-{
-	if (pool->free_at < pool->room_count)
-		return (int32_t)pool->free_at++;
-	if (!pool->victims_known)
-		find_victims(pool);
-	if (pool->victim_at == pool->victim_count)
-		return NOWHERE;
-	const size_t victim = pool->victims[pool->victim_at];
-	struct room *room = &pool->rooms[victim];
-	if (worth(pool, room) >= (double)weight)
-		return NOWHERE;
-	pool->victim_at++;
-	if (room->taken) {
-		const uint32_t brick = room->brick;
-		pool->room_of[brick] = NOWHERE;
-		*room = (struct room) { 0 };
-		update_brick(pool, brick);
-	}
-	return (int32_t)victim;
-}
-
-static void mark_wanted(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count)
-{
-	pool->turn++;
-	pool->victims_known = false;
-	for (size_t i = 0; i < count; i++) {
-		const int32_t room = pool->room_of[wants[i].brick];
-		if (room < 0)
-			continue;
-		pool->rooms[room].wanted = pool->turn;
-		pool->rooms[room].weight = wants[i].weight;
-	}
-}
-
 /* Send for what is wanted and not there, while there is room and anybody to go. */
 static size_t send_for(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count,
 		       size_t out)
@@ -229,16 +103,12 @@ static size_t send_for(struct gz_brick_pool *pool, const struct gz_brick_want *w
 	struct errand errands[ERRANDS_MAX];
 	size_t sent = 0;
 	for (size_t i = 0; i < count && out + sent < ERRANDS_MAX; i++) {
-		if (pool->room_of[wants[i].brick] != NOWHERE)
+		if (pool->rooms.room_of[wants[i].brick] != GZ_BRICK_NOWHERE)
 			continue;
-		const int32_t room = make_room(pool, wants[i].weight);
-		if (room == NOWHERE)
+		const int32_t room =
+			gz_brick_rooms_take(&pool->rooms, wants[i].brick, wants[i].weight);
+		if (room == GZ_BRICK_NOWHERE)
 			break;
-		pool->rooms[room] = (struct room) { .brick = wants[i].brick,
-						    .taken = true,
-						    .weight = wants[i].weight,
-						    .wanted = pool->turn };
-		pool->room_of[wants[i].brick] = room;
 		errands[sent++] = (struct errand) { .brick = wants[i].brick, .room = room };
 	}
 	pthread_mutex_lock(&pool->mutex);
@@ -256,15 +126,15 @@ void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *
 			bool wait, struct gz_brick_view *out_view)
 {
 	size_t out = collect(pool, false);
-	mark_wanted(pool, wants, count);
+	gz_brick_rooms_turn(&pool->rooms, wants, count);
 	out = send_for(pool, wants, count, out);
 	while (wait && out > 0) {
 		out = collect(pool, true);
-		pool->victims_known = false;
+		gz_brick_rooms_look_again(&pool->rooms);
 		out = send_for(pool, wants, count, out);
 	}
 	*out_view = (struct gz_brick_view) { .voxels = pool->voxels,
-					     .table = pool->table,
+					     .table = pool->rooms.table,
 					     .coming = out };
 }
 
@@ -275,7 +145,7 @@ const struct gz_brick_file *gz_brick_pool_file(const struct gz_brick_pool *pool)
 
 size_t gz_brick_pool_rooms(const struct gz_brick_pool *pool)
 {
-	return pool->room_count;
+	return pool->rooms.count;
 }
 
 static size_t memory_preset(void)
@@ -294,28 +164,20 @@ static size_t count_rooms(const struct gz_brick_pool *pool, size_t memory_bytes)
 }
 
 /* The voxels' pages come when bricks do. */
-static enum gz_result make_rooms(struct gz_brick_pool *pool)
+static enum gz_result make_rooms(struct gz_brick_pool *pool, size_t count)
 {
-	const size_t bricks = pool->file->layout.brick_count;
-	pool->mapped = pool->room_count * pool->brick_bytes + GZ_VOLUME_PADDING;
+	const enum gz_result result = gz_brick_rooms_init(&pool->rooms, &pool->file->layout, count);
+	pool->mapped = count * pool->brick_bytes + GZ_VOLUME_PADDING;
 	void *voxels = mmap(NULL, pool->mapped, PROT_READ | PROT_WRITE,
 			    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
 	if (voxels != MAP_FAILED) {
 		pool->voxels = voxels;
 		(void)madvise(voxels, pool->mapped, MADV_HUGEPAGE); /* only a hint */
 	}
-	pool->rooms = calloc(pool->room_count, sizeof *pool->rooms);
-	pool->victims = malloc(pool->room_count * sizeof *pool->victims);
-	pool->room_of = malloc(bricks * sizeof *pool->room_of);
-	pool->table = malloc(bricks * sizeof *pool->table);
-	if (!pool->voxels || !pool->rooms || !pool->victims || !pool->room_of || !pool->table) {
+	if (result != GZ_OK || !pool->voxels) {
 		gz_err(pool->log, "%s: no memory for %zu bricks; set volume.memory_mib lower",
-		       pool->file->path, pool->room_count);
+		       pool->file->path, count);
 		return GZ_ERR_NO_MEM;
-	}
-	for (size_t i = 0; i < bricks; i++) {
-		pool->room_of[i] = NOWHERE;
-		pool->table[i] = -1;
 	}
 	return GZ_OK;
 }
@@ -326,10 +188,8 @@ static enum gz_result pin_level(struct gz_brick_pool *pool, int level, bool must
 	const size_t end = level + 1 < layout->level_count ? layout->levels[level + 1].first
 							   : layout->brick_count;
 	for (size_t i = layout->levels[level].first; i < end; i++) {
-		struct errand errand = { .brick = (uint32_t)i, .room = (int32_t)pool->free_at++ };
-		pool->rooms[errand.room] =
-			(struct room) { .brick = errand.brick, .taken = true, .pinned = true };
-		pool->room_of[i] = errand.room;
+		struct errand errand = { .brick = (uint32_t)i };
+		errand.room = gz_brick_rooms_pin(&pool->rooms, errand.brick);
 		errand.result = gz_brick_file_read(
 			pool->file, i, pool->voxels + (size_t)errand.room * pool->brick_bytes);
 		let_in(pool, &errand);
@@ -345,12 +205,9 @@ static enum gz_result pin_levels(struct gz_brick_pool *pool)
 	const struct gz_brick_layout *layout = &pool->file->layout;
 	const int last = layout->level_count - 1;
 	enum gz_result result = pin_level(pool, last, true);
-	for (int level = last - 1; level >= 0 && result == GZ_OK; level--) {
-		const size_t bricks = layout->brick_count - layout->levels[level].first;
-		if (bricks > pool->room_count / PINNED_SHARE)
-			break;
+	const int finest = gz_brick_rooms_pinned_level(layout, pool->rooms.count);
+	for (int level = last - 1; level >= finest && result == GZ_OK; level--)
 		result = pin_level(pool, level, false);
-	}
 	return result;
 }
 
@@ -379,8 +236,7 @@ enum gz_result gz_brick_pool_open(const char *path, size_t memory_bytes, const s
 	enum gz_result result = gz_brick_file_open(path, log, &pool->file);
 	if (result == GZ_OK) {
 		pool->brick_bytes = GZ_BRICK_VOXELS * gz_voxel_size(pool->file->header.type);
-		pool->room_count = count_rooms(pool, memory_bytes);
-		result = make_rooms(pool);
+		result = make_rooms(pool, count_rooms(pool, memory_bytes));
 	}
 	if (result == GZ_OK)
 		result = pin_levels(pool);
@@ -410,10 +266,7 @@ void gz_brick_pool_destroy(struct gz_brick_pool **pool_pointer)
 	pthread_mutex_destroy(&pool->mutex);
 	if (pool->voxels)
 		(void)munmap(pool->voxels, pool->mapped);
-	free(pool->rooms);
-	free(pool->victims);
-	free(pool->room_of);
-	free(pool->table);
+	gz_brick_rooms_free(&pool->rooms);
 	gz_brick_file_close(&pool->file);
 	free(pool);
 	*pool_pointer = NULL;

@@ -10,17 +10,9 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/volume/brick_file.h"
-
-/** Bits of a table's entry that hold the level; those above hold the room. */
-#define GZ_BRICK_LEVEL_BITS 4
+#include "render/volume/brick_rooms.h"
 
 struct gz_brick_pool;
-
-/** A brick that a picture would show, and how much its absence would be seen. */
-struct gz_brick_want {
-	float weight;   /**< above 0; compared with each other only */
-	uint32_t brick; /**< its number */
-};
 
 /** What is in memory while a picture is made: valid until the next turn. */
 struct gz_brick_view {

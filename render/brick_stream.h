@@ -1,13 +1,15 @@
 /**
  * @file
- * The bricks of the cpu backend's pictures: what each wants is sent for, what has come is shown.
+ * The bricks of a backend's pictures: what each wants, found anew only when something has changed.
  */
-#ifndef GZ_RENDER_CPU_BRICK_STREAM_H
-#define GZ_RENDER_CPU_BRICK_STREAM_H
+#ifndef GZ_RENDER_BRICK_STREAM_H
+#define GZ_RENDER_BRICK_STREAM_H
 
 #include "render/brick_wants.h"
-#include "render/cpu/cast.h"
+#include "render/camera.h"
 #include "render/detail.h"
+#include "render/plan/plan.h"
+#include "render/ray_params.h"
 
 /** What wants depend on beside the volume and the transfer function. Compared byte by byte. */
 struct gz_brick_stream_key {
@@ -25,28 +27,31 @@ struct gz_brick_stream {
 	bool found;                     /**< there are any */
 	uint8_t *block_level;           /**< see struct gz_brick_scene */
 	size_t block_capacity;
-	struct gz_brick_view view;
 };
 
 /** What a picture is of. */
 struct gz_brick_stream_frame {
 	const struct gz_detail *detail;
+	const struct gz_brick_layout *layout; /**< of the bricks */
+	const struct gz_brick_entry *entries; /**< by a brick's number */
 	const struct gz_transfer_table *table;
 	const struct gz_plan *plan;
 	struct gz_brick_stream_key key;
 	/** The level of detail that a tile takes; NULL: the finest for all. */
 	int (*tile_level)(const void *user, const struct gz_tile *tile);
 	const void *user;
-	bool wait; /**< until all is there that has room */
 };
 
-/** Send for what the picture wants and take what is there. GZ_ERR_NO_MEM. */
-enum gz_result gz_brick_stream_turn(struct gz_brick_stream *stream,
-				    const struct gz_brick_stream_frame *frame);
+/** The key of a frame. @param pixel_lengths  of gz_levels_pixel_lengths(); 0 where all rays take
+ *  the finest level */
+struct gz_brick_stream_key gz_brick_stream_key_of(const struct gz_camera *camera,
+						  const struct gz_ray_params *rays,
+						  const struct gz_plan *plan, double pixel_lengths);
 
-/** Lead a cast of level of detail @p index to the bricks of the last turn. */
-void gz_brick_stream_lead(const struct gz_brick_stream *stream, const struct gz_detail *detail,
-			  int index, struct gz_cast *cast);
+/** Find what the picture wants, into stream->wants. GZ_ERR_NO_MEM; GZ_ERR_INVAL: no valid camera.
+ */
+enum gz_result gz_brick_stream_find(struct gz_brick_stream *stream,
+				    const struct gz_brick_stream_frame *frame);
 
 /** What is wanted has changed for a reason that the key does not have. */
 void gz_brick_stream_forget(struct gz_brick_stream *stream);

@@ -1,6 +1,5 @@
-#include "render/cpu/brick_stream.h"
+#include "render/brick_stream.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +59,8 @@ static enum gz_result find_wants(struct gz_brick_stream *stream,
 	enum gz_result result = frame->tile_level ? find_block_levels(stream, frame) : GZ_OK;
 	const struct gz_brick_scene scene = {
 		.volume = &frame->detail->levels.level[0].volume,
+		.layout = frame->layout,
+		.entries = frame->entries,
 		.table = frame->table,
 		.camera = &frame->key.camera,
 		.width = frame->plan->width,
@@ -74,37 +75,30 @@ static enum gz_result find_wants(struct gz_brick_stream *stream,
 	return result;
 }
 
-enum gz_result gz_brick_stream_turn(struct gz_brick_stream *stream,
-				    const struct gz_brick_stream_frame *frame)
+struct gz_brick_stream_key gz_brick_stream_key_of(const struct gz_camera *camera,
+						  const struct gz_ray_params *rays,
+						  const struct gz_plan *plan, double pixel_lengths)
 {
-	if (!stream->found || memcmp(&stream->key, &frame->key, sizeof stream->key) != 0) {
-		const enum gz_result result = find_wants(stream, frame);
-		if (result != GZ_OK)
-			return result;
-	}
-	gz_brick_pool_turn(frame->detail->levels.level[0].volume.bricks, stream->wants.want,
-			   stream->wants.count, frame->wait, &stream->view);
-	return GZ_OK;
+	struct gz_brick_stream_key key;
+	memset(&key, 0, sizeof key); /* it is compared byte by byte */
+	key.camera = *camera;
+	key.focus_px[0] = plan->focus_px[0];
+	key.focus_px[1] = plan->focus_px[1];
+	key.pixel_lengths = pixel_lengths;
+	key.ray_sampling_rate = rays->ray_sampling_rate;
+	key.tile_count = plan->tile_count;
+	key.plan_serial = plan->serial;
+	key.width = plan->width;
+	key.height = plan->height;
+	return key;
 }
 
-void gz_brick_stream_lead(const struct gz_brick_stream *stream, const struct gz_detail *detail,
-			  int index, struct gz_cast *cast)
+enum gz_result gz_brick_stream_find(struct gz_brick_stream *stream,
+				    const struct gz_brick_stream_frame *frame)
 {
-	const struct gz_brick_layout *layout =
-		&gz_brick_pool_file(detail->levels.level[0].volume.bricks)->layout;
-	const struct gz_brick_level *own = &layout->levels[detail->brick_level[index]];
-	struct gz_cast_bricks *bricks = &cast->bricks;
-	cast->voxels = stream->view.voxels;
-	bricks->table = stream->view.table + own->first;
-	bricks->stride[0] = 1;
-	bricks->stride[1] = own->bricks[0];
-	bricks->stride[2] = own->bricks[0] * own->bricks[1];
-	for (int axis = 0; axis < 3; axis++) {
-		bricks->last[axis] = (float)(own->bricks[axis] - 1);
-		for (int level = 0; level < layout->level_count; level++)
-			bricks->scale[axis][level] = ldexpf(
-				1, own->halvings[axis] - layout->levels[level].halvings[axis]);
-	}
+	if (stream->found && memcmp(&stream->key, &frame->key, sizeof stream->key) == 0)
+		return GZ_OK;
+	return find_wants(stream, frame);
 }
 
 void gz_brick_stream_forget(struct gz_brick_stream *stream)
