@@ -11,53 +11,6 @@
 /* Chosen: a local connection takes less than a millisecond, one across a network some hundred. */
 #define CONNECT_PATIENCE_NS (500 * GZ_NS_PER_MS)
 
-static struct gz_option_binding bind_settings(const struct gazectl_command *command, void *settings)
-{
-	return (struct gz_option_binding) {
-		.options = command->options,
-		.count = command->option_count,
-		.target = settings,
-	};
-}
-
-static void print_help(const struct gazectl_command *command,
-		       const struct gz_option_binding *binding)
-{
-	printf("usage: gazectl %s [OPTION]...%s%s\n\n%c%s.\n%s\noptions:\n", command->name,
-	       command->operands[0] ? " " : "", command->operands,
-	       toupper((unsigned char)command->summary[0]), command->summary + 1, command->details);
-	gz_options_print_help(binding, 1, stdout);
-}
-
-bool gazectl_read_arguments(const struct gazectl_command *command, int argc, char *const *argv,
-			    const struct gz_log *log, void *settings,
-			    struct gazectl_operands *out_operands, enum gazectl_exit *out_exit)
-{
-	*out_exit = GAZECTL_USAGE;
-	if (argc > GAZECTL_ARGUMENTS_MAX) {
-		gz_err(log, "%d arguments: at most %d are understood", argc, GAZECTL_ARGUMENTS_MAX);
-		return false;
-	}
-	*out_operands = (struct gazectl_operands) { 0 };
-	struct gz_option_binding binding = bind_settings(command, settings);
-	if (gz_options_preset(&binding) != GZ_OK ||
-	    gz_options_read_arguments(&binding, 1, argc, argv, out_operands->items,
-				      &out_operands->count, log) != GZ_OK)
-		return false;
-	const struct gazectl_common *common = settings;
-	if (common->help) {
-		print_help(command, &binding);
-		*out_exit = GAZECTL_DONE;
-		return false;
-	}
-	if (command->operands_max >= 0 && out_operands->count > command->operands_max) {
-		gz_err(log, "%s: one argument too many: see gazectl %s --help",
-		       out_operands->items[command->operands_max], command->name);
-		return false;
-	}
-	return true;
-}
-
 void gazectl_report_no_daemon(const char *endpoint, const struct gz_log *log)
 {
 	gz_err(log, "no daemon answers at %s: start gazed, or name its endpoint with --endpoint",
@@ -165,7 +118,7 @@ bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,
 			 struct gz_status *out_status)
 {
 	struct gz_message message;
-	while (gz_clock_now_ns() < deadline_ns && !gazectl_interrupted()) {
+	while (gz_clock_now_ns() < deadline_ns && !gz_command_interrupted()) {
 		if (gz_stream_read(stream, 100, &message) != GZ_OK ||
 		    message.kind != GZ_MESSAGE_STATUS)
 			continue;

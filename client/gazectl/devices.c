@@ -16,12 +16,12 @@
 enum { DEVICES_MAX = GZ_CONFIG_DRIVERS_MAX * GZ_DEVICE_ENTRIES_MAX };
 
 struct devices_settings {
-	struct gazectl_common common; /* its endpoint is not used: nobody is asked */
+	struct gz_command_common common;
 	bool json;
 };
 
 static const struct gz_option devices_options[] = {
-	GAZECTL_HELP_OPTION,
+	GZ_COMMAND_HELP_OPTION,
 	{ .key = "json",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct devices_settings, json),
@@ -163,13 +163,13 @@ static enum gazectl_exit show(const struct devices_settings *settings,
 	return GAZECTL_FAILED;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct devices_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit exit_status;
-	if (!gazectl_read_arguments(&gazectl_devices, argc, argv, log, &settings, &operands,
-				    &exit_status))
+	struct gz_operands operands;
+	int exit_status;
+	if (!gz_command_read_arguments(&gazectl_devices, argc, argv, log, &settings, &operands,
+				       &exit_status))
 		return exit_status;
 	struct devices *devices = calloc(1, sizeof *devices);
 	if (!devices) {
@@ -185,7 +185,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return exit_status;
 }
 
-const struct gazectl_command gazectl_devices = {
+const struct gz_command gazectl_devices = {
+	.program = "gazectl",
 	.name = "devices",
 	.operands = "",
 	.summary = "list the trackers that are there",

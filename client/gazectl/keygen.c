@@ -14,7 +14,7 @@
 enum { PATH_SIZE = 1024 };
 
 struct settings {
-	struct gazectl_common common; /* of which it uses --help alone */
+	struct gz_command_common common;
 	bool server;
 	char client[GZ_KEY_NAME_SIZE];
 	char directory[PATH_SIZE];
@@ -24,7 +24,7 @@ struct settings {
 #define AT(field) offsetof(struct settings, field)
 
 static const struct gz_option options[] = {
-	GAZECTL_HELP_OPTION,
+	GZ_COMMAND_HELP_OPTION,
 	{ "server", GZ_OPTION_BOOL, AT(server), 0, 0, 0, NULL, "false",
 	  "make the key by which a daemon proves itself" },
 	{ "client", GZ_OPTION_STRING, AT(client), 0, GZ_KEY_NAME_SIZE, 0, NULL, "",
@@ -159,13 +159,13 @@ static void print_client_steps(const struct keygen *keygen)
 	       keygen->directory);
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit exit_status;
-	if (!gazectl_read_arguments(&gazectl_keygen, argc, argv, log, &settings, &operands,
-				    &exit_status))
+	struct gz_operands operands;
+	int exit_status;
+	if (!gz_command_read_arguments(&gazectl_keygen, argc, argv, log, &settings, &operands,
+				       &exit_status))
 		return exit_status;
 	if (check_settings(&settings, log) != GZ_OK)
 		return GAZECTL_USAGE;
@@ -185,7 +185,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return result == GZ_OK ? GAZECTL_DONE : GAZECTL_FAILED;
 }
 
-const struct gazectl_command gazectl_keygen = {
+const struct gz_command gazectl_keygen = {
+	.program = "gazectl",
 	.name = "keygen",
 	.operands = "",
 	.operands_max = 0,

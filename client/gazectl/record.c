@@ -77,13 +77,13 @@ static enum gazectl_exit record(struct gz_control *control, const char *name,
 	return status;
 }
 
-static enum gazectl_exit run_record(int argc, char *const *argv, const struct gz_log *log)
+static int run_record(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct record_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_record, argc, argv, log, &settings, &operands,
-				    &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_record, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
@@ -110,12 +110,13 @@ static enum gazectl_exit stop(struct gz_control *control, const struct gz_log *l
 	return status;
 }
 
-static enum gazectl_exit run_stop(int argc, char *const *argv, const struct gz_log *log)
+static int run_stop(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct record_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_stop, argc, argv, log, &settings, &operands, &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_stop, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
@@ -125,7 +126,8 @@ static enum gazectl_exit run_stop(int argc, char *const *argv, const struct gz_l
 	return status;
 }
 
-const struct gazectl_command gazectl_record = {
+const struct gz_command gazectl_record = {
+	.program = "gazectl",
 	.name = "record",
 	.operands = "[NAME]",
 	.operands_max = 1,
@@ -137,7 +139,8 @@ const struct gazectl_command gazectl_record = {
 	.run = run_record,
 };
 
-const struct gazectl_command gazectl_stop = {
+const struct gz_command gazectl_stop = {
+	.program = "gazectl",
 	.name = "stop",
 	.operands = "",
 	.operands_max = 0,

@@ -247,13 +247,13 @@ static enum gazectl_exit show(const struct status_settings *settings, struct gz_
 	return exit_status;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct status_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit exit_status;
-	if (!gazectl_read_arguments(&gazectl_status, argc, argv, log, &settings, &operands,
-				    &exit_status))
+	struct gz_operands operands;
+	int exit_status;
+	if (!gz_command_read_arguments(&gazectl_status, argc, argv, log, &settings, &operands,
+				       &exit_status))
 		return exit_status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
@@ -263,7 +263,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return exit_status;
 }
 
-const struct gazectl_command gazectl_status = {
+const struct gz_command gazectl_status = {
+	.program = "gazectl",
 	.name = "status",
 	.operands = "",
 	.operands_max = 0,

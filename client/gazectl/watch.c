@@ -199,7 +199,7 @@ static void follow_port(struct watch *watch)
 static void follow(struct watch *watch)
 {
 	struct gz_message message;
-	while (!gazectl_interrupted() && !ferror(stdout)) {
+	while (!gz_command_interrupted() && !ferror(stdout)) {
 		if (gz_stream_read(watch->stream, 200, &message) != GZ_OK) {
 			follow_port(watch);
 			continue;
@@ -218,7 +218,7 @@ static enum gazectl_exit watch_stream(struct watch *watch)
 		gazectl_open_stream(watch->control, watch->topics, watch->log, &watch->stream);
 	if (status != GAZECTL_DONE)
 		return status;
-	gazectl_catch_signals();
+	gz_command_catch_signals();
 	/* A reader behind a pipe wants each line when it is there. */
 	setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
 	follow(watch);
@@ -230,12 +230,13 @@ static enum gazectl_exit watch_stream(struct watch *watch)
 	return GAZECTL_DONE;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct watch_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_watch, argc, argv, log, &settings, &operands, &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_watch, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	struct watch watch = {
 		.settings = &settings,
@@ -250,7 +251,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return status;
 }
 
-const struct gazectl_command gazectl_watch = {
+const struct gz_command gazectl_watch = {
+	.program = "gazectl",
 	.name = "watch",
 	.operands = "[TOPIC]...",
 	.operands_max = -1,

@@ -10,7 +10,7 @@
 #define GZ_LOG_MODULE "gazectl"
 
 struct convert_settings {
-	struct gazectl_common common;
+	struct gz_command_common common;
 	char from[16];
 	char to[16];
 	bool force;
@@ -23,7 +23,7 @@ struct convert_settings {
 #define AT(field) offsetof(struct convert_settings, field)
 
 static const struct gz_option convert_options[] = {
-	GAZECTL_HELP_OPTION,
+	GZ_COMMAND_HELP_OPTION,
 	{ "from", GZ_OPTION_STRING, AT(from), 0, 16, 0, NULL, "",
 	  "gzl, pupil, eyelink or tobii; empty: as the file looks" },
 	{ "to", GZ_OPTION_STRING, AT(to), 0, 16, 0, NULL, "",
@@ -229,13 +229,13 @@ static enum gazectl_exit convert(struct conversion *conversion, const char *outp
 	return conversion->damaged ? GAZECTL_DAMAGED : GAZECTL_DONE;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct convert_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_convert, argc, argv, log, &settings, &operands,
-				    &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_convert, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	if (operands.count < 2) {
 		gz_err(log, "from what to what? gazectl convert INPUT OUTPUT");
@@ -247,7 +247,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return convert(&conversion, operands.items[1]);
 }
 
-const struct gazectl_command gazectl_convert = {
+const struct gz_command gazectl_convert = {
+	.program = "gazectl",
 	.name = "convert",
 	.operands = "INPUT OUTPUT",
 	.operands_max = 2,

@@ -15,14 +15,14 @@
 #define GZ_LOG_MODULE "gazectl"
 
 struct inspect_settings {
-	struct gazectl_common common;
+	struct gz_command_common common;
 	bool json;
 	bool force;
 	char picture[GZ_PATH_SIZE];
 };
 
 static const struct gz_option inspect_options[] = {
-	GAZECTL_HELP_OPTION,
+	GZ_COMMAND_HELP_OPTION,
 	{ .key = "json",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct inspect_settings, json),
@@ -378,13 +378,13 @@ static enum gazectl_exit inspect(struct gz_gaze_log_reader *reader, const char *
 	return status;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct inspect_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_inspect, argc, argv, log, &settings, &operands,
-				    &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_inspect, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	if (operands.count == 0) {
 		gz_err(log, "which file? Name a .gzl: gazectl inspect FILE");
@@ -400,7 +400,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return status;
 }
 
-const struct gazectl_command gazectl_inspect = {
+const struct gz_command gazectl_inspect = {
+	.program = "gazectl",
 	.name = "inspect",
 	.operands = "FILE",
 	.operands_max = 1,

@@ -207,7 +207,7 @@ static bool has_all(const struct gazectl_validation *validate)
 
 static enum gazectl_exit check_silence(const struct gazectl_validation *validate)
 {
-	if (gazectl_interrupted()) {
+	if (gz_command_interrupted()) {
 		gz_err(validate->log, "cancelled; nothing is stored");
 		return GAZECTL_CANCELLED;
 	}

@@ -198,7 +198,7 @@ static enum gazectl_exit check_or_forget(struct gazectl_validation *validate)
 		return status;
 	if (validate->settings->forget)
 		return gazectl_correction_forget(&correction, &validate->result->status);
-	gazectl_catch_signals();
+	gz_command_catch_signals();
 	note_start(validate->result);
 	status = gazectl_validate_collect(validate);
 	return status == GAZECTL_DONE ? conclude(validate) : status;
@@ -223,13 +223,13 @@ static enum gazectl_exit run_check(const struct gazectl_validate_settings *setti
 	return status;
 }
 
-static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *log)
+static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct gazectl_validate_settings settings;
-	struct gazectl_operands operands;
-	enum gazectl_exit status;
-	if (!gazectl_read_arguments(&gazectl_validate, argc, argv, log, &settings, &operands,
-				    &status))
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazectl_validate, argc, argv, log, &settings, &operands,
+				       &status))
 		return status;
 	if (gz_output_check_svg(settings.picture, log) != GZ_OK)
 		return GAZECTL_USAGE;
@@ -241,7 +241,8 @@ static enum gazectl_exit run(int argc, char *const *argv, const struct gz_log *l
 	return status;
 }
 
-const struct gazectl_command gazectl_validate = {
+const struct gz_command gazectl_validate = {
+	.program = "gazectl",
 	.name = "validate",
 	.operands = "",
 	.operands_max = 0,
