@@ -1,0 +1,27 @@
+/**
+ * @file
+ * The commands of gazebench. Each command is one file with one table.
+ */
+#ifndef GZ_BENCH_GAZEBENCH_GAZEBENCH_H
+#define GZ_BENCH_GAZEBENCH_GAZEBENCH_H
+
+#include "base/command.h"
+
+/** What gazebench exits with; gazebench(1) lists the same. */
+enum gazebench_exit {
+	GAZEBENCH_DONE = GZ_EXIT_DONE,
+	GAZEBENCH_FAILED = GZ_EXIT_FAILED,
+	GAZEBENCH_USAGE = GZ_EXIT_USAGE,
+	GAZEBENCH_PARTIAL = 3,  /**< run: interrupted, or the disk is full; it can be resumed */
+	GAZEBENCH_UNSTABLE = 4, /**< stability: a row does not hold */
+};
+
+extern const struct gz_command gazebench_run;       /**< measure: make a study */
+extern const struct gz_command gazebench_merge;     /**< join the shards of a study */
+extern const struct gz_command gazebench_report;    /**< charts, tables, report.html */
+extern const struct gz_command gazebench_suggest;   /**< the cheapest setting within a bound */
+extern const struct gz_command gazebench_compare;   /**< how far two pictures are apart */
+extern const struct gz_command gazebench_filter;    /**< lag and jitter of the gaze filter */
+extern const struct gz_command gazebench_stability; /**< where methods fail, on a scene */
+
+#endif

@@ -1,0 +1,127 @@
+/**
+ * @file
+ * A study: what was asked of gazebench, what it ran on, and one row for every frame. Running one
+ * makes it, reports and suggestions read it, its folder keeps it (bench/study/study_folder.h).
+ *
+ * Nothing is averaged before it is stored.
+ */
+#ifndef GZ_BENCH_STUDY_STUDY_H
+#define GZ_BENCH_STUDY_STUDY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/option.h"
+#include "base/result.h"
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+#include "render/camera.h"
+
+#define GZ_STUDY_HASH_SIZE    65  /**< SHA-256 in hexadecimal with its NUL */
+#define GZ_STUDY_TEXT_SIZE    256 /**< bytes of any name below with its NUL */
+#define GZ_STUDY_LIST_MAX     64 /**< scenes, transfer functions of one, methods, sizes, backends */
+#define GZ_STUDY_POINTS_MAX   100000
+#define GZ_STUDY_FRAMES_MAX   1000 /**< counted frames of one point */
+#define GZ_STUDY_SEED_DEFAULT 1
+
+/** A scene of the study with one of its transfer functions. */
+struct gz_study_scene {
+	char name[GZ_STUDY_TEXT_SIZE];     /**< file name without folder and ".scene" */
+	char path[GZ_PATH_SIZE];           /**< as given */
+	char transfer[GZ_STUDY_TEXT_SIZE]; /**< file name of the transfer function without ".tf" */
+	/** Of the scene's text, the transfer function's and the volume's bytes: two scenes of one
+	 *  hash show the same. */
+	char hash[GZ_STUDY_HASH_SIZE];
+	int dims[3]; /**< of the volume */
+	struct gz_camera camera;
+	struct gz_display display; /**< of the picture, at the first of the sizes */
+};
+
+/** A method with its options: what is compared. */
+struct gz_study_variant {
+	/** As given: "acuity", "acuity:acuity_slope=0.0275", any keys of [foveation] and [render].
+	 *  "standard" is always among them, as the first. */
+	char text[GZ_STUDY_TEXT_SIZE];
+	char method[GZ_NAME_SIZE]; /**< name of the method alone: variants of one are one curve */
+};
+
+/** Where the gaze is, and which camera sees it. */
+struct gz_study_point {
+	struct gz_point gaze; /**< normalised, may lie outside the picture */
+	uint32_t camera;      /**< 0 = the scene's own, else the n-th random one */
+};
+
+/** What it ran on: for people, and so that shards of different programs are told apart. */
+struct gz_study_machine {
+	char host_cpu[GZ_STUDY_TEXT_SIZE]; /**< "AMD EPYC 9R14, 2 processors" */
+	char memory[GZ_STUDY_TEXT_SIZE];
+	char system[GZ_STUDY_TEXT_SIZE];   /**< kernel and distribution */
+	char compiler[GZ_STUDY_TEXT_SIZE]; /**< with the build type */
+	char commit[GZ_STUDY_TEXT_SIZE];   /**< of the program; "unknown" outside a repository */
+	char program[GZ_STUDY_TEXT_SIZE];  /**< "gazebench 0.1.0" */
+	/** Of each backend: what gz_renderer_describe() says, GPU and driver included. */
+	char backends[GZ_STUDY_LIST_MAX][GZ_STUDY_TEXT_SIZE];
+};
+
+/** How far a picture is from its reference; NaN where it was not measured. Which pixels count: all,
+ *  those of the fovea, or all weighted by what the eye sees there. PSNR is infinite for equality.
+ */
+struct gz_study_errors {
+	double psnr_db, ssim, flip;
+	double foveal_psnr_db, foveal_ssim, foveal_flip;
+	double perceived_psnr_db, perceived_ssim, perceived_flip;
+};
+
+/** One counted frame. */
+struct gz_study_row {
+	uint16_t scene, size, backend, variant; /**< places in the study's lists */
+	uint32_t point;                         /**< place in the study's points */
+	uint32_t frame;                         /**< 0, 1, … of this point */
+	struct gz_point gaze;
+	double plan_ms, cast_ms, reconstruct_ms;
+	double frame_ms; /**< wall time of the whole frame, plan included */
+	double gpu_ms;   /**< GL_TIME_ELAPSED; NaN where there is none */
+	uint64_t rays, samples;
+	/** Of the picture at this gaze with the camera not turned: the same for all frames of one
+	 *  point and variant. */
+	struct gz_study_errors converged; /**< against the converged picture */
+	struct gz_study_errors standard;  /**< against standard, of the same backend */
+	/** Mean change of the picture while the gaze trembles by a pixel and nothing else moves,
+	 *  weighted as perceived errors are, in levels of 255; NaN where it was not measured. */
+	double flicker;
+};
+
+/** A study, whole or so far. Zero-initialised is empty. */
+struct gz_study {
+	struct gz_study_scene *scenes;
+	size_t scene_count; /**< each scene once for each of its transfer functions */
+	struct gz_study_variant *variants;
+	size_t variant_count;
+	int (*sizes)[2]; /**< px */
+	size_t size_count;
+	char (*backends)[GZ_NAME_SIZE];
+	size_t backend_count;
+	char path[GZ_PATH_SIZE]; /**< of the gaze, as given: "sweep:s", "random:256", "log.gzl" */
+	char path_hash[GZ_STUDY_HASH_SIZE]; /**< of the points themselves */
+	struct gz_study_point *points;
+	size_t point_count;
+	uint32_t camera_count; /**< random ones; 0 = only the scene's own */
+	uint64_t seed;
+	int frames_per_point;
+	int warm_up_frames; /**< before those of each variant at each point, not counted */
+	/** Acuity bound: the share of pixels' rays that the eye needs at all, of each scene, size
+	 *  and point; scene_count * size_count * point_count values, points fastest. */
+	double *bound_rays;
+	struct gz_study_machine machine;
+	int shard, shard_count; /**< this folder holds the units u with u % shard_count == shard */
+	bool complete;          /**< every row of the shard is there */
+
+	struct gz_study_row *rows; /**< sorted by scene, size, backend, point, variant, frame */
+	size_t row_count;
+};
+
+/** Free what it holds and zero it. */
+void gz_study_free(struct gz_study *study);
+
+#endif
