@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Full-resolution frames of a scene by VTK's ray casters and by gazeview, in turn.
+"""Frames of a scene by VTK's ray casters and by gazeview, `standard` and `acuity`, in turn.
 
     apt-get install python3-vtk9 python3-numpy zstd xvfb xauth
     xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene
     xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene --vtk gpu --backend gl
 
-Both cast one ray a pixel at the scene's sampling rate without shading while the camera turns by 0.01 degrees
-a frame, so that nothing is reused. Prints the median milliseconds of each, their ratio, and the peak
-signal-to-noise ratio between the two pictures of the scene's own camera. VTK knows no orientation and puts the
-box between the outer voxel centres, so pictures of oriented volumes differ by that.
+VTK and `standard` cast one ray a pixel at the scene's sampling rate without shading while the camera turns by
+0.01 degrees a frame, so that nothing is reused; `acuity` does so with the gaze at the object's centre and at
+four places around it. Prints the median milliseconds of each whole frame, how many times as long VTK takes, and
+the peak signal-to-noise ratio between the pictures of VTK and `standard` of the scene's own camera. VTK knows
+no orientation and puts the box between the outer voxel centres, so pictures of oriented volumes differ by that.
 """
 import argparse
 import configparser
-import json
 import math
 import os
 import statistics
@@ -23,6 +23,8 @@ import time
 import numpy
 import vtk
 from vtk.util import numpy_support
+
+from gazeview_frames import GAZES, Series, run_gazeview
 
 NUMPY_TYPES = {"uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4", "int32": "i4",
                "float32": "f4", "float64": "f8"}
@@ -177,19 +179,31 @@ def pixels_of(image):
     return flat.reshape(height, width, -1)[::-1, :, :3].astype(float)
 
 
-def run_gazeview(arguments, frames):
-    """Milliseconds of each frame but the first, and the first frame's picture."""
+def read_picture(path):
+    reader = vtk.vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return pixels_of(reader.GetOutput())
+
+
+def gazeview(arguments, method, gaze):
+    """Times of three frames, and the picture of the scene's own camera."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([arguments.gazeview, "--headless", "--scene", arguments.scene, "--size", arguments.size,
-                        "--gaze", "centre", "--method", "standard", "--backend", arguments.backend, "--turn", "0.01",
-                        "--frames", str(frames), "--out", folder + "/%d.png", "--stats", folder + "/stats.json"],
-                       check=True, stdout=subprocess.DEVNULL)
-        reader = vtk.vtkPNGReader()
-        reader.SetFileName(min((os.path.join(folder, f) for f in os.listdir(folder) if f.endswith(".png")),
-                               key=lambda f: int(os.path.basename(f)[:-4])))
-        reader.Update()
-        stats = json.load(open(folder + "/stats.json", encoding="utf-8"))
-        return [frame["total_ms"] for frame in stats["frames"][1:]], pixels_of(reader.GetOutput())
+        times, path = run_gazeview(arguments.gazeview, arguments.scene, arguments.size, arguments.backend, method,
+                                   gaze, 4, folder)
+        return times, read_picture(path)
+
+
+def measure(arguments, peer):
+    """All sides in turn, and the last picture of `standard`."""
+    series = Series()
+    for _ in range(arguments.pairs):
+        series.peer += [peer.frame_ms() for _ in range(3)]
+        times, picture = gazeview(arguments, "standard", "centre")
+        series.standard += times
+        for gaze in GAZES:
+            series.acuity[gaze] += gazeview(arguments, "acuity", gaze)[0]
+    return series, picture
 
 
 def main():
@@ -197,16 +211,12 @@ def main():
     width, height = [int(side) for side in arguments.size.split("x")]
     peer = VtkWindow(Scene(arguments.scene), arguments.vtk, width, height)
     their_picture = peer.picture()
-    ours, theirs = [], []
-    for _ in range(arguments.pairs):
-        theirs += [peer.frame_ms() for _ in range(3)]
-        times, our_picture = run_gazeview(arguments, 4)
-        ours += times
+    series, our_picture = measure(arguments, peer)
     error = numpy.mean((our_picture - their_picture) ** 2)
     psnr = 10 * math.log10(255 ** 2 / error) if error else math.inf
-    print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.vtk} {arguments.size}: {statistics.median(theirs):.1f} ms")
-    print(f"gazeview standard {arguments.backend} {arguments.size}: {statistics.median(ours):.1f} ms")
-    print(f"ratio {statistics.median(theirs) / statistics.median(ours):.2f}")
+    print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.vtk} {arguments.size}: "
+          f"{statistics.median(series.peer):.1f} ms")
+    print("\n".join(series.lines()))
     print(f"psnr_db {psnr:.2f}")
 
 

@@ -1,0 +1,47 @@
+"""What bench/peers prints beside another program's times, without that program.
+
+peers.py GAZEVIEW SCENES-FOLDER PEERS-FOLDER HELPERS-FOLDER
+"""
+
+import sys
+import tempfile
+import unittest
+
+sys.path[:0] = sys.argv[3:5]
+from gazeview_frames import GAZES, Series, run_gazeview
+from picture import read_png, write_scene
+
+GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
+
+
+class Peers(unittest.TestCase):
+    def test_acuity_and_standard_are_each_quoted_against_the_peer_of_the_same_run(self):
+        series = Series()
+        series.peer, series.standard = [900, 1000, 5000], [100, 101, 20]
+        for i, gaze in enumerate(GAZES):
+            series.acuity[gaze] = [10 * (i + 1)]
+        lines = series.lines()
+        self.assertEqual(lines[0], "gazeview standard: 100.0 ms, ratio 10.00")
+        self.assertEqual(lines[1], "gazeview acuity, gaze centre: 10.0 ms, ratio 100.00")
+        self.assertEqual(lines[5], "gazeview acuity, gaze 0.5,0.95: 50.0 ms, ratio 20.00")
+        self.assertEqual(lines[6], "gazeview acuity, mean of 5 gazes: 30.0 ms, ratio 33.33")
+        self.assertEqual(len(lines), 7)
+
+    def test_gazeview_runs_each_method_at_each_gaze_and_leaves_the_first_frame_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = write_scene(folder, SCENES)
+            pictures = []
+            for method, gaze in ("standard", GAZES[0]), ("acuity", GAZES[0]), ("acuity", GAZES[2]):
+                times, path = run_gazeview(
+                    GAZEVIEW, scene, "640x360", "cpu", method, gaze, 3, folder
+                )
+                self.assertEqual(len(times), 2)
+                self.assertTrue(all(ms > 0 for ms in times), times)
+                pictures.append(read_png(path))
+            for i, one in enumerate(pictures):
+                for other in pictures[:i]:
+                    self.assertFalse(one == other, "two gazes made one picture")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
