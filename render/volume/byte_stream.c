@@ -9,9 +9,14 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include "render/volume/byte_ahead.h"
+
 #define GZ_LOG_MODULE "volume"
 
 #define INPUT_SIZE ((size_t)128 << 10)
+
+/* Fewer bytes are not worth a thread (chosen: some milliseconds of decoding). */
+#define AHEAD_BYTES_LEAST ((uint64_t)1 << 20)
 
 /* Best ratio of deflate: 1032 to 1, zlib's technical details (zlib.net/zlib_tech.html). */
 #define ZLIB_RATIO 1032
@@ -39,6 +44,7 @@ struct gz_byte_stream {
 	bool inside; /* a member or frame has begun and not ended */
 	bool hungry; /* the decoder needs input to go on */
 	bool ended;
+	struct gz_byte_ahead *ahead; /* while it runs, the decoder above is its thread's */
 };
 
 static enum gz_result open_regular(struct gz_byte_stream *stream, uint64_t offset)
@@ -221,13 +227,9 @@ static enum gz_result step_zstd(struct gz_byte_stream *stream, uint8_t *buffer, 
 	return GZ_OK;
 }
 
-enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, size_t size,
-				   size_t *out_got)
+static enum gz_result decode(void *user, void *buffer, size_t size, size_t *out_got)
 {
-	if (stream->source)
-		return stream->source(stream->source_user, buffer, size, out_got);
-	if (stream->coding == GZ_CODING_PLAIN)
-		return read_file(stream, buffer, size, out_got);
+	struct gz_byte_stream *stream = user;
 	size_t got = 0;
 	while (got < size) {
 		enum gz_result result = stream->hungry ? fill_input(stream) : GZ_OK;
@@ -244,6 +246,40 @@ enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, 
 	}
 	*out_got = got;
 	return GZ_OK;
+}
+
+void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes)
+{
+	if (stream->coding == GZ_CODING_PLAIN || stream->ahead || bytes < AHEAD_BYTES_LEAST)
+		return;
+	/* Without room or a thread the reader decodes, as it does behind these bytes. */
+	(void)gz_byte_ahead_start(decode, stream, bytes, &stream->ahead);
+}
+
+/* What the thread has made; behind that, the stream is the reader's own again. */
+static enum gz_result read_made(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				size_t *out_got)
+{
+	size_t made = 0, own = 0;
+	enum gz_result result = gz_byte_ahead_read(stream->ahead, buffer, size, &made);
+	if (result == GZ_OK && made < size) {
+		gz_byte_ahead_end(&stream->ahead);
+		result = decode(stream, buffer + made, size - made, &own);
+	}
+	if (result == GZ_OK)
+		*out_got = made + own;
+	return result;
+}
+
+enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, size_t size,
+				   size_t *out_got)
+{
+	if (stream->source)
+		return stream->source(stream->source_user, buffer, size, out_got);
+	if (stream->coding == GZ_CODING_PLAIN)
+		return read_file(stream, buffer, size, out_got);
+	return stream->ahead ? read_made(stream, buffer, size, out_got)
+			     : decode(stream, buffer, size, out_got);
 }
 
 enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count)
@@ -271,6 +307,7 @@ void gz_byte_stream_close(struct gz_byte_stream **stream)
 	struct gz_byte_stream *s = *stream;
 	if (!s)
 		return;
+	gz_byte_ahead_end(&s->ahead);
 	if (s->fd >= 0)
 		close(s->fd);
 	if (s->zlib_ready)

@@ -71,6 +71,14 @@ uint64_t gz_byte_stream_bound(const struct gz_byte_stream *stream);
 enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, size_t size,
 				   size_t *out_got);
 
+/**
+ * Let a thread decode the next @p bytes of a compressed stream while they are read; what is behind
+ * them is not looked at. Makes no difference but in time, and none where there is nothing to decode
+ * or little of it. Takes 1 MiB until those bytes are read. Messages of the decoder come from that
+ * thread.
+ */
+void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes);
+
 /** Pass over @p count bytes. GZ_ERR_FORMAT also where fewer are left; logged. */
 enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count);
 

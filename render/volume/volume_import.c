@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/volume/voxel_convert.h"
+#include "render/volume/voxel_place.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -51,8 +52,7 @@ struct import {
 	const struct gz_log *log;
 	struct gz_volume *volume;
 	bool swap;
-	ptrdiff_t first;     /* voxel of the volume that the file's first one is */
-	ptrdiff_t stride[3]; /* voxels of the volume from one to the next along each file axis */
+	struct gz_voxel_place place;
 };
 
 static enum gz_result check_layout(const struct gz_import_layout *layout, const char *path,
@@ -195,34 +195,12 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 				    (ptrdiff_t)volume->dims[0] * volume->dims[1] };
 	for (int axis = 0; axis < 3; axis++) {
 		ptrdiff_t stride = step[map->world[axis]];
+		import->place.dims[axis] = layout->dims[axis];
 		if (map->flip[axis])
-			import->first += stride * (layout->dims[axis] - 1);
-		import->stride[axis] = map->flip[axis] ? -stride : stride;
+			import->place.first += stride * (layout->dims[axis] - 1);
+		import->place.stride[axis] = map->flip[axis] ? -stride : stride;
 	}
 	return GZ_OK;
-}
-
-/* Put `count` converted voxels, the first being number `index` of the file, row by row. */
-static void place(const struct import *import, const void *voxels, uint64_t index, size_t count)
-{
-	const size_t width = (size_t)import->layout->dims[0];
-	const size_t height = (size_t)import->layout->dims[1];
-	const size_t size = gz_voxel_size(import->volume->type);
-	const char *from = voxels;
-	size_t x = (size_t)(index % width), row = (size_t)(index / width);
-	while (count > 0) {
-		size_t run = count < width - x ? count : width - x;
-		ptrdiff_t to = import->first + (ptrdiff_t)x * import->stride[0] +
-			       (ptrdiff_t)(row % height) * import->stride[1] +
-			       (ptrdiff_t)(row / height) * import->stride[2];
-		gz_voxel_scatter(import->volume->type, from, run,
-				 (char *)import->volume->voxels + to * (ptrdiff_t)size,
-				 import->stride[0]);
-		from += run * size;
-		count -= run;
-		x = 0;
-		row++;
-	}
 }
 
 static enum gz_result refuse_truncated(const struct import *import, uint64_t got, uint64_t wanted)
@@ -234,35 +212,60 @@ static enum gz_result refuse_truncated(const struct import *import, uint64_t got
 	return GZ_ERR_FORMAT;
 }
 
+/* What is read and not placed yet. */
+struct slab {
+	uint8_t *numbers; /* CHUNK_NUMBERS of the file */
+	uint8_t *voxels;  /* made of them */
+	size_t filled;
+};
+
+/* Voxels from number `index` of the file on, until the slab has `count`. */
+static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct import *import,
+				uint64_t index, size_t count, struct slab *slab)
+{
+	const size_t size = import->conversion->size;
+	const size_t voxel_size = gz_voxel_size(import->volume->type);
+	const uint64_t all = gz_volume_voxel_count(import->volume);
+	for (slab->filled = 0; slab->filled < count;) {
+		const uint64_t at = index + slab->filled;
+		const size_t left = count - slab->filled;
+		const size_t wanted = left < CHUNK_NUMBERS ? left : CHUNK_NUMBERS;
+		size_t got = 0;
+		if (!gz_loading_goes_on(import->loading, (double)at / (double)all, import->path))
+			return GZ_ERR_CANCELLED;
+		const enum gz_result result =
+			gz_byte_stream_read(stream, slab->numbers, wanted * size, &got);
+		if (result != GZ_OK)
+			return result;
+		if (got < wanted * size)
+			return refuse_truncated(import, at * size + got, all * size);
+		import->conversion->convert(slab->numbers, wanted, import->swap,
+					    slab->voxels + slab->filled * voxel_size);
+		slab->filled += wanted;
+	}
+	return GZ_OK;
+}
+
 static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct import *import,
 				  uint64_t count)
 {
-	size_t size = import->conversion->size;
-	uint8_t *numbers = malloc(CHUNK_NUMBERS * (size + sizeof(float)));
-	if (!numbers) {
+	const enum gz_voxel_type type = import->volume->type;
+	const size_t most = gz_voxel_place_most(&import->place, type);
+	struct slab slab = { .numbers = malloc(CHUNK_NUMBERS * import->conversion->size),
+			     .voxels = malloc(most * gz_voxel_size(type)) };
+	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result != GZ_OK)
 		gz_err(import->log, "%s: no memory to read it", import->path);
-		return GZ_ERR_NO_MEM;
-	}
-	void *voxels = numbers + CHUNK_NUMBERS * size;
-	enum gz_result result = GZ_OK;
+	gz_byte_stream_read_ahead(stream, count * import->conversion->size);
 	for (uint64_t index = 0; index < count && result == GZ_OK;) {
-		size_t wanted =
-			count - index < CHUNK_NUMBERS ? (size_t)(count - index) : CHUNK_NUMBERS;
-		size_t got = 0;
-		if (gz_loading_goes_on(import->loading, (double)index / (double)count,
-				       import->path))
-			result = gz_byte_stream_read(stream, numbers, wanted * size, &got);
-		else
-			result = GZ_ERR_CANCELLED;
-		if (result == GZ_OK && got < wanted * size)
-			result = refuse_truncated(import, index * size + got, count * size);
-		if (result != GZ_OK)
-			break;
-		import->conversion->convert(numbers, wanted, import->swap, voxels);
-		place(import, voxels, index, wanted);
-		index += wanted;
+		const size_t next = gz_voxel_place_next(&import->place, type, index);
+		result = fill_slab(stream, import, index, next, &slab);
+		if (result == GZ_OK)
+			gz_voxel_place(&import->place, import->volume, slab.voxels, index, next);
+		index += next;
 	}
-	free(numbers);
+	free(slab.numbers);
+	free(slab.voxels);
 	return result;
 }
 

@@ -360,6 +360,34 @@ static void nifti_series_gives_its_first_volume_and_says_so(void **state)
 	gz_volume_free(&v);
 }
 
+/* What lies behind the voxels of the first volume is nobody's business, also where a thread decodes
+ * ahead. */
+static void damage_behind_the_first_volume_of_a_series_is_not_told(void **state)
+{
+	(void)state;
+	enum { SIDE = 128, BYTES = SIDE * SIDE * SIDE };
+	struct nifti_sample sample = nifti_sample_make(SIDE, SIDE, SIDE);
+	sample.dim[0] = 4;
+	sample.dim[4] = 2;
+	uint8_t *plain = malloc(352 + 2 * BYTES), *packed = malloc(352 + 3 * BYTES);
+	struct captured_log log;
+	struct gz_volume v;
+	nifti_sample_bytes(&sample, plain);
+	for (size_t i = 0; i < 2 * BYTES; i++)
+		plain[352 + i] = (uint8_t)(i * i >> 5);
+	const size_t size =
+		files_deflate(plain, 352 + 2 * BYTES, 31, packed, 352 + 3 * (size_t)BYTES);
+	const char *path = files_write("series.nii.gz", packed, size - 20);
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_volume_load(path, NULL, NULL, &log.log, &v), GZ_OK);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "the first is shown"));
+	assert_memory_equal(v.voxels, plain + 352, BYTES);
+	gz_volume_free(&v);
+	free(plain);
+	free(packed);
+}
+
 #define NRRD_HEAD "NRRD0005\n# comment\ntype: uchar\ndimension: 3\nsizes: 3 2 2\n"
 
 static void nrrd_attached_raw_and_gzip_are_read(void **state)
@@ -598,6 +626,7 @@ int main(void)
 		cmocka_unit_test(nifti_sform_turns_to_right_anterior_superior),
 		cmocka_unit_test(nifti_qform_is_used_without_sform),
 		cmocka_unit_test(nifti_series_gives_its_first_volume_and_says_so),
+		cmocka_unit_test(damage_behind_the_first_volume_of_a_series_is_not_told),
 		cmocka_unit_test(nrrd_attached_raw_and_gzip_are_read),
 		cmocka_unit_test(nrrd_detached_skips_lines_and_bytes),
 		cmocka_unit_test(nrrd_spaces_turn_to_right_anterior_superior),
