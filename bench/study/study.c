@@ -1,6 +1,9 @@
 #include "bench/study/study.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void gz_study_free(struct gz_study *study)
 {
@@ -12,4 +15,159 @@ void gz_study_free(struct gz_study *study)
 	free(study->bound_rays);
 	free(study->rows);
 	*study = (struct gz_study) { 0 };
+}
+
+size_t gz_study_unit_count(const struct gz_study *study)
+{
+	return study->scene_count * study->size_count * study->backend_count * study->point_count;
+}
+
+size_t gz_study_shard_unit_count(const struct gz_study *study)
+{
+	const size_t units = gz_study_unit_count(study);
+	const size_t shard = (size_t)study->shard, shards = (size_t)study->shard_count;
+	return units > shard ? (units - shard - 1) / shards + 1 : 0;
+}
+
+size_t gz_study_unit_rows(const struct gz_study *study)
+{
+	return study->variant_count * (size_t)study->frames_per_point;
+}
+
+struct gz_study_errors gz_study_errors_unmeasured(void)
+{
+	return (struct gz_study_errors) { NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN };
+}
+
+struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit, size_t k)
+{
+	struct gz_study_row row = {
+		.variant = (uint16_t)(k / (size_t)study->frames_per_point),
+		.frame = (uint32_t)(k % (size_t)study->frames_per_point),
+		.gpu_ms = NAN,
+		.converged = gz_study_errors_unmeasured(),
+		.standard = gz_study_errors_unmeasured(),
+		.flicker = NAN,
+		.reference_db = NAN,
+	};
+	row.point = (uint32_t)(unit % study->point_count);
+	row.gaze = study->points[row.point].gaze;
+	unit /= study->point_count;
+	row.backend = (uint16_t)(unit % study->backend_count);
+	unit /= study->backend_count;
+	row.size = (uint16_t)(unit % study->size_count);
+	row.scene = (uint16_t)(unit / study->size_count);
+	return row;
+}
+
+/* Where two studies are compared: what is asked, and what was; the first difference is told. */
+struct comparison {
+	char *what;
+	size_t size;
+};
+
+static bool text_differs(struct comparison *comparison, const char *name, const char *asked,
+			 const char *was)
+{
+	if (strcmp(asked, was) == 0)
+		return false;
+	snprintf(comparison->what, comparison->size, "%s is %s, and was %s", name, asked, was);
+	return true;
+}
+
+static bool number_differs(struct comparison *comparison, const char *name, double asked,
+			   double was)
+{
+	if (asked == was)
+		return false;
+	snprintf(comparison->what, comparison->size, "%s is %.10g, and was %.10g", name, asked,
+		 was);
+	return true;
+}
+
+/* Cameras and displays are made of the same text or command line: bit for bit, or not the same. */
+static bool camera_differs(const struct gz_camera *a, const struct gz_camera *b)
+{
+	return memcmp(a->eye, b->eye, sizeof a->eye) != 0 ||
+	       memcmp(a->look_at, b->look_at, sizeof a->look_at) != 0 ||
+	       memcmp(a->up, b->up, sizeof a->up) != 0 || a->fov_deg != b->fov_deg ||
+	       a->height != b->height || a->projection != b->projection;
+}
+
+static bool display_differs(const struct gz_display *a, const struct gz_display *b)
+{
+	return a->px[0] != b->px[0] || a->px[1] != b->px[1] || a->mm[0] != b->mm[0] ||
+	       a->mm[1] != b->mm[1] || a->distance_mm != b->distance_mm;
+}
+
+static bool scene_differs(struct comparison *comparison, const struct gz_study_scene *asked,
+			  const struct gz_study_scene *was)
+{
+	if (text_differs(comparison, "a scene", asked->name, was->name) ||
+	    text_differs(comparison, "a transfer function", asked->transfer, was->transfer))
+		return true;
+	if (strcmp(asked->hash, was->hash) == 0 && !camera_differs(&asked->camera, &was->camera) &&
+	    !display_differs(&asked->display, &was->display))
+		return false;
+	snprintf(comparison->what, comparison->size,
+		 "%s with %s is not the same scene: its text, its data or its display has changed",
+		 asked->name, asked->transfer);
+	return true;
+}
+
+static bool lists_differ(struct comparison *comparison, const struct gz_study *asked,
+			 const struct gz_study *was)
+{
+	for (size_t i = 0; i < asked->scene_count; i++)
+		if (scene_differs(comparison, &asked->scenes[i], &was->scenes[i]))
+			return true;
+	for (size_t i = 0; i < asked->variant_count; i++)
+		if (text_differs(comparison, "a method", asked->variants[i].text,
+				 was->variants[i].text))
+			return true;
+	for (size_t i = 0; i < asked->backend_count; i++)
+		if (text_differs(comparison, "a backend", asked->backends[i], was->backends[i]))
+			return true;
+	for (size_t i = 0; i < asked->size_count; i++) {
+		const int *size = asked->sizes[i], *old = was->sizes[i];
+		if (size[0] == old[0] && size[1] == old[1])
+			continue;
+		snprintf(comparison->what, comparison->size, "a size is %dx%d, and was %dx%d",
+			 size[0], size[1], old[0], old[1]);
+		return true;
+	}
+	return false;
+}
+
+bool gz_study_differs(const struct gz_study *study, const struct gz_study *was, char *what,
+		      size_t size)
+{
+	struct comparison comparison = { what, size };
+	const struct {
+		const char *name;
+		double asked, was;
+	} numbers[] = {
+		{ "the number of scenes and transfer functions", (double)study->scene_count,
+		  (double)was->scene_count },
+		{ "the number of methods", (double)study->variant_count,
+		  (double)was->variant_count },
+		{ "the number of sizes", (double)study->size_count, (double)was->size_count },
+		{ "the number of backends", (double)study->backend_count,
+		  (double)was->backend_count },
+		{ "the number of points", (double)study->point_count, (double)was->point_count },
+		{ "the number of cameras", study->camera_count, was->camera_count },
+		{ "the seed", (double)study->seed, (double)was->seed },
+		{ "the number of frames", study->frames_per_point, was->frames_per_point },
+		{ "the number of warm-up frames", study->warm_up_frames, was->warm_up_frames },
+	};
+	if (text_differs(&comparison, "the program", study->machine.program,
+			 was->machine.program) ||
+	    text_differs(&comparison, "the commit", study->machine.commit, was->machine.commit) ||
+	    text_differs(&comparison, "the path", study->path, was->path))
+		return true;
+	for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+		if (number_differs(&comparison, numbers[i].name, numbers[i].asked, numbers[i].was))
+			return true;
+	return text_differs(&comparison, "the path's hash", study->path_hash, was->path_hash) ||
+	       lists_differ(&comparison, study, was);
 }

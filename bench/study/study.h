@@ -17,10 +17,12 @@
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 #include "render/camera.h"
+#include "render/image.h"
 
 #define GZ_STUDY_HASH_SIZE    65  /**< SHA-256 in hexadecimal with its NUL */
 #define GZ_STUDY_TEXT_SIZE    256 /**< bytes of any name below with its NUL */
-#define GZ_STUDY_LIST_MAX     64 /**< scenes, transfer functions of one, methods, sizes, backends */
+#define GZ_STUDY_LIST_MAX     64  /**< methods, sizes, backends */
+#define GZ_STUDY_SCENES_MAX   256 /**< each counted once for each of its transfer functions */
 #define GZ_STUDY_POINTS_MAX   100000
 #define GZ_STUDY_FRAMES_MAX   1000 /**< counted frames of one point */
 #define GZ_STUDY_SEED_DEFAULT 1
@@ -90,6 +92,9 @@ struct gz_study_row {
 	/** Mean change of the picture while the gaze trembles by a pixel and nothing else moves,
 	 *  weighted as perceived errors are, in levels of 255; NaN where it was not measured. */
 	double flicker;
+	/** How far the converged picture is from one of half its step, PSNR: what its own error may
+	 *  be; NaN where there is no converged picture. */
+	double reference_db;
 };
 
 /** A study, whole or so far. Zero-initialised is empty. */
@@ -100,6 +105,7 @@ struct gz_study {
 	size_t variant_count;
 	int (*sizes)[2]; /**< px */
 	size_t size_count;
+	/** As given: "cpu", "gl", "cpu:threads=2", "cpu:simd=avx2". */
 	char (*backends)[GZ_NAME_SIZE];
 	size_t backend_count;
 	char path[GZ_PATH_SIZE]; /**< of the gaze, as given: "sweep:s", "random:256", "log.gzl" */
@@ -114,12 +120,47 @@ struct gz_study {
 	 *  and point; scene_count * size_count * point_count values, points fastest. */
 	double *bound_rays;
 	struct gz_study_machine machine;
-	int shard, shard_count; /**< this folder holds the units u with u % shard_count == shard */
-	bool complete;          /**< every row of the shard is there */
+	/** This study holds the units u with u % shard_count == shard. A unit is one scene, size,
+	 *  backend and point with all frames of all variants, which are measured in turn, so that
+	 *  their ratios are of one run: gz_study_unit(). */
+	int shard, shard_count;
+	bool complete; /**< every row of the shard is there */
 
-	struct gz_study_row *rows; /**< sorted by scene, size, backend, point, variant, frame */
+	/** Of whole units, sorted by scene, size, backend, point, variant, frame. */
+	struct gz_study_row *rows;
 	size_t row_count;
 };
+
+/** Units of the whole study, all shards together. */
+size_t gz_study_unit_count(const struct gz_study *study);
+
+/** Units of the study's own shard. */
+size_t gz_study_shard_unit_count(const struct gz_study *study);
+
+/** Rows of one unit: variants times frames. */
+size_t gz_study_unit_rows(const struct gz_study *study);
+
+/**
+ * What row @p k of unit @p unit is of: scene, size, backend, variant, point, frame and gaze are
+ * set, all that is measured is 0 or, where it need not be, NaN.
+ *
+ * @param unit  below gz_study_unit_count(); points count fastest, then backends, sizes, scenes
+ * @param k     below gz_study_unit_rows()
+ */
+struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit, size_t k);
+
+/**
+ * What was asked of one study and not of the other: lists, hashes, points, frames, program and
+ * commit; not the machine, the shard and how far it is. Paths of scenes do not count, hashes do.
+ *
+ * @param[out] what  on true, what differs first: "size 2 is 640x480, and was 800x600"
+ * @param size       bytes of @p what
+ */
+bool gz_study_differs(const struct gz_study *study, const struct gz_study *was, char *what,
+		      size_t size);
+
+/** All errors NaN. */
+struct gz_study_errors gz_study_errors_unmeasured(void);
 
 /** Free what it holds and zero it. */
 void gz_study_free(struct gz_study *study);

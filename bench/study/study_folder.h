@@ -26,4 +26,50 @@
 enum gz_result gz_study_read(const char *folder, const struct gz_log *log,
 			     struct gz_study *out_study);
 
+/**
+ * Write a study with all its rows into a folder, made where it is not there.
+ *
+ * @retval GZ_ERR_BUSY  the folder is there and not empty; logged
+ * @retval GZ_ERR_FULL  no room on the disk; logged
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_study_write(const char *folder, const struct gz_study *study,
+			      const struct gz_log *log);
+
+/** Writes the folder of a study unit by unit: whatever ends the program, what is there can be read
+ *  and taken up. */
+struct gz_study_writer;
+
+/**
+ * Begin a folder, made where it is not there, or go on with one where the same was asked.
+ *
+ * @param study  what is asked; borrowed until the writer is destroyed. Its rows do not count
+ * @param[out] out_writer  owned by the caller: gz_study_writer_destroy()
+ * @param[out] out_done    units of the shard that are there already, the first ones
+ * @retval GZ_ERR_INVAL   a study of something else is there; logged with what differs
+ * @retval GZ_ERR_BUSY    the folder holds something that is no study, or another program writes
+ *                        it; logged
+ * @retval GZ_ERR_FORMAT  the study that is there is damaged; logged with file:line
+ * @retval GZ_ERR_FULL    no room on the disk; logged
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_study_writer_open(const char *folder, const struct gz_study *study,
+				    const struct gz_log *log, struct gz_study_writer **out_writer,
+				    size_t *out_done);
+
+/**
+ * Add the rows of the shard's next unit; on the disk when this returns.
+ *
+ * @param rows  gz_study_unit_rows() of them, in order
+ * @retval GZ_ERR_FULL  no room on the disk; logged; the folder is as it was before the call
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged; as it was
+ */
+enum gz_result gz_study_writer_add(struct gz_study_writer *writer, const struct gz_study_row *rows);
+
+/** Say in the folder that the study is complete. Errors as of gz_study_writer_add(). */
+enum gz_result gz_study_writer_finish(struct gz_study_writer *writer);
+
+/** Close the files and set to NULL. Accepts a pointer to NULL. */
+void gz_study_writer_destroy(struct gz_study_writer **writer);
+
 #endif

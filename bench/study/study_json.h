@@ -1,0 +1,32 @@
+/**
+ * @file
+ * study.json: everything of a study but its rows. For bench/study/study_folder.c alone.
+ */
+#ifndef GZ_BENCH_STUDY_STUDY_JSON_H
+#define GZ_BENCH_STUDY_STUDY_JSON_H
+
+#include <jansson.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/study/study.h"
+
+/** What the file says it is, and which version of that this program reads and writes. */
+#define GZ_STUDY_FORMAT  "gazecast study"
+#define GZ_STUDY_VERSION 1
+
+/** A study as JSON, without rows: the caller's, json_decref(). NULL where there is no memory. */
+json_t *gz_study_to_json(const struct gz_study *study);
+
+/**
+ * A study of JSON, without rows. Counts are checked before they are believed.
+ *
+ * @param name  the file's, for messages
+ * @param[out] out_study  the caller frees it with gz_study_free()
+ * @retval GZ_ERR_FORMAT  another version, or something missing or out of range; logged
+ * @retval GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_study_from_json(const json_t *json, const char *name, const struct gz_log *log,
+				  struct gz_study *out_study);
+
+#endif
