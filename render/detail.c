@@ -58,8 +58,9 @@ static enum gz_result build(struct gz_detail *detail, struct gz_workers *workers
 {
 	enum gz_result result = gz_levels_build(&detail->levels, workers);
 	for (int i = 1; i < detail->levels.count && result == GZ_OK; i++) {
+		detail->brick_level[i] = i;
 		result = gz_macrocells_build(&detail->levels.level[i].volume, &detail->cells[i]);
-		if (result == GZ_OK)
+		if (result == GZ_OK && table)
 			gz_macrocells_classify(&detail->cells[i], table);
 	}
 	return result;

@@ -16,7 +16,8 @@ struct gz_detail {
 	struct gz_levels levels;
 	struct gz_macrocells cells[GZ_LEVELS_MAX]; /**< of each level there is */
 	bool failed;                               /**< no memory for the coarser ones: said once */
-	int brick_level[GZ_LEVELS_MAX]; /**< which level of a volume of bricks each one is */
+	/** Which level of a file of bricks each one is; itself where the volume is in memory. */
+	int brick_level[GZ_LEVELS_MAX];
 };
 
 /** Begin with a volume, borrowed, and its macrocells; frees what was. A volume of bricks has all
@@ -29,6 +30,8 @@ void gz_detail_classify(struct gz_detail *detail, const struct gz_transfer_table
 /**
  * Make and classify the coarser levels unless they are there. Without memory for them the full
  * volume stays the only level, and @p log gets one line.
+ *
+ * @param table  NULL: gz_detail_classify() follows
  */
 void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 			   const struct gz_transfer_table *table, const struct gz_log *log);

@@ -6,6 +6,7 @@
 #define GZ_RENDER_RENDERER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -23,8 +24,8 @@ struct gz_frame_stats {
 	uint64_t samples; /**< voxel interpolations done */
 	double cast_ms;
 	double reconstruct_ms;
-	uint64_t bricks_coming; /**< of a volume of bricks: sent for and not there yet. While it is
-				   above 0 the same picture, made again, is sharper */
+	uint64_t bricks_coming; /**< of a volume shown by bricks: sent for and not there yet. While
+				   it is above 0 the same picture, made again, is sharper */
 };
 
 struct gz_renderer;
@@ -34,15 +35,18 @@ struct gz_gl_context;
 struct gz_renderer_params {
 	int threads;      /**< cpu: 0 = one per processor, else 1 to 256 */
 	const char *simd; /**< cpu: NULL or "auto", else "portable", "avx2", "avx512" */
-	/** cpu, of a volume of bricks: each picture waits for all bricks that it shows, or as many
-	 * as have room; else it shows those that are there, coarse ones first. */
+	/** Of a volume that is shown by bricks: each picture waits for all bricks that it shows, or
+	 * as many as have room; else it shows those that are there, coarse ones first. */
 	bool wait_for_bricks;
 	/** gl: where it draws, borrowed, outlives the renderer; NULL = headless, from EGL. A
 	 * program with windows must give a window's (render/gl/gl_context.h). */
 	struct gz_gl_context *gl_context;
 	bool gl_hardware_only;  /**< gl: refuse OpenGL that a processor works out */
-	int gl_volume_edge_max; /**< gl: refuse volumes with a longer edge, voxels, as a driver
-				     with smaller textures does; 0 = the driver's own limit */
+	int gl_volume_edge_max; /**< gl: show volumes with a longer edge, voxels, by bricks, as with
+				     a driver with smaller textures; 0 = the driver's own limit */
+	/** gl: voxels take no more of the device's memory, bytes, as if it had no more; what does
+	 * not fit whole is shown by bricks. 0 = what the driver has. */
+	size_t gl_memory_bytes;
 };
 
 /** What a backend must provide. Every table is const and has static storage. */

@@ -52,9 +52,8 @@ enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_op
 	};
 	struct gz_renderer_params params = caster->cpu;
 	params.gl_context = gl_context;
-	/* Bricks are for cpu: no use in asking another. */
-	const char *backend = caster->chooses && scene->volume.bricks ? "cpu" : options->backend;
-	enum gz_result r = gz_renderer_create(backend, &params, log, &caster->renderer);
+	params.gl_memory_bytes = (size_t)options->gl_memory_mib << 20;
+	enum gz_result r = gz_renderer_create(options->backend, &params, log, &caster->renderer);
 	if (r == GZ_OK) {
 		r = give_scene(caster);
 		if (caster->chooses && may_replace(caster, r))

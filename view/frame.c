@@ -138,6 +138,9 @@ static enum gz_result cast_and_keep(struct gz_frame_maker *maker,
 	if (r == GZ_OK)
 		r = gz_temporal_end(&maker->temporal, &request->settings->temporal, &maker->content,
 				    &maker->plan, target);
+	/* The next one is sharper: this is not to be kept. */
+	if (r == GZ_OK && out_stats->bricks_coming > 0)
+		gz_temporal_forget(&maker->temporal);
 	out_stats->reconstruct_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	return r;
 }

@@ -71,6 +71,15 @@ const struct gz_option gz_view_option_table[] = {
 	  .max = GZ_NAME_SIZE,
 	  .preset = "auto",
 	  .help = "instructions of the cpu backend: auto, portable, avx2, avx512" },
+	{ .key = "gl-memory",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(gl_memory_mib),
+	  .min = 0,
+	  .max = 1 << 24,
+	  .preset = "0",
+	  .help = "memory of the graphics device that the gl backend takes for voxels, MiB; 0 "
+		  "takes "
+		  "what there is. What does not fit whole is shown by bricks" },
 	{ .key = "frames",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(frames),
@@ -100,8 +109,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .offset = AT(bricks),
 	  .choices = bricks_names,
 	  .preset = "auto",
-	  .help = "each picture of a file of bricks waits for all it shows, or streams: coarse "
-		  "first, sharper later; auto waits if headless" },
+	  .help = "each picture of a volume shown by bricks waits for all it shows, or streams: "
+		  "coarse first, sharper later; auto waits if headless" },
 	{ .key = "turn",
 	  .type = GZ_OPTION_DOUBLE,
 	  .offset = AT(turn_deg),

@@ -28,7 +28,7 @@ enum gz_gaze_kind {
 	GZ_GAZE_LOG,     /**< a gaze log, through the daemon's pipeline in process */
 };
 
-/** What a picture of a file of bricks does about those that are not there yet. */
+/** What a picture of a volume shown by bricks does about those that are not there yet. */
 enum gz_bricks_rule {
 	GZ_BRICKS_AUTO, /**< wait without a window, else stream */
 	GZ_BRICKS_WAIT,
@@ -56,6 +56,7 @@ struct gz_view_options {
 	char backend[GZ_NAME_SIZE];
 	int threads;
 	char simd[GZ_NAME_SIZE];
+	int gl_memory_mib; /**< 0: what the device has */
 	int frames;
 	char out[GZ_PATH_SIZE];          /**< empty: no pictures are written */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */

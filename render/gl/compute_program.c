@@ -16,8 +16,13 @@ extern const char gz_glsl_cast_constants_h[];
 #define TEXT_OF(number)      #number
 #define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
 
-static const char sizes[] = DEFINE("GROUP_SIZE", GZ_GL_GROUP_SIZE)
-	DEFINE("TILE_POINTS", GZ_GL_TILE_POINTS) DEFINE("COUNT_SLOTS", GZ_GL_COUNT_SLOTS);
+static const char sizes[] =
+	DEFINE("GROUP_SIZE", GZ_GL_GROUP_SIZE) DEFINE("TILE_POINTS", GZ_GL_TILE_POINTS)
+		DEFINE("COUNT_SLOTS", GZ_GL_COUNT_SLOTS) DEFINE("BRICK_EDGE", GZ_GL_BRICK_EDGE)
+			DEFINE("BRICK_STORED_EDGE", GZ_GL_BRICK_STORED_EDGE)
+				DEFINE("BRICK_LEVELS", GZ_GL_BRICK_LEVELS)
+					DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
+						DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS);
 
 const char *const gz_compute_head[] = { "#version 430 core\n", gz_glsl_cast_constants_h, sizes };
 const int gz_compute_head_count = sizeof gz_compute_head / sizeof gz_compute_head[0];

@@ -21,6 +21,14 @@
  *  each other; summed when they are read. A power of two. */
 #define GZ_GL_COUNT_SLOTS 1024
 
+/** As render/volume/brick_layout.h and brick_rooms.h have it, and bits of a room's place along each
+ *  axis, above those of the level. */
+#define GZ_GL_BRICK_EDGE        32
+#define GZ_GL_BRICK_STORED_EDGE 34
+#define GZ_GL_BRICK_LEVELS      16
+#define GZ_GL_BRICK_LEVEL_BITS  4
+#define GZ_GL_BRICK_PLACE_BITS  9
+
 /** Binding points. */
 enum gz_gl_texture_unit {
 	GZ_GL_UNIT_VOXELS,
@@ -34,6 +42,7 @@ enum gz_gl_storage {
 	GZ_GL_STORAGE_POINTS,
 	GZ_GL_STORAGE_COUNTS,
 	GZ_GL_STORAGE_SPANS,
+	GZ_GL_STORAGE_BRICKS,
 };
 
 /** The block. Vectors of three have a fourth component that nobody reads. */
@@ -62,6 +71,10 @@ struct gz_gl_frame_block {
 	float region_fades[GZ_PLAN_LAYERS_MAX][4];  /**< share of a layer per radius from the rim, 0
 						       = all; 1 for an ellipse */
 	uint32_t tile_points[GZ_GL_TILE_POINTS][4]; /**< column and row of a tile's rays */
+	uint32_t brick_table[4]; /**< number of the level's first brick; of bricks from one to the
+				    next along y, z */
+	float brick_last[4];     /**< greatest number of a brick along each axis */
+	float brick_scales[GZ_GL_BRICK_LEVELS][4]; /**< see struct gz_brick_lookup */
 };
 
 #endif

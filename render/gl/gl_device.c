@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include <GL/glew.h>
 
@@ -22,6 +23,28 @@ static int64_t limit_of(GLenum name)
 	GLint64 value = 0;
 	glGetInteger64v(name, &value);
 	return value;
+}
+
+/* What the driver says is free, bytes; 0 where it says nothing. Both extensions count in KiB. */
+static int64_t free_memory(void)
+{
+	GLint kib[4] = { 0 };
+	if (GLEW_NVX_gpu_memory_info)
+		glGetIntegerv(GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX, kib);
+	else if (GLEW_ATI_meminfo)
+		glGetIntegerv(GL_TEXTURE_FREE_MEMORY_ATI, kib);
+	return (int64_t)kib[0] * 1024;
+}
+
+static void find_memory(struct gz_gl_device *device)
+{
+	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+	const int64_t told = device->software ? 0 : free_memory();
+	device->memory_told = told > 0;
+	device->memory_max = told / 4 * 3;
+	if (told <= 0)
+		device->memory_max =
+			pages > 0 && page > 0 ? (int64_t)pages / 4 * page : (int64_t)1 << 30;
 }
 
 enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, size_t size)
@@ -47,8 +70,10 @@ enum gz_result gz_gl_device_open(struct gz_gl_device *out_device, char *reason, 
 		 major, minor);
 	device.software = is_software(renderer);
 	device.tells_loss = GLEW_ARB_robustness && glGetGraphicsResetStatusARB;
-	device.volume_edge_max = (int)limit_of(GL_MAX_3D_TEXTURE_SIZE);
+	device.texture_edge_max = (int)limit_of(GL_MAX_3D_TEXTURE_SIZE);
+	device.volume_edge_max = device.texture_edge_max;
 	device.storage_max = limit_of(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+	find_memory(&device);
 	GLint groups =
 		65535; /* the least that OpenGL 4.3 allows; stays where the context is lost */
 	glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);

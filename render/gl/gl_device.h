@@ -16,9 +16,14 @@ struct gz_gl_device {
 	char description[160]; /**< "gl: llvmpipe (LLVM 15.0.6, 256 bits), 4.5" */
 	bool software;         /**< a processor does the work */
 	bool tells_loss;       /**< the driver says when the context is lost */
-	int volume_edge_max;   /**< of a 3D texture, texels */
+	int texture_edge_max;  /**< of a 3D texture, texels */
+	int volume_edge_max;   /**< of one with voxels: that, or what a test sets it to */
 	int64_t storage_max;   /**< of a storage buffer, bytes */
-	int groups_max;        /**< work-groups of one dispatch along x */
+	/** Bytes that voxels may take: three quarters of what the driver says is free; where it
+	 *  says nothing, a quarter of the machine's memory, since such a GPU mostly shares it. */
+	int64_t memory_max;
+	bool memory_told; /**< the driver said, so more need not be tried */
+	int groups_max;   /**< work-groups of one dispatch along x */
 };
 
 /**

@@ -58,10 +58,16 @@ enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device
 			  const struct gz_gl_frame *frame, int level, struct gz_gl_cast_kind kind,
 			  const struct gz_log *log)
 {
-	char defines[160];
-	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s%s",
-		 8 * gz_voxel_size(kind.type), kind.nearest ? "#define NEAREST\n" : "",
-		 kind.segments ? "#define SEGMENTS\n" : "", kind.shaded ? "#define SHADED\n" : "",
+	static const char *const texels[GZ_GL_TEXELS_COUNT] = {
+		[GZ_GL_TEXELS_PACKED] = "",
+		[GZ_GL_TEXELS_SINGLE] = "#define SINGLE\n",
+		[GZ_GL_TEXELS_BRICKS] = "#define SINGLE\n#define BRICKS\n",
+	};
+	char defines[200];
+	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s%s%s",
+		 8 * gz_voxel_size(kind.type), texels[kind.texels],
+		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
+		 kind.shaded ? "#define SHADED\n" : "",
 		 device->software ? "#define FETCH_IMAGES\n" : "");
 	const struct gz_compute_text text = {
 		.name = "cast.comp",
@@ -71,7 +77,8 @@ enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device
 	};
 	const struct gz_gl_tile_range *range = &frame->level_ranges[level];
 	const enum gz_result result =
-		use(&passes->cast[kind.type][kind.nearest][kind.segments][kind.shaded], &text, log);
+		use(&passes->cast[kind.texels][kind.type][kind.nearest][kind.segments][kind.shaded],
+		    &text, log);
 	if (result != GZ_OK)
 		return result;
 	glUniform1ui(LEVEL, (GLuint)level);
@@ -174,7 +181,7 @@ enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl
 
 void gz_gl_passes_free(struct gz_gl_passes *passes)
 {
-	const GLuint *programs = &passes->cast[0][0][0][0];
+	const GLuint *programs = &passes->cast[0][0][0][0][0];
 	for (size_t i = 0; i < sizeof passes->cast / sizeof *programs; i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);

@@ -12,11 +12,13 @@
 #include "base/result.h"
 #include "render/gl/gl_device.h"
 #include "render/gl/gl_frame.h"
+#include "render/gl/gl_texels.h"
 #include "render/plan/plan.h"
 #include "render/volume/volume.h"
 
 /** What a cast does; each has a program of its own. */
 struct gz_gl_cast_kind {
+	enum gz_gl_texels texels;
 	enum gz_voxel_type type;
 	bool nearest;
 	bool segments; /**< pre-integrated */
@@ -25,8 +27,8 @@ struct gz_gl_cast_kind {
 
 /** Programs, made when they are first needed; names of OpenGL, 0: none yet. */
 struct gz_gl_passes {
-	unsigned cast[GZ_VOXEL_TYPE_COUNT][2][2]
-		     [2]; /**< by the members of struct gz_gl_cast_kind */
+	/** By the members of struct gz_gl_cast_kind. */
+	unsigned cast[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2];
 	unsigned fill, quincunx, regions;
 };
 

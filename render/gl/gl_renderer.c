@@ -28,6 +28,7 @@ struct gl_renderer {
 	struct gz_gl_frame frame;
 	struct gz_gl_passes passes;
 	struct gz_gl_timer timer;
+	bool wait_for_bricks;
 };
 
 static struct gl_renderer *gl_of(struct gz_renderer *renderer)
@@ -93,6 +94,10 @@ static enum gz_result open_device(struct gl_renderer *gl, const struct gz_render
 	if (params->gl_volume_edge_max > 0 &&
 	    params->gl_volume_edge_max < gl->device.volume_edge_max)
 		gl->device.volume_edge_max = params->gl_volume_edge_max;
+	if (params->gl_memory_bytes > 0) {
+		gl->device.memory_max = (int64_t)params->gl_memory_bytes;
+		gl->device.memory_told = true;
+	}
 	return result;
 }
 
@@ -104,6 +109,7 @@ static enum gz_result gl_create(const struct gz_renderer_params *params, const s
 	if (!gl)
 		return GZ_ERR_NO_MEM;
 	gl->base = (struct gz_renderer) { .ops = &gz_gl_renderer_ops, .log = log };
+	gl->wait_for_bricks = params->wait_for_bricks;
 	enum gz_result result = open_context(gl, params, reason);
 	if (result == GZ_OK)
 		result = open_device(gl, params, reason);
@@ -127,11 +133,6 @@ static enum gz_result gl_set_volume(struct gz_renderer *renderer, const struct g
 {
 	struct gl_renderer *gl = gl_of(renderer);
 	gl->scene.volume = NULL; /* borrowed until now */
-	if (volume->bricks) {
-		gz_err(renderer->log,
-		       "a file of bricks is for the cpu backend: take --backend cpu");
-		return GZ_ERR_UNSUPPORTED;
-	}
 	enum gz_result result = enter(gl);
 	if (result != GZ_OK)
 		return result;
@@ -193,8 +194,8 @@ static enum gz_result prepare(struct gl_renderer *gl, const struct gz_camera *ca
 	struct gz_gl_frame_block block = { 0 };
 	struct gz_gl_tile_levels levels;
 	const struct gz_log *log = gl->base.log;
-	enum gz_result result =
-		gz_gl_scene_prepare(&gl->scene, &gl->device, camera, rays, plan, &levels, log);
+	enum gz_result result = gz_gl_scene_prepare(&gl->scene, &gl->device, camera, rays, plan,
+						    gl->wait_for_bricks, &levels, log);
 	if (result == GZ_OK)
 		result = gz_gl_frame_prepare(&gl->frame, &gl->device, plan, &levels, &block, log);
 	if (result != GZ_OK)
@@ -216,7 +217,7 @@ static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_params *r
 			   const struct gz_plan *plan)
 {
 	const struct gz_log *log = gl->base.log;
-	const struct gz_gl_cast_kind kind = {
+	struct gz_gl_cast_kind kind = {
 		.type = gl->scene.volume->type,
 		.nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
 		.segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
@@ -229,6 +230,7 @@ static enum gz_result draw(struct gl_renderer *gl, const struct gz_ray_params *r
 			continue;
 		gz_gl_frame_use_block(&gl->frame, i);
 		gz_gl_volume_bind(&gl->scene.levels[i], kind.type);
+		kind.texels = gl->scene.levels[i].texels;
 		result = gz_gl_cast(&gl->passes, &gl->device, &gl->frame, i, kind, log);
 	}
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
@@ -296,6 +298,7 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
 			.reconstruct_ms =
 				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),
+			.bricks_coming = gl->scene.bricks.coming,
 		};
 	leave(gl);
 	return result;

@@ -14,6 +14,72 @@ static void free_levels(struct gz_gl_scene *scene)
 	for (int i = 0; i < GZ_LEVELS_MAX; i++)
 		gz_gl_volume_free(&scene->levels[i]);
 	scene->level_count = 0;
+	gz_gl_bricks_free(&scene->bricks);
+	scene->bricked = false;
+}
+
+/* Threads for what processors do; work is done without them where there are none to be had. */
+static struct gz_workers *workers_of(struct gz_gl_scene *scene)
+{
+	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
+		scene->workers = NULL;
+	return scene->workers;
+}
+
+/* The macrocells of all levels must have textures, whatever their voxels are in. */
+static bool cells_fit(const struct gz_gl_scene *scene, const struct gz_gl_device *device)
+{
+	for (int axis = 0; axis < 3; axis++)
+		if (scene->detail.cells[0].dims[axis] > device->texture_edge_max)
+			return false;
+	return true;
+}
+
+/* By bricks, of all levels at once. */
+static enum gz_result set_bricks(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				 const struct gz_log *log)
+{
+	gz_detail_make_levels(&scene->detail, workers_of(scene), NULL, log);
+	if (!cells_fit(scene, device)) {
+		gz_err(log,
+		       "the macrocells of a volume of %d x %d x %d voxels are beyond this OpenGL's "
+		       "3D textures of %d; take --backend cpu",
+		       scene->detail.levels.level[0].volume.dims[0],
+		       scene->detail.levels.level[0].volume.dims[1],
+		       scene->detail.levels.level[0].volume.dims[2], device->texture_edge_max);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = gz_gl_bricks_open(&scene->bricks, device, &scene->detail);
+	if (result != GZ_OK) {
+		gz_err(log,
+		       "no room on the graphics device for bricks of the volume: %s; take "
+		       "--backend cpu",
+		       gz_result_text(result));
+		return result;
+	}
+	scene->bricked = true;
+	scene->level_count = scene->detail.levels.count;
+	for (int i = 0; i < scene->level_count; i++)
+		gz_gl_volume_lend(&scene->levels[i], scene->bricks.atlas);
+	return GZ_OK;
+}
+
+/* Why a volume in memory is shown by bricks, and by how many at once. */
+static void tell_bricked(const struct gz_gl_scene *scene, const struct gz_gl_device *device,
+			 const struct gz_volume *volume, enum gz_result why,
+			 const struct gz_log *log)
+{
+	if (why == GZ_ERR_UNSUPPORTED)
+		gz_info(log,
+			"%d x %d x %d voxels are beyond this OpenGL's 3D textures of %d: they are "
+			"shown by bricks, %zu of %zu at once",
+			volume->dims[0], volume->dims[1], volume->dims[2], device->volume_edge_max,
+			scene->bricks.rooms.count, scene->bricks.source.layout->brick_count);
+	else
+		gz_info(log,
+			"the graphics device has no room for the whole volume: it is shown by "
+			"bricks, %zu of %zu at once",
+			scene->bricks.rooms.count, scene->bricks.source.layout->brick_count);
 }
 
 enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
@@ -22,17 +88,26 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 	scene->volume = NULL;
 	scene->has_transfer = false;
 	free_levels(scene);
-	enum gz_result result = gz_gl_volume_load(&scene->levels[0], device, volume, log);
-	if (result != GZ_OK)
-		return result;
-	result = gz_detail_start(&scene->detail, volume);
+	const enum gz_result whole = volume->bricks
+					     ? GZ_ERR_UNSUPPORTED
+					     : gz_gl_volume_load(&scene->levels[0], device, volume);
+	if (whole == GZ_ERR_NO_DEVICE) {
+		gz_err(log, "the context is lost");
+		return whole;
+	}
+	enum gz_result result = gz_detail_start(&scene->detail, volume);
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for the macrocells of the volume");
 		return result;
 	}
 	scene->level_count = 1;
-	scene->volume = volume;
-	return GZ_OK;
+	if (whole != GZ_OK)
+		result = set_bricks(scene, device, log);
+	if (result == GZ_OK && whole != GZ_OK && !volume->bricks)
+		tell_bricked(scene, device, volume, whole, log);
+	if (result == GZ_OK)
+		scene->volume = volume;
+	return result;
 }
 
 void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer)
@@ -44,15 +119,8 @@ void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfe
 	gz_preintegration_forget(&scene->preintegration);
 	gz_lighting_forget(&scene->lighting);
 	gz_gl_tables_forget(&scene->tables);
+	gz_gl_bricks_forget(&scene->bricks);
 	scene->has_transfer = true;
-}
-
-/* Threads for what processors do; work is done without them where there are none to be had. */
-static struct gz_workers *workers_of(struct gz_gl_scene *scene)
-{
-	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
-		scene->workers = NULL;
-	return scene->workers;
 }
 
 static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
@@ -119,14 +187,17 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_r
 static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 			   const struct gz_log *log)
 {
-	if (scene->level_count > 1 || scene->detail.failed)
+	if (scene->level_count > 1 || scene->detail.failed || scene->bricked)
 		return;
 	gz_detail_make_levels(&scene->detail, workers_of(scene), &scene->table, log);
 	const int count = scene->detail.levels.count;
 	for (int i = 1; i < count; i++) {
 		if (gz_gl_volume_load(&scene->levels[i], device,
-				      &scene->detail.levels.level[i].volume, log) != GZ_OK) {
-			gz_warn(log, "rays take the finest %d levels of the volume alone", i);
+				      &scene->detail.levels.level[i].volume) != GZ_OK) {
+			gz_warn(log,
+				"no room on the graphics device for coarser levels of the volume: "
+				"rays take the finest %d alone",
+				i);
 			scene->detail.failed = true; /* said once */
 			return;
 		}
@@ -153,20 +224,55 @@ static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan 
 			}
 }
 
+static int level_of(const void *user, const struct gz_tile *tile)
+{
+	const struct gz_gl_tile_levels *levels = user;
+	return levels->of[tile->layer][tile->pattern][tile->step];
+}
+
+/* @p levels: NULL where all tiles take the finest. */
+static enum gz_result prepare_bricks(struct gz_gl_scene *scene,
+				     const struct gz_brick_stream_key *key,
+				     const struct gz_plan *plan,
+				     const struct gz_gl_tile_levels *levels, bool wait,
+				     const struct gz_log *log)
+{
+	const struct gz_brick_stream_frame frame = {
+		.detail = &scene->detail,
+		.table = &scene->table,
+		.plan = plan,
+		.key = *key,
+		.tile_level = levels ? level_of : NULL,
+		.user = levels,
+	};
+	const enum gz_result result = gz_gl_bricks_turn(&scene->bricks, frame, wait);
+	if (result == GZ_ERR_NO_MEM)
+		gz_err(log, "no memory for the list of bricks that the picture shows");
+	return result;
+}
+
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				   const struct gz_camera *camera, const struct gz_ray_params *rays,
-				   const struct gz_plan *plan, struct gz_gl_tile_levels *out_levels,
-				   const struct gz_log *log)
+				   const struct gz_plan *plan, bool wait,
+				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log)
 {
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(scene->volume, camera, plan->view.height);
 	memset(out_levels, 0, sizeof *out_levels);
-	if (gz_detail_wanted(plan, rays, pixel_lengths)) {
+	const bool coarser = gz_detail_wanted(plan, rays, pixel_lengths);
+	if (coarser) {
 		prepare_levels(scene, device, log);
 		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
 	}
-	const enum gz_result result = prepare_light(scene, rays, log);
-	return result == GZ_OK ? prepare_tables(scene, rays, plan, log) : result;
+	enum gz_result result = prepare_light(scene, rays, log);
+	if (result == GZ_OK)
+		result = prepare_tables(scene, rays, plan, log);
+	if (result == GZ_OK && scene->bricked) {
+		const struct gz_brick_stream_key key =
+			gz_brick_stream_key_of(camera, rays, plan, coarser ? pixel_lengths : 0);
+		result = prepare_bricks(scene, &key, plan, coarser ? out_levels : NULL, wait, log);
+	}
+	return result;
 }
 
 static void to_floats(const double source[3], const int divisor[3], float out[4])
@@ -229,6 +335,8 @@ static void fill_light(const struct gz_gl_scene *scene, const int factor[3],
 void gz_gl_scene_bind(const struct gz_gl_scene *scene)
 {
 	gz_gl_tables_bind(&scene->tables);
+	if (scene->bricked)
+		gz_gl_bricks_bind(&scene->bricks);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_OCCLUSION);
 	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
 	glActiveTexture(GL_TEXTURE0);
@@ -242,6 +350,8 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
 	fill_volume(scene, level, &rays->clip, block);
 	fill_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
+	if (scene->bricked)
+		gz_gl_bricks_fill(&scene->bricks, scene->detail.brick_level[level], block);
 	block->jitter[0] = (uint32_t)rays->jitter;
 	block->jitter[1] = (uint32_t)plan->view.shift[0];
 	block->jitter[2] = (uint32_t)plan->view.shift[1];
@@ -258,6 +368,7 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 
 void gz_gl_scene_forget(struct gz_gl_scene *scene)
 {
+	gz_gl_bricks_abandon(&scene->bricks);
 	gz_detail_free(&scene->detail);
 	gz_preintegration_free(&scene->preintegration);
 	gz_lighting_free(&scene->lighting);

@@ -13,6 +13,7 @@
 #include "render/camera.h"
 #include "render/detail.h"
 #include "render/gl/frame_block.h"
+#include "render/gl/gl_bricks.h"
 #include "render/gl/gl_frame.h"
 #include "render/gl/gl_tables.h"
 #include "render/gl/gl_volume.h"
@@ -31,14 +32,22 @@ struct gz_gl_scene {
 	struct gz_workers *workers;                /**< NULL until there is much to do */
 	struct gz_gl_volume levels[GZ_LEVELS_MAX]; /**< of those that the device has */
 	int level_count;
+	bool bricked; /**< voxels come by bricks: */
+	struct gz_gl_bricks bricks;
 	struct gz_gl_tables tables;
 	struct gz_lighting lighting;
 	unsigned occlusion;    /**< texture of the lighting's grid; 0: none */
 	int occlusion_dims[3]; /**< of the texture */
 };
 
-/** Show @p volume, borrowed until the next call or gz_gl_scene_free(). @return what
- *  gz_gl_volume_load() returns, GZ_ERR_NO_MEM; logged */
+/**
+ * Show @p volume, borrowed until the next call or gz_gl_scene_free(): whole where the device has
+ * room for that, else by bricks, as a file of bricks is.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  the device's textures do not even hold the macrocells; logged
+ * @retval GZ_ERR_NO_MEM       no room, on the device not even for the coarsest bricks; logged
+ * @retval GZ_ERR_NO_DEVICE    the context is lost; logged
+ */
 enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				      const struct gz_volume *volume, const struct gz_log *log);
 
@@ -46,17 +55,19 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer);
 
 /**
- * Have ready what a frame needs: tables of its steps, and coarser levels where its rays take them.
+ * Have ready what a frame needs: tables of its steps, coarser levels where its rays take them, and
+ * those of its bricks that have come.
  *
  * @param camera  valid
+ * @param wait    until all bricks are there that have room
  * @param[out] out_levels  which level each kind of tile takes
- * @retval GZ_ERR_NO_MEM  no room for pre-integrated tables; logged. Without room for coarser levels
- *                        all rays take the full one
+ * @retval GZ_ERR_NO_MEM  no room for pre-integrated tables or the list of wanted bricks; logged.
+ *                        Without room for coarser levels all rays take the full one
  */
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				   const struct gz_camera *camera, const struct gz_ray_params *rays,
-				   const struct gz_plan *plan, struct gz_gl_tile_levels *out_levels,
-				   const struct gz_log *log);
+				   const struct gz_plan *plan, bool wait,
+				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log);
 
 /** Fill what of @p block belongs to a level: rays and volume in its own voxel coordinates, and what
  *  all levels share of rays and transfer function. */

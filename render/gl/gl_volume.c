@@ -7,22 +7,9 @@
 
 #include "render/gl/frame_block.h"
 
-#define GZ_LOG_MODULE "gl"
-
 /* Bytes handed to the driver at a time, which may copy them first. Chosen: a small part of any
  * volume that matters, large beside the cost of a call. */
 #define UPLOAD_BYTES ((size_t)16 << 20)
-
-/* What a texel is to OpenGL: 32 bits of whatever voxel type, see shaders/fetch.glsl. */
-struct texel_format {
-	GLenum internal, external, type;
-};
-
-static const struct texel_format formats[GZ_VOXEL_TYPE_COUNT] = {
-	[GZ_VOXEL_U8] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
-	[GZ_VOXEL_U16] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
-	[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT },
-};
 
 /* A row of 8-bit voxels, each with its neighbours along x, y and both. */
 static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, uint32_t *out)
@@ -60,9 +47,11 @@ static void pack_slice(const struct gz_volume *volume, int z, uint32_t *out)
 	}
 }
 
-/* Voxels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
-static enum gz_result upload(const struct gz_volume *volume, const struct texel_format *format)
+/* Packed texels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
+static enum gz_result upload_packed(const struct gz_volume *volume)
 {
+	const struct gz_gl_texel_format *format =
+		gz_gl_texel_format(GZ_GL_TEXELS_PACKED, volume->type);
 	const int *dims = volume->dims;
 	const size_t slice = (size_t)dims[0] * (size_t)dims[1];
 	const size_t slice_bytes = slice * sizeof(uint32_t);
@@ -81,46 +70,71 @@ static enum gz_result upload(const struct gz_volume *volume, const struct texel_
 	return GZ_OK;
 }
 
-static enum gz_result refuse_edge(const struct gz_gl_device *device, const struct gz_volume *volume,
-				  const struct gz_log *log)
+/* Voxels as they are to the bound texture, a slice at a time. */
+static enum gz_result upload_single(const struct gz_volume *volume)
 {
-	for (int axis = 0; axis < 3; axis++)
-		if (volume->dims[axis] > device->volume_edge_max) {
-			gz_err(log,
-			       "a volume of %d x %d x %d voxels is beyond this OpenGL's 3D "
-			       "textures of %d; take --backend cpu",
-			       volume->dims[0], volume->dims[1], volume->dims[2],
-			       device->volume_edge_max);
-			return GZ_ERR_UNSUPPORTED;
-		}
+	const struct gz_gl_texel_format *format =
+		gz_gl_texel_format(GZ_GL_TEXELS_SINGLE, volume->type);
+	const int *dims = volume->dims;
+	const size_t slice_bytes = (size_t)dims[0] * (size_t)dims[1] * format->bytes;
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	for (int z = 0; z < dims[2]; z++)
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1], 1, format->external,
+				format->type,
+				(const char *)volume->voxels + (size_t)z * slice_bytes);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	return GZ_OK;
 }
 
-enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
-				 const struct gz_volume *volume, const struct gz_log *log)
+static bool fits_edges(const struct gz_gl_device *device, const struct gz_volume *volume)
 {
-	gz_gl_volume_free(gl);
-	enum gz_result result = refuse_edge(device, volume, log);
-	if (result != GZ_OK)
-		return result;
-	const struct texel_format *format = &formats[volume->type];
+	for (int axis = 0; axis < 3; axis++)
+		if (volume->dims[axis] > device->volume_edge_max)
+			return false;
+	return true;
+}
+
+static enum gz_result load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+			   const struct gz_volume *volume, enum gz_gl_texels texels)
+{
+	const struct gz_gl_texel_format *format = gz_gl_texel_format(texels, volume->type);
+	const size_t bytes = gz_volume_voxel_count(volume) * format->bytes;
+	if (device->memory_told && bytes > (size_t)device->memory_max)
+		return GZ_ERR_NO_MEM;
+	gl->texels = texels;
 	gl->voxels = gz_gl_texture(GL_TEXTURE_3D);
 	glTexStorage3D(GL_TEXTURE_3D, 1, format->internal, volume->dims[0], volume->dims[1],
 		       volume->dims[2]);
-	result = gz_gl_device_errors(device);
+	enum gz_result result = gz_gl_device_errors(device);
 	if (result == GZ_OK) {
-		result = upload(volume, format);
+		result = texels == GZ_GL_TEXELS_PACKED ? upload_packed(volume)
+						       : upload_single(volume);
 		const enum gz_result errors = gz_gl_device_errors(device);
 		result = result == GZ_OK ? errors : result;
 	}
 	glBindTexture(GL_TEXTURE_3D, 0);
-	if (result != GZ_OK) {
-		gz_err(log,
-		       "no room on the graphics device for %zu MiB of voxels; take --backend cpu",
-		       gz_volume_voxel_count(volume) * sizeof(uint32_t) >> 20);
+	if (result != GZ_OK)
 		gz_gl_volume_free(gl);
-	}
 	return result;
+}
+
+enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+				 const struct gz_volume *volume)
+{
+	gz_gl_volume_free(gl);
+	if (!fits_edges(device, volume))
+		return GZ_ERR_UNSUPPORTED;
+	enum gz_result result = load(gl, device, volume, GZ_GL_TEXELS_PACKED);
+	if (result == GZ_ERR_NO_MEM && volume->type != GZ_VOXEL_F32)
+		result = load(gl, device, volume, GZ_GL_TEXELS_SINGLE);
+	return result;
+}
+
+void gz_gl_volume_lend(struct gz_gl_volume *gl, unsigned atlas)
+{
+	gz_gl_volume_free(gl);
+	gl->texels = GZ_GL_TEXELS_BRICKS;
+	gl->voxels = atlas;
 }
 
 void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells)
@@ -141,7 +155,7 @@ void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *
 void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 {
 	glBindImageTexture(GZ_GL_UNIT_VOXELS, gl->voxels, 0, GL_TRUE, 0, GL_READ_ONLY,
-			   formats[type].internal);
+			   gz_gl_texel_format(gl->texels, type)->internal);
 	glBindImageTexture(GZ_GL_UNIT_REACH, gl->reach, 0, GL_TRUE, 0, GL_READ_ONLY, GL_R8UI);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_REACH);
 	glBindTexture(GL_TEXTURE_3D, gl->reach);
@@ -151,7 +165,8 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 
 void gz_gl_volume_free(struct gz_gl_volume *gl)
 {
-	const GLuint textures[] = { gl->voxels, gl->reach };
+	const bool lent = gl->texels == GZ_GL_TEXELS_BRICKS;
+	const GLuint textures[] = { lent ? 0 : gl->voxels, gl->reach };
 	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
 	 */
 	if (gl->voxels || gl->reach)

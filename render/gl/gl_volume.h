@@ -5,25 +5,31 @@
 #ifndef GZ_RENDER_GL_GL_VOLUME_H
 #define GZ_RENDER_GL_GL_VOLUME_H
 
-#include "base/log.h"
 #include "base/result.h"
 #include "render/gl/gl_device.h"
+#include "render/gl/gl_texels.h"
 #include "render/macrocells.h"
 #include "render/volume/volume.h"
 
 /** Textures; names of OpenGL, 0: none. Zero-initialised holds nothing. */
 struct gz_gl_volume {
 	unsigned voxels, reach;
+	enum gz_gl_texels texels; /**< bricks: voxels is another's */
 };
 
 /**
- * Give the device a volume, in place of what was there.
+ * Give the device a whole volume in memory, in place of what was there: packed, or where that has
+ * no room in voxels of their own size. Nothing is logged.
  *
- * @retval GZ_ERR_UNSUPPORTED  an edge is beyond the device's 3D textures; logged with the limit
- * @retval GZ_ERR_NO_MEM       the device has no room for it; logged
+ * @retval GZ_ERR_UNSUPPORTED  an edge is beyond the device's 3D textures
+ * @retval GZ_ERR_NO_MEM       the device has no room for it
+ * @retval GZ_ERR_NO_DEVICE    the context is lost
  */
 enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
-				 const struct gz_volume *volume, const struct gz_log *log);
+				 const struct gz_volume *volume);
+
+/** The voxels are bricks in an atlas, which stays another's. In place of what was there. */
+void gz_gl_volume_lend(struct gz_gl_volume *gl, unsigned atlas);
 
 /** Give the device the reach of classified cells, always of the same volume. */
 void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "render/volume/brick_cut.h"
 #include "render/volume/brick_layout.h"
 #include "render/volume/halve.h"
 #include "render/volume/part_file.h"
@@ -23,46 +24,6 @@ struct writer {
 	uint64_t offset; /* where the next brick goes */
 	size_t done;     /* bricks */
 };
-
-static int clamp(int value, int last)
-{
-	return value < 0 ? 0 : value > last ? last : value;
-}
-
-/* A row of a brick: voxels from x - 1 on, the volume's ends repeated. */
-static void copy_row(const char *row, int from, int last, size_t size, char *out)
-{
-	for (int i = 0; i < GZ_BRICK_STORED_EDGE;) {
-		const int x = from + i;
-		int run = 1;
-		if (x >= 0 && x < last) {
-			run = last - x;
-			run = run < GZ_BRICK_STORED_EDGE - i ? run : GZ_BRICK_STORED_EDGE - i;
-		}
-		memcpy(out + (size_t)i * size, row + (size_t)clamp(x, last) * size,
-		       (size_t)run * size);
-		i += run;
-	}
-}
-
-static void copy_brick(const struct gz_volume *volume, const int brick[3], uint8_t *out)
-{
-	const size_t size = gz_voxel_size(volume->type);
-	const int *dims = volume->dims;
-	const int from[3] = { brick[0] * GZ_BRICK_EDGE - 1, brick[1] * GZ_BRICK_EDGE - 1,
-			      brick[2] * GZ_BRICK_EDGE - 1 };
-	char *to = (char *)out;
-	for (int k = 0; k < GZ_BRICK_STORED_EDGE; k++) {
-		const size_t z = (size_t)clamp(from[2] + k, dims[2] - 1);
-		for (int j = 0; j < GZ_BRICK_STORED_EDGE; j++) {
-			const size_t y = (size_t)clamp(from[1] + j, dims[1] - 1);
-			const size_t row = (z * (size_t)dims[1] + y) * (size_t)dims[0];
-			copy_row((const char *)volume->voxels + row * size, from[0], dims[0] - 1,
-				 size, to);
-			to += GZ_BRICK_STORED_EDGE * size;
-		}
-	}
-}
 
 /* Least and greatest of a box of a brick's voxels, `edge` a side. */
 #define DEFINE_BOX_RANGE(name, type)                                                      \
@@ -152,7 +113,7 @@ static enum gz_result write_brick(struct writer *writer, const struct gz_volume 
 {
 	const size_t number = gz_brick_number(&writer->layout, level, brick);
 	struct gz_brick_entry *entry = &writer->entries[number];
-	copy_brick(volume, brick, writer->voxels);
+	gz_brick_cut(volume, brick, writer->voxels);
 	find_range(writer, volume->type, level, brick, entry);
 	if (level == 0)
 		find_cells(writer, volume->type, number);

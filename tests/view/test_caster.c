@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/gl/context_egl.h"
@@ -135,6 +136,45 @@ static void auto_takes_the_cpu_where_no_gpu_is_and_says_nothing(void **state)
 	take_down(&all);
 }
 
+static void graphics_memory_too_small_for_the_volume_shows_bricks(void **state)
+{
+	(void)state;
+	struct set_up all;
+	struct gz_image whole = { 0 }, image = { 0 };
+	struct gz_frame_stats stats;
+	set_up(&all, "gl");
+	small_scene_free(&all.small);
+	all.small = small_scene_waves(160, 130, 120, GZ_VOXEL_U8);
+	all.scene.volume = all.small.volume;
+	assert_int_equal(gz_caster_start(&all.caster, &all.options, NULL, &all.scene, &all.log),
+			 GZ_OK);
+	assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan, false,
+					  &whole, &stats),
+			 GZ_OK);
+	gz_caster_free(&all.caster);
+	assert_string_equal(all.heard.text, "");
+	all.options.gl_memory_mib = 1;
+	assert_int_equal(gz_caster_start(&all.caster, &all.options, NULL, &all.scene, &all.log),
+			 GZ_OK);
+	do {
+		assert_int_equal(gz_caster_render(&all.caster, &all.scene.settings, &all.plan,
+						  false, &image, &stats),
+				 GZ_OK);
+	} while (stats.bricks_coming > 0);
+	assert_string_equal(all.caster.renderer->ops->name, "gl");
+	assert_non_null(strstr(all.heard.text, "bricks"));
+	long empty = 0, off = 0;
+	for (int i = 0; i < 64 * 48 * 4; i++) {
+		empty += i % 4 < 3 ? whole.pixels[i] : 0;
+		off += labs((long)whole.pixels[i] - image.pixels[i]);
+	}
+	if (4 * off > empty)
+		fail_msg("differs by %ld of %ld", off, empty);
+	gz_image_free(&whole);
+	gz_image_free(&image);
+	take_down(&all);
+}
+
 static void wrong_request_is_no_reason_to_take_the_cpu(void **state)
 {
 	(void)state;
@@ -158,6 +198,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(lost_context_costs_no_frame),
 		cmocka_unit_test(auto_takes_the_cpu_where_no_gpu_is_and_says_nothing),
+		cmocka_unit_test(graphics_memory_too_small_for_the_volume_shows_bricks),
 		cmocka_unit_test(wrong_request_is_no_reason_to_take_the_cpu),
 	};
 	struct gz_gl_context *context = NULL;

@@ -22,6 +22,9 @@ layout(std140, binding = 0) uniform Frame
 	vec4 region_places[GZ_PLAN_LAYERS_MAX]; // centre, half size, px
 	vec4 region_fades[GZ_PLAN_LAYERS_MAX];  // by how much per radius, 0 = not; 1 for an ellipse
 	uvec4 tile_points[TILE_POINTS];
+	uvec4 brick_table; // number of the level's first brick; from one to the next along y, z
+	vec4 brick_last;   // greatest number of a brick
+	vec4 brick_scales[BRICK_LEVELS]; // voxels of another level along an edge of one of this
 };
 
 layout(std430, binding = 1) buffer Points
