@@ -10,35 +10,43 @@
 #include "render/cpu/lattice.h"
 #include "render/workers.h"
 
-/** Points that the row filters make at a time: they write, and read, up to the next multiple. */
-#define GZ_ROW_CHUNK 8
+/** The most points that the row filters take at a time: what they read beyond the last point they
+ * need is less than twice that. They write what they are asked for and nothing else. */
+#define GZ_ROW_POINTS 16
+
+/** The longest row that is streamed, points: chosen, a square of the picture's. */
+#define GZ_ROW_STREAMED 256
 
 /**
  * The filters of the pyramid, row by row, for one instruction set. All give the same bits. Points
  * are 4 channels of 8 bits; docs/foveation.md has the formulas.
+ *
+ * `stream` writes past the caches where addresses allow it: for what is larger than they are and
+ * not read soon. Other threads see it after settle().
  */
 struct gz_row_filters {
 	const char *name; /**< as of gz_cast_kernels */
-	/** @p count points halfway between @p rows[1] and @p rows[2], Catmull-Rom. */
-	void (*cubic_between)(const uint32_t *const rows[4], uint32_t *out, int count);
-	/** @p count points of @p row, each followed by the one halfway to the next, Catmull-Rom:
-	 * one point before and two behind are read. */
-	void (*cubic_double)(const uint32_t *row, uint32_t *out, int count);
-	/** @p count points of @p row, each followed by the mean with the next, rounded down: one
-	 * point behind is read. */
-	void (*mean_double_row)(const uint32_t *row, uint32_t *out, int count);
-	/** @p count points halfway between two rows, rounded up, each followed by the mean of the
-	 * four around: one point behind is read. */
-	void (*mean_double)(const uint32_t *above, const uint32_t *below, uint32_t *out, int count);
+	/** Two rows of @p count points, Catmull-Rom: @p even from @p row of the coarser lattice,
+	 * whose first point it begins with, @p odd from halfway to the row behind. Of the coarser
+	 * lattice's rows one before and two behind are read, of its columns too. */
+	void (*double_cubic)(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			     int count, bool stream);
+	/** The same by means of neighbours: one row and one column behind are read. */
+	void (*double_mean)(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			    int count, bool stream);
 	/** @p count points of @p row, of which those number @p first, @p first + 2... are made anew
 	 *  from those 1 and 3 points away along both axes: the mean of Catmull-Rom along each,
-	 * rounded
-	 *  @p up or down. */
-	void (*cubic_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, bool up,
-			       uint32_t *out, int count);
+	 * rounded @p up or down. */
+	void (*quincunx_cubic)(uint32_t *row, ptrdiff_t stride, int first, bool up, int count);
 	/** The same by the mean of the four neighbours. */
-	void (*mean_quincunx)(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
-			      int count);
+	void (*quincunx_mean)(uint32_t *row, ptrdiff_t stride, int first, int count);
+	/** Whether all points of a rectangle are @p colour. */
+	bool (*all_are)(const uint32_t *points, ptrdiff_t stride, int columns, int rows,
+			uint32_t colour);
+	/** @p count points of one colour. */
+	void (*fill)(uint32_t colour, uint32_t *out, int count, bool stream);
+	/** After the last of what was streamed, before another thread may read it. */
+	void (*settle)(void);
 };
 
 extern const struct gz_row_filters gz_row_filters_portable;

@@ -5,29 +5,47 @@
  * The picture is cut into squares, and each is made in one go: its part of every lattice is filled
  * in a scratch buffer that stays in the cache, with a margin as wide as the filters of the next
  * finer lattice reach, and the last fill writes the picture. Points of margins are made more than
- * once, always the same, so squares need nothing of each other.
+ * once, always the same, so squares need nothing of each other. Lattices coarser than any tile that
+ * a square looks at are left alone, and so is all arithmetic where everything that the filters
+ * would read is of one colour: that colour is what they would make of it.
  */
 #include <string.h>
 
 #include "render/cpu/reconstruct.h"
 
 enum {
-	SQUARE = 128, /* px; chosen: margins are a fifth of the work, and the buffers fit a cache */
+	SQUARE_WIDTH = GZ_ROW_STREAMED, /* px; chosen: margins are a tenth of the work, and the
+					   buffers fit a */
+	SQUARE_HEIGHT = 128,            /* second-level cache */
 	BLOCK = GZ_BLOCK_EDGE,
 	REACH = 3, /* how far a filter of quincunx tiles looks along an axis */
-	/* A lattice's part of a square: half of it, and margins of 4 and 5 points and a half. */
-	PATCH_EDGE = SQUARE / 2 + 12,
-	PATCH_STRIDE = PATCH_EDGE + REACH + 1 + 2 * GZ_ROW_CHUNK,
-	PATCH_ROWS = PATCH_EDGE + 2 * REACH,
-	ROW_ROOM = SQUARE + 2 * GZ_ROW_CHUNK, /* points of a row that is made */
+	/* A lattice's part of a square: half of it, and at both ends what the filters of two finer
+	 * lattices reach, a start rounded down to even each time. */
+	PATCH_WIDTH = SQUARE_WIDTH / 2 + 4 + 2 * (REACH + 1),
+	PATCH_HEIGHT = SQUARE_HEIGHT / 2 + 4 + 2 * (REACH + 1),
+	LEFT = 16, /* room for points beyond the rim, and aligned */
+	PATCH_STRIDE = LEFT + (PATCH_WIDTH + REACH + 2 * GZ_ROW_POINTS + 15) / 16 * 16,
+	PATCH_ROWS = PATCH_HEIGHT + 2 * REACH + 1,
+	FLAT_WIDTH = 2 * GZ_ROW_POINTS, /* px whose source is looked at together for one colour */
+	/* Pictures of more bytes go past the caches. Chosen: beyond a processor's own cache; up to
+	 * the size of a shared one it is measured to be faster too, with a copy of the picture
+	 * behind it (docs/results.md). */
+	STREAM_BYTES = 4 << 20,
 };
 
 /* Columns [x0, x1) and rows [y0, y1) of a lattice. */
-struct patch {
+struct range {
 	int x0, y0, x1, y1;
-	int columns, rows; /* of the whole lattice */
+};
+
+/* A part of a lattice. */
+struct patch {
+	struct range all;    /* what is there before quincunx tiles are filled */
+	struct range needed; /* what finer lattices look at */
+	int columns, rows;   /* of the whole lattice */
 	ptrdiff_t stride;
-	uint32_t *first; /* point (x0, y0) */
+	uint32_t *first;              /* point (all.x0, all.y0) */
+	bool cast, quincunx, coarser; /* what its blocks ask for */
 };
 
 /* What is to be done with a run of blocks. */
@@ -41,13 +59,19 @@ struct square {
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	const struct gz_row_filters *filters;
+	bool stream;
 	struct patch patches[GZ_PLAN_LAYERS_MAX];
-	uint32_t row[ROW_ROOM], between[ROW_ROOM]; /* rows in the making */
+	uint32_t unused_row[SQUARE_WIDTH];
 };
 
 static uint32_t *at(const struct patch *patch, int x, int y)
 {
-	return patch->first + (y - patch->y0) * patch->stride + (x - patch->x0);
+	return patch->first + (y - patch->all.y0) * patch->stride + (x - patch->all.x0);
+}
+
+static int least(int a, int b)
+{
+	return a < b ? a : b;
 }
 
 static enum fill fill_of_block(const struct square *square, int level, int x, int y)
@@ -59,74 +83,96 @@ static enum fill fill_of_block(const struct square *square, int level, int x, in
 	return tile == 2 * level + 1 ? FILL_QUINCUNX : FILL_NONE;
 }
 
-/* The end of the run of blocks that begins at (x, y) and asks for the same. */
-static int run_end(const struct square *square, int level, int x, int y, enum fill *out_fill)
+static int block_end(int x, int end)
 {
-	const int x1 = square->patches[level].x1;
+	return least(x - x % BLOCK + BLOCK, end);
+}
+
+/* The end of the run of blocks that begins at (x, y) and asks for the same, `last` at most. */
+static int run_end(const struct square *square, int level, int x, int y, int last,
+		   enum fill *out_fill)
+{
 	*out_fill = fill_of_block(square, level, x, y);
 	int end = x - x % BLOCK + BLOCK;
-	while (end < x1 && fill_of_block(square, level, end, y) == *out_fill)
+	while (end < last && fill_of_block(square, level, end, y) == *out_fill)
 		end += BLOCK;
-	return end < x1 ? end : x1;
+	return least(end, last);
 }
 
-/* Points [x, end) of row y from the coarser lattice. */
-static void fill_row(struct square *square, int level, int x, int end, int y)
-{
-	const struct patch *coarse = &square->patches[level + 1];
-	const uint32_t *row = at(coarse, x / 2, y / 2);
-	const int count = (end - x + 1) / 2;
-	/* What is written too much in a patch is written again by the next run, but around a run of
-	 * the picture lies what was cast. */
-	uint32_t *to = at(&square->patches[level], x, y);
-	uint32_t *out = level > 0 || (end - x) % (2 * GZ_ROW_CHUNK) == 0 ? to : square->row;
-	if (square->plan->filter == GZ_FILTER_BILINEAR) {
-		if (y % 2 == 0)
-			square->filters->mean_double_row(row, out, count);
-		else
-			square->filters->mean_double(row, row + coarse->stride, out, count);
-	} else if (y % 2 == 0) {
-		square->filters->cubic_double(row, out, count);
-	} else {
-		const uint32_t *const rows[4] = {
-			row - 1 - coarse->stride,
-			row - 1,
-			row - 1 + coarse->stride,
-			row - 1 + 2 * coarse->stride,
-		};
-		square->filters->cubic_between(rows, square->between, count + REACH);
-		square->filters->cubic_double(square->between + 1, out, count);
-	}
-	if (out != to)
-		memcpy(to, out, (size_t)(end - x) * 4);
-}
-
-static void take_cast_row(struct square *square, int level, int x, int end, int y)
-{
-	const struct gz_lattice *lattice = &square->lattices->layers[level];
-	memcpy(at(&square->patches[level], x, y),
-	       lattice->points + (size_t)y * lattice->stride + (size_t)x, (size_t)(end - x) * 4);
-}
-
-/* What was cast, and what comes from the coarser lattice. Whether there are quincunx tiles. */
-static bool fill_patch(struct square *square, int level)
+/* Rows y and y + 1, points [x, end), from the coarser lattice; of rows before `bottom`. */
+static void fill_rows(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *patch = &square->patches[level];
-	bool quincunx = false;
-	for (int y = patch->y0, bottom; y < patch->y1; y = bottom) {
-		bottom = y - y % BLOCK + BLOCK < patch->y1 ? y - y % BLOCK + BLOCK : patch->y1;
-		enum fill fill;
-		for (int x = patch->x0, end; x < patch->x1; x = end) {
-			end = run_end(square, level, x, y, &fill);
-			quincunx |= fill == FILL_QUINCUNX;
+	const struct patch *coarse = &square->patches[level + 1];
+	const uint32_t *row = at(coarse, x / 2, y / 2);
+	uint32_t *even = at(patch, x, y);
+	uint32_t *odd = y + 1 < bottom ? even + patch->stride : square->unused_row;
+	const bool stream = level == 0 && square->stream;
+	if (square->plan->filter == GZ_FILTER_BILINEAR)
+		square->filters->double_mean(row, coarse->stride, even, odd, end - x, stream);
+	else
+		square->filters->double_cubic(row, coarse->stride, even, odd, end - x, stream);
+}
+
+/* Whether all that filters read for points [x, end) of rows [y, bottom) is of one colour. */
+static bool is_flat(const struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *coarse = &square->patches[level + 1];
+	const int left = x / 2 - 1, right = (end - 1) / 2 + 3;
+	const int top = y / 2 - 1, below = (bottom - 1) / 2 + 3;
+	return square->filters->all_are(at(coarse, left, top), coarse->stride, right - left,
+					below - top, *at(coarse, x / 2, y / 2));
+}
+
+/* Points [x, end) of rows [y, bottom), as many as a block has, from the coarser lattice. */
+static void fill_run(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *coarse = &square->patches[level + 1];
+	const bool stream = level == 0 && square->stream;
+	for (int to; x < end; x = to) {
+		to = least(x + FLAT_WIDTH, end);
+		const bool flat = is_flat(square, level, x, to, y, bottom);
+		const uint32_t colour = *at(coarse, x / 2, y / 2);
+		for (int next = to; next < end; to = next) {
+			next = least(to + FLAT_WIDTH, end);
+			if (is_flat(square, level, to, next, y, bottom) != flat ||
+			    (flat && *at(coarse, to / 2, y / 2) != colour))
+				break;
+		}
+		if (flat)
 			for (int row = y; row < bottom; row++)
-				if (fill == FILL_COARSER)
-					fill_row(square, level, x, end, row);
-				else if (level > 0) /* level 0 is cast into the picture */
-					take_cast_row(square, level, x, end, row);
+				square->filters->fill(colour, at(&square->patches[level], x, row),
+						      to - x, stream);
+		else
+			for (int row = y; row < bottom; row += 2)
+				fill_rows(square, level, x, to, row, bottom);
+	}
+}
+
+static void take_cast_rows(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct gz_lattice *lattice = &square->lattices->layers[level];
+	for (int row = y; row < bottom; row++)
+		memcpy(at(&square->patches[level], x, row),
+		       lattice->points + (size_t)row * lattice->stride + (size_t)x,
+		       (size_t)(end - x) * 4);
+}
+
+/* What was cast, and what comes from the coarser lattice. */
+static void fill_patch(struct square *square, int level)
+{
+	const struct range *all = &square->patches[level].all;
+	for (int y = all->y0, bottom; y < all->y1; y = bottom) {
+		bottom = block_end(y, all->y1);
+		enum fill fill;
+		for (int x = all->x0, end; x < all->x1; x = end) {
+			end = run_end(square, level, x, y, all->x1, &fill);
+			if (fill == FILL_COARSER)
+				fill_run(square, level, x, end, y, bottom);
+			else if (level > 0) /* level 0 is cast into the picture */
+				take_cast_rows(square, level, x, end, y, bottom);
 		}
 	}
-	return quincunx;
 }
 
 /* Index of the point that stands for number i of a lattice's count: mirrored about both ends, which
@@ -143,44 +189,45 @@ static int mirrored(int i, int count)
 /* Give a patch that touches the lattice's rim the points beyond. */
 static void extend_beyond_rim(const struct patch *patch)
 {
+	const struct range *all = &patch->all;
 	for (int i = 1; i <= REACH; i++)
-		for (int y = patch->y0; y < patch->y1; y++) {
-			const int right = patch->x1 - 1 + i;
-			if (patch->x0 == 0)
+		for (int y = all->y0; y < all->y1; y++) {
+			const int right = all->x1 - 1 + i;
+			if (all->x0 == 0)
 				memcpy(at(patch, -i, y), at(patch, mirrored(-i, patch->columns), y),
 				       4);
-			if (patch->x1 == patch->columns)
+			if (all->x1 == patch->columns)
 				memcpy(at(patch, right, y),
 				       at(patch, mirrored(right, patch->columns), y), 4);
 		}
-	const size_t row_bytes = (size_t)(patch->x1 - patch->x0 + 2 * REACH) * 4;
+	const size_t row_bytes = (size_t)(all->x1 - all->x0 + 2 * REACH) * 4;
 	for (int i = 1; i <= REACH; i++) {
-		if (patch->y0 == 0)
-			memcpy(at(patch, patch->x0 - REACH, -i),
-			       at(patch, patch->x0 - REACH, mirrored(-i, patch->rows)), row_bytes);
-		if (patch->y1 == patch->rows)
-			memcpy(at(patch, patch->x0 - REACH, patch->y1 - 1 + i),
-			       at(patch, patch->x0 - REACH,
-				  mirrored(patch->y1 - 1 + i, patch->rows)),
+		if (all->y0 == 0)
+			memcpy(at(patch, all->x0 - REACH, -i),
+			       at(patch, all->x0 - REACH, mirrored(-i, patch->rows)), row_bytes);
+		if (all->y1 == patch->rows)
+			memcpy(at(patch, all->x0 - REACH, all->y1 - 1 + i),
+			       at(patch, all->x0 - REACH, mirrored(all->y1 - 1 + i, patch->rows)),
 			       row_bytes);
 	}
 }
 
-/* A lattice of one column or one row has neighbours along the other axis only. */
+/* A lattice of one column or one row has neighbours along the other axis only: it is filled as odd
+ * rows are, from points that lie along that axis. */
 static void fill_quincunx_line(struct square *square, int level, int x, int end, int y)
 {
 	const struct patch *patch = &square->patches[level];
 	const ptrdiff_t step = patch->columns == 1 ? patch->stride : 1;
 	for (x += (x + y) % 2 == 0; x < end; x += 2) {
 		uint32_t *point = at(patch, x, y);
-		if (square->plan->filter == GZ_FILTER_BILINEAR) {
-			square->filters->mean_double(point - step, point + step, square->row, 1);
-		} else {
-			const uint32_t *const points[4] = { point - 3 * step, point - step,
-							    point + step, point + 3 * step };
-			square->filters->cubic_between(points, square->row, 1);
-		}
-		*point = square->row[0];
+		uint32_t made;
+		if (square->plan->filter == GZ_FILTER_BILINEAR)
+			square->filters->double_mean(point - step, 2 * step, square->unused_row,
+						     &made, 1, false);
+		else
+			square->filters->double_cubic(point - step, 2 * step, square->unused_row,
+						      &made, 1, false);
+		*point = made;
 	}
 }
 
@@ -189,34 +236,24 @@ static void fill_quincunx_row(struct square *square, int level, int x, int end, 
 	const struct patch *patch = &square->patches[level];
 	uint32_t *row = at(patch, x, y);
 	const int first = (x + y) % 2 == 0;
-	if (patch->columns == 1 || patch->rows == 1) {
+	if (patch->columns == 1 || patch->rows == 1)
 		fill_quincunx_line(square, level, x, end, y);
-		return;
-	}
-	if (square->plan->filter == GZ_FILTER_BILINEAR)
-		square->filters->mean_quincunx(row, patch->stride, first, square->row, end - x);
+	else if (square->plan->filter == GZ_FILTER_BILINEAR)
+		square->filters->quincunx_mean(row, patch->stride, first, end - x);
 	else
-		square->filters->cubic_quincunx(row, patch->stride, first, y % 2 != 0, square->row,
-						end - x);
-	memcpy(row, square->row, (size_t)(end - x) * 4);
+		square->filters->quincunx_cubic(row, patch->stride, first, y % 2 != 0, end - x);
 }
 
-/* The points between those of quincunx tiles, as far from the patch's own rim as the filter looks.
- */
+/* The points between those of quincunx tiles. */
 static void fill_quincunx(struct square *square, int level)
 {
-	const struct patch *patch = &square->patches[level];
-	const int top = patch->y0 == 0 ? 0 : patch->y0 + REACH;
-	const int bottom = patch->y1 == patch->rows ? patch->y1 : patch->y1 - REACH;
-	const int left = patch->x0 == 0 ? 0 : patch->x0 + REACH;
-	const int right = patch->x1 == patch->columns ? patch->x1 : patch->x1 - REACH;
+	const struct range *needed = &square->patches[level].needed;
 	enum fill fill;
-	for (int y = top, below; y < bottom; y = below) {
-		below = y - y % BLOCK + BLOCK < bottom ? y - y % BLOCK + BLOCK : bottom;
-		for (int x = left, end; x < right; x = end) {
-			end = run_end(square, level, x, y, &fill);
-			end = end < right ? end : right;
-			for (int row = y; row < below && fill == FILL_QUINCUNX; row++)
+	for (int y = needed->y0, bottom; y < needed->y1; y = bottom) {
+		bottom = block_end(y, needed->y1);
+		for (int x = needed->x0, end; x < needed->x1; x = end) {
+			end = run_end(square, level, x, y, needed->x1, &fill);
+			for (int row = y; row < bottom && fill == FILL_QUINCUNX; row++)
 				fill_quincunx_row(square, level, x, end, row);
 		}
 	}
@@ -225,72 +262,124 @@ static void fill_quincunx(struct square *square, int level)
 static void fill_level(struct square *square, int level)
 {
 	const struct patch *patch = &square->patches[level];
-	const bool quincunx = fill_patch(square, level);
+	fill_patch(square, level);
 	if (level == 0)
 		return;
-	const bool at_rim = patch->x0 == 0 || patch->y0 == 0 || patch->x1 == patch->columns ||
-			    patch->y1 == patch->rows;
+	const bool at_rim = patch->all.x0 == 0 || patch->all.y0 == 0 ||
+			    patch->all.x1 == patch->columns || patch->all.y1 == patch->rows;
 	if (at_rim)
 		extend_beyond_rim(patch);
-	if (!quincunx)
+	if (!patch->quincunx)
 		return;
 	fill_quincunx(square, level);
 	if (at_rim)
 		extend_beyond_rim(patch);
 }
 
-static bool all_was_cast(const struct gz_lattices *lattices, const struct patch *picture)
+/* Note what the blocks of a range ask for. */
+static void survey(const struct square *square, int level, const struct range *range,
+		   struct patch *patch)
 {
-	for (int y = picture->y0; y < picture->y1; y += BLOCK)
-		for (int x = picture->x0; x < picture->x1; x += BLOCK)
-			if (gz_lattices_block(lattices, x / BLOCK, y / BLOCK) > 0)
-				return false;
-	return true;
+	enum fill fill;
+	for (int y = range->y0; y < range->y1; y = block_end(y, range->y1))
+		for (int x = range->x0, end; x < range->x1; x = end) {
+			end = run_end(square, level, x, y, range->x1, &fill);
+			patch->cast |= fill == FILL_NONE;
+			patch->quincunx |= fill == FILL_QUINCUNX;
+			patch->coarser |= fill == FILL_COARSER;
+		}
 }
 
 /* What columns or rows [*from, *to) of a lattice take from those of the next coarser one: one
- * before and two behind for the filter, and as many more as quincunx tiles look at. Starts are
- * even, so that pairs are whole. */
+ * before and two behind. Starts are even, so that pairs are whole. */
 static void halve_range(int *from, int *to, int count)
 {
-	*from = *from / 2 - 1 - REACH;
+	*from = *from / 2 - 1;
 	*from = *from > 0 ? *from - *from % 2 : 0;
-	*to = (*to - 1) / 2 + 3 + REACH;
-	*to = *to < count ? *to : count;
+	*to = least((*to - 1) / 2 + 3, count);
+}
+
+/* As far as quincunx tiles look. */
+static void widen_range(int *from, int *to, int count)
+{
+	*from = *from > REACH ? *from - REACH - 1 : 0;
+	*to = least(*to + REACH, count);
+}
+
+static void lay_out_coarser(struct square *square, int level, uint32_t *memory)
+{
+	const struct gz_lattice *lattice = &square->lattices->layers[level];
+	struct patch *patch = &square->patches[level];
+	*patch = (struct patch) {
+		.needed = square->patches[level - 1].all,
+		.columns = lattice->columns,
+		.rows = lattice->rows,
+		.stride = PATCH_STRIDE,
+		.first = memory + (ptrdiff_t)REACH * PATCH_STRIDE + LEFT,
+	};
+	halve_range(&patch->needed.x0, &patch->needed.x1, patch->columns);
+	halve_range(&patch->needed.y0, &patch->needed.y1, patch->rows);
+	survey(square, level, &patch->needed, patch);
+	patch->all = patch->needed;
+	if (!patch->quincunx)
+		return;
+	widen_range(&patch->all.x0, &patch->all.x1, patch->columns);
+	widen_range(&patch->all.y0, &patch->all.y1, patch->rows);
+	survey(square, level, &patch->all, patch);
+}
+
+static void lay_out_picture(struct square *square, int column, int row)
+{
+	const struct gz_lattice *picture = &square->lattices->layers[0];
+	struct patch *patch = &square->patches[0];
+	patch->all = (struct range) {
+		column * SQUARE_WIDTH,
+		row * SQUARE_HEIGHT,
+		least((column + 1) * SQUARE_WIDTH, picture->columns),
+		least((row + 1) * SQUARE_HEIGHT, picture->rows),
+	};
+	patch->needed = patch->all;
+	patch->columns = picture->columns;
+	patch->rows = picture->rows;
+	patch->stride = (ptrdiff_t)picture->stride;
+	patch->first = picture->points + patch->all.y0 * patch->stride + patch->all.x0;
+	survey(square, 0, &patch->all, patch);
+}
+
+/* The coarsest lattice on which all that the square needs was cast, or the coarsest of all. */
+static int lay_out(struct square *square, int column, int row,
+		   uint32_t memory[][PATCH_ROWS * PATCH_STRIDE])
+{
+	lay_out_picture(square, column, row);
+	int level = 0;
+	while (square->patches[level].coarser && level + 1 < square->lattices->count) {
+		level++;
+		lay_out_coarser(square, level, memory[level - 1]);
+	}
+	return level;
 }
 
 void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
 			   const struct gz_row_filters *filters, int column, int row)
 {
-	uint32_t memory[GZ_PLAN_LAYERS_MAX - 1][PATCH_ROWS][PATCH_STRIDE];
-	struct square square = { .plan = plan, .lattices = lattices, .filters = filters };
-	const struct gz_lattice *picture = &lattices->layers[0];
-	struct patch *patch = &square.patches[0];
-	patch->x0 = column * SQUARE;
-	patch->y0 = row * SQUARE;
-	patch->x1 = patch->x0 + SQUARE < picture->columns ? patch->x0 + SQUARE : picture->columns;
-	patch->y1 = patch->y0 + SQUARE < picture->rows ? patch->y0 + SQUARE : picture->rows;
-	patch->stride = (ptrdiff_t)picture->stride;
-	patch->first = picture->points + patch->y0 * patch->stride + patch->x0;
-	if (all_was_cast(lattices, patch))
+	uint32_t memory[GZ_PLAN_LAYERS_MAX - 1][PATCH_ROWS * PATCH_STRIDE];
+	struct square square = {
+		.plan = plan,
+		.lattices = lattices,
+		.filters = filters,
+		.stream = (size_t)plan->width * (size_t)plan->height * 4 > STREAM_BYTES,
+	};
+	const int coarsest = lay_out(&square, column, row, memory);
+	if (coarsest == 0)
 		return;
-	for (int level = 1; level < lattices->count; level++) {
-		const struct gz_lattice *lattice = &lattices->layers[level];
-		struct patch *coarse = &square.patches[level];
-		*coarse = square.patches[level - 1];
-		coarse->columns = lattice->columns;
-		coarse->rows = lattice->rows;
-		halve_range(&coarse->x0, &coarse->x1, coarse->columns);
-		halve_range(&coarse->y0, &coarse->y1, coarse->rows);
-		coarse->stride = PATCH_STRIDE;
-		coarse->first = &memory[level - 1][REACH][REACH + 1];
-	}
-	for (int level = lattices->count - 1; level >= 0; level--)
+	for (int level = coarsest; level >= 0; level--)
 		fill_level(&square, level);
+	if (square.stream)
+		filters->settle();
 }
 
 void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows)
 {
-	*out_columns = (plan->width + SQUARE - 1) / SQUARE;
-	*out_rows = (plan->height + SQUARE - 1) / SQUARE;
+	*out_columns = (plan->width + SQUARE_WIDTH - 1) / SQUARE_WIDTH;
+	*out_rows = (plan->height + SQUARE_HEIGHT - 1) / SQUARE_HEIGHT;
 }

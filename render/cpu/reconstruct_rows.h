@@ -1,184 +1,279 @@
 /*
  * The row filters of the pyramid (docs/foveation.md gives their formulas). Included by one file an
- * instruction set and compiled with its flags: loops of constant length over whole numbers, which
- * the compiler turns into vectors and which give the same bits everywhere.
+ * instruction set, behind that set's vocabulary (points_*.h): whole numbers, which give the same
+ * bits everywhere.
  */
 #include "render/cpu/reconstruct.h"
 
-#include <stdbool.h>
 #include <string.h>
 
-/* Points and bytes at a time. */
-enum { CHUNK = GZ_ROW_CHUNK, BYTES = 4 * CHUNK };
-
-static inline const uint8_t *bytes_of(const uint32_t *points)
-{
-	return (const uint8_t *)points;
-}
-
-static inline uint8_t least(uint8_t a, uint8_t b)
-{
-	return a < b ? a : b;
-}
-
-static inline uint8_t greatest(uint8_t a, uint8_t b)
-{
-	return a > b ? a : b;
-}
-
-/* (a + b + 1) / 2 */
-static inline uint8_t mean_of_2(uint8_t a, uint8_t b)
-{
-	return (uint8_t)((a + b + 1) >> 1);
-}
-
-/* (a + b + c + d + 2) / 4: the mean of two means, less what both have rounded up too often. All in
- * 8 bits, of which a register holds most. */
-static inline uint8_t mean_of_4(uint8_t a, uint8_t b, uint8_t c, uint8_t d)
-{
-	const uint8_t first = mean_of_2(a, b), second = mean_of_2(c, d);
-	const uint8_t odd = (uint8_t)(((a ^ b) | (c ^ d)) & (first ^ second) & 1);
-	return (uint8_t)(mean_of_2(first, second) - odd);
-}
+_Static_assert(POINTS <= GZ_ROW_POINTS, "reads go no farther than callers are told");
 
 /* (a + b) / 2 */
-static inline uint8_t mean_of_2_down(uint8_t a, uint8_t b)
+SIMD vp mean_down(vp a, vp b)
 {
-	return (uint8_t)(mean_of_2(a, b) - ((a ^ b) & 1));
+	return vp_not(vp_mean(vp_not(a), vp_not(b)));
+}
+
+/* (a + b + c + d + 2) / 4: the mean of two means, less what both have rounded up too often. */
+SIMD vp mean_of_4(vp a, vp b, vp c, vp d)
+{
+	const vp first = vp_mean(a, b), second = vp_mean(c, d);
+	const vp rounded = vp_or(vp_xor(a, b), vp_xor(c, d));
+	const vp odd = vp_and(vp_and(rounded, vp_xor(first, second)), vp_set(0x01010101));
+	return vp_but(vp_mean(first, second), odd);
 }
 
 /* Catmull-Rom at 1/2 between b and c, with a before and d behind; never outside of [b, c]. With m
  * and n the means of b, c and of a, d it is m and an eighth of m - n, which takes 9 bits: half of
- * it above -256 takes 8. */
-static inline uint8_t cubic(uint8_t a, uint8_t b, uint8_t c, uint8_t d)
+ * it above -256 takes 8. Where b + c is even that half is raised by 2, so that its quarter rounds;
+ * what it loses at 255 lies outside of [b, c]. */
+SIMD vp cubic(vp a, vp b, vp c, vp d)
 {
-	const uint8_t m = mean_of_2(b, c), n = mean_of_2(a, d);
-	const uint8_t odd = (b ^ c) & 1; /* m was rounded up */
-	const uint8_t quarter = (uint8_t)(mean_of_2(m, (uint8_t)~n) >> 1);
-	const uint8_t eighth = mean_of_2((uint8_t)(greatest(quarter, odd) - odd), 0);
-	const uint8_t up = (uint8_t)(greatest(eighth, 32) - 32);
-	const uint8_t down = (uint8_t)(32 - least(eighth, 32));
-	const uint8_t room_up = (uint8_t)(greatest(b, c) - m);
-	const uint8_t room_down = (uint8_t)(m - least(b, c));
-	return (uint8_t)(m + least(up, room_up) - least(down, room_down));
+	const vp m = vp_mean(b, c), n = vp_mean(a, d);
+	const vp raise = vp_where_same(b, c, vp_set(0x01010101));
+	const vp half = vp_add(vp_add(vp_mean(m, vp_not(n)), raise), raise);
+	const vp eighth = vp_quarter(half), none = vp_set(0x20202020);
+	const vp value = vp_but(vp_add(m, vp_but(eighth, none)), vp_but(none, eighth));
+	return vp_least(vp_greatest(value, vp_least(b, c)), vp_greatest(b, c));
 }
 
-static void cubic_between(const uint32_t *const rows[4], uint32_t *out, int count)
+/* Where a filled row goes. */
+enum store { STORE_CACHED, STORE_STREAMED };
+
+SIMD void store_pair(uint32_t *out, vp even, vp odd, enum store store)
 {
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *a = bytes_of(rows[0] + i), *b = bytes_of(rows[1] + i);
-		const uint8_t *c = bytes_of(rows[2] + i), *d = bytes_of(rows[3] + i);
-		uint8_t *to = (uint8_t *)(out + i);
-		uint8_t values[BYTES];
-		for (int k = 0; k < BYTES; k++)
-			values[k] = cubic(a[k], b[k], c[k], d[k]);
-		memcpy(to, values, BYTES);
+	vp first, second;
+	vp_interleave(even, odd, &first, &second);
+	if (store == STORE_STREAMED) {
+		vp_stream(out, first);
+		vp_stream(out + POINTS, second);
+	} else {
+		vp_store(out, first);
+		vp_store(out + POINTS, second);
 	}
 }
 
-/* Compilers do not find the shuffles by themselves. */
-typedef uint32_t points_8 __attribute__((vector_size(32)));
-
-static inline void interleave(const uint32_t *even, const uint32_t *odd, uint32_t *out)
+/* The same for the last points of a row, less than 2 * POINTS. */
+SIMD void store_rest(uint32_t *out, vp even, vp odd, int count)
 {
-	for (int k = 0; k < CHUNK; k += 8) {
-		points_8 a, b;
-		memcpy(&a, even + k, sizeof a);
-		memcpy(&b, odd + k, sizeof b);
-		const points_8 low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
-		const points_8 high = __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
-		memcpy(out + 2 * k, &low, sizeof low);
-		memcpy(out + 2 * k + 8, &high, sizeof high);
+	uint32_t points[2 * POINTS];
+	store_pair(points, even, odd, STORE_CACHED);
+	memcpy(out, points, (size_t)count * sizeof *out);
+}
+
+/* The points that columns of the coarser lattice leave to two rows of the finer one: POINTS of the
+ * lattice's own, and those behind each. */
+struct two_rows {
+	vp even, even_next, odd, odd_next;
+};
+
+/* Points of one row of the coarser lattice and the one halfway to the next. */
+struct source {
+	vp row, between;
+};
+
+SIMD struct source cubic_source(const uint32_t *row, ptrdiff_t stride)
+{
+	const vp here = vp_load(row);
+	return (struct source) {
+		here,
+		cubic(vp_load(row - stride), here, vp_load(row + stride),
+		      vp_load(row + 2 * stride)),
+	};
+}
+
+/* Of points from one before on. */
+SIMD vp cubic_behind(vp points, vp next)
+{
+	return cubic(points, vp_from(1, points, next), vp_from(2, points, next),
+		     vp_from(3, points, next));
+}
+
+SIMD struct two_rows cubic_rows(const struct source *here, const struct source *next)
+{
+	return (struct two_rows) {
+		vp_from(1, here->row, next->row),
+		cubic_behind(here->row, next->row),
+		vp_from(1, here->between, next->between),
+		cubic_behind(here->between, next->between),
+	};
+}
+
+SIMD void double_cubic_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			  int count, enum store store)
+{
+	row--;
+	struct source here = cubic_source(row, stride);
+	for (; count > 0; count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
+		row += POINTS;
+		const struct source next = cubic_source(row, stride);
+		const struct two_rows made = cubic_rows(&here, &next);
+		here = next;
+		if (count < 2 * POINTS) {
+			store_rest(even, made.even, made.even_next, count);
+			store_rest(odd, made.odd, made.odd_next, count);
+			return;
+		}
+		store_pair(even, made.even, made.even_next, store);
+		store_pair(odd, made.odd, made.odd_next, store);
 	}
 }
 
-static void cubic_double(const uint32_t *row, uint32_t *out, int count)
+SIMD void double_mean_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			 int count, enum store store)
 {
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *b = bytes_of(row + i);
-		uint32_t odd[CHUNK];
-		uint8_t values[BYTES];
-		for (int k = 0; k < BYTES; k++)
-			values[k] = cubic(b[k - 4], b[k], b[k + 4], b[k + 8]);
-		memcpy(odd, values, sizeof odd);
-		interleave(row + i, odd, out + 2 * (ptrdiff_t)i);
+	for (; count > 0; count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
+		const vp a = vp_load(row), b = vp_load(row + 1);
+		const vp c = vp_load(row + stride), d = vp_load(row + stride + 1);
+		const vp across = mean_down(a, b), down = vp_mean(a, c);
+		const vp all = mean_of_4(a, b, c, d);
+		row += POINTS;
+		if (count < 2 * POINTS) {
+			store_rest(even, a, across, count);
+			store_rest(odd, down, all, count);
+			return;
+		}
+		store_pair(even, a, across, store);
+		store_pair(odd, down, all, store);
 	}
 }
 
-static void mean_double_row(const uint32_t *row, uint32_t *out, int count)
+/* Points before the first that a wide store past the caches may begin with. */
+SIMD int before_aligned(const uint32_t *out)
 {
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *a = bytes_of(row + i);
-		uint8_t values[BYTES];
-		uint32_t odd[CHUNK];
-		for (int k = 0; k < BYTES; k++)
-			values[k] = mean_of_2_down(a[k], a[k + 4]);
-		memcpy(odd, values, sizeof odd);
-		interleave(row + i, odd, out + 2 * (ptrdiff_t)i);
+	return (int)(-((uintptr_t)out / sizeof *out) % POINTS);
+}
+
+static void stream_row(const uint32_t *points, uint32_t *out, int count)
+{
+	int x = before_aligned(out);
+	if (x > count)
+		x = count;
+	memcpy(out, points, (size_t)x * sizeof *out);
+	for (; x + POINTS <= count; x += POINTS)
+		vp_stream(out + x, vp_load(points + x));
+	memcpy(out + x, points + x, (size_t)(count - x) * sizeof *out);
+}
+
+typedef void row_filter(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			int count, enum store store);
+
+/* Straight to where the rows go, or by way of the first cache where wide stores do not fit. */
+SIMD void double_to(row_filter *filter, const uint32_t *row, ptrdiff_t stride, uint32_t *even,
+		    uint32_t *odd, int count, bool stream)
+{
+	if (!stream) {
+		filter(row, stride, even, odd, count, STORE_CACHED);
+	} else if (before_aligned(even) == 0 && before_aligned(odd) == 0) {
+		filter(row, stride, even, odd, count, STORE_STREAMED);
+	} else {
+		uint32_t rows[2][GZ_ROW_STREAMED];
+		filter(row, stride, rows[0], rows[1], count, STORE_CACHED);
+		stream_row(rows[0], even, count);
+		stream_row(rows[1], odd, count);
 	}
 }
 
-static void mean_double(const uint32_t *above, const uint32_t *below, uint32_t *out, int count)
+static void double_cubic(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			 int count, bool stream)
 {
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *a = bytes_of(above + i), *b = bytes_of(below + i);
-		uint8_t even_values[BYTES], odd_values[BYTES];
-		uint32_t even[CHUNK], odd[CHUNK];
-		for (int k = 0; k < BYTES; k++)
-			even_values[k] = mean_of_2(a[k], b[k]);
-		for (int k = 0; k < BYTES; k++)
-			odd_values[k] = mean_of_4(a[k], a[k + 4], b[k], b[k + 4]);
-		memcpy(even, even_values, sizeof even);
-		memcpy(odd, odd_values, sizeof odd);
-		interleave(even, odd, out + 2 * (ptrdiff_t)i);
-	}
+	double_to(double_cubic_to, row, stride, even, odd, count, stream);
+}
+
+static void double_mean(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
+			int count, bool stream)
+{
+	double_to(double_mean_to, row, stride, even, odd, count, stream);
 }
 
 /* The points of a row whose column is odd (first = 1) or even (first = 0) are put in. */
-static inline void put_every_second(const uint8_t values[BYTES], const uint32_t *row, int first,
-				    uint32_t *out)
+SIMD void put_every_second(uint32_t *row, vp made, int first, int count)
 {
-	uint32_t made[CHUNK];
-	memcpy(made, values, sizeof made);
-	for (int k = 0; k < CHUNK; k++)
-		out[k] = ((k & 1) == first) ? made[k] : row[k];
+	const vp was = vp_load(row);
+	const vp is = first ? vp_alternate(was, made) : vp_alternate(made, was);
+	if (count >= POINTS) {
+		vp_store(row, is);
+		return;
+	}
+	uint32_t points[POINTS];
+	vp_store(points, is);
+	memcpy(row, points, (size_t)count * sizeof *row);
 }
 
-static void cubic_quincunx(const uint32_t *row, ptrdiff_t stride, int first, bool up, uint32_t *out,
-			   int count)
+static void quincunx_cubic(uint32_t *row, ptrdiff_t stride, int first, bool up, int count)
 {
-	const uint8_t odd_down = up ? 0 : 1;
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *p = bytes_of(row + i);
-		const uint8_t *a = bytes_of(row + i - 3 * stride), *b = bytes_of(row + i - stride);
-		const uint8_t *c = bytes_of(row + i + stride), *d = bytes_of(row + i + 3 * stride);
-		uint8_t values[BYTES];
-		for (int k = 0; k < BYTES; k++) {
-			const uint8_t along = cubic(p[k - 12], p[k - 4], p[k + 4], p[k + 12]);
-			const uint8_t down = cubic(a[k], b[k], c[k], d[k]);
-			values[k] = (uint8_t)(mean_of_2(along, down) - ((along ^ down) & odd_down));
-		}
-		put_every_second(values, row + i, first, out + i);
+	const vp odd_down = up ? vp_set(0) : vp_set(0x01010101);
+	for (int i = 0; i < count; i += POINTS) {
+		const uint32_t *p = row + i;
+		const vp along =
+			cubic(vp_load(p - 3), vp_load(p - 1), vp_load(p + 1), vp_load(p + 3));
+		const vp down = cubic(vp_load(p - 3 * stride), vp_load(p - stride),
+				      vp_load(p + stride), vp_load(p + 3 * stride));
+		const vp odd = vp_and(vp_xor(along, down), odd_down);
+		put_every_second(row + i, vp_but(vp_mean(along, down), odd), first, count - i);
 	}
 }
 
-static void mean_quincunx(const uint32_t *row, ptrdiff_t stride, int first, uint32_t *out,
-			  int count)
+static void quincunx_mean(uint32_t *row, ptrdiff_t stride, int first, int count)
 {
-	for (int i = 0; i < count; i += CHUNK) {
-		const uint8_t *p = bytes_of(row + i);
-		const uint8_t *above = bytes_of(row + i - stride);
-		const uint8_t *below = bytes_of(row + i + stride);
-		uint8_t values[BYTES];
-		for (int k = 0; k < BYTES; k++)
-			values[k] = mean_of_4(p[k - 4], p[k + 4], above[k], below[k]);
-		put_every_second(values, row + i, first, out + i);
+	for (int i = 0; i < count; i += POINTS) {
+		const uint32_t *p = row + i;
+		const vp made = mean_of_4(vp_load(p - 1), vp_load(p + 1), vp_load(p - stride),
+					  vp_load(p + stride));
+		put_every_second(row + i, made, first, count - i);
 	}
 }
 
-#define GZ_ROW_FILTERS(set)                                                                \
-	{                                                                                  \
-		.name = set, .cubic_between = cubic_between, .cubic_double = cubic_double, \
-		.mean_double = mean_double, .mean_double_row = mean_double_row,            \
-		.cubic_quincunx = cubic_quincunx, .mean_quincunx = mean_quincunx,          \
+/* Wide loads overlap at the end of a row. */
+SIMD bool row_is(const uint32_t *points, int columns, uint32_t colour)
+{
+	int x = 0;
+	for (; x + POINTS <= columns; x += POINTS)
+		if (vp_differ(vp_load(points + x), vp_set(colour)))
+			return false;
+	if (x > 0)
+		return x == columns ||
+		       !vp_differ(vp_load(points + columns - POINTS), vp_set(colour));
+	for (; x < columns; x++)
+		if (points[x] != colour)
+			return false;
+	return true;
+}
+
+static bool all_are(const uint32_t *points, ptrdiff_t stride, int columns, int rows,
+		    uint32_t colour)
+{
+	for (int y = 0; y < rows; y++, points += stride)
+		if (!row_is(points, columns, colour))
+			return false;
+	return true;
+}
+
+static void fill(uint32_t colour, uint32_t *out, int count, bool stream)
+{
+	const vp all = vp_set(colour);
+	int x = 0;
+	if (stream) {
+		for (const int head = before_aligned(out); x < head && x < count; x++)
+			out[x] = colour;
+		for (; x + POINTS <= count; x += POINTS)
+			vp_stream(out + x, all);
+	}
+	for (; x + POINTS <= count; x += POINTS)
+		vp_store(out + x, all);
+	for (; x < count; x++)
+		out[x] = colour;
+}
+
+static void settle(void)
+{
+	vp_settle();
+}
+
+#define GZ_ROW_FILTERS(set)                                                            \
+	{                                                                              \
+		.name = set, .double_cubic = double_cubic, .double_mean = double_mean, \
+		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,      \
+		.all_are = all_are, .fill = fill, .settle = settle,                    \
 	}
