@@ -13,8 +13,7 @@
 #define ERRANDS_MAX 1024
 /* Chosen: one waits for the disk while the other checks. */
 #define FETCHERS 2
-/* The least number of rooms (chosen). */
-#define ROOMS_MIN 256
+#define MIB      ((size_t)1 << 20)
 /* Places in the rooms are 32-bit signed indices, as gathers take them. */
 #define ROOMS_MAX ((size_t)(INT32_MAX / GZ_BRICK_VOXELS))
 /* To bring a brick into a room, and how that went. */
@@ -154,13 +153,24 @@ static size_t memory_preset(void)
 	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
 }
 
-static size_t count_rooms(const struct gz_brick_pool *pool, size_t memory_bytes)
+static enum gz_result count_rooms(const struct gz_brick_pool *pool, size_t memory_bytes,
+				  size_t *out_rooms)
 {
 	const size_t bricks = pool->file->layout.brick_count;
+	const size_t least = bricks < GZ_BRICK_POOL_LEAST ? bricks : GZ_BRICK_POOL_LEAST;
 	size_t rooms = (memory_bytes ? memory_bytes : memory_preset()) / pool->brick_bytes;
-	rooms = rooms < ROOMS_MIN ? ROOMS_MIN : rooms;
+	if (memory_bytes && rooms < least) {
+		const size_t mib = (least * pool->brick_bytes + MIB - 1) / MIB;
+		gz_err(pool->log,
+		       "%s: volume.memory_mib: too little for its bricks; give it at least %zu, or "
+		       "0 for a quarter of the machine's",
+		       pool->file->path, mib);
+		return GZ_ERR_INVAL;
+	}
+	rooms = rooms < least ? least : rooms;
 	rooms = rooms > ROOMS_MAX ? ROOMS_MAX : rooms;
-	return rooms > bricks ? bricks : rooms;
+	*out_rooms = rooms > bricks ? bricks : rooms;
+	return GZ_OK;
 }
 
 /* The voxels' pages come when bricks do. */
@@ -234,10 +244,13 @@ enum gz_result gz_brick_pool_open(const char *path, size_t memory_bytes, const s
 	pthread_cond_init(&pool->errand_waits, NULL);
 	pthread_cond_init(&pool->errand_done, NULL);
 	enum gz_result result = gz_brick_file_open(path, log, &pool->file);
+	size_t rooms = 0;
 	if (result == GZ_OK) {
 		pool->brick_bytes = GZ_BRICK_VOXELS * gz_voxel_size(pool->file->header.type);
-		result = make_rooms(pool, count_rooms(pool, memory_bytes));
+		result = count_rooms(pool, memory_bytes, &rooms);
 	}
+	if (result == GZ_OK)
+		result = make_rooms(pool, rooms);
 	if (result == GZ_OK)
 		result = pin_levels(pool);
 	if (result == GZ_OK)

@@ -12,6 +12,10 @@
 #include "render/volume/brick_file.h"
 #include "render/volume/brick_rooms.h"
 
+/** The least number of bricks that a pool has room for, where the file has as many (chosen: a
+ *  picture of a thousand pixels a side is not all coarse). */
+#define GZ_BRICK_POOL_LEAST 256
+
 struct gz_brick_pool;
 
 /** What is in memory while a picture is made: valid until the next turn. */
@@ -29,9 +33,10 @@ struct gz_brick_view {
  * and the coarsest in any case.
  *
  * @param memory_bytes   for voxels; 0 = a quarter of the machine's memory. More than the file has
- * is not taken; less than some hundred bricks is made that
+ * is not taken; less than GZ_BRICK_POOL_LEAST bricks, or all of fewer, is refused
  * @param[out] out_pool  owned by the caller: gz_brick_pool_destroy()
  * @return what gz_brick_file_open() returns, also where the coarsest level cannot be read; logged
+ * @retval GZ_ERR_INVAL  @p memory_bytes is too little; logged with the least
  */
 enum gz_result gz_brick_pool_open(const char *path, size_t memory_bytes, const struct gz_log *log,
 				  struct gz_brick_pool **out_pool);

@@ -14,6 +14,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+/* For the least number of bricks of any type. */
+#define ROOM_BYTES ((size_t)GZ_BRICK_POOL_LEAST * GZ_BRICK_VOXELS * sizeof(float))
+
 static char path[64];
 
 static void require(bool holds)
@@ -79,7 +82,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	static struct gz_brick_want wants[4096];
 	struct gz_brick_pool *pool = NULL;
 	make_file(data, size);
-	if (gz_brick_pool_open(path, 1, NULL, &pool) != GZ_OK)
+	if (gz_brick_pool_open(path, ROOM_BYTES, NULL, &pool) != GZ_OK)
 		return 0;
 	const struct gz_brick_file *file = gz_brick_pool_file(pool);
 	const size_t count = file->layout.brick_count < 4096 ? file->layout.brick_count : 4096;

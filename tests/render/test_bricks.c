@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -47,6 +48,12 @@ static struct gz_frame_stats render(const struct small_scene *scene, const char 
 	small_scene_render(renderer, scene, WIDTH, HEIGHT, image, &stats);
 	gz_renderer_destroy(&renderer);
 	return stats;
+}
+
+/* The least memory that the bricks of a scene's volume are given. */
+static size_t least_bytes(const struct small_scene *scene)
+{
+	return GZ_BRICK_POOL_LEAST * GZ_BRICK_VOXELS * gz_voxel_size(scene->volume.type);
 }
 
 /* The same scene with its volume as bricks; the volume in memory stays the caller's. */
@@ -170,7 +177,7 @@ static void picture_is_whole_from_the_first_and_sharper_later(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(220, 200, 210, GZ_VOXEL_U8);
-	struct small_scene bricks = as_bricks(&scene, 1);
+	struct small_scene bricks = as_bricks(&scene, least_bytes(&scene));
 	struct gz_image whole = { 0 }, image = { 0 };
 	render(&scene, "auto", true, &whole);
 	struct gz_renderer *renderer = renderer_of(&bricks, "auto", false);
@@ -269,7 +276,7 @@ static void room_for_less_than_is_wanted_holds_what_weighs_most(void **state)
 	(void)state;
 	struct small_scene scene = large_scene();
 	scene.gaze = (struct gz_point) { 0.3F, 0.4F };
-	struct small_scene bricks = as_bricks(&scene, 1);
+	struct small_scene bricks = as_bricks(&scene, least_bytes(&scene));
 	assert_int_equal(gz_brick_pool_rooms(bricks.volume.bricks), 256);
 	struct gz_image whole = { 0 }, image = { 0 };
 	render(&scene, "auto", true, &whole);
@@ -302,11 +309,31 @@ static void room_for_less_than_is_wanted_holds_what_weighs_most(void **state)
 	small_scene_free(&scene);
 }
 
+static void memory_too_little_for_the_bricks_is_refused_with_the_least(void **state)
+{
+	(void)state;
+	struct small_scene scene = large_scene();
+	const struct gz_loading loading = { .brick_bytes = least_bytes(&scene) - 1 };
+	const char *path = files_path("scene.gzb");
+	struct captured_log log;
+	struct gz_volume bricks;
+	char least[32];
+	const size_t mib = (least_bytes(&scene) + (1 << 20) - 1) >> 20;
+	assert_int_equal(gz_bricks_write(&scene.volume, path, NULL, NULL), GZ_OK);
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &bricks), GZ_ERR_INVAL);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "volume.memory_mib"));
+	snprintf(least, sizeof least, "least %zu,", mib);
+	assert_non_null(strstr(log.last, least));
+	small_scene_free(&scene);
+}
+
 static void rooms_go_to_what_is_looked_at_now(void **state)
 {
 	(void)state;
 	struct small_scene scene = large_scene();
-	struct small_scene bricks = as_bricks(&scene, 1);
+	struct small_scene bricks = as_bricks(&scene, least_bytes(&scene));
 	struct gz_renderer *renderer = renderer_of(&bricks, "auto", true);
 	/* A close look at one corner, then at others: each needs less than there is room for. */
 	for (int corner = 0; corner < 8; corner++) {
@@ -385,6 +412,7 @@ int main(void)
 		cmocka_unit_test(picture_is_whole_from_the_first_and_sharper_later),
 		cmocka_unit_test(without_bricks_every_pixel_is_that_of_the_coarsest_level),
 		cmocka_unit_test(room_for_less_than_is_wanted_holds_what_weighs_most),
+		cmocka_unit_test(memory_too_little_for_the_bricks_is_refused_with_the_least),
 		cmocka_unit_test(rooms_go_to_what_is_looked_at_now),
 		cmocka_unit_test(file_that_becomes_shorter_shows_the_coarse_level),
 		cmocka_unit_test(coarsest_level_that_cannot_be_read_is_refused),
