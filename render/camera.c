@@ -56,20 +56,38 @@ static void least_parallel_axis(const double v[3], double out[3])
 		out[i] = i == least;
 }
 
-static bool view_axes_make(const struct gz_camera *camera, struct view_axes *out)
+static bool forward_of(const struct gz_camera *camera, double out[3])
 {
 	for (int i = 0; i < 3; i++)
-		out->forward[i] = camera->look_at[i] - camera->eye[i];
-	if (!normalise(out->forward))
-		return false;
+		out[i] = camera->look_at[i] - camera->eye[i];
+	return normalise(out);
+}
+
+/* To the right of the view as up says, its length the sine between them; false where up says
+ * nothing. */
+static bool right_by_up(const struct gz_camera *camera, const double forward[3], double out[3])
+{
 	double up[3] = { camera->up[0], camera->up[1], camera->up[2] };
-	if (normalise(up))
-		cross(out->forward, up, out->right);
-	else
-		out->right[0] = out->right[1] = out->right[2] = 0;
-	if (sqrt(dot(out->right, out->right)) < PARALLEL_SINE) {
-		least_parallel_axis(out->forward, up);
-		cross(out->forward, up, out->right);
+	if (!normalise(up))
+		return false;
+	cross(forward, up, out);
+	return sqrt(dot(out, out)) >= PARALLEL_SINE;
+}
+
+bool gz_camera_up_counts(const struct gz_camera *camera)
+{
+	double forward[3], right[3];
+	return forward_of(camera, forward) && right_by_up(camera, forward, right);
+}
+
+static bool view_axes_make(const struct gz_camera *camera, struct view_axes *out)
+{
+	double other[3];
+	if (!forward_of(camera, out->forward))
+		return false;
+	if (!right_by_up(camera, out->forward, out->right)) {
+		least_parallel_axis(out->forward, other);
+		cross(out->forward, other, out->right);
 	}
 	normalise(out->right);
 	cross(out->right, out->forward, out->up);

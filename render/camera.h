@@ -41,6 +41,9 @@ struct gz_ray_frame {
 enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int height,
 			      struct gz_ray_frame *out_rays);
 
+/** Whether up has a direction other than the view's, so that it is not replaced. */
+bool gz_camera_up_counts(const struct gz_camera *camera);
+
 /** Turn the eye about the up axis through look_at, degrees; positive turns counter-clockwise seen
  * from the tip of up. */
 void gz_camera_turn(struct gz_camera *camera, double angle_deg);

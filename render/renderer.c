@@ -30,6 +30,17 @@ static enum gz_result create_best(const struct gz_renderer_params *params, const
 	return gz_cpu_renderer_ops.create(params, log, out_renderer);
 }
 
+static enum gz_result refuse_backend(const char *backend, const struct gz_log *log)
+{
+	char names[128] = "auto";
+	for (size_t i = 0; gz_backends[i]; i++) {
+		strncat(names, ", ", sizeof names - strlen(names) - 1);
+		strncat(names, gz_backends[i]->name, sizeof names - strlen(names) - 1);
+	}
+	gz_err(log, "no backend '%s': there are %s", backend, names);
+	return GZ_ERR_NOT_FOUND;
+}
+
 enum gz_result gz_renderer_create(const char *backend, const struct gz_renderer_params *params,
 				  const struct gz_log *log, struct gz_renderer **out_renderer)
 {
@@ -38,15 +49,15 @@ enum gz_result gz_renderer_create(const char *backend, const struct gz_renderer_
 	if (!backend || strcmp(backend, "auto") == 0)
 		return create_best(params, log, out_renderer);
 	const struct gz_renderer_ops *ops = find_backend(backend);
-	if (ops)
-		return ops->create(params, log, out_renderer);
-	char names[128] = "auto";
-	for (size_t i = 0; gz_backends[i]; i++) {
-		strncat(names, ", ", sizeof names - strlen(names) - 1);
-		strncat(names, gz_backends[i]->name, sizeof names - strlen(names) - 1);
-	}
-	gz_err(log, "no backend '%s': there are %s", backend, names);
-	return GZ_ERR_NOT_FOUND;
+	return ops ? ops->create(params, log, out_renderer) : refuse_backend(backend, log);
+}
+
+enum gz_result gz_renderer_check(const char *backend, const struct gz_renderer_params *params,
+				 const struct gz_log *log)
+{
+	if (backend && strcmp(backend, "auto") != 0 && !find_backend(backend))
+		return refuse_backend(backend, log);
+	return params ? gz_cpu_renderer_check(params, log) : GZ_OK;
 }
 
 enum gz_result gz_renderer_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume)

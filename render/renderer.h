@@ -92,6 +92,15 @@ extern const struct gz_renderer_ops *const gz_backends[];
 enum gz_result gz_renderer_create(const char *backend, const struct gz_renderer_params *params,
 				  const struct gz_log *log, struct gz_renderer **out_renderer);
 
+/**
+ * Check what can be known of a renderer's settings before there is anything to show: that there is
+ * such a backend, and that the processor runs such instructions.
+ *
+ * @return what gz_renderer_create() would return for these reasons; logged
+ */
+enum gz_result gz_renderer_check(const char *backend, const struct gz_renderer_params *params,
+				 const struct gz_log *log);
+
 /** Show @p volume, borrowed until the next call or destroy. The transfer function must be set anew.
  */
 enum gz_result gz_renderer_set_volume(struct gz_renderer *renderer, const struct gz_volume *volume);

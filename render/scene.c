@@ -270,8 +270,15 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
 		return GZ_ERR_FORMAT;
 	}
-	if (gz_ray_params_valid(&settings->rays))
+	if (gz_ray_params_valid(&settings->rays)) {
+		if (!gz_camera_up_counts(&settings->camera))
+			gz_warn(log,
+				"%s: camera.up: 0 0 0 or along the view, so that nothing is up; "
+				"the "
+				"axis farthest from the view stands in",
+				name);
 		return GZ_OK;
+	}
 	const struct gz_clip_box *clip = &settings->rays.clip;
 	bool below = true;
 	for (int axis = 0; axis < 3; axis++)
@@ -300,8 +307,6 @@ static enum gz_result check(const struct reader *reader, bool *out_has_display)
 		result = refuse(reader, TRANSFER_FILE,
 				"not given; name a .tf file (docs/scenes.md says what is in it)");
 	if (result == GZ_OK)
-		result = gz_scene_settings_check(reader->settings, reader->name, reader->log);
-	if (result == GZ_OK)
 		result = check_display(reader, out_has_display);
 	return result;
 }
@@ -319,6 +324,8 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
 					      log);
 	if (result == GZ_OK)
 		result = check(&reader, &has_display);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(&settings, name, log);
 	if (result != GZ_OK)
 		return result;
 	*out_settings = settings;
@@ -412,6 +419,13 @@ enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene)
 {
+	return gz_scene_load_changed(path, NULL, NULL, loading, log, out_scene);
+}
+
+enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, void *user,
+				     const struct gz_loading *loading, const struct gz_log *log,
+				     struct gz_scene *out_scene)
+{
 	struct gz_scene scene = { 0 };
 	struct reader reader;
 	enum gz_result result = begin(&reader, path, log, &scene.settings);
@@ -420,6 +434,10 @@ enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 		result = gz_options_read_file(reader.bindings, GZ_SCENE_BINDINGS, path, log);
 	if (result == GZ_OK)
 		result = check(&reader, &scene.has_display);
+	if (result == GZ_OK && change)
+		result = change(user, &scene.settings);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(&scene.settings, path, log);
 	if (result == GZ_OK)
 		result = gz_scene_load_table(path, log, &scene.settings.foveation);
 	if (result == GZ_OK)

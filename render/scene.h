@@ -64,7 +64,7 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 /**
  * Check what the tables cannot say of each value by itself: that the camera looks somewhere, the
  * clip box holds something and the light has a direction. What volume and display need is not
- * asked.
+ * asked. An up vector that says nothing is told in a warning: gz_camera_rays() replaces it.
  *
  * @param name  stands for where they come from in messages
  * @param log   may be NULL
@@ -97,6 +97,21 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
  */
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene);
+
+/** Changes settings that a scene's text has given. What it returns but GZ_OK, it has logged. */
+typedef enum gz_result gz_scene_change(void *user, struct gz_scene_settings *settings);
+
+/**
+ * As gz_scene_load(), with settings that take the place of the scene's own.
+ *
+ * @param change  called once, before the settings are checked and before any file that they name
+ *                is read; volume, transfer and display stay as the scene has them. NULL: nothing
+ * @param user    handed to @p change
+ * @return also what @p change returned
+ */
+enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, void *user,
+				     const struct gz_loading *loading, const struct gz_log *log,
+				     struct gz_scene *out_scene);
 
 /**
  * Read the table of spacings that foveation.table names into @p foveation; gz_scene_load() does it

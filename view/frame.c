@@ -32,6 +32,49 @@ struct gz_frame_maker {
 	struct gz_image image; /* the finished picture */
 };
 
+/* Pixels of the rays' grid along a side; 0 where that is no picture. */
+static int cast_side(int side, double rate)
+{
+	double scaled = round(side * rate);
+	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
+}
+
+static enum gz_result find_cast_size(int width, int height, double rate, const struct gz_log *log,
+				     int out_size[2])
+{
+	out_size[0] = cast_side(width, rate);
+	out_size[1] = cast_side(height, rate);
+	if (out_size[0] > 0 && out_size[1] > 0)
+		return GZ_OK;
+	gz_err(log,
+	       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the rate or the "
+	       "size",
+	       width, height, rate, GZ_IMAGE_SIDE_MAX);
+	return GZ_ERR_INVAL;
+}
+
+/* What the command line asks for, and what contradicts it, before anything large is read. */
+struct change {
+	const struct gz_view_options *options;
+	const struct gz_log *log;
+};
+
+static enum gz_result change_settings(void *user, struct gz_scene_settings *settings)
+{
+	const struct change *change = user;
+	const struct gz_view_options *options = change->options;
+	const struct gz_renderer_params params = { .threads = options->threads,
+						   .simd = options->simd };
+	int size[2];
+	enum gz_result r = gz_renderer_check(options->backend, &params, change->log);
+	if (r == GZ_OK)
+		r = gz_view_options_apply(options, settings);
+	if (r == GZ_OK && options->headless)
+		r = find_cast_size(options->size_px[0], options->size_px[1],
+				   settings->image_sampling_rate, change->log, size);
+	return r;
+}
+
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 				     const struct gz_log *log, struct gz_frame_maker **out_maker)
 {
@@ -42,16 +85,12 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	const struct gz_attention_params attention = gz_attention_default();
 	gz_attention_init(&maker->attention, &attention);
 	maker->focus = maker->attention.focus;
+	struct change change = { options, log };
 	struct gz_loading_bar bar;
 	gz_loading_bar_begin(&bar, log);
-	enum gz_result r = gz_scene_load(options->scene, &bar.loading, log, &maker->scene);
+	enum gz_result r = gz_scene_load_changed(options->scene, change_settings, &change,
+						 &bar.loading, log, &maker->scene);
 	gz_loading_bar_end(&bar);
-	if (r == GZ_OK)
-		r = gz_view_options_apply(options, &maker->scene.settings);
-	if (r == GZ_OK)
-		r = gz_scene_settings_check(&maker->scene.settings, options->scene, log);
-	if (r == GZ_OK)
-		r = gz_scene_load_table(options->scene, log, &maker->scene.settings.foveation);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
 		return r;
@@ -99,13 +138,6 @@ bool gz_frame_settled(const struct gz_frame_maker *maker)
 bool gz_frame_refinable(const struct gz_frame_maker *maker)
 {
 	return !gz_budget_at_rest(&maker->attention.budget);
-}
-
-/* Pixels of the rays' grid along a side; 0 where that is no picture. */
-static int cast_side(int side, double rate)
-{
-	double scaled = round(side * rate);
-	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
 }
 
 /* Whether and how earlier frames are kept: the request becomes that of a shifted plan. */
@@ -177,23 +209,20 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 			   struct gz_frame_record *record)
 {
 	double rate = request->settings->image_sampling_rate;
-	int width = cast_side(request->width, rate), height = cast_side(request->height, rate);
-	if (width == 0 || height == 0) {
-		gz_err(maker->log,
-		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
-		       "rate or the size",
-		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
-		return GZ_ERR_INVAL;
-	}
+	int size[2];
+	enum gz_result r = find_cast_size(request->width, request->height, rate, maker->log, size);
+	if (r != GZ_OK)
+		return r;
 	struct gz_frame_stats stats;
 	int64_t start_ns = gz_clock_now_ns();
-	struct gz_plan_request plan = gz_plan_request_make(
-		&request->settings->foveation, request->display, maker->focus.point, width, height);
+	struct gz_plan_request plan =
+		gz_plan_request_make(&request->settings->foveation, request->display,
+				     maker->focus.point, size[0], size[1]);
 	plan.rays_per_px = rate;
 	plan.scale = maker->focus.scale;
 	plan.widen = maker->focus.widen;
 	struct gz_display display = *request->display;
-	enum gz_result r = begin_keeping(maker, request->settings, &plan, &display);
+	r = begin_keeping(maker, request->settings, &plan, &display);
 	if (r == GZ_OK)
 		r = gz_plan_update(&plan, &maker->plan);
 	if (r == GZ_OK && request->settings->temporal.accumulate)
@@ -204,7 +233,7 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	/* Whoever does not support it has said what, and what to do. */
 	if (r != GZ_OK && r != GZ_ERR_UNSUPPORTED)
 		gz_err(maker->log, "cannot render %dx%d: %s; see the scene's camera and size",
-		       width, height, gz_result_text(r));
+		       request->width, request->height, gz_result_text(r));
 	if (r != GZ_OK)
 		return r;
 	record->total_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);

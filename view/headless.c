@@ -10,6 +10,7 @@
 #include "view/frame.h"
 #include "view/gaze_source.h"
 #include "view/letters.h"
+#include "view/output.h"
 #include "view/stats.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -234,8 +235,10 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 {
 	struct headless self = { .options = options, .log = log };
 	catch_signals();
-	/* The gaze first: a log that cannot be read is known sooner than a volume is loaded. */
-	enum gz_result r = open_source(&options->gaze, log, &self.source);
+	/* First what is known sooner than a volume is loaded: where files go, and the gaze. */
+	enum gz_result r = gz_output_check(options, log);
+	if (r == GZ_OK)
+		r = open_source(&options->gaze, log, &self.source);
 	if (r == GZ_OK)
 		r = gz_frame_maker_create(options, log, &self.maker);
 	if (r == GZ_OK)

@@ -9,6 +9,7 @@
 #include "render/volume/brick_write.h"
 #include "render/volume/nrrd_write.h"
 #include "view/loading_bar.h"
+#include "view/output.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -29,14 +30,6 @@ static size_t quarter_of_memory(void)
 {
 	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
 	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
-}
-
-/* The folder that a file is in. */
-static void folder_of(const char *path, char *out, size_t size)
-{
-	const char *slash = strrchr(path, '/');
-	const int length = slash ? (int)(slash - path) + (slash == path) : 1;
-	snprintf(out, size, "%.*s", length, slash ? path : ".");
 }
 
 static enum gz_result load(const struct gz_view_options *options, const struct gz_loading *where,
@@ -75,9 +68,12 @@ enum gz_result gz_view_write_volume(const struct gz_view_options *options, const
 	write_function *writer = writer_of(options->write_volume, log);
 	if (!writer)
 		return GZ_ERR_UNSUPPORTED;
-	folder_of(options->write_volume, folder, sizeof folder);
+	enum gz_result r = gz_output_check(options, log);
+	if (r != GZ_OK)
+		return r;
+	gz_output_folder(options->write_volume, folder, sizeof folder);
 	const struct gz_loading where = { .scratch = folder, .scratch_from = quarter_of_memory() };
-	enum gz_result r = load(options, &where, log, &scene);
+	r = load(options, &where, log, &scene);
 	if (r != GZ_OK)
 		return r;
 	r = write_to(options, &where, writer, &scene.volume, log);

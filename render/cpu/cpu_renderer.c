@@ -81,16 +81,23 @@ static void cpu_destroy(struct gz_renderer *renderer)
 	free(cpu);
 }
 
+enum gz_result gz_cpu_renderer_check(const struct gz_renderer_params *params,
+				     const struct gz_log *log)
+{
+	if (gz_cast_kernels_find(params->simd))
+		return GZ_OK;
+	gz_err(log, "this processor does not run '%s': take auto, portable, avx2 or avx512",
+	       params->simd);
+	return GZ_ERR_UNSUPPORTED;
+}
+
 static enum gz_result start(struct cpu_renderer *cpu, const struct gz_renderer_params *params)
 {
+	enum gz_result result = gz_cpu_renderer_check(params, cpu->base.log);
+	if (result != GZ_OK)
+		return result;
 	cpu->kernels = gz_cast_kernels_find(params->simd);
-	if (!cpu->kernels) {
-		gz_err(cpu->base.log,
-		       "this processor does not run '%s': take auto, portable, avx2 or avx512",
-		       params->simd);
-		return GZ_ERR_UNSUPPORTED;
-	}
-	const enum gz_result result = gz_workers_create(params->threads, &cpu->workers);
+	result = gz_workers_create(params->threads, &cpu->workers);
 	if (result != GZ_OK) {
 		gz_err(cpu->base.log, "cannot start %d threads: %s", params->threads,
 		       gz_result_text(result));

@@ -10,4 +10,8 @@
 
 extern const struct gz_renderer_ops gz_cpu_renderer_ops;
 
+/** Whether the processor runs what @p params ask for: GZ_ERR_UNSUPPORTED if not; logged. */
+enum gz_result gz_cpu_renderer_check(const struct gz_renderer_params *params,
+				     const struct gz_log *log);
+
 #endif

@@ -37,8 +37,8 @@ class Headless(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.place.name, name)
 
-    def render(self, *more, size="96x64"):
-        return run(GAZEVIEW, "--headless", "--scene", SCENE, "--size", size, *more)
+    def render(self, *more, size="96x64", scene=None):
+        return run(GAZEVIEW, "--headless", "--scene", scene or SCENE, "--size", size, *more)
 
     def good(self, *more, **options):
         done = self.render(*more, **options)
@@ -290,14 +290,19 @@ class Headless(unittest.TestCase):
             (("--clip.least", "0 0.5 0", "--clip.greatest", "1 0.5 1"), "clip.least"),
             (("--attention.saccade_scale", "0.5"), "saccade_scale"),
             (("--attention.budget_ms", "-1"), "budget_ms"),
+            (("--out", "/no/such/folder/f.png"), "--out /no/such/folder/f.png"),
+            (("--out", self.path("f%d/%%.png")), "--out " + self.path("f0/%.png")),
+            (("--foveation.method", "table"), "foveation.table"),
         ):
-            with self.subTest(words=words):
-                self.refused(self.render(*words), said)
+            # Before the volume is read, or its absence would be what is told.
+            for scene in (SCENE, self.scene_of("none.nii")):
+                with self.subTest(words=words, scene=scene):
+                    self.refused(self.render(*words, scene=scene), said)
         for size in ("0x5", "5", "16384x16385"):
             self.refused(self.render(size=size), "size")
-        self.refused(
-            self.render("--render.image_sampling_rate", 4, size="16384x64"), "image_sampling_rate"
-        )
+        for scene in (SCENE, self.scene_of("none.nii")):
+            done = self.render("--render.image_sampling_rate", 4, size="16384x64", scene=scene)
+            self.refused(done, "image_sampling_rate")
         self.refused(run(GAZEVIEW, "--headless", "--scene", self.path("no.scene")), "no.scene")
         self.refused(run(GAZEVIEW, "--headless"), "--scene")
 
@@ -331,19 +336,34 @@ class Headless(unittest.TestCase):
     def test_volume_that_cannot_be_written_is_refused_in_one_line(self):
         self.refused(self.write_volume("volume.raw"), ".gzb")
         self.refused(self.write_volume("no/volume.gzb"), "no/volume.gzb")
+        nowhere = self.path("no/volume.gzb")
+        before = run(GAZEVIEW, "--write-volume", nowhere, self.scene_of("none.nii"))
+        self.refused(before, nowhere)
         self.assertEqual(os.listdir(self.place.name), [])
         self.write_volume("volume.gzb")
         again = run(GAZEVIEW, "--write-volume", self.path("b.gzb"), self.scene_of("volume.gzb"))
         self.refused(again, "already")
 
     def test_picture_that_cannot_be_written_ends_it_and_the_statistics_still_parse(self):
+        os.mkdir(self.path("f-1.png"))
         done = self.render(
-            "--out", "/no/such/folder/f-%d.png", "--frames", 5, "--stats", self.path("stats.json")
+            "--out", self.path("f-%d.png"), "--frames", 5, "--stats", self.path("stats.json")
         )
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        self.assertIn("/no/such/folder/f-0.png", done.stderr)
-        self.assertLessEqual(len(self.frames()), 1)
+        self.assertIn(self.path("f-1.png"), done.stderr)
+        self.assertLessEqual(len(self.frames()), 2)
+
+    def test_up_that_says_nothing_is_replaced_with_one_line(self):
+        pictures = []
+        for up in ("0 0 2", "0 0 0", "1 0 0"):
+            done = self.good("--camera.eye", "0 0 2", "--camera.look_at", "0 0 0",
+                             "--camera.up", up, "--out", self.path("up.png"))
+            counts = up == "1 0 0"
+            self.assertEqual(done.stderr.count("\n"), 0 if counts else 1, done.stderr)
+            self.assertEqual("camera.up" in done.stderr, not counts)
+            pictures.append(read_png(self.path("up.png")))
+        self.assertTrue(pictures[0] == pictures[1] == pictures[2])
 
     def test_signal_ends_it_between_frames_and_the_statistics_parse(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
