@@ -1,0 +1,70 @@
+/**
+ * @file
+ * The measures of error that a study holds, and how they are averaged: as a cost that is 0 for
+ * equal pictures and grows, never as decibels or as similarity.
+ */
+#ifndef GZ_BENCH_REPORT_ERROR_METRIC_H
+#define GZ_BENCH_REPORT_ERROR_METRIC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "bench/study/study.h"
+
+/** In the order in which a report shows them: nearest to what a person sees first. */
+enum gz_error_measure {
+	GZ_PERCEIVED_FLIP,
+	GZ_FOVEAL_FLIP,
+	GZ_WHOLE_FLIP,
+	GZ_PERCEIVED_SSIM,
+	GZ_FOVEAL_SSIM,
+	GZ_WHOLE_SSIM,
+	GZ_PERCEIVED_PSNR,
+	GZ_FOVEAL_PSNR,
+	GZ_WHOLE_PSNR,
+	GZ_ERROR_MEASURES,
+};
+
+/** What a picture was compared with. */
+enum gz_error_reference {
+	GZ_AGAINST_CONVERGED,
+	GZ_AGAINST_STANDARD,
+	GZ_ERROR_REFERENCES,
+};
+
+/** What a cost is made of. */
+enum gz_error_kind {
+	GZ_ERROR_FLIP, /**< cost = FLIP */
+	GZ_ERROR_SSIM, /**< cost = 1 - SSIM */
+	GZ_ERROR_PSNR, /**< cost = mean squared error of a signal of 1, 10^(-dB / 10) */
+};
+
+/** One measure. */
+struct gz_error_metric {
+	const char *key;   /**< "perceived_flip": column of frames.csv, value of --metric */
+	const char *title; /**< "perceived FLIP" */
+	enum gz_error_kind kind;
+	size_t offset; /**< in struct gz_study_errors */
+};
+
+extern const struct gz_error_metric gz_error_metrics[GZ_ERROR_MEASURES];
+
+/** Keys of gz_error_metrics, NULL behind the last: choices of an option. */
+extern const char *const gz_error_metric_keys[GZ_ERROR_MEASURES + 1];
+
+/** "converged", "standard", NULL: choices of an option. */
+extern const char *const gz_error_reference_names[GZ_ERROR_REFERENCES + 1];
+
+/** Its value in @p errors, in its own unit; NaN where it was not measured. */
+double gz_error_value(enum gz_error_measure measure, const struct gz_study_errors *errors);
+
+/** Cost of a value: 0 for equal pictures. NaN stays NaN. */
+double gz_error_cost(enum gz_error_kind kind, double value);
+
+/** The value that has this cost: infinite dB for none. */
+double gz_error_of_cost(enum gz_error_kind kind, double cost);
+
+/** Whether greater values mean less error. */
+bool gz_error_rises(enum gz_error_kind kind);
+
+#endif

@@ -1,0 +1,36 @@
+/**
+ * @file
+ * A summary as JSON; docs/gazebench.md describes it for scripts.
+ */
+#ifndef GZ_BENCH_REPORT_SUMMARY_JSON_H
+#define GZ_BENCH_REPORT_SUMMARY_JSON_H
+
+#include <jansson.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/report/summary.h"
+
+/** What the file says it is, and the version that this program writes. */
+#define GZ_SUMMARY_FORMAT  "gazecast summary"
+#define GZ_SUMMARY_VERSION 1
+
+/** Foveal FLIP up to which methods count as equal: docs/gazebench.md. */
+#define GZ_EQUAL_FOVEAL_FLIP 0.02
+
+/** Shares of standard's time at which errors are compared. */
+#define GZ_EQUAL_TIMES 4
+extern const double gz_equal_time_shares[GZ_EQUAL_TIMES];
+
+/** The whole summary: the caller's, json_decref(). What was not measured is null, an infinite PSNR
+ *  the text "inf". NULL where there is no memory. */
+json_t *gz_summary_to_json(const struct gz_summary *summary);
+
+/**
+ * Write JSON to a file under another name first, so that what is there is whole or as it was.
+ *
+ * @retval GZ_ERR_IO  logged
+ */
+enum gz_result gz_json_write(const json_t *json, const char *path, const struct gz_log *log);
+
+#endif
