@@ -24,7 +24,10 @@ static const char sizes[] =
 					DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
 						DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS);
 
-const char *const gz_compute_head[] = { "#version 430 core\n", gz_glsl_cast_constants_h, sizes };
+/* Shaders do without what is enabled here, which drivers may not know. */
+const char *const gz_compute_head[] = { "#version 430 core\n",
+					"#extension GL_ARB_shader_group_vote : enable\n",
+					gz_glsl_cast_constants_h, sizes };
 const int gz_compute_head_count = sizeof gz_compute_head / sizeof gz_compute_head[0];
 
 /* The first line of what the driver says. */

@@ -21,6 +21,24 @@ struct Light {
 	float through;
 };
 
+// Samples looked up before the first of them is composited, so that none waits for another's texels. A lit one
+// has enough to fetch.
+#ifdef SHADED
+#define BATCH 1
+#else
+#define BATCH 4
+#endif
+
+// Whether it is so for a ray that is cast side by side with this one.
+bool any_of_warp(bool so)
+{
+#ifdef GL_ARB_shader_group_vote
+	return anyInvocationARB(so);
+#else
+	return so;
+#endif
+}
+
 // gz_ray_jitter() of render/ray_params.h, which says why.
 float jitter_of(uvec2 pixel)
 {
@@ -147,32 +165,53 @@ uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Li
 	return 2U;
 }
 #else
-// On to the first occupied cell, if there is one; then all its samples. Two loops in turn, so that rays that
-// skip and rays that sample do not wait for each other at every step.
+uvec2 look_up(Ray ray, float k, int step_index)
+{
+	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+	return FETCH(transfer, ivec2(entry, step_index)).rg;
+}
+
+// BATCH samples from k on, as far as there are any; k is then behind them.
+void march_batch(Ray ray, int step_index, inout float k, inout Light light)
+{
+	float from = k;
+	uvec2 looks[BATCH];
+	for (int i = 0; i < BATCH; i++)
+		looks[i] = look_up(ray, from + float(i), step_index);
+	for (int i = 0; i < BATCH; i++) {
+		bool takes = i == 0 || (k < ray.end && light.through > GZ_TRANSMITTANCE_END);
+		composite(ray, from + float(i), looks[i].y, takes ? uintBitsToFloat(looks[i].x) : 0.0, light);
+		k += takes ? 1.0 : 0.0;
+	}
+}
+
+// On to the first occupied cell, if there is one; then its samples. Two loops in turn, so that rays that skip
+// and rays that sample do not wait for each other at every step. A ray that has left its cell goes on while
+// others of its warp are in theirs: it would have to wait for them, and what is empty shows nothing. Loops ask
+// at their ends whether they go on: where the lanes of a processor are the rays, they run through the rest of
+// a loop that all have left.
 uint march(Ray ray, int step_index, inout Light light)
 {
-	uint samples = 0U;
-	float k = ray.first + 0.5;
-	while (k < ray.end) {
-		float until = 0.0;
-		bool found = false;
-		while (!found && k < ray.end) {
-			found = !look_up_cell(ray, k, until);
-			k += found ? 0.0 : max(ceil(until - k), 1.0);
+	float samples = 0.0, k = ray.first + 0.5;
+	while (k < ray.end && light.through > GZ_TRANSMITTANCE_END) {
+		float until;
+		bool empty;
+		do {
+			empty = look_up_cell(ray, k, until);
+			k += empty ? max(ceil(until - k), 1.0) : 0.0;
+		} while (empty && k < ray.end);
+		samples -= k;
+		bool goes = !empty;
+		if (goes) {
+			do {
+				march_batch(ray, step_index, k, light);
+				goes = k < ray.end && light.through > GZ_TRANSMITTANCE_END;
+				goes = goes && any_of_warp(k < until);
+			} while (goes);
 		}
-		float end = found ? min(max(until, k + 0.5), ray.end) : 0.0;
-		while (k < end) {
-			int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
-			uvec2 look = FETCH(transfer, ivec2(entry, step_index)).rg;
-			composite(ray, k, look.y, uintBitsToFloat(look.x), light);
-			samples++;
-			k += 1.0;
-			bool ends = light.through <= GZ_TRANSMITTANCE_END;
-			end = ends ? 0.0 : end;
-			ray.end = ends ? 0.0 : ray.end;
-		}
+		samples += k;
 	}
-	return samples;
+	return uint(samples);
 }
 
 // A part of a segment, at either end of the whole ones: around k, of a length in steps.
