@@ -63,6 +63,7 @@ static enum gz_result find_wants(struct gz_brick_stream *stream,
 		.entries = frame->entries,
 		.table = frame->table,
 		.camera = &frame->key.camera,
+		.clip = &frame->key.clip,
 		.width = frame->plan->width,
 		.height = frame->plan->height,
 		.focus_px = frame->plan->focus_px,
@@ -82,6 +83,7 @@ struct gz_brick_stream_key gz_brick_stream_key_of(const struct gz_camera *camera
 	struct gz_brick_stream_key key;
 	memset(&key, 0, sizeof key); /* it is compared byte by byte */
 	key.camera = *camera;
+	key.clip = rays->clip;
 	key.focus_px[0] = plan->focus_px[0];
 	key.focus_px[1] = plan->focus_px[1];
 	key.pixel_lengths = pixel_lengths;

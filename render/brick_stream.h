@@ -14,6 +14,7 @@
 /** What wants depend on beside the volume and the transfer function. Compared byte by byte. */
 struct gz_brick_stream_key {
 	struct gz_camera camera;
+	struct gz_clip_box clip;
 	double focus_px[2], pixel_lengths, ray_sampling_rate;
 	size_t tile_count;
 	uint64_t plan_serial;

@@ -12,6 +12,10 @@
  * it. Chosen: decides only between bricks that count alike. */
 #define FAR_SHARE 0.5
 
+/* How far outside the clip box voxels count: those that samples in it lie between, and those that
+ * their gradients ask for. */
+#define CLIP_MARGIN_VOXELS 2
+
 struct search {
 	const struct gz_brick_scene *scene;
 	struct gz_brick_wants *wants;
@@ -186,29 +190,44 @@ static double weigh(const struct search *search, int level, const struct appeara
 	       (1 + FAR_SHARE * fmin(fmax(deep, 0), 1));
 }
 
+/* The ball round what a brick shows of the clip box; false where it shows nothing. */
+static bool ball_of(const struct search *search, int level, const int brick[3],
+		    double out_centre[3], double *out_radius)
+{
+	const struct gz_brick_level *l = &search->scene->layout->levels[level];
+	const struct gz_clip_box *clip = search->scene->clip;
+	double radius2 = 0;
+	for (int axis = 0; axis < 3; axis++) {
+		const double half = search->half[axis];
+		const double voxel =
+			ldexp(2 * half / search->scene->volume->dims[axis], l->halvings[axis]);
+		const double begin = voxel * GZ_BRICK_EDGE * brick[axis] - half;
+		const double margin = CLIP_MARGIN_VOXELS * voxel;
+		const double low = fmax(begin, (2 * clip->least[axis] - 1) * half - margin);
+		const double high = fmin(fmin(begin + voxel * GZ_BRICK_EDGE, half),
+					 (2 * clip->greatest[axis] - 1) * half + margin);
+		if (low >= high)
+			return false;
+		out_centre[axis] = (low + high) / 2;
+		radius2 += (high - low) * (high - low) / 4;
+	}
+	*out_radius = sqrt(radius2);
+	return true;
+}
+
 static void visit(struct search *search, int level, const int brick[3])
 {
 	const struct gz_brick_layout *layout = search->scene->layout;
-	const struct gz_brick_level *l = &layout->levels[level];
 	const size_t number = gz_brick_number(layout, level, brick);
 	const struct gz_brick_entry *entry = &search->scene->entries[number];
 	if (search->result != GZ_OK ||
 	    !gz_transfer_table_shows(search->scene->table, (double)entry->least,
 				     (double)entry->greatest))
 		return;
-	double centre[3], radius2 = 0;
-	for (int axis = 0; axis < 3; axis++) {
-		const double edge =
-			ldexp(2 * search->half[axis] / search->scene->volume->dims[axis],
-			      l->halvings[axis]) *
-			GZ_BRICK_EDGE;
-		const double low = edge * brick[axis] - search->half[axis];
-		const double high = fmin(low + edge, search->half[axis]);
-		centre[axis] = (low + high) / 2;
-		radius2 += (high - low) * (high - low) / 4;
-	}
+	double centre[3], radius;
 	struct appearance seen;
-	if (!appears(search, centre, sqrt(radius2), &seen))
+	if (!ball_of(search, level, brick, centre, &radius) ||
+	    !appears(search, centre, radius, &seen))
 		return;
 	const int taken = level_taken(search, &seen);
 	if (level < taken)

@@ -2,11 +2,11 @@
  * @file
  * Which bricks a picture would show, and how much the absence of each would be seen.
  *
- * A brick is wanted where the transfer function shows something of it, the camera sees it, and its
- * level is the one that rays take there or a coarser one, which is shown meanwhile. Its weight is
- * the size in pixels that its voxels would be shown at without it, that is of the next coarser
- * ones, over what the eye resolves there: 1 + d / 90 pixels at d pixels from the gaze. So bricks
- * near the gaze come first, and everywhere coarse ones before fine ones.
+ * A brick is wanted where the transfer function shows something of it, it reaches into the clip
+ * box, the camera sees it, and its level is the one that rays take there or a coarser one, which is
+ * shown meanwhile. Its weight is the size in pixels that its voxels would be shown at without it,
+ * that is of the next coarser ones, over what the eye resolves there: 1 + d / 90 pixels at d pixels
+ * from the gaze. So bricks near the gaze come first, and everywhere coarse ones before fine ones.
  */
 #ifndef GZ_RENDER_BRICK_WANTS_H
 #define GZ_RENDER_BRICK_WANTS_H
@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "render/camera.h"
 #include "render/plan/plan.h"
+#include "render/ray_params.h"
 #include "render/transfer_table.h"
 #include "render/volume/brick_rooms.h"
 
@@ -28,6 +29,7 @@ struct gz_brick_scene {
 	const struct gz_brick_entry *entries; /**< by number; only their ranges are looked at */
 	const struct gz_transfer_table *table;
 	const struct gz_camera *camera;
+	const struct gz_clip_box *clip;
 	int width, height;          /**< of the picture, px */
 	const double *focus_px;     /**< two: where the eye looks */
 	const uint8_t *block_level; /**< the finest level that rays of each block take, row by row,

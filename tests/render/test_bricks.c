@@ -329,6 +329,57 @@ static void memory_too_little_for_the_bricks_is_refused_with_the_least(void **st
 	small_scene_free(&scene);
 }
 
+/* Bricks that the first picture sends for. */
+static uint64_t sent_for(struct gz_renderer *renderer, const struct small_scene *bricks)
+{
+	struct gz_image image = { 0 };
+	struct gz_frame_stats stats = { 0 };
+	small_scene_render(renderer, bricks, WIDTH, HEIGHT, &image, &stats);
+	gz_image_free(&image);
+	return stats.bricks_coming;
+}
+
+/* And what the box then leaves open is sent for, though camera and gaze are where they were. */
+static void what_is_clipped_away_is_not_sent_for(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(220, 200, 210, GZ_VOXEL_U8);
+	struct small_scene bricks = as_bricks(&scene, 0);
+	struct gz_renderer *renderer = renderer_of(&bricks, "auto", false);
+	const uint64_t all = sent_for(renderer, &bricks);
+	small_scene_free(&bricks);
+	gz_renderer_destroy(&renderer);
+
+	bricks = as_bricks(&scene, 0);
+	renderer = renderer_of(&bricks, "auto", false);
+	bricks.rays.clip.greatest[0] = 0.25;
+	const uint64_t quarter = sent_for(renderer, &bricks);
+	/* 2 of 7 bricks along x. */
+	if (quarter == 0 || 3 * quarter > all)
+		fail_msg("%llu bricks sent for, %llu of them for a quarter of the box",
+			 (unsigned long long)all, (unsigned long long)quarter);
+	gz_renderer_destroy(&renderer);
+
+	renderer = renderer_of(&bricks, "auto", true);
+	struct gz_image image = { 0 };
+	for (int i = 0; i < 2; i++) {
+		struct gz_frame_stats stats;
+		struct gz_image whole = { 0 };
+		int x = 0, y = 0;
+		scene.rays.clip.greatest[0] = bricks.rays.clip.greatest[0] = i ? 0.9 : 0.3;
+		render(&scene, "auto", true, &whole);
+		small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &image, &stats);
+		const int difference = image_difference(&whole, &image, &x, &y);
+		if (difference > 1)
+			fail_msg("clip %d: differs by %d at (%d, %d)", i, difference, x, y);
+		gz_image_free(&whole);
+	}
+	gz_image_free(&image);
+	gz_renderer_destroy(&renderer);
+	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
 static void rooms_go_to_what_is_looked_at_now(void **state)
 {
 	(void)state;
@@ -413,6 +464,7 @@ int main(void)
 		cmocka_unit_test(without_bricks_every_pixel_is_that_of_the_coarsest_level),
 		cmocka_unit_test(room_for_less_than_is_wanted_holds_what_weighs_most),
 		cmocka_unit_test(memory_too_little_for_the_bricks_is_refused_with_the_least),
+		cmocka_unit_test(what_is_clipped_away_is_not_sent_for),
 		cmocka_unit_test(rooms_go_to_what_is_looked_at_now),
 		cmocka_unit_test(file_that_becomes_shorter_shows_the_coarse_level),
 		cmocka_unit_test(coarsest_level_that_cannot_be_read_is_refused),
