@@ -31,6 +31,7 @@ struct gz_brick_pool {
 	size_t mapped;
 	uint8_t *voxels;
 	struct gz_brick_rooms rooms;
+	size_t unreadable; /* bricks */
 	/* between the threads */
 	pthread_mutex_t mutex;
 	pthread_cond_t errand_waits, errand_done;
@@ -72,7 +73,9 @@ static void let_in(struct gz_brick_pool *pool, const struct errand *errand)
 		gz_brick_rooms_let_in(&pool->rooms, errand->room);
 		return;
 	}
-	gz_brick_file_complain(pool->file, errand->brick, errand->result);
+	/* A damaged file has thousands of them: the first, and in the end how many. */
+	if (pool->unreadable++ == 0)
+		gz_brick_file_complain(pool->file, errand->brick, errand->result);
 	gz_brick_rooms_give_up(&pool->rooms, errand->room);
 }
 
@@ -129,7 +132,6 @@ void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *
 	out = send_for(pool, wants, count, out);
 	while (wait && out > 0) {
 		out = collect(pool, true);
-		gz_brick_rooms_look_again(&pool->rooms);
 		out = send_for(pool, wants, count, out);
 	}
 	*out_view = (struct gz_brick_view) { .voxels = pool->voxels,
@@ -277,6 +279,9 @@ void gz_brick_pool_destroy(struct gz_brick_pool **pool_pointer)
 	pthread_cond_destroy(&pool->errand_done);
 	pthread_cond_destroy(&pool->errand_waits);
 	pthread_mutex_destroy(&pool->mutex);
+	if (pool->unreadable > 1)
+		gz_warn(pool->log, "%s: %zu bricks could not be read; write or fetch it again",
+			pool->file->path, pool->unreadable);
 	if (pool->voxels)
 		(void)munmap(pool->voxels, pool->mapped);
 	gz_brick_rooms_free(&pool->rooms);

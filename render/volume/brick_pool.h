@@ -55,8 +55,9 @@ size_t gz_brick_pool_rooms(const struct gz_brick_pool *pool);
  * @param wait    return only when nothing more is coming: the most that there is room for is there
  * @param[out] out_view  what to make the next picture of
  *
- * A brick that cannot be read is logged once and never asked for again. Threads: one at a time, and
- * none may read what an earlier turn gave.
+ * A brick that cannot be read is never asked for again; the first is logged, and how many there
+ * were when the pool is destroyed. Threads: one at a time, and none may read what an earlier turn
+ * gave.
  */
 void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count,
 			bool wait, struct gz_brick_view *out_view);

@@ -75,8 +75,13 @@ static void update_brick(struct gz_brick_rooms *rooms, uint32_t number)
 
 void gz_brick_rooms_let_in(struct gz_brick_rooms *rooms, int32_t room)
 {
-	rooms->room[room].there = true;
-	update_brick(rooms, rooms->room[room].brick);
+	struct gz_brick_room *at = &rooms->room[room];
+	at->there = true;
+	/* What was taken in this turn weighs more than all that is still to come: it makes room for
+	 * none of it. What was taken before may. */
+	if (at->taken_in != rooms->turn)
+		rooms->victims_known = false;
+	update_brick(rooms, at->brick);
 }
 
 void gz_brick_rooms_give_up(struct gz_brick_rooms *rooms, int32_t room)
@@ -86,6 +91,7 @@ void gz_brick_rooms_give_up(struct gz_brick_rooms *rooms, int32_t room)
 	at->there = false;
 	at->taken = false;
 	at->wanted = 0;
+	rooms->victims_known = false;
 }
 
 /* How much a room's brick is worth in this turn: wanted ones by weight, others less, by age. */
@@ -156,6 +162,7 @@ int32_t gz_brick_rooms_take(struct gz_brick_rooms *rooms, uint32_t brick, float 
 		.taken = true,
 		.weight = weight,
 		.wanted = rooms->turn,
+		.taken_in = rooms->turn,
 	};
 	rooms->room_of[brick] = room;
 	return room;
@@ -180,11 +187,6 @@ void gz_brick_rooms_turn(struct gz_brick_rooms *rooms, const struct gz_brick_wan
 		rooms->room[room].wanted = rooms->turn;
 		rooms->room[room].weight = wants[i].weight;
 	}
-}
-
-void gz_brick_rooms_look_again(struct gz_brick_rooms *rooms)
-{
-	rooms->victims_known = false;
 }
 
 void gz_brick_rooms_free(struct gz_brick_rooms *rooms)

@@ -31,6 +31,7 @@ struct gz_brick_room {
 	bool pinned;       /**< it stays */
 	float weight;      /**< when it was last wanted */
 	uint64_t wanted;   /**< the turn in which it was */
+	uint64_t taken_in; /**< the turn in which the room was taken for it */
 };
 
 /** The books. Zero-initialised has no rooms. */
@@ -59,12 +60,10 @@ enum gz_result gz_brick_rooms_init(struct gz_brick_rooms *rooms,
  *  eighth of them at most (chosen); the last in any case. */
 int gz_brick_rooms_pinned_level(const struct gz_brick_layout *layout, size_t count);
 
-/** The next picture wants these; the least valuable rooms are found anew. */
+/** The next picture wants these; the least valuable rooms are found anew. What is taken until the
+ *  next turn is to be taken in the order of its weight, the greatest first. */
 void gz_brick_rooms_turn(struct gz_brick_rooms *rooms, const struct gz_brick_want *wants,
 			 size_t count);
-
-/** Rooms have been filled since: those that may make room are found anew. */
-void gz_brick_rooms_look_again(struct gz_brick_rooms *rooms);
 
 /** Whether gz_brick_rooms_take() would find a room. */
 bool gz_brick_rooms_has(struct gz_brick_rooms *rooms, float weight);

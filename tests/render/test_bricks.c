@@ -429,6 +429,31 @@ static void file_that_becomes_shorter_shows_the_coarse_level(void **state)
 	small_scene_free(&scene);
 }
 
+static void damaged_bricks_are_told_by_the_first_and_their_number(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(100, 90, 95, GZ_VOXEL_U8);
+	struct small_scene bricks = scene;
+	struct captured_log log;
+	const char *path = files_path("scene.gzb");
+	assert_int_equal(gz_bricks_write(&scene.volume, path, NULL, NULL), GZ_OK);
+	captured_log_init(&log, NULL);
+	/* Fewer rooms than would keep the fine levels from the beginning. */
+	const struct gz_loading loading = { .brick_bytes = least_bytes(&scene) };
+	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &bricks.volume), GZ_OK);
+	assert_int_equal(truncate(path, 100), 0);
+	struct gz_image image = { 0 };
+	render(&bricks, "auto", true, &image);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "a coarser level is shown there"));
+	gz_image_free(&image);
+	small_scene_free(&bricks);
+	assert_int_equal(log.messages, 2);
+	assert_non_null(strstr(log.last, "bricks could not be read"));
+	assert_true(atoi(strstr(log.last, "gzb: ") + 5) > 10);
+	small_scene_free(&scene);
+}
+
 static void coarsest_level_that_cannot_be_read_is_refused(void **state)
 {
 	(void)state;
@@ -467,6 +492,7 @@ int main(void)
 		cmocka_unit_test(what_is_clipped_away_is_not_sent_for),
 		cmocka_unit_test(rooms_go_to_what_is_looked_at_now),
 		cmocka_unit_test(file_that_becomes_shorter_shows_the_coarse_level),
+		cmocka_unit_test(damaged_bricks_are_told_by_the_first_and_their_number),
 		cmocka_unit_test(coarsest_level_that_cannot_be_read_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
