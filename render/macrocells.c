@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/voxel_ranges.h"
 #include "render/workers.h"
 
 static int minimum(int a, int b)
@@ -10,119 +11,61 @@ static int minimum(int a, int b)
 	return a < b ? a : b;
 }
 
-static int maximum(int a, int b)
-{
-	return a > b ? a : b;
-}
-
 /* Chosen: from here on, in voxels, threads are started for the work. */
 #define PARALLEL_FROM ((size_t)1 << 23)
 
-/* Of each column of several rows of voxels, the least and the greatest. Written out by type, so
- * that each is a plain loop that compilers turn into vector code. */
-#define DEFINE_COLUMNS(name, type)                                                                \
-	static void name(const void *voxels, size_t from, int count, void *least, void *greatest) \
-	{                                                                                         \
-		const type *restrict row = (const type *)voxels + from;                           \
-		type *restrict low = least, *restrict high = greatest;                            \
-		for (int i = 0; i < count; i++) {                                                 \
-			low[i] = row[i] < low[i] ? row[i] : low[i];                               \
-			high[i] = row[i] > high[i] ? row[i] : high[i];                            \
-		}                                                                                 \
-	}                                                                                         \
-	static void name##_cell(const void *least, const void *greatest, int from, int to,        \
-				float *out_least, float *out_greatest)                            \
-	{                                                                                         \
-		type low = ((const type *)least)[from], high = ((const type *)greatest)[from];    \
-		for (int i = from + 1; i <= to; i++) {                                            \
-			const type l = ((const type *)least)[i];                                  \
-			const type h = ((const type *)greatest)[i];                               \
-			low = l < low ? l : low;                                                  \
-			high = h > high ? h : high;                                               \
-		}                                                                                 \
-		*out_least = (float)low;                                                          \
-		*out_greatest = (float)high;                                                      \
-	}
-
-DEFINE_COLUMNS(columns_u8, uint8_t)
-DEFINE_COLUMNS(columns_u16, uint16_t)
-DEFINE_COLUMNS(columns_f32, float)
-
-/* How one type of voxel is gone through. */
-static const struct voxel_kind {
-	void (*columns)(const void *voxels, size_t from, int count, void *least, void *greatest);
-	void (*cell)(const void *least, const void *greatest, int from, int to, float *out_least,
-		     float *out_greatest);
-} voxel_kinds[GZ_VOXEL_TYPE_COUNT] = {
-	[GZ_VOXEL_U8] = { columns_u8, columns_u8_cell },
-	[GZ_VOXEL_U16] = { columns_u16, columns_u16_cell },
-	[GZ_VOXEL_F32] = { columns_f32, columns_f32_cell },
-};
+/* One voxel on each side: see struct gz_macrocells. */
+static const struct gz_range_blocks macrocells = { GZ_MACROCELL_EDGE, 1, 1 };
 
 /* What the threads that build cells share. */
 struct building {
 	const struct gz_volume *volume;
 	struct gz_macrocells *cells;
-	char *rows; /* of each thread: the least and the greatest of columns */
-	size_t row_bytes;
+	char *scratch; /* of each thread: what a row takes, and its ranges */
+	size_t scratch_bytes;
 };
 
-/* The voxels of a cell along one axis. */
-static void cell_span(int cell, int dim, int *out_from, int *out_to)
+static void to_floats(enum gz_voxel_type type, const void *values, int count, float *out)
 {
-	*out_from = maximum(cell * GZ_MACROCELL_EDGE - 1, 0);
-	*out_to = minimum(cell * GZ_MACROCELL_EDGE + GZ_MACROCELL_EDGE, dim - 1);
-}
-
-/* A row of cells along x. */
-static void find_cells(const struct building *job, int y, int z, char *least, char *greatest)
-{
-	const struct gz_volume *volume = job->volume;
-	const struct voxel_kind *kind = &voxel_kinds[volume->type];
-	const size_t row = (size_t)volume->dims[0], slice = row * (size_t)volume->dims[1];
-	int from[3], to[3];
-	cell_span(y, volume->dims[1], &from[1], &to[1]);
-	cell_span(z, volume->dims[2], &from[2], &to[2]);
-	const char *first =
-		(const char *)volume->voxels +
-		((size_t)from[2] * slice + (size_t)from[1] * row) * gz_voxel_size(volume->type);
-	memcpy(least, first, job->row_bytes);
-	memcpy(greatest, first, job->row_bytes);
-	for (int k = from[2]; k <= to[2]; k++)
-		for (int j = from[1]; j <= to[1]; j++)
-			kind->columns(volume->voxels, (size_t)k * slice + (size_t)j * row,
-				      volume->dims[0], least, greatest);
-	struct gz_macrocells *cells = job->cells;
-	size_t index = ((size_t)z * (size_t)cells->dims[1] + (size_t)y) * (size_t)cells->dims[0];
-	for (int x = 0; x < cells->dims[0]; x++, index++) {
-		cell_span(x, volume->dims[0], &from[0], &to[0]);
-		kind->cell(least, greatest, from[0], to[0], &cells->least[index],
-			   &cells->greatest[index]);
-	}
+	for (int i = 0; i < count; i++)
+		out[i] = type == GZ_VOXEL_U8    ? ((const uint8_t *)values)[i]
+			 : type == GZ_VOXEL_U16 ? ((const uint16_t *)values)[i]
+						: ((const float *)values)[i];
 }
 
 static void find_slice(void *user, size_t part, int worker)
 {
 	const struct building *job = user;
-	char *rows = job->rows + 2 * (size_t)worker * job->row_bytes;
-	for (int y = 0; y < job->cells->dims[1]; y++)
-		find_cells(job, y, (int)part, rows, rows + job->row_bytes);
+	struct gz_macrocells *cells = job->cells;
+	const enum gz_voxel_type type = job->volume->type;
+	const size_t row = (size_t)cells->dims[0];
+	char *scratch = job->scratch + (size_t)worker * job->scratch_bytes;
+	char *least = scratch + gz_voxel_ranges_scratch(job->volume);
+	char *greatest = least + row * gz_voxel_size(type);
+	size_t index = part * (size_t)cells->dims[1] * row;
+	for (int y = 0; y < cells->dims[1]; y++, index += row) {
+		gz_voxel_ranges_row(job->volume, &macrocells, y, (int)part, cells->dims[0], scratch,
+				    least, greatest);
+		to_floats(type, least, cells->dims[0], cells->least + index);
+		to_floats(type, greatest, cells->dims[0], cells->greatest + index);
+	}
 }
 
 static enum gz_result find_all(struct building *job, struct gz_workers *workers)
 {
 	const size_t threads = workers ? (size_t)gz_workers_count(workers) : 1;
 	const size_t slices = (size_t)job->cells->dims[2];
-	job->row_bytes = (size_t)job->volume->dims[0] * gz_voxel_size(job->volume->type);
-	job->rows = malloc(threads * 2 * job->row_bytes);
-	if (!job->rows)
+	job->scratch_bytes = gz_voxel_ranges_scratch(job->volume) +
+			     2 * (size_t)job->cells->dims[0] * gz_voxel_size(job->volume->type);
+	job->scratch = malloc(threads * job->scratch_bytes);
+	if (!job->scratch)
 		return GZ_ERR_NO_MEM;
 	if (workers)
 		gz_workers_run(workers, find_slice, job, slices);
 	else
 		for (size_t z = 0; z < slices; z++)
 			find_slice(job, z, 0);
-	free(job->rows);
+	free(job->scratch);
 	return GZ_OK;
 }
 

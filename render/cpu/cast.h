@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "render/cast_constants.h"
+#include "render/cpu/fine_cells.h"
 #include "render/lighting.h"
 #include "render/plan/plan.h"
 #include "render/transfer_table.h"
@@ -28,6 +29,14 @@ struct gz_cast_bricks {
 	float scale[3][1 << GZ_BRICK_LEVEL_BITS];
 };
 
+/** Fine cells of one edge (fine_cells.h), by the lower neighbours of a sample. */
+struct gz_cast_grid {
+	const uint8_t *flags;
+	float cells_per_voxel;
+	float last[3]; /**< greatest cell index */
+	int32_t stride[3];
+};
+
 /** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel
  *  coordinates: voxel i along an axis spans [i, i + 1), its datum sits at i + 1/2. */
 struct gz_cast {
@@ -43,6 +52,7 @@ struct gz_cast {
 	const uint8_t *reach;
 	float cell_last[3]; /**< greatest cell index */
 	int32_t cell_stride[3];
+	struct gz_cast_grid fine[GZ_FINE_GRIDS]; /* flags are NULL where there are none */
 	/* transfer function */
 	float entry_scale, entry_bias;
 	const struct gz_transfer_entry *extinction; /**< per voxel length */

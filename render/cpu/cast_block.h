@@ -29,13 +29,6 @@ struct block {
 	};
 };
 
-/* Where rays that go side by side are: x, y, z of the rearmost, and how far they go in a step. The
- * block reaches ahead from there. */
-struct block_place {
-	__m128 edge, step;
-	__m128 back; /* from the voxel the edge is in to the block's first */
-};
-
 /* Whether there are blocks to be had: of volumes in one piece and large enough. */
 SIMD int blocks_fit(const struct gz_cast *cast)
 {
@@ -96,46 +89,14 @@ SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int
 	}
 }
 
-/* How far behind its rearmost ray an edge is put, voxels, so that rounding and rays that spread
- * need no new edge at once. Chosen: small beside the voxel or two that tiles span. */
-#define BLOCK_SLACK (1.0F / 32)
-
-SIMD __m128 block_corner(const float corner[3])
-{
-	return _mm_setr_ps(corner[0], corner[1], corner[2], 0);
-}
-
-/* Find the edge of the lanes of mask. */
-SIMD struct block_place block_find(const struct rays *rays, const vf at[3], vm mask)
-{
-	float edge[3], step[3], back[3];
-	for (int axis = 0; axis < 3; axis++) {
-		if (_mm512_cvtss_f32(rays->delta[axis]) > 0) {
-			edge[axis] = _mm512_mask_reduce_min_ps(mask, at[axis]) - BLOCK_SLACK;
-			step[axis] = _mm512_mask_reduce_min_ps(mask, rays->delta[axis]);
-			back[axis] = 0;
-		} else {
-			edge[axis] = _mm512_mask_reduce_max_ps(mask, at[axis]) + BLOCK_SLACK;
-			step[axis] = _mm512_mask_reduce_max_ps(mask, rays->delta[axis]);
-			back[axis] = BLOCK_EDGE - 2;
-		}
-	}
-	return (struct block_place) { block_corner(edge), block_corner(step), block_corner(back) };
-}
-
-SIMD void block_advance(struct block_place *place, float steps)
-{
-	place->edge = _mm_fmadd_ps(_mm_set1_ps(steps), place->step, place->edge);
-}
-
-/* Load the block at a place; at the volume's rim, as much of it as lies inside. */
-SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type,
-		     const struct block_place *place, struct block *block)
+/* Load the block whose first voxel is the one that a place, x, y, z, is in; at the volume's rim, as
+ * much of it as lies inside. */
+SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, __m128 place,
+		     struct block *block)
 {
 	const __m128 last = _mm_sub_ps(_mm_setr_ps(cast->dims[0], cast->dims[1], cast->dims[2], 4),
 				       _mm_set1_ps(BLOCK_EDGE));
-	const __m128 wanted = _mm_sub_ps(_mm_floor_ps(place->edge), place->back);
-	const __m128 base = _mm_min_ps(_mm_max_ps(wanted, _mm_setzero_ps()), last);
+	const __m128 base = _mm_min_ps(_mm_max_ps(_mm_floor_ps(place), _mm_setzero_ps()), last);
 	block->base[0] = _mm512_broadcastss_ps(base);
 	block->base[1] = _mm512_broadcastss_ps(_mm_permute_ps(base, 0x55));
 	block->base[2] = _mm512_broadcastss_ps(_mm_permute_ps(base, 0xAA));
@@ -240,30 +201,65 @@ SIMD vf block_sample_f32(const struct block *block, const vf whole[3], const vf 
 	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
 }
 
-/* The same values by gathers, for lanes that lie far apart. */
-SIMD vf gather_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
+/* 16 bits of each lane, from base + index bytes. Single loads take half the time of a gather. */
+SIMD __m256i load_halves(const uint8_t *base, const int32_t index[SIMD_LANES])
+{
+	__m128i half[2];
+	for (int i = 0; i < 2; i++, index += SIMD_LANES / 2) {
+		uint16_t pair[SIMD_LANES / 2];
+		for (int lane = 0; lane < SIMD_LANES / 2; lane++)
+			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+		half[i] = _mm_setr_epi16((int16_t)pair[0], (int16_t)pair[1], (int16_t)pair[2],
+					 (int16_t)pair[3], (int16_t)pair[4], (int16_t)pair[5],
+					 (int16_t)pair[6], (int16_t)pair[7]);
+	}
+	return _mm256_set_m128i(half[1], half[0]);
+}
+
+/* 32 bits of each lane, from base + 2 * index bytes. */
+SIMD vi load_words(const uint16_t *base, const int32_t index[SIMD_LANES])
+{
+	__m128i quarter[4];
+	for (int i = 0; i < 4; i++, index += SIMD_LANES / 4) {
+		int32_t pair[SIMD_LANES / 4];
+		for (int lane = 0; lane < SIMD_LANES / 4; lane++)
+			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+		quarter[i] = _mm_setr_epi32(pair[0], pair[1], pair[2], pair[3]);
+	}
+	return _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(quarter[1], quarter[0])),
+				  _mm256_set_m128i(quarter[3], quarter[2]), 1);
+}
+
+/* Two neighbours along x of each lane, as words. */
+SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
+			const int32_t index[SIMD_LANES])
+{
+	if (type == GZ_VOXEL_U8)
+		return _mm512_cvtepu8_epi16(load_halves((const uint8_t *)voxels + from, index));
+	return _mm512_xor_si512(load_words((const uint16_t *)voxels + from, index),
+				vi_set((int32_t)0x80008000));
+}
+
+/* The same values one by one, for lanes that lie far apart; those outside the mask take the first
+ * voxels, which are at hand. */
+SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
+			 vm mask)
 {
 	vf share[3];
 	vi index[3];
 	for (int axis = 0; axis < 3; axis++)
 		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
-	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
-	vi row[4];
-	row[0] = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
-	row[1] = vi_add(row[0], up_y);
-	row[2] = vi_add(row[0], up_z);
-	row[3] = vi_add(row[1], up_z);
-	vi pairs[4];
-	for (int i = 0; i < 4; i++) {
-		if (type == GZ_VOXEL_U8) {
-			const vi bytes = vi_gather(cast->voxels, row[i], 1, mask);
-			pairs[i] = vi_or(vi_and(bytes, vi_set(0xFF)),
-					 vi_shift_left(vi_and(bytes, vi_set(0xFF00)), 8));
-		} else {
-			pairs[i] = _mm512_xor_si512(vi_gather(cast->voxels, row[i], 2, mask),
-						    vi_set((int32_t)0x80008000));
-		}
-	}
+	const vi lane = vi_add(vi_add(index[0], vi_mul(index[1], vi_set(cast->stride[1]))),
+			       vi_mul(index[2], vi_set(cast->stride[2])));
+	int32_t first[SIMD_LANES];
+	_mm512_storeu_si512(first, _mm512_maskz_mov_epi32(mask, lane));
+	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
+	const vi pairs[4] = {
+		load_word_pairs(type, cast->voxels, 0, first),
+		load_word_pairs(type, cast->voxels, up_y, first),
+		load_word_pairs(type, cast->voxels, up_z, first),
+		load_word_pairs(type, cast->voxels, up_y + up_z, first),
+	};
 	return mix_pairs(pairs, share);
 }
 
@@ -292,7 +288,7 @@ SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int ne
 		return (sample_trilinear(cast, type, at, mask) - vf_set(FETCH_OFFSET(type))) *
 		       vf_set(FETCH_UNIT(type));
 	return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
-				    : gather_sample(cast, type, at, mask);
+				    : scattered_sample(cast, type, at, mask);
 }
 
 #endif

@@ -10,6 +10,7 @@
  */
 #include "render/cpu/cast.h"
 #include "render/cpu/cast_fetch.h"
+#include "render/cpu/cast_fine.h"
 #ifdef SIMD_BLOCKS
 #include "render/cpu/cast_together.h"
 #else
@@ -19,6 +20,7 @@
 #include "render/cpu/cast_look_up.h"
 #include "render/cpu/cast_preintegrated.h"
 #include "render/cpu/cast_rays.h"
+#include "render/cpu/cast_settle.h"
 #include "render/cpu/cast_shade.h"
 #include "render/cpu/cast_skip.h"
 
@@ -33,6 +35,15 @@ SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm ask
 	/* To the first sample at or behind the empty box's far side; at least one on. */
 	const vf ahead = vf_max(vf_ceil(leave - *k), vf_set(1));
 	*k = vf_select(empty, *k + ahead, *k);
+}
+
+/* Behind what is empty for sure around samples that show nothing. */
+SIMD vf skip(const struct gz_cast *cast, const struct rays *rays, vf k, vm running)
+{
+	vf leave;
+	const vm empty = look_up_cell(cast, rays, k, running, &leave);
+	const vf ahead = vf_select(empty, vf_max(vf_ceil(leave - k), vf_set(1)), vf_set(1));
+	return vf_select(running, k + ahead, k);
 }
 
 /* All whole segments, each ray for itself. Which sample comes next depends on the cells alone, not
@@ -71,6 +82,35 @@ SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, i
 	return samples;
 }
 
+/* All whole segments, each ray for itself, of those samples alone that may show something. */
+SIMD uint32_t march_fine(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			 const struct look_up *look_up, int step, const struct rays *rays, vm alive,
+			 struct light *light)
+{
+	vf k = rays->first + vf_set(0.5F);
+	struct waiting before = none_waiting();
+	uint32_t samples = 0;
+	for (;;) {
+		const vm running = vf_less(k, rays->end);
+		if (!vm_any(vm_and(running, alive)))
+			break;
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		const vm shows = vm_and(fine_shows(cast, at, running), alive);
+		if (!vm_any(shows)) {
+			k = skip(cast, rays, k, running);
+			continue;
+		}
+		const vf value = fetch_sample(cast, type, nearest, rays, k, shows);
+		samples += settle(cast, type, nearest, step, rays, &before, &alive, light);
+		before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					    shows };
+		k = vf_select(running, k + vf_set(1), k);
+	}
+	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
+}
+
 /* All whole segments. */
 SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
 		    const struct rays *rays, struct light *light)
@@ -79,11 +119,14 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 	const vm alive = vm_and(rays->hit, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
 	if (!vm_any(alive))
 		return 0;
+	if (!cast->fine[0].flags)
+		return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
 #ifdef SIMD_BLOCKS
-	if (!nearest && blocks_fit(cast))
-		return march_together(cast, type, &look_up, step, rays, alive, light);
+	const struct beam beam = beam_of(rays);
+	if (beam.grid < GZ_FINE_GRIDS)
+		return march_beam(cast, type, nearest, &look_up, step, rays, &beam, alive, light);
 #endif
-	return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
+	return march_fine(cast, type, nearest, &look_up, step, rays, alive, light);
 }
 
 /* A part of a segment, at either end of the whole ones: around k, of a length in steps. */
@@ -132,6 +175,10 @@ SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *t
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
 		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
 			    vm_from_bits(tile->active >> first), &rays);
+		if (!vm_any(rays.hit)) {
+			vi_store(out_pixels + first, to_pixel(cast, &light));
+			continue;
+		}
 		if (rich && cast->light.on) {
 			set_up_view(cast, tile->step, &rays, &view);
 			rays.view = &view;

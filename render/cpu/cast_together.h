@@ -1,24 +1,43 @@
 /*
  * Marching side by side: all rays of a tile at the same distance from the eye, so that a block of
- * voxels serves them all and cells are asked for the tile as a whole. Where one ray's cell shows
- * something, all take their samples: in an empty cell they have no opacity.
+ * voxels serves them all. Distances are counted in levels, samples from the first of all rays on;
+ * which levels show something is asked for the tile as a whole, for sixteen at a time, and those
+ * that do are listed before any is sampled. Where one ray's cell shows something, all take their
+ * samples: in an empty cell they have no opacity.
  * A part of the kernel, for sets with blocks: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_CPU_CAST_TOGETHER_H
 #define GZ_RENDER_CPU_CAST_TOGETHER_H
 
 #include "render/cpu/cast_block.h"
-#include "render/cpu/cast_light.h"
+#include "render/cpu/cast_fine.h"
 #include "render/cpu/cast_look_up.h"
-#include "render/cpu/cast_shade.h"
-#include "render/cpu/cast_skip.h"
+#include "render/cpu/cast_settle.h"
+#include <math.h>
 
-/* Samples that no block serves, in excess of those one does, after which a tile's rays are taken to
- * be too far apart: gathers serve the rest. Chosen: a tile that crosses the box's edge recovers. */
-enum { TOGETHER_PATIENCE = 4 };
+/* How far apart, voxels, the rays of a tile may be to go side by side. Chosen by measuring: up to 2
+ * a block holds them all wherever they are, at 3 by luck alone, and gathers serve the rest. */
+#define TOGETHER_SPREAD 2.5F
+/* How much farther than it seems a ray may be from where it should be: rounding, voxels. */
+#define TOGETHER_SLACK (1.0F / 32)
 
-/* The first sample of the ray that has its own first, and those of the others that are level with
- * it, which may lie before they come to the box. */
+/* Levels that are listed at a time. Chosen: a stretch is seldom longer. */
+enum { LEVELS_LISTED = 64 };
+
+/* The box round all rays of a tile, over the levels: corners go straight, those of the rays are
+ * never outside. x, y, z and 0, counted from the first datum. */
+struct beam {
+	__m128 low, high;           /* at level 0 */
+	__m128 low_step, high_step; /* from one level to the next */
+	float spread;               /* the longest edge anywhere, voxels */
+	int grid;                   /* of the fine cells that are at least as long */
+	float levels_per_voxel;     /* of the corner and axis that goes fastest */
+	vf first;                   /* the k of level 0 */
+	float count;                /* levels */
+};
+
+/* Sample k of level 0: the first of the ray that has its own first, and those of the others that
+ * are level with it, which may lie before they come to the box. */
 SIMD vf level_start(const struct rays *rays)
 {
 	const float nearest = _mm512_mask_reduce_min_ps(rays->hit, rays->zero + rays->first);
@@ -26,119 +45,218 @@ SIMD vf level_start(const struct rays *rays)
 						   _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 }
 
-/* Ask for the cells of all rays still going. If all are empty, the number of samples to leave out;
- * else, negative, of those to take. */
-SIMD float ask_together(const struct gz_cast *cast, const struct rays *rays, vf k, vm going)
+/* The box round the places of k. */
+SIMD void beam_corners(const struct rays *rays, vf k, __m128 *low, __m128 *high)
 {
-	vf leave;
-	const vm full = vm_but(going, look_up_cell(cast, rays, k, going, &leave));
-	const vf ahead = vf_max(vf_ceil(vf_min(leave, rays->end) - k), vf_set(1));
-	return vm_any(full) ? -_mm512_mask_reduce_max_ps(full, ahead)
-			    : _mm512_mask_reduce_min_ps(going, ahead);
+	float least[3], most[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const vf at = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		least[axis] = _mm512_mask_reduce_min_ps(rays->hit, at);
+		most[axis] = _mm512_mask_reduce_max_ps(rays->hit, at);
+	}
+	const __m128 slack = _mm_set1_ps(TOGETHER_SLACK);
+	*low = _mm_sub_ps(_mm_setr_ps(least[0], least[1], least[2], 0), slack);
+	*high = _mm_add_ps(_mm_setr_ps(most[0], most[1], most[2], 0), slack);
 }
 
-/* Rays on their way. Of one sample to the next, the block of voxels is fetched while the one before
- * it is interpolated, whose colour is looked up while the next is: a processor that runs ahead of a
- * dozen loads, but not of two samples, has something to do meanwhile. */
-struct company {
-	vf k;
-	struct block_place place; /* of the sample at k */
-	struct block block;       /* there */
-	int misses;
-	/* the sample before: not added yet */
-	vf at;
-	vi entry;
-	vm within;
-};
+SIMD float greatest_of_four(__m128 x)
+{
+	const __m128 two = _mm_max_ps(x, _mm_movehl_ps(x, x));
+	return _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)));
+}
 
-/* The value at k, by the block if it holds all rays; the block of the next sample. */
+SIMD __m128 absolute_of_four(__m128 x)
+{
+	return _mm_andnot_ps(_mm_set1_ps(-0.0F), x);
+}
+
+/* Each ray goes straight and evenly, so that the least of all over the levels is bent one way only
+ * and lies beyond the line between its ends. */
+SIMD struct beam beam_of(const struct rays *rays)
+{
+	struct beam beam = { .first = level_start(rays) };
+	beam.count = ceilf(_mm512_mask_reduce_max_ps(rays->hit, rays->end - beam.first));
+	__m128 low, high;
+	beam_corners(rays, beam.first, &beam.low, &beam.high);
+	beam_corners(rays, beam.first + vf_set(beam.count), &low, &high);
+	const __m128 share = _mm_set1_ps(1 / fmaxf(beam.count, 1));
+	beam.low_step = _mm_mul_ps(_mm_sub_ps(low, beam.low), share);
+	beam.high_step = _mm_mul_ps(_mm_sub_ps(high, beam.high), share);
+	beam.spread = greatest_of_four(
+		_mm_max_ps(_mm_sub_ps(beam.high, beam.low), _mm_sub_ps(high, low)));
+	while (beam.grid < GZ_FINE_GRIDS && beam.spread > (float)(GZ_FINE_EDGE << beam.grid))
+		beam.grid++;
+	beam.levels_per_voxel = 1 / greatest_of_four(_mm_max_ps(absolute_of_four(beam.low_step),
+								absolute_of_four(beam.high_step)));
+	return beam;
+}
+
+/* A corner's coordinate at several levels. */
+SIMD vf beam_axis(const __m128 *corner, const __m128 *step, int axis, vf level)
+{
+	return vf_fma(level, vf_set((*step)[axis]), vf_set((*corner)[axis]));
+}
+
+/* Which of sixteen levels show something in any cell that the beam's box touches, which is no
+ * longer than a cell. */
+SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level)
+{
+	const struct gz_cast_grid *grid = &cast->fine[beam->grid];
+	vf cell[3];
+	vi axes = vi_set(0);
+	for (int axis = 0; axis < 3; axis++) {
+		cell[axis] =
+			fine_place(grid, axis, beam_axis(&beam->low, &beam->low_step, axis, level));
+		const vf last = fine_place(grid, axis,
+					   beam_axis(&beam->high, &beam->high_step, axis, level));
+		axes = _mm512_mask_or_epi32(axes, vf_less(cell[axis], last), axes,
+					    vi_set(1 << axis));
+	}
+	const vm asked = vf_less(level, vf_set(beam->count));
+	const vi flags = vi_gather(grid->flags, fine_index(grid, cell), 1, asked);
+	return _mm512_mask_test_epi32_mask(asked, _mm512_srlv_epi32(flags, axes), vi_set(1));
+}
+
+/* How many levels behind one that shows nothing are empty too, by the macrocells. */
+SIMD float beam_empty(const struct gz_cast *cast, const struct beam *beam, float level)
+{
+	const __m128 low = _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low);
+	const __m128 last =
+		_mm_setr_ps(cast->cell_last[0], cast->cell_last[1], cast->cell_last[2], 0);
+	const __m128 place = _mm_mul_ps(_mm_add_ps(low, _mm_set1_ps(0.5F)),
+					_mm_set1_ps(1.0F / GZ_MACROCELL_EDGE));
+	const __m128i cell =
+		_mm_cvttps_epi32(_mm_min_ps(_mm_max_ps(place, _mm_setzero_ps()), last));
+	const int64_t index = _mm_cvtsi128_si32(cell) +
+			      (int64_t)_mm_extract_epi32(cell, 1) * cast->cell_stride[1] +
+			      (int64_t)_mm_extract_epi32(cell, 2) * cast->cell_stride[2];
+	/* Cells less than this away are empty; the low corner is anywhere in its own. */
+	const int away = cast->reach[index] - GZ_REACH_BORDER;
+	const float free = (float)((away - 1) * GZ_MACROCELL_EDGE) - beam->spread;
+	return fmaxf(floorf(free * beam->levels_per_voxel), 0);
+}
+
+/* List levels that show something, from `from` on, which moves on; none at the end. */
+SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float *from,
+		     float levels[LEVELS_LISTED + SIMD_LANES])
+{
+	const vf sixteen = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+	int count = 0;
+	while (*from < beam->count && count < LEVELS_LISTED) {
+		const vf level = vf_set(*from) + sixteen;
+		const vm shows = beam_shows(cast, beam, level);
+		*from += SIMD_LANES;
+		if (shows) {
+			vf_store(levels + count, _mm512_maskz_compress_ps(shows, level));
+			count += (int)vm_count(shows);
+		} else {
+			*from += beam_empty(cast, beam, *from - 1);
+		}
+	}
+	return count;
+}
+
+/* Load the block of a level. */
+SIMD void beam_block(const struct gz_cast *cast, enum gz_voxel_type type, const struct beam *beam,
+		     float level, struct block *block)
+{
+	block_take(cast, type, _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low), block);
+}
+
+/* The values at k of the lanes of mask, by the block if it holds them. */
 SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
-		       vm needed, struct company *company)
+		       vf k, vm needed, const struct block *block)
 {
 	vf at[3], places[3];
 	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(company->k, rays->delta[axis], rays->datum[axis]);
-	if (__builtin_expect(company->misses >= TOGETHER_PATIENCE, 0))
-		return fetch_sample(cast, type, 0, rays, company->k, needed);
-	struct block block = company->block;
-	if (__builtin_expect(!block_places(cast, &block, at, needed, places), 0)) {
-		company->place = block_find(rays, at, needed);
-		block_take(cast, type, &company->place, &block);
-		const int fits = block_places(cast, &block, at, needed, places);
-		company->misses += fits ? -(company->misses > 0) : 1;
-		if (!fits) {
-			block_advance(&company->place, 1);
-			block_take(cast, type, &company->place, &company->block);
-			return fetch_sample(cast, type, 0, rays, company->k, needed);
-		}
-	}
-	block_advance(&company->place, 1);
-	block_take(cast, type, &company->place, &company->block);
-	return block_sample(&block, type, places);
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	if (__builtin_expect(!block_places(cast, block, at, needed, places), 0))
+		return fetch_sample(cast, type, 0, rays, k, needed);
+	return block_sample(block, type, places);
 }
 
-/* Add the sample that has been waiting. */
-SIMD uint32_t settle(const struct gz_cast *cast, enum gz_voxel_type type, int step,
-		     const struct rays *rays, const struct company *company, vm *alive,
-		     struct light *light)
+/* Take the samples of levels. Of one sample to the next, the block of voxels is fetched while the
+ * one before it is interpolated, whose colour is looked up while the next is: a processor that runs
+ * ahead of a dozen loads, but not of two samples, has something to do meanwhile. */
+SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type,
+			    const struct look_up *look_up, int step, const struct rays *rays,
+			    const struct beam *beam, const float *levels, int count, vm *alive,
+			    struct waiting *before, struct light *light)
 {
-	vf opacity;
-	vi colour;
-	const vm needed = vm_and(company->within, *alive);
-	gather_pair(cast->step_table[step], company->entry, vm_all(), &opacity, &colour);
-	composite_at(cast, type, 0, rays, company->at, colour, opacity, needed, light);
-	*alive = vm_and(*alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
-	return vm_count(needed);
+	uint32_t samples = 0;
+	struct block block, next;
+	beam_block(cast, type, beam, levels[0], &block);
+	for (int i = 0; i < count && vm_any(*alive); i++) {
+		beam_block(cast, type, beam, levels[i + 1 < count ? i + 1 : i], &next);
+		const vf k = beam->first + vf_set(levels[i]);
+		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
+		const vf value =
+			fetch_together(cast, type, rays, k, vm_and(within, *alive), &block);
+		samples += settle(cast, type, 0, step, rays, before, alive, light);
+		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					     within };
+		block = next;
+	}
+	return samples;
 }
 
-/* Leave out what is empty and say how many samples to take then; 0 at the end. */
-SIMD float go_ahead(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
-		    vm alive, struct company *company)
+/* Of listed levels keep those where rays have samples that show something, and which rays. */
+SIMD int find_showing(const struct gz_cast *cast, const struct rays *rays, const struct beam *beam,
+		      float *levels, int count, vm showing[LEVELS_LISTED + SIMD_LANES])
 {
-	float ahead, skipped = 0;
-	for (;;) {
-		const vm going = vm_and(alive, vf_less(company->k, rays->end));
-		if (!vm_any(going))
-			return 0;
-		ahead = ask_together(cast, rays, company->k, going);
-		if (ahead < 0)
-			break;
-		company->k = company->k + vf_set(ahead);
-		skipped += ahead;
+	int kept = 0;
+	for (int i = 0; i < count; i++) {
+		const vf k = beam->first + vf_set(levels[i]);
+		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		const vm shows = fine_shows(cast, at, within);
+		levels[kept] = levels[i];
+		showing[kept] = shows;
+		kept += vm_any(shows);
 	}
-	if (skipped > 0 && company->misses < TOGETHER_PATIENCE) {
-		block_advance(&company->place, skipped);
-		block_take(cast, type, &company->place, &company->block);
+	return kept;
+}
+
+/* Take the samples of levels where rays are too far apart for a block: those alone that show
+ * something. */
+SIMD uint32_t take_scattered(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const struct look_up *look_up, int step, const struct rays *rays,
+			     const struct beam *beam, float *levels, int count, vm *alive,
+			     struct waiting *before, struct light *light)
+{
+	vm showing[LEVELS_LISTED + SIMD_LANES];
+	uint32_t samples = 0;
+	count = find_showing(cast, rays, beam, levels, count, showing);
+	for (int i = 0; i < count && vm_any(*alive); i++) {
+		const vf k = beam->first + vf_set(levels[i]);
+		const vf value =
+			fetch_sample(cast, type, nearest, rays, k, vm_and(showing[i], *alive));
+		samples += settle(cast, type, nearest, step, rays, before, alive, light);
+		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					     showing[i] };
 	}
-	return -ahead;
+	return samples;
 }
 
 /* All whole segments. */
-SIMD uint32_t march_together(const struct gz_cast *cast, enum gz_voxel_type type,
-			     const struct look_up *look_up, int step, const struct rays *rays,
-			     vm alive, struct light *light)
+SIMD uint32_t march_beam(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			 const struct look_up *look_up, int step, const struct rays *rays,
+			 const struct beam *beam, vm alive, struct light *light)
 {
-	struct company company = { .k = level_start(rays), .at = vf_set(0), .entry = vi_set(0) };
-	block_take(cast, type, &company.place, &company.block);
+	const int together = !nearest && beam->spread <= TOGETHER_SPREAD && blocks_fit(cast);
+	float levels[LEVELS_LISTED + SIMD_LANES];
+	struct waiting before = none_waiting();
 	uint32_t samples = 0;
-	float run = 0; /* samples to take before the cells are asked */
-	while (vm_any(alive)) {
-		if (run <= 0) {
-			run = go_ahead(cast, type, rays, alive, &company);
-			if (run <= 0)
-				break;
-		}
-		run -= 1;
-		const vm within =
-			vm_and(vf_less(rays->first, company.k), vf_less(company.k, rays->end));
-		const vf value = fetch_together(cast, type, rays, vm_and(within, alive), &company);
-		samples += settle(cast, type, step, rays, &company, &alive, light);
-		company.entry = entry_of(look_up->scale, look_up->bias, value);
-		company.within = within;
-		company.at = company.k;
-		company.k = company.k + vf_set(1);
-	}
-	return samples + settle(cast, type, step, rays, &company, &alive, light);
+	float from = 0;
+	int count;
+	while (vm_any(alive) && (count = list_levels(cast, beam, &from, levels)) > 0)
+		samples += together ? take_together(cast, type, look_up, step, rays, beam, levels,
+						    count, &alive, &before, light)
+				    : take_scattered(cast, type, nearest, look_up, step, rays, beam,
+						     levels, count, &alive, &before, light);
+	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "render/brick_stream.h"
 #include "render/cpu/cast.h"
+#include "render/cpu/fine_cells.h"
 #include "render/cpu/lattice.h"
 #include "render/cpu/reconstruct.h"
 #include "render/detail.h"
@@ -33,8 +34,9 @@ struct cpu_renderer {
 	const struct gz_cast_kernels *kernels;
 	const struct gz_volume *volume; /* borrowed */
 	struct gz_detail detail;
-	struct gz_brick_stream stream; /* of a volume of bricks */
-	size_t bricks_coming;          /* of the last picture */
+	struct gz_fine_cells fine[GZ_LEVELS_MAX]; /* of each level that is in memory */
+	struct gz_brick_stream stream;            /* of a volume of bricks */
+	size_t bricks_coming;                     /* of the last picture */
 	bool wait_for_bricks;
 	bool has_transfer;
 	struct gz_transfer_table table;
@@ -46,6 +48,10 @@ struct cpu_renderer {
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
+};
+
+struct tile_offsets {
+	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS];
 };
 
 /* What the workers are given. */
@@ -60,6 +66,7 @@ struct cast_job {
 	struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
 	struct sample_count *counts;
+	struct tile_offsets offsets[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	int jitter; /* seed */
 };
 
@@ -68,11 +75,18 @@ static struct cpu_renderer *cpu_of(struct gz_renderer *renderer)
 	return (struct cpu_renderer *)renderer;
 }
 
+static void free_fine_cells(struct cpu_renderer *cpu)
+{
+	for (int i = 0; i < GZ_LEVELS_MAX; i++)
+		gz_fine_cells_free(&cpu->fine[i]);
+}
+
 static void cpu_destroy(struct gz_renderer *renderer)
 {
 	struct cpu_renderer *cpu = cpu_of(renderer);
 	gz_workers_destroy(&cpu->workers);
 	gz_detail_free(&cpu->detail);
+	free_fine_cells(cpu);
 	gz_brick_stream_free(&cpu->stream);
 	gz_lighting_free(&cpu->lighting);
 	gz_lattices_free(&cpu->lattices);
@@ -143,13 +157,35 @@ static enum gz_result cpu_set_volume(struct gz_renderer *renderer, const struct 
 		       volume->dims[0], volume->dims[1], volume->dims[2]);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	const enum gz_result result = gz_detail_start(&cpu->detail, volume);
+	enum gz_result result = gz_detail_start(&cpu->detail, volume);
+	free_fine_cells(cpu);
+	if (result == GZ_OK && !volume->bricks)
+		result = gz_fine_cells_build(volume, cpu->workers, &cpu->fine[0]);
 	if (result != GZ_OK) {
 		gz_err(renderer->log, "no memory for the macrocells of the volume");
 		return result;
 	}
 	cpu->volume = volume;
 	return GZ_OK;
+}
+
+static void classify_fine_cells(struct cpu_renderer *cpu, int level)
+{
+	if (cpu->fine[level].least)
+		gz_fine_cells_classify(&cpu->fine[level], &cpu->detail.cells[level], &cpu->table,
+				       cpu->workers);
+}
+
+/* The levels of detail that a frame asks for. Without memory for fine cells the kernels do with
+ * macrocells. */
+static void make_levels(struct cpu_renderer *cpu)
+{
+	gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
+	for (int i = 1; i < cpu->detail.levels.count && !cpu->volume->bricks; i++)
+		if (!cpu->fine[i].least &&
+		    gz_fine_cells_build(&cpu->detail.levels.level[i].volume, cpu->workers,
+					&cpu->fine[i]) == GZ_OK)
+			classify_fine_cells(cpu, i);
 }
 
 static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
@@ -160,6 +196,8 @@ static enum gz_result cpu_set_transfer(struct gz_renderer *renderer,
 		return GZ_ERR_INVAL;
 	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
 	gz_detail_classify(&cpu->detail, &cpu->table);
+	for (int i = 0; i < cpu->detail.levels.count; i++)
+		classify_fine_cells(cpu, i);
 	gz_brick_stream_forget(&cpu->stream);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	gz_preintegration_forget(&cpu->preintegration);
@@ -197,6 +235,22 @@ static void fill_volume(const struct cpu_renderer *cpu, int index, const struct 
 		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		cast->cell_stride[axis] = cell_strides[axis];
 		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box);
+	}
+}
+
+static void fill_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *cast)
+{
+	for (int i = 0; i < GZ_FINE_GRIDS; i++) {
+		const struct gz_fine_grid *from = &cells->grid[i];
+		struct gz_cast_grid *grid = &cast->fine[i];
+		grid->flags = from->flags;
+		grid->cells_per_voxel = 1.0F / (float)(GZ_FINE_EDGE << i);
+		int32_t stride = 1;
+		for (int axis = 0; axis < 3; axis++) {
+			grid->last[axis] = (float)(from->dims[axis] - 1);
+			grid->stride[axis] = stride;
+			stride *= from->dims[axis];
+		}
 	}
 }
 
@@ -255,40 +309,36 @@ static enum gz_result fill_preintegration(struct cpu_renderer *cpu, const struct
 	return GZ_OK;
 }
 
-static void store(const struct gz_lattice *lattice, int x, int y, uint32_t pixel)
+/* Where the rays of a tile go, seen from its corner. */
+static void fill_offsets(struct cast_job *job)
 {
-	const int column = x / lattice->spacing, row = y / lattice->spacing;
-	if (column < lattice->columns && row < lattice->rows)
-		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
-}
-
-/* Where ray i of a tile goes. */
-static void tile_ray(const struct gz_plan *plan, const struct gz_tile *tile, int i, int *x, int *y)
-{
-	const int spacing = plan->layers[tile->layer].spacing;
-	*x = tile->x + gz_tile_columns[tile->pattern][i] * spacing;
-	*y = tile->y + gz_tile_rows[i] * spacing;
-}
-
-static void store_tile(const struct cast_job *job, const struct gz_tile *tile,
-		       const uint32_t pixels[GZ_TILE_RAYS])
-{
-	const bool pyramid = job->plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
-	if (pyramid)
-		gz_lattices_mark(job->lattices, tile);
-	const int last = pyramid ? job->plan->layer_count - 1 : tile->layer;
-	for (int i = 0; i < GZ_TILE_RAYS; i++) {
-		int x, y;
-		tile_ray(job->plan, tile, i, &x, &y);
-		store(&job->lattices->layers[tile->layer], x, y, pixels[i]);
-		/* A point of a pyramid may be a point of coarser lattices too. */
-		for (int layer = tile->layer + 1; layer <= last; layer++) {
-			const struct gz_lattice *lattice = &job->lattices->layers[layer];
-			if ((x | y) & (lattice->spacing - 1))
-				break;
-			store(lattice, x, y, pixels[i]);
+	for (int layer = 0; layer < job->plan->layer_count; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++) {
+			struct tile_offsets *offsets = &job->offsets[layer][pattern];
+			const int spacing = job->plan->layers[layer].spacing;
+			for (int i = 0; i < GZ_TILE_RAYS; i++) {
+				offsets->x[i] = (float)(gz_tile_columns[pattern][i] * spacing);
+				offsets->y[i] = (float)(gz_tile_rows[i] * spacing);
+			}
 		}
+}
+
+/* The rays of a tile, in pixels of the picture that the camera frames. */
+static void fill_tile(const struct cast_job *job, const struct gz_tile *tile,
+		      struct gz_cast_tile *out_rays)
+{
+	const struct tile_offsets *offsets = &job->offsets[tile->layer][tile->pattern];
+	const int x = tile->x - job->plan->view.shift[0], y = tile->y - job->plan->view.shift[1];
+	out_rays->step = tile->step;
+	out_rays->active = gz_plan_tile_active(job->plan, tile);
+	for (int i = 0; i < GZ_TILE_RAYS; i++) {
+		out_rays->x[i] = (float)x + offsets->x[i];
+		out_rays->y[i] = (float)y + offsets->y[i];
+		out_rays->jitter[i] = 0;
 	}
+	for (int i = 0; job->jitter != 0 && i < GZ_TILE_RAYS; i++)
+		out_rays->jitter[i] =
+			gz_ray_jitter((int)out_rays->x[i], (int)out_rays->y[i], job->jitter);
 }
 
 /* Which level of detail a tile takes. */
@@ -343,32 +393,23 @@ static enum gz_result take_bricks(struct cpu_renderer *cpu, const struct gz_came
 	return GZ_OK;
 }
 
+static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, int worker)
+{
+	struct gz_cast_tile rays;
+	uint32_t pixels[GZ_TILE_RAYS];
+	fill_tile(job, tile, &rays);
+	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
+	gz_lattices_store(job->lattices, job->plan, tile, rays.active, pixels);
+}
+
 static void cast_part(void *user, size_t part, int worker)
 {
 	const struct cast_job *job = user;
 	const size_t from = part * TILES_A_PART;
 	const size_t to = from + TILES_A_PART < job->plan->tile_count ? from + TILES_A_PART
 								      : job->plan->tile_count;
-	for (size_t i = from; i < to; i++) {
-		const struct gz_tile *tile = &job->plan->tiles[i];
-		struct gz_cast_tile rays = {
-			.step = tile->step,
-			.active = gz_plan_tile_active(job->plan, tile),
-		};
-		for (int ray = 0; ray < GZ_TILE_RAYS; ray++) {
-			int x, y;
-			tile_ray(job->plan, tile, ray, &x, &y);
-			x -= job->plan->view.shift[0];
-			y -= job->plan->view.shift[1];
-			rays.x[ray] = (float)x;
-			rays.y[ray] = (float)y;
-			rays.jitter[ray] = gz_ray_jitter(x, y, job->jitter);
-		}
-		uint32_t pixels[GZ_TILE_RAYS];
-		job->counts[worker].samples +=
-			job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
-		store_tile(job, tile, pixels);
-	}
+	for (size_t i = from; i < to; i++)
+		cast_tile(job, &job->plan->tiles[i], worker);
 }
 
 static uint64_t cast_tiles(struct cpu_renderer *cpu, struct cast_job *job)
@@ -390,7 +431,7 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->view.height);
 	const bool coarser = gz_detail_wanted(job->plan, rays, pixel_lengths);
 	if (coarser)
-		gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
+		make_levels(cpu);
 	job->detail = &cpu->detail;
 	job->rays = rays;
 	job->pixel_lengths = coarser ? pixel_lengths : 0;
@@ -404,6 +445,7 @@ static enum gz_result fill_casts(struct cpu_renderer *cpu, const struct gz_camer
 	for (int i = 0; i < job->cast_count; i++) {
 		job->casts[i] = job->casts[0];
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
+		fill_fine_cells(&cpu->fine[i], &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
 		gz_lighting_fill(&cpu->lighting, cpu->volume, cpu->detail.levels.level[i].factor,
 				 &cpu->table, rays, ray_frame, &job->casts[i].light);
@@ -449,6 +491,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 		result = take_bricks(cpu, camera, rays, &job);
 	if (result != GZ_OK)
 		return result;
+	fill_offsets(&job);
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,

@@ -60,6 +60,64 @@ void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile)
 		memset(row, 2 * tile->layer + tile->pattern, width);
 }
 
+static void store_point(const struct gz_lattice *lattice, int column, int row, uint32_t pixel)
+{
+	if (column < lattice->columns && row < lattice->rows)
+		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
+}
+
+/* A tile of which all points lie on its lattice, whose first is (column, row). */
+static void store_whole(const struct gz_lattice *lattice, int pattern, int column, int row,
+			const uint32_t *pixels)
+{
+	uint32_t *to = lattice->points + (size_t)row * lattice->stride + (size_t)column;
+	const uint8_t *columns = gz_tile_columns[pattern];
+	for (int y = 0; y < GZ_TILE_EDGE; y++, to += lattice->stride) {
+		if (pattern == GZ_TILE_SQUARE)
+			memcpy(to, pixels + GZ_TILE_EDGE * y, GZ_TILE_EDGE * sizeof *to);
+		for (int x = 0; pattern != GZ_TILE_SQUARE && x < GZ_TILE_EDGE; x++)
+			to[columns[GZ_TILE_EDGE * y + x]] = pixels[GZ_TILE_EDGE * y + x];
+	}
+}
+
+/* Points of a pyramid that are points of coarser lattices too: each has twice the spacing of the
+ * one before, or more. */
+static void store_coarser(const struct gz_lattices *lattices, const struct gz_tile *tile, int last,
+			  const uint32_t *pixels)
+{
+	const uint8_t *columns = gz_tile_columns[tile->pattern];
+	const int spacing = lattices->layers[tile->layer].spacing;
+	for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
+		const int x = tile->x + columns[i] * spacing;
+		const int y = tile->y + gz_tile_rows[i] * spacing;
+		for (int layer = tile->layer + 1; layer <= last; layer++) {
+			const struct gz_lattice *lattice = &lattices->layers[layer];
+			const int shift = __builtin_ctz((unsigned)lattice->spacing);
+			if ((x | y) & (lattice->spacing - 1))
+				break;
+			store_point(lattice, x >> shift, y >> shift, pixels[i]);
+		}
+	}
+}
+
+void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
+		       const struct gz_tile *tile, uint32_t active,
+		       const uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE])
+{
+	const struct gz_lattice *lattice = &lattices->layers[tile->layer];
+	const uint8_t *columns = gz_tile_columns[tile->pattern];
+	const int column = tile->x / lattice->spacing, row = tile->y / lattice->spacing;
+	if (active == 0xFFFF)
+		store_whole(lattice, tile->pattern, column, row, pixels);
+	else
+		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++)
+			store_point(lattice, column + columns[i], row + gz_tile_rows[i], pixels[i]);
+	if (plan->reconstruction != GZ_RECONSTRUCT_PYRAMID)
+		return;
+	gz_lattices_mark(lattices, tile);
+	store_coarser(lattices, tile, plan->layer_count - 1, pixels);
+}
+
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,
 				   struct gz_image *image)
 {

@@ -46,6 +46,19 @@ enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz
  * with tiles of its own. */
 void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile);
 
+/**
+ * Put the colours of a tile's rays where they belong: on its layer's lattice and, in a pyramid, on
+ * those of all coarser layers that have the point too; there, mark its blocks as well.
+ *
+ * @param active  of gz_plan_tile_active()
+ * @param pixels  by ray
+ *
+ * Threads: any number, each with tiles of its own.
+ */
+void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
+		       const struct gz_tile *tile, uint32_t active,
+		       const uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE]);
+
 /** What gz_lattices_mark() noted of block (@p column, @p row): 2 * layer + pattern. */
 static inline int gz_lattices_block(const struct gz_lattices *lattices, int column, int row)
 {

@@ -55,6 +55,18 @@ static void cast_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces(void **st
 	small_scene_free(&scene);
 }
 
+static void cast_of_rays_any_distance_apart_equals_the_oracle(void **state)
+{
+	(void)state;
+	/* From a fraction of a voxel to more than the largest of fine cells. */
+	static const int sizes[][2] = { { 420, 12 }, { 97, 60 }, { 33, 21 }, { 17, 13 }, { 9, 7 } };
+	for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+		struct small_scene scene = small_scene_waves(230, 70, 50, GZ_VOXEL_U8);
+		scene.transfer.points[1].value = 0.45; /* more of it is empty */
+		oracle_check(&scene, sizes[i][0], sizes[i][1]);
+	}
+}
+
 static void cast_orthographic_equals_the_oracle(void **state)
 {
 	(void)state;
@@ -216,6 +228,39 @@ static void constant_box_keeps_its_brightness_for_any_step(void **state)
 	small_scene_free(&scene);
 }
 
+/* The share of samples that rays a pixel apart take in a box of which a layer shows. */
+static void samples_are_taken_in_fine_cells_that_show_alone(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(64, 64, 64, GZ_VOXEL_U8);
+	uint8_t *voxels = scene.volume.voxels;
+	struct gz_image image = { 0 };
+	struct gz_frame_stats all, layer;
+	scene.transfer = (struct gz_transfer) {
+		.count = 2,
+		.points = { { 0.5, { 1, 1, 1 }, 0 }, { 1, { 1, 1, 1 }, 0.001 } },
+		.has_range = true,
+		.range = { 0, 200 },
+	};
+	memset(voxels, 200, (size_t)64 * 64 * 64);
+	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 256, 256, &image, &all);
+	gz_renderer_destroy(&renderer);
+	/* A sheet two voxels thick lies in one layer of cells, or two. */
+	memset(voxels, 0, (size_t)64 * 64 * 64);
+	memset(voxels + (size_t)64 * 64 * 17, 200, (size_t)64 * 64 * 2);
+	renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, 256, 256, &image, &layer);
+	gz_renderer_destroy(&renderer);
+	assert_true(layer.samples > 0);
+	const unsigned share = strcmp(small_scene_backend(), "cpu") == 0 ? 12 : 6; /* coarser */
+	if (layer.samples * share > all.samples)
+		fail_msg("%llu samples of %llu", (unsigned long long)layer.samples,
+			 (unsigned long long)all.samples);
+	gz_image_free(&image);
+	small_scene_free(&scene);
+}
+
 static void empty_space_takes_no_samples(void **state)
 {
 	(void)state;
@@ -282,6 +327,7 @@ int main(void)
 		cmocka_unit_test(cast_of_float_data_equals_the_oracle),
 		cmocka_unit_test(cast_over_a_bright_background_equals_the_oracle),
 		cmocka_unit_test(cast_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces),
+		cmocka_unit_test(cast_of_rays_any_distance_apart_equals_the_oracle),
 		cmocka_unit_test(cast_orthographic_equals_the_oracle),
 		cmocka_unit_test(cast_along_an_axis_equals_the_oracle),
 		cmocka_unit_test(cast_from_inside_equals_the_oracle),
@@ -293,6 +339,7 @@ int main(void)
 		cmocka_unit_test(cast_is_the_same_bits_for_any_number_of_threads),
 		cmocka_unit_test(cast_by_every_instruction_set_agrees_within_one_grey_level),
 		cmocka_unit_test(constant_box_keeps_its_brightness_for_any_step),
+		cmocka_unit_test(samples_are_taken_in_fine_cells_that_show_alone),
 		cmocka_unit_test(empty_space_takes_no_samples),
 		cmocka_unit_test(unknown_backend_and_instruction_set_are_refused),
 		cmocka_unit_test(render_without_volume_or_with_bad_parameters_is_refused),
