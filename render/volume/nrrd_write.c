@@ -1,5 +1,7 @@
 #include "render/volume/nrrd_write.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,43 +12,46 @@
 #define GZ_LOG_MODULE "volume"
 
 /* Chosen: large beside the cost of a call, a moment on any disk. */
-#define CHUNK_BYTES ((size_t)8 << 20)
+#define CHUNK_VOXELS ((size_t)1 << 21)
 
 enum { HEADER_SIZE = 512 };
 
-/* The offset that signed integers of a type have as unsigned ones. */
-static double signed_offset(enum gz_voxel_type type)
+/* What the voxels are written as. */
+struct form {
+	const char *name; /* of NRRD's type */
+	size_t size;
+	double least, greatest;
+};
+
+static const struct form integers[] = {
+	{ "int8", 1, INT8_MIN, INT8_MAX },
+	{ "uint8", 1, 0, UINT8_MAX },
+	{ "int16", 2, INT16_MIN, INT16_MAX },
+	{ "uint16", 2, 0, UINT16_MAX },
+};
+static const struct form floats = { "float", sizeof(float), -DBL_MAX, DBL_MAX };
+
+/* NRRD cannot say that values are scaled, so that they are written as they are: as integers of the
+ * width they are stored in, or a greater one, where all of them are such, else as floats. */
+static const struct form *form_of(const struct gz_volume *volume)
 {
-	return type == GZ_VOXEL_U8 ? -128 : type == GZ_VOXEL_U16 ? -32768 : 0;
+	const double low = volume->stored_min + volume->intercept;
+	const double high = volume->stored_max + volume->intercept;
+	if (volume->type == GZ_VOXEL_F32 || volume->slope != 1 ||
+	    volume->intercept != rint(volume->intercept))
+		return &floats;
+	for (size_t i = 0; i < sizeof integers / sizeof integers[0]; i++) {
+		const struct form *form = &integers[i];
+		const bool is_signed = form->least < 0;
+		if (form->size >= gz_voxel_size(volume->type) && low >= form->least &&
+		    high <= form->greatest && is_signed == (volume->intercept < 0))
+			return form;
+	}
+	return &floats;
 }
 
-static bool is_signed(const struct gz_volume *volume)
-{
-	return volume->intercept != 0 && volume->intercept == signed_offset(volume->type);
-}
-
-static enum gz_result check(const struct gz_volume *volume, const char *path,
-			    const struct gz_log *log)
-{
-	if (!volume->voxels)
-		return GZ_ERR_INVAL;
-	if (volume->slope == 1 && (volume->intercept == 0 || is_signed(volume)))
-		return GZ_OK;
-	gz_err(log,
-	       "%s: NRRD cannot say that values are scaled by %g and %g; write bricks (.gzb), or "
-	       "float32",
-	       path, volume->slope, volume->intercept);
-	return GZ_ERR_UNSUPPORTED;
-}
-
-static const char *type_name(const struct gz_volume *volume)
-{
-	static const char *const names[GZ_VOXEL_TYPE_COUNT] = { "uint8", "uint16", "float" };
-	static const char *const signed_names[GZ_VOXEL_TYPE_COUNT] = { "int8", "int16", "float" };
-	return (is_signed(volume) ? signed_names : names)[volume->type];
-}
-
-static int print_header(const struct gz_volume *volume, char *out, size_t size)
+static int print_header(const struct gz_volume *volume, const struct form *form, char *out,
+			size_t size)
 {
 	const uint16_t one = 1;
 	const int *dims = volume->dims;
@@ -55,44 +60,59 @@ static int print_header(const struct gz_volume *volume, char *out, size_t size)
 			"NRRD0005\ntype: %s\ndimension: 3\n%s: %s\nsizes: %d %d %d\n"
 			"space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n"
 			"endian: %s\nencoding: raw\n\n",
-			type_name(volume), volume->oriented ? "space" : "space dimension",
+			form->name, volume->oriented ? "space" : "space dimension",
 			volume->oriented ? "right-anterior-superior" : "3", dims[0], dims[1],
 			dims[2], s[0], s[1], s[2], *(const uint8_t *)&one ? "little" : "big");
 }
 
-/* Signed integers have their sign bit turned back. */
-static void copy_voxels(const struct gz_volume *volume, size_t from, size_t size, uint8_t *out)
+static double stored_at(const struct gz_volume *volume, size_t i)
 {
-	const uint8_t *bytes = (const uint8_t *)volume->voxels + from;
-	if (!is_signed(volume)) {
-		memcpy(out, bytes, size);
-	} else if (volume->type == GZ_VOXEL_U8) {
-		for (size_t i = 0; i < size; i++)
-			out[i] = bytes[i] ^ 0x80;
-	} else {
-		for (size_t i = 0; i < size; i += sizeof(uint16_t)) {
-			uint16_t voxel;
-			memcpy(&voxel, bytes + i, sizeof voxel);
-			voxel ^= 0x8000;
-			memcpy(out + i, &voxel, sizeof voxel);
-		}
+	switch (volume->type) {
+	case GZ_VOXEL_U8:
+		return ((const uint8_t *)volume->voxels)[i];
+	case GZ_VOXEL_U16:
+		return ((const uint16_t *)volume->voxels)[i];
+	case GZ_VOXEL_F32:
+	case GZ_VOXEL_TYPE_COUNT:
+		break;
+	}
+	return (double)((const float *)volume->voxels)[i];
+}
+
+/* Values as `form` has them. Negative ones keep their two's complement. */
+static void convert(const struct gz_volume *volume, const struct form *form, size_t first,
+		    size_t count, uint8_t *out)
+{
+	for (size_t i = 0; i < count; i++) {
+		const double value =
+			volume->slope * stored_at(volume, first + i) + volume->intercept;
+		const float real = (float)value;
+		const uint16_t word = form == &floats ? 0 : (uint16_t)(int32_t)value;
+		if (form == &floats)
+			memcpy(out + i * sizeof real, &real, sizeof real);
+		else if (form->size == sizeof word)
+			memcpy(out + i * sizeof word, &word, sizeof word);
+		else
+			out[i] = (uint8_t)word;
 	}
 }
 
 static enum gz_result write_voxels(const struct gz_part_file *file, const struct gz_volume *volume,
-				   uint64_t offset, const struct gz_loading *loading)
+				   const struct form *form, uint64_t offset,
+				   const struct gz_loading *loading)
 {
-	const size_t size = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
-	uint8_t *chunk = malloc(CHUNK_BYTES);
+	const size_t count = gz_volume_voxel_count(volume);
+	uint8_t *chunk = malloc(CHUNK_VOXELS * form->size);
 	enum gz_result result = chunk ? GZ_OK : GZ_ERR_NO_MEM;
-	for (size_t at = 0; at < size && result == GZ_OK; at += CHUNK_BYTES) {
-		const size_t part = size - at < CHUNK_BYTES ? size - at : CHUNK_BYTES;
-		if (!gz_loading_goes_on(loading, (double)at / (double)size, file->path)) {
+	for (size_t at = 0; at < count && result == GZ_OK; at += CHUNK_VOXELS) {
+		const size_t part = count - at < CHUNK_VOXELS ? count - at : CHUNK_VOXELS;
+		if (!gz_loading_goes_on(loading, (double)at / (double)count, file->path)) {
 			result = GZ_ERR_CANCELLED;
 			break;
 		}
-		copy_voxels(volume, at, part, chunk);
-		result = gz_part_file_write(file, chunk, part, offset + at);
+		convert(volume, form, at, part, chunk);
+		result = gz_part_file_write(file, chunk, part * form->size,
+					    offset + at * form->size);
 	}
 	free(chunk);
 	return result;
@@ -103,16 +123,16 @@ enum gz_result gz_nrrd_write(const struct gz_volume *volume, const char *path,
 {
 	char header[HEADER_SIZE];
 	struct gz_part_file file;
-	enum gz_result result = check(volume, path, log);
-	if (result != GZ_OK)
-		return result;
-	const int length = print_header(volume, header, sizeof header);
+	if (!volume->voxels)
+		return GZ_ERR_INVAL;
+	const struct form *form = form_of(volume);
+	const int length = print_header(volume, form, header, sizeof header);
 	if (length < 0 || (size_t)length >= sizeof header)
 		return GZ_ERR_INVAL;
-	result = gz_part_file_open(&file, path, log);
+	enum gz_result result = gz_part_file_open(&file, path, log);
 	if (result == GZ_OK)
 		result = gz_part_file_write(&file, header, (size_t)length, 0);
 	if (result == GZ_OK)
-		result = write_voxels(&file, volume, (uint64_t)length, loading);
+		result = write_voxels(&file, volume, form, (uint64_t)length, loading);
 	return gz_part_file_close(&file, result);
 }

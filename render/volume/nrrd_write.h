@@ -10,12 +10,12 @@
 #include "render/volume/volume.h"
 
 /**
- * Write @p volume as NRRD, encoding raw, under another name until it is whole. Voxels are written
- * as they are stored; as signed integers where the intercept says that they are.
+ * Write @p volume as NRRD, encoding raw, under another name until it is whole. NRRD cannot say that
+ * values are scaled, so that the values themselves are written: as integers of 8 or 16 bits where
+ * all of them are such, those with a negative intercept signed; else as floats.
  *
  * @param loading  told how far it is, may stop it
  * @retval GZ_ERR_INVAL        @p volume has no voxels
- * @retval GZ_ERR_UNSUPPORTED  its values are scaled, which NRRD cannot say; logged
  * @retval GZ_ERR_IO           @p path cannot be written; logged
  * @retval GZ_ERR_FULL         the disk is full; logged
  * @retval GZ_ERR_CANCELLED    @p loading said so; not logged
