@@ -88,6 +88,8 @@ static enum gz_result open_memory(struct gz_brick_source *source, const struct g
 {
 	lay_out(&detail->levels, &source->cut_layout);
 	const size_t count = source->cut_layout.brick_count;
+	if (count == 0)
+		return GZ_ERR_INVAL;
 	source->detail = detail;
 	source->cut_entries = malloc(count * sizeof *source->cut_entries);
 	source->cut = malloc(GZ_BRICK_VOXELS * gz_voxel_size(detail->levels.level[0].volume.type));

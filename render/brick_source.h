@@ -32,6 +32,7 @@ struct gz_brick_source {
  * @param detail  the volume with its levels and their macrocells; both borrowed until
  *                gz_brick_source_close(). One in memory must have as many levels as it shall have
  * @retval GZ_ERR_NO_MEM  no room for the bricks' ranges; holds nothing
+ * @retval GZ_ERR_INVAL   no volume
  */
 enum gz_result gz_brick_source_open(struct gz_brick_source *source, const struct gz_detail *detail);
 

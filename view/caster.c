@@ -20,7 +20,7 @@ static bool is_cpu(const struct gz_caster *caster)
 /* Whether cpu may take over after @p failure. */
 static bool may_replace(const struct gz_caster *caster, enum gz_result failure)
 {
-	if (is_cpu(caster))
+	if (is_cpu(caster) || (failure == GZ_ERR_NO_DEVICE && caster->loss_is_callers))
 		return false;
 	return failure == GZ_ERR_NO_DEVICE || failure == GZ_ERR_NO_MEM ||
 	       (failure == GZ_ERR_UNSUPPORTED && caster->chooses);
@@ -36,9 +36,8 @@ static enum gz_result replace(struct gz_caster *caster)
 	return r;
 }
 
-enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_options *options,
-			       struct gz_gl_context *gl_context, const struct gz_scene *scene,
-			       const struct gz_log *log)
+static void begin(struct gz_caster *caster, const struct gz_view_options *options,
+		  const struct gz_scene *scene, const struct gz_log *log)
 {
 	*caster = (struct gz_caster) {
 		.log = log,
@@ -50,21 +49,44 @@ enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_op
 						    : options->bricks == GZ_BRICKS_WAIT },
 		.chooses = strcmp(options->backend, "auto") == 0,
 	};
-	struct gz_renderer_params params = caster->cpu;
-	params.gl_context = gl_context;
-	params.gl_memory_bytes = (size_t)options->gl_memory_mib << 20;
-	enum gz_result r = gz_renderer_create(options->backend, &params, log, &caster->renderer);
+}
+
+static enum gz_result start(struct gz_caster *caster, const char *backend,
+			    const struct gz_renderer_params *params)
+{
+	enum gz_result r = gz_renderer_create(backend, params, caster->log, &caster->renderer);
 	if (r == GZ_OK) {
 		r = give_scene(caster);
 		if (caster->chooses && may_replace(caster, r))
 			r = replace(caster);
 	}
 	if (r == GZ_ERR_NO_MEM)
-		gz_err(log, "no memory for the renderer; close other programs or take a smaller "
-			    "volume");
+		gz_err(caster->log,
+		       "no memory for the renderer; close other programs or take a smaller "
+		       "volume");
 	else if (r == GZ_OK)
-		gz_debug(log, "%s", gz_renderer_describe(caster->renderer));
+		gz_debug(caster->log, "%s", gz_renderer_describe(caster->renderer));
+	if (r != GZ_OK)
+		gz_renderer_destroy(&caster->renderer);
 	return r;
+}
+
+enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_options *options,
+			       struct gz_gl_context *gl_context, const struct gz_scene *scene,
+			       const struct gz_log *log)
+{
+	begin(caster, options, scene, log);
+	struct gz_renderer_params params = caster->cpu;
+	params.gl_context = gl_context;
+	params.gl_memory_bytes = (size_t)options->gl_memory_mib << 20;
+	return start(caster, options->backend, &params);
+}
+
+enum gz_result gz_caster_start_cpu(struct gz_caster *caster, const struct gz_view_options *options,
+				   const struct gz_scene *scene, const struct gz_log *log)
+{
+	begin(caster, options, scene, log);
+	return start(caster, "cpu", &caster->cpu);
 }
 
 enum gz_result gz_caster_render(struct gz_caster *caster, const struct gz_scene_settings *settings,

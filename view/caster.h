@@ -19,7 +19,9 @@ struct gz_caster {
 	struct gz_renderer *renderer;
 	struct gz_renderer_params cpu; /**< of the one that would replace it */
 	bool chooses;                  /**< --backend auto */
-	bool on_device;                /**< the last picture is the renderer's texture */
+	bool loss_is_callers; /**< set by the caller: a lost context is returned, since the caller
+				 makes another */
+	bool on_device;       /**< the last picture is the renderer's texture */
 };
 
 /**
@@ -35,6 +37,11 @@ struct gz_caster {
 enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_options *options,
 			       struct gz_gl_context *gl_context, const struct gz_scene *scene,
 			       const struct gz_log *log);
+
+/** Make a renderer of the cpu backend, whatever the options say, and give it the scene. @return as
+ *  gz_caster_start(); logged */
+enum gz_result gz_caster_start_cpu(struct gz_caster *caster, const struct gz_view_options *options,
+				   const struct gz_scene *scene, const struct gz_log *log);
 
 /**
  * gz_renderer_render(); where the graphics device fails for good (its context is lost, its memory

@@ -106,6 +106,18 @@ enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
 	return gz_caster_start(&maker->caster, options, gl_context, &maker->scene, maker->log);
 }
 
+enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
+					const struct gz_view_options *options)
+{
+	return gz_caster_start_cpu(&maker->caster, options, &maker->scene, maker->log);
+}
+
+void gz_frame_maker_stop(struct gz_frame_maker *maker)
+{
+	gz_caster_free(&maker->caster);
+	gz_temporal_forget(&maker->temporal);
+}
+
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 {
 	return &maker->scene;
@@ -230,8 +242,10 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);
-	/* Whoever does not support it has said what, and what to do. */
-	if (r != GZ_OK && r != GZ_ERR_UNSUPPORTED)
+	/* Whoever does not support it has said what, and what to do; so has who has lost its
+	 * device.
+	 */
+	if (r != GZ_OK && r != GZ_ERR_UNSUPPORTED && r != GZ_ERR_NO_DEVICE)
 		gz_err(maker->log, "cannot render %dx%d: %s; see the scene's camera and size",
 		       request->width, request->height, gz_result_text(r));
 	if (r != GZ_OK)

@@ -23,7 +23,8 @@ struct gz_frame_request {
 	const struct gz_scene_settings *settings; /**< all but volume, transfer and display count */
 	const struct gz_display *display;         /**< of the picture: it fills this one */
 	int width, height;                        /**< of the finished picture, px */
-	bool on_device; /**< leave the picture on the graphics device if it is made there */
+	bool on_device;       /**< leave the picture on the graphics device if it is made there */
+	bool loss_is_callers; /**< a lost context is returned, not made up for by cpu */
 };
 
 /**
@@ -48,6 +49,13 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
 				    const struct gz_view_options *options,
 				    struct gz_gl_context *gl_context);
+
+/** Make a renderer of the cpu backend, whatever the options say. @return as before; logged */
+enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
+					const struct gz_view_options *options);
+
+/** Destroy the renderer, while its context is there; another may be started. */
+void gz_frame_maker_stop(struct gz_frame_maker *maker);
 
 /** The scene as loaded and overridden. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
@@ -86,6 +94,7 @@ bool gz_frame_settling(const struct gz_frame_maker *maker);
  * @retval GZ_ERR_INVAL   the picture at the scene's image_sampling_rate is too large or vanishes,
  *                        or the camera is none; logged
  * @retval GZ_ERR_NO_MEM  no room; logged
+ * @retval GZ_ERR_NO_DEVICE  the context is lost, and that is the caller's; logged
  */
 enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			     struct gz_image **out_image, struct gz_frame_record *out_record);

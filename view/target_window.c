@@ -9,6 +9,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
+#include "view/context_loss.h"
 #include "view/gl_program.h"
 #include "view/panel.h"
 #include "view/target_options.h"
@@ -116,6 +117,7 @@ static enum gz_result create_window(struct target_window *window)
 	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); /* targets stay when the focus goes */
 	glfwWindowHint(GLFW_DEPTH_BITS, 0);
 	glfwWindowHint(GLFW_STENCIL_BITS, 0);
+	gz_context_loss_hint();
 	window->glfw =
 		glfwCreateWindow(width, height, "gazeview targets", whole ? monitor : NULL, NULL);
 	return window->glfw ? GZ_OK : GZ_ERR_UNSUPPORTED;
@@ -300,6 +302,12 @@ static enum gz_result loop(struct target_window *window)
 		draw(window);
 		swap(window);
 		glfwWaitEventsTimeout(FRAME_S);
+		if (gz_context_is_lost()) {
+			gz_err(window->log, "the graphics driver has lost the window's context: "
+					    "the targets end here; begin again");
+			tell_time("cancelled");
+			return GZ_ERR_NO_DEVICE;
+		}
 		if (window->cancelled || glfwWindowShouldClose(window->glfw)) {
 			tell_time("cancelled");
 			return GZ_ERR_END;

@@ -33,7 +33,7 @@
  *
  * @retval GZ_OK               all were shown
  * @retval GZ_ERR_END          somebody cancelled; told on standard output
- * @retval GZ_ERR_NO_DEVICE    no display; logged
+ * @retval GZ_ERR_NO_DEVICE    no display, or its context is lost; logged
  * @retval GZ_ERR_UNSUPPORTED  no OpenGL 3.3; logged
  * @return else what gz_target_places() returns; logged
  */

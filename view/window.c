@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "client/viewer_link.h"
+#include "view/context_loss.h"
 #include "view/letters.h"
 #include "view/panel.h"
 #include "view/window_state.h"
@@ -31,19 +32,6 @@ static enum gz_result open_display(const struct gz_log *log)
 	       "no window: %s; set DISPLAY to an X server, or render without one by --headless",
 	       gz_window_glfw_reason());
 	return GZ_ERR_NO_DEVICE;
-}
-
-static enum gz_result open_drawing(struct gz_window *window)
-{
-	enum gz_result r = gz_quad_init(&window->quad, window->log);
-	if (r != GZ_OK)
-		return r;
-	gz_window_input_attach(window);
-	if (gz_panel_init(window->glfw))
-		return GZ_OK;
-	gz_err(window->log, "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
-			    "--headless");
-	return GZ_ERR_UNSUPPORTED;
 }
 
 static void print_gaze(const struct gz_window_gaze *gaze, bool mouse_chosen, char *text,
@@ -117,6 +105,7 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 		.width = width,
 		.height = height,
 		.on_device = true,
+		.loss_is_callers = true,
 	};
 	struct gz_image *image;
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
@@ -213,7 +202,7 @@ static enum gz_result refresh(struct gz_window *window)
 	bool cross_moved = window->cross && !same_point(gaze.reading.point, window->cross_drawn);
 	if (must_cast) {
 		enum gz_result r = cast(window, &gaze, width, height);
-		if (r != GZ_OK && !take_back(window))
+		if (r == GZ_ERR_NO_DEVICE || (r != GZ_OK && !take_back(window)))
 			return r;
 	}
 	bool age_runs = gaze.reading.has_age && gaze.reading.age_ns <= SILENT_NS;
@@ -238,7 +227,11 @@ static enum gz_result loop(struct gz_window *window)
 	while (!glfwWindowShouldClose(window->glfw)) {
 		int64_t start_ns = gz_clock_now_ns();
 		gz_window_report(window);
-		enum gz_result r = refresh(window);
+		enum gz_result r = gz_context_is_lost() ? GZ_ERR_NO_DEVICE : refresh(window);
+		if (r == GZ_ERR_NO_DEVICE) {
+			r = gz_window_rebuild(window);
+			start_ns = gz_clock_now_ns();
+		}
 		if (r != GZ_OK)
 			return r;
 		/* What the frame took is not waited for again. */
@@ -255,11 +248,7 @@ static void close_window(struct gz_window *window)
 {
 	/* The renderer may live in the window's context. */
 	gz_frame_maker_destroy(&window->maker);
-	if (window->glfw) {
-		gz_panel_free();
-		gz_quad_free(&window->quad);
-		glfwDestroyWindow(window->glfw);
-	}
+	gz_window_drawing_close(window);
 	glfwTerminate();
 	gz_gaze_source_destroy(&window->source);
 	gz_gaze_source_destroy(&window->mouse);
@@ -269,7 +258,11 @@ static void close_window(struct gz_window *window)
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log)
 {
 	struct gz_window window = {
-		.options = options, .log = log, .cross = options->cross, .letters = options->letters
+		.options = options,
+		.log = log,
+		.size_px = { options->size_px[0], options->size_px[1] },
+		.cross = options->cross,
+		.letters = options->letters,
 	};
 	/* The display first: without one there is no use in loading. */
 	enum gz_result r = open_display(log);
@@ -290,7 +283,7 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 	if (r == GZ_OK)
 		r = gz_frame_maker_start(window.maker, options, &window.context.base);
 	if (r == GZ_OK)
-		r = open_drawing(&window);
+		r = gz_window_drawing_open(&window);
 	if (r == GZ_OK)
 		r = loop(&window);
 	close_window(&window);

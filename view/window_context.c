@@ -1,10 +1,12 @@
-/* The window and its OpenGL context. */
+/* The window, its OpenGL context and what draws on it. */
 #include <string.h>
 
 #include <GL/glew.h>
 
 #include <GLFW/glfw3.h>
 
+#include "view/context_loss.h"
+#include "view/panel.h"
 #include "view/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -43,12 +45,14 @@ static void create_window(struct gz_window *window, int major, int minor)
 	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
 	glfwWindowHint(GLFW_DEPTH_BITS, 0);
 	glfwWindowHint(GLFW_STENCIL_BITS, 0);
-	window->glfw = glfwCreateWindow(window->options->size_px[0], window->options->size_px[1],
-					"gazeview", NULL, NULL);
+	gz_context_loss_hint();
+	window->glfw =
+		glfwCreateWindow(window->size_px[0], window->size_px[1], "gazeview", NULL, NULL);
 }
 
 enum gz_result gz_window_context_open(struct gz_window *window)
 {
+	window->glfw = NULL;
 	if (strcmp(window->options->backend, "cpu") != 0)
 		create_window(window, 4, 3);
 	if (!window->glfw)
@@ -77,4 +81,27 @@ enum gz_result gz_window_context_open(struct gz_window *window)
 	}
 	glfwSwapInterval(window->options->vsync ? 1 : 0);
 	return GZ_OK;
+}
+
+enum gz_result gz_window_drawing_open(struct gz_window *window)
+{
+	enum gz_result r = gz_quad_init(&window->quad, window->log);
+	if (r != GZ_OK)
+		return r;
+	gz_window_input_attach(window);
+	if (gz_panel_init(window->glfw))
+		return GZ_OK;
+	gz_err(window->log, "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
+			    "--headless");
+	return GZ_ERR_UNSUPPORTED;
+}
+
+void gz_window_drawing_close(struct gz_window *window)
+{
+	if (!window->glfw)
+		return;
+	gz_panel_free();
+	gz_quad_free(&window->quad);
+	glfwDestroyWindow(window->glfw);
+	window->glfw = NULL;
 }

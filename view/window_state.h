@@ -56,7 +56,11 @@ struct gz_window {
 	bool cursor_known;
 	bool cursor_inside;    /**< the window's content is what the mouse is over */
 	double cursor[2];      /**< screen coordinates of the window */
+	int size_px[2];        /**< that a new window is made with */
 	int windowed_place[4]; /**< x y w h to return to from full screen */
+
+	int losses;      /**< of the context, in short order */
+	int64_t lost_ns; /**< the last one */
 
 	bool cast_needed;    /**< camera, method or size has changed */
 	bool present_needed; /**< what lies over the picture has changed */
@@ -89,6 +93,22 @@ const char *gz_window_glfw_reason(void);
 /** Open the window, with OpenGL 4.3 where the gl backend may use it and the driver has it, else
  *  with 3.3, and make its context current. GZ_ERR_UNSUPPORTED: not even that; logged. */
 enum gz_result gz_window_context_open(struct gz_window *window);
+
+/** Make what draws on it: the picture, and the panel over it. GZ_ERR_UNSUPPORTED: the driver
+ * refuses shaders; logged. */
+enum gz_result gz_window_drawing_open(struct gz_window *window);
+
+/** Delete that and the window, as far as they are there. */
+void gz_window_drawing_close(struct gz_window *window);
+
+/**
+ * Make the window anew, where it was, after its context was lost: with the same backend or, where
+ * that loses the next one soon, with cpu.
+ *
+ * @retval GZ_ERR_NO_DEVICE  the driver loses one after the other; logged
+ * @return else what gz_window_context_open() and gz_frame_maker_start_cpu() return; logged
+ */
+enum gz_result gz_window_rebuild(struct gz_window *window);
 
 /** Where the window is; the whole monitor where that cannot be told. */
 struct gz_window_share gz_window_share(struct GLFWwindow *glfw);

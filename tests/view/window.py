@@ -257,6 +257,78 @@ class Window(unittest.TestCase):
         self.tool("key", "f")
         self.until(lambda p: p.at(897, 697) == (0, 0, 0), "a window again")
 
+    def start_to_lose(self, *more):
+        library = os.environ.get("LOSE_CONTEXT_LIBRARY")
+        if not library:
+            self.skipTest("LOSE_CONTEXT_LIBRARY names nothing to preload")
+        self.lost = os.path.join(self.place.name, "lost")
+        kept = self.environment
+        self.addCleanup(setattr, self, "environment", kept)
+        # The shared objects of a sanitizer must not insist on being first.
+        self.environment = dict(kept, LD_PRELOAD=library, LOSE_CONTEXT=self.lost, GZ_LOG="info")
+        self.environment["ASAN_OPTIONS"] += ":verify_asan_link_order=0"
+        self.start(*more)
+
+    def lose(self):
+        """The context is lost, and its window gone; the next one shows a picture."""
+        open(self.lost, "w", encoding="utf-8").close()
+        self.move(200 + len(self.window) % 2, 100)
+        deadline = time.monotonic() + 15
+        while os.path.exists(self.lost):
+            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
+            self.assertLess(time.monotonic(), deadline, "nobody asks whether it is lost")
+            time.sleep(0.02)
+
+    def found_anew(self):
+        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
+                    "^gazeview$", env=self.environment)
+        self.assertEqual(found.returncode, 0, "no window appears")
+        self.window = found.stdout.split()[-1]
+
+    def messages(self):
+        """What the viewer has said, once it has ended."""
+        said = self.viewer.communicate(timeout=20)[1]
+        self.viewer = None
+        return said
+
+    def test_lost_context_is_replaced_and_the_picture_is_there_again(self):
+        for backend in ("cpu", "gl"):
+            self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", backend,
+                               "--render.background", "0.2 0.4 0.6")
+            # The settings and the place stay, too.
+            self.tool("windowsize", self.window, 500, 400)
+            self.until(lambda p: p.at(497, 397) == (51, 102, 153), "a place")
+            self.tool("key", "4")
+            time.sleep(0.5)
+            before = self.grab()
+            self.lose()
+            self.found_anew()
+            self.until(lambda p: self.below_line(p, 500, 400) == self.below_line(before, 500, 400),
+                       "the same picture with " + backend)
+            self.viewer.terminate()
+            said = self.messages()
+            self.assertEqual(said.count("has lost the window's context"), 1, said)
+            self.assertNotIn("the cpu backend casts", said)
+
+    def test_context_lost_again_leaves_the_rays_to_the_cpu_and_a_third_time_ends(self):
+        self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", "gl")
+        before = self.grab()
+        for _ in range(2):
+            self.lose()
+            self.found_anew()
+            self.until(lambda p: self.below_line(p) == self.below_line(before) or
+                       self.close(p, before), "the picture")
+        open(self.lost, "w", encoding="utf-8").close()
+        self.assertEqual(self.viewer.wait(timeout=20), 1)
+        said = self.messages()
+        self.assertEqual(said.count("the cpu backend casts the rays from now on"), 1, said)
+        self.assertIn("--headless", said.splitlines()[-1])
+
+    def close(self, one, other):
+        """Within a grey level: another backend."""
+        return all(abs(a - b) <= 1 for x in range(100, 380, 7) for y in range(60, 300, 7)
+                   for a, b in zip(one.at(x, y), other.at(x, y)))
+
     def test_without_a_daemon_it_says_so_and_takes_the_mouse(self):
         self.start("--cross")
         self.move(200, 150)
