@@ -12,6 +12,8 @@
 
 #include "base/clock.h"
 #include "bench/metrics/metrics.h"
+#include "bench/study/gaze_path.h"
+#include "bench/study/variant.h"
 #include "render/scene.h"
 
 enum { METHODS_MAX = 16, POINTS_MAX = 1000, REPEATS_MAX = 25 };
@@ -23,9 +25,8 @@ struct errors {
 
 /* One method over the path. */
 struct series {
-	char name[64];
-	struct gz_foveation foveation;
-	struct gz_ray_params ray_params;
+	char name[GZ_STUDY_TEXT_SIZE];
+	struct gz_variant_settings settings;
 	double time_ms[POINTS_MAX];
 	double plan_ms, cast_ms, reconstruct_ms, rays, samples;
 	struct errors errors;
@@ -45,13 +46,6 @@ struct bench {
 	struct gz_map map, weights;
 };
 
-/* The S of Bauer 2018, mirrored: from top to bottom once, with one swing to each side. */
-static struct gz_point point_of_path(double t)
-{
-	return (struct gz_point) { (float)(0.5 + 0.4 * sin(2 * M_PI * t)),
-				   (float)(0.05 + 0.9 * t) };
-}
-
 static int compare(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
@@ -63,12 +57,13 @@ static int frame(struct bench *bench, int method, struct gz_point gaze, double *
 	struct series *series = &bench->series[method];
 	struct gz_frame_stats stats;
 	const int64_t start_ns = gz_clock_now_ns();
-	if (gz_plan_make(&series->foveation, &bench->display, gaze, bench->width, bench->height,
-			 &bench->plan) != GZ_OK)
+	if (gz_plan_make(&series->settings.foveation, &bench->display, gaze, bench->width,
+			 bench->height, &bench->plan) != GZ_OK)
 		return -1;
 	const int64_t plan_ns = gz_clock_now_ns();
-	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera, &series->ray_params,
-			       &bench->plan, &bench->images[method], &stats) != GZ_OK)
+	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera,
+			       &series->settings.rays, &bench->plan, &bench->images[method],
+			       &stats) != GZ_OK)
 		return -1;
 	*out_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	const double share = 1.0 / (bench->points * bench->repeats);
@@ -164,13 +159,12 @@ static void print_series(const struct bench *bench, const struct series *series)
 static int run(struct bench *bench)
 {
 	double unused;
-	if (frame(bench, 0, point_of_path(0.5), &unused) != 0) /* warms up */
+	if (frame(bench, 0, gz_gaze_path_s(0.5), &unused) != 0) /* warms up */
 		return -1;
-	bench->series[0] = (struct series) { .foveation = bench->series[0].foveation,
-					     .ray_params = bench->series[0].ray_params };
+	bench->series[0] = (struct series) { .settings = bench->series[0].settings };
 	strcpy(bench->series[0].name, "standard");
 	for (int i = 0; i < bench->points; i++) {
-		const struct gz_point gaze = point_of_path((i + 0.5) / bench->points);
+		const struct gz_point gaze = gz_gaze_path_s((i + 0.5) / bench->points);
 		if (measure_point(bench, i, gaze) != 0)
 			return -1;
 		for (int m = 1; m < bench->method_count; m++)
@@ -184,52 +178,22 @@ static int run(struct bench *bench)
 	return 0;
 }
 
-/* Set "key" of a section by the table of its options. False where there is no such key or value. */
-static bool parse_option(const struct gz_option *options, size_t count, const char *section,
-			 const char *key, const char *value, void *target)
-{
-	char full[128];
-	snprintf(full, sizeof full, "%s.%s", section, key);
-	for (size_t i = 0; i < count; i++)
-		if (strcmp(options[i].key, full) == 0)
-			return gz_option_parse(&options[i], value, target, NULL, 0) == GZ_OK;
-	return false;
-}
-
-/* "method", or "method:option=value:…" with options of the sections [foveation] and [render]. */
-static int parse_method(struct bench *bench, char *text)
-{
-	struct series *series = &bench->series[bench->method_count];
-	series->foveation = bench->scene.settings.foveation;
-	series->ray_params = bench->scene.settings.rays;
-	snprintf(series->name, sizeof series->name, "%s", text);
-	char *rest = NULL;
-	for (char *part = strtok_r(text, ":", &rest); part; part = strtok_r(NULL, ":", &rest)) {
-		char *equals = strchr(part, '=');
-		const char *key = equals ? part : "method";
-		const char *value = equals ? equals + 1 : part;
-		if (equals)
-			*equals = '\0';
-		if (!parse_option(gz_foveation_options, gz_foveation_option_count, "foveation", key,
-				  value, &series->foveation) &&
-		    !parse_option(gz_ray_options, gz_ray_option_count, "render", key, value,
-				  &series->ray_params)) {
-			fprintf(stderr, "no such method or option: %s, or not %s\n", key, value);
-			return -1;
-		}
-	}
-	bench->method_count++;
-	return 0;
-}
-
 static int parse_methods(struct bench *bench, const char *list)
 {
+	const struct gz_variant_settings scene = { bench->scene.settings.foveation,
+						   bench->scene.settings.rays };
 	char text[1024];
-	char *rest = NULL;
 	snprintf(text, sizeof text, "standard,%s", list);
-	for (char *name = strtok_r(text, ",", &rest); name; name = strtok_r(NULL, ",", &rest))
-		if (bench->method_count == METHODS_MAX || parse_method(bench, name) != 0)
+	const char *rest = text;
+	char name[sizeof bench->series[0].name];
+	while (gz_list_next(&rest, name, sizeof name)) {
+		struct series *series = &bench->series[bench->method_count];
+		if (bench->method_count == METHODS_MAX ||
+		    gz_variant_parse(name, &scene, &bench->log, &series->settings) != GZ_OK)
 			return -1;
+		snprintf(series->name, sizeof series->name, "%s", name);
+		bench->method_count++;
+	}
 	return 0;
 }
 

@@ -29,6 +29,8 @@ const struct gz_option gz_ray_options[] = {
 	  .help = "sample a coarser level of the volume where rays and steps are wide" },
 	{ "render.jitter", GZ_OPTION_INT, AT(jitter), 0, 2147483647, .preset = "0",
 	  .help = "seed of a shift of each ray's samples, which turns rings into noise; 0 = none" },
+	{ "render.early_termination", GZ_OPTION_BOOL, AT(early_termination), .preset = "yes",
+	  .help = "end rays that next to no light comes through; no is slower, for comparison" },
 	{ "light.direction", GZ_OPTION_DOUBLE, AT(light.direction), -1e6, 1e6, .count = 3,
 	  .preset = "-0.3 0.5 1", .help = "towards the light" },
 	{ "light.frame", GZ_OPTION_CHOICE, AT(light.frame), .choices = light_frame_names,
@@ -75,6 +77,11 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 			return false;
 	const double *direction = rays->light.direction;
 	return direction[0] != 0 || direction[1] != 0 || direction[2] != 0;
+}
+
+float gz_ray_end_transmittance(const struct gz_ray_params *rays)
+{
+	return rays->early_termination ? GZ_TRANSMITTANCE_END : 0;
 }
 
 float gz_ray_jitter(int x, int y, int seed)

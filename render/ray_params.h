@@ -83,6 +83,8 @@ struct gz_ray_params {
 	bool levels;              /**< where steps and rays lie more than a voxel apart, sample a
 				     coarser level of the volume (Levoy and Whitaker 1990) */
 	int jitter;               /**< seed of gz_ray_jitter(); 0 = none */
+	bool early_termination;   /**< a ray ends when less than GZ_TRANSMITTANCE_END of the light
+				     behind it would come through; else when none would */
 	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
 	struct gz_clip_box clip;
@@ -98,6 +100,10 @@ struct gz_ray_params gz_ray_params_default(void);
 /** Whether every field is within its range, as the table would have it, and the box holds
  *  something. */
 bool gz_ray_params_valid(const struct gz_ray_params *rays);
+
+/** The share of light with which a ray ends: GZ_TRANSMITTANCE_END, or 0 without early termination.
+ */
+float gz_ray_end_transmittance(const struct gz_ray_params *rays);
 
 /**
  * By how much the segments of the ray through pixel (x, y) begin before it enters the box, [0, 1)

@@ -24,6 +24,8 @@ struct gz_frame_stats {
 	uint64_t samples; /**< voxel interpolations done */
 	double cast_ms;
 	double reconstruct_ms;
+	double gpu_ms; /**< gl: both together, by the device's clock; NaN where there is none, or a
+			    processor does the device's work */
 	uint64_t bricks_coming; /**< of a volume shown by bricks: sent for and not there yet. While
 				   it is above 0 the same picture, made again, is sharper */
 };

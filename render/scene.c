@@ -30,6 +30,7 @@ enum {
 	VOLUME_SPACING,
 	VOLUME_MEMORY,
 	TRANSFER_FILE,
+	TRANSFER_ALSO,
 	CAMERA_EYE,
 	CAMERA_LOOK_AT,
 	CAMERA_UP,
@@ -101,6 +102,14 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			    .max = GZ_PATH_SIZE,
 			    .preset = "",
 			    .help = "transfer function, .tf; looked up as volume.file" },
+	[TRANSFER_ALSO] = { .key = "transfer.also",
+			    .type = GZ_OPTION_STRING,
+			    .offset = AT(transfer_also),
+			    .max = GZ_PATH_SIZE,
+			    .preset = "",
+			    .help = "further transfer functions that gazebench measures too, "
+				    "parted "
+				    "by blanks" },
 	[CAMERA_EYE] = { .key = "camera.eye",
 			 .type = GZ_OPTION_DOUBLE,
 			 .offset = AT(camera.eye),
@@ -395,6 +404,15 @@ static enum gz_result load_transfer(const struct reader *reader, struct gz_trans
 	enum gz_result result = find_file(reader, scene_options[TRANSFER_FILE].key,
 					  reader->settings->transfer_file, path);
 	return result == GZ_OK ? gz_transfer_load(path, reader->log, out_transfer) : result;
+}
+
+enum gz_result gz_scene_load_transfer(const char *scene, const char *file, const struct gz_log *log,
+				      struct gz_transfer *out_transfer)
+{
+	const struct reader reader = { .name = scene, .log = log };
+	char path[GZ_PATH_SIZE];
+	enum gz_result result = find_file(&reader, "transfer.also", file, path);
+	return result == GZ_OK ? gz_transfer_load(path, log, out_transfer) : result;
 }
 
 enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,

@@ -30,6 +30,8 @@ struct gz_scene_settings {
 	double spacing[3];
 	int memory_mib; /**< for bricks; 0 = a quarter of the machine's memory */
 	char transfer_file[GZ_PATH_SIZE];
+	char transfer_also[GZ_PATH_SIZE]; /**< names of further ones, parted by blanks: for studies
+					     of several; a scene is shown with transfer_file */
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
@@ -124,6 +126,16 @@ enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, 
  */
 enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
 				   struct gz_foveation *foveation);
+
+/**
+ * Read one of the transfer functions that transfer.also names.
+ *
+ * @param scene  path of the scene beside which the file is looked up first
+ * @param file   its name there
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_FORMAT  logged, one line with the remedy
+ */
+enum gz_result gz_scene_load_transfer(const char *scene, const char *file, const struct gz_log *log,
+				      struct gz_transfer *out_transfer);
 
 /** Free what it holds and zero it. */
 void gz_scene_free(struct gz_scene *scene);

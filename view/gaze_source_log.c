@@ -1,10 +1,10 @@
 /* A gaze log as a source: the reader and the pipeline step on as the frames' time does. */
 #include "view/gaze_source.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "filter/pipeline.h"
+#include "filter/recorded.h"
 #include "protocol/gaze_log.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -106,49 +106,11 @@ static const struct gz_gaze_source_ops log_ops = {
 	.destroy = log_destroy,
 };
 
-/* One "#pipeline." line; a setting that this version does not have changes nothing here. */
-static enum gz_result take_setting(const struct gz_gaze_log_setting *setting, const char *path,
-				   const struct gz_log *log, struct gz_pipeline_params *params)
-{
-	const struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count,
-						   params, NULL };
-	char key[GZ_NAME_SIZE + sizeof "pipeline."];
-	char message[256];
-	snprintf(key, sizeof key, "pipeline.%s", setting->key);
-	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
-	if (!option) {
-		gz_warn(log, "%s: #%s %s: this version has no such setting; going on without", path,
-			key, setting->value);
-		return GZ_OK;
-	}
-	if (gz_option_parse(option, setting->value, params, message, sizeof message) == GZ_OK)
-		return GZ_OK;
-	gz_err(log, "%s: #%s: %s; correct the line to play the log", path, key, message);
-	return GZ_ERR_FORMAT;
-}
-
-/* The settings that the recording was made with, over the defaults. */
-static enum gz_result take_settings(const struct gz_gaze_log_header *header, const char *path,
-				    const struct gz_log *log, struct gz_pipeline_params *params)
-{
-	*params = gz_pipeline_default_params();
-	for (size_t i = 0; i < header->setting_count; i++) {
-		enum gz_result r = take_setting(&header->settings[i], path, log, params);
-		if (r != GZ_OK)
-			return r;
-	}
-	char message[256];
-	enum gz_result r = gz_pipeline_check_params(params, message, sizeof message);
-	if (r != GZ_OK)
-		gz_err(log, "%s: %s", path, message);
-	return r == GZ_OK ? GZ_OK : GZ_ERR_FORMAT;
-}
-
 static enum gz_result prepare(struct log_source *self, const char *path)
 {
 	const struct gz_gaze_log_header *header = gz_gaze_log_header(self->reader);
 	struct gz_pipeline_params params;
-	enum gz_result r = take_settings(header, path, self->log, &params);
+	enum gz_result r = gz_pipeline_recorded_params(header, path, self->log, &params);
 	if (r != GZ_OK)
 		return r;
 	self->has_display = header->has_display && gz_display_valid(&header->display);

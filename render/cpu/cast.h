@@ -70,6 +70,7 @@ struct gz_cast {
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
 	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the same in voxel lengths */
 	float background[3];
+	float end_transmittance; /**< a ray ends when less light than this comes through */
 	struct gz_cast_light light;
 };
 

@@ -77,7 +77,7 @@ SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, i
 		vi colour;
 		gather_pair(cast->step_table[step], entry, vm_all(), &opacity, &colour);
 		composite_at(cast, type, nearest, rays, at, colour, opacity, needed, light);
-		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
 	}
 	return samples;
 }
@@ -116,7 +116,7 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		    const struct rays *rays, struct light *light)
 {
 	const struct look_up look_up = look_up_of(cast, type, nearest);
-	const vm alive = vm_and(rays->hit, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+	const vm alive = vm_and(rays->hit, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(alive))
 		return 0;
 	if (!cast->fine[0].flags)
@@ -134,7 +134,7 @@ SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, in
 			 const struct rays *rays, vf k, vf steps, struct light *light)
 {
 	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
-	mask = vm_and(mask, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(mask))
 		return 0;
 	vf leave;

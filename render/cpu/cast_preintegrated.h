@@ -86,7 +86,7 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 			     light);
 		front = back;
 		known = takes;
-		alive = vm_and(alive, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
 	}
 	return samples;
 }
@@ -97,7 +97,7 @@ SIMD uint32_t march_segment_part(const struct gz_cast *cast, enum gz_voxel_type 
 				 struct light *light)
 {
 	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
-	mask = vm_and(mask, vf_less(vf_set(GZ_TRANSMITTANCE_END), light->through));
+	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(mask))
 		return 0;
 	vf leave;

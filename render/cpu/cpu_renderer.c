@@ -289,6 +289,7 @@ static void fill_transfer(struct cpu_renderer *cpu, const struct gz_plan *plan,
 	}
 	for (int channel = 0; channel < 3; channel++)
 		cast->background[channel] = (float)rays->background[channel];
+	cast->end_transmittance = gz_ray_end_transmittance(rays);
 }
 
 /* Tables for segments, where rays are integrated by them. After fill_transfer(). */
@@ -502,6 +503,7 @@ static enum gz_result cpu_render(struct gz_renderer *renderer, const struct gz_c
 			.samples = samples,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.gpu_ms = NAN,
 			.bricks_coming = cpu->volume->bricks ? cpu->bricks_coming : 0,
 		};
 	return GZ_OK;

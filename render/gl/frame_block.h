@@ -55,7 +55,8 @@ struct gz_gl_frame_block {
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
 	float cell_counts[4];                  /**< macrocells */
 	float background[4];                   /**< [0, 1] */
-	float transfer[4];       /**< scale and bias from stored value to share of the table */
+	float transfer[4];       /**< scale and bias from stored value to share of the table; the
+				    share of light with which a ray ends */
 	float light_towards[4];  /**< world directions; share of the ambient light that can be kept
 				    away */
 	float light_terms[4];    /**< ambient, diffuse, specular, shininess */

@@ -298,6 +298,9 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
 			.reconstruct_ms =
 				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),
+			.gpu_ms = gl->device.software ? NAN
+						      : gz_gl_timer_ms(&gl->timer, &gl->device,
+								       MARK_START, MARK_END),
 			.bricks_coming = gl->scene.bricks.coming,
 		};
 	leave(gl);

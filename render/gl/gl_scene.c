@@ -357,6 +357,7 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	block->jitter[2] = (uint32_t)plan->view.shift[1];
 	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
 	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
+	block->transfer[2] = gz_ray_end_transmittance(rays);
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		block->steps[i][0] = (float)(length * voxel_length);

@@ -275,6 +275,37 @@ static void empty_space_takes_no_samples(void **state)
 	small_scene_free(&scene);
 }
 
+/* Of matter that lets 1/1024 through after 20 voxels, a ray through 40 takes half its samples. */
+static void ray_without_early_termination_takes_all_samples_and_shows_the_same(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(40, 1 - pow(1.0 / 1024, 1.0 / 20));
+	scene.rays.background[0] = 1;
+	for (int integration = 0; integration < 2; integration++) {
+		struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+		struct gz_image images[2] = { 0 };
+		struct gz_frame_stats stats[2];
+		scene.rays.integration = integration;
+		for (int early = 0; early < 2; early++) {
+			scene.rays.early_termination = early;
+			small_scene_render(renderer, &scene, 9, 9, &images[early], &stats[early]);
+		}
+		if (!(stats[0].samples > 1.5 * (double)stats[1].samples))
+			fail_msg("%llu samples without, %llu with early termination",
+				 (unsigned long long)stats[0].samples,
+				 (unsigned long long)stats[1].samples);
+		int x, y;
+		assert_in_range(image_difference(&images[0], &images[1], &x, &y), 0, 1);
+		scene.rays.early_termination = false;
+		oracle_check_but(&scene, 9, 9, 0);
+		scene.rays.early_termination = true;
+		for (int i = 0; i < 2; i++)
+			gz_image_free(&images[i]);
+		gz_renderer_destroy(&renderer);
+	}
+	small_scene_free(&scene);
+}
+
 static void unknown_backend_and_instruction_set_are_refused(void **state)
 {
 	(void)state;
@@ -341,6 +372,8 @@ int main(void)
 		cmocka_unit_test(constant_box_keeps_its_brightness_for_any_step),
 		cmocka_unit_test(samples_are_taken_in_fine_cells_that_show_alone),
 		cmocka_unit_test(empty_space_takes_no_samples),
+		cmocka_unit_test(
+			ray_without_early_termination_takes_all_samples_and_shows_the_same),
 		cmocka_unit_test(unknown_backend_and_instruction_set_are_refused),
 		cmocka_unit_test(render_without_volume_or_with_bad_parameters_is_refused),
 	};

@@ -215,7 +215,7 @@ static enum gz_result open_with_setting(const char *key, const char *value,
 	snprintf(header.settings[0].key, sizeof header.settings[0].key, "%s", key);
 	snprintf(header.settings[0].value, sizeof header.settings[0].value, "%s", value);
 	write_log(&header, 10);
-	captured_log_init(captured, "gazeview:warn,*:error");
+	captured_log_init(captured, "gazeview:warn,pipeline:warn,*:error");
 	return gz_gaze_source_log(path, &captured->log, out_source);
 }
 

@@ -143,7 +143,7 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 			uvec2 look = FETCH(segments, ivec3(back, front, step_index)).rg;
 			composite(ray, k - 0.5, look.y, uintBitsToFloat(look.x), light);
 			front = back;
-			if (light.through <= GZ_TRANSMITTANCE_END)
+			if (light.through <= transfer_map.z)
 				return samples;
 		}
 	}
@@ -154,7 +154,7 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Light light)
 {
 	float leave, to = from + part;
-	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END)
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= transfer_map.z)
 		return 0U;
 	if (look_up_cell(ray, from, leave) && leave >= to)
 		return 0U;
@@ -179,7 +179,7 @@ void march_batch(Ray ray, int step_index, inout float k, inout Light light)
 	for (int i = 0; i < BATCH; i++)
 		looks[i] = look_up(ray, from + float(i), step_index);
 	for (int i = 0; i < BATCH; i++) {
-		bool takes = i == 0 || (k < ray.end && light.through > GZ_TRANSMITTANCE_END);
+		bool takes = i == 0 || (k < ray.end && light.through > transfer_map.z);
 		composite(ray, from + float(i), looks[i].y, takes ? uintBitsToFloat(looks[i].x) : 0.0, light);
 		k += takes ? 1.0 : 0.0;
 	}
@@ -193,7 +193,7 @@ void march_batch(Ray ray, int step_index, inout float k, inout Light light)
 uint march(Ray ray, int step_index, inout Light light)
 {
 	float samples = 0.0, k = ray.first + 0.5;
-	while (k < ray.end && light.through > GZ_TRANSMITTANCE_END) {
+	while (k < ray.end && light.through > transfer_map.z) {
 		float until;
 		bool empty;
 		do {
@@ -205,7 +205,7 @@ uint march(Ray ray, int step_index, inout Light light)
 		if (goes) {
 			do {
 				march_batch(ray, step_index, k, light);
-				goes = k < ray.end && light.through > GZ_TRANSMITTANCE_END;
+				goes = k < ray.end && light.through > transfer_map.z;
 				goes = goes && any_of_warp(k < until);
 			} while (goes);
 		}
@@ -218,7 +218,7 @@ uint march(Ray ray, int step_index, inout Light light)
 uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light light)
 {
 	float until;
-	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= GZ_TRANSMITTANCE_END ||
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= transfer_map.z ||
 		look_up_cell(ray, k, until))
 		return 0U;
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));

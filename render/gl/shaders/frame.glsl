@@ -10,7 +10,7 @@ layout(std140, binding = 0) uniform Frame
 	vec4 clip_least, clip_greatest;
 	vec4 cell_counts;
 	vec4 background;
-	vec4 transfer_map; // scale and bias from stored value to share of the table
+	vec4 transfer_map; // scale and bias from stored value to share of the table; light with which a ray ends
 	vec4 light_towards; // unit vector in world directions; share of the ambient light that can be kept away
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 gradient_scale;

@@ -1,0 +1,235 @@
+#include "bench/study/gaze_path.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/number.h"
+#include "sim/random.h"
+
+#define GZ_LOG_MODULE "path"
+
+/* Of one seed: places of the gaze; gz_study_camera() takes another. */
+#define GAZE_STREAM 1
+
+/* Cells along an edge of the picture: Bauer 2018, 3.2.8. */
+enum { CELLS = 10 };
+
+struct gz_point gz_gaze_path_s(double t)
+{
+	return (struct gz_point) { (float)(0.5 + 0.4 * gz_portable_sin(2 * M_PI * t)),
+				   (float)(0.05 + 0.9 * t) };
+}
+
+enum gz_result gz_gaze_path_add(struct gz_gaze_path *path, struct gz_point gaze)
+{
+	if (path->count == GZ_STUDY_POINTS_MAX)
+		return GZ_ERR_FULL;
+	if (path->count == path->capacity) {
+		const size_t capacity = path->capacity ? 2 * path->capacity : 64;
+		struct gz_study_point *points =
+			reallocarray(path->points, capacity, sizeof *points);
+		if (!points)
+			return GZ_ERR_NO_MEM;
+		path->points = points;
+		path->capacity = capacity;
+	}
+	path->points[path->count++] = (struct gz_study_point) { .gaze = gaze };
+	return GZ_OK;
+}
+
+void gz_gaze_path_free(struct gz_gaze_path *path)
+{
+	free(path->points);
+	*path = (struct gz_gaze_path) { 0 };
+}
+
+bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_display *b)
+{
+	for (int axis = 0; axis < 2; axis++) {
+		const double ratio =
+			(a->mm[axis] / a->distance_mm) / (b->mm[axis] / b->distance_mm);
+		if (!(fabs(ratio - 1) <= 0.01))
+			return false;
+	}
+	return true;
+}
+
+static enum gz_result refuse(const char *text, const struct gz_log *log)
+{
+	gz_err(log,
+	       "%s: no such path: sweep:s, sweep:s:N, grid:NxM, random:N, centre, X,Y, FILE.gzl or "
+	       "FILE.gzl:samples, of at most %d points",
+	       text, GZ_STUDY_POINTS_MAX);
+	return GZ_ERR_INVAL;
+}
+
+/* A count of points. */
+static bool parse_count(const char *text, long long *out_count)
+{
+	return gz_number_parse_whole(text, out_count) && *out_count >= 1 &&
+	       *out_count <= GZ_STUDY_POINTS_MAX;
+}
+
+static enum gz_result add_s(long long count, struct gz_gaze_path *path)
+{
+	enum gz_result result = GZ_OK;
+	for (long long i = 0; i < count && result == GZ_OK; i++)
+		result = gz_gaze_path_add(path, gz_gaze_path_s(((double)i + 0.5) / (double)count));
+	return result;
+}
+
+static enum gz_result add_grid(long long columns, long long rows, struct gz_gaze_path *path)
+{
+	enum gz_result result = GZ_OK;
+	for (long long i = 0; i < columns * rows && result == GZ_OK; i++) {
+		const struct gz_point gaze = {
+			(float)(((double)(i % columns) + 0.5) / (double)columns),
+			(float)(((double)(i / columns) + 0.5) / (double)rows),
+		};
+		result = gz_gaze_path_add(path, gaze);
+	}
+	return result;
+}
+
+static enum gz_result add_random(long long count, uint64_t seed, struct gz_gaze_path *path)
+{
+	struct gz_random random = gz_random_seeded(seed, GAZE_STREAM);
+	enum gz_result result = GZ_OK;
+	for (long long i = 0; i < count && result == GZ_OK; i++) {
+		struct gz_point gaze;
+		gaze.x = (float)gz_random_uniform(&random);
+		gaze.y = (float)gz_random_uniform(&random);
+		result = gz_gaze_path_add(path, gaze);
+	}
+	return result;
+}
+
+/* Two numbers parted by @p between. */
+static bool split(const char *text, char between, char first[GZ_NAME_SIZE], const char **out_second)
+{
+	const char *at = strchr(text, between);
+	if (!at || at - text >= GZ_NAME_SIZE)
+		return false;
+	snprintf(first, GZ_NAME_SIZE, "%.*s", (int)(at - text), text);
+	*out_second = at + 1;
+	return true;
+}
+
+static bool parse_grid(const char *text, long long *out_columns, long long *out_rows)
+{
+	char columns[GZ_NAME_SIZE];
+	const char *rows;
+	return split(text, 'x', columns, &rows) && parse_count(columns, out_columns) &&
+	       parse_count(rows, out_rows) && *out_columns * *out_rows <= GZ_STUDY_POINTS_MAX;
+}
+
+static bool parse_place(const char *text, struct gz_point *out_gaze)
+{
+	char first[GZ_NAME_SIZE];
+	const char *second;
+	double x, y;
+	if (!split(text, ',', first, &second) || !gz_number_parse(first, &x) ||
+	    !gz_number_parse(second, &y) || fabs(x) > 100 || fabs(y) > 100)
+		return false;
+	*out_gaze = (struct gz_point) { (float)x, (float)y };
+	return true;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+	const size_t length = strlen(text), end_length = strlen(end);
+	return length > end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
+				 const struct gz_log *log, struct gz_gaze_path *path)
+{
+	static const char samples[] = ":samples";
+	const char *text = settings->text;
+	long long count, rows;
+	struct gz_point gaze;
+	char file[GZ_PATH_SIZE];
+	if (strcmp(text, "sweep:s") == 0)
+		return add_s(GZ_GAZE_PATH_SWEEP_POINTS, path);
+	if (strncmp(text, "sweep:s:", 8) == 0 && parse_count(text + 8, &count))
+		return add_s(count, path);
+	if (strncmp(text, "grid:", 5) == 0 && parse_grid(text + 5, &count, &rows))
+		return add_grid(count, rows, path);
+	if (strncmp(text, "random:", 7) == 0 && parse_count(text + 7, &count))
+		return add_random(count, settings->seed, path);
+	if (strcmp(text, "centre") == 0)
+		return gz_gaze_path_add(path, (struct gz_point) { 0.5F, 0.5F });
+	if (parse_place(text, &gaze))
+		return gz_gaze_path_add(path, gaze);
+	if (ends_with(text, ".gzl"))
+		return gz_gaze_path_add_log(text, false, log, path);
+	if (ends_with(text, ".gzl:samples") && strlen(text) < sizeof file) {
+		snprintf(file, sizeof file, "%.*s", (int)(strlen(text) - (sizeof samples - 1)),
+			 text);
+		return gz_gaze_path_add_log(file, true, log, path);
+	}
+	return refuse(text, log);
+}
+
+/* Whether the point is the first in its cell; false outside the picture. */
+static bool first_in_cell(struct gz_point gaze, bool seen[CELLS * CELLS])
+{
+	if (!(gaze.x >= 0 && gaze.x < 1 && gaze.y >= 0 && gaze.y < 1))
+		return false;
+	bool *cell = &seen[(int)(gaze.y * CELLS) * CELLS + (int)(gaze.x * CELLS)];
+	const bool first = !*cell;
+	*cell = true;
+	return first;
+}
+
+static bool moved(const struct gz_gaze_path_settings *settings, struct gz_point from,
+		  struct gz_point to)
+{
+	return hypot(((double)to.x - (double)from.x) * settings->size[0],
+		     ((double)to.y - (double)from.y) * settings->size[1]) >= settings->min_move_px;
+}
+
+static void thin_out(const struct gz_gaze_path_settings *settings, struct gz_gaze_path *path)
+{
+	bool seen[CELLS * CELLS] = { false };
+	size_t kept = 0;
+	for (size_t i = 0; i < path->count; i++) {
+		const struct gz_point gaze = path->points[i].gaze;
+		if (kept > 0 && !moved(settings, path->points[kept - 1].gaze, gaze))
+			continue;
+		if (!settings->per_cell || first_in_cell(gaze, seen))
+			path->points[kept++] = path->points[i];
+	}
+	path->count = kept;
+}
+
+enum gz_result gz_gaze_path_make(const struct gz_gaze_path_settings *settings,
+				 const struct gz_log *log, struct gz_gaze_path *out_path)
+{
+	struct gz_gaze_path path = { 0 };
+	enum gz_result result = add_points(settings, log, &path);
+	if (result == GZ_ERR_FULL) {
+		gz_err(log, "%s: more than %d points; take fixations, or record less",
+		       settings->text, GZ_STUDY_POINTS_MAX);
+		result = GZ_ERR_INVAL;
+	} else if (result == GZ_ERR_NO_MEM) {
+		gz_err(log, "%s: no memory for its points", settings->text);
+	} else if (result == GZ_OK) {
+		thin_out(settings, &path);
+		if (path.count == 0) {
+			gz_err(log, "%s: no point lies within the picture; leave out --per-cell",
+			       settings->text);
+			result = GZ_ERR_INVAL;
+		}
+	}
+	if (result != GZ_OK) {
+		gz_gaze_path_free(&path);
+		return result;
+	}
+	for (size_t i = 0; i < path.count && settings->cameras > 0; i++)
+		path.points[i].camera = 1 + (uint32_t)(i % settings->cameras);
+	*out_path = path;
+	return GZ_OK;
+}

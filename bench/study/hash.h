@@ -1,0 +1,35 @@
+/**
+ * @file
+ * SHA-256 of what is measured, so that the same is known again.
+ */
+#ifndef GZ_BENCH_STUDY_HASH_H
+#define GZ_BENCH_STUDY_HASH_H
+
+#include <stddef.h>
+
+#include "base/result.h"
+#include "bench/study/study.h"
+
+struct gz_hash;
+
+/** Begin. The caller's: gz_hash_end() frees it. GZ_ERR_NO_MEM. */
+enum gz_result gz_hash_begin(struct gz_hash **out_hash);
+
+/** Go on with @p size bytes. */
+void gz_hash_add(struct gz_hash *hash, const void *bytes, size_t size);
+
+/** Go on with a text and its NUL, so that texts in a row do not run into each other. */
+void gz_hash_add_text(struct gz_hash *hash, const char *text);
+
+/** Go on with a number, the same on every machine: its 8 bytes as IEEE 754, the lowest first. */
+void gz_hash_add_number(struct gz_hash *hash, double number);
+
+/**
+ * End, free and set to NULL. Accepts a pointer to NULL, and then writes nothing.
+ *
+ * @param[out] out_hex  64 hexadecimal digits; may be NULL
+ * @retval GZ_ERR_NO_MEM  the library failed on the way
+ */
+enum gz_result gz_hash_end(struct gz_hash **hash, char out_hex[GZ_STUDY_HASH_SIZE]);
+
+#endif
