@@ -15,7 +15,7 @@
 /** The points of one layer. The first layer of spacing 1 lies in the
  *  picture itself. */
 struct gz_lattice {
-	uint32_t *points; /**< row by row */
+	uint32_t *points; /**< row by row; 32 more behind the last may be read */
 	size_t stride;    /**< points from one row to the next */
 	int spacing, columns, rows;
 };

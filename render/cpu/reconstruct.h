@@ -18,8 +18,8 @@
 #define GZ_ROW_STREAMED 256
 
 /**
- * The filters of the pyramid, row by row, for one instruction set. All give the same bits. Points
- * are 4 channels of 8 bits; docs/foveation.md has the formulas.
+ * The filters of pyramids and regions, row by row, for one instruction set. All give the same bits.
+ * Points are 4 channels of 8 bits; docs/foveation.md has the formulas.
  *
  * `stream` writes past the caches where addresses allow it: for what is larger than they are and
  * not read soon. Other threads see it after settle().
@@ -45,6 +45,17 @@ struct gz_row_filters {
 			uint32_t colour);
 	/** @p count points of one colour. */
 	void (*fill)(uint32_t colour, uint32_t *out, int count, bool stream);
+	/** @p count points to another place. */
+	void (*copy)(const uint32_t *points, uint32_t *out, int count, bool stream);
+	/** Pixels from @p x0 up to, not including, @p x1 of row @p y, bilinearly from one lattice,
+	 * within whose span they are; @p out is the first one's place. */
+	void (*span)(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *out);
+	/** gz_region_weight() of @p count pixels of row @p y from @p x0 on, in 1/256, rounded, of a
+	 * region with a band. */
+	void (*weights)(const struct gz_region *region, int y, int x0, int count, uint32_t *out);
+	/** Each of @p count @p points is mixed with the one @p behind it; @p shares are its own, in
+	 * 1/256. */
+	void (*blend)(const uint32_t *behind, const uint32_t *shares, uint32_t *points, int count);
 	/** After the last of what was streamed, before another thread may read it. */
 	void (*settle)(void);
 };
@@ -67,15 +78,15 @@ void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattic
 /** The squares that the picture of a pyramid is made in: columns and rows. */
 void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows);
 
+/** Whether a plan's picture is written past the caches. */
+bool gz_reconstruct_streams(const struct gz_plan *plan);
+
 /** Fill one of them. Threads: any number, each with squares of its own. */
 void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
 			   const struct gz_row_filters *filters, int column, int row);
 
-/** Pixels from @p x0 up to, not including, @p x1 of row @p y, bilinearly from one lattice.
- *
- *  @param x0, x1    within the lattice's span; x0 < x1
- *  @param[out] out  the first pixel's place
- */
-void gz_reconstruct_span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *out);
+/** Fill a row of a picture of regions. Threads: any number, each with rows of its own. */
+void gz_reconstruct_row(const struct gz_plan *plan, const struct gz_lattices *lattices,
+			const struct gz_row_filters *filters, uint32_t *picture, int y);
 
 #endif

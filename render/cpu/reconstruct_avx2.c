@@ -3,5 +3,6 @@
 #include "render/cpu/points_avx2.h"
 
 #include "render/cpu/reconstruct_rows.h"
+#include "render/cpu/reconstruct_spans.h"
 
 const struct gz_row_filters gz_row_filters_avx2 = GZ_ROW_FILTERS("avx2");

@@ -3,5 +3,6 @@
 #include "render/cpu/points_portable.h"
 
 #include "render/cpu/reconstruct_rows.h"
+#include "render/cpu/reconstruct_spans.h"
 
 const struct gz_row_filters gz_row_filters_portable = GZ_ROW_FILTERS("portable");

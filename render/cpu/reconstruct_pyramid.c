@@ -27,10 +27,6 @@ enum {
 	PATCH_STRIDE = LEFT + (PATCH_WIDTH + REACH + 2 * GZ_ROW_POINTS + 15) / 16 * 16,
 	PATCH_ROWS = PATCH_HEIGHT + 2 * REACH + 1,
 	FLAT_WIDTH = 2 * GZ_ROW_POINTS, /* px whose source is looked at together for one colour */
-	/* Pictures of more bytes go past the caches. Chosen: beyond a processor's own cache; up to
-	 * the size of a shared one it is measured to be faster too, with a copy of the picture
-	 * behind it (docs/results.md). */
-	STREAM_BYTES = 4 << 20,
 };
 
 /* Columns [x0, x1) and rows [y0, y1) of a lattice. */
@@ -367,15 +363,13 @@ void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices 
 		.plan = plan,
 		.lattices = lattices,
 		.filters = filters,
-		.stream = (size_t)plan->width * (size_t)plan->height * 4 > STREAM_BYTES,
+		.stream = gz_reconstruct_streams(plan),
 	};
 	const int coarsest = lay_out(&square, column, row, memory);
 	if (coarsest == 0)
 		return;
 	for (int level = coarsest; level >= 0; level--)
 		fill_level(&square, level);
-	if (square.stream)
-		filters->settle();
 }
 
 void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows)

@@ -139,21 +139,38 @@ SIMD void double_mean_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, 
 	}
 }
 
-/* Points before the first that a wide store past the caches may begin with. */
-SIMD int before_aligned(const uint32_t *out)
+/* Points before the first that stores past the caches may begin with: whole lines of the caches,
+ * which leave at once. */
+enum { LINE = 16 };
+
+SIMD int before_line(const uint32_t *out)
 {
-	return (int)(-((uintptr_t)out / sizeof *out) % POINTS);
+	return (int)(-((uintptr_t)out / sizeof *out) % LINE);
+}
+
+SIMD void stream_line(const uint32_t *points, uint32_t *out)
+{
+	for (int x = 0; x < LINE; x += POINTS)
+		vp_stream(out + x, vp_load(points + x));
 }
 
 static void stream_row(const uint32_t *points, uint32_t *out, int count)
 {
-	int x = before_aligned(out);
+	int x = before_line(out);
 	if (x > count)
 		x = count;
 	memcpy(out, points, (size_t)x * sizeof *out);
-	for (; x + POINTS <= count; x += POINTS)
-		vp_stream(out + x, vp_load(points + x));
+	for (; x + LINE <= count; x += LINE)
+		stream_line(points + x, out + x);
 	memcpy(out + x, points + x, (size_t)(count - x) * sizeof *out);
+}
+
+static void copy(const uint32_t *points, uint32_t *out, int count, bool stream)
+{
+	if (stream)
+		stream_row(points, out, count);
+	else
+		memcpy(out, points, (size_t)count * sizeof *out);
 }
 
 typedef void row_filter(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
@@ -165,7 +182,7 @@ SIMD void double_to(row_filter *filter, const uint32_t *row, ptrdiff_t stride, u
 {
 	if (!stream) {
 		filter(row, stride, even, odd, count, STORE_CACHED);
-	} else if (before_aligned(even) == 0 && before_aligned(odd) == 0) {
+	} else if (before_line(even) == 0 && before_line(odd) == 0) {
 		filter(row, stride, even, odd, count, STORE_STREAMED);
 	} else {
 		uint32_t rows[2][GZ_ROW_STREAMED];
@@ -255,10 +272,11 @@ static void fill(uint32_t colour, uint32_t *out, int count, bool stream)
 	const vp all = vp_set(colour);
 	int x = 0;
 	if (stream) {
-		for (const int head = before_aligned(out); x < head && x < count; x++)
+		for (const int head = before_line(out); x < head && x < count; x++)
 			out[x] = colour;
-		for (; x + POINTS <= count; x += POINTS)
-			vp_stream(out + x, all);
+		for (; x + LINE <= count; x += LINE)
+			for (int i = 0; i < LINE; i += POINTS)
+				vp_stream(out + x + i, all);
 	}
 	for (; x + POINTS <= count; x += POINTS)
 		vp_store(out + x, all);
@@ -271,9 +289,10 @@ static void settle(void)
 	vp_settle();
 }
 
-#define GZ_ROW_FILTERS(set)                                                            \
-	{                                                                              \
-		.name = set, .double_cubic = double_cubic, .double_mean = double_mean, \
-		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,      \
-		.all_are = all_are, .fill = fill, .settle = settle,                    \
+#define GZ_ROW_FILTERS(set)                                                                       \
+	{                                                                                         \
+		.name = set, .double_cubic = double_cubic, .double_mean = double_mean,            \
+		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,                 \
+		.all_are = all_are, .fill = fill, .copy = copy, .span = span, .weights = weights, \
+		.blend = blend, .settle = settle,                                                 \
 	}

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/cpu/cast.h"
 #include "render/cpu/reconstruct.h"
 #include "small_scene.h"
 
@@ -373,13 +374,13 @@ static void error_grows_without_a_step_across_borders(void **state)
 	small_scene_free(&scene);
 }
 
-static void span_of_a_plane_is_the_plane(void **state)
+static void check_spans_of_a_plane(const struct gz_row_filters *filters)
 {
-	(void)state;
 	/* Bilinear interpolation reproduces a ramp exactly, up to rounding. */
 	for (int spacing = 1; spacing <= GZ_SPACING_MAX; spacing++) {
 		enum { COLUMNS = 9, ROWS = 5 };
-		uint32_t points[COLUMNS * ROWS], row[COLUMNS * GZ_SPACING_MAX];
+		uint32_t points[COLUMNS * ROWS + 32] = { 0 };
+		uint32_t row[COLUMNS * GZ_SPACING_MAX];
 		for (int i = 0; i < COLUMNS * ROWS; i++) {
 			const uint32_t grey = (uint32_t)(i % COLUMNS * 20 + i / COLUMNS * 16);
 			points[i] = 0xFF000000U | grey << 16 | grey << 8 | grey;
@@ -395,20 +396,30 @@ static void span_of_a_plane_is_the_plane(void **state)
 		for (int y = 0; y <= (ROWS - 1) * spacing; y++) {
 			/* from two sides, so that spans begin and end within cells */
 			const int cut = 1 + y % (width > 2 ? width - 1 : 1);
-			gz_reconstruct_span(&lattice, y, 0, cut, row);
+			filters->span(&lattice, y, 0, cut, row);
 			if (cut < width)
-				gz_reconstruct_span(&lattice, y, cut, width, row + cut);
+				filters->span(&lattice, y, cut, width, row + cut);
 			for (int x = 0; x < width; x++) {
 				const double exact = (20.0 * x + 16.0 * y) / spacing;
 				for (int c = 0; c < 3; c++)
 					if (fabs((row[x] >> (8 * c) & 255) - exact) >
 					    0.5001 + (1 + spacing) / 256.0)
-						fail_msg("spacing %d at %d %d: %u, not %g", spacing,
-							 x, y, row[x] >> (8 * c) & 255, exact);
+						fail_msg("%s, spacing %d at %d %d: %u, not %g",
+							 filters->name, spacing, x, y,
+							 row[x] >> (8 * c) & 255, exact);
 				assert_int_equal(row[x] >> 24, 255);
 			}
 		}
 	}
+}
+
+static void span_of_a_plane_is_the_plane(void **state)
+{
+	(void)state;
+	static const char *const sets[] = { "portable", "avx2", "avx512" };
+	for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++)
+		if (gz_cast_kernels_find(sets[i]))
+			check_spans_of_a_plane(gz_row_filters_find(sets[i]));
 }
 
 int main(void)
