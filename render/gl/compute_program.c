@@ -22,7 +22,8 @@ static const char sizes[] =
 			DEFINE("BRICK_STORED_EDGE", GZ_GL_BRICK_STORED_EDGE)
 				DEFINE("BRICK_LEVELS", GZ_GL_BRICK_LEVELS)
 					DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
-						DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS);
+						DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS)
+							DEFINE("IMAGE_POINTS", GZ_GL_IMAGE_POINTS);
 
 /* Shaders do without what is enabled here, which drivers may not know. */
 const char *const gz_compute_head[] = { "#version 430 core\n",

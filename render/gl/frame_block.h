@@ -29,6 +29,10 @@
 #define GZ_GL_BRICK_LEVEL_BITS  4
 #define GZ_GL_BRICK_PLACE_BITS  9
 
+/** Image unit of the lattice points; the last that every OpenGL has, others are those of textures.
+ */
+#define GZ_GL_IMAGE_POINTS 7
+
 /** Binding points. */
 enum gz_gl_texture_unit {
 	GZ_GL_UNIT_VOXELS,

@@ -38,6 +38,21 @@ static void *map_new(struct gz_gl_buffer *buffer, size_t size)
 				GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
 }
 
+/* Room for the points, and their texture where shaders read them by it (frame.glsl). */
+static void reserve_points(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+			   size_t size)
+{
+	const bool grows = size > frame->points.size;
+	reserve(&frame->points, size, GL_DYNAMIC_COPY);
+	if (!device->software || !grows)
+		return;
+	if (!frame->point_texels)
+		glGenTextures(1, &frame->point_texels);
+	glBindTexture(GL_TEXTURE_BUFFER, frame->point_texels);
+	glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, frame->points.name);
+	glBindTexture(GL_TEXTURE_BUFFER, 0);
+}
+
 /* The first layer of spacing 1 is the picture itself. A second one, by odd parameters, has room of
  * its own, so that no two rays write one pixel. */
 static size_t lay_out(const struct gz_plan *plan, struct gz_gl_frame_block *block)
@@ -126,7 +141,7 @@ enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl
 		return GZ_ERR_UNSUPPORTED;
 	}
 	reserve(&frame->block, GZ_LEVELS_MAX * BLOCK_STRIDE, GL_STREAM_DRAW);
-	reserve(&frame->points, bytes, GL_DYNAMIC_COPY);
+	reserve_points(frame, device, bytes);
 	reserve(&frame->counts, GZ_GL_COUNT_SLOTS * sizeof(uint32_t), GL_DYNAMIC_READ);
 	enum gz_result result = gz_gl_device_errors(device);
 	if (result != GZ_OK) {
@@ -187,6 +202,9 @@ void gz_gl_frame_begin(struct gz_gl_frame *frame)
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_TILES, frame->tiles.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_POINTS, frame->points.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_COUNTS, frame->counts.name);
+	if (frame->point_texels)
+		glBindImageTexture(GZ_GL_IMAGE_POINTS, frame->point_texels, 0, GL_FALSE, 0,
+				   GL_READ_ONLY, GL_R32UI);
 }
 
 enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,
@@ -252,5 +270,7 @@ void gz_gl_frame_free(struct gz_gl_frame *frame)
 		glDeleteBuffers(sizeof buffers / sizeof buffers[0], buffers);
 	if (frame->picture)
 		glDeleteTextures(1, &frame->picture);
+	if (frame->point_texels)
+		glDeleteTextures(1, &frame->point_texels);
 	*frame = (struct gz_gl_frame) { 0 };
 }

@@ -40,7 +40,8 @@ struct gz_gl_frame {
 	struct gz_gl_tile_range ranges[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	/** From the first to behind the last tile of each level of detail; others lie between. */
 	struct gz_gl_tile_range level_ranges[GZ_LEVELS_MAX];
-	unsigned picture; /**< texture, RGBA8; 0 until one was asked for */
+	unsigned point_texels; /**< buffer texture of points; 0 where shaders need none */
+	unsigned picture;      /**< texture, RGBA8; 0 until one was asked for */
 	int picture_width, picture_height;
 };
 

@@ -19,7 +19,7 @@ extern const char gz_glsl_quincunx_comp[];
 extern const char gz_glsl_regions_comp[];
 
 /* Locations and sizes of the shaders. */
-enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BILINEAR = 3, BLOCK_EDGE = 8 };
+enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BLOCK_EDGE = 8 };
 enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
 
 /* The program, made if there is none yet. */
@@ -51,7 +51,13 @@ static void dispatch(const struct gz_gl_device *device, size_t first, size_t cou
 
 static void await_points(void)
 {
-	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+/* What all shaders are told of the device. */
+static const char *fetch_define(const struct gz_gl_device *device)
+{
+	return device->software ? "#define FETCH_IMAGES\n" : "";
 }
 
 enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device *device,
@@ -67,8 +73,7 @@ enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device
 	snprintf(defines, sizeof defines, "#define VOXEL_BITS %zu\n%s%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), texels[kind.texels],
 		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
-		 kind.shaded ? "#define SHADED\n" : "",
-		 device->software ? "#define FETCH_IMAGES\n" : "");
+		 kind.shaded ? "#define SHADED\n" : "", fetch_define(device));
 	const struct gz_compute_text text = {
 		.name = "cast.comp",
 		.defines = defines,
@@ -86,27 +91,42 @@ enum gz_result gz_gl_cast(struct gz_gl_passes *passes, const struct gz_gl_device
 	return GZ_OK;
 }
 
+/* A pass of the pyramid over lattice @p level, ready to be dispatched. */
+static enum gz_result use_filter(unsigned programs[2], const char *name, const char *shader,
+				 const struct gz_gl_device *device, const struct gz_plan *plan,
+				 int level, const struct gz_log *log)
+{
+	const bool bilinear = plan->filter == GZ_FILTER_BILINEAR;
+	char defines[80];
+	snprintf(defines, sizeof defines, "%s%s", bilinear ? "#define BILINEAR\n" : "",
+		 fetch_define(device));
+	const struct gz_compute_text text = {
+		.name = name,
+		.defines = defines,
+		.parts = { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl, shader },
+	};
+	const enum gz_result result = use(&programs[bilinear], &text, log);
+	if (result != GZ_OK)
+		return result;
+	await_points();
+	glUniform1ui(LEVEL, (GLuint)level);
+	return GZ_OK;
+}
+
 /* Points of lattice @p level that lie in coarser tiles. */
 static enum gz_result fill_level(struct gz_gl_passes *passes, const struct gz_gl_device *device,
 				 const struct gz_gl_frame *frame, const struct gz_plan *plan,
 				 int level, const struct gz_log *log)
 {
-	const struct gz_compute_text text = {
-		.name = "fill.comp",
-		.parts = { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl, gz_glsl_fill_comp },
-	};
 	const size_t first = level + 1 < plan->layer_count ? frame->ranges[level + 1][0].first
 							   : plan->tile_count;
 	if (first == plan->tile_count)
 		return GZ_OK;
-	const enum gz_result result = use(&passes->fill, &text, log);
-	if (result != GZ_OK)
-		return result;
-	await_points();
-	glUniform1ui(LEVEL, (GLuint)level);
-	glUniform1ui(BILINEAR, plan->filter == GZ_FILTER_BILINEAR);
-	dispatch(device, first, plan->tile_count - first, 1);
-	return GZ_OK;
+	const enum gz_result result =
+		use_filter(passes->fill, "fill.comp", gz_glsl_fill_comp, device, plan, level, log);
+	if (result == GZ_OK)
+		dispatch(device, first, plan->tile_count - first, 1);
+	return result;
 }
 
 /* Points of lattice @p level between those of quincunx tiles. */
@@ -114,21 +134,14 @@ static enum gz_result fill_quincunx(struct gz_gl_passes *passes, const struct gz
 				    const struct gz_gl_frame *frame, const struct gz_plan *plan,
 				    int level, const struct gz_log *log)
 {
-	const struct gz_compute_text text = {
-		.name = "quincunx.comp",
-		.parts = { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl, gz_glsl_quincunx_comp },
-	};
 	const struct gz_gl_tile_range *range = &frame->ranges[level][GZ_TILE_QUINCUNX];
 	if (range->count == 0)
 		return GZ_OK;
-	const enum gz_result result = use(&passes->quincunx, &text, log);
-	if (result != GZ_OK)
-		return result;
-	await_points();
-	glUniform1ui(LEVEL, (GLuint)level);
-	glUniform1ui(BILINEAR, plan->filter == GZ_FILTER_BILINEAR);
-	dispatch(device, range->first, range->count, TILES_A_GROUP);
-	return GZ_OK;
+	const enum gz_result result = use_filter(passes->quincunx, "quincunx.comp",
+						 gz_glsl_quincunx_comp, device, plan, level, log);
+	if (result == GZ_OK)
+		dispatch(device, range->first, range->count, TILES_A_GROUP);
+	return result;
 }
 
 static enum gz_result fill_pyramid(struct gz_gl_passes *passes, const struct gz_gl_device *device,
@@ -150,6 +163,7 @@ static enum gz_result fill_regions(struct gz_gl_passes *passes, const struct gz_
 {
 	const struct gz_compute_text text = {
 		.name = "regions.comp",
+		.defines = fetch_define(device),
 		.parts = { gz_glsl_frame_glsl, gz_glsl_regions_comp },
 	};
 	enum gz_result result = use(&passes->regions, &text, log);
@@ -179,15 +193,18 @@ enum gz_result gz_gl_reconstruct(struct gz_gl_passes *passes, const struct gz_gl
 	return result;
 }
 
-void gz_gl_passes_free(struct gz_gl_passes *passes)
+static void delete_programs(const GLuint *programs, size_t count)
 {
-	const GLuint *programs = &passes->cast[0][0][0][0][0];
-	for (size_t i = 0; i < sizeof passes->cast / sizeof *programs; i++)
+	for (size_t i = 0; i < count; i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);
-	const GLuint fills[] = { passes->fill, passes->quincunx, passes->regions };
-	for (size_t i = 0; i < sizeof fills / sizeof fills[0]; i++)
-		if (fills[i])
-			glDeleteProgram(fills[i]);
+}
+
+void gz_gl_passes_free(struct gz_gl_passes *passes)
+{
+	delete_programs(&passes->cast[0][0][0][0], sizeof passes->cast / sizeof(GLuint));
+	delete_programs(passes->fill, 2);
+	delete_programs(passes->quincunx, 2);
+	delete_programs(&passes->regions, 1);
 	*passes = (struct gz_gl_passes) { 0 };
 }

@@ -29,7 +29,8 @@ struct gz_gl_cast_kind {
 struct gz_gl_passes {
 	/** By the members of struct gz_gl_cast_kind. */
 	unsigned cast[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2];
-	unsigned fill, quincunx, regions;
+	unsigned fill[2], quincunx[2]; /**< 1: bilinear */
+	unsigned regions;
 };
 
 /**

@@ -462,10 +462,17 @@ static void shaders_are_valid_for_the_reference_compiler(void **state)
 						    gz_glsl_shade_glsl, gz_glsl_cast_comp, NULL });
 		}
 	const char *const passes[] = { gz_glsl_fill_comp, gz_glsl_quincunx_comp };
-	for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)
-		check_text("", (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl,
-						       passes[i], NULL });
-	check_text("", (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_regions_comp, NULL });
+	for (int variant = 0; variant < 4; variant++) {
+		char defines[80];
+		snprintf(defines, sizeof defines, "%s%s", variant & 1 ? "#define BILINEAR\n" : "",
+			 variant & 2 ? "#define FETCH_IMAGES\n" : "");
+		for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)
+			check_text(defines,
+				   (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl,
+							   passes[i], NULL });
+		check_text(defines, (const char *const[]) { gz_glsl_frame_glsl,
+							    gz_glsl_regions_comp, NULL });
+	}
 }
 
 int main(int argc, char **argv)

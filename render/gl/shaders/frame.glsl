@@ -32,6 +32,14 @@ layout(std430, binding = 1) buffer Points
 	uint points[]; // R, G, B, A from the lowest byte
 };
 
+// The same to read, as texels by FETCH_IMAGES: Mesa's processor reads a storage buffer lane by lane.
+#ifdef FETCH_IMAGES
+layout(binding = IMAGE_POINTS, r32ui) readonly uniform uimageBuffer point_texels;
+#define POINT(index) imageLoad(point_texels, int(index)).r
+#else
+#define POINT(index) points[index]
+#endif
+
 // Tiles: the position of the first ray, 16 bits of x below 16 of y; layer in 3 bits, pattern in 2, level of
 // detail in 3, step in 8, and a bit for each ray that is cast.
 layout(std430, binding = 0) readonly buffer Tiles

@@ -1,50 +1,53 @@
-// The filters of the pyramid, docs/foveation.md: whole numbers, a byte a channel, the cpu backend's bits.
+// The filters of the pyramid, docs/foveation.md: whole numbers, the cpu backend's bits. Points are opaque, so
+// that three channels are all there is to them. Layer k of a pyramid has a spacing of 2^k.
 layout(location = 2) uniform uint level;
-layout(location = 3) uniform uint bilinear;
 
-ivec4 channels(uint point)
+ivec3 channels(uint point)
 {
-	return ivec4(uvec4(point, point >> 8, point >> 16, point >> 24) & 255U);
+	return ivec3(uvec3(point, point >> 8, point >> 16) & 255U);
 }
 
-uint packed_point(ivec4 values)
+uint packed_point(ivec3 values)
 {
-	uvec4 bits = uvec4(values) << uvec4(0U, 8U, 16U, 24U);
-	return bits.x | bits.y | bits.z | bits.w;
+	return uint(values.r) | uint(values.g) << 8 | uint(values.b) << 16 | 0xFF000000U;
 }
 
 // Rounded up in odd rows and down in even ones.
-uint mean_of_2(uint a, uint b, int row)
+ivec3 mean_of_2(ivec3 a, ivec3 b, int row)
 {
-	return packed_point((channels(a) + channels(b) + row % 2) >> 1);
+	return (a + b + (row & 1)) >> 1;
 }
 
-uint mean_of_4(uint a, uint b, uint c, uint d)
+ivec3 mean_of_4(ivec3 a, ivec3 b, ivec3 c, ivec3 d)
 {
-	return packed_point((channels(a) + channels(b) + channels(c) + channels(d) + 2) >> 2);
+	return (a + b + c + d + 2) >> 2;
 }
 
 // Catmull-Rom halfway between b and c, never outside of them.
-uint cubic(uint a, uint b, uint c, uint d)
+ivec3 cubic(ivec3 a, ivec3 b, ivec3 c, ivec3 d)
 {
-	ivec4 from = channels(b), to = channels(c);
-	ivec4 m = (from + to + 1) >> 1, n = (channels(a) + channels(d) + 1) >> 1;
-	ivec4 value = m + ((m - n + 4 - 4 * ((from ^ to) & 1)) >> 3);
-	return packed_point(clamp(value, min(from, to), max(from, to)));
+	ivec3 m = (b + c + 1) >> 1, n = (a + d + 1) >> 1;
+	ivec3 value = m + ((m - n + 4 - (((b ^ c) & 1) << 2)) >> 3);
+	return clamp(value, min(b, c), max(b, c));
 }
 
-int mirrored(int i, int count)
+// Numbers up to three beyond either end of a count, mirrored about it: as often as a count of two takes.
+ivec4 mirrored(ivec4 i, int count)
 {
 	int period = 2 * (count - 1);
-	if (period == 0)
-		return 0;
-	i = abs(i) % period;
-	return i < count ? i : period - i;
+	i = abs(i);
+	i = min(i, abs(period - i));
+	i = min(i, abs(period - i));
+	return min(i, count - 1);
 }
 
-// A point of a lattice, mirrored beyond its rim.
-uint point_of(uvec4 layer, ivec2 place)
+ivec3 point_of(uvec4 layer, int column, int row)
 {
-	uint column = uint(mirrored(place.x, int(layer.y))), row = uint(mirrored(place.y, int(layer.z)));
-	return points[layer.x + row * layer.y + column];
+	return channels(POINT(layer.x + uint(row) * layer.y + uint(column)));
+}
+
+void set_point(uvec4 layer, ivec2 place, ivec3 values)
+{
+	if (place.x < int(layer.y) && place.y < int(layer.z))
+		points[layer.x + uint(place.y) * layer.y + uint(place.x)] = packed_point(values);
 }

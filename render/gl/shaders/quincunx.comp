@@ -2,25 +2,23 @@
 // lattice.
 layout(local_size_x = GROUP_SIZE) in;
 
-uint along(uvec4 layer, ivec2 at, ivec2 axis)
-{
-	uint before = point_of(layer, at - axis), behind = point_of(layer, at + axis);
-	if (bilinear != 0U)
-		return mean_of_2(before, behind, 1);
-	return cubic(point_of(layer, at - 3 * axis), before, behind, point_of(layer, at + 3 * axis));
-}
+const ivec4 reach = ivec4(-3, -1, 1, 3); // of the filters
 
-uint between(uvec4 layer, ivec2 at)
+ivec3 between(uvec4 layer, ivec2 at)
 {
-	const ivec2 x = ivec2(1, 0), y = ivec2(0, 1);
-	if (layer.y == 1U) // no neighbours along that axis
-		return along(layer, at, y);
-	if (layer.z == 1U)
-		return along(layer, at, x);
-	if (bilinear != 0U)
-		return mean_of_4(point_of(layer, at - x), point_of(layer, at + x),
-			point_of(layer, at - y), point_of(layer, at + y));
-	return mean_of_2(along(layer, at, x), along(layer, at, y), at.y);
+	ivec4 columns = mirrored(at.x + reach, int(layer.y)), rows = mirrored(at.y + reach, int(layer.z));
+	ivec3 left = point_of(layer, columns[1], at.y), right = point_of(layer, columns[2], at.y);
+	ivec3 above = point_of(layer, at.x, rows[1]), below = point_of(layer, at.x, rows[2]);
+#ifdef BILINEAR
+	ivec3 along_x = mean_of_2(left, right, 1), along_y = mean_of_2(above, below, 1);
+	ivec3 both = mean_of_4(left, right, above, below);
+#else
+	ivec3 along_x = cubic(point_of(layer, columns[0], at.y), left, right, point_of(layer, columns[3], at.y));
+	ivec3 along_y = cubic(point_of(layer, at.x, rows[0]), above, below, point_of(layer, at.x, rows[3]));
+	ivec3 both = mean_of_2(along_x, along_y, at.y);
+#endif
+	// Along an axis of one point there are no neighbours.
+	return layer.y == 1U ? along_y : layer.z == 1U ? along_x : both;
 }
 
 void main()
@@ -31,8 +29,8 @@ void main()
 	Tile tile = unpack_tile(tiles[index]);
 	uvec4 layer = layers[level];
 	uint ray = gl_LocalInvocationID.x % TILE_RAYS;
-	uvec2 at = tile.at / layer.w + uvec2(0U, ray / uint(GZ_TILE_EDGE));
+	uvec2 at = (tile.at >> level) + uvec2(0U, ray / uint(GZ_TILE_EDGE));
 	at.x += 2U * (ray % uint(GZ_TILE_EDGE)) + (at.y % 2U == 0U ? 1U : 0U);
 	if (at.x < layer.y && at.y < layer.z)
-		points[layer.x + at.y * layer.y + at.x] = between(layer, ivec2(at));
+		set_point(layer, ivec2(at), between(layer, ivec2(at)));
 }

@@ -7,24 +7,34 @@ layout(std430, binding = 3) readonly buffer Spans
 	uvec2 spans[]; // layer after layer, row after row: from, to
 };
 
+// Rounded down: whole numbers up to 2^16 by a spacing, up to 2^17 by its square. A quotient that is no whole
+// number is farther from one than floats err, and processors divide whole numbers one by one.
+uvec2 quotient(uvec2 number, uint by)
+{
+	return uvec2((vec2(number) + 0.5) / float(by));
+}
+
+uvec4 quotient(uvec4 number, uint by)
+{
+	return uvec4((vec4(number) + 0.5) / float(by));
+}
+
 uint interpolated(uvec4 layer, uvec2 at)
 {
 	uint spacing = layer.w, area = spacing * spacing;
-	uvec2 place = at / spacing, along = at % spacing;
+	uvec2 place = quotient(at, spacing), along = at - place * spacing;
 	// On the last row or column the next has no weight and may not exist.
 	uvec2 next = min(place + 1U, layer.yz - 1U);
-	uvec4 corners = uvec4(points[layer.x + place.y * layer.y + place.x],
-		points[layer.x + place.y * layer.y + next.x], points[layer.x + next.y * layer.y + place.x],
-		points[layer.x + next.y * layer.y + next.x]);
+	uvec2 rows = layer.x + uvec2(place.y, next.y) * layer.y;
+	uvec4 corners = uvec4(POINT(rows.x + place.x), POINT(rows.x + next.x), POINT(rows.y + place.x),
+		POINT(rows.y + next.x));
 	uvec2 back = spacing - along;
 	uvec4 weights = uvec4(back.x * back.y, along.x * back.y, back.x * along.y, along.x * along.y);
-	uint pixel = 0U;
-	for (int shift = 0; shift < 32; shift += 8) {
-		uvec4 channel = (corners >> shift & 255U) * weights;
-		uint sum = channel.x + channel.y + channel.z + channel.w;
-		pixel |= (sum + area / 2U) / area << shift;
-	}
-	return pixel;
+	uvec4 sums = uvec4(area / 2U);
+	for (int i = 0; i < 4; i++)
+		sums += (uvec4(corners[i]) >> uvec4(0U, 8U, 16U, 24U) & 255U) * weights[i];
+	uvec4 bytes = quotient(sums, area) << uvec4(0U, 8U, 16U, 24U);
+	return bytes.x | bytes.y | bytes.z | bytes.w;
 }
 
 // Share of a layer in a pixel of its columns, of 256: gz_region_weight() of render/plan/plan.h.
@@ -48,7 +58,13 @@ uint blend(uint a, uint b, uint weight)
 
 uint pixel_of(uint layer, uvec2 at)
 {
-	return layers[layer].x == 0U ? points[at.y * plan.z + at.x] : interpolated(layers[layer], at);
+	return layers[layer].x == 0U ? POINT(at.y * plan.z + at.x) : interpolated(layers[layer], at);
+}
+
+bool is_in(uint layer, uvec2 at)
+{
+	uvec2 span = spans[layer * plan.w + at.y];
+	return at.x >= span.x && at.x < span.y;
 }
 
 void main()
@@ -56,19 +72,12 @@ void main()
 	uvec2 at = gl_GlobalInvocationID.xy;
 	if (at.x >= plan.z || at.y >= plan.w)
 		return;
-	uint pixels[GZ_PLAN_LAYERS_MAX], weights[GZ_PLAN_LAYERS_MAX], count = 0U;
-	for (uint i = 0U; i < plan.x; i++) {
-		uvec2 span = spans[i * plan.w + at.y];
-		if (at.x < span.x || at.x >= span.y)
-			continue;
-		pixels[count] = pixel_of(i, at);
-		weights[count] = weight_of(i, at);
-		count++;
-		if (weights[count - 1U] == 256U)
-			break;
-	}
-	uint pixel = pixels[count - 1U];
-	for (uint i = count - 1U; i > 0U; i--)
-		pixel = blend(pixels[i - 1U], pixel, weights[i - 1U]);
+	uint last = 0U; // the first that hides all behind it
+	while (last + 1U < plan.x && !(is_in(last, at) && weight_of(last, at) == 256U))
+		last++;
+	uint pixel = pixel_of(last, at);
+	for (uint i = last; i-- > 0U;)
+		if (is_in(i, at))
+			pixel = blend(pixel_of(i, at), pixel, weight_of(i, at));
 	points[at.y * plan.z + at.x] = pixel;
 }
