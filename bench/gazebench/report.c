@@ -1,0 +1,114 @@
+/* gazebench report: charts and tables of a study. */
+#include "bench/gazebench/gazebench.h"
+
+#include <stdio.h>
+
+#include "bench/report/advice.h"
+#include "bench/report/report.h"
+#include "bench/report/summary_json.h"
+#include "bench/study/study_folder.h"
+
+#define GZ_LOG_MODULE "gazebench"
+
+struct settings {
+	struct gz_command_common common;
+	bool json;
+};
+
+static const struct gz_option options[] = {
+	GZ_COMMAND_HELP_OPTION,
+	{ .key = "json",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = offsetof(struct settings, json),
+	  .preset = "false",
+	  .help = "print summary.json too" },
+};
+
+/* What the page says first, for each of its sections. */
+static enum gz_result print_answers(const struct gz_summary *summary, const char *folder)
+{
+	struct gz_text text = { 0 };
+	for (size_t i = 0; i < summary->group_count; i++) {
+		const struct gz_group *group = &summary->groups[i];
+		const struct gz_advice_question question = gz_advice_preset(group);
+		gz_advice_tell(summary->study, group, &question, false, &text);
+		gz_text_add(&text, "\n");
+	}
+	gz_text_add(&text, "%s/report.html\n", folder);
+	const bool whole = !text.failed;
+	if (whole)
+		fputs(text.bytes, stdout);
+	gz_text_free(&text);
+	return whole ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static enum gz_result print_json(const struct gz_summary *summary)
+{
+	json_t *json = gz_summary_to_json(summary);
+	const bool printed =
+		json && json_dumpf(json, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) == 0;
+	json_decref(json);
+	putchar('\n');
+	return printed ? GZ_OK : GZ_ERR_IO;
+}
+
+static enum gz_result report(const struct gz_study *study, const char *folder, bool json,
+			     const struct gz_log *log)
+{
+	struct gz_summary summary;
+	enum gz_result result = gz_summary_make(study, &summary);
+	if (result == GZ_ERR_END) {
+		gz_err(log, "%s: no frame was measured yet: gazebench run goes on with it", folder);
+		return result;
+	}
+	if (result != GZ_OK) {
+		gz_err(log, "%s: cannot be summed up: %s", folder, gz_result_text(result));
+		return result;
+	}
+	if (!study->complete)
+		gz_warn(log, "%s: a partial study: %zu frames so far; the report says so", folder,
+			study->row_count);
+	result = gz_report_write(&summary, folder, log);
+	if (result == GZ_OK)
+		result = json ? print_json(&summary) : print_answers(&summary, folder);
+	gz_summary_free(&summary);
+	return result;
+}
+
+static int run(int argc, char *const *argv, const struct gz_log *log)
+{
+	struct settings settings;
+	struct gz_operands operands;
+	struct gz_study study;
+	int status;
+	if (!gz_command_read_arguments(&gazebench_report, argc, argv, log, &settings, &operands,
+				       &status))
+		return status;
+	if (operands.count != 1) {
+		gz_err(log, "one folder is wanted: gazebench report DIR");
+		return GAZEBENCH_USAGE;
+	}
+	const char *folder = operands.items[0];
+	if (gz_study_read(folder, log, &study) != GZ_OK)
+		return GAZEBENCH_FAILED;
+	const enum gz_result result = report(&study, folder, settings.json, log);
+	gz_study_free(&study);
+	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
+}
+
+const struct gz_command gazebench_report = {
+	.program = "gazebench",
+	.name = "report",
+	.operands = "DIR",
+	.operands_max = 1,
+	.summary = "chart a study, sum it up, and write it as a page",
+	.details =
+		"Writes into the study's folder: report.html, which holds everything and needs "
+		"no network;\nsummary.json; each chart as SVG and PNG. Prints what the page says "
+		"first, and its name.\nCharts are drawn by gnuplot; without it a warning says so, "
+		"and all else is written.\nA partial study is reported as far as it goes, and "
+		"marked.\n",
+	.options = options,
+	.option_count = sizeof options / sizeof options[0],
+	.run = run,
+};

@@ -1,0 +1,163 @@
+#include "bench/report/advice.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench/report/names.h"
+
+struct gz_advice_question gz_advice_preset(const struct gz_group *group)
+{
+	return (struct gz_advice_question) { GZ_PERCEIVED_FLIP, gz_group_reference(group),
+					     strtod(GZ_ADVICE_BOUND, NULL) };
+}
+
+size_t gz_advice_find(const struct gz_group *group, const struct gz_advice_question *question)
+{
+	const enum gz_error_kind kind = gz_error_metrics[question->measure].kind;
+	return gz_group_cheapest_within(group, question->reference, question->measure,
+					gz_error_cost(kind, question->bound));
+}
+
+static const struct gz_error_summary *errors_of(const struct gz_group *group, size_t series,
+						const struct gz_advice_question *question)
+{
+	return &group->series[series].errors[question->reference][question->measure];
+}
+
+size_t gz_advice_nearest(const struct gz_group *group, const struct gz_advice_question *question)
+{
+	const enum gz_error_kind kind = gz_error_metrics[question->measure].kind;
+	size_t best = GZ_SERIES_NONE;
+	double least = INFINITY;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const double cost = gz_error_cost(kind, errors_of(group, i, question)->worst);
+		if (i != group->standard && cost < least) {
+			least = cost;
+			best = i;
+		}
+	}
+	return best;
+}
+
+/* Writes words, for a page or a terminal. */
+struct teller {
+	const struct gz_study *study;
+	const struct gz_group *group;
+	const struct gz_advice_question *question;
+	bool html;
+	struct gz_text *out;
+};
+
+static void say(const struct teller *teller, const char *text)
+{
+	if (teller->html)
+		gz_text_add_escaped(teller->out, text);
+	else
+		gz_text_add(teller->out, "%s", text);
+}
+
+static void stress(const struct teller *teller, const char *text)
+{
+	gz_text_add(teller->out, "%s", teller->html ? "<strong>" : "");
+	say(teller, text);
+	gz_text_add(teller->out, "%s", teller->html ? "</strong>" : "");
+}
+
+static void say_time(const struct teller *teller, const struct gz_series *series)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_group *group = teller->group;
+	gz_variant_words(&teller->study->variants[series->variant], text);
+	stress(teller, text);
+	say(teller, " takes ");
+	snprintf(text, sizeof text, "%.3g ms", series->typical_ms);
+	stress(teller, text);
+	say(teller, " a frame");
+	if (group->standard == GZ_SERIES_NONE || series == &group->series[group->standard])
+		return;
+	snprintf(text, sizeof text, " where a ray for every pixel takes %.3g ms: ",
+		 group->series[group->standard].typical_ms);
+	say(teller, text);
+	snprintf(text, sizeof text, "%.3g times as fast", series->ratio_of_means);
+	stress(teller, text);
+	const int *size = teller->study->sizes[group->size];
+	snprintf(text, sizeof text, ", with %.2g %% of the rays",
+		 100 * series->rays / ((double)size[0] * size[1]));
+	say(teller, text);
+}
+
+static void say_errors(const struct teller *teller, size_t series)
+{
+	char text[2 * GZ_NAMES_SIZE];
+	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
+	const struct gz_error_summary *errors = errors_of(teller->group, series, teller->question);
+	snprintf(text, sizeof text,
+		 "%s against %s is %.3g on average and %.3g at worst of %zu places of the gaze%s.",
+		 metric->title, gz_error_reference_names[teller->question->reference], errors->mean,
+		 errors->worst, errors->count,
+		 metric->kind == GZ_ERROR_FLIP ? " (0 = alike, 1 = as far apart as can be)" : "");
+	say(teller, text);
+}
+
+static void tell_winner(const struct teller *teller, size_t winner)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
+	say_time(teller, &teller->group->series[winner]);
+	snprintf(text, sizeof text, ". The difference stays %s the bound of %g everywhere: ",
+		 gz_error_rises(metric->kind) ? "above" : "below", teller->question->bound);
+	say(teller, text);
+	say_errors(teller, winner);
+}
+
+static void tell_standard(const struct teller *teller, size_t winner)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
+	const size_t nearest = gz_advice_nearest(teller->group, teller->question);
+	snprintf(text, sizeof text, "%s keeps %s %s %g everywhere",
+		 winner == GZ_SERIES_NONE ? "nothing that was measured" : "only standard",
+		 metric->title, gz_error_rises(metric->kind) ? "above" : "below",
+		 teller->question->bound);
+	stress(teller, text);
+	say(teller, ", so that standard remains. ");
+	if (nearest == GZ_SERIES_NONE)
+		return;
+	say(teller, "Nearest comes ");
+	say_time(teller, &teller->group->series[nearest]);
+	say(teller, "; its ");
+	say_errors(teller, nearest);
+}
+
+static void tell_fastest(const struct teller *teller)
+{
+	const struct gz_group *group = teller->group;
+	size_t fastest = 0;
+	for (size_t i = 1; i < group->series_count; i++)
+		if (group->series[i].typical_ms < group->series[fastest].typical_ms)
+			fastest = i;
+	say_time(teller, &group->series[fastest]);
+	say(teller, ". Errors of this kind were not measured, so that what it costs is not known.");
+}
+
+void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
+		    const struct gz_advice_question *question, bool html, struct gz_text *out)
+{
+	char words[GZ_NAMES_SIZE];
+	const struct teller teller = { study, group, question, html, out };
+	const size_t winner = gz_advice_find(group, question);
+	bool measured = false;
+	for (size_t i = 0; i < group->series_count; i++)
+		measured |= errors_of(group, i, question)->count > 0;
+	gz_group_words(study, group, words);
+	say(&teller, "On ");
+	say(&teller, words);
+	say(&teller, ", ");
+	if (!measured)
+		tell_fastest(&teller);
+	else if (winner == GZ_SERIES_NONE || winner == group->standard)
+		tell_standard(&teller, winner);
+	else
+		tell_winner(&teller, winner);
+}

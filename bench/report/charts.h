@@ -1,0 +1,86 @@
+/**
+ * @file
+ * Charts drawn by gnuplot, run as a child. Scripts are bench/report/charts/; what they draw reaches
+ * them in files, and no shell sees any of it.
+ *
+ * Each chart is drawn on three canvases: as SVG for wide pages, which is also FOLDER/NAME.svg, as
+ * SVG for pages of a hand's width, and as FOLDER/NAME.png.
+ */
+#ifndef GZ_BENCH_REPORT_CHARTS_H
+#define GZ_BENCH_REPORT_CHARTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/report/text.h"
+#include "protocol/gaze.h"
+
+/** What a chart is drawn on. */
+enum gz_canvas_kind { GZ_CANVAS_WIDE, GZ_CANVAS_NARROW, GZ_CANVAS_PNG, GZ_CANVAS_KINDS };
+
+/** Size and margins of a canvas, px; of a PNG those before it is scaled by two. */
+struct gz_canvas {
+	enum gz_canvas_kind kind;
+	int width, height;
+	int left, right, top, bottom; /**< round the area that is plotted */
+	int font_px;
+};
+
+/** A chart that was drawn. */
+struct gz_chart {
+	char name[GZ_PATH_SIZE];    /**< of its files, without ending */
+	char *svg[GZ_CANVAS_KINDS]; /**< texts; NULL for GZ_CANVAS_PNG */
+};
+
+/** What draws charts into a folder. */
+struct gz_charts {
+	const struct gz_log *log;
+	char folder[GZ_PATH_SIZE];
+	char work[GZ_PATH_SIZE]; /**< a folder of its own, inside; empty where nothing is drawn */
+	bool available;          /**< false without gnuplot: every drawing is left out in silence */
+	struct gz_chart *charts;
+	size_t count;
+};
+
+/**
+ * Prepare drawing into @p folder. Without gnuplot a warning says so, and @p available is false.
+ *
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged; nothing is held
+ */
+enum gz_result gz_charts_open(const char *folder, const struct gz_log *log,
+			      struct gz_charts *out_charts);
+
+/** Remove the working folder, free what it holds and zero it. */
+void gz_charts_close(struct gz_charts *charts);
+
+/** Canvas for a picture of @p width and @p height (wide; the narrow one keeps its own shape). */
+struct gz_canvas gz_canvas_of(enum gz_canvas_kind kind);
+
+/** Path of a file in the working folder. */
+void gz_charts_path(const struct gz_charts *charts, const char *file, char out_path[GZ_PATH_SIZE]);
+
+/** A line "name = 'text'" of settings.gp, whatever the text is. */
+void gz_chart_set_text(struct gz_text *settings, const char *name, const char *text);
+
+/** @p text as one cell of a table: what would end the cell or the line is a blank. */
+void gz_chart_add_cell(struct gz_text *table, const char *text);
+
+/**
+ * Draw a chart on one canvas.
+ *
+ * @param script    name of the embedded script: "curves.gp"
+ * @param name      of the chart, the same for each of its canvases
+ * @param settings  lines for settings.gp; canvas and file are added
+ * @param table     becomes data.tsv
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_charts_draw(struct gz_charts *charts, const char *script, const char *name,
+			      const struct gz_canvas *canvas, const struct gz_text *settings,
+			      const struct gz_text *table);
+
+/** The chart of this name, or NULL. */
+const struct gz_chart *gz_charts_find(const struct gz_charts *charts, const char *name);
+
+#endif

@@ -1,0 +1,26 @@
+# Times of each variant, one under the other.
+# data.tsv: row, name, least, first quartile, median, third quartile, 99 of 100, colour
+load 'common.gp'
+set label 1 title_text at screen (1.0 * left / width), screen (1 - 0.5 * top / height) left \
+	textcolor rgb ink
+set xlabel x_title textcolor rgb mute offset 0, 0.9
+set xtics offset 0, 0.3
+set logscale x
+set xrange [x_first:x_last]
+set yrange [rows - 0.4:-0.6]
+set xtics ()
+do for [power = -4:12] { do for [digit in '1 2 5'] {
+	tick = digit * 10.0 ** power
+	if (tick >= x_first && tick <= x_last && (x_decades < 2.5 || digit == 1)) {
+		set xtics add (sprintf('%.10g', tick) tick)
+	}
+} }
+set grid xtics noytics
+set ytics scale 0 textcolor rgb ink
+set style fill solid 0.25 border
+half = 0.28
+plot 'data.tsv' using 3:1:($7 - $3):(0):8 with vectors nohead linewidth 1.5 linecolor rgb variable, \
+	'' using 4:1:4:6:($1 - half):($1 + half):8:ytic(2) with boxxyerror linewidth 1.5 \
+		linecolor rgb variable, \
+	'' using 5:($1 - half):(0):(2 * half):8 with vectors nohead linewidth 4 \
+		linecolor rgb variable

@@ -1,0 +1,47 @@
+/**
+ * @file
+ * What people call variants and groups of a study, and names for their files.
+ */
+#ifndef GZ_BENCH_REPORT_NAMES_H
+#define GZ_BENCH_REPORT_NAMES_H
+
+#include <stddef.h>
+
+#include "bench/report/summary.h"
+
+/** Bytes of any of these texts with its NUL; longer ones are cut. */
+#define GZ_NAMES_SIZE 256
+
+/** "acuity, slope 0.0275, levels yes": a variant in words. */
+void gz_variant_words(const struct gz_study_variant *variant, char out_words[GZ_NAMES_SIZE]);
+
+/**
+ * What tells a variant from the others of its curve: "0.0275" where they differ in one option
+ * only, "slope 0.0275, levels yes" else, "preset" for the method alone beside others, empty for
+ * one that stands alone.
+ */
+void gz_variant_label(const struct gz_study *study, const struct gz_group *group,
+		      const struct gz_curve *curve, size_t series, char out_label[GZ_NAMES_SIZE]);
+
+/** A curve's name: "acuity", and where its variants differ in one option "acuity, slope". */
+void gz_curve_name(const struct gz_study *study, const struct gz_group *group,
+		   const struct gz_curve *curve, char out_name[GZ_NAMES_SIZE]);
+
+/** "head (bone) at 1024×1024 on cpu": the transfer function where it has another name. */
+void gz_group_words(const struct gz_study *study, const struct gz_group *group,
+		    char out_words[GZ_NAMES_SIZE]);
+
+/** "head", or "head (bone)". */
+void gz_scene_words(const struct gz_study_scene *scene, char out_words[GZ_NAMES_SIZE]);
+
+/**
+ * Name of a chart's files: @p kind alone in a study of one group, else with the group's scene,
+ * transfer function, size and backend. Bytes other than letters, digits, '.', '_' and '-' become
+ * '-'.
+ *
+ * @param group  NULL for none
+ */
+void gz_chart_name(const struct gz_summary *summary, const char *kind, const struct gz_group *group,
+		   char out_name[GZ_NAMES_SIZE]);
+
+#endif

@@ -1,0 +1,123 @@
+/* What a study ran on, and how it is run again. */
+#include <stdio.h>
+#include <string.h>
+
+#include "bench/report/names.h"
+#include "bench/report/page_parts.h"
+
+static void add_fact(const char *name, const char *text, struct gz_text *out)
+{
+	if (!text[0])
+		return;
+	gz_text_add(out, "<dt>");
+	gz_text_add_escaped(out, name);
+	gz_text_add(out, "</dt><dd>");
+	gz_text_add_escaped(out, text);
+	gz_text_add(out, "</dd>\n");
+}
+
+static void add_count(const char *name, size_t count, struct gz_text *out)
+{
+	gz_text_add(out, "<dt>%s</dt><dd>%zu</dd>\n", name, count);
+}
+
+/* An argument as a shell takes it back. */
+static void add_argument(const char *text, struct gz_text *out)
+{
+	static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+				    "_-./:=,+@%";
+	char one[2] = "";
+	if (text[0] && strspn(text, plain) == strlen(text)) {
+		gz_text_add_escaped(out, text);
+		return;
+	}
+	gz_text_add_escaped(out, "'");
+	for (; *text; text++) {
+		one[0] = *text;
+		gz_text_add_escaped(out, *text == '\'' ? "'\\''" : one);
+	}
+	gz_text_add_escaped(out, "'");
+}
+
+static bool path_is_new(const struct gz_study *study, size_t place)
+{
+	for (size_t i = 0; i < place; i++)
+		if (strcmp(study->scenes[i].path, study->scenes[place].path) == 0)
+			return false;
+	return true;
+}
+
+static void add_command(const struct gz_study *study, struct gz_text *out)
+{
+	gz_text_add(out, "<pre class=\"scroll\" tabindex=\"0\"><code>gazebench run");
+	for (size_t i = 0; i < study->scene_count; i++)
+		if (path_is_new(study, i)) {
+			gz_text_add(out, " ");
+			add_argument(study->scenes[i].path, out);
+		}
+	gz_text_add(out, " --path ");
+	add_argument(study->path, out);
+	gz_text_add(out, " \\\n  --methods ");
+	for (size_t i = 0; i < study->variant_count; i++) {
+		gz_text_add(out, i > 0 ? "," : "");
+		add_argument(study->variants[i].text, out);
+	}
+	gz_text_add(out, " \\\n  --size ");
+	for (size_t i = 0; i < study->size_count; i++)
+		gz_text_add(out, "%s%dx%d", i > 0 ? "," : "", study->sizes[i][0],
+			    study->sizes[i][1]);
+	gz_text_add(out, " --backend ");
+	for (size_t i = 0; i < study->backend_count; i++) {
+		gz_text_add(out, i > 0 ? "," : "");
+		add_argument(study->backends[i], out);
+	}
+	if (study->camera_count > 0)
+		gz_text_add(out, " --cameras %u", study->camera_count);
+	gz_text_add(out, " --frames %d --warm-up %d --seed %llu --out DIR</code></pre>\n",
+		    study->frames_per_point, study->warm_up_frames,
+		    (unsigned long long)study->seed);
+}
+
+static void add_scene(const struct gz_study_scene *scene, struct gz_text *out)
+{
+	char words[GZ_NAMES_SIZE], text[3 * GZ_NAMES_SIZE];
+	gz_scene_words(scene, words);
+	snprintf(text, sizeof text,
+		 "%s: %d×%d×%d voxels, %dx%d px of %.4g×%.4g mm seen from %g mm, "
+		 "SHA-256 %s",
+		 words, scene->dims[0], scene->dims[1], scene->dims[2], scene->display.px[0],
+		 scene->display.px[1], scene->display.mm[0], scene->display.mm[1],
+		 scene->display.distance_mm, scene->hash);
+	add_fact("scene", text, out);
+}
+
+void gz_page_origin(const struct gz_summary *summary, struct gz_text *out)
+{
+	const struct gz_study *study = summary->study;
+	const struct gz_study_machine *machine = &study->machine;
+	gz_text_add(out, "<section id=\"origin\">\n<h2>What it ran on</h2>\n<dl>\n");
+	add_fact("processor", machine->host_cpu, out);
+	add_fact("memory", machine->memory, out);
+	add_fact("system", machine->system, out);
+	for (size_t i = 0; i < study->backend_count; i++) {
+		char name[GZ_NAMES_SIZE];
+		snprintf(name, sizeof name, "backend %.100s", study->backends[i]);
+		add_fact(name, machine->backends[i], out);
+	}
+	add_fact("compiler", machine->compiler, out);
+	add_fact("program", machine->program, out);
+	add_fact("commit", machine->commit, out);
+	for (size_t i = 0; i < study->scene_count; i++)
+		add_scene(&study->scenes[i], out);
+	add_fact("path of the gaze", study->path, out);
+	add_fact("its points, SHA-256", study->path_hash, out);
+	add_count("points", study->point_count, out);
+	add_count("frames counted at each", (size_t)study->frames_per_point, out);
+	add_count("frames before, not counted", (size_t)study->warm_up_frames, out);
+	gz_text_add(out, "<dt>seed</dt><dd>%llu</dd>\n</dl>\n", (unsigned long long)study->seed);
+	gz_text_add(out, "<h2>The command</h2>\n");
+	add_command(study, out);
+	gz_text_add(out, "<p>Beside this page: <code>frames.csv</code> has every frame, "
+			 "<code>summary.json</code> every number, and each chart is there as SVG "
+			 "and PNG.</p>\n</section>\n");
+}

@@ -1,0 +1,104 @@
+#include "bench/report/picture.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "render/renderer.h"
+#include "render/scene.h"
+
+#define GZ_LOG_MODULE "report"
+
+/* Widest picture that is rendered for a report, px. Chosen: more than it is ever shown with. */
+#define WIDTH_MAX 640
+
+static void picture_path(const struct gz_study_scene *scene, const char *folder,
+			 char out_path[GZ_PATH_SIZE])
+{
+	char name[2 * GZ_STUDY_TEXT_SIZE + 16];
+	snprintf(name, sizeof name, "standard-%s-%s", scene->name, scene->transfer);
+	for (char *byte = name; *byte; byte++)
+		if (!isalnum((unsigned char)*byte) && !strchr("._-", *byte))
+			*byte = '-';
+	snprintf(out_path, GZ_PATH_SIZE, "%.400s/%s.png", folder, name);
+}
+
+/* Whether a file's name without folder and ending is @p name. */
+static bool is_named(const char *path, const char *name)
+{
+	const char *slash = strrchr(path, '/');
+	const char *file = slash ? slash + 1 : path, *dot = strrchr(file, '.');
+	const size_t length = dot ? (size_t)(dot - file) : strlen(file);
+	return strlen(name) == length && strncmp(file, name, length) == 0;
+}
+
+/* Whether what was loaded is still what was measured, as far as it can be told at a glance. */
+static bool is_same(const struct gz_study_scene *was, const struct gz_scene *is)
+{
+	return is_named(is->settings.transfer_file, was->transfer) &&
+	       memcmp(is->volume.dims, was->dims, sizeof was->dims) == 0;
+}
+
+static enum gz_result render(struct gz_renderer *renderer, const struct gz_scene *scene,
+			     const struct gz_camera *camera, int width, int height,
+			     struct gz_image *picture)
+{
+	struct gz_frame_stats stats;
+	struct gz_plan plan = { 0 };
+	struct gz_foveation standard = gz_foveation_default();
+	const struct gz_display display = gz_display_default(width, height);
+	standard.method = GZ_METHOD_STANDARD;
+	enum gz_result result = gz_renderer_set_volume(renderer, &scene->volume);
+	if (result == GZ_OK)
+		result = gz_renderer_set_transfer(renderer, &scene->transfer);
+	if (result == GZ_OK)
+		result = gz_plan_make(&standard, &display, (struct gz_point) { 0.5F, 0.5F }, width,
+				      height, &plan);
+	if (result == GZ_OK)
+		result = gz_renderer_render(renderer, camera, &scene->settings.rays, &plan, picture,
+					    &stats);
+	gz_plan_free(&plan);
+	return result;
+}
+
+static enum gz_result render_scene(const struct gz_study *study, size_t place,
+				   const struct gz_log *log, struct gz_image *picture)
+{
+	const struct gz_study_scene *was = &study->scenes[place];
+	const struct gz_renderer_params params = { .wait_for_bricks = true };
+	struct gz_scene scene = { 0 };
+	struct gz_renderer *renderer = NULL;
+	const int *size = study->sizes[0];
+	const int width = size[0] < WIDTH_MAX ? size[0] : WIDTH_MAX;
+	const int height = (int)fmax(1, round((double)width * size[1] / size[0]));
+	if (access(was->path, R_OK) != 0 || gz_scene_load(was->path, NULL, log, &scene) != GZ_OK)
+		return GZ_ERR_NOT_FOUND;
+	enum gz_result result = is_same(was, &scene) ? GZ_OK : GZ_ERR_NOT_FOUND;
+	if (result == GZ_OK)
+		result = gz_renderer_create("cpu", &params, log, &renderer);
+	if (result == GZ_OK)
+		result = render(renderer, &scene, &was->camera, width, height, picture);
+	gz_renderer_destroy(&renderer);
+	gz_scene_free(&scene);
+	return result;
+}
+
+enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, const char *folder,
+				 const struct gz_log *log, struct gz_image *picture)
+{
+	char path[GZ_PATH_SIZE];
+	picture_path(&study->scenes[scene], folder, path);
+	if (access(path, R_OK) == 0)
+		return gz_image_read_png(path, log, picture);
+	const enum gz_result result = render_scene(study, scene, log, picture);
+	if (result == GZ_OK)
+		return gz_image_write_png(picture, path, log);
+	if (result != GZ_ERR_NO_MEM)
+		gz_warn(log,
+			"%s: no picture lies behind its maps: %s is not there, or not what it "
+			"was",
+			study->scenes[scene].name, study->scenes[scene].path);
+	return result == GZ_ERR_NO_MEM ? result : GZ_ERR_NOT_FOUND;
+}

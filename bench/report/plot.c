@@ -1,0 +1,335 @@
+#include "bench/report/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench/report/labels.h"
+
+/* Outside every axis: what a block holds that has nothing to draw. */
+#define NOWHERE "nan\tnan\t0\t0\t-\n"
+
+/* Mean width of a character, of its font's size. Chosen: sans-serif, a little wide. */
+#define CHARACTER 0.56
+
+bool gz_plot_start(struct gz_plot *plot, size_t curves)
+{
+	plot->curves = calloc(curves, sizeof plot->curves[0]);
+	plot->curve_count = plot->curves ? curves : 0;
+	return plot->curves != NULL;
+}
+
+bool gz_plot_curve_start(struct gz_plot_curve *curve, size_t points)
+{
+	curve->points = calloc(points, sizeof curve->points[0]);
+	curve->point_count = curve->points ? points : 0;
+	return curve->points != NULL;
+}
+
+void gz_plot_free(struct gz_plot *plot)
+{
+	for (size_t i = 0; i < plot->curve_count; i++)
+		free(plot->curves[i].points);
+	free(plot->curves);
+	*plot = (struct gz_plot) { 0 };
+}
+
+static bool fits(const struct gz_plot_axis *axis, double value)
+{
+	return isfinite(value) && (!axis->logarithmic || value > 0);
+}
+
+static void keep_points_that_fit(struct gz_plot *plot)
+{
+	for (size_t i = 0; i < plot->curve_count; i++) {
+		struct gz_plot_curve *curve = &plot->curves[i];
+		size_t kept = 0;
+		for (size_t k = 0; k < curve->point_count; k++)
+			if (fits(&plot->x, curve->points[k].x) &&
+			    fits(&plot->y, curve->points[k].y))
+				curve->points[kept++] = curve->points[k];
+		curve->point_count = kept;
+	}
+}
+
+/* Ends of an axis round its values, with a margin. */
+static void fit_axis(struct gz_plot_axis *axis, double least, double greatest)
+{
+	if (axis->logarithmic) {
+		const double margin = pow(greatest / least, 0.09) * 1.04;
+		axis->first = least / margin;
+		axis->last = greatest * margin;
+		return;
+	}
+	const double span = greatest > least ? greatest - least
+			    : greatest != 0  ? fabs(greatest)
+					     : 1;
+	axis->first = axis->from_zero ? fmin(0, least) : least - 0.08 * span;
+	axis->last = greatest + 0.12 * (axis->from_zero ? fmax(greatest, span) : span);
+	if (axis->falls) {
+		const double swapped = axis->first;
+		axis->first = axis->last;
+		axis->last = swapped;
+	}
+}
+
+static bool fit_axes(struct gz_plot *plot)
+{
+	double x[2] = { INFINITY, -INFINITY }, y[2] = { INFINITY, -INFINITY };
+	for (size_t i = 0; i < plot->curve_count; i++)
+		for (size_t k = 0; k < plot->curves[i].point_count; k++) {
+			const struct gz_plot_point *point = &plot->curves[i].points[k];
+			x[0] = fmin(x[0], point->x);
+			x[1] = fmax(x[1], point->x);
+			y[0] = fmin(y[0], point->y);
+			y[1] = fmax(y[1], point->y);
+		}
+	if (x[0] > x[1])
+		return false;
+	if (plot->bound > 0) {
+		x[0] = fmin(x[0], plot->bound);
+		x[1] = fmax(x[1], plot->bound);
+	}
+	fit_axis(&plot->x, x[0], x[1]);
+	fit_axis(&plot->y, y[0], y[1]);
+	return true;
+}
+
+/* Where a value lies between the ends of its axis, 0 to 1. */
+static double share(const struct gz_plot_axis *axis, double value)
+{
+	if (axis->logarithmic)
+		return log(value / axis->first) / log(axis->last / axis->first);
+	return (value - axis->first) / (axis->last - axis->first);
+}
+
+static double value_at(const struct gz_plot_axis *axis, double where)
+{
+	if (axis->logarithmic)
+		return axis->first * pow(axis->last / axis->first, where);
+	return axis->first + where * (axis->last - axis->first);
+}
+
+/* A plot on a canvas. */
+struct placing {
+	const struct gz_plot *plot;
+	const struct gz_canvas *canvas;
+	struct gz_label_field field;
+};
+
+static double x_px(const struct placing *placing, double x)
+{
+	const struct gz_canvas *canvas = placing->canvas;
+	return canvas->left +
+	       share(&placing->plot->x, x) * (canvas->width - canvas->left - canvas->right);
+}
+
+static double y_px(const struct placing *placing, double y)
+{
+	const struct gz_canvas *canvas = placing->canvas;
+	return canvas->height - canvas->bottom -
+	       share(&placing->plot->y, y) * (canvas->height - canvas->top - canvas->bottom);
+}
+
+static double x_at_px(const struct placing *placing, double px)
+{
+	const struct gz_canvas *canvas = placing->canvas;
+	return value_at(&placing->plot->x,
+			(px - canvas->left) / (canvas->width - canvas->left - canvas->right));
+}
+
+static double y_at_px(const struct placing *placing, double px)
+{
+	const struct gz_canvas *canvas = placing->canvas;
+	return value_at(&placing->plot->y, (canvas->height - canvas->bottom - px) /
+						   (canvas->height - canvas->top - canvas->bottom));
+}
+
+/* Characters, not bytes, of UTF-8. */
+static double characters(const char *text)
+{
+	double count = 0;
+	for (; *text; text++)
+		count += ((unsigned char)*text & 0xc0) != 0x80;
+	return count;
+}
+
+static void avoid_curves(struct placing *placing)
+{
+	for (size_t i = 0; i < placing->plot->curve_count; i++) {
+		const struct gz_plot_curve *curve = &placing->plot->curves[i];
+		for (size_t k = 0; k < curve->point_count; k++) {
+			const double x = x_px(placing, curve->points[k].x);
+			const double y = y_px(placing, curve->points[k].y);
+			gz_labels_avoid(&placing->field,
+					(struct gz_box) { x - 7, y - 7, x + 7, y + 7 },
+					GZ_LABEL_ON_POINT);
+			if (k > 0)
+				gz_labels_avoid_line(&placing->field,
+						     x_px(placing, curve->points[k - 1].x),
+						     y_px(placing, curve->points[k - 1].y), x, y);
+		}
+	}
+	if (placing->plot->bound > 0) { /* the text on the line too */
+		const double x = x_px(placing, placing->plot->bound);
+		const double side = share(&placing->plot->x, placing->plot->bound) < 0.5 ? 1 : -1;
+		const double text = side * 1.6 * placing->canvas->font_px;
+		gz_labels_avoid(&placing->field,
+				(struct gz_box) { fmin(x, x + text), placing->canvas->top,
+						  fmax(x, x + text), placing->canvas->height },
+				GZ_LABEL_ON_POINT);
+	}
+}
+
+static void add_label(struct placing *placing, const struct gz_plot_curve *curve,
+		      const struct gz_plot_point *point, const char *text, double font_px,
+		      bool must, struct gz_text *table)
+{
+	double x, y;
+	int side;
+	if (!text[0] ||
+	    !gz_labels_place(&placing->field, x_px(placing, point->x), y_px(placing, point->y),
+			     characters(text) * CHARACTER * font_px, font_px * 1.1, must, &x, &y,
+			     &side))
+		return;
+	gz_text_add(table, "%.9g\t%.9g\t%u\t%d\t", x_at_px(placing, x), y_at_px(placing, y),
+		    (unsigned)curve->colour, side);
+	gz_chart_add_cell(table, text);
+	gz_text_add(table, "\n");
+}
+
+/* Names first, each at whichever end of its curve has room: at the cheap one if both have. */
+static void add_labels(struct placing *placing, struct gz_text *table)
+{
+	const double font_px = placing->canvas->font_px;
+	struct gz_text names = { 0 }, labels = { 0 };
+	placing->field.area = (struct gz_box) { placing->canvas->left, placing->canvas->top,
+						placing->canvas->width - 2,
+						placing->canvas->height - placing->canvas->bottom };
+	avoid_curves(placing);
+	for (size_t i = 0; i < placing->plot->curve_count; i++) {
+		const struct gz_plot_curve *curve = &placing->plot->curves[i];
+		if (curve->point_count > 0)
+			add_label(placing, curve, &curve->points[curve->point_count - 1],
+				  curve->name, font_px, true, &names);
+	}
+	for (size_t i = 0; i < placing->plot->curve_count; i++)
+		for (size_t k = 0; k < placing->plot->curves[i].point_count; k++) {
+			const struct gz_plot_curve *curve = &placing->plot->curves[i];
+			add_label(placing, curve, &curve->points[k], curve->points[k].label,
+				  0.84 * font_px, false, &labels);
+		}
+	gz_text_add(table, NOWHERE "%s\n\n" NOWHERE "%s", labels.bytes ? labels.bytes : "",
+		    names.bytes ? names.bytes : "");
+	table->failed |= labels.failed || names.failed;
+	gz_text_free(&labels);
+	gz_text_free(&names);
+	gz_labels_free(&placing->field);
+}
+
+static int compare_x(const void *a, const void *b)
+{
+	const struct gz_plot_point *const *p = a, *const *q = b;
+	return ((*p)->x > (*q)->x) - ((*p)->x < (*q)->x);
+}
+
+static void add_front(const struct gz_plot *plot, struct gz_text *table)
+{
+	size_t count = 0, all = 0;
+	for (size_t i = 0; i < plot->curve_count; i++)
+		all += plot->curves[i].point_count;
+	const struct gz_plot_point **marked = calloc(all, sizeof *marked);
+	table->failed |= !marked;
+	for (size_t i = 0; marked && plot->join_marked && i < plot->curve_count; i++)
+		for (size_t k = 0; k < plot->curves[i].point_count; k++)
+			if (plot->curves[i].points[k].marked)
+				marked[count++] = &plot->curves[i].points[k];
+	if (count > 0)
+		qsort(marked, count, sizeof *marked, compare_x);
+	else
+		gz_text_add(table, NOWHERE);
+	for (size_t i = 0; i < count; i++)
+		gz_text_add(table, "%.9g\t%.9g\n", marked[i]->x, marked[i]->y);
+	free(marked);
+}
+
+/* Points of all curves, or those with a ring; an empty line ends a curve. */
+static void add_points(const struct gz_plot *plot, bool only_marked, struct gz_text *table)
+{
+	gz_text_add(table, NOWHERE);
+	for (size_t i = 0; i < plot->curve_count; i++) {
+		const struct gz_plot_curve *curve = &plot->curves[i];
+		gz_text_add(table, curve->point_count > 0 ? "\n" : "");
+		for (size_t k = 0; k < curve->point_count; k++)
+			if (!only_marked || curve->points[k].marked)
+				gz_text_add(table, "%.9g\t%.9g\t%u\t%d\n", curve->points[k].x,
+					    curve->points[k].y, (unsigned)curve->colour,
+					    curve->point_type);
+			else
+				gz_text_add(table, NOWHERE);
+	}
+}
+
+static double nice_step(double span, int steps)
+{
+	const double rough = fabs(span) / steps, power = pow(10, floor(log10(rough)));
+	const double digit = rough / power;
+	return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+}
+
+static void add_settings(const struct gz_plot *plot, const struct gz_canvas *canvas,
+			 struct gz_text *settings)
+{
+	gz_chart_set_text(settings, "title_text", plot->title);
+	gz_chart_set_text(settings, "x_title", plot->x.title);
+	gz_chart_set_text(settings, "bound_text", plot->bound_text);
+	const double span = plot->y.logarithmic ? 1 : plot->y.last - plot->y.first;
+	gz_text_add(settings,
+		    "x_first = %.9g\nx_last = %.9g\ny_first = %.9g\ny_last = %.9g\n"
+		    "x_logarithmic = %d\ny_logarithmic = %d\nx_decades = %.9g\ny_decades = %.9g\n"
+		    "y_step = %.9g\nbound = %.9g\nbound_left = %d\n",
+		    plot->x.first, plot->x.last, plot->y.first, plot->y.last, plot->x.logarithmic,
+		    plot->y.logarithmic,
+		    plot->x.logarithmic ? fabs(log10(plot->x.last / plot->x.first)) *
+						  (canvas->kind == GZ_CANVAS_NARROW ? 1.3 : 1)
+					: 0,
+		    plot->y.logarithmic ? fabs(log10(plot->y.last / plot->y.first)) : 0,
+		    nice_step(span, 6), plot->bound > 0 ? plot->bound : 0,
+		    plot->bound > 0 && share(&plot->x, plot->bound) < 0.5);
+}
+
+static enum gz_result draw_on(struct gz_charts *charts, const char *name, enum gz_canvas_kind kind,
+			      const struct gz_plot *plot)
+{
+	const struct gz_canvas canvas = gz_canvas_of(kind);
+	struct gz_text settings = { 0 }, table = { 0 };
+	struct placing placing = { .plot = plot, .canvas = &canvas };
+	add_settings(plot, &canvas, &settings);
+	add_front(plot, &table);
+	gz_text_add(&table, "\n\n");
+	add_points(plot, false, &table); /* as lines */
+	gz_text_add(&table, "\n\n");
+	add_points(plot, false, &table);
+	gz_text_add(&table, "\n\n");
+	add_points(plot, true, &table);
+	gz_text_add(&table, "\n\n");
+	add_labels(&placing, &table);
+	const enum gz_result result =
+		gz_charts_draw(charts, "curves.gp", name, &canvas, &settings, &table);
+	gz_text_free(&settings);
+	gz_text_free(&table);
+	return result;
+}
+
+enum gz_result gz_plot_draw(struct gz_charts *charts, const char *name, struct gz_plot *plot)
+{
+	enum gz_result result = GZ_OK;
+	if (!charts->available)
+		return GZ_OK;
+	keep_points_that_fit(plot);
+	if (!fit_axes(plot))
+		return GZ_OK;
+	for (int kind = 0; kind < GZ_CANVAS_KINDS && result == GZ_OK; kind++)
+		result = draw_on(charts, name, kind, plot);
+	return result;
+}

@@ -1,0 +1,21 @@
+/**
+ * @file
+ * The report of a study: summary.json, charts, report.html.
+ */
+#ifndef GZ_BENCH_REPORT_REPORT_H
+#define GZ_BENCH_REPORT_REPORT_H
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/report/summary.h"
+
+/**
+ * Write the report of a summary into a folder that is there. Files of an earlier report are
+ * replaced. Without gnuplot, a warning, and all but the charts.
+ *
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged; what was written before stays
+ */
+enum gz_result gz_report_write(const struct gz_summary *summary, const char *folder,
+			       const struct gz_log *log);
+
+#endif

@@ -1,0 +1,201 @@
+#include "bench/report/study_charts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bench/report/chart_parts.h"
+#include "bench/report/names.h"
+#include "bench/report/palette.h"
+#include "bench/report/plot.h"
+
+bool gz_group_measure(const struct gz_group *group, enum gz_error_measure *out_measure)
+{
+	const enum gz_error_reference reference = gz_group_reference(group);
+	for (int measure = 0; measure < GZ_ERROR_MEASURES; measure++)
+		for (size_t i = 0; i < group->series_count; i++)
+			if (group->series[i].errors[reference][measure].count > 0) {
+				*out_measure = (enum gz_error_measure)measure;
+				return true;
+			}
+	return false;
+}
+
+void gz_pareto_chart_name(const struct gz_summary *summary, const struct gz_group *group,
+			  enum gz_error_measure measure, char out_name[256])
+{
+	char kind[64];
+	snprintf(kind, sizeof kind, "pareto-%s", gz_error_metrics[measure].key);
+	gz_chart_name(summary, kind, group, out_name);
+}
+
+static void set_error_axis(struct gz_plot *plot, enum gz_error_measure measure,
+			   enum gz_error_reference reference)
+{
+	const struct gz_error_metric *metric = &gz_error_metrics[measure];
+	const char *best = metric->kind == GZ_ERROR_FLIP   ? "0 = alike"
+			   : metric->kind == GZ_ERROR_SSIM ? "1 = alike"
+							   : "dB";
+	plot->y.from_zero = metric->kind == GZ_ERROR_FLIP;
+	plot->y.falls = gz_error_rises(metric->kind);
+	snprintf(plot->title, sizeof plot->title, "%s against %s (%s)", metric->title,
+		 gz_error_reference_names[reference], best);
+}
+
+/* Where an infinite value is drawn: a little beyond the best finite one. */
+static double beyond_finite(const struct gz_group *group, enum gz_error_reference reference,
+			    enum gz_error_measure measure)
+{
+	double least = INFINITY, best = -INFINITY;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const double value = group->series[i].errors[reference][measure].mean;
+		if (isfinite(value)) {
+			least = fmin(least, value);
+			best = fmax(best, value);
+		}
+	}
+	return isfinite(best) ? best + 0.15 * (best - least) + 1 : 100;
+}
+
+static bool add_curve(const struct gz_study *study, const struct gz_group *group,
+		      const struct gz_curve *curve, enum gz_error_reference reference,
+		      enum gz_error_measure measure, struct gz_plot_curve *out)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_method_look look = gz_method_look(curve->method);
+	const double stand_in = beyond_finite(group, reference, measure);
+	if (!gz_plot_curve_start(out, curve->count))
+		return false;
+	gz_curve_name(study, group, curve, text);
+	snprintf(out->name, sizeof out->name, "%.*s", GZ_PLOT_LABEL_SIZE - 1, text);
+	out->colour = look.colour;
+	out->point_type = look.point;
+	for (size_t i = 0; i < curve->count; i++) {
+		const struct gz_series *series = &group->series[curve->series[i]];
+		struct gz_plot_point *point = &out->points[i];
+		point->x = series->typical_ms;
+		point->y = series->errors[reference][measure].mean;
+		point->marked = series->front[reference][measure];
+		const bool infinite = isinf(point->y);
+		if (infinite)
+			point->y = stand_in;
+		gz_variant_label(study, group, curve, curve->series[i], text);
+		snprintf(point->label, sizeof point->label, "%.80s%s%s", text,
+			 infinite && text[0] ? ", " : "", infinite ? "∞ dB" : "");
+	}
+	return true;
+}
+
+static enum gz_result draw_pareto(const struct gz_summary *summary, const struct gz_group *group,
+				  enum gz_error_measure measure, struct gz_charts *charts)
+{
+	char name[GZ_NAMES_SIZE];
+	const enum gz_error_reference reference = gz_group_reference(group);
+	struct gz_plot plot = { .x = { .title = "time of a frame, ms", .logarithmic = true },
+				.join_marked = true,
+				.bound = group->bound_ms > 0 ? group->bound_ms : 0 };
+	set_error_axis(&plot, measure, reference);
+	snprintf(plot.bound_text, sizeof plot.bound_text, "acuity bound: %.3g %% of the rays",
+		 group->bound_share * 100);
+	bool sound = gz_plot_start(&plot, group->curve_count);
+	for (size_t i = 0; i < group->curve_count && sound; i++)
+		sound = add_curve(summary->study, group, &group->curves[i], reference, measure,
+				  &plot.curves[i]);
+	gz_pareto_chart_name(summary, group, measure, name);
+	const enum gz_result result = sound ? gz_plot_draw(charts, name, &plot) : GZ_ERR_NO_MEM;
+	gz_plot_free(&plot);
+	return result;
+}
+
+bool gz_scalings_share_chart(const struct gz_scaling *a, const struct gz_scaling *b)
+{
+	return a->kind == b->kind && a->scene == b->scene && a->size == b->size &&
+	       a->backend == b->backend;
+}
+
+void gz_growth_chart_name(size_t scaling, char out_name[256])
+{
+	snprintf(out_name, 256, "growth-%zu", scaling + 1);
+}
+
+static bool add_growth(const struct gz_study *study, const struct gz_scaling *scaling,
+		       struct gz_plot_curve *out)
+{
+	char words[GZ_NAMES_SIZE];
+	const struct gz_study_variant *variant = &study->variants[scaling->variant];
+	const struct gz_method_look look = gz_method_look(variant->method);
+	if (!gz_plot_curve_start(out, scaling->point_count))
+		return false;
+	gz_variant_words(variant, words);
+	snprintf(out->name, sizeof out->name, "%.40s: exponent %.2f", words, scaling->exponent);
+	out->colour = look.colour;
+	out->point_type = look.point;
+	for (size_t i = 0; i < scaling->point_count; i++) {
+		out->points[i].x = scaling->points[i].x;
+		out->points[i].y = scaling->points[i].ms;
+	}
+	return true;
+}
+
+static size_t shared_count(const struct gz_summary *summary, size_t first)
+{
+	size_t count = 0;
+	for (size_t i = first; i < summary->scaling_count; i++)
+		count += gz_scalings_share_chart(&summary->scalings[first], &summary->scalings[i]);
+	return count;
+}
+
+static enum gz_result draw_growth(const struct gz_summary *summary, size_t first,
+				  struct gz_charts *charts)
+{
+	static const char *const titles[] = { "pixels of the picture", "voxels of the volume",
+					      "threads" };
+	char name[GZ_NAMES_SIZE];
+	struct gz_plot plot = { .title = "time of a frame, ms",
+				.x = { .logarithmic = true },
+				.y = { .logarithmic = true } };
+	snprintf(plot.x.title, sizeof plot.x.title, "%s", titles[summary->scalings[first].kind]);
+	bool sound = gz_plot_start(&plot, shared_count(summary, first));
+	for (size_t i = first, k = 0; i < summary->scaling_count && sound; i++)
+		if (gz_scalings_share_chart(&summary->scalings[first], &summary->scalings[i]))
+			sound = add_growth(summary->study, &summary->scalings[i],
+					   &plot.curves[k++]);
+	gz_growth_chart_name(first, name);
+	const enum gz_result result = sound ? gz_plot_draw(charts, name, &plot) : GZ_ERR_NO_MEM;
+	gz_plot_free(&plot);
+	return result;
+}
+
+static bool is_first_in_chart(const struct gz_summary *summary, size_t place)
+{
+	for (size_t i = 0; i < place; i++)
+		if (gz_scalings_share_chart(&summary->scalings[i], &summary->scalings[place]))
+			return false;
+	return true;
+}
+
+static enum gz_result draw_group(const struct gz_summary *summary, const struct gz_group *group,
+				 struct gz_charts *charts)
+{
+	enum gz_result result = GZ_OK;
+	for (int measure = 0; measure < GZ_ERROR_MEASURES && result == GZ_OK; measure++)
+		result = draw_pareto(summary, group, measure, charts);
+	if (result == GZ_OK)
+		result = gz_boxes_draw(summary, group, charts);
+	if (result == GZ_OK)
+		result = gz_maps_draw(summary, group, charts);
+	return result;
+}
+
+enum gz_result gz_study_charts_draw(const struct gz_summary *summary, struct gz_charts *charts)
+{
+	enum gz_result result = GZ_OK;
+	if (!charts->available)
+		return GZ_OK;
+	for (size_t i = 0; i < summary->group_count && result == GZ_OK; i++)
+		result = draw_group(summary, &summary->groups[i], charts);
+	for (size_t i = 0; i < summary->scaling_count && result == GZ_OK; i++)
+		if (is_first_in_chart(summary, i))
+			result = draw_growth(summary, i, charts);
+	return result;
+}

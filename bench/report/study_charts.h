@@ -1,0 +1,37 @@
+/**
+ * @file
+ * The charts of a report.
+ */
+#ifndef GZ_BENCH_REPORT_STUDY_CHARTS_H
+#define GZ_BENCH_REPORT_STUDY_CHARTS_H
+
+#include "bench/report/charts.h"
+#include "bench/report/summary.h"
+
+/**
+ * Draw all charts of a study. Where there is a picture of a scene (gz_report_picture()), it lies
+ * behind its maps of the gaze. Without gnuplot nothing is drawn, and that is no fault.
+ *
+ * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged; what was drawn before stays
+ */
+enum gz_result gz_study_charts_draw(const struct gz_summary *summary, struct gz_charts *charts);
+
+/** Name of the chart of an error over time; see gz_charts_find(). */
+void gz_pareto_chart_name(const struct gz_summary *summary, const struct gz_group *group,
+			  enum gz_error_measure measure, char out_name[256]);
+
+/** Name of the map of time (@p of_error false) or error over the gaze, of one series. */
+void gz_map_chart_name(const struct gz_summary *summary, const struct gz_group *group,
+		       size_t series, bool of_error, char out_name[256]);
+
+/** Name of the chart of growth number @p scaling, the first of those it shows. */
+void gz_growth_chart_name(size_t scaling, char out_name[256]);
+
+/** Whether two fits are shown in one chart: of the same kind, but for the variant. */
+bool gz_scalings_share_chart(const struct gz_scaling *a, const struct gz_scaling *b);
+
+/** The measure of error that a group's first chart, maps and advice are about: perceived FLIP, or
+ *  the first that was measured. False if none was. */
+bool gz_group_measure(const struct gz_group *group, enum gz_error_measure *out_measure);
+
+#endif
