@@ -108,6 +108,17 @@ int gz_detail_choose(const struct gz_detail *detail, const struct gz_plan *plan,
 				(double)plan->steps[step] / rays->ray_sampling_rate);
 }
 
+double gz_detail_steps_per_px(const struct gz_volume *volume, const struct gz_camera *camera,
+			      const struct gz_ray_params *rays, int height)
+{
+	enum { STEP_PIXELS = 16, LEAST_EXPONENT = -5 };
+	const double share = STEP_PIXELS * gz_levels_pixel_lengths(volume, camera, height) *
+			     rays->ray_sampling_rate;
+	if (!(share >= ldexp(1, LEAST_EXPONENT)))
+		return 0; /* no rung's step is longer then */
+	return fmin(1, ldexp(1, ilogb(share)));
+}
+
 void gz_detail_free(struct gz_detail *detail)
 {
 	gz_levels_free(&detail->levels);

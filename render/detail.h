@@ -55,6 +55,18 @@ int gz_detail_choose(const struct gz_detail *detail, const struct gz_plan *plan,
 		     const struct gz_ray_params *rays, double pixel_lengths, int layer, int pattern,
 		     int step);
 
+/**
+ * How long steps may become before they show as bands where tiles of different steps meet: struct
+ * gz_plan_request, steps_per_px. A step is no longer than 16 times (chosen) what its rays lie apart
+ * where they reach the box; an eye in the box, to which shells of data are as wide as the picture,
+ * has no longer steps at all. A power of two, so that a plan is not made anew for each camera; 1
+ * while a voxel there spans less than some 16 pixels.
+ *
+ * @param height  of the rays' grid
+ */
+double gz_detail_steps_per_px(const struct gz_volume *volume, const struct gz_camera *camera,
+			      const struct gz_ray_params *rays, int height);
+
 /** Free and zero. */
 void gz_detail_free(struct gz_detail *detail);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/detail.h"
 #include "view/caster.h"
 #include "view/loading_bar.h"
 
@@ -233,6 +234,8 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 	plan.rays_per_px = rate;
 	plan.scale = maker->focus.scale;
 	plan.widen = maker->focus.widen;
+	plan.steps_per_px = gz_detail_steps_per_px(&maker->scene.volume, &request->settings->camera,
+						   &request->settings->rays, size[1]);
 	struct gz_display display = *request->display;
 	r = begin_keeping(maker, request->settings, &plan, &display);
 	if (r == GZ_OK)

@@ -23,8 +23,8 @@ static bool request_valid(const struct gz_plan_request *request)
 		return false;
 	return request->rays_per_px >= 0.0625 && request->rays_per_px <= 16 &&
 	       request->scale >= 1 && request->scale <= GZ_PLAN_SCALE_MAX && request->widen >= 0 &&
-	       request->widen <= 1 && gz_display_valid(request->display) &&
-	       parameters_valid(request->foveation);
+	       request->widen <= 1 && request->steps_per_px >= 0 && request->steps_per_px <= 1 &&
+	       gz_display_valid(request->display) && parameters_valid(request->foveation);
 }
 
 /* Plans that do not ask where someone looks. */
@@ -48,6 +48,7 @@ static bool is_made_for(const struct gz_plan *plan, const struct gz_plan_request
 	return plan->serial != 0 && plan->made_for.valid && made->width == request->width &&
 	       made->height == request->height && made->rays_per_px == request->rays_per_px &&
 	       made->scale == request->scale && made->widen == request->widen &&
+	       made->steps_per_px == request->steps_per_px &&
 	       (same_point(made->gaze, request->gaze) || ignores_gaze(request->foveation)) &&
 	       memcmp(&plan->made_for.display, request->display, sizeof *request->display) == 0 &&
 	       memcmp(&plan->made_for.foveation, request->foveation, sizeof *request->foveation) ==
@@ -116,6 +117,7 @@ struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation
 		.height = height,
 		.rays_per_px = 1,
 		.scale = 1,
+		.steps_per_px = 1,
 	};
 }
 

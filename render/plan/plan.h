@@ -203,6 +203,12 @@ struct gz_plan_request {
 	/** How lost the gaze is, [0, 1]: 0 trusts it, 1 is a uniform plan of at most the same cost.
 	 *  `standard` and `uniform` are what they are. */
 	double widen;
+	/**
+	 * How long the steps of the acuity rule may become, [0, 1]: so many of the scene's steps
+	 * for each pixel that a tile's rays lie apart, but one in any case. 1 bounds nothing.
+	 * Whoever knows the scene sets it (gz_detail_steps_per_px()).
+	 */
+	double steps_per_px;
 };
 
 /** Where a plan's pixels lie in the picture that the camera frames: the plan's pixel (x, y) is the
@@ -236,7 +242,8 @@ struct gz_plan {
 	} made_for; /**< what the tiles were made for */
 };
 
-/** A request with one ray a pixel, scale 1 and widen 0. Borrows what it points to. */
+/** A request with one ray a pixel, scale 1, widen 0 and unbounded steps. Borrows what it points to.
+ */
 struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,
 					    const struct gz_display *display, struct gz_point gaze,
 					    int width, int height);

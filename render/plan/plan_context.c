@@ -91,6 +91,7 @@ static void context_begin(const struct gz_plan_request *request,
 		.scale_all = fmax(request->scale / GZ_PLAN_SCALE_OUTSIDE, 1),
 		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
 		.widen = request->widen,
+		.steps_per_px = request->steps_per_px,
 	};
 	double mm[3];
 	gz_display_to_mm(display, gaze, mm);

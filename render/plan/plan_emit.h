@@ -38,6 +38,7 @@ struct gz_plan_context {
 	bool spacing_in_px;
 	struct gz_plan_curve step;       /**< of a table */
 	double scale_all, scale_outside; /**< factors of spacings: everywhere, past the fovea */
+	double steps_per_px;             /**< as in the request */
 	double widen;
 	double uniform_px; /**< spacing of the uniform plan that widen goes to, once it is known */
 };

@@ -37,10 +37,13 @@ static const float acuity_steps[GZ_LADDER_RUNGS] = {
 /* Past this a ray sees nothing of a volume. */
 static const double step_max = 16;
 
-static void make_acuity_ladder(struct gz_plan *plan)
+static void make_acuity_ladder(const struct gz_plan_context *context, struct gz_plan *plan)
 {
 	plan->step_count = GZ_LADDER_RUNGS;
-	memcpy(plan->steps, acuity_steps, sizeof acuity_steps);
+	for (int i = 0; i < GZ_LADDER_RUNGS; i++) {
+		const double most = fmax(1, context->steps_per_px * gz_ladder_px[i]);
+		plan->steps[i] = (float)fmin((double)acuity_steps[i], most);
+	}
 }
 
 static void make_table_ladder(const struct gz_plan_context *context, struct gz_plan *plan)
@@ -60,7 +63,7 @@ void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *p
 		make_even_ladder(1 / context->foveation->step_floor, plan);
 		return;
 	case GZ_STEPS_RUNG:
-		make_acuity_ladder(plan);
+		make_acuity_ladder(context, plan);
 		return;
 	case GZ_STEPS_TABLE:
 		make_table_ladder(context, plan);

@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "oracle.h"
+#include "render/detail.h"
 #include "render/volume/levels.h"
 #include "small_scene.h"
 
@@ -131,6 +132,23 @@ static void level_follows_the_smaller_of_spacing_and_step(void **state)
 			fail_msg("%g across, %g along: level %d, not %d", cases[i].across,
 				 cases[i].along, level, cases[i].level);
 	}
+}
+
+/* 64 voxels and a picture as high as the box at its near face: a voxel spans height / 64 pixels. */
+static void steps_are_bounded_where_the_eye_is_close_and_not_from_afar(void **state)
+{
+	(void)state;
+	const struct gz_volume volume = { .dims = { 64, 64, 64 }, .spacing = { 1, 1, 1 } };
+	struct gz_camera camera = { .eye = { 0, -1, 0 }, .up = { 0, 0, 1 }, .fov_deg = 90 };
+	const struct gz_ray_params rays = { .ray_sampling_rate = 1 };
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 64) == 1);
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 15 * 64) == 1);
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 17 * 64) == 0.5);
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 60 * 64) == 0.25);
+	camera.eye[1] = -0.5 - 1e-9;
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 64) == 0);
+	camera.eye[1] = 0.2;
+	assert_true(gz_detail_steps_per_px(&volume, &camera, &rays, 64) == 0);
 }
 
 static void pixels_footprint_is_that_of_the_nearest_point_of_the_box(void **state)
@@ -322,6 +340,7 @@ static void levels_follow_a_new_transfer_function_and_a_new_volume(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(steps_are_bounded_where_the_eye_is_close_and_not_from_afar),
 		cmocka_unit_test(levels_halve_until_nothing_is_left_and_take_at_most_a_seventh),
 		cmocka_unit_test(levels_are_the_same_bits_for_any_number_of_workers),
 		cmocka_unit_test(levels_of_a_large_volume_are_made_in_one_pass_each),

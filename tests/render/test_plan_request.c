@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "render/image.h"
+#include "render/plan/plan_emit.h"
 #include "small_scene.h"
 
 enum { WIDTH = 1920, HEIGHT = 1080 };
@@ -281,9 +282,49 @@ static void largest_sizes_have_plans(void **state)
 		}
 }
 
+/* An eye in the volume has rays close together and steps as the scene's; nothing else changes. */
+static void bound_on_steps_shortens_acuity_steps_and_moves_no_ray(void **state)
+{
+	(void)state;
+	struct fixture f;
+	begin(&f, GZ_METHOD_ACUITY, WIDTH, HEIGHT);
+	const uint64_t unbounded = rays(&f), serial = f.plan.serial;
+	float longest[GZ_PLAN_STEPS_MAX];
+	memcpy(longest, f.plan.steps, sizeof longest);
+	const int count = f.plan.step_count;
+	assert_true(longest[count - 1] == 8);
+	for (int exponent = -5; exponent <= 0; exponent++) {
+		f.request.steps_per_px = ldexp(1, exponent);
+		assert_int_equal(rays(&f), unbounded);
+		assert_int_equal(f.plan.step_count, count);
+		for (int i = 0; i < count; i++) {
+			const double most = fmax(1, f.request.steps_per_px * gz_ladder_px[i]);
+			const double wanted = fmin((double)longest[i], most);
+			if (fabs((double)f.plan.steps[i] - wanted) > 1e-6)
+				fail_msg("2^%d, rung %d: %g, not %g", exponent, i,
+					 (double)f.plan.steps[i], wanted);
+		}
+	}
+	assert_int_not_equal(f.plan.serial, serial);
+	f.request.steps_per_px = 0;
+	rays(&f);
+	for (int i = 0; i < count; i++)
+		assert_true(f.plan.steps[i] == 1);
+	/* What a user's table or Bauer's rule says stays. */
+	f.foveation.step_rule = GZ_STEP_DISTANCE;
+	rays(&f);
+	assert_true(f.plan.steps[f.plan.step_count - 1] > 3);
+	f.request.steps_per_px = 1.5;
+	assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
+	f.request.steps_per_px = NAN;
+	assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
+	gz_plan_free(&f.plan);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bound_on_steps_shortens_acuity_steps_and_moves_no_ray),
 		cmocka_unit_test(greater_scale_never_costs_more_rays),
 		cmocka_unit_test(fovea_gives_way_last),
 		cmocka_unit_test(standard_ignores_scale_and_widening),

@@ -354,6 +354,15 @@ class Headless(unittest.TestCase):
         self.assertIn(self.path("f-1.png"), done.stderr)
         self.assertLessEqual(len(self.frames()), 2)
 
+    def test_camera_inside_the_volume_takes_no_longer_steps(self):
+        where = ("--camera.eye", "0.05 -0.15 0.02", "--camera.look_at", "0.3 0.5 0.1")
+        pictures = []
+        for rule in ("method", "none"):
+            self.good("--method", "acuity", *where, "--foveation.step_rule", rule, "--out",
+                      self.path("in.png"), size="320x180")
+            pictures.append(read_png(self.path("in.png")))
+        self.assertTrue(pictures[0] == pictures[1])
+
     def test_up_that_says_nothing_is_replaced_with_one_line(self):
         pictures = []
         for up in ("0 0 2", "0 0 0", "1 0 0"):
