@@ -19,6 +19,17 @@ SIMD vi clamp_place(const struct gz_cast *cast, int axis, vf at, vf *share)
 	return index;
 }
 
+/* Index of the first of the eight neighbours of places counted from the first datum. */
+SIMD vi first_voxel(const struct gz_cast *cast, const vf at[3])
+{
+	vf share[3];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
+	return vi_add(vi_add(index[0], vi_mul(index[1], vi_set(cast->stride[1]))),
+		      vi_mul(index[2], vi_set(cast->stride[2])));
+}
+
 /* At places counted from the first datum: 0 to dims - 1. */
 SIMD vf sample_trilinear(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
 			 vm mask)

@@ -30,7 +30,7 @@ SIMD uint32_t settle(const struct gz_cast *cast, enum gz_voxel_type type, int ne
 	vf opacity;
 	vi colour;
 	const vm needed = vm_and(waiting->within, *alive);
-	gather_pair(cast->step_table[step], waiting->entry, vm_all(), &opacity, &colour);
+	load_pairs(cast->step_table[step], waiting->entry, &opacity, &colour);
 	composite_at(cast, type, nearest, rays, waiting->at, colour, opacity, needed, light);
 	*alive = vm_and(*alive, vf_less(vf_set(cast->end_transmittance), light->through));
 	return vm_count(needed);

@@ -91,10 +91,13 @@ SIMD struct beam beam_of(const struct rays *rays)
 	return beam;
 }
 
-/* A corner's coordinate at several levels. */
-SIMD vf beam_axis(const __m128 *corner, const __m128 *step, int axis, vf level)
+/* The cells of a corner along one axis at several levels. */
+SIMD vi beam_cells(const struct gz_cast_grid *grid, const __m128 *corner, const __m128 *step,
+		   int axis, vf level)
 {
-	return vf_fma(level, vf_set((*step)[axis]), vf_set((*corner)[axis]));
+	const vf place = vf_fma(level, vf_set((*step)[axis] * grid->cells_per_voxel),
+				vf_set((*corner)[axis] * grid->cells_per_voxel));
+	return vi_min(vi_trunc(vf_max(place, vf_set(0))), vi_set((int32_t)grid->last[axis]));
 }
 
 /* Which of sixteen levels show something in any cell that the beam's box touches, which is no
@@ -102,18 +105,16 @@ SIMD vf beam_axis(const __m128 *corner, const __m128 *step, int axis, vf level)
 SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level)
 {
 	const struct gz_cast_grid *grid = &cast->fine[beam->grid];
-	vf cell[3];
-	vi axes = vi_set(0);
+	vi index = vi_set(0), axes = vi_set(0);
 	for (int axis = 0; axis < 3; axis++) {
-		cell[axis] =
-			fine_place(grid, axis, beam_axis(&beam->low, &beam->low_step, axis, level));
-		const vf last = fine_place(grid, axis,
-					   beam_axis(&beam->high, &beam->high_step, axis, level));
-		axes = _mm512_mask_or_epi32(axes, vf_less(cell[axis], last), axes,
+		const vi cell = beam_cells(grid, &beam->low, &beam->low_step, axis, level);
+		const vi last = beam_cells(grid, &beam->high, &beam->high_step, axis, level);
+		axes = _mm512_mask_or_epi32(axes, _mm512_cmplt_epi32_mask(cell, last), axes,
 					    vi_set(1 << axis));
+		index = vi_add(index, vi_mul(cell, vi_set(grid->stride[axis])));
 	}
 	const vm asked = vf_less(level, vf_set(beam->count));
-	const vi flags = vi_gather(grid->flags, fine_index(grid, cell), 1, asked);
+	const vi flags = vi_gather(grid->flags, index, 1, asked);
 	return _mm512_mask_test_epi32_mask(asked, _mm512_srlv_epi32(flags, axes), vi_set(1));
 }
 
@@ -200,9 +201,36 @@ SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type,
 	return samples;
 }
 
-/* Of listed levels keep those where rays have samples that show something, and which rays. */
-SIMD int find_showing(const struct gz_cast *cast, const struct rays *rays, const struct beam *beam,
-		      float *levels, int count, vm showing[LEVELS_LISTED + SIMD_LANES])
+/* Levels where rays have samples that show something. */
+struct showing {
+	int count;
+	float level[LEVELS_LISTED + SIMD_LANES];
+	vm rays[LEVELS_LISTED + SIMD_LANES];
+	/* of each ray, the voxel that is fetched first; 0, which is at hand, where none is */
+	int32_t first[LEVELS_LISTED + SIMD_LANES][SIMD_LANES];
+};
+
+/* How many levels before its turn the voxels of one are sent for. Chosen by measuring. */
+enum { LEVELS_AHEAD = 2 };
+
+/* Send for the voxels that the rays of a level will fetch. */
+SIMD void send_for(const struct gz_cast *cast, enum gz_voxel_type type, const int32_t *first)
+{
+	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
+	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
+	const char *voxels = cast->voxels;
+	for (int lane = 0; lane < SIMD_LANES; lane++) {
+		const char *row = voxels + first[lane] * bytes;
+		_mm_prefetch(row, _MM_HINT_T0);
+		_mm_prefetch(row + up_y * bytes, _MM_HINT_T0);
+		_mm_prefetch(row + up_z * bytes, _MM_HINT_T0);
+		_mm_prefetch(row + (up_y + up_z) * bytes, _MM_HINT_T0);
+	}
+}
+
+SIMD void find_showing(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
+		       const struct beam *beam, const float *levels, int count,
+		       struct showing *showing)
 {
 	int kept = 0;
 	for (int i = 0; i < count; i++) {
@@ -212,30 +240,36 @@ SIMD int find_showing(const struct gz_cast *cast, const struct rays *rays, const
 		for (int axis = 0; axis < 3; axis++)
 			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
 		const vm shows = fine_shows(cast, at, within);
-		levels[kept] = levels[i];
-		showing[kept] = shows;
+		showing->level[kept] = levels[i];
+		showing->rays[kept] = shows;
+		_mm512_storeu_si512(showing->first[kept],
+				    _mm512_maskz_mov_epi32(shows, first_voxel(cast, at)));
 		kept += vm_any(shows);
 	}
-	return kept;
+	showing->count = kept;
+	for (int i = 0; i < kept && i < LEVELS_AHEAD; i++)
+		send_for(cast, type, showing->first[i]);
 }
 
 /* Take the samples of levels where rays are too far apart for a block: those alone that show
  * something. */
 SIMD uint32_t take_scattered(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
 			     const struct look_up *look_up, int step, const struct rays *rays,
-			     const struct beam *beam, float *levels, int count, vm *alive,
+			     const struct beam *beam, const float *levels, int count, vm *alive,
 			     struct waiting *before, struct light *light)
 {
-	vm showing[LEVELS_LISTED + SIMD_LANES];
+	struct showing showing;
 	uint32_t samples = 0;
-	count = find_showing(cast, rays, beam, levels, count, showing);
-	for (int i = 0; i < count && vm_any(*alive); i++) {
-		const vf k = beam->first + vf_set(levels[i]);
+	find_showing(cast, type, rays, beam, levels, count, &showing);
+	for (int i = 0; i < showing.count && vm_any(*alive); i++) {
+		const vf k = beam->first + vf_set(showing.level[i]);
+		if (i + LEVELS_AHEAD < showing.count)
+			send_for(cast, type, showing.first[i + LEVELS_AHEAD]);
 		const vf value =
-			fetch_sample(cast, type, nearest, rays, k, vm_and(showing[i], *alive));
+			fetch_sample(cast, type, nearest, rays, k, vm_and(showing.rays[i], *alive));
 		samples += settle(cast, type, nearest, step, rays, before, alive, light);
 		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-					     showing[i] };
+					     showing.rays[i] };
 	}
 	return samples;
 }

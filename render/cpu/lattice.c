@@ -80,20 +80,22 @@ static void store_whole(const struct gz_lattice *lattice, int pattern, int colum
 	}
 }
 
-/* Points of a pyramid that are points of coarser lattices too: each has twice the spacing of the
- * one before, or more. */
+/* Points of a pyramid that are points of coarser lattices too, each of which has every second point
+ * of the one before, along x and y, or fewer. */
 static void store_coarser(const struct gz_lattices *lattices, const struct gz_tile *tile, int last,
-			  const uint32_t *pixels)
+			  int column, int row, const uint32_t *pixels)
 {
 	const uint8_t *columns = gz_tile_columns[tile->pattern];
 	const int spacing = lattices->layers[tile->layer].spacing;
 	for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
-		const int x = tile->x + columns[i] * spacing;
-		const int y = tile->y + gz_tile_rows[i] * spacing;
+		const int x = column + columns[i], y = row + gz_tile_rows[i];
+		if ((x | y) & 1)
+			continue;
 		for (int layer = tile->layer + 1; layer <= last; layer++) {
 			const struct gz_lattice *lattice = &lattices->layers[layer];
-			const int shift = __builtin_ctz((unsigned)lattice->spacing);
-			if ((x | y) & (lattice->spacing - 1))
+			const int shift = __builtin_ctz((unsigned)lattice->spacing) -
+					  __builtin_ctz((unsigned)spacing);
+			if ((x | y) & ((1 << shift) - 1))
 				break;
 			store_point(lattice, x >> shift, y >> shift, pixels[i]);
 		}
@@ -115,7 +117,7 @@ void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
 	if (plan->reconstruction != GZ_RECONSTRUCT_PYRAMID)
 		return;
 	gz_lattices_mark(lattices, tile);
-	store_coarser(lattices, tile, plan->layer_count - 1, pixels);
+	store_coarser(lattices, tile, plan->layer_count - 1, column, row, pixels);
 }
 
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,

@@ -171,3 +171,8 @@ SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second
 	*first = _mm256_castpd_ps(_mm256_permute4x64_pd(evens, 0xD8));
 	*second = _mm256_castpd_si256(_mm256_permute4x64_pd(odds, 0xD8));
 }
+/* gather_pair() of all lanes. */
+SIMD void load_pairs(const void *base, vi index, vf *first, vi *second)
+{
+	gather_pair(base, index, vm_all(), first, second);
+}

@@ -183,3 +183,8 @@ SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second
 	*first = vf_bits(vi_gather(base, index, 8, mask));
 	*second = vi_gather((const char *)base + 4, index, 8, mask);
 }
+/* gather_pair() of all lanes. */
+SIMD void load_pairs(const void *base, vi index, vf *first, vi *second)
+{
+	gather_pair(base, index, vm_all(), first, second);
+}
