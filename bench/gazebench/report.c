@@ -31,7 +31,8 @@ static enum gz_result print_answers(const struct gz_summary *summary, const char
 	for (size_t i = 0; i < summary->group_count; i++) {
 		const struct gz_group *group = &summary->groups[i];
 		const struct gz_advice_question question = gz_advice_preset(group);
-		gz_advice_tell(summary->study, group, &question, false, &text);
+		gz_advice_tell(summary->study, group, &question, gz_advice_find(group, &question),
+			       false, &text);
 		gz_text_add(&text, "\n");
 	}
 	gz_text_add(&text, "%s/report.html\n", folder);

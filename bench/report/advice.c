@@ -40,6 +40,56 @@ size_t gz_advice_nearest(const struct gz_group *group, const struct gz_advice_qu
 	return best;
 }
 
+bool gz_advice_has_errors(const struct gz_group *const *groups, size_t count,
+			  const struct gz_advice_question *question)
+{
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < groups[i]->series_count; k++)
+			if (errors_of(groups[i], k, question)->count > 0)
+				return true;
+	return false;
+}
+
+/* Logarithm of a variant's time over standard's in a group; NaN where it does not hold the bound,
+ * which points without an error do not. */
+static double log_time(const struct gz_group *group, size_t variant,
+		       const struct gz_advice_question *question)
+{
+	const enum gz_error_kind kind = gz_error_metrics[question->measure].kind;
+	const double limit = gz_error_cost(kind, question->bound);
+	for (size_t i = 0; i < group->series_count; i++) {
+		const struct gz_series *series = &group->series[i];
+		const struct gz_error_summary *errors = errors_of(group, i, question);
+		if (series->variant != variant)
+			continue;
+		if (errors->count < series->point_count ||
+		    !(gz_error_cost(kind, errors->worst) <= limit))
+			return NAN;
+		return log(series->typical_ms) -
+		       (group->standard == GZ_SERIES_NONE
+				? 0
+				: log(group->series[group->standard].typical_ms));
+	}
+	return NAN;
+}
+
+size_t gz_advice_choose(const struct gz_study *study, const struct gz_group *const *groups,
+			size_t count, const struct gz_advice_question *question)
+{
+	size_t best = GZ_SERIES_NONE;
+	double least = INFINITY;
+	for (size_t variant = 0; variant < study->variant_count; variant++) {
+		double sum = 0;
+		for (size_t i = 0; i < count; i++)
+			sum += log_time(groups[i], variant, question);
+		if (sum < least) { /* not if it is NaN */
+			least = sum;
+			best = variant;
+		}
+	}
+	return best;
+}
+
 /* Writes words, for a page or a terminal. */
 struct teller {
 	const struct gz_study *study;
@@ -142,22 +192,19 @@ static void tell_fastest(const struct teller *teller)
 }
 
 void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
-		    const struct gz_advice_question *question, bool html, struct gz_text *out)
+		    const struct gz_advice_question *question, size_t series, bool html,
+		    struct gz_text *out)
 {
 	char words[GZ_NAMES_SIZE];
 	const struct teller teller = { study, group, question, html, out };
-	const size_t winner = gz_advice_find(group, question);
-	bool measured = false;
-	for (size_t i = 0; i < group->series_count; i++)
-		measured |= errors_of(group, i, question)->count > 0;
 	gz_group_words(study, group, words);
 	say(&teller, "On ");
 	say(&teller, words);
 	say(&teller, ", ");
-	if (!measured)
+	if (!gz_advice_has_errors(&group, 1, question))
 		tell_fastest(&teller);
-	else if (winner == GZ_SERIES_NONE || winner == group->standard)
-		tell_standard(&teller, winner);
+	else if (series == GZ_SERIES_NONE || series == group->standard)
+		tell_standard(&teller, series);
 	else
-		tell_winner(&teller, winner);
+		tell_winner(&teller, series);
 }

@@ -31,12 +31,27 @@ size_t gz_advice_find(const struct gz_group *group, const struct gz_advice_quest
  *  measured. */
 size_t gz_advice_nearest(const struct gz_group *group, const struct gz_advice_question *question);
 
+/** Whether any series of these groups has an error of this kind. */
+bool gz_advice_has_errors(const struct gz_group *const *groups, size_t count,
+			  const struct gz_advice_question *question);
+
+/**
+ * The variant that holds the bound at every measured point of each of these groups and takes least,
+ * by the geometric mean of its times over those of standard where that was measured.
+ *
+ * @return its place in the study's list, or GZ_SERIES_NONE
+ */
+size_t gz_advice_choose(const struct gz_study *study, const struct gz_group *const *groups,
+			size_t count, const struct gz_advice_question *question);
+
 /**
  * The answer as a paragraph of plain words.
  *
+ * @param series  what was found for the question, or GZ_SERIES_NONE
  * @param html  whether what counts is marked by <strong>, and texts are escaped
  */
 void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
-		    const struct gz_advice_question *question, bool html, struct gz_text *out);
+		    const struct gz_advice_question *question, size_t series, bool html,
+		    struct gz_text *out);
 
 #endif

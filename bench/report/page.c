@@ -63,7 +63,8 @@ static void add_answer(const struct gz_summary *summary, const struct gz_group *
 	const struct gz_advice_question question = gz_advice_preset(group);
 	enum gz_error_measure measure;
 	gz_text_add(out, "<p class=\"answer\">");
-	gz_advice_tell(summary->study, group, &question, true, out);
+	gz_advice_tell(summary->study, group, &question, gz_advice_find(group, &question), true,
+		       out);
 	gz_text_add(out, "</p>\n");
 	if (gz_group_measure(group, &measure))
 		add_pareto(summary, group, charts, measure, "first", out);

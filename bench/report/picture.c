@@ -34,11 +34,19 @@ static bool is_named(const char *path, const char *name)
 	return strlen(name) == length && strncmp(file, name, length) == 0;
 }
 
-/* Whether what was loaded is still what was measured, as far as it can be told at a glance. */
-static bool is_same(const struct gz_study_scene *was, const struct gz_scene *is)
+/* The scene's transfer function of this name, in place of its first; false if it has none. */
+static bool take_transfer(const struct gz_study_scene *was, const struct gz_log *log,
+			  struct gz_scene *scene)
 {
-	return is_named(is->settings.transfer_file, was->transfer) &&
-	       memcmp(is->volume.dims, was->dims, sizeof was->dims) == 0;
+	char names[GZ_PATH_SIZE], *rest = names;
+	if (is_named(scene->settings.transfer_file, was->transfer))
+		return true;
+	snprintf(names, sizeof names, "%s", scene->settings.transfer_also);
+	for (char *name = strsep(&rest, " \t"); name; name = strsep(&rest, " \t"))
+		if (name[0] && is_named(name, was->transfer))
+			return gz_scene_load_transfer(was->path, name, log, &scene->transfer) ==
+			       GZ_OK;
+	return false;
 }
 
 static enum gz_result render(struct gz_renderer *renderer, const struct gz_scene *scene,
@@ -75,7 +83,10 @@ static enum gz_result render_scene(const struct gz_study *study, size_t place,
 	const int height = (int)fmax(1, round((double)width * size[1] / size[0]));
 	if (access(was->path, R_OK) != 0 || gz_scene_load(was->path, NULL, log, &scene) != GZ_OK)
 		return GZ_ERR_NOT_FOUND;
-	enum gz_result result = is_same(was, &scene) ? GZ_OK : GZ_ERR_NOT_FOUND;
+	enum gz_result result = memcmp(scene.volume.dims, was->dims, sizeof was->dims) == 0 &&
+						take_transfer(was, log, &scene)
+					? GZ_OK
+					: GZ_ERR_NOT_FOUND;
 	if (result == GZ_OK)
 		result = gz_renderer_create("cpu", &params, log, &renderer);
 	if (result == GZ_OK)

@@ -1,0 +1,269 @@
+/* Names, words, page and advice of a report; charts and the page's looks: report_in_browser.py. */
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/report/advice.h"
+#include "bench/report/labels.h"
+#include "bench/report/names.h"
+#include "bench/report/page.h"
+#include "bench/report/palette.h"
+#include "made_study.h"
+
+static const double flips[] = { 0.001, 0.012, 0.02, 0.04, 0.015 };
+static const double times[] = { 100, 20, 10, 5, 40 };
+
+static void measure(const struct gz_study *study, struct gz_study_row *row)
+{
+	(void)study;
+	row->frame_ms = times[row->variant] * (1 + row->size);
+	row->cast_ms = row->frame_ms;
+	row->rays = row->samples = (uint64_t)(100 * times[row->variant]);
+	/* The second scene needs more. */
+	row->converged.perceived_flip = flips[row->variant] * (1 + row->scene);
+}
+
+static void make(const char *second_scene, int sizes, struct gz_study *study,
+		 struct gz_summary *summary)
+{
+	const struct made_study made = {
+		.scenes = { "head", second_scene },
+		.variants = { "standard", "acuity", "acuity:acuity_slope=0.033",
+			      "acuity:acuity_slope=0.044", "mdc:blend_px=16:levels=yes" },
+		.backends = { "cpu" },
+		.sizes = { { 100, 100 }, { 200, 100 } },
+		.size_count = sizes,
+		.points = 3,
+		.frames = 1,
+	};
+	make_study(&made, study);
+	make_rows(study, measure);
+	assert_int_equal(gz_summary_make(study, summary), GZ_OK);
+}
+
+static void free_both(struct gz_study *study, struct gz_summary *summary)
+{
+	gz_summary_free(summary);
+	gz_study_free(study);
+}
+
+static void variants_are_called_as_people_would(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	char text[GZ_NAMES_SIZE];
+	make(NULL, 1, &study, &summary);
+	const struct gz_group *group = &summary.groups[0];
+	gz_variant_words(&study.variants[2], text);
+	assert_string_equal(text, "acuity, slope 0.033");
+	gz_variant_words(&study.variants[4], text);
+	assert_string_equal(text, "mdc, blend 16 px, levels yes");
+	gz_curve_name(&study, group, &group->curves[1], text);
+	assert_string_equal(text, "acuity, slope");
+	gz_variant_label(&study, group, &group->curves[1], 2, text);
+	assert_string_equal(text, "0.033");
+	gz_variant_label(&study, group, &group->curves[1], 1, text);
+	assert_string_equal(text, "preset");
+	gz_variant_label(&study, group, &group->curves[0], 0, text);
+	assert_string_equal(text, "");
+	free_both(&study, &summary);
+}
+
+static void longest_variant_is_cut_and_not_overrun(void **state)
+{
+	(void)state;
+	struct gz_study_variant variant = { .method = "acuity" };
+	char text[GZ_NAMES_SIZE];
+	memset(variant.text, 'x', sizeof variant.text - 1);
+	memcpy(variant.text, "acuity:", 7);
+	gz_variant_words(&variant, text);
+	assert_true(strlen(text) < GZ_NAMES_SIZE);
+}
+
+static void files_of_several_groups_have_their_names_and_no_slash(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	char text[GZ_NAMES_SIZE];
+	make("../ä b", 1, &study, &summary);
+	gz_chart_name(&summary, "boxes", &summary.groups[0], text);
+	assert_string_equal(text, "boxes-head-100x100-cpu");
+	gz_chart_name(&summary, "boxes", &summary.groups[1], text);
+	assert_null(strchr(text, '/'));
+	assert_non_null(strstr(text, "boxes-..-"));
+	free_both(&study, &summary);
+}
+
+static void answer_names_the_cheapest_within_the_bound_and_what_it_saves(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text text = { 0 };
+	make(NULL, 1, &study, &summary);
+	const struct gz_group *group = &summary.groups[0];
+	const struct gz_advice_question question = gz_advice_preset(group);
+	gz_advice_tell(&study, group, &question, gz_advice_find(group, &question), false, &text);
+	assert_non_null(strstr(text.bytes, "On head at 100×100 on cpu, acuity, slope 0.033 takes "
+					   "10 ms a frame where a ray for every pixel takes 100 "
+					   "ms: 10 times as fast, with 10 % of the rays."));
+	assert_non_null(strstr(text.bytes, "below the bound of 0.03 everywhere"));
+	gz_text_free(&text);
+	free_both(&study, &summary);
+}
+
+static void answer_where_nothing_is_within_the_bound_is_that_standard_remains(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text text = { 0 };
+	make(NULL, 1, &study, &summary);
+	const struct gz_group *group = &summary.groups[0];
+	struct gz_advice_question question = gz_advice_preset(group);
+	question.bound = 0.002;
+	assert_int_equal(gz_advice_find(group, &question), 0);
+	gz_advice_tell(&study, group, &question, 0, false, &text);
+	assert_non_null(strstr(text.bytes, "only standard keeps perceived FLIP below 0.002"));
+	gz_text_free(&text);
+	question.bound = 0.0001;
+	assert_int_equal(gz_advice_find(group, &question), GZ_SERIES_NONE);
+	gz_advice_tell(&study, group, &question, GZ_SERIES_NONE, false, &text);
+	assert_non_null(strstr(text.bytes, "so that standard remains"));
+	gz_text_free(&text);
+	free_both(&study, &summary);
+}
+
+static void advice_for_several_groups_holds_in_each_of_them(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	make("hand", 1, &study, &summary);
+	const struct gz_group *groups[] = { &summary.groups[0], &summary.groups[1] };
+	struct gz_advice_question question = gz_advice_preset(groups[0]);
+	assert_int_equal(gz_advice_choose(&study, groups, 1, &question), 2);
+	assert_int_equal(gz_advice_choose(&study, groups, 2, &question), 1);
+	question.bound = 0.0011;
+	assert_int_equal(gz_advice_choose(&study, groups, 1, &question), 0);
+	assert_int_equal(gz_advice_choose(&study, groups, 2, &question), GZ_SERIES_NONE);
+	assert_true(gz_advice_has_errors(groups, 2, &question));
+	question.reference = GZ_AGAINST_STANDARD;
+	assert_false(gz_advice_has_errors(groups, 2, &question));
+	assert_int_equal(gz_advice_choose(&study, groups, 2, &question), GZ_SERIES_NONE);
+	free_both(&study, &summary);
+}
+
+static void page_escapes_every_text_and_holds_nothing_from_elsewhere(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text page = { 0 };
+	const struct gz_charts none = { 0 };
+	make("<script>alert('x')</script>", 2, &study, &summary);
+	snprintf(study.machine.host_cpu, sizeof study.machine.host_cpu, "<img src=x onerror=y>");
+	snprintf(study.machine.program, sizeof study.machine.program, "\"><b>");
+	snprintf(study.path, sizeof study.path, "it's; rm -rf \"$HOME\" <b>");
+	gz_page_write(&summary, &none, &page);
+	assert_false(page.failed);
+	assert_null(strstr(page.bytes, "<script"));
+	assert_null(strstr(page.bytes, "<img"));
+	assert_null(strstr(page.bytes, "\"><b>"));
+	assert_null(strstr(page.bytes, "http://"));
+	assert_null(strstr(page.bytes, "https://"));
+	assert_non_null(strstr(page.bytes, "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;"));
+	/* The command is one that a shell takes as it is meant. */
+	assert_non_null(strstr(page.bytes, "--path &#39;it&#39;\\&#39;&#39;s; rm -rf "
+					   "&quot;$HOME&quot; &lt;b&gt;&#39;"));
+	assert_non_null(strstr(page.bytes, "No charts."));
+	assert_null(strstr(page.bytes, "Partial study"));
+	gz_text_free(&page);
+	free_both(&study, &summary);
+}
+
+static void page_of_a_partial_study_or_one_shard_says_so(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text page = { 0 };
+	const struct gz_charts none = { 0 };
+	make(NULL, 1, &study, &summary);
+	study.complete = false;
+	study.shard = 2;
+	study.shard_count = 4;
+	gz_page_write(&summary, &none, &page);
+	assert_non_null(strstr(page.bytes, "Partial study."));
+	assert_non_null(strstr(page.bytes, "One part of 4."));
+	gz_text_free(&page);
+	free_both(&study, &summary);
+}
+
+static void base64_is_that_of_the_standard(void **state)
+{
+	(void)state;
+	/* RFC 4648, section 10. */
+	static const char *const pairs[][2] = {
+		{ "f", "Zg==" },        { "fo", "Zm8=" },        { "foo", "Zm9v" },
+		{ "foob", "Zm9vYg==" }, { "fooba", "Zm9vYmE=" }, { "foobar", "Zm9vYmFy" },
+	};
+	for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+		struct gz_text text = { 0 };
+		gz_text_add_base64(&text, pairs[i][0], strlen(pairs[i][0]));
+		assert_string_equal(text.bytes, pairs[i][1]);
+		gz_text_free(&text);
+	}
+}
+
+static void labels_lie_off_points_and_off_each_other(void **state)
+{
+	(void)state;
+	struct gz_label_field field = { .area = { 0, 0, 200, 100 } };
+	double x[2], y[2];
+	int side[2];
+	gz_labels_avoid(&field, (struct gz_box) { 100, 40, 160, 60 }, GZ_LABEL_ON_POINT);
+	assert_true(gz_labels_place(&field, 90, 50, 40, 10, false, &x[0], &y[0], &side[0]));
+	assert_true(side[0] <= 0); /* right of it is a point */
+	assert_true(gz_labels_place(&field, 90, 50, 40, 10, false, &x[1], &y[1], &side[1]));
+	assert_true(fabs(y[0] - y[1]) >= 10 || side[0] != side[1]);
+	/* Nowhere is there room: left out, unless it must be. */
+	assert_false(gz_labels_place(&field, 90, 50, 400, 10, false, &x[0], &y[0], &side[0]));
+	assert_true(gz_labels_place(&field, 90, 50, 400, 10, true, &x[0], &y[0], &side[0]));
+	gz_labels_free(&field);
+}
+
+static void chart_gets_colours_for_dark_pages_and_stays_as_it_is(void **state)
+{
+	(void)state;
+	struct gz_text out = { 0 };
+	gz_palette_add_dark(&out, "<?xml?>\n<svg width=\"1\">\n<g/></svg>");
+	static const char start[] = "<?xml?>\n<svg width=\"1\">\n<style>";
+	assert_memory_equal(out.bytes, start, sizeof start - 1);
+	assert_non_null(strstr(out.bytes, "prefers-color-scheme:dark"));
+	assert_non_null(strstr(out.bytes, "</style>\n<g/></svg>"));
+	gz_text_free(&out);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(variants_are_called_as_people_would),
+		cmocka_unit_test(longest_variant_is_cut_and_not_overrun),
+		cmocka_unit_test(files_of_several_groups_have_their_names_and_no_slash),
+		cmocka_unit_test(answer_names_the_cheapest_within_the_bound_and_what_it_saves),
+		cmocka_unit_test(answer_where_nothing_is_within_the_bound_is_that_standard_remains),
+		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
+		cmocka_unit_test(page_escapes_every_text_and_holds_nothing_from_elsewhere),
+		cmocka_unit_test(page_of_a_partial_study_or_one_shard_says_so),
+		cmocka_unit_test(base64_is_that_of_the_standard),
+		cmocka_unit_test(labels_lie_off_points_and_off_each_other),
+		cmocka_unit_test(chart_gets_colours_for_dark_pages_and_stays_as_it_is),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
