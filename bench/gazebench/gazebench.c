@@ -1,7 +1,8 @@
 /* gazebench: what each saving costs. */
 #include "bench/gazebench/gazebench.h"
 
-static const struct gz_command *const commands[] = { &gazebench_report, &gazebench_suggest, &gazebench_compare, NULL };
+static const struct gz_command *const commands[] = { &gazebench_report, &gazebench_suggest,
+						     &gazebench_compare, NULL };
 
 int main(int argc, char **argv)
 {

@@ -117,7 +117,7 @@ static const struct gz_group **choose_groups(const struct gz_summary *summary,
 					     const struct gz_log *log, size_t *out_count)
 {
 	const struct gz_study *study = summary->study;
-	const struct gz_group **groups = calloc(summary->group_count, sizeof *groups);
+	const struct gz_group **groups = calloc(summary->group_count, sizeof(void *));
 	size_t count = 0;
 	for (size_t i = 0; groups && i < summary->group_count; i++)
 		if (is_asked(study, &summary->groups[i], settings))

@@ -41,7 +41,7 @@ void gz_group_find_fronts(struct gz_group *group)
 static struct gz_curve *curve_of(struct gz_group *group, const char *method)
 {
 	for (size_t i = 0; i < group->curve_count; i++)
-		if (strcmp(group->curves[i].method, method) == 0)
+		if (group->curves[i].method && strcmp(group->curves[i].method, method) == 0)
 			return &group->curves[i];
 	return NULL;
 }

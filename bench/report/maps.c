@@ -121,8 +121,9 @@ static double nearest_px(const struct gz_series *series, const struct background
 			const struct gz_point a = series->points[i].gaze,
 					      b = series->points[k].gaze;
 			if (k != i)
-				nearest = fmin(nearest, hypot((a.x - b.x) * background->width,
-							      (a.y - b.y) * background->height));
+				nearest = fmin(nearest,
+					       hypot((double)(a.x - b.x) * background->width,
+						     (double)(a.y - b.y) * background->height));
 		}
 		sum += fmin(nearest, background->width);
 	}

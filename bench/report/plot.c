@@ -238,14 +238,14 @@ static void add_front(const struct gz_plot *plot, struct gz_text *table)
 	size_t count = 0, all = 0;
 	for (size_t i = 0; i < plot->curve_count; i++)
 		all += plot->curves[i].point_count;
-	const struct gz_plot_point **marked = calloc(all, sizeof *marked);
+	const struct gz_plot_point **marked = calloc(all + 1, sizeof(void *));
 	table->failed |= !marked;
 	for (size_t i = 0; marked && plot->join_marked && i < plot->curve_count; i++)
 		for (size_t k = 0; k < plot->curves[i].point_count; k++)
 			if (plot->curves[i].points[k].marked)
 				marked[count++] = &plot->curves[i].points[k];
 	if (count > 0)
-		qsort(marked, count, sizeof *marked, compare_x);
+		qsort(marked, count, sizeof(void *), compare_x);
 	else
 		gz_text_add(table, NOWHERE);
 	for (size_t i = 0; i < count; i++)

@@ -197,7 +197,7 @@ static enum gz_result fill_group(const struct gz_study *study, const struct gz_s
 				 size_t count, struct gz_group *group)
 {
 	enum gz_result result = GZ_OK;
-	const struct gz_study_row **picked = calloc(count, sizeof picked[0]);
+	const struct gz_study_row **picked = calloc(count, sizeof(void *));
 	double *room = calloc(count, sizeof room[0]);
 	group->series = calloc(study->variant_count, sizeof group->series[0]);
 	if (!picked || !room || !group->series)
