@@ -10,6 +10,8 @@
  * (GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT is at most 256). */
 enum { BLOCK_STRIDE = (sizeof(struct gz_gl_frame_block) + 255) / 256 * 256 };
 
+enum { COUNTS_SIZE = GZ_GL_COUNT_SLOTS * sizeof(uint32_t) };
+
 _Static_assert(GZ_GL_TILE_POINTS == GZ_TILE_PATTERN_COUNT * GZ_TILE_EDGE * GZ_TILE_EDGE,
 	       "the block has a point for each ray of each pattern");
 _Static_assert(GZ_PLAN_LAYERS_MAX <= 8 && GZ_TILE_PATTERN_COUNT <= 4 && GZ_LEVELS_MAX <= 8 &&
@@ -32,7 +34,7 @@ static void reserve(struct gz_gl_buffer *buffer, size_t size, GLenum usage)
  * theirs. NULL where the device has none. Until glUnmapBuffer(GL_SHADER_STORAGE_BUFFER). */
 static void *map_new(struct gz_gl_buffer *buffer, size_t size)
 {
-	reserve(buffer, size, GL_STREAM_DRAW);
+	reserve(buffer, size, GL_STATIC_DRAW); /* the device's own: many frames may read it */
 	glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer->name);
 	return glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size,
 				GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);
@@ -127,6 +129,41 @@ static enum gz_result no_room(enum gz_result result, const struct gz_plan *plan,
 	return result;
 }
 
+/* Whether the device has these tiles: the same request makes the same plan. */
+static bool has_tiles(const struct gz_gl_frame *frame, const struct gz_plan *plan,
+		      const struct gz_gl_tile_levels *levels)
+{
+	const struct gz_plan *packed = &frame->packed.plan;
+	return frame->packed.valid && plan->made_for.valid && packed->serial == plan->serial &&
+	       packed->tile_count == plan->tile_count &&
+	       memcmp(&packed->made_for, &plan->made_for, sizeof plan->made_for) == 0 &&
+	       memcmp(&frame->packed.levels, levels, sizeof *levels) == 0;
+}
+
+/* Give the device the tiles of a plan, unless it has them. */
+static enum gz_result give_tiles(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				 const struct gz_plan *plan, const struct gz_gl_tile_levels *levels,
+				 const struct gz_log *log)
+{
+	if (plan->tile_count == 0 || has_tiles(frame, plan, levels))
+		return GZ_OK;
+	frame->packed.valid = false;
+	frame->packed.spans_valid = false;
+	void *words = map_new(&frame->tiles, plan->tile_count * sizeof(uint32_t[2]));
+	if (!words) {
+		frame->tiles.size = 0;
+		gz_gl_device_errors(device);
+		return no_room(GZ_ERR_NO_MEM, plan, log);
+	}
+	sort_ranges(frame, plan);
+	pack_tiles(frame, plan, levels, words);
+	glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+	memcpy(&frame->packed.plan, plan, sizeof *plan); /* its padding too: it is compared */
+	frame->packed.levels = *levels;
+	frame->packed.valid = true;
+	return GZ_OK;
+}
+
 enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl_device *device,
 				   const struct gz_plan *plan,
 				   const struct gz_gl_tile_levels *levels,
@@ -142,41 +179,33 @@ enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl
 	}
 	reserve(&frame->block, GZ_LEVELS_MAX * BLOCK_STRIDE, GL_STREAM_DRAW);
 	reserve_points(frame, device, bytes);
-	reserve(&frame->counts, GZ_GL_COUNT_SLOTS * sizeof(uint32_t), GL_DYNAMIC_READ);
+	reserve(&frame->counts, COUNTS_SIZE, GL_DYNAMIC_COPY);
 	enum gz_result result = gz_gl_device_errors(device);
 	if (result != GZ_OK) {
 		frame->points.size = 0;
 		return no_room(result, plan, log);
 	}
-	if (plan->tile_count > 0) {
-		void *words = map_new(&frame->tiles, plan->tile_count * sizeof(uint32_t[2]));
-		if (!words) {
-			frame->tiles.size = 0;
-			gz_gl_device_errors(device);
-			return no_room(GZ_ERR_NO_MEM, plan, log);
-		}
-		sort_ranges(frame, plan);
-		pack_tiles(frame, plan, levels, words);
-		glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
-	}
-	return GZ_OK;
+	return give_tiles(frame, device, plan, levels, log);
 }
 
 enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_device *device,
 				 const struct gz_plan *plan, const struct gz_log *log)
 {
 	const size_t rows = (size_t)plan->layer_count * (size_t)plan->height;
-	int32_t(*span)[2] = map_new(&frame->spans, rows * sizeof *span);
-	if (!span) {
-		frame->spans.size = 0;
-		gz_gl_device_errors(device);
-		return no_room(GZ_ERR_NO_MEM, plan, log);
+	if (!frame->packed.spans_valid) {
+		int32_t(*span)[2] = map_new(&frame->spans, rows * sizeof *span);
+		if (!span) {
+			frame->spans.size = 0;
+			gz_gl_device_errors(device);
+			return no_room(GZ_ERR_NO_MEM, plan, log);
+		}
+		for (int layer = 0; layer < plan->layer_count; layer++)
+			for (int y = 0; y < plan->height; y++, span++)
+				gz_region_columns(&plan->layers[layer].region, y, plan->width,
+						  &(*span)[0], &(*span)[1]);
+		glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+		frame->packed.spans_valid = frame->packed.valid;
 	}
-	for (int layer = 0; layer < plan->layer_count; layer++)
-		for (int y = 0; y < plan->height; y++, span++)
-			gz_region_columns(&plan->layers[layer].region, y, plan->width, &(*span)[0],
-					  &(*span)[1]);
-	glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_SPANS, frame->spans.name);
 	return GZ_OK;
 }
@@ -196,9 +225,9 @@ void gz_gl_frame_use_block(const struct gz_gl_frame *frame, int level)
 
 void gz_gl_frame_begin(struct gz_gl_frame *frame)
 {
-	static const uint32_t zeros[GZ_GL_COUNT_SLOTS];
 	glBindBuffer(GL_SHADER_STORAGE_BUFFER, frame->counts.name);
-	glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zeros, zeros);
+	glClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+			  NULL);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_TILES, frame->tiles.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_POINTS, frame->points.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_COUNTS, frame->counts.name);
@@ -207,21 +236,27 @@ void gz_gl_frame_begin(struct gz_gl_frame *frame)
 				   GL_READ_ONLY, GL_R32UI);
 }
 
-enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,
-				struct gz_image *image)
+/* The first bytes of a buffer of the device's, where it is quick to read them, bound to
+ * GL_COPY_READ_BUFFER: memory that both can reach. A processor's buffers are there already. */
+static void bring(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+		  const struct gz_gl_buffer *source, size_t bytes)
 {
-	const size_t bytes = (size_t)image->width * (size_t)image->height * 4;
-	struct gz_gl_buffer *source = &frame->points;
 	if (!device->software) {
-		/* By memory that both can reach; a processor's points are there already. */
 		reserve(&frame->staging, bytes, GL_STREAM_READ);
-		glBindBuffer(GL_COPY_READ_BUFFER, frame->points.name);
+		glBindBuffer(GL_COPY_READ_BUFFER, source->name);
 		glBindBuffer(GL_COPY_WRITE_BUFFER, frame->staging.name);
 		glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0,
 				    (GLsizeiptr)bytes);
 		source = &frame->staging;
 	}
 	glBindBuffer(GL_COPY_READ_BUFFER, source->name);
+}
+
+enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_device *device,
+				struct gz_image *image)
+{
+	const size_t bytes = (size_t)image->width * (size_t)image->height * 4;
+	bring(frame, device, &frame->points, bytes);
 	const void *points =
 		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
 	if (!points) {
@@ -250,11 +285,11 @@ void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height)
 	glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
-uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame)
+uint64_t gz_gl_frame_samples(struct gz_gl_frame *frame, const struct gz_gl_device *device)
 {
 	uint32_t counts[GZ_GL_COUNT_SLOTS] = { 0 };
 	uint64_t sum = 0;
-	glBindBuffer(GL_COPY_READ_BUFFER, frame->counts.name);
+	bring(frame, device, &frame->counts, COUNTS_SIZE);
 	glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof counts, counts);
 	for (int i = 0; i < GZ_GL_COUNT_SLOTS; i++)
 		sum += counts[i];

@@ -36,6 +36,13 @@ struct gz_gl_tile_levels {
 /** Zero-initialised is empty. */
 struct gz_gl_frame {
 	struct gz_gl_buffer block, tiles, points, counts, spans, staging;
+	/** What the device has the tiles of: the plan, whose pointers are not followed, and the
+	 *  levels. A plan that stays is not packed again. */
+	struct {
+		struct gz_plan plan;
+		struct gz_gl_tile_levels levels;
+		bool valid, spans_valid;
+	} packed;
 	/** Where tiles of a layer and pattern lie: sorted by layer, then by pattern. */
 	struct gz_gl_tile_range ranges[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	/** From the first to behind the last tile of each level of detail; others lie between. */
@@ -57,8 +64,8 @@ enum gz_result gz_gl_frame_prepare(struct gz_gl_frame *frame, const struct gz_gl
 				   const struct gz_gl_tile_levels *levels,
 				   struct gz_gl_frame_block *block, const struct gz_log *log);
 
-/** Give the device the columns of each row that each region of a plan has (gz_region_columns()),
- * and bind them. GZ_ERR_NO_MEM: logged. */
+/** Give the device the columns of each row that each region of the plan that was prepared has
+ * (gz_region_columns()), unless it has them, and bind them. GZ_ERR_NO_MEM: logged. */
 enum gz_result gz_gl_frame_spans(struct gz_gl_frame *frame, const struct gz_gl_device *device,
 				 const struct gz_plan *plan, const struct gz_log *log);
 
@@ -80,7 +87,7 @@ enum gz_result gz_gl_frame_read(struct gz_gl_frame *frame, const struct gz_gl_de
 void gz_gl_frame_to_texture(struct gz_gl_frame *frame, int width, int height);
 
 /** Sum of all counts: waits for the frame. */
-uint64_t gz_gl_frame_samples(const struct gz_gl_frame *frame);
+uint64_t gz_gl_frame_samples(struct gz_gl_frame *frame, const struct gz_gl_device *device);
 
 /** Delete all of it and zero the struct. */
 void gz_gl_frame_free(struct gz_gl_frame *frame);

@@ -202,7 +202,7 @@ static void delete_programs(const GLuint *programs, size_t count)
 
 void gz_gl_passes_free(struct gz_gl_passes *passes)
 {
-	delete_programs(&passes->cast[0][0][0][0], sizeof passes->cast / sizeof(GLuint));
+	delete_programs((const GLuint *)passes->cast, sizeof passes->cast / sizeof(GLuint));
 	delete_programs(passes->fill, 2);
 	delete_programs(passes->quincunx, 2);
 	delete_programs(&passes->regions, 1);

@@ -294,7 +294,7 @@ static enum gz_result gl_render(struct gz_renderer *renderer, const struct gz_ca
 	if (result == GZ_OK && out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
-			.samples = gz_gl_frame_samples(&gl->frame),
+			.samples = gz_gl_frame_samples(&gl->frame, &gl->device),
 			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
 			.reconstruct_ms =
 				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),
