@@ -2,7 +2,8 @@
 #include "bench/gazebench/gazebench.h"
 
 static const struct gz_command *const commands[] = { &gazebench_report, &gazebench_suggest,
-						     &gazebench_compare, NULL };
+						     &gazebench_compare, &gazebench_stability,
+						     NULL };
 
 int main(int argc, char **argv)
 {

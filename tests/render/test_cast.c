@@ -201,33 +201,6 @@ static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **st
 	small_scene_free(&scene);
 }
 
-static void constant_box_keeps_its_brightness_for_any_step(void **state)
-{
-	(void)state;
-	/* The Voronoi method's periphery is too transparent, because its opacity ignores the step.
-	 */
-	struct small_scene scene = small_scene_constant(64, 0.013);
-	struct gz_image reference = { 0 };
-	scene.rays.ray_sampling_rate = 8;
-	scene.foveation.method = GZ_METHOD_STANDARD;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
-	small_scene_render(renderer, &scene, 200, 160, &reference, NULL);
-	static const double rates[] = { 0.25, 0.37, 1, 1.5, 3 };
-	for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-		struct gz_image image = { 0 };
-		int x = 0, y = 0;
-		scene.rays.ray_sampling_rate = rates[i];
-		small_scene_render(renderer, &scene, 200, 160, &image, NULL);
-		const int difference = image_difference(&reference, &image, &x, &y);
-		if (difference > 1)
-			fail_msg("rate %g: pixel %d %d differs by %d", rates[i], x, y, difference);
-		gz_image_free(&image);
-	}
-	gz_renderer_destroy(&renderer);
-	gz_image_free(&reference);
-	small_scene_free(&scene);
-}
-
 /* The share of samples that rays a pixel apart take in a box of which a layer shows. */
 static void samples_are_taken_in_fine_cells_that_show_alone(void **state)
 {
@@ -369,7 +342,6 @@ int main(void)
 		cmocka_unit_test(cast_of_opaque_and_of_transparent_matter_equals_the_oracle),
 		cmocka_unit_test(cast_is_the_same_bits_for_any_number_of_threads),
 		cmocka_unit_test(cast_by_every_instruction_set_agrees_within_one_grey_level),
-		cmocka_unit_test(constant_box_keeps_its_brightness_for_any_step),
 		cmocka_unit_test(samples_are_taken_in_fine_cells_that_show_alone),
 		cmocka_unit_test(empty_space_takes_no_samples),
 		cmocka_unit_test(

@@ -1,0 +1,272 @@
+/* Rows about a gaze that moves over a still picture. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/stability/stability_bench.h"
+#include "render/attention/attention.h"
+
+enum { PATH_MAX_POINTS = 32 };
+
+/* Two frames in turn and what the fovea of both is. */
+struct motion {
+	struct gz_stability_view view;
+	struct gz_foveation foveation;
+	const char *what;
+	struct gz_point path[PATH_MAX_POINTS];
+	int count;
+	struct gz_image frames[2];
+	uint8_t *fovea;
+};
+
+/* What changed from one frame to the next. */
+static enum gz_result take_change(const struct motion *motion, int newest,
+				  struct gz_stability_outcome *outcome)
+{
+	const struct gz_image *now = &motion->frames[newest], *before = &motion->frames[1 - newest];
+	const size_t pixels = (size_t)motion->view.width * (size_t)motion->view.height;
+	size_t outside = 0, worst_within = 0, worst_outside = 0;
+	int most_within = 0, most_outside = 0;
+	double sum = 0;
+	for (size_t i = 0; i < pixels; i++) {
+		const int apart = gz_stability_apart(now, before, i);
+		if (!motion->fovea[i]) {
+			sum += apart;
+			outside++;
+		}
+		int *most = motion->fovea[i] ? &most_within : &most_outside;
+		if (apart > *most) {
+			*most = apart;
+			*(motion->fovea[i] ? &worst_within : &worst_outside) = i;
+		}
+	}
+	const char *rule = gz_step_rule_names[motion->foveation.step_rule];
+	enum gz_result result = gz_stability_take(
+		outcome, 0, most_within, (struct gz_stability_place) { now, before, worst_within },
+		"%s, steps by %s", motion->what, rule);
+	if (result == GZ_OK)
+		result = gz_stability_take(
+			outcome, 1, outside ? sum / (double)outside : 0,
+			(struct gz_stability_place) { now, before, worst_outside },
+			"%s, steps by %s; a pixel by %d at most", motion->what, rule, most_outside);
+	return result;
+}
+
+static enum gz_result follow(struct gz_stability_bench *bench, struct motion *motion,
+			     struct gz_stability_outcome *outcome)
+{
+	enum gz_result result = GZ_OK;
+	for (int i = 0; i < motion->count && result == GZ_OK; i++) {
+		result = gz_stability_frame_at(bench, &bench->settings.scene, &motion->foveation,
+					       &motion->view, motion->path[i],
+					       &motion->frames[i % 2]);
+		if (result != GZ_OK || i == 0)
+			continue;
+		gz_stability_mark_fovea(&motion->foveation, &motion->view, motion->path[i - 1],
+					false, motion->fovea);
+		gz_stability_mark_fovea(&motion->foveation, &motion->view, motion->path[i], true,
+					motion->fovea);
+		result = take_change(motion, i % 2, outcome);
+	}
+	return result;
+}
+
+/* The path by every step rule. */
+static enum gz_result flicker(struct gz_stability_bench *bench, struct motion *motion,
+			      struct gz_stability_outcome *outcome)
+{
+	int rules[GZ_STABILITY_RULES_MAX];
+	const int count = gz_stability_rules(bench, rules);
+	motion->fovea = malloc((size_t)motion->view.width * (size_t)motion->view.height);
+	enum gz_result result = motion->fovea ? GZ_OK : GZ_ERR_NO_MEM;
+	for (int i = 0; i < count && result == GZ_OK; i++) {
+		motion->foveation.step_rule = rules[i];
+		result = follow(bench, motion, outcome);
+	}
+	free(motion->fovea);
+	gz_image_free(&motion->frames[0]);
+	gz_image_free(&motion->frames[1]);
+	return result;
+}
+
+static const char in_fovea[] = "greatest change in the fovea, grey levels";
+static const char elsewhere[] = "mean change elsewhere, grey levels a frame";
+
+enum gz_result gz_stability_tremble(struct gz_stability_bench *bench,
+				    struct gz_stability_outcome *outcome)
+{
+	static const int tremor_px[][2] = { { 0, 0 },  { 1, 0 },  { 1, 1 },   { 0, 1 }, { 0, 0 },
+					    { -1, 0 }, { 0, -1 }, { -1, -1 }, { 0, 0 } };
+	struct motion motion = { .view = gz_stability_scene_view(bench),
+				 .foveation = bench->foveation,
+				 .what = "a tremor of 1 px",
+				 .count = sizeof tremor_px / sizeof tremor_px[0] };
+	for (int i = 0; i < motion.count; i++)
+		motion.path[i] = (struct gz_point) {
+			0.45F + (float)tremor_px[i][0] / (float)motion.view.width,
+			0.5F + (float)tremor_px[i][1] / (float)motion.view.height
+		};
+	gz_stability_name(outcome, 0, in_fovea, 0);
+	gz_stability_name(outcome, 1, elsewhere, 0.5);
+	return flicker(bench, &motion, outcome);
+}
+
+enum gz_result gz_stability_pursuit(struct gz_stability_bench *bench,
+				    struct gz_stability_outcome *outcome)
+{
+	struct motion motion = { .view = gz_stability_scene_view(bench),
+				 .foveation = bench->foveation,
+				 .what = "a pursuit of 15 degrees a second at 60 Hz",
+				 .count = 24 };
+	/* a quarter of a degree a frame, down to the right */
+	const double px = 0.25 * gz_display_px_per_deg(&motion.view.display);
+	for (int i = 0; i < motion.count; i++)
+		motion.path[i] =
+			(struct gz_point) { (float)(0.4 + i * px * 0.9 / motion.view.width),
+					    (float)(0.45 + i * px * 0.436 / motion.view.height) };
+	gz_stability_name(outcome, 0, in_fovea, 0);
+	gz_stability_name(outcome, 1, elsewhere, 0.5);
+	return flicker(bench, &motion, outcome);
+}
+
+/* A saccade along the picture's middle: where it begins and ends, by its angle at the eye. */
+static bool saccade_ends(const struct gz_display *display, double angle_deg,
+			 struct gz_point out_ends[2])
+{
+	double least = 0, most = 0.5;
+	for (int i = 0; i < 40; i++) {
+		const double half = (least + most) / 2;
+		out_ends[0] = (struct gz_point) { (float)(0.5 - half), 0.5F };
+		out_ends[1] = (struct gz_point) { (float)(0.5 + half), 0.5F };
+		if (gz_display_angle_deg(display, out_ends[0], out_ends[1]) < angle_deg)
+			least = half;
+		else
+			most = half;
+	}
+	return least < 0.499;
+}
+
+#define SACCADE_DEG 20
+/* 2.2 ms a degree and 21 ms (Carpenter, Movements of the Eyes, 1988). */
+#define SACCADE_MS 65
+#define SAMPLE_NS  1000000  /* a tracker of 1 kHz */
+#define FRAME_NS   16666667 /* 60 Hz */
+
+/* Where the eye is so long after it began to move: a path of least jerk. */
+static struct gz_point on_way(const struct gz_point ends[2], double ms)
+{
+	const double t = fmin(fmax(ms / SACCADE_MS, 0), 1);
+	const double share = t * t * t * (10 + t * (6 * t - 15));
+	return (struct gz_point) { (float)(ends[0].x + share * (double)(ends[1].x - ends[0].x)),
+				   (float)(ends[0].y + share * (double)(ends[1].y - ends[0].y)) };
+}
+
+/* What the first frame goes by that knows of the landing, which comes so long before it. */
+static struct gz_focus landing_focus(const struct gz_display *display,
+				     const struct gz_point ends[2], int64_t before_ns)
+{
+	const struct gz_attention_params params = gz_attention_default();
+	struct gz_attention attention;
+	struct gz_focus focus = { 0 };
+	const int64_t landing_ns = SACCADE_MS * 1000000LL;
+	gz_attention_init(&attention, &params);
+	for (int64_t now_ns = landing_ns + before_ns - 20 * (int64_t)FRAME_NS;
+	     now_ns <= landing_ns + before_ns; now_ns += FRAME_NS) {
+		const int64_t sample_ns = (int64_t)floor((double)now_ns / SAMPLE_NS) * SAMPLE_NS;
+		const struct gz_attention_gaze gaze = {
+			.known = true,
+			.point = on_way(ends, (double)sample_ns / 1e6),
+			.has_age = true,
+			.age_ns = now_ns - sample_ns,
+			.has_event = true,
+			.event = sample_ns > 0 && sample_ns < landing_ns ? GZ_EVENT_SACCADE
+									 : GZ_EVENT_FIXATION,
+			.noise_deg = NAN,
+		};
+		focus = gz_attention_step(&attention, &gaze, display, now_ns);
+	}
+	return focus;
+}
+
+/* The fovea of one frame against `standard`. */
+static enum gz_result check_landing(struct gz_stability_bench *bench,
+				    const struct gz_foveation *foveation,
+				    const struct gz_point ends[2], int64_t before_ns,
+				    const struct gz_image *full, struct gz_image *image,
+				    uint8_t *fovea, struct gz_stability_outcome *outcome)
+{
+	const struct gz_stability_view view = gz_stability_scene_view(bench);
+	const struct gz_focus focus = landing_focus(&view.display, ends, before_ns);
+	struct gz_plan_request request = gz_plan_request_make(foveation, &view.display, focus.point,
+							      view.width, view.height);
+	request.scale = focus.scale;
+	request.widen = focus.widen;
+	const enum gz_result result =
+		gz_stability_frame(bench, &bench->settings.scene, &request, image);
+	if (result != GZ_OK)
+		return result;
+	size_t blurred = 0, worst = 0;
+	int most = -1;
+	gz_stability_mark_fovea(foveation, &view, ends[1], false, fovea);
+	for (size_t i = 0; i < (size_t)view.width * (size_t)view.height; i++) {
+		const int apart = fovea[i] ? gz_stability_apart(image, full, i) : 0;
+		blurred += apart > 0;
+		if (apart > most) {
+			most = apart;
+			worst = i;
+		}
+	}
+	return gz_stability_take(outcome, 0, (double)blurred,
+				 (struct gz_stability_place) { image, full, worst },
+				 "%.1f ms after the landing, steps by %s", (double)before_ns / 1e6,
+				 gz_step_rule_names[foveation->step_rule]);
+}
+
+/* By each step rule, the landing at each phase of the frames. */
+static enum gz_result check_landings(struct gz_stability_bench *bench,
+				     const struct gz_point ends[2], const struct gz_image *full,
+				     struct gz_image *image, uint8_t *fovea,
+				     struct gz_stability_outcome *outcome)
+{
+	int rules[GZ_STABILITY_RULES_MAX];
+	const int count = gz_stability_rules(bench, rules);
+	struct gz_foveation foveation = bench->foveation;
+	enum gz_result result = GZ_OK;
+	for (int i = 0; i < count && result == GZ_OK; i++) {
+		foveation.step_rule = rules[i];
+		for (int phase = 0; phase < 4 && result == GZ_OK; phase++)
+			result = check_landing(bench, &foveation, ends,
+					       phase * (int64_t)FRAME_NS / 4, full, image, fovea,
+					       outcome);
+	}
+	return result;
+}
+
+enum gz_result gz_stability_saccade(struct gz_stability_bench *bench,
+				    struct gz_stability_outcome *outcome)
+{
+	const struct gz_stability_view view = gz_stability_scene_view(bench);
+	struct gz_image full = { 0 }, image = { 0 };
+	struct gz_point ends[2];
+	if (bench->foveation.method == GZ_METHOD_UNIFORM ||
+	    !saccade_ends(&view.display, SACCADE_DEG, ends)) {
+		outcome->verdict = GZ_STABILITY_APART;
+		snprintf(outcome->note, sizeof outcome->note, "%s",
+			 bench->foveation.method == GZ_METHOD_UNIFORM
+				 ? "uniform is not sharp anywhere"
+				 : "the picture is narrower than the saccade");
+		return GZ_OK;
+	}
+	gz_stability_name(outcome, 0, "pixels of the fovea that are not those of standard", 0);
+	uint8_t *fovea = malloc((size_t)view.width * (size_t)view.height);
+	enum gz_result result = fovea ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result == GZ_OK)
+		result = gz_stability_standard(bench, &bench->settings.scene, &view, &full);
+	if (result == GZ_OK)
+		result = check_landings(bench, ends, &full, &image, fovea, outcome);
+	free(fovea);
+	gz_image_free(&full);
+	gz_image_free(&image);
+	return result;
+}
