@@ -26,6 +26,7 @@ struct gz_frame_maker {
 		int method, width, height;
 	} spent; /* what the budget's times are of */
 	bool any_made;
+	bool standard_told; /* that it keeps no time */
 	struct gz_plan plan;
 	struct gz_temporal temporal;
 	struct gz_temporal_content content; /* of the frame in the making; its padding stays 0 */
@@ -270,6 +271,28 @@ void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
 				    "up are; give one that does, as NIfTI and DICOM do");
 }
 
+/* A time to keep makes plans coarser, and this method's is never coarse. */
+static void tell_standard(struct gz_frame_maker *maker)
+{
+	if (maker->attention.params.budget_ms <= 0 || maker->standard_told)
+		return;
+	maker->standard_told = true;
+	gz_warn(maker->log,
+		"attention.budget_ms %g: standard casts every ray, whatever time that takes; "
+		"take a method that can keep it, such as acuity",
+		maker->attention.params.budget_ms);
+}
+
+static const char *budget_state(const struct gz_frame_maker *maker,
+				const struct gz_frame_record *record)
+{
+	const struct gz_budget *budget = &maker->attention.budget;
+	if (record->budget_ms > 0 && maker->spent.method == GZ_METHOD_STANDARD)
+		return gz_budget_state_name(
+			record->total_ms > record->budget_ms ? GZ_BUDGET_OVER : GZ_BUDGET_WITHIN);
+	return gz_budget_state_name(budget->state);
+}
+
 /* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. What
  * another method or size took tells nothing. */
 static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
@@ -283,6 +306,10 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 	maker->spent.method = method;
 	maker->spent.width = maker->plan.width;
 	maker->spent.height = maker->plan.height;
+	if (method == GZ_METHOD_STANDARD) {
+		tell_standard(maker);
+		return;
+	}
 	if (gz_attention_spent(&maker->attention, total_ms))
 		gz_warn(maker->log,
 			"attention.budget_ms %g is out of reach: %s took %.1f ms with its coarsest "
@@ -319,7 +346,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	maker->made = maker->focus;
 	maker->any_made = true;
 	tell_spent(maker, request, record.total_ms);
-	record.budget = gz_budget_state_name(maker->attention.budget.state);
+	record.budget = budget_state(maker, &record);
 	record.backend = maker->caster.renderer->ops->name; /* cpu may have taken over */
 	*out_image = maker->caster.on_device ? NULL : &maker->image;
 	*out_record = record;

@@ -223,7 +223,8 @@ static enum gz_result all_frames(struct headless *self)
 /* A replay is the same each time, but for what depends on how fast the machine is. */
 static void warn_of_budget(const struct headless *self)
 {
-	if (self->settings.attention.budget_ms > 0 && !self->source->ops->live)
+	const bool keeps = self->settings.foveation.method != GZ_METHOD_STANDARD;
+	if (self->settings.attention.budget_ms > 0 && keeps && !self->source->ops->live)
 		gz_warn(self->log,
 			"attention.budget_ms %g: the pictures depend on how fast this machine is; "
 			"set it to 0 for the same ones each time",

@@ -229,6 +229,20 @@ class Headless(unittest.TestCase):
         self.assertEqual(frames[-1]["budget_ms"], 0.001)
         self.assertLess(frames[-1]["rays"], frames[0]["rays"] / 4)
 
+    def test_budget_with_standard_is_told_once_and_changes_nothing(self):
+        done = self.good(
+            "--method", "standard", "--attention.budget_ms", 0.001, "--frames", 45, "--stats",
+            self.path("stats.json"),
+        )
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("acuity", done.stderr)
+        for frame in self.frames():
+            self.assertEqual((frame["scale"], frame["budget"]), (1, "over"))
+        done = self.good("--method", "standard", "--attention.budget_ms", 10000, "--stats",
+                         self.path("stats.json"))
+        self.assertEqual(self.frames()[0]["budget"], "within")
+        self.assertEqual(self.good("--method", "standard").stderr, "")
+
     def test_budget_that_is_kept_changes_nothing(self):
         self.good(
             "--attention.budget_ms", 10000, "--frames", 50, "--stats", self.path("stats.json")
