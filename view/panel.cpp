@@ -120,8 +120,7 @@ bool gz_panel_draw(const struct gz_panel_content *content)
 {
 	begin_frame();
 	float below_line = MARGIN + ImGui::GetFontSize() + 3 * PADDING;
-	bool changed = content->settings && gz_panel_draw_settings(below_line, content->settings,
-								   content->settings_count);
+	bool changed = content->settings && gz_panel_draw_settings(below_line, *content);
 	/* Straight into the draw list: a window would need a second frame to find its size. */
 	ImDrawList *list = ImGui::GetForegroundDrawList();
 	if (content->letters)

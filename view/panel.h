@@ -28,6 +28,9 @@ struct gz_panel_content {
 	const struct gz_letters *letters;         /**< at the edges; NULL for none */
 	const struct gz_option_binding *settings; /**< to show and change; NULL for no panel */
 	size_t settings_count;
+	/** Whether a row counts, by its key; others are shown grey. NULL: all do. */
+	bool (*applies)(const void *user, const char *key);
+	const void *applies_user;
 };
 
 /**

@@ -21,6 +21,9 @@ constexpr double SLIDER_RANGE_MAX = 128;
 /* A range whose ends differ by more than this factor is logarithmic. */
 constexpr double LINEAR_FACTOR_MAX = 100;
 
+/* Room for the longest text of a scene's tables, a path. */
+constexpr size_t TEXT_SIZE = 4096;
+
 constexpr char METHOD_KEY[] = "foveation.method";
 constexpr char METHOD_PREFIX[] = "foveation.";
 
@@ -122,6 +125,21 @@ bool is_colour(const gz_option &option)
 	return strcmp(option.key, "render.background") == 0;
 }
 
+/* Taken as a whole: half a file's name would be looked for. Dear ImGui keeps what is typed
+ * meanwhile. */
+bool draw_text(const gz_option &option, char *field)
+{
+	char text[TEXT_SIZE];
+	const size_t size = static_cast<size_t>(option.max);
+	if (size > sizeof text)
+		return false;
+	snprintf(text, size, "%s", field);
+	if (!ImGui::InputText("##value", text, size, ImGuiInputTextFlags_EnterReturnsTrue))
+		return false;
+	memcpy(field, text, size);
+	return true;
+}
+
 bool draw_widget(const gz_option &option, void *field)
 {
 	switch (option.type) {
@@ -143,26 +161,33 @@ bool draw_widget(const gz_option &option, void *field)
 		return draw_numbers(option, field, ImGuiDataType_Double, &option.min, &option.max,
 				    option.max <= 1 ? "%.3f" : "%.4g");
 	case GZ_OPTION_STRING:
+		return draw_text(option, static_cast<char *>(field));
 	case GZ_OPTION_SIZE:
 		break;
 	}
 	return false;
 }
 
-bool draw_row(const gz_option_binding &binding, const gz_option &option)
+void explain(const gz_option &option)
+{
+	if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+		ImGui::SetTooltip("%s", option.help);
+}
+
+bool draw_row(const gz_option_binding &binding, const gz_option &option, bool applies)
 {
 	char label[64];
 	print_label(option, label, sizeof label);
 	ImGui::PushID(option.key);
 	ImGui::AlignTextToFramePadding();
+	ImGui::BeginDisabled(!applies);
 	ImGui::TextUnformatted(label);
-	if (ImGui::IsItemHovered())
-		ImGui::SetTooltip("%s", option.help);
+	explain(option);
 	ImGui::SameLine(ImGui::GetWindowContentRegionMax().x * (1 - WIDGET_SHARE));
 	ImGui::SetNextItemWidth(-FLT_MIN);
 	bool changed = draw_widget(option, field_of(binding, option));
-	if (ImGui::IsItemHovered())
-		ImGui::SetTooltip("%s", option.help);
+	explain(option);
+	ImGui::EndDisabled();
 	ImGui::PopID();
 	return changed;
 }
@@ -179,7 +204,7 @@ bool draw_heading(const gz_option &option)
 
 bool has_widget(const gz_option &option)
 {
-	return option.type != GZ_OPTION_STRING && option.type != GZ_OPTION_SIZE;
+	return option.type != GZ_OPTION_SIZE;
 }
 
 bool same_section(const gz_option &a, const gz_option &b)
@@ -192,6 +217,12 @@ bool same_section(const gz_option &a, const gz_option &b)
 struct rows {
 	const gz_option_binding *bindings;
 	size_t count;
+	const gz_panel_content &content;
+
+	bool applies(const gz_option &option) const
+	{
+		return !content.applies || content.applies(content.applies_user, option.key);
+	}
 
 	template <typename Visit> void each(Visit visit) const
 	{
@@ -222,7 +253,7 @@ bool draw_section(const rows &all, const gz_option &section, const gz_option *me
 	all.each([&](const gz_option_binding &binding, const gz_option &option) {
 		if (same_section(option, section) &&
 		    !(method && is_of_another_method(option, *method, chosen)))
-			changed |= draw_row(binding, option);
+			changed |= draw_row(binding, option, all.applies(option));
 		return true;
 	});
 	return changed;
@@ -230,8 +261,10 @@ bool draw_section(const rows &all, const gz_option &section, const gz_option *me
 
 } // namespace
 
-bool gz_panel_draw_settings(float top, const struct gz_option_binding *bindings, size_t count)
+bool gz_panel_draw_settings(float top, const struct gz_panel_content &content)
 {
+	const gz_option_binding *bindings = content.settings;
+	const size_t count = content.settings_count;
 	ImVec2 room = ImGui::GetIO().DisplaySize;
 	float scale = ImGui::GetIO().FontGlobalScale;
 	float width = fminf(WIDTH * scale, room.x * 0.8F);
@@ -245,7 +278,7 @@ bool gz_panel_draw_settings(float top, const struct gz_option_binding *bindings,
 		const gz_option_binding *of_method = nullptr;
 		const gz_option *method = find(bindings, count, METHOD_KEY, &of_method);
 		int chosen = method ? *static_cast<int *>(field_of(*of_method, *method)) : -1;
-		const rows all = { bindings, count };
+		const rows all = { bindings, count, content };
 		all.each([&](const gz_option_binding &, const gz_option &option) {
 			if (is_first_of_section(all, option))
 				changed |= draw_section(all, option, method, chosen);

@@ -6,18 +6,17 @@
 #ifndef GZ_VIEW_PANEL_SETTINGS_H
 #define GZ_VIEW_PANEL_SETTINGS_H
 
-#include <cstddef>
-
-#include "base/option.h"
+#include "view/panel.h"
 
 /**
  * Draw it at the right of the window.
  *
- * @param top       where it begins, in the window's screen coordinates
- * @param bindings  their targets are changed, each value within its row's range; rows that hold
- *                  text are left out, and those of foveation methods other than the one chosen
+ * @param top      where it begins, in the window's screen coordinates
+ * @param content  the targets of its settings are changed, each value within its row's range; a
+ *                 text when Enter ends it. Rows of foveation methods other than the one chosen are
+ *                 left out
  * @return whether anything has been changed
  */
-bool gz_panel_draw_settings(float top, const struct gz_option_binding *bindings, size_t count);
+bool gz_panel_draw_settings(float top, const struct gz_panel_content &content);
 
 #endif

@@ -11,6 +11,7 @@
 #include "view/context_loss.h"
 #include "view/letters.h"
 #include "view/panel.h"
+#include "view/setting_applies.h"
 #include "view/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -131,10 +132,21 @@ static bool settings_valid(const struct gz_scene_settings *settings)
 	return table_there && gz_scene_settings_check(settings, "settings", NULL) == GZ_OK;
 }
 
+/* Another table of spacings is read before anything goes by it; what is wrong with it is logged. */
+static bool take_table(struct gz_window *window, const struct gz_scene_settings *before)
+{
+	struct gz_foveation *foveation = &window->settings.foveation;
+	if (strcmp(foveation->table_file, before->foveation.table_file) == 0)
+		return true;
+	if (!foveation->table_file[0])
+		foveation->table = (struct gz_spacing_table) { 0 };
+	return gz_scene_load_table(window->options->scene, window->log, foveation) == GZ_OK;
+}
+
 /* Values that do not go together stay what they were. */
 static void take_changes(struct gz_window *window, const struct gz_scene_settings *before)
 {
-	if (!settings_valid(&window->settings))
+	if (!take_table(window, before) || !settings_valid(&window->settings))
 		window->settings = *before;
 	window->cast_needed = true;
 	gz_window_wake_panel(window);
@@ -150,6 +162,11 @@ static bool take_back(struct gz_window *window)
 	window->settings = window->shown;
 	window->cast_needed = true;
 	return true;
+}
+
+static bool setting_applies(const void *user, const char *key)
+{
+	return gz_setting_applies(user, key);
 }
 
 static void present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
@@ -171,6 +188,8 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 		.letters = lettered ? &letters : NULL,
 		.settings = window->panel_shown ? window->tables.bindings : NULL,
 		.settings_count = GZ_SCENE_BINDINGS,
+		.applies = setting_applies,
+		.applies_user = &window->settings,
 	};
 	const struct gz_scene_settings before = window->settings;
 	window->present_needed = false;

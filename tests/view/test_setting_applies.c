@@ -1,0 +1,84 @@
+/* Which settings of the panel count with the others as they are. */
+#include "check.h"
+
+#include <string.h>
+
+#include "view/setting_applies.h"
+
+static struct gz_scene_settings settings_of(int method)
+{
+	static const char text[] = "[volume]\nprocedural = shells\n[transfer]\nfile = a.tf\n";
+	struct gz_scene_settings settings;
+	bool has_display;
+	assert_int_equal(gz_scene_parse("test", text, strlen(text), NULL, &settings, &has_display),
+			 GZ_OK);
+	settings.foveation.method = method;
+	return settings;
+}
+
+static void rows_of_foveation_count_with_the_methods_that_use_them(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *key;
+		bool counts[GZ_METHOD_COUNT]; /* standard mdc ddc acuity mdc3 uniform table */
+	} cases[] = {
+		{ "foveation.blend_px", { 0, 1, 1, 0, 1, 0, 0 } },
+		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1 } },
+		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0 } },
+		{ "foveation.table", { 1, 1, 1, 1, 1, 1, 1 } }, /* to be named first */
+		{ "foveation.method", { 1, 1, 1, 1, 1, 1, 1 } },
+		{ "attention.dead_band_deg", { 0, 1, 1, 1, 1, 0, 1 } },
+		{ "attention.budget_ms", { 0, 1, 1, 1, 1, 1, 1 } },
+		{ "render.ray_sampling_rate", { 1, 1, 1, 1, 1, 1, 1 } },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+		for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+			const struct gz_scene_settings settings = settings_of(method);
+			if (gz_setting_applies(&settings, cases[i].key) != cases[i].counts[method])
+				fail_msg("%s with %s: counts is not %d", cases[i].key,
+					 gz_method_names[method], cases[i].counts[method]);
+		}
+}
+
+static void rows_behind_a_switch_count_once_it_is_on(void **state)
+{
+	(void)state;
+	struct gz_scene_settings settings = settings_of(GZ_METHOD_STANDARD);
+	assert_true(gz_setting_applies(&settings, "camera.fov_deg"));
+	assert_false(gz_setting_applies(&settings, "camera.height"));
+	settings.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	assert_false(gz_setting_applies(&settings, "camera.fov_deg"));
+	assert_true(gz_setting_applies(&settings, "camera.height"));
+
+	settings.rays.shading = GZ_SHADING_NONE;
+	settings.rays.light.occlusion = 0;
+	assert_false(gz_setting_applies(&settings, "light.ambient"));
+	assert_false(gz_setting_applies(&settings, "light.occlusion_radius"));
+	settings.rays.shading = GZ_SHADING_GRADIENT;
+	assert_true(gz_setting_applies(&settings, "light.ambient"));
+	assert_true(gz_setting_applies(&settings, "light.occlusion"));
+	assert_false(gz_setting_applies(&settings, "light.occlusion_radius"));
+	settings.rays.light.occlusion = 0.5;
+	assert_true(gz_setting_applies(&settings, "light.occlusion_radius"));
+
+	assert_false(gz_setting_applies(&settings, "temporal.weight"));
+	settings.temporal.accumulate = true;
+	assert_true(gz_setting_applies(&settings, "temporal.weight"));
+
+	assert_false(gz_setting_applies(&settings, "foveation.step_floor"));
+	settings.foveation.step_rule = GZ_STEP_DISTANCE;
+	assert_true(gz_setting_applies(&settings, "foveation.step_floor"));
+	assert_true(gz_setting_applies(&settings, "attention.dead_band_deg"));
+	settings.foveation.step_rule = GZ_STEP_ACUITY;
+	assert_true(gz_setting_applies(&settings, "foveation.acuity_slope"));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(rows_of_foveation_count_with_the_methods_that_use_them),
+		cmocka_unit_test(rows_behind_a_switch_count_once_it_is_on),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

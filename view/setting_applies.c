@@ -1,0 +1,88 @@
+#include "view/setting_applies.h"
+
+#include <string.h>
+
+typedef bool applies_function(const struct gz_scene_settings *settings);
+
+static bool in_perspective(const struct gz_scene_settings *settings)
+{
+	return settings->camera.projection == GZ_PROJECTION_PERSPECTIVE;
+}
+
+static bool in_parallel(const struct gz_scene_settings *settings)
+{
+	return !in_perspective(settings);
+}
+
+static bool with_light(const struct gz_scene_settings *settings)
+{
+	return settings->rays.shading == GZ_SHADING_GRADIENT;
+}
+
+static bool with_occlusion(const struct gz_scene_settings *settings)
+{
+	return with_light(settings) && settings->rays.light.occlusion > 0;
+}
+
+static bool with_regions(const struct gz_scene_settings *settings)
+{
+	const int method = settings->foveation.method;
+	return method == GZ_METHOD_MDC || method == GZ_METHOD_MDC3 || method == GZ_METHOD_DDC;
+}
+
+static bool with_a_pyramid(const struct gz_scene_settings *settings)
+{
+	const int method = settings->foveation.method;
+	return method == GZ_METHOD_ACUITY || method == GZ_METHOD_TABLE;
+}
+
+/* The eye's acuity sets the steps by distance too, where they go by it. */
+static bool by_acuity(const struct gz_scene_settings *settings)
+{
+	return settings->foveation.method == GZ_METHOD_ACUITY ||
+	       settings->foveation.step_rule == GZ_STEP_ACUITY;
+}
+
+static bool by_distance(const struct gz_scene_settings *settings)
+{
+	return settings->foveation.step_rule == GZ_STEP_DISTANCE;
+}
+
+/* Rays or, with a rule of their own, steps. */
+static bool with_the_gaze(const struct gz_scene_settings *settings)
+{
+	const int method = settings->foveation.method;
+	return (method != GZ_METHOD_STANDARD && method != GZ_METHOD_UNIFORM) ||
+	       by_distance(settings) || by_acuity(settings);
+}
+
+static bool with_a_scale(const struct gz_scene_settings *settings)
+{
+	return settings->foveation.method != GZ_METHOD_STANDARD;
+}
+
+static bool with_the_past(const struct gz_scene_settings *settings)
+{
+	return settings->temporal.accumulate;
+}
+
+/* The first that the key is or begins with. */
+static const struct {
+	const char *key;
+	applies_function *applies;
+} conditions[] = {
+	{ "camera.fov_deg", in_perspective },           { "camera.height", in_parallel },
+	{ "light.occlusion_radius", with_occlusion },   { "light.", with_light },
+	{ "foveation.reconstruction", with_a_pyramid }, { "foveation.acuity_", by_acuity },
+	{ "foveation.blend_px", with_regions },         { "foveation.step_floor", by_distance },
+	{ "attention.budget_ms", with_a_scale },        { "attention.", with_the_gaze },
+	{ "temporal.weight", with_the_past },
+};
+
+bool gz_setting_applies(const struct gz_scene_settings *settings, const char *key)
+{
+	for (size_t i = 0; i < sizeof conditions / sizeof conditions[0]; i++)
+		if (strncmp(key, conditions[i].key, strlen(conditions[i].key)) == 0)
+			return conditions[i].applies(settings);
+	return true;
+}
