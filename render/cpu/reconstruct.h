@@ -34,12 +34,13 @@ struct gz_row_filters {
 	/** The same by means of neighbours: one row and one column behind are read. */
 	void (*double_mean)(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
 			    int count, bool stream);
-	/** @p count points of @p row, of which those number @p first, @p first + 2... are made anew
-	 *  from those 1 and 3 points away along both axes: the mean of Catmull-Rom along each,
-	 * rounded @p up or down. */
-	void (*quincunx_cubic)(uint32_t *row, ptrdiff_t stride, int first, bool up, int count);
+	/** Of @p count points of an even @p row those number @p first (0 or 1), @p first + 2... are
+	 * made anew from those 1 and 3 points away along both axes, and with two @p rows the others
+	 * of the odd row behind: the mean of Catmull-Rom along each, rounded down in even rows and
+	 * up in odd ones. Rows as far as those of two rows are read with one too. */
+	void (*quincunx_cubic)(uint32_t *row, ptrdiff_t stride, int first, int rows, int count);
 	/** The same by the mean of the four neighbours. */
-	void (*quincunx_mean)(uint32_t *row, ptrdiff_t stride, int first, int count);
+	void (*quincunx_mean)(uint32_t *row, ptrdiff_t stride, int first, int rows, int count);
 	/** Whether all points of a rectangle are @p colour. */
 	bool (*all_are)(const uint32_t *points, ptrdiff_t stride, int columns, int rows,
 			uint32_t colour);

@@ -70,6 +70,11 @@ static int least(int a, int b)
 	return a < b ? a : b;
 }
 
+static int block_end(int x, int end)
+{
+	return least(x - x % BLOCK + BLOCK, end);
+}
+
 static enum fill fill_of_block(const struct square *square, int level, int x, int y)
 {
 	const int tile =
@@ -77,11 +82,6 @@ static enum fill fill_of_block(const struct square *square, int level, int x, in
 	if (tile / 2 > level)
 		return FILL_COARSER;
 	return tile == 2 * level + 1 ? FILL_QUINCUNX : FILL_NONE;
-}
-
-static int block_end(int x, int end)
-{
-	return least(x - x % BLOCK + BLOCK, end);
 }
 
 /* The end of the run of blocks that begins at (x, y) and asks for the same, `last` at most. */
@@ -186,16 +186,16 @@ static int mirrored(int i, int count)
 static void extend_beyond_rim(const struct patch *patch)
 {
 	const struct range *all = &patch->all;
-	for (int i = 1; i <= REACH; i++)
+	for (int i = 1; i <= REACH; i++) {
+		const int left = mirrored(-i, patch->columns), right = all->x1 - 1 + i;
+		const int stands_in = mirrored(right, patch->columns);
 		for (int y = all->y0; y < all->y1; y++) {
-			const int right = all->x1 - 1 + i;
 			if (all->x0 == 0)
-				memcpy(at(patch, -i, y), at(patch, mirrored(-i, patch->columns), y),
-				       4);
+				*at(patch, -i, y) = *at(patch, left, y);
 			if (all->x1 == patch->columns)
-				memcpy(at(patch, right, y),
-				       at(patch, mirrored(right, patch->columns), y), 4);
+				*at(patch, right, y) = *at(patch, stands_in, y);
 		}
+	}
 	const size_t row_bytes = (size_t)(all->x1 - all->x0 + 2 * REACH) * 4;
 	for (int i = 1; i <= REACH; i++) {
 		if (all->y0 == 0)
@@ -227,17 +227,22 @@ static void fill_quincunx_line(struct square *square, int level, int x, int end,
 	}
 }
 
-static void fill_quincunx_row(struct square *square, int level, int x, int end, int y)
+/* Rows y, which is even, and y + 1 if it is before `bottom`. */
+static void fill_quincunx_rows(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *patch = &square->patches[level];
-	uint32_t *row = at(patch, x, y);
-	const int first = (x + y) % 2 == 0;
-	if (patch->columns == 1 || patch->rows == 1)
-		fill_quincunx_line(square, level, x, end, y);
-	else if (square->plan->filter == GZ_FILTER_BILINEAR)
-		square->filters->quincunx_mean(row, patch->stride, first, end - x);
+	const int rows = least(bottom - y, 2), first = x % 2 == 0;
+	if (patch->columns == 1 || patch->rows == 1) {
+		for (int row = y; row < y + rows; row++)
+			fill_quincunx_line(square, level, x, end, row);
+		return;
+	}
+	if (square->plan->filter == GZ_FILTER_BILINEAR)
+		square->filters->quincunx_mean(at(patch, x, y), patch->stride, first, rows,
+					       end - x);
 	else
-		square->filters->quincunx_cubic(row, patch->stride, first, y % 2 != 0, end - x);
+		square->filters->quincunx_cubic(at(patch, x, y), patch->stride, first, rows,
+						end - x);
 }
 
 /* The points between those of quincunx tiles. */
@@ -249,10 +254,16 @@ static void fill_quincunx(struct square *square, int level)
 		bottom = block_end(y, needed->y1);
 		for (int x = needed->x0, end; x < needed->x1; x = end) {
 			end = run_end(square, level, x, y, needed->x1, &fill);
-			for (int row = y; row < bottom && fill == FILL_QUINCUNX; row++)
-				fill_quincunx_row(square, level, x, end, row);
+			for (int row = y; row < bottom && fill == FILL_QUINCUNX; row += 2)
+				fill_quincunx_rows(square, level, x, end, row, bottom);
 		}
 	}
+}
+
+static bool at_rim(const struct patch *patch)
+{
+	return patch->all.x0 == 0 || patch->all.y0 == 0 || patch->all.x1 == patch->columns ||
+	       patch->all.y1 == patch->rows;
 }
 
 static void fill_level(struct square *square, int level)
@@ -261,15 +272,37 @@ static void fill_level(struct square *square, int level)
 	fill_patch(square, level);
 	if (level == 0)
 		return;
-	const bool at_rim = patch->all.x0 == 0 || patch->all.y0 == 0 ||
-			    patch->all.x1 == patch->columns || patch->all.y1 == patch->rows;
-	if (at_rim)
+	if (at_rim(patch))
 		extend_beyond_rim(patch);
 	if (!patch->quincunx)
 		return;
 	fill_quincunx(square, level);
-	if (at_rim)
+	if (at_rim(patch))
 		extend_beyond_rim(patch);
+}
+
+/* The finest lattice on which something was cast that the square looks at. */
+static int finest_cast(const struct square *square)
+{
+	int level = 0;
+	while (!square->patches[level].cast && !square->patches[level].quincunx)
+		level++;
+	return level;
+}
+
+/* Fill the square in the one colour of all that it needs of a lattice. Whether it is one. */
+static bool fill_flat_square(const struct square *square, int level)
+{
+	const struct patch *patch = &square->patches[level], *picture = &square->patches[0];
+	const struct range *needed = &patch->needed;
+	const uint32_t colour = *at(patch, needed->x0, needed->y0);
+	if (!square->filters->all_are(at(patch, needed->x0, needed->y0), patch->stride,
+				      needed->x1 - needed->x0, needed->y1 - needed->y0, colour))
+		return false;
+	for (int y = picture->all.y0; y < picture->all.y1; y++)
+		square->filters->fill(colour, at(picture, picture->all.x0, y),
+				      picture->all.x1 - picture->all.x0, square->stream);
+	return true;
 }
 
 /* Note what the blocks of a range ask for. */
@@ -368,8 +401,12 @@ void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices 
 	const int coarsest = lay_out(&square, column, row, memory);
 	if (coarsest == 0)
 		return;
-	for (int level = coarsest; level >= 0; level--)
+	const int finest = finest_cast(&square);
+	for (int level = coarsest; level >= 0; level--) {
 		fill_level(&square, level);
+		if (level > 0 && level == finest && fill_flat_square(&square, level))
+			return;
+	}
 }
 
 void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows)

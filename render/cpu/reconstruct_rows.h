@@ -204,42 +204,80 @@ static void double_mean(const uint32_t *row, ptrdiff_t stride, uint32_t *even, u
 	double_to(double_mean_to, row, stride, even, odd, count, stream);
 }
 
-/* The points of a row whose column is odd (first = 1) or even (first = 0) are put in. */
-SIMD void put_every_second(uint32_t *row, vp made, int first, int count)
+/* Points of two rows in turn: of the first where a quincunx tile's points are missing there, which
+ * is number `first`, `first` + 2..., of the second elsewhere, where they are missing in that. */
+SIMD vp in_turn(vp of_first, vp of_second, int first)
 {
-	const vp was = vp_load(row);
-	const vp is = first ? vp_alternate(was, made) : vp_alternate(made, was);
+	return first ? vp_alternate(of_second, of_first) : vp_alternate(of_first, of_second);
+}
+
+SIMD vp load_in_turn(const uint32_t *points, ptrdiff_t stride, int first)
+{
+	return in_turn(vp_load(points), vp_load(points + stride), first);
+}
+
+SIMD void store_first(uint32_t *points, vp a, int count)
+{
 	if (count >= POINTS) {
-		vp_store(row, is);
+		vp_store(points, a);
 		return;
 	}
-	uint32_t points[POINTS];
-	vp_store(points, is);
-	memcpy(row, points, (size_t)count * sizeof *row);
+	uint32_t all[POINTS];
+	vp_store(all, a);
+	memcpy(points, all, (size_t)count * sizeof *points);
 }
 
-static void quincunx_cubic(uint32_t *row, ptrdiff_t stride, int first, bool up, int count)
+/* What was made goes to its places in both rows, or in the first. */
+SIMD void put_in_turn(uint32_t *points, ptrdiff_t stride, vp made, int first, int rows, int count)
 {
-	const vp odd_down = up ? vp_set(0) : vp_set(0x01010101);
+	store_first(points, in_turn(made, vp_load(points), first), count);
+	if (rows > 1)
+		store_first(points + stride, in_turn(vp_load(points + stride), made, first), count);
+}
+
+SIMD void quincunx_cubic_at(uint32_t *row, ptrdiff_t stride, int first, int rows, int count)
+{
+	const vp odd_down = in_turn(vp_set(0x01010101), vp_set(0), first);
 	for (int i = 0; i < count; i += POINTS) {
-		const uint32_t *p = row + i;
-		const vp along =
-			cubic(vp_load(p - 3), vp_load(p - 1), vp_load(p + 1), vp_load(p + 3));
-		const vp down = cubic(vp_load(p - 3 * stride), vp_load(p - stride),
-				      vp_load(p + stride), vp_load(p + 3 * stride));
-		const vp odd = vp_and(vp_xor(along, down), odd_down);
-		put_every_second(row + i, vp_but(vp_mean(along, down), odd), first, count - i);
+		uint32_t *p = row + i;
+		vp across[4], down[4];
+		for (int k = 0; k < 4; k++) {
+			across[k] = load_in_turn(p + 2 * k - 3, stride, first);
+			down[k] = load_in_turn(p + (2 * k - 3) * stride, stride, first);
+		}
+		const vp a = cubic(across[0], across[1], across[2], across[3]);
+		const vp b = cubic(down[0], down[1], down[2], down[3]);
+		const vp made = vp_but(vp_mean(a, b), vp_and(vp_xor(a, b), odd_down));
+		put_in_turn(p, stride, made, first, rows, count - i);
 	}
 }
 
-static void quincunx_mean(uint32_t *row, ptrdiff_t stride, int first, int count)
+SIMD void quincunx_mean_at(uint32_t *row, ptrdiff_t stride, int first, int rows, int count)
 {
 	for (int i = 0; i < count; i += POINTS) {
-		const uint32_t *p = row + i;
-		const vp made = mean_of_4(vp_load(p - 1), vp_load(p + 1), vp_load(p - stride),
-					  vp_load(p + stride));
-		put_every_second(row + i, made, first, count - i);
+		uint32_t *p = row + i;
+		const vp made = mean_of_4(load_in_turn(p - 1, stride, first),
+					  load_in_turn(p + 1, stride, first),
+					  load_in_turn(p - stride, stride, first),
+					  load_in_turn(p + stride, stride, first));
+		put_in_turn(p, stride, made, first, rows, count - i);
 	}
+}
+
+static void quincunx_cubic(uint32_t *row, ptrdiff_t stride, int first, int rows, int count)
+{
+	if (first)
+		quincunx_cubic_at(row, stride, 1, rows, count);
+	else
+		quincunx_cubic_at(row, stride, 0, rows, count);
+}
+
+static void quincunx_mean(uint32_t *row, ptrdiff_t stride, int first, int rows, int count)
+{
+	if (first)
+		quincunx_mean_at(row, stride, 1, rows, count);
+	else
+		quincunx_mean_at(row, stride, 0, rows, count);
 }
 
 /* Wide loads overlap at the end of a row. */
