@@ -16,6 +16,7 @@
 #include <time.h>
 
 #include "render/scene.h"
+#include "render/voxel_rays.h"
 
 enum { ROUNDS_MAX = 1000 };
 
@@ -57,29 +58,28 @@ static void fill_cast(struct bench *bench)
 {
 	const struct gz_volume *volume = &bench->scene.volume;
 	struct gz_cast *cast = &bench->cast;
-	struct gz_ray_frame rays;
-	double half[3];
-	gz_camera_rays(&bench->scene.settings.camera, bench->width, bench->height, &rays);
-	gz_volume_half_extent(volume, half);
+	struct gz_ray_frame world;
+	struct gz_voxel_rays rays;
+	gz_camera_rays(&bench->scene.settings.camera, bench->width, bench->height, &world);
+	gz_voxel_rays_make(volume, &world, &rays);
 	double longest = 0;
 	for (int axis = 0; axis < 3; axis++)
 		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);
 	cast->voxels = volume->voxels;
 	int stride = 1;
 	for (int axis = 0; axis < 3; axis++) {
-		const double per_world = volume->dims[axis] / (2 * half[axis]);
 		cast->box[axis] = cast->dims[axis] = (float)volume->dims[axis];
 		cast->clip_greatest[axis] = cast->box[axis]; /* the least is 0 */
 		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
 		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? stride : 0;
 		stride *= volume->dims[axis];
 		cast->world_per_voxel[axis] = (float)(volume->spacing[axis] / longest);
-		cast->origin00[axis] = (float)((rays.origin00[axis] + half[axis]) * per_world);
-		cast->origin_dx[axis] = (float)(rays.origin_dx[axis] * per_world);
-		cast->origin_dy[axis] = (float)(rays.origin_dy[axis] * per_world);
-		cast->direction00[axis] = (float)(rays.direction00[axis] * per_world);
-		cast->direction_dx[axis] = (float)(rays.direction_dx[axis] * per_world);
-		cast->direction_dy[axis] = (float)(rays.direction_dy[axis] * per_world);
+		cast->origin00[axis] = (float)rays.frame.origin00[axis];
+		cast->origin_dx[axis] = (float)rays.frame.origin_dx[axis];
+		cast->origin_dy[axis] = (float)rays.frame.origin_dy[axis];
+		cast->direction00[axis] = (float)rays.frame.direction00[axis];
+		cast->direction_dx[axis] = (float)rays.frame.direction_dx[axis];
+		cast->direction_dy[axis] = (float)rays.frame.direction_dy[axis];
 	}
 	cast->step[0] = (float)(gz_volume_voxel_length(volume) /
 				bench->scene.settings.rays.ray_sampling_rate);

@@ -15,6 +15,7 @@
 #include "render/detail.h"
 #include "render/lighting.h"
 #include "render/preintegration.h"
+#include "render/voxel_rays.h"
 #include "render/workers.h"
 
 #define GZ_LOG_MODULE "cpu"
@@ -258,16 +259,16 @@ static void fill_rays(const struct cpu_renderer *cpu, int index, const struct gz
 		      struct gz_cast *cast)
 {
 	const int *factor = cpu->detail.levels.level[index].factor;
-	double half[3];
-	gz_volume_half_extent(cpu->volume, half);
+	struct gz_voxel_rays full;
+	gz_voxel_rays_make(cpu->volume, rays, &full);
+	const struct gz_ray_frame *frame = &full.frame;
 	for (int axis = 0; axis < 3; axis++) {
-		const double per_world = cpu->volume->dims[axis] / (2 * half[axis]) / factor[axis];
-		cast->origin00[axis] = (float)((rays->origin00[axis] + half[axis]) * per_world);
-		cast->origin_dx[axis] = (float)(rays->origin_dx[axis] * per_world);
-		cast->origin_dy[axis] = (float)(rays->origin_dy[axis] * per_world);
-		cast->direction00[axis] = (float)(rays->direction00[axis] * per_world);
-		cast->direction_dx[axis] = (float)(rays->direction_dx[axis] * per_world);
-		cast->direction_dy[axis] = (float)(rays->direction_dy[axis] * per_world);
+		cast->origin00[axis] = (float)(frame->origin00[axis] / factor[axis]);
+		cast->origin_dx[axis] = (float)(frame->origin_dx[axis] / factor[axis]);
+		cast->origin_dy[axis] = (float)(frame->origin_dy[axis] / factor[axis]);
+		cast->direction00[axis] = (float)(frame->direction00[axis] / factor[axis]);
+		cast->direction_dx[axis] = (float)(frame->direction_dx[axis] / factor[axis]);
+		cast->direction_dy[axis] = (float)(frame->direction_dy[axis] / factor[axis]);
 	}
 }
 

@@ -10,6 +10,7 @@
 
 #include <GL/glew.h>
 
+#include "lent_context.h"
 #include "render/gl/compute_program.h"
 #include "render/gl/context_egl.h"
 #include "small_scene.h"
@@ -227,36 +228,6 @@ static void new_transfer_function_and_volume_replace_the_old(void **state)
 	small_scene_free(&other);
 }
 
-/* A context that a test hands in, and can lose. */
-struct lent_context {
-	struct gz_gl_context base;
-	struct gz_gl_context *egl;
-	bool lost;
-};
-
-static enum gz_result lent_make_current(struct gz_gl_context *base)
-{
-	struct lent_context *lent = (struct lent_context *)base;
-	return lent->lost ? GZ_ERR_NO_DEVICE : lent->egl->ops->make_current(lent->egl);
-}
-
-static void lent_release(struct gz_gl_context *base)
-{
-	struct lent_context *lent = (struct lent_context *)base;
-	lent->egl->ops->release(lent->egl);
-}
-
-static const struct gz_gl_context_ops lent_ops = { .make_current = lent_make_current,
-						   .release = lent_release };
-
-static struct lent_context lend(void)
-{
-	struct lent_context lent = { .base = { .ops = &lent_ops } };
-	char reason[200];
-	assert_int_equal(gz_gl_context_egl(false, &lent.egl, reason, sizeof reason), GZ_OK);
-	return lent;
-}
-
 static struct gz_renderer *renderer_in(struct lent_context *lent, const struct small_scene *scene,
 				       const struct gz_log *log)
 {
@@ -272,7 +243,7 @@ static void picture_left_on_the_device_equals_the_one_read_back(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
-	struct lent_context lent = lend();
+	struct lent_context lent = lend_context();
 	struct gz_renderer *renderer = renderer_in(&lent, &scene, NULL);
 	struct gz_image image = { 0 };
 	enum { WIDTH = 77, HEIGHT = 50 };
@@ -319,7 +290,7 @@ static void lost_context_is_told_and_the_renderer_can_be_destroyed(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(16, 16, 16, GZ_VOXEL_U8);
-	struct lent_context lent = lend();
+	struct lent_context lent = lend_context();
 	struct heard heard = { "" };
 	struct gz_log log;
 	gz_log_init(&log, hear, &heard, NULL);

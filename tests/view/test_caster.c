@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/gl/context_egl.h"
+#include "render/lent_context.h"
 #include "render/small_scene.h"
 #include "view/caster.h"
 
@@ -22,28 +23,6 @@ static void hear(void *user, enum gz_log_level level, const char *module, const 
 	if (level >= GZ_LOG_INFO)
 		snprintf(heard->text + used, sizeof heard->text - used, "%s\n", message);
 }
-
-/* A context that can be lost. */
-struct lent_context {
-	struct gz_gl_context base;
-	struct gz_gl_context *egl;
-	bool lost;
-};
-
-static enum gz_result lent_make_current(struct gz_gl_context *base)
-{
-	struct lent_context *lent = (struct lent_context *)base;
-	return lent->lost ? GZ_ERR_NO_DEVICE : lent->egl->ops->make_current(lent->egl);
-}
-
-static void lent_release(struct gz_gl_context *base)
-{
-	struct lent_context *lent = (struct lent_context *)base;
-	lent->egl->ops->release(lent->egl);
-}
-
-static const struct gz_gl_context_ops lent_ops = { .make_current = lent_make_current,
-						   .release = lent_release };
 
 /* A caster over a small scene, with all it needs. */
 struct set_up {
@@ -83,12 +62,10 @@ static void take_down(struct set_up *all)
 static void lost_context_costs_no_frame(void **state)
 {
 	(void)state;
-	struct lent_context lent = { .base = { .ops = &lent_ops } };
-	char reason[200];
+	struct lent_context lent = lend_context();
 	struct set_up all;
 	struct gz_image before = { 0 }, after = { 0 };
 	struct gz_frame_stats stats;
-	assert_int_equal(gz_gl_context_egl(false, &lent.egl, reason, sizeof reason), GZ_OK);
 	set_up(&all, "gl");
 	assert_int_equal(
 		gz_caster_start(&all.caster, &all.options, &lent.base, &all.scene, &all.log),

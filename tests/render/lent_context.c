@@ -1,0 +1,26 @@
+#include "lent_context.h"
+
+#include "check.h"
+#include "render/gl/context_egl.h"
+
+static enum gz_result make_current(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	return lent->lost ? GZ_ERR_NO_DEVICE : lent->egl->ops->make_current(lent->egl);
+}
+
+static void release(struct gz_gl_context *base)
+{
+	struct lent_context *lent = (struct lent_context *)base;
+	lent->egl->ops->release(lent->egl);
+}
+
+struct lent_context lend_context(void)
+{
+	static const struct gz_gl_context_ops ops = { .make_current = make_current,
+						      .release = release };
+	struct lent_context lent = { .base = { .ops = &ops } };
+	char reason[200];
+	assert_int_equal(gz_gl_context_egl(false, &lent.egl, reason, sizeof reason), GZ_OK);
+	return lent;
+}
