@@ -16,6 +16,14 @@ enum gazebench_exit {
 	GAZEBENCH_UNSTABLE = 4, /**< stability: a row does not hold */
 };
 
+/** The commit that the program was built from; "unknown" outside a repository, "-dirty" behind it
+ *  where files were changed. */
+extern const char gazebench_commit[];
+
+/** Print what can be measured, by what and along what: `gazebench --list`.
+ *  @return what the program exits with */
+int gazebench_list(bool as_json);
+
 extern const struct gz_command gazebench_run;       /**< measure: make a study */
 extern const struct gz_command gazebench_merge;     /**< join the shards of a study */
 extern const struct gz_command gazebench_report;    /**< charts, tables, report.html */

@@ -5,6 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/random.h"
+
+/* Of one seed: the n-th camera takes the stream this and n; places of the gaze take 1. */
+#define CAMERA_STREAM (UINT64_C(1) << 32)
+
+const char *const gz_study_accuracy_names[] = { "none", "standard", "all", NULL };
+
 void gz_study_free(struct gz_study *study)
 {
 	free(study->scenes);
@@ -58,6 +65,46 @@ struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit,
 	row.size = (uint16_t)(unit % study->size_count);
 	row.scene = (uint16_t)(unit / study->size_count);
 	return row;
+}
+
+struct gz_camera gz_study_camera(const struct gz_study *study, size_t scene, uint32_t camera)
+{
+	struct gz_camera seen = study->scenes[scene].camera;
+	if (camera == 0)
+		return seen;
+	struct gz_random random = gz_random_seeded(study->seed, CAMERA_STREAM + camera);
+	const double z = gz_random_between(&random, -1, 1);
+	const double turn = gz_random_between(&random, 0, 2 * M_PI), ring = sqrt(1 - z * z);
+	const double direction[3] = { ring * gz_portable_cos(turn), ring * gz_portable_sin(turn),
+				      z };
+	double square = 0;
+	for (int axis = 0; axis < 3; axis++)
+		square += (seen.eye[axis] - seen.look_at[axis]) *
+			  (seen.eye[axis] - seen.look_at[axis]);
+	for (int axis = 0; axis < 3; axis++)
+		seen.eye[axis] = seen.look_at[axis] + sqrt(square) * direction[axis];
+	return seen;
+}
+
+struct gz_display gz_study_display(const struct gz_study *study, size_t scene, size_t size)
+{
+	const int *px = study->sizes[size];
+	if (!study->scenes[scene].display_known)
+		return gz_display_default(px[0], px[1]);
+	struct gz_display display = study->scenes[scene].display;
+	memcpy(display.px, px, sizeof display.px);
+	return display;
+}
+
+void gz_study_file_name(const char *path, const char *ending, char out_name[GZ_STUDY_TEXT_SIZE])
+{
+	const char *slash = strrchr(path, '/');
+	const char *name = slash ? slash + 1 : path;
+	size_t length = strlen(name);
+	const size_t cut = strlen(ending);
+	if (length > cut && strcmp(name + length - cut, ending) == 0)
+		length -= cut;
+	snprintf(out_name, GZ_STUDY_TEXT_SIZE, "%.*s", (int)length, name);
 }
 
 /* Where two studies are compared: what is asked, and what was; the first difference is told. */
@@ -160,10 +207,12 @@ bool gz_study_differs(const struct gz_study *study, const struct gz_study *was, 
 		{ "the number of frames", study->frames_per_point, was->frames_per_point },
 		{ "the number of warm-up frames", study->warm_up_frames, was->warm_up_frames },
 	};
+	const char *accuracy = gz_study_accuracy_names[study->accuracy];
 	if (text_differs(&comparison, "the program", study->machine.program,
 			 was->machine.program) ||
 	    text_differs(&comparison, "the commit", study->machine.commit, was->machine.commit) ||
-	    text_differs(&comparison, "the path", study->path, was->path))
+	    text_differs(&comparison, "the path", study->path, was->path) ||
+	    text_differs(&comparison, "--errors", accuracy, gz_study_accuracy_names[was->accuracy]))
 		return true;
 	for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
 		if (number_differs(&comparison, numbers[i].name, numbers[i].asked, numbers[i].was))

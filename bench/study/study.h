@@ -32,13 +32,26 @@ struct gz_study_scene {
 	char name[GZ_STUDY_TEXT_SIZE];     /**< file name without folder and ".scene" */
 	char path[GZ_PATH_SIZE];           /**< as given */
 	char transfer[GZ_STUDY_TEXT_SIZE]; /**< file name of the transfer function without ".tf" */
-	/** Of the scene's text, the transfer function's and the volume's bytes: two scenes of one
-	 *  hash show the same. */
+	/** Of what the scene says of rays and foveation, the transfer function and the volume's
+	 *  voxels: two scenes of one hash show the same to the same camera. */
 	char hash[GZ_STUDY_HASH_SIZE];
-	int dims[3]; /**< of the volume */
+	char data_hash[GZ_STUDY_HASH_SIZE]; /**< of volume and transfer function alone */
+	int dims[3];                        /**< of the volume */
 	struct gz_camera camera;
 	struct gz_display display; /**< of the picture, at the first of the sizes */
+	bool display_known;        /**< else the default stands in: see gz_study_display() */
 };
+
+/** Against what errors are measured. */
+enum gz_study_accuracy {
+	GZ_STUDY_ACCURACY_NONE,
+	GZ_STUDY_ACCURACY_STANDARD, /**< against standard; the converged picture is left out */
+	GZ_STUDY_ACCURACY_ALL,
+	GZ_STUDY_ACCURACY_COUNT,
+};
+
+/** "none", "standard", "all"; NULL-terminated. */
+extern const char *const gz_study_accuracy_names[];
 
 /** A method with its options: what is compared. */
 struct gz_study_variant {
@@ -116,6 +129,7 @@ struct gz_study {
 	uint64_t seed;
 	int frames_per_point;
 	int warm_up_frames; /**< before those of each variant at each point, not counted */
+	enum gz_study_accuracy accuracy;
 	/** Acuity bound: the share of pixels' rays that the eye needs at all, of each scene, size
 	 *  and point; scene_count * size_count * point_count values, points fastest. */
 	double *bound_rays;
@@ -148,6 +162,20 @@ size_t gz_study_unit_rows(const struct gz_study *study);
  * @param k     below gz_study_unit_rows()
  */
 struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit, size_t k);
+
+/**
+ * The camera of a point: 0 is the scene's; the n-th random one looks at the same place from as far
+ * away, in a direction that is uniform over the sphere, by the study's seed: the same bits on every
+ * machine.
+ */
+struct gz_camera gz_study_camera(const struct gz_study *study, size_t scene, uint32_t camera);
+
+/** Geometry of a scene's pictures at one of the sizes, which fill the display: its pixels are the
+ *  picture's. Where no display is known it is gz_display_default(), which has square pixels. */
+struct gz_display gz_study_display(const struct gz_study *study, size_t scene, size_t size);
+
+/** A file's name without folder and, where it has it, @p ending; cut at GZ_STUDY_TEXT_SIZE. */
+void gz_study_file_name(const char *path, const char *ending, char out_name[GZ_STUDY_TEXT_SIZE]);
 
 /**
  * What was asked of one study and not of the other: lists, hashes, points, frames, program and

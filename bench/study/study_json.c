@@ -30,12 +30,12 @@ static json_t *camera_to_json(const struct gz_camera *camera)
 static json_t *scene_to_json(const struct gz_study_scene *scene)
 {
 	const struct gz_display *display = &scene->display;
-	return json_pack("{ss ss ss ss s[iii] so s{s[ii] s[ff] sf}}", "name", scene->name, "path",
-			 scene->path, "transfer", scene->transfer, "hash", scene->hash, "dims",
-			 scene->dims[0], scene->dims[1], scene->dims[2], "camera",
-			 camera_to_json(&scene->camera), "display", "px", display->px[0],
-			 display->px[1], "mm", display->mm[0], display->mm[1], "distance_mm",
-			 display->distance_mm);
+	return json_pack("{ss ss ss ss ss s[iii] so s{sb s[ii] s[ff] sf}}", "name", scene->name,
+			 "path", scene->path, "transfer", scene->transfer, "hash", scene->hash,
+			 "data_hash", scene->data_hash, "dims", scene->dims[0], scene->dims[1],
+			 scene->dims[2], "camera", camera_to_json(&scene->camera), "display",
+			 "known", scene->display_known, "px", display->px[0], display->px[1], "mm",
+			 display->mm[0], display->mm[1], "distance_mm", display->distance_mm);
 }
 
 static json_t *lists_to_json(const struct gz_study *study)
@@ -92,11 +92,12 @@ static json_t *machine_to_json(const struct gz_study *study)
 json_t *gz_study_to_json(const struct gz_study *study)
 {
 	json_t *json = json_pack(
-		"{ss si sb si si sI si si si ss ss}", "format", GZ_STUDY_FORMAT, "version",
+		"{ss si sb si si sI si si si ss ss ss}", "format", GZ_STUDY_FORMAT, "version",
 		GZ_STUDY_VERSION, "complete", study->complete, "shard", study->shard + 1, "shards",
 		study->shard_count, "seed", (json_int_t)study->seed, "cameras",
 		(int)study->camera_count, "frames", study->frames_per_point, "warm_up",
-		study->warm_up_frames, "path", study->path, "path_hash", study->path_hash);
+		study->warm_up_frames, "path", study->path, "path_hash", study->path_hash, "errors",
+		gz_study_accuracy_names[study->accuracy]);
 	json_t *machine = machine_to_json(study), *lists = lists_to_json(study);
 	if (!json || !machine || !lists || json_object_set(json, "machine", machine) != 0 ||
 	    json_object_update(json, lists) != 0 ||
@@ -230,6 +231,8 @@ static void read_scene(struct reader *reader, const json_t *json, struct gz_stud
 	read_text(reader, json, "path", scene->path, sizeof scene->path);
 	read_text(reader, json, "transfer", scene->transfer, sizeof scene->transfer);
 	read_text(reader, json, "hash", scene->hash, sizeof scene->hash);
+	read_text(reader, json, "data_hash", scene->data_hash, sizeof scene->data_hash);
+	scene->display_known = json_is_true(json_object_get(display, "known"));
 	read_wholes(reader, json, "dims", scene->dims, 3, INT32_MAX);
 	read_camera(reader, json_object_get(json, "camera"), &scene->camera);
 	read_wholes(reader, display, "px", scene->display.px, 2, GZ_DISPLAY_SIDE_MAX_PX);
@@ -337,6 +340,20 @@ static void read_machine(struct reader *reader, const json_t *json, struct gz_st
 	}
 }
 
+static void read_accuracy(struct reader *reader, const json_t *json,
+			  enum gz_study_accuracy *accuracy)
+{
+	char text[GZ_NAME_SIZE] = "";
+	int i = 0;
+	read_text(reader, json, "errors", text, sizeof text);
+	while (i < GZ_STUDY_ACCURACY_COUNT && strcmp(gz_study_accuracy_names[i], text) != 0)
+		i++;
+	if (i == GZ_STUDY_ACCURACY_COUNT)
+		refuse(reader, "errors is '%s', not none, standard or all", text);
+	else
+		*accuracy = (enum gz_study_accuracy)i;
+}
+
 static void read_head(struct reader *reader, const json_t *json, struct gz_study *study)
 {
 	study->complete = json_is_true(json_object_get(json, "complete"));
@@ -346,6 +363,7 @@ static void read_head(struct reader *reader, const json_t *json, struct gz_study
 	study->camera_count = (uint32_t)read_whole(reader, json, "cameras", 0, INT32_MAX);
 	study->frames_per_point = (int)read_whole(reader, json, "frames", 1, GZ_STUDY_FRAMES_MAX);
 	study->warm_up_frames = (int)read_whole(reader, json, "warm_up", 0, GZ_STUDY_FRAMES_MAX);
+	read_accuracy(reader, json, &study->accuracy);
 	read_text(reader, json, "path", study->path, sizeof study->path);
 	read_text(reader, json, "path_hash", study->path_hash, sizeof study->path_hash);
 }

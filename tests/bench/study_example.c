@@ -20,6 +20,7 @@ static struct gz_study_scene example_scene(const char *name, const char *transfe
 	strcpy(scene.path, "scenes/");
 	strcat(scene.path, name);
 	memset(scene.hash, 'a', 64);
+	memset(scene.data_hash, 'd', 64);
 	return scene;
 }
 
@@ -87,6 +88,7 @@ struct gz_study study_example(int shard, int shard_count)
 		.seed = 7,
 		.frames_per_point = 2,
 		.warm_up_frames = 1,
+		.accuracy = GZ_STUDY_ACCURACY_ALL,
 		.machine = { .host_cpu = "a processor",
 			     .memory = "1 GiB",
 			     .system = "a system",

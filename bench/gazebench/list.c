@@ -1,0 +1,82 @@
+/* gazebench --list: what can be measured, by what, along what. */
+#include "bench/gazebench/gazebench.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "render/renderer.h"
+
+/* One thing to name. */
+struct item {
+	const char *kind, *name, *text;
+};
+
+static const struct item items[] = {
+	{ "path", "sweep:s", "the mirrored S of Bauer 2018, 584 points; sweep:s:N takes N" },
+	{ "path", "grid:NxM", "the middles of N columns and M rows of cells" },
+	{ "path", "random:N", "N places by the seed" },
+	{ "path", "centre", "where the camera looks at" },
+	{ "path", "X,Y", "one place, from 0,0 top left to 1,1" },
+	{ "path", "FILE.gzl", "a recording, one point a fixation" },
+	{ "path", "FILE.gzl:samples", "a recording, one point a sample" },
+	{ "metric", "psnr_db", "peak signal-to-noise ratio, dB" },
+	{ "metric", "ssim", "structural similarity, 1 = alike" },
+	{ "metric", "flip", "LDR-FLIP, 0 = alike" },
+	{ "metric", "flicker", "change while the gaze trembles by a pixel, levels of 255" },
+	{ "where", "all", "each pixel counts alike" },
+	{ "where", "foveal", "pixels within 2.5 degrees of the gaze count" },
+	{ "where", "perceived", "pixels count by what the eye sees there" },
+	{ "against", "standard", "the picture of full resolution, of the same backend" },
+	{ "against", "converged",
+	  "one of an eighth of a voxel a step, rays followed to their end" },
+};
+
+static void print_item(json_t *list, const char *kind, const char *name, const char *text)
+{
+	if (list)
+		json_array_append_new(
+			list, json_pack("{ss ss ss}", "kind", kind, "name", name, "text", text));
+	else
+		printf("%-8s %-22s %s\n", kind, name, text);
+}
+
+static void print_backend(json_t *list, const struct gz_renderer_ops *ops)
+{
+	struct gz_renderer *renderer = NULL;
+	const bool runs = gz_renderer_create(ops->name, NULL, NULL, &renderer) == GZ_OK;
+	print_item(list, "backend", ops->name,
+		   runs ? gz_renderer_describe(renderer) : "does not run here");
+	gz_renderer_destroy(&renderer);
+}
+
+static void print_options(json_t *list, const struct gz_option *options, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		const char *dot = strchr(options[i].key, '.');
+		const bool taken = strncmp(options[i].key, "foveation.", 10) == 0 ||
+				   strncmp(options[i].key, "render.", 7) == 0;
+		if (dot && taken && strcmp(dot, ".method") != 0)
+			print_item(list, "option", dot + 1, options[i].help);
+	}
+}
+
+int gazebench_list(bool as_json)
+{
+	json_t *list = as_json ? json_array() : NULL;
+	for (const char *const *name = gz_method_names; *name; name++)
+		print_item(list, "method", *name,
+			   strcmp(*name, "standard") == 0 ? "always measured" : "");
+	print_options(list, gz_foveation_options, gz_foveation_option_count);
+	print_options(list, gz_ray_options, gz_ray_option_count);
+	for (size_t i = 0; i < sizeof items / sizeof items[0]; i++)
+		print_item(list, items[i].kind, items[i].name, items[i].text);
+	for (const struct gz_renderer_ops *const *ops = gz_backends; *ops; ops++)
+		print_backend(list, *ops);
+	if (list) {
+		json_dumpf(list, stdout, JSON_INDENT(1));
+		printf("\n");
+		json_decref(list);
+	}
+	return fflush(stdout) == 0 ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
+}

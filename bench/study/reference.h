@@ -1,0 +1,64 @@
+/**
+ * @file
+ * The converged picture that errors are told against: every pixel, a step of 1/8 voxel length, no
+ * ray ended early, no coarser levels, no jitter. It is made a second time with half the step, and
+ * how far both are apart is what the reference itself may be wrong by.
+ *
+ * Both are made by the cpu backend and kept as PNG in a folder, by the hash of all that they depend
+ * on, so that each camera, scene and size is made once.
+ */
+#ifndef GZ_BENCH_STUDY_REFERENCE_H
+#define GZ_BENCH_STUDY_REFERENCE_H
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/study/study.h"
+#include "render/image.h"
+#include "render/ray_params.h"
+#include "render/renderer.h"
+
+/** Samples per voxel length of the converged picture. */
+#define GZ_REFERENCE_RATE 8
+
+/** Below this PSNR between both a warning is told, dB. Chosen: an error of a quarter of a grey
+ *  level, which is far below any that is measured against it. */
+#define GZ_REFERENCE_LEAST_DB 60
+
+/** What a converged picture is of. */
+struct gz_reference_request {
+	struct gz_renderer *renderer; /**< cpu, with volume and transfer function */
+	const char *data_hash;        /**< of volume and transfer function */
+	const char *program;          /**< what makes it, with its commit */
+	const struct gz_camera *camera;
+	const struct gz_ray_params *rays; /**< of the scene */
+	const struct gz_display *display; /**< any that is valid */
+	int width, height;
+	const char *cache; /**< folder, made where it is not there; NULL: nothing is kept */
+};
+
+/**
+ * The converged picture: from the cache, or made and kept there. A cache that cannot be written is
+ * warned of, and done without.
+ *
+ * @param[in,out] image      the picture
+ * @param[in,out] half_step  that of half the step
+ * @param[out] out_db        PSNR between both, infinite where they are the same
+ * @param[out] out_made      it was not in the cache
+ * @retval GZ_ERR_NO_MEM     logged; and what gz_renderer_render() returns
+ */
+enum gz_result gz_reference_get(const struct gz_reference_request *request,
+				const struct gz_log *log, struct gz_image *image,
+				struct gz_image *half_step, double *out_db, bool *out_made);
+
+/** Rays of a converged picture over those of a scene. */
+struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double rate);
+
+/**
+ * The folder where references are kept unless told otherwise: "gazecast/references" in
+ * $XDG_CACHE_HOME, or in ~/.cache (XDG Base Directory Specification).
+ *
+ * @return false where neither is known, or the name is too long
+ */
+bool gz_reference_cache(char out_folder[GZ_PATH_SIZE]);
+
+#endif

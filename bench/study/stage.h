@@ -1,0 +1,79 @@
+/**
+ * @file
+ * The scene that is measured at the moment: its volume, its renderers, the settings of its
+ * variants.
+ */
+#ifndef GZ_BENCH_STUDY_STAGE_H
+#define GZ_BENCH_STUDY_STAGE_H
+
+#include "base/log.h"
+#include "base/result.h"
+#include "bench/study/study.h"
+#include "bench/study/variant.h"
+#include "render/renderer.h"
+#include "render/scene.h"
+
+/** A backend of a study: "cpu", "gl", "cpu:threads=2:simd=avx2". */
+struct gz_study_backend {
+	char name[GZ_NAME_SIZE];
+	int threads;             /**< cpu: 0 = one a processor */
+	char simd[GZ_NAME_SIZE]; /**< cpu: "auto" unless given */
+};
+
+/** Read a backend. GZ_ERR_INVAL: no such backend or option; logged with those there are. */
+enum gz_result gz_study_backend_parse(const char *text, const struct gz_log *log,
+				      struct gz_study_backend *out_backend);
+
+/** A stage. Zero-initialised is empty. */
+struct gz_stage {
+	const struct gz_log *log;
+	struct gz_scene scene;
+	char path[GZ_PATH_SIZE];                         /**< of the scene; empty: none is loaded */
+	char volume_hash[GZ_STUDY_HASH_SIZE];            /**< of the volume's voxels */
+	struct gz_renderer *cpu;                         /**< makes converged pictures */
+	struct gz_renderer *backends[GZ_STUDY_LIST_MAX]; /**< of the study; may be NULL */
+	struct gz_variant_settings *variants;            /**< of the study, over the scene's */
+	size_t entered; /**< place in the study's list of what is shown, and 1; 0 = nothing */
+};
+
+/**
+ * Load a scene, unless it is loaded already. SIGINT and SIGTERM stop it once
+ * gz_command_catch_signals() has been called.
+ *
+ * @return what gz_scene_load() returns; logged
+ */
+enum gz_result gz_stage_load(struct gz_stage *stage, const char *path);
+
+/** How many transfer functions the loaded scene names: 1 and those of transfer.also. */
+size_t gz_stage_transfer_count(const struct gz_stage *stage);
+
+/**
+ * One of them.
+ *
+ * @param which      0 = transfer.file
+ * @param[out] out_name  its file without folder and ".tf", cut at GZ_STUDY_TEXT_SIZE
+ * @return what gz_scene_load_transfer() returns; logged
+ */
+enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
+				 char out_name[GZ_STUDY_TEXT_SIZE],
+				 struct gz_transfer *out_transfer);
+
+/**
+ * Make ready to measure one of a study's scenes: volume and transfer function in a renderer for
+ * each backend, and the settings of each variant.
+ *
+ * @param[out] out_descriptions  what each backend's renderer says of itself; may be NULL
+ * @return what loading, gz_renderer_create(), gz_renderer_set_volume() and gz_variant_parse()
+ * return; logged
+ */
+enum gz_result gz_stage_enter(struct gz_stage *stage, const struct gz_study *study, size_t scene,
+			      char (*out_descriptions)[GZ_STUDY_TEXT_SIZE]);
+
+/** Of a volume and a transfer function: where they are the same, so are pictures of them. */
+enum gz_result gz_stage_data_hash(const struct gz_stage *stage, const struct gz_transfer *transfer,
+				  char out_hex[GZ_STUDY_HASH_SIZE]);
+
+/** Free what it holds and zero it. */
+void gz_stage_free(struct gz_stage *stage);
+
+#endif
