@@ -15,6 +15,8 @@ struct player {
 	struct gz_gaze_log_reader *reader;
 	struct gz_pipeline pipeline;
 	bool samples; /* one point each; else one a fixation */
+	bool open;    /* the newest fixation has not ended yet: it is at */
+	struct gz_point at;
 	struct gz_gaze_path *path;
 };
 
@@ -28,9 +30,13 @@ static enum gz_result add_output(struct player *player, const struct gz_pipeline
 				   output->rejection == GZ_REJECT_NONE;
 		return there ? gz_gaze_path_add(player->path, output->gaze.point) : GZ_OK;
 	}
-	for (size_t i = 0; i < output->fixation_count && result == GZ_OK; i++)
-		if (output->fixations[i].final)
-			result = gz_gaze_path_add(player->path, output->fixations[i].point);
+	for (size_t i = 0; i < output->fixation_count && result == GZ_OK; i++) {
+		const struct gz_fixation *fixation = &output->fixations[i];
+		player->open = !fixation->final;
+		player->at = fixation->point;
+		if (fixation->final)
+			result = gz_gaze_path_add(player->path, fixation->point);
+	}
 	return result;
 }
 
@@ -51,7 +57,10 @@ static enum gz_result play(struct player *player)
 		result = add_output(player, &output);
 	}
 	free(record);
-	return result == GZ_ERR_END ? GZ_OK : result;
+	if (result != GZ_ERR_END)
+		return result;
+	/* A recording may end within a fixation. */
+	return player->open ? gz_gaze_path_add(player->path, player->at) : GZ_OK;
 }
 
 static enum gz_result prepare(struct player *player)

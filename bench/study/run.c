@@ -139,7 +139,9 @@ enum gz_result gz_study_run(const struct gz_study_request *request, const char *
 	*out_outcome = (struct gz_study_outcome) { 0 };
 	if (!run.study)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = gz_study_ask(request, &run.stage, log, run.study);
+	enum gz_result result = gz_study_folder_check(folder, log); /* before long work */
+	if (result == GZ_OK)
+		result = gz_study_ask(request, &run.stage, log, run.study);
 	if (result == GZ_OK)
 		result = begin(&run, folder, cache);
 	if (result == GZ_OK)

@@ -36,6 +36,14 @@ enum gz_result gz_study_read(const char *folder, const struct gz_log *log,
 enum gz_result gz_study_write(const char *folder, const struct gz_study *study,
 			      const struct gz_log *log);
 
+/**
+ * Whether a study may be written into a folder, as far as that can be told at once: it is not there
+ * yet, or empty, or holds a study.
+ *
+ * @retval GZ_ERR_BUSY  it holds something else; logged
+ */
+enum gz_result gz_study_folder_check(const char *folder, const struct gz_log *log);
+
 /** Writes the folder of a study unit by unit: whatever ends the program, what is there can be read
  *  and taken up. */
 struct gz_study_writer;

@@ -131,15 +131,21 @@ static bool has_study(const char *folder, const struct gz_log *log)
 	       access(path, F_OK) == 0;
 }
 
+enum gz_result gz_study_folder_check(const char *folder, const struct gz_log *log)
+{
+	if (access(folder, F_OK) != 0 || is_empty(folder) || has_study(folder, log))
+		return GZ_OK;
+	gz_err(log, "%s: is there and is no study; name a folder that is not there yet", folder);
+	return GZ_ERR_BUSY;
+}
+
 /* Make the folder, or take an empty one. */
 static enum gz_result make_folder(const char *folder, const struct gz_log *log)
 {
-	if (mkdir(folder, 0777) == 0 || (errno == EEXIST && is_empty(folder)))
-		return GZ_OK;
-	if (errno != EEXIST)
-		return fail(log, folder, errno);
-	gz_err(log, "%s: is there and is no study; name a folder that is not there yet", folder);
-	return GZ_ERR_BUSY;
+	const enum gz_result result = gz_study_folder_check(folder, log);
+	if (result != GZ_OK || mkdir(folder, 0777) == 0 || errno == EEXIST)
+		return result;
+	return fail(log, folder, errno);
 }
 
 static enum gz_result open_rows(struct gz_study_writer *writer)
