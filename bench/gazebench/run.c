@@ -153,7 +153,6 @@ static const struct gz_option options[] = {
 /* ---- progress ---- */
 
 struct progress {
-	const struct settings *settings;
 	bool terminal;
 	int64_t next_ns; /* when the next line is due, where stderr is no terminal */
 };
@@ -289,7 +288,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	const char *kept = settings.cache[0] ? settings.cache : cache;
 	if (!settings.cache[0] && !gz_reference_cache(cache))
 		kept = NULL;
-	struct progress progress = { .settings = &settings, .terminal = isatty(STDERR_FILENO) };
+	struct progress progress = { .terminal = isatty(STDERR_FILENO) };
 	struct gz_study_outcome outcome;
 	gz_command_catch_signals();
 	const enum gz_result result =

@@ -241,7 +241,9 @@ static enum gz_result make_renderers(struct gz_stage *stage, const struct gz_stu
 				     char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
 {
 	const struct gz_study_backend cpu = { .name = "cpu", .simd = "auto" };
-	enum gz_result result = make_renderer(stage, &cpu, transfer, &stage->cpu);
+	enum gz_result result = GZ_OK;
+	if (study->accuracy == GZ_STUDY_ACCURACY_ALL)
+		result = make_renderer(stage, &cpu, transfer, &stage->cpu);
 	for (size_t i = 0; i < study->backend_count && result == GZ_OK; i++) {
 		struct gz_study_backend backend;
 		result = gz_study_backend_parse(study->backends[i], stage->log, &backend);

@@ -28,9 +28,9 @@ enum gz_result gz_study_backend_parse(const char *text, const struct gz_log *log
 struct gz_stage {
 	const struct gz_log *log;
 	struct gz_scene scene;
-	char path[GZ_PATH_SIZE];                         /**< of the scene; empty: none is loaded */
-	char volume_hash[GZ_STUDY_HASH_SIZE];            /**< of the volume's voxels */
-	struct gz_renderer *cpu;                         /**< makes converged pictures */
+	char path[GZ_PATH_SIZE];              /**< of the scene; empty: none is loaded */
+	char volume_hash[GZ_STUDY_HASH_SIZE]; /**< of the volume's voxels */
+	struct gz_renderer *cpu;              /**< makes converged pictures; may be NULL */
 	struct gz_renderer *backends[GZ_STUDY_LIST_MAX]; /**< of the study; may be NULL */
 	struct gz_variant_settings *variants;            /**< of the study, over the scene's */
 	size_t entered; /**< place in the study's list of what is shown, and 1; 0 = nothing */

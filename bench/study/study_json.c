@@ -299,10 +299,23 @@ static void read_sizes_and_backends(struct reader *reader, const json_t *json,
 	}
 }
 
+/* Whether bound_rays has as many numbers as the lists ask for. */
+static bool has_bound(const json_t *scenes, const struct gz_study *study)
+{
+	for (size_t i = 0; i < study->scene_count; i++)
+		for (size_t k = 0; k < study->size_count; k++)
+			if (json_array_size(json_array_get(json_array_get(scenes, i), k)) !=
+			    study->point_count)
+				return false;
+	return true;
+}
+
 static void read_bound(struct reader *reader, const json_t *json, struct gz_study *study)
 {
 	const json_t *scenes = json_object_get(json, "bound_rays");
 	const size_t points = study->point_count;
+	if (reader->result == GZ_OK && !has_bound(scenes, study))
+		refuse(reader, "bound_rays has not a number for each scene, size and point");
 	if (reader->result != GZ_OK)
 		return;
 	study->bound_rays =

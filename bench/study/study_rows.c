@@ -121,11 +121,16 @@ void gz_study_rows_print(const struct gz_study *study, const struct gz_study_row
 	print_number((double)row->gaze.y, file);
 	for (size_t i = 0; i < COLUMNS; i++) {
 		const char *at = (const char *)row + columns[i].offset;
+		uint64_t count;
+		double number;
 		fputc(',', file);
-		if (columns[i].kind == COUNT)
-			fprintf(file, "%" PRIu64, *(const uint64_t *)at);
-		else
-			print_number(*(const double *)at, file);
+		if (columns[i].kind == COUNT) {
+			memcpy(&count, at, sizeof count);
+			fprintf(file, "%" PRIu64, count);
+		} else {
+			memcpy(&number, at, sizeof number);
+			print_number(number, file);
+		}
 	}
 	fputc('\n', file);
 }
@@ -196,12 +201,18 @@ static bool parse_double(const char *field, enum kind kind, double *out_value)
 static bool parse_number(const char *field, const struct column *column, struct gz_study_row *row)
 {
 	char *at = (char *)row + column->offset;
-	if (column->kind != COUNT)
-		return parse_double(field, column->kind, (double *)at);
-	long long value;
-	if (!gz_number_parse_whole(field, &value) || value < 0)
+	long long whole;
+	double number;
+	if (column->kind == COUNT) {
+		if (!gz_number_parse_whole(field, &whole) || whole < 0)
+			return false;
+		const uint64_t count = (uint64_t)whole;
+		memcpy(at, &count, sizeof count);
+		return true;
+	}
+	if (!parse_double(field, column->kind, &number))
 		return false;
-	*(uint64_t *)at = (uint64_t)value;
+	memcpy(at, &number, sizeof number);
 	return true;
 }
 

@@ -1,0 +1,193 @@
+"""gazebench run, merge and --list, as somebody at a command line sees them.
+
+run.py GAZEBENCH
+"""
+
+import csv
+import json
+import os
+import pty
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+GAZEBENCH = sys.argv[1]
+
+SCENE = """[volume]
+procedural = shells
+dims = 24 24 24
+[transfer]
+file = a.tf
+"""
+TIMES = {"plan_ms", "cast_ms", "reconstruct_ms", "frame_ms", "gpu_ms"}
+
+
+class Run(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.addCleanup(self.place.cleanup)
+        self.write("a.tf", "0 0 0 0 0\n0.3 1 0 0 0.1\n1 1 1 1 0.9\n")
+        self.write("a.scene", SCENE)
+
+    def write(self, name, text):
+        with open(os.path.join(self.place.name, name), "w") as file:
+            file.write(text)
+
+    def command(self, *arguments):
+        return [GAZEBENCH, *arguments]
+
+    def measure(self, out, *more):
+        return self.command(
+            "run", "a.scene", "--size", "32x24", "--methods", "acuity", "--frames", "2",
+            "--cache", "cache", "--out", out, *more
+        )
+
+    def gazebench(self, command, **more):
+        return subprocess.run(
+            command, cwd=self.place.name, capture_output=True, text=True, timeout=50, **more
+        )
+
+    def rows(self, out):
+        """Rows without times."""
+        with open(os.path.join(self.place.name, out, "frames.csv"), newline="") as file:
+            return [
+                {name: value for name, value in row.items() if name not in TIMES}
+                for row in csv.DictReader(file)
+            ]
+
+    def complete(self, out):
+        with open(os.path.join(self.place.name, out, "study.json")) as file:
+            return json.load(file)["complete"]
+
+    def test_run_says_what_came_of_it_as_json(self):
+        done = self.gazebench(self.measure("s", "--path", "grid:2x1", "--json"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(
+            json.loads(done.stdout),
+            {"out": "s", "complete": True, "units": 2, "done": 2, "resumed": 0, "rows": 8},
+        )
+        self.assertEqual(done.stderr, "")
+        again = self.gazebench(self.measure("s", "--path", "grid:2x1", "--json"))
+        self.assertEqual(json.loads(again.stdout)["resumed"], 2)
+        self.assertEqual(len(self.rows("s")), 8)
+
+    def test_command_lines_that_are_not_understood_exit_with_2(self):
+        for arguments, part in (
+            (["run"], "no scene"),
+            (["run", "a.scene"], "--out"),
+            (["run", "a.scene", "--out", "s", "--shard", "0/2"], "I from 1 to N"),
+            (["run", "a.scene", "--out", "s", "--shard", "3/2"], "I from 1 to N"),
+            (["run", "a.scene", "--out", "s", "--frames", "0"], "frames"),
+            (["merge", "s"], "merge OUT DIR"),
+        ):
+            done = self.gazebench(self.command(*arguments))
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn(part, done.stderr)
+
+    def test_folder_of_something_else_is_refused_and_left_alone(self):
+        os.mkdir(os.path.join(self.place.name, "s"))
+        self.write("s/letter", "dear")
+        done = self.gazebench(self.measure("s"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("is no study", done.stderr)
+        self.assertEqual(os.listdir(os.path.join(self.place.name, "s")), ["letter"])
+
+    def test_full_disk_exits_with_3_and_goes_on_once_there_is_room(self):
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (9000, resource.RLIM_INFINITY))
+
+        path = "random:40"
+        full = self.gazebench(self.measure("s", "--path", path), preexec_fn=small_files)
+        self.assertEqual(full.returncode, 3, full.stderr)
+        self.assertIn("no room left", full.stderr)
+        self.assertIn("run the same again", full.stderr)
+        self.assertFalse(self.complete("s"))
+        part = self.rows("s")
+        self.assertGreater(len(part), 0)
+        self.assertLess(len(part), 160)
+        self.assertEqual(len(part) % 4, 0)
+        whole = self.gazebench(self.measure("s", "--path", path))
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        self.assertTrue(self.complete("s"))
+        self.assertEqual(len(self.rows("s")), 160)
+        self.assertEqual(self.rows("s")[: len(part)], part)
+
+    def test_interrupted_run_exits_with_3_and_goes_on_to_the_same(self):
+        command = self.measure("s", "--path", "random:150", "--errors", "standard")
+        child = subprocess.Popen(
+            command, cwd=self.place.name, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        table = os.path.join(self.place.name, "s", "frames.csv")
+        while child.poll() is None:  # until something is there
+            if os.path.exists(table) and os.path.getsize(table) > 4000:
+                child.send_signal(signal.SIGINT)
+                break
+            time.sleep(0.002)
+        _, messages = child.communicate(timeout=50)
+        self.assertEqual(child.returncode, 3, messages)
+        self.assertRegex(messages, "s holds [0-9]+ of 150 units: run the same again")
+        part = self.rows("s")
+        self.assertEqual(len(part) % 4, 0)
+        done = self.gazebench(command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(self.rows("s")), 600)
+        self.assertEqual(self.rows("s")[: len(part)], part)
+
+    def test_shards_merge_to_the_rows_of_one_run(self):
+        path = ("--path", "sweep:s:5")
+        self.assertEqual(self.gazebench(self.measure("whole", *path)).returncode, 0)
+        for shard in "213":
+            done = self.gazebench(self.measure("part-" + shard, *path, "--shard", shard + "/3"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.gazebench(
+            self.command("merge", "--json", "merged", "part-1", "part-2", "part-3")
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), {"out": "merged", "shards": 3, "rows": 20})
+        self.assertEqual(self.rows("merged"), self.rows("whole"))
+        again = self.gazebench(self.command("merge", "merged", "part-1", "part-2", "part-3"))
+        self.assertEqual(again.returncode, 1)
+        missing = self.gazebench(self.command("merge", "other", "part-1", "part-3"))
+        self.assertEqual(missing.returncode, 1)
+        self.assertIn("shard 2 of 3 is missing", missing.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.place.name, "other")))
+
+    def test_terminal_shows_how_far_it_is_in_one_line(self):
+        terminal, end = pty.openpty()
+        command = self.measure("s", "--path", "grid:3x1")
+        child = subprocess.Popen(
+            command, cwd=self.place.name, stdout=subprocess.DEVNULL, stderr=end
+        )
+        os.close(end)
+        shown = b""
+        try:
+            while True:
+                shown += os.read(terminal, 4096)
+        except OSError:
+            pass  # closed by the child's end
+        self.assertEqual(child.wait(timeout=50), 0)
+        os.close(terminal)
+        lines = re.findall(r"\r\x1b\[K([^\r]*)", shown.decode())
+        self.assertRegex(lines[0], r"^0 of 3, 0 %, \? left: a$")
+        self.assertRegex(lines[2], r"^2 of 3, 67 %, [0-9]+:[0-9]{2} left: a$")
+        self.assertEqual(lines[3], "")
+        self.assertNotIn("\n", shown.decode())
+
+    def test_list_names_what_can_be_measured(self):
+        done = self.gazebench(self.command("--list"))
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stdout, r"(?m)^method +acuity")
+        self.assertRegex(done.stdout, r"(?m)^backend +cpu +.*thread")
+        items = json.loads(self.gazebench(self.command("--list", "--json")).stdout)
+        self.assertEqual(len(items), len(done.stdout.splitlines()))
+        self.assertIn("mdc_spacing", [i["name"] for i in items if i["kind"] == "option"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
