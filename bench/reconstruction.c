@@ -2,6 +2,7 @@
  * How pixels between rays are made: each filter's error against `standard`, over the whole picture
  * and beyond 5 degrees of the gaze, and its time beside that of a plain copy of the finished
  * picture by as many threads, medians and, for a machine that does other things too, the least.
+ * Then the times of regions, hard and with bands.
  *
  *   reconstruction SCENE WIDTHxHEIGHT[,...] [REPEATS] [PREFIX]
  *
@@ -87,6 +88,18 @@ static bool make(struct bench *bench, int kind, double *out_ms)
 	return true;
 }
 
+struct region_plan {
+	const char *name;
+	int method;
+	double blend_px;
+};
+
+static const struct region_plan region_plans[] = {
+	{ "mdc", GZ_METHOD_MDC, 0 },   { "mdc, 16 px", GZ_METHOD_MDC, 16 },
+	{ "mdc3", GZ_METHOD_MDC3, 0 }, { "mdc3, 16 px", GZ_METHOD_MDC3, 16 },
+	{ "ddc", GZ_METHOD_DDC, 0 },   { "ddc, 16 px", GZ_METHOD_DDC, 16 },
+};
+
 static void copy_part(void *user, size_t part, int worker)
 {
 	(void)worker;
@@ -102,6 +115,32 @@ static double copy_ms(struct bench *bench)
 	const int64_t start_ns = gz_clock_now_ns();
 	gz_workers_run(bench->workers, copy_part, bench, COPY_PARTS);
 	return gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+}
+
+static void print_times(struct series *series, struct series *copies, int repeats)
+{
+	const double copy = median(copies, repeats), middle = median(series, repeats);
+	printf("  %6.2f ms, %5.2f copies; at best %6.2f ms, %5.2f copies\n", middle, middle / copy,
+	       series->time_ms[0], series->time_ms[0] / copies->time_ms[0]);
+}
+
+/* Each kind of regions in turn with copies of its picture. */
+static bool measure_regions(struct bench *bench)
+{
+	for (size_t k = 0; k < sizeof region_plans / sizeof region_plans[0]; k++) {
+		static struct series times, copies;
+		bench->scene.settings.foveation.blend_px = region_plans[k].blend_px;
+		for (int i = -1; i < bench->repeats; i++) { /* the first round warms up */
+			const int place = i < 0 ? 0 : i;
+			if (!render(bench, region_plans[k].method, 0, &bench->image,
+				    &times.time_ms[place]))
+				return false;
+			copies.time_ms[place] = copy_ms(bench);
+		}
+		printf("  %-12s", region_plans[k].name);
+		print_times(&times, &copies, bench->repeats);
+	}
+	return true;
 }
 
 static bool print_errors(struct bench *bench, int kind)
@@ -147,20 +186,15 @@ static bool measure(struct bench *bench)
 			if (kind == 0)
 				bench->copies.time_ms[k] = copy_ms(bench);
 		}
-	const double copy = median(&bench->copies, bench->repeats);
-	const double least_copy = bench->copies.time_ms[0];
 	printf("%dx%d  gaze %.3f %.3f  %s  copy %.2f ms\n", bench->width, bench->height,
 	       (double)bench->gaze.x, (double)bench->gaze.y, gz_renderer_describe(bench->renderer),
-	       copy);
+	       median(&bench->copies, bench->repeats));
 	for (int kind = 0; kind < KINDS; kind++) {
 		if (!print_errors(bench, kind))
 			return false;
-		const double median_ms = median(&bench->kinds[kind], bench->repeats);
-		const double least_ms = bench->kinds[kind].time_ms[0];
-		printf("  %6.2f ms, %5.2f copies; at best %6.2f ms, %5.2f copies\n", median_ms,
-		       median_ms / copy, least_ms, least_ms / least_copy);
+		print_times(&bench->kinds[kind], &bench->copies, bench->repeats);
 	}
-	return true;
+	return measure_regions(bench);
 }
 
 static bool measure_all(struct bench *bench, const char *sizes)
