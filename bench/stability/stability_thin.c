@@ -76,6 +76,8 @@ static enum gz_result look_around(struct gz_stability_bench *bench, struct searc
 {
 	enum gz_result result = GZ_OK;
 	search->elsewhere = search->lost_elsewhere = 0;
+	if (!search->converged)
+		return GZ_ERR_INVAL;
 	for (int i = 0; i < 9 && result == GZ_OK; i++) {
 		const struct gz_point gaze = { 0.3F + 0.2F * (float)(i % 3),
 					       0.3F + 0.2F * (float)(i / 3) };

@@ -137,8 +137,8 @@ static void what_standard_shows_in_the_fovea_is_not_lost(void **state)
 	check_row("lost", 320, 240, NULL, 0);
 }
 
-/* Methods whose lattice goes with the gaze (Levoy and Whitaker 1990; the Voronoi method) flicker
- * all over when it trembles. */
+/* Where samples are placed round the gaze (Levoy and Whitaker 1990; the Voronoi method), all of
+ * them move when it trembles. */
 static void trembling_gaze_changes_nothing_in_the_fovea_and_little_elsewhere(void **state)
 {
 	(void)state;
@@ -159,43 +159,45 @@ static void moving_gaze_changes_nothing_in_the_fovea_and_little_elsewhere(void *
 	check_row("pursuit", 320, 240, NULL, 0);
 }
 
-/* A plan in Bauer's program ends at the picture's edge, and so does its gaze. */
+/* People look past the edge of a display, and trackers lose them: no peer says what it does then.
+ */
 static void gaze_anywhere_or_nowhere_writes_every_pixel_and_is_sharp_where_it_is(void **state)
 {
 	(void)state;
 	check_row("gaze", 320, 240, NULL, 0);
 }
 
-/* Renderers that refine over frames (the Voronoi method's interpolation, reprojection) show a
- * blurred fovea after a saccade; it is seen from 60 ms on (Loschky and Wolverton 2007). */
+/* A fovea that is still blurred more than 60 ms after the eye has landed is seen (Loschky and
+ * Wolverton 2007); trackers, filters and displays take most of that. */
 static void first_frame_after_a_saccade_is_sharp_in_the_fovea(void **state)
 {
 	(void)state;
 	check_row("saccade", 320, 240, NULL, 1);
 }
 
-/* VTK 9.1 and Voreen 5 clamp the edge voxels of thin volumes elsewhere than inside. */
+/* Where a neighbour is missing, loaders and fetches have their edge cases. */
 static void odd_volumes_equal_the_oracle_wherever_a_ray_was_cast(void **state)
 {
 	(void)state;
 	check_row("volumes", 64, 48, ask_oracle, 0);
 }
 
-/* Ray casters that rasterise the box for their entry points show nothing from within it. */
+/* Where rays begin on rasterised front faces (Krueger and Westermann 2003), an eye within the box
+ * sees none of them. */
 static void odd_cameras_equal_the_oracle_and_leave_no_seams(void **state)
 {
 	(void)state;
 	check_row("camera", 64, 48, ask_oracle, 0);
 }
 
-/* Opacity correction has no logarithm of 0 to take: opaque matter and the first sample. */
+/* Opacity correction takes the logarithm of 1 - opacity, which opaque matter has none of. */
 static void transparent_and_opaque_matter_equal_the_oracle(void **state)
 {
 	(void)state;
 	check_row("transfer", 64, 48, ask_oracle, 0);
 }
 
-/* Samples miss it: Engel, Kraus and Ertl 2001, figure 1. */
+/* Samples miss it (Engel, Kraus and Ertl 2001). */
 static void spike_one_entry_wide_is_what_it_is_by_the_formula(void **state)
 {
 	(void)state;
