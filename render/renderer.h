@@ -44,6 +44,7 @@ struct gz_renderer_params {
 	 * program with windows must give a window's (render/gl/gl_context.h). */
 	struct gz_gl_context *gl_context;
 	bool gl_hardware_only;  /**< gl: refuse OpenGL that a processor works out */
+	bool gl_as_hardware;    /**< gl: draw as on a graphics device wherever it is, for tests */
 	int gl_volume_edge_max; /**< gl: show volumes with a longer edge, voxels, by bricks, as with
 				     a driver with smaller textures; 0 = the driver's own limit */
 	/** gl: voxels take no more of the device's memory, bytes, as if it had no more; what does

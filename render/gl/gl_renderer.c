@@ -91,6 +91,8 @@ static enum gz_result open_device(struct gl_renderer *gl, const struct gz_render
 		snprintf(reason, REASON_SIZE, "%.120s is software", gl->device.description);
 		result = GZ_ERR_UNSUPPORTED;
 	}
+	if (params->gl_as_hardware)
+		gl->device.software = false;
 	if (params->gl_volume_edge_max > 0 &&
 	    params->gl_volume_edge_max < gl->device.volume_edge_max)
 		gl->device.volume_edge_max = params->gl_volume_edge_max;

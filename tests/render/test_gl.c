@@ -28,13 +28,20 @@ static void hear(void *user, enum gz_log_level level, const char *module, const 
 		snprintf(heard->text, sizeof heard->text, "%s", message);
 }
 
-static struct gz_renderer *renderer_of(const char *backend, const struct small_scene *scene)
+static struct gz_renderer *renderer_with(const char *backend,
+					 const struct gz_renderer_params *params,
+					 const struct small_scene *scene)
 {
 	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create(backend, NULL, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_renderer_create(backend, params, NULL, &renderer), GZ_OK);
 	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
 	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
+}
+
+static struct gz_renderer *renderer_of(const char *backend, const struct small_scene *scene)
+{
+	return renderer_with(backend, NULL, scene);
 }
 
 /* Both backends with one scene. */
@@ -110,6 +117,26 @@ static void pictures_of_8_bit_data_equal_the_cpus_by_every_method(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_waves(50, 41, 60, GZ_VOXEL_U8);
 	check_every_method(&scene, "8 bits");
+}
+
+/* Other shaders, timers and ways back than where a processor does the work. */
+static void pictures_as_a_graphics_device_makes_them_equal_the_cpus(void **state)
+{
+	(void)state;
+	const struct gz_renderer_params params = { .gl_as_hardware = true };
+	const enum gz_voxel_type types[] = { GZ_VOXEL_U8, GZ_VOXEL_F32 };
+	for (int i = 0; i < 2; i++) {
+		struct small_scene scene = small_scene_waves(50, 41, 60, types[i]);
+		struct pair pair = { .cpu = renderer_of("cpu", &scene),
+				     .gl = renderer_with("gl", &params, &scene) };
+		for (int method = GZ_METHOD_STANDARD; method <= GZ_METHOD_ACUITY; method++) {
+			scene.foveation.method = method;
+			check_pair(&pair, &scene, 150, 110, "as on a device");
+			check_pair(&pair, &scene, 150, 110, "the same plan again");
+		}
+		pair_free(&pair);
+		small_scene_free(&scene);
+	}
 }
 
 static void pictures_of_16_bit_data_equal_the_cpus_by_every_method(void **state)
@@ -461,6 +488,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(picture_left_on_the_device_equals_the_one_read_back),
 		cmocka_unit_test(picture_without_an_image_is_refused_by_the_cpu),
 		cmocka_unit_test(lost_context_is_told_and_the_renderer_can_be_destroyed),
+		cmocka_unit_test(pictures_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line),
 		cmocka_unit_test(old_or_missing_opengl_is_refused_with_reason_and_remedy),
 		cmocka_unit_test(software_opengl_is_not_what_auto_takes),
