@@ -47,7 +47,7 @@ static double cost_of(const struct gz_label_field *field, struct gz_box box)
 	double cost = 0;
 	if (box.left < field->area.left || box.right > field->area.right ||
 	    box.top < field->area.top || box.bottom > field->area.bottom)
-		cost += 2 * GZ_LABEL_ON_LABEL;
+		cost += 50 * GZ_LABEL_ON_LABEL;
 	for (size_t i = 0; i < field->count; i++)
 		if (overlap(box, field->taken[i]))
 			cost += field->weights[i];

@@ -132,9 +132,9 @@ static double nearest_px(const struct gz_series *series, const struct background
 
 static double step_of(double span)
 {
-	const double power = pow(10, floor(log10(span / 3)));
-	const double digit = span / 3 / power;
-	return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+	const double power = pow(10, floor(log10(span / 4)));
+	const double digit = span / 4 / power;
+	return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
 static void add_settings(const struct gz_summary *summary, const struct gz_series *series,

@@ -157,6 +157,20 @@ void gz_scene_words(const struct gz_study_scene *scene, char out_words[GZ_NAMES_
 		snprintf(out_words, GZ_NAMES_SIZE, "%.120s (%.120s)", scene->name, scene->transfer);
 }
 
+void gz_growth_words(const struct gz_study *study, const struct gz_scaling *scaling,
+		     char out_words[GZ_NAMES_SIZE])
+{
+	char scene[GZ_NAMES_SIZE] = "all scenes", size[32] = "", backend[GZ_NAME_SIZE + 8] = "";
+	if (scaling->kind != GZ_SCALING_VOXELS)
+		gz_scene_words(&study->scenes[scaling->scene], scene);
+	if (scaling->kind != GZ_SCALING_PIXELS)
+		snprintf(size, sizeof size, " at %d×%d", study->sizes[scaling->size][0],
+			 study->sizes[scaling->size][1]);
+	if (scaling->kind != GZ_SCALING_THREADS)
+		snprintf(backend, sizeof backend, " on %s", study->backends[scaling->backend]);
+	snprintf(out_words, GZ_NAMES_SIZE, "%.170s%s%.50s", scene, size, backend);
+}
+
 void gz_group_words(const struct gz_study *study, const struct gz_group *group,
 		    char out_words[GZ_NAMES_SIZE])
 {

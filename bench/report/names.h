@@ -31,6 +31,11 @@ void gz_curve_name(const struct gz_study *study, const struct gz_group *group,
 void gz_group_words(const struct gz_study *study, const struct gz_group *group,
 		    char out_words[GZ_NAMES_SIZE]);
 
+/** What a fit of growth is of, which stays the same: "head on cpu", "all scenes at 1024×1024 on
+ *  cpu". */
+void gz_growth_words(const struct gz_study *study, const struct gz_scaling *scaling,
+		     char out_words[GZ_NAMES_SIZE]);
+
 /** "head", or "head (bone)". */
 void gz_scene_words(const struct gz_study_scene *scene, char out_words[GZ_NAMES_SIZE]);
 

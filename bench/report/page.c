@@ -1,5 +1,6 @@
 #include "bench/report/page.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -106,26 +107,41 @@ static void add_other_charts(const struct gz_summary *summary, const struct gz_g
 	gz_text_add(out, "</div>\n");
 }
 
+static void add_maps_of(const struct gz_summary *summary, const struct gz_group *group,
+			const struct gz_charts *charts, size_t series, struct gz_text *out)
+{
+	char name[GZ_NAMES_SIZE], words[GZ_NAMES_SIZE], caption[2 * GZ_NAMES_SIZE];
+	gz_variant_words(&summary->study->variants[group->series[series].variant], words);
+	for (int of_error = 0; of_error < 2; of_error++) {
+		gz_map_chart_name(summary, group, series, of_error, name);
+		snprintf(caption, sizeof caption, "%s: %s over the gaze", words,
+			 of_error ? "error" : "time");
+		gz_page_figure(charts, name, "small", caption, out);
+	}
+}
+
+/* Those of what is advised and of standard are seen at once, the others on demand. */
 static void add_maps(const struct gz_summary *summary, const struct gz_group *group,
 		     const struct gz_charts *charts, struct gz_text *out)
 {
-	char name[GZ_NAMES_SIZE], words[GZ_NAMES_SIZE], caption[2 * GZ_NAMES_SIZE];
+	const struct gz_advice_question question = gz_advice_preset(group);
+	const size_t advised = gz_advice_find(group, &question);
 	if (!charts->available)
 		return;
 	gz_text_add(out, "<h3>Where the gaze makes it dear, and where wrong</h3>\n"
 			 "<p>Each point is a place of the gaze, over the picture; yellow is the "
 			 "slowest, and the farthest from the reference, of its own map.</p>\n"
 			 "<div class=\"grid\">\n");
+	if (advised != GZ_SERIES_NONE && advised != group->standard)
+		add_maps_of(summary, group, charts, advised, out);
+	if (group->standard != GZ_SERIES_NONE)
+		add_maps_of(summary, group, charts, group->standard, out);
+	gz_text_add(out, "</div>\n<details><summary>Maps of the other variants</summary>\n"
+			 "<div class=\"grid\">\n");
 	for (size_t i = 0; i < group->series_count; i++)
-		for (int of_error = 0; of_error < 2; of_error++) {
-			gz_map_chart_name(summary, group, i, of_error, name);
-			gz_variant_words(&summary->study->variants[group->series[i].variant],
-					 words);
-			snprintf(caption, sizeof caption, "%s: %s over the gaze", words,
-				 of_error ? "error" : "time");
-			gz_page_figure(charts, name, "small", caption, out);
-		}
-	gz_text_add(out, "</div>\n");
+		if (i != advised && i != group->standard)
+			add_maps_of(summary, group, charts, i, out);
+	gz_text_add(out, "</div></details>\n");
 }
 
 static void add_details(const struct gz_summary *summary, const struct gz_group *group,
@@ -137,7 +153,13 @@ static void add_details(const struct gz_summary *summary, const struct gz_group 
 	add_other_charts(summary, group, charts, out);
 	gz_text_add(out, "<h3>All measures of error</h3>\n<p>PSNR in decibels is that of the mean "
 			 "squared error over all points; decibels themselves are never "
-			 "averaged.</p>\n");
+			 "averaged.");
+	if (!isnan(group->reference_db))
+		gz_text_add(out,
+			    " The converged picture and one of half its step are %.3g dB apart at "
+			    "the worst point.",
+			    group->reference_db);
+	gz_text_add(out, "</p>\n");
 	gz_page_error_table(summary, group, GZ_AGAINST_CONVERGED, out);
 	gz_page_error_table(summary, group, GZ_AGAINST_STANDARD, out);
 	gz_page_time_table(summary, group, out);
@@ -156,14 +178,14 @@ static void add_growth(const struct gz_summary *summary, const struct gz_charts 
 	char name[GZ_NAMES_SIZE];
 	if (summary->scaling_count == 0)
 		return;
-	gz_text_add(out,
-		    "<section id=\"growth\">\n<h2>How cost grows</h2>\n<div class=\"grid\">\n");
+	gz_text_add(out, "<section id=\"growth\">\n<h2>How cost grows</h2>\n");
 	for (size_t i = 0; i < summary->scaling_count; i++) {
-		gz_growth_chart_name(i, name);
-		gz_page_figure(charts, name, "small", "Time of a frame, both axes logarithmic",
-			       out);
+		if (gz_growth_chart_name(summary, i, name))
+			gz_page_figure(charts, name, "wide",
+				       "How the time of a frame grows, both axes logarithmic. "
+				       "Before each name its exponent.",
+				       out);
 	}
-	gz_text_add(out, "</div>\n");
 	gz_page_growth_table(summary, out);
 	gz_text_add(out, "</section>\n");
 }

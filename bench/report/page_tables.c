@@ -123,13 +123,26 @@ void gz_page_gain_table(const struct gz_summary *summary, const struct gz_group 
 	end_table(out);
 }
 
+/* Similarities lie near 1: what counts of them is behind the nines. */
+static void add_error(enum gz_error_kind kind, double value, struct gz_text *out)
+{
+	char text[64];
+	if (kind != GZ_ERROR_SSIM || isnan(value)) {
+		add_number(value, "", out);
+		return;
+	}
+	snprintf(text, sizeof text, "%.4f", value);
+	add_cell_text(text, out);
+}
+
 static void add_errors(const struct gz_series *series, enum gz_error_reference reference,
 		       const char *words, struct gz_text *out)
 {
 	begin_row(words, false, out);
 	for (int measure = 0; measure < GZ_ERROR_MEASURES; measure++) {
-		add_number(series->errors[reference][measure].mean, "", out);
-		add_number(series->errors[reference][measure].worst, "", out);
+		const struct gz_error_summary *errors = &series->errors[reference][measure];
+		add_error(gz_error_metrics[measure].kind, errors->mean, out);
+		add_error(gz_error_metrics[measure].kind, errors->worst, out);
 	}
 	end_row(out);
 }
@@ -332,19 +345,12 @@ void gz_page_growth_table(const struct gz_summary *summary, struct gz_text *out)
 		return;
 	begin_table("Growth, t = a·xᵏ by least squares in logarithms", headings, out);
 	for (size_t i = 0; i < summary->scaling_count; i++) {
-		char words[GZ_NAMES_SIZE], what[2 * GZ_NAMES_SIZE] = "all scenes";
+		char words[GZ_NAMES_SIZE], what[GZ_NAMES_SIZE];
 		const struct gz_scaling *scaling = &summary->scalings[i];
 		gz_variant_words(&study->variants[scaling->variant], words);
 		begin_row(words, false, out);
 		add_cell_text(kinds[scaling->kind], out);
-		if (scaling->kind != GZ_SCALING_VOXELS)
-			gz_scene_words(&study->scenes[scaling->scene], what);
-		if (scaling->kind != GZ_SCALING_PIXELS)
-			snprintf(what + strlen(what), GZ_NAMES_SIZE, " at %d×%d",
-				 study->sizes[scaling->size][0], study->sizes[scaling->size][1]);
-		if (scaling->kind != GZ_SCALING_THREADS)
-			snprintf(what + strlen(what), GZ_NAMES_SIZE / 2, " on %s",
-				 study->backends[scaling->backend]);
+		gz_growth_words(study, scaling, what);
 		add_cell_text(what, out);
 		add_number(scaling->exponent, "", out);
 		add_number(scaling->r2, "", out);

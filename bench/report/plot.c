@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "bench/report/labels.h"
 
@@ -58,7 +59,7 @@ static void fit_axis(struct gz_plot_axis *axis, double least, double greatest)
 	if (axis->logarithmic) {
 		const double margin = pow(greatest / least, 0.09) * 1.04;
 		axis->first = least / margin;
-		axis->last = greatest * margin;
+		axis->last = greatest * margin * pow(greatest / least, axis->name_room);
 		return;
 	}
 	const double span = greatest > least ? greatest - least
@@ -181,12 +182,28 @@ static void avoid_curves(struct placing *placing)
 	}
 }
 
+/* A label that a narrow canvas has room for on one side of a point: cut, with an ellipsis. */
+static const char *fit_label(const char *text, const struct gz_canvas *canvas,
+			     char cut[GZ_PLOT_LABEL_SIZE])
+{
+	const size_t most = canvas->kind == GZ_CANVAS_NARROW ? 26 : 40;
+	if (strlen(text) <= most)
+		return text;
+	size_t length = most - 1;
+	while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80)
+		length--;
+	snprintf(cut, GZ_PLOT_LABEL_SIZE, "%.*s…", (int)length, text);
+	return cut;
+}
+
 static void add_label(struct placing *placing, const struct gz_plot_curve *curve,
 		      const struct gz_plot_point *point, const char *text, double font_px,
 		      bool must, struct gz_text *table)
 {
 	double x, y;
 	int side;
+	char cut[GZ_PLOT_LABEL_SIZE];
+	text = fit_label(text, placing->canvas, cut);
 	if (!text[0] ||
 	    !gz_labels_place(&placing->field, x_px(placing, point->x), y_px(placing, point->y),
 			     characters(text) * CHARACTER * font_px, font_px * 1.1, must, &x, &y,
@@ -198,7 +215,7 @@ static void add_label(struct placing *placing, const struct gz_plot_curve *curve
 	gz_text_add(table, "\n");
 }
 
-/* Names first, each at whichever end of its curve has room: at the cheap one if both have. */
+/* Names first, each at the last point of its curve; then as many labels as have room. */
 static void add_labels(struct placing *placing, struct gz_text *table)
 {
 	const double font_px = placing->canvas->font_px;

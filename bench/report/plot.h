@@ -17,6 +17,7 @@ struct gz_plot_axis {
 	char title[GZ_PLOT_LABEL_SIZE];
 	bool logarithmic;
 	bool from_zero;     /**< linear: begins at 0 whatever the values */
+	double name_room;   /**< logarithmic: room behind the last value for names, of the span */
 	bool falls;         /**< the greatest value is at the origin */
 	double first, last; /**< ends; set by gz_plot_fit() */
 };

@@ -107,15 +107,32 @@ static enum gz_result draw_pareto(const struct gz_summary *summary, const struct
 	return result;
 }
 
-bool gz_scalings_share_chart(const struct gz_scaling *a, const struct gz_scaling *b)
+/* Whether two fits are shown in one chart: they differ in the variant only. */
+static bool share_chart(const struct gz_scaling *a, const struct gz_scaling *b)
 {
 	return a->kind == b->kind && a->scene == b->scene && a->size == b->size &&
 	       a->backend == b->backend;
 }
 
-void gz_growth_chart_name(size_t scaling, char out_name[256])
+static bool is_first_in_chart(const struct gz_summary *summary, size_t place)
 {
-	snprintf(out_name, 256, "growth-%zu", scaling + 1);
+	for (size_t i = 0; i < place; i++)
+		if (share_chart(&summary->scalings[i], &summary->scalings[place]))
+			return false;
+	return true;
+}
+
+bool gz_growth_chart_name(const struct gz_summary *summary, size_t scaling, char out_name[256])
+{
+	static const char *const kinds[] = { "pixels", "voxels", "threads" };
+	const enum gz_scaling_kind kind = summary->scalings[scaling].kind;
+	size_t number = 1;
+	if (!is_first_in_chart(summary, scaling))
+		return false;
+	for (size_t i = 0; i < scaling; i++)
+		number += summary->scalings[i].kind == kind && is_first_in_chart(summary, i);
+	snprintf(out_name, 256, "growth-%s-%zu", kinds[kind], number);
+	return true;
 }
 
 static bool add_growth(const struct gz_study *study, const struct gz_scaling *scaling,
@@ -126,12 +143,13 @@ static bool add_growth(const struct gz_study *study, const struct gz_scaling *sc
 	const struct gz_method_look look = gz_method_look(variant->method);
 	if (!gz_plot_curve_start(out, scaling->point_count))
 		return false;
+	const double unit = scaling->kind == GZ_SCALING_THREADS ? 1 : 1e6;
 	gz_variant_words(variant, words);
-	snprintf(out->name, sizeof out->name, "%.40s: exponent %.2f", words, scaling->exponent);
+	snprintf(out->name, sizeof out->name, "%.2f  %.80s", scaling->exponent, words);
 	out->colour = look.colour;
 	out->point_type = look.point;
 	for (size_t i = 0; i < scaling->point_count; i++) {
-		out->points[i].x = scaling->points[i].x;
+		out->points[i].x = scaling->points[i].x / unit;
 		out->points[i].y = scaling->points[i].ms;
 	}
 	return true;
@@ -141,37 +159,31 @@ static size_t shared_count(const struct gz_summary *summary, size_t first)
 {
 	size_t count = 0;
 	for (size_t i = first; i < summary->scaling_count; i++)
-		count += gz_scalings_share_chart(&summary->scalings[first], &summary->scalings[i]);
+		count += share_chart(&summary->scalings[first], &summary->scalings[i]);
 	return count;
 }
 
 static enum gz_result draw_growth(const struct gz_summary *summary, size_t first,
 				  struct gz_charts *charts)
 {
-	static const char *const titles[] = { "pixels of the picture", "voxels of the volume",
-					      "threads" };
-	char name[GZ_NAMES_SIZE];
-	struct gz_plot plot = { .title = "time of a frame, ms",
-				.x = { .logarithmic = true },
+	static const char *const titles[] = { "million pixels of the picture",
+					      "million voxels of the volume", "threads" };
+	char name[GZ_NAMES_SIZE], words[GZ_NAMES_SIZE];
+	struct gz_plot plot = { .x = { .logarithmic = true, .name_room = 0.4 },
 				.y = { .logarithmic = true } };
+	if (!gz_growth_chart_name(summary, first, name))
+		return GZ_OK;
 	snprintf(plot.x.title, sizeof plot.x.title, "%s", titles[summary->scalings[first].kind]);
+	gz_growth_words(summary->study, &summary->scalings[first], words);
+	snprintf(plot.title, sizeof plot.title, "%.120s: ms a frame", words);
 	bool sound = gz_plot_start(&plot, shared_count(summary, first));
 	for (size_t i = first, k = 0; i < summary->scaling_count && sound; i++)
-		if (gz_scalings_share_chart(&summary->scalings[first], &summary->scalings[i]))
+		if (share_chart(&summary->scalings[first], &summary->scalings[i]))
 			sound = add_growth(summary->study, &summary->scalings[i],
 					   &plot.curves[k++]);
-	gz_growth_chart_name(first, name);
 	const enum gz_result result = sound ? gz_plot_draw(charts, name, &plot) : GZ_ERR_NO_MEM;
 	gz_plot_free(&plot);
 	return result;
-}
-
-static bool is_first_in_chart(const struct gz_summary *summary, size_t place)
-{
-	for (size_t i = 0; i < place; i++)
-		if (gz_scalings_share_chart(&summary->scalings[i], &summary->scalings[place]))
-			return false;
-	return true;
 }
 
 static enum gz_result draw_group(const struct gz_summary *summary, const struct gz_group *group,
@@ -195,7 +207,6 @@ enum gz_result gz_study_charts_draw(const struct gz_summary *summary, struct gz_
 	for (size_t i = 0; i < summary->group_count && result == GZ_OK; i++)
 		result = draw_group(summary, &summary->groups[i], charts);
 	for (size_t i = 0; i < summary->scaling_count && result == GZ_OK; i++)
-		if (is_first_in_chart(summary, i))
-			result = draw_growth(summary, i, charts);
+		result = draw_growth(summary, i, charts);
 	return result;
 }

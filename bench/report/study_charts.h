@@ -24,11 +24,9 @@ void gz_pareto_chart_name(const struct gz_summary *summary, const struct gz_grou
 void gz_map_chart_name(const struct gz_summary *summary, const struct gz_group *group,
 		       size_t series, bool of_error, char out_name[256]);
 
-/** Name of the chart of growth number @p scaling, the first of those it shows. */
-void gz_growth_chart_name(size_t scaling, char out_name[256]);
-
-/** Whether two fits are shown in one chart: of the same kind, but for the variant. */
-bool gz_scalings_share_chart(const struct gz_scaling *a, const struct gz_scaling *b);
+/** Name of the chart of growth that begins with fit number @p scaling: "growth-pixels-1". False if
+ *  the fit is shown in the chart of an earlier one. */
+bool gz_growth_chart_name(const struct gz_summary *summary, size_t scaling, char out_name[256]);
 
 /** The measure of error that a group's first chart, maps and advice are about: perceived FLIP, or
  *  the first that was measured. False if none was. */

@@ -215,6 +215,9 @@ static enum gz_result fill_group(const struct gz_study *study, const struct gz_s
 	free(room);
 	if (result != GZ_OK)
 		return result;
+	group->reference_db = NAN;
+	for (size_t i = 0; i < count; i++)
+		group->reference_db = fmin(group->reference_db, rows[i].reference_db);
 	relate(study, group);
 	gz_group_find_fronts(group);
 	return gz_group_find_curves(study, group);

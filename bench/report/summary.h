@@ -79,6 +79,9 @@ struct gz_group {
 	double bound_share; /**< mean over measured points: of the pixels' rays; NaN without */
 	/** What the bound's rays would take if each cost what a ray of standard costs. */
 	double bound_ms;
+	/** PSNR of the converged picture against one of half its step, at the worst point: how far
+	 *  errors against it can be trusted; NaN where it was not measured. */
+	double reference_db;
 };
 
 /** Time against something that grows, t = a x^exponent, by least squares in logarithms. */

@@ -159,6 +159,7 @@ static json_t *group_to_json(const struct gz_study *study, const struct gz_group
 	json_object_set_new(object, "backend", json_string(study->backends[group->backend]));
 	json_object_set_new(object, "bound_rays", number(group->bound_share));
 	json_object_set_new(object, "bound_ms", number(group->bound_ms));
+	json_object_set_new(object, "reference_db", number(group->reference_db));
 	json_t *list = json_array();
 	for (size_t i = 0; i < group->series_count; i++)
 		json_array_append_new(list, series_to_json(study, &group->series[i]));

@@ -70,6 +70,7 @@ static void measure(const struct gz_study *study, struct gz_study_row *row)
 	row->samples = row->rays * 90;
 	const double error = model->flip * load * (0.9 + 0.3 * noise(row->point, row->variant, 7));
 	row->converged = errors_of(error);
+	row->reference_db = 61 + load;
 	if (row->variant > 0) {
 		row->standard = errors_of(error * 0.8);
 		row->flicker = 8 * error;

@@ -8,10 +8,11 @@ set xtics offset 0, 0.3
 set logscale x
 set xrange [x_first:x_last]
 set yrange [rows - 0.4:-0.6]
+digits = digits_of(x_decades)
 set xtics ()
-do for [power = -4:12] { do for [digit in '1 2 5'] {
+do for [power = -4:12] { do for [digit in digits] {
 	tick = digit * 10.0 ** power
-	if (tick >= x_first && tick <= x_last && (x_decades < 2.5 || digit == 1)) {
+	if (tick >= x_first && tick <= x_last) {
 		set xtics add (sprintf('%.10g', tick) tick)
 	}
 } }

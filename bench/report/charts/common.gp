@@ -19,3 +19,5 @@ set border 1 linewidth 1 linecolor rgb mute
 set tics nomirror textcolor rgb mute
 set grid linecolor rgb grid linewidth 1 linetype 1
 unset key
+# Digits that get a tick on a logarithmic axis of so many decades.
+digits_of(decades) = decades > 2.5 ? '1' : decades > 1.1 ? '1 2 5' : '1 1.5 2 3 4 5 7'

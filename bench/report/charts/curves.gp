@@ -10,20 +10,22 @@ set xrange [x_first:x_last]
 set yrange [y_first:y_last]
 if (x_logarithmic) {
 	set logscale x
+	digits = digits_of(x_decades)
 	set xtics ()
-	do for [power = -4:12] { do for [digit in '1 2 5'] {
+	do for [power = -4:12] { do for [digit in digits] {
 		tick = digit * 10.0 ** power
-		if (tick >= x_first && tick <= x_last && (x_decades < 2.5 || digit == 1)) {
+		if (tick >= x_first && tick <= x_last) {
 			set xtics add (sprintf('%.10g', tick) tick)
 		}
 	} }
 }
 if (y_logarithmic) {
 	set logscale y
+	digits = digits_of(y_decades)
 	set ytics ()
-	do for [power = -4:12] { do for [digit in '1 2 5'] {
+	do for [power = -4:12] { do for [digit in digits] {
 		tick = digit * 10.0 ** power
-		if (tick >= y_first && tick <= y_last && (y_decades < 2.5 || digit == 1)) {
+		if (tick >= y_first && tick <= y_last) {
 			set ytics add (sprintf('%.10g', tick) tick)
 		}
 	} }
