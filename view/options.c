@@ -79,7 +79,7 @@ const struct gz_option gz_view_option_table[] = {
 	  .preset = "0",
 	  .help = "memory of the graphics device that the gl backend takes for voxels, MiB; 0 "
 		  "takes "
-		  "what there is. What does not fit whole is shown by bricks" },
+		  "what there is; what does not fit whole is shown by bricks" },
 	{ .key = "frames",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(frames),
