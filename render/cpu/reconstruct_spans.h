@@ -86,7 +86,7 @@ SIMD strip_u16 load_point(const void *point)
 /* 0 in the first pixel, 1 in the second... */
 SIMD strip_u16 count_pixels(void)
 {
-	strip_u16 numbers;
+	strip_u16 numbers = { 0 };
 	for (int i = 0; i < CHANNELS * STRIP; i++)
 		numbers[i] = (uint16_t)(i / CHANNELS);
 	return numbers;
