@@ -1,13 +1,14 @@
 /*
  * A block of 4 x 4 x 4 voxels in registers, from which all lanes take their eight neighbours by
- * permutation. Rays of a tile lie close together, so that one block serves all of them for a sample
- * or several, where gathers would fetch each voxel many times over.
- * A part of the kernel, for AVX-512: see cast_kernel.h.
+ * permutation. Rays of a tile lie close together, so that one block serves all of them, where
+ * gathers would fetch each voxel many times over. Where they lie farther apart along x, a wide
+ * block of 8 x 4 x 4 does it, of 8 and 16 bits. A part of the kernel, for AVX-512: see
+ * cast_kernel.h.
  *
  * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication takes both
  * of a lane: finer than single-precision places are beyond 256 voxels. Values that leave here are
  * in units of 1 / FETCH_UNIT, 16-bit ones less 32768: both go into the look-up's scale. A value
- * does not depend on whether it came by block or by gather.
+ * does not depend on whether it came by block or one by one.
  */
 #ifndef GZ_RENDER_CPU_CAST_BLOCK_H
 #define GZ_RENDER_CPU_CAST_BLOCK_H
@@ -16,7 +17,7 @@
 #include "render/cpu/cast_fetch.h"
 #include "render/cpu/cast_rays.h"
 
-enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE };
+enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE, BLOCK_WIDE = 8 };
 
 #define FETCH_UNIT(type)   ((type) == GZ_VOXEL_F32 ? 1.0F : 32767.0F)
 #define FETCH_OFFSET(type) ((type) == GZ_VOXEL_U16 ? 32768.0F : 0.0F)
@@ -24,15 +25,22 @@ enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE };
 struct block {
 	vf base[3]; /* index of its first voxel, the same in all lanes */
 	union {
-		vi words[2]; /* 8 and 16 bit */
+		vi words[BLOCK_EDGE]; /* 8 and 16 bit: two slices each, wide one */
 		vf slices[BLOCK_EDGE];
 	};
 };
 
-/* Whether there are blocks to be had: of volumes in one piece and large enough. */
-SIMD int blocks_fit(const struct gz_cast *cast)
+/* Voxels along an edge. */
+SIMD float block_edge(int wide, int axis)
 {
-	return !cast->bricks.table && cast->dims[0] >= BLOCK_EDGE && cast->dims[1] >= BLOCK_EDGE &&
+	return wide && axis == 0 ? BLOCK_WIDE : BLOCK_EDGE;
+}
+
+/* Whether there are blocks to be had: of volumes in one piece and large enough. */
+SIMD int blocks_fit(const struct gz_cast *cast, enum gz_voxel_type type, int wide)
+{
+	return !cast->bricks.table && !(wide && type == GZ_VOXEL_F32) &&
+	       cast->dims[0] >= block_edge(wide, 0) && cast->dims[1] >= BLOCK_EDGE &&
 	       cast->dims[2] >= BLOCK_EDGE;
 }
 
@@ -59,6 +67,33 @@ SIMD vf block_slice_f32(const float *from, int64_t stride)
 	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + stride), 1);
 	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + 2 * stride), 2);
 	return _mm512_insertf32x4(slice, _mm_loadu_ps(from + 3 * stride), 3);
+}
+
+/* One slice of a wide block. */
+SIMD vi block_wide_slice(enum gz_voxel_type type, const void *from, int64_t stride)
+{
+	if (type == GZ_VOXEL_U8) {
+		int64_t rows[BLOCK_EDGE];
+		for (int y = 0; y < BLOCK_EDGE; y++)
+			memcpy(&rows[y], (const uint8_t *)from + y * stride, sizeof rows[y]);
+		return _mm512_cvtepu8_epi16(_mm256_setr_epi64x(rows[0], rows[1], rows[2], rows[3]));
+	}
+	__m128i rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], (const uint16_t *)from + y * stride, sizeof rows[y]);
+	const vi words =
+		_mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(rows[1], rows[0])),
+				   _mm256_set_m128i(rows[3], rows[2]), 1);
+	return _mm512_xor_si512(words, _mm512_set1_epi16((int16_t)0x8000));
+}
+
+SIMD void block_load_wide(enum gz_voxel_type type, const void *from, int64_t row, int64_t slice,
+			  struct block *block)
+{
+	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : 2;
+	for (int z = 0; z < BLOCK_EDGE; z++)
+		block->words[z] =
+			block_wide_slice(type, (const char *)from + z * slice * bytes, row);
 }
 
 /* All of a block, from rows and slices that lie these strides apart. */
@@ -91,11 +126,12 @@ SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int
 
 /* Load the block whose first voxel is the one that a place, x, y, z, is in; at the volume's rim, as
  * much of it as lies inside. */
-SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, __m128 place,
+SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wide, __m128 place,
 		     struct block *block)
 {
-	const __m128 last = _mm_sub_ps(_mm_setr_ps(cast->dims[0], cast->dims[1], cast->dims[2], 4),
-				       _mm_set1_ps(BLOCK_EDGE));
+	const __m128 last =
+		_mm_sub_ps(_mm_setr_ps(cast->dims[0], cast->dims[1], cast->dims[2], BLOCK_EDGE),
+			   _mm_setr_ps(block_edge(wide, 0), BLOCK_EDGE, BLOCK_EDGE, BLOCK_EDGE));
 	const __m128 base = _mm_min_ps(_mm_max_ps(_mm_floor_ps(place), _mm_setzero_ps()), last);
 	block->base[0] = _mm512_broadcastss_ps(base);
 	block->base[1] = _mm512_broadcastss_ps(_mm_permute_ps(base, 0x55));
@@ -105,15 +141,20 @@ SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, __m128
 	const int64_t from = _mm_cvtsi128_si32(first) + _mm_extract_epi32(first, 1) * row +
 			     _mm_extract_epi32(first, 2) * slice;
 	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
-	block_load(type, (const char *)cast->voxels + from * bytes, row, slice, block);
+	const char *voxels = (const char *)cast->voxels + from * bytes;
+	if (wide)
+		block_load_wide(type, voxels, row, slice, block);
+	else
+		block_load(type, voxels, row, slice, block);
 }
 
 /* Beyond the first and the last datum along an axis, places are those of that datum. */
-SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, vf places[3])
+SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, int wide, vf places[3])
 {
-	const vf most = vf_set(BLOCK_EDGE - 1 - 0x1p-22F);
 	for (int axis = 0; axis < 3; axis++) {
-		const vf last = vf_set(cast->dims[axis] - BLOCK_EDGE);
+		const float edge = block_edge(wide, axis);
+		const vf most = vf_set((edge - 1) * (1 - 0x1p-23F)); /* the float below */
+		const vf last = vf_set(cast->dims[axis] - edge);
 		const vm at_first = vf_less(block->base[axis], vf_set(1));
 		const vm at_last = vf_less(last - vf_set(1), block->base[axis]);
 		places[axis] = _mm512_mask_max_ps(places[axis], at_first, places[axis], vf_set(0));
@@ -122,26 +163,29 @@ SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, vf 
 }
 
 /* Whether all lanes' places lie in the block. */
-SIMD int block_holds(const vf places[3], vm mask)
+SIMD int block_holds(const vf places[3], int wide, vm mask)
 {
 	/* As unsigned numbers, floats from 0 up have their order and negative ones lie above. */
-	const vi most = _mm512_max_epu32(
-		_mm512_castps_si512(places[0]),
-		_mm512_max_epu32(_mm512_castps_si512(places[1]), _mm512_castps_si512(places[2])));
-	const vi end = _mm512_castps_si512(vf_set(BLOCK_EDGE - 1));
-	return _mm512_mask_cmpge_epu32_mask(mask, most, end) == 0;
+	const vi x = vi_bits(places[0]), end = vi_bits(vf_set(BLOCK_EDGE - 1));
+	vi most = _mm512_max_epu32(vi_bits(places[1]), vi_bits(places[2]));
+	vm beyond = 0;
+	if (wide)
+		beyond = _mm512_mask_cmpge_epu32_mask(mask, x, vi_bits(vf_set(BLOCK_WIDE - 1)));
+	else
+		most = _mm512_max_epu32(most, x);
+	return !vm_any(vm_or(beyond, _mm512_mask_cmpge_epu32_mask(mask, most, end)));
 }
 
 /* Places within the block; whether those of all lanes of the mask lie in it. */
-SIMD int block_places(const struct gz_cast *cast, const struct block *block, const vf at[3],
-		      vm mask, vf places[3])
+SIMD int block_places(const struct gz_cast *cast, const struct block *block, int wide,
+		      const vf at[3], vm mask, vf places[3])
 {
 	for (int axis = 0; axis < 3; axis++)
 		places[axis] = at[axis] - block->base[axis];
-	if (__builtin_expect(block_holds(places, mask), 1))
+	if (__builtin_expect(block_holds(places, wide, mask), 1))
 		return 1;
-	block_clamp(cast, block, places);
-	return block_holds(places, mask);
+	block_clamp(cast, block, wide, places);
+	return block_holds(places, wide, mask);
 }
 
 /* Weights of two words: the share of the higher one above, the rest below. */
@@ -178,6 +222,22 @@ SIMD vf block_sample_words(const struct block *block, const vf whole[3], const v
 	for (int i = 0; i < 4; i++)
 		pairs[i] = _mm512_permutex2var_epi16(
 			block->words[0], vi_add(first, vi_set(offset[i])), block->words[1]);
+	return mix_pairs(pairs, share);
+}
+
+SIMD vf block_sample_wide(const struct block *block, const vf whole[3], const vf share[3])
+{
+	const float both = 65537;
+	const vi first = _mm512_cvtps_epi32(vf_fma(
+		whole[2], vf_set(32 * both),
+		vf_fma(whole[1], vf_set(8 * both), vf_fma(whole[0], vf_set(both), vf_set(65536)))));
+	vi pairs[4];
+	for (int i = 0; i < 4; i++) {
+		const vi index = vi_add(first, vi_set(((i & 1) * 8 + (i >> 1) * 32) * 65537));
+		const vi low = _mm512_permutex2var_epi16(block->words[0], index, block->words[1]);
+		const vi high = _mm512_permutex2var_epi16(block->words[2], index, block->words[3]);
+		pairs[i] = vi_select(_mm512_test_epi32_mask(index, vi_set(64)), high, low);
+	}
 	return mix_pairs(pairs, share);
 }
 
@@ -264,15 +324,18 @@ SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, co
 }
 
 /* The values at places within the block, in FETCH_UNITs. */
-SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, const vf places[3])
+SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, int wide,
+		     const vf places[3])
 {
 	vf whole[3], share[3];
 	for (int axis = 0; axis < 3; axis++) {
 		whole[axis] = vf_floor(places[axis]);
 		share[axis] = places[axis] - whole[axis];
 	}
-	return type == GZ_VOXEL_F32 ? block_sample_f32(block, whole, share)
-				    : block_sample_words(block, whole, share);
+	if (type == GZ_VOXEL_F32)
+		return block_sample_f32(block, whole, share);
+	return wide ? block_sample_wide(block, whole, share)
+		    : block_sample_words(block, whole, share);
 }
 
 /* The value at sample k of the lanes of mask, in FETCH_UNITs, wherever they are. */

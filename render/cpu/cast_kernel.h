@@ -116,17 +116,22 @@ SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nea
 		    const struct rays *rays, struct light *light)
 {
 	const struct look_up look_up = look_up_of(cast, type, nearest);
-	const vm alive = vm_and(rays->hit, vf_less(vf_set(cast->end_transmittance), light->through));
+	const vm alive =
+		vm_and(rays->hit, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(alive))
 		return 0;
-	if (!cast->fine[0].flags)
-		return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
+#ifdef SIMD_GATHERS
+	if (cast->fine[0].flags) {
 #ifdef SIMD_BLOCKS
-	const struct beam beam = beam_of(rays);
-	if (beam.grid < GZ_FINE_GRIDS)
-		return march_beam(cast, type, nearest, &look_up, step, rays, &beam, alive, light);
+		const struct beam beam = beam_of(rays);
+		if (beam.grid < GZ_FINE_GRIDS)
+			return march_beam(cast, type, nearest, &look_up, step, rays, &beam, alive,
+					  light);
 #endif
-	return march_fine(cast, type, nearest, &look_up, step, rays, alive, light);
+		return march_fine(cast, type, nearest, &look_up, step, rays, alive, light);
+	}
+#endif
+	return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
 }
 
 /* A part of a segment, at either end of the whole ones: around k, of a length in steps. */

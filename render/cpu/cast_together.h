@@ -16,8 +16,12 @@
 #include <math.h>
 
 /* How far apart, voxels, the rays of a tile may be to go side by side. Chosen by measuring: up to 2
- * a block holds them all wherever they are, at 3 by luck alone, and gathers serve the rest. */
+ * a block holds them all wherever they are, at 3 by luck alone, and single loads serve the rest. */
 #define TOGETHER_SPREAD 2.5F
+/* The same for a wide block, along x and across. Rays that far apart gain more from a block, so
+ * that one which holds them at the near side of the volume alone pays too. */
+#define TOGETHER_SPREAD_WIDE   7.0F
+#define TOGETHER_SPREAD_ACROSS 3.5F
 /* How much farther than it seems a ray may be from where it should be: rounding, voxels. */
 #define TOGETHER_SLACK (1.0F / 32)
 
@@ -30,6 +34,7 @@ struct beam {
 	__m128 low, high;           /* at level 0 */
 	__m128 low_step, high_step; /* from one level to the next */
 	float spread;               /* the longest edge anywhere, voxels */
+	float spread_x, spread_yz;  /* the longest along x, and across */
 	int grid;                   /* of the fine cells that are at least as long */
 	float levels_per_voxel;     /* of the corner and axis that goes fastest */
 	vf first;                   /* the k of level 0 */
@@ -82,8 +87,10 @@ SIMD struct beam beam_of(const struct rays *rays)
 	const __m128 share = _mm_set1_ps(1 / fmaxf(beam.count, 1));
 	beam.low_step = _mm_mul_ps(_mm_sub_ps(low, beam.low), share);
 	beam.high_step = _mm_mul_ps(_mm_sub_ps(high, beam.high), share);
-	beam.spread = greatest_of_four(
-		_mm_max_ps(_mm_sub_ps(beam.high, beam.low), _mm_sub_ps(high, low)));
+	const __m128 edges = _mm_max_ps(_mm_sub_ps(beam.high, beam.low), _mm_sub_ps(high, low));
+	beam.spread_x = edges[0];
+	beam.spread_yz = fmaxf(edges[1], edges[2]);
+	beam.spread = fmaxf(beam.spread_x, beam.spread_yz);
 	while (beam.grid < GZ_FINE_GRIDS && beam.spread > (float)(GZ_FINE_EDGE << beam.grid))
 		beam.grid++;
 	beam.levels_per_voxel = 1 / greatest_of_four(_mm_max_ps(absolute_of_four(beam.low_step),
@@ -158,41 +165,42 @@ SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float 
 }
 
 /* Load the block of a level. */
-SIMD void beam_block(const struct gz_cast *cast, enum gz_voxel_type type, const struct beam *beam,
-		     float level, struct block *block)
+SIMD void beam_block(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
+		     const struct beam *beam, float level, struct block *block)
 {
-	block_take(cast, type, _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low), block);
+	block_take(cast, type, wide, _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low),
+		   block);
 }
 
 /* The values at k of the lanes of mask, by the block if it holds them. */
-SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
-		       vf k, vm needed, const struct block *block)
+SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
+		       const struct rays *rays, vf k, vm needed, const struct block *block)
 {
 	vf at[3], places[3];
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	if (__builtin_expect(!block_places(cast, block, at, needed, places), 0))
+	if (__builtin_expect(!block_places(cast, block, wide, at, needed, places), 0))
 		return fetch_sample(cast, type, 0, rays, k, needed);
-	return block_sample(block, type, places);
+	return block_sample(block, type, wide, places);
 }
 
 /* Take the samples of levels. Of one sample to the next, the block of voxels is fetched while the
  * one before it is interpolated, whose colour is looked up while the next is: a processor that runs
  * ahead of a dozen loads, but not of two samples, has something to do meanwhile. */
-SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type,
+SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
 			    const struct look_up *look_up, int step, const struct rays *rays,
 			    const struct beam *beam, const float *levels, int count, vm *alive,
 			    struct waiting *before, struct light *light)
 {
 	uint32_t samples = 0;
 	struct block block, next;
-	beam_block(cast, type, beam, levels[0], &block);
+	beam_block(cast, type, wide, beam, levels[0], &block);
 	for (int i = 0; i < count && vm_any(*alive); i++) {
-		beam_block(cast, type, beam, levels[i + 1 < count ? i + 1 : i], &next);
+		beam_block(cast, type, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
 		const vf k = beam->first + vf_set(levels[i]);
 		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
 		const vf value =
-			fetch_together(cast, type, rays, k, vm_and(within, *alive), &block);
+			fetch_together(cast, type, wide, rays, k, vm_and(within, *alive), &block);
 		samples += settle(cast, type, 0, step, rays, before, alive, light);
 		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
 					     within };
@@ -274,22 +282,45 @@ SIMD uint32_t take_scattered(const struct gz_cast *cast, enum gz_voxel_type type
 	return samples;
 }
 
+/* How the rays of a tile get their voxels: by blocks, by wide blocks, each its own. */
+enum company { SIDE_BY_SIDE, IN_A_ROW, SCATTERED };
+
+SIMD enum company company_of(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const struct beam *beam)
+{
+	if (nearest)
+		return SCATTERED;
+	if (beam->spread <= TOGETHER_SPREAD && blocks_fit(cast, type, 0))
+		return SIDE_BY_SIDE;
+	return beam->spread_x <= TOGETHER_SPREAD_WIDE &&
+			       beam->spread_yz <= TOGETHER_SPREAD_ACROSS &&
+			       blocks_fit(cast, type, 1)
+		       ? IN_A_ROW
+		       : SCATTERED;
+}
+
 /* All whole segments. */
 SIMD uint32_t march_beam(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
 			 const struct look_up *look_up, int step, const struct rays *rays,
 			 const struct beam *beam, vm alive, struct light *light)
 {
-	const int together = !nearest && beam->spread <= TOGETHER_SPREAD && blocks_fit(cast);
 	float levels[LEVELS_LISTED + SIMD_LANES];
 	struct waiting before = none_waiting();
+	const enum company company = company_of(cast, type, nearest, beam);
 	uint32_t samples = 0;
 	float from = 0;
 	int count;
-	while (vm_any(alive) && (count = list_levels(cast, beam, &from, levels)) > 0)
-		samples += together ? take_together(cast, type, look_up, step, rays, beam, levels,
-						    count, &alive, &before, light)
-				    : take_scattered(cast, type, nearest, look_up, step, rays, beam,
-						     levels, count, &alive, &before, light);
+	while (vm_any(alive) && (count = list_levels(cast, beam, &from, levels)) > 0) {
+		if (company == SIDE_BY_SIDE)
+			samples += take_together(cast, type, 0, look_up, step, rays, beam, levels,
+						 count, &alive, &before, light);
+		else if (type != GZ_VOXEL_F32 && company == IN_A_ROW)
+			samples += take_together(cast, type, 1, look_up, step, rays, beam, levels,
+						 count, &alive, &before, light);
+		else
+			samples += take_scattered(cast, type, nearest, look_up, step, rays, beam,
+						  levels, count, &alive, &before, light);
+	}
 	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
 }
 

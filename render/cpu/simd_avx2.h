@@ -3,7 +3,8 @@
 #include <immintrin.h>
 #include <stdint.h>
 
-#define SIMD_LANES 8
+#define SIMD_LANES   8
+#define SIMD_GATHERS /* a look-up a sample is cheap: cast_fine.h */
 
 typedef __m256 vf;
 typedef __m256i vi;

@@ -6,8 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-#define SIMD_LANES  16
-#define SIMD_BLOCKS /* registers hold a block of voxels: cast_block.h */
+#define SIMD_LANES   16
+#define SIMD_GATHERS /* a look-up a sample is cheap: cast_fine.h */
+#define SIMD_BLOCKS  /* registers hold a block of voxels: cast_block.h */
 
 typedef __m512 vf;
 typedef __m512i vi;
