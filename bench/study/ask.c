@@ -201,6 +201,26 @@ static void hash_table(struct gz_hash *hash, const struct gz_spacing_table *tabl
 	}
 }
 
+/* The tables that variants name: what is in them counts, and that they are there is known before
+ * anything is measured. */
+static enum gz_result hash_variants(const struct asking *asking, struct gz_hash *hash)
+{
+	const struct gz_study *study = asking->study;
+	const struct gz_scene_settings *settings = &asking->stage->scene.settings;
+	const struct gz_variant_settings scene = { settings->foveation, settings->rays };
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < study->variant_count && result == GZ_OK; i++) {
+		struct gz_variant_settings variant;
+		result = gz_variant_parse(study->variants[i].text, &scene, asking->log, &variant);
+		if (result != GZ_OK || variant.foveation.method != GZ_METHOD_TABLE)
+			continue;
+		result = gz_scene_load_table(asking->stage->path, asking->log, &variant.foveation);
+		if (result == GZ_OK)
+			hash_table(hash, &variant.foveation.table);
+	}
+	return result;
+}
+
 /* Of the data and of what the scene says of how they are shown; names of files do not count, what
  * is in them does. The camera stands in the study itself. */
 static enum gz_result hash_scene(const struct asking *asking, struct gz_study_scene *scene)
@@ -208,7 +228,7 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 	const struct gz_scene_settings *settings = &asking->stage->scene.settings;
 	struct gz_foveation foveation = settings->foveation;
 	struct gz_hash *hash = NULL;
-	const enum gz_result result = gz_hash_begin(&hash);
+	enum gz_result result = gz_hash_begin(&hash);
 	if (result != GZ_OK)
 		return result;
 	foveation.table_file[0] = '\0';
@@ -216,7 +236,9 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 	hash_options(hash, gz_ray_options, gz_ray_option_count, &settings->rays);
 	hash_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);
 	hash_table(hash, &foveation.table);
-	return gz_hash_end(&hash, scene->hash);
+	result = hash_variants(asking, hash);
+	const enum gz_result ended = gz_hash_end(&hash, result == GZ_OK ? scene->hash : NULL);
+	return result == GZ_OK ? ended : result;
 }
 
 static enum gz_result check_name(const struct asking *asking, const struct gz_study_scene *scene)

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/command.h"
 #include "bench/metrics/metrics.h"
 #include "bench/study/hash.h"
 
@@ -120,6 +121,8 @@ static enum gz_result get(const struct gz_reference_request *request, const stru
 		    image->width == request->width && image->height == request->height)
 			return GZ_OK;
 	}
+	if (gz_command_interrupted())
+		return GZ_ERR_CANCELLED;
 	*out_made = true;
 	result = render(request, rate, image);
 	if (result == GZ_OK && request->cache &&
@@ -148,7 +151,7 @@ enum gz_result gz_reference_get(const struct gz_reference_request *request,
 				"the converged picture of %dx%d is %.1f dB from one of half its "
 				"step, not %d: errors smaller than that tell nothing",
 				request->width, request->height, *out_db, GZ_REFERENCE_LEAST_DB);
-	} else {
+	} else if (result != GZ_ERR_CANCELLED) {
 		gz_err(log, "cannot make the converged picture of %dx%d: %s", request->width,
 		       request->height, gz_result_text(result));
 	}

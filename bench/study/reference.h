@@ -44,6 +44,7 @@ struct gz_reference_request {
  * @param[in,out] half_step  that of half the step
  * @param[out] out_db        PSNR between both, infinite where they are the same
  * @param[out] out_made      it was not in the cache
+ * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived (gz_command_catch_signals()); not logged
  * @retval GZ_ERR_NO_MEM     logged; and what gz_renderer_render() returns
  */
 enum gz_result gz_reference_get(const struct gz_reference_request *request,

@@ -32,8 +32,9 @@ struct gz_study_scene {
 	char name[GZ_STUDY_TEXT_SIZE];     /**< file name without folder and ".scene" */
 	char path[GZ_PATH_SIZE];           /**< as given */
 	char transfer[GZ_STUDY_TEXT_SIZE]; /**< file name of the transfer function without ".tf" */
-	/** Of what the scene says of rays and foveation, the transfer function and the volume's
-	 *  voxels: two scenes of one hash show the same to the same camera. */
+	/** Of what the scene says of rays and foveation, the tables that variants name, the
+	 *  transfer function and the volume's voxels: two scenes of one hash show the same to the
+	 *  same camera. */
 	char hash[GZ_STUDY_HASH_SIZE];
 	char data_hash[GZ_STUDY_HASH_SIZE]; /**< of volume and transfer function alone */
 	int dims[3];                        /**< of the volume */

@@ -292,6 +292,35 @@ static void scene_changed_between_shards_is_refused(void **state)
 	merge_refused(parts, 2, "is not the same scene");
 }
 
+static void write_table(const char *rows)
+{
+	char path[64];
+	snprintf(path, sizeof path, "%s/own.table", root);
+	write_text(path, rows);
+}
+
+static void table_of_a_variant_belongs_to_the_study(void **state)
+{
+	(void)state;
+	struct gz_study_request request = request_of("centre");
+	struct gz_study_outcome outcome;
+	const char *folder = new_folder();
+	request.accuracy = GZ_STUDY_ACCURACY_NONE;
+	request.methods = "table:table=own.table";
+	refused(&request, GZ_ERR_NOT_FOUND, "own.table");
+	request.methods = "table";
+	refused(&request, GZ_ERR_FORMAT, "the method is table");
+	request.methods = "table:table=own.table";
+	write_table("0 1 1\n5 4 2\n");
+	struct gz_study study = run(&request, folder);
+	assert_true(study.rows[2].rays < study.rows[0].rays);
+	gz_study_free(&study);
+	write_table("0 1 1\n5 5 2\n");
+	assert_int_equal(gz_study_run(&request, folder, cache, NULL, NULL, &captured.log, &outcome),
+			 GZ_ERR_INVAL);
+	assert_non_null(strstr(captured.last, "is not the same scene"));
+}
+
 /* ---- interruptions ---- */
 
 /* Ends the process, or asks it to end, before the third unit. */
@@ -504,6 +533,7 @@ int main(void)
 		cmocka_unit_test_setup(shards_join_to_what_one_run_gives, begin),
 		cmocka_unit_test_setup(shards_that_do_not_belong_together_are_refused, begin),
 		cmocka_unit_test_setup(scene_changed_between_shards_is_refused, begin),
+		cmocka_unit_test_setup(table_of_a_variant_belongs_to_the_study, begin),
 		cmocka_unit_test_setup(run_that_is_killed_goes_on_to_the_same_rows, begin),
 		cmocka_unit_test_setup(run_that_is_asked_to_end_leaves_whole_units_and_goes_on,
 				       begin),
