@@ -87,7 +87,7 @@ static void add_banners(const struct gz_summary *summary, const struct gz_charts
 			    "<p class=\"banner\" role=\"note\"><strong>One part of %d.</strong> "
 			    "This folder holds shard %d; <code>gazebench merge</code> joins it "
 			    "with the others.</p>\n",
-			    study->shard_count, study->shard);
+			    study->shard_count, study->shard + 1);
 	if (!charts->available)
 		gz_text_add(out, "<p class=\"banner\" role=\"note\"><strong>No charts.</strong> "
 				 "gnuplot was not found when this report was made; every number is "

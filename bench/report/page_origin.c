@@ -47,6 +47,20 @@ static bool path_is_new(const struct gz_study *study, size_t place)
 	return true;
 }
 
+/* The display, where it is the same for all scenes. */
+static void add_display(const struct gz_study *study, struct gz_text *out)
+{
+	const struct gz_display *first = &study->scenes[0].display;
+	for (size_t i = 1; i < study->scene_count; i++) {
+		const struct gz_display *display = &study->scenes[i].display;
+		if (display->mm[0] != first->mm[0] || display->mm[1] != first->mm[1] ||
+		    display->distance_mm != first->distance_mm)
+			return;
+	}
+	gz_text_add(out, " \\\n  --display-mm &#39;%.10g %.10g&#39; --display-distance-mm %.10g",
+		    first->mm[0], first->mm[1], first->distance_mm);
+}
+
 static void add_command(const struct gz_study *study, struct gz_text *out)
 {
 	gz_text_add(out, "<pre class=\"scroll\" tabindex=\"0\"><code>gazebench run");
@@ -58,8 +72,11 @@ static void add_command(const struct gz_study *study, struct gz_text *out)
 	gz_text_add(out, " --path ");
 	add_argument(study->path, out);
 	gz_text_add(out, " \\\n  --methods ");
-	for (size_t i = 0; i < study->variant_count; i++) {
-		gz_text_add(out, i > 0 ? "," : "");
+	/* Standard is always measured. */
+	const bool skip =
+		study->variant_count > 1 && strcmp(study->variants[0].text, "standard") == 0;
+	for (size_t i = skip; i < study->variant_count; i++) {
+		gz_text_add(out, i > skip ? "," : "");
 		add_argument(study->variants[i].text, out);
 	}
 	gz_text_add(out, " \\\n  --size ");
@@ -73,9 +90,13 @@ static void add_command(const struct gz_study *study, struct gz_text *out)
 	}
 	if (study->camera_count > 0)
 		gz_text_add(out, " --cameras %u", study->camera_count);
-	gz_text_add(out, " --frames %d --warm-up %d --seed %llu --out DIR</code></pre>\n",
-		    study->frames_per_point, study->warm_up_frames,
-		    (unsigned long long)study->seed);
+	gz_text_add(out, " \\\n  --frames %d --warm-up %d --seed %llu --errors %s",
+		    study->frames_per_point, study->warm_up_frames, (unsigned long long)study->seed,
+		    gz_study_accuracy_names[study->accuracy]);
+	add_display(study, out);
+	if (study->shard_count > 1)
+		gz_text_add(out, " --shard %d/%d", study->shard + 1, study->shard_count);
+	gz_text_add(out, " --out DIR</code></pre>\n");
 }
 
 static void add_scene(const struct gz_study_scene *scene, struct gz_text *out)

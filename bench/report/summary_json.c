@@ -221,7 +221,8 @@ static json_t *head_to_json(const struct gz_study *study)
 	json_object_set_new(object, "format", json_string(GZ_SUMMARY_FORMAT));
 	json_object_set_new(object, "version", json_integer(GZ_SUMMARY_VERSION));
 	json_object_set_new(object, "complete", json_boolean(study->complete));
-	json_object_set_new(object, "shard", json_pack("[i, i]", study->shard, study->shard_count));
+	json_object_set_new(object, "shard",
+			    json_pack("[i, i]", study->shard + 1, study->shard_count));
 	json_object_set_new(object, "rows", count(study->row_count));
 	json_object_set_new(object, "path", json_string(study->path));
 	json_object_set_new(object, "path_hash", json_string(study->path_hash));

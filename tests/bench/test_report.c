@@ -201,6 +201,8 @@ static void page_of_a_partial_study_or_one_shard_says_so(void **state)
 	gz_page_write(&summary, &none, &page);
 	assert_non_null(strstr(page.bytes, "Partial study."));
 	assert_non_null(strstr(page.bytes, "One part of 4."));
+	assert_non_null(strstr(page.bytes, "holds shard 3;"));
+	assert_non_null(strstr(page.bytes, " --shard 3/4 "));
 	gz_text_free(&page);
 	free_both(&study, &summary);
 }
