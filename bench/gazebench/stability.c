@@ -309,8 +309,11 @@ static enum gz_result run_variants(struct session *session, const struct gz_stab
 
 static enum gz_result run_backend(struct session *session)
 {
+	/* gl names itself in what it says. */
+	const char *described = gz_stability_describe(session->bench);
+	const bool named = strncmp(described, session->backend, strlen(session->backend)) == 0;
 	if (!session->settings.json)
-		printf("%s is %s\n", session->backend, gz_stability_describe(session->bench));
+		printf("%s%s%s\n", named ? "" : session->backend, named ? "" : ": ", described);
 	enum gz_result result = GZ_OK;
 	for (const struct gz_stability_row *row = gz_stability_rows; row->name && result == GZ_OK;
 	     row++)
