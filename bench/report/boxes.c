@@ -58,7 +58,7 @@ static enum gz_result draw_on(const struct gz_summary *summary, const struct gz_
 			greatest = fmax(greatest, series->frame_ms.p99);
 			add_row(summary->study, series, rows++, characters, &table);
 		}
-	canvas.left = (int)((characters + 1) * canvas.font_px * 0.56);
+	canvas.left = (int)((characters + 2) * canvas.font_px * 0.58);
 	canvas.height = canvas.top + canvas.bottom + (int)rows * row_px(&canvas);
 	gz_chart_set_text(&settings, "title_text", "time of a frame, ms");
 	gz_chart_set_text(&settings, "x_title", "box: half of all frames; line: 99 of 100");

@@ -58,6 +58,17 @@ static void add_pareto(const struct gz_summary *summary, const struct gz_group *
 	gz_page_figure(charts, name, class_name, caption, out);
 }
 
+static void add_boxes(const struct gz_summary *summary, const struct gz_group *group,
+		      const struct gz_charts *charts, const char *class_name, struct gz_text *out)
+{
+	char name[GZ_NAMES_SIZE];
+	gz_chart_name(summary, "boxes", group, name);
+	gz_page_figure(charts, name, class_name,
+		       "Times of frames. The box holds the middle half of them, the bar is the "
+		       "median, the line goes from the least to the 99th of 100.",
+		       out);
+}
+
 static void add_answer(const struct gz_summary *summary, const struct gz_group *group,
 		       const struct gz_charts *charts, struct gz_text *out)
 {
@@ -69,6 +80,8 @@ static void add_answer(const struct gz_summary *summary, const struct gz_group *
 	gz_text_add(out, "</p>\n");
 	if (gz_group_measure(group, &measure))
 		add_pareto(summary, group, charts, measure, "first", out);
+	else
+		add_boxes(summary, group, charts, "first", out);
 }
 
 static void add_banners(const struct gz_summary *summary, const struct gz_charts *charts,
@@ -144,11 +157,9 @@ static void add_maps(const struct gz_summary *summary, const struct gz_group *gr
 	gz_text_add(out, "</div></details>\n");
 }
 
-static void add_details(const struct gz_summary *summary, const struct gz_group *group,
-			const struct gz_charts *charts, struct gz_text *out)
+static void add_errors(const struct gz_summary *summary, const struct gz_group *group,
+		       const struct gz_charts *charts, struct gz_text *out)
 {
-	char name[GZ_NAMES_SIZE];
-	gz_page_gain_table(summary, group, out);
 	gz_page_equal_tables(summary, group, out);
 	add_other_charts(summary, group, charts, out);
 	gz_text_add(out, "<h3>All measures of error</h3>\n<p>PSNR in decibels is that of the mean "
@@ -162,12 +173,19 @@ static void add_details(const struct gz_summary *summary, const struct gz_group 
 	gz_text_add(out, "</p>\n");
 	gz_page_error_table(summary, group, GZ_AGAINST_CONVERGED, out);
 	gz_page_error_table(summary, group, GZ_AGAINST_STANDARD, out);
+}
+
+static void add_details(const struct gz_summary *summary, const struct gz_group *group,
+			const struct gz_charts *charts, struct gz_text *out)
+{
+	enum gz_error_measure measure;
+	const bool has_errors = gz_group_measure(group, &measure);
+	gz_page_gain_table(summary, group, out);
+	if (has_errors)
+		add_errors(summary, group, charts, out);
 	gz_page_time_table(summary, group, out);
-	gz_chart_name(summary, "boxes", group, name);
-	gz_page_figure(charts, name, "wide",
-		       "Times of frames. The box holds the middle half of them, the bar is the "
-		       "median, the line goes from the least to the 99th of 100.",
-		       out);
+	if (has_errors) /* else they are the first chart */
+		add_boxes(summary, group, charts, "wide", out);
 	gz_page_cast_table(summary, group, out);
 	add_maps(summary, group, charts, out);
 }

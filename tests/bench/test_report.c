@@ -207,6 +207,29 @@ static void page_of_a_partial_study_or_one_shard_says_so(void **state)
 	free_both(&study, &summary);
 }
 
+static void page_without_errors_has_no_empty_tables_of_them(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text page = { 0 };
+	const struct gz_charts none = { 0 };
+	make(NULL, 1, &study, &summary);
+	gz_page_write(&summary, &none, &page);
+	assert_non_null(strstr(page.bytes, "All measures of error"));
+	gz_text_free(&page);
+	gz_summary_free(&summary);
+	for (size_t i = 0; i < study.row_count; i++)
+		study.rows[i].converged.perceived_flip = NAN;
+	assert_int_equal(gz_summary_make(&study, &summary), GZ_OK);
+	gz_page_write(&summary, &none, &page);
+	assert_null(strstr(page.bytes, "All measures of error"));
+	assert_null(strstr(page.bytes, "At equal error"));
+	assert_non_null(strstr(page.bytes, "what it costs is not known"));
+	gz_text_free(&page);
+	free_both(&study, &summary);
+}
+
 static void base64_is_that_of_the_standard(void **state)
 {
 	(void)state;
@@ -263,6 +286,7 @@ int main(void)
 		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
 		cmocka_unit_test(page_escapes_every_text_and_holds_nothing_from_elsewhere),
 		cmocka_unit_test(page_of_a_partial_study_or_one_shard_says_so),
+		cmocka_unit_test(page_without_errors_has_no_empty_tables_of_them),
 		cmocka_unit_test(base64_is_that_of_the_standard),
 		cmocka_unit_test(labels_lie_off_points_and_off_each_other),
 		cmocka_unit_test(chart_gets_colours_for_dark_pages_and_stays_as_it_is),
