@@ -1,11 +1,7 @@
 /*
  * The pipeline beside the 1 euro filter and plain I-VT, on recordings that two people labelled:
- * agreement, jitter and lag. With a folder as its argument, writes the curves of jitter over lag
- * there, for bench/gaze_filter.gp to draw.
- *
- * Jitter is the step-to-step RMS within labelled fixations, of the raw signal's. Lag is how much
- * later than the raw signal a filtered one has done 20, 50 and 80 % of a labelled saccade's way, in
- * samples: the mean over these and over all saccades of more than 2 degrees.
+ * agreement, jitter and lag (bench/filter/stillness.h). With a folder as its argument, draws jitter
+ * over lag there: docs/images/jitter-over-lag.svg.
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,11 +9,18 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "bench/gaze_baselines.h"
-#include "filter/pipeline.h"
+#include "base/log.h"
+#include "bench/filter/baselines.h"
+#include "bench/filter/stillness.h"
+#include "bench/filter/sweep.h"
+#include "bench/filter/track.h"
+#include "bench/report/filter_chart.h"
 #include "filter/recording.h"
 
-enum { SKIPPED = 77, STIMULI = 3, CODERS = 2, FILES_MAX = 12, SWEEP_MAX = 32 };
+enum { SKIPPED = 77, STIMULI = 3, CODERS = 2, FILES_MAX = 12 };
+
+/* A step between samples of these recordings, ms: 500 Hz. */
+static const double SAMPLE_MS = 2;
 
 static const char *const STIMULUS_NAMES[STIMULI] = { "img", "dots", "video" };
 static const char *const CODER_NAMES[CODERS] = { "MN", "RA" };
@@ -30,24 +33,16 @@ static const char *const FILES[STIMULI][FILES_MAX] = {
 	  "video_UH21_video_BergoDalbana", "video_UL23_video_triple_jump" },
 };
 
-/** A recording, and what a filter made of it. */
-struct track {
-	struct recording recording;
+/** Whose a recording is. */
+struct origin {
 	int stimulus, coder;
-	struct gz_point *point;
-	bool *saccade, *fixation;
 };
 
 /** All of them. */
 struct tracks {
-	struct track track[STIMULI * CODERS * FILES_MAX];
+	struct gz_gaze_track track[STIMULI * CODERS * FILES_MAX];
+	struct origin origin[STIMULI * CODERS * FILES_MAX];
 	size_t count;
-};
-
-/** What a filter reaches. */
-struct score {
-	double saccade_kappa[STIMULI], fixation_kappa[STIMULI];
-	double jitter, distance, lag;
 };
 
 /** Counts for Cohen's kappa, one against the rest. */
@@ -64,229 +59,67 @@ static double kappa(const struct agreement *a)
 	return (observed - chance) / (1 - chance);
 }
 
-static double kappa_of(const struct tracks *tracks, int stimulus, bool saccades)
+static void count_agreement(const struct gz_gaze_track *track, enum gz_event event,
+			    struct agreement *agreement)
+{
+	for (size_t i = 0; i < track->count; i++) {
+		const bool ours = track->event[i] == event, theirs = track->label[i] == event;
+		agreement->all++;
+		agreement->ours += ours;
+		agreement->theirs += theirs;
+		agreement->both += ours && theirs;
+	}
+}
+
+/* The mean over both people. */
+static double kappa_of(const struct tracks *tracks, int stimulus, enum gz_event event)
 {
 	double sum = 0;
 	for (int coder = 0; coder < CODERS; coder++) {
-		struct agreement a = { .all = 0 };
-		for (size_t f = 0; f < tracks->count; f++) {
-			const struct track *t = &tracks->track[f];
-			if (t->stimulus != stimulus || t->coder != coder)
-				continue;
-			for (size_t i = 0; i < t->recording.count; i++) {
-				bool ours = saccades ? t->saccade[i] : t->fixation[i];
-				int wanted = saccades ? LABEL_SACCADE : LABEL_FIXATION;
-				bool theirs = t->recording.label[i] == wanted;
-				a.all++;
-				a.ours += ours;
-				a.theirs += theirs;
-				a.both += ours && theirs;
-			}
-		}
-		sum += kappa(&a) / CODERS;
+		struct agreement agreement = { .all = 0 };
+		for (size_t f = 0; f < tracks->count; f++)
+			if (tracks->origin[f].stimulus == stimulus &&
+			    tracks->origin[f].coder == coder)
+				count_agreement(&tracks->track[f], event, &agreement);
+		sum += kappa(&agreement) / CODERS;
 	}
 	return sum;
 }
 
-static double apart_deg(const struct track *t, struct gz_point a, struct gz_point b)
+static void run_pipeline(struct tracks *tracks, bool certain)
 {
-	return gz_display_angle_deg(&t->recording.display, a, b);
+	for (size_t f = 0; f < tracks->count; f++)
+		gz_gaze_track_run_pipeline(&tracks->track[f], NULL, certain);
 }
 
-static struct gz_point raw_at(const struct track *t, size_t i)
+static bool is_saccade(const struct gz_gaze_track *track, size_t i, double threshold_deg_s)
 {
-	return t->recording.sample[i].point;
-}
-
-static bool good_at(const struct track *t, size_t i)
-{
-	return t->recording.sample[i].valid;
-}
-
-static size_t stretch_end(const struct track *t, size_t begin)
-{
-	size_t end = begin;
-	while (end < t->recording.count && t->recording.label[end] == t->recording.label[begin])
-		end++;
-	return end;
-}
-
-/** Sums over fixations. */
-struct stillness {
-	double raw_step2, our_step2, raw_off2, our_off2;
-};
-
-static void add_fixation(const struct track *t, size_t begin, size_t end, struct stillness *sum)
-{
-	double x = 0, y = 0, count = 0;
-	for (size_t i = begin; i < end; i++) {
-		if (!good_at(t, i))
-			continue;
-		x += raw_at(t, i).x;
-		y += raw_at(t, i).y;
-		count++;
-	}
-	struct gz_point centre = { (float)(x / count), (float)(y / count) };
-	for (size_t i = begin; i < end; i++) {
-		if (!good_at(t, i))
-			continue;
-		sum->raw_off2 += pow(apart_deg(t, raw_at(t, i), centre), 2);
-		sum->our_off2 += pow(apart_deg(t, t->point[i], centre), 2);
-		if (i == begin || !good_at(t, i - 1))
-			continue;
-		sum->raw_step2 += pow(apart_deg(t, raw_at(t, i), raw_at(t, i - 1)), 2);
-		sum->our_step2 += pow(apart_deg(t, t->point[i], t->point[i - 1]), 2);
-	}
-}
-
-/** When a path is first so far from a place, in samples from @p begin on, between samples too. */
-static double crossing(const struct track *t, bool raw, struct gz_point from, double deg,
-		       size_t begin, size_t end)
-{
-	double last = 0;
-	for (size_t i = begin; i < end; i++) {
-		double now = apart_deg(t, raw ? raw_at(t, i) : t->point[i], from);
-		if (now >= deg)
-			return (double)(i - begin) -
-			       (now > last && i > begin ? (now - deg) / (now - last) : 0);
-		last = now;
-	}
-	return (double)(end - begin);
-}
-
-/** @return lag of one saccade, or NaN where it is too small or not whole */
-static double lag_of(const struct track *t, size_t begin, size_t end)
-{
-	size_t late = end + 100 < t->recording.count ? end + 100 : t->recording.count;
-	for (size_t i = begin; i < end; i++)
-		if (!good_at(t, i))
-			return NAN;
-	struct gz_point from = raw_at(t, begin);
-	double way_deg = apart_deg(t, from, raw_at(t, end - 1)), sum = 0;
-	if (way_deg < 2)
-		return NAN;
-	for (int part = 2; part <= 8; part += 3) {
-		double deg = way_deg * part / 10;
-		sum += (crossing(t, false, from, deg, begin, late) -
-			crossing(t, true, from, deg, begin, late)) /
-		       3;
-	}
-	return sum;
-}
-
-static struct score score_of(const struct tracks *tracks)
-{
-	struct score score = { .lag = 0 };
-	struct stillness still = { .raw_step2 = 0 };
-	double saccades = 0;
-	for (size_t f = 0; f < tracks->count; f++) {
-		const struct track *t = &tracks->track[f];
-		for (size_t begin = 0, end; begin < t->recording.count; begin = end) {
-			end = stretch_end(t, begin);
-			if (t->recording.label[begin] == LABEL_FIXATION)
-				add_fixation(t, begin, end, &still);
-			if (t->recording.label[begin] != LABEL_SACCADE)
-				continue;
-			double lag = lag_of(t, begin, end);
-			if (!isnan(lag)) {
-				score.lag += lag;
-				saccades++;
-			}
-		}
-	}
-	score.lag /= saccades;
-	score.jitter = sqrt(still.our_step2 / still.raw_step2);
-	score.distance = sqrt(still.our_off2 / still.raw_off2);
-	for (int s = 0; s < STIMULI; s++) {
-		score.saccade_kappa[s] = kappa_of(tracks, s, true);
-		score.fixation_kappa[s] = kappa_of(tracks, s, false);
-	}
-	return score;
-}
-
-static void run_pipeline(struct tracks *tracks, const struct gz_pipeline_params *params,
-			 bool certain)
-{
-	for (size_t f = 0; f < tracks->count; f++) {
-		struct track *t = &tracks->track[f];
-		struct gz_pipeline pipeline;
-		gz_pipeline_init(&pipeline, params, &t->recording.display);
-		for (size_t i = 0; i < t->recording.count; i++) {
-			struct gz_pipeline_output out;
-			gz_pipeline_step(&pipeline, &t->recording.sample[i], &out);
-			t->point[i] = out.gaze.point;
-			t->saccade[i] = out.gaze.event == GZ_EVENT_SACCADE;
-			t->fixation[i] = out.gaze.event == GZ_EVENT_FIXATION;
-			if (!certain || !out.gaze.final_known)
-				continue;
-			for (uint64_t k = 0; k <= out.gaze.final_span; k++) {
-				uint64_t seq = out.gaze.final_seq - k;
-				t->saccade[seq] = out.gaze.final_event == GZ_EVENT_SACCADE;
-				t->fixation[seq] = out.gaze.final_event == GZ_EVENT_FIXATION;
-			}
-		}
-	}
-}
-
-/** In degrees on each axis; where nothing was measured, the last place. Labels stay. */
-static void run_one_euro(struct tracks *tracks, double beta)
-{
-	struct gz_one_euro_params params = { 1, 1, beta };
-	for (size_t f = 0; f < tracks->count; f++) {
-		struct track *t = &tracks->track[f];
-		const struct gz_display *d = &t->recording.display;
-		double scale[2] = { d->mm[0] / d->distance_mm * 57.29577951,
-				    d->mm[1] / d->distance_mm * 57.29577951 };
-		struct gz_one_euro axis[2] = { { .started = false } };
-		int64_t last_ns = 0;
-		struct gz_point last = { 0.5f, 0.5f };
-		for (size_t i = 0; i < t->recording.count; i++) {
-			const struct gz_sample *sample = &t->recording.sample[i];
-			if (sample->valid) {
-				double step_s = gz_ns_to_s(sample->host_ns - last_ns);
-				double x = sample->point.x * scale[0];
-				double y = sample->point.y * scale[1];
-				x = gz_one_euro_step(&axis[0], &params, step_s, x);
-				y = gz_one_euro_step(&axis[1], &params, step_s, y);
-				last = (struct gz_point) { (float)(x / scale[0]),
-							   (float)(y / scale[1]) };
-				last_ns = sample->host_ns;
-			}
-			t->point[i] = last;
-		}
-	}
+	if (i == 0 || !track->sample[i].valid || !track->sample[i - 1].valid)
+		return false;
+	const double step_deg =
+		gz_display_angle_deg(&track->display, track->raw[i], track->raw[i - 1]);
+	return gz_is_saccade_by_velocity(threshold_deg_s, step_deg,
+					 gz_gaze_track_elapsed_ms(track, i - 1, i) / 1000);
 }
 
 static void run_velocity_threshold(struct tracks *tracks, double threshold_deg_s)
 {
 	for (size_t f = 0; f < tracks->count; f++) {
-		struct track *t = &tracks->track[f];
-		for (size_t i = 0; i < t->recording.count; i++) {
-			bool known = i > 0 && good_at(t, i) && good_at(t, i - 1);
-			t->point[i] = raw_at(t, i);
-			t->saccade[i] =
-				known && gz_is_saccade_by_velocity(
-						 threshold_deg_s,
-						 apart_deg(t, raw_at(t, i), raw_at(t, i - 1)),
-						 gz_ns_to_s(t->recording.sample[i].host_ns -
-							    t->recording.sample[i - 1].host_ns));
-			t->fixation[i] = good_at(t, i) && !t->saccade[i];
-		}
+		struct gz_gaze_track *track = &tracks->track[f];
+		for (size_t i = 0; i < track->count; i++)
+			track->event[i] = is_saccade(track, i, threshold_deg_s) ? GZ_EVENT_SACCADE
+					  : track->sample[i].valid              ? GZ_EVENT_FIXATION
+										: GZ_EVENT_LOST;
 	}
 }
 
-static void print_agreement(const char *name, const struct score *s)
+static void print_agreement(const char *name, const struct tracks *tracks)
 {
 	printf("%-30s", name);
 	for (int i = 0; i < STIMULI; i++)
-		printf("  %.3f %.3f", s->saccade_kappa[i], s->fixation_kappa[i]);
+		printf("  %.3f %.3f", kappa_of(tracks, i, GZ_EVENT_SACCADE),
+		       kappa_of(tracks, i, GZ_EVENT_FIXATION));
 	putchar('\n');
-}
-
-static void print_stillness(const char *name, const struct score *s)
-{
-	printf("%-30s  jitter %.3f  distance %.3f  lag %5.2f samples\n", name, s->jitter,
-	       s->distance, s->lag);
 }
 
 static void compare_labels(struct tracks *tracks)
@@ -296,156 +129,116 @@ static void compare_labels(struct tracks *tracks)
 	for (int i = 0; i < STIMULI; i++)
 		printf("%-5s sacc fix  ", STIMULUS_NAMES[i]);
 	putchar('\n');
-	run_pipeline(tracks, NULL, true);
-	struct score score = score_of(tracks);
-	print_agreement("pipeline, certain label", &score);
-	run_pipeline(tracks, NULL, false);
-	score = score_of(tracks);
-	print_agreement("pipeline, label at once", &score);
+	run_pipeline(tracks, true);
+	print_agreement("pipeline, certain label", tracks);
+	run_pipeline(tracks, false);
+	print_agreement("pipeline, label at once", tracks);
 	static const double thresholds[] = { 30, 50, 75, 100, 130 };
 	for (size_t i = 0; i < sizeof thresholds / sizeof thresholds[0]; i++) {
 		run_velocity_threshold(tracks, thresholds[i]);
-		score = score_of(tracks);
 		snprintf(name, sizeof name, "I-VT at %.0f deg/s", thresholds[i]);
-		print_agreement(name, &score);
+		print_agreement(name, tracks);
 	}
 }
 
-/** One point of a curve. */
-struct curve_point {
-	double lag, jitter;
-};
-
-static size_t sweep_one_euro(struct tracks *tracks, struct curve_point *curve)
+static void print_sweep(const char *name, const struct gz_sweep *sweep)
 {
-	size_t count = 0;
-	for (double beta = 1e-4; beta < 200 && count < SWEEP_MAX; beta *= 1.6) {
-		char name[64];
-		run_one_euro(tracks, beta);
-		struct score score = score_of(tracks);
-		snprintf(name, sizeof name, "1 euro, beta %.4g", beta);
-		print_stillness(name, &score);
-		curve[count++] = (struct curve_point) { score.lag, score.jitter };
+	for (size_t i = 0; i < sweep->count; i++) {
+		const struct gz_stillness *still = &sweep->point[i].stillness;
+		printf("%-26s %-8.4g  jitter %.3f  distance %.3f  lag %5.2f samples\n", name,
+		       sweep->point[i].setting, still->jitter, still->distance,
+		       still->lag_ms / SAMPLE_MS);
 	}
-	return count;
 }
 
-/** From where on a saccade passes unsmoothed: this trades lag for jitter. */
-static const double PASSES_DEG[] = { 0, 0.3, 0.6, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 2 };
-
-static size_t sweep_pipeline(struct tracks *tracks, struct curve_point *curve)
+static bool draw(const struct gz_sweep *ours, const struct gz_sweep *theirs, const char *folder)
 {
-	size_t count = 0;
-	for (size_t i = 0; i < sizeof PASSES_DEG / sizeof PASSES_DEG[0]; i++) {
-		struct gz_pipeline_params params = gz_pipeline_default_params();
-		params.smooth.pass_deg = PASSES_DEG[i];
-		char name[64];
-		run_pipeline(tracks, &params, true);
-		struct score score = score_of(tracks);
-		snprintf(name, sizeof name, "pipeline, smooth_pass_deg %g", PASSES_DEG[i]);
-		print_stillness(name, &score);
-		curve[count++] = (struct curve_point) { score.lag, score.jitter };
-	}
-	return count;
+	struct gz_log log;
+	bool drawn;
+	gz_log_init(&log, NULL, NULL, NULL);
+	return gz_filter_chart_draw(ours, theirs, SAMPLE_MS, folder, &log, &drawn) == GZ_OK;
 }
 
-/** Least jitter that a curve gives for a lag, by a straight line between its points. */
-static double jitter_at(const struct curve_point *curve, size_t count, double lag)
-{
-	double least = INFINITY;
-	for (size_t i = 0; i < count; i++) {
-		if (curve[i].lag <= lag)
-			least = fmin(least, curve[i].jitter);
-		for (size_t k = 0; k < count; k++) {
-			double span = curve[k].lag - curve[i].lag,
-			       part = (lag - curve[i].lag) / span;
-			if (span > 0 && part >= 0 && part <= 1 && (k == i + 1 || i == k + 1))
-				least = fmin(least, curve[i].jitter + part * (curve[k].jitter -
-									      curve[i].jitter));
-		}
-	}
-	return least;
-}
-
-static bool write_curve(const char *folder, const char *name, const struct curve_point *curve,
-			size_t count)
-{
-	char path[1024];
-	snprintf(path, sizeof path, "%s/%s.dat", folder, name);
-	FILE *file = fopen(path, "w");
-	if (!file)
-		return false;
-	fputs("# lag in samples, jitter of raw\n", file);
-	for (size_t i = 0; i < count; i++)
-		fprintf(file, "%.4f %.4f\n", curve[i].lag, curve[i].jitter);
-	return fclose(file) == 0;
-}
-
-/** @return whether the pipeline's curve lies below at every lag above one sample */
+/** @return whether the pipeline's curve lies below at every lag from one sample to 20 */
 static bool compare_curves(struct tracks *tracks, const char *folder)
 {
-	struct curve_point ours[SWEEP_MAX], theirs[SWEEP_MAX];
-	size_t our_count = sweep_pipeline(tracks, ours);
-	size_t their_count = sweep_one_euro(tracks, theirs);
-	bool below = true;
-	for (double lag = 1; lag <= 20; lag += 0.25) {
-		double our_jitter = jitter_at(ours, our_count, lag);
-		double their_jitter = jitter_at(theirs, their_count, lag);
-		if (our_jitter < their_jitter)
-			continue;
-		below = false;
-		printf("at a lag of %.2f samples: jitter %.3f against %.3f\n", lag, our_jitter,
-		       their_jitter);
-	}
+	const struct gz_pipeline_params params = gz_pipeline_default_params();
+	const struct gz_sweep ours = gz_sweep_pipeline(tracks->track, tracks->count, &params);
+	const struct gz_sweep theirs = gz_sweep_one_euro(tracks->track, tracks->count);
+	print_sweep("pipeline, smooth_pass_deg", &ours);
+	print_sweep("1 euro, beta", &theirs);
+	const double lag_ms =
+		gz_sweep_first_not_below(&ours, &theirs, SAMPLE_MS, 20 * SAMPLE_MS, SAMPLE_MS / 4);
+	const bool below = isnan(lag_ms);
+	if (!below)
+		printf("at a lag of %.2f samples: jitter %.3f against %.3f\n", lag_ms / SAMPLE_MS,
+		       gz_sweep_jitter_at(&ours, lag_ms), gz_sweep_jitter_at(&theirs, lag_ms));
 	printf("the pipeline's jitter lies below the 1 euro filter's at every lag from 1 to 20 "
 	       "samples: %s\n",
 	       below ? "yes" : "no");
-	if (folder && (!write_curve(folder, "pipeline", ours, our_count) ||
-		       !write_curve(folder, "one_euro", theirs, their_count))) {
-		fprintf(stderr, "%s: cannot be written to; name another folder\n", folder);
-		return false;
+	return (!folder || draw(&ours, &theirs, folder)) && below;
+}
+
+static enum gz_event event_of(int label)
+{
+	switch (label) {
+	case LABEL_FIXATION:
+		return GZ_EVENT_FIXATION;
+	case LABEL_SACCADE:
+		return GZ_EVENT_SACCADE;
+	case LABEL_PURSUIT:
+		return GZ_EVENT_PURSUIT;
+	case LABEL_BLINK:
+		return GZ_EVENT_BLINK;
+	default: /* a glissade, or what nobody could name */
+		return GZ_EVENT_LOST;
 	}
-	return below;
+}
+
+static bool take_recording(const struct recording *recording, struct gz_gaze_track *out)
+{
+	if (gz_gaze_track_start(recording->count, &recording->display, out) != GZ_OK)
+		return false;
+	for (size_t i = 0; i < recording->count; i++) {
+		out->sample[i] = recording->sample[i];
+		out->raw[i] = recording->sample[i].point;
+		out->label[i] = event_of(recording->label[i]);
+	}
+	return true;
 }
 
 /** One person corrected one file, which then has another name. */
-static bool read_track(const char *data, int stimulus, int coder, const char *file,
-		       struct track *out)
+static bool read_track(const char *data, int coder, const char *file, struct gz_gaze_track *out)
 {
 	char path[1024];
 	bool corrected = coder == 0 && strcmp(file, "img_UH29_img_Europe") == 0;
 	snprintf(path, sizeof path, "%s/gaze/andersson2017/%s_labelled_%s%s.tsv.gz", data,
 		 corrected ? "fix_UH29_img_Europe" : file, corrected ? "FIX_" : "",
 		 CODER_NAMES[coder]);
-	if (!recording_read(path, &out->recording))
-		return false;
-	out->stimulus = stimulus;
-	out->coder = coder;
-	out->point = calloc(out->recording.count, sizeof *out->point);
-	out->saccade = calloc(out->recording.count, sizeof *out->saccade);
-	out->fixation = calloc(out->recording.count, sizeof *out->fixation);
-	return out->point && out->saccade && out->fixation;
+	struct recording recording;
+	const bool taken = recording_read(path, &recording) && take_recording(&recording, out);
+	recording_free(&recording);
+	return taken;
 }
 
 static bool read_tracks(const char *data, struct tracks *tracks)
 {
 	for (int stimulus = 0; stimulus < STIMULI; stimulus++)
 		for (int coder = 0; coder < CODERS; coder++)
-			for (int f = 0; f < FILES_MAX && FILES[stimulus][f]; f++)
-				if (!read_track(data, stimulus, coder, FILES[stimulus][f],
-						&tracks->track[tracks->count++]))
+			for (int f = 0; f < FILES_MAX && FILES[stimulus][f]; f++) {
+				if (!read_track(data, coder, FILES[stimulus][f],
+						&tracks->track[tracks->count]))
 					return false;
+				tracks->origin[tracks->count++] =
+					(struct origin) { stimulus, coder };
+			}
 	return true;
 }
 
 static void free_tracks(struct tracks *tracks)
 {
-	for (size_t f = 0; f < tracks->count; f++) {
-		recording_free(&tracks->track[f].recording);
-		free(tracks->track[f].point);
-		free(tracks->track[f].saccade);
-		free(tracks->track[f].fixation);
-	}
+	for (size_t f = 0; f < tracks->count; f++)
+		gz_gaze_track_free(&tracks->track[f]);
 	free(tracks);
 }
 

@@ -10,6 +10,7 @@ static const struct gz_command *const commands[] = {
 	&gazebench_report,
 	&gazebench_suggest,
 	&gazebench_compare,
+	&gazebench_filter,
 	&gazebench_stability,
 	NULL,
 };

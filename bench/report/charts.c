@@ -80,13 +80,13 @@ static enum gz_result look_for_gnuplot(struct gz_charts *charts)
 	const enum gz_result result = gz_child_run(charts->work, arguments, "said.txt", &status);
 	if (result == GZ_ERR_NOT_FOUND) {
 		gz_warn(charts->log,
-			"gnuplot is not installed: the report has no charts; install gnuplot-nox "
+			"gnuplot is not installed: there are no charts; install gnuplot-nox "
 			"and run the same again");
 		return GZ_OK;
 	}
 	charts->available = result == GZ_OK && status == 0;
 	if (!charts->available)
-		gz_warn(charts->log, "gnuplot does not run: the report has no charts");
+		gz_warn(charts->log, "gnuplot does not run: there are no charts");
 	return GZ_OK;
 }
 

@@ -218,7 +218,7 @@ static void report_without_gnuplot_has_all_but_charts_and_says_so(void **state)
 	setenv("PATH", "/nonexistent", 1);
 	run(place, (const char *[]) { "report", "study", NULL });
 	setenv("PATH", kept, 1);
-	assert_said(place, 0, "gnuplot is not installed: the report has no charts");
+	assert_said(place, 0, "gnuplot is not installed: there are no charts");
 	assert_said(place, 0, "study/report.html");
 	static const char *const files[] = { "report.html", "summary.json" };
 	for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {

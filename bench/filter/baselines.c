@@ -1,4 +1,4 @@
-#include "bench/gaze_baselines.h"
+#include "bench/filter/baselines.h"
 
 #include <math.h>
 

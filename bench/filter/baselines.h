@@ -2,8 +2,8 @@
  * @file
  * What the pipeline is compared with: the 1 euro filter and velocity-threshold identification.
  */
-#ifndef GZ_BENCH_GAZE_BASELINES_H
-#define GZ_BENCH_GAZE_BASELINES_H
+#ifndef GZ_BENCH_FILTER_BASELINES_H
+#define GZ_BENCH_FILTER_BASELINES_H
 
 #include <stdbool.h>
 

@@ -1,0 +1,140 @@
+#include "bench/filter/stillness.h"
+
+#include <math.h>
+
+/* Sums over fixations and over saccades. */
+struct sums {
+	double raw_step2, our_step2, raw_off2, our_off2, lag_ms;
+	size_t fixations, saccades;
+};
+
+static double apart_deg(const struct gz_gaze_track *track, struct gz_point a, struct gz_point b)
+{
+	return gz_display_angle_deg(&track->display, a, b);
+}
+
+static bool good_at(const struct gz_gaze_track *track, size_t i)
+{
+	return isfinite(track->raw[i].x) && isfinite(track->raw[i].y);
+}
+
+static size_t stretch_end(const struct gz_gaze_track *track, size_t begin)
+{
+	size_t end = begin;
+	while (end < track->count && track->label[end] == track->label[begin])
+		end++;
+	return end;
+}
+
+static double square(double x)
+{
+	return x * x;
+}
+
+static void add_steps(const struct gz_gaze_track *track, size_t begin, size_t end,
+		      struct gz_point centre, struct sums *sums)
+{
+	for (size_t i = begin; i < end; i++) {
+		if (!good_at(track, i))
+			continue;
+		sums->raw_off2 += square(apart_deg(track, track->raw[i], centre));
+		sums->our_off2 += square(apart_deg(track, track->point[i], centre));
+		if (i == begin || !good_at(track, i - 1))
+			continue;
+		sums->raw_step2 += square(apart_deg(track, track->raw[i], track->raw[i - 1]));
+		sums->our_step2 += square(apart_deg(track, track->point[i], track->point[i - 1]));
+	}
+}
+
+static void add_fixation(const struct gz_gaze_track *track, size_t begin, size_t end,
+			 struct sums *sums)
+{
+	double x = 0, y = 0, count = 0;
+	for (size_t i = begin; i < end; i++) {
+		if (!good_at(track, i))
+			continue;
+		x += track->raw[i].x;
+		y += track->raw[i].y;
+		count++;
+	}
+	if (count == 0)
+		return;
+	add_steps(track, begin, end, (struct gz_point) { (float)(x / count), (float)(y / count) },
+		  sums);
+	sums->fixations++;
+}
+
+/* When a path is first so far from a place, in ms from sample begin on, between samples too; a step
+ * behind the last sample if it never is. */
+static double crossing_ms(const struct gz_gaze_track *track, const struct gz_point *path,
+			  struct gz_point from, double deg, size_t begin, size_t end)
+{
+	double last_deg = 0;
+	for (size_t i = begin; i < end; i++) {
+		const double now_deg = apart_deg(track, path[i], from);
+		if (now_deg >= deg) {
+			const double before =
+				now_deg > last_deg && i > begin
+					? (now_deg - deg) / (now_deg - last_deg) *
+						  gz_gaze_track_elapsed_ms(track, i - 1, i)
+					: 0;
+			return gz_gaze_track_elapsed_ms(track, begin, i) - before;
+		}
+		last_deg = now_deg;
+	}
+	return gz_gaze_track_elapsed_ms(track, begin, end - 1) +
+	       (end > 1 ? gz_gaze_track_elapsed_ms(track, end - 2, end - 1) : 0);
+}
+
+/* Lag of one saccade, ms; NaN where it is too small or not whole. */
+static double lag_of(const struct gz_gaze_track *track, size_t begin, size_t end)
+{
+	for (size_t i = begin; i < end; i++)
+		if (!good_at(track, i))
+			return NAN;
+	const struct gz_point from = track->raw[begin];
+	const double way_deg = apart_deg(track, from, track->raw[end - 1]);
+	if (way_deg < GZ_LAG_LEAST_DEG)
+		return NAN;
+	size_t late = end;
+	while (late < track->count &&
+	       gz_gaze_track_elapsed_ms(track, end - 1, late) <= GZ_LAG_MOST_MS)
+		late++;
+	double sum_ms = 0;
+	for (int part = 2; part <= 8; part += 3) {
+		const double deg = way_deg * part / 10;
+		sum_ms += crossing_ms(track, track->point, from, deg, begin, late) -
+			  crossing_ms(track, track->raw, from, deg, begin, late);
+	}
+	return sum_ms / 3;
+}
+
+static void add_track(const struct gz_gaze_track *track, struct sums *sums)
+{
+	for (size_t begin = 0, end; begin < track->count; begin = end) {
+		end = stretch_end(track, begin);
+		if (track->label[begin] == GZ_EVENT_FIXATION)
+			add_fixation(track, begin, end, sums);
+		if (track->label[begin] != GZ_EVENT_SACCADE)
+			continue;
+		const double lag_ms = lag_of(track, begin, end);
+		if (!isfinite(lag_ms))
+			continue;
+		sums->lag_ms += lag_ms;
+		sums->saccades++;
+	}
+}
+
+struct gz_stillness gz_stillness_of(const struct gz_gaze_track *tracks, size_t count)
+{
+	struct sums sums = { .lag_ms = 0 };
+	for (size_t i = 0; i < count; i++)
+		add_track(&tracks[i], &sums);
+	return (struct gz_stillness) {
+		.fixations = sums.fixations,
+		.saccades = sums.saccades,
+		.jitter = sums.raw_step2 > 0 ? sqrt(sums.our_step2 / sums.raw_step2) : NAN,
+		.distance = sums.raw_off2 > 0 ? sqrt(sums.our_off2 / sums.raw_off2) : NAN,
+		.lag_ms = sums.saccades > 0 ? sums.lag_ms / (double)sums.saccades : NAN,
+	};
+}

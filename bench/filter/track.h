@@ -1,0 +1,86 @@
+/**
+ * @file
+ * A recording of gaze, who looked at what when as far as it is known, and what a filter made of it.
+ */
+#ifndef GZ_BENCH_FILTER_TRACK_H
+#define GZ_BENCH_FILTER_TRACK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "filter/pipeline.h"
+#include "protocol/display.h"
+#include "protocol/gaze.h"
+
+/** A recording. The arrays have @p count elements, one a sample, by time. */
+struct gz_gaze_track {
+	struct gz_display display;
+	size_t count;
+	struct gz_sample *sample; /**< seq is the place in the array */
+	struct gz_point *raw;     /**< the common point as a filter gets it; NaN where none is */
+	enum gz_event *label;     /**< what the eye did: by people, or by the pipeline in the end */
+	struct gz_point *point;   /**< what a filter made of it, always finite */
+	enum gz_event *event;     /**< what a filter called it */
+};
+
+/**
+ * Room for @p count samples; all is zero.
+ *
+ * @retval GZ_ERR_NO_MEM  nothing to free
+ */
+enum gz_result gz_gaze_track_start(size_t count, const struct gz_display *display,
+				   struct gz_gaze_track *out_track);
+
+/** Free what it holds and zero it. */
+void gz_gaze_track_free(struct gz_gaze_track *track);
+
+/** Time from sample @p from to sample @p to, ms; infinite where no clock counts so far. */
+double gz_gaze_track_elapsed_ms(const struct gz_gaze_track *track, size_t from, size_t to);
+
+/**
+ * Time between samples, ms: the mean of the steps, without those above one and a half times their
+ * median, which hold lost samples. NaN for fewer than two samples or without memory.
+ */
+double gz_gaze_track_interval_ms(const struct gz_gaze_track *track);
+
+/**
+ * Run the pipeline over it: fills @p point and @p event.
+ *
+ * @param params   NULL for the defaults
+ * @param certain  @p event is the label that the pipeline tells later (gz_gaze.final_event); else
+ *                 the one that it tells at once
+ */
+void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
+				const struct gz_pipeline_params *params, bool certain);
+
+/**
+ * Run the 1 euro filter over @p raw, in degrees on each axis, with its paper's first guess of 1 Hz
+ * for both cutoffs: fills @p point, and @p event stays. Where nothing was measured the last point
+ * is held, (0.5, 0.5) before any.
+ *
+ * @param beta  cutoff gained with speed, Hz over degrees a second
+ */
+void gz_gaze_track_run_one_euro(struct gz_gaze_track *track, double beta);
+
+/** A recording of anybody. */
+struct gz_gaze_log_track {
+	struct gz_gaze_track track;       /**< label is the pipeline's certain one */
+	struct gz_pipeline_params params; /**< that it was recorded with */
+	bool display_known;               /**< else the default is assumed */
+};
+
+/**
+ * Read a gaze log and label it by the pipeline with the recorded settings. Samples whose time does
+ * not advance are left out, as the pipeline does. @p raw is both eyes joined and corrected, before
+ * anything is taken for a spike.
+ *
+ * @param[out] out_log  free its track
+ * @retval GZ_ERR_FORMAT  no gaze log, no sample in it, or a setting that is refused; logged
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_gaze_track_read_log(const char *path, const struct gz_log *log,
+				      struct gz_gaze_log_track *out_log);
+
+#endif

@@ -1,0 +1,267 @@
+/* gazebench filter: lag and jitter of the gaze filter on a gaze log. */
+#include "bench/gazebench/gazebench.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <jansson.h>
+
+#include "bench/filter/stillness.h"
+#include "bench/filter/sweep.h"
+#include "bench/filter/track.h"
+#include "bench/report/filter_chart.h"
+
+#define GZ_LOG_MODULE "gazebench"
+
+struct settings {
+	struct gz_command_common common;
+	char out[GZ_PATH_SIZE];
+	bool json;
+};
+
+static const struct gz_option options[] = {
+	GZ_COMMAND_HELP_OPTION,
+	{ .key = "out",
+	  .type = GZ_OPTION_STRING,
+	  .offset = offsetof(struct settings, out),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "folder for jitter-over-lag.svg and .png; made if it is not there" },
+	{ .key = "json",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = offsetof(struct settings, json),
+	  .preset = "false",
+	  .help = "print one JSON object" },
+};
+
+/* Lags at which the filters are compared, samples. */
+static const double equal_lags[] = { 1, 2, 3, 5, 10, 20 };
+enum { EQUAL_LAGS = sizeof equal_lags / sizeof equal_lags[0] };
+
+/* What is told of a log. */
+struct findings {
+	const char *path;
+	struct gz_gaze_log_track log;
+	double interval_ms;
+	struct gz_sweep pipeline, one_euro;
+	const struct gz_stillness *given; /* in pipeline */
+};
+
+static bool lag_known(const struct findings *found)
+{
+	return found->given->saccades > 0;
+}
+
+static void print_sweep(const struct findings *found, const char *name,
+			const struct gz_sweep *sweep)
+{
+	for (size_t i = 0; i < sweep->count; i++) {
+		const struct gz_sweep_point *point = &sweep->point[i];
+		const struct gz_stillness *still = &point->stillness;
+		printf("%-26s%-8.4g  jitter %.3f  distance %.3f", name, point->setting,
+		       still->jitter, still->distance);
+		if (lag_known(found))
+			printf("  lag %6.2f samples %7.2f ms", still->lag_ms / found->interval_ms,
+			       still->lag_ms);
+		printf("%s\n", point->as_given ? "  as recorded" : "");
+	}
+}
+
+static void print_equal_lags(const struct findings *found)
+{
+	for (int i = 0; i < EQUAL_LAGS; i++) {
+		const double lag_ms = equal_lags[i] * found->interval_ms;
+		printf("at a lag of %2g samples %7.2f ms  jitter %.3f, 1 euro %.3f\n",
+		       equal_lags[i], lag_ms, gz_sweep_jitter_at(&found->pipeline, lag_ms),
+		       gz_sweep_jitter_at(&found->one_euro, lag_ms));
+	}
+}
+
+static void print_lines(const struct findings *found)
+{
+	const struct gz_gaze_track *track = &found->log.track;
+	printf("%s: %zu samples, one each %.3g ms (%.4g Hz), %zu fixations, %zu saccades above "
+	       "%d degrees\n",
+	       found->path, track->count, found->interval_ms, 1000 / found->interval_ms,
+	       found->given->fixations, found->given->saccades, GZ_LAG_LEAST_DEG);
+	printf("%-34s  jitter %.3f  distance %.3f  lag %6.2f samples %7.2f ms\n", "raw signal", 1.0,
+	       1.0, 0.0, 0.0);
+	print_sweep(found, "pipeline, smooth_pass_deg ", &found->pipeline);
+	print_sweep(found, "1 euro, beta ", &found->one_euro);
+	if (lag_known(found))
+		print_equal_lags(found);
+}
+
+/* What is no number in JSON is null. */
+static json_t *number(double value)
+{
+	return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *sweep_json(const struct findings *found, const char *setting,
+			  const struct gz_sweep *sweep)
+{
+	json_t *points = json_array();
+	for (size_t i = 0; i < sweep->count; i++) {
+		const struct gz_sweep_point *point = &sweep->point[i];
+		const struct gz_stillness *still = &point->stillness;
+		json_array_append_new(
+			points, json_pack("{s:f, s:o, s:o, s:o, s:o, s:b}", setting, point->setting,
+					  "jitter", number(still->jitter), "distance",
+					  number(still->distance), "lag_samples",
+					  number(still->lag_ms / found->interval_ms), "lag_ms",
+					  number(still->lag_ms), "as_recorded", point->as_given));
+	}
+	return points;
+}
+
+static json_t *equal_lag_json(const struct findings *found)
+{
+	json_t *rows = json_array();
+	for (int i = 0; i < EQUAL_LAGS && lag_known(found); i++) {
+		const double lag_ms = equal_lags[i] * found->interval_ms;
+		json_array_append_new(
+			rows,
+			json_pack("{s:f, s:f, s:o, s:o}", "lag_samples", equal_lags[i], "lag_ms",
+				  lag_ms, "pipeline",
+				  number(gz_sweep_jitter_at(&found->pipeline, lag_ms)), "one_euro",
+				  number(gz_sweep_jitter_at(&found->one_euro, lag_ms))));
+	}
+	return rows;
+}
+
+static enum gz_result print_json(const struct findings *found, bool drawn)
+{
+	json_t *json = json_pack(
+		"{s:s, s:I, s:f, s:f, s:b, s:I, s:I, s:o, s:o, s:o, s:b}", "log", found->path,
+		"samples", (json_int_t)found->log.track.count, "interval_ms", found->interval_ms,
+		"rate_hz", 1000 / found->interval_ms, "display_known", found->log.display_known,
+		"fixations", (json_int_t)found->given->fixations, "saccades",
+		(json_int_t)found->given->saccades, "pipeline",
+		sweep_json(found, "smooth_pass_deg", &found->pipeline), "one_euro",
+		sweep_json(found, "beta", &found->one_euro), "equal_lag", equal_lag_json(found),
+		"drawn", drawn);
+	const bool printed =
+		json && json_dumpf(json, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) == 0;
+	json_decref(json);
+	putchar('\n');
+	return printed ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static enum gz_result check(const struct findings *found, const struct gz_log *log)
+{
+	if (!found->log.display_known)
+		gz_warn(log,
+			"%s: does not say what display it was recorded on: angles are those of the "
+			"default, 50.4 degrees wide",
+			found->path);
+	if (!(found->interval_ms > 0)) {
+		gz_err(log, "%s: a single sample; record for longer, or give another log",
+		       found->path);
+		return GZ_ERR_FORMAT;
+	}
+	if (found->given->fixations == 0) {
+		gz_err(log,
+		       "%s: holds no fixation, as far as its gaze is valid; record where someone "
+		       "looks at the display",
+		       found->path);
+		return GZ_ERR_FORMAT;
+	}
+	if (isnan(found->given->jitter)) {
+		gz_err(log,
+		       "%s: its fixations are without any noise, which nothing can be "
+		       "compared with; give a log of a tracker",
+		       found->path);
+		return GZ_ERR_FORMAT;
+	}
+	if (!lag_known(found))
+		gz_warn(log,
+			"%s: holds no whole saccade above %d degrees: no lag and no chart, jitter "
+			"alone",
+			found->path, GZ_LAG_LEAST_DEG);
+	return GZ_OK;
+}
+
+static void measure(struct findings *found)
+{
+	struct gz_gaze_track *track = &found->log.track;
+	found->interval_ms = gz_gaze_track_interval_ms(track);
+	found->pipeline = gz_sweep_pipeline(track, 1, &found->log.params);
+	for (size_t i = 0; i < found->pipeline.count; i++)
+		if (found->pipeline.point[i].as_given)
+			found->given = &found->pipeline.point[i].stillness;
+	found->one_euro = gz_sweep_one_euro(track, 1);
+}
+
+static enum gz_result draw(const struct findings *found, const char *folder,
+			   const struct gz_log *log, bool *out_drawn)
+{
+	if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+		gz_err(log, "%s: cannot be made: %s", folder, strerror(errno));
+		return GZ_ERR_IO;
+	}
+	return gz_filter_chart_draw(&found->pipeline, &found->one_euro, found->interval_ms, folder,
+				    log, out_drawn);
+}
+
+static enum gz_result tell(struct findings *found, const struct settings *settings,
+			   const struct gz_log *log)
+{
+	measure(found);
+	bool drawn = false;
+	enum gz_result result = check(found, log);
+	if (result == GZ_OK && settings->out[0] && lag_known(found))
+		result = draw(found, settings->out, log, &drawn);
+	if (result != GZ_OK)
+		return result;
+	if (settings->json)
+		return print_json(found, drawn);
+	print_lines(found);
+	if (drawn)
+		printf("%s/jitter-over-lag.svg\n%s/jitter-over-lag.png\n", settings->out,
+		       settings->out);
+	return GZ_OK;
+}
+
+static int run(int argc, char *const *argv, const struct gz_log *log)
+{
+	struct settings settings;
+	struct gz_operands operands;
+	int status;
+	if (!gz_command_read_arguments(&gazebench_filter, argc, argv, log, &settings, &operands,
+				       &status))
+		return status;
+	if (operands.count != 1) {
+		gz_err(log, "one gaze log is wanted: gazebench filter LOG.gzl");
+		return GAZEBENCH_USAGE;
+	}
+	struct findings found = { .path = operands.items[0] };
+	if (gz_gaze_track_read_log(found.path, log, &found.log) != GZ_OK)
+		return GAZEBENCH_FAILED;
+	const enum gz_result result = tell(&found, &settings, log);
+	gz_gaze_track_free(&found.log.track);
+	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
+}
+
+const struct gz_command gazebench_filter = {
+	.program = "gazebench",
+	.name = "filter",
+	.operands = "LOG",
+	.operands_max = 1,
+	.summary = "measure how much later and how much stiller the gaze filter makes a recording",
+	.details =
+		"LOG is a gaze log (.gzl); it runs through the pipeline with its own settings, "
+		"whose certain labels\ntell fixations and saccades. Prints, for the pipeline with "
+		"smooth_pass_deg swept and for the\n1 euro filter with beta swept: jitter, the "
+		"step-to-step RMS within fixations, of the raw signal's;\ndistance from a "
+		"fixation's centre, likewise; and lag, how much later 20, 50 and 80 % of a "
+		"saccade's\nway are done, in samples and ms, over saccades above 2 degrees. The "
+		"raw signal's are 1, 1 and 0.\nCharts are drawn by gnuplot; without it a warning "
+		"says so, and the numbers are told.\n",
+	.options = options,
+	.option_count = sizeof options / sizeof options[0],
+	.run = run,
+};
