@@ -22,7 +22,7 @@
 #include "render/volume/volume.h"
 
 #define GZ_STABILITY_TEXT_SIZE 256 /**< bytes of any text below with its NUL */
-#define GZ_STABILITY_NUMBERS   2   /**< most numbers that one row measures */
+#define GZ_STABILITY_NUMBERS   3   /**< most numbers that one row measures */
 #define GZ_STABILITY_CROP_PX   32  /**< edge of what is kept round a worst pixel */
 
 /** What is looked at. Volume and transfer function are borrowed. */

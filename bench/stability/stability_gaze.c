@@ -95,6 +95,31 @@ static enum gz_result check_gaze(struct gz_stability_bench *bench,
 	return take_equal(&pictures->image, &pictures->full, pictures->fovea, gaze, outcome);
 }
 
+/* A gaze beyond the edge sees less of the picture well than one at the edge: its plan takes fewer
+ * rays, unless one at the edge takes them all. */
+static enum gz_result check_outside(struct gz_stability_bench *bench,
+				    const struct gz_stability_view *view, struct gz_image *image,
+				    struct gz_stability_outcome *outcome)
+{
+	static const struct gz_point at_edge = { 0, 0.5F }, beyond = { -0.4F, 0.5F };
+	const int method = bench->foveation.method;
+	uint64_t rays[2] = { 0 };
+	enum gz_result result = GZ_OK;
+	if (method == GZ_METHOD_STANDARD || method == GZ_METHOD_UNIFORM)
+		return GZ_OK;
+	for (int i = 0; i < 2 && result == GZ_OK; i++) {
+		result = gz_stability_frame_at(bench, &bench->settings.scene, &bench->foveation,
+					       view, i ? beyond : at_edge, image);
+		rays[i] = bench->stats.rays;
+	}
+	if (result != GZ_OK || rays[0] >= (uint64_t)view->width * (uint64_t)view->height)
+		return result;
+	gz_stability_name(outcome, 2, "% of the rays at the edge taken for a gaze beyond it", 99.9);
+	return gz_stability_take(outcome, 2, 100 * (double)rays[1] / (double)rays[0],
+				 (struct gz_stability_place) { 0 }, "the gaze at %g, %g",
+				 (double)beyond.x, (double)beyond.y);
+}
+
 enum gz_result gz_stability_gaze(struct gz_stability_bench *bench,
 				 struct gz_stability_outcome *outcome)
 {
@@ -111,6 +136,8 @@ enum gz_result gz_stability_gaze(struct gz_stability_bench *bench,
 					       &view, centre, &pictures.lost);
 	for (int i = 0; i < GAZES && result == GZ_OK; i++)
 		result = check_gaze(bench, &view, i, &pictures, outcome);
+	if (result == GZ_OK)
+		result = check_outside(bench, &view, &pictures.image, outcome);
 	free(pictures.fovea);
 	gz_image_free(&pictures.full);
 	gz_image_free(&pictures.lost);
