@@ -64,14 +64,30 @@ static void add_fixation(const struct gz_gaze_track *track, size_t begin, size_t
 	sums->fixations++;
 }
 
-/* When a path is first so far from a place, in ms from sample begin on, between samples too; a step
- * behind the last sample if it never is. */
+/* A saccade's way. */
+struct way {
+	struct gz_point from, to;
+	double deg;
+};
+
+/* How far along the way a point is, degrees; negative where it has not begun. The law of cosines
+ * in the plane, which angles of eye movements are small enough for. */
+static double along_deg(const struct gz_gaze_track *track, const struct way *way,
+			struct gz_point point)
+{
+	const double from_deg = apart_deg(track, point, way->from);
+	const double to_deg = apart_deg(track, point, way->to);
+	return (square(from_deg) + square(way->deg) - square(to_deg)) / (2 * way->deg);
+}
+
+/* When a path has first done so much of a way, in ms from sample begin on, between samples too; a
+ * step behind the last sample if it never has. */
 static double crossing_ms(const struct gz_gaze_track *track, const struct gz_point *path,
-			  struct gz_point from, double deg, size_t begin, size_t end)
+			  const struct way *way, double deg, size_t begin, size_t end)
 {
 	double last_deg = 0;
 	for (size_t i = begin; i < end; i++) {
-		const double now_deg = apart_deg(track, path[i], from);
+		const double now_deg = along_deg(track, way, path[i]);
 		if (now_deg >= deg) {
 			const double before =
 				now_deg > last_deg && i > begin
@@ -83,18 +99,20 @@ static double crossing_ms(const struct gz_gaze_track *track, const struct gz_poi
 		last_deg = now_deg;
 	}
 	return gz_gaze_track_elapsed_ms(track, begin, end - 1) +
-	       (end > 1 ? gz_gaze_track_elapsed_ms(track, end - 2, end - 1) : 0);
+	       gz_gaze_track_elapsed_ms(track, end - 2, end - 1);
 }
 
-/* Lag of one saccade, ms; NaN where it is too small or not whole. */
+/* Lag of the saccade that begins behind sample @p begin, ms; NaN where it is too small or not
+ * whole. */
 static double lag_of(const struct gz_gaze_track *track, size_t begin, size_t end)
 {
 	for (size_t i = begin; i < end; i++)
 		if (!good_at(track, i))
 			return NAN;
-	const struct gz_point from = track->raw[begin];
-	const double way_deg = apart_deg(track, from, track->raw[end - 1]);
-	if (way_deg < GZ_LAG_LEAST_DEG)
+	const struct way way = { .from = track->raw[begin],
+				 .to = track->raw[end - 1],
+				 .deg = apart_deg(track, track->raw[begin], track->raw[end - 1]) };
+	if (!(way.deg >= GZ_LAG_LEAST_DEG))
 		return NAN;
 	size_t late = end;
 	while (late < track->count &&
@@ -102,9 +120,9 @@ static double lag_of(const struct gz_gaze_track *track, size_t begin, size_t end
 		late++;
 	double sum_ms = 0;
 	for (int part = 2; part <= 8; part += 3) {
-		const double deg = way_deg * part / 10;
-		sum_ms += crossing_ms(track, track->point, from, deg, begin, late) -
-			  crossing_ms(track, track->raw, from, deg, begin, late);
+		const double deg = way.deg * part / 10;
+		sum_ms += crossing_ms(track, track->point, &way, deg, begin, late) -
+			  crossing_ms(track, track->raw, &way, deg, begin, late);
 	}
 	return sum_ms / 3;
 }
@@ -115,9 +133,9 @@ static void add_track(const struct gz_gaze_track *track, struct sums *sums)
 		end = stretch_end(track, begin);
 		if (track->label[begin] == GZ_EVENT_FIXATION)
 			add_fixation(track, begin, end, sums);
-		if (track->label[begin] != GZ_EVENT_SACCADE)
+		if (track->label[begin] != GZ_EVENT_SACCADE || begin == 0)
 			continue;
-		const double lag_ms = lag_of(track, begin, end);
+		const double lag_ms = lag_of(track, begin - 1, end);
 		if (!isfinite(lag_ms))
 			continue;
 		sums->lag_ms += lag_ms;

@@ -4,9 +4,10 @@
  *
  * Jitter is the step-to-step RMS within fixations, of the raw signal's. Distance is that from the
  * fixation's centre, RMS, of the raw signal's. Lag is how much later than the raw signal a filtered
- * one has done 20, 50 and 80 % of a saccade's way: the mean over these and over all saccades of
- * more than GZ_LAG_LEAST_DEG, chosen because smaller ones drown in noise. A saccade with a sample
- * that was not measured does not count.
+ * one has done 20, 50 and 80 % of a saccade's way, along its direction, from the sample before the
+ * saccade to its last one: the mean over these and over all saccades of more than GZ_LAG_LEAST_DEG,
+ * chosen because smaller ones drown in noise. A saccade with a sample that was not measured does
+ * not count.
  */
 #ifndef GZ_BENCH_FILTER_STILLNESS_H
 #define GZ_BENCH_FILTER_STILLNESS_H

@@ -153,7 +153,8 @@ class Cluster:
     def start_munge(self):
         self.write("munge.key", os.urandom(1024), 0o400)
         sock = os.path.join(self.place, "munge.socket")
-        files = [f"--{kind}-file={self.place}/munge.{kind}" for kind in ("key", "log", "pid", "seed")]
+        kinds = ("key", "log", "pid", "seed")
+        files = [f"--{kind}-file={self.place}/munge.{kind}" for kind in kinds]
         self.start("munged", "--foreground", "--force", f"--socket={sock}", *files)
         self.wait("munge", lambda: os.path.exists(sock), 20)
 

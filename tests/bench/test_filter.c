@@ -209,6 +209,23 @@ static void raw_signal_has_jitter_1_and_lag_0_and_a_late_one_its_delay(void **st
 	gz_gaze_track_free(track);
 }
 
+static void slow_filter_is_late_also_where_a_saccade_has_a_single_sample(void **state)
+{
+	const struct place *place = *state;
+	const struct making making = { .rate_hz = 30, .count = 900 };
+	struct gz_gaze_log_track log;
+	write_log(place, &making);
+	read_track(place, &log);
+	const struct gz_sweep sweep = gz_sweep_one_euro(&log.track, 1);
+	gz_gaze_track_free(&log.track);
+	assert_true(sweep.point[0].stillness.saccades > 10);
+	assert_true(sweep.point[0].stillness.lag_ms > 50);
+	for (size_t i = 0; i < sweep.count; i++)
+		if (!(sweep.point[i].stillness.lag_ms > 0))
+			fail_msg("beta %g: a lag of %g ms", sweep.point[i].setting,
+				 sweep.point[i].stillness.lag_ms);
+}
+
 static void sweep_of_the_pipeline_has_the_recorded_setting_once(void **state)
 {
 	const struct place *place = *state;
@@ -322,6 +339,7 @@ int main(void)
 		IN_A_PLACE(pipeline_has_less_jitter_than_the_1_euro_filter_at_equal_lag),
 		cmocka_unit_test(comparison_of_curves_that_cross_names_the_lag),
 		IN_A_PLACE(raw_signal_has_jitter_1_and_lag_0_and_a_late_one_its_delay),
+		IN_A_PLACE(slow_filter_is_late_also_where_a_saccade_has_a_single_sample),
 		IN_A_PLACE(sweep_of_the_pipeline_has_the_recorded_setting_once),
 		IN_A_PLACE(log_is_measured_in_samples_and_ms_and_drawn),
 		IN_A_PLACE(without_gnuplot_the_numbers_are_told),
