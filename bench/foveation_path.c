@@ -14,6 +14,7 @@
 #include "bench/metrics/metrics.h"
 #include "bench/study/gaze_path.h"
 #include "bench/study/variant.h"
+#include "render/picture_plan.h"
 #include "render/scene.h"
 
 enum { METHODS_MAX = 16, POINTS_MAX = 1000, REPEATS_MAX = 25 };
@@ -57,8 +58,13 @@ static int frame(struct bench *bench, int method, struct gz_point gaze, double *
 	struct series *series = &bench->series[method];
 	struct gz_frame_stats stats;
 	const int64_t start_ns = gz_clock_now_ns();
-	if (gz_plan_make(&series->settings.foveation, &bench->display, gaze, bench->width,
-			 bench->height, &bench->plan) != GZ_OK)
+	const struct gz_picture_subject subject = {
+		&bench->scene.volume,
+		&bench->scene.settings.camera,
+		&series->settings.rays,
+	};
+	if (gz_picture_plan_make(&subject, &series->settings.foveation, &bench->display, gaze,
+				 bench->width, bench->height, &bench->plan) != GZ_OK)
 		return -1;
 	const int64_t plan_ns = gz_clock_now_ns();
 	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera,

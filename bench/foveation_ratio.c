@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/picture_plan.h"
 #include "render/scene.h"
 
 enum { PAIRS_MAX = 101 };
@@ -51,7 +52,13 @@ static int frame(struct bench *bench, struct series *series, struct gz_point gaz
 						  ? bench->scene.settings.display
 						  : gz_display_default(width, height);
 	const int64_t start_ns = gz_clock_now_ns();
-	if (gz_plan_make(&series->foveation, &display, gaze, width, height, &bench->plan) != GZ_OK)
+	const struct gz_picture_subject subject = {
+		&bench->scene.volume,
+		&bench->scene.settings.camera,
+		&bench->scene.settings.rays,
+	};
+	if (gz_picture_plan_make(&subject, &series->foveation, &display, gaze, width, height,
+				 &bench->plan) != GZ_OK)
 		return -1;
 	const int64_t plan_ns = gz_clock_now_ns();
 	if (gz_renderer_render(bench->renderer, &bench->scene.settings.camera,

@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "bench/metrics/metrics.h"
 #include "bench/push_pull.h"
+#include "render/picture_plan.h"
 #include "render/scene.h"
 
 enum { REPEATS_MAX = 101, KINDS = 3, COPY_PARTS = 64 };
@@ -61,11 +62,17 @@ static bool render(struct bench *bench, int method, int filter, struct gz_image 
 	foveation->method = method;
 	foveation->filter = filter;
 	struct gz_frame_stats stats;
-	const bool done = gz_plan_make(foveation, &bench->display, bench->gaze, bench->width,
-				       bench->height, &bench->plan) == GZ_OK &&
-			  gz_renderer_render(bench->renderer, &bench->scene.settings.camera,
-					     &bench->scene.settings.rays, &bench->plan, image,
-					     &stats) == GZ_OK;
+	const struct gz_picture_subject subject = {
+		&bench->scene.volume,
+		&bench->scene.settings.camera,
+		&bench->scene.settings.rays,
+	};
+	const bool done =
+		gz_picture_plan_make(&subject, foveation, &bench->display, bench->gaze,
+				     bench->width, bench->height, &bench->plan) == GZ_OK &&
+		gz_renderer_render(bench->renderer, &bench->scene.settings.camera,
+				   &bench->scene.settings.rays, &bench->plan, image,
+				   &stats) == GZ_OK;
 	if (done)
 		*out_ms = stats.reconstruct_ms;
 	return done;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "render/detail.h"
+#include "render/picture_plan.h"
 #include "view/caster.h"
 #include "view/loading_bar.h"
 
@@ -229,14 +229,17 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 		return r;
 	struct gz_frame_stats stats;
 	int64_t start_ns = gz_clock_now_ns();
+	const struct gz_picture_subject subject = {
+		&maker->scene.volume,
+		&request->settings->camera,
+		&request->settings->rays,
+	};
 	struct gz_plan_request plan =
-		gz_plan_request_make(&request->settings->foveation, request->display,
-				     maker->focus.point, size[0], size[1]);
+		gz_picture_plan_request(&subject, &request->settings->foveation, request->display,
+					maker->focus.point, size[0], size[1]);
 	plan.rays_per_px = rate;
 	plan.scale = maker->focus.scale;
 	plan.widen = maker->focus.widen;
-	plan.steps_per_px = gz_detail_steps_per_px(&maker->scene.volume, &request->settings->camera,
-						   &request->settings->rays, size[1]);
 	struct gz_display display = *request->display;
 	r = begin_keeping(maker, request->settings, &plan, &display);
 	if (r == GZ_OK)

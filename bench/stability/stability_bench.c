@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/picture_plan.h"
+
 /* Wanted pictures are kept for the next method up to so many bytes. Chosen: a row asks for up to a
  * hundred of one small size, or a dozen of the largest. */
 #define KEPT_BYTES_MAX ((size_t)512 << 20)
@@ -201,8 +203,9 @@ enum gz_result gz_stability_frame_at(struct gz_stability_bench *bench,
 				     const struct gz_stability_view *view, struct gz_point gaze,
 				     struct gz_image *image)
 {
-	const struct gz_plan_request request =
-		gz_plan_request_make(foveation, &view->display, gaze, view->width, view->height);
+	const struct gz_picture_subject subject = { scene->volume, &scene->camera, &scene->rays };
+	const struct gz_plan_request request = gz_picture_plan_request(
+		&subject, foveation, &view->display, gaze, view->width, view->height);
 	return gz_stability_frame(bench, scene, &request, image);
 }
 

@@ -6,6 +6,7 @@
 
 #include "bench/stability/stability_bench.h"
 #include "render/attention/attention.h"
+#include "render/picture_plan.h"
 
 enum { PATH_MAX_POINTS = 32 };
 
@@ -198,12 +199,13 @@ static enum gz_result check_landing(struct gz_stability_bench *bench,
 {
 	const struct gz_stability_view view = gz_stability_scene_view(bench);
 	const struct gz_focus focus = landing_focus(&view.display, ends, before_ns);
-	struct gz_plan_request request = gz_plan_request_make(foveation, &view.display, focus.point,
-							      view.width, view.height);
+	const struct gz_stability_scene *scene = &bench->settings.scene;
+	const struct gz_picture_subject subject = { scene->volume, &scene->camera, &scene->rays };
+	struct gz_plan_request request = gz_picture_plan_request(
+		&subject, foveation, &view.display, focus.point, view.width, view.height);
 	request.scale = focus.scale;
 	request.widen = focus.widen;
-	const enum gz_result result =
-		gz_stability_frame(bench, &bench->settings.scene, &request, image);
+	const enum gz_result result = gz_stability_frame(bench, scene, &request, image);
 	if (result != GZ_OK)
 		return result;
 	size_t blurred = 0, worst = 0;

@@ -8,6 +8,7 @@
 #include "base/command.h"
 #include "bench/study/errors.h"
 #include "bench/study/reference.h"
+#include "render/picture_plan.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -99,13 +100,20 @@ static bool asks_for_gaze(const struct gz_foveation *foveation)
 }
 
 static enum gz_result make_plan(struct gz_measurer *measurer, const struct unit *unit,
-				size_t variant, struct gz_point gaze)
+				size_t variant, const struct gz_camera *camera,
+				struct gz_point gaze)
 {
-	const struct gz_foveation *foveation = &measurer->stage->variants[variant].foveation;
+	const struct gz_variant_settings *settings = &measurer->stage->variants[variant];
+	const struct gz_picture_subject subject = {
+		&measurer->stage->scene.volume,
+		camera,
+		&settings->rays,
+	};
 	struct gz_plan *plan = &measurer->plans[variant];
-	if (asks_for_gaze(foveation))
+	if (asks_for_gaze(&settings->foveation))
 		plan->made_for.valid = false;
-	return gz_plan_make(foveation, &unit->display, gaze, unit->width, unit->height, plan);
+	return gz_picture_plan_make(&subject, &settings->foveation, &unit->display, gaze,
+				    unit->width, unit->height, plan);
 }
 
 static enum gz_result draw(struct gz_measurer *measurer, const struct unit *unit, size_t variant,
@@ -124,7 +132,7 @@ static enum gz_result time_frame(struct gz_measurer *measurer, const struct unit
 	struct gz_image *image = unit->renderer->ops->picture_texture ? NULL : &measurer->frame;
 	struct gz_frame_stats stats;
 	const int64_t start_ns = gz_clock_now_ns();
-	enum gz_result result = make_plan(measurer, unit, variant, unit->gaze);
+	enum gz_result result = make_plan(measurer, unit, variant, camera, unit->gaze);
 	const int64_t plan_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
 		result = draw(measurer, unit, variant, camera, image, &stats);
@@ -210,7 +218,7 @@ static enum gz_result picture(struct gz_measurer *measurer, const struct unit *u
 {
 	if (gz_command_interrupted())
 		return GZ_ERR_CANCELLED;
-	const enum gz_result result = make_plan(measurer, unit, variant, gaze);
+	const enum gz_result result = make_plan(measurer, unit, variant, &unit->camera, gaze);
 	return result == GZ_OK ? draw(measurer, unit, variant, &unit->camera, image, NULL) : result;
 }
 
