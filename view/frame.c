@@ -204,6 +204,7 @@ static enum gz_result cast_picture(struct gz_frame_maker *maker,
 	const struct gz_plan_view *view = &maker->plan.view;
 	bool direct = view->width == request->width && view->height == request->height;
 	struct gz_image *target = direct ? &maker->image : &maker->cast;
+	maker->caster.loss_is_callers = request->loss_is_callers;
 	enum gz_result r =
 		request->settings->temporal.accumulate
 			? cast_and_keep(maker, request, target, out_stats)

@@ -4,11 +4,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "render/gl/context_egl.h"
 #include "render/lent_context.h"
 #include "render/small_scene.h"
 #include "view/caster.h"
+#include "view/frame.h"
 
 /* Keeps the messages. */
 struct heard {
@@ -96,6 +98,66 @@ static void lost_context_costs_no_frame(void **state)
 	gz_gl_context_destroy(&lent.egl);
 }
 
+/* A maker of frames over a scene made by formula. */
+static struct gz_frame_maker *make_maker(struct set_up *all)
+{
+	static const char transfer[] = "0 0 0 0 0\n1 1 1 1 0.1\n";
+	struct gz_frame_maker *maker = NULL;
+	char folder[] = "/tmp/gz_casterXXXXXX", path[64];
+	assert_non_null(mkdtemp(folder));
+	snprintf(path, sizeof path, "%s/a.tf", folder);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(transfer, file);
+	fclose(file);
+	snprintf(all->options.scene, sizeof all->options.scene, "%s/a.scene", folder);
+	file = fopen(all->options.scene, "w");
+	assert_non_null(file);
+	fputs("[volume]\nprocedural = shells\ndims = 20 20 20\n[transfer]\nfile = a.tf\n", file);
+	fclose(file);
+	all->options.method = -1;
+	if (gz_frame_maker_create(&all->options, &all->log, &maker) != GZ_OK)
+		fail_msg("%s", all->heard.text);
+	unlink(path);
+	unlink(all->options.scene);
+	rmdir(folder);
+	return maker;
+}
+
+static void frame_returns_the_loss_of_a_context_to_who_asks_for_it(void **state)
+{
+	(void)state;
+	struct set_up all;
+	set_up(&all, "gl");
+	struct gz_frame_maker *maker = make_maker(&all);
+	const struct gz_display display = gz_display_default(64, 48);
+	for (int callers = 0; callers < 2; callers++) {
+		struct lent_context lent = lend_context();
+		const struct gz_frame_request request = {
+			.settings = &gz_frame_maker_scene(maker)->settings,
+			.display = &display,
+			.width = 64,
+			.height = 48,
+			.on_device = true,
+			.loss_is_callers = callers,
+		};
+		struct gz_frame_record record;
+		struct gz_image *image;
+		assert_int_equal(gz_frame_maker_start(maker, &all.options, &lent.base), GZ_OK);
+		assert_int_equal(gz_frame_make(maker, &request, &image, &record), GZ_OK);
+		assert_string_equal(record.backend, "gl");
+		lent.lost = true;
+		const enum gz_result result = gz_frame_make(maker, &request, &image, &record);
+		assert_int_equal(result, callers ? GZ_ERR_NO_DEVICE : GZ_OK);
+		if (!callers)
+			assert_string_equal(record.backend, "cpu");
+		gz_frame_maker_stop(maker);
+		gz_gl_context_destroy(&lent.egl);
+	}
+	gz_frame_maker_destroy(&maker);
+	take_down(&all);
+}
+
 static void auto_takes_the_cpu_where_no_gpu_is_and_says_nothing(void **state)
 {
 	(void)state;
@@ -174,6 +236,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(lost_context_costs_no_frame),
+		cmocka_unit_test(frame_returns_the_loss_of_a_context_to_who_asks_for_it),
 		cmocka_unit_test(auto_takes_the_cpu_where_no_gpu_is_and_says_nothing),
 		cmocka_unit_test(graphics_memory_too_small_for_the_volume_shows_bricks),
 		cmocka_unit_test(wrong_request_is_no_reason_to_take_the_cpu),
