@@ -243,6 +243,18 @@ static void visit(struct search *search, int level, const int brick[3])
 				visit(search, level - 1, (const int[3]) { x, y, z });
 }
 
+/* One brick, or several of a volume longer than all halvings make one of. */
+static void visit_coarsest(struct search *search)
+{
+	const struct gz_brick_layout *layout = search->scene->layout;
+	const int level = layout->level_count - 1;
+	const int *bricks = layout->levels[level].bricks;
+	for (int z = 0; z < bricks[2]; z++)
+		for (int y = 0; y < bricks[1]; y++)
+			for (int x = 0; x < bricks[0]; x++)
+				visit(search, level, (const int[3]) { x, y, z });
+}
+
 static int heavier_first(const void *a, const void *b)
 {
 	const struct gz_brick_want *left = a, *right = b;
@@ -262,7 +274,7 @@ enum gz_result gz_brick_wants_find(const struct gz_brick_scene *scene, struct gz
 	const enum gz_result result = begin(&search);
 	if (result != GZ_OK)
 		return result;
-	visit(&search, scene->layout->level_count - 1, (const int[3]) { 0, 0, 0 });
+	visit_coarsest(&search);
 	if (wants->count > 0)
 		qsort(wants->want, wants->count, sizeof *wants->want, heavier_first);
 	return search.result;

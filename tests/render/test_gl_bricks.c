@@ -135,6 +135,19 @@ static void volumes_beyond_the_textures_look_the_same(void **state)
 		}
 }
 
+/* So long that its coarsest level is several bricks. */
+static void every_brick_of_the_coarsest_level_is_looked_into(void **state)
+{
+	(void)state;
+	const struct gz_renderer_params params = { .gl_volume_edge_max = 1088 };
+	struct small_scene scene = small_scene_waves(8192, 65, 65, GZ_VOXEL_U8);
+	for (int axis = 0; axis < 3; axis++)
+		scene.camera.eye[axis] = scene.camera.look_at[axis] = axis == 0 ? 0.4 : 0;
+	scene.camera.eye[1] = -0.02;
+	check_same(&scene, &scene.volume, params, "long");
+	small_scene_free(&scene);
+}
+
 static void anisotropic_volumes_beyond_the_textures_look_the_same(void **state)
 {
 	(void)state;
@@ -438,6 +451,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(files_of_bricks_look_like_the_volume_in_memory),
 		cmocka_unit_test(volumes_beyond_the_textures_look_the_same),
+		cmocka_unit_test(every_brick_of_the_coarsest_level_is_looked_into),
 		cmocka_unit_test(anisotropic_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(every_way_of_casting_works_by_bricks),
 		cmocka_unit_test(occlusion_of_a_file_of_bricks_is_refused),
