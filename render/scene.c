@@ -14,7 +14,7 @@
 
 _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
 
-static const char *const procedural_names[] = { "none", "shells", "supernova", NULL };
+static const char *const procedural_names[] = { "none", "shells", "supernova", "chameleon", NULL };
 static const char *const endian_names[] = { "little", "big", NULL };
 static const char *const projection_names[] = { "perspective", "orthographic", NULL };
 
@@ -86,7 +86,8 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			     .max = 1e9,
 			     .count = 3,
 			     .preset = "1 1 1",
-			     .help = "between voxels along x, y, z, mm; for raw files" },
+			     .help = "between voxels along x, y, z, mm; for raw files and "
+				     "procedural volumes" },
 	[VOLUME_MEMORY] = { .key = "volume.memory_mib",
 			    .type = GZ_OPTION_INT,
 			    .offset = AT(memory_mib),
@@ -258,9 +259,9 @@ static enum gz_result check_volume(const struct reader *reader)
 	if (!file && !made)
 		return refuse(reader, VOLUME_FILE,
 			      "not given; name a volume, or set volume.procedural");
-	if (made && (reader->given[VOLUME_ENDIAN] || reader->given[VOLUME_SPACING]))
+	if (made && reader->given[VOLUME_ENDIAN])
 		return refuse(reader, VOLUME_PROCEDURAL,
-			      "takes dims and type only; leave out endian and spacing");
+			      "takes dims, type and spacing only; leave out endian");
 	if (made && !made_type(reader, &type))
 		return refuse(reader, VOLUME_TYPE,
 			      "a procedural volume has uint8, uint16 or float32");
@@ -375,7 +376,8 @@ static enum gz_result make_procedural(const struct reader *reader, struct gz_vol
 	enum gz_voxel_type type;
 	if (!made_type(reader, &type))
 		return GZ_ERR_INVAL; /* refused before */
-	return gz_volume_generate(which, dims, type, reader->loading, reader->log, out_volume);
+	return gz_volume_generate(which, dims, reader->settings->spacing, type, reader->loading,
+				  reader->log, out_volume);
 }
 
 static enum gz_result load_volume(const struct reader *reader, struct gz_volume *out_volume)

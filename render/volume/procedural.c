@@ -5,12 +5,14 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
+#include "render/volume/procedural_chameleon.h"
+#include "render/volume/procedural_noise.h"
 #include "render/volume/volume.h"
 #include "render/workers.h"
 
 #define GZ_LOG_MODULE "volume"
 
-const char *const gz_procedural_names[] = { "shells", "supernova", NULL };
+const char *const gz_procedural_names[] = { "shells", "supernova", "chameleon", NULL };
 
 /* 1 at t = 0, falling smoothly to 0 at |t| = 1 and beyond. */
 static double bump(double t)
@@ -77,59 +79,12 @@ static double shells_at(const double p[3])
 	return densest;
 }
 
-/* One of 12 directions at a lattice point, by an integer hash, times the offset from it: Perlin,
- * "Improving noise", SIGGRAPH 2002; the hash is the finaliser of MurmurHash3. */
-static double gradient(int32_t x, int32_t y, int32_t z, const double d[3])
-{
-	uint32_t h =
-		(uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ (uint32_t)z * 0xc2b2ae3du;
-	h ^= h >> 16;
-	h *= 0x85ebca6bu;
-	h ^= h >> 13;
-	h *= 0xc2b2ae35u;
-	h ^= h >> 16;
-	uint32_t edge = h % 12;
-	double a = d[edge >> 2], b = d[((edge >> 2) + 1) % 3];
-	return ((edge & 1) ? -a : a) + ((edge & 2) ? -b : b);
-}
-
-static double fade(double t)
-{
-	return t * t * t * (t * (t * 6 - 15) + 10);
-}
-
-static double mix(double a, double b, double t)
-{
-	return a + t * (b - a);
-}
-
-/* Gradient noise, about -1 to 1. */
-static double noise(const double p[3])
-{
-	int32_t cell[3];
-	double d[3], w[3], corner[8];
-	for (int i = 0; i < 3; i++) {
-		double whole = floor(p[i]);
-		cell[i] = (int32_t)whole;
-		d[i] = p[i] - whole;
-		w[i] = fade(d[i]);
-	}
-	for (int c = 0; c < 8; c++) {
-		int dx = c & 1, dy = c >> 1 & 1, dz = c >> 2;
-		double offset[3] = { d[0] - dx, d[1] - dy, d[2] - dz };
-		corner[c] = gradient(cell[0] + dx, cell[1] + dy, cell[2] + dz, offset);
-	}
-	double low = mix(mix(corner[0], corner[1], w[0]), mix(corner[2], corner[3], w[0]), w[1]);
-	double high = mix(mix(corner[4], corner[5], w[0]), mix(corner[6], corner[7], w[0]), w[1]);
-	return mix(low, high, w[2]);
-}
-
 /* Sum of octaves of ridges: sharp where the noise crosses zero. About 0 to 1. */
 static double ridges(const double p[3], int octaves)
 {
 	double sum = 0, weight = 0.5, carry = 1, q[3] = { p[0], p[1], p[2] };
 	for (int k = 0; k < octaves; k++) {
-		double ridge = 1 - fabs(noise(q));
+		double ridge = 1 - fabs(gz_noise(q));
 		ridge = ridge * ridge * carry;
 		sum += weight * ridge;
 		carry = clamp01(2 * ridge); /* fine ridges only on coarse ones */
@@ -150,7 +105,7 @@ static double supernova_at(const double p[3])
 	if (r < 0.12)
 		return 0.9 * remnant;
 	double coarse[3] = { 1.7 * p[0] + 5.2, 1.7 * p[1] + 1.3, 1.7 * p[2] + 9.1 };
-	double billow = noise(coarse);
+	double billow = gz_noise(coarse);
 	double shell = bump((r - 0.62 - 0.16 * billow) / 0.30);
 	if (shell <= 0)
 		return 0;
@@ -169,6 +124,7 @@ static double value_scale(enum gz_procedural which)
 struct making {
 	enum gz_procedural which;
 	struct gz_volume *volume;
+	struct gz_chameleon *chameleon; /* of that one alone */
 	const struct gz_loading *loading;
 	atomic_int slices_done;
 	atomic_bool stopped;
@@ -184,18 +140,50 @@ static void put(struct gz_volume *volume, size_t index, double value, double sca
 		((float *)volume->voxels)[index] = (float)(scale * value);
 }
 
+static double longest_mm(const struct gz_volume *volume)
+{
+	double longest = 0;
+	for (int i = 0; i < 3; i++) {
+		double edge = volume->dims[i] * volume->spacing[i];
+		longest = edge > longest ? edge : longest;
+	}
+	return longest;
+}
+
+static double middle_of(const struct gz_volume *volume, int axis, int index, double longest)
+{
+	return (2 * index + 1 - volume->dims[axis]) * volume->spacing[axis] / longest;
+}
+
+static void fill_chameleon_row(const struct making *making, double y, double z, double longest,
+			       size_t row)
+{
+	enum { AT_ONCE = 1024 };
+	struct gz_volume *volume = making->volume;
+	const double step = 2 * volume->spacing[0] / longest;
+	float values[AT_ONCE];
+	for (int x = 0; x < volume->dims[0]; x += AT_ONCE) {
+		int left = volume->dims[0] - x, count = left < AT_ONCE ? left : AT_ONCE;
+		gz_chameleon_row(making->chameleon, y, z, middle_of(volume, 0, x, longest), step,
+				 count, values);
+		for (int i = 0; i < count; i++)
+			put(volume, row + (size_t)x + (size_t)i, (double)values[i], 1);
+	}
+}
+
 static void fill_row(const struct making *making, int y, int z)
 {
 	struct gz_volume *volume = making->volume;
 	const int *dims = volume->dims;
-	const double scale = value_scale(making->which);
-	int longest = dims[0] > dims[1] ? dims[0] : dims[1];
-	longest = longest > dims[2] ? longest : dims[2];
-	size_t row = ((size_t)z * (size_t)dims[1] + (size_t)y) * (size_t)dims[0];
+	const double scale = value_scale(making->which), longest = longest_mm(volume);
+	const size_t row = ((size_t)z * (size_t)dims[1] + (size_t)y) * (size_t)dims[0];
+	double p[3] = { 0, middle_of(volume, 1, y, longest), middle_of(volume, 2, z, longest) };
+	if (making->which == GZ_PROCEDURAL_CHAMELEON) {
+		fill_chameleon_row(making, p[1], p[2], longest, row);
+		return;
+	}
 	for (int x = 0; x < dims[0]; x++) {
-		double p[3] = { (double)(2 * x + 1 - dims[0]) / longest,
-				(double)(2 * y + 1 - dims[1]) / longest,
-				(double)(2 * z + 1 - dims[2]) / longest };
+		p[0] = middle_of(volume, 0, x, longest);
 		double value =
 			making->which == GZ_PROCEDURAL_SHELLS ? shells_at(p) : supernova_at(p);
 		put(volume, row + (size_t)x, value, scale);
@@ -217,7 +205,7 @@ static void fill_slice(void *user, size_t part, int worker)
 	atomic_fetch_add(&making->slices_done, 1);
 }
 
-static enum gz_result fill(struct making *making)
+static enum gz_result fill_with(struct making *making)
 {
 	struct gz_workers *workers = NULL;
 	enum gz_result result = gz_workers_create(0, &workers);
@@ -228,18 +216,37 @@ static enum gz_result fill(struct making *making)
 	return atomic_load(&making->stopped) ? GZ_ERR_CANCELLED : GZ_OK;
 }
 
+static enum gz_result fill(struct making *making)
+{
+	const struct gz_volume *volume = making->volume;
+	if (making->which != GZ_PROCEDURAL_CHAMELEON)
+		return fill_with(making);
+	double coarsest = volume->spacing[0];
+	for (int i = 1; i < 3; i++)
+		coarsest = volume->spacing[i] > coarsest ? volume->spacing[i] : coarsest;
+	enum gz_result result =
+		gz_chameleon_create(2 * coarsest / longest_mm(volume), &making->chameleon);
+	if (result == GZ_OK)
+		result = fill_with(making);
+	gz_chameleon_destroy(&making->chameleon);
+	return result;
+}
+
 enum gz_voxel_type gz_procedural_type(enum gz_procedural which)
 {
-	return which == GZ_PROCEDURAL_SHELLS ? GZ_VOXEL_U8 : GZ_VOXEL_F32;
+	static const enum gz_voxel_type types[GZ_PROCEDURAL_COUNT] = { GZ_VOXEL_U8, GZ_VOXEL_F32,
+								       GZ_VOXEL_U16 };
+	return types[which];
 }
 
 enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
-				  enum gz_voxel_type type, const struct gz_loading *loading,
-				  const struct gz_log *log, struct gz_volume *out_volume)
+				  const double spacing[3], enum gz_voxel_type type,
+				  const struct gz_loading *loading, const struct gz_log *log,
+				  struct gz_volume *out_volume)
 {
 	static const double steps[GZ_VOXEL_TYPE_COUNT] = { 255, 65535, 0 };
 	struct gz_volume volume = { .dims = { dims[0], dims[1], dims[2] },
-				    .spacing = { 1, 1, 1 },
+				    .spacing = { spacing[0], spacing[1], spacing[2] },
 				    .type = type,
 				    .oriented = true };
 	if ((unsigned)which >= GZ_PROCEDURAL_COUNT || (unsigned)type >= GZ_VOXEL_TYPE_COUNT)

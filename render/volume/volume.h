@@ -111,10 +111,11 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 enum gz_procedural {
 	GZ_PROCEDURAL_SHELLS,    /**< nested shells with spherical harmonics, like a small atom */
 	GZ_PROCEDURAL_SUPERNOVA, /**< turbulent filaments round a hollow centre, float */
+	GZ_PROCEDURAL_CHAMELEON, /**< an animal: soft tissue, rough skin, thin bones, 16 bit */
 	GZ_PROCEDURAL_COUNT,
 };
 
-/** "shells", "supernova"; NULL-terminated. */
+/** "shells", "supernova", "chameleon"; NULL-terminated. */
 extern const char *const gz_procedural_names[];
 
 /** The type of voxel that a procedural volume has unless told otherwise. */
@@ -124,16 +125,18 @@ enum gz_voxel_type gz_procedural_type(enum gz_procedural which);
  * Make a procedural volume, on all processors; the same bits each time.
  *
  * @param dims     voxels, each 1 to GZ_VOLUME_DIM_MAX
+ * @param spacing  of voxels, mm, as in struct gz_volume. Formulas are in units of the box's longest
+ * edge in mm, so a shape keeps its proportions whatever the spacing
  * @param type     of voxel. Integers span the formula's values, which are 0 to 255 for shells and 0
- * to 1 for supernova: data values are the same for every type, but for rounding
+ * to 1 for the others: data values are the same for every type, but for rounding
  * @param loading  see gz_volume_load()
  * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
- * @retval GZ_ERR_INVAL      @p which, @p dims or @p type out of range; dims are logged
+ * @retval GZ_ERR_INVAL      @p which, @p dims, @p spacing or @p type out of range; dims are logged
  * @retval GZ_ERR_NO_MEM     logged
  * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
  */
 enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
-				  enum gz_voxel_type type, const struct gz_loading *loading,
+				  const double spacing[3], enum gz_voxel_type type, const struct gz_loading *loading,
 				  const struct gz_log *log, struct gz_volume *out_volume);
 
 /**

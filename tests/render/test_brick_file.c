@@ -17,8 +17,8 @@
 static struct gz_volume made(int nx, int ny, int nz, enum gz_voxel_type type)
 {
 	struct gz_volume volume;
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { nx, ny, nz }, type,
-					    NULL, NULL, &volume),
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { nx, ny, nz },
+					    (double[3]) { 1, 1, 1 }, type, NULL, NULL, &volume),
 			 GZ_OK);
 	return volume;
 }

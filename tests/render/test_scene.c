@@ -93,7 +93,7 @@ static const struct refusal refusals[] = {
 	{ "[volume]\nfile = a.nii\nprocedural = shells\n" TRANSFER,
 	  "s.scene: volume.file: given with volume.procedural; keep one" },
 	{ "[volume]\nprocedural = shells\nendian = big\n" TRANSFER,
-	  "s.scene: volume.procedural: takes dims and type only" },
+	  "s.scene: volume.procedural: takes dims, type and spacing only" },
 	{ "[volume]\nprocedural = shells\ntype = int16\n" TRANSFER,
 	  "s.scene: volume.type: a procedural volume has uint8, uint16 or float32" },
 	{ "[volume]\nfile = a.raw\ndims = 1 1 1\n" TRANSFER,

@@ -107,6 +107,8 @@ static void longest_edge_of_the_box_is_one(void **state)
 	assert_true(gz_volume_voxel_length(&v) == 0.005);
 }
 
+static const double cubes[3] = { 1, 1, 1 };
+
 static uint64_t hash_of(const struct gz_volume *v)
 {
 	uint64_t hash = 14695981039346656037u; /* FNV-1a */
@@ -126,19 +128,74 @@ static void procedural_volumes_are_the_same_bits_everywhere(void **state)
 	} cases[] = {
 		{ GZ_PROCEDURAL_SHELLS, GZ_VOXEL_U8, 0xb1ee43d0248f6bf5 },
 		{ GZ_PROCEDURAL_SUPERNOVA, GZ_VOXEL_F32, 0x9deb32d3a6a708d0 },
+		{ GZ_PROCEDURAL_CHAMELEON, GZ_VOXEL_U16, 0xf3490e828045cc34 },
 	};
 	static const int dims[3] = { 40, 36, 30 };
-	for (size_t i = 0; i < 2; i++) {
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		struct gz_volume v;
-		assert_int_equal(
-			gz_volume_generate(cases[i].which, dims, cases[i].type, NULL, NULL, &v),
-			GZ_OK);
+		assert_int_equal(gz_volume_generate(cases[i].which, dims, cubes, cases[i].type,
+						    NULL, NULL, &v),
+				 GZ_OK);
 		assert_int_equal(v.type, cases[i].type);
 		assert_true(v.stored_min == 0);
 		assert_true(v.stored_max > 0.8);
 		assert_int_equal(hash_of(&v), cases[i].hash);
 		gz_volume_free(&v);
 	}
+}
+
+static void procedural_shape_keeps_its_proportions_whatever_the_spacing(void **state)
+{
+	(void)state;
+	static const int fine[3] = { 48, 48, 54 }, flat[3] = { 48, 48, 18 };
+	static const double twice[3] = { 2, 2, 2 }, tall[3] = { 1, 1, 3 };
+	struct gz_volume a, b, c;
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, fine, cubes, GZ_VOXEL_U16,
+					    NULL, NULL, &a),
+			 GZ_OK);
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, fine, twice, GZ_VOXEL_U16,
+					    NULL, NULL, &b),
+			 GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(GZ_PROCEDURAL_SHELLS, flat, tall, GZ_VOXEL_U8, NULL, NULL, &c),
+		GZ_OK);
+	assert_int_equal(hash_of(&a), hash_of(&b));
+	assert_true(b.spacing[2] == 2 && c.spacing[2] == 3);
+	gz_volume_free(&a);
+	assert_int_equal(
+		gz_volume_generate(GZ_PROCEDURAL_SHELLS, fine, cubes, GZ_VOXEL_U8, NULL, NULL, &a),
+		GZ_OK);
+	/* A thick slice lies where the middle one of three thin ones does. */
+	const size_t slice = (size_t)48 * 48;
+	for (size_t z = 0; z < 18; z++)
+		assert_memory_equal((uint8_t *)c.voxels + z * slice,
+				    (uint8_t *)a.voxels + (3 * z + 1) * slice, slice);
+	gz_volume_free(&a);
+	gz_volume_free(&b);
+	gz_volume_free(&c);
+}
+
+static void chameleon_is_air_and_tissue_and_bone(void **state)
+{
+	(void)state;
+	static const int dims[3] = { 160, 160, 169 };
+	struct gz_volume v;
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, dims, cubes, GZ_VOXEL_U16,
+					    NULL, NULL, &v),
+			 GZ_OK);
+	const size_t count = gz_volume_voxel_count(&v);
+	size_t air = 0, tissue = 0, bone = 0;
+	for (size_t i = 0; i < count; i++) {
+		const uint16_t value = ((const uint16_t *)v.voxels)[i];
+		air += value == 0;
+		tissue += value > 0 && value < 65535 / 2;
+		bone += value > 65535 * 3 / 5;
+	}
+	assert_in_range(air, count * 80 / 100, count * 97 / 100);
+	assert_in_range(tissue, count * 3 / 100, count * 20 / 100);
+	assert_in_range(bone, count / 5000, count / 50);
+	assert_true(((const uint16_t *)v.voxels)[0] == 0); /* nothing is cut off by the box */
+	gz_volume_free(&v);
 }
 
 static void procedural_volume_has_the_same_data_in_every_type(void **state)
@@ -148,7 +205,7 @@ static void procedural_volume_has_the_same_data_in_every_type(void **state)
 	for (int which = 0; which < GZ_PROCEDURAL_COUNT; which++) {
 		struct gz_volume v[GZ_VOXEL_TYPE_COUNT];
 		for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
-			assert_int_equal(gz_volume_generate((enum gz_procedural)which, dims,
+			assert_int_equal(gz_volume_generate((enum gz_procedural)which, dims, cubes,
 							    (enum gz_voxel_type)type, NULL, NULL,
 							    &v[type]),
 					 GZ_OK);
@@ -170,13 +227,13 @@ static void procedural_volume_of_bad_dims_is_refused_with_a_line(void **state)
 	struct captured_log log;
 	captured_log_init(&log, NULL);
 	struct gz_volume v = { 0 };
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, GZ_VOXEL_U8,
-					    NULL, &log.log, &v),
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, cubes,
+					    GZ_VOXEL_U8, NULL, &log.log, &v),
 			 GZ_ERR_INVAL);
 	assert_int_equal(log.messages, 1);
 	assert_non_null(strstr(log.last, "0 x 4 x 4"));
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, GZ_VOXEL_U8,
-					    NULL, &log.log, &v),
+	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, cubes,
+					    GZ_VOXEL_U8, NULL, &log.log, &v),
 			 GZ_ERR_INVAL);
 	assert_null(v.voxels);
 }
@@ -203,6 +260,8 @@ int main(void)
 		cmocka_unit_test(range_of_wider_types_is_found),
 		cmocka_unit_test(longest_edge_of_the_box_is_one),
 		cmocka_unit_test(procedural_volumes_are_the_same_bits_everywhere),
+		cmocka_unit_test(procedural_shape_keeps_its_proportions_whatever_the_spacing),
+		cmocka_unit_test(chameleon_is_air_and_tissue_and_bone),
 		cmocka_unit_test(procedural_volume_has_the_same_data_in_every_type),
 		cmocka_unit_test(procedural_volume_of_bad_dims_is_refused_with_a_line),
 		cmocka_unit_test(names_match_their_enums),
