@@ -191,9 +191,10 @@ static void chameleon_is_air_and_tissue_and_bone(void **state)
 		tissue += value > 0 && value < 65535 / 2;
 		bone += value > 65535 * 3 / 5;
 	}
-	assert_in_range(air, count * 80 / 100, count * 97 / 100);
-	assert_in_range(tissue, count * 3 / 100, count * 20 / 100);
-	assert_in_range(bone, count / 5000, count / 50);
+	assert_in_range(air, count * 80 / 100, count * 99 / 100);
+	assert_in_range(tissue, count / 100, count * 20 / 100);
+	/* Most bones are thinner than a voxel here, and so fainter. */
+	assert_in_range(bone, count / 10000, count / 50);
 	assert_true(((const uint16_t *)v.voxels)[0] == 0); /* nothing is cut off by the box */
 	gz_volume_free(&v);
 }
