@@ -31,14 +31,25 @@ static enum gz_result check_folder(const char *option, const char *path, const s
 	return GZ_ERR_IO;
 }
 
+/* What is there already may be written to where its folder may not: pictures go into devices and
+ * pipes, statistics into a plain file. */
+static bool is_there(const char *path, bool plain)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && !S_ISDIR(status.st_mode) &&
+	       S_ISREG(status.st_mode) == plain && access(path, W_OK) == 0;
+}
+
 enum gz_result gz_output_check(const struct gz_view_options *options, const struct gz_log *log)
 {
 	char picture[GZ_PATH_SIZE] = "";
 	/* What is wrong with the pattern itself, the options have refused. */
 	if (options->out[0])
 		(void)gz_pattern_format(options->out, 0, picture, sizeof picture);
-	enum gz_result r = check_folder("out", picture, log);
-	if (r == GZ_OK)
+	enum gz_result r = GZ_OK;
+	if (!is_there(picture, false))
+		r = check_folder("out", picture, log);
+	if (r == GZ_OK && !is_there(options->stats, true))
 		r = check_folder("stats", options->stats, log);
 	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;
 }

@@ -368,6 +368,16 @@ class Headless(unittest.TestCase):
         self.assertIn(self.path("f-1.png"), done.stderr)
         self.assertLessEqual(len(self.frames()), 2)
 
+    def test_picture_goes_into_a_device_whose_folder_may_not_be_written_to(self):
+        nobody = 65534 if os.geteuid() == 0 else None
+        scene = os.path.join(SCENES, "shells.scene")
+        words = [GAZEVIEW, "--headless", "--scene", scene, "--size", "16x16", "--out", "/dev/null"]
+        try:
+            done = subprocess.run(words, user=nobody, capture_output=True, text=True, timeout=60)
+        except PermissionError:
+            self.skipTest("nobody may run it")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_camera_inside_the_volume_takes_no_longer_steps(self):
         where = ("--camera.eye", "0.05 -0.15 0.02", "--camera.look_at", "0.3 0.5 0.1")
         pictures = []
