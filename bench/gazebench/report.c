@@ -21,7 +21,7 @@ static const struct gz_option options[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct settings, json),
 	  .preset = "false",
-	  .help = "print summary.json too" },
+	  .help = "print summary.json instead of words" },
 };
 
 /* What the page says first, for each of its sections. */
@@ -69,6 +69,9 @@ static enum gz_result report(const struct gz_study *study, const char *folder, b
 	if (!study->complete)
 		gz_warn(log, "%s: a partial study: %zu frames so far; the report says so", folder,
 			study->row_count);
+	else if (study->shard_count > 1)
+		gz_warn(log, "%s: shard %d of %d alone; the report says so", folder,
+			study->shard + 1, study->shard_count);
 	result = gz_report_write(&summary, folder, log);
 	if (result == GZ_OK)
 		result = json ? print_json(&summary) : print_answers(&summary, folder);

@@ -114,13 +114,20 @@ static void stress(const struct teller *teller, const char *text)
 	gz_text_add(teller->out, "%s", teller->html ? "</strong>" : "");
 }
 
-static void say_time(const struct teller *teller, const struct gz_series *series)
+/* Never as a power of ten: 110 %, 31 %, 2.5 %. */
+static void percent_words(double share, char text[static GZ_NAMES_SIZE])
 {
-	char text[GZ_NAMES_SIZE];
+	const double percent = 100 * share;
+	snprintf(text, GZ_NAMES_SIZE, percent < 9.95 ? "%.2g %%" : "%.0f %%", percent);
+}
+
+static void say_time(const struct teller *teller, const struct gz_series *series, const char *takes)
+{
+	char text[GZ_NAMES_SIZE], share[GZ_NAMES_SIZE];
 	const struct gz_group *group = teller->group;
 	gz_variant_words(&teller->study->variants[series->variant], text);
 	stress(teller, text);
-	say(teller, " takes ");
+	say(teller, takes);
 	snprintf(text, sizeof text, "%.3g ms", series->typical_ms);
 	stress(teller, text);
 	say(teller, " a frame");
@@ -129,12 +136,17 @@ static void say_time(const struct teller *teller, const struct gz_series *series
 	snprintf(text, sizeof text, " where a ray for every pixel takes %.3g ms: ",
 		 group->series[group->standard].typical_ms);
 	say(teller, text);
-	snprintf(text, sizeof text, "%.3g times as fast", series->ratio_of_means);
+	const double ratio = series->ratio_of_means;
+	if (ratio < 1)
+		snprintf(text, sizeof text, "%.3g times as long", 1 / ratio);
+	else
+		snprintf(text, sizeof text, "%.3g times as fast", ratio);
 	stress(teller, text);
 	const int *size = teller->study->sizes[group->size];
-	snprintf(text, sizeof text, ", with %.2g %% of the rays",
-		 100 * series->rays / ((double)size[0] * size[1]));
-	say(teller, text);
+	percent_words(series->rays / ((double)size[0] * size[1]), share);
+	say(teller, ", with ");
+	say(teller, share);
+	say(teller, " of the rays");
 }
 
 static void say_errors(const struct teller *teller, size_t series)
@@ -154,20 +166,21 @@ static void tell_winner(const struct teller *teller, size_t winner)
 {
 	char text[GZ_NAMES_SIZE];
 	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
-	say_time(teller, &teller->group->series[winner]);
+	say_time(teller, &teller->group->series[winner], " takes ");
 	snprintf(text, sizeof text, ". The difference stays %s the bound of %g everywhere: ",
 		 gz_error_rises(metric->kind) ? "above" : "below", teller->question->bound);
 	say(teller, text);
 	say_errors(teller, winner);
 }
 
+/* Slower variants may hold the bound too, so that standard is not said to be the only one. */
 static void tell_standard(const struct teller *teller, size_t winner)
 {
 	char text[GZ_NAMES_SIZE];
 	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
 	const size_t nearest = gz_advice_nearest(teller->group, teller->question);
 	snprintf(text, sizeof text, "%s keeps %s %s %g everywhere",
-		 winner == GZ_SERIES_NONE ? "nothing that was measured" : "only standard",
+		 winner == GZ_SERIES_NONE ? "nothing that was measured" : "nothing faster",
 		 metric->title, gz_error_rises(metric->kind) ? "above" : "below",
 		 teller->question->bound);
 	stress(teller, text);
@@ -175,7 +188,7 @@ static void tell_standard(const struct teller *teller, size_t winner)
 	if (nearest == GZ_SERIES_NONE)
 		return;
 	say(teller, "Nearest comes ");
-	say_time(teller, &teller->group->series[nearest]);
+	say_time(teller, &teller->group->series[nearest], ", which takes ");
 	say(teller, "; its ");
 	say_errors(teller, nearest);
 }
@@ -187,7 +200,7 @@ static void tell_fastest(const struct teller *teller)
 	for (size_t i = 1; i < group->series_count; i++)
 		if (group->series[i].typical_ms < group->series[fastest].typical_ms)
 			fastest = i;
-	say_time(teller, &group->series[fastest]);
+	say_time(teller, &group->series[fastest], " takes ");
 	say(teller, ". Errors of this kind were not measured, so that what it costs is not known.");
 }
 

@@ -294,6 +294,19 @@ static double nice_step(double span, int steps)
 	return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
 }
 
+/* Room on the left for the widest number of an even axis, as 0.9975; a digit is 0.62 em wide. */
+static int left_px(const struct gz_plot *plot, const struct gz_canvas *canvas)
+{
+	if (plot->y.logarithmic)
+		return canvas->left;
+	const double step = nice_step(plot->y.last - plot->y.first, 6);
+	const double greatest = fmax(fabs(plot->y.first), fabs(plot->y.last));
+	const int before = greatest >= 10 ? 1 + (int)floor(log10(greatest)) : 1;
+	const int behind = step < 1 ? 1 + (int)ceil(-log10(step) - 1e-9) : 0;
+	const int wanted = (int)((before + behind + 1.6) * canvas->font_px * 0.62);
+	return wanted > canvas->left ? wanted : canvas->left;
+}
+
 static void add_settings(const struct gz_plot *plot, const struct gz_canvas *canvas,
 			 struct gz_text *settings)
 {
@@ -318,7 +331,8 @@ static void add_settings(const struct gz_plot *plot, const struct gz_canvas *can
 static enum gz_result draw_on(struct gz_charts *charts, const char *name, enum gz_canvas_kind kind,
 			      const struct gz_plot *plot)
 {
-	const struct gz_canvas canvas = gz_canvas_of(kind);
+	struct gz_canvas canvas = gz_canvas_of(kind);
+	canvas.left = left_px(plot, &canvas);
 	struct gz_text settings = { 0 }, table = { 0 };
 	struct placing placing = { .plot = plot, .canvas = &canvas };
 	add_settings(plot, &canvas, &settings);

@@ -145,6 +145,10 @@ static enum gz_result make_folder(const char *folder, const struct gz_log *log)
 	const enum gz_result result = gz_study_folder_check(folder, log);
 	if (result != GZ_OK || mkdir(folder, 0777) == 0 || errno == EEXIST)
 		return result;
+	if (errno == ENOENT) {
+		gz_err(log, "%s: the folder above it is not there: make it first", folder);
+		return GZ_ERR_IO;
+	}
 	return fail(log, folder, errno);
 }
 

@@ -8,9 +8,11 @@ SCENE lies behind the maps; PICTURES is a folder for screenshots. Exits 77 witho
 gnuplot.
 """
 import base64
+import html
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -158,6 +160,22 @@ def check_page(name, url, width, height, seen, asked, has_charts, banners):
     check(seen["banners"] == banners, f"{where}: {seen['banners']} banners, not {banners}")
 
 
+def check_labels(name, page):
+    """No level text that ends at an anchor begins left of its chart; digits are 0.55 em or more."""
+    charts = re.findall(r"data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)", page)
+    labels = 0
+    for chart in charts:
+        text = base64.b64decode(chart).decode()
+        for x, size, label in re.findall(
+                r'translate\(([-0-9.]+),[-0-9.]+\)"[^>]*font-size="([0-9.]+)"[^>]*text-anchor="end">\s*'
+                r"<text>([^<]*)</text>", text):
+            labels += 1
+            label = html.unescape(label)
+            check(float(x) >= 0.55 * float(size) * len(label),
+                  f"{name}: {label} ends {x} px from a chart's left, and is cut off")
+    check(not charts or labels > 10, f"{name}: only {labels} labels in {len(charts)} charts")
+
+
 def make_report(write_study, gazebench, folder, kind, scene, gnuplot):
     arguments = [write_study, folder, kind] + ([scene] if scene and kind == "one" else [])
     subprocess.run(arguments, check=True)
@@ -189,6 +207,7 @@ def main():
                       f"{name}: nothing said of gnuplot: {said.stderr}")
                 check(not any(file.startswith("charts-") for file in os.listdir(study)),
                       f"{name}: a working folder is left")
+                check_labels(name, pathlib.Path(study, "report.html").read_text())
                 url = pathlib.Path(study, "report.html").as_uri()
                 for width, height, dark in WINDOWS:
                     seen, asked = browser.load(url, width, height, dark)

@@ -129,12 +129,38 @@ static void answer_where_nothing_is_within_the_bound_is_that_standard_remains(vo
 	question.bound = 0.002;
 	assert_int_equal(gz_advice_find(group, &question), 0);
 	gz_advice_tell(&study, group, &question, 0, false, &text);
-	assert_non_null(strstr(text.bytes, "only standard keeps perceived FLIP below 0.002"));
+	assert_non_null(strstr(text.bytes, "nothing faster keeps perceived FLIP below 0.002"));
 	gz_text_free(&text);
 	question.bound = 0.0001;
 	assert_int_equal(gz_advice_find(group, &question), GZ_SERIES_NONE);
 	gz_advice_tell(&study, group, &question, GZ_SERIES_NONE, false, &text);
 	assert_non_null(strstr(text.bytes, "so that standard remains"));
+	gz_text_free(&text);
+	free_both(&study, &summary);
+}
+
+static void answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text text = { 0 };
+	make(NULL, 1, &study, &summary);
+	struct gz_group *group = &summary.groups[0];
+	const struct gz_advice_question question = gz_advice_preset(group);
+	for (size_t i = 0; i < group->series_count; i++)
+		if (i != group->standard) {
+			group->series[i].typical_ms = 125;
+			group->series[i].ratio_of_means = 0.8;
+			group->series[i].rays = 1.1 * 100 * 100;
+		}
+	const size_t winner = gz_advice_find(group, &question);
+	assert_int_equal(winner, group->standard);
+	gz_advice_tell(&study, group, &question, winner, false, &text);
+	assert_null(strstr(text.bytes, "only standard"));
+	assert_non_null(strstr(text.bytes, "nothing faster keeps perceived FLIP below 0.03"));
+	assert_non_null(strstr(text.bytes, ", which takes 125 ms a frame"));
+	assert_non_null(strstr(text.bytes, "1.25 times as long, with 110 % of the rays"));
 	gz_text_free(&text);
 	free_both(&study, &summary);
 }
@@ -283,6 +309,8 @@ int main(void)
 		cmocka_unit_test(files_of_several_groups_have_their_names_and_no_slash),
 		cmocka_unit_test(answer_names_the_cheapest_within_the_bound_and_what_it_saves),
 		cmocka_unit_test(answer_where_nothing_is_within_the_bound_is_that_standard_remains),
+		cmocka_unit_test(
+			answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable),
 		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
 		cmocka_unit_test(page_escapes_every_text_and_holds_nothing_from_elsewhere),
 		cmocka_unit_test(page_of_a_partial_study_or_one_shard_says_so),

@@ -305,6 +305,20 @@ static void folder_of_something_else_is_refused(void **state)
 	gz_study_free(&study);
 }
 
+static void folder_below_a_missing_one_is_refused_with_what_is_missing(void **state)
+{
+	(void)state;
+	struct gz_study study = study_example(0, 1);
+	struct gz_study_writer *writer = NULL;
+	size_t done;
+	strcat(folder, "/below");
+	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &writer, &done),
+			 GZ_ERR_IO);
+	assert_null(writer);
+	assert_non_null(strstr(message, "the folder above it is not there"));
+	gz_study_free(&study);
+}
+
 static void study_is_not_written_over_another(void **state)
 {
 	(void)state;
@@ -427,6 +441,8 @@ int main(void)
 		cmocka_unit_test_setup(damaged_json_is_refused, name_folder),
 		cmocka_unit_test_setup(folder_without_a_study_is_not_found, name_folder),
 		cmocka_unit_test_setup(folder_of_something_else_is_refused, name_folder),
+		cmocka_unit_test_setup(folder_below_a_missing_one_is_refused_with_what_is_missing,
+				       name_folder),
 		cmocka_unit_test_setup(study_is_not_written_over_another, name_folder),
 		cmocka_unit_test_setup(interrupted_writer_goes_on_where_it_was, name_folder),
 		cmocka_unit_test_setup(writer_refuses_the_folder_of_another_study, name_folder),

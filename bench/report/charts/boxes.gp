@@ -3,7 +3,9 @@
 load 'common.gp'
 set label 1 title_text at screen (1.0 * left / width), screen (1 - 0.5 * top / height) left \
 	textcolor rgb ink
-set xlabel x_title textcolor rgb mute offset 0, 0.9
+# Not an xlabel: wider than the axes where names take half of the canvas.
+set label 2 x_title at screen (1 - 1.0 * right / width), screen (0.28 * bottom / height) right \
+	textcolor rgb mute
 set xtics offset 0, 0.3
 set logscale x
 set xrange [x_first:x_last]
