@@ -74,7 +74,7 @@ struct gz_operands {
  * @param settings            what the command's option table points into; begins with a
  *                            struct gz_command_common
  * @param[out] out_operands   filled
- * @param[out] out_exit       written only on false
+ * @param[out] out_exit       what to exit with where it is false
  * @return whether to go on: false after --help and after a usage error, which is logged
  */
 bool gz_command_read_arguments(const struct gz_command *command, int argc, char *const *argv,

@@ -129,7 +129,7 @@ bool is_colour(const gz_option &option)
  * meanwhile. */
 bool draw_text(const gz_option &option, char *field)
 {
-	char text[TEXT_SIZE];
+	char text[TEXT_SIZE] = ""; // its end too: settings are compared byte by byte
 	const size_t size = static_cast<size_t>(option.max);
 	if (size > sizeof text)
 		return false;
