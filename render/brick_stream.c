@@ -88,8 +88,9 @@ struct gz_brick_stream_key gz_brick_stream_key_of(const struct gz_camera *camera
 	key.focus_px[1] = plan->focus_px[1];
 	key.pixel_lengths = pixel_lengths;
 	key.ray_sampling_rate = rays->ray_sampling_rate;
-	key.tile_count = plan->tile_count;
+	key.plan = plan;
 	key.plan_serial = plan->serial;
+	key.tile_count = plan->tile_count;
 	key.width = plan->width;
 	key.height = plan->height;
 	return key;

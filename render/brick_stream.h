@@ -16,8 +16,9 @@ struct gz_brick_stream_key {
 	struct gz_camera camera;
 	struct gz_clip_box clip;
 	double focus_px[2], pixel_lengths, ray_sampling_rate;
-	size_t tile_count;
+	const struct gz_plan *plan; /**< whose serial it is; not followed */
 	uint64_t plan_serial;
+	size_t tile_count;
 	int width, height;
 };
 

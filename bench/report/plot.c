@@ -62,8 +62,9 @@ static void fit_axis(struct gz_plot_axis *axis, double least, double greatest)
 		axis->last = greatest * margin * pow(greatest / least, axis->name_room);
 		return;
 	}
+	/* Where all values are one, a tenth of it tells how far away others would be. */
 	const double span = greatest > least ? greatest - least
-			    : greatest != 0  ? fabs(greatest)
+			    : greatest != 0  ? 0.1 * fabs(greatest)
 					     : 1;
 	axis->first = axis->from_zero ? fmin(0, least) : least - 0.08 * span;
 	axis->last = greatest + 0.12 * (axis->from_zero ? fmax(greatest, span) : span);
