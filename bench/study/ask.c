@@ -180,17 +180,6 @@ static enum gz_result find_display(const struct asking *asking, struct gz_study_
 	return GZ_ERR_INVAL;
 }
 
-static void hash_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
-			 const void *target)
-{
-	char text[GZ_PATH_SIZE];
-	for (size_t i = 0; i < count; i++) {
-		gz_hash_add_text(hash, options[i].key);
-		if (gz_option_format(&options[i], target, text, sizeof text) == GZ_OK)
-			gz_hash_add_text(hash, text);
-	}
-}
-
 static void hash_table(struct gz_hash *hash, const struct gz_spacing_table *table)
 {
 	gz_hash_add_number(hash, table->in_deg);
@@ -233,8 +222,8 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 		return result;
 	foveation.table_file[0] = '\0';
 	gz_hash_add_text(hash, scene->data_hash);
-	hash_options(hash, gz_ray_options, gz_ray_option_count, &settings->rays);
-	hash_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);
+	gz_hash_add_options(hash, gz_ray_options, gz_ray_option_count, &settings->rays);
+	gz_hash_add_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);
 	hash_table(hash, &foveation.table);
 	result = hash_variants(asking, hash);
 	const enum gz_result ended = gz_hash_end(&hash, result == GZ_OK ? scene->hash : NULL);

@@ -45,6 +45,17 @@ void gz_hash_add_number(struct gz_hash *hash, double number)
 	gz_hash_add(hash, bytes, sizeof bytes);
 }
 
+void gz_hash_add_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
+			 const void *target)
+{
+	char text[GZ_PATH_SIZE];
+	for (size_t i = 0; i < count; i++) {
+		gz_hash_add_text(hash, options[i].key);
+		if (gz_option_format(&options[i], target, text, sizeof text) == GZ_OK)
+			gz_hash_add_text(hash, text);
+	}
+}
+
 enum gz_result gz_hash_end(struct gz_hash **hash, char out_hex[GZ_STUDY_HASH_SIZE])
 {
 	static const char digits[] = "0123456789abcdef";

@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 
+#include "base/option.h"
 #include "base/result.h"
 #include "bench/study/study.h"
 
@@ -23,6 +24,10 @@ void gz_hash_add_text(struct gz_hash *hash, const char *text);
 
 /** Go on with a number, the same on every machine: its 8 bytes as IEEE 754, the lowest first. */
 void gz_hash_add_number(struct gz_hash *hash, double number);
+
+/** Go on with every option's key and its value in @p target, as text. */
+void gz_hash_add_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
+			 const void *target);
 
 /**
  * End, free and set to NULL. Accepts a pointer to NULL, and then writes nothing.

@@ -37,17 +37,6 @@ struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double 
 	return converged;
 }
 
-static void hash_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
-			 const void *target)
-{
-	char text[GZ_PATH_SIZE];
-	for (size_t i = 0; i < count; i++) {
-		gz_hash_add_text(hash, options[i].key);
-		if (gz_option_format(&options[i], target, text, sizeof text) == GZ_OK)
-			gz_hash_add_text(hash, text);
-	}
-}
-
 /* Of all that the picture depends on. */
 static enum gz_result name_of(const struct gz_reference_request *request,
 			      const struct gz_ray_params *rays, char out_hex[GZ_STUDY_HASH_SIZE])
@@ -70,7 +59,7 @@ static enum gz_result name_of(const struct gz_reference_request *request,
 										 : camera->height);
 	gz_hash_add_number(hash, request->width);
 	gz_hash_add_number(hash, request->height);
-	hash_options(hash, gz_ray_options, gz_ray_option_count, rays);
+	gz_hash_add_options(hash, gz_ray_options, gz_ray_option_count, rays);
 	return gz_hash_end(&hash, out_hex);
 }
 

@@ -136,8 +136,9 @@ enum gz_voxel_type gz_procedural_type(enum gz_procedural which);
  * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
  */
 enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
-				  const double spacing[3], enum gz_voxel_type type, const struct gz_loading *loading,
-				  const struct gz_log *log, struct gz_volume *out_volume);
+				  const double spacing[3], enum gz_voxel_type type,
+				  const struct gz_loading *loading, const struct gz_log *log,
+				  struct gz_volume *out_volume);
 
 /**
  * Allocate voxels for a volume whose dims, spacing and type are set, and clear the padding. Voxels

@@ -13,8 +13,7 @@
 #include "bench/filter/stillness.h"
 #include "bench/filter/sweep.h"
 #include "bench/filter/track.h"
-#include "bench/report/child.h"
-#include "bench/report/text.h"
+#include "called.h"
 #include "protocol/gaze_log_writer.h"
 #include "sim/tracker.h"
 
@@ -24,33 +23,13 @@ static void check_close(double is, double wanted, double tolerance)
 		fail_msg("%.9g, not %.9g to %.9g", is, wanted, tolerance);
 }
 
-/* A folder with a log; said.txt is what was said. */
-struct place {
-	char path[64], log[96];
-	int status;
-	struct gz_text said;
-};
-
 static int set_up(void **state)
 {
 	static struct place place;
-	place = (struct place) { .status = 0 };
-	snprintf(place.path, sizeof place.path, "/tmp/gazebench-test-XXXXXX");
-	if (!mkdtemp(place.path))
+	if (place_make(&place) != 0)
 		return 1;
-	snprintf(place.log, sizeof place.log, "%s/viewer.gzl", place.path);
 	*state = &place;
 	return 0;
-}
-
-static int tear_down(void **state)
-{
-	struct place *place = *state;
-	char rm[] = "rm", rf[] = "-rf";
-	char *const arguments[] = { rm, rf, place->path, NULL };
-	int status;
-	gz_text_free(&place->said);
-	return gz_child_run("/tmp", arguments, "/dev/null", &status) == GZ_OK ? status : 1;
 }
 
 /* How a log is made. */
@@ -107,31 +86,6 @@ static void write_log(const struct place *place, const struct making *making)
 static void read_track(const struct place *place, struct gz_gaze_log_track *out)
 {
 	assert_int_equal(gz_gaze_track_read_log(place->log, NULL, out), GZ_OK);
-}
-
-/* Run gazebench with up to eight arguments in the place; what it says is in place->said. */
-static void run(struct place *place, const char *const *arguments)
-{
-	char path[96], copies[9][128], *pointers[10] = { NULL };
-	snprintf(copies[0], sizeof copies[0], "%s", GAZEBENCH_PROGRAM);
-	pointers[0] = copies[0];
-	for (int i = 0; arguments[i]; i++) {
-		assert_true(i < 8);
-		snprintf(copies[i + 1], sizeof copies[0], "%s", arguments[i]);
-		pointers[i + 1] = copies[i + 1];
-	}
-	assert_int_equal(gz_child_run(place->path, pointers, "said.txt", &place->status), GZ_OK);
-	gz_text_free(&place->said);
-	snprintf(path, sizeof path, "%s/said.txt", place->path);
-	assert_int_equal(gz_text_add_file(&place->said, path), GZ_OK);
-}
-
-static void assert_said(const struct place *place, int status, const char *what)
-{
-	const char *said = place->said.bytes ? place->said.bytes : "";
-	if (place->status != status || !strstr(said, what))
-		fail_msg("exit status %d, not %d, or without \"%s\": %s", place->status, status,
-			 what, said);
 }
 
 static bool is_there(const struct place *place, const char *file)
@@ -248,11 +202,12 @@ static void log_is_measured_in_samples_and_ms_and_drawn(void **state)
 	struct place *place = *state;
 	const struct making making = { .rate_hz = 250, .count = 5000 };
 	write_log(place, &making);
-	run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
 	assert_said(place, 0, "5000 samples, one each 4 ms (250 Hz)");
 	assert_said(place, 0, "as recorded");
 	assert_said(place, 0, "at a lag of  5 samples   20.0");
-	run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", "--json", NULL });
+	place_run(place,
+		  (const char *[]) { "filter", "viewer.gzl", "--out", "out", "--json", NULL });
 	assert_int_equal(place->status, 0);
 	const char *begin = strchr(place->said.bytes, '{'); /* a warning may stand before it */
 	json_t *json = begin ? json_loads(begin, 0, NULL) : NULL;
@@ -280,7 +235,7 @@ static void without_gnuplot_the_numbers_are_told(void **state)
 	snprintf(kept, sizeof kept, "%s", before ? before : "");
 	write_log(place, &making);
 	setenv("PATH", "/nonexistent", 1);
-	run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
 	setenv("PATH", kept, 1);
 	assert_said(place, 0, "gnuplot is not installed: there are no charts");
 	assert_said(place, 0, "1 euro, beta");
@@ -292,7 +247,7 @@ static void log_without_a_display_takes_the_default_and_says_so(void **state)
 	struct place *place = *state;
 	const struct making making = { .rate_hz = 120, .count = 1200, .no_display = true };
 	write_log(place, &making);
-	run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
 	assert_said(place, 0, "angles are those of the default, 50.4 degrees wide");
 }
 
@@ -301,7 +256,7 @@ static void log_of_an_eye_that_stays_has_jitter_but_no_lag(void **state)
 	struct place *place = *state;
 	const struct making making = { .rate_hz = 120, .count = 360, .stare = true };
 	write_log(place, &making);
-	run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
 	assert_said(place, 0, "holds no whole saccade above 2 degrees");
 	assert_said(place, 0, "pipeline, smooth_pass_deg");
 	assert_null(strstr(place->said.bytes, "at a lag"));
@@ -313,28 +268,29 @@ static void logs_that_nothing_can_be_said_of_are_refused(void **state)
 {
 	struct place *place = *state;
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 0 });
-	run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
 	assert_said(place, 1, "holds no sample");
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 1 });
-	run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
 	assert_said(place, 1, "a single sample");
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 600, .lost = true });
-	run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "viewer.gzl", NULL });
 	assert_said(place, 1, "holds no fixation");
-	run(place, (const char *[]) { "filter", "said.txt", NULL });
+	place_run(place, (const char *[]) { "filter", "said.txt", NULL });
 	assert_said(place, 1, "said.txt");
-	run(place, (const char *[]) { "filter", "nowhere.gzl", NULL });
+	place_run(place, (const char *[]) { "filter", "nowhere.gzl", NULL });
 	assert_said(place, 1, "nowhere.gzl");
-	run(place, (const char *[]) { "filter", NULL });
+	place_run(place, (const char *[]) { "filter", NULL });
 	assert_said(place, 2, "one gaze log is wanted");
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 1200 });
-	run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "viewer.gzl/in", NULL });
+	place_run(place,
+		  (const char *[]) { "filter", "viewer.gzl", "--out", "viewer.gzl/in", NULL });
 	assert_said(place, 1, "viewer.gzl/in: cannot be made");
 }
 
 int main(void)
 {
-#define IN_A_PLACE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+#define IN_A_PLACE(test) cmocka_unit_test_setup_teardown(test, set_up, place_remove)
 	const struct CMUnitTest tests[] = {
 		IN_A_PLACE(pipeline_has_less_jitter_than_the_1_euro_filter_at_equal_lag),
 		cmocka_unit_test(comparison_of_curves_that_cross_names_the_lag),

@@ -9,9 +9,8 @@
 
 #include <jansson.h>
 
-#include "bench/report/child.h"
-#include "bench/report/text.h"
 #include "bench/study/study_folder.h"
+#include "called.h"
 #include "made_study.h"
 
 static const double flips[] = { 0.001, 0.012, 0.02, 0.04 };
@@ -25,13 +24,6 @@ static void measure(const struct gz_study *study, struct gz_study_row *row)
 	row->converged.perceived_flip = flips[row->variant] * (1 + row->scene);
 	row->converged.psnr_db = 50 - row->variant;
 }
-
-/* A folder with the folder "study" of two scenes, and a scene file; said.txt is what was said. */
-struct place {
-	char path[64];
-	int status;
-	struct gz_text said;
-};
 
 static void write_study(const struct place *place, bool rows)
 {
@@ -60,8 +52,7 @@ static int set_up(void **state)
 {
 	static struct place place;
 	char path[96];
-	snprintf(place.path, sizeof place.path, "/tmp/gazebench-test-XXXXXX");
-	if (!mkdtemp(place.path))
+	if (place_make(&place) != 0)
 		return 1;
 	snprintf(path, sizeof path, "%s/head.scene", place.path);
 	FILE *file = fopen(path, "w");
@@ -75,49 +66,14 @@ static int set_up(void **state)
 	return 0;
 }
 
-static int tear_down(void **state)
-{
-	struct place *place = *state;
-	char rm[] = "rm", rf[] = "-rf";
-	char *const arguments[] = { rm, rf, place->path, NULL };
-	int status;
-	gz_text_free(&place->said);
-	return gz_child_run("/tmp", arguments, "/dev/null", &status) == GZ_OK ? status : 1;
-}
-
-/* Run gazebench with up to eight arguments; what it says is in place->said. */
-static void run(struct place *place, const char *const *arguments)
-{
-	char path[96], copies[9][128], *pointers[10] = { NULL };
-	snprintf(copies[0], sizeof copies[0], "%s", GAZEBENCH_PROGRAM);
-	pointers[0] = copies[0];
-	for (int i = 0; arguments[i]; i++) {
-		assert_true(i < 8);
-		snprintf(copies[i + 1], sizeof copies[0], "%s", arguments[i]);
-		pointers[i + 1] = copies[i + 1];
-	}
-	assert_int_equal(gz_child_run(place->path, pointers, "said.txt", &place->status), GZ_OK);
-	gz_text_free(&place->said);
-	snprintf(path, sizeof path, "%s/said.txt", place->path);
-	assert_int_equal(gz_text_add_file(&place->said, path), GZ_OK);
-}
-
-static void assert_said(const struct place *place, int status, const char *what)
-{
-	const char *said = place->said.bytes ? place->said.bytes : "";
-	if (place->status != status || !strstr(said, what))
-		fail_msg("exit status %d, not %d, or without \"%s\": %s", place->status, status,
-			 what, said);
-}
-
 static void suggestion_holds_at_every_point_and_is_written_into_a_copy(void **state)
 {
 	struct place *place = *state;
 	struct gz_text scene = { 0 };
 	char path[96];
 	write_study(place, true);
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head.scene", "--out",
-				      "fast.scene", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head.scene", "--out",
+					    "fast.scene", NULL });
 	assert_said(place, 0, "acuity, slope 0.033 takes 10 ms");
 	snprintf(path, sizeof path, "%s/fast.scene", place->path);
 	assert_int_equal(gz_text_add_file(&scene, path), GZ_OK);
@@ -126,8 +82,8 @@ static void suggestion_holds_at_every_point_and_is_written_into_a_copy(void **st
 		"; the head\n[volume]\nprocedural = shells\n[transfer]\nfile = a.tf\n[foveation]\n"
 		"method = acuity ; for now\nacuity_slope = 0.033\n");
 	gz_text_free(&scene);
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head.scene", "--out",
-				      "fast.scene", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head.scene", "--out",
+					    "fast.scene", NULL });
 	assert_said(place, 1, "fast.scene is there already");
 }
 
@@ -135,7 +91,8 @@ static void suggestion_of_the_scene_that_needs_more_is_a_dearer_one(void **state
 {
 	struct place *place = *state;
 	write_study(place, true);
-	run(place, (const char *[]) { "suggest", "study", "--scene", "hand", "--json", NULL });
+	place_run(place,
+		  (const char *[]) { "suggest", "study", "--scene", "hand", "--json", NULL });
 	assert_int_equal(place->status, 0);
 	json_t *json = json_loads(place->said.bytes, 0, NULL);
 	assert_non_null(json);
@@ -151,11 +108,11 @@ static void suggestion_where_nothing_qualifies_is_standard_and_says_so(void **st
 {
 	struct place *place = *state;
 	write_study(place, true);
-	run(place,
-	    (const char *[]) { "suggest", "study", "--scene", "head", "--bound", "0.0005", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--bound",
+					    "0.0005", NULL });
 	assert_said(place, 0, "standard remains");
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--bound", "0.0005",
-				      "--json", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--bound",
+					    "0.0005", "--json", NULL });
 	assert_said(place, 0, "\"holds\": false");
 	assert_said(place, 0, "\"variant\": \"standard\"");
 }
@@ -164,22 +121,22 @@ static void questions_without_an_answer_are_refused(void **state)
 {
 	struct place *place = *state;
 	write_study(place, true);
-	run(place, (const char *[]) { "suggest", "study", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", NULL });
 	assert_said(place, 1, "several scenes were measured; say which with --scene");
-	run(place, (const char *[]) { "suggest", "study", "--scene", "foot", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "foot", NULL });
 	assert_said(place, 1, "nothing was measured of this scene");
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric", "psnr_db",
-				      NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
+					    "psnr_db", NULL });
 	assert_said(place, 1, "--bound is wanted");
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
-				      "foveal_flip", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
+					    "foveal_flip", NULL });
 	assert_said(place, 1, "foveal FLIP against converged was not measured");
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--against",
-				      "standard", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--against",
+					    "standard", NULL });
 	assert_said(place, 1, "against standard was not measured");
-	run(place, (const char *[]) { "suggest", "study", "--bound", "nan", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--bound", "nan", NULL });
 	assert_int_equal(place->status, 2);
-	run(place, (const char *[]) { "suggest", NULL });
+	place_run(place, (const char *[]) { "suggest", NULL });
 	assert_said(place, 2, "one folder is wanted");
 }
 
@@ -187,8 +144,8 @@ static void bound_on_a_measure_that_rises_is_the_least_it_may_be(void **state)
 {
 	struct place *place = *state;
 	write_study(place, true);
-	run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric=psnr_db",
-				      "--bound=48.5", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head",
+					    "--metric=psnr_db", "--bound=48.5", NULL });
 	assert_said(place, 0, "acuity takes 20 ms");
 	assert_said(place, 0, "stays above the bound of 48.5");
 }
@@ -197,13 +154,13 @@ static void report_of_no_rows_or_of_no_study_is_refused(void **state)
 {
 	struct place *place = *state;
 	write_study(place, false);
-	run(place, (const char *[]) { "report", "study", NULL });
+	place_run(place, (const char *[]) { "report", "study", NULL });
 	assert_said(place, 1, "no frame was measured yet");
-	run(place, (const char *[]) { "suggest", "study", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", NULL });
 	assert_said(place, 1, "no frame was measured yet");
-	run(place, (const char *[]) { "report", "nowhere", NULL });
+	place_run(place, (const char *[]) { "report", "nowhere", NULL });
 	assert_int_equal(place->status, 1);
-	run(place, (const char *[]) { "report", NULL });
+	place_run(place, (const char *[]) { "report", NULL });
 	assert_said(place, 2, "one folder is wanted");
 }
 
@@ -216,7 +173,7 @@ static void report_without_gnuplot_has_all_but_charts_and_says_so(void **state)
 	char kept[4096];
 	snprintf(kept, sizeof kept, "%s", before ? before : "");
 	setenv("PATH", "/nonexistent", 1);
-	run(place, (const char *[]) { "report", "study", NULL });
+	place_run(place, (const char *[]) { "report", "study", NULL });
 	setenv("PATH", kept, 1);
 	assert_said(place, 0, "gnuplot is not installed: there are no charts");
 	assert_said(place, 0, "study/report.html");
@@ -225,8 +182,8 @@ static void report_without_gnuplot_has_all_but_charts_and_says_so(void **state)
 		snprintf(path, sizeof path, "%s/study/%s", place->path, files[i]);
 		assert_int_equal(access(path, R_OK), 0);
 	}
-	run(place,
-	    (const char *[]) { "suggest", "study", "--scene", "head", "--metric", "flip", NULL });
+	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
+					    "flip", NULL });
 	assert_int_equal(place->status, 1);
 }
 
@@ -235,20 +192,22 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(
 			suggestion_holds_at_every_point_and_is_written_into_a_copy, set_up,
-			tear_down),
+			place_remove),
 		cmocka_unit_test_setup_teardown(
-			suggestion_of_the_scene_that_needs_more_is_a_dearer_one, set_up, tear_down),
+			suggestion_of_the_scene_that_needs_more_is_a_dearer_one, set_up,
+			place_remove),
 		cmocka_unit_test_setup_teardown(
 			suggestion_where_nothing_qualifies_is_standard_and_says_so, set_up,
-			tear_down),
+			place_remove),
 		cmocka_unit_test_setup_teardown(questions_without_an_answer_are_refused, set_up,
-						tear_down),
+						place_remove),
 		cmocka_unit_test_setup_teardown(
-			bound_on_a_measure_that_rises_is_the_least_it_may_be, set_up, tear_down),
+			bound_on_a_measure_that_rises_is_the_least_it_may_be, set_up, place_remove),
 		cmocka_unit_test_setup_teardown(report_of_no_rows_or_of_no_study_is_refused, set_up,
-						tear_down),
+						place_remove),
 		cmocka_unit_test_setup_teardown(
-			report_without_gnuplot_has_all_but_charts_and_says_so, set_up, tear_down),
+			report_without_gnuplot_has_all_but_charts_and_says_so, set_up,
+			place_remove),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

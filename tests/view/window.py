@@ -280,10 +280,16 @@ class Window(unittest.TestCase):
             time.sleep(0.02)
 
     def found_anew(self):
-        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
-                    "^gazeview$", env=self.environment)
-        self.assertEqual(found.returncode, 0, "no window appears")
-        self.window = found.stdout.split()[-1]
+        deadline = time.monotonic() + 20
+        while True:
+            # A search fails also where a window goes while it looks.
+            found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
+                        env=self.environment)
+            if found.returncode == 0 and found.stdout.split():
+                self.window = found.stdout.split()[-1]
+                return
+            self.assertLess(time.monotonic(), deadline, "no window appears")
+            time.sleep(0.05)
 
     def messages(self):
         """What the viewer has said, once it has ended."""
