@@ -167,6 +167,20 @@ int image_difference(const struct gz_image *a, const struct gz_image *b, int *ou
 	return worst;
 }
 
+int image_pixels_apart(const struct gz_image *a, const struct gz_image *b)
+{
+	int apart = 0;
+	for (int i = 0; i < a->width * a->height; i++) {
+		int worst = 0;
+		for (int c = 0; c < 4; c++) {
+			const int difference = abs(a->pixels[4 * i + c] - b->pixels[4 * i + c]);
+			worst = difference > worst ? difference : worst;
+		}
+		apart += worst > 1;
+	}
+	return apart;
+}
+
 void small_scene_free(struct small_scene *scene)
 {
 	gz_volume_free(&scene->volume);

@@ -49,6 +49,9 @@ void small_scene_render(struct gz_renderer *renderer, const struct small_scene *
 /** Greatest difference of any channel of any pixel, 0 to 255, and where. */
 int image_difference(const struct gz_image *a, const struct gz_image *b, int *out_x, int *out_y);
 
+/** How many pixels differ by more than a grey level in some channel. */
+int image_pixels_apart(const struct gz_image *a, const struct gz_image *b);
+
 void small_scene_free(struct small_scene *scene);
 
 #endif

@@ -63,19 +63,6 @@ static void pair_free(struct pair *pair)
 	gz_image_free(&pair->of_gl);
 }
 
-/* Pixels that differ by more than a grey level in some channel. */
-static int pixels_apart(const struct gz_image *a, const struct gz_image *b)
-{
-	int apart = 0;
-	for (int i = 0; i < a->width * a->height; i++) {
-		int worst = 0;
-		for (int c = 0; c < 4; c++)
-			worst = (int)fmax(worst, abs(a->pixels[4 * i + c] - b->pixels[4 * i + c]));
-		apart += worst > 1;
-	}
-	return apart;
-}
-
 /* The bound that both backends promise: within 1/255 for 99.9 % of the pixels. */
 static void check_pair(struct pair *pair, const struct small_scene *scene, int width, int height,
 		       const char *what)
@@ -83,7 +70,7 @@ static void check_pair(struct pair *pair, const struct small_scene *scene, int w
 	struct gz_frame_stats cpu, gl;
 	small_scene_render(pair->cpu, scene, width, height, &pair->of_cpu, &cpu);
 	small_scene_render(pair->gl, scene, width, height, &pair->of_gl, &gl);
-	const int apart = pixels_apart(&pair->of_cpu, &pair->of_gl);
+	const int apart = image_pixels_apart(&pair->of_cpu, &pair->of_gl);
 	if (apart * 1000 > width * height)
 		fail_msg("%s, %s: %d of %d pixels differ", what,
 			 gz_method_names[scene->foveation.method], apart, width * height);
@@ -225,7 +212,7 @@ static void jittered_pictures_of_a_shifted_plan_equal_the_cpus(void **state)
 	assert_int_equal(
 		gz_renderer_render(pair.gl, &scene.camera, &scene.rays, &plan, &pair.of_gl, NULL),
 		GZ_OK);
-	const int apart = pixels_apart(&pair.of_cpu, &pair.of_gl);
+	const int apart = image_pixels_apart(&pair.of_cpu, &pair.of_gl);
 	if (apart * 1000 > WIDTH * HEIGHT)
 		fail_msg("%d of %d pixels differ", apart, WIDTH * HEIGHT);
 	gz_plan_free(&plan);

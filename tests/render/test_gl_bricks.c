@@ -39,19 +39,6 @@ static struct gz_frame_stats render(const char *backend, const struct small_scen
 	return stats;
 }
 
-/* Pixels that differ by more than a grey level in some channel. */
-static int pixels_apart(const struct gz_image *a, const struct gz_image *b)
-{
-	int apart = 0;
-	for (int i = 0; i < a->width * a->height; i++) {
-		int worst = 0;
-		for (int c = 0; c < 4; c++)
-			worst = (int)fmax(worst, abs(a->pixels[4 * i + c] - b->pixels[4 * i + c]));
-		apart += worst > 1;
-	}
-	return apart;
-}
-
 static long total_difference(const struct gz_image *a, const struct gz_image *b)
 {
 	long sum = 0;
@@ -82,7 +69,7 @@ static void check_same(const struct small_scene *memory, const struct gz_volume 
 	render("cpu", memory, (struct gz_renderer_params) { 0 }, &a);
 	const struct gz_frame_stats stats = render("gl", &shown, params, &b);
 	assert_int_equal(stats.bricks_coming, 0);
-	const int apart = pixels_apart(&a, &b);
+	const int apart = image_pixels_apart(&a, &b);
 	if (apart * 1000 > WIDTH * HEIGHT)
 		fail_msg("%s: %d of %d pixels differ", what, apart, WIDTH * HEIGHT);
 	gz_image_free(&a);
@@ -292,7 +279,7 @@ static void streamed_picture_is_whole_at_once_and_ends_as_the_one_waited_for(voi
 	struct gz_image whole = { 0 }, resident = { 0 };
 	render("cpu", &scene, (struct gz_renderer_params) { 0 }, &whole);
 	render("gl", &bricks, wait, &resident);
-	assert_true(pixels_apart(&whole, &resident) * 1000 <= WIDTH * HEIGHT);
+	assert_true(image_pixels_apart(&whole, &resident) * 1000 <= WIDTH * HEIGHT);
 	struct gz_renderer_params params = { .gl_volume_edge_max = 320 };
 	check_streamed(&bricks, params, &whole, &resident);
 	small_scene_free(&bricks);
@@ -366,7 +353,7 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 		}
 		render("cpu", &scene, (struct gz_renderer_params) { 0 }, &whole);
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, NULL);
-		const int apart = pixels_apart(&whole, &image);
+		const int apart = image_pixels_apart(&whole, &image);
 		if (apart * 1000 > WIDTH * HEIGHT)
 			fail_msg("corner %d: %d pixels differ", corner, apart);
 		gz_image_free(&whole);
@@ -390,7 +377,7 @@ static void new_transfer_function_shows_other_bricks(void **state)
 	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_OK);
 	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &b, NULL);
 	render("cpu", &scene, params, &a);
-	assert_true(pixels_apart(&a, &b) * 1000 <= WIDTH * HEIGHT);
+	assert_true(image_pixels_apart(&a, &b) * 1000 <= WIDTH * HEIGHT);
 	gz_renderer_destroy(&renderer);
 	gz_image_free(&a);
 	gz_image_free(&b);
