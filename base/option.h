@@ -92,11 +92,8 @@ const struct gz_option *gz_options_find(const struct gz_option_binding *bindings
 					const char *key, size_t *out_binding);
 
 /**
- * Read an INI file: "[section]" and "name = value" make the key "section.name". A line that begins
- * with ';' or '#' is a comment, and so is what follows a ';' after a blank. Blanks around a line, a
- * name or a value do not count; a value ends with its line. Lines hold at most 199 bytes (inih's
- * INI_MAX_LINE), section names 49, files 1 MiB. Values are set in order; on failure earlier ones
- * stay set.
+ * Read an INI file (ini.h): "[section]" and "name = value" make the key "section.name". Values are
+ * set in order; on failure earlier ones stay set.
  *
  * @retval GZ_OK             read
  * @retval GZ_ERR_NOT_FOUND  no such file; logged
@@ -135,6 +132,10 @@ enum gz_result gz_options_read_text(const struct gz_option_binding *bindings, si
 enum gz_result gz_options_read_arguments(const struct gz_option_binding *bindings, size_t count,
 					 int argc, char *const *argv, const char **out_positional,
 					 int *out_positional_count, const struct gz_log *log);
+
+/** The key of the options nearest to @p key, or NULL if none is near. */
+const char *gz_options_nearest(const struct gz_option_binding *bindings, size_t count,
+			       const char *key);
 
 /** Print one aligned line per option: --key VALUE, help, allowed range, default. */
 void gz_options_print_help(const struct gz_option_binding *bindings, size_t count, FILE *out);

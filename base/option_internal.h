@@ -46,8 +46,4 @@ enum gz_result gz_option_reader_set(struct gz_option_reader *reader, const char 
 				    const char *text, int place, int *out_first, char *message,
 				    size_t message_size);
 
-/** The key of the options nearest to @p key, or NULL if none is near. */
-const char *gz_options_nearest(const struct gz_option_binding *bindings, size_t count,
-			       const char *key);
-
 #endif
