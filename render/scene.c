@@ -193,6 +193,7 @@ size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_bi
 		{ gz_foveation_options, gz_foveation_option_count, &settings->foveation, NULL },
 		{ gz_attention_options, gz_attention_option_count, &settings->attention, NULL },
 		{ gz_temporal_options, gz_temporal_option_count, &settings->temporal, NULL },
+		{ gz_view_setting_options, gz_view_setting_option_count, &settings->view, NULL },
 	};
 	size_t count = room < GZ_SCENE_BINDINGS ? room : GZ_SCENE_BINDINGS;
 	memcpy(out_bindings, bindings, count * sizeof bindings[0]);

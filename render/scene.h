@@ -18,6 +18,7 @@
 #include "render/renderer.h"
 #include "render/temporal.h"
 #include "render/transfer.h"
+#include "render/view_settings.h"
 #include "render/volume/volume.h"
 
 /** The settings of a scene, as its table reads them. */
@@ -38,6 +39,7 @@ struct gz_scene_settings {
 	struct gz_foveation foveation;
 	struct gz_attention_params attention;
 	struct gz_temporal_params temporal;
+	struct gz_view_settings view;
 	struct gz_display display;
 };
 
@@ -50,7 +52,7 @@ struct gz_scene {
 };
 
 /** Tables that gz_scene_bindings() gives. */
-#define GZ_SCENE_BINDINGS 5
+#define GZ_SCENE_BINDINGS 6
 
 /**
  * The tables over struct gz_scene_settings: "volume.file", "camera.eye", …

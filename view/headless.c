@@ -160,9 +160,9 @@ static enum gz_result write_picture(struct headless *self, struct gz_image *imag
 	char path[GZ_PATH_SIZE];
 	if (!self->options->out[0])
 		return GZ_OK;
-	if (self->options->cross && record->gaze_known)
+	if (self->settings.view.gaze_cursor && record->gaze_known)
 		gz_frame_draw_cross(image, record->gaze);
-	if (self->options->letters)
+	if (self->settings.view.letters)
 		draw_letters(self, image);
 	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
 	if (r != GZ_OK) {
@@ -249,7 +249,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	if (r == GZ_OK) {
 		self.settings = gz_frame_maker_scene(self.maker)->settings;
 		warn_of_budget(&self);
-		if (options->letters)
+		if (self.settings.view.letters)
 			gz_frame_tell_unoriented(self.maker);
 		r = all_frames(&self);
 	}

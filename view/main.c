@@ -6,7 +6,7 @@
 #include "view/headless.h"
 #include "view/options.h"
 #include "view/target_window.h"
-#include "view/window.h"
+#include "view/window/window.h"
 #include "view/write_volume.h"
 
 /* What a shell reports for a process that a signal ended. */

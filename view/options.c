@@ -122,12 +122,12 @@ const struct gz_option gz_view_option_table[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(cross),
 	  .preset = "false",
-	  .help = "draw a cross at the gaze" },
+	  .help = "short for --view.gaze_cursor" },
 	{ .key = "letters",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(letters),
 	  .preset = "false",
-	  .help = "tell at the picture's edges which side is there: R L A P S I" },
+	  .help = "short for --view.letters" },
 	{ .key = "fullscreen",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(fullscreen),
@@ -436,6 +436,13 @@ static enum gz_result check_method_once(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
+/* Short for keys of section view. */
+static void apply_short_names(const struct gz_view_options *options, struct gz_view_settings *view)
+{
+	view->gaze_cursor = view->gaze_cursor || options->cross;
+	view->letters = view->letters || options->letters;
+}
+
 static enum gz_result read_arguments(int argc, char *const *argv,
 				     struct gz_view_scene_tables *tables, const struct gz_log *log,
 				     struct gz_view_options *options)
@@ -506,6 +513,7 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	}
 	if (options->method >= 0)
 		settings->foveation.method = options->method;
+	apply_short_names(options, &settings->view);
 	return GZ_OK;
 }
 

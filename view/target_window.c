@@ -11,9 +11,9 @@
 #include "base/clock.h"
 #include "view/context_loss.h"
 #include "view/gl_program.h"
-#include "view/panel.h"
+#include "view/panels/marks.h"
 #include "view/target_options.h"
-#include "view/window_state.h"
+#include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "targets"
 
@@ -36,7 +36,7 @@ struct target_window {
 	const struct gz_view_options *options;
 	const struct gz_log *log;
 	GLFWwindow *glfw;
-	bool has_panel;
+	bool has_widgets;
 	GLuint program, vertices;
 	struct gz_targets targets;
 	size_t index;     /* of the target shown, or to be shown next */
@@ -144,8 +144,8 @@ static enum gz_result open_drawing(struct target_window *window)
 	glfwSetWindowUserPointer(window->glfw, window);
 	glfwSetKeyCallback(window->glfw, on_key);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
-	window->has_panel = gz_panel_init(window->glfw);
-	return window->has_panel ? GZ_OK : GZ_ERR_UNSUPPORTED;
+	window->has_widgets = gz_widgets_init(window->glfw);
+	return window->has_widgets ? GZ_OK : GZ_ERR_UNSUPPORTED;
 }
 
 static enum gz_result open_window(struct target_window *window)
@@ -238,8 +238,11 @@ static void draw(const struct target_window *window)
 	set_number(window, "arm", dot);
 	glBindVertexArray(window->vertices);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
-	if (!window->started)
-		gz_panel_draw_message(instructions_of(&window->options->target));
+	if (window->started)
+		return;
+	gz_widgets_begin();
+	gz_marks_draw_message(instructions_of(&window->options->target));
+	gz_widgets_end();
 }
 
 static void tell_shown(const struct target_window *window)
@@ -323,8 +326,8 @@ static enum gz_result loop(struct target_window *window)
 static void close_window(struct target_window *window)
 {
 	if (window->glfw) {
-		if (window->has_panel)
-			gz_panel_free();
+		if (window->has_widgets)
+			gz_widgets_free();
 		if (window->program)
 			glDeleteProgram(window->program);
 		if (window->vertices)

@@ -1,4 +1,4 @@
-#include "view/window_state.h"
+#include "view/window/window_state.h"
 
 #include <GLFW/glfw3.h>
 

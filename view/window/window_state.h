@@ -1,7 +1,8 @@
 /**
  * @file
- * What the window's parts share: window.c runs the loop, window_gaze.c says where the gaze is,
- * window_input.c turns keys and mouse into changes. Internal to view/.
+ * What the window's parts share: window.c runs the loop, gaze.c says where the gaze is, input.c
+ * turns the mouse into changes and hands on keys, and parts (part.h) do the rest. Internal to
+ * view/.
  */
 #ifndef GZ_VIEW_WINDOW_STATE_H
 #define GZ_VIEW_WINDOW_STATE_H
@@ -9,15 +10,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "render/gl/gl_context.h"
 #include "view/frame.h"
 #include "view/gaze_source.h"
 #include "view/options.h"
+#include "view/panels/settings_panel.h"
 #include "view/quad.h"
 #include "view/scene_tables.h"
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
+
+/** Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
+#define GZ_WINDOW_SILENT_NS GZ_NS_PER_S
 
 /** The window's OpenGL context as the gl backend takes it. */
 struct gz_window_context {
@@ -31,7 +37,7 @@ struct gz_window {
 	const struct gz_log *log;
 	struct GLFWwindow *glfw;
 	struct gz_window_context context;
-	struct gz_frame_maker *maker;
+	struct gz_frame_maker *maker; /**< NULL while there is no scene */
 	struct gz_quad quad;
 
 	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
@@ -46,12 +52,14 @@ struct gz_window {
 	bool any_shown;
 	bool taken_back;                    /**< a frame with other settings could not be made */
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
-	bool cross;
-	bool letters;
 	bool keys_shown;
-	bool panel_shown;
-	int panel_frames; /**< still to be drawn, so that the panel answers what has happened */
+	struct gz_settings_panel settings_panel;
+	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
+	float panels_top; /**< lower edge of what lies on top, in this frame */
 
+	bool key_taken; /**< the last key pressed did something: the character that it types does
+			 * not
+			 */
 	bool dragging;
 	bool cursor_known;
 	bool cursor_inside;    /**< the window's content is what the mouse is over */
@@ -63,6 +71,7 @@ struct gz_window {
 	int64_t lost_ns; /**< the last one */
 
 	bool cast_needed;    /**< camera, method or size has changed */
+	bool frame_new;      /**< a picture has been cast in this turn */
 	bool present_needed; /**< what lies over the picture has changed */
 
 	/** The frame on the screen. */
@@ -130,14 +139,11 @@ void gz_window_gaze_now(struct gz_window *window, int width, int height,
 /** Seconds until the gaze must be looked at again, if no event comes before. */
 double gz_window_gaze_patience_s(const struct gz_window *window);
 
-/** Listen to keys, buttons, cursor, wheel and size. Before gz_panel_init(), which chains them. */
+/** Listen to keys, buttons, cursor, wheel and size. Before gz_widgets_init(), which chains them. */
 void gz_window_input_attach(struct gz_window *window);
 
-/** Something that the panel may have to answer has happened. */
-void gz_window_wake_panel(struct gz_window *window);
-
-/** What H and ? show. Static text. */
-const char *gz_window_keys_text(void);
+/** Something that panels may have to answer has happened: they are drawn for a few frames. */
+void gz_window_wake_panels(struct gz_window *window);
 
 /** Into full screen on the monitor that the window is on, or back. */
 void gz_window_toggle_fullscreen(struct gz_window *window);

@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "view/context_loss.h"
-#include "view/window_state.h"
+#include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
@@ -82,6 +82,6 @@ enum gz_result gz_window_rebuild(struct gz_window *window)
 	bring_back(window, fullscreen);
 	window->dragging = false;
 	window->cast_needed = true;
-	gz_window_wake_panel(window);
+	gz_window_wake_panels(window);
 	return GZ_OK;
 }

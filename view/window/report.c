@@ -1,5 +1,5 @@
 /* What the window tells the daemon of itself. */
-#include "view/window_state.h"
+#include "view/window/window_state.h"
 
 #include <math.h>
 

@@ -6,8 +6,9 @@
 #include <GLFW/glfw3.h>
 
 #include "view/context_loss.h"
-#include "view/panel.h"
-#include "view/window_state.h"
+#include "view/panels/widgets.h"
+#include "view/window/part.h"
+#include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
@@ -89,18 +90,26 @@ enum gz_result gz_window_drawing_open(struct gz_window *window)
 	if (r != GZ_OK)
 		return r;
 	gz_window_input_attach(window);
-	if (gz_panel_init(window->glfw))
-		return GZ_OK;
-	gz_err(window->log, "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
-			    "--headless");
-	return GZ_ERR_UNSUPPORTED;
+	if (!gz_widgets_init(window->glfw)) {
+		gz_err(window->log,
+		       "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
+		       "--headless");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+		if (r == GZ_OK && (*part)->gl_open)
+			r = (*part)->gl_open(window);
+	return r;
 }
 
 void gz_window_drawing_close(struct gz_window *window)
 {
 	if (!window->glfw)
 		return;
-	gz_panel_free();
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+		if ((*part)->gl_close)
+			(*part)->gl_close(window);
+	gz_widgets_free();
 	gz_quad_free(&window->quad);
 	glfwDestroyWindow(window->glfw);
 	window->glfw = NULL;

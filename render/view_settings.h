@@ -1,0 +1,23 @@
+/**
+ * @file
+ * What a viewer lays over the picture or shows in its place: section "view" of a scene. The
+ * renderer does not look at it.
+ */
+#ifndef GZ_RENDER_VIEW_SETTINGS_H
+#define GZ_RENDER_VIEW_SETTINGS_H
+
+#include <stdbool.h>
+
+#include "base/option.h"
+
+/** Settings of section "view"; its table is gz_view_setting_options. */
+struct gz_view_settings {
+	bool gaze_cursor; /**< a cross at the gaze */
+	bool letters;     /**< which side is where, at the picture's edges */
+};
+
+/** Table over struct gz_view_settings. */
+extern const struct gz_option gz_view_setting_options[];
+extern const size_t gz_view_setting_option_count;
+
+#endif

@@ -1,0 +1,25 @@
+/**
+ * @file
+ * What lies over the picture and is no panel: the text line, the list of keys, the gaze cursor, the
+ * letters of a patient's sides. Inside a frame of panels/widgets.h.
+ */
+#ifndef GZ_VIEW_MARKS_H
+#define GZ_VIEW_MARKS_H
+
+#include "view/letters.h"
+#include "view/panels/widgets.h"
+
+/** Draw a text on a dark ground at the top left, @p below being the lower edge of the one above it
+ * (0: none). @return its own lower edge */
+float gz_marks_draw_caption(float below, struct gz_paint paint, const char *text);
+
+/** Draw a cross at @p at, the window's screen coordinates. */
+void gz_marks_draw_cross(struct gz_place at);
+
+/** Draw letters at the edges. */
+void gz_marks_draw_letters(const struct gz_letters *letters);
+
+/** Draw @p text over the middle: each line centred, dark, in twice the interface's size. */
+void gz_marks_draw_message(const char *text);
+
+#endif

@@ -1,0 +1,221 @@
+#include "view/panels/settings_panel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/panels/widgets.h"
+
+/* Unscaled (chosen: three numbers fit beside their name). */
+#define WIDTH       380.0f
+#define LABEL_SHARE 0.45f
+
+/* Ranges up to this are sliders, wider ones are dragged (chosen: a slider of 200 px reaches every
+ * hundredth). */
+#define SLIDER_RANGE_MAX 128.0
+/* A range whose ends differ by more than this factor is logarithmic. */
+#define LINEAR_FACTOR_MAX 100.0
+
+#define METHOD_KEY    "foveation.method"
+#define METHOD_PREFIX "foveation."
+
+static void *field_of(const struct gz_option_binding *binding, const struct gz_option *option)
+{
+	return (char *)binding->target + option->offset;
+}
+
+static int count_of(const struct gz_option *option)
+{
+	return option->count > 0 ? (int)option->count : 1;
+}
+
+/* "light.ambient": its section ends here. */
+static size_t section_length(const struct gz_option *option)
+{
+	return strcspn(option->key, ".");
+}
+
+/* "ray_sampling_rate" as "ray sampling rate", behind the dots. */
+static void print_label(const struct gz_option *option, char *text, size_t size)
+{
+	const char *dot = strrchr(option->key, '.');
+	snprintf(text, size, "%s", dot ? dot + 1 : option->key);
+	for (char *at = text; *at; at++)
+		if (*at == '_')
+			*at = ' ';
+}
+
+/* A row named after a method that is not the chosen one: "foveation.mdc_spacing" while that is
+ * "ddc". The longest name counts, so that "mdc3" has its own; those of "mdc" are its too. */
+static bool is_of_another_method(const struct gz_option *option, const struct gz_option *method,
+				 int chosen)
+{
+	const size_t prefix = strlen(METHOD_PREFIX);
+	size_t longest = 0;
+	int owner = -1;
+	if (strncmp(option->key, METHOD_PREFIX, prefix) != 0)
+		return false;
+	for (int i = 0; method->choices[i]; i++) {
+		const size_t length = strlen(method->choices[i]);
+		if (length > longest &&
+		    strncmp(option->key + prefix, method->choices[i], length) == 0 &&
+		    option->key[prefix + length] == '_') {
+			longest = length;
+			owner = i;
+		}
+	}
+	return owner >= 0 && strncmp(method->choices[chosen], method->choices[owner], longest) != 0;
+}
+
+/* Dragged by a hundredth of the number a pixel: whatever its size, it can be set. */
+static struct gz_number_range range_of(const struct gz_option *option, double value)
+{
+	const bool whole = option->type == GZ_OPTION_INT;
+	return (struct gz_number_range) {
+		.least = option->min,
+		.greatest = option->max,
+		.slider = option->max - option->min <= SLIDER_RANGE_MAX,
+		.logarithmic = option->min > 0 && option->max > LINEAR_FACTOR_MAX * option->min,
+		.speed = fmax(fabs(value) / 100, whole ? 0.1 : 0.005),
+		.format = whole              ? "%d"
+			  : option->max <= 1 ? "%.3f"
+					     : "%.4g",
+	};
+}
+
+static bool draw_widget(const struct gz_option *option, void *field)
+{
+	struct gz_number_range range;
+	switch (option->type) {
+	case GZ_OPTION_BOOL:
+		return gz_widget_checkbox("##value", field);
+	case GZ_OPTION_CHOICE:
+		return gz_widget_choice("##value", field, option->choices);
+	case GZ_OPTION_INT:
+		range = range_of(option, *(int *)field);
+		return gz_widget_ints("##value", field, count_of(option), &range);
+	case GZ_OPTION_DOUBLE:
+		if (strcmp(option->key, "render.background") == 0)
+			return gz_widget_colour("##value", field);
+		range = range_of(option, *(double *)field);
+		return gz_widget_doubles("##value", field, count_of(option), &range);
+	case GZ_OPTION_STRING:
+		/* Taken as a whole: half a file's name would be looked for. */
+		return gz_widget_text_field("##value", field, (size_t)option->max, true);
+	case GZ_OPTION_SIZE:
+		break;
+	}
+	return false;
+}
+
+static bool draw_row(const struct gz_settings_panel *panel, const struct gz_option_binding *binding,
+		     const struct gz_option *option)
+{
+	char label[64];
+	print_label(option, label, sizeof label);
+	gz_widgets_push_id(option->key);
+	gz_widgets_disable(panel->applies && !panel->applies(panel->user, option->key));
+	gz_widget_label(label);
+	gz_widget_tooltip(option->help);
+	gz_widgets_same_line(LABEL_SHARE);
+	gz_widgets_next_width(0);
+	const bool changed = draw_widget(option, field_of(binding, option));
+	gz_widget_tooltip(option->help);
+	gz_widgets_enable();
+	gz_widgets_pop_id();
+	return changed;
+}
+
+static bool draw_heading(const struct gz_option *option)
+{
+	char heading[64];
+	snprintf(heading, sizeof heading, "%.*s", (int)section_length(option), option->key);
+	if (heading[0] >= 'a' && heading[0] <= 'z')
+		heading[0] = (char)(heading[0] - 'a' + 'A');
+	return gz_widget_heading(heading, false);
+}
+
+static bool has_widget(const struct gz_option *option)
+{
+	return option->type != GZ_OPTION_SIZE;
+}
+
+static bool same_section(const struct gz_option *a, const struct gz_option *b)
+{
+	const size_t length = section_length(a);
+	return length == section_length(b) && strncmp(a->key, b->key, length) == 0;
+}
+
+/* A place in all tables as one list; binding at count behind the last row. */
+struct row {
+	size_t binding, option;
+};
+
+static const struct gz_option *row_option(const struct gz_settings_panel *panel, struct row row)
+{
+	return &panel->bindings[row.binding].options[row.option];
+}
+
+/* From @p row on, itself included, the first that has a widget. */
+static bool find_row(const struct gz_settings_panel *panel, struct row *row)
+{
+	for (; row->binding < panel->count; row->binding++, row->option = 0)
+		for (; row->option < panel->bindings[row->binding].count; row->option++)
+			if (has_widget(row_option(panel, *row)))
+				return true;
+	return false;
+}
+
+static bool is_first_of_section(const struct gz_settings_panel *panel,
+				const struct gz_option *option)
+{
+	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+		if (same_section(row_option(panel, row), option))
+			return row_option(panel, row) == option;
+	return false;
+}
+
+static bool draw_section(const struct gz_settings_panel *panel, const struct gz_option *section,
+			 const struct gz_option *method, int chosen)
+{
+	bool changed = false;
+	if (!draw_heading(section))
+		return false;
+	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
+		const struct gz_option *option = row_option(panel, row);
+		if (same_section(option, section) &&
+		    !(method && is_of_another_method(option, method, chosen)))
+			changed |= draw_row(panel, &panel->bindings[row.binding], option);
+	}
+	return changed;
+}
+
+static bool draw_sections(const struct gz_settings_panel *panel)
+{
+	size_t at = 0;
+	const struct gz_option *method =
+		gz_options_find(panel->bindings, panel->count, METHOD_KEY, &at);
+	const int chosen = method ? *(int *)field_of(&panel->bindings[at], method) : -1;
+	bool changed = false;
+	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
+		const struct gz_option *option = row_option(panel, row);
+		if (is_first_of_section(panel, option))
+			changed |= draw_section(panel, option, method, chosen);
+	}
+	return changed;
+}
+
+bool gz_settings_panel_draw(struct gz_settings_panel *panel)
+{
+	const struct gz_panel_place place = {
+		.at = GZ_PANEL_TOP_RIGHT,
+		.width = WIDTH,
+		.margin_top = panel->margin_top,
+	};
+	bool changed = false;
+	if (gz_panel_begin("Settings", &place, &panel->open))
+		changed = draw_sections(panel);
+	gz_panel_end();
+	return changed;
+}

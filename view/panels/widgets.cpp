@@ -1,0 +1,440 @@
+#include "view/panels/widgets.h"
+
+#include <cfloat>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include <imgui.h>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include <GLFW/glfw3.h>
+
+namespace
+{
+
+/* Screen coordinates of the unscaled interface (chosen: as Dear ImGui's own style). */
+constexpr float MARGIN = 8;
+constexpr float PADDING = 5;
+constexpr float PANEL_ALPHA = 0.85F;
+constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
+
+/* Longest text that is typed, a path with its end. */
+constexpr size_t TEXT_SIZE = 4096;
+
+float interface_scale(GLFWwindow *window)
+{
+	float x = 1, y = 1;
+	glfwGetWindowContentScale(window, &x, &y);
+	return x > 1 ? x : 1;
+}
+
+ImVec2 vector(gz_place place)
+{
+	return ImVec2(place.x, place.y);
+}
+
+gz_place place_of(ImVec2 vector)
+{
+	return gz_place { vector.x, vector.y };
+}
+
+ImU32 colour(gz_paint paint)
+{
+	return IM_COL32(paint.red, paint.green, paint.blue, paint.alpha);
+}
+
+ImDrawList *list_of(gz_layer layer)
+{
+	switch (layer) {
+	case GZ_LAYER_PANEL:
+		return ImGui::GetWindowDrawList();
+	case GZ_LAYER_TOP:
+		return ImGui::GetForegroundDrawList();
+	case GZ_LAYER_PICTURE:
+		break;
+	}
+	return ImGui::GetBackgroundDrawList();
+}
+
+void set_panel_place(const gz_panel_place &place)
+{
+	const float scale = gz_widgets_scale(), margin = MARGIN * scale;
+	const ImVec2 room = ImGui::GetIO().DisplaySize;
+	const float top = margin + place.margin_top, bottom = room.y - margin - place.margin_bottom;
+	const bool right = place.at == GZ_PANEL_TOP_RIGHT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	const bool low = place.at == GZ_PANEL_BOTTOM_LEFT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	ImVec2 at(right ? room.x - margin : margin, low ? bottom : top);
+	ImVec2 pivot(right ? 1.0F : 0.0F, low ? 1.0F : 0.0F);
+	if (place.at == GZ_PANEL_MIDDLE) {
+		at = ImVec2(room.x / 2, room.y / 2);
+		pivot = ImVec2(0.5F, 0.5F);
+	}
+	ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+	const float width_max = room.x * PANEL_SHARE_MAX;
+	const float height_max = bottom > top ? bottom - top : 1;
+	const float width = fminf(place.width * scale, width_max);
+	ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0),
+					    ImVec2(width > 0 ? width : width_max, height_max));
+}
+
+bool draw_numbers(const char *id, ImGuiDataType type, void *values, int count, const void *least,
+		  const void *greatest, const gz_number_range &range)
+{
+	ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+	if (!range.slider)
+		return ImGui::DragScalarN(id, type, values, count, static_cast<float>(range.speed),
+					  least, greatest, range.format, flags);
+	if (range.logarithmic)
+		flags |= ImGuiSliderFlags_Logarithmic;
+	return ImGui::SliderScalarN(id, type, values, count, least, greatest, range.format, flags);
+}
+
+/* So often the key was pressed since the last frame, its repetition included. */
+int presses(ImGuiKey key)
+{
+	return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)) ? 1 : 0;
+}
+
+} // namespace
+
+const gz_paint gz_paint_plain = { 235, 235, 235, 255 };
+const gz_paint gz_paint_amber = { 255, 190, 60, 255 };
+const gz_paint gz_paint_red = { 255, 96, 80, 255 };
+const gz_paint gz_paint_ground = { 0, 0, 0, 160 };
+
+bool gz_widgets_init(GLFWwindow *window)
+{
+	IMGUI_CHECKVERSION();
+	ImGui::CreateContext();
+	ImGuiIO &io = ImGui::GetIO();
+	io.IniFilename = nullptr; /* a viewer leaves no files behind */
+	io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+	io.FontGlobalScale = interface_scale(window);
+	ImGui::GetStyle().ScaleAllSizes(io.FontGlobalScale);
+	if (!ImGui_ImplGlfw_InitForOpenGL(window, true)) {
+		ImGui::DestroyContext();
+		return false;
+	}
+	if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
+		ImGui_ImplGlfw_Shutdown();
+		ImGui::DestroyContext();
+		return false;
+	}
+	return true;
+}
+
+void gz_widgets_free(void)
+{
+	if (!ImGui::GetCurrentContext())
+		return;
+	ImGui_ImplOpenGL3_Shutdown();
+	ImGui_ImplGlfw_Shutdown();
+	ImGui::DestroyContext();
+}
+
+void gz_widgets_begin(void)
+{
+	ImGui_ImplOpenGL3_NewFrame();
+	ImGui_ImplGlfw_NewFrame();
+	ImGui::NewFrame();
+}
+
+void gz_widgets_end(void)
+{
+	ImGui::Render();
+	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+float gz_widgets_scale(void)
+{
+	return ImGui::GetIO().FontGlobalScale;
+}
+
+gz_place gz_widgets_room(void)
+{
+	return place_of(ImGui::GetIO().DisplaySize);
+}
+
+float gz_widgets_line_height(void)
+{
+	return ImGui::GetFontSize();
+}
+
+bool gz_widgets_have_mouse(void)
+{
+	return ImGui::GetCurrentContext() && ImGui::GetIO().WantCaptureMouse;
+}
+
+bool gz_widgets_have_text(void)
+{
+	return ImGui::GetCurrentContext() && ImGui::GetIO().WantTextInput;
+}
+
+bool gz_widgets_have_navigation(void)
+{
+	return ImGui::GetCurrentContext() && ImGui::GetIO().NavVisible;
+}
+
+void gz_widgets_release_keyboard(void)
+{
+	ImGui::SetWindowFocus(nullptr);
+}
+
+void gz_draw_line(gz_layer layer, gz_place from, gz_place to, gz_paint paint, float thickness)
+{
+	list_of(layer)->AddLine(vector(from), vector(to), colour(paint),
+				thickness * gz_widgets_scale());
+}
+
+void gz_draw_lines(gz_layer layer, const gz_place *places, size_t count, gz_paint paint,
+		   float thickness)
+{
+	for (size_t i = 0; i < count; i++)
+		list_of(layer)->PathLineTo(vector(places[i]));
+	list_of(layer)->PathStroke(colour(paint), 0, thickness * gz_widgets_scale());
+}
+
+void gz_draw_rectangle(gz_layer layer, gz_place corner, gz_place opposite, gz_paint paint,
+		       float radius)
+{
+	list_of(layer)->AddRectFilled(vector(corner), vector(opposite), colour(paint),
+				      radius * gz_widgets_scale());
+}
+
+void gz_draw_fading_rectangle(gz_layer layer, gz_place corner, gz_place opposite, gz_paint left,
+			      gz_paint right)
+{
+	list_of(layer)->AddRectFilledMultiColor(vector(corner), vector(opposite), colour(left),
+						colour(right), colour(right), colour(left));
+}
+
+void gz_draw_disc(gz_layer layer, gz_place centre, float radius, gz_paint paint)
+{
+	list_of(layer)->AddCircleFilled(vector(centre), radius * gz_widgets_scale(), colour(paint));
+}
+
+void gz_draw_circle(gz_layer layer, gz_place centre, float radius, gz_paint paint, float thickness)
+{
+	const float scale = gz_widgets_scale();
+	list_of(layer)->AddCircle(vector(centre), radius * scale, colour(paint), 0,
+				  thickness * scale);
+}
+
+void gz_draw_text(gz_layer layer, gz_place at, float size, gz_paint paint, const char *text)
+{
+	list_of(layer)->AddText(ImGui::GetFont(), size * ImGui::GetFontSize(), vector(at),
+				colour(paint), text);
+}
+
+gz_place gz_text_room(float size, const char *text)
+{
+	return place_of(
+		ImGui::GetFont()->CalcTextSizeA(size * ImGui::GetFontSize(), FLT_MAX, 0, text));
+}
+
+gz_place gz_draw_caption(gz_layer layer, gz_place at, gz_paint paint, const char *text)
+{
+	const float padding = PADDING * gz_widgets_scale();
+	const gz_place size = gz_text_room(1, text);
+	const gz_place opposite = { at.x + size.x + 2 * padding, at.y + size.y + 2 * padding };
+	gz_draw_rectangle(layer, at, opposite, gz_paint_ground, PADDING);
+	gz_draw_text(layer, gz_place { at.x + padding, at.y + padding }, 1, paint, text);
+	return opposite;
+}
+
+bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
+{
+	int flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+		    ImGuiWindowFlags_NoSavedSettings;
+	set_panel_place(*place);
+	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
+	if (!place->takes_keyboard)
+		return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);
+	const ImVec2 room = ImGui::GetIO().DisplaySize;
+	list_of(GZ_LAYER_PICTURE)->AddRectFilled(ImVec2(0, 0), room, IM_COL32(0, 0, 0, 110));
+	return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoCollapse);
+}
+
+void gz_panel_end(void)
+{
+	ImGui::End();
+}
+
+void gz_widgets_push_id(const char *id)
+{
+	ImGui::PushID(id);
+}
+
+void gz_widgets_pop_id(void)
+{
+	ImGui::PopID();
+}
+
+void gz_widgets_disable(bool disabled)
+{
+	ImGui::BeginDisabled(disabled);
+}
+
+void gz_widgets_enable(void)
+{
+	ImGui::EndDisabled();
+}
+
+void gz_widgets_same_line(float share)
+{
+	ImGui::SameLine(ImGui::GetWindowContentRegionMax().x * share);
+}
+
+void gz_widgets_next_width(float share)
+{
+	ImGui::SetNextItemWidth(share > 0 ? ImGui::GetWindowContentRegionMax().x * share
+					  : -FLT_MIN);
+}
+
+void gz_widgets_focus_next(void)
+{
+	ImGui::SetKeyboardFocusHere();
+}
+
+void gz_widget_separator(void)
+{
+	ImGui::Separator();
+}
+
+void gz_widget_text(gz_paint paint, const char *text)
+{
+	ImGui::PushStyleColor(ImGuiCol_Text, colour(paint));
+	ImGui::PushTextWrapPos(0);
+	ImGui::TextUnformatted(text);
+	ImGui::PopTextWrapPos();
+	ImGui::PopStyleColor();
+}
+
+void gz_widget_label(const char *text)
+{
+	ImGui::AlignTextToFramePadding();
+	ImGui::TextUnformatted(text);
+}
+
+void gz_widget_tooltip(const char *text)
+{
+	if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+		ImGui::SetTooltip("%s", text);
+}
+
+bool gz_widget_heading(const char *id, bool open_at_first)
+{
+	return ImGui::CollapsingHeader(id, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+bool gz_widget_button(const char *id)
+{
+	return ImGui::Button(id);
+}
+
+bool gz_widget_checkbox(const char *id, bool *value)
+{
+	return ImGui::Checkbox(id, value);
+}
+
+bool gz_widget_choice(const char *id, int *value, const char *const names[])
+{
+	int count = 0;
+	while (names[count])
+		count++;
+	return ImGui::Combo(id, value, names, count);
+}
+
+bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked)
+{
+	const bool chosen = ImGui::Selectable(id, selected, ImGuiSelectableFlags_AllowDoubleClick);
+	if (out_double_clicked)
+		*out_double_clicked = chosen && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+	return chosen;
+}
+
+bool gz_widget_list_begin(const char *id, int lines)
+{
+	const float height = static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing();
+	return ImGui::BeginChild(id, ImVec2(0, height), true);
+}
+
+void gz_widget_list_end(void)
+{
+	ImGui::EndChild();
+}
+
+bool gz_widget_ints(const char *id, int *values, int count, const gz_number_range *range)
+{
+	const int least = static_cast<int>(range->least);
+	const int greatest = static_cast<int>(range->greatest);
+	return draw_numbers(id, ImGuiDataType_S32, values, count, &least, &greatest, *range);
+}
+
+bool gz_widget_doubles(const char *id, double *values, int count, const gz_number_range *range)
+{
+	return draw_numbers(id, ImGuiDataType_Double, values, count, &range->least,
+			    &range->greatest, *range);
+}
+
+bool gz_widget_colour(const char *id, double rgb[3])
+{
+	float shown[3];
+	for (int i = 0; i < 3; i++)
+		shown[i] = static_cast<float>(rgb[i]);
+	if (!ImGui::ColorEdit3(id, shown, ImGuiColorEditFlags_Float))
+		return false;
+	for (int i = 0; i < 3; i++)
+		rgb[i] = shown[i] < 0 ? 0 : shown[i] > 1 ? 1 : static_cast<double>(shown[i]);
+	return true;
+}
+
+/* Dear ImGui keeps what is typed until Enter is pressed. */
+bool gz_widget_text_field(const char *id, char *text, size_t size, bool by_enter)
+{
+	char typed[TEXT_SIZE] = ""; /* its end too: settings are compared byte by byte */
+	if (size > sizeof typed)
+		return false;
+	snprintf(typed, size, "%s", text);
+	if (!ImGui::InputText(id, typed, size, by_enter ? ImGuiInputTextFlags_EnterReturnsTrue : 0))
+		return false;
+	memcpy(text, typed, size);
+	return true;
+}
+
+void gz_widget_progress(double share, const char *text)
+{
+	ImGui::ProgressBar(share < 0 ? 0 : static_cast<float>(share), ImVec2(-FLT_MIN, 0), text);
+}
+
+void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)
+{
+	const ImGuiIO &io = ImGui::GetIO();
+	const ImVec2 corner = ImGui::GetCursorScreenPos();
+	const ImVec2 size(fmaxf(1, ImGui::GetContentRegionAvail().x), height * gz_widgets_scale());
+	ImGui::InvisibleButton(id, size);
+	gz_canvas canvas = {};
+	canvas.corner = place_of(corner);
+	canvas.size = place_of(size);
+	canvas.mouse = place_of(io.MousePos);
+	canvas.hovered = ImGui::IsItemHovered();
+	canvas.focused = ImGui::IsItemFocused();
+	canvas.pressed = ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+	canvas.double_pressed =
+		canvas.hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+	canvas.right_pressed = canvas.hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+	canvas.held = ImGui::IsItemActive();
+	canvas.released = ImGui::IsItemDeactivated();
+	canvas.shift = io.KeyShift;
+	canvas.control = io.KeyCtrl;
+	canvas.wheel = canvas.hovered ? io.MouseWheel : 0;
+	if (canvas.focused) {
+		canvas.arrow_x = presses(ImGuiKey_RightArrow) - presses(ImGuiKey_LeftArrow);
+		canvas.arrow_y = presses(ImGuiKey_UpArrow) - presses(ImGuiKey_DownArrow);
+		canvas.delete_pressed = presses(ImGuiKey_Delete) || presses(ImGuiKey_Backspace);
+	}
+	*out_canvas = canvas;
+}

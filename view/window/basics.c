@@ -1,0 +1,169 @@
+#include "view/window/basics.h"
+
+#include <GLFW/glfw3.h>
+
+#include "view/letters.h"
+#include "view/panels/marks.h"
+#include "view/panels/settings_panel.h"
+#include "view/setting_applies.h"
+#include "view/window/window_state.h"
+
+/* All lines of the list of keys. */
+enum { KEYS_SIZE = 8192 };
+
+static void choose_method(struct gz_window *window, int method)
+{
+	if (method == GZ_METHOD_TABLE && window->settings.foveation.table.count == 0)
+		return; /* the scene has none to show */
+	window->settings.foveation.method = method;
+	window->cast_needed = true;
+}
+
+static void reset_camera(struct gz_window *window, int number)
+{
+	(void)number;
+	if (!window->maker)
+		return;
+	window->settings.camera = gz_frame_maker_scene(window->maker)->settings.camera;
+	window->cast_needed = true;
+}
+
+static void toggle_cross(struct gz_window *window, int number)
+{
+	(void)number;
+	window->settings.view.gaze_cursor = !window->settings.view.gaze_cursor;
+	window->present_needed = true;
+}
+
+static void toggle_settings(struct gz_window *window, int number)
+{
+	(void)number;
+	window->settings_panel.open = !window->settings_panel.open;
+	gz_window_wake_panels(window);
+}
+
+static void toggle_letters(struct gz_window *window, int number)
+{
+	(void)number;
+	window->settings.view.letters = !window->settings.view.letters;
+	window->present_needed = true;
+	if (window->settings.view.letters && window->maker)
+		gz_frame_tell_unoriented(window->maker);
+}
+
+static void toggle_mouse(struct gz_window *window, int number)
+{
+	(void)number;
+	if (window->source)
+		window->mouse_chosen = !window->mouse_chosen;
+	window->present_needed = true;
+}
+
+static void toggle_fullscreen(struct gz_window *window, int number)
+{
+	(void)number;
+	gz_window_toggle_fullscreen(window);
+	window->present_needed = true;
+}
+
+static void toggle_keys(struct gz_window *window, int number)
+{
+	(void)number;
+	window->keys_shown = !window->keys_shown;
+	window->present_needed = true;
+}
+
+static void quit(struct gz_window *window, int number)
+{
+	(void)number;
+	glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
+}
+
+#define METHOD(digit, method, text, what)                                            \
+	{ .key = GLFW_KEY_##digit,                                                   \
+	  .number = (method),                                                        \
+	  .keys = (text),                                                            \
+	  .help = (what),                                                            \
+	  .run = choose_method },                                                    \
+	{                                                                            \
+		.key = GLFW_KEY_KP_##digit, .number = (method), .run = choose_method \
+	}
+
+static const struct gz_window_action actions[] = {
+	METHOD(1, 0, "1 2 3 4", "standard, mdc, ddc, acuity"),
+	METHOD(2, 1, NULL, NULL),
+	METHOD(3, 2, NULL, NULL),
+	METHOD(4, 3, NULL, NULL),
+	METHOD(5, 4, "5 6 7", "mdc3, uniform, table"),
+	METHOD(6, 5, NULL, NULL),
+	METHOD(7, 6, NULL, NULL),
+	{ .letter = 'r', .keys = "R", .help = "reset the camera", .run = reset_camera },
+	{ .letter = 'c', .keys = "C", .help = "cross at the gaze", .run = toggle_cross },
+	{ .letter = 'm',
+	  .keys = "M",
+	  .help = "gaze from the mouse or from the daemon",
+	  .run = toggle_mouse },
+	{ .letter = 'p', .keys = "P", .help = "settings", .run = toggle_settings },
+	{ .letter = 'l',
+	  .keys = "L",
+	  .help = "letters: which side is where",
+	  .run = toggle_letters },
+	{ .letter = 'f', .keys = "F F11", .help = "full screen", .run = toggle_fullscreen },
+	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
+	{ .letter = 'h', .keys = "H or ?", .help = "show or hide this", .run = toggle_keys },
+	{ .letter = '?', .run = toggle_keys },
+	{ .letter = 'q', .keys = "Esc or Q", .help = "quit", .run = quit },
+	{ .key = GLFW_KEY_ESCAPE, .run = quit },
+};
+
+static bool setting_applies(const void *user, const char *key)
+{
+	return gz_setting_applies(user, key);
+}
+
+static void draw_letters(struct gz_window *window)
+{
+	struct gz_letters letters;
+	if (window->settings.view.letters && window->maker &&
+	    gz_frame_maker_scene(window->maker)->volume.oriented &&
+	    gz_letters_of_camera(&window->settings.camera, &letters) == GZ_OK)
+		gz_marks_draw_letters(&letters);
+}
+
+static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	const struct gz_place room = gz_widgets_room();
+	const struct gz_point at = gaze->reading.point;
+	draw_letters(window);
+	if (window->settings.view.gaze_cursor && gaze->reading.known)
+		gz_marks_draw_cross((struct gz_place) { at.x * room.x, at.y * room.y });
+	window->cross_drawn = at;
+	if (window->keys_shown) {
+		char keys[KEYS_SIZE];
+		gz_window_print_keys(keys, sizeof keys);
+		gz_marks_draw_caption(window->panels_top, gz_paint_plain, keys);
+	}
+	if (!window->settings_panel.open || !window->maker)
+		return;
+	window->settings_panel.bindings = window->tables.bindings;
+	window->settings_panel.count = GZ_SCENE_BINDINGS;
+	window->settings_panel.applies = setting_applies;
+	window->settings_panel.user = &window->settings;
+	window->settings_panel.margin_top = window->panels_top;
+	gz_settings_panel_draw(&window->settings_panel);
+}
+
+static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	const struct gz_point at = gaze->reading.point;
+	return window->settings.view.gaze_cursor &&
+	       (at.x != window->cross_drawn.x || at.y != window->cross_drawn.y);
+}
+
+const struct gz_window_part gz_window_basics = {
+	.name = "basics",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.follows = follows,
+	.panels = draw_panels,
+};
