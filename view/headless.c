@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "view/capture/video.h"
 #include "view/frame.h"
 #include "view/gaze_source.h"
 #include "view/letters.h"
@@ -33,6 +34,7 @@ struct headless {
 	struct gz_frame_maker *maker;
 	struct gz_gaze_source *source;
 	struct gz_stats_file *stats;
+	struct gz_video *video;
 	struct gz_scene_settings settings; /* the camera turns */
 	int64_t start_ns;
 	bool silence_told; /* that a daemon says nothing was said */
@@ -154,22 +156,53 @@ static void draw_letters(const struct headless *self, struct gz_image *image)
 		gz_letters_draw(&letters, image);
 }
 
-static enum gz_result write_picture(struct headless *self, struct gz_image *image,
-				    const struct gz_frame_record *record, int frame)
+static enum gz_result write_png(const struct headless *self, const struct gz_image *image,
+				int frame)
 {
 	char path[GZ_PATH_SIZE];
-	if (!self->options->out[0])
-		return GZ_OK;
-	if (self->settings.view.gaze_cursor && record->gaze_known)
-		gz_frame_draw_cross(image, record->gaze);
-	if (self->settings.view.letters)
-		draw_letters(self, image);
 	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
 	if (r != GZ_OK) {
 		gz_err(self->log, "--out: the name of picture %d is too long; shorten it", frame);
 		return r;
 	}
 	return gz_image_write_png(image, path, self->log);
+}
+
+/* When a frame is shown: a live one when it has been made. */
+static int64_t shown_ns(const struct headless *self, int frame)
+{
+	return self->source->ops->live ? gz_clock_now_ns() - self->start_ns
+				       : frame_time_ns(self, frame);
+}
+
+/* ffmpeg starts with the first picture: what fails before leaves no file. */
+static enum gz_result add_to_video(struct headless *self, const struct gz_image *image, int frame)
+{
+	const struct gz_video_params params = {
+		.path = self->options->video,
+		.width = image->width,
+		.height = image->height,
+		.fps = self->options->fps,
+		.wait = true,
+	};
+	enum gz_result r = GZ_OK;
+	if (!self->video)
+		r = gz_video_open(&params, self->log, &self->video);
+	return r == GZ_OK ? gz_video_show(self->video, image, shown_ns(self, frame)) : r;
+}
+
+static enum gz_result write_picture(struct headless *self, struct gz_image *image,
+				    const struct gz_frame_record *record, int frame)
+{
+	const struct gz_view_options *options = self->options;
+	if (!options->out[0] && !options->video[0])
+		return GZ_OK;
+	if (self->settings.view.gaze_cursor && record->gaze_known)
+		gz_frame_draw_cross(image, record->gaze);
+	if (self->settings.view.letters)
+		draw_letters(self, image);
+	enum gz_result r = options->out[0] ? write_png(self, image, frame) : GZ_OK;
+	return r == GZ_OK && options->video[0] ? add_to_video(self, image, frame) : r;
 }
 
 static enum gz_result print_line(const struct headless *self, const struct gz_frame_record *record)
@@ -215,9 +248,13 @@ static enum gz_result all_frames(struct headless *self)
 	if (self->source->ops->live)
 		await_daemon(self);
 	self->start_ns = gz_clock_now_ns();
-	for (int frame = 0; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
+	int frame = 0;
+	for (; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
 		r = one_frame(self, frame);
-	return r;
+	if (self->video)
+		gz_video_finish(self->video, shown_ns(self, frame));
+	const enum gz_result closed = gz_video_close(&self->video);
+	return r == GZ_OK ? closed : r;
 }
 
 /* A replay is the same each time, but for what depends on how fast the machine is. */

@@ -92,6 +92,13 @@ const struct gz_option gz_view_option_table[] = {
 	  .offset = AT(out),
 	  .max = GZ_PATH_SIZE,
 	  .help = "PNG to write, headless; for several frames a pattern such as frame-%04d.png" },
+	{ .key = "video",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(video),
+	  .max = GZ_PATH_SIZE,
+	  .help = "video to write, headless, --fps pictures a second, by ffmpeg: .mp4 or what else "
+		  "its "
+		  "ending names" },
 	{ .key = "stats",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(stats),
@@ -410,9 +417,12 @@ static enum gz_result check_together(const struct gz_view_options *options,
 		       options->gaze_text);
 		return GZ_ERR_INVAL;
 	}
-	if (!options->headless && (options->out[0] || options->stats[0])) {
-		gz_err(log, "--%s: only written without a window; add --headless",
-		       options->out[0] ? "out" : "stats");
+	const char *file = options->out[0]     ? "out"
+			   : options->video[0] ? "video"
+			   : options->stats[0] ? "stats"
+					       : NULL;
+	if (!options->headless && file) {
+		gz_err(log, "--%s: only written without a window; add --headless", file);
 		return GZ_ERR_INVAL;
 	}
 	return options->out[0] ? gz_pattern_check(options->out, options->frames, log) : GZ_OK;

@@ -59,6 +59,7 @@ struct gz_view_options {
 	int gl_memory_mib; /**< 0: what the device has */
 	int frames;
 	char out[GZ_PATH_SIZE];          /**< empty: no pictures are written */
+	char video[GZ_PATH_SIZE];        /**< empty: none */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	int bricks;                      /**< enum gz_bricks_rule */

@@ -49,6 +49,8 @@ enum gz_result gz_output_check(const struct gz_view_options *options, const stru
 	enum gz_result r = GZ_OK;
 	if (!is_there(picture, false))
 		r = check_folder("out", picture, log);
+	if (r == GZ_OK && !is_there(options->video, true))
+		r = check_folder("video", options->video, log);
 	if (r == GZ_OK && !is_there(options->stats, true))
 		r = check_folder("stats", options->stats, log);
 	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;
