@@ -1,11 +1,15 @@
 #include "bench/metrics/convolve.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "render/image.h"
 
-/* Rows one thread takes at a time, and columns done at once: they stay in the first cache. */
-enum { ROWS_A_PART = 16, COLUMNS = 1024 };
+/* Rows one thread takes at a time, columns done at once, which stay in the first cache, and of them
+ * those whose sums stay in registers, of any machine's width. */
+enum { ROWS_A_PART = 16, COLUMNS = 1024, LANES = 4, GROUP = 8 * LANES };
+
+typedef float lanes __attribute__((vector_size(LANES * 4), aligned(4), may_alias));
 
 struct pass {
 	const float *in;
@@ -21,40 +25,64 @@ static int clamp(int value, int last)
 	return value < 0 ? 0 : value > last ? last : value;
 }
 
+/* Sums of GROUP neighbours, which stay in registers: memory is asked once a tap. */
+static void sum_group(const float *const *taps, const float *weights, int count, int at,
+		      float out[GROUP])
+{
+	lanes sums[GROUP / LANES] = { { 0 } };
+	for (int tap = 0; tap < count; tap++) {
+		const float *in = taps[tap] + at;
+		for (int i = 0; i < GROUP / LANES; i++)
+			sums[i] += weights[tap] * *(const lanes *)(in + (ptrdiff_t)i * LANES);
+	}
+	memcpy(out, sums, sizeof sums);
+}
+
+/* Weighted sums of what lies at the same place behind each of the taps. */
+static void sum_taps(const float *const *taps, const float *weights, int count, int width, bool add,
+		     float *out)
+{
+	int x = 0;
+	for (; x + GROUP <= width; x += GROUP) {
+		float group[GROUP];
+		sum_group(taps, weights, count, x, group);
+		for (int i = 0; i < GROUP; i++)
+			out[x + i] = add ? out[x + i] + group[i] : group[i];
+	}
+	for (; x < width; x++) {
+		float sum = 0;
+		for (int tap = 0; tap < count; tap++)
+			sum += weights[tap] * taps[tap][x];
+		out[x] = add ? out[x] + sum : sum;
+	}
+}
+
 static void filter_row_across(const struct pass *pass, const float *in, float *out)
 {
-	const int radius = pass->kernel->radius;
-	float padded[COLUMNS + 2 * GZ_KERNEL_RADIUS_MAX] = { 0 };
-	for (int from = 0; from < pass->width; from += COLUMNS) {
-		const int count = pass->width - from < COLUMNS ? pass->width - from : COLUMNS;
+	const int radius = pass->kernel->radius, taps = 2 * radius + 1;
+	float padded[COLUMNS + 2 * GZ_KERNEL_RADIUS_MAX];
+	const float *from[2 * GZ_KERNEL_RADIUS_MAX + 1];
+	for (int tap = 0; tap < taps; tap++)
+		from[tap] = padded + tap;
+	for (int x = 0; x < pass->width; x += COLUMNS) {
+		const int count = pass->width - x < COLUMNS ? pass->width - x : COLUMNS;
 		for (int i = 0; i < count + 2 * radius; i++)
-			padded[i] = in[clamp(from + i - radius, pass->width - 1)];
-		memset(out + from, 0, (size_t)count * sizeof *out);
-		for (int tap = 0; tap <= 2 * radius; tap++) {
-			const float weight = pass->kernel->weights[tap];
-			for (int i = 0; i < count; i++)
-				out[from + i] += weight * padded[i + tap];
-		}
+			padded[i] = in[clamp(x + i - radius, pass->width - 1)];
+		sum_taps(from, pass->kernel->weights, taps, count, false, out + x);
 	}
 }
 
 static void filter_row_down(const struct pass *pass, int y, float *out)
 {
-	const int radius = pass->kernel->radius;
-	float sum[COLUMNS];
-	for (int from = 0; from < pass->width; from += COLUMNS) {
-		const int count = pass->width - from < COLUMNS ? pass->width - from : COLUMNS;
-		memset(sum, 0, sizeof sum);
-		for (int tap = 0; tap <= 2 * radius; tap++) {
-			const float weight = pass->kernel->weights[tap] * pass->scale;
-			const int row = clamp(y + tap - radius, pass->height - 1);
-			const float *in = pass->in + (size_t)row * (size_t)pass->width + from;
-			for (int i = 0; i < count; i++)
-				sum[i] += weight * in[i];
-		}
-		for (int i = 0; i < count; i++)
-			out[from + i] = pass->add ? out[from + i] + sum[i] : sum[i];
+	const int radius = pass->kernel->radius, taps = 2 * radius + 1;
+	const float *from[2 * GZ_KERNEL_RADIUS_MAX + 1];
+	float weights[2 * GZ_KERNEL_RADIUS_MAX + 1];
+	for (int tap = 0; tap < taps; tap++) {
+		const int row = clamp(y + tap - radius, pass->height - 1);
+		from[tap] = pass->in + (size_t)row * (size_t)pass->width;
+		weights[tap] = pass->kernel->weights[tap] * pass->scale;
 	}
+	sum_taps(from, weights, taps, pass->width, pass->add, out);
 }
 
 static int rows_end(const struct pass *pass, size_t part)

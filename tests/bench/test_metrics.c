@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/metrics/approximate.h"
 #include "bench/metrics/metrics.h"
 
 /* What FLIP was measured at: 0.7 m from a 0.7 m wide display of 3840 pixels. */
@@ -128,6 +129,19 @@ static void flip_of_a_picture_is_the_known_one(void **state)
 	gz_image_free(&test);
 }
 
+static void roots_and_powers_are_those_of_the_library(void **state)
+{
+	(void)state;
+	assert_true(gz_power(0, 0.7F) == 0);
+	assert_true(gz_power(1, 0.7F) == 1);
+	for (int i = 1; i < 4000; i++) {
+		const float x = ldexpf(1 + (float)(i * 37 % 1000) / 1000, i % 60 - 40);
+		const float exponent = (float)(i % 101) / 100;
+		near((double)gz_cube_root(x) / cbrt((double)x), 1, 4e-7);
+		near((double)gz_power(x, exponent) / pow((double)x, (double)exponent), 1, 3e-6);
+	}
+}
+
 static double ssim_of(const struct gz_image *a, const struct gz_image *b,
 		      enum gz_ssim_window window)
 {
@@ -247,6 +261,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(flip_of_plain_colours_is_the_known_one),
 		cmocka_unit_test(flip_of_a_picture_is_the_known_one),
+		cmocka_unit_test(roots_and_powers_are_those_of_the_library),
 		cmocka_unit_test(ssim_of_plain_greys_is_the_known_one),
 		cmocka_unit_test(ssim_of_a_picture_is_the_known_one),
 		cmocka_unit_test(psnr_of_plain_greys_is_arithmetic),
