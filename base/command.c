@@ -46,13 +46,26 @@ static void log_to_stderr(void *user, enum gz_log_level level, const char *modul
 		return; /* nowhere left to say it */
 }
 
+/* Columns of the longest name, or of the longest operands. */
+static int widest(const struct gz_command_program *program, bool of_operands)
+{
+	int width = 0;
+	for (const struct gz_command *const *command = program->commands; *command; command++) {
+		const char *text = of_operands ? (*command)->operands : (*command)->name;
+		const int length = (int)strlen(text);
+		width = length > width ? length : width;
+	}
+	return width;
+}
+
 static void print_program_help(const struct gz_command_program *program, FILE *out)
 {
+	const int name_width = widest(program, false), operands_width = widest(program, true);
 	fprintf(out, "usage: %s COMMAND [OPTION]... [ARGUMENT]...\n\n%s\n\ncommands:\n",
 		program->name, program->purpose);
 	for (const struct gz_command *const *command = program->commands; *command; command++)
-		fprintf(out, "  %-9s %-13s %s\n", (*command)->name, (*command)->operands,
-			(*command)->summary);
+		fprintf(out, "  %-*s  %-*s  %s\n", name_width, (*command)->name, operands_width,
+			(*command)->operands, (*command)->summary);
 	fprintf(out,
 		"\n`%s COMMAND --help` tells the options of each; %s(1) tells all.\n"
 		"exit status: %s\n",

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <locale.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +48,36 @@ void gz_number_normalise_point(char *number)
 	const char *after = number + before + strcspn(number + before, others);
 	number[before] = '.';
 	memmove(number + before + 1, after, strlen(after) + 1);
+}
+
+void gz_number_print(double value, char text[GZ_NUMBER_SIZE])
+{
+	double back;
+	/* "600", not "6e+02". */
+	if (fabs(value) < 1e15 && value == (double)(long long)value) {
+		snprintf(text, GZ_NUMBER_SIZE, "%.0f", value);
+		return;
+	}
+	/* 17 digits tell every double apart (IEEE 754-2008, 5.12.2). */
+	for (int digits = 1; digits <= 17; digits++) {
+		snprintf(text, GZ_NUMBER_SIZE, "%.*g", digits, value);
+		gz_number_normalise_point(text);
+		if (gz_number_parse(text, &back) && back == value)
+			return;
+	}
+}
+
+double gz_number_of_float(float value)
+{
+	char text[GZ_NUMBER_SIZE];
+	double back;
+	for (int digits = 1; digits < 9; digits++) {
+		snprintf(text, sizeof text, "%.*g", digits, (double)value);
+		gz_number_normalise_point(text);
+		if (gz_number_parse(text, &back) && (float)back == value)
+			return back;
+	}
+	return (double)value;
 }
 
 char *gz_number_next_word(char **text, const char *blanks)

@@ -25,6 +25,16 @@ bool gz_number_parse_whole(const char *word, long long *out_value);
  */
 void gz_number_normalise_point(char *number);
 
+/** Room for a number that gz_number_print() prints, with its NUL. */
+#define GZ_NUMBER_SIZE 32
+
+/** Print a finite number with the fewest digits that read back as the same double. */
+void gz_number_print(double value, char text[GZ_NUMBER_SIZE]);
+
+/** The number with the fewest digits that, as a float, is @p value: 0.1 for 0.1F, whose own
+ *  nearest double is 0.100000001490116. For text that is read back as a float. */
+double gz_number_of_float(float value);
+
 /**
  * Cut the first word off @p *text, which is moved behind it.
  *

@@ -137,6 +137,9 @@ enum gz_result gz_options_read_arguments(const struct gz_option_binding *binding
 const char *gz_options_nearest(const struct gz_option_binding *bindings, size_t count,
 			       const char *key);
 
+/** What the option allows, as text: "0.1 to 100", "standard, mdc, ddc or acuity". */
+void gz_option_allowed(const struct gz_option *option, char *text, size_t size);
+
 /** Print one aligned line per option: --key VALUE, help, allowed range, default. */
 void gz_options_print_help(const struct gz_option_binding *bindings, size_t count, FILE *out);
 

@@ -16,9 +16,6 @@ enum { GZ_OPTION_MESSAGE_SIZE = 512 };
 /** Numbers that the option holds. */
 int gz_option_count(const struct gz_option *option);
 
-/** What the option allows, as text: "0.1 to 100", "standard, mdc, ddc or acuity". */
-void gz_option_allowed(const struct gz_option *option, char *text, size_t size);
-
 /** A pass over one file or command line: refuses what is given twice. */
 struct gz_option_reader {
 	const struct gz_option_binding *bindings;

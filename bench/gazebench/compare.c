@@ -21,7 +21,7 @@ static const struct gz_option options[] = {
 	  .max = 1000,
 	  /* What FLIP's authors use: a 0.7 m wide display of 3840 px seen from 0.7 m. */
 	  .preset = "67.0206",
-	  .help = "pixels a degree of visual angle, for FLIP" },
+	  .help = "pixels a degree of visual angle, for FLIP; run takes the display's" },
 };
 
 static enum gz_result print_metrics(const struct gz_image *reference, const struct gz_image *test,
@@ -97,7 +97,14 @@ const struct gz_command gazebench_compare = {
 	.summary = "print how far two pictures are apart",
 	.details =
 		"Prints lines \"name value\": psnr_db, ssim, flip (0 = alike, 1 = as far apart as "
-		"can be).\nssim is nan where a picture is smaller than its window of 11 pixels.\n",
+		"can be).\nssim is nan where a picture is smaller than its window of 11 pixels.\n"
+		"flip depends on how large a pixel appears. Without --ppd that is as FLIP's "
+		"authors "
+		"have it: a display of\n3840 px and 0.7 m across, seen from 0.7 m. gazebench run "
+		"takes "
+		"the pixels per degree of the scene's\ndisplay, so its numbers are those of "
+		"compare "
+		"with that --ppd.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run,

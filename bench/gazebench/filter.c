@@ -251,7 +251,7 @@ const struct gz_command gazebench_filter = {
 	.name = "filter",
 	.operands = "LOG",
 	.operands_max = 1,
-	.summary = "measure how much later and how much stiller the gaze filter makes a recording",
+	.summary = "measure jitter and lag of the gaze filter on a recording",
 	.details =
 		"LOG is a gaze log (.gzl); it runs through the pipeline with its own settings, "
 		"whose certain labels\ntell fixations and saccades. Prints, for the pipeline with "

@@ -33,8 +33,9 @@ int main(int argc, char **argv)
 		.purpose = "Measure what foveated rendering saves and what it costs in error, and "
 			   "chart one against the other.\n\n`gazebench --list [--json]` names "
 			   "methods, their options, paths, metrics and backends.",
-		.exits = "0 done, 1 failed or refused, 2 usage, 3 a partial result that can be "
-			 "resumed, 4 a stability row does not hold",
+		.exits = "0 done, 1 failed or refused, 2 called wrongly (no such option, method, "
+			 "size), 3 a partial\nresult that can be resumed, 4 a stability row does "
+			 "not hold",
 		.commands = commands,
 	};
 	return gz_command_main(&program, argc, argv);

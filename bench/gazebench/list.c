@@ -13,7 +13,8 @@ struct item {
 };
 
 static const struct item items[] = {
-	{ "path", "sweep:s", "the mirrored S of Bauer 2018, 584 points; sweep:s:N takes N" },
+	{ "path", "sweep:s",
+	  "the mirrored S of Bauer 2018, 584 points; sweep:s:N takes N (preset sweep:s:64)" },
 	{ "path", "grid:NxM", "the middles of N columns and M rows of cells" },
 	{ "path", "random:N", "N places by the seed" },
 	{ "path", "centre", "where the camera looks at" },
@@ -32,6 +33,16 @@ static const struct item items[] = {
 	  "one of an eighth of a voxel a step, rays followed to their end" },
 };
 
+static const char *const methods[GZ_METHOD_COUNT] = {
+	[GZ_METHOD_STANDARD] = "a ray for every pixel; always measured",
+	[GZ_METHOD_MDC] = "a fine square round the gaze, coarser outside (Bauer 2018)",
+	[GZ_METHOD_DDC] = "an inner, a middle and an outer region, each coarser (Bauer 2018)",
+	[GZ_METHOD_ACUITY] = "rays as dense as the eye resolves",
+	[GZ_METHOD_MDC3] = "as mdc, and coarser still outside a second square",
+	[GZ_METHOD_UNIFORM] = "the same spacing everywhere, wherever the gaze is",
+	[GZ_METHOD_TABLE] = "spacings and steps by eccentricity, from a file",
+};
+
 static void print_item(json_t *list, const char *kind, const char *name, const char *text)
 {
 	if (list)
@@ -39,6 +50,25 @@ static void print_item(json_t *list, const char *kind, const char *name, const c
 			list, json_pack("{ss ss ss}", "kind", kind, "name", name, "text", text));
 	else
 		printf("%-8s %-22s %s\n", kind, name, text);
+}
+
+/* An option with what it allows and what it is where neither variant nor scene sets it. */
+static void print_option(json_t *list, const struct gz_option *option, const char *name)
+{
+	const bool limited = option->type != GZ_OPTION_STRING;
+	char allowed[512] = "";
+	if (limited)
+		gz_option_allowed(option, allowed, sizeof allowed);
+	if (list)
+		json_array_append_new(list, json_pack("{ss ss ss ss* ss*}", "kind", "option",
+						      "name", name, "text", option->help, "allowed",
+						      limited ? allowed : NULL, "preset",
+						      option->preset));
+	else if (limited)
+		printf("%-8s %-22s %s (%s%s%s)\n", "option", name, option->help, allowed,
+		       option->preset ? "; preset " : "", option->preset ? option->preset : "");
+	else
+		printf("%-8s %-22s %s\n", "option", name, option->help);
 }
 
 static void print_backend(json_t *list, const struct gz_renderer_ops *ops)
@@ -57,16 +87,15 @@ static void print_options(json_t *list, const struct gz_option *options, size_t 
 		const bool taken = strncmp(options[i].key, "foveation.", 10) == 0 ||
 				   strncmp(options[i].key, "render.", 7) == 0;
 		if (dot && taken && strcmp(dot, ".method") != 0)
-			print_item(list, "option", dot + 1, options[i].help);
+			print_option(list, &options[i], dot + 1);
 	}
 }
 
 int gazebench_list(bool as_json)
 {
 	json_t *list = as_json ? json_array() : NULL;
-	for (const char *const *name = gz_method_names; *name; name++)
-		print_item(list, "method", *name,
-			   strcmp(*name, "standard") == 0 ? "always measured" : "");
+	for (int i = 0; i < GZ_METHOD_COUNT; i++)
+		print_item(list, "method", gz_method_names[i], methods[i]);
 	print_options(list, gz_foveation_options, gz_foveation_option_count);
 	print_options(list, gz_ray_options, gz_ray_option_count);
 	for (size_t i = 0; i < sizeof items / sizeof items[0]; i++)

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/number.h"
+#include "bench/study/machine.h"
 #include "bench/study/reference.h"
 #include "bench/study/run.h"
 
@@ -137,7 +138,7 @@ static const struct gz_option options[] = {
 	  .max = 100000,
 	  .count = 2,
 	  .help = "width and height of the display that the picture fills, mm, as \"565 318\"" },
-	{ .key = "display-distance-mm",
+	{ .key = "distance-mm",
 	  .type = GZ_OPTION_DOUBLE,
 	  .offset = AT(display_distance_mm),
 	  .min = 1,
@@ -254,6 +255,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands scenes;
+	char commit[GZ_STUDY_TEXT_SIZE];
 	int status;
 	if (!gz_command_read_arguments(&gazebench_run, argc, argv, log, &settings, &scenes,
 				       &status))
@@ -274,8 +276,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 		.accuracy = (enum gz_study_accuracy)settings.accuracy,
 		.display_distance_mm = settings.display_distance_mm,
 		.program = "gazebench " GAZECAST_VERSION,
-		.commit = gazebench_commit,
+		.commit = commit,
 	};
+	gz_study_identify(gazebench_commit, "/proc/self/exe", commit);
 	memcpy(request.display_mm, settings.display_mm, sizeof request.display_mm);
 	if (!check(&settings, &scenes, log))
 		return GAZEBENCH_USAGE;
@@ -284,6 +287,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 		       settings.shard);
 		return GAZEBENCH_USAGE;
 	}
+	const enum gz_result called = gz_study_check(&request, log);
+	if (called != GZ_OK)
+		return called == GZ_ERR_INVAL ? GAZEBENCH_USAGE : GAZEBENCH_FAILED;
 	char cache[GZ_PATH_SIZE];
 	const char *kept = settings.cache[0] ? settings.cache : cache;
 	if (!settings.cache[0] && !gz_reference_cache(cache))

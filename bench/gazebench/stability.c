@@ -360,7 +360,7 @@ static enum gz_result add_variant(struct session *session, const char *scene, co
 	struct gz_foveation *foveation = &variant->settings.foveation;
 	if (foveation->table_file[0])
 		result = gz_scene_load_table(scene, session->log, foveation);
-	return result == GZ_OK ? GZ_OK : GZ_ERR_INVAL;
+	return result == GZ_ERR_INVAL ? GZ_ERR_FORMAT : result; /* what it names is at fault */
 }
 
 static enum gz_result add_variants(struct session *session, const char *scene)
@@ -421,8 +421,9 @@ static int run_session(struct session *session, const char *path)
 		default_folder(path, session->settings.out, sizeof session->settings.out);
 	if (gz_scene_load(path, NULL, session->log, &session->scene) != GZ_OK)
 		return GAZEBENCH_FAILED;
-	if (add_variants(session, path) != GZ_OK)
-		return GAZEBENCH_USAGE;
+	const enum gz_result called = add_variants(session, path);
+	if (called != GZ_OK)
+		return called == GZ_ERR_INVAL ? GAZEBENCH_USAGE : GAZEBENCH_FAILED;
 	if (make_bench(session) != GZ_OK)
 		return GAZEBENCH_FAILED;
 	return run_rows(session);

@@ -139,22 +139,15 @@ static const struct gz_group **choose_groups(const struct gz_summary *summary,
 	return NULL;
 }
 
-static enum gz_result make_question(const struct settings *settings, const struct gz_group *group,
-				    const struct gz_log *log,
-				    struct gz_advice_question *out_question)
+static void make_question(const struct settings *settings, const struct gz_group *group,
+			  struct gz_advice_question *out_question)
 {
 	*out_question = gz_advice_preset(group);
 	out_question->measure = (enum gz_error_measure)settings->metric;
 	if (settings->against != AGAINST_WHAT_IS_THERE)
 		out_question->reference = (enum gz_error_reference)(settings->against - 1);
-	if (!isnan(settings->bound)) {
+	if (!isnan(settings->bound))
 		out_question->bound = settings->bound;
-	} else if (gz_error_rises(gz_error_metrics[settings->metric].kind)) {
-		gz_err(log, "--bound is wanted: what %s must be at least",
-		       gz_error_metrics[settings->metric].title);
-		return GZ_ERR_INVAL;
-	}
-	return GZ_OK;
 }
 
 /* Place of a variant among a group's series. */
@@ -250,8 +243,9 @@ static enum gz_result suggest(const struct gz_summary *summary, const struct set
 	const struct gz_group **groups = choose_groups(summary, settings, log, &count);
 	if (!groups)
 		return GZ_ERR_NOT_FOUND;
-	enum gz_result result = make_question(settings, groups[0], log, &question);
-	if (result == GZ_OK && !gz_advice_has_errors(groups, count, &question)) {
+	enum gz_result result = GZ_OK;
+	make_question(settings, groups[0], &question);
+	if (!gz_advice_has_errors(groups, count, &question)) {
 		gz_err(log, "%s against %s was not measured in this study",
 		       gz_error_metrics[question.measure].title,
 		       gz_error_reference_names[question.reference]);
@@ -303,6 +297,11 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 		return status;
 	if (operands.count != 1) {
 		gz_err(log, "one folder is wanted: gazebench suggest DIR");
+		return GAZEBENCH_USAGE;
+	}
+	if (isnan(settings.bound) && gz_error_rises(gz_error_metrics[settings.metric].kind)) {
+		gz_err(log, "--bound is wanted: what %s must be at least",
+		       gz_error_metrics[settings.metric].title);
 		return GAZEBENCH_USAGE;
 	}
 	return suggest_from(operands.items[0], &settings, log) == GZ_OK ? GAZEBENCH_DONE

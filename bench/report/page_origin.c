@@ -57,7 +57,7 @@ static void add_display(const struct gz_study *study, struct gz_text *out)
 		    display->distance_mm != first->distance_mm)
 			return;
 	}
-	gz_text_add(out, " \\\n  --display-mm &#39;%.10g %.10g&#39; --display-distance-mm %.10g",
+	gz_text_add(out, " \\\n  --display-mm &#39;%.10g %.10g&#39; --distance-mm %.10g",
 		    first->mm[0], first->mm[1], first->distance_mm);
 }
 
@@ -90,6 +90,10 @@ static void add_command(const struct gz_study *study, struct gz_text *out)
 	}
 	if (study->camera_count > 0)
 		gz_text_add(out, " --cameras %u", study->camera_count);
+	if (study->min_move_px > 0)
+		gz_text_add(out, " --min-move %.10g", study->min_move_px);
+	if (study->per_cell)
+		gz_text_add(out, " --per-cell");
 	gz_text_add(out, " \\\n  --frames %d --warm-up %d --seed %llu --errors %s",
 		    study->frames_per_point, study->warm_up_frames, (unsigned long long)study->seed,
 		    gz_study_accuracy_names[study->accuracy]);

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "bench/study/stage.h"
 #include "render/renderer.h"
-#include "render/scene.h"
 
 #define GZ_LOG_MODULE "report"
 
@@ -25,27 +25,16 @@ static void picture_path(const struct gz_study_scene *scene, const char *folder,
 	snprintf(out_path, GZ_PATH_SIZE, "%.400s/%s.png", folder, name);
 }
 
-/* Whether a file's name without folder and ending is @p name. */
-static bool is_named(const char *path, const char *name)
+/* The scene's transfer function that shows what the study saw; false if it has none. */
+static bool find_transfer(const struct gz_stage *stage, const struct gz_study_scene *was,
+			  struct gz_transfer *out_transfer)
 {
-	const char *slash = strrchr(path, '/');
-	const char *file = slash ? slash + 1 : path, *dot = strrchr(file, '.');
-	const size_t length = dot ? (size_t)(dot - file) : strlen(file);
-	return strlen(name) == length && strncmp(file, name, length) == 0;
-}
-
-/* The scene's transfer function of this name, in place of its first; false if it has none. */
-static bool take_transfer(const struct gz_study_scene *was, const struct gz_log *log,
-			  struct gz_scene *scene)
-{
-	char names[GZ_PATH_SIZE], *rest = names;
-	if (is_named(scene->settings.transfer_file, was->transfer))
-		return true;
-	snprintf(names, sizeof names, "%s", scene->settings.transfer_also);
-	for (char *name = strsep(&rest, " \t"); name; name = strsep(&rest, " \t"))
-		if (name[0] && is_named(name, was->transfer))
-			return gz_scene_load_transfer(was->path, name, log, &scene->transfer) ==
-			       GZ_OK;
+	char name[GZ_STUDY_TEXT_SIZE], hash[GZ_STUDY_HASH_SIZE];
+	for (size_t i = 0; i < gz_stage_transfer_count(stage); i++)
+		if (gz_stage_transfer(stage, i, name, out_transfer) == GZ_OK &&
+		    gz_stage_data_hash(stage, out_transfer, hash) == GZ_OK &&
+		    strcmp(hash, was->data_hash) == 0)
+			return true;
 	return false;
 }
 
@@ -76,23 +65,20 @@ static enum gz_result render_scene(const struct gz_study *study, size_t place,
 {
 	const struct gz_study_scene *was = &study->scenes[place];
 	const struct gz_renderer_params params = { .wait_for_bricks = true };
-	struct gz_scene scene = { 0 };
+	struct gz_stage stage = { .log = log };
 	struct gz_renderer *renderer = NULL;
 	const int *size = study->sizes[0];
 	const int width = size[0] < WIDTH_MAX ? size[0] : WIDTH_MAX;
 	const int height = (int)fmax(1, round((double)width * size[1] / size[0]));
-	if (access(was->path, R_OK) != 0 || gz_scene_load(was->path, NULL, log, &scene) != GZ_OK)
+	if (access(was->path, R_OK) != 0 || gz_stage_load(&stage, was->path) != GZ_OK)
 		return GZ_ERR_NOT_FOUND;
-	enum gz_result result = memcmp(scene.volume.dims, was->dims, sizeof was->dims) == 0 &&
-						take_transfer(was, log, &scene)
-					? GZ_OK
+	enum gz_result result = find_transfer(&stage, was, &stage.scene.transfer)
+					? gz_renderer_create("cpu", &params, log, &renderer)
 					: GZ_ERR_NOT_FOUND;
 	if (result == GZ_OK)
-		result = gz_renderer_create("cpu", &params, log, &renderer);
-	if (result == GZ_OK)
-		result = render(renderer, &scene, &was->camera, width, height, picture);
+		result = render(renderer, &stage.scene, &was->camera, width, height, picture);
 	gz_renderer_destroy(&renderer);
-	gz_scene_free(&scene);
+	gz_stage_free(&stage);
 	return result;
 }
 

@@ -15,8 +15,8 @@
  * FOLDER/standard-SCENE-TRANSFER.png holds it, else rendered from the scene's file and kept there.
  *
  * @param[in,out] picture  zeroed, or one to be replaced
- * @retval GZ_ERR_NOT_FOUND  there is neither, or the scene is not what it was: its text names
- *                           another transfer function, its volume has other dims; a warning says so
+ * @retval GZ_ERR_NOT_FOUND  there is neither, or the scene is not what it was: no transfer
+ *                           function over its volume has the study's data_hash; a warning says so
  * @retval GZ_ERR_NO_MEM
  */
 enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, const char *folder,

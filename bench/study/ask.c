@@ -107,7 +107,7 @@ static enum gz_result list_sizes(struct asking *asking)
 			good = memcmp(study->sizes[i], size, sizeof size) != 0;
 		if (!good) {
 			gz_err(asking->log,
-			       "%s: sizes are WIDTHxHEIGHT of 1 to %d pixels a side, parted by "
+			       "'%s': sizes are WIDTHxHEIGHT of 1 to %d pixels a side, parted by "
 			       "commas, each once",
 			       item, GZ_IMAGE_SIDE_MAX);
 			return GZ_ERR_INVAL;
@@ -345,6 +345,8 @@ static void take_numbers(const struct gz_study_request *request, struct gz_study
 {
 	study->seed = request->seed;
 	study->camera_count = request->cameras;
+	study->min_move_px = request->min_move_px;
+	study->per_cell = request->per_cell;
 	study->frames_per_point = request->frames;
 	study->warm_up_frames = request->warm_up;
 	study->shard = request->shard;
@@ -355,6 +357,25 @@ static void take_numbers(const struct gz_study_request *request, struct gz_study
 	snprintf(study->machine.commit, GZ_STUDY_TEXT_SIZE, "%s", request->commit);
 }
 
+static enum gz_result list_all(struct asking *asking)
+{
+	enum gz_result result = list_variants(asking);
+	if (result == GZ_OK)
+		result = list_sizes(asking);
+	return result == GZ_OK ? list_backends(asking) : result;
+}
+
+enum gz_result gz_study_check(const struct gz_study_request *request, const struct gz_log *log)
+{
+	struct gz_study study = { 0 };
+	struct asking asking = { .request = request, .log = log, .study = &study };
+	enum gz_result result = list_all(&asking);
+	if (result == GZ_OK)
+		result = gz_gaze_path_check(request->path, log);
+	gz_study_free(&study);
+	return result;
+}
+
 enum gz_result gz_study_ask(const struct gz_study_request *request, struct gz_stage *stage,
 			    const struct gz_log *log, struct gz_study *out_study)
 {
@@ -363,11 +384,7 @@ enum gz_result gz_study_ask(const struct gz_study_request *request, struct gz_st
 		return GZ_ERR_NO_MEM;
 	struct asking asking = { .request = request, .log = log, .stage = stage, .study = study };
 	take_numbers(request, study);
-	enum gz_result result = list_variants(&asking);
-	if (result == GZ_OK)
-		result = list_sizes(&asking);
-	if (result == GZ_OK)
-		result = list_backends(&asking);
+	enum gz_result result = list_all(&asking);
 	if (result == GZ_OK)
 		result = make_path(&asking);
 	if (result == GZ_OK)

@@ -33,6 +33,15 @@ struct gz_study_request {
 };
 
 /**
+ * Whether the lists and the path of a request can be read, before any file is: of a recording only
+ * its name counts.
+ *
+ * @retval GZ_ERR_INVAL   one cannot; logged with what is allowed
+ * @retval GZ_ERR_NO_MEM  logged
+ */
+enum gz_result gz_study_check(const struct gz_study_request *request, const struct gz_log *log);
+
+/**
  * Make the study that is asked for.
  *
  * @param stage           loads the scenes; afterwards it may hold one of them

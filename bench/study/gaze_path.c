@@ -173,6 +173,21 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 	return refuse(text, log);
 }
 
+static bool is_recording(const char *text)
+{
+	return ends_with(text, ".gzl") || ends_with(text, ".gzl:samples");
+}
+
+enum gz_result gz_gaze_path_check(const char *text, const struct gz_log *log)
+{
+	const struct gz_gaze_path_settings settings = { .text = text };
+	struct gz_gaze_path path = { 0 };
+	const enum gz_result result =
+		is_recording(text) ? GZ_OK : add_points(&settings, log, &path);
+	gz_gaze_path_free(&path);
+	return result;
+}
+
 /* Whether the point is the first in its cell; false outside the picture. */
 static bool first_in_cell(struct gz_point gaze, bool seen[CELLS * CELLS])
 {

@@ -53,6 +53,10 @@ struct gz_gaze_path {
 enum gz_result gz_gaze_path_make(const struct gz_gaze_path_settings *settings,
 				 const struct gz_log *log, struct gz_gaze_path *out_path);
 
+/** Whether gz_gaze_path_make() knows such a path; what a recording holds does not count.
+ *  GZ_ERR_INVAL: logged with those there are; GZ_ERR_NO_MEM. */
+enum gz_result gz_gaze_path_check(const char *text, const struct gz_log *log);
+
 /** The point at @p t of the S, [0, 1]. */
 struct gz_point gz_gaze_path_s(double t);
 

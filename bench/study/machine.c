@@ -6,6 +6,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "bench/study/hash.h"
+
 /* The value of the first line "name<blanks>between<blanks>value" of a file, without quotes. */
 static void find_value(const char *path, const char *name, char between,
 		       char out_value[GZ_STUDY_TEXT_SIZE])
@@ -51,4 +53,37 @@ void gz_study_machine_describe(struct gz_study_machine *out_machine)
 		 "gcc ",
 #endif
 		 __VERSION__, GZ_BUILD_TYPE);
+}
+
+/* SHA-256 of a file; false where it cannot be read. */
+static bool hash_file(const char *path, char out_hex[GZ_STUDY_HASH_SIZE])
+{
+	FILE *file = fopen(path, "re");
+	struct gz_hash *hash = NULL;
+	unsigned char bytes[16384];
+	size_t size;
+	if (!file)
+		return false;
+	if (gz_hash_begin(&hash) != GZ_OK) {
+		fclose(file);
+		return false;
+	}
+	while ((size = fread(bytes, 1, sizeof bytes, file)) > 0)
+		gz_hash_add(hash, bytes, size);
+	const bool whole = !ferror(file);
+	fclose(file);
+	return gz_hash_end(&hash, out_hex) == GZ_OK && whole;
+}
+
+void gz_study_identify(const char *commit, const char *file, char out_text[GZ_STUDY_TEXT_SIZE])
+{
+	static const char dirty[] = "-dirty";
+	const size_t length = strlen(commit), end = sizeof dirty - 1;
+	char hex[GZ_STUDY_HASH_SIZE];
+	const bool says_all = strcmp(commit, "unknown") != 0 &&
+			      (length < end || strcmp(commit + length - end, dirty) != 0);
+	if (!says_all && hash_file(file, hex))
+		snprintf(out_text, GZ_STUDY_TEXT_SIZE, "%.200s-%.12s", commit, hex);
+	else
+		snprintf(out_text, GZ_STUDY_TEXT_SIZE, "%.200s", commit);
 }

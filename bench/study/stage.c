@@ -48,7 +48,8 @@ enum gz_result gz_study_backend_parse(const char *text, const struct gz_log *log
 		good = set_backend_option(&backend, option);
 	if (!good) {
 		gz_err(log,
-		       "%s: no such backend or option: cpu, gl, or cpu with its options, threads=1 "
+		       "'%s': no such backend or option: cpu, gl, or cpu with its options, "
+		       "threads=1 "
 		       "to threads=%d and simd=, as cpu:threads=2:simd=avx2",
 		       text, GZ_WORKERS_MAX);
 		return GZ_ERR_INVAL;

@@ -123,6 +123,9 @@ struct gz_study {
 	char (*backends)[GZ_NAME_SIZE];
 	size_t backend_count;
 	char path[GZ_PATH_SIZE]; /**< of the gaze, as given: "sweep:s", "random:256", "log.gzl" */
+	double min_move_px; /**< points nearer than this to the one before were left out; 0 = none
+			     */
+	bool per_cell;      /**< one point was kept in each cell of a 10 x 10 grid */
 	char path_hash[GZ_STUDY_HASH_SIZE]; /**< of the points themselves */
 	struct gz_study_point *points;
 	size_t point_count;

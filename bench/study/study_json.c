@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
+
 #define GZ_LOG_MODULE "study"
 
 /* ---- writing ---- */
@@ -55,9 +57,9 @@ static json_t *lists_to_json(const struct gz_study *study)
 		json_array_append_new(backends, json_string(study->backends[i]));
 	for (size_t i = 0; i < study->point_count; i++) {
 		const struct gz_study_point *point = &study->points[i];
-		json_array_append_new(points,
-				      json_pack("[ffI]", (double)point->gaze.x,
-						(double)point->gaze.y, (json_int_t)point->camera));
+		json_array_append_new(points, json_pack("[ffI]", gz_number_of_float(point->gaze.x),
+							gz_number_of_float(point->gaze.y),
+							(json_int_t)point->camera));
 	}
 	return json_pack("{so so so so so}", "scenes", scenes, "variants", variants, "sizes", sizes,
 			 "backends", backends, "points", points);
@@ -92,11 +94,12 @@ static json_t *machine_to_json(const struct gz_study *study)
 json_t *gz_study_to_json(const struct gz_study *study)
 {
 	json_t *json = json_pack(
-		"{ss si sb si si sI si si si ss ss ss}", "format", GZ_STUDY_FORMAT, "version",
+		"{ss si sb si si sI si si si ss sf sb ss ss}", "format", GZ_STUDY_FORMAT, "version",
 		GZ_STUDY_VERSION, "complete", study->complete, "shard", study->shard + 1, "shards",
 		study->shard_count, "seed", (json_int_t)study->seed, "cameras",
 		(int)study->camera_count, "frames", study->frames_per_point, "warm_up",
-		study->warm_up_frames, "path", study->path, "path_hash", study->path_hash, "errors",
+		study->warm_up_frames, "path", study->path, "min_move_px", study->min_move_px,
+		"per_cell", study->per_cell, "path_hash", study->path_hash, "errors",
 		gz_study_accuracy_names[study->accuracy]);
 	json_t *machine = machine_to_json(study), *lists = lists_to_json(study);
 	if (!json || !machine || !lists || json_object_set(json, "machine", machine) != 0 ||
@@ -108,6 +111,58 @@ json_t *gz_study_to_json(const struct gz_study *study)
 	json_decref(machine);
 	json_decref(lists);
 	return json;
+}
+
+/* One number of JSON, at @p from, in its shortest form; where the text goes on. */
+static char *shorten(const char *from, size_t length, char *to)
+{
+	char number[GZ_NUMBER_SIZE], shortest[GZ_NUMBER_SIZE + 2] = "";
+	double value;
+	snprintf(number, sizeof number, "%.*s", (int)length, from);
+	/* Whole numbers stay as they are, reals stay reals. */
+	if (length < sizeof number && strpbrk(number, ".e") && gz_number_parse(number, &value)) {
+		gz_number_print(value, shortest);
+		if (!strpbrk(shortest, ".e"))
+			strcat(shortest, ".0");
+	}
+	const size_t shorter = strlen(shortest);
+	if (shorter > 0 && shorter < length) {
+		memcpy(to, shortest, shorter);
+		return to + shorter;
+	}
+	memmove(to, from, length);
+	return to + length;
+}
+
+/* Jansson prints 17 digits, of which most numbers need few: 0.80000000000000004. */
+static void shorten_numbers(char *json)
+{
+	bool quoted = false;
+	char *to = json;
+	for (const char *from = json; *from;) {
+		const size_t digits = quoted ? 0 : strspn(from, "+-.eE0123456789");
+		if (digits > 0 && *from != 'e') { /* the one of true and false */
+			to = shorten(from, digits, to);
+			from += digits;
+			continue;
+		}
+		if (quoted && *from == '\\')
+			*to++ = *from++;
+		else if (*from == '"')
+			quoted = !quoted;
+		*to++ = *from++;
+	}
+	*to = '\0';
+}
+
+char *gz_study_to_text(const struct gz_study *study)
+{
+	json_t *json = gz_study_to_json(study);
+	char *text = json ? json_dumps(json, JSON_INDENT(1)) : NULL;
+	json_decref(json);
+	if (text)
+		shorten_numbers(text);
+	return text;
 }
 
 /* ---- reading ---- */
@@ -378,6 +433,11 @@ static void read_head(struct reader *reader, const json_t *json, struct gz_study
 	study->warm_up_frames = (int)read_whole(reader, json, "warm_up", 0, GZ_STUDY_FRAMES_MAX);
 	read_accuracy(reader, json, &study->accuracy);
 	read_text(reader, json, "path", study->path, sizeof study->path);
+	/* Studies that were made before these were kept have neither. */
+	if (json_object_get(json, "min_move_px"))
+		study->min_move_px =
+			real(reader, json_object_get(json, "min_move_px"), "min_move_px");
+	study->per_cell = json_is_true(json_object_get(json, "per_cell"));
 	read_text(reader, json, "path_hash", study->path_hash, sizeof study->path_hash);
 }
 

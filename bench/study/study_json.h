@@ -18,6 +18,9 @@
 /** A study as JSON, without rows: the caller's, json_decref(). NULL where there is no memory. */
 json_t *gz_study_to_json(const struct gz_study *study);
 
+/** The same as text, each number as short as it can be without changing: the caller's, free(). */
+char *gz_study_to_text(const struct gz_study *study);
+
 /**
  * A study of JSON, without rows. Counts are checked before they are believed.
  *

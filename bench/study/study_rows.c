@@ -116,9 +116,9 @@ void gz_study_rows_print(const struct gz_study *study, const struct gz_study_row
 	print_text(study->variants[row->variant].text, file);
 	fprintf(file, ",%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",", row->point,
 		study->points[row->point].camera, row->frame);
-	print_number((double)row->gaze.x, file);
+	print_number(gz_number_of_float(row->gaze.x), file);
 	fputc(',', file);
-	print_number((double)row->gaze.y, file);
+	print_number(gz_number_of_float(row->gaze.y), file);
 	for (size_t i = 0; i < COLUMNS; i++) {
 		const char *at = (const char *)row + columns[i].offset;
 		uint64_t count;

@@ -98,9 +98,7 @@ static enum gz_result replace_file(const char *folder, const char *name, const c
 static enum gz_result write_json(const char *folder, const struct gz_study *study,
 				 const struct gz_log *log)
 {
-	json_t *json = gz_study_to_json(study);
-	char *text = json ? json_dumps(json, JSON_INDENT(1)) : NULL;
-	json_decref(json);
+	char *text = gz_study_to_text(study);
 	if (!text) {
 		gz_err(log, "%s: no memory, or a name that is no UTF-8", folder);
 		return GZ_ERR_NO_MEM;

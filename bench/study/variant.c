@@ -64,6 +64,11 @@ enum gz_result gz_variant_parse(const char *text, const struct gz_variant_settin
 		       sizeof copy);
 		return GZ_ERR_INVAL;
 	}
+	if (!copy[0]) {
+		gz_err(log, "a method's name is missing: part methods by one comma each; gazebench "
+			    "--list names them");
+		return GZ_ERR_INVAL;
+	}
 	char *rest = copy;
 	for (char *part = strsep(&rest, ":"); part; part = strsep(&rest, ":")) {
 		char *value = strchr(part, '=');

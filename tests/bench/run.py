@@ -83,11 +83,36 @@ class Run(unittest.TestCase):
             (["run", "a.scene", "--out", "s", "--shard", "0/2"], "I from 1 to N"),
             (["run", "a.scene", "--out", "s", "--shard", "3/2"], "I from 1 to N"),
             (["run", "a.scene", "--out", "s", "--frames", "0"], "frames"),
+            (["run", "a.scene", "--out", "s", "--methods", "fast"], "standard, mdc"),
+            (["run", "a.scene", "--out", "s", "--methods", "mdc,,ddc"], "name is missing"),
+            (["run", "a.scene", "--out", "s", "--methods", ""], "name is missing"),
+            (["run", "a.scene", "--out", "s", "--size", "big"], "WIDTHxHEIGHT"),
+            (["run", "a.scene", "--out", "s", "--backend", "quantum"], "cpu, gl"),
+            (["run", "a.scene", "--out", "s", "--path", "spiral"], "no such path"),
+            (["suggest", "s", "--metric", "ssim"], "--bound is wanted"),
             (["merge", "s"], "merge OUT DIR"),
         ):
             done = self.gazebench(self.command(*arguments))
             self.assertEqual(done.returncode, 2, arguments)
             self.assertIn(part, done.stderr)
+
+    def test_files_that_are_not_there_exit_with_1(self):
+        for arguments in (
+            ["run", "b.scene", "--out", "s"],
+            ["run", "a.scene", "--out", "s", "--path", "b.gzl"],
+            ["report", "s"],
+        ):
+            done = self.gazebench(self.command(*arguments))
+            self.assertEqual(done.returncode, 1, arguments)
+            self.assertFalse(os.path.exists(os.path.join(self.place.name, "s")))
+
+    def test_help_names_commands_and_what_they_do_in_straight_columns(self):
+        text = self.gazebench(self.command("--help")).stdout
+        lines = text.split("commands:\n")[1].split("\n\n")[0].splitlines()
+        self.assertEqual(len(lines), 7)
+        starts = {re.match(r"  [a-z]+ +[A-Z.a-z]+(?: [A-Z][A-Za-z.]+)* {2,}(?=[a-z])", line).end()
+                  for line in lines}
+        self.assertEqual(len(starts), 1, text)
 
     def test_folder_of_something_else_is_refused_and_left_alone(self):
         os.mkdir(os.path.join(self.place.name, "s"))
@@ -184,9 +209,14 @@ class Run(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stdout, r"(?m)^method +acuity")
         self.assertRegex(done.stdout, r"(?m)^backend +cpu +.*thread")
+        self.assertNotRegex(done.stdout, r"(?m) $")
+        self.assertRegex(done.stdout, r"(?m)^option +uniform_spacing .*; preset 2\)$")
         items = json.loads(self.gazebench(self.command("--list", "--json")).stdout)
         self.assertEqual(len(items), len(done.stdout.splitlines()))
-        self.assertIn("mdc_spacing", [i["name"] for i in items if i["kind"] == "option"])
+        options = {i["name"]: i for i in items if i["kind"] == "option"}
+        self.assertEqual(options["levels"]["allowed"], "true or false")
+        self.assertEqual(options["uniform_spacing"]["preset"], "2")
+        self.assertTrue(all(i["text"] for i in items))
 
 
 if __name__ == "__main__":

@@ -85,6 +85,8 @@ struct gz_study study_example(int shard, int shard_count)
 {
 	struct gz_study study = {
 		.path = "random:4",
+		.min_move_px = 0.8,
+		.per_cell = true,
 		.seed = 7,
 		.frames_per_point = 2,
 		.warm_up_frames = 1,

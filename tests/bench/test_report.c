@@ -11,6 +11,8 @@
 #include "bench/report/names.h"
 #include "bench/report/page.h"
 #include "bench/report/palette.h"
+#include "bench/report/picture.h"
+#include "bench/study/stage.h"
 #include "made_study.h"
 
 static const double flips[] = { 0.001, 0.012, 0.02, 0.04, 0.015 };
@@ -213,6 +215,104 @@ static void page_escapes_every_text_and_holds_nothing_from_elsewhere(void **stat
 	free_both(&study, &summary);
 }
 
+static void page_shows_the_command_that_makes_the_study(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text page = { 0 };
+	const struct gz_charts none = { 0 };
+	make(NULL, 1, &study, &summary);
+	study.camera_count = 7;
+	gz_page_write(&summary, &none, &page);
+	assert_non_null(strstr(page.bytes, " --cameras 7 \\\n  --frames 1 "));
+	assert_null(strstr(page.bytes, "--min-move"));
+	assert_null(strstr(page.bytes, "--per-cell"));
+	gz_text_free(&page);
+	study.min_move_px = 10.5;
+	study.per_cell = true;
+	gz_page_write(&summary, &none, &page);
+	assert_non_null(strstr(page.bytes, " --cameras 7 --min-move 10.5 --per-cell \\\n"));
+	assert_non_null(strstr(page.bytes, "&#39; --distance-mm 600 "));
+	gz_text_free(&page);
+	free_both(&study, &summary);
+}
+
+/* A scene on the disk, and a study that has seen it. */
+struct seen_scene {
+	char folder[64];
+	struct gz_study_scene scene;
+	struct gz_log log;
+	int sizes[1][2];
+};
+
+static void write_file(const char *folder, const char *name, const char *text)
+{
+	char path[128];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+}
+
+static void see_scene(struct seen_scene *seen)
+{
+	struct gz_transfer transfer;
+	strcpy(seen->folder, "/tmp/gz_report_XXXXXX");
+	assert_non_null(mkdtemp(seen->folder));
+	gz_log_init(&seen->log, NULL, NULL, NULL);
+	write_file(seen->folder, "a.tf", "0 0 0 0 0\n1 1 1 1 0.5\n");
+	write_file(seen->folder, "b.tf", "0 0 0 0 0\n1 1 0 0 0.5\n");
+	write_file(seen->folder, "a.scene",
+		   "[volume]\nprocedural = shells\ndims = 16 16 16\n[transfer]\nfile = a.tf\n"
+		   "also = b.tf\n");
+	snprintf(seen->scene.path, sizeof seen->scene.path, "%s/a.scene", seen->folder);
+	struct gz_stage stage = { .log = &seen->log };
+	assert_int_equal(gz_stage_load(&stage, seen->scene.path), GZ_OK);
+	seen->scene.camera = stage.scene.settings.camera;
+	assert_int_equal(gz_stage_transfer(&stage, 1, seen->scene.transfer, &transfer), GZ_OK);
+	assert_int_equal(gz_stage_data_hash(&stage, &transfer, seen->scene.data_hash), GZ_OK);
+	gz_stage_free(&stage);
+	strcpy(seen->scene.name, "a");
+	seen->sizes[0][0] = seen->sizes[0][1] = 32;
+}
+
+static enum gz_result picture_of(struct seen_scene *seen, struct gz_image *image)
+{
+	struct gz_study study = {
+		.scenes = &seen->scene, .scene_count = 1, .sizes = seen->sizes, .size_count = 1
+	};
+	return gz_report_picture(&study, 0, seen->folder, &seen->log, image);
+}
+
+static void picture_behind_maps_is_of_what_was_measured_and_of_nothing_else(void **state)
+{
+	(void)state;
+	struct seen_scene seen = { 0 };
+	struct gz_image image = { 0 };
+	char command[128];
+	see_scene(&seen);
+	/* The same names and dims, another function. */
+	write_file(seen.folder, "b.tf", "0 0 0 0 0\n1 0 1 0 0.5\n");
+	assert_int_equal(picture_of(&seen, &image), GZ_ERR_NOT_FOUND);
+	assert_null(image.pixels);
+	/* What it was, by another name. */
+	write_file(seen.folder, "c.tf", "0 0 0 0 0\n1 1 0 0 0.5\n");
+	write_file(seen.folder, "a.scene",
+		   "[volume]\nprocedural = shells\ndims = 16 16 16\n[transfer]\nfile = c.tf\n");
+	assert_int_equal(picture_of(&seen, &image), GZ_OK);
+	uint64_t red = 0, green = 0;
+	for (size_t i = 0; i < 32 * 32; i++) {
+		red += image.pixels[4 * i];
+		green += image.pixels[4 * i + 1];
+	}
+	assert_true(red > 0 && green == 0);
+	gz_image_free(&image);
+	snprintf(command, sizeof command, "rm -rf %s", seen.folder);
+	assert_int_equal(system(command), 0);
+}
+
 static void page_of_a_partial_study_or_one_shard_says_so(void **state)
 {
 	(void)state;
@@ -313,6 +413,8 @@ int main(void)
 			answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable),
 		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
 		cmocka_unit_test(page_escapes_every_text_and_holds_nothing_from_elsewhere),
+		cmocka_unit_test(page_shows_the_command_that_makes_the_study),
+		cmocka_unit_test(picture_behind_maps_is_of_what_was_measured_and_of_nothing_else),
 		cmocka_unit_test(page_of_a_partial_study_or_one_shard_says_so),
 		cmocka_unit_test(page_without_errors_has_no_empty_tables_of_them),
 		cmocka_unit_test(base64_is_that_of_the_standard),

@@ -177,6 +177,36 @@ static void study_written_is_read(void **state)
 	gz_study_free(&study);
 }
 
+static void numbers_are_written_as_short_as_they_can_be(void **state)
+{
+	(void)state;
+	struct gz_study study = written(0, 1);
+	char *json = read_text("study.json"), *rows = read_text("frames.csv");
+	/* 0.8 and 0.1F, whose nearest doubles are 0.80000000000000004 and 0.100000001490116. */
+	assert_non_null(strstr(json, "\"min_move_px\": 0.8,"));
+	assert_non_null(strstr(json, "   0.1,\n   0.33333334,"));
+	assert_non_null(strstr(json, "     0.3333333333333333\n"));
+	assert_non_null(strstr(json, "\"fov_deg\": 40.0,"));
+	assert_non_null(strstr(json, "\"name\": \"head, \\\"old\\\"\""));
+	assert_null(strstr(json, "00000"));
+	assert_non_null(strstr(rows, ",1,1,0,0.1,0.33333334,"));
+	free(json);
+	free(rows);
+	gz_study_free(&study);
+}
+
+static void study_of_a_program_that_kept_less_of_its_path_is_read(void **state)
+{
+	(void)state;
+	struct gz_study study = written(0, 1), read;
+	replace("study.json", "\"min_move_px\": 0.8,", "");
+	replace("study.json", "\"per_cell\": true,", "");
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	assert_true(read.min_move_px == 0 && !read.per_cell);
+	gz_study_free(&read);
+	gz_study_free(&study);
+}
+
 static void shard_written_is_read(void **state)
 {
 	(void)state;
@@ -432,6 +462,9 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(study_written_is_read, name_folder),
+		cmocka_unit_test_setup(numbers_are_written_as_short_as_they_can_be, name_folder),
+		cmocka_unit_test_setup(study_of_a_program_that_kept_less_of_its_path_is_read,
+				       name_folder),
 		cmocka_unit_test_setup(shard_written_is_read, name_folder),
 		cmocka_unit_test_setup(interrupted_study_is_read_up_to_its_last_whole_unit,
 				       name_folder),

@@ -12,6 +12,7 @@
 
 #include "base/captured_log.h"
 #include "base/command.h"
+#include "bench/study/machine.h"
 #include "bench/study/merge.h"
 #include "bench/study/run.h"
 #include "bench/study/study_folder.h"
@@ -402,6 +403,27 @@ static void run_of_something_else_into_the_same_folder_is_refused(void **state)
 
 /* ---- refusals ---- */
 
+static void programs_of_one_commit_are_told_apart_where_files_were_changed(void **state)
+{
+	(void)state;
+	char path[64], other[64];
+	char text[GZ_STUDY_TEXT_SIZE], again[GZ_STUDY_TEXT_SIZE];
+	snprintf(path, sizeof path, "%s/program", root);
+	snprintf(other, sizeof other, "%s/other", root);
+	write_text(path, "abc");
+	write_text(other, "abd");
+	gz_study_identify("0123abc", path, text);
+	assert_string_equal(text, "0123abc");
+	gz_study_identify("0123abc-dirty", path, text); /* FIPS 180-4's example */
+	assert_string_equal(text, "0123abc-dirty-ba7816bf8f01");
+	gz_study_identify("0123abc-dirty", other, again);
+	assert_string_not_equal(text, again);
+	gz_study_identify("unknown", path, text);
+	assert_string_equal(text, "unknown-ba7816bf8f01");
+	gz_study_identify("unknown", "/nonexistent", text);
+	assert_string_equal(text, "unknown");
+}
+
 static void what_cannot_be_asked_is_refused_before_a_folder_is_made(void **state)
 {
 	(void)state;
@@ -539,6 +561,8 @@ int main(void)
 				       begin),
 		cmocka_unit_test_setup(run_of_something_else_into_the_same_folder_is_refused,
 				       begin),
+		cmocka_unit_test_setup(
+			programs_of_one_commit_are_told_apart_where_files_were_changed, begin),
 		cmocka_unit_test_setup(what_cannot_be_asked_is_refused_before_a_folder_is_made,
 				       begin),
 		cmocka_unit_test_setup(recording_of_another_display_is_refused, begin),

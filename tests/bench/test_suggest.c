@@ -127,7 +127,7 @@ static void questions_without_an_answer_are_refused(void **state)
 	assert_said(place, 1, "nothing was measured of this scene");
 	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
 					    "psnr_db", NULL });
-	assert_said(place, 1, "--bound is wanted");
+	assert_said(place, 2, "--bound is wanted");
 	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
 					    "foveal_flip", NULL });
 	assert_said(place, 1, "foveal FLIP against converged was not measured");

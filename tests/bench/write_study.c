@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/study/stage.h"
 #include "bench/study/study_folder.h"
 #include "made_study.h"
 
@@ -77,6 +78,21 @@ static void measure(const struct gz_study *study, struct gz_study_row *row)
 	}
 }
 
+/* So that its picture lies behind the maps. */
+static void take_scene(const char *path, const struct gz_log *log, struct gz_study_scene *scene)
+{
+	struct gz_stage stage = { .log = log };
+	struct gz_transfer transfer;
+	if (gz_stage_load(&stage, path) != GZ_OK ||
+	    gz_stage_transfer(&stage, 0, scene->transfer, &transfer) != GZ_OK ||
+	    gz_stage_data_hash(&stage, &transfer, scene->data_hash) != GZ_OK)
+		exit(1);
+	snprintf(scene->path, sizeof scene->path, "%s", path);
+	memcpy(scene->dims, stage.scene.volume.dims, sizeof scene->dims);
+	scene->camera = stage.scene.settings.camera;
+	gz_stage_free(&stage);
+}
+
 int main(int argc, char **argv)
 {
 	const char *kind = argc > 2 ? argv[2] : "one";
@@ -103,13 +119,7 @@ int main(int argc, char **argv)
 		study.row_count = gz_study_unit_rows(&study) * 20;
 	}
 	if (argc > 3) {
-		snprintf(study.scenes[0].path, sizeof study.scenes[0].path, "%s", argv[3]);
-		study.scenes[0].dims[0] = 181;
-		study.scenes[0].dims[1] = 217;
-		study.scenes[0].dims[2] = 181;
-		study.scenes[0].camera = (struct gz_camera) { .eye = { 0.8, 1.3, 0.35 },
-							      .up = { 0, 0, 1 },
-							      .fov_deg = 40 };
+		take_scene(argv[3], &log, &study.scenes[0]);
 	}
 	const enum gz_result result = gz_study_write(argv[1], &study, &log);
 	gz_study_free(&study);
