@@ -125,6 +125,19 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 	return &maker->scene;
 }
 
+enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
+				     const struct gz_transfer *transfer)
+{
+	maker->scene.transfer = *transfer; /* also for the renderer that may replace this one */
+	gz_temporal_forget(&maker->temporal);
+	maker->any_made = false;
+	const enum gz_result r =
+		gz_renderer_set_transfer(maker->caster.renderer, &maker->scene.transfer);
+	if (r != GZ_OK)
+		gz_err(maker->log, "cannot take the transfer function: %s", gz_result_text(r));
+	return r;
+}
+
 bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
 		     const struct gz_gaze_reading *reading, const struct gz_display *display,
 		     int64_t time_ns)

@@ -61,6 +61,16 @@ void gz_frame_maker_stop(struct gz_frame_maker *maker);
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 
 /**
+ * Show the scene by another transfer function from the next frame on; what earlier frames saw is
+ * forgotten. Between frames, after gz_frame_maker_start().
+ *
+ * @param transfer  valid; copied
+ * @return what gz_renderer_set_transfer() returns; logged
+ */
+enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
+				     const struct gz_transfer *transfer);
+
+/**
  * Let the attention (render/attention/attention.h) take the gaze of the next frame.
  *
  * @param reading  its point is on @p display
