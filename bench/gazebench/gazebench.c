@@ -9,6 +9,7 @@ static const struct gz_command *const commands[] = {
 	&gazebench_merge,
 	&gazebench_report,
 	&gazebench_suggest,
+	&gazebench_accumulate,
 	&gazebench_compare,
 	&gazebench_filter,
 	&gazebench_stability,

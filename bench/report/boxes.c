@@ -7,10 +7,10 @@
 #include "bench/report/names.h"
 #include "bench/report/palette.h"
 
-/* A row's height, px, and how many characters of a name a canvas has room for. */
+/* A row's height, px: on a narrow canvas a name and, below it, a box. */
 static int row_px(const struct gz_canvas *canvas)
 {
-	return canvas->kind == GZ_CANVAS_NARROW ? 24 : 30;
+	return canvas->kind == GZ_CANVAS_NARROW ? 42 : 30;
 }
 
 static void add_row(const struct gz_study *study, const struct gz_series *series, size_t row,
@@ -32,7 +32,7 @@ static void add_row(const struct gz_study *study, const struct gz_series *series
 static int characters_for(const struct gz_study *study, const struct gz_group *group,
 			  enum gz_canvas_kind kind)
 {
-	const int most = kind == GZ_CANVAS_NARROW ? 18 : 40;
+	const int most = kind == GZ_CANVAS_NARROW ? 48 : 40;
 	int longest = 8;
 	for (size_t i = 0; i < group->series_count; i++) {
 		char words[GZ_NAMES_SIZE];
@@ -58,13 +58,16 @@ static enum gz_result draw_on(const struct gz_summary *summary, const struct gz_
 			greatest = fmax(greatest, series->frame_ms.p99);
 			add_row(summary->study, series, rows++, characters, &table);
 		}
-	canvas.left = (int)((characters + 2) * canvas.font_px * 0.58);
+	const bool names_above = kind == GZ_CANVAS_NARROW;
+	canvas.left = names_above ? 14 : (int)((characters + 2) * canvas.font_px * 0.58);
 	canvas.height = canvas.top + canvas.bottom + (int)rows * row_px(&canvas);
 	gz_chart_set_text(&settings, "title_text", "time of a frame, ms");
 	gz_chart_set_text(&settings, "x_title", "box: half of all frames; line: 99 of 100");
 	const double first = fmax(least, 1e-4) / 1.15, last = fmax(greatest, 2e-4) * 1.15;
-	gz_text_add(&settings, "x_first = %.9g\nx_last = %.9g\nx_decades = %.9g\nrows = %zu\n",
-		    first, last, log10(last / first) * (kind == GZ_CANVAS_NARROW ? 2 : 1), rows);
+	gz_text_add(&settings,
+		    "x_first = %.9g\nx_last = %.9g\nx_decades = %.9g\nrows = %zu\n"
+		    "names_above = %d\n",
+		    first, last, log10(last / first) * (names_above ? 2 : 1), rows, names_above);
 	gz_chart_name(summary, "boxes", group, name);
 	const enum gz_result result =
 		gz_charts_draw(charts, "boxes.gp", name, &canvas, &settings, &table);

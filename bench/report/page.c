@@ -144,13 +144,13 @@ static void add_maps(const struct gz_summary *summary, const struct gz_group *gr
 	gz_text_add(out, "<h3>Where the gaze makes it dear, and where wrong</h3>\n"
 			 "<p>Each point is a place of the gaze, over the picture; yellow is the "
 			 "slowest, and the farthest from the reference, of its own map.</p>\n"
-			 "<div class=\"grid\">\n");
+			 "<div class=\"grid maps\">\n");
 	if (advised != GZ_SERIES_NONE && advised != group->standard)
 		add_maps_of(summary, group, charts, advised, out);
 	if (group->standard != GZ_SERIES_NONE)
 		add_maps_of(summary, group, charts, group->standard, out);
 	gz_text_add(out, "</div>\n<details><summary>Maps of the other variants</summary>\n"
-			 "<div class=\"grid\">\n");
+			 "<div class=\"grid maps\">\n");
 	for (size_t i = 0; i < group->series_count; i++)
 		if (i != advised && i != group->standard)
 			add_maps_of(summary, group, charts, i, out);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "bench/report/names.h"
 #include "bench/report/page_parts.h"
 
@@ -47,18 +48,22 @@ static bool path_is_new(const struct gz_study *study, size_t place)
 	return true;
 }
 
-/* The display, where it is the same for all scenes. */
+/* The display, where it is known and the same for all scenes. */
 static void add_display(const struct gz_study *study, struct gz_text *out)
 {
 	const struct gz_display *first = &study->scenes[0].display;
-	for (size_t i = 1; i < study->scene_count; i++) {
+	for (size_t i = 0; i < study->scene_count; i++) {
 		const struct gz_display *display = &study->scenes[i].display;
-		if (display->mm[0] != first->mm[0] || display->mm[1] != first->mm[1] ||
-		    display->distance_mm != first->distance_mm)
+		if (!study->scenes[i].display_known || display->mm[0] != first->mm[0] ||
+		    display->mm[1] != first->mm[1] || display->distance_mm != first->distance_mm)
 			return;
 	}
-	gz_text_add(out, " \\\n  --display-mm &#39;%.10g %.10g&#39; --distance-mm %.10g",
-		    first->mm[0], first->mm[1], first->distance_mm);
+	char numbers[3][GZ_NUMBER_SIZE];
+	gz_number_print(first->mm[0], numbers[0]);
+	gz_number_print(first->mm[1], numbers[1]);
+	gz_number_print(first->distance_mm, numbers[2]);
+	gz_text_add(out, " \\\n  --display-mm &#39;%s %s&#39; --distance-mm %s", numbers[0],
+		    numbers[1], numbers[2]);
 }
 
 static void add_command(const struct gz_study *study, struct gz_text *out)

@@ -109,7 +109,7 @@ class Run(unittest.TestCase):
     def test_help_names_commands_and_what_they_do_in_straight_columns(self):
         text = self.gazebench(self.command("--help")).stdout
         lines = text.split("commands:\n")[1].split("\n\n")[0].splitlines()
-        self.assertEqual(len(lines), 7)
+        self.assertEqual(len(lines), 8)
         starts = {re.match(r"  [a-z]+ +[A-Z.a-z]+(?: [A-Z][A-Za-z.]+)* {2,}(?=[a-z])", line).end()
                   for line in lines}
         self.assertEqual(len(starts), 1, text)
@@ -203,6 +203,34 @@ class Run(unittest.TestCase):
         self.assertRegex(lines[2], r"^2 of 3, 67 %, [0-9]+:[0-9]{2} left: a$")
         self.assertEqual(lines[3], "")
         self.assertNotIn("\n", shown.decode())
+
+    def test_accumulate_tells_what_more_frames_gain(self):
+        command = self.command("accumulate", "a.scene", "--size", "64x48", "--methods",
+                               "uniform:uniform_spacing=4", "--cache", "cache", "--json")
+        done = self.gazebench(command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [row for row in json.loads(done.stdout) if row["variant"] != "standard"]
+        self.assertEqual([(row["turn_deg"], row["frames"]) for row in rows],
+                         [(0, 0), (0, 1), (0, 4), (0, 16), (0, 64), (0.1, 0), (0.1, 16)])
+        errors = [row["flip"] for row in rows]
+        # A lattice of 4 px is whole after 16 frames: nothing is left to gain.
+        self.assertGreater(errors[1], errors[2])
+        self.assertGreater(errors[2], errors[3])
+        self.assertEqual(errors[3], errors[4])
+        standard = [row for row in json.loads(done.stdout) if row["variant"] == "standard"]
+        self.assertEqual(len({row["flip"] for row in standard[:5]}), 1)
+        self.assertTrue(all(row["frame_ms"] > 0 for row in rows))
+
+    def test_accumulate_refuses_what_it_cannot_measure(self):
+        for arguments, status, part in (
+            (["accumulate"], 2, "no scene"),
+            (["accumulate", "a.scene", "--gaze", "grid:2x2"], 2, "one place"),
+            (["accumulate", "a.scene", "--methods", "fast"], 2, "standard, mdc"),
+            (["accumulate", "b.scene"], 1, "b.scene"),
+        ):
+            done = self.gazebench(self.command(*arguments))
+            self.assertEqual(done.returncode, status, arguments)
+            self.assertIn(part, done.stderr)
 
     def test_list_names_what_can_be_measured(self):
         done = self.gazebench(self.command("--list"))

@@ -228,12 +228,16 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	assert_non_null(strstr(page.bytes, " --cameras 7 \\\n  --frames 1 "));
 	assert_null(strstr(page.bytes, "--min-move"));
 	assert_null(strstr(page.bytes, "--per-cell"));
+	assert_null(strstr(page.bytes, "--distance-mm"));
 	gz_text_free(&page);
+	study.scenes[0].display_known = true;
+	study.scenes[0].display.mm[0] = 565.8;
+	study.scenes[0].display.mm[1] = 318;
 	study.min_move_px = 10.5;
 	study.per_cell = true;
 	gz_page_write(&summary, &none, &page);
 	assert_non_null(strstr(page.bytes, " --cameras 7 --min-move 10.5 --per-cell \\\n"));
-	assert_non_null(strstr(page.bytes, "&#39; --distance-mm 600 "));
+	assert_non_null(strstr(page.bytes, "--display-mm &#39;565.8 318&#39; --distance-mm 600 "));
 	gz_text_free(&page);
 	free_both(&study, &summary);
 }

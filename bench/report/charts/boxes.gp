@@ -21,9 +21,14 @@ do for [power = -4:12] { do for [digit in digits] {
 set grid xtics noytics
 set ytics scale 0 textcolor rgb ink
 set style fill solid 0.25 border
-half = 0.28
-plot 'data.tsv' using 3:1:($7 - $3):(0):8 with vectors nohead linewidth 1.5 linecolor rgb variable, \
-	'' using 4:1:4:6:($1 - half):($1 + half):8:ytic(2) with boxxyerror linewidth 1.5 \
+# On a narrow canvas names beside the boxes would leave them no room: each stands above its own.
+half = names_above ? 0.17 : 0.28
+down = names_above ? 0.2 : 0
+plot 'data.tsv' using 3:($1 + down):($7 - $3):(0):8 with vectors nohead linewidth 1.5 \
 		linecolor rgb variable, \
-	'' using 5:($1 - half):(0):(2 * half):8 with vectors nohead linewidth 4 \
-		linecolor rgb variable
+	'' using 4:($1 + down):4:6:($1 + down - half):($1 + down + half):8:\
+		ytic(names_above ? '' : strcol(2)) with boxxyerror linewidth 1.5 \
+		linecolor rgb variable, \
+	'' using 5:($1 + down - half):(0):(2 * half):8 with vectors nohead linewidth 4 \
+		linecolor rgb variable, \
+	'' using (x_first):(names_above ? $1 - 0.24 : NaN):2 with labels left textcolor rgb ink
