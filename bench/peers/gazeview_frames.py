@@ -4,7 +4,7 @@ import os
 import statistics
 import subprocess
 
-# The object's centre first, then places along the S of bench/foveation_path: above, right, left, below.
+# The object's centre first, then places along the S of gazebench (sweep:s): above, right, left, below.
 GAZES = ("centre", "0.5,0.05", "0.9,0.275", "0.1,0.725", "0.5,0.95")
 
 
