@@ -80,6 +80,7 @@ static void context_begin(const struct gz_plan_request *request,
 	*out_context = (struct gz_plan_context) {
 		.foveation = request->foveation,
 		.width = width,
+		.diagonal_px = hypot(width, height),
 		.height = height,
 		.rays_per_px = request->rays_per_px,
 		.gaze_px = { gaze.x * (double)width - 0.5, gaze.y * (double)height - 0.5 },

@@ -26,6 +26,7 @@ enum gz_plan_steps {
 struct gz_plan_context {
 	const struct gz_foveation *foveation;
 	int width, height;
+	double diagonal_px; /**< of the picture, in rays */
 	double rays_per_px;
 	double gaze_px[2]; /**< in rays, where their centres are whole numbers; may lie outside */
 	enum gz_plan_steps steps;

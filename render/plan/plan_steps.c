@@ -95,8 +95,7 @@ static int distance_step(const struct gz_plan_context *context, const struct gz_
 	enum { UNCHANGED_PX = 10 };
 	if (d_px <= UNCHANGED_PX * context->rays_per_px)
 		return 0;
-	const double diagonal = hypot(context->width, context->height);
-	const double share = fmax(1 - d_px / diagonal, context->foveation->step_floor);
+	const double share = fmax(1 - d_px / context->diagonal_px, context->foveation->step_floor);
 	return rung_below(plan, 1 / share);
 }
 
@@ -111,6 +110,8 @@ int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan
 		return rung_below(plan, gz_plan_table_step_at(context, near_x, near_y));
 	if (context->steps == GZ_STEPS_RUNG)
 		return gz_ladder_rung(gz_plan_spacing_at(context, near_x, near_y));
-	return distance_step(context, plan,
-			     hypot(near_x - context->gaze_px[0], near_y - context->gaze_px[1]));
+	/* A picture's sides are far from where squares overflow: hypot() costs three times a root.
+	 */
+	const double x_px = near_x - context->gaze_px[0], y_px = near_y - context->gaze_px[1];
+	return distance_step(context, plan, sqrt(x_px * x_px + y_px * y_px));
 }
