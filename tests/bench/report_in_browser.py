@@ -38,6 +38,9 @@ PROBE = """(() => {
 		headings: document.querySelectorAll('h1').length,
 		banners: document.querySelectorAll('.banner').length,
 		sections: document.querySelectorAll('section').length,
+		columns: new Set([...document.querySelectorAll('.maps figure')]
+			.map(figure => figure.getBoundingClientRect())
+			.filter(box => box.width > 0).map(box => box.left)).size,
 		height: root.scrollHeight,
 		text: document.body.innerText,
 	};
@@ -152,6 +155,9 @@ def check_page(name, url, width, height, seen, asked, has_charts, banners):
         check(seen["chart"] is not None and seen["chart"] <= height,
               f"{where}: the chart ends at {seen['chart']} px of {height}")
         check(seen["images"] > 10, f"{where}: only {seen['images']} pictures")
+        columns = 2 if width > 1000 else 1
+        check(seen["columns"] == columns,
+              f"{where}: maps stand in {seen['columns']} columns, not {columns}")
     else:
         check(seen["images"] == 0, f"{where}: {seen['images']} pictures without gnuplot")
     check(seen["broken"] == 0, f"{where}: {seen['broken']} pictures are broken")
@@ -166,6 +172,7 @@ def check_labels(name, page):
     labels = 0
     for chart in charts:
         text = base64.b64decode(chart).decode()
+        check("…" not in text, f"{name}: a name is cut short")
         for x, size, label in re.findall(
                 r'translate\(([-0-9.]+),[-0-9.]+\)"[^>]*font-size="([0-9.]+)"[^>]*text-anchor="end">\s*'
                 r"<text>([^<]*)</text>", text):
