@@ -24,10 +24,13 @@ set style fill solid 0.25 border
 # On a narrow canvas names beside the boxes would leave them no room: each stands above its own.
 half = names_above ? 0.17 : 0.28
 down = names_above ? 0.2 : 0
+if (names_above) {
+	unset ytics
+}
 plot 'data.tsv' using 3:($1 + down):($7 - $3):(0):8 with vectors nohead linewidth 1.5 \
 		linecolor rgb variable, \
 	'' using 4:($1 + down):4:6:($1 + down - half):($1 + down + half):8:\
-		ytic(names_above ? '' : strcol(2)) with boxxyerror linewidth 1.5 \
+		ytic(2) with boxxyerror linewidth 1.5 \
 		linecolor rgb variable, \
 	'' using 5:($1 + down - half):(0):(2 * half):8 with vectors nohead linewidth 4 \
 		linecolor rgb variable, \
