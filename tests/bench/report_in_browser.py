@@ -172,7 +172,8 @@ def check_labels(name, page):
     labels = 0
     for chart in charts:
         text = base64.b64decode(chart).decode()
-        check("…" not in text, f"{name}: a name is cut short")
+        check("…" not in text or "half of all frames" not in text,
+              f"{name}: a name beside or above its box is cut short")
         for x, size, label in re.findall(
                 r'translate\(([-0-9.]+),[-0-9.]+\)"[^>]*font-size="([0-9.]+)"[^>]*text-anchor="end">\s*'
                 r"<text>([^<]*)</text>", text):
