@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "render/file_path.h"
+#include "render/histogram.h"
+#include "render/transfer_presets.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -465,6 +467,50 @@ enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, 
 		result = load_transfer(&reader, &scene.transfer);
 	if (result == GZ_OK)
 		result = load_volume(&reader, &scene.volume);
+	if (result != GZ_OK) {
+		gz_scene_free(&scene);
+		return result;
+	}
+	*out_scene = scene;
+	return GZ_OK;
+}
+
+/* Voxels are counted on all processors, which takes less than reading them did. */
+static enum gz_result fit_transfer(const struct reader *reader, struct gz_scene *scene)
+{
+	struct gz_histogram *histogram = malloc(sizeof *histogram);
+	if (!histogram)
+		return GZ_ERR_NO_MEM;
+	enum gz_result result = gz_histogram_count(&scene->volume, GZ_HISTOGRAM_BINS_LEAST, 0, NULL,
+						   reader->log, histogram);
+	if (result == GZ_OK)
+		gz_transfer_preset_make(GZ_PRESET_DEFAULT, histogram, &scene->volume,
+					&scene->transfer);
+	free(histogram);
+	return result;
+}
+
+enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_settings *settings,
+				      bool has_display, const struct gz_loading *loading,
+				      const struct gz_log *log, struct gz_scene *out_scene)
+{
+	struct gz_scene scene = { .settings = *settings, .has_display = has_display };
+	struct reader reader = {
+		.name = path, .loading = loading, .log = log, .settings = &scene.settings
+	};
+	reader.given[VOLUME_DIMS] = settings->dims[0] > 0;
+	reader.given[VOLUME_TYPE] = settings->dims[0] > 0 || settings->volume_procedural != 0;
+	enum gz_result result = check_volume(&reader);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(settings, path, log);
+	if (result == GZ_OK)
+		result = gz_scene_load_table(path, log, &scene.settings.foveation);
+	if (result == GZ_OK && settings->transfer_file[0])
+		result = load_transfer(&reader, &scene.transfer);
+	if (result == GZ_OK)
+		result = load_volume(&reader, &scene.volume);
+	if (result == GZ_OK && !settings->transfer_file[0])
+		result = fit_transfer(&reader, &scene);
 	if (result != GZ_OK) {
 		gz_scene_free(&scene);
 		return result;

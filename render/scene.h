@@ -118,6 +118,22 @@ enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, 
 				     struct gz_scene *out_scene);
 
 /**
+ * As gz_scene_load(), of settings that are there already: changed by somebody, or made for a volume
+ * that has no scene.
+ *
+ * @param path         a file, which need not be there: names in the settings are looked up beside
+ *                     it first, and messages name it
+ * @param settings     those of a file without a header have dims[0] above 0. Where they name no
+ *                     transfer function, the scene gets GZ_PRESET_DEFAULT fitted to the volume
+ *                     (render/transfer_presets.h)
+ * @param has_display  settings->display is part of the scene
+ * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED
+ */
+enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_settings *settings,
+				      bool has_display, const struct gz_loading *loading,
+				      const struct gz_log *log, struct gz_scene *out_scene);
+
+/**
  * Read the table of spacings that foveation.table names into @p foveation; gz_scene_load() does it
  * for the scene's own settings, this is for those that something else has changed.
  *

@@ -71,6 +71,22 @@ static enum gz_result start(struct gz_caster *caster, const char *backend,
 	return r;
 }
 
+bool gz_caster_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
+			 const struct gz_log *log)
+{
+	struct gz_caster caster;
+	begin(&caster, options, NULL, log);
+	if (strcmp(options->backend, "cpu") == 0)
+		return true;
+	struct gz_renderer_params params = caster.cpu;
+	params.gl_context = gl_context;
+	if (!caster.chooses || gz_renderer_create("auto", &params, log, &caster.renderer) != GZ_OK)
+		return false;
+	const bool cpu = is_cpu(&caster);
+	gz_renderer_destroy(&caster.renderer);
+	return cpu;
+}
+
 enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_options *options,
 			       struct gz_gl_context *gl_context, const struct gz_scene *scene,
 			       const struct gz_log *log)

@@ -38,6 +38,11 @@ enum gz_result gz_caster_start(struct gz_caster *caster, const struct gz_view_op
 			       struct gz_gl_context *gl_context, const struct gz_scene *scene,
 			       const struct gz_log *log);
 
+/** Whether gz_caster_start() would begin with the cpu backend: that one may be made on any thread.
+ */
+bool gz_caster_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
+			 const struct gz_log *log);
+
 /** Make a renderer of the cpu backend, whatever the options say, and give it the scene. @return as
  *  gz_caster_start(); logged */
 enum gz_result gz_caster_start_cpu(struct gz_caster *caster, const struct gz_view_options *options,

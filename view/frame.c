@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "render/picture_plan.h"
 #include "view/caster.h"
-#include "view/loading_bar.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -55,11 +54,31 @@ static enum gz_result find_cast_size(int width, int height, double rate, const s
 	return GZ_ERR_INVAL;
 }
 
-/* What the command line asks for, and what contradicts it, before anything large is read. */
+/* What is asked for over the scene's own, and what contradicts it, before anything large is read.
+ */
 struct change {
 	const struct gz_view_options *options;
+	const struct gz_frame_scene *scene;
 	const struct gz_log *log;
 };
+
+/* A table of spacings is found beside the scene that names it. */
+static void keep(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
+{
+	const struct gz_foveation own = settings->foveation;
+	const struct gz_clip_box clip = settings->rays.clip;
+	settings->rays = kept->rays;
+	settings->rays.clip = clip;
+	settings->image_sampling_rate = kept->image_sampling_rate;
+	settings->foveation = kept->foveation;
+	settings->foveation.table = own.table;
+	memcpy(settings->foveation.table_file, own.table_file, sizeof own.table_file);
+	if (kept->foveation.method == GZ_METHOD_TABLE)
+		settings->foveation.method = own.method;
+	settings->attention = kept->attention;
+	settings->temporal = kept->temporal;
+	settings->view = kept->view;
+}
 
 static enum gz_result change_settings(void *user, struct gz_scene_settings *settings)
 {
@@ -69,16 +88,40 @@ static enum gz_result change_settings(void *user, struct gz_scene_settings *sett
 						   .simd = options->simd };
 	int size[2];
 	enum gz_result r = gz_renderer_check(options->backend, &params, change->log);
-	if (r == GZ_OK)
+	if (r == GZ_OK && change->scene->by_options)
 		r = gz_view_options_apply(options, settings);
+	if (r == GZ_OK && change->scene->kept)
+		keep(change->scene->kept, settings);
 	if (r == GZ_OK && options->headless)
 		r = find_cast_size(options->size_px[0], options->size_px[1],
 				   settings->image_sampling_rate, change->log, size);
 	return r;
 }
 
+static enum gz_result load(const struct change *change, const struct gz_loading *loading,
+			   struct gz_scene *out_scene)
+{
+	const struct gz_frame_scene *scene = change->scene;
+	struct change user = *change;
+	if (!scene->settings)
+		return gz_scene_load_changed(scene->path, change_settings, &user, loading,
+					     change->log, out_scene);
+	struct gz_scene_settings settings = *scene->settings;
+	const enum gz_result r = change_settings(&user, &settings);
+	return r != GZ_OK ? r
+			  : gz_scene_load_settings(scene->path, &settings, scene->has_display,
+						   loading, change->log, out_scene);
+}
+
+struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *options)
+{
+	return (struct gz_frame_scene) { .path = options->scene, .by_options = true };
+}
+
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
-				     const struct gz_log *log, struct gz_frame_maker **out_maker)
+				     const struct gz_frame_scene *scene,
+				     const struct gz_loading *loading, const struct gz_log *log,
+				     struct gz_frame_maker **out_maker)
 {
 	struct gz_frame_maker *maker = calloc(1, sizeof *maker);
 	if (!maker)
@@ -87,12 +130,8 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	const struct gz_attention_params attention = gz_attention_default();
 	gz_attention_init(&maker->attention, &attention);
 	maker->focus = maker->attention.focus;
-	struct change change = { options, log };
-	struct gz_loading_bar bar;
-	gz_loading_bar_begin(&bar, log);
-	enum gz_result r = gz_scene_load_changed(options->scene, change_settings, &change,
-						 &bar.loading, log, &maker->scene);
-	gz_loading_bar_end(&bar);
+	const struct change change = { options, scene, log };
+	enum gz_result r = load(&change, loading, &maker->scene);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
 		return r;
@@ -118,6 +157,11 @@ void gz_frame_maker_stop(struct gz_frame_maker *maker)
 {
 	gz_caster_free(&maker->caster);
 	gz_temporal_forget(&maker->temporal);
+}
+
+bool gz_frame_maker_started(const struct gz_frame_maker *maker)
+{
+	return maker->caster.renderer != NULL;
 }
 
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)

@@ -27,17 +27,38 @@ struct gz_frame_request {
 	bool loss_is_callers; /**< a lost context is returned, not made up for by cpu */
 };
 
+/** Which scene a maker is to show. */
+struct gz_frame_scene {
+	/** Of the scene's file; names in the scene are looked up beside it first. */
+	const char *path;
+	/** Stand for what is in the file, which need not be there; NULL: it is read. */
+	const struct gz_scene_settings *settings;
+	bool has_display; /**< settings->display is part of the scene; only with settings */
+	/** The command line's keys come before the scene's own. */
+	bool by_options;
+	/** These come before both, but for volume, transfer function, camera, clip box and display,
+	 *  and a table of spacings; NULL: nothing stays. */
+	const struct gz_scene_settings *kept;
+};
+
+/** The scene that the options name, with their keys. */
+struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *options);
+
 /**
- * Load the scene that the options name, and apply their overrides.
+ * Load a scene. Everything is borrowed until the call returns, but for the log.
  *
- * @param options  borrowed until the call returns
- * @param log      borrowed, outlives the maker
+ * @param options  for scene->by_options, and what a renderer will need
+ * @param loading  who is told how far it is, and may stop it; NULL for nobody
+ * @param log      outlives the maker
  * @param[out] out_maker  owned by the caller: gz_frame_maker_destroy()
- * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED,
- * which a signal while loading gives
+ * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED, which @p loading gives
+ *
+ * Threads: any.
  */
 enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
-				     const struct gz_log *log, struct gz_frame_maker **out_maker);
+				     const struct gz_frame_scene *scene,
+				     const struct gz_loading *loading, const struct gz_log *log,
+				     struct gz_frame_maker **out_maker);
 
 /**
  * Make the renderer, before the first frame.
@@ -56,6 +77,9 @@ enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 
 /** Destroy the renderer, while its context is there; another may be started. */
 void gz_frame_maker_stop(struct gz_frame_maker *maker);
+
+/** Whether it has a renderer. */
+bool gz_frame_maker_started(const struct gz_frame_maker *maker);
 
 /** The scene as loaded and overridden. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);

@@ -11,6 +11,7 @@
 #include "view/frame.h"
 #include "view/gaze_source.h"
 #include "view/letters.h"
+#include "view/loading_bar.h"
 #include "view/output.h"
 #include "view/stats.h"
 
@@ -268,6 +269,17 @@ static void warn_of_budget(const struct headless *self)
 			self->settings.attention.budget_ms);
 }
 
+static enum gz_result load(struct headless *self)
+{
+	const struct gz_frame_scene scene = gz_frame_scene_of_options(self->options);
+	struct gz_loading_bar bar;
+	gz_loading_bar_begin(&bar, self->log);
+	const enum gz_result r =
+		gz_frame_maker_create(self->options, &scene, &bar.loading, self->log, &self->maker);
+	gz_loading_bar_end(&bar);
+	return r;
+}
+
 enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
 				int *out_signal)
 {
@@ -278,7 +290,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	if (r == GZ_OK)
 		r = open_source(&options->gaze, log, &self.source);
 	if (r == GZ_OK)
-		r = gz_frame_maker_create(options, log, &self.maker);
+		r = load(&self);
 	if (r == GZ_OK)
 		r = gz_frame_maker_start(self.maker, options, NULL);
 	if (r == GZ_OK && options->stats[0])

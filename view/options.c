@@ -404,7 +404,7 @@ static enum gz_result check_together(const struct gz_view_options *options,
 {
 	if (options->target.targets[0])
 		return check_targets(options, log);
-	if (!options->scene[0]) {
+	if (!options->scene[0] && (options->headless || options->write_volume[0])) {
 		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}

@@ -58,6 +58,14 @@ void gz_quad_draw(const struct gz_quad *quad, int width, int height)
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+void gz_quad_clear(int width, int height)
+{
+	glViewport(0, 0, width, height);
+	/* Chosen: dark, but not the black of an empty picture. */
+	glClearColor(0.09f, 0.10f, 0.12f, 1);
+	glClear(GL_COLOR_BUFFER_BIT);
+}
+
 void gz_quad_free(struct gz_quad *quad)
 {
 	if (quad->program)

@@ -28,6 +28,9 @@ void gz_quad_show(struct gz_quad *quad, unsigned texture);
 /** Draw over a viewport of @p width times @p height px. */
 void gz_quad_draw(const struct gz_quad *quad, int width, int height);
 
+/** What is seen where there is no picture: a dark ground. */
+void gz_quad_clear(int width, int height);
+
 /** Delete all of it and zero the struct. Correct after a failed gz_quad_init(). */
 void gz_quad_free(struct gz_quad *quad);
 

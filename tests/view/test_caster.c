@@ -116,7 +116,8 @@ static struct gz_frame_maker *make_maker(struct set_up *all)
 	fputs("[volume]\nprocedural = shells\ndims = 20 20 20\n[transfer]\nfile = a.tf\n", file);
 	fclose(file);
 	all->options.method = -1;
-	if (gz_frame_maker_create(&all->options, &all->log, &maker) != GZ_OK)
+	const struct gz_frame_scene scene = gz_frame_scene_of_options(&all->options);
+	if (gz_frame_maker_create(&all->options, &scene, NULL, &all->log, &maker) != GZ_OK)
 		fail_msg("%s", all->heard.text);
 	unlink(path);
 	unlink(all->options.scene);

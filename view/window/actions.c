@@ -54,7 +54,8 @@ static bool run_first(struct gz_window *window, const struct wanted *wanted)
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++) {
 		for (size_t i = 0; i < (*part)->action_count; i++) {
 			const struct gz_window_action *action = &(*part)->actions[i];
-			if (!matches(action, wanted->key, wanted->letter, wanted->modifiers))
+			if (!matches(action, wanted->key, wanted->letter, wanted->modifiers) ||
+			    (action->applies && !action->applies(window)))
 				continue;
 			if (!wanted->repeated || action->repeats)
 				action->run(window, action->number);

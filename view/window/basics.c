@@ -13,6 +13,8 @@ enum { KEYS_SIZE = 8192 };
 
 static void choose_method(struct gz_window *window, int method)
 {
+	if (!window->maker)
+		return;
 	if (method == GZ_METHOD_TABLE && window->settings.foveation.table.count == 0)
 		return; /* the scene has none to show */
 	window->settings.foveation.method = method;

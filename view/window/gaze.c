@@ -134,6 +134,8 @@ double gz_window_gaze_patience_s(const struct gz_window *window)
 	double frame_s = 1 / window->options->fps;
 	if (window->panel_frames > 0)
 		return 0;
+	if (!window->maker)
+		return STILL_PATIENCE_S;
 	if (window->options->turn_deg != 0 || !gz_frame_settled(window->maker) ||
 	    gz_frame_refinable(window->maker))
 		return frame_s;

@@ -72,6 +72,8 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 static void drag(struct gz_window *window, double right, double down, int height)
 {
 	double deg = DRAG_DEG_PER_HEIGHT / height;
+	if (!window->maker)
+		return;
 	/* The volume follows the hand, so the eye goes the other way. */
 	gz_camera_orbit(&window->settings.camera, -right * deg, -down * deg);
 	window->cast_needed = true;
@@ -116,7 +118,7 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	(void)right;
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
-	if (gz_widgets_have_mouse())
+	if (gz_widgets_have_mouse() || !window->maker)
 		return;
 	gz_camera_zoom(&window->settings.camera, pow(ZOOM_PER_NOTCH, up));
 	window->cast_needed = true;

@@ -50,6 +50,8 @@ static enum gz_result open_anew(struct gz_window *window)
 {
 	enum gz_result started = GZ_ERR_UNSUPPORTED;
 	enum gz_result r = gz_window_context_open(window);
+	if (r == GZ_OK && !window->maker)
+		return gz_window_drawing_open(window);
 	if (r == GZ_OK && window->losses < LOSSES_TO_CPU)
 		started =
 			gz_frame_maker_start(window->maker, window->options, &window->context.base);
@@ -74,7 +76,8 @@ enum gz_result gz_window_rebuild(struct gz_window *window)
 						 "casts the rays from now on");
 	const bool fullscreen = remember_place(window);
 	gz_context_await_reset();
-	gz_frame_maker_stop(window->maker);
+	if (window->maker)
+		gz_frame_maker_stop(window->maker);
 	gz_window_drawing_close(window);
 	const enum gz_result r = open_anew(window);
 	if (r != GZ_OK)

@@ -32,6 +32,9 @@ struct gz_window_action {
 	const char *keys; /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, since
 			     another row tells of it */
 	const char *help; /**< what it does, one line */
+	/** Whether the key is this one's at the moment; else the next action with it has it. NULL:
+	 *  always. */
+	bool (*applies)(const struct gz_window *window);
 	void (*run)(struct gz_window *window, int number);
 };
 

@@ -1,7 +1,7 @@
 #include "view/window/window.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <GLFW/glfw3.h>
@@ -10,6 +10,7 @@
 #include "client/viewer_link.h"
 #include "view/context_loss.h"
 #include "view/panels/widgets.h"
+#include "view/window/loading.h"
 #include "view/window/part.h"
 #include "view/window/window_state.h"
 
@@ -86,7 +87,7 @@ static bool take_table(struct gz_window *window, const struct gz_scene_settings 
 		return true;
 	if (!foveation->table_file[0])
 		foveation->table = (struct gz_spacing_table) { 0 };
-	return gz_scene_load_table(window->options->scene, window->log, foveation) == GZ_OK;
+	return gz_scene_load_table(gz_window_scene_path(window), window->log, foveation) == GZ_OK;
 }
 
 /* Values that do not go together stay what they were. */
@@ -126,7 +127,10 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 	struct gz_scene_settings before;
 	memcpy(&before, &window->settings, sizeof before);
 	window->present_needed = false;
-	gz_quad_draw(&window->quad, width, height);
+	if (window->any_shown)
+		gz_quad_draw(&window->quad, width, height);
+	else
+		gz_quad_clear(width, height);
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->paint)
 			(*part)->paint(window, width, height);
@@ -165,8 +169,13 @@ static enum gz_result refresh_picture(struct gz_window *window, struct gz_window
 	if (!gaze_moved(window, gaze) && !window->cast_needed && !gz_frame_refinable(window->maker))
 		return GZ_OK;
 	enum gz_result r = cast(window, gaze, width, height);
-	if (r == GZ_ERR_NO_DEVICE || (r != GZ_OK && !take_back(window)))
+	if (r == GZ_ERR_NO_DEVICE)
 		return r;
+	if (r != GZ_OK && !take_back(window)) {
+		/* Why has been logged. */
+		gz_window_close_scene(window);
+		return GZ_OK;
+	}
 	window->frame_new = true;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part && r == GZ_OK;
 	     part++)
@@ -194,6 +203,9 @@ static enum gz_result refresh(struct gz_window *window)
 		enum gz_result r = refresh_picture(window, &gaze, width, height);
 		if (r != GZ_OK)
 			return r;
+	} else if (window->cast_needed) {
+		window->cast_needed = false;
+		window->present_needed = true;
 	}
 	const bool panels_due = window->panel_frames > 0;
 	const bool follow = parts_follow(window, &gaze);
@@ -210,12 +222,11 @@ static double patience_s(const struct gz_window *window)
 		if ((*part)->patience_s)
 			patience = fmin(patience, (*part)->patience_s(window));
 	/* Bricks are coming. */
-	return window->cast_needed ? fmin(patience, BRICKS_PATIENCE_S) : patience;
+	return window->maker && window->cast_needed ? fmin(patience, BRICKS_PATIENCE_S) : patience;
 }
 
 static enum gz_result loop(struct gz_window *window)
 {
-	window->start_ns = gz_clock_now_ns();
 	window->cast_needed = true;
 	if (window->options->fullscreen)
 		gz_window_toggle_fullscreen(window);
@@ -236,16 +247,6 @@ static enum gz_result loop(struct gz_window *window)
 	return GZ_OK;
 }
 
-static void tell_parts(struct gz_window *window, bool shown)
-{
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++) {
-		void (*told)(struct gz_window *) =
-			shown ? (*part)->scene_shown : (*part)->scene_leaving;
-		if (told)
-			told(window);
-	}
-}
-
 static enum gz_result open_parts(struct gz_window *window)
 {
 	enum gz_result r = GZ_OK;
@@ -258,10 +259,8 @@ static enum gz_result open_parts(struct gz_window *window)
 
 static void close_window(struct gz_window *window)
 {
-	if (window->maker)
-		tell_parts(window, false);
 	/* The renderer may live in the window's context. */
-	gz_frame_maker_destroy(&window->maker);
+	gz_window_close_scene(window);
 	gz_window_drawing_close(window);
 	glfwTerminate();
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
@@ -272,16 +271,24 @@ static void close_window(struct gz_window *window)
 	gz_viewer_link_close(&window->link);
 }
 
-static enum gz_result show_scene(struct gz_window *window)
+/* What is wrong with the command line is known before there is a window. */
+static enum gz_result check_backend(const struct gz_view_options *options, const struct gz_log *log)
 {
-	window->settings = gz_frame_maker_scene(window->maker)->settings;
-	gz_view_pick_scene_tables(&window->settings, &window->tables);
-	if (window->settings.view.letters)
-		gz_frame_tell_unoriented(window->maker);
-	enum gz_result r =
-		gz_frame_maker_start(window->maker, window->options, &window->context.base);
-	if (r == GZ_OK)
-		tell_parts(window, true);
+	const struct gz_renderer_params params = { .threads = options->threads,
+						   .simd = options->simd };
+	return gz_renderer_check(options->backend, &params, log);
+}
+
+/* The scene that the program was started with comes as any other does. */
+static enum gz_result load_first(struct gz_window *window)
+{
+	struct gz_window_load_request *request = calloc(1, sizeof *request);
+	if (!request)
+		return GZ_ERR_NO_MEM;
+	memcpy(request->path, window->options->scene, sizeof request->path);
+	request->by_options = true;
+	const enum gz_result r = gz_window_load(window, request);
+	free(request);
 	return r;
 }
 
@@ -293,24 +300,27 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 		.size_px = { options->size_px[0], options->size_px[1] },
 	};
 	/* The display first: without one there is no use in loading. */
-	enum gz_result r = open_display(log);
+	enum gz_result r = check_backend(options, log);
+	if (r == GZ_OK)
+		r = open_display(log);
 	if (r != GZ_OK)
 		return r;
+	gz_view_pick_scene_tables(&window.settings, &window.tables);
 	r = gz_window_gaze_open(&window);
 	if (r == GZ_OK)
 		r = gz_window_report_open(&window);
 	if (r == GZ_OK)
 		r = open_parts(&window);
 	if (r == GZ_OK)
-		r = gz_frame_maker_create(options, log, &window.maker);
-	if (r == GZ_OK)
 		r = gz_window_context_open(&window);
 	if (r == GZ_OK)
 		r = gz_window_drawing_open(&window);
-	if (r == GZ_OK)
-		r = show_scene(&window);
+	if (r == GZ_OK && options->scene[0])
+		r = load_first(&window);
 	if (r == GZ_OK)
 		r = loop(&window);
+	if (r == GZ_OK)
+		r = gz_window_loading_outcome(&window);
 	close_window(&window);
 	return r;
 }

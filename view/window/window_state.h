@@ -37,7 +37,8 @@ struct gz_window {
 	const struct gz_log *log;
 	struct GLFWwindow *glfw;
 	struct gz_window_context context;
-	struct gz_frame_maker *maker; /**< NULL while there is no scene */
+	struct gz_frame_maker *maker;            /**< NULL while there is no scene */
+	struct gz_window_loading_state *loading; /**< see loading.h */
 	struct gz_quad quad;
 
 	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
@@ -45,7 +46,7 @@ struct gz_window {
 	struct gz_viewer_link
 		*link;     /**< to the daemon's inlet; NULL where there is nothing to tell */
 	bool mouse_chosen; /**< M: the mouse, though there is another source */
-	int64_t start_ns;  /**< of a log's time */
+	int64_t start_ns;  /**< of a log's time: the first scene was shown */
 
 	struct gz_scene_settings settings; /**< as the user has changed them */
 	struct gz_scene_settings shown;    /**< those of the last frame that could be made */

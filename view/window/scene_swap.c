@@ -1,0 +1,123 @@
+/* One scene in place of another. */
+#include <stdio.h>
+
+#include "base/clock.h"
+#include "view/window/loading_state.h"
+#include "view/window/part.h"
+
+static void tell_parts(struct gz_window *window, bool shown)
+{
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++) {
+		void (*told)(struct gz_window *) =
+			shown ? (*part)->scene_shown : (*part)->scene_leaving;
+		if (told)
+			told(window);
+	}
+}
+
+void gz_window_take_maker(struct gz_window *window, struct gz_frame_maker *maker, const char *path,
+			  const struct gz_scene_settings *settings)
+{
+	struct gz_window_loading_state *state = window->loading;
+	window->maker = maker;
+	window->settings = settings ? *settings : gz_frame_maker_scene(maker)->settings;
+	snprintf(state->path, sizeof state->path, "%s", path);
+	window->any_shown = false;
+	window->taken_back = false;
+	window->cast_needed = true;
+	if (window->settings.view.letters)
+		gz_frame_tell_unoriented(maker);
+	/* A log's gaze begins with the first picture. */
+	if (!state->any_shown)
+		window->start_ns = gz_clock_now_ns();
+	state->any_shown = true;
+	state->outcome = GZ_OK;
+	tell_parts(window, true);
+	gz_window_wake_panels(window);
+}
+
+struct gz_frame_maker *gz_window_leave_maker(struct gz_window *window)
+{
+	struct gz_frame_maker *maker = window->maker;
+	if (!maker)
+		return NULL;
+	tell_parts(window, false);
+	window->maker = NULL;
+	window->loading->path[0] = '\0';
+	window->loading->shown = NULL;
+	window->record = (struct gz_frame_record) { 0 };
+	window->present_needed = true;
+	return maker;
+}
+
+/* Frees it unless it is held. */
+static void drop(struct gz_frame_maker *maker, bool held)
+{
+	if (!held)
+		gz_frame_maker_destroy(&maker);
+}
+
+/* What was shown before, once more. */
+static void bring_back(struct gz_window *window, struct gz_frame_maker *old, const char *path,
+		       const struct gz_scene_settings *settings, const struct gz_window_held *held)
+{
+	if (gz_frame_maker_start(old, window->options, &window->context.base) != GZ_OK) {
+		drop(old, held != NULL);
+		return;
+	}
+	gz_window_take_maker(window, old, path, settings);
+	window->loading->shown = held;
+}
+
+enum gz_result gz_window_swap_to_job(struct gz_window *window, struct gz_load_job *job)
+{
+	const struct gz_window_held *held = window->loading->shown;
+	const struct gz_scene_settings settings = window->settings;
+	char path[GZ_PATH_SIZE];
+	snprintf(path, sizeof path, "%s", window->loading->path);
+	struct gz_frame_maker *old = gz_window_leave_maker(window);
+	enum gz_result r = GZ_OK;
+	if (!gz_frame_maker_started(job->maker)) {
+		/* The graphics device may have no room for both. */
+		if (old)
+			gz_frame_maker_stop(old);
+		r = gz_frame_maker_start(job->maker, window->options, &window->context.base);
+	}
+	if (r != GZ_OK) {
+		gz_frame_maker_destroy(&job->maker);
+		if (old)
+			bring_back(window, old, path, &settings, held);
+		return r;
+	}
+	gz_window_take_maker(window, job->maker, job->request.path, NULL);
+	job->maker = NULL;
+	drop(old, held != NULL);
+	return GZ_OK;
+}
+
+const char *gz_window_scene_path(const struct gz_window *window)
+{
+	return window->loading ? window->loading->path : "";
+}
+
+void gz_window_close_scene(struct gz_window *window)
+{
+	const bool held = window->loading && window->loading->shown;
+	drop(gz_window_leave_maker(window), held);
+}
+
+enum gz_result gz_window_show(struct gz_window *window, struct gz_window_held *held)
+{
+	if (!held->maker)
+		return GZ_ERR_INVAL;
+	gz_window_cancel_loading(window);
+	gz_window_close_scene(window);
+	enum gz_result r = GZ_OK;
+	if (!gz_frame_maker_started(held->maker))
+		r = gz_frame_maker_start(held->maker, window->options, &window->context.base);
+	if (r != GZ_OK)
+		return r;
+	gz_window_take_maker(window, held->maker, held->path, NULL);
+	window->loading->shown = held;
+	return GZ_OK;
+}
