@@ -47,7 +47,7 @@ static int compare(const void *a, const void *b)
 static int print_metric(struct bench *bench, const char *name,
 			enum gz_result (*metric)(struct bench *))
 {
-	double ms[ROUNDS_MAX];
+	double ms[ROUNDS_MAX] = { 0 };
 	for (int i = -1; i < bench->rounds; i++) { /* the first warms up */
 		const int64_t start_ns = gz_clock_now_ns();
 		if (metric(bench) != GZ_OK) {
