@@ -10,10 +10,22 @@
 
 #include "base/option.h"
 
+/** What the plan's tiles are tinted by. */
+enum gz_view_overlay {
+	GZ_OVERLAY_NONE,
+	GZ_OVERLAY_SPACING, /**< between rays */
+	GZ_OVERLAY_STEP,    /**< along rays */
+	GZ_OVERLAY_COUNT,
+};
+
+/** "none", "spacing", "step"; NULL-terminated. */
+extern const char *const gz_view_overlay_names[];
+
 /** Settings of section "view"; its table is gz_view_setting_options. */
 struct gz_view_settings {
 	bool gaze_cursor; /**< a cross at the gaze */
 	bool letters;     /**< which side is where, at the picture's edges */
+	int overlay;      /**< enum gz_view_overlay */
 };
 
 /** Table over struct gz_view_settings. */

@@ -419,6 +419,11 @@ unsigned gz_frame_texture(const struct gz_frame_maker *maker)
 	return gz_renderer_picture_texture(maker->caster.renderer);
 }
 
+const struct gz_plan *gz_frame_plan(const struct gz_frame_maker *maker)
+{
+	return &maker->plan;
+}
+
 static void fill(struct gz_image *image, int left, int top, int right, int bottom)
 {
 	static const uint8_t colour[4] = { 255, 64, 64, 255 };

@@ -137,6 +137,9 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
  * next frame. */
 unsigned gz_frame_texture(const struct gz_frame_maker *maker);
 
+/** The plan of the last picture; without tiles before the first. Valid until the next frame. */
+const struct gz_plan *gz_frame_plan(const struct gz_frame_maker *maker);
+
 /** Log why no letters can be drawn, where the volume does not tell its sides. */
 void gz_frame_tell_unoriented(const struct gz_frame_maker *maker);
 

@@ -1,12 +1,14 @@
 /* Which parts there are. A new one is a row here. */
 #include "view/window/basics.h"
 #include "view/window/loading.h"
+#include "view/window/overlay.h"
 #include "view/window/part.h"
 #include "view/window/status.h"
 
 const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_loading,
 	&gz_window_status,
+	&gz_window_overlay_part,
 	&gz_window_basics,
 	NULL,
 };

@@ -20,6 +20,8 @@
 #include "view/quad.h"
 #include "view/scene_tables.h"
 
+struct gz_overlay;
+
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
 /** Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
@@ -55,6 +57,7 @@ struct gz_window {
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
 	bool keys_shown;
 	struct gz_settings_panel settings_panel;
+	struct gz_overlay *overlay; /**< of part overlay */
 	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
 	float panels_top; /**< lower edge of what lies on top, in this frame */
 
