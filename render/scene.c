@@ -445,6 +445,27 @@ enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 	return gz_scene_load_changed(path, NULL, NULL, loading, log, out_scene);
 }
 
+/* All but the volume. */
+static enum gz_result read_scene(struct reader *reader, gz_scene_change *change, void *user,
+				 struct gz_scene *scene)
+{
+	const char *path = reader->name;
+	const struct gz_log *log = reader->log;
+	enum gz_result result =
+		gz_options_read_file(reader->bindings, GZ_SCENE_BINDINGS, path, log);
+	if (result == GZ_OK)
+		result = check(reader, &scene->has_display);
+	if (result == GZ_OK && change)
+		result = change(user, &scene->settings);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(&scene->settings, path, log);
+	if (result == GZ_OK)
+		result = gz_scene_load_table(path, log, &scene->settings.foveation);
+	if (result == GZ_OK)
+		result = load_transfer(reader, &scene->transfer);
+	return result;
+}
+
 enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, void *user,
 				     const struct gz_loading *loading, const struct gz_log *log,
 				     struct gz_scene *out_scene)
@@ -454,17 +475,7 @@ enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, 
 	enum gz_result result = begin(&reader, path, log, &scene.settings);
 	reader.loading = loading;
 	if (result == GZ_OK)
-		result = gz_options_read_file(reader.bindings, GZ_SCENE_BINDINGS, path, log);
-	if (result == GZ_OK)
-		result = check(&reader, &scene.has_display);
-	if (result == GZ_OK && change)
-		result = change(user, &scene.settings);
-	if (result == GZ_OK)
-		result = gz_scene_settings_check(&scene.settings, path, log);
-	if (result == GZ_OK)
-		result = gz_scene_load_table(path, log, &scene.settings.foveation);
-	if (result == GZ_OK)
-		result = load_transfer(&reader, &scene.transfer);
+		result = read_scene(&reader, change, user, &scene);
 	if (result == GZ_OK)
 		result = load_volume(&reader, &scene.volume);
 	if (result != GZ_OK) {
@@ -517,6 +528,23 @@ enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_se
 	}
 	*out_scene = scene;
 	return GZ_OK;
+}
+
+enum gz_result gz_scene_try(const char *path, gz_scene_change *change, void *user,
+			    const struct gz_log *log, struct gz_scene_settings *out_settings)
+{
+	struct gz_scene scene = { 0 };
+	struct reader reader;
+	char volume[GZ_PATH_SIZE];
+	enum gz_result result = begin(&reader, path, log, &scene.settings);
+	if (result == GZ_OK)
+		result = read_scene(&reader, change, user, &scene);
+	if (result == GZ_OK && !scene.settings.volume_procedural)
+		result = find_file(&reader, scene_options[VOLUME_FILE].key,
+				   scene.settings.volume_file, volume);
+	if (result == GZ_OK)
+		*out_settings = scene.settings;
+	return result;
 }
 
 void gz_scene_free(struct gz_scene *scene)

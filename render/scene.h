@@ -134,6 +134,16 @@ enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_se
 				      const struct gz_log *log, struct gz_scene *out_scene);
 
 /**
+ * Whether gz_scene_load_changed() would find all that a scene needs: everything is read and checked
+ * but the volume, which must only be there.
+ *
+ * @param[out] out_settings  as changed, with the table of spacings
+ * @return what gz_scene_load_changed() returns; logged
+ */
+enum gz_result gz_scene_try(const char *path, gz_scene_change *change, void *user,
+			    const struct gz_log *log, struct gz_scene_settings *out_settings);
+
+/**
  * Read the table of spacings that foveation.table names into @p foveation; gz_scene_load() does it
  * for the scene's own settings, this is for those that something else has changed.
  *

@@ -1,0 +1,308 @@
+#include "view/experiment/answer_columns.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+static const struct gz_condition *condition_of(const struct gz_answer_row *row)
+{
+	return row->result->presentation->condition;
+}
+
+/* The alternative of an interval; NULL where there is none. */
+static const struct gz_alternative *shown_in(const struct gz_answer_row *row, int interval)
+{
+	const struct gz_condition *condition = condition_of(row);
+	if (interval >= condition->params.intervals)
+		return NULL;
+	return &condition->alternatives[gz_presentation_alternative(row->result->presentation,
+								    interval)];
+}
+
+static void none(char *text, size_t size)
+{
+	snprintf(text, size, "n/a");
+}
+
+static void print_span(int64_t from_ns, int64_t to_ns, char *text, size_t size)
+{
+	if (from_ns && to_ns)
+		snprintf(text, size, "%.6f", gz_ns_to_s(to_ns - from_ns));
+	else
+		none(text, size);
+}
+
+static void print_text(const char *value, char *text, size_t size)
+{
+	snprintf(text, size, "%s", value && value[0] ? value : "n/a");
+}
+
+static void print_number(double value, const char *format, char *text, size_t size)
+{
+	if (isnan(value))
+		none(text, size);
+	else
+		snprintf(text, size, strcmp(format, "%.1f") == 0 ? "%.1f" : "%.4f", value);
+}
+
+#define PRINTER(name) static void name(const struct gz_answer_row *row, char *text, size_t size)
+
+PRINTER(print_onset)
+{
+	print_span(row->start_ns, row->result->begin_ns, text, size);
+}
+
+PRINTER(print_duration)
+{
+	print_span(row->result->begin_ns, row->result->end_ns, text, size);
+}
+
+PRINTER(print_type)
+{
+	print_text(condition_of(row)->label, text, size);
+}
+
+PRINTER(print_trial)
+{
+	snprintf(text, size, "%zu", row->result->index + 1);
+}
+
+PRINTER(print_block)
+{
+	print_text(row->result->presentation->block->label, text, size);
+}
+
+PRINTER(print_practice)
+{
+	snprintf(text, size, "%d", row->result->presentation->block->params.practice);
+}
+
+PRINTER(print_repetition)
+{
+	snprintf(text, size, "%d", row->result->presentation->repetition);
+}
+
+PRINTER(print_order)
+{
+	const struct gz_presentation *presentation = row->result->presentation;
+	print_text(presentation->condition->params.intervals == 1 ? "a"
+		   : presentation->swapped                        ? "ba"
+								  : "ab",
+		   text, size);
+}
+
+static void print_scene(const struct gz_alternative *alternative, char *text, size_t size)
+{
+	const char *slash = alternative ? strrchr(alternative->scene, '/') : NULL;
+	print_text(slash ? slash + 1 : alternative ? alternative->scene : NULL, text, size);
+}
+
+PRINTER(print_scene_1)
+{
+	print_scene(shown_in(row, 0), text, size);
+}
+
+PRINTER(print_scene_2)
+{
+	print_scene(shown_in(row, 1), text, size);
+}
+
+static void print_method(const struct gz_alternative *alternative, char *text, size_t size)
+{
+	print_text(alternative ? gz_method_names[alternative->method] : NULL, text, size);
+}
+
+PRINTER(print_method_1)
+{
+	print_method(shown_in(row, 0), text, size);
+}
+
+PRINTER(print_method_2)
+{
+	print_method(shown_in(row, 1), text, size);
+}
+
+static void print_settings(const struct gz_alternative *alternative, char *text, size_t size)
+{
+	if (alternative && alternative->setting_count > 0)
+		gz_alternative_print(alternative, text, size);
+	else
+		none(text, size);
+}
+
+PRINTER(print_settings_1)
+{
+	print_settings(shown_in(row, 0), text, size);
+}
+
+PRINTER(print_settings_2)
+{
+	print_settings(shown_in(row, 1), text, size);
+}
+
+PRINTER(print_onset_1)
+{
+	print_span(row->start_ns, row->result->on_ns[0], text, size);
+}
+
+PRINTER(print_duration_1)
+{
+	print_span(row->result->on_ns[0], row->result->off_ns[0], text, size);
+}
+
+PRINTER(print_onset_2)
+{
+	print_span(row->start_ns, row->result->on_ns[1], text, size);
+}
+
+PRINTER(print_duration_2)
+{
+	print_span(row->result->on_ns[1], row->result->off_ns[1], text, size);
+}
+
+PRINTER(print_question)
+{
+	print_span(row->start_ns, row->result->question_ns, text, size);
+}
+
+static const struct gz_answer *answer_of(const struct gz_answer_row *row)
+{
+	return row->result->answer < 0 ? NULL : &condition_of(row)->answers[row->result->answer];
+}
+
+PRINTER(print_response)
+{
+	const struct gz_answer *answer = answer_of(row);
+	print_text(answer ? answer->name : NULL, text, size);
+}
+
+PRINTER(print_key)
+{
+	const struct gz_answer *answer = answer_of(row);
+	print_text(answer ? answer->key_name : NULL, text, size);
+}
+
+PRINTER(print_chosen)
+{
+	int chosen = row->result->chosen;
+	print_text(chosen < 0 ? NULL : chosen == 0 ? "a" : "b", text, size);
+}
+
+PRINTER(print_chosen_method)
+{
+	int chosen = row->result->chosen;
+	print_method(chosen < 0 ? NULL : &condition_of(row)->alternatives[chosen], text, size);
+}
+
+PRINTER(print_correct)
+{
+	int right = row->result->right;
+	print_text(right < 0 ? NULL : right ? "1" : "0", text, size);
+}
+
+PRINTER(print_response_time)
+{
+	const struct gz_trial_result *result = row->result;
+	print_span(result->question_ns, result->answer < 0 ? 0 : result->end_ns, text, size);
+}
+
+PRINTER(print_frames)
+{
+	snprintf(text, size, "%" PRIu64, row->result->frames);
+}
+
+PRINTER(print_dropped)
+{
+	snprintf(text, size, "%" PRIu64, row->result->dropped);
+}
+
+PRINTER(print_frame_ms)
+{
+	print_number(row->result->frame_ms, "%.1f", text, size);
+}
+
+PRINTER(print_gaze_loss)
+{
+	print_number(row->result->gaze_loss, "%.4f", text, size);
+}
+
+PRINTER(print_restarts)
+{
+	snprintf(text, size, "%d", row->result->restarts);
+}
+
+PRINTER(print_participant)
+{
+	print_text(row->participant, text, size);
+}
+
+PRINTER(print_session)
+{
+	print_text(row->session, text, size);
+}
+
+PRINTER(print_run)
+{
+	snprintf(text, size, "%d", row->run);
+}
+
+PRINTER(print_seed)
+{
+	snprintf(text, size, "%d", row->experiment->params.seed);
+}
+
+PRINTER(print_experiment)
+{
+	snprintf(text, size, "%016" PRIx64, row->experiment->fingerprint);
+}
+
+PRINTER(print_host_ns)
+{
+	snprintf(text, size, "%" PRId64, row->result->begin_ns);
+}
+
+/* clang-format off */
+const struct gz_answer_column gz_answer_columns[] = {
+	{ "onset", "When the trial's first screen appeared, after the run's first trial began.", "s", NULL, false, print_onset },
+	{ "duration", "From then until the answer, or the end of the wait for it.", "s", NULL, false, print_duration },
+	{ "trial_type", "Name of the trial in the experiment's file.", NULL, NULL, true, print_type },
+	{ "trial", "Number of the trial in the session, from 1.", NULL, NULL, true, print_trial },
+	{ "block", "Name of the block in the experiment's file.", NULL, NULL, true, print_block },
+	{ "practice", "Whether the trial is practice, which does not count.", NULL, "0: it counts | 1: practice", true, print_practice },
+	{ "repetition", "How often the trial has come in its block, from 1.", NULL, NULL, true, print_repetition },
+	{ "order", "Which alternative of the experiment's file was shown in which interval.", NULL, "a: one interval | ab: a first | ba: b first", true, print_order },
+	{ "scene_1", "File of the scene in the first interval.", NULL, NULL, true, print_scene_1 },
+	{ "method_1", "Foveation method in the first interval.", NULL, NULL, true, print_method_1 },
+	{ "settings_1", "Keys of the scene that the experiment set in the first interval.", NULL, NULL, true, print_settings_1 },
+	{ "scene_2", "File of the scene in the second interval.", NULL, NULL, true, print_scene_2 },
+	{ "method_2", "Foveation method in the second interval.", NULL, NULL, true, print_method_2 },
+	{ "settings_2", "Keys of the scene that the experiment set in the second interval.", NULL, NULL, true, print_settings_2 },
+	{ "interval_1_onset", "When the first interval's first frame was shown.", "s", NULL, false, print_onset_1 },
+	{ "interval_1_duration", "Until the next screen was shown.", "s", NULL, false, print_duration_1 },
+	{ "interval_2_onset", "When the second interval's first frame was shown.", "s", NULL, false, print_onset_2 },
+	{ "interval_2_duration", "Until the next screen was shown.", "s", NULL, false, print_duration_2 },
+	{ "question_onset", "When the question was shown.", "s", NULL, false, print_question },
+	{ "response", "The answer, by its name in the experiment's file.", NULL, NULL, false, print_response },
+	{ "response_key", "The key that gave it.", NULL, NULL, false, print_key },
+	{ "response_time", "From the question to the answer.", "s", NULL, false, print_response_time },
+	{ "chosen", "The alternative that was shown in the interval answered.", NULL, "a: the first of the file | b: the second", false, print_chosen },
+	{ "chosen_method", "Foveation method of that alternative.", NULL, NULL, false, print_chosen_method },
+	{ "correct", "Whether the answer was the right one of the experiment's file.", NULL, "0: wrong, or none in time | 1: right", false, print_correct },
+	{ "frames", "Times from frame to frame measured in the intervals.", NULL, NULL, false, print_frames },
+	{ "dropped_frames", "Refreshes of the display in the intervals that showed no new frame.", NULL, NULL, false, print_dropped },
+	{ "median_frame_ms", "Median time from one frame to the next in the intervals.", "ms", NULL, false, print_frame_ms },
+	{ "gaze_loss", "Share of the intervals' time in which the tracker did not see the eye.", NULL, NULL, false, print_gaze_loss },
+	{ "restarts", "How often the trial was interrupted and begun again.", NULL, NULL, false, print_restarts },
+	{ "participant", "Label of the participant.", NULL, NULL, true, print_participant },
+	{ "session", "Label of the session.", NULL, NULL, true, print_session },
+	{ "run", "How often the session had been begun, from 1; onsets count from each run's own start.", NULL, NULL, false, print_run },
+	{ "seed", "Of the orders that were drawn.", NULL, NULL, true, print_seed },
+	{ "experiment", "Fingerprint of the experiment's file: FNV-1a, 64 bits.", NULL, NULL, true, print_experiment },
+	{ "host_ns", "The trial's onset on the computer's monotonic clock, that of the gaze log.", "ns", NULL, false, print_host_ns },
+};
+/* clang-format on */
+
+const size_t gz_answer_column_count = sizeof gz_answer_columns / sizeof gz_answer_columns[0];

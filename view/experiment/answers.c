@@ -1,0 +1,394 @@
+#include "view/experiment/answers.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "view/experiment/answer_columns.h"
+
+#define GZ_LOG_MODULE "experiment"
+
+/* Largest file that is gone on with, bytes. Chosen: more than the most trials write. */
+enum { MOST_BYTES = 1 << 26 };
+
+struct gz_answers {
+	const struct gz_log *log;
+	const struct gz_experiment *experiment;
+	const struct gz_sequence *sequence;
+	struct gz_answers_request request;
+	char path[GZ_PATH_SIZE];
+	int fd;
+	size_t done;
+	int run;
+};
+
+bool gz_answers_label_valid(const char *label)
+{
+	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				      "0123456789";
+	return label[0] && label[strspn(label, allowed)] == '\0' &&
+	       strlen(label) < GZ_PARTICIPANT_SIZE;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+	size_t length = strlen(text), tail = strlen(end);
+	return length > tail && strcmp(text + length - tail, end) == 0;
+}
+
+enum gz_result gz_answers_path(const struct gz_experiment *experiment,
+			       const struct gz_answers_request *request, char *path, size_t size)
+{
+	int length = 0;
+	if (ends_with(request->place, ".tsv"))
+		length = snprintf(path, size, "%s", request->place);
+	else
+		length = snprintf(path, size, "%s/sub-%s%s%s_task-%s_events.tsv",
+				  request->place[0] ? request->place : ".", request->participant,
+				  request->session[0] ? "_ses-" : "", request->session,
+				  experiment->params.name);
+	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+}
+
+static struct gz_answer_row row_of(const struct gz_answers *answers,
+				   const struct gz_trial_result *result, int64_t start_ns)
+{
+	return (struct gz_answer_row) {
+		.experiment = answers->experiment,
+		.participant = answers->request.participant,
+		.session = answers->request.session,
+		.run = answers->run,
+		.start_ns = start_ns,
+		.result = result,
+	};
+}
+
+static enum gz_result refuse_io(const struct gz_answers *answers, const char *what)
+{
+	gz_err(answers->log, "%s: %s: %s; make room, or give another --answers", answers->path,
+	       what, strerror(errno));
+	return GZ_ERR_IO;
+}
+
+/* All of it, and onto the disk. */
+static enum gz_result append(const struct gz_answers *answers, const char *text)
+{
+	size_t size = strlen(text);
+	while (size > 0) {
+		ssize_t written = write(answers->fd, text, size);
+		if (written < 0 && errno == EINTR)
+			continue;
+		if (written < 0)
+			return refuse_io(answers, "cannot be written");
+		text += written;
+		size -= (size_t)written;
+	}
+	return fsync(answers->fd) == 0 ? GZ_OK : refuse_io(answers, "cannot be written");
+}
+
+static char *header_text(void)
+{
+	size_t size = 2;
+	for (size_t i = 0; i < gz_answer_column_count; i++)
+		size += strlen(gz_answer_columns[i].name) + 1;
+	char *text = calloc(1, size);
+	for (size_t i = 0; text && i < gz_answer_column_count; i++) {
+		strcat(text, i ? "\t" : "");
+		strcat(text, gz_answer_columns[i].name);
+	}
+	if (text)
+		strcat(text, "\n");
+	return text;
+}
+
+/* The text of a file that is gone on with. */
+struct lines {
+	char *text, *next;
+	size_t size, whole; /* bytes up to the last line's end */
+	int number;
+};
+
+static enum gz_result read_lines(const struct gz_answers *answers, struct lines *lines)
+{
+	struct stat facts;
+	if (fstat(answers->fd, &facts) != 0 || lseek(answers->fd, 0, SEEK_SET) != 0)
+		return refuse_io(answers, "cannot be read");
+	if (facts.st_size > MOST_BYTES) {
+		gz_err(answers->log, "%s: too large for a file of answers; check the path",
+		       answers->path);
+		return GZ_ERR_FORMAT;
+	}
+	lines->text = malloc((size_t)facts.st_size + 1);
+	if (!lines->text)
+		return GZ_ERR_NO_MEM;
+	while (lines->size < (size_t)facts.st_size) {
+		ssize_t got = read(answers->fd, lines->text + lines->size,
+				   (size_t)facts.st_size - lines->size);
+		if (got < 0 && errno != EINTR)
+			return refuse_io(answers, "cannot be read");
+		if (got == 0)
+			break;
+		lines->size += got > 0 ? (size_t)got : 0;
+	}
+	lines->text[lines->size] = '\0';
+	const char *last = memrchr(lines->text, '\n', lines->size);
+	lines->whole = last ? (size_t)(last - lines->text) + 1 : 0;
+	lines->next = lines->text;
+	return GZ_OK;
+}
+
+/* The next whole line without its end; NULL behind the last. */
+static char *next_line(struct lines *lines)
+{
+	if (lines->next >= lines->text + lines->whole)
+		return NULL;
+	char *line = lines->next;
+	char *end = memchr(line, '\n', (size_t)(lines->text + lines->whole - line));
+	*end = '\0';
+	lines->next = end + 1;
+	lines->number++;
+	return line;
+}
+
+static enum gz_result refuse_line(const struct gz_answers *answers, const struct lines *lines,
+				  const char *what)
+{
+	gz_err(answers->log,
+	       "%s:%d: %s; go on with the file, seed and session that it was begun with, or begin "
+	       "another --session",
+	       answers->path, lines->number, what);
+	return GZ_ERR_FORMAT;
+}
+
+/* Whether a row is what the sequence has there. */
+static enum gz_result check_row(struct gz_answers *answers, const struct lines *lines, char *line)
+{
+	char expected[GZ_ANSWER_CELL_SIZE], what[256];
+	if (answers->done == answers->sequence->count)
+		return refuse_line(answers, lines, "more rows than there are trials");
+	const struct gz_trial_result result = {
+		.index = answers->done,
+		.presentation = &answers->sequence->presentations[answers->done],
+	};
+	const struct gz_answer_row row = row_of(answers, &result, 0);
+	for (size_t i = 0; i < gz_answer_column_count; i++) {
+		const struct gz_answer_column *column = &gz_answer_columns[i];
+		char *cell = strsep(&line, "\t");
+		if (!cell)
+			return refuse_line(answers, lines, "a row with cells missing");
+		if (strcmp(column->name, "run") == 0 && atoi(cell) >= answers->run)
+			answers->run = atoi(cell) + 1;
+		if (!column->identity)
+			continue;
+		column->print(&row, expected, sizeof expected);
+		if (strcmp(cell, expected) == 0)
+			continue;
+		snprintf(what, sizeof what, "%s is %.60s, where this experiment has %.60s",
+			 column->name, cell, expected);
+		return refuse_line(answers, lines, what);
+	}
+	answers->done++;
+	return line ? refuse_line(answers, lines, "a row with cells too many") : GZ_OK;
+}
+
+static enum gz_result check_lines(struct gz_answers *answers, struct lines *lines)
+{
+	char *header = header_text(), *line = next_line(lines);
+	if (!header)
+		return GZ_ERR_NO_MEM;
+	header[strlen(header) - 1] = '\0';
+	enum gz_result result = GZ_OK;
+	if (line && strcmp(line, header) != 0)
+		result = refuse_line(answers, lines, "other columns than this version writes");
+	free(header);
+	while (result == GZ_OK && (line = next_line(lines)) != NULL)
+		result = check_row(answers, lines, line);
+	return result;
+}
+
+/* What a power cut has left of a row goes. */
+static enum gz_result cut(const struct gz_answers *answers, const struct lines *lines)
+{
+	if (lines->whole < lines->size) {
+		gz_warn(answers->log, "%s: the last row is not whole; its trial comes again",
+			answers->path);
+		if (ftruncate(answers->fd, (off_t)lines->whole) != 0)
+			return refuse_io(answers, "cannot be written");
+	}
+	if (lseek(answers->fd, 0, SEEK_END) < 0)
+		return refuse_io(answers, "cannot be written");
+	return GZ_OK;
+}
+
+static enum gz_result write_header(const struct gz_answers *answers)
+{
+	char *header = header_text();
+	enum gz_result result = header ? append(answers, header) : GZ_ERR_NO_MEM;
+	free(header);
+	return result;
+}
+
+/* Two programs that write one file would spoil it. */
+static enum gz_result lock(const struct gz_answers *answers)
+{
+	if (flock(answers->fd, LOCK_EX | LOCK_NB) == 0)
+		return GZ_OK;
+	gz_err(answers->log, "%s: another gazeview writes it; end that first", answers->path);
+	return GZ_ERR_BUSY;
+}
+
+static enum gz_result take_up(struct gz_answers *answers)
+{
+	struct lines lines = { 0 };
+	answers->fd = open(answers->path, O_RDWR | O_CLOEXEC);
+	if (answers->fd < 0 && errno == ENOENT) {
+		gz_err(answers->log, "%s: not there, so nothing to go on with; leave out --resume",
+		       answers->path);
+		return GZ_ERR_NOT_FOUND;
+	}
+	if (answers->fd < 0)
+		return refuse_io(answers, "cannot be opened");
+	enum gz_result result = lock(answers);
+	if (result == GZ_OK)
+		result = read_lines(answers, &lines);
+	if (result == GZ_OK)
+		result = check_lines(answers, &lines);
+	if (result == GZ_OK && answers->done == answers->sequence->count) {
+		gz_err(answers->log, "%s: all %zu trials are answered; begin another --session",
+		       answers->path, answers->done);
+		result = GZ_ERR_BUSY;
+	}
+	if (result == GZ_OK)
+		result = cut(answers, &lines);
+	if (result == GZ_OK && lines.whole == 0)
+		result = write_header(answers);
+	free(lines.text);
+	return result;
+}
+
+/* Why a file that is there stays as it is. */
+static enum gz_result refuse_present(const struct gz_answers *answers)
+{
+	struct lines lines = { 0 };
+	struct gz_answers there = *answers;
+	size_t rows = 0;
+	there.fd = open(answers->path, O_RDONLY | O_CLOEXEC);
+	there.log = NULL;
+	if (there.fd >= 0 && read_lines(&there, &lines) == GZ_OK)
+		while (next_line(&lines))
+			rows++;
+	free(lines.text);
+	if (there.fd >= 0)
+		close(there.fd);
+	gz_err(answers->log,
+	       "%s: is there already, with %zu of %zu trials; go on with it by --resume, or begin "
+	       "another --session",
+	       answers->path, rows > 0 ? rows - 1 : 0, answers->sequence->count);
+	return GZ_ERR_BUSY;
+}
+
+static enum gz_result make_new(struct gz_answers *answers)
+{
+	answers->fd = open(answers->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+	if (answers->fd < 0 && errno == EEXIST)
+		return refuse_present(answers);
+	if (answers->fd < 0)
+		return refuse_io(answers, "cannot be made");
+	enum gz_result result = lock(answers);
+	return result == GZ_OK ? write_header(answers) : result;
+}
+
+static void write_columns(const struct gz_answers *answers)
+{
+	char path[GZ_PATH_SIZE + 8];
+	snprintf(path, sizeof path, "%.*s.json", (int)(strlen(answers->path) - strlen(".tsv")),
+		 answers->path);
+	if (gz_answer_columns_write(path, answers->experiment, answers->request.version) != GZ_OK)
+		gz_warn(answers->log, "%s: cannot be written; the answers will be", path);
+}
+
+enum gz_result gz_answers_open(const struct gz_experiment *experiment,
+			       const struct gz_sequence *sequence,
+			       const struct gz_answers_request *request, const struct gz_log *log,
+			       struct gz_answers **out_answers)
+{
+	struct gz_answers *answers = calloc(1, sizeof *answers);
+	if (!answers)
+		return GZ_ERR_NO_MEM;
+	*answers = (struct gz_answers) {
+		.log = log,
+		.experiment = experiment,
+		.sequence = sequence,
+		.request = *request,
+		.fd = -1,
+		.run = 1,
+	};
+	enum gz_result result =
+		gz_answers_path(experiment, request, answers->path, sizeof answers->path);
+	if (result != GZ_OK)
+		gz_err(log, "--answers: the path is too long; give another folder");
+	else
+		result = request->resume ? take_up(answers) : make_new(answers);
+	if (result != GZ_OK) {
+		if (answers->fd >= 0)
+			close(answers->fd);
+		free(answers);
+		return result;
+	}
+	write_columns(answers);
+	*out_answers = answers;
+	return GZ_OK;
+}
+
+size_t gz_answers_done(const struct gz_answers *answers)
+{
+	return answers->done;
+}
+
+const char *gz_answers_file(const struct gz_answers *answers)
+{
+	return answers->path;
+}
+
+enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_trial_result *result,
+				int64_t start_ns)
+{
+	char cell[GZ_ANSWER_CELL_SIZE];
+	const struct gz_answer_row row = row_of(answers, result, start_ns);
+	char *text = NULL;
+	size_t size = 0;
+	FILE *memory = open_memstream(&text, &size);
+	if (!memory)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < gz_answer_column_count; i++) {
+		gz_answer_columns[i].print(&row, cell, sizeof cell);
+		fprintf(memory, "%s%s", i ? "\t" : "", cell);
+	}
+	fputc('\n', memory);
+	enum gz_result written = fclose(memory) == 0 ? append(answers, text) : GZ_ERR_NO_MEM;
+	free(text);
+	answers->done += written == GZ_OK;
+	return written;
+}
+
+void gz_answers_close(struct gz_answers **answers)
+{
+	struct gz_answers *closed = *answers;
+	if (!closed)
+		return;
+	if (closed->done == 0) {
+		char path[GZ_PATH_SIZE + 8];
+		unlink(closed->path);
+		snprintf(path, sizeof path, "%.*s.json",
+			 (int)(strlen(closed->path) - strlen(".tsv")), closed->path);
+		unlink(path);
+	}
+	close(closed->fd);
+	free(closed);
+	*answers = NULL;
+}

@@ -1,0 +1,308 @@
+/* Reading an experiment's file: lines into sections, each value checked by itself. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/experiment/experiment_internal.h"
+#include "view/scene_tables.h"
+
+#define GZ_LOG_MODULE "experiment"
+
+/* Longest file read, bytes. Chosen: as settings files. */
+enum { MOST_BYTES = 1 << 20 };
+
+/* Room for what gz_option_parse() says. */
+enum { MESSAGE_SIZE = 512 };
+
+/* A file in reading. */
+struct reader {
+	struct gz_experiment *experiment;
+	const struct gz_log *log;
+	struct gz_experiment_section *section; /* that lines go into */
+	bool common_begun;
+	/* What values are tried on. */
+	struct gz_trial_params trial;
+	struct gz_block_params block;
+	struct gz_scene_settings scene;
+	struct gz_view_scene_tables tables;
+};
+
+static enum gz_result refuse_section(const struct reader *reader, const struct gz_ini_item *item,
+				     const char *what)
+{
+	gz_err(reader->log, "%s:%d: [%s]: %s", reader->experiment->path, item->line, item->section,
+	       what);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result refuse_value(const struct reader *reader, const struct gz_ini_item *item,
+				   const char *what)
+{
+	gz_err(reader->log, "%s:%d: [%s] %s: %s", reader->experiment->path, item->line,
+	       item->section, item->name, what);
+	return GZ_ERR_FORMAT;
+}
+
+/* Names go into a table of tab-separated values, and into labels of marks. */
+static bool is_label(const char *text)
+{
+	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				      "0123456789_.+-";
+	return text[0] && text[strspn(text, allowed)] == '\0' &&
+	       strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
+}
+
+static struct gz_experiment_section *find_section(struct gz_experiment_section *sections,
+						  size_t count, const char *label)
+{
+	for (size_t i = 0; i < count; i++)
+		if (strcmp(sections[i].label, label) == 0)
+			return &sections[i];
+	return NULL;
+}
+
+/* A new section of a list that has room for GZ_EXPERIMENT_SECTIONS_MAX. */
+static enum gz_result begin_named(struct reader *reader, const struct gz_ini_item *item,
+				  const char *label, struct gz_experiment_section *sections,
+				  size_t *count)
+{
+	char what[96];
+	const struct gz_experiment_section *first = find_section(sections, *count, label);
+	if (!is_label(label))
+		return refuse_section(reader, item,
+				      "no name; letters, digits and _ . + - make one, as in "
+				      "[trial fine]");
+	if (first) {
+		snprintf(what, sizeof what, "begun in line %d already; rename one of them",
+			 first->line);
+		return refuse_section(reader, item, what);
+	}
+	if (*count == GZ_EXPERIMENT_SECTIONS_MAX)
+		return refuse_section(reader, item, "more than 256 of these; make several files");
+	reader->section = &sections[(*count)++];
+	*reader->section = (struct gz_experiment_section) { .line = item->line };
+	memcpy(reader->section->label, label, strlen(label) + 1);
+	return GZ_OK;
+}
+
+static enum gz_result begin_section(struct reader *reader, const struct gz_ini_item *item)
+{
+	struct gz_experiment *experiment = reader->experiment;
+	if (strncmp(item->section, "trial ", 6) == 0)
+		return begin_named(reader, item, item->section + 6, experiment->trials,
+				   &experiment->trial_count);
+	if (strncmp(item->section, "block ", 6) == 0)
+		return begin_named(reader, item, item->section + 6, experiment->sections,
+				   &experiment->section_count);
+	if (strcmp(item->section, "experiment") != 0)
+		return refuse_section(reader, item,
+				      "unknown section; [experiment], [trial NAME] and [block "
+				      "NAME] are allowed");
+	if (reader->common_begun)
+		return refuse_section(reader, item, "given twice; keep one");
+	reader->common_begun = true;
+	reader->section = &experiment->common;
+	reader->section->line = item->line;
+	return GZ_OK;
+}
+
+static bool of_trials(const struct reader *reader)
+{
+	const struct gz_experiment *experiment = reader->experiment;
+	return reader->section >= experiment->trials &&
+	       reader->section < experiment->trials + experiment->trial_count;
+}
+
+/* The section's own table over what its values go into; none in a trial. */
+static struct gz_option_binding own_binding(struct reader *reader)
+{
+	if (reader->section == &reader->experiment->common)
+		return (struct gz_option_binding) { gz_experiment_options,
+						    gz_experiment_option_count,
+						    &reader->experiment->params, NULL };
+	if (of_trials(reader))
+		return (struct gz_option_binding) { 0 };
+	return (struct gz_option_binding) { gz_block_options, gz_block_option_count, &reader->block,
+					    NULL };
+}
+
+enum { TABLES_MAX = GZ_SCENE_BINDINGS + 2 };
+
+/* Every table that the section's keys are of: its own, trials', the scene's. */
+static size_t all_tables(struct reader *reader, struct gz_option_binding out_tables[TABLES_MAX])
+{
+	out_tables[0] = own_binding(reader);
+	out_tables[1] = (struct gz_option_binding) { gz_trial_options, gz_trial_option_count,
+						     &reader->trial, NULL };
+	memcpy(&out_tables[2], reader->tables.bindings, sizeof reader->tables.bindings);
+	return TABLES_MAX;
+}
+
+static enum gz_result refuse_unknown(struct reader *reader, const struct gz_ini_item *item,
+				     const char *key)
+{
+	struct gz_option_binding tables[TABLES_MAX];
+	size_t count = all_tables(reader, tables);
+	const char *near = gz_options_nearest(tables, count, key);
+	char what[160] = "unknown key; docs/experiments.md lists them all";
+	if (strncmp(key, "volume.", 7) == 0 || strncmp(key, "transfer.", 9) == 0 ||
+	    strncmp(key, "display.", 8) == 0)
+		snprintf(what, sizeof what,
+			 "stands in a scene only; name another scene, as in scene = other.scene");
+	else if (near)
+		snprintf(what, sizeof what, "unknown key; did you mean %s?", near);
+	return refuse_value(reader, item, what);
+}
+
+/* Which alternative a key is for; moves it behind "a." or "b.". */
+static int take_prefix(const char **key)
+{
+	if (((*key)[0] != 'a' && (*key)[0] != 'b') || (*key)[1] != '.')
+		return -1;
+	int alternative = (*key)[0] - 'a';
+	*key += 2;
+	return alternative;
+}
+
+/* Put it into its section, as long as it is there for the first time. */
+static enum gz_result keep(struct reader *reader, const struct gz_ini_item *item,
+			   const struct gz_experiment_setting *setting)
+{
+	struct gz_experiment_section *section = reader->section;
+	const struct gz_experiment_setting *first =
+		gz_experiment_find_setting(section, setting->key, setting->alternative);
+	char what[64];
+	if (first) {
+		snprintf(what, sizeof what, "given twice, first in line %d; keep one", first->line);
+		return refuse_value(reader, item, what);
+	}
+	if (section->setting_count == section->setting_room) {
+		size_t room = section->setting_room ? 2 * section->setting_room : 8;
+		struct gz_experiment_setting *grown =
+			realloc(section->settings, room * sizeof *grown);
+		if (!grown)
+			return GZ_ERR_NO_MEM;
+		section->settings = grown;
+		section->setting_room = room;
+	}
+	section->settings[section->setting_count++] = *setting;
+	return GZ_OK;
+}
+
+static bool has_control(const char *text)
+{
+	for (; *text; text++)
+		if ((unsigned char)*text < ' ' || *text == 0x7f)
+			return true;
+	return false;
+}
+
+static enum gz_result take_value(struct reader *reader, const struct gz_ini_item *item)
+{
+	const char *key = item->name;
+	int alternative = take_prefix(&key);
+	struct gz_option_binding tables[TABLES_MAX];
+	size_t count = all_tables(reader, tables), table = 0;
+	const struct gz_option *option = gz_options_find(tables, count, key, &table);
+	if (!option)
+		return refuse_unknown(reader, item, key);
+	if (alternative >= 0 && table < 2 && strcmp(key, "scene") != 0)
+		return refuse_value(reader, item,
+				    "is the same for both alternatives; only scene and a scene's "
+				    "keys may have a. or b. in front");
+	if (has_control(item->value))
+		return refuse_value(reader, item, "a tab or control character; use blanks");
+	char message[MESSAGE_SIZE];
+	if (gz_option_parse(option, item->value, tables[table].target, message, sizeof message) !=
+	    GZ_OK)
+		return refuse_value(reader, item, message);
+	struct gz_experiment_setting setting = {
+		.alternative = alternative,
+		.of_scene = table >= 2,
+		.own = table == 0,
+		.line = item->line,
+	};
+	snprintf(setting.key, sizeof setting.key, "%s", key);
+	snprintf(setting.value, sizeof setting.value, "%s", item->value);
+	return keep(reader, item, &setting);
+}
+
+static enum gz_result take(void *user, const struct gz_ini_item *item)
+{
+	struct reader *reader = user;
+	return item->name ? take_value(reader, item) : begin_section(reader, item);
+}
+
+static enum gz_result begin(struct reader *reader, const char *path)
+{
+	struct gz_experiment *experiment = reader->experiment;
+	*experiment = (struct gz_experiment) { 0 };
+	if (strlen(path) >= sizeof experiment->path) {
+		gz_err(reader->log, "%.40s...: the path is longer than %zu bytes; move it", path,
+		       sizeof experiment->path - 1);
+		return GZ_ERR_FORMAT;
+	}
+	memcpy(experiment->path, path, strlen(path) + 1);
+	experiment->trials = calloc(GZ_EXPERIMENT_SECTIONS_MAX, sizeof *experiment->trials);
+	experiment->sections = calloc(GZ_EXPERIMENT_SECTIONS_MAX, sizeof *experiment->sections);
+	if (!experiment->trials || !experiment->sections)
+		return GZ_ERR_NO_MEM;
+	gz_view_pick_scene_tables(&reader->scene, &reader->tables);
+	return gz_options_preset(&(struct gz_option_binding) {
+		gz_experiment_options, gz_experiment_option_count, &experiment->params, NULL });
+}
+
+enum gz_result gz_experiment_parse(const char *path, const char *text, size_t size,
+				   const struct gz_log *log, struct gz_experiment *out_experiment)
+{
+	struct gz_experiment experiment;
+	struct reader *reader = calloc(1, sizeof *reader);
+	if (!reader)
+		return GZ_ERR_NO_MEM;
+	reader->experiment = &experiment;
+	reader->log = log;
+	enum gz_result result = begin(reader, path);
+	if (result == GZ_OK)
+		result = gz_ini_read_text(path, text, size, take, reader, log);
+	free(reader);
+	if (result == GZ_OK) {
+		experiment.fingerprint = gz_experiment_hash(GZ_EXPERIMENT_HASH_START, text, size);
+		result = gz_experiment_resolve(&experiment, log);
+	}
+	if (result == GZ_OK)
+		result = gz_experiment_read_texts(&experiment, log);
+	if (result != GZ_OK) {
+		gz_experiment_free(&experiment);
+		return result;
+	}
+	*out_experiment = experiment;
+	return GZ_OK;
+}
+
+enum gz_result gz_experiment_load(const char *path, const struct gz_log *log,
+				  struct gz_experiment *out_experiment)
+{
+	FILE *file = fopen(path, "rb");
+	if (!file) {
+		bool missing = errno == ENOENT;
+		gz_err(log, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+		return missing ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
+	}
+	enum gz_result result = GZ_ERR_NO_MEM;
+	char *text = malloc(MOST_BYTES + 1);
+	size_t size = text ? fread(text, 1, MOST_BYTES + 1, file) : 0;
+	if (text && ferror(file)) {
+		gz_err(log, "%s: cannot be read: %s", path, strerror(errno));
+		result = GZ_ERR_IO;
+	} else if (size > MOST_BYTES) {
+		gz_err(log, "%s: longer than %d bytes, so no experiment; check the path", path,
+		       MOST_BYTES);
+		result = GZ_ERR_FORMAT;
+	} else if (text) {
+		result = gz_experiment_parse(path, text, size, log, out_experiment);
+	}
+	free(text);
+	fclose(file);
+	return result;
+}

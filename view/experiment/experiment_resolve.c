@@ -1,0 +1,471 @@
+/* From the sections of an experiment's file to conditions: what holds for each trial in each block,
+ * and whether it goes together. */
+#include <fnmatch.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/number.h"
+#include "render/file_path.h"
+#include "view/experiment/answer_keys.h"
+#include "view/experiment/experiment_internal.h"
+
+#define GZ_LOG_MODULE "experiment"
+
+/* A condition in the making, with the sections that it is made of, the last counting most. */
+enum { LEVELS = 3 };
+struct maker {
+	const struct gz_experiment *experiment;
+	const struct gz_log *log;
+	const struct gz_experiment_section *levels[LEVELS]; /* NULL: no such section */
+	struct gz_condition *condition;
+};
+
+/* The setting that counts; NULL if there is none. One for the alternative comes before one for
+ * both in the same section. */
+static const struct gz_experiment_setting *find(const struct maker *maker, const char *key,
+						int alternative)
+{
+	for (int level = LEVELS - 1; level >= 0; level--) {
+		const struct gz_experiment_section *section = maker->levels[level];
+		const struct gz_experiment_setting *setting = NULL;
+		if (section && alternative >= 0)
+			setting = gz_experiment_find_setting(section, key, alternative);
+		if (section && !setting)
+			setting = gz_experiment_find_setting(section, key, -1);
+		if (setting)
+			return setting;
+	}
+	return NULL;
+}
+
+__attribute__((format(printf, 3, 4))) static enum gz_result refuse(const struct maker *maker,
+								   const char *key,
+								   const char *format, ...)
+{
+	char what[512];
+	va_list arguments;
+	const struct gz_experiment_setting *setting = find(maker, key, -1);
+	va_start(arguments, format);
+	vsnprintf(what, sizeof what, format, arguments);
+	va_end(arguments);
+	gz_err(maker->log, "%s:%d: [trial %s] %s: %s", maker->experiment->path,
+	       setting ? setting->line : maker->condition->line, maker->condition->label, key,
+	       what);
+	return GZ_ERR_FORMAT;
+}
+
+/* "\n" in the file is a line break on the screen. */
+static void unescape(char *text)
+{
+	char *to = text;
+	for (const char *from = text; *from; from++) {
+		if (from[0] == '\\' && from[1] == 'n') {
+			*to++ = '\n';
+			from++;
+		} else {
+			*to++ = *from;
+		}
+	}
+	*to = '\0';
+}
+
+static enum gz_result take_params(const struct maker *maker)
+{
+	struct gz_trial_params *params = &maker->condition->params;
+	const struct gz_option_binding binding = { gz_trial_options, gz_trial_option_count, params,
+						   NULL };
+	enum gz_result result = gz_options_preset(&binding);
+	for (size_t i = 0; i < gz_trial_option_count && result == GZ_OK; i++) {
+		const struct gz_experiment_setting *setting =
+			find(maker, gz_trial_options[i].key, -1);
+		if (setting)
+			result = gz_option_parse(&gz_trial_options[i], setting->value, params, NULL,
+						 0);
+	}
+	unescape(params->question);
+	unescape(params->feedback_correct);
+	unescape(params->feedback_wrong);
+	unescape(params->feedback_late);
+	return result;
+}
+
+static const char *alternative_name(int alternative)
+{
+	return alternative == 0 ? "a" : "b";
+}
+
+static enum gz_result take_scene(const struct maker *maker, int which)
+{
+	struct gz_alternative *alternative = &maker->condition->alternatives[which];
+	const struct gz_experiment_setting *setting = find(maker, "scene", which);
+	if (!setting || !setting->value[0])
+		return refuse(maker, "scene",
+			      "not given for %s; name a scene's file, as in scene "
+			      "= shells.scene",
+			      alternative_name(which));
+	if (gz_path_beside(maker->experiment->path, setting->value, alternative->scene,
+			   sizeof alternative->scene) != GZ_OK)
+		return refuse(maker, "scene", "the path is too long; move the file");
+	return GZ_OK;
+}
+
+/* Whether another setting of a section that counts more, or of this alternative, has taken its
+ * place; it then comes as that one. */
+static bool counts(const struct maker *maker, const struct gz_experiment_setting *setting,
+		   int alternative)
+{
+	return setting->of_scene &&
+	       (setting->alternative < 0 || setting->alternative == alternative) &&
+	       find(maker, setting->key, alternative) == setting;
+}
+
+static enum gz_result take_alternative(const struct maker *maker, int which)
+{
+	struct gz_alternative *alternative = &maker->condition->alternatives[which];
+	enum gz_result result = take_scene(maker, which);
+	for (int level = 0; level < LEVELS && result == GZ_OK; level++) {
+		const struct gz_experiment_section *section = maker->levels[level];
+		for (size_t i = 0; section && i < section->setting_count; i++) {
+			if (!counts(maker, &section->settings[i], which))
+				continue;
+			if (alternative->setting_count == GZ_EXPERIMENT_SETTINGS_MAX)
+				return refuse(maker, section->settings[i].key,
+					      "more than 64 keys of a scene; put them into one");
+			alternative->settings[alternative->setting_count++] = &section->settings[i];
+		}
+	}
+	return result;
+}
+
+static size_t split(char *text, char **out_words, size_t room)
+{
+	size_t count = 0;
+	char *rest = text, *word;
+	while ((word = gz_number_next_word(&rest, " ")) != NULL) {
+		if (count < room)
+			out_words[count] = word;
+		count++;
+	}
+	return count;
+}
+
+static bool is_answer(const char *text)
+{
+	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				      "0123456789_.+-";
+	return text[strspn(text, allowed)] == '\0' && strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
+}
+
+static enum gz_result take_keys(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
+	memcpy(text, condition->params.keys, sizeof text);
+	size_t count = split(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	if (count == 0 || count > GZ_EXPERIMENT_ANSWERS_MAX)
+		return refuse(maker, "keys", "%zu keys; 1 to %d are allowed", count,
+			      GZ_EXPERIMENT_ANSWERS_MAX);
+	for (size_t i = 0; i < count; i++) {
+		int key = gz_answer_key_of(words[i]);
+		if (key == GZ_KEY_NONE)
+			return refuse(maker, "keys",
+				      "%.20s is no key; a to z, 0 to 9, left, right, up, down, "
+				      "space and return are allowed",
+				      words[i]);
+		for (size_t k = 0; k < i; k++)
+			if (condition->answers[k].key == key)
+				return refuse(maker, "keys", "%s stands there twice; keep one",
+					      words[i]);
+		condition->answers[i].key = key;
+		snprintf(condition->answers[i].key_name, sizeof condition->answers[i].key_name,
+			 "%s", words[i]);
+	}
+	condition->answer_count = count;
+	return GZ_OK;
+}
+
+/* What keys stand for where the file does not say. */
+static void name_answers(struct gz_condition *condition)
+{
+	static const char *const ordinals[] = { "first", "second" };
+	for (size_t i = 0; i < condition->answer_count; i++) {
+		struct gz_answer *answer = &condition->answers[i];
+		bool interval = condition->params.asks == GZ_ASKS_INTERVAL && i < 2;
+		snprintf(answer->name, sizeof answer->name, "%s",
+			 interval ? ordinals[i] : answer->key_name);
+	}
+}
+
+static enum gz_result take_answers(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
+	memcpy(text, condition->params.answers, sizeof text);
+	size_t count = split(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	name_answers(condition);
+	if (count == 0)
+		return GZ_OK;
+	if (count != condition->answer_count)
+		return refuse(maker, "answers", "%zu answers for %zu keys; give one for each",
+			      count, condition->answer_count);
+	for (size_t i = 0; i < count; i++) {
+		if (!is_answer(words[i]))
+			return refuse(maker, "answers",
+				      "%.60s: letters, digits and _ . + - make a name of at most "
+				      "49 bytes",
+				      words[i]);
+		for (size_t k = 0; k < i; k++)
+			if (strcmp(condition->answers[k].name, words[i]) == 0)
+				return refuse(maker, "answers", "%s stands there twice; keep one",
+					      words[i]);
+		snprintf(condition->answers[i].name, sizeof condition->answers[i].name, "%s",
+			 words[i]);
+	}
+	return GZ_OK;
+}
+
+static enum gz_result check_asks(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	struct gz_trial_params *params = &condition->params;
+	if (params->asks == GZ_ASKS_AUTO)
+		params->asks = params->intervals == 2 ? GZ_ASKS_INTERVAL : GZ_ASKS_ANSWER;
+	if (params->asks == GZ_ASKS_INTERVAL && params->intervals != 2)
+		return refuse(maker, "asks",
+			      "interval, but there is one only; set intervals = 2 "
+			      "or asks = answer");
+	if (params->asks == GZ_ASKS_INTERVAL && condition->answer_count < 2)
+		return refuse(maker, "keys", "one key for two intervals; give one for each");
+	return GZ_OK;
+}
+
+static enum gz_result take_correct(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	const char *correct = condition->params.correct;
+	condition->correct = -1;
+	if (!correct[0])
+		return condition->params.feedback
+			       ? refuse(maker, "feedback",
+					"nothing is right or wrong; give correct = as well")
+			       : GZ_OK;
+	if (condition->params.asks == GZ_ASKS_INTERVAL) {
+		if (strcmp(correct, "a") != 0 && strcmp(correct, "b") != 0)
+			return refuse(maker, "correct", "%.60s: a or b is allowed", correct);
+		condition->correct = correct[0] - 'a';
+		return GZ_OK;
+	}
+	for (size_t i = 0; i < condition->answer_count; i++)
+		if (strcmp(condition->answers[i].name, correct) == 0)
+			condition->correct = (int)i;
+	return condition->correct >= 0
+		       ? GZ_OK
+		       : refuse(maker, "correct", "%.60s is none of the answers; name one of them",
+				correct);
+}
+
+/* What a trial says of an alternative that it does not have. */
+static enum gz_result check_second(const struct maker *maker)
+{
+	const struct gz_experiment_section *trial = maker->levels[LEVELS - 1];
+	for (size_t i = 0; i < trial->setting_count; i++)
+		if (trial->settings[i].alternative == 1)
+			return refuse(maker, "intervals",
+				      "1, but line %d is for a second; set intervals = 2, or "
+				      "remove it",
+				      trial->settings[i].line);
+	return GZ_OK;
+}
+
+static enum gz_result make_condition(const struct maker *maker)
+{
+	enum gz_result result = take_params(maker);
+	const int intervals = maker->condition->params.intervals;
+	if (result == GZ_OK && intervals == 1)
+		result = check_second(maker);
+	for (int which = 0; which < intervals && result == GZ_OK; which++)
+		result = take_alternative(maker, which);
+	if (result == GZ_OK)
+		result = take_keys(maker);
+	if (result == GZ_OK)
+		result = check_asks(maker);
+	if (result == GZ_OK)
+		result = take_answers(maker);
+	return result == GZ_OK ? take_correct(maker) : result;
+}
+
+/* An experiment's blocks in the making. */
+struct resolver {
+	struct gz_experiment *experiment;
+	const struct gz_log *log;
+	size_t presentations;
+};
+
+static enum gz_result refuse_block(const struct resolver *resolver,
+				   const struct gz_experiment_section *section, const char *key,
+				   const char *what)
+{
+	const struct gz_experiment_setting *setting = gz_experiment_find_setting(section, key, -1);
+	gz_err(resolver->log, "%s:%d: [block %s] %s: %s", resolver->experiment->path,
+	       setting ? setting->line : section->line, section->label, key, what);
+	return GZ_ERR_FORMAT;
+}
+
+/* Mark the trials that a name means. @return whether there is one */
+static bool choose(const struct gz_experiment *experiment, const char *name,
+		   size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], size_t *count)
+{
+	bool any = false;
+	for (size_t i = 0; i < experiment->trial_count; i++) {
+		bool there = false;
+		if (fnmatch(name, experiment->trials[i].label, 0) != 0)
+			continue;
+		any = true;
+		for (size_t k = 0; k < *count; k++)
+			there = there || chosen[k] == i;
+		if (!there)
+			chosen[(*count)++] = i;
+	}
+	return any;
+}
+
+static enum gz_result choose_trials(const struct resolver *resolver,
+				    const struct gz_experiment_section *section,
+				    const struct gz_block_params *params,
+				    size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], size_t *out_count)
+{
+	char text[GZ_INI_LINE_SIZE], what[96];
+	char *words[GZ_INI_LINE_SIZE];
+	memcpy(text, params->trials, sizeof text);
+	size_t words_count = split(text, words, GZ_INI_LINE_SIZE), count = 0;
+	for (size_t i = 0; i < words_count; i++) {
+		if (choose(resolver->experiment, words[i], chosen, &count))
+			continue;
+		snprintf(what, sizeof what, "no [trial %.50s]; correct the name", words[i]);
+		return refuse_block(resolver, section, "trials", what);
+	}
+	if (count == 0)
+		return refuse_block(resolver, section, "trials", "none named; * means all");
+	*out_count = count;
+	return GZ_OK;
+}
+
+static enum gz_result take_block_params(const struct gz_experiment_section *section,
+					struct gz_block_params *params)
+{
+	const struct gz_option_binding binding = { gz_block_options, gz_block_option_count, params,
+						   NULL };
+	enum gz_result result = gz_options_preset(&binding);
+	for (size_t i = 0; i < section->setting_count && result == GZ_OK; i++) {
+		const struct gz_experiment_setting *setting = &section->settings[i];
+		if (setting->own)
+			result = gz_option_parse(gz_options_find(&binding, 1, setting->key, NULL),
+						 setting->value, params, NULL, 0);
+	}
+	unescape(params->break_text);
+	unescape(params->instructions);
+	return result;
+}
+
+static enum gz_result make_conditions(const struct resolver *resolver,
+				      const struct gz_experiment_section *section,
+				      const size_t *chosen, struct gz_block *block)
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < block->condition_count && result == GZ_OK; i++) {
+		const struct gz_experiment_section *trial =
+			&resolver->experiment->trials[chosen[i]];
+		struct gz_condition *condition = &block->conditions[i];
+		memcpy(condition->label, trial->label, sizeof condition->label);
+		condition->line = trial->line;
+		const struct maker maker = {
+			.experiment = resolver->experiment,
+			.log = resolver->log,
+			.levels = { &resolver->experiment->common, section, trial },
+			.condition = condition,
+		};
+		result = make_condition(&maker);
+	}
+	return result;
+}
+
+static enum gz_result make_block(struct resolver *resolver,
+				 const struct gz_experiment_section *section,
+				 struct gz_block *block)
+{
+	size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], count = 0;
+	memcpy(block->label, section->label, sizeof block->label);
+	block->line = section->line;
+	enum gz_result result = take_block_params(section, &block->params);
+	if (result == GZ_OK && block->params.instructions[0] && block->params.instructions_file[0])
+		result = refuse_block(resolver, section, "instructions_file",
+				      "given with instructions; keep one");
+	if (result == GZ_OK)
+		result = choose_trials(resolver, section, &block->params, chosen, &count);
+	if (result != GZ_OK)
+		return result;
+	resolver->presentations += count * (size_t)block->params.repeats;
+	if (resolver->presentations > GZ_EXPERIMENT_TRIALS_MAX)
+		return refuse_block(resolver, section, "repeats",
+				    "more than 10000 trials in all; take fewer");
+	block->conditions = calloc(count, sizeof *block->conditions);
+	if (!block->conditions)
+		return GZ_ERR_NO_MEM;
+	block->condition_count = count;
+	return make_conditions(resolver, section, chosen, block);
+}
+
+static enum gz_result refuse_common(const struct resolver *resolver, const char *key,
+				    const char *what)
+{
+	const struct gz_experiment *experiment = resolver->experiment;
+	const struct gz_experiment_setting *setting =
+		gz_experiment_find_setting(&experiment->common, key, -1);
+	gz_err(resolver->log, "%s:%d: [experiment] %s: %s", experiment->path,
+	       setting                   ? setting->line
+	       : experiment->common.line ? experiment->common.line
+					 : 1,
+	       key, what);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result check_common(const struct resolver *resolver)
+{
+	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+				      "0123456789";
+	struct gz_experiment *experiment = resolver->experiment;
+	struct gz_experiment_params *params = &experiment->params;
+	if (!params->name[0] || params->name[strspn(params->name, allowed)])
+		return refuse_common(resolver, "name",
+				     params->name[0] ? "only letters and digits are allowed"
+						     : "not given; letters and digits make one");
+	if (params->instructions[0] && params->instructions_file[0])
+		return refuse_common(resolver, "instructions_file",
+				     "given with instructions; keep one");
+	if (experiment->trial_count == 0)
+		return refuse_common(resolver, "name", "no [trial NAME] in the file; write one");
+	unescape(params->instructions);
+	unescape(params->goodbye);
+	return GZ_OK;
+}
+
+enum gz_result gz_experiment_resolve(struct gz_experiment *experiment, const struct gz_log *log)
+{
+	static const struct gz_experiment_section all = { .label = "main" };
+	struct resolver resolver = { .experiment = experiment, .log = log };
+	size_t count = experiment->section_count ? experiment->section_count : 1;
+	enum gz_result result = check_common(&resolver);
+	if (result != GZ_OK)
+		return result;
+	experiment->blocks = calloc(count, sizeof *experiment->blocks);
+	if (!experiment->blocks)
+		return GZ_ERR_NO_MEM;
+	experiment->block_count = count;
+	for (size_t i = 0; i < count && result == GZ_OK; i++)
+		result = make_block(&resolver,
+				    experiment->section_count ? &experiment->sections[i] : &all,
+				    &experiment->blocks[i]);
+	return result;
+}

@@ -1,0 +1,223 @@
+#include "view/experiment/sequence.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/number.h"
+#include "sim/random.h"
+#include "view/experiment/experiment_internal.h"
+
+#define GZ_LOG_MODULE "experiment"
+
+/* A sequence in the making. */
+struct maker {
+	const struct gz_experiment *experiment;
+	struct gz_random random;
+	struct gz_sequence sequence;
+};
+
+/* 0 to below @p end, each as likely. */
+static size_t draw(struct gz_random *random, size_t end)
+{
+	return (size_t)(gz_random_uniform(random) * (double)end);
+}
+
+static void swap(struct gz_presentation *a, struct gz_presentation *b)
+{
+	struct gz_presentation kept = *a;
+	*a = *b;
+	*b = kept;
+}
+
+/* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
+static void shuffle(struct gz_random *random, struct gz_presentation *items, size_t count)
+{
+	for (size_t i = count; i > 1; i--)
+		swap(&items[i - 1], &items[draw(random, i)]);
+}
+
+static void shuffle_blocks(struct gz_random *random, const struct gz_block **blocks, size_t count)
+{
+	for (size_t i = count; i > 1; i--) {
+		size_t chosen = draw(random, i);
+		const struct gz_block *last = blocks[i - 1];
+		blocks[i - 1] = blocks[chosen];
+		blocks[chosen] = last;
+	}
+}
+
+/* Which way round each of a condition's repeats is. An odd one out is drawn. */
+static void balance(struct gz_random *random, bool *swapped, size_t count)
+{
+	bool more = gz_random_uniform(random) < 0.5;
+	for (size_t i = 0; i < count; i++)
+		swapped[i] = i < count / 2 || (i == count - 1 && count % 2 && more);
+	for (size_t i = count; i > 1; i--) {
+		size_t chosen = draw(random, i);
+		bool last = swapped[i - 1];
+		swapped[i - 1] = swapped[chosen];
+		swapped[chosen] = last;
+	}
+}
+
+static void draw_ways(struct gz_random *random, const struct gz_condition *condition, bool *swapped,
+		      size_t count)
+{
+	memset(swapped, 0, count * sizeof *swapped);
+	if (condition->params.intervals != 2)
+		return;
+	switch ((enum gz_experiment_interval_order)condition->params.interval_order) {
+	case GZ_INTERVALS_BALANCED:
+		balance(random, swapped, count);
+		return;
+	case GZ_INTERVALS_RANDOM:
+		for (size_t i = 0; i < count; i++)
+			swapped[i] = gz_random_uniform(random) < 0.5;
+		return;
+	case GZ_INTERVALS_AB:
+		return;
+	case GZ_INTERVALS_BA:
+		memset(swapped, 1, count * sizeof *swapped);
+		return;
+	}
+}
+
+/* Every repeat of every condition, repeat by repeat. */
+static enum gz_result list_block(struct maker *maker, const struct gz_block *block,
+				 struct gz_presentation *items)
+{
+	const size_t repeats = (size_t)block->params.repeats;
+	bool *swapped = calloc(repeats, sizeof *swapped);
+	if (!swapped)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < block->condition_count; i++) {
+		draw_ways(&maker->random, &block->conditions[i], swapped, repeats);
+		for (size_t k = 0; k < repeats; k++)
+			items[k * block->condition_count + i] = (struct gz_presentation) {
+				.block = block,
+				.condition = &block->conditions[i],
+				.swapped = swapped[k],
+			};
+	}
+	free(swapped);
+	return GZ_OK;
+}
+
+/* Repeats are counted as they come. */
+static enum gz_result number(const struct gz_block *block, struct gz_presentation *items,
+			     size_t count)
+{
+	int *seen = calloc(block->condition_count, sizeof *seen);
+	if (!seen)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < count; i++) {
+		items[i].number = (int)i + 1;
+		items[i].repetition = ++seen[items[i].condition - block->conditions];
+	}
+	free(seen);
+	return GZ_OK;
+}
+
+static enum gz_result add_block(struct maker *maker, const struct gz_block *block)
+{
+	const size_t each = block->condition_count, repeats = (size_t)block->params.repeats;
+	struct gz_presentation *items = maker->sequence.presentations + maker->sequence.count;
+	enum gz_result result = list_block(maker, block, items);
+	if (result != GZ_OK)
+		return result;
+	if (block->params.order == GZ_ORDER_FULL)
+		shuffle(&maker->random, items, each * repeats);
+	for (size_t i = 0; block->params.order == GZ_ORDER_RANDOM && i < repeats; i++)
+		shuffle(&maker->random, items + i * each, each);
+	maker->sequence.count += each * repeats;
+	return number(block, items, each * repeats);
+}
+
+static enum gz_result rotate(const struct gz_experiment *experiment, const char *participant,
+			     const struct gz_log *log, const struct gz_block **blocks, size_t count)
+{
+	long long whole;
+	const struct gz_block *rotated[GZ_EXPERIMENT_SECTIONS_MAX];
+	if (!gz_number_parse_whole(participant, &whole) || whole < 0) {
+		gz_err(log,
+		       "%s: block_order: rotated goes by the participant's number, and "
+		       "--participant "
+		       "%s is none; give digits",
+		       experiment->path, participant);
+		return GZ_ERR_INVAL;
+	}
+	for (size_t i = 0; i < count; i++)
+		rotated[i] = blocks[(i + (size_t)whole % count) % count];
+	memcpy(blocks, rotated, count * sizeof rotated[0]);
+	return GZ_OK;
+}
+
+/* The blocks in their order; those of practice stay where they are. */
+static enum gz_result order_blocks(struct maker *maker, const char *participant,
+				   const struct gz_log *log,
+				   const struct gz_block *out_blocks[GZ_EXPERIMENT_SECTIONS_MAX])
+{
+	const struct gz_experiment *experiment = maker->experiment;
+	const struct gz_block *counted[GZ_EXPERIMENT_SECTIONS_MAX];
+	size_t count = 0, next = 0;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < experiment->block_count; i++)
+		if (!experiment->blocks[i].params.practice)
+			counted[count++] = &experiment->blocks[i];
+	if (experiment->params.block_order == GZ_BLOCKS_RANDOM)
+		shuffle_blocks(&maker->random, counted, count);
+	else if (experiment->params.block_order == GZ_BLOCKS_ROTATED && count > 0)
+		result = rotate(experiment, participant, log, counted, count);
+	for (size_t i = 0; i < experiment->block_count; i++)
+		out_blocks[i] = experiment->blocks[i].params.practice ? &experiment->blocks[i]
+								      : counted[next++];
+	return result;
+}
+
+/* Participants of one seed have orders of their own, and so have their sessions. */
+static uint64_t stream_of(const char *participant, const char *session)
+{
+	uint64_t hash =
+		gz_experiment_hash(GZ_EXPERIMENT_HASH_START, participant, strlen(participant) + 1);
+	return gz_experiment_hash(hash, session, strlen(session) + 1);
+}
+
+static size_t count_presentations(const struct gz_experiment *experiment)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < experiment->block_count; i++)
+		count += experiment->blocks[i].condition_count *
+			 (size_t)experiment->blocks[i].params.repeats;
+	return count;
+}
+
+enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const char *participant,
+				const char *session, const struct gz_log *log,
+				struct gz_sequence *out_sequence)
+{
+	const struct gz_block *blocks[GZ_EXPERIMENT_SECTIONS_MAX];
+	struct maker maker = {
+		.experiment = experiment,
+		.random = gz_random_seeded((uint64_t)experiment->params.seed,
+					   stream_of(participant, session)),
+	};
+	maker.sequence.presentations =
+		calloc(count_presentations(experiment), sizeof *maker.sequence.presentations);
+	if (!maker.sequence.presentations)
+		return GZ_ERR_NO_MEM;
+	enum gz_result result = order_blocks(&maker, participant, log, blocks);
+	for (size_t i = 0; i < experiment->block_count && result == GZ_OK; i++)
+		result = add_block(&maker, blocks[i]);
+	if (result != GZ_OK) {
+		gz_sequence_free(&maker.sequence);
+		return result;
+	}
+	*out_sequence = maker.sequence;
+	return GZ_OK;
+}
+
+void gz_sequence_free(struct gz_sequence *sequence)
+{
+	free(sequence->presentations);
+	*sequence = (struct gz_sequence) { 0 };
+}
