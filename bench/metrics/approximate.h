@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
+/** The bits of a float as a number. */
 static inline int32_t gz_bits_of_float(float value)
 {
 	int32_t bits;
@@ -16,6 +17,7 @@ static inline int32_t gz_bits_of_float(float value)
 	return bits;
 }
 
+/** The float that has these bits. */
 static inline float gz_float_of_bits(int32_t bits)
 {
 	float value;
