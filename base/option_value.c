@@ -271,17 +271,12 @@ enum gz_result gz_option_parse(const struct gz_option *option, const char *text,
 	return refuse(message, message_size, "an option of unknown type");
 }
 
-/* The fewest digits that read back to the same double: 15 always can be kept, 17 always do. */
-static void format_double(double value, char *text, size_t size)
+static void format_double(double value, char text[GZ_NUMBER_SIZE])
 {
-	for (int digits = 6; digits <= 17; digits++) {
-		snprintf(text, size, "%.*g", digits, value);
-		if (isfinite(value))
-			gz_number_normalise_point(text);
-		double back;
-		if (gz_number_parse(text, &back) && back == value)
-			return;
-	}
+	if (isfinite(value))
+		gz_number_print(value, text);
+	else
+		snprintf(text, GZ_NUMBER_SIZE, "%g", value);
 }
 
 static void format_numbers(const struct gz_option *option, const void *field, char *text,
@@ -292,7 +287,7 @@ static void format_numbers(const struct gz_option *option, const void *field, ch
 	for (int i = 0; i < gz_option_count(option) && used < size; i++) {
 		char number[64];
 		if (option->type == GZ_OPTION_DOUBLE)
-			format_double(((const double *)field)[i], number, sizeof number);
+			format_double(((const double *)field)[i], number);
 		else
 			snprintf(number, sizeof number, "%d", ((const int *)field)[i]);
 		int n = snprintf(text + used, size - used, "%s%s", i == 0 ? "" : join, number);

@@ -3,10 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "render/file_path.h"
 #include "render/histogram.h"
+#include "render/scene_files.h"
 #include "render/transfer_presets.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -218,6 +217,22 @@ static enum gz_result refuse(const struct reader *reader, int option, const char
 	return GZ_ERR_FORMAT;
 }
 
+static enum gz_result preset(const struct gz_option_binding bindings[GZ_SCENE_BINDINGS])
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS && result == GZ_OK; i++)
+		result = gz_options_preset(&bindings[i]);
+	return result;
+}
+
+enum gz_result gz_scene_settings_preset(struct gz_scene_settings *out_settings)
+{
+	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
+	*out_settings = (struct gz_scene_settings) { 0 };
+	gz_scene_bindings(out_settings, bindings, GZ_SCENE_BINDINGS);
+	return preset(bindings);
+}
+
 static enum gz_result begin(struct reader *reader, const char *name, const struct gz_log *log,
 			    struct gz_scene_settings *settings)
 {
@@ -225,10 +240,7 @@ static enum gz_result begin(struct reader *reader, const char *name, const struc
 	*settings = (struct gz_scene_settings) { 0 };
 	gz_scene_bindings(settings, reader->bindings, GZ_SCENE_BINDINGS);
 	reader->bindings[0].given = reader->given;
-	enum gz_result result = GZ_OK;
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS && result == GZ_OK; i++)
-		result = gz_options_preset(&reader->bindings[i]);
-	return result;
+	return preset(reader->bindings);
 }
 
 static bool given_raw(const struct reader *reader)
@@ -237,15 +249,19 @@ static bool given_raw(const struct reader *reader)
 	       reader->given[VOLUME_SPACING];
 }
 
-/* The type of voxel of a procedural volume; false if there is none of that type. */
-static bool made_type(const struct reader *reader, enum gz_voxel_type *out_type)
+int gz_scene_procedural_type(int volume_procedural)
 {
-	const struct gz_scene_settings *settings = reader->settings;
-	if (!reader->given[VOLUME_TYPE]) {
-		*out_type =
-			gz_procedural_type((enum gz_procedural)(settings->volume_procedural - 1));
-		return true;
-	}
+	static const int raw[GZ_VOXEL_TYPE_COUNT] = {
+		[GZ_VOXEL_U8] = GZ_RAW_UINT8,
+		[GZ_VOXEL_U16] = GZ_RAW_UINT16,
+		[GZ_VOXEL_F32] = GZ_RAW_FLOAT32,
+	};
+	return raw[gz_procedural_type((enum gz_procedural)(volume_procedural - 1))];
+}
+
+/* The type of voxel of a procedural volume; false if there is none of that type. */
+static bool made_type(const struct gz_scene_settings *settings, enum gz_voxel_type *out_type)
+{
 	*out_type = settings->type == GZ_RAW_UINT8    ? GZ_VOXEL_U8
 		    : settings->type == GZ_RAW_UINT16 ? GZ_VOXEL_U16
 						      : GZ_VOXEL_F32;
@@ -254,9 +270,11 @@ static bool made_type(const struct reader *reader, enum gz_voxel_type *out_type)
 
 static enum gz_result check_volume(const struct reader *reader)
 {
-	const struct gz_scene_settings *settings = reader->settings;
+	struct gz_scene_settings *settings = reader->settings;
 	bool file = settings->volume_file[0] != '\0', made = settings->volume_procedural != 0;
 	enum gz_voxel_type type;
+	if (made && !reader->given[VOLUME_TYPE])
+		settings->type = gz_scene_procedural_type(settings->volume_procedural);
 	if (file && made)
 		return refuse(reader, VOLUME_FILE, "given with volume.procedural; keep one");
 	if (!file && !made)
@@ -265,7 +283,7 @@ static enum gz_result check_volume(const struct reader *reader)
 	if (made && reader->given[VOLUME_ENDIAN])
 		return refuse(reader, VOLUME_PROCEDURAL,
 			      "takes dims, type and spacing only; leave out endian");
-	if (made && !made_type(reader, &type))
+	if (made && !made_type(settings, &type))
 		return refuse(reader, VOLUME_TYPE,
 			      "a procedural volume has uint8, uint16 or float32");
 	if (file && (given_raw(reader) || reader->given[VOLUME_DIMS]) &&
@@ -346,28 +364,20 @@ enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
 	return GZ_OK;
 }
 
-/* Beside the scene, then under $GAZECAST_DATA. */
 static enum gz_result find_file(const struct reader *reader, const char *key, const char *name,
 				char out_path[GZ_PATH_SIZE])
 {
 	const char *data = getenv("GAZECAST_DATA");
-	if (gz_path_beside(reader->name, name, out_path, GZ_PATH_SIZE) == GZ_OK &&
-	    access(out_path, F_OK) == 0)
+	if (gz_scene_find_file(reader->name, name, out_path) == GZ_OK)
 		return GZ_OK;
-	if (name[0] == '/') {
+	if (name[0] == '/')
 		gz_err(reader->log, "%s: %s: no file %s; install it or correct the name",
 		       reader->name, key, name);
-		return GZ_ERR_NOT_FOUND;
-	}
-	if (data && *data) {
-		int length = snprintf(out_path, GZ_PATH_SIZE, "%s/%s", data, name);
-		if (length > 0 && length < GZ_PATH_SIZE && access(out_path, F_OK) == 0)
-			return GZ_OK;
-	}
-	gz_err(reader->log,
-	       "%s: %s: %s is neither beside the scene nor under GAZECAST_DATA (%s); put it there "
-	       "or set the variable",
-	       reader->name, key, name, data && *data ? data : "not set");
+	else
+		gz_err(reader->log,
+		       "%s: %s: %s is neither beside the scene nor under GAZECAST_DATA (%s); put "
+		       "it there or set the variable",
+		       reader->name, key, name, data && *data ? data : "not set");
 	return GZ_ERR_NOT_FOUND;
 }
 
@@ -377,7 +387,7 @@ static enum gz_result make_procedural(const struct reader *reader, struct gz_vol
 	const int *dims = reader->given[VOLUME_DIMS] ? reader->settings->dims : preset;
 	enum gz_procedural which = (enum gz_procedural)(reader->settings->volume_procedural - 1);
 	enum gz_voxel_type type;
-	if (!made_type(reader, &type))
+	if (!made_type(reader->settings, &type))
 		return GZ_ERR_INVAL; /* refused before */
 	return gz_volume_generate(which, dims, reader->settings->spacing, type, reader->loading,
 				  reader->log, out_volume);

@@ -26,7 +26,7 @@ struct gz_scene_settings {
 	char volume_file[GZ_PATH_SIZE]; /**< empty for a procedural volume */
 	int volume_procedural;          /**< enum gz_procedural + 1; 0 = none */
 	int dims[3];                    /**< raw and procedural */
-	int type;                       /**< enum gz_raw_type */
+	int type;                       /**< enum gz_raw_type; of a procedural volume, too */
 	int endian;                     /**< 0 little, 1 big */
 	double spacing[3];
 	int memory_mib; /**< for bricks; 0 = a quarter of the machine's memory */
@@ -64,6 +64,14 @@ struct gz_scene {
  */
 size_t gz_scene_bindings(struct gz_scene_settings *settings, struct gz_option_binding *out_bindings,
 			 size_t room);
+
+/** Every key's preset, and neither a volume nor a transfer function. @return GZ_OK, since tests
+ *  assert that presets parse */
+enum gz_result gz_scene_settings_preset(struct gz_scene_settings *out_settings);
+
+/** The enum gz_raw_type that a procedural volume has where volume.type is not given.
+ *  @param volume_procedural  enum gz_procedural + 1 */
+int gz_scene_procedural_type(int volume_procedural);
 
 /**
  * Check what the tables cannot say of each value by itself: that the camera looks somewhere, the

@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "base/text.h"
 
 #define GZ_TRANSFER_POINTS_MAX 256
 
@@ -44,6 +45,15 @@ enum gz_result gz_transfer_load(const char *path, const struct gz_log *log,
 /** As gz_transfer_load() over text in memory; @p name stands for the file in messages. */
 enum gz_result gz_transfer_parse(const char *name, const char *text, size_t size,
 				 const struct gz_log *log, struct gz_transfer *out_transfer);
+
+/** Append the text of a .tf file, which gz_transfer_parse() reads back to the same bits. */
+void gz_transfer_print(const struct gz_transfer *transfer, struct gz_text *text);
+
+/** Write a .tf file, whole or not at all. GZ_ERR_INVAL: it has no point or more than
+ *  GZ_TRANSFER_POINTS_MAX, or what gz_transfer_parse() would refuse; GZ_ERR_IO, GZ_ERR_NO_MEM;
+ *  logged. */
+enum gz_result gz_transfer_write(const struct gz_transfer *transfer, const char *path,
+				 const struct gz_log *log);
 
 /** Colour and opacity at @p value in [0, 1] (clamped). Two points of one value make a step. */
 void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, double out_rgba[4]);

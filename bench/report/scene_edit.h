@@ -1,24 +1,14 @@
 /**
  * @file
- * Setting keys in the text of a scene and leaving all else as its author wrote it.
+ * Copies of a scene with the settings of a variant; all else stays as its author wrote it.
  */
 #ifndef GZ_BENCH_REPORT_SCENE_EDIT_H
 #define GZ_BENCH_REPORT_SCENE_EDIT_H
 
 #include "base/log.h"
 #include "base/result.h"
-#include "bench/report/text.h"
+#include "base/text.h"
 #include "bench/study/study.h"
-
-/**
- * Set one key of an INI text: its value where it is given, else a line at the end of its section,
- * else a section at the end. Comments, blanks and all other lines stay, byte for byte.
- *
- * @param section, name  of the key "section.name"
- * @param value          without a line's end
- */
-void gz_scene_text_set(struct gz_text *text, const char *section, const char *name,
-		       const char *value);
 
 /**
  * Set everything that a variant says, in the sections where scenes have it.

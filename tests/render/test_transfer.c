@@ -214,6 +214,54 @@ static void file_is_loaded_and_a_missing_one_named(void **state)
 	assert_int_equal(log.messages, 2);
 }
 
+static void written_file_reads_back_bit_for_bit(void **state)
+{
+	(void)state;
+	const char *path = files_path("written.tf");
+	struct gz_transfer t = {
+		.count = 3,
+		.points = { { 0, { 0.1, 1.0 / 3, 1 }, 0 },
+			    { 0.1 + 0.2, { 5e-324, 0.7, 1e-9 }, 2.0 / 3 },
+			    { 0.1 + 0.2, { 1, 1, 0.1 }, 1 } },
+		.interpolation = GZ_TRANSFER_QUADRATIC,
+		.has_range = true,
+		.range = { -1024.1, 1e300 },
+	};
+	for (int turn = 0; turn < 2; turn++) {
+		struct gz_transfer read;
+		struct captured_log log;
+		captured_log_init(&log, NULL);
+		if (gz_transfer_write(&t, path, &log.log) != GZ_OK ||
+		    gz_transfer_load(path, &log.log, &read) != GZ_OK)
+			fail_msg("%s", log.last);
+		assert_int_equal(read.count, t.count);
+		assert_memory_equal(read.points, t.points, 3 * sizeof t.points[0]);
+		assert_int_equal(read.interpolation, t.interpolation);
+		assert_int_equal(read.has_range, t.has_range);
+		assert_true(!t.has_range || memcmp(read.range, t.range, sizeof t.range) == 0);
+		t.has_range = false;
+		t.interpolation = GZ_TRANSFER_LINEAR;
+	}
+}
+
+static void transfer_that_no_file_can_hold_is_not_written(void **state)
+{
+	(void)state;
+	struct gz_transfer t = { .count = 1, .points = { { .value = NAN } } };
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	const char *path = files_path("refused.tf");
+	assert_int_equal(gz_transfer_write(&t, path, &log.log), GZ_ERR_INVAL);
+	t.count = 0;
+	assert_int_equal(gz_transfer_write(&t, path, &log.log), GZ_ERR_INVAL);
+	t.count = GZ_TRANSFER_POINTS_MAX + 1;
+	assert_int_equal(gz_transfer_write(&t, path, &log.log), GZ_ERR_INVAL);
+	assert_int_equal(log.messages, 3);
+	assert_int_equal(gz_transfer_load(path, NULL, &t), GZ_ERR_NOT_FOUND);
+	t = (struct gz_transfer) { .count = 1 };
+	assert_int_equal(gz_transfer_write(&t, "/no/such/folder/a.tf", &log.log), GZ_ERR_IO);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -228,6 +276,8 @@ int main(void)
 		cmocka_unit_test(quadratic_eases_in_and_out),
 		cmocka_unit_test(opacity_over_two_halves_is_that_over_the_whole),
 		cmocka_unit_test(file_is_loaded_and_a_missing_one_named),
+		cmocka_unit_test(written_file_reads_back_bit_for_bit),
+		cmocka_unit_test(transfer_that_no_file_can_hold_is_not_written),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
