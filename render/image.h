@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_IMAGE_H
 #define GZ_RENDER_IMAGE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -30,6 +31,17 @@ void gz_image_free(struct gz_image *image);
  */
 enum gz_result gz_image_write_png(const struct gz_image *image, const char *path,
 				  const struct gz_log *log);
+
+/** A text in a PNG: an iTXt chunk (PNG third edition, section 11.3.3.4). */
+struct gz_image_text {
+	const char *keyword; /**< 1 to 79 bytes of Latin-1, no blank at an end */
+	const char *text;    /**< UTF-8 */
+};
+
+/** As gz_image_write_png(), with texts before the pixels. */
+enum gz_result gz_image_write_png_with(const struct gz_image *image,
+				       const struct gz_image_text *texts, size_t count,
+				       const char *path, const struct gz_log *log);
 
 /** Read any PNG as RGBA, alpha forced to 255; what @p out_image held (zeroed: nothing) is freed.
  * GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM: logged. */

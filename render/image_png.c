@@ -28,9 +28,30 @@ static void on_png_warning(png_structp png, png_const_charp message)
 	(void)message;
 }
 
-/* Nothing is changed between setjmp and a longjmp but what libpng owns. */
-static bool write_rows(png_structp png, png_infop info, FILE *file, const struct gz_image *image)
+/* What goes into a file. */
+struct content {
+	const struct gz_image *image;
+	const struct gz_image_text *texts;
+	size_t text_count;
+};
+
+static void set_texts(png_structp png, png_infop info, const struct content *content)
 {
+	for (size_t i = 0; i < content->text_count; i++) {
+		/* libpng copies both, and writes to neither. */
+		png_text text = {
+			.compression = PNG_ITXT_COMPRESSION_NONE,
+			.key = (png_charp)(uintptr_t)content->texts[i].keyword,
+			.text = (png_charp)(uintptr_t)content->texts[i].text,
+		};
+		png_set_text(png, info, &text, 1);
+	}
+}
+
+/* Nothing is changed between setjmp and a longjmp but what libpng owns. */
+static bool write_rows(png_structp png, png_infop info, FILE *file, const struct content *content)
+{
+	const struct gz_image *image = content->image;
 	if (setjmp(png_jmpbuf(png)))
 		return false;
 	png_init_io(png, file);
@@ -39,6 +60,7 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 	png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
 		     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
 		     PNG_FILTER_TYPE_DEFAULT);
+	set_texts(png, info, content);
 	png_write_info(png, info);
 	png_set_filler(png, 0, PNG_FILLER_AFTER); /* drops the A of each pixel */
 	for (int y = 0; y < image->height; y++)
@@ -47,12 +69,12 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 	return true;
 }
 
-static bool write_stream(FILE *file, const struct gz_image *image)
+static bool write_stream(FILE *file, const struct content *content)
 {
 	png_structp png =
 		png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, on_png_warning);
 	png_infop info = png ? png_create_info_struct(png) : NULL;
-	bool written = info && write_rows(png, info, file, image);
+	bool written = info && write_rows(png, info, file, content);
 	png_destroy_write_struct(&png, &info);
 	return written;
 }
@@ -72,10 +94,10 @@ static FILE *open_temporary(const char *name)
 }
 
 /* Writes, closes, and says what went wrong by errno. */
-static bool write_and_close(FILE *file, const struct gz_image *image)
+static bool write_and_close(FILE *file, const struct content *content)
 {
 	errno = 0;
-	bool written = write_stream(file, image) && fflush(file) == 0;
+	bool written = write_stream(file, content) && fflush(file) == 0;
 	int saved = errno;
 	if (fclose(file) != 0 && written) {
 		written = false;
@@ -85,7 +107,7 @@ static bool write_and_close(FILE *file, const struct gz_image *image)
 	return written;
 }
 
-static bool write_regular(const struct gz_image *image, const char *path)
+static bool write_regular(const struct content *content, const char *path)
 {
 	char *name = NULL;
 	if (asprintf(&name, "%s.%ld.part", path, (long)getpid()) < 0)
@@ -93,7 +115,7 @@ static bool write_regular(const struct gz_image *image, const char *path)
 	FILE *file = open_temporary(name);
 	bool written = false;
 	if (file) {
-		written = write_and_close(file, image) && rename(name, path) == 0;
+		written = write_and_close(file, content) && rename(name, path) == 0;
 		int saved = errno;
 		if (!written)
 			unlink(name);
@@ -104,20 +126,28 @@ static bool write_regular(const struct gz_image *image, const char *path)
 }
 
 /* A device or pipe cannot be replaced by a file: it is written to. */
-static bool write_special(const struct gz_image *image, const char *path)
+static bool write_special(const struct content *content, const char *path)
 {
 	FILE *file = fopen(path, "wb");
-	return file && write_and_close(file, image);
+	return file && write_and_close(file, content);
 }
 
 enum gz_result gz_image_write_png(const struct gz_image *image, const char *path,
 				  const struct gz_log *log)
 {
+	return gz_image_write_png_with(image, NULL, 0, path, log);
+}
+
+enum gz_result gz_image_write_png_with(const struct gz_image *image,
+				       const struct gz_image_text *texts, size_t count,
+				       const char *path, const struct gz_log *log)
+{
+	const struct content content = { image, texts, count };
 	struct stat status;
 	if (!image->pixels || image->width < 1 || image->height < 1)
 		return GZ_ERR_INVAL;
 	bool special = stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-	if (special ? write_special(image, path) : write_regular(image, path))
+	if (special ? write_special(&content, path) : write_regular(&content, path))
 		return GZ_OK;
 	gz_err(log, "%s: cannot write the picture: %s; name a writable folder with free space",
 	       path, strerror(errno));

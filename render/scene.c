@@ -103,7 +103,8 @@ static const struct gz_option scene_options[SCENE_OPTION_COUNT] = {
 			    .offset = AT(transfer_file),
 			    .max = GZ_PATH_SIZE,
 			    .preset = "",
-			    .help = "transfer function, .tf; looked up as volume.file" },
+			    .help = "transfer function, .tf; looked up as volume.file; without it "
+				    "one is made for the volume" },
 	[TRANSFER_ALSO] = { .key = "transfer.also",
 			    .type = GZ_OPTION_STRING,
 			    .offset = AT(transfer_also),
@@ -334,9 +335,6 @@ static enum gz_result check_display(const struct reader *reader, bool *out_has_d
 static enum gz_result check(const struct reader *reader, bool *out_has_display)
 {
 	enum gz_result result = check_volume(reader);
-	if (result == GZ_OK && !reader->settings->transfer_file[0])
-		result = refuse(reader, TRANSFER_FILE,
-				"not given; name a .tf file (docs/scenes.md says what is in it)");
 	if (result == GZ_OK)
 		result = check_display(reader, out_has_display);
 	return result;
@@ -384,7 +382,7 @@ static enum gz_result find_file(const struct reader *reader, const char *key, co
 static enum gz_result make_procedural(const struct reader *reader, struct gz_volume *out_volume)
 {
 	static const int preset[3] = { PROCEDURAL_EDGE, PROCEDURAL_EDGE, PROCEDURAL_EDGE };
-	const int *dims = reader->given[VOLUME_DIMS] ? reader->settings->dims : preset;
+	const int *dims = reader->settings->dims[0] > 0 ? reader->settings->dims : preset;
 	enum gz_procedural which = (enum gz_procedural)(reader->settings->volume_procedural - 1);
 	enum gz_voxel_type type;
 	if (!made_type(reader->settings, &type))
@@ -409,7 +407,7 @@ static enum gz_result load_volume(const struct reader *reader, struct gz_volume 
 				     .big_endian = settings->endian == 1 };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
-	return gz_volume_load(path, reader->given[VOLUME_DIMS] ? &raw : NULL, &loading, reader->log,
+	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, reader->log,
 			      out_volume);
 }
 
@@ -455,24 +453,19 @@ enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 	return gz_scene_load_changed(path, NULL, NULL, loading, log, out_scene);
 }
 
-/* All but the volume. */
-static enum gz_result read_scene(struct reader *reader, gz_scene_change *change, void *user,
-				 struct gz_scene *scene)
+/* What the file says, and @p change of it; none of the files that it names. */
+static enum gz_result read_settings(struct reader *reader, gz_scene_change *change, void *user,
+				    struct gz_scene *scene)
 {
 	const char *path = reader->name;
-	const struct gz_log *log = reader->log;
 	enum gz_result result =
-		gz_options_read_file(reader->bindings, GZ_SCENE_BINDINGS, path, log);
+		gz_options_read_file(reader->bindings, GZ_SCENE_BINDINGS, path, reader->log);
 	if (result == GZ_OK)
 		result = check(reader, &scene->has_display);
 	if (result == GZ_OK && change)
 		result = change(user, &scene->settings);
 	if (result == GZ_OK)
-		result = gz_scene_settings_check(&scene->settings, path, log);
-	if (result == GZ_OK)
-		result = gz_scene_load_table(path, log, &scene->settings.foveation);
-	if (result == GZ_OK)
-		result = load_transfer(reader, &scene->transfer);
+		result = gz_scene_settings_check(&scene->settings, path, reader->log);
 	return result;
 }
 
@@ -483,61 +476,66 @@ enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, 
 	struct gz_scene scene = { 0 };
 	struct reader reader;
 	enum gz_result result = begin(&reader, path, log, &scene.settings);
-	reader.loading = loading;
 	if (result == GZ_OK)
-		result = read_scene(&reader, change, user, &scene);
+		result = read_settings(&reader, change, user, &scene);
+	const struct gz_scene_parts parts = {
+		.name = path,
+		.settings = &scene.settings,
+		.has_display = scene.has_display,
+	};
+	return result == GZ_OK ? gz_scene_load_parts(&parts, loading, log, out_scene) : result;
+}
+
+enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struct gz_log *log,
+				     struct gz_transfer *out_transfer)
+{
+	struct gz_histogram histogram;
+	const enum gz_result result =
+		gz_histogram_count(volume, GZ_HISTOGRAM_BINS_LEAST, 0, NULL, log, &histogram);
+	if (result == GZ_OK)
+		gz_transfer_preset_make(GZ_PRESET_DEFAULT, &histogram, volume, out_transfer);
+	return result;
+}
+
+enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
+				   const struct gz_loading *loading, const struct gz_log *log,
+				   struct gz_scene *out_scene)
+{
+	struct gz_scene scene = { .settings = *parts->settings, .has_display = parts->has_display };
+	const struct reader reader = {
+		.name = parts->name, .loading = loading, .log = log, .settings = &scene.settings
+	};
+	const bool named = !parts->transfer && scene.settings.transfer_file[0];
+	enum gz_result result = gz_scene_load_table(parts->name, log, &scene.settings.foveation);
+	if (result == GZ_OK && named)
+		result = load_transfer(&reader, &scene.transfer);
+	if (result == GZ_OK && parts->transfer)
+		scene.transfer = *parts->transfer;
 	if (result == GZ_OK)
 		result = load_volume(&reader, &scene.volume);
+	if (result == GZ_OK && !named && !parts->transfer && !parts->volume_alone)
+		result = gz_transfer_of_volume(&scene.volume, log, &scene.transfer);
 	if (result != GZ_OK) {
 		gz_scene_free(&scene);
 		return result;
 	}
 	*out_scene = scene;
 	return GZ_OK;
-}
-
-/* Voxels are counted on all processors, which takes less than reading them did. */
-static enum gz_result fit_transfer(const struct reader *reader, struct gz_scene *scene)
-{
-	struct gz_histogram *histogram = malloc(sizeof *histogram);
-	if (!histogram)
-		return GZ_ERR_NO_MEM;
-	enum gz_result result = gz_histogram_count(&scene->volume, GZ_HISTOGRAM_BINS_LEAST, 0, NULL,
-						   reader->log, histogram);
-	if (result == GZ_OK)
-		gz_transfer_preset_make(GZ_PRESET_DEFAULT, histogram, &scene->volume,
-					&scene->transfer);
-	free(histogram);
-	return result;
 }
 
 enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_settings *settings,
 				      bool has_display, const struct gz_loading *loading,
 				      const struct gz_log *log, struct gz_scene *out_scene)
 {
-	struct gz_scene scene = { .settings = *settings, .has_display = has_display };
-	struct reader reader = {
-		.name = path, .loading = loading, .log = log, .settings = &scene.settings
-	};
+	struct gz_scene_settings checked = *settings;
+	const struct gz_scene_parts parts = { path, &checked, has_display, NULL, false };
+	struct reader reader = { .name = path, .log = log, .settings = &checked };
 	reader.given[VOLUME_DIMS] = settings->dims[0] > 0;
 	reader.given[VOLUME_TYPE] = settings->dims[0] > 0 || settings->volume_procedural != 0;
 	enum gz_result result = check_volume(&reader);
 	if (result == GZ_OK)
 		result = gz_scene_settings_check(settings, path, log);
-	if (result == GZ_OK)
-		result = gz_scene_load_table(path, log, &scene.settings.foveation);
-	if (result == GZ_OK && settings->transfer_file[0])
-		result = load_transfer(&reader, &scene.transfer);
-	if (result == GZ_OK)
-		result = load_volume(&reader, &scene.volume);
-	if (result == GZ_OK && !settings->transfer_file[0])
-		result = fit_transfer(&reader, &scene);
-	if (result != GZ_OK) {
-		gz_scene_free(&scene);
-		return result;
-	}
-	*out_scene = scene;
-	return GZ_OK;
+	return result == GZ_OK ? gz_scene_load_parts(&parts, loading, log, out_scene) : result;
 }
 
 enum gz_result gz_scene_try(const char *path, gz_scene_change *change, void *user,
@@ -548,7 +546,11 @@ enum gz_result gz_scene_try(const char *path, gz_scene_change *change, void *use
 	char volume[GZ_PATH_SIZE];
 	enum gz_result result = begin(&reader, path, log, &scene.settings);
 	if (result == GZ_OK)
-		result = read_scene(&reader, change, user, &scene);
+		result = read_settings(&reader, change, user, &scene);
+	if (result == GZ_OK)
+		result = gz_scene_load_table(path, log, &scene.settings.foveation);
+	if (result == GZ_OK && scene.settings.transfer_file[0])
+		result = load_transfer(&reader, &scene.transfer);
 	if (result == GZ_OK && !scene.settings.volume_procedural)
 		result = find_file(&reader, scene_options[VOLUME_FILE].key,
 				   scene.settings.volume_file, volume);

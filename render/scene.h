@@ -29,8 +29,8 @@ struct gz_scene_settings {
 	int type;                       /**< enum gz_raw_type; of a procedural volume, too */
 	int endian;                     /**< 0 little, 1 big */
 	double spacing[3];
-	int memory_mib; /**< for bricks; 0 = a quarter of the machine's memory */
-	char transfer_file[GZ_PATH_SIZE];
+	int memory_mib;                   /**< for bricks; 0 = a quarter of the machine's memory */
+	char transfer_file[GZ_PATH_SIZE]; /**< empty: one is made for the volume */
 	char transfer_also[GZ_PATH_SIZE]; /**< names of further ones, parted by blanks: for studies
 					     of several; a scene is shown with transfer_file */
 	struct gz_camera camera;
@@ -124,6 +124,26 @@ typedef enum gz_result gz_scene_change(void *user, struct gz_scene_settings *set
 enum gz_result gz_scene_load_changed(const char *path, gz_scene_change *change, void *user,
 				     const struct gz_loading *loading, const struct gz_log *log,
 				     struct gz_scene *out_scene);
+
+/** A scene whose settings are known already. */
+struct gz_scene_parts {
+	const char *name; /**< path beside which files are looked up first */
+	const struct gz_scene_settings *settings;
+	bool has_display;
+	const struct gz_transfer *transfer; /**< in place of the one that the settings name; NULL:
+					       that one */
+	bool volume_alone; /**< none is made where none is named: whoever loads only wants voxels */
+};
+
+/** Load what settings name, as gz_scene_load() does for those of a file. @return as that */
+enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
+				   const struct gz_loading *loading, const struct gz_log *log,
+				   struct gz_scene *out_scene);
+
+/** The transfer function of a volume that comes without one: GZ_PRESET_DEFAULT, by its histogram.
+ *  @return what gz_histogram_count() returns; logged */
+enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struct gz_log *log,
+				     struct gz_transfer *out_transfer);
 
 /**
  * As gz_scene_load(), of settings that are there already: changed by somebody, or made for a volume

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "render/picture_plan.h"
+#include "render/scene_open.h"
 #include "view/caster.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -103,9 +104,19 @@ static enum gz_result load(const struct change *change, const struct gz_loading 
 {
 	const struct gz_frame_scene *scene = change->scene;
 	struct change user = *change;
+	struct gz_raw_layout told;
+	const bool is_told = scene->by_options && gz_view_options_raw(change->options, &told);
+	const struct gz_scene_request request = {
+		.path = scene->path,
+		.raw = scene->raw ? scene->raw
+		       : is_told  ? &told
+				  : NULL,
+		.change = change_settings,
+		.user = &user,
+		.loading = loading,
+	};
 	if (!scene->settings)
-		return gz_scene_load_changed(scene->path, change_settings, &user, loading,
-					     change->log, out_scene);
+		return gz_scene_open(&request, change->log, out_scene);
 	struct gz_scene_settings settings = *scene->settings;
 	const enum gz_result r = change_settings(&user, &settings);
 	return r != GZ_OK ? r

@@ -29,8 +29,12 @@ struct gz_frame_request {
 
 /** Which scene a maker is to show. */
 struct gz_frame_scene {
-	/** Of the scene's file; names in the scene are looked up beside it first. */
+	/** Of a scene's file, beside which names in the scene are looked up first, or of whatever
+	 *  gz_scene_open() takes. */
 	const char *path;
+	/** The layout of the raw file that @p path is; NULL: the options' or what its name tells.
+	 */
+	const struct gz_raw_layout *raw;
 	/** Stand for what is in the file, which need not be there; NULL: it is read. */
 	const struct gz_scene_settings *settings;
 	bool has_display; /**< settings->display is part of the scene; only with settings */

@@ -12,13 +12,15 @@
 #define AT(field) offsetof(struct gz_view_options, field)
 
 static const char *const bricks_names[] = { "auto", "wait", "stream", NULL };
+static const char *const endian_names[] = { "little", "big", NULL };
 
 const struct gz_option gz_view_option_table[] = {
 	{ .key = "scene",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(scene),
 	  .max = GZ_PATH_SIZE,
-	  .help = "scene file to show; may also stand alone, without --scene" },
+	  .help = "what to show: a scene, a volume, or a picture that gazeview saved; may also "
+		  "stand alone, without --scene" },
 	{ .key = "headless",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(headless),
@@ -169,6 +171,36 @@ const struct gz_option gz_view_option_table[] = {
 	  .min = 1,
 	  .max = 100000,
 	  .help = "from the eye to the display, mm" },
+	{ .key = "volume.dims",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(volume_dims),
+	  .min = 1,
+	  .max = GZ_VOLUME_DIM_MAX,
+	  .count = 3,
+	  .help = "voxels along x, y, z of a raw file that stands for a scene, as \"256 256 128\"; "
+		  "without it its name and its size must tell" },
+	{ .key = "volume.type",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(volume_type),
+	  .choices = gz_raw_type_names,
+	  .help = "type of its voxels" },
+	{ .key = "volume.endian",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(volume_endian),
+	  .choices = endian_names,
+	  .help = "byte order of its voxels; without it little" },
+	{ .key = "volume.spacing",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(volume_spacing),
+	  .min = 1e-9,
+	  .max = 1e9,
+	  .count = 3,
+	  .help = "between its voxels along x, y, z, mm; without it 1" },
+	{ .key = "transfer.file",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(transfer_file),
+	  .max = GZ_PATH_SIZE,
+	  .help = "transfer function, .tf, in place of the scene's" },
 	{ .key = "help",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(help),
@@ -398,6 +430,18 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 	return GZ_ERR_INVAL;
 }
 
+/* A layout is told by dims and type; the rest has presets. */
+static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
+{
+	const bool dims = options->volume_dims[0] > 0, type = options->volume_type >= 0;
+	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0;
+	if (dims == type && (dims || !more))
+		return GZ_OK;
+	gz_err(log, "--volume.%s: not given; a raw file needs both dims and type",
+	       dims ? "type" : "dims");
+	return GZ_ERR_INVAL;
+}
+
 /* Headless output asked for together with a window, a mouse without one, and the like. */
 static enum gz_result check_together(const struct gz_view_options *options,
 				     const struct gz_log *log)
@@ -417,6 +461,8 @@ static enum gz_result check_together(const struct gz_view_options *options,
 		       options->gaze_text);
 		return GZ_ERR_INVAL;
 	}
+	if (check_raw(options, log) != GZ_OK)
+		return GZ_ERR_INVAL;
 	const char *file = options->out[0]     ? "out"
 			   : options->video[0] ? "video"
 			   : options->stats[0] ? "stats"
@@ -486,7 +532,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 {
 	struct gz_view_scene_tables tables;
 	memset(out_options, 0, sizeof *out_options);
-	out_options->method = -1;
+	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
 	if (r != GZ_OK || out_options->help || out_options->version)
@@ -498,6 +544,37 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	if (r == GZ_OK)
 		r = check_method_once(out_options, &tables, log);
 	return r == GZ_OK ? check_together(out_options, log) : r;
+}
+
+bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw)
+{
+	struct gz_raw_layout raw = {
+		.type = (enum gz_raw_type)options->volume_type,
+		.big_endian = options->volume_endian == 1,
+	};
+	if (options->volume_dims[0] < 1 || options->volume_type < 0)
+		return false;
+	memcpy(raw.dims, options->volume_dims, sizeof raw.dims);
+	for (int axis = 0; axis < 3; axis++)
+		raw.spacing[axis] =
+			options->volume_spacing[axis] > 0 ? options->volume_spacing[axis] : 1;
+	*out_raw = raw;
+	return true;
+}
+
+/* A file named on the command line lies where the program was called, not beside the scene. What is
+ * not there is told by who opens it. */
+static void apply_transfer(const struct gz_view_options *options,
+			   struct gz_scene_settings *settings)
+{
+	if (!options->transfer_file[0])
+		return;
+	char *real = realpath(options->transfer_file, NULL);
+	const bool fits = real && strlen(real) < sizeof settings->transfer_file;
+	const char *path = fits ? real : options->transfer_file;
+	memset(settings->transfer_file, 0, sizeof settings->transfer_file);
+	memcpy(settings->transfer_file, path, strlen(path));
+	free(real);
 }
 
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
@@ -524,6 +601,7 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	if (options->method >= 0)
 		settings->foveation.method = options->method;
 	apply_short_names(options, &settings->view);
+	apply_transfer(options, settings);
 	return GZ_OK;
 }
 
@@ -538,6 +616,7 @@ void gz_view_options_print_help(FILE *out)
 	gz_view_pick_scene_tables(&settings, &tables);
 	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
 	      "  gazeview SCENE\n"
+	      "  gazeview VOLUME\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"
 	      "  gazeview --targets 9\n\n",
 	      out);

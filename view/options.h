@@ -73,6 +73,12 @@ struct gz_view_options {
 	double display_mm[2];       /**< 0: not given */
 	double display_distance_mm; /**< 0: not given */
 
+	int volume_dims[3];                /**< of a raw file; 0: not given */
+	int volume_type;                   /**< enum gz_raw_type; -1: not given */
+	int volume_endian;                 /**< 0 little, 1 big; -1: not given */
+	double volume_spacing[3];          /**< 0: not given */
+	char transfer_file[GZ_PATH_SIZE];  /**< in place of the scene's; empty: not given */
+
 	struct gz_target_options target; /**< targets instead of a scene, where any are named */
 
 	/** Scene keys given on the command line, to be copied over what the scene file says. */
@@ -96,7 +102,10 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 /** Print how gazeview is called, every option, and the scene keys that may be given too. */
 void gz_view_options_print_help(FILE *out);
 
-/** Copy the scene keys of the command line, and --method, over the scene's own. */
+/** The layout of a raw file that the options tell. @return false: they tell none */
+bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw);
+
+/** Copy the scene keys of the command line, --method and --transfer.file over the scene's own. */
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings);
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "render/file_path.h"
-#include "render/scene.h"
+#include "render/scene_open.h"
 #include "render/volume/brick_write.h"
 #include "render/volume/nrrd_write.h"
 #include "view/loading_bar.h"
@@ -39,7 +39,14 @@ static enum gz_result load(const struct gz_view_options *options, const struct g
 	gz_loading_bar_begin(&bar, log);
 	bar.loading.scratch = where->scratch;
 	bar.loading.scratch_from = where->scratch_from;
-	const enum gz_result r = gz_scene_load(options->scene, &bar.loading, log, out_scene);
+	struct gz_raw_layout raw;
+	const struct gz_scene_request request = {
+		.path = options->scene,
+		.raw = gz_view_options_raw(options, &raw) ? &raw : NULL,
+		.loading = &bar.loading,
+		.volume_alone = true,
+	};
+	const enum gz_result r = gz_scene_open(&request, log, out_scene);
 	gz_loading_bar_end(&bar);
 	return r;
 }

@@ -202,7 +202,10 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 {
 	char file[GZ_PATH_SIZE];
 	if (which == 0)
-		snprintf(file, sizeof file, "%s", stage->scene.settings.transfer_file);
+		snprintf(file, sizeof file, "%s",
+			 stage->scene.settings.transfer_file[0]
+				 ? stage->scene.settings.transfer_file
+				 : "made-for-the-volume.tf");
 	else if (!find_name(stage->scene.settings.transfer_also, which - 1, file))
 		return GZ_ERR_INVAL;
 	gz_study_file_name(file, ".tf", out_name);

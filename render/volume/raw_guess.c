@@ -321,6 +321,11 @@ uint64_t gz_raw_file_bytes(const char *path)
 
 bool gz_raw_is_name(const char *path)
 {
-	return gz_path_ends(path, ".raw") || gz_path_ends(path, ".zst") ||
-	       (gz_path_ends(path, ".gz") && !gz_path_ends(path, ".nii.gz"));
+	static const char *const endings[] = {
+		".raw", ".zst", ".gz", ".bin", ".dat", ".vol", ".img"
+	};
+	for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
+		if (gz_path_ends(path, endings[i]) && !gz_path_ends(path, ".nii.gz"))
+			return true;
+	return false;
 }

@@ -30,6 +30,9 @@ static const struct {
 	{ ".raw", GZ_CODING_PLAIN },
 };
 
+/* Raw data where a layout is given; else they may be anything. */
+static const char *const perhaps_headerless[] = { ".bin", ".dat", ".vol", ".img" };
+
 enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 			      const struct gz_loading *loading, const struct gz_log *log,
 			      struct gz_volume *out_volume)
@@ -51,6 +54,10 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
 		return GZ_ERR_INVAL;
 	}
+	for (size_t i = 0; i < sizeof perhaps_headerless / sizeof perhaps_headerless[0]; i++)
+		if (raw && gz_path_ends(path, perhaps_headerless[i]))
+			return gz_volume_load_raw(path, GZ_CODING_PLAIN, raw, loading, log,
+						  out_volume);
 	/* Names of DICOM files often say nothing. */
 	if (!raw && gz_dicom_is(path))
 		return gz_volume_load_dicom(path, loading, log, out_volume);

@@ -27,7 +27,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	require(!has_display || gz_display_valid(&s.display));
 	require((s.volume_file[0] != '\0') != (s.volume_procedural != 0));
 	require(memchr(s.volume_file, '\0', sizeof s.volume_file) != NULL);
-	require(s.transfer_file[0] != '\0');
 	require(s.volume_procedural >= 0 && s.volume_procedural <= GZ_PROCEDURAL_COUNT);
 	require(s.rays.ray_sampling_rate > 0 && s.image_sampling_rate > 0);
 	return 0;

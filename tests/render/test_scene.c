@@ -88,7 +88,6 @@ struct refusal {
 
 static const struct refusal refusals[] = {
 	{ "", "s.scene: volume.file: not given; name a volume" },
-	{ VOLUME, "s.scene: transfer.file: not given; name a .tf file" },
 	{ TRANSFER, "s.scene: volume.file: not given; name a volume" },
 	{ "[volume]\nfile = a.nii\nprocedural = shells\n" TRANSFER,
 	  "s.scene: volume.file: given with volume.procedural; keep one" },

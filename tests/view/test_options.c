@@ -13,7 +13,7 @@ enum { ARGUMENTS_MAX = 24 };
 static struct captured_log captured;
 static struct gz_view_options options;
 
-/* A command line of words separated by single blanks. */
+/* A command line of words separated by single blanks; an @ is a blank within a word. */
 static enum gz_result read_line(const char *line)
 {
 	static char text[4096];
@@ -21,8 +21,12 @@ static enum gz_result read_line(const char *line)
 	char *argv[ARGUMENTS_MAX] = { name };
 	int argc = 1;
 	snprintf(text, sizeof text, "%s", line);
-	for (char *word = strtok(text, " "); word && argc < ARGUMENTS_MAX; word = strtok(NULL, " "))
+	for (char *word = strtok(text, " "); word && argc < ARGUMENTS_MAX;
+	     word = strtok(NULL, " ")) {
+		for (char *at = strchr(word, '@'); at; at = strchr(at, '@'))
+			*at = ' ';
 		argv[argc++] = word;
+	}
 	captured_log_init(&captured, "*:debug");
 	return gz_view_options_read(argc, argv, &captured.log, &options);
 }
@@ -157,7 +161,49 @@ static void what_a_scene_shows_cannot_be_overridden(void **state)
 {
 	(void)state;
 	assert_refused("a.scene --volume.file b.nii", "volume.file");
-	assert_refused("a.scene --transfer.file b.tf", "transfer.file");
+	assert_refused("a.scene --transfer.also b.tf", "transfer.also");
+}
+
+static void raw_file_gets_the_layout_that_is_told(void **state)
+{
+	(void)state;
+	struct gz_raw_layout raw;
+	assert_int_equal(read_line("a.raw"), GZ_OK);
+	assert_false(gz_view_options_raw(&options, &raw));
+	assert_int_equal(read_line("a.raw --volume.dims=2@3@4 --volume.type uint8"), GZ_OK);
+	assert_true(gz_view_options_raw(&options, &raw));
+	assert_int_equal(raw.dims[2], 4);
+	assert_int_equal(raw.type, GZ_RAW_UINT8);
+	assert_false(raw.big_endian);
+	assert_true(raw.spacing[0] == 1);
+	assert_int_equal(read_line("a.raw --volume.dims=2@3@4 --volume.type int16 --volume.endian "
+				   "big --volume.spacing=1@1@2.5"),
+			 GZ_OK);
+	assert_true(gz_view_options_raw(&options, &raw));
+	assert_true(raw.big_endian);
+	assert_true(raw.spacing[2] == 2.5);
+}
+
+static void half_a_layout_is_refused(void **state)
+{
+	(void)state;
+	assert_refused("a.raw --volume.dims=2@3@4", "volume.type: not given");
+	assert_refused("a.raw --volume.type uint8", "volume.dims: not given");
+	assert_refused("a.raw --volume.endian big", "volume.dims: not given");
+	assert_refused("a.raw --volume.spacing=1@1@1", "volume.dims: not given");
+}
+
+static void transfer_function_of_the_command_line_is_found_from_everywhere(void **state)
+{
+	(void)state;
+	static struct gz_scene_settings settings;
+	strcpy(settings.transfer_file, "of-the-scene.tf");
+	assert_int_equal(read_line("a.scene --transfer.file ."), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.transfer_file[0], '/');
+	assert_int_equal(read_line("a.scene --transfer.file none.tf"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_string_equal(settings.transfer_file, "none.tf");
 }
 
 static void scene_keys_given_come_before_the_scenes_own(void **state)
@@ -293,6 +339,8 @@ static void help_names_every_option_and_every_key_that_can_be_given(void **state
 			bool taken = strncmp(key, "volume.", 7) != 0 &&
 				     strncmp(key, "transfer.", 9) != 0 &&
 				     strncmp(key, "display.", 8) != 0;
+			for (size_t own = 0; own < gz_view_option_count; own++)
+				taken = taken || strcmp(key, gz_view_option_table[own].key) == 0;
 			if (taken != (strstr(text, key) != NULL))
 				fail_msg("--help and %s disagree", key);
 			hidden += !taken;
@@ -322,6 +370,9 @@ int main(void)
 		cmocka_unit_test(values_outside_their_range_are_refused),
 		cmocka_unit_test(options_that_contradict_each_other_are_refused),
 		cmocka_unit_test(what_a_scene_shows_cannot_be_overridden),
+		cmocka_unit_test(raw_file_gets_the_layout_that_is_told),
+		cmocka_unit_test(half_a_layout_is_refused),
+		cmocka_unit_test(transfer_function_of_the_command_line_is_found_from_everywhere),
 		cmocka_unit_test(scene_keys_given_come_before_the_scenes_own),
 		cmocka_unit_test(scene_without_overrides_stays_as_it_is),
 		cmocka_unit_test(pattern_puts_the_number_where_it_stands),

@@ -15,8 +15,11 @@
 
 /** What is to be shown. Zero-initialised but for the path: a scene's file as it is. */
 struct gz_window_load_request {
-	/** Of the scene's file; names in the scene are looked up beside it first. */
+	/** Of a scene's file, beside which names in the scene are looked up first, or of whatever
+	 *  gz_scene_open() takes. */
 	char path[GZ_PATH_SIZE];
+	bool has_raw; /**< @p raw is the layout of the raw file that @p path is */
+	struct gz_raw_layout raw;
 	/** @p settings stand for what is in the file, which need not be there: for a volume without
 	 *  a scene, see gz_scene_load_settings(). */
 	bool has_settings;

@@ -1,0 +1,235 @@
+#include "check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/captured_log.h"
+#include "render/scene_open.h"
+#include "render/scene_picture.h"
+#include "volume_files.h"
+
+static unsigned char voxels[4 * 4 * 8];
+
+static struct gz_scene opened(const char *path, const struct gz_raw_layout *raw)
+{
+	struct gz_scene scene = { 0 };
+	struct captured_log log;
+	const struct gz_scene_request request = { .path = path, .raw = raw };
+	captured_log_init(&log, NULL);
+	if (gz_scene_open(&request, &log.log, &scene) != GZ_OK)
+		fail_msg("%s: %s", path, log.last);
+	return scene;
+}
+
+static void assert_refused(const char *path, const struct gz_raw_layout *raw,
+			   enum gz_result expected, const char *words)
+{
+	struct gz_scene scene = { .has_display = true };
+	struct captured_log log;
+	const struct gz_scene_request request = { .path = path, .raw = raw };
+	captured_log_init(&log, NULL);
+	const enum gz_result result = gz_scene_open(&request, &log.log, &scene);
+	if (result != expected || !strstr(log.last, words))
+		fail_msg("%s: result %d, \"%s\" lacks \"%s\"", path, result, log.last, words);
+	assert_true(scene.has_display);
+}
+
+static const char *write_nrrd(const char *name)
+{
+	for (size_t i = 0; i < sizeof voxels; i++)
+		voxels[i] = (unsigned char)(i * 2);
+	return files_write_text(name,
+				"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 8\n"
+				"spacings: 1 1 1\nencoding: raw\n\n",
+				voxels, sizeof voxels);
+}
+
+static void kind_of_a_file_follows_from_its_name(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *name;
+		enum gz_file_kind kind;
+	} rows[] = {
+		{ "a.scene", GZ_FILE_SCENE },       { "a.PNG", GZ_FILE_PICTURE },
+		{ "a.tf", GZ_FILE_TRANSFER },       { "a.gzl", GZ_FILE_GAZE_LOG },
+		{ "a.nii.gz", GZ_FILE_VOLUME },     { "a.mhd", GZ_FILE_VOLUME },
+		{ "a.gzb", GZ_FILE_VOLUME },        { "a.dcm", GZ_FILE_VOLUME },
+		{ "a.raw", GZ_FILE_RAW },           { "a.raw.zst", GZ_FILE_RAW },
+		{ "a_u8.dat.gz", GZ_FILE_RAW },     { "a.bin", GZ_FILE_RAW },
+		{ "nothing known", GZ_FILE_SCENE }, { "a.ini", GZ_FILE_SCENE },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+		if (gz_file_kind_of(rows[i].name) != rows[i].kind)
+			fail_msg("%s: %d", rows[i].name, gz_file_kind_of(rows[i].name));
+	assert_int_equal(gz_file_kind_of(files_folder()), GZ_FILE_VOLUME);
+}
+
+static void volume_without_a_scene_is_seen_whole(void **state)
+{
+	(void)state;
+	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
+	const struct gz_camera *camera = &scene.settings.camera;
+	double half[3], widest = 0;
+	assert_true(scene.settings.volume_file[0] == '/');
+	assert_true(scene.transfer.count >= 1);
+	gz_volume_half_extent(&scene.volume, half);
+	for (int corner = 0; corner < 8; corner++) {
+		const double at[3] = { corner & 1 ? half[0] : -half[0],
+				       corner & 2 ? half[1] : -half[1],
+				       corner & 4 ? half[2] : -half[2] };
+		struct gz_point point;
+		assert_true(gz_camera_project(camera, 300, 300, at, &point));
+		const double aside = fmax(fabs(point.x - 0.5), fabs(point.y - 0.5));
+		widest = fmax(widest, aside);
+	}
+	if (!(widest > 0.44 && widest < 0.46))
+		fail_msg("the box takes %g of half the picture", 2 * widest);
+	gz_scene_free(&scene);
+}
+
+static void fitted_camera_sees_the_box_in_either_projection(void **state)
+{
+	(void)state;
+	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
+	struct gz_camera camera = scene.settings.camera;
+	const double half[3] = { 0.25, 0.25, 0.5 };
+	camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	gz_camera_fit(&camera, &scene.volume);
+	double widest = 0;
+	for (int corner = 0; corner < 8; corner++) {
+		const double at[3] = { corner & 1 ? half[0] : -half[0],
+				       corner & 2 ? half[1] : -half[1],
+				       corner & 4 ? half[2] : -half[2] };
+		struct gz_point point;
+		assert_true(gz_camera_project(&camera, 300, 300, at, &point));
+		widest = fmax(widest, fmax(fabs(point.x - 0.5), fabs(point.y - 0.5)));
+	}
+	if (!(widest > 0.44 && widest < 0.46))
+		fail_msg("the box takes %g of half the picture", 2 * widest);
+	gz_scene_free(&scene);
+}
+
+static enum gz_result look_from_below(void *user, struct gz_scene_settings *settings)
+{
+	(void)user;
+	settings->camera.eye[2] = -3;
+	return GZ_OK;
+}
+
+static void changed_camera_stays(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	const struct gz_scene_request request = { .path = write_nrrd("v.nrrd"),
+						  .change = look_from_below };
+	assert_int_equal(gz_scene_open(&request, NULL, &scene), GZ_OK);
+	assert_true(scene.settings.camera.eye[2] == -3 && scene.settings.camera.eye[1] == -2);
+	gz_scene_free(&scene);
+}
+
+static void raw_file_is_taken_as_told_or_as_its_name_says_for_certain(void **state)
+{
+	(void)state;
+	const struct gz_raw_layout layout = { .dims = { 8, 4, 2 },
+					      .type = GZ_RAW_INT16,
+					      .big_endian = true,
+					      .spacing = { 1, 1, 2 } };
+	const char *told = files_write("told.raw", voxels, sizeof voxels);
+	struct gz_scene scene = opened(told, &layout);
+	assert_int_equal(scene.volume.dims[0], 8);
+	assert_int_equal(scene.settings.endian, 1);
+	assert_true(scene.settings.spacing[2] == 2);
+	gz_scene_free(&scene);
+	scene = opened(files_write("a_4x4x8_uint8.raw", voxels, sizeof voxels), NULL);
+	assert_int_equal(scene.volume.dims[2], 8);
+	gz_scene_free(&scene);
+	assert_refused(told, NULL, GZ_ERR_INVAL, "told.raw: has no header; tell its layout");
+	assert_refused(files_write("a_4x4x4.raw", voxels, sizeof voxels), NULL, GZ_ERR_INVAL,
+		       "--volume.dims \"4 4 4\" --volume.type uint16 would fit");
+}
+
+static void layout_for_what_has_one_is_refused(void **state)
+{
+	(void)state;
+	const struct gz_raw_layout layout = { .dims = { 4, 4, 8 }, .spacing = { 1, 1, 1 } };
+	assert_refused(write_nrrd("v.nrrd"), &layout, GZ_ERR_INVAL, "no raw file");
+	assert_refused("a.scene", &layout, GZ_ERR_INVAL, "no raw file");
+}
+
+static void what_shows_nothing_is_refused(void **state)
+{
+	(void)state;
+	assert_refused("a.tf", NULL, GZ_ERR_INVAL, "a transfer function shows nothing by itself");
+	assert_refused("a.gzl", NULL, GZ_ERR_INVAL, "a gaze log shows nothing by itself");
+	assert_refused(files_path("none.nii"), NULL, GZ_ERR_NOT_FOUND, "check the path");
+	assert_refused(files_path("none.scene"), NULL, GZ_ERR_NOT_FOUND, "no such file");
+	assert_refused(files_write("notes.txt", "milk\n", 5), NULL, GZ_ERR_FORMAT, "notes.txt:1: ");
+}
+
+static void picture_opens_the_scene_that_it_shows(void **state)
+{
+	(void)state;
+	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
+	struct gz_image image = { 0 };
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	const char *path = files_path("p.png");
+	assert_int_equal(gz_image_resize(&image, 4, 4), GZ_OK);
+	scene.settings.camera.fov_deg = 33;
+	scene.transfer.points[0].opacity = 0.375;
+	const struct gz_scene_saved saved = { &scene.settings, false, "" };
+	assert_int_equal(
+		gz_scene_picture_write(&image, &saved, &scene.transfer, &scene.volume, path, NULL),
+		GZ_OK);
+	gz_scene_free(&scene);
+	scene = opened(path, NULL);
+	assert_true(scene.settings.camera.fov_deg == 33);
+	assert_true(scene.transfer.points[0].opacity == 0.375);
+	gz_scene_free(&scene);
+	/* The volume becomes another. */
+	voxels[5] ^= 255;
+	files_write_text("v.nrrd",
+			 "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 8\nspacings: 1 1 1\n"
+			 "encoding: raw\n\n",
+			 voxels, sizeof voxels);
+	const struct gz_scene_request request = { .path = path };
+	assert_int_equal(gz_scene_open(&request, &log.log, &scene), GZ_OK);
+	assert_non_null(strstr(log.last, "was made of other data"));
+	gz_scene_free(&scene);
+	unlink(files_path("v.nrrd"));
+	assert_refused(path, NULL, GZ_ERR_NOT_FOUND, "volume.file");
+	gz_image_free(&image);
+}
+
+static void scene_without_a_transfer_function_gets_one(void **state)
+{
+	(void)state;
+	struct gz_scene scene =
+		opened(files_write_text("bare.scene",
+					"[volume]\nprocedural = shells\ndims = 8 8 8\n", "", 0),
+		       NULL);
+	assert_true(scene.transfer.count > 1);
+	assert_string_equal(scene.settings.transfer_file, "");
+	gz_scene_free(&scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
+		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
+		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
+		cmocka_unit_test(changed_camera_stays),
+		cmocka_unit_test(raw_file_is_taken_as_told_or_as_its_name_says_for_certain),
+		cmocka_unit_test(layout_for_what_has_one_is_refused),
+		cmocka_unit_test(what_shows_nothing_is_refused),
+		cmocka_unit_test(picture_opens_the_scene_that_it_shows),
+		cmocka_unit_test(scene_without_a_transfer_function_gets_one),
+	};
+	unsetenv("GAZECAST_DATA");
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
