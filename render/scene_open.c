@@ -24,7 +24,7 @@ static bool is_folder(const char *path)
 	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-enum gz_file_kind gz_file_kind_of(const char *path)
+enum gz_file_kind gz_file_kind_by_name(const char *path)
 {
 	static const struct {
 		const char *ending;
@@ -40,9 +40,14 @@ enum gz_file_kind gz_file_kind_of(const char *path)
 	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
 		if (gz_path_ends(path, kinds[i].ending))
 			return kinds[i].kind;
-	if (is_folder(path) || gz_dicom_is(path))
-		return GZ_FILE_VOLUME;
-	return gz_raw_is_name(path) ? GZ_FILE_RAW : GZ_FILE_SCENE;
+	return gz_raw_is_name(path) ? GZ_FILE_RAW : GZ_FILE_OTHER;
+}
+
+enum gz_file_kind gz_file_kind_of(const char *path)
+{
+	const enum gz_file_kind kind = gz_file_kind_by_name(path);
+	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
+	return looked_into && (is_folder(path) || gz_dicom_is(path)) ? GZ_FILE_VOLUME : kind;
 }
 
 enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_raw_layout *raw,
@@ -227,6 +232,7 @@ enum gz_result gz_scene_open(const struct gz_scene_request *request, const struc
 	}
 	switch (kind) {
 	case GZ_FILE_SCENE:
+	case GZ_FILE_OTHER:
 		return gz_scene_load_changed(request->path, request->change, request->user,
 					     request->loading, log, out_scene);
 	case GZ_FILE_VOLUME:

@@ -12,13 +12,17 @@
 /** What a file is to gazeview, by its name; folders and files without a telling name are looked
  *  into. */
 enum gz_file_kind {
-	GZ_FILE_SCENE,    /**< .scene, and whatever is none of the others */
+	GZ_FILE_SCENE,    /**< .scene */
 	GZ_FILE_VOLUME,   /**< tells its layout itself; also a folder, of DICOM */
 	GZ_FILE_RAW,      /**< does not */
 	GZ_FILE_PICTURE,  /**< .png */
 	GZ_FILE_TRANSFER, /**< .tf */
 	GZ_FILE_GAZE_LOG, /**< .gzl */
+	GZ_FILE_OTHER,    /**< none of these: opened as a scene, which it may be */
 };
+
+/** The kind that a name tells: a file is not looked at, so that folders are GZ_FILE_OTHER. */
+enum gz_file_kind gz_file_kind_by_name(const char *path);
 
 /** The kind of a file, which need not be there. */
 enum gz_file_kind gz_file_kind_of(const char *path);

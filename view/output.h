@@ -15,8 +15,8 @@
 void gz_output_folder(const char *path, char *out, size_t size);
 
 /**
- * Check that the files that the options name (--out, --video, --stats, --write-volume) can be made: that
- * their folders are there and may be written to, or they are there themselves.
+ * Check that the files that the options name (--out, --video, --stats, --write-volume) can be made:
+ * that their folders are there and may be written to, or they are there themselves.
  *
  * @retval GZ_ERR_IO  one cannot; logged with the option and the remedy
  */

@@ -60,7 +60,7 @@ static void kind_of_a_file_follows_from_its_name(void **state)
 		{ "a.gzb", GZ_FILE_VOLUME },        { "a.dcm", GZ_FILE_VOLUME },
 		{ "a.raw", GZ_FILE_RAW },           { "a.raw.zst", GZ_FILE_RAW },
 		{ "a_u8.dat.gz", GZ_FILE_RAW },     { "a.bin", GZ_FILE_RAW },
-		{ "nothing known", GZ_FILE_SCENE }, { "a.ini", GZ_FILE_SCENE },
+		{ "nothing known", GZ_FILE_OTHER }, { "a.ini", GZ_FILE_OTHER },
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
 		if (gz_file_kind_of(rows[i].name) != rows[i].kind)

@@ -24,6 +24,18 @@ constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 /* Longest text that is typed, a path with its end. */
 constexpr size_t TEXT_SIZE = 4096;
 
+/* What is remembered from frame to frame. */
+struct Memory {
+	bool dialog_drawn;                  /* in this frame so far */
+	bool dialog_was_open;               /* in the last one */
+	bool enter_pressed, escape_pressed; /* since the last one */
+};
+
+Memory &memory()
+{
+	return *static_cast<Memory *>(ImGui::GetIO().UserData);
+}
+
 float interface_scale(GLFWwindow *window)
 {
 	float x = 1, y = 1;
@@ -92,6 +104,12 @@ bool draw_numbers(const char *id, ImGuiDataType type, void *values, int count, c
 	return ImGui::SliderScalarN(id, type, values, count, least, greatest, range.format, flags);
 }
 
+void destroy_context()
+{
+	delete &memory();
+	ImGui::DestroyContext();
+}
+
 /* So often the key was pressed since the last frame, its repetition included. */
 int presses(ImGuiKey key)
 {
@@ -111,16 +129,17 @@ bool gz_widgets_init(GLFWwindow *window)
 	ImGui::CreateContext();
 	ImGuiIO &io = ImGui::GetIO();
 	io.IniFilename = nullptr; /* a viewer leaves no files behind */
+	io.UserData = new Memory {};
 	io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
 	io.FontGlobalScale = interface_scale(window);
 	ImGui::GetStyle().ScaleAllSizes(io.FontGlobalScale);
 	if (!ImGui_ImplGlfw_InitForOpenGL(window, true)) {
-		ImGui::DestroyContext();
+		destroy_context();
 		return false;
 	}
 	if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
 		ImGui_ImplGlfw_Shutdown();
-		ImGui::DestroyContext();
+		destroy_context();
 		return false;
 	}
 	return true;
@@ -132,7 +151,7 @@ void gz_widgets_free(void)
 		return;
 	ImGui_ImplOpenGL3_Shutdown();
 	ImGui_ImplGlfw_Shutdown();
-	ImGui::DestroyContext();
+	destroy_context();
 }
 
 void gz_widgets_begin(void)
@@ -140,12 +159,15 @@ void gz_widgets_begin(void)
 	ImGui_ImplOpenGL3_NewFrame();
 	ImGui_ImplGlfw_NewFrame();
 	ImGui::NewFrame();
+	memory().dialog_was_open = memory().dialog_drawn;
+	memory().dialog_drawn = false;
 }
 
 void gz_widgets_end(void)
 {
 	ImGui::Render();
 	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+	memory().enter_pressed = memory().escape_pressed = false;
 }
 
 float gz_widgets_scale(void)
@@ -165,7 +187,8 @@ float gz_widgets_line_height(void)
 
 bool gz_widgets_have_mouse(void)
 {
-	return ImGui::GetCurrentContext() && ImGui::GetIO().WantCaptureMouse;
+	return ImGui::GetCurrentContext() &&
+	       (ImGui::GetIO().WantCaptureMouse || gz_widgets_have_dialog());
 }
 
 bool gz_widgets_have_text(void)
@@ -176,6 +199,21 @@ bool gz_widgets_have_text(void)
 bool gz_widgets_have_navigation(void)
 {
 	return ImGui::GetCurrentContext() && ImGui::GetIO().NavVisible;
+}
+
+bool gz_widgets_have_dialog(void)
+{
+	return ImGui::GetCurrentContext() && (memory().dialog_drawn || memory().dialog_was_open);
+}
+
+void gz_widgets_note_key(int key)
+{
+	if (!ImGui::GetCurrentContext())
+		return;
+	if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER)
+		memory().enter_pressed = true;
+	if (key == GLFW_KEY_ESCAPE)
+		memory().escape_pressed = true;
 }
 
 void gz_widgets_release_keyboard(void)
@@ -253,6 +291,7 @@ bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
 	if (!place->takes_keyboard)
 		return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);
+	memory().dialog_drawn = true;
 	const ImVec2 room = ImGui::GetIO().DisplaySize;
 	list_of(GZ_LAYER_PICTURE)->AddRectFilled(ImVec2(0, 0), room, IM_COL32(0, 0, 0, 110));
 	return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoCollapse);
@@ -359,7 +398,7 @@ bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked)
 bool gz_widget_list_begin(const char *id, int lines)
 {
 	const float height = static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing();
-	return ImGui::BeginChild(id, ImVec2(0, height), true);
+	return ImGui::BeginChild(id, ImVec2(0, height), true, ImGuiWindowFlags_NavFlattened);
 }
 
 void gz_widget_list_end(void)
@@ -403,6 +442,27 @@ bool gz_widget_text_field(const char *id, char *text, size_t size, bool by_enter
 		return false;
 	memcpy(text, typed, size);
 	return true;
+}
+
+bool gz_widgets_enter_pressed(void)
+{
+	return memory().enter_pressed;
+}
+
+bool gz_widget_entered(void)
+{
+	return memory().enter_pressed && (ImGui::IsItemActive() || ImGui::IsItemDeactivated());
+}
+
+bool gz_dialog_entered(void)
+{
+	const ImGuiIO &io = ImGui::GetIO();
+	return memory().enter_pressed && !io.NavVisible && !io.WantTextInput;
+}
+
+bool gz_dialog_escaped(void)
+{
+	return memory().escape_pressed;
 }
 
 void gz_widget_progress(double share, const char *text)

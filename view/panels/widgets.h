@@ -116,6 +116,14 @@ bool gz_widgets_have_text(void);
  * are not the window's. As of the last frame. */
 bool gz_widgets_have_navigation(void);
 
+/** Whether a dialog is open, a panel that takes the keyboard: no key is the window's, and nothing
+ *  beneath it can be clicked. */
+bool gz_widgets_have_dialog(void);
+
+/** A key has been pressed, however shortly: what gz_widget_entered() and the like go by. @param key
+ *  of GLFW */
+void gz_widgets_note_key(int key);
+
 /** Give keys back to the window: no widget has them. */
 void gz_widgets_release_keyboard(void);
 
@@ -216,7 +224,8 @@ bool gz_widget_choice(const char *id, int *value, const char *const names[]);
 /** A row of a list. @return whether it was clicked or Enter pressed on it */
 bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked);
 
-/** A list that scrolls, @p lines high; gz_widget_list_end() ends it in any case. */
+/** A list that scrolls, @p lines high, whose rows are reached by the arrow keys as widgets are;
+ * gz_widget_list_end() ends it in any case. */
 bool gz_widget_list_begin(const char *id, int lines);
 
 /** See gz_widget_list_begin(). */
@@ -248,6 +257,18 @@ bool gz_widget_colour(const char *id, double rgb[3]);
  * @return whether it has changed, or Enter was pressed
  */
 bool gz_widget_text_field(const char *id, char *text, size_t size, bool by_enter);
+
+/** Whether Enter was pressed since the last frame. */
+bool gz_widgets_enter_pressed(void);
+
+/** Whether Enter was pressed in the last text field. */
+bool gz_widget_entered(void);
+
+/** Whether Enter was pressed and no widget of the dialog answers it. */
+bool gz_dialog_entered(void);
+
+/** Whether Escape was pressed. */
+bool gz_dialog_escaped(void);
 
 /** A bar, @p share of it full, with a text on it; below 0: something is going on, nobody knows how
  * far. */

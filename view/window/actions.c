@@ -68,7 +68,8 @@ static bool run_first(struct gz_window *window, const struct wanted *wanted)
 bool gz_window_run_action(struct gz_window *window, int key, int scancode, int modifiers,
 			  bool repeated)
 {
-	if (gz_widgets_have_text() || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
+	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
+	    (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
 	    (gz_widgets_have_navigation() && navigates(key)))
 		return false;
 	const struct wanted wanted = {
@@ -83,7 +84,8 @@ bool gz_window_run_action(struct gz_window *window, int key, int scancode, int m
 /* Letters and digits are keys; what needs Shift on some layouts only is a character. */
 bool gz_window_run_character(struct gz_window *window, unsigned codepoint)
 {
-	if (gz_widgets_have_text() || (codepoint != '?' && codepoint != '+'))
+	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
+	    (codepoint != '?' && codepoint != '+'))
 		return false;
 	const struct wanted wanted = { .letter = (int)codepoint };
 	return run_first(window, &wanted);

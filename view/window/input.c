@@ -48,6 +48,7 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
 		return;
+	gz_widgets_note_key(key);
 	window->key_taken =
 		gz_window_run_action(window, key, scancode, mods, action == GLFW_REPEAT);
 }

@@ -57,6 +57,10 @@ void gz_window_cancel_loading(struct gz_window *window);
 /** Path of the scene shown, as its request had it; "" without one. */
 const char *gz_window_scene_path(const struct gz_window *window);
 
+/** The scene shown has been saved, and is the one at @p path from now on, which is shorter than
+ * GZ_PATH_SIZE. */
+void gz_window_rename_scene(struct gz_window *window, const char *path);
+
 /** Close the scene shown, if any: the window is as if started without one. */
 void gz_window_close_scene(struct gz_window *window);
 

@@ -1,5 +1,6 @@
 /* Which parts there are. A new one is a row here. */
 #include "view/window/basics.h"
+#include "view/window/files.h"
 #include "view/window/loading.h"
 #include "view/window/overlay.h"
 #include "view/window/part.h"
@@ -10,5 +11,6 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_status,
 	&gz_window_overlay_part,
 	&gz_window_basics,
+	&gz_window_files,
 	NULL,
 };

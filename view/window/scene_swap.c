@@ -1,5 +1,6 @@
 /* One scene in place of another. */
 #include <stdio.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "view/window/loading_state.h"
@@ -120,4 +121,10 @@ enum gz_result gz_window_show(struct gz_window *window, struct gz_window_held *h
 	gz_window_take_maker(window, held->maker, held->path, NULL);
 	window->loading->shown = held;
 	return GZ_OK;
+}
+
+void gz_window_rename_scene(struct gz_window *window, const char *path)
+{
+	/* It may be what the scene is called already, in this very place. */
+	memmove(window->loading->path, path, strlen(path) + 1);
 }

@@ -10,6 +10,7 @@
 #include "client/viewer_link.h"
 #include "view/context_loss.h"
 #include "view/panels/widgets.h"
+#include "view/window/files.h"
 #include "view/window/loading.h"
 #include "view/window/part.h"
 #include "view/window/window_state.h"
@@ -315,7 +316,7 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 		r = gz_window_context_open(&window);
 	if (r == GZ_OK)
 		r = gz_window_drawing_open(&window);
-	if (r == GZ_OK && options->scene[0])
+	if (r == GZ_OK && options->scene[0] && !gz_window_ask_layout(&window))
 		r = load_first(&window);
 	if (r == GZ_OK)
 		r = loop(&window);

@@ -66,9 +66,10 @@ struct gz_window {
 			 */
 	bool dragging;
 	bool cursor_known;
-	bool cursor_inside;    /**< the window's content is what the mouse is over */
-	double cursor[2];      /**< screen coordinates of the window */
-	int size_px[2];        /**< that a new window is made with */
+	bool cursor_inside; /**< the window's content is what the mouse is over */
+	double cursor[2];   /**< screen coordinates of the window */
+	int size_px[2];     /**< that a new window is made with */
+	struct gz_window_files_state *files;
 	int windowed_place[4]; /**< x y w h to return to from full screen */
 
 	int losses;      /**< of the context, in short order */

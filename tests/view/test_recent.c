@@ -1,0 +1,118 @@
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "view/recent.h"
+
+static char place[64];
+
+static const char *file_of(int number)
+{
+	static char path[GZ_PATH_SIZE];
+	snprintf(path, sizeof path, "%s/%d.scene", place, number);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fclose(file);
+	return path;
+}
+
+static int make_place(void **state)
+{
+	(void)state;
+	snprintf(place, sizeof place, "/tmp/gazeview-test-recent-XXXXXX");
+	return mkdtemp(place) ? 0 : 1;
+}
+
+static int remove_place(void **state)
+{
+	char command[128];
+	(void)state;
+	snprintf(command, sizeof command, "rm -r '%s'", place);
+	return system(command);
+}
+
+static void latest_is_on_top_and_in_the_list_once(void **state)
+{
+	(void)state;
+	struct gz_recent recent = { 0 };
+	for (int i = 0; i < GZ_RECENT_MAX + 3; i++)
+		gz_recent_add(&recent, file_of(i));
+	assert_int_equal(recent.count, GZ_RECENT_MAX);
+	assert_string_equal(recent.paths[0], file_of(GZ_RECENT_MAX + 2));
+	assert_string_equal(recent.paths[GZ_RECENT_MAX - 1], file_of(3));
+	gz_recent_add(&recent, file_of(5));
+	assert_int_equal(recent.count, GZ_RECENT_MAX);
+	assert_string_equal(recent.paths[0], file_of(5));
+	assert_string_equal(recent.paths[1], file_of(GZ_RECENT_MAX + 2));
+	gz_recent_add(&recent, "/no/such.scene");
+	assert_string_equal(recent.paths[0], file_of(5));
+}
+
+static void list_is_written_and_read_in_a_folder_that_is_made(void **state)
+{
+	(void)state;
+	static struct gz_recent recent, read;
+	struct stat status;
+	char file[GZ_PATH_SIZE];
+	snprintf(file, sizeof file, "%s/state/gazecast/recent", place);
+	gz_recent_read(file, &read);
+	assert_int_equal(read.count, 0);
+	gz_recent_add(&recent, file_of(1));
+	gz_recent_add(&recent, file_of(2));
+	assert_int_equal(gz_recent_write(&recent, file, NULL), GZ_OK);
+	gz_recent_read(file, &read);
+	assert_int_equal(read.count, 2);
+	assert_string_equal(read.paths[0], file_of(2));
+	*strrchr(file, '/') = '\0';
+	assert_int_equal(stat(file, &status), 0);
+	assert_int_equal(status.st_mode & 077, 0);
+	assert_int_equal(gz_recent_write(&recent, "/proc/no/recent", NULL), GZ_ERR_IO);
+}
+
+static void lines_that_are_no_paths_are_left_out(void **state)
+{
+	(void)state;
+	static struct gz_recent read;
+	char path[GZ_PATH_SIZE];
+	snprintf(path, sizeof path, "%s/list", place);
+	FILE *file = fopen(path, "w");
+	fputs("relative\n/", file);
+	for (int i = 0; i < 3000; i++)
+		fputc('x', file);
+	fputs("\n\n/fine\n/without an end", file);
+	fclose(file);
+	gz_recent_read(path, &read);
+	assert_int_equal(read.count, 1);
+	assert_string_equal(read.paths[0], "/fine");
+}
+
+static void place_follows_the_environment(void **state)
+{
+	(void)state;
+	char path[GZ_PATH_SIZE];
+	setenv("HOME", "/home/someone", 1);
+	setenv("XDG_STATE_HOME", "/state", 1);
+	assert_int_equal(gz_recent_file(path), GZ_OK);
+	assert_string_equal(path, "/state/gazecast/recent");
+	setenv("XDG_STATE_HOME", "relative", 1);
+	assert_int_equal(gz_recent_file(path), GZ_OK);
+	assert_string_equal(path, "/home/someone/.local/state/gazecast/recent");
+	unsetenv("XDG_STATE_HOME");
+	unsetenv("HOME");
+	assert_int_equal(gz_recent_file(path), GZ_ERR_NOT_FOUND);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(latest_is_on_top_and_in_the_list_once),
+		cmocka_unit_test(list_is_written_and_read_in_a_folder_that_is_made),
+		cmocka_unit_test(lines_that_are_no_paths_are_left_out),
+		cmocka_unit_test(place_follows_the_environment),
+	};
+	return cmocka_run_group_tests(tests, make_place, remove_place);
+}

@@ -1,0 +1,174 @@
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/captured_log.h"
+#include "render/scene_open.h"
+#include "view/scene_save.h"
+
+#define RAMP "0 0 0 0 0\n1 1 1 1 0.5\n"
+
+static char place[64];
+
+static const char *in_place(const char *name)
+{
+	static char paths[4][GZ_PATH_SIZE];
+	static int next;
+	char *path = paths[next++ % 4];
+	snprintf(path, GZ_PATH_SIZE, "%s/%s", place, name);
+	return path;
+}
+
+static const char *write_text(const char *name, const char *text)
+{
+	const char *path = in_place(name);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+	return path;
+}
+
+static int make_place(void **state)
+{
+	(void)state;
+	snprintf(place, sizeof place, "/tmp/gazeview-test-save-XXXXXX");
+	if (!mkdtemp(place))
+		return 1;
+	return mkdir(in_place("other"), 0700);
+}
+
+static int remove_place(void **state)
+{
+	char command[128];
+	(void)state;
+	snprintf(command, sizeof command, "rm -r '%s'", place);
+	return system(command);
+}
+
+static struct gz_scene load(const char *path)
+{
+	struct gz_scene scene;
+	struct captured_log log;
+	const struct gz_scene_request request = { .path = path };
+	captured_log_init(&log, NULL);
+	if (gz_scene_open(&request, &log.log, &scene) != GZ_OK)
+		fail_msg("%s", log.last);
+	return scene;
+}
+
+static void scene_whose_transfer_function_is_a_file_names_it(void **state)
+{
+	(void)state;
+	char file[GZ_PATH_SIZE];
+	write_text("a.tf", RAMP);
+	const char *from = write_text("a.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
+						 "[transfer]\nfile = a.tf\n");
+	struct gz_scene scene = load(from);
+	const struct gz_scene_save save = { { &scene.settings, false, from },
+					    &scene.transfer,
+					    NULL };
+	const char *to = in_place("other/b.scene");
+	assert_false(gz_scene_save_writes_transfer(&save, to, file));
+	assert_int_equal(gz_scene_save(&save, to, NULL, &scene.settings), GZ_OK);
+	assert_int_equal(scene.settings.transfer_file[0], '/');
+	struct gz_scene again = load(to);
+	assert_int_equal(again.transfer.count, 2);
+	assert_int_not_equal(access(in_place("other/b.tf"), F_OK), 0);
+	gz_scene_free(&scene);
+	gz_scene_free(&again);
+}
+
+static void changed_transfer_function_is_written_beside_the_scene(void **state)
+{
+	(void)state;
+	char file[GZ_PATH_SIZE];
+	write_text("c.tf", RAMP);
+	const char *from = write_text("c.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
+						 "[transfer]\nfile = c.tf\n");
+	/* Of the same name as the first, so that one is not taken for the other. */
+	const char *to = in_place("other/c.scene");
+	struct gz_scene scene = load(from);
+	scene.transfer.points[1].opacity = 0.3;
+	const struct gz_scene_save save = { { &scene.settings, false, from },
+					    &scene.transfer,
+					    NULL };
+	assert_true(gz_scene_save_writes_transfer(&save, to, file));
+	assert_string_equal(file, in_place("other/c.tf"));
+	assert_int_equal(gz_scene_save(&save, to, NULL, &scene.settings), GZ_OK);
+	assert_string_equal(scene.settings.transfer_file, "c.tf");
+	struct gz_scene again = load(to), first = load(from);
+	assert_true(again.transfer.points[1].opacity == 0.3);
+	assert_true(first.transfer.points[1].opacity == 0.5);
+	gz_scene_free(&scene);
+	gz_scene_free(&again);
+	gz_scene_free(&first);
+}
+
+static void transfer_function_that_the_volume_gets_by_itself_is_no_file(void **state)
+{
+	(void)state;
+	char file[GZ_PATH_SIZE];
+	const char *from = write_text("d.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
+	struct gz_scene scene = load(from);
+	struct gz_transfer made = scene.transfer;
+	struct gz_scene_save save = { { &scene.settings, false, from }, &scene.transfer, &made };
+	assert_false(gz_scene_save_writes_transfer(&save, from, file));
+	save.made = NULL; /* of a picture, which had another once */
+	assert_true(gz_scene_save_writes_transfer(&save, from, file));
+	gz_scene_free(&scene);
+}
+
+static void path_gets_its_ending_and_a_suggestion_is_beside_the_volume(void **state)
+{
+	(void)state;
+	static const char *const rows[][2] = {
+		{ "/a/b.nii.gz", "/a/b.scene" }, { "/a.b/c", "/a.b/c.scene" },
+		{ "/a/b.scene", "/a/b.scene" },  { "", "untitled.scene" },
+		{ "/a/.b.raw", "/a/.b.scene" },  { "p.png", "p.scene" },
+	};
+	char path[GZ_PATH_SIZE];
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		gz_scene_save_suggest(rows[i][0], path);
+		assert_string_equal(path, rows[i][1]);
+	}
+	assert_int_equal(gz_scene_save_path("a", path), GZ_OK);
+	assert_string_equal(path, "a.scene");
+	assert_int_equal(gz_scene_save_path("a.SCENE", path), GZ_OK);
+	assert_string_equal(path, "a.SCENE");
+	char long_name[GZ_PATH_SIZE];
+	memset(long_name, 'x', sizeof long_name - 1);
+	long_name[sizeof long_name - 1] = '\0';
+	assert_int_equal(gz_scene_save_path(long_name, path), GZ_ERR_FULL);
+}
+
+static void what_cannot_be_written_leaves_the_settings(void **state)
+{
+	(void)state;
+	const char *from = write_text("e.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
+	struct gz_scene scene = load(from);
+	const struct gz_scene_save save = { { &scene.settings, false, from },
+					    &scene.transfer,
+					    NULL };
+	assert_int_equal(gz_scene_save(&save, "/no/such/e.scene", NULL, &scene.settings),
+			 GZ_ERR_IO);
+	assert_string_equal(scene.settings.transfer_file, "");
+	gz_scene_free(&scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(scene_whose_transfer_function_is_a_file_names_it),
+		cmocka_unit_test(changed_transfer_function_is_written_beside_the_scene),
+		cmocka_unit_test(transfer_function_that_the_volume_gets_by_itself_is_no_file),
+		cmocka_unit_test(path_gets_its_ending_and_a_suggestion_is_beside_the_volume),
+		cmocka_unit_test(what_cannot_be_written_leaves_the_settings),
+	};
+	unsetenv("GAZECAST_DATA");
+	return cmocka_run_group_tests(tests, make_place, remove_place);
+}

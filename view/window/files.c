@@ -1,0 +1,351 @@
+#include "view/window/files.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <GLFW/glfw3.h>
+
+#include "render/scene_open.h"
+#include "render/volume/dicom_series.h"
+#include "view/panels/open_panel.h"
+#include "view/panels/raw_panel.h"
+#include "view/panels/save_panel.h"
+#include "view/scene_save.h"
+#include "view/window/loading.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "window"
+
+/* The state of this part. */
+struct gz_window_files_state {
+	struct gz_open_panel open_panel;
+	struct gz_raw_panel raw_panel;
+	struct gz_save_panel save_panel;
+	struct gz_recent recent;
+	char recent_file[GZ_PATH_SIZE]; /* empty: there is no place for it */
+	char opening[GZ_PATH_SIZE];     /* what the user has asked for, and has not been shown */
+	bool first;                     /* the raw volume that is asked about is the first of all */
+	bool made;                      /* the volume has no transfer function of its own … */
+	struct gz_transfer made_transfer; /* … and gets this one */
+	/* For messages that belong in a dialog as well as where all go. */
+	struct gz_log log;
+	const struct gz_log *outer;
+	char last[GZ_PANEL_MESSAGE_SIZE];
+};
+
+/* What is logged while a dialog waits for an answer is seen in it, too. */
+static void keep_message(void *user, enum gz_log_level level, const char *module,
+			 const char *message)
+{
+	struct gz_window_files_state *state = user;
+	if (level == GZ_LOG_ERROR)
+		snprintf(state->last, sizeof state->last, "%s", message);
+	state->outer->sink(state->outer->user, level, module, message);
+}
+
+static enum gz_result open_state(struct gz_window *window)
+{
+	struct gz_window_files_state *state = calloc(1, sizeof *state);
+	if (!state)
+		return GZ_ERR_NO_MEM;
+	window->files = state;
+	state->outer = window->log;
+	gz_log_init(&state->log, keep_message, state, window->log->rules);
+	if (gz_recent_file(state->recent_file) == GZ_OK)
+		gz_recent_read(state->recent_file, &state->recent);
+	else
+		state->recent_file[0] = '\0';
+	return GZ_OK;
+}
+
+static void close_state(struct gz_window *window)
+{
+	if (!window->files)
+		return;
+	gz_open_panel_close(&window->files->open_panel);
+	free(window->files);
+	window->files = NULL;
+}
+
+/* ---- opening ---- */
+
+static void load(struct gz_window *window, const char *path, const struct gz_raw_layout *raw)
+{
+	struct gz_window_load_request *request = calloc(1, sizeof *request);
+	if (!request) {
+		gz_err(window->log, "%s: no memory to open it", path);
+		return;
+	}
+	snprintf(request->path, sizeof request->path, "%s", path);
+	request->has_raw = raw != NULL;
+	if (raw)
+		request->raw = *raw;
+	const enum gz_file_kind kind = gz_file_kind_of(path);
+	request->keep = kind != GZ_FILE_SCENE && kind != GZ_FILE_PICTURE;
+	request->by_options = window->files->first;
+	window->files->first = false;
+	snprintf(window->files->opening, sizeof window->files->opening, "%s", path);
+	gz_window_load(window, request);
+	free(request);
+}
+
+/* Shown in place of the scene's from now on, and saved with it. */
+static void take_transfer(struct gz_window *window, const char *path)
+{
+	struct gz_transfer transfer;
+	char *real = realpath(path, NULL);
+	if (!window->maker) {
+		gz_err(window->log,
+		       "%s: a transfer function shows nothing by itself; open a scene "
+		       "or a volume first",
+		       path);
+	} else if (real && strlen(real) < GZ_PATH_SIZE &&
+		   gz_transfer_load(real, window->log, &transfer) == GZ_OK &&
+		   gz_frame_set_transfer(window->maker, &transfer) == GZ_OK) {
+		memset(window->settings.transfer_file, 0, GZ_PATH_SIZE);
+		memcpy(window->settings.transfer_file, real, strlen(real));
+		window->cast_needed = true;
+	}
+	free(real);
+}
+
+static void take_gaze_log(const struct gz_window *window, const char *path)
+{
+	gz_err(window->log, "%s: a gaze log is followed from the start: gazeview --gaze %s", path,
+	       path);
+}
+
+void gz_window_open_file(struct gz_window *window, const char *path)
+{
+	switch (gz_file_kind_of(path)) {
+	case GZ_FILE_SCENE:
+	case GZ_FILE_VOLUME:
+	case GZ_FILE_PICTURE:
+	case GZ_FILE_OTHER:
+		load(window, path, NULL);
+		return;
+	case GZ_FILE_RAW:
+		gz_raw_panel_show(&window->files->raw_panel, path);
+		break;
+	case GZ_FILE_TRANSFER:
+		take_transfer(window, path);
+		break;
+	case GZ_FILE_GAZE_LOG:
+		take_gaze_log(window, path);
+		break;
+	}
+	gz_window_wake_panels(window);
+}
+
+bool gz_window_ask_layout(struct gz_window *window)
+{
+	const char *path = window->options->scene;
+	struct gz_raw_layout told;
+	struct gz_raw_guess guess;
+	snprintf(window->files->opening, sizeof window->files->opening, "%s", path);
+	if (gz_file_kind_of(path) != GZ_FILE_RAW || access(path, R_OK) != 0 ||
+	    gz_view_options_raw(window->options, &told) ||
+	    (gz_raw_guess(path, gz_raw_file_bytes(path), &guess, 1) > 0 && guess.certain))
+		return false;
+	window->files->first = true;
+	gz_raw_panel_show(&window->files->raw_panel, path);
+	gz_window_wake_panels(window);
+	return true;
+}
+
+static void folder_of(const char *path, char out_folder[GZ_PATH_SIZE])
+{
+	const char *slash = strrchr(path, '/');
+	if (!slash)
+		snprintf(out_folder, GZ_PATH_SIZE, ".");
+	else
+		snprintf(out_folder, GZ_PATH_SIZE, "%.*s", slash > path ? (int)(slash - path) : 1,
+			 path);
+}
+
+static void show_open_panel(struct gz_window *window, int number)
+{
+	char folder[GZ_PATH_SIZE];
+	(void)number;
+	folder_of(gz_window_scene_path(window), folder);
+	gz_open_panel_show(&window->files->open_panel, folder, &window->files->recent);
+	gz_window_wake_panels(window);
+}
+
+/* Of several slices any stands for its series; of several other files the first is opened. */
+static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
+{
+	struct gz_window *window = glfwGetWindowUserPointer(glfw);
+	if (count < 1)
+		return;
+	if (count > 1)
+		gz_info(window->log, "%d files were dropped: opening %s%s", count, paths[0],
+			gz_dicom_is(paths[0]) ? " and the series that it is of" : " alone");
+	gz_window_open_file(window, paths[0]);
+}
+
+static enum gz_result attach(struct gz_window *window)
+{
+	glfwSetDropCallback(window->glfw, on_drop);
+	return GZ_OK;
+}
+
+/* ---- saving ---- */
+
+static struct gz_scene_save what_is_shown(const struct gz_window *window)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	return (struct gz_scene_save) {
+		.scene = { &window->settings, scene->has_display, gz_window_scene_path(window) },
+		.transfer = &scene->transfer,
+		.made = window->files->made ? &window->files->made_transfer : NULL,
+	};
+}
+
+static enum gz_result save_to(struct gz_window *window, const char *path)
+{
+	const struct gz_scene_save save = what_is_shown(window);
+	struct gz_window_files_state *state = window->files;
+	state->last[0] = '\0';
+	const enum gz_result r = gz_scene_save(&save, path, &state->log, &window->settings);
+	if (r != GZ_OK)
+		return r;
+	gz_info(window->log, "saved as %s", path);
+	gz_window_rename_scene(window, path);
+	gz_recent_add(&state->recent, path);
+	if (state->recent_file[0])
+		gz_recent_write(&state->recent, state->recent_file, window->log);
+	return GZ_OK;
+}
+
+static void show_save_panel(struct gz_window *window, int number)
+{
+	char path[GZ_PATH_SIZE];
+	(void)number;
+	if (!window->maker) {
+		gz_warn(window->log, "nothing to save: no scene is shown");
+		return;
+	}
+	gz_scene_save_suggest(gz_window_scene_path(window), path);
+	gz_save_panel_show(&window->files->save_panel, path);
+	gz_window_wake_panels(window);
+}
+
+/* What would be replaced that is not the scene's own. */
+static bool print_question(struct gz_window *window, const char *path, bool own, char *text,
+			   size_t size)
+{
+	const struct gz_scene_save save = what_is_shown(window);
+	char transfer[GZ_PATH_SIZE];
+	const bool scene = !own && access(path, F_OK) == 0;
+	const bool function =
+		gz_scene_save_writes_transfer(&save, path, transfer) && access(transfer, F_OK) == 0;
+	if (scene)
+		snprintf(text, size, "%.150s is there already%s. Replace?", path,
+			 function ? ", and so is its .tf" : "");
+	else if (function)
+		snprintf(text, size, "%.200s is there already. Replace?", transfer);
+	return scene || function;
+}
+
+/* Over the scene's own file without a question, unless a transfer function would be lost. */
+static void save(struct gz_window *window, int number)
+{
+	char question[GZ_PANEL_MESSAGE_SIZE];
+	const char *path = window->maker ? gz_window_scene_path(window) : "";
+	const bool own = gz_file_kind_by_name(path) == GZ_FILE_SCENE && access(path, F_OK) == 0;
+	struct gz_save_panel *panel = &window->files->save_panel;
+	if (own && !print_question(window, path, true, question, sizeof question)) {
+		if (save_to(window, path) == GZ_OK)
+			return;
+		show_save_panel(window, number);
+		snprintf(panel->message, sizeof panel->message, "%s", window->files->last);
+		return;
+	}
+	show_save_panel(window, number);
+	if (own)
+		gz_save_panel_ask(panel, question);
+}
+
+static void draw_save_panel(struct gz_window *window)
+{
+	struct gz_save_panel *panel = &window->files->save_panel;
+	char path[GZ_PATH_SIZE], question[GZ_PANEL_MESSAGE_SIZE];
+	bool sure = false;
+	if (!window->maker || !gz_save_panel_draw(panel, &sure))
+		return;
+	if (gz_scene_save_path(panel->path, path) != GZ_OK) {
+		snprintf(panel->message, sizeof panel->message, "the path is too long");
+	} else if (!sure && print_question(window, path, false, question, sizeof question)) {
+		gz_save_panel_ask(panel, question);
+	} else if (save_to(window, path) == GZ_OK) {
+		panel->open = false;
+	} else {
+		snprintf(panel->message, sizeof panel->message, "%s", window->files->last);
+	}
+	gz_window_wake_panels(window);
+}
+
+/* ---- what is shown ---- */
+
+static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	struct gz_window_files_state *state = window->files;
+	char path[GZ_PATH_SIZE];
+	(void)gaze;
+	if (gz_open_panel_draw(&state->open_panel, path)) {
+		gz_open_panel_close(&state->open_panel);
+		gz_window_open_file(window, path);
+	}
+	if (gz_raw_panel_draw(&state->raw_panel))
+		load(window, state->raw_panel.path, &state->raw_panel.layout);
+	draw_save_panel(window);
+}
+
+static void scene_shown(struct gz_window *window)
+{
+	struct gz_window_files_state *state = window->files;
+	const char *path = gz_window_scene_path(window);
+	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	state->made =
+		!scene->settings.transfer_file[0] && gz_file_kind_by_name(path) != GZ_FILE_PICTURE;
+	state->made_transfer = scene->transfer;
+	/* A study's scenes come and go by themselves. */
+	if (!path[0] || strcmp(path, state->opening) != 0)
+		return;
+	state->opening[0] = '\0';
+	gz_recent_add(&state->recent, path);
+	if (state->recent_file[0])
+		gz_recent_write(&state->recent, state->recent_file, window->log);
+}
+
+static const struct gz_window_action actions[] = {
+	{ .letter = 'o',
+	  .modifiers = GZ_KEY_CONTROL,
+	  .keys = "Ctrl+O",
+	  .help = "open a scene, a volume or a picture",
+	  .run = show_open_panel },
+	{ .letter = 's',
+	  .modifiers = GZ_KEY_CONTROL,
+	  .keys = "Ctrl+S",
+	  .help = "save the scene",
+	  .run = save },
+	{ .letter = 's',
+	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
+	  .keys = "Ctrl+Shift+S",
+	  .help = "save the scene as another file",
+	  .run = show_save_panel },
+};
+
+const struct gz_window_part gz_window_files = {
+	.name = "files",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.open = open_state,
+	.gl_open = attach,
+	.scene_shown = scene_shown,
+	.panels = draw_panels,
+	.close = close_state,
+};
