@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "view/headless.h"
+#include "view/notices.h"
 #include "view/options.h"
 #include "view/target_window.h"
 #include "view/window/window.h"
@@ -12,7 +13,8 @@
 /* What a shell reports for a process that a signal ended. */
 enum { EXIT_SIGNAL = 128 };
 
-static int run(const struct gz_view_options *options, const struct gz_log *log)
+static int run(const struct gz_view_options *options, const struct gz_log *log,
+	       struct gz_notices *notices)
 {
 	int signal_number = 0;
 	if (options->target.targets[0])
@@ -20,7 +22,7 @@ static int run(const struct gz_view_options *options, const struct gz_log *log)
 	if (options->write_volume[0])
 		return gz_view_write_volume(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
-					     : gz_view_window(options, log);
+					     : gz_view_window(options, log, notices);
 	if (signal_number && (r == GZ_OK || r == GZ_ERR_CANCELLED))
 		return EXIT_SIGNAL + signal_number;
 	return r == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
@@ -29,10 +31,12 @@ static int run(const struct gz_view_options *options, const struct gz_log *log)
 int main(int argc, char **argv)
 {
 	struct gz_log log;
-	gz_log_init(&log, NULL, NULL, NULL);
 	struct gz_view_options *options = calloc(1, sizeof *options);
-	if (!options)
+	struct gz_notices *notices = malloc(sizeof *notices);
+	if (!options || !notices)
 		return EXIT_FAILURE;
+	gz_notices_init(notices);
+	gz_log_init(&log, gz_notices_sink, notices, NULL);
 	int status = EXIT_FAILURE;
 	if (gz_view_options_read(argc, argv, &log, options) == GZ_OK) {
 		status = EXIT_SUCCESS;
@@ -41,8 +45,10 @@ int main(int argc, char **argv)
 		else if (options->version)
 			puts("gazeview " GAZECAST_VERSION);
 		else
-			status = run(options, &log);
+			status = run(options, &log, notices);
 	}
+	gz_notices_free(notices);
+	free(notices);
 	free(options);
 	return status;
 }

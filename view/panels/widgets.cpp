@@ -287,6 +287,8 @@ bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 {
 	int flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
 		    ImGuiWindowFlags_NoSavedSettings;
+	if (strncmp(title, "##", 2) == 0)
+		flags |= ImGuiWindowFlags_NoTitleBar;
 	set_panel_place(*place);
 	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
 	if (!place->takes_keyboard)
@@ -362,6 +364,11 @@ void gz_widget_tooltip(const char *text)
 {
 	if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
 		ImGui::SetTooltip("%s", text);
+}
+
+bool gz_widget_clicked(void)
+{
+	return ImGui::IsItemClicked();
 }
 
 bool gz_widget_heading(const char *id, bool open_at_first)

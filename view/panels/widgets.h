@@ -165,7 +165,7 @@ struct gz_place gz_draw_caption(enum gz_layer layer, struct gz_place at, struct 
 /**
  * Open a panel; gz_panel_end() closes it, whatever this returns.
  *
- * @param title  unique; shown at its top
+ * @param title  unique; shown at its top unless it begins with "##"
  * @param open   in: whether it is there at all; out: false once its cross was clicked. NULL: it has
  *               no cross
  * @return whether its content is seen; else widgets in it can be left out
@@ -208,6 +208,9 @@ void gz_widget_label(const char *text);
 
 /** A text that appears while the mouse rests on the last widget, also a grey one. */
 void gz_widget_tooltip(const char *text);
+
+/** Whether the mouse has just been pressed on the last widget, a text as well. */
+bool gz_widget_clicked(void);
 
 /** A heading that folds away what is below it. @return whether that is shown */
 bool gz_widget_heading(const char *id, bool open_at_first);

@@ -4,6 +4,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include "base/clock.h"
 #include "view/panels/widgets.h"
 #include "view/window/part.h"
 
@@ -49,6 +50,7 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods
 	if (action == GLFW_RELEASE)
 		return;
 	gz_widgets_note_key(key);
+	window->key_ns = gz_clock_now_ns();
 	window->key_taken =
 		gz_window_run_action(window, key, scancode, mods, action == GLFW_REPEAT);
 }

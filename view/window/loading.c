@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "view/caster.h"
 #include "view/panels/progress_panel.h"
+#include "view/panels/welcome_panel.h"
 #include "view/window/loading_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -136,6 +137,8 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 {
 	struct gz_load_job *job = window->loading->job;
 	(void)gaze;
+	if (!window->maker && !job)
+		gz_welcome_panel_draw();
 	if (!job || !panel_due(job, window->maker != NULL))
 		return;
 	const struct gz_load_progress progress = gz_load_job_progress(job);

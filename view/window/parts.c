@@ -2,6 +2,7 @@
 #include "view/window/basics.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
+#include "view/window/notices.h"
 #include "view/window/overlay.h"
 #include "view/window/part.h"
 #include "view/window/status.h"
@@ -12,5 +13,6 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_overlay_part,
 	&gz_window_basics,
 	&gz_window_files,
+	&gz_window_notices,
 	NULL,
 };

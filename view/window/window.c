@@ -263,10 +263,11 @@ static void close_window(struct gz_window *window)
 	/* The renderer may live in the window's context. */
 	gz_window_close_scene(window);
 	gz_window_drawing_close(window);
-	glfwTerminate();
+	/* Threads of parts may still wake the loop. */
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->close)
 			(*part)->close(window);
+	glfwTerminate();
 	gz_gaze_source_destroy(&window->source);
 	gz_gaze_source_destroy(&window->mouse);
 	gz_viewer_link_close(&window->link);
@@ -293,11 +294,13 @@ static enum gz_result load_first(struct gz_window *window)
 	return r;
 }
 
-enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log)
+enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log,
+			      struct gz_notices *notices)
 {
 	struct gz_window window = {
 		.options = options,
 		.log = log,
+		.notices = notices,
 		.size_px = { options->size_px[0], options->size_px[1] },
 	};
 	/* The display first: without one there is no use in loading. */

@@ -15,6 +15,7 @@
 #include "render/gl/gl_context.h"
 #include "view/frame.h"
 #include "view/gaze_source.h"
+#include "view/notices.h"
 #include "view/options.h"
 #include "view/panels/settings_panel.h"
 #include "view/quad.h"
@@ -37,10 +38,12 @@ struct gz_window_context {
 struct gz_window {
 	const struct gz_view_options *options;
 	const struct gz_log *log;
+	struct gz_notices *notices; /**< what the log has said */
 	struct GLFWwindow *glfw;
 	struct gz_window_context context;
-	struct gz_frame_maker *maker;            /**< NULL while there is no scene */
-	struct gz_window_loading_state *loading; /**< see loading.h */
+	struct gz_frame_maker *maker;                  /**< NULL while there is no scene */
+	struct gz_window_loading_state *loading;       /**< see loading.h */
+	struct gz_window_notices_state *notices_state; /**< see notices.h */
 	struct gz_quad quad;
 
 	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
@@ -61,6 +64,7 @@ struct gz_window {
 	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
 	float panels_top; /**< lower edge of what lies on top, in this frame */
 
+	int64_t key_ns; /**< when a key was pressed last, whatever it does */
 	bool key_taken; /**< the last key pressed did something: the character that it types does
 			 * not
 			 */
