@@ -4,142 +4,16 @@ window.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
 import os
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-from picture import Picture, run, skip, write_scene
-from xserver import start_server
-
-GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
-SHOTS = sys.argv[4] if len(sys.argv) > 4 else None
-GAZECTL = os.environ.get("GAZECTL", "gazectl")
-PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
-SCENE = write_scene(PLACE.name, SCENES)
-SCREEN = (900, 700)
-SIZE = (480, 320)
-CROSS = (255, 64, 64)
-LINE_HEIGHT = 40  # the text line is above
-
-for tool in ("Xvfb", "xdotool", "ffmpeg"):
-    if not shutil.which(tool):
-        skip(tool + " is not installed")
+from picture import run
+from window_case import GAZECTL, GAZEVIEW, LINE_HEIGHT, SCENE, SCREEN, SIZE, WindowCase
 
 
-class Window(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.server, display = start_server(SCREEN)
-        cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
-        cls.environment = dict(
-            os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
-            GAZECAST_RUNTIME_DIR=cls.place.name,
-            # Mesa's drivers keep some bytes when they are unloaded, which leaves no name to excuse
-            # them by; what is ours is looked at by the tests without a window.
-            ASAN_OPTIONS=os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0",
-        )
-        cls.environment.pop("WAYLAND_DISPLAY", None)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.server.terminate()
-        cls.server.wait()
-        cls.place.cleanup()
-
-    def setUp(self):
-        self.viewer = self.daemon = None
-        self.addCleanup(self.stop)
-        self.addCleanup(self.stop_daemon)
-
-    def stop(self):
-        if self.viewer and self.viewer.poll() is None:
-            self.viewer.kill()
-        if self.viewer:
-            self.viewer.communicate()
-
-    def start_daemon(self, *more):
-        more = more or ("--driver=sim", "--sim.blinks_per_min=0")
-        self.daemon = subprocess.Popen(
-            [GAZED, "--tcp=off", *more], env=self.environment,
-            stderr=subprocess.DEVNULL,
-        )
-
-    def stop_daemon(self):
-        if self.daemon:
-            self.daemon.terminate()
-            self.daemon.wait()
-        self.daemon = None
-
-    def tool(self, *words):
-        done = run("xdotool", *words, env=self.environment)
-        self.assertEqual(done.returncode, 0, "xdotool %r: %s" % (words, done.stderr))
-        return done.stdout
-
-    def start(self, *more):
-        self.tool("mousemove", *SCREEN)
-        self.viewer = subprocess.Popen(
-            [GAZEVIEW, SCENE, "--size", "%dx%d" % SIZE, *more], env=self.environment,
-            stderr=subprocess.PIPE, text=True,
-        )
-        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
-                    "^gazeview$", env=self.environment)
-        self.assertEqual(found.returncode, 0, "no window appears")
-        self.window = found.stdout.split()[0]
-        self.until(lambda p: len({p.at(x, y) for x in range(100, 380, 4)
-                                  for y in range(60, 300, 4)}) > 20, "a first picture")
-
-    def grab(self):
-        done = subprocess.run(
-            ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
-             "%dx%d" % SCREEN, "-i", self.environment["DISPLAY"], "-frames:v", "1", "-f",
-             "rawvideo", "-pix_fmt", "rgb24", "-"],
-            capture_output=True, timeout=20, env=self.environment,
-        )
-        width, height = SCREEN
-        self.assertEqual(len(done.stdout), 3 * width * height, done.stderr)
-        rows = [done.stdout[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
-        return Picture(width, height, rows)
-
-    def until(self, good, what):
-        """The first screenshot that @good accepts; whoever waits longer than 15 s has failed."""
-        deadline = time.monotonic() + 15
-        while True:
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            picture = self.grab()
-            if good(picture):
-                break
-            self.assertLess(time.monotonic(), deadline, "never came: " + what)
-        if SHOTS:
-            name = "%s-%s.png" % (self.id().rsplit("_test_", 1)[-1].split(".")[-1], what)
-            subprocess.run(
-                ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24",
-                 "-video_size", "%dx%d" % SCREEN, "-i", "-",
-                 os.path.join(SHOTS, name.replace(" ", "-"))],
-                input=b"".join(bytes(row) for row in picture.rows), check=True,
-            )
-        return picture
-
-    def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
-        return picture.part(0, LINE_HEIGHT, width, height)
-
-    def until_changed(self, before, what):
-        old = self.below_line(before)
-        return self.until(lambda p: self.below_line(p) != old, what)
-
-    def move(self, x, y):
-        self.tool("mousemove", "--window", self.window, x, y)
-
-    def cross_at(self, picture, x, y):
-        """A red upright cross whose middle is there, to a pixel or two."""
-        arms = ((0, 0), (8, 0), (-8, 0), (0, 8), (0, -8))
-        return any(
-            all(picture.at(x + a + i, y + b + j) == CROSS for a, b in arms)
-            for i in (-1, 0, 1) for j in (-1, 0, 1)
-        )
-
+class Window(WindowCase):
     def test_cross_comes_by_key_follows_the_mouse_and_goes(self):
         self.start("--gaze", "mouse")
         self.move(150, 200)
@@ -211,7 +85,7 @@ class Window(unittest.TestCase):
         self.move(101, 301)
         time.sleep(0.5)  # the last of several sizes
         before = self.grab()
-        shown, panel = (100, 50, 310, 490), (330, 40, 680, 200)
+        shown, panel = (100, 50, 310, 440), (330, 40, 680, 200)
         self.tool("key", "p")
         self.until(lambda p: p.part(*panel) != before.part(*panel), "settings")
         self.move(500, 142)  # the heading Clip
@@ -279,24 +153,6 @@ class Window(unittest.TestCase):
             self.assertLess(time.monotonic(), deadline, "nobody asks whether it is lost")
             time.sleep(0.02)
 
-    def found_anew(self):
-        deadline = time.monotonic() + 20
-        while True:
-            # A search fails also where a window goes while it looks.
-            found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
-                        env=self.environment)
-            if found.returncode == 0 and found.stdout.split():
-                self.window = found.stdout.split()[-1]
-                return
-            self.assertLess(time.monotonic(), deadline, "no window appears")
-            time.sleep(0.05)
-
-    def messages(self):
-        """What the viewer has said, once it has ended."""
-        said = self.viewer.communicate(timeout=20)[1]
-        self.viewer = None
-        return said
-
     def test_lost_context_is_replaced_and_the_picture_is_there_again(self):
         for backend in ("cpu", "gl"):
             self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", backend,
@@ -341,12 +197,6 @@ class Window(unittest.TestCase):
         picture = self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
         self.assertTrue(self.amber(picture), "the line is not amber")
 
-    def amber(self, picture):
-        return 100 < sum(
-            r > 180 and 100 < g < 220 and b < 120
-            for r, g, b in (picture.at(x, y) for x in range(8, 470) for y in range(8, 30))
-        )
-
     def test_daemon_leads_the_gaze_and_may_die_and_return(self):
         self.start_daemon()
         self.start("--cross", "--gaze-fills-window")
@@ -390,9 +240,6 @@ class Window(unittest.TestCase):
         self.move(150, 200)
         self.until(lambda p: self.amber(p) and self.cross_at(p, 150, 200), "mouse stands in")
 
-    def near(self, place, wanted):
-        return place and all(abs(a - b) <= 3 for a, b in zip(place, wanted))
-
     def test_window_is_told_to_the_log_at_start_when_moved_and_when_resized(self):
         self.recordings = tempfile.TemporaryDirectory(prefix="gazecast-test-recordings-")
         self.addCleanup(self.recordings.cleanup)
@@ -414,31 +261,12 @@ class Window(unittest.TestCase):
         self.assertIn(["100", "50", "480", "320"], rects)
         self.assertLess(len(rects), 12)
 
-    def red_middle(self, picture):
-        """The middle of all that has the cross's colour, or None."""
-        places = [
-            (x, y) for y in range(LINE_HEIGHT, SIZE[1], 2) for x in range(SIZE[0])
-            if picture.at(x, y) == CROSS
-        ]
-        if not places:
-            return None
-        return tuple(sum(place[i] for place in places) // len(places) for i in (0, 1))
-
     def test_still_window_takes_no_processor_time(self):
         self.start("--gaze", "mouse")
         self.move(200, 150)
         self.tool("key", "c")
         self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
-
-        def ticks():
-            with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
-                fields = stat.read().rsplit(")", 1)[1].split()
-            return int(fields[11]) + int(fields[12])
-
-        before, start = ticks(), time.monotonic()
-        time.sleep(2)  # what is measured is a rest
-        used = (ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)
-        self.assertLess(used, 0.03)
+        self.assertLess(self.processor_share(), 0.03)
 
     def test_escape_and_q_end_it(self):
         for key in ("Escape", "q"):
