@@ -104,6 +104,11 @@ void gz_transfer_edit_begin(struct gz_transfer_edit *edit)
 	edit->drag_has_step = false;
 }
 
+bool gz_transfer_edit_in_drag(const struct gz_transfer_edit *edit)
+{
+	return edit->dragging;
+}
+
 void gz_transfer_edit_end(struct gz_transfer_edit *edit)
 {
 	if (edit->dragging && edit->drag_has_step) {

@@ -60,6 +60,9 @@ void gz_transfer_edit_saved(struct gz_transfer_edit *edit);
  *  to nothing. Ends an earlier one. */
 void gz_transfer_edit_begin(struct gz_transfer_edit *edit);
 
+/** Whether there is a drag. */
+bool gz_transfer_edit_in_drag(const struct gz_transfer_edit *edit);
+
 /** The drag has ended. Nothing if there is none. */
 void gz_transfer_edit_end(struct gz_transfer_edit *edit);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -24,8 +25,15 @@ constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 /* Longest text that is typed, a path with its end. */
 constexpr size_t TEXT_SIZE = 4096;
 
+/* Keys of canvases, and what they are to GLFW. */
+enum Key { LEFT, RIGHT, UP, DOWN, TAB, DELETE_KEY, BACKSPACE, INSERT, ESCAPE, KEYS };
+constexpr int GLFW_KEYS[KEYS] = { GLFW_KEY_LEFT,      GLFW_KEY_RIGHT,  GLFW_KEY_UP,
+				  GLFW_KEY_DOWN,      GLFW_KEY_TAB,    GLFW_KEY_DELETE,
+				  GLFW_KEY_BACKSPACE, GLFW_KEY_INSERT, GLFW_KEY_ESCAPE };
+
 /* What is remembered from frame to frame. */
 struct Memory {
+	int presses[KEYS];                  /* since the last one, repetition included */
 	bool dialog_drawn;                  /* in this frame so far */
 	bool dialog_was_open;               /* in the last one */
 	bool enter_pressed, escape_pressed; /* since the last one */
@@ -110,10 +118,30 @@ void destroy_context()
 	ImGui::DestroyContext();
 }
 
-/* So often the key was pressed since the last frame, its repetition included. */
-int presses(ImGuiKey key)
+/* A canvas is a window of its own, in which keys lead nowhere by themselves: the only kind of it.
+ */
+bool canvas_has_keyboard()
 {
-	return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)) ? 1 : 0;
+	const ImGuiWindow *window = ImGui::GetCurrentContext()->NavWindow;
+	return window && window->WasActive && (window->Flags & ImGuiWindowFlags_NoNavInputs);
+}
+
+/* Where a panel remembers that its canvas is to have the keyboard. */
+ImGuiID focus_mark()
+{
+	return ImGui::GetID("##canvas has the keyboard");
+}
+
+void read_keys(gz_canvas &canvas)
+{
+	const int *presses = memory().presses;
+	canvas.arrow_x = presses[RIGHT] - presses[LEFT];
+	canvas.arrow_y = presses[UP] - presses[DOWN];
+	canvas.step = canvas.shift ? -presses[TAB] : presses[TAB];
+	canvas.delete_pressed = presses[DELETE_KEY] > 0 || presses[BACKSPACE] > 0;
+	canvas.insert_pressed = presses[INSERT] > 0;
+	if (presses[ESCAPE] > 0)
+		gz_widgets_release_keyboard();
 }
 
 } // namespace
@@ -167,6 +195,7 @@ void gz_widgets_end(void)
 {
 	ImGui::Render();
 	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+	memset(memory().presses, 0, sizeof memory().presses);
 	memory().enter_pressed = memory().escape_pressed = false;
 }
 
@@ -198,7 +227,17 @@ bool gz_widgets_have_text(void)
 
 bool gz_widgets_have_navigation(void)
 {
-	return ImGui::GetCurrentContext() && ImGui::GetIO().NavVisible;
+	return ImGui::GetCurrentContext() && (ImGui::GetIO().NavVisible || canvas_has_keyboard());
+}
+
+bool gz_widgets_in_use(void)
+{
+	static const ImGuiKey arrows[] = { ImGuiKey_LeftArrow, ImGuiKey_RightArrow,
+					   ImGuiKey_UpArrow, ImGuiKey_DownArrow };
+	for (const ImGuiKey key : arrows)
+		if (ImGui::IsKeyDown(ImGui::GetKeyIndex(key)))
+			return true;
+	return ImGui::IsAnyItemActive();
 }
 
 bool gz_widgets_have_dialog(void)
@@ -214,6 +253,8 @@ void gz_widgets_note_key(int key)
 		memory().enter_pressed = true;
 	if (key == GLFW_KEY_ESCAPE)
 		memory().escape_pressed = true;
+	for (int i = 0; i < KEYS; i++)
+		memory().presses[i] += key == GLFW_KEYS[i];
 }
 
 void gz_widgets_release_keyboard(void)
@@ -340,6 +381,11 @@ void gz_widgets_focus_next(void)
 	ImGui::SetKeyboardFocusHere();
 }
 
+void gz_widgets_focus_canvas(void)
+{
+	ImGui::GetStateStorage()->SetBool(focus_mark(), true);
+}
+
 void gz_widget_separator(void)
 {
 	ImGui::Separator();
@@ -426,16 +472,37 @@ bool gz_widget_doubles(const char *id, double *values, int count, const gz_numbe
 			    &range->greatest, *range);
 }
 
-bool gz_widget_colour(const char *id, double rgb[3])
+static void to_shown(const double rgb[3], float shown[3])
 {
-	float shown[3];
 	for (int i = 0; i < 3; i++)
 		shown[i] = static_cast<float>(rgb[i]);
-	if (!ImGui::ColorEdit3(id, shown, ImGuiColorEditFlags_Float))
-		return false;
+}
+
+static bool from_shown(const float shown[3], double rgb[3])
+{
 	for (int i = 0; i < 3; i++)
 		rgb[i] = shown[i] < 0 ? 0 : shown[i] > 1 ? 1 : static_cast<double>(shown[i]);
 	return true;
+}
+
+bool gz_widget_colour(const char *id, double rgb[3])
+{
+	float shown[3];
+	to_shown(rgb, shown);
+	return ImGui::ColorEdit3(id, shown, ImGuiColorEditFlags_Float) && from_shown(shown, rgb);
+}
+
+bool gz_widget_colour_popup(const char *id, bool open, double rgb[3])
+{
+	float shown[3];
+	to_shown(rgb, shown);
+	if (open)
+		ImGui::OpenPopup(id);
+	if (!ImGui::BeginPopup(id))
+		return false;
+	const bool changed = ImGui::ColorPicker3("##colour", shown, ImGuiColorEditFlags_Float);
+	ImGui::EndPopup();
+	return changed && from_shown(shown, rgb);
 }
 
 /* Dear ImGui keeps what is typed until Enter is pressed. */
@@ -480,15 +547,24 @@ void gz_widget_progress(double share, const char *text)
 void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)
 {
 	const ImGuiIO &io = ImGui::GetIO();
-	const ImVec2 corner = ImGui::GetCursorScreenPos();
 	const ImVec2 size(fmaxf(1, ImGui::GetContentRegionAvail().x), height * gz_widgets_scale());
+	bool *take = ImGui::GetStateStorage()->GetBoolRef(focus_mark());
+	ImGui::BeginChild(id, size, false,
+			  ImGuiWindowFlags_NoNavInputs | ImGuiWindowFlags_NoScrollbar |
+				  ImGuiWindowFlags_NoScrollWithMouse);
+	const ImVec2 corner = ImGui::GetCursorScreenPos();
 	ImGui::InvisibleButton(id, size);
+	if (*take)
+		ImGui::SetFocusID(ImGui::GetItemID(), ImGui::GetCurrentWindow());
+	if (*take)
+		ImGui::SetWindowFocus();
+	*take = false;
 	gz_canvas canvas = {};
 	canvas.corner = place_of(corner);
 	canvas.size = place_of(size);
 	canvas.mouse = place_of(io.MousePos);
 	canvas.hovered = ImGui::IsItemHovered();
-	canvas.focused = ImGui::IsItemFocused();
+	canvas.focused = ImGui::IsWindowFocused();
 	canvas.pressed = ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left);
 	canvas.double_pressed =
 		canvas.hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
@@ -498,10 +574,12 @@ void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)
 	canvas.shift = io.KeyShift;
 	canvas.control = io.KeyCtrl;
 	canvas.wheel = canvas.hovered ? io.MouseWheel : 0;
-	if (canvas.focused) {
-		canvas.arrow_x = presses(ImGuiKey_RightArrow) - presses(ImGuiKey_LeftArrow);
-		canvas.arrow_y = presses(ImGuiKey_UpArrow) - presses(ImGuiKey_DownArrow);
-		canvas.delete_pressed = presses(ImGuiKey_Delete) || presses(ImGuiKey_Backspace);
-	}
+	if (canvas.focused)
+		read_keys(canvas);
 	*out_canvas = canvas;
+}
+
+void gz_widget_canvas_end(void)
+{
+	ImGui::EndChild();
 }

@@ -77,7 +77,10 @@ struct gz_canvas {
 	bool shift, control;
 	float wheel;          /**< notches, up positive; 0 unless hovered */
 	int arrow_x, arrow_y; /**< presses of the arrow keys, right and up positive; focused */
+	int step;             /**< presses of Tab, with Shift negative; focused: whoever comes to
+				 the end of what the canvas has calls gz_widgets_focus_next() */
 	bool delete_pressed;  /**< Delete or Backspace; focused */
+	bool insert_pressed;  /**< Insert; focused */
 };
 
 /**
@@ -123,6 +126,10 @@ bool gz_widgets_have_dialog(void);
 /** A key has been pressed, however shortly: what gz_widget_entered() and the like go by. @param key
  *  of GLFW */
 void gz_widgets_note_key(int key);
+
+/** Whether a widget is held by the mouse or typed in, or an arrow key is held: what changes until
+ * that ends is one change. */
+bool gz_widgets_in_use(void);
 
 /** Give keys back to the window: no widget has them. */
 void gz_widgets_release_keyboard(void);
@@ -197,6 +204,9 @@ void gz_widgets_next_width(float share);
 /** The next widget has the keyboard from now on. */
 void gz_widgets_focus_next(void);
 
+/** The next canvas of the panel has the keyboard from now on. */
+void gz_widgets_focus_canvas(void);
+
 /** A line between groups of widgets. */
 void gz_widget_separator(void);
 
@@ -254,6 +264,14 @@ bool gz_widget_doubles(const char *id, double *values, int count,
 bool gz_widget_colour(const char *id, double rgb[3]);
 
 /**
+ * The same, larger, at the mouse until it is clicked elsewhere or Escape is pressed.
+ *
+ * @param open  it appears now
+ * @return whether @p rgb was changed
+ */
+bool gz_widget_colour_popup(const char *id, bool open, double rgb[3]);
+
+/**
  * A field for a text of less than @p size bytes.
  *
  * @param by_enter  true: the text changes when Enter is pressed, as a whole; false: at each key
@@ -277,8 +295,13 @@ bool gz_dialog_escaped(void);
  * far. */
 void gz_widget_progress(double share, const char *text);
 
-/** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL. */
+/** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL, until
+ * gz_widget_canvas_end(). While it has the keyboard, arrows and Tab do not lead out of it; Escape
+ * does. */
 void gz_widget_canvas(const char *id, float height, struct gz_canvas *out_canvas);
+
+/** Widgets are below it again. */
+void gz_widget_canvas_end(void);
 
 #ifdef __cplusplus
 }

@@ -14,6 +14,7 @@
 #include "view/panels/save_panel.h"
 #include "view/scene_save.h"
 #include "view/window/loading.h"
+#include "view/window/transfer.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -91,26 +92,6 @@ static void load(struct gz_window *window, const char *path, const struct gz_raw
 	free(request);
 }
 
-/* Shown in place of the scene's from now on, and saved with it. */
-static void take_transfer(struct gz_window *window, const char *path)
-{
-	struct gz_transfer transfer;
-	char *real = realpath(path, NULL);
-	if (!window->maker) {
-		gz_err(window->log,
-		       "%s: a transfer function shows nothing by itself; open a scene "
-		       "or a volume first",
-		       path);
-	} else if (real && strlen(real) < GZ_PATH_SIZE &&
-		   gz_transfer_load(real, window->log, &transfer) == GZ_OK &&
-		   gz_frame_set_transfer(window->maker, &transfer) == GZ_OK) {
-		memset(window->settings.transfer_file, 0, GZ_PATH_SIZE);
-		memcpy(window->settings.transfer_file, real, strlen(real));
-		window->cast_needed = true;
-	}
-	free(real);
-}
-
 static void take_gaze_log(const struct gz_window *window, const char *path)
 {
 	gz_err(window->log, "%s: a gaze log is followed from the start: gazeview --gaze %s", path,
@@ -130,7 +111,7 @@ void gz_window_open_file(struct gz_window *window, const char *path)
 		gz_raw_panel_show(&window->files->raw_panel, path);
 		break;
 	case GZ_FILE_TRANSFER:
-		take_transfer(window, path);
+		gz_window_transfer_load(window, path);
 		break;
 	case GZ_FILE_GAZE_LOG:
 		take_gaze_log(window, path);
@@ -214,6 +195,7 @@ static enum gz_result save_to(struct gz_window *window, const char *path)
 		return r;
 	gz_info(window->log, "saved as %s", path);
 	gz_window_rename_scene(window, path);
+	gz_window_transfer_saved(window);
 	gz_recent_add(&state->recent, path);
 	if (state->recent_file[0])
 		gz_recent_write(&state->recent, state->recent_file, window->log);

@@ -6,6 +6,7 @@
 #include "view/window/overlay.h"
 #include "view/window/part.h"
 #include "view/window/status.h"
+#include "view/window/transfer.h"
 
 const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_loading,
@@ -14,5 +15,7 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_basics,
 	&gz_window_files,
 	&gz_window_notices,
+	&gz_window_transfer_part,
+	NULL,
 	NULL,
 };

@@ -61,6 +61,7 @@ struct gz_window {
 	bool keys_shown;
 	struct gz_settings_panel settings_panel;
 	struct gz_overlay *overlay; /**< of part overlay */
+	struct gz_window_transfer *transfer; /**< of transfer.c */
 	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
 	float panels_top; /**< lower edge of what lies on top, in this frame */
 

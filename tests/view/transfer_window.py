@@ -1,0 +1,175 @@
+"""The editor of the transfer function in gazeview's window, by mouse and by keyboard.
+
+transfer_window.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import math
+import os
+import shutil
+import sys
+import time
+import unittest
+
+from picture import read_png, run
+from window_case import GAZEVIEW, PLACE, SCENE, SCENES, SCREEN, WindowCase
+
+# The plot without the interface being scaled: its width, its height.
+PLOT = (508, 171)
+SHOWN = (560, 60, 890, 640)  # the picture beside the panel
+FIXED = ("--gaze", "0.5,0.5", "--method", "standard", "--backend", "cpu")
+FUNCTION = os.path.join(PLACE.name, "edited.tf")
+
+
+def own_function():
+    """The scene gets a transfer function that may be written over."""
+    shutil.copy(os.path.join(SCENES, "shells.tf"), FUNCTION)
+    with open(SCENE, encoding="utf-8") as source:
+        text = source.read()
+    text = text.replace(os.path.join(SCENES, "shells.tf"), FUNCTION)
+    with open(SCENE, "w", encoding="utf-8") as out:
+        out.write(text)
+
+
+def read_function():
+    with open(FUNCTION, encoding="utf-8") as file:
+        return file.read()
+
+
+class TransferWindow(WindowCase):
+    def open_editor(self):
+        own_function()
+        self.start(*FIXED)
+        self.tool("windowsize", self.window, *SCREEN)
+        self.tool("mousemove", SCREEN[0] - 3, SCREEN[1] // 2)
+        self.until(lambda p: p.at(SCREEN[0] - 3, SCREEN[1] - 3) == p.at(600, 60), "large window")
+        before = self.grab()
+        self.tool("key", "e")
+        # The first point, which is selected, has a white ring: at value 0 and opacity 0.
+        picture = self.until(self.find_plot, "editor")
+        self.assertTrue(self.same(picture, before), "nothing is changed yet")
+        return picture
+
+    def find_plot(self, picture):
+        white = (255, 255, 255)
+        for y in range(SCREEN[1] // 2, SCREEN[1] - 20):
+            for x in range(16, 40):
+                ring = ((6, 0), (-6, 0), (0, 6), (0, -6))
+                if all(picture.at(x + a, y + b) == white for a, b in ring):
+                    self.corner = (x, y)
+                    return True
+        return False
+
+    def point_at(self, value, opacity):
+        """Of a point, on an axis of opacity that is logarithmic."""
+        height = math.log1p(1e4 * opacity) / math.log1p(1e4)
+        return (round(self.corner[0] + value * PLOT[0]),
+                round(self.corner[1] - height * PLOT[1]))
+
+    def shown(self, picture):
+        return picture.part(*SHOWN)
+
+    def same(self, a, b):
+        return self.shown(a) == self.shown(b)
+
+    def until_other(self, before, what):
+        return self.until(lambda p: not self.same(p, before), what)
+
+    def until_same(self, before, what):
+        return self.until(lambda p: self.same(p, before), what)
+
+    def settled(self):
+        """What is on the screen when two screenshots in a row are alike."""
+        before = self.grab()
+        while True:
+            time.sleep(0.3)
+            picture = self.grab()
+            if self.same(before, picture):
+                return picture
+            before = picture
+
+    def press(self, key, times=1):
+        for _ in range(times):
+            self.tool("keydown", key)
+            time.sleep(0.12)  # Dear ImGui sees what is down while it draws
+            self.tool("keyup", key)
+            time.sleep(0.12)
+
+    def drag(self, start, end):
+        self.move(*start)
+        self.tool("mousedown", 1)
+        time.sleep(0.2)
+        for i in range(1, 6):
+            self.move(*(round(a + (b - a) * i / 5) for a, b in zip(start, end)))
+            time.sleep(0.05)
+        self.tool("mouseup", 1)
+        time.sleep(0.2)
+
+    def test_dragged_point_changes_the_picture_and_undo_brings_the_very_same_back(self):
+        first = self.open_editor()
+        self.drag(self.point_at(0.65, 0.2), self.point_at(0.62, 0.0))
+        self.until_other(first, "dragged")
+        changed = self.settled()
+        self.tool("key", "ctrl+z")
+        self.until_same(first, "taken back")
+        self.tool("key", "ctrl+shift+z")
+        self.until_same(changed, "done again")
+        self.tool("key", "ctrl+z")
+        self.until_same(first, "taken back again")
+
+    def test_point_is_added_and_removed_by_the_mouse(self):
+        first = self.open_editor()
+        place = self.point_at(0.28, 0.9)
+        self.move(*place)
+        self.tool("click", 1)
+        added = self.until_other(first, "added")
+        self.assertFalse(self.same(added, first))
+        self.tool("click", 3)
+        self.until_same(first, "removed")
+
+    def test_point_is_added_moved_and_removed_by_the_keyboard(self):
+        first = self.open_editor()
+        # Ninth point, at 0.58; the next is the peak of the yellow shell.
+        self.press("Tab", 8)
+        self.press("Insert")
+        self.assertTrue(self.same(self.settled(), first), "it lies on the curve")
+        self.press("Up", 12)
+        self.until_other(first, "moved")
+        self.press("Delete")
+        self.until_same(first, "removed")
+
+    def test_keys_are_the_windows_again_after_escape(self):
+        first = self.open_editor()
+        self.press("Escape")
+        self.press("c")
+        self.assertIsNone(self.viewer.poll())
+        self.press("e")
+        self.until(lambda p: p.at(30, SCREEN[1] - 30) == first.at(600, 60), "closed")
+
+    def test_saved_preset_gives_the_same_picture_without_a_window(self):
+        first = self.open_editor()
+        left, bottom = self.corner
+        self.move(left + 40, bottom - PLOT[1] - 22)
+        self.tool("click", 1)
+        time.sleep(0.4)
+        self.move(left + 40, bottom - PLOT[1] - 22 + 37 + 17)
+        self.tool("click", 1)
+        self.until_other(first, "preset")
+        chosen = self.settled()
+        before = read_function()
+        self.move(left + 380, bottom + 105)
+        self.tool("click", 1)
+        deadline = time.monotonic() + 15
+        while read_function() == before:
+            self.assertLess(time.monotonic(), deadline, "never saved")
+            time.sleep(0.05)
+        out = os.path.join(PLACE.name, "saved.png")
+        done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED, "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(read_png(out).part(*SHOWN) == self.shown(chosen), "another picture")
+        # It is what the file has: taken back, it differs, and the first picture is there again.
+        self.tool("key", "ctrl+z")
+        self.until_same(first, "without preset")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)

@@ -1,0 +1,478 @@
+#include "view/panels/transfer_panel.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "render/transfer_presets.h"
+#include "view/panels/widgets.h"
+
+/* Unscaled (chosen: a bin of 256 is two coordinates wide). */
+#define WIDTH 540.0f
+/* How near a point is grabbed, unscaled (chosen: twice its disc). */
+#define REACH 10.0f
+/* One notch of the wheel over the axis (chosen: seven notches double it). */
+#define ZOOM_PER_NOTCH 0.9
+#define PAN_PER_NOTCH  0.1
+/* The narrowest part of the axis that is shown, of all (chosen: less than a 16-bit value's share of
+ * it on a wide display). */
+#define SHOWN_LEAST 1e-5
+/* One press of an arrow key, of what is shown (chosen: from one side to the other in 200). */
+#define ARROW_STEP      0.005
+#define ARROW_STEP_FINE 0.0005
+
+static const struct gz_transfer *now(const struct gz_transfer_panel *panel)
+{
+	return gz_transfer_edit_now(panel->edit);
+}
+
+/* What one press of a button or key changes is one step. */
+static void touch(struct gz_transfer_panel *panel)
+{
+	if (!gz_transfer_edit_in_drag(panel->edit))
+		gz_transfer_edit_begin(panel->edit);
+}
+
+static void data_range(const struct gz_volume *volume, double out_range[2])
+{
+	const double a = volume->slope * volume->stored_min + volume->intercept;
+	const double b = volume->slope * volume->stored_max + volume->intercept;
+	out_range[0] = fmin(a, b);
+	out_range[1] = fmax(a, b);
+}
+
+static void function_range(const struct gz_transfer_panel *panel, double out_range[2])
+{
+	data_range(panel->volume, out_range);
+	if (now(panel)->has_range) {
+		out_range[0] = now(panel)->range[0];
+		out_range[1] = now(panel)->range[1];
+	}
+	if (!(out_range[1] > out_range[0])) /* all values are one */
+		out_range[1] = out_range[0] + 1;
+}
+
+/* All values that the data have or the function tells of. */
+static void whole_axis(const struct gz_transfer_panel *panel, double out_range[2])
+{
+	double range[2];
+	data_range(panel->volume, out_range);
+	function_range(panel, range);
+	out_range[0] = fmin(out_range[0], range[0]);
+	out_range[1] = fmax(out_range[1], range[1]);
+}
+
+static void zoom(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	double whole[2], *shown = panel->plot.shown;
+	whole_axis(panel, whole);
+	const double width = shown[1] - shown[0];
+	const double at =
+		fmin(fmax((double)((canvas->mouse.x - panel->plot.corner.x) /
+				   fmaxf(1, panel->plot.opposite.x - panel->plot.corner.x)),
+			  0),
+		     1);
+	double wide = width, left = shown[0];
+	if (canvas->shift) {
+		left -= (double)canvas->wheel * PAN_PER_NOTCH * width;
+	} else {
+		wide = width * pow(ZOOM_PER_NOTCH, (double)canvas->wheel);
+		wide = fmax(wide, (whole[1] - whole[0]) * SHOWN_LEAST);
+		left += at * (width - wide);
+	}
+	panel->whole_lost = wide < whole[1] - whole[0];
+	left = fmin(fmax(left, whole[0]), whole[1] - wide);
+	shown[0] = left;
+	shown[1] = left + wide;
+}
+
+static size_t nearest(const struct gz_transfer_panel *panel, struct gz_place at)
+{
+	const struct gz_transfer_plot *plot = &panel->plot;
+	const double per_value =
+		(double)(gz_transfer_plot_x(plot, 1) - gz_transfer_plot_x(plot, 0));
+	const double per_height = (double)(plot->opposite.y - plot->corner.y);
+	const double height = gz_transfer_axis_of(gz_transfer_plot_opacity(plot, at.y),
+						  plot->opacity_logarithmic);
+	return gz_transfer_edit_nearest(panel->edit, gz_transfer_plot_value(plot, at.x), height,
+					per_value, per_height, (double)(REACH * gz_widgets_scale()),
+					plot->opacity_logarithmic);
+}
+
+/* In the band a point is found by its value alone. */
+static size_t nearest_in_band(const struct gz_transfer_panel *panel, float x)
+{
+	size_t found = 0;
+	for (size_t i = 1; i < now(panel)->count; i++)
+		if (fabsf(gz_transfer_plot_x(&panel->plot, now(panel)->points[i].value) - x) <
+		    fabsf(gz_transfer_plot_x(&panel->plot, now(panel)->points[found].value) - x))
+			found = i;
+	return found;
+}
+
+static void grip(struct gz_transfer_panel *panel, size_t point, struct gz_place mouse)
+{
+	const struct gz_transfer_point *p = &now(panel)->points[point];
+	panel->selected = point;
+	panel->dragged = true;
+	panel->grip_at = mouse;
+	panel->grip = (struct gz_place) { gz_transfer_plot_x(&panel->plot, p->value) - mouse.x,
+					  gz_transfer_plot_y(&panel->plot, p->opacity) - mouse.y };
+	panel->grip_value = p->value;
+	panel->grip_opacity = p->opacity;
+}
+
+static void press(struct gz_transfer_panel *panel, struct gz_place mouse)
+{
+	if (mouse.y > panel->plot.opposite.y + REACH * gz_widgets_scale()) {
+		panel->selected = nearest_in_band(panel, mouse.x);
+		return;
+	}
+	touch(panel);
+	size_t point = nearest(panel, mouse);
+	if (point == GZ_TRANSFER_EDIT_NONE)
+		point = gz_transfer_edit_add(panel->edit,
+					     gz_transfer_plot_value(&panel->plot, mouse.x),
+					     gz_transfer_plot_opacity(&panel->plot, mouse.y));
+	if (point != GZ_TRANSFER_EDIT_NONE)
+		grip(panel, point, mouse);
+}
+
+/* A point follows the mouse; with Shift along that axis alone along which it has gone farther. */
+static void drag(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	const struct gz_place mouse = canvas->mouse;
+	if (mouse.x == panel->grip_at.x && mouse.y == panel->grip_at.y)
+		return; /* a click, or held still */
+	double value = gz_transfer_plot_value(&panel->plot, mouse.x + panel->grip.x);
+	double opacity = gz_transfer_plot_opacity(&panel->plot, mouse.y + panel->grip.y);
+	if (canvas->shift) {
+		const bool along =
+			fabsf(mouse.x - panel->grip_at.x) > fabsf(mouse.y - panel->grip_at.y);
+		value = along ? value : panel->grip_value;
+		opacity = along ? panel->grip_opacity : opacity;
+	}
+	gz_transfer_edit_move(panel->edit, panel->selected, value, opacity);
+}
+
+static void remove_point(struct gz_transfer_panel *panel, size_t point)
+{
+	touch(panel);
+	if (gz_transfer_edit_remove(panel->edit, point) && panel->selected > point)
+		panel->selected--;
+}
+
+/* Halfway to the next point, or from the last to the end. */
+static void insert_point(struct gz_transfer_panel *panel)
+{
+	const struct gz_transfer *transfer = now(panel);
+	const size_t at = panel->selected;
+	const double from = transfer->points[at].value;
+	const double to = at + 1 < transfer->count ? transfer->points[at + 1].value : 1;
+	double rgba[4];
+	gz_transfer_evaluate(transfer, (from + to) / 2, rgba);
+	touch(panel);
+	const size_t point = gz_transfer_edit_add(panel->edit, (from + to) / 2, rgba[3]);
+	if (point != GZ_TRANSFER_EDIT_NONE)
+		panel->selected = point;
+}
+
+static void move_by_arrows(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	const struct gz_transfer_plot *plot = &panel->plot;
+	const struct gz_transfer_point *p = &now(panel)->points[panel->selected];
+	const double step = canvas->control ? ARROW_STEP_FINE : ARROW_STEP;
+	const double wide = gz_transfer_plot_value(plot, plot->opposite.x) -
+			    gz_transfer_plot_value(plot, plot->corner.x);
+	const double height = gz_transfer_axis_of(p->opacity, plot->opacity_logarithmic);
+	double value = p->value, opacity = p->opacity;
+	if (canvas->arrow_x)
+		value += canvas->arrow_x * step * wide;
+	if (canvas->arrow_y)
+		opacity = gz_transfer_axis_opacity(height + canvas->arrow_y * step,
+						   plot->opacity_logarithmic);
+	touch(panel);
+	gz_transfer_edit_move(panel->edit, panel->selected, value, opacity);
+}
+
+/* @return whether Tab leads on to the next widget: the last point is passed */
+static bool take_keys(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	if (canvas->arrow_x || canvas->arrow_y)
+		move_by_arrows(panel, canvas);
+	if (canvas->delete_pressed)
+		remove_point(panel, panel->selected);
+	if (canvas->insert_pressed)
+		insert_point(panel);
+	const bool last = panel->selected + 1 >= now(panel)->count;
+	if (canvas->step > 0 && !last)
+		panel->selected++;
+	if (canvas->step < 0 && panel->selected > 0)
+		panel->selected--;
+	return canvas->step > 0 && last;
+}
+
+static void take_mouse(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	if (canvas->wheel != 0)
+		zoom(panel, canvas);
+	if (canvas->pressed)
+		press(panel, canvas->mouse);
+	if (panel->dragged && canvas->held)
+		drag(panel, canvas);
+	if (!canvas->held)
+		panel->dragged = false;
+	if (canvas->right_pressed) {
+		const size_t point = nearest(panel, canvas->mouse);
+		if (point != GZ_TRANSFER_EDIT_NONE)
+			remove_point(panel, point);
+	}
+}
+
+/* What was taken back or loaded may have fewer points. */
+static void keep_selection(struct gz_transfer_panel *panel)
+{
+	if (panel->selected >= now(panel)->count)
+		panel->selected = now(panel)->count - 1;
+}
+
+static void prepare_plot(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+{
+	gz_transfer_plot_lay_out(&panel->plot, canvas);
+	panel->plot.opacity_logarithmic = !panel->opacity_linear;
+	panel->plot.counts_logarithmic = !panel->counts_linear;
+	function_range(panel, panel->plot.range);
+	if (!panel->whole_lost)
+		whole_axis(panel, panel->plot.shown);
+}
+
+static void print_note(const struct gz_transfer_panel *panel, const struct gz_canvas *canvas,
+		       char *text, size_t size)
+{
+	const struct gz_transfer_plot *plot = &panel->plot;
+	text[0] = '\0';
+	if (canvas->hovered)
+		snprintf(text, size, "%.6g : %.3g",
+			 plot->range[0] + gz_transfer_plot_value(plot, canvas->mouse.x) *
+						  (plot->range[1] - plot->range[0]),
+			 gz_transfer_plot_opacity(plot, canvas->mouse.y));
+	else if (!panel->histogram)
+		snprintf(text, size, "counting voxels");
+	else if (panel->histogram->approximate)
+		snprintf(text, size, "histogram of a coarser level");
+}
+
+static void draw_colour_popup(struct gz_transfer_panel *panel, bool open)
+{
+	double rgb[3];
+	for (int i = 0; i < 3; i++)
+		rgb[i] = now(panel)->points[panel->selected].rgb[i];
+	if (!gz_widget_colour_popup("colour of a point", open, rgb))
+		return;
+	touch(panel);
+	gz_transfer_edit_colour(panel->edit, panel->selected, rgb);
+}
+
+static void draw_canvas(struct gz_transfer_panel *panel)
+{
+	struct gz_canvas canvas;
+	char note[64];
+	if (panel->focus)
+		gz_widgets_focus_canvas();
+	panel->focus = false;
+	gz_widget_canvas("curve", GZ_TRANSFER_PLOT_HEIGHT, &canvas);
+	prepare_plot(panel, &canvas);
+	take_mouse(panel, &canvas);
+	keep_selection(panel);
+	const bool leave = canvas.focused && take_keys(panel, &canvas);
+	keep_selection(panel);
+	prepare_plot(panel, &canvas);
+	panel->plot.selected = panel->selected;
+	print_note(panel, &canvas, note, sizeof note);
+	gz_transfer_plot_draw(&panel->plot, now(panel), panel->histogram, note);
+	gz_widget_canvas_end();
+	draw_colour_popup(panel, canvas.double_pressed);
+	if (leave)
+		gz_widgets_focus_next();
+}
+
+/* Value in data units, opacity and colour of the selected point. */
+static void draw_point(struct gz_transfer_panel *panel)
+{
+	const struct gz_transfer_point point = now(panel)->points[panel->selected];
+	double range[2], rgb[3] = { point.rgb[0], point.rgb[1], point.rgb[2] };
+	function_range(panel, range);
+	const double wide = range[1] - range[0];
+	double value = range[0] + point.value * wide, opacity = point.opacity;
+	const struct gz_number_range values = { range[0], range[1],   false,
+						false,    wide / 500, "value %.6g" };
+	const struct gz_number_range opacities = { 0, 1, false, false, 0.002, "opacity %.5g" };
+	gz_widgets_next_width(0.24f);
+	if (gz_widget_doubles("##value", &value, 1, &values)) {
+		touch(panel);
+		gz_transfer_edit_move(panel->edit, panel->selected, (value - range[0]) / wide, NAN);
+	}
+	gz_widget_tooltip("data value of the point");
+	gz_widgets_same_line(0);
+	gz_widgets_next_width(0.23f);
+	if (gz_widget_doubles("##opacity", &opacity, 1, &opacities)) {
+		touch(panel);
+		gz_transfer_edit_move(panel->edit, panel->selected, NAN, opacity);
+	}
+	gz_widget_tooltip("its opacity per voxel length, 0 to 1");
+	gz_widgets_same_line(0);
+	gz_widgets_next_width(0.35f);
+	if (gz_widget_colour("##colour", rgb)) {
+		touch(panel);
+		gz_transfer_edit_colour(panel->edit, panel->selected, rgb);
+	}
+	gz_widgets_same_line(0);
+	gz_widgets_disable(now(panel)->count < 2);
+	if (gz_widget_button("Remove"))
+		remove_point(panel, panel->selected);
+	gz_widgets_enable();
+}
+
+static void draw_presets(struct gz_transfer_panel *panel)
+{
+	char lines[GZ_PRESET_COUNT][96];
+	const char *names[GZ_PRESET_COUNT + 2] = { "Presets" };
+	int chosen = 0;
+	for (int i = 0; i < GZ_PRESET_COUNT; i++) {
+		const struct gz_transfer_preset_text *text =
+			gz_transfer_preset_text((enum gz_transfer_preset)i);
+		snprintf(lines[i], sizeof lines[i], "%s: %s", text->title, text->about);
+		names[i + 1] = lines[i];
+	}
+	gz_widgets_disable(!panel->histogram);
+	gz_widgets_next_width(0.24f);
+	if (gz_widget_choice("##presets", &chosen, names) && chosen > 0 && panel->histogram) {
+		struct gz_transfer made;
+		gz_transfer_preset_make((enum gz_transfer_preset)(chosen - 1), panel->histogram,
+					panel->volume, &made);
+		gz_transfer_edit_end(panel->edit);
+		gz_transfer_edit_replace(panel->edit, &made);
+		panel->whole_lost = false;
+	}
+	gz_widgets_enable();
+	gz_widget_tooltip("looks fitted to this volume by its histogram");
+}
+
+static void draw_steps(struct gz_transfer_panel *panel)
+{
+	gz_widgets_same_line(0);
+	gz_widgets_disable(!gz_transfer_edit_can_undo(panel->edit));
+	if (gz_widget_button("Undo"))
+		gz_transfer_edit_undo(panel->edit);
+	gz_widgets_enable();
+	gz_widget_tooltip("Ctrl+Z");
+	gz_widgets_same_line(0);
+	gz_widgets_disable(!gz_transfer_edit_can_redo(panel->edit));
+	if (gz_widget_button("Redo"))
+		gz_transfer_edit_redo(panel->edit);
+	gz_widgets_enable();
+	gz_widget_tooltip("Ctrl+Shift+Z");
+	keep_selection(panel);
+}
+
+static void draw_interpolation(struct gz_transfer_panel *panel)
+{
+	static const char *const names[] = { "linear", "quadratic", NULL };
+	int interpolation = (int)now(panel)->interpolation;
+	gz_widgets_same_line(0);
+	gz_widgets_next_width(0.18f);
+	if (gz_widget_choice("##interpolation", &interpolation, names)) {
+		touch(panel);
+		gz_transfer_edit_interpolate(panel->edit,
+					     (enum gz_transfer_interpolation)interpolation);
+	}
+	gz_widget_tooltip("between points: straight, or easing in and out of each");
+}
+
+static void draw_axes(struct gz_transfer_panel *panel)
+{
+	bool opacity = !panel->opacity_linear, counts = !panel->counts_linear;
+	gz_widgets_same_line(0);
+	if (gz_widget_checkbox("log opacity", &opacity))
+		panel->opacity_linear = !opacity;
+	gz_widgets_same_line(0);
+	if (gz_widget_checkbox("log counts", &counts))
+		panel->counts_linear = !counts;
+}
+
+static void draw_range(struct gz_transfer_panel *panel)
+{
+	bool own = now(panel)->has_range;
+	double range[2];
+	function_range(panel, range);
+	if (gz_widget_checkbox("range", &own)) {
+		touch(panel);
+		gz_transfer_edit_range(panel->edit, own ? range : NULL);
+	}
+	gz_widget_tooltip("the data values that the first and the last point can reach; without "
+			  "one, the volume's least and greatest");
+	gz_widgets_same_line(0);
+	gz_widgets_disable(!own);
+	gz_widgets_next_width(0.42f);
+	const struct gz_number_range limits = {
+		-1e38, 1e38, false, false, (range[1] - range[0]) / 500, "%.6g"
+	};
+	if (gz_widget_doubles("##range", range, 2, &limits)) {
+		touch(panel);
+		gz_transfer_edit_range(panel->edit, range);
+	}
+	gz_widgets_enable();
+	gz_widgets_same_line(0);
+	gz_widgets_disable(!panel->whole_lost);
+	if (gz_widget_button("Whole axis"))
+		panel->whole_lost = false;
+	gz_widgets_enable();
+	gz_widget_tooltip("the wheel zooms, with Shift it moves the axis");
+}
+
+static enum gz_transfer_wish draw_file(struct gz_transfer_panel *panel)
+{
+	enum gz_transfer_wish wish = GZ_TRANSFER_WISH_NONE;
+	gz_widgets_next_width(0.6f);
+	gz_widget_text_field("##file", panel->file, sizeof panel->file, false);
+	gz_widget_tooltip("a file of a transfer function, .tf");
+	gz_widgets_same_line(0);
+	gz_widgets_disable(!panel->file[0]);
+	if (gz_widget_button("Load"))
+		wish = GZ_TRANSFER_WISH_LOAD;
+	gz_widgets_same_line(0);
+	if (gz_widget_button("Save"))
+		wish = GZ_TRANSFER_WISH_SAVE;
+	gz_widgets_enable();
+	gz_widgets_same_line(0);
+	gz_widget_label(gz_transfer_edit_differs(panel->edit) ? "changed" : "as saved");
+	return wish;
+}
+
+static enum gz_transfer_wish draw_content(struct gz_transfer_panel *panel)
+{
+	keep_selection(panel);
+	draw_presets(panel);
+	draw_steps(panel);
+	draw_interpolation(panel);
+	draw_axes(panel);
+	draw_canvas(panel);
+	draw_point(panel);
+	draw_range(panel);
+	return draw_file(panel);
+}
+
+enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel)
+{
+	const struct gz_panel_place place = {
+		.at = GZ_PANEL_BOTTOM_LEFT,
+		.width = WIDTH,
+		.margin_top = panel->margin_top,
+	};
+	enum gz_transfer_wish wish = GZ_TRANSFER_WISH_NONE;
+	if (!gz_widgets_in_use())
+		gz_transfer_edit_end(panel->edit);
+	if (gz_panel_begin("Transfer function", &place, &panel->open))
+		wish = draw_content(panel);
+	gz_panel_end();
+	return wish;
+}
