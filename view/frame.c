@@ -212,6 +212,28 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made);
 }
 
+void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
+			const struct gz_focus *focus)
+{
+	maker->reading = *reading;
+	maker->focus = *focus;
+}
+
+const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker)
+{
+	return &maker->reading;
+}
+
+const char *gz_frame_backend(const struct gz_frame_maker *maker)
+{
+	return maker->caster.renderer->ops->name;
+}
+
+void gz_frame_forget(struct gz_frame_maker *maker)
+{
+	gz_temporal_forget(&maker->temporal);
+}
+
 bool gz_frame_settled(const struct gz_frame_maker *maker)
 {
 	return gz_attention_settled(&maker->attention);
@@ -315,6 +337,7 @@ static enum gz_result make(struct gz_frame_maker *maker, const struct gz_frame_r
 		r = gz_plan_update(&plan, &maker->plan);
 	if (r == GZ_OK && request->settings->temporal.accumulate)
 		gz_temporal_place(&maker->temporal, &maker->plan);
+	record->kept = r == GZ_OK && request->settings->temporal.accumulate && maker->temporal.any;
 	int64_t planned_ns = gz_clock_now_ns();
 	if (r == GZ_OK)
 		r = cast_picture(maker, request, &stats);
@@ -419,7 +442,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	maker->any_made = true;
 	tell_spent(maker, request, record.total_ms);
 	record.budget = budget_state(maker, &record);
-	record.backend = maker->caster.renderer->ops->name; /* cpu may have taken over */
+	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
 	*out_image = maker->caster.on_device ? NULL : &maker->image;
 	*out_record = record;
 	return GZ_OK;

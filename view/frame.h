@@ -110,6 +110,24 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 		     const struct gz_gaze_reading *reading, const struct gz_display *display,
 		     int64_t time_ns);
 
+/**
+ * Take a focus as it was, in place of gz_frame_attend(): a replay does not depend on what frames
+ * took when they were recorded, or take now.
+ *
+ * @param reading  what was known of the gaze then, for the record of the frame
+ */
+void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
+			const struct gz_focus *focus);
+
+/** What the attention took last: gz_frame_attend() or gz_frame_set_focus(). */
+const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker);
+
+/** What casts its rays: "cpu", "gl". After gz_frame_maker_start(); static text. */
+const char *gz_frame_backend(const struct gz_frame_maker *maker);
+
+/** Forget what earlier frames saw: temporal.accumulate begins anew with the next. */
+void gz_frame_forget(struct gz_frame_maker *maker);
+
 /** Whether the plan stays as it is while the gaze does; else gz_frame_attend() is due each frame.
  */
 bool gz_frame_settled(const struct gz_frame_maker *maker);

@@ -13,6 +13,8 @@
 #include "view/letters.h"
 #include "view/loading_bar.h"
 #include "view/output.h"
+#include "view/session/recording.h"
+#include "view/session/replay.h"
 #include "view/stats.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -36,6 +38,8 @@ struct headless {
 	struct gz_gaze_source *source;
 	struct gz_stats_file *stats;
 	struct gz_video *video;
+	struct gz_session_writer *session; /* in recording */
+	struct gz_replay *replay;
 	struct gz_scene_settings settings; /* the camera turns */
 	int64_t start_ns;
 	bool silence_told; /* that a daemon says nothing was said */
@@ -172,6 +176,8 @@ static enum gz_result write_png(const struct headless *self, const struct gz_ima
 /* When a frame is shown: a live one when it has been made. */
 static int64_t shown_ns(const struct headless *self, int frame)
 {
+	if (self->replay)
+		return gz_replay_frame(self->replay)->time_ns;
 	return self->source->ops->live ? gz_clock_now_ns() - self->start_ns
 				       : frame_time_ns(self, frame);
 }
@@ -216,6 +222,41 @@ static enum gz_result print_line(const struct headless *self, const struct gz_fr
 	return GZ_ERR_IO;
 }
 
+/* The session begins with the first frame: only then is it known what it is on. */
+static enum gz_result begin_session(struct headless *self, const struct gz_display *display)
+{
+	const struct gz_recording_start start = {
+		.path = self->options->record,
+		.scene = self->options->scene,
+		.maker = self->maker,
+		.settings = &self->settings,
+		.display = display,
+		.source = self->source->ops->name,
+		.rate_hz = self->options->fps,
+		.now_ns = self->start_ns,
+	};
+	return gz_recording_begin(&start, self->log, &self->session);
+}
+
+/* As the settings and the maker's focus say, and all that is to be had of it. */
+static enum gz_result make_frame(struct headless *self, const struct gz_frame_request *request,
+				 int frame)
+{
+	struct gz_frame_record record;
+	struct gz_image *image;
+	enum gz_result r = gz_frame_make(self->maker, request, &image, &record);
+	if (r == GZ_OK && self->session)
+		r = gz_recording_add(self->session, self->maker, request, &record,
+				     shown_ns(self, frame));
+	if (r == GZ_OK)
+		r = print_line(self, &record);
+	if (r == GZ_OK && self->stats)
+		r = gz_stats_add(self->stats, &record);
+	if (r == GZ_OK && self->replay)
+		gz_replay_compare(self->replay, &record);
+	return r == GZ_OK ? write_picture(self, image, &record, frame) : r;
+}
+
 static enum gz_result one_frame(struct headless *self, int frame)
 {
 	if (self->source->ops->live)
@@ -230,17 +271,51 @@ static enum gz_result one_frame(struct headless *self, int frame)
 	};
 	gz_frame_attend(self->maker, &self->settings.attention, &gaze, &display,
 			self->source->ops->live ? gz_clock_now_ns() : frame_time_ns(self, frame));
-	struct gz_frame_record record;
-	struct gz_image *image;
-	enum gz_result r = gz_frame_make(self->maker, &request, &image, &record);
+	enum gz_result r = GZ_OK;
+	if (self->options->record[0] && !self->session)
+		r = begin_session(self, &display);
+	if (r == GZ_OK && self->session)
+		r = gz_session_writer_gaze(self->session, &gaze,
+					   self->start_ns + shown_ns(self, frame));
 	if (r == GZ_OK)
-		r = print_line(self, &record);
-	if (r == GZ_OK && self->stats)
-		r = gz_stats_add(self->stats, &record);
-	if (r == GZ_OK)
-		r = write_picture(self, image, &record, frame);
+		r = make_frame(self, &request, frame);
 	gz_camera_turn(&self->settings.camera, self->options->turn_deg);
 	return r;
+}
+
+static enum gz_result one_replayed_frame(struct headless *self, int frame)
+{
+	enum gz_result r = gz_replay_next(self->replay);
+	if (r != GZ_OK)
+		return r;
+	const struct gz_session_frame *recorded = gz_replay_frame(self->replay);
+	memcpy(&self->settings, gz_replay_settings(self->replay), sizeof self->settings);
+	const struct gz_frame_request request = {
+		.settings = &self->settings,
+		.display = &recorded->display,
+		.width = recorded->width,
+		.height = recorded->height,
+	};
+	r = gz_replay_ready(self->replay);
+	return r == GZ_OK ? make_frame(self, &request, frame) : r;
+}
+
+static enum gz_result finish_video(struct headless *self, int64_t end_ns)
+{
+	if (self->video)
+		gz_video_finish(self->video, end_ns);
+	return gz_video_close(&self->video);
+}
+
+static enum gz_result replay_frames(struct headless *self)
+{
+	enum gz_result r = GZ_OK;
+	for (int frame = 0; r == GZ_OK && !signal_seen; frame++)
+		r = one_replayed_frame(self, frame);
+	/* The last one is shown for as long as any. */
+	const int64_t end_ns = shown_ns(self, 0) + (int64_t)(1e9 / self->options->fps);
+	const enum gz_result closed = finish_video(self, end_ns);
+	return r == GZ_OK || r == GZ_ERR_END ? closed : r;
 }
 
 static enum gz_result all_frames(struct headless *self)
@@ -252,17 +327,17 @@ static enum gz_result all_frames(struct headless *self)
 	int frame = 0;
 	for (; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
 		r = one_frame(self, frame);
-	if (self->video)
-		gz_video_finish(self->video, shown_ns(self, frame));
-	const enum gz_result closed = gz_video_close(&self->video);
-	return r == GZ_OK ? closed : r;
+	const enum gz_result recorded = gz_session_writer_end(&self->session);
+	const enum gz_result closed = finish_video(self, shown_ns(self, frame));
+	return r != GZ_OK ? r : recorded != GZ_OK ? recorded : closed;
 }
 
 /* A replay is the same each time, but for what depends on how fast the machine is. */
 static void warn_of_budget(const struct headless *self)
 {
 	const bool keeps = self->settings.foveation.method != GZ_METHOD_STANDARD;
-	if (self->settings.attention.budget_ms > 0 && keeps && !self->source->ops->live)
+	if (self->settings.attention.budget_ms > 0 && keeps && !self->source->ops->live &&
+	    !self->options->replay[0])
 		gz_warn(self->log,
 			"attention.budget_ms %g: the pictures depend on how fast this machine is; "
 			"set it to 0 for the same ones each time",
@@ -300,8 +375,12 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 		warn_of_budget(&self);
 		if (self.settings.view.letters)
 			gz_frame_tell_unoriented(self.maker);
-		r = all_frames(&self);
+		r = options->replay[0] ? gz_replay_open(options, self.maker, log, &self.replay)
+				       : all_frames(&self);
 	}
+	if (r == GZ_OK && self.replay)
+		r = replay_frames(&self);
+	gz_replay_close(&self.replay);
 	gz_stats_close(&self.stats);
 	gz_frame_maker_destroy(&self.maker);
 	gz_gaze_source_destroy(&self.source);

@@ -6,6 +6,7 @@
 #include "view/headless.h"
 #include "view/notices.h"
 #include "view/options.h"
+#include "view/session/replay.h"
 #include "view/target_window.h"
 #include "view/window/window.h"
 #include "view/write_volume.h"
@@ -13,7 +14,7 @@
 /* What a shell reports for a process that a signal ended. */
 enum { EXIT_SIGNAL = 128 };
 
-static int run(const struct gz_view_options *options, const struct gz_log *log,
+static int run(struct gz_view_options *options, const struct gz_log *log,
 	       struct gz_notices *notices)
 {
 	int signal_number = 0;
@@ -21,6 +22,8 @@ static int run(const struct gz_view_options *options, const struct gz_log *log,
 		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->write_volume[0])
 		return gz_view_write_volume(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options->replay[0] && gz_replay_adopt(options, log) != GZ_OK)
+		return EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)
 					     : gz_view_window(options, log, notices);
 	if (signal_number && (r == GZ_OK || r == GZ_ERR_CANCELLED))

@@ -1,5 +1,6 @@
 #include "view/options.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -101,6 +102,23 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "video to write, headless, --fps pictures a second, by ffmpeg: .mp4 or what else "
 		  "its "
 		  "ending names" },
+	{ .key = "pictures",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(pictures),
+	  .max = GZ_PATH_SIZE,
+	  .preset = ".",
+	  .help = "folder for what F9, F10 and F12 write: sessions, videos, screenshots" },
+	{ .key = "record",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(record),
+	  .max = GZ_PATH_SIZE,
+	  .help = "folder NAME.session to make: what each picture is made of, to be shown again" },
+	{ .key = "replay",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(replay),
+	  .max = GZ_PATH_SIZE,
+	  .help = "NAME.session to show again, picture by picture, in place of a scene and a "
+		  "gaze" },
 	{ .key = "stats",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(stats),
@@ -340,8 +358,10 @@ enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz
 		return GZ_ERR_INVAL;
 	}
 	if (frames > 1 && scanned.conversions == 0) {
-		gz_err(log, "--out %s: %d frames need a number in the name, as in frame-%%04d.png",
-		       pattern, frames);
+		gz_err(log,
+		       "--out %s: several frames need a number in the name, as in "
+		       "frame-%%04d.png",
+		       pattern);
 		return GZ_ERR_INVAL;
 	}
 	return GZ_OK;
@@ -430,6 +450,26 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 	return GZ_ERR_INVAL;
 }
 
+/* A session has what these say. */
+static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
+{
+	static const char *const others[] = {
+		"scene",      "size",       "gaze",        "frames",       "turn",
+		"display-px", "display-mm", "distance-mm", "write-volume", "record",
+	};
+	const char *other = options->scene[0] ? "scene" : NULL;
+	for (size_t i = 0; i < gz_view_option_count && !other; i++)
+		for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
+			if (options->given[i] &&
+			    strcmp(gz_view_option_table[i].key, others[k]) == 0)
+				other = others[k];
+	if (!other)
+		return GZ_OK;
+	gz_err(log, "--replay: --%s cannot go with it: the session says that; remove one of them",
+	       other);
+	return GZ_ERR_INVAL;
+}
+
 /* A layout is told by dims and type; the rest has presets. */
 static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
 {
@@ -448,7 +488,10 @@ static enum gz_result check_together(const struct gz_view_options *options,
 {
 	if (options->target.targets[0])
 		return check_targets(options, log);
-	if (!options->scene[0] && (options->headless || options->write_volume[0])) {
+	if (options->replay[0] && check_replay(options, log) != GZ_OK)
+		return GZ_ERR_INVAL;
+	if (!options->scene[0] && !options->replay[0] &&
+	    (options->headless || options->write_volume[0])) {
 		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}
@@ -471,7 +514,9 @@ static enum gz_result check_together(const struct gz_view_options *options,
 		gz_err(log, "--%s: only written without a window; add --headless", file);
 		return GZ_ERR_INVAL;
 	}
-	return options->out[0] ? gz_pattern_check(options->out, options->frames, log) : GZ_OK;
+	/* A session hardly has but one frame. */
+	const int frames = options->replay[0] ? INT_MAX : options->frames;
+	return options->out[0] ? gz_pattern_check(options->out, frames, log) : GZ_OK;
 }
 
 /* --method is short for --foveation.method; both at once say nothing certain. */
@@ -504,7 +549,7 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 				     struct gz_view_options *options)
 {
 	struct gz_option_binding bindings[OWN_BINDINGS + GZ_SCENE_BINDINGS] = {
-		{ gz_view_option_table, gz_view_option_count, options, NULL },
+		{ gz_view_option_table, gz_view_option_count, options, options->given },
 		{ gz_target_option_table, gz_target_option_count, &options->target, NULL },
 	};
 	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {

@@ -18,6 +18,9 @@
 #include "view/scene_tables.h"
 #include "view/target_options.h"
 
+/** Most options of gz_view_option_table. */
+#define GZ_VIEW_OPTIONS_MAX 64
+
 /** Where the gaze comes from. */
 enum gz_gaze_kind {
 	GZ_GAZE_CENTRE, /**< where the camera's look_at appears */
@@ -60,6 +63,9 @@ struct gz_view_options {
 	int frames;
 	char out[GZ_PATH_SIZE];          /**< empty: no pictures are written */
 	char video[GZ_PATH_SIZE];        /**< empty: none */
+	char record[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
+	char replay[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
+	char pictures[GZ_PATH_SIZE];     /**< folder for what a window writes */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	int bricks;                      /**< enum gz_bricks_rule */
@@ -80,6 +86,8 @@ struct gz_view_options {
 	char transfer_file[GZ_PATH_SIZE]; /**< in place of the scene's; empty: not given */
 
 	struct gz_target_options target; /**< targets instead of a scene, where any are named */
+
+	bool given[GZ_VIEW_OPTIONS_MAX]; /**< of gz_view_option_table, in its order */
 
 	/** Scene keys given on the command line, to be copied over what the scene file says. */
 	struct gz_scene_settings scene_settings;

@@ -33,6 +33,7 @@ struct gz_frame_record {
 	const char *attention; /**< what the plan went by: gz_attention_state_name() */
 	struct gz_focus focus; /**< what the plan was made of */
 	double budget_ms;      /**< 0: none */
+	bool kept;             /**< what earlier frames saw is in it: temporal.accumulate */
 	const char *budget;    /**< how that went: gz_budget_state_name() */
 };
 

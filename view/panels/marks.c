@@ -11,6 +11,7 @@
 #define LETTER_SIZE   2.0f
 #define LETTER_MARGIN 36.0f /* below the text line */
 #define MESSAGE_SIZE  2.0f
+#define DOT_RADIUS    5.0f
 
 /* Longest line of a message with its end. */
 enum { LINE_SIZE = 512 };
@@ -63,6 +64,27 @@ void gz_marks_draw_letters(const struct gz_letters *letters)
 	draw_letter(letters->right, 1, 0.5f);
 	draw_letter(letters->top, 0.5f, 0);
 	draw_letter(letters->bottom, 0.5f, 1);
+}
+
+void gz_marks_draw_running(int row, const char *what, bool recording, int64_t seconds)
+{
+	const struct gz_paint red = { 255, 48, 48, 255 };
+	const float scale = gz_widgets_scale(), height = gz_text_room(1, "M").y;
+	char text[LINE_SIZE];
+	snprintf(text, sizeof text, "%s%s %lld:%02lld", recording ? "   " : "", what,
+		 (long long)(seconds / 60), (long long)(seconds % 60));
+	const struct gz_place window = gz_widgets_room(), room = gz_text_room(1, text);
+	const float step = height + 3 * PADDING * scale;
+	const struct gz_place at = {
+		floorf(window.x - room.x - (MARGIN + 2 * PADDING) * scale),
+		floorf(window.y - MARGIN * scale - step * (float)(row + 1)),
+	};
+	const struct gz_place end = gz_draw_caption(GZ_LAYER_TOP, at, gz_paint_plain, text);
+	if (recording)
+		gz_draw_disc(GZ_LAYER_TOP,
+			     (struct gz_place) { at.x + (PADDING + DOT_RADIUS + 2) * scale,
+						 (at.y + end.y) / 2 },
+			     DOT_RADIUS, red);
 }
 
 void gz_marks_draw_message(const char *text)

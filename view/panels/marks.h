@@ -19,6 +19,13 @@ void gz_marks_draw_cross(struct gz_place at);
 /** Draw letters at the edges. */
 void gz_marks_draw_letters(const struct gz_letters *letters);
 
+/**
+ * Draw what goes on at the lower right: "what 1:05", behind a red dot where it is a recording.
+ *
+ * @param row  0 is the lowest
+ */
+void gz_marks_draw_running(int row, const char *what, bool recording, int64_t seconds);
+
 /** Draw @p text over the middle: each line centred, dark, in twice the interface's size. */
 void gz_marks_draw_message(const char *text);
 

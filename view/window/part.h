@@ -69,6 +69,9 @@ struct gz_window_part {
 	/** Draw panels and marks by panels/widgets.h. A changed window->settings is checked and
 	 * taken afterwards. */
 	void (*panels)(struct gz_window *window, const struct gz_window_gaze *gaze);
+	/** Panels have been drawn too, and the framebuffer of width times height px is about to be
+	 * swapped. */
+	void (*drawn)(struct gz_window *window, int width, int height);
 	/** What is on the screen has been swapped there. */
 	void (*presented)(struct gz_window *window);
 	/** Seconds until the next turn is due, if no event comes before; INFINITY: whenever. */

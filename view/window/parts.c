@@ -1,10 +1,14 @@
 /* Which parts there are. A new one is a row here. */
 #include "view/window/basics.h"
+#include "view/window/capture.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
 #include "view/window/notices.h"
 #include "view/window/overlay.h"
 #include "view/window/part.h"
+#include "view/window/replay_part.h"
+#include "view/window/screenshots.h"
+#include "view/window/session_part.h"
 #include "view/window/status.h"
 #include "view/window/transfer.h"
 
@@ -16,6 +20,9 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_files,
 	&gz_window_notices,
 	&gz_window_transfer_part,
-	NULL,
+	&gz_window_replay,
+	&gz_window_session,
+	&gz_window_capture,
+	&gz_window_screenshots,
 	NULL,
 };

@@ -39,6 +39,10 @@ static bool same_display(const struct gz_display *a, const struct gz_display *b)
 /* Whether where the picture is sharp, or what it is on, is another than in the one shown. */
 static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
+	if (gaze->focus) {
+		gz_frame_set_focus(window->maker, &gaze->reading, gaze->focus);
+		return gaze->focus_new || !same_display(&gaze->display, &window->shown_display);
+	}
 	bool moved = gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
 				     &gaze->display, gz_clock_now_ns());
 	return moved || gz_frame_settling(window->maker) ||
@@ -136,6 +140,9 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 		if ((*part)->paint)
 			(*part)->paint(window, width, height);
 	draw_panels(window, gaze);
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+		if ((*part)->drawn)
+			(*part)->drawn(window, width, height);
 	glfwSwapBuffers(window->glfw);
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->presented)

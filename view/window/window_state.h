@@ -44,6 +44,10 @@ struct gz_window {
 	struct gz_frame_maker *maker;                  /**< NULL while there is no scene */
 	struct gz_window_loading_state *loading;       /**< see loading.h */
 	struct gz_window_notices_state *notices_state; /**< see notices.h */
+	struct gz_window_screenshots_state *screenshots;
+	struct gz_window_capture_state *capture;
+	struct gz_window_session_state *session;
+	struct gz_window_replay_state *replay;
 	struct gz_quad quad;
 
 	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
@@ -60,7 +64,7 @@ struct gz_window {
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
 	bool keys_shown;
 	struct gz_settings_panel settings_panel;
-	struct gz_overlay *overlay; /**< of part overlay */
+	struct gz_overlay *overlay;          /**< of part overlay */
 	struct gz_window_transfer *transfer; /**< of transfer.c */
 	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
 	float panels_top; /**< lower edge of what lies on top, in this frame */
@@ -98,7 +102,10 @@ struct gz_window_gaze {
 	struct gz_gaze_reading reading; /**< its point is on the picture */
 	struct gz_display display;      /**< of the picture: it fills this one */
 	const char *source;             /**< "daemon", "mouse", … */
-	bool missing; /**< the daemon asked for is not there; the mouse stands in */
+	bool missing;                 /**< the daemon asked for is not there; the mouse stands in */
+	const struct gz_focus *focus; /**< what the plan is made of, in place of what the attention
+					 makes of the reading; NULL: nothing is */
+	bool focus_new;               /**< a frame is to be made with it; only with focus */
 };
 
 /** The window's content as a part of its monitor: corner and size, 0 to 1. */

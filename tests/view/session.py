@@ -1,0 +1,141 @@
+"""gazeview's sessions without a window: recorded, and shown again to the bit.
+
+session.py GAZEVIEW SCENES-FOLDER
+"""
+
+import json
+import os
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+
+from picture import run, write_scene
+
+GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
+PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
+SCENE = write_scene(PLACE.name, SCENES)
+
+
+class Session(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory(prefix="gazecast-test-session-")
+        self.addCleanup(self.place.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.place.name, name)
+
+    def view(self, *more, **options):
+        return run(GAZEVIEW, "--headless", "--backend", "cpu", *more, **options)
+
+    def good(self, *more):
+        done = self.view(*more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def record(self, *more, frames=5, turn=7):
+        self.good(SCENE, "--size", "120x90", "--gaze", "0.3,0.4", "--turn", turn, "--frames", frames,
+                  "--record", self.path("a.session"), "--out", self.path("was-%d.png"), *more)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as source:
+            return source.read()
+
+    def replay_is_the_same(self, frames=5):
+        done = self.good("--replay", self.path("a.session"), "--out", self.path("is-%d.png"))
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(len(done.stdout.splitlines()), frames)
+        for k in range(frames):
+            self.assertTrue(self.read("was-%d.png" % k) == self.read("is-%d.png" % k),
+                            "picture %d is another" % k)
+        self.assertFalse(os.path.exists(self.path("is-%d.png" % frames)))
+
+    def test_replay_gives_the_same_pictures(self):
+        self.record()
+        self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing turned")
+        self.replay_is_the_same()
+
+    def test_replay_of_frames_that_keep_earlier_ones_gives_the_same_pictures(self):
+        self.record("--temporal.accumulate", "--method", "uniform", turn=0.02)
+        self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing was kept")
+        with open(self.path("a.session/frames.tsv"), encoding="utf-8") as source:
+            frames = [line.split("\t") for line in source if line[0] not in "#!"]
+        self.assertEqual([frame[-2] for frame in frames], ["0", "1", "1", "1", "1"])
+        self.replay_is_the_same()
+
+    def test_replay_does_not_depend_on_what_frames_took(self):
+        self.record("--attention.budget_ms", 0.001, frames=12)
+        with open(self.path("a.session/frames.tsv"), encoding="utf-8") as source:
+            text = source.read()
+        (columns,) = re.findall("#columns (.*)", text)
+        at = columns.split("\t").index("scale")
+        scales = {line.split("\t")[at] for line in text.splitlines() if line[0] not in "#!"}
+        self.assertGreater(len(scales), 1, "no plan was made coarser")
+        self.replay_is_the_same(frames=12)
+
+    def test_command_line_comes_before_what_was_recorded(self):
+        self.record("--method", "ddc", frames=2)
+        stats = self.path("stats.json")
+        self.good("--replay", self.path("a.session"), "--method", "standard", "--stats", stats)
+        with open(stats, encoding="utf-8") as source:
+            frames = json.load(source)["frames"]
+        self.assertEqual([f["method"] for f in frames], ["standard"] * 2)
+        self.assertEqual([f["rays"] for f in frames], [120 * 90] * 2)
+
+    def test_session_may_be_moved(self):
+        self.record(frames=2)
+        shutil.move(self.path("a.session"), self.path("elsewhere"))
+        self.good("--replay", self.path("elsewhere"), "--out", self.path("is-%d.png"))
+        self.assertTrue(self.read("is-1.png") == self.read("was-1.png"))
+
+    def test_killed_recording_is_shown_as_far_as_it_is_whole(self):
+        self.record(frames=3)
+        frames = self.path("a.session/frames.tsv")
+        with open(frames, encoding="utf-8") as source:
+            lines = source.readlines()
+        with open(frames, "w", encoding="utf-8") as out:
+            out.writelines(lines[:-2] + [lines[-2][:20]])
+        done = self.good("--replay", self.path("a.session"))
+        self.assertEqual(len(done.stdout.splitlines()), 2)
+        self.assertIn("2 frames are whole", done.stderr)
+
+    def refused(self, done, *words):
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def test_another_volume_is_refused(self):
+        self.record(frames=1)
+        scene = self.path("a.session/scene.scene")
+        with open(scene, encoding="utf-8") as source:
+            text = source.read()
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(text.replace("dims = 64 64 64", "dims = 60 64 64"))
+        self.refused(self.view("--replay", self.path("a.session")), "60x64x64",
+                     "another than was recorded")
+
+    def test_damaged_line_ends_it_with_its_number(self):
+        self.record(frames=2)
+        frames = self.path("a.session/frames.tsv")
+        with open(frames, encoding="utf-8") as source:
+            text = source.read()
+        number = text[: text.index("!set")].count("\n") + 1
+        with open(frames, "w", encoding="utf-8") as out:
+            out.write(text.replace("!set\tcamera.eye\t", "!set\tcamera.eye\tx"))
+        self.refused(self.view("--replay", self.path("a.session")), ":%d: camera.eye" % number)
+
+    def test_what_contradicts_the_session_is_refused(self):
+        self.record(frames=1)
+        session = self.path("a.session")
+        for more in (("--size", "9x9"), (SCENE,), ("--gaze", "0,0"), ("--frames", 3),
+                     ("--record", "b"), ("--display-px", "9x9")):
+            self.refused(self.view("--replay", session, *more), "cannot go with it")
+        self.refused(self.view("--replay", self.path("none")), "no session")
+        self.refused(self.view("--replay", session, "--out", "a.png"), "need a number")
+        self.refused(self.view(SCENE, "--record", session), "choose another name")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,71 @@
+/**
+ * @file
+ * What a session is: everything that the pictures of a while were made of, in a folder NAME.session
+ * (docs/sessions.md):
+ *
+ * - GZ_SESSION_SCENE, GZ_SESSION_TRANSFER: the scene as it was at the start;
+ * - GZ_SESSION_FRAMES: a line for each frame, and before it one for each setting that has changed;
+ * - GZ_SESSION_GAZE: a gaze log of the samples that the frames saw (protocol/gaze_log.h).
+ */
+#ifndef GZ_VIEW_SESSION_H
+#define GZ_VIEW_SESSION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/result.h"
+#include "protocol/gaze.h"
+#include "render/attention/attention.h"
+#include "render/volume/volume.h"
+#include "view/gaze_source.h"
+
+#define GZ_SESSION_ENDING   ".session"
+#define GZ_SESSION_SCENE    "scene.scene"
+#define GZ_SESSION_TRANSFER "transfer.tf"
+#define GZ_SESSION_FRAMES   "frames.tsv"
+#define GZ_SESSION_GAZE     "gaze.gzl"
+
+/** Which volume was shown: what two volumes hardly share by chance. */
+struct gz_volume_identity {
+	int dims[3];
+	enum gz_voxel_type type;
+	double spacing[3];
+	double least, greatest; /**< data values, as of slope and intercept */
+	bool has_crc;           /**< voxels were looked at: none are at hand of a file of bricks */
+	uint32_t crc;           /**< CRC-32 of some of the voxels, see gz_volume_identify() */
+};
+
+/**
+ * Tell which volume it is.
+ *
+ * The CRC is of 4096 runs of 64 bytes, evenly strewn over the voxels, or of all where they are
+ * fewer: enough to tell volumes apart, and quick for one of any size.
+ */
+struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume);
+
+/** Whether both are of one volume; of a CRC that one of them lacks, nothing is asked. */
+bool gz_volume_identity_same(const struct gz_volume_identity *a,
+			     const struct gz_volume_identity *b);
+
+/** What is the same for all frames. */
+struct gz_session_header {
+	char started[GZ_NAME_SIZE];  /**< UTC, ISO 8601 */
+	char software[GZ_NAME_SIZE]; /**< "gazeview 1.0" */
+	char backend[GZ_NAME_SIZE];  /**< what cast the first frame: "cpu", "gl" */
+	int64_t host_ns;             /**< time 0 of the frames on the host's clock */
+	struct gz_volume_identity volume;
+};
+
+/** A frame that was shown. */
+struct gz_session_frame {
+	int64_t time_ns;           /**< since the session's host_ns, 0 or more */
+	int width, height;         /**< px, 1 to GZ_IMAGE_SIDE_MAX */
+	struct gz_display display; /**< of the picture */
+	struct gz_gaze_reading
+		reading;       /**< but for connected and, where not known, point: not kept */
+	struct gz_focus focus; /**< what the plan was made of */
+	bool kept;             /**< what earlier frames saw is in it: temporal.accumulate */
+	double took_ms;        /**< for statistics */
+};
+
+#endif

@@ -1,0 +1,303 @@
+#include "view/session/session_reader.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include "view/scene_tables.h"
+#include "view/session/session_text.h"
+
+#define GZ_LOG_MODULE "session"
+
+enum { MESSAGE_SIZE = 256, WORD_SIZE = 64 };
+
+struct gz_session_reader {
+	const struct gz_log *log;
+	char name[GZ_PATH_SIZE];
+	FILE *file;
+	struct gz_session_header header;
+	uint64_t line_number;     /* of the line in hand */
+	bool pending;             /* it has not been taken yet */
+	uint32_t crc, crc_before; /* of all bytes with the line in hand, and without it */
+	enum gz_result ended;     /* what every further read returns; GZ_OK: none */
+	uint64_t frames;
+	int64_t time_ns;                        /* of the newest frame */
+	char line[GZ_SESSION_LINE_SIZE + 2];    /* with newline and NUL */
+	char scratch[GZ_SESSION_LINE_SIZE + 2]; /* a line in parts */
+};
+
+__attribute__((format(printf, 2, 3))) static enum gz_result refuse(struct gz_session_reader *reader,
+								   const char *format, ...)
+{
+	char what[MESSAGE_SIZE];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(what, sizeof what, format, arguments);
+	va_end(arguments);
+	gz_err(reader->log, "%s:%llu: %s", reader->name, (unsigned long long)reader->line_number,
+	       what);
+	return reader->ended = GZ_ERR_FORMAT;
+}
+
+static enum gz_result end_cut(struct gz_session_reader *reader)
+{
+	gz_warn(reader->log, "%s: it ends before its end was written; %llu frames are whole",
+		reader->name, (unsigned long long)reader->frames);
+	return reader->ended = GZ_ERR_END;
+}
+
+/* The next line, without its newline, into the reader's buffer. */
+static enum gz_result next_line(struct gz_session_reader *reader)
+{
+	if (reader->pending) {
+		reader->pending = false;
+		return GZ_OK;
+	}
+	errno = 0;
+	if (!fgets(reader->line, sizeof reader->line, reader->file)) {
+		if (!ferror(reader->file))
+			return end_cut(reader);
+		gz_err(reader->log, "%s: cannot be read: %s", reader->name, strerror(errno));
+		return reader->ended = GZ_ERR_IO;
+	}
+	reader->line_number++;
+	const size_t length = strlen(reader->line);
+	if (length == 0 || reader->line[length - 1] != '\n') {
+		if (length <= GZ_SESSION_LINE_SIZE && feof(reader->file))
+			return end_cut(reader);
+		return refuse(reader, "longer than any line, or with a NUL in it; the file is "
+				      "damaged");
+	}
+	reader->crc_before = reader->crc;
+	reader->crc = (uint32_t)crc32(reader->crc, (const Bytef *)reader->line, (uInt)length);
+	reader->line[length - 1] = '\0';
+	return GZ_OK;
+}
+
+static bool is_end(const struct gz_session_reader *reader)
+{
+	return strncmp(reader->line, "#end", 4) == 0;
+}
+
+static enum gz_result take_header_line(struct gz_session_reader *reader)
+{
+	strcpy(reader->scratch, reader->line);
+	if (gz_session_parse_header_line(reader->scratch, &reader->header) == GZ_OK)
+		return GZ_OK;
+	return refuse(reader, "%.40s: its value cannot be one; the file is damaged", reader->line);
+}
+
+static enum gz_result read_header(struct gz_session_reader *reader)
+{
+	enum gz_result r = next_line(reader);
+	if (r == GZ_OK && strcmp(reader->line, GZ_SESSION_FIRST_LINE) != 0)
+		r = refuse(reader, "not \"" GZ_SESSION_FIRST_LINE "\": it is no session, or one "
+				   "of a later version");
+	if (r == GZ_OK)
+		r = next_line(reader);
+	while (r == GZ_OK && reader->line[0] == '#' && !is_end(reader)) {
+		r = take_header_line(reader);
+		if (r == GZ_OK)
+			r = next_line(reader);
+	}
+	if (r == GZ_ERR_END) /* cut behind its header: no frames, which reading will tell */
+		return reader->line_number > 0 ? GZ_OK
+					       : refuse(reader, "empty: nothing was recorded");
+	if (r != GZ_OK)
+		return r;
+	reader->pending = true;
+	if (reader->header.volume.dims[0] > 0 && reader->header.volume.spacing[0] > 0)
+		return GZ_OK;
+	return refuse(reader, "no #volume_dims and #volume_spacing before it; the file is damaged");
+}
+
+static enum gz_result start(const char *name, FILE *file, const struct gz_log *log,
+			    struct gz_session_reader **out_reader)
+{
+	struct gz_session_reader *reader = calloc(1, sizeof *reader);
+	if (!reader) {
+		fclose(file);
+		return GZ_ERR_NO_MEM;
+	}
+	reader->log = log;
+	reader->file = file;
+	reader->crc = (uint32_t)crc32(0, NULL, 0);
+	snprintf(reader->name, sizeof reader->name, "%s", name);
+	const enum gz_result r = read_header(reader);
+	if (r != GZ_OK) {
+		gz_session_close(&reader);
+		return r;
+	}
+	*out_reader = reader;
+	return GZ_OK;
+}
+
+enum gz_result gz_session_open(const char *path, const struct gz_log *log,
+			       struct gz_session_reader **out_reader)
+{
+	char name[GZ_PATH_SIZE];
+	struct stat status;
+	const int length = snprintf(name, sizeof name, "%s/" GZ_SESSION_FRAMES, path);
+	if (length < 0 || length >= GZ_PATH_SIZE) {
+		gz_err(log, "%s: the path is too long; move the session", path);
+		return GZ_ERR_FULL;
+	}
+	if (stat(name, &status) != 0 || !S_ISREG(status.st_mode)) {
+		gz_err(log,
+		       "%s: no session: there is no file %s; give the folder that a session "
+		       "was recorded into",
+		       path, name);
+		return GZ_ERR_NOT_FOUND;
+	}
+	FILE *file = fopen(name, "rbe");
+	if (!file) {
+		gz_err(log, "%s: cannot be opened: %s", name, strerror(errno));
+		return GZ_ERR_IO;
+	}
+	return start(name, file, log, out_reader);
+}
+
+enum gz_result gz_session_open_memory(const char *name, const char *text, size_t size,
+				      const struct gz_log *log,
+				      struct gz_session_reader **out_reader)
+{
+	/* Read only, whatever the type says. */
+	FILE *file = fmemopen((void *)(uintptr_t)text, size, "rb");
+	return file ? start(name, file, log, out_reader) : GZ_ERR_NO_MEM;
+}
+
+const struct gz_session_header *gz_session_header(const struct gz_session_reader *reader)
+{
+	return &reader->header;
+}
+
+/* The two words of a line behind its first, in scratch. */
+static bool cut_set(struct gz_session_reader *reader, char **out_key, char **out_value)
+{
+	strcpy(reader->scratch, reader->line);
+	*out_key = reader->scratch + sizeof GZ_SESSION_SET_WORD;
+	*out_value = strchr(*out_key, '\t');
+	if (!*out_value)
+		return false;
+	*(*out_value)++ = '\0';
+	return true;
+}
+
+static enum gz_result take_set(struct gz_session_reader *reader, struct gz_session_state *state)
+{
+	struct gz_view_scene_tables tables;
+	char *key, *value, message[MESSAGE_SIZE / 2];
+	size_t binding;
+	if (!cut_set(reader, &key, &value))
+		return refuse(reader, "no value behind a setting; the file is damaged");
+	gz_view_pick_scene_tables(&state->settings, &tables);
+	const struct gz_option *option =
+		gz_options_find(tables.bindings, GZ_SCENE_BINDINGS, key, &binding);
+	if (!option)
+		return refuse(reader,
+			      "%.*s: no such setting; the file is damaged or of a later "
+			      "version",
+			      WORD_SIZE, key);
+	const bool table = strcmp(key, "foveation.table") == 0;
+	if (table && strchr(value, '/'))
+		return refuse(reader, "foveation.table: not a file of the session's folder");
+	state->table_changed = state->table_changed || table;
+	if (gz_option_parse(option, value, tables.bindings[binding].target, message,
+			    sizeof message) != GZ_OK)
+		return refuse(reader, "%.*s: %s", WORD_SIZE, key, message);
+	return GZ_OK;
+}
+
+/* A line of tabs between what are lines of a .tf file. */
+static enum gz_result take_transfer(struct gz_session_reader *reader,
+				    struct gz_session_state *state)
+{
+	char name[GZ_PATH_SIZE + 32];
+	char *text = strcpy(reader->scratch, reader->line + sizeof GZ_SESSION_TRANSFER_WORD);
+	for (char *tab = text; (tab = strchr(tab, '\t'));)
+		*tab = '\n';
+	snprintf(name, sizeof name, "%s:%llu: %s", reader->name,
+		 (unsigned long long)reader->line_number, GZ_SESSION_TRANSFER_WORD);
+	/* What is wrong is logged by it, under that name. */
+	if (gz_transfer_parse(name, text, strlen(text), reader->log, &state->transfer) != GZ_OK)
+		return reader->ended = GZ_ERR_FORMAT;
+	state->transfer_changed = true;
+	return GZ_OK;
+}
+
+static enum gz_result take_end(struct gz_session_reader *reader)
+{
+	uint64_t frames;
+	uint32_t crc;
+	strcpy(reader->scratch, reader->line);
+	if (!gz_session_parse_end(reader->scratch, &frames, &crc))
+		return refuse(reader, "not the end of a session; the file is damaged");
+	if (frames != reader->frames || crc != reader->crc_before)
+		gz_warn(reader->log,
+			"%s: not as it was recorded: %llu frames of %llu, or other numbers in them",
+			reader->name, (unsigned long long)reader->frames,
+			(unsigned long long)frames);
+	return reader->ended = GZ_ERR_END;
+}
+
+static enum gz_result take_frame(struct gz_session_reader *reader,
+				 struct gz_session_frame *out_frame)
+{
+	struct gz_session_frame frame;
+	const char *what = "";
+	strcpy(reader->scratch, reader->line);
+	if (gz_session_parse_frame(reader->scratch, &frame, &what) != GZ_OK)
+		return refuse(reader, "%s: not what a frame's may be; the file is damaged", what);
+	if (frame.time_ns < reader->time_ns)
+		return refuse(reader, "time_ns: before that of the frame above");
+	reader->time_ns = frame.time_ns;
+	reader->frames++;
+	*out_frame = frame;
+	return GZ_OK;
+}
+
+static bool begins_with(const char *line, const char *word)
+{
+	const size_t length = strlen(word);
+	return strncmp(line, word, length) == 0 && line[length] == '\t';
+}
+
+enum gz_result gz_session_read(struct gz_session_reader *reader, struct gz_session_state *state,
+			       struct gz_session_frame *out_frame)
+{
+	state->transfer_changed = state->table_changed = false;
+	while (reader->ended == GZ_OK && next_line(reader) == GZ_OK) {
+		if (begins_with(reader->line, GZ_SESSION_SET_WORD))
+			(void)take_set(reader, state);
+		else if (begins_with(reader->line, GZ_SESSION_TRANSFER_WORD))
+			(void)take_transfer(reader, state);
+		else if (is_end(reader))
+			(void)take_end(reader);
+		else
+			return take_frame(reader, out_frame);
+	}
+	return reader->ended;
+}
+
+void gz_session_print_place(const struct gz_session_reader *reader, char *text, size_t size)
+{
+	snprintf(text, size, "%s:%llu", reader->name, (unsigned long long)reader->line_number);
+}
+
+uint64_t gz_session_frames_read(const struct gz_session_reader *reader)
+{
+	return reader->frames;
+}
+
+void gz_session_close(struct gz_session_reader **reader)
+{
+	if (!*reader)
+		return;
+	fclose((*reader)->file);
+	free(*reader);
+	*reader = NULL;
+}

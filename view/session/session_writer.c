@@ -1,0 +1,418 @@
+#include "view/session/session_writer.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "protocol/gaze_log_writer.h"
+#include "render/scene_write.h"
+#include "view/scene_tables.h"
+#include "view/session/session_text.h"
+
+#define GZ_LOG_MODULE "session"
+
+struct gz_session_writer {
+	const struct gz_log *log;
+	char path[GZ_PATH_SIZE];
+	int frames_fd, gaze_fd;
+	struct gz_text lines; /* that go out together */
+	uint64_t size;        /* bytes of whole lines in the file */
+	uint32_t crc;         /* of them */
+	uint64_t frames;
+	bool any; /* a frame has been added */
+	bool failed;
+	int tables;                        /* files of spacings made so far */
+	struct gz_scene_settings settings; /* of the newest frame, as the file has them */
+	struct gz_transfer transfer;
+	bool gaze_known; /* gaze_ns and gaze_samples hold something */
+	int64_t gaze_ns;
+	uint64_t gaze_samples;
+	struct gz_gaze_log_writer gaze;
+};
+
+static enum gz_result make_path(const struct gz_session_writer *writer, const char *name,
+				char path[GZ_PATH_SIZE])
+{
+	const int length = snprintf(path, GZ_PATH_SIZE, "%s/%s", writer->path, name);
+	if (length > 0 && length < GZ_PATH_SIZE)
+		return GZ_OK;
+	gz_err(writer->log, "%s: the path of the session is too long; choose a shorter one",
+	       writer->path);
+	return GZ_ERR_FULL;
+}
+
+/* Whatever has gone wrong, it is told once, and nothing more is written. */
+static enum gz_result fail(struct gz_session_writer *writer, const char *what, int error)
+{
+	if (!writer->failed)
+		gz_err(writer->log,
+		       "%s: the recording stops: %s: %s; the %llu frames before are whole",
+		       writer->path, what, strerror(error), (unsigned long long)writer->frames);
+	writer->failed = true;
+	return GZ_ERR_IO;
+}
+
+static size_t write_all(int fd, const char *bytes, size_t size)
+{
+	size_t done = 0;
+	while (done < size) {
+		const ssize_t n = write(fd, bytes + done, size - done);
+		if (n > 0)
+			done += (size_t)n;
+		else if (n == 0)
+			errno = ENOSPC;
+		if (n == 0 || (n < 0 && errno != EINTR))
+			break;
+	}
+	return done;
+}
+
+/* All lines gathered, or none of them. */
+static enum gz_result flush(struct gz_session_writer *writer)
+{
+	struct gz_text *lines = &writer->lines;
+	if (lines->failed)
+		return fail(writer, GZ_SESSION_FRAMES, ENOMEM);
+	if (lines->length == 0)
+		return GZ_OK;
+	const size_t done = write_all(writer->frames_fd, lines->bytes, lines->length);
+	if (done < lines->length) {
+		const int error = errno;
+		/* Where even that fails, a line without its end is left, which readers drop. */
+		if (ftruncate(writer->frames_fd, (off_t)writer->size) == 0)
+			lseek(writer->frames_fd, (off_t)writer->size, SEEK_SET);
+		return fail(writer, GZ_SESSION_FRAMES, error);
+	}
+	writer->crc =
+		(uint32_t)crc32(writer->crc, (const Bytef *)lines->bytes, (uInt)lines->length);
+	writer->size += lines->length;
+	lines->length = 0;
+	return GZ_OK;
+}
+
+static int create(const struct gz_session_writer *writer, const char *name)
+{
+	char path[GZ_PATH_SIZE];
+	if (make_path(writer, name, path) != GZ_OK)
+		return -1;
+	const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+	if (fd < 0)
+		gz_err(writer->log, "cannot make %s: %s; choose another folder", path,
+		       strerror(errno));
+	return fd;
+}
+
+static void print_table(const struct gz_spacing_table *table, struct gz_text *text)
+{
+	gz_text_add(text, "# eccentricity_deg spacing step\nunit %s\n",
+		    table->in_deg ? "deg" : "px");
+	for (int i = 0; i < table->count; i++)
+		gz_text_add(text, "%.17g %.17g %.17g\n", table->rows[i].eccentricity_deg,
+			    table->rows[i].spacing, table->rows[i].step);
+}
+
+/* A table of spacings is taken into the folder; @p foveation then names the copy. */
+static enum gz_result copy_table(struct gz_session_writer *writer, struct gz_foveation *foveation)
+{
+	struct gz_text text = { 0 };
+	char path[GZ_PATH_SIZE];
+	if (foveation->table.count == 0) {
+		foveation->table_file[0] = '\0';
+		return GZ_OK;
+	}
+	snprintf(foveation->table_file, sizeof foveation->table_file, "table-%d.txt",
+		 ++writer->tables);
+	print_table(&foveation->table, &text);
+	enum gz_result r = make_path(writer, foveation->table_file, path);
+	if (r == GZ_OK)
+		r = gz_text_write(&text, path, writer->log);
+	gz_text_free(&text);
+	return r;
+}
+
+/* The scene, named from its new place, with what else it needs beside it. */
+static enum gz_result write_scene(struct gz_session_writer *writer,
+				  const struct gz_session_start *start)
+{
+	char path[GZ_PATH_SIZE], transfer[GZ_PATH_SIZE];
+	struct gz_scene_settings *settings = &writer->settings;
+	enum gz_result r = make_path(writer, GZ_SESSION_SCENE, path);
+	if (r == GZ_OK)
+		r = make_path(writer, GZ_SESSION_TRANSFER, transfer);
+	if (r == GZ_OK)
+		r = gz_transfer_write(start->transfer, transfer, writer->log);
+	settings->foveation.table_file[0] = settings->transfer_also[0] = '\0';
+	if (r == GZ_OK)
+		r = gz_scene_move_files(settings, start->scene, path, writer->log);
+	if (r == GZ_OK)
+		r = copy_table(writer, &settings->foveation);
+	snprintf(settings->transfer_file, sizeof settings->transfer_file, GZ_SESSION_TRANSFER);
+	const struct gz_scene_saved saved = {
+		.settings = settings,
+		.has_display = start->has_display,
+		.path = path,
+	};
+	return r == GZ_OK ? gz_scene_write(&saved, path, writer->log) : r;
+}
+
+static void print_now(char *text, size_t size)
+{
+	struct tm utc;
+	const time_t now = time(NULL);
+	gmtime_r(&now, &utc);
+	strftime(text, size, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
+static enum gz_result begin_frames(struct gz_session_writer *writer,
+				   const struct gz_session_start *start)
+{
+	struct gz_session_header header = {
+		.host_ns = start->now_ns,
+		.volume = gz_volume_identify(start->volume),
+	};
+	print_now(header.started, sizeof header.started);
+	snprintf(header.software, sizeof header.software, "%s", start->software);
+	snprintf(header.backend, sizeof header.backend, "%s", start->backend);
+	gz_session_print_header(&header, &writer->lines);
+	writer->crc = (uint32_t)crc32(0, NULL, 0);
+	writer->frames_fd = create(writer, GZ_SESSION_FRAMES);
+	return writer->frames_fd < 0 ? GZ_ERR_IO : flush(writer);
+}
+
+static enum gz_result begin_gaze(struct gz_session_writer *writer,
+				 const struct gz_session_start *start)
+{
+	struct gz_gaze_log_header header = {
+		.tracker = "gazeview",
+		.rate_hz = start->rate_hz,
+		.has_display = true,
+		.display = *start->display,
+	};
+	print_now(header.started, sizeof header.started);
+	snprintf(header.serial, sizeof header.serial, "%s", start->source);
+	snprintf(header.software, sizeof header.software, "%s", start->software);
+	writer->gaze_fd = create(writer, GZ_SESSION_GAZE);
+	if (writer->gaze_fd < 0)
+		return GZ_ERR_IO;
+	enum gz_result r = gz_gaze_log_writer_begin(&writer->gaze, writer->gaze_fd, &header);
+	if (r == GZ_OK)
+		r = gz_gaze_log_writer_flush(&writer->gaze);
+	return r == GZ_OK ? r : fail(writer, GZ_SESSION_GAZE, errno);
+}
+
+static enum gz_result make_folder(const struct gz_session_writer *writer)
+{
+	if (mkdir(writer->path, 0700) == 0)
+		return GZ_OK;
+	const int error = errno;
+	gz_err(writer->log, "%s: the session's folder cannot be made: %s; %s", writer->path,
+	       strerror(error),
+	       error == EEXIST ? "choose another name" : "name one that may be written to");
+	return error == EEXIST ? GZ_ERR_BUSY : GZ_ERR_IO;
+}
+
+/* What has been made of it. Files of a folder that nobody else writes to. */
+static void remove_all(const struct gz_session_writer *writer)
+{
+	static const char *const names[] = {
+		GZ_SESSION_SCENE, GZ_SESSION_TRANSFER, GZ_SESSION_FRAMES,
+		GZ_SESSION_GAZE,  "table-1.txt",
+	};
+	char path[GZ_PATH_SIZE];
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+		if (snprintf(path, sizeof path, "%s/%s", writer->path, names[i]) < GZ_PATH_SIZE)
+			unlink(path);
+	rmdir(writer->path);
+}
+
+static void release(struct gz_session_writer *writer)
+{
+	if (writer->frames_fd >= 0)
+		close(writer->frames_fd);
+	if (writer->gaze_fd >= 0)
+		close(writer->gaze_fd);
+	gz_text_free(&writer->lines);
+	free(writer);
+}
+
+enum gz_result gz_session_writer_begin(const struct gz_session_start *start,
+				       const struct gz_log *log,
+				       struct gz_session_writer **out_writer)
+{
+	struct gz_session_writer *writer = calloc(1, sizeof *writer);
+	if (!writer)
+		return GZ_ERR_NO_MEM;
+	writer->log = log;
+	writer->frames_fd = writer->gaze_fd = -1;
+	snprintf(writer->path, sizeof writer->path, "%s", start->path);
+	memcpy(&writer->settings, start->settings, sizeof writer->settings);
+	writer->transfer = *start->transfer;
+	enum gz_result r = make_folder(writer);
+	if (r != GZ_OK) {
+		release(writer);
+		return r;
+	}
+	r = write_scene(writer, start);
+	if (r == GZ_OK)
+		r = begin_frames(writer, start);
+	if (r == GZ_OK)
+		r = begin_gaze(writer, start);
+	if (r != GZ_OK) {
+		remove_all(writer);
+		release(writer);
+		return r;
+	}
+	*out_writer = writer;
+	return GZ_OK;
+}
+
+/* What the file has of a setting, and what it is now. */
+static void print_change(const struct gz_option *option, const void *before, const void *now,
+			 struct gz_text *lines)
+{
+	char old[GZ_PATH_SIZE], new[GZ_PATH_SIZE];
+	if (gz_option_format(option, before, old, sizeof old) != GZ_OK ||
+	    gz_option_format(option, now, new, sizeof new) != GZ_OK || strcmp(old, new) == 0)
+		return;
+	gz_text_add(lines, GZ_SESSION_SET_WORD "\t%s\t%s\n", option->key, new);
+}
+
+/* Names of files are those of the session's folder. */
+static void keep_names(const struct gz_scene_settings *from, struct gz_scene_settings *to)
+{
+	memcpy(to->volume_file, from->volume_file, sizeof to->volume_file);
+	memcpy(to->transfer_file, from->transfer_file, sizeof to->transfer_file);
+	memcpy(to->transfer_also, from->transfer_also, sizeof to->transfer_also);
+	memcpy(to->foveation.table_file, from->foveation.table_file,
+	       sizeof to->foveation.table_file);
+}
+
+/* Lines for what has changed; the writer's settings become those. */
+static enum gz_result print_changes(struct gz_session_writer *writer,
+				    const struct gz_scene_settings *settings)
+{
+	struct gz_view_scene_tables old, new;
+	struct gz_scene_settings now;
+	struct gz_scene_settings *before = &writer->settings;
+	memcpy(&now, settings, sizeof now);
+	keep_names(before, &now);
+	if (memcmp(&now, before, sizeof now) == 0)
+		return GZ_OK;
+	if (memcmp(&now.foveation.table, &before->foveation.table, sizeof now.foveation.table) !=
+	    0) {
+		const enum gz_result r = copy_table(writer, &now.foveation);
+		if (r != GZ_OK)
+			return r;
+	}
+	gz_view_pick_scene_tables(before, &old);
+	gz_view_pick_scene_tables(&now, &new);
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++)
+		for (size_t k = 0; k < old.bindings[i].count; k++)
+			print_change(&old.options[i][k], old.bindings[i].target,
+				     new.bindings[i].target, &writer->lines);
+	memcpy(before, &now, sizeof now);
+	return GZ_OK;
+}
+
+/* A line of tabs between what are lines of a .tf file. */
+static void print_transfer(const struct gz_transfer *transfer, struct gz_text *lines)
+{
+	struct gz_text text = { 0 };
+	gz_transfer_print(transfer, &text);
+	while (text.length > 0 && text.bytes[text.length - 1] == '\n')
+		text.length--;
+	for (size_t i = 0; i < text.length; i++)
+		if (text.bytes[i] == '\n')
+			text.bytes[i] = '\t';
+	gz_text_add(lines, GZ_SESSION_TRANSFER_WORD "\t");
+	gz_text_add_bytes(lines, text.bytes, text.length);
+	gz_text_add(lines, "\n");
+	lines->failed = lines->failed || text.failed;
+	gz_text_free(&text);
+}
+
+static bool same_transfer(const struct gz_transfer *a, const struct gz_transfer *b)
+{
+	return a->count == b->count && a->interpolation == b->interpolation &&
+	       a->has_range == b->has_range &&
+	       (!a->has_range || memcmp(a->range, b->range, sizeof a->range) == 0) &&
+	       memcmp(a->points, b->points, a->count * sizeof a->points[0]) == 0;
+}
+
+enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
+				     const struct gz_scene_settings *settings,
+				     const struct gz_transfer *transfer,
+				     const struct gz_session_frame *frame)
+{
+	if (writer->failed)
+		return GZ_ERR_IO;
+	const enum gz_result r = print_changes(writer, settings);
+	if (r != GZ_OK)
+		return fail(writer, "a table of spacings", errno);
+	if (!same_transfer(&writer->transfer, transfer)) {
+		print_transfer(transfer, &writer->lines);
+		writer->transfer = *transfer;
+	}
+	gz_session_print_frame(frame, &writer->lines);
+	const enum gz_result flushed = flush(writer);
+	writer->frames += flushed == GZ_OK;
+	return flushed;
+}
+
+enum gz_result gz_session_writer_gaze(struct gz_session_writer *writer,
+				      const struct gz_gaze_reading *reading, int64_t now_ns)
+{
+	const int64_t host_ns = reading->has_age ? now_ns - reading->age_ns : now_ns;
+	if (writer->failed)
+		return GZ_ERR_IO;
+	if (!reading->known || (writer->gaze_known && host_ns <= writer->gaze_ns))
+		return GZ_OK;
+	struct gz_gaze_log_record record = {
+		.kind = GZ_GAZE_LOG_SAMPLE,
+		.sample = gz_sample_unmeasured(),
+	};
+	record.sample.seq = writer->gaze_samples++;
+	record.sample.host_ns = host_ns;
+	record.sample.point = reading->point;
+	record.sample.valid = !reading->has_event ||
+			      (reading->event != GZ_EVENT_BLINK && reading->event != GZ_EVENT_LOST);
+	writer->gaze_known = true;
+	writer->gaze_ns = host_ns;
+	enum gz_result r = gz_gaze_log_writer_add(&writer->gaze, &record);
+	if (r == GZ_OK)
+		r = gz_gaze_log_writer_flush(&writer->gaze);
+	return r == GZ_OK ? r : fail(writer, GZ_SESSION_GAZE, errno);
+}
+
+uint64_t gz_session_writer_frames(const struct gz_session_writer *writer)
+{
+	return writer->frames;
+}
+
+const char *gz_session_writer_path(const struct gz_session_writer *writer)
+{
+	return writer->path;
+}
+
+enum gz_result gz_session_writer_end(struct gz_session_writer **writer)
+{
+	struct gz_session_writer *self = *writer;
+	*writer = NULL;
+	if (!self)
+		return GZ_OK;
+	enum gz_result r = GZ_ERR_IO;
+	if (!self->failed) {
+		gz_session_print_end(self->frames, self->crc, &self->lines);
+		r = flush(self);
+		if (r == GZ_OK && gz_gaze_log_writer_end(&self->gaze) != GZ_OK)
+			r = fail(self, GZ_SESSION_GAZE, errno);
+	}
+	release(self);
+	return r;
+}

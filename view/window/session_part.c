@@ -1,0 +1,177 @@
+#include "view/window/session_part.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <GLFW/glfw3.h>
+
+#include "view/capture/file_name.h"
+#include "view/panels/marks.h"
+#include "view/session/recording.h"
+#include "view/window/loading.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "session"
+
+/* The time in the mark runs. */
+#define MARK_PATIENCE_S 0.5
+
+struct gz_window_session_state {
+	bool wanted; /* begins before the next picture */
+	bool named;  /* --record has not been obeyed yet */
+	struct gz_session_writer *writer;
+	int64_t start_ns;
+	int64_t drawn_s;           /* of the mark, as last drawn */
+	struct gz_display display; /* of the gaze of this turn, whose picture may be made */
+};
+
+static enum gz_result open_part(struct gz_window *window)
+{
+	window->session = calloc(1, sizeof *window->session);
+	if (!window->session)
+		return GZ_ERR_NO_MEM;
+	window->session->named = window->options->record[0] != '\0';
+	return GZ_OK;
+}
+
+static void end(struct gz_window *window)
+{
+	struct gz_window_session_state *self = window->session;
+	if (!self->writer)
+		return;
+	char path[GZ_PATH_SIZE];
+	const uint64_t frames = gz_session_writer_frames(self->writer);
+	snprintf(path, sizeof path, "%s", gz_session_writer_path(self->writer));
+	if (gz_session_writer_end(&self->writer) == GZ_OK)
+		gz_info(window->log, "%s recorded, %llu frames; gazeview --replay shows it again",
+			path, (unsigned long long)frames);
+	window->present_needed = true;
+}
+
+static void begin(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	struct gz_window_session_state *self = window->session;
+	char path[GZ_PATH_SIZE];
+	if (self->named)
+		snprintf(path, sizeof path, "%s", window->options->record);
+	else if (gz_capture_name(window->options->pictures, GZ_SESSION_ENDING, path) != GZ_OK) {
+		gz_err(window->log, "no session: no name is free; see --pictures");
+		return;
+	}
+	self->start_ns = gz_clock_now_ns();
+	const struct gz_recording_start start = {
+		.path = path,
+		.scene = gz_window_scene_path(window),
+		.maker = window->maker,
+		.settings = &window->settings,
+		.display = &gaze->display,
+		.source = gaze->source,
+		.rate_hz = window->options->fps,
+		.now_ns = self->start_ns,
+	};
+	if (gz_recording_begin(&start, window->log, &self->writer) == GZ_OK)
+		window->cast_needed = window->present_needed = true;
+}
+
+static void toggle(struct gz_window *window, int number)
+{
+	(void)number;
+	struct gz_window_session_state *self = window->session;
+	if (self->writer)
+		end(window);
+	else
+		self->wanted = !self->wanted && window->maker;
+}
+
+/* The scene of a session is one. */
+static void scene_leaving(struct gz_window *window)
+{
+	end(window);
+}
+
+static void scene_shown(struct gz_window *window)
+{
+	window->session->wanted = window->session->wanted || window->session->named;
+}
+
+static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
+{
+	struct gz_window_session_state *self = window->session;
+	self->display = gaze->display;
+	if (self->wanted)
+		begin(window, gaze);
+	if (self->wanted)
+		self->named = false;
+	self->wanted = false;
+	if (self->writer &&
+	    gz_session_writer_gaze(self->writer, &gaze->reading, gz_clock_now_ns()) != GZ_OK)
+		end(window);
+}
+
+static void frame_made(struct gz_window *window)
+{
+	struct gz_window_session_state *self = window->session;
+	const struct gz_frame_request request = {
+		.settings = &window->shown,
+		.display = &self->display,
+		.width = window->record.width,
+		.height = window->record.height,
+	};
+	if (self->writer && gz_recording_add(self->writer, window->maker, &request, &window->record,
+					     gz_clock_now_ns() - self->start_ns) != GZ_OK)
+		end(window);
+}
+
+static void turn(struct gz_window *window)
+{
+	const struct gz_window_session_state *self = window->session;
+	const int64_t now_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
+	if (self->writer && now_s != self->drawn_s)
+		window->present_needed = true;
+}
+
+static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	(void)gaze;
+	struct gz_window_session_state *self = window->session;
+	if (!self->writer)
+		return;
+	self->drawn_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
+	gz_marks_draw_running(1, "session", true, self->drawn_s);
+}
+
+static double patience_s(const struct gz_window *window)
+{
+	return window->session->writer ? MARK_PATIENCE_S : INFINITY;
+}
+
+static void close_part(struct gz_window *window)
+{
+	if (window->session)
+		end(window);
+	free(window->session);
+	window->session = NULL;
+}
+
+static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_F9,
+	  .keys = "F9",
+	  .help = "begin or end recording a session, for --replay",
+	  .run = toggle },
+};
+
+const struct gz_window_part gz_window_session = {
+	.name = "session",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.open = open_part,
+	.scene_shown = scene_shown,
+	.scene_leaving = scene_leaving,
+	.turn = turn,
+	.gaze = take_gaze,
+	.frame_made = frame_made,
+	.panels = panels,
+	.patience_s = patience_s,
+	.close = close_part,
+};
