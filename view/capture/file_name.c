@@ -16,7 +16,7 @@ enum gz_result gz_capture_name(const char *folder, const char *ending, char out_
 	strftime(when, sizeof when, "%Y%m%d-%H%M%S", &local);
 	for (int i = 1; i <= NUMBERS; i++) {
 		if (i > 1)
-			snprintf(number, sizeof number, "-%d", i);
+			snprintf(number, sizeof number, "_%d", i);
 		const int length = snprintf(path, sizeof path, "%s/gazeview-%s%s%s", folder, when,
 					    number, ending);
 		if (length < 0 || length >= GZ_PATH_SIZE)

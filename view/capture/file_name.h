@@ -9,8 +9,8 @@
 #include "protocol/gaze.h"
 
 /**
- * "FOLDER/gazeview-YYYYmmdd-HHMMSS" by local time with @p ending behind it, and "-2", "-3", …
- * before that where there is one already.
+ * "FOLDER/gazeview-YYYYmmdd-HHMMSS" by local time with @p ending behind it, and "_2", "_3", …,
+ * which sort behind it, before that where there is one already.
  *
  * @param[out] out_path  of nothing that is there
  * @retval GZ_ERR_FULL   the path is too long, or there are a hundred of this second

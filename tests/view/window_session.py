@@ -1,0 +1,160 @@
+"""What leaves gazeview's window: sessions, videos and screenshots, made by keys and looked at.
+
+window_session.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import glob
+import json
+import os
+import re
+import subprocess
+import tempfile
+import time
+import unittest
+
+from picture import read_png, run
+from window_case import GAZECTL, GAZEVIEW, SCENE, SIZE, WindowCase
+
+
+class Leaves(WindowCase):
+    def setUp(self):
+        super().setUp()
+        folder = tempfile.TemporaryDirectory(prefix="gazecast-test-pictures-")
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def begin(self, *more, gaze="mouse"):
+        self.start("--gaze", gaze, "--backend", "cpu", "--pictures", self.folder, *more)
+
+    def key(self, *keys):
+        self.tool("key", *keys)
+
+    def drag(self, x, y, by_x, by_y):
+        self.move(x, y)
+        self.tool("mousedown", 1)
+        self.move(x + by_x // 2, y + by_y // 2)
+        self.move(x + by_x, y + by_y)
+        self.tool("mouseup", 1)
+
+    def quit(self):
+        self.key("q")
+        _, said = self.viewer.communicate(timeout=20)
+        self.assertEqual(self.viewer.returncode, 0, said)
+        return said
+
+    def appears(self, pattern, count=1):
+        """The files of that name once there are so many, and no longer grow."""
+        deadline, before = time.monotonic() + 15, None
+        while True:
+            found = sorted(glob.glob(self.path(pattern)))
+            sizes = [os.path.getsize(name) for name in found]
+            if len(found) == count and sizes == before and 0 not in sizes:
+                return found
+            before = sizes
+            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
+            self.assertLess(time.monotonic(), deadline, "never came: " + pattern)
+            time.sleep(0.1)
+
+    def red_dot(self, picture):
+        width, height = SIZE
+        return any(
+            r > 200 and g < 90 and b < 90
+            for y in range(height - 70, height)
+            for r, g, b in (picture.at(x, y) for x in range(width - 160, width))
+        )
+
+    def test_session_replays_to_the_very_pictures_that_were_on_the_screen(self):
+        self.begin()
+        self.move(100, 200)
+        self.key("F9")
+        self.until(self.red_dot, "a red dot")
+        self.move(300, 150)
+        self.key("F12")
+        self.appears("*.png", 1)
+        self.drag(200, 200, 90, 40)
+        self.key("2")
+        self.move(120, 120)
+        self.key("F12")
+        self.appears("*.png", 2)
+        self.key("F9")
+        self.until(lambda p: not self.red_dot(p), "no red dot")
+        self.assertIn("recorded", self.quit())
+        (session,) = glob.glob(self.path("*.session"))
+        done = run(GAZEVIEW, "--headless", "--replay", session, "--out", self.path("f%04d.png"))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        frames = [read_png(name) for name in sorted(glob.glob(self.path("f*.png")))]
+        shots = [read_png(name) for name in sorted(glob.glob(self.path("gazeview-*.png")))]
+        self.assertEqual(len(done.stdout.splitlines()), len(frames))
+        self.assertGreater(len(frames), 4)
+        self.assertFalse(shots[0] == shots[1], "nothing has changed")
+        self.assertEqual((shots[0].width, shots[0].height), SIZE)
+        self.assertIn(True, [frame == shots[0] for frame in frames], "the first is not among them")
+        self.assertTrue(frames[-1] == shots[1], "the second is not the last")
+        gaze = glob.glob(os.path.join(session, "*.gzl"))
+        done = run(GAZECTL, "inspect", *gaze)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_session_from_the_start_is_shown_again_in_a_window(self):
+        session = self.path("a.session")
+        self.begin("--record", session)
+        self.drag(200, 200, 60, 0)
+        self.key("1")
+        self.move(120, 120)
+        self.until(self.red_dot, "a red dot")
+        self.quit()
+        self.viewer = subprocess.Popen(
+            [GAZEVIEW, "--replay", session, "--pictures", self.folder], env=self.environment,
+            stderr=subprocess.PIPE, text=True,
+        )
+        self.found_anew()
+        said = ""
+        while "all" not in said:
+            said = self.viewer.stderr.readline()
+            self.assertTrue(said, "gazeview has ended")
+        frames = int(re.search(r"all (\d+) frames were shown; the last one stays", said)[1])
+        self.key("F12")
+        (shot,) = self.appears("gazeview-*.png")
+        self.quit()
+        done = run(GAZEVIEW, "--headless", "--replay", session, "--out", self.path("f%04d.png"))
+        self.assertEqual(len(done.stdout.splitlines()), frames)
+        last = read_png(self.path("f%04d.png" % (frames - 1)))
+        self.assertTrue(read_png(shot) == last, "the last picture is another")
+
+    def test_video_of_the_window_has_the_pictures_and_goes_on_while_they_stand(self):
+        self.begin("--fps", "20")
+        self.key("F10")
+        self.until(self.red_dot, "a red dot")
+        self.drag(200, 200, 90, 40)
+        time.sleep(1)
+        self.key("F10")
+        self.until(lambda p: not self.red_dot(p), "no red dot")
+        (video,) = self.appears("*.mp4")
+        self.assertIn("written", self.quit())
+        done = run("ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                   "stream=width,height,avg_frame_rate,nb_read_frames", "-of", "json", video)
+        (stream,) = json.loads(done.stdout)["streams"]
+        self.assertEqual((stream["width"], stream["height"]), SIZE)
+        self.assertEqual(stream["avg_frame_rate"], "20/1")
+        self.assertGreater(int(stream["nb_read_frames"]), 20)
+
+    def test_screenshot_has_its_scene_and_no_panels_unless_asked_for(self):
+        self.begin("--method", "ddc", gaze="0.3,0.6")
+        self.key("F12")
+        (plain,) = self.appears("*.png")
+        self.key("shift+F12")
+        both = self.appears("*.png", 2)
+        (other,) = set(both) - {plain}
+        self.quit()
+        plain_picture, other_picture = read_png(plain), read_png(other)
+        self.assertFalse(plain_picture == other_picture, "no panel is seen")
+        done = run(GAZEVIEW, "--headless", plain, "--size", "%dx%d" % SIZE, "--gaze", "0.3,0.6",
+                   "--backend", "cpu", "--out", self.path("again.png"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(read_png(self.path("again.png")) == plain_picture, "another scene")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["window_session"], verbosity=2)
