@@ -133,6 +133,15 @@ enum gz_result gz_gaze_log_read(struct gz_gaze_log_reader *reader,
 /** How the log ended; certain once gz_gaze_log_read() has returned GZ_ERR_END. */
 enum gz_gaze_log_ending gz_gaze_log_ending(const struct gz_gaze_log_reader *reader);
 
+/**
+ * When the last sample was, found from the file's end without reading it all. What stands before it
+ * is not checked.
+ *
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  it cannot be read; not logged
+ * @retval GZ_ERR_FORMAT  no sample stands in its last 64 KiB; not logged
+ */
+enum gz_result gz_gaze_log_find_last(const char *path, int64_t *out_host_ns);
+
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_gaze_log_close(struct gz_gaze_log_reader **reader);
 

@@ -85,6 +85,11 @@ bool gz_gaze_source_display(struct gz_gaze_source *source, struct gz_display *ou
 	return source->ops->display && source->ops->display(source, out_display);
 }
 
+const struct gz_status *gz_gaze_source_status(const struct gz_gaze_source *source)
+{
+	return source->ops->status ? source->ops->status(source) : NULL;
+}
+
 void gz_gaze_source_destroy(struct gz_gaze_source **source)
 {
 	if (!source || !*source)

@@ -27,6 +27,9 @@ struct gz_gaze_reading {
 	bool has_event;      /**< the source tells what the eye does */
 	enum gz_event event; /**< only with has_event */
 	double noise_deg;    /**< of the tracker, sample to sample; NaN where not known */
+	bool numbered;       /**< the sample has a number and a time */
+	uint64_t seq;        /**< counts the tracker's samples; only with numbered */
+	int64_t sample_ns;   /**< its time, host's or the log's; only with numbered */
 };
 
 struct gz_gaze_source;
@@ -41,6 +44,9 @@ struct gz_gaze_source_ops {
 		     struct gz_gaze_reading *out_reading);
 	/** Optional. The display geometry the source brings, if it knows one by now. */
 	bool (*display)(struct gz_gaze_source *source, struct gz_display *out_display);
+	/** Optional. What the daemon behind it last told of itself; NULL before it did. Valid
+	 * until the next read. */
+	const struct gz_status *(*status)(const struct gz_gaze_source *source);
 	void (*destroy)(struct gz_gaze_source *source);
 };
 
@@ -81,6 +87,27 @@ enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *
  */
 enum gz_result gz_gaze_source_log(const char *path, const struct gz_log *log,
 				  struct gz_gaze_source **out_source);
+
+/** How far a log has been gone through. */
+struct gz_gaze_log_place {
+	int64_t at_ns;     /**< from its first sample to the newest one that was read */
+	int64_t length_ns; /**< from its first sample to its last one; negative where not known */
+	bool ended;        /**< its last sample was read */
+};
+
+/** Where a log is; of a source made by gz_gaze_source_log() only: false for others. */
+bool gz_gaze_source_log_place(const struct gz_gaze_source *source,
+			      struct gz_gaze_log_place *out_place);
+
+/**
+ * Go on in a log to @p time_ns, as reading it would, but for no longer than @p budget_ns.
+ *
+ * @return whether it is there; true for other sources
+ */
+bool gz_gaze_source_log_forward(struct gz_gaze_source *source, int64_t time_ns, int64_t budget_ns);
+
+/** See gz_gaze_source_ops; NULL where the source has none. */
+const struct gz_status *gz_gaze_source_status(const struct gz_gaze_source *source);
 
 /** See gz_gaze_source_ops. */
 void gz_gaze_source_read(struct gz_gaze_source *source, int64_t time_ns,

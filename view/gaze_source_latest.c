@@ -18,6 +18,8 @@ struct latest_source {
 	double noise_deg;         /* as status tells it; NaN before that */
 	bool has_display;
 	struct gz_display display;
+	bool has_told; /* what follows */
+	struct gz_status told;
 };
 
 static void take_status(struct latest_source *self)
@@ -27,6 +29,8 @@ static void take_status(struct latest_source *self)
 		if (message.kind != GZ_MESSAGE_STATUS)
 			continue;
 		self->noise_deg = message.status.noise_deg;
+		self->told = message.status;
+		self->has_told = true;
 		if (!gz_display_valid(&message.status.display))
 			continue;
 		self->display = message.status.display;
@@ -50,9 +54,14 @@ static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
 		reading.age_ns = age_ns;
 		reading.has_event = true;
 		reading.event = gaze.event;
+		reading.numbered = true;
+		reading.seq = gaze.seq;
+		reading.sample_ns = gaze.host_ns;
 	}
 	gz_client_get_counters(self->client, &counters);
 	reading.connected = counters.connected;
+	if (!reading.connected)
+		self->has_told = false; /* the next one may be another */
 	take_status(self);
 	reading.noise_deg = self->noise_deg;
 	*out_reading = reading;
@@ -64,6 +73,12 @@ static bool latest_display(struct gz_gaze_source *source, struct gz_display *out
 	if (self->has_display)
 		*out_display = self->display;
 	return self->has_display;
+}
+
+static const struct gz_status *latest_status(const struct gz_gaze_source *source)
+{
+	const struct latest_source *self = (const struct latest_source *)source;
+	return self->has_told ? &self->told : NULL;
 }
 
 static void latest_destroy(struct gz_gaze_source *source)
@@ -79,6 +94,7 @@ static const struct gz_gaze_source_ops latest_ops = {
 	.live = true,
 	.read = latest_read,
 	.display = latest_display,
+	.status = latest_status,
 	.destroy = latest_destroy,
 };
 

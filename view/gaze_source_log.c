@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "base/clock.h"
 #include "filter/pipeline.h"
 #include "filter/recorded.h"
 #include "protocol/gaze_log.h"
@@ -17,6 +18,8 @@ struct log_source {
 	bool has_display; /* the log's own, not the default */
 	struct gz_display display;
 	int64_t start_ns;         /* host_ns of the first sample */
+	bool has_last;            /* last_ns holds something */
+	int64_t last_ns;          /* host_ns of the last sample, as the file's end has it */
 	bool pending_known;       /* a sample has been read that its time has not come for */
 	struct gz_sample pending; /* only then */
 	struct gz_gaze_reading reading;
@@ -54,6 +57,9 @@ static void step(struct log_source *self)
 		.has_event = true,
 		.event = output.gaze.event,
 		.noise_deg = gz_pipeline_noise_deg(&self->pipeline),
+		.numbered = true,
+		.seq = self->pending.seq,
+		.sample_ns = self->pending.host_ns,
 	};
 	self->shown_ns = self->pending.host_ns;
 	fetch(self);
@@ -81,6 +87,39 @@ static void log_read(struct gz_gaze_source *source, int64_t time_ns,
 		step(self);
 	self->reading.age_ns = elapsed(self->shown_ns, now_ns);
 	*out_reading = self->reading;
+}
+
+bool gz_gaze_source_log_forward(struct gz_gaze_source *source, int64_t time_ns, int64_t budget_ns)
+{
+	/* Samples between looks at the clock: chosen, some tens of microseconds. */
+	enum { AT_ONCE = 64 };
+	struct log_source *self = (struct log_source *)source;
+	const int64_t until_ns = gz_clock_now_ns() + budget_ns;
+	if (source->ops->read != log_read)
+		return true;
+	const int64_t now_ns = later(self->start_ns, time_ns);
+	do {
+		for (int i = 0; i < AT_ONCE; i++) {
+			if (!self->pending_known || self->pending.host_ns > now_ns)
+				return true;
+			step(self);
+		}
+	} while (gz_clock_now_ns() < until_ns);
+	return false;
+}
+
+bool gz_gaze_source_log_place(const struct gz_gaze_source *source,
+			      struct gz_gaze_log_place *out_place)
+{
+	const struct log_source *self = (const struct log_source *)source;
+	if (source->ops->read != log_read)
+		return false;
+	*out_place = (struct gz_gaze_log_place) {
+		.at_ns = elapsed(self->start_ns, self->shown_ns),
+		.length_ns = self->has_last ? elapsed(self->start_ns, self->last_ns) : -1,
+		.ended = !self->pending_known,
+	};
+	return true;
 }
 
 static bool log_display(struct gz_gaze_source *source, struct gz_display *out_display)
@@ -123,7 +162,8 @@ static enum gz_result prepare(struct log_source *self, const char *path)
 		       path);
 		return GZ_ERR_FORMAT;
 	}
-	self->start_ns = self->pending.host_ns;
+	self->start_ns = self->shown_ns = self->pending.host_ns;
+	self->has_last = gz_gaze_log_find_last(path, &self->last_ns) == GZ_OK;
 	return GZ_OK;
 }
 

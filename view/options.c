@@ -164,12 +164,17 @@ const struct gz_option gz_view_option_table[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(vsync),
 	  .preset = "true",
-	  .help = "the window waits for the display's refresh" },
+	  .help = "short for --view.vsync" },
 	{ .key = "gaze-fills-window",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(gaze_fills_window),
 	  .preset = "false",
 	  .help = "the daemon's gaze spans the window instead of the monitor it is on" },
+	{ .key = "tracker-display",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(tracker_display),
+	  .max = GZ_NAME_SIZE,
+	  .help = "short for --view.tracker_display: a monitor's name, or its number from 1" },
 	{ .key = "display-px",
 	  .type = GZ_OPTION_SIZE,
 	  .offset = AT(display_px),
@@ -542,6 +547,12 @@ static void apply_short_names(const struct gz_view_options *options, struct gz_v
 {
 	view->gaze_cursor = view->gaze_cursor || options->cross;
 	view->letters = view->letters || options->letters;
+	view->vsync = view->vsync && options->vsync;
+	if (options->gaze_text[0])
+		memcpy(view->gaze, options->gaze_text, sizeof view->gaze);
+	if (options->tracker_display[0])
+		memcpy(view->tracker_display, options->tracker_display,
+		       sizeof view->tracker_display);
 }
 
 static enum gz_result read_arguments(int argc, char *const *argv,

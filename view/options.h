@@ -75,9 +75,10 @@ struct gz_view_options {
 	bool fullscreen;
 	bool vsync;
 	bool gaze_fills_window;
-	int display_px[2];          /**< 0: not given */
-	double display_mm[2];       /**< 0: not given */
-	double display_distance_mm; /**< 0: not given */
+	char tracker_display[GZ_NAME_SIZE]; /**< empty: as the scene says */
+	int display_px[2];                  /**< 0: not given */
+	double display_mm[2];               /**< 0: not given */
+	double display_distance_mm;         /**< 0: not given */
 
 	int volume_dims[3];               /**< of a raw file; 0: not given */
 	int volume_type;                  /**< enum gz_raw_type; -1: not given */

@@ -188,7 +188,7 @@ class Window(WindowCase):
 
     def close(self, one, other):
         """Within a grey level: another backend."""
-        return all(abs(a - b) <= 1 for x in range(100, 380, 7) for y in range(60, 300, 7)
+        return all(abs(a - b) <= 1 for x in range(100, 380, 7) for y in range(60, 250, 7)
                    for a, b in zip(one.at(x, y), other.at(x, y)))
 
     def test_without_a_daemon_it_says_so_and_takes_the_mouse(self):

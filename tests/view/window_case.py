@@ -24,7 +24,7 @@ SCREEN = (900, 700)
 SIZE = (480, 320)
 CROSS = (255, 64, 64)
 LINE_HEIGHT = 40  # the text line is above
-CORNER_HEIGHT = 50  # what tells of the gaze is below
+CORNER_HEIGHT = 64  # what tells of the gaze is below
 
 for tool in ("Xvfb", "xdotool", "ffmpeg"):
     if not shutil.which(tool):
@@ -161,11 +161,16 @@ class WindowCase(unittest.TestCase):
         self.viewer = None
         return said
 
-    def amber(self, picture):
+    def corner_has(self, picture, is_it):
+        """Whether what tells of the gaze has so much of a colour as text has."""
+        width, height = SIZE
         return 100 < sum(
-            r > 180 and 100 < g < 220 and b < 120
-            for r, g, b in (picture.at(x, y) for x in range(8, 470) for y in range(8, 30))
+            is_it(*picture.at(x, y)) for x in range(8, width - 10)
+            for y in range(height - CORNER_HEIGHT, height - 8)
         )
+
+    def amber(self, picture):
+        return self.corner_has(picture, lambda r, g, b: r > 180 and 100 < g < 220 and b < 120)
 
     def near(self, place, wanted):
         return place and all(abs(a - b) <= 3 for a, b in zip(place, wanted))

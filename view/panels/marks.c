@@ -16,12 +16,51 @@
 /* Longest line of a message with its end. */
 enum { LINE_SIZE = 512 };
 
+/* Longest text at the bottom with its end. */
+enum { TEXT_SIZE = 1024 };
+
 float gz_marks_draw_caption(float below, struct gz_paint paint, const char *text)
 {
 	const float scale = gz_widgets_scale();
 	const struct gz_place at = { MARGIN * scale,
 				     below > 0 ? below + PADDING * scale : MARGIN * scale };
 	return gz_draw_caption(GZ_LAYER_TOP, at, paint, text).y;
+}
+
+/* Break lines at blanks so that each is at most @p width wide, where its words let it. */
+static void wrap(char *text, float width)
+{
+	char *begin = text, *blank = NULL;
+	for (char *at = text; *at; at++) {
+		if (*at == '\n') {
+			begin = at + 1;
+			blank = NULL;
+		}
+		if (*at != ' ')
+			continue;
+		*at = '\0';
+		const bool wide = gz_text_room(1, begin).x > width;
+		*at = ' ';
+		if (wide && blank) {
+			*blank = '\n';
+			begin = blank + 1;
+		}
+		blank = at;
+	}
+	if (blank && gz_text_room(1, begin).x > width)
+		*blank = '\n';
+}
+
+void gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
+{
+	char wrapped[TEXT_SIZE];
+	const float scale = gz_widgets_scale(), side = MARGIN * scale, edge = PADDING * scale;
+	const struct gz_place room = gz_widgets_room();
+	snprintf(wrapped, sizeof wrapped, "%s", text);
+	wrap(wrapped, room.x - 2 * (side + edge));
+	const float height = gz_text_room(1, wrapped).y + 2 * edge;
+	const struct gz_place at = { side, floorf(room.y - side - height) };
+	gz_draw_caption(GZ_LAYER_TOP, at, paint, wrapped);
 }
 
 /* Light in dark, so that it shows on any picture. */

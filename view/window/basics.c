@@ -53,14 +53,6 @@ static void toggle_letters(struct gz_window *window, int number)
 		gz_frame_tell_unoriented(window->maker);
 }
 
-static void toggle_mouse(struct gz_window *window, int number)
-{
-	(void)number;
-	if (window->source)
-		window->mouse_chosen = !window->mouse_chosen;
-	window->present_needed = true;
-}
-
 static void toggle_fullscreen(struct gz_window *window, int number)
 {
 	(void)number;
@@ -101,10 +93,6 @@ static const struct gz_window_action actions[] = {
 	METHOD(7, 6, NULL, NULL),
 	{ .letter = 'r', .keys = "R", .help = "reset the camera", .run = reset_camera },
 	{ .letter = 'c', .keys = "C", .help = "cross at the gaze", .run = toggle_cross },
-	{ .letter = 'm',
-	  .keys = "M",
-	  .help = "gaze from the mouse or from the daemon",
-	  .run = toggle_mouse },
 	{ .letter = 'p', .keys = "P", .help = "settings", .run = toggle_settings },
 	{ .letter = 'l',
 	  .keys = "L",

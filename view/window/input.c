@@ -18,22 +18,28 @@ static struct gz_window *window_of(GLFWwindow *glfw)
 	return glfwGetWindowUserPointer(glfw);
 }
 
-void gz_window_toggle_fullscreen(struct gz_window *window)
+void gz_window_fill_monitor(struct gz_window *window, GLFWmonitor *monitor)
 {
 	int *place = window->windowed_place;
-	if (glfwGetWindowMonitor(window->glfw)) {
+	const bool fills = glfwGetWindowMonitor(window->glfw) != NULL;
+	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
+	if (!monitor && fills)
 		glfwSetWindowMonitor(window->glfw, NULL, place[0], place[1], place[2], place[3],
 				     GLFW_DONT_CARE);
-		return;
-	}
-	GLFWmonitor *monitor = gz_window_monitor(window->glfw);
-	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
 	if (!mode)
 		return;
-	glfwGetWindowPos(window->glfw, &place[0], &place[1]);
-	glfwGetWindowSize(window->glfw, &place[2], &place[3]);
+	if (!fills) {
+		glfwGetWindowPos(window->glfw, &place[0], &place[1]);
+		glfwGetWindowSize(window->glfw, &place[2], &place[3]);
+	}
 	glfwSetWindowMonitor(window->glfw, monitor, 0, 0, mode->width, mode->height,
 			     mode->refreshRate);
+}
+
+void gz_window_toggle_fullscreen(struct gz_window *window)
+{
+	const bool fills = glfwGetWindowMonitor(window->glfw) != NULL;
+	gz_window_fill_monitor(window, fills ? NULL : gz_window_monitor(window->glfw));
 }
 
 /* Dear ImGui takes in what happens while it draws, and shows what came of it a frame later. */

@@ -1,7 +1,11 @@
 /* Which parts there are. A new one is a row here. */
 #include "view/window/basics.h"
 #include "view/window/capture.h"
+#include "view/window/corner.h"
+#include "view/window/displays.h"
 #include "view/window/files.h"
+#include "view/window/gaze_sources.h"
+#include "view/window/latency.h"
 #include "view/window/loading.h"
 #include "view/window/notices.h"
 #include "view/window/overlay.h"
@@ -10,13 +14,19 @@
 #include "view/window/screenshots.h"
 #include "view/window/session_part.h"
 #include "view/window/status.h"
+#include "view/window/trail.h"
 #include "view/window/transfer.h"
 
 const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_loading,
+	&gz_window_display_part,
+	&gz_window_gaze_sources,
 	&gz_window_status,
 	&gz_window_overlay_part,
+	&gz_window_corner_part,
+	&gz_window_trail_part,
 	&gz_window_basics,
+	&gz_window_latency_part,
 	&gz_window_files,
 	&gz_window_notices,
 	&gz_window_transfer_part,

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "view/window/loading_state.h"
 #include "view/window/part.h"
 
@@ -28,9 +27,6 @@ void gz_window_take_maker(struct gz_window *window, struct gz_frame_maker *maker
 	window->cast_needed = true;
 	if (window->settings.view.letters)
 		gz_frame_tell_unoriented(maker);
-	/* A log's gaze begins with the first picture. */
-	if (!state->any_shown)
-		window->start_ns = gz_clock_now_ns();
 	state->any_shown = true;
 	state->outcome = GZ_OK;
 	tell_parts(window, true);

@@ -7,7 +7,6 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "client/viewer_link.h"
 #include "view/context_loss.h"
 #include "view/panels/widgets.h"
 #include "view/window/files.h"
@@ -43,7 +42,8 @@ static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *ga
 		gz_frame_set_focus(window->maker, &gaze->reading, gaze->focus);
 		return gaze->focus_new || !same_display(&gaze->display, &window->shown_display);
 	}
-	bool moved = gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
+	bool moved = !window->gaze_frozen &&
+		     gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
 				     &gaze->display, gz_clock_now_ns());
 	return moved || gz_frame_settling(window->maker) ||
 	       !same_display(&gaze->display, &window->shown_display);
@@ -143,6 +143,7 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->drawn)
 			(*part)->drawn(window, width, height);
+	window->swap_ns = gz_clock_now_ns();
 	glfwSwapBuffers(window->glfw);
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->presented)
@@ -275,9 +276,6 @@ static void close_window(struct gz_window *window)
 		if ((*part)->close)
 			(*part)->close(window);
 	glfwTerminate();
-	gz_gaze_source_destroy(&window->source);
-	gz_gaze_source_destroy(&window->mouse);
-	gz_viewer_link_close(&window->link);
 }
 
 /* What is wrong with the command line is known before there is a window. */
@@ -317,11 +315,7 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 	if (r != GZ_OK)
 		return r;
 	gz_view_pick_scene_tables(&window.settings, &window.tables);
-	r = gz_window_gaze_open(&window);
-	if (r == GZ_OK)
-		r = gz_window_report_open(&window);
-	if (r == GZ_OK)
-		r = open_parts(&window);
+	r = open_parts(&window);
 	if (r == GZ_OK)
 		r = gz_window_context_open(&window);
 	if (r == GZ_OK)

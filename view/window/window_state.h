@@ -20,13 +20,21 @@
 #include "view/panels/settings_panel.h"
 #include "view/quad.h"
 #include "view/scene_tables.h"
+#include "view/tracker_display.h"
+
+struct GLFWmonitor;
+struct GLFWwindow;
 
 struct gz_overlay;
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
-/** Older gaze is called silent, not dated: a number that runs on would be redrawn for ever. */
-#define GZ_WINDOW_SILENT_NS GZ_NS_PER_S
+struct gz_window_sources;
+struct gz_window_displays;
+struct gz_window_corner;
+struct gz_window_trail;
+struct gz_window_timing;
+struct gz_window_gaze_settings;
 
 /** The window's OpenGL context as the gl backend takes it. */
 struct gz_window_context {
@@ -50,12 +58,19 @@ struct gz_window {
 	struct gz_window_replay_state *replay;
 	struct gz_quad quad;
 
-	struct gz_gaze_source *source; /**< what --gaze names; NULL for the mouse alone */
+	struct gz_window_sources *sources; /**< of the parts of the same names; NULL before they
+					      are open */
+	struct gz_window_displays *displays;
+	struct gz_window_corner *corner;
+	struct gz_window_trail *trail;
+	struct gz_window_timing *timing;
+	struct gz_window_gaze_settings *gaze_settings;
+	struct gz_gaze_source *source; /**< that is asked for; NULL for the mouse alone */
 	struct gz_gaze_source *mouse;
+	bool source_missing; /**< it could not be had when it was last read */
+	bool gaze_frozen;    /**< the plan stays where it is while the gaze goes on */
 	struct gz_viewer_link
-		*link;     /**< to the daemon's inlet; NULL where there is nothing to tell */
-	bool mouse_chosen; /**< M: the mouse, though there is another source */
-	int64_t start_ns;  /**< of a log's time: the first scene was shown */
+		*link; /**< to the daemon's inlet; NULL where there is nothing to tell */
 
 	struct gz_scene_settings settings; /**< as the user has changed them */
 	struct gz_scene_settings shown;    /**< those of the last frame that could be made */
@@ -92,8 +107,7 @@ struct gz_window {
 	struct gz_frame_record record;
 	struct gz_display shown_display;
 	struct gz_point cross_drawn;
-	int64_t line_due_ns; /**< when the line's running numbers are next worth a redraw */
-	bool line_missing;   /**< the line says that there is no daemon */
+	int64_t swap_ns; /**< when it was handed over to be shown */
 	char line[GZ_WINDOW_LINE_SIZE];
 };
 
@@ -106,11 +120,8 @@ struct gz_window_gaze {
 	const struct gz_focus *focus; /**< what the plan is made of, in place of what the attention
 					 makes of the reading; NULL: nothing is */
 	bool focus_new;               /**< a frame is to be made with it; only with focus */
-};
-
-/** The window's content as a part of its monitor: corner and size, 0 to 1. */
-struct gz_window_share {
-	double x, y, width, height;
+	struct gz_gaze_reading asked; /**< of the source that is asked for, as it gave it */
+	const struct gz_status *status; /**< of the daemon asked for; NULL: not told */
 };
 
 /** The reason of GLFW's last failure, for the one line that tells of it. */
@@ -136,18 +147,13 @@ void gz_window_drawing_close(struct gz_window *window);
  */
 enum gz_result gz_window_rebuild(struct gz_window *window);
 
-/** Where the window is; the whole monitor where that cannot be told. */
-struct gz_window_share gz_window_share(struct GLFWwindow *glfw);
-
 /** Connect to the daemon that the gaze comes from, to tell it of the window and, where the gaze is
- * the pointer, of that. @return what gz_viewer_link_open() returns; logged */
+ * the pointer, of that; nothing where it is connected, or the gaze comes from no daemon.
+ * @return what gz_viewer_link_open() returns; logged */
 enum gz_result gz_window_report_open(struct gz_window *window);
 
 /** Tell what has changed. Waits for nobody. */
 void gz_window_report(struct gz_window *window);
-
-/** Make the sources that --gaze asks for. @return what the source's maker returns; logged. */
-enum gz_result gz_window_gaze_open(struct gz_window *window);
 
 /** Where the gaze is now, on a framebuffer of @p width times @p height px. */
 void gz_window_gaze_now(struct gz_window *window, int width, int height,
@@ -164,6 +170,9 @@ void gz_window_wake_panels(struct gz_window *window);
 
 /** Into full screen on the monitor that the window is on, or back. */
 void gz_window_toggle_fullscreen(struct gz_window *window);
+
+/** Into full screen on @p monitor; NULL: back to a window. */
+void gz_window_fill_monitor(struct gz_window *window, struct GLFWmonitor *monitor);
 
 /** The monitor that holds the middle of the window, or the primary one; NULL if there is none. */
 struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw);

@@ -1,0 +1,193 @@
+#include "view/window/corner.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "view/gaze_state.h"
+#include "view/panels/marks.h"
+#include "view/window/displays.h"
+#include "view/window/gaze_sources.h"
+#include "view/window/latency.h"
+#include "view/window/window_state.h"
+
+/* Numbers change no more often, and what is wrong stays to be read for so long (chosen: readable,
+ * and cheap). */
+#define NUMBERS_INTERVAL_NS (GZ_NS_PER_S / 2)
+/* Samples that were lost are told of for so long after the daemon has said so (chosen: three of its
+ * statuses). */
+#define LOSS_SHOWN_NS (3 * GZ_NS_PER_S)
+
+enum { TEXT_SIZE = 640 };
+
+struct gz_window_corner {
+	struct gz_gaze_rate rate;
+	struct gz_gaze_state state; /* that is shown */
+	int64_t state_ns;           /* when it was last so bad */
+	bool lost_known;
+	uint64_t lost;   /* samples, as the daemon has told */
+	int64_t lost_ns; /* when there were more of them; 0: never */
+	int64_t due_ns;  /* when numbers may change */
+	char head[TEXT_SIZE], numbers[TEXT_SIZE];
+	char text[TEXT_SIZE]; /* on the screen */
+};
+
+static void count_losses(struct gz_window_corner *corner, const struct gz_status *status,
+			 int64_t now_ns)
+{
+	if (!status) {
+		corner->lost_known = false;
+		return;
+	}
+	if (corner->lost_known && status->lost > corner->lost)
+		corner->lost_ns = now_ns;
+	corner->lost_known = true;
+	corner->lost = status->lost;
+}
+
+static bool log_is_over(const struct gz_window *window)
+{
+	struct gz_gaze_log_place place;
+	return window->source && gz_gaze_source_log_place(window->source, &place) && place.ended;
+}
+
+static void judge(struct gz_window *window, const struct gz_window_gaze *gaze, int64_t now_ns,
+		  struct gz_gaze_state *out_state)
+{
+	const struct gz_window_corner *corner = window->corner;
+	const enum gz_window_source source = gz_window_source_now(window);
+	const struct gz_window_share share = gz_window_share(window);
+	const struct gz_gaze_signs signs = {
+		.from_daemon = window->source && window->source->ops->live,
+		.from_log = source == GZ_WINDOW_LOG,
+		.wants_pointer = source == GZ_WINDOW_POINTER,
+		.reading = gaze->asked,
+		.status = gaze->status,
+		.losing = corner->lost_ns > 0 && now_ns - corner->lost_ns < LOSS_SHOWN_NS,
+		.log_ended = log_is_over(window),
+		.window_elsewhere = gz_window_share_is_elsewhere(&share),
+	};
+	gz_gaze_state_of(&signs, out_state);
+}
+
+/* What is worse is told at once; what is better once it has lasted. @return whether it is another
+ */
+static bool take_state(struct gz_window_corner *corner, const struct gz_gaze_state *state,
+		       int64_t now_ns)
+{
+	if (state->level >= corner->state.level)
+		corner->state_ns = now_ns;
+	else if (now_ns - corner->state_ns < NUMBERS_INTERVAL_NS)
+		return false;
+	if (state->level == corner->state.level && strcmp(state->reason, corner->state.reason) == 0)
+		return false;
+	corner->state = *state;
+	return true;
+}
+
+/* "daemon (sim)", "pointer", "mouse". */
+static void print_head(const struct gz_window *window, const struct gz_window_gaze *gaze,
+		       char *text, size_t size)
+{
+	const bool named = gaze->status && gz_window_source_now(window) != GZ_WINDOW_POINTER;
+	const struct gz_point at = gaze->reading.point;
+	const bool off = gaze->reading.known && !(at.x >= 0 && at.y >= 0 && at.x <= 1 && at.y <= 1);
+	snprintf(text, size, "%s%s%.63s%s%s%s", gaze->source, named && !gaze->missing ? " (" : "",
+		 named && !gaze->missing ? gaze->status->tracker.name : "",
+		 named && !gaze->missing ? ")" : "", off ? ", off the picture" : "",
+		 window->gaze_frozen ? ", FROZEN (Space)" : "");
+}
+
+/* "to photon 34 ms: 4 old, frame 20, swap 2, scan-out 8 estimated". */
+static void print_latency(const struct gz_window *window, char *text, size_t size)
+{
+	struct gz_latency latency;
+	char age[32] = "", scanout[48] = "";
+	text[0] = '\0';
+	if (!gz_window_latency(window, &latency))
+		return;
+	if (latency.age_known)
+		snprintf(age, sizeof age, "%.0f old, ", latency.age_ms);
+	if (latency.scanout_ms > 0)
+		snprintf(scanout, sizeof scanout, ", scan-out %.0f estimated", latency.scanout_ms);
+	snprintf(text, size, "\nto photon %.0f ms: %sframe %.0f, swap %.0f%s", latency.total_ms,
+		 age, latency.frame_ms, latency.present_ms, scanout);
+}
+
+/* "  250 Hz  4 ms  fixation  noise 0.12 deg", as much of it as is known. */
+static void print_numbers(const struct gz_window *window, const struct gz_window_gaze *gaze,
+			  char *text, size_t size)
+{
+	const struct gz_gaze_reading *reading = &gaze->reading;
+	const double rate_hz = gz_gaze_rate_hz(&window->corner->rate);
+	char rate[32] = "", age[32] = "", noise[32] = "", latency[128];
+	const bool fresh = reading->has_age && reading->age_ns <= GZ_GAZE_SILENT_NS;
+	if (fresh && rate_hz > 0)
+		snprintf(rate, sizeof rate, "  %.0f Hz", rate_hz);
+	if (fresh)
+		snprintf(age, sizeof age, "  %.0f ms", gz_ns_to_ms(reading->age_ns));
+	if (isfinite(reading->noise_deg))
+		snprintf(noise, sizeof noise, "  noise %.2f deg", reading->noise_deg);
+	print_latency(window, latency, sizeof latency);
+	snprintf(text, size, "%s%s%s%s%s%s", rate, age, fresh && reading->has_event ? "  " : "",
+		 fresh && reading->has_event ? gz_event_name(reading->event) : "", noise, latency);
+}
+
+static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	struct gz_window_corner *corner = window->corner;
+	const int64_t now_ns = gz_clock_now_ns();
+	struct gz_gaze_state state;
+	char head[TEXT_SIZE], text[TEXT_SIZE];
+	gz_gaze_rate_step(&corner->rate, &gaze->asked);
+	count_losses(corner, gaze->status, now_ns);
+	judge(window, gaze, now_ns, &state);
+	print_head(window, gaze, head, sizeof head);
+	const bool new_state = take_state(corner, &state, now_ns);
+	const bool another = strcmp(head, corner->head) != 0;
+	if (another || now_ns >= corner->due_ns) {
+		print_numbers(window, gaze, corner->numbers, sizeof corner->numbers);
+		corner->due_ns = now_ns + NUMBERS_INTERVAL_NS;
+	}
+	memcpy(corner->head, head, sizeof head);
+	snprintf(text, sizeof text, "%s%.100s%.200s%s%s", "gaze: ", head, corner->numbers,
+		 corner->state.reason[0] ? "\n" : "", corner->state.reason);
+	const bool changed = new_state || strcmp(text, corner->text) != 0;
+	memcpy(corner->text, text, sizeof text);
+	return changed;
+}
+
+static void draw(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	static const struct gz_paint *const paints[] = {
+		[GZ_GAZE_LEVEL_GOOD] = &gz_paint_plain,
+		[GZ_GAZE_LEVEL_WARN] = &gz_paint_amber,
+		[GZ_GAZE_LEVEL_BAD] = &gz_paint_red,
+	};
+	const struct gz_window_corner *corner = window->corner;
+	(void)gaze;
+	if (corner->text[0] && window->maker)
+		gz_marks_draw_low_caption(*paints[corner->state.level], corner->text);
+}
+
+static enum gz_result open_part(struct gz_window *window)
+{
+	window->corner = calloc(1, sizeof *window->corner);
+	return window->corner ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static void close_part(struct gz_window *window)
+{
+	free(window->corner);
+	window->corner = NULL;
+}
+
+const struct gz_window_part gz_window_corner_part = {
+	.name = "corner",
+	.open = open_part,
+	.follows = follows,
+	.panels = draw,
+	.close = close_part,
+};

@@ -1,0 +1,260 @@
+#include "view/window/displays.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <GLFW/glfw3.h>
+
+#include "base/clock.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "window"
+
+/* How often monitors are looked at whose change nobody tells: a mode, a place (chosen: at once for
+ * a person, seldom for the display server, which is asked each time). */
+#define LOOK_INTERVAL_NS (2 * GZ_NS_PER_S)
+
+struct gz_window_displays {
+	struct gz_monitor_list list;
+	GLFWmonitor *handles[GZ_MONITORS_MAX]; /* of the list */
+	int64_t looked_ns;                     /* 0: to be looked at anew */
+	int rect_px[4];                        /* of the window, in this turn */
+	struct gz_tracker_display chosen;
+	char told[GZ_NAME_SIZE];  /* the monitor that was told of as the tracker's */
+	char asked[GZ_NAME_SIZE]; /* the name that was refused */
+};
+
+struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw)
+{
+	int x, y, width, height, count;
+	glfwGetWindowPos(glfw, &x, &y);
+	glfwGetWindowSize(glfw, &width, &height);
+	GLFWmonitor **monitors = glfwGetMonitors(&count);
+	for (int i = 0; i < count; i++) {
+		int left, top;
+		const GLFWvidmode *mode = glfwGetVideoMode(monitors[i]);
+		glfwGetMonitorPos(monitors[i], &left, &top);
+		int middle_x = x + width / 2 - left, middle_y = y + height / 2 - top;
+		if (mode && middle_x >= 0 && middle_x < mode->width && middle_y >= 0 &&
+		    middle_y < mode->height)
+			return monitors[i];
+	}
+	return glfwGetPrimaryMonitor();
+}
+
+static bool describe(GLFWmonitor *handle, struct gz_monitor *out_monitor)
+{
+	const GLFWvidmode *mode = glfwGetVideoMode(handle);
+	const char *name = glfwGetMonitorName(handle);
+	struct gz_monitor monitor = { 0 };
+	int mm[2];
+	if (!mode || mode->width < 1 || mode->height < 1)
+		return false;
+	glfwGetMonitorPos(handle, &monitor.rect_px[0], &monitor.rect_px[1]);
+	glfwGetMonitorPhysicalSize(handle, &mm[0], &mm[1]);
+	monitor.rect_px[2] = mode->width;
+	monitor.rect_px[3] = mode->height;
+	monitor.mm[0] = mm[0] > 0 ? mm[0] : 0;
+	monitor.mm[1] = mm[1] > 0 ? mm[1] : 0;
+	monitor.refresh_hz = mode->refreshRate > 0 ? mode->refreshRate : 0;
+	snprintf(monitor.name, sizeof monitor.name, "%s", name ? name : "");
+	*out_monitor = monitor;
+	return true;
+}
+
+static void look(struct gz_window_displays *displays)
+{
+	int count;
+	GLFWmonitor **handles = glfwGetMonitors(&count);
+	displays->looked_ns = gz_clock_now_ns();
+	displays->list.count = 0;
+	for (int i = 0; i < count && displays->list.count < GZ_MONITORS_MAX; i++) {
+		if (!describe(handles[i], &displays->list.monitors[displays->list.count]))
+			continue;
+		displays->handles[displays->list.count++] = handles[i];
+	}
+}
+
+static const struct gz_display *described(struct gz_window *window, struct gz_display *room)
+{
+	const struct gz_status *status =
+		window->source ? gz_gaze_source_status(window->source) : NULL;
+	if (!status)
+		return NULL;
+	*room = status->display;
+	return room;
+}
+
+static void tell_refused(struct gz_window *window)
+{
+	struct gz_window_displays *displays = window->displays;
+	const char *named = window->settings.view.tracker_display;
+	if (!displays->chosen.named_is_absent) {
+		displays->asked[0] = '\0';
+		return;
+	}
+	if (strcmp(displays->asked, named) == 0)
+		return;
+	memcpy(displays->asked, named, sizeof displays->asked);
+	gz_warn(window->log,
+		"view.tracker_display %s: there is no such monitor among %d; give the name or the "
+		"number of one (G lists them)",
+		named, displays->list.count);
+}
+
+/* Where there is one monitor, there is nothing to tell. */
+static void tell_choice(struct gz_window *window)
+{
+	struct gz_window_displays *displays = window->displays;
+	const struct gz_monitor *monitor = gz_window_tracker_monitor(window);
+	const enum gz_tracker_display_reason reason = displays->chosen.reason;
+	if (!monitor || strcmp(displays->told, monitor->name) == 0 ||
+	    reason == GZ_TRACKER_DISPLAY_ALONE || reason == GZ_TRACKER_DISPLAY_WINDOW)
+		return;
+	memcpy(displays->told, monitor->name, sizeof displays->told);
+	gz_info(window->log, "the tracker's display is %s, %dx%d px, %.0fx%.0f mm, %s",
+		monitor->name, monitor->rect_px[2], monitor->rect_px[3], monitor->mm[0],
+		monitor->mm[1],
+		reason == GZ_TRACKER_DISPLAY_NAMED ? "as view.tracker_display says"
+						   : "which is what the daemon describes");
+}
+
+static void turn(struct gz_window *window)
+{
+	struct gz_window_displays *displays = window->displays;
+	struct gz_display room;
+	const int64_t now_ns = gz_clock_now_ns();
+	if (displays->looked_ns == 0 || now_ns - displays->looked_ns > LOOK_INTERVAL_NS)
+		look(displays);
+	glfwGetWindowPos(window->glfw, &displays->rect_px[0], &displays->rect_px[1]);
+	glfwGetWindowSize(window->glfw, &displays->rect_px[2], &displays->rect_px[3]);
+	displays->chosen =
+		gz_tracker_display_choose(&displays->list, window->settings.view.tracker_display,
+					  described(window, &room), displays->rect_px);
+	tell_refused(window);
+	tell_choice(window);
+}
+
+const struct gz_monitor_list *gz_window_monitors(const struct gz_window *window)
+{
+	return &window->displays->list;
+}
+
+struct gz_tracker_display gz_window_tracker_display(const struct gz_window *window)
+{
+	return window->displays->chosen;
+}
+
+const struct gz_monitor *gz_window_tracker_monitor(const struct gz_window *window)
+{
+	const struct gz_window_displays *displays = window->displays;
+	const int at = displays->chosen.monitor;
+	return at >= 0 && at < displays->list.count ? &displays->list.monitors[at] : NULL;
+}
+
+const struct gz_monitor *gz_window_own_monitor(const struct gz_window *window)
+{
+	const struct gz_window_displays *displays = window->displays;
+	const int at = gz_monitor_at(&displays->list, displays->rect_px);
+	return at >= 0 ? &displays->list.monitors[at] : NULL;
+}
+
+void gz_window_rect(const struct gz_window *window, int out_rect_px[4])
+{
+	memcpy(out_rect_px, window->displays->rect_px, sizeof window->displays->rect_px);
+}
+
+struct gz_window_share gz_window_share(const struct gz_window *window)
+{
+	const bool fills = window->options->gaze_fills_window;
+	return gz_window_share_of(fills ? NULL : gz_window_tracker_monitor(window),
+				  window->displays->rect_px);
+}
+
+/* A window whose monitor has gone lies where nobody sees it. */
+static void bring_back(struct gz_window *window)
+{
+	const struct gz_window_displays *displays = window->displays;
+	const int *rect = displays->rect_px;
+	const int at = gz_monitor_at(&displays->list, rect);
+	if (at < 0 || glfwGetWindowMonitor(window->glfw))
+		return;
+	const int *to = displays->list.monitors[at].rect_px;
+	const int x = rect[0] + rect[2] / 2, y = rect[1] + rect[3] / 2;
+	if (x < to[0] || x >= to[0] + to[2] || y < to[1] || y >= to[1] + to[3])
+		glfwSetWindowPos(window->glfw, to[0], to[1]);
+}
+
+/* The window's context is current on the one thread that gets events. */
+static void on_monitor(GLFWmonitor *monitor, int event)
+{
+	GLFWwindow *glfw = glfwGetCurrentContext();
+	struct gz_window *window = glfw ? glfwGetWindowUserPointer(glfw) : NULL;
+	const char *name = glfwGetMonitorName(monitor);
+	if (!window || !window->displays)
+		return;
+	struct gz_window_displays *displays = window->displays;
+	if (event == GLFW_DISCONNECTED)
+		gz_warn(window->log, "monitor %s has gone; the window stays", name ? name : "");
+	look(displays);
+	glfwGetWindowPos(glfw, &displays->rect_px[0], &displays->rect_px[1]);
+	glfwGetWindowSize(glfw, &displays->rect_px[2], &displays->rect_px[3]);
+	if (event == GLFW_DISCONNECTED)
+		bring_back(window);
+	displays->told[0] = '\0';
+	window->cast_needed = true;
+	gz_window_wake_panels(window);
+}
+
+static void fill_tracker_display(struct gz_window *window, int number)
+{
+	(void)number;
+	const struct gz_window_displays *displays = window->displays;
+	const int at = displays->chosen.monitor;
+	if (at < 0)
+		return;
+	GLFWmonitor *wanted = displays->handles[at];
+	const bool there = glfwGetWindowMonitor(window->glfw) == wanted;
+	gz_window_fill_monitor(window, there ? NULL : wanted);
+	window->present_needed = true;
+}
+
+static const struct gz_window_action actions[] = {
+	{ .letter = 'd',
+	  .keys = "D",
+	  .help = "full screen on the tracker's display",
+	  .run = fill_tracker_display },
+};
+
+static enum gz_result open_part(struct gz_window *window)
+{
+	window->displays = calloc(1, sizeof *window->displays);
+	if (!window->displays)
+		return GZ_ERR_NO_MEM;
+	look(window->displays);
+	return GZ_OK;
+}
+
+static enum gz_result attach(struct gz_window *window)
+{
+	(void)window;
+	glfwSetMonitorCallback(on_monitor);
+	return GZ_OK;
+}
+
+static void close_part(struct gz_window *window)
+{
+	free(window->displays);
+	window->displays = NULL;
+}
+
+const struct gz_window_part gz_window_display_part = {
+	.name = "displays",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.open = open_part,
+	.gl_open = attach,
+	.turn = turn,
+	.close = close_part,
+};
