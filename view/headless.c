@@ -361,7 +361,9 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	struct headless self = { .options = options, .log = log };
 	catch_signals();
 	/* First what is known sooner than a volume is loaded: where files go, and the gaze. */
-	enum gz_result r = gz_output_check(options, log);
+	enum gz_result r = gz_recording_check(options->record, log);
+	if (r == GZ_OK)
+		r = gz_output_check(options, log);
 	if (r == GZ_OK)
 		r = open_source(&options->gaze, log, &self.source);
 	if (r == GZ_OK)

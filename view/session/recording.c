@@ -1,6 +1,16 @@
 #include "view/session/recording.h"
 
+#include <unistd.h>
+
 #define GZ_LOG_MODULE "session"
+
+enum gz_result gz_recording_check(const char *path, const struct gz_log *log)
+{
+	if (access(path, F_OK) != 0)
+		return GZ_OK;
+	gz_err(log, "--record %s: is there already; choose another name", path);
+	return GZ_ERR_BUSY;
+}
 
 enum gz_result gz_recording_begin(const struct gz_recording_start *start, const struct gz_log *log,
 				  struct gz_session_writer **out_writer)

@@ -24,6 +24,9 @@ struct gz_recording_start {
 	int64_t now_ns;                           /**< time 0, from any origin */
 };
 
+/** Whether a session could be made at @p path: nothing is there yet. GZ_ERR_BUSY: logged. */
+enum gz_result gz_recording_check(const char *path, const struct gz_log *log);
+
 /**
  * Begin. What earlier frames saw is forgotten, so that a replay begins as this does. Pictures that
  * a replay cannot make again, because they show what has been fetched of a file of bricks so far,

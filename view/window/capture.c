@@ -81,8 +81,10 @@ static void toggle(struct gz_window *window, int number)
 	} else if (self->video) {
 		gz_video_finish(self->video, gz_clock_now_ns());
 		self->ending = true;
+	} else if (window->maker) {
+		self->wanted = true;
 	} else {
-		self->wanted = !self->wanted && window->maker;
+		gz_warn(window->log, "no scene is shown to make a video of; open one");
 	}
 }
 

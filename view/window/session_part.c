@@ -32,7 +32,7 @@ static enum gz_result open_part(struct gz_window *window)
 	if (!window->session)
 		return GZ_ERR_NO_MEM;
 	window->session->named = window->options->record[0] != '\0';
-	return GZ_OK;
+	return gz_recording_check(window->options->record, window->log);
 }
 
 static void end(struct gz_window *window)
@@ -80,8 +80,10 @@ static void toggle(struct gz_window *window, int number)
 	struct gz_window_session_state *self = window->session;
 	if (self->writer)
 		end(window);
+	else if (window->maker)
+		self->wanted = true;
 	else
-		self->wanted = !self->wanted && window->maker;
+		gz_warn(window->log, "no scene is shown that could be recorded; open one");
 }
 
 /* The scene of a session is one. */
