@@ -19,6 +19,12 @@
 
 extern char **environ;
 
+/* Even sides, and colours as they will be marked. */
+static const char even_filter[] =
+	"pad=ceil(iw/2)*2:ceil(ih/2)*2,"
+	"scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
+	"format=yuv420p";
+
 enum { WORDS_SIZE = 384, TAIL_SIZE = 1024, ARGUMENTS_MAX = 48 };
 
 struct gz_ffmpeg {
@@ -49,17 +55,8 @@ static void append(struct arguments *arguments, const char *const *words)
 static void append_coding(struct arguments *arguments, const char *path)
 {
 	static const char *const even[] = {
-		"-vf",
-		"pad=ceil(iw/2)*2:ceil(ih/2)*2,"
-		"scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
-		"format=yuv420p",
-		"-colorspace",
-		"bt709",
-		"-color_primaries",
-		"bt709",
-		"-color_trc",
-		"bt709",
-		NULL,
+		"-vf",   even_filter,  "-colorspace", "bt709", "-color_primaries",
+		"bt709", "-color_trc", "bt709",       NULL,
 	};
 	static const char *const h264[] = { "-c:v", "libx264", "-crf", "18", NULL };
 	static const char *const vp9[] = { "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", NULL };
