@@ -221,6 +221,72 @@ void gz_camera_zoom(struct gz_camera *camera, double factor)
 			camera->look_at[i] + factor * (camera->eye[i] - camera->look_at[i]);
 }
 
+static double distance_of(const struct gz_camera *camera)
+{
+	double arm[3];
+	for (int i = 0; i < 3; i++)
+		arm[i] = camera->eye[i] - camera->look_at[i];
+	return sqrt(dot(arm, arm));
+}
+
+void gz_camera_pan(struct gz_camera *camera, double right_heights, double up_heights)
+{
+	struct view_axes axes;
+	if (!isfinite(right_heights) || !isfinite(up_heights) || !camera_valid(camera) ||
+	    !view_axes_make(camera, &axes))
+		return;
+	double height = picture_height(camera);
+	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
+		height *= distance_of(camera);
+	for (int i = 0; i < 3; i++) {
+		const double way =
+			height * (right_heights * axes.right[i] + up_heights * axes.up[i]);
+		camera->eye[i] -= way;
+		camera->look_at[i] -= way;
+	}
+}
+
+void gz_camera_roll(struct gz_camera *camera, double angle_deg)
+{
+	struct view_axes axes;
+	if (!isfinite(angle_deg) || !view_axes_make(camera, &axes))
+		return;
+	for (int i = 0; i < 3; i++)
+		camera->up[i] = axes.up[i];
+	/* Clockwise seen from the eye, so that what it sees goes the other way. */
+	rotate(camera->up, axes.forward, angle_deg);
+}
+
+void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection projection)
+{
+	const double distance = distance_of(camera);
+	const double per_distance = 2 * tan(0.5 * camera->fov_deg * RAD_PER_DEG);
+	if (projection == camera->projection)
+		return;
+	if (!(distance > 0) || !(per_distance > 0) || !isfinite(distance * per_distance))
+		return;
+	if (projection == GZ_PROJECTION_ORTHOGRAPHIC)
+		camera->height = distance * per_distance;
+	else
+		for (int i = 0; i < 3; i++)
+			camera->eye[i] =
+				camera->look_at[i] + camera->height / per_distance / distance *
+							     (camera->eye[i] - camera->look_at[i]);
+	camera->projection = projection;
+}
+
+void gz_camera_look_along(struct gz_camera *camera, int axis, bool other)
+{
+	const double distance = distance_of(camera);
+	if (axis < 0 || axis > 2 || !(distance > 0) || !isfinite(distance))
+		return;
+	for (int i = 0; i < 3; i++) {
+		camera->eye[i] = camera->look_at[i];
+		camera->up[i] = i == (axis == 2 ? 1 : 2);
+	}
+	camera->eye[axis] += other ? -distance : distance;
+}
+
 bool gz_camera_project(const struct gz_camera *camera, int width, int height, const double world[3],
 		       struct gz_point *out_point)
 {

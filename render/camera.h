@@ -55,6 +55,26 @@ void gz_camera_orbit(struct gz_camera *camera, double right_deg, double down_deg
 /** Multiply the distance to look_at (perspective) or the height (orthographic) by @p factor > 0. */
 void gz_camera_zoom(struct gz_camera *camera, double factor);
 
+/** Move what is in the picture by shares of the picture's height: in perspective, what is as far as
+ * look_at. Eye and look_at go the other way. */
+void gz_camera_pan(struct gz_camera *camera, double right_heights, double up_heights);
+
+/** Turn the picture about its centre, counter-clockwise; up becomes what the picture has on top. */
+void gz_camera_roll(struct gz_camera *camera, double angle_deg);
+
+/** Change the projection so that what is at look_at keeps its size: by the height or, in
+ * perspective, by the distance. Nothing where that is out of reach. */
+void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection projection);
+
+/**
+ * Look along an axis of the world at look_at, from as far as before: from +x, +y or +z, which of a
+ * volume that tells its sides are right, front and above. On top is z, along z itself y.
+ *
+ * @param axis   0 to 2; nothing for others
+ * @param other  from the other side
+ */
+void gz_camera_look_along(struct gz_camera *camera, int axis, bool other);
+
 /** Where a world point appears: normalised picture coordinates. False if it is behind the eye. */
 bool gz_camera_project(const struct gz_camera *camera, int width, int height, const double world[3],
 		       struct gz_point *out_point);

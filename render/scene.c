@@ -302,6 +302,8 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
 		return GZ_ERR_FORMAT;
 	}
+	if (gz_saved_views_check(settings->view.saved, name, log) != GZ_OK)
+		return GZ_ERR_FORMAT;
 	if (gz_ray_params_valid(&settings->rays)) {
 		if (!gz_camera_up_counts(&settings->camera))
 			gz_warn(log,

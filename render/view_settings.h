@@ -10,6 +10,7 @@
 
 #include "base/option.h"
 #include "protocol/gaze.h"
+#include "render/saved_view.h"
 
 /** What the plan's tiles are tinted by. */
 enum gz_view_overlay {
@@ -22,7 +23,21 @@ enum gz_view_overlay {
 /** "none", "spacing", "step"; NULL-terminated. */
 extern const char *const gz_view_overlay_names[];
 
-/** Settings of section "view"; its table is gz_view_setting_options. */
+/** What a foveated picture is compared with. */
+enum gz_view_compare {
+	GZ_COMPARE_NONE,
+	GZ_COMPARE_SPLIT,      /**< at its right the standard picture */
+	GZ_COMPARE_DIFFERENCE, /**< what both differ by */
+	GZ_COMPARE_COUNT,
+};
+
+/** "none", "split", "difference"; NULL-terminated. */
+extern const char *const gz_view_compare_names[];
+
+/** Greatest view.difference_gain: one grey level is a quarter of white. */
+#define GZ_DIFFERENCE_GAIN_MAX 64.0
+
+/** Settings of sections "view" and "views"; their table is gz_view_setting_options. */
 struct gz_view_settings {
 	bool gaze_cursor;        /**< a cross at the gaze */
 	bool letters;            /**< which side is where, at the picture's edges */
@@ -33,6 +48,14 @@ struct gz_view_settings {
 				    empty: as it is */
 	char tracker_display[GZ_NAME_SIZE]; /**< the monitor that a tracker means: its name or its
 					       number from 1; empty: found out */
+	bool gaze_cursor;       /**< a cross at the gaze */
+	bool letters;           /**< which side is where, at the picture's edges */
+	int overlay;            /**< enum gz_view_overlay */
+	int compare;            /**< enum gz_view_compare */
+	double split;           /**< where the standard picture begins, as a share of the width */
+	double difference_gain; /**< times, 1 to GZ_DIFFERENCE_GAIN_MAX */
+	bool frame_times;       /**< the plot of what frames cost */
+	char saved[GZ_SAVED_VIEWS][GZ_SAVED_VIEW_SIZE]; /**< cameras to come back to, or empty */
 };
 
 /** Table over struct gz_view_settings. */

@@ -66,6 +66,16 @@ static bool with_the_past(const struct gz_scene_settings *settings)
 	return settings->temporal.accumulate;
 }
 
+static bool with_a_split(const struct gz_scene_settings *settings)
+{
+	return settings->view.compare == GZ_COMPARE_SPLIT;
+}
+
+static bool with_a_difference(const struct gz_scene_settings *settings)
+{
+	return settings->view.compare == GZ_COMPARE_DIFFERENCE;
+}
+
 /* The first that the key is or begins with. */
 static const struct {
 	const char *key;
@@ -76,7 +86,8 @@ static const struct {
 	{ "foveation.reconstruction", with_a_pyramid }, { "foveation.acuity_", by_acuity },
 	{ "foveation.blend_px", with_regions },         { "foveation.step_floor", by_distance },
 	{ "attention.budget_ms", with_a_scale },        { "attention.", with_the_gaze },
-	{ "temporal.weight", with_the_past },
+	{ "temporal.weight", with_the_past },           { "view.split", with_a_split },
+	{ "view.difference_gain", with_a_difference },
 };
 
 bool gz_setting_applies(const struct gz_scene_settings *settings, const char *key)

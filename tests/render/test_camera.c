@@ -256,6 +256,101 @@ static void zoom_scales_the_distance_or_the_height(void **state)
 	CLOSE(c.height, 3);
 }
 
+/* The offset of a world point from the picture's middle, in pixels of 100 x 100. */
+static void offset_of(const struct gz_camera *c, const double world[3], double *out_x,
+		      double *out_y)
+{
+	struct gz_point p;
+	assert_true(gz_camera_project(c, 100, 100, world, &p));
+	*out_x = 100 * ((double)p.x - 0.5);
+	*out_y = 100 * ((double)p.y - 0.5);
+}
+
+static void pan_moves_what_is_looked_at_by_shares_of_the_height(void **state)
+{
+	(void)state;
+	for (int projection = 0; projection < 2; projection++) {
+		struct gz_camera c = camera_make();
+		const double seen[3] = { 0, 0, 0 };
+		double x, y;
+		c.projection = (enum gz_projection)projection;
+		gz_camera_pan(&c, 0.25, -0.125);
+		offset_of(&c, seen, &x, &y);
+		assert_float_equal((float)x, 25, 1e-3f);
+		assert_float_equal((float)y, 12.5f, 1e-3f);
+		CLOSE(c.look_at[1], 0);
+		CLOSE(c.eye[1], -2);
+		gz_camera_pan(&c, NAN, 0);
+		gz_camera_pan(&c, -0.25, 0.125);
+		CLOSE(c.look_at[0], 0);
+		CLOSE(c.look_at[2], 0);
+	}
+}
+
+static void roll_turns_the_picture_counter_clockwise(void **state)
+{
+	(void)state;
+	struct gz_camera c = camera_make();
+	const double right_of_it[3] = { 0.3, 0, 0 };
+	double x, y;
+	offset_of(&c, right_of_it, &x, &y);
+	assert_true(x > 10);
+	gz_camera_roll(&c, 90);
+	offset_of(&c, right_of_it, &x, &y);
+	assert_float_equal((float)x, 0, 1e-3f);
+	assert_true(y < -10);
+	gz_camera_roll(&c, -90);
+	CLOSE(c.up[0], 0);
+	CLOSE(c.up[2], 1);
+	/* An up that says nothing is the one that the picture has. */
+	c.up[2] = 0;
+	gz_camera_roll(&c, 0);
+	assert_true(gz_camera_up_counts(&c));
+}
+
+static void other_projection_keeps_the_size_of_what_is_looked_at(void **state)
+{
+	(void)state;
+	struct gz_camera c = camera_make();
+	const double seen[3] = { 0.3, 0, 0.2 };
+	double x, y, other_x, other_y;
+	offset_of(&c, seen, &x, &y);
+	gz_camera_set_projection(&c, GZ_PROJECTION_ORTHOGRAPHIC);
+	assert_int_equal(c.projection, GZ_PROJECTION_ORTHOGRAPHIC);
+	offset_of(&c, seen, &other_x, &other_y);
+	assert_float_equal((float)x, (float)other_x, 1e-3f);
+	assert_float_equal((float)y, (float)other_y, 1e-3f);
+	gz_camera_zoom(&c, 0.5);
+	gz_camera_set_projection(&c, GZ_PROJECTION_PERSPECTIVE);
+	offset_of(&c, seen, &other_x, &other_y);
+	assert_float_equal((float)(2 * x), (float)other_x, 1e-3f);
+	assert_float_equal((float)(2 * y), (float)other_y, 1e-3f);
+	CLOSE(c.eye[1], -1);
+	CLOSE(c.fov_deg, 40);
+}
+
+static void axis_views_look_from_right_front_and_above_or_the_other_side(void **state)
+{
+	(void)state;
+	for (int axis = 0; axis < 3; axis++) {
+		for (int other = 0; other < 2; other++) {
+			struct gz_camera c = camera_make();
+			c.look_at[0] = 0.5;
+			c.eye[0] = 0.5;
+			gz_camera_look_along(&c, axis, other);
+			for (int i = 0; i < 3; i++)
+				CLOSE(c.eye[i] - c.look_at[i], i != axis ? 0 : other ? -2 : 2);
+			CLOSE(c.look_at[0], 0.5);
+			assert_true(gz_camera_up_counts(&c));
+			CLOSE(c.up[axis == 2 ? 1 : 2], 1);
+		}
+	}
+	struct gz_camera c = camera_make();
+	gz_camera_look_along(&c, 3, false);
+	gz_camera_look_along(&c, -1, false);
+	CLOSE(c.eye[1], -2);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -272,6 +367,10 @@ int main(void)
 		cmocka_unit_test(orbit_moves_the_object_with_the_mouse),
 		cmocka_unit_test(orbit_stops_short_of_the_poles),
 		cmocka_unit_test(zoom_scales_the_distance_or_the_height),
+		cmocka_unit_test(pan_moves_what_is_looked_at_by_shares_of_the_height),
+		cmocka_unit_test(roll_turns_the_picture_counter_clockwise),
+		cmocka_unit_test(other_projection_keeps_the_size_of_what_is_looked_at),
+		cmocka_unit_test(axis_views_look_from_right_front_and_above_or_the_other_side),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

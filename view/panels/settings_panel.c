@@ -176,33 +176,69 @@ static bool is_first_of_section(const struct gz_settings_panel *panel,
 	return false;
 }
 
+/* The method that is chosen, by which rows of others are left out; option NULL: none is. */
+struct method {
+	const struct gz_option *option;
+	int chosen;
+};
+
+static struct method find_method(const struct gz_settings_panel *panel)
+{
+	size_t at = 0;
+	const struct gz_option *option =
+		gz_options_find(panel->bindings, panel->count, METHOD_KEY, &at);
+	return (struct method) { option,
+				 option ? *(int *)field_of(&panel->bindings[at], option) : -1 };
+}
+
+static bool draw_row_of_method(const struct gz_settings_panel *panel, struct row row,
+			       const struct method *method)
+{
+	const struct gz_option *option = row_option(panel, row);
+	if (method->option && is_of_another_method(option, method->option, method->chosen))
+		return false;
+	return draw_row(panel, &panel->bindings[row.binding], option);
+}
+
 static bool draw_section(const struct gz_settings_panel *panel, const struct gz_option *section,
-			 const struct gz_option *method, int chosen)
+			 const struct method *method)
 {
 	bool changed = false;
 	if (!draw_heading(section))
 		return false;
-	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
-		const struct gz_option *option = row_option(panel, row);
-		if (same_section(option, section) &&
-		    !(method && is_of_another_method(option, method, chosen)))
-			changed |= draw_row(panel, &panel->bindings[row.binding], option);
-	}
+	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+		if (same_section(row_option(panel, row), section))
+			changed |= draw_row_of_method(panel, row, method);
 	return changed;
 }
 
 static bool draw_sections(const struct gz_settings_panel *panel)
 {
-	size_t at = 0;
-	const struct gz_option *method =
-		gz_options_find(panel->bindings, panel->count, METHOD_KEY, &at);
-	const int chosen = method ? *(int *)field_of(&panel->bindings[at], method) : -1;
+	const struct method method = find_method(panel);
 	bool changed = false;
 	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
 		const struct gz_option *option = row_option(panel, row);
 		if (is_first_of_section(panel, option))
-			changed |= draw_section(panel, option, method, chosen);
+			changed |= draw_section(panel, option, &method);
 	}
+	return changed;
+}
+
+static bool begins_with_any(const char *key, const char *const prefixes[])
+{
+	for (size_t i = 0; prefixes[i]; i++)
+		if (strncmp(key, prefixes[i], strlen(prefixes[i])) == 0)
+			return true;
+	return false;
+}
+
+bool gz_settings_rows_draw(const struct gz_settings_panel *panel, const char *const prefixes[])
+{
+	const struct method method = find_method(panel);
+	bool changed = false;
+	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+		if (begins_with_any(row_option(panel, row)->key, prefixes))
+			changed |= draw_row_of_method(panel, row, &method);
 	return changed;
 }
 

@@ -23,6 +23,14 @@ struct gz_settings_panel {
 };
 
 /**
+ * Draw only the rows whose keys begin with one of @p prefixes, NULL-terminated, without headings,
+ * in the panel that is open.
+ *
+ * @return as gz_settings_panel_draw()
+ */
+bool gz_settings_rows_draw(const struct gz_settings_panel *panel, const char *const prefixes[]);
+
+/**
  * Draw it at the right of the window.
  *
  * @return whether a target of the bindings has been changed: within its row's range, a text when

@@ -22,6 +22,9 @@ constexpr float PADDING = 5;
 constexpr float PANEL_ALPHA = 0.85F;
 constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 
+/* Dear ImGui has answered a key after so many frames. */
+constexpr int FRAMES_TO_ANSWER = 4;
+
 /* Longest text that is typed, a path with its end. */
 constexpr size_t TEXT_SIZE = 4096;
 
@@ -37,6 +40,7 @@ struct Memory {
 	bool dialog_drawn;                  /* in this frame so far */
 	bool dialog_was_open;               /* in the last one */
 	bool enter_pressed, escape_pressed; /* since the last one */
+	int frames_since_tab;               /* Dear ImGui answers it after some */
 };
 
 Memory &memory()
@@ -132,6 +136,20 @@ ImGuiID focus_mark()
 	return ImGui::GetID("##canvas has the keyboard");
 }
 
+/* Arrows lead through panels only where Tab or a dialog has led into them: else a panel that was
+ * clicked, or is merely there, would take them from the camera. */
+void let_keys_lead()
+{
+	ImGuiIO &io = ImGui::GetIO();
+	Memory &kept = memory();
+	if (kept.frames_since_tab < FRAMES_TO_ANSWER)
+		kept.frames_since_tab++;
+	if (io.NavVisible || kept.dialog_drawn || kept.frames_since_tab < FRAMES_TO_ANSWER)
+		io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+	else
+		io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
 void read_keys(gz_canvas &canvas)
 {
 	const int *presses = memory().presses;
@@ -186,6 +204,7 @@ void gz_widgets_begin(void)
 {
 	ImGui_ImplOpenGL3_NewFrame();
 	ImGui_ImplGlfw_NewFrame();
+	let_keys_lead();
 	ImGui::NewFrame();
 	memory().dialog_was_open = memory().dialog_drawn;
 	memory().dialog_drawn = false;
@@ -253,6 +272,8 @@ void gz_widgets_note_key(int key)
 		memory().enter_pressed = true;
 	if (key == GLFW_KEY_ESCAPE)
 		memory().escape_pressed = true;
+	if (key == GLFW_KEY_TAB)
+		memory().frames_since_tab = 0;
 	for (int i = 0; i < KEYS; i++)
 		memory().presses[i] += key == GLFW_KEYS[i];
 }
@@ -542,6 +563,14 @@ bool gz_dialog_escaped(void)
 void gz_widget_progress(double share, const char *text)
 {
 	ImGui::ProgressBar(share < 0 ? 0 : static_cast<float>(share), ImVec2(-FLT_MIN, 0), text);
+}
+
+void gz_widget_area(float height, gz_place *out_corner, gz_place *out_size)
+{
+	const ImVec2 size(fmaxf(1, ImGui::GetContentRegionAvail().x), height * gz_widgets_scale());
+	*out_corner = place_of(ImGui::GetCursorScreenPos());
+	*out_size = place_of(size);
+	ImGui::Dummy(size);
 }
 
 void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)

@@ -295,6 +295,10 @@ bool gz_dialog_escaped(void);
  * far. */
 void gz_widget_progress(double share, const char *text);
 
+/** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL; mouse and
+ * keyboard do nothing to it. */
+void gz_widget_area(float height, struct gz_place *out_corner, struct gz_place *out_size);
+
 /** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL, until
  * gz_widget_canvas_end(). While it has the keyboard, arrows and Tab do not lead out of it; Escape
  * does. */

@@ -22,7 +22,7 @@ static bool navigates(int key)
 	return false;
 }
 
-static int modifiers_of(int glfw)
+int gz_window_modifiers(int glfw)
 {
 	return (glfw & GLFW_MOD_SHIFT ? GZ_KEY_SHIFT : 0) |
 	       (glfw & GLFW_MOD_CONTROL ? GZ_KEY_CONTROL : 0);
@@ -75,7 +75,7 @@ bool gz_window_run_action(struct gz_window *window, int key, int scancode, int m
 	const struct wanted wanted = {
 		.key = key,
 		.letter = letter_of(key, scancode),
-		.modifiers = modifiers_of(modifiers),
+		.modifiers = gz_window_modifiers(modifiers),
 		.repeated = repeated,
 	};
 	return run_first(window, &wanted);

@@ -21,15 +21,6 @@ static void choose_method(struct gz_window *window, int method)
 	window->cast_needed = true;
 }
 
-static void reset_camera(struct gz_window *window, int number)
-{
-	(void)number;
-	if (!window->maker)
-		return;
-	window->settings.camera = gz_frame_maker_scene(window->maker)->settings.camera;
-	window->cast_needed = true;
-}
-
 static void toggle_cross(struct gz_window *window, int number)
 {
 	(void)number;
@@ -91,7 +82,6 @@ static const struct gz_window_action actions[] = {
 	METHOD(5, 4, "5 6 7", "mdc3, uniform, table"),
 	METHOD(6, 5, NULL, NULL),
 	METHOD(7, 6, NULL, NULL),
-	{ .letter = 'r', .keys = "R", .help = "reset the camera", .run = reset_camera },
 	{ .letter = 'c', .keys = "C", .help = "cross at the gaze", .run = toggle_cross },
 	{ .letter = 'p', .keys = "P", .help = "settings", .run = toggle_settings },
 	{ .letter = 'l',

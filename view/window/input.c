@@ -1,17 +1,10 @@
 #include "view/window/window_state.h"
 
-#include <math.h>
-
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
 #include "view/panels/widgets.h"
 #include "view/window/part.h"
-
-/* A drag over the window's height turns by this much (chosen: half a turn within one sweep). */
-#define DRAG_DEG_PER_HEIGHT 180.0
-/* One notch of the wheel (chosen: seven notches halve the distance). */
-#define ZOOM_PER_NOTCH 0.9
 
 static struct gz_window *window_of(GLFWwindow *glfw)
 {
@@ -69,23 +62,25 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 		gz_window_run_character(window, codepoint);
 }
 
-static void on_button(GLFWwindow *glfw, int button, int action, int mods)
+static void release(struct gz_window *window, int button)
 {
-	(void)mods;
-	struct gz_window *window = window_of(glfw);
-	gz_window_wake_panels(window);
-	if (button == GLFW_MOUSE_BUTTON_LEFT)
-		window->dragging = action == GLFW_PRESS && !gz_widgets_have_mouse();
+	if (window->grab_button == button)
+		window->grabber = NULL;
 }
 
-static void drag(struct gz_window *window, double right, double down, int height)
+static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 {
-	double deg = DRAG_DEG_PER_HEIGHT / height;
-	if (!window->maker)
+	struct gz_window *window = window_of(glfw);
+	gz_window_wake_panels(window);
+	if (action == GLFW_RELEASE)
+		release(window, button);
+	if (action != GLFW_PRESS || window->grabber || !window->maker || gz_widgets_have_mouse())
 		return;
-	/* The volume follows the hand, so the eye goes the other way. */
-	gz_camera_orbit(&window->settings.camera, -right * deg, -down * deg);
-	window->cast_needed = true;
+	for (const struct gz_window_part *const *part = gz_window_parts; *part && !window->grabber;
+	     part++)
+		if ((*part)->grab && (*part)->grab(window, button, gz_window_modifiers(mods)))
+			window->grabber = *part;
+	window->grab_button = button;
 }
 
 /* The place in the window becomes the place on the picture; also anew when the window's size
@@ -104,12 +99,11 @@ static void move_gaze(struct gz_window *window)
 static void on_cursor(GLFWwindow *glfw, double x, double y)
 {
 	struct gz_window *window = window_of(glfw);
-	int width, height;
-	glfwGetWindowSize(glfw, &width, &height);
-	if (window->dragging && height > 0)
-		drag(window, x - window->cursor[0], y - window->cursor[1], height);
+	const double right = x - window->cursor[0], down = y - window->cursor[1];
 	window->cursor[0] = x;
 	window->cursor[1] = y;
+	if (window->grabber && window->maker)
+		window->grabber->drag(window, right, down);
 	window->cursor_known = true;
 	gz_window_wake_panels(window);
 	/* Whoever changes a setting wants to see what it does where he looked before. */
@@ -129,8 +123,9 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	gz_window_wake_panels(window);
 	if (gz_widgets_have_mouse() || !window->maker)
 		return;
-	gz_camera_zoom(&window->settings.camera, pow(ZOOM_PER_NOTCH, up));
-	window->cast_needed = true;
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+		if ((*part)->wheel)
+			(*part)->wheel(window, up);
 }
 
 static void on_size(GLFWwindow *glfw, int width, int height)

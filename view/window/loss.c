@@ -83,7 +83,7 @@ enum gz_result gz_window_rebuild(struct gz_window *window)
 	if (r != GZ_OK)
 		return r;
 	bring_back(window, fullscreen);
-	window->dragging = false;
+	window->grabber = NULL;
 	window->cast_needed = true;
 	gz_window_wake_panels(window);
 	return GZ_OK;

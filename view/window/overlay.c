@@ -34,6 +34,12 @@ static enum gz_result open_drawing(struct gz_window *window)
 	return gz_overlay_init(window->overlay, window->log);
 }
 
+/* Another scene's plans count from the beginning. */
+static void begin_scene(struct gz_window *window)
+{
+	window->overlay->serial = 0;
+}
+
 static bool is_shown(const struct gz_window *window)
 {
 	return window->settings.view.overlay != GZ_OVERLAY_NONE && window->maker &&
@@ -80,6 +86,7 @@ const struct gz_window_part gz_window_overlay_part = {
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,
 	.gl_open = open_drawing,
+	.scene_shown = begin_scene,
 	.paint = paint,
 	.panels = draw_panels,
 	.gl_close = close_drawing,

@@ -59,6 +59,14 @@ struct gz_window_part {
 	/** The gaze of this turn, before anything goes by it: may be replaced. Only with a
 	 * scene. */
 	void (*gaze)(struct gz_window *window, struct gz_window_gaze *gaze);
+	/** A button of the mouse (GLFW_MOUSE_BUTTON_LEFT, …) went down on the picture at
+	 * window->cursor: whether its way until it is released is this part's. The first that says
+	 * so has it. Only with a scene. */
+	bool (*grab)(struct gz_window *window, int button, int modifiers);
+	/** The mouse that the part has has moved to window->cursor, by so much. */
+	void (*drag)(struct gz_window *window, double right, double down);
+	/** The wheel was turned over the picture, notches. Only with a scene. */
+	void (*wheel)(struct gz_window *window, double up);
 	/** Whether what lies over the picture must be drawn anew for this gaze. */
 	bool (*follows)(struct gz_window *window, const struct gz_window_gaze *gaze);
 	/** A picture has been cast: window->record tells of it. */
@@ -84,6 +92,9 @@ struct gz_window_part {
 
 /** All parts, NULL-terminated, in the order in which they are asked. */
 extern const struct gz_window_part *const gz_window_parts[];
+
+/** GZ_KEY_SHIFT and GZ_KEY_CONTROL of GLFW's modifiers. */
+int gz_window_modifiers(int glfw);
 
 /** Run the action of a key. @param key of GLFW @param scancode of GLFW, for its letter @param
  * modifiers of GLFW @param repeated the key is held @return whether there is one */

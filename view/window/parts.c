@@ -6,6 +6,9 @@
 #include "view/window/files.h"
 #include "view/window/gaze_sources.h"
 #include "view/window/latency.h"
+#include "view/window/camera.h"
+#include "view/window/compare.h"
+#include "view/window/frame_times.h"
 #include "view/window/loading.h"
 #include "view/window/notices.h"
 #include "view/window/overlay.h"
@@ -22,9 +25,12 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_display_part,
 	&gz_window_gaze_sources,
 	&gz_window_status,
+	&gz_window_compare_part,
 	&gz_window_overlay_part,
 	&gz_window_corner_part,
 	&gz_window_trail_part,
+	&gz_window_camera,
+	&gz_window_frame_times_part,
 	&gz_window_basics,
 	&gz_window_latency_part,
 	&gz_window_files,

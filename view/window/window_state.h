@@ -26,6 +26,9 @@ struct GLFWmonitor;
 struct GLFWwindow;
 
 struct gz_overlay;
+struct gz_window_compare;
+struct gz_window_frame_times;
+struct gz_window_part;
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
@@ -79,8 +82,11 @@ struct gz_window {
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
 	bool keys_shown;
 	struct gz_settings_panel settings_panel;
-	struct gz_overlay *overlay;          /**< of part overlay */
 	struct gz_window_transfer *transfer; /**< of transfer.c */
+	struct gz_overlay *overlay;                /**< of part overlay */
+	struct gz_window_compare *compare;         /**< of part compare */
+	struct gz_window_frame_times *frame_times; /**< of part frame times */
+	int camera_drag;  /**< of part camera: what the drag of the mouse does */
 	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
 	float panels_top; /**< lower edge of what lies on top, in this frame */
 
@@ -88,7 +94,8 @@ struct gz_window {
 	bool key_taken; /**< the last key pressed did something: the character that it types does
 			 * not
 			 */
-	bool dragging;
+	const struct gz_window_part *grabber; /**< has the mouse; NULL: none */
+	int grab_button;
 	bool cursor_known;
 	bool cursor_inside; /**< the window's content is what the mouse is over */
 	double cursor[2];   /**< screen coordinates of the window */

@@ -1,0 +1,229 @@
+#include "view/window/camera.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <GLFW/glfw3.h>
+
+#include "render/camera.h"
+#include "render/saved_view.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "window"
+
+/* A drag over the window's height turns by this much (chosen: half a turn within one sweep). */
+#define DRAG_DEG_PER_HEIGHT 180.0
+/* One notch of the wheel, or one press of a key (chosen: seven notches halve the distance). */
+#define ZOOM_PER_NOTCH 0.9
+/* One press of a key (chosen: a quarter of a turn in nine presses; the picture's height in twenty).
+ */
+#define KEY_DEG     10.0
+#define KEY_HEIGHTS 0.05
+
+enum direction { LEFT, RIGHT, UP, DOWN };
+
+static const double rightward[] = { [LEFT] = -1, [RIGHT] = 1, [UP] = 0, [DOWN] = 0 };
+static const double upward[] = { [LEFT] = 0, [RIGHT] = 0, [UP] = 1, [DOWN] = -1 };
+
+static struct gz_camera *camera_of(struct gz_window *window)
+{
+	window->cast_needed = true;
+	return &window->settings.camera;
+}
+
+static bool has_scene(const struct gz_window *window)
+{
+	return window->maker != NULL;
+}
+
+/* The eye goes where the arrow points. */
+static void orbit(struct gz_window *window, int direction)
+{
+	gz_camera_orbit(camera_of(window), -rightward[direction] * KEY_DEG,
+			upward[direction] * KEY_DEG);
+}
+
+static void pan(struct gz_window *window, int direction)
+{
+	gz_camera_pan(camera_of(window), -rightward[direction] * KEY_HEIGHTS,
+		      -upward[direction] * KEY_HEIGHTS);
+}
+
+static void zoom(struct gz_window *window, int notches)
+{
+	gz_camera_zoom(camera_of(window), pow(ZOOM_PER_NOTCH, notches));
+}
+
+static void switch_projection(struct gz_window *window, int number)
+{
+	(void)number;
+	struct gz_camera *camera = camera_of(window);
+	gz_camera_set_projection(camera, camera->projection == GZ_PROJECTION_PERSPECTIVE
+						 ? GZ_PROJECTION_ORTHOGRAPHIC
+						 : GZ_PROJECTION_PERSPECTIVE);
+}
+
+static void reset(struct gz_window *window, int number)
+{
+	(void)number;
+	*camera_of(window) = gz_frame_maker_scene(window->maker)->settings.camera;
+}
+
+/* Axes 1 to 3, negative from the other side. */
+static void look_along(struct gz_window *window, int axis)
+{
+	gz_camera_look_along(camera_of(window), abs(axis) - 1, axis < 0);
+}
+
+static void save_view(struct gz_window *window, int number)
+{
+	gz_saved_view_print(&window->settings.camera, window->settings.view.saved[number]);
+	gz_info(window->log, "view saved: F%d shows it, saving the scene keeps it", number + 1);
+}
+
+static void show_view(struct gz_window *window, int number)
+{
+	const char *text = window->settings.view.saved[number];
+	if (!text[0])
+		gz_info(window->log, "no view is saved there; Shift+F%d saves this one",
+			number + 1);
+	else
+		gz_saved_view_parse(text, camera_of(window));
+}
+
+#define ARROW(name, what, with, function)                                                       \
+	{                                                                                       \
+		.key = GLFW_KEY_##name, .modifiers = (with), .repeats = true, .number = (what), \
+		.applies = has_scene, .run = (function)                                         \
+	}
+
+#define AXIS(character, what)                                                        \
+	{                                                                            \
+		.letter = (character), .modifiers = GZ_KEY_SHIFT, .number = -(what), \
+		.applies = has_scene, .run = look_along                              \
+	}
+
+#define VIEW(which)                                                                                \
+	{ .key = GLFW_KEY_F##which, .number = (which)-1, .applies = has_scene, .run = show_view }, \
+	{                                                                                          \
+		.key = GLFW_KEY_F##which, .modifiers = GZ_KEY_SHIFT, .number = (which)-1,          \
+		.applies = has_scene, .run = save_view                                             \
+	}
+
+static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_LEFT,
+	  .repeats = true,
+	  .number = LEFT,
+	  .keys = "arrows",
+	  .help = "turn; or drag",
+	  .applies = has_scene,
+	  .run = orbit },
+	ARROW(RIGHT, RIGHT, 0, orbit),
+	ARROW(UP, UP, 0, orbit),
+	ARROW(DOWN, DOWN, 0, orbit),
+	{ .key = GLFW_KEY_LEFT,
+	  .modifiers = GZ_KEY_SHIFT,
+	  .repeats = true,
+	  .number = LEFT,
+	  .keys = "Shift+arrows",
+	  .help = "move sideways; or drag by the middle or right button",
+	  .applies = has_scene,
+	  .run = pan },
+	ARROW(RIGHT, RIGHT, GZ_KEY_SHIFT, pan),
+	ARROW(UP, UP, GZ_KEY_SHIFT, pan),
+	ARROW(DOWN, DOWN, GZ_KEY_SHIFT, pan),
+	{ .letter = '+',
+	  .repeats = true,
+	  .number = 1,
+	  .keys = "+ -",
+	  .help = "zoom; or turn the wheel. Shift+drag rolls",
+	  .applies = has_scene,
+	  .run = zoom },
+	ARROW(KP_ADD, 1, 0, zoom),
+	{ .letter = '-', .repeats = true, .number = -1, .applies = has_scene, .run = zoom },
+	ARROW(KP_SUBTRACT, -1, 0, zoom),
+	{ .letter = 'o',
+	  .keys = "O",
+	  .help = "perspective or orthographic",
+	  .applies = has_scene,
+	  .run = switch_projection },
+	{ .letter = 'x',
+	  .number = 1,
+	  .keys = "X Y Z",
+	  .help = "look from right, front, above; with Shift from left, behind, below",
+	  .applies = has_scene,
+	  .run = look_along },
+	{ .letter = 'y', .number = 2, .applies = has_scene, .run = look_along },
+	{ .letter = 'z', .number = 3, .applies = has_scene, .run = look_along },
+	AXIS('x', 1),
+	AXIS('y', 2),
+	AXIS('z', 3),
+	{ .letter = 'r',
+	  .keys = "R",
+	  .help = "camera as in the scene",
+	  .applies = has_scene,
+	  .run = reset },
+	{ .key = GLFW_KEY_F1,
+	  .number = 0,
+	  .keys = "F1 to F8",
+	  .help = "show a saved view; with Shift save this one",
+	  .applies = has_scene,
+	  .run = show_view },
+	{ .key = GLFW_KEY_F1,
+	  .modifiers = GZ_KEY_SHIFT,
+	  .number = 0,
+	  .applies = has_scene,
+	  .run = save_view },
+	VIEW(2),
+	VIEW(3),
+	VIEW(4),
+	VIEW(5),
+	VIEW(6),
+	VIEW(7),
+	VIEW(8),
+};
+
+/* What a drag does, by how it began. */
+enum drag { DRAG_ORBIT, DRAG_PAN, DRAG_ROLL };
+
+static bool grab(struct gz_window *window, int button, int modifiers)
+{
+	if (button == GLFW_MOUSE_BUTTON_MIDDLE || button == GLFW_MOUSE_BUTTON_RIGHT)
+		window->camera_drag = DRAG_PAN;
+	else if (modifiers == GZ_KEY_SHIFT)
+		window->camera_drag = DRAG_ROLL;
+	else
+		window->camera_drag = DRAG_ORBIT;
+	return true;
+}
+
+/* What is seen follows the hand. */
+static void drag(struct gz_window *window, double right, double down)
+{
+	int width, height;
+	glfwGetWindowSize(window->glfw, &width, &height);
+	if (height < 1)
+		return;
+	const double deg = DRAG_DEG_PER_HEIGHT / height;
+	struct gz_camera *camera = camera_of(window);
+	if (window->camera_drag == DRAG_PAN)
+		gz_camera_pan(camera, right / height, -down / height);
+	else if (window->camera_drag == DRAG_ROLL)
+		gz_camera_roll(camera, -right * deg);
+	else
+		gz_camera_orbit(camera, -right * deg, -down * deg);
+}
+
+static void wheel(struct gz_window *window, double up)
+{
+	gz_camera_zoom(camera_of(window), pow(ZOOM_PER_NOTCH, up));
+}
+
+const struct gz_window_part gz_window_camera = {
+	.name = "camera",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.grab = grab,
+	.drag = drag,
+	.wheel = wheel,
+};

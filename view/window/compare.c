@@ -1,0 +1,311 @@
+#include "view/window/compare.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <GLFW/glfw3.h>
+
+#include "view/compare.h"
+#include "view/panels/widgets.h"
+#include "view/reference.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "window"
+
+/* How often the bar of a picture in the making is looked at (chosen: seen to go on, and cheap). */
+#define PROGRESS_S     0.1
+#define PROGRESS_SHARE 0.05
+/* A key moves the divider by this share of the width (chosen: fifty presses from side to side). */
+#define SPLIT_STEP 0.02
+/* Within so many unscaled screen coordinates of the divider the mouse takes it (chosen: hit with
+ * ease, and little of the picture is lost to turning). */
+#define GRAB_NEAR 6.0
+/* Unscaled. */
+#define LABEL_MARGIN 8.0f
+
+struct gz_window_compare {
+	struct gz_compare drawing;
+	struct gz_reference_worker *worker;
+	struct gz_image image; /* the last standard picture */
+	bool any;              /* it is in the texture */
+	bool busy;
+	double share, share_shown;
+};
+
+static bool is_wanted(const struct gz_window *window)
+{
+	return window->settings.view.compare != GZ_COMPARE_NONE && window->maker;
+}
+
+static void choose_next(struct gz_window *window, int number)
+{
+	(void)number;
+	int *compare = &window->settings.view.compare;
+	*compare = (*compare + 1) % GZ_COMPARE_COUNT;
+	window->present_needed = true;
+}
+
+static void move_split(struct gz_window *window, int direction)
+{
+	double *split = &window->settings.view.split;
+	*split = fmin(1, fmax(0, *split + direction * SPLIT_STEP));
+	window->present_needed = true;
+}
+
+static void change_gain(struct gz_window *window, int direction)
+{
+	double *gain = &window->settings.view.difference_gain;
+	*gain = fmin(GZ_DIFFERENCE_GAIN_MAX, fmax(1, direction > 0 ? *gain * 2 : *gain / 2));
+	window->present_needed = true;
+}
+
+static const struct gz_window_action actions[] = {
+	{ .letter = 'v',
+	  .keys = "V",
+	  .help = "beside standard, difference to it, alone",
+	  .run = choose_next },
+	{ .key = GLFW_KEY_LEFT,
+	  .modifiers = GZ_KEY_CONTROL,
+	  .repeats = true,
+	  .number = -1,
+	  .keys = "Ctrl+Left Right",
+	  .help = "move the divider, as by the mouse",
+	  .run = move_split },
+	{ .key = GLFW_KEY_RIGHT,
+	  .modifiers = GZ_KEY_CONTROL,
+	  .repeats = true,
+	  .number = 1,
+	  .run = move_split },
+	{ .key = GLFW_KEY_UP,
+	  .modifiers = GZ_KEY_CONTROL,
+	  .number = 1,
+	  .keys = "Ctrl+Up Down",
+	  .help = "show the difference brighter or darker",
+	  .run = change_gain },
+	{ .key = GLFW_KEY_DOWN, .modifiers = GZ_KEY_CONTROL, .number = -1, .run = change_gain },
+};
+
+static enum gz_result open_part(struct gz_window *window)
+{
+	window->compare = calloc(1, sizeof *window->compare);
+	return window->compare ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static enum gz_result open_drawing(struct gz_window *window)
+{
+	struct gz_window_compare *self = window->compare;
+	const enum gz_result r = gz_compare_init(&self->drawing, window->log);
+	if (r == GZ_OK && self->any)
+		gz_compare_upload(&self->drawing, &self->image);
+	return r;
+}
+
+/* On a thread of the worker's. */
+static void wake_loop(void *user)
+{
+	(void)user;
+	glfwPostEmptyEvent();
+}
+
+static void drop(struct gz_window_compare *self)
+{
+	gz_reference_worker_stop(&self->worker);
+	gz_image_free(&self->image);
+	self->any = self->busy = false;
+}
+
+static void start(struct gz_window *window)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	const struct gz_reference_source source = {
+		.volume = &scene->volume,
+		.threads = (window->options->threads + 1) / 2,
+		.finished = wake_loop,
+		.log = window->log,
+	};
+	const enum gz_result r =
+		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
+	if (r == GZ_OK)
+		return;
+	gz_err(window->log, "nothing to compare with: %s",
+	       r == GZ_ERR_UNSUPPORTED ? "bricks are fetched for one picture at a time"
+				       : gz_result_text(r));
+	window->settings.view.compare = GZ_COMPARE_NONE;
+}
+
+/* What is on the screen is what is compared. */
+static void ask(struct gz_window *window)
+{
+	struct gz_reference_view view;
+	if (!window->compare->worker || !window->any_shown)
+		return;
+	memset(&view, 0, sizeof view);
+	memcpy(&view.camera, &window->shown.camera, sizeof view.camera);
+	memcpy(&view.rays, &window->shown.rays, sizeof view.rays);
+	view.image_sampling_rate = window->shown.image_sampling_rate;
+	view.width = window->record.width;
+	view.height = window->record.height;
+	gz_reference_worker_set_transfer(window->compare->worker,
+					 &gz_frame_maker_scene(window->maker)->transfer);
+	gz_reference_worker_ask(window->compare->worker, &view);
+}
+
+static void look_at_worker(struct gz_window *window)
+{
+	struct gz_window_compare *self = window->compare;
+	const bool was_busy = self->busy;
+	self->busy = gz_reference_worker_busy(self->worker, &self->share);
+	if (gz_reference_worker_take(self->worker, &self->image)) {
+		gz_compare_upload(&self->drawing, &self->image);
+		self->any = true;
+		window->present_needed = true;
+	}
+	if (self->busy != was_busy || fabs(self->share - self->share_shown) >= PROGRESS_SHARE)
+		window->present_needed = true;
+}
+
+static void turn(struct gz_window *window)
+{
+	struct gz_window_compare *self = window->compare;
+	if (!is_wanted(window)) {
+		drop(self);
+		return;
+	}
+	if (!self->worker)
+		start(window);
+	if (!self->worker)
+		return;
+	ask(window);
+	look_at_worker(window);
+}
+
+static void leave_scene(struct gz_window *window)
+{
+	drop(window->compare);
+}
+
+static void paint(struct gz_window *window, int width, int height)
+{
+	const struct gz_window_compare *self = window->compare;
+	const struct gz_view_settings *view = &window->settings.view;
+	if (!self->any)
+		return;
+	if (view->compare == GZ_COMPARE_SPLIT)
+		gz_compare_draw_beside(&self->drawing, view->split, width, height);
+	else if (view->compare == GZ_COMPARE_DIFFERENCE && !self->busy)
+		gz_compare_draw_difference(&self->drawing, window->quad.shown,
+					   view->difference_gain, width, height);
+}
+
+static void print_standard(const struct gz_window_compare *self, char *text, size_t size)
+{
+	if (self->busy)
+		snprintf(text, size, "standard: coming, %.0f %%", 100 * self->share);
+	else
+		snprintf(text, size, "standard%s", self->any ? "" : ": none");
+}
+
+static void draw_label(struct gz_window *window, const char *text, float x, bool leftwards)
+{
+	const float unit = gz_widgets_scale();
+	const float width = gz_text_room(1, text).x + 10 * unit; /* with the caption's rim */
+	const struct gz_place room = gz_widgets_room();
+	const float at = leftwards ? x - width - LABEL_MARGIN * unit : x + LABEL_MARGIN * unit;
+	const struct gz_place corner = {
+		fmaxf(0, fminf(at, room.x - width)),
+		room.y - gz_widgets_line_height() - 10 * unit - LABEL_MARGIN * unit,
+	};
+	gz_draw_caption(GZ_LAYER_PICTURE, corner,
+			window->compare->busy && !leftwards ? gz_paint_amber : gz_paint_plain,
+			text);
+}
+
+static void draw_split(struct gz_window *window, const char *standard)
+{
+	const struct gz_place room = gz_widgets_room();
+	const float x = roundf((float)window->settings.view.split * room.x);
+	const struct gz_place top = { x, 0 }, bottom = { x, room.y };
+	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_ground, 3);
+	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_plain, 1);
+	draw_label(window, window->record.method, x, true);
+	draw_label(window, standard, x, false);
+}
+
+static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	(void)gaze;
+	struct gz_window_compare *self = window->compare;
+	char standard[64], text[128];
+	if (!is_wanted(window) || !window->any_shown)
+		return;
+	self->share_shown = self->share;
+	print_standard(self, standard, sizeof standard);
+	if (window->settings.view.compare == GZ_COMPARE_SPLIT) {
+		draw_split(window, standard);
+		return;
+	}
+	snprintf(text, sizeof text, "%s less %s, %g times", window->record.method, standard,
+		 window->settings.view.difference_gain);
+	draw_label(window, text, (gz_widgets_room().x - gz_text_room(1, text).x) / 2, false);
+}
+
+/* The divider goes with the mouse. */
+static bool grab(struct gz_window *window, int button, int modifiers)
+{
+	int width, height;
+	glfwGetWindowSize(window->glfw, &width, &height);
+	const double x = window->settings.view.split * width;
+	return button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_wanted(window) &&
+	       window->settings.view.compare == GZ_COMPARE_SPLIT &&
+	       fabs(window->cursor[0] - x) <= GRAB_NEAR * (double)gz_widgets_scale();
+}
+
+static void drag(struct gz_window *window, double right, double down)
+{
+	(void)right;
+	(void)down;
+	int width, height;
+	glfwGetWindowSize(window->glfw, &width, &height);
+	if (width > 0)
+		window->settings.view.split = fmin(1, fmax(0, window->cursor[0] / width));
+	window->present_needed = true;
+}
+
+static double patience_s(const struct gz_window *window)
+{
+	return window->compare->busy ? PROGRESS_S : INFINITY;
+}
+
+static void close_drawing(struct gz_window *window)
+{
+	if (window->compare)
+		gz_compare_free(&window->compare->drawing);
+}
+
+static void close_part(struct gz_window *window)
+{
+	if (window->compare)
+		drop(window->compare);
+	free(window->compare);
+	window->compare = NULL;
+}
+
+const struct gz_window_part gz_window_compare_part = {
+	.name = "compare",
+	.actions = actions,
+	.action_count = sizeof actions / sizeof actions[0],
+	.open = open_part,
+	.gl_open = open_drawing,
+	.scene_leaving = leave_scene,
+	.turn = turn,
+	.frame_made = ask,
+	.paint = paint,
+	.panels = draw_panels,
+	.grab = grab,
+	.drag = drag,
+	.patience_s = patience_s,
+	.gl_close = close_drawing,
+	.close = close_part,
+};
