@@ -84,7 +84,11 @@ static void unset(const struct gz_option *option, void *target, int turn)
 				low + (high - low) * ((i + turn % 7 + 2.0) / (count + 11.0));
 		break;
 	case GZ_OPTION_STRING:
-		snprintf(field, (size_t)option->max, "some file %d.x", turn);
+		snprintf(field, (size_t)option->max,
+			 strncmp(option->key, "views.", 6) == 0
+				 ? "eye 0 -2 %d look_at 0 0 0 up 0 0 1 height 2"
+				 : "some file %d.x",
+			 turn);
 		break;
 	case GZ_OPTION_CHOICE:
 		*(int *)field = *(int *)field == 0 ? 1 : 0;
