@@ -48,10 +48,7 @@ struct gz_view_settings {
 				    empty: as it is */
 	char tracker_display[GZ_NAME_SIZE]; /**< the monitor that a tracker means: its name or its
 					       number from 1; empty: found out */
-	bool gaze_cursor;       /**< a cross at the gaze */
-	bool letters;           /**< which side is where, at the picture's edges */
-	int overlay;            /**< enum gz_view_overlay */
-	int compare;            /**< enum gz_view_compare */
+	int compare;                        /**< enum gz_view_compare */
 	double split;           /**< where the standard picture begins, as a share of the width */
 	double difference_gain; /**< times, 1 to GZ_DIFFERENCE_GAIN_MAX */
 	bool frame_times;       /**< the plot of what frames cost */
