@@ -459,8 +459,9 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",      "size",       "gaze",        "frames",       "turn",
-		"display-px", "display-mm", "distance-mm", "write-volume", "record",
+		"scene",         "size",        "gaze",        "frames",        "turn",
+		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
+		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)

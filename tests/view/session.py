@@ -83,6 +83,26 @@ class Session(unittest.TestCase):
         self.assertEqual([f["method"] for f in frames], ["standard"] * 2)
         self.assertEqual([f["rays"] for f in frames], [120 * 90] * 2)
 
+    def test_transfer_function_changes_where_it_did(self):
+        self.record(frames=3, turn=0)
+        function = ["0 0 0 0 0", "0.5 1 0 0 0.1", "1 0 1 0 0.5"]
+        with open(self.path("other.tf"), "w", encoding="utf-8") as out:
+            out.write("\n".join(function) + "\n")
+        self.good(SCENE, "--size", "120x90", "--gaze", "0.3,0.4", "--transfer.file",
+                  self.path("other.tf"), "--out", self.path("other.png"))
+        frames = self.path("a.session/frames.tsv")
+        with open(frames, encoding="utf-8") as source:
+            lines = source.readlines()
+        lines.insert(-3, "!transfer\t" + "\t".join(function) + "\n")
+        with open(frames, "w", encoding="utf-8") as out:
+            out.writelines(lines)
+        done = self.good("--replay", self.path("a.session"), "--out", self.path("is-%d.png"))
+        self.assertIn("not as it was recorded", done.stderr)
+        self.assertTrue(self.read("is-0.png") == self.read("was-0.png"))
+        self.assertTrue(self.read("is-1.png") == self.read("other.png"))
+        self.assertTrue(self.read("is-2.png") == self.read("other.png"))
+        self.assertTrue(self.read("is-0.png") != self.read("is-1.png"))
+
     def test_session_may_be_moved(self):
         self.record(frames=2)
         shutil.move(self.path("a.session"), self.path("elsewhere"))
@@ -99,6 +119,15 @@ class Session(unittest.TestCase):
         done = self.good("--replay", self.path("a.session"))
         self.assertEqual(len(done.stdout.splitlines()), 2)
         self.assertIn("2 frames are whole", done.stderr)
+
+    @unittest.skipUnless(shutil.which("ffprobe"), "ffmpeg is not installed")
+    def test_video_of_a_replay_shows_each_picture_for_as_long_as_it_was_shown(self):
+        self.record("--fps", 10, frames=6)
+        video = self.path("a.mp4")
+        self.good("--replay", self.path("a.session"), "--fps", 20, "--video", video)
+        done = run("ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                   "stream=nb_read_frames,avg_frame_rate", "-of", "csv=p=0", video)
+        self.assertEqual(done.stdout.strip(), "20/1,11")
 
     def refused(self, done, *words):
         self.assertEqual(done.returncode, 1)

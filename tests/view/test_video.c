@@ -11,6 +11,7 @@
 
 #include "base/captured_log.h"
 #include "base/clock.h"
+#include "view/capture/file_name.h"
 #include "view/capture/fit.h"
 #include "view/capture/video.h"
 #include "view/capture/video_clock.h"
@@ -98,6 +99,29 @@ static void picture_thinner_than_a_pixel_when_scaled_is_one_pixel_thin(void **st
 	gz_image_free(&source);
 	gz_image_free(&target);
 	gz_image_fit_free(&fit);
+}
+
+static void names_by_the_time_are_of_nothing_that_is_there_and_sort_in_their_order(void **state)
+{
+	(void)state;
+	char folder[] = "/tmp/gazecast-test-name-XXXXXX", paths[3][GZ_PATH_SIZE];
+	assert_non_null(mkdtemp(folder));
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(gz_capture_name(folder, ".png", paths[i]), GZ_OK);
+		assert_non_null(strstr(paths[i], "/gazeview-2"));
+		assert_non_null(strstr(paths[i], ".png"));
+		FILE *file = fopen(paths[i], "wx");
+		assert_non_null(file);
+		fclose(file);
+		assert_true(i == 0 || strcmp(paths[i - 1], paths[i]) < 0);
+	}
+	for (int i = 0; i < 3; i++)
+		unlink(paths[i]);
+	rmdir(folder);
+	char deep[GZ_PATH_SIZE];
+	memset(deep, 'x', sizeof deep);
+	deep[sizeof deep - 1] = '\0';
+	assert_int_equal(gz_capture_name(deep, ".png", paths[0]), GZ_ERR_FULL);
 }
 
 /* A folder with a script that is the only ffmpeg there is. */
@@ -292,6 +316,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(clock_gives_each_frame_made_at_the_videos_rate_one_picture),
 		cmocka_unit_test(clock_repeats_what_stands_and_passes_over_what_is_quick),
+		cmocka_unit_test(
+			names_by_the_time_are_of_nothing_that_is_there_and_sort_in_their_order),
 		cmocka_unit_test(picture_of_the_same_size_is_copied),
 		cmocka_unit_test(picture_of_another_shape_stands_in_the_middle_of_black),
 		cmocka_unit_test(picture_thinner_than_a_pixel_when_scaled_is_one_pixel_thin),

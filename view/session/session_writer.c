@@ -280,6 +280,9 @@ static void print_change(const struct gz_option *option, const void *before, con
 	if (gz_option_format(option, before, old, sizeof old) != GZ_OK ||
 	    gz_option_format(option, now, new, sizeof new) != GZ_OK || strcmp(old, new) == 0)
 		return;
+	/* A text that no scene's file could have. */
+	if (strpbrk(new, "\r\n"))
+		return;
 	gz_text_add(lines, GZ_SESSION_SET_WORD "\t%s\t%s\n", option->key, new);
 }
 

@@ -22,8 +22,7 @@ struct gz_window_session_state {
 	bool named;  /* --record has not been obeyed yet */
 	struct gz_session_writer *writer;
 	int64_t start_ns;
-	int64_t drawn_s;           /* of the mark, as last drawn */
-	struct gz_display display; /* of the gaze of this turn, whose picture may be made */
+	int64_t drawn_s; /* of the mark, as last drawn */
 };
 
 static enum gz_result open_part(struct gz_window *window)
@@ -100,7 +99,6 @@ static void scene_shown(struct gz_window *window)
 static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 {
 	struct gz_window_session_state *self = window->session;
-	self->display = gaze->display;
 	if (self->wanted)
 		begin(window, gaze);
 	if (self->wanted)
@@ -116,7 +114,7 @@ static void frame_made(struct gz_window *window)
 	struct gz_window_session_state *self = window->session;
 	const struct gz_frame_request request = {
 		.settings = &window->shown,
-		.display = &self->display,
+		.display = &window->shown_display,
 		.width = window->record.width,
 		.height = window->record.height,
 	};
