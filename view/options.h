@@ -74,6 +74,7 @@ struct gz_view_options {
 	bool letters;
 	bool fullscreen;
 	bool vsync;
+	double interface_scale; /**< 0: what the display says */
 	bool gaze_fills_window;
 	char tracker_display[GZ_NAME_SIZE]; /**< empty: as the scene says */
 	int display_px[2];                  /**< 0: not given */

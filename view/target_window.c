@@ -144,7 +144,7 @@ static enum gz_result open_drawing(struct target_window *window)
 	glfwSetWindowUserPointer(window->glfw, window);
 	glfwSetKeyCallback(window->glfw, on_key);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
-	window->has_widgets = gz_widgets_init(window->glfw);
+	window->has_widgets = gz_widgets_init(window->glfw, window->options->interface_scale);
 	return window->has_widgets ? GZ_OK : GZ_ERR_UNSUPPORTED;
 }
 

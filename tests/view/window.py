@@ -29,7 +29,7 @@ class Window(WindowCase):
         self.start("--gaze", "mouse")
         self.move(20, 60)  # most of the window is far from there
         pictures = {}
-        before = self.grab()
+        before = self.rest()
         for key in ("1", "3", "2", "4", "1"):
             self.tool("key", key)
             # The line names the method, so it always changes; the picture follows with it.
@@ -45,7 +45,7 @@ class Window(WindowCase):
     def test_moved_gaze_makes_its_place_sharp(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(100, 100)
-        sharp = self.grab()
+        sharp = self.rest()
         self.tool("key", "4")
         place = (320, 140, 380, 200)
         self.until(lambda p: p.part(*place) != sharp.part(*place), "blurred there")
@@ -56,7 +56,7 @@ class Window(WindowCase):
     def test_drag_turns_wheel_zooms_and_r_brings_both_back(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(240, 160)
-        first = self.grab()
+        first = self.rest()
         self.tool("mousedown", 1)
         self.move(320, 180)
         turned = self.until_changed(first, "turned")
@@ -70,7 +70,7 @@ class Window(WindowCase):
     def test_h_shows_the_keys_and_hides_them(self):
         # By a method that no gaze changes: with the mouse outside, others widen after a while.
         self.start("--gaze", "mouse", "--method", "standard")
-        before = self.grab()
+        before = self.rest()
         self.tool("key", "h")
         self.until_changed(before, "keys shown")
         self.tool("key", "question")
@@ -79,24 +79,22 @@ class Window(WindowCase):
     def test_settings_are_changed_in_the_panel_while_the_gaze_stays(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(100, 300)
-        small = self.grab()
+        small = self.rest()
         self.tool("windowsize", self.window, 700, 500)
         self.until_changed(small, "larger")
         self.move(101, 301)
-        time.sleep(0.5)  # the last of several sizes
-        before = self.grab()
+        before = self.rest()  # the last of several sizes
         shown, panel = (100, 50, 310, 440), (330, 40, 680, 200)
         self.tool("key", "p")
         self.until(lambda p: p.part(*panel) != before.part(*panel), "settings")
         self.move(500, 142)  # the heading Clip
-        time.sleep(0.3)
-        folded = self.grab()
+        folded = self.rest()
         self.tool("click", 1)
         self.until(lambda p: p.part(330, 155, 680, 200) != folded.part(330, 155, 680, 200),
                    "clip box")
         self.assertTrue(self.grab().part(*shown) == before.part(*shown), "the panel is the mouse's")
         self.move(515, 165)  # the first slider of least
-        time.sleep(0.3)
+        self.rest()
         self.tool("click", 1)
         self.until(lambda p: p.part(*shown) != before.part(*shown), "clipped")
         self.tool("key", "p")
@@ -107,7 +105,7 @@ class Window(WindowCase):
         self.start("--gaze", "mouse")
         self.move(20, 60)
         edge = (450, 140, 478, 180)
-        before = self.grab()
+        before = self.rest()
         self.tool("key", "l")
         self.until(lambda p: p.part(*edge) != before.part(*edge), "letters")
         self.tool("key", "l")
@@ -161,8 +159,7 @@ class Window(WindowCase):
             self.tool("windowsize", self.window, 500, 400)
             self.until(lambda p: p.at(497, 397) == (51, 102, 153), "a place")
             self.tool("key", "4")
-            time.sleep(0.5)
-            before = self.grab()
+            before = self.rest()
             self.lose()
             self.found_anew()
             self.until(lambda p: self.below_line(p, 500, 400) == self.below_line(before, 500, 400),
@@ -174,7 +171,7 @@ class Window(WindowCase):
 
     def test_context_lost_again_leaves_the_rays_to_the_cpu_and_a_third_time_ends(self):
         self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", "gl")
-        before = self.grab()
+        before = self.rest()
         for _ in range(2):
             self.lose()
             self.found_anew()

@@ -38,7 +38,7 @@ class WindowCase(unittest.TestCase):
         cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
         cls.environment = dict(
             os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
-            GAZECAST_RUNTIME_DIR=cls.place.name,
+            GAZECAST_RUNTIME_DIR=cls.place.name, XDG_STATE_HOME=cls.place.name,
             # Mesa's drivers keep some bytes when they are unloaded, which leaves no name to excuse
             # them by; what is ours is looked at by the tests without a window.
             ASAN_OPTIONS=os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0",
@@ -80,18 +80,25 @@ class WindowCase(unittest.TestCase):
         self.assertEqual(done.returncode, 0, "xdotool %r: %s" % (words, done.stderr))
         return done.stdout
 
-    def start(self, *more):
+    def launch(self, *words):
+        """gazeview, with exactly these words; its window, which need not show a picture yet."""
         self.tool("mousemove", *SCREEN)
         self.viewer = subprocess.Popen(
-            [GAZEVIEW, SCENE, "--size", "%dx%d" % SIZE, *more], env=self.environment,
+            [GAZEVIEW, "--size", "%dx%d" % SIZE, *words], env=self.environment,
             stderr=subprocess.PIPE, text=True,
         )
         found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
                     "^gazeview$", env=self.environment)
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]
-        self.until(lambda p: len({p.at(x, y) for x in range(100, 380, 4)
-                                  for y in range(60, 300, 4)}) > 20, "a first picture")
+
+    def start(self, *more):
+        """gazeview with the small scene; its first picture."""
+        self.launch(SCENE, *more)
+        return self.until(self.shows_something, "a first picture")
+
+    def shows_something(self, picture):
+        return len({picture.at(x, y) for x in range(100, 380, 4) for y in range(60, 300, 4)}) > 20
 
     def grab(self):
         done = subprocess.run(
@@ -104,6 +111,38 @@ class WindowCase(unittest.TestCase):
         self.assertEqual(len(done.stdout), 3 * width * height, done.stderr)
         rows = [done.stdout[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
         return Picture(width, height, rows)
+
+    def ticks(self):
+        """Of the processor, that the viewer has had."""
+        with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
+            fields = stat.read().rsplit(")", 1)[1].split()
+        return int(fields[11]) + int(fields[12])
+
+    def waits(self):
+        """Whether all its threads wait for something, however busy the machine is."""
+        threads = "/proc/%d/task" % self.viewer.pid
+        for thread in os.listdir(threads):
+            try:
+                with open("%s/%s/stat" % (threads, thread), encoding="ascii") as stat:
+                    if stat.read().rsplit(")", 1)[1].split()[0] in "RD":
+                        return False
+            except FileNotFoundError:
+                pass  # it has ended
+        return True
+
+    def rest(self):
+        """The screenshot once the viewer has done all that it was asked for."""
+        deadline = time.monotonic() + 15
+        still = 0
+        before = self.ticks()
+        while still < 6:
+            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
+            self.assertLess(time.monotonic(), deadline, "it never rests")
+            time.sleep(0.05)
+            now = self.ticks()
+            still = still + 1 if now == before and self.waits() else 0
+            before = now
+        return self.grab()
 
     def until(self, good, what):
         """The first screenshot that @good accepts; whoever waits longer than 15 s has failed."""
@@ -187,11 +226,6 @@ class WindowCase(unittest.TestCase):
 
     def processor_share(self, rest_s=2):
         """Of one core, while nothing happens for so long."""
-        def ticks():
-            with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
-                fields = stat.read().rsplit(")", 1)[1].split()
-            return int(fields[11]) + int(fields[12])
-
-        before, start = ticks(), time.monotonic()
+        before, start = self.ticks(), time.monotonic()
         time.sleep(rest_s)  # what is measured is a rest
-        return (ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)
+        return (self.ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)

@@ -24,7 +24,7 @@ float gz_marks_draw_caption(float below, struct gz_paint paint, const char *text
 	const float scale = gz_widgets_scale();
 	const struct gz_place at = { MARGIN * scale,
 				     below > 0 ? below + PADDING * scale : MARGIN * scale };
-	return gz_draw_caption(GZ_LAYER_TOP, at, paint, text).y;
+	return gz_draw_caption(GZ_LAYER_PICTURE, at, paint, text).y;
 }
 
 /* Break lines at blanks so that each is at most @p width wide, where its words let it. */

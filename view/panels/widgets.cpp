@@ -13,6 +13,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include <unistd.h>
+
 namespace
 {
 
@@ -24,6 +26,29 @@ constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 
 /* Dear ImGui has answered a key after so many frames. */
 constexpr int FRAMES_TO_ANSWER = 4;
+
+/* Height of a line of text: that of Dear ImGui's own font, so that panels are as high without the
+ * others. */
+constexpr float FONT_PX = 13;
+
+/* Text that is drawn larger comes from a font so many times larger. */
+constexpr float LARGE = 2;
+
+/* Where distributions keep a font with the characters below: Debian and Ubuntu, Fedora, Arch,
+ * openSUSE. */
+const char *const FONT_FILES[] = {
+	"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+	"/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+	"/usr/share/fonts/dejavu/DejaVuSans.ttf",
+	"/usr/share/fonts/TTF/DejaVuSans.ttf",
+	"/usr/share/fonts/truetype/DejaVuSans.ttf",
+	"/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+	"/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+};
+
+/* From and to: Latin, Greek, dashes and dots, primes, arrows, signs of comparison. */
+const ImWchar GLYPHS[] = { 0x20,   0xff,   0x391,  0x3c9,  0x2010, 0x2026, 0x2032,
+			   0x2033, 0x2190, 0x2193, 0x2248, 0x2265, 0 };
 
 /* Longest text that is typed, a path with its end. */
 constexpr size_t TEXT_SIZE = 4096;
@@ -41,6 +66,9 @@ struct Memory {
 	bool dialog_was_open;               /* in the last one */
 	bool enter_pressed, escape_pressed; /* since the last one */
 	int frames_since_tab;               /* Dear ImGui answers it after some */
+	bool in_columns;
+	float scale;       /* of the fonts and the style there are */
+	float asked_scale; /* 0: what the display says */
 };
 
 Memory &memory()
@@ -51,8 +79,56 @@ Memory &memory()
 float interface_scale(GLFWwindow *window)
 {
 	float x = 1, y = 1;
+	int width = 0, height = 0, width_px = 0, height_px = 0;
+	if (memory().asked_scale > 0)
+		return memory().asked_scale;
 	glfwGetWindowContentScale(window, &x, &y);
+	/* Where a screen coordinate is several pixels already. */
+	glfwGetWindowSize(window, &width, &height);
+	glfwGetFramebufferSize(window, &width_px, &height_px);
+	if (width > 0 && width_px > width)
+		x *= static_cast<float>(width) / static_cast<float>(width_px);
 	return x > 1 ? x : 1;
+}
+
+const char *font_file()
+{
+	for (const char *file : FONT_FILES)
+		if (access(file, R_OK) == 0)
+			return file;
+	return nullptr;
+}
+
+/* Dear ImGui's own font is of pixels, and only whole ones look well. */
+void add_font(const char *file, float px)
+{
+	ImFontConfig config;
+	config.OversampleH = 2;
+	if (file && ImGui::GetIO().Fonts->AddFontFromFileTTF(file, px, &config, GLYPHS))
+		return;
+	config.OversampleH = 1;
+	config.PixelSnapH = true;
+	config.SizePixels = FONT_PX * fmaxf(1, roundf(px / FONT_PX));
+	ImGui::GetIO().Fonts->AddFontDefault(&config);
+}
+
+/* Drawn at the size that they are shown in: letters made larger would be blurred. */
+void make_interface(float scale)
+{
+	const char *file = font_file();
+	ImGui::GetIO().Fonts->Clear();
+	add_font(file, roundf(FONT_PX * scale));
+	add_font(file, roundf(LARGE * FONT_PX * scale));
+	ImGui::GetStyle() = ImGuiStyle();
+	ImGui::GetStyle().ScaleAllSizes(scale);
+	memory().scale = scale;
+}
+
+/* The one whose letters need least change. */
+ImFont *font_for(float size)
+{
+	const ImFontAtlas *fonts = ImGui::GetIO().Fonts;
+	return fonts->Fonts[size > (1 + LARGE) / 2 ? 1 : 0];
 }
 
 ImVec2 vector(gz_place place)
@@ -169,7 +245,7 @@ const gz_paint gz_paint_amber = { 255, 190, 60, 255 };
 const gz_paint gz_paint_red = { 255, 96, 80, 255 };
 const gz_paint gz_paint_ground = { 0, 0, 0, 160 };
 
-bool gz_widgets_init(GLFWwindow *window)
+bool gz_widgets_init(GLFWwindow *window, double scale)
 {
 	IMGUI_CHECKVERSION();
 	ImGui::CreateContext();
@@ -177,8 +253,8 @@ bool gz_widgets_init(GLFWwindow *window)
 	io.IniFilename = nullptr; /* a viewer leaves no files behind */
 	io.UserData = new Memory {};
 	io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-	io.FontGlobalScale = interface_scale(window);
-	ImGui::GetStyle().ScaleAllSizes(io.FontGlobalScale);
+	memory().asked_scale = static_cast<float>(scale);
+	make_interface(interface_scale(window));
 	if (!ImGui_ImplGlfw_InitForOpenGL(window, true)) {
 		destroy_context();
 		return false;
@@ -189,6 +265,16 @@ bool gz_widgets_init(GLFWwindow *window)
 		return false;
 	}
 	return true;
+}
+
+void gz_widgets_follow_scale(GLFWwindow *window)
+{
+	const float scale = interface_scale(window);
+	if (!ImGui::GetCurrentContext() || scale == memory().scale)
+		return;
+	make_interface(scale);
+	ImGui_ImplOpenGL3_DestroyFontsTexture();
+	ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void gz_widgets_free(void)
@@ -220,7 +306,7 @@ void gz_widgets_end(void)
 
 float gz_widgets_scale(void)
 {
-	return ImGui::GetIO().FontGlobalScale;
+	return memory().scale;
 }
 
 gz_place gz_widgets_room(void)
@@ -325,14 +411,14 @@ void gz_draw_circle(gz_layer layer, gz_place centre, float radius, gz_paint pain
 
 void gz_draw_text(gz_layer layer, gz_place at, float size, gz_paint paint, const char *text)
 {
-	list_of(layer)->AddText(ImGui::GetFont(), size * ImGui::GetFontSize(), vector(at),
+	list_of(layer)->AddText(font_for(size), size * ImGui::GetFontSize(), vector(at),
 				colour(paint), text);
 }
 
 gz_place gz_text_room(float size, const char *text)
 {
 	return place_of(
-		ImGui::GetFont()->CalcTextSizeA(size * ImGui::GetFontSize(), FLT_MAX, 0, text));
+		font_for(size)->CalcTextSizeA(size * ImGui::GetFontSize(), FLT_MAX, 0, text));
 }
 
 gz_place gz_draw_caption(gz_layer layer, gz_place at, gz_paint paint, const char *text)
@@ -467,6 +553,37 @@ bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked)
 	if (out_double_clicked)
 		*out_double_clicked = chosen && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
 	return chosen;
+}
+
+bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right)
+{
+	const float start = ImGui::GetCursorPosX();
+	const bool chosen = ImGui::Selectable(id);
+	ImGui::SameLine();
+	ImGui::SetCursorPosX(start);
+	ImGui::TextUnformatted(left);
+	ImGui::SameLine();
+	ImGui::SetCursorPosX(start + width * gz_widgets_scale());
+	ImGui::TextUnformatted(right);
+	return chosen;
+}
+
+void gz_widget_columns_begin(const char *id, int count)
+{
+	memory().in_columns = ImGui::BeginTable(id, count, ImGuiTableFlags_SizingStretchSame);
+	gz_widget_columns_next();
+}
+
+void gz_widget_columns_next(void)
+{
+	if (memory().in_columns)
+		ImGui::TableNextColumn();
+}
+
+void gz_widget_columns_end(void)
+{
+	if (memory().in_columns)
+		ImGui::EndTable();
 }
 
 bool gz_widget_list_begin(const char *id, int lines)

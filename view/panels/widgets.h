@@ -87,9 +87,14 @@ struct gz_canvas {
  * Set up. The window's OpenGL context must be current; callbacks that the window has stay in force
  * and are called first.
  *
+ * @param scale  of the interface; 0: what the display says
  * @return false if Dear ImGui cannot be set up
  */
-bool gz_widgets_init(struct GLFWwindow *window);
+bool gz_widgets_init(struct GLFWwindow *window, double scale);
+
+/** The display may say another scale than before: the interface follows, unless one was asked for.
+ *  Outside a frame. */
+void gz_widgets_follow_scale(struct GLFWwindow *window);
 
 /** Take down what gz_widgets_init() set up; nothing if it did not. */
 void gz_widgets_free(void);
@@ -236,6 +241,19 @@ bool gz_widget_choice(const char *id, int *value, const char *const names[]);
 
 /** A row of a list. @return whether it was clicked or Enter pressed on it */
 bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked);
+
+/** A row of two texts, the second @p width (unscaled) from the left. @return whether it was clicked
+ *  or Enter pressed on it */
+bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right);
+
+/** What follows stands in the first of @p count columns, until gz_widget_columns_next(). */
+void gz_widget_columns_begin(const char *id, int count);
+
+/** What follows stands in the next column. */
+void gz_widget_columns_next(void);
+
+/** See gz_widget_columns_begin(). */
+void gz_widget_columns_end(void);
 
 /** A list that scrolls, @p lines high, whose rows are reached by the arrow keys as widgets are;
  * gz_widget_list_end() ends it in any case. */

@@ -1,6 +1,5 @@
-/* Keys to actions, and the list of them that people see. */
+/* Keys to actions. */
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 #include <GLFW/glfw3.h>
@@ -89,19 +88,4 @@ bool gz_window_run_character(struct gz_window *window, unsigned codepoint)
 		return false;
 	const struct wanted wanted = { .letter = (int)codepoint };
 	return run_first(window, &wanted);
-}
-
-void gz_window_print_keys(char *text, size_t size)
-{
-	size_t used = 0;
-	text[0] = '\0';
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++) {
-		for (size_t i = 0; i < (*part)->action_count && used < size; i++) {
-			const struct gz_window_action *action = &(*part)->actions[i];
-			if (action->keys)
-				used += (size_t)snprintf(text + used, size - used, "%s%-14s%s",
-							 used ? "\n" : "", action->keys,
-							 action->help);
-		}
-	}
 }

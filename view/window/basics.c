@@ -8,9 +8,6 @@
 #include "view/setting_applies.h"
 #include "view/window/window_state.h"
 
-/* All lines of the list of keys. */
-enum { KEYS_SIZE = 8192 };
-
 static void choose_method(struct gz_window *window, int method)
 {
 	if (!window->maker)
@@ -51,13 +48,6 @@ static void toggle_fullscreen(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
-static void toggle_keys(struct gz_window *window, int number)
-{
-	(void)number;
-	window->keys_shown = !window->keys_shown;
-	window->present_needed = true;
-}
-
 static void quit(struct gz_window *window, int number)
 {
 	(void)number;
@@ -75,13 +65,13 @@ static void quit(struct gz_window *window, int number)
 	}
 
 static const struct gz_window_action actions[] = {
-	METHOD(1, 0, "1 2 3 4", "standard, mdc, ddc, acuity"),
-	METHOD(2, 1, NULL, NULL),
-	METHOD(3, 2, NULL, NULL),
-	METHOD(4, 3, NULL, NULL),
-	METHOD(5, 4, "5 6 7", "mdc3, uniform, table"),
-	METHOD(6, 5, NULL, NULL),
-	METHOD(7, 6, NULL, NULL),
+	METHOD(1, 0, "1", "method standard: every ray"),
+	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around"),
+	METHOD(3, 2, "3", "method ddc: two ellipses"),
+	METHOD(4, 3, "4", "method acuity: as the eye resolves"),
+	METHOD(5, 4, "5", "method mdc3: three squares"),
+	METHOD(6, 5, "6", "method uniform: everywhere the same"),
+	METHOD(7, 6, "7", "method table: as a file says"),
 	{ .letter = 'c', .keys = "C", .help = "cross at the gaze", .run = toggle_cross },
 	{ .letter = 'p', .keys = "P", .help = "settings", .run = toggle_settings },
 	{ .letter = 'l',
@@ -90,8 +80,6 @@ static const struct gz_window_action actions[] = {
 	  .run = toggle_letters },
 	{ .letter = 'f', .keys = "F F11", .help = "full screen", .run = toggle_fullscreen },
 	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
-	{ .letter = 'h', .keys = "H or ?", .help = "show or hide this", .run = toggle_keys },
-	{ .letter = '?', .run = toggle_keys },
 	{ .letter = 'q', .keys = "Esc or Q", .help = "quit", .run = quit },
 	{ .key = GLFW_KEY_ESCAPE, .run = quit },
 };
@@ -118,11 +106,6 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	if (window->settings.view.gaze_cursor && gaze->reading.known)
 		gz_marks_draw_cross((struct gz_place) { at.x * room.x, at.y * room.y });
 	window->cross_drawn = at;
-	if (window->keys_shown) {
-		char keys[KEYS_SIZE];
-		gz_window_print_keys(keys, sizeof keys);
-		gz_marks_draw_caption(window->panels_top, gz_paint_plain, keys);
-	}
 	if (!window->settings_panel.open || !window->maker)
 		return;
 	window->settings_panel.bindings = window->tables.bindings;
@@ -142,6 +125,7 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 
 const struct gz_window_part gz_window_basics = {
 	.name = "basics",
+	.title = "view",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.follows = follows,

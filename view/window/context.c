@@ -15,6 +15,8 @@
 static enum gz_result make_current(struct gz_gl_context *base)
 {
 	struct gz_window_context *context = (struct gz_window_context *)base;
+	if (context->display_lost)
+		return GZ_ERR_NO_DEVICE;
 	if (glfwGetCurrentContext() != context->glfw)
 		glfwMakeContextCurrent(context->glfw);
 	return GZ_OK;
@@ -90,7 +92,7 @@ enum gz_result gz_window_drawing_open(struct gz_window *window)
 	if (r != GZ_OK)
 		return r;
 	gz_window_input_attach(window);
-	if (!gz_widgets_init(window->glfw)) {
+	if (!gz_widgets_init(window->glfw, window->options->interface_scale)) {
 		gz_err(window->log,
 		       "Dear ImGui cannot use this OpenGL; update the graphics driver, or use "
 		       "--headless");

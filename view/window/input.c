@@ -138,6 +138,14 @@ static void on_size(GLFWwindow *glfw, int width, int height)
 		move_gaze(window);
 }
 
+static void on_scale(GLFWwindow *glfw, float x, float y)
+{
+	(void)x;
+	(void)y;
+	gz_widgets_follow_scale(glfw);
+	gz_window_wake_panels(window_of(glfw));
+}
+
 static void on_damage(GLFWwindow *glfw)
 {
 	window_of(glfw)->present_needed = true;
@@ -157,6 +165,7 @@ void gz_window_input_attach(struct gz_window *window)
 	glfwSetScrollCallback(glfw, on_wheel);
 	glfwSetFramebufferSizeCallback(glfw, on_size);
 	glfwSetWindowRefreshCallback(glfw, on_damage);
+	glfwSetWindowContentScaleCallback(glfw, on_scale);
 	/* A mouse that already rests in the window is a gaze before it moves. */
 	glfwGetCursorPos(glfw, &x, &y);
 	glfwGetWindowSize(glfw, &width, &height);

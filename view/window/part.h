@@ -41,6 +41,7 @@ struct gz_window_action {
 /** A part. Each table is const and has static storage; any slot may be NULL. */
 struct gz_window_part {
 	const char *name;
+	const char *title; /**< of its keys in the list; NULL: its name */
 	const struct gz_window_action *actions;
 	size_t action_count;
 	/** Once, before there is a window: make the part's state from the options. Logs what goes
@@ -103,8 +104,5 @@ bool gz_window_run_action(struct gz_window *window, int key, int scancode, int m
 
 /** Run the action of a typed character that no letter key stands for, as '?' is. */
 bool gz_window_run_character(struct gz_window *window, unsigned codepoint);
-
-/** Lines of "keys  what they do", of all parts, in their order. Cut to @p size bytes. */
-void gz_window_print_keys(char *text, size_t size);
 
 #endif

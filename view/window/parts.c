@@ -1,14 +1,15 @@
 /* Which parts there are. A new one is a row here. */
 #include "view/window/basics.h"
+#include "view/window/camera.h"
 #include "view/window/capture.h"
+#include "view/window/compare.h"
 #include "view/window/corner.h"
 #include "view/window/displays.h"
 #include "view/window/files.h"
-#include "view/window/gaze_sources.h"
-#include "view/window/latency.h"
-#include "view/window/camera.h"
-#include "view/window/compare.h"
 #include "view/window/frame_times.h"
+#include "view/window/gaze_sources.h"
+#include "view/window/keys.h"
+#include "view/window/latency.h"
 #include "view/window/loading.h"
 #include "view/window/notices.h"
 #include "view/window/overlay.h"
@@ -22,6 +23,7 @@
 
 const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_loading,
+	&gz_window_keys,
 	&gz_window_display_part,
 	&gz_window_gaze_sources,
 	&gz_window_status,

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "view/context_loss.h"
+#include "view/display_loss.h"
 #include "view/panels/widgets.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
@@ -270,12 +271,14 @@ static void close_window(struct gz_window *window)
 {
 	/* The renderer may live in the window's context. */
 	gz_window_close_scene(window);
-	gz_window_drawing_close(window);
+	if (!window->context.display_lost)
+		gz_window_drawing_close(window);
 	/* Threads of parts may still wake the loop. */
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->close)
 			(*part)->close(window);
-	glfwTerminate();
+	if (!window->context.display_lost)
+		glfwTerminate();
 }
 
 /* What is wrong with the command line is known before there is a window. */
@@ -299,33 +302,51 @@ static enum gz_result load_first(struct gz_window *window)
 	return r;
 }
 
+static enum gz_result run(void *user)
+{
+	struct gz_window *window = user;
+	enum gz_result r = open_parts(window);
+	if (r == GZ_OK)
+		r = gz_window_context_open(window);
+	if (r == GZ_OK)
+		r = gz_window_drawing_open(window);
+	if (r == GZ_OK && window->options->scene[0] && !gz_window_ask_layout(window))
+		r = load_first(window);
+	if (r == GZ_OK)
+		r = loop(window);
+	return r == GZ_OK ? gz_window_loading_outcome(window) : r;
+}
+
+/* From now on only what needs no display. */
+static void tell_loss(struct gz_window *window)
+{
+	window->context.display_lost = true;
+	gz_notices_wake_by(window->notices, NULL);
+	gz_err(window->log,
+	       "the display is gone: its X server has ended or is out of reach; what was recorded "
+	       "until now is kept");
+}
+
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log,
 			      struct gz_notices *notices)
 {
-	struct gz_window window = {
-		.options = options,
-		.log = log,
-		.notices = notices,
-		.size_px = { options->size_px[0], options->size_px[1] },
-	};
+	bool lost = false;
 	/* The display first: without one there is no use in loading. */
 	enum gz_result r = check_backend(options, log);
 	if (r == GZ_OK)
 		r = open_display(log);
-	if (r != GZ_OK)
-		return r;
-	gz_view_pick_scene_tables(&window.settings, &window.tables);
-	r = open_parts(&window);
-	if (r == GZ_OK)
-		r = gz_window_context_open(&window);
-	if (r == GZ_OK)
-		r = gz_window_drawing_open(&window);
-	if (r == GZ_OK && options->scene[0] && !gz_window_ask_layout(&window))
-		r = load_first(&window);
-	if (r == GZ_OK)
-		r = loop(&window);
-	if (r == GZ_OK)
-		r = gz_window_loading_outcome(&window);
-	close_window(&window);
+	struct gz_window *window = r == GZ_OK ? calloc(1, sizeof *window) : NULL;
+	if (!window)
+		return r == GZ_OK ? GZ_ERR_NO_MEM : r;
+	window->options = options;
+	window->log = log;
+	window->notices = notices;
+	memcpy(window->size_px, options->size_px, sizeof window->size_px);
+	gz_view_pick_scene_tables(&window->settings, &window->tables);
+	r = gz_display_loss_guard(run, window, &lost);
+	if (lost)
+		tell_loss(window);
+	close_window(window);
+	free(window);
 	return r;
 }

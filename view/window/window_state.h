@@ -43,6 +43,7 @@ struct gz_window_gaze_settings;
 struct gz_window_context {
 	struct gz_gl_context base;
 	struct GLFWwindow *glfw;
+	bool display_lost; /**< see display_loss.h: nothing may be asked of it */
 };
 
 /** The window of gz_view_window(). */
@@ -54,6 +55,7 @@ struct gz_window {
 	struct gz_window_context context;
 	struct gz_frame_maker *maker;                  /**< NULL while there is no scene */
 	struct gz_window_loading_state *loading;       /**< see loading.h */
+	struct gz_window_keys_state *keys;             /**< see keys.h */
 	struct gz_window_notices_state *notices_state; /**< see notices.h */
 	struct gz_window_screenshots_state *screenshots;
 	struct gz_window_capture_state *capture;
@@ -80,7 +82,6 @@ struct gz_window {
 	bool any_shown;
 	bool taken_back;                    /**< a frame with other settings could not be made */
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
-	bool keys_shown;
 	struct gz_settings_panel settings_panel;
 	struct gz_window_transfer *transfer; /**< of transfer.c */
 	struct gz_overlay *overlay;                /**< of part overlay */
