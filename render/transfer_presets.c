@@ -1,6 +1,7 @@
 #include "render/transfer_presets.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* All looks are chosen by eye on the scenes of etc/scenes/. */
 
@@ -27,6 +28,29 @@ static double per_voxel(const struct making *making, double hidden, double share
 static double at_share(const struct making *making, double share)
 {
 	return making->low + share * (making->high - making->low);
+}
+
+/* The mean of the values on one side of @p threshold. */
+static double mean_beyond(const struct making *making, double threshold, bool below)
+{
+	const struct gz_histogram *histogram = making->histogram;
+	double sum = 0, count = 0;
+	for (int bin = 0; bin < histogram->bins; bin++) {
+		const double value = gz_histogram_bin_value(histogram, bin);
+		if ((value < threshold) == below) {
+			sum += value * (double)histogram->counts[bin];
+			count += (double)histogram->counts[bin];
+		}
+	}
+	return count > 0 ? sum / count : threshold;
+}
+
+/* Halfway from the background, which may be no black, to where it and the object part: its noise is
+ * left out, the object's faint parts are not. */
+static double end_of_background(const struct making *making, bool dark)
+{
+	const double threshold = gz_histogram_threshold(making->histogram);
+	return (mean_beyond(making, threshold, dark) + threshold) / 2;
 }
 
 /* The next point; values rise, and what lies beyond the range is cut off. */
@@ -100,9 +124,8 @@ static void make_glass(struct making *making)
 /* From nothing at the background to dense at the other end of the range. */
 static void make_grey(struct making *making)
 {
-	const double threshold = gz_histogram_threshold(making->histogram);
 	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
-	const double begin = (making->low + threshold) / 2;
+	const double begin = end_of_background(making, true);
 	const double grey = (begin - making->low) / fmax(making->high - making->low, 1e-300);
 	add(making, making->low, black, 0);
 	add(making, begin, (struct colour) { grey, grey, grey }, 0);
@@ -111,8 +134,7 @@ static void make_grey(struct making *making)
 
 static void make_heat(struct making *making)
 {
-	const double threshold = gz_histogram_threshold(making->histogram);
-	const double begin = (making->low + threshold) / 2, rest = making->high - begin;
+	const double begin = end_of_background(making, true), rest = making->high - begin;
 	const double dense = per_voxel(making, 0.98, 0.05);
 	add(making, making->low, (struct colour) { 0, 0, 0 }, 0);
 	add(making, begin, (struct colour) { 0.20, 0, 0.02 }, 0);
@@ -124,9 +146,8 @@ static void make_heat(struct making *making)
 
 static void make_inverse(struct making *making)
 {
-	const double threshold = gz_histogram_threshold(making->histogram);
 	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
-	const double end = (making->high + threshold) / 2;
+	const double end = end_of_background(making, false);
 	const double grey = (making->high - end) / fmax(making->high - making->low, 1e-300);
 	add(making, making->low, white, per_voxel(making, 0.98, 0.06));
 	add(making, end, (struct colour) { grey, grey, grey }, 0);
@@ -136,9 +157,8 @@ static void make_inverse(struct making *making)
 static void make_xray(struct making *making)
 {
 	const struct colour white = { 1, 1, 1 };
-	const double background = gz_histogram_threshold(making->histogram);
 	add(making, making->low, white, 0);
-	add(making, (making->low + background) / 2, white, per_voxel(making, 0.03, 1));
+	add(making, end_of_background(making, true), white, 0);
 	add(making, making->high, white, per_voxel(making, 0.97, 0.8));
 }
 
@@ -158,8 +178,7 @@ static const struct preset {
 	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities" }, make_heat },
 	[GZ_PRESET_INVERSE] = { { "Inverse", "the darker, the denser: for a bright background" },
 				make_inverse },
-	[GZ_PRESET_XRAY] = { { "X-ray", "faint everywhere: depth adds up, nothing hides" },
-			     make_xray },
+	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing hides" }, make_xray },
 };
 
 const char *const gz_transfer_preset_names[] = { "tissue", "surface", "glass", "grey",

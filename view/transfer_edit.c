@@ -65,6 +65,11 @@ const struct gz_transfer *gz_transfer_edit_now(const struct gz_transfer_edit *ed
 	return &edit->slots[edit->now];
 }
 
+bool gz_transfer_edit_is(const struct gz_transfer_edit *edit, const struct gz_transfer *transfer)
+{
+	return same(gz_transfer_edit_now(edit), transfer);
+}
+
 uint64_t gz_transfer_edit_changes(const struct gz_transfer_edit *edit)
 {
 	return edit->changes;

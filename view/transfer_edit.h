@@ -44,6 +44,9 @@ void gz_transfer_edit_destroy(struct gz_transfer_edit **edit);
 /** As it is now. Valid until the next call that takes a mutable @p edit. */
 const struct gz_transfer *gz_transfer_edit_now(const struct gz_transfer_edit *edit);
 
+/** Whether it is @p transfer now. */
+bool gz_transfer_edit_is(const struct gz_transfer_edit *edit, const struct gz_transfer *transfer);
+
 /** A number that is another after each change, undo and redo counted in. */
 uint64_t gz_transfer_edit_changes(const struct gz_transfer_edit *edit);
 

@@ -233,7 +233,10 @@ static void what_is_replaced_comes_back_and_what_is_saved_does_not_differ(void *
 	assert_int_equal(gz_transfer_edit_now(edit)->count, 4);
 	assert_true(gz_transfer_edit_differs(edit));
 	const uint64_t changes = gz_transfer_edit_changes(edit);
+	assert_true(gz_transfer_edit_is(edit, &four));
+	assert_false(gz_transfer_edit_is(edit, &one));
 	gz_transfer_edit_restart(edit, &one);
+	assert_true(gz_transfer_edit_is(edit, &one));
 	assert_int_not_equal(gz_transfer_edit_changes(edit), changes);
 	assert_false(gz_transfer_edit_differs(edit) || gz_transfer_edit_can_undo(edit) ||
 		     gz_transfer_edit_can_redo(edit));

@@ -10,7 +10,7 @@ import sys
 import time
 import unittest
 
-from picture import read_png, run
+from picture import read_png, run, write_scene
 from window_case import GAZEVIEW, PLACE, SCENE, SCENES, SCREEN, WindowCase
 
 # The plot without the interface being scaled: its width, its height.
@@ -23,6 +23,7 @@ FUNCTION = os.path.join(PLACE.name, "edited.tf")
 def own_function():
     """The scene gets a transfer function that may be written over."""
     shutil.copy(os.path.join(SCENES, "shells.tf"), FUNCTION)
+    write_scene(PLACE.name, SCENES)
     with open(SCENE, encoding="utf-8") as source:
         text = source.read()
     text = text.replace(os.path.join(SCENES, "shells.tf"), FUNCTION)
@@ -137,13 +138,56 @@ class TransferWindow(WindowCase):
         self.press("Delete")
         self.until_same(first, "removed")
 
-    def test_keys_are_the_windows_again_after_escape(self):
+    def test_drag_with_shift_keeps_the_value(self):
         first = self.open_editor()
+        start = self.point_at(0.65, 0.2)
+        self.tool("keydown", "shift")
+        self.drag(start, (start[0] + 12, start[1] + 60))
+        self.tool("keyup", "shift")
+        sideways = self.until_other(first, "lower")
+        self.tool("key", "ctrl+z")
+        self.until_same(first, "taken back")
+        self.drag(start, (start[0], start[1] + 60))
+        self.until_same(sideways, "straight down")
+
+    def test_double_click_colours_a_point(self):
+        first = self.open_editor()
+        self.move(*self.point_at(0.65, 0.2))
+        self.tool("click", "--repeat", 2, "--delay", 80, 1)
+        time.sleep(0.5)
+        # The square of shades, right below the mouse: grey.
+        x, y = self.point_at(0.65, 0.2)
+        self.move(x + 20, y + 100)
+        self.tool("click", 1)
         self.press("Escape")
-        self.press("c")
-        self.assertIsNone(self.viewer.poll())
+        self.move(SCREEN[0] - 3, SCREEN[1] // 2)
+        self.until_other(first, "coloured")
+
+    def test_scene_saved_has_what_was_edited(self):
+        first = self.open_editor()
+        self.drag(self.point_at(0.65, 0.2), self.point_at(0.62, 0.0))
+        self.until_other(first, "dragged")
+        changed = self.settled()
+        self.tool("key", "ctrl+s")
+        written = os.path.splitext(SCENE)[0] + ".tf"
+        deadline = time.monotonic() + 15
+        while not os.path.exists(written):
+            self.assertLess(time.monotonic(), deadline, "never saved")
+            time.sleep(0.05)
+        self.addCleanup(os.remove, written)
+        time.sleep(0.5)
+        with open(SCENE, encoding="utf-8") as file:
+            saved = file.read()
+        out = os.path.join(PLACE.name, "scene.png")
+        done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED, "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr + saved)
+        self.assertTrue(read_png(out).part(*SHOWN) == self.shown(changed), saved)
+
+    def test_keys_are_the_windows_again_after_escape(self):
+        self.open_editor()
+        self.press("Escape")
         self.press("e")
-        self.until(lambda p: p.at(30, SCREEN[1] - 30) == first.at(600, 60), "closed")
+        self.until(lambda p: not self.find_plot(p), "closed")
 
     def test_saved_preset_gives_the_same_picture_without_a_window(self):
         first = self.open_editor()
@@ -172,4 +216,4 @@ class TransferWindow(WindowCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=1)
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:], verbosity=1)

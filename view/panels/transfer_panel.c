@@ -217,7 +217,9 @@ static void take_mouse(struct gz_transfer_panel *panel, const struct gz_canvas *
 		zoom(panel, canvas);
 	if (canvas->pressed)
 		press(panel, canvas->mouse);
-	if (panel->dragged && canvas->held)
+	/* Taken back in the middle of it: the drag has ended. */
+	panel->dragged = panel->dragged && gz_transfer_edit_in_drag(panel->edit);
+	if (panel->dragged && (canvas->held || canvas->released))
 		drag(panel, canvas);
 	if (!canvas->held)
 		panel->dragged = false;
@@ -467,6 +469,7 @@ enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel)
 		.at = GZ_PANEL_BOTTOM_LEFT,
 		.width = WIDTH,
 		.margin_top = panel->margin_top,
+		.margin_bottom = panel->margin_bottom,
 	};
 	enum gz_transfer_wish wish = GZ_TRANSFER_WISH_NONE;
 	if (!gz_widgets_in_use())

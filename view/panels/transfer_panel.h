@@ -28,7 +28,7 @@ struct gz_transfer_panel {
 	struct gz_transfer_edit *edit;
 	const struct gz_histogram *histogram; /**< of volume; NULL while it is counted */
 	const struct gz_volume *volume;
-	float margin_top; /**< kept free above it, screen coordinates */
+	float margin_top, margin_bottom; /**< kept free above and below it, screen coordinates */
 
 	bool focus; /**< the curve has the keyboard from now on; false afterwards */
 

@@ -325,6 +325,17 @@ bool gz_widgets_have_mouse(void)
 	       (ImGui::GetIO().WantCaptureMouse || gz_widgets_have_dialog());
 }
 
+bool gz_widgets_lie_at(float x, float y)
+{
+	if (!ImGui::GetCurrentContext())
+		return false;
+	for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows)
+		if (window->WasActive && !(window->Flags & ImGuiWindowFlags_NoMouseInputs) &&
+		    window->Rect().Contains(ImVec2(x, y)))
+			return true;
+	return false;
+}
+
 bool gz_widgets_have_text(void)
 {
 	return ImGui::GetCurrentContext() && ImGui::GetIO().WantTextInput;
@@ -332,7 +343,8 @@ bool gz_widgets_have_text(void)
 
 bool gz_widgets_have_navigation(void)
 {
-	return ImGui::GetCurrentContext() && (ImGui::GetIO().NavVisible || canvas_has_keyboard());
+	return ImGui::GetCurrentContext() && (ImGui::GetIO().NavVisible || canvas_has_keyboard() ||
+					      ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup));
 }
 
 bool gz_widgets_in_use(void)

@@ -117,6 +117,10 @@ float gz_widgets_line_height(void);
 /** Whether the mouse is a panel's: over it, or dragging something of it. As of the last frame. */
 bool gz_widgets_have_mouse(void);
 
+/** Whether a panel lies at a place of the window, as of the last frame: whoever clicks there before
+ *  the next one means the panel, though gz_widgets_have_mouse() does not know yet. */
+bool gz_widgets_lie_at(float x, float y);
+
 /** Whether a text is being typed: no key is the window's. As of the last frame. */
 bool gz_widgets_have_text(void);
 

@@ -68,13 +68,20 @@ static void release(struct gz_window *window, int button)
 		window->grabber = NULL;
 }
 
+/* Also where it has come to a panel since the last frame. */
+static bool panels_have_mouse(const struct gz_window *window)
+{
+	return gz_widgets_have_mouse() ||
+	       gz_widgets_lie_at((float)window->cursor[0], (float)window->cursor[1]);
+}
+
 static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 {
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
 		release(window, button);
-	if (action != GLFW_PRESS || window->grabber || !window->maker || gz_widgets_have_mouse())
+	if (action != GLFW_PRESS || window->grabber || !window->maker || panels_have_mouse(window))
 		return;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part && !window->grabber;
 	     part++)
@@ -121,7 +128,7 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	(void)right;
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
-	if (gz_widgets_have_mouse() || !window->maker)
+	if (panels_have_mouse(window) || !window->maker)
 		return;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->wheel)

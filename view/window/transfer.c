@@ -21,6 +21,10 @@
 /* Of what is counted; the plot is no wider. */
 #define BINS GZ_HISTOGRAM_BINS_MAX
 
+/* Kept free for what the lower left corner tells of the gaze, whose lines come and go: three, and
+ * the room round them. */
+#define CORNER_LINES 4
+
 /* A histogram that a thread counts. */
 struct count {
 	const struct gz_volume *volume;
@@ -182,6 +186,18 @@ static void scene_leaving(struct gz_window *window)
 	stop_counting(window->transfer);
 }
 
+/* Another part, as a session that is replayed, has set one: it is what is edited from now on. */
+static void follow_others(struct gz_window *window)
+{
+	struct gz_window_transfer *transfer = window->transfer;
+	const struct gz_transfer *shown = &gz_frame_maker_scene(window->maker)->transfer;
+	if (gz_transfer_edit_is(transfer->edit, shown))
+		return;
+	gz_transfer_edit_restart(transfer->edit, shown);
+	transfer->shown = gz_transfer_edit_changes(transfer->edit);
+	gz_window_wake_panels(window);
+}
+
 /* Before the next frame, the renderer has what is edited. */
 static void turn(struct gz_window *window)
 {
@@ -190,8 +206,10 @@ static void turn(struct gz_window *window)
 	if (!window->maker || !transfer->edit)
 		return;
 	const uint64_t changes = gz_transfer_edit_changes(transfer->edit);
-	if (changes == transfer->shown)
+	if (changes == transfer->shown) {
+		follow_others(window);
 		return;
+	}
 	transfer->shown = changes;
 	gz_frame_set_transfer(window->maker, gz_transfer_edit_now(transfer->edit));
 	window->cast_needed = true;
@@ -219,6 +237,7 @@ static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 	panel->edit = transfer->edit;
 	panel->volume = &gz_frame_maker_scene(window->maker)->volume;
 	panel->margin_top = window->panels_top;
+	panel->margin_bottom = CORNER_LINES * gz_widgets_line_height();
 	panel->focus = transfer->focus_due;
 	transfer->focus_due = false;
 	const enum gz_transfer_wish wish = gz_transfer_panel_draw(panel);
