@@ -51,7 +51,7 @@ static void wrap(char *text, float width)
 		*blank = '\n';
 }
 
-void gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
+float gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
 {
 	char wrapped[TEXT_SIZE];
 	const float scale = gz_widgets_scale(), side = MARGIN * scale, edge = PADDING * scale;
@@ -61,6 +61,7 @@ void gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
 	const float height = gz_text_room(1, wrapped).y + 2 * edge;
 	const struct gz_place at = { side, floorf(room.y - side - height) };
 	gz_draw_caption(GZ_LAYER_TOP, at, paint, wrapped);
+	return room.y - at.y;
 }
 
 /* Light in dark, so that it shows on any picture. */

@@ -13,8 +13,9 @@
  * (0: none). @return its own lower edge */
 float gz_marks_draw_caption(float below, struct gz_paint paint, const char *text);
 
-/** Draw a text on a dark ground at the bottom left, lines wrapped at the window's edge. */
-void gz_marks_draw_low_caption(struct gz_paint paint, const char *text);
+/** Draw a text on a dark ground at the bottom left, lines wrapped at the window's edge. @return
+ * the height that it and its margin take */
+float gz_marks_draw_low_caption(struct gz_paint paint, const char *text);
 
 /** Draw a cross at @p at, the window's screen coordinates. */
 void gz_marks_draw_cross(struct gz_place at);

@@ -159,7 +159,7 @@ ImDrawList *list_of(gz_layer layer)
 	return ImGui::GetBackgroundDrawList();
 }
 
-void set_panel_place(const gz_panel_place &place)
+void set_panel_place(const gz_panel_place &place, bool movable)
 {
 	const float scale = gz_widgets_scale(), margin = MARGIN * scale;
 	const ImVec2 room = ImGui::GetIO().DisplaySize;
@@ -172,7 +172,7 @@ void set_panel_place(const gz_panel_place &place)
 		at = ImVec2(room.x / 2, room.y / 2);
 		pivot = ImVec2(0.5F, 0.5F);
 	}
-	ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+	ImGui::SetNextWindowPos(at, movable ? ImGuiCond_Appearing : ImGuiCond_Always, pivot);
 	const float width_max = room.x * PANEL_SHARE_MAX;
 	const float height_max = bottom > top ? bottom - top : 1;
 	const float width = fminf(place.width * scale, width_max);
@@ -445,11 +445,14 @@ gz_place gz_draw_caption(gz_layer layer, gz_place at, gz_paint paint, const char
 
 bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 {
-	int flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-		    ImGuiWindowFlags_NoSavedSettings;
-	if (strncmp(title, "##", 2) == 0)
+	int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
+	const bool titled = strncmp(title, "##", 2) != 0;
+	const bool movable = titled && !place->takes_keyboard && place->at != GZ_PANEL_MIDDLE;
+	if (!titled)
 		flags |= ImGuiWindowFlags_NoTitleBar;
-	set_panel_place(*place);
+	if (!movable)
+		flags |= ImGuiWindowFlags_NoMove;
+	set_panel_place(*place, movable);
 	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
 	if (!place->takes_keyboard)
 		return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);

@@ -54,7 +54,8 @@ enum gz_panel_at {
 	GZ_PANEL_MIDDLE,
 };
 
-/** Where a panel stands. */
+/** Where a panel stands when it appears; one with a title that is neither a dialog nor in the
+ * middle is then dragged by it. */
 struct gz_panel_place {
 	enum gz_panel_at at;
 	float margin_top, margin_bottom; /**< kept free beyond the usual margin */

@@ -169,7 +169,8 @@ static void draw(struct gz_window *window, const struct gz_window_gaze *gaze)
 	const struct gz_window_corner *corner = window->corner;
 	(void)gaze;
 	if (corner->text[0] && window->maker)
-		gz_marks_draw_low_caption(*paints[corner->state.level], corner->text);
+		window->panels_bottom =
+			gz_marks_draw_low_caption(*paints[corner->state.level], corner->text);
 }
 
 static enum gz_result open_part(struct gz_window *window)

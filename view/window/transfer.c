@@ -21,10 +21,6 @@
 /* Of what is counted; the plot is no wider. */
 #define BINS GZ_HISTOGRAM_BINS_MAX
 
-/* Kept free for what the lower left corner tells of the gaze, whose lines come and go: three, and
- * the room round them. */
-#define CORNER_LINES 4
-
 /* A histogram that a thread counts. */
 struct count {
 	const struct gz_volume *volume;
@@ -237,7 +233,7 @@ static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 	panel->edit = transfer->edit;
 	panel->volume = &gz_frame_maker_scene(window->maker)->volume;
 	panel->margin_top = window->panels_top;
-	panel->margin_bottom = CORNER_LINES * gz_widgets_line_height();
+	panel->margin_bottom = window->panels_bottom;
 	panel->focus = transfer->focus_due;
 	transfer->focus_due = false;
 	const enum gz_transfer_wish wish = gz_transfer_panel_draw(panel);

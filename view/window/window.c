@@ -121,6 +121,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 {
 	gz_widgets_begin();
 	window->panels_top = 0;
+	window->panels_bottom = 0;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->panels)
 			(*part)->panels(window, gaze);
