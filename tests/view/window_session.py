@@ -88,7 +88,7 @@ class Leaves(WindowCase):
         frames = [read_png(name) for name in sorted(glob.glob(self.path("f*.png")))]
         shots = [read_png(name) for name in sorted(glob.glob(self.path("gazeview-*.png")))]
         self.assertEqual(len(done.stdout.splitlines()), len(frames))
-        self.assertGreater(len(frames), 4)
+        self.assertGreater(len(frames), 2)
         self.assertFalse(shots[0] == shots[1], "nothing has changed")
         self.assertEqual((shots[0].width, shots[0].height), SIZE)
         self.assertIn(True, [frame == shots[0] for frame in frames], "the first is not among them")
