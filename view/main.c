@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/log.h"
+#include "view/experiment/sitting.h"
 #include "view/headless.h"
 #include "view/notices.h"
 #include "view/options.h"
@@ -14,12 +15,27 @@
 /* What a shell reports for a process that a signal ended. */
 enum { EXIT_SIGNAL = 128 };
 
+/* Everything that the experiment names is looked for. */
+static enum gz_result list_trials(const struct gz_view_options *options, const struct gz_log *log)
+{
+	struct gz_sitting *sitting;
+	const enum gz_result r =
+		gz_sitting_open(&options->sitting, false, GAZECAST_VERSION, log, &sitting);
+	if (r != GZ_OK)
+		return r;
+	gz_sitting_print(sitting, stdout);
+	gz_sitting_close(&sitting);
+	return GZ_OK;
+}
+
 static int run(struct gz_view_options *options, const struct gz_log *log,
 	       struct gz_notices *notices)
 {
 	int signal_number = 0;
 	if (options->target.targets[0])
 		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options->sitting.file[0] && options->headless)
+		return list_trials(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->write_volume[0])
 		return gz_view_write_volume(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->replay[0] && gz_replay_adopt(options, log) != GZ_OK)

@@ -245,8 +245,8 @@ const struct gz_option gz_view_option_table[] = {
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
 
-/* Tables of gazeview's own: the one above and that of the targets. */
-enum { OWN_BINDINGS = 2 };
+/* Tables of gazeview's own: the one above, that of the targets and that of experiments. */
+enum { OWN_BINDINGS = 3 };
 
 static bool starts_with(const char *text, const char *start)
 {
@@ -495,10 +495,61 @@ static enum gz_result check_raw(const struct gz_view_options *options, const str
 	return GZ_ERR_INVAL;
 }
 
+/* A key of a scene that says what is shown, not on which display. */
+static bool any_scene_key(const struct gz_view_options *options)
+{
+	struct gz_scene_settings settings;
+	struct gz_view_scene_tables tables;
+	bool any = false;
+	gz_view_pick_scene_tables(&settings, &tables);
+	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+		for (size_t k = 0; k < tables.bindings[i].count; k++) {
+			const char *key = tables.options[i][k].key;
+			const bool display = strcmp(key, "view.vsync") == 0 ||
+					     strcmp(key, "view.tracker_display") == 0;
+			any = any || (options->scene_given[i][k] && !display);
+		}
+	}
+	return any;
+}
+
+/* What is shown, and how, says the experiment alone. */
+static enum gz_result check_experiment(const struct gz_view_options *options,
+				       const struct gz_log *log)
+{
+	const char *other = options->target.targets[0]  ? "--targets"
+			    : options->scene[0]         ? "a scene"
+			    : options->method >= 0      ? "--method"
+			    : options->turn_deg != 0    ? "--turn"
+			    : options->write_volume[0]  ? "--write-volume"
+			    : options->out[0]           ? "--out"
+			    : options->video[0]         ? "--video"
+			    : options->transfer_file[0] ? "--transfer.file"
+			    : options->record[0]        ? "--record"
+			    : options->replay[0]        ? "--replay"
+			    : options->stats[0]         ? "--stats"
+			    : options->cross            ? "--cross"
+			    : options->letters          ? "--letters"
+			    : any_scene_key(options)    ? "a key of a scene"
+							: NULL;
+	if (!other)
+		return gz_sitting_options_check(&options->sitting, log);
+	gz_err(log,
+	       "--experiment: %s cannot go with it, since the file says what is shown; remove one "
+	       "of them",
+	       other);
+	return GZ_ERR_INVAL;
+}
+
 /* Headless output asked for together with a window, a mouse without one, and the like. */
 static enum gz_result check_together(const struct gz_view_options *options,
 				     const struct gz_log *log)
 {
+	if (options->sitting.file[0])
+		return check_experiment(options, log);
+	const enum gz_result r = gz_sitting_options_check(&options->sitting, log);
+	if (r != GZ_OK)
+		return r;
 	if (options->target.targets[0])
 		return check_targets(options, log);
 	if (options->replay[0] && check_replay(options, log) != GZ_OK)
@@ -570,6 +621,7 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 	struct gz_option_binding bindings[OWN_BINDINGS + GZ_SCENE_BINDINGS] = {
 		{ gz_view_option_table, gz_view_option_count, options, options->given },
 		{ gz_target_option_table, gz_target_option_count, &options->target, NULL },
+		{ gz_sitting_option_table, gz_sitting_option_count, &options->sitting, NULL },
 	};
 	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
 		bindings[OWN_BINDINGS + i] = tables->bindings[i];
@@ -580,8 +632,8 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 	if (!positional)
 		return GZ_ERR_NO_MEM;
 	enum gz_result r = gz_options_preset(&bindings[0]);
-	if (r == GZ_OK)
-		r = gz_options_preset(&bindings[1]);
+	for (size_t i = 1; i < OWN_BINDINGS && r == GZ_OK; i++)
+		r = gz_options_preset(&bindings[i]);
 	if (r == GZ_OK)
 		r = gz_options_read_arguments(bindings, OWN_BINDINGS + GZ_SCENE_BINDINGS, argc,
 					      argv, positional, &positional_count, log);
@@ -674,6 +726,7 @@ void gz_view_options_print_help(FILE *out)
 	const struct gz_option_binding own[OWN_BINDINGS] = {
 		{ gz_view_option_table, gz_view_option_count, NULL, NULL },
 		{ gz_target_option_table, gz_target_option_count, NULL, NULL },
+		{ gz_sitting_option_table, gz_sitting_option_count, NULL, NULL },
 	};
 	struct gz_scene_settings settings;
 	struct gz_view_scene_tables tables;
@@ -682,7 +735,8 @@ void gz_view_options_print_help(FILE *out)
 	      "  gazeview SCENE\n"
 	      "  gazeview VOLUME\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"
-	      "  gazeview --targets 9\n\n",
+	      "  gazeview --targets 9\n"
+	      "  gazeview --experiment FILE --participant 07\n\n",
 	      out);
 	gz_options_print_help(own, OWN_BINDINGS, out);
 	fputs("\nKeys of the scene; given here they come before the scene's own:\n\n", out);

@@ -15,6 +15,7 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/scene.h"
+#include "view/experiment/sitting.h"
 #include "view/scene_tables.h"
 #include "view/target_options.h"
 
@@ -88,6 +89,9 @@ struct gz_view_options {
 	char transfer_file[GZ_PATH_SIZE]; /**< in place of the scene's; empty: not given */
 
 	struct gz_target_options target; /**< targets instead of a scene, where any are named */
+
+	struct gz_sitting_options
+		sitting; /**< an experiment instead of a scene, where one is named */
 
 	bool given[GZ_VIEW_OPTIONS_MAX]; /**< of gz_view_option_table, in its order */
 

@@ -54,7 +54,7 @@ const struct gz_option gz_target_option_table[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(windowed),
 	  .preset = "false",
-	  .help = "show targets in a window instead of on the whole display" },
+	  .help = "show targets, or an experiment, in a window instead of on the whole display" },
 };
 
 const size_t gz_target_option_count =

@@ -162,6 +162,9 @@ static const struct {
 	{ HEAD "[trial a]\nb.foveation.method = sharp\n",
 	  "/place/e.experiment:5: [trial a] b.foveation.method: sharp is not standard, mdc, "
 	  "ddc, acuity, mdc3, uniform or table" },
+	{ HEAD "[trial a]\nview.overlay = step\n",
+	  "/place/e.experiment:5: [trial a] view.overlay: is of a window with panels; an "
+	  "experiment shows the picture alone" },
 	{ HEAD "[trial a]\nrepeats = 3\n",
 	  "/place/e.experiment:5: [trial a] repeats: unknown key; docs/experiments.md lists them "
 	  "all" },

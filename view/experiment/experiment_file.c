@@ -207,6 +207,10 @@ static enum gz_result take_value(struct reader *reader, const struct gz_ini_item
 	const struct gz_option *option = gz_options_find(tables, count, key, &table);
 	if (!option)
 		return refuse_unknown(reader, item, key);
+	if (strncmp(key, "view.", 5) == 0 || strncmp(key, "views.", 6) == 0)
+		return refuse_value(reader, item,
+				    "is of a window with panels; an experiment shows the picture "
+				    "alone");
 	if (alternative >= 0 && table < 2 && strcmp(key, "scene") != 0)
 		return refuse_value(reader, item,
 				    "is the same for both alternatives; only scene and a scene's "

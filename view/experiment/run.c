@@ -430,11 +430,22 @@ static bool key_in_question(struct gz_run *run, int key, int64_t now_ns)
 	return false;
 }
 
+void gz_run_stop(struct gz_run *run, enum gz_result result, int64_t now_ns)
+{
+	if (run->phase == GZ_RUN_ENDED)
+		return;
+	if (run->complete) {
+		enter(run, GZ_RUN_ENDED);
+		return;
+	}
+	mark(run, now_ns, "experiment %s left", run->experiment->params.name);
+	end(run, result);
+}
+
 static bool key_in_leaving(struct gz_run *run, int key, int64_t now_ns)
 {
 	if (key == GZ_KEY_ESCAPE) {
-		mark(run, now_ns, "experiment %s left", run->experiment->params.name);
-		end(run, GZ_ERR_CANCELLED);
+		gz_run_stop(run, GZ_ERR_CANCELLED, now_ns);
 		return true;
 	}
 	if (key == GZ_KEY_SPACE)

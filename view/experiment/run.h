@@ -135,6 +135,10 @@ bool gz_run_step(struct gz_run *run, const struct gz_run_input *input);
 /** A key, enum gz_answer_key, was pressed. @return whether what there is to show has changed */
 bool gz_run_key(struct gz_run *run, int key, int64_t now_ns);
 
+/** End it where it is, for @p result: the trial that is not answered will come again. Nothing where
+ *  it has ended, or all its trials are answered. */
+void gz_run_stop(struct gz_run *run, enum gz_result result, int64_t now_ns);
+
 /** What gz_run_screen() gave is on the screen since @p now_ns. Counts once for each phase. */
 void gz_run_shown(struct gz_run *run, int64_t now_ns);
 

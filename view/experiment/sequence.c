@@ -148,7 +148,8 @@ static enum gz_result rotate(const struct gz_experiment *experiment, const char 
 	}
 	for (size_t i = 0; i < count; i++)
 		rotated[i] = blocks[(i + (size_t)whole % count) % count];
-	memcpy(blocks, rotated, count * sizeof rotated[0]);
+	for (size_t i = 0; i < count; i++)
+		blocks[i] = rotated[i];
 	return GZ_OK;
 }
 
@@ -158,7 +159,7 @@ static enum gz_result order_blocks(struct maker *maker, const char *participant,
 				   const struct gz_block *out_blocks[GZ_EXPERIMENT_SECTIONS_MAX])
 {
 	const struct gz_experiment *experiment = maker->experiment;
-	const struct gz_block *counted[GZ_EXPERIMENT_SECTIONS_MAX];
+	const struct gz_block *counted[GZ_EXPERIMENT_SECTIONS_MAX] = { NULL };
 	size_t count = 0, next = 0;
 	enum gz_result result = GZ_OK;
 	for (size_t i = 0; i < experiment->block_count; i++)
@@ -195,14 +196,16 @@ enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const ch
 				const char *session, const struct gz_log *log,
 				struct gz_sequence *out_sequence)
 {
-	const struct gz_block *blocks[GZ_EXPERIMENT_SECTIONS_MAX];
+	const struct gz_block *blocks[GZ_EXPERIMENT_SECTIONS_MAX] = { NULL };
 	struct maker maker = {
 		.experiment = experiment,
 		.random = gz_random_seeded((uint64_t)experiment->params.seed,
 					   stream_of(participant, session)),
 	};
-	maker.sequence.presentations =
-		calloc(count_presentations(experiment), sizeof *maker.sequence.presentations);
+	const size_t count = count_presentations(experiment);
+	if (count == 0)
+		return GZ_ERR_INVAL; /* of an experiment that was not read */
+	maker.sequence.presentations = calloc(count, sizeof *maker.sequence.presentations);
 	if (!maker.sequence.presentations)
 		return GZ_ERR_NO_MEM;
 	enum gz_result result = order_blocks(&maker, participant, log, blocks);

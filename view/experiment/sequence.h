@@ -32,8 +32,8 @@ struct gz_sequence {
  *
  * @param participant, session  labels; session may be empty
  * @param[out] out_sequence  filled; the caller frees it with gz_sequence_free()
- * @retval GZ_ERR_INVAL   blocks rotate by the participant's number, and @p participant is none;
- *                        logged
+ * @retval GZ_ERR_INVAL   nothing to order, or blocks rotate by the participant's number, and @p
+ * participant is none; logged
  * @retval GZ_ERR_NO_MEM  no room
  */
 enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const char *participant,

@@ -6,6 +6,7 @@
 
 #include "view/panels/widgets.h"
 #include "view/window/part.h"
+#include "view/window/window_state.h"
 
 /* Keys that move about in panels, where somebody does. */
 static bool navigates(int key)
@@ -67,6 +68,8 @@ static bool run_first(struct gz_window *window, const struct wanted *wanted)
 bool gz_window_run_action(struct gz_window *window, int key, int scancode, int modifiers,
 			  bool repeated)
 {
+	if (window->alone)
+		return window->alone->key && window->alone->key(window, key, scancode, repeated);
 	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
 	    (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
 	    (gz_widgets_have_navigation() && navigates(key)))
@@ -83,7 +86,7 @@ bool gz_window_run_action(struct gz_window *window, int key, int scancode, int m
 /* Letters and digits are keys; what needs Shift on some layouts only is a character. */
 bool gz_window_run_character(struct gz_window *window, unsigned codepoint)
 {
-	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
+	if (window->alone || gz_widgets_have_text() || gz_widgets_have_dialog() ||
 	    (codepoint != '?' && codepoint != '+'))
 		return false;
 	const struct wanted wanted = { .letter = (int)codepoint };

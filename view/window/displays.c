@@ -146,6 +146,12 @@ struct gz_tracker_display gz_window_tracker_display(const struct gz_window *wind
 	return window->displays->chosen;
 }
 
+struct GLFWmonitor *gz_window_tracker_handle(const struct gz_window *window)
+{
+	const struct gz_window_displays *displays = window->displays;
+	return displays->chosen.monitor >= 0 ? displays->handles[displays->chosen.monitor] : NULL;
+}
+
 const struct gz_monitor *gz_window_tracker_monitor(const struct gz_window *window)
 {
 	const struct gz_window_displays *displays = window->displays;

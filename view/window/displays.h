@@ -21,6 +21,9 @@ struct gz_tracker_display gz_window_tracker_display(const struct gz_window *wind
 /** The tracker's; NULL where there is none. */
 const struct gz_monitor *gz_window_tracker_monitor(const struct gz_window *window);
 
+/** GLFW's handle of the same. */
+struct GLFWmonitor *gz_window_tracker_handle(const struct gz_window *window);
+
 /** The one that the window is on; NULL where there is none. */
 const struct gz_monitor *gz_window_own_monitor(const struct gz_window *window);
 

@@ -81,7 +81,8 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
 		release(window, button);
-	if (action != GLFW_PRESS || window->grabber || !window->maker || panels_have_mouse(window))
+	if (action != GLFW_PRESS || window->alone || window->grabber || !window->maker ||
+	    panels_have_mouse(window))
 		return;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part && !window->grabber;
 	     part++)
@@ -128,7 +129,7 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	(void)right;
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
-	if (panels_have_mouse(window) || !window->maker)
+	if (window->alone || panels_have_mouse(window) || !window->maker)
 		return;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->wheel)

@@ -83,6 +83,9 @@ struct gz_window_part {
 	void (*drawn)(struct gz_window *window, int width, int height);
 	/** What is on the screen has been swapped there. */
 	void (*presented)(struct gz_window *window);
+	/** A key of GLFW was pressed, before any action; only of the part that has the window to
+	 * itself: window->alone. @return whether it was the part's */
+	bool (*key)(struct gz_window *window, int key, int scancode, bool repeated);
 	/** Seconds until the next turn is due, if no event comes before; INFINITY: whenever. */
 	double (*patience_s)(const struct gz_window *window);
 	/** The OpenGL context goes: delete what lives in it. Correct after a failed gl_open. */

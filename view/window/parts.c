@@ -5,6 +5,7 @@
 #include "view/window/compare.h"
 #include "view/window/corner.h"
 #include "view/window/displays.h"
+#include "view/window/experiment.h"
 #include "view/window/files.h"
 #include "view/window/frame_times.h"
 #include "view/window/gaze_sources.h"
@@ -21,6 +22,7 @@
 #include "view/window/trail.h"
 #include "view/window/transfer.h"
 
+/* clang-format off */
 const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_loading,
 	&gz_window_keys,
@@ -42,5 +44,7 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_session,
 	&gz_window_capture,
 	&gz_window_screenshots,
+	&gz_window_experiment_part,
 	NULL,
 };
+/* clang-format on */

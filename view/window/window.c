@@ -10,6 +10,7 @@
 #include "view/context_loss.h"
 #include "view/display_loss.h"
 #include "view/panels/widgets.h"
+#include "view/window/experiment.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
 #include "view/window/part.h"
@@ -123,7 +124,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	window->panels_top = 0;
 	window->panels_bottom = 0;
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
-		if ((*part)->panels)
+		if ((*part)->panels && (!window->alone || *part == window->alone))
 			(*part)->panels(window, gaze);
 	gz_widgets_end();
 }
@@ -139,7 +140,7 @@ static void present(struct gz_window *window, const struct gz_window_gaze *gaze,
 	else
 		gz_quad_clear(width, height);
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
-		if ((*part)->paint)
+		if ((*part)->paint && (!window->alone || *part == window->alone))
 			(*part)->paint(window, width, height);
 	draw_panels(window, gaze);
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
@@ -210,7 +211,7 @@ static enum gz_result refresh(struct gz_window *window)
 		return GZ_OK;
 	}
 	window->frame_new = false;
-	if (window->maker) {
+	if (window->maker && !window->picture_hidden) {
 		enum gz_result r = refresh_picture(window, &gaze, width, height);
 		if (r != GZ_OK)
 			return r;
@@ -315,7 +316,9 @@ static enum gz_result run(void *user)
 		r = load_first(window);
 	if (r == GZ_OK)
 		r = loop(window);
-	return r == GZ_OK ? gz_window_loading_outcome(window) : r;
+	if (r == GZ_OK)
+		r = gz_window_loading_outcome(window);
+	return r == GZ_OK ? gz_window_experiment_outcome(window) : r;
 }
 
 /* From now on only what needs no display. */

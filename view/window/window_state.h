@@ -82,6 +82,11 @@ struct gz_window {
 	bool any_shown;
 	bool taken_back;                    /**< a frame with other settings could not be made */
 	struct gz_view_scene_tables tables; /**< over settings, for the panel */
+	/** The part that has the window to itself: others draw nothing over the picture and have no
+	 *  keys, and the mouse does not move the camera. NULL: none. */
+	const struct gz_window_part *alone;
+	bool picture_hidden; /**< something else fills the window: nothing is cast */
+	struct gz_window_experiment *experiment; /**< of part experiment */
 	struct gz_settings_panel settings_panel;
 	struct gz_window_transfer *transfer; /**< of transfer.c */
 	struct gz_overlay *overlay;                /**< of part overlay */

@@ -1,0 +1,240 @@
+"""gazeview --experiment in the real window: answered by keys, left by Escape, gone on with."""
+
+import csv
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+
+from picture import run
+from window_case import GAZECTL, GAZEVIEW, SCENE, SCREEN, WindowCase
+
+GROUND = (51, 102, 153)
+BACKGROUND = (5, 5, 10)  # of the scene, rounded
+SETTINGS = {
+    "name": "short", "seed": "4", "instructions": "Hello.", "goodbye": "Bye.",
+    "ground": "0.2 0.4 0.6", "scene": SCENE, "fixation_s": "0.1", "duration_s": "0.2",
+    "blank_s": "0.1", "pause_s": "0.1", "correct": "a", "a.foveation.method": "standard",
+    "b.foveation.method": "acuity",
+}
+TRIALS = """[trial fine]
+[trial coarse]
+b.foveation.acuity_slope = 0.2
+[block main]
+repeats = 2
+order = listed
+"""
+
+
+class Experiment(WindowCase):
+    def setUp(self):
+        super().setUp()
+        place = tempfile.TemporaryDirectory(prefix="gazecast-test-experiment-")
+        self.addCleanup(place.cleanup)
+        self.folder = place.name
+        self.file = os.path.join(self.folder, "short.experiment")
+        self.answers = os.path.join(self.folder, "sub-07_ses-2_task-short_events.tsv")
+        self.write()
+
+    def write(self, **changes):
+        lines = ["%s = %s\n" % item for item in dict(SETTINGS, **changes).items()]
+        with open(self.file, "w", encoding="utf-8") as out:
+            out.write("[experiment]\n" + "".join(lines) + TRIALS)
+
+    def words(self, *more):
+        return ["--experiment", self.file, "--participant", "07", "--session", "2", "--answers",
+                self.folder, *more]
+
+    def begin(self, *more):
+        self.viewer = subprocess.Popen(
+            [GAZEVIEW, *self.words(*more)], env=self.environment, stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.found_anew()
+
+    def rows(self):
+        try:
+            with open(self.answers, encoding="utf-8") as table:
+                return list(csv.DictReader(table, delimiter="\t"))
+        except FileNotFoundError:
+            return []
+
+    def ended(self):
+        return self.viewer.poll() is not None
+
+    def press(self, key):
+        """Whoever looks for the window while it closes is told of an error."""
+        run("xdotool", "key", key, env=self.environment)
+
+    def answer(self, done, *keys):
+        """Press these in turn, each of which counts at its own time, until @done."""
+        deadline = time.monotonic() + 60
+        turn = 0
+        while not done():
+            self.assertLess(time.monotonic(), deadline, "never came: %r" % self.rows())
+            self.press(keys[turn % len(keys)])
+            turn += 1
+            time.sleep(0.05)
+
+    def finish(self, status):
+        said = self.viewer.communicate(timeout=20)[1]
+        self.assertEqual(self.viewer.returncode, status, said)
+        self.viewer = None
+        return said
+
+    def whole(self, picture, colour):
+        """Whether nothing but that is in the corners of the screen."""
+        return all(picture.at(x, y) == colour for x in (2, SCREEN[0] - 3)
+                   for y in (2, SCREEN[1] - 3))
+
+    def test_answered_experiment_writes_a_row_for_each_trial(self):
+        self.begin("--gaze", "0.5,0.5")
+        self.answer(self.ended, "space", "2")
+        said = self.finish(0)
+        self.assertIn("all 4 trials are answered", said)
+        rows = self.rows()
+        self.assertEqual([row["trial_type"] for row in rows], ["fine", "coarse"] * 2)
+        self.assertEqual([row["trial"] for row in rows], ["1", "2", "3", "4"])
+        for row in rows:
+            self.assertEqual(row["response"], "second")
+            self.assertEqual(row["chosen"], row["order"][1])
+            self.assertEqual(row["chosen_method"],
+                             "standard" if row["chosen"] == "a" else "acuity")
+            self.assertEqual(row["correct"], "1" if row["chosen"] == "a" else "0")
+            self.assertGreater(float(row["response_time"]), 0)
+            # Machines are slow at times, never fast.
+            for interval in ("1", "2"):
+                self.assertGreater(float(row["interval_%s_duration" % interval]), 0.15)
+            self.assertGreater(int(row["frames"]), 0)
+            self.assertEqual(row["gaze_loss"], "n/a")
+        for label in ("fine", "coarse"):
+            orders = [row["order"] for row in rows if row["trial_type"] == label]
+            self.assertEqual(sorted(orders), ["ab", "ba"])
+        self.assertTrue(os.path.exists(self.answers.replace(".tsv", ".json")))
+
+    def test_pictures_fill_the_screen_with_nothing_over_them(self):
+        self.write(duration_s="3", fixation_s="3", blank_s="3")
+        self.begin("--gaze", "0.5,0.5")
+        text = self.until(lambda p: self.whole(p, GROUND) and
+                          len({p.at(x, y) for x in range(300, 600) for y in range(300, 400)}) > 1,
+                          "instructions")
+        self.press("space")
+        middle = (SCREEN[0] // 2, SCREEN[1] // 2)
+        cross = self.until(lambda p: self.whole(p, GROUND) and p.at(*middle) != GROUND and
+                           p.at(middle[0] + 40, middle[1]) == GROUND, "cross")
+        self.assertFalse(cross == text)
+        picture = self.until(lambda p: self.whole(p, BACKGROUND), "picture")
+        line = {picture.at(x, y) for x in range(0, 400, 2) for y in range(0, 30, 2)}
+        self.assertEqual(line, {BACKGROUND}, "no line of text")
+        self.until(lambda p: self.whole(p, GROUND) and p.at(*middle) == GROUND, "blank")
+
+    def recorded_marks(self):
+        names = [name for name in os.listdir(self.folder) if name.endswith(".gzl")]
+        self.assertEqual(len(names), 1)
+        with open(os.path.join(self.folder, names[0]), encoding="utf-8") as log:
+            lines = [line.rstrip("\n").split("\t") for line in log]
+        return [(int(fields[1]), fields[2]) for fields in lines if fields[0] == "!mark"]
+
+    def test_recording_has_the_marks_of_trials_and_answers_in_order(self):
+        self.start_daemon("--driver=sim", "--sim.blinks_per_min=0",
+                          "--recording.directory=" + self.folder)
+        deadline = time.monotonic() + 20
+        while run(GAZECTL, "record", "e", env=self.environment).returncode != 0:
+            self.assertLess(time.monotonic(), deadline, "no recording")
+            time.sleep(0.1)
+        self.write(gaze="required")
+        self.begin()
+        self.answer(self.ended, "space", "1")
+        self.finish(0)
+        self.stop_daemon()
+        rows, marks = self.rows(), self.recorded_marks()
+        self.assertEqual(len(rows), 4)
+        expected = ["experiment short begins participant 07 session 2 seed 4"]
+        for row in rows:
+            number, order = row["trial"], row["order"]
+            expected.append("trial %s begins block main trial %s order %s"
+                            % (number, row["trial_type"], order))
+            for interval in (0, 1):
+                method = "standard" if order[interval] == "a" else "acuity"
+                expected.append("trial %s interval %d on %s %s"
+                                % (number, interval + 1, order[interval], method))
+                expected.append("trial %s interval %d off" % (number, interval + 1))
+            expected.append("trial %s question" % number)
+            expected.append("trial %s answer first chosen %s" % (number, order[0]))
+        expected.append("experiment short ends")
+        self.assertEqual([label for _, label in marks], expected)
+        times = [time_ns for time_ns, _ in marks]
+        self.assertEqual(times, sorted(times))
+        begun = dict((label, time_ns) for time_ns, label in marks)
+        for row in rows:
+            label = "trial %s begins block main trial %s order %s" % (
+                row["trial"], row["trial_type"], row["order"])
+            self.assertEqual(begun[label], int(row["host_ns"]))
+            self.assertTrue(0 <= float(row["gaze_loss"]) <= 1, row["gaze_loss"])
+
+    def test_escape_keeps_what_was_answered_and_resume_goes_on(self):
+        self.begin("--gaze", "0.5,0.5")
+        self.answer(lambda: len(self.rows()) == 1, "space", "1")
+        self.answer(self.ended, "Escape")
+        said = self.finish(1)
+        self.assertIn("1 of 4 trials are answered; --resume goes on", said)
+        kept = self.rows()
+        self.assertEqual(len(kept), 1)
+        refused = run(GAZEVIEW, *self.words(), env=self.environment)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("is there already, with 1 of 4 trials", refused.stderr)
+        self.assertEqual(self.rows(), kept)
+        self.begin("--gaze", "0.5,0.5", "--resume")
+        self.answer(self.ended, "space", "1")
+        self.finish(0)
+        rows = self.rows()
+        self.assertEqual(rows[:1], kept)
+        self.assertEqual([row["trial"] for row in rows], ["1", "2", "3", "4"])
+        self.assertEqual([row["run"] for row in rows], ["1", "2", "2", "2"])
+
+    def test_escape_once_and_space_shows_the_trial_again(self):
+        self.begin("--gaze", "0.5,0.5")
+        self.answer(lambda: len(self.rows()) == 1, "space", "1")
+        self.press("Escape")
+        self.until(lambda p: self.whole(p, GROUND) and
+                   len({p.at(x, y) for x in range(300, 600) for y in range(300, 400)}) > 1,
+                   "question whether to leave")
+        self.answer(lambda: len(self.rows()) == 4, "space", "1")
+        self.answer(self.ended, "space")
+        self.finish(0)
+
+    def test_closed_window_keeps_what_was_answered(self):
+        self.begin("--gaze", "0.5,0.5")
+        self.answer(lambda: len(self.rows()) == 2, "space", "1")
+        self.viewer.terminate()
+        self.viewer.communicate(timeout=20)
+        self.viewer = None
+        self.assertEqual([row["response"] for row in self.rows()], ["first", "first"])
+
+    def refused(self, *words, **changes):
+        self.write(**changes)
+        done = run(GAZEVIEW, *self.words(*words), env=self.environment)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual([name for name in os.listdir(self.folder) if "events" in name], [])
+        return done.stderr
+
+    def test_what_cannot_be_shown_is_refused_before_anything_is(self):
+        self.assertIn("short.experiment:15: [trial fine] a: no scene ",
+                      self.refused(scene="nowhere.scene"))
+        self.assertIn("--gaze 0.5,0.5: ", self.refused("--gaze", "0.5,0.5", gaze="required"))
+        self.assertIn("--experiment: --method cannot go with it", self.refused("--method", "mdc"))
+        self.assertIn("short.experiment:15: [experiment] questions: unknown key; did you mean "
+                      "question?", self.refused(questions="x"))
+
+    def test_without_a_window_the_trials_are_listed(self):
+        done = run(GAZEVIEW, *self.words("--headless"), env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertEqual(len(lines), 5)
+        self.assertRegex(lines[0], "^1 main fine 1 [ab]:[a-z]+ [ab]:[a-z]+$")
+        self.assertRegex(lines[4], "^4 trials, ")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["experiment_window"], verbosity=2)

@@ -1,0 +1,152 @@
+#include "view/experiment/sitting.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GZ_LOG_MODULE "experiment"
+
+#define AT(field) offsetof(struct gz_sitting_options, field)
+
+const struct gz_option gz_sitting_option_table[] = {
+	{ .key = "experiment",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(file),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "run the experiment of this file, full screen; headless: list its trials" },
+	{ .key = "participant",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(participant),
+	  .max = GZ_PARTICIPANT_SIZE,
+	  .preset = "",
+	  .help = "whose answers: letters and digits, as 07" },
+	{ .key = "session",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(session),
+	  .max = GZ_PARTICIPANT_SIZE,
+	  .preset = "",
+	  .help = "which sitting of several: letters and digits" },
+	{ .key = "answers",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(answers),
+	  .max = GZ_PATH_SIZE,
+	  .preset = ".",
+	  .help = "folder for the answers, or the file itself, which ends in .tsv" },
+	{ .key = "resume",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(resume),
+	  .preset = "false",
+	  .help = "go on with the answers of an experiment that was left" },
+};
+
+const size_t gz_sitting_option_count =
+	sizeof gz_sitting_option_table / sizeof gz_sitting_option_table[0];
+
+enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options,
+					const struct gz_log *log)
+{
+	if (!options->file[0]) {
+		const char *other = options->participant[0] ? "participant"
+				    : options->session[0]   ? "session"
+				    : options->resume       ? "resume"
+							    : NULL;
+		if (!other)
+			return GZ_OK;
+		gz_err(log, "--%s: of an experiment, and none is given; add --experiment FILE",
+		       other);
+		return GZ_ERR_INVAL;
+	}
+	if (!gz_answers_label_valid(options->participant)) {
+		gz_err(log,
+		       "--participant%s%s: %s; letters and digits make one, as in "
+		       "--participant 07",
+		       options->participant[0] ? " " : "", options->participant,
+		       options->participant[0] ? "no label" : "not given");
+		return GZ_ERR_INVAL;
+	}
+	if (options->session[0] && !gz_answers_label_valid(options->session)) {
+		gz_err(log, "--session %s: no label; letters and digits make one",
+		       options->session);
+		return GZ_ERR_INVAL;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result open_answers(struct gz_sitting *sitting, const char *version,
+				   const struct gz_log *log)
+{
+	const struct gz_sitting_options *options = sitting->options;
+	const struct gz_answers_request request = {
+		.place = options->answers,
+		.participant = options->participant,
+		.session = options->session,
+		.resume = options->resume,
+		.version = version,
+	};
+	return gz_answers_open(&sitting->experiment, &sitting->sequence, &request, log,
+			       &sitting->answers);
+}
+
+enum gz_result gz_sitting_open(const struct gz_sitting_options *options, bool with_answers,
+			       const char *version, const struct gz_log *log,
+			       struct gz_sitting **out_sitting)
+{
+	struct gz_sitting *sitting = calloc(1, sizeof *sitting);
+	if (!sitting)
+		return GZ_ERR_NO_MEM;
+	sitting->options = options;
+	enum gz_result r = gz_experiment_load(options->file, log, &sitting->experiment);
+	if (r == GZ_OK)
+		r = gz_experiment_check(&sitting->experiment, log);
+	if (r == GZ_OK)
+		r = gz_sequence_make(&sitting->experiment, options->participant, options->session,
+				     log, &sitting->sequence);
+	if (r == GZ_OK && with_answers)
+		r = open_answers(sitting, version, log);
+	if (r != GZ_OK) {
+		gz_sitting_close(&sitting);
+		return r;
+	}
+	*out_sitting = sitting;
+	return GZ_OK;
+}
+
+/* What a trial takes but for the wait for its answer, s. */
+static double length_s(const struct gz_condition *condition)
+{
+	const struct gz_trial_params *params = &condition->params;
+	return params->fixation_s + params->intervals * params->duration_s +
+	       (params->intervals - 1) * params->blank_s + params->pause_s +
+	       (params->feedback ? params->feedback_s : 0);
+}
+
+void gz_sitting_print(const struct gz_sitting *sitting, FILE *out)
+{
+	double total_s = 0;
+	for (size_t i = 0; i < sitting->sequence.count; i++) {
+		const struct gz_presentation *presentation = &sitting->sequence.presentations[i];
+		const struct gz_condition *condition = presentation->condition;
+		fprintf(out, "%zu %s %s %d", i + 1, presentation->block->label, condition->label,
+			presentation->repetition);
+		for (int k = 0; k < condition->params.intervals; k++) {
+			const int which = gz_presentation_alternative(presentation, k);
+			fprintf(out, " %c:%s", 'a' + which,
+				gz_method_names[condition->alternatives[which].method]);
+		}
+		fputc('\n', out);
+		total_s += length_s(condition);
+	}
+	fprintf(out, "%zu trials, %.1f min without answers and breaks\n", sitting->sequence.count,
+		total_s / 60);
+}
+
+void gz_sitting_close(struct gz_sitting **sitting)
+{
+	if (!*sitting)
+		return;
+	gz_answers_close(&(*sitting)->answers);
+	gz_sequence_free(&(*sitting)->sequence);
+	gz_experiment_free(&(*sitting)->experiment);
+	free(*sitting);
+	*sitting = NULL;
+}
