@@ -21,6 +21,7 @@ pkg_search_module(MSGPACK REQUIRED IMPORTED_TARGET msgpack-c msgpack)
 if(BUILD_TESTING)
 	pkg_check_modules(UMOCKDEV REQUIRED IMPORTED_TARGET umockdev-1.0)
 	pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
+	pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11)
 endif()
 
 # nifticlib ships no pkg-config file.

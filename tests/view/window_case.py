@@ -92,9 +92,9 @@ class WindowCase(unittest.TestCase):
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]
 
-    def start(self, *more):
-        """gazeview with the small scene; its first picture."""
-        self.launch(SCENE, *more)
+    def start(self, *more, scene=SCENE):
+        """gazeview with a scene, the small one unless told; its first picture."""
+        self.launch(scene, *more)
         return self.until(self.shows_something, "a first picture")
 
     def shows_something(self, picture):

@@ -7,10 +7,13 @@
 
 #include "view/panels/widgets.h"
 
-/* Unscaled (chosen: a path of usual length is seen whole, and 12 lines fit a window of 480). */
+/* Unscaled (chosen: a path of usual length is seen whole). */
 #define WIDTH 620.0f
+/* What is above and below the list, unscaled, and what a line of it takes. */
+#define AROUND_LIST 190.0f
+#define LINE_HEIGHT 1.35f
 
-enum { LINES = 11, LABEL_SIZE = GZ_FOLDER_NAME_SIZE + 64 };
+enum { LINES_LEAST = 3, LINES_MOST = 18, LABEL_SIZE = GZ_FOLDER_NAME_SIZE + 64 };
 
 /* Another folder; the present one stays where that cannot be read, and the dialog says why. */
 static void enter(struct gz_open_panel *panel, const char *path)
@@ -133,13 +136,21 @@ static bool draw_entry(struct gz_open_panel *panel, size_t index, bool selected,
 	return take(panel, name, out_path);
 }
 
+/* As long as the window has room. */
+static int list_lines(void)
+{
+	const float room = gz_widgets_room().y - AROUND_LIST * gz_widgets_scale();
+	const int lines = (int)(room / (LINE_HEIGHT * gz_widgets_line_height()));
+	return lines < LINES_LEAST ? LINES_LEAST : lines > LINES_MOST ? LINES_MOST : lines;
+}
+
 static bool draw_entries(struct gz_open_panel *panel, char out_path[GZ_PATH_SIZE])
 {
 	const size_t found = gz_folder_find(&panel->folder, panel->typed);
 	char path[GZ_PATH_SIZE];
 	bool chosen = false;
 	snprintf(path, sizeof path, "%s", panel->folder.path);
-	if (gz_widget_list_begin("##entries", LINES)) {
+	if (gz_widget_list_begin("##entries", list_lines())) {
 		if (gz_widget_row("../", false, NULL))
 			chosen = take(panel, "..", out_path);
 		/* Reading another folder ends the list. */

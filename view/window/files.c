@@ -13,6 +13,7 @@
 #include "view/panels/raw_panel.h"
 #include "view/panels/save_panel.h"
 #include "view/scene_save.h"
+#include "view/window/gaze_sources.h"
 #include "view/window/loading.h"
 #include "view/window/transfer.h"
 #include "view/window/window_state.h"
@@ -92,12 +93,6 @@ static void load(struct gz_window *window, const char *path, const struct gz_raw
 	free(request);
 }
 
-static void take_gaze_log(const struct gz_window *window, const char *path)
-{
-	gz_err(window->log, "%s: a gaze log is followed from the start: gazeview --gaze %s", path,
-	       path);
-}
-
 void gz_window_open_file(struct gz_window *window, const char *path)
 {
 	switch (gz_file_kind_of(path)) {
@@ -114,7 +109,7 @@ void gz_window_open_file(struct gz_window *window, const char *path)
 		gz_window_transfer_load(window, path);
 		break;
 	case GZ_FILE_GAZE_LOG:
-		take_gaze_log(window, path);
+		gz_window_ask_for_gaze(window, path);
 		break;
 	}
 	gz_window_wake_panels(window);

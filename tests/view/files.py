@@ -1,0 +1,240 @@
+"""Opening and saving in gazeview's window: dialogs by keys, files dropped on it.
+
+files.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS], with DROP_FILES naming the program
+that drops files
+"""
+
+import os
+import shutil
+import time
+import unittest
+
+from picture import read_png, run
+from window_case import GAZEVIEW, LINE_HEIGHT, SCENE, SCENES, SIZE, WindowCase
+
+DROP_FILES = os.environ["DROP_FILES"]
+EDGE = 40
+
+
+def ball(x, y, z):
+    """A voxel of a ball, brighter inside."""
+    middle = (EDGE - 1) / 2
+    distance = ((x - middle) ** 2 + (y - middle) ** 2 + (z - middle) ** 2) ** 0.5
+    return max(0, min(255, int(255 * (1 - distance / (0.45 * EDGE)))))
+
+
+BALL = bytes(ball(x, y, z) for z in range(EDGE) for y in range(EDGE) for x in range(EDGE))
+
+
+class Files(WindowCase):
+    def setUp(self):
+        super().setUp()
+        self.folder = os.path.join(self.place.name, self.id().rsplit("_test_", 1)[-1][-40:])
+        os.makedirs(self.folder)
+
+    def write(self, name, content):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as out:
+            out.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def write_nrrd(self, name):
+        return self.write(name, b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\n"
+                          b"spacings: 1 1 1\nencoding: raw\n\n" % (EDGE, EDGE, EDGE) + BALL)
+
+    def drop(self, *paths):
+        done = run(DROP_FILES, self.window, *paths, env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def press(self, key):
+        """Held long enough for a frame to see it."""
+        self.tool("keydown", *key.split("+"))
+        time.sleep(0.15)
+        self.tool("keyup", *reversed(key.split("+")))
+
+    def keys(self, key):
+        """With the mouse on the window, which has the keyboard then."""
+        self.move(SIZE[0] // 2, SIZE[1] // 2)
+        self.tool("key", key)
+
+    def until_there(self, path, is_good=lambda text: True):
+        deadline = time.monotonic() + 15
+        while True:
+            if os.path.exists(path):
+                with open(path, encoding="utf-8") as file:
+                    text = file.read()
+                if is_good(text):
+                    return text
+            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
+            self.assertLess(time.monotonic(), deadline, "never written: " + path)
+            time.sleep(0.05)
+
+    def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
+        """Where neither the line nor a message lies over it."""
+        return picture.part(0, LINE_HEIGHT, width, height * 2 // 3)
+
+    def headless(self, path, *more):
+        """The same without a window."""
+        out = os.path.join(self.folder, "headless.png")
+        done = run(GAZEVIEW, "--headless", path, "--size", "%dx%d" % SIZE, "--out", out, *more,
+                   env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return self.below_line(read_png(out))
+
+    def dialog_there(self, picture):
+        """A title bar's blue in the upper half."""
+        return 200 < sum(
+            abs(r - 41) + abs(g - 74) + abs(b - 122) < 12
+            for y in range(0, SIZE[1] // 2) for x in range(0, SIZE[0], 2)
+            for r, g, b in [picture.at(x, y)]
+        )
+
+    def bright_in_the_middle(self, picture):
+        width, height = SIZE
+        middle = picture.at(width // 2, height // 2)
+        edges = [picture.at(x, height // 2) for x in (8, width - 9)]
+        return max(middle) > 120 and all(max(edge) < 60 for edge in edges)
+
+    def enter_text(self, text):
+        """In place of what a field has."""
+        self.tool("key", "ctrl+a")
+        self.tool("type", "--delay", "20", text)
+        time.sleep(0.3)  # the field shows it before Enter counts
+
+    def test_dropped_volume_is_shown(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        before = self.grab()
+        self.drop(self.write_nrrd("a ball, 100%.nrrd"))
+        self.until_changed(before, "the ball")
+        self.until(self.bright_in_the_middle, "the ball in the middle")
+
+    def test_of_several_dropped_files_one_is_opened_and_that_is_told(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.drop(self.write_nrrd("one.nrrd"), self.write_nrrd("two.nrrd"))
+        self.until(self.bright_in_the_middle, "the ball in the middle")
+        self.tool("key", "q")
+        self.assertIn("2 files were dropped: opening %s alone"
+                      % os.path.join(self.folder, "one.nrrd"), self.messages())
+
+    def test_dropped_transfer_function_colours_the_volume(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.drop(self.write("green.tf", "0 0 1 0 0\n0.2 0 1 0 0.2\n1 0 1 0 0.9\n"))
+
+        def green(picture):
+            r, g, b = picture.at(SIZE[0] // 2, SIZE[1] // 2)
+            return g > 60 and g > 4 * r and g > 4 * b
+
+        self.until(green, "green")
+
+    def test_dropped_file_that_shows_nothing_is_told_and_the_picture_stays(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        before = self.below_line(self.grab())
+        self.drop(self.write("notes.txt", "milk, bread\n"))
+        self.drop(self.write("half.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
+                             b"sizes: 9 9 9\nencoding: raw\n\nabc"))
+        deadline = time.monotonic() + 15
+        while True:  # until both have been tried, the last one by a thread
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.5)
+            if not self.busy():
+                break
+        self.until(lambda p: True, "still there")
+        self.tool("key", "q")
+        said = self.messages()
+        self.assertIn("notes.txt:1: ", said)
+        self.assertIn("half.nrrd: ", said)
+        self.assertTrue(before)
+
+    def busy(self):
+        return self.processor_share(0.5) > 0.1
+
+    def test_volume_is_opened_by_the_beginning_of_its_name(self):
+        shutil.copy(SCENE, os.path.join(self.folder, "a.scene"))
+        self.write_nrrd("ball.nrrd")
+        self.start("--gaze", "mouse", "--method", "standard",
+                   scene=os.path.join(self.folder, "a.scene"))
+        self.keys("ctrl+o")
+        self.until(self.dialog_there, "the dialog")
+        self.enter_text("bal")
+        self.press("Return")
+        self.until(self.bright_in_the_middle, "the ball in the middle")
+        recent = os.path.join(self.place.name, "gazecast", "recent")
+        self.until_there(recent, lambda text: text.splitlines()[0].endswith("/ball.nrrd"))
+
+    def test_dialog_goes_by_escape_and_the_window_stays(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        before = self.below_line(self.grab())
+        self.keys("ctrl+o")
+        self.until(self.dialog_there, "the dialog")
+        self.press("Escape")
+        self.until(lambda p: self.below_line(p) == before, "as before")
+
+    def test_saved_scene_gives_the_same_picture_without_a_window(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        before = self.grab()
+        self.move(240, 160)
+        self.tool("mousedown", 1)
+        self.move(300, 190)
+        self.until_changed(before, "turned")
+        self.tool("mouseup", 1)
+        shown = self.until_still()
+        path = os.path.join(self.folder, "deep", "saved.scene")
+        os.makedirs(os.path.dirname(path))
+        self.keys("ctrl+shift+s")
+        self.until(self.dialog_there, "the dialog")
+        self.enter_text(path)
+        self.press("Return")
+        text = self.until_there(path)
+        self.assertIn("eye = ", text)
+        self.assertTrue(self.headless(path) == shown, "another picture")
+
+    def until_still(self):
+        """What is shown once two screenshots in a row are the same."""
+        last = self.below_line(self.grab())
+        while True:
+            now = self.below_line(self.grab())
+            if now == last:
+                return now
+            last = now
+
+    def test_saving_over_another_scene_is_asked_and_keeps_its_comments(self):
+        other = "; mine\n[volume]\nprocedural = supernova ; big\n[camera]\nfov_deg = 33 ; narrow\n"
+        path = self.write("other.scene", other)
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.keys("ctrl+shift+s")
+        self.until(self.dialog_there, "the dialog")
+        self.enter_text(path)
+        self.press("Return")
+        time.sleep(0.5)  # nothing must come of it
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(file.read(), other)
+        self.press("Return")
+        text = self.until_there(path, lambda text: text != other)
+        self.assertTrue(text.startswith("; mine\n"), text)
+        self.assertIn("procedural = shells ; big", text)
+        self.assertIn(" ; narrow", text)
+
+    def test_scene_is_saved_in_its_place_by_one_key(self):
+        path = os.path.join(self.folder, "own.scene")
+        shutil.copy(SCENE, path)
+        self.start("--gaze", "mouse", "--method", "mdc", scene=path)
+        self.keys("ctrl+s")
+        self.until_there(path, lambda text: "method = mdc" in text)
+
+    def test_layout_of_a_raw_volume_is_asked_for_and_confirmed(self):
+        path = self.write("mystery.raw", BALL)
+        self.launch(path, "--gaze", "mouse", "--method", "standard")
+        self.until(self.dialog_there, "the dialog")
+        self.press("Return")
+        self.until(self.bright_in_the_middle, "the ball in the middle")
+
+    def test_raw_volume_whose_name_tells_all_needs_no_question(self):
+        path = self.write("ball_%dx%dx%d_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
+        self.launch(path, "--gaze", "mouse", "--method", "standard")
+        self.until(self.bright_in_the_middle, "the ball in the middle")
+        shown = self.until_still()
+        self.assertTrue(self.headless(path, "--method", "standard") == shown, "another picture")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["files.py"])
