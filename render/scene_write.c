@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/ini_text.h"
+#include "render/file_path.h"
 #include "render/scene_files.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -296,6 +297,18 @@ static enum gz_result move_list(const struct move *move, char names[GZ_PATH_SIZE
 	return result;
 }
 
+/* A gaze log, which is looked up beside the scene and where the program was called. */
+static enum gz_result move_log(const struct move *move, char gaze[GZ_PATH_SIZE])
+{
+	char path[GZ_PATH_SIZE];
+	if (!gz_path_ends(gaze, ".gzl"))
+		return GZ_OK;
+	if (gz_scene_find_file(move->from, gaze, path) == GZ_OK)
+		return move_field(move, "view.gaze", gaze);
+	const struct move from_here = { .from = "", .to = move->to, .log = move->log };
+	return move_field(&from_here, "view.gaze", gaze);
+}
+
 static enum gz_result move_files(struct gz_scene_settings *settings, const struct move *move)
 {
 	enum gz_result result = move_field(move, "volume.file", settings->volume_file);
@@ -305,6 +318,8 @@ static enum gz_result move_files(struct gz_scene_settings *settings, const struc
 		result = move_list(move, settings->transfer_also);
 	if (result == GZ_OK)
 		result = move_field(move, "foveation.table", settings->foveation.table_file);
+	if (result == GZ_OK)
+		result = move_log(move, settings->view.gaze);
 	return result;
 }
 

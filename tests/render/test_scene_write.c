@@ -288,6 +288,25 @@ static void saved_elsewhere_its_files_are_found(void **state)
 	rmdir(files_path("there"));
 }
 
+static void gaze_log_of_a_saved_scene_is_found_other_sources_stay(void **state)
+{
+	(void)state;
+	bool display;
+	struct gz_scene_settings settings = parsed(SCENE, &display);
+	char from[GZ_PATH_SIZE], to[GZ_PATH_SIZE];
+	files_write("eye.gzl", "x", 1);
+	make_folder("logs");
+	snprintf(from, sizeof from, "%s", files_path("a.scene"));
+	snprintf(to, sizeof to, "%s", files_path("logs/a.scene"));
+	strcpy(settings.view.gaze, "eye.gzl");
+	assert_int_equal(gz_scene_move_files(&settings, from, to, NULL), GZ_OK);
+	assert_string_equal(settings.view.gaze, files_path("eye.gzl"));
+	strcpy(settings.view.gaze, "ipc:///run/eye");
+	assert_int_equal(gz_scene_move_files(&settings, from, to, NULL), GZ_OK);
+	assert_string_equal(settings.view.gaze, "ipc:///run/eye");
+	rmdir(files_path("logs"));
+}
+
 static void file_in_a_folder_below_is_named_relative(void **state)
 {
 	(void)state;
@@ -356,6 +375,7 @@ int main(void)
 		cmocka_unit_test(edited_scene_of_another_volume_loses_what_was_of_the_first),
 		cmocka_unit_test(text_that_is_no_scene_is_not_edited),
 		cmocka_unit_test(saved_elsewhere_its_files_are_found),
+		cmocka_unit_test(gaze_log_of_a_saved_scene_is_found_other_sources_stay),
 		cmocka_unit_test(file_in_a_folder_below_is_named_relative),
 		cmocka_unit_test(name_that_a_line_cannot_hold_is_refused_and_the_file_stays),
 		cmocka_unit_test(file_that_is_no_scene_is_replaced_whole),

@@ -31,6 +31,7 @@ struct gz_window_files_state {
 	bool first;                     /* the raw volume that is asked about is the first of all */
 	bool made;                      /* the volume has no transfer function of its own … */
 	struct gz_transfer made_transfer; /* … and gets this one */
+	char made_for[GZ_PATH_SIZE];      /* path of the scene that both are of */
 	/* For messages that belong in a dialog as well as where all go. */
 	struct gz_log log;
 	const struct gz_log *outer;
@@ -189,6 +190,8 @@ static enum gz_result save_to(struct gz_window *window, const char *path)
 	if (r != GZ_OK)
 		return r;
 	gz_info(window->log, "saved as %s", path);
+	if (strcmp(state->made_for, gz_window_scene_path(window)) == 0)
+		snprintf(state->made_for, sizeof state->made_for, "%s", path);
 	gz_window_rename_scene(window, path);
 	gz_window_transfer_saved(window);
 	gz_recent_add(&state->recent, path);
@@ -276,8 +279,10 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 		gz_open_panel_close(&state->open_panel);
 		gz_window_open_file(window, path);
 	}
-	if (gz_raw_panel_draw(&state->raw_panel))
-		load(window, state->raw_panel.path, &state->raw_panel.layout);
+	if (gz_raw_panel_draw(&state->raw_panel)) {
+		const struct gz_raw_layout layout = state->raw_panel.layout;
+		load(window, state->raw_panel.path, &layout);
+	}
 	draw_save_panel(window);
 }
 
@@ -286,9 +291,14 @@ static void scene_shown(struct gz_window *window)
 	struct gz_window_files_state *state = window->files;
 	const char *path = gz_window_scene_path(window);
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
-	state->made =
-		!scene->settings.transfer_file[0] && gz_file_kind_by_name(path) != GZ_FILE_PICTURE;
-	state->made_transfer = scene->transfer;
+	/* Brought back after a loss, it may have been edited. */
+	if (strcmp(path, state->made_for) != 0 || path[0] == '\0' ||
+	    strcmp(path, state->opening) == 0) {
+		state->made = !scene->settings.transfer_file[0] &&
+			      gz_file_kind_by_name(path) != GZ_FILE_PICTURE;
+		state->made_transfer = scene->transfer;
+		snprintf(state->made_for, sizeof state->made_for, "%s", path);
+	}
 	/* A study's scenes come and go by themselves. */
 	if (!path[0] || strcmp(path, state->opening) != 0)
 		return;
