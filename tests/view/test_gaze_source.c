@@ -315,6 +315,48 @@ static void destroy_of_nothing_is_allowed(void **state)
 	gz_gaze_source_destroy(NULL);
 }
 
+static void log_goes_forward_in_pieces_and_arrives_as_by_reading(void **state)
+{
+	(void)state;
+	struct gz_gaze_log_header header = header_of_log();
+	struct gz_gaze_source *pieces = NULL, *whole = NULL;
+	struct gz_gaze_reading piecewise, at_once;
+	struct gz_gaze_log_place place;
+	const int64_t time_ns = 350 * PERIOD_NS;
+	write_log(&header, SAMPLES);
+	assert_int_equal(gz_gaze_source_log(path, NULL, &pieces), GZ_OK);
+	assert_int_equal(gz_gaze_source_log(path, NULL, &whole), GZ_OK);
+	/* No time at all still is a step. */
+	int turns = 1;
+	while (!gz_gaze_source_log_forward(pieces, time_ns, 0))
+		turns++;
+	assert_in_range(turns, 2, SAMPLES);
+	gz_gaze_source_read(pieces, time_ns, &piecewise);
+	gz_gaze_source_read(whole, time_ns, &at_once);
+	assert_true(piecewise.point.x == at_once.point.x && piecewise.seq == 350);
+	assert_int_equal(piecewise.age_ns, at_once.age_ns);
+	assert_true(gz_gaze_source_log_place(pieces, &place));
+	assert_int_equal(place.at_ns, time_ns);
+	assert_int_equal(place.length_ns, (SAMPLES - 1) * PERIOD_NS);
+	assert_false(place.ended);
+	gz_gaze_source_read(pieces, 2 * time_ns, &piecewise);
+	assert_true(gz_gaze_source_log_place(pieces, &place) && place.ended);
+	gz_gaze_source_destroy(&pieces);
+	gz_gaze_source_destroy(&whole);
+}
+
+static void sources_that_are_no_logs_have_no_place_and_are_always_there(void **state)
+{
+	(void)state;
+	struct gz_gaze_source *source = NULL;
+	struct gz_gaze_log_place place;
+	assert_int_equal(gz_gaze_source_mouse(&source), GZ_OK);
+	assert_false(gz_gaze_source_log_place(source, &place));
+	assert_true(gz_gaze_source_log_forward(source, 1000, 0));
+	assert_null(gz_gaze_source_status(source));
+	gz_gaze_source_destroy(&source);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -325,6 +367,8 @@ int main(void)
 		cmocka_unit_test(log_brings_its_own_display),
 		cmocka_unit_test(log_with_a_setting_the_pipeline_refuses_is_refused),
 		cmocka_unit_test(log_without_a_sample_is_refused),
+		cmocka_unit_test(log_goes_forward_in_pieces_and_arrives_as_by_reading),
+		cmocka_unit_test(sources_that_are_no_logs_have_no_place_and_are_always_there),
 		cmocka_unit_test(fixed_point_stays_and_has_no_age),
 		cmocka_unit_test(mouse_is_unknown_until_it_moves),
 		cmocka_unit_test(latest_without_a_daemon_is_unknown_and_not_connected),

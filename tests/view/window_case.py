@@ -61,6 +61,7 @@ class WindowCase(unittest.TestCase):
             self.viewer.kill()
         if self.viewer:
             self.viewer.communicate()
+        self.viewer = None
 
     def start_daemon(self, *more):
         more = more or ("--driver=sim", "--sim.blinks_per_min=0")

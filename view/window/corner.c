@@ -20,6 +20,13 @@
  * statuses). */
 #define LOSS_SHOWN_NS (3 * GZ_NS_PER_S)
 
+/* Numbers that have changed by less stay as they are shown (chosen: nobody would act on that). */
+#define STEADY_SHARE   0.2
+#define RATE_SHARE     0.03
+#define RATE_STEP_HZ   1.0
+#define AGE_STEP_MS    2.0
+#define NOISE_STEP_DEG 0.02
+
 enum { TEXT_SIZE = 640 };
 
 struct gz_window_corner {
@@ -30,6 +37,10 @@ struct gz_window_corner {
 	uint64_t lost;   /* samples, as the daemon has told */
 	int64_t lost_ns; /* when there were more of them; 0: never */
 	int64_t due_ns;  /* when numbers may change */
+	double age_ms;   /* the greatest since they last did */
+	struct {
+		double rate_hz, age_ms, noise_deg;
+	} shown;
 	char head[TEXT_SIZE], numbers[TEXT_SIZE];
 	char text[TEXT_SIZE]; /* on the screen */
 };
@@ -116,20 +127,33 @@ static void print_latency(const struct gz_window *window, char *text, size_t siz
 		 age, latency.frame_ms, latency.present_ms, scanout);
 }
 
+/* A number that has hardly changed stays: to draw it anew tells nobody anything. */
+static double steady(double shown, double now, double least_step, double share)
+{
+	const double step = fmax(least_step, share * fabs(shown));
+	return isfinite(now) && isfinite(shown) && fabs(now - shown) <= step ? shown : now;
+}
+
 /* "  250 Hz  4 ms  fixation  noise 0.12 deg", as much of it as is known. */
-static void print_numbers(const struct gz_window *window, const struct gz_window_gaze *gaze,
-			  char *text, size_t size)
+static void print_numbers(struct gz_window *window, const struct gz_window_gaze *gaze, char *text,
+			  size_t size)
 {
 	const struct gz_gaze_reading *reading = &gaze->reading;
-	const double rate_hz = gz_gaze_rate_hz(&window->corner->rate);
+	struct gz_window_corner *corner = window->corner;
 	char rate[32] = "", age[32] = "", noise[32] = "", latency[128];
 	const bool fresh = reading->has_age && reading->age_ns <= GZ_GAZE_SILENT_NS;
-	if (fresh && rate_hz > 0)
-		snprintf(rate, sizeof rate, "  %.0f Hz", rate_hz);
+	corner->shown.rate_hz = steady(corner->shown.rate_hz, gz_gaze_rate_hz(&corner->rate),
+				       RATE_STEP_HZ, RATE_SHARE);
+	corner->shown.age_ms =
+		steady(corner->shown.age_ms, corner->age_ms, AGE_STEP_MS, STEADY_SHARE);
+	corner->shown.noise_deg =
+		steady(corner->shown.noise_deg, reading->noise_deg, NOISE_STEP_DEG, STEADY_SHARE);
+	if (fresh && corner->shown.rate_hz > 0)
+		snprintf(rate, sizeof rate, "  %.0f Hz", corner->shown.rate_hz);
 	if (fresh)
-		snprintf(age, sizeof age, "  %.0f ms", gz_ns_to_ms(reading->age_ns));
+		snprintf(age, sizeof age, "  %.0f ms", corner->shown.age_ms);
 	if (isfinite(reading->noise_deg))
-		snprintf(noise, sizeof noise, "  noise %.2f deg", reading->noise_deg);
+		snprintf(noise, sizeof noise, "  noise %.2f deg", corner->shown.noise_deg);
 	print_latency(window, latency, sizeof latency);
 	snprintf(text, size, "%s%s%s%s%s%s", rate, age, fresh && reading->has_event ? "  " : "",
 		 fresh && reading->has_event ? gz_event_name(reading->event) : "", noise, latency);
@@ -143,13 +167,16 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 	char head[TEXT_SIZE], text[TEXT_SIZE];
 	gz_gaze_rate_step(&corner->rate, &gaze->asked);
 	count_losses(corner, gaze->status, now_ns);
+	if (gaze->reading.has_age)
+		corner->age_ms = fmax(corner->age_ms, gz_ns_to_ms(gaze->reading.age_ns));
 	judge(window, gaze, now_ns, &state);
 	print_head(window, gaze, head, sizeof head);
 	const bool new_state = take_state(corner, &state, now_ns);
 	const bool another = strcmp(head, corner->head) != 0;
-	if (another || now_ns >= corner->due_ns) {
+	if (another || new_state || now_ns >= corner->due_ns) {
 		print_numbers(window, gaze, corner->numbers, sizeof corner->numbers);
 		corner->due_ns = now_ns + NUMBERS_INTERVAL_NS;
+		corner->age_ms = 0;
 	}
 	memcpy(corner->head, head, sizeof head);
 	snprintf(text, sizeof text, "%s%.100s%.200s%s%s", "gaze: ", head, corner->numbers,

@@ -8,6 +8,7 @@
 #include "view/window/experiment.h"
 #include "view/window/files.h"
 #include "view/window/frame_times.h"
+#include "view/window/gaze_settings.h"
 #include "view/window/gaze_sources.h"
 #include "view/window/keys.h"
 #include "view/window/latency.h"
@@ -36,6 +37,7 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_camera,
 	&gz_window_frame_times_part,
 	&gz_window_basics,
+	&gz_window_gaze_settings_part,
 	&gz_window_latency_part,
 	&gz_window_files,
 	&gz_window_notices,
