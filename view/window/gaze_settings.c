@@ -101,6 +101,7 @@ static void show(struct gz_window *window, struct gz_window_gaze_settings *self)
 	struct gz_gaze_panel *panel = &self->panel;
 	const struct gz_view_settings *view = &window->settings.view;
 	panel->margin_top = window->panels_top;
+	panel->margin_bottom = window->panels_bottom;
 	panel->source = (int)gz_window_source_now(window);
 	panel->pointer_refused = window->sources->tracker_seen[0] &&
 				 strcmp(window->sources->tracker_seen, "pointer") != 0;
