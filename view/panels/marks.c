@@ -111,7 +111,10 @@ void gz_marks_draw_running(int row, const char *what, bool recording, int64_t se
 	const struct gz_paint red = { 255, 48, 48, 255 };
 	const float scale = gz_widgets_scale(), height = gz_text_room(1, "M").y;
 	char text[LINE_SIZE];
-	snprintf(text, sizeof text, "%s%s %lld:%02lld", recording ? "   " : "", what,
+	/* As wide as the dot and its distance from the text. */
+	const float blank = gz_text_room(1, " ").x;
+	const int blanks = recording ? (int)ceilf((2 * DOT_RADIUS + PADDING) * scale / blank) : 0;
+	snprintf(text, sizeof text, "%*s%s %lld:%02lld", blanks, "", what,
 		 (long long)(seconds / 60), (long long)(seconds % 60));
 	const struct gz_place window = gz_widgets_room(), room = gz_text_room(1, text);
 	const float step = height + 3 * PADDING * scale;
@@ -122,7 +125,7 @@ void gz_marks_draw_running(int row, const char *what, bool recording, int64_t se
 	const struct gz_place end = gz_draw_caption(GZ_LAYER_TOP, at, gz_paint_plain, text);
 	if (recording)
 		gz_draw_disc(GZ_LAYER_TOP,
-			     (struct gz_place) { at.x + (PADDING + DOT_RADIUS + 2) * scale,
+			     (struct gz_place) { at.x + (PADDING + DOT_RADIUS) * scale,
 						 (at.y + end.y) / 2 },
 			     DOT_RADIUS, red);
 }

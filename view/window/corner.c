@@ -68,6 +68,10 @@ static void judge(struct gz_window *window, const struct gz_window_gaze *gaze, i
 		  struct gz_gaze_state *out_state)
 {
 	const struct gz_window_corner *corner = window->corner;
+	if (gaze->focus) { /* a replay's gaze is whatever it was */
+		*out_state = (struct gz_gaze_state) { .level = GZ_GAZE_LEVEL_GOOD };
+		return;
+	}
 	const enum gz_window_source source = gz_window_source_now(window);
 	const struct gz_window_share share = gz_window_share(window);
 	const struct gz_gaze_signs signs = {

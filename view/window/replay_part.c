@@ -106,6 +106,7 @@ static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 	}
 	gaze->source = "replay";
 	gaze->missing = false;
+	gaze->status = NULL;
 	gaze->focus = &self->frame.focus;
 	gaze->focus_new = self->fresh;
 }
