@@ -119,6 +119,15 @@ const struct gz_option gz_view_option_table[] = {
 	  .max = GZ_PATH_SIZE,
 	  .help = "NAME.session to show again, picture by picture, in place of a scene and a "
 		  "gaze" },
+	{ .key = "measure-window",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(measure_window),
+	  .min = 0,
+	  .max = 100000,
+	  .preset = "0",
+	  .help = "show so many frames each of a bare picture, of the window and of the window "
+		  "with "
+		  "panels, tell what they took, and end" },
 	{ .key = "stats",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(stats),

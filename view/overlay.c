@@ -1,5 +1,7 @@
 #include "view/overlay.h"
 
+#include <math.h>
+
 #include <GL/glew.h>
 
 #include "view/gl_program.h"
@@ -58,13 +60,15 @@ static enum gz_result refresh(struct gz_overlay *overlay, const struct gz_plan *
 }
 
 enum gz_result gz_overlay_draw(struct gz_overlay *overlay, const struct gz_plan *plan,
-			       enum gz_view_overlay kind, int width, int height)
+			       enum gz_view_overlay kind, double share, int width, int height)
 {
 	const enum gz_result r = refresh(overlay, plan, kind);
 	if (r != GZ_OK)
 		return r;
 	const float cell = GZ_TILE_EDGE;
 	glViewport(0, 0, width, height);
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(0, 0, (int)lround(share * width), height);
 	glEnable(GL_BLEND);
 	glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
 	glUseProgram(overlay->program);
@@ -78,6 +82,7 @@ enum gz_result gz_overlay_draw(struct gz_overlay *overlay, const struct gz_plan 
 	glBindTexture(GL_TEXTURE_2D, overlay->texture);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 	glDisable(GL_BLEND);
+	glDisable(GL_SCISSOR_TEST);
 	return GZ_OK;
 }
 

@@ -27,13 +27,14 @@ struct gz_overlay {
 enum gz_result gz_overlay_init(struct gz_overlay *overlay, const struct gz_log *log);
 
 /**
- * Draw it over a viewport of @p width times @p height px, which shows the plan's picture.
+ * Draw it over the left @p share of a viewport of @p width times @p height px, which shows the
+ * plan's picture.
  *
  * @param kind  not GZ_OVERLAY_NONE
  * @retval GZ_ERR_NO_MEM  no room for the cells; nothing is drawn
  */
 enum gz_result gz_overlay_draw(struct gz_overlay *overlay, const struct gz_plan *plan,
-			       enum gz_view_overlay kind, int width, int height);
+			       enum gz_view_overlay kind, double share, int width, int height);
 
 /** Delete all of it and zero the struct. Correct after a failed gz_overlay_init(). */
 void gz_overlay_free(struct gz_overlay *overlay);

@@ -212,15 +212,30 @@ static bool draw_section(const struct gz_settings_panel *panel, const struct gz_
 	return changed;
 }
 
+/* What is changed most comes first; the other sections follow as the tables have them. */
+static const char *const first_sections[] = { "foveation.", "render.", "view.", "clip.", "light." };
+enum { FIRST_SECTIONS = sizeof first_sections / sizeof first_sections[0] };
+
+/* Which of them it is; FIRST_SECTIONS: none. */
+static int section_rank(const struct gz_option *option)
+{
+	int rank = 0;
+	while (rank < FIRST_SECTIONS &&
+	       strncmp(option->key, first_sections[rank], strlen(first_sections[rank])) != 0)
+		rank++;
+	return rank;
+}
+
 static bool draw_sections(const struct gz_settings_panel *panel)
 {
 	const struct method method = find_method(panel);
 	bool changed = false;
-	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
-		const struct gz_option *option = row_option(panel, row);
-		if (is_first_of_section(panel, option))
-			changed |= draw_section(panel, option, &method);
-	}
+	for (int rank = 0; rank <= FIRST_SECTIONS; rank++)
+		for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
+			const struct gz_option *option = row_option(panel, row);
+			if (section_rank(option) == rank && is_first_of_section(panel, option))
+				changed |= draw_section(panel, option, &method);
+		}
 	return changed;
 }
 

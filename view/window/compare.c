@@ -23,7 +23,9 @@
  * ease, and little of the picture is lost to turning). */
 #define GRAB_NEAR 6.0
 /* Unscaled. */
-#define LABEL_MARGIN 8.0f
+#define LABEL_MARGIN  8.0f
+#define CORNER_WIDTH  300.0f
+#define CORNER_HEIGHT 56.0f
 
 struct gz_window_compare {
 	struct gz_compare drawing;
@@ -213,9 +215,12 @@ static void draw_label(struct gz_window *window, const char *text, float x, bool
 	const float width = gz_text_room(1, text).x + 10 * unit; /* with the caption's rim */
 	const struct gz_place room = gz_widgets_room();
 	const float at = leftwards ? x - width - LABEL_MARGIN * unit : x + LABEL_MARGIN * unit;
+	const float left = fmaxf(0, fminf(at, room.x - width));
+	/* At the left below, something else is told. */
+	const float below = left < CORNER_WIDTH * unit ? CORNER_HEIGHT * unit : 0;
 	const struct gz_place corner = {
-		fmaxf(0, fminf(at, room.x - width)),
-		room.y - gz_widgets_line_height() - 10 * unit - LABEL_MARGIN * unit,
+		left,
+		room.y - gz_widgets_line_height() - 10 * unit - LABEL_MARGIN * unit - below,
 	};
 	gz_draw_caption(GZ_LAYER_PICTURE, corner,
 			window->compare->busy && !leftwards ? gz_paint_amber : gz_paint_plain,

@@ -51,8 +51,11 @@ static void paint(struct gz_window *window, int width, int height)
 	const enum gz_view_overlay kind = (enum gz_view_overlay)window->settings.view.overlay;
 	if (!is_shown(window))
 		return;
-	if (gz_overlay_draw(window->overlay, gz_frame_plan(window->maker), kind, width, height) ==
-	    GZ_OK)
+	/* Beside the divider is another plan's picture. */
+	const bool beside = window->settings.view.compare == GZ_COMPARE_SPLIT;
+	const double share = beside ? window->settings.view.split : 1;
+	if (gz_overlay_draw(window->overlay, gz_frame_plan(window->maker), kind, share, width,
+			    height) == GZ_OK)
 		return;
 	gz_err(window->log, "no memory for view.overlay; it is switched off");
 	window->settings.view.overlay = GZ_OVERLAY_NONE;

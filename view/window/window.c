@@ -13,6 +13,7 @@
 #include "view/window/experiment.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
+#include "view/window/measure.h"
 #include "view/window/part.h"
 #include "view/window/window_state.h"
 
@@ -129,8 +130,8 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	gz_widgets_end();
 }
 
-static void present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
-		    int height)
+void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
+		       int height)
 {
 	struct gz_scene_settings before;
 	memcpy(&before, &window->settings, sizeof before);
@@ -223,7 +224,7 @@ static enum gz_result refresh(struct gz_window *window)
 	const bool follow = parts_follow(window, &gaze);
 	window->panel_frames -= panels_due;
 	if (window->frame_new || window->present_needed || panels_due || follow)
-		present(window, &gaze, width, height);
+		gz_window_present(window, &gaze, width, height);
 	return GZ_OK;
 }
 
@@ -252,6 +253,11 @@ static enum gz_result loop(struct gz_window *window)
 		}
 		if (r != GZ_OK)
 			return r;
+		if (window->options->measure_window > 0 && window->any_shown)
+			return gz_window_measure(window);
+		if (window->options->measure_window > 0 &&
+		    gz_window_loading_outcome(window) != GZ_OK)
+			return GZ_OK; /* told by who asks for the outcome */
 		/* What the frame took is not waited for again. */
 		double spent_s = gz_ns_to_s(gz_clock_now_ns() - start_ns);
 		glfwWaitEventsTimeout(fmax(0, patience_s(window) - spent_s));

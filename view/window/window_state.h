@@ -88,7 +88,7 @@ struct gz_window {
 	bool picture_hidden; /**< something else fills the window: nothing is cast */
 	struct gz_window_experiment *experiment; /**< of part experiment */
 	struct gz_settings_panel settings_panel;
-	struct gz_window_transfer *transfer; /**< of transfer.c */
+	struct gz_window_transfer *transfer;       /**< of transfer.c */
 	struct gz_overlay *overlay;                /**< of part overlay */
 	struct gz_window_compare *compare;         /**< of part compare */
 	struct gz_window_frame_times *frame_times; /**< of part frame times */
@@ -175,6 +175,11 @@ void gz_window_gaze_now(struct gz_window *window, int width, int height,
 
 /** Seconds until the gaze must be looked at again, if no event comes before. */
 double gz_window_gaze_patience_s(const struct gz_window *window);
+
+/** Put the picture and all that lies over it on the screen: a framebuffer of @p width times @p
+ * height px. */
+void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
+		       int height);
 
 /** Listen to keys, buttons, cursor, wheel and size. Before gz_widgets_init(), which chains them. */
 void gz_window_input_attach(struct gz_window *window);
