@@ -4,6 +4,7 @@ files.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS], with DROP_FILES 
 that drops files
 """
 
+import glob
 import os
 import shutil
 import time
@@ -125,6 +126,27 @@ class Files(WindowCase):
             return g > 60 and g > 4 * r and g > 4 * b
 
         self.until(green, "green")
+
+    def test_dropped_picture_brings_back_what_it_shows(self):
+        self.start("--gaze", "mouse", "--method", "standard", "--pictures", self.folder)
+        first = self.grab()
+        self.move(240, 160)
+        self.tool("mousedown", 1)
+        self.move(320, 190)
+        self.until_changed(first, "turned")
+        self.tool("mouseup", 1)
+        shown = self.until_still()
+        self.tool("key", "F12")
+        deadline = time.monotonic() + 15
+        while not glob.glob(os.path.join(self.folder, "*.png")):
+            self.assertLess(time.monotonic(), deadline, "no picture is written")
+            time.sleep(0.05)
+        self.tool("key", "r")
+        self.until(lambda p: self.below_line(p) == self.below_line(first), "as at first")
+        (picture,) = glob.glob(os.path.join(self.folder, "*.png"))
+        self.drop(picture)
+        self.until(lambda p: self.below_line(p) == shown, "as in the picture")
+        self.assertTrue(self.headless(picture) == shown, "another picture")
 
     def test_dropped_file_that_shows_nothing_is_told_and_the_picture_stays(self):
         self.start("--gaze", "mouse", "--method", "standard")

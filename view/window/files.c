@@ -155,7 +155,7 @@ static void show_open_panel(struct gz_window *window, int number)
 static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
 {
 	struct gz_window *window = glfwGetWindowUserPointer(glfw);
-	if (count < 1)
+	if (count < 1 || window->alone) /* an experiment shows what it shows */
 		return;
 	if (count > 1)
 		gz_info(window->log, "%d files were dropped: opening %s%s", count, paths[0],
