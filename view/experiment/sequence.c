@@ -209,7 +209,7 @@ enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const ch
 	if (!maker.sequence.presentations)
 		return GZ_ERR_NO_MEM;
 	enum gz_result result = order_blocks(&maker, participant, log, blocks);
-	for (size_t i = 0; i < experiment->block_count && result == GZ_OK; i++)
+	for (size_t i = 0; i < experiment->block_count && blocks[i] && result == GZ_OK; i++)
 		result = add_block(&maker, blocks[i]);
 	if (result != GZ_OK) {
 		gz_sequence_free(&maker.sequence);
