@@ -1,12 +1,12 @@
 #include "view/options.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/image.h"
+#include "view/options_check.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -327,93 +327,6 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 	return GZ_OK;
 }
 
-/* The whole of a pattern's grammar, in one place. */
-struct pattern {
-	size_t start, end; /* of the conversion; equal if there is none */
-	bool zeros;
-	int width;
-	int conversions;
-};
-
-static bool scan_pattern(const char *text, struct pattern *out_pattern)
-{
-	struct pattern pattern = { 0 };
-	for (size_t i = 0; text[i]; i++) {
-		if (text[i] != '%')
-			continue;
-		if (text[i + 1] == '%') {
-			i++;
-			continue;
-		}
-		size_t at = i + 1;
-		pattern.start = i;
-		pattern.zeros = text[at] == '0';
-		at += pattern.zeros;
-		pattern.width = 0;
-		if (text[at] >= '1' && text[at] <= '9')
-			pattern.width = text[at++] - '0';
-		if (text[at] != 'd')
-			return false;
-		pattern.end = at + 1;
-		pattern.conversions++;
-		i = at;
-	}
-	*out_pattern = pattern;
-	return true;
-}
-
-enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz_log *log)
-{
-	struct pattern scanned;
-	if (!scan_pattern(pattern, &scanned)) {
-		gz_err(log,
-		       "--out %s: only %%d, %%4d or %%04d (width 1 to 9) may follow a percent "
-		       "sign; "
-		       "write %%%% for the sign itself",
-		       pattern);
-		return GZ_ERR_INVAL;
-	}
-	if (scanned.conversions > 1) {
-		gz_err(log, "--out %s: the frame number stands there %d times; once is enough",
-		       pattern, scanned.conversions);
-		return GZ_ERR_INVAL;
-	}
-	if (frames > 1 && scanned.conversions == 0) {
-		gz_err(log,
-		       "--out %s: several frames need a number in the name, as in "
-		       "frame-%%04d.png",
-		       pattern);
-		return GZ_ERR_INVAL;
-	}
-	return GZ_OK;
-}
-
-enum gz_result gz_pattern_format(const char *pattern, int number, char *path, size_t size)
-{
-	struct pattern scanned;
-	if (!scan_pattern(pattern, &scanned) || scanned.conversions > 1)
-		return GZ_ERR_INVAL;
-	size_t used = 0;
-	for (size_t i = 0; pattern[i]; i++) {
-		if (used + 1 >= size)
-			return GZ_ERR_FULL;
-		if (scanned.conversions == 1 && i == scanned.start) {
-			int length =
-				snprintf(path + used, size - used, scanned.zeros ? "%0*d" : "%*d",
-					 scanned.width, number);
-			if (length < 0 || (size_t)length >= size - used)
-				return GZ_ERR_FULL;
-			used += (size_t)length;
-			i = scanned.end - 1;
-			continue;
-		}
-		i += pattern[i] == '%'; /* "%%" */
-		path[used++] = pattern[i];
-	}
-	path[used] = '\0';
-	return GZ_OK;
-}
-
 struct gz_display gz_view_display(const struct gz_view_options *options,
 				  const struct gz_display *known, int width, int height)
 {
@@ -459,137 +372,6 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 	}
 	memcpy(options->scene, arguments[0], strlen(arguments[0]) + 1);
 	return GZ_OK;
-}
-
-/* Targets are for somebody who sits there and sees nothing else. */
-static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
-{
-	const char *other = options->scene[0] ? "a scene" : options->headless ? "--headless" : NULL;
-	if (!other)
-		return GZ_OK;
-	gz_err(log, "--targets: %s cannot go with it; remove one of them", other);
-	return GZ_ERR_INVAL;
-}
-
-/* A session has what these say. */
-static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
-{
-	static const char *const others[] = {
-		"scene",         "size",        "gaze",        "frames",        "turn",
-		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
-		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
-	};
-	const char *other = options->scene[0] ? "scene" : NULL;
-	for (size_t i = 0; i < gz_view_option_count && !other; i++)
-		for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
-			if (options->given[i] &&
-			    strcmp(gz_view_option_table[i].key, others[k]) == 0)
-				other = others[k];
-	if (!other)
-		return GZ_OK;
-	gz_err(log, "--replay: --%s cannot go with it: the session says that; remove one of them",
-	       other);
-	return GZ_ERR_INVAL;
-}
-
-/* A layout is told by dims and type; the rest has presets. */
-static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
-{
-	const bool dims = options->volume_dims[0] > 0, type = options->volume_type >= 0;
-	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0;
-	if (dims == type && (dims || !more))
-		return GZ_OK;
-	gz_err(log, "--volume.%s: not given; a raw file needs both dims and type",
-	       dims ? "type" : "dims");
-	return GZ_ERR_INVAL;
-}
-
-/* A key of a scene that says what is shown, not on which display. */
-static bool any_scene_key(const struct gz_view_options *options)
-{
-	struct gz_scene_settings settings;
-	struct gz_view_scene_tables tables;
-	bool any = false;
-	gz_view_pick_scene_tables(&settings, &tables);
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
-		for (size_t k = 0; k < tables.bindings[i].count; k++) {
-			const char *key = tables.options[i][k].key;
-			const bool display = strcmp(key, "view.vsync") == 0 ||
-					     strcmp(key, "view.tracker_display") == 0;
-			any = any || (options->scene_given[i][k] && !display);
-		}
-	}
-	return any;
-}
-
-/* What is shown, and how, says the experiment alone. */
-static enum gz_result check_experiment(const struct gz_view_options *options,
-				       const struct gz_log *log)
-{
-	const char *other = options->target.targets[0]  ? "--targets"
-			    : options->scene[0]         ? "a scene"
-			    : options->method >= 0      ? "--method"
-			    : options->turn_deg != 0    ? "--turn"
-			    : options->write_volume[0]  ? "--write-volume"
-			    : options->out[0]           ? "--out"
-			    : options->video[0]         ? "--video"
-			    : options->transfer_file[0] ? "--transfer.file"
-			    : options->record[0]        ? "--record"
-			    : options->replay[0]        ? "--replay"
-			    : options->stats[0]         ? "--stats"
-			    : options->cross            ? "--cross"
-			    : options->letters          ? "--letters"
-			    : any_scene_key(options)    ? "a key of a scene"
-							: NULL;
-	if (!other)
-		return gz_sitting_options_check(&options->sitting, log);
-	gz_err(log,
-	       "--experiment: %s cannot go with it, since the file says what is shown; remove one "
-	       "of them",
-	       other);
-	return GZ_ERR_INVAL;
-}
-
-/* Headless output asked for together with a window, a mouse without one, and the like. */
-static enum gz_result check_together(const struct gz_view_options *options,
-				     const struct gz_log *log)
-{
-	if (options->sitting.file[0])
-		return check_experiment(options, log);
-	const enum gz_result r = gz_sitting_options_check(&options->sitting, log);
-	if (r != GZ_OK)
-		return r;
-	if (options->target.targets[0])
-		return check_targets(options, log);
-	if (options->replay[0] && check_replay(options, log) != GZ_OK)
-		return GZ_ERR_INVAL;
-	if (!options->scene[0] && !options->replay[0] &&
-	    (options->headless || options->write_volume[0])) {
-		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
-		return GZ_ERR_INVAL;
-	}
-	bool by_mouse =
-		options->gaze.kind == GZ_GAZE_MOUSE || options->gaze.kind == GZ_GAZE_POINTER;
-	if (options->headless && by_mouse) {
-		gz_err(log,
-		       "--gaze %s: there is no mouse without a window; leave out --headless, or "
-		       "give X,Y",
-		       options->gaze_text);
-		return GZ_ERR_INVAL;
-	}
-	if (check_raw(options, log) != GZ_OK)
-		return GZ_ERR_INVAL;
-	const char *file = options->out[0]     ? "out"
-			   : options->video[0] ? "video"
-			   : options->stats[0] ? "stats"
-					       : NULL;
-	if (!options->headless && file) {
-		gz_err(log, "--%s: only written without a window; add --headless", file);
-		return GZ_ERR_INVAL;
-	}
-	/* A session hardly has but one frame. */
-	const int frames = options->replay[0] ? INT_MAX : options->frames;
-	return options->out[0] ? gz_pattern_check(options->out, frames, log) : GZ_OK;
 }
 
 /* --method is short for --foveation.method; both at once say nothing certain. */
@@ -668,7 +450,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	r = gz_gaze_choice_parse(gaze, log, &out_options->gaze);
 	if (r == GZ_OK)
 		r = check_method_once(out_options, &tables, log);
-	return r == GZ_OK ? check_together(out_options, log) : r;
+	return r == GZ_OK ? gz_view_options_check(out_options, log) : r;
 }
 
 bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw)

@@ -92,8 +92,8 @@ struct gz_window {
 	struct gz_overlay *overlay;                /**< of part overlay */
 	struct gz_window_compare *compare;         /**< of part compare */
 	struct gz_window_frame_times *frame_times; /**< of part frame times */
-	int camera_drag;  /**< of part camera: what the drag of the mouse does */
-	int panel_frames; /**< still to be drawn, so that panels answer what has happened */
+	int camera_drag;     /**< of part camera: what the drag of the mouse does */
+	int panel_frames;    /**< still to be drawn, so that panels answer what has happened */
 	float panels_top;    /**< lower edge of what lies on top, in this frame */
 	float panels_bottom; /**< height of what lies at the bottom left, in this frame */
 
