@@ -28,13 +28,14 @@ struct gz_window_experiment {
 	struct gz_view_settings view; /**< in place of the scenes': nothing over the picture */
 	/** Whose picture the window makes now; NULL: none. */
 	const struct gz_alternative *shown;
-	size_t warm_index;  /**< the trial that is made ready, from 1; 0: none */
-	int warm_left;      /**< its intervals that have not been cast yet */
-	bool warming;       /**< one of them is being cast */
-	bool frame_made;    /**< since shown was set */
-	int64_t start_ns;   /**< of the first trial; 0: not yet */
-	int64_t refresh_ns; /**< of the display */
-	int64_t turn_ns;    /**< when the last turn began, and in which phase */
+	size_t warm_index;     /**< the trial that is made ready, from 1; 0: none */
+	int warm_left;         /**< its intervals that have not been cast yet */
+	bool warming;          /**< one of them is being cast */
+	bool frame_made;       /**< since shown was set */
+	int64_t start_ns;      /**< of the first trial; 0: not yet */
+	int64_t refresh_ns;    /**< of the display */
+	int64_t turn_ns;       /**< when the last turn began, and in which phase */
+	int64_t turn_spent_ns; /**< from the one before to that */
 	enum gz_run_phase turn_phase;
 	bool gaze_told; /**< the source tells whether the eye is seen */
 	bool gaze_there;
