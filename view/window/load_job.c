@@ -34,7 +34,7 @@ static enum gz_result load(struct gz_load_job *job)
 	enum gz_result r =
 		gz_frame_maker_create(job->options, &scene, &loading, job->log, &job->maker);
 	if (r == GZ_OK && job->cpu)
-		r = gz_frame_maker_start(job->maker, job->options, NULL);
+		r = gz_frame_maker_start_cpu(job->maker, job->options);
 	if (r == GZ_OK && atomic_load(&job->cancelled))
 		r = GZ_ERR_CANCELLED;
 	if (r != GZ_OK)

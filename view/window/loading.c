@@ -90,6 +90,9 @@ static void finish(struct gz_window *window, struct gz_load_job *job)
 {
 	struct gz_window_loading_state *state = window->loading;
 	enum gz_result r = job->result;
+	gz_debug(window->log, "%s: loaded in %.0f ms", job->request.path,
+		 gz_ns_to_ms(gz_clock_now_ns() - job->begin_ns));
+	state->asked_ns = job->begin_ns;
 	if (r == GZ_OK)
 		r = gz_window_swap_to_job(window, job);
 	else if (try_again(window, job))
@@ -147,6 +150,18 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 		gz_window_cancel_loading(window);
 }
 
+static void tell_first(struct gz_window *window)
+{
+	struct gz_window_loading_state *state = window->loading;
+	if (state->asked_ns)
+		gz_debug(window->log,
+			 "%s: first picture %.0f ms after it was asked for, %.0f ms of it the "
+			 "frame's",
+			 state->path, gz_ns_to_ms(gz_clock_now_ns() - state->asked_ns),
+			 window->record.total_ms);
+	state->asked_ns = 0;
+}
+
 static double patience_s(const struct gz_window *window)
 {
 	return window->loading->job ? PANEL_EVERY_S : INFINITY;
@@ -187,6 +202,7 @@ const struct gz_window_part gz_window_loading = {
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_state,
 	.turn = turn,
+	.frame_made = tell_first,
 	.panels = draw_panels,
 	.patience_s = patience_s,
 	.gl_close = gz_window_stop_held,

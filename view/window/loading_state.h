@@ -21,7 +21,7 @@ struct gz_window_loading_state {
 	struct gz_load_job *job;   /**< whose scene will be shown; NULL: none */
 	bool again;                /**< it has begun again, the scene before it being closed */
 	struct gz_load_job *ended; /**< cancelled ones that have not finished yet */
-	int64_t drawn_ns;          /**< its panel */
+	int64_t asked_ns;          /**< when the scene shown was asked for; 0: told already */
 	struct gz_window_held *held;
 	const struct gz_window_held
 		*shown;          /**< that holds window->maker; NULL: the window owns it */

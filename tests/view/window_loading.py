@@ -1,0 +1,321 @@
+"""gazeview's window while it loads, without a scene, and with what cannot be loaded; driven by keys
+under Xvfb with Mesa's software OpenGL.
+
+window_loading.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import ctypes
+import os
+import signal
+import sys
+import time
+import unittest
+
+from picture import run
+from window_case import (
+    CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
+)
+from xserver import start_server
+
+GROUND = (23, 26, 31)
+CORNER = (60, 200, SIZE[0], SIZE[1])
+MIDDLE = (60, 80, 420, 260)
+
+
+def write(name, text):
+    path = os.path.join(PLACE.name, name)
+    mode = "wb" if isinstance(text, bytes) else "w"
+    with open(path, mode) as out:
+        out.write(text)
+    return path
+
+
+def scene_of(name, volume):
+    return write(name, "[volume]\n%s\n[transfer]\nfile = %s\n" % (
+        volume, os.path.join(SCENES, "shells.tf")))
+
+
+# Half a minute's work, which is cancelled each time.
+SLOW = scene_of("slow.scene", "procedural = supernova\ndims = 640 640 640\ntype = uint8")
+
+NRRD = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n"
+
+# ICCCM 4.1.3.1
+NORMAL, ICONIC = 1, 3
+
+
+def set_property(display, window, name, kind, bits, value, count):
+    """Of a window; 0: of the root."""
+    x11 = ctypes.CDLL("libX11.so.6")
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    x11.XInternAtom.restype = x11.XDefaultRootWindow.restype = ctypes.c_ulong
+    connection = ctypes.c_void_p(x11.XOpenDisplay(display.encode()))
+    window = window or x11.XDefaultRootWindow(connection)
+    atoms = [ctypes.c_ulong(x11.XInternAtom(connection, text, 0)) for text in (name, kind)]
+    x11.XChangeProperty(connection, ctypes.c_ulong(window), *atoms, bits, 0, value, count)
+    x11.XCloseDisplay(connection)
+
+
+def set_state(display, window, state):
+    """Say what a window manager says of a window."""
+    value = (ctypes.c_long * 2)(state, 0)
+    set_property(display, window, b"WM_STATE", b"WM_STATE", 32, value, 2)
+
+
+def set_resources(display, text):
+    """As xrdb does."""
+    set_property(display, 0, b"RESOURCE_MANAGER", b"STRING", 8, text, len(text))
+
+
+# What cannot be shown, and what must be said of it.
+BAD = {
+    "no such file": (os.path.join(PLACE.name, "nowhere.scene"), "no such file"),
+    "an error in a line": (write("wrong.scene", "[volume]\nprocedural = shells\nsize = 3\n"),
+                           "wrong.scene:3:"),
+    "a volume that has moved": (scene_of("moved.scene", "file = elsewhere/head.nrrd"),
+                                "elsewhere/head.nrrd is neither beside the scene nor under"),
+    "no volume": (scene_of("text.scene", "file = " + write("text.nrrd", "Dear diary,\n")),
+                  "text.nrrd"),
+    "half a volume": (scene_of("half.scene", "file = " + write("half.nrrd", NRRD + bytes(2048))),
+                      "half.nrrd"),
+}
+
+# The dialog refuses the other one itself.
+READABLE = [what for what in BAD if what != "no such file"]
+
+
+class WindowLoading(WindowCase):
+    def says_error(self, picture, place=CORNER):
+        """Red letters."""
+        left, top, right, bottom = place
+        pixels = (picture.at(x, y) for x in range(left, right) for y in range(top, bottom))
+        return sum(r > 200 and 60 < g < 130 and b < 110 for r, g, b in pixels) > 40
+
+    def welcomes(self, picture):
+        """A dark ground with text in the middle."""
+        letters = sum(picture.at(x, y)[0] > 120 for x in range(MIDDLE[0], MIDDLE[2])
+                      for y in range(MIDDLE[1], MIDDLE[3]))
+        return picture.at(5, 5) == GROUND and letters > 100
+
+    def quit(self):
+        """-> exit status, messages"""
+        self.tool("key", "q")
+        status = self.viewer.wait(timeout=20)
+        return status, self.messages()
+
+    def open(self, path):
+        """By the dialog, whose title and field are above whatever is in the middle."""
+        title, field = (100, 10, 300, 24), (40, 26, 420, 72)
+        before = self.grab()
+        self.tool("key", "ctrl+o")
+        empty = self.until(lambda p: p.part(*title) != before.part(*title), "a dialog")
+        self.tool("type", "--delay", "4", path)
+        seen = [empty]
+
+        def typed(picture):
+            seen.append(picture)
+            return (picture.part(*field) != empty.part(*field) and
+                    picture.part(*field) == seen[-2].part(*field))
+
+        self.until(typed, "typed")
+        self.tool("key", "Return")
+
+    def test_window_without_a_scene_welcomes_and_ends_well(self):
+        self.launch()
+        self.until(self.welcomes, "welcome")
+        for key in ("1", "r", "p", "l", "c", "i", "Left", "space", "F5", "f", "f", "p"):
+            self.tool("key", key)
+        self.move(200, 150)
+        self.tool("mousedown", 1)
+        self.move(220, 170)
+        self.tool("mouseup", 1)
+        self.tool("click", 4)
+        self.rest()
+        self.assertTrue(self.shows_ground(self.grab()))
+        self.assertEqual(self.quit(), (0, ""))
+
+    def shows_ground(self, picture):
+        return picture.at(5, SIZE[1] - 5) == GROUND
+
+    def test_what_cannot_be_shown_is_said_in_the_window_which_stays(self):
+        for what, (path, message) in BAD.items():
+            with self.subTest(what):
+                self.launch(path)
+                self.until(lambda p: self.says_error(p) and self.shows_ground(p), what)
+                status, said = self.quit()
+                self.assertEqual(status, 1, said)
+                self.assertIn(message, said)
+                self.assertEqual(said.count("gazecast: error"), 1, said)
+
+    def test_what_cannot_be_shown_leaves_the_scene_that_is_shown(self):
+        self.start("--gaze", "0.5,0.5", "--method", "standard")
+        before = self.rest()
+        place = (100, LINE_HEIGHT, 380, CORNER[1])
+        for what in READABLE:
+            with self.subTest(what):
+                self.open(BAD[what][0])
+                self.until(self.says_error, what)
+                self.until(lambda p: p.part(*place) == before.part(*place), "the scene")
+                # Seen for a second, it goes at a key.
+                time.sleep(1.2)
+                self.tool("key", "shift")
+                self.until(lambda p: not self.says_error(p), "read")
+        status, said = self.quit()
+        self.assertEqual(status, 0, said)
+        for what in READABLE:
+            self.assertIn(BAD[what][1], said)
+
+    def test_error_is_listed_after_it_was_clicked_away(self):
+        self.launch(BAD["no such file"][0])
+        self.until(self.says_error, "an error")
+        self.move(SIZE[0] - 100, SIZE[1] - 20)
+        self.tool("click", 1)
+        self.until(lambda p: not self.says_error(p), "clicked away")
+        self.tool("key", "n")
+        self.until(lambda p: self.says_error(p, (20, 40, 460, 120)), "a list")
+        self.assertEqual(self.quit()[0], 1)
+
+    def test_another_scene_takes_the_place_of_one_that_failed(self):
+        self.launch(BAD["a volume that has moved"][0])
+        self.until(self.says_error, "an error")
+        self.open(SCENE)
+        self.until(self.shows_something, "a picture")
+        self.assertEqual(self.quit()[0], 0)
+
+    def bar(self, picture):
+        """The panel of a loading: a button in the middle."""
+        return picture.part(*MIDDLE) != bytes(GROUND) * (len(picture.part(*MIDDLE)) // 3)
+
+    def test_loading_goes_on_while_the_window_answers_and_is_cancelled(self):
+        self.launch(SLOW)
+        first = self.until(self.bar, "a bar")
+        self.until(lambda p: p.part(*MIDDLE) != first.part(*MIDDLE), "it moves")
+        self.tool("windowsize", self.window, 600, 400)
+        self.until(lambda p: p.at(595, 395) == GROUND, "larger")
+        self.tool("windowsize", self.window, *SIZE)
+        self.until(lambda p: p.at(595, 395) == (0, 0, 0), "as before")
+        self.tool("key", "Escape")
+        self.until(self.welcomes, "welcome")
+        status, said = self.quit()
+        self.assertEqual(status, 0)
+        self.assertIn("the loading was cancelled", said)
+
+    def test_scene_stays_while_another_is_loaded_until_that_is_cancelled(self):
+        self.start("--gaze", "0.5,0.5", "--method", "standard")
+        before = self.rest()
+        self.open(SLOW)
+        self.until(lambda p: p.part(*MIDDLE) != before.part(*MIDDLE), "a bar")
+        place = (100, LINE_HEIGHT, 380, 80)
+        self.assertEqual(self.grab().part(*place), before.part(*place))
+        # The camera of the scene shown still turns.
+        self.tool("key", "4")
+        self.until(lambda p: p.part(0, 0, 200, 30) != before.part(0, 0, 200, 30), "acuity")
+        self.tool("key", "1")
+        self.until(lambda p: p.part(*place) == before.part(*place), "standard")
+        self.tool("key", "Escape")
+        self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "no bar")
+        # A second one takes the place of one that is under way.
+        self.open(SLOW)
+        self.open(SCENE)
+        self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "the same scene anew")
+        self.assertEqual(self.quit()[0], 0)
+
+    def test_signals_and_q_end_the_program_while_it_loads(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self.launch(SLOW)
+            self.until(self.bar, "a bar")
+            self.viewer.send_signal(number)
+            self.assertEqual(self.viewer.wait(timeout=20), -number)
+            self.assertEqual(self.messages(), "")
+        self.launch(SLOW)
+        self.until(self.bar, "a bar")
+        self.assertEqual(self.quit()[0], 0)
+
+    def test_display_that_goes_is_a_message_and_an_exit_status(self):
+        kept = self.environment
+        self.addCleanup(setattr, self, "environment", kept)
+        for words in ([SCENE, "--turn", "1"], [SCENE, "--gaze", "0.5,0.5"], [SLOW], []):
+            server, display = start_server(SCREEN)
+            self.environment = dict(kept, DISPLAY=display)
+            self.launch(*words)
+            self.until(self.shows_something if words and words[0] == SCENE else self.bar, "a window")
+            server.kill()
+            server.wait()
+            status = self.viewer.wait(timeout=20)
+            said = self.messages()
+            self.assertEqual(status, 1, said)
+            self.assertEqual(said.count("\n"), 1, said)
+            self.assertIn("the display is gone", said)
+
+    def test_minimised_window_makes_no_pictures(self):
+        self.start("--gaze", "0.5,0.5", "--turn", "1")
+        self.assertGreater(self.ticks_in(0.5), 2)
+        # What a window manager writes there.
+        for state, rests in ((ICONIC, True), (NORMAL, False)):
+            set_state(self.environment["DISPLAY"], int(self.window), state)
+            deadline = time.monotonic() + 15
+            while (self.ticks_in(0.5) <= 1) != rests:
+                self.assertLess(time.monotonic(), deadline, "at rest: %s" % rests)
+
+    def ticks_in(self, seconds):
+        before = self.ticks()
+        time.sleep(seconds)
+        return self.ticks() - before
+
+    def test_window_of_one_pixel_goes_on(self):
+        self.start("--gaze", "0.5,0.5", "--interface-scale", "2")
+        self.tool("windowsize", self.window, 1, 1)
+        self.rest()
+        for key in ("p", "h", "n"):
+            self.tool("key", key)
+            self.rest()
+        self.tool("key", "n")
+        self.tool("key", "h")
+        self.tool("key", "p")
+        self.tool("windowsize", self.window, *SIZE)
+        self.until(self.shows_something, "a picture again")
+        self.assertEqual(self.quit(), (0, ""))
+
+    def test_without_a_window_a_bad_scene_ends_with_a_line(self):
+        for what, (path, message) in BAD.items():
+            with self.subTest(what):
+                done = run(GAZEVIEW, "--headless", path, env=self.environment)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn(message, done.stderr)
+
+    def test_action_is_found_by_name_and_run(self):
+        before = self.start("--gaze", "0.5,0.5", "--method", "standard")
+        self.tool("key", "ctrl+p")
+        self.until(lambda p: p.part(*MIDDLE) != before.part(*MIDDLE), "a list")
+        self.tool("type", "--delay", "4", "mdc square")
+        self.rest()
+        self.tool("key", "Return")
+        line = (0, 0, SIZE[0], 30)
+        self.until(lambda p: p.part(*line) != before.part(*line) and
+                   p.part(200, 100, 240, 140) != bytes(GROUND) * 1600, "mdc")
+        self.tool("key", "1")
+        self.tool("key", "ctrl+p")
+        self.rest()
+        self.tool("key", "Escape")
+        self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "as before")
+        self.assertEqual(self.quit()[0], 0)
+
+    def test_interface_is_drawn_at_the_scale_that_the_display_says(self):
+        self.launch()
+        small = self.letters(self.until(self.welcomes, "welcome"))
+        self.assertEqual(self.quit()[0], 0)
+        self.launch("--interface-scale", "2")
+        self.assertGreater(self.letters(self.until(self.welcomes, "asked for")), 2.5 * small)
+        self.assertEqual(self.quit()[0], 0)
+        set_resources(self.environment["DISPLAY"], b"Xft.dpi: 192\n")
+        self.addCleanup(set_resources, self.environment["DISPLAY"], b"")
+        self.launch()
+        self.assertGreater(self.letters(self.until(self.welcomes, "told")), 2.5 * small)
+        self.assertEqual(self.quit()[0], 0)
+
+    def letters(self, picture):
+        return sum(picture.at(x, y)[0] > 120 for x in range(SIZE[0]) for y in range(SIZE[1]))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
