@@ -525,21 +525,6 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 	return GZ_OK;
 }
 
-enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_settings *settings,
-				      bool has_display, const struct gz_loading *loading,
-				      const struct gz_log *log, struct gz_scene *out_scene)
-{
-	struct gz_scene_settings checked = *settings;
-	const struct gz_scene_parts parts = { path, &checked, has_display, NULL, false };
-	struct reader reader = { .name = path, .log = log, .settings = &checked };
-	reader.given[VOLUME_DIMS] = settings->dims[0] > 0;
-	reader.given[VOLUME_TYPE] = settings->dims[0] > 0 || settings->volume_procedural != 0;
-	enum gz_result result = check_volume(&reader);
-	if (result == GZ_OK)
-		result = gz_scene_settings_check(settings, path, log);
-	return result == GZ_OK ? gz_scene_load_parts(&parts, loading, log, out_scene) : result;
-}
-
 enum gz_result gz_scene_try(const char *path, gz_scene_change *change, void *user,
 			    const struct gz_log *log, struct gz_scene_settings *out_settings)
 {

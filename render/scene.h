@@ -146,22 +146,6 @@ enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struc
 				     struct gz_transfer *out_transfer);
 
 /**
- * As gz_scene_load(), of settings that are there already: changed by somebody, or made for a volume
- * that has no scene.
- *
- * @param path         a file, which need not be there: names in the settings are looked up beside
- *                     it first, and messages name it
- * @param settings     those of a file without a header have dims[0] above 0. Where they name no
- *                     transfer function, the scene gets GZ_PRESET_DEFAULT fitted to the volume
- *                     (render/transfer_presets.h)
- * @param has_display  settings->display is part of the scene
- * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED
- */
-enum gz_result gz_scene_load_settings(const char *path, const struct gz_scene_settings *settings,
-				      bool has_display, const struct gz_loading *loading,
-				      const struct gz_log *log, struct gz_scene *out_scene);
-
-/**
  * Whether gz_scene_load_changed() would find all that a scene needs: everything is read and checked
  * but the volume, which must only be there.
  *

@@ -115,13 +115,7 @@ static enum gz_result load(const struct change *change, const struct gz_loading 
 		.user = &user,
 		.loading = loading,
 	};
-	if (!scene->settings)
-		return gz_scene_open(&request, change->log, out_scene);
-	struct gz_scene_settings settings = *scene->settings;
-	const enum gz_result r = change_settings(&user, &settings);
-	return r != GZ_OK ? r
-			  : gz_scene_load_settings(scene->path, &settings, scene->has_display,
-						   loading, change->log, out_scene);
+	return gz_scene_open(&request, change->log, out_scene);
 }
 
 struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *options)

@@ -35,9 +35,6 @@ struct gz_frame_scene {
 	/** The layout of the raw file that @p path is; NULL: the options' or what its name tells.
 	 */
 	const struct gz_raw_layout *raw;
-	/** Stand for what is in the file, which need not be there; NULL: it is read. */
-	const struct gz_scene_settings *settings;
-	bool has_display; /**< settings->display is part of the scene; only with settings */
 	/** The command line's keys come before the scene's own. */
 	bool by_options;
 	/** These come before both, but for volume, transfer function, camera, clip box and display,

@@ -25,8 +25,6 @@ static enum gz_result load(struct gz_load_job *job)
 	const struct gz_frame_scene scene = {
 		.path = request->path,
 		.raw = request->has_raw ? &request->raw : NULL,
-		.settings = request->has_settings ? &request->settings : NULL,
-		.has_display = request->has_display,
 		.by_options = request->by_options,
 		.kept = job->keep ? &job->kept : NULL,
 	};

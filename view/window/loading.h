@@ -20,11 +20,6 @@ struct gz_window_load_request {
 	char path[GZ_PATH_SIZE];
 	bool has_raw; /**< @p raw is the layout of the raw file that @p path is */
 	struct gz_raw_layout raw;
-	/** @p settings stand for what is in the file, which need not be there: for a volume without
-	 *  a scene, see gz_scene_load_settings(). */
-	bool has_settings;
-	bool has_display; /**< settings.display is part of the scene; only with has_settings */
-	struct gz_scene_settings settings;
 	/** The command line's keys come before the scene's own. For what was named there. */
 	bool by_options;
 	/** What the user has set stays: method and its parameters, look of rays and light,

@@ -1,0 +1,49 @@
+/* Keys are found by words, and how far work is is told in a few. */
+#include "check.h"
+
+#include "view/panels/keys_panel.h"
+#include "view/panels/progress_panel.h"
+
+static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume" };
+
+static void row_is_found_by_words_of_what_it_does_its_keys_and_its_group(void **state)
+{
+	(void)state;
+	assert_true(gz_keys_row_matches(&row, ""));
+	assert_true(gz_keys_row_matches(&row, "  "));
+	assert_true(gz_keys_row_matches(&row, "scene"));
+	assert_true(gz_keys_row_matches(&row, "volume open"));
+	assert_true(gz_keys_row_matches(&row, " SCE  ctrl FILE "));
+}
+
+static void row_without_one_of_the_words_is_not_found(void **state)
+{
+	(void)state;
+	assert_false(gz_keys_row_matches(&row, "save"));
+	assert_false(gz_keys_row_matches(&row, "open save"));
+	assert_false(gz_keys_row_matches(&row, "volumes"));
+}
+
+static void time_left_is_told_once_there_is_something_to_tell_it_by(void **state)
+{
+	(void)state;
+	char text[64];
+	gz_progress_text(0.25, 2, text, sizeof text);
+	assert_string_equal(text, "25 %, 6 s left");
+	gz_progress_text(0.01, 20, text, sizeof text);
+	assert_string_equal(text, "1 %");
+	gz_progress_text(0.5, 0.1, text, sizeof text);
+	assert_string_equal(text, "50 %");
+	gz_progress_text(-1, 20, text, sizeof text);
+	assert_string_equal(text, "");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(row_is_found_by_words_of_what_it_does_its_keys_and_its_group),
+		cmocka_unit_test(row_without_one_of_the_words_is_not_found),
+		cmocka_unit_test(time_left_is_told_once_there_is_something_to_tell_it_by),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
