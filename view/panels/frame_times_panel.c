@@ -7,8 +7,9 @@
 
 /* Unscaled. */
 #define HEIGHT 110.0f
-/* Where numbers begin, as a share of the panel. */
-#define NUMBERS_SHARE 0.45F
+/* Where numbers begin, as shares of the panel. */
+#define MEDIAN_SHARE 0.45F
+#define P95_SHARE    0.7F
 
 /* Okabe and Ito, "Color Universal Design" (2008): told apart by all. */
 static const struct {
@@ -53,8 +54,7 @@ static void draw_column(const struct area *area, float left, float right,
 	}
 }
 
-static void draw_level(const struct area *area, double ms, double px_per_ms,
-		       struct gz_paint paint)
+static void draw_level(const struct area *area, double ms, double px_per_ms, struct gz_paint paint)
 {
 	char text[32];
 	const float y = area->corner.y + area->size.y - (float)(ms * px_per_ms);
@@ -78,8 +78,7 @@ static void draw_plot(const struct gz_frame_history *history, double budget_ms,
 	gz_draw_rectangle(GZ_LAYER_PANEL, area->corner, end, gz_paint_ground, 0);
 	for (size_t i = 0; i < history->count; i++) {
 		const float right = end.x - (float)i * width;
-		draw_column(area, right - width, right, gz_frame_history_at(history, i),
-			    px_per_ms);
+		draw_column(area, right - width, right, gz_frame_history_at(history, i), px_per_ms);
 	}
 	draw_level(area, top, px_per_ms, grid_paint);
 	draw_level(area, top / 2, px_per_ms, grid_paint);
@@ -87,22 +86,28 @@ static void draw_plot(const struct gz_frame_history *history, double budget_ms,
 		draw_level(area, budget_ms, px_per_ms, budget_paint);
 }
 
+static void draw_cells(struct gz_paint paint, const char *name, const char *median, const char *p95)
+{
+	gz_widget_text(paint, name);
+	gz_widgets_same_line(MEDIAN_SHARE);
+	gz_widget_text(gz_paint_plain, median);
+	gz_widgets_same_line(P95_SHARE);
+	gz_widget_text(gz_paint_plain, p95);
+}
+
 static void draw_numbers(const struct gz_frame_history *history)
 {
-	char text[96];
-	snprintf(text, sizeof text, "%zu frames, ms", history->count);
-	gz_widget_text(gz_paint_plain, text);
-	gz_widgets_same_line(NUMBERS_SHARE);
-	gz_widget_text(gz_paint_plain, "   median      p95");
+	char name[48], median[24], p95[24];
+	snprintf(name, sizeof name, "%zu frames, ms", history->count);
+	draw_cells(gz_paint_plain, name, "median", "p95");
 	for (int part = 0; part <= GZ_FRAME_PARTS; part++) {
 		const bool total = part == GZ_FRAME_PARTS;
-		gz_widget_text(total ? gz_paint_plain : parts[part].paint,
-			       total ? "all" : parts[part].name);
-		gz_widgets_same_line(NUMBERS_SHARE);
-		snprintf(text, sizeof text, "%9.2f%9.2f",
-			 gz_frame_history_quantile_ms(history, (enum gz_frame_part)part, 0.5),
+		snprintf(median, sizeof median, "%.2f",
+			 gz_frame_history_quantile_ms(history, (enum gz_frame_part)part, 0.5));
+		snprintf(p95, sizeof p95, "%.2f",
 			 gz_frame_history_quantile_ms(history, (enum gz_frame_part)part, 0.95));
-		gz_widget_text(gz_paint_plain, text);
+		draw_cells(total ? gz_paint_plain : parts[part].paint,
+			   total ? "all" : parts[part].name, median, p95);
 	}
 }
 
