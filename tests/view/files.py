@@ -250,6 +250,16 @@ class Files(WindowCase):
         self.press("Return")
         self.until(self.bright_in_the_middle, "the ball in the middle")
 
+    def test_another_guess_is_chosen_by_arrows_and_short_presses(self):
+        path = self.write("mystery.raw", BALL)
+        self.launch(path, "--gaze", "mouse", "--method", "standard")
+        self.until(self.dialog_there, "the dialog")
+        for key in ("Down", "Up", "Down", "Up"):
+            self.tool("key", key)
+            time.sleep(0.3)
+        self.tool("key", "Return")
+        self.until(lambda p: not self.dialog_there(p), "a picture")
+
     def test_raw_volume_whose_name_tells_all_needs_no_question(self):
         path = self.write("ball_%dx%dx%d_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")

@@ -52,7 +52,8 @@ static bool draw_guesses(struct gz_raw_panel *panel)
 				panel->layout = *layout;
 				opened |= twice || gz_widgets_enter_pressed();
 			}
-			gz_widget_tooltip(panel->guesses[i].reason);
+			gz_widgets_same_line(0.3f);
+			gz_widget_label(panel->guesses[i].reason);
 			if (is_same(layout, &now))
 				reason = panel->guesses[i].reason;
 		}

@@ -59,8 +59,14 @@ constexpr int GLFW_KEYS[KEYS] = { GLFW_KEY_LEFT,      GLFW_KEY_RIGHT,  GLFW_KEY_
 				  GLFW_KEY_DOWN,      GLFW_KEY_TAB,    GLFW_KEY_DELETE,
 				  GLFW_KEY_BACKSPACE, GLFW_KEY_INSERT, GLFW_KEY_ESCAPE };
 
+/* Keys pressed since the last frame that are remembered; more nobody presses in one. */
+constexpr int NOTED_MAX = 8;
+
 /* What is remembered from frame to frame. */
 struct Memory {
+	int noted[NOTED_MAX]; /* of GLFW */
+	int noted_count;
+	bool held[NOTED_MAX];               /* down for this frame only */
 	int presses[KEYS];                  /* since the last one, repetition included */
 	bool dialog_drawn;                  /* in this frame so far */
 	bool dialog_was_open;               /* in the last one */
@@ -226,6 +232,44 @@ void let_keys_lead()
 		io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
 }
 
+/* Before 1.87 Dear ImGui looks at keys once a frame: one that was let go of before is down for this
+ * one, so that it counts. */
+#if IMGUI_VERSION_NUM < 18700
+void hold_brief_keys()
+{
+	Memory &kept = memory();
+	for (int i = 0; i < kept.noted_count; i++) {
+		bool &down = ImGui::GetIO().KeysDown[kept.noted[i]];
+		kept.held[i] = !down;
+		down = true;
+	}
+}
+
+void let_go_of_brief_keys()
+{
+	Memory &kept = memory();
+	for (int i = 0; i < kept.noted_count; i++)
+		if (kept.held[i])
+			ImGui::GetIO().KeysDown[kept.noted[i]] = false;
+	kept.noted_count = 0;
+}
+#else
+void hold_brief_keys()
+{
+}
+
+void let_go_of_brief_keys()
+{
+	memory().noted_count = 0;
+}
+#endif
+
+/* Enter on the widget that keys have led to: Dear ImGui itself answers the space bar alone. */
+bool entered_by_keys()
+{
+	return memory().enter_pressed && ImGui::GetIO().NavVisible && ImGui::IsItemFocused();
+}
+
 void read_keys(gz_canvas &canvas)
 {
 	const int *presses = memory().presses;
@@ -291,6 +335,7 @@ void gz_widgets_begin(void)
 	ImGui_ImplOpenGL3_NewFrame();
 	ImGui_ImplGlfw_NewFrame();
 	let_keys_lead();
+	hold_brief_keys();
 	ImGui::NewFrame();
 	memory().dialog_was_open = memory().dialog_drawn;
 	memory().dialog_drawn = false;
@@ -300,6 +345,7 @@ void gz_widgets_end(void)
 {
 	ImGui::Render();
 	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+	let_go_of_brief_keys();
 	memset(memory().presses, 0, sizeof memory().presses);
 	memory().enter_pressed = memory().escape_pressed = false;
 }
@@ -374,6 +420,9 @@ void gz_widgets_note_key(int key)
 		memory().frames_since_tab = 0;
 	for (int i = 0; i < KEYS; i++)
 		memory().presses[i] += key == GLFW_KEYS[i];
+	Memory &kept = memory();
+	if (key >= 0 && key <= GLFW_KEY_LAST && kept.noted_count < NOTED_MAX)
+		kept.noted[kept.noted_count++] = key;
 }
 
 void gz_widgets_release_keyboard(void)
@@ -546,7 +595,7 @@ bool gz_widget_heading(const char *id, bool open_at_first)
 
 bool gz_widget_button(const char *id)
 {
-	return ImGui::Button(id);
+	return ImGui::Button(id) || entered_by_keys();
 }
 
 bool gz_widget_checkbox(const char *id, bool *value)
@@ -564,7 +613,9 @@ bool gz_widget_choice(const char *id, int *value, const char *const names[])
 
 bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked)
 {
-	const bool chosen = ImGui::Selectable(id, selected, ImGuiSelectableFlags_AllowDoubleClick);
+	const bool chosen =
+		ImGui::Selectable(id, selected, ImGuiSelectableFlags_AllowDoubleClick) ||
+		entered_by_keys();
 	if (out_double_clicked)
 		*out_double_clicked = chosen && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
 	return chosen;
