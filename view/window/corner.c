@@ -27,6 +27,10 @@
 #define AGE_STEP_MS    2.0
 #define NOISE_STEP_DEG 0.02
 
+/* Intervals that an age is the greatest of: chosen, three seconds, in which one that only jitters
+ * has been at its greatest. */
+enum { AGE_INTERVALS = 6 };
+
 enum { TEXT_SIZE = 640 };
 
 struct gz_window_corner {
@@ -34,10 +38,10 @@ struct gz_window_corner {
 	struct gz_gaze_state state; /* that is shown */
 	int64_t state_ns;           /* when it was last so bad */
 	bool lost_known;
-	uint64_t lost;   /* samples, as the daemon has told */
-	int64_t lost_ns; /* when there were more of them; 0: never */
-	int64_t due_ns;  /* when numbers may change */
-	double age_ms;   /* the greatest since they last did */
+	uint64_t lost;                 /* samples, as the daemon has told */
+	int64_t lost_ns;               /* when there were more of them; 0: never */
+	int64_t due_ns;                /* when numbers may change */
+	double ages_ms[AGE_INTERVALS]; /* the greatest of each interval, the newest first */
 	struct {
 		double rate_hz, age_ms, noise_deg;
 	} shown;
@@ -138,6 +142,22 @@ static double steady(double shown, double now, double least_step, double share)
 	return isfinite(now) && isfinite(shown) && fabs(now - shown) <= step ? shown : now;
 }
 
+static double greatest_age_ms(const struct gz_window_corner *corner)
+{
+	double greatest_ms = 0;
+	for (int i = 0; i < AGE_INTERVALS; i++)
+		greatest_ms = fmax(greatest_ms, corner->ages_ms[i]);
+	return greatest_ms;
+}
+
+static void begin_interval(struct gz_window_corner *corner, int64_t now_ns)
+{
+	corner->due_ns = now_ns + NUMBERS_INTERVAL_NS;
+	memmove(corner->ages_ms + 1, corner->ages_ms,
+		sizeof corner->ages_ms - sizeof corner->ages_ms[0]);
+	corner->ages_ms[0] = 0;
+}
+
 /* "  250 Hz  4 ms  fixation  noise 0.12 deg", as much of it as is known. */
 static void print_numbers(struct gz_window *window, const struct gz_window_gaze *gaze, char *text,
 			  size_t size)
@@ -149,7 +169,7 @@ static void print_numbers(struct gz_window *window, const struct gz_window_gaze 
 	corner->shown.rate_hz = steady(corner->shown.rate_hz, gz_gaze_rate_hz(&corner->rate),
 				       RATE_STEP_HZ, RATE_SHARE);
 	corner->shown.age_ms =
-		steady(corner->shown.age_ms, corner->age_ms, AGE_STEP_MS, STEADY_SHARE);
+		steady(corner->shown.age_ms, greatest_age_ms(corner), AGE_STEP_MS, STEADY_SHARE);
 	corner->shown.noise_deg =
 		steady(corner->shown.noise_deg, reading->noise_deg, NOISE_STEP_DEG, STEADY_SHARE);
 	if (fresh && corner->shown.rate_hz > 0)
@@ -169,18 +189,21 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 	const int64_t now_ns = gz_clock_now_ns();
 	struct gz_gaze_state state;
 	char head[TEXT_SIZE], text[TEXT_SIZE];
+	if (!window->maker)
+		return false;
 	gz_gaze_rate_step(&corner->rate, &gaze->asked);
 	count_losses(corner, gaze->status, now_ns);
 	if (gaze->reading.has_age)
-		corner->age_ms = fmax(corner->age_ms, gz_ns_to_ms(gaze->reading.age_ns));
+		corner->ages_ms[0] = fmax(corner->ages_ms[0], gz_ns_to_ms(gaze->reading.age_ns));
 	judge(window, gaze, now_ns, &state);
 	print_head(window, gaze, head, sizeof head);
 	const bool new_state = take_state(corner, &state, now_ns);
 	const bool another = strcmp(head, corner->head) != 0;
+	if (another) /* ages of another source */
+		memset(corner->ages_ms + 1, 0, sizeof corner->ages_ms - sizeof corner->ages_ms[0]);
 	if (another || new_state || now_ns >= corner->due_ns) {
 		print_numbers(window, gaze, corner->numbers, sizeof corner->numbers);
-		corner->due_ns = now_ns + NUMBERS_INTERVAL_NS;
-		corner->age_ms = 0;
+		begin_interval(corner, now_ns);
 	}
 	memcpy(corner->head, head, sizeof head);
 	snprintf(text, sizeof text, "%s%.100s%.200s%s%s", "gaze: ", head, corner->numbers,

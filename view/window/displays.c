@@ -19,7 +19,8 @@ struct gz_window_displays {
 	struct gz_monitor_list list;
 	GLFWmonitor *handles[GZ_MONITORS_MAX]; /* of the list */
 	int64_t looked_ns;                     /* 0: to be looked at anew */
-	int rect_px[4];                        /* of the window, in this turn */
+	int rect_px[4];                        /* of the window */
+	bool rect_old;                         /* it has moved since */
 	struct gz_tracker_display chosen;
 	char told[GZ_NAME_SIZE];  /* the monitor that was told of as the tracker's */
 	char asked[GZ_NAME_SIZE]; /* the name that was refused */
@@ -120,15 +121,26 @@ static void tell_choice(struct gz_window *window)
 						   : "which is what the daemon describes");
 }
 
+static void look_at_window(struct gz_window *window)
+{
+	int *rect = window->displays->rect_px;
+	glfwGetWindowPos(window->glfw, &rect[0], &rect[1]);
+	glfwGetWindowSize(window->glfw, &rect[2], &rect[3]);
+	window->displays->rect_old = false;
+}
+
+/* The display server is asked no more often than needed: it costs more than all else in a turn. */
 static void turn(struct gz_window *window)
 {
 	struct gz_window_displays *displays = window->displays;
 	struct gz_display room;
 	const int64_t now_ns = gz_clock_now_ns();
-	if (displays->looked_ns == 0 || now_ns - displays->looked_ns > LOOK_INTERVAL_NS)
+	if (displays->looked_ns == 0 || now_ns - displays->looked_ns > LOOK_INTERVAL_NS) {
 		look(displays);
-	glfwGetWindowPos(window->glfw, &displays->rect_px[0], &displays->rect_px[1]);
-	glfwGetWindowSize(window->glfw, &displays->rect_px[2], &displays->rect_px[3]);
+		displays->rect_old = true;
+	}
+	if (displays->rect_old)
+		look_at_window(window);
 	displays->chosen =
 		gz_tracker_display_choose(&displays->list, window->settings.view.tracker_display,
 					  described(window, &room), displays->rect_px);
@@ -204,8 +216,7 @@ static void on_monitor(GLFWmonitor *monitor, int event)
 	if (event == GLFW_DISCONNECTED)
 		gz_warn(window->log, "monitor %s has gone; the window stays", name ? name : "");
 	look(displays);
-	glfwGetWindowPos(glfw, &displays->rect_px[0], &displays->rect_px[1]);
-	glfwGetWindowSize(glfw, &displays->rect_px[2], &displays->rect_px[3]);
+	look_at_window(window);
 	if (event == GLFW_DISCONNECTED)
 		bring_back(window);
 	displays->told[0] = '\0';
@@ -242,10 +253,21 @@ static enum gz_result open_part(struct gz_window *window)
 	return GZ_OK;
 }
 
+static void on_place(GLFWwindow *glfw, int x_or_width, int y_or_height)
+{
+	const struct gz_window *window = glfwGetWindowUserPointer(glfw);
+	(void)x_or_width;
+	(void)y_or_height;
+	if (window && window->displays)
+		window->displays->rect_old = true;
+}
+
 static enum gz_result attach(struct gz_window *window)
 {
-	(void)window;
 	glfwSetMonitorCallback(on_monitor);
+	glfwSetWindowPosCallback(window->glfw, on_place);
+	glfwSetWindowSizeCallback(window->glfw, on_place);
+	window->displays->rect_old = true;
 	return GZ_OK;
 }
 
