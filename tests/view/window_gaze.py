@@ -130,6 +130,45 @@ class Gaze(WindowCase):
         self.tool("key", "d")
         self.until(lambda p: p.at(897, 697) == (0, 0, 0), "a window again")
 
+    def start_on_two(self, *more):
+        """The left half of the screen is a monitor, and so is the right one."""
+        library = os.environ.get("TWO_MONITORS_LIBRARY")
+        if not library:
+            self.skipTest("TWO_MONITORS_LIBRARY names nothing to preload")
+        self.unplug = os.path.join(self.place.name, "unplug")
+        kept = self.environment
+        self.addCleanup(setattr, self, "environment", kept)
+        self.environment = dict(kept, LD_PRELOAD=library, UNPLUG_MONITOR=self.unplug)
+        self.environment["ASAN_OPTIONS"] += ":verify_asan_link_order=0"
+        self.start("--render.background", "0.2 0.4 0.6", *more)
+        self.tool("windowsize", self.window, 440, 300)
+        self.tool("windowmove", self.window, 0, 0)
+
+    def test_window_beside_the_trackers_display_says_so_and_d_goes_there_and_back(self):
+        self.start_daemon("--driver=sim", "--sim.blinks_per_min=0")
+        self.start_on_two("--tracker-display", "RIGHT")
+        blue, black = (51, 102, 153), (0, 0, 0)
+        self.until(lambda p: p.at(430, 100) == blue and self.amber(p), "on the other display")
+        self.tool("key", "d")
+        picture = self.until(lambda p: p.at(890, 600) == blue and p.at(455, 600) == blue,
+                             "on the tracker's display")
+        self.assertEqual((picture.at(100, 600), picture.at(440, 200)), (black, black))
+        self.tool("key", "d")
+        self.until(lambda p: p.at(890, 600) == black and p.at(430, 100) == blue, "back")
+
+    def test_window_on_a_monitor_that_goes_comes_to_another_with_a_message(self):
+        self.start_on_two("--tracker-display", "2", "--gaze", "0.5,0.5")
+        blue = (51, 102, 153)
+        self.tool("key", "d")
+        self.until(lambda p: p.at(890, 600) == blue and p.at(100, 600) != blue, "on the right")
+        open(self.unplug, "w", encoding="utf-8").close()
+        self.tool("key", "c")  # something happens
+        self.until(lambda p: p.at(5, 600) == blue, "on the left")
+        self.viewer.terminate()
+        said = self.viewer.communicate(timeout=20)[1]
+        self.viewer = None
+        self.assertEqual(len(self.rows(said, "monitor RIGHT has gone")), 1, said)
+
     def test_panel_shows_the_sources_and_takes_another(self):
         self.start("--gaze", "0.5,0.5", "--cross", "--method", "standard")
         self.tool("windowsize", self.window, 700, 500)

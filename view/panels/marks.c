@@ -27,28 +27,38 @@ float gz_marks_draw_caption(float below, struct gz_paint paint, const char *text
 	return gz_draw_caption(GZ_LAYER_PICTURE, at, paint, text).y;
 }
 
+/* Where a line that begins at @p text, ends at @p end and is wider than @p width is to be broken:
+ * its last blank before that; NULL: nowhere. */
+static char *break_of(char *text, const char *end, float width)
+{
+	char *at = NULL;
+	for (char *blank = text; blank < end; blank++) {
+		if (*blank != ' ')
+			continue;
+		*blank = '\0';
+		const bool fits = gz_text_room(1, text).x <= width;
+		*blank = ' ';
+		if (!fits)
+			break;
+		at = blank;
+	}
+	return at;
+}
+
 /* Break lines at blanks so that each is at most @p width wide, where its words let it. */
 static void wrap(char *text, float width)
 {
-	char *begin = text, *blank = NULL;
-	for (char *at = text; *at; at++) {
-		if (*at == '\n') {
-			begin = at + 1;
-			blank = NULL;
-		}
-		if (*at != ' ')
-			continue;
-		*at = '\0';
-		const bool wide = gz_text_room(1, begin).x > width;
-		*at = ' ';
-		if (wide && blank) {
+	while (*text) {
+		char *end = text + strcspn(text, "\n"), *blank = NULL;
+		const char kept = *end;
+		*end = '\0';
+		if (gz_text_room(1, text).x > width)
+			blank = break_of(text, end, width);
+		*end = kept;
+		if (blank)
 			*blank = '\n';
-			begin = blank + 1;
-		}
-		blank = at;
+		text = blank ? blank + 1 : end + (*end != '\0');
 	}
-	if (blank && gz_text_room(1, begin).x > width)
-		*blank = '\n';
 }
 
 float gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
