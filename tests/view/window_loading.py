@@ -104,18 +104,18 @@ class WindowLoading(WindowCase):
         return status, self.messages()
 
     def open(self, path):
-        """By the dialog, whose title and field are above whatever is in the middle."""
-        title, field = (100, 10, 300, 24), (40, 26, 420, 72)
+        """By the dialog, whose title and field are above what is in the middle."""
+        place = (30, 10, 440, 92)
         before = self.grab()
         self.tool("key", "ctrl+o")
-        empty = self.until(lambda p: p.part(*title) != before.part(*title), "a dialog")
+        empty = self.until(lambda p: p.part(*place) != before.part(*place), "a dialog")
         self.tool("type", "--delay", "4", path)
         seen = [empty]
 
         def typed(picture):
             seen.append(picture)
-            return (picture.part(*field) != empty.part(*field) and
-                    picture.part(*field) == seen[-2].part(*field))
+            return (picture.part(*place) != empty.part(*place) and
+                    picture.part(*place) == seen[-2].part(*place))
 
         self.until(typed, "typed")
         self.tool("key", "Return")
