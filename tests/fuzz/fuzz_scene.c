@@ -1,12 +1,12 @@
 /* Scenes from anywhere, without the files that they name: whatever the bytes, settings that are
- * accepted make a valid camera and display. */
+ * accepted make a valid camera and display, and are written as a scene that says the same. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/scene.h"
+#include "render/scene_write.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -14,6 +14,37 @@ static void require(bool holds)
 {
 	if (!holds)
 		abort();
+}
+
+/* A line holds 199 bytes, and is written with two blanks that it may not have had. */
+static bool has_long_line(const struct gz_text *text)
+{
+	size_t length = 0;
+	for (size_t i = 0; i < text->length; i++) {
+		length = text->bytes[i] == '\n' ? 0 : length + 1;
+		if (length > 199)
+			return true;
+	}
+	return false;
+}
+
+static void check_written(const struct gz_scene_settings *settings, bool has_display)
+{
+	const struct gz_scene_saved saved = { settings, has_display, "" };
+	struct gz_text once = { 0 }, again = { 0 };
+	struct gz_scene_settings read;
+	bool display = false;
+	require(gz_scene_print(&saved, NULL, &once) == GZ_OK);
+	if (!has_long_line(&once)) {
+		require(gz_scene_parse("written", once.bytes, once.length, NULL, &read, &display) ==
+			GZ_OK);
+		const struct gz_scene_saved back = { &read, display, "" };
+		require(gz_scene_print(&back, NULL, &again) == GZ_OK);
+		require(display == has_display && once.length == again.length &&
+			memcmp(once.bytes, again.bytes, once.length) == 0);
+	}
+	gz_text_free(&once);
+	gz_text_free(&again);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -29,5 +60,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	require(memchr(s.volume_file, '\0', sizeof s.volume_file) != NULL);
 	require(s.volume_procedural >= 0 && s.volume_procedural <= GZ_PROCEDURAL_COUNT);
 	require(s.rays.ray_sampling_rate > 0 && s.image_sampling_rate > 0);
+	check_written(&s, has_display);
 	return 0;
 }
