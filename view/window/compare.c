@@ -38,7 +38,8 @@ struct gz_window_compare {
 
 static bool is_wanted(const struct gz_window *window)
 {
-	return window->settings.view.compare != GZ_COMPARE_NONE && window->maker;
+	/* An experiment has the processor to itself. */
+	return window->settings.view.compare != GZ_COMPARE_NONE && window->maker && !window->alone;
 }
 
 static void choose_next(struct gz_window *window, int number)
