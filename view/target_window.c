@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "view/context_loss.h"
+#include "view/display_loss.h"
 #include "view/gl_program.h"
 #include "view/panels/marks.h"
 #include "view/target_options.h"
@@ -337,15 +338,28 @@ static void close_window(struct target_window *window)
 	glfwTerminate();
 }
 
+static enum gz_result run(void *user)
+{
+	struct target_window *window = user;
+	enum gz_result r = open_window(window);
+	if (r == GZ_OK)
+		r = loop(window);
+	close_window(window);
+	return r;
+}
+
 enum gz_result gz_view_targets(const struct gz_view_options *options, const struct gz_log *log)
 {
 	struct target_window window = { .options = options, .log = log };
+	bool lost = false;
 	enum gz_result r = gz_target_places(&options->target, log, &window.targets);
 	if (r != GZ_OK)
 		return r;
-	r = open_window(&window);
-	if (r == GZ_OK)
-		r = loop(&window);
-	close_window(&window);
+	r = gz_display_loss_guard(run, &window, &lost);
+	if (lost) {
+		gz_err(log, "the display is gone: its X server has ended or is out of reach; the "
+			    "targets end here");
+		tell_time("cancelled");
+	}
 	return r;
 }

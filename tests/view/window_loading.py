@@ -7,6 +7,7 @@ window_loading.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 import ctypes
 import os
 import signal
+import subprocess
 import sys
 import time
 import unittest
@@ -246,6 +247,21 @@ class WindowLoading(WindowCase):
             self.assertEqual(status, 1, said)
             self.assertEqual(said.count("\n"), 1, said)
             self.assertIn("the display is gone", said)
+
+    def test_display_that_goes_ends_the_targets_with_a_message(self):
+        server, display = start_server(SCREEN)
+        self.viewer = subprocess.Popen(
+            [GAZEVIEW, "--targets", "9"], env=dict(self.environment, DISPLAY=display),
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )
+        self.assertIn("screen", self.viewer.stdout.readline())
+        server.kill()
+        server.wait()
+        out, said = self.viewer.communicate(timeout=20)
+        self.assertEqual(self.viewer.returncode, 1)
+        self.assertIn("cancelled", out)
+        self.assertEqual(said.count("\n"), 1, said)
+        self.assertIn("the display is gone", said)
 
     def test_minimised_window_makes_no_pictures(self):
         self.start("--gaze", "0.5,0.5", "--turn", "1")
