@@ -3,6 +3,7 @@
 import csv
 import os
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -204,6 +205,26 @@ class Experiment(WindowCase):
         self.answer(self.ended, "space")
         self.finish(0)
 
+    def test_lost_context_interrupts_nothing_but_the_picture(self):
+        library = os.environ.get("LOSE_CONTEXT_LIBRARY")
+        if not library:
+            self.skipTest("LOSE_CONTEXT_LIBRARY names nothing to preload")
+        lost, kept = os.path.join(self.folder, "lost"), self.environment
+        # The shared objects of a sanitizer must not insist on being first.
+        losing = dict(kept, LD_PRELOAD=library, LOSE_CONTEXT=lost,
+                      ASAN_OPTIONS=kept["ASAN_OPTIONS"] + ":verify_asan_link_order=0")
+        for backend in ("cpu", "gl"):
+            self.environment = losing
+            self.begin("--gaze", "0.5,0.5", "--backend", backend)
+            self.environment = kept
+            self.answer(lambda: len(self.rows()) == 1, "space", "1")
+            open(lost, "w", encoding="utf-8").close()
+            self.answer(self.ended, "space", "1")
+            self.assertIn("lost the window's context", self.finish(0))
+            self.assertEqual(len(self.rows()), 4)
+            self.assertFalse(os.path.exists(lost))
+            os.remove(self.answers)
+
     def test_closed_window_keeps_what_was_answered(self):
         self.begin("--gaze", "0.5,0.5")
         self.answer(lambda: len(self.rows()) == 2, "space", "1")
@@ -237,4 +258,4 @@ class Experiment(WindowCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=["experiment_window"], verbosity=2)
+    unittest.main(argv=["experiment_window"] + sys.argv[5:], verbosity=2)
