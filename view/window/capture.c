@@ -151,6 +151,7 @@ static const struct gz_window_action actions[] = {
 
 const struct gz_window_part gz_window_capture = {
 	.name = "capture",
+	.title = "record",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -67,7 +67,7 @@ static void change_gain(struct gz_window *window, int direction)
 static const struct gz_window_action actions[] = {
 	{ .letter = 'v',
 	  .keys = "V",
-	  .help = "beside standard, difference to it, alone",
+	  .help = "split with standard, difference to it, alone",
 	  .run = choose_next },
 	{ .key = GLFW_KEY_LEFT,
 	  .modifiers = GZ_KEY_CONTROL,
@@ -300,6 +300,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_compare_part = {
 	.name = "compare",
+	.title = "picture",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -279,6 +279,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_display_part = {
 	.name = "displays",
+	.title = "window",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -30,7 +30,7 @@ static void toggle(struct gz_window *window, int number)
 static const struct gz_window_action actions[] = {
 	{ .letter = 'b',
 	  .keys = "B",
-	  .help = "frame times, with the time to keep and the method's settings",
+	  .help = "frame times, and a slider for the time to keep",
 	  .run = toggle },
 };
 
@@ -135,6 +135,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_frame_times_part = {
 	.name = "frame times",
+	.title = "picture",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -220,6 +220,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_gaze_settings_part = {
 	.name = "gaze settings",
+	.title = "gaze",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

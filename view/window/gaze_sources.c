@@ -221,7 +221,7 @@ static void toggle_freeze(struct gz_window *window, int number)
 static const struct gz_window_action actions[] = {
 	{ .letter = 'm',
 	  .keys = "M",
-	  .help = "gaze from the next source: daemon, mouse, pointer, log, fixed",
+	  .help = "next source of the gaze: daemon, mouse, log, …",
 	  .run = next_source },
 	{ .letter = ' ',
 	  .keys = "Space",
@@ -254,6 +254,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_gaze_sources = {
 	.name = "gaze sources",
+	.title = "gaze",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -1,6 +1,7 @@
 #include "view/window/keys.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include <GLFW/glfw3.h>
 
@@ -18,15 +19,38 @@ struct gz_window_keys_state {
 	size_t count;
 };
 
-static void list_part(struct gz_window_keys_state *state, const struct gz_window_part *part)
+/* What is looked for most comes first (chosen). */
+static const char *const groups[] = {
+	"gaze", "picture", "transfer function", "camera", "files", "record", "window",
+};
+enum { GROUPS = sizeof groups / sizeof groups[0] };
+
+static const char *group_of(const struct gz_window_part *part,
+			    const struct gz_window_action *action)
+{
+	return action->group ? action->group : part->title ? part->title : part->name;
+}
+
+/* Its number in groups; GROUPS: it has none. */
+static size_t rank_of(const char *group)
+{
+	size_t rank = 0;
+	while (rank < GROUPS && strcmp(groups[rank], group) != 0)
+		rank++;
+	return rank;
+}
+
+static void list_part(struct gz_window_keys_state *state, const struct gz_window_part *part,
+		      size_t rank)
 {
 	for (size_t i = 0; i < part->action_count && state->count < ROWS_MAX; i++) {
 		const struct gz_window_action *action = &part->actions[i];
-		if (!action->keys)
+		const char *group = group_of(part, action);
+		if (!action->keys || rank_of(group) != rank)
 			continue;
 		state->actions[state->count] = action;
 		state->rows[state->count++] = (struct gz_keys_row) {
-			.group = part->title ? part->title : part->name,
+			.group = group,
 			.keys = action->keys,
 			.help = action->help,
 		};
@@ -38,8 +62,9 @@ static enum gz_result open_state(struct gz_window *window)
 	window->keys = calloc(1, sizeof *window->keys);
 	if (!window->keys)
 		return GZ_ERR_NO_MEM;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
-		list_part(window->keys, *part);
+	for (size_t rank = 0; rank <= GROUPS; rank++)
+		for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+			list_part(window->keys, *part, rank);
 	return GZ_OK;
 }
 
@@ -108,7 +133,7 @@ static const struct gz_window_action actions[] = {
 	{ .letter = 'p',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+P",
-	  .help = "find by name; Enter runs it",
+	  .help = "find a key by what it does; Enter runs it",
 	  .run = find },
 	/* The panel itself takes it: also while a text is typed there. */
 	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = leave_alone },
@@ -116,7 +141,7 @@ static const struct gz_window_action actions[] = {
 
 const struct gz_window_part gz_window_keys = {
 	.name = "keys",
-	.title = "help",
+	.title = "window",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_state,

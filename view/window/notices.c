@@ -153,6 +153,7 @@ static const struct gz_window_action actions[] = {
 
 const struct gz_window_part gz_window_notices = {
 	.name = "notices",
+	.title = "window",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_state,

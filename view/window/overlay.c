@@ -19,7 +19,7 @@ static void choose_next(struct gz_window *window, int number)
 static const struct gz_window_action actions[] = {
 	{ .letter = 'i',
 	  .keys = "I",
-	  .help = "tint by the plan: spacing of rays, their steps, nothing",
+	  .help = "tint by spacing of rays, by their steps, not",
 	  .run = choose_next },
 };
 
@@ -85,6 +85,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_overlay_part = {
 	.name = "overlay",
+	.title = "picture",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

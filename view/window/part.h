@@ -25,13 +25,14 @@ struct gz_window_action {
 	/** A character of the user's layout, in lower case: 'c', '+', ' '; 0 where @p key counts.
 	 */
 	char letter;
-	int key;          /**< of GLFW: GLFW_KEY_F12; 0 where @p letter counts */
-	int modifiers;    /**< GZ_KEY_SHIFT, GZ_KEY_CONTROL; exactly these */
-	bool repeats;     /**< also while the key is held */
-	int number;       /**< handed to run: for rows of keys that do the like */
-	const char *keys; /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, since
-			     another row tells of it */
-	const char *help; /**< what it does, one line */
+	int key;           /**< of GLFW: GLFW_KEY_F12; 0 where @p letter counts */
+	int modifiers;     /**< GZ_KEY_SHIFT, GZ_KEY_CONTROL; exactly these */
+	bool repeats;      /**< also while the key is held */
+	int number;        /**< handed to run: for rows of keys that do the like */
+	const char *keys;  /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, since
+			      another row tells of it */
+	const char *help;  /**< what it does, one line; some 48 letters fit */
+	const char *group; /**< of the list, where it is not the part's; else NULL */
 	/** Whether the key is this one's at the moment; else the next action with it has it. NULL:
 	 *  always. */
 	bool (*applies)(const struct gz_window *window);
@@ -41,7 +42,9 @@ struct gz_window_action {
 /** A part. Each table is const and has static storage; any slot may be NULL. */
 struct gz_window_part {
 	const char *name;
-	const char *title; /**< of its keys in the list; NULL: its name */
+	/** The group of the list that its keys stand in, of those that keys.c names; NULL: a group
+	 *  of the part's name behind them. */
+	const char *title;
 	const struct gz_window_action *actions;
 	size_t action_count;
 	/** Once, before there is a window: make the part's state from the options. Logs what goes

@@ -43,8 +43,8 @@ static void end(struct gz_window *window)
 	const uint64_t frames = gz_session_writer_frames(self->writer);
 	snprintf(path, sizeof path, "%s", gz_session_writer_path(self->writer));
 	if (gz_session_writer_end(&self->writer) == GZ_OK)
-		gz_info(window->log, "%s recorded, %llu frames; gazeview --replay shows it again",
-			path, (unsigned long long)frames);
+		gz_info(window->log, "%s recorded, %llu frame%s; gazeview --replay shows it again",
+			path, (unsigned long long)frames, frames == 1 ? "" : "s");
 	window->present_needed = true;
 }
 
@@ -157,12 +157,13 @@ static void close_part(struct gz_window *window)
 static const struct gz_window_action actions[] = {
 	{ .key = GLFW_KEY_F9,
 	  .keys = "F9",
-	  .help = "begin or end recording a session, for --replay",
+	  .help = "begin or end a session, for --replay",
 	  .run = toggle },
 };
 
 const struct gz_window_part gz_window_session = {
 	.name = "session",
+	.title = "record",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -109,6 +109,7 @@ static void close_part(struct gz_window *window)
 
 const struct gz_window_part gz_window_trail_part = {
 	.name = "trail",
+	.title = "gaze",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,

@@ -307,6 +307,7 @@ enum gz_result gz_window_transfer_load(struct gz_window *window, const char *fil
 
 const struct gz_window_part gz_window_transfer_part = {
 	.name = "transfer",
+	.title = "transfer function",
 	.actions = actions,
 	.action_count = sizeof actions / sizeof actions[0],
 	.open = open_part,
