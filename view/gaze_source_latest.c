@@ -6,13 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "client/client.h"
 #include "client/stream.h"
 #include "protocol/endpoint.h"
 #include "protocol/wire.h"
 
+/* Where the local daemon is found is looked at again so often while there is none (chosen: it is
+ * there a second after it was started, and costs a few calls). */
+#define FIND_INTERVAL_NS GZ_NS_PER_S
+
 struct latest_source {
 	struct gz_gaze_source base;
+	const struct gz_log *log;
+	bool finds; /* no endpoint was named */
+	char found[GZ_ENDPOINT_SIZE];
+	int64_t find_ns; /* when it is looked for again */
 	struct gz_client *client;
 	struct gz_stream *status; /* NULL where the stream's endpoint cannot be told */
 	double noise_deg;         /* as status tells it; NaN before that */
@@ -21,6 +30,8 @@ struct latest_source {
 	bool has_told; /* what follows */
 	struct gz_status told;
 };
+
+static const char *const status_topics[] = { GZ_TOPIC_STATUS, NULL };
 
 static void take_status(struct latest_source *self)
 {
@@ -36,6 +47,31 @@ static void take_status(struct latest_source *self)
 		self->display = message.status.display;
 		self->has_display = true;
 	}
+}
+
+/* A daemon that comes later may bind its sockets elsewhere: that of the system, or the user's. The
+ * reader is kept where no other one can be had. */
+static void find_again(struct latest_source *self)
+{
+	char endpoint[GZ_ENDPOINT_SIZE];
+	struct gz_client *client;
+	struct gz_stream *status;
+	const int64_t now_ns = gz_clock_now_ns();
+	if (!self->finds || now_ns < self->find_ns)
+		return;
+	self->find_ns = now_ns + FIND_INTERVAL_NS;
+	if (gz_endpoint_find("latest", NULL, endpoint, sizeof endpoint) != GZ_OK ||
+	    strcmp(endpoint, self->found) == 0)
+		return;
+	memcpy(self->found, endpoint, sizeof endpoint);
+	if (gz_client_open(NULL, self->log, &client) != GZ_OK)
+		return;
+	gz_client_close(&self->client);
+	self->client = client;
+	if (gz_stream_open(NULL, status_topics, self->log, &status) != GZ_OK)
+		return;
+	gz_stream_close(&self->status);
+	self->status = status;
 }
 
 static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
@@ -60,8 +96,10 @@ static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
 	}
 	gz_client_get_counters(self->client, &counters);
 	reading.connected = counters.connected;
-	if (!reading.connected)
+	if (!reading.connected) {
 		self->has_told = false; /* the next one may be another */
+		find_again(self);
+	}
 	take_status(self);
 	reading.noise_deg = self->noise_deg;
 	*out_reading = reading;
@@ -121,12 +159,11 @@ static bool stream_beside(const char *latest, char *text, size_t size)
 static enum gz_result open_status(struct latest_source *self, const char *endpoint,
 				  const struct gz_log *log)
 {
-	static const char *const topics[] = { GZ_TOPIC_STATUS, NULL };
 	char stream[GZ_ENDPOINT_SIZE];
 	if (endpoint && !stream_beside(endpoint, stream, sizeof stream))
 		return GZ_OK;
 	self->base.ops = &latest_ops;
-	return gz_stream_open(endpoint ? stream : NULL, topics, log, &self->status);
+	return gz_stream_open(endpoint ? stream : NULL, status_topics, log, &self->status);
 }
 
 enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *log,
@@ -139,6 +176,12 @@ enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *
 	self->noise_deg = NAN;
 	if (endpoint && !endpoint[0])
 		endpoint = NULL;
+	self->log = log;
+	self->finds = !endpoint;
+	/* Where it cannot be told, gz_client_open() says why. */
+	if (self->finds &&
+	    gz_endpoint_find("latest", NULL, self->found, sizeof self->found) != GZ_OK)
+		self->found[0] = '\0';
 	enum gz_result r = gz_client_open(endpoint, log, &self->client);
 	if (r == GZ_OK)
 		r = open_status(self, endpoint, log);
