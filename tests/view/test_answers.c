@@ -278,7 +278,7 @@ static void what_is_no_file_of_answers_is_refused(void **state)
 	static const char *const texts[] = { "onset\tduration\n1\t2\n", "\n", "a\tb" };
 	struct desk desk;
 	sit_down(&desk);
-	for (size_t i = 0; i < 2; i++) {
+	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
 		FILE *file = fopen(desk.path, "w");
 		fputs(texts[i], file);
 		fclose(file);

@@ -1,6 +1,6 @@
 """gazeview's sessions without a window: recorded, and shown again to the bit.
 
-session.py GAZEVIEW SCENES-FOLDER
+session_command.py GAZEVIEW SCENES-FOLDER
 """
 
 import json

@@ -1,6 +1,6 @@
 """gazeview --headless --video, looked at with ffprobe and ffmpeg.
 
-video.py GAZEVIEW SCENES-FOLDER
+video_command.py GAZEVIEW SCENES-FOLDER
 """
 
 import json

@@ -1,6 +1,6 @@
 """The editor of the transfer function in gazeview's window, by mouse and by keyboard.
 
-transfer_window.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+window_transfer.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
 import math

@@ -1,6 +1,6 @@
 """Opening and saving in gazeview's window: dialogs by keys, files dropped on it.
 
-files.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS], with DROP_FILES naming the program
+window_files.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS], with DROP_FILES naming the program
 that drops files
 """
 
