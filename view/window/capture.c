@@ -43,12 +43,13 @@ static void close_video(struct gz_window *window)
 	if (!self->ending)
 		gz_video_finish(self->video, gz_clock_now_ns());
 	const struct gz_video_status status = gz_video_status(self->video);
-	if (gz_video_close(&self->video) == GZ_OK && status.dropped > 0)
+	const enum gz_result r = gz_video_close(&self->video);
+	if (r == GZ_OK && status.dropped > 0)
 		gz_warn(window->log,
 			"%s written; %llu pictures came too quickly for ffmpeg, the ones before "
 			"stand for them",
 			self->path, (unsigned long long)status.dropped);
-	else if (!status.failed)
+	else if (r == GZ_OK)
 		gz_info(window->log, "%s written", self->path);
 	self->ending = false;
 	window->present_needed = true;

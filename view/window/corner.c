@@ -189,7 +189,7 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 	const int64_t now_ns = gz_clock_now_ns();
 	struct gz_gaze_state state;
 	char head[TEXT_SIZE], text[TEXT_SIZE];
-	if (!window->maker)
+	if (!gaze->source) /* no picture, which the gaze would be on */
 		return false;
 	gz_gaze_rate_step(&corner->rate, &gaze->asked);
 	count_losses(corner, gaze->status, now_ns);

@@ -161,7 +161,8 @@ struct gz_tracker_display gz_window_tracker_display(const struct gz_window *wind
 struct GLFWmonitor *gz_window_tracker_handle(const struct gz_window *window)
 {
 	const struct gz_window_displays *displays = window->displays;
-	return displays->chosen.monitor >= 0 ? displays->handles[displays->chosen.monitor] : NULL;
+	const int at = displays->chosen.monitor;
+	return at >= 0 && at < displays->list.count ? displays->handles[at] : NULL;
 }
 
 const struct gz_monitor *gz_window_tracker_monitor(const struct gz_window *window)
@@ -227,11 +228,9 @@ static void on_monitor(GLFWmonitor *monitor, int event)
 static void fill_tracker_display(struct gz_window *window, int number)
 {
 	(void)number;
-	const struct gz_window_displays *displays = window->displays;
-	const int at = displays->chosen.monitor;
-	if (at < 0)
+	GLFWmonitor *wanted = gz_window_tracker_handle(window);
+	if (!wanted)
 		return;
-	GLFWmonitor *wanted = displays->handles[at];
 	const bool there = glfwGetWindowMonitor(window->glfw) == wanted;
 	gz_window_fill_monitor(window, there ? NULL : wanted);
 	window->present_needed = true;

@@ -245,13 +245,28 @@ static void step(struct gz_window *window)
 		window->present_needed = true;
 }
 
+/* A picture that could not be made has closed its scene. Why has been logged. */
+static enum gz_result check_picture(const struct gz_window *window)
+{
+	const struct gz_alternative *shown = window->experiment->shown;
+	if (!shown || window->maker)
+		return GZ_OK;
+	gz_err(window->log,
+	       "%s: its picture cannot be made, so that the experiment ends; what was answered is "
+	       "kept",
+	       shown->scene);
+	return GZ_ERR_UNSUPPORTED;
+}
+
 static void turn(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
 		return;
 	follow_display(window);
-	const enum gz_result r = gz_experiment_load_ahead(window);
+	enum gz_result r = state->run.phase == GZ_RUN_ENDED ? GZ_OK : check_picture(window);
+	if (r == GZ_OK)
+		r = gz_experiment_load_ahead(window);
 	if (r != GZ_OK)
 		finish(window, r);
 	else if (state->run.phase != GZ_RUN_ENDED)

@@ -96,6 +96,11 @@ static void load(struct gz_window *window, const char *path, const struct gz_raw
 
 void gz_window_open_file(struct gz_window *window, const char *path)
 {
+	if (strlen(path) >= GZ_PATH_SIZE) {
+		gz_err(window->log, "%.60s...: the path is longer than %d bytes; move the file",
+		       path, GZ_PATH_SIZE - 1);
+		return;
+	}
 	switch (gz_file_kind_of(path)) {
 	case GZ_FILE_SCENE:
 	case GZ_FILE_VOLUME:

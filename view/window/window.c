@@ -21,6 +21,9 @@
 
 /* How soon a picture is made again of which bricks are still coming (chosen: some have come). */
 #define BRICKS_PATIENCE_S 0.01
+/* How often a window that nobody can see is looked after, whatever its parts wait for (chosen: at
+ * no cost; an event, as of its coming back, ends the wait). */
+#define HIDDEN_PATIENCE_S 0.1
 
 static enum gz_result open_display(const struct gz_log *log)
 {
@@ -108,10 +111,11 @@ static void take_changes(struct gz_window *window, const struct gz_scene_setting
 }
 
 /* A frame that cannot be made with what the user has set, such as too many rays, is made as the one
- * before; why has been logged. @return whether there was one */
+ * before; why has been logged. A part that is alone has set it, and must not take another for it.
+ * @return whether there was one */
 static bool take_back(struct gz_window *window)
 {
-	if (!window->any_shown || window->taken_back)
+	if (!window->any_shown || window->taken_back || window->alone)
 		return false;
 	window->taken_back = true;
 	window->settings = window->shown;
@@ -197,6 +201,14 @@ static enum gz_result refresh_picture(struct gz_window *window, struct gz_window
 	return GZ_OK;
 }
 
+/* Minimised: X11 leaves such a window its size. */
+static bool is_hidden(const struct gz_window *window)
+{
+	int width, height;
+	glfwGetFramebufferSize(window->glfw, &width, &height);
+	return width < 1 || height < 1 || glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED);
+}
+
 /* One turn of the loop: cast and draw what has changed since the last one. */
 static enum gz_result refresh(struct gz_window *window)
 {
@@ -205,12 +217,11 @@ static enum gz_result refresh(struct gz_window *window)
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->turn)
 			(*part)->turn(window);
-	glfwGetFramebufferSize(window->glfw, &width, &height);
-	/* Minimised: X11 leaves such a window its size. */
-	if (width < 1 || height < 1 || glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED)) {
+	if (is_hidden(window)) {
 		window->panel_frames = 0;
 		return GZ_OK;
 	}
+	glfwGetFramebufferSize(window->glfw, &width, &height);
 	window->frame_new = false;
 	if (window->maker && !window->picture_hidden) {
 		enum gz_result r = refresh_picture(window, &gaze, width, height);
@@ -235,7 +246,10 @@ static double patience_s(const struct gz_window *window)
 		if ((*part)->patience_s)
 			patience = fmin(patience, (*part)->patience_s(window));
 	/* Bricks are coming. */
-	return window->maker && window->cast_needed ? fmin(patience, BRICKS_PATIENCE_S) : patience;
+	if (window->maker && window->cast_needed)
+		patience = fmin(patience, BRICKS_PATIENCE_S);
+	/* What waits for a picture would wait in vain, and in haste. */
+	return is_hidden(window) ? fmax(patience, HIDDEN_PATIENCE_S) : patience;
 }
 
 static enum gz_result loop(struct gz_window *window)
