@@ -135,7 +135,7 @@ struct gz_gaze_panel_answer gz_gaze_panel_draw(struct gz_gaze_panel *panel)
 {
 	struct gz_gaze_panel_answer answer = { 0 };
 	const struct gz_panel_place place = {
-		.at = GZ_PANEL_TOP_LEFT,
+		.at = panel->right ? GZ_PANEL_BOTTOM_RIGHT : GZ_PANEL_TOP_LEFT,
 		.width = WIDTH,
 		.margin_top = panel->margin_top,
 		.margin_bottom = panel->margin_bottom,

@@ -26,6 +26,7 @@ enum gz_gaze_panel_source {
 /** What it shows and changes. */
 struct gz_gaze_panel {
 	bool open;                       /**< false once its cross was clicked */
+	bool right;                      /**< it appears at the lower right: the left is taken */
 	float margin_top, margin_bottom; /**< kept free, screen coordinates */
 	int source;                      /**< enum gz_gaze_panel_source */
 	bool pointer_refused;            /**< the daemon is known to read another tracker */
@@ -50,7 +51,7 @@ struct gz_gaze_panel_answer {
 	bool tracker_display; /**< was changed */
 };
 
-/** Draw it at the left of the window. Switches are changed in place. */
+/** Draw it. Switches are changed in place. */
 struct gz_gaze_panel_answer gz_gaze_panel_draw(struct gz_gaze_panel *panel);
 
 #endif

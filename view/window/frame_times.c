@@ -8,6 +8,7 @@
 #include "view/panels/settings_panel.h"
 #include "view/panels/widgets.h"
 #include "view/setting_applies.h"
+#include "view/window/gaze_settings.h"
 #include "view/window/window_state.h"
 
 /* Unscaled (chosen: names and values of settings fit, and a frame has more than a pixel). */
@@ -111,7 +112,8 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 {
 	(void)gaze;
 	const struct gz_panel_place place = {
-		.at = GZ_PANEL_TOP_LEFT,
+		.at = gz_window_gaze_panel_shown(window) ? GZ_PANEL_BOTTOM_RIGHT
+							 : GZ_PANEL_TOP_LEFT,
 		.width = WIDTH,
 		.margin_top = window->panels_top,
 	};

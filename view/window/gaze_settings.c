@@ -102,6 +102,7 @@ static void show(struct gz_window *window, struct gz_window_gaze_settings *self)
 	const struct gz_view_settings *view = &window->settings.view;
 	panel->margin_top = window->panels_top;
 	panel->margin_bottom = window->panels_bottom;
+	panel->right = window->settings.view.frame_times;
 	panel->source = (int)gz_window_source_now(window);
 	panel->pointer_refused = window->sources->tracker_seen[0] &&
 				 strcmp(window->sources->tracker_seen, "pointer") != 0;
@@ -216,6 +217,11 @@ static void close_part(struct gz_window *window)
 {
 	free(window->gaze_settings);
 	window->gaze_settings = NULL;
+}
+
+bool gz_window_gaze_panel_shown(const struct gz_window *window)
+{
+	return window->gaze_settings && window->gaze_settings->panel.open;
 }
 
 const struct gz_window_part gz_window_gaze_settings_part = {

@@ -8,6 +8,9 @@
 
 #include "view/window/part.h"
 
+/** Whether its panel is shown. */
+bool gz_window_gaze_panel_shown(const struct gz_window *window);
+
 /** The part. */
 extern const struct gz_window_part gz_window_gaze_settings_part;
 
