@@ -19,6 +19,7 @@
 
 struct gz_window_trail {
 	struct gz_gaze_trail trail;
+	bool changed; /* since it was drawn */
 	int64_t drawn_ns;
 };
 
@@ -39,8 +40,9 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 		return false;
 	}
 	const float apart = 0.5f / (float)(gaze->display.px[0] > 0 ? gaze->display.px[0] : 1);
-	const bool changed = gz_gaze_trail_step(&trail->trail, &gaze->reading, apart, now_ns);
-	return changed && now_ns - trail->drawn_ns >= FADE_INTERVAL_NS;
+	if (gz_gaze_trail_step(&trail->trail, &gaze->reading, apart, now_ns))
+		trail->changed = true;
+	return trail->changed && now_ns - trail->drawn_ns >= FADE_INTERVAL_NS;
 }
 
 static struct gz_place place_of(struct gz_point point, struct gz_place room)
@@ -70,6 +72,7 @@ static void draw(struct gz_window *window, const struct gz_window_gaze *gaze)
 	if (!window->settings.view.trail)
 		return;
 	window->trail->drawn_ns = now_ns;
+	window->trail->changed = false;
 	for (int i = 0; i < trail->count; i++) {
 		const struct gz_gaze_stay *stay = &trail->stays[i];
 		const float strength = gz_gaze_trail_strength(stay, now_ns);
@@ -90,7 +93,8 @@ static const struct gz_window_action actions[] = {
 /* What fades is drawn although nothing moves. */
 static double patience_s(const struct gz_window *window)
 {
-	return window->settings.view.trail && window->trail->trail.count > 1
+	return window->settings.view.trail &&
+			       (window->trail->trail.count > 1 || window->trail->changed)
 		       ? gz_ns_to_s(FADE_INTERVAL_NS)
 		       : INFINITY;
 }
