@@ -1,31 +1,18 @@
 #include "render/scene_picture.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "render/png_text.h"
+#include "render/volume/volume_identity.h"
 
 #define GZ_LOG_MODULE "scene"
 
 static const char scene_keyword[] = "gazecast.scene";
 static const char transfer_keyword[] = "gazecast.transfer";
 static const char volume_keyword[] = "gazecast.volume";
-
-/* 256 pieces of 4 KiB, evenly over the voxels; all of fewer. */
-static unsigned long sum_of(const struct gz_volume *volume)
-{
-	enum { PIECES = 256, PIECE = 4096 };
-	const size_t size = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
-	const Bytef *voxels = volume->voxels;
-	if (size <= (size_t)PIECES * PIECE)
-		return crc32_z(0, voxels, size);
-	unsigned long sum = 0;
-	for (size_t i = 0; i < PIECES; i++)
-		sum = crc32_z(sum, voxels + (size - PIECE) / (PIECES - 1) * i, PIECE);
-	return sum;
-}
 
 void gz_volume_mark(const struct gz_volume *volume, char out_mark[GZ_VOLUME_MARK_SIZE])
 {
@@ -34,14 +21,13 @@ void gz_volume_mark(const struct gz_volume *volume, char out_mark[GZ_VOLUME_MARK
 		[GZ_VOXEL_U16] = "uint16",
 		[GZ_VOXEL_F32] = "float32",
 	};
-	const int used =
-		snprintf(out_mark, GZ_VOLUME_MARK_SIZE, "%d x %d x %d %s, %.9g to %.9g",
-			 volume->dims[0], volume->dims[1], volume->dims[2], types[volume->type],
-			 volume->slope * volume->stored_min + volume->intercept,
-			 volume->slope * volume->stored_max + volume->intercept);
-	if (volume->voxels && used > 0 && used < GZ_VOLUME_MARK_SIZE)
-		snprintf(out_mark + used, GZ_VOLUME_MARK_SIZE - (size_t)used, ", crc %08lx",
-			 sum_of(volume));
+	const struct gz_volume_identity identity = gz_volume_identify(volume);
+	const int used = snprintf(out_mark, GZ_VOLUME_MARK_SIZE, "%d x %d x %d %s, %.9g to %.9g",
+				  identity.dims[0], identity.dims[1], identity.dims[2],
+				  types[identity.type], identity.least, identity.greatest);
+	if (identity.has_crc && used > 0 && used < GZ_VOLUME_MARK_SIZE)
+		snprintf(out_mark + used, GZ_VOLUME_MARK_SIZE - (size_t)used, ", crc %08" PRIx32,
+			 identity.crc);
 }
 
 /* The scene in words, with names that are found from everywhere. */

@@ -26,8 +26,7 @@ struct gz_scene_picture {
 
 /**
  * Describe a volume's data in one line, so that other data are told from it: dims, type, range and
- * a checksum (CRC-32) of up to 1 MiB of voxels from all over it. Of bricks in a file no voxel
- * counts.
+ * checksum of gz_volume_identify(). Of bricks in a file no voxel counts.
  */
 void gz_volume_mark(const struct gz_volume *volume, char out_mark[GZ_VOLUME_MARK_SIZE]);
 

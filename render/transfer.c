@@ -53,3 +53,22 @@ double gz_transfer_opacity_over(double opacity, double length)
 {
 	return 1 - pow(1 - opacity, length);
 }
+
+bool gz_transfer_point_same(const struct gz_transfer_point *a, const struct gz_transfer_point *b)
+{
+	return a->value == b->value && a->opacity == b->opacity && a->rgb[0] == b->rgb[0] &&
+	       a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2];
+}
+
+bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b)
+{
+	if (a->count != b->count || a->interpolation != b->interpolation ||
+	    a->has_range != b->has_range)
+		return false;
+	if (a->has_range && (a->range[0] != b->range[0] || a->range[1] != b->range[1]))
+		return false;
+	for (size_t i = 0; i < a->count; i++)
+		if (!gz_transfer_point_same(&a->points[i], &b->points[i]))
+			return false;
+	return true;
+}

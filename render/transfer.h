@@ -36,6 +36,12 @@ struct gz_transfer {
 	double range[2]; /**< the data values that 0 and 1 stand for */
 };
 
+/** Whether both stand at one value, with one colour and opacity. */
+bool gz_transfer_point_same(const struct gz_transfer_point *a, const struct gz_transfer_point *b);
+
+/** Whether both are one function: the same points, interpolation and range. */
+bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b);
+
 /** Read a .tf file: lines "value r g b a", "range LO HI", "interpolation linear|quadratic", '#'
  *  comments. GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_FORMAT (NaN, out of [0, 1], values not rising, no
  *  point, unknown word): logged with file:line and what is allowed. */

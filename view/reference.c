@@ -221,19 +221,11 @@ static void want(struct gz_reference_worker *worker)
 	pthread_cond_signal(&worker->wake);
 }
 
-static bool same_transfer(const struct gz_transfer *a, const struct gz_transfer *b)
-{
-	return a->count == b->count && a->interpolation == b->interpolation &&
-	       a->has_range == b->has_range && a->range[0] == b->range[0] &&
-	       a->range[1] == b->range[1] &&
-	       memcmp(a->points, b->points, a->count * sizeof a->points[0]) == 0;
-}
-
 void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 				      const struct gz_transfer *transfer)
 {
 	pthread_mutex_lock(&worker->lock);
-	if (!same_transfer(&worker->transfer, transfer)) {
+	if (!gz_transfer_same(&worker->transfer, transfer)) {
 		worker->transfer = *transfer;
 		worker->transfer_new = true;
 		if (worker->any_asked)

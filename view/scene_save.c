@@ -38,18 +38,6 @@ void gz_scene_save_suggest(const char *path, char out_path[GZ_PATH_SIZE])
 		snprintf(out_path, GZ_PATH_SIZE, "untitled%s", scene_ending);
 }
 
-static bool is_same_transfer(const struct gz_transfer *a, const struct gz_transfer *b)
-{
-	struct gz_text one = { 0 }, other = { 0 };
-	gz_transfer_print(a, &one);
-	gz_transfer_print(b, &other);
-	const bool same = !one.failed && !other.failed && one.length == other.length &&
-			  memcmp(one.bytes, other.bytes, one.length) == 0;
-	gz_text_free(&one);
-	gz_text_free(&other);
-	return same;
-}
-
 /* Whether what the settings name, or the volume alone, gives the transfer function shown. */
 static bool is_kept(const struct gz_scene_save *save)
 {
@@ -59,10 +47,10 @@ static bool is_kept(const struct gz_scene_save *save)
 	if (!save->transfer)
 		return true;
 	if (!name[0])
-		return save->made && is_same_transfer(save->transfer, save->made);
+		return save->made && gz_transfer_same(save->transfer, save->made);
 	return gz_scene_find_file(save->scene.path, name, path) == GZ_OK &&
 	       gz_transfer_load(path, NULL, &read) == GZ_OK &&
-	       is_same_transfer(save->transfer, &read);
+	       gz_transfer_same(save->transfer, &read);
 }
 
 bool gz_scene_save_writes_transfer(const struct gz_scene_save *save, const char *path,

@@ -24,25 +24,6 @@ static struct gz_transfer *present(struct gz_transfer_edit *edit)
 	return &edit->slots[edit->now];
 }
 
-static bool same_point(const struct gz_transfer_point *a, const struct gz_transfer_point *b)
-{
-	return a->value == b->value && a->opacity == b->opacity && a->rgb[0] == b->rgb[0] &&
-	       a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2];
-}
-
-static bool same(const struct gz_transfer *a, const struct gz_transfer *b)
-{
-	if (a->count != b->count || a->interpolation != b->interpolation ||
-	    a->has_range != b->has_range)
-		return false;
-	if (a->has_range && (a->range[0] != b->range[0] || a->range[1] != b->range[1]))
-		return false;
-	for (size_t i = 0; i < a->count; i++)
-		if (!same_point(&a->points[i], &b->points[i]))
-			return false;
-	return true;
-}
-
 enum gz_result gz_transfer_edit_create(const struct gz_transfer *transfer,
 				       struct gz_transfer_edit **out_edit)
 {
@@ -67,7 +48,7 @@ const struct gz_transfer *gz_transfer_edit_now(const struct gz_transfer_edit *ed
 
 bool gz_transfer_edit_is(const struct gz_transfer_edit *edit, const struct gz_transfer *transfer)
 {
-	return same(gz_transfer_edit_now(edit), transfer);
+	return gz_transfer_same(gz_transfer_edit_now(edit), transfer);
 }
 
 uint64_t gz_transfer_edit_changes(const struct gz_transfer_edit *edit)
@@ -77,7 +58,7 @@ uint64_t gz_transfer_edit_changes(const struct gz_transfer_edit *edit)
 
 bool gz_transfer_edit_differs(const struct gz_transfer_edit *edit)
 {
-	return !same(gz_transfer_edit_now(edit), &edit->saved);
+	return !gz_transfer_same(gz_transfer_edit_now(edit), &edit->saved);
 }
 
 void gz_transfer_edit_restart(struct gz_transfer_edit *edit, const struct gz_transfer *transfer)
@@ -118,7 +99,7 @@ void gz_transfer_edit_end(struct gz_transfer_edit *edit)
 {
 	if (edit->dragging && edit->drag_has_step) {
 		const int before = (edit->now + SLOTS - 1) % SLOTS;
-		if (same(present(edit), &edit->slots[before])) {
+		if (gz_transfer_same(present(edit), &edit->slots[before])) {
 			step_back(edit);
 			edit->future = 0;
 		}
@@ -143,7 +124,7 @@ static struct gz_transfer *change(struct gz_transfer_edit *edit)
 
 void gz_transfer_edit_replace(struct gz_transfer_edit *edit, const struct gz_transfer *transfer)
 {
-	if (!same(transfer, present(edit)))
+	if (!gz_transfer_same(transfer, present(edit)))
 		*change(edit) = *transfer;
 }
 
@@ -221,7 +202,7 @@ void gz_transfer_edit_move(struct gz_transfer_edit *edit, size_t point, double v
 		moved.value = fmin(fmax(value, least), greatest);
 	if (isfinite(opacity))
 		moved.opacity = within(opacity);
-	if (!same_point(&moved, &now->points[point]))
+	if (!gz_transfer_point_same(&moved, &now->points[point]))
 		change(edit)->points[point] = moved;
 }
 
@@ -232,7 +213,7 @@ void gz_transfer_edit_colour(struct gz_transfer_edit *edit, size_t point, const 
 	struct gz_transfer_point coloured = present(edit)->points[point];
 	for (int i = 0; i < 3; i++)
 		coloured.rgb[i] = within(rgb[i]);
-	if (!same_point(&coloured, &present(edit)->points[point]))
+	if (!gz_transfer_point_same(&coloured, &present(edit)->points[point]))
 		change(edit)->points[point] = coloured;
 }
 

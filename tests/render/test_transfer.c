@@ -44,6 +44,27 @@ static void file_with_every_word_is_read(void **state)
 	assert_true(t.points[2].opacity == 1);
 }
 
+static void functions_are_the_same_where_points_interpolation_and_range_are(void **state)
+{
+	(void)state;
+	const struct gz_transfer one = parsed("0 0 0 0 0\n1 1 1 1 1\n");
+	const struct gz_transfer others[] = {
+		parsed("0 0 0 0 0\n1 1 1 1 0.5\n"),
+		parsed("0 0 0 0 0\n1 1 0.5 1 1\n"),
+		parsed("0 0 0 0 0\n0.5 1 1 1 1\n"),
+		parsed("0 0 0 0 0\n"),
+		parsed("range 0 1\n0 0 0 0 0\n1 1 1 1 1\n"),
+		parsed("interpolation quadratic\n0 0 0 0 0\n1 1 1 1 1\n"),
+	};
+	struct gz_transfer same = one;
+	same.range[0] = 7; /* of no meaning without has_range */
+	same.points[2].value = 7;
+	assert_true(gz_transfer_same(&one, &same));
+	for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+		if (gz_transfer_same(&one, &others[i]))
+			fail_msg("function %zu is told as the first", i);
+}
+
 static void without_range_and_interpolation_it_is_linear_over_the_data(void **state)
 {
 	(void)state;
@@ -266,6 +287,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_with_every_word_is_read),
+		cmocka_unit_test(functions_are_the_same_where_points_interpolation_and_range_are),
 		cmocka_unit_test(without_range_and_interpolation_it_is_linear_over_the_data),
 		cmocka_unit_test(numbers_are_read_alike_in_every_locale),
 		cmocka_unit_test(each_refusal_names_line_and_remedy),

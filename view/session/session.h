@@ -16,7 +16,7 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/attention/attention.h"
-#include "render/volume/volume.h"
+#include "render/volume/volume_identity.h"
 #include "view/gaze_source.h"
 
 #define GZ_SESSION_ENDING   ".session"
@@ -24,28 +24,6 @@
 #define GZ_SESSION_TRANSFER "transfer.tf"
 #define GZ_SESSION_FRAMES   "frames.tsv"
 #define GZ_SESSION_GAZE     "gaze.gzl"
-
-/** Which volume was shown: what two volumes hardly share by chance. */
-struct gz_volume_identity {
-	int dims[3];
-	enum gz_voxel_type type;
-	double spacing[3];
-	double least, greatest; /**< data values, as of slope and intercept */
-	bool has_crc;           /**< voxels were looked at: none are at hand of a file of bricks */
-	uint32_t crc;           /**< CRC-32 of some of the voxels, see gz_volume_identify() */
-};
-
-/**
- * Tell which volume it is.
- *
- * The CRC is of 4096 runs of 64 bytes, evenly strewn over the voxels, or of all where they are
- * fewer: enough to tell volumes apart, and quick for one of any size.
- */
-struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume);
-
-/** Whether both are of one volume; of a CRC that one of them lacks, nothing is asked. */
-bool gz_volume_identity_same(const struct gz_volume_identity *a,
-			     const struct gz_volume_identity *b);
 
 /** What is the same for all frames. */
 struct gz_session_header {

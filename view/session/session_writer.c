@@ -340,14 +340,6 @@ static void print_transfer(const struct gz_transfer *transfer, struct gz_text *l
 	gz_text_free(&text);
 }
 
-static bool same_transfer(const struct gz_transfer *a, const struct gz_transfer *b)
-{
-	return a->count == b->count && a->interpolation == b->interpolation &&
-	       a->has_range == b->has_range &&
-	       (!a->has_range || memcmp(a->range, b->range, sizeof a->range) == 0) &&
-	       memcmp(a->points, b->points, a->count * sizeof a->points[0]) == 0;
-}
-
 enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 				     const struct gz_scene_settings *settings,
 				     const struct gz_transfer *transfer,
@@ -358,7 +350,7 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 	const enum gz_result r = print_changes(writer, settings);
 	if (r != GZ_OK)
 		return fail(writer, "a table of spacings", errno);
-	if (!same_transfer(&writer->transfer, transfer)) {
+	if (!gz_transfer_same(&writer->transfer, transfer)) {
 		print_transfer(transfer, &writer->lines);
 		writer->transfer = *transfer;
 	}

@@ -1,7 +1,7 @@
+#include "render/volume/volume_identity.h"
+
 #include <string.h>
 #include <zlib.h>
-
-#include "view/session/session.h"
 
 enum { RUNS = 4096, RUN_BYTES = 64 };
 
