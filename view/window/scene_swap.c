@@ -99,7 +99,9 @@ const char *gz_window_scene_path(const struct gz_window *window)
 
 void gz_window_close_scene(struct gz_window *window)
 {
-	const bool held = window->loading && window->loading->shown;
+	if (!window->loading)
+		return;
+	const bool held = window->loading->shown != NULL;
 	drop(gz_window_leave_maker(window), held);
 }
 
