@@ -527,6 +527,7 @@ void gz_view_options_print_help(FILE *out)
 	      "  gazeview VOLUME\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"
 	      "  gazeview --targets 9\n"
+	      "  gazeview --replay NAME.session\n"
 	      "  gazeview --experiment FILE --participant 07\n\n",
 	      out);
 	gz_options_print_help(own, OWN_BINDINGS, out);

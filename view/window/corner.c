@@ -19,6 +19,9 @@
 /* Samples that were lost are told of for so long after the daemon has said so (chosen: three of its
  * statuses). */
 #define LOSS_SHOWN_NS (3 * GZ_NS_PER_S)
+/* Of the samples between two statuses, what may be lost untold (chosen: one in a second at 60 Hz,
+ * which no fixation is missed for). */
+#define LOSS_SHARE 0.02
 
 /* Numbers that have changed by less stay as they are shown (chosen: nobody would act on that). */
 #define STEADY_SHARE   0.2
@@ -38,7 +41,8 @@ struct gz_window_corner {
 	struct gz_gaze_state state; /* that is shown */
 	int64_t state_ns;           /* when it was last so bad */
 	bool lost_known;
-	uint64_t lost;                 /* samples, as the daemon has told */
+	uint64_t samples;              /* delivered, as the daemon has told */
+	uint64_t lost;                 /* likewise */
 	int64_t lost_ns;               /* when there were more of them; 0: never */
 	int64_t due_ns;                /* when numbers may change */
 	double ages_ms[AGE_INTERVALS]; /* the greatest of each interval, the newest first */
@@ -49,6 +53,15 @@ struct gz_window_corner {
 	char text[TEXT_SIZE]; /* on the screen */
 };
 
+static bool loses(const struct gz_window_corner *corner, const struct gz_status *status)
+{
+	/* Another daemon's begin anew. */
+	if (status->lost <= corner->lost || status->samples < corner->samples)
+		return false;
+	const double lost = (double)(status->lost - corner->lost);
+	return lost > LOSS_SHARE * (lost + (double)(status->samples - corner->samples));
+}
+
 static void count_losses(struct gz_window_corner *corner, const struct gz_status *status,
 			 int64_t now_ns)
 {
@@ -56,10 +69,11 @@ static void count_losses(struct gz_window_corner *corner, const struct gz_status
 		corner->lost_known = false;
 		return;
 	}
-	if (corner->lost_known && status->lost > corner->lost)
+	if (corner->lost_known && loses(corner, status))
 		corner->lost_ns = now_ns;
 	corner->lost_known = true;
 	corner->lost = status->lost;
+	corner->samples = status->samples;
 }
 
 static bool log_is_over(const struct gz_window *window)
