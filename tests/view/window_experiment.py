@@ -248,6 +248,16 @@ class Experiment(WindowCase):
         self.assertIn("short.experiment:15: [experiment] questions: unknown key; did you mean "
                       "question?", self.refused(questions="x"))
 
+    def test_picture_that_cannot_be_made_ends_it_and_no_other_is_shown_for_it(self):
+        self.write(**{"b.render.image_sampling_rate": "4"})
+        self.begin("--gaze", "0.5,0.5", "--window", "--size", "4200x100")
+        self.answer(self.ended, "space")
+        said = self.finish(1)
+        self.assertIn("4200x100 at image_sampling_rate 4 is not 1 to 16384 rays a side", said)
+        self.assertIn("its picture cannot be made, so that the experiment ends", said)
+        self.assertEqual(said.count("image_sampling_rate 4"), 1, said)
+        self.assertEqual(self.rows(), [])
+
     def test_without_a_window_the_trials_are_listed(self):
         done = run(GAZEVIEW, *self.words("--headless"), env=self.environment)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -258,4 +268,4 @@ class Experiment(WindowCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=["experiment_window"] + sys.argv[5:], verbosity=2)
+    unittest.main(argv=["window_experiment"] + sys.argv[5:], verbosity=2)

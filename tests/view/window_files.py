@@ -269,4 +269,4 @@ class Files(WindowCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=["files.py"])
+    unittest.main(argv=["window_files"])
