@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "view/caster.h"
 #include "view/window/loading_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -17,7 +16,7 @@ enum gz_result gz_window_preload(struct gz_window *window,
 		return GZ_ERR_NO_MEM;
 	}
 	snprintf(held->path, sizeof held->path, "%s", request->path);
-	const bool cpu = gz_caster_takes_cpu(window->options, &window->context.base, window->log);
+	const bool cpu = gz_window_takes_cpu(window);
 	const enum gz_result r =
 		gz_load_job_begin(request, NULL, cpu, window->options, window->log, &held->job);
 	if (r != GZ_OK) {
@@ -37,7 +36,7 @@ static void finish(struct gz_window *window, struct gz_window_held *held)
 	held->job->maker = NULL;
 	gz_load_job_destroy(&held->job);
 	if (held->maker && !gz_frame_maker_started(held->maker) &&
-	    gz_frame_maker_start(held->maker, window->options, &window->context.base) != GZ_OK)
+	    gz_window_start_maker(window, held->maker) != GZ_OK)
 		gz_frame_maker_destroy(&held->maker);
 }
 

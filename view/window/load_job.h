@@ -47,7 +47,7 @@ struct gz_load_job {
  * Begin to load. Wakes the window's loop when it has finished.
  *
  * @param kept  settings that stay; NULL: none
- * @param cpu   gz_caster_takes_cpu()
+ * @param cpu   gz_window_takes_cpu()
  * @retval GZ_ERR_NO_MEM  neither memory nor a thread; logged
  */
 enum gz_result gz_load_job_begin(const struct gz_window_load_request *request,

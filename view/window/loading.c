@@ -6,7 +6,6 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/caster.h"
 #include "view/panels/progress_panel.h"
 #include "view/panels/welcome_panel.h"
 #include "view/window/loading_state.h"
@@ -54,7 +53,7 @@ enum gz_result gz_window_load(struct gz_window *window,
 			      const struct gz_window_load_request *request)
 {
 	struct gz_load_job *job;
-	const bool cpu = gz_caster_takes_cpu(window->options, &window->context.base, window->log);
+	const bool cpu = gz_window_takes_cpu(window);
 	/* Without a scene there is nothing to be kept. */
 	const struct gz_scene_settings *kept =
 		request->keep && window->maker ? &window->settings : NULL;

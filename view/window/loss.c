@@ -11,9 +11,8 @@
  * Chosen: longer than a hang and its reset take, some seconds. */
 #define SOON_S 30
 
-/* Losses so soon after each other: after the second cpu casts the rays, after the third not even a
- * window can be had. */
-enum { LOSSES_TO_CPU = 2, LOSSES_TO_END = 3 };
+/* Losses so soon after each other after which not even a window can be had. */
+enum { LOSSES_TO_END = 3 };
 
 /* The next window is made as large as this one, or as that to which full screen returns. @return
  * whether it fills the screen */
@@ -52,7 +51,7 @@ static enum gz_result open_anew(struct gz_window *window)
 	enum gz_result r = gz_window_context_open(window);
 	if (r == GZ_OK && !window->maker)
 		return gz_window_drawing_open(window);
-	if (r == GZ_OK && window->losses < LOSSES_TO_CPU)
+	if (r == GZ_OK && window->losses < GZ_WINDOW_LOSSES_TO_CPU)
 		started =
 			gz_frame_maker_start(window->maker, window->options, &window->context.base);
 	if (r == GZ_OK && started != GZ_OK)
@@ -71,9 +70,10 @@ enum gz_result gz_window_rebuild(struct gz_window *window)
 		return GZ_ERR_NO_DEVICE;
 	}
 	gz_warn(window->log, "the graphics driver has lost the window's context%s",
-		window->losses < LOSSES_TO_CPU ? ": the window is made anew"
-					       : " again: it is made anew, and the cpu backend "
-						 "casts the rays from now on");
+		window->losses < GZ_WINDOW_LOSSES_TO_CPU
+			? ": the window is made anew"
+			: " again: it is made anew, and the cpu backend "
+			  "casts the rays from now on");
 	const bool fullscreen = remember_place(window);
 	gz_context_await_reset();
 	if (window->maker)

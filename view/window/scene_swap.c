@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "view/caster.h"
 #include "view/window/loading_state.h"
 #include "view/window/part.h"
 
@@ -47,6 +48,19 @@ struct gz_frame_maker *gz_window_leave_maker(struct gz_window *window)
 	return maker;
 }
 
+bool gz_window_takes_cpu(struct gz_window *window)
+{
+	return window->losses >= GZ_WINDOW_LOSSES_TO_CPU ||
+	       gz_caster_takes_cpu(window->options, &window->context.base, window->log);
+}
+
+enum gz_result gz_window_start_maker(struct gz_window *window, struct gz_frame_maker *maker)
+{
+	return window->losses < GZ_WINDOW_LOSSES_TO_CPU
+		       ? gz_frame_maker_start(maker, window->options, &window->context.base)
+		       : gz_frame_maker_start_cpu(maker, window->options);
+}
+
 /* Frees it unless it is held. */
 static void drop(struct gz_frame_maker *maker, bool held)
 {
@@ -58,7 +72,7 @@ static void drop(struct gz_frame_maker *maker, bool held)
 static void bring_back(struct gz_window *window, struct gz_frame_maker *old, const char *path,
 		       const struct gz_scene_settings *settings, const struct gz_window_held *held)
 {
-	if (gz_frame_maker_start(old, window->options, &window->context.base) != GZ_OK) {
+	if (gz_window_start_maker(window, old) != GZ_OK) {
 		drop(old, held != NULL);
 		return;
 	}
@@ -78,7 +92,7 @@ enum gz_result gz_window_swap_to_job(struct gz_window *window, struct gz_load_jo
 		/* The graphics device may have no room for both. */
 		if (old)
 			gz_frame_maker_stop(old);
-		r = gz_frame_maker_start(job->maker, window->options, &window->context.base);
+		r = gz_window_start_maker(window, job->maker);
 	}
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&job->maker);
@@ -113,7 +127,7 @@ enum gz_result gz_window_show(struct gz_window *window, struct gz_window_held *h
 	gz_window_close_scene(window);
 	enum gz_result r = GZ_OK;
 	if (!gz_frame_maker_started(held->maker))
-		r = gz_frame_maker_start(held->maker, window->options, &window->context.base);
+		r = gz_window_start_maker(window, held->maker);
 	if (r != GZ_OK)
 		return r;
 	gz_window_take_maker(window, held->maker, held->path, NULL);

@@ -40,7 +40,7 @@ static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
-	if (window->line[0])
+	if (window->line[0] && window->record.method)
 		window->panels_top = gz_marks_draw_caption(0, gz_paint_plain, window->line);
 }
 

@@ -32,6 +32,9 @@ struct gz_window_part;
 
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
+/** From so many losses of the context in short order on, cpu casts the rays. */
+enum { GZ_WINDOW_LOSSES_TO_CPU = 2 };
+
 struct gz_window_sources;
 struct gz_window_displays;
 struct gz_window_corner;
