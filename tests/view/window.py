@@ -265,6 +265,22 @@ class Window(WindowCase):
         self.until(lambda p: self.cross_at(p, 200, 150), "cross at the mouse")
         self.assertLess(self.processor_share(), 0.03)
 
+    def test_escape_closes_panels_before_it_quits(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.move(200, 150)
+        before = self.grab()
+        for key in ("p", "e"):
+            self.tool("key", key)
+            shown = self.until_changed(before, "panel of " + key)
+            self.tool("key", "Escape")
+            self.until_changed(shown, "no panel of " + key)
+            place = (100, 60, 470, 240)
+            self.until(lambda p: p.part(*place) == before.part(*place), "the picture")
+            self.assertIsNone(self.viewer.poll())
+        self.tool("key", "Escape")
+        self.assertEqual(self.viewer.wait(timeout=15), 0)
+        self.viewer = None
+
     def test_escape_and_q_end_it(self):
         for key in ("Escape", "q"):
             self.start("--gaze", "mouse")

@@ -64,7 +64,13 @@ static void quit(struct gz_window *window, int number)
 		.key = GLFW_KEY_KP_##digit, .number = (method), .run = choose_method \
 	}
 
+static bool is_open(const struct gz_window *window)
+{
+	return window->settings_panel.open;
+}
+
 static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle_settings },
 	METHOD(1, 0, "1", "method standard: every ray"),
 	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around"),
 	METHOD(3, 2, "3", "method ddc: two ellipses"),
@@ -88,7 +94,11 @@ static const struct gz_window_action actions[] = {
 	  .group = "window",
 	  .run = toggle_fullscreen },
 	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
-	{ .letter = 'q', .keys = "Esc or Q", .help = "quit", .group = "window", .run = quit },
+	{ .letter = 'q',
+	  .keys = "Q or Esc",
+	  .help = "quit; Esc first closes what is open",
+	  .group = "window",
+	  .run = quit },
 	{ .key = GLFW_KEY_ESCAPE, .run = quit },
 };
 

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include <GLFW/glfw3.h>
+
 #include "base/clock.h"
 #include "view/frame_history.h"
 #include "view/panels/frame_times_panel.h"
@@ -28,7 +30,13 @@ static void toggle(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
+static bool is_open(const struct gz_window *window)
+{
+	return window->settings.view.frame_times;
+}
+
 static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle },
 	{ .letter = 'b',
 	  .keys = "B",
 	  .help = "frame times, and a slider for the time to keep",

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <GLFW/glfw3.h>
+
 #include "base/clock.h"
 #include "view/panels/gaze_panel.h"
 #include "view/panels/widgets.h"
@@ -201,6 +203,7 @@ static void toggle(struct gz_window *window, int number)
 }
 
 static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = gz_window_gaze_panel_shown, .run = toggle },
 	{ .letter = 'g',
 	  .keys = "G",
 	  .help = "gaze: source, log, display, latency",

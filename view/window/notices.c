@@ -147,7 +147,13 @@ static void close_state(struct gz_window *window)
 	window->notices_state = NULL;
 }
 
+static bool is_open(const struct gz_window *window)
+{
+	return window->notices_state && window->notices_state->list;
+}
+
 static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle_list },
 	{ .letter = 'n', .keys = "N", .help = "all messages so far", .run = toggle_list },
 };
 

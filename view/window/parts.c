@@ -36,7 +36,6 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_trail_part,
 	&gz_window_camera,
 	&gz_window_frame_times_part,
-	&gz_window_basics,
 	&gz_window_gaze_settings_part,
 	&gz_window_latency_part,
 	&gz_window_files,
@@ -46,6 +45,8 @@ const struct gz_window_part *const gz_window_parts[] = {
 	&gz_window_session,
 	&gz_window_capture,
 	&gz_window_screenshots,
+	/* Behind those whose panels Escape closes: it quits where none is open. */
+	&gz_window_basics,
 	&gz_window_experiment_part,
 	NULL,
 };

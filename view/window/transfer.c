@@ -112,7 +112,13 @@ static void undo(struct gz_window *window, int again)
 	gz_window_wake_panels(window);
 }
 
+static bool is_open(const struct gz_window *window)
+{
+	return window->transfer && window->transfer->panel.open;
+}
+
 static const struct gz_window_action actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle },
 	{ .letter = 'e', .keys = "E", .help = "edit the transfer function", .run = toggle },
 	{ .letter = 'z',
 	  .modifiers = GZ_KEY_CONTROL,
