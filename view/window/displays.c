@@ -20,6 +20,7 @@ struct gz_window_displays {
 	GLFWmonitor *handles[GZ_MONITORS_MAX]; /* of the list */
 	int64_t looked_ns;                     /* 0: to be looked at anew */
 	int rect_px[4];                        /* of the window */
+	int framebuffer_px[2];                 /* its; 0 while it is minimised */
 	bool rect_old;                         /* it has moved since */
 	struct gz_tracker_display chosen;
 	char told[GZ_NAME_SIZE];  /* the monitor that was told of as the tracker's */
@@ -126,6 +127,11 @@ static void look_at_window(struct gz_window *window)
 	int *rect = window->displays->rect_px;
 	glfwGetWindowPos(window->glfw, &rect[0], &rect[1]);
 	glfwGetWindowSize(window->glfw, &rect[2], &rect[3]);
+	int *size_px = window->displays->framebuffer_px;
+	glfwGetFramebufferSize(window->glfw, &size_px[0], &size_px[1]);
+	/* X11 leaves such a window its size. */
+	if (glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED))
+		size_px[0] = size_px[1] = 0;
 	window->displays->rect_old = false;
 }
 
@@ -182,6 +188,12 @@ const struct gz_monitor *gz_window_own_monitor(const struct gz_window *window)
 void gz_window_rect(const struct gz_window *window, int out_rect_px[4])
 {
 	memcpy(out_rect_px, window->displays->rect_px, sizeof window->displays->rect_px);
+}
+
+void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *out_height)
+{
+	*out_width = window->displays->framebuffer_px[0];
+	*out_height = window->displays->framebuffer_px[1];
 }
 
 struct gz_window_share gz_window_share(const struct gz_window *window)
@@ -261,11 +273,17 @@ static void on_place(GLFWwindow *glfw, int x_or_width, int y_or_height)
 		window->displays->rect_old = true;
 }
 
+static void on_iconify(GLFWwindow *glfw, int iconified)
+{
+	on_place(glfw, iconified, 0);
+}
+
 static enum gz_result attach(struct gz_window *window)
 {
 	glfwSetMonitorCallback(on_monitor);
 	glfwSetWindowPosCallback(window->glfw, on_place);
 	glfwSetWindowSizeCallback(window->glfw, on_place);
+	glfwSetWindowIconifyCallback(window->glfw, on_iconify);
 	window->displays->rect_old = true;
 	return GZ_OK;
 }

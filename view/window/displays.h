@@ -30,6 +30,9 @@ const struct gz_monitor *gz_window_own_monitor(const struct gz_window *window);
 /** Where the window's content is, x y w h among all monitors. */
 void gz_window_rect(const struct gz_window *window, int out_rect_px[4]);
 
+/** Pixels that the window has to draw on, as of this turn; 0 while it is minimised. */
+void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *out_height);
+
 /** The window as a part of the tracker's display; the whole where --gaze-fills-window says so. */
 struct gz_window_share gz_window_share(const struct gz_window *window);
 

@@ -10,6 +10,7 @@
 #include "view/context_loss.h"
 #include "view/display_loss.h"
 #include "view/panels/widgets.h"
+#include "view/window/displays.h"
 #include "view/window/experiment.h"
 #include "view/window/files.h"
 #include "view/window/loading.h"
@@ -201,14 +202,6 @@ static enum gz_result refresh_picture(struct gz_window *window, struct gz_window
 	return GZ_OK;
 }
 
-/* Minimised: X11 leaves such a window its size. */
-static bool is_hidden(const struct gz_window *window)
-{
-	int width, height;
-	glfwGetFramebufferSize(window->glfw, &width, &height);
-	return width < 1 || height < 1 || glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED);
-}
-
 /* One turn of the loop: cast and draw what has changed since the last one. */
 static enum gz_result refresh(struct gz_window *window)
 {
@@ -217,11 +210,11 @@ static enum gz_result refresh(struct gz_window *window)
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->turn)
 			(*part)->turn(window);
-	if (is_hidden(window)) {
+	gz_window_framebuffer(window, &width, &height);
+	if (width < 1 || height < 1) { /* minimised */
 		window->panel_frames = 0;
 		return GZ_OK;
 	}
-	glfwGetFramebufferSize(window->glfw, &width, &height);
 	window->frame_new = false;
 	if (window->maker && !window->picture_hidden) {
 		enum gz_result r = refresh_picture(window, &gaze, width, height);
@@ -237,6 +230,13 @@ static enum gz_result refresh(struct gz_window *window)
 	if (window->frame_new || window->present_needed || panels_due || follow)
 		gz_window_present(window, &gaze, width, height);
 	return GZ_OK;
+}
+
+static bool is_hidden(const struct gz_window *window)
+{
+	int width, height;
+	gz_window_framebuffer(window, &width, &height);
+	return width < 1 || height < 1;
 }
 
 static double patience_s(const struct gz_window *window)
