@@ -76,7 +76,7 @@ struct gz_view_options {
 	bool fullscreen;
 	bool vsync;
 	double interface_scale; /**< 0: what the display says */
-	int measure_window; /**< frames of each kind; 0: nothing is measured */
+	int measure_window;     /**< frames of each kind; 0: nothing is measured */
 	bool gaze_fills_window;
 	char tracker_display[GZ_NAME_SIZE]; /**< empty: as the scene says */
 	int display_px[2];                  /**< 0: not given */

@@ -84,8 +84,8 @@ struct gz_raw_layout {
 
 /**
  * Load a volume; the kind follows from the name: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw,
- * .raw.zst, and .zst or .gz round raw data; .bin, .dat, .vol and .img where @p raw is given; .dcm, a file that says it is DICOM, or a folder of one
- * DICOM series.
+ * .raw.zst, and .zst or .gz round raw data; .bin, .dat, .vol and .img where @p raw is given; .dcm,
+ * a file that says it is DICOM, or a folder of one DICOM series.
  *
  * @param path        file
  * @param raw         layout of a headerless file; must be NULL for files that have a header

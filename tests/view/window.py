@@ -134,6 +134,7 @@ class Window(WindowCase):
         if not library:
             self.skipTest("LOSE_CONTEXT_LIBRARY names nothing to preload")
         self.lost = os.path.join(self.place.name, "lost")
+        self.addCleanup(lambda: os.path.exists(self.lost) and os.unlink(self.lost))
         kept = self.environment
         self.addCleanup(setattr, self, "environment", kept)
         # The shared objects of a sanitizer must not insist on being first.
@@ -144,7 +145,8 @@ class Window(WindowCase):
     def lose(self):
         """The context is lost, and its window gone; the next one shows a picture."""
         open(self.lost, "w", encoding="utf-8").close()
-        self.move(200 + len(self.window) % 2, 100)
+        # Wakes a viewer that waits; one that does not has no window by now.
+        self.tool("mousemove", 200 + int(self.window) % 2, 100)
         deadline = time.monotonic() + 15
         while os.path.exists(self.lost):
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")

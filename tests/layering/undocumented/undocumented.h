@@ -1,5 +1,4 @@
 /** Documented. */
-int documented(int a,
-	       int b);
+int documented(int a, int b);
 
 int undocumented(int a);
