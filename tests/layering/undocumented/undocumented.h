@@ -1,4 +1,5 @@
 /** Documented. */
-int documented(int a, int b);
+int documented(int a,
+	       int b);
 
 int undocumented(int a);
