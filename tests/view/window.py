@@ -163,7 +163,7 @@ class Window(WindowCase):
             self.tool("key", "4")
             before = self.rest()
             self.lose()
-            self.found_anew()
+            self.found(than=self.window)
             self.until(lambda p: self.below_line(p, 500, 400) == self.below_line(before, 500, 400),
                        "the same picture with " + backend)
             self.viewer.terminate()
@@ -176,7 +176,7 @@ class Window(WindowCase):
         before = self.rest()
         for _ in range(2):
             self.lose()
-            self.found_anew()
+            self.found(than=self.window)
             self.until(lambda p: self.below_line(p) == self.below_line(before) or
                        self.close(p, before), "the picture")
         open(self.lost, "w", encoding="utf-8").close()

@@ -183,13 +183,14 @@ class WindowCase(unittest.TestCase):
             for i in (-1, 0, 1) for j in (-1, 0, 1)
         )
 
-    def found_anew(self):
+    def found(self, than=None):
+        """A window of the viewer's is there, another one than the one named."""
         deadline = time.monotonic() + 20
         while True:
             # A search fails also where a window goes while it looks.
             found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
                         env=self.environment)
-            others = [name for name in found.stdout.split() if name != self.window]
+            others = [name for name in found.stdout.split() if name != than]
             if found.returncode == 0 and others:
                 self.window = others[-1]
                 return

@@ -52,7 +52,7 @@ class Experiment(WindowCase):
             [GAZEVIEW, *self.words(*more)], env=self.environment, stderr=subprocess.PIPE,
             text=True,
         )
-        self.found_anew()
+        self.found()
 
     def rows(self):
         try:

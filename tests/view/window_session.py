@@ -109,7 +109,7 @@ class Leaves(WindowCase):
             [GAZEVIEW, "--replay", session, "--pictures", self.folder], env=self.environment,
             stderr=subprocess.PIPE, text=True,
         )
-        self.found_anew()
+        self.found()
         said = ""
         while "all" not in said:
             said = self.viewer.stderr.readline()
