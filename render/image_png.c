@@ -39,12 +39,11 @@ static void set_texts(png_structp png, png_infop info, const struct content *con
 {
 	for (size_t i = 0; i < content->text_count; i++) {
 		/* libpng copies both, and writes to neither. */
-		png_text text = {
-			.compression = PNG_ITXT_COMPRESSION_NONE,
-			.key = (png_charp)(uintptr_t)content->texts[i].keyword,
-			.text = (png_charp)(uintptr_t)content->texts[i].text,
-		};
-		png_set_text(png, info, &text, 1);
+		png_text entry = { 0 };
+		entry.compression = PNG_ITXT_COMPRESSION_NONE;
+		entry.key = (png_charp)(uintptr_t)content->texts[i].keyword;
+		entry.text = (png_charp)(uintptr_t)content->texts[i].text;
+		png_set_text(png, info, &entry, 1);
 	}
 }
 

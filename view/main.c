@@ -47,26 +47,31 @@ static int run(struct gz_view_options *options, const struct gz_log *log,
 	return r == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int main(int argc, char **argv)
+static int show(int argc, char **argv, struct gz_view_options *options, struct gz_notices *notices)
 {
 	struct gz_log log;
+	gz_log_init(&log, gz_notices_sink, notices, NULL);
+	if (gz_view_options_read(argc, argv, &log, options) != GZ_OK)
+		return EXIT_FAILURE;
+	if (options->help)
+		gz_view_options_print_help(stdout);
+	else if (options->version)
+		puts("gazeview " GAZECAST_VERSION);
+	else
+		return run(options, &log, notices);
+	return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
 	struct gz_view_options *options = calloc(1, sizeof *options);
 	struct gz_notices *notices = malloc(sizeof *notices);
-	if (!options || !notices)
-		return EXIT_FAILURE;
-	gz_notices_init(notices);
-	gz_log_init(&log, gz_notices_sink, notices, NULL);
 	int status = EXIT_FAILURE;
-	if (gz_view_options_read(argc, argv, &log, options) == GZ_OK) {
-		status = EXIT_SUCCESS;
-		if (options->help)
-			gz_view_options_print_help(stdout);
-		else if (options->version)
-			puts("gazeview " GAZECAST_VERSION);
-		else
-			status = run(options, &log, notices);
+	if (options && notices) {
+		gz_notices_init(notices);
+		status = show(argc, argv, options, notices);
+		gz_notices_free(notices);
 	}
-	gz_notices_free(notices);
 	free(notices);
 	free(options);
 	return status;

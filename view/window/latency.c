@@ -54,7 +54,7 @@ static int compare(const void *a, const void *b)
 /* Of the doubles at @p offset in each of the frames kept. */
 static double median_of(const struct gz_window_timing *timing, size_t offset)
 {
-	double values[GZ_LATENCY_FRAMES];
+	double values[GZ_LATENCY_FRAMES] = { 0 };
 	const int count = timing->kept_count;
 	for (int i = 0; i < count; i++)
 		memcpy(&values[i], (const char *)&timing->kept[i] + offset, sizeof values[i]);
