@@ -213,10 +213,8 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	struct session session = { .settings = &settings,
 				   .log = log,
 				   .stage = { .log = log },
-				   .cache = settings.cache[0] ? settings.cache : NULL,
+				   .cache = gz_reference_cache(settings.cache, cache),
 				   .list = settings.json ? json_array() : NULL };
-	if (!session.cache && gz_reference_cache(cache))
-		session.cache = cache;
 	gz_command_catch_signals();
 	status = measure(&session, &request);
 	json_decref(session.list);

@@ -291,9 +291,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	if (called != GZ_OK)
 		return called == GZ_ERR_INVAL ? GAZEBENCH_USAGE : GAZEBENCH_FAILED;
 	char cache[GZ_PATH_SIZE];
-	const char *kept = settings.cache[0] ? settings.cache : cache;
-	if (!settings.cache[0] && !gz_reference_cache(cache))
-		kept = NULL;
+	const char *kept = gz_reference_cache(settings.cache, cache);
 	struct progress progress = { .terminal = isatty(STDERR_FILENO) };
 	struct gz_study_outcome outcome;
 	gz_command_catch_signals();

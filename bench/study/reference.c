@@ -14,16 +14,18 @@
 
 #define GZ_LOG_MODULE "reference"
 
-bool gz_reference_cache(char out_folder[GZ_PATH_SIZE])
+const char *gz_reference_cache(const char *given, char room[GZ_PATH_SIZE])
 {
+	if (given[0])
+		return given;
 	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
 	int length = -1;
 	/* Relative ones are to be ignored, says the specification. */
 	if (cache && cache[0] == '/')
-		length = snprintf(out_folder, GZ_PATH_SIZE, "%s/gazecast/references", cache);
+		length = snprintf(room, GZ_PATH_SIZE, "%s/gazecast/references", cache);
 	else if (home && home[0] == '/')
-		length = snprintf(out_folder, GZ_PATH_SIZE, "%s/.cache/gazecast/references", home);
-	return length > 0 && length < GZ_PATH_SIZE;
+		length = snprintf(room, GZ_PATH_SIZE, "%s/.cache/gazecast/references", home);
+	return length > 0 && length < GZ_PATH_SIZE ? room : NULL;
 }
 
 struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double rate)

@@ -55,11 +55,12 @@ enum gz_result gz_reference_get(const struct gz_reference_request *request,
 struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double rate);
 
 /**
- * The folder where references are kept unless told otherwise: "gazecast/references" in
- * $XDG_CACHE_HOME, or in ~/.cache (XDG Base Directory Specification).
+ * The folder where references are kept: @p given or, where that is empty, "gazecast/references" in
+ * $XDG_CACHE_HOME or in ~/.cache (XDG Base Directory Specification).
  *
- * @return false where neither is known, or the name is too long
+ * @param room  for its name, valid as long as what is returned is used
+ * @return NULL where none is given and neither is known, or the name is too long
  */
-bool gz_reference_cache(char out_folder[GZ_PATH_SIZE]);
+const char *gz_reference_cache(const char *given, char room[GZ_PATH_SIZE]);
 
 #endif
