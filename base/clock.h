@@ -1,6 +1,6 @@
 /**
  * @file
- * Host time: CLOCK_MONOTONIC as int64_t nanoseconds, the project's only time unit.
+ * Host time: CLOCK_MONOTONIC in int64_t nanoseconds, the unit of all times in the project.
  */
 #ifndef GZ_BASE_CLOCK_H
 #define GZ_BASE_CLOCK_H
@@ -11,12 +11,12 @@
 #define GZ_NS_PER_MS INT64_C(1000000)
 #define GZ_NS_PER_US INT64_C(1000)
 
-/** Now on CLOCK_MONOTONIC, ns. Threads: any. */
+/** The present time on CLOCK_MONOTONIC, ns. Threads: any. */
 int64_t gz_clock_now_ns(void);
 
 /**
- * Sleep until CLOCK_MONOTONIC reads at least @p deadline_ns; returns at once if it already does.
- * A signal does not shorten the sleep. Threads: any.
+ * Sleep until CLOCK_MONOTONIC reads at least @p deadline_ns; return at once if it already does. A
+ * signal does not shorten the sleep. Threads: any.
  */
 void gz_clock_sleep_until_ns(int64_t deadline_ns);
 

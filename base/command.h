@@ -1,7 +1,7 @@
 /**
  * @file
- * Programs made of commands, as `gazectl status`: finding the command, its options and help,
- * messages on stderr, signals that ask for an end.
+ * Programs that consist of commands, such as `gazectl status`: finding the command, its options and
+ * help, messages on stderr, and the signals that ask it to end.
  */
 #ifndef GZ_BASE_COMMAND_H
 #define GZ_BASE_COMMAND_H
@@ -12,11 +12,11 @@
 #include "base/log.h"
 #include "base/option.h"
 
-/** What every such program may end with; those with more to say count on from 3. */
+/** Exit statuses of every such program. A program's own statuses begin at 3. */
 enum gz_exit {
 	GZ_EXIT_DONE = 0,
-	GZ_EXIT_FAILED = 1, /**< failed or refused; what was logged says why */
-	GZ_EXIT_USAGE = 2,  /**< a command line that is not understood */
+	GZ_EXIT_FAILED = 1, /**< failed or refused; the log says why */
+	GZ_EXIT_USAGE = 2,  /**< the command line is not understood */
 };
 
 /** One command. Tables are const and have static storage. */
@@ -26,25 +26,24 @@ struct gz_command {
 	const char *operands; /**< "[NAME]", as the usage line shows them */
 	int operands_max;     /**< how many may be given; -1 for any number */
 	const char *summary;  /**< one line of `PROGRAM --help` */
-	/** What `PROGRAM NAME --help` says beyond that; ends with a newline. */
-	const char *details;
+	const char *details;  /**< more lines of `PROGRAM NAME --help`; ends with a newline */
 	const struct gz_option *options; /**< over the command's own settings */
 	size_t option_count;
-	/** Do it. argv[0] is the command's name. Called once, on the main thread.
-	 *  @return what the program exits with */
+	/** Run the command. argv[0] is its name. Called once, on the main thread.
+	 *  @return the program's exit status */
 	int (*run)(int argc, char *const *argv, const struct gz_log *log);
 };
 
-/** A program made of commands. */
+/** A program that consists of commands. */
 struct gz_command_program {
 	const char *name;
 	const char *version;
-	const char *purpose;                      /**< what it is for, for its help; no newline */
+	const char *purpose;                      /**< what it is for, in its help; no newline */
 	const char *exits;                        /**< what its exit statuses mean, one line */
-	const struct gz_command *const *commands; /**< NULL behind the last */
+	const struct gz_command *const *commands; /**< NULL after the last */
 };
 
-/** Begins the settings of every command: where the row GZ_COMMAND_HELP_OPTION points to. */
+/** The first member of every command's settings; the row GZ_COMMAND_HELP_OPTION refers to it. */
 struct gz_command_common {
 	bool help;
 };
@@ -52,46 +51,40 @@ struct gz_command_common {
 /* clang-format off */
 /** The row "--help" of a command's options. */
 #define GZ_COMMAND_HELP_OPTION                                                                   \
-	{ .key = "help",                                                                         \
-	  .type = GZ_OPTION_BOOL,                                                                \
-	  .offset = offsetof(struct gz_command_common, help),                                    \
-	  .preset = "false",                                                                     \
-	  .help = "print this and exit" }
+	{ "help", GZ_OPTION_BOOL, offsetof(struct gz_command_common, help), .preset = "false",   \
+	  .help = "print this help and exit" }
 /* clang-format on */
 
-/** Most arguments that a command line may have. Chosen: more than any use needs. */
-enum { GZ_COMMAND_ARGUMENTS_MAX = 1024 };
-
-/** What of a command line is no option. */
-struct gz_operands {
-	const char *items[GZ_COMMAND_ARGUMENTS_MAX + 1]; /**< NULL behind the last */
-	int count;
-};
-
-/**
- * Read a command's arguments.
- *
- * @param settings            what the command's option table points into; begins with a
- *                            struct gz_command_common
- * @param[out] out_operands   filled
- * @param[out] out_exit       what to exit with where it is false
- * @return whether to go on: false after --help and after a usage error, which is logged
+/** What gz_command_read_arguments() returns if the command goes on; no exit status has this value.
  */
-bool gz_command_read_arguments(const struct gz_command *command, int argc, char *const *argv,
-			       const struct gz_log *log, void *settings,
-			       struct gz_operands *out_operands, int *out_exit);
+enum { GZ_COMMAND_GO_ON = -1 };
 
 /**
- * main() of such a program: --help, --version, or the command asked for. Messages go to stderr as
- * "NAME: text". What cannot be written to stdout turns success into GZ_EXIT_FAILED.
+ * Read a command's arguments. Print the help if the arguments ask for it.
+ *
+ * @param settings           the struct that the command's option table refers to; begins with a
+ *                           struct gz_command_common
+ * @param[out] out_operands  the arguments that are not options; at most the command's operands_max
+ * @return GZ_COMMAND_GO_ON, or the exit status to end with: GZ_EXIT_DONE after --help,
+ *         GZ_EXIT_USAGE after a usage error, which is logged
+ */
+int gz_command_read_arguments(const struct gz_command *command, int argc, char *const *argv,
+			      const struct gz_log *log, void *settings,
+			      struct gz_operands *out_operands);
+
+/**
+ * main() of such a program: --help, --version, or the command that is named. Messages go to stderr
+ * as "NAME: text". If standard output cannot be written, GZ_EXIT_DONE becomes GZ_EXIT_FAILED.
  */
 int gz_command_main(const struct gz_command_program *program, int argc, char **argv);
 
-/** From now on SIGINT and SIGTERM set a flag in place of ending the program; without SA_RESTART,
- *  so that waiting ends. */
+/**
+ * From now on SIGINT and SIGTERM set a flag instead of ending the program. The handler is installed
+ * without SA_RESTART, so a signal also ends a system call that waits.
+ */
 void gz_command_catch_signals(void);
 
-/** Whether one of them arrived. Threads: any. */
+/** Whether one of these signals has arrived. Threads: any. */
 bool gz_command_interrupted(void);
 
 #endif

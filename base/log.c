@@ -7,7 +7,7 @@
 
 static const char *const level_names[] = { "debug", "info", "warn", "error" };
 
-/* Longest message passed on, with its NUL; longer ones are cut. Chosen: a path and a sentence. */
+/* Size of a message, with its NUL; longer ones are cut. Chosen: a path and a sentence. */
 enum { MESSAGE_SIZE = 1024 };
 
 static bool parse_level(const char *text, size_t length, enum gz_log_level *out_level)
@@ -22,8 +22,8 @@ static bool parse_level(const char *text, size_t length, enum gz_log_level *out_
 	return false;
 }
 
-/* The least level that passes for a module. */
-static enum gz_log_level threshold(const struct gz_log *log, const char *module)
+/* The lowest level that passes for a module. */
+static enum gz_log_level module_threshold(const struct gz_log *log, const char *module)
 {
 	const char *rule = log->rules;
 	while (*rule) {
@@ -60,7 +60,7 @@ void gz_log_to_stderr(void *user, enum gz_log_level level, const char *module, c
 
 bool gz_log_wants(const struct gz_log *log, enum gz_log_level level, const char *module)
 {
-	return log && log->sink && level >= threshold(log, module);
+	return log && log->sink && level >= module_threshold(log, module);
 }
 
 void gz_log_write(const struct gz_log *log, enum gz_log_level level, const char *module,

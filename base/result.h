@@ -1,6 +1,6 @@
 /**
  * @file
- * The one result code of every fallible call.
+ * The result code of every call that can fail.
  */
 #ifndef GZ_BASE_RESULT_H
 #define GZ_BASE_RESULT_H
@@ -16,18 +16,18 @@ enum gz_result {
 	GZ_ERR_NO_MEM = -6,       /**< an allocation failed */
 	GZ_ERR_IO = -7,           /**< reading or writing failed */
 	GZ_ERR_NOT_FOUND = -8,    /**< no such file, key, driver or scene */
-	GZ_ERR_FORMAT = -9,       /**< a file's content is not what its kind demands */
-	GZ_ERR_UNSUPPORTED = -10, /**< valid, but beyond what this build can do */
-	GZ_ERR_BUSY = -11,        /**< somebody else holds it: an endpoint, a lock, a recording */
-	GZ_ERR_END = -12,         /**< the stream or file has ended; not a fault */
+	GZ_ERR_FORMAT = -9,       /**< a file's content does not have the expected format */
+	GZ_ERR_UNSUPPORTED = -10, /**< valid, but not supported by this build */
+	GZ_ERR_BUSY = -11,        /**< already in use: an endpoint, a lock, a recording */
+	GZ_ERR_END = -12,         /**< the stream or file has ended; not an error */
 	GZ_ERR_FULL = -13,        /**< no room left: disk, buffer, queue */
-	GZ_ERR_CANCELLED = -14,   /**< the caller asked it to stop before its end */
+	GZ_ERR_CANCELLED = -14,   /**< the caller asked to stop early */
 };
 
 /**
- * One short English phrase for @p result, lower case, no full stop.
+ * A short English phrase for @p result: lower case, no full stop.
  *
- * @param result  any value, also one outside the enum
+ * @param result  any value, including one outside the enum
  * @return static text, never NULL; "unknown result" for a value outside the enum
  *
  * Threads: any.

@@ -1,6 +1,8 @@
 #include "base/text.h"
 
 #include <errno.h>
+#include <locale.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +11,105 @@
 
 #define GZ_LOG_MODULE "text"
 
-static bool grow(struct gz_text *text, size_t more)
+bool gz_number_parse(const char *word, double *out_value)
+{
+	if (!word[0] || word[strspn(word, "+-.eE0123456789")] != '\0')
+		return false;
+	/* The "C" locale always exists, so in glibc this cannot fail and allocates nothing. */
+	locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+	if (plain == (locale_t)0)
+		return false;
+	char *end;
+	double value = strtod_l(word, &end, plain);
+	freelocale(plain);
+	if (end == word || *end != '\0' || !isfinite(value))
+		return false;
+	*out_value = value;
+	return true;
+}
+
+bool gz_number_parse_whole(const char *word, long long *out_value)
+{
+	if (!word[0] || word[strspn(word, "+-0123456789")] != '\0')
+		return false;
+	char *end;
+	errno = 0;
+	long long value = strtoll(word, &end, 10);
+	if (end == word || *end != '\0' || errno == ERANGE)
+		return false;
+	*out_value = value;
+	return true;
+}
+
+void gz_number_normalise_point(char *number)
+{
+	static const char others[] = "0123456789+-e";
+	size_t before = strspn(number, others);
+	if (number[before] == '\0')
+		return;
+	/* Whatever is not a digit, sign or exponent is the decimal point; it may be several bytes.
+	 */
+	const char *after = number + before + strcspn(number + before, others);
+	number[before] = '.';
+	memmove(number + before + 1, after, strlen(after) + 1);
+}
+
+void gz_number_print(double value, char text[GZ_NUMBER_SIZE])
+{
+	double back;
+	/* Whole numbers as "600", not "6e+02". */
+	if (fabs(value) < 1e15 && value == (double)(long long)value) {
+		snprintf(text, GZ_NUMBER_SIZE, "%.0f", value);
+		return;
+	}
+	/* 17 digits distinguish all doubles (IEEE 754-2008, 5.12.2). */
+	for (int digits = 1; digits <= 17; digits++) {
+		snprintf(text, GZ_NUMBER_SIZE, "%.*g", digits, value);
+		gz_number_normalise_point(text);
+		if (gz_number_parse(text, &back) && back == value)
+			return;
+	}
+}
+
+double gz_number_of_float(float value)
+{
+	char text[GZ_NUMBER_SIZE];
+	double back;
+	for (int digits = 1; digits < 9; digits++) {
+		snprintf(text, sizeof text, "%.*g", digits, (double)value);
+		gz_number_normalise_point(text);
+		if (gz_number_parse(text, &back) && (float)back == value)
+			return back;
+	}
+	return (double)value;
+}
+
+char *gz_number_next_word(char **text, const char *blanks)
+{
+	char *word = *text + strspn(*text, blanks);
+	if (!*word)
+		return NULL;
+	char *end = word + strcspn(word, blanks);
+	*text = *end ? end + 1 : end;
+	*end = '\0';
+	return word;
+}
+
+enum gz_result gz_text_print(char *text, size_t size, const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	const int length = vsnprintf(text, size, format, arguments);
+	va_end(arguments);
+	if (length >= 0 && (size_t)length < size)
+		return GZ_OK;
+	if (size > 0)
+		text[0] = '\0';
+	return GZ_ERR_FULL;
+}
+
+/* Make room for @p more bytes and a NUL. False if there is no memory, now or before. */
+static bool reserve_bytes(struct gz_text *text, size_t more)
 {
 	if (text->failed)
 		return false;
@@ -28,7 +128,7 @@ static bool grow(struct gz_text *text, size_t more)
 
 void gz_text_add_bytes(struct gz_text *text, const char *bytes, size_t size)
 {
-	if (!grow(text, size))
+	if (!reserve_bytes(text, size))
 		return;
 	memcpy(text->bytes + text->length, bytes, size);
 	text->length += size;
@@ -41,7 +141,7 @@ void gz_text_add(struct gz_text *text, const char *format, ...)
 	va_start(arguments, format);
 	va_copy(again, arguments);
 	const int length = vsnprintf(NULL, 0, format, arguments);
-	if (length > 0 && grow(text, (size_t)length)) {
+	if (length > 0 && reserve_bytes(text, (size_t)length)) {
 		vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
 		text->length += (size_t)length;
 	}
@@ -55,13 +155,15 @@ void gz_text_free(struct gz_text *text)
 	*text = (struct gz_text) { 0 };
 }
 
-/* Where a link leads, so that it stays one; else the path itself. Freed by the caller. */
-static char *target_of(const char *path)
+/* The file that a link points to, so that the link stays; otherwise the path itself. The caller
+ * frees it. */
+static char *resolve_link(const char *path)
 {
 	char *real = realpath(path, NULL);
 	return real ? real : strdup(path);
 }
 
+/* Write the file @p part, then rename it to @p path. */
 static bool write_part(const struct gz_text *text, const char *part, const char *path)
 {
 	FILE *file = fopen(part, "wbe");
@@ -80,7 +182,7 @@ static bool write_part(const struct gz_text *text, const char *part, const char 
 
 enum gz_result gz_text_write(const struct gz_text *text, const char *path, const struct gz_log *log)
 {
-	char *target = target_of(path), *part = NULL;
+	char *target = resolve_link(path), *part = NULL;
 	if (text->failed || !target || asprintf(&part, "%s.%ld.part", target, (long)getpid()) < 0) {
 		gz_err(log, "%s: not written: %s", path, gz_result_text(GZ_ERR_NO_MEM));
 		free(target);
@@ -89,7 +191,7 @@ enum gz_result gz_text_write(const struct gz_text *text, const char *path, const
 	errno = 0;
 	const bool written = write_part(text, part, target);
 	if (!written)
-		gz_err(log, "%s: cannot be written: %s; name a writable folder with free space",
+		gz_err(log, "%s: cannot be written: %s; choose a writable folder with free space",
 		       path, strerror(errno));
 	free(part);
 	free(target);

@@ -4,12 +4,12 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "client/subscriber.h"
+#include "client/connection.h"
 #include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "client"
 
-/* Chosen: see gz_gaze_age_ns() in the header. */
+/* Chosen, see gz_gaze_age_ns() in the header. */
 #define PIPELINE_DELAY_MAX_NS GZ_NS_PER_S
 
 struct gz_client {
@@ -59,27 +59,27 @@ enum gz_result gz_client_open_with_keys(const char *endpoint, const struct gz_ke
 	return open_client(&params, log, out_client);
 }
 
-static void count_malformed(struct gz_client *client)
+static void count_malformed_gaze(struct gz_client *client)
 {
 	uint64_t dropped;
 	client->counters.malformed++;
 	if (gz_ratelimit_pass(&client->malformed_limit, gz_clock_now_ns(), GZ_NS_PER_S, &dropped))
 		gz_warn(client->subscriber.log,
-			"%s: a message is no gaze (%llu so far): is this a `latest` channel?",
+			"%s: a message is not gaze (%llu so far); is this a `latest` channel?",
 			client->subscriber.endpoint,
 			(unsigned long long)client->counters.malformed);
 }
 
-static void keep(struct gz_client *client, const struct gz_gaze *gaze)
+static void keep_newest_gaze(struct gz_client *client, const struct gz_gaze *gaze)
 {
-	/* A smaller number is a daemon that was started anew, or a replay that began again. */
+	/* A smaller number means that the daemon or a replay has started again. */
 	if (client->has_gaze && gaze->seq > client->gaze.seq)
 		client->counters.skipped += gaze->seq - client->gaze.seq - 1;
 	client->gaze = *gaze;
 	client->has_gaze = true;
 }
 
-static void take_message(struct gz_client *client)
+static void receive_latest(struct gz_client *client)
 {
 	zmq_msg_t message;
 	zmq_msg_init(&message);
@@ -88,9 +88,9 @@ static void take_message(struct gz_client *client)
 		client->counters.received++;
 		if (gz_wire_decode_gaze(zmq_msg_data(&message), zmq_msg_size(&message), &gaze) ==
 		    GZ_OK)
-			keep(client, &gaze);
+			keep_newest_gaze(client, &gaze);
 		else
-			count_malformed(client);
+			count_malformed_gaze(client);
 	}
 	zmq_msg_close(&message);
 }
@@ -98,11 +98,11 @@ static void take_message(struct gz_client *client)
 int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
 {
 	int64_t born_ns = gaze->host_ns;
-	/* Pupil Capture sends no publish time: then there is only the sample's own. */
+	/* Pupil Capture sends no publish time; then only the sample's own is known. */
 	if (gaze->publish_ns > 0 && (gaze->publish_ns < gaze->host_ns ||
 				     gaze->host_ns < gaze->publish_ns - PIPELINE_DELAY_MAX_NS))
 		born_ns = gaze->publish_ns;
-	if (born_ns < 0) /* before this machine started: no clock of ours says that */
+	if (born_ns < 0) /* before this machine started, so not by its clock */
 		born_ns = 0;
 	return born_ns < now_ns ? now_ns - born_ns : 0;
 }
@@ -110,8 +110,8 @@ int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
 enum gz_result gz_client_latest(struct gz_client *client, struct gz_gaze *out_gaze,
 				int64_t *out_age_ns)
 {
-	/* One message is all a conflated socket holds. */
-	take_message(client);
+	/* A conflated socket holds one message at most. */
+	receive_latest(client);
 	gz_subscriber_take_events(&client->subscriber);
 	if (!client->has_gaze)
 		return GZ_ERR_TIMEOUT;

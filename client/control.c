@@ -7,7 +7,7 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "client/handshake.h"
+#include "client/connection.h"
 #include "protocol/endpoint.h"
 
 #define GZ_LOG_MODULE "client"
@@ -20,17 +20,8 @@ struct gz_control {
 	struct gz_keys keys;
 };
 
-static enum gz_result find_endpoint(struct gz_control *control, const char *endpoint)
-{
-	if (endpoint) {
-		int length = snprintf(control->endpoint, GZ_ENDPOINT_SIZE, "%s", endpoint);
-		return length > 0 && length < GZ_ENDPOINT_SIZE ? GZ_OK : GZ_ERR_INVAL;
-	}
-	return gz_endpoint_find("control", control->log, control->endpoint, GZ_ENDPOINT_SIZE);
-}
-
-/* A REQ socket of its own for each request: one whose reply never came can be used no more. */
-static void *open_socket(struct gz_control *control, int timeout_ms)
+/* Open a REQ socket. Each request has its own, because a socket without its reply is useless. */
+static void *open_control_socket(struct gz_control *control, int timeout_ms)
 {
 	void *socket = zmq_socket(control->context, ZMQ_REQ);
 	if (!socket)
@@ -52,7 +43,7 @@ static void *open_socket(struct gz_control *control, int timeout_ms)
 
 static enum gz_result check_endpoint(struct gz_control *control)
 {
-	void *socket = open_socket(control, 1);
+	void *socket = open_control_socket(control, 1);
 	if (!socket || zmq_connect(socket, control->endpoint) != 0) {
 		int error = errno;
 		if (socket)
@@ -76,12 +67,7 @@ enum gz_result gz_control_open_with_keys(const char *endpoint, const struct gz_k
 	control->has_keys = keys != NULL;
 	if (keys)
 		control->keys = *keys;
-	enum gz_result result = find_endpoint(control, endpoint);
-	if (result == GZ_ERR_FULL || result == GZ_ERR_INVAL) {
-		gz_err(log, "an endpoint has 1 to %d bytes, and a local one at most 107",
-		       GZ_ENDPOINT_SIZE - 1);
-		result = GZ_ERR_INVAL;
-	}
+	enum gz_result result = gz_connection_endpoint(endpoint, "control", log, control->endpoint);
 	if (result == GZ_OK) {
 		control->context = zmq_ctx_new();
 		result = control->context ? check_endpoint(control) : GZ_ERR_NO_MEM;
@@ -123,16 +109,16 @@ static enum gz_result receive_reply(void *socket, char *out_reply)
 	return GZ_OK;
 }
 
-/* A reply that is waited for. */
+/* A request that waits for its reply. */
 struct wait {
 	void *socket;
 	void *monitor;
-	enum gz_handshake_fault fault; /* the last one told */
-	int hang_ups;
+	enum gz_handshake_fault fault; /* the last one reported */
+	int hang_ups;                  /* how often the daemon closed the connection */
 };
 
-/* Whether the monitor tells that no reply will come. */
-static bool is_hopeless(const struct gz_control *control, struct wait *wait)
+/* Whether the monitor has reported that no reply will come. */
+static bool handshake_failed_for_good(const struct gz_control *control, struct wait *wait)
 {
 	struct gz_monitor_event event;
 	while ((event = gz_handshake_next_event(wait->monitor)).number != 0) {
@@ -150,7 +136,7 @@ static enum gz_result wait_reply(const struct gz_control *control, struct wait *
 	zmq_pollitem_t items[] = { { .socket = wait->socket, .events = ZMQ_POLLIN },
 				   { .socket = wait->monitor, .events = ZMQ_POLLIN } };
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
-	while (!is_hopeless(control, wait)) {
+	while (!handshake_failed_for_good(control, wait)) {
 		int64_t left_ns = deadline_ns - gz_clock_now_ns();
 		if (left_ns <= 0 ||
 		    (zmq_poll(items, 2, (long)(left_ns / GZ_NS_PER_MS) + 1) < 0 && errno != EINTR))
@@ -169,7 +155,7 @@ enum gz_result gz_control_request(struct gz_control *control, const char *reques
 {
 	if (timeout_ms < 1)
 		return GZ_ERR_INVAL;
-	void *socket = open_socket(control, timeout_ms);
+	void *socket = open_control_socket(control, timeout_ms);
 	void *monitor =
 		socket ? gz_handshake_open_monitor(control->context, socket, control->endpoint, 0)
 		       : NULL;
@@ -188,8 +174,8 @@ enum gz_result gz_control_request(struct gz_control *control, const char *reques
 	return result;
 }
 
-/* "ipc:///run/user/1000/gazecast/control" has its stream beside it. */
-static enum gz_result neighbour(const char *endpoint, char *text, size_t size)
+/* The stream of "ipc:///run/user/1000/gazecast/control" is in the same directory. */
+static enum gz_result stream_beside_control(const char *endpoint, char *text, size_t size)
 {
 	const char *slash = strrchr(endpoint, '/');
 	int length =
@@ -198,8 +184,8 @@ static enum gz_result neighbour(const char *endpoint, char *text, size_t size)
 }
 
 /* "tcp://127.0.0.1:50020" and the text "41231" give "tcp://127.0.0.1:41231". */
-static enum gz_result with_port(const char *endpoint, const char *port_text, char *text,
-				size_t size)
+static enum gz_result endpoint_with_port(const char *endpoint, const char *port_text, char *text,
+					 size_t size)
 {
 	char *end;
 	long port = strtol(port_text, &end, 10);
@@ -217,12 +203,12 @@ enum gz_result gz_control_stream_endpoint(struct gz_control *control, int timeou
 	char found[GZ_ENDPOINT_SIZE];
 	enum gz_result result;
 	if (strncmp(control->endpoint, "ipc:", 4) == 0) {
-		result = neighbour(control->endpoint, found, sizeof found);
+		result = stream_beside_control(control->endpoint, found, sizeof found);
 	} else {
 		char reply[GZ_CONTROL_REPLY_SIZE];
 		result = gz_control_request(control, "SUB_PORT", timeout_ms, reply);
 		if (result == GZ_OK)
-			result = with_port(control->endpoint, reply, found, sizeof found);
+			result = endpoint_with_port(control->endpoint, reply, found, sizeof found);
 	}
 	if (result != GZ_OK)
 		return result;

@@ -1,7 +1,7 @@
 /**
  * @file
- * All that an application needs of Gazecast: the latest gaze (client.h), every message
- * (stream.h), requests to the daemon (control.h). Link with `pkg-config --cflags --libs gazecast`;
+ * Everything an application needs of Gazecast: the latest gaze (client.h), every message (stream.h)
+ * and requests to the daemon (control.h). Link with `pkg-config --cflags --libs gazecast`;
  * gazecast(3) has an example.
  */
 #ifndef GAZECAST_H

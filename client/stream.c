@@ -6,23 +6,23 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "client/subscriber.h"
+#include "client/connection.h"
 #include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "client"
 
 struct gz_stream {
 	struct gz_subscriber subscriber;
-	zmq_msg_t payload; /**< of the message read last */
-	bool counts_gaps;  /**< every gaze topic is subscribed to */
-	bool has_seq;      /**< last_seq is of this connection */
-	uint64_t last_seq;
-	uint64_t seq_connection; /**< the connection that last_seq came by */
+	zmq_msg_t payload;       /* of the last message read */
+	bool counts_gaps;        /* every gaze topic is subscribed to */
+	bool has_seq;            /* last_seq is set */
+	uint64_t last_seq;       /* of the last gaze message */
+	uint64_t seq_connection; /* number of the connection on which it came */
 	struct gz_stream_counters counters;
 	struct gz_ratelimit malformed_limit;
 };
 
-/* The part that all gaze topics begin with. */
+/* The beginning of every gaze topic. */
 #define GAZE_TOPICS_COMMON "gaze.3d."
 
 static bool covers_gaze(const char *const *topics)
@@ -35,8 +35,8 @@ static bool covers_gaze(const char *const *topics)
 	return false;
 }
 
-static enum gz_result open_stream(const struct gz_subscriber_params *params,
-				  const struct gz_log *log, struct gz_stream **out_stream)
+static enum gz_result create_stream(const struct gz_subscriber_params *params,
+				    const struct gz_log *log, struct gz_stream **out_stream)
 {
 	struct gz_stream *stream = calloc(1, sizeof *stream);
 	if (!stream)
@@ -61,7 +61,7 @@ enum gz_result gz_stream_open(const char *endpoint, const char *const *topics,
 		.topics = topics && topics[0] ? topics : NULL,
 		.find_keys = true,
 	};
-	return open_stream(&params, log, out_stream);
+	return create_stream(&params, log, out_stream);
 }
 
 enum gz_result gz_stream_open_with_keys(const char *endpoint, const char *const *topics,
@@ -74,11 +74,12 @@ enum gz_result gz_stream_open_with_keys(const char *endpoint, const char *const 
 		.topics = topics && topics[0] ? topics : NULL,
 		.keys = keys,
 	};
-	return open_stream(&params, log, out_stream);
+	return create_stream(&params, log, out_stream);
 }
 
-/* Read one frame. Returns whether there was one and tells whether more of its message follow. */
-static bool take_frame(struct gz_stream *stream, zmq_msg_t *frame, bool *out_more)
+/* Receive one frame. @param[out] out_more  whether further frames of its message follow
+ * @return whether there was one */
+static bool receive_frame(struct gz_stream *stream, zmq_msg_t *frame, bool *out_more)
 {
 	if (zmq_msg_recv(frame, stream->subscriber.socket, ZMQ_DONTWAIT) < 0)
 		return false;
@@ -86,20 +87,21 @@ static bool take_frame(struct gz_stream *stream, zmq_msg_t *frame, bool *out_mor
 	return true;
 }
 
-/* Read one message. Returns whether there was one; *out_frames is its count of frames. */
-static bool take_frames(struct gz_stream *stream, zmq_msg_t *topic, int *out_frames)
+/* Receive one message. @param[out] out_frames  its number of frames @return whether there was one
+ */
+static bool receive_frames(struct gz_stream *stream, zmq_msg_t *topic, int *out_frames)
 {
 	bool more = false;
-	if (!take_frame(stream, topic, &more))
+	if (!receive_frame(stream, topic, &more))
 		return false;
 	int frames = 1;
-	while (more && take_frame(stream, &stream->payload, &more))
+	while (more && receive_frame(stream, &stream->payload, &more))
 		frames++;
 	*out_frames = frames;
 	return true;
 }
 
-static enum gz_message_kind kind_of(const char *topic)
+static enum gz_message_kind message_kind(const char *topic)
 {
 	if (strncmp(topic, GZ_TOPIC_GAZE, strlen(GZ_TOPIC_GAZE)) == 0)
 		return GZ_MESSAGE_GAZE;
@@ -133,7 +135,7 @@ static enum gz_result decode_payload(struct gz_message *message)
 	return GZ_ERR_PROTOCOL;
 }
 
-/* A topic of our kind: short, without a NUL in it. */
+/* Copy the topic; it must be short and without a NUL. */
 static enum gz_result decode_topic(zmq_msg_t *frame, struct gz_message *message)
 {
 	size_t size = zmq_msg_size(frame);
@@ -144,21 +146,21 @@ static enum gz_result decode_topic(zmq_msg_t *frame, struct gz_message *message)
 	return GZ_OK;
 }
 
-static enum gz_result decode(struct gz_stream *stream, zmq_msg_t *topic, int frames,
-			     struct gz_message *message)
+static enum gz_result decode_message(struct gz_stream *stream, zmq_msg_t *topic, int frames,
+				     struct gz_message *message)
 {
 	memset(message, 0, sizeof *message);
 	if (frames != 2 || decode_topic(topic, message) != GZ_OK)
 		return GZ_ERR_PROTOCOL;
-	message->kind = kind_of(message->topic);
+	message->kind = message_kind(message->topic);
 	message->bytes = zmq_msg_data(&stream->payload);
 	message->size = zmq_msg_size(&stream->payload);
 	message->received_ns = gz_clock_now_ns();
 	return decode_payload(message);
 }
 
-/* How many gaze messages were missed before number @p seq. What was sent while there was no
- * connection is not counted: it may be another daemon, which numbers anew. */
+/* Count the gaze messages missed before number @p seq. Messages sent while there was no connection
+ * do not count: the daemon may be another one, with its own numbers. */
 static uint64_t count_gap(struct gz_stream *stream, uint64_t seq)
 {
 	gz_subscriber_take_events(&stream->subscriber);
@@ -172,30 +174,32 @@ static uint64_t count_gap(struct gz_stream *stream, uint64_t seq)
 	return lost;
 }
 
-static void count_malformed(struct gz_stream *stream)
+static void count_malformed_message(struct gz_stream *stream)
 {
 	uint64_t dropped;
 	stream->counters.malformed++;
 	if (gz_ratelimit_pass(&stream->malformed_limit, gz_clock_now_ns(), GZ_NS_PER_S, &dropped))
 		gz_warn(stream->subscriber.log,
-			"%s: a malformed message is dropped (%llu so far): is this a stream?",
+			"%s: a malformed message was dropped (%llu so far); is this a stream?",
 			stream->subscriber.endpoint,
 			(unsigned long long)stream->counters.malformed);
 }
 
-/* GZ_OK with a message, GZ_ERR_PROTOCOL after a malformed one, GZ_ERR_TIMEOUT if none waits. */
-static enum gz_result take_message(struct gz_stream *stream, struct gz_message *out_message)
+/* Receive a message without waiting. @retval GZ_ERR_PROTOCOL  it was malformed
+ * @retval GZ_ERR_TIMEOUT  there is none */
+static enum gz_result receive_stream_message(struct gz_stream *stream,
+					     struct gz_message *out_message)
 {
 	zmq_msg_t topic;
 	zmq_msg_init(&topic);
 	enum gz_result result = GZ_ERR_TIMEOUT;
 	struct gz_message message;
 	int frames;
-	if (take_frames(stream, &topic, &frames))
-		result = decode(stream, &topic, frames, &message);
+	if (receive_frames(stream, &topic, &frames))
+		result = decode_message(stream, &topic, frames, &message);
 	zmq_msg_close(&topic);
 	if (result == GZ_ERR_PROTOCOL)
-		count_malformed(stream);
+		count_malformed_message(stream);
 	if (result != GZ_OK)
 		return result;
 	stream->counters.received++;
@@ -205,8 +209,8 @@ static enum gz_result take_message(struct gz_stream *stream, struct gz_message *
 	return GZ_OK;
 }
 
-/* Wait until something can be read or @p deadline_ns. Returns whether to look again. */
-static bool wait_readable(struct gz_stream *stream, int64_t deadline_ns)
+/* Wait until something can be read, at most until @p deadline_ns. @return whether to try again */
+static bool wait_for_message(struct gz_stream *stream, int64_t deadline_ns)
 {
 	int64_t left_ns = deadline_ns - gz_clock_now_ns();
 	if (left_ns <= 0)
@@ -219,7 +223,7 @@ static bool wait_readable(struct gz_stream *stream, int64_t deadline_ns)
 	if (timeout_ms > GZ_SUBSCRIBER_EVENTS_MS)
 		timeout_ms = GZ_SUBSCRIBER_EVENTS_MS;
 	if (zmq_poll(items, 2, timeout_ms) < 0)
-		return false; /* a signal: the caller may have to end */
+		return false; /* a signal, which may ask the program to end */
 	gz_subscriber_take_events(&stream->subscriber);
 	return true;
 }
@@ -231,13 +235,13 @@ enum gz_result gz_stream_read(struct gz_stream *stream, int timeout_ms,
 		return GZ_ERR_INVAL;
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
 	do {
-		/* A flood of malformed messages must not hold the caller beyond its deadline. */
-		enum gz_result result = take_message(stream, out_message);
+		/* A flood of malformed messages must not delay the caller beyond the deadline. */
+		enum gz_result result = receive_stream_message(stream, out_message);
 		if (result == GZ_OK)
 			return GZ_OK;
 		if (result == GZ_ERR_PROTOCOL && gz_clock_now_ns() >= deadline_ns)
 			return GZ_ERR_TIMEOUT;
-	} while (wait_readable(stream, deadline_ns));
+	} while (wait_for_message(stream, deadline_ns));
 	return GZ_ERR_TIMEOUT;
 }
 

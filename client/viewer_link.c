@@ -11,24 +11,23 @@
 
 #define GZ_LOG_MODULE "viewer"
 
-/* Messages that wait for a daemon that is busy; those beyond are dropped. Chosen: newer ones tell
- * the same, better. */
+/* Messages kept for a busy daemon; further ones are dropped. Chosen: newer ones replace them. */
 enum { QUEUE = 64 };
 
-/* Chosen: enough for the last message to leave. */
+/* Longest wait at the end, ms. Chosen: enough for the last message to leave. */
 enum { LINGER_MS = 100 };
 
-/* Chosen: as for the channels that are read. */
+/* Pause before a new attempt to connect, ms. Chosen: the same as for subscriptions. */
 enum { RECONNECT_MS = 50 };
 
 struct gz_viewer_link {
 	void *context;
 	void *socket;
-	struct gz_viewer_pointer pointer; /* as sent last */
-	struct gz_viewer_window window;
+	struct gz_viewer_pointer pointer; /* as last sent */
+	struct gz_viewer_window window;   /* as last sent */
 };
 
-/* The inlet beside a latest channel: the same folder. */
+/* The inlet is in the same directory as the latest channel. */
 static enum gz_result find_inlet(const char *latest, char *text, size_t size)
 {
 	static const char tail[] = "/latest";
@@ -45,8 +44,8 @@ static enum gz_result find_inlet(const char *latest, char *text, size_t size)
 	return written > 0 && (size_t)written < size ? GZ_OK : GZ_ERR_FULL;
 }
 
-static enum gz_result connect_to(struct gz_viewer_link *link, const char *endpoint,
-				 const struct gz_log *log)
+static enum gz_result connect_to_inlet(struct gz_viewer_link *link, const char *endpoint,
+				       const struct gz_log *log)
 {
 	int queue = QUEUE, linger = LINGER_MS, reconnect = RECONNECT_MS;
 	link->context = zmq_ctx_new();
@@ -54,7 +53,7 @@ static enum gz_result connect_to(struct gz_viewer_link *link, const char *endpoi
 	if (!link->socket || zmq_setsockopt(link->socket, ZMQ_SNDHWM, &queue, sizeof queue) != 0 ||
 	    zmq_setsockopt(link->socket, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
 	    zmq_setsockopt(link->socket, ZMQ_RECONNECT_IVL, &reconnect, sizeof reconnect) != 0) {
-		gz_err(log, "no socket to the daemon: %s", zmq_strerror(errno));
+		gz_err(log, "cannot open a socket to the daemon: %s", zmq_strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	if (zmq_connect(link->socket, endpoint) == 0)
@@ -69,14 +68,14 @@ enum gz_result gz_viewer_link_open(const char *latest, const struct gz_log *log,
 	char endpoint[GZ_ENDPOINT_SIZE];
 	enum gz_result result = find_inlet(latest, endpoint, sizeof endpoint);
 	if (result == GZ_ERR_FULL)
-		gz_err(log, "the path of the daemon's sockets is too long; set "
-			    "GAZECAST_RUNTIME_DIR");
+		gz_err(log, "the path of the runtime directory is too long for a socket: set "
+			    "GAZECAST_RUNTIME_DIR to a shorter one");
 	if (result != GZ_OK)
 		return result;
 	struct gz_viewer_link *link = calloc(1, sizeof *link);
 	if (!link)
 		return GZ_ERR_NO_MEM;
-	result = connect_to(link, endpoint, log);
+	result = connect_to_inlet(link, endpoint, log);
 	if (result != GZ_OK) {
 		gz_viewer_link_close(&link);
 		return result;
@@ -85,8 +84,8 @@ enum gz_result gz_viewer_link_open(const char *latest, const struct gz_log *log,
 	return GZ_OK;
 }
 
-static void send_message(struct gz_viewer_link *link, const char *topic,
-			 const struct gz_wire_message *message)
+static void send_to_inlet(struct gz_viewer_link *link, const char *topic,
+			  const struct gz_wire_message *message)
 {
 	if (zmq_send(link->socket, topic, strlen(topic), ZMQ_SNDMORE | ZMQ_DONTWAIT) >= 0)
 		zmq_send(link->socket, message->bytes, message->size, ZMQ_DONTWAIT);
@@ -110,15 +109,15 @@ void gz_viewer_link_pointer(struct gz_viewer_link *link, const struct gz_point *
 		return;
 	link->pointer = pointer;
 	if (gz_wire_encode_pointer(&pointer, &message) == GZ_OK)
-		send_message(link, GZ_TOPIC_POINTER, &message);
+		send_to_inlet(link, GZ_TOPIC_POINTER, &message);
 }
 
-static void send_window(struct gz_viewer_link *link, const struct gz_viewer_window *window)
+static void send_viewer_window(struct gz_viewer_link *link, const struct gz_viewer_window *window)
 {
 	struct gz_wire_message message;
 	link->window = *window;
 	if (gz_wire_encode_window(window, &message) == GZ_OK)
-		send_message(link, GZ_TOPIC_WINDOW, &message);
+		send_to_inlet(link, GZ_TOPIC_WINDOW, &message);
 }
 
 void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], int64_t now_ns)
@@ -128,7 +127,7 @@ void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], in
 	memcpy(window.rect_px, rect_px, sizeof window.rect_px);
 	bool same = sent->known && memcmp(sent->rect_px, rect_px, sizeof window.rect_px) == 0;
 	if (!same || now_ns - sent->time_ns >= GZ_VIEWER_LINK_WINDOW_NS)
-		send_window(link, &window);
+		send_viewer_window(link, &window);
 }
 
 void gz_viewer_link_annotate(struct gz_viewer_link *link, const char *label, int64_t time_ns)
@@ -140,7 +139,7 @@ void gz_viewer_link_annotate(struct gz_viewer_link *link, const char *label, int
 		return;
 	memcpy(annotation.label, label, length + 1);
 	if (gz_wire_encode_annotation(&annotation, &message) == GZ_OK)
-		send_message(link, GZ_TOPIC_ANNOTATION, &message);
+		send_to_inlet(link, GZ_TOPIC_ANNOTATION, &message);
 }
 
 void gz_viewer_link_close(struct gz_viewer_link **link)
@@ -150,7 +149,7 @@ void gz_viewer_link_close(struct gz_viewer_link **link)
 	struct gz_viewer_link *l = *link;
 	const struct gz_viewer_window closed = { .known = false };
 	if (l->socket && l->window.known)
-		send_window(l, &closed);
+		send_viewer_window(l, &closed);
 	if (l->socket)
 		zmq_close(l->socket);
 	if (l->context)

@@ -45,10 +45,26 @@ function(gz_embed_texts out prefix)
 	set(${out} "${sources}" PARENT_SCOPE)
 endfunction()
 
-# gz_module(NAME SOURCES file... [USES target...] [PRIVATE_USES target...]): the library gz_NAME.
-# Headers are included by their path from the top: "protocol/gaze.h".
+# Note that this folder is the room NAME, which names the rooms in USES: what tests/layering checks the
+# includes against.
+function(gz_note_room name)
+	set(uses ${ARGN})
+	list(FILTER uses INCLUDE REGEX "^gz_")
+	list(REMOVE_ITEM uses gz_nifti gz_dcmtk)
+	list(JOIN uses "," uses)
+	if(uses STREQUAL "")
+		set(uses -)
+	endif()
+	file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+	set_property(GLOBAL APPEND PROPERTY GZ_ROOMS "gz_${name} ${folder} ${uses}")
+endfunction()
+
+# gz_module(NAME SOURCES file... [USES target...] [PRIVATE_USES target...]): the library gz_NAME, a room.
+# It uses only the rooms that it names. Headers are included by their path from the top:
+# "protocol/gaze.h".
 function(gz_module name)
 	cmake_parse_arguments(M "" "" "SOURCES;USES;PRIVATE_USES" ${ARGN})
+	gz_note_room(${name} ${M_USES} ${M_PRIVATE_USES})
 	add_library(gz_${name} STATIC ${M_SOURCES})
 	target_include_directories(gz_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
 	target_link_libraries(gz_${name} PUBLIC ${M_USES} PRIVATE ${M_PRIVATE_USES} gz_settings)
@@ -57,6 +73,7 @@ endfunction()
 # gz_program(NAME SOURCES file... [USES target...]): an installed program.
 function(gz_program name)
 	cmake_parse_arguments(P "" "" "SOURCES;USES" ${ARGN})
+	gz_note_room(${name} ${P_USES})
 	add_executable(${name} ${P_SOURCES})
 	target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 	target_link_libraries(${name} PRIVATE ${P_USES} gz_settings)
@@ -64,29 +81,54 @@ function(gz_program name)
 	install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# gz_probe(NAME SOURCES file... [USES target...]): a program that measures, not installed.
+function(gz_probe name)
+	cmake_parse_arguments(P "" "" "SOURCES;USES" ${ARGN})
+	gz_note_room(${name} ${P_USES})
+	add_executable(${name} ${P_SOURCES})
+	target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+	target_link_libraries(${name} PRIVATE ${P_USES} gz_settings)
+endfunction()
+
 set(gz_test_environment "")
 if(GAZECAST_SANITIZE MATCHES thread)
 	set(gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp:die_after_fork=0")
 endif()
 
-# gz_test(FOLDER NAME [USES target...] [LABELS label...] [TIMEOUT s] [SOURCES more...]):
-# tests/FOLDER/test_NAME.c becomes the test FOLDER.NAME, labelled quick unless LABELS says otherwise.
-# A test that cannot run where it is exits 77 and counts as skipped.
-function(gz_test folder name)
-	cmake_parse_arguments(T "" "TIMEOUT" "USES;LABELS;SOURCES" ${ARGN})
-	if(NOT T_LABELS)
-		set(T_LABELS quick)
+# gz_test_program(NAME SUITES suite... [FOLDER folder] [USES target...] [SOURCES more...]
+# [DEFINES NAME=value...] [NEEDS target...]): the program test_NAME of all tests/FOLDER/test_<suite>.c, each
+# of which is the test FOLDER.<suite>, labelled quick, with a minute's time. FOLDER is NAME if it is not given.
+# NEEDS are programs that the suites start. A test that cannot run where it is exits 77 and counts as skipped.
+function(gz_test_program name)
+	cmake_parse_arguments(T "" "FOLDER" "SUITES;USES;SOURCES;DEFINES;NEEDS" ${ARGN})
+	if(NOT T_FOLDER)
+		set(T_FOLDER ${name})
 	endif()
-	if(NOT T_TIMEOUT)
-		set(T_TIMEOUT 60)
-	endif()
-	set(target test_${folder}_${name})
-	add_executable(${target} test_${name}.c ${T_SOURCES})
+	set(target test_${name})
+	set(sources "")
+	foreach(suite ${T_SUITES})
+		list(APPEND sources test_${suite}.c)
+	endforeach()
+	create_test_sourcelist(sources ${target}_suites.c ${sources})
+	add_executable(${target} ${sources} ${T_SOURCES})
 	target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/tests")
+	target_compile_definitions(${target} PRIVATE ${T_DEFINES})
 	target_link_libraries(${target} PRIVATE ${T_USES} PkgConfig::CMOCKA gz_settings)
-	add_test(NAME ${folder}.${name} COMMAND ${target})
-	set_tests_properties(${folder}.${name} PROPERTIES TIMEOUT ${T_TIMEOUT} SKIP_RETURN_CODE 77
-		LABELS "${T_LABELS}" ENVIRONMENT "${gz_test_environment}")
+	if(T_NEEDS)
+		add_dependencies(${target} ${T_NEEDS})
+	endif()
+	foreach(suite ${T_SUITES})
+		add_test(NAME ${T_FOLDER}.${suite} COMMAND ${target} test_${suite})
+		set_tests_properties(${T_FOLDER}.${suite} PROPERTIES TIMEOUT 60 SKIP_RETURN_CODE 77
+			LABELS quick ENVIRONMENT "${gz_test_environment}")
+	endforeach()
+endfunction()
+
+# gz_test_properties(FOLDER SUITES suite... PROPERTIES name value...): as set_tests_properties().
+function(gz_test_properties folder)
+	cmake_parse_arguments(T "" "" "SUITES;PROPERTIES" ${ARGN})
+	list(TRANSFORM T_SUITES PREPEND ${folder}.)
+	set_tests_properties(${T_SUITES} PROPERTIES ${T_PROPERTIES})
 endfunction()
 
 # gz_fuzz(NAME [USES target...]): tests/fuzz/fuzz_NAME.c defines LLVMFuzzerTestOneInput. With

@@ -1,20 +1,23 @@
-/* Settings that depend on what the tracker, or a recording, says. */
+/* Settings that depend on the tracker or on a recording: display, pipeline, stored correction; and
+ * the directory for recordings. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "daemon/config.h"
+#include "protocol/correction_file.h"
 
 #define GZ_LOG_MODULE "config"
 
-/* Pixels where nobody knows them. */
+/* Size of the display in pixels if no source gives it. */
 enum { DEFAULT_WIDTH_PX = 1920, DEFAULT_HEIGHT_PX = 1080 };
 
 struct gz_display gz_config_display(const struct gz_config *config,
 				    const struct gz_device_info *info)
 {
-	/* A recording was made on the display it names, whatever the configuration file says. */
+	/* The display of a recording is the one it was made on, so the configuration file does not
+	 * count. */
 	bool fixed = info->recorded && info->has_display;
 	bool px = config->display_px[0] > 0 && config->display_px[1] > 0 &&
 		  (!fixed || config->display_given[0]);
@@ -35,9 +38,10 @@ struct gz_display gz_config_display(const struct gz_config *config,
 	return display;
 }
 
-static enum gz_result apply_setting(const struct gz_config *config,
-				    const struct gz_gaze_log_setting *setting,
-				    const struct gz_log *log, struct gz_pipeline_params *params)
+static enum gz_result apply_recorded_setting(const struct gz_config *config,
+					     const struct gz_gaze_log_setting *setting,
+					     const struct gz_log *log,
+					     struct gz_pipeline_params *params)
 {
 	char key[GZ_NAME_SIZE + sizeof "pipeline."];
 	char message[256];
@@ -46,15 +50,17 @@ static enum gz_result apply_setting(const struct gz_config *config,
 					     NULL };
 	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
 	if (!option) {
-		gz_warn(log, "the recording has %s %s, which this version does not know", key,
-			setting->value);
+		gz_warn(log,
+			"the recording has the setting %s %s, which this version does not know; it "
+			"is ignored",
+			key, setting->value);
 		return GZ_OK;
 	}
 	if (config->pipeline_given[option - gz_pipeline_options])
 		return GZ_OK;
 	if (gz_option_parse(option, setting->value, params, message, sizeof message) == GZ_OK)
 		return GZ_OK;
-	gz_err(log, "the recording's %s: %s; give another with --%s", key, message, key);
+	gz_err(log, "setting %s of the recording: %s; override it with --%s", key, message, key);
 	return GZ_ERR_FORMAT;
 }
 
@@ -64,7 +70,8 @@ enum gz_result gz_config_pipeline(const struct gz_config *config,
 {
 	struct gz_pipeline_params params = config->pipeline;
 	for (size_t i = 0; recorded && i < recorded->setting_count; i++) {
-		enum gz_result result = apply_setting(config, &recorded->settings[i], log, &params);
+		enum gz_result result =
+			apply_recorded_setting(config, &recorded->settings[i], log, &params);
 		if (result != GZ_OK)
 			return result;
 	}
@@ -93,8 +100,72 @@ void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
 	}
 }
 
+/* Whether the command line gives the correction; it then overrides the stored one. */
+static bool correction_given_on_command_line(const struct gz_config *config)
+{
+	for (size_t i = 0; i < gz_pipeline_option_count; i++) {
+		const char *key = gz_pipeline_options[i].key;
+		if (config->pipeline_given[i] && (strcmp(key, "pipeline.correction.x") == 0 ||
+						  strcmp(key, "pipeline.correction.y") == 0))
+			return true;
+	}
+	return false;
+}
+
+/* Take the correction from its file in @p directory. @return whether it is used */
+static bool take_correction_from(const char *directory, const struct gz_device_info *info,
+				 const struct gz_display *display, const struct gz_log *log,
+				 struct gz_pipeline_params *params)
+{
+	char path[2 * GZ_PATH_SIZE];
+	struct gz_correction_file file;
+	struct gz_correct_params correct;
+	if (gz_correction_path(directory, info->name, info->serial, display, path, sizeof path) !=
+		    GZ_OK ||
+	    gz_correction_read(path, log, &file) != GZ_OK)
+		return false;
+	if (!gz_correction_fits(&file, info->name, info->serial, display)) {
+		gz_err(log,
+		       "%s: measured with another tracker or display, so it is not used; measure "
+		       "again with gazectl validate --correct",
+		       path);
+		return false;
+	}
+	memcpy(correct.x, file.x, sizeof correct.x);
+	memcpy(correct.y, file.y, sizeof correct.y);
+	if (!gz_correct_usable(&correct)) {
+		gz_err(log,
+		       "%s: the correction maps the display to a line or a point, so it is not "
+		       "used; measure again with gazectl validate --correct",
+		       path);
+		return false;
+	}
+	params->correct = correct;
+	gz_info(log, "gaze is corrected with %s", path);
+	return true;
+}
+
+void gz_config_correction(const struct gz_config *config, const struct gz_device_info *info,
+			  const struct gz_display *display, const struct gz_log *log,
+			  struct gz_pipeline_params *params)
+{
+	char directory[GZ_PATH_SIZE];
+	if (info->recorded || correction_given_on_command_line(config) ||
+	    strcmp(config->corrections, "none") == 0)
+		return;
+	if (config->corrections[0]) {
+		take_correction_from(config->corrections, info, display, log, params);
+		return;
+	}
+	if (gz_correction_directory(directory, sizeof directory) == GZ_OK &&
+	    take_correction_from(directory, info, display, log, params))
+		return;
+	take_correction_from(GAZECAST_SYSCONFDIR "/gazecast/corrections", info, display, log,
+			     params);
+}
+
 /* The user's data directory (XDG base directory specification). */
-static bool data_directory(char *text, size_t size)
+static bool user_data_directory(char *text, size_t size)
 {
 	const char *data = getenv("XDG_DATA_HOME");
 	const char *home = getenv("HOME");
@@ -106,8 +177,8 @@ static bool data_directory(char *text, size_t size)
 	return length > 0 && (size_t)length < size;
 }
 
-/* mkdir -p, 0700: what is recorded there is nobody else's. */
-static bool make_directories(char *path)
+/* Make a directory and its parents, 0700: recordings are private. */
+static bool make_private_directories(char *path)
 {
 	for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
 		*slash = '\0';
@@ -119,7 +190,7 @@ static bool make_directories(char *path)
 	return mkdir(path, 0700) == 0 || errno == EEXIST;
 }
 
-static bool is_directory(const char *path)
+static bool is_recording_directory(const char *path)
 {
 	struct stat status;
 	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
@@ -130,15 +201,17 @@ enum gz_result gz_config_recording_directory(const struct gz_config *config,
 {
 	if (config->recording_directory[0]) {
 		snprintf(text, size, "%s", config->recording_directory);
-		if (is_directory(text))
+		if (is_recording_directory(text))
 			return GZ_OK;
-		gz_err(log, "recording.directory: %s is no directory; make it, or name another",
+		gz_err(log,
+		       "recording.directory: %s is not a directory; create it, or name another",
 		       text);
 		return GZ_ERR_NOT_FOUND;
 	}
-	if (data_directory(text, size) && make_directories(text) && is_directory(text))
+	if (user_data_directory(text, size) && make_private_directories(text) &&
+	    is_recording_directory(text))
 		return GZ_OK;
-	gz_err(log, "no directory for recordings in the user's data directory; name one with "
-		    "--recording.directory DIR");
+	gz_err(log, "cannot create a directory for recordings in the user's data directory; name "
+		    "one with --recording.directory DIR");
 	return GZ_ERR_NOT_FOUND;
 }

@@ -1,4 +1,4 @@
-/* gazed: puts the parts together, and takes them apart again in the other order. */
+/* gazed: creates the daemon's parts, runs them, and destroys them in reverse order. */
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -10,13 +10,9 @@
 #include <zmq.h>
 
 #include "daemon/config.h"
-#include "daemon/lock.h"
-#include "daemon/notify.h"
-#include "daemon/open_files.h"
-#include "daemon/privileges.h"
+#include "daemon/process.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
-#include "daemon/recording_name.h"
 #include "daemon/requests.h"
 #include "daemon/service.h"
 
@@ -39,10 +35,10 @@ struct daemon {
 	struct gz_service *service;
 };
 
-/* Signals that end the daemon become readable; blocked before any thread starts, so that all
- * threads have them blocked. A file beyond the size limit, or a reader that left, is an error like
- * others. */
-static enum gz_result catch_signals(struct daemon *daemon)
+/* The signals that end the daemon are read from a signalfd. They are blocked before any thread
+ * starts, so that every thread inherits that. SIGXFSZ and SIGPIPE are ignored: a file beyond the
+ * size limit and a reader that left are reported as errors of write(). */
+static enum gz_result block_ending_signals(struct daemon *daemon)
 {
 	sigset_t ending;
 	sigemptyset(&ending);
@@ -55,16 +51,16 @@ static enum gz_result catch_signals(struct daemon *daemon)
 	daemon->signal_fd = signalfd(-1, &ending, SFD_CLOEXEC | SFD_NONBLOCK);
 	if (daemon->signal_fd >= 0)
 		return GZ_OK;
-	gz_err(&daemon->log, "no signals: %s", strerror(errno));
+	gz_err(&daemon->log, "cannot wait for signals: %s", strerror(errno));
 	return GZ_ERR_IO;
 }
 
-static enum gz_result take_directory(struct daemon *daemon)
+static enum gz_result take_runtime_directory(struct daemon *daemon)
 {
 	enum gz_result result = gz_runtime_directory(daemon->directory, sizeof daemon->directory);
 	if (result != GZ_OK) {
-		gz_err(&daemon->log, "the runtime directory's path is too long; set "
-				     "GAZECAST_RUNTIME_DIR");
+		gz_err(&daemon->log, "the path of the runtime directory is too long; set "
+				     "GAZECAST_RUNTIME_DIR to a shorter one");
 		return result;
 	}
 	result = gz_runtime_directory_prepare(daemon->directory, &daemon->log);
@@ -73,7 +69,7 @@ static enum gz_result take_directory(struct daemon *daemon)
 	return result;
 }
 
-static enum gz_result open_sockets(struct daemon *daemon)
+static enum gz_result open_daemon_sockets(struct daemon *daemon)
 {
 	daemon->context = zmq_ctx_new();
 	if (!daemon->context)
@@ -107,7 +103,7 @@ static enum gz_result open_sockets(struct daemon *daemon)
 	return result == GZ_OK ? gz_guard_start(daemon->network.guard) : result;
 }
 
-/* --record: from the very first sample. */
+/* --record: begin the recording before the first sample. */
 static enum gz_result record_from_start(struct daemon *daemon)
 {
 	char directory[GZ_PATH_SIZE], path[GZ_PATH_SIZE], message[GZ_PATH_SIZE + 256];
@@ -127,17 +123,17 @@ static enum gz_result record_from_start(struct daemon *daemon)
 	return gz_service_record(daemon->service, fd, path);
 }
 
-static enum gz_result start(struct daemon *daemon)
+static enum gz_result start_daemon(struct daemon *daemon)
 {
 	gz_notify_open(&daemon->notify, &daemon->log);
 	gz_open_files_allow(&daemon->log);
 	enum gz_result result = gz_privileges_drop(daemon->config.user, &daemon->log);
 	if (result == GZ_OK)
-		result = catch_signals(daemon);
+		result = block_ending_signals(daemon);
 	if (result == GZ_OK)
-		result = take_directory(daemon);
+		result = take_runtime_directory(daemon);
 	if (result == GZ_OK)
-		result = open_sockets(daemon);
+		result = open_daemon_sockets(daemon);
 	if (result != GZ_OK)
 		return result;
 	const struct gz_service_parts parts = {
@@ -166,11 +162,11 @@ static void say_hello(const struct daemon *daemon)
 	if (port > 0)
 		gz_info(&daemon->log, "%s: control at %s, stream at tcp://%s:%d",
 			daemon->config.tcp == GZ_TCP_CURVE ? "for clients with a key"
-							   : "for Pupil's clients",
+							   : "for Pupil clients",
 			daemon->config.control_endpoint, daemon->config.address, port);
 }
 
-static void stop(struct daemon *daemon)
+static void stop_daemon(struct daemon *daemon)
 {
 	gz_service_destroy(&daemon->service);
 	gz_recorder_destroy(&daemon->recorder);
@@ -187,21 +183,21 @@ static void stop(struct daemon *daemon)
 		close(daemon->lock_fd);
 }
 
-static enum gz_result serve(struct daemon *daemon)
+static enum gz_result run_daemon(struct daemon *daemon)
 {
-	enum gz_result result = start(daemon);
+	enum gz_result result = start_daemon(daemon);
 	if (result == GZ_OK) {
 		say_hello(daemon);
 		result = gz_requests_run(daemon->requests, daemon->signal_fd);
 		gz_notify_stopping(&daemon->notify);
 		gz_requests_quit_service(daemon->requests);
 	}
-	stop(daemon);
+	stop_daemon(daemon);
 	return result;
 }
 
-/* A descriptor of 0 to 2 that was handed over closed would become a socket or a recording, and what
- * is logged would go into it. */
+/* If a descriptor from 0 to 2 is closed at the start, a socket or a recording would get its number,
+ * and log messages would go into it. */
 static bool claim_standard_streams(void)
 {
 	int fd;
@@ -214,12 +210,12 @@ static bool claim_standard_streams(void)
 	return true;
 }
 
-/* Whether all that was printed has reached its file. */
+/* Check that everything printed has reached its file. */
 static enum gz_result finish_printing(const struct gz_log *log)
 {
 	if (fflush(stdout) == 0 && !ferror(stdout))
 		return GZ_OK;
-	gz_err(log, "cannot write to standard output: is its disk full?");
+	gz_err(log, "cannot write to standard output; is the disk full?");
 	return GZ_ERR_IO;
 }
 
@@ -242,7 +238,7 @@ int main(int argc, char **argv)
 	else if (result == GZ_OK && daemon->config.print_config)
 		gz_config_print_file(&daemon->config, stdout);
 	else if (result == GZ_OK)
-		result = serve(daemon);
+		result = run_daemon(daemon);
 	if (result == GZ_OK)
 		result = finish_printing(&daemon->log);
 	free(daemon);

@@ -13,23 +13,22 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "daemon/address_limit.h"
-#include "daemon/authorized_keys.h"
-#include "daemon/zap.h"
+#include "daemon/admission.h"
 
 #define GZ_LOG_MODULE "security"
 
-/* RFC 27: where libzmq asks. */
+/* RFC 27: the endpoint at which libzmq asks. */
 #define ZAP_ENDPOINT "inproc://zeromq.zap.01"
 
-/* Newest connections whose address is kept. Chosen: handshakes are short, and only where they fail
- * the address is told; if more are under way at a time, that of some is not. */
+/* How many of the newest connections have their address kept, for the log message if the handshake
+ * fails. Chosen: handshakes are short; if more run at a time, some failures are logged without an
+ * address. */
 enum { PEERS_MAX = 64 };
 
-/* Requests or events taken before the other sockets are looked at. */
+/* Most requests and events taken from each socket before the thread polls again. */
 enum { AT_ONCE = 64 };
 
-/* What is told of an address, each kind once a minute. */
+/* Kinds of message about an address; each is logged once a minute. */
 enum notice { LET_IN, UNKNOWN_KEY, WRONG_SERVER_KEY, WITHOUT_KEYS, NO_HANDSHAKE };
 
 /* A connection that may still fail. */
@@ -43,16 +42,16 @@ struct gz_connections {
 	const char *name;
 	void *monitor; /* PAIR */
 	_Atomic uint32_t count;
-	bool failing; /* a handshake has failed, and its connection ends with the next event */
+	bool failing; /* a handshake has failed; the next event ends its connection */
 	enum notice failure;
-	unsigned next_peer;           /* where the next one goes */
-	struct peer peers[PEERS_MAX]; /* the newest */
+	unsigned next_peer;           /* index of the oldest peer, which the next one replaces */
+	struct peer peers[PEERS_MAX]; /* the newest connections */
 };
 
 struct gz_guard {
 	const struct gz_log *log;
 	void *context;
-	void *zap;   /* REP; NULL: nobody needs a key */
+	void *zap;   /* REP; NULL: clients need no key */
 	int quit_fd; /* eventfd */
 	pthread_t thread;
 	bool has_thread;
@@ -67,34 +66,37 @@ uint32_t gz_connections_count(const struct gz_connections *connections)
 	return atomic_load_explicit(&connections->count, memory_order_relaxed);
 }
 
-/* Whether @p notice may be logged of @p address now; " (12 more since last told)" or nothing. */
-static bool may_tell(struct gz_guard *guard, const char *address, enum notice notice, char *more,
-		     size_t size)
+/* Whether @p notice about @p address may be logged now. Fills @p more with " (12 more times since
+ * the last message)", or with nothing. */
+static bool log_permitted(struct gz_guard *guard, const char *address, enum notice notice,
+			  char *more, size_t size)
 {
 	uint64_t dropped;
 	if (!gz_address_limit_pass(&guard->told, address, notice, gz_clock_now_ns(), &dropped))
 		return false;
 	more[0] = '\0';
 	if (dropped > 0)
-		snprintf(more, size, " (%llu more times since last told)",
+		snprintf(more, size, " (%llu more times since the last message)",
 			 (unsigned long long)dropped);
 	return true;
 }
 
-/* May the client come in? */
-static bool judge(struct gz_guard *guard, const struct gz_zap_request *request)
+/* Whether the client's key is authorised; logs the decision. */
+static bool is_admitted(struct gz_guard *guard, const struct gz_zap_request *request)
 {
 	char more[64];
 	const struct gz_known_key *known =
 		gz_authorized_keys_find(&guard->authorized, request->key);
-	if (!may_tell(guard, request->address, known ? LET_IN : UNKNOWN_KEY, more, sizeof more))
+	if (!log_permitted(guard, request->address, known ? LET_IN : UNKNOWN_KEY, more,
+			   sizeof more))
 		return known != NULL;
 	if (known)
 		gz_info(guard->log, "%s is let in with the key of \"%s\"%s", request->address,
 			known->name[0] ? known->name : request->key, more);
 	else
 		gz_warn(guard->log,
-			"%s is refused: its key is not in %s; to let it in, add the line %s%s",
+			"%s is refused: its key is not in %s; to let it in, add this line there: "
+			"%s%s",
 			request->address, guard->authorized.path, request->key, more);
 	return known != NULL;
 }
@@ -105,8 +107,8 @@ static void send_text(void *socket, const char *text, bool more)
 }
 
 /* RFC 27: version, request id, status code, status text, user id, metadata. */
-static void answer(struct gz_guard *guard, const struct gz_zap_request *request, const char *code,
-		   const char *text)
+static void send_zap_reply(struct gz_guard *guard, const struct gz_zap_request *request,
+			   const char *code, const char *text)
 {
 	send_text(guard->zap, "1.0", true);
 	zmq_send(guard->zap, request->id, request->id_size, ZMQ_DONTWAIT | ZMQ_SNDMORE);
@@ -117,9 +119,9 @@ static void answer(struct gz_guard *guard, const struct gz_zap_request *request,
 }
 
 /* Answer one request. @return whether there was one */
-static bool take_request(struct gz_guard *guard)
+static bool answer_zap_request(struct gz_guard *guard)
 {
-	zmq_msg_t messages[GZ_ZAP_FRAMES + 1]; /* the last one for whatever is too much */
+	zmq_msg_t messages[GZ_ZAP_FRAMES + 1]; /* the last one takes all surplus frames */
 	struct gz_zap_frame frames[GZ_ZAP_FRAMES + 1];
 	struct gz_zap_request request;
 	size_t count = 0;
@@ -137,9 +139,9 @@ static bool take_request(struct gz_guard *guard)
 	}
 	if (count > 0) {
 		enum gz_result result = gz_zap_parse(frames, count, &request);
-		bool welcome = result == GZ_OK && judge(guard, &request);
-		answer(guard, &request, welcome ? "200" : "400",
-		       welcome ? "OK" : "this key is not authorised");
+		bool welcome = result == GZ_OK && is_admitted(guard, &request);
+		send_zap_reply(guard, &request, welcome ? "200" : "400",
+			       welcome ? "OK" : "this key is not authorised");
 	}
 	for (int i = 0; i <= GZ_ZAP_FRAMES; i++)
 		zmq_msg_close(&messages[i]);
@@ -155,8 +157,8 @@ static struct peer *find_peer(struct gz_connections *connections, int fd)
 	return NULL;
 }
 
-/* The address at the other end; false for a local one and for one that has left. */
-static bool address_of(int fd, char *text, size_t size)
+/* The address of the other end; false for a local connection and for one that has closed. */
+static bool peer_address(int fd, char *text, size_t size)
 {
 	struct sockaddr_storage peer = { 0 };
 	socklen_t length = sizeof peer;
@@ -170,67 +172,68 @@ static bool address_of(int fd, char *text, size_t size)
 	return address && inet_ntop(peer.ss_family, address, text, (socklen_t)size) != NULL;
 }
 
-static void accept_peer(struct gz_connections *connections, int fd)
+static void peer_arrived(struct gz_connections *connections, int fd)
 {
 	atomic_fetch_add_explicit(&connections->count, 1, memory_order_relaxed);
 	if (!connections->guard->zap)
 		return;
 	char address[GZ_ADDRESS_SIZE];
 	struct peer *peer = find_peer(connections, fd);
-	/* In the place of the oldest, whose handshake is over. */
+	/* Replace the oldest, whose handshake is over. */
 	if (!peer)
 		peer = &connections->peers[connections->next_peer++ % PEERS_MAX];
 	peer->fd = -1;
-	if (!address_of(fd, address, sizeof address))
+	if (!peer_address(fd, address, sizeof address))
 		return;
 	peer->fd = fd;
 	memcpy(peer->address, address, sizeof address);
 }
 
-static const char *describe(enum notice failure)
+static const char *handshake_failure_text(enum notice failure)
 {
 	switch (failure) {
 	case WRONG_SERVER_KEY:
-		return "it holds another server key than this daemon's; give it the line that "
-		       "gazectl keygen --server prints";
+		return "it has the key of another server; give it the line that gazectl keygen "
+		       "--server prints here";
 	case WITHOUT_KEYS:
-		return "it comes without keys; run gazectl keygen --client there";
+		return "it has no keys; run gazectl keygen --client there";
 	default:
-		return "what it says is no handshake of CurveZMQ; is it a client of gazed?";
+		return "it does not speak CurveZMQ; is it a client of gazed?";
 	}
 }
 
-static void tell_failure(struct gz_connections *connections, const char *address)
+static void log_handshake_failure(struct gz_connections *connections, const char *address)
 {
 	char more[64];
-	if (may_tell(connections->guard, address, connections->failure, more, sizeof more))
+	if (log_permitted(connections->guard, address, connections->failure, more, sizeof more))
 		gz_warn(connections->guard->log, "%s at socket %s is refused: %s%s", address,
-			connections->name, describe(connections->failure), more);
+			connections->name, handshake_failure_text(connections->failure), more);
 }
 
-static void end_peer(struct gz_connections *connections, int fd)
+static void peer_left(struct gz_connections *connections, int fd)
 {
 	struct peer *peer = find_peer(connections, fd);
 	if (gz_connections_count(connections) > 0)
 		atomic_fetch_sub_explicit(&connections->count, 1, memory_order_relaxed);
 	if (connections->failing)
-		tell_failure(connections, peer ? peer->address : "somebody who has left already");
+		log_handshake_failure(connections, peer ? peer->address : "an unknown address");
 	connections->failing = false;
 	if (peer)
 		peer->fd = -1;
 }
 
-static void fail_handshake(struct gz_connections *connections, int error)
+static void handshake_failed(struct gz_connections *connections, int error)
 {
 	connections->failing = true;
 	connections->failure =
 		error == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC ? WRONG_SERVER_KEY : WITHOUT_KEYS;
 }
 
-/* One event: a frame of u16 number and u32 value, in the host's order, and one of the socket's own
- * address (zmq_socket_monitor(3)). There is one I/O thread, which tells of a failed handshake and
- * of the end of its connection without another event between them. @return whether there was one */
-static bool take_event(struct gz_connections *connections)
+/* Take one event: a frame of u16 number and u32 value in the host's byte order, and a frame with
+ * the socket's own address (zmq_socket_monitor(3)). libzmq's only I/O thread reports a failed
+ * handshake and the end of that connection with no other event between them. @return whether there
+ * was an event */
+static bool take_monitor_event(struct gz_connections *connections)
 {
 	unsigned char frame[6];
 	char address[1];
@@ -242,25 +245,25 @@ static bool take_event(struct gz_connections *connections)
 	memcpy(&value, frame + sizeof event, sizeof value);
 	zmq_recv(connections->monitor, address, sizeof address, ZMQ_DONTWAIT);
 	if (event == ZMQ_EVENT_ACCEPTED)
-		accept_peer(connections, value);
+		peer_arrived(connections, value);
 	else if (event == ZMQ_EVENT_DISCONNECTED)
-		end_peer(connections, value);
+		peer_left(connections, value);
 	else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL)
-		fail_handshake(connections, value);
+		handshake_failed(connections, value);
 	return true;
 }
 
-static void take_all(struct gz_guard *guard)
+static void take_pending(struct gz_guard *guard)
 {
 	bool more = true;
 	for (int i = 0; more && i < AT_ONCE; i++) {
-		more = guard->zap && take_request(guard);
+		more = guard->zap && answer_zap_request(guard);
 		for (size_t s = 0; s < guard->socket_count; s++)
-			more = take_event(&guard->sockets[s]) || more;
+			more = take_monitor_event(&guard->sockets[s]) || more;
 	}
 }
 
-static void *run(void *user)
+static void *guard_run(void *user)
 {
 	struct gz_guard *guard = user;
 	pthread_setname_np(pthread_self(), "gazed-guard");
@@ -277,11 +280,11 @@ static void *run(void *user)
 			return NULL;
 		if (items[0].revents)
 			return NULL;
-		take_all(guard);
+		take_pending(guard);
 	}
 }
 
-static void set_int(void *socket, int option, int value)
+static void set_guard_option(void *socket, int option, int value)
 {
 	zmq_setsockopt(socket, option, &value, sizeof value);
 }
@@ -294,10 +297,10 @@ static enum gz_result open_zap(struct gz_guard *guard, const char *authorized_ke
 		return result;
 	guard->zap = zmq_socket(guard->context, ZMQ_REP);
 	if (guard->zap)
-		set_int(guard->zap, ZMQ_LINGER, 0);
+		set_guard_option(guard->zap, ZMQ_LINGER, 0);
 	if (guard->zap && zmq_bind(guard->zap, ZAP_ENDPOINT) == 0)
 		return GZ_OK;
-	gz_err(guard->log, "no socket for authentication: %s", zmq_strerror(errno));
+	gz_err(guard->log, "cannot open the authentication socket: %s", zmq_strerror(errno));
 	return GZ_ERR_IO;
 }
 
@@ -321,7 +324,7 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 	return GZ_OK;
 }
 
-/* A monitor tells of connections; it must listen before the socket is bound. */
+/* The monitor reports connections; it must listen before the socket is bound. */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
 			      const struct gz_connections **out_connections)
 {
@@ -339,13 +342,14 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 		events |= ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
 	snprintf(endpoint, sizeof endpoint, "inproc://monitor-%s", name);
 	if (connections->monitor) {
-		set_int(connections->monitor, ZMQ_LINGER, 0);
-		/* At a limit libzmq would block its I/O thread, and with it every reader. */
-		set_int(connections->monitor, ZMQ_RCVHWM, 0);
+		set_guard_option(connections->monitor, ZMQ_LINGER, 0);
+		/* No limit: a full queue would block libzmq's I/O thread, and with it every
+		 * reader. */
+		set_guard_option(connections->monitor, ZMQ_RCVHWM, 0);
 	}
 	if (!connections->monitor || zmq_socket_monitor(socket, endpoint, events) != 0 ||
 	    zmq_connect(connections->monitor, endpoint) != 0) {
-		gz_err(guard->log, "no monitor for socket %s: %s", name, zmq_strerror(errno));
+		gz_err(guard->log, "cannot monitor socket %s: %s", name, zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
 	*out_connections = connections;
@@ -354,8 +358,8 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 
 enum gz_result gz_guard_start(struct gz_guard *guard)
 {
-	if (pthread_create(&guard->thread, NULL, run, guard) != 0) {
-		gz_err(guard->log, "no thread for authentication: %s", strerror(errno));
+	if (pthread_create(&guard->thread, NULL, guard_run, guard) != 0) {
+		gz_err(guard->log, "cannot start the authentication thread: %s", strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	guard->has_thread = true;

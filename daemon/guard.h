@@ -1,10 +1,10 @@
 /**
  * @file
- * Who is at the door: a thread that answers libzmq's question whether a client may come in (ZeroMQ
- * RFC 27/ZAP), counts connections, and logs who was refused, once a minute per address.
+ * The authentication thread. It answers libzmq's question whether a client may connect (ZeroMQ
+ * RFC 27/ZAP), counts connections, and logs refused clients, once a minute per address.
  *
- * Clients with an unknown key are refused by the answer. Clients with a wrong server key, or with
- * none, never get that far: of those only the sockets' monitors tell.
+ * A client with an unknown key is refused by that answer. A client with a wrong server key, or
+ * without keys, fails earlier, in the handshake: only the sockets' monitors report it.
  */
 #ifndef GZ_DAEMON_GUARD_H
 #define GZ_DAEMON_GUARD_H
@@ -14,7 +14,7 @@
 #include "base/log.h"
 #include "base/result.h"
 
-/** Most sockets that are watched. */
+/** Most sockets that can be watched. */
 #define GZ_GUARD_SOCKETS_MAX 4
 
 /** The guard. */
@@ -24,35 +24,40 @@ struct gz_guard;
 struct gz_connections;
 
 /**
- * Open. Where there are authorised keys, libzmq asks from now on; it waits for the answers until
- * gz_guard_start().
+ * Create a guard. With a list of authorised keys, libzmq asks about each client from now on, and
+ * connections wait until gz_guard_start() starts the thread that answers.
  *
  * @param context          a ZeroMQ context with one I/O thread; outlives the guard
- * @param authorized_keys  path of the list of clients' keys; NULL: nobody needs a key
- * @return GZ_OK, or a result after one logged line
+ * @param authorized_keys  path of the list of clients' keys; NULL: clients need no key
+ * @param log              borrowed; outlives the guard
+ * @param[out] out_guard   owned by the caller: gz_guard_destroy()
+ * @retval GZ_ERR_NO_MEM  no memory or no event descriptor
+ * @retval GZ_ERR_IO      the authentication socket cannot be bound; logged
+ * @return else as gz_authorized_keys_open()
  */
 enum gz_result gz_guard_create(void *context, const char *authorized_keys, const struct gz_log *log,
 			       struct gz_guard **out_guard);
 
 /**
- * Watch a socket that is not bound yet. Before gz_guard_start().
+ * Watch the connections of a socket. Call it before the socket is bound and before
+ * gz_guard_start().
  *
  * @param name  of the socket, for messages; static
  * @param[out] out_connections  valid until the guard is destroyed
- * @retval GZ_ERR_FULL  there are GZ_GUARD_SOCKETS_MAX already
- * @retval GZ_ERR_IO    logged
+ * @retval GZ_ERR_FULL  GZ_GUARD_SOCKETS_MAX sockets are watched already
+ * @retval GZ_ERR_IO    the socket cannot be monitored; logged
  */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
 			      const struct gz_connections **out_connections);
 
-/** Start the thread. GZ_ERR_NO_MEM is logged. */
+/** Start the thread. @retval GZ_ERR_NO_MEM  no thread can be started; logged */
 enum gz_result gz_guard_start(struct gz_guard *guard);
 
-/** How many there are now, of all kinds. Any thread. */
+/** How many connections the socket has now, local ones and those over TCP. Threads: any. */
 uint32_t gz_connections_count(const struct gz_connections *connections);
 
-/** Stop the thread, close and set to NULL; after the watched sockets were closed. Accepts a pointer
- *  to NULL. */
+/** Stop the thread, free the guard and set *guard to NULL. Close the watched sockets first. Accepts
+ *  a pointer to NULL. */
 void gz_guard_destroy(struct gz_guard **guard);
 
 #endif

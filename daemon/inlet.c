@@ -12,7 +12,7 @@
 
 #define GZ_LOG_MODULE "inlet"
 
-/* Messages kept while the daemon is busy; libzmq drops what is beyond. */
+/* Messages kept while the daemon is busy; libzmq drops further ones. */
 enum { QUEUE = 256 };
 
 struct gz_inlet {
@@ -22,7 +22,7 @@ struct gz_inlet {
 	struct gz_ratelimit complaints;
 };
 
-static bool begins_with(const char *text, const char *beginning)
+static bool topic_begins_with(const char *text, const char *beginning)
 {
 	return strncmp(text, beginning, strlen(beginning)) == 0;
 }
@@ -33,14 +33,14 @@ static bool is_own_topic(const char *topic)
 					   GZ_TOPIC_BLINKS, GZ_TOPIC_SACCADES, GZ_TOPIC_STATUS,
 					   "pupil." };
 	for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
-		if (begins_with(topic, own[i]))
+		if (topic_begins_with(topic, own[i]))
 			return true;
 	}
 	return false;
 }
 
-static enum gz_result take_mark(const void *body, size_t size, int64_t now_ns,
-				struct gz_inlet_message *out_message)
+static enum gz_result read_annotation(const void *body, size_t size, int64_t now_ns,
+				      struct gz_inlet_message *out_message)
 {
 	struct gz_annotation annotation;
 	enum gz_result result = gz_wire_decode_annotation(body, size, &annotation);
@@ -56,8 +56,8 @@ static enum gz_result take_mark(const void *body, size_t size, int64_t now_ns,
 	return GZ_OK;
 }
 
-static enum gz_result take_viewer(const char *topic, const void *body, size_t size,
-				  struct gz_inlet_message *out_message)
+static enum gz_result read_viewer_report(const char *topic, const void *body, size_t size,
+					 struct gz_inlet_message *out_message)
 {
 	bool is_pointer = strcmp(topic, GZ_TOPIC_POINTER) == 0;
 	bool is_window = strcmp(topic, GZ_TOPIC_WINDOW) == 0;
@@ -85,22 +85,22 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 	text[topic_size] = '\0';
 	if (is_own_topic(text))
 		return GZ_ERR_ACCESS;
-	if (begins_with(text, GZ_TOPIC_ANNOTATION)) {
+	if (topic_begins_with(text, GZ_TOPIC_ANNOTATION)) {
 		struct gz_inlet_message mark;
-		if (take_mark(body, body_size, now_ns, &mark) != GZ_OK)
+		if (read_annotation(body, body_size, now_ns, &mark) != GZ_OK)
 			return GZ_ERR_PROTOCOL;
 		out_message->mark_ns = mark.mark_ns;
 		memcpy(out_message->mark, mark.mark, sizeof mark.mark);
 	}
-	bool is_notification = begins_with(text, GZ_TOPIC_NOTIFY);
+	bool is_notification = topic_begins_with(text, GZ_TOPIC_NOTIFY);
 	if (is_notification &&
 	    gz_wire_decode_notification(body, body_size, &out_message->notification) != GZ_OK)
 		return GZ_ERR_PROTOCOL;
-	enum gz_result viewer = take_viewer(text, body, body_size, out_message);
+	enum gz_result viewer = read_viewer_report(text, body, body_size, out_message);
 	if (viewer != GZ_OK)
 		return viewer;
 	out_message->is_notification = is_notification;
-	out_message->is_mark = begins_with(text, GZ_TOPIC_ANNOTATION);
+	out_message->is_mark = topic_begins_with(text, GZ_TOPIC_ANNOTATION);
 	memcpy(out_message->topic, text, sizeof text);
 	memcpy(out_message->body, body, body_size);
 	out_message->size = body_size;
@@ -109,19 +109,19 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 
 const char *gz_inlet_refusal(enum gz_result result)
 {
-	return result == GZ_ERR_ACCESS
-		       ? "refused: the topic is the daemon's own"
-		       : "refused: a message is a topic and one MessagePack map; an annotation has "
-			 "a label, a notification a subject";
+	return result == GZ_ERR_ACCESS ? "refused: this topic is reserved for the daemon"
+				       : "refused: a message must be a topic and one MessagePack "
+					 "map; an annotation "
+					 "needs a label, a notification a subject";
 }
 
-static void complain(struct gz_inlet *inlet, enum gz_result result)
+static void warn_of_refusal(struct gz_inlet *inlet, enum gz_result result)
 {
 	uint64_t held_back;
 	if (!gz_ratelimit_pass(&inlet->complaints, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
 		return;
-	gz_warn(inlet->log, "client bug: a message that %s; dropped (%llu more since last told)",
-		result == GZ_ERR_ACCESS ? "has a topic of the daemon's own"
+	gz_warn(inlet->log, "client bug: a message %s; dropped (%llu more since the last message)",
+		result == GZ_ERR_ACCESS ? "has a topic that is reserved for the daemon"
 					: "is not a topic and a MessagePack map",
 		(unsigned long long)held_back);
 }
@@ -146,7 +146,7 @@ enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message 
 	zmq_msg_init(&frame[0]);
 	zmq_msg_init(&frame[1]);
 	enum gz_result result = GZ_ERR_TIMEOUT;
-	/* No more than a queue of bad ones at a time. */
+	/* Skip at most a queue full of refused messages in one call. */
 	for (int i = 0; i < QUEUE && result != GZ_OK; i++) {
 		int frames = gz_inlet_receive_frames(inlet->socket, frame);
 		if (frames == 0)
@@ -157,14 +157,14 @@ enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message 
 						  zmq_msg_data(&frame[1]), zmq_msg_size(&frame[1]),
 						  gz_clock_now_ns(), out_message);
 		if (result != GZ_OK)
-			complain(inlet, result);
+			warn_of_refusal(inlet, result);
 	}
 	zmq_msg_close(&frame[0]);
 	zmq_msg_close(&frame[1]);
 	return result == GZ_OK ? GZ_OK : GZ_ERR_TIMEOUT;
 }
 
-static enum gz_result open_socket(struct gz_inlet *inlet, const struct gz_network *network)
+static enum gz_result open_inlet_socket(struct gz_inlet *inlet, const struct gz_network *network)
 {
 	char endpoint[GZ_ENDPOINT_SIZE];
 	int queue = QUEUE, linger = 0;
@@ -175,7 +175,7 @@ static enum gz_result open_socket(struct gz_inlet *inlet, const struct gz_networ
 	    zmq_setsockopt(inlet->socket, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
 	    zmq_setsockopt(inlet->socket, ZMQ_MAXMSGSIZE, &size_max, sizeof size_max) != 0 ||
 	    zmq_setsockopt(inlet->socket, ZMQ_SUBSCRIBE, "", 0) != 0) {
-		gz_err(inlet->log, "no socket: %s", zmq_strerror(errno));
+		gz_err(inlet->log, "cannot open the inlet's socket: %s", zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
 	gz_network_endpoint(network, network->config->inlet_port, endpoint);
@@ -188,7 +188,7 @@ enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet
 	if (!inlet)
 		return GZ_ERR_NO_MEM;
 	inlet->log = network->log;
-	enum gz_result result = open_socket(inlet, network);
+	enum gz_result result = open_inlet_socket(inlet, network);
 	if (result != GZ_OK) {
 		gz_inlet_destroy(&inlet);
 		return result;
@@ -217,4 +217,52 @@ void gz_inlet_destroy(struct gz_inlet **inlet)
 	}
 	free(*inlet);
 	*inlet = NULL;
+}
+
+int64_t gz_viewer_time_ns(bool has_time, int64_t time_ns, int64_t now_ns)
+{
+	bool believable = has_time && time_ns <= now_ns && time_ns > now_ns - GZ_VIEWER_AGE_MAX_NS;
+	return believable ? time_ns : now_ns;
+}
+
+struct gz_pointer_report gz_viewer_report(const struct gz_viewer_pointer *pointer, int64_t now_ns)
+{
+	return (struct gz_pointer_report) {
+		.host_ns = gz_viewer_time_ns(pointer->has_time, pointer->time_ns, now_ns),
+		.known = pointer->known,
+		.point = pointer->point,
+	};
+}
+
+static struct gz_gaze_log_record window_record(const int *rect_px, int64_t host_ns)
+{
+	struct gz_gaze_log_record record = { .kind = GZ_GAZE_LOG_WINDOW, .host_ns = host_ns };
+	memcpy(record.window_px, rect_px, sizeof record.window_px);
+	return record;
+}
+
+bool gz_viewer_place_step(struct gz_viewer_place *place, const int *rect_px, int64_t host_ns,
+			  struct gz_gaze_log_record *out_record)
+{
+	if (!rect_px) {
+		place->known = false;
+		return false;
+	}
+	bool same = place->known && host_ns - place->heard_ns <= GZ_VIEWER_WINDOW_NS &&
+		    memcmp(place->rect_px, rect_px, sizeof place->rect_px) == 0;
+	place->known = true;
+	place->heard_ns = host_ns;
+	memcpy(place->rect_px, rect_px, sizeof place->rect_px);
+	if (!same)
+		*out_record = window_record(rect_px, host_ns);
+	return !same;
+}
+
+bool gz_viewer_place_at_start(const struct gz_viewer_place *place, int64_t now_ns,
+			      struct gz_gaze_log_record *out_record)
+{
+	if (!place->known || now_ns - place->heard_ns > GZ_VIEWER_WINDOW_NS)
+		return false;
+	*out_record = window_record(place->rect_px, now_ns);
+	return true;
 }

@@ -1,22 +1,23 @@
 /**
  * @file
- * What clients may say to all readers of the stream, as over Pupil's PUB_PORT: messages of two
- * frames, topic and MessagePack map. Annotations also become marks in the log; a viewer's window
- * goes there, too, and its pointer to the driver of that name. Topics that are the
- * daemon's own are refused: nobody but a tracker says where somebody looks.
+ * The inlet: messages from clients to all readers of the stream, as over Pupil's PUB_PORT. Each has
+ * two frames, a topic and a MessagePack map. An annotation also becomes a mark in the gaze log, the
+ * position of a viewer's window a window record, and a viewer's pointer goes to the driver
+ * "pointer". The daemon's own topics are refused: only a tracker reports where someone looks.
  */
 #ifndef GZ_DAEMON_INLET_H
 #define GZ_DAEMON_INLET_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <zmq.h>
 
 #include "base/log.h"
 #include "base/result.h"
-#include "daemon/command.h"
 #include "daemon/network.h"
-#include "protocol/wire_notification.h"
-#include "protocol/wire_viewer.h"
+#include "drivers/pointer/pointer_driver.h"
+#include "protocol/gaze_log.h"
+#include "protocol/wire.h"
 
 /** Largest message, bytes. Chosen: Pupil's notifications are far smaller. */
 #define GZ_INLET_SIZE_MAX 16384
@@ -27,72 +28,126 @@
 /** The inlet. One thread. */
 struct gz_inlet;
 
-/** A message that was let in. */
+/** A message that was accepted. */
 struct gz_inlet_message {
 	char topic[GZ_INLET_TOPIC_SIZE];
 	size_t size;
 	unsigned char body[GZ_INLET_SIZE_MAX];
-	bool is_mark; /**< the next two hold something */
-	int64_t mark_ns;
-	char mark[GZ_GAZE_LOG_TEXT_SIZE];
-	bool is_notification; /**< the next one holds something */
+	bool is_mark;                     /**< mark_ns and mark are set */
+	int64_t mark_ns;                  /**< host time */
+	char mark[GZ_GAZE_LOG_TEXT_SIZE]; /**< text for the gaze log */
+	bool is_notification;             /**< notification is set */
 	struct gz_notification notification;
-	bool is_pointer; /**< the next one holds something */
+	bool is_pointer; /**< pointer is set */
 	struct gz_viewer_pointer pointer;
-	bool is_window; /**< the next one holds something */
+	bool is_window; /**< window is set */
 	struct gz_viewer_window window;
 };
 
 /**
- * Bind the channel "inlet".
+ * Create the inlet and bind the channel "inlet".
  *
- * @param network  how; its context, guard and log outlive the inlet
- * @return GZ_OK, GZ_ERR_IO, GZ_ERR_NO_MEM, or as gz_network_bind(); logged
+ * @param network         how sockets are bound; its context, guard and log outlive the inlet
+ * @param[out] out_inlet  owned by the caller: gz_inlet_destroy()
+ * @retval GZ_ERR_NO_MEM  no memory
+ * @retval GZ_ERR_IO      no socket; logged
+ * @return else as gz_network_bind()
  */
 enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet **out_inlet);
 
 /** The TCP port, 0 without TCP. */
 int gz_inlet_port(const struct gz_inlet *inlet);
 
-/** The ZeroMQ socket, to be polled for input. */
+/** The ZeroMQ socket, to poll for input. */
 void *gz_inlet_socket(const struct gz_inlet *inlet);
 
 /**
- * Judge one message.
+ * Check and decode one message.
  *
  * @param topic, topic_size  first frame, untrusted
  * @param body, body_size    second frame, untrusted
- * @param now_ns             host time: of a mark whose annotation has no time
- * @param[out] out_message   written on success only
- * @retval GZ_ERR_ACCESS    the topic is the daemon's own
- * @retval GZ_ERR_PROTOCOL  no topic, too long, or no MessagePack; an annotation without a label, a
- *                          notification without a subject, a pointer or window that cannot be
+ * @param now_ns             host time, for a mark whose annotation has no time
+ * @param[out] out_message   its topic, size and body are written on success only
+ * @retval GZ_ERR_ACCESS    the topic is one of the daemon's own
+ * @retval GZ_ERR_PROTOCOL  the topic is empty or a frame too long; the body is not MessagePack; an
+ *                          annotation has no label, a notification no subject; a pointer or window
+ *                          is invalid
+ *
+ * Threads: any.
  */
 enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *body,
 			      size_t body_size, int64_t now_ns,
 			      struct gz_inlet_message *out_message);
 
-/** What to tell a client whose message was refused with @p result by gz_inlet_judge(); static text.
- */
+/** The answer to a client whose message gz_inlet_judge() refused with @p result; static text. */
 const char *gz_inlet_refusal(enum gz_result result);
 
 /**
- * Receive the frames of one message without waiting; of more than two the last one stays.
+ * Receive the frames of one message without waiting. If there are more than two, the second place
+ * holds the last one.
  *
  * @param socket  a ZeroMQ socket
- * @param frames  initialised; the caller's to close
- * @return how many there were, 0 if there is no message
+ * @param frames  initialised; the caller closes them
+ * @return number of frames, 0 if there is no message
  */
 int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2]);
 
 /**
- * Take one message that is let in; others are dropped, and told of once a second. Never waits.
+ * Receive the next message that is accepted. Others are dropped and logged, at most once a second.
+ * Never waits.
  *
- * @retval GZ_ERR_TIMEOUT  there is none now
+ * @retval GZ_ERR_TIMEOUT  there is no message now
  */
 enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message *out_message);
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_inlet_destroy(struct gz_inlet **inlet);
+
+/*
+ * What viewers report about themselves, on its way to the pointer driver and the gaze log. Pure: no
+ * clock, no I/O.
+ */
+
+/** If a message's time is in the future or older than this, ns, it comes from another clock, and
+ * the time of arrival counts instead. Chosen: no queue on one machine delays a message so long. */
+#define GZ_VIEWER_AGE_MAX_NS INT64_C(1000000000)
+
+/** If no message about a window came for this long, ns, its viewer is gone and its position is no
+ * longer known. Chosen: three of gazeview's messages, which it sends once a second. */
+#define GZ_VIEWER_WINDOW_NS INT64_C(3000000000)
+
+/** The host time of a message: its own time if it has one and that is believable, else @p now_ns.
+ */
+int64_t gz_viewer_time_ns(bool has_time, int64_t time_ns, int64_t now_ns);
+
+/** The report for the pointer driver from a message that arrived at @p now_ns. */
+struct gz_pointer_report gz_viewer_report(const struct gz_viewer_pointer *pointer, int64_t now_ns);
+
+/** What is known about the viewer's window. Zero-initialised: nothing. */
+struct gz_viewer_place {
+	bool known;
+	int rect_px[4];   /**< x y w h on the display, px */
+	int64_t heard_ns; /**< host time of the newest message */
+};
+
+/**
+ * Take note of a message about the window.
+ *
+ * @param rect_px  x y w h; NULL if the window is closed
+ * @param host_ns  its time, from gz_viewer_time_ns()
+ * @param[out] out_record  a record for the gaze log; written only on true
+ * @return whether the window's position is new and belongs into the log
+ */
+bool gz_viewer_place_step(struct gz_viewer_place *place, const int *rect_px, int64_t host_ns,
+			  struct gz_gaze_log_record *out_record);
+
+/**
+ * The window's position for a recording that begins at @p now_ns.
+ *
+ * @param[out] out_record  the recording's first record; written only on true
+ * @return whether the position is known
+ */
+bool gz_viewer_place_at_start(const struct gz_viewer_place *place, int64_t now_ns,
+			      struct gz_gaze_log_record *out_record);
 
 #endif

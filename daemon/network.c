@@ -8,23 +8,24 @@
 #include <zmq.h>
 
 #include "protocol/endpoint.h"
-#include "protocol/key_file.h"
+#include "protocol/key.h"
 
 #define GZ_LOG_MODULE "network"
 
-/* RFC 27: names what the keys are for. */
+/* RFC 27: the domain, a name for what the keys give access to. */
 static const char zap_domain[] = "gazecast";
 
-/* How long a client may take to introduce itself, ms; then its connection is closed. Chosen: some
- * round trips across the world. */
+/* Longest handshake, ms; then the connection is closed. Chosen: several round trips across the
+ * world. */
 enum { HANDSHAKE_MS = 5000 };
 
-/* A machine that vanished from the network is forgotten, and its queue freed, after so long without
- * a sign of life, ms. Chosen: libzmq 4.2 and later answer by themselves. */
+/* How often a connection is tested, and after how long without an answer it is closed and its queue
+ * freed, ms: the other machine may have vanished from the network. libzmq 4.2 and later answer by
+ * themselves. Chosen. */
 enum { HEARTBEAT_MS = 5000, HEARTBEAT_TIMEOUT_MS = 20000 };
 
-/* @param[out] path  of the secret key */
-static enum gz_result read_keys(struct gz_network *network, char path[GZ_PATH_SIZE])
+/* Read the daemon's key pair. @param[out] path  the file of the secret key */
+static enum gz_result read_server_key(struct gz_network *network, char path[GZ_PATH_SIZE])
 {
 	const char *directory = network->config->key_directory;
 	if (!zmq_has("curve")) {
@@ -37,14 +38,14 @@ static enum gz_result read_keys(struct gz_network *network, char path[GZ_PATH_SI
 		result = gz_key_file_read_secret(path, network->log, network->keys.secret_text);
 	if (result == GZ_ERR_NOT_FOUND)
 		gz_err(network->log,
-		       "network.tcp: curve needs a key, and %s is not there; run gazectl keygen "
+		       "network.tcp: curve needs a key, but %s does not exist; run gazectl keygen "
 		       "--server, or use --tcp loopback",
 		       path);
 	if (result != GZ_OK)
 		return result;
 	if (zmq_curve_public(network->keys.public_text, network->keys.secret_text) == 0)
 		return GZ_OK;
-	gz_err(network->log, "%s holds no key that libzmq takes: %s", path, zmq_strerror(errno));
+	gz_err(network->log, "libzmq refuses the key in %s: %s", path, zmq_strerror(errno));
 	return GZ_ERR_FORMAT;
 }
 
@@ -53,10 +54,10 @@ enum gz_result gz_network_open(struct gz_network *network)
 	char path[GZ_PATH_SIZE], authorized[GZ_PATH_SIZE + sizeof GZ_AUTHORIZED_KEYS_FILE];
 	bool curve = network->config->tcp == GZ_TCP_CURVE;
 	if (curve) {
-		enum gz_result result = read_keys(network, path);
+		enum gz_result result = read_server_key(network, path);
 		if (result != GZ_OK)
 			return result;
-		/* Beside the key. */
+		/* The list of authorised keys is in the same directory. */
 		snprintf(authorized, sizeof authorized, "%.*s%s",
 			 (int)(strlen(path) - strlen(GZ_SERVER_KEY_FILE)), path,
 			 GZ_AUTHORIZED_KEYS_FILE);
@@ -80,43 +81,47 @@ static enum gz_result bind_local(const struct gz_network *network, void *socket,
 	enum gz_result result =
 		gz_endpoint_ipc(network->directory, name, endpoint, sizeof endpoint);
 	if (result != GZ_OK) {
-		gz_err(network->log, "%s is too long for a socket's path; set GAZECAST_RUNTIME_DIR",
+		gz_err(network->log,
+		       "%s is too long for the path of a socket; set GAZECAST_RUNTIME_DIR to a "
+		       "shorter one",
 		       network->directory);
 		return result;
 	}
 	if (zmq_bind(socket, endpoint) != 0) {
-		gz_err(network->log, "cannot bind %s: %s; choose another GAZECAST_RUNTIME_DIR",
+		gz_err(network->log,
+		       "cannot bind %s: %s; set GAZECAST_RUNTIME_DIR to another directory",
 		       endpoint, zmq_strerror(errno));
 		return errno == EADDRINUSE ? GZ_ERR_BUSY : GZ_ERR_IO;
 	}
-	/* The directory says who comes in; to connect takes the right to write. */
+	/* The directory's permissions decide who may enter; connecting needs write permission. */
 	if (chmod(endpoint + sizeof scheme - 1,
 		  gz_runtime_directory_is_shared(network->directory) ? 0660 : 0600) == 0)
 		return GZ_OK;
-	gz_err(network->log, "cannot open %s to its readers: %s", endpoint, strerror(errno));
+	gz_err(network->log, "cannot set the permissions of %s: %s", endpoint, strerror(errno));
 	return GZ_ERR_IO;
 }
 
-static bool set_int(void *socket, int option, int value)
+static bool set_socket_option(void *socket, int option, int value)
 {
 	return zmq_setsockopt(socket, option, &value, sizeof value) == 0;
 }
 
-/* Holds for what is bound from now on: the local socket was bound before and needs no key. */
-static enum gz_result demand_keys(const struct gz_network *network, void *socket)
+/* Require keys for endpoints that are bound from now on. The local one, bound before, needs none.
+ */
+static enum gz_result require_keys(const struct gz_network *network, void *socket)
 {
-	if (set_int(socket, ZMQ_CURVE_SERVER, 1) &&
+	if (set_socket_option(socket, ZMQ_CURVE_SERVER, 1) &&
 	    zmq_setsockopt(socket, ZMQ_CURVE_SECRETKEY, network->keys.secret_text,
 			   GZ_KEY_TEXT_SIZE) == 0 &&
 	    zmq_setsockopt(socket, ZMQ_ZAP_DOMAIN, zap_domain, sizeof zap_domain - 1) == 0 &&
-	    set_int(socket, ZMQ_HEARTBEAT_IVL, HEARTBEAT_MS) &&
-	    set_int(socket, ZMQ_HEARTBEAT_TIMEOUT, HEARTBEAT_TIMEOUT_MS))
+	    set_socket_option(socket, ZMQ_HEARTBEAT_IVL, HEARTBEAT_MS) &&
+	    set_socket_option(socket, ZMQ_HEARTBEAT_TIMEOUT, HEARTBEAT_TIMEOUT_MS))
 		return GZ_OK;
-	gz_err(network->log, "libzmq does not take the keys: %s", zmq_strerror(errno));
+	gz_err(network->log, "libzmq refuses the keys: %s", zmq_strerror(errno));
 	return GZ_ERR_UNSUPPORTED;
 }
 
-static int port_of(void *socket)
+static int bound_tcp_port(void *socket)
 {
 	char endpoint[GZ_ENDPOINT_SIZE] = "";
 	size_t size = sizeof endpoint;
@@ -131,25 +136,27 @@ static enum gz_result bind_tcp(const struct gz_network *network, void *socket, c
 {
 	enum gz_result result = GZ_OK;
 	if (network->config->tcp == GZ_TCP_CURVE)
-		result = demand_keys(network, socket);
-	/* Of no effect where the address is IPv4. */
-	bool bound = result == GZ_OK && set_int(socket, ZMQ_HANDSHAKE_IVL, HANDSHAKE_MS) &&
-		     set_int(socket, ZMQ_IPV6, strchr(endpoint, '[') != NULL) &&
+		result = require_keys(network, socket);
+	/* ZMQ_IPV6 is set for an address in brackets. */
+	bool bound = result == GZ_OK &&
+		     set_socket_option(socket, ZMQ_HANDSHAKE_IVL, HANDSHAKE_MS) &&
+		     set_socket_option(socket, ZMQ_IPV6, strchr(endpoint, '[') != NULL) &&
 		     zmq_bind(socket, endpoint) == 0;
 	if (bound)
-		*out_port = port_of(socket);
+		*out_port = bound_tcp_port(socket);
 	if (bound || result != GZ_OK)
 		return result;
 	if (errno == EADDRINUSE) {
 		gz_err(network->log,
-		       "%s is taken, perhaps by Pupil Capture or another gazed; stop that, or give "
-		       "%s another port (network.%s), or use --tcp off",
+		       "%s is in use, perhaps by Pupil Capture or another gazed; stop that "
+		       "program, "
+		       "or give %s another port (network.%s), or use --tcp off",
 		       endpoint, name, strcmp(name, "control") == 0 ? "control" : "*_port");
 		return GZ_ERR_BUSY;
 	}
 	gz_err(network->log,
-	       "cannot bind %s: %s; network.address must be an address of this machine, and "
-	       "network.control tcp://ADDRESS:PORT; or use --tcp off",
+	       "cannot bind %s: %s; network.address must be an address of this machine and "
+	       "network.control must be tcp://ADDRESS:PORT; or use --tcp off",
 	       endpoint, zmq_strerror(errno));
 	return GZ_ERR_INVAL;
 }

@@ -1,7 +1,7 @@
 /**
  * @file
- * Where the daemon's sockets are bound: each in the runtime directory, and at TCP where the
- * configuration says so. Whoever reaches TCP from another machine needs a key.
+ * Binding the daemon's sockets: each in the runtime directory, and over TCP too if the
+ * configuration allows it. Clients on other machines need a key.
  */
 #ifndef GZ_DAEMON_NETWORK_H
 #define GZ_DAEMON_NETWORK_H
@@ -12,46 +12,50 @@
 #include "daemon/guard.h"
 #include "protocol/key.h"
 
-/** How sockets are bound. Borrowed by those who bind, while they do. */
+/** How sockets are bound. Borrowed by each function that binds one. */
 struct gz_network {
 	const struct gz_config *config;
 	const char *directory; /**< of local sockets */
 	void *context;         /**< ZeroMQ */
 	struct gz_guard *guard;
-	struct gz_key_pair keys; /**< of tcp = curve */
+	struct gz_key_pair keys; /**< the daemon's, with tcp = curve */
 	const struct gz_log *log;
 };
 
 /**
- * Read the daemon's key, where the configuration has tcp = curve, and open the guard.
+ * Read the daemon's key, if the configuration has tcp = curve, and create the guard.
  *
- * @param network  filled but for guard and keys; gz_network_close() it, also after a failure
- * @retval GZ_ERR_UNSUPPORTED  libzmq has no CURVE; logged
+ * @param network  filled except for guard and keys; call gz_network_close() even after a failure
+ * @retval GZ_ERR_UNSUPPORTED  libzmq was built without CURVE; logged
  * @retval GZ_ERR_NOT_FOUND    there is no key; logged with the remedy
- * @return else as gz_key_file_read() and gz_guard_create(); logged
+ * @retval GZ_ERR_FORMAT       the file holds no key; logged
+ * @return else as gz_key_file_find(), gz_key_file_read_secret() and gz_guard_create()
  */
 enum gz_result gz_network_open(struct gz_network *network);
 
 /**
- * Watch @p socket, bind it as @p name in the runtime directory, and at TCP where there is.
+ * Watch @p socket, bind it as @p name in the runtime directory, and over TCP if the configuration
+ * allows it.
  *
  * @param name      "stream", "latest", "control" or "inlet"
- * @param endpoint  at TCP
+ * @param endpoint  of TCP
  * @param[out] out_port  the TCP port, 0 without TCP
  * @param[out] out_connections  as gz_guard_watch(); may be NULL
- * @retval GZ_ERR_BUSY  an endpoint is taken; logged with the remedy
- * @retval GZ_ERR_IO, GZ_ERR_FULL, GZ_ERR_INVAL  logged
+ * @retval GZ_ERR_BUSY         an endpoint is in use; logged with the remedy
+ * @retval GZ_ERR_INVAL        the TCP endpoint cannot be bound; logged with the remedy
+ * @retval GZ_ERR_FULL         the path of the runtime directory is too long; logged
+ * @retval GZ_ERR_UNSUPPORTED  libzmq refuses the keys; logged
+ * @retval GZ_ERR_IO           the local socket cannot be bound or opened to its readers; logged
  */
 enum gz_result gz_network_bind(const struct gz_network *network, void *socket, const char *name,
 			       const char *endpoint, int *out_port,
 			       const struct gz_connections **out_connections);
 
-/** "tcp://ADDRESS:PORT" of the configured address; a port of the system's choice where @p port is
- * 0.
+/** "tcp://ADDRESS:PORT" with the configured address; if @p port is 0, the system chooses the port.
  */
 void gz_network_endpoint(const struct gz_network *network, int port, char text[GZ_ENDPOINT_SIZE]);
 
-/** Close the guard and wipe the keys. */
+/** Destroy the guard and wipe the keys. */
 void gz_network_close(struct gz_network *network);
 
 #endif

@@ -8,16 +8,71 @@
 
 #define GZ_LOG_MODULE "publisher"
 
-/* Readers send subscriptions alone: a topic's length, and some. */
+void gz_message_maker_init(struct gz_message_maker *maker, const struct gz_config *config,
+			   const struct gz_pipeline_params *params,
+			   const struct gz_display *display)
+{
+	gz_pipeline_init(&maker->pipeline, params, display);
+	maker->surface_count = config->surface_count;
+	memcpy(maker->surface, config->surface, sizeof maker->surface);
+}
+
+void gz_message_maker_reset(struct gz_message_maker *maker)
+{
+	struct gz_pipeline_params params = maker->pipeline.params;
+	struct gz_display display = maker->pipeline.display;
+	gz_pipeline_init(&maker->pipeline, &params, &display);
+}
+
+/* Append a message with topic @p topic and @p name. @return its body, to be filled.
+ * GZ_MESSAGES_MAX is enough for every step. */
+static struct gz_wire_message *append_message(struct gz_outgoing_batch *batch, const char *topic,
+					      const char *name)
+{
+	struct gz_outgoing *item = &batch->item[batch->count++];
+	size_t topic_length = strlen(topic);
+	size_t name_length = strlen(name);
+	memcpy(item->topic, topic, topic_length);
+	memcpy(item->topic + topic_length, name, name_length + 1);
+	return &item->body;
+}
+
+_Static_assert(sizeof GZ_TOPIC_SURFACES - 1 + GZ_NAME_SIZE <= GZ_TOPIC_SIZE,
+	       "GZ_TOPIC_SIZE is enough for every surface");
+
+void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sample *sample,
+			   int64_t publish_ns, struct gz_outgoing_batch *out)
+{
+	struct gz_pipeline_output step;
+	gz_pipeline_step(&maker->pipeline, sample, &step);
+	step.gaze.publish_ns = publish_ns;
+	out->count = 0;
+	out->rejection = step.rejection;
+	gz_wire_encode_gaze(&step.gaze, &maker->pipeline.display,
+			    append_message(out, gz_wire_gaze_topic(&step.gaze), ""));
+	for (size_t i = 0; i < maker->surface_count; i++)
+		gz_wire_encode_surface(&step.gaze, maker->surface[i],
+				       append_message(out, GZ_TOPIC_SURFACES, maker->surface[i]));
+	for (size_t i = 0; i < step.fixation_count; i++)
+		gz_wire_encode_fixation(&step.fixations[i],
+					append_message(out, GZ_TOPIC_FIXATIONS, ""));
+	for (size_t i = 0; i < step.blink_count; i++)
+		gz_wire_encode_blink(&step.blinks[i], append_message(out, GZ_TOPIC_BLINKS, ""));
+	for (size_t i = 0; i < step.saccade_count; i++)
+		gz_wire_encode_saccade(&step.saccades[i],
+				       append_message(out, GZ_TOPIC_SACCADES, ""));
+}
+
+/* Longest message accepted from a reader, bytes. Readers send subscriptions only. Chosen: longer
+ * than any topic. */
 static const int64_t SUBSCRIPTION_SIZE_MAX = 1024;
 
-/* Looked at in one update, so that a reader that floods us with them does not stop the stream.
- * Chosen: more than one can send meanwhile, because libzmq keeps the others; it takes a
- * millisecond.
- */
+/* Most subscriptions read in one update, so that a reader that floods us with them does not stop
+ * the stream. Chosen: more than one reader can send between two updates, because libzmq queues the
+ * rest; reading them takes a millisecond. */
 enum { SUBSCRIPTIONS_AT_ONCE = 8192 };
 
-/* A socket and who is connected to it. */
+/* A socket and its connections. */
 struct channel {
 	void *socket;
 	const struct gz_connections *connections;
@@ -28,12 +83,12 @@ struct gz_publisher {
 	struct channel latest;
 	uint32_t subscriptions;
 	uint64_t arrivals;
-	uint32_t pupil_subscriptions; /* those of them that take pupil messages */
+	uint32_t pupil_subscriptions; /* those of them that include pupil messages */
 	int port;
 	int latest_port;
 };
 
-static void set_int(void *socket, int option, int value)
+static void set_channel_option(void *socket, int option, int value)
 {
 	zmq_setsockopt(socket, option, &value, sizeof value);
 }
@@ -43,10 +98,10 @@ static enum gz_result open_channel(const struct gz_network *network, struct chan
 {
 	channel->socket = zmq_socket(network->context, type);
 	if (!channel->socket) {
-		gz_err(network->log, "no socket: %s", zmq_strerror(errno));
+		gz_err(network->log, "cannot open a publishing socket: %s", zmq_strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
-	set_int(channel->socket, ZMQ_LINGER, GZ_STREAM_LINGER_MS);
+	set_channel_option(channel->socket, ZMQ_LINGER, GZ_STREAM_LINGER_MS);
 	zmq_setsockopt(channel->socket, ZMQ_MAXMSGSIZE, &SUBSCRIPTION_SIZE_MAX,
 		       sizeof SUBSCRIPTION_SIZE_MAX);
 	return GZ_OK;
@@ -61,7 +116,8 @@ static enum gz_result bind_channel(const struct gz_network *network, struct chan
 			       &channel->connections);
 }
 
-static enum gz_result open_both(struct gz_publisher *publisher, const struct gz_network *network)
+static enum gz_result open_channels(struct gz_publisher *publisher,
+				    const struct gz_network *network)
 {
 	struct channel *stream = &publisher->stream, *latest = &publisher->latest;
 	const struct gz_config *config = network->config;
@@ -70,9 +126,9 @@ static enum gz_result open_both(struct gz_publisher *publisher, const struct gz_
 		result = open_channel(network, latest, ZMQ_PUB);
 	if (result != GZ_OK)
 		return result;
-	set_int(stream->socket, ZMQ_SNDHWM, GZ_STREAM_QUEUE);
-	set_int(stream->socket, ZMQ_XPUB_VERBOSER, 1);
-	set_int(latest->socket, ZMQ_CONFLATE, 1);
+	set_channel_option(stream->socket, ZMQ_SNDHWM, GZ_STREAM_QUEUE);
+	set_channel_option(stream->socket, ZMQ_XPUB_VERBOSER, 1);
+	set_channel_option(latest->socket, ZMQ_CONFLATE, 1);
 	result = bind_channel(network, stream, "stream", config->stream_port, &publisher->port);
 	if (result == GZ_OK)
 		result = bind_channel(network, latest, "latest", config->latest_port,
@@ -86,7 +142,7 @@ enum gz_result gz_publisher_create(const struct gz_network *network,
 	struct gz_publisher *publisher = calloc(1, sizeof *publisher);
 	if (!publisher)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = open_both(publisher, network);
+	enum gz_result result = open_channels(publisher, network);
 	if (result != GZ_OK) {
 		gz_publisher_destroy(&publisher);
 		return result;
@@ -108,12 +164,13 @@ int gz_publisher_latest_port(const struct gz_publisher *publisher)
 void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, const void *bytes,
 			   size_t size)
 {
-	/* A publishing socket never answers "again": it drops for the reader that is too slow. */
+	/* A publishing socket never returns EAGAIN: it drops messages for slow readers. */
 	zmq_send(publisher->stream.socket, topic, strlen(topic), ZMQ_SNDMORE | ZMQ_DONTWAIT);
 	zmq_send(publisher->stream.socket, bytes, size, ZMQ_DONTWAIT);
 }
 
-/* Pupil's "pupil." messages: parts of the gaze message, sent on their own to who asks for them. */
+/* Send Pupil's "pupil." messages, which are parts of the gaze message, to readers that subscribed
+ * to them. */
 static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_message *gaze)
 {
 	static const char *const topics[GZ_EYE_COUNT] = {
@@ -129,8 +186,8 @@ static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_mes
 
 void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch)
 {
-	/* Sending to nobody costs system calls, too. Who has just come is seen at the next update;
-	 * of a connection and its subscription either may be seen first. */
+	/* Without readers the system calls are saved. A new reader is seen at the next update; its
+	 * connection and its subscription may be seen in either order. */
 	bool listened = gz_connections_count(publisher->stream.connections) > 0 ||
 			publisher->subscriptions > 0;
 	for (size_t i = 0; listened && i < batch->count; i++) {
@@ -144,8 +201,8 @@ void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_
 		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
 }
 
-/* A socket takes note of new connections when it is used: here, where nothing may be sent. */
-static void notice_connections(void *socket)
+/* libzmq accepts new connections when a socket is used. This uses it even if nothing is sent. */
+static void accept_connections(void *socket)
 {
 	int events;
 	size_t size = sizeof events;
@@ -159,7 +216,7 @@ static bool takes_pupils(const unsigned char *topic, size_t size)
 	       (size < sizeof GZ_TOPIC_PUPIL_LEFT && memcmp(topic, GZ_TOPIC_PUPIL_LEFT, size) == 0);
 }
 
-static void count(uint32_t *counter, bool more)
+static void count_subscription(uint32_t *counter, bool more)
 {
 	if (more)
 		++*counter;
@@ -167,7 +224,7 @@ static void count(uint32_t *counter, bool more)
 		--*counter;
 }
 
-/* A subscription's frame is 1 and the topic, the end of one 0 and the topic. */
+/* A frame is the byte 1 and a topic for a new subscription, 0 and the topic for its end. */
 static void update_subscriptions(struct gz_publisher *publisher)
 {
 	unsigned char frame[1 + sizeof GZ_TOPIC_PUPIL_RIGHT];
@@ -177,17 +234,17 @@ static void update_subscriptions(struct gz_publisher *publisher)
 			return;
 		if (size == 0 || frame[0] > 1)
 			continue;
-		count(&publisher->subscriptions, frame[0] == 1);
+		count_subscription(&publisher->subscriptions, frame[0] == 1);
 		publisher->arrivals += frame[0] == 1;
 		if (takes_pupils(frame + 1, (size_t)size - 1))
-			count(&publisher->pupil_subscriptions, frame[0] == 1);
+			count_subscription(&publisher->pupil_subscriptions, frame[0] == 1);
 	}
 }
 
 void gz_publisher_update(struct gz_publisher *publisher)
 {
-	notice_connections(publisher->stream.socket);
-	notice_connections(publisher->latest.socket);
+	accept_connections(publisher->stream.socket);
+	accept_connections(publisher->latest.socket);
 	update_subscriptions(publisher);
 }
 

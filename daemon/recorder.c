@@ -9,16 +9,182 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "daemon/ring.h"
-#include "protocol/gaze_log_writer.h"
+#include "protocol/gaze.h"
+#include "protocol/gaze_log.h"
 
 #define GZ_LOG_MODULE "recorder"
 
-/* Who may write the shared fields of a recording follows from the phase: the pushing thread while
- * it is IDLE or FAILED, the recorder's thread otherwise. */
+#define SUFFIX ".gzl"
+
+/* Longest name, characters. */
+enum { NAME_MAX_LENGTH = 64 };
+
+/* Recordings begun within the same second are numbered. Chosen: more do not occur. */
+enum { NUMBERS = 100 };
+
+bool gz_recording_name_valid(const char *name)
+{
+	static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+				      "0123456789._-";
+	size_t length = strlen(name);
+	return length >= 1 && length <= NAME_MAX_LENGTH && strspn(name, allowed) == length;
+}
+
+static bool ends_in_suffix(const char *name)
+{
+	size_t length = strlen(name), suffix = strlen(SUFFIX);
+	return length > suffix && strcmp(name + length - suffix, SUFFIX) == 0;
+}
+
+static enum gz_result create_recording_file(const char *directory, const char *name, int *out_fd,
+					    char *out_path, char *message, size_t message_size)
+{
+	char path[GZ_PATH_SIZE];
+	int length = snprintf(path, sizeof path, "%s/%s%s", directory, name,
+			      ends_in_suffix(name) ? "" : SUFFIX);
+	if (length < 0 || (size_t)length >= sizeof path) {
+		snprintf(message, message_size,
+			 "%s: the path is too long; choose a shorter name or directory", directory);
+		return GZ_ERR_FULL;
+	}
+	int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+	if (fd >= 0) {
+		*out_fd = fd;
+		memcpy(out_path, path, sizeof path);
+		return GZ_OK;
+	}
+	if (errno == EEXIST) {
+		snprintf(message, message_size, "%s exists; choose another name", path);
+		return GZ_ERR_BUSY;
+	}
+	snprintf(message, message_size, "cannot create %s: %s; see recording.directory", path,
+		 strerror(errno));
+	return errno == EACCES || errno == EPERM ? GZ_ERR_ACCESS : GZ_ERR_IO;
+}
+
+static void name_recording_by_time(int number, char *name, size_t size)
+{
+	char text[32];
+	time_t now = time(NULL);
+	struct tm utc;
+	gmtime_r(&now, &utc);
+	strftime(text, sizeof text, "gaze-%Y%m%dT%H%M%SZ", &utc);
+	if (number == 0)
+		snprintf(name, size, "%s", text);
+	else
+		snprintf(name, size, "%s-%d", text, number + 1);
+}
+
+enum gz_result gz_recording_create(const char *directory, const char *name, int *out_fd,
+				   char *out_path, char *message, size_t message_size)
+{
+	if (name[0] && !gz_recording_name_valid(name)) {
+		snprintf(
+			message, message_size,
+			"this is not a valid name for a recording; allowed: 1 to %d of A-Z a-z 0-9 "
+			". _ -",
+			NAME_MAX_LENGTH);
+		return GZ_ERR_INVAL;
+	}
+	if (name[0])
+		return create_recording_file(directory, name, out_fd, out_path, message,
+					     message_size);
+	enum gz_result result = GZ_ERR_BUSY;
+	for (int i = 0; i < NUMBERS && result == GZ_ERR_BUSY; i++) {
+		char chosen[NAME_MAX_LENGTH];
+		name_recording_by_time(i, chosen, sizeof chosen);
+		result = create_recording_file(directory, chosen, out_fd, out_path, message,
+					       message_size);
+	}
+	return result;
+}
+
+struct gz_ring {
+	size_t mask;
+	struct gz_ring_slot *slots;
+	/* Both only count up. Each is written by one thread only, on a cache line of its own. */
+	_Alignas(64) atomic_size_t pushed;
+	_Alignas(64) atomic_size_t popped;
+};
+
+enum gz_result gz_ring_create(size_t capacity, struct gz_ring **out_ring)
+{
+	if (capacity < 2 || (capacity & (capacity - 1)) != 0)
+		return GZ_ERR_INVAL;
+	struct gz_ring *ring = aligned_alloc(64, sizeof *ring);
+	if (!ring)
+		return GZ_ERR_NO_MEM;
+	ring->mask = capacity - 1;
+	ring->slots = calloc(capacity, sizeof *ring->slots);
+	atomic_init(&ring->pushed, 0);
+	atomic_init(&ring->popped, 0);
+	if (!ring->slots) {
+		free(ring);
+		return GZ_ERR_NO_MEM;
+	}
+	*out_ring = ring;
+	return GZ_OK;
+}
+
+size_t gz_ring_room(const struct gz_ring *ring)
+{
+	size_t pushed = atomic_load_explicit(&ring->pushed, memory_order_relaxed);
+	size_t popped = atomic_load_explicit(&ring->popped, memory_order_acquire);
+	return ring->mask + 1 - (pushed - popped);
+}
+
+/* Copy only the fields that the record's kind fills: most records are samples, and the text is the
+ * larger part. */
+static void copy_record(struct gz_gaze_log_record *to, const struct gz_gaze_log_record *from)
+{
+	if (from->kind != GZ_GAZE_LOG_SAMPLE) {
+		*to = *from;
+		return;
+	}
+	to->kind = from->kind;
+	to->sample = from->sample;
+}
+
+bool gz_ring_push(struct gz_ring *ring, uint32_t session, const struct gz_gaze_log_record *record)
+{
+	if (gz_ring_room(ring) == 0)
+		return false;
+	size_t pushed = atomic_load_explicit(&ring->pushed, memory_order_relaxed);
+	struct gz_ring_slot *slot = &ring->slots[pushed & ring->mask];
+	slot->session = session;
+	copy_record(&slot->record, record);
+	atomic_store_explicit(&ring->pushed, pushed + 1, memory_order_release);
+	return true;
+}
+
+const struct gz_ring_slot *gz_ring_front(struct gz_ring *ring)
+{
+	size_t popped = atomic_load_explicit(&ring->popped, memory_order_relaxed);
+	size_t pushed = atomic_load_explicit(&ring->pushed, memory_order_acquire);
+	return popped == pushed ? NULL : &ring->slots[popped & ring->mask];
+}
+
+void gz_ring_pop(struct gz_ring *ring)
+{
+	size_t popped = atomic_load_explicit(&ring->popped, memory_order_relaxed);
+	atomic_store_explicit(&ring->popped, popped + 1, memory_order_release);
+}
+
+void gz_ring_destroy(struct gz_ring **ring)
+{
+	if (!ring || !*ring)
+		return;
+	free((*ring)->slots);
+	free(*ring);
+	*ring = NULL;
+}
+
+/* The phase decides which thread may write the shared fields of a recording: the pushing thread in
+ * IDLE and FAILED, the recorder's thread in the others. */
 enum phase {
 	PHASE_IDLE,
 	PHASE_RUNNING,
@@ -31,19 +197,19 @@ struct gz_recorder {
 	struct gz_ring *ring;
 	pthread_t thread;
 	bool has_thread;
-	int wake_fd;  /* tells the thread that a recording began or shall end */
-	int event_fd; /* tells others that the phase changed */
+	int wake_fd;  /* eventfd: a recording has begun or shall end, or the thread shall quit */
+	int event_fd; /* eventfd for others: the phase has changed */
 	atomic_int phase;
 	atomic_bool quit;
 	atomic_uint_fast64_t samples;
 
-	/* See enum phase. */
-	uint32_t session;
+	/* Shared, see enum phase. */
+	uint32_t session; /* number of the recording */
 	int fd;
 	char path[GZ_PATH_SIZE];
 	struct gz_gaze_log_header header;
 
-	/* Guards error alone, which is read and written once in a recording. */
+	/* Guards only error, which is written and read once per recording. */
 	pthread_mutex_t error_mutex;
 	char error[GZ_REASON_SIZE];
 
@@ -60,7 +226,7 @@ static void signal_event(int fd)
 {
 	uint64_t one = 1;
 	ssize_t n = write(fd, &one, sizeof one);
-	(void)n; /* fails only where it is signalled already */
+	(void)n; /* fails only if the event is signalled already */
 }
 
 static enum phase phase_of(const struct gz_recorder *recorder)
@@ -81,17 +247,17 @@ static void set_error(struct gz_recorder *recorder, const char *text)
 	pthread_mutex_unlock(&recorder->error_mutex);
 }
 
-/* The recording cannot go on; what is in the file stays. */
-static void fail(struct gz_recorder *recorder, int error)
+/* End a recording that cannot continue; what is in the file stays. */
+static void fail_recording(struct gz_recorder *recorder, int error)
 {
 	char text[GZ_REASON_SIZE];
 	const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-				     ? "make room and record anew"
-				     : "check the disk and record anew";
+				     ? "free some space and start a new recording"
+				     : "check the disk and start a new recording";
 	snprintf(text, sizeof text, "%s; %s", strerror(error), remedy);
 	gz_err(recorder->log, "%s: recording stopped after %llu samples: %s", recorder->path,
 	       (unsigned long long)recorder->writer.samples, text);
-	/* A file that does not even hold its header is of no use to anyone. */
+	/* A file without even its header is useless. */
 	if (recorder->writer.size == 0)
 		unlink(recorder->path);
 	close(recorder->fd);
@@ -100,7 +266,7 @@ static void fail(struct gz_recorder *recorder, int error)
 	set_phase(recorder, PHASE_FAILED);
 }
 
-/* Make the new name in its directory survive a power failure, too. */
+/* Make the file's name in its directory survive a power failure too. */
 static void sync_directory(const struct gz_recorder *recorder)
 {
 	char directory[GZ_PATH_SIZE];
@@ -130,10 +296,10 @@ static enum gz_result open_recording(struct gz_recorder *recorder)
 	return result;
 }
 
-/* What the ring holds of this recording into the file; what is left of an earlier one is dropped.
- * One ring's worth at most: a source as fast as this loop would never let it end, and what was
- * written must be counted and synced now and then. */
-static enum gz_result drain(struct gz_recorder *recorder)
+/* Write this recording's records from the ring into the file, and drop those of an earlier
+ * recording. At most one ring's worth at a time: with a source as fast as this loop it would never
+ * end, and the samples must be counted and synced now and then. */
+static enum gz_result drain_ring(struct gz_recorder *recorder)
 {
 	const struct gz_ring_slot *slot;
 	enum gz_result result = GZ_OK;
@@ -153,17 +319,17 @@ static enum gz_result drain(struct gz_recorder *recorder)
 
 static enum gz_result sync_file(struct gz_recorder *recorder)
 {
-	/* A pipe or /dev/null has nothing to sync. */
+	/* A pipe or /dev/null cannot be synced. */
 	if (fdatasync(recorder->fd) != 0 && errno != EINVAL && errno != EROFS)
 		return GZ_ERR_IO;
 	recorder->next_sync_ns = gz_clock_now_ns() + GZ_RECORDER_SYNC_MS * GZ_NS_PER_MS;
 	return GZ_OK;
 }
 
-static enum gz_result finish(struct gz_recorder *recorder)
+static enum gz_result finish_recording(struct gz_recorder *recorder)
 {
-	/* Nothing is pushed any more: one ring's worth is all there is. */
-	enum gz_result result = drain(recorder);
+	/* Nothing is pushed any more, so one ring's worth is everything. */
+	enum gz_result result = drain_ring(recorder);
 	if (result == GZ_OK)
 		result = gz_gaze_log_writer_end(&recorder->writer);
 	if (result == GZ_OK)
@@ -178,41 +344,41 @@ static enum gz_result finish(struct gz_recorder *recorder)
 	return GZ_OK;
 }
 
-static void wait_for_work(struct gz_recorder *recorder, int timeout_ms)
+static void wait_for_recording(struct gz_recorder *recorder, int timeout_ms)
 {
 	struct pollfd wake = { .fd = recorder->wake_fd, .events = POLLIN };
 	uint64_t count;
 	if (poll(&wake, 1, timeout_ms) > 0 && read(recorder->wake_fd, &count, sizeof count) < 0)
-		return; /* another wake-up took it: there is none */
+		return; /* the event was already consumed */
 }
 
-/* One recording from its header to its end. */
-static void record(struct gz_recorder *recorder)
+/* Write one recording, from its header to its end. */
+static void write_recording(struct gz_recorder *recorder)
 {
 	enum gz_result result = open_recording(recorder);
 	while (result == GZ_OK && phase_of(recorder) == PHASE_RUNNING) {
-		wait_for_work(recorder, GZ_RECORDER_DRAIN_MS);
-		result = drain(recorder);
+		wait_for_recording(recorder, GZ_RECORDER_DRAIN_MS);
+		result = drain_ring(recorder);
 		if (result == GZ_OK && gz_clock_now_ns() >= recorder->next_sync_ns)
 			result = sync_file(recorder);
 	}
 	if (result == GZ_OK)
-		result = finish(recorder);
+		result = finish_recording(recorder);
 	if (result != GZ_OK)
-		fail(recorder, result == GZ_ERR_IO ? errno : EINVAL);
+		fail_recording(recorder, result == GZ_ERR_IO ? errno : EINVAL);
 }
 
-static void *run(void *user)
+static void *recorder_run(void *user)
 {
 	struct gz_recorder *recorder = user;
 	for (;;) {
 		enum phase phase = phase_of(recorder);
 		if (phase == PHASE_RUNNING || phase == PHASE_FINISHING)
-			record(recorder);
+			write_recording(recorder);
 		else if (atomic_load(&recorder->quit))
 			return NULL;
 		else
-			wait_for_work(recorder, -1);
+			wait_for_recording(recorder, -1);
 	}
 }
 
@@ -228,10 +394,10 @@ enum gz_result gz_recorder_create(const struct gz_log *log, struct gz_recorder *
 	enum gz_result result = gz_ring_create(GZ_RECORDER_RING, &recorder->ring);
 	if (result == GZ_OK && (recorder->wake_fd < 0 || recorder->event_fd < 0))
 		result = GZ_ERR_IO;
-	if (result == GZ_OK && pthread_create(&recorder->thread, NULL, run, recorder) != 0)
+	if (result == GZ_OK && pthread_create(&recorder->thread, NULL, recorder_run, recorder) != 0)
 		result = GZ_ERR_NO_MEM;
 	if (result != GZ_OK) {
-		gz_err(log, "no recorder: %s", gz_result_text(result));
+		gz_err(log, "cannot start the recorder: %s", gz_result_text(result));
 		gz_recorder_destroy(&recorder);
 		return result;
 	}
@@ -295,7 +461,7 @@ bool gz_recorder_has_room(const struct gz_recorder *recorder)
 	return gz_ring_room(recorder->ring) >= GZ_RECORDER_RING / 2;
 }
 
-/* Say in the log what the ring had no room for, before what comes after it. */
+/* Record how many samples found the ring full, before the record that follows them. */
 static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
 {
 	struct gz_gaze_log_record gap = {
@@ -309,13 +475,13 @@ static void push_gap(struct gz_recorder *recorder, int64_t host_ns)
 	if (gz_ratelimit_pass(&recorder->complaints, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
 		gz_warn(recorder->log,
 			"%s: %llu samples are missing: the disk was too slow (%llu more gaps since "
-			"last told)",
+			"the last message)",
 			recorder->path, (unsigned long long)recorder->missing,
 			(unsigned long long)held_back);
 	recorder->missing = 0;
 }
 
-/* Samples that the log will not hold where @p record finds no room. */
+/* Samples that the log will lack if there is no room for @p record. */
 static uint64_t missing_with(const struct gz_gaze_log_record *record)
 {
 	return record->kind == GZ_GAZE_LOG_SAMPLE ? 1
@@ -328,8 +494,9 @@ void gz_recorder_push(struct gz_recorder *recorder, const struct gz_gaze_log_rec
 	if (!gz_recorder_running(recorder))
 		return;
 	bool sample = record->kind == GZ_GAZE_LOG_SAMPLE;
-	/* One slot stays free for a gap. After a loss there must be much room again, so that a disk
-	 * that is just too slow leaves few long gaps rather than many short ones. */
+	/* One slot stays free for a gap record. After a loss half of the ring must be free again,
+	 * so that a disk that is slightly too slow causes few long gaps instead of many short ones.
+	 */
 	size_t needed = recorder->missing ? GZ_RECORDER_RING / 2 : 2;
 	if (gz_ring_room(recorder->ring) < needed) {
 		recorder->missing += missing_with(record);
@@ -347,7 +514,7 @@ void gz_recorder_stop(struct gz_recorder *recorder)
 		return;
 	if (recorder->missing)
 		push_gap(recorder, gz_clock_now_ns());
-	/* Unless it failed in between. */
+	/* Unless it has failed in the meantime. */
 	atomic_compare_exchange_strong(&recorder->phase, &running, PHASE_FINISHING);
 	signal_event(recorder->event_fd);
 	signal_event(recorder->wake_fd);

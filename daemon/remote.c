@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Requests that are a word alone. "R" stands here, too: a recording without a name. */
+/* The first word of each request; only "R" and "T" may be followed by more. */
 static const struct {
 	const char *word;
 	enum gz_remote_kind kind;
@@ -63,12 +63,10 @@ enum gz_remote_notice gz_remote_notice(const char *subject)
 const char *gz_remote_doc(void)
 {
 	return "Requests of one frame: R [name], r, t, v, SUB_PORT, PUB_PORT, LATEST_PORT, "
-	       "CORRECTION; T, C "
-	       "and "
-	       "c are refused.\n"
-	       "Notifications that are obeyed: recording.should_start (session_name), "
-	       "recording.should_stop, meta.should_doc; calibration.should_start is answered by "
+	       "CORRECTION; T, C and c are refused.\n"
+	       "Notifications that the daemon acts on: recording.should_start (session_name), "
+	       "recording.should_stop, meta.should_doc; calibration.should_start is answered with "
 	       "calibration.failed. All others are passed on to every reader.\n"
-	       "Notifications that are sent: recording.started, recording.stopped, "
+	       "Notifications that the daemon sends: recording.started, recording.stopped, "
 	       "calibration.failed, meta.doc.";
 }

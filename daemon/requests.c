@@ -9,35 +9,34 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "daemon/command.h"
 #include "daemon/inlet.h"
-#include "daemon/recording_name.h"
+#include "daemon/recorder.h"
 #include "daemon/remote.h"
-#include "daemon/viewer.h"
+#include "daemon/service.h"
 
 #define GZ_LOG_MODULE "control"
 
-/* Longest request accepted; libzmq drops who sends more. */
+/* Longest request accepted, bytes; libzmq closes the connection of a client that sends more. */
 static const int64_t REQUEST_SIZE_MAX = 65536;
 
 /* Room for an answer with its NUL: a path and a sentence. */
 enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
 
-/* Messages of clients passed on before requests are looked at again. */
+/* Most messages from clients that are passed on before the next request is served. */
 enum { MESSAGES_AT_ONCE = 32 };
 
-/* How often it is told that a viewer's pointer goes nowhere. Chosen: it does so sixty times a
- * second, and may be meant for later. */
+/* Shortest time between two warnings that a viewer's pointer has no use. Chosen: a viewer sends it
+ * sixty times a second. */
 #define UNREAD_POINTER_NS (60 * GZ_NS_PER_S)
 
-/* What the answer that is owed waits for. */
+/* What the next answer waits for. */
 enum pending {
 	PENDING_NONE,
-	PENDING_CORRECT, /* the service's answer */
-	PENDING_START,   /* the service's answer */
-	PENDING_STOP,    /* the same, and then the recorder's end */
-	PENDING_FINISH,  /* that end */
-	PENDING_RESTART, /* that end, before the next recording may begin */
+	PENDING_CORRECT, /* that the service has reloaded the correction */
+	PENDING_START,   /* that the service has begun the recording */
+	PENDING_STOP,    /* that the service has asked the recorder to end the recording */
+	PENDING_FINISH,  /* that the recorder has ended the recording */
+	PENDING_RESTART, /* the same, before the next recording can begin */
 };
 
 struct gz_requests {
@@ -45,39 +44,39 @@ struct gz_requests {
 	void *control;  /* REP */
 	void *commands; /* PAIR, to the service */
 	struct gz_inlet *inlet;
-	struct gz_inlet_message message; /* large, and used for one at a time */
+	struct gz_inlet_message message; /* the message being served; large */
 	int stream_port;
 	int latest_port;
 	enum pending pending;
-	bool owed;       /* a client waits for an answer; else a notification has asked */
-	uint32_t number; /* of the newest command */
+	bool owed;       /* a client waits for an answer; otherwise a notification asked */
+	uint32_t number; /* of the newest command to the service */
 	int pending_fd;
 	char pending_path[GZ_PATH_SIZE];
 	char pending_name[GZ_REMOTE_REQUEST_SIZE];
 	int64_t deadline_ns;
-	/* Asked for by a notification while something was pending: done next. */
+	/* What a notification asked for while something was pending; done next. */
 	enum gz_remote_notice deferred;
 	char deferred_name[GZ_SESSION_NAME_SIZE];
 	struct gz_ratelimit unread_pointer;
-	bool ended;
-	enum gz_result failure; /* of the service */
+	bool ended;             /* the replay is over */
+	enum gz_result failure; /* why the service had to stop */
 };
 
-static void answer(struct gz_requests *requests, const char *text)
+static void reply(struct gz_requests *requests, const char *text)
 {
 	requests->pending = PENDING_NONE;
 	if (!requests->owed) {
-		/* Nobody waits: whoever sent a notification finds it in the log. */
+		/* Nobody waits for it: a notification has no answer, so a refusal is logged. */
 		if (strcmp(text, "OK") != 0)
-			gz_warn(requests->parts.log, "a notification: %s", text);
+			gz_warn(requests->parts.log, "a notification was not followed: %s", text);
 		return;
 	}
 	requests->owed = false;
 	if (zmq_send(requests->control, text, strlen(text), ZMQ_DONTWAIT) < 0)
-		gz_debug(requests->parts.log, "an answer found nobody: %s", zmq_strerror(errno));
+		gz_debug(requests->parts.log, "cannot send an answer: %s", zmq_strerror(errno));
 }
 
-static void answer_port(struct gz_requests *requests, int port, const char *channel)
+static void reply_port(struct gz_requests *requests, int port, const char *channel)
 {
 	char text[ANSWER_SIZE];
 	if (port > 0)
@@ -85,7 +84,7 @@ static void answer_port(struct gz_requests *requests, int port, const char *chan
 	else
 		snprintf(text, sizeof text, "TCP is off; use ipc://%s/%s",
 			 requests->parts.directory, channel);
-	answer(requests, text);
+	reply(requests, text);
 }
 
 static bool send_command(struct gz_requests *requests, const struct gz_command *command)
@@ -94,7 +93,7 @@ static bool send_command(struct gz_requests *requests, const struct gz_command *
 	       (int)sizeof *command;
 }
 
-static void wait_for_service(struct gz_requests *requests, enum pending pending)
+static void await_service(struct gz_requests *requests, enum pending pending)
 {
 	requests->pending = pending;
 	requests->deadline_ns = gz_clock_now_ns() + GZ_REQUESTS_PATIENCE_MS * GZ_NS_PER_MS;
@@ -108,34 +107,33 @@ static void start_recording(struct gz_requests *requests, const char *name)
 	gz_recorder_get_status(requests->parts.recorder, &status);
 	if (status.finishing) {
 		snprintf(requests->pending_name, sizeof requests->pending_name, "%s", name);
-		wait_for_service(requests, PENDING_RESTART);
+		await_service(requests, PENDING_RESTART);
 		return;
 	}
 	if (status.state == GZ_RECORDING_ON) {
-		answer(requests, "a recording is running; end it with r first");
+		reply(requests, "a recording is running; end it with r first");
 		return;
 	}
 	if (gz_config_recording_directory(requests->parts.config, requests->parts.log, directory,
 					  sizeof directory) != GZ_OK) {
-		answer(requests, "there is no directory for recordings; see "
-				 "recording.directory");
+		reply(requests, "there is no directory for recordings; set recording.directory");
 		return;
 	}
 	if (gz_recording_create(directory, name, &command.fd, command.path, text, sizeof text) !=
 	    GZ_OK) {
-		gz_warn(requests->parts.log, "recording %s", text);
-		answer(requests, text);
+		gz_warn(requests->parts.log, "cannot record: %s", text);
+		reply(requests, text);
 		return;
 	}
 	if (!send_command(requests, &command)) {
 		close(command.fd);
 		unlink(command.path);
-		answer(requests, "the daemon is busy; try again");
+		reply(requests, "the daemon is busy; try again");
 		return;
 	}
 	requests->pending_fd = command.fd;
 	memcpy(requests->pending_path, command.path, sizeof requests->pending_path);
-	wait_for_service(requests, PENDING_START);
+	await_service(requests, PENDING_START);
 }
 
 static void stop_recording(struct gz_requests *requests)
@@ -144,15 +142,15 @@ static void stop_recording(struct gz_requests *requests)
 	struct gz_recorder_status status;
 	gz_recorder_get_status(requests->parts.recorder, &status);
 	if (status.state != GZ_RECORDING_ON)
-		answer(requests, "no recording is running");
+		reply(requests, "no recording is running");
 	else if (!send_command(requests, &command))
-		answer(requests, "the daemon is busy; try again");
+		reply(requests, "the daemon is busy; try again");
 	else
-		wait_for_service(requests, PENDING_STOP);
+		await_service(requests, PENDING_STOP);
 }
 
-/* To all readers of the stream. Where the service does not keep up with clients, their messages are
- * dropped: samples come first. */
+/* Send a message to all readers of the stream. If the service does not keep up with the clients,
+ * their messages are dropped: samples have priority. */
 static void send_to_readers(struct gz_requests *requests, const char *topic, const void *body,
 			    size_t size)
 {
@@ -164,8 +162,8 @@ static void send_to_readers(struct gz_requests *requests, const char *topic, con
 
 static const char no_calibration[] = "this tracker is calibrated by its own software, not by gazed";
 
-/* Who has asked for a calibration may wait for how it ends. */
-static void tell_calibration_failed(struct gz_requests *requests)
+/* A client that asked for a calibration may wait for its end. */
+static void send_calibration_failed(struct gz_requests *requests)
 {
 	struct gz_wire_message message;
 	if (gz_wire_encode_calibration_failed(no_calibration, gz_clock_now_ns(), &message) == GZ_OK)
@@ -173,7 +171,7 @@ static void tell_calibration_failed(struct gz_requests *requests)
 				message.bytes, message.size);
 }
 
-static void tell_doc(struct gz_requests *requests)
+static void send_doc(struct gz_requests *requests)
 {
 	struct gz_wire_message message;
 	if (gz_wire_encode_doc("gazed", gz_remote_doc(), &message) == GZ_OK)
@@ -181,14 +179,14 @@ static void tell_doc(struct gz_requests *requests)
 				message.size);
 }
 
-/* The file that holds it may have changed. */
-static void take_up_correction(struct gz_requests *requests)
+/* Make the service read the stored correction again; its file may have changed. */
+static void reload_correction(struct gz_requests *requests)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_CORRECT, .number = ++requests->number };
 	if (!send_command(requests, &command))
-		answer(requests, "the daemon is busy; try again");
+		reply(requests, "the daemon is busy; try again");
 	else
-		wait_for_service(requests, PENDING_CORRECT);
+		await_service(requests, PENDING_CORRECT);
 }
 
 static void serve_request(struct gz_requests *requests, const struct gz_remote_request *request)
@@ -203,42 +201,42 @@ static void serve_request(struct gz_requests *requests, const struct gz_remote_r
 		return;
 	case GZ_REMOTE_TIME:
 		snprintf(text, sizeof text, "%.9f", gz_ns_to_s(gz_clock_now_ns()));
-		answer(requests, text);
+		reply(requests, text);
 		return;
 	case GZ_REMOTE_SET_TIME:
-		answer(requests, "time is this machine's monotonic clock, which cannot be "
-				 "set; ask for it with t and keep the difference");
+		reply(requests, "the time is this machine's monotonic clock, which cannot be set; "
+				"read it with t and keep the difference");
 		return;
 	case GZ_REMOTE_VERSION:
-		answer(requests, GAZECAST_VERSION);
+		reply(requests, GAZECAST_VERSION);
 		return;
 	case GZ_REMOTE_STREAM_PORT:
-		answer_port(requests, requests->stream_port, "stream");
+		reply_port(requests, requests->stream_port, "stream");
 		return;
 	case GZ_REMOTE_LATEST_PORT:
-		answer_port(requests, requests->latest_port, "latest");
+		reply_port(requests, requests->latest_port, "latest");
 		return;
 	case GZ_REMOTE_INLET_PORT:
-		answer_port(requests, gz_inlet_port(requests->inlet), "inlet");
+		reply_port(requests, gz_inlet_port(requests->inlet), "inlet");
 		return;
 	case GZ_REMOTE_CORRECTION:
-		take_up_correction(requests);
+		reload_correction(requests);
 		return;
 	case GZ_REMOTE_CALIBRATE:
-		answer(requests, no_calibration);
-		tell_calibration_failed(requests);
+		reply(requests, no_calibration);
+		send_calibration_failed(requests);
 		return;
 	case GZ_REMOTE_CALIBRATION_STOP:
-		answer(requests, no_calibration);
+		reply(requests, no_calibration);
 		return;
 	case GZ_REMOTE_UNKNOWN:
-		answer(requests, "unknown command");
+		reply(requests, "unknown command");
 		return;
 	}
 }
 
-/* The service's word on the newest command. */
-static void take_answer(struct gz_requests *requests, enum gz_result result)
+/* The service has answered the newest command. */
+static void take_service_answer(struct gz_requests *requests, enum gz_result result)
 {
 	char text[ANSWER_SIZE];
 	if (requests->pending == PENDING_STOP) {
@@ -247,15 +245,15 @@ static void take_answer(struct gz_requests *requests, enum gz_result result)
 	}
 	if (result == GZ_OK) {
 		if (requests->pending == PENDING_START || requests->pending == PENDING_CORRECT)
-			answer(requests, "OK");
+			reply(requests, "OK");
 		return;
 	}
-	/* A file that nobody writes into would only puzzle. */
+	/* The service refused to record: remove the file that will not be written. */
 	close(requests->pending_fd);
 	unlink(requests->pending_path);
 	snprintf(text, sizeof text, "not recording: %s", gz_result_text(result));
 	if (requests->pending == PENDING_START)
-		answer(requests, text);
+		reply(requests, text);
 }
 
 static void take_notices(struct gz_requests *requests)
@@ -268,11 +266,12 @@ static void take_notices(struct gz_requests *requests)
 		else if (notice.kind == GZ_NOTICE_FAILED)
 			requests->failure = notice.result;
 		else if (notice.number == requests->number)
-			take_answer(requests, notice.result);
+			take_service_answer(requests, notice.result);
 	}
 }
 
-/* A recording was asked to end: the answer comes when it has, so that its file is whole by then. */
+/* Answer a request to end a recording once the recording has ended, so that its file is complete by
+ * then. */
 static void check_finished(struct gz_requests *requests)
 {
 	char text[ANSWER_SIZE];
@@ -285,14 +284,15 @@ static void check_finished(struct gz_requests *requests)
 	if (requests->pending == PENDING_RESTART) {
 		start_recording(requests, requests->pending_name);
 	} else if (status.state == GZ_RECORDING_OFF) {
-		answer(requests, "OK");
+		reply(requests, "OK");
 	} else {
 		snprintf(text, sizeof text, "failed: %s", status.error);
-		answer(requests, text);
+		reply(requests, text);
 	}
 }
 
-/* Late is not wrong: what was asked for is under way, and status tells when it is done. */
+/* Time until the pending answer is due, ms; -1 if none is pending. An overdue answer is sent now:
+ * the action is under way, and the status shows when it is done. */
 static long milliseconds_left(struct gz_requests *requests)
 {
 	if (requests->pending == PENDING_NONE)
@@ -300,14 +300,14 @@ static long milliseconds_left(struct gz_requests *requests)
 	int64_t left_ns = requests->deadline_ns - gz_clock_now_ns();
 	if (left_ns > 0)
 		return (long)(left_ns / GZ_NS_PER_MS) + 1;
-	answer(requests, requests->pending == PENDING_RESTART
-				 ? "the last recording is still being written; try again"
-				 : "OK");
+	reply(requests, requests->pending == PENDING_RESTART
+				? "the previous recording is still being written; try again"
+				: "OK");
 	return 0;
 }
 
-/* What a notification asks for, once it can be done. */
-static void obey_deferred(struct gz_requests *requests)
+/* Do what a notification asked for, once nothing else is pending. */
+static void act_on_deferred(struct gz_requests *requests)
 {
 	enum gz_remote_notice notice = requests->deferred;
 	if (requests->pending != PENDING_NONE)
@@ -319,37 +319,39 @@ static void obey_deferred(struct gz_requests *requests)
 		stop_recording(requests);
 }
 
-static void obey_notification(struct gz_requests *requests,
-			      const struct gz_notification *notification)
+static void act_on_notification(struct gz_requests *requests,
+				const struct gz_notification *notification)
 {
 	enum gz_remote_notice notice = gz_remote_notice(notification->subject);
 	switch (notice) {
 	case GZ_REMOTE_NOTICE_RECORD:
 	case GZ_REMOTE_NOTICE_STOP:
 		if (requests->deferred != GZ_REMOTE_NOTICE_OTHER) {
-			gz_warn(requests->parts.log, "%s: too many at once; not obeyed",
+			gz_warn(requests->parts.log,
+				"%s: ignored, because an earlier notification is still waiting",
 				notification->subject);
 			return;
 		}
 		requests->deferred = notice;
 		memcpy(requests->deferred_name, notification->session_name,
 		       sizeof requests->deferred_name);
-		obey_deferred(requests);
+		act_on_deferred(requests);
 		return;
 	case GZ_REMOTE_NOTICE_CALIBRATE:
-		tell_calibration_failed(requests);
+		send_calibration_failed(requests);
 		return;
 	case GZ_REMOTE_NOTICE_DOC:
-		tell_doc(requests);
+		send_doc(requests);
 		return;
 	case GZ_REMOTE_NOTICE_OTHER:
 		return;
 	}
 }
 
-/* The pointer goes to the driver of that name, or to the simulated viewer, who looks there; and to
- * nobody else: what comes of it is gaze. */
-static void take_pointer(struct gz_requests *requests, const struct gz_viewer_pointer *pointer)
+/* Hand the pointer's position to the driver "pointer" or to the simulated viewer, who looks there.
+ * It is not sent to readers: they get the gaze that the driver makes of it. */
+static void feed_pointer_driver(struct gz_requests *requests,
+				const struct gz_viewer_pointer *pointer)
 {
 	const struct gz_requests_parts *parts = &requests->parts;
 	uint64_t held_back;
@@ -361,12 +363,13 @@ static void take_pointer(struct gz_requests *requests, const struct gz_viewer_po
 	else if (gz_ratelimit_pass(&requests->unread_pointer, now_ns, UNREAD_POINTER_NS,
 				   &held_back))
 		gz_warn(parts->log,
-			"a viewer sends its pointer, but the tracker is %s; for gaze by mouse use "
-			"--driver pointer",
+			"a viewer sends its pointer, but the driver is %s, which ignores it; to "
+			"use "
+			"the mouse as gaze, start gazed with --driver pointer",
 			parts->config->driver);
 }
 
-static void take_window(struct gz_requests *requests, const struct gz_viewer_window *window)
+static void report_window(struct gz_requests *requests, const struct gz_viewer_window *window)
 {
 	struct gz_command command = {
 		.kind = GZ_COMMAND_WINDOW,
@@ -377,27 +380,27 @@ static void take_window(struct gz_requests *requests, const struct gz_viewer_win
 	send_command(requests, &command);
 }
 
-/* A client's message: to all readers, into the log if it is an annotation or a window, and obeyed
- * if it is a notification for the daemon. */
+/* Pass a client's message on to all readers, and into the gaze log if it is an annotation or a
+ * window. Act on it if it is a notification for the daemon. */
 static void pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_MARK, .host_ns = message->mark_ns };
 	if (message->is_pointer) {
-		take_pointer(requests, &message->pointer);
+		feed_pointer_driver(requests, &message->pointer);
 		return;
 	}
 	if (message->is_window)
-		take_window(requests, &message->window);
+		report_window(requests, &message->window);
 	if (message->is_mark) {
 		memcpy(command.text, message->mark, sizeof command.text);
 		send_command(requests, &command);
 	}
 	send_to_readers(requests, message->topic, message->body, message->size);
 	if (message->is_notification)
-		obey_notification(requests, &message->notification);
+		act_on_notification(requests, &message->notification);
 }
 
-static void take_messages(struct gz_requests *requests)
+static void pass_on_messages(struct gz_requests *requests)
 {
 	for (int i = 0;
 	     i < MESSAGES_AT_ONCE && gz_inlet_receive(requests->inlet, &requests->message) == GZ_OK;
@@ -405,36 +408,36 @@ static void take_messages(struct gz_requests *requests)
 		pass_on(requests, &requests->message);
 }
 
-/* Whether a recording that is asked for may have its name: told to who waits for an answer. */
-static bool name_may_be(const struct gz_notification *notification)
+/* Whether a notification that asks for a recording gives a valid name, or none. */
+static bool session_name_allowed(const struct gz_notification *notification)
 {
 	return gz_remote_notice(notification->subject) != GZ_REMOTE_NOTICE_RECORD ||
 	       notification->session_name[0] == '\0' ||
 	       gz_recording_name_valid(notification->session_name);
 }
 
-/* A message of two frames on the control socket: as on the inlet, but confirmed. */
-static void serve_message(struct gz_requests *requests, zmq_msg_t *topic, zmq_msg_t *body)
+/* Serve a message of two frames on the control socket like one on the inlet, and confirm it. */
+static void serve_client_message(struct gz_requests *requests, zmq_msg_t *topic, zmq_msg_t *body)
 {
 	struct gz_inlet_message *message = &requests->message;
 	enum gz_result result =
 		gz_inlet_judge(zmq_msg_data(topic), zmq_msg_size(topic), zmq_msg_data(body),
 			       zmq_msg_size(body), gz_clock_now_ns(), message);
 	if (result != GZ_OK) {
-		answer(requests, gz_inlet_refusal(result));
+		reply(requests, gz_inlet_refusal(result));
 		return;
 	}
-	if (message->is_notification && !name_may_be(&message->notification)) {
-		answer(requests, "refused: that is no name for a recording; allowed: 1 to 64 of "
-				 "A-Z a-z 0-9 . _ -");
+	if (message->is_notification && !session_name_allowed(&message->notification)) {
+		reply(requests, "refused: this is not a valid name for a recording; allowed: 1 to "
+				"64 of A-Z a-z 0-9 . _ -");
 		return;
 	}
-	answer(requests, message->is_notification ? "Notification received" : "Message forwarded.");
+	reply(requests, message->is_notification ? "Notification received" : "Message forwarded.");
 	pass_on(requests, message);
 }
 
-/* One request: a frame of text, or a topic and a MessagePack map. */
-static void take_request(struct gz_requests *requests)
+/* Receive and serve one request: a frame of text, or a topic and a MessagePack map. */
+static void receive_request(struct gz_requests *requests)
 {
 	zmq_msg_t frames[2];
 	struct gz_remote_request request;
@@ -446,9 +449,9 @@ static void take_request(struct gz_requests *requests)
 		gz_remote_parse(zmq_msg_data(&frames[0]), zmq_msg_size(&frames[0]), &request);
 		serve_request(requests, &request);
 	} else if (count == 2) {
-		serve_message(requests, &frames[0], &frames[1]);
+		serve_client_message(requests, &frames[0], &frames[1]);
 	} else if (count > 2) {
-		answer(requests, gz_inlet_refusal(GZ_ERR_PROTOCOL));
+		reply(requests, gz_inlet_refusal(GZ_ERR_PROTOCOL));
 	}
 	zmq_msg_close(&frames[0]);
 	zmq_msg_close(&frames[1]);
@@ -472,7 +475,7 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 	};
 	for (;;) {
 		long timeout_ms = milliseconds_left(requests);
-		/* A REP socket owes its answer before it takes the next request. */
+		/* A REP socket must answer before it receives the next request. */
 		int count = requests->pending == PENDING_NONE ? 5 : 4;
 		if (zmq_poll(items, count, timeout_ms) < 0 && errno != EINTR)
 			return GZ_ERR_IO;
@@ -482,24 +485,24 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 			forget_event(items[1].fd);
 		take_notices(requests);
 		check_finished(requests);
-		obey_deferred(requests);
-		take_messages(requests);
+		act_on_deferred(requests);
+		pass_on_messages(requests);
 		bool leave = requests->ended && requests->parts.config->exit_at_end;
 		if (leave || requests->failure != GZ_OK)
 			return requests->failure;
 		if (requests->pending == PENDING_NONE)
-			take_request(requests);
+			receive_request(requests);
 	}
 }
 
 void gz_requests_quit_service(struct gz_requests *requests)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_QUIT };
-	/* Waits where the queue is full: the service empties it. */
+	/* Waits if the queue is full; the service empties it. */
 	zmq_send(requests->commands, &command, sizeof command, 0);
 }
 
-static enum gz_result open_sockets(struct gz_requests *requests)
+static enum gz_result open_request_sockets(struct gz_requests *requests)
 {
 	int linger = 0, control_linger = GZ_REQUESTS_PATIENCE_MS;
 	requests->control = zmq_socket(requests->parts.context, ZMQ_REP);
@@ -511,7 +514,8 @@ static enum gz_result open_sockets(struct gz_requests *requests)
 		    0 ||
 	    zmq_setsockopt(requests->commands, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
 	    zmq_bind(requests->commands, GZ_COMMAND_ENDPOINT) != 0) {
-		gz_err(requests->parts.log, "no control socket: %s", zmq_strerror(errno));
+		gz_err(requests->parts.log, "cannot open the control socket: %s",
+		       zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
 	int port;
@@ -528,7 +532,7 @@ enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 	requests->parts = *parts;
 	requests->stream_port = gz_publisher_port(parts->publisher);
 	requests->latest_port = gz_publisher_latest_port(parts->publisher);
-	enum gz_result result = open_sockets(requests);
+	enum gz_result result = open_request_sockets(requests);
 	if (result == GZ_OK)
 		result = gz_inlet_create(parts->network, &requests->inlet);
 	if (result != GZ_OK) {

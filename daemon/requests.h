@@ -1,7 +1,8 @@
 /**
  * @file
- * The main thread's work: answers requests in Pupil Remote's letters, and waits for signals and for
- * the end of a replay. Every request is answered within GZ_REQUESTS_PATIENCE_MS and some.
+ * The main thread: answers requests in Pupil Remote's protocol, passes on messages from clients,
+ * and waits for signals and for the end of a replay. Every request is answered little more than
+ * GZ_REQUESTS_PATIENCE_MS after it came, at the latest.
  */
 #ifndef GZ_DAEMON_REQUESTS_H
 #define GZ_DAEMON_REQUESTS_H
@@ -12,21 +13,21 @@
 #include "daemon/network.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
-#include "drivers/pointer/pointer_feed.h"
+#include "drivers/pointer/pointer_driver.h"
 
-/** How long an answer waits for what was asked to have happened, ms; then it says that it goes on.
- * Chosen: well below the 100 ms in which a client may count on an answer. */
+/** How long an answer waits for the requested action to be done, ms; after that the answer is sent
+ * while the action goes on. Chosen: well below the 100 ms within which clients get an answer. */
 #define GZ_REQUESTS_PATIENCE_MS 50
 
-/** What requests work with, borrowed. */
+/** What the request server works with; all borrowed. */
 struct gz_requests_parts {
 	const struct gz_config *config;
 	void *context;                        /**< ZeroMQ */
 	const char *directory;                /**< the runtime directory */
-	const struct gz_network *network;     /**< how to bind; needed at creation alone */
-	const struct gz_publisher *publisher; /**< its ports are asked for once, at creation */
+	const struct gz_network *network;     /**< how sockets are bound; used at creation only */
+	const struct gz_publisher *publisher; /**< for its ports; used at creation only */
 	const struct gz_recorder *recorder;
-	struct gz_pointer_feed *pointer; /**< takes what viewers tell of their pointers */
+	struct gz_pointer_feed *pointer; /**< receives the pointer positions that viewers send */
 	const struct gz_log *log;
 };
 
@@ -34,26 +35,32 @@ struct gz_requests_parts {
 struct gz_requests;
 
 /**
- * Bind the control socket, in the runtime directory and, where the configuration has TCP, at
- * network.control; and GZ_COMMAND_ENDPOINT.
+ * Bind the control socket, in the runtime directory and, with TCP, at network.control; the inlet;
+ * and GZ_COMMAND_ENDPOINT (service.h).
  *
- * @return GZ_OK, GZ_ERR_IO, GZ_ERR_NO_MEM, or as gz_network_bind(); logged
+ * @param parts  copied; what it points to is borrowed
+ * @param[out] out_requests  owned by the caller: gz_requests_destroy()
+ * @retval GZ_ERR_NO_MEM  no memory
+ * @retval GZ_ERR_IO      no socket; logged
+ * @return else as gz_network_bind() and gz_inlet_create()
  */
 enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 				  struct gz_requests **out_requests);
 
 /**
- * Answer requests until @p signal_fd, a signalfd, becomes readable, or until a replay ends and the
- * configuration says to leave then.
+ * Answer requests until @p signal_fd, a signalfd, becomes readable, or until a replay ends if the
+ * configuration has exit_at_end.
  *
- * @return GZ_OK, or the reason for which the service could not go on
+ * @retval GZ_OK      ended as asked
+ * @retval GZ_ERR_IO  the sockets cannot be polled
+ * @return else why the service had to stop; it was logged
  */
 enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd);
 
-/** Tell the service to end. */
+/** Tell the service to quit. Waits while the queue of commands is full. */
 void gz_requests_quit_service(struct gz_requests *requests);
 
-/** Close and set to NULL. Accepts a pointer to NULL. */
+/** Close the sockets, free and set *requests to NULL. Accepts a pointer to NULL. */
 void gz_requests_destroy(struct gz_requests **requests);
 
 #endif

@@ -9,17 +9,16 @@
 #include <zmq.h>
 
 #include "base/clock.h"
-#include "daemon/command.h"
-#include "daemon/messages.h"
-#include "daemon/rate_meter.h"
+#include "daemon/inlet.h"
+#include "daemon/publisher.h"
+#include "daemon/service.h"
 #include "daemon/tracker.h"
-#include "daemon/viewer.h"
 #include "drivers/usb/usb_watch.h"
-#include "protocol/wire_notification.h"
+#include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "service"
 
-/* Commands taken between two samples, so that a flood of them does not delay the stream. */
+/* Most commands between two samples, so that a flood of them does not delay the stream. */
 enum { COMMANDS_AT_ONCE = 8 };
 
 struct gz_service {
@@ -28,34 +27,35 @@ struct gz_service {
 	pthread_t thread;
 	bool has_thread;
 	bool quit;
-	bool waiting; /* for readers, before the tracker starts */
+	bool waiting; /* for readers, before the tracker starts (--wait-readers) */
 	struct gz_tracker tracker;
 	const void *driver_settings[GZ_CONFIG_DRIVERS_MAX];
-	struct gz_usb_watch *watch; /* NULL where nobody tells what is plugged in */
-	uint64_t opened;            /* the tracker's device that maker was made for */
+	struct gz_usb_watch *watch; /* NULL if arrivals of USB devices cannot be watched */
+	uint64_t opened;            /* value of tracker.opened for which maker was set up */
 	struct gz_message_maker maker;
 	struct gz_rate_meter rate;
 	struct gz_viewer_place viewer;
 	uint64_t rejected[GZ_REJECT_COUNT];
 	int64_t host_ns;     /* newest sample's */
-	int64_t commands_ns; /* when to look for commands */
-	int64_t care_ns;     /* when to look after everything else */
+	int64_t commands_ns; /* when commands are read next */
+	int64_t care_ns;     /* when the periodic work is due */
 	int64_t status_ns;   /* when the next status is due */
-	/* Of the last status sent: a change is told at once. */
+	/* From the last status sent; a change is sent at once. */
 	enum gz_tracker_state told_tracker;
 	const char *told_trouble;
 	enum gz_recording_state told_recording;
 	uint32_t told_subscribers;
-	uint64_t told_arrivals;       /* who has just come need not wait for a second */
-	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was notified; empty: none */
-	/* Large, and used for one sample at a time. */
+	uint64_t told_arrivals;       /* a new reader gets a status at once */
+	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was announced; empty: none */
+	/* Large; used for one sample or command at a time. */
 	struct gz_outgoing_batch batch;
 	struct gz_gaze_log_header header;
 	struct gz_command command;
 };
 
-/* The display or the settings may be other ones with a device that has returned. A log knows one
- * display and one set of settings, so a recording ends where they change. */
+/* Set up the pipeline for the device that was opened. A device that has returned may bring another
+ * display or other settings. A log holds one display and one set of settings, so a recording ends
+ * when they change. */
 static enum gz_result adopt_device(struct gz_service *service)
 {
 	const struct gz_service_parts *parts = &service->parts;
@@ -64,8 +64,8 @@ static enum gz_result adopt_device(struct gz_service *service)
 	struct gz_display display = gz_config_display(parts->config, info);
 	if (!gz_display_valid(&display)) {
 		gz_err(parts->log,
-		       "%s: its display cannot be; give display.px, display.mm and "
-		       "display.distance_mm",
+		       "%s: the size of its display is not plausible; set display.px, display.mm "
+		       "and display.distance_mm",
 		       info->name);
 		return GZ_ERR_INVAL;
 	}
@@ -82,7 +82,8 @@ static enum gz_result adopt_device(struct gz_service *service)
 	if (same)
 		return GZ_OK;
 	if (gz_recorder_running(parts->recorder)) {
-		gz_warn(parts->log, "another display or correction: the recording ends here");
+		gz_warn(parts->log, "the display or the correction has changed, so the recording "
+				    "ends here");
 		gz_recorder_stop(parts->recorder);
 	}
 	gz_message_maker_init(&service->maker, parts->config, &params, &display);
@@ -108,7 +109,7 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 		.settings = service->driver_settings,
 	};
 	gz_config_all_settings(config, service->driver_settings);
-	/* Before the first look, so that nothing arrives between the two. */
+	/* Before the first search, so that no device arrives unnoticed between the two. */
 	if (driver->on_usb)
 		gz_usb_watch_create(GZ_UDEV_CONTROL, parts->log, &service->watch);
 	enum gz_result result = gz_tracker_open(&service->tracker, driver, settings, &host);
@@ -123,7 +124,7 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 	return GZ_OK;
 }
 
-static void describe(struct gz_service *service)
+static void fill_log_header(struct gz_service *service)
 {
 	struct gz_gaze_log_header *header = &service->header;
 	const struct gz_device_info *info = &service->tracker.info;
@@ -148,7 +149,8 @@ static void send_notification(struct gz_service *service, const char *topic)
 	gz_publisher_send_one(service->parts.publisher, topic, message->bytes, message->size);
 }
 
-/* Pupil's clients wait for these two, whoever has asked for a recording. */
+/* Pupil clients wait for recording.stopped and recording.started, whoever asked for the recording.
+ */
 static void notify_stopped(struct gz_service *service)
 {
 	if (service->told_path[0] == '\0')
@@ -159,8 +161,10 @@ static void notify_stopped(struct gz_service *service)
 	service->told_path[0] = '\0';
 }
 
-/* Finished, not only asked to be: whoever is told may open the file. */
-static bool recording_is_over(const struct gz_service *service)
+/* Whether the recording is finished, not only asked to end: a reader that is told may open the
+ * file.
+ */
+static bool recording_has_ended(const struct gz_service *service)
 {
 	struct gz_recorder_status status;
 	gz_recorder_get_status(service->parts.recorder, &status);
@@ -171,7 +175,7 @@ static void notify_started(struct gz_service *service, const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	char session[GZ_PATH_SIZE];
-	notify_stopped(service); /* of one that has just ended */
+	notify_stopped(service); /* for a recording that has just ended */
 	snprintf(service->told_path, sizeof service->told_path, "%s", path);
 	snprintf(session, sizeof session, "%s", slash ? slash + 1 : path);
 	char *dot = strrchr(session, '.');
@@ -182,11 +186,11 @@ static void notify_started(struct gz_service *service, const char *path)
 		send_notification(service, GZ_TOPIC_NOTIFY GZ_SUBJECT_RECORDING_STARTED);
 }
 
-/* A log begins with the pipeline in its start state, because that is how its replay begins: what
- * the pipeline has learnt before the first recorded sample is nowhere in the log. */
+/* The pipeline returns to its start state when a log begins, because its replay begins in that
+ * state: what the pipeline learnt before the first recorded sample is not in the log. */
 enum gz_result gz_service_record(struct gz_service *service, int fd, const char *path)
 {
-	describe(service);
+	fill_log_header(service);
 	enum gz_result result =
 		gz_recorder_start(service->parts.recorder, fd, path, &service->header);
 	if (result != GZ_OK)
@@ -231,14 +235,14 @@ static void serve_sample(struct gz_service *service, const struct gz_sample *sam
 	service->host_ns = sample->host_ns;
 }
 
-static void notify(struct gz_service *service, enum gz_notice_kind kind, uint32_t number,
-		   enum gz_result result)
+static void send_notice(struct gz_service *service, enum gz_notice_kind kind, uint32_t number,
+			enum gz_result result)
 {
 	struct gz_notice notice = { kind, number, result };
 	zmq_send(service->commands, &notice, sizeof notice, ZMQ_DONTWAIT);
 }
 
-static void follow_window(struct gz_service *service, const struct gz_command *command)
+static void follow_viewer_window(struct gz_service *service, const struct gz_command *command)
 {
 	struct gz_gaze_log_record window;
 	const int *rect_px = command->has_window ? command->window_px : NULL;
@@ -246,18 +250,18 @@ static void follow_window(struct gz_service *service, const struct gz_command *c
 		gz_recorder_push(service->parts.recorder, &window);
 }
 
-static void obey(struct gz_service *service, const struct gz_command *command)
+static void obey_command(struct gz_service *service, const struct gz_command *command)
 {
 	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
 	enum gz_result result = GZ_OK;
 	switch (command->kind) {
 	case GZ_COMMAND_RECORD:
 		result = gz_service_record(service, command->fd, command->path);
-		notify(service, GZ_NOTICE_ANSWER, command->number, result);
+		send_notice(service, GZ_NOTICE_ANSWER, command->number, result);
 		return;
 	case GZ_COMMAND_STOP:
 		gz_recorder_stop(service->parts.recorder);
-		notify(service, GZ_NOTICE_ANSWER, command->number, result);
+		send_notice(service, GZ_NOTICE_ANSWER, command->number, result);
 		return;
 	case GZ_COMMAND_MARK:
 		memcpy(mark.text, command->text, sizeof mark.text);
@@ -265,15 +269,15 @@ static void obey(struct gz_service *service, const struct gz_command *command)
 		return;
 	case GZ_COMMAND_CORRECT:
 		if (service->tracker.opened > 0)
-			(void)adopt_device(service); /* the display is as it was */
-		service->status_ns = 0;              /* tell what is in force now */
+			(void)adopt_device(service); /* cannot fail: the display is unchanged */
+		service->status_ns = 0;              /* send the correction now in force */
 		service->care_ns = 0;
-		notify(service, GZ_NOTICE_ANSWER, command->number, GZ_OK);
+		send_notice(service, GZ_NOTICE_ANSWER, command->number, GZ_OK);
 		return;
-	case GZ_COMMAND_SEND: /* see take_commands() */
+	case GZ_COMMAND_SEND: /* done in take_commands() */
 		return;
 	case GZ_COMMAND_WINDOW:
-		follow_window(service, command);
+		follow_viewer_window(service, command);
 		return;
 	case GZ_COMMAND_QUIT:
 		service->quit = true;
@@ -281,8 +285,8 @@ static void obey(struct gz_service *service, const struct gz_command *command)
 	}
 }
 
-/* A message from the inlet: the topic came with the command, the body is the frame behind it. */
-static void resend(struct gz_service *service)
+/* Send a message from the inlet: its topic came in the command, its body is the next frame. */
+static void resend_client_message(struct gz_service *service)
 {
 	zmq_msg_t body;
 	zmq_msg_init(&body);
@@ -303,9 +307,9 @@ static void take_commands(struct gz_service *service, int64_t now_ns)
 		if (size != (int)sizeof service->command)
 			return;
 		if (service->command.kind == GZ_COMMAND_SEND)
-			resend(service);
+			resend_client_message(service);
 		else
-			obey(service, &service->command);
+			obey_command(service, &service->command);
 	}
 }
 
@@ -332,7 +336,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		status->rate_hz_measured = gz_rate_meter_take(&service->rate);
 	memcpy(status->tracker.name, tracker->info.name, sizeof status->tracker.name);
 	memcpy(status->tracker.serial, tracker->info.serial, sizeof status->tracker.serial);
-	/* A device that is there knows better what is wrong with it. */
+	/* While the device is open, its own report of trouble is more precise. */
 	bool open = tracker->state == GZ_TRACKER_STARTING || !tracker->reason[0];
 	snprintf(status->tracker.reason, sizeof status->tracker.reason, "%s",
 		 open && tracker->counters.trouble ? tracker->counters.trouble : tracker->reason);
@@ -345,7 +349,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		gz_recorder_get_path(service->parts.recorder, status->recording.file);
 }
 
-/* For `systemctl status`. */
+/* Report the tracker's state for `systemctl status`. */
 static void notify_manager(const struct gz_service *service, const struct gz_status *status)
 {
 	char text[sizeof status->tracker.name + sizeof status->tracker.reason + 64];
@@ -384,8 +388,8 @@ static bool status_changed(const struct gz_service *service)
 	       service->told_arrivals != gz_publisher_arrivals(service->parts.publisher);
 }
 
-/* What is not done for every sample. */
-static void take_care(struct gz_service *service, int64_t now_ns)
+/* What is done every GZ_SERVICE_CARE_MS, and not for every sample. */
+static void do_periodic_work(struct gz_service *service, int64_t now_ns)
 {
 	if (now_ns < service->care_ns)
 		return;
@@ -395,7 +399,7 @@ static void take_care(struct gz_service *service, int64_t now_ns)
 	if (service->waiting && gz_publisher_subscriptions(service->parts.publisher) >=
 					(uint32_t)service->parts.config->wait_readers)
 		service->waiting = false;
-	if (recording_is_over(service))
+	if (recording_has_ended(service))
 		notify_stopped(service);
 	gz_tracker_update_counters(&service->tracker);
 	if (now_ns >= service->status_ns || status_changed(service)) {
@@ -409,15 +413,15 @@ static void end_replay(struct gz_service *service)
 	gz_info(service->parts.log, "the replay is over after %llu samples",
 		(unsigned long long)service->tracker.samples);
 	gz_recorder_stop(service->parts.recorder);
-	notify(service, GZ_NOTICE_ENDED, 0, GZ_OK);
+	send_notice(service, GZ_NOTICE_ENDED, 0, GZ_OK);
 }
 
-/* Tell the log and the pipeline of what the tracker's state has become. */
+/* Adapt the pipeline to a new device, and record the loss of one in the gaze log. */
 static void follow_tracker(struct gz_service *service, enum gz_tracker_state before)
 {
 	enum gz_tracker_state state = service->tracker.state;
 	if (service->tracker.opened != service->opened && adopt_device(service) != GZ_OK) {
-		notify(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
+		send_notice(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
 		service->quit = true;
 		return;
 	}
@@ -425,7 +429,7 @@ static void follow_tracker(struct gz_service *service, enum gz_tracker_state bef
 		record_gap(service, service->host_ns, 0, service->tracker.reason);
 }
 
-static void serve(struct gz_service *service)
+static void serve_tracker(struct gz_service *service)
 {
 	struct gz_sample sample;
 	enum gz_tracker_state before = service->tracker.state;
@@ -439,8 +443,8 @@ static void serve(struct gz_service *service)
 		end_replay(service);
 }
 
-/* A live tracker waits for nobody. A source that delivers on demand, faster than any disk, waits
- * until it can be recorded whole. */
+/* A source that delivers on demand, faster than any disk, waits until the recorder has room, so
+ * that nothing is lost. A live tracker cannot wait. */
 static bool must_wait_for_recorder(const struct gz_service *service)
 {
 	const struct gz_recorder *recorder = service->parts.recorder;
@@ -448,19 +452,19 @@ static bool must_wait_for_recorder(const struct gz_service *service)
 	       !gz_recorder_has_room(recorder);
 }
 
-static void *run(void *user)
+static void *service_run(void *user)
 {
 	struct gz_service *service = user;
 	pthread_setname_np(pthread_self(), "gazed-serve");
 	while (!service->quit) {
 		int64_t now_ns = gz_clock_now_ns();
 		take_commands(service, now_ns);
-		take_care(service, now_ns);
+		do_periodic_work(service, now_ns);
 		if (service->waiting || must_wait_for_recorder(service))
 			gz_clock_sleep_until_ns(gz_clock_now_ns() +
 						GZ_SERVICE_WAIT_MS * GZ_NS_PER_MS);
 		else
-			serve(service);
+			serve_tracker(service);
 	}
 	gz_recorder_stop(service->parts.recorder);
 	notify_stopped(service);
@@ -476,11 +480,13 @@ enum gz_result gz_service_start(struct gz_service *service)
 	if (!service->commands ||
 	    zmq_setsockopt(service->commands, ZMQ_LINGER, &linger, sizeof linger) != 0 ||
 	    zmq_connect(service->commands, GZ_COMMAND_ENDPOINT) != 0) {
-		gz_err(service->parts.log, "no command socket: %s", zmq_strerror(errno));
+		gz_err(service->parts.log, "cannot open the command socket: %s",
+		       zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
-	if (pthread_create(&service->thread, NULL, run, service) != 0) {
-		gz_err(service->parts.log, "no thread for samples: %s", strerror(errno));
+	if (pthread_create(&service->thread, NULL, service_run, service) != 0) {
+		gz_err(service->parts.log, "cannot start the thread that serves samples: %s",
+		       strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	service->has_thread = true;

@@ -1,34 +1,89 @@
 /**
  * @file
- * The thread that serves samples: reads the tracker, takes each sample through the pipeline,
- * publishes what comes of it and hands it to the recorder. Takes commands (command.h).
+ * The thread that serves samples. It reads the tracker, runs each sample through the pipeline,
+ * publishes the results, hands the sample to the recorder, and carries out commands from the
+ * requests' thread.
  */
 #ifndef GZ_DAEMON_SERVICE_H
 #define GZ_DAEMON_SERVICE_H
 
+#include <stdbool.h>
+
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/config.h"
-#include "daemon/notify.h"
+#include "daemon/process.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
-#include "drivers/pointer/pointer_feed.h"
+#include "drivers/pointer/pointer_driver.h"
+#include "protocol/gaze.h"
+#include "protocol/gaze_log.h"
 
-/** Longest wait for a sample before commands are looked at, ms. Chosen: an answer comes well within
- * the 100 ms of a request. */
+/*
+ * Messages between this thread and the requests' thread, over a pair of inproc sockets. Each
+ * message is one of these structs, as it lies in memory: both threads are in one process.
+ */
+
+/** The inproc endpoint of the pair; the requests' thread binds it. */
+#define GZ_COMMAND_ENDPOINT "inproc://command"
+
+/** Commands to the thread that serves samples. */
+enum gz_command_kind {
+	GZ_COMMAND_RECORD,  /**< begin a recording into fd and path */
+	GZ_COMMAND_STOP,    /**< end the recording */
+	GZ_COMMAND_MARK,    /**< write text into the gaze log */
+	GZ_COMMAND_CORRECT, /**< read the stored correction again; it may have changed */
+	GZ_COMMAND_SEND,    /**< send a message on the stream: the topic is in text, the body in the
+			       frame after this struct */
+	GZ_COMMAND_WINDOW,  /**< a viewer's window has moved or is closed */
+	GZ_COMMAND_QUIT,
+};
+
+/** A command. */
+struct gz_command {
+	enum gz_command_kind kind;
+	uint32_t number;  /**< RECORD, STOP, CORRECT: repeated in the answer */
+	int fd;           /**< RECORD: owned by the receiver, unless it refuses */
+	int64_t host_ns;  /**< MARK, WINDOW */
+	bool has_window;  /**< WINDOW: false once it is closed */
+	int window_px[4]; /**< WINDOW: x y w h on the display */
+	char path[GZ_PATH_SIZE];
+	char text[GZ_GAZE_LOG_TEXT_SIZE];
+};
+
+/** Notices to the requests' thread. */
+enum gz_notice_kind {
+	GZ_NOTICE_ANSWER, /**< answers the command with this number */
+	GZ_NOTICE_FAILED, /**< the service cannot continue and has ended; it was logged */
+	GZ_NOTICE_ENDED,  /**< a replay is over, and its recording, if any, is being finished */
+};
+
+/** A notice. */
+struct gz_notice {
+	enum gz_notice_kind kind;
+	uint32_t number;
+	enum gz_result result;
+};
+
+/*
+ * The service.
+ */
+
+/** Longest wait for a sample before commands are read, ms. Chosen: a request is answered well
+ * within 100 ms. */
 #define GZ_SERVICE_WAIT_MS 10
 
-/** How often commands are looked for while samples come, ms. Chosen: looking costs a system call,
- * which is not spent on every sample of a fast tracker. */
+/** How often commands are read while samples come, ms. Chosen: reading costs a system call, which
+ * would be too much for every sample of a fast tracker. */
 #define GZ_SERVICE_COMMANDS_MS 5
 
-/** How often connections and states are looked at, ms. */
+/** How often connections and states are checked, ms. */
 #define GZ_SERVICE_CARE_MS 50
 
-/** How often the status is sent at least, ms. */
+/** Longest time between two status messages, ms. */
 #define GZ_SERVICE_STATUS_MS 1000
 
-/** What a service works with; all borrowed and its alone until it is destroyed. */
+/** What a service works with; all borrowed, and used by nobody else until it is destroyed. */
 struct gz_service_parts {
 	const struct gz_config *config;
 	void *context; /**< ZeroMQ; GZ_COMMAND_ENDPOINT is bound in it */
@@ -43,26 +98,36 @@ struct gz_service_parts {
 struct gz_service;
 
 /**
- * Open the tracker.
+ * Create a service and open the tracker.
  *
- * @return GZ_OK, or a result after one logged line where the tracker's settings cannot work
+ * @param parts             copied; what it points to is borrowed
+ * @param[out] out_service  owned by the caller: gz_service_destroy()
+ * @retval GZ_ERR_NO_MEM  no memory
+ * @return else a result after one logged line: the tracker's settings cannot work
  */
 enum gz_result gz_service_create(const struct gz_service_parts *parts,
 				 struct gz_service **out_service);
 
 /**
- * Begin a recording before the first sample.
+ * Begin a recording. Call it before gz_service_start(); once the thread runs, send
+ * GZ_COMMAND_RECORD instead.
  *
  * @param fd    as for gz_recorder_start()
  * @param path  of the file
+ * @return as gz_recorder_start()
  */
 enum gz_result gz_service_record(struct gz_service *service, int fd, const char *path);
 
-/** Start the thread. It runs until it is told GZ_COMMAND_QUIT. */
+/**
+ * Start the thread. It runs until it gets GZ_COMMAND_QUIT.
+ *
+ * @retval GZ_ERR_IO      no socket for commands; logged
+ * @retval GZ_ERR_NO_MEM  no thread; logged
+ */
 enum gz_result gz_service_start(struct gz_service *service);
 
-/** Wait for the thread to end, if it was started, free and set to NULL. Accepts a pointer to NULL.
- */
+/** Wait for the thread to end if it was started, free the service and set *service to NULL. Accepts
+ * a pointer to NULL. */
 void gz_service_destroy(struct gz_service **service);
 
 #endif

@@ -8,7 +8,8 @@
 
 #define GZ_LOG_MODULE "tracker"
 
-static void set_state(struct gz_tracker *tracker, enum gz_tracker_state state, const char *reason)
+static void set_tracker_state(struct gz_tracker *tracker, enum gz_tracker_state state,
+			      const char *reason)
 {
 	tracker->state = state;
 	snprintf(tracker->reason, sizeof tracker->reason, "%s", reason);
@@ -29,9 +30,10 @@ static bool may_appear(enum gz_result result)
 	       result == GZ_ERR_IO;
 }
 
-/* What the driver says when it fails is the reason that the status tells. While a device is being
- * waited for it has been logged before. */
-static void relay(void *user, enum gz_log_level level, const char *module, const char *message)
+/* The sink of the driver's log. The last warning of a failed search becomes the reason in the
+ * status. While a missing device is waited for, messages are not logged again. */
+static void relay_driver_message(void *user, enum gz_log_level level, const char *module,
+				 const char *message)
 {
 	struct gz_tracker *tracker = user;
 	const struct gz_log *log = tracker->host.log;
@@ -41,7 +43,7 @@ static void relay(void *user, enum gz_log_level level, const char *module, const
 		gz_log_write(log, level, module, "%s", message);
 }
 
-static enum gz_result create(struct gz_tracker *tracker)
+static enum gz_result create_device(struct gz_tracker *tracker)
 {
 	struct gz_driver_host host = tracker->host;
 	host.log = &tracker->relay;
@@ -57,25 +59,25 @@ static const char *remark_or(const struct gz_tracker *tracker, const char *other
 	return tracker->remark[0] ? tracker->remark : otherwise;
 }
 
-/* Silent, but where the reason has changed: a device that was missing may be there now and not ours
- * to open. */
-static enum gz_result look_again(struct gz_tracker *tracker)
+/* Search again without logging, unless the reason of the failure has changed: a device that was
+ * missing may be there now, but without permission to open it. */
+static enum gz_result search_again(struct gz_tracker *tracker)
 {
 	atomic_store(&tracker->silent, true);
-	enum gz_result result = create(tracker);
+	enum gz_result result = create_device(tracker);
 	if (result != GZ_OK)
 		tracker->barren = false;
 	atomic_store(&tracker->silent, tracker->barren);
 	if (result != GZ_OK && result != tracker->result && tracker->remark[0]) {
 		gz_warn(tracker->host.log, "%s", tracker->remark);
-		set_state(tracker, tracker->state, tracker->remark);
+		set_tracker_state(tracker, tracker->state, tracker->remark);
 	}
 	return result;
 }
 
-static enum gz_result open_device(struct gz_tracker *tracker, bool again)
+static enum gz_result open_tracker_device(struct gz_tracker *tracker, bool again)
 {
-	tracker->result = again ? look_again(tracker) : create(tracker);
+	tracker->result = again ? search_again(tracker) : create_device(tracker);
 	if (tracker->result != GZ_OK)
 		return tracker->result;
 	tracker->started = false;
@@ -91,17 +93,18 @@ enum gz_result gz_tracker_open(struct gz_tracker *tracker, const struct gz_drive
 	*tracker = (struct gz_tracker) {
 		.driver = driver, .settings = settings, .host = *host, .arrivals_fd = -1
 	};
-	gz_log_init(&tracker->relay, relay, tracker, host->log ? host->log->rules : "*:warn");
+	gz_log_init(&tracker->relay, relay_driver_message, tracker,
+		    host->log ? host->log->rules : "*:warn");
 	snprintf(tracker->info.name, sizeof tracker->info.name, "%s", driver->name);
-	enum gz_result result = open_device(tracker, false);
+	enum gz_result result = open_tracker_device(tracker, false);
 	if (result == GZ_OK) {
-		set_state(tracker, GZ_TRACKER_STARTING, "");
+		set_tracker_state(tracker, GZ_TRACKER_STARTING, "");
 		return GZ_OK;
 	}
 	if (!may_appear(result))
 		return result;
-	set_state(tracker, GZ_TRACKER_ABSENT, remark_or(tracker, gz_result_text(result)));
-	gz_warn(host->log, "%s is looked for until it appears", driver->name);
+	set_tracker_state(tracker, GZ_TRACKER_ABSENT, remark_or(tracker, gz_result_text(result)));
+	gz_warn(host->log, "%s: not found; retrying", driver->name);
 	pause_before_retry(tracker);
 	return GZ_OK;
 }
@@ -124,7 +127,7 @@ void gz_tracker_update_counters(struct gz_tracker *tracker)
 	tracker->counters.trouble = now.trouble;
 }
 
-static void drop_device(struct gz_tracker *tracker)
+static void release_device(struct gz_tracker *tracker)
 {
 	gz_tracker_update_counters(tracker);
 	tracker->counters.trouble = NULL;
@@ -134,30 +137,31 @@ static void drop_device(struct gz_tracker *tracker)
 	tracker->started = false;
 }
 
-/* People call it so. */
+/* The reason of a loss in words that users know. */
 static const char *loss_text(const struct gz_tracker *tracker, enum gz_result result)
 {
 	if (result != GZ_ERR_NO_DEVICE)
 		return gz_result_text(result);
-	return tracker->driver->on_usb ? "unplugged" : "its connection is lost";
+	return tracker->driver->on_usb ? "unplugged" : "connection lost";
 }
 
-/* One that can be opened and never delivers, again and again, is told of once. */
-static void lose_device(struct gz_tracker *tracker, enum gz_result result)
+/* Release a device that failed. A device that can be opened again and again but never delivers is
+ * logged only once. */
+static void tracker_device_lost(struct gz_tracker *tracker, enum gz_result result)
 {
 	bool was_there = tracker->samples > 0, told = tracker->barren;
 	const char *text = loss_text(tracker, result);
-	drop_device(tracker);
+	release_device(tracker);
 	tracker->barren = !tracker->delivered;
 	tracker->result = result;
-	set_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, text);
+	set_tracker_state(tracker, was_there ? GZ_TRACKER_LOST : GZ_TRACKER_ABSENT, text);
 	if (!told)
-		gz_warn(tracker->host.log, "%s is gone (%s); waiting for it", tracker->info.name,
-			text);
+		gz_warn(tracker->host.log, "%s is lost (%s); waiting for it to return",
+			tracker->info.name, text);
 	pause_before_retry(tracker);
 }
 
-/* Wait until @p until_ns. Returns whether something was plugged in before. */
+/* Wait until @p until_ns, or until a USB device arrives. @return whether one arrived */
 static bool wait_for_arrival(struct gz_tracker *tracker, int64_t until_ns)
 {
 	uint64_t arrivals;
@@ -175,7 +179,7 @@ static bool wait_for_arrival(struct gz_tracker *tracker, int64_t until_ns)
 	       read(tracker->arrivals_fd, &arrivals, sizeof arrivals) == sizeof arrivals;
 }
 
-/* Look for the device, if that is due before the deadline. */
+/* Search for the device if that is due before the deadline. */
 static enum gz_result find_device(struct gz_tracker *tracker, int64_t deadline_ns)
 {
 	bool due = tracker->retry_ns <= deadline_ns;
@@ -183,14 +187,14 @@ static enum gz_result find_device(struct gz_tracker *tracker, int64_t deadline_n
 		tracker->pause_ns = GZ_TRACKER_PAUSE_ARRIVAL_MS * GZ_NS_PER_MS;
 	else if (!due)
 		return GZ_ERR_TIMEOUT;
-	if (open_device(tracker, true) == GZ_OK)
+	if (open_tracker_device(tracker, true) == GZ_OK)
 		return GZ_OK;
 	pause_before_retry(tracker);
 	return GZ_ERR_TIMEOUT;
 }
 
-/* Open and start as far as that is due. */
-static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
+/* Open and start the device as far as that is due. */
+static enum gz_result make_device_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 {
 	if (!tracker->device) {
 		int64_t patience_ns = deadline_ns + GZ_TRACKER_SLOW_MS * GZ_NS_PER_MS;
@@ -201,21 +205,21 @@ static enum gz_result get_ready(struct gz_tracker *tracker, int64_t deadline_ns)
 		return GZ_OK;
 	enum gz_result result = gz_device_start(tracker->device);
 	if (result != GZ_OK) {
-		lose_device(tracker, result);
+		tracker_device_lost(tracker, result);
 		return GZ_ERR_TIMEOUT;
 	}
 	tracker->started = true;
 	tracker->arrival_ns = gz_clock_now_ns();
-	set_state(tracker, GZ_TRACKER_STARTING, "");
+	set_tracker_state(tracker, GZ_TRACKER_STARTING, "");
 	return GZ_OK;
 }
 
-static void take(struct gz_tracker *tracker, struct gz_sample *sample)
+static void accept_sample(struct gz_tracker *tracker, struct gz_sample *sample)
 {
 	if (tracker->state != GZ_TRACKER_RUNNING) {
-		/* Some devices know more of themselves once they stream. */
+		/* Some devices know their properties only once they stream. */
 		gz_device_get_info(tracker->device, &tracker->info);
-		set_state(tracker, GZ_TRACKER_RUNNING, "");
+		set_tracker_state(tracker, GZ_TRACKER_RUNNING, "");
 		tracker->delivered = true;
 		tracker->barren = false;
 		atomic_store(&tracker->silent, false);
@@ -228,16 +232,16 @@ static void take(struct gz_tracker *tracker, struct gz_sample *sample)
 	tracker->next_seq = sample->seq + 1;
 }
 
-static void notice_silence(struct gz_tracker *tracker)
+static void check_for_silence(struct gz_tracker *tracker)
 {
 	int64_t silent_ns = gz_clock_now_ns() - tracker->arrival_ns;
 	if (silent_ns < GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS)
 		return;
 	if (tracker->state == GZ_TRACKER_STARTING && !tracker->reason[0])
-		set_state(tracker, GZ_TRACKER_STARTING, "it is there, and has sent nothing yet");
+		set_tracker_state(tracker, GZ_TRACKER_STARTING, "connected, but no samples yet");
 	if (tracker->state != GZ_TRACKER_RUNNING)
 		return;
-	set_state(tracker, GZ_TRACKER_LOST, "no samples for a second");
+	set_tracker_state(tracker, GZ_TRACKER_LOST, "no samples for a second");
 	gz_warn(tracker->host.log, "%s: no samples for a second", tracker->info.name);
 }
 
@@ -249,23 +253,23 @@ enum gz_result gz_tracker_read(struct gz_tracker *tracker, int timeout_ms,
 		gz_clock_sleep_until_ns(deadline_ns);
 		return GZ_ERR_TIMEOUT;
 	}
-	enum gz_result result = get_ready(tracker, deadline_ns);
+	enum gz_result result = make_device_ready(tracker, deadline_ns);
 	if (result != GZ_OK)
 		return result;
 	result = gz_device_read(tracker->device, timeout_ms, out_sample);
 	switch (result) {
 	case GZ_OK:
-		take(tracker, out_sample);
+		accept_sample(tracker, out_sample);
 		return GZ_OK;
 	case GZ_ERR_TIMEOUT:
-		notice_silence(tracker);
+		check_for_silence(tracker);
 		return GZ_ERR_TIMEOUT;
 	case GZ_ERR_END:
 		gz_tracker_update_counters(tracker);
-		set_state(tracker, GZ_TRACKER_ENDED, "the recording is over");
+		set_tracker_state(tracker, GZ_TRACKER_ENDED, "the recording is over");
 		return GZ_ERR_END;
 	default:
-		lose_device(tracker, result);
+		tracker_device_lost(tracker, result);
 		return GZ_ERR_TIMEOUT;
 	}
 }
@@ -274,4 +278,32 @@ void gz_tracker_close(struct gz_tracker *tracker)
 {
 	gz_device_destroy(&tracker->device);
 	tracker->started = false;
+}
+
+/* Shortest span that is measured: a status sent because of a change may follow the last one at
+ * once, and the rate over so short a time would be arbitrary. */
+static const double RATE_SPAN_MIN_S = 0.2;
+
+void gz_rate_meter_step(struct gz_rate_meter *meter, int64_t host_ns)
+{
+	if (meter->count == 0 || host_ns < meter->last_ns) {
+		meter->count = 0;
+		meter->first_ns = host_ns;
+	}
+	meter->last_ns = host_ns;
+	meter->count++;
+}
+
+double gz_rate_meter_take(struct gz_rate_meter *meter)
+{
+	double span_s = gz_ns_to_s(meter->last_ns) - gz_ns_to_s(meter->first_ns);
+	if (meter->count == 0)
+		meter->rate_hz = 0;
+	if (meter->count < 2 || span_s < RATE_SPAN_MIN_S)
+		return meter->rate_hz;
+	meter->rate_hz = (double)(meter->count - 1) / span_s;
+	/* The newest sample is the first of the next measurement. */
+	meter->first_ns = meter->last_ns;
+	meter->count = 1;
+	return meter->rate_hz;
 }

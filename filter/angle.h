@@ -1,7 +1,7 @@
 /**
  * @file
- * Angles, as the steps share them. Only + - * / and sqrt, which give the same
- * bits everywhere.
+ * Angles between points of the display, for all steps. They use only + - * / and sqrt, which give
+ * the same bits on every machine.
  */
 #ifndef GZ_FILTER_ANGLE_H
 #define GZ_FILTER_ANGLE_H
@@ -13,8 +13,9 @@
 #define GZ_DEG_PER_RAD 57.295779513082320877
 
 /**
- * Unit vector from the eye to a point of the display, times 180 / pi: the distance between two of
- * them is the angle between them in degrees (the chord: 0.03 % short at 5 degrees, 1 % at 28).
+ * The unit vector from the eye to a point of the display, times 180 / pi. The distance between two
+ * such vectors is the angle between them in degrees, measured as a chord: 0.03 % too short at 5
+ * degrees, 1 % at 28.
  */
 static inline void gz_direction_deg(const struct gz_display *display, struct gz_point point,
 				    double out_deg[3])
@@ -32,7 +33,7 @@ static inline double gz_length3(const double v[3])
 	return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/** Angle between two points of the display, degrees, as a chord. */
+/** Angle between two points of the display, degrees, measured as a chord. */
 static inline double gz_chord_deg(const struct gz_display *display, struct gz_point a,
 				  struct gz_point b)
 {

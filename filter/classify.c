@@ -1,26 +1,28 @@
 #include "filter/classify.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "filter/angle.h"
 #include "filter/classify_internal.h"
 
-/* The measured period follows one sixteenth of each new one, and no more than half of itself, so
- * that a gap does not count as a slower rate. Chosen. */
+/* The measured period moves by this fraction towards each new one, and by at most half of itself,
+ * so that a gap does not count as a lower rate. Chosen. */
 static const double PERIOD_GAIN = 1.0 / 16;
 
-/* A label waits for whole samples; this part of one is kept back for jitter of time stamps. */
+/* A label waits for whole samples. This fraction of a sample is reserved for jitter in the time
+ * stamps; chosen. */
 static const double DELAY_SLACK = 0.15;
 
-/* At any rate one sample may be missing without a blink; half a period is for jitter. */
+/* At any rate one missing sample is not a blink; the half period is for jitter. */
 static const double DROPOUT_PERIODS = 1.5;
 
 double gz_classify_dropout_ns(const struct gz_classify_state *state,
 			      const struct gz_classify_params *params)
 {
-	/* No longer than a label waits, or the first samples of a blink would be called otherwise.
-	 */
+	/* No longer than a label waits: otherwise the first samples of a blink would get another
+	 * label. */
 	double wait_ns = (double)gz_classify_delay(state, params) * state->period_ns;
 	double allowed_ns = fmin(params->dropout_ms * 1e6, wait_ns);
 	return fmax(allowed_ns, DROPOUT_PERIODS * state->period_ns);
@@ -37,7 +39,7 @@ uint64_t gz_classify_delay(const struct gz_classify_state *state,
 						: (uint64_t)samples;
 }
 
-static void learn_period(struct gz_classify_state *state, int64_t step_ns)
+static void learn_sample_period(struct gz_classify_state *state, int64_t step_ns)
 {
 	if (state->period_ns <= 0) {
 		state->period_ns = (double)step_ns;
@@ -48,15 +50,15 @@ static void learn_period(struct gz_classify_state *state, int64_t step_ns)
 	state->period_ns += PERIOD_GAIN * fmax(-limit_ns, fmin(limit_ns, change_ns));
 }
 
-/** Put the sample into the ring. */
-static struct gz_classify_entry *take(struct gz_classify_state *state,
-				      const struct gz_classify_params *params,
-				      const struct gz_display *display,
-				      const struct gz_classify_input *input)
+/* Add the sample to the ring. */
+static struct gz_classify_entry *add_entry(struct gz_classify_state *state,
+					   const struct gz_classify_params *params,
+					   const struct gz_display *display,
+					   const struct gz_classify_input *input)
 {
 	if (state->count > 0)
-		learn_period(state,
-			     input->time_ns - gz_classify_at(state, state->count - 1)->time_ns);
+		learn_sample_period(
+			state, input->time_ns - gz_classify_at(state, state->count - 1)->time_ns);
 	bool gap = !state->any_valid ||
 		   (double)(input->time_ns - state->valid_ns) >
 			   gz_classify_dropout_ns(state, params) + state->period_ns;
@@ -74,9 +76,197 @@ static struct gz_classify_entry *take(struct gz_classify_state *state,
 	return entry;
 }
 
-/** Follow the trailing speed: is it a saccade, as far as can be told at once? */
-static void look_quickly(struct gz_classify_state *state, const struct gz_classify_params *params,
-			 const struct gz_classify_entry *entry, double speed_deg_s)
+/*
+ * Speed over short windows, and the slow movement between saccades.
+ */
+
+/* Width of a bin. Chosen: as long as a certain label waits; the ring holds 600 ms of bins. */
+static const int64_t BIN_NS = 10 * GZ_NS_PER_MS;
+
+/* Shortest time for a slope. Chosen: a shorter one would count the eye's ringing as movement. */
+static const double SLOPE_LEAST_S = 0.035;
+
+/* Sums for the slope of a least-squares line. */
+struct slope_sums {
+	double count, t, tt;
+	double p[3], tp[3];
+};
+
+static void add_to_slope(struct slope_sums *line, double t, const double p[3])
+{
+	line->count++;
+	line->t += t;
+	line->tt += t * t;
+	for (int i = 0; i < 3; i++) {
+		line->p[i] += p[i];
+		line->tp[i] += t * p[i];
+	}
+}
+
+/* @return whether the line has a slope; if not, the output is 0 */
+static bool slope_of(const struct slope_sums *line, double out_slope[3])
+{
+	double spread = line->tt - line->t * line->t / fmax(line->count, 1);
+	bool has_slope = line->count >= 2 && spread > 1e-12;
+	for (int i = 0; i < 3; i++) {
+		double together = line->tp[i] - line->t * line->p[i] / fmax(line->count, 1);
+		out_slope[i] = has_slope ? together / spread : 0;
+	}
+	return has_slope;
+}
+
+static void add_relative_sample(struct slope_sums *line, const struct gz_classify_entry *entry,
+				const struct gz_classify_entry *centre)
+{
+	double away[3];
+	for (int i = 0; i < 3; i++) /* small numbers, which keep their precision in the sums */
+		away[i] = entry->direction_deg[i] - centre->direction_deg[i];
+	add_to_slope(line, gz_ns_to_s(entry->time_ns - centre->time_ns), away);
+}
+
+static void add_samples_before(struct gz_classify_state *state, uint64_t index, double before_ns,
+			       struct slope_sums *line)
+{
+	const struct gz_classify_entry *centre = gz_classify_at(state, index);
+	uint64_t oldest = state->count > GZ_CLASSIFY_RING ? state->count - GZ_CLASSIFY_RING : 0;
+	bool neighbour = false;
+	for (uint64_t i = index; i > oldest && !gz_classify_at(state, i)->after_loss; i--) {
+		const struct gz_classify_entry *entry = gz_classify_at(state, i - 1);
+		bool inside = (double)(centre->time_ns - entry->time_ns) <= before_ns;
+		if (!inside && neighbour)
+			return;
+		if (!entry->valid)
+			continue;
+		add_relative_sample(line, entry, centre);
+		neighbour = true;
+	}
+}
+
+static void add_samples_after(struct gz_classify_state *state, uint64_t index, double after_ns,
+			      struct slope_sums *line)
+{
+	const struct gz_classify_entry *centre = gz_classify_at(state, index);
+	bool neighbour = false;
+	for (uint64_t i = index + 1; i < state->count; i++) {
+		const struct gz_classify_entry *entry = gz_classify_at(state, i);
+		bool inside = (double)(entry->time_ns - centre->time_ns) <= after_ns;
+		if (entry->after_loss || (!inside && neighbour))
+			return;
+		if (!entry->valid)
+			continue;
+		add_relative_sample(line, entry, centre);
+		neighbour = true;
+	}
+}
+
+/* A stretch of time around a sample, ns. */
+struct time_window {
+	double before_ns, after_ns;
+};
+
+/* The velocity at sample @p index: the slope of the least-squares line through the good samples of
+ * the window. It includes at least the neighbours but nothing beyond a loss. 0 if there is no
+ * neighbour. */
+static void velocity_at(struct gz_classify_state *state, uint64_t index, struct time_window window,
+			double out_deg_s[3])
+{
+	struct slope_sums line = { .count = 0 };
+	const struct gz_classify_entry *centre = gz_classify_at(state, index);
+	add_relative_sample(&line, centre, centre);
+	add_samples_before(state, index, window.before_ns, &line);
+	if (window.after_ns > 0)
+		add_samples_after(state, index, window.after_ns, &line);
+	(void)slope_of(&line, out_deg_s);
+}
+
+/* Measure the speed of all samples up to @p end whose window is complete; of all of them if @p
+ * force.
+ */
+static void measure_speeds(struct gz_classify_state *state, const struct gz_classify_params *params,
+			   uint64_t end, bool force)
+{
+	/* A quarter of a period is added because of jitter in the time stamps. */
+	double half_ns = params->velocity_window_ms * 0.5e6 + state->period_ns * 0.25;
+	int64_t newest_ns = gz_classify_at(state, state->count - 1)->time_ns;
+	for (; state->measured < end; state->measured++) {
+		struct gz_classify_entry *entry = gz_classify_at(state, state->measured);
+		bool complete = (double)(newest_ns - entry->time_ns) >= half_ns - state->period_ns;
+		if (!complete && !force)
+			return;
+		entry->fast_deg_s = 0;
+		if (!entry->valid)
+			continue;
+		struct time_window window = { half_ns, half_ns };
+		velocity_at(state, state->measured, window, entry->velocity_deg_s);
+		for (int i = 0; i < 3; i++)
+			entry->velocity_deg_s[i] -= state->slow.velocity_deg_s[i];
+		entry->fast_deg_s = gz_length3(entry->velocity_deg_s);
+	}
+}
+
+void gz_classify_slow_restart(struct gz_classify_slow *slow)
+{
+	slow->bin_count = 0;
+	slow->span_s = 0;
+}
+
+static struct gz_classify_bin *bin_at(struct gz_classify_slow *slow, uint64_t index)
+{
+	return &slow->bins[index % GZ_CLASSIFY_BINS];
+}
+
+/* Measure the slope through the means of the bins over the window. */
+static void measure_slow_movement(struct gz_classify_slow *slow, double window_s, int64_t now_ns)
+{
+	struct slope_sums line = { .count = 0 };
+	const struct gz_classify_bin *newest = bin_at(slow, slow->bin_count - 1);
+	double oldest_s = 0, newest_s = 0;
+	for (uint64_t k = 0; k < slow->bin_count && k < GZ_CLASSIFY_BINS; k++) {
+		const struct gz_classify_bin *bin = bin_at(slow, slow->bin_count - 1 - k);
+		double age_s = gz_ns_to_s(now_ns - bin->start_ns) - bin->time_sum_s / bin->count;
+		if (age_s > window_s)
+			break;
+		double place[3];
+		for (int i = 0; i < 3; i++)
+			place[i] = bin->direction_sum_deg[i] / bin->count -
+				   newest->direction_sum_deg[i] / newest->count;
+		add_to_slope(&line, -age_s, place);
+		oldest_s = age_s;
+		newest_s = k == 0 ? age_s : newest_s;
+	}
+	double slope[3];
+	if (line.count >= 2 && oldest_s - newest_s >= SLOPE_LEAST_S && slope_of(&line, slope)) {
+		memcpy(slow->velocity_deg_s, slope, sizeof slope);
+		slow->span_s = oldest_s - newest_s;
+	}
+}
+
+bool gz_classify_slow_step(struct gz_classify_slow *slow, const struct gz_classify_params *params,
+			   const struct gz_classify_entry *entry)
+{
+	struct gz_classify_bin *bin = slow->bin_count ? bin_at(slow, slow->bin_count - 1) : NULL;
+	bool closed = bin && entry->time_ns - bin->start_ns >= BIN_NS;
+	if (closed)
+		measure_slow_movement(slow, params->pursuit_window_ms * 1e-3, entry->time_ns);
+	if (!bin || closed) {
+		bin = bin_at(slow, slow->bin_count++);
+		*bin = (struct gz_classify_bin) { .start_ns = entry->time_ns };
+	}
+	bin->count++;
+	bin->time_sum_s += gz_ns_to_s(entry->time_ns - bin->start_ns);
+	for (int i = 0; i < 3; i++)
+		bin->direction_sum_deg[i] += entry->direction_deg[i];
+	return closed;
+}
+
+/*
+ * The step, and the immediate label.
+ */
+
+/* Update from the trailing speed whether the immediate label is a saccade. */
+static void update_quick_saccade(struct gz_classify_state *state,
+				 const struct gz_classify_params *params,
+				 const struct gz_classify_entry *entry, double speed_deg_s)
 {
 	struct gz_classify_quick *quick = &state->quick;
 	double peak = params->peak_base_deg_s + params->peak_factor * quick->noise_deg_s.value;
@@ -100,9 +290,9 @@ static void look_quickly(struct gz_classify_state *state, const struct gz_classi
 	gz_median_follow(&quick->noise_deg_s, speed_deg_s, gain);
 }
 
-static enum gz_event quick_event(const struct gz_classify_state *state,
-				 const struct gz_classify_params *params,
-				 const struct gz_classify_entry *entry)
+static enum gz_event immediate_label(const struct gz_classify_state *state,
+				     const struct gz_classify_params *params,
+				     const struct gz_classify_entry *entry)
 {
 	if (!entry->valid) {
 		if (!state->any_valid)
@@ -120,23 +310,24 @@ static enum gz_event quick_event(const struct gz_classify_state *state,
 	return GZ_EVENT_PURSUIT;
 }
 
-/** Trailing speed of the newest sample, relative to the slow movement; 0 without measurement. */
+/* The trailing speed of the newest sample, less the slow movement. *out_whole_deg_s includes the
+ * slow movement. */
 static double trailing_speed(struct gz_classify_state *state,
 			     const struct gz_classify_params *params, double *out_whole_deg_s)
 {
-	struct gz_classify_window window = {
+	struct time_window window = {
 		.before_ns = params->quick_window_ms * 1e6 + 0.25 * state->period_ns,
 	};
 	double velocity[3];
-	gz_classify_velocity(state, state->count - 1, window, velocity);
+	velocity_at(state, state->count - 1, window, velocity);
 	*out_whole_deg_s = gz_length3(velocity);
 	for (int i = 0; i < 3; i++)
 		velocity[i] -= state->slow.velocity_deg_s[i];
 	return gz_length3(velocity);
 }
 
-/** Whether the next label has waited long enough. */
-static bool is_due(struct gz_classify_state *state, const struct gz_classify_params *params)
+/* Whether the next certain label is due. */
+static bool is_label_due(struct gz_classify_state *state, const struct gz_classify_params *params)
 {
 	if (state->decided)
 		return true;
@@ -146,16 +337,17 @@ static bool is_due(struct gz_classify_state *state, const struct gz_classify_par
 	       gz_ns_to_ms(now_ns - time_ns) > params->final_delay_ms;
 }
 
-/** Make labels certain that are due, as long as they are the same. */
-static void finish(struct gz_classify_state *state, const struct gz_classify_params *params,
-		   struct gz_classify_output *out)
+/* Decide the certain labels that are due, as long as they are equal. */
+static void emit_certain_labels(struct gz_classify_state *state,
+				const struct gz_classify_params *params,
+				struct gz_classify_output *out)
 {
 	while (state->certain < state->count && out->final_count < GZ_CLASSIFY_FINALS_MAX &&
-	       is_due(state, params)) {
+	       is_label_due(state, params)) {
 		const struct gz_classify_entry *entry = gz_classify_at(state, state->certain);
 		if (!state->decided) {
-			gz_classify_measure(state, params, state->certain + 1, true);
-			(void)gz_classify_decide(state, params, state->certain);
+			measure_speeds(state, params, state->certain + 1, true);
+			gz_classify_decide(state, params, state->certain);
 		}
 		enum gz_event event = state->machine.event;
 		state->decided =
@@ -184,18 +376,18 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 	struct gz_classify_output out;
 	out.last_valid_ns = state->valid_ns;
 	out.velocity_deg_s = 0;
-	out.final_count = 0; /* what lies beyond is not looked at */
-	const struct gz_classify_entry *entry = take(state, params, display, input);
+	out.final_count = 0; /* entries beyond this are not read, so they stay unset */
+	const struct gz_classify_entry *entry = add_entry(state, params, display, input);
 	out.resumed = entry->after_loss && state->any_valid;
 	if (entry->valid) {
 		double speed_deg_s = trailing_speed(state, params, &out.velocity_deg_s);
-		look_quickly(state, params, entry, speed_deg_s);
+		update_quick_saccade(state, params, entry, speed_deg_s);
 		state->any_valid = true;
 		state->valid_ns = entry->time_ns;
 	}
-	gz_classify_measure(state, params, state->count, false);
-	finish(state, params, &out);
-	state->now = quick_event(state, params, entry);
+	measure_speeds(state, params, state->count, false);
+	emit_certain_labels(state, params, &out);
+	state->now = immediate_label(state, params, entry);
 	if (out.final_count > 0 && out.final[out.final_count - 1].seq == entry->seq)
 		state->now = out.final[out.final_count - 1].event;
 	out.event = state->now;

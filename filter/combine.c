@@ -5,34 +5,60 @@
 #include "base/clock.h"
 #include "filter/angle.h"
 
-/* No eye is believed to be more steady than this, degrees: chosen, far below any tracker's noise,
- * so that a point held still by the tracker does not get all the weight. */
+/* Least noise that is assumed for an eye, degrees. Chosen: far below any tracker's noise, so that a
+ * point that the tracker holds still does not get all the weight. */
 static const double LEAST_STEP_DEG = 1e-3;
 
-/* A step is one between neighbouring samples, not across a loss: chosen. */
+/* Longest time between two samples whose step counts as noise; chosen. */
 static const int64_t STEP_MAX_NS = 50 * GZ_NS_PER_MS;
 
-/** How much of the new is taken after @p step_s with a time constant of @p constant_ms. */
-static double gain_of(double step_s, double constant_ms)
+bool gz_correct_usable(const struct gz_correct_params *params)
+{
+	for (int i = 0; i < 3; i++)
+		if (!isfinite(params->x[i]) || !isfinite(params->y[i]))
+			return false;
+	double area = params->x[1] * params->y[2] - params->x[2] * params->y[1];
+	return isfinite(area) && fabs(area) >= GZ_CORRECT_LEAST_AREA;
+}
+
+struct gz_point gz_correct_point(const struct gz_correct_params *params, struct gz_point point)
+{
+	if (!isfinite(point.x) || !isfinite(point.y))
+		return point;
+	const double *x = params->x, *y = params->y;
+	return (struct gz_point) { (float)(x[0] + x[1] * point.x + x[2] * point.y),
+				   (float)(y[0] + y[1] * point.x + y[2] * point.y) };
+}
+
+void gz_correct_step(const struct gz_correct_params *params, struct gz_sample *sample)
+{
+	sample->point = gz_correct_point(params, sample->point);
+	for (int i = 0; i < GZ_EYE_COUNT; i++)
+		sample->eye[i].point = gz_correct_point(params, sample->eye[i].point);
+}
+
+/* The weight of a new value after @p step_s, for a time constant of @p constant_ms. */
+static double gain_after(double step_s, double constant_ms)
 {
 	double constant_s = constant_ms * 1e-3;
 	return step_s / (step_s + constant_s);
 }
 
-static void learn_noise(struct gz_combine_eye *eye, const struct gz_combine_params *params,
-			const struct gz_display *display, int64_t time_ns, struct gz_point point)
+static void learn_eye_noise(struct gz_combine_eye *eye, const struct gz_combine_params *params,
+			    const struct gz_display *display, int64_t time_ns,
+			    struct gz_point point)
 {
 	int64_t step_ns = time_ns - eye->time_ns;
 	if (eye->seen && step_ns <= STEP_MAX_NS) {
 		double step_deg = gz_chord_deg(display, eye->point, point);
 		gz_median_follow(&eye->step_deg, fmax(step_deg, LEAST_STEP_DEG),
-				 gain_of(gz_ns_to_s(step_ns), params->noise_ms));
+				 gain_after(gz_ns_to_s(step_ns), params->noise_ms));
 	}
 }
 
-/** The share of each good eye: inverse variance. */
-static void share_out(const struct gz_combine_state *state, const bool good[GZ_EYE_COUNT],
-		      double out_share[GZ_EYE_COUNT])
+/* The weight of each good eye: the inverse of its variance. */
+static void weigh_eyes(const struct gz_combine_state *state, const bool good[GZ_EYE_COUNT],
+		       double out_share[GZ_EYE_COUNT])
 {
 	double noise[GZ_EYE_COUNT], sum = 0;
 	bool known = true;
@@ -48,9 +74,10 @@ static void share_out(const struct gz_combine_state *state, const bool good[GZ_E
 		out_share[i] /= sum;
 }
 
-/** Give an eye that comes in for the first time, beside one that was there before, the offset that
- *  keeps the point where it is. */
-static void welcome(struct gz_combine_state *state, const struct gz_sample *sample, int newcomer)
+/* Set the offset of an eye that is seen for the first time, beside one that was seen before, so
+ * that the point stays where it is. */
+static void set_first_offset(struct gz_combine_state *state, const struct gz_sample *sample,
+			     int newcomer)
 {
 	struct gz_combine_eye *eye = &state->eye[newcomer];
 	const struct gz_combine_eye *other = &state->eye[1 - newcomer];
@@ -62,13 +89,12 @@ static void welcome(struct gz_combine_state *state, const struct gz_sample *samp
 	eye->offset[1] = its.y + other->offset[1] - mine.y;
 }
 
-/**
- * With both eyes there, let the offsets go to where the plain weighted mean would put them. Their
- * weighted sum goes to zero by it: the joined point is the plain mean before long, and at once
- * where there was nothing before.
- */
-static void learn_offsets(struct gz_combine_state *state, const struct gz_combine_params *params,
-			  const struct gz_sample *sample, const double share[GZ_EYE_COUNT])
+/* Both eyes are there: move the offsets towards those that give the plain weighted mean. Their
+ * weighted sum goes to zero, so the combined point soon is the plain mean; it is so at once if
+ * nothing was learnt before. */
+static void learn_eye_offsets(struct gz_combine_state *state,
+			      const struct gz_combine_params *params,
+			      const struct gz_sample *sample, const double share[GZ_EYE_COUNT])
 {
 	struct gz_point right = sample->eye[GZ_EYE_RIGHT].point;
 	struct gz_point left = sample->eye[GZ_EYE_LEFT].point;
@@ -78,7 +104,7 @@ static void learn_offsets(struct gz_combine_state *state, const struct gz_combin
 									  : state->eye[1].time_ns;
 	bool begun = state->eye[0].seen || state->eye[1].seen;
 	double step_s = gz_ns_to_s(sample->host_ns - newest_ns);
-	double gain = begun ? gain_of(step_s, params->offset_ms) : 1;
+	double gain = begun ? gain_after(step_s, params->offset_ms) : 1;
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		struct gz_combine_eye *eye = &state->eye[i];
 		struct gz_point point = sample->eye[i].point;
@@ -87,8 +113,10 @@ static void learn_offsets(struct gz_combine_state *state, const struct gz_combin
 	}
 }
 
-static struct gz_point join(const struct gz_combine_state *state, const struct gz_sample *sample,
-			    const bool good[GZ_EYE_COUNT], const double share[GZ_EYE_COUNT])
+static struct gz_point weighted_mean_point(const struct gz_combine_state *state,
+					   const struct gz_sample *sample,
+					   const bool good[GZ_EYE_COUNT],
+					   const double share[GZ_EYE_COUNT])
 {
 	double x = 0, y = 0;
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
@@ -113,30 +141,30 @@ static float mean_confidence(const struct gz_sample *sample, const bool good[GZ_
 	return count > 0 ? sum / count : 1;
 }
 
-void gz_combine_step(struct gz_combine_state *state, const struct gz_combine_params *params,
-		     const struct gz_display *display, const struct gz_sample *sample,
-		     const struct gz_validate_output *valid, struct gz_point *out_point,
-		     float *out_confidence)
+struct gz_combine_output gz_combine_step(struct gz_combine_state *state,
+					 const struct gz_combine_params *params,
+					 const struct gz_display *display,
+					 const struct gz_sample *sample,
+					 const struct gz_validate_output *valid)
 {
-	if (valid->combined) {
-		*out_point = sample->point;
-		*out_confidence = 1;
-		return;
-	}
+	if (valid->combined)
+		return (struct gz_combine_output) { .point = sample->point, .confidence = 1 };
 	const bool *good = valid->eye_good;
 	double share[GZ_EYE_COUNT];
 	for (int i = 0; i < GZ_EYE_COUNT; i++)
 		if (good[i])
-			learn_noise(&state->eye[i], params, display, sample->host_ns,
-				    sample->eye[i].point);
-	share_out(state, good, share);
+			learn_eye_noise(&state->eye[i], params, display, sample->host_ns,
+					sample->eye[i].point);
+	weigh_eyes(state, good, share);
 	if (good[GZ_EYE_RIGHT] && good[GZ_EYE_LEFT]) {
-		welcome(state, sample, GZ_EYE_RIGHT);
-		welcome(state, sample, GZ_EYE_LEFT);
-		learn_offsets(state, params, sample, share);
+		set_first_offset(state, sample, GZ_EYE_RIGHT);
+		set_first_offset(state, sample, GZ_EYE_LEFT);
+		learn_eye_offsets(state, params, sample, share);
 	}
-	*out_point = join(state, sample, good, share);
-	*out_confidence = mean_confidence(sample, good);
+	struct gz_combine_output output = {
+		.point = weighted_mean_point(state, sample, good, share),
+		.confidence = mean_confidence(sample, good),
+	};
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		if (!good[i])
 			continue;
@@ -144,4 +172,5 @@ void gz_combine_step(struct gz_combine_state *state, const struct gz_combine_par
 		state->eye[i].point = sample->eye[i].point;
 		state->eye[i].time_ns = sample->host_ns;
 	}
+	return output;
 }

@@ -1,26 +1,26 @@
 /**
  * @file
- * The median of a stream of positive numbers, followed without keeping them.
+ * The running median of positive numbers, without storing them.
  */
 #ifndef GZ_FILTER_MEDIAN_H
 #define GZ_FILTER_MEDIAN_H
 
 #include <math.h>
 
-/** Zero-initialised is the start state: nothing known. */
+/** A running median. Zero-initialised is the start state. */
 struct gz_median {
-	double value; /**< 0 while nothing is known */
-	double count; /**< of numbers so far */
+	double value; /**< the median so far; 0 before the first number */
+	double count; /**< how many numbers so far */
 };
 
 /**
- * Go up by a part of the value where @p number is above, down where it is below, so that as many
- * lie above as below; a single large number counts no more than any other. The stochastic
- * approximation of Robbins and Monro, Annals of Mathematical Statistics 22, 1951, on a log scale,
- * with large steps at first.
+ * Take a number into the median. The median rises by a fraction of itself if the number is above it
+ * and falls if it is below, so that as many numbers are above as below; a single large number has
+ * no more weight than any other. This is the stochastic approximation of Robbins and Monro, Annals
+ * of Mathematical Statistics 22, 1951, on a logarithmic scale, with large steps at first.
  *
- * @param number  0 or less is not counted
- * @param gain    the part, in the long run: time between numbers over the time constant
+ * @param number  ignored if it is 0, negative or NaN
+ * @param gain    the fraction in the long run: the time between numbers over the time constant
  */
 static inline void gz_median_follow(struct gz_median *median, double number, double gain)
 {

@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "filter/angle.h"
 
-/* How many steps the noise is a mean of at most: chosen, seconds to minutes. */
+/* Most steps that the mean of the noise takes into account. Chosen: seconds to minutes. */
 static const double NOISE_COUNT_MAX = 20000;
 
 void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_params *params,
@@ -17,6 +18,166 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
 		.event = GZ_EVENT_LOST,
 		.point = { 0.5f, 0.5f },
 	};
+}
+
+/* Unit vectors of the directions in which the outermost samples of a fixation are kept. */
+static const double DIRECTIONS[GZ_FIXATION_DIRECTIONS][2] = {
+	{ 1, 0 },  { 0.70710678118654752, 0.70710678118654752 },
+	{ 0, 1 },  { -0.70710678118654752, 0.70710678118654752 },
+	{ -1, 0 }, { -0.70710678118654752, -0.70710678118654752 },
+	{ 0, -1 }, { 0.70710678118654752, -0.70710678118654752 },
+};
+
+static double extent_along(const struct gz_display *display, int direction, struct gz_point p)
+{
+	return DIRECTIONS[direction][0] * p.x * display->mm[0] +
+	       DIRECTIONS[direction][1] * p.y * display->mm[1];
+}
+
+static void add_to_fixation(struct gz_messages_fixation *fixation, const struct gz_display *display,
+			    const struct gz_classify_final *final)
+{
+	for (int i = 0; i < GZ_FIXATION_DIRECTIONS; i++)
+		if (fixation->count == 0 ||
+		    extent_along(display, i, final->point) >
+			    extent_along(display, i, fixation->outermost[i]))
+			fixation->outermost[i] = final->point;
+	fixation->sum[0] += final->point.x;
+	fixation->sum[1] += final->point.y;
+	fixation->confidence_sum += final->confidence;
+	fixation->count++;
+	fixation->last_ns = final->time_ns;
+}
+
+static struct gz_fixation fixation_message(const struct gz_messages_fixation *fixation,
+					   const struct gz_display *display, bool final)
+{
+	double count = (double)fixation->count;
+	struct gz_fixation message = {
+		.id = fixation->id,
+		.onset_ns = fixation->onset_ns,
+		.duration_ns = fixation->last_ns - fixation->onset_ns,
+		.point = { (float)(fixation->sum[0] / count), (float)(fixation->sum[1] / count) },
+		.confidence = (float)(fixation->confidence_sum / count),
+		.final = final,
+	};
+	double farthest_deg = 0;
+	for (int i = 0; i < GZ_FIXATION_DIRECTIONS; i++)
+		farthest_deg = fmax(farthest_deg,
+				    gz_chord_deg(display, message.point, fixation->outermost[i]));
+	message.dispersion_deg = (float)farthest_deg;
+	return message;
+}
+
+static void send_fixation(struct gz_messages_fixation *fixation, const struct gz_display *display,
+			  int64_t time_ns, bool final, struct gz_pipeline_output *out)
+{
+	fixation->announced = true;
+	fixation->sent_ns = time_ns;
+	out->fixations[out->fixation_count++] = fixation_message(fixation, display, final);
+}
+
+static void finish_fixation(struct gz_messages_fixation *fixation, const struct gz_display *display,
+			    int64_t time_ns, struct gz_pipeline_output *out)
+{
+	if (fixation->running && fixation->announced)
+		send_fixation(fixation, display, time_ns, true, out);
+	*fixation = (struct gz_messages_fixation) { .running = false };
+}
+
+static void update_fixation_message(struct gz_messages_fixation *fixation,
+				    const struct gz_classify_params *params,
+				    const struct gz_display *display,
+				    const struct gz_classify_final *final, int64_t time_ns,
+				    struct gz_pipeline_output *out)
+{
+	if (final->event != GZ_EVENT_FIXATION || final->after_loss)
+		finish_fixation(fixation, display, time_ns, out);
+	if (final->event != GZ_EVENT_FIXATION || !final->valid)
+		return;
+	if (!fixation->running) {
+		fixation->running = true;
+		fixation->id = final->seq;
+		fixation->onset_ns = final->time_ns;
+	}
+	add_to_fixation(fixation, display, final);
+	double lasted_ms = gz_ns_to_ms(fixation->last_ns - fixation->onset_ns);
+	bool due = fixation->announced ? time_ns - fixation->sent_ns >= GZ_FIXATION_INTERVAL_NS
+				       : lasted_ms >= params->fixation_min_ms;
+	if (due)
+		send_fixation(fixation, display, time_ns, false, out);
+}
+
+static void send_saccade(const struct gz_messages_saccade *saccade,
+			 const struct gz_display *display, const struct gz_classify_final *final,
+			 struct gz_pipeline_output *out)
+{
+	out->saccades[out->saccade_count++] = (struct gz_saccade) {
+		.start_ns = saccade->start_ns,
+		.duration_ns = final->time_ns - saccade->start_ns,
+		.amplitude_deg = (float)gz_display_angle_deg(display, saccade->start, final->point),
+		.peak_velocity_deg_s = (float) final->peak_deg_s,
+		.start = saccade->start,
+		.end = final->point,
+	};
+}
+
+static void update_saccade_message(struct gz_messages_saccade *saccade,
+				   const struct gz_display *display,
+				   const struct gz_classify_final *final,
+				   struct gz_pipeline_output *out)
+{
+	bool runs = final->event == GZ_EVENT_SACCADE;
+	if (!final->valid && runs)
+		return; /* a short dropout */
+	if (saccade->running && !runs && final->valid && !final->after_loss)
+		send_saccade(saccade, display, final, out);
+	if (runs && (!saccade->running || final->after_loss)) {
+		saccade->start_ns = final->time_ns;
+		saccade->start = final->point;
+	}
+	saccade->running = runs;
+}
+
+static void send_blink(struct gz_pipeline_output *out, bool onset, int64_t time_ns,
+		       float confidence)
+{
+	out->blinks[out->blink_count++] = (struct gz_blink) {
+		.onset = onset,
+		.time_ns = time_ns,
+		.confidence = confidence,
+	};
+}
+
+static void update_blink_message(struct gz_messages_state *state,
+				 const struct gz_classify_params *params,
+				 const struct gz_classify_output *label, int64_t time_ns,
+				 struct gz_pipeline_output *out)
+{
+	bool short_enough = gz_ns_to_ms(time_ns - label->last_valid_ns) <= params->blink_max_ms;
+	if (!state->in_blink &&
+	    (label->event == GZ_EVENT_BLINK || (label->resumed && short_enough))) {
+		send_blink(out, true, label->last_valid_ns, 1);
+		state->in_blink = true;
+	}
+	if (state->in_blink && label->event != GZ_EVENT_BLINK) {
+		send_blink(out, false, time_ns, short_enough ? 1 : 0);
+		state->in_blink = false;
+	}
+}
+
+static void make_messages(struct gz_pipeline *pipeline, const struct gz_classify_output *label,
+			  int64_t time_ns, struct gz_pipeline_output *out)
+{
+	struct gz_messages_state *state = &pipeline->messages;
+	const struct gz_classify_params *params = &pipeline->params.classify;
+	const struct gz_display *display = &pipeline->display;
+	for (size_t i = 0; i < label->final_count; i++) {
+		const struct gz_classify_final *final = &label->final[i];
+		update_fixation_message(&state->fixation, params, display, final, time_ns, out);
+		update_saccade_message(&state->saccade, display, final, out);
+	}
+	update_blink_message(state, params, label, time_ns, out);
 }
 
 static struct gz_gaze_eye eye_message(const struct gz_eye_sample *eye, bool good)
@@ -32,9 +193,10 @@ static struct gz_gaze_eye eye_message(const struct gz_eye_sample *eye, bool good
 	return message;
 }
 
-/** What is known without looking at the eyes' movement. */
-static struct gz_gaze message_of(const struct gz_pipeline *pipeline, const struct gz_sample *sample,
-				 const struct gz_validate_output *valid)
+/* The part of a gaze message that does not depend on the eyes' movement. */
+static struct gz_gaze begin_gaze_message(const struct gz_pipeline *pipeline,
+					 const struct gz_sample *sample,
+					 const struct gz_validate_output *valid)
 {
 	bool usable = valid->rejection != GZ_REJECT_TIME;
 	struct gz_gaze gaze = {
@@ -51,8 +213,8 @@ static struct gz_gaze message_of(const struct gz_pipeline *pipeline, const struc
 	return gaze;
 }
 
-static void measure_noise(struct gz_pipeline *pipeline, enum gz_event event, bool valid,
-			  struct gz_point raw)
+static void measure_fixation_noise(struct gz_pipeline *pipeline, enum gz_event event, bool valid,
+				   struct gz_point raw)
 {
 	struct gz_pipeline_noise *noise = &pipeline->noise;
 	bool in_fixation = valid && event == GZ_EVENT_FIXATION;
@@ -65,34 +227,27 @@ static void measure_noise(struct gz_pipeline *pipeline, enum gz_event event, boo
 	noise->last = raw;
 }
 
-static void copy_messages(const struct gz_messages *messages, struct gz_pipeline_output *out)
-{
-	out->fixation_count = messages->fixation_count;
-	out->blink_count = messages->blink_count;
-	out->saccade_count = messages->saccade_count;
-	memcpy(out->fixations, messages->fixations, sizeof out->fixations);
-	memcpy(out->blinks, messages->blinks, sizeof out->blinks);
-	memcpy(out->saccades, messages->saccades, sizeof out->saccades);
-}
-
-/** One point out of the sample, without spikes. */
-static struct gz_classify_input join(struct gz_pipeline *pipeline, const struct gz_sample *sample,
-				     const struct gz_validate_output *valid,
-				     struct gz_point *out_raw)
+/* Reduce the sample to one point without spikes. */
+static struct gz_classify_input reduce_sample(struct gz_pipeline *pipeline,
+					      const struct gz_sample *sample,
+					      const struct gz_validate_output *valid,
+					      struct gz_point *out_raw)
 {
 	struct gz_classify_input input = { .seq = sample->seq, .time_ns = sample->host_ns };
 	if (valid->rejection != GZ_REJECT_NONE)
 		return input;
 	input.valid = true;
-	gz_combine_step(&pipeline->combine, &pipeline->params.combine, &pipeline->display, sample,
-			valid, out_raw, &input.confidence);
+	struct gz_combine_output combined = gz_combine_step(
+		&pipeline->combine, &pipeline->params.combine, &pipeline->display, sample, valid);
+	*out_raw = combined.point;
+	input.confidence = combined.confidence;
 	bool restart = pipeline->event == GZ_EVENT_BLINK || pipeline->event == GZ_EVENT_LOST;
 	input.point = gz_despike_step(&pipeline->despike, &pipeline->params.despike,
 				      &pipeline->display, sample->host_ns, *out_raw, restart);
 	return input;
 }
 
-static void take_label(const struct gz_classify_output *label, struct gz_gaze *gaze)
+static void set_gaze_label(const struct gz_classify_output *label, struct gz_gaze *gaze)
 {
 	gaze->event = label->event;
 	gaze->velocity_deg_s = (float)label->velocity_deg_s;
@@ -114,22 +269,22 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	struct gz_sample corrected = *sample;
 	gz_correct_step(&params->correct, &corrected);
 	*out = (struct gz_pipeline_output) { .rejection = valid.rejection };
-	out->gaze = message_of(pipeline, &corrected, &valid);
+	out->gaze = begin_gaze_message(pipeline, &corrected, &valid);
 	if (valid.rejection == GZ_REJECT_TIME)
 		return;
 
-	struct gz_messages messages;
-	struct gz_classify_input input = join(pipeline, &corrected, &valid, &out->gaze.raw);
+	struct gz_classify_input input =
+		reduce_sample(pipeline, &corrected, &valid, &out->gaze.raw);
 	struct gz_classify_output label =
 		gz_classify_step(&pipeline->classify, &params->classify, display, &input);
-	gz_messages_step(&pipeline->messages, &params->classify, display, &label, input.time_ns,
-			 &messages);
-	copy_messages(&messages, out);
-	take_label(&label, &out->gaze);
-	measure_noise(pipeline, label.event, input.valid, out->gaze.raw);
+	make_messages(pipeline, &label, input.time_ns, out);
+	set_gaze_label(&label, &out->gaze);
+	measure_fixation_noise(pipeline, label.event, input.valid, out->gaze.raw);
 	out->gaze.confidence = input.valid ? input.confidence : 0;
-	out->gaze.point = gz_smooth_step(&pipeline->smooth, &params->smooth, display, label.event,
-					 input.time_ns, input.valid, input.point);
+	const struct gz_smooth_input smooth_input = { label.event, input.time_ns, input.valid,
+						      input.point };
+	out->gaze.point =
+		gz_smooth_step(&pipeline->smooth, &params->smooth, display, &smooth_input);
 	pipeline->host_ns = sample->host_ns;
 	pipeline->event = label.event;
 	pipeline->point = out->gaze.point;

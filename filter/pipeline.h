@@ -1,28 +1,31 @@
 /**
  * @file
- * From sample to fixation: validate, correct, combine, despike, classify, smooth. Pure steps over a
- * state: no I/O, no clock, no allocation; every timeout runs on sample time, so that replaying a
- * log gives the same messages bit for bit. The daemon runs it live; the viewer and the benchmark
- * run it over a log in process.
+ * From sample to fixation: validate, correct, combine, despike, classify, smooth, and the messages
+ * about fixations, blinks and saccades. All are pure steps over a state: no I/O, no clock, no
+ * allocation. Every timeout runs on sample time, so a log that is replayed gives the same messages
+ * bit for bit. The daemon runs the pipeline live; the viewer and the benchmark run it over a log in
+ * their own process.
  */
 #ifndef GZ_FILTER_PIPELINE_H
 #define GZ_FILTER_PIPELINE_H
 
+#include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
+#include "base/log.h"
 #include "base/option.h"
 #include "base/result.h"
 #include "filter/classify.h"
 #include "filter/combine.h"
-#include "filter/correct.h"
 #include "filter/despike.h"
-#include "filter/messages.h"
 #include "filter/smooth.h"
 #include "filter/validate.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
+#include "protocol/gaze_log.h"
 
-/** Every setting of the pipeline; written into each log's header. */
+/** Every setting of the pipeline. The header of each log has their values. */
 struct gz_pipeline_params {
 	struct gz_validate_params validate;
 	struct gz_correct_params correct;
@@ -32,33 +35,86 @@ struct gz_pipeline_params {
 	struct gz_smooth_params smooth;
 };
 
-/** Table over struct gz_pipeline_params; keys are "pipeline.<name>". */
+/** Options over struct gz_pipeline_params; the keys are "pipeline.<name>". */
 extern const struct gz_option gz_pipeline_options[];
 extern const size_t gz_pipeline_option_count;
 
-/** The table's presets. */
+/** The presets of gz_pipeline_options. */
 struct gz_pipeline_params gz_pipeline_default_params(void);
 
 /**
- * Check what the table cannot say of a single setting: that the correction keeps two dimensions.
+ * Check what the option table cannot check for a single setting: that the correction keeps two
+ * dimensions.
  *
  * @param[out] message  on failure: the setting, what is wrong and what is allowed, one line
  * @param message_size  bytes of @p message
- * @retval GZ_OK         the pipeline may run with them
- * @retval GZ_ERR_INVAL  it may not
+ * @retval GZ_OK         the pipeline can run with these settings
+ * @retval GZ_ERR_INVAL  it cannot
  */
 enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params, char *message,
 					size_t message_size);
 
-/** Noise within fixations, as status tells it. */
-struct gz_pipeline_noise {
-	bool in_fixation; /**< whether last holds something */
-	struct gz_point last;
-	double mean_square_deg2; /**< of sample-to-sample steps */
-	double count;            /**< of them, up to a limit: older ones fade */
+/**
+ * The settings that a gaze log was recorded with: those in its header, and the defaults for the
+ * rest. A setting that this version does not have is ignored, with a warning.
+ *
+ * @param path  of the log, for messages
+ * @param[out] out_params  passes gz_pipeline_check_params(); written on success only
+ * @retval GZ_ERR_FORMAT  a setting is refused; logged with the remedy
+ */
+enum gz_result gz_pipeline_recorded_params(const struct gz_gaze_log_header *header,
+					   const char *path, const struct gz_log *log,
+					   struct gz_pipeline_params *out_params);
+
+/** Most fixation messages of one step: the end of one fixation and the onset of the next. */
+#define GZ_FIXATION_MESSAGES_MAX 2
+
+/** Most blink messages of one step: a gap in sample time is a whole blink. */
+#define GZ_BLINK_MESSAGES_MAX 2
+
+/** Shortest time between two messages about a lasting fixation, ns: 30 per second. */
+#define GZ_FIXATION_INTERVAL_NS INT64_C(33333334)
+
+/** Directions in which the outermost samples of a fixation are kept. The dispersion is at most 8 %
+ *  (cos 22.5 degrees) below the greatest distance. */
+#define GZ_FIXATION_DIRECTIONS 8
+
+/** The running fixation. */
+struct gz_messages_fixation {
+	bool running;
+	bool announced; /**< whether its onset was sent */
+	uint64_t id;
+	int64_t onset_ns, last_ns; /**< times of its first and newest sample */
+	int64_t sent_ns;           /**< sample time of the newest message about it */
+	uint64_t count;            /**< number of its samples */
+	double sum[2];             /**< sum of their points */
+	double confidence_sum;
+	struct gz_point outermost[GZ_FIXATION_DIRECTIONS];
 };
 
-/** The whole state of the pipeline; plain data, may be copied to try something out. */
+/** The running saccade. */
+struct gz_messages_saccade {
+	bool running;
+	int64_t start_ns;
+	struct gz_point start;
+};
+
+/** State of the messages. Zero-initialised is the start state. */
+struct gz_messages_state {
+	struct gz_messages_fixation fixation;
+	struct gz_messages_saccade saccade;
+	bool in_blink; /**< an onset was sent and the offset was not */
+};
+
+/** Noise in fixations, for the status. */
+struct gz_pipeline_noise {
+	bool in_fixation; /**< whether last is set */
+	struct gz_point last;
+	double mean_square_deg2; /**< mean square of the sample-to-sample steps */
+	double count;            /**< number of steps, up to a limit: older ones lose weight */
+};
+
+/** The whole state of the pipeline. Plain data: a copy can be used to try something out. */
 struct gz_pipeline {
 	struct gz_pipeline_params params;
 	struct gz_display display;
@@ -69,14 +125,14 @@ struct gz_pipeline {
 	struct gz_smooth_state smooth;
 	struct gz_messages_state messages;
 	struct gz_pipeline_noise noise;
-	int64_t host_ns;     /**< of the newest output; 0 before it */
-	enum gz_event event; /**< of the newest output */
-	struct gz_point point;
+	int64_t host_ns;       /**< of the newest output; 0 before it */
+	enum gz_event event;   /**< of the newest output */
+	struct gz_point point; /**< of the newest output */
 };
 
-/** What one sample brought about. */
+/** What one sample gives. */
 struct gz_pipeline_output {
-	struct gz_gaze gaze;         /**< always filled; publish_ns is 0, for the sender to set */
+	struct gz_gaze gaze;         /**< always filled; publish_ns is 0 and is set by the sender */
 	enum gz_rejection rejection; /**< NONE if the sample was good */
 	size_t fixation_count;       /**< fixations[] to publish, in order */
 	struct gz_fixation fixations[GZ_FIXATION_MESSAGES_MAX];
@@ -89,9 +145,9 @@ struct gz_pipeline_output {
 /**
  * Put the pipeline into its start state.
  *
- * @param params   in the ranges of the table, and passed gz_pipeline_check_params(); NULL for the
- *                 defaults
- * @param display  must be valid (gz_display_valid())
+ * @param params   within the ranges of the options, and passes gz_pipeline_check_params(); NULL for
+ *                 the defaults
+ * @param display  passes gz_display_valid()
  */
 void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_params *params,
 		      const struct gz_display *display);
@@ -99,18 +155,27 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
 /**
  * Take one sample.
  *
- * @param[out] out  always filled; every number in it is finite, but for fields documented as NaN
- *                  where unmeasured, and its time is never before that of an earlier output
+ * A sample that is not newer than the last is rejected (GZ_REJECT_TIME) and does not change the
+ * state; its message repeats the last one, with its time and with confidence 0. During a blink, and
+ * while the gaze is lost, the point keeps its last place; before the first good sample it is
+ * (0.5, 0.5) and the event is lost.
  *
- * A sample not newer than the last is rejected (GZ_REJECT_TIME) and leaves the state as it was; its
- * message says what was said last, with its time and confidence 0. While blinking or lost the point
- * holds its last place; before any good sample it is (0.5, 0.5), lost. Does not allocate. Threads:
- * one at a time per pipeline.
+ * Messages are made from the certain labels. The id of a fixation is the seq of its first sample.
+ * Its first message comes when it has lasted fixation_min_ms, further ones at most 30 times per
+ * second, and the last one, final, at its end; a shorter fixation is never announced. The onset of
+ * a blink is the newest good sample before it, its offset the first good sample after it. A blink
+ * that becomes too long ends, with confidence 0, when this is noticed. A saccade is announced at
+ * its end, unless a blink cuts it off.
+ *
+ * @param[out] out  always filled. Every number is finite, except fields that are documented as NaN
+ * if they were not measured. Its time is never before that of an earlier output
+ *
+ * Does not allocate. Threads: one at a time per pipeline.
  */
 void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,
 		      struct gz_pipeline_output *out);
 
-/** Sample-to-sample RMS within fixations so far, degrees; NaN before there was one. */
+/** RMS of the sample-to-sample distances in fixations so far, degrees; NaN before the first one. */
 double gz_pipeline_noise_deg(const struct gz_pipeline *pipeline);
 
 #endif

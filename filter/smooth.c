@@ -5,19 +5,19 @@
 #include "base/clock.h"
 #include "filter/angle.h"
 
-/* Time constant of the short mean that notices a movement: chosen, so that one stray sample does
- * not count for much. */
+/* Time constant of the short mean that detects a movement. Chosen so that a single stray sample has
+ * little weight. */
 static const double NOTICE_S = 0.01;
 
-/* Time constant of the usual distance: chosen, some fixations long. */
+/* Time constant of the usual distance. Chosen: a few fixations. */
 static const double USUAL_S = 1.0;
 
-/* Of white noise, a distance from the mean is this part of a distance between two samples: one
- * deviation against that of a difference. */
+/* For white noise, the distance of a sample from the mean is this fraction of the distance between
+ * two samples: the ratio of their standard deviations. */
 static const double STEP_PART = 0.70710678118654752;
 
-/** Begin anew at a point. */
-static void place_at(struct gz_smooth_state *state, struct gz_point point)
+/* Start again at a point. */
+static void restart_at(struct gz_smooth_state *state, struct gz_point point)
 {
 	state->place[0] = point.x;
 	state->place[1] = point.y;
@@ -26,19 +26,19 @@ static void place_at(struct gz_smooth_state *state, struct gz_point point)
 	state->window_s = 0;
 }
 
-/** Begin anew at a point, and let what is given glide there. */
+/* Start again at a point; the returned point glides there. */
 static void glide_to(struct gz_smooth_state *state, struct gz_point point)
 {
 	state->glide[0] += state->place[0] - point.x;
 	state->glide[1] += state->place[1] - point.y;
-	place_at(state, point);
+	restart_at(state, point);
 }
 
-/** Begin anew at a point at once. */
+/* Start again at a point; the returned point jumps there. */
 static void jump_to(struct gz_smooth_state *state, struct gz_point point)
 {
 	state->glide[0] = state->glide[1] = 0;
-	place_at(state, point);
+	restart_at(state, point);
 }
 
 static double offset_deg(const struct gz_display *display, const double offset[2])
@@ -47,26 +47,27 @@ static double offset_deg(const struct gz_display *display, const double offset[2
 	return sqrt(x_mm * x_mm + y_mm * y_mm) / display->distance_mm * GZ_DEG_PER_RAD;
 }
 
-/** Follow how far the measured points are from the place, and what of it is noise. */
-static void measure_offset(struct gz_smooth_state *state, const struct gz_display *display,
+/* Measure how far the points are from the place, and how much of that is noise. */
+static void learn_distance(struct gz_smooth_state *state, const struct gz_display *display,
 			   double step_s, struct gz_point point)
 {
 	double now[2] = { point.x - state->place[0], point.y - state->place[1] };
 	double gain = step_s / (step_s + NOTICE_S);
 	for (int axis = 0; axis < 2; axis++)
 		state->offset[axis] += gain * (now[axis] - state->offset[axis]);
-	/* From step to step, so that a slow movement does not pass for noise. */
+	/* Noise is measured from sample to sample, so that slow movement does not count as noise.
+	 */
 	double step[2] = { point.x - state->measured[0], point.y - state->measured[1] };
 	gz_median_follow(&state->usual_deg, STEP_PART * offset_deg(display, step),
 			 step_s / (step_s + USUAL_S));
 }
 
-/** The mean of a window that has grown since the eye came to rest, and is shorter the more the
- *  place lags behind. */
+/* The mean over a window that grows while the eye rests and becomes shorter as the mean lags
+ * behind. */
 static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			    const struct gz_display *display, double step_s, struct gz_point point)
 {
-	measure_offset(state, display, step_s, point);
+	learn_distance(state, display, step_s, point);
 	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg.value);
 	double lag = offset_deg(display, state->offset) / limit_deg;
 	state->window_s = fmin(state->window_s + step_s, params->window_ms * 1e-3);
@@ -76,8 +77,8 @@ static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smoot
 	state->place[1] += gain * (point.y - state->place[1]);
 }
 
-/** Whether the eye, said to be in a saccade, is still within the noise of where it rested: a false
- *  alarm as far as one can see. */
+/* Whether the eye, which is labelled as in a saccade, is still within the noise of where it rested:
+ * the label may be wrong. */
 static bool has_not_left(const struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			 const struct gz_display *display, struct gz_point point)
 {
@@ -86,8 +87,8 @@ static bool has_not_left(const struct gz_smooth_state *state, const struct gz_sm
 	return offset_deg(display, away) < limit_deg;
 }
 
-/** Fading memory of order one: Brookner, "Tracking and Kalman filtering made easy", 1998, section
- *  1.2.6: alpha = 1 - theta^2, beta = (1 - theta)^2. */
+/* Fading-memory filter of order one: Brookner, "Tracking and Kalman filtering made easy", 1998,
+ * section 1.2.6: alpha = 1 - theta^2, beta = (1 - theta)^2. */
 static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			   double step_s, struct gz_point point)
 {
@@ -101,13 +102,13 @@ static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth
 		state->place[axis] = expected + alpha * surprise;
 		state->velocity[axis] += beta / step_s * surprise;
 	}
-	state->window_s = constant_s; /* should a fixation follow */
+	state->window_s = constant_s; /* for a fixation that may follow */
 	state->offset[0] = state->offset[1] = 0;
 }
 
-/** Follow a saccade: one that is still small, and may be noise, by gliding, so that the place goes
- *  on should the eye come back; a larger one at once. */
-static void follow_saccade(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+/* Follow a saccade. While it is small and may be noise the point glides after it and the place
+ * stays, in case the eye comes back; a larger one is followed at once. */
+static void smooth_saccade(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			   const struct gz_display *display, double step_s, struct gz_point point)
 {
 	double away[2] = { point.x - state->place[0], point.y - state->place[1] };
@@ -121,10 +122,11 @@ static void follow_saccade(struct gz_smooth_state *state, const struct gz_smooth
 	}
 	double constant_s = params->glide_ms * 1e-3;
 	for (int axis = 0; axis < 2; axis++)
-		state->glide[axis] += step_s / constant_s * away[axis]; /* glide() does the rest */
+		state->glide[axis] +=
+			step_s / constant_s * away[axis]; /* glide_on() does the rest */
 }
 
-/** @return how it was smoothed */
+/* Smooth a point by its label. @return how it was smoothed */
 static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 				    const struct gz_smooth_params *params,
 				    const struct gz_display *display, enum gz_event event,
@@ -147,7 +149,7 @@ static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 			smooth_fixation(state, params, display, step_s, point);
 			return GZ_EVENT_FIXATION;
 		}
-		follow_saccade(state, params, display, step_s, point);
+		smooth_saccade(state, params, display, step_s, point);
 		break;
 	default:
 		jump_to(state, point);
@@ -156,9 +158,9 @@ static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 	return event;
 }
 
-/** What is left of the glide after a step. */
-static void glide(struct gz_smooth_state *state, const struct gz_smooth_params *params,
-		  double step_s)
+/* Let the glide decay over a step. */
+static void glide_on(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+		     double step_s)
 {
 	double constant_s = params->glide_ms * 1e-3;
 	for (int axis = 0; axis < 2; axis++)
@@ -166,24 +168,26 @@ static void glide(struct gz_smooth_state *state, const struct gz_smooth_params *
 }
 
 struct gz_point gz_smooth_step(struct gz_smooth_state *state, const struct gz_smooth_params *params,
-			       const struct gz_display *display, enum gz_event event,
-			       int64_t time_ns, bool valid, struct gz_point point)
+			       const struct gz_display *display,
+			       const struct gz_smooth_input *input)
 {
-	if (!state->started && !valid)
+	struct gz_point point = input->point;
+	enum gz_event event = input->event;
+	if (!state->started && !input->valid)
 		return (struct gz_point) { 0.5f, 0.5f };
-	if (!valid)
+	if (!input->valid)
 		return state->point;
-	int64_t step_ns = time_ns - state->time_ns;
+	int64_t step_ns = input->time_ns - state->time_ns;
 	if (!state->started || step_ns <= 0 || step_ns > GZ_SMOOTH_GAP_NS ||
 	    state->mode == GZ_EVENT_BLINK || state->mode == GZ_EVENT_LOST) {
 		jump_to(state, point);
 	} else {
 		event = smooth_by_mode(state, params, display, event, gz_ns_to_s(step_ns), point);
-		glide(state, params, gz_ns_to_s(step_ns));
+		glide_on(state, params, gz_ns_to_s(step_ns));
 	}
 	state->started = true;
 	state->mode = event;
-	state->time_ns = time_ns;
+	state->time_ns = input->time_ns;
 	state->measured[0] = point.x;
 	state->measured[1] = point.y;
 	state->point = (struct gz_point) { (float)(state->place[0] + state->glide[0]),

@@ -5,25 +5,26 @@
 #include "base/clock.h"
 #include "filter/angle.h"
 
-/* How fast the usual disparity is learnt: chosen, slower than any movement of the eyes. */
+/* Time constant for learning the usual disparity. Chosen: longer than any movement of the eyes. */
 static const double DISPARITY_S = 1.0;
 
 enum { COMMON = GZ_EYE_COUNT };
 
-/** One place to judge. */
+/* One point to judge. */
 struct measurement {
 	struct gz_point point;
 	bool valid;
-	float confidence; /**< NaN if there is none */
+	float confidence; /* NaN if there is none */
 };
 
-static bool on_display(struct gz_point p, double margin)
+static bool is_within_margin(struct gz_point p, double margin)
 {
 	return p.x >= -margin && p.x <= 1 + margin && p.y >= -margin && p.y <= 1 + margin;
 }
 
-static bool too_fast(const struct gz_validate_place *last, const struct gz_validate_params *params,
-		     const struct gz_display *display, int64_t time_ns, struct gz_point point)
+static bool is_too_fast(const struct gz_validate_place *last,
+			const struct gz_validate_params *params, const struct gz_display *display,
+			int64_t time_ns, struct gz_point point)
 {
 	if (!last->known)
 		return false;
@@ -32,10 +33,10 @@ static bool too_fast(const struct gz_validate_place *last, const struct gz_valid
 	return gz_chord_deg(display, last->point, point) > allowed_deg;
 }
 
-/** Judge a place alone; the order of the checks is the order of the reasons. */
-static enum gz_rejection judge(const struct gz_validate_state *state, int index,
-			       const struct gz_validate_params *params,
-			       const struct gz_display *display, const struct measurement *m)
+/* Judge one point. The order of the checks is the order of the reasons. */
+static enum gz_rejection judge_point(const struct gz_validate_state *state, int index,
+				     const struct gz_validate_params *params,
+				     const struct gz_display *display, const struct measurement *m)
 {
 	if (!m->valid)
 		return GZ_REJECT_TRACKER;
@@ -43,15 +44,15 @@ static enum gz_rejection judge(const struct gz_validate_state *state, int index,
 		return GZ_REJECT_CONFIDENCE;
 	if (!isfinite(m->point.x) || !isfinite(m->point.y))
 		return GZ_REJECT_NOT_FINITE;
-	if (!on_display(m->point, params->margin))
+	if (!is_within_margin(m->point, params->margin))
 		return GZ_REJECT_OFF_SCREEN;
-	if (too_fast(&state->place[index], params, display, state->time_ns, m->point))
+	if (is_too_fast(&state->place[index], params, display, state->time_ns, m->point))
 		return GZ_REJECT_VELOCITY;
 	return GZ_REJECT_NONE;
 }
 
-/** How far a place came in judge(). */
-static int progress(enum gz_rejection rejection)
+/* How many checks of judge_point() a point passed. */
+static int checks_passed(enum gz_rejection rejection)
 {
 	switch (rejection) {
 	case GZ_REJECT_NONE:
@@ -69,10 +70,10 @@ static int progress(enum gz_rejection rejection)
 	}
 }
 
-/** Whether the eyes disagree more than usual; learns what is usual. */
-static bool disagree(struct gz_validate_state *state, const struct gz_validate_params *params,
-		     const struct gz_display *display, double step_s,
-		     const struct gz_sample *sample)
+/* Whether the eyes disagree too much beyond their usual disparity, which is learnt here. */
+static bool eyes_disagree(struct gz_validate_state *state, const struct gz_validate_params *params,
+			  const struct gz_display *display, double step_s,
+			  const struct gz_sample *sample)
 {
 	struct gz_point right = sample->eye[GZ_EYE_RIGHT].point;
 	struct gz_point left = sample->eye[GZ_EYE_LEFT].point;
@@ -81,13 +82,14 @@ static bool disagree(struct gz_validate_state *state, const struct gz_validate_p
 	double gain = step_s < DISPARITY_S ? step_s / DISPARITY_S : 1;
 	for (int axis = 0; axis < 2; axis++)
 		state->disparity_mm[axis] += gain * unusual[axis];
-	/* Small angle: an overestimate towards the edges, where disparity is larger too. */
+	/* The small-angle formula overestimates towards the edges, where the disparity is larger
+	 * too. */
 	double deg = sqrt(unusual[0] * unusual[0] + unusual[1] * unusual[1]) /
 		     display->distance_mm * GZ_DEG_PER_RAD;
 	return deg > params->max_disparity_deg;
 }
 
-static void remember(struct gz_validate_state *state, int index, struct gz_point point)
+static void remember_good_point(struct gz_validate_state *state, int index, struct gz_point point)
 {
 	state->place[index] = (struct gz_validate_place) {
 		.known = true,
@@ -96,20 +98,20 @@ static void remember(struct gz_validate_state *state, int index, struct gz_point
 	};
 }
 
-static struct gz_validate_output judge_common(struct gz_validate_state *state,
-					      const struct gz_validate_params *params,
-					      const struct gz_display *display,
-					      const struct gz_sample *sample)
+static struct gz_validate_output judge_common_point(struct gz_validate_state *state,
+						    const struct gz_validate_params *params,
+						    const struct gz_display *display,
+						    const struct gz_sample *sample)
 {
 	struct measurement m = { sample->point, sample->valid, NAN };
 	struct gz_validate_output out = { .combined = true };
-	out.rejection = judge(state, COMMON, params, display, &m);
+	out.rejection = judge_point(state, COMMON, params, display, &m);
 	if (out.rejection == GZ_REJECT_NONE)
-		remember(state, COMMON, sample->point);
+		remember_good_point(state, COMMON, sample->point);
 	return out;
 }
 
-static bool wanted(const struct gz_validate_params *params, int eye)
+static bool is_eye_enabled(const struct gz_validate_params *params, int eye)
 {
 	return params->eyes == GZ_VALIDATE_EYES_BOTH ||
 	       (params->eyes == GZ_VALIDATE_EYES_LEFT) == (eye == GZ_EYE_LEFT);
@@ -122,33 +124,34 @@ static struct gz_validate_output judge_eyes(struct gz_validate_state *state,
 {
 	struct gz_validate_output out = { .rejection = GZ_REJECT_TRACKER };
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
-		if (!wanted(params, i))
+		if (!is_eye_enabled(params, i))
 			continue;
 		const struct gz_eye_sample *eye = &sample->eye[i];
 		struct measurement m = { eye->point, eye->valid, eye->confidence };
-		enum gz_rejection rejection = judge(state, i, params, display, &m);
+		enum gz_rejection rejection = judge_point(state, i, params, display, &m);
 		out.eye_good[i] = rejection == GZ_REJECT_NONE;
-		if (progress(rejection) > progress(out.rejection))
+		if (checks_passed(rejection) > checks_passed(out.rejection))
 			out.rejection = rejection;
 	}
 	if (out.eye_good[GZ_EYE_RIGHT] && out.eye_good[GZ_EYE_LEFT] &&
-	    disagree(state, params, display, step_s, sample)) {
+	    eyes_disagree(state, params, display, step_s, sample)) {
 		out.rejection = GZ_REJECT_DISPARITY;
 		out.eye_good[GZ_EYE_RIGHT] = out.eye_good[GZ_EYE_LEFT] = false;
 	}
 	for (int i = 0; i < GZ_EYE_COUNT; i++)
 		if (out.eye_good[i])
-			remember(state, i, sample->eye[i].point);
+			remember_good_point(state, i, sample->eye[i].point);
 	return out;
 }
 
-static bool eye_point_measured(const struct gz_eye_sample *eye)
+static bool is_eye_point_measured(const struct gz_eye_sample *eye)
 {
 	return eye->valid || !isnan(eye->point.x) || !isnan(eye->point.y);
 }
 
-/* CLOCK_MONOTONIC begins at 0. Times of a damaged log may be any; with these, no difference between
- * two of them, nor a few of those summed, overflows: a century and more. */
+/* Whether a time is within limits. CLOCK_MONOTONIC begins at 0, and the upper limit is more than a
+ * century, but a damaged log may contain any time. Within the limits neither the difference of two
+ * times nor the sum of a few differences overflows. */
 static bool time_is_usable(int64_t time_ns)
 {
 	return time_ns >= 0 && time_ns <= INT64_MAX / 2;
@@ -165,8 +168,8 @@ struct gz_validate_output gz_validate_step(struct gz_validate_state *state,
 	double step_s = state->started ? gz_ns_to_s(sample->host_ns - state->time_ns) : 0;
 	state->started = true;
 	state->time_ns = sample->host_ns;
-	if (sample->valid && !eye_point_measured(&sample->eye[GZ_EYE_RIGHT]) &&
-	    !eye_point_measured(&sample->eye[GZ_EYE_LEFT]))
-		return judge_common(state, params, display, sample);
+	if (sample->valid && !is_eye_point_measured(&sample->eye[GZ_EYE_RIGHT]) &&
+	    !is_eye_point_measured(&sample->eye[GZ_EYE_LEFT]))
+		return judge_common_point(state, params, display, sample);
 	return judge_eyes(state, params, display, step_s, sample);
 }

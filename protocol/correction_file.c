@@ -11,35 +11,38 @@
 #include <unistd.h>
 
 #include "base/option.h"
+#include "base/text.h"
+#include "protocol/key.h"
 
 #define GZ_LOG_MODULE "correction"
 
 #define AT(field) offsetof(struct gz_correction_file, field)
 
-/* Sizes that differ by less are the same: what a wire or a text has done to a number. */
-static const double SAME = 1e-6;
+/* Relative difference up to which two sizes are equal: a wire or a text may change the last digits.
+ */
+static const double SIZE_TOLERANCE = 1e-6;
 
 static const struct gz_option keys[] = {
-	{ "correction.tracker", GZ_OPTION_STRING, AT(tracker), 0, GZ_NAME_SIZE, 0, NULL, NULL,
-	  "name of the tracker" },
-	{ "correction.serial", GZ_OPTION_STRING, AT(serial), 0, GZ_NAME_SIZE, 0, NULL, NULL,
-	  "its serial number" },
-	{ "correction.display_px", GZ_OPTION_SIZE, AT(display_px), 1, GZ_DISPLAY_SIDE_MAX_PX, 0,
-	  NULL, NULL, "the display, pixels" },
-	{ "correction.display_mm", GZ_OPTION_DOUBLE, AT(display_mm), 1e-3, 1e9, 2, NULL, NULL,
-	  "its width and height, mm" },
-	{ "correction.distance_mm", GZ_OPTION_DOUBLE, AT(distance_mm), 1e-3, 1e9, 0, NULL, NULL,
-	  "from the eyes to its centre, mm" },
-	{ "correction.x", GZ_OPTION_DOUBLE, AT(x), -10, 10, 3, NULL, NULL,
-	  "a b c of x' = a + b x + c y, display sides" },
-	{ "correction.y", GZ_OPTION_DOUBLE, AT(y), -10, 10, 3, NULL, NULL,
-	  "a b c of y' = a + b x + c y, display sides" },
-	{ "correction.measured", GZ_OPTION_STRING, AT(measured), 0, GZ_NAME_SIZE, 0, NULL, NULL,
-	  "when it was measured, UTC" },
-	{ "correction.before_deg", GZ_OPTION_DOUBLE, AT(before_deg), 0, 360, 0, NULL, NULL,
-	  "mean error of the targets before, degrees" },
-	{ "correction.after_deg", GZ_OPTION_DOUBLE, AT(after_deg), 0, 360, 0, NULL, NULL,
-	  "and after, by leave-one-out cross-validation, degrees" },
+	{ "correction.tracker", GZ_OPTION_STRING, AT(tracker), .max = GZ_NAME_SIZE,
+	  .help = "name of the tracker" },
+	{ "correction.serial", GZ_OPTION_STRING, AT(serial), .max = GZ_NAME_SIZE,
+	  .help = "serial number of the tracker" },
+	{ "correction.display_px", GZ_OPTION_SIZE, AT(display_px), 1, GZ_DISPLAY_SIDE_MAX_PX,
+	  .help = "size of the display, px" },
+	{ "correction.display_mm", GZ_OPTION_DOUBLE, AT(display_mm), 1e-3, 1e9, .count = 2,
+	  .help = "width and height of the display, mm" },
+	{ "correction.distance_mm", GZ_OPTION_DOUBLE, AT(distance_mm), 1e-3, 1e9,
+	  .help = "distance from the eyes to the centre of the display, mm" },
+	{ "correction.x", GZ_OPTION_DOUBLE, AT(x), -10, 10, .count = 3,
+	  .help = "a b c of x' = a + b x + c y, display sides" },
+	{ "correction.y", GZ_OPTION_DOUBLE, AT(y), -10, 10, .count = 3,
+	  .help = "a b c of y' = a + b x + c y, display sides" },
+	{ "correction.measured", GZ_OPTION_STRING, AT(measured), .max = GZ_NAME_SIZE,
+	  .help = "time of the measurement, UTC" },
+	{ "correction.before_deg", GZ_OPTION_DOUBLE, AT(before_deg), 0, 360,
+	  .help = "mean error of the targets before the correction, degrees" },
+	{ "correction.after_deg", GZ_OPTION_DOUBLE, AT(after_deg), 0, 360,
+	  .help = "mean error after it, by leave-one-out cross-validation, degrees" },
 };
 
 enum { KEY_COUNT = sizeof keys / sizeof keys[0] };
@@ -57,16 +60,9 @@ void gz_correction_name(const char *name, char out_name[GZ_NAME_SIZE])
 
 enum gz_result gz_correction_directory(char *text, size_t size)
 {
-	const char *configuration = getenv("XDG_CONFIG_HOME");
-	const char *home = getenv("HOME");
-	int length;
-	if (configuration && configuration[0] == '/')
-		length = snprintf(text, size, "%s/gazecast/corrections", configuration);
-	else if (home && home[0] == '/')
-		length = snprintf(text, size, "%s/.config/gazecast/corrections", home);
-	else
-		return GZ_ERR_NOT_FOUND;
-	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+	char directory[GZ_PATH_SIZE + 64];
+	enum gz_result result = gz_key_directory(directory, sizeof directory);
+	return result == GZ_OK ? gz_text_print(text, size, "%s/corrections", directory) : result;
 }
 
 enum gz_result gz_correction_path(const char *directory, const char *tracker, const char *serial,
@@ -75,19 +71,18 @@ enum gz_result gz_correction_path(const char *directory, const char *tracker, co
 	char name[GZ_NAME_SIZE], number[GZ_NAME_SIZE];
 	gz_correction_name(tracker, name);
 	gz_correction_name(serial, number);
-	int length = snprintf(text, size, "%s/%s%s%s-%dx%d-%.0fx%.0fmm-%.0fmm.ini", directory, name,
-			      number[0] ? "-" : "", number, display->px[0], display->px[1],
-			      display->mm[0], display->mm[1], display->distance_mm);
-	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+	return gz_text_print(text, size, "%s/%s%s%s-%dx%d-%.0fx%.0fmm-%.0fmm.ini", directory, name,
+			     number[0] ? "-" : "", number, display->px[0], display->px[1],
+			     display->mm[0], display->mm[1], display->distance_mm);
 }
 
-/* Every key must have been there. */
-static enum gz_result check_given(const bool *given, const char *name, const struct gz_log *log)
+/* Check that every key is given. */
+static enum gz_result check_all_given(const bool *given, const char *name, const struct gz_log *log)
 {
 	for (size_t i = 0; i < KEY_COUNT; i++) {
 		if (given[i])
 			continue;
-		gz_err(log, "%s: %s is missing; measure it anew with gazectl validate --correct",
+		gz_err(log, "%s: %s is missing; measure again with gazectl validate --correct",
 		       name, keys[i].key);
 		return GZ_ERR_FORMAT;
 	}
@@ -104,7 +99,7 @@ enum gz_result gz_correction_read(const char *path, const struct gz_log *log,
 		return GZ_ERR_NOT_FOUND;
 	enum gz_result result = gz_options_read_file(&binding, 1, path, log);
 	if (result == GZ_OK)
-		result = check_given(given, path, log);
+		result = check_all_given(given, path, log);
 	if (result == GZ_OK)
 		*out_file = file;
 	return result;
@@ -118,15 +113,15 @@ enum gz_result gz_correction_parse(const char *name, const char *text, size_t si
 	const struct gz_option_binding binding = { keys, KEY_COUNT, &file, given };
 	enum gz_result result = gz_options_read_text(&binding, 1, name, text, size, log);
 	if (result == GZ_OK)
-		result = check_given(given, name, log);
+		result = check_all_given(given, name, log);
 	if (result == GZ_OK)
 		*out_file = file;
 	return result;
 }
 
-static bool same(double a, double b)
+static bool is_same_size(double a, double b)
 {
-	return fabs(a - b) <= SAME * fmax(fabs(a), fabs(b));
+	return fabs(a - b) <= SIZE_TOLERANCE * fmax(fabs(a), fabs(b));
 }
 
 bool gz_correction_fits(const struct gz_correction_file *file, const char *tracker,
@@ -137,14 +132,14 @@ bool gz_correction_fits(const struct gz_correction_file *file, const char *track
 	gz_correction_name(serial, number);
 	return strcmp(file->tracker, name) == 0 && strcmp(file->serial, number) == 0 &&
 	       file->display_px[0] == display->px[0] && file->display_px[1] == display->px[1] &&
-	       same(file->display_mm[0], display->mm[0]) &&
-	       same(file->display_mm[1], display->mm[1]) &&
-	       same(file->distance_mm, display->distance_mm);
+	       is_same_size(file->display_mm[0], display->mm[0]) &&
+	       is_same_size(file->display_mm[1], display->mm[1]) &&
+	       is_same_size(file->distance_mm, display->distance_mm);
 }
 
-/* All directories that @p path names before its last slash. A user's configuration is his alone;
- * what root writes is for services that are not root. */
-static bool make_directories(const char *path)
+/* Make all directories in @p path. A user's configuration is private; what root writes is for
+ * services that do not run as root. */
+static bool make_correction_directories(const char *path)
 {
 	char text[GZ_PATH_SIZE + 64];
 	mode_t mode = geteuid() == 0 ? 0755 : 0700;
@@ -160,7 +155,7 @@ static bool make_directories(const char *path)
 	return true;
 }
 
-static bool print_file(FILE *out, const struct gz_correction_file *file)
+static bool print_correction_file(FILE *out, const struct gz_correction_file *file)
 {
 	fputs("; A correction of a tracker's gaze, measured by gazectl validate. gazed applies it "
 	      "to\n; this tracker on this display; gazectl validate --forget removes it.\n"
@@ -175,18 +170,18 @@ static bool print_file(FILE *out, const struct gz_correction_file *file)
 	return fflush(out) == 0 && !ferror(out) && fsync(fileno(out)) == 0;
 }
 
-static bool write_beside(const char *path, const struct gz_correction_file *file)
+/* Write a new file beside @p path and rename it. On failure errno says why. */
+static bool write_correction(const char *path, const struct gz_correction_file *file)
 {
 	char beside[GZ_PATH_SIZE + 64];
-	int length = snprintf(beside, sizeof beside, "%s.new", path);
-	if (length < 0 || (size_t)length >= sizeof beside) {
+	if (gz_text_print(beside, sizeof beside, "%s.new", path) != GZ_OK) {
 		errno = ENAMETOOLONG;
 		return false;
 	}
 	FILE *out = fopen(beside, "w");
 	if (!out)
 		return false;
-	bool good = print_file(out, file);
+	bool good = print_correction_file(out, file);
 	good = fclose(out) == 0 && good;
 	good = good && rename(beside, path) == 0;
 	if (!good) {
@@ -200,7 +195,7 @@ static bool write_beside(const char *path, const struct gz_correction_file *file
 enum gz_result gz_correction_write(const char *path, const struct gz_correction_file *file,
 				   const struct gz_log *log)
 {
-	if (make_directories(path) && write_beside(path, file))
+	if (make_correction_directories(path) && write_correction(path, file))
 		return GZ_OK;
 	bool refused = errno == EACCES || errno == EPERM || errno == EROFS;
 	gz_err(log, "cannot write %s: %s; name another directory with --corrections", path,

@@ -6,7 +6,7 @@
 
 struct gz_display gz_display_default(int width_px, int height_px)
 {
-	/* 50.4 degrees between the left and right edges, as the header says. */
+	/* The angle between the left and the right edge is 50.4 degrees: see the header. */
 	static const double distance_mm = 600.0;
 	static const double half_width_deg = 50.4 / 2;
 	double width_mm = 2 * distance_mm * tan(half_width_deg / DEG_PER_RAD);
@@ -33,6 +33,12 @@ bool gz_display_valid(const struct gz_display *display)
 	       is_length(display->mm[1]) && is_length(display->distance_mm);
 }
 
+bool gz_display_same(const struct gz_display *a, const struct gz_display *b)
+{
+	return a->px[0] == b->px[0] && a->px[1] == b->px[1] && a->mm[0] == b->mm[0] &&
+	       a->mm[1] == b->mm[1] && a->distance_mm == b->distance_mm;
+}
+
 void gz_display_to_mm(const struct gz_display *display, struct gz_point point, double out_mm[3])
 {
 	out_mm[0] = ((double)point.x - 0.5) * display->mm[0];
@@ -52,7 +58,7 @@ double gz_display_angle_deg(const struct gz_display *display, struct gz_point a,
 	};
 	double sine = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
 	double cosine = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-	/* Both, because acos of the cosine alone loses angles below a thousandth of a degree. */
+	/* acos of the cosine alone would lose angles below a thousandth of a degree. */
 	return atan2(sine, cosine) * DEG_PER_RAD;
 }
 

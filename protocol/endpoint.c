@@ -10,14 +10,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "base/text.h"
+
 #define GZ_LOG_MODULE "endpoint"
 
-static enum gz_result fits(int length, size_t size)
-{
-	return length >= 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
-}
-
-static bool is_directory(const char *path)
+static bool is_existing_directory(const char *path)
 {
 	struct stat status;
 	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
@@ -27,14 +24,14 @@ enum gz_result gz_runtime_directory(char *text, size_t size)
 {
 	const char *chosen = getenv("GAZECAST_RUNTIME_DIR");
 	if (chosen && *chosen)
-		return fits(snprintf(text, size, "%s", chosen), size);
+		return gz_text_print(text, size, "%s", chosen);
 	/* The XDG base directory specification asks to ignore a path that is not absolute. */
 	const char *session = getenv("XDG_RUNTIME_DIR");
 	if (session && session[0] == '/')
-		return fits(snprintf(text, size, "%s/gazecast", session), size);
-	if (is_directory(GZ_SYSTEM_RUNTIME_DIRECTORY))
-		return fits(snprintf(text, size, "%s", GZ_SYSTEM_RUNTIME_DIRECTORY), size);
-	return fits(snprintf(text, size, "/tmp/gazecast-%ld", (long)getuid()), size);
+		return gz_text_print(text, size, "%s/gazecast", session);
+	if (is_existing_directory(GZ_SYSTEM_RUNTIME_DIRECTORY))
+		return gz_text_print(text, size, "%s", GZ_SYSTEM_RUNTIME_DIRECTORY);
+	return gz_text_print(text, size, "/tmp/gazecast-%ld", (long)getuid());
 }
 
 bool gz_runtime_directory_is_shared(const char *path)
@@ -46,11 +43,11 @@ static bool has_socket(const char *directory, const char *name)
 {
 	char path[sizeof((struct sockaddr_un *)NULL)->sun_path];
 	struct stat status;
-	return fits(snprintf(path, sizeof path, "%s/%s", directory, name), sizeof path) == GZ_OK &&
+	return gz_text_print(path, sizeof path, "%s/%s", directory, name) == GZ_OK &&
 	       stat(path, &status) == 0 && S_ISSOCK(status.st_mode);
 }
 
-/* Anyone may make a directory in /tmp. */
+/* Check that /tmp/gazecast-UID is not another user's: anybody can make a directory in /tmp. */
 static enum gz_result check_owner(const char *path, const struct gz_log *log)
 {
 	struct stat status;
@@ -60,7 +57,7 @@ static enum gz_result check_owner(const char *path, const struct gz_log *log)
 	if (!others)
 		return GZ_OK;
 	gz_err(log,
-	       "%s belongs to another user, who may be playing the daemon: remove it, or name the "
+	       "%s belongs to another user, who may impersonate the daemon: remove it, or name the "
 	       "daemon's directory in GAZECAST_RUNTIME_DIR",
 	       path);
 	return GZ_ERR_ACCESS;
@@ -85,17 +82,17 @@ enum gz_result gz_endpoint_find(const char *name, const struct gz_log *log, char
 	return result == GZ_OK ? gz_endpoint_ipc(directory, name, text, size) : result;
 }
 
-/* Whether nobody else can reach into what @p status describes. */
-static enum gz_result check_directory(const char *path, const struct stat *status,
-				      const struct gz_log *log)
+/* Check that nobody else can reach the content of the directory that @p status describes. */
+static enum gz_result check_runtime_directory(const char *path, const struct stat *status,
+					      const struct gz_log *log)
 {
-	/* Only root can put something at /run/gazecast, so there the owner says nothing, and its
-	 * group may read. */
+	/* Only root can make /run/gazecast, so its owner does not matter, and its group may read.
+	 */
 	bool system = gz_runtime_directory_is_shared(path);
 	mode_t refused = system ? S_IWGRP | S_IRWXO : S_IRWXG | S_IRWXO;
 	if (!system && status->st_uid != geteuid()) {
 		gz_err(log,
-		       "%s belongs to user %ld, not to us (%ld): remove it, or name another "
+		       "%s belongs to user %ld, not to this user (%ld): remove it, or name another "
 		       "directory in GAZECAST_RUNTIME_DIR",
 		       path, (long)status->st_uid, (long)geteuid());
 		return GZ_ERR_ACCESS;
@@ -115,19 +112,19 @@ enum gz_result gz_runtime_directory_prepare(const char *path, const struct gz_lo
 		       path, strerror(errno));
 		return GZ_ERR_IO;
 	}
-	/* lstat: a link could be pointed elsewhere after this check. */
+	/* lstat: a link could be changed to point elsewhere after this check. */
 	struct stat status;
 	if (lstat(path, &status) != 0) {
-		gz_err(log, "cannot look at %s: %s", path, strerror(errno));
+		gz_err(log, "cannot inspect %s: %s", path, strerror(errno));
 		return GZ_ERR_IO;
 	}
 	if (!S_ISDIR(status.st_mode)) {
 		gz_err(log,
-		       "%s is no directory: remove it, or name another in GAZECAST_RUNTIME_DIR",
+		       "%s is not a directory: remove it, or name another in GAZECAST_RUNTIME_DIR",
 		       path);
 		return GZ_ERR_ACCESS;
 	}
-	return check_directory(path, &status, log);
+	return check_runtime_directory(path, &status, log);
 }
 
 enum gz_result gz_endpoint_ipc(const char *directory, const char *name, char *text, size_t size)
@@ -136,5 +133,5 @@ enum gz_result gz_endpoint_ipc(const char *directory, const char *name, char *te
 	size_t path_size = sizeof((struct sockaddr_un *)NULL)->sun_path;
 	if (strlen(directory) + 1 + strlen(name) + 1 > path_size)
 		return GZ_ERR_FULL;
-	return fits(snprintf(text, size, "ipc://%s/%s", directory, name), size);
+	return gz_text_print(text, size, "ipc://%s/%s", directory, name);
 }

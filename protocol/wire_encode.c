@@ -1,6 +1,205 @@
-#include "base/clock.h"
 #include "protocol/wire.h"
-#include "protocol/wire_pack.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/clock.h"
+#include "protocol/wire_values.h"
+
+/* Radius of the eyeball in Pupil's 3D eye model (pye3d): sqrt(108) mm. */
+static const double EYE_RADIUS_MM = 10.392304845413264;
+
+/* Units of "diameter" per mm. In Pupil the unit is the pixel of the eye image, which trackers
+ * without images do not have. */
+static const float DIAMETER_PER_MM = 10;
+
+/* The eyes that a message contains; both if neither was seen. */
+struct eyes {
+	size_t count;
+	enum gz_eye index[GZ_EYE_COUNT];
+};
+
+static struct eyes participating_eyes(const struct gz_gaze *gaze)
+{
+	bool right = gaze->eye[GZ_EYE_RIGHT].valid;
+	bool left = gaze->eye[GZ_EYE_LEFT].valid;
+	if (gaze->combined || right == left)
+		return (struct eyes) { 2, { GZ_EYE_RIGHT, GZ_EYE_LEFT } };
+	return (struct eyes) { 1, { right ? GZ_EYE_RIGHT : GZ_EYE_LEFT } };
+}
+
+const char *gz_wire_gaze_topic(const struct gz_gaze *gaze)
+{
+	struct eyes eyes = participating_eyes(gaze);
+	if (eyes.count == 2)
+		return GZ_TOPIC_GAZE_BOTH;
+	return eyes.index[0] == GZ_EYE_RIGHT ? GZ_TOPIC_GAZE_RIGHT : GZ_TOPIC_GAZE_LEFT;
+}
+
+static bool is_finite_vector(const float values[3])
+{
+	return isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]);
+}
+
+/* The position of the eye in the tracker's coordinates. If the tracker does not give it, an eye
+ * straight in front of the display at the configured distance replaces it, with confidence 0. */
+static void pack_sphere(struct gz_pack *pack, const struct gz_gaze_eye *eye, float confidence,
+			const struct gz_display *display)
+{
+	bool measured = is_finite_vector(eye->origin_mm);
+	double centre[3] = { 0, 0, display->distance_mm };
+	for (int i = 0; measured && i < 3; i++)
+		centre[i] = (double)eye->origin_mm[i];
+	gz_pack_map(pack, "sphere", 3);
+	gz_pack_doubles(pack, "center", centre, 3);
+	gz_pack_double(pack, "radius", EYE_RADIUS_MM);
+	gz_pack_float(pack, "confidence", measured ? confidence : 0);
+}
+
+/* The direction from the eye to a point of the display, in the coordinates of gaze_point_3d. The
+ * angles are those of pye3d: theta from +y (down); phi in the plane perpendicular to it, from +x
+ * (right) towards +z (ahead). */
+static void pack_direction(struct gz_pack *pack, struct gz_point point,
+			   const struct gz_display *display)
+{
+	double mm[3];
+	gz_display_to_mm(display, point, mm);
+	double length = sqrt(mm[0] * mm[0] + mm[1] * mm[1] + mm[2] * mm[2]);
+	gz_pack_double(pack, "phi", atan2(mm[2], mm[0]));
+	gz_pack_double(pack, "theta", acos(mm[1] / length));
+}
+
+/* Pupil's readers compare confidences, so this is always a number: 0 if nothing is known. */
+static float eye_confidence(const struct gz_gaze *gaze, const struct gz_gaze_eye *eye)
+{
+	if (!isnan(eye->confidence))
+		return eye->confidence;
+	return eye->valid || gaze->combined ? gaze->confidence : 0;
+}
+
+/* Pupil's readers expect a norm_pos: an eye that has no point of its own gets the common one. */
+static struct gz_point eye_point(const struct gz_gaze *gaze, const struct gz_gaze_eye *eye)
+{
+	bool measured = isfinite(eye->point.x) && isfinite(eye->point.y);
+	return measured ? eye->point : gaze->point;
+}
+
+static void pack_pupil_map(struct gz_pack *pack, const struct gz_gaze *gaze, enum gz_eye index,
+			   const struct gz_display *display)
+{
+	const struct gz_gaze_eye *eye = &gaze->eye[index];
+	float confidence = eye_confidence(gaze, eye);
+	struct gz_point point = eye_point(gaze, eye);
+	size_t begin = pack->message->size;
+	gz_pack_map(pack, NULL, 11);
+	gz_pack_text(pack, "topic",
+		     index == GZ_EYE_RIGHT ? GZ_TOPIC_PUPIL_RIGHT : GZ_TOPIC_PUPIL_LEFT);
+	gz_pack_int(pack, "id", index);
+	gz_pack_norm_pos(pack, point);
+	gz_pack_float(pack, "diameter", eye->pupil_mm * DIAMETER_PER_MM);
+	gz_pack_float(pack, "diameter_3d", eye->pupil_mm);
+	pack_direction(pack, point, display);
+	pack_sphere(pack, eye, confidence, display);
+	gz_pack_float(pack, "confidence", confidence);
+	gz_pack_time(pack, "timestamp", gaze->host_ns);
+	gz_pack_text(pack, "method", GZ_WIRE_METHOD);
+	pack->message->pupil[index].at = begin;
+	pack->message->pupil[index].size = pack->message->size - begin;
+}
+
+/* The keys of Pupil's gaze map. */
+static void pack_pupil_core_keys(struct gz_pack *pack, const struct gz_gaze *gaze,
+				 const struct gz_display *display)
+{
+	double mm[3];
+	gz_display_to_mm(display, gaze->point, mm);
+	struct eyes eyes = participating_eyes(gaze);
+	gz_pack_text(pack, "topic", gz_wire_gaze_topic(gaze));
+	gz_pack_norm_pos(pack, gaze->point);
+	gz_pack_float(pack, "confidence", gaze->confidence);
+	gz_pack_time(pack, "timestamp", gaze->host_ns);
+	gz_pack_doubles(pack, "gaze_point_3d", mm, 3);
+	gz_pack_array(pack, "base_data", eyes.count);
+	for (size_t i = 0; i < eyes.count; i++)
+		pack_pupil_map(pack, gaze, eyes.index[i], display);
+}
+
+static void pack_eye_map(struct gz_pack *pack, const char *key, const struct gz_gaze_eye *eye)
+{
+	gz_pack_map(pack, key, 3);
+	gz_pack_point(pack, "point", eye->point);
+	gz_pack_float(pack, "pupil_mm", eye->pupil_mm);
+	gz_pack_bool(pack, "valid", eye->valid);
+}
+
+/* The keys of this project. publish_ns is last and has a fixed width, as wire.h promises. */
+static void pack_own_keys(struct gz_pack *pack, const struct gz_gaze *gaze)
+{
+	gz_pack_point(pack, "point", gaze->point);
+	gz_pack_point(pack, "raw", gaze->raw);
+	gz_pack_text(pack, "event", gz_event_name(gaze->event));
+	if (gaze->final_known) {
+		gz_pack_map(pack, "event_final", gaze->final_span > 0 ? 3 : 2);
+		gz_pack_uint(pack, "seq", gaze->final_seq);
+		gz_pack_text(pack, "event", gz_event_name(gaze->final_event));
+		if (gaze->final_span > 0)
+			gz_pack_uint(pack, "first", gaze->final_seq - gaze->final_span);
+	}
+	gz_pack_float(pack, "velocity_deg_s", gaze->velocity_deg_s);
+	gz_pack_uint(pack, "seq", gaze->seq);
+	if (gaze->device_ns == GZ_NO_DEVICE_TIME)
+		gz_pack_nil(pack, "device_ns");
+	else
+		gz_pack_int(pack, "device_ns", gaze->device_ns);
+	gz_pack_int(pack, "host_ns", gaze->host_ns);
+	pack_eye_map(pack, "eye0", &gaze->eye[GZ_EYE_RIGHT]);
+	pack_eye_map(pack, "eye1", &gaze->eye[GZ_EYE_LEFT]);
+	gz_pack_bool(pack, "combined", gaze->combined);
+	gz_pack_fixed_int64(pack, "publish_ns", gaze->publish_ns);
+}
+
+enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_display *display,
+				   struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, gaze->final_known ? 18 : 17);
+	pack_pupil_core_keys(&pack, gaze, display);
+	pack_own_keys(&pack, gaze);
+	return gz_pack_end(&pack);
+}
+
+static bool is_on_surface(struct gz_point point)
+{
+	return point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1;
+}
+
+enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *surface_name,
+				      struct gz_wire_message *out_message)
+{
+	/* The topic of the gaze on a surface, as Pupil forms it. */
+	char topic[32], surface_topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
+	snprintf(topic, sizeof topic, "%s_on_surface", gz_wire_gaze_topic(gaze));
+	snprintf(surface_topic, sizeof surface_topic, GZ_TOPIC_SURFACES "%s", surface_name);
+
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, 4);
+	gz_pack_text(&pack, "topic", surface_topic);
+	gz_pack_text(&pack, "name", surface_name);
+	gz_pack_time(&pack, "timestamp", gaze->host_ns);
+	gz_pack_array(&pack, "gaze_on_surfaces", 1);
+	gz_pack_map(&pack, NULL, 6);
+	gz_pack_text(&pack, "topic", topic);
+	gz_pack_norm_pos(&pack, gaze->point);
+	gz_pack_float(&pack, "confidence", gaze->confidence);
+	gz_pack_bool(&pack, "on_surf", is_on_surface(gaze->point));
+	gz_pack_array(&pack, "base_data", 2);
+	gz_pack_text(&pack, NULL, gz_wire_gaze_topic(gaze));
+	gz_pack_time(&pack, NULL, gaze->host_ns);
+	gz_pack_time(&pack, "timestamp", gaze->host_ns);
+	return gz_pack_end(&pack);
+}
 
 enum gz_result gz_wire_encode_fixation(const struct gz_fixation *fixation,
 				       struct gz_wire_message *out_message)
@@ -55,7 +254,7 @@ enum gz_result gz_wire_encode_saccade(const struct gz_saccade *saccade,
 	return gz_pack_end(&pack);
 }
 
-static void pack_tracker(struct gz_pack *pack, const struct gz_status *status)
+static void pack_tracker_status(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "tracker", 4);
 	gz_pack_text(pack, "name", status->tracker.name);
@@ -64,7 +263,7 @@ static void pack_tracker(struct gz_pack *pack, const struct gz_status *status)
 	gz_pack_text(pack, "reason", status->tracker.reason);
 }
 
-static void pack_counts(struct gz_pack *pack, const struct gz_status *status)
+static void pack_sample_counts(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "rate_hz", 2);
 	gz_pack_double(pack, "nominal", status->rate_hz_nominal);
@@ -79,7 +278,7 @@ static void pack_counts(struct gz_pack *pack, const struct gz_status *status)
 		gz_pack_uint(pack, gz_malformed_name((enum gz_malformed)i), status->malformed[i]);
 }
 
-static void pack_clock(struct gz_pack *pack, const struct gz_clock_status *clock)
+static void pack_clock_status(struct gz_pack *pack, const struct gz_clock_status *clock)
 {
 	gz_pack_map(pack, "clock", 4);
 	gz_pack_int(pack, "offset_ns", clock->offset_ns);
@@ -88,7 +287,7 @@ static void pack_clock(struct gz_pack *pack, const struct gz_clock_status *clock
 	gz_pack_text(pack, "tick", gz_clock_tick_name(clock->tick));
 }
 
-static void pack_display(struct gz_pack *pack, const struct gz_display *display)
+static void pack_display_geometry(struct gz_pack *pack, const struct gz_display *display)
 {
 	gz_pack_map(pack, "display", 3);
 	gz_pack_array(pack, "px", 2);
@@ -98,14 +297,14 @@ static void pack_display(struct gz_pack *pack, const struct gz_display *display)
 	gz_pack_double(pack, "distance_mm", display->distance_mm);
 }
 
-static void pack_correction(struct gz_pack *pack, const struct gz_status *status)
+static void pack_gaze_correction(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "correction", 2);
 	gz_pack_doubles(pack, "x", status->correction.x, 3);
 	gz_pack_doubles(pack, "y", status->correction.y, 3);
 }
 
-static void pack_recording(struct gz_pack *pack, const struct gz_status *status)
+static void pack_recording_status(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "recording", 4);
 	gz_pack_text(pack, "state", gz_recording_state_name(status->recording.state));
@@ -120,13 +319,13 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
 	gz_pack_map(&pack, NULL, 13);
-	pack_tracker(&pack, status);
-	pack_counts(&pack, status); /* rate_hz, samples, lost, rejected, malformed */
-	pack_clock(&pack, &status->clock);
+	pack_tracker_status(&pack, status);
+	pack_sample_counts(&pack, status); /* rate_hz, samples, lost, rejected, malformed */
+	pack_clock_status(&pack, &status->clock);
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
-	pack_display(&pack, &status->display);
-	pack_correction(&pack, status);
-	pack_recording(&pack, status);
+	pack_display_geometry(&pack, &status->display);
+	pack_gaze_correction(&pack, status);
+	pack_recording_status(&pack, status);
 	gz_pack_uint(&pack, "subscribers", status->subscribers);
 	gz_pack_text(&pack, "version", status->version);
 	return gz_pack_end(&pack);
@@ -143,5 +342,100 @@ enum gz_result gz_wire_encode_annotation(const struct gz_annotation *annotation,
 	if (annotation->has_time)
 		gz_pack_time(&pack, "timestamp", annotation->time_ns);
 	gz_pack_double(&pack, "duration", gz_ns_to_s(annotation->duration_ns));
+	return gz_pack_end(&pack);
+}
+
+static void pack_optional_time(struct gz_pack *pack, bool has_time, int64_t time_ns)
+{
+	if (has_time)
+		gz_pack_time(pack, "timestamp", time_ns);
+	else
+		gz_pack_nil(pack, "timestamp");
+}
+
+enum gz_result gz_wire_encode_pointer(const struct gz_viewer_pointer *pointer,
+				      struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, 2);
+	if (pointer->known)
+		gz_pack_point(&pack, "point", pointer->point);
+	else
+		gz_pack_nil(&pack, "point");
+	pack_optional_time(&pack, pointer->has_time, pointer->time_ns);
+	return gz_pack_end(&pack);
+}
+
+enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
+				     struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, 2);
+	if (window->known) {
+		gz_pack_array(&pack, "rect", 4);
+		for (int i = 0; i < 4; i++)
+			gz_pack_int(&pack, NULL, window->rect_px[i]);
+	} else {
+		gz_pack_nil(&pack, "rect");
+	}
+	pack_optional_time(&pack, window->has_time, window->time_ns);
+	return gz_pack_end(&pack);
+}
+
+/* Begin a map of @p other_pairs pairs after "topic" and "subject", which every notification has. */
+static void begin_notification(struct gz_pack *pack, struct gz_wire_message *message,
+			       const char *subject, size_t other_pairs)
+{
+	char topic[GZ_SUBJECT_SIZE + sizeof GZ_TOPIC_NOTIFY];
+	snprintf(topic, sizeof topic, GZ_TOPIC_NOTIFY "%s", subject);
+	gz_pack_begin(pack, message);
+	gz_pack_map(pack, NULL, 2 + other_pairs);
+	gz_pack_text(pack, "topic", topic);
+	gz_pack_text(pack, "subject", subject);
+}
+
+enum gz_result gz_wire_encode_recording_started(const char *path, const char *session_name,
+						int64_t start_ns,
+						struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	begin_notification(&pack, out_message, GZ_SUBJECT_RECORDING_STARTED, 5);
+	gz_pack_text(&pack, "rec_path", path);
+	gz_pack_text(&pack, "session_name", session_name);
+	gz_pack_bool(&pack, "record_eye", false);
+	gz_pack_bool(&pack, "compression", false);
+	gz_pack_time(&pack, "start_time_synced", start_ns);
+	return gz_pack_end(&pack);
+}
+
+enum gz_result gz_wire_encode_recording_stopped(const char *path,
+						struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	begin_notification(&pack, out_message, GZ_SUBJECT_RECORDING_STOPPED, 1);
+	gz_pack_text(&pack, "rec_path", path);
+	return gz_pack_end(&pack);
+}
+
+enum gz_result gz_wire_encode_calibration_failed(const char *reason, int64_t time_ns,
+						 struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	begin_notification(&pack, out_message, GZ_SUBJECT_CALIBRATION_FAILED, 3);
+	gz_pack_text(&pack, "reason", reason);
+	gz_pack_time(&pack, "timestamp", time_ns);
+	gz_pack_bool(&pack, "record", true);
+	return gz_pack_end(&pack);
+}
+
+enum gz_result gz_wire_encode_doc(const char *actor, const char *doc,
+				  struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	begin_notification(&pack, out_message, GZ_SUBJECT_DOC, 2);
+	gz_pack_text(&pack, "actor", actor);
+	gz_pack_text(&pack, "doc", doc);
 	return gz_pack_end(&pack);
 }

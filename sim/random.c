@@ -2,10 +2,10 @@
 
 #include <math.h>
 
-static const double LN2_HIGH = 6.93147180369123816490e-01; /* ln 2, low 32 bits clear */
-static const double LN2_LOW = 1.90821492927058770002e-10;  /* the rest of it */
+static const double LN2_HIGH = 6.93147180369123816490e-01; /* ln 2 with the low 32 bits clear */
+static const double LN2_LOW = 1.90821492927058770002e-10;  /* ln 2 less LN2_HIGH */
 static const double PI = 3.14159265358979323846;
-static const double HALF_PI_HIGH = 1.57079632673412561417; /* pi / 2, low 20 bits clear */
+static const double HALF_PI_HIGH = 1.57079632673412561417; /* pi / 2 with the low 20 bits clear */
 static const double HALF_PI_LOW = 6.07710050650619224932e-11;
 
 static uint64_t splitmix64(uint64_t *state)

@@ -1,23 +1,23 @@
 /**
  * @file
- * Random numbers and elementary functions that give the same bits on every machine: integer
- * arithmetic, + - * / and sqrt only, since a C library's log or sin may differ in the last bit.
+ * Random numbers and elementary functions that give the same bits on every machine. They use only
+ * integer arithmetic, + - * / and sqrt, because the last bit of log or sin depends on the C
+ * library.
  */
 #ifndef GZ_SIM_RANDOM_H
 #define GZ_SIM_RANDOM_H
 
 #include <stdint.h>
 
-/**
- * xoshiro256**: Blackman and Vigna, "Scrambled linear pseudorandom number generators", ACM
- * Transactions on Mathematical Software 47(4), 2021, section 4.
+/** State of the generator xoshiro256**: Blackman and Vigna, "Scrambled linear pseudorandom number
+ * generators", ACM Transactions on Mathematical Software 47(4), 2021, section 4.
  */
 struct gz_random {
 	uint64_t state[4];
 };
 
-/** Seed by splitmix64 (Steele, Lea and Flood, OOPSLA 2014), as the authors of xoshiro advise.
- *  Streams of one seed are independent of one another. */
+/** A generator seeded by splitmix64 (Steele, Lea and Flood, OOPSLA 2014), as the authors of xoshiro
+ * recommend. The streams of a seed are independent of each other. */
 struct gz_random gz_random_seeded(uint64_t seed, uint64_t stream);
 
 /** The next 64 random bits. */
@@ -29,27 +29,27 @@ double gz_random_uniform(struct gz_random *random);
 /** Uniform in [low, high). */
 double gz_random_between(struct gz_random *random, double low, double high);
 
-/** Normal with mean 0 and standard deviation 1: Marsaglia's polar method (Marsaglia and Bray, SIAM
- *  Review 6, 1964). */
+/** Normal with mean 0 and standard deviation 1, by Marsaglia's polar method (Marsaglia and Bray,
+ * SIAM Review 6, 1964). */
 double gz_random_normal(struct gz_random *random);
 
 /** Exponential with mean 1. */
 double gz_random_exponential(struct gz_random *random);
 
-/** Gamma with the given shape, an integer from 1, and mean 1: a sum of exponentials (Erlang). */
+/** Gamma with mean 1 and the given shape, 1 or more: a sum of exponentials (Erlang). */
 double gz_random_gamma(struct gz_random *random, int shape);
 
-/** Natural logarithm of x > 0, to 1e-14 of its value. */
+/** Natural logarithm of x > 0; relative error below 1e-14. */
 double gz_portable_log(double x);
 
-/** e to the x for |x| <= 700, to 1e-14 of its value. */
+/** e to the power of x for |x| <= 700; relative error below 1e-14. */
 double gz_portable_exp(double x);
 
-/** Sine and cosine of an angle of at most 1e6 radians, to 1e-10. */
+/** Sine and cosine of an angle, radians, up to 1e6 either way; error below 1e-10. */
 double gz_portable_sin(double angle);
 double gz_portable_cos(double angle);
 
-/** Angle of (x, y) from the x axis, radians, -pi to pi, to 1e-12. 0 for (0, 0). */
+/** Angle of (x, y) from the x axis, radians, -pi to pi; error below 1e-12. 0 for (0, 0). */
 double gz_portable_atan2(double y, double x);
 
 #endif

@@ -9,54 +9,56 @@
 #define DEG_PER_RAD 57.295779513082320877
 #define TWO_PI      6.28318530717958647693
 
-/* Fixations last 100 ms to 1.5 s (Bauer 2018, section 2.2); the gamma shape is chosen: it gives the
- * skew of published histograms. */
+/* Fixations last 100 ms to 1.5 s (Bauer 2018, section 2.2). The shape of the gamma distribution is
+ * chosen: it gives the skew of published histograms. */
 static const double FIXATION_MIN_S = 0.1;
 static const double FIXATION_MAX_S = 1.5;
 static const int DURATION_SHAPE = 2;
 
-/* Saccades without targets: at least 1 degree, since smaller ones are microsaccades. */
+/* Saccades without targets have at least 1 degree: smaller ones are microsaccades. */
 static const double SACCADE_MIN_DEG = 1.0;
 
-/* Blinks: Stern, Walrath and Goldstein 1984 give 100 to 400 ms. */
+/* Duration of blinks. Stern, Walrath and Goldstein 1984 give 100 to 400 ms. */
 static const double BLINK_MIN_S = 0.08;
 static const double BLINK_MAX_S = 0.4;
 
-/* Where gaze may go on its own: chosen, a twentieth inside the edge. */
+/* Least distance from the edge of a place that the viewer chooses freely, display sides; chosen. */
 static const float EDGE = 0.05f;
 
-/* Microsaccades: under 1 degree (Bauer 2018); chosen 0.1 to 0.8, and away from a saccade. */
+/* Microsaccades have less than 1 degree (Bauer 2018). Chosen: their amplitudes, how far they lead
+ * from the place of the fixation, and their distance in time from a saccade. */
 static const double MICRO_MIN_DEG = 0.1;
 static const double MICRO_MAX_DEG = 0.8;
 static const double MICRO_REACH_DEG = 0.5;
 static const double MICRO_AFTER_S = 0.05;
 static const double MICRO_BEFORE_S = 0.02;
 
-/* Drift: a leaky random walk of velocity on a grid of 10 ms. Tremor: 80 and 87 Hz, within the 70 to
- * 100 Hz of physiological tremor. */
+/* The drift is a leaky random walk of the velocity on a grid of 10 ms. The frequencies of the
+ * tremor are within the 70 to 100 Hz of physiological tremor. */
 static const double DRIFT_GRID_S = 0.01;
 static const double DRIFT_KEEP = 0.9;
 static const double DRIFT_LEAK = 0.01;
 static const double TREMOR_HZ[2] = { 80, 87 };
 
-/* Pursuit: shortest episode and least distance of the speed from its mean; chosen. */
+/* Shortest pursuit; chosen. */
 static const double PURSUIT_MIN_S = 0.4;
 
-/* Landing error of a saccade to a target: chosen after the usual 5 to 10 % of amplitude. */
+/* Landing error of a saccade to a target. Chosen after the usual 5 to 10 % of the amplitude. */
 static const double LANDING_DEG = 0.2;
 static const double LANDING_FRACTION = 0.05;
 
-/* How much a target's inhibition of return keeps from one fixation to the next; chosen. */
+/* Fraction of a target's inhibition of return that remains after another fixation; chosen. */
 static const double INHIBITION_KEEP = 0.75;
 
-/* Following: how soon the eye leaves for a new place (saccadic latency, 200 ms; Carpenter 1988),
- * how far from it it may rest, and for how long until that is looked at again; the latter two
- * chosen. Below REACH_DEG a saccade has no landing error. */
+/* Following a place: how soon the eye leaves for a new place (saccadic latency, 200 ms; Carpenter
+ * 1988); how far from the place it may rest; how long it rests before it checks again.
+ * Saccades up to FOLLOW_REACH_DEG have no landing error. All but the first chosen. */
 static const double FOLLOW_LATENCY_S = 0.2;
 static const double FOLLOW_REST_DEG = 0.1;
 static const double FOLLOW_REST_S = 0.5;
 static const double FOLLOW_REACH_DEG = 2;
 
+/* Most attempts to draw a random movement that stays within bounds; chosen. */
 enum { TRIES = 40 };
 
 double gz_main_sequence_peak_deg_s(double amplitude_deg)
@@ -69,9 +71,8 @@ double gz_main_sequence_duration_ms(double amplitude_deg)
 	return 2.2 * amplitude_deg + 21;
 }
 
-/**
- * How much of the profile 630 t^4 (1 - t)^4 (peak 630/256 of the mean) is mixed into 6 t (1 - t)
- * (peak 3/2 of the mean), so that both duration and peak velocity are the main sequence's.
+/* The share of the velocity profile 630 t^4 (1 - t)^4 (peak 630/256 of the mean) that is mixed into
+ * 6 t (1 - t) (peak 3/2 of the mean), so that duration and peak velocity follow the main sequence.
  */
 static double profile_share(double amplitude_deg)
 {
@@ -83,7 +84,7 @@ static double profile_share(double amplitude_deg)
 	return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
-/** Part of the way done after the part @p t of the duration. */
+/* Fraction of the way that is done after the fraction @p t of the duration. */
 static double profile_place(double share, double t)
 {
 	double soft = t * t * (3 - 2 * t);
@@ -99,7 +100,7 @@ static double profile_speed(double share, double t)
 	return (1 - share) * 6 * parabola + share * 630 * square * square;
 }
 
-/** Progress of a saccade at @p now_s: the part done, and its speed. */
+/* Fraction of a saccade's way that is done at @p now_s, and its speed. */
 static double saccade_progress(const struct gz_viewer_saccade *saccade, double now_s,
 			       double *out_deg_s)
 {
@@ -111,7 +112,7 @@ static double saccade_progress(const struct gz_viewer_saccade *saccade, double n
 	return profile_place(share, t);
 }
 
-static bool on_display(const struct gz_display *display, const double direction[3])
+static bool is_inside_display(const struct gz_display *display, const double direction[3])
 {
 	if (direction[2] < 0.05) /* beyond 87 degrees */
 		return false;
@@ -129,14 +130,15 @@ static void random_tangent(struct gz_random *random, const double direction[3], 
 		out[i] = c * right[i] + s * down[i];
 }
 
-/** A place @p amplitude_rad from @p from that is on the display; false if none was found. */
+/* Find a place on the display that is @p amplitude_rad from @p from. @return whether one was found
+ */
 static bool random_landing(struct gz_viewer *viewer, const double from[3], double amplitude_rad,
 			   double out_tangent[3], double out_landing[3])
 {
 	for (int i = 0; i < TRIES; i++) {
 		random_tangent(&viewer->random, from, out_tangent);
 		gz_sphere_turn(from, out_tangent, amplitude_rad, out_landing);
-		if (on_display(&viewer->display, out_landing))
+		if (is_inside_display(&viewer->display, out_landing))
 			return true;
 	}
 	return false;
@@ -156,8 +158,8 @@ static void free_landing(struct gz_viewer *viewer, const double from[3], double 
 	gz_sphere_from_point(&viewer->display, x, y, out_landing);
 }
 
-/** Draw the index of the next target by weight and inhibition. */
-static size_t draw_target(struct gz_viewer *viewer)
+/* Draw the index of the next target at random, by weight and inhibition. */
+static size_t draw_next_target(struct gz_viewer *viewer)
 {
 	const struct gz_targets *targets = viewer->targets;
 	double total = 0;
@@ -176,14 +178,14 @@ static size_t draw_target(struct gz_viewer *viewer)
 	return chosen;
 }
 
-static void inhibit(struct gz_viewer *viewer, size_t chosen)
+static void inhibit_target(struct gz_viewer *viewer, size_t chosen)
 {
 	for (size_t i = 0; i < viewer->targets->count; i++)
 		viewer->inhibition[i] *= INHIBITION_KEEP;
 	viewer->inhibition[chosen] = 1;
 }
 
-/** Where a saccade to @p aim ends. */
+/* Where a saccade to @p aim lands. */
 static void land_near(struct gz_viewer *viewer, const double from[3], const double aim[3],
 		      double out_landing[3])
 {
@@ -196,8 +198,8 @@ static void land_near(struct gz_viewer *viewer, const double from[3], const doub
 
 static void target_landing(struct gz_viewer *viewer, const double from[3], double out_landing[3])
 {
-	size_t chosen = draw_target(viewer);
-	inhibit(viewer, chosen);
+	size_t chosen = draw_next_target(viewer);
+	inhibit_target(viewer, chosen);
 	struct gz_point point = viewer->targets->target[chosen].point;
 	double aim[3];
 	gz_sphere_from_point(&viewer->display, point.x, point.y, aim);
@@ -234,7 +236,7 @@ static struct gz_viewer_saccade make_saccade(const double start[3], const double
 	return saccade;
 }
 
-static void begin_phase(struct gz_viewer *viewer, enum gz_event phase, double duration_s)
+static void begin_viewer_phase(struct gz_viewer *viewer, enum gz_event phase, double duration_s)
 {
 	viewer->phase = phase;
 	viewer->begin_s = viewer->end_s;
@@ -258,20 +260,20 @@ static void begin_fixation(struct gz_viewer *viewer)
 			FIXATION_MIN_S + mean_s * gz_random_gamma(&viewer->random, DURATION_SHAPE);
 	} while (duration_s > FIXATION_MAX_S);
 	if (viewer->follows && angle_to_aim_deg(viewer) > FOLLOW_REST_DEG)
-		duration_s = FOLLOW_LATENCY_S; /* it has missed, and looks again */
-	begin_phase(viewer, GZ_EVENT_FIXATION, duration_s);
+		duration_s = FOLLOW_LATENCY_S; /* it missed the aim and looks again */
+	begin_viewer_phase(viewer, GZ_EVENT_FIXATION, duration_s);
 	viewer->fixation_count++;
 	plan_microsaccade(viewer, viewer->begin_s + MICRO_AFTER_S);
 }
 
-/** Forget finished microsaccades: the place is now where they led. */
-static void settle(struct gz_viewer *viewer)
+/* Add the finished microsaccades to the place and forget them. */
+static void settle_microsaccades(struct gz_viewer *viewer)
 {
 	gz_sphere_offset(viewer->place, viewer->micro.to_deg, viewer->place);
 	viewer->micro = (struct gz_viewer_microsaccade) { .next_s = INFINITY };
 }
 
-static void begin_saccade(struct gz_viewer *viewer)
+static void begin_planned_saccade(struct gz_viewer *viewer)
 {
 	double landing[3];
 	if (viewer->follows)
@@ -281,10 +283,10 @@ static void begin_saccade(struct gz_viewer *viewer)
 	else
 		free_landing(viewer, viewer->place, landing);
 	viewer->saccade = make_saccade(viewer->place, landing, viewer->end_s);
-	begin_phase(viewer, GZ_EVENT_SACCADE, viewer->saccade.duration_s);
+	begin_viewer_phase(viewer, GZ_EVENT_SACCADE, viewer->saccade.duration_s);
 }
 
-static double next_after(struct gz_random *random, double now_s, double per_min)
+static double draw_next_time(struct gz_random *random, double now_s, double per_min)
 {
 	return per_min > 0 ? now_s + gz_random_exponential(random) * 60 / per_min : INFINITY;
 }
@@ -296,12 +298,12 @@ static void begin_blink(struct gz_viewer *viewer)
 	do {
 		duration_s = BLINK_MIN_S + mean_s * gz_random_gamma(&viewer->random, 4);
 	} while (duration_s > BLINK_MAX_S);
-	begin_phase(viewer, GZ_EVENT_BLINK, duration_s);
+	begin_viewer_phase(viewer, GZ_EVENT_BLINK, duration_s);
 	viewer->next_blink_s =
-		next_after(&viewer->random, viewer->end_s, viewer->params.blinks_per_min);
+		draw_next_time(&viewer->random, viewer->end_s, viewer->params.blinks_per_min);
 }
 
-/** Begin a pursuit if one can stay on the display; false if not. */
+/* Begin a pursuit that stays on the display. @return whether there is one */
 static bool begin_pursuit(struct gz_viewer *viewer)
 {
 	const struct gz_viewer_params *p = &viewer->params;
@@ -315,39 +317,39 @@ static bool begin_pursuit(struct gz_viewer *viewer)
 				    viewer->direction, landing))
 			continue;
 		viewer->pursuit_rad_s = speed_deg_s / DEG_PER_RAD;
-		begin_phase(viewer, GZ_EVENT_PURSUIT, duration_s);
+		begin_viewer_phase(viewer, GZ_EVENT_PURSUIT, duration_s);
 		viewer->next_pursuit_s =
-			next_after(&viewer->random, viewer->end_s, p->pursuits_per_min);
+			draw_next_time(&viewer->random, viewer->end_s, p->pursuits_per_min);
 		return true;
 	}
 	return false;
 }
 
-/** The fixation goes on. */
-static void rest(struct gz_viewer *viewer)
+/* Prolong the fixation. */
+static void prolong_fixation(struct gz_viewer *viewer)
 {
 	plan_microsaccade(viewer, viewer->end_s + MICRO_AFTER_S);
 	viewer->end_s += FOLLOW_REST_S;
 }
 
-static void after_fixation(struct gz_viewer *viewer)
+static void end_viewer_fixation(struct gz_viewer *viewer)
 {
-	settle(viewer);
+	settle_microsaccades(viewer);
 	if (viewer->end_s >= viewer->next_blink_s)
 		begin_blink(viewer);
 	else if (viewer->follows && angle_to_aim_deg(viewer) <= FOLLOW_REST_DEG)
-		rest(viewer);
+		prolong_fixation(viewer);
 	else if (viewer->follows || viewer->end_s < viewer->next_pursuit_s ||
 		 !begin_pursuit(viewer))
-		begin_saccade(viewer);
+		begin_planned_saccade(viewer);
 }
 
-static void next_phase(struct gz_viewer *viewer)
+static void end_phase(struct gz_viewer *viewer)
 {
 	double duration_s = viewer->end_s - viewer->begin_s;
 	switch (viewer->phase) {
 	case GZ_EVENT_FIXATION:
-		after_fixation(viewer);
+		end_viewer_fixation(viewer);
 		return;
 	case GZ_EVENT_SACCADE:
 		memcpy(viewer->place, viewer->saccade.end, sizeof viewer->place);
@@ -357,7 +359,7 @@ static void next_phase(struct gz_viewer *viewer)
 		gz_sphere_turn(viewer->place, viewer->direction, viewer->pursuit_rad_s * duration_s,
 			       end);
 		memcpy(viewer->place, end, sizeof end);
-		begin_saccade(viewer); /* a pursuit ends with a saccade to something else */
+		begin_planned_saccade(viewer); /* a saccade to something else follows a pursuit */
 		return;
 	}
 	default: /* a blink */
@@ -366,7 +368,7 @@ static void next_phase(struct gz_viewer *viewer)
 	begin_fixation(viewer);
 }
 
-/** Start the microsaccade that is due, if it ends within the fixation. */
+/* Begin the microsaccade that is due, if it ends within the fixation. */
 static void begin_microsaccade(struct gz_viewer *viewer)
 {
 	struct gz_viewer_microsaccade *micro = &viewer->micro;
@@ -393,8 +395,8 @@ static void begin_microsaccade(struct gz_viewer *viewer)
 	}
 }
 
-/** Bring plan and fixational movement to viewer->now_s. */
-static void go_on(struct gz_viewer *viewer)
+/* Advance the plan to viewer->now_s. */
+static void advance_plan(struct gz_viewer *viewer)
 {
 	for (;;) {
 		bool micro_due = viewer->phase == GZ_EVENT_FIXATION &&
@@ -403,16 +405,16 @@ static void go_on(struct gz_viewer *viewer)
 		if (micro_due)
 			begin_microsaccade(viewer);
 		else if (viewer->now_s >= viewer->end_s)
-			next_phase(viewer);
+			end_phase(viewer);
 		else
 			return;
 	}
 }
 
-static void go_on_drifting(struct gz_viewer *viewer)
+static void advance_drift(struct gz_viewer *viewer)
 {
 	struct gz_viewer_jitter *jitter = &viewer->jitter;
-	/* The walk's stationary speed is that of the settings: per axis, 1 / sqrt 2 of it. */
+	/* The stationary speed of the walk is drift_deg_s: 1 / sqrt 2 of it per axis. */
 	double kick = viewer->params.drift_deg_s * sqrt((1 - DRIFT_KEEP * DRIFT_KEEP) / 2);
 	for (; jitter->grid_s <= viewer->now_s; jitter->grid_s += DRIFT_GRID_S) {
 		for (int axis = 0; axis < 2; axis++) {
@@ -426,7 +428,7 @@ static void go_on_drifting(struct gz_viewer *viewer)
 	}
 }
 
-/** Drift and tremor at viewer->now_s, degrees. @return the drift's speed, degrees a second */
+/* Drift and tremor at viewer->now_s, degrees. @return the speed of the drift, degrees per second */
 static double jitter_at(const struct gz_viewer *viewer, double out_deg[2])
 {
 	const struct gz_viewer_jitter *jitter = &viewer->jitter;
@@ -444,7 +446,7 @@ static double jitter_at(const struct gz_viewer *viewer, double out_deg[2])
 	return sqrt(square);
 }
 
-/** Add the microsaccades to @p offset_deg. @return whether one runs */
+/* Add the microsaccades to @p offset_deg. @return whether one is running */
 static bool microsaccade_at(const struct gz_viewer *viewer, double offset_deg[2],
 			    double *out_speed_deg_s)
 {
@@ -466,7 +468,7 @@ static bool microsaccade_at(const struct gz_viewer *viewer, double offset_deg[2]
 	return true;
 }
 
-/** Where the plan has the eyes, without fixational movement. */
+/* Where the eyes are according to the plan, without drift, tremor and microsaccades. */
 static void planned_place(const struct gz_viewer *viewer, double out_place[3],
 			  double *out_speed_deg_s)
 {
@@ -507,10 +509,10 @@ void gz_viewer_init(struct gz_viewer *viewer, const struct gz_viewer_params *par
 	gz_sphere_from_point(display, first.x, first.y, viewer->place);
 	for (int axis = 0; axis < 2; axis++)
 		viewer->jitter.phase[axis] = gz_random_uniform(&viewer->jitter_random);
-	viewer->next_blink_s = next_after(&viewer->random, 0, params->blinks_per_min);
-	viewer->next_pursuit_s = next_after(&viewer->random, 0, params->pursuits_per_min);
+	viewer->next_blink_s = draw_next_time(&viewer->random, 0, params->blinks_per_min);
+	viewer->next_pursuit_s = draw_next_time(&viewer->random, 0, params->pursuits_per_min);
 	begin_fixation(viewer);
-	viewer->fixation_count = 0; /* the first has the number 0 */
+	viewer->fixation_count = 0; /* the number of the first is 0 */
 }
 
 void gz_viewer_follow(struct gz_viewer *viewer, const struct gz_point *point)
@@ -532,8 +534,8 @@ struct gz_viewer_truth gz_viewer_advance(struct gz_viewer *viewer, int64_t time_
 	double now_s = gz_ns_to_s(time_ns - viewer->start_ns);
 	if (now_s > viewer->now_s)
 		viewer->now_s = now_s;
-	go_on(viewer);
-	go_on_drifting(viewer);
+	advance_plan(viewer);
+	advance_drift(viewer);
 
 	double offset_deg[2], place[3], direction[3];
 	double speed_deg_s = jitter_at(viewer, offset_deg);

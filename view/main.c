@@ -4,13 +4,13 @@
 
 #include "base/log.h"
 #include "view/experiment/sitting.h"
-#include "view/headless.h"
-#include "view/notices.h"
-#include "view/options.h"
+#include "view/headless/headless.h"
+#include "view/headless/write_volume.h"
+#include "view/options/options.h"
+#include "view/panels/notices.h"
 #include "view/session/replay.h"
-#include "view/target_window.h"
+#include "view/target/target_window.h"
 #include "view/window/window.h"
-#include "view/write_volume.h"
 
 /* What a shell reports for a process that a signal ended. */
 enum { EXIT_SIGNAL = 128 };

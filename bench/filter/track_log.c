@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "filter/recorded.h"
+#include "filter/pipeline.h"
 #include "protocol/gaze_log.h"
 
 #define GZ_LOG_MODULE "filter"

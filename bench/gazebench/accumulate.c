@@ -189,9 +189,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands scenes;
 	char commit[GZ_STUDY_TEXT_SIZE], size[GZ_NAME_SIZE], cache[GZ_PATH_SIZE];
-	int status;
-	if (!gz_command_read_arguments(&gazebench_accumulate, argc, argv, log, &settings, &scenes,
-				       &status))
+	int status = gz_command_read_arguments(&gazebench_accumulate, argc, argv, log, &settings,
+					       &scenes);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	gz_study_identify(gazebench_commit, "/proc/self/exe", commit);
 	snprintf(size, sizeof size, "%dx%d", settings.size[0], settings.size[1]);

@@ -77,9 +77,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazebench_compare, argc, argv, log, &settings, &operands,
-				       &status))
+	int status = gz_command_read_arguments(&gazebench_compare, argc, argv, log, &settings,
+					       &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 2) {
 		gz_err(log, "two pictures are wanted: gazebench compare REFERENCE.png TEST.png");

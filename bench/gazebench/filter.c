@@ -230,9 +230,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazebench_filter, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazebench_filter, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
 		gz_err(log, "one gaze log is wanted: gazebench filter LOG.gzl");

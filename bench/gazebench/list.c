@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/renderer.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/ray_params.h"
+#include "render/scene/techniques.h"
 
 /* One thing to name. */
 struct item {
@@ -31,16 +33,6 @@ static const struct item items[] = {
 	{ "against", "standard", "the picture of full resolution, of the same backend" },
 	{ "against", "converged",
 	  "one of an eighth of a voxel a step, rays followed to their end" },
-};
-
-static const char *const methods[GZ_METHOD_COUNT] = {
-	[GZ_METHOD_STANDARD] = "a ray for every pixel; always measured",
-	[GZ_METHOD_MDC] = "a fine square round the gaze, coarser outside (Bauer 2018)",
-	[GZ_METHOD_DDC] = "an inner, a middle and an outer region, each coarser (Bauer 2018)",
-	[GZ_METHOD_ACUITY] = "rays as dense as the eye resolves",
-	[GZ_METHOD_MDC3] = "as mdc, and coarser still outside a second square",
-	[GZ_METHOD_UNIFORM] = "the same spacing everywhere, wherever the gaze is",
-	[GZ_METHOD_TABLE] = "spacings and steps by eccentricity, from a file",
 };
 
 static void print_item(json_t *list, const char *kind, const char *name, const char *text)
@@ -71,13 +63,14 @@ static void print_option(json_t *list, const struct gz_option *option, const cha
 		printf("%-8s %-22s %s\n", "option", name, option->help);
 }
 
-static void print_backend(json_t *list, const struct gz_renderer_ops *ops)
+static void print_backend(json_t *list, const char *name)
 {
-	struct gz_renderer *renderer = NULL;
-	const bool runs = gz_renderer_create(ops->name, NULL, NULL, &renderer) == GZ_OK;
-	print_item(list, "backend", ops->name,
-		   runs ? gz_renderer_describe(renderer) : "does not run here");
-	gz_renderer_destroy(&renderer);
+	static const struct gz_backend_params defaults;
+	struct gz_drawer *drawer = NULL;
+	const bool runs = gz_techniques[0]->create(name, &defaults, NULL, &drawer) == GZ_OK;
+	print_item(list, "backend", name,
+		   runs ? drawer->ops->describe(drawer) : "does not run on this machine");
+	gz_drawer_destroy(&drawer);
 }
 
 static void print_options(json_t *list, const struct gz_option *options, size_t count)
@@ -95,13 +88,15 @@ int gazebench_list(bool as_json)
 {
 	json_t *list = as_json ? json_array() : NULL;
 	for (int i = 0; i < GZ_METHOD_COUNT; i++)
-		print_item(list, "method", gz_method_names[i], methods[i]);
+		print_item(list, "method", gz_method_names[i], gz_methods[i].help);
 	print_options(list, gz_foveation_options, gz_foveation_option_count);
 	print_options(list, gz_ray_options, gz_ray_option_count);
 	for (size_t i = 0; i < sizeof items / sizeof items[0]; i++)
 		print_item(list, items[i].kind, items[i].name, items[i].text);
-	for (const struct gz_renderer_ops *const *ops = gz_backends; *ops; ops++)
-		print_backend(list, *ops);
+	for (const struct gz_technique *const *technique = gz_techniques; *technique; technique++)
+		print_item(list, "technique", (*technique)->name, (*technique)->help);
+	for (const char *const *name = gz_techniques[0]->backends; *name; name++)
+		print_backend(list, *name);
 	if (list) {
 		json_dumpf(list, stdout, JSON_INDENT(1));
 		printf("\n");

@@ -42,9 +42,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands folders;
-	int status;
-	if (!gz_command_read_arguments(&gazebench_merge, argc, argv, log, &settings, &folders,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazebench_merge, argc, argv, log, &settings, &folders);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (folders.count < 2) {
 		gz_err(log, "a folder to make and those of the shards are wanted: gazebench merge "

@@ -84,9 +84,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	struct settings settings;
 	struct gz_operands operands;
 	struct gz_study study;
-	int status;
-	if (!gz_command_read_arguments(&gazebench_report, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazebench_report, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
 		gz_err(log, "one folder is wanted: gazebench report DIR");

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/number.h"
+#include "base/text.h"
 #include "bench/study/machine.h"
 #include "bench/study/reference.h"
 #include "bench/study/run.h"
@@ -256,9 +256,8 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands scenes;
 	char commit[GZ_STUDY_TEXT_SIZE];
-	int status;
-	if (!gz_command_read_arguments(&gazebench_run, argc, argv, log, &settings, &scenes,
-				       &status))
+	int status = gz_command_read_arguments(&gazebench_run, argc, argv, log, &settings, &scenes);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	struct gz_study_request request = {
 		.scenes = scenes.items,

@@ -9,8 +9,9 @@
 
 #include "bench/gazebench/gazebench.h"
 #include "bench/study/variant.h"
-#include "render/renderer.h"
-#include "render/scene.h"
+#include "render/plan/method.h"
+#include "render/scene/scene.h"
+#include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "gazebench"
 
@@ -101,7 +102,7 @@ typedef const char *name_at(size_t index);
 
 static const char *backend_at(size_t index)
 {
-	return gz_backends[index] ? gz_backends[index]->name : NULL;
+	return gz_techniques[0]->backends[index];
 }
 
 static const char *row_at(size_t index)
@@ -327,8 +328,8 @@ static enum gz_result run_backends(struct session *session)
 {
 	enum gz_result result = GZ_OK;
 	int ran = 0;
-	for (size_t i = 0; gz_backends[i] && result == GZ_OK; i++) {
-		session->backend = gz_backends[i]->name;
+	for (size_t i = 0; gz_techniques[0]->backends[i] && result == GZ_OK; i++) {
+		session->backend = gz_techniques[0]->backends[i];
 		if (!lists(session->settings.backends, session->backend))
 			continue;
 		const enum gz_result runs =
@@ -433,10 +434,10 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct session session;
 	struct gz_operands operands;
-	int status;
 	session.log = log;
-	if (!gz_command_read_arguments(&gazebench_stability, argc, argv, log, &session.settings,
-				       &operands, &status))
+	int status = gz_command_read_arguments(&gazebench_stability, argc, argv, log,
+					       &session.settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
 		gz_err(log, "one scene is wanted: gazebench stability SCENE");

@@ -291,9 +291,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings = { .bound = NAN };
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazebench_suggest, argc, argv, log, &settings, &operands,
-				       &status))
+	int status = gz_command_read_arguments(&gazebench_suggest, argc, argv, log, &settings,
+					       &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
 		gz_err(log, "one folder is wanted: gazebench suggest DIR");

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /* Rows one thread takes at a time, columns done at once, which stay in the first cache, and of them
  * those whose sums stay in registers, of any machine's width. */

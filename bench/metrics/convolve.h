@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "render/workers.h"
+#include "base/workers.h"
 
 /** Longest kernel's radius, pixels: FLIP's at 1000 pixels a degree. */
 #define GZ_KERNEL_RADIUS_MAX 136

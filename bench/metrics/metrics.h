@@ -11,9 +11,9 @@
 #include <stddef.h>
 
 #include "base/result.h"
+#include "base/workers.h"
 #include "protocol/display.h"
-#include "render/image.h"
-#include "render/workers.h"
+#include "render/picture/image.h"
 
 /** One number a pixel, row by row from the top. Zero-initialised is empty. */
 struct gz_map {

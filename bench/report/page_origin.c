@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/number.h"
+#include "base/text.h"
 #include "bench/report/names.h"
 #include "bench/report/page_parts.h"
 

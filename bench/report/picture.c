@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "bench/study/stage.h"
-#include "render/renderer.h"
+#include "render/frame/picture_maker.h"
 
 #define GZ_LOG_MODULE "report"
 
@@ -38,25 +38,36 @@ static bool find_transfer(const struct gz_stage *stage, const struct gz_study_sc
 	return false;
 }
 
-static enum gz_result render(struct gz_renderer *renderer, const struct gz_scene *scene,
-			     const struct gz_camera *camera, int width, int height,
-			     struct gz_image *picture)
+static enum gz_result render_standard(const struct gz_scene *scene, const struct gz_camera *camera,
+				      const struct gz_log *log, struct gz_image *picture)
 {
-	struct gz_frame_stats stats;
-	struct gz_plan plan = { 0 };
-	struct gz_foveation standard = gz_foveation_default();
-	const struct gz_display display = gz_display_default(width, height);
-	standard.method = GZ_METHOD_STANDARD;
-	enum gz_result result = gz_renderer_set_volume(renderer, &scene->volume);
+	const struct gz_picture_maker_params params = {
+		.backend = "cpu",
+		.backend_params = { .wait_for_bricks = true },
+	};
+	const struct gz_foveation standard = gz_foveation_full();
+	const struct gz_display display = gz_display_default(picture->width, picture->height);
+	const struct gz_picture_request request = {
+		.camera = camera,
+		.settings = &scene->settings.rays,
+		.foveation = &standard,
+		.display = &display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = picture->width,
+		.height = picture->height,
+		.image = picture,
+	};
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_picture_maker *maker = NULL;
+	struct gz_image *made;
+	const size_t count =
+		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
+	enum gz_result result = gz_picture_maker_create(&params, log, &maker);
 	if (result == GZ_OK)
-		result = gz_renderer_set_transfer(renderer, &scene->transfer);
+		result = gz_picture_maker_show(maker, objects, count);
 	if (result == GZ_OK)
-		result = gz_plan_make(&standard, &display, (struct gz_point) { 0.5F, 0.5F }, width,
-				      height, &plan);
-	if (result == GZ_OK)
-		result = gz_renderer_render(renderer, camera, &scene->settings.rays, &plan, picture,
-					    &stats);
-	gz_plan_free(&plan);
+		result = gz_picture_make(maker, &request, &made, NULL);
+	gz_picture_maker_destroy(&maker);
 	return result;
 }
 
@@ -64,20 +75,17 @@ static enum gz_result render_scene(const struct gz_study *study, size_t place,
 				   const struct gz_log *log, struct gz_image *picture)
 {
 	const struct gz_study_scene *was = &study->scenes[place];
-	const struct gz_renderer_params params = { .wait_for_bricks = true };
 	struct gz_stage stage = { .log = log };
-	struct gz_renderer *renderer = NULL;
 	const int *size = study->sizes[0];
 	const int width = size[0] < WIDTH_MAX ? size[0] : WIDTH_MAX;
 	const int height = (int)fmax(1, round((double)width * size[1] / size[0]));
 	if (access(was->path, R_OK) != 0 || gz_stage_load(&stage, was->path) != GZ_OK)
 		return GZ_ERR_NOT_FOUND;
 	enum gz_result result = find_transfer(&stage, was, &stage.scene.transfer)
-					? gz_renderer_create("cpu", &params, log, &renderer)
+					? gz_image_resize(picture, width, height)
 					: GZ_ERR_NOT_FOUND;
 	if (result == GZ_OK)
-		result = render(renderer, &stage.scene, &was->camera, width, height, picture);
-	gz_renderer_destroy(&renderer);
+		result = render_standard(&stage.scene, &was->camera, log, picture);
 	gz_stage_free(&stage);
 	return result;
 }

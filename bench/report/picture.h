@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "bench/study/study.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /**
  * The picture of one of the study's scenes with the first of its sizes, or smaller, by standard: as

@@ -4,11 +4,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/ini_text.h"
-#include "render/file_path.h"
+#include "base/file.h"
+#include "base/ini.h"
 #include "render/plan/plan.h"
-#include "render/ray_params.h"
-#include "render/scene.h"
+#include "render/raycast/shared/ray_params.h"
+#include "render/scene/scene.h"
 
 #define GZ_LOG_MODULE "scene"
 

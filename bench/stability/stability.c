@@ -68,7 +68,7 @@ enum gz_result gz_stability_run(struct gz_stability_bench *bench,
 				struct gz_stability_outcome *outcome)
 {
 	gz_stability_outcome_free(outcome);
-	if (!bench->renderer || !bench->has_method)
+	if (!bench->tested.maker || !bench->has_method)
 		return GZ_ERR_INVAL;
 	bench->said[0] = '\0';
 	bench->failed = GZ_OK;

@@ -14,12 +14,12 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "protocol/display.h"
-#include "render/camera.h"
-#include "render/image.h"
+#include "render/data/volume.h"
+#include "render/picture/camera.h"
+#include "render/picture/image.h"
 #include "render/plan/plan.h"
-#include "render/ray_params.h"
-#include "render/transfer.h"
-#include "render/volume/volume.h"
+#include "render/raycast/shared/ray_params.h"
+#include "render/transfer/transfer.h"
 
 #define GZ_STABILITY_TEXT_SIZE 256 /**< bytes of any text below with its NUL */
 #define GZ_STABILITY_NUMBERS   3   /**< most numbers that one row measures */
@@ -48,7 +48,7 @@ struct gz_stability_settings {
 	struct gz_stability_scene scene;
 	struct gz_display display;   /**< of the picture, which fills it */
 	int width, height;           /**< px */
-	int threads;                 /**< of the cpu backend, as struct gz_renderer_params says */
+	int threads;                 /**< of the cpu backend, as struct gz_backend_params says */
 	int churn_frames;            /**< of the row "churn", 1000 or more */
 	gz_stability_wanted *wanted; /**< NULL: the portable kernel of the cpu backend */
 	void *wanted_user;
@@ -122,7 +122,8 @@ extern const struct gz_stability_row gz_stability_rows[];
 enum gz_result gz_stability_create(const struct gz_stability_settings *settings,
 				   struct gz_stability_bench **out_bench);
 
-/** From now on test this backend. As gz_renderer_create(); on failure no row can be run. */
+/** From now on test this backend. On failure, which is that of gz_picture_maker_show(), no row can
+ * be run. */
 enum gz_result gz_stability_use_backend(struct gz_stability_bench *bench, const char *backend);
 
 /**

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/picture_plan.h"
+#include "render/plan/method.h"
+#include "render/scene/techniques.h"
 
 /* Wanted pictures are kept for the next method up to so many bytes. Chosen: a row asks for up to a
  * hundred of one small size, or a dozen of the largest. */
@@ -45,15 +46,23 @@ enum gz_result gz_stability_create(const struct gz_stability_settings *settings,
 
 enum gz_result gz_stability_use_backend(struct gz_stability_bench *bench, const char *backend)
 {
-	const struct gz_renderer_params params = { .threads = bench->settings.threads };
-	gz_renderer_destroy(&bench->renderer);
-	bench->shown = NULL;
 	snprintf(bench->backend, sizeof bench->backend, "%s", backend);
-	/* What is said while it starts is for people. */
+	const struct gz_picture_maker_params params = {
+		.backend = bench->backend,
+		.backend_params = { .threads = bench->settings.threads },
+	};
+	gz_picture_maker_destroy(&bench->tested.maker);
 	enum gz_result result =
-		gz_renderer_create(backend, &params, bench->settings.log, &bench->renderer);
+		gz_techniques[0]->check(backend, &params.backend_params, bench->settings.log);
 	if (result == GZ_OK)
-		bench->renderer->log = &bench->said_log;
+		result = gz_picture_maker_create(&params, &bench->said_log, &bench->tested.maker);
+	if (result == GZ_OK)
+		result = gz_stability_show(bench, &bench->settings.scene);
+	if (result != GZ_OK) {
+		if (bench->said[0]) /* it tells people why the backend does not start */
+			gz_err(bench->settings.log, "%s", bench->said);
+		gz_picture_maker_destroy(&bench->tested.maker);
+	}
 	return result;
 }
 
@@ -72,21 +81,21 @@ void gz_stability_use_method(struct gz_stability_bench *bench, const struct gz_f
 	bench->foveation = *foveation;
 	bench->every_step_rule = every_step_rule;
 	bench->has_method = true;
-	if (foveation->method == GZ_METHOD_TABLE && foveation->table.count == 0)
+	if (gz_method_of(foveation)->needs_table && foveation->table.count == 0)
 		bench->foveation.table = small_table;
 }
 
 const char *gz_stability_describe(const struct gz_stability_bench *bench)
 {
-	return bench->renderer ? gz_renderer_describe(bench->renderer) : "";
+	return bench->tested.maker ? gz_picture_maker_describe(bench->tested.maker) : "";
 }
 
 void gz_stability_destroy(struct gz_stability_bench **bench)
 {
 	if (!*bench)
 		return;
-	gz_renderer_destroy(&(*bench)->renderer);
-	gz_renderer_destroy(&(*bench)->portable);
+	gz_picture_maker_destroy(&(*bench)->tested.maker);
+	gz_picture_maker_destroy(&(*bench)->portable.maker);
 	gz_plan_free(&(*bench)->plan);
 	for (int i = 0; i < GZ_STABILITY_VOLUME_COUNT; i++)
 		gz_volume_free(&(*bench)->volumes[i]);
@@ -134,7 +143,8 @@ int gz_stability_rules(const struct gz_stability_bench *bench,
 		return 1;
 	out_rules[0] = GZ_STEP_METHOD;
 	out_rules[1] = GZ_STEP_DISTANCE;
-	out_rules[2] = bench->foveation.method == GZ_METHOD_ACUITY ? GZ_STEP_NONE : GZ_STEP_ACUITY;
+	out_rules[2] = gz_method_of(&bench->foveation)->own_steps == GZ_STEPS_RUNG ? GZ_STEP_NONE
+										   : GZ_STEP_ACUITY;
 	return 3;
 }
 
@@ -150,50 +160,65 @@ enum gz_result gz_stability_volume(struct gz_stability_bench *bench, enum gz_sta
 	return result;
 }
 
-/* Field by field: the bytes between fields are nobody's. */
-static bool same_transfer(const struct gz_transfer *a, const struct gz_transfer *b)
+/* Show a scene; what is shown already costs nothing. */
+static enum gz_result show_on(struct gz_stability_maker *on, const struct gz_stability_scene *scene)
 {
-	return a->count == b->count && a->interpolation == b->interpolation &&
-	       a->has_range == b->has_range && a->range[0] == b->range[0] &&
-	       a->range[1] == b->range[1] &&
-	       memcmp(a->points, b->points, a->count * sizeof a->points[0]) == 0;
-}
-
-static enum gz_result show_on(struct gz_renderer *renderer, const struct gz_stability_scene *scene,
-			      const struct gz_volume **shown, struct gz_transfer *transfer)
-{
-	enum gz_result result = GZ_OK;
-	const bool other = *shown != scene->volume;
-	if (other) {
-		*shown = NULL;
-		result = gz_renderer_set_volume(renderer, scene->volume);
-	}
-	if (result == GZ_OK && (other || !same_transfer(transfer, scene->transfer)))
-		result = gz_renderer_set_transfer(renderer, scene->transfer);
-	if (result == GZ_OK) {
-		*shown = scene->volume;
-		*transfer = *scene->transfer;
-	}
+	const bool same_transfer =
+		on->any_shown && gz_transfer_same(&on->transfer, scene->transfer);
+	if (on->any_shown && on->volume == scene->volume && same_transfer)
+		return GZ_OK;
+	if (!same_transfer)
+		on->transfer_revision++;
+	on->any_shown = false;
+	on->transfer = *scene->transfer;
+	const struct gz_object object = {
+		.technique = gz_techniques[0],
+		.id = 1,
+		.volume = scene->volume,
+		.transfer = &on->transfer,
+		.transfer_revision = on->transfer_revision,
+	};
+	const enum gz_result result = gz_picture_maker_show(on->maker, &object, 1);
+	on->volume = scene->volume;
+	on->any_shown = result == GZ_OK;
 	return result;
 }
 
 enum gz_result gz_stability_show(struct gz_stability_bench *bench,
 				 const struct gz_stability_scene *scene)
 {
-	return bench->failed =
-		       show_on(bench->renderer, scene, &bench->shown, &bench->shown_transfer);
+	return bench->failed = show_on(&bench->tested, scene);
+}
+
+static enum gz_result make_frame(struct gz_picture_maker *maker,
+				 const struct gz_stability_scene *scene,
+				 const struct gz_stability_shot *shot, struct gz_plan *plan,
+				 struct gz_image *image, struct gz_picture_cost *out_cost)
+{
+	const struct gz_picture_request request = {
+		.camera = &scene->camera,
+		.settings = &scene->rays,
+		.foveation = shot->foveation,
+		.display = &shot->view->display,
+		.focus = shot->focus,
+		.width = shot->view->width,
+		.height = shot->view->height,
+		.plan = plan,
+		.image = image,
+	};
+	struct gz_image *made;
+	return gz_picture_make(maker, &request, &made, out_cost);
 }
 
 enum gz_result gz_stability_frame(struct gz_stability_bench *bench,
 				  const struct gz_stability_scene *scene,
-				  const struct gz_plan_request *request, struct gz_image *image)
+				  const struct gz_stability_shot *shot, struct gz_image *image)
 {
+	struct gz_picture_cost cost = { 0 };
 	enum gz_result result = gz_stability_show(bench, scene);
 	if (result == GZ_OK)
-		result = gz_plan_update(request, &bench->plan);
-	if (result == GZ_OK)
-		result = gz_renderer_render(bench->renderer, &scene->camera, &scene->rays,
-					    &bench->plan, image, &bench->stats);
+		result = make_frame(bench->tested.maker, scene, shot, &bench->plan, image, &cost);
+	bench->stats = cost.stats;
 	return bench->failed = result;
 }
 
@@ -203,10 +228,8 @@ enum gz_result gz_stability_frame_at(struct gz_stability_bench *bench,
 				     const struct gz_stability_view *view, struct gz_point gaze,
 				     struct gz_image *image)
 {
-	const struct gz_picture_subject subject = { scene->volume, &scene->camera, &scene->rays };
-	const struct gz_plan_request request = gz_picture_plan_request(
-		&subject, foveation, &view->display, gaze, view->width, view->height);
-	return gz_stability_frame(bench, scene, &request, image);
+	const struct gz_stability_shot shot = { foveation, view, gz_focus_at(gaze) };
+	return gz_stability_frame(bench, scene, &shot, image);
 }
 
 static const struct gz_point centre = { 0.5F, 0.5F };
@@ -215,8 +238,7 @@ enum gz_result gz_stability_standard(struct gz_stability_bench *bench,
 				     const struct gz_stability_scene *scene,
 				     const struct gz_stability_view *view, struct gz_image *image)
 {
-	struct gz_foveation standard = gz_foveation_default();
-	standard.method = GZ_METHOD_STANDARD;
+	const struct gz_foveation standard = gz_foveation_full();
 	return gz_stability_frame_at(bench, scene, &standard, view, centre, image);
 }
 
@@ -225,36 +247,30 @@ static enum gz_result render_portable(struct gz_stability_bench *bench,
 				      const struct gz_stability_scene *scene,
 				      const struct gz_stability_view *view, struct gz_image *image)
 {
-	const struct gz_renderer_params params = { .threads = bench->settings.threads,
-						   .simd = "portable" };
-	struct gz_foveation standard = gz_foveation_default();
-	struct gz_plan plan = { 0 };
+	const struct gz_picture_maker_params params = {
+		.backend = "cpu",
+		.backend_params = { .threads = bench->settings.threads, .simd = "portable" },
+	};
+	const struct gz_foveation standard = gz_foveation_full();
+	const struct gz_stability_shot shot = { &standard, view, gz_focus_at(centre) };
 	enum gz_result result = GZ_OK;
-	standard.method = GZ_METHOD_STANDARD;
-	if (!bench->portable)
-		result = gz_renderer_create("cpu", &params, bench->settings.log, &bench->portable);
+	if (!bench->portable.maker)
+		result = gz_picture_maker_create(&params, bench->settings.log,
+						 &bench->portable.maker);
 	if (result == GZ_OK)
-		result = show_on(bench->portable, scene, &bench->portable_shown,
-				 &bench->portable_transfer);
-	if (result == GZ_OK)
-		result = gz_plan_make(&standard, &view->display, centre, view->width, view->height,
-				      &plan);
-	if (result == GZ_OK)
-		result = gz_renderer_render(bench->portable, &scene->camera, &scene->rays, &plan,
-					    image, NULL);
-	gz_plan_free(&plan);
-	return result;
+		result = show_on(&bench->portable, scene);
+	return result == GZ_OK ? make_frame(bench->portable.maker, scene, &shot, NULL, image, NULL)
+			       : result;
 }
 
-/* A scene is told by what is in it; both structs are zeroed before they are filled. */
 static bool same_scene(const struct gz_stability_kept *kept, const struct gz_stability_scene *scene,
 		       const struct gz_stability_view *view)
 {
 	return kept->width == view->width && kept->height == view->height &&
 	       kept->scene.volume == scene->volume &&
-	       memcmp(&kept->scene.camera, &scene->camera, sizeof scene->camera) == 0 &&
-	       memcmp(&kept->scene.rays, &scene->rays, sizeof scene->rays) == 0 &&
-	       same_transfer(&kept->transfer, scene->transfer);
+	       gz_camera_same(&kept->scene.camera, &scene->camera) &&
+	       gz_ray_params_same(&kept->scene.rays, &scene->rays) &&
+	       gz_transfer_same(&kept->transfer, scene->transfer);
 }
 
 static void forget_pictures(struct gz_stability_bench *bench)

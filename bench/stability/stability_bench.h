@@ -7,7 +7,8 @@
 #define GZ_BENCH_STABILITY_STABILITY_BENCH_H
 
 #include "bench/stability/stability.h"
-#include "render/renderer.h"
+#include "render/frame/picture_maker.h"
+#include "render/raycast/shared/ray_params.h"
 
 /** A method's own rule and the others. */
 #define GZ_STABILITY_RULES_MAX 3
@@ -53,22 +54,36 @@ struct gz_stability_kept {
 	struct gz_image image;
 };
 
+/** A picture maker and what it shows. */
+struct gz_stability_maker {
+	struct gz_picture_maker *maker;
+	bool any_shown;
+	const struct gz_volume *volume;
+	struct gz_transfer transfer;
+	uint64_t transfer_revision;
+};
+
+/** How a frame is foveated. */
+struct gz_stability_shot {
+	const struct gz_foveation *foveation;
+	const struct gz_stability_view *view;
+	struct gz_focus focus;
+};
+
 /** The bench. Rows read settings, backend and foveation; the rest is for the functions below. */
 struct gz_stability_bench {
 	struct gz_stability_settings settings;
 	struct gz_foveation foveation; /**< with the method under test */
 	bool every_step_rule, has_method;
 	char backend[16];
-	struct gz_renderer *renderer, *portable;
-	const struct gz_volume *shown, *portable_shown;
-	struct gz_transfer shown_transfer, portable_transfer;
+	struct gz_stability_maker tested, portable;
 	struct gz_plan plan; /**< of the last frame */
 	struct gz_frame_stats stats;
 	struct gz_volume volumes[GZ_STABILITY_VOLUME_COUNT]; /**< those that a row has asked for */
 	struct gz_stability_kept *kept;
 	size_t kept_count, kept_capacity, kept_bytes;
-	enum gz_result failed;  /**< GZ_OK, or what the renderer under test failed with */
-	struct gz_log said_log; /**< of the renderer under test */
+	enum gz_result failed;  /**< GZ_OK, or what the picture maker under test failed with */
+	struct gz_log said_log; /**< of the picture maker under test */
 	char said[GZ_STABILITY_TEXT_SIZE];
 };
 
@@ -98,7 +113,7 @@ enum gz_result gz_stability_show(struct gz_stability_bench *bench,
 /** A frame by the backend under test; bench->plan and bench->stats stay for a look. */
 enum gz_result gz_stability_frame(struct gz_stability_bench *bench,
 				  const struct gz_stability_scene *scene,
-				  const struct gz_plan_request *request, struct gz_image *image);
+				  const struct gz_stability_shot *shot, struct gz_image *image);
 
 /** The same for a gaze alone. */
 enum gz_result gz_stability_frame_at(struct gz_stability_bench *bench,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/stability/stability_bench.h"
+#include "render/plan/method.h"
 
 /* The border moves by one ring a frame, so that each pixel is seen on both of its sides and what
  * the picture shows there cancels. */
@@ -176,8 +177,8 @@ static enum gz_result check_band(struct gz_stability_bench *bench, struct sweep 
 enum gz_result gz_stability_border(struct gz_stability_bench *bench,
 				   struct gz_stability_outcome *outcome)
 {
-	const int method = bench->foveation.method;
-	if (method == GZ_METHOD_STANDARD || method == GZ_METHOD_UNIFORM) {
+	const struct gz_method *method = gz_method_of(&bench->foveation);
+	if (!method->follows_gaze) {
 		outcome->verdict = GZ_STABILITY_APART;
 		snprintf(outcome->note, sizeof outcome->note, "one spacing has no border");
 		return GZ_OK;
@@ -189,9 +190,8 @@ enum gz_result gz_stability_border(struct gz_stability_bench *bench,
 		result = gz_stability_converged_picture(bench, &bench->settings.scene, &sweep.view,
 							&wanted);
 	if (result == GZ_OK)
-		result = method == GZ_METHOD_ACUITY || method == GZ_METHOD_TABLE
-				 ? check_gradual(bench, &sweep, wanted, outcome)
-				 : check_band(bench, &sweep, wanted, outcome);
+		result = method->is_pyramid ? check_gradual(bench, &sweep, wanted, outcome)
+					    : check_band(bench, &sweep, wanted, outcome);
 	release(&sweep);
 	return result;
 }

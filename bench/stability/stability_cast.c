@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "bench/stability/stability_rays.h"
-#include "render/transfer_table.h"
+#include "render/transfer/transfer_table.h"
 
 static const char levels_off[] = "grey levels off";
 static const char seams[] = "pixels beyond all that is around them";

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench/stability/stability_bench.h"
+#include "render/plan/method.h"
 
 static const struct gz_point centre = { 0.5F, 0.5F };
 
@@ -89,7 +90,7 @@ static enum gz_result check_gaze(struct gz_stability_bench *bench,
 		return result;
 	if (which >= PLACES)
 		return take_equal(&pictures->image, &pictures->lost, NULL, gaze, outcome);
-	if (bench->foveation.method == GZ_METHOD_UNIFORM)
+	if (!gz_method_of(&bench->foveation)->sharp_at_gaze)
 		return GZ_OK;
 	gz_stability_mark_fovea(&bench->foveation, view, gaze, false, pictures->fovea);
 	return take_equal(&pictures->image, &pictures->full, pictures->fovea, gaze, outcome);
@@ -102,10 +103,9 @@ static enum gz_result check_outside(struct gz_stability_bench *bench,
 				    struct gz_stability_outcome *outcome)
 {
 	static const struct gz_point at_edge = { 0, 0.5F }, beyond = { -0.4F, 0.5F };
-	const int method = bench->foveation.method;
 	uint64_t rays[2] = { 0 };
 	enum gz_result result = GZ_OK;
-	if (method == GZ_METHOD_STANDARD || method == GZ_METHOD_UNIFORM)
+	if (!gz_method_of(&bench->foveation)->follows_gaze)
 		return GZ_OK;
 	for (int i = 0; i < 2 && result == GZ_OK; i++) {
 		result = gz_stability_frame_at(bench, &bench->settings.scene, &bench->foveation,

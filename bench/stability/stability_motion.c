@@ -6,7 +6,7 @@
 
 #include "bench/stability/stability_bench.h"
 #include "render/attention/attention.h"
-#include "render/picture_plan.h"
+#include "render/plan/method.h"
 
 enum { PATH_MAX_POINTS = 32 };
 
@@ -200,12 +200,8 @@ static enum gz_result check_landing(struct gz_stability_bench *bench,
 	const struct gz_stability_view view = gz_stability_scene_view(bench);
 	const struct gz_focus focus = landing_focus(&view.display, ends, before_ns);
 	const struct gz_stability_scene *scene = &bench->settings.scene;
-	const struct gz_picture_subject subject = { scene->volume, &scene->camera, &scene->rays };
-	struct gz_plan_request request = gz_picture_plan_request(
-		&subject, foveation, &view.display, focus.point, view.width, view.height);
-	request.scale = focus.scale;
-	request.widen = focus.widen;
-	const enum gz_result result = gz_stability_frame(bench, scene, &request, image);
+	const struct gz_stability_shot shot = { foveation, &view, focus };
+	const enum gz_result result = gz_stability_frame(bench, scene, &shot, image);
 	if (result != GZ_OK)
 		return result;
 	size_t blurred = 0, worst = 0;
@@ -251,13 +247,12 @@ enum gz_result gz_stability_saccade(struct gz_stability_bench *bench,
 	const struct gz_stability_view view = gz_stability_scene_view(bench);
 	struct gz_image full = { 0 }, image = { 0 };
 	struct gz_point ends[2];
-	if (bench->foveation.method == GZ_METHOD_UNIFORM ||
-	    !saccade_ends(&view.display, SACCADE_DEG, ends)) {
+	const bool sharp = gz_method_of(&bench->foveation)->sharp_at_gaze;
+	if (!sharp || !saccade_ends(&view.display, SACCADE_DEG, ends)) {
 		outcome->verdict = GZ_STABILITY_APART;
 		snprintf(outcome->note, sizeof outcome->note, "%s",
-			 bench->foveation.method == GZ_METHOD_UNIFORM
-				 ? "uniform is not sharp anywhere"
-				 : "the picture is narrower than the saccade");
+			 sharp ? "the picture is narrower than the saccade"
+			       : "uniform is not sharp anywhere");
 		return GZ_OK;
 	}
 	gz_stability_name(outcome, 0, "pixels of the fovea that are not those of standard", 0);

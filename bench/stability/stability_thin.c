@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/stability/stability_bench.h"
+#include "render/plan/method.h"
 
 /* A pixel shows something where the converged picture is so far from the background, and has lost
  * it where half of that is missing. Chosen: plainly seen on any display. */
@@ -57,7 +58,7 @@ static enum gz_result look(struct search *search, struct gz_point gaze, const ch
 			continue;
 		}
 		search->foveal++;
-		if (search->foveation.method != GZ_METHOD_UNIFORM && is &&
+		if (gz_method_of(&search->foveation)->sharp_at_gaze && is &&
 		    (search->absolute || !was)) {
 			lost++;
 			worst = i;

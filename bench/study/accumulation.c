@@ -9,8 +9,6 @@
 #include "base/command.h"
 #include "bench/study/errors.h"
 #include "bench/study/reference.h"
-#include "render/picture_plan.h"
-#include "render/temporal.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -24,7 +22,7 @@ struct run {
 	const struct gz_accumulation_request *request;
 	const struct gz_log *log;
 	struct gz_stage *stage;
-	struct gz_renderer *renderer;
+	struct gz_picture_maker *maker;
 	struct gz_variant_settings *settings;
 	struct gz_temporal_params params;
 	struct gz_point gaze;
@@ -32,9 +30,6 @@ struct run {
 	struct gz_display display;
 	int width, height;
 	struct gz_workers *workers;
-	struct gz_plan plan;
-	struct gz_temporal temporal;
-	struct gz_temporal_content content; /* its padding stays 0 */
 	struct gz_image image, converged, half_step;
 	struct gz_error_weights weights;
 	struct gz_error_maps maps;
@@ -42,45 +37,28 @@ struct run {
 	int time_count;
 };
 
-static enum gz_result render(struct run *run, bool kept)
-{
-	const struct gz_picture_subject subject = { &run->stage->scene.volume, &run->camera,
-						    &run->settings->rays };
-	struct gz_display display = run->display;
-	struct gz_plan_request plan =
-		gz_picture_plan_request(&subject, &run->settings->foveation, &run->display,
-					run->gaze, run->width, run->height);
-	enum gz_result result = GZ_OK;
-	if (kept) {
-		memcpy(&run->content.camera, &run->camera, sizeof run->camera);
-		memcpy(&run->content.rays, &run->settings->rays, sizeof run->settings->rays);
-		memcpy(&run->content.foveation, &run->settings->foveation,
-		       sizeof run->settings->foveation);
-		result = gz_temporal_begin(&run->temporal, &run->content, &plan, &display);
-	}
-	if (result == GZ_OK)
-		result = gz_plan_update(&plan, &run->plan);
-	if (result == GZ_OK && kept)
-		gz_temporal_place(&run->temporal, &run->plan);
-	if (result == GZ_OK)
-		result = gz_renderer_render(run->renderer, &run->camera, &run->settings->rays,
-					    &run->plan,
-					    kept ? &run->temporal.frame_image : &run->image, NULL);
-	if (result == GZ_OK && kept)
-		result = gz_temporal_end(&run->temporal, &run->params, &run->content, &run->plan,
-					 &run->image);
-	return result;
-}
-
 /* One frame, as a viewer makes it, and what it takes. */
 static enum gz_result frame(struct run *run, bool kept)
 {
+	const struct gz_picture_request request = {
+		.camera = &run->camera,
+		.settings = &run->settings->rays,
+		.foveation = &run->settings->foveation,
+		.display = &run->display,
+		.focus = gz_focus_at(run->gaze),
+		.width = run->width,
+		.height = run->height,
+		.temporal = kept ? &run->params : NULL,
+		.fresh_plan = true,
+		.image = &run->image,
+	};
+	struct gz_image *image;
+	struct gz_picture_cost cost;
 	if (gz_command_interrupted())
 		return GZ_ERR_CANCELLED;
-	run->plan.made_for.valid = false;
-	const int64_t start_ns = gz_clock_now_ns();
-	const enum gz_result result = render(run, kept);
-	run->times_ms[run->time_count++ % TIMES_MAX] = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	const enum gz_result result = gz_picture_make(run->maker, &request, &image, &cost);
+	if (result == GZ_OK)
+		run->times_ms[run->time_count++ % TIMES_MAX] = cost.total_ms;
 	return result;
 }
 
@@ -106,7 +84,7 @@ static enum gz_result find_converged(struct run *run)
 	char program[2 * GZ_STUDY_TEXT_SIZE];
 	snprintf(program, sizeof program, "%s %s", study->machine.program, study->machine.commit);
 	const struct gz_reference_request reference = {
-		.renderer = run->stage->cpu,
+		.maker = run->stage->cpu,
 		.data_hash = study->scenes[request->scene].data_hash,
 		.program = program,
 		.camera = &run->camera,
@@ -164,7 +142,7 @@ static enum gz_result measure_still(struct run *run, struct gz_accumulation_row 
 static enum gz_result measure_turning(struct run *run, struct gz_accumulation_row rows[2])
 {
 	enum gz_result result = GZ_OK;
-	gz_temporal_forget(&run->temporal);
+	gz_picture_maker_forget(run->maker);
 	for (int i = 0; i < GZ_ACCUMULATION_TURNING_FRAMES && result == GZ_OK; i++) {
 		if (i > 0)
 			gz_camera_turn(&run->camera, run->request->turn_deg);
@@ -191,7 +169,7 @@ static enum gz_result begin(struct run *run)
 		       study->scenes[request->scene].path);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	run->renderer = run->stage->backends[request->backend];
+	run->maker = run->stage->backends[request->backend];
 	run->settings = &run->stage->variants[request->variant];
 	run->params = run->stage->scene.settings.temporal;
 	run->params.accumulate = true;
@@ -209,8 +187,6 @@ static enum gz_result begin(struct run *run)
 static void end(struct run *run)
 {
 	gz_workers_destroy(&run->workers);
-	gz_plan_free(&run->plan);
-	gz_temporal_free(&run->temporal);
 	gz_image_free(&run->image);
 	gz_image_free(&run->converged);
 	gz_image_free(&run->half_step);

@@ -46,7 +46,7 @@ struct gz_accumulation_request {
  * @param[out] out_rows  the still ones first, each group by its number of frames
  * @retval GZ_ERR_UNSUPPORTED  the scene is a file of bricks; logged
  * @retval GZ_ERR_CANCELLED    SIGINT or SIGTERM has arrived; not logged
- * @return else what gz_stage_enter(), gz_temporal_begin() and gz_renderer_render() return; logged
+ * @return else what gz_stage_enter() and gz_picture_make() return; logged
  */
 enum gz_result gz_accumulation_measure(const struct gz_accumulation_request *request,
 				       struct gz_stage *stage, const struct gz_log *log,

@@ -6,10 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
+#include "base/text.h"
 #include "bench/study/bound.h"
 #include "bench/study/hash.h"
 #include "bench/study/machine.h"
+#include "render/plan/method.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -55,7 +56,7 @@ static enum gz_result add_variant(struct asking *asking, const char *text)
 	struct gz_study_variant *variant = &study->variants[study->variant_count++];
 	snprintf(variant->text, sizeof variant->text, "%s", text);
 	snprintf(variant->method, sizeof variant->method, "%s",
-		 gz_method_names[settings.foveation.method]);
+		 gz_method_name(&settings.foveation));
 	return GZ_OK;
 }
 
@@ -201,7 +202,7 @@ static enum gz_result hash_variants(const struct asking *asking, struct gz_hash 
 	for (size_t i = 0; i < study->variant_count && result == GZ_OK; i++) {
 		struct gz_variant_settings variant;
 		result = gz_variant_parse(study->variants[i].text, &scene, asking->log, &variant);
-		if (result != GZ_OK || variant.foveation.method != GZ_METHOD_TABLE)
+		if (result != GZ_OK || !gz_method_of(&variant.foveation)->needs_table)
 			continue;
 		result = gz_scene_load_table(asking->stage->path, asking->log, &variant.foveation);
 		if (result == GZ_OK)
@@ -222,7 +223,7 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 		return result;
 	foveation.table_file[0] = '\0';
 	gz_hash_add_text(hash, scene->data_hash);
-	gz_hash_add_options(hash, gz_ray_options, gz_ray_option_count, &settings->rays);
+	gz_hash_add_rays(hash, &settings->rays);
 	gz_hash_add_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);
 	hash_table(hash, &foveation.table);
 	result = hash_variants(asking, hash);

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/workers.h"
 #include "render/plan/plan.h"
-#include "render/workers.h"
 
 #define GZ_LOG_MODULE "study"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
+#include "base/text.h"
 #include "sim/random.h"
 
 #define GZ_LOG_MODULE "path"

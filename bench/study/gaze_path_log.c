@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "filter/pipeline.h"
-#include "filter/recorded.h"
 #include "protocol/gaze_log.h"
 
 #define GZ_LOG_MODULE "path"

@@ -56,6 +56,16 @@ void gz_hash_add_options(struct gz_hash *hash, const struct gz_option *options, 
 	}
 }
 
+void gz_hash_add_rays(struct gz_hash *hash, const struct gz_ray_params *rays)
+{
+	struct gz_ray_params copy = *rays;
+	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
+	gz_ray_params_bind(&copy, bindings);
+	for (size_t i = 0; i < GZ_RAY_BINDINGS; i++)
+		gz_hash_add_options(hash, bindings[i].options, bindings[i].count,
+				    bindings[i].target);
+}
+
 enum gz_result gz_hash_end(struct gz_hash **hash, char out_hex[GZ_STUDY_HASH_SIZE])
 {
 	static const char digits[] = "0123456789abcdef";

@@ -10,6 +10,7 @@
 #include "base/option.h"
 #include "base/result.h"
 #include "bench/study/study.h"
+#include "render/raycast/shared/ray_params.h"
 
 struct gz_hash;
 
@@ -28,6 +29,9 @@ void gz_hash_add_number(struct gz_hash *hash, double number);
 /** Go on with every option's key and its value in @p target, as text. */
 void gz_hash_add_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
 			 const void *target);
+
+/** Go on with all options of how rays are integrated, light and clip box included. */
+void gz_hash_add_rays(struct gz_hash *hash, const struct gz_ray_params *rays);
 
 /**
  * End, free and set to NULL. Accepts a pointer to NULL, and then writes nothing.

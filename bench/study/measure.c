@@ -8,7 +8,6 @@
 #include "base/command.h"
 #include "bench/study/errors.h"
 #include "bench/study/reference.h"
-#include "render/picture_plan.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -46,7 +45,7 @@ struct unit {
 	struct gz_camera camera;
 	struct gz_display display;
 	int width, height;
-	struct gz_renderer *renderer;
+	struct gz_picture_maker *maker;
 };
 
 enum gz_result gz_measurer_create(const struct gz_study *study, struct gz_stage *stage,
@@ -91,37 +90,36 @@ void gz_measurer_destroy(struct gz_measurer **measurer)
 
 /* ---- frames ---- */
 
-/* Plans of which a viewer makes one for all frames. */
-static bool asks_for_gaze(const struct gz_foveation *foveation)
-{
-	return (foveation->method != GZ_METHOD_STANDARD &&
-		foveation->method != GZ_METHOD_UNIFORM) ||
-	       (foveation->step_rule != GZ_STEP_METHOD && foveation->step_rule != GZ_STEP_NONE);
-}
+/* A variant's picture of a unit. */
+struct asked_picture {
+	size_t variant;
+	const struct gz_camera *camera;
+	struct gz_point gaze;
+	bool on_device;
+	struct gz_image *image;
+};
 
-static enum gz_result make_plan(struct gz_measurer *measurer, const struct unit *unit,
-				size_t variant, const struct gz_camera *camera,
-				struct gz_point gaze)
+static enum gz_result make_picture(struct gz_measurer *measurer, const struct unit *unit,
+				   const struct asked_picture *asked,
+				   struct gz_picture_cost *out_cost)
 {
-	const struct gz_variant_settings *settings = &measurer->stage->variants[variant];
-	const struct gz_picture_subject subject = {
-		&measurer->stage->scene.volume,
-		camera,
-		&settings->rays,
+	const struct gz_variant_settings *settings = &measurer->stage->variants[asked->variant];
+	const struct gz_picture_request request = {
+		.camera = asked->camera,
+		.settings = &settings->rays,
+		.foveation = &settings->foveation,
+		.display = &unit->display,
+		.focus = gz_focus_at(asked->gaze),
+		.width = unit->width,
+		.height = unit->height,
+		.on_device = asked->on_device,
+		/* A viewer makes one plan for all frames where the gaze does not matter. */
+		.fresh_plan = gz_foveation_follows_gaze(&settings->foveation),
+		.plan = &measurer->plans[asked->variant],
+		.image = asked->image,
 	};
-	struct gz_plan *plan = &measurer->plans[variant];
-	if (asks_for_gaze(&settings->foveation))
-		plan->made_for.valid = false;
-	return gz_picture_plan_make(&subject, &settings->foveation, &unit->display, gaze,
-				    unit->width, unit->height, plan);
-}
-
-static enum gz_result draw(struct gz_measurer *measurer, const struct unit *unit, size_t variant,
-			   const struct gz_camera *camera, struct gz_image *image,
-			   struct gz_frame_stats *out_stats)
-{
-	return gz_renderer_render(unit->renderer, camera, &measurer->stage->variants[variant].rays,
-				  &measurer->plans[variant], image, out_stats);
+	struct gz_image *image;
+	return gz_picture_make(unit->maker, &request, &image, out_cost);
 }
 
 /* One frame, as a viewer makes it. */
@@ -129,23 +127,18 @@ static enum gz_result time_frame(struct gz_measurer *measurer, const struct unit
 				 size_t variant, const struct gz_camera *camera,
 				 struct gz_study_row *row)
 {
-	struct gz_image *image = unit->renderer->ops->picture_texture ? NULL : &measurer->frame;
-	struct gz_frame_stats stats;
-	const int64_t start_ns = gz_clock_now_ns();
-	enum gz_result result = make_plan(measurer, unit, variant, camera, unit->gaze);
-	const int64_t plan_ns = gz_clock_now_ns();
-	if (result == GZ_OK)
-		result = draw(measurer, unit, variant, camera, image, &stats);
-	const int64_t end_ns = gz_clock_now_ns();
+	const struct asked_picture asked = { variant, camera, unit->gaze, true, &measurer->frame };
+	struct gz_picture_cost cost;
+	const enum gz_result result = make_picture(measurer, unit, &asked, &cost);
 	if (result != GZ_OK)
 		return result;
-	row->plan_ms = gz_ns_to_ms(plan_ns - start_ns);
-	row->frame_ms = gz_ns_to_ms(end_ns - start_ns);
-	row->cast_ms = stats.cast_ms;
-	row->reconstruct_ms = stats.reconstruct_ms;
-	row->gpu_ms = stats.gpu_ms;
-	row->rays = stats.rays;
-	row->samples = stats.samples;
+	row->plan_ms = cost.plan_ms;
+	row->frame_ms = cost.total_ms;
+	row->cast_ms = cost.stats.cast_ms;
+	row->reconstruct_ms = cost.stats.reconstruct_ms;
+	row->gpu_ms = cost.stats.gpu_ms;
+	row->rays = cost.stats.rays;
+	row->samples = cost.stats.samples;
 	return GZ_OK;
 }
 
@@ -194,7 +187,7 @@ static enum gz_result find_reference(struct gz_measurer *measurer, const struct 
 		return GZ_OK;
 	snprintf(program, sizeof program, "%s %s", study->machine.program, study->machine.commit);
 	const struct gz_reference_request request = {
-		.renderer = measurer->stage->cpu,
+		.maker = measurer->stage->cpu,
 		.data_hash = study->scenes[unit->shown.scene].data_hash,
 		.program = program,
 		.camera = &unit->camera,
@@ -216,10 +209,9 @@ static enum gz_result find_reference(struct gz_measurer *measurer, const struct 
 static enum gz_result picture(struct gz_measurer *measurer, const struct unit *unit, size_t variant,
 			      struct gz_point gaze, struct gz_image *image)
 {
-	if (gz_command_interrupted())
-		return GZ_ERR_CANCELLED;
-	const enum gz_result result = make_plan(measurer, unit, variant, &unit->camera, gaze);
-	return result == GZ_OK ? draw(measurer, unit, variant, &unit->camera, image, NULL) : result;
+	const struct asked_picture asked = { variant, &unit->camera, gaze, false, image };
+	return gz_command_interrupted() ? GZ_ERR_CANCELLED
+					: make_picture(measurer, unit, &asked, NULL);
 }
 
 /* Mean change while the gaze goes from its place by a pixel to the right, and by one down. */
@@ -229,7 +221,7 @@ static enum gz_result find_flicker(struct gz_measurer *measurer, const struct un
 {
 	double sum = 0;
 	*out_flicker = 0;
-	if (!asks_for_gaze(&measurer->stage->variants[variant].foveation))
+	if (!gz_foveation_follows_gaze(&measurer->stage->variants[variant].foveation))
 		return GZ_OK;
 	for (int axis = 0; axis < 2; axis++) {
 		struct gz_point gaze = unit->gaze;
@@ -257,7 +249,7 @@ static enum gz_result measure_standard(struct gz_measurer *measurer, const struc
 	const bool converged = measurer->study->accuracy == GZ_STUDY_ACCURACY_ALL;
 	const bool same = measurer->has_whole && same_picture(&measurer->whole_of, &unit->shown) &&
 			  measurer->whole_of.backend == unit->shown.backend &&
-			  !asks_for_gaze(&measurer->stage->variants[0].foveation);
+			  !gz_foveation_follows_gaze(&measurer->stage->variants[0].foveation);
 	enum gz_result result = GZ_OK;
 	if (!same)
 		result = picture(measurer, unit, 0, unit->gaze, &measurer->standard);
@@ -341,7 +333,7 @@ static struct unit unit_of(const struct gz_measurer *measurer, const struct gz_s
 		.display = gz_study_display(study, row->scene, row->size),
 		.width = study->sizes[row->size][0],
 		.height = study->sizes[row->size][1],
-		.renderer = measurer->stage->backends[row->backend],
+		.maker = measurer->stage->backends[row->backend],
 	};
 }
 

@@ -42,7 +42,7 @@ enum gz_result gz_measurer_create(const struct gz_study *study, struct gz_stage 
  *
  * @param[out] out_rows  gz_study_unit_rows() of them
  * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived (gz_command_catch_signals()); not logged
- * @return else what gz_stage_enter() and gz_renderer_render() return; logged
+ * @return else what gz_stage_enter() and gz_picture_make() return; logged
  */
 enum gz_result gz_measurer_measure(struct gz_measurer *measurer, size_t unit,
 				   struct gz_study_row *out_rows);

@@ -61,7 +61,7 @@ static enum gz_result name_of(const struct gz_reference_request *request,
 										 : camera->height);
 	gz_hash_add_number(hash, request->width);
 	gz_hash_add_number(hash, request->height);
-	gz_hash_add_options(hash, gz_ray_options, gz_ray_option_count, rays);
+	gz_hash_add_rays(hash, rays);
 	return gz_hash_end(&hash, out_hex);
 }
 
@@ -79,22 +79,24 @@ static bool make_folders(const char *folder)
 	return mkdir(path, 0777) == 0 || errno == EEXIST;
 }
 
-static enum gz_result render(const struct gz_reference_request *request, double rate,
-			     struct gz_image *image)
+static enum gz_result render_converged(const struct gz_reference_request *request, double rate,
+				       struct gz_image *image)
 {
 	const struct gz_ray_params rays = gz_reference_rays(request->rays, rate);
-	struct gz_foveation foveation = gz_foveation_default();
-	struct gz_plan plan = { 0 };
-	foveation.method = GZ_METHOD_STANDARD;
+	struct gz_foveation foveation = gz_foveation_full();
 	foveation.step_rule = GZ_STEP_NONE;
-	enum gz_result result =
-		gz_plan_make(&foveation, request->display, (struct gz_point) { 0.5F, 0.5F },
-			     request->width, request->height, &plan);
-	if (result == GZ_OK)
-		result = gz_renderer_render(request->renderer, request->camera, &rays, &plan, image,
-					    NULL);
-	gz_plan_free(&plan);
-	return result;
+	const struct gz_picture_request picture = {
+		.camera = request->camera,
+		.settings = &rays,
+		.foveation = &foveation,
+		.display = request->display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = request->width,
+		.height = request->height,
+		.image = image,
+	};
+	struct gz_image *made;
+	return gz_picture_make(request->maker, &picture, &made, NULL);
 }
 
 /* A picture of the cache, or a new one. */
@@ -115,7 +117,7 @@ static enum gz_result get(const struct gz_reference_request *request, const stru
 	if (gz_command_interrupted())
 		return GZ_ERR_CANCELLED;
 	*out_made = true;
-	result = render(request, rate, image);
+	result = render_converged(request, rate, image);
 	if (result == GZ_OK && request->cache &&
 	    (!make_folders(request->cache) || gz_image_write_png(image, path, log) != GZ_OK))
 		gz_warn(log, "%s: cannot keep a reference; it is made again where it is needed",

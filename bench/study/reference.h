@@ -13,9 +13,9 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "bench/study/study.h"
-#include "render/image.h"
-#include "render/ray_params.h"
-#include "render/renderer.h"
+#include "render/frame/picture_maker.h"
+#include "render/picture/image.h"
+#include "render/raycast/shared/ray_params.h"
 
 /** Samples per voxel length of the converged picture. */
 #define GZ_REFERENCE_RATE 8
@@ -26,9 +26,9 @@
 
 /** What a converged picture is of. */
 struct gz_reference_request {
-	struct gz_renderer *renderer; /**< cpu, with volume and transfer function */
-	const char *data_hash;        /**< of volume and transfer function */
-	const char *program;          /**< what makes it, with its commit */
+	struct gz_picture_maker *maker; /**< cpu, which shows volume and transfer function */
+	const char *data_hash;          /**< of volume and transfer function */
+	const char *program;            /**< what makes it, with its commit */
 	const struct gz_camera *camera;
 	const struct gz_ray_params *rays; /**< of the scene */
 	const struct gz_display *display; /**< any that is valid */
@@ -45,7 +45,7 @@ struct gz_reference_request {
  * @param[out] out_db        PSNR between both, infinite where they are the same
  * @param[out] out_made      it was not in the cache
  * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived (gz_command_catch_signals()); not logged
- * @retval GZ_ERR_NO_MEM     logged; and what gz_renderer_render() returns
+ * @retval GZ_ERR_NO_MEM     logged; and what gz_picture_make() returns
  */
 enum gz_result gz_reference_get(const struct gz_reference_request *request,
 				const struct gz_log *log, struct gz_image *image,

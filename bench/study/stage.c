@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "base/command.h"
-#include "base/number.h"
+#include "base/text.h"
 #include "bench/study/hash.h"
-#include "render/volume/brick_pool.h"
+#include "render/data/brick_pool.h"
+#include "render/plan/method.h"
+#include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -15,8 +17,8 @@
 
 static bool is_backend(const char *name)
 {
-	for (const struct gz_renderer_ops *const *ops = gz_backends; *ops; ops++)
-		if (strcmp((*ops)->name, name) == 0)
+	for (const char *const *known = gz_techniques[0]->backends; *known; known++)
+		if (strcmp(*known, name) == 0)
 			return true;
 	return false;
 }
@@ -62,9 +64,9 @@ enum gz_result gz_study_backend_parse(const char *text, const struct gz_log *log
 
 static void drop_scene(struct gz_stage *stage)
 {
-	gz_renderer_destroy(&stage->cpu);
+	gz_picture_maker_destroy(&stage->cpu);
 	for (size_t i = 0; i < GZ_STUDY_LIST_MAX; i++)
-		gz_renderer_destroy(&stage->backends[i]);
+		gz_picture_maker_destroy(&stage->backends[i]);
 	free(stage->variants);
 	stage->variants = NULL;
 	if (stage->path[0])
@@ -217,45 +219,49 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 
 /* ---- entering ---- */
 
-static enum gz_result make_renderer(struct gz_stage *stage, const struct gz_study_backend *backend,
-				    const struct gz_transfer *transfer,
-				    struct gz_renderer **renderer)
+/* Show the scene by the stage's transfer function on a backend, opened when first asked for. */
+static enum gz_result show_scene(struct gz_stage *stage, const struct gz_study_backend *backend,
+				 struct gz_picture_maker **maker)
 {
-	const struct gz_renderer_params params = {
-		.threads = backend->threads,
-		.simd = backend->simd,
-		.wait_for_bricks = true,
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	const struct gz_picture_maker_params params = {
+		.backend = backend->name,
+		.backend_params = { .threads = backend->threads,
+				    .simd = backend->simd,
+				    .wait_for_bricks = true },
 	};
 	enum gz_result result = GZ_OK;
-	if (!*renderer) {
-		result = gz_renderer_create(backend->name, &params, stage->log, renderer);
-		if (result == GZ_OK)
-			result = gz_renderer_set_volume(*renderer, &stage->scene.volume);
+	if (!*maker)
+		result = gz_picture_maker_create(&params, stage->log, maker);
+	const size_t count =
+		gz_scene_list_objects(&stage->scene, objects, sizeof objects / sizeof objects[0]);
+	for (size_t i = 0; i < count; i++) {
+		objects[i].transfer = &stage->transfer;
+		objects[i].transfer_revision = stage->transfer_revision;
 	}
 	if (result == GZ_OK)
-		result = gz_renderer_set_transfer(*renderer, transfer);
+		result = gz_picture_maker_show(*maker, objects, count);
 	if (result != GZ_OK)
-		gz_err(stage->log, "%s: %s cannot show it: %s", stage->path, backend->name,
+		gz_err(stage->log, "%s: %s cannot show the scene: %s", stage->path, backend->name,
 		       gz_result_text(result));
 	return result;
 }
 
-static enum gz_result make_renderers(struct gz_stage *stage, const struct gz_study *study,
-				     const struct gz_transfer *transfer,
-				     char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
+static enum gz_result show_on_backends(struct gz_stage *stage, const struct gz_study *study,
+				       char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
 {
 	const struct gz_study_backend cpu = { .name = "cpu", .simd = "auto" };
 	enum gz_result result = GZ_OK;
 	if (study->accuracy == GZ_STUDY_ACCURACY_ALL)
-		result = make_renderer(stage, &cpu, transfer, &stage->cpu);
+		result = show_scene(stage, &cpu, &stage->cpu);
 	for (size_t i = 0; i < study->backend_count && result == GZ_OK; i++) {
 		struct gz_study_backend backend;
 		result = gz_study_backend_parse(study->backends[i], stage->log, &backend);
 		if (result == GZ_OK)
-			result = make_renderer(stage, &backend, transfer, &stage->backends[i]);
+			result = show_scene(stage, &backend, &stage->backends[i]);
 		if (result == GZ_OK && out_descriptions)
 			snprintf(out_descriptions[i], GZ_STUDY_TEXT_SIZE, "%s",
-				 gz_renderer_describe(stage->backends[i]));
+				 gz_picture_maker_describe(stage->backends[i]));
 	}
 	return result;
 }
@@ -272,7 +278,7 @@ static enum gz_result make_variants(struct gz_stage *stage, const struct gz_stud
 	for (size_t i = 0; i < study->variant_count && result == GZ_OK; i++) {
 		struct gz_variant_settings *settings = &stage->variants[i];
 		result = gz_variant_parse(study->variants[i].text, &scene, stage->log, settings);
-		if (result == GZ_OK && settings->foveation.method == GZ_METHOD_TABLE)
+		if (result == GZ_OK && gz_method_of(&settings->foveation)->needs_table)
 			result = gz_scene_load_table(stage->path, stage->log, &settings->foveation);
 	}
 	return result;
@@ -292,14 +298,15 @@ enum gz_result gz_stage_enter(struct gz_stage *stage, const struct gz_study *stu
 			      char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
 {
 	char name[GZ_STUDY_TEXT_SIZE];
-	struct gz_transfer transfer;
 	if (stage->entered == scene + 1)
 		return GZ_OK;
 	enum gz_result result = gz_stage_load(stage, study->scenes[scene].path);
 	if (result == GZ_OK)
-		result = gz_stage_transfer(stage, transfer_of(study, scene), name, &transfer);
+		result =
+			gz_stage_transfer(stage, transfer_of(study, scene), name, &stage->transfer);
+	stage->transfer_revision++;
 	if (result == GZ_OK)
-		result = make_renderers(stage, study, &transfer, out_descriptions);
+		result = show_on_backends(stage, study, out_descriptions);
 	if (result == GZ_OK)
 		result = make_variants(stage, study);
 	stage->entered = result == GZ_OK ? scene + 1 : 0;

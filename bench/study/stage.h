@@ -1,6 +1,6 @@
 /**
  * @file
- * The scene that is measured at the moment: its volume, its renderers, the settings of its
+ * The scene that is measured at the moment: its volume, its picture makers, the settings of its
  * variants.
  */
 #ifndef GZ_BENCH_STUDY_STAGE_H
@@ -10,8 +10,8 @@
 #include "base/result.h"
 #include "bench/study/study.h"
 #include "bench/study/variant.h"
-#include "render/renderer.h"
-#include "render/scene.h"
+#include "render/frame/picture_maker.h"
+#include "render/scene/scene.h"
 
 /** A backend of a study: "cpu", "gl", "cpu:threads=2:simd=avx2". */
 struct gz_study_backend {
@@ -30,9 +30,11 @@ struct gz_stage {
 	struct gz_scene scene;
 	char path[GZ_PATH_SIZE];              /**< of the scene; empty: none is loaded */
 	char volume_hash[GZ_STUDY_HASH_SIZE]; /**< of the volume's voxels */
-	struct gz_renderer *cpu;              /**< makes converged pictures; may be NULL */
-	struct gz_renderer *backends[GZ_STUDY_LIST_MAX]; /**< of the study; may be NULL */
-	struct gz_variant_settings *variants;            /**< of the study, over the scene's */
+	struct gz_transfer transfer;          /**< that is shown: one of the scene's */
+	uint64_t transfer_revision;
+	struct gz_picture_maker *cpu; /**< makes converged pictures; may be NULL */
+	struct gz_picture_maker *backends[GZ_STUDY_LIST_MAX]; /**< of the study; may be NULL */
+	struct gz_variant_settings *variants;                 /**< of the study, over the scene's */
 	size_t entered; /**< place in the study's list of what is shown, and 1; 0 = nothing */
 };
 
@@ -59,12 +61,11 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 				 struct gz_transfer *out_transfer);
 
 /**
- * Make ready to measure one of a study's scenes: volume and transfer function in a renderer for
- * each backend, and the settings of each variant.
+ * Make ready to measure one of a study's scenes: a picture maker for each backend shows volume and
+ * transfer function, and the settings of each variant are read.
  *
- * @param[out] out_descriptions  what each backend's renderer says of itself; may be NULL
- * @return what loading, gz_renderer_create(), gz_renderer_set_volume() and gz_variant_parse()
- * return; logged
+ * @param[out] out_descriptions  what each backend's picture maker says of itself; may be NULL
+ * @return what loading, gz_picture_maker_show() and gz_variant_parse() return; logged
  */
 enum gz_result gz_stage_enter(struct gz_stage *stage, const struct gz_study *study, size_t scene,
 			      char (*out_descriptions)[GZ_STUDY_TEXT_SIZE]);

@@ -132,29 +132,14 @@ static bool number_differs(struct comparison *comparison, const char *name, doub
 	return true;
 }
 
-/* Cameras and displays are made of the same text or command line: bit for bit, or not the same. */
-static bool camera_differs(const struct gz_camera *a, const struct gz_camera *b)
-{
-	return memcmp(a->eye, b->eye, sizeof a->eye) != 0 ||
-	       memcmp(a->look_at, b->look_at, sizeof a->look_at) != 0 ||
-	       memcmp(a->up, b->up, sizeof a->up) != 0 || a->fov_deg != b->fov_deg ||
-	       a->height != b->height || a->projection != b->projection;
-}
-
-static bool display_differs(const struct gz_display *a, const struct gz_display *b)
-{
-	return a->px[0] != b->px[0] || a->px[1] != b->px[1] || a->mm[0] != b->mm[0] ||
-	       a->mm[1] != b->mm[1] || a->distance_mm != b->distance_mm;
-}
-
 static bool scene_differs(struct comparison *comparison, const struct gz_study_scene *asked,
 			  const struct gz_study_scene *was)
 {
 	if (text_differs(comparison, "a scene", asked->name, was->name) ||
 	    text_differs(comparison, "a transfer function", asked->transfer, was->transfer))
 		return true;
-	if (strcmp(asked->hash, was->hash) == 0 && !camera_differs(&asked->camera, &was->camera) &&
-	    !display_differs(&asked->display, &was->display))
+	if (strcmp(asked->hash, was->hash) == 0 && gz_camera_same(&asked->camera, &was->camera) &&
+	    gz_display_same(&asked->display, &was->display))
 		return false;
 	snprintf(comparison->what, comparison->size,
 		 "%s with %s is not the same scene: its text, its data or its display has changed",

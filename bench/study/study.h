@@ -16,8 +16,8 @@
 #include "base/result.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
-#include "render/camera.h"
-#include "render/image.h"
+#include "render/picture/camera.h"
+#include "render/picture/image.h"
 
 #define GZ_STUDY_HASH_SIZE    65  /**< SHA-256 in hexadecimal with its NUL */
 #define GZ_STUDY_TEXT_SIZE    256 /**< bytes of any name below with its NUL */
@@ -76,7 +76,7 @@ struct gz_study_machine {
 	char compiler[GZ_STUDY_TEXT_SIZE]; /**< with the build type */
 	char commit[GZ_STUDY_TEXT_SIZE];   /**< of the program; "unknown" outside a repository */
 	char program[GZ_STUDY_TEXT_SIZE];  /**< "gazebench 0.1.0" */
-	/** Of each backend: what gz_renderer_describe() says, GPU and driver included. */
+	/** Of each backend: what gz_picture_maker_describe() says, GPU and driver included. */
 	char backends[GZ_STUDY_LIST_MAX][GZ_STUDY_TEXT_SIZE];
 };
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
+#include "base/text.h"
 
 /* What a line begins with says what it is of; then come the numbers of the table. */
 #define HEAD "scene,transfer,width,height,backend,variant,point,camera,frame,gaze_x,gaze_y"

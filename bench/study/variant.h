@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/plan/plan.h"
-#include "render/ray_params.h"
+#include "render/raycast/shared/ray_params.h"
 
 /** How frames of a variant are made. */
 struct gz_variant_settings {

@@ -1,4 +1,4 @@
-/* gazectl: the command line of the daemon. */
+/* gazectl: the command line of the daemon. main() and the list of commands. */
 #include "client/gazectl/gazectl.h"
 
 static const struct gz_command *const commands[] = {
@@ -11,8 +11,8 @@ int main(int argc, char **argv)
 	const struct gz_command_program program = {
 		.name = "gazectl",
 		.version = GAZECAST_VERSION,
-		.purpose = "Ask the gaze daemon how it is, follow what it sees, record it, and "
-			   "look into recordings.",
+		.purpose = "Show the state of the gaze daemon and its stream, check the tracker, "
+			   "make recordings, inspect and convert them.",
 		.exits = "0 done, 1 failed or refused, 2 usage, 3 no daemon answers, "
 			 "4 the log is cut or corrupted, 5 the check was cancelled",
 		.commands = commands,

@@ -1,6 +1,6 @@
 /**
  * @file
- * The commands of gazectl and what they share. Each command is one file with one table.
+ * The commands of gazectl and how they ask the daemon. Each command is one file with one table.
  */
 #ifndef GZ_CLIENT_GAZECTL_GAZECTL_H
 #define GZ_CLIENT_GAZECTL_GAZECTL_H
@@ -14,18 +14,17 @@
 #include "base/option.h"
 #include "base/result.h"
 #include "client/control.h"
-#include "client/gazectl/json.h"
 #include "client/stream.h"
 
-/** What gazectl exits with; gazectl(1) lists the same. */
+/** Exit statuses of gazectl; gazectl(1) lists the same. */
 enum gazectl_exit {
 	GAZECTL_DONE = GZ_EXIT_DONE,
-	/** The daemon refused, no tracker can be used, a file cannot be read. */
+	/** The daemon refused, no tracker can be used, or a file cannot be read or written. */
 	GAZECTL_FAILED = GZ_EXIT_FAILED,
 	GAZECTL_USAGE = GZ_EXIT_USAGE,
-	GAZECTL_NO_DAEMON = 3, /**< nobody answers at the endpoint */
+	GAZECTL_NO_DAEMON = 3, /**< no daemon answers at the endpoint */
 	GAZECTL_DAMAGED = 4,   /**< inspect, convert: the log is cut or corrupted */
-	GAZECTL_CANCELLED = 5, /**< validate: by the Escape key or a signal */
+	GAZECTL_CANCELLED = 5, /**< validate: cancelled by the Escape key or a signal */
 };
 
 extern const struct gz_command gazectl_devices;
@@ -38,16 +37,16 @@ extern const struct gz_command gazectl_validate;
 extern const struct gz_command gazectl_keygen;
 extern const struct gz_command gazectl_convert;
 
-/** Options that every command which asks the daemon has; the first member of its settings. */
+/** Options of every command that asks the daemon; the first member of its settings. */
 struct gazectl_common {
 	struct gz_command_common command;
-	char endpoint[256];   /**< of the control socket; empty for the local daemon */
-	char keys[1024];      /**< directory of keys; empty for the usual places */
-	char server_key[128]; /**< the daemon's public key; empty: see known_servers */
+	char endpoint[256];   /**< of the control socket; empty: the local daemon */
+	char keys[1024];      /**< directory of keys; empty: see gz_keys_find() */
+	char server_key[128]; /**< the daemon's public key; empty: from known_servers */
 };
 
 /* clang-format off */
-/** The rows that begin the table of a command which asks the daemon: "--help", "--endpoint",
+/** The first rows in the option table of a command that asks the daemon: "--help", "--endpoint",
  *  "--keys", "--server-key". */
 #define GAZECTL_COMMON_OPTIONS                                                                   \
 	GZ_COMMAND_HELP_OPTION,                                                                     \
@@ -56,7 +55,8 @@ struct gazectl_common {
 	  .offset = offsetof(struct gazectl_common, endpoint),                                   \
 	  .max = sizeof((struct gazectl_common *)NULL)->endpoint,                                \
 	  .preset = "",                                                                          \
-	  .help = "the daemon's control socket, as tcp://127.0.0.1:50020; empty for the local one" }, \
+	  .help = "control socket of the daemon, such as tcp://127.0.0.1:50020; empty: the local " \
+		  "daemon" },                                                                    \
 	{ .key = "keys",                                                                         \
 	  .type = GZ_OPTION_STRING,                                                              \
 	  .offset = offsetof(struct gazectl_common, keys),                                       \
@@ -69,17 +69,20 @@ struct gazectl_common {
 	  .offset = offsetof(struct gazectl_common, server_key),                                 \
 	  .max = sizeof((struct gazectl_common *)NULL)->server_key,                              \
 	  .preset = "",                                                                          \
-	  .help = "the daemon's public key; empty: as known_servers says" }
+	  .help = "public key of the daemon; empty: the one in known_servers" }
 /* clang-format on */
 
-/** Open the control socket that @p common names. Failures are logged. */
+/** Open the control socket that @p common names. @return as gz_control_open() and gz_keys_find();
+ *  failures are logged */
 enum gz_result gazectl_open_control(const struct gazectl_common *common, const struct gz_log *log,
 				    struct gz_control **out_control);
 
 /**
- * Open the stream that belongs to @p control and wait until it is connected.
+ * Open the stream of the same daemon as @p control and wait until it is connected.
  *
- * @return GAZECTL_DONE with *out_stream; GAZECTL_NO_DAEMON or GAZECTL_FAILED after logging why
+ * @param topics           as gz_stream_open()
+ * @param[out] out_stream  owned by the caller: gz_stream_close(); written on GAZECTL_DONE only
+ * @return GAZECTL_DONE; or GAZECTL_NO_DAEMON or GAZECTL_FAILED after logging why
  */
 enum gazectl_exit gazectl_open_stream(struct gz_control *control, const char *const *topics,
 				      const struct gz_log *log, struct gz_stream **out_stream);
@@ -87,24 +90,27 @@ enum gazectl_exit gazectl_open_stream(struct gz_control *control, const char *co
 /**
  * Send a request and wait for its reply.
  *
- * @return GAZECTL_DONE if the reply begins with "OK"; else after logging why
+ * @param[out] out_reply  made printable
+ * @return GAZECTL_DONE if the reply begins with "OK"; otherwise GAZECTL_NO_DAEMON or GAZECTL_FAILED
+ *         after logging why
  */
 enum gazectl_exit gazectl_request(struct gz_control *control, const char *request,
 				  const struct gz_log *log, char out_reply[GZ_CONTROL_REPLY_SIZE]);
 
 /**
- * Wait for the next status message, its texts made printable.
+ * Wait for the next status message; its texts are made printable.
  *
  * @param deadline_ns  host time
- * @return whether one came; false also after a signal that gz_command_interrupted() tells of
+ * @param[out] out_status  written on true only
+ * @return whether one came; false also after a signal (gz_command_interrupted())
  */
 bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,
 			 struct gz_status *out_status);
 
-/** Log that nobody answers at @p endpoint, with the remedy. */
+/** Log that no daemon answers at @p endpoint, with the remedy. */
 void gazectl_report_no_daemon(const char *endpoint, const struct gz_log *log);
 
-/** Replace what could steer a terminal in @p text, which came from outside, by '?'. */
+/** Replace control characters, which could steer a terminal, by '?' in @p text from outside. */
 void gazectl_make_printable(char *text);
 
 #endif

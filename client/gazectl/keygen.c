@@ -1,4 +1,4 @@
-/* gazectl keygen: makes a daemon's or a client's keys, and says what to do with them. */
+/* gazectl keygen: makes the keys of a daemon or a client, and prints what to do with them. */
 #include <errno.h>
 #include <pwd.h>
 #include <stdio.h>
@@ -7,17 +7,15 @@
 #include <zmq.h>
 
 #include "client/gazectl/gazectl.h"
-#include "protocol/key_file.h"
+#include "protocol/key.h"
 
 #define GZ_LOG_MODULE "gazectl"
-
-enum { PATH_SIZE = 1024 };
 
 struct settings {
 	struct gz_command_common common;
 	bool server;
 	char client[GZ_KEY_NAME_SIZE];
-	char directory[PATH_SIZE];
+	char directory[GZ_PATH_SIZE];
 	char owner[64];
 };
 
@@ -26,34 +24,34 @@ struct settings {
 static const struct gz_option options[] = {
 	GZ_COMMAND_HELP_OPTION,
 	{ "server", GZ_OPTION_BOOL, AT(server), 0, 0, 0, NULL, "false",
-	  "make the key by which a daemon proves itself" },
+	  "make the key with which a daemon proves its identity" },
 	{ "client", GZ_OPTION_STRING, AT(client), 0, GZ_KEY_NAME_SIZE, 0, NULL, "",
-	  "make the key of a client; its name, as anna@desk, tells people whose it is" },
-	{ "keys", GZ_OPTION_STRING, AT(directory), 0, PATH_SIZE, 0, NULL, "",
-	  "directory they go to; empty: gazecast in the user's configuration directory" },
+	  "make the key of a client; its name, such as anna@desk, shows whose key it is" },
+	{ "keys", GZ_OPTION_STRING, AT(directory), 0, GZ_PATH_SIZE, 0, NULL, "",
+	  "directory for the files; empty: gazecast in the user's configuration directory" },
 	{ "owner", GZ_OPTION_STRING, AT(owner), 0, 64, 0, NULL, "",
-	  "user that the files are given to, for root alone; empty: who makes them" },
+	  "user who will own the files, for root only; empty: the user who runs gazectl" },
 };
 
-/* What is being made. */
+/* The keys and files being made. */
 struct keygen {
 	const struct settings *settings;
 	const struct gz_log *log;
-	char directory[PATH_SIZE];
-	char secret_path[PATH_SIZE + 32];
-	char public_path[PATH_SIZE + 32];
+	char directory[GZ_PATH_SIZE];
+	char secret_path[GZ_PATH_SIZE + 32];
+	char public_path[GZ_PATH_SIZE + 32];
 	struct gz_key_pair keys;
 };
 
 static enum gz_result check_settings(const struct settings *settings, const struct gz_log *log)
 {
 	if (settings->server == (settings->client[0] != '\0')) {
-		gz_err(log, "say --server on the daemon's machine, or --client NAME on another");
+		gz_err(log, "give --server on the daemon's machine, or --client NAME on another");
 		return GZ_ERR_INVAL;
 	}
 	for (const char *c = settings->client; *c; c++) {
 		if ((unsigned char)*c < ' ' || *c == 0x7f) {
-			gz_err(log, "--client: a name has no control characters");
+			gz_err(log, "--client: the name must not have control characters");
 			return GZ_ERR_INVAL;
 		}
 	}
@@ -70,7 +68,8 @@ static enum gz_result choose_files(struct keygen *keygen)
 	else
 		result = gz_key_directory(keygen->directory, sizeof keygen->directory);
 	if (result != GZ_OK) {
-		gz_err(keygen->log, "no configuration directory: name one with --keys");
+		gz_err(keygen->log,
+		       "there is no configuration directory; give a directory with --keys");
 		return result;
 	}
 	snprintf(keygen->secret_path, sizeof keygen->secret_path, "%s/%s", keygen->directory, name);
@@ -83,7 +82,7 @@ static enum gz_result make_pair(struct keygen *keygen)
 {
 	if (zmq_curve_keypair(keygen->keys.public_text, keygen->keys.secret_text) == 0)
 		return GZ_OK;
-	gz_err(keygen->log, "libzmq makes no keys: %s; it must be built with CURVE",
+	gz_err(keygen->log, "libzmq cannot make keys: %s; it must be built with CURVE",
 	       zmq_strerror(errno));
 	return GZ_ERR_UNSUPPORTED;
 }
@@ -106,7 +105,7 @@ static enum gz_result give_away(const struct keygen *keygen)
 	return GZ_ERR_ACCESS;
 }
 
-/* Both files or none. */
+/* Write both files or neither. */
 static enum gz_result write_files(const struct keygen *keygen)
 {
 	char text[256];
@@ -137,35 +136,37 @@ static void print_server_steps(const struct keygen *keygen)
 	if (gethostname(host, sizeof host - 1) != 0 || !host[0])
 		snprintf(host, sizeof host, "HOST");
 	printf("secret key: %s (stays here)\n\n"
-	       "1. On each machine that is to read this one: add this line to known_servers in "
-	       "~/.config/gazecast, with the name or address by which it reaches this machine:\n\n"
+	       "1. On each machine that will connect to this one, add this line to known_servers "
+	       "in ~/.config/gazecast, with the name or address by which it reaches this "
+	       "machine:\n\n"
 	       "%s %s\n\n"
-	       "2. There, run: gazectl keygen --client NAME; add the line that it prints to\n"
+	       "2. There, run gazectl keygen --client NAME, and add the line that it prints to "
+	       "this file here:\n"
 	       "   %s/" GZ_AUTHORIZED_KEYS_FILE "\n\n"
-	       "3. In section [network] of gazed.conf here: tcp = curve, and address = the address "
-	       "of this machine (* for all)\n",
+	       "3. In section [network] of gazed.conf here, set tcp = curve, and address = the "
+	       "address of this machine (* for all)\n",
 	       keygen->secret_path, host, keygen->keys.public_text, keygen->directory);
 }
 
 static void print_client_steps(const struct keygen *keygen)
 {
 	printf("secret key: %s (stays here)\n\n"
-	       "1. On the daemon's machine: add this line to authorized_keys beside its "
-	       "server_key:\n\n"
+	       "1. On the daemon's machine, add this line to authorized_keys in the directory of "
+	       "its server_key:\n\n"
 	       "%s %s\n\n"
-	       "2. Here: %s/" GZ_KNOWN_SERVERS_FILE "\n"
-	       "   needs the line that gazectl keygen --server printed there\n",
+	       "2. Here, add the line that gazectl keygen --server printed there to\n"
+	       "   %s/" GZ_KNOWN_SERVERS_FILE "\n",
 	       keygen->secret_path, keygen->keys.public_text, keygen->settings->client,
 	       keygen->directory);
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int keygen_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
-	int exit_status;
-	if (!gz_command_read_arguments(&gazectl_keygen, argc, argv, log, &settings, &operands,
-				       &exit_status))
+	int exit_status =
+		gz_command_read_arguments(&gazectl_keygen, argc, argv, log, &settings, &operands);
+	if (exit_status != GZ_COMMAND_GO_ON)
 		return exit_status;
 	if (check_settings(&settings, log) != GZ_OK)
 		return GAZECTL_USAGE;
@@ -191,9 +192,9 @@ const struct gz_command gazectl_keygen = {
 	.operands = "",
 	.operands_max = 0,
 	.summary = "make keys for a daemon that other machines read",
-	.details = "Existing files are never overwritten. What it prints tells which line goes "
-		   "where.\n",
+	.details = "Existing files are never overwritten. The output says which line belongs into "
+		   "which file.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = keygen_run,
 };

@@ -1,4 +1,4 @@
-/* gazectl record and gazectl stop: the daemon's recording. */
+/* gazectl record and gazectl stop: start and end the daemon's recording. */
 #include "client/gazectl/gazectl.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 #define GZ_LOG_MODULE "gazectl"
 
-/* Chosen: a status is sent on each change, and once a second in any case. */
+/* Longest wait for a status. Chosen: one is sent at each change, and at least once a second. */
 #define STATUS_PATIENCE_NS (2 * GZ_NS_PER_S)
 
 struct record_settings {
@@ -24,8 +24,8 @@ enum { OPTION_COUNT = sizeof record_options / sizeof record_options[0] };
 
 static const char *const status_topics[] = { GZ_TOPIC_STATUS, NULL };
 
-/* The last status within a patience, or the first whose recording is in @p wanted. Statuses sent
- * before the request may come first. */
+/* Wait for a status whose recording is in state @p wanted; otherwise take the last status in time.
+ * Statuses from before the request may come first. */
 static bool wait_recording(struct gz_stream *stream, enum gz_recording_state wanted,
 			   struct gz_status *out_status)
 {
@@ -43,7 +43,7 @@ static enum gazectl_exit report_started(struct gz_stream *stream, const struct g
 {
 	struct gz_status status;
 	if (!wait_recording(stream, GZ_RECORDING_ON, &status)) {
-		gz_warn(log, "recording, but %s does not tell into which file",
+		gz_warn(log, "the recording has started, but %s does not report its file",
 			gz_stream_endpoint(stream));
 		return GAZECTL_DONE;
 	}
@@ -52,20 +52,21 @@ static enum gazectl_exit report_started(struct gz_stream *stream, const struct g
 		return GAZECTL_DONE;
 	}
 	gz_err(log, "the recording stopped at once: %s",
-	       status.recording.error[0] ? status.recording.error : "the daemon does not say why");
+	       status.recording.error[0] ? status.recording.error
+					 : "the daemon gives no reason; see its log");
 	return GAZECTL_FAILED;
 }
 
-static enum gazectl_exit record(struct gz_control *control, const char *name,
-				const struct gz_log *log)
+static enum gazectl_exit start_and_report(struct gz_control *control, const char *name,
+					  const struct gz_log *log)
 {
 	char request[300], reply[GZ_CONTROL_REPLY_SIZE];
 	int length = snprintf(request, sizeof request, name ? "R %s" : "R", name);
 	if (length >= (int)sizeof request) {
-		gz_err(log, "a name has at most 64 characters: A-Z a-z 0-9 . _ -");
+		gz_err(log, "the name is too long; allowed: 1 to 64 of A-Z a-z 0-9 . _ -");
 		return GAZECTL_USAGE;
 	}
-	/* Listen first, so that the status of the start is not missed. */
+	/* Subscribe first, so that the status of the start is not missed. */
 	struct gz_stream *stream = NULL;
 	enum gazectl_exit status = gazectl_open_stream(control, status_topics, log, &stream);
 	if (status != GAZECTL_DONE)
@@ -81,19 +82,19 @@ static int run_record(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct record_settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazectl_record, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazectl_record, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
 		return GAZECTL_USAGE;
-	status = record(control, operands.items[0], log);
+	status = start_and_report(control, operands.items[0], log);
 	gz_control_close(&control);
 	return status;
 }
 
-static enum gazectl_exit stop(struct gz_control *control, const struct gz_log *log)
+static enum gazectl_exit stop_and_report(struct gz_control *control, const struct gz_log *log)
 {
 	char reply[GZ_CONTROL_REPLY_SIZE];
 	struct gz_stream *stream = NULL;
@@ -101,7 +102,7 @@ static enum gazectl_exit stop(struct gz_control *control, const struct gz_log *l
 	enum gazectl_exit status = gazectl_open_stream(control, status_topics, log, &stream);
 	if (status != GAZECTL_DONE)
 		return status;
-	/* The file's name is in the status as long as it is written to. */
+	/* The status names the file only while it is being written. */
 	gazectl_next_status(stream, gz_clock_now_ns() + STATUS_PATIENCE_NS, &before);
 	gz_stream_close(&stream);
 	status = gazectl_request(control, "r", log, reply);
@@ -114,14 +115,14 @@ static int run_stop(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct record_settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazectl_stop, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazectl_stop, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
 		return GAZECTL_USAGE;
-	status = stop(control, log);
+	status = stop_and_report(control, log);
 	gz_control_close(&control);
 	return status;
 }
@@ -131,9 +132,10 @@ const struct gz_command gazectl_record = {
 	.name = "record",
 	.operands = "[NAME]",
 	.operands_max = 1,
-	.summary = "start a recording and print its file's name",
-	.details = "NAME has up to 64 characters of A-Z a-z 0-9 . _ - and becomes the file's name "
-		   "in the\ndaemon's recording directory; without it the daemon takes the time.\n",
+	.summary = "start a recording and print the name of its file",
+	.details = "NAME consists of 1 to 64 of the characters A-Z a-z 0-9 . _ - and becomes the "
+		   "name of the file\nin the daemon's recording directory. Without NAME the daemon "
+		   "uses the present time.\n",
 	.options = record_options,
 	.option_count = OPTION_COUNT,
 	.run = run_record,
@@ -144,7 +146,7 @@ const struct gz_command gazectl_stop = {
 	.name = "stop",
 	.operands = "",
 	.operands_max = 0,
-	.summary = "end the recording and print its file's name",
+	.summary = "end the recording and print the name of its file",
 	.details = "",
 	.options = record_options,
 	.option_count = OPTION_COUNT,

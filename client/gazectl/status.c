@@ -7,11 +7,12 @@
 #include <stdio.h>
 
 #include "base/clock.h"
+#include "client/gazectl/output.h"
 #include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
-/* Chosen: a status is sent once a second. */
+/* Longest wait for a status. Chosen: one is sent every second. */
 #define STATUS_PATIENCE_NS (3 * GZ_NS_PER_S)
 
 struct status_settings {
@@ -28,7 +29,7 @@ static const struct gz_option status_options[] = {
 	  .help = "print JSON, with the keys of the status message" },
 };
 
-/* One row of the table: its name, then what @p format says. */
+/* Print one row of the table: its name, then a formatted text. */
 __attribute__((format(printf, 2, 3))) static void row(const char *name, const char *format, ...)
 {
 	va_list arguments;
@@ -65,7 +66,7 @@ static const char *malformed_name(int reason)
 	return gz_malformed_name((enum gz_malformed)reason);
 }
 
-/* The sum of @p counts, and each that is not 0 by its name. */
+/* Print the sum of @p counts, and the name and value of each that is not 0. */
 static void print_reasons(const char *name, const uint64_t *counts, int first, int count,
 			  const char *(*reason_name)(int reason))
 {
@@ -84,14 +85,14 @@ static void print_reasons(const char *name, const uint64_t *counts, int first, i
 static void print_clock(const struct gz_clock_status *clock)
 {
 	if (clock->tick == GZ_CLOCK_NONE)
-		row("clock", "time of arrival: the tracker has no clock");
+		row("clock", "time of arrival, because the tracker has no clock");
 	else
 		row("clock", "%s tick, offset %.6f s, skew %.2f ppm, uncertainty %.1f us",
 		    gz_clock_tick_name(clock->tick), gz_ns_to_s(clock->offset_ns), clock->skew_ppm,
 		    clock->sigma_ns / 1000);
 }
 
-static void print_display(const struct gz_display *display)
+static void print_display_row(const struct gz_display *display)
 {
 	if (!gz_display_valid(display)) {
 		row("display", "unknown");
@@ -120,13 +121,13 @@ static void print_recording(const struct gz_status *status)
 		row("recording", "%s: %s, %" PRIu64 " samples", state, status->recording.file,
 		    status->recording.samples);
 	else if (status->recording.state == GZ_RECORDING_FAILED)
-		row("recording", "%s: %s: %s; %" PRIu64 " samples are in it", state,
+		row("recording", "%s: %s: %s; it has %" PRIu64 " samples", state,
 		    status->recording.file, status->recording.error, status->recording.samples);
 	else
 		row("recording", "%s", state);
 }
 
-static void print_table(const struct gz_status *status, const char *endpoint)
+static void print_status_table(const struct gz_status *status, const char *endpoint)
 {
 	print_tracker(status);
 	print_rate(status);
@@ -141,7 +142,7 @@ static void print_table(const struct gz_status *status, const char *endpoint)
 		    status->noise_deg);
 	else
 		row("noise", "unknown: no fixation yet");
-	print_display(&status->display);
+	print_display_row(&status->display);
 	print_correction(status);
 	print_recording(status);
 	row("subscribers", "%" PRIu32, status->subscribers);
@@ -149,84 +150,61 @@ static void print_table(const struct gz_status *status, const char *endpoint)
 	row("stream", "%s", endpoint);
 }
 
-static void print_json_tracker(struct gz_json *json, const struct gz_status *status)
+/* Counts by the name of their reason. */
+static json_t *json_reasons(const uint64_t *counts, int first, int count,
+			    const char *(*reason_name)(int reason))
 {
-	gz_json_begin(json, "tracker");
-	gz_json_text(json, "name", status->tracker.name);
-	gz_json_text(json, "serial", status->tracker.serial);
-	gz_json_text(json, "state", gz_tracker_state_name(status->tracker.state));
-	gz_json_text(json, "reason", status->tracker.reason);
-	gz_json_end(json);
-	gz_json_begin(json, "rate_hz");
-	gz_json_double(json, "nominal", status->rate_hz_nominal);
-	gz_json_double(json, "measured", status->rate_hz_measured);
-	gz_json_end(json);
-	gz_json_uint(json, "samples", status->samples);
-	gz_json_uint(json, "lost", status->lost);
-	gz_json_begin(json, "rejected");
-	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
-		gz_json_uint(json, rejection_name(i), status->rejected[i]);
-	gz_json_end(json);
-	gz_json_begin(json, "malformed");
-	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
-		gz_json_uint(json, malformed_name(i), status->malformed[i]);
-	gz_json_end(json);
+	json_t *reasons = json_object();
+	for (int i = first; i < count; i++)
+		json_object_set_new(reasons, reason_name(i), gz_output_json_count(counts[i]));
+	return reasons;
 }
 
-static void print_json_clock(struct gz_json *json, const struct gz_clock_status *clock)
+static json_t *json_tracker(const struct gz_status *status)
 {
-	gz_json_begin(json, "clock");
-	gz_json_int(json, "offset_ns", clock->offset_ns);
-	gz_json_double(json, "skew_ppm", clock->skew_ppm);
-	gz_json_double(json, "sigma_ns", clock->sigma_ns);
-	gz_json_text(json, "tick", gz_clock_tick_name(clock->tick));
-	gz_json_end(json);
+	return json_pack("{so so ss so}", "name", gz_output_json_text(status->tracker.name),
+			 "serial", gz_output_json_text(status->tracker.serial), "state",
+			 gz_tracker_state_name(status->tracker.state), "reason",
+			 gz_output_json_text(status->tracker.reason));
 }
 
-static void print_json_map(struct gz_json *json, const char *key, const double map[3])
+static json_t *json_clock(const struct gz_clock_status *clock)
 {
-	gz_json_begin_list(json, key);
-	for (int i = 0; i < 3; i++)
-		gz_json_double(json, NULL, map[i]);
-	gz_json_end_list(json);
+	return json_pack("{sI so so ss}", "offset_ns", (json_int_t)clock->offset_ns, "skew_ppm",
+			 gz_output_json_number(clock->skew_ppm), "sigma_ns",
+			 gz_output_json_number(clock->sigma_ns), "tick",
+			 gz_clock_tick_name(clock->tick));
 }
 
-static void print_json_correction(struct gz_json *json, const struct gz_status *status)
+static json_t *json_recording(const struct gz_status *status)
 {
-	gz_json_begin(json, "correction");
-	print_json_map(json, "x", status->correction.x);
-	print_json_map(json, "y", status->correction.y);
-	gz_json_end(json);
+	return json_pack("{ss so so so}", "state", gz_recording_state_name(status->recording.state),
+			 "file", gz_output_json_text(status->recording.file), "samples",
+			 gz_output_json_count(status->recording.samples), "error",
+			 gz_output_json_text(status->recording.error));
 }
 
-static void print_json_recording(struct gz_json *json, const struct gz_status *status)
+static json_t *json_status(const struct gz_status *status, const char *endpoint)
 {
-	gz_json_begin(json, "recording");
-	gz_json_text(json, "state", gz_recording_state_name(status->recording.state));
-	gz_json_text(json, "file", status->recording.file);
-	gz_json_uint(json, "samples", status->recording.samples);
-	gz_json_text(json, "error", status->recording.error);
-	gz_json_end(json);
+	return json_pack(
+		"{so so so so so so so so so s{so so} so sI so so}", "tracker",
+		json_tracker(status), "rate_hz",
+		gz_output_json_rate(status->rate_hz_nominal, status->rate_hz_measured), "samples",
+		gz_output_json_count(status->samples), "lost", gz_output_json_count(status->lost),
+		"rejected",
+		json_reasons(status->rejected, GZ_REJECT_NONE + 1, GZ_REJECT_COUNT, rejection_name),
+		"malformed", json_reasons(status->malformed, 0, GZ_MALFORMED_COUNT, malformed_name),
+		"clock", json_clock(&status->clock), "noise_deg",
+		gz_output_json_number(status->noise_deg), "display",
+		gz_output_json_display(&status->display), "correction", "x",
+		gz_output_json_numbers(status->correction.x, 3), "y",
+		gz_output_json_numbers(status->correction.y, 3), "recording",
+		json_recording(status), "subscribers", (json_int_t)status->subscribers, "version",
+		gz_output_json_text(status->version), "stream", gz_output_json_text(endpoint));
 }
 
-static void print_json(const struct gz_status *status, const char *endpoint)
-{
-	struct gz_json json = { .out = stdout };
-	gz_json_begin(&json, NULL);
-	print_json_tracker(&json, status);
-	print_json_clock(&json, &status->clock);
-	gz_json_double(&json, "noise_deg", status->noise_deg);
-	gz_json_display(&json, "display", &status->display);
-	print_json_correction(&json, status);
-	print_json_recording(&json, status);
-	gz_json_uint(&json, "subscribers", status->subscribers);
-	gz_json_text(&json, "version", status->version);
-	gz_json_text(&json, "stream", endpoint);
-	gz_json_end(&json);
-}
-
-static enum gazectl_exit show(const struct status_settings *settings, struct gz_control *control,
-			      const struct gz_log *log)
+static enum gazectl_exit show_status(const struct status_settings *settings,
+				     struct gz_control *control, const struct gz_log *log)
 {
 	static const char *const topics[] = { GZ_TOPIC_STATUS, NULL };
 	struct gz_stream *stream = NULL;
@@ -235,30 +213,31 @@ static enum gazectl_exit show(const struct status_settings *settings, struct gz_
 	if (exit_status != GAZECTL_DONE)
 		return exit_status;
 	if (!gazectl_next_status(stream, gz_clock_now_ns() + STATUS_PATIENCE_NS, &status)) {
-		gz_err(log, "%s sends no status: it is no gazed, or hangs; restart it",
+		gz_err(log, "%s sends no status: it is not gazed, or gazed hangs; restart it",
 		       gz_stream_endpoint(stream));
 		exit_status = GAZECTL_FAILED;
-	} else if (settings->json) {
-		print_json(&status, gz_stream_endpoint(stream));
-	} else {
-		print_table(&status, gz_stream_endpoint(stream));
+	} else if (!settings->json) {
+		print_status_table(&status, gz_stream_endpoint(stream));
+	} else if (gz_output_json_print(json_status(&status, gz_stream_endpoint(stream)), stdout,
+					log) != GZ_OK) {
+		exit_status = GAZECTL_FAILED;
 	}
 	gz_stream_close(&stream);
 	return exit_status;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int status_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct status_settings settings;
 	struct gz_operands operands;
-	int exit_status;
-	if (!gz_command_read_arguments(&gazectl_status, argc, argv, log, &settings, &operands,
-				       &exit_status))
+	int exit_status =
+		gz_command_read_arguments(&gazectl_status, argc, argv, log, &settings, &operands);
+	if (exit_status != GZ_COMMAND_GO_ON)
 		return exit_status;
 	struct gz_control *control = NULL;
 	if (gazectl_open_control(&settings.common, log, &control) != GZ_OK)
 		return GAZECTL_USAGE;
-	exit_status = show(&settings, control, log);
+	exit_status = show_status(&settings, control, log);
 	gz_control_close(&control);
 	return exit_status;
 }
@@ -268,9 +247,10 @@ const struct gz_command gazectl_status = {
 	.name = "status",
 	.operands = "",
 	.operands_max = 0,
-	.summary = "print how the tracker, its clock and the recording are",
-	.details = "Waits for the daemon's next status message, at most a second old.\n",
+	.summary = "print the state of the tracker, its clock and the recording",
+	.details =
+		"Waits for the next status message of the daemon, which sends one every second.\n",
 	.options = status_options,
 	.option_count = sizeof status_options / sizeof status_options[0],
-	.run = run,
+	.run = status_run,
 };

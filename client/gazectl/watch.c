@@ -1,4 +1,4 @@
-/* gazectl watch: the stream, line by line, or refreshed in place on a terminal. */
+/* gazectl watch: prints the stream line by line, or refreshed in place on a terminal. */
 #include "client/gazectl/gazectl.h"
 
 #include <inttypes.h>
@@ -12,17 +12,18 @@
 
 #define GZ_LOG_MODULE "gazectl"
 
-/* ECMA-48, EL, behind a carriage return. */
+/* Carriage return, then EL of ECMA-48. */
 #define ERASE_LINE "\r\033[K"
-/* DEC private mode 7: a line longer than the terminal is wide is cut, so that one erasure is
- * enough. */
+/* DEC private mode 7: a line longer than the terminal is cut, so that erasing one line is enough.
+ */
 #define WRAP_OFF "\033[?7l"
 #define WRAP_ON  "\033[?7h"
 
-/* Chosen: as often as an eye can follow numbers that change. */
+/* Shortest time between two refreshes. Chosen: as often as a reader can follow changing numbers. */
 #define REFRESH_NS (GZ_NS_PER_S / 20)
 
-/* Chosen: how often a daemon that is away is asked whether its stream has moved to another port. */
+/* How often the daemon is asked whether its stream has moved to another port, while the stream is
+ * disconnected. Chosen. */
 #define ASK_AGAIN_NS GZ_NS_PER_S
 
 struct watch_settings {
@@ -39,12 +40,12 @@ static const struct gz_option watch_options[] = {
 	  .min = 0,
 	  .max = 1e9,
 	  .preset = "0",
-	  .help = "end after so many messages; 0 goes on until Ctrl-C" },
+	  .help = "end after this many messages; 0: run until Ctrl-C" },
 	{ .key = "all",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct watch_settings, all),
 	  .preset = "false",
-	  .help = "print every message also on a terminal" },
+	  .help = "print every message, even on a terminal" },
 };
 
 static const char *const preset_topics[] = { GZ_TOPIC_GAZE, GZ_TOPIC_FIXATIONS, GZ_TOPIC_SACCADES,
@@ -56,11 +57,11 @@ struct watch {
 	const struct gz_log *log;
 	struct gz_control *control;
 	struct gz_stream *stream;
-	bool refreshes; /* in place, at the pace of an eye */
+	bool refreshes; /* in place, at most every REFRESH_NS */
 	int64_t shown_ns;
-	bool line_open; /* the gaze stands on a line that the next message replaces */
+	bool line_open; /* the last line is gaze, which the next message replaces */
 	uint64_t messages;
-	uint64_t lost; /* by streams that were closed since */
+	uint64_t lost; /* by streams that were closed */
 	int64_t asked_ns;
 };
 
@@ -135,7 +136,7 @@ static void print_message(struct gz_message *message)
 	}
 }
 
-/* On a terminal: whether to leave this message out. */
+/* Whether to skip this message on a terminal. */
 static bool too_soon(struct watch *watch, const struct gz_message *message)
 {
 	if (message->kind == GZ_MESSAGE_FIXATION)
@@ -148,7 +149,7 @@ static bool too_soon(struct watch *watch, const struct gz_message *message)
 	return false;
 }
 
-static void show(struct watch *watch, struct gz_message *message)
+static void show_message(struct watch *watch, struct gz_message *message)
 {
 	if (!watch->refreshes) {
 		print_message(message);
@@ -175,7 +176,7 @@ static uint64_t count_lost(struct watch *watch)
 	return watch->lost + counters.lost;
 }
 
-/* A daemon on TCP that was started anew may publish on another port: ask, and follow. */
+/* A daemon that was restarted may publish on another TCP port: ask for it, and follow. */
 static void follow_port(struct watch *watch)
 {
 	struct gz_stream_counters counters;
@@ -196,7 +197,7 @@ static void follow_port(struct watch *watch)
 	watch->stream = stream;
 }
 
-static void follow(struct watch *watch)
+static void follow_stream(struct watch *watch)
 {
 	struct gz_message message;
 	while (!gz_command_interrupted() && !ferror(stdout)) {
@@ -204,7 +205,7 @@ static void follow(struct watch *watch)
 			follow_port(watch);
 			continue;
 		}
-		show(watch, &message);
+		show_message(watch, &message);
 		watch->messages++;
 		if (watch->settings->count > 0 &&
 		    watch->messages >= (uint64_t)watch->settings->count)
@@ -219,9 +220,9 @@ static enum gazectl_exit watch_stream(struct watch *watch)
 	if (status != GAZECTL_DONE)
 		return status;
 	gz_command_catch_signals();
-	/* A reader behind a pipe wants each line when it is there. */
+	/* A program that reads from a pipe gets each line at once. */
 	setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
-	follow(watch);
+	follow_stream(watch);
 	if (watch->line_open)
 		putchar('\n');
 	gz_info(watch->log, "%" PRIu64 " messages, %" PRIu64 " lost", watch->messages,
@@ -230,13 +231,13 @@ static enum gazectl_exit watch_stream(struct watch *watch)
 	return GAZECTL_DONE;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int watch_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct watch_settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazectl_watch, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazectl_watch, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	struct watch watch = {
 		.settings = &settings,
@@ -256,13 +257,13 @@ const struct gz_command gazectl_watch = {
 	.name = "watch",
 	.operands = "[TOPIC]...",
 	.operands_max = -1,
-	.summary = "print the stream as it comes",
+	.summary = "print the stream",
 	.details =
 		"TOPIC is the beginning of a topic: gaze, fixations, saccades, blinks, status, "
-		"surfaces;\nthe first four if none is given. On a terminal the gaze is refreshed "
-		"in place. Goes on\nwhen the daemon dies and returns. The last line tells how "
-		"many messages were lost.\n",
+		"surfaces;\nwithout TOPIC the first four. On a terminal the gaze is refreshed in "
+		"place. The command\nkeeps running when the daemon ends and returns. The last line "
+		"gives the number of lost messages.\n",
 	.options = watch_options,
 	.option_count = sizeof watch_options / sizeof watch_options[0],
-	.run = run,
+	.run = watch_run,
 };

@@ -1,12 +1,15 @@
 #include "drivers/gazepoint/gazepoint_protocol.h"
 
-#include <ctype.h>
+#include <expat.h>
 #include <math.h>
+#include <stdalign.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/random.h>
 
-#include "base/number.h"
+#include "base/text.h"
 
 char *gz_gazepoint_framer_room(struct gz_gazepoint_framer *framer, size_t *out_size)
 {
@@ -24,9 +27,9 @@ void gz_gazepoint_framer_add(struct gz_gazepoint_framer *framer, size_t size)
 	framer->end += size;
 }
 
-/* No line end within the longest record: what is here is thrown away, and what follows up to the
+/* Without a line end within the longest record, drop what has arrived and what follows up to the
  * next line end. */
-static enum gz_result skip_long(struct gz_gazepoint_framer *framer)
+static enum gz_result skip_long_record(struct gz_gazepoint_framer *framer)
 {
 	bool first = !framer->skipping;
 	framer->skipping = true;
@@ -34,19 +37,19 @@ static enum gz_result skip_long(struct gz_gazepoint_framer *framer)
 	return first ? GZ_ERR_PROTOCOL : GZ_ERR_TIMEOUT;
 }
 
-static bool is_padding(char c)
+static bool is_record_padding(char c)
 {
 	return c == '\0' || c == '\r' || c == ' ' || c == '\t';
 }
 
-/* Some servers count the NUL of a C string to what they send. */
-static void trim(const char **text, size_t *size)
+/* Some servers also send the NUL of a C string. */
+static void trim_record(const char **text, size_t *size)
 {
-	while (*size > 0 && is_padding(**text)) {
+	while (*size > 0 && is_record_padding(**text)) {
 		(*text)++;
 		(*size)--;
 	}
-	while (*size > 0 && is_padding((*text)[*size - 1]))
+	while (*size > 0 && is_record_padding((*text)[*size - 1]))
 		(*size)--;
 }
 
@@ -60,7 +63,8 @@ enum gz_result gz_gazepoint_framer_next(struct gz_gazepoint_framer *framer, cons
 		size_t size = newline ? (size_t)(newline - text) : unread;
 		bool longest = size >= GZ_GAZEPOINT_RECORD_MAX;
 		if (!newline)
-			return longest || framer->skipping ? skip_long(framer) : GZ_ERR_TIMEOUT;
+			return longest || framer->skipping ? skip_long_record(framer)
+							   : GZ_ERR_TIMEOUT;
 		framer->begin += size + 1;
 		if (framer->skipping) {
 			framer->skipping = false;
@@ -68,7 +72,7 @@ enum gz_result gz_gazepoint_framer_next(struct gz_gazepoint_framer *framer, cons
 		}
 		if (longest)
 			return GZ_ERR_PROTOCOL;
-		trim(&text, &size);
+		trim_record(&text, &size);
 		if (size == 0)
 			continue;
 		*out_record = text;
@@ -81,16 +85,16 @@ enum field_type {
 	REAL,  /* double */
 	WHOLE, /* long long */
 	FLAG,  /* bool */
-	TEXT,  /* char[], its size in size */
+	TEXT,  /* char[] of size bytes */
 };
 
-/* An attribute, where it goes, and what says that it came. */
-struct field {
+/* An attribute, where its value goes, and the flag that says that it was sent. */
+struct record_field {
 	const char *name;
 	enum field_type type;
 	size_t offset;
 	size_t size;
-	size_t seen; /* offset of a bool; 0, which is kind, if there is none */
+	size_t seen; /* offset of a bool; 0, the offset of kind, if there is none */
 };
 
 #define AT(member) offsetof(struct gz_gazepoint_record, member)
@@ -109,7 +113,7 @@ struct field {
 		letter "PMMV", FLAG, AT(eye[side].pupil_mm_valid), 0, 0        \
 	}
 
-static const struct field data_fields[] = {
+static const struct record_field data_fields[] = {
 	{ "CNT", WHOLE, AT(counter), 0, AT(has_counter) },
 	{ "TIME", REAL, AT(time_s), 0, 0 },
 	{ "TIME_TICK", WHOLE, AT(tick), 0, AT(has_tick) },
@@ -121,7 +125,7 @@ static const struct field data_fields[] = {
 	{ NULL, REAL, 0, 0, 0 },
 };
 
-static const struct field answer_fields[] = {
+static const struct record_field answer_fields[] = {
 	{ "ID", TEXT, AT(id), GZ_GAZEPOINT_ID_SIZE, 0 },
 	{ "VALUE", TEXT, AT(value), GZ_NAME_SIZE, 0 },
 	{ "FREQ", WHOLE, AT(frequency), 0, 0 },
@@ -131,15 +135,15 @@ static const struct field answer_fields[] = {
 	{ NULL, REAL, 0, 0, 0 },
 };
 
-static const struct field screen_fields[] = {
+static const struct record_field screen_fields[] = {
 	{ "WIDTH", REAL, AT(width), 0, 0 },
 	{ "HEIGHT", REAL, AT(height), 0, 0 },
 	{ NULL, REAL, 0, 0, 0 },
 };
 
-static const struct field no_fields[] = { { NULL, REAL, 0, 0, 0 } };
+static const struct record_field no_fields[] = { { NULL, REAL, 0, 0, 0 } };
 
-static struct gz_gazepoint_record unmeasured(void)
+static struct gz_gazepoint_record unmeasured_record(void)
 {
 	struct gz_gazepoint_record record = {
 		.time_s = NAN,
@@ -158,8 +162,8 @@ static struct gz_gazepoint_record unmeasured(void)
 	return record;
 }
 
-/* "nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "inf": printf() of several C libraries. */
-static bool says_unmeasured(const char *text)
+/* "nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "inf": what printf() of several C libraries prints. */
+static bool is_unmeasured_text(const char *text)
 {
 	if (*text == '-' || *text == '+')
 		text++;
@@ -167,12 +171,12 @@ static bool says_unmeasured(const char *text)
 	       strncmp(text, "1.#", 3) == 0;
 }
 
-static bool take_real(const char *text, double *out_value)
+static bool read_real_field(const char *text, double *out_value)
 {
-	return gz_number_parse(text, out_value) || says_unmeasured(text);
+	return gz_number_parse(text, out_value) || is_unmeasured_text(text);
 }
 
-static bool take_flag(const char *text, bool *out_flag)
+static bool read_flag_field(const char *text, bool *out_flag)
 {
 	long long value;
 	if (!gz_number_parse_whole(text, &value))
@@ -181,21 +185,21 @@ static bool take_flag(const char *text, bool *out_flag)
 	return true;
 }
 
-/* @return whether @p text can be what the field holds */
-static bool take_field(struct gz_gazepoint_record *record, const struct field *field,
-		       const char *text)
+/* Store a value. @return whether @p text is valid for the field */
+static bool read_record_field(struct gz_gazepoint_record *record, const struct record_field *field,
+			      const char *text)
 {
 	void *at = (char *)record + field->offset;
 	bool good = true;
 	switch (field->type) {
 	case REAL:
-		good = take_real(text, at);
+		good = read_real_field(text, at);
 		break;
 	case WHOLE:
 		good = gz_number_parse_whole(text, at);
 		break;
 	case FLAG:
-		good = take_flag(text, at);
+		good = read_flag_field(text, at);
 		break;
 	case TEXT:
 		if (strlen(text) < field->size)
@@ -207,13 +211,14 @@ static bool take_field(struct gz_gazepoint_record *record, const struct field *f
 	return good;
 }
 
-/* What the element is to be read into. */
-struct reading {
+/* The record that an element is read into. */
+struct record_reading {
 	struct gz_gazepoint_record record;
 	bool good;
 };
 
-static const struct field *fields_of(struct gz_gazepoint_record *record, const char *name)
+static const struct record_field *fields_of_element(struct gz_gazepoint_record *record,
+						    const char *name)
 {
 	if (strcmp(name, "REC") == 0) {
 		record->kind = GZ_GAZEPOINT_DATA;
@@ -231,15 +236,15 @@ static const struct field *fields_of(struct gz_gazepoint_record *record, const c
 	return no_fields;
 }
 
-static void take_element(void *user, const char *name, const char *const *attributes)
+static void read_record_element(struct record_reading *reading, const char *name,
+				const char *const *attributes)
 {
-	struct reading *reading = user;
-	const struct field *fields = fields_of(&reading->record, name);
+	const struct record_field *fields = fields_of_element(&reading->record, name);
 	for (; attributes[0]; attributes += 2) {
-		const struct field *field = fields;
+		const struct record_field *field = fields;
 		while (field->name && strcmp(field->name, attributes[0]) != 0)
 			field++;
-		if (field->name && !take_field(&reading->record, field, attributes[1]))
+		if (field->name && !read_record_field(&reading->record, field, attributes[1]))
 			reading->good = false;
 	}
 	bool answer = fields == answer_fields;
@@ -247,12 +252,136 @@ static void take_element(void *user, const char *name, const char *const *attrib
 		reading->good = false;
 }
 
+struct gz_gazepoint_xml {
+	size_t used;
+	unsigned long salt; /* of the hash tables of Expat: nobody can choose names that collide */
+	alignas(max_align_t) unsigned char bytes[GZ_GAZEPOINT_XML_ARENA];
+};
+
+/* Memory of the parse that is running. A thread variable, because the memory functions of Expat
+ * take no user pointer. */
+static _Thread_local struct gz_gazepoint_xml *parsing;
+
+/* The size of each piece is stored in front of it, for realloc(). */
+union head {
+	size_t size;
+	max_align_t align;
+};
+
+static void *arena_malloc(size_t size)
+{
+	struct gz_gazepoint_xml *xml = parsing;
+	size_t room = sizeof xml->bytes - xml->used;
+	if (size > sizeof xml->bytes || room < sizeof(union head))
+		return NULL;
+	size_t rounded = (size + alignof(max_align_t) - 1) & ~(alignof(max_align_t) - 1);
+	if (rounded > room - sizeof(union head))
+		return NULL;
+	union head *head = (union head *)(void *)(xml->bytes + xml->used);
+	head->size = size;
+	xml->used += sizeof *head + rounded;
+	return head + 1;
+}
+
+static void *arena_realloc(void *old, size_t size)
+{
+	if (!old)
+		return arena_malloc(size);
+	size_t old_size = ((union head *)old - 1)->size;
+	if (size <= old_size)
+		return old;
+	void *grown = arena_malloc(size);
+	if (grown)
+		memcpy(grown, old, old_size);
+	return grown;
+}
+
+/* Everything is freed at once, by the next parse. */
+static void arena_free(void *old)
+{
+	(void)old;
+}
+
+struct element_visit {
+	XML_Parser parser;
+	struct record_reading *reading;
+	int elements;
+};
+
+static void XMLCALL on_element_start(void *user, const XML_Char *name, const XML_Char **attributes)
+{
+	struct element_visit *visit = user;
+	if (++visit->elements > 1)
+		XML_StopParser(visit->parser, XML_FALSE);
+	else
+		read_record_element(visit->reading, name, (const char *const *)attributes);
+}
+
+static void XMLCALL on_document_type(void *user, const XML_Char *name, const XML_Char *system,
+				     const XML_Char *public, int has_internal_subset)
+{
+	const struct element_visit *visit = user;
+	(void)name;
+	(void)system;
+	(void)public;
+	(void)has_internal_subset;
+	XML_StopParser(visit->parser, XML_FALSE);
+}
+
+enum gz_result gz_gazepoint_xml_create(struct gz_gazepoint_xml **out_xml)
+{
+	struct gz_gazepoint_xml *xml = calloc(1, sizeof *xml);
+	if (!xml)
+		return GZ_ERR_NO_MEM;
+	/* If no random number is available yet, leave the salt at 0: Expat then finds its own. */
+	if (getrandom(&xml->salt, sizeof xml->salt, GRND_NONBLOCK) < 0)
+		xml->salt = 0;
+	*out_xml = xml;
+	return GZ_OK;
+}
+
+/* Use a new parser for each record: a damaged record cannot harm the next one, and the memory is
+ * bounded. This takes a few microseconds. */
+static enum gz_result parse_element(struct gz_gazepoint_xml *xml, const char *text, size_t size,
+				    struct element_visit *visit)
+{
+	static const XML_Memory_Handling_Suite memory = { arena_malloc, arena_realloc, arena_free };
+	if (size > INT32_MAX)
+		return GZ_ERR_PROTOCOL;
+	xml->used = 0;
+	visit->parser = XML_ParserCreate_MM("UTF-8", &memory, NULL);
+	if (!visit->parser)
+		return GZ_ERR_PROTOCOL;
+	XML_SetHashSalt(visit->parser, xml->salt);
+	XML_SetUserData(visit->parser, visit);
+	XML_SetStartElementHandler(visit->parser, on_element_start);
+	XML_SetStartDoctypeDeclHandler(visit->parser, on_document_type);
+	enum XML_Status status = XML_Parse(visit->parser, text, (int)size, XML_TRUE);
+	/* Accept an element that is not closed: the only error of Expat is then its missing end. */
+	bool whole =
+		status == XML_STATUS_OK || XML_GetErrorCode(visit->parser) == XML_ERROR_NO_ELEMENTS;
+	XML_ParserFree(visit->parser);
+	return whole && visit->elements == 1 ? GZ_OK : GZ_ERR_PROTOCOL;
+}
+
+void gz_gazepoint_xml_destroy(struct gz_gazepoint_xml **xml)
+{
+	if (!xml || !*xml)
+		return;
+	free(*xml);
+	*xml = NULL;
+}
+
 enum gz_result gz_gazepoint_parse(struct gz_gazepoint_xml *xml, const char *record, size_t size,
 				  struct gz_gazepoint_record *out_record,
 				  enum gz_malformed *out_malformed)
 {
-	struct reading reading = { .record = unmeasured(), .good = true };
-	if (gz_gazepoint_xml_read(xml, record, size, take_element, &reading) != GZ_OK) {
+	struct record_reading reading = { .record = unmeasured_record(), .good = true };
+	struct element_visit visit = { .reading = &reading };
+	parsing = xml;
+	enum gz_result result = parse_element(xml, record, size, &visit);
+	parsing = NULL;
+	if (result != GZ_OK) {
 		*out_malformed = GZ_MALFORMED_SYNTAX;
 		return GZ_ERR_PROTOCOL;
 	}
@@ -264,7 +393,7 @@ enum gz_result gz_gazepoint_parse(struct gz_gazepoint_xml *xml, const char *reco
 	return GZ_OK;
 }
 
-static bool believable(double frequency_hz)
+static bool is_believable_frequency(double frequency_hz)
 {
 	return frequency_hz >= 1e3 && frequency_hz <= 9e9;
 }
@@ -273,7 +402,7 @@ int64_t gz_gazepoint_frequency_hz(long long sent)
 {
 	double bits;
 	memcpy(&bits, &sent, sizeof bits);
-	if (believable((double)sent))
+	if (is_believable_frequency((double)sent))
 		return sent;
-	return believable(bits) ? llround(bits) : 0;
+	return is_believable_frequency(bits) ? llround(bits) : 0;
 }

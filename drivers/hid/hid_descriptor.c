@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "drivers/hid/hid_usages.h"
-
 /* Item prefixes without their size bits (6.2.2.2, 6.2.2.4, 6.2.2.7, 6.2.2.8). */
 enum {
 	LONG_ITEM = 0xfe,
@@ -46,13 +44,13 @@ struct item {
 	uint32_t data;
 };
 
-/* A limit as sent: what it means depends on its partner. */
+/* A limit as sent. Whether it is signed depends on the other limit. */
 struct limit {
 	uint32_t data;
 	unsigned size;
 };
 
-/* The item state table's globals. */
+/* The globals of the item state table. */
 struct globals {
 	uint32_t usage_page;
 	struct limit logical_min, logical_max, physical_min, physical_max;
@@ -62,10 +60,10 @@ struct globals {
 	uint8_t report_id;
 };
 
-/* A usage, or a range of them, whose page may be known only at the main item. */
+/* A usage, or a range of usages. Its page may become known only at the main item. */
 struct usages {
 	uint32_t first, last;
-	bool extended; /* the page is in it */
+	bool extended; /* it includes the page */
 };
 
 struct locals {
@@ -74,7 +72,7 @@ struct locals {
 	bool has_min, has_max;
 	struct item min, max;
 	bool in_set;      /* between delimiters */
-	bool set_started; /* and the first of the set was seen */
+	bool set_started; /* the first usage of the set has been read */
 };
 
 struct parser {
@@ -84,18 +82,18 @@ struct parser {
 	struct globals pushed[GZ_HID_PUSH_MAX];
 	size_t push_count;
 	struct locals locals;
-	int collection; /* innermost open one */
+	int collection; /* innermost open collection */
 	size_t depth;
-	bool unnumbered; /* a report without ID was declared */
+	bool unnumbered; /* a report without an ID was declared */
 };
 
-static bool refuse(struct parser *parser, size_t at, const char *text)
+static bool refuse_descriptor(struct parser *parser, size_t at, const char *text)
 {
 	parser->fault = (struct gz_hid_fault) { at, text };
 	return false;
 }
 
-static int64_t sign_extended(uint32_t data, unsigned size)
+static int64_t sign_extend_item(uint32_t data, unsigned size)
 {
 	switch (size) {
 	case 1:
@@ -107,41 +105,41 @@ static int64_t sign_extended(uint32_t data, unsigned size)
 	}
 }
 
-/* Limits are signed if the minimum is negative, else both count from 0 (5.8: a range of 0 to 255
- * may be written with one byte each). */
+/* Limits are signed if the minimum is negative; otherwise both are unsigned (5.8: a range of 0 to
+ * 255 may be written with one byte each). */
 static void resolve_limits(struct limit min, struct limit max, int64_t *out_min, int64_t *out_max)
 {
-	*out_min = min.size ? sign_extended(min.data, min.size) : 0;
+	*out_min = min.size ? sign_extend_item(min.data, min.size) : 0;
 	if (*out_min < 0)
-		*out_max = max.size ? sign_extended(max.data, max.size) : 0;
+		*out_max = max.size ? sign_extend_item(max.data, max.size) : 0;
 	else
 		*out_max = max.data;
 }
 
-/* The exponent is a signed nibble (6.2.2.7); some write a signed byte. */
-static bool take_exponent(struct parser *parser, const struct item *item)
+/* The exponent is a signed nibble (6.2.2.7); some devices send a signed byte. */
+static bool take_unit_exponent(struct parser *parser, const struct item *item)
 {
-	int64_t exponent = sign_extended(item->data, item->size);
+	int64_t exponent = sign_extend_item(item->data, item->size);
 	if (item->data <= 0xf)
 		exponent = item->data < 8 ? (int64_t)item->data : (int64_t)item->data - 16;
 	if (exponent < INT8_MIN || exponent > INT8_MAX)
-		return refuse(parser, item->at, "a unit exponent that is not -128 to 127");
+		return refuse_descriptor(parser, item->at, "a unit exponent outside -128 to 127");
 	parser->globals.unit_exponent = (int)exponent;
 	return true;
 }
 
-static bool push(struct parser *parser, const struct item *item)
+static bool push_globals(struct parser *parser, const struct item *item)
 {
 	if (parser->push_count == GZ_HID_PUSH_MAX)
-		return refuse(parser, item->at, "too many pushed states");
+		return refuse_descriptor(parser, item->at, "too many pushed states");
 	parser->pushed[parser->push_count++] = parser->globals;
 	return true;
 }
 
-static bool pop(struct parser *parser, const struct item *item)
+static bool pop_globals(struct parser *parser, const struct item *item)
 {
 	if (parser->push_count == 0)
-		return refuse(parser, item->at, "a pop without a push");
+		return refuse_descriptor(parser, item->at, "a pop without a push");
 	parser->globals = parser->pushed[--parser->push_count];
 	return true;
 }
@@ -149,7 +147,7 @@ static bool pop(struct parser *parser, const struct item *item)
 static bool take_report_id(struct parser *parser, const struct item *item)
 {
 	if (item->data == 0 || item->data > UINT8_MAX)
-		return refuse(parser, item->at, "a report ID that is not 1 to 255");
+		return refuse_descriptor(parser, item->at, "a report ID outside 1 to 255");
 	parser->globals.report_id = (uint8_t)item->data;
 	return true;
 }
@@ -157,7 +155,7 @@ static bool take_report_id(struct parser *parser, const struct item *item)
 static bool take_usage_page(struct parser *parser, const struct item *item)
 {
 	if (item->data > UINT16_MAX)
-		return refuse(parser, item->at, "a usage page beyond 65535");
+		return refuse_descriptor(parser, item->at, "a usage page above 65535");
 	parser->globals.usage_page = item->data;
 	return true;
 }
@@ -182,7 +180,7 @@ static bool take_global(struct parser *parser, const struct item *item)
 		globals->physical_max = limit;
 		return true;
 	case GLOBAL_UNIT_EXPONENT:
-		return take_exponent(parser, item);
+		return take_unit_exponent(parser, item);
 	case GLOBAL_UNIT:
 		globals->unit = item->data;
 		return true;
@@ -195,15 +193,15 @@ static bool take_global(struct parser *parser, const struct item *item)
 	case GLOBAL_REPORT_ID:
 		return take_report_id(parser, item);
 	case GLOBAL_PUSH:
-		return push(parser, item);
+		return push_globals(parser, item);
 	case GLOBAL_POP:
-		return pop(parser, item);
-	default: /* reserved: without meaning to us */
+		return pop_globals(parser, item);
+	default: /* reserved */
 		return true;
 	}
 }
 
-static bool is_ours(const struct parser *parser, const struct usages *usages)
+static bool is_tracker_usage(const struct parser *parser, const struct usages *usages)
 {
 	uint32_t page = usages->extended ? usages->first >> 16 : parser->globals.usage_page;
 	return page == GZ_HID_PAGE_TRACKERS;
@@ -213,20 +211,20 @@ static bool add_usages(struct parser *parser, size_t at, struct usages usages)
 {
 	struct locals *locals = &parser->locals;
 	if (locals->in_set && locals->set_started) {
-		/* An alternative: ours is preferred to the device's preference. */
+		/* An alternative: a usage of our page is preferred, whatever the device prefers. */
 		struct usages *first = &locals->usages[locals->count - 1];
-		if (is_ours(parser, &usages) && !is_ours(parser, first))
+		if (is_tracker_usage(parser, &usages) && !is_tracker_usage(parser, first))
 			*first = usages;
 		return true;
 	}
 	if (locals->count == GZ_HID_USAGES_MAX)
-		return refuse(parser, at, "too many usages for one item");
+		return refuse_descriptor(parser, at, "too many usages for one item");
 	locals->usages[locals->count++] = usages;
 	locals->set_started = true;
 	return true;
 }
 
-/* A range is whole when both its ends were given, in any order. */
+/* A range is complete when both its ends are given, in any order. */
 static bool take_range_end(struct parser *parser, const struct item *item)
 {
 	struct locals *locals = &parser->locals;
@@ -241,15 +239,17 @@ static bool take_range_end(struct parser *parser, const struct item *item)
 		return true;
 	locals->has_min = locals->has_max = false;
 	struct usages range = { locals->min.data, locals->max.data, locals->min.size == 4 };
-	/* An extended minimum lends its page to a maximum without one. */
+	/* An extended minimum gives its page to a maximum without one. */
 	if (range.extended && locals->max.size < 4)
 		range.last |= range.first & 0xffff0000u;
 	else if (!range.extended && locals->max.size == 4)
-		return refuse(parser, item->at, "a range of usages with one page for one end only");
+		return refuse_descriptor(parser, item->at,
+					 "a range of usages with a page at one end only");
 	if (range.first > range.last)
-		return refuse(parser, item->at, "a range of usages that ends before it begins");
+		return refuse_descriptor(parser, item->at,
+					 "a range of usages that ends before it begins");
 	if (range.first >> 16 != range.last >> 16)
-		return refuse(parser, item->at, "a range of usages over several pages");
+		return refuse_descriptor(parser, item->at, "a range of usages across pages");
 	return add_usages(parser, item->at, range);
 }
 
@@ -259,7 +259,7 @@ static bool take_delimiter(struct parser *parser, const struct item *item)
 	struct locals *locals = &parser->locals;
 	bool open = item->data == 1;
 	if (item->data > 1 || open == locals->in_set)
-		return refuse(parser, item->at, "delimiters that do not pair");
+		return refuse_descriptor(parser, item->at, "unpaired delimiters");
 	locals->in_set = open;
 	locals->set_started = false;
 	return true;
@@ -281,8 +281,9 @@ static bool take_local(struct parser *parser, const struct item *item)
 	}
 }
 
-/* The page of a usage without one is the last given before the main item (6.2.2.8). */
-static uint32_t with_page(const struct parser *parser, const struct usages *usages, uint32_t usage)
+/* A usage without a page takes the last page given before the main item (6.2.2.8). */
+static uint32_t usage_with_page(const struct parser *parser, const struct usages *usages,
+				uint32_t usage)
 {
 	return usages->extended ? usage : parser->globals.usage_page << 16 | (usage & 0xffff);
 }
@@ -292,14 +293,15 @@ static bool open_collection(struct parser *parser, const struct item *item)
 	struct gz_hid_descriptor *out = parser->out;
 	const struct locals *locals = &parser->locals;
 	if (parser->depth == GZ_HID_DEPTH_MAX)
-		return refuse(parser, item->at, "collections nested too deep");
+		return refuse_descriptor(parser, item->at, "collections nested too deeply");
 	if (out->collection_count == GZ_HID_COLLECTIONS_MAX)
-		return refuse(parser, item->at, "too many collections");
+		return refuse_descriptor(parser, item->at, "too many collections");
 	if (item->data > UINT8_MAX)
-		return refuse(parser, item->at, "a collection type beyond 255");
+		return refuse_descriptor(parser, item->at, "a collection type above 255");
 	out->collections[out->collection_count] = (struct gz_hid_collection) {
-		.usage = locals->count ? with_page(parser, locals->usages, locals->usages[0].first)
-				       : 0,
+		.usage = locals->count
+				 ? usage_with_page(parser, locals->usages, locals->usages[0].first)
+				 : 0,
 		.type = (uint8_t)item->data,
 		.parent = parser->collection,
 	};
@@ -311,14 +313,15 @@ static bool open_collection(struct parser *parser, const struct item *item)
 static bool close_collection(struct parser *parser, const struct item *item)
 {
 	if (parser->depth == 0)
-		return refuse(parser, item->at, "the end of a collection that was not begun");
+		return refuse_descriptor(parser, item->at,
+					 "the end of a collection that was never opened");
 	parser->collection = parser->out->collections[parser->collection].parent;
 	parser->depth--;
 	return true;
 }
 
-static struct gz_hid_report *find_report(struct gz_hid_descriptor *descriptor,
-					 enum gz_hid_report_type type, uint8_t id)
+static struct gz_hid_report *find_hid_report(struct gz_hid_descriptor *descriptor,
+					     enum gz_hid_report_type type, uint8_t id)
 {
 	for (size_t i = 0; i < descriptor->report_count; i++) {
 		struct gz_hid_report *report = &descriptor->reports[i];
@@ -332,7 +335,7 @@ static struct gz_hid_report *find_or_add_report(struct parser *parser, enum gz_h
 {
 	struct gz_hid_descriptor *out = parser->out;
 	uint8_t id = parser->globals.report_id;
-	struct gz_hid_report *report = find_report(out, type, id);
+	struct gz_hid_report *report = find_hid_report(out, type, id);
 	if (report || out->report_count == GZ_HID_REPORTS_MAX)
 		return report;
 	report = &out->reports[out->report_count++];
@@ -340,30 +343,30 @@ static struct gz_hid_report *find_or_add_report(struct parser *parser, enum gz_h
 	return report;
 }
 
-/* Elements that the i-th of the usages stands for: the last one for all that are left (6.2.2.8), an
- * array's for all. */
-static uint32_t elements_of(const struct locals *locals, size_t i, uint32_t left)
+/* Elements that the i-th of the usages names. The last one names all that are left (6.2.2.8), and
+ * each usage of an array names all. */
+static uint32_t elements_of_usage(const struct locals *locals, size_t i, uint32_t left)
 {
 	const struct usages *usages = &locals->usages[i];
 	uint32_t named = usages->last - usages->first + 1;
 	return i + 1 == locals->count || named > left ? left : named;
 }
 
-static bool add_field(struct parser *parser, const struct item *item,
-		      const struct gz_hid_field *field)
+static bool add_hid_field(struct parser *parser, const struct item *item,
+			  const struct gz_hid_field *field)
 {
 	struct gz_hid_descriptor *out = parser->out;
 	if (field->logical_min > field->logical_max)
-		return refuse(parser, item->at, "a logical minimum above its maximum");
+		return refuse_descriptor(parser, item->at, "a logical minimum above its maximum");
 	if (field->physical_min > field->physical_max)
-		return refuse(parser, item->at, "a physical minimum above its maximum");
+		return refuse_descriptor(parser, item->at, "a physical minimum above its maximum");
 	if (out->field_count == GZ_HID_FIELDS_MAX)
-		return refuse(parser, item->at, "too many fields");
+		return refuse_descriptor(parser, item->at, "too many fields");
 	out->fields[out->field_count++] = *field;
 	return true;
 }
 
-/* What the globals say of any field. */
+/* Set what the globals define for every field. */
 static struct gz_hid_field field_from_globals(const struct parser *parser)
 {
 	const struct globals *globals = &parser->globals;
@@ -378,7 +381,7 @@ static struct gz_hid_field field_from_globals(const struct parser *parser)
 		       &field.logical_max);
 	resolve_limits(globals->physical_min, globals->physical_max, &field.physical_min,
 		       &field.physical_max);
-	/* 6.2.2.7: as long as both are undefined or 0, they are the logical ones. */
+	/* 6.2.2.7: while both are undefined or 0, the physical limits are the logical ones. */
 	if (field.physical_min == 0 && field.physical_max == 0) {
 		field.physical_min = field.logical_min;
 		field.physical_max = field.logical_max;
@@ -386,8 +389,8 @@ static struct gz_hid_field field_from_globals(const struct parser *parser)
 	return field;
 }
 
-static bool add_fields(struct parser *parser, const struct item *item, enum gz_hid_report_type type,
-		       uint32_t bit_offset)
+static bool add_hid_fields(struct parser *parser, const struct item *item,
+			   enum gz_hid_report_type type, uint32_t bit_offset)
 {
 	const struct locals *locals = &parser->locals;
 	struct gz_hid_field field = field_from_globals(parser);
@@ -398,12 +401,12 @@ static bool add_fields(struct parser *parser, const struct item *item, enum gz_h
 	field.bit_offset = bit_offset;
 	for (size_t i = 0; i < locals->count && left > 0; i++) {
 		const struct usages *usages = &locals->usages[i];
-		field.usage = with_page(parser, usages, usages->first);
-		field.usage_last = with_page(parser, usages, usages->last);
-		field.count = array ? left : elements_of(locals, i, left);
-		if (!add_field(parser, item, &field))
+		field.usage = usage_with_page(parser, usages, usages->first);
+		field.usage_last = usage_with_page(parser, usages, usages->last);
+		field.count = array ? left : elements_of_usage(locals, i, left);
+		if (!add_hid_field(parser, item, &field))
 			return false;
-		/* All of an array's usages are about the same elements. */
+		/* All usages of an array describe the same elements. */
 		if (array)
 			continue;
 		field.bit_offset += field.count * field.bit_size;
@@ -412,28 +415,30 @@ static bool add_fields(struct parser *parser, const struct item *item, enum gz_h
 	return true;
 }
 
-static bool take_data(struct parser *parser, const struct item *item, enum gz_hid_report_type type)
+static bool take_data_item(struct parser *parser, const struct item *item,
+			   enum gz_hid_report_type type)
 {
 	const struct globals *globals = &parser->globals;
 	if (parser->depth == 0)
-		return refuse(parser, item->at, "a report outside of any collection");
+		return refuse_descriptor(parser, item->at, "a report outside any collection");
 	if (globals->report_count == 0)
 		return true;
 	if (globals->report_size == 0)
-		return refuse(parser, item->at, "fields of no size");
+		return refuse_descriptor(parser, item->at, "fields of size 0");
 	uint64_t bits = (uint64_t)globals->report_size * globals->report_count;
 	if (globals->report_id != 0 && parser->unnumbered)
-		return refuse(parser, item->at, "reports with an ID beside one without");
+		return refuse_descriptor(parser, item->at, "a report with an ID after one without");
 	parser->unnumbered = globals->report_id == 0;
 	if (parser->unnumbered && parser->out->numbered)
-		return refuse(parser, item->at, "a report without an ID beside those with one");
+		return refuse_descriptor(parser, item->at,
+					 "a report without an ID after one with an ID");
 	parser->out->numbered = globals->report_id != 0;
 	struct gz_hid_report *report = find_or_add_report(parser, type);
 	if (!report)
-		return refuse(parser, item->at, "too many reports");
+		return refuse_descriptor(parser, item->at, "too many reports");
 	if (bits > GZ_HID_REPORT_BITS_MAX - report->bits)
-		return refuse(parser, item->at, "a report longer than 16 KiB");
-	if (!add_fields(parser, item, type, report->bits))
+		return refuse_descriptor(parser, item->at, "a report longer than 16 KiB");
+	if (!add_hid_fields(parser, item, type, report->bits))
 		return false;
 	report->bits += (uint32_t)bits;
 	return true;
@@ -443,16 +448,17 @@ static bool take_main_item(struct parser *parser, const struct item *item)
 {
 	const struct locals *locals = &parser->locals;
 	if (locals->in_set)
-		return refuse(parser, item->at, "a set of alternatives that is not closed");
+		return refuse_descriptor(parser, item->at,
+					 "a set of alternatives that is not closed");
 	if (locals->has_min || locals->has_max)
-		return refuse(parser, item->at, "a range of usages with one end");
+		return refuse_descriptor(parser, item->at, "a range of usages with one end");
 	switch (item->prefix) {
 	case MAIN_INPUT:
-		return take_data(parser, item, GZ_HID_INPUT);
+		return take_data_item(parser, item, GZ_HID_INPUT);
 	case MAIN_OUTPUT:
-		return take_data(parser, item, GZ_HID_OUTPUT);
+		return take_data_item(parser, item, GZ_HID_OUTPUT);
 	case MAIN_FEATURE:
-		return take_data(parser, item, GZ_HID_FEATURE);
+		return take_data_item(parser, item, GZ_HID_FEATURE);
 	case MAIN_COLLECTION:
 		return open_collection(parser, item);
 	case MAIN_END:
@@ -469,7 +475,7 @@ static bool take_main(struct parser *parser, const struct item *item)
 	return taken;
 }
 
-static bool take(struct parser *parser, const struct item *item)
+static bool take_item(struct parser *parser, const struct item *item)
 {
 	switch (item->prefix & TYPE_BITS) {
 	case TYPE_MAIN:
@@ -483,12 +489,13 @@ static bool take(struct parser *parser, const struct item *item)
 	}
 }
 
-/* Read the item at @p at. @return where the next one begins; 0 if this one is cut */
-static size_t next_item(const unsigned char *bytes, size_t size, size_t at, struct item *out_item)
+/* Read the item at @p at. @return where the next one begins; 0 if this one is incomplete */
+static size_t read_descriptor_item(const unsigned char *bytes, size_t size, size_t at,
+				   struct item *out_item)
 {
 	static const unsigned char sizes[] = { 0, 1, 2, 4 };
 	*out_item = (struct item) { .at = at };
-	if (bytes[at] == LONG_ITEM) { /* 6.2.2.3: none is defined */
+	if (bytes[at] == LONG_ITEM) { /* 6.2.2.3: no long item is defined */
 		out_item->prefix = LONG_ITEM;
 		if (size - at < 3 || size - at - 3 < bytes[at + 1])
 			return 0;
@@ -503,23 +510,23 @@ static size_t next_item(const unsigned char *bytes, size_t size, size_t at, stru
 	return at + 1 + out_item->size;
 }
 
-static bool parse(struct parser *parser, const unsigned char *bytes, size_t size)
+static bool parse_descriptor(struct parser *parser, const unsigned char *bytes, size_t size)
 {
 	if (size == 0)
-		return refuse(parser, 0, "it is empty");
+		return refuse_descriptor(parser, 0, "it is empty");
 	if (size > GZ_HID_DESCRIPTOR_SIZE)
-		return refuse(parser, 0, "it is longer than 4096 bytes");
+		return refuse_descriptor(parser, 0, "it is longer than 4096 bytes");
 	for (size_t at = 0; at < size;) {
 		struct item item;
-		size_t next = next_item(bytes, size, at, &item);
+		size_t next = read_descriptor_item(bytes, size, at, &item);
 		if (next == 0)
-			return refuse(parser, at, "it ends within an item");
-		if (item.prefix != LONG_ITEM && !take(parser, &item))
+			return refuse_descriptor(parser, at, "it ends within an item");
+		if (item.prefix != LONG_ITEM && !take_item(parser, &item))
 			return false;
 		at = next;
 	}
 	if (parser->depth > 0)
-		return refuse(parser, size, "a collection is not closed");
+		return refuse_descriptor(parser, size, "a collection is not closed");
 	return true;
 }
 
@@ -532,7 +539,7 @@ enum gz_result gz_hid_descriptor_parse(const unsigned char *bytes, size_t size,
 	out_descriptor->field_count = 0;
 	out_descriptor->collection_count = 0;
 	out_descriptor->report_count = 0;
-	if (parse(&parser, bytes, size))
+	if (parse_descriptor(&parser, bytes, size))
 		return GZ_OK;
 	if (out_fault)
 		*out_fault = parser.fault;
@@ -543,7 +550,7 @@ bool gz_hid_descriptor_mentions(const unsigned char *bytes, size_t size, uint32_
 {
 	for (size_t at = 0; at < size;) {
 		struct item item;
-		size_t next = next_item(bytes, size, at, &item);
+		size_t next = read_descriptor_item(bytes, size, at, &item);
 		if (next == 0)
 			return false;
 		if ((item.prefix == GLOBAL_USAGE_PAGE && item.data == page) ||

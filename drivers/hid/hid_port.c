@@ -8,48 +8,49 @@
 #include <string.h>
 #include <unistd.h>
 
-/* hidapi's device is ours under another name. */
-static hid_device *device_of(struct gz_hid_port *port)
+/* A port is hidapi's device under another name. */
+static hid_device *hidapi_device_of(struct gz_hid_port *port)
 {
 	return (hid_device *)port;
 }
 
-static const char *node_of(const char *path)
+static const char *node_name(const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	return slash ? slash + 1 : path;
 }
 
-/* A name comes from the device. What is not printable ASCII, and would not fit a log or a terminal,
- * becomes a question mark; blanks at its end go. */
-static void put(char name[GZ_NAME_SIZE], size_t at, char c)
+/* Put a character of a name, which comes from the device. Characters other than printable ASCII,
+ * which may not fit a log or a terminal, become question marks. */
+static void put_name_character(char name[GZ_NAME_SIZE], size_t at, char c)
 {
 	name[at] = c >= ' ' && c <= '~' ? c : '?';
 }
 
-static void end(char name[GZ_NAME_SIZE], size_t n)
+/* End a name, without trailing blanks. */
+static void end_name(char name[GZ_NAME_SIZE], size_t n)
 {
 	while (n > 0 && name[n - 1] == ' ')
 		n--;
 	name[n] = '\0';
 }
 
-/* Names from hidapi, which has none where the locale cannot hold it. */
-static void copy_name(const wchar_t *wide, char name[GZ_NAME_SIZE])
+/* Copy a name from hidapi, which has none if the locale cannot represent it. */
+static void copy_hidapi_name(const wchar_t *wide, char name[GZ_NAME_SIZE])
 {
 	size_t n = 0;
 	for (; wide && wide[n] && n < GZ_NAME_SIZE - 1; n++)
-		put(name, n, wide[n] > 0 && wide[n] < 0x80 ? (char)wide[n] : '?');
-	end(name, n);
+		put_name_character(name, n, wide[n] > 0 && wide[n] < 0x80 ? (char)wide[n] : '?');
+	end_name(name, n);
 }
 
-/* And from the kernel: "HID_NAME=...", maker and product. */
+/* Copy a name from the kernel: "HID_NAME=...", maker and product. */
 static void copy_kernel_name(const char *path, char name[GZ_NAME_SIZE])
 {
 	static const char key[] = "HID_NAME=";
 	char file[128], text[1024] = "";
 	size_t n = 0;
-	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/uevent", node_of(path));
+	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/uevent", node_name(path));
 	int fd = open(file, O_RDONLY | O_CLOEXEC);
 	ssize_t size = fd >= 0 ? read(fd, text, sizeof text - 1) : 0;
 	if (fd >= 0)
@@ -61,11 +62,11 @@ static void copy_kernel_name(const char *path, char name[GZ_NAME_SIZE])
 	const char *value = line + sizeof key - 1;
 	size_t length = strcspn(value, "\n");
 	for (; n < length && n < GZ_NAME_SIZE - 1; n++)
-		put(name, n, value[n]);
-	end(name, n);
+		put_name_character(name, n, value[n]);
+	end_name(name, n);
 }
 
-static bool is_listed(const struct gz_hid_port_entry *entries, size_t count, const char *path)
+static bool is_port_listed(const struct gz_hid_port_entry *entries, size_t count, const char *path)
 {
 	for (size_t i = 0; i < count; i++) {
 		if (strcmp(entries[i].path, path) == 0)
@@ -79,9 +80,10 @@ size_t gz_hid_port_list(struct gz_hid_port_entry *out_entries)
 	size_t count = 0;
 	struct hid_device_info *all = hid_enumerate(0, 0);
 	for (const struct hid_device_info *info = all; info; info = info->next) {
-		/* One with several applications is told several times. */
+		/* hidapi lists an interface once for each of its applications. */
 		if (count == GZ_HID_PORT_ENTRIES_MAX || !info->path ||
-		    strlen(info->path) >= GZ_NAME_SIZE || is_listed(out_entries, count, info->path))
+		    strlen(info->path) >= GZ_NAME_SIZE ||
+		    is_port_listed(out_entries, count, info->path))
 			continue;
 		struct gz_hid_port_entry *entry = &out_entries[count++];
 		*entry = (struct gz_hid_port_entry) {
@@ -89,8 +91,8 @@ size_t gz_hid_port_list(struct gz_hid_port_entry *out_entries)
 			.product = info->product_id,
 		};
 		snprintf(entry->path, sizeof entry->path, "%s", info->path);
-		copy_name(info->product_string, entry->name);
-		copy_name(info->serial_number, entry->serial);
+		copy_hidapi_name(info->product_string, entry->name);
+		copy_hidapi_name(info->serial_number, entry->serial);
 		if (!entry->name[0])
 			copy_kernel_name(info->path, entry->name);
 		if (!entry->name[0])
@@ -104,7 +106,8 @@ size_t gz_hid_port_list(struct gz_hid_port_entry *out_entries)
 enum gz_result gz_hid_port_descriptor(const char *path, unsigned char *out_bytes, size_t *out_size)
 {
 	char file[128];
-	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/report_descriptor", node_of(path));
+	snprintf(file, sizeof file, "/sys/class/hidraw/%s/device/report_descriptor",
+		 node_name(path));
 	int fd = open(file, O_RDONLY | O_CLOEXEC);
 	if (fd < 0)
 		return GZ_ERR_NO_DEVICE;
@@ -144,7 +147,7 @@ enum gz_result gz_hid_port_read(struct gz_hid_port *port, unsigned char *out_byt
 				int timeout_ms, size_t *out_size)
 {
 	errno = 0;
-	int n = hid_read_timeout(device_of(port), out_bytes, size, timeout_ms);
+	int n = hid_read_timeout(hidapi_device_of(port), out_bytes, size, timeout_ms);
 	if (n > 0) {
 		*out_size = (size_t)n;
 		return GZ_OK;
@@ -157,7 +160,7 @@ enum gz_result gz_hid_port_get_feature(struct gz_hid_port *port, uint8_t id,
 {
 	memset(out_bytes, 0, size);
 	out_bytes[0] = id;
-	int n = hid_get_feature_report(device_of(port), out_bytes, size);
+	int n = hid_get_feature_report(hidapi_device_of(port), out_bytes, size);
 	if (n < 1 || (size_t)n > size)
 		return GZ_ERR_IO;
 	*out_size = (size_t)n;
@@ -167,13 +170,13 @@ enum gz_result gz_hid_port_get_feature(struct gz_hid_port *port, uint8_t id,
 enum gz_result gz_hid_port_set_feature(struct gz_hid_port *port, const unsigned char *bytes,
 				       size_t size)
 {
-	return hid_send_feature_report(device_of(port), bytes, size) < 0 ? GZ_ERR_IO : GZ_OK;
+	return hid_send_feature_report(hidapi_device_of(port), bytes, size) < 0 ? GZ_ERR_IO : GZ_OK;
 }
 
 void gz_hid_port_close(struct gz_hid_port **port)
 {
 	if (!port || !*port)
 		return;
-	hid_close(device_of(*port));
+	hid_close(hidapi_device_of(*port));
 	*port = NULL;
 }

@@ -1,17 +1,15 @@
-/*
- * gazecast-udev-id FILE: whether a HID report descriptor has an eye tracker in it, for udev's
- * IMPORT{program}, because udev does not know usage pages. Prints "GAZECAST_EYE_TRACKER=1" or
- * nothing. Runs as root on bytes from whatever is plugged in: it reads at most 4 KiB, and parses
- * them as gazed does.
- */
+/* gazecast-udev-id FILE: whether a HID report descriptor contains an eye tracker. For
+ * IMPORT{program} of udev, because udev does not know usage pages. Prints "GAZECAST_EYE_TRACKER=1"
+ * or nothing. Runs as root on bytes from any device that is plugged in: reads at most 4 KiB and
+ * parses them as gazed does. */
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "drivers/hid/hid_descriptor.h"
 #include "drivers/hid/hid_tracker.h"
 
-/* A descriptor that is refused is no eye tracker that gazed could read. */
-static bool is_eye_tracker(FILE *file)
+/* A refused descriptor is not an eye tracker that gazed could read. */
+static bool contains_eye_tracker(FILE *file)
 {
 	/* Large, and needed once. */
 	static struct gz_hid_descriptor descriptor;
@@ -32,7 +30,7 @@ int main(int argc, char **argv)
 		perror(argv[1]);
 		return EXIT_FAILURE;
 	}
-	if (is_eye_tracker(file))
+	if (contains_eye_tracker(file))
 		puts("GAZECAST_EYE_TRACKER=1");
 	fclose(file);
 	return fflush(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -1,15 +1,18 @@
-#include "drivers/psvr2/psvr2_driver.h"
-
+/**
+ * @file
+ * The eye tracker of a PlayStation VR2 on a USB port: a vendor-specific interface, read with
+ * libusb. Its gaze is relative to the head; the configuration says where the screen is.
+ */
 #include <libusb.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
-#include "drivers/clock_model.h"
+#include "drivers/device/clock_model.h"
+#include "drivers/device/device.h"
 #include "drivers/psvr2/psvr2_link.h"
 #include "drivers/psvr2/psvr2_packet.h"
-#include "drivers/psvr2/psvr2_screen.h"
 #include "drivers/usb/usb_device.h"
 
 #define GZ_LOG_MODULE "psvr2"
@@ -25,19 +28,23 @@ struct psvr2_settings {
 
 /* The preset distance is that of gz_display_default(). */
 static const struct gz_option psvr2_options[] = {
-	{ "psvr2.screen_distance_mm", GZ_OPTION_DOUBLE, AT(screen.distance_mm), 10, 100000, 0, NULL,
-	  "600", "from between the lenses straight ahead to the screen's centre, mm" },
-	{ "psvr2.screen_offset_mm", GZ_OPTION_DOUBLE, AT(screen.offset_mm), -100000, 100000, 2,
-	  NULL, "0 0", "from there to the screen's centre, to the right and down, mm" },
-	{ "psvr2.screen_mm", GZ_OPTION_DOUBLE, AT(screen.size_mm), 0, 100000, 2, NULL, "0 0",
-	  "the screen's width and height, mm; 0 0: as display.mm, else 50.4 degrees wide at 600 "
-	  "mm" },
-	{ "psvr2.screen_turn_deg", GZ_OPTION_DOUBLE, AT(screen.turn_deg), -180, 180, 3, NULL,
-	  "0 0 0",
-	  "turn of the screen about its centre, degrees: right side nearer, lower edge nearer, "
-	  "clockwise" },
-	{ "psvr2.screen_px", GZ_OPTION_SIZE, AT(screen_px), 1, 32768, 0, NULL, "1920x1080",
-	  "the screen's pixels" },
+	{ "psvr2.screen_distance_mm", GZ_OPTION_DOUBLE, AT(screen.distance_mm), 10, 100000,
+	  .preset = "600",
+	  .help = "distance of the centre of the screen from the point between the lenses, "
+		  "straight ahead, mm" },
+	{ "psvr2.screen_offset_mm", GZ_OPTION_DOUBLE, AT(screen.offset_mm), -100000, 100000,
+	  .count = 2, .preset = "0 0",
+	  .help = "offset of the centre of the screen from straight ahead, right and down, mm" },
+	{ "psvr2.screen_mm", GZ_OPTION_DOUBLE, AT(screen.size_mm), 0, 100000, .count = 2,
+	  .preset = "0 0",
+	  .help = "width and height of the screen, mm; 0 0: display.mm, or 50.4 degrees wide at "
+		  "600 mm if that is not set" },
+	{ "psvr2.screen_turn_deg", GZ_OPTION_DOUBLE, AT(screen.turn_deg), -180, 180, .count = 3,
+	  .preset = "0 0 0",
+	  .help = "rotation of the screen about its centre, degrees: right side nearer, lower edge "
+		  "nearer, clockwise" },
+	{ "psvr2.screen_px", GZ_OPTION_SIZE, AT(screen_px), 1, 32768, .preset = "1920x1080",
+	  .help = "resolution of the screen, pixels" },
 };
 
 static const size_t psvr2_option_count = sizeof psvr2_options / sizeof *psvr2_options;
@@ -60,22 +67,23 @@ struct psvr2_device {
 	uint64_t stale;
 };
 
-static struct psvr2_device *of(struct gz_device *device)
+static struct psvr2_device *psvr2_device_of(struct gz_device *device)
 {
 	return (struct psvr2_device *)device;
 }
 
 static enum gz_result psvr2_start(struct gz_device *base)
 {
-	struct psvr2_device *device = of(base);
+	struct psvr2_device *device = psvr2_device_of(base);
 	enum gz_result result =
 		gz_psvr2_link_create(device->context, device->handle, base->log, &device->link);
 	return result == GZ_OK ? gz_psvr2_link_start(device->link) : result;
 }
 
-/* A packet of which nothing is new: the same frame again, or one from before. A counter that began
- * anew has a clock that did, too, or goes on in time. */
-static bool is_stale(const struct psvr2_device *device, const struct gz_psvr2_packet *packet)
+/* Whether a packet holds nothing new: the same frame again, or an earlier one. A frame counter that
+ * restarted comes with a clock that restarted too, or that runs on. */
+static bool is_psvr2_packet_stale(const struct psvr2_device *device,
+				  const struct gz_psvr2_packet *packet)
 {
 	uint32_t ahead = packet->frame - device->frame;
 	if (device->seq == 0)
@@ -86,14 +94,14 @@ static bool is_stale(const struct psvr2_device *device, const struct gz_psvr2_pa
 	return ahead > INT32_MAX && back_ns >= 0 && back_ns < GZ_NS_PER_S;
 }
 
-static uint32_t frames_lost(const struct psvr2_device *device, uint32_t frame)
+static uint32_t psvr2_frames_lost(const struct psvr2_device *device, uint32_t frame)
 {
 	uint32_t between = frame - device->frame - 1;
 	return device->seq == 0 || between > GZ_LOST_AT_ONCE_MAX ? 0 : between;
 }
 
-static void fill_eye(const struct psvr2_device *device, const struct gz_psvr2_eye *measured,
-		     struct gz_eye_sample *eye)
+static void fill_psvr2_eye(const struct psvr2_device *device, const struct gz_psvr2_eye *measured,
+			   struct gz_eye_sample *eye)
 {
 	struct gz_point point;
 	if (measured->has_pupil)
@@ -108,18 +116,9 @@ static void fill_eye(const struct psvr2_device *device, const struct gz_psvr2_ey
 	eye->valid = !measured->blink;
 }
 
-static void tell_of_jump(struct psvr2_device *device)
-{
-	uint64_t held_back;
-	if (gz_ratelimit_pass(&device->jumps, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
-		gz_warn(device->base.log,
-			"the headset's clock jumped; its fit begins again (%llu more times since "
-			"last told)",
-			(unsigned long long)held_back);
-}
-
-static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival *arrival,
-		      struct gz_sample *out_sample)
+static void psvr2_packet_to_sample(struct psvr2_device *device,
+				   const struct gz_psvr2_arrival *arrival,
+				   struct gz_sample *out_sample)
 {
 	bool jumped;
 	const struct gz_psvr2_packet *packet = &arrival->packet;
@@ -128,13 +127,15 @@ static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival
 	sample.host_ns =
 		gz_clock_model_step(&device->clock, sample.device_ns, arrival->arrival_ns, &jumped);
 	if (jumped)
-		tell_of_jump(device);
+		gz_warn_limited(device->base.log, &device->jumps,
+				"%s: the clock jumped; the clock fit starts again",
+				device->usb.name);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
-		fill_eye(device, &packet->eye[eye], &sample.eye[eye]);
+		fill_psvr2_eye(device, &packet->eye[eye], &sample.eye[eye]);
 	bool both_shut = packet->eye[0].blink && packet->eye[1].blink;
 	if (gz_psvr2_screen_meet(&device->screen, &packet->combined, &sample.point))
 		sample.valid = !both_shut;
-	sample.lost_before = frames_lost(device, packet->frame);
+	sample.lost_before = psvr2_frames_lost(device, packet->frame);
 	sample.seq = device->seq++;
 	device->lost += sample.lost_before;
 	device->frame = packet->frame;
@@ -145,19 +146,19 @@ static void to_sample(struct psvr2_device *device, const struct gz_psvr2_arrival
 static enum gz_result psvr2_read(struct gz_device *base, int timeout_ms,
 				 struct gz_sample *out_sample)
 {
-	struct psvr2_device *device = of(base);
+	struct psvr2_device *device = psvr2_device_of(base);
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
 	for (;;) {
 		struct gz_psvr2_arrival arrival;
 		enum gz_result result = gz_psvr2_link_next(device->link, deadline_ns, &arrival);
 		if (result != GZ_OK)
 			return result;
-		if (!is_stale(device, &arrival.packet)) {
-			to_sample(device, &arrival, out_sample);
+		if (!is_psvr2_packet_stale(device, &arrival.packet)) {
+			psvr2_packet_to_sample(device, &arrival, out_sample);
 			return GZ_OK;
 		}
 		device->stale++;
-		/* A device that repeats itself without end must not hold the caller. */
+		/* A device that repeats itself endlessly must not hold the caller. */
 		if (gz_clock_now_ns() >= deadline_ns)
 			return GZ_ERR_TIMEOUT;
 	}
@@ -184,7 +185,7 @@ static void psvr2_counters(const struct gz_device *base, struct gz_device_counte
 	out_counters->malformed[GZ_MALFORMED_STALE] = device->stale;
 }
 
-static void close_handle(struct psvr2_device *device)
+static void close_psvr2_handle(struct psvr2_device *device)
 {
 	if (device->claimed)
 		libusb_release_interface(device->handle, GZ_PSVR2_INTERFACE);
@@ -196,9 +197,9 @@ static void close_handle(struct psvr2_device *device)
 
 static void psvr2_destroy(struct gz_device *base)
 {
-	struct psvr2_device *device = of(base);
+	struct psvr2_device *device = psvr2_device_of(base);
 	gz_psvr2_link_destroy(&device->link);
-	close_handle(device);
+	close_psvr2_handle(device);
 	if (device->context)
 		libusb_exit(device->context);
 	free(device);
@@ -212,7 +213,7 @@ static const struct gz_device_ops psvr2_ops = {
 	.destroy = psvr2_destroy,
 };
 
-static void describe(libusb_device *usb, struct gz_usb_device *out_device)
+static void describe_psvr2(libusb_device *usb, struct gz_usb_device *out_device)
 {
 	gz_usb_describe(usb, out_device);
 	if (!out_device->name[0])
@@ -224,17 +225,17 @@ static bool is_psvr2(const struct gz_usb_device *usb)
 	return usb->vendor == GZ_PSVR2_VENDOR && usb->product == GZ_PSVR2_PRODUCT;
 }
 
-static enum gz_result refuse(const struct psvr2_device *device, const char *what, int error)
+static enum gz_result refuse_psvr2(const struct psvr2_device *device, const char *what, int error)
 {
 	const struct gz_log *log = device->base.log;
 	enum gz_result result = gz_usb_result(error);
 	switch (result) {
 	case GZ_ERR_ACCESS:
 		gz_err(log, "%s at %s: no permission for %s; %s", device->usb.name,
-		       device->usb.place, device->usb.node, GZ_USB_PERMISSION_REMEDY);
+		       device->usb.place, device->usb.node, GZ_DEVICE_PERMISSION_REMEDY);
 		return result;
 	case GZ_ERR_BUSY:
-		gz_err(log, "%s at %s: another program holds its eye tracker; end that one",
+		gz_err(log, "%s at %s: another program uses its eye tracker; close that program",
 		       device->usb.name, device->usb.place);
 		return result;
 	default:
@@ -244,45 +245,46 @@ static enum gz_result refuse(const struct psvr2_device *device, const char *what
 	}
 }
 
-static enum gz_result open_device(struct psvr2_device *device, libusb_device *usb)
+static enum gz_result open_psvr2_device(struct psvr2_device *device, libusb_device *usb)
 {
 	int error = libusb_open(usb, &device->handle);
 	if (error != LIBUSB_SUCCESS) {
 		device->handle = NULL;
-		return refuse(device, "open it", error);
+		return refuse_psvr2(device, "open it", error);
 	}
-	/* Not offered everywhere, and needed only where some kernel driver took the interface. */
+	/* Not supported everywhere, and needed only if a kernel driver uses the interface. */
 	libusb_set_auto_detach_kernel_driver(device->handle, 1);
 	error = libusb_claim_interface(device->handle, GZ_PSVR2_INTERFACE);
 	if (error == LIBUSB_SUCCESS) {
 		device->claimed = true;
 		return GZ_OK;
 	}
-	enum gz_result result = refuse(device, "claim its interface", error);
-	close_handle(device);
+	enum gz_result result = refuse_psvr2(device, "claim its interface", error);
+	close_psvr2_handle(device);
 	return result;
 }
 
-/* Take the first that can be opened. Others are named, so that one knows what to choose among. */
-static enum gz_result open_one(struct psvr2_device *device, libusb_device *const *list,
-			       const char *choice)
+/* Open the first headset that can be opened. Log the others, so that the user knows what to choose
+ * from. */
+static enum gz_result open_first_psvr2(struct psvr2_device *device, libusb_device *const *list,
+				       const char *choice)
 {
 	const struct gz_log *log = device->base.log;
 	enum gz_result first = GZ_ERR_NO_DEVICE;
 	struct gz_usb_device other;
 	int seen = 0;
 	for (size_t i = 0; list[i]; i++) {
-		describe(list[i], &other);
+		describe_psvr2(list[i], &other);
 		if (!is_psvr2(&other))
 			continue;
 		seen++;
-		if (device->handle || !gz_usb_is_chosen(&other, choice)) {
+		if (device->handle || !gz_device_is_chosen(choice, other.name, other.serial)) {
 			gz_info(log, "not used: %s %s at %s", other.name, other.serial,
 				other.place);
 			continue;
 		}
 		device->usb = other;
-		enum gz_result result = open_device(device, list[i]);
+		enum gz_result result = open_psvr2_device(device, list[i]);
 		if (result != GZ_OK && first == GZ_ERR_NO_DEVICE)
 			first = result;
 	}
@@ -291,34 +293,34 @@ static enum gz_result open_one(struct psvr2_device *device, libusb_device *const
 	if (seen == 0)
 		gz_err(log, "no %s on USB; plug one in", fallback_name);
 	else if (first == GZ_ERR_NO_DEVICE)
-		gz_err(log, "no %s is called %s; `gazectl devices` lists them", fallback_name,
+		gz_err(log, "no %s is called %s; see gazectl devices", fallback_name,
 		       choice ? choice : "");
 	return first;
 }
 
-static enum gz_result find_and_open(struct psvr2_device *device, const char *choice)
+static enum gz_result find_and_open_psvr2(struct psvr2_device *device, const char *choice)
 {
 	libusb_device **list;
 	int error = libusb_init(&device->context);
 	if (error != LIBUSB_SUCCESS) {
 		device->context = NULL;
-		gz_err(device->base.log, "no USB here: %s", libusb_error_name(error));
+		gz_err(device->base.log, "cannot access USB: %s", libusb_error_name(error));
 		return gz_usb_result(error);
 	}
 	ssize_t count = libusb_get_device_list(device->context, &list);
 	if (count < 0) {
-		gz_err(device->base.log, "no list of USB devices: %s",
+		gz_err(device->base.log, "cannot list USB devices: %s",
 		       libusb_error_name((int)count));
 		return gz_usb_result((int)count);
 	}
-	enum gz_result result = open_one(device, list, choice);
+	enum gz_result result = open_first_psvr2(device, list, choice);
 	libusb_free_device_list(list, 1);
 	return result;
 }
 
-/* The screen: its own settings, else the display's, else the one that is assumed everywhere. */
-static struct gz_psvr2_screen_params screen_of(const struct psvr2_settings *wanted,
-					       const struct gz_driver_host *host)
+/* The screen: from its own settings, else the configured display, else the default display. */
+static struct gz_psvr2_screen_params psvr2_screen_params(const struct psvr2_settings *wanted,
+							 const struct gz_driver_host *host)
 {
 	struct gz_psvr2_screen_params screen = wanted->screen;
 	struct gz_display assumed = gz_display_default(wanted->screen_px[0], wanted->screen_px[1]);
@@ -337,14 +339,14 @@ static enum gz_result psvr2_create(const void *settings, const struct gz_driver_
 	if (!device)
 		return GZ_ERR_NO_MEM;
 	device->base = (struct gz_device) { .ops = &psvr2_ops, .log = host->log };
-	struct gz_psvr2_screen_params screen = screen_of(wanted, host);
+	struct gz_psvr2_screen_params screen = psvr2_screen_params(wanted, host);
 	device->screen = gz_psvr2_screen_make(&screen);
 	device->display = (struct gz_display) {
 		.px = { wanted->screen_px[0], wanted->screen_px[1] },
 		.mm = { screen.size_mm[0], screen.size_mm[1] },
 		.distance_mm = screen.distance_mm,
 	};
-	enum gz_result result = find_and_open(device, host->choice);
+	enum gz_result result = find_and_open_psvr2(device, host->choice);
 	if (result != GZ_OK) {
 		psvr2_destroy(&device->base);
 		return result;
@@ -363,12 +365,12 @@ static size_t psvr2_list(const void *settings, const struct gz_driver_host *host
 	(void)settings;
 	int error = libusb_init(&context);
 	if (error != LIBUSB_SUCCESS) {
-		gz_warn(host->log, "no USB here: %s", libusb_error_name(error));
+		gz_warn(host->log, "cannot access USB: %s", libusb_error_name(error));
 		return 0;
 	}
 	if (libusb_get_device_list(context, &list) >= 0) {
 		for (size_t i = 0; list[i] && count < GZ_DEVICE_ENTRIES_MAX; i++) {
-			describe(list[i], &usb);
+			describe_psvr2(list[i], &usb);
 			if (is_psvr2(&usb))
 				gz_usb_list_entry(&usb, GZ_PSVR2_INTERFACE, &out_entries[count++]);
 		}

@@ -1,29 +1,31 @@
-/* Sources: Pupil Labs' Network API and data formats, docs.pupil-labs.com/core/developer/. */
-#include "drivers/pupil/pupil_driver.h"
-
+/**
+ * @file
+ * A Pupil Core headset through the Network API of Pupil Capture, or another gazed, as its client.
+ * The source is Pupil Labs' description of the API and its data formats,
+ * docs.pupil-labs.com/core/developer/.
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "drivers/device/device.h"
 #include "drivers/pupil/pupil_link.h"
 #include "drivers/pupil/pupil_message.h"
 
 #define GZ_LOG_MODULE "pupil"
 
-/* One line about bad messages a second is enough to see that something is wrong. */
-#define COMPLAINT_NS GZ_NS_PER_S
-
-/* How long create() waits for the first answer, start() for the clocks, list() and create() for
- * other answers and create() for a status, ms: enough for a network of some ms. What does not come
- * in time is done without. */
+/* Longest waits, ms: create() for the first answer, start() for the clocks, list() and create() for
+ * other answers, create() for a status. Chosen: enough for a network with round trips of some ms.
+ * What does not come in time is not used. */
 enum { CREATE_MS = 150, START_MS = 150, LIST_MS = 100, ASK_MS = 150, STATUS_MS = 500 };
 
-/* Silence that is told of although requests are answered, ns: longer than a scene takes to find its
- * markers again. */
+/* Silence after which a warning is logged although requests are answered, ns. Chosen: longer than a
+ * scene takes to find its markers again. */
 static const int64_t SILENCE_NS = 5 * GZ_NS_PER_S;
 
-/* Older than the newest sample by this, ns, is no matter of two eyes matched out of order. */
+/* A sample that is older than the newest one by more than this, ns, is not explained by two eyes
+ * that were matched out of order. */
 static const int64_t LONG_PAST_NS = GZ_NS_PER_S / 2;
 
 struct pupil_settings {
@@ -35,13 +37,13 @@ struct pupil_settings {
 #define AT(field) offsetof(struct pupil_settings, field)
 
 static const struct gz_option pupil_options[] = {
-	{ "pupil.address", GZ_OPTION_STRING, AT(address), 0, GZ_ENDPOINT_SIZE, 0, NULL,
-	  GZ_CONTROL_TCP_ENDPOINT, "Pupil Remote, tcp://HOST:PORT" },
-	{ "pupil.surface", GZ_OPTION_STRING, AT(surface), 0, GZ_NAME_SIZE, 0, NULL, "screen",
-	  "surface that is the screen; empty: gaze as it comes, of Pupil Core on its scene "
-	  "camera" },
-	{ "pupil.confidence", GZ_OPTION_DOUBLE, AT(confidence), 0, 1, 0, NULL, "0.6",
-	  "gaze and eyes of less are invalid" },
+	{ "pupil.address", GZ_OPTION_STRING, AT(address), 0, GZ_ENDPOINT_SIZE,
+	  .preset = GZ_CONTROL_TCP_ENDPOINT, .help = "address of Pupil Remote, tcp://HOST:PORT" },
+	{ "pupil.surface", GZ_OPTION_STRING, AT(surface), 0, GZ_NAME_SIZE, .preset = "screen",
+	  .help = "name of the surface that is the screen; empty: gaze without a surface, which "
+		  "with Pupil Core is a position in the picture of the scene camera" },
+	{ "pupil.confidence", GZ_OPTION_DOUBLE, AT(confidence), 0, 1, .preset = "0.6",
+	  .help = "gaze and eyes with less confidence are invalid" },
 };
 
 static const size_t pupil_option_count = sizeof pupil_options / sizeof *pupil_options;
@@ -50,28 +52,28 @@ struct pupil_device {
 	struct gz_device base;
 	struct gz_pupil_link link;
 	struct gz_device_info info;
-	char surface_topic[GZ_PUPIL_TOPIC_SIZE]; /* empty: gaze as it comes */
+	char surface_topic[GZ_PUPIL_TOPIC_SIZE]; /* empty: gaze without a surface */
 	double confidence;
 	struct gz_pupil_memory memory;
 	struct gz_pupil_entries entries;
 	struct gz_pupil_order order;
 	struct gz_ratelimit complaints;
-	uint64_t jumps;    /* of the link's that are known */
-	int64_t sample_ns; /* arrival of the newest sample, or start */
+	uint64_t jumps;    /* jumps of the link that are already handled */
+	int64_t sample_ns; /* arrival of the newest sample, or time of start */
 	bool told_silence;
 	uint64_t seq;
 	uint64_t lost;
 	uint64_t malformed[GZ_MALFORMED_COUNT];
 };
 
-static struct pupil_device *of(struct gz_device *device)
+static struct pupil_device *pupil_device_of(struct gz_device *device)
 {
 	return (struct pupil_device *)device;
 }
 
 static enum gz_result pupil_start(struct gz_device *base)
 {
-	struct pupil_device *device = of(base);
+	struct pupil_device *device = pupil_device_of(base);
 	const char *surface = device->surface_topic[0] ? device->surface_topic : NULL;
 	enum gz_result result = gz_pupil_link_subscribe(&device->link, GZ_TOPIC_GAZE, surface);
 	if (result != GZ_OK)
@@ -81,20 +83,17 @@ static enum gz_result pupil_start(struct gz_device *base)
 	return GZ_OK;
 }
 
-static void refuse(struct pupil_device *device, enum gz_malformed reason)
+static void count_pupil_malformed(struct pupil_device *device, enum gz_malformed reason)
 {
-	uint64_t held_back;
 	device->malformed[reason]++;
-	if (reason == GZ_MALFORMED_STALE)
-		return; /* common: Pupil's two eyes are matched out of order */
-	if (gz_ratelimit_pass(&device->complaints, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
-		gz_warn(device->base.log,
-			"%s sends messages that are not understood: %s (%llu more since last told)",
-			device->link.address, gz_malformed_name(reason),
-			(unsigned long long)held_back);
+	/* Stale messages are common: Pupil matches the two eyes out of order. */
+	if (reason != GZ_MALFORMED_STALE)
+		gz_warn_limited(device->base.log, &device->complaints,
+				"%s sends malformed messages: %s", device->link.address,
+				gz_malformed_name(reason));
 }
 
-/* Not newer by so much that Pupil's clock may have been set back. */
+/* Whether a sample is so old that Pupil's clock may have been set back. */
 static bool is_long_past(const struct pupil_device *device, int64_t pupil_ns)
 {
 	int64_t past_ns;
@@ -102,9 +101,9 @@ static bool is_long_past(const struct pupil_device *device, int64_t pupil_ns)
 	       past_ns > LONG_PAST_NS;
 }
 
-/* Times on both clocks, the number, and what is missing before. */
-static enum gz_result finish(struct pupil_device *device, struct gz_pupil_gaze *gaze,
-			     int64_t arrival_ns)
+/* Set the times on both clocks, the number and the losses of a sample. */
+static enum gz_result finish_pupil_sample(struct pupil_device *device, struct gz_pupil_gaze *gaze,
+					  int64_t arrival_ns)
 {
 	struct gz_sample *sample = &gaze->sample;
 	bool believed;
@@ -130,81 +129,83 @@ static enum gz_result finish(struct pupil_device *device, struct gz_pupil_gaze *
 	return GZ_OK;
 }
 
-/* The next entry of the newest surface message that is a sample. */
-static enum gz_result next_sample(struct pupil_device *device, struct gz_sample *out_sample)
+/* Take the next entry of the newest surface message that is a sample. */
+static enum gz_result next_surface_sample(struct pupil_device *device, struct gz_sample *out_sample)
 {
 	struct gz_pupil_gaze gaze;
 	int64_t now_ns = gz_clock_now_ns();
 	while (gz_pupil_next_entry(&device->entries, &device->memory, device->confidence, &gaze) ==
 	       GZ_OK) {
-		if (finish(device, &gaze, now_ns) == GZ_OK) {
+		if (finish_pupil_sample(device, &gaze, now_ns) == GZ_OK) {
 			*out_sample = gaze.sample;
 			return GZ_OK;
 		}
-		refuse(device, GZ_MALFORMED_STALE);
+		count_pupil_malformed(device, GZ_MALFORMED_STALE);
 	}
 	return GZ_ERR_TIMEOUT;
 }
 
-static enum gz_result take_gaze(struct pupil_device *device, const void *bytes, size_t size,
-				struct gz_sample *out_sample)
+static enum gz_result take_pupil_gaze(struct pupil_device *device, const void *bytes, size_t size,
+				      struct gz_sample *out_sample)
 {
 	struct gz_pupil_gaze gaze;
 	enum gz_malformed reason;
 	if (gz_pupil_read_gaze(bytes, size, device->confidence, &gaze, &reason) != GZ_OK) {
-		refuse(device, reason);
+		count_pupil_malformed(device, reason);
 		return GZ_ERR_TIMEOUT;
 	}
 	if (device->surface_topic[0]) {
 		gz_pupil_remember(&device->memory, &gaze);
 		return GZ_ERR_TIMEOUT;
 	}
-	if (finish(device, &gaze, gz_clock_now_ns()) != GZ_OK) {
-		refuse(device, GZ_MALFORMED_STALE);
+	if (finish_pupil_sample(device, &gaze, gz_clock_now_ns()) != GZ_OK) {
+		count_pupil_malformed(device, GZ_MALFORMED_STALE);
 		return GZ_ERR_TIMEOUT;
 	}
 	*out_sample = gaze.sample;
 	return GZ_OK;
 }
 
-static enum gz_result take_surface(struct pupil_device *device, const void *bytes, size_t size,
-				   struct gz_sample *out_sample)
+static enum gz_result take_pupil_surface(struct pupil_device *device, const void *bytes,
+					 size_t size, struct gz_sample *out_sample)
 {
 	enum gz_malformed reason;
 	if (gz_pupil_read_surface(bytes, size, &device->entries, &reason) == GZ_OK)
-		return next_sample(device, out_sample);
-	refuse(device, reason);
+		return next_surface_sample(device, out_sample);
+	count_pupil_malformed(device, reason);
 	return GZ_ERR_TIMEOUT;
 }
 
-/* Whether the topic is that of the surface, and not of one whose name begins like it. */
-static bool is_surface(const struct pupil_device *device, const char *topic, size_t size)
+/* Whether the topic is that of the surface, not of one whose name begins with it. */
+static bool is_pupil_surface_topic(const struct pupil_device *device, const char *topic,
+				   size_t size)
 {
 	return size == strlen(device->surface_topic) &&
 	       memcmp(topic, device->surface_topic, size) == 0;
 }
 
-/* One message. @return GZ_ERR_TIMEOUT where it is no sample */
-static enum gz_result take_message(struct pupil_device *device, zmq_msg_t frames[2], int count,
-				   struct gz_sample *out_sample)
+/* Read one message. @retval GZ_ERR_TIMEOUT  it is not a sample */
+static enum gz_result take_pupil_message(struct pupil_device *device, zmq_msg_t frames[2],
+					 int count, struct gz_sample *out_sample)
 {
 	const char *topic = zmq_msg_data(&frames[0]);
 	size_t topic_size = zmq_msg_size(&frames[0]);
 	const void *body = zmq_msg_data(&frames[1]);
 	size_t size = zmq_msg_size(&frames[1]);
 	if (count != 2) {
-		refuse(device, count < 2 ? GZ_MALFORMED_SHORT : GZ_MALFORMED_LONG);
+		count_pupil_malformed(device, count < 2 ? GZ_MALFORMED_SHORT : GZ_MALFORMED_LONG);
 		return GZ_ERR_TIMEOUT;
 	}
-	if (device->surface_topic[0] && is_surface(device, topic, topic_size))
-		return take_surface(device, body, size, out_sample);
+	if (device->surface_topic[0] && is_pupil_surface_topic(device, topic, topic_size))
+		return take_pupil_surface(device, body, size, out_sample);
 	if (topic_size >= strlen(GZ_TOPIC_GAZE) &&
 	    memcmp(topic, GZ_TOPIC_GAZE, strlen(GZ_TOPIC_GAZE)) == 0)
-		return take_gaze(device, body, size, out_sample);
-	return GZ_ERR_TIMEOUT; /* a surface whose name begins like ours */
+		return take_pupil_gaze(device, body, size, out_sample);
+	return GZ_ERR_TIMEOUT; /* a surface whose name begins with ours */
 }
 
-static enum gz_result receive(struct pupil_device *device, struct gz_sample *out_sample)
+static enum gz_result receive_pupil_message(struct pupil_device *device,
+					    struct gz_sample *out_sample)
 {
 	zmq_msg_t frames[2];
 	int count = 0, more = 1;
@@ -219,13 +220,13 @@ static enum gz_result receive(struct pupil_device *device, struct gz_sample *out
 	}
 	enum gz_result result = GZ_ERR_TIMEOUT;
 	if (count > 0)
-		result = take_message(device, frames, count, out_sample);
+		result = take_pupil_message(device, frames, count, out_sample);
 	zmq_msg_close(&frames[0]);
 	zmq_msg_close(&frames[1]);
 	return result;
 }
 
-static void notice_silence(struct pupil_device *device)
+static void warn_about_silence(struct pupil_device *device)
 {
 	if (device->told_silence || gz_clock_now_ns() - device->sample_ns < SILENCE_NS)
 		return;
@@ -233,32 +234,32 @@ static void notice_silence(struct pupil_device *device)
 	gz_warn(device->base.log, "%s answers, but sends no gaze%s%s; %s", device->link.address,
 		device->surface_topic[0] ? " on " : "", device->surface_topic,
 		device->surface_topic[0]
-			? "calibrate, and define that surface in its surface tracker"
-			: "is it calibrated, and are its eye cameras on?");
+			? "calibrate, and define this surface in the Surface Tracker plugin"
+			: "check its calibration and its eye cameras");
 }
 
-/* Wait for a message that is a sample. No allocation of ours, no lock. */
+/* Wait for a message that is a sample. This driver neither allocates nor locks; libzmq and the
+ * MessagePack library may. */
 static enum gz_result pupil_read(struct gz_device *base, int timeout_ms,
 				 struct gz_sample *out_sample)
 {
-	struct pupil_device *device = of(base);
+	struct pupil_device *device = pupil_device_of(base);
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
-	if (next_sample(device, out_sample) == GZ_OK)
+	if (next_surface_sample(device, out_sample) == GZ_OK)
 		return GZ_OK;
 	for (;;) {
 		enum gz_result result = gz_pupil_link_wait(&device->link, deadline_ns);
 		if (result == GZ_OK)
-			result = receive(device, out_sample);
+			result = receive_pupil_message(device, out_sample);
 		if (result == GZ_OK)
 			return GZ_OK;
 		if (result == GZ_ERR_NO_DEVICE) {
-			gz_warn(device->base.log, "%s does not answer any more",
-				device->link.address);
+			gz_warn(device->base.log, "%s no longer answers", device->link.address);
 			return GZ_ERR_NO_DEVICE;
 		}
-		/* Garbage without end must not hold the caller. */
+		/* Endless garbage must not hold the caller. */
 		if (gz_clock_now_ns() >= deadline_ns) {
-			notice_silence(device);
+			warn_about_silence(device);
 			return GZ_ERR_TIMEOUT;
 		}
 	}
@@ -281,7 +282,7 @@ static void pupil_counters(const struct gz_device *base, struct gz_device_counte
 
 static void pupil_destroy(struct gz_device *base)
 {
-	struct pupil_device *device = of(base);
+	struct pupil_device *device = pupil_device_of(base);
 	gz_pupil_link_close(&device->link);
 	free(device);
 }
@@ -294,22 +295,23 @@ static const struct gz_device_ops pupil_ops = {
 	.destroy = pupil_destroy,
 };
 
-/* Whether a gazed answers: that knows a word more than Pupil Remote. */
-static bool is_gazed(struct gz_pupil_link *link, int timeout_ms)
+/* Whether the peer is a gazed: it knows a request that Pupil Remote does not. */
+static bool is_other_gazed(struct gz_pupil_link *link, int timeout_ms)
 {
 	char latest[32];
 	return gz_pupil_link_ask(link, "LATEST_PORT", timeout_ms, latest, sizeof latest) == GZ_OK &&
 	       latest[0] >= '0' && latest[0] <= '9';
 }
 
-/* Who is there, and what another gazed knows of its tracker and its display. */
-static void introduce(struct pupil_device *device)
+/* Find out who the peer is and, if it is another gazed, what it knows about its tracker and
+ * display. */
+static void identify_peer(struct pupil_device *device)
 {
 	struct gz_device_info *info = &device->info;
 	struct gz_status status;
 	char version[32];
 	snprintf(info->name, sizeof info->name, "pupil");
-	if (!is_gazed(&device->link, ASK_MS)) {
+	if (!is_other_gazed(&device->link, ASK_MS)) {
 		if (gz_pupil_link_ask(&device->link, "v", ASK_MS, version, sizeof version) == GZ_OK)
 			snprintf(info->name, sizeof info->name, "Pupil Capture %s", version);
 		return;
@@ -330,7 +332,8 @@ static enum gz_result pupil_create(const void *settings, const struct gz_driver_
 {
 	const struct pupil_settings *wanted = settings;
 	if (!gz_pupil_address_valid(wanted->address)) {
-		gz_err(host->log, "pupil.address: \"%s\" is not tcp://HOST:PORT", wanted->address);
+		gz_err(host->log, "pupil.address: \"%s\" is not of the form tcp://HOST:PORT",
+		       wanted->address);
 		return GZ_ERR_INVAL;
 	}
 	struct pupil_device *device = calloc(1, sizeof *device);
@@ -347,12 +350,13 @@ static enum gz_result pupil_create(const void *settings, const struct gz_driver_
 		pupil_destroy(&device->base);
 		return result;
 	}
-	introduce(device);
+	identify_peer(device);
 	*out_device = &device->base;
 	return GZ_OK;
 }
 
-/* A gazed is not listed, because the address that is preset may be our own daemon's. */
+/* Lists Pupil Capture only. A gazed is left out, because it may be our own daemon at the preset
+ * address. */
 static size_t pupil_list(const void *settings, const struct gz_driver_host *host,
 			 struct gz_device_entry *out_entries)
 {
@@ -363,7 +367,7 @@ static size_t pupil_list(const void *settings, const struct gz_driver_host *host
 	if (!gz_pupil_address_valid(wanted->address) ||
 	    gz_pupil_link_open(&link, wanted->address, LIST_MS, NULL) != GZ_OK)
 		return 0;
-	bool is_pupil = !is_gazed(&link, LIST_MS) &&
+	bool is_pupil = !is_other_gazed(&link, LIST_MS) &&
 			gz_pupil_link_ask(&link, "v", LIST_MS, version, sizeof version) == GZ_OK;
 	gz_pupil_link_close(&link);
 	if (!is_pupil)

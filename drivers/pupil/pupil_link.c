@@ -6,24 +6,25 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/number.h"
+#include "base/text.h"
+#include "protocol/key.h"
 #include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "pupil"
 
-/* Messages kept while the caller is busy: ten seconds of Pupil Core's. */
+/* Messages kept while the caller is busy: ten seconds of Pupil Core. */
 enum { QUEUE = 4096 };
 
-/* Longest answer understood, bytes with its NUL. */
+/* Longest answer that is understood, bytes with its NUL. */
 enum { ANSWER_SIZE = 128 };
 
-/* A silent stream and so many requests without an answer: nobody is there any more. */
+/* Unanswered requests in a row after which a silent peer is gone. */
 enum { UNANSWERED_MAX = 2 };
 
-/* Time that no clock shows, s: three hundred years. */
+/* Largest time that a clock may show, s: three hundred years. */
 static const double TIME_MAX_S = 9.2e9;
 
-static bool port_valid(const char *text, int *out_port)
+static bool is_valid_port(const char *text, int *out_port)
 {
 	long long port;
 	if (!gz_number_parse_whole(text, &port) || port < 1 || port > 65535)
@@ -38,51 +39,97 @@ bool gz_pupil_address_valid(const char *address)
 	int port;
 	const char *colon = strrchr(address, ':');
 	return strncmp(address, scheme, sizeof scheme - 1) == 0 &&
-	       colon > address + sizeof scheme - 1 && port_valid(colon + 1, &port) &&
+	       colon > address + sizeof scheme - 1 && is_valid_port(colon + 1, &port) &&
 	       strlen(address) + 6 < GZ_ENDPOINT_SIZE;
 }
 
-static void set_int(void *socket, int option, int value)
+static void set_socket_int(void *socket, int option, int value)
 {
 	zmq_setsockopt(socket, option, &value, sizeof value);
 }
 
-static void *open_socket(struct gz_pupil_link *link, int type, int64_t size_max)
+/* Use the keys on a socket that is not connected yet. @return whether libzmq accepts them */
+static bool apply_pupil_keys(const struct gz_pupil_keys *keys, void *socket)
+{
+	return keys->server[0] == '\0' ||
+	       (zmq_setsockopt(socket, ZMQ_CURVE_SERVERKEY, keys->server, GZ_KEY_TEXT_SIZE) == 0 &&
+		zmq_setsockopt(socket, ZMQ_CURVE_PUBLICKEY, keys->own.public_text,
+			       GZ_KEY_TEXT_SIZE) == 0 &&
+		zmq_setsockopt(socket, ZMQ_CURVE_SECRETKEY, keys->own.secret_text,
+			       GZ_KEY_TEXT_SIZE) == 0);
+}
+
+static void *open_pupil_socket(struct gz_pupil_link *link, int type, int64_t size_max)
 {
 	void *socket = zmq_socket(link->context, type);
 	if (!socket)
 		return NULL;
-	set_int(socket, ZMQ_LINGER, 0);
-	set_int(socket, ZMQ_RCVHWM, QUEUE);
-	set_int(socket, ZMQ_IPV6, 1);
+	set_socket_int(socket, ZMQ_LINGER, 0);
+	set_socket_int(socket, ZMQ_RCVHWM, QUEUE);
+	set_socket_int(socket, ZMQ_IPV6, 1);
 	zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &size_max, sizeof size_max);
-	if (gz_pupil_keys_apply(&link->keys, socket))
+	if (apply_pupil_keys(&link->keys, socket))
 		return socket;
 	zmq_close(socket);
 	return NULL;
 }
 
-static int host_length(const char *address)
+static int endpoint_host_length(const char *address)
 {
 	return (int)(strrchr(address, ':') - address);
 }
 
-static enum gz_result find_keys(struct gz_pupil_link *link)
+static enum gz_result find_own_key(const struct gz_log *log, struct gz_key_pair *own)
 {
-	char host[GZ_ENDPOINT_SIZE];
-	int scheme = (int)strlen("tcp://");
-	snprintf(host, sizeof host, "%.*s", host_length(link->address) - scheme,
-		 link->address + scheme);
-	return gz_pupil_keys_find(host, link->log, &link->keys);
+	char path[GZ_PATH_SIZE];
+	enum gz_result result = gz_key_file_find(NULL, GZ_CLIENT_KEY_FILE, path, sizeof path);
+	if (result == GZ_OK)
+		result = gz_key_file_read_secret(path, log, own->secret_text);
+	if (result == GZ_ERR_NOT_FOUND) {
+		gz_err(log,
+		       "the other daemon requires a key, and %s does not exist: run gazectl keygen "
+		       "--client",
+		       path);
+		return GZ_ERR_ACCESS;
+	}
+	if (result == GZ_OK && zmq_curve_public(own->public_text, own->secret_text) != 0)
+		result = GZ_ERR_FORMAT;
+	return result;
 }
 
-/* A new socket has no answers to questions of the last one. */
-static enum gz_result open_control(struct gz_pupil_link *link)
+/* Find the keys for the host in the key directory of the user, or that of the system. */
+static enum gz_result find_pupil_keys(struct gz_pupil_link *link)
+{
+	const char *host = link->address + strlen("tcp://");
+	size_t length = (size_t)endpoint_host_length(link->address) - strlen("tcp://");
+	struct gz_pupil_keys keys = { .server = "" };
+	char bare[GZ_KEY_NAME_SIZE];
+	if (length > 2 && host[0] == '[' && host[length - 1] == ']') {
+		host++;
+		length -= 2;
+	}
+	if (length >= sizeof bare) /* known_servers has no such name */
+		length = 0;
+	memcpy(bare, host, length);
+	bare[length] = '\0';
+	enum gz_result result = gz_key_file_find_server(NULL, bare, link->log, keys.server);
+	if (result == GZ_ERR_NOT_FOUND)
+		result = GZ_OK;
+	if (result == GZ_OK && keys.server[0])
+		result = find_own_key(link->log, &keys.own);
+	if (result == GZ_OK)
+		link->keys = keys;
+	explicit_bzero(&keys, sizeof keys);
+	return result;
+}
+
+/* A new socket cannot receive answers to requests of the old one. */
+static enum gz_result open_pupil_control(struct gz_pupil_link *link)
 {
 	if (link->control)
 		zmq_close(link->control);
 	link->request = GZ_PUPIL_REQUEST_NONE;
-	link->control = open_socket(link, ZMQ_DEALER, ANSWER_SIZE * 8);
+	link->control = open_pupil_socket(link, ZMQ_DEALER, ANSWER_SIZE * 8);
 	if (link->control && zmq_connect(link->control, link->address) == 0)
 		return GZ_OK;
 	gz_err(link->log, "cannot connect to %s: %s; check pupil.address", link->address,
@@ -90,14 +137,14 @@ static enum gz_result open_control(struct gz_pupil_link *link)
 	return link->control ? GZ_ERR_INVAL : GZ_ERR_NO_MEM;
 }
 
-static enum gz_result open_stream(struct gz_pupil_link *link)
+static enum gz_result open_pupil_stream(struct gz_pupil_link *link)
 {
 	char endpoint[GZ_ENDPOINT_SIZE + 16];
 	if (link->stream)
 		zmq_close(link->stream);
-	link->stream = open_socket(link, ZMQ_SUB, GZ_PUPIL_MESSAGE_MAX);
-	snprintf(endpoint, sizeof endpoint, "%.*s:%d", host_length(link->address), link->address,
-		 link->port);
+	link->stream = open_pupil_socket(link, ZMQ_SUB, GZ_PUPIL_MESSAGE_MAX);
+	snprintf(endpoint, sizeof endpoint, "%.*s:%d", endpoint_host_length(link->address),
+		 link->address, link->port);
 	for (int i = 0; link->stream && i < 2; i++) {
 		if (link->topics[i][0])
 			zmq_setsockopt(link->stream, ZMQ_SUBSCRIBE, link->topics[i],
@@ -109,9 +156,9 @@ static enum gz_result open_stream(struct gz_pupil_link *link)
 	return GZ_ERR_IO;
 }
 
-/* Two frames: an empty one, as from a REQ, and the text. */
-static void send_request(struct gz_pupil_link *link, enum gz_pupil_request request,
-			 const char *text)
+/* Send two frames: an empty one, as a REQ socket does, and the text. */
+static void send_pupil_request(struct gz_pupil_link *link, enum gz_pupil_request request,
+			       const char *text)
 {
 	link->sent_ns = gz_clock_now_ns();
 	link->request = request;
@@ -119,8 +166,8 @@ static void send_request(struct gz_pupil_link *link, enum gz_pupil_request reque
 		zmq_send(link->control, text, strlen(text), ZMQ_DONTWAIT);
 }
 
-/* The frames of one answer, of which the second is text. @return whether there was one */
-static bool receive_answer(struct gz_pupil_link *link, char *answer, size_t size)
+/* Receive the frames of one answer; the second one is its text. @return whether there was one */
+static bool receive_pupil_answer(struct gz_pupil_link *link, char *answer, size_t size)
 {
 	int frames = 0, more = 1, length = -1;
 	char text[ANSWER_SIZE * 8];
@@ -138,13 +185,13 @@ static bool receive_answer(struct gz_pupil_link *link, char *answer, size_t size
 	return true;
 }
 
-static void take_port(struct gz_pupil_link *link, const char *answer)
+static void take_port_answer(struct gz_pupil_link *link, const char *answer)
 {
 	int port;
-	if (!port_valid(answer, &port)) {
+	if (!is_valid_port(answer, &port)) {
 		if (!link->told_reply)
-			gz_warn(link->log, "%s tells no port of its stream, but: %s", link->address,
-				answer);
+			gz_warn(link->log, "%s does not report the port of its stream, but: %s",
+				link->address, answer);
 		link->told_reply = true;
 		return;
 	}
@@ -152,11 +199,11 @@ static void take_port(struct gz_pupil_link *link, const char *answer)
 	link->port = port;
 	if (!moved || !link->stream)
 		return;
-	gz_info(link->log, "%s has begun anew: its stream is at port %d now", link->address, port);
-	open_stream(link);
+	gz_info(link->log, "%s has restarted: its stream is now at port %d", link->address, port);
+	open_pupil_stream(link);
 }
 
-static void take_time(struct gz_pupil_link *link, const char *answer, int64_t now_ns)
+static void take_time_answer(struct gz_pupil_link *link, const char *answer, int64_t now_ns)
 {
 	double time_s;
 	if (!gz_number_parse(answer, &time_s) || fabs(time_s) > TIME_MAX_S) {
@@ -173,26 +220,26 @@ static void take_time(struct gz_pupil_link *link, const char *answer, int64_t no
 	if (sync != GZ_PUPIL_SYNC_JUMPED)
 		return;
 	link->jumps++;
-	gz_warn(link->log, "the clock of %s was set; its fit begins again", link->address);
+	gz_warn(link->log, "the clock of %s was set; the clock fit starts again", link->address);
 }
 
-static void take_answer(struct gz_pupil_link *link)
+static void take_pupil_answer(struct gz_pupil_link *link)
 {
 	char answer[ANSWER_SIZE];
 	int64_t now_ns = gz_clock_now_ns();
 	enum gz_pupil_request request = link->request;
-	if (!receive_answer(link, answer, sizeof answer))
+	if (!receive_pupil_answer(link, answer, sizeof answer))
 		return;
 	link->request = GZ_PUPIL_REQUEST_NONE;
 	link->unanswered = 0;
 	if (request == GZ_PUPIL_REQUEST_PORT)
-		take_port(link, answer);
+		take_port_answer(link, answer);
 	else if (request == GZ_PUPIL_REQUEST_TIME)
-		take_time(link, answer, now_ns);
+		take_time_answer(link, answer, now_ns);
 }
 
-/* Do what is due. @return when something will be, host time */
-static int64_t take_care(struct gz_pupil_link *link, int64_t now_ns)
+/* Send the request that is due. @return when the next one will be due, host time */
+static int64_t send_due_requests(struct gz_pupil_link *link, int64_t now_ns)
 {
 	int64_t patience_ns = GZ_PUPIL_PATIENCE_MS * GZ_NS_PER_MS;
 	int64_t silence_ns = GZ_PUPIL_SILENCE_MS * GZ_NS_PER_MS;
@@ -200,17 +247,17 @@ static int64_t take_care(struct gz_pupil_link *link, int64_t now_ns)
 		link->unanswered++;
 		link->in_round = false;
 		link->next_round_ns = now_ns + patience_ns;
-		open_control(link);
+		open_pupil_control(link);
 	}
 	if (link->request != GZ_PUPIL_REQUEST_NONE || !link->control)
 		return link->sent_ns + patience_ns;
 	bool silent = now_ns - link->heard_ns >= silence_ns;
 	if (link->port == 0 || (silent && now_ns >= link->next_port_ns)) {
 		link->next_port_ns = now_ns + silence_ns;
-		send_request(link, GZ_PUPIL_REQUEST_PORT, "SUB_PORT");
+		send_pupil_request(link, GZ_PUPIL_REQUEST_PORT, "SUB_PORT");
 	} else if (link->in_round || now_ns >= link->next_round_ns) {
 		link->in_round = true;
-		send_request(link, GZ_PUPIL_REQUEST_TIME, "t");
+		send_pupil_request(link, GZ_PUPIL_REQUEST_TIME, "t");
 	} else {
 		int64_t next_ns = silent ? link->next_port_ns : link->heard_ns + silence_ns;
 		return next_ns < link->next_round_ns ? next_ns : link->next_round_ns;
@@ -224,11 +271,11 @@ static long milliseconds_until(int64_t time_ns, int64_t now_ns)
 	return left_ns <= 0 ? 0 : (long)((left_ns + GZ_NS_PER_MS - 1) / GZ_NS_PER_MS);
 }
 
-/* Wait once, until something comes or is due. @return whether a message waits in the stream */
-static bool wait_once(struct gz_pupil_link *link, bool with_stream, int64_t deadline_ns)
+/* Wait once, until a message comes or a request is due. @return whether the stream has a message */
+static bool wait_pupil_once(struct gz_pupil_link *link, bool with_stream, int64_t deadline_ns)
 {
 	int64_t now_ns = gz_clock_now_ns();
-	int64_t due_ns = take_care(link, now_ns);
+	int64_t due_ns = send_due_requests(link, now_ns);
 	if (!link->control)
 		return false;
 	zmq_pollitem_t items[] = {
@@ -239,11 +286,11 @@ static bool wait_once(struct gz_pupil_link *link, bool with_stream, int64_t dead
 	zmq_poll(items, count,
 		 milliseconds_until(due_ns < deadline_ns ? due_ns : deadline_ns, now_ns));
 	if (items[0].revents)
-		take_answer(link);
+		take_pupil_answer(link);
 	return items[1].revents != 0;
 }
 
-static bool is_dead(const struct gz_pupil_link *link, int64_t now_ns)
+static bool is_pupil_gone(const struct gz_pupil_link *link, int64_t now_ns)
 {
 	return link->unanswered >= UNANSWERED_MAX &&
 	       now_ns - link->heard_ns >= 2 * GZ_PUPIL_PATIENCE_MS * GZ_NS_PER_MS;
@@ -252,13 +299,13 @@ static bool is_dead(const struct gz_pupil_link *link, int64_t now_ns)
 enum gz_result gz_pupil_link_wait(struct gz_pupil_link *link, int64_t deadline_ns)
 {
 	while (link->control && link->stream) {
-		bool message = wait_once(link, true, deadline_ns);
+		bool message = wait_pupil_once(link, true, deadline_ns);
 		int64_t now_ns = gz_clock_now_ns();
 		if (message) {
 			link->heard_ns = now_ns;
 			return GZ_OK;
 		}
-		if (is_dead(link, now_ns))
+		if (is_pupil_gone(link, now_ns))
 			return GZ_ERR_NO_DEVICE;
 		if (now_ns >= deadline_ns)
 			return GZ_ERR_TIMEOUT;
@@ -269,7 +316,7 @@ enum gz_result gz_pupil_link_wait(struct gz_pupil_link *link, int64_t deadline_n
 void gz_pupil_link_synchronise(struct gz_pupil_link *link, int64_t deadline_ns)
 {
 	while (link->control && link->clock.round_count == 0 && gz_clock_now_ns() < deadline_ns)
-		wait_once(link, false, deadline_ns);
+		wait_pupil_once(link, false, deadline_ns);
 }
 
 void gz_pupil_link_doubt_clock(struct gz_pupil_link *link, int64_t now_ns)
@@ -284,16 +331,17 @@ enum gz_result gz_pupil_link_ask(struct gz_pupil_link *link, const char *questio
 {
 	zmq_pollitem_t item = { .socket = link->control, .events = ZMQ_POLLIN };
 	answer[0] = '\0';
-	send_request(link, GZ_PUPIL_REQUEST_NONE, question);
+	send_pupil_request(link, GZ_PUPIL_REQUEST_NONE, question);
 	zmq_poll(&item, 1, timeout_ms);
-	if (item.revents && receive_answer(link, answer, size))
+	if (item.revents && receive_pupil_answer(link, answer, size))
 		return GZ_OK;
-	open_control(link); /* a late answer must not be taken for that to another question */
+	open_pupil_control(
+		link); /* a late answer must not be taken for the answer to another request */
 	return GZ_ERR_TIMEOUT;
 }
 
-/* The newest message's second frame, if it is a status. */
-static enum gz_result receive_status(struct gz_pupil_link *link, struct gz_status *out_status)
+/* Decode the second frame of the newest message, if it is a status. */
+static enum gz_result receive_gazed_status(struct gz_pupil_link *link, struct gz_status *out_status)
 {
 	zmq_msg_t frame;
 	enum gz_result result = GZ_ERR_TIMEOUT;
@@ -314,14 +362,14 @@ enum gz_result gz_pupil_link_status(struct gz_pupil_link *link, int timeout_ms,
 {
 	int64_t now_ns = gz_clock_now_ns(), deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
 	snprintf(link->topics[0], sizeof link->topics[0], GZ_TOPIC_STATUS);
-	enum gz_result result = open_stream(link);
+	enum gz_result result = open_pupil_stream(link);
 	if (result == GZ_OK)
 		result = GZ_ERR_TIMEOUT;
 	zmq_pollitem_t item = { .socket = link->stream, .events = ZMQ_POLLIN };
 	while (link->stream && result != GZ_OK && now_ns < deadline_ns) {
 		zmq_poll(&item, 1, milliseconds_until(deadline_ns, now_ns));
 		if (item.revents)
-			result = receive_status(link, out_status);
+			result = receive_gazed_status(link, out_status);
 		now_ns = gz_clock_now_ns();
 	}
 	if (link->stream)
@@ -341,23 +389,22 @@ enum gz_result gz_pupil_link_open(struct gz_pupil_link *link, const char *addres
 	link->context = zmq_ctx_new();
 	if (!link->context)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = find_keys(link);
+	enum gz_result result = find_pupil_keys(link);
 	if (result == GZ_OK)
-		result = open_control(link);
+		result = open_pupil_control(link);
 	int64_t deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
 	while (result == GZ_OK && link->port == 0 && !link->told_reply &&
 	       gz_clock_now_ns() < deadline_ns)
-		wait_once(link, false, deadline_ns);
+		wait_pupil_once(link, false, deadline_ns);
 	if (result == GZ_OK && link->port == 0) {
 		if (!link->told_reply && link->keys.server[0])
 			gz_err(log,
 			       "no daemon with the key of known_servers answers at %s; start it, "
-			       "or "
-			       "have it let our key in, or check pupil.address",
+			       "or let it accept our key, or check pupil.address",
 			       address);
 		else if (!link->told_reply)
 			gz_err(log,
-			       "nobody answers at %s; start Pupil Capture with its Network API, or "
+			       "no answer from %s; start Pupil Capture with its Network API, or "
 			       "check pupil.address",
 			       address);
 		result = GZ_ERR_NO_DEVICE;
@@ -373,7 +420,7 @@ enum gz_result gz_pupil_link_subscribe(struct gz_pupil_link *link, const char *f
 	snprintf(link->topics[0], sizeof link->topics[0], "%s", first);
 	snprintf(link->topics[1], sizeof link->topics[1], "%s", second ? second : "");
 	link->heard_ns = link->next_round_ns = gz_clock_now_ns();
-	return open_stream(link);
+	return open_pupil_stream(link);
 }
 
 void gz_pupil_link_close(struct gz_pupil_link *link)

@@ -5,39 +5,40 @@
 
 #include "base/clock.h"
 
-/* A surface's entry has its time in seconds, another gazed's gaze in nanoseconds, too: the same
- * moment to this, ns. */
+/* Two times that differ by less are the same, ns: a surface entry has its time in seconds, the gaze
+ * of another gazed also in nanoseconds. */
 static const int64_t SAME_TIME_NS = 1000;
 
-/* Steps to learn from before a loss is believed. Chosen: half a second of a slow tracker. */
+/* Steps after which a long step counts as a loss. Chosen: half a second of a slow tracker. */
 static const uint64_t STEPS_TO_LEARN = 64;
 
-/* A step this many periods long is a loss; one longer than a pause is not: the stream rested. */
+/* A step of more than this many periods is a loss. One longer than a pause is not: the stream was
+ * stopped. */
 static const double LOSS_PERIODS = 1.75;
 static const double PAUSE_NS = 2e9;
 
-/* Nine in ten steps are not above the period: it rises nine times as fast as it falls. */
+/* The period rises nine times as fast as it falls, so that nine in ten steps are not longer. */
 static const double PERIOD_RISE = 9.0 / 256, PERIOD_FALL = 1.0 / 256;
 
-static bool is_measured(struct gz_point point)
+static bool is_point_measured(struct gz_point point)
 {
 	return isfinite(point.x) && isfinite(point.y);
 }
 
-/* NaN is no doubt: who sends no confidence says no less. */
-static bool is_sure(float confidence, double least)
+/* NaN means that the sender gives no confidence, which is no reason for doubt. */
+static bool is_confident(float confidence, double least)
 {
 	return isnan(confidence) || (double)confidence >= least;
 }
 
-/* An eye that took part in @p gaze. */
-static void to_eye(const struct gz_gaze *gaze, const struct gz_gaze_eye *from, double confidence,
-		   struct gz_eye_sample *to)
+/* Copy an eye that took part in @p gaze. */
+static void copy_pupil_eye(const struct gz_gaze *gaze, const struct gz_gaze_eye *from,
+			   double confidence, struct gz_eye_sample *to)
 {
-	to->point = is_measured(from->point) ? from->point : gaze->point;
+	to->point = is_point_measured(from->point) ? from->point : gaze->point;
 	to->confidence = isnan(from->confidence) ? gaze->confidence : from->confidence;
-	to->valid = is_sure(to->confidence, confidence);
-	/* Pupil's 0 stands for a pupil that was not found. */
+	to->valid = is_confident(to->confidence, confidence);
+	/* Pupil sends 0 for a pupil that was not found. */
 	to->pupil_mm = from->pupil_mm > 0 ? from->pupil_mm : NAN;
 	memcpy(to->origin_mm, from->origin_mm, sizeof to->origin_mm);
 	memcpy(to->direction, from->direction, sizeof to->direction);
@@ -54,13 +55,13 @@ enum gz_result gz_pupil_read_gaze(const void *bytes, size_t size, double confide
 	}
 	struct gz_pupil_gaze read = { .sample = gz_sample_unmeasured(), .number = gaze.seq };
 	read.sample.device_ns = gaze.host_ns;
-	/* Another gazed has smoothed its point; ours shall smooth what was measured. */
-	read.sample.point = is_measured(gaze.raw) ? gaze.raw : gaze.point;
-	read.sample.valid = is_sure(gaze.confidence, confidence);
+	/* Another gazed has smoothed its point; use the measured one. */
+	read.sample.point = is_point_measured(gaze.raw) ? gaze.raw : gaze.point;
+	read.sample.valid = is_confident(gaze.confidence, confidence);
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		if (gaze.eye[i].valid && !gaze.combined)
-			to_eye(&gaze, &gaze.eye[i], confidence, &read.sample.eye[i]);
-		read.own_points |= is_measured(gaze.eye[i].point);
+			copy_pupil_eye(&gaze, &gaze.eye[i], confidence, &read.sample.eye[i]);
+		read.own_points |= is_point_measured(gaze.eye[i].point);
 	}
 	*out_gaze = read;
 	return GZ_OK;
@@ -71,8 +72,9 @@ void gz_pupil_remember(struct gz_pupil_memory *memory, const struct gz_pupil_gaz
 	memory->gaze[memory->count++ % GZ_PUPIL_MEMORY] = *gaze;
 }
 
-/* The gaze message of @p time_ns, or NULL. */
-static const struct gz_pupil_gaze *recall(const struct gz_pupil_memory *memory, int64_t time_ns)
+/* The kept gaze message of @p time_ns, or NULL. */
+static const struct gz_pupil_gaze *find_remembered_gaze(const struct gz_pupil_memory *memory,
+							int64_t time_ns)
 {
 	for (size_t age = 1; age <= GZ_PUPIL_MEMORY && age <= memory->count; age++) {
 		const struct gz_pupil_gaze *gaze =
@@ -107,7 +109,7 @@ enum gz_result gz_pupil_next_entry(struct gz_pupil_entries *entries,
 	if (entries->next == entries->count)
 		return GZ_ERR_END;
 	const struct gz_surface_gaze *entry = &entries->entry[entries->next++];
-	const struct gz_pupil_gaze *base = recall(memory, entry->time_ns);
+	const struct gz_pupil_gaze *base = find_remembered_gaze(memory, entry->time_ns);
 	struct gz_pupil_gaze read = { .sample = gz_sample_unmeasured() };
 	if (base)
 		read = *base;
@@ -115,17 +117,17 @@ enum gz_result gz_pupil_next_entry(struct gz_pupil_entries *entries,
 	if (!read.own_points) {
 		read.sample.point = entry->point;
 		for (int i = 0; i < GZ_EYE_COUNT; i++)
-			if (is_measured(read.sample.eye[i].point))
+			if (is_point_measured(read.sample.eye[i].point))
 				read.sample.eye[i].point = entry->point;
 	}
 	if (!base || !read.own_points)
-		read.sample.valid = is_sure(entry->confidence, confidence);
+		read.sample.valid = is_confident(entry->confidence, confidence);
 	*out_gaze = read;
 	return GZ_OK;
 }
 
-/* Follow the step that nine in ten are not above. */
-static void learn_period(struct gz_pupil_order *order, double step_ns)
+/* Adjust the period to a step. */
+static void learn_pupil_period(struct gz_pupil_order *order, double step_ns)
 {
 	if (order->steps++ == 0)
 		order->period_ns = step_ns;
@@ -135,14 +137,14 @@ static void learn_period(struct gz_pupil_order *order, double step_ns)
 		order->period_ns *= 1 - PERIOD_FALL;
 }
 
-static uint32_t missing_by_time(struct gz_pupil_order *order, double step_ns)
+static uint32_t missing_by_pupil_time(struct gz_pupil_order *order, double step_ns)
 {
 	uint32_t missing = 0;
 	if (step_ns >= PAUSE_NS)
 		return 0;
 	if (order->steps >= STEPS_TO_LEARN && step_ns > LOSS_PERIODS * order->period_ns)
 		missing = (uint32_t)fmin(round(step_ns / order->period_ns) - 1, 1e6);
-	learn_period(order, step_ns);
+	learn_pupil_period(order, step_ns);
 	return missing;
 }
 
@@ -157,10 +159,10 @@ enum gz_result gz_pupil_order_step(struct gz_pupil_order *order, const struct gz
 		return GZ_ERR_PROTOCOL;
 	if (!begun)
 		*out_missing = 0;
-	else if (numbered) /* numbers that leap are a daemon that began anew */
+	else if (numbered) /* a jump of the numbers means that the daemon restarted */
 		*out_missing = ahead >= 1 && ahead < 1000000 ? (uint32_t)ahead - 1 : 0;
 	else
-		*out_missing = missing_by_time(order, (double)step_ns);
+		*out_missing = missing_by_pupil_time(order, (double)step_ns);
 	order->begun = true;
 	order->pupil_ns = pupil_ns;
 	order->number = gaze->number;

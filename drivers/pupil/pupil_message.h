@@ -1,13 +1,13 @@
 /**
  * @file
- * Pupil's messages as samples. Bytes to meaning; no I/O, no clock.
+ * Messages of Pupil Capture as samples: from bytes to numbers, without I/O and without a clock.
  *
  * A gaze message (https://docs.pupil-labs.com/core/developer/, "Gaze Datum Format") has one point,
  * norm_pos, in the picture of the scene camera, and in base_data the pupils of one or two eyes. A
- * surface message ("Surface Datum Format") maps gaze onto a surface, for instance the screen, and
+ * surface message ("Surface Datum Format") maps gaze to a surface, for instance the screen, and
  * refers to each gaze message by its timestamp. Both eyes then look at the one point.
  *
- * Another gazed sends the same messages, with the eyes' own points and numbers that count up.
+ * Another gazed sends the same messages, with a point for each eye and numbers that count up.
  */
 #ifndef GZ_DRIVERS_PUPIL_MESSAGE_H
 #define GZ_DRIVERS_PUPIL_MESSAGE_H
@@ -18,38 +18,39 @@
 #include "protocol/gaze.h"
 #include "protocol/wire.h"
 
-/** Gaze messages remembered for the surface messages that refer to them. Chosen: more than a second
- * of Pupil Core's 400 a second; surface messages follow within a frame of the scene camera. */
+/** Gaze messages kept for the surface messages that refer to them. Chosen: more than a second of
+ * Pupil Core's 400 a second; surface messages follow within a frame of the scene camera. */
 #define GZ_PUPIL_MEMORY 512
 
-/** Most entries of a surface message that are taken. Chosen: as many as are remembered. */
+/** Most entries of a surface message that are accepted. Chosen: as many as gaze messages are kept.
+ */
 #define GZ_PUPIL_ENTRIES_MAX GZ_PUPIL_MEMORY
 
-/** What a gaze message says. */
+/** Content of a gaze message. */
 struct gz_pupil_gaze {
-	struct gz_sample sample; /**< device_ns is Pupil time; seq and host_ns are not filled */
-	uint64_t number;         /**< the sender's own, from another gazed; 0 where it has none */
-	bool own_points;         /**< the eyes' points are their own, not the common one */
+	struct gz_sample sample; /**< device_ns is Pupil time; seq and host_ns are not set */
+	uint64_t number;         /**< sequence number of another gazed; 0 if there is none */
+	bool own_points;         /**< each eye has its own point, not the common one */
 };
 
 /**
  * Read a gaze message.
  *
- * @param confidence  samples and eyes below it are invalid, [0, 1]
+ * @param confidence  limit below which samples and eyes are invalid, [0, 1]
  * @param[out] out_gaze    written on success only
- * @param[out] out_reason  on failure: what was wrong
- * @retval GZ_ERR_PROTOCOL  no gaze message
+ * @param[out] out_reason  what is wrong; written on failure only
+ * @retval GZ_ERR_PROTOCOL  not a gaze message
  */
 enum gz_result gz_pupil_read_gaze(const void *bytes, size_t size, double confidence,
 				  struct gz_pupil_gaze *out_gaze, enum gz_malformed *out_reason);
 
 /** Newest gaze messages. Zero-initialised is empty. */
 struct gz_pupil_memory {
-	size_t count; /**< taken in so far; the newest is at (count - 1) % GZ_PUPIL_MEMORY */
+	size_t count; /**< messages so far; the newest is at (count - 1) % GZ_PUPIL_MEMORY */
 	struct gz_pupil_gaze gaze[GZ_PUPIL_MEMORY];
 };
 
-/** Remember a gaze message in place of the oldest. */
+/** Keep a gaze message, in place of the oldest. */
 void gz_pupil_remember(struct gz_pupil_memory *memory, const struct gz_pupil_gaze *gaze);
 
 /** Entries of a surface message that wait to be read. Zero-initialised is none. */
@@ -60,19 +61,21 @@ struct gz_pupil_entries {
 };
 
 /**
- * Take in a surface message in place of the last one.
+ * Read a surface message, in place of the last one.
  *
- * @param[out] out_reason  on failure: what was wrong; GZ_MALFORMED_LONG for too many entries
- * @retval GZ_ERR_PROTOCOL  no surface message; there are no entries then
+ * @param[out] out_reason  what is wrong, GZ_MALFORMED_LONG for too many entries; written on failure
+ *                         only
+ * @retval GZ_ERR_PROTOCOL  not a surface message; there are no entries then
  */
 enum gz_result gz_pupil_read_surface(const void *bytes, size_t size,
 				     struct gz_pupil_entries *entries,
 				     enum gz_malformed *out_reason);
 
 /**
- * The next entry as a sample: its point and time, and of the gaze message it refers to the pupils.
+ * Turn the next entry into a sample: point and time from the entry, pupils from the gaze message
+ * that it refers to.
  *
- * @param confidence  as gz_pupil_read_gaze() has it
+ * @param confidence  limit as in gz_pupil_read_gaze()
  * @param[out] out_gaze  written only on GZ_OK
  * @retval GZ_ERR_END  there are no more
  */
@@ -80,27 +83,27 @@ enum gz_result gz_pupil_next_entry(struct gz_pupil_entries *entries,
 				   const struct gz_pupil_memory *memory, double confidence,
 				   struct gz_pupil_gaze *out_gaze);
 
-/** The order of samples. Zero-initialised is the start state. */
+/** Order of the samples. Zero-initialised is the start state. */
 struct gz_pupil_order {
 	bool begun;
 	int64_t pupil_ns; /**< of the newest */
 	uint64_t number;
-	uint64_t steps;   /**< seen since the period is followed */
-	double period_ns; /**< that nine in ten steps are not above */
+	uint64_t steps;   /**< steps from which period_ns was learnt */
+	double period_ns; /**< nine in ten steps are not longer */
 };
 
 /**
- * Whether @p gaze is newer than the one before it, and how many are missing between: by the
- * sender's numbers where it has them, else by its time. Pupil Core's steps are uneven, because two
- * cameras run free, so that only a step far above most of them counts as a loss.
+ * Check that @p gaze is newer than the last one and count what is missing between them: by the
+ * numbers of the sender if it has them, else by time. The steps of Pupil Core are uneven, because
+ * two cameras run free, so only a step far longer than most counts as a loss.
  *
  * @param[out] out_missing  written on success only
- * @retval GZ_ERR_PROTOCOL  not newer: sent before, or out of order
+ * @retval GZ_ERR_PROTOCOL  not newer: a duplicate, or out of order
  */
 enum gz_result gz_pupil_order_step(struct gz_pupil_order *order, const struct gz_pupil_gaze *gaze,
 				   uint32_t *out_missing);
 
-/** Pupil's clock was set: what comes next is newer whatever its time. */
+/** Restart because Pupil's clock was set: the next message is newer whatever its time. */
 void gz_pupil_order_restart(struct gz_pupil_order *order);
 
 #endif

@@ -1,20 +1,23 @@
-#include "drivers/sim/sim_driver.h"
-
+/**
+ * @file
+ * A simulated viewer in front of a simulated tracker (sim/tracker.h), delivered in real time or as
+ * fast as it is read.
+ */
 #include <stdlib.h>
 #include <sys/prctl.h>
 
-#include "base/clock.h"
-#include "drivers/clock_model.h"
-#include "drivers/pointer/pointer_feed.h"
+#include "drivers/device/clock_model.h"
+#include "drivers/device/device.h"
+#include "drivers/pointer/pointer_driver.h"
 #include "sim/tracker.h"
 
 #define GZ_LOG_MODULE "sim"
 
-/* A reader that was held up for longer than this does not get what it missed: a tracker's buffers
- * end somewhere, too. Chosen: two seconds, above any scheduling delay. */
+/* A reader that was held up for longer than this does not get what it missed: the buffers of a real
+ * tracker end somewhere, too. Chosen: above any scheduling delay. */
 static const int64_t BACKLOG_NS = 2 * GZ_NS_PER_S;
 
-/* A viewer that nobody has told where to look for so long looks where it likes again. Chosen: as
+/* If no target is reported for this long, the viewer looks where it likes again. Chosen: equal to
  * the preset of pointer.timeout_ms. */
 static const int64_t FOLLOW_PATIENCE_NS = GZ_NS_PER_S;
 
@@ -27,22 +30,23 @@ struct sim_device {
 	int64_t start_ns;
 	uint64_t seq;
 	uint64_t lost;
-	struct gz_pointer_feed *feed; /* the host's; NULL where nobody tells where to look */
-	int64_t told_ns;              /* when somebody last did; 0: nobody, or it is forgotten */
-	uint32_t skipped;             /* lost since the last delivered sample, beyond next's own */
+	struct gz_pointer_feed *feed; /* target reports, borrowed; may be NULL */
+	int64_t told_ns;              /* host time of the newest target; 0: none, or forgotten */
+	uint32_t skipped; /* lost since the last delivered sample, beyond next's own losses */
 };
 
-static struct sim_device *of(struct gz_device *device)
+static struct sim_device *sim_device_of(struct gz_device *device)
 {
 	return (struct sim_device *)device;
 }
 
 static enum gz_result sim_start(struct gz_device *device)
 {
-	struct sim_device *sim = of(device);
-	/* The default of 50 us would show as jitter in every sample's delivery. */
+	struct sim_device *sim = sim_device_of(device);
+	/* The default slack of 50 us would show as jitter in the delivery of every sample. */
 	if (prctl(PR_SET_TIMERSLACK, 1) != 0)
-		gz_debug(device->log, "timer slack stays as it is; samples come less evenly");
+		gz_debug(device->log,
+			 "the timer slack cannot be reduced; samples arrive less evenly");
 	sim->start_ns = gz_clock_now_ns();
 	gz_sim_tracker_next(sim->tracker, &sim->next);
 	return GZ_OK;
@@ -53,8 +57,8 @@ static uint32_t add_saturated(uint32_t a, uint32_t b)
 	return a > UINT32_MAX - b ? UINT32_MAX : a + b;
 }
 
-/* Leave out what a reader that slept for long has missed. */
-static void skip_backlog(struct sim_device *sim, int64_t now_ns)
+/* Skip the samples that a reader has missed for too long. */
+static void skip_sim_backlog(struct sim_device *sim, int64_t now_ns)
 {
 	while (now_ns - (sim->start_ns + sim->next.arrival_ns) > BACKLOG_NS) {
 		sim->skipped = add_saturated(sim->skipped, sim->next.sample.lost_before);
@@ -63,25 +67,25 @@ static void skip_backlog(struct sim_device *sim, int64_t now_ns)
 	}
 }
 
-/* Host time as any driver finds it: from the device's clock and the arrivals. The simulator knows
+/* Host time as any driver estimates it: from the device clock and the arrivals. The simulator knows
  * the constant delay, as the maker of a tracker does. */
-static int64_t modelled_host_ns(struct sim_device *sim, int64_t arrival_ns)
+static int64_t fitted_host_ns(struct sim_device *sim, int64_t arrival_ns)
 {
 	bool jumped;
 	int64_t host_ns =
 		gz_clock_model_step(&sim->clock, sim->next.sample.device_ns, arrival_ns, &jumped);
 	if (jumped)
-		gz_warn(sim->base.log, "the device's clock jumped; its fit begins again");
+		gz_warn(sim->base.log, "the device clock jumped; the clock fit starts again");
 	return host_ns - (int64_t)(sim->params.latency_ms * (double)GZ_NS_PER_MS);
 }
 
-static void deliver(struct sim_device *sim, struct gz_sample *out_sample)
+static void deliver_simulated(struct sim_device *sim, struct gz_sample *out_sample)
 {
 	int64_t arrival_ns = sim->start_ns + sim->next.arrival_ns;
 	*out_sample = sim->next.sample;
 	out_sample->host_ns = sim->start_ns + sim->next.sample.host_ns;
 	if (sim->params.clock_skew_ppm != 0)
-		out_sample->host_ns = modelled_host_ns(sim, arrival_ns);
+		out_sample->host_ns = fitted_host_ns(sim, arrival_ns);
 	out_sample->seq = sim->seq++;
 	out_sample->lost_before = add_saturated(sim->next.sample.lost_before, sim->skipped);
 	sim->lost += out_sample->lost_before;
@@ -89,9 +93,9 @@ static void deliver(struct sim_device *sim, struct gz_sample *out_sample)
 	gz_sim_tracker_next(sim->tracker, &sim->next);
 }
 
-/* Whoever shows targets to the simulated viewer tells where they are as a viewer tells of its
- * pointer. */
-static void follow_reports(struct sim_device *sim)
+/* A program that shows targets to the simulated viewer reports their positions, as a viewer reports
+ * its pointer. */
+static void follow_shown_targets(struct sim_device *sim)
 {
 	struct gz_pointer_report report;
 	int64_t now_ns = sim->feed ? gz_clock_now_ns() : 0;
@@ -108,10 +112,10 @@ static void follow_reports(struct sim_device *sim)
 static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
 			       struct gz_sample *out_sample)
 {
-	struct sim_device *sim = of(device);
+	struct sim_device *sim = sim_device_of(device);
 	if (sim->params.realtime) {
 		int64_t now_ns = gz_clock_now_ns();
-		skip_backlog(sim, now_ns);
+		skip_sim_backlog(sim, now_ns);
 		int64_t deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
 		int64_t due_ns = sim->start_ns + sim->next.arrival_ns;
 		if (due_ns > deadline_ns) {
@@ -120,8 +124,8 @@ static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
 		}
 		gz_clock_sleep_until_ns(due_ns);
 	}
-	follow_reports(sim);
-	deliver(sim, out_sample);
+	follow_shown_targets(sim);
+	deliver_simulated(sim, out_sample);
 	return GZ_OK;
 }
 
@@ -152,7 +156,7 @@ static void sim_counters(const struct gz_device *device, struct gz_device_counte
 
 static void sim_destroy(struct gz_device *device)
 {
-	struct sim_device *sim = of(device);
+	struct sim_device *sim = sim_device_of(device);
 	gz_sim_tracker_destroy(&sim->tracker);
 	free(sim);
 }

@@ -1,5 +1,9 @@
-#include "drivers/template/template_driver.h"
-
+/**
+ * @file
+ * The driver to start a new one from. It reads fixed reports (template_protocol.h) from a file, a
+ * FIFO or a character device. It is a real driver of the table, run by the conformance and daemon
+ * tests. docs/adding-a-tracker.md describes what to change.
+ */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -7,14 +11,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/clock.h"
-#include "drivers/clock_model.h"
+#include "drivers/device/clock_model.h"
+#include "drivers/device/device.h"
 #include "drivers/template/template_protocol.h"
 
 #define GZ_LOG_MODULE "template"
-
-/* One line about bad reports a second is enough to see that something is wrong. */
-#define COMPLAINT_NS GZ_NS_PER_S
 
 struct template_settings {
 	char path[GZ_PATH_SIZE];
@@ -23,18 +24,17 @@ struct template_settings {
 
 #define AT(field) offsetof(struct template_settings, field)
 
-/* Each setting once: presets, the configuration file, the command line and --help come from here.
- */
+/* One row a setting: defaults, configuration file, command line and --help are made from it. */
 static const struct gz_option template_options[] = {
-	{ "template.path", GZ_OPTION_STRING, AT(path), 0, GZ_PATH_SIZE, 0, NULL, "",
-	  "file, FIFO or character device to read reports from" },
-	{ "template.rate_hz", GZ_OPTION_DOUBLE, AT(rate_hz), 0, 2000, 0, NULL, "0",
-	  "its nominal rate, Hz; 0 where it is not known" },
+	{ "template.path", GZ_OPTION_STRING, AT(path), 0, GZ_PATH_SIZE, .preset = "",
+	  .help = "file, FIFO or character device to read reports from" },
+	{ "template.rate_hz", GZ_OPTION_DOUBLE, AT(rate_hz), 0, 2000, .preset = "0",
+	  .help = "nominal sample rate of the device, Hz; 0 if it is not known" },
 };
 
 static const size_t template_option_count = sizeof template_options / sizeof *template_options;
 
-/* The common head comes first, so that a struct gz_device * is a struct template_device *. */
+/* The common head comes first, so that a struct gz_device * also points to the whole device. */
 struct template_device {
 	struct gz_device base;
 	double rate_hz;
@@ -43,42 +43,27 @@ struct template_device {
 	size_t filled; /* bytes of an unfinished report */
 	struct gz_clock_model clock;
 	struct gz_ratelimit complaints;
-	int64_t clock_us;
+	int64_t clock_us; /* unwrapped */
 	uint32_t counter; /* of the newest report */
 	uint64_t seq;
 	uint64_t lost;
 	uint64_t malformed[GZ_MALFORMED_COUNT];
 };
 
-static struct template_device *of(struct gz_device *device)
+static struct template_device *template_device_of(struct gz_device *device)
 {
 	return (struct template_device *)device;
 }
 
-/* Here a real device is told to stream. This one streams since it was opened. */
+/* A real device is told to stream here. This one streams from the moment it is opened. */
 static enum gz_result template_start(struct gz_device *device)
 {
 	(void)device;
 	return GZ_OK;
 }
 
-/* Wait until something can be read. Returns GZ_ERR_TIMEOUT at @p deadline_ns. */
-static enum gz_result wait_readable(struct template_device *device, int64_t deadline_ns)
-{
-	int64_t left_ns = deadline_ns - gz_clock_now_ns();
-	if (left_ns < 0)
-		left_ns = 0;
-	struct pollfd poll_fd = { .fd = device->fd, .events = POLLIN };
-	struct timespec timeout = { .tv_sec = (time_t)(left_ns / GZ_NS_PER_S),
-				    .tv_nsec = (long)(left_ns % GZ_NS_PER_S) };
-	int ready = ppoll(&poll_fd, 1, &timeout, NULL);
-	if (ready < 0 && errno != EINTR)
-		return GZ_ERR_NO_DEVICE;
-	return ready > 0 ? GZ_OK : GZ_ERR_TIMEOUT;
-}
-
-/* Take in what is there. A device that has gone reads as an end or an error. */
-static enum gz_result fill(struct template_device *device)
+/* Read the bytes that have arrived. A device that is gone reads as an end or an error. */
+static enum gz_result read_template_bytes(struct template_device *device)
 {
 	ssize_t n = read(device->fd, device->bytes + device->filled,
 			 sizeof device->bytes - device->filled);
@@ -88,30 +73,29 @@ static enum gz_result fill(struct template_device *device)
 	}
 	if (n < 0 && (errno == EAGAIN || errno == EINTR))
 		return GZ_OK;
-	gz_warn(device->base.log, "the device has gone: %s",
-		n == 0 ? "end of its reports" : strerror(errno));
+	gz_warn(device->base.log, "the device is gone: %s",
+		n == 0 ? "its reports have ended" : strerror(errno));
 	return GZ_ERR_NO_DEVICE;
 }
 
-/* After bytes that are no report: go on at the next place where one may begin. */
-static void resynchronise(struct template_device *device)
+/* Skip bytes that are not a report, up to the next place where one may begin. */
+static void resynchronise_reports(struct template_device *device)
 {
-	uint64_t held_back;
 	device->malformed[GZ_MALFORMED_SYNTAX]++;
-	if (gz_ratelimit_pass(&device->complaints, gz_clock_now_ns(), COMPLAINT_NS, &held_back))
-		gz_warn(device->base.log,
-			"device bug: bytes that are no report (%llu more times since last told)",
-			(unsigned long long)held_back);
+	gz_warn_limited(device->base.log, &device->complaints,
+			"device bug: %zu bytes are not a report; searching for the next one",
+			device->filled);
 	const unsigned char *next = memchr(device->bytes + 1, 'G', sizeof device->bytes - 1);
 	device->filled = next ? (size_t)(device->bytes + sizeof device->bytes - next) : 0;
 	if (next)
 		memmove(device->bytes, next, device->filled);
 }
 
-/* Numbers of a report to a sample: units and frames as protocol/gaze.h has them, times on both
- * clocks, and nothing smoothed or left out: that is the pipeline's. */
-static void to_sample(struct template_device *device, const struct gz_template_report *report,
-		      struct gz_sample *out_sample)
+/* Turn a report into a sample: units and frames of protocol/gaze.h, times on both clocks. Do not
+ * smooth and do not leave anything out: that is the pipeline's task. */
+static void template_report_to_sample(struct template_device *device,
+				      const struct gz_template_report *report,
+				      struct gz_sample *out_sample)
 {
 	bool jumped;
 	bool first = device->seq == 0;
@@ -121,14 +105,13 @@ static void to_sample(struct template_device *device, const struct gz_template_r
 	sample.host_ns =
 		gz_clock_model_step(&device->clock, sample.device_ns, gz_clock_now_ns(), &jumped);
 	if (jumped)
-		gz_warn(device->base.log, "the device's clock jumped; its fit begins again");
+		gz_warn(device->base.log, "the device clock jumped; the clock fit starts again");
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++) {
 		sample.eye[eye].valid = report->found[eye];
 		if (report->found[eye])
 			sample.eye[eye].point = report->point[eye];
 	}
-	/* A counter that runs backwards is a device that began anew: nothing is known to be lost.
-	 */
+	/* If the counter runs backwards, the device has restarted, and nothing counts as lost. */
 	uint32_t ahead = report->counter - device->counter - 1;
 	sample.lost_before = first || ahead > INT32_MAX ? 0 : ahead;
 	sample.seq = device->seq++;
@@ -137,16 +120,16 @@ static void to_sample(struct template_device *device, const struct gz_template_r
 	*out_sample = sample;
 }
 
-/* Read until a report is whole or time is up. No allocation, no lock. */
+/* Read until a report is complete or the time is up. No allocation, no lock. */
 static enum gz_result template_read(struct gz_device *base, int timeout_ms,
 				    struct gz_sample *out_sample)
 {
-	struct template_device *device = of(base);
+	struct template_device *device = template_device_of(base);
 	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
 	for (;;) {
-		enum gz_result result = wait_readable(device, deadline_ns);
+		enum gz_result result = gz_device_poll(device->fd, POLLIN, deadline_ns);
 		if (result == GZ_OK)
-			result = fill(device);
+			result = read_template_bytes(device);
 		if (result != GZ_OK)
 			return result;
 		if (device->filled < sizeof device->bytes)
@@ -154,11 +137,11 @@ static enum gz_result template_read(struct gz_device *base, int timeout_ms,
 		struct gz_template_report report;
 		if (gz_template_parse(device->bytes, device->filled, &report) == GZ_OK) {
 			device->filled = 0;
-			to_sample(device, &report, out_sample);
+			template_report_to_sample(device, &report, out_sample);
 			return GZ_OK;
 		}
-		resynchronise(device);
-		/* Garbage without end must not hold the caller. */
+		resynchronise_reports(device);
+		/* Endless garbage must not hold the caller. */
 		if (gz_clock_now_ns() >= deadline_ns)
 			return GZ_ERR_TIMEOUT;
 	}
@@ -180,10 +163,10 @@ static void template_counters(const struct gz_device *base, struct gz_device_cou
 	memcpy(out_counters->malformed, device->malformed, sizeof out_counters->malformed);
 }
 
-/* Also right for a device that create() gave up half-way. */
+/* Also works on a device that create() could not finish. */
 static void template_destroy(struct gz_device *base)
 {
-	struct template_device *device = of(base);
+	struct template_device *device = template_device_of(base);
 	if (device->fd >= 0)
 		close(device->fd);
 	free(device);
@@ -197,7 +180,7 @@ static const struct gz_device_ops template_ops = {
 	.destroy = template_destroy,
 };
 
-static enum gz_result refuse_path(const char *path, const struct gz_log *log)
+static enum gz_result refuse_template_path(const char *path, const struct gz_log *log)
 {
 	int error = errno;
 	gz_err(log, "cannot open %s: %s; check --template.path", path, strerror(error));
@@ -216,7 +199,7 @@ static enum gz_result template_create(const void *settings, const struct gz_driv
 	const struct gz_log *log = host->log;
 	const struct template_settings *wanted = settings;
 	if (!wanted->path[0]) {
-		gz_err(log, "no device named; name one with --template.path PATH");
+		gz_err(log, "no device given; name one with --template.path PATH");
 		return GZ_ERR_INVAL;
 	}
 	struct template_device *device = calloc(1, sizeof *device);
@@ -226,7 +209,7 @@ static enum gz_result template_create(const void *settings, const struct gz_driv
 	device->rate_hz = wanted->rate_hz;
 	device->fd = open(wanted->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
 	if (device->fd < 0) {
-		enum gz_result result = refuse_path(wanted->path, log);
+		enum gz_result result = refuse_template_path(wanted->path, log);
 		template_destroy(&device->base);
 		return result;
 	}

@@ -1,17 +1,17 @@
 /**
  * @file
- * The template's reports: bytes to numbers, no I/O. Here a real driver says where its layout was
- * described, with page and version; this one was made up for the purpose.
+ * Reports of the template's device: from bytes to numbers, without I/O. A real driver says here
+ * where its layout is described, with page and version; this layout was invented for the template.
  *
  * A report has 32 bytes, little-endian:
  *
  *     0   u8[2]   "GT"
  *     2   u8      flags: 1 right eye found, 2 left eye found
  *     3   u8      version, 1
- *     4   u32     counts reports, also those lost on the way; wraps
- *     8   u32     the device's clock, us; wraps after 71 minutes
- *     12  f32[2]  right eye's point, normalised, origin top left
- *     20  f32[2]  left eye's point
+ *     4   u32     counter of reports, including those lost on the way; wraps
+ *     8   u32     device clock, us; wraps after 71 minutes
+ *     12  f32[2]  point of the right eye, normalised, origin top left
+ *     20  f32[2]  point of the left eye
  *     28  u32     sum of bytes 0 to 27
  */
 #ifndef GZ_DRIVERS_TEMPLATE_PROTOCOL_H
@@ -39,13 +39,9 @@ struct gz_template_report {
  *
  * @param bytes, size  as received, untrusted
  * @param[out] out_report  written on success only
- * @retval GZ_ERR_PROTOCOL  too short, or magic, version or sum are wrong
+ * @retval GZ_ERR_PROTOCOL  too short, or wrong magic bytes, version or sum
  */
 enum gz_result gz_template_parse(const unsigned char *bytes, size_t size,
 				 struct gz_template_report *out_report);
-
-/** The same report as bytes; for whoever plays the device. */
-void gz_template_print(const struct gz_template_report *report,
-		       unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE]);
 
 #endif

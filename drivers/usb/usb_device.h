@@ -1,7 +1,7 @@
 /**
  * @file
- * What can be told of a USB device without opening it, from sysfs: for lists, for choosing, and for
- * messages that name the remedy. Nothing is sent to the device, so a program that uses it is not
+ * What sysfs says about USB devices, for lists, for choosing a device, and for messages that name
+ * the remedy. Nothing is opened and nothing is sent to a device, so a program that uses it is not
  * disturbed.
  */
 #ifndef GZ_DRIVERS_USB_DEVICE_H
@@ -9,32 +9,29 @@
 
 #include <libusb.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-#include "drivers/driver.h"
+#include "drivers/device/device.h"
 #include "protocol/gaze.h"
 
-/** What to do where a device node may not be opened; ends a sentence. */
-#define GZ_USB_PERMISSION_REMEDY \
-	"install the udev rule 70-gazecast.rules, then plug the tracker in again"
+/** Where sysfs is mounted. */
+#define GZ_SYSFS "/sys"
 
 /** A USB device as sysfs describes it. */
 struct gz_usb_device {
 	uint16_t vendor, product;
-	char name[GZ_NAME_SIZE];   /**< the product's, printable; empty if it has none */
+	char name[GZ_NAME_SIZE];   /**< product name, printable; empty if it has none */
 	char serial[GZ_NAME_SIZE]; /**< printable; empty if it has none */
-	char place[GZ_NAME_SIZE];  /**< "usb 1-2.3": the bus, and the ports to it */
+	char place[GZ_NAME_SIZE];  /**< "usb 1-2.3": the bus, and the ports to the device */
 	char node[32];             /**< "/dev/bus/usb/001/004" */
 };
 
 /** Describe @p device. Reads two small files; does not open the device. */
 void gz_usb_describe(libusb_device *device, struct gz_usb_device *out_device);
 
-/** Whether @p choice, a name or serial number, means this device. NULL or empty means any. */
-bool gz_usb_is_chosen(const struct gz_usb_device *device, const char *choice);
-
 /**
- * Whether a program may open it, and whether none has taken @p interface_number already.
+ * List a device: usable if this program may open it and no program uses @p interface_number.
  *
  * @param[out] out_entry  all fields
  */
@@ -42,9 +39,23 @@ void gz_usb_list_entry(const struct gz_usb_device *device, int interface_number,
 		       struct gz_device_entry *out_entry);
 
 /**
- * The result for an error of libusb's, for callers that log.
+ * List USB devices that the kernel's HID drivers refused because their report descriptor is
+ * malformed. They have no hidraw node, so no driver of ours ever sees them: interfaces of class HID
+ * without a driver, and HID devices on USB without a driver. If the kernel's HID drivers are not
+ * loaded, nothing is listed.
  *
- * @retval GZ_ERR_NO_DEVICE, GZ_ERR_ACCESS, GZ_ERR_BUSY, GZ_ERR_NO_MEM, GZ_ERR_TIMEOUT, GZ_ERR_IO
+ * @param sysfs  GZ_SYSFS
+ * @param[out] out_entries  none of them usable
+ * @param room   how many fit
+ * @return how many were written
+ */
+size_t gz_usb_list_refused(const char *sysfs, struct gz_device_entry *out_entries, size_t room);
+
+/**
+ * The result for an error of libusb, for callers that log.
+ *
+ * @return GZ_OK for 0 and positive numbers; GZ_ERR_NO_DEVICE, GZ_ERR_ACCESS, GZ_ERR_BUSY,
+ *         GZ_ERR_NO_MEM or GZ_ERR_TIMEOUT for the errors of that meaning, else GZ_ERR_IO
  */
 enum gz_result gz_usb_result(int libusb_error);
 

@@ -2,19 +2,9 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "render/image.h"
-#include "render/plan/plan_emit.h"
-
-/* The table is the one place that knows the ranges. */
-static bool parameters_valid(const struct gz_foveation *foveation)
-{
-	for (size_t i = 0; i < gz_foveation_option_count; i++)
-		if (!gz_option_holds(&gz_foveation_options[i], foveation))
-			return false;
-	return foveation->method != GZ_METHOD_TABLE || gz_spacing_table_valid(&foveation->table);
-}
+#include "render/picture/image.h"
+#include "render/plan/plan_context.h"
 
 static bool request_valid(const struct gz_plan_request *request)
 {
@@ -24,42 +14,50 @@ static bool request_valid(const struct gz_plan_request *request)
 	return request->rays_per_px >= 0.0625 && request->rays_per_px <= 16 &&
 	       request->scale >= 1 && request->scale <= GZ_PLAN_SCALE_MAX && request->widen >= 0 &&
 	       request->widen <= 1 && request->steps_per_px >= 0 && request->steps_per_px <= 1 &&
-	       gz_display_valid(request->display) && parameters_valid(request->foveation);
+	       gz_display_valid(request->display) && gz_foveation_valid(request->foveation);
 }
 
-/* Plans that do not ask where someone looks. */
-static bool ignores_gaze(const struct gz_foveation *foveation)
+static bool same_place(float a, float b)
 {
-	return (foveation->method == GZ_METHOD_STANDARD ||
-		foveation->method == GZ_METHOD_UNIFORM) &&
-	       (foveation->step_rule == GZ_STEP_METHOD || foveation->step_rule == GZ_STEP_NONE);
+	return a == b || (isnan(a) && isnan(b));
 }
 
-/* Bits, not values: a NaN equals itself and two zeros differ, neither of which does harm. Padding
- * that differs costs a plan made anew. */
-static bool same_point(struct gz_point a, struct gz_point b)
+static bool same_request(const struct gz_plan_request *a, const struct gz_plan_request *b)
 {
-	return memcmp(&a, &b, sizeof a) == 0;
+	return a->width == b->width && a->height == b->height && a->rays_per_px == b->rays_per_px &&
+	       a->scale == b->scale && a->widen == b->widen && a->steps_per_px == b->steps_per_px &&
+	       ((same_place(a->gaze.x, b->gaze.x) && same_place(a->gaze.y, b->gaze.y)) ||
+		!gz_foveation_follows_gaze(b->foveation)) &&
+	       gz_display_same(a->display, b->display) &&
+	       gz_foveation_same(a->foveation, b->foveation);
+}
+
+/* The request that a plan was made for, with pointers that hold. */
+static struct gz_plan_request made_for(const struct gz_plan *plan)
+{
+	struct gz_plan_request request = plan->made_for.request;
+	request.foveation = &plan->made_for.foveation;
+	request.display = &plan->made_for.display;
+	return request;
 }
 
 static bool is_made_for(const struct gz_plan *plan, const struct gz_plan_request *request)
 {
-	const struct gz_plan_request *made = &plan->made_for.request;
-	return plan->serial != 0 && plan->made_for.valid && made->width == request->width &&
-	       made->height == request->height && made->rays_per_px == request->rays_per_px &&
-	       made->scale == request->scale && made->widen == request->widen &&
-	       made->steps_per_px == request->steps_per_px &&
-	       (same_point(made->gaze, request->gaze) || ignores_gaze(request->foveation)) &&
-	       memcmp(&plan->made_for.display, request->display, sizeof *request->display) == 0 &&
-	       memcmp(&plan->made_for.foveation, request->foveation, sizeof *request->foveation) ==
-		       0;
+	const struct gz_plan_request made = made_for(plan);
+	return plan->serial != 0 && plan->made_for.valid && same_request(&made, request);
+}
+
+bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b)
+{
+	const struct gz_plan_request request = made_for(b);
+	return b->made_for.valid && a->tile_count == b->tile_count && is_made_for(a, &request);
 }
 
 static void remember(struct gz_plan *plan, const struct gz_plan_request *request)
 {
 	plan->made_for.request = *request;
-	memcpy(&plan->made_for.foveation, request->foveation, sizeof *request->foveation);
-	memcpy(&plan->made_for.display, request->display, sizeof *request->display);
+	plan->made_for.foveation = *request->foveation;
+	plan->made_for.display = *request->display;
 	plan->made_for.valid = true;
 }
 
@@ -74,10 +72,8 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	plan->layer_count = 0;
 	plan->ray_count = 0;
 	gz_plan_make_steps(&context, plan);
-	if (request->foveation->method == GZ_METHOD_ACUITY ||
-	    request->foveation->method == GZ_METHOD_TABLE)
-		return gz_plan_ladder(&context, plan);
-	return gz_plan_regions(&context, plan);
+	return gz_method_of(request->foveation)->is_pyramid ? gz_plan_ladder(&context, plan)
+							    : gz_plan_regions(&context, plan);
 }
 
 /* Also where the tiles do not depend on it: bricks are fetched by the focus, and the view may have
@@ -127,6 +123,149 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
 	const struct gz_plan_request request =
 		gz_plan_request_make(foveation, display, gaze, width, height);
 	return gz_plan_update(&request, plan);
+}
+
+const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE] = {
+	[GZ_TILE_SQUARE] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 },
+	[GZ_TILE_QUINCUNX] = { 0, 2, 4, 6, 1, 3, 5, 7, 0, 2, 4, 6, 1, 3, 5, 7 },
+};
+const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE] = {
+	0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3,
+};
+
+enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count)
+{
+	const size_t needed = plan->tile_count + count;
+	if (needed <= plan->tile_capacity)
+		return GZ_OK;
+	const size_t capacity = needed > 2 * plan->tile_capacity ? needed : 2 * plan->tile_capacity;
+	struct gz_tile *tiles = realloc(plan->tiles, capacity * sizeof *tiles);
+	if (!tiles)
+		return GZ_ERR_NO_MEM;
+	plan->tiles = tiles;
+	plan->tile_capacity = capacity;
+	return GZ_OK;
+}
+
+void gz_plan_append(struct gz_plan *plan, struct gz_tile tile)
+{
+	const uint32_t active = gz_plan_tile_active(plan, &tile);
+	if (active == 0)
+		return;
+	plan->ray_count += (uint64_t)__builtin_popcount(active);
+	plan->tiles[plan->tile_count++] = tile;
+}
+
+struct gz_plan_layer gz_plan_layer_make(int width, int height, int spacing, struct gz_region region)
+{
+	return (struct gz_plan_layer) {
+		.spacing = spacing,
+		.columns = (width - 1 + spacing - 1) / spacing + 1,
+		.rows = (height - 1 + spacing - 1) / spacing + 1,
+		.region = region,
+	};
+}
+
+/* Whether a pixel position lies on the lattice of a layer or, in a pyramid, of a coarser one. */
+static bool on_lattice(const struct gz_plan *plan, int layer, int x, int y)
+{
+	const int last =
+		plan->reconstruction == GZ_RECONSTRUCT_PYRAMID ? plan->layer_count - 1 : layer;
+	for (int i = layer; i <= last; i++) {
+		const struct gz_plan_layer *lattice = &plan->layers[i];
+		const int spacing = lattice->spacing;
+		if (x % spacing == 0 && y % spacing == 0 && x / spacing < lattice->columns &&
+		    y / spacing < lattice->rows)
+			return true;
+	}
+	return false;
+}
+
+uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *tile)
+{
+	const struct gz_plan_layer *layer = &plan->layers[tile->layer];
+	const uint8_t *columns = gz_tile_columns[tile->pattern];
+	const int last = GZ_TILE_EDGE * GZ_TILE_EDGE - 1;
+	if (tile->x + columns[last] * layer->spacing <= (layer->columns - 1) * layer->spacing &&
+	    tile->y + gz_tile_rows[last] * layer->spacing <= (layer->rows - 1) * layer->spacing)
+		return 0xFFFF; /* all of it inside: nearly always */
+	uint32_t active = 0;
+	for (int i = 0; i <= last; i++)
+		if (on_lattice(plan, tile->layer, tile->x + columns[i] * layer->spacing,
+			       tile->y + gz_tile_rows[i] * layer->spacing))
+			active |= 1U << i;
+	return active;
+}
+
+/* The spacing of a layer of a pyramid's quincunx tiles is that of the square lattice they thin out.
+ */
+static void enclose_tile(const struct gz_plan *plan, const struct gz_tile *tile,
+			 struct gz_plan_rectangle *rectangle)
+{
+	const int down = GZ_TILE_EDGE * plan->layers[tile->layer].spacing;
+	const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
+	const int from[2] = { tile->x, tile->y };
+	const int to[2] = { tile->x + across, tile->y + down };
+	const int size[2] = { plan->width, plan->height };
+	for (int axis = 0; axis < 2; axis++) {
+		if (from[axis] < rectangle->from[axis])
+			rectangle->from[axis] = from[axis];
+		const int end = to[axis] < size[axis] ? to[axis] : size[axis];
+		if (end > rectangle->to[axis])
+			rectangle->to[axis] = end;
+	}
+}
+
+/* The rectangle that encloses all tiles of layers that are at most as coarse as @p spacing. */
+static bool enclose_layers(const struct gz_plan *plan, int spacing,
+			   struct gz_plan_rectangle *out_rectangle)
+{
+	bool any = false;
+	*out_rectangle = (struct gz_plan_rectangle) {
+		.from = { plan->width, plan->height },
+		.spacing = 1,
+	};
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		const int own = plan->layers[tile->layer].spacing;
+		if (own > spacing || tile->x >= plan->width || tile->y >= plan->height)
+			continue;
+		enclose_tile(plan, tile, out_rectangle);
+		if (own > out_rectangle->spacing)
+			out_rectangle->spacing = own;
+		any = true;
+	}
+	for (int axis = 0; axis < 2 && any;
+	     axis++) /* the finer lattice is part of the coarser one's */
+		out_rectangle->from[axis] -= out_rectangle->from[axis] % out_rectangle->spacing;
+	return any;
+}
+
+static void enclose_rectangle(const struct gz_plan_rectangle *inner,
+			      struct gz_plan_rectangle *outer)
+{
+	for (int axis = 0; axis < 2; axis++)
+		while (outer->from[axis] > inner->from[axis])
+			outer->from[axis] -= outer->spacing;
+}
+
+int gz_plan_rectangles(const struct gz_plan *plan,
+		       struct gz_plan_rectangle out_rectangles[GZ_PLAN_RECTANGLES_MAX])
+{
+	int count = 0, spacing = GZ_PYRAMID_SPACING_MAX;
+	struct gz_plan_rectangle rectangle;
+	while (spacing > 0 && enclose_layers(plan, spacing, &rectangle)) {
+		/* Beginning at a multiple of its own spacing may have moved it out of those before.
+		 */
+		for (int i = 0; i < count; i++)
+			enclose_rectangle(&rectangle, &out_rectangles[i]);
+		out_rectangles[count++] = rectangle;
+		spacing = rectangle.spacing - 1;
+	}
+	out_rectangles[0].from[0] = out_rectangles[0].from[1] = 0;
+	out_rectangles[0].to[0] = plan->width;
+	out_rectangles[0].to[1] = plan->height;
+	return count;
 }
 
 void gz_plan_free(struct gz_plan *plan)

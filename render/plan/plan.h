@@ -22,98 +22,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/log.h"
-#include "base/option.h"
 #include "base/result.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
-#include "render/cast_constants.h"
-
-#define GZ_SPACING_MAX         16 /**< px: of a region's lattice */
-#define GZ_PYRAMID_SPACING_MAX 32 /**< px: of a pyramid's coarsest lattice, a power of two */
-
-enum gz_method {
-	GZ_METHOD_STANDARD, /**< every pixel */
-	GZ_METHOD_MDC, /**< Bauer 2018, 3.2.4: a fine square at the gaze, half resolution outside */
-	GZ_METHOD_DDC, /**< Bauer 2018, 3.2.5: two ellipses, three spacings */
-	GZ_METHOD_ACUITY,  /**< what the eye can resolve at each eccentricity */
-	GZ_METHOD_MDC3,    /**< mdc with a third, outer region */
-	GZ_METHOD_UNIFORM, /**< every n-th pixel, whatever the gaze: for comparison */
-	GZ_METHOD_TABLE,   /**< spacing and step by eccentricity from a table of the user's */
-	GZ_METHOD_COUNT,
-};
-
-/** "standard", "mdc", "ddc", "acuity", "mdc3", "uniform", "table"; NULL-terminated. */
-extern const char *const gz_method_names[];
-
-/** When steps grow with distance from the gaze. */
-enum gz_step_rule {
-	/** As the method says: acuity by ACUITY, table by its own column, the others by NONE. */
-	GZ_STEP_METHOD,
-	/** 1 everywhere. */
-	GZ_STEP_NONE,
-	/** Bauer 2018, 3.2.3: sampling rate max(sf * sr, floor), sf = 1 - d / diagonal, unchanged
-	 *  within 10 px of the gaze. */
-	GZ_STEP_DISTANCE,
-	/** Grows with the spacing that the eye resolves: docs/foveation.md. */
-	GZ_STEP_ACUITY,
-};
-
-extern const char *const gz_step_rule_names[];
-
-#define GZ_SPACING_TABLE_MAX 64 /**< rows. Chosen: more than a curve needs */
-
-/** One row of a user's table. */
-struct gz_spacing_row {
-	double eccentricity_deg; /**< 0 to 180 */
-	double spacing;          /**< px or degrees, above 0 */
-	double step;             /**< multiplier of the scene's step, 1 to 16 */
-};
-
-/** Spacing and step by eccentricity: linear between rows, constant beyond the first and last.
- *  Eccentricities rise from row to row; spacings and steps never fall. */
-struct gz_spacing_table {
-	bool in_deg; /**< spacings are degrees of visual angle, else pixels of the picture */
-	int count;   /**< rows; 0 = no table */
-	struct gz_spacing_row rows[GZ_SPACING_TABLE_MAX];
-};
-
-/** How a pyramid's points between cast ones are made: docs/foveation.md has the formulas. */
-enum gz_filter {
-	GZ_FILTER_CATMULL_ROM, /**< of four points along an axis, clamped to the nearer two */
-	GZ_FILTER_BILINEAR,
-};
-
-/** "catmull_rom", "bilinear"; NULL-terminated. */
-extern const char *const gz_filter_names[];
-
-/** Everything a method can be told; the table's keys are "foveation.<name>". */
-struct gz_foveation {
-	int method;               /**< enum gz_method */
-	int step_rule;            /**< enum gz_step_rule */
-	int filter;               /**< enum gz_filter: of acuity; mdc and ddc are bilinear */
-	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
-	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
-	double mdc_square_px;     /**< edge of the fine square, px of the picture */
-	int mdc_spacing;          /**< outside it, in rays as all spacings */
-	double mdc3_square_px;    /**< edge of the square round which mdc3's third region begins */
-	int mdc3_spacing;         /**< of the third region */
-	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse, px of the picture */
-	double ddc_middle_px[2];  /**< semi-axes of the middle ellipse */
-	int ddc_spacing[3];       /**< inner, middle, outer */
-	double blend_px;          /**< band at borders of mdc, mdc3, ddc; 0 = a hard border */
-	int uniform_spacing;
-	double step_floor; /**< least sampling rate as a share of the full one, (0, 1] */
-	char table_file[GZ_PATH_SIZE]; /**< the user's table; empty if there is none */
-	struct gz_spacing_table table; /**< what that file says: gz_spacing_table_load() */
-};
-
-/** Table over struct gz_foveation. */
-extern const struct gz_option gz_foveation_options[];
-extern const size_t gz_foveation_option_count;
-
-/** The table's presets. */
-struct gz_foveation gz_foveation_default(void);
+#include "render/plan/foveation.h"
+#include "render/plan/plan_constants.h"
 
 /** Which points of its block a tile takes. */
 enum gz_tile_pattern {
@@ -177,9 +90,6 @@ struct gz_plan_layer {
 	int columns, rows; /**< lattice points */
 	struct gz_region region;
 };
-
-/** Whether a table keeps what struct gz_spacing_table promises. */
-bool gz_spacing_table_valid(const struct gz_spacing_table *table);
 
 #define GZ_PLAN_SCALE_MAX     64
 #define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
@@ -260,6 +170,9 @@ struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation
  */
 enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_plan *plan);
 
+/** Whether two plans have the same tiles since they were made for the same request. */
+bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b);
+
 /** gz_plan_update() of gz_plan_request_make(). */
 enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, int width, int height, struct gz_plan *plan);
@@ -272,6 +185,28 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
  */
 uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *tile);
 
+/** A rectangle of a rasterised picture: pixels [from, to) along x and y, one sample in every
+ *  spacing x spacing of them. */
+struct gz_plan_rectangle {
+	int from[2], to[2]; /**< from: multiples of spacing */
+	int spacing;
+};
+
+/** Most rectangles of a plan. */
+#define GZ_PLAN_RECTANGLES_MAX GZ_PLAN_LAYERS_MAX
+
+/**
+ * The plan for techniques that draw triangles instead of casting rays: nested rectangles, the
+ * coarsest first. The first is the whole picture. Each further one is finer, lies within the one
+ * before and encloses every tile that is finer than the one before, so that the last rectangle that
+ * holds a pixel is at least as fine there as the tiles are.
+ *
+ * @param[out] out_rectangles  the first of them
+ * @return how many, 1 to GZ_PLAN_RECTANGLES_MAX
+ */
+int gz_plan_rectangles(const struct gz_plan *plan,
+		       struct gz_plan_rectangle out_rectangles[GZ_PLAN_RECTANGLES_MAX]);
+
 /** Free the tiles and zero the plan. */
 void gz_plan_free(struct gz_plan *plan);
 
@@ -279,26 +214,5 @@ void gz_plan_free(struct gz_plan *plan);
  * the smaller of both directions on the flat screen (docs/foveation.md). */
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, struct gz_point pixel, int width, int height);
-
-/**
- * Read a table of spacings from text: docs/scenes.md has the grammar.
- *
- * @param name  stands for the file in messages
- * @param[out] out_table  1 row or more
- * @retval GZ_ERR_FORMAT  refused; logged with line and remedy
- */
-enum gz_result gz_spacing_table_parse(const char *name, const char *text, size_t size,
-				      const struct gz_log *log, struct gz_spacing_table *out_table);
-
-/**
- * Read a table of spacings from a file.
- *
- * @retval GZ_ERR_NOT_FOUND  no such file; logged
- * @retval GZ_ERR_IO         cannot be read; logged
- * @retval GZ_ERR_FORMAT     refused; logged with line and remedy
- * @retval GZ_ERR_NO_MEM     logged
- */
-enum gz_result gz_spacing_table_load(const char *path, const struct gz_log *log,
-				     struct gz_spacing_table *out_table);
 
 #endif

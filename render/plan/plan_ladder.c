@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "render/plan/plan_emit.h"
+#include "render/plan/plan_context.h"
 
 enum { LEVELS = 6 };
 
@@ -23,8 +23,8 @@ static double block_spacing(const struct gz_plan_context *context, int x, int y,
 	return gz_plan_spacing_at(context, near_x, near_y);
 }
 
-static void append(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
-		   int layer, enum gz_tile_pattern pattern)
+static void append_node(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
+			int layer, enum gz_tile_pattern pattern)
 {
 	const int rung = layer == 0 ? 0 : 2 * layer - (pattern == GZ_TILE_SQUARE);
 	/* A step of this rung's own, or one that serves whatever is cast. */
@@ -59,16 +59,16 @@ static void subdivide(const struct gz_plan_context *context, struct gz_plan *pla
 	    y > (coarsest->rows - 1) * coarsest->spacing)
 		return; /* no lattice point of any level lies there */
 	if (level == 0) {
-		append(context, plan, x, y, 0, GZ_TILE_SQUARE);
+		append_node(context, plan, x, y, 0, GZ_TILE_SQUARE);
 		return;
 	}
 	const int half = edge / 2;
 	const double spacing = block_spacing(context, x, y, edge);
 	if (spacing >= gz_ladder_px[2 * level - 1]) {
-		append(context, plan, x, y, level, GZ_TILE_SQUARE);
+		append_node(context, plan, x, y, level, GZ_TILE_SQUARE);
 	} else if (level > 1 && spacing >= gz_ladder_px[2 * level - 2]) {
-		append(context, plan, x, y, level - 1, GZ_TILE_QUINCUNX);
-		append(context, plan, x, y + half, level - 1, GZ_TILE_QUINCUNX);
+		append_node(context, plan, x, y, level - 1, GZ_TILE_QUINCUNX);
+		append_node(context, plan, x, y + half, level - 1, GZ_TILE_QUINCUNX);
 	} else {
 		for (int quarter = 0; quarter < 4; quarter++)
 			subdivide(context, plan, x + (quarter & 1) * half,
@@ -76,7 +76,7 @@ static void subdivide(const struct gz_plan_context *context, struct gz_plan *pla
 	}
 }
 
-static void make_layers(const struct gz_plan_context *context, struct gz_plan *plan)
+static void make_pyramid(const struct gz_plan_context *context, struct gz_plan *plan)
 {
 	plan->reconstruction = GZ_RECONSTRUCT_PYRAMID;
 	plan->layer_count = LEVELS;
@@ -123,7 +123,7 @@ static void find_uniform(struct gz_plan_context *context)
 
 enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *plan)
 {
-	make_layers(context, plan);
+	make_pyramid(context, plan);
 	if (context->widen > 0)
 		find_uniform(context);
 	const int root = GZ_TILE_EDGE << (LEVELS - 1);

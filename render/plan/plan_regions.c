@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "render/plan/plan_emit.h"
+#include "render/plan/plan_context.h"
 
 /* A block of pixels, corners included. */
 struct block {
@@ -41,6 +41,36 @@ double gz_region_weight(const struct gz_region *region, double x, double y)
 	const double least_px = fmin(region->half_px[0], region->half_px[1]);
 	const double inside_px = (1 - region_radius(region, x, y)) * least_px;
 	return fmin(fmax(inside_px / region->blend_px, 0), 1);
+}
+
+void gz_region_columns(const struct gz_region *region, int y, int width, int *out_from, int *out_to)
+{
+	double half = region->half_px[0];
+	const double v = (y - region->centre_px[1]) / region->half_px[1];
+	*out_from = 0;
+	*out_to = width;
+	if (region->shape == GZ_REGION_ALL)
+		return;
+	if (fabs(v) > 1) {
+		*out_to = 0;
+		return;
+	}
+	if (region->shape == GZ_REGION_ELLIPSE)
+		half *= sqrt(1 - v * v);
+	int from = (int)fmin(fmax(ceil(region->centre_px[0] - half), 0), width);
+	int to = (int)fmin(fmax(floor(region->centre_px[0] + half) + 1, 0), width);
+	/* The formula rounds in its own way: the region itself decides on the columns at its rim.
+	 */
+	while (from < to && !gz_region_holds(region, from, y))
+		from++;
+	while (from > 0 && gz_region_holds(region, from - 1, y))
+		from--;
+	while (to > from && !gz_region_holds(region, to - 1, y))
+		to--;
+	while (to < width && gz_region_holds(region, to, y))
+		to++;
+	*out_from = from;
+	*out_to = to;
 }
 
 static bool region_touches(const struct gz_region *region, const struct block *block)
@@ -169,66 +199,6 @@ static enum gz_result emit_layer(const struct gz_plan_context *context, struct g
 	return GZ_OK;
 }
 
-static void add_layer(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
-		      enum gz_region_shape shape, double half_x_px, double half_y_px)
-{
-	const double rays = context->rays_per_px;
-	struct gz_region region = {
-		.shape = shape,
-		.centre_px = { context->gaze_px[0], context->gaze_px[1] },
-		.half_px = { half_x_px * rays, half_y_px * rays },
-	};
-	if (shape != GZ_REGION_ALL)
-		region.blend_px = fmin(context->foveation->blend_px * rays,
-				       fmin(region.half_px[0], region.half_px[1]));
-	plan->layers[plan->layer_count++] =
-		gz_plan_layer_make(context->width, context->height, spacing, region);
-}
-
-static void add_everywhere(const struct gz_plan_context *context, struct gz_plan *plan, int spacing)
-{
-	add_layer(context, plan, spacing, GZ_REGION_ALL, 1, 1);
-}
-
-static void add_square(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
-		       double edge_px)
-{
-	add_layer(context, plan, spacing, GZ_REGION_RECTANGLE, edge_px / 2, edge_px / 2);
-}
-
-static void add_ellipse(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
-			const double half_px[2])
-{
-	add_layer(context, plan, spacing, GZ_REGION_ELLIPSE, half_px[0], half_px[1]);
-}
-
-static void add_layers(const struct gz_plan_context *context, struct gz_plan *plan)
-{
-	const struct gz_foveation *foveation = context->foveation;
-	switch ((enum gz_method)foveation->method) {
-	case GZ_METHOD_UNIFORM:
-		add_everywhere(context, plan, foveation->uniform_spacing);
-		return;
-	case GZ_METHOD_MDC:
-		add_square(context, plan, 1, foveation->mdc_square_px);
-		add_everywhere(context, plan, foveation->mdc_spacing);
-		return;
-	case GZ_METHOD_MDC3:
-		add_square(context, plan, 1, foveation->mdc_square_px);
-		add_square(context, plan, foveation->mdc_spacing, foveation->mdc3_square_px);
-		add_everywhere(context, plan, foveation->mdc3_spacing);
-		return;
-	case GZ_METHOD_DDC:
-		add_ellipse(context, plan, foveation->ddc_spacing[0], foveation->ddc_inner_px);
-		add_ellipse(context, plan, foveation->ddc_spacing[1], foveation->ddc_middle_px);
-		add_everywhere(context, plan, foveation->ddc_spacing[2]);
-		return;
-	default:
-		add_everywhere(context, plan, 1);
-		return;
-	}
-}
-
 static double whole_spacing(double spacing)
 {
 	return fmin(fmax(spacing, 1), GZ_SPACING_MAX);
@@ -284,8 +254,9 @@ static void scale_and_widen(const struct gz_plan_context *context, struct gz_pla
 
 enum gz_result gz_plan_regions(const struct gz_plan_context *context, struct gz_plan *plan)
 {
-	add_layers(context, plan);
-	if (context->foveation->method != GZ_METHOD_STANDARD)
+	const struct gz_method *method = gz_method_of(context->foveation);
+	method->add_regions(context, plan);
+	if (method->can_be_coarser)
 		scale_and_widen(context, plan);
 	const bool whole = plan->layer_count == 1 && plan->layers[0].spacing == 1;
 	plan->reconstruction = whole ? GZ_RECONSTRUCT_DIRECT : GZ_RECONSTRUCT_REGIONS;

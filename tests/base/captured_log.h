@@ -27,7 +27,7 @@ static inline void capture(void *user, enum gz_log_level level, const char *modu
 	snprintf(captured->last, sizeof captured->last, "%s", message);
 }
 
-/** Prepare @p captured, empty, under @p rules as gz_log_init() takes them. */
+/** Prepare @p captured without messages; @p rules as for gz_log_init(). */
 static inline void captured_log_init(struct captured_log *captured, const char *rules)
 {
 	*captured = (struct captured_log) { 0 };

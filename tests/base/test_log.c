@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "base/log.h"
 
@@ -162,7 +162,7 @@ static void ratelimit_passes_the_first_and_counts_the_rest(void **state)
 	assert_int_equal(dropped, 4);
 }
 
-int main(void)
+TEST_SUITE(log)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(log_without_rules_passes_info_and_above),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "base/option.h"
 
@@ -45,7 +45,7 @@ struct refusal {
 };
 
 static const struct refusal refusals[] = {
-	{ SMOOTHING, "", "0 of 1 numbers given; give 1" },
+	{ SMOOTHING, "", "1 number expected, 0 given" },
 	{ SMOOTHING, "nan", "nan is not a number; allowed: 0.1 to 100" },
 	{ SMOOTHING, "inf", "inf is not a number; allowed: 0.1 to 100" },
 	{ SMOOTHING, "-INFINITY", "-INFINITY is not a number; allowed: 0.1 to 100" },
@@ -56,7 +56,7 @@ static const struct refusal refusals[] = {
 	{ SMOOTHING, "500", "500 is outside 0.1 to 100" },
 	{ SMOOTHING, "0.09999", "0.09999 is outside 0.1 to 100" },
 	{ SMOOTHING, "1 2", "unexpected \"2\" after 1 number" },
-	{ EYE, "1 2", "2 of 3 numbers given; give 3, separated by blanks" },
+	{ EYE, "1 2", "3 numbers expected, 2 given; separate them by blanks" },
 	{ EYE, "1 2 3 4", "unexpected \"4\" after 3 numbers" },
 	{ EYE, "1 nan 3", "nan is not a number; allowed: -10 to 10" },
 	{ PORT, "80", "80 is outside 1024 to 65535" },
@@ -75,8 +75,8 @@ static const struct refusal refusals[] = {
 	{ METHOD, "", "an empty value is not standard, mdc, ddc or acuity" },
 	{ CROSS, "maybe", "maybe is not true or false" },
 	{ CROSS, "", "an empty value is not true or false" },
-	{ NAME, "0123456789abcdef", "16 bytes are too many; at most 15" },
-	{ NAME, "two\nlines", "a line break inside the value; remove it" },
+	{ NAME, "0123456789abcdef", "too long: 16 bytes, at most 15 are allowed" },
+	{ NAME, "two\nlines", "the value contains a line break; remove it" },
 };
 
 static void parse_refusal_says_why_and_changes_nothing(void **state)
@@ -351,7 +351,60 @@ static void value_that_no_text_could_set_does_not_hold(void **state)
 	assert_false(gz_option_holds(&sample_options[METHOD], &settings));
 }
 
-int main(void)
+/* A value of each option that differs from the preset. */
+static void change_option(const struct gz_option *option, struct settings *settings)
+{
+	char *field = (char *)settings + option->offset;
+	switch (option->type) {
+	case GZ_OPTION_BOOL:
+		*(bool *)field = !*(bool *)field;
+		break;
+	case GZ_OPTION_DOUBLE:
+		((double *)field)[option->count > 0 ? option->count - 1 : 0] += 0.5;
+		break;
+	case GZ_OPTION_STRING:
+		field[0] = field[0] == 'x' ? 'y' : 'x';
+		break;
+	case GZ_OPTION_INT:
+	case GZ_OPTION_SIZE:
+	case GZ_OPTION_CHOICE:
+		(*(int *)field)++;
+		break;
+	}
+}
+
+static void settings_are_the_same_until_any_option_changes(void **state)
+{
+	(void)state;
+	const size_t count = sizeof sample_options / sizeof *sample_options;
+	struct settings one, other;
+	memset(&one, 0x55, sizeof one); /* padding differs */
+	memset(&other, 0xAA, sizeof other);
+	const struct gz_option_binding a = { sample_options, count, &one, NULL };
+	const struct gz_option_binding b = { sample_options, count, &other, NULL };
+	const struct settings presets_read = presets();
+	for (size_t i = 0; i < count; i++) {
+		const struct gz_option *option = &sample_options[i];
+		char text[512];
+		assert_int_equal(gz_option_format(option, &presets_read, text, sizeof text), GZ_OK);
+		assert_int_equal(gz_option_parse(option, text, &one, NULL, 0), GZ_OK);
+		assert_int_equal(gz_option_parse(option, text, &other, NULL, 0), GZ_OK);
+	}
+	assert_true(gz_options_same(a.options, count, a.target, b.target));
+	for (size_t i = 0; i < count; i++) {
+		struct settings changed = one;
+		change_option(&sample_options[i], &changed);
+		if (gz_options_same(sample_options, count, &one, &changed))
+			fail_msg("%s: a change is not seen", sample_options[i].key);
+	}
+	one.smoothing_hz = other.smoothing_hz = NAN;
+	assert_true(gz_options_same(sample_options, count, &one, &other));
+	one.smoothing_hz = -0.0;
+	other.smoothing_hz = 0;
+	assert_true(gz_options_same(sample_options, count, &one, &other));
+}
+
+TEST_SUITE(option)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(preset_sets_all_that_have_one),
@@ -368,6 +421,7 @@ int main(void)
 		cmocka_unit_test(find_names_option_and_binding),
 		cmocka_unit_test(every_preset_holds),
 		cmocka_unit_test(value_that_no_text_could_set_does_not_hold),
+		cmocka_unit_test(settings_are_the_same_until_any_option_changes),
 		cmocka_unit_test(help_has_one_aligned_line_per_option),
 		cmocka_unit_test(printed_file_reads_back_to_the_same_settings),
 		cmocka_unit_test(printed_file_never_holds_a_value_that_would_read_back_otherwise),

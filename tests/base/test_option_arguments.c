@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "base/option.h"
 
@@ -12,19 +12,17 @@ enum { MOST_ARGUMENTS = 8 };
 struct run {
 	struct settings settings;
 	bool given[SAMPLE_COUNT];
-	const char *positional[MOST_ARGUMENTS];
-	int positional_count;
+	struct gz_operands operands;
 	struct captured_log captured;
 };
 
-/* Reads @p arguments, NULL-terminated and without argv[0]. */
-static enum gz_result read_into(struct run *run, bool takes_positional,
-				const char *const *arguments)
+/* Read @p arguments, which are NULL-terminated and lack argv[0]. */
+static enum gz_result read_into(struct run *run, bool takes_operands, const char *const *arguments)
 {
 	char copies[MOST_ARGUMENTS][64];
 	char *argv[MOST_ARGUMENTS + 1] = { (char[]) { "program" } };
 	int argc = 1;
-	*run = (struct run) { .positional_count = -1 };
+	*run = (struct run) { .operands = { .count = -1 } };
 	captured_log_init(&run->captured, "*:debug");
 	for (; arguments[argc - 1]; argc++) {
 		assert_true(argc < MOST_ARGUMENTS);
@@ -32,13 +30,14 @@ static enum gz_result read_into(struct run *run, bool takes_positional,
 		argv[argc] = copies[argc];
 	}
 	const struct gz_option_binding binding = sample_binding(&run->settings, run->given);
-	enum gz_result result = gz_options_read_arguments(
-		&binding, 1, argc, argv, takes_positional ? run->positional : NULL,
-		takes_positional ? &run->positional_count : NULL, &run->captured.log);
-	for (int i = 0; i < run->positional_count; i++) {
+	enum gz_result result = gz_options_read_arguments(&binding, 1, argc, argv,
+							  takes_operands ? &run->operands : NULL,
+							  &run->captured.log);
+	for (int i = 0; i < run->operands.count; i++) {
 		for (int a = 1; a < argc; a++) {
-			if (run->positional[i] == argv[a]) /* outlives this call's copies */
-				run->positional[i] = arguments[a - 1];
+			if (run->operands.items[i] ==
+			    argv[a]) /* the copies of this call do not outlive it */
+				run->operands.items[i] = arguments[a - 1];
 		}
 	}
 	return result;
@@ -73,8 +72,8 @@ static void arguments_bool_takes_a_value_only_by_equals(void **state)
 	assert_true(run.given[CROSS]);
 	assert_int_equal(read_into(&run, true, loose), GZ_OK);
 	assert_true(run.settings.cross);
-	assert_int_equal(run.positional_count, 1);
-	assert_string_equal(run.positional[0], "no");
+	assert_int_equal(run.operands.count, 1);
+	assert_string_equal(run.operands.items[0], "no");
 }
 
 static void arguments_positional_come_in_order(void **state)
@@ -84,10 +83,10 @@ static void arguments_positional_come_in_order(void **state)
 	const char *const arguments[] = { "watch", "--publish.port", "2000", "-",
 					  "--",    "--size",         NULL };
 	assert_int_equal(read_into(&run, true, arguments), GZ_OK);
-	assert_int_equal(run.positional_count, 3);
-	assert_string_equal(run.positional[0], "watch");
-	assert_string_equal(run.positional[1], "-");
-	assert_string_equal(run.positional[2], "--size");
+	assert_int_equal(run.operands.count, 3);
+	assert_string_equal(run.operands.items[0], "watch");
+	assert_string_equal(run.operands.items[1], "-");
+	assert_string_equal(run.operands.items[2], "--size");
 }
 
 static void arguments_none_is_fine(void **state)
@@ -96,7 +95,7 @@ static void arguments_none_is_fine(void **state)
 	struct run run;
 	const char *const arguments[] = { NULL };
 	assert_int_equal(read_into(&run, true, arguments), GZ_OK);
-	assert_int_equal(run.positional_count, 0);
+	assert_int_equal(run.operands.count, 0);
 }
 
 static void arguments_refusals_name_option_and_remedy(void **state)
@@ -109,17 +108,17 @@ static void arguments_refusals_name_option_and_remedy(void **state)
 		{ { "--publish.port" }, "--publish.port: needs a value: TCP port (1024 to 65535)" },
 		{ { "--publish.port", "--size" },
 		  "--publish.port: needs a value: TCP port (1024 to 65535)" },
-		{ { "--publish.port=" }, "--publish.port: 0 of 1 numbers given; give 1" },
+		{ { "--publish.port=" }, "--publish.port: 1 number expected, 0 given" },
 		{ { "--publish.prt", "2000" },
 		  "--publish.prt: unknown option; did you mean --publish.port?" },
 		{ { "--port", "2000" }, "--port: unknown option; did you mean --publish.port?" },
-		{ { "--velocity" }, "--velocity: unknown option; --help lists them all" },
+		{ { "--velocity" }, "--velocity: unknown option; --help lists all options" },
 		{ { "--size", "1x1", "--size=2x2" }, "--size: given twice; keep one of the two" },
 		{ { "--show-cross", "--show_cross" },
 		  "--show_cross: given twice; keep one of the two" },
-		{ { "-x" }, "-x: options begin with two dashes; --help lists them all" },
-		{ { "file" }, "file: not an option; --help lists what can be given" },
-		{ { "--=5" }, "--: unknown option; --help lists them all" },
+		{ { "-x" }, "-x: options begin with two dashes; --help lists all options" },
+		{ { "file" }, "file: unexpected argument; --help lists all options" },
+		{ { "--=5" }, "--: unknown option; --help lists all options" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
 		struct run run;
@@ -139,13 +138,12 @@ static void arguments_key_too_long_for_any_is_refused(void **state)
 	memset(key + 2, 'k', sizeof key - 3);
 	captured_log_init(&run.captured, "*:debug");
 	const struct gz_option_binding binding = sample_binding(&run.settings, NULL);
-	assert_int_equal(
-		gz_options_read_arguments(&binding, 1, 2, argv, NULL, NULL, &run.captured.log),
-		GZ_ERR_INVAL);
+	assert_int_equal(gz_options_read_arguments(&binding, 1, 2, argv, NULL, &run.captured.log),
+			 GZ_ERR_INVAL);
 	assert_int_equal(run.captured.messages, 1);
 }
 
-int main(void)
+TEST_SUITE(option_arguments)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(arguments_set_values_in_both_spellings),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "base/option.h"
 
@@ -67,28 +67,27 @@ static const char *const refusals[][2] = {
 	{ "[filter]\nsmoothing = 1 # no\n",
 	  "gz.conf:2: filter.smoothing: unexpected \"# no\" after 1 number" },
 	{ "[publish]\nname =; none\n",
-	  "gz.conf:2: a value that begins with ';'; put a blank before a comment" },
-	{ "[filter]\nsmoothing =\n", "gz.conf:2: filter.smoothing: 0 of 1 numbers given; give 1" },
+	  "gz.conf:2: a value cannot begin with ';'; put a blank before a comment" },
+	{ "[filter]\nsmoothing =\n", "gz.conf:2: filter.smoothing: 1 number expected, 0 given" },
 	{ "[filter]\nsmothing = 1\n",
 	  "gz.conf:2: filter.smothing: unknown key; did you mean filter.smoothing?" },
 	{ "[publish]\nsmoothing = 1\n",
 	  "gz.conf:2: publish.smoothing: unknown key; did you mean filter.smoothing?" },
-	{ "[filter]\ncolour = 1\n", "gz.conf:2: filter.colour: unknown key; --help lists them "
-				    "all" },
+	{ "[filter]\ncolour = 1\n",
+	  "gz.conf:2: filter.colour: unknown key; --help lists all keys" },
 	{ "[filter]\nsmoothing = 1\n; c\n[filter]\nsmoothing = 2\n",
 	  "gz.conf:5: filter.smoothing: given twice, first in line 2; keep one" },
 	{ "[filter]\nsmoothing = 1\n  2\n",
-	  "gz.conf:3: no \"name = value\" here; write one, or begin a comment with ;" },
+	  "gz.conf:3: expected \"name = value\"; a comment begins with ;" },
 	{ "[filter]\nsmoothing\n[camera]\neye = 1 2 3\n",
-	  "gz.conf:2: no \"name = value\" here; write one, or begin a comment with ;" },
-	{ "[filter]\nsmoothing",
-	  "gz.conf:2: no \"name = value\" here; write one, or begin a comment with ;" },
+	  "gz.conf:2: expected \"name = value\"; a comment begins with ;" },
+	{ "[filter]\nsmoothing", "gz.conf:2: expected \"name = value\"; a comment begins with ;" },
 	{ "[filter\nsmoothing = 1\n", "gz.conf:1: section without ']'; write [name]" },
 	{ "[filter] smoothing = 1\n", "gz.conf:1: text after ']'; put it on a line of its own" },
-	{ "size = 1x1\n", "gz.conf:1: a value before the first section; begin with [section]" },
+	{ "size = 1x1\n", "gz.conf:1: value before the first section; write [section] above it" },
 	{ "[a123456789012345678901234567890123456789012345678]\nx = 1\n",
 	  "gz.conf:2: a123456789012345678901234567890123456789012345678.x: unknown key; --help "
-	  "lists them all" },
+	  "lists all keys" },
 	{ "[a1234567890123456789012345678901234567890123456789]\n",
 	  "gz.conf:1: section name is longer than 49 bytes; shorten it" },
 };
@@ -137,8 +136,9 @@ static void file_line_of_199_bytes_is_read_and_of_200_refused(void **state)
 		assert_int_equal(s.port, length == 199 ? 2000 : 0);
 		assert_string_equal(
 			captured.last,
-			length == 199 ? ""
-				      : "gz.conf:2: 200 bytes in a line; at most 199 are read");
+			length == 199
+				? ""
+				: "gz.conf:2: the line has 200 bytes; at most 199 are allowed");
 	}
 }
 
@@ -149,7 +149,8 @@ static void file_with_a_zero_byte_is_refused(void **state)
 	struct settings s = { 0 };
 	struct captured_log captured;
 	assert_int_equal(read_into(&s, NULL, text, sizeof text - 1, &captured), GZ_ERR_FORMAT);
-	assert_string_equal(captured.last, "gz.conf:2: a zero byte; this is not a text file");
+	assert_string_equal(captured.last,
+			    "gz.conf:2: contains a zero byte; this is not a text file");
 	assert_int_equal(s.port, 0);
 }
 
@@ -163,7 +164,7 @@ static void file_given_again_in_another_file_is_no_duplicate(void **state)
 	assert_int_equal(s.port, 3000);
 }
 
-static void file_options_of_several_bindings_are_told_apart(void **state)
+static void file_options_of_several_bindings_are_distinguished(void **state)
 {
 	(void)state;
 	static const char text[] = "[publish]\nport = 2000\n[other]\nport = 7\n";
@@ -200,7 +201,7 @@ static void file_on_disk_is_read(void **state)
 	assert_int_equal(s.port, 2000);
 }
 
-static void file_that_is_missing_or_a_folder_is_told_apart(void **state)
+static void missing_file_and_folder_are_refused_differently(void **state)
 {
 	(void)state;
 	struct settings s = { 0 };
@@ -226,7 +227,7 @@ static void file_that_never_ends_is_refused(void **state)
 	assert_int_equal(captured.messages, 1);
 }
 
-int main(void)
+TEST_SUITE(option_file)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_sets_values_and_marks_them_given),
@@ -236,9 +237,9 @@ int main(void)
 		cmocka_unit_test(file_line_of_199_bytes_is_read_and_of_200_refused),
 		cmocka_unit_test(file_with_a_zero_byte_is_refused),
 		cmocka_unit_test(file_given_again_in_another_file_is_no_duplicate),
-		cmocka_unit_test(file_options_of_several_bindings_are_told_apart),
+		cmocka_unit_test(file_options_of_several_bindings_are_distinguished),
 		cmocka_unit_test(file_on_disk_is_read),
-		cmocka_unit_test(file_that_is_missing_or_a_folder_is_told_apart),
+		cmocka_unit_test(missing_file_and_folder_are_refused_differently),
 		cmocka_unit_test(file_that_never_ends_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

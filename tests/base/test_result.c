@@ -1,11 +1,11 @@
-#include "check.h"
+#include "suite.h"
 
 #include "base/result.h"
 
 #include <ctype.h>
 #include <string.h>
 
-/* The last value of the enum; a new one moves it and is then checked below. */
+/* The last value of the enum. Change this when a value is added, so that it is checked below. */
 enum { LAST = GZ_ERR_CANCELLED };
 
 static void result_text_each_value_has_its_own_phrase(void **state)
@@ -39,7 +39,7 @@ static void result_text_outside_the_enum_is_unknown(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(result)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(result_text_each_value_has_its_own_phrase),

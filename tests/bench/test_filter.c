@@ -1,5 +1,5 @@
 /* gazebench filter, and the measures and sweeps behind it. */
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <math.h>
@@ -14,7 +14,7 @@
 #include "bench/filter/sweep.h"
 #include "bench/filter/track.h"
 #include "called.h"
-#include "protocol/gaze_log_writer.h"
+#include "protocol/gaze_log.h"
 #include "sim/tracker.h"
 
 static void check_close(double is, double wanted, double tolerance)
@@ -288,7 +288,7 @@ static void logs_that_nothing_can_be_said_of_are_refused(void **state)
 	assert_said(place, 1, "viewer.gzl/in: cannot be made");
 }
 
-int main(void)
+TEST_SUITE(filter)
 {
 #define IN_A_PLACE(test) cmocka_unit_test_setup_teardown(test, set_up, place_remove)
 	const struct CMUnitTest tests[] = {

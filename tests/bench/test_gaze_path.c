@@ -1,5 +1,5 @@
 /* Where the gaze goes in a study. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -266,7 +266,7 @@ static int remove_log(void **state)
 	return unlink(log_file);
 }
 
-int main(void)
+TEST_SUITE(gaze_path)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(sweep_is_the_mirrored_s, begin),

@@ -1,5 +1,5 @@
 /* The metrics against values that their authors' programs, or arithmetic, give. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -256,7 +256,7 @@ static void weights_follow_the_eccentricity(void **state)
 	gz_map_free(&rest);
 }
 
-int main(void)
+TEST_SUITE(metrics)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(flip_of_plain_colours_is_the_known_one),

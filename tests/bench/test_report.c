@@ -1,5 +1,5 @@
 /* Names, words, page and advice of a report; charts and the page's looks: report_in_browser.py. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -405,7 +405,7 @@ static void chart_gets_colours_for_dark_pages_and_stays_as_it_is(void **state)
 	gz_text_free(&out);
 }
 
-int main(void)
+TEST_SUITE(report)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(variants_are_called_as_people_would),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,7 +116,7 @@ static void copy_of_no_scene_or_a_bad_one_is_refused(void **state)
 	assert_int_not_equal(access(folder->copy, F_OK), 0);
 }
 
-int main(void)
+TEST_SUITE(scene_edit)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(variant_sets_each_option_in_its_section),

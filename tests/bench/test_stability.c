@@ -2,14 +2,15 @@
  * every step rule. GZ_TEST_BACKEND names the backend. What rays must show is asked of the oracle,
  * which shares nothing with render/; rows that compare whole pictures take the converged picture of
  * the portable kernel, which tests/render/test_cast.c holds against the same oracle. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "bench/stability/stability.h"
 #include "render/oracle.h"
-#include "render/renderer.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/raycaster.h"
 #include "render/small_scene.h"
 
 static enum gz_result ask_oracle(void *user, const struct gz_stability_scene *scene, int width,
@@ -305,7 +306,7 @@ static void bench_without_backend_or_method_and_bad_settings_are_refused(void **
 	small_scene_free(&scene);
 }
 
-int main(int argc, char **argv)
+TEST_SUITE(stability)
 {
 	static const struct CMUnitTest quick[] = {
 		cmocka_unit_test(box_of_constant_density_is_as_bright_at_any_step_and_spacing),

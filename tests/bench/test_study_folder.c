@@ -1,5 +1,5 @@
 /* The folder of a study: what is written is read, and what cuts it short costs a unit at most. */
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <math.h>
@@ -458,7 +458,7 @@ static void full_disk_leaves_whole_units_and_can_be_gone_on_with(void **state)
 	gz_study_free(&study);
 }
 
-int main(void)
+TEST_SUITE(study_folder)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(study_written_is_read, name_folder),

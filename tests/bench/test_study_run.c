@@ -1,6 +1,6 @@
 /* Running a study on a small scene: what is measured is there, the same each time, however it is
  * cut up or interrupted. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <signal.h>
@@ -546,7 +546,7 @@ static void picture_smaller_than_a_window_has_no_ssim(void **state)
 	gz_study_free(&study);
 }
 
-int main(void)
+TEST_SUITE(study_run)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(run_measures_each_frame_of_each_variant_at_each_point,

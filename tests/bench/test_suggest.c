@@ -1,5 +1,5 @@
 /* gazebench report and suggest, as people call them. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -187,7 +187,7 @@ static void report_without_gnuplot_has_all_but_charts_and_says_so(void **state)
 	assert_int_equal(place->status, 1);
 }
 
-int main(void)
+TEST_SUITE(suggest)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(

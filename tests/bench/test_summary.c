@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -372,7 +372,7 @@ static void summary_as_json_holds_the_numbers_and_no_infinity(void **state)
 	gz_study_free(&study);
 }
 
-int main(void)
+TEST_SUITE(summary)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(distribution_of_known_values_has_their_moments_and_quantiles),

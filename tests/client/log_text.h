@@ -32,10 +32,10 @@ void log_text_gap(struct log_text *text, int64_t host_ns, uint64_t missing);
 /** Add a mark. */
 void log_text_mark(struct log_text *text, int64_t host_ns, const char *label);
 
-/** Add a line as it stands, with its newline. */
+/** Add a line unchanged, with its newline. */
 void log_text_line(struct log_text *text, const char *line);
 
-/** Add the right end line. */
+/** Add the correct end line. */
 void log_text_end(struct log_text *text);
 
 /** 2 s at 1000 Hz from 10 s on: 1 s at (0.3, 0.5), a saccade of 40 ms, then (0.7, 0.5); x of every

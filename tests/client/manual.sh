@@ -1,7 +1,7 @@
 #!/bin/sh
 # usage: manual.sh PAGES MAP
-# The manual pages are well-formed mdoc, refer to pages that exist, and gazecast(3) knows every
-# function of the library's own.
+# The manual pages are well-formed mdoc, refer to pages that exist, and gazecast(3) describes
+# every function of the library.
 set -eu
 pages=$1 map=$2
 command -v mandoc >/dev/null || { echo "no mandoc"; exit 77; }

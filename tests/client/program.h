@@ -10,7 +10,7 @@
 
 /** A running or finished program. */
 struct program {
-	pid_t process; /**< 0 when it is gone */
+	pid_t process; /**< 0 once it has ended */
 	int out, err;  /**< pipes */
 	int status;    /**< its exit status; -1 if a signal ended it */
 	char out_text[16384], err_text[4096];
@@ -20,13 +20,13 @@ struct program {
 /** Start @p arguments[0] with @p arguments, NULL-terminated. Asserts. */
 void program_start(struct program *program, const char *const *arguments);
 
-/** Collect output until @p text stands in what came on stdout or stderr. Asserts that it comes. */
+/** Collect output until @p text appears on stdout or stderr. Asserts that it does. */
 void program_wait_for(struct program *program, const char *text);
 
-/** Collect output to its end and the exit status. Kills it and fails after 20 s. */
+/** Collect the rest of the output and the exit status. Kills the program and fails after 20 s. */
 void program_finish(struct program *program);
 
-/** Kill it if it still runs: for the teardown of a test that failed half-way. */
+/** Kill the program if it is still running: for the teardown of a test that failed. */
 void program_kill(struct program *program);
 
 /** program_start() and program_finish(). */

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "publisher.h"
 
@@ -138,7 +138,7 @@ pid_t publisher_process_start(const char *channel, uint64_t first_seq)
 	pid_t process = fork();
 	assert_true(process >= 0);
 	if (process == 0) {
-		prctl(PR_SET_PDEATHSIG, SIGKILL); /* a failed assertion leaves nobody behind */
+		prctl(PR_SET_PDEATHSIG, SIGKILL); /* the child ends if an assertion fails */
 		dup2(bound[1], STDOUT_FILENO);
 		execl(PUBLISH, PUBLISH, endpoint, channel, seq, (char *)NULL);
 		_exit(127);

@@ -13,13 +13,13 @@
 #include "protocol/endpoint.h"
 #include "protocol/gaze.h"
 
-/** Long enough for anything that should happen at once, also on a busy machine, ns. */
+/** Long enough for anything that should happen at once, even on a busy machine, ns. */
 #define PATIENCE_NS INT64_C(10000000000)
 
-/** Make a fresh directory and name it in GAZECAST_RUNTIME_DIR. A cmocka group setup. */
+/** Make a new directory and set GAZECAST_RUNTIME_DIR to it. A cmocka group setup. */
 int runtime_directory_make(void **state);
 
-/** Remove it with what is in it. A cmocka group teardown. */
+/** Remove the directory and its content. A cmocka group teardown. */
 int runtime_directory_remove(void **state);
 
 struct publisher {
@@ -36,19 +36,19 @@ void publisher_open_at(struct publisher *publisher, const char *endpoint);
 /** Send one message of one frame. */
 void publisher_send_frame(struct publisher *publisher, const void *bytes, size_t size);
 
-/** Send one message of a topic frame and another. */
+/** Send one message of two frames, a topic and a body. */
 void publisher_send(struct publisher *publisher, const char *topic, const void *bytes, size_t size);
 
-/** Send a gaze as the latest channel does. */
+/** Send a gaze like the latest channel. */
 void publisher_send_latest(struct publisher *publisher, const struct gz_gaze *gaze);
 
-/** Send a gaze as the stream does. */
+/** Send a gaze like the stream. */
 void publisher_send_gaze(struct publisher *publisher, const struct gz_gaze *gaze);
 
 /** Send a status. */
 void publisher_send_status(struct publisher *publisher, const struct gz_status *status);
 
-/** Close and forget. */
+/** Close the socket and zero the publisher. */
 void publisher_close(struct publisher *publisher);
 
 /** A gaze of both eyes at (x, y), numbered @p seq, sampled and sent now. */
@@ -63,7 +63,7 @@ struct gz_gaze gaze_at(uint64_t seq, float x, float y);
  */
 pid_t publisher_process_start(const char *channel, uint64_t first_seq);
 
-/** Kill it without a warning and wait until it is gone. */
+/** Kill the process and wait until it has ended. */
 void publisher_process_kill(pid_t process);
 
 #endif

@@ -18,7 +18,7 @@ expect() {
 }
 timeout 20 "$python" "$reader" "ipc://$place/gazecast/latest" 3 >"$place/out"
 expect
-# Goes on until it is stopped: head ends it by closing the pipe.
+# The reader runs until it is stopped: head ends it by closing the pipe.
 unset GAZECAST_RUNTIME_DIR
 XDG_RUNTIME_DIR=$place timeout 20 "$python" "$reader" 2>/dev/null | head -n 3 >"$place/out"
 expect

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "client/client.h"
 #include "publisher.h"
@@ -16,7 +16,7 @@ static struct gz_client *open_client(void)
 	return client;
 }
 
-/* Look until a gaze numbered @p seq or later has come. */
+/* Read until a gaze numbered @p seq or later has come. */
 static struct gz_gaze wait_for_seq(struct gz_client *client, uint64_t seq)
 {
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
@@ -49,7 +49,7 @@ static bool is_connected(struct gz_client *client)
 	return counters.connected;
 }
 
-/* Time until the connection is as wanted, ns. */
+/* Time until the connection is in the wanted state, ns. */
 static int64_t wait_connected(struct gz_client *client, bool wanted)
 {
 	int64_t start_ns = gz_clock_now_ns();
@@ -81,7 +81,7 @@ static void latest_without_a_daemon_times_out_and_never_blocks(void **state)
 		assert_int_equal(gz_client_latest(client, &gaze, &age_ns), GZ_ERR_TIMEOUT);
 		spent_ns[i] = gz_clock_now_ns() - start_ns;
 	}
-	/* The median: single calls wait for other programs on a busy machine. */
+	/* The median, because on a busy machine single calls wait for other programs. */
 	qsort(spent_ns, CALLS, sizeof spent_ns[0], compare_times);
 	print_message("median %lld ns, longest %lld ns\n", (long long)spent_ns[CALLS / 2],
 		      (long long)spent_ns[CALLS - 1]);
@@ -180,14 +180,15 @@ static void slow_reader_gets_the_newest_and_counts_the_overtaken(void **state)
 		struct gz_gaze gaze = gaze_at(seq, 0.5f, 0.5f);
 		publisher_send_latest(&publisher, &gaze);
 	}
-	/* When the other has the last one, the slow one's is there or about to be. */
+	/* Once the other client has the last message, that of the slow one has arrived or soon
+	 * will. */
 	wait_for_seq(other, MESSAGES);
 	wait_for_seq(slow, MESSAGES);
 	gz_client_get_counters(slow, &after);
 	uint64_t taken = after.received - before.received;
 	print_message("took %llu of %d messages\n", (unsigned long long)taken, MESSAGES - 1);
 	assert_in_range(taken, 1, MESSAGES / 10);
-	/* Repeats of number 1 are no news and skip nothing. */
+	/* Repeats of number 1 are not new and skip nothing. */
 	assert_in_range(after.skipped, MESSAGES - 1 - taken, MESSAGES - 2);
 	gz_client_close(&slow);
 	gz_client_close(&other);
@@ -201,7 +202,7 @@ static void malformed_messages_are_counted_and_change_nothing(void **state)
 		{ 0xc1 },                               /* a code MessagePack never uses */
 		{ 0xdf, 0xff, 0xff, 0xff, 0xff },       /* a map of 4 billion keys, cut */
 		{ 0x93, 1, 2, 3 },                      /* a list */
-		{ 0x81, 0xa3, 's', 'e', 'q', 0xc0, 1 }, /* a byte behind the map */
+		{ 0x81, 0xa3, 's', 'e', 'q', 0xc0, 1 }, /* a byte after the map */
 	};
 	static const size_t sizes[] = { 1, 5, 4, 7 };
 	struct publisher publisher;
@@ -252,7 +253,7 @@ static void killed_daemon_that_returns_is_found_within_a_quarter_second(void **s
 	for (int i = 0; i < 3; i++) {
 		publisher_process_kill(process);
 		wait_connected(client, false);
-		/* A daemon that was started anew numbers from its beginning. */
+		/* A restarted daemon numbers from the beginning. */
 		process = publisher_process_start("latest", 1);
 		int64_t needed_ns = wait_connected(client, true);
 		best_ns = needed_ns < best_ns ? needed_ns : best_ns;
@@ -316,7 +317,7 @@ static void close_accepts_nothing(void **state)
 	assert_null(client);
 }
 
-int main(void)
+TEST_SUITE(client)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(latest_without_a_daemon_times_out_and_never_blocks),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "client/control.h"
 #include "publisher.h"
@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 
-/* A daemon's control socket in the hand of the test: one request at a time. */
+/* A daemon's control socket that the test plays: one request at a time. */
 struct server {
 	void *context;
 	void *socket;
@@ -47,7 +47,7 @@ static void server_close(struct server *server)
 	zmq_ctx_term(server->context);
 }
 
-/* One request, asked on a thread of its own so that the test can play the daemon. */
+/* One request, sent on a thread of its own so that the test can play the daemon. */
 struct question {
 	struct gz_control *control;
 	const char *request;
@@ -166,7 +166,7 @@ static void malformed_replies_are_refused(void **state)
 	server_close(&server);
 }
 
-/* Take a request by its frames: the way back, an empty one and the text. */
+/* Receive the frames of a request: the return address, an empty one and the text. */
 struct envelope {
 	char way_back[64];
 	int way_back_size;
@@ -270,7 +270,7 @@ static void stream_of_a_tcp_daemon_has_the_port_it_tells(void **state)
 	server_close(&server);
 }
 
-int main(void)
+TEST_SUITE(control)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(request_without_a_daemon_times_out_each_time),

@@ -1,5 +1,5 @@
 /* Readers of other programs' recordings: what becomes of each field, and what is refused. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,7 +75,7 @@ static void assert_near(double value, double wanted)
 		fail_msg("%.9g, wanted %.9g", value, wanted);
 }
 
-/* Two blocks at 2000 Hz, where two samples show the same millisecond. */
+/* Two blocks at 2000 Hz, where two samples have the same millisecond. */
 static const char eyelink_text[] =
 	"** CONVERTED FROM a.edf using edfapi\n"
 	"MSG\t90 !CAL before anything\n"
@@ -103,7 +103,7 @@ static void eyelink_samples_marks_and_pauses_are_read(void **state)
 	assert_int_equal(counts.skipped, 1);
 	assert_string_equal(taken.header.tracker, "EyeLink");
 	assert_near(taken.header.rate_hz, 2000);
-	assert_false(taken.header.has_display); /* nobody knows its size */
+	assert_false(taken.header.has_display); /* its size is unknown */
 	assert_int_equal(taken.count, 6);
 	assert_int_equal(sample(0)->host_ns, 100 * GZ_NS_PER_MS);
 	assert_int_equal(sample(1)->host_ns, 100 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
@@ -121,7 +121,7 @@ static void eyelink_samples_marks_and_pauses_are_read(void **state)
 	assert_int_equal(taken.record[4].host_ns, 300 * GZ_NS_PER_MS);
 	assert_int_equal(sample(5)->host_ns, 300 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
 	assert_false(sample(5)->eye[GZ_EYE_LEFT].valid);
-	assert_near((double)sample(5)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* past the edge */
+	assert_near((double)sample(5)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* beyond the edge */
 }
 
 static void eyelink_display_is_complete_with_what_the_user_knows(void **state)
@@ -324,7 +324,7 @@ static void text_that_is_no_utf_8_is_mended_and_cut_between_characters(void **st
 
 #define TEST(function) cmocka_unit_test_setup(function, set_up)
 
-int main(void)
+TEST_SUITE(convert)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(eyelink_samples_marks_and_pauses_are_read),

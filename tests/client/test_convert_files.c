@@ -1,5 +1,5 @@
 /* gazectl convert and the picture of gazectl inspect, on files. */
-#include "check.h"
+#include "suite.h"
 
 #include "log_text.h"
 #include "program.h"
@@ -36,7 +36,7 @@ static const char *in_directory(const char *name)
 	return path;
 }
 
-/* The whole of a file, decompressed where it is compressed; freed by the caller. */
+/* The whole content of a file, decompressed if it is compressed; freed by the caller. */
 static char *contents(const char *path)
 {
 	gzFile file = gzopen(path, "rb");
@@ -253,7 +253,7 @@ static void recordings_of_real_trackers_are_converted_whole(void **state)
 
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(convert_files)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(log_converted_to_a_log_is_the_same_log),

@@ -1,10 +1,10 @@
-/* The correction: exact where it can be, honest where it cannot. */
-#include "check.h"
+/* The correction: exact if the errors allow it, and not claimed to help if they do not. */
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "client/gazectl/validate/correction_fit.h"
+#include "client/gazectl/validate/correction.h"
 
 #define CHECK_NEAR(got, wanted, within)                                          \
 	do {                                                                     \
@@ -29,7 +29,7 @@ static struct gz_correct_params inverse_of(const struct gz_correct_params *map)
 	};
 }
 
-/* Three by three targets, seen through @error. */
+/* Three by three targets, measured with @error. */
 static size_t grid(struct gz_fit_pair *pairs, const struct gz_correct_params *error)
 {
 	size_t n = 0;
@@ -79,7 +79,7 @@ static void no_error_needs_no_correction(void **state)
 	assert_false(fit.helps);
 }
 
-/* Errors that have nothing in common: whatever follows them does not predict the next one. */
+/* Errors without a pattern: a map that follows them does not predict the next one. */
 static void errors_without_a_rule_are_not_corrected(void **state)
 {
 	(void)state;
@@ -97,7 +97,7 @@ static void errors_without_a_rule_are_not_corrected(void **state)
 	}
 	gz_fit_correction(&display, pairs, count, &fit);
 	assert_true(fit.after_deg <= fit.before_deg * 1.01); /* it follows the noise */
-	assert_true(fit.cross_deg >= fit.before_deg * 0.9);  /* which is of no use */
+	assert_true(fit.cross_deg >= fit.before_deg * 0.9);  /* which does not help */
 	assert_false(fit.helps);
 }
 
@@ -134,7 +134,8 @@ static void leave_one_out_of_three_shifts_is_as_by_hand(void **state)
 	assert_int_equal(fit.model, GZ_FIT_SHIFT);
 	CHECK_NEAR(fit.map.x[0], 0.02, 1e-6);
 	CHECK_NEAR(fit.map.y[0], 0, 1e-6);
-	/* Shifts over the others are 25, 20 and 15 mm: what is left are 15, 0 and 15 mm at 1 m. */
+	/* The shifts from the other two are 25, 20 and 15 mm: the errors left are 15, 0 and 15 mm
+	 * at 1 m. */
 	CHECK_NEAR(fit.cross_deg, 2.0 / 3 * atan(0.015) * 57.29577951308232, 1e-4);
 	CHECK_NEAR(fit.after_deg, 2.0 / 3 * atan(0.010) * 57.29577951308232, 1e-4);
 	assert_true(fit.helps);
@@ -254,7 +255,7 @@ static void composed_map_does_both_in_turn(void **state)
 	assert_memory_equal(&both, &second, sizeof both);
 }
 
-int main(void)
+TEST_SUITE(correction_fit)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(an_affine_error_is_undone_exactly),

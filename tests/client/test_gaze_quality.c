@@ -1,5 +1,5 @@
 /* Accuracy, precision and loss against values computed by hand. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
@@ -13,7 +13,7 @@
 				 (double)(within));                              \
 	} while (0)
 
-/* As far from the eye as it is wide. */
+/* A display as far from the eye as it is wide. */
 static const struct gz_display display = { { 1000, 1000 }, { 1000, 1000 }, 1000 };
 static const struct gz_point middle = { 0.5f, 0.5f };
 
@@ -88,7 +88,7 @@ static void samples_round_the_target_have_no_offset_but_spread(void **state)
 	CHECK_NEAR(q.offset_deg[1], 0, EXACT_DEG);
 	CHECK_NEAR(q.sd_deg, sqrt(4.0 / 3), EXACT_DEG);
 	CHECK_NEAR(q.bcea_deg2, 4.772858, 1e-4);  /* 2 * 1.139434 * pi * 2 / 3 */
-	CHECK_NEAR(q.rms_s2s_deg, sqrt(2), 1e-3); /* on a sphere a little less than on a plane */
+	CHECK_NEAR(q.rms_s2s_deg, sqrt(2), 1e-3); /* slightly less on a sphere than on a plane */
 }
 
 static void samples_on_a_slope_span_no_area(void **state)
@@ -151,7 +151,7 @@ static void steps_across_a_gap_or_a_saccade_are_no_noise(void **state)
 	(void)state;
 	put(0, 0, at_deg(0, 0));
 	put(1, 10, at_deg(0.1, 0));
-	put(2, 40, at_deg(2, 0)); /* two samples are missing before */
+	put(2, 40, at_deg(2, 0)); /* two samples are missing before it */
 	put(3, 50, at_deg(2.1, 0));
 	put(4, 60, at_deg(5, 0));
 	samples[4].fixating = false;
@@ -225,7 +225,7 @@ static void period_is_the_median_and_unmoved_by_gaps(void **state)
 	assert_int_equal(gz_quality_period_ns(samples, 0), 0);
 }
 
-int main(void)
+TEST_SUITE(gaze_quality)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(samples_along_a_line_have_the_values_of_the_formulas),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "log_text.h"
 #include "program.h"
@@ -119,7 +119,8 @@ static void assert_contains(const char *text, const char *part)
 		fail_msg("\"%s\" is not in:\n%s", part, text);
 }
 
-/* It ended with @p status, said one line on stderr with @p part in it, and nothing on stdout. */
+/* The program exited with @p status, printed one line with @p part on stderr, and nothing on
+ * stdout. */
 static void assert_refused(int status, const char *part)
 {
 	if (program.status != status)
@@ -163,15 +164,15 @@ static void command_lines_not_understood_are_refused(void **state)
 {
 	(void)state;
 	RUN("dance");
-	assert_refused(2, "dance is no command");
+	assert_refused(2, "dance: unknown command");
 	RUN("status", "--jsom");
 	assert_refused(2, "--json");
 	RUN("status", "more");
-	assert_refused(2, "more: one argument too many");
+	assert_refused(2, "more: unexpected argument");
 	RUN("record", "a", "b");
-	assert_refused(2, "b: one argument too many");
+	assert_refused(2, "b: unexpected argument");
 	RUN("inspect");
-	assert_refused(2, "which file");
+	assert_refused(2, "no file given");
 	RUN("watch", "--count", "x");
 	assert_refused(2, "count");
 	RUN("stop", "--endpoint", "nonsense");
@@ -183,7 +184,7 @@ static void without_a_daemon_the_remedy_is_told(void **state)
 	(void)state;
 	char expected[256];
 	snprintf(expected, sizeof expected,
-		 "no daemon answers at ipc://%s/control: start gazed, or name its endpoint with "
+		 "no daemon answers at ipc://%s/control: start gazed, or give its endpoint with "
 		 "--endpoint",
 		 getenv("GAZECAST_RUNTIME_DIR"));
 	RUN("status");
@@ -277,9 +278,9 @@ static void refusal_is_passed_on(void **state)
 	daemon.refuses = true;
 	daemon_run(&daemon);
 	RUN("record", "my-name");
-	assert_refused(1, "the daemon answers: no: the disk is ?[31mfull");
+	assert_refused(1, "the daemon refuses: no: the disk is ?[31mfull");
 	RUN("stop");
-	assert_refused(1, "the daemon answers: no");
+	assert_refused(1, "the daemon refuses: no");
 	daemon_stop(&daemon);
 }
 
@@ -316,7 +317,7 @@ static void watch_shows_what_was_lost(void **state)
 	struct daemon daemon;
 	daemon_start(&daemon);
 	program_start(&program, (const char *const[]) { GAZECTL, "watch", "gaze", NULL });
-	/* Each gaze is ten after the one before. */
+	/* The number of each gaze is ten above that of the one before. */
 	while (!strstr(program.out_text, " lost 9\n")) {
 		struct gz_gaze gaze = gaze_at(daemon.seq += 10, 0.5f, 0.5f);
 		publisher_send_gaze(&daemon.publisher, &gaze);
@@ -344,7 +345,7 @@ static void watch_goes_on_when_the_daemon_dies_and_returns(void **state)
 	publisher_process_kill(process);
 	program_wait_for(&program, "waiting for it to return");
 	process = publisher_process_start("stream", 7000000);
-	program_wait_for(&program, "is back");
+	program_wait_for(&program, "connected again");
 	program.out_size = 0;
 	program.out_text[0] = '\0';
 	program_wait_for(&program, " gaze 7");
@@ -396,7 +397,7 @@ static void inspect_tells_of_a_whole_log(void **state)
 	RUN("inspect", "--json", path);
 	assert_done();
 	assert_contains(program.out_text, "\"ending\": \"whole\"");
-	assert_contains(program.out_text, "\"text\": \"trial \\u001b[31m1\"");
+	assert_contains(program.out_text, "\"text\": \"trial \\u001B[31m1\"");
 }
 
 static void inspect_tells_of_a_damaged_log_by_its_exit_status(void **state)
@@ -447,7 +448,7 @@ static void full_disk_under_the_output_is_told(void **state)
 	assert_refused(1, "cannot write to standard output");
 }
 
-int main(void)
+TEST_SUITE(gazectl)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(help_and_version_are_printed),

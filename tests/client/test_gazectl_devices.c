@@ -1,5 +1,5 @@
-/* gazectl devices, where the only tracker that is sure to be there is played by the test. */
-#include "check.h"
+/* gazectl devices, with one tracker that is sure to be found: the test plays it. */
+#include "suite.h"
 
 #include "../drivers/gazepoint_server.h"
 #include "program.h"
@@ -79,7 +79,7 @@ static void devices_that_cannot_be_used_are_listed_with_the_reason(void **state)
 	assert_contains(program.out_text, "port 1\"");
 	RUN(NULL);
 	assert_contains(program.out_text, "port 1, driver gazepoint\n    not usable: ");
-	/* Another tracker may be plugged into this machine. */
+	/* Another tracker may be connected to this machine. */
 	if (!strstr(program.out_text, "    usable: ")) {
 		assert_int_equal(program.status, 1);
 		assert_contains(program.err_text, "no tracker can be used");
@@ -92,13 +92,13 @@ static void devices_are_asked_with_presets_where_the_configuration_is_refused(vo
 	configure("[gazepoint]\nhost = 127.0.0.2\nport = everywhere\n");
 	RUN("--json");
 	assert_contains(program.err_text, "gazed.conf:3: gazepoint.port");
-	assert_contains(program.err_text, "presets");
+	assert_contains(program.err_text, "default settings");
 	assert_contains(program.out_text, "\"devices\"");
 	if (strstr(program.out_text, "127.0.0.2"))
 		fail_msg("half of a refused configuration counts:\n%s", program.out_text);
 }
 
-int main(void)
+TEST_SUITE(gazectl_devices)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(devices_that_can_be_used_are_listed_with_how_to_choose_them),

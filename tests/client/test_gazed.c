@@ -1,5 +1,5 @@
 /* gazectl and the client library against the real gazed with its simulator. */
-#include "check.h"
+#include "suite.h"
 
 #include "client/client.h"
 #include "client/stream.h"
@@ -45,7 +45,7 @@ static void daemon_end(int signal_number, int expected_status)
 
 #define RUN(...) program_run(&program, (const char *const[]) { GAZECTL, __VA_ARGS__, NULL })
 
-/* A test that fails half-way leaves nobody behind for the next one. */
+/* The daemon of a test that failed must not disturb the next one. */
 static int kill_programs(void **state)
 {
 	(void)state;
@@ -107,7 +107,7 @@ static void recording_is_whole_and_holds_what_was_sent(void **state)
 	assert_contains(program.out_text, "rate         1000.0");
 	const char *samples = strstr(program.out_text, "samples      ");
 	assert_non_null(samples);
-	/* Nearly all that was watched: the simulator loses one in a thousand. */
+	/* Nearly all messages: the simulator loses one in a thousand. */
 	assert_in_range(strtoull(samples + strlen("samples      "), NULL, 10), 950, 1000000);
 	assert_contains(program.out_text, "tracker      sim\n");
 }
@@ -119,7 +119,7 @@ static void recording_name_outside_the_rules_is_refused(void **state)
 	RUN("record", "../elsewhere");
 	daemon_end(SIGTERM, 0);
 	assert_int_equal(program.status, 1);
-	assert_contains(program.err_text, "the daemon answers: ");
+	assert_contains(program.err_text, "the daemon refuses: ");
 	assert_string_equal(program.out_text, "");
 }
 
@@ -132,7 +132,7 @@ static void watch_survives_a_killed_daemon(void **state)
 	daemon_end(SIGKILL, -1);
 	program_wait_for(&program, "waiting for it to return");
 	daemon_start("500");
-	program_wait_for(&program, "is back");
+	program_wait_for(&program, "connected again");
 	program.out_size = 0;
 	program.out_text[0] = '\0';
 	program_wait_for(&program, " gaze ");
@@ -166,7 +166,7 @@ static void watch_over_tcp_follows_the_stream_to_another_port(void **state)
 	daemon_end(SIGKILL, -1);
 	program_wait_for(&program, "waiting for it to return");
 	daemon_start_with_tcp("500", endpoint);
-	/* The port is the system's choice: nearly always another one. */
+	/* The system chooses the port: nearly always another one. */
 	program.out_size = 0;
 	program.out_text[0] = '\0';
 	program_wait_for(&program, " gaze ");
@@ -186,7 +186,7 @@ static void latest_is_young_at_any_pace_of_the_reader(void **state)
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS, age_ns, best_ns = INT64_MAX;
 	while (gz_client_latest(client, &gaze, NULL) != GZ_OK)
 		assert_true(gz_clock_now_ns() < deadline_ns);
-	/* 50 a second of 1000: 4 ms are the simulated tracker's own. */
+	/* 50 a second of 1000; the simulated tracker itself takes 4 ms. */
 	for (int i = 0; i < 20; i++) {
 		gz_clock_sleep_until_ns(gz_clock_now_ns() + 20 * GZ_NS_PER_MS);
 		assert_int_equal(gz_client_latest(client, &gaze, &age_ns), GZ_OK);
@@ -220,7 +220,7 @@ static void python_reader_prints_the_gaze(void **state)
 
 #define TEST(function) cmocka_unit_test_teardown(function, kill_programs)
 
-int main(void)
+TEST_SUITE(gazed)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(status_tells_of_the_simulator),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "client/gazectl/inspect/log_summary.h"
 #include "log_text.h"
@@ -57,7 +57,7 @@ static void look_to_the_right_is_one_saccade(void **state)
 	assert_int_equal(summarize(&text), GZ_OK);
 	log_text_free(&text);
 	assert_int_equal(summary.saccades, 1);
-	/* The second one still lasts when the log ends. */
+	/* The second one has not ended when the log does. */
 	assert_in_range(summary.fixations, 1, 2);
 	assert_int_equal(summary.blinks, 0);
 }
@@ -65,7 +65,7 @@ static void look_to_the_right_is_one_saccade(void **state)
 static void noise_is_the_jitter_between_samples(void **state)
 {
 	(void)state;
-	/* Right of the middle by 0.0005 of a display 50.4 deg wide, at the places looked at. */
+	/* 0.0005 of a display 50.4 deg wide to the right, at the points looked at. */
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_point at = { 0.3f, 0.5f }, beside = { 0.3005f, 0.5f };
 	double jitter_deg = gz_display_angle_deg(&display, at, beside);
@@ -75,7 +75,7 @@ static void noise_is_the_jitter_between_samples(void **state)
 	log_text_end(&text);
 	assert_int_equal(summarize(&text), GZ_OK);
 	log_text_free(&text);
-	/* A fixation may hold the first step of the saccade, half a degree. */
+	/* A fixation may contain the first step of the saccade, half a degree. */
 	assert_near(summary.noise_deg, jitter_deg, 0.25 * jitter_deg);
 }
 
@@ -226,7 +226,7 @@ static void times_at_the_ends_of_their_range_overflow_nothing(void **state)
 	assert_true(isfinite(summary.rate_hz) && summary.duration_s >= 0);
 }
 
-int main(void)
+TEST_SUITE(log_summary)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(whole_log_tells_length_rate_and_validity),

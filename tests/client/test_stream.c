@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "client/stream.h"
 #include "publisher.h"
@@ -19,7 +19,7 @@ static struct gz_stream *open_stream(const char *const *topics)
 
 static const unsigned char empty_map[] = { 0x80 };
 
-/* Send empty maps of @p topic until one arrives, then read what is left of them. */
+/* Send empty maps of @p topic until one arrives, then read the rest of them. */
 static void wait_connection(struct publisher *publisher, struct gz_stream *stream,
 			    const char *topic)
 {
@@ -29,7 +29,7 @@ static void wait_connection(struct publisher *publisher, struct gz_stream *strea
 		assert_true(gz_clock_now_ns() < deadline_ns);
 		publisher_send(publisher, topic, empty_map, sizeof empty_map);
 	} while (gz_stream_read(stream, 10, &message) != GZ_OK);
-	/* The last of them is told apart by its payload. */
+	/* The last one has another payload. */
 	static const unsigned char last[] = { 0x81, 0xa1, 'z', 0x01 };
 	publisher_send(publisher, topic, last, sizeof last);
 	while (message.size != sizeof last)
@@ -214,7 +214,7 @@ static void topics_that_leave_gaze_out_count_no_loss(void **state)
 	publisher_open(&publisher, "stream");
 	wait_connection(&publisher, stream, "sync");
 	send_seq(&publisher, 1);
-	send_seq(&publisher, 9); /* those between may have been of one eye */
+	send_seq(&publisher, 9); /* those in between may have been of one eye */
 	assert_int_equal(read_message(stream).gaze.seq, 1);
 	struct gz_message message = read_message(stream);
 	assert_int_equal(message.gaze.seq, 9);
@@ -235,7 +235,7 @@ static void killed_daemon_that_returns_is_read_again_without_loss(void **state)
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	while (gz_stream_read(stream, 5, &message) == GZ_OK || counters_of(stream).connected)
 		assert_true(gz_clock_now_ns() < deadline_ns);
-	/* Its numbers may well be above those of the one that died. */
+	/* Its numbers may be above those of the one that ended. */
 	process = publisher_process_start("stream", 1000000);
 	message = read_message(stream);
 	publisher_process_kill(process);
@@ -252,10 +252,10 @@ static void send_malformed(struct publisher *publisher)
 	long_topic[sizeof long_topic - 1] = '\0';
 	static const unsigned char cut[] = { 0xdf, 0xff, 0xff, 0xff, 0xff };
 
-	publisher_send_frame(publisher, "gaze.3d.01.", 11);             /* one frame */
-	publisher_send(publisher, long_topic, empty_map, 1);            /* too long a topic */
+	publisher_send_frame(publisher, "gaze.3d.01.", 11);  /* one frame */
+	publisher_send(publisher, long_topic, empty_map, 1); /* a topic that is too long */
 	publisher_send(publisher, GZ_TOPIC_GAZE_BOTH, cut, sizeof cut); /* a cut payload */
-	publisher_send(publisher, "surfaces.x", cut, sizeof cut);       /* also of other kinds */
+	publisher_send(publisher, "surfaces.x", cut, sizeof cut);       /* of other kinds too */
 	publisher_send(publisher, GZ_TOPIC_STATUS, "", 0);              /* no payload */
 	zmq_send(publisher->socket, "ga\0ze", 5, ZMQ_SNDMORE);          /* a NUL in the topic */
 	publisher_send_frame(publisher, empty_map, 1);
@@ -280,7 +280,7 @@ static void malformed_messages_are_counted_and_left_out(void **state)
 	publisher_close(&publisher);
 }
 
-int main(void)
+TEST_SUITE(stream)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(read_without_a_daemon_times_out_in_time),

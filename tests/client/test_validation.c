@@ -1,5 +1,5 @@
 /* From targets and a stream of gaze to numbers; and the lines that gazeview prints. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -92,7 +92,8 @@ static void eye_that_is_not_valid_has_no_place(void **state)
 	assert_true(sample->point[GZ_TRACE_BOTH].x == 0.5f);
 }
 
-/* 100 Hz: looks at the last place until 250 ms after a target, jumps, and rests. */
+/* 100 Hz: looks at the last target until 250 ms after the next one appears, jumps there, and rests.
+ * */
 static void look(uint64_t *seq, int64_t shown_ms, int64_t hidden_ms, int64_t lands_ms,
 		 struct gz_point from, struct gz_point to)
 {
@@ -110,7 +111,8 @@ static void samples_count_from_the_landing_and_not_before_the_eye_has_settled(vo
 	struct gz_point a = { 0.2f, 0.2f }, b = { 0.8f, 0.2f }, c = { 0.8f, 0.8f };
 	add_target(b.x, b.y, 1000, 3000);
 	add_target(c.x, c.y, 3000, 5000);
-	look(&seq, 1000, 3000, 1300, a, b); /* lands soon: settled 800 ms after */
+	look(&seq, 1000, 3000, 1300, a,
+	     b); /* lands early: samples count from 800 ms after it appeared */
 	look(&seq, 3000, 5000, 4100, b, c); /* lands late */
 	assert_int_equal(gz_validation_evaluate(&validation), GZ_OK);
 	assert_int_equal(validation.target[0].begin_ns, 1800 * MS);
@@ -204,7 +206,7 @@ static void other_lines_are_refused(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
-int main(void)
+TEST_SUITE(validation)
 {
 	static const struct CMUnitTest tests[] = {
 		TEST(certain_label_reaches_the_sample_that_it_is_for),

@@ -1,5 +1,5 @@
-/* What a viewer sends to the daemon's inlet, and when. */
-#include "check.h"
+/* The messages that a viewer sends to the daemon's inlet, and when. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,7 +29,7 @@ static bool receive(int timeout_ms)
 	return true;
 }
 
-/* Times are the caller's: nothing here waits for a clock. */
+/* The caller gives the times: nothing here waits for a clock. */
 static const int64_t begin_ns = 1000 * GZ_NS_PER_S;
 
 /* A link whose first message has arrived. */
@@ -47,7 +47,7 @@ static int set_up(void **state)
 	if (zmq_setsockopt(listener, ZMQ_SUBSCRIBE, "", 0) != 0 || zmq_bind(listener, inlet) != 0 ||
 	    gz_viewer_link_open(latest, NULL, &viewer) != GZ_OK)
 		return -1;
-	/* Until the subscription is known there, messages are dropped. */
+	/* Messages are dropped until the subscription has arrived. */
 	for (int i = 0; i < 1000; i++) {
 		gz_viewer_link_window(viewer, rect_px, i * 2 * GZ_VIEWER_LINK_WINDOW_NS);
 		if (receive(20))
@@ -165,7 +165,7 @@ static void nobody_who_listens_costs_nothing(void **state)
 		fail_msg("took %g ms", gz_ns_to_ms(took_ns));
 }
 
-int main(void)
+TEST_SUITE(viewer_link)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(

@@ -1,9 +1,9 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 
 #include "base/clock.h"
-#include "daemon/address_limit.h"
+#include "daemon/admission.h"
 
 enum { KIND, OTHER_KIND };
 
@@ -45,7 +45,7 @@ static void limit_of_many_addresses_stays_bounded(void **state)
 		passed += gz_address_limit_pass(&limit, address, KIND, (int64_t)i * 1000, &dropped);
 	}
 	assert_int_equal(passed, GZ_ADDRESS_LIMIT_COUNT + 1);
-	/* A minute later there is room again. */
+	/* A minute later entries are free again. */
 	assert_true(
 		gz_address_limit_pass(&limit, "10.0.0.1", KIND, 2 * GZ_ADDRESS_LIMIT_NS, &dropped));
 	assert_false(
@@ -65,7 +65,7 @@ static void limit_keeps_the_count_of_who_comes_steadily(void **state)
 	now_ns = GZ_NS_PER_S;
 	assert_true(gz_address_limit_pass(&limit, "10.0.0.1", KIND, now_ns, &dropped));
 	assert_false(gz_address_limit_pass(&limit, "10.0.0.1", KIND, now_ns + 1, &dropped));
-	/* Another takes the place of the oldest, not of the steady one. */
+	/* A new address replaces the oldest one, not the frequent one. */
 	now_ns += GZ_ADDRESS_LIMIT_NS;
 	assert_true(gz_address_limit_pass(&limit, "10.0.2.1", KIND, now_ns, &dropped));
 	assert_true(gz_address_limit_pass(&limit, "10.0.0.1", KIND, now_ns, &dropped));
@@ -86,7 +86,7 @@ static void limit_takes_addresses_of_any_length(void **state)
 	assert_false(gz_address_limit_pass(&limit, "", KIND, 0, &dropped));
 }
 
-int main(void)
+TEST_SUITE(address_limit)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(limit_lets_one_message_an_address_through_each_minute,

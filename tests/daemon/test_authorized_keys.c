@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "daemon/authorized_keys.h"
+#include "daemon/admission.h"
 
 static const char key_a[] = "Yne@$w-vo<fVvi]a<NY6T1ed:M$fCG*[IaLV{hID";
 static const char key_b[] = "rq:rM>}U?@Lns47E1%kR.o@n%FcmmsL/@{H8]yf7";
@@ -54,7 +54,7 @@ static void keys_are_looked_up_in_the_file_as_it_is(void **state)
 	write_keys(key_a, key_b);
 	assert_string_equal(gz_authorized_keys_find(&keys, key_b)->name, "two");
 	assert_int_equal(captured.messages, 1);
-	/* Nothing has changed, so nothing is read or said. */
+	/* Nothing has changed, so nothing is read or logged. */
 	assert_non_null(gz_authorized_keys_find(&keys, key_a));
 	assert_int_equal(captured.messages, 1);
 	/* The same length, and perhaps the same second. */
@@ -69,7 +69,7 @@ static void keys_of_a_missing_file_may_come_later(void **state)
 {
 	(void)state;
 	assert_int_equal(gz_authorized_keys_open(&keys, path, &captured.log), GZ_OK);
-	assert_non_null(strstr(captured.last, "is not there, so no client is let in"));
+	assert_non_null(strstr(captured.last, "does not exist, so no client is let in"));
 	assert_null(gz_authorized_keys_find(&keys, key_a));
 	assert_int_equal(captured.messages, 1);
 	write_keys(key_a, key_b);
@@ -93,7 +93,7 @@ static void keys_of_a_damaged_or_unsafe_file_let_nobody_in(void **state)
 	assert_non_null(gz_authorized_keys_find(&keys, key_a));
 }
 
-int main(void)
+TEST_SUITE(authorized_keys)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(keys_are_looked_up_in_the_file_as_it_is, set_up,

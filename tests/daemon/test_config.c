@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -66,29 +66,29 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 		{ "--bogus", "1", NULL, "--bogus: unknown option" },
 		{ "--driver", "eyes", NULL, "no driver eyes; allowed: sim, replay, " },
 		{ "--driver=sim", "--tracker.driver=sim", NULL, "--tracker.driver: given twice" },
-		{ "--control", "tcp://0.0.0.0:50020", NULL, "no loopback address" },
-		{ "--control", "tcp://192.168.1.2:50020", NULL, "no loopback address" },
+		{ "--control", "tcp://0.0.0.0:50020", NULL, "not a loopback address" },
+		{ "--control", "tcp://192.168.1.2:50020", NULL, "not a loopback address" },
 		{ "--tcp", "all", NULL, "off, loopback or curve" },
-		{ "--network.address=*", NULL, NULL, "--network.address: * is no loopback" },
-		{ "--network.address=127.0.0.1.example", NULL, NULL, "no loopback address" },
+		{ "--network.address=*", NULL, NULL, "--network.address: * is not a loopback" },
+		{ "--network.address=127.0.0.1.example", NULL, NULL, "not a loopback address" },
 		{ "--network.address", "", NULL, "--network.address: empty" },
-		{ "--control", "ipc:///tmp/control", NULL, "is no tcp://ADDRESS:PORT" },
+		{ "--control", "ipc:///tmp/control", NULL, "is not tcp://ADDRESS:PORT" },
 		{ "--network.stream_port=4000", "--network.inlet_port=4000", NULL,
-		  "--network.inlet_port: 4000 is the port of network.stream_port, too" },
-		{ "--network.latest_port=50020", NULL, NULL, "the port of network.control, too" },
-		{ "--stream.surfaces", "a b a", NULL, "a is there twice" },
-		{ "--display.px=0x1080", NULL, NULL, "0x1080 is half a display" },
-		{ "--display.mm=500 0", NULL, NULL, "500 0 is half a display" },
-		{ "--replay.speed=2", NULL, NULL, "--replay.speed: a setting of driver replay" },
-		{ "--stream.surfaces", "a/b", NULL, "a/b is no name" },
+		  "--network.inlet_port: 4000 is also the port of network.stream_port" },
+		{ "--network.latest_port=50020", NULL, NULL, "also the port of network.control" },
+		{ "--stream.surfaces", "a b a", NULL, "a is given twice" },
+		{ "--display.px=0x1080", NULL, NULL, "0x1080 has one side only" },
+		{ "--display.mm=500 0", NULL, NULL, "500 0 has one side only" },
+		{ "--replay.speed=2", NULL, NULL, "--replay.speed: belongs to driver replay" },
+		{ "--stream.surfaces", "a/b", NULL, "a/b is not a valid name" },
 		{ "--stream.surfaces", "1 2 3 4 5 6 7 8 9", NULL, "more than 8 names" },
 		{ "--config", "/nonexistent.conf", NULL, "/nonexistent.conf: no such file" },
 		{ "--sim.rate_hz", "5000", NULL, "5000 is outside 30 to 2000" },
 		{ "--display.mm", "nan 1", NULL, "display.mm" },
 		{ "--driver=pupil", NULL, NULL,
-		  "pupil.address: tcp://127.0.0.1:50020 is where this" },
+		  "pupil.address: tcp://127.0.0.1:50020 is this daemon" },
 		{ "--driver=pupil", "--pupil.address=tcp://localhost:7",
-		  "--control=tcp://127.0.0.1:7", "--pupil.address: tcp://localhost:7 is where" },
+		  "--control=tcp://127.0.0.1:7", "--pupil.address: tcp://localhost:7 is this" },
 		{ "file.gzl", NULL, NULL, "file.gzl" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
@@ -110,20 +110,20 @@ static enum gz_result read_text(const char *text, char *path)
 	return result;
 }
 
-/* Each value by itself is fine. */
+/* Each value by itself is valid. */
 static void config_contradictions_in_a_file_are_told_with_file_and_line(void **state)
 {
 	(void)state;
 	static const char *const refusals[][2] = {
-		{ "[network]\n; all\naddress = *\n", ":3: network.address: * is no loopback" },
+		{ "[network]\n; all\naddress = *\n", ":3: network.address: * is not a loopback" },
 		{ "[network]\ncontrol = tcp://10.0.0.1:50020\n", ":2: network.control: tcp://10" },
 		{ "[network]\nstream_port = 9\nlatest_port = 9\n",
-		  ":3: network.latest_port: 9 is" },
-		{ "[display]\nmm = 0 300\n", ":2: display.mm: 0 300 is half a display" },
+		  ":3: network.latest_port: 9 is also" },
+		{ "[display]\nmm = 0 300\n", ":2: display.mm: 0 300 has one side only" },
 		{ "[display]\npx = 1920x1080\nmm = 300 530\n", ":3: display.mm: 300 x 530 mm" },
-		{ "[stream]\nsurfaces = x x\n", ":2: stream.surfaces: x is there twice" },
+		{ "[stream]\nsurfaces = x x\n", ":2: stream.surfaces: x is given twice" },
 		{ "[pipeline]\ncorrection.y = 0 1 0\n", ":2: pipeline.correction: x and y" },
-		{ "[tracker]\ndriver = eyes\n", ":2: tracker.driver: no driver eyes" },
+		{ "[tracker]\ndriver = eyes\n", ":2: tracker.driver: there is no driver eyes" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
 		char path[] = "/tmp/gz_config_XXXXXX", wanted[160];
@@ -243,7 +243,8 @@ static void config_pipeline_of_a_recording_comes_from_its_header(void **state)
 	header.settings[0] = (struct gz_gaze_log_setting) { "margin", "wide" };
 	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params),
 			 GZ_ERR_FORMAT);
-	assert_non_null(strstr(captured.last, "pipeline.margin: wide is not a number"));
+	assert_non_null(
+		strstr(captured.last, "pipeline.margin of the recording: wide is not a number"));
 }
 
 static void config_pipeline_described_in_a_header_reads_back_the_same(void **state)
@@ -348,10 +349,10 @@ static void config_recording_directory_is_made_in_the_users_data(void **state)
 			 GZ_OK);
 	assert_int_equal(gz_config_recording_directory(&config, &captured.log, text, sizeof text),
 			 GZ_ERR_NOT_FOUND);
-	assert_non_null(strstr(captured.last, "/nonexistent is no directory; make it"));
+	assert_non_null(strstr(captured.last, "/nonexistent is not a directory; create it"));
 }
 
-int main(void)
+TEST_SUITE(config)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(config_presets_are_what_the_options_say),

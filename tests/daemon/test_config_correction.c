@@ -1,5 +1,5 @@
-/* Which stored correction gazed takes up, and which it leaves. */
-#include "check.h"
+/* Which stored correction gazed uses, and which it ignores. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,12 +169,12 @@ static void map_without_area_is_refused(void **state)
 	struct gz_correct_params correct = correct_of(&info, &display);
 	check_is(&correct, same_x, same_y);
 	assert_int_equal(captured.level, GZ_LOG_ERROR);
-	assert_non_null(strstr(captured.last, "no area"));
+	assert_non_null(strstr(captured.last, "to a line or a point"));
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
-int main(void)
+TEST_SUITE(config_correction)
 {
 	static const struct CMUnitTest tests[] = {
 		TEST(correction_of_this_tracker_and_display_is_taken),

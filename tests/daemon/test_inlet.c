@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
@@ -75,7 +75,7 @@ static void inlet_viewer_tells_its_pointer_and_its_window(void **state)
 	assert_int_equal(message.window.rect_px[3], 4);
 	assert_int_equal(judge("notify.x", notification, sizeof notification - 1), GZ_OK);
 	assert_false(message.is_window || message.is_pointer);
-	/* Only these topics, and only what they can hold. */
+	/* Only these topics, and only valid content. */
 	assert_int_equal(judge("windows", window, sizeof window - 1), GZ_OK);
 	assert_false(message.is_window);
 	assert_int_equal(judge("window", "\x81\xa4rect\x01", 7), GZ_ERR_PROTOCOL);
@@ -107,7 +107,7 @@ static void inlet_anything_else_is_refused_and_writes_nothing(void **state)
 	assert_string_equal(message.topic, "untouched");
 }
 
-int main(void)
+TEST_SUITE(inlet)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(inlet_annotation_becomes_a_mark),

@@ -1,13 +1,13 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
-#include "daemon/messages.h"
+#include "daemon/publisher.h"
 #include "sim/tracker.h"
 
-/* Simulated samples to work on: 20 s at 500 Hz. */
+/* Simulated samples: 20 s at 500 Hz. */
 enum { SAMPLES = 10000 };
 
 static struct gz_sample *samples;
@@ -45,7 +45,7 @@ static void make(struct gz_message_maker *maker)
 	gz_message_maker_init(maker, &config, &config.pipeline, &display);
 }
 
-/* Whether two batches agree in every byte but for publish_ns, the end of the gaze map. */
+/* Whether two batches agree in every byte except publish_ns, which is the end of the gaze map. */
 static bool same_but_publish_ns(const struct gz_outgoing_batch *a,
 				const struct gz_outgoing_batch *b)
 {
@@ -112,7 +112,7 @@ static void messages_of_the_same_samples_are_the_same_bytes_but_for_publish_ns(v
 	const int first = SAMPLES / 3;
 	make(&live);
 	make(&replayed);
-	/* The live one has run for a while when the recording begins. */
+	/* The live pipeline has been running for a while when the recording begins. */
 	for (int i = 0; i < first; i++)
 		gz_message_maker_step(&live, &samples[i], i, &a);
 	gz_message_maker_reset(&live);
@@ -127,7 +127,7 @@ static void messages_of_the_same_samples_are_the_same_bytes_but_for_publish_ns(v
 static void messages_without_the_reset_would_differ(void **state)
 {
 	(void)state;
-	/* That the comparison above can fail, and that the reset is what it takes. */
+	/* The comparison above can fail, and the reset is necessary for it to pass. */
 	static struct gz_message_maker live, replayed;
 	static struct gz_outgoing_batch a, b;
 	const int first = SAMPLES / 3;
@@ -144,7 +144,7 @@ static void messages_without_the_reset_would_differ(void **state)
 	assert_true(different > 0);
 }
 
-int main(void)
+TEST_SUITE(messages)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(messages_of_a_sample_are_gaze_then_surfaces),

@@ -1,9 +1,9 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
 #include "base/clock.h"
-#include "daemon/rate_meter.h"
+#include "daemon/tracker.h"
 
 static void rate_meter_measures_the_samples_own_times(void **state)
 {
@@ -53,7 +53,7 @@ static void rate_meter_begins_anew_where_time_runs_backwards(void **state)
 	assert_true(rate_hz >= 0 && isfinite(rate_hz));
 }
 
-int main(void)
+TEST_SUITE(rate_meter)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rate_meter_measures_the_samples_own_times),

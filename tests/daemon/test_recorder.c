@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -33,7 +33,7 @@ static void push_sample(struct gz_recorder *recorder, uint64_t seq)
 	gz_recorder_push(recorder, &record);
 }
 
-/* Wait until the state is @p wanted, by the events that tell of changes. */
+/* Wait for events of changes until the state is @p wanted. */
 static void wait_state(struct gz_recorder *recorder, enum gz_recording_state wanted)
 {
 	struct gz_recorder_status status;
@@ -98,7 +98,7 @@ static void recorder_writes_a_whole_log_with_marks(void **state)
 			push_sample(recorder, i);
 		gz_recorder_push(recorder, &mark);
 		gz_recorder_stop(recorder);
-		push_sample(recorder, 5000); /* behind the end */
+		push_sample(recorder, 5000); /* after the end */
 		wait_state(recorder, GZ_RECORDING_OFF);
 		gz_recorder_get_status(recorder, &status);
 		assert_int_equal(status.samples, 5000);
@@ -135,24 +135,24 @@ static void recorder_that_cannot_keep_up_says_what_is_missing(void **state)
 	struct gz_recorder *recorder = NULL;
 	const uint64_t pushed = 5 * GZ_RECORDER_RING;
 	assert_int_equal(gz_recorder_create(NULL, &recorder), GZ_OK);
-	/* A reader that sleeps: a FIFO takes 64 KiB and then nothing until it is read. */
+	/* A reader that does not read: a FIFO accepts 64 KiB and then nothing until it is read. */
 	int ends[2];
 	assert_int_equal(pipe(ends), 0);
 	assert_int_equal(gz_recorder_start(recorder, ends[1], "/tmp/pipe", &header), GZ_OK);
 	for (uint64_t i = 0; i < pushed; i++)
 		push_sample(recorder, i);
-	/* What the tracker itself lost meanwhile is missing, too. */
+	/* Samples that the tracker itself lost meanwhile are missing too. */
 	const uint64_t lost = 7;
 	struct gz_gaze_log_record gap = { .kind = GZ_GAZE_LOG_GAP, .missing = lost };
 	gz_recorder_push(recorder, &gap);
-	/* Now the disk is quick again; the rest comes through. */
+	/* Now the disk is fast again, and the rest is written. */
 	int copy = open_file();
 	char buffer[65536];
 	ssize_t n;
 	bool stopped = false;
 	struct pollfd quiet = { .fd = ends[0], .events = POLLIN };
 	for (;;) {
-		/* Once the pipe has been empty for some drains, the ring is, too. */
+		/* Once the pipe has been empty for several drains, the ring is empty too. */
 		if (!stopped && poll(&quiet, 1, 6 * GZ_RECORDER_DRAIN_MS) == 0) {
 			push_sample(recorder, pushed + lost);
 			gz_recorder_stop(recorder);
@@ -191,7 +191,7 @@ static void recorder_on_a_full_disk_fails_and_leaves_no_empty_file(void **state)
 	assert_non_null(strstr(status.error, "No space left on device"));
 	push_sample(recorder, 0);
 	gz_recorder_stop(recorder);
-	/* And it may be tried again. */
+	/* Another recording can be tried. */
 	assert_int_equal(gz_recorder_start(recorder, open_file(), path, &header), GZ_OK);
 	push_sample(recorder, 0);
 	gz_recorder_destroy(&recorder);
@@ -225,12 +225,12 @@ static void recorder_out_of_room_keeps_whole_lines_and_ends_the_log(void **state
 	assert_true(file.st_size <= 20000 && file.st_size > 19000);
 	assert_true(found.samples > 100);
 	assert_int_equal(found.samples, status.samples);
-	/* The "#end" line takes the place of the line that was cut, where that was longer. */
+	/* The "#end" line replaces the line that was cut, even if that was longer. */
 	assert_true(found.ending == GZ_GAZE_LOG_WHOLE || found.ending == GZ_GAZE_LOG_CUT);
 	unlink(path);
 }
 
-int main(void)
+TEST_SUITE(recorder)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(recorder_writes_a_whole_log_with_marks),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "daemon/recording_name.h"
+#include "daemon/recorder.h"
 #include "protocol/gaze.h"
 
 static char directory[64];
@@ -66,7 +66,7 @@ static void recording_is_private_and_overwrites_nothing(void **state)
 	assert_non_null(strstr(message, "exists; choose another name"));
 	assert_int_equal(create("one.gzl", again, message, sizeof message), GZ_ERR_BUSY);
 	unlink(path);
-	/* Not even through a link that points nowhere yet. */
+	/* Not even through a dangling link. */
 	assert_int_equal(symlink("/tmp/gz_elsewhere", path), 0);
 	assert_int_equal(create("one", again, message, sizeof message), GZ_ERR_BUSY);
 	unlink(path);
@@ -98,7 +98,7 @@ static void recording_of_a_bad_name_or_directory_is_refused(void **state)
 	assert_non_null(strstr(message, "recording.directory"));
 }
 
-int main(void)
+TEST_SUITE(recording_name)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(recording_name_is_letters_digits_dot_underscore_and_dash),

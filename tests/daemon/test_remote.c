@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
@@ -94,7 +94,7 @@ static void remote_doc_names_what_is_obeyed(void **state)
 		assert_non_null(strstr(gz_remote_doc(), words[i]));
 }
 
-int main(void)
+TEST_SUITE(remote)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(remote_letters_are_understood),

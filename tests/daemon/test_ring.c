@@ -1,10 +1,10 @@
-#include "check.h"
+#include "suite.h"
 
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
 
-#include "daemon/ring.h"
+#include "daemon/recorder.h"
 
 static struct gz_gaze_log_record sample(uint64_t seq)
 {
@@ -88,7 +88,7 @@ static void ring_between_two_threads_loses_and_changes_nothing(void **state)
 	gz_ring_destroy(&ring);
 }
 
-int main(void)
+TEST_SUITE(ring)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ring_gives_records_in_order_and_refuses_when_full),

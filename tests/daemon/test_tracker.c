@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -10,9 +10,9 @@
 
 #include "base/clock.h"
 #include "daemon/tracker.h"
-#include "drivers/template/template_protocol.h"
+#include "drivers/template_made.h"
 
-/* The device is the template's: a FIFO that this test writes reports into. */
+/* The device is that of the template driver: a FIFO into which this test writes reports. */
 static const struct gz_driver_host nothing = { 0 };
 
 static char directory[64], path[128];
@@ -48,11 +48,11 @@ static void send_report(int fd, uint32_t counter)
 	struct gz_template_report report = { .counter = counter,
 					     .clock_us = counter * 2000,
 					     .found = { true, true } };
-	gz_template_print(&report, bytes);
+	template_made_report(&report, bytes);
 	assert_int_equal(write(fd, bytes, sizeof bytes), sizeof bytes);
 }
 
-/* Read until the tracker is in @p wanted or a sample comes; what came last. */
+/* Read until the tracker is in state @p wanted or a sample comes. @return the last result */
 static enum gz_result read_until(struct gz_tracker *tracker, enum gz_tracker_state wanted,
 				 struct gz_sample *sample)
 {
@@ -83,7 +83,7 @@ static void tracker_that_vanishes_is_lost_and_returns_with_numbers_going_on(void
 	uint64_t expected = 0;
 	for (int round = 0; round < 2; round++) {
 		assert_int_equal(mkfifo(path, 0600), 0);
-		/* Read and write, so that opening it waits for nobody. */
+		/* Opened for reading and writing, so that opening does not wait. */
 		int fd = open(path, O_RDWR | O_CLOEXEC);
 		assert_true(fd >= 0);
 		for (uint32_t i = 0; i < 3; i++)
@@ -143,10 +143,10 @@ static void tracker_whose_settings_cannot_work_is_refused_at_once(void **state)
 	gz_tracker_close(&tracker);
 }
 
-/* A driver on USB whose device is there when the test says so. */
+/* A driver for USB whose device is there when the test says so. */
 static struct {
 	enum gz_result answer;
-	enum gz_result start; /* what its start answers */
+	enum gz_result start; /* what its start returns */
 	int looks;
 } port;
 
@@ -221,12 +221,13 @@ static void tracker_on_usb_is_looked_for_at_once_when_something_arrives(void **s
 	port.looks = 0;
 	assert_int_equal(gz_tracker_open(&tracker, &port_driver, NULL, &nothing), GZ_OK);
 	gz_tracker_watch(&tracker, fd);
-	/* Long unplugged: the next look would come in an hour. */
+	/* Unplugged for long: the next search would come in an hour. */
 	tracker.pause_ns = GZ_TRACKER_PAUSE_MAX_MS * GZ_NS_PER_MS;
 	tracker.retry_ns = gz_clock_now_ns() + 3600 * GZ_NS_PER_S;
 	assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
 	assert_int_equal(port.looks, 1);
-	/* Something else arrives, or it is not ready yet: one look at once, and more soon. */
+	/* Another device arrives, or this one is not ready yet: one search at once, and more soon.
+	 * */
 	arrive(fd);
 	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_ERR_TIMEOUT);
 	assert_int_equal(port.looks, 2);
@@ -280,7 +281,7 @@ static void count_told(void *user, enum gz_log_level level, const char *module, 
 	told_rule += strstr(message, "install the rule") != NULL;
 	told_plug += strstr(message, "plug it in") != NULL;
 	told_start += strstr(message, "it does not start") != NULL;
-	told_gone += strstr(message, "is gone") != NULL;
+	told_gone += strstr(message, "is lost") != NULL;
 }
 
 static void tracker_that_is_there_and_never_starts_is_told_of_once_until_it_has_delivered(
@@ -330,7 +331,7 @@ static void tracker_that_never_sends_anything_has_a_reason_to_tell(void **state)
 	tracker.arrival_ns -= GZ_TRACKER_SILENCE_MS * GZ_NS_PER_MS;
 	assert_int_equal(gz_tracker_read(&tracker, 1, &sample), GZ_ERR_TIMEOUT);
 	assert_int_equal(tracker.state, GZ_TRACKER_STARTING);
-	assert_non_null(strstr(tracker.reason, "sent nothing"));
+	assert_non_null(strstr(tracker.reason, "no samples yet"));
 	send_report(fd, 0);
 	assert_int_equal(gz_tracker_read(&tracker, 10000, &sample), GZ_OK);
 	assert_string_equal(tracker.reason, "");
@@ -364,7 +365,7 @@ static void why_a_tracker_cannot_be_had_is_told_again_only_where_it_changes(void
 	gz_tracker_close(&tracker);
 }
 
-int main(void)
+TEST_SUITE(tracker)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(tracker_that_vanishes_is_lost_and_returns_with_numbers_going_on),

@@ -1,8 +1,8 @@
-/* What the daemon makes of what a viewer tells of itself. */
-#include "check.h"
+/* How the daemon uses what a viewer reports about itself. */
+#include "suite.h"
 
 #include "base/clock.h"
-#include "daemon/viewer.h"
+#include "daemon/inlet.h"
 
 static const int64_t now_ns = 100 * GZ_NS_PER_S;
 static const int rect_px[4] = { 10, -20, 640, 480 };
@@ -46,10 +46,10 @@ static void log_is_told_of_a_window_when_it_changes(void **state)
 	assert_int_equal(record.kind, GZ_GAZE_LOG_GAP);
 	assert_true(gz_viewer_place_step(&place, other_px, now_ns + 2 * GZ_NS_PER_S, &record));
 	assert_int_equal(record.window_px[0], 11);
-	/* Closed, and opened again at the same place. */
+	/* Closed, and opened again in the same position. */
 	assert_false(gz_viewer_place_step(&place, NULL, now_ns + 2 * GZ_NS_PER_S, &record));
 	assert_true(gz_viewer_place_step(&place, other_px, now_ns + 2 * GZ_NS_PER_S, &record));
-	/* Killed, and begun again. */
+	/* Killed, and started again. */
 	assert_true(gz_viewer_place_step(&place, other_px,
 					 now_ns + 3 * GZ_NS_PER_S + GZ_VIEWER_WINDOW_NS, &record));
 }
@@ -71,7 +71,7 @@ static void recording_begins_with_the_window_that_is_there(void **state)
 	assert_false(gz_viewer_place_at_start(&place, now_ns, &record));
 }
 
-int main(void)
+TEST_SUITE(viewer)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(time_of_the_sender_counts_where_it_can_be),

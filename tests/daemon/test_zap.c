@@ -1,10 +1,10 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <zmq.h>
 
-#include "daemon/zap.h"
+#include "daemon/admission.h"
 
 static const unsigned char key[32] = { 1, 2, 3, 255 };
 
@@ -47,7 +47,7 @@ static void zap_request_cut_anywhere_is_refused(void **state)
 		enum gz_result result = gz_zap_parse(frames, count, &request);
 		if ((result == GZ_OK) != (count == GZ_ZAP_FRAMES))
 			fail_msg("%zu frames: %d", count, result);
-		/* An answer is owed as soon as there is an id. */
+		/* As soon as there is an id, a reply is owed. */
 		assert_int_equal(request.id_size, count > 1 ? 1 : 0);
 	}
 }
@@ -112,7 +112,7 @@ static void zap_address_is_cut_and_cannot_steer_a_terminal(void **state)
 	assert_string_equal(request.address, "?");
 }
 
-int main(void)
+TEST_SUITE(zap)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(zap_request_tells_address_and_key),

@@ -16,7 +16,8 @@
 
 #if COUNTS
 
-/* A program's own functions come before the C library's, which has these names for them. */
+/* The linker prefers functions of the program to those of the C library, which also has them under
+ * these names. */
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *old, size_t size);

@@ -1,12 +1,11 @@
-/* base/clock.h with a clock that stands still but for sleeping: tests that link this take no time.
- */
+/* base/clock.h with a clock that only sleeping advances: tests that link this file take no time. */
 #include "base/clock.h"
 
 static int64_t now_ns = 1000 * GZ_NS_PER_S;
 
 int64_t gz_clock_now_ns(void)
 {
-	/* Never twice the same, so that who polls gets on. */
+	/* Advances a little, so that a caller that polls makes progress. */
 	return now_ns++;
 }
 

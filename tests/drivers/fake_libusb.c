@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "check.h"
+#include "suite.h"
 
-/* Transfers that may be in flight at once. */
+/* Most transfers in flight. */
 enum { FLIGHTS_MAX = 32, PACKET_MAX = 1024 };
 
 struct libusb_context {
@@ -115,7 +115,7 @@ int libusb_get_device_descriptor(libusb_device *device, struct libusb_device_des
 	return LIBUSB_SUCCESS;
 }
 
-/* A bus that no machine has, so that sysfs says nothing of it. */
+/* A bus that no machine has, so that sysfs has no entry for it. */
 uint8_t libusb_get_bus_number(libusb_device *device)
 {
 	(void)device;
@@ -256,7 +256,7 @@ int libusb_control_transfer(libusb_device_handle *handle, uint8_t type, uint8_t 
 	return length;
 }
 
-/* Give the transfer at @p index back. */
+/* Complete the transfer at @p index. */
 static void complete(int index, enum libusb_transfer_status status, const unsigned char *bytes,
 		     size_t size)
 {
@@ -277,7 +277,7 @@ static void complete(int index, enum libusb_transfer_status status, const unsign
 	transfer->callback(transfer);
 }
 
-/* Whatever can be given back without the device. */
+/* Complete one transfer that does not need the device. */
 static bool complete_ended(void)
 {
 	for (int i = 0; i < flight_count; i++) {
@@ -315,7 +315,7 @@ static bool complete_scripted(void)
 	return true;
 }
 
-/* The device that plays by itself: wait for its next packet, or until the time is up. */
+/* Wait for the next packet of a device that sends by itself, or until the time is up. */
 static void play(int64_t deadline_ns)
 {
 	unsigned char bytes[PACKET_MAX];
@@ -341,7 +341,7 @@ int libusb_handle_events_timeout_completed(libusb_context *context, struct timev
 	bool any = false;
 	while (complete_ended())
 		any = true;
-	/* Several at once, as the library does. */
+	/* Complete several at once, as the library does. */
 	for (int i = 0; i < (fake_usb.at_once ? fake_usb.at_once : 3) && complete_scripted(); i++)
 		any = true;
 	if (!any)

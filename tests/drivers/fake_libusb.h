@@ -1,7 +1,7 @@
 /**
  * @file
- * libusb as far as our drivers use it, played by a test. A program that links this file has these
- * functions in place of the library's. Time is that of base/clock.h, which a test may play, too
+ * A fake libusb with the functions that our drivers use. A program that links this file has them in
+ * place of those of the library. Time is that of base/clock.h, which a test may replace, too
  * (fake_clock.c).
  */
 #ifndef GZ_TESTS_DRIVERS_FAKE_LIBUSB_H
@@ -12,47 +12,47 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Most devices, and most completions that wait to be delivered. */
+/** Most devices, and most completions in the script. */
 enum { FAKE_USB_DEVICES_MAX = 4, FAKE_USB_SCRIPT_MAX = 512 };
 
 /** One device. */
 struct fake_usb_device {
 	uint16_t vendor, product;
-	int open_error, claim_error; /**< 0, or what libusb answers */
+	int open_error, claim_error; /**< 0, or the error that libusb returns */
 };
 
-/** The bus and what happens on it. Zero-initialised is an empty one. */
+/** The bus and what happens on it. Zero-initialised is an empty bus. */
 struct fake_usb {
 	struct fake_usb_device devices[FAKE_USB_DEVICES_MAX];
 	int device_count;
-	bool unplugged; /**< whatever is in flight comes back so */
+	bool unplugged; /**< all transfers in flight complete with LIBUSB_TRANSFER_NO_DEVICE */
 	int init_error;
-	int control_error; /**< of the next synchronous control transfers */
+	int control_error; /**< result of the next synchronous control transfers */
 	int clear_error;
-	int at_once; /**< completions of one wait; 0 for 3 */
-	/** A device that answers each wait: a packet every so often; NULL for the script alone. */
+	int at_once; /**< completions for each wait; 0 means 3 */
+	/** A device that sends a packet every period_ns; NULL: only the script. */
 	size_t (*packet)(void *user, unsigned char *bytes, size_t room);
 	void *user;
 	int64_t period_ns, due_ns;
-	/* What was asked of it. */
+	/* What the driver did. */
 	int submitted, in_flight, most_in_flight;
-	int switched_on, switched_off; /**< requests, of either kind */
+	int switched_on, switched_off; /**< requests, synchronous or not */
 	int halts_cleared;
-	int contexts, handles, claims, transfers; /**< now open; all 0 at the end */
+	int contexts, handles, claims, transfers; /**< open now; all 0 at the end */
 };
 
 extern struct fake_usb fake_usb;
 
-/** An empty bus again. */
+/** Empty the bus. */
 void fake_usb_reset(void);
 
-/** Plug in a device; 0 is its place in fake_usb.devices. */
+/** Plug in a device; the first one is fake_usb.devices[0]. */
 struct fake_usb_device *fake_usb_plug(uint16_t vendor, uint16_t product);
 
-/** Let a bulk transfer come back with @p bytes, in the order of these calls. */
+/** Append to the script: a bulk transfer completes with @p bytes. */
 void fake_usb_deliver(const unsigned char *bytes, size_t size);
 
-/** Let a bulk transfer come back as @p status, with nothing in it. */
+/** Append to the script: a bulk transfer completes with @p status and no data. */
 void fake_usb_fail(enum libusb_transfer_status status);
 
 #endif

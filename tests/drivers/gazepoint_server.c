@@ -1,6 +1,6 @@
 #include "gazepoint_server.h"
 
-#include "check.h"
+#include "suite.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -12,12 +12,12 @@
 
 #include "base/clock.h"
 
-/* One client at a time. */
+/* A client; there is one at a time. */
 struct client {
 	struct gazepoint_server *server;
 	int fd;
 	bool streaming;
-	bool scripted; /* the script was sent */
+	bool scripted; /* the script has been sent */
 	char line[512];
 	size_t filled;
 	long count;
@@ -43,7 +43,7 @@ static bool send_text(const struct client *client, const char *text)
 	return send_all(client, text, strlen(text));
 }
 
-/* The ID of "<GET ID="THIS" />". */
+/* The ID in "<GET ID="THIS" />". */
 static void id_of(const char *line, char *id, size_t size)
 {
 	const char *begin = strstr(line, "ID=\"");
@@ -92,7 +92,7 @@ static bool take_commands(struct client *client)
 	return client->filled < sizeof client->line - 1;
 }
 
-/* A record as the tracker sends it. Every 50th is missing, every 70th damaged. */
+/* Send a record as the tracker does. Every 50th is missing, every 70th damaged. */
 static bool send_record(struct client *client)
 {
 	char text[640];

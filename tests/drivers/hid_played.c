@@ -24,7 +24,7 @@ struct played {
 	enum gz_result access;
 	struct feature features[256];
 	int times_set;
-	int fd; /* the device's end; -1 while nobody has it open */
+	int fd; /* end of the device; -1 while it is not open */
 };
 
 struct gz_hid_port {
@@ -161,7 +161,7 @@ enum gz_result gz_hid_port_open(const char *path, struct gz_hid_port **out_port)
 	if (!device || device->access != GZ_OK)
 		return device ? device->access : GZ_ERR_NO_DEVICE;
 	struct gz_hid_port *port = malloc(sizeof *port);
-	/* Keeps the limits of reports, as the device node does. */
+	/* Keeps report boundaries, as the device node does. */
 	if (!port || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
 		free(port);
 		return GZ_ERR_NO_MEM;

@@ -1,8 +1,8 @@
 /**
  * @file
- * HID devices played in this process: linked in place of drivers/hid/hid_port.c, so that the whole
- * driver above it runs against them. Thread-safe where a test plays a device while the driver reads
- * it.
+ * Fake HID devices in this process: linked in place of drivers/hid/hid_port.c, so that the driver
+ * above it runs unchanged. Thread-safe, for tests that send on another thread than the driver
+ * reads.
  */
 #ifndef GZ_TESTS_DRIVERS_HID_PLAYED_H
 #define GZ_TESTS_DRIVERS_HID_PLAYED_H
@@ -19,25 +19,26 @@ enum { HID_PLAYED_MAX = 4, HID_PLAYED_FEATURE_SIZE = 64 };
 int hid_played_plug(const char *name, const char *serial, const unsigned char *descriptor,
 		    size_t size);
 
-/** Pull a device out; an open one reads as gone. */
+/** Unplug a device. If it is open, reading it reports that it is gone. */
 void hid_played_unplug(int number);
 
-/** Pull all out and forget what they held. */
+/** Unplug all devices and forget their reports. */
 void hid_played_reset(void);
 
-/** What opening it answers; GZ_OK after plugging. */
+/** Set the result of opening the device; GZ_OK after plugging in. */
 void hid_played_set_access(int number, enum gz_result result);
 
-/** What a feature report answers from now on, its ID first; size 0: nothing any more. */
+/** Set a feature report, beginning with its ID. Size 0: the device no longer answers requests for
+ * it. */
 void hid_played_set_feature(int number, uint8_t id, const unsigned char *bytes, size_t size);
 
-/** The same read back: also what the driver has set. @return bytes, 0 if there is none */
+/** Get a feature report, also one that the driver has set. @return bytes, 0 if there is none */
 size_t hid_played_get_feature(int number, uint8_t id, unsigned char *out_bytes);
 
 /** How often the driver has set a feature report. */
 int hid_played_times_set(int number);
 
-/** Send an input report. @return whether somebody has it open and has room, some 200 reports */
+/** Send an input report. @return whether the device is open and has room; some 200 reports fit */
 bool hid_played_send(int number, const unsigned char *bytes, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
 /**
  * @file
- * Gaze logs on disk for tests that play them.
+ * Makes gaze logs on disk for tests.
  */
 #ifndef GZ_TESTS_DRIVERS_MADE_LOG_H
 #define GZ_TESTS_DRIVERS_MADE_LOG_H
@@ -23,7 +23,7 @@ static inline void made_log_write(struct made_log *made, const char *text, size_
 	fwrite(text, 1, length, made->file);
 }
 
-/** Begin a log at @p path with a header; whether that worked. */
+/** Begin a log at @p path with a header. @return whether that worked */
 static inline bool made_log_begin(struct made_log *made, const char *path)
 {
 	static char text[16384];

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "pupil_capture.h"
 
@@ -44,7 +44,7 @@ void pupil_capture_point(uint64_t sample, double out_xy[2])
 	out_xy[1] = 0.75 - (double)(sample % 32) / 128;
 }
 
-/* An eye's pupil with the keys of Pupil's 3D detector. */
+/* The pupil of an eye, with the keys of Pupil's 3D detector. */
 static void pupil(msgpack_packer *packer, int id, double time_s)
 {
 	static const double nowhere[3] = { 0, 0, 0 };
@@ -102,7 +102,8 @@ static void gaze(msgpack_packer *packer, const char *topic, uint64_t sample, dou
 		pupil(packer, 1, time_s);
 }
 
-/* The newest samples, on a surface: at half their place, so that the two are told apart. */
+/* The newest samples on a surface, at half their coordinates, so that tests can tell the two kinds
+ * apart. */
 static void surface(msgpack_packer *packer, const char *name, const char *topic, uint64_t newest,
 		    const double *times_s)
 {
@@ -136,8 +137,8 @@ static void publish(struct pupil_capture *capture, const char *topic, const void
 	}
 }
 
-/* One of each kind: none, cut, not MessagePack, claims, no gaze, a text for a number, too many
- * frames, one frame. */
+/* One message of each bad kind: empty, cut, not MessagePack, a claimed length, no gaze, a text
+ * instead of a number, too many frames, a single frame. */
 static void send_garbage(struct pupil_capture *capture, const char *good, size_t size)
 {
 	publish(capture, "gaze.3d.01.", "", 0);
@@ -192,7 +193,7 @@ static void answer(struct pupil_capture *capture)
 		return;
 	request[size < 63 ? size : 63] = '\0';
 	if (atomic_load(&capture->deaf))
-		return; /* and a REP that owes an answer takes no more */
+		return; /* a REP socket that has not answered accepts no further request */
 	if (strcmp(request, "SUB_PORT") == 0 && capture->port_answer)
 		snprintf(reply, sizeof reply, "%s", capture->port_answer);
 	else if (strcmp(request, "SUB_PORT") == 0)
@@ -214,7 +215,7 @@ static void *play(void *user)
 		zmq_pollitem_t item = { .socket = capture->control, .events = ZMQ_POLLIN };
 		int64_t left_ns = next_ns - gz_clock_now_ns();
 		if (left_ns > 0) {
-			/* Never asleep: requests shall be answered at once. */
+			/* Always poll, so that requests are answered at once. */
 			zmq_poll(&item, 1, (long)(left_ns / GZ_NS_PER_MS) + 1);
 			if (item.revents)
 				answer(capture);

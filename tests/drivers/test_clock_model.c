@@ -1,17 +1,17 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "drivers/clock_model.h"
+#include "drivers/device/clock_model.h"
 
-/* A device and the link behind it, as the host sees them. */
+/* A device and its link, as the host sees them. */
 struct link {
 	double skew;       /* device clock over host clock */
 	int64_t offset_ns; /* device time at host time 0 */
-	int64_t delay_ns;  /* constant */
-	double jitter_ns;  /* mean of what is added at random */
+	int64_t delay_ns;  /* constant part of the delay */
+	double jitter_ns;  /* mean of the random part of the delay */
 	uint64_t random;
 };
 
@@ -33,10 +33,10 @@ static int64_t arrival(struct link *link, int64_t host_ns)
 }
 
 struct errors {
-	double worst_ns; /* after the first 3 s, against exposure plus constant delay */
+	double worst_ns; /* after the first 3 s, relative to exposure plus constant delay */
 	int jumps;
 	int backwards;
-	int late; /* answers after the arrival */
+	int late; /* answers later than the arrival */
 };
 
 static struct errors run_link(struct gz_clock_model *model, struct link *link, double rate_hz,
@@ -103,7 +103,7 @@ static void clock_model_exact_link_is_followed_exactly(void **state)
 	assert_true(status.sigma_ns < 1 && fabs(status.skew_ppm) < 0.01);
 }
 
-static void clock_model_begins_anew_where_the_device_clock_jumps(void **state)
+static void clock_model_restarts_when_the_device_clock_jumps(void **state)
 {
 	(void)state;
 	const int64_t jumps_ns[] = { -5 * GZ_NS_PER_S, 3600 * GZ_NS_PER_S, -1, 100000000,
@@ -117,7 +117,7 @@ static void clock_model_begins_anew_where_the_device_clock_jumps(void **state)
 			int64_t device_ns = k * GZ_NS_PER_MS + (k >= 5000 ? jumps_ns[i] : 0);
 			bool jumped;
 			if (jumps_ns[i] == -1 && k == 5000)
-				device_ns = 4999 * GZ_NS_PER_MS; /* the same time again */
+				device_ns = 4999 * GZ_NS_PER_MS; /* repeats the time */
 			int64_t answer_ns =
 				gz_clock_model_step(&model, device_ns, host_ns + 500000, &jumped);
 			jumps += jumped;
@@ -136,7 +136,8 @@ static void clock_model_small_step_back_of_the_device_is_a_jump_once_it_lasts(vo
 	(void)state;
 	struct gz_clock_model model = { 0 };
 	int jumps = 0;
-	/* The device loses 0.3 s between two samples: everything seems late from then on. */
+	/* The device clock loses 0.3 s between two samples: from then on every sample seems late.
+	 */
 	for (int k = 0; k < 4000; k++) {
 		int64_t arrival_ns = k * GZ_NS_PER_MS + (k >= 2000 ? 300 * GZ_NS_PER_MS : 0);
 		bool jumped;
@@ -163,7 +164,7 @@ static void clock_model_burst_after_a_stall_keeps_the_device_times(void **state)
 	}
 }
 
-static void clock_model_takes_any_times(void **state)
+static void clock_model_accepts_any_times(void **state)
 {
 	(void)state;
 	static const int64_t times[] = { 0, 1, -1, INT64_MAX, INT64_MIN, INT64_MAX - 1, 42 };
@@ -178,7 +179,7 @@ static void clock_model_takes_any_times(void **state)
 	gz_clock_model_status(&model, GZ_CLOCK_NONE);
 }
 
-static void clock_unwrap_goes_on_over_a_wrap_and_a_little_back(void **state)
+static void clock_unwrap_follows_wraps_and_small_steps_back(void **state)
 {
 	(void)state;
 	assert_int_equal(gz_clock_unwrap32(0, 5), 5);
@@ -188,16 +189,16 @@ static void clock_unwrap_goes_on_over_a_wrap_and_a_little_back(void **state)
 	assert_int_equal(gz_clock_unwrap32(5, 0xfffffff0), 0xfffffff0);
 }
 
-int main(void)
+TEST_SUITE(clock_model)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(clock_model_follows_offset_and_skew_through_jitter),
 		cmocka_unit_test(clock_model_exact_link_is_followed_exactly),
-		cmocka_unit_test(clock_model_begins_anew_where_the_device_clock_jumps),
+		cmocka_unit_test(clock_model_restarts_when_the_device_clock_jumps),
 		cmocka_unit_test(clock_model_small_step_back_of_the_device_is_a_jump_once_it_lasts),
 		cmocka_unit_test(clock_model_burst_after_a_stall_keeps_the_device_times),
-		cmocka_unit_test(clock_model_takes_any_times),
-		cmocka_unit_test(clock_unwrap_goes_on_over_a_wrap_and_a_little_back),
+		cmocka_unit_test(clock_model_accepts_any_times),
+		cmocka_unit_test(clock_unwrap_follows_wraps_and_small_steps_back),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

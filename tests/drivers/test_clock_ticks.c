@@ -1,14 +1,14 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
 #include "base/clock.h"
-#include "drivers/clock_ticks.h"
+#include "drivers/device/clock_ticks.h"
 
-/* A device: its counter, how often it sends, and how late that arrives. */
+/* A device: its counter, its sample rate, and the delay of its samples. */
 struct device {
 	double tick_ns;
-	double step_ns; /* of its clock; 0: none beyond the tick */
+	double step_ns; /* step of its clock; 0: one tick */
 	uint64_t start;
 	unsigned bits;
 	double rate_hz;
@@ -19,7 +19,8 @@ struct device {
 struct outcome {
 	struct gz_clock_ticks ticks;
 	int findings[GZ_CLOCK_FOUND_JUMP + 1];
-	double worst_ns; /* of the last half, against exposure and the least delay */
+	double worst_ns; /* largest error in the last half, relative to exposure plus the least
+			    delay */
 	int backwards;
 	int late;
 };
@@ -92,7 +93,7 @@ static void ticks_as_declared_are_believed_at_any_rate(void **state)
 	}
 }
 
-static void ticks_of_another_worth_than_declared_are_estimated(void **state)
+static void ticks_of_another_length_than_declared_are_estimated(void **state)
 {
 	(void)state;
 	static const struct {
@@ -100,11 +101,11 @@ static void ticks_of_another_worth_than_declared_are_estimated(void **state)
 	} cases[] = {
 		{ 100, 1000, 100 },                     /* a performance counter of 10 MHz */
 		{ 1e6, 1000, 1e6 },                     /* milliseconds */
-		{ 1000, 100, 1000 },                    /* and the other way round */
-		{ 1000, 0, 1000 },                      /* no unit at all */
+		{ 1000, 100, 1000 },                    /* the reverse */
+		{ 1000, 0, 1000 },                      /* no unit */
 		{ 1, 1000, 1 },                         /* nanoseconds */
 		{ 1e9 / 3579545, 1000, 1e9 / 3579545 }, /* the ACPI timer */
-		{ 100.5, 0, 100 },                      /* what is left over is skew */
+		{ 100.5, 0, 100 },                      /* the rest is skew */
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		struct device device = { cases[i].tick_ns, 0, 77, 64, 120, 300e3, 1 };
@@ -120,15 +121,16 @@ static void ticks_of_another_worth_than_declared_are_estimated(void **state)
 	}
 }
 
-static void ticks_that_are_too_coarse_give_way_to_the_arrival(void **state)
+static void ticks_that_are_too_coarse_are_replaced_by_the_arrival(void **state)
 {
 	(void)state;
 	static const struct {
 		double tick_ns, step_ns, rate_hz, declared_ns;
 	} cases[] = {
-		{ 1000, 15.625e6, 60, 1000 },  /* Windows' clock, a little finer than the samples */
-		{ 1000, 15.625e6, 250, 1000 }, /* and coarser */
-		{ 1e7, 0, 250, 1e7 },          { 1000, 1e15, 60, 1000 }, /* it stands */
+		{ 1000, 15.625e6, 60, 1000 },  /* the Windows clock; its steps are slightly shorter
+						  than the sample period */
+		{ 1000, 15.625e6, 250, 1000 }, /* its steps are longer */
+		{ 1e7, 0, 250, 1e7 },          { 1000, 1e15, 60, 1000 }, /* it stands still */
 		{ 100, 15.625e6, 90, 0 },
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -145,10 +147,10 @@ static void ticks_that_are_too_coarse_give_way_to_the_arrival(void **state)
 	}
 }
 
-static void ticks_that_count_samples_are_no_coarse_clock(void **state)
+static void ticks_that_count_samples_are_not_a_coarse_clock(void **state)
 {
 	(void)state;
-	/* A camera at 60 Hz that counts its frames, by a step of 16.7 ms. */
+	/* A 60 Hz camera that counts its frames: a step of 16.7 ms. */
 	struct device device = { 1e9 / 60, 0, 0, 32, 60, 300e3, 1 };
 	device.start = 5;
 	struct outcome outcome = run(&device, 0, 12);
@@ -168,12 +170,12 @@ static void ticks_that_count_samples_are_no_coarse_clock(void **state)
 	assert_true(fabs(ticks.tick_ns / (1e9 / 60) - 1) < 1e-3);
 }
 
-static void ticks_wrap_at_their_bits_without_a_jump(void **state)
+static void ticks_wrap_without_a_jump(void **state)
 {
 	(void)state;
 	const unsigned bits[] = { 16, 24, 32, 48, 63, 64 };
 	for (size_t i = 0; i < sizeof bits / sizeof *bits; i++) {
-		/* 16 bits of 1 ms wrap after 65 s, so begin just before the end. */
+		/* A 16-bit counter of 1 ms wraps after 65 s, so start just before the wrap. */
 		double tick_ns = bits[i] == 16 ? 1e6 : 1e3;
 		uint64_t start =
 			bits[i] == 64 ? INT64_MAX - 4000000 : (UINT64_C(1) << bits[i]) - 4000;
@@ -183,7 +185,7 @@ static void ticks_wrap_at_their_bits_without_a_jump(void **state)
 			expect_finding(&outcome, GZ_CLOCK_FOUND_DECLARED);
 			assert_true(outcome.worst_ns < 2e6);
 		}
-		/* Of 2^63 us no device time can be told, but host time goes on. */
+		/* A counter of 2^63 us has no device time, but host time continues. */
 		assert_int_equal(outcome.backwards, 0);
 		assert_int_equal(outcome.late, 0);
 	}
@@ -200,7 +202,7 @@ static void ticks_device_time_is_the_devices_own(void **state)
 			&ticks, (uint64_t)device_us, (int64_t)1e12 + i * INT64_C(8333000));
 		assert_int_equal(stamp.device_ns, device_us * 1000);
 	}
-	/* Without a tick there is none. */
+	/* Without a tick there is no device time. */
 	gz_clock_ticks_init(&ticks, 64, 0);
 	struct gz_clock_stamp stamp = gz_clock_ticks_step(&ticks, 5, 7);
 	assert_int_equal(stamp.device_ns, GZ_NO_DEVICE_TIME);
@@ -208,7 +210,7 @@ static void ticks_device_time_is_the_devices_own(void **state)
 	assert_int_equal(gz_clock_ticks_status(&ticks).tick, GZ_CLOCK_NONE);
 }
 
-static void ticks_jump_is_told_once_and_host_time_goes_on(void **state)
+static void ticks_jump_is_reported_once_and_host_time_continues(void **state)
 {
 	(void)state;
 	const int64_t jumps_us[] = { -4000000, 7200000000, -10 };
@@ -220,7 +222,7 @@ static void ticks_jump_is_told_once_and_host_time_goes_on(void **state)
 		for (int k = 0; k < 1000; k++) {
 			int64_t ns = INT64_C(1000000000000) + k * INT64_C(4000000);
 			int64_t device_us = ns / 1000 + (k >= 500 ? jumps_us[i] : 0);
-			/* Ten us less than the last one: the device stepped back. */
+			/* 10 us less than the last one: the device clock stepped back. */
 			if (jumps_us[i] == -10 && k == 500)
 				device_us = ns / 1000 - 4010;
 			struct gz_clock_stamp stamp =
@@ -254,7 +256,7 @@ static void ticks_survive_gaps_and_a_stalled_host(void **state)
 	assert_int_equal(told, 1);
 }
 
-static void ticks_take_any_counters_and_times(void **state)
+static void ticks_accept_any_counters_and_times(void **state)
 {
 	(void)state;
 	static const uint64_t counters[] = {
@@ -278,18 +280,18 @@ static void ticks_take_any_counters_and_times(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(clock_ticks)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ticks_as_declared_are_believed_at_any_rate),
-		cmocka_unit_test(ticks_of_another_worth_than_declared_are_estimated),
-		cmocka_unit_test(ticks_that_are_too_coarse_give_way_to_the_arrival),
-		cmocka_unit_test(ticks_that_count_samples_are_no_coarse_clock),
-		cmocka_unit_test(ticks_wrap_at_their_bits_without_a_jump),
+		cmocka_unit_test(ticks_of_another_length_than_declared_are_estimated),
+		cmocka_unit_test(ticks_that_are_too_coarse_are_replaced_by_the_arrival),
+		cmocka_unit_test(ticks_that_count_samples_are_not_a_coarse_clock),
+		cmocka_unit_test(ticks_wrap_without_a_jump),
 		cmocka_unit_test(ticks_device_time_is_the_devices_own),
-		cmocka_unit_test(ticks_jump_is_told_once_and_host_time_goes_on),
+		cmocka_unit_test(ticks_jump_is_reported_once_and_host_time_continues),
 		cmocka_unit_test(ticks_survive_gaps_and_a_stalled_host),
-		cmocka_unit_test(ticks_take_any_counters_and_times),
+		cmocka_unit_test(ticks_accept_any_counters_and_times),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

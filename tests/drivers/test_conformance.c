@@ -1,5 +1,5 @@
-/* What every driver must do, asked of every entry of gz_drivers[]. */
-#include "check.h"
+/* What every driver of gz_drivers[] must do. */
+#include "suite.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -15,69 +15,53 @@
 
 #include "allocations.h"
 #include "base/clock.h"
-#include "drivers/driver.h"
-#include "drivers/pointer/pointer_feed.h"
+#include "driver_stage.h"
+#include "drivers/pointer/pointer_driver.h"
 #include "drivers/psvr2/psvr2_link.h"
-#include "drivers/psvr2/psvr2_packet.h"
-#include "drivers/template/template_protocol.h"
 #include "fake_libusb.h"
 #include "gazepoint_server.h"
 #include "hid_made.h"
 #include "hid_played.h"
 #include "made_log.h"
+#include "psvr2_made.h"
 #include "pupil_capture.h"
+#include "template_made.h"
 #include "tobii_stand_in.h"
 
-/* Samples read of each driver. */
+/* Samples read from each driver. */
 enum { SAMPLES = 200 };
-
-/* Patience for one sample, ms; a device that is there never needs it. */
-enum { PATIENCE_MS = 5000 };
 
 static char directory[64];
 
-/* What a driver needs so that a device is there: options, and someone who plays the device. */
-struct stage {
-	const struct gz_driver *driver;
-	_Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
+/* A driver and what it needs to find a device: options, and a thread that plays the device. */
+struct played {
+	struct driver_stage stage;
 	char path[128];
 	pthread_t player;
 	bool has_player;
 	atomic_bool quit;
 	struct gazepoint_server server;
 	bool has_server;
-	int number; /* of the played HID device */
+	int number; /* of the fake HID device */
 	bool plays_hid;
 	struct pupil_capture capture;
-	struct gz_driver_host host;
 };
 
-static void set_option(struct stage *stage, const char *key, const char *text)
-{
-	struct gz_option_binding binding = { stage->driver->options, *stage->driver->option_count,
-					     stage->settings, NULL };
-	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
-	char message[256] = "";
-	assert_non_null(option);
-	if (gz_option_parse(option, text, stage->settings, message, sizeof message) != GZ_OK)
-		fail_msg("%s: %s", key, message);
-}
-
-/* Plays the template's device at 500 Hz. Every 50th report is lost, every 70th is damaged. */
+/* Play the device of the template at 500 Hz. Every 50th report is lost, every 70th is damaged. */
 static void *play_template(void *user)
 {
-	struct stage *stage = user;
-	int fd = open(stage->path, O_WRONLY | O_CLOEXEC);
+	struct played *played = user;
+	int fd = open(played->path, O_WRONLY | O_CLOEXEC);
 	int64_t begin_ns = gz_clock_now_ns();
-	for (uint32_t i = 0; fd >= 0 && !atomic_load(&stage->quit); i++) {
+	for (uint32_t i = 0; fd >= 0 && !atomic_load(&played->quit); i++) {
 		struct gz_template_report report = {
 			.counter = i,
-			.clock_us = UINT32_MAX - 100000 + 2000 * i, /* wraps on the way */
+			.clock_us = UINT32_MAX - 100000 + 2000 * i, /* wraps during the test */
 			.found = { true, i % 3 != 0 },
 			.point = { { 0.4f, 0.5f }, { 0.6f, 0.5f } },
 		};
 		unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
-		gz_template_print(&report, bytes);
+		template_made_report(&report, bytes);
 		if (i % 70 == 69)
 			bytes[5] ^= 0xff;
 		gz_clock_sleep_until_ns(begin_ns + (int64_t)i * 2 * GZ_NS_PER_MS);
@@ -89,47 +73,47 @@ static void *play_template(void *user)
 	return NULL;
 }
 
-static void prepare_replay(struct stage *stage)
+static void prepare_replay(struct played *played)
 {
 	struct made_log made;
-	snprintf(stage->path, sizeof stage->path, "%s/made.gzl", directory);
-	assert_true(made_log_begin(&made, stage->path));
+	snprintf(played->path, sizeof played->path, "%s/made.gzl", directory);
+	assert_true(made_log_begin(&made, played->path));
 	for (uint64_t i = 0; i < 10 * SAMPLES; i++)
 		made_log_sample(&made, i, (int64_t)i * 2 * GZ_NS_PER_MS);
 	made_log_end(&made);
-	set_option(stage, "replay.file", stage->path);
+	stage_set(&played->stage, "replay.file", played->path);
 }
 
-static void prepare_template(struct stage *stage)
+static void prepare_template(struct played *played)
 {
-	snprintf(stage->path, sizeof stage->path, "%s/fifo", directory);
-	unlink(stage->path);
-	assert_int_equal(mkfifo(stage->path, 0600), 0);
-	set_option(stage, "template.path", stage->path);
-	atomic_store(&stage->quit, false);
-	assert_int_equal(pthread_create(&stage->player, NULL, play_template, stage), 0);
-	stage->has_player = true;
+	snprintf(played->path, sizeof played->path, "%s/fifo", directory);
+	unlink(played->path);
+	assert_int_equal(mkfifo(played->path, 0600), 0);
+	stage_set(&played->stage, "template.path", played->path);
+	atomic_store(&played->quit, false);
+	assert_int_equal(pthread_create(&played->player, NULL, play_template, played), 0);
+	played->has_player = true;
 }
 
-static void prepare_gazepoint(struct stage *stage)
+static void prepare_gazepoint(struct played *played)
 {
 	char port[16];
-	gazepoint_server_start(&stage->server, &(struct gazepoint_play) { .stream = true }, 0);
-	snprintf(port, sizeof port, "%d", stage->server.port);
-	set_option(stage, "gazepoint.port", port);
-	stage->has_server = true;
+	gazepoint_server_start(&played->server, &(struct gazepoint_play) { .stream = true }, 0);
+	snprintf(port, sizeof port, "%d", played->server.port);
+	stage_set(&played->stage, "gazepoint.port", port);
+	played->has_server = true;
 }
 
 /* Sends good and bad messages, each twice. */
-static void prepare_pupil(struct stage *stage)
+static void prepare_pupil(struct played *played)
 {
-	atomic_store(&stage->capture.garbage, true);
-	atomic_store(&stage->capture.twice, true);
-	pupil_capture_start(&stage->capture);
-	set_option(stage, "pupil.address", stage->capture.address);
+	atomic_store(&played->capture.garbage, true);
+	atomic_store(&played->capture.twice, true);
+	pupil_capture_start(&played->capture);
+	stage_set(&played->stage, "pupil.address", played->capture.address);
 }
 
-/* Plays a headset at 500 Hz. Every 50th packet is lost, every 70th is damaged. */
+/* Play a headset at 500 Hz. Every 50th packet is lost, every 70th is damaged. */
 static size_t play_psvr2(void *user, unsigned char *bytes, size_t room)
 {
 	uint32_t *frame = user;
@@ -139,7 +123,7 @@ static size_t play_psvr2(void *user, unsigned char *bytes, size_t room)
 		.combined = { true, true, { 0 }, { 0, 0, 1 } },
 	};
 	assert_true(room >= GZ_PSVR2_PACKET_SIZE);
-	gz_psvr2_print(&packet, bytes);
+	psvr2_made_packet(&packet, bytes);
 	if (*frame % 70 == 69)
 		bytes[0] ^= 0xff;
 	return (*frame)++ % 50 == 49 ? 0 : GZ_PSVR2_PACKET_SIZE;
@@ -148,7 +132,7 @@ static size_t play_psvr2(void *user, unsigned char *bytes, size_t room)
 static void prepare_psvr2(void)
 {
 	static uint32_t frame;
-	frame = UINT32_MAX - 100; /* wraps on the way */
+	frame = UINT32_MAX - 100; /* wraps during the test */
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
 	fake_usb.packet = play_psvr2;
 	fake_usb.user = &frame;
@@ -156,12 +140,12 @@ static void prepare_psvr2(void)
 	fake_usb.due_ns = gz_clock_now_ns();
 }
 
-/* Plays a tracker of the HID class at 500 Hz whose clock wraps. Every 70th report is cut. */
+/* Play a HID tracker at 500 Hz whose clock wraps. Every 70th report is cut. */
 static void *play_hid(void *user)
 {
-	struct stage *stage = user;
+	struct played *played = user;
 	int64_t begin_ns = gz_clock_now_ns();
-	for (uint32_t i = 0; !atomic_load(&stage->quit); i++) {
+	for (uint32_t i = 0; !atomic_load(&played->quit); i++) {
 		struct hid_made_sample sample = {
 			.time_us = UINT32_MAX - 100000 + 2000 * (uint64_t)i,
 			.gaze = { 100000 + (int32_t)i, 50000 },
@@ -169,41 +153,41 @@ static void *play_hid(void *user)
 			.right = { 130000, 60000, 600000 },
 		};
 		unsigned char bytes[128];
-		size_t size = hid_made_report(HID_LAYOUT_BYTES, &sample, bytes);
+		size_t size = hid_made_report(HID_LAYOUT_REFERENCE, &sample, bytes);
 		gz_clock_sleep_until_ns(begin_ns + (int64_t)i * 2 * GZ_NS_PER_MS);
-		hid_played_send(stage->number, bytes, i % 70 == 69 ? 9 : size);
+		hid_played_send(played->number, bytes, i % 70 == 69 ? 9 : size);
 	}
 	return NULL;
 }
 
-static void prepare_hid(struct stage *stage)
+static void prepare_hid(struct played *played)
 {
 	struct hid_made made = { 0 };
 	unsigned char bytes[64];
-	hid_made_tracker(&made, HID_LAYOUT_BYTES);
-	stage->number = hid_played_plug("Made", "1", made.bytes, made.size);
-	hid_played_set_feature(stage->number, 0x12, bytes,
-			       hid_made_configuration(HID_LAYOUT_BYTES, 500000, 300000, bytes));
-	hid_played_set_feature(stage->number, 0x13, bytes,
-			       hid_made_status(HID_LAYOUT_BYTES, 1, 500, bytes));
-	atomic_store(&stage->quit, false);
-	assert_int_equal(pthread_create(&stage->player, NULL, play_hid, stage), 0);
-	stage->plays_hid = true;
+	hid_made_tracker(&made, HID_LAYOUT_REFERENCE);
+	played->number = hid_played_plug("Made", "1", made.bytes, made.size);
+	hid_played_set_feature(played->number, 0x12, bytes,
+			       hid_made_configuration(HID_LAYOUT_REFERENCE, 500000, 300000, bytes));
+	hid_played_set_feature(played->number, 0x13, bytes,
+			       hid_made_status(HID_LAYOUT_REFERENCE, 1, 500, bytes));
+	atomic_store(&played->quit, false);
+	assert_int_equal(pthread_create(&played->player, NULL, play_hid, played), 0);
+	played->plays_hid = true;
 }
 
-static void prepare_pointer(struct stage *stage)
+static void prepare_pointer(struct played *played)
 {
-	set_option(stage, "pointer.rate_hz", "500");
-	assert_int_equal(gz_pointer_feed_create(&stage->host.pointer), GZ_OK);
+	stage_set(&played->stage, "pointer.rate_hz", "500");
+	assert_int_equal(gz_pointer_feed_create(&played->stage.host.pointer), GZ_OK);
 	const struct gz_pointer_report report = { .host_ns = gz_clock_now_ns(),
 						  .known = true,
 						  .point = { 0.5f, 0.5f } };
-	assert_true(gz_pointer_feed_put(stage->host.pointer, &report));
+	assert_true(gz_pointer_feed_put(played->stage.host.pointer, &report));
 }
 
-static void prepare_tobii(struct stage *stage)
+static void prepare_tobii(struct played *played)
 {
-	/* The driver's own dlopen() of the same file gives the same library. */
+	/* dlopen() of the same file in the driver returns the same library. */
 	void *library = dlopen(TOBII_STAND_IN, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
 	void *address = library ? dlsym(library, TOBII_STAND_IN_CONTROL) : NULL;
 	tobii_stand_in_control_function *control;
@@ -213,106 +197,90 @@ static void prepare_tobii(struct stage *stage)
 	control()->rate_hz = 500;
 	control()->system_zero_us = 1000000;
 	control()->device_zero_us = -1000000;
-	set_option(stage, "tobii.library", TOBII_STAND_IN);
+	stage_set(&played->stage, "tobii.library", TOBII_STAND_IN);
 	dlclose(library);
 }
 
-/* The driver's presets, and what it needs beyond. */
-static void set_up(struct stage *stage, const struct gz_driver *driver)
+/* Set the presets, and what the driver needs beyond them. */
+static void set_up(struct played *played, const struct gz_driver *driver)
 {
-	struct gz_option_binding binding = { driver->options, *driver->option_count,
-					     stage->settings, NULL };
-	memset(stage, 0, sizeof *stage);
+	memset(played, 0, sizeof *played);
 	fake_usb_reset();
 	hid_played_reset();
-	stage->driver = driver;
-	assert_true(driver->settings_size <= sizeof stage->settings);
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	stage_reset(&played->stage, driver->name);
 	if (strcmp(driver->name, "replay") == 0)
-		prepare_replay(stage);
+		prepare_replay(played);
 	else if (strcmp(driver->name, "template") == 0)
-		prepare_template(stage);
+		prepare_template(played);
 	else if (strcmp(driver->name, "gazepoint") == 0)
-		prepare_gazepoint(stage);
+		prepare_gazepoint(played);
 	else if (strcmp(driver->name, "pointer") == 0)
-		prepare_pointer(stage);
+		prepare_pointer(played);
 	else if (strcmp(driver->name, "tobii") == 0)
-		prepare_tobii(stage);
+		prepare_tobii(played);
 	else if (strcmp(driver->name, "psvr2") == 0)
 		prepare_psvr2();
 	else if (strcmp(driver->name, "hid") == 0)
-		prepare_hid(stage);
+		prepare_hid(played);
 	else if (strcmp(driver->name, "pupil") == 0)
-		prepare_pupil(stage);
+		prepare_pupil(played);
 }
 
-static void tear_down(struct stage *stage)
+static void tear_down(struct played *played)
 {
-	gz_pointer_feed_destroy(&stage->host.pointer);
-	if (stage->has_server)
-		gazepoint_server_stop(&stage->server);
-	if (stage->plays_hid) {
-		atomic_store(&stage->quit, true);
-		pthread_join(stage->player, NULL);
+	gz_pointer_feed_destroy(&played->stage.host.pointer);
+	if (played->has_server)
+		gazepoint_server_stop(&played->server);
+	if (played->plays_hid) {
+		atomic_store(&played->quit, true);
+		pthread_join(played->player, NULL);
 	}
-	pupil_capture_stop(&stage->capture);
-	if (!stage->has_player)
+	pupil_capture_stop(&played->capture);
+	if (!played->has_player)
 		return;
-	atomic_store(&stage->quit, true);
-	/* The player may still wait for a reader. */
-	int fd = open(stage->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-	pthread_join(stage->player, NULL);
+	atomic_store(&played->quit, true);
+	/* The player may still wait for a reader of the FIFO. */
+	int fd = open(played->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	pthread_join(played->player, NULL);
 	if (fd >= 0)
 		close(fd);
 }
 
-static struct gz_device *create(struct stage *stage)
+static struct gz_device *create(struct played *played)
 {
-	struct gz_device *device = NULL;
+	struct gz_device *device;
 	enum gz_result result;
-	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
-	/* One that is asked over a network may answer late on a busy machine. */
+	int64_t deadline_ns = gz_clock_now_ns() + 20 * GZ_NS_PER_S;
+	/* A device on the network may answer late on a busy machine. */
 	do
-		result = stage->driver->create(stage->settings, &stage->host, &device);
-	while (result == GZ_ERR_NO_DEVICE && stage->capture.context &&
+		result = stage_create(&played->stage, NULL, &device);
+	while (result == GZ_ERR_NO_DEVICE && played->capture.context &&
 	       gz_clock_now_ns() < deadline_ns);
 	if (result != GZ_OK)
-		fail_msg("%s: %s", stage->driver->name, gz_result_text(result));
+		fail_msg("%s: %s", played->stage.driver->name, gz_result_text(result));
 	assert_non_null(device);
 	return device;
 }
 
-typedef void check_function(struct stage *stage);
+typedef void check_function(struct played *played);
 
 static void for_every_driver(check_function *check)
 {
-	static struct stage stage;
+	static struct played played;
 	for (size_t i = 0; gz_drivers[i]; i++) {
-		/* It opens the devices of others: see test_auto.c. */
+		/* It opens devices of other drivers: see test_auto.c. */
 		if (strcmp(gz_drivers[i]->name, "auto") == 0)
 			continue;
-		set_up(&stage, gz_drivers[i]);
+		set_up(&played, gz_drivers[i]);
 		print_message("           %s\n", gz_drivers[i]->name);
-		check(&stage);
-		tear_down(&stage);
+		check(&played);
+		tear_down(&played);
 	}
 }
 
-/* A sample, however many time-outs come before it. */
-static void read_one(struct stage *stage, struct gz_device *device, struct gz_sample *out_sample)
+static void check_table(struct played *played)
 {
-	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
-	enum gz_result result;
-	do
-		result = gz_device_read(device, 20, out_sample);
-	while (result == GZ_ERR_TIMEOUT && gz_clock_now_ns() < deadline_ns);
-	if (result != GZ_OK)
-		fail_msg("%s: no sample: %s", stage->driver->name, gz_result_text(result));
-}
-
-static void check_table(struct stage *stage)
-{
-	const struct gz_driver *driver = stage->driver;
+	const struct gz_driver *driver = played->stage.driver;
 	char prefix[64];
 	assert_ptr_equal(gz_driver_find(driver->name), driver);
 	assert_non_null(driver->help);
@@ -323,7 +291,7 @@ static void check_table(struct stage *stage)
 		assert_non_null(driver->options[i].preset);
 		assert_non_null(driver->options[i].help);
 	}
-	struct gz_device *device = create(stage);
+	struct gz_device *device = create(played);
 	assert_non_null(device->ops->start);
 	assert_non_null(device->ops->read);
 	assert_non_null(device->ops->info);
@@ -338,7 +306,7 @@ static void driver_table_is_complete(void **state)
 	for_every_driver(check_table);
 }
 
-static void check_info(const struct stage *stage, const struct gz_device *device)
+static void check_info(const struct played *played, const struct gz_device *device)
 {
 	struct gz_device_info info;
 	gz_device_get_info(device, &info);
@@ -348,21 +316,21 @@ static void check_info(const struct stage *stage, const struct gz_device *device
 	assert_true(info.rate_hz >= 0 && info.rate_hz < 1e5);
 	if (info.has_display)
 		assert_true(gz_display_valid(&info.display));
-	assert_int_equal(info.recorded != NULL, strcmp(stage->driver->name, "replay") == 0);
+	assert_int_equal(info.recorded != NULL, strcmp(played->stage.driver->name, "replay") == 0);
 }
 
-static void check_samples(struct stage *stage)
+static void check_samples(struct played *played)
 {
-	struct gz_device *device = create(stage);
+	struct gz_device *device = create(played);
 	struct gz_sample sample, last = { 0 };
 	struct gz_device_counters counters, before = { 0 };
 	uint64_t lost = 0;
-	check_info(stage, device);
+	check_info(played, device);
 	assert_int_equal(gz_device_start(device), GZ_OK);
 	for (uint64_t i = 0; i < SAMPLES; i++) {
-		read_one(stage, device, &sample);
+		sample = device_read_sample(device);
 		if (sample.seq != i || (i > 0 && sample.host_ns < last.host_ns))
-			fail_msg("%s: sample %llu at %lld after %lld", stage->driver->name,
+			fail_msg("%s: sample %llu at %lld after %lld", played->stage.driver->name,
 				 (unsigned long long)sample.seq, (long long)sample.host_ns,
 				 (long long)last.host_ns);
 		lost += sample.lost_before;
@@ -375,7 +343,7 @@ static void check_samples(struct stage *stage)
 		last = sample;
 		before = counters;
 	}
-	check_info(stage, device);
+	check_info(played, device);
 	gz_device_destroy(&device);
 	assert_null(device);
 }
@@ -386,20 +354,20 @@ static void driver_delivers_samples_in_order_and_counts_what_is_lost(void **stat
 	for_every_driver(check_samples);
 }
 
-static void check_host_time(struct stage *stage)
+static void check_host_time(struct played *played)
 {
-	/* A recording keeps its own times. */
-	if (strcmp(stage->driver->name, "replay") == 0)
+	/* A replay keeps the recorded times. */
+	if (strcmp(played->stage.driver->name, "replay") == 0)
 		return;
-	struct gz_device *device = create(stage);
+	struct gz_device *device = create(played);
 	struct gz_sample sample;
 	int64_t begin_ns = gz_clock_now_ns();
 	assert_int_equal(gz_device_start(device), GZ_OK);
 	for (int i = 0; i < SAMPLES / 4; i++) {
-		read_one(stage, device, &sample);
+		sample = device_read_sample(device);
 		int64_t now_ns = gz_clock_now_ns();
 		if (sample.host_ns > now_ns || sample.host_ns < begin_ns - GZ_NS_PER_S)
-			fail_msg("%s: host time %lld, now is %lld", stage->driver->name,
+			fail_msg("%s: host time %lld, now is %lld", played->stage.driver->name,
 				 (long long)sample.host_ns, (long long)now_ns);
 	}
 	gz_device_destroy(&device);
@@ -411,9 +379,9 @@ static void driver_host_time_is_the_monotonic_clock_and_not_ahead_of_it(void **s
 	for_every_driver(check_host_time);
 }
 
-static void check_timeouts(struct stage *stage)
+static void check_timeouts(struct played *played)
 {
-	struct gz_device *device = create(stage);
+	struct gz_device *device = create(played);
 	struct gz_sample sample, untouched;
 	memset(&untouched, 0x5a, sizeof untouched);
 	sample = untouched;
@@ -428,13 +396,13 @@ static void check_timeouts(struct stage *stage)
 		int64_t took_ns = gz_clock_now_ns() - begin_ns;
 		assert_true(result == GZ_OK || result == GZ_ERR_TIMEOUT);
 		if (took_ns > GZ_NS_PER_S)
-			fail_msg("%s: a wait of %d ms took %g ms", stage->driver->name, i % 2,
-				 gz_ns_to_ms(took_ns));
+			fail_msg("%s: a wait of %d ms took %g ms", played->stage.driver->name,
+				 i % 2, gz_ns_to_ms(took_ns));
 		if (result == GZ_ERR_TIMEOUT) {
 			timeouts++;
 			assert_memory_equal(&sample, &untouched, sizeof sample);
 			if (i % 2 == 1 && took_ns < GZ_NS_PER_MS / 2)
-				fail_msg("%s: gave up after %lld ns", stage->driver->name,
+				fail_msg("%s: gave up after %lld ns", played->stage.driver->name,
 					 (long long)took_ns);
 		}
 	}
@@ -448,24 +416,23 @@ static void driver_keeps_to_the_timeout_and_writes_nothing_without_a_sample(void
 	for_every_driver(check_timeouts);
 }
 
-static void check_allocations(struct stage *stage)
+static void check_allocations(struct played *played)
 {
-	/* Its messages are received and unpacked by libraries that allocate for each. */
-	if (strcmp(stage->driver->name, "pupil") == 0)
+	/* Its messages are received and unpacked by libraries that allocate for each one. */
+	if (strcmp(played->stage.driver->name, "pupil") == 0)
 		return;
-	struct gz_device *device = create(stage);
-	struct gz_sample sample;
+	struct gz_device *device = create(played);
 	assert_int_equal(gz_device_start(device), GZ_OK);
-	/* What is done once is done by then. */
+	/* Let the driver do first what it does only once. */
 	for (int i = 0; i < SAMPLES / 10; i++)
-		read_one(stage, device, &sample);
+		device_read_sample(device);
 	long before = allocations_of_this_thread();
 	for (int i = 0; i < SAMPLES / 2; i++)
-		read_one(stage, device, &sample);
+		device_read_sample(device);
 	long after = allocations_of_this_thread();
 	if (after != before)
-		fail_msg("%s: %ld allocations for %d samples", stage->driver->name, after - before,
-			 SAMPLES / 2);
+		fail_msg("%s: %ld allocations for %d samples", played->stage.driver->name,
+			 after - before, SAMPLES / 2);
 	gz_device_destroy(&device);
 }
 
@@ -475,23 +442,23 @@ static void driver_reads_without_allocating(void **state)
 	for_every_driver(check_allocations);
 }
 
-static void check_destroy(struct stage *stage)
+static void check_destroy(struct played *played)
 {
-	struct gz_device *device = create(stage);
+	struct gz_device *device = create(played);
 	struct gz_sample sample;
 	gz_device_destroy(&device); /* before start */
 	assert_null(device);
 	gz_device_destroy(&device); /* again */
 	gz_device_destroy(NULL);
-	device = create(stage);
+	device = create(played);
 	assert_int_equal(gz_device_start(device), GZ_OK);
 	gz_device_destroy(&device); /* before the first sample */
-	/* And one may be opened again. The template's FIFO has lost its player by then. */
-	if (stage->has_player)
+	/* A device may be opened again. The FIFO of the template has lost its writer by then. */
+	if (played->has_player)
 		return;
-	device = create(stage);
+	device = create(played);
 	assert_int_equal(gz_device_start(device), GZ_OK);
-	read_one(stage, device, &sample);
+	sample = device_read_sample(device);
 	assert_int_equal(sample.seq, 0);
 	gz_device_destroy(&device);
 }
@@ -502,7 +469,7 @@ static void driver_is_destroyed_at_any_stage(void **state)
 	for_every_driver(check_destroy);
 }
 
-static void driver_refuses_what_is_not_there(void **state)
+static void driver_refuses_missing_devices_and_bad_settings(void **state)
 {
 	(void)state;
 	static const struct {
@@ -523,20 +490,14 @@ static void driver_refuses_what_is_not_there(void **state)
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
 		{ "psvr2", "psvr2.screen_distance_mm", "600", GZ_ERR_NO_DEVICE },
 	};
-	static struct stage stage;
+	static struct driver_stage stage;
 	fake_usb_reset();
 	hid_played_reset();
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
-		struct gz_device *device = NULL;
-		const struct gz_driver *driver = gz_driver_find(refusals[i].driver);
-		struct gz_option_binding binding = { driver->options, *driver->option_count,
-						     stage.settings, NULL };
-		memset(&stage, 0, sizeof stage);
-		stage.driver = driver;
-		assert_int_equal(gz_options_preset(&binding), GZ_OK);
-		set_option(&stage, refusals[i].key, refusals[i].text);
-		enum gz_result result =
-			driver->create(stage.settings, &(struct gz_driver_host) { 0 }, &device);
+		struct gz_device *device;
+		stage_reset(&stage, refusals[i].driver);
+		stage_set(&stage, refusals[i].key, refusals[i].text);
+		enum gz_result result = stage_create(&stage, NULL, &device);
 		if (result != refusals[i].result)
 			fail_msg("%s %s: %s, expected %s", refusals[i].key, refusals[i].text,
 				 gz_result_text(result), gz_result_text(refusals[i].result));
@@ -548,33 +509,32 @@ static void driver_refuses_what_is_not_there(void **state)
 static void template_that_is_unplugged_says_so(void **state)
 {
 	(void)state;
-	static struct stage stage;
+	static struct played played;
 	struct gz_sample sample;
-	set_up(&stage, gz_driver_find("template"));
-	struct gz_device *device = create(&stage);
+	set_up(&played, gz_driver_find("template"));
+	struct gz_device *device = create(&played);
 	assert_int_equal(gz_device_start(device), GZ_OK);
-	read_one(&stage, device, &sample);
-	atomic_store(&stage.quit, true);
+	sample = device_read_sample(device);
+	atomic_store(&played.quit, true);
 	enum gz_result result;
 	do
-		result = gz_device_read(device, PATIENCE_MS, &sample);
+		result = gz_device_read(device, 5000, &sample);
 	while (result == GZ_OK);
 	assert_int_equal(result, GZ_ERR_NO_DEVICE);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
 	gz_device_destroy(&device);
-	tear_down(&stage);
+	tear_down(&played);
 }
 
-static void template_of_nothing_but_garbage_keeps_to_the_timeout(void **state)
+static void template_with_endless_garbage_keeps_to_the_timeout(void **state)
 {
 	(void)state;
-	static struct stage stage;
+	static struct played played;
 	struct gz_sample sample;
 	struct gz_device_counters counters;
-	stage.driver = gz_driver_find("template");
-	memset(stage.settings, 0, sizeof stage.settings);
-	set_option(&stage, "template.path", "/dev/zero");
-	struct gz_device *device = create(&stage);
+	stage_reset(&played.stage, "template");
+	stage_set(&played.stage, "template.path", "/dev/zero");
+	struct gz_device *device = create(&played);
 	assert_int_equal(gz_device_start(device), GZ_OK);
 	assert_int_equal(gz_device_read(device, 20, &sample), GZ_ERR_TIMEOUT);
 	assert_int_equal(gz_device_read(device, 0, &sample), GZ_ERR_TIMEOUT);
@@ -601,10 +561,9 @@ static int remove_directory(void **state)
 	return rmdir(directory);
 }
 
-int main(void)
+TEST_SUITE(conformance)
 {
-	/* The player of a pipe may write once more after its driver has gone: then the write fails.
-	 */
+	/* The writer of the FIFO may write after the driver has closed it: let that write fail. */
 	signal(SIGPIPE, SIG_IGN);
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(driver_table_is_complete),
@@ -613,9 +572,9 @@ int main(void)
 		cmocka_unit_test(driver_keeps_to_the_timeout_and_writes_nothing_without_a_sample),
 		cmocka_unit_test(driver_reads_without_allocating),
 		cmocka_unit_test(driver_is_destroyed_at_any_stage),
-		cmocka_unit_test(driver_refuses_what_is_not_there),
+		cmocka_unit_test(driver_refuses_missing_devices_and_bad_settings),
 		cmocka_unit_test(template_that_is_unplugged_says_so),
-		cmocka_unit_test(template_of_nothing_but_garbage_keeps_to_the_timeout),
+		cmocka_unit_test(template_with_endless_garbage_keeps_to_the_timeout),
 	};
 	return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

@@ -1,5 +1,5 @@
-/* The Gazepoint driver against a server of ours, well behaved and not. */
-#include "check.h"
+/* The Gazepoint driver with a fake server, well behaved or not. */
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,57 +8,28 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "drivers/gazepoint/gazepoint_driver.h"
+#include "driver_stage.h"
+#include "drivers/gazepoint/gazepoint_link.h"
 #include "drivers/gazepoint/gazepoint_protocol.h"
 #include "gazepoint_server.h"
 
-/* Patience for what must come, ms; a server that is there never needs it. */
-enum { PATIENCE_MS = 5000 };
-
 static struct gazepoint_server server;
-static union {
-	unsigned char bytes[GZ_DRIVER_SETTINGS_SIZE];
-	max_align_t align;
-} settings;
-
-static void set_option(const char *key, const char *text)
-{
-	struct gz_option_binding binding = { gz_driver_gazepoint.options,
-					     *gz_driver_gazepoint.option_count, &settings, NULL };
-	char message[256];
-	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
-	if (gz_option_parse(option, text, &settings, message, sizeof message) != GZ_OK)
-		fail_msg("%s", message);
-}
+static struct driver_stage stage;
 
 static void point_at(int port)
 {
-	struct gz_option_binding binding = { gz_driver_gazepoint.options,
-					     *gz_driver_gazepoint.option_count, &settings, NULL };
 	char text[16];
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	stage_reset(&stage, "gazepoint");
 	snprintf(text, sizeof text, "%d", port);
-	set_option("gazepoint.port", text);
+	stage_set(&stage, "gazepoint.port", text);
 }
 
-static struct gz_device *open_device(void)
-{
-	struct gz_device *device = NULL;
-	const struct gz_driver_host host = { 0 };
-	enum gz_result result = gz_driver_gazepoint.create(&settings, &host, &device);
-	if (result != GZ_OK)
-		fail_msg("create: %s", gz_result_text(result));
-	return device;
-}
-
-/* A started device at a server that plays @p play. */
+/* Start a device at a server that plays @p play. */
 static struct gz_device *begin(const struct gazepoint_play *play)
 {
 	gazepoint_server_start(&server, play, 0);
 	point_at(server.port);
-	struct gz_device *device = open_device();
-	assert_int_equal(gz_device_start(device), GZ_OK);
-	return device;
+	return stage_start(&stage);
 }
 
 static void end(struct gz_device *device)
@@ -67,39 +38,18 @@ static void end(struct gz_device *device)
 	gazepoint_server_stop(&server);
 }
 
-static enum gz_result read_patiently(struct gz_device *device, struct gz_sample *out_sample)
-{
-	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
-	enum gz_result result;
-	do
-		result = gz_device_read(device, 20, out_sample);
-	while (result == GZ_ERR_TIMEOUT && gz_clock_now_ns() < deadline_ns);
-	return result;
-}
-
-static struct gz_sample read_one(struct gz_device *device)
-{
-	struct gz_sample sample;
-	enum gz_result result = read_patiently(device, &sample);
-	if (result != GZ_OK)
-		fail_msg("no sample: %s", gz_result_text(result));
-	return sample;
-}
-
 static uint64_t malformed(const struct gz_device *device, enum gz_malformed reason)
 {
-	struct gz_device_counters counters;
-	gz_device_get_counters(device, &counters);
-	return counters.malformed[reason];
+	return device_counters(device).malformed[reason];
 }
 
-static void tracker_tells_who_it_is_before_it_streams(void **state)
+static void tracker_is_identified_before_it_streams(void **state)
 {
 	(void)state;
 	struct gz_device_info info;
 	gazepoint_server_start(&server, &(struct gazepoint_play) { .stream = true }, 0);
 	point_at(server.port);
-	struct gz_device *device = open_device();
+	struct gz_device *device = stage_open(&stage, NULL);
 	gz_device_get_info(device, &info);
 	assert_string_equal(info.name, "Gazepoint GP3HD");
 	assert_string_equal(info.serial, "13&7");
@@ -115,12 +65,13 @@ static void record_becomes_a_sample_in_our_units(void **state)
 	(void)state;
 	struct gz_device *device = begin(&(struct gazepoint_play) { .stream = true });
 	struct gz_device_counters counters;
-	struct gz_sample sample = read_one(device);
+	struct gz_sample sample = device_read_sample(device);
 	assert_int_equal(sample.seq, 0);
 	assert_true(sample.valid && sample.point.x == 0.5f && sample.point.y == 0.5f);
 	assert_true(sample.eye[GZ_EYE_LEFT].point.x == 0.4f);
 	assert_true(sample.eye[GZ_EYE_RIGHT].point.x == 0.6f);
-	assert_false(sample.eye[GZ_EYE_LEFT].valid); /* every third is not, the first one too */
+	assert_false(sample.eye[GZ_EYE_LEFT]
+			     .valid); /* every third one is invalid, beginning with the first */
 	assert_true(sample.eye[GZ_EYE_RIGHT].valid);
 	assert_true(fabsf(sample.eye[GZ_EYE_LEFT].pupil_mm - 3.1f) < 1e-6f);
 	assert_true(fabsf(sample.eye[GZ_EYE_LEFT].origin_mm[0] + 30) < 1e-4f);
@@ -128,22 +79,22 @@ static void record_becomes_a_sample_in_our_units(void **state)
 	assert_true(isnan(sample.eye[GZ_EYE_LEFT].direction[0]));
 	/* 5e9 ticks of 10 MHz */
 	assert_true(sample.device_ns == 500 * GZ_NS_PER_S);
-	assert_true(read_one(device).device_ns == 500 * GZ_NS_PER_S + 2 * GZ_NS_PER_MS);
+	assert_true(device_read_sample(device).device_ns == 500 * GZ_NS_PER_S + 2 * GZ_NS_PER_MS);
 	gz_device_get_counters(device, &counters);
 	assert_int_equal(counters.clock.tick, GZ_CLOCK_DECLARED);
 	end(device);
 }
 
-static void counter_tells_what_was_lost(void **state)
+static void counter_shows_lost_records(void **state)
 {
 	(void)state;
 	struct gz_device *device = begin(&(struct gazepoint_play) { .stream = true });
 	struct gz_device_counters counters;
 	uint32_t lost = 0;
 	for (int i = 0; i < 120; i++)
-		lost += read_one(device).lost_before;
+		lost += device_read_sample(device).lost_before;
 	gz_device_get_counters(device, &counters);
-	/* Of 0 to 122 are 49 and 99 not sent, and 69 cannot be read. */
+	/* Of records 0 to 122, numbers 49 and 99 were not sent and 69 is unreadable. */
 	assert_int_equal(lost, 3);
 	assert_int_equal(counters.lost, 3);
 	assert_int_equal(counters.malformed[GZ_MALFORMED_SYNTAX], 1);
@@ -162,7 +113,7 @@ static void records_in_pieces_and_many_at_once_are_the_same(void **state)
 		struct gz_device *device =
 			begin(&(struct gazepoint_play) { .script = script, .chunk = chunks[i] });
 		for (uint64_t seq = 0; seq < 4; seq++) {
-			struct gz_sample sample = read_one(device);
+			struct gz_sample sample = device_read_sample(device);
 			assert_int_equal(sample.seq, seq);
 			assert_int_equal(sample.lost_before, 0);
 			assert_true(gz_sample_combined_only(&sample));
@@ -171,16 +122,16 @@ static void records_in_pieces_and_many_at_once_are_the_same(void **state)
 	}
 }
 
-static void what_cannot_be_used_is_counted_by_its_reason(void **state)
+static void unusable_records_are_counted_by_reason(void **state)
 {
 	(void)state;
 	static const char script[] = "garbage\r\n\x01\x02\xff\r\n" REC("1", "") REC("1",
 										    "TIME=\"3\" ")
 		REC("2", "LPOGX=\"x\" ") "<REC CNT=\"3\"/>\r\n<CAL ID=\"x\"/>\r\n" REC("5", "");
 	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
-	assert_int_equal(read_one(device).lost_before, 0);
-	/* 2 and 3 came, but told nothing; 4 never did. */
-	assert_int_equal(read_one(device).lost_before, 3);
+	assert_int_equal(device_read_sample(device).lost_before, 0);
+	/* Records 2 and 3 came without data; 4 never came. */
+	assert_int_equal(device_read_sample(device).lost_before, 3);
 	assert_int_equal(malformed(device, GZ_MALFORMED_SYNTAX), 2);
 	assert_int_equal(malformed(device, GZ_MALFORMED_STALE), 1);
 	assert_int_equal(malformed(device, GZ_MALFORMED_VALUE), 2);
@@ -188,7 +139,7 @@ static void what_cannot_be_used_is_counted_by_its_reason(void **state)
 	end(device);
 }
 
-static void record_without_end_is_bounded_and_keeps_to_the_timeout(void **state)
+static void endless_record_is_bounded_and_keeps_to_the_timeout(void **state)
 {
 	(void)state;
 	static char script[8 * GZ_GAZEPOINT_RECORD_MAX];
@@ -197,7 +148,7 @@ static void record_without_end_is_bounded_and_keeps_to_the_timeout(void **state)
 	memcpy(script + sizeof script - (sizeof last - 1), last, sizeof last - 1);
 	struct gz_device *device = begin(&(struct gazepoint_play) {
 		.script = script, .script_size = sizeof script, .chunk = 1000 });
-	assert_int_equal(read_one(device).seq, 0);
+	assert_int_equal(device_read_sample(device).seq, 0);
 	assert_int_equal(malformed(device, GZ_MALFORMED_LONG), 1);
 	struct gz_sample sample;
 	assert_int_equal(gz_device_read(device, 1, &sample), GZ_ERR_TIMEOUT);
@@ -205,19 +156,19 @@ static void record_without_end_is_bounded_and_keeps_to_the_timeout(void **state)
 	end(device);
 }
 
-static void counter_that_runs_backwards_begins_anew(void **state)
+static void counter_that_runs_backwards_has_restarted(void **state)
 {
 	(void)state;
 	static const char script[] = REC("100", "") REC("-9223372036854775808", "")
 		REC("9223372036854775807", "") REC("1", "") REC("3", "");
 	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
 	for (int i = 0; i < 4; i++)
-		assert_int_equal(read_one(device).lost_before, 0);
-	assert_int_equal(read_one(device).lost_before, 1);
+		assert_int_equal(device_read_sample(device).lost_before, 0);
+	assert_int_equal(device_read_sample(device).lost_before, 1);
 	end(device);
 }
 
-static void without_ticks_the_time_counts_and_without_time_the_arrival(void **state)
+static void without_ticks_time_is_used_and_without_time_the_arrival(void **state)
 {
 	(void)state;
 	static const char script[] = REC("1", "TIME=\"1.5\" TIME_TICK=\"77\" ")
@@ -225,19 +176,19 @@ static void without_ticks_the_time_counts_and_without_time_the_arrival(void **st
 	struct gz_device_counters counters;
 	struct gz_device *device = begin(
 		&(struct gazepoint_play) { .script = script, .refuses = "TIME_TICK_FREQUENCY" });
-	assert_true(read_one(device).device_ns == 1500 * GZ_NS_PER_MS);
+	assert_true(device_read_sample(device).device_ns == 1500 * GZ_NS_PER_MS);
 	/* A calibration sets TIME back. */
-	assert_true(read_one(device).device_ns == 1250 * GZ_NS_PER_MS);
-	struct gz_sample sample = read_one(device);
+	assert_true(device_read_sample(device).device_ns == 1250 * GZ_NS_PER_MS);
+	struct gz_sample sample = device_read_sample(device);
 	assert_true(sample.device_ns == GZ_NO_DEVICE_TIME);
 	assert_true(sample.host_ns <= gz_clock_now_ns());
 	gz_device_get_counters(device, &counters);
 	assert_int_equal(counters.clock.tick, GZ_CLOCK_NONE);
-	assert_true(read_one(device).device_ns == GZ_NO_DEVICE_TIME);
+	assert_true(device_read_sample(device).device_ns == GZ_NO_DEVICE_TIME);
 	end(device);
 }
 
-static void ticks_of_no_stated_frequency_are_not_device_time_until_it_is_found_out(void **state)
+static void ticks_without_a_frequency_are_not_device_time_until_it_is_estimated(void **state)
 {
 	(void)state;
 	static const char script[] = REC("1", "TIME_TICK=\"77\" ") REC("2", "TIME_TICK=\"78\" ");
@@ -245,42 +196,42 @@ static void ticks_of_no_stated_frequency_are_not_device_time_until_it_is_found_o
 	struct gz_device *device = begin(
 		&(struct gazepoint_play) { .script = script, .refuses = "TIME_TICK_FREQUENCY" });
 	for (int i = 0; i < 2; i++)
-		assert_true(read_one(device).device_ns == GZ_NO_DEVICE_TIME);
+		assert_true(device_read_sample(device).device_ns == GZ_NO_DEVICE_TIME);
 	gz_device_get_counters(device, &counters);
 	assert_int_equal(counters.clock.tick, GZ_CLOCK_NONE);
 	end(device);
 }
 
-static void frequency_that_cannot_be_is_not_believed(void **state)
+static void impossible_frequency_is_not_believed(void **state)
 {
 	(void)state;
 	static const char script[] = REC("1", "TIME=\"1.5\" TIME_TICK=\"77\" ");
 	struct gz_device *device =
 		begin(&(struct gazepoint_play) { .script = script, .frequency = "0" });
-	assert_true(read_one(device).device_ns == 1500 * GZ_NS_PER_MS);
+	assert_true(device_read_sample(device).device_ns == 1500 * GZ_NS_PER_MS);
 	end(device);
 }
 
-static void what_an_older_version_refuses_is_done_without(void **state)
+static void fields_that_an_older_version_refuses_are_not_needed(void **state)
 {
 	(void)state;
 	struct gz_device *device =
 		begin(&(struct gazepoint_play) { .stream = true, .refuses = "PUPILMM" });
-	assert_true(read_one(device).valid);
+	assert_true(device_read_sample(device).valid);
 	end(device);
 }
 
-static void server_that_refuses_data_is_no_device(void **state)
+static void server_that_refuses_data_is_not_a_device(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
 	struct gz_device *device =
 		begin(&(struct gazepoint_play) { .stream = true, .refuses = "SEND_DATA" });
-	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	assert_int_equal(device_read_result(device, &sample), GZ_ERR_NO_DEVICE);
 	end(device);
 }
 
-static void other_screen_opens_it_anew_and_the_same_does_not(void **state)
+static void another_screen_reopens_the_tracker_and_the_same_one_does_not(void **state)
 {
 	(void)state;
 	static const char script[] =
@@ -289,44 +240,43 @@ static void other_screen_opens_it_anew_and_the_same_does_not(void **state)
 				 "HEIGHT=\"1080\" >\r\n" REC("2", "");
 	struct gz_sample sample;
 	struct gz_device *device = begin(&(struct gazepoint_play) { .script = script });
-	assert_true(read_one(device).valid);
-	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	assert_true(device_read_sample(device).valid);
+	assert_int_equal(device_read_result(device, &sample), GZ_ERR_NO_DEVICE);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
 	end(device);
 }
 
-static void server_that_dies_is_told_and_returns(void **state)
+static void server_that_dies_is_reported_and_may_return(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
 	static const char script[] = REC("1", "") "<REC CNT=\"2\"";
 	struct gz_device *device =
 		begin(&(struct gazepoint_play) { .script = script, .hang_up = true });
-	read_one(device);
-	assert_int_equal(read_patiently(device, &sample), GZ_ERR_NO_DEVICE);
+	device_read_sample(device);
+	assert_int_equal(device_read_result(device, &sample), GZ_ERR_NO_DEVICE);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
 	int port = server.port;
 	end(device);
-	/* While it is away. */
-	const struct gz_driver_host host = { 0 };
+	/* While the server is gone. */
 	device = NULL;
-	assert_int_equal(gz_driver_gazepoint.create(&settings, &host, &device), GZ_ERR_NO_DEVICE);
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_NO_DEVICE);
 	assert_null(device);
 	gazepoint_server_start(&server, &(struct gazepoint_play) { .stream = true }, port);
-	device = open_device();
+	device = stage_open(&stage, NULL);
 	assert_int_equal(gz_device_start(device), GZ_OK);
-	assert_int_equal(read_one(device).seq, 0);
+	assert_int_equal(device_read_sample(device).seq, 0);
 	end(device);
 }
 
-static void server_that_answers_nothing_is_waited_for_no_longer_than_promised(void **state)
+static void server_that_does_not_answer_is_waited_for_as_long_as_documented(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
 	gazepoint_server_start(&server, &(struct gazepoint_play) { .mute = true }, 0);
 	point_at(server.port);
 	int64_t begin_ns = gz_clock_now_ns();
-	struct gz_device *device = open_device();
+	struct gz_device *device = stage_open(&stage, NULL);
 	int64_t took_ns = gz_clock_now_ns() - begin_ns;
 	if (took_ns < GZ_GAZEPOINT_ANSWER_MS * GZ_NS_PER_MS || took_ns > 2 * GZ_NS_PER_S)
 		fail_msg("took %g ms", gz_ns_to_ms(took_ns));
@@ -339,63 +289,60 @@ static void list_says_whether_the_server_is_there(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	const struct gz_driver_host host = { 0 };
 	gazepoint_server_start(&server, &(struct gazepoint_play) { 0 }, 0);
 	point_at(server.port);
-	assert_int_equal(gz_driver_gazepoint.list(&settings, &host, entries), 1);
+	assert_int_equal(stage_list(&stage, entries), 1);
 	assert_true(entries[0].usable);
 	assert_string_equal(entries[0].reason, "");
 	gazepoint_server_stop(&server);
-	assert_int_equal(gz_driver_gazepoint.list(&settings, &host, entries), 1);
+	assert_int_equal(stage_list(&stage, entries), 1);
 	assert_false(entries[0].usable);
 	if (!strstr(entries[0].reason, "refused") || !strstr(entries[0].reason, "gazepoint.host"))
 		fail_msg("%s", entries[0].reason);
 }
 
-static void list_leaves_out_a_server_that_nobody_has_named(void **state)
+static void list_omits_a_default_server_that_does_not_answer(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	const struct gz_driver_host host = { 0 };
 	point_at(4242);
-	size_t count = gz_driver_gazepoint.list(&settings, &host, entries);
+	size_t count = stage_list(&stage, entries);
 	if (count > 0 && !entries[0].usable)
 		fail_msg("%s", entries[0].reason);
 }
 
-static void host_that_is_not_known_is_no_device(void **state)
+static void unknown_host_is_not_a_device(void **state)
 {
 	(void)state;
-	const struct gz_driver_host host = { 0 };
 	struct gz_device *device = NULL;
 	point_at(1);
-	set_option("gazepoint.host", "256.256.256.256");
-	assert_int_equal(gz_driver_gazepoint.create(&settings, &host, &device), GZ_ERR_NO_DEVICE);
+	stage_set(&stage, "gazepoint.host", "256.256.256.256");
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_NO_DEVICE);
 	assert_null(device);
 }
 
-int main(void)
+TEST_SUITE(gazepoint)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(tracker_tells_who_it_is_before_it_streams),
+		cmocka_unit_test(tracker_is_identified_before_it_streams),
 		cmocka_unit_test(record_becomes_a_sample_in_our_units),
-		cmocka_unit_test(counter_tells_what_was_lost),
+		cmocka_unit_test(counter_shows_lost_records),
 		cmocka_unit_test(records_in_pieces_and_many_at_once_are_the_same),
-		cmocka_unit_test(what_cannot_be_used_is_counted_by_its_reason),
-		cmocka_unit_test(record_without_end_is_bounded_and_keeps_to_the_timeout),
-		cmocka_unit_test(counter_that_runs_backwards_begins_anew),
-		cmocka_unit_test(without_ticks_the_time_counts_and_without_time_the_arrival),
+		cmocka_unit_test(unusable_records_are_counted_by_reason),
+		cmocka_unit_test(endless_record_is_bounded_and_keeps_to_the_timeout),
+		cmocka_unit_test(counter_that_runs_backwards_has_restarted),
+		cmocka_unit_test(without_ticks_time_is_used_and_without_time_the_arrival),
 		cmocka_unit_test(
-			ticks_of_no_stated_frequency_are_not_device_time_until_it_is_found_out),
-		cmocka_unit_test(frequency_that_cannot_be_is_not_believed),
-		cmocka_unit_test(what_an_older_version_refuses_is_done_without),
-		cmocka_unit_test(server_that_refuses_data_is_no_device),
-		cmocka_unit_test(other_screen_opens_it_anew_and_the_same_does_not),
-		cmocka_unit_test(server_that_dies_is_told_and_returns),
-		cmocka_unit_test(server_that_answers_nothing_is_waited_for_no_longer_than_promised),
+			ticks_without_a_frequency_are_not_device_time_until_it_is_estimated),
+		cmocka_unit_test(impossible_frequency_is_not_believed),
+		cmocka_unit_test(fields_that_an_older_version_refuses_are_not_needed),
+		cmocka_unit_test(server_that_refuses_data_is_not_a_device),
+		cmocka_unit_test(another_screen_reopens_the_tracker_and_the_same_one_does_not),
+		cmocka_unit_test(server_that_dies_is_reported_and_may_return),
+		cmocka_unit_test(server_that_does_not_answer_is_waited_for_as_long_as_documented),
 		cmocka_unit_test(list_says_whether_the_server_is_there),
-		cmocka_unit_test(list_leaves_out_a_server_that_nobody_has_named),
-		cmocka_unit_test(host_that_is_not_known_is_no_device),
+		cmocka_unit_test(list_omits_a_default_server_that_does_not_answer),
+		cmocka_unit_test(unknown_host_is_not_a_device),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Gazepoint's records: framing and numbers. */
-#include "check.h"
+/* Records of Gazepoint Control: framing and numbers. */
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -70,7 +70,7 @@ static void record_of_the_api_becomes_numbers(void **state)
 	assert_true(isnan(record.eye[GZ_EYE_RIGHT].pupil_mm));
 }
 
-static void record_may_have_its_attributes_in_any_order_and_others_between(void **state)
+static void record_may_have_attributes_in_any_order_and_unknown_ones(void **state)
 {
 	(void)state;
 	check_parses("<REC  BPOGV='1'\tUSER=\"a&lt;&quot;&#x3e;\" BPOGY=\"5e-1\"\n KB=\" \" "
@@ -82,7 +82,7 @@ static void record_may_have_its_attributes_in_any_order_and_others_between(void 
 	assert_false(record.has_eye[GZ_EYE_LEFT] || record.has_eye[GZ_EYE_RIGHT]);
 }
 
-static void answers_say_what_was_asked(void **state)
+static void answers_name_their_request(void **state)
 {
 	(void)state;
 	check_parses("<ACK ID=\"PRODUCT_ID\" VALUE=\"A&amp;B\" BUS=\"USB2\" RATE=\"60\" />",
@@ -95,7 +95,7 @@ static void answers_say_what_was_asked(void **state)
 	check_near(record.width, 1920);
 	check_near(record.height, 1080);
 	check_parses("<NACK ID=\"ENABLE_SEND_DATA\"/>", GZ_GAZEPOINT_NACK);
-	/* As the API's document has it: not closed. */
+	/* As in the API document: not closed. */
 	check_parses("<UPDATE ACTIVE_ID=\"1\" MAX_ID=\"2\" X=\"0\" Y=\"0\" WIDTH=\"1280\" >",
 		     GZ_GAZEPOINT_UPDATE);
 	check_near(record.width, 1280);
@@ -118,7 +118,7 @@ static void numbers_that_were_not_measured_are_nan(void **state)
 	}
 }
 
-static void fields_that_cannot_be_are_refused(void **state)
+static void invalid_fields_are_refused(void **state)
 {
 	(void)state;
 	check_refused("<REC BPOGX=\"0,5\"/>", GZ_MALFORMED_VALUE);
@@ -133,7 +133,7 @@ static void fields_that_cannot_be_are_refused(void **state)
 		      GZ_MALFORMED_VALUE);
 }
 
-static void what_is_not_one_element_is_refused(void **state)
+static void anything_but_one_element_is_refused(void **state)
 {
 	(void)state;
 	static const char *const texts[] = {
@@ -166,8 +166,8 @@ static void one_bad_record_does_not_harm_the_next(void **state)
 	}
 }
 
-/* The longest record that the framer lets through, filled with as many attributes as fit. */
-static void memory_suffices_for_the_longest_record(void **state)
+/* The longest record that the framer accepts, with as many attributes as fit. */
+static void memory_is_enough_for_the_longest_record(void **state)
 {
 	(void)state;
 	static char text[GZ_GAZEPOINT_RECORD_MAX];
@@ -192,7 +192,8 @@ static void frequency_may_be_the_bits_of_a_double(void **state)
 	assert_true(gz_gazepoint_frequency_hz(INT64_MAX) == 0);
 }
 
-/* Feeds @p size bytes in pieces of @p piece and tells what comes out, a letter for each result. */
+/* Feed @p size bytes in pieces of @p piece. Each result is printed: a record in brackets, "!" for
+ * an error. */
 static void frame(const char *bytes, size_t size, size_t piece, char *out, size_t out_size)
 {
 	static struct gz_gazepoint_framer framer;
@@ -220,7 +221,7 @@ static void frame(const char *bytes, size_t size, size_t piece, char *out, size_
 	}
 }
 
-static void records_come_out_however_they_arrive(void **state)
+static void records_are_framed_however_they_arrive(void **state)
 {
 	(void)state;
 	static const char bytes[] = "<A/>\r\n\r\n<B/>\n\0<C/>\r\n  <D/>\r\n<E/>";
@@ -231,7 +232,7 @@ static void records_come_out_however_they_arrive(void **state)
 	}
 }
 
-static void records_that_are_too_long_are_told_once_and_skipped(void **state)
+static void records_that_are_too_long_are_reported_once_and_skipped(void **state)
 {
 	(void)state;
 	static char bytes[5 * GZ_GAZEPOINT_RECORD_MAX + 7];
@@ -242,10 +243,10 @@ static void records_that_are_too_long_are_told_once_and_skipped(void **state)
 	bytes[sizeof bytes - 1] = '\n';
 	for (size_t piece = 1; piece < sizeof bytes; piece = piece * 3 + 1) {
 		frame(bytes, sizeof bytes, piece, out, sizeof out);
-		/* The last one is as long as it may not be. */
+		/* The last record is one byte too long. */
 		assert_string_equal(out, "[<A/>]![<B/>]!");
 	}
-	/* One byte less is let through. */
+	/* One byte less is accepted. */
 	memset(bytes, 'x', GZ_GAZEPOINT_RECORD_MAX);
 	bytes[GZ_GAZEPOINT_RECORD_MAX - 1] = '\n';
 	frame(bytes, GZ_GAZEPOINT_RECORD_MAX, 100, out, sizeof out);
@@ -267,20 +268,20 @@ static int free_memory(void **state)
 	return xml ? -1 : 0;
 }
 
-int main(void)
+TEST_SUITE(gazepoint_protocol)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(record_of_the_api_becomes_numbers),
-		cmocka_unit_test(record_may_have_its_attributes_in_any_order_and_others_between),
-		cmocka_unit_test(answers_say_what_was_asked),
+		cmocka_unit_test(record_may_have_attributes_in_any_order_and_unknown_ones),
+		cmocka_unit_test(answers_name_their_request),
 		cmocka_unit_test(numbers_that_were_not_measured_are_nan),
-		cmocka_unit_test(fields_that_cannot_be_are_refused),
-		cmocka_unit_test(what_is_not_one_element_is_refused),
+		cmocka_unit_test(invalid_fields_are_refused),
+		cmocka_unit_test(anything_but_one_element_is_refused),
 		cmocka_unit_test(one_bad_record_does_not_harm_the_next),
-		cmocka_unit_test(memory_suffices_for_the_longest_record),
+		cmocka_unit_test(memory_is_enough_for_the_longest_record),
 		cmocka_unit_test(frequency_may_be_the_bits_of_a_double),
-		cmocka_unit_test(records_come_out_however_they_arrive),
-		cmocka_unit_test(records_that_are_too_long_are_told_once_and_skipped),
+		cmocka_unit_test(records_are_framed_however_they_arrive),
+		cmocka_unit_test(records_that_are_too_long_are_reported_once_and_skipped),
 	};
 	return cmocka_run_group_tests(tests, make_memory, free_memory);
 }

@@ -1,6 +1,6 @@
-/* hidapi and sysfs beneath the HID driver, against a device of umockdev: run with its library
- * preloaded, which leads accesses of /dev and /sys to it. */
-#include "check.h"
+/* The hidapi and sysfs code of the HID driver with a device of umockdev: run with its library
+ * preloaded, which redirects accesses to /dev and /sys. */
+#include "suite.h"
 
 #include <errno.h>
 #include <linux/hidraw.h>
@@ -34,17 +34,17 @@ static const char devices[] = "P: /devices/pci0/usb1/1-1\n"
 			      "N: hidraw0\nE: SUBSYSTEM=hidraw\nE: DEVNAME=/dev/hidraw0\n"
 			      "L: device=../../../0003:1209:E1E1.0001\n\n";
 
-/* The device; its handlers are called on umockdev's thread while the driver waits for the answer.
- */
+/* The device. umockdev calls its handlers on a thread of its own while the driver waits for the
+ * answer. */
 static struct {
 	UMockdevTestbed *testbed;
 	UMockdevIoctlBase *handler;
-	unsigned char taken[16]; /* the newest feature report set */
+	unsigned char taken[16]; /* the newest feature report that was set */
 	size_t taken_size;
 	bool gone;
 } lab;
 
-/* HIDIOCSFEATURE and HIDIOCGFEATURE, whose request holds a size. */
+/* Numbers of HIDIOCSFEATURE and HIDIOCGFEATURE, whose requests include a size. */
 enum { SET_FEATURE = 0x06, GET_FEATURE = 0x07 };
 
 static gboolean answer_ioctl(UMockdevIoctlBase *base, UMockdevIoctlClient *client, void *user)
@@ -141,14 +141,15 @@ static void port_lists_a_device_by_its_printable_name_with_its_descriptor(void *
 	assert_string_equal(entries[0].serial, "A12");
 	assert_int_equal(entries[0].vendor, 0x1209);
 	assert_int_equal(entries[0].product, 0xe1e1);
-	/* hidapi gives no name that the locale cannot hold; the kernel's is used then. */
+	/* hidapi returns no name that the locale cannot represent; then the name from the kernel is
+	 * used. */
 	assert_string_equal(entries[0].name, "Lab Made ?? Eyes");
 	assert_int_equal(gz_hid_port_descriptor(node, bytes, &size), GZ_OK);
 	assert_int_equal(size, sizeof descriptor);
 	assert_memory_equal(bytes, descriptor, sizeof descriptor);
 }
 
-static void port_that_is_not_there_is_not_opened(void **state)
+static void missing_port_is_not_opened(void **state)
 {
 	(void)state;
 	struct gz_hid_port *port = NULL;
@@ -181,7 +182,7 @@ static void port_feature_reports_go_both_ways_with_their_id_first(void **state)
 	assert_null(port);
 }
 
-static void port_reads_a_report_waits_for_none_and_tells_that_it_is_gone(void **state)
+static void port_read_returns_a_report_or_a_timeout_or_that_it_is_gone(void **state)
 {
 	(void)state;
 	struct gz_hid_port *port = open_port();
@@ -189,7 +190,7 @@ static void port_reads_a_report_waits_for_none_and_tells_that_it_is_gone(void **
 	size_t size = 0;
 	int fd = umockdev_testbed_get_dev_fd(lab.testbed, node);
 	assert_int_equal(gz_hid_port_read(port, bytes, sizeof bytes, 0, &size), GZ_ERR_TIMEOUT);
-	/* Something to be ready for; what is read then comes from answer_read(). */
+	/* Make the descriptor readable; what is then read comes from answer_read(). */
 	assert_int_equal(write(fd, "\n", 1), 1);
 	assert_int_equal(gz_hid_port_read(port, bytes, sizeof bytes, 5000, &size), GZ_OK);
 	assert_int_equal(size, 4);
@@ -200,18 +201,17 @@ static void port_reads_a_report_waits_for_none_and_tells_that_it_is_gone(void **
 	gz_hid_port_close(&port);
 }
 
-int main(void)
+TEST_SUITE(hid_port)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(
 			port_lists_a_device_by_its_printable_name_with_its_descriptor, set_up,
 			tear_down),
-		cmocka_unit_test_setup_teardown(port_that_is_not_there_is_not_opened, set_up,
-						tear_down),
+		cmocka_unit_test_setup_teardown(missing_port_is_not_opened, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(
 			port_feature_reports_go_both_ways_with_their_id_first, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(
-			port_reads_a_report_waits_for_none_and_tells_that_it_is_gone, set_up,
+			port_read_returns_a_report_or_a_timeout_or_that_it_is_gone, set_up,
 			tear_down),
 	};
 	const char *preloaded = getenv("LD_PRELOAD");

@@ -1,17 +1,17 @@
-/* Silence of the HID class, and what the pipeline makes of it. */
-#include "check.h"
+/* Silence of HID trackers, and what the pipeline makes of it. */
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "drivers/hid/hid_silence.h"
+#include "drivers/hid/hid_device.h"
 #include "filter/pipeline.h"
 
 static const int64_t BEGIN_NS = 1000 * GZ_NS_PER_S;
 
-/* So many samples at a rate, and the fillers that the driver would make between them.
- * @return when the last sample was */
+/* Note @p count samples at a rate, and the fillers that the driver would make between them. @return
+ * host time of the last sample */
 static int64_t stream_from(struct gz_hid_silence *silence, int64_t begin_ns, double rate_hz,
 			   int count, int *out_fillers)
 {
@@ -37,14 +37,14 @@ static int64_t stream(struct gz_hid_silence *silence, double rate_hz, int count)
 	return ns;
 }
 
-static void silence_before_the_first_sample_is_none(void **state)
+static void nothing_is_filled_in_before_the_first_sample(void **state)
 {
 	(void)state;
 	struct gz_hid_silence silence = { .nominal_ns = 1e7 };
 	assert_int_equal(gz_hid_silence_due_ns(&silence), INT64_MAX);
 }
 
-static void silence_begins_after_three_periods_and_is_filled_one_a_period(void **state)
+static void silence_begins_after_three_periods_and_gets_a_filler_each_period(void **state)
 {
 	(void)state;
 	const double rates_hz[] = { 30, 60, 250, 2000 };
@@ -57,17 +57,17 @@ static void silence_begins_after_three_periods_and_is_filled_one_a_period(void *
 			double due_ns = arrival_ns + period_ns * (i < 2 ? 3 : i + 1);
 			assert_true(fabs((double)gz_hid_silence_due_ns(&silence) - due_ns) < 1e4);
 			int64_t host_ns = gz_hid_silence_fill(&silence);
-			/* Each at its place, and one period late. */
+			/* Each has the time of the missing sample and comes one period late. */
 			assert_true(fabs((double)host_ns - last_ns - period_ns * i) < 1e4);
 			assert_true(host_ns + period_ns <= due_ns + 1e4);
 		}
 	}
 }
 
-static void silence_is_measured_by_the_rate_that_is_and_not_by_the_stated_one(void **state)
+static void silence_is_judged_by_the_measured_rate_not_by_the_stated_one(void **state)
 {
 	(void)state;
-	/* It says 100 Hz, as the reference driver does whatever it makes. */
+	/* It states 100 Hz, as the reference driver always does. */
 	const double rates_hz[] = { 30, 1000 };
 	for (size_t r = 0; r < 2; r++) {
 		struct gz_hid_silence silence = { .nominal_ns = 1e7 };
@@ -80,13 +80,13 @@ static void silence_is_measured_by_the_rate_that_is_and_not_by_the_stated_one(vo
 	assert_true(fabs(gz_hid_silence_period_ns(&unknown) - 1e9 / 30) < 1);
 }
 
-static void silence_is_none_once_a_tracker_has_become_slower(void **state)
+static void slower_tracker_is_not_silent_once_its_rate_is_measured(void **state)
 {
 	(void)state;
 	struct gz_hid_silence silence = { 0 };
 	int fillers;
 	int64_t ns = stream(&silence, 120, 200);
-	/* From 120 to 30 Hz: for less than a second that looks like blinks. */
+	/* From 120 to 30 Hz: for less than a second this looks like blinks. */
 	ns = stream_from(&silence, ns + 33333333, 30, 30, &fillers);
 	assert_true(fillers > 0);
 	stream_from(&silence, ns + 33333333, 30, 60, &fillers);
@@ -106,7 +106,7 @@ static void silence_and_lost_samples_do_not_stretch_the_period(void **state)
 	assert_true(gz_hid_silence_period_ns(&silence) < 1.1e7);
 }
 
-static void silence_between_bursts_is_none(void **state)
+static void gaps_between_bursts_are_not_silence(void **state)
 {
 	(void)state;
 	/* 250 Hz, four at a time. */
@@ -120,7 +120,7 @@ static void silence_between_bursts_is_none(void **state)
 	}
 	assert_int_equal(early, 0);
 	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns <= 21 * GZ_NS_PER_MS);
-	/* One stall is forgotten. */
+	/* A single stall is forgotten. */
 	stream(&silence, 250, 1);
 	gz_hid_silence_sample(&silence, BEGIN_NS + 4 * GZ_NS_PER_MS, BEGIN_NS + GZ_NS_PER_S);
 	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns > 40 * GZ_NS_PER_MS);
@@ -130,7 +130,7 @@ static void silence_between_bursts_is_none(void **state)
 	assert_true(gz_hid_silence_due_ns(&silence) - silence.arrival_ns < 13 * GZ_NS_PER_MS);
 }
 
-/* What the pipeline says of a tracker that falls silent for @p silent_ms. */
+/* Check the events of the pipeline for a tracker that is silent for @p silent_ms. */
 static void expect_events(double rate_hz, int silent_ms)
 {
 	static struct gz_pipeline pipeline;
@@ -162,7 +162,7 @@ static void expect_events(double rate_hz, int silent_ms)
 		if (out.gaze.event == GZ_EVENT_LOST && lost_ns == 0)
 			lost_ns = sample.host_ns;
 	}
-	/* After three periods, but 10 ms of sample time at high rates. */
+	/* After three periods; at high rates after 10 ms of sample time. */
 	double period_ms = 1e3 / rate_hz;
 	double latest_ms = fmax(3 * period_ms, 10 + 2 * period_ms) + 0.1;
 	if (blink_ns == 0 || gz_ns_to_ms(blink_ns - ns) > latest_ms)
@@ -172,7 +172,7 @@ static void expect_events(double rate_hz, int silent_ms)
 		fail_msg("%g Hz: lost after %g ms", rate_hz, lost_ms);
 }
 
-static void silence_is_a_blink_after_three_periods_and_lost_after_half_a_second(void **state)
+static void silence_is_a_blink_after_three_periods_and_a_loss_after_half_a_second(void **state)
 {
 	(void)state;
 	const double rates_hz[] = { 30, 60, 90, 250, 1200 };
@@ -180,17 +180,17 @@ static void silence_is_a_blink_after_three_periods_and_lost_after_half_a_second(
 		expect_events(rates_hz[r], 1000);
 }
 
-int main(void)
+TEST_SUITE(hid_silence)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(silence_before_the_first_sample_is_none),
-		cmocka_unit_test(silence_begins_after_three_periods_and_is_filled_one_a_period),
-		cmocka_unit_test(silence_is_measured_by_the_rate_that_is_and_not_by_the_stated_one),
-		cmocka_unit_test(silence_between_bursts_is_none),
-		cmocka_unit_test(silence_is_none_once_a_tracker_has_become_slower),
+		cmocka_unit_test(nothing_is_filled_in_before_the_first_sample),
+		cmocka_unit_test(silence_begins_after_three_periods_and_gets_a_filler_each_period),
+		cmocka_unit_test(silence_is_judged_by_the_measured_rate_not_by_the_stated_one),
+		cmocka_unit_test(gaps_between_bursts_are_not_silence),
+		cmocka_unit_test(slower_tracker_is_not_silent_once_its_rate_is_measured),
 		cmocka_unit_test(silence_and_lost_samples_do_not_stretch_the_period),
 		cmocka_unit_test(
-			silence_is_a_blink_after_three_periods_and_lost_after_half_a_second),
+			silence_is_a_blink_after_three_periods_and_a_loss_after_half_a_second),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,10 @@
-/* Numbers of a report, and an eye tracker's reports. */
-#include "check.h"
+/* Numbers in a report, and the reports of an eye tracker. */
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "drivers/hid/hid_tracker.h"
-#include "drivers/hid/hid_usages.h"
 #include "hid_made.h"
 
 static struct gz_hid_descriptor descriptor;
@@ -45,7 +44,7 @@ static void expect_refusal(const struct hid_made *made, enum gz_result expected)
 	assert_int_equal(gz_hid_tracker_find(&descriptor, 0, &tracker, NULL), expected);
 }
 
-/* A tracker whose gaze point is described by these items, and nothing else. */
+/* A tracker whose gaze point is described by these items. */
 static struct hid_made gaze_of(const int64_t *items)
 {
 	struct hid_made made = { 0 };
@@ -80,7 +79,7 @@ static void bits_are_read_at_any_place_and_of_any_number(void **state)
 	assert_int_equal(gz_hid_bits(bytes, sizeof bytes, SIZE_MAX, 8), 0);
 }
 
-static void units_of_each_system_become_ours_and_others_are_refused(void **state)
+static void units_of_each_system_are_converted_and_others_are_refused(void **state)
 {
 	(void)state;
 	static const struct {
@@ -102,7 +101,7 @@ static void units_of_each_system_become_ours_and_others_are_refused(void **state
 		{ 0x1, 0, GZ_HID_LENGTH, GZ_ERR_NOT_FOUND, 0 },
 		{ 0x1001, -6, GZ_HID_TIME, GZ_OK, 1e3 },
 		{ 0x1003, -7, GZ_HID_TIME, GZ_OK, 100 },
-		{ 0x1005, -6, GZ_HID_TIME, GZ_ERR_FORMAT, 0 }, /* a system that is none */
+		{ 0x1005, -6, GZ_HID_TIME, GZ_ERR_FORMAT, 0 }, /* an undefined system of units */
 		{ 0xf001, -6, GZ_HID_TIME, GZ_ERR_FORMAT, 0 },
 		{ 0xf001, 0, GZ_HID_FREQUENCY, GZ_OK, 1 },
 		{ 0xf001, 3, GZ_HID_FREQUENCY, GZ_OK, 1000 },
@@ -133,7 +132,7 @@ static void value_is_scaled_from_its_logical_to_its_physical_range(void **state)
 	struct gz_hid_value value;
 	double number;
 	assert_int_equal(gz_hid_value_from_field(&field, 1, GZ_HID_LENGTH, &value), GZ_OK);
-	/* The second element, -2: 0xffe. */
+	/* The second element is -2: 0xffe. */
 	assert_int_equal(
 		gz_hid_value_read(&value, (const unsigned char[]) { 0, 0xe0, 0xff }, 3, &number),
 		GZ_HID_READ);
@@ -180,12 +179,12 @@ static const struct hid_made_sample looked = {
 	.right = { 280000, 101000, -620000 },
 };
 
-static void expect_looked(const struct gz_hid_input_report *report, bool eyes)
+static void expect_looked(const struct gz_hid_input_report *report, bool eyes, double tolerance_mm)
 {
 	assert_int_equal(report->kind, GZ_HID_INPUT_TRACKING);
 	assert_true(report->has_gaze);
-	expect_near(report->gaze_mm[0], 250, 1e-6);
-	expect_near(report->gaze_mm[1], 120, 1e-6);
+	expect_near(report->gaze_mm[0], 250, tolerance_mm);
+	expect_near(report->gaze_mm[1], 120, tolerance_mm);
 	assert_int_equal(report->has_eye[GZ_EYE_LEFT], eyes);
 	assert_int_equal(report->has_eye[GZ_EYE_RIGHT], eyes);
 	if (!eyes)
@@ -199,21 +198,24 @@ static void expect_looked(const struct gz_hid_input_report *report, bool eyes)
 static void tracker_of_every_layout_is_read(void **state)
 {
 	(void)state;
-	static const double tick_ns[] = { 1000, 1000, 100, 1000 };
-	static const uint64_t ticks[] = { 0x123456789a, 0x123456789a, 0x123456789a * 10,
-					  0x3456789a };
+	static const uint64_t ticks[HID_LAYOUT_COUNT] = {
+		0x123456789a, 0x123456789a,      0x123456789a * 10,
+		0x3456789a,   0x123456789a * 10, 0x123456789a / 1000,
+	};
 	for (int layout = 0; layout < HID_LAYOUT_COUNT; layout++) {
-		unsigned char bytes[128];
+		unsigned char bytes[HID_REPORT_MAX];
 		struct gz_hid_input_report report;
 		struct gz_hid_tracker tracker = made_tracker(layout);
 		size_t size = hid_made_report(layout, &looked, bytes);
 		gz_hid_tracker_read(&tracker, bytes, size, &report);
-		expect_looked(&report, layout != HID_LAYOUT_GAZE_ONLY);
-		assert_true(report.has_ticks);
+		expect_looked(&report, hid_layout_has_eyes(layout),
+			      layout == HID_LAYOUT_POINT ? 0.0127 : 1e-6);
+		assert_int_equal(report.has_ticks, layout != HID_LAYOUT_POINT);
 		if (report.ticks != ticks[layout])
 			fail_msg("layout %d: %llx", layout, (unsigned long long)report.ticks);
-		expect_near(tracker.values[GZ_HID_TICKS].scale, tick_ns[layout], 1e-6);
-		assert_int_equal(tracker.has_eyes, layout != HID_LAYOUT_GAZE_ONLY);
+		expect_near(tracker.values[GZ_HID_TICKS].scale, hid_layout_tick_us(layout) * 1000,
+			    1e-6);
+		assert_int_equal(tracker.has_eyes, hid_layout_has_eyes(layout));
 	}
 }
 
@@ -241,8 +243,8 @@ static void tracker_report_padded_to_the_longest_one_is_read(void **state)
 	(void)state;
 	unsigned char bytes[160] = { 0 };
 	struct gz_hid_input_report report;
-	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_BYTES);
-	hid_made_status(HID_LAYOUT_BYTES, GZ_HID_STATE_READY, 250, bytes);
+	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_REFERENCE);
+	hid_made_status(HID_LAYOUT_REFERENCE, GZ_HID_STATE_READY, 250, bytes);
 	gz_hid_tracker_read(&tracker, bytes, 65, &report);
 	assert_int_equal(report.kind, GZ_HID_INPUT_STATUS);
 	assert_true(report.has_state && report.has_rate);
@@ -250,14 +252,15 @@ static void tracker_report_padded_to_the_longest_one_is_read(void **state)
 	expect_near(report.rate_hz, 250, 0);
 }
 
-static void tracker_report_of_nobody_is_malformed_and_of_another_application_ignored(void **state)
+static void tracker_report_with_an_unknown_id_is_malformed_and_of_another_application_ignored(
+	void **state)
 {
 	(void)state;
 	struct hid_made made = { 0 };
 	unsigned char bytes[16] = { 9 };
 	struct gz_hid_input_report report;
-	hid_made_tracker(&made, HID_LAYOUT_BYTES);
-	/* A head tracker beside it. */
+	hid_made_tracker(&made, HID_LAYOUT_REFERENCE);
+	/* Add a head tracker. */
 	HID_ITEMS(&made, HID_USAGE, 2, HID_COLLECTION, 1, HID_USAGE, 0x10, HID_COLLECTION, 2,
 		  HID_ID, 9, HID_SIZE, 8, HID_COUNT, 2, HID_USAGE, 0x24, HID_COLLECTION, 0,
 		  HID_USAGE, 0x21, HID_USAGE, 0x22, HID_INPUT, 2, HID_END, 0, HID_END, 0, HID_END,
@@ -278,21 +281,21 @@ static void tracker_gaze_outside_its_range_is_malformed(void **state)
 	(void)state;
 	unsigned char bytes[128];
 	struct gz_hid_input_report report;
-	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_BYTES);
+	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_REFERENCE);
 	struct hid_made_sample sample = looked;
 	sample.gaze[1] = 2000001;
-	gz_hid_tracker_read(&tracker, bytes, hid_made_report(HID_LAYOUT_BYTES, &sample, bytes),
+	gz_hid_tracker_read(&tracker, bytes, hid_made_report(HID_LAYOUT_REFERENCE, &sample, bytes),
 			    &report);
 	assert_int_equal(report.kind, GZ_HID_INPUT_MALFORMED);
 	assert_int_equal(report.malformed, GZ_MALFORMED_VALUE);
 	sample.gaze[1] = -2000000;
-	gz_hid_tracker_read(&tracker, bytes, hid_made_report(HID_LAYOUT_BYTES, &sample, bytes),
+	gz_hid_tracker_read(&tracker, bytes, hid_made_report(HID_LAYOUT_REFERENCE, &sample, bytes),
 			    &report);
 	assert_int_equal(report.kind, GZ_HID_INPUT_TRACKING);
 	expect_near(report.gaze_mm[1], -2000, 1e-6);
 }
 
-static void tracker_that_may_say_nothing_is_understood(void **state)
+static void tracker_with_null_values_is_understood(void **state)
 {
 	(void)state;
 	static const int64_t items[] = { HID_UNIT, 0x11, HID_EXPONENT, 0xe, HID_INPUT, 0x42, -1 };
@@ -307,20 +310,20 @@ static void tracker_that_may_say_nothing_is_understood(void **state)
 	expect_near(report.gaze_mm[0], 100, 1e-9);
 }
 
-static void tracker_eyes_that_hold_nothing_are_not_measured(void **state)
+static void tracker_eyes_without_a_position_are_not_measured(void **state)
 {
 	(void)state;
 	static const int32_t positions[][3] = { { 0, 0, 0 },
 						{ 100000, 100000, 49000 },
 						{ 100000, 2000001, 600000 } };
-	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_BYTES);
+	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_REFERENCE);
 	for (size_t i = 0; i < sizeof positions / sizeof *positions; i++) {
 		unsigned char bytes[128];
 		struct gz_hid_input_report report;
 		struct hid_made_sample sample = looked;
 		memcpy(sample.left, positions[i], sizeof sample.left);
 		gz_hid_tracker_read(&tracker, bytes,
-				    hid_made_report(HID_LAYOUT_BYTES, &sample, bytes), &report);
+				    hid_made_report(HID_LAYOUT_REFERENCE, &sample, bytes), &report);
 		assert_int_equal(report.kind, GZ_HID_INPUT_TRACKING);
 		assert_true(report.has_gaze && report.has_eye[GZ_EYE_RIGHT]);
 		assert_false(report.has_eye[GZ_EYE_LEFT]);
@@ -349,7 +352,7 @@ static void tracker_without_a_gaze_point_in_millimetres_is_refused(void **state)
 		struct hid_made made = gaze_of(cases[i]);
 		expect_refusal(&made, GZ_ERR_FORMAT);
 	}
-	/* X and Y in different reports are no point. */
+	/* X and Y in different reports are not a point. */
 	struct hid_made split = { 0 };
 	HID_ITEMS(&split, HID_PAGE, 0x12, HID_USAGE, 1, HID_COLLECTION, 1, HID_USAGE, 0x10,
 		  HID_COLLECTION, 2, HID_USAGE, 0x24, HID_COLLECTION, 0, HID_COUNT, 1, HID_SIZE, 16,
@@ -374,7 +377,7 @@ static void tracker_coordinates_as_a_range_of_usages_or_without_a_unit_are_found
 	expect_near(report.gaze_mm[1], 1, 1e-9);
 }
 
-static void tracker_time_too_long_or_of_another_unit_is_left_out(void **state)
+static void tracker_time_too_long_or_of_another_unit_is_ignored(void **state)
 {
 	(void)state;
 	static const struct {
@@ -391,7 +394,7 @@ static void tracker_time_too_long_or_of_another_unit_is_left_out(void **state)
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		static const int64_t none[] = { HID_UNIT, 0x11, HID_INPUT, 2, -1 };
 		struct hid_made made = gaze_of(none);
-		made.size -= 2; /* back into the tracking data */
+		made.size -= 2; /* reopen the tracking data */
 		HID_ITEMS(&made, HID_UNIT, 0, HID_LOGICAL_MAX, 255, HID_USAGE, 0x20);
 		hid_made_items(&made, cases[i].items);
 		HID_ITEMS(&made, HID_INPUT, 2, HID_END, 0, HID_END, 0);
@@ -399,7 +402,7 @@ static void tracker_time_too_long_or_of_another_unit_is_left_out(void **state)
 		assert_int_equal(tracker.values[GZ_HID_TICKS].present, cases[i].present);
 		assert_int_equal(tracker.time_refused, cases[i].refused);
 		assert_int_equal(tracker.values[GZ_HID_TICKS].bits, cases[i].bits);
-		if (cases[i].bits == 5) /* no unit: nobody knows what it counts */
+		if (cases[i].bits == 5) /* without a unit the tick is unknown */
 			expect_near(tracker.values[GZ_HID_TICKS].scale, 0, 0);
 	}
 }
@@ -427,19 +430,19 @@ static void device_with_two_eye_trackers_has_both(void **state)
 	struct hid_made made = { 0 };
 	unsigned char bytes[128];
 	struct gz_hid_input_report report;
-	hid_made_tracker(&made, HID_LAYOUT_BYTES);
+	hid_made_tracker(&made, HID_LAYOUT_REFERENCE);
 	hid_made_tracker(&made, HID_LAYOUT_TIME64);
 	struct gz_hid_tracker first = find(&made, 0), second = find(&made, 1);
 	assert_int_equal(gz_hid_tracker_count(&descriptor), 2);
 	size_t size = hid_made_report(HID_LAYOUT_TIME64, &looked, bytes);
 	gz_hid_tracker_read(&second, bytes, size, &report);
-	expect_looked(&report, true);
+	expect_looked(&report, true, 1e-6);
 	gz_hid_tracker_read(&first, bytes, size, &report);
 	assert_int_equal(report.kind, GZ_HID_INPUT_OTHER);
 	assert_int_equal(gz_hid_tracker_find(&descriptor, 2, &first, NULL), GZ_ERR_NOT_FOUND);
 }
 
-static void screen_that_cannot_be_is_not_believed(void **state)
+static void impossible_screen_is_not_believed(void **state)
 {
 	(void)state;
 	static const struct {
@@ -450,10 +453,10 @@ static void screen_that_cannot_be_is_not_believed(void **state)
 		{ 527, 296, false },      { 52700000, 29600000, false }, { 527000, 0, false },
 		{ 527000, 60000, false }, { -527000, -296000, false },   { 60000, 110000, true },
 	};
-	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_BYTES);
+	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_REFERENCE);
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		unsigned char bytes[64];
-		size_t size = hid_made_configuration(HID_LAYOUT_BYTES, cases[i].width,
+		size_t size = hid_made_configuration(HID_LAYOUT_REFERENCE, cases[i].width,
 						     cases[i].height, bytes);
 		struct gz_hid_screen screen = gz_hid_tracker_screen(&tracker, bytes + 1, size - 1);
 		if (screen.believed != cases[i].believed)
@@ -464,7 +467,7 @@ static void screen_that_cannot_be_is_not_believed(void **state)
 	}
 }
 
-static void distances_a_tenth_of_what_they_must_be_are_corrected(void **state)
+static void distances_that_are_a_tenth_of_the_true_ones_are_corrected(void **state)
 {
 	(void)state;
 	static const struct {
@@ -473,7 +476,7 @@ static void distances_a_tenth_of_what_they_must_be_are_corrected(void **state)
 		double optimum_mm;
 	} cases[] = {
 		{ 500000, 650000, 900000, true, false, 650 },
-		{ 50000, 65000, 90000, true, true, 650 }, /* the reference drivers' presets */
+		{ 50000, 65000, 90000, true, true, 650 }, /* presets of the reference drivers */
 		{ 0, 0, 0, false, false, 0 },
 		{ 900000, 650000, 500000, false, false, 650 },
 		{ 500, 650, 900, false, false, 0.65 },
@@ -497,12 +500,12 @@ static void mode_is_written_where_the_descriptor_says(void **state)
 {
 	(void)state;
 	unsigned char bytes[2] = { 0xff, 0xff };
-	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_BYTES);
+	struct gz_hid_tracker tracker = made_tracker(HID_LAYOUT_REFERENCE);
 	assert_int_equal(gz_hid_tracker_set_mode(&tracker, bytes, 1, 3), GZ_OK);
 	assert_int_equal(bytes[0], 3);
 	assert_int_equal(bytes[1], 0xff);
 	assert_int_equal(gz_hid_tracker_set_mode(&tracker, bytes, 0, 3), GZ_ERR_NOT_FOUND);
-	/* Three bits in the middle of a byte: the rest stays. */
+	/* Three bits in the middle of a byte: the other bits do not change. */
 	tracker.values[GZ_HID_MODE].at = 2;
 	tracker.values[GZ_HID_MODE].bits = 3;
 	bytes[0] = 0xe3;
@@ -512,7 +515,7 @@ static void mode_is_written_where_the_descriptor_says(void **state)
 	assert_int_equal(gz_hid_tracker_set_mode(&tracker, bytes, 2, 3), GZ_ERR_NOT_FOUND);
 }
 
-static void rate_that_cannot_be_is_unknown(void **state)
+static void impossible_rate_is_unknown(void **state)
 {
 	(void)state;
 	expect_near(gz_hid_believed_rate(100), 100, 0);
@@ -521,31 +524,31 @@ static void rate_that_cannot_be_is_unknown(void **state)
 	expect_near(gz_hid_believed_rate((double)NAN), 0, 0);
 }
 
-int main(void)
+TEST_SUITE(hid_tracker)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bits_are_read_at_any_place_and_of_any_number),
-		cmocka_unit_test(units_of_each_system_become_ours_and_others_are_refused),
+		cmocka_unit_test(units_of_each_system_are_converted_and_others_are_refused),
 		cmocka_unit_test(value_is_scaled_from_its_logical_to_its_physical_range),
 		cmocka_unit_test(value_outside_its_range_is_nothing_or_wrong),
 		cmocka_unit_test(tracker_of_every_layout_is_read),
 		cmocka_unit_test(tracker_report_of_a_wrong_length_is_malformed),
 		cmocka_unit_test(tracker_report_padded_to_the_longest_one_is_read),
 		cmocka_unit_test(
-			tracker_report_of_nobody_is_malformed_and_of_another_application_ignored),
+			tracker_report_with_an_unknown_id_is_malformed_and_of_another_application_ignored),
 		cmocka_unit_test(tracker_gaze_outside_its_range_is_malformed),
-		cmocka_unit_test(tracker_that_may_say_nothing_is_understood),
-		cmocka_unit_test(tracker_eyes_that_hold_nothing_are_not_measured),
+		cmocka_unit_test(tracker_with_null_values_is_understood),
+		cmocka_unit_test(tracker_eyes_without_a_position_are_not_measured),
 		cmocka_unit_test(tracker_without_a_gaze_point_in_millimetres_is_refused),
 		cmocka_unit_test(
 			tracker_coordinates_as_a_range_of_usages_or_without_a_unit_are_found),
-		cmocka_unit_test(tracker_time_too_long_or_of_another_unit_is_left_out),
+		cmocka_unit_test(tracker_time_too_long_or_of_another_unit_is_ignored),
 		cmocka_unit_test(tracker_time_in_eight_separate_items_is_one_number),
 		cmocka_unit_test(device_with_two_eye_trackers_has_both),
-		cmocka_unit_test(screen_that_cannot_be_is_not_believed),
-		cmocka_unit_test(distances_a_tenth_of_what_they_must_be_are_corrected),
+		cmocka_unit_test(impossible_screen_is_not_believed),
+		cmocka_unit_test(distances_that_are_a_tenth_of_the_true_ones_are_corrected),
 		cmocka_unit_test(mode_is_written_where_the_descriptor_says),
-		cmocka_unit_test(rate_that_cannot_be_is_unknown),
+		cmocka_unit_test(impossible_rate_is_unknown),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,16 @@
-/* The viewer's pointer: the feed between two threads, and the driver at its end. */
-#include "check.h"
+/* The pointer of a viewer: the feed between two threads, and the driver that reads it. */
+#include "suite.h"
 
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "driver_stage.h"
 #include "drivers/pointer/pointer_driver.h"
-#include "drivers/pointer/pointer_feed.h"
 
 static struct gz_pointer_feed *feed;
-static union {
-	unsigned char bytes[GZ_DRIVER_SETTINGS_SIZE];
-	max_align_t align;
-} settings;
+static struct driver_stage stage;
 
 static struct gz_pointer_report report_at(int64_t host_ns, float x)
 {
@@ -45,33 +42,14 @@ static int free_feed(void **state)
 
 static struct gz_device *open_device(const char *rate, const char *timeout)
 {
-	struct gz_option_binding binding = { gz_driver_pointer.options,
-					     *gz_driver_pointer.option_count, &settings, NULL };
-	const char *const given[][2] = { { "pointer.rate_hz", rate },
-					 { "pointer.timeout_ms", timeout } };
-	char message[256];
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
-	for (int i = 0; i < 2; i++)
-		assert_int_equal(gz_option_parse(gz_options_find(&binding, 1, given[i][0], NULL),
-						 given[i][1], &settings, message, sizeof message),
-				 GZ_OK);
-	const struct gz_driver_host host = { .pointer = feed };
-	struct gz_device *device = NULL;
-	assert_int_equal(gz_driver_pointer.create(&settings, &host, &device), GZ_OK);
-	assert_int_equal(gz_device_start(device), GZ_OK);
-	return device;
+	stage_reset(&stage, "pointer");
+	stage_set(&stage, "pointer.rate_hz", rate);
+	stage_set(&stage, "pointer.timeout_ms", timeout);
+	stage.host.pointer = feed;
+	return stage_start(&stage);
 }
 
-static struct gz_sample read_one(struct gz_device *device)
-{
-	struct gz_sample sample;
-	enum gz_result result = gz_device_read(device, 5000, &sample);
-	if (result != GZ_OK)
-		fail_msg("no sample: %s", gz_result_text(result));
-	return sample;
-}
-
-static void feed_gives_in_order_what_is_due(void **state)
+static void feed_returns_due_reports_in_order(void **state)
 {
 	(void)state;
 	struct gz_pointer_report report;
@@ -87,7 +65,7 @@ static void feed_gives_in_order_what_is_due(void **state)
 	assert_false(gz_pointer_feed_take(feed, INT64_MAX, &report));
 }
 
-static void feed_that_is_full_refuses_and_goes_on(void **state)
+static void full_feed_refuses_and_continues(void **state)
 {
 	(void)state;
 	struct gz_pointer_report report = report_at(1, 0.5f);
@@ -112,7 +90,7 @@ static void *put_many(void *user)
 	return NULL;
 }
 
-static void feed_between_threads_loses_and_mixes_nothing(void **state)
+static void feed_between_threads_keeps_every_report_whole(void **state)
 {
 	(void)state;
 	pthread_t thread;
@@ -129,11 +107,11 @@ static void feed_between_threads_loses_and_mixes_nothing(void **state)
 	pthread_join(thread, NULL);
 }
 
-static void nobody_who_points_is_an_invalid_sample(void **state)
+static void no_pointer_is_an_invalid_sample(void **state)
 {
 	(void)state;
 	struct gz_device *device = open_device("500", "1000");
-	struct gz_sample sample = read_one(device);
+	struct gz_sample sample = device_read_sample(device);
 	assert_false(sample.valid);
 	assert_true(isnan(sample.point.x));
 	assert_true(sample.device_ns == GZ_NO_DEVICE_TIME);
@@ -145,12 +123,12 @@ static void pointer_at_rest_stays_and_is_sampled_evenly(void **state)
 	(void)state;
 	struct gz_device *device = open_device("500", "60000");
 	put(gz_clock_now_ns() - 1, 0.25f);
-	struct gz_sample first = read_one(device), sample = first;
+	struct gz_sample first = device_read_sample(device), sample = first;
 	for (int i = 1; i < 50; i++)
-		sample = read_one(device);
+		sample = device_read_sample(device);
 	assert_true(sample.valid && sample.point.x == 0.25f && sample.point.y == 0.5f);
 	assert_true(gz_sample_combined_only(&sample));
-	/* However late the reader was, unless too late. */
+	/* Whether or not the reader was late, unless it was too late. */
 	int64_t steps = 49 + (int64_t)sample.lost_before;
 	if (sample.lost_before == 0 && sample.host_ns - first.host_ns < steps * 2 * GZ_NS_PER_MS)
 		fail_msg("%lld ns for %lld steps", (long long)(sample.host_ns - first.host_ns),
@@ -159,16 +137,16 @@ static void pointer_at_rest_stays_and_is_sampled_evenly(void **state)
 	gz_device_destroy(&device);
 }
 
-static void samples_have_the_place_of_their_own_time(void **state)
+static void samples_have_the_position_of_their_own_time(void **state)
 {
 	(void)state;
 	struct gz_device *device = open_device("100", "60000");
 	int64_t now_ns = gz_clock_now_ns();
-	/* A report of the future is not looked at before its time. */
+	/* A report is not used before its time. */
 	put(now_ns - 1, 0.1f);
 	put(now_ns + 35 * GZ_NS_PER_MS, 0.2f);
 	for (int i = 0; i < 12; i++) {
-		struct gz_sample sample = read_one(device);
+		struct gz_sample sample = device_read_sample(device);
 		float expected = sample.host_ns < now_ns - 1                   ? NAN
 				 : sample.host_ns < now_ns + 35 * GZ_NS_PER_MS ? 0.1f
 									       : 0.2f;
@@ -178,7 +156,7 @@ static void samples_have_the_place_of_their_own_time(void **state)
 	gz_device_destroy(&device);
 }
 
-static void pointer_that_leaves_or_is_forgotten_is_invalid(void **state)
+static void pointer_that_leaves_or_times_out_is_invalid(void **state)
 {
 	(void)state;
 	struct gz_device *device = open_device("500", "50");
@@ -187,31 +165,31 @@ static void pointer_that_leaves_or_is_forgotten_is_invalid(void **state)
 	put(now_ns - 1, 0.5f);
 	struct gz_sample sample;
 	do
-		sample = read_one(device);
+		sample = device_read_sample(device);
 	while (sample.host_ns <= now_ns + 50 * GZ_NS_PER_MS - 1);
 	assert_false(sample.valid);
 	assert_true(isnan(sample.point.x));
-	put(gz_clock_now_ns() + 60000 * GZ_NS_PER_MS, 0.5f); /* nothing for a minute */
-	assert_false(read_one(device).valid);
+	put(gz_clock_now_ns() + 60000 * GZ_NS_PER_MS, 0.5f); /* no further report for a minute */
+	assert_false(device_read_sample(device).valid);
 	gz_device_destroy(&device);
 	gz_pointer_feed_destroy(&feed);
 	assert_int_equal(gz_pointer_feed_create(&feed), GZ_OK);
 	device = open_device("500", "0");
-	put(1, 0.5f); /* reported when the machine started */
-	assert_true(read_one(device).valid);
+	put(1, 0.5f); /* reported when the machine was started */
+	assert_true(device_read_sample(device).valid);
 	assert_true(gz_pointer_feed_put(feed, &gone));
-	assert_false(read_one(device).valid);
+	assert_false(device_read_sample(device).valid);
 	gz_device_destroy(&device);
 }
 
-static void late_reader_is_told_what_it_lost(void **state)
+static void late_reader_learns_what_it_lost(void **state)
 {
 	(void)state;
 	struct gz_device *device = open_device("1000", "0");
 	struct gz_device_counters counters;
-	struct gz_sample first = read_one(device);
+	struct gz_sample first = device_read_sample(device);
 	gz_clock_sleep_until_ns(first.host_ns + 300 * GZ_NS_PER_MS);
-	struct gz_sample sample = read_one(device);
+	struct gz_sample sample = device_read_sample(device);
 	int64_t missing = (sample.host_ns - first.host_ns) / GZ_NS_PER_MS - 1;
 	gz_device_get_counters(device, &counters);
 	assert_true(missing >= 298);
@@ -224,25 +202,25 @@ static void late_reader_is_told_what_it_lost(void **state)
 static void without_a_feed_there_is_no_device(void **state)
 {
 	(void)state;
-	const struct gz_driver_host host = { 0 };
-	struct gz_device *device = NULL;
-	assert_int_equal(gz_driver_pointer.create(&settings, &host, &device), GZ_ERR_UNSUPPORTED);
+	struct gz_device *device;
+	stage_reset(&stage, "pointer");
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_UNSUPPORTED);
 	assert_null(device);
 }
 
 #define WITH_FEED(test) cmocka_unit_test_setup_teardown(test, make_feed, free_feed)
 
-int main(void)
+TEST_SUITE(pointer)
 {
 	const struct CMUnitTest tests[] = {
-		WITH_FEED(feed_gives_in_order_what_is_due),
-		WITH_FEED(feed_that_is_full_refuses_and_goes_on),
-		WITH_FEED(feed_between_threads_loses_and_mixes_nothing),
-		WITH_FEED(nobody_who_points_is_an_invalid_sample),
+		WITH_FEED(feed_returns_due_reports_in_order),
+		WITH_FEED(full_feed_refuses_and_continues),
+		WITH_FEED(feed_between_threads_keeps_every_report_whole),
+		WITH_FEED(no_pointer_is_an_invalid_sample),
 		WITH_FEED(pointer_at_rest_stays_and_is_sampled_evenly),
-		WITH_FEED(samples_have_the_place_of_their_own_time),
-		WITH_FEED(pointer_that_leaves_or_is_forgotten_is_invalid),
-		WITH_FEED(late_reader_is_told_what_it_lost),
+		WITH_FEED(samples_have_the_position_of_their_own_time),
+		WITH_FEED(pointer_that_leaves_or_times_out_is_invalid),
+		WITH_FEED(late_reader_learns_what_it_lost),
 		cmocka_unit_test(without_a_feed_there_is_no_device),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,59 +1,38 @@
-/* The driver from USB to samples, with libusb and the clock played by the test. */
-#include "check.h"
+/* The PS VR2 driver from USB to samples, with a fake libusb and a fake clock. */
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
-#include "drivers/driver.h"
+#include "driver_stage.h"
 #include "drivers/psvr2/psvr2_link.h"
-#include "drivers/psvr2/psvr2_packet.h"
 #include "fake_libusb.h"
+#include "psvr2_made.h"
 
-static _Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
-static char logged[4096];
-
-static void remember(void *user, enum gz_log_level level, const char *module, const char *message)
-{
-	(void)user;
-	(void)level;
-	(void)module;
-	size_t used = strlen(logged);
-	snprintf(logged + used, sizeof logged - used, "%s\n", message);
-}
-
-static struct gz_log log_to_here;
+static struct driver_stage stage;
 
 static int set_up(void **state)
 {
 	(void)state;
-	const struct gz_driver *driver = gz_driver_find("psvr2");
-	struct gz_option_binding binding = { driver->options, *driver->option_count, settings,
-					     NULL };
 	fake_usb_reset();
-	logged[0] = '\0';
-	gz_log_init(&log_to_here, remember, NULL, "*:info");
-	return gz_options_preset(&binding) == GZ_OK ? 0 : -1;
+	stage_reset(&stage, "psvr2");
+	return 0;
 }
 
 static enum gz_result create(const char *choice, struct gz_device **device)
 {
-	struct gz_driver_host host = { .log = &log_to_here, .choice = choice };
-	*device = NULL;
-	return gz_driver_find("psvr2")->create(settings, &host, device);
+	return stage_create(&stage, choice, device);
 }
 
 static struct gz_device *start_device(void)
 {
-	struct gz_device *device;
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
-	assert_int_equal(create(NULL, &device), GZ_OK);
-	assert_int_equal(gz_device_start(device), GZ_OK);
-	return device;
+	return stage_start(&stage);
 }
 
-/* Everything that was taken is given back. */
+/* Destroy the device and check that it has released everything. */
 static void finish(struct gz_device **device)
 {
 	gz_device_destroy(device);
@@ -81,7 +60,7 @@ static struct gz_psvr2_packet packet_of(uint32_t frame)
 static void deliver(const struct gz_psvr2_packet *packet)
 {
 	unsigned char bytes[GZ_PSVR2_PACKET_SIZE];
-	gz_psvr2_print(packet, bytes);
+	psvr2_made_packet(packet, bytes);
 	fake_usb_deliver(bytes, sizeof bytes);
 }
 
@@ -106,7 +85,7 @@ static void psvr2_packets_become_samples_with_the_devices_time(void **state)
 	}
 	assert_true(sample.valid && sample.eye[0].valid && sample.eye[1].valid);
 	assert_float_equal(sample.point.x, 0.5f, 1e-6);
-	/* The right eye looks straight ahead from 30 mm beside the middle. */
+	/* The right eye looks straight ahead from 30 mm beside the centre. */
 	assert_float_equal(sample.eye[GZ_EYE_RIGHT].point.x, 0.5 + 30 / 564.677, 1e-5);
 	assert_float_equal(sample.eye[GZ_EYE_LEFT].point.x, 0.5 - 30 / 564.677, 1e-5);
 	assert_float_equal(sample.eye[GZ_EYE_LEFT].pupil_mm, 4, 1e-6);
@@ -143,7 +122,7 @@ static void psvr2_blink_and_unknown_fields_are_not_valid(void **state)
 	finish(&device);
 }
 
-static void psvr2_bad_packets_are_counted_by_reason_and_the_stream_goes_on(void **state)
+static void psvr2_bad_packets_are_counted_by_reason_and_the_stream_continues(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -156,12 +135,12 @@ static void psvr2_bad_packets_are_counted_by_reason_and_the_stream_goes_on(void 
 	fake_usb_fail(LIBUSB_TRANSFER_OVERFLOW);
 	bytes[0] = 'X';
 	fake_usb_deliver(bytes, GZ_PSVR2_PACKET_SIZE);
-	fake_usb_deliver(bytes, 0); /* ends a packet that fills its USB packets */
+	fake_usb_deliver(bytes, 0); /* follows a packet that fills its last USB packet */
 	bytes[0] = 'G';
 	memset(bytes + 0x50, 0x7f, 8);
 	fake_usb_deliver(bytes, GZ_PSVR2_PACKET_SIZE);
-	deliver_frame(5); /* again */
-	deliver_frame(4); /* from before */
+	deliver_frame(5); /* a repeated frame */
+	deliver_frame(4); /* an earlier frame */
 	deliver_frame(6);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
@@ -198,7 +177,7 @@ static void psvr2_frames_that_did_not_arrive_are_lost(void **state)
 		assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
 		assert_int_equal(sample.lost_before, steps[i].lost_before);
 	}
-	/* One frame's number is garbage. */
+	/* The number of one frame is garbage. */
 	struct gz_psvr2_packet leap = packet_of(0x40000000), back = packet_of(6);
 	leap.device_ns = 4 * GZ_NS_PER_MS;
 	back.device_ns = 5 * GZ_NS_PER_MS;
@@ -208,7 +187,7 @@ static void psvr2_frames_that_did_not_arrive_are_lost(void **state)
 		assert_int_equal(gz_device_read(device, 10, &sample), GZ_OK);
 		assert_int_equal(sample.lost_before, 0);
 	}
-	/* A headset that began anew: its clock, too. */
+	/* A headset that has restarted, and its clock with it. */
 	struct gz_psvr2_packet anew = packet_of(1);
 	anew.device_ns = -10 * GZ_NS_PER_S;
 	deliver(&anew);
@@ -219,7 +198,7 @@ static void psvr2_frames_that_did_not_arrive_are_lost(void **state)
 	finish(&device);
 }
 
-static void psvr2_reader_that_is_late_loses_the_oldest_and_knows_how_many(void **state)
+static void psvr2_late_reader_loses_the_oldest_packets_and_knows_how_many(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -240,7 +219,7 @@ static void psvr2_reader_that_is_late_loses_the_oldest_and_knows_how_many(void *
 	finish(&device);
 }
 
-static void psvr2_is_asked_to_go_on_about_once_a_second(void **state)
+static void psvr2_stream_is_requested_about_once_a_second(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -270,7 +249,7 @@ static void psvr2_wait_ends_at_its_time_and_0_polls(void **state)
 	finish(&device);
 }
 
-static void psvr2_stalled_endpoint_is_cleared_and_the_stream_goes_on(void **state)
+static void psvr2_stalled_endpoint_is_cleared_and_the_stream_continues(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -287,7 +266,7 @@ static void psvr2_stalled_endpoint_is_cleared_and_the_stream_goes_on(void **stat
 	deliver_frame(2);
 	assert_int_equal(gz_device_read(device, 100, &sample), GZ_OK);
 	assert_int_equal(sample.seq, 1);
-	assert_non_null(strstr(logged, "stalled"));
+	stage_expect_logged(&stage, "stalled");
 	finish(&device);
 }
 
@@ -306,7 +285,7 @@ static void psvr2_endpoint_that_stays_stalled_counts_as_gone(void **state)
 	finish(&device);
 }
 
-static void psvr2_that_is_unplugged_says_so_after_what_it_sent_before(void **state)
+static void psvr2_unplugged_is_reported_after_the_packets_sent_before(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -322,7 +301,7 @@ static void psvr2_that_is_unplugged_says_so_after_what_it_sent_before(void **sta
 	assert_int_equal(fake_usb.switched_off, 0);
 }
 
-static void psvr2_unplugged_while_it_is_reset_says_so(void **state)
+static void psvr2_unplugged_during_a_reset_is_reported(void **state)
 {
 	(void)state;
 	struct gz_device *device = start_device();
@@ -334,32 +313,32 @@ static void psvr2_unplugged_while_it_is_reset_says_so(void **state)
 	finish(&device);
 }
 
-static void psvr2_that_cannot_be_had_is_refused_with_the_remedy(void **state)
+static void psvr2_that_cannot_be_opened_is_refused_with_the_remedy(void **state)
 {
 	(void)state;
 	struct gz_device *device;
 	assert_int_equal(create(NULL, &device), GZ_ERR_NO_DEVICE);
-	assert_non_null(strstr(logged, "plug one in"));
+	stage_expect_logged(&stage, "plug one in");
 	fake_usb_plug(0x1234, 0x5678);
 	assert_int_equal(create(NULL, &device), GZ_ERR_NO_DEVICE);
 	struct fake_usb_device *headset = fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
 	headset->open_error = LIBUSB_ERROR_ACCESS;
 	assert_int_equal(create(NULL, &device), GZ_ERR_ACCESS);
-	assert_non_null(strstr(logged, "70-gazecast.rules"));
+	stage_expect_logged(&stage, "70-gazecast.rules");
 	headset->open_error = 0;
 	headset->claim_error = LIBUSB_ERROR_BUSY;
 	assert_int_equal(create(NULL, &device), GZ_ERR_BUSY);
-	assert_non_null(strstr(logged, "another program"));
+	stage_expect_logged(&stage, "another program");
 	headset->claim_error = 0;
 	assert_int_equal(create("somebody else's", &device), GZ_ERR_NO_DEVICE);
-	assert_non_null(strstr(logged, "is called somebody else's"));
+	stage_expect_logged(&stage, "is called somebody");
 	assert_null(device);
 	fake_usb.init_error = LIBUSB_ERROR_OTHER;
 	assert_int_equal(create(NULL, &device), GZ_ERR_IO);
 	assert_int_equal(fake_usb.handles + fake_usb.contexts + fake_usb.claims, 0);
 }
 
-static void psvr2_second_headset_is_taken_where_the_first_is_held(void **state)
+static void psvr2_second_headset_is_opened_if_the_first_is_in_use(void **state)
 {
 	(void)state;
 	struct gz_device *device;
@@ -367,7 +346,7 @@ static void psvr2_second_headset_is_taken_where_the_first_is_held(void **state)
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
 	assert_int_equal(create("PlayStation VR2", &device), GZ_OK);
-	assert_non_null(strstr(logged, "not used: PlayStation VR2  at usb 250-3.3"));
+	stage_expect_logged(&stage, "not used: PlayStation VR2  at usb 250-3.3");
 	struct gz_device_info info;
 	gz_device_get_info(device, &info);
 	assert_string_equal(info.name, "PlayStation VR2");
@@ -375,17 +354,19 @@ static void psvr2_second_headset_is_taken_where_the_first_is_held(void **state)
 	finish(&device);
 }
 
-static void psvr2_screen_without_a_size_of_its_own_is_the_configured_display(void **state)
+static void psvr2_screen_without_a_size_is_the_configured_display(void **state)
 {
 	(void)state;
-	struct gz_device *device = NULL;
 	struct gz_device_info info;
-	struct gz_driver_host host = { .display_mm = { 500, 300 } };
+	struct gz_device *device;
+	stage.host.display_mm[0] = 500;
+	stage.host.display_mm[1] = 300;
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
-	assert_int_equal(gz_driver_find("psvr2")->create(settings, &host, &device), GZ_OK);
+	assert_int_equal(create(NULL, &device), GZ_OK);
 	gz_device_get_info(device, &info);
 	assert_true(info.display.mm[0] == 500 && info.display.mm[1] == 300);
 	finish(&device);
+	stage_reset(&stage, "psvr2");
 	assert_int_equal(create(NULL, &device), GZ_OK);
 	gz_device_get_info(device, &info);
 	assert_float_equal(info.display.mm[0], 564.677, 1e-2);
@@ -400,50 +381,48 @@ static void psvr2_that_does_not_switch_on_fails_to_start(void **state)
 	assert_int_equal(create(NULL, &device), GZ_OK);
 	fake_usb.control_error = LIBUSB_ERROR_PIPE;
 	assert_int_equal(gz_device_start(device), GZ_ERR_IO);
-	assert_non_null(strstr(logged, "LIBUSB_ERROR_PIPE"));
+	stage_expect_logged(&stage, "LIBUSB_ERROR_PIPE");
 	finish(&device);
 	assert_int_equal(create(NULL, &device), GZ_OK);
 	finish(&device); /* never started */
 }
 
-static void psvr2_list_tells_what_is_there_and_why_it_cannot_be_used(void **state)
+static void psvr2_list_shows_headsets_and_why_they_cannot_be_used(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	struct gz_driver_host host = { 0 };
-	const struct gz_driver *driver = gz_driver_find("psvr2");
-	assert_int_equal(driver->list(settings, &host, entries), 0);
+	assert_int_equal(stage_list(&stage, entries), 0);
 	fake_usb_plug(0x1234, 0x5678);
 	fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
-	assert_int_equal(driver->list(settings, &host, entries), 1);
+	assert_int_equal(stage_list(&stage, entries), 1);
 	assert_string_equal(entries[0].place, "usb 250-3.2");
-	/* There is no such node here. */
+	/* This device node does not exist. */
 	assert_false(entries[0].usable);
 	assert_non_null(strstr(entries[0].reason, "/dev/bus/usb/250/002"));
 	assert_non_null(strstr(entries[0].reason, "70-gazecast.rules"));
 	assert_int_equal(fake_usb.contexts + fake_usb.handles, 0);
 }
 
-int main(void)
+TEST_SUITE(psvr2)
 {
 #define TEST(name) cmocka_unit_test_setup(name, set_up)
 	const struct CMUnitTest tests[] = {
 		TEST(psvr2_packets_become_samples_with_the_devices_time),
 		TEST(psvr2_blink_and_unknown_fields_are_not_valid),
-		TEST(psvr2_bad_packets_are_counted_by_reason_and_the_stream_goes_on),
+		TEST(psvr2_bad_packets_are_counted_by_reason_and_the_stream_continues),
 		TEST(psvr2_frames_that_did_not_arrive_are_lost),
-		TEST(psvr2_reader_that_is_late_loses_the_oldest_and_knows_how_many),
-		TEST(psvr2_is_asked_to_go_on_about_once_a_second),
+		TEST(psvr2_late_reader_loses_the_oldest_packets_and_knows_how_many),
+		TEST(psvr2_stream_is_requested_about_once_a_second),
 		TEST(psvr2_wait_ends_at_its_time_and_0_polls),
-		TEST(psvr2_stalled_endpoint_is_cleared_and_the_stream_goes_on),
+		TEST(psvr2_stalled_endpoint_is_cleared_and_the_stream_continues),
 		TEST(psvr2_endpoint_that_stays_stalled_counts_as_gone),
-		TEST(psvr2_that_is_unplugged_says_so_after_what_it_sent_before),
-		TEST(psvr2_unplugged_while_it_is_reset_says_so),
-		TEST(psvr2_that_cannot_be_had_is_refused_with_the_remedy),
-		TEST(psvr2_second_headset_is_taken_where_the_first_is_held),
-		TEST(psvr2_screen_without_a_size_of_its_own_is_the_configured_display),
+		TEST(psvr2_unplugged_is_reported_after_the_packets_sent_before),
+		TEST(psvr2_unplugged_during_a_reset_is_reported),
+		TEST(psvr2_that_cannot_be_opened_is_refused_with_the_remedy),
+		TEST(psvr2_second_headset_is_opened_if_the_first_is_in_use),
+		TEST(psvr2_screen_without_a_size_is_the_configured_display),
 		TEST(psvr2_that_does_not_switch_on_fails_to_start),
-		TEST(psvr2_list_tells_what_is_there_and_why_it_cannot_be_used),
+		TEST(psvr2_list_shows_headsets_and_why_they_cannot_be_used),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

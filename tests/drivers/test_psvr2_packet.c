@@ -1,49 +1,42 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "drivers/psvr2/psvr2_packet.h"
+#include "frame_bytes.h"
+#include "psvr2_made.h"
 
-static void put_u32(unsigned char *bytes, uint32_t value)
-{
-	for (int i = 0; i < 4; i++)
-		bytes[i] = (unsigned char)(value >> (8 * i));
-}
+static const struct gz_psvr2_packet made = {
+	.device_ns = INT64_C(0x123489abcdef) * 1000,
+	.frame = 77,
+	.eye = {
+		[GZ_EYE_LEFT] = { .ray = { true, true, { -31, -2, -5 }, { 0, -0.6f, 0.8f } },
+				  .has_pupil = true, .pupil_mm = 3.5f },
+		[GZ_EYE_RIGHT] = { .ray = { .has_origin = true, .origin_mm = { 32, 0, 0 } }, .blink = true },
+	},
+	.combined = { true, true, { 0, 0, 0 }, { 0, 0, 2 } }, /* not of unit length */
+	.has_convergence = true,
+	.convergence_mm = 900,
+};
 
-static void put_f32(unsigned char *bytes, float value)
-{
-	uint32_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	put_u32(bytes, bits);
-}
-
-static void put_vector(unsigned char *bytes, float x, float y, float z)
-{
-	put_u32(bytes, 1);
-	put_f32(bytes + 4, x);
-	put_f32(bytes + 8, y);
-	put_f32(bytes + 12, z);
-}
-
-/* Written by the described offsets, not by the code under test. */
 static void make_packet(unsigned char bytes[GZ_PSVR2_PACKET_SIZE])
 {
-	memset(bytes, 0, GZ_PSVR2_PACKET_SIZE);
-	memcpy(bytes, "GS", 2);
-	put_u32(bytes + 0x50, 0x89abcdef);
-	put_u32(bytes + 0x54, 0x00001234);
-	put_u32(bytes + 0x58, 77);
-	put_vector(bytes + 0x5c, 31, 2, -5); /* left eye: x grows to the left */
-	put_vector(bytes + 0x6c, 0, 0.6f, 0.8f);
-	put_u32(bytes + 0x7c, 1);
-	put_f32(bytes + 0x80, 3.5f);
-	put_vector(bytes + 0xa4, -32, 0, 0); /* right eye, without direction and pupil */
-	put_u32(bytes + 0xa4 + 0x40, 1);
-	put_u32(bytes + 0xa4 + 0x44, 1);
-	put_vector(bytes + 0xec, 0, 0, 0);
-	put_vector(bytes + 0xfc, 0, 0, 2); /* not of unit length */
-	put_f32(bytes + 0x144, 900);
+	psvr2_made_packet(&made, bytes);
+}
+
+/* Some fields at their described offsets, in device axes: x to the left, y up. */
+static void psvr2_made_packet_has_the_described_layout(void **state)
+{
+	(void)state;
+	unsigned char bytes[GZ_PSVR2_PACKET_SIZE], expected[4];
+	make_packet(bytes);
+	assert_memory_equal(bytes, "GS", 2);
+	frame_put_f32(expected, 31);
+	assert_memory_equal(bytes + 0x60, expected, 4);
+	frame_put_f32(expected, 0.6f);
+	assert_memory_equal(bytes + 0x74, expected, 4);
+	frame_put_f32(expected, 900);
+	assert_memory_equal(bytes + 0x144, expected, 4);
 }
 
 static void psvr2_packet_is_read_at_the_described_offsets(void **state)
@@ -118,25 +111,25 @@ static void psvr2_packet_without_magic_or_with_an_impossible_time_is_refused(voi
 	static const uint32_t tops[] = { 0x7fffffff, 0x80000000, 0x00218def, 0xffd00000 };
 	for (size_t i = 0; i < sizeof tops / sizeof *tops; i++) {
 		make_packet(bytes);
-		put_u32(bytes + 0x54, tops[i]);
+		frame_put(bytes + PSVR2_AT_TIME + 4, 4, tops[i]);
 		assert_int_equal(gz_psvr2_parse(bytes, sizeof bytes, &packet, &malformed),
 				 GZ_ERR_PROTOCOL);
 		assert_int_equal(malformed, GZ_MALFORMED_VALUE);
 	}
 }
 
-static void psvr2_field_that_is_no_number_counts_as_unknown(void **state)
+static void psvr2_field_that_is_not_a_number_counts_as_unknown(void **state)
 {
 	(void)state;
 	unsigned char bytes[GZ_PSVR2_PACKET_SIZE];
 	struct gz_psvr2_packet packet;
 	enum gz_malformed malformed;
 	make_packet(bytes);
-	put_f32(bytes + 0x5c + 8, NAN);
-	put_vector(bytes + 0x6c, 0, 0, 0);
-	put_f32(bytes + 0x80, -1);
-	put_f32(bytes + 0xfc + 12, INFINITY);
-	put_f32(bytes + 0x144, NAN);
+	frame_put_f32(bytes + PSVR2_AT_LEFT + 8, NAN);
+	memset(bytes + PSVR2_AT_LEFT + PSVR2_AT_DIRECTION + 4, 0, 12);
+	frame_put_f32(bytes + PSVR2_AT_LEFT + PSVR2_AT_PUPIL + 4, -1);
+	frame_put_f32(bytes + PSVR2_AT_COMBINED + PSVR2_AT_DIRECTION + 12, INFINITY);
+	frame_put_f32(bytes + PSVR2_AT_CONVERGENCE, NAN);
 	assert_int_equal(gz_psvr2_parse(bytes, sizeof bytes, &packet, &malformed), GZ_OK);
 	const struct gz_psvr2_eye *left = &packet.eye[GZ_EYE_LEFT];
 	assert_false(left->ray.has_origin || left->ray.has_direction || left->has_pupil);
@@ -145,7 +138,7 @@ static void psvr2_field_that_is_no_number_counts_as_unknown(void **state)
 	assert_false(packet.combined.has_direction || packet.has_convergence);
 }
 
-static void psvr2_packet_survives_bytes(void **state)
+static void psvr2_packet_survives_a_round_trip(void **state)
 {
 	(void)state;
 	unsigned char bytes[GZ_PSVR2_PACKET_SIZE], again[GZ_PSVR2_PACKET_SIZE];
@@ -153,7 +146,7 @@ static void psvr2_packet_survives_bytes(void **state)
 	enum gz_malformed malformed;
 	make_packet(bytes);
 	assert_int_equal(gz_psvr2_parse(bytes, sizeof bytes, &packet, &malformed), GZ_OK);
-	gz_psvr2_print(&packet, again);
+	psvr2_made_packet(&packet, again);
 	assert_int_equal(gz_psvr2_parse(again, sizeof again, &read, &malformed), GZ_OK);
 	assert_int_equal(read.device_ns, packet.device_ns);
 	assert_int_equal(read.frame, packet.frame);
@@ -174,15 +167,16 @@ static void psvr2_request_has_the_described_layout(void **state)
 	assert_memory_equal(bytes, off, sizeof off);
 }
 
-int main(void)
+TEST_SUITE(psvr2_packet)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(psvr2_made_packet_has_the_described_layout),
 		cmocka_unit_test(psvr2_packet_is_read_at_the_described_offsets),
 		cmocka_unit_test(psvr2_short_form_lacks_only_the_convergence),
 		cmocka_unit_test(psvr2_packet_of_any_other_length_is_refused_by_reason),
 		cmocka_unit_test(psvr2_packet_without_magic_or_with_an_impossible_time_is_refused),
-		cmocka_unit_test(psvr2_field_that_is_no_number_counts_as_unknown),
-		cmocka_unit_test(psvr2_packet_survives_bytes),
+		cmocka_unit_test(psvr2_field_that_is_not_a_number_counts_as_unknown),
+		cmocka_unit_test(psvr2_packet_survives_a_round_trip),
 		cmocka_unit_test(psvr2_request_has_the_described_layout),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

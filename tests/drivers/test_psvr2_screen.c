@@ -1,8 +1,8 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
-#include "drivers/psvr2/psvr2_screen.h"
+#include "drivers/psvr2/psvr2_packet.h"
 
 static const struct gz_psvr2_screen_params flat = { .distance_mm = 600, .size_mm = { 500, 300 } };
 
@@ -11,7 +11,7 @@ static struct gz_psvr2_ray ray(float ox, float oy, float oz, float dx, float dy,
 	return (struct gz_psvr2_ray) { true, true, { ox, oy, oz }, { dx, dy, dz } };
 }
 
-/* The ray from @p origin to a place. */
+/* The ray from @p origin to a point. */
 static struct gz_psvr2_ray towards(const float origin[3], double x, double y, double z)
 {
 	double d[3] = { x - (double)origin[0], y - (double)origin[1], z - (double)origin[2] };
@@ -30,7 +30,7 @@ static void require_point(const struct gz_psvr2_screen_params *params, struct gz
 		fail_msg("%g %g, expected %g %g", (double)point.x, (double)point.y, x, y);
 }
 
-static void screen_straight_ahead_is_met_in_its_middle_and_corners(void **state)
+static void screen_straight_ahead_is_met_at_its_centre_and_corners(void **state)
 {
 	(void)state;
 	const float eye[3] = { -32, 4, -7 };
@@ -49,8 +49,7 @@ static void screen_that_is_offset_is_met_where_it_is(void **state)
 	require_point(&params, ray(0, 0, 0, 0, 0, 1), 0.3, 0.6);
 }
 
-/* The right edge of a screen turned by yaw comes nearer, the lower one by pitch; roll is clockwise.
- */
+/* Yaw moves the right edge of a screen nearer, pitch the lower edge; roll is clockwise. */
 static void screen_that_is_turned_is_met_where_it_is(void **state)
 {
 	(void)state;
@@ -70,7 +69,7 @@ static void screen_that_is_turned_is_met_where_it_is(void **state)
 	require_point(&params, towards(eye, 0, 250, 600), 1, 0.5);
 }
 
-static void screen_is_not_met_by_a_ray_that_leads_elsewhere(void **state)
+static void screen_is_not_met_by_a_ray_that_misses_its_plane(void **state)
 {
 	(void)state;
 	struct gz_psvr2_screen screen = gz_psvr2_screen_make(&flat);
@@ -92,13 +91,13 @@ static void screen_is_not_met_by_a_ray_that_leads_elsewhere(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(psvr2_screen)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(screen_straight_ahead_is_met_in_its_middle_and_corners),
+		cmocka_unit_test(screen_straight_ahead_is_met_at_its_centre_and_corners),
 		cmocka_unit_test(screen_that_is_offset_is_met_where_it_is),
 		cmocka_unit_test(screen_that_is_turned_is_met_where_it_is),
-		cmocka_unit_test(screen_is_not_met_by_a_ray_that_leads_elsewhere),
+		cmocka_unit_test(screen_is_not_met_by_a_ray_that_misses_its_plane),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The driver against a Pupil Capture that the test plays. */
-#include "check.h"
+/* The Pupil driver with a fake Pupil Capture. */
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,33 +7,20 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "drivers/pupil/pupil_driver.h"
+#include "driver_stage.h"
 #include "pupil_capture.h"
 
-/* Patience for what a busy machine may delay, ns. */
+/* Longest wait on a busy machine, ns. */
 #define PATIENCE_NS (20 * GZ_NS_PER_S)
 
 static struct pupil_capture capture;
 static struct gz_device *device;
-static _Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
-
-static void set_option(const char *key, const char *text)
-{
-	const struct gz_driver *driver = &gz_driver_pupil;
-	struct gz_option_binding binding = { driver->options, *driver->option_count, settings,
-					     NULL };
-	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
-	assert_non_null(option);
-	assert_int_equal(gz_option_parse(option, text, settings, NULL, 0), GZ_OK);
-}
+static struct driver_stage stage;
 
 static int begin(void **state)
 {
 	(void)state;
-	const struct gz_driver *driver = &gz_driver_pupil;
-	struct gz_option_binding binding = { driver->options, *driver->option_count, settings,
-					     NULL };
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	stage_reset(&stage, "pupil");
 	memset(&capture, 0, sizeof capture);
 	return 0;
 }
@@ -48,17 +35,17 @@ static int end(void **state)
 
 static enum gz_result open_device(void)
 {
-	return gz_driver_pupil.create(settings, &(struct gz_driver_host) { 0 }, &device);
+	return stage_create(&stage, NULL, &device);
 }
 
-/* On a machine that is busy, the first answer may take longer than the driver waits. */
+/* On a busy machine the first answer may take longer than the driver waits. */
 static void connect_device(const char *surface)
 {
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	enum gz_result result;
 	pupil_capture_start(&capture);
-	set_option("pupil.address", capture.address);
-	set_option("pupil.surface", surface);
+	stage_set(&stage, "pupil.address", capture.address);
+	stage_set(&stage, "pupil.surface", surface);
 	do
 		result = open_device();
 	while (result == GZ_ERR_NO_DEVICE && gz_clock_now_ns() < deadline_ns);
@@ -68,16 +55,10 @@ static void connect_device(const char *surface)
 
 static void read_one(struct gz_sample *sample)
 {
-	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
-	enum gz_result result;
-	do
-		result = gz_device_read(device, 20, sample);
-	while (result == GZ_ERR_TIMEOUT && gz_clock_now_ns() < deadline_ns);
-	if (result != GZ_OK)
-		fail_msg("no sample: %s", gz_result_text(result));
+	*sample = device_read_sample(device);
 }
 
-/* The number of the sample that is at @p point, of 64. */
+/* The number, modulo 64, of the sample with this point. */
 static int number_at(struct gz_point point, double scale)
 {
 	for (uint64_t i = 0; i < 64; i++) {
@@ -93,9 +74,7 @@ static int number_at(struct gz_point point, double scale)
 
 static struct gz_device_counters counters(void)
 {
-	struct gz_device_counters now;
-	gz_device_get_counters(device, &now);
-	return now;
+	return device_counters(device);
 }
 
 static void assert_near(float value, double expected)
@@ -125,7 +104,7 @@ static void gaze_of_two_eyes_becomes_samples(void **state)
 			assert_near(sample.eye[eye].confidence, (double)0.9f);
 			assert_near(sample.eye[eye].origin_mm[0], eye == GZ_EYE_RIGHT ? 30 : -30);
 		}
-		/* Directions have unit length whatever came. */
+		/* Directions have unit length even if those sent do not. */
 		assert_near(sample.eye[GZ_EYE_RIGHT].direction[2], 1);
 		assert_near(sample.eye[GZ_EYE_LEFT].direction[1], 1);
 	}
@@ -146,12 +125,12 @@ static void gaze_of_one_eye_leaves_the_other_unmeasured(void **state)
 	assert_true(isnan(sample.eye[GZ_EYE_LEFT].pupil_mm));
 }
 
-static void surface_gives_the_place_and_its_gaze_the_pupils(void **state)
+static void surface_gives_the_point_and_its_gaze_the_pupils(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
 	connect_device("screen");
-	/* The gaze messages of the first surface message may have come before we listened. */
+	/* The gaze messages for the first surface message may have come before the subscription. */
 	for (int i = 0; i < PUPIL_CAPTURE_ENTRIES; i++)
 		read_one(&sample);
 	int last = number_at(sample.point, 0.5);
@@ -170,14 +149,14 @@ static void confidence_below_the_limit_is_invalid(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
-	set_option("pupil.confidence", "0.89");
+	stage_set(&stage, "pupil.confidence", "0.89");
 	connect_device("");
 	read_one(&sample);
 	assert_false(sample.valid);                  /* 0.875 */
 	assert_true(sample.eye[GZ_EYE_RIGHT].valid); /* 0.9 */
 }
 
-static void clock_of_pupil_is_told_from_ours(void **state)
+static void pupil_clock_is_mapped_to_ours(void **state)
 {
 	(void)state;
 	static const int64_t ahead_ns[] = { -1000 * GZ_NS_PER_S, 1700000000 * GZ_NS_PER_S };
@@ -195,8 +174,8 @@ static void clock_of_pupil_is_told_from_ours(void **state)
 			int64_t shows_ns = pupil_capture_time_ns(&capture, sample.host_ns);
 			sum_ms += gz_ns_to_ms(shows_ns - sample.device_ns) / 50;
 		}
-		/* How far host time is from when the sample was exposed. On a busy machine answers
-		 * are late one way. */
+		/* Error of host time relative to the exposure. On a busy machine answers are
+		 * delayed one way. */
 		if (fabs(sum_ms) > 2)
 			fail_msg("%g ms off", sum_ms);
 		struct gz_clock_status clock = counters().clock;
@@ -206,7 +185,7 @@ static void clock_of_pupil_is_told_from_ours(void **state)
 	}
 }
 
-static void clock_that_is_set_is_found_and_time_goes_on(void **state)
+static void clock_that_is_set_is_noticed_and_time_continues(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
@@ -225,7 +204,7 @@ static void clock_that_is_set_is_found_and_time_goes_on(void **state)
 	assert_true(settled);
 }
 
-static void garbage_is_counted_by_reason_and_the_stream_goes_on(void **state)
+static void garbage_is_counted_by_reason_and_the_stream_continues(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
@@ -257,7 +236,7 @@ static void duplicates_are_stale_and_missing_samples_lost(void **state)
 	do
 		read_one(&sample);
 	while (sample.lost_before == 0 && gz_clock_now_ns() < deadline_ns);
-	/* The period is followed, not told: it may be a little off. */
+	/* The period is estimated, so it may be a little off. */
 	assert_in_range(sample.lost_before, 15, 21);
 	assert_int_equal(counters().lost, lost + sample.lost_before);
 	atomic_store(&capture.twice, true);
@@ -282,7 +261,7 @@ static void silence_is_a_timeout_and_the_stream_may_return(void **state)
 	read_one(&sample);
 }
 
-static void pupil_that_dies_is_no_device_and_may_return_at_another_port(void **state)
+static void pupil_that_dies_is_gone_and_may_return_at_another_port(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
@@ -303,7 +282,7 @@ static void pupil_that_dies_is_no_device_and_may_return_at_another_port(void **s
 	assert_int_equal(sample.seq, 0);
 }
 
-static void pupil_that_begins_anew_at_once_is_followed_to_its_new_port(void **state)
+static void pupil_that_restarts_at_once_is_followed_to_its_new_port(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
@@ -313,14 +292,14 @@ static void pupil_that_begins_anew_at_once_is_followed_to_its_new_port(void **st
 	pupil_capture_start(&capture);
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	uint64_t old = sample.seq;
-	/* What was on its way may still come. */
+	/* Messages that were already sent may still come. */
 	while (sample.seq < old + 20 && gz_clock_now_ns() < deadline_ns)
 		if (gz_device_read(device, 100, &sample) == GZ_ERR_NO_DEVICE)
 			fail_msg("was given up");
 	assert_true(sample.seq >= old + 20);
 }
 
-static void pupil_that_does_not_answer_well_is_refused(void **state)
+static void pupil_with_bad_answers_is_refused(void **state)
 {
 	(void)state;
 	static const char *const answers[] = { "", "0", "65536", "x", "TCP is off; use ipc" };
@@ -328,7 +307,7 @@ static void pupil_that_does_not_answer_well_is_refused(void **state)
 		begin(NULL);
 		capture.port_answer = answers[i];
 		pupil_capture_start(&capture);
-		set_option("pupil.address", capture.address);
+		stage_set(&stage, "pupil.address", capture.address);
 		assert_int_equal(open_device(), GZ_ERR_NO_DEVICE);
 		assert_null(device);
 		pupil_capture_stop(&capture);
@@ -336,13 +315,13 @@ static void pupil_that_does_not_answer_well_is_refused(void **state)
 	begin(NULL);
 	atomic_store(&capture.deaf, true);
 	pupil_capture_start(&capture);
-	set_option("pupil.address", capture.address);
+	stage_set(&stage, "pupil.address", capture.address);
 	int64_t begin_ns = gz_clock_now_ns();
 	assert_int_equal(open_device(), GZ_ERR_NO_DEVICE);
 	assert_true(gz_clock_now_ns() - begin_ns < 2 * GZ_NS_PER_S);
 }
 
-static void addresses_that_are_none_are_refused(void **state)
+static void malformed_addresses_are_refused(void **state)
 {
 	(void)state;
 	static const char *const addresses[] = { "",
@@ -355,58 +334,56 @@ static void addresses_that_are_none_are_refused(void **state)
 						 "tcp://:50020",
 						 "ipc:///tmp/x:1" };
 	for (size_t i = 0; i < sizeof addresses / sizeof *addresses; i++) {
-		set_option("pupil.address", addresses[i]);
+		stage_set(&stage, "pupil.address", addresses[i]);
 		if (open_device() != GZ_ERR_INVAL)
 			fail_msg("\"%s\" was taken", addresses[i]);
 		assert_null(device);
 	}
 }
 
-static void pupil_that_is_there_is_listed(void **state)
+static void running_pupil_is_listed(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	const struct gz_driver_host host = { 0 };
 	pupil_capture_start(&capture);
-	set_option("pupil.address", capture.address);
+	stage_set(&stage, "pupil.address", capture.address);
 	size_t count = 0;
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	while (count == 0 && gz_clock_now_ns() < deadline_ns)
-		count = gz_driver_pupil.list(settings, &host, entries);
+		count = stage_list(&stage, entries);
 	assert_int_equal(count, 1);
 	assert_string_equal(entries[0].name, "Pupil Capture 3.5.1");
 	assert_string_equal(entries[0].place, capture.address);
 	assert_true(entries[0].usable);
 	pupil_capture_stop(&capture);
-	assert_int_equal(gz_driver_pupil.list(settings, &host, entries), 0);
+	assert_int_equal(stage_list(&stage, entries), 0);
 }
 
-int main(void)
+TEST_SUITE(pupil)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(gaze_of_two_eyes_becomes_samples, begin, end),
 		cmocka_unit_test_setup_teardown(gaze_of_one_eye_leaves_the_other_unmeasured, begin,
 						end),
-		cmocka_unit_test_setup_teardown(surface_gives_the_place_and_its_gaze_the_pupils,
+		cmocka_unit_test_setup_teardown(surface_gives_the_point_and_its_gaze_the_pupils,
 						begin, end),
 		cmocka_unit_test_setup_teardown(confidence_below_the_limit_is_invalid, begin, end),
-		cmocka_unit_test_setup_teardown(clock_of_pupil_is_told_from_ours, begin, end),
-		cmocka_unit_test_setup_teardown(clock_that_is_set_is_found_and_time_goes_on, begin,
-						end),
-		cmocka_unit_test_setup_teardown(garbage_is_counted_by_reason_and_the_stream_goes_on,
+		cmocka_unit_test_setup_teardown(pupil_clock_is_mapped_to_ours, begin, end),
+		cmocka_unit_test_setup_teardown(clock_that_is_set_is_noticed_and_time_continues,
 						begin, end),
+		cmocka_unit_test_setup_teardown(
+			garbage_is_counted_by_reason_and_the_stream_continues, begin, end),
 		cmocka_unit_test_setup_teardown(duplicates_are_stale_and_missing_samples_lost,
 						begin, end),
 		cmocka_unit_test_setup_teardown(silence_is_a_timeout_and_the_stream_may_return,
 						begin, end),
 		cmocka_unit_test_setup_teardown(
-			pupil_that_dies_is_no_device_and_may_return_at_another_port, begin, end),
+			pupil_that_dies_is_gone_and_may_return_at_another_port, begin, end),
 		cmocka_unit_test_setup_teardown(
-			pupil_that_begins_anew_at_once_is_followed_to_its_new_port, begin, end),
-		cmocka_unit_test_setup_teardown(pupil_that_does_not_answer_well_is_refused, begin,
-						end),
-		cmocka_unit_test_setup_teardown(addresses_that_are_none_are_refused, begin, end),
-		cmocka_unit_test_setup_teardown(pupil_that_is_there_is_listed, begin, end),
+			pupil_that_restarts_at_once_is_followed_to_its_new_port, begin, end),
+		cmocka_unit_test_setup_teardown(pupil_with_bad_answers_is_refused, begin, end),
+		cmocka_unit_test_setup_teardown(malformed_addresses_are_refused, begin, end),
+		cmocka_unit_test_setup_teardown(running_pupil_is_listed, begin, end),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 
 #define START_NS (1000 * GZ_NS_PER_S)
 
-/* A Pupil clock that is ahead and runs fast, seen through a network. */
+/* A Pupil clock with an offset and a skew, seen through a network. */
 struct pupil {
 	int64_t ahead_ns;
 	double skew;
@@ -19,7 +19,7 @@ static int64_t shows(const struct pupil *pupil, int64_t host_ns)
 	return host_ns + pupil->ahead_ns + (int64_t)(pupil->skew * (double)(host_ns - START_NS));
 }
 
-/* A round at @p host_ns: most exchanges take 0.2 ms both ways, some are held up on the way back. */
+/* A round at @p host_ns: most exchanges take 0.2 ms each way, some are delayed on the way back. */
 static enum gz_pupil_sync run_round(struct gz_pupil_clock *clock, const struct pupil *pupil,
 				    int64_t host_ns)
 {
@@ -46,7 +46,7 @@ static void assert_maps(struct gz_pupil_clock *clock, const struct pupil *pupil,
 		fail_msg("%lld ns off, believed %d", (long long)(answer_ns - host_ns), believed);
 }
 
-static void offset_is_found_in_spite_of_slow_answers(void **state)
+static void offset_is_found_despite_slow_answers(void **state)
 {
 	(void)state;
 	/* Ahead, behind, and by as much as wall time is ahead of uptime. */
@@ -66,7 +66,7 @@ static void offset_is_found_in_spite_of_slow_answers(void **state)
 static void equal_delays_both_ways_leave_no_error(void **state)
 {
 	(void)state;
-	/* Pupil's time is that of the middle, whatever the round trip. */
+	/* Pupil time is that of the middle, whatever the round trip. */
 	for (int64_t delay_ns = 0; delay_ns <= 10 * GZ_NS_PER_MS; delay_ns += 2 * GZ_NS_PER_MS) {
 		struct gz_pupil_clock clock = { 0 };
 		for (int i = 0; i < GZ_PUPIL_EXCHANGES; i++)
@@ -84,7 +84,7 @@ static void drift_is_followed_between_rounds(void **state)
 	for (int i = 0; i < 20; i++) {
 		int64_t host_ns = START_NS + i * 10 * GZ_NS_PER_S;
 		assert_int_equal(run_round(&clock, &pupil, host_ns), GZ_PUPIL_SYNC_DONE);
-		/* Without the slope it would be off by 0.8 ms before the next round. */
+		/* Without the slope the error before the next round would be 0.8 ms. */
 		if (i > 0)
 			assert_maps(&clock, &pupil, host_ns + 9 * GZ_NS_PER_S, 30000);
 	}
@@ -94,13 +94,13 @@ static void drift_is_followed_between_rounds(void **state)
 	assert_int_equal(clock.round_count, GZ_PUPIL_ROUNDS);
 }
 
-static void first_exchanges_make_do_until_the_round_is_complete(void **state)
+static void first_exchanges_are_used_until_the_round_is_complete(void **state)
 {
 	(void)state;
 	struct gz_pupil_clock clock = { 0 };
 	bool believed;
 	assert_int_equal(gz_pupil_clock_status(&clock).tick, GZ_CLOCK_NONE);
-	/* Nothing is known: the arrival has to do, and is told to be doubtful. */
+	/* Nothing is known yet: the answer is the arrival, and is marked as doubtful. */
 	assert_int_equal(gz_pupil_clock_map(&clock, 42, START_NS, &believed), START_NS);
 	assert_false(believed);
 	gz_pupil_clock_exchange(&clock, START_NS, 7 * GZ_NS_PER_S, START_NS + 8 * GZ_NS_PER_MS);
@@ -111,7 +111,7 @@ static void first_exchanges_make_do_until_the_round_is_complete(void **state)
 			 START_NS + GZ_NS_PER_MS - 7 * GZ_NS_PER_S);
 }
 
-static void clock_that_is_set_begins_anew_and_answers_never_run_backwards(void **state)
+static void clock_that_is_set_restarts_and_answers_never_run_backwards(void **state)
 {
 	(void)state;
 	static const int64_t leaps_ns[] = { 20 * GZ_NS_PER_MS, -20 * GZ_NS_PER_MS,
@@ -134,7 +134,7 @@ static void clock_that_is_set_begins_anew_and_answers_never_run_backwards(void *
 	}
 }
 
-static void clock_that_is_set_within_a_round_spoils_only_that(void **state)
+static void clock_that_is_set_during_a_round_spoils_only_that_round(void **state)
 {
 	(void)state;
 	struct gz_pupil_clock clock = { 0 };
@@ -167,7 +167,7 @@ static void answers_rise_and_are_not_ahead_of_the_arrival(void **state)
 			 START_NS + 1);
 }
 
-static void any_time_is_taken(void **state)
+static void any_time_is_accepted(void **state)
 {
 	(void)state;
 	static const int64_t times_ns[] = { INT64_MIN, INT64_MIN + 1, -1, 0, 1, INT64_MAX };
@@ -185,17 +185,17 @@ static void any_time_is_taken(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(pupil_clock)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(offset_is_found_in_spite_of_slow_answers),
+		cmocka_unit_test(offset_is_found_despite_slow_answers),
 		cmocka_unit_test(equal_delays_both_ways_leave_no_error),
 		cmocka_unit_test(drift_is_followed_between_rounds),
-		cmocka_unit_test(first_exchanges_make_do_until_the_round_is_complete),
-		cmocka_unit_test(clock_that_is_set_begins_anew_and_answers_never_run_backwards),
-		cmocka_unit_test(clock_that_is_set_within_a_round_spoils_only_that),
+		cmocka_unit_test(first_exchanges_are_used_until_the_round_is_complete),
+		cmocka_unit_test(clock_that_is_set_restarts_and_answers_never_run_backwards),
+		cmocka_unit_test(clock_that_is_set_during_a_round_spoils_only_that_round),
 		cmocka_unit_test(answers_rise_and_are_not_ahead_of_the_arrival),
-		cmocka_unit_test(any_time_is_taken),
+		cmocka_unit_test(any_time_is_accepted),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static int begin(void **state)
 	return 0;
 }
 
-/* What another gazed says. */
+/* A message of another gazed. */
 static struct gz_gaze daemon_gaze(void)
 {
 	static const struct gz_gaze_eye eye = {
@@ -55,7 +55,7 @@ static struct gz_pupil_gaze read_gaze(const struct gz_gaze *gaze)
 	return read;
 }
 
-static void gaze_of_another_daemon_is_taken_unsmoothed(void **state)
+static void gaze_of_another_daemon_is_used_unsmoothed(void **state)
 {
 	(void)state;
 	struct gz_gaze gaze = daemon_gaze();
@@ -82,7 +82,7 @@ static void gaze_of_another_daemon_in_a_blink_is_invalid(void **state)
 	assert_false(read.sample.eye[GZ_EYE_LEFT].valid);
 }
 
-static void gaze_of_one_point_leaves_the_eyes_unmeasured(void **state)
+static void gaze_with_a_single_point_leaves_the_eyes_unmeasured(void **state)
 {
 	(void)state;
 	struct gz_gaze gaze = daemon_gaze();
@@ -110,8 +110,8 @@ static void bad_gaze_has_a_reason_and_writes_nothing(void **state)
 	assert_int_equal(read.number, 77);
 }
 
-/* An entry of the surface without its gaze, and one whose gaze is remembered. */
-static void entry_without_its_gaze_is_a_point_alone(void **state)
+/* A surface entry without its gaze message, and one whose gaze message is remembered. */
+static void entry_without_its_gaze_is_only_a_point(void **state)
 {
 	(void)state;
 	struct gz_gaze gaze = daemon_gaze();
@@ -133,7 +133,7 @@ static void entry_without_its_gaze_is_a_point_alone(void **state)
 	assert_int_equal(gz_pupil_next_entry(&entries, &memory, CONFIDENCE, &read), GZ_OK);
 	assert_true(read.sample.eye[GZ_EYE_RIGHT].valid);
 	assert_int_equal(read.sample.device_ns, gaze.host_ns);
-	/* So many later it is forgotten. */
+	/* After so many others it is forgotten. */
 	base.sample.device_ns += GZ_NS_PER_S;
 	for (int i = 0; i < GZ_PUPIL_MEMORY; i++)
 		gz_pupil_remember(&memory, &base);
@@ -143,10 +143,10 @@ static void entry_without_its_gaze_is_a_point_alone(void **state)
 	assert_true(gz_sample_combined_only(&read.sample));
 }
 
-static void surface_of_too_many_entries_is_long(void **state)
+static void surface_with_too_many_entries_is_long(void **state)
 {
 	(void)state;
-	/* 600 nils: the count alone is too much. */
+	/* 600 nils: their number alone is too large. */
 	static unsigned char bytes[1 + 17 + 3 + 600];
 	enum gz_malformed reason;
 	memcpy(bytes, "\x81\xb0gaze_on_surfaces\xdc\x02\x58", 21);
@@ -183,14 +183,14 @@ static void order_refuses_what_is_not_newer(void **state)
 	assert_int_equal(gz_pupil_order_step(&order, &gaze, &missing), GZ_OK);
 }
 
-static void order_counts_by_numbers_where_there_are_some(void **state)
+static void order_counts_by_numbers_if_there_are_any(void **state)
 {
 	(void)state;
 	static const uint64_t numbers[][3] = {
 		{ 5, 6, 0 },
 		{ 6, 10, 3 },
-		{ 10, 4, 0 },      /* began anew */
-		{ 4, 5000000, 0 }, /* leapt */
+		{ 10, 4, 0 },      /* restarted */
+		{ 4, 5000000, 0 }, /* jumped */
 	};
 	struct gz_pupil_order order = { 0 };
 	int64_t pupil_ns = 0;
@@ -204,7 +204,7 @@ static void order_counts_by_numbers_where_there_are_some(void **state)
 	}
 }
 
-static void order_counts_by_time_and_bears_uneven_steps(void **state)
+static void order_counts_by_time_and_tolerates_uneven_steps(void **state)
 {
 	(void)state;
 	struct gz_pupil_order order = { 0 };
@@ -221,7 +221,7 @@ static void order_counts_by_time_and_bears_uneven_steps(void **state)
 	struct gz_pupil_gaze gaze = at(pupil_ns += 40 * GZ_NS_PER_MS, 0);
 	assert_int_equal(gz_pupil_order_step(&order, &gaze, &missing), GZ_OK);
 	assert_in_range(missing, 8, 11);
-	/* A pause is none, and neither is a slower rate once it is known. */
+	/* A pause is not a loss, and neither is a slower rate once it is known. */
 	gaze = at(pupil_ns += 10 * GZ_NS_PER_S, 0);
 	assert_int_equal(gz_pupil_order_step(&order, &gaze, &missing), GZ_OK);
 	assert_int_equal(missing, 0);
@@ -232,18 +232,18 @@ static void order_counts_by_time_and_bears_uneven_steps(void **state)
 	assert_int_equal(missing, 0);
 }
 
-int main(void)
+TEST_SUITE(pupil_message)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup(gaze_of_another_daemon_is_taken_unsmoothed, begin),
+		cmocka_unit_test_setup(gaze_of_another_daemon_is_used_unsmoothed, begin),
 		cmocka_unit_test_setup(gaze_of_another_daemon_in_a_blink_is_invalid, begin),
-		cmocka_unit_test_setup(gaze_of_one_point_leaves_the_eyes_unmeasured, begin),
+		cmocka_unit_test_setup(gaze_with_a_single_point_leaves_the_eyes_unmeasured, begin),
 		cmocka_unit_test_setup(bad_gaze_has_a_reason_and_writes_nothing, begin),
-		cmocka_unit_test_setup(entry_without_its_gaze_is_a_point_alone, begin),
-		cmocka_unit_test_setup(surface_of_too_many_entries_is_long, begin),
+		cmocka_unit_test_setup(entry_without_its_gaze_is_only_a_point, begin),
+		cmocka_unit_test_setup(surface_with_too_many_entries_is_long, begin),
 		cmocka_unit_test_setup(order_refuses_what_is_not_newer, begin),
-		cmocka_unit_test_setup(order_counts_by_numbers_where_there_are_some, begin),
-		cmocka_unit_test_setup(order_counts_by_time_and_bears_uneven_steps, begin),
+		cmocka_unit_test_setup(order_counts_by_numbers_if_there_are_any, begin),
+		cmocka_unit_test_setup(order_counts_by_time_and_tolerates_uneven_steps, begin),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,12 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/captured_log.h"
 #include "base/clock.h"
-#include "drivers/driver.h"
+#include "driver_stage.h"
 #include "made_log.h"
 
 static char path[64];
+static struct driver_stage stage;
 
 static int make_path(void **state)
 {
@@ -29,21 +29,10 @@ static int remove_path(void **state)
 
 static struct gz_device *open_replay(const char *speed)
 {
-	static _Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
-	const struct gz_driver *driver = gz_driver_find("replay");
-	struct gz_option_binding binding = { driver->options, *driver->option_count, settings,
-					     NULL };
-	struct gz_device *device = NULL;
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
-	assert_int_equal(gz_option_parse(gz_options_find(&binding, 1, "replay.file", NULL), path,
-					 settings, NULL, 0),
-			 GZ_OK);
-	assert_int_equal(gz_option_parse(gz_options_find(&binding, 1, "replay.speed", NULL), speed,
-					 settings, NULL, 0),
-			 GZ_OK);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { 0 }, &device), GZ_OK);
-	assert_int_equal(gz_device_start(device), GZ_OK);
-	return device;
+	stage_reset(&stage, "replay");
+	stage_set(&stage, "replay.file", path);
+	stage_set(&stage, "replay.speed", speed);
+	return stage_start(&stage);
 }
 
 static void replay_keeps_numbers_times_and_header(void **state)
@@ -98,7 +87,7 @@ static void replay_counts_gaps_as_lost(void **state)
 	gz_device_destroy(&device);
 }
 
-static void replay_skips_and_counts_lines_that_are_no_records(void **state)
+static void replay_skips_and_counts_malformed_lines(void **state)
 {
 	(void)state;
 	struct made_log made;
@@ -118,7 +107,7 @@ static void replay_skips_and_counts_lines_that_are_no_records(void **state)
 	gz_device_destroy(&device);
 }
 
-/* Time that playing 20 samples over 100 recorded ms takes. */
+/* Time that it takes to play 20 samples from 100 recorded ms, ms. */
 static double play_ms(const char *speed)
 {
 	struct made_log made;
@@ -137,10 +126,10 @@ static double play_ms(const char *speed)
 	return gz_ns_to_ms(gz_clock_now_ns() - begin_ns);
 }
 
-static void replay_speed_sets_the_time_it_takes(void **state)
+static void replay_speed_sets_the_duration(void **state)
 {
 	(void)state;
-	/* Upper limits are generous, for a busy machine; the lower ones are exact. */
+	/* The upper limits are generous, for a busy machine; the lower ones are exact. */
 	double one_ms = play_ms("1"), four_ms = play_ms("4"), at_once_ms = play_ms("0");
 	if (one_ms < 100 || one_ms > 2000 || four_ms < 25 || four_ms > one_ms ||
 	    at_once_ms > four_ms)
@@ -148,7 +137,7 @@ static void replay_speed_sets_the_time_it_takes(void **state)
 			 at_once_ms);
 }
 
-static void replay_goes_on_at_once_where_recorded_time_runs_backwards(void **state)
+static void replay_continues_at_once_when_recorded_time_runs_backwards(void **state)
 {
 	(void)state;
 	const int64_t times_ns[] = { 0, INT64_MAX, INT64_MIN, -5, INT64_MIN, 3 };
@@ -164,61 +153,47 @@ static void replay_goes_on_at_once_where_recorded_time_runs_backwards(void **sta
 	struct gz_device *device = open_replay("1");
 	for (int i = 0; i < 4; i++)
 		assert_int_equal(gz_device_read(device, 1000, &sample), GZ_OK);
-	/* A sample of ages away is waited for, and the wait is given up in time. */
+	/* For a sample in the far future, the wait ends in time. */
 	assert_int_equal(gz_device_read(device, 5, &sample), GZ_ERR_TIMEOUT);
 	gz_device_destroy(&device);
 }
 
-static void replay_without_a_file_or_of_no_log_is_refused(void **state)
+static void expect_refusal(const char *file, enum gz_result expected)
 {
-	(void)state;
-	static _Alignas(max_align_t) unsigned char settings[GZ_DRIVER_SETTINGS_SIZE];
-	const struct gz_driver *driver = gz_driver_find("replay");
-	struct gz_option_binding binding = { driver->options, *driver->option_count, settings,
-					     NULL };
-	const struct gz_option *file = gz_options_find(&binding, 1, "replay.file", NULL);
-	struct captured_log captured;
-	struct gz_device *device = NULL;
-	captured_log_init(&captured, NULL);
-	assert_int_equal(gz_options_preset(&binding), GZ_OK);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
-					&device),
-			 GZ_ERR_INVAL);
-	assert_non_null(strstr(captured.last, "--replay.file"));
-	assert_int_equal(gz_option_parse(file, "/nonexistent.gzl", settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
-					&device),
-			 GZ_ERR_NOT_FOUND);
-	/* Neither waits: a directory cannot be read, and a FIFO's other end may never come. */
-	char fifo[] = "/tmp/gz_replay_XXXXXX";
-	assert_non_null(mkdtemp(fifo));
-	assert_int_equal(gz_option_parse(file, fifo, settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
-					&device),
-			 GZ_ERR_INVAL);
-	assert_int_equal(rmdir(fifo), 0);
-	assert_int_equal(mkfifo(fifo, 0600), 0);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
-					&device),
-			 GZ_ERR_INVAL);
-	assert_non_null(strstr(captured.last, "no regular file"));
-	unlink(fifo);
-	assert_int_equal(gz_option_parse(file, "/proc/self/status", settings, NULL, 0), GZ_OK);
-	assert_int_equal(driver->create(settings, &(struct gz_driver_host) { .log = &captured.log },
-					&device),
-			 GZ_ERR_FORMAT);
+	struct gz_device *device;
+	stage_reset(&stage, "replay");
+	stage_set(&stage, "replay.file", file);
+	assert_int_equal(stage_create(&stage, NULL, &device), expected);
 	assert_null(device);
 }
 
-int main(void)
+static void replay_without_a_gaze_log_is_refused(void **state)
+{
+	(void)state;
+	expect_refusal("", GZ_ERR_INVAL);
+	stage_expect_logged(&stage, "--replay.file");
+	expect_refusal("/nonexistent.gzl", GZ_ERR_NOT_FOUND);
+	/* Neither blocks: a directory cannot be read, and a FIFO may never be written. */
+	char fifo[] = "/tmp/gz_replay_XXXXXX";
+	assert_non_null(mkdtemp(fifo));
+	expect_refusal(fifo, GZ_ERR_INVAL);
+	assert_int_equal(rmdir(fifo), 0);
+	assert_int_equal(mkfifo(fifo, 0600), 0);
+	expect_refusal(fifo, GZ_ERR_INVAL);
+	stage_expect_logged(&stage, "not a regular file");
+	unlink(fifo);
+	expect_refusal("/proc/self/status", GZ_ERR_FORMAT);
+}
+
+TEST_SUITE(replay)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(replay_keeps_numbers_times_and_header),
 		cmocka_unit_test(replay_counts_gaps_as_lost),
-		cmocka_unit_test(replay_skips_and_counts_lines_that_are_no_records),
-		cmocka_unit_test(replay_speed_sets_the_time_it_takes),
-		cmocka_unit_test(replay_goes_on_at_once_where_recorded_time_runs_backwards),
-		cmocka_unit_test(replay_without_a_file_or_of_no_log_is_refused),
+		cmocka_unit_test(replay_skips_and_counts_malformed_lines),
+		cmocka_unit_test(replay_speed_sets_the_duration),
+		cmocka_unit_test(replay_continues_at_once_when_recorded_time_runs_backwards),
+		cmocka_unit_test(replay_without_a_gaze_log_is_refused),
 	};
 	return cmocka_run_group_tests(tests, make_path, remove_path);
 }

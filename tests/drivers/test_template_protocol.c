@@ -1,9 +1,9 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "drivers/template/template_protocol.h"
+#include "template_made.h"
 
 static const struct gz_template_report sample = {
 	.counter = 0x01020304,
@@ -21,16 +21,16 @@ static void template_report_has_the_documented_layout(void **state)
 		0x40, 0x3f, 0x00, 0x00, 0xc0, 0xbf, 0x00, 0x00, 0x00, 0x40, 0x90, 0x07, 0x00, 0x00,
 	};
 	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
-	gz_template_print(&sample, bytes);
+	template_made_report(&sample, bytes);
 	assert_memory_equal(bytes, expected, sizeof bytes);
 }
 
-static void template_report_survives_bytes(void **state)
+static void template_report_survives_a_round_trip(void **state)
 {
 	(void)state;
 	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
 	struct gz_template_report read;
-	gz_template_print(&sample, bytes);
+	template_made_report(&sample, bytes);
 	assert_int_equal(gz_template_parse(bytes, sizeof bytes, &read), GZ_OK);
 	assert_int_equal(read.counter, sample.counter);
 	assert_int_equal(read.clock_us, sample.clock_us);
@@ -44,7 +44,7 @@ static void template_any_changed_byte_is_refused(void **state)
 	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
 	struct gz_template_report untouched = { .counter = 77 };
 	for (size_t i = 0; i < sizeof bytes; i++) {
-		gz_template_print(&sample, bytes);
+		template_made_report(&sample, bytes);
 		bytes[i] ^= 0x10;
 		assert_int_equal(gz_template_parse(bytes, sizeof bytes, &untouched),
 				 GZ_ERR_PROTOCOL);
@@ -57,16 +57,16 @@ static void template_short_report_is_refused(void **state)
 	(void)state;
 	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
 	struct gz_template_report read;
-	gz_template_print(&sample, bytes);
+	template_made_report(&sample, bytes);
 	for (size_t size = 0; size < sizeof bytes; size++)
 		assert_int_equal(gz_template_parse(bytes, size, &read), GZ_ERR_PROTOCOL);
 }
 
-int main(void)
+TEST_SUITE(template_protocol)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(template_report_has_the_documented_layout),
-		cmocka_unit_test(template_report_survives_bytes),
+		cmocka_unit_test(template_report_survives_a_round_trip),
 		cmocka_unit_test(template_any_changed_byte_is_refused),
 		cmocka_unit_test(template_short_report_is_refused),
 	};

@@ -1,5 +1,5 @@
-/* The Tobii driver against a library that plays the SDK. */
-#include "check.h"
+/* The Tobii driver with a fake SDK library. */
+#include "suite.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -9,35 +9,17 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "drivers/tobii/tobii_driver.h"
-#include "drivers/tobii/tobii_ring.h"
-#include "drivers/tobii/tobii_sample.h"
+#include "driver_stage.h"
+#include "drivers/tobii/tobii_gaze.h"
 #include "tobii_stand_in.h"
 
-enum { PATIENCE_MS = 5000 };
-
 static struct tobii_stand_in *sdk;
-static union {
-	unsigned char bytes[GZ_DRIVER_SETTINGS_SIZE];
-	max_align_t align;
-} settings;
+static struct driver_stage stage;
 
-static void set_option(const char *key, const char *text)
-{
-	struct gz_option_binding binding = { gz_driver_tobii.options, *gz_driver_tobii.option_count,
-					     &settings, NULL };
-	char message[256];
-	if (gz_option_parse(gz_options_find(&binding, 1, key, NULL), text, &settings, message,
-			    sizeof message) != GZ_OK)
-		fail_msg("%s", message);
-}
-
-/* Each test begins with one tracker at 500 Hz that has clocks of its own. */
+/* Each test begins with one 500 Hz tracker with clocks of its own. */
 static int reset(void **state)
 {
 	(void)state;
-	struct gz_option_binding binding = { gz_driver_tobii.options, *gz_driver_tobii.option_count,
-					     &settings, NULL };
 	memset(sdk, 0, sizeof *sdk);
 	sdk->trackers = 1;
 	sdk->rate_hz = 500;
@@ -45,13 +27,12 @@ static int reset(void **state)
 	sdk->device_zero_us = -987654321;
 	sdk->display_mm[0] = 520;
 	sdk->display_mm[1] = 290;
-	if (gz_options_preset(&binding) != GZ_OK)
-		return -1;
-	set_option("tobii.library", TOBII_STAND_IN);
+	stage_reset(&stage, "tobii");
+	stage_set(&stage, "tobii.library", TOBII_STAND_IN);
 	return 0;
 }
 
-/* Nothing of the SDK's is kept. */
+/* Check that the driver has released everything of the SDK. */
 static int check_nothing_left(void **state)
 {
 	(void)state;
@@ -64,54 +45,23 @@ static int check_nothing_left(void **state)
 	return left;
 }
 
-static enum gz_result try_create(const char *choice, struct gz_device **out_device)
-{
-	const struct gz_driver_host host = { .choice = choice };
-	return gz_driver_tobii.create(&settings, &host, out_device);
-}
-
-static struct gz_device *open_device(const char *choice)
-{
-	struct gz_device *device = NULL;
-	enum gz_result result = try_create(choice, &device);
-	if (result != GZ_OK)
-		fail_msg("create: %s", gz_result_text(result));
-	return device;
-}
-
-static struct gz_device *begin(void)
-{
-	struct gz_device *device = open_device(NULL);
-	assert_int_equal(gz_device_start(device), GZ_OK);
-	return device;
-}
-
-static struct gz_sample read_one(struct gz_device *device)
-{
-	struct gz_sample sample;
-	enum gz_result result = gz_device_read(device, PATIENCE_MS, &sample);
-	if (result != GZ_OK)
-		fail_msg("no sample: %s", gz_result_text(result));
-	return sample;
-}
-
-/* Read until something else than a sample comes. */
+/* Read until something other than a sample comes. */
 static enum gz_result read_to_the_end(struct gz_device *device)
 {
 	struct gz_sample sample;
 	enum gz_result result;
-	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_MS * GZ_NS_PER_MS;
+	int64_t deadline_ns = gz_clock_now_ns() + 20 * GZ_NS_PER_S;
 	do
 		result = gz_device_read(device, 100, &sample);
 	while ((result == GZ_OK || result == GZ_ERR_TIMEOUT) && gz_clock_now_ns() < deadline_ns);
 	return result;
 }
 
-static void tracker_tells_who_it_is_and_how_large_its_screen_is(void **state)
+static void tracker_is_identified_with_the_size_of_its_screen(void **state)
 {
 	(void)state;
 	struct gz_device_info info;
-	struct gz_device *device = open_device(NULL);
+	struct gz_device *device = stage_open(&stage, NULL);
 	gz_device_get_info(device, &info);
 	assert_string_equal(info.name, "Tobii Pro Spectrum");
 	assert_string_equal(info.serial, "TPSP1-01");
@@ -124,8 +74,8 @@ static void tracker_tells_who_it_is_and_how_large_its_screen_is(void **state)
 static void gaze_data_become_samples(void **state)
 {
 	(void)state;
-	struct gz_device *device = begin();
-	struct gz_sample first = read_one(device), second = read_one(device);
+	struct gz_device *device = stage_start(&stage);
+	struct gz_sample first = device_read_sample(device), second = device_read_sample(device);
 	assert_int_equal(first.seq, 0);
 	assert_int_equal(second.seq, 1);
 	assert_false(first.eye[GZ_EYE_RIGHT].valid);
@@ -141,7 +91,7 @@ static void gaze_data_become_samples(void **state)
 	float length =
 		hypotf(hypotf(right->direction[0], right->direction[1]), right->direction[2]);
 	assert_true(fabsf(length - 1) < 1e-5f && right->direction[0] > 0);
-	assert_false(second.valid); /* the SDK tells no common point */
+	assert_false(second.valid); /* the SDK has no common point */
 	gz_device_destroy(&device);
 }
 
@@ -149,13 +99,13 @@ static void sample_time_is_when_it_was_taken_whatever_the_librarys_clock(void **
 {
 	(void)state;
 	struct gz_device_counters counters;
-	struct gz_device *device = begin();
+	struct gz_device *device = stage_start(&stage);
 	int64_t begin_ns = gz_clock_now_ns(), last_ns = 0;
 	for (int i = 0; i < 100; i++) {
-		struct gz_sample sample = read_one(device);
+		struct gz_sample sample = device_read_sample(device);
 		int64_t now_ns = gz_clock_now_ns();
 		assert_true(sample.host_ns >= last_ns && sample.host_ns <= now_ns);
-		/* The stand-in says half a millisecond before it delivers. */
+		/* The library stamps samples half a millisecond before it delivers them. */
 		if (sample.host_ns > now_ns - 400 * GZ_NS_PER_US ||
 		    sample.host_ns < begin_ns - 2 * GZ_NS_PER_MS)
 			fail_msg("%lld ns before now", (long long)(now_ns - sample.host_ns));
@@ -171,13 +121,13 @@ static void sample_time_is_when_it_was_taken_whatever_the_librarys_clock(void **
 	gz_device_destroy(&device);
 }
 
-static void without_the_librarys_clock_the_arrival_counts(void **state)
+static void without_the_librarys_clock_the_arrival_is_used(void **state)
 {
 	(void)state;
 	sdk->fails = "get_system_time_stamp";
-	struct gz_device *device = begin();
+	struct gz_device *device = stage_start(&stage);
 	for (int i = 0; i < 50; i++) {
-		struct gz_sample sample = read_one(device);
+		struct gz_sample sample = device_read_sample(device);
 		int64_t age_ns = gz_clock_now_ns() - sample.host_ns;
 		if (age_ns < 0 || age_ns > GZ_NS_PER_S)
 			fail_msg("%lld ns old", (long long)age_ns);
@@ -185,14 +135,14 @@ static void without_the_librarys_clock_the_arrival_counts(void **state)
 	gz_device_destroy(&device);
 }
 
-static void clock_of_the_tracker_may_leap(void **state)
+static void clock_of_the_tracker_may_jump(void **state)
 {
 	(void)state;
-	struct gz_device *device = begin();
-	int64_t last_ns = read_one(device).host_ns;
+	struct gz_device *device = stage_start(&stage);
+	int64_t last_ns = device_read_sample(device).host_ns;
 	atomic_store(&sdk->step_clock_s, -3600);
 	for (int i = 0; i < 50; i++) {
-		struct gz_sample sample = read_one(device);
+		struct gz_sample sample = device_read_sample(device);
 		assert_true(sample.host_ns >= last_ns && sample.host_ns <= gz_clock_now_ns());
 		last_ns = sample.host_ns;
 	}
@@ -211,17 +161,17 @@ static void one_of_two_is_chosen_by_any_of_its_names(void **state)
 	struct gz_device *device;
 	sdk->trackers = 2;
 	for (size_t i = 0; i < sizeof choices / sizeof *choices; i++) {
-		device = open_device(choices[i][0]);
+		device = stage_open(&stage, choices[i][0]);
 		gz_device_get_info(device, &info);
 		assert_string_equal(info.serial, choices[i][1]);
 		gz_device_destroy(&device);
 	}
 	device = NULL;
-	assert_int_equal(try_create("TPFC2", &device), GZ_ERR_NO_DEVICE);
+	assert_int_equal(stage_create(&stage, "TPFC2", &device), GZ_ERR_NO_DEVICE);
 	sdk->trackers = 1;
-	assert_int_equal(try_create("TPFC2-02", &device), GZ_ERR_NO_DEVICE);
+	assert_int_equal(stage_create(&stage, "TPFC2-02", &device), GZ_ERR_NO_DEVICE);
 	sdk->trackers = 0;
-	assert_int_equal(try_create("", &device), GZ_ERR_NO_DEVICE);
+	assert_int_equal(stage_create(&stage, "", &device), GZ_ERR_NO_DEVICE);
 	assert_null(device);
 }
 
@@ -229,38 +179,37 @@ static void list_names_them_all(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[GZ_DEVICE_ENTRIES_MAX];
-	const struct gz_driver_host host = { 0 };
 	sdk->trackers = 2;
-	assert_int_equal(gz_driver_tobii.list(&settings, &host, entries), 2);
+	assert_int_equal(stage_list(&stage, entries), 2);
 	assert_string_equal(entries[1].name, "Tobii Pro Fusion");
 	assert_string_equal(entries[1].serial, "TPFC2-02");
 	assert_string_equal(entries[1].place, "tobii-prp://TPFC2-02");
 	assert_true(entries[0].usable && entries[1].usable);
 	sdk->trackers = 0;
-	assert_int_equal(gz_driver_tobii.list(&settings, &host, entries), 0);
-	set_option("tobii.library", "/nonexistent.so");
-	assert_int_equal(gz_driver_tobii.list(&settings, &host, entries), 0);
+	assert_int_equal(stage_list(&stage, entries), 0);
+	stage_set(&stage, "tobii.library", "/nonexistent.so");
+	assert_int_equal(stage_list(&stage, entries), 0);
 }
 
-static void rate_is_set_where_it_is_asked_for(void **state)
+static void rate_is_set_if_requested(void **state)
 {
 	(void)state;
 	struct gz_device_info info;
-	struct gz_device *device = open_device(NULL);
+	struct gz_device *device = stage_open(&stage, NULL);
 	assert_true(sdk->frequency_set_hz == 0);
 	gz_device_destroy(&device);
-	set_option("tobii.rate_hz", "250");
-	device = open_device(NULL);
+	stage_set(&stage, "tobii.rate_hz", "250");
+	device = stage_open(&stage, NULL);
 	assert_true(sdk->frequency_set_hz == 250);
 	gz_device_get_info(device, &info);
 	assert_true(info.rate_hz == 250);
 	gz_device_destroy(&device);
 	sdk->fails = "set_gaze_output_frequency";
-	assert_int_equal(try_create(NULL, &device), GZ_ERR_INVAL);
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_INVAL);
 	assert_null(device);
 }
 
-static void functions_that_fail_cost_what_they_tell_and_no_more(void **state)
+static void failing_functions_cost_only_what_they_would_return(void **state)
 {
 	(void)state;
 	static const char *const needless[] = { "get_address",
@@ -273,67 +222,67 @@ static void functions_that_fail_cost_what_they_tell_and_no_more(void **state)
 	for (size_t i = 0; i < sizeof needless / sizeof *needless; i++) {
 		struct gz_device_info info;
 		sdk->fails = needless[i];
-		struct gz_device *device = begin();
+		struct gz_device *device = stage_start(&stage);
 		gz_device_get_info(device, &info);
 		assert_true(info.name[0] != '\0');
 		assert_int_equal(info.has_display, strcmp(needless[i], "get_display_area") != 0);
-		read_one(device);
+		device_read_sample(device);
 		gz_device_destroy(&device);
 	}
 	struct gz_device *device = NULL;
 	sdk->fails = "find_all_eyetrackers";
-	assert_int_equal(try_create(NULL, &device), GZ_ERR_NO_DEVICE);
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_NO_DEVICE);
 	assert_null(device);
 	sdk->fails = "subscribe_to_gaze_data";
-	device = open_device(NULL);
+	device = stage_open(&stage, NULL);
 	assert_int_equal(gz_device_start(device), GZ_ERR_NO_DEVICE);
 	gz_device_destroy(&device);
 }
 
-static void lost_connection_is_no_device_and_may_return(void **state)
+static void lost_connection_is_a_gone_device_and_may_return(void **state)
 {
 	(void)state;
 	struct gz_sample sample;
-	struct gz_device *device = begin();
-	read_one(device);
+	struct gz_device *device = stage_start(&stage);
+	device_read_sample(device);
 	atomic_store(&sdk->lose_connection, 1);
 	assert_int_equal(read_to_the_end(device), GZ_ERR_NO_DEVICE);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
 	gz_device_destroy(&device);
-	device = begin();
-	assert_int_equal(read_one(device).seq, 0);
+	device = stage_start(&stage);
+	assert_int_equal(device_read_sample(device).seq, 0);
 	gz_device_destroy(&device);
 }
 
-static void other_display_area_opens_it_anew_and_the_same_does_not(void **state)
+static void another_display_area_reopens_the_tracker_and_the_same_one_does_not(void **state)
 {
 	(void)state;
-	struct gz_device *device = begin();
+	struct gz_device *device = stage_start(&stage);
 	atomic_store(&sdk->repeat_display, 1);
 	while (atomic_load(&sdk->repeat_display))
-		read_one(device);
+		device_read_sample(device);
 	for (int i = 0; i < 10; i++)
-		read_one(device);
+		device_read_sample(device);
 	atomic_store(&sdk->change_display, 1);
 	assert_int_equal(read_to_the_end(device), GZ_ERR_NO_DEVICE);
 	gz_device_destroy(&device);
 }
 
-static void what_finds_no_room_is_counted_as_lost(void **state)
+static void deliveries_without_room_are_counted_as_lost(void **state)
 {
 	(void)state;
 	struct gz_device_counters counters;
 	sdk->burst = GZ_TOBII_RING_SIZE + 100;
-	struct gz_device *device = begin();
-	/* The burst is over when the display is looked at. */
+	struct gz_device *device = stage_start(&stage);
+	/* When this request is done, the burst is over. */
 	atomic_store(&sdk->repeat_display, 1);
 	while (atomic_load(&sdk->repeat_display))
 		gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS);
 	uint64_t lost = 0;
 	for (int i = 0; i < GZ_TOBII_RING_SIZE; i++)
-		lost += read_one(device).lost_before;
+		lost += device_read_sample(device).lost_before;
 	assert_int_equal(lost, 0);
-	lost = read_one(device).lost_before;
+	lost = device_read_sample(device).lost_before;
 	gz_device_get_counters(device, &counters);
 	if (lost < 100 || lost > 100 + 5000)
 		fail_msg("%llu lost, 100 and some expected", (unsigned long long)lost);
@@ -341,18 +290,18 @@ static void what_finds_no_room_is_counted_as_lost(void **state)
 	gz_device_destroy(&device);
 }
 
-static void library_that_is_missing_or_another_is_refused(void **state)
+static void missing_or_wrong_library_is_refused(void **state)
 {
 	(void)state;
 	struct gz_device *device = NULL;
-	set_option("tobii.library", "/nonexistent.so");
-	assert_int_equal(try_create(NULL, &device), GZ_ERR_NOT_FOUND);
-	set_option("tobii.library", "libm.so.6");
-	assert_int_equal(try_create(NULL, &device), GZ_ERR_FORMAT);
+	stage_set(&stage, "tobii.library", "/nonexistent.so");
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_NOT_FOUND);
+	stage_set(&stage, "tobii.library", "libm.so.6");
+	assert_int_equal(stage_create(&stage, NULL, &device), GZ_ERR_FORMAT);
 	assert_null(device);
 }
 
-static void times_that_cannot_be_are_the_arrival(void **state)
+static void impossible_times_are_replaced_by_the_arrival(void **state)
 {
 	(void)state;
 	struct gz_tobii_time time = { 0 };
@@ -373,7 +322,7 @@ static void times_that_cannot_be_are_the_arrival(void **state)
 static int load_library(void **state)
 {
 	(void)state;
-	/* The driver's own dlopen() of the same file gives the same library. */
+	/* dlopen() of the same file in the driver returns the same library. */
 	void *handle = dlopen(TOBII_STAND_IN, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
 	if (!handle)
 		print_error("%s\n", dlerror());
@@ -386,23 +335,23 @@ static int load_library(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, reset, check_nothing_left)
 
-int main(void)
+TEST_SUITE(tobii)
 {
 	const struct CMUnitTest tests[] = {
-		TEST(tracker_tells_who_it_is_and_how_large_its_screen_is),
+		TEST(tracker_is_identified_with_the_size_of_its_screen),
 		TEST(gaze_data_become_samples),
 		TEST(sample_time_is_when_it_was_taken_whatever_the_librarys_clock),
-		TEST(without_the_librarys_clock_the_arrival_counts),
-		TEST(clock_of_the_tracker_may_leap),
+		TEST(without_the_librarys_clock_the_arrival_is_used),
+		TEST(clock_of_the_tracker_may_jump),
 		TEST(one_of_two_is_chosen_by_any_of_its_names),
 		TEST(list_names_them_all),
-		TEST(rate_is_set_where_it_is_asked_for),
-		TEST(functions_that_fail_cost_what_they_tell_and_no_more),
-		TEST(lost_connection_is_no_device_and_may_return),
-		TEST(other_display_area_opens_it_anew_and_the_same_does_not),
-		TEST(what_finds_no_room_is_counted_as_lost),
-		TEST(library_that_is_missing_or_another_is_refused),
-		cmocka_unit_test(times_that_cannot_be_are_the_arrival),
+		TEST(rate_is_set_if_requested),
+		TEST(failing_functions_cost_only_what_they_would_return),
+		TEST(lost_connection_is_a_gone_device_and_may_return),
+		TEST(another_display_area_reopens_the_tracker_and_the_same_one_does_not),
+		TEST(deliveries_without_room_are_counted_as_lost),
+		TEST(missing_or_wrong_library_is_refused),
+		cmocka_unit_test(impossible_times_are_replaced_by_the_arrival),
 	};
 	return cmocka_run_group_tests(tests, load_library, NULL);
 }

@@ -1,5 +1,5 @@
-/* The program that udev asks, on descriptors in files. */
-#include "check.h"
+/* The program that udev runs, with descriptors in files. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 
 static char path[64];
 
-/* What it prints for @p size bytes; its exit status. */
+/* Run it with @p size bytes. @return its exit status */
 static int ask(const unsigned char *bytes, size_t size, char printed[256])
 {
 	char command[1024];
@@ -27,7 +27,7 @@ static int ask(const unsigned char *bytes, size_t size, char printed[256])
 	return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static void eye_trackers_are_known_whatever_their_layout(void **state)
+static void eye_trackers_are_recognised_whatever_their_layout(void **state)
 {
 	(void)state;
 	char printed[256];
@@ -39,19 +39,19 @@ static void eye_trackers_are_known_whatever_their_layout(void **state)
 	}
 }
 
-static void other_devices_and_nonsense_are_not_taken_for_one(void **state)
+static void other_devices_and_garbage_are_not_recognised(void **state)
 {
 	(void)state;
 	char printed[256];
 	struct hid_made made = { 0 };
-	/* A mouse of one button. */
+	/* A mouse with one button. */
 	HID_ITEMS(&made, HID_PAGE, 0x01, HID_USAGE, 0x02, HID_COLLECTION, 1, HID_PAGE, 0x09,
 		  HID_USAGE, 0x01, HID_LOGICAL_MIN, 0, HID_LOGICAL_MAX, 1, HID_SIZE, 1, HID_COUNT,
 		  1, HID_INPUT, 2, HID_SIZE, 7, HID_INPUT, 3, HID_END, 0);
 	assert_int_equal(ask(made.bytes, made.size, printed), 0);
 	assert_string_equal(printed, "");
 	made.size = 0;
-	hid_made_tracker(&made, HID_LAYOUT_BYTES);
+	hid_made_tracker(&made, HID_LAYOUT_REFERENCE);
 	assert_int_equal(ask(made.bytes, made.size / 2, printed), 0);
 	assert_string_equal(printed, "");
 	assert_int_equal(ask(made.bytes, 0, printed), 0);
@@ -82,11 +82,11 @@ static int remove_file(void **state)
 	return unlink(path);
 }
 
-int main(void)
+TEST_SUITE(udev_id)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(eye_trackers_are_known_whatever_their_layout),
-		cmocka_unit_test(other_devices_and_nonsense_are_not_taken_for_one),
+		cmocka_unit_test(eye_trackers_are_recognised_whatever_their_layout),
+		cmocka_unit_test(other_devices_and_garbage_are_not_recognised),
 		cmocka_unit_test(missing_file_and_wrong_usage_fail),
 	};
 	return cmocka_run_group_tests(tests, make_file, remove_file);

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
@@ -14,13 +14,13 @@ static const struct gz_usb_device device = {
 static void device_is_chosen_by_serial_or_name_and_by_nothing_else(void **state)
 {
 	(void)state;
-	assert_true(gz_usb_is_chosen(&device, NULL));
-	assert_true(gz_usb_is_chosen(&device, ""));
-	assert_true(gz_usb_is_chosen(&device, "0A1B"));
-	assert_true(gz_usb_is_chosen(&device, "Tracker 3"));
-	assert_false(gz_usb_is_chosen(&device, "0A1"));
-	assert_false(gz_usb_is_chosen(&device, "tracker 3"));
-	assert_false(gz_usb_is_chosen(&device, "usb 250-1"));
+	assert_true(gz_device_is_chosen(NULL, device.name, device.serial));
+	assert_true(gz_device_is_chosen("", device.name, device.serial));
+	assert_true(gz_device_is_chosen("0A1B", device.name, device.serial));
+	assert_true(gz_device_is_chosen("Tracker 3", device.name, device.serial));
+	assert_false(gz_device_is_chosen("0A1", device.name, device.serial));
+	assert_false(gz_device_is_chosen("tracker 3", device.name, device.serial));
+	assert_false(gz_device_is_chosen("usb 250-1", device.name, device.serial));
 }
 
 static void device_whose_node_may_be_opened_is_usable(void **state)
@@ -45,7 +45,7 @@ static void device_whose_node_may_not_be_opened_names_the_rule(void **state)
 	assert_false(entry.usable);
 	assert_non_null(strstr(entry.reason, "/nonexistent/250/001"));
 	assert_non_null(strstr(entry.reason, "70-gazecast.rules"));
-	assert_true(strlen(entry.reason) < sizeof entry.reason - 1); /* whole */
+	assert_true(strlen(entry.reason) < sizeof entry.reason - 1); /* it is not cut */
 }
 
 static void errors_of_libusb_become_results(void **state)
@@ -56,7 +56,7 @@ static void errors_of_libusb_become_results(void **state)
 		enum gz_result result;
 	} pairs[] = {
 		{ LIBUSB_SUCCESS, GZ_OK },
-		{ 8, GZ_OK }, /* bytes sent */
+		{ 8, GZ_OK }, /* a number of bytes sent */
 		{ LIBUSB_ERROR_NO_DEVICE, GZ_ERR_NO_DEVICE },
 		{ LIBUSB_ERROR_NOT_FOUND, GZ_ERR_NO_DEVICE },
 		{ LIBUSB_ERROR_ACCESS, GZ_ERR_ACCESS },
@@ -72,7 +72,7 @@ static void errors_of_libusb_become_results(void **state)
 				 gz_usb_result(pairs[i].error), pairs[i].result);
 }
 
-int main(void)
+TEST_SUITE(usb_device)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(device_is_chosen_by_serial_or_name_and_by_nothing_else),

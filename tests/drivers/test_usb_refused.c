@@ -1,5 +1,5 @@
-/* On a made sysfs. */
-#include "check.h"
+/* Refused devices, in a fake sysfs. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "drivers/usb/usb_refused.h"
+#include "drivers/usb/usb_device.h"
 
 static char root[64];
 
@@ -105,12 +105,13 @@ static const struct gz_device_entry *find(const struct gz_device_entry *entries,
 	return NULL;
 }
 
-static void refused_devices_are_named_and_others_are_not(void **state)
+static void refused_devices_are_listed_and_others_are_not(void **state)
 {
 	(void)state;
 	struct gz_device_entry entries[8];
 	assert_int_equal(gz_usb_list_refused(root, entries, 8), 0);
-	/* Not read at all; read and not understood; taken; no HID; taken, and in use. */
+	/* 1-1: descriptor not read. 1-2.3: read but not understood. 1-4: in use. 1-5: not HID. 1-6:
+	 * without a name, not read. */
 	make_device("1-1", "Tracker\033[31m\n", "one\n");
 	make_file("devices/1-1/1-1:1.0/bInterfaceClass", "03\n");
 	make_device("1-2.3", "Other tracker\n", "two\n");
@@ -125,7 +126,7 @@ static void refused_devices_are_named_and_others_are_not(void **state)
 	make_device("1-6", "\n", "\n");
 	make_file("devices/1-6/1-6:1.0/bInterfaceClass", "03\n");
 
-	/* A kernel without HID drivers refuses nobody. */
+	/* A kernel without HID drivers refuses nothing. */
 	assert_int_equal(gz_usb_list_refused(root, entries, 8), 0);
 	make_directory("bus/usb/drivers/usbhid");
 	make_directory("bus/hid/drivers/hid-generic");
@@ -142,10 +143,10 @@ static void refused_devices_are_named_and_others_are_not(void **state)
 	assert_int_equal(gz_usb_list_refused("/nonexistent", entries, 8), 0);
 }
 
-int main(void)
+TEST_SUITE(usb_refused)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(refused_devices_are_named_and_others_are_not),
+		cmocka_unit_test(refused_devices_are_listed_and_others_are_not),
 	};
 	return cmocka_run_group_tests(tests, make_sysfs, remove_sysfs);
 }

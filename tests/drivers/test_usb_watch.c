@@ -1,5 +1,5 @@
-/* The watch, with the part of libusb that it uses played by the test. */
-#include "check.h"
+/* The USB watch with a fake libusb. */
+#include "suite.h"
 
 #include <libusb.h>
 #include <poll.h>
@@ -13,7 +13,7 @@
 struct libusb_context {
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
-	int arrivals; /* to be told */
+	int arrivals; /* not reported yet */
 	int waits;
 	bool interrupted;
 };
@@ -100,7 +100,7 @@ static void plug(int count)
 	pthread_mutex_unlock(&bus.lock);
 }
 
-/* Until libusb is waited in again after @p count events, so that all were told. */
+/* Wait until libusb has been waited in @p waits times, so that all earlier events are reported. */
 static void wait_told(int waits)
 {
 	pthread_mutex_lock(&bus.lock);
@@ -115,7 +115,7 @@ static bool is_readable(int fd, int timeout_ms)
 	return poll(&poll_fd, 1, timeout_ms) == 1;
 }
 
-static void watch_tells_of_arrivals_until_they_are_taken_note_of(void **state)
+static void watch_reports_arrivals_until_they_are_read(void **state)
 {
 	(void)state;
 	struct gz_usb_watch *watch;
@@ -173,10 +173,10 @@ static void watch_without_hot_plug_is_refused_with_one_line(void **state)
 	assert_int_equal(contexts, 0);
 }
 
-int main(void)
+TEST_SUITE(usb_watch)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(watch_tells_of_arrivals_until_they_are_taken_note_of),
+		cmocka_unit_test(watch_reports_arrivals_until_they_are_read),
 		cmocka_unit_test(watch_without_hot_plug_is_refused_with_one_line),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Plays libtobii_research.so: a shared library with the functions that the driver looks up, made
- * after the SDK's reference and not after our header, so that a wrong layout does not pass. */
+/* A fake libtobii_research.so with the functions that the driver looks up. Its types follow the
+ * SDK's reference, not our header, so that a wrong layout in the header fails the tests. */
 #include "tobii_stand_in.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 
 #define EXPORT __attribute__((visibility("default")))
 
-/* As the reference has them. */
+/* Types as in the reference. */
 typedef struct {
 	float x, y;
 } Point2;
@@ -218,8 +218,8 @@ int tobii_research_get_gaze_output_frequency(EyeTracker *tracker, float *out)
 	return OK;
 }
 
-/* One sample of @number, taken at @taken_ns: the right eye is not found in every third, its values
- * then NaN. */
+/* Send sample @p number, taken at @p taken_ns. In every third one the right eye is not found and
+ * its values are NaN. */
 static void send_gaze(long number, int64_t taken_ns)
 {
 	bool found = number % 3 != 0;
@@ -278,7 +278,7 @@ static void *play(void *user)
 			notify(NOTIFY_LOST, 0);
 			lost = true;
 		}
-		/* It takes half a millisecond to compute. */
+		/* Computing takes half a millisecond. */
 		if (!lost)
 			send_gaze(i, now_ns() - 500000);
 	}

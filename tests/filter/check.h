@@ -1,17 +1,11 @@
 /**
  * @file
- * Checks of numbers that print what they found.
+ * Checks of numbers that print the value on failure.
  */
 #ifndef GZ_TESTS_FILTER_CHECK_H
 #define GZ_TESTS_FILTER_CHECK_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-
-#include <cmocka.h>
+#include "suite.h"
 
 #define CHECK_BETWEEN(got, low, high)                                                      \
 	do {                                                                               \

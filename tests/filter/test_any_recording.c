@@ -1,7 +1,9 @@
 /*
- * Recordings of other trackers, 250 to 2000 Hz, without labels and without a setting: whatever
- * comes out must be what eyes do. One line for each is printed.
+ * Recordings of other trackers, 250 to 2000 Hz, without labels and with the default settings: the
+ * result must be what eyes do. Prints one line per recording.
  */
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
@@ -16,13 +18,13 @@
 
 enum { SKIPPED = 77, DURATIONS_MAX = 8192 };
 
-/** What one recording gave. */
+/* The results of one recording. */
 struct run {
 	struct gz_pipeline pipeline;
 	bool started;
 	uint64_t samples, good, labelled;
 	int64_t first_ns, last_ns, last_good_ns;
-	int64_t gap_begin_ns, gap_end_ns; /**< of the newest stretch without a good sample */
+	int64_t gap_begin_ns, gap_end_ns; /* of the newest stretch without a good sample */
 	double raw_step2, smooth_step2;
 	struct gz_gaze last;
 	bool last_fixated;
@@ -60,7 +62,7 @@ static void add_noise(struct run *run, const struct gz_gaze *gaze, bool good)
 	run->last_fixated = fixated;
 }
 
-/** A loss of more than 30 ms is more than a dropout at any of these rates. */
+/* At any of these rates, a loss of more than 30 ms is not a dropout. */
 static void follow_gaps(struct run *run, int64_t now_ns, bool good)
 {
 	if (!good)
@@ -114,7 +116,7 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/** @param still  somebody who looks at one place for seconds, as the tracker's own software says */
+/* @p still: the person looks at one place for seconds, according to the tracker's own software. */
 static void check_run(struct run *run, const char *name, bool still)
 {
 	if (!(run->samples > 500 && run->fixations > 3 && run->raw_step2 > 0))
@@ -140,7 +142,7 @@ static void check_run(struct run *run, const char *name, bool still)
 static void check_file(const char *reader, const char *file, struct gz_convert_settings settings)
 {
 	char path[1024];
-	struct captured_log captured; /* so that lines which are skipped are not printed */
+	struct captured_log captured; /* so that skipped lines are not logged */
 	captured_log_init(&captured, NULL);
 	settings.name = file;
 	settings.log = &captured.log;
@@ -186,7 +188,8 @@ static void pupil_recordings_give_what_eyes_do(void **state)
 	check_file("pupil", "pupil_tutorials/data/gaze_positions.csv.gz", settings);
 }
 
-/** SMI at 250 Hz, of low quality on purpose: pixels, and a time that begins anew with each trial.
+/** SMI at 250 Hz, of low quality on purpose; in pixels, with a time that starts again in each
+ * trial.
  */
 static void poor_recordings_give_what_eyes_do(void **state)
 {
@@ -225,7 +228,7 @@ static void poor_recordings_give_what_eyes_do(void **state)
 	free(run);
 }
 
-int main(void)
+TEST_SUITE(any_recording)
 {
 	if (!getenv("GAZECAST_DATA")) {
 		printf("GAZECAST_DATA is not set\n");

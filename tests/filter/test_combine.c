@@ -1,3 +1,5 @@
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
@@ -27,12 +29,10 @@ static struct gz_point join(struct gz_combine_state *state, int64_t time_ns, boo
 	sample.eye[GZ_EYE_RIGHT].confidence = 0.8f;
 	sample.eye[GZ_EYE_LEFT].confidence = 1;
 	struct gz_validate_output valid = { .eye_good = { right_good, left_good } };
-	struct gz_point point;
-	float confidence;
-	gz_combine_step(state, &params, &display, &sample, &valid, &point, &confidence);
+	struct gz_combine_output out = gz_combine_step(state, &params, &display, &sample, &valid);
 	double wanted = right_good && left_good ? 0.9 : right_good ? 0.8 : 1;
-	CHECK_BETWEEN(confidence, wanted - 1e-6, wanted + 1e-6);
-	return point;
+	CHECK_BETWEEN(out.confidence, wanted - 1e-6, wanted + 1e-6);
+	return out.point;
 }
 
 static void equal_eyes_give_their_mean(void **state)
@@ -62,7 +62,8 @@ static void steadier_eye_counts_more(void **state)
 		off2 += pow(p.x - 0.5, 2);
 		steady2 += pow(right, 2);
 	}
-	/* The best weights reach 0.97 of the steadier eye; plain halves would reach 2.06. */
+	/* The best weights give 0.97 of the noise of the steadier eye; equal weights would
+	 * give 2.06. */
 	CHECK_BETWEEN(sqrt(off2 / steady2), 0.9, 1.02);
 }
 
@@ -93,7 +94,7 @@ static void second_eye_coming_in_later_does_not_move_the_point_at_once(void **st
 		CHECK_BETWEEN(fabsf(p.x - last.x), 0, 0.002);
 		last = p;
 	}
-	CHECK_BETWEEN(p.x, 0.4499, 0.4501); /* and comes to the mean in the end */
+	CHECK_BETWEEN(p.x, 0.4499, 0.4501); /* and reaches the mean in the end */
 }
 
 static void common_point_passes_through(void **state)
@@ -103,13 +104,11 @@ static void common_point_passes_through(void **state)
 	struct gz_sample sample = gz_sample_unmeasured();
 	sample.point = (struct gz_point) { 0.1f, 0.9f };
 	struct gz_validate_output valid = { .combined = true };
-	struct gz_point point;
-	float confidence;
-	gz_combine_step(&s, &params, &display, &sample, &valid, &point, &confidence);
-	assert_true(point.x == 0.1f && point.y == 0.9f && confidence == 1);
+	struct gz_combine_output out = gz_combine_step(&s, &params, &display, &sample, &valid);
+	assert_true(out.point.x == 0.1f && out.point.y == 0.9f && out.confidence == 1);
 }
 
-int main(void)
+TEST_SUITE(combine)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_eyes_give_their_mean),

@@ -1,9 +1,11 @@
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "filter/correct.h"
+#include "filter/combine.h"
 #include "filter/pipeline.h"
 
 static struct gz_pipeline_params presets;
@@ -115,13 +117,13 @@ static void validity_is_judged_before_correction(void **state)
 	gz_pipeline_step(&pipeline, &sample, &out);
 	assert_int_equal(out.rejection, GZ_REJECT_NONE);
 	CHECK_BETWEEN(out.gaze.point.x, -4.5001, -4.4999);
-	sample = both_eyes(5.5f, 0.5f); /* where the correction would bring it back */
+	sample = both_eyes(5.5f, 0.5f); /* the correction would move it back inside */
 	sample.host_ns += 1000000000;
 	gz_pipeline_step(&pipeline, &sample, &out);
 	assert_int_equal(out.rejection, GZ_REJECT_OFF_SCREEN);
 }
 
-int main(void)
+TEST_SUITE(correct)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(presets_change_no_bit),

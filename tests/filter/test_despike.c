@@ -1,3 +1,5 @@
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ static int setup(void **state)
 	return 0;
 }
 
-/** Run x through the step at @p period_us; y rests. */
+/* Run x through the step at @p period_us; y is constant. */
 static void run(const float *x, float *out_x, int count, int64_t period_us)
 {
 	struct gz_despike_state s = { .started = false };
@@ -124,7 +126,7 @@ static void after_a_gap_nothing_is_held(void **state)
 	assert_true(p.x == 0.9f && p.y == 0.1f);
 }
 
-int main(void)
+TEST_SUITE(despike)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(one_sample_spike_is_taken_out),

@@ -1,13 +1,15 @@
+#include "suite.h"
+
 #include "filter/viewing.h"
 
 #include <stdlib.h>
 
-/** What is seen of fixations and blinks in a run with blinks. */
+/* Fixations and blinks in a run with blinks. */
 struct blink_run {
-	int64_t blink_begin_ns; /**< of the running true blink; 0 if none */
+	int64_t blink_begin_ns; /* of the present true blink; 0 if none */
 	int truths, onsets, offsets, fixations;
 	struct gz_point held;
-	int64_t ended_ns[64]; /**< newest true blinks' ends and beginnings, for fixations */
+	int64_t ended_ns[64]; /* ends and beginnings of the newest true blinks, for fixations */
 	int64_t begun_ns[64];
 };
 
@@ -87,7 +89,7 @@ static struct gz_sample steady_sample(uint64_t seq, int64_t time_ns, bool valid)
 	return sample;
 }
 
-/** Messages and events of a stretch. */
+/* Messages and events of a stretch of samples. */
 struct tally {
 	int onsets, offsets, finals, events[GZ_EVENT_COUNT];
 	float offset_confidence;
@@ -127,7 +129,7 @@ static void a_loss_over_500_ms_is_lost_gaze(void **state)
 	feed(&pipeline, &seq, &time_ns, 200, true, &tally);
 	assert_int_equal(tally.events[GZ_EVENT_FIXATION], 200);
 
-	feed(&pipeline, &seq, &time_ns, 100, false, &tally); /* 500 ms to the last good one */
+	feed(&pipeline, &seq, &time_ns, 100, false, &tally); /* 500 ms after the last good one */
 	assert_int_equal(tally.last, GZ_EVENT_BLINK);
 	assert_int_equal(tally.onsets, 1);
 	assert_int_equal(tally.offsets, 0);
@@ -184,7 +186,7 @@ static void a_dropout_of_few_ms_is_no_blink(void **state)
 	}
 }
 
-/** One fixation as its messages tell it. */
+/* One fixation, from its messages. */
 struct told_fixation {
 	bool open;
 	struct gz_fixation last;
@@ -214,7 +216,7 @@ static void follow_fixation(struct told_fixation *told, const struct gz_fixation
 	told->sent_ns = now_ns;
 }
 
-static void fixations_are_told_from_onset_to_end(void **state)
+static void fixations_are_reported_from_onset_to_end(void **state)
 {
 	(void)state;
 	for (int i = 0; i < RATE_COUNT; i++) {
@@ -240,7 +242,7 @@ static void fixations_are_told_from_onset_to_end(void **state)
 	}
 }
 
-static void saccades_are_told_as_they_were(void **state)
+static void saccades_are_reported_as_they_were(void **state)
 {
 	(void)state;
 	struct gz_sim_params params = sim_params(500);
@@ -274,15 +276,15 @@ static void saccades_are_told_as_they_were(void **state)
 	viewing_close(&viewing);
 }
 
-int main(void)
+TEST_SUITE(messages)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_fixation_lasts_across_a_blink),
 		cmocka_unit_test(a_loss_over_500_ms_is_lost_gaze),
 		cmocka_unit_test(a_gap_in_time_is_a_blink_up_to_500_ms),
 		cmocka_unit_test(a_dropout_of_few_ms_is_no_blink),
-		cmocka_unit_test(fixations_are_told_from_onset_to_end),
-		cmocka_unit_test(saccades_are_told_as_they_were),
+		cmocka_unit_test(fixations_are_reported_from_onset_to_end),
+		cmocka_unit_test(saccades_are_reported_as_they_were),
 	};
 	return cmocka_run_group_tests_name("filter.messages", tests, NULL, NULL);
 }

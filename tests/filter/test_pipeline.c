@@ -1,3 +1,5 @@
+#include "suite.h"
+
 #include "filter/viewing.h"
 
 #include <math.h>
@@ -62,7 +64,7 @@ static void any_rate_gives_finite_numbers_and_time_forwards(void **state)
 	}
 }
 
-/** Random bytes as numbers: NaN, infinite, huge, far outside. */
+/* Random bytes as numbers: NaN, infinite, huge, far outside. */
 static float wild_float(struct gz_random *random)
 {
 	static const float wild[] = { NAN, INFINITY, -INFINITY, 1e30f, -1e30f, 1e-30f, 0, 0.5f, 1 };
@@ -159,7 +161,7 @@ static void damaged_times_never_bring_time_back(void **state)
 		gz_sim_tracker_next(viewing.tracker, &viewing.in);
 		struct gz_sample damaged = viewing.in.sample;
 		damaged.host_ns = damaged_ns[k % 7];
-		if (k % 7 != 3 || k > 10) { /* 0 is good as the first time of all */
+		if (k % 7 != 3 || k > 10) { /* 0 is valid as the first time */
 			gz_pipeline_step(&viewing.pipeline, &damaged, &viewing.out);
 			assert_int_equal(viewing.out.rejection, GZ_REJECT_TIME);
 			check_output(&viewing, last_ns);
@@ -251,7 +253,7 @@ static void each_sample_gets_one_certain_label_whatever_the_gaps(void **state)
 		}
 		if (rates_hz[i] > 200)
 			assert_true(spans > 100);
-		/* 10 ms, and what a gap leaves over */
+		/* 10 ms, and labels that a gap leaves over */
 		CHECK_BETWEEN((double)backlog, 0, 10 * rates_hz[i] * 1e-3 + 4);
 		viewing_close(&viewing);
 	}
@@ -294,7 +296,7 @@ static void an_eye_dropping_out_does_not_move_the_point(void **state)
 	}
 }
 
-/** Share of samples that are really saccades and are said to be, and the other way round. */
+/* Fraction of true saccade samples that are labelled so, and of labelled ones that are true. */
 static void saccades_are_found_at_any_rate(void **state)
 {
 	(void)state;
@@ -381,7 +383,7 @@ static void a_step_costs_about_a_microsecond(void **state)
 		gz_pipeline_step(&viewing.pipeline, &samples[k], &viewing.out);
 	double step_us = (double)(clock() - begin) / CLOCKS_PER_SEC * 1e6 / SAMPLES;
 	print_message("%.2f us a step at 1200 Hz\n", step_us);
-	CHECK_BETWEEN(step_us, 0, 50); /* also with sanitizers, on a busy machine */
+	CHECK_BETWEEN(step_us, 0, 50); /* also holds with sanitizers on a busy machine */
 	free(samples);
 	viewing_close(&viewing);
 }
@@ -402,13 +404,13 @@ static void every_preset_parses_and_prints_the_same(void **state)
 		assert_string_equal(text, option->preset);
 		covered += option->type == GZ_OPTION_DOUBLE
 				   ? sizeof(double) * (size_t)(option->count ? option->count : 1)
-				   : sizeof(double); /* an int and what aligns the next field */
+				   : sizeof(double); /* an int and the padding after it */
 	}
-	/* Every field has its option: the table covers the whole struct. */
+	/* Every field has an option: the table covers the whole struct. */
 	assert_int_equal(covered, sizeof params);
 }
 
-int main(void)
+TEST_SUITE(pipeline)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(any_rate_gives_finite_numbers_and_time_forwards),

@@ -1,27 +1,29 @@
 /*
- * What the pipeline reaches on recordings that people labelled. Any option of the pipeline may be
+ * What the pipeline achieves on recordings that people labelled. Any option of the pipeline may be
  * given on the command line, to try it out. Fails where lag, landing or distance are not as wanted,
  * or saccades agree less than they did.
  */
+#include "suite.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "bench/filter/labelled_recording.h"
 #include "filter/angle.h"
 #include "filter/pipeline.h"
-#include "filter/recording.h"
 
 enum { SKIPPED = 77, LIST_MAX = 4096 };
 
-/** Stimuli, their files, and the agreement wanted (docs and README of the recordings). */
+/* Stimuli, their files, and the required agreement (docs and README of the recordings). */
 struct stimulus {
 	const char *name;
 	double saccade_kappa, fixation_kappa; /**< wanted */
-	double saccade_floor, fixation_floor; /**< a little under what was reached before */
-	double noise_most, distance_most;     /**< of the raw signal's */
-	const char *files[12];                /**< without coder; NULL-terminated */
+	double saccade_floor, fixation_floor; /* slightly below what was achieved before */
+	double noise_most, distance_most;     /* relative to the raw signal */
+	const char *files[12];                /* without the coder; NULL-terminated */
 };
 
 static const struct stimulus STIMULI[] = {
@@ -41,7 +43,7 @@ static const struct stimulus STIMULI[] = {
 	  0.78,
 	  0.63,
 	  0.31, /* 0.18 without one stretch, which only one of the two people calls a fixation: */
-	  1.00, /* the eye goes 1.7 degrees in it */
+	  1.00, /* the eye moves 1.7 degrees in it */
 	  { "dots_TH20_trial1", "dots_TL22_trial17", "dots_UH21_trial17", "dots_UH25_trial1",
 	    "dots_UL27_trial17" } },
 	{ "video",
@@ -57,7 +59,7 @@ static const struct stimulus STIMULI[] = {
 
 static const char *const CODERS[] = { "MN", "RA" };
 
-/** Counts for Cohen's kappa, one against the rest. */
+/* Counts for Cohen's kappa, one label against the rest. */
 struct agreement {
 	double both, ours, theirs, all;
 };
@@ -79,7 +81,7 @@ static double kappa(const struct agreement *a)
 	return (observed - chance) / (1 - chance);
 }
 
-/** Values of which the median is wanted. */
+/* Values whose median is needed. */
 struct list {
 	size_t count;
 	double value[LIST_MAX];
@@ -105,23 +107,23 @@ static double list_part(struct list *list, double part)
 	return list->value[(size_t)(part * (double)(list->count - 1))];
 }
 
-/** All measures of one stimulus. */
+/* All measures of one stimulus. */
 struct measures {
-	struct agreement at_once[2][2], certain[2][2]; /**< per coder; saccade and fixation */
-	double raw_step2, smooth_step2, raw_off2, smooth_off2; /**< sums over fixations */
+	struct agreement at_once[2][2], certain[2][2];         /* per coder; saccade and fixation */
+	double raw_step2, smooth_step2, raw_off2, smooth_off2; /* sums over fixations */
 	struct list onset_lag, landing_deg;
 };
 
-/** A recording and what the pipeline made of it. */
+/* A recording and the results of the pipeline. */
 struct run {
-	struct recording recording;
+	struct gz_labelled_recording recording;
 	struct gz_point *smooth, *raw;
 	enum gz_event *at_once, *certain;
 };
 
 static bool run_pipeline(struct run *run, const struct gz_pipeline_params *params, const char *path)
 {
-	if (!recording_read(path, &run->recording))
+	if (!gz_labelled_recording_read(path, &run->recording))
 		return false;
 	size_t count = run->recording.count;
 	run->smooth = calloc(count, sizeof *run->smooth);
@@ -146,7 +148,7 @@ static bool run_pipeline(struct run *run, const struct gz_pipeline_params *param
 
 static void run_free(struct run *run)
 {
-	recording_free(&run->recording);
+	gz_labelled_recording_free(&run->recording);
 	free(run->smooth);
 	free(run->raw);
 	free(run->at_once);
@@ -159,18 +161,18 @@ static void measure_agreement(const struct run *run, int coder, struct measures 
 	for (size_t i = 0; i < run->recording.count; i++) {
 		int label = run->recording.label[i];
 		count_agreement(&m->at_once[coder][0], run->at_once[i] == GZ_EVENT_SACCADE,
-				label == LABEL_SACCADE);
+				label == GZ_HUMAN_SACCADE);
 		count_agreement(&m->at_once[coder][1], run->at_once[i] == GZ_EVENT_FIXATION,
-				label == LABEL_FIXATION);
+				label == GZ_HUMAN_FIXATION);
 		count_agreement(&m->certain[coder][0], run->certain[i] == GZ_EVENT_SACCADE,
-				label == LABEL_SACCADE);
+				label == GZ_HUMAN_SACCADE);
 		count_agreement(&m->certain[coder][1], run->certain[i] == GZ_EVENT_FIXATION,
-				label == LABEL_FIXATION);
+				label == GZ_HUMAN_FIXATION);
 	}
 }
 
-/** End of the stretch of equal labels that begins at @p begin. */
-static size_t stretch_end(const struct recording *recording, size_t begin)
+/* End of the stretch of equal labels that begins at @p begin. */
+static size_t stretch_end(const struct gz_labelled_recording *recording, size_t begin)
 {
 	size_t end = begin;
 	while (end < recording->count && recording->label[end] == recording->label[begin])
@@ -218,7 +220,7 @@ static void measure_fixation(const struct run *run, size_t begin, size_t end, st
 	}
 }
 
-/** First sample from @p begin on that is @p deg away from @p from. */
+/* First sample from @p begin on that is @p deg away from @p from. */
 static size_t departure(const struct run *run, const struct gz_point *path, struct gz_point from,
 			double deg, size_t begin, size_t end)
 {
@@ -228,10 +230,10 @@ static size_t departure(const struct run *run, const struct gz_point *path, stru
 	return i;
 }
 
-/** Lag at the onset of a saccade: when a fifth of its way is done. And the landing. */
+/* The lag at the onset of a saccade, measured at a fifth of its way, and the landing. */
 static void measure_saccade(const struct run *run, size_t begin, size_t end, struct measures *m)
 {
-	const struct recording *r = &run->recording;
+	const struct gz_labelled_recording *r = &run->recording;
 	size_t late = end + 50 < r->count ? end + 50 : r->count;
 	for (size_t i = begin > 0 ? begin - 1 : 0; i < end; i++)
 		if (!measured(run, i))
@@ -243,10 +245,10 @@ static void measure_saccade(const struct run *run, size_t begin, size_t end, str
 		list_add(&m->onset_lag, (double)ours - (double)raw);
 	}
 	size_t next = end;
-	while (next < r->count && r->label[next] == LABEL_GLISSADE)
+	while (next < r->count && r->label[next] == GZ_HUMAN_GLISSADE)
 		next++;
-	size_t after = end + 7; /* 14 ms after the first sample behind the saccade: 15 ms */
-	if (next >= r->count || r->label[next] != LABEL_FIXATION || after >= r->count)
+	size_t after = end + 7; /* 14 ms after the first sample after the saccade: 15 ms */
+	if (next >= r->count || r->label[next] != GZ_HUMAN_FIXATION || after >= r->count)
 		return;
 	size_t next_end = stretch_end(r, next);
 	if (next_end - next < 25 || after >= next_end)
@@ -257,17 +259,17 @@ static void measure_saccade(const struct run *run, size_t begin, size_t end, str
 
 static void measure_stretches(const struct run *run, struct measures *m)
 {
-	const struct recording *r = &run->recording;
+	const struct gz_labelled_recording *r = &run->recording;
 	for (size_t begin = 0, end; begin < r->count; begin = end) {
 		end = stretch_end(r, begin);
-		if (r->label[begin] == LABEL_FIXATION)
+		if (r->label[begin] == GZ_HUMAN_FIXATION)
 			measure_fixation(run, begin, end, m);
-		if (r->label[begin] == LABEL_SACCADE && end < r->count)
+		if (r->label[begin] == GZ_HUMAN_SACCADE && end < r->count)
 			measure_saccade(run, begin, end, m);
 	}
 }
 
-/** MN corrected one file, which then has another name. */
+/* Coder MN corrected one file, which therefore has another name. */
 static void path_of(const char *folder, const char *file, const char *coder, char *path,
 		    size_t size)
 {
@@ -323,7 +325,7 @@ static void print_measures(const struct stimulus *stimulus, struct measures *m)
 	       list_part(&m->landing_deg, 0.5), list_part(&m->landing_deg, 0.9));
 }
 
-/** Whether what must hold does. */
+/* Whether all requirements hold. */
 static bool good_enough(const struct stimulus *stimulus, struct measures *m)
 {
 	double distance = sqrt(m->smooth_off2 / m->raw_off2);
@@ -338,7 +340,7 @@ static bool good_enough(const struct stimulus *stimulus, struct measures *m)
 	return good;
 }
 
-int main(int argc, char **argv)
+TEST_SUITE(recordings)
 {
 	const char *data = getenv("GAZECAST_DATA");
 	if (!data) {
@@ -350,7 +352,7 @@ int main(int argc, char **argv)
 	struct gz_pipeline_params params = gz_pipeline_default_params();
 	struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count, &params,
 					     NULL };
-	if (gz_options_read_arguments(&binding, 1, argc, argv, NULL, NULL, &log) != GZ_OK)
+	if (gz_options_read_arguments(&binding, 1, argc, argv, NULL, &log) != GZ_OK)
 		return 2;
 	int failures = 0;
 	char folder[512];

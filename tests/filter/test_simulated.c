@@ -1,7 +1,9 @@
 /*
- * What the pipeline reaches on simulated viewers, where the truth is known, and what a step costs.
- * Any option of the pipeline or the simulator may be given on the command line.
+ * What the pipeline achieves on simulated viewers, where the truth is known, and the time of a
+ * step. Any option of the pipeline or the simulator may be given on the command line.
  */
+#include "suite.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +19,7 @@ enum { RATE_COUNT = sizeof RATES_HZ / sizeof RATES_HZ[0], COUNT = 60000 };
 struct sums {
 	double agree[GZ_EVENT_COUNT], truth[GZ_EVENT_COUNT], ours[GZ_EVENT_COUNT];
 	double raw_off2, smooth_off2, raw_step2, smooth_step2, steps, fixated;
-	double median_ns, late_ns; /**< what a step takes; 99 of 100 take less than the latter */
+	double median_ns, late_ns; /* time of a step: median, and 99th percentile */
 };
 
 static double square(double x)
@@ -53,7 +55,7 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/** Reading the clock, some 20 ns, is counted with each step. */
+/* The time of a step includes reading the clock, about 20 ns. */
 static void time_steps(struct sums *sums, int64_t *step_ns)
 {
 	qsort(step_ns, COUNT, sizeof *step_ns, by_value);
@@ -77,7 +79,7 @@ static int run(const struct gz_sim_params *sim, const struct gz_pipeline_params 
 		gz_pipeline_init(&pipeline, params, &display);
 		for (int i = 0; i < COUNT; i++)
 			gz_sim_tracker_next(tracker, &in[i]);
-		for (int i = 0; i < COUNT; i++) /* so that no page fault is counted */
+		for (int i = 0; i < COUNT; i++) /* so that no page fault is measured */
 			out[i].rejection = GZ_REJECT_COUNT;
 		for (int i = 0; i < COUNT; i++) {
 			int64_t begin_ns = gz_clock_now_ns();
@@ -114,18 +116,18 @@ static void print_sums(double rate_hz, const struct sums *s)
 	       sqrt(s->smooth_step2 / s->fixated), s->median_ns, s->late_ns);
 }
 
-int main(int argc, char **argv)
+TEST_SUITE(simulated)
 {
 	struct gz_log log;
 	gz_log_init(&log, NULL, NULL, NULL);
 	struct gz_pipeline_params params = gz_pipeline_default_params();
 	struct gz_sim_params sim = gz_sim_default_params();
-	sim.offset_deg = 0; /* a constant error is not the filter's */
+	sim.offset_deg = 0; /* a constant error is not caused by the filter */
 	struct gz_option_binding bindings[] = {
 		{ gz_pipeline_options, gz_pipeline_option_count, &params, NULL },
 		{ gz_sim_options, gz_sim_option_count, &sim, NULL },
 	};
-	if (gz_options_read_arguments(bindings, 2, argc, argv, NULL, NULL, &log) != GZ_OK)
+	if (gz_options_read_arguments(bindings, 2, argc, argv, NULL, &log) != GZ_OK)
 		return 2;
 	printf("        kappa against the truth       RMS from truth    RMS step to step  step "
 	       "ns\n");

@@ -1,3 +1,5 @@
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
@@ -21,8 +23,10 @@ static int setup(void **state)
 static struct gz_point step(struct gz_smooth_state *s, enum gz_event event, int k, bool valid,
 			    float x)
 {
-	return gz_smooth_step(s, &params, &display, event, (int64_t)(k + 1) * 2000000, valid,
-			      (struct gz_point) { x, 0.5f });
+	const struct gz_smooth_input input = {
+		event, (int64_t)(k + 1) * 2000000, valid, { x, 0.5f }
+	};
+	return gz_smooth_step(s, &params, &display, &input);
 }
 
 static void nothing_known_is_the_centre(void **state)
@@ -60,7 +64,7 @@ static void saccade_passes_unsmoothed(void **state)
 	for (int k = 50; k < 70; k++) {
 		float x = 0.3f + 0.01f * (float)(k - 49);
 		float given = step(&s, GZ_EVENT_SACCADE, k, true, x).x;
-		if (x < 0.32f) /* the first degree may yet be noise */
+		if (x < 0.32f) /* the first degree may still be noise */
 			CHECK_BETWEEN(given, 0.3, x);
 		else if (x > 0.33f)
 			assert_true(given == x);
@@ -132,7 +136,7 @@ static void median_of_a_stream_is_found_and_followed(void **state)
 	CHECK_BETWEEN(median.value, 55, 85);
 }
 
-int main(void)
+TEST_SUITE(smooth)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(nothing_known_is_the_centre),

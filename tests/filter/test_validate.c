@@ -1,3 +1,5 @@
+#include "suite.h"
+
 #include "filter/check.h"
 
 #include <math.h>
@@ -17,7 +19,7 @@ static int setup(void **state)
 	return 0;
 }
 
-/** Both eyes good at the same place. */
+/* Both eyes are good and at the same place. */
 static struct gz_sample good_sample(int64_t time_ms, float x, float y)
 {
 	struct gz_sample sample = gz_sample_unmeasured();
@@ -60,7 +62,7 @@ static void sample_not_newer_is_refused_and_changes_nothing(void **state)
 	assert_memory_equal(&s, &before, sizeof s);
 }
 
-/** Refused for @p reason when both eyes are like the changed one; passes while one is good. */
+/* Rejected for @p reason if both eyes are like the changed one; accepted while one is good. */
 static void check_reason(struct gz_sample bad, enum gz_rejection reason)
 {
 	struct gz_validate_state both = { .started = false }, one = { .started = false };
@@ -117,7 +119,7 @@ static void too_fast_a_jump_is_refused_until_time_allows_it(void **state)
 	struct gz_sample sample = good_sample(1, 0.2f, 0.5f);
 	assert_int_equal(judge(&s, &sample), GZ_REJECT_NONE);
 	int refused = 0;
-	for (int64_t ms = 2; ms < 60; ms++) { /* some 30 degrees away, for good */
+	for (int64_t ms = 2; ms < 60; ms++) { /* about 30 degrees away, permanently */
 		sample = good_sample(ms, 0.8f, 0.5f);
 		enum gz_rejection r = judge(&s, &sample);
 		if (r == GZ_REJECT_NONE)
@@ -150,7 +152,7 @@ static void sudden_disparity_is_refused_and_a_lasting_one_learnt(void **state)
 			sample.eye[1].point.x += 0.15f; /* some 8 degrees */
 		struct gz_validate_output out = gz_validate_step(&s, &params, &display, &sample);
 		if (out.rejection == GZ_REJECT_NONE || ms < 100 + 20)
-			continue; /* at first it is too fast for the one eye */
+			continue; /* at first it is too fast for that eye */
 		assert_int_equal(out.rejection, GZ_REJECT_DISPARITY);
 		first = first < 0 ? ms : first;
 		refused++;
@@ -181,7 +183,7 @@ static void common_point_is_judged_where_no_eye_was_measured(void **state)
 	assert_int_equal(judge(&s, &sample), GZ_REJECT_TRACKER);
 }
 
-static void an_eye_that_is_not_wanted_is_not_looked_at(void **state)
+static void an_eye_that_is_not_selected_is_ignored(void **state)
 {
 	(void)state;
 	struct gz_validate_state s = { .started = false };
@@ -192,10 +194,10 @@ static void an_eye_that_is_not_wanted_is_not_looked_at(void **state)
 	assert_true(out.eye_good[GZ_EYE_LEFT] && !out.eye_good[GZ_EYE_RIGHT]);
 	params.eyes = GZ_VALIDATE_EYES_RIGHT;
 	sample = good_sample(2, 0.5f, 0.5f);
-	sample.eye[GZ_EYE_RIGHT].valid = false; /* the left one does not stand in */
+	sample.eye[GZ_EYE_RIGHT].valid = false; /* the left eye does not replace it */
 	assert_int_equal(judge(&s, &sample), GZ_REJECT_TRACKER);
 	sample = good_sample(3, 0.5f, 0.5f);
-	sample.eye[GZ_EYE_LEFT].point.x = 5; /* nor do its faults count */
+	sample.eye[GZ_EYE_LEFT].point.x = 5; /* and its faults do not count */
 	out = gz_validate_step(&s, &params, &display, &sample);
 	assert_int_equal(out.rejection, GZ_REJECT_NONE);
 	assert_true(out.eye_good[GZ_EYE_RIGHT] && !out.eye_good[GZ_EYE_LEFT]);
@@ -218,7 +220,7 @@ static void a_tracker_with_one_point_for_both_eyes_is_used_with_any_choice(void 
 	params.eyes = GZ_VALIDATE_EYES_BOTH;
 }
 
-int main(void)
+TEST_SUITE(validate)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(good_sample_passes_with_both_eyes),
@@ -230,7 +232,7 @@ int main(void)
 		cmocka_unit_test(fastest_saccade_passes),
 		cmocka_unit_test(sudden_disparity_is_refused_and_a_lasting_one_learnt),
 		cmocka_unit_test(common_point_is_judged_where_no_eye_was_measured),
-		cmocka_unit_test(an_eye_that_is_not_wanted_is_not_looked_at),
+		cmocka_unit_test(an_eye_that_is_not_selected_is_ignored),
 		cmocka_unit_test(a_tracker_with_one_point_for_both_eyes_is_used_with_any_choice),
 	};
 	return cmocka_run_group_tests_name("filter.validate", tests, setup, NULL);

@@ -1,6 +1,6 @@
 /**
  * @file
- * A simulated viewer and tracker with the pipeline behind it, for the tests.
+ * A simulated viewer and tracker followed by the pipeline, for the tests.
  */
 #ifndef GZ_TESTS_FILTER_VIEWING_H
 #define GZ_TESTS_FILTER_VIEWING_H
@@ -11,14 +11,14 @@
 #include "filter/pipeline.h"
 #include "sim/tracker.h"
 
-/** Exposure of the first sample. */
+/** Time of exposure of the first sample. */
 #define VIEWING_START_NS INT64_C(5000000000)
 
-/** Rates that the pipeline is tried at, Hz. */
+/** Rates at which the pipeline is tested, Hz. */
 static const double RATES_HZ[] = { 30, 60, 120, 250, 300, 500, 1000, 1200, 2000 };
 enum { RATE_COUNT = sizeof RATES_HZ / sizeof RATES_HZ[0] };
 
-/** A simulator and a pipeline behind it. */
+/** A simulator followed by a pipeline. */
 struct viewing {
 	struct gz_sim_tracker *tracker;
 	struct gz_pipeline pipeline;
@@ -35,7 +35,7 @@ static inline void viewing_open(struct viewing *viewing, const struct gz_sim_par
 	gz_pipeline_init(&viewing->pipeline, NULL, &display);
 }
 
-/** Take the next sample through the pipeline. */
+/** Pass the next sample through the pipeline. */
 static inline void viewing_step(struct viewing *viewing)
 {
 	gz_sim_tracker_next(viewing->tracker, &viewing->in);

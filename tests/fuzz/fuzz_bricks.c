@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/volume/brick_pool.h"
+#include "render/data/brick_pool.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

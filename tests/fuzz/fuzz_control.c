@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "daemon/inlet.h"
-#include "daemon/recording_name.h"
+#include "daemon/recorder.h"
 #include "daemon/remote.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

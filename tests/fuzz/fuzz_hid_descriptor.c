@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "drivers/hid/hid_tracker.h"
-#include "drivers/hid/hid_usages.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

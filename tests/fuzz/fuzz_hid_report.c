@@ -1,6 +1,7 @@
-/* Reports: a descriptor, then reports one behind the other. Two bytes hold the descriptor's length,
- * one the length of each report; a feature report is one that begins with 0xf0 to 0xf3. The first
- * byte of all chooses one of the reference layouts instead where it is not 0. */
+/* Reports: a descriptor, then reports one behind the other. Two bytes hold the length of the
+ * descriptor, one the length of each report; a feature report begins with 0xf0 to 0xf3. If the
+ * first byte of all is not 0, it chooses one of the first four layouts of hid_made.h instead of a
+ * descriptor. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -8,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "drivers/clock_ticks.h"
-#include "drivers/hid/hid_silence.h"
+#include "drivers/device/clock_ticks.h"
+#include "drivers/hid/hid_device.h"
 #include "drivers/hid/hid_tracker.h"
 #include "tests/drivers/hid_made.h"
 
@@ -72,7 +73,7 @@ static size_t choose_layout(const uint8_t *data, size_t size, struct gz_hid_trac
 		return 0;
 	size_t length = data[1] | (size_t)data[2] << 8;
 	if (data[0] > 0) {
-		hid_made_tracker(&made, data[0] % HID_LAYOUT_COUNT);
+		hid_made_tracker(&made, data[0] % HID_LAYOUT_WIDE);
 		require(gz_hid_descriptor_parse(made.bytes, made.size, &descriptor, NULL) == GZ_OK);
 		length = 0;
 	} else if (length > size - 3 ||

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daemon/zap.h"
+#include "daemon/admission.h"
 #include "protocol/key.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

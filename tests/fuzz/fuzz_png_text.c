@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/png_text.h"
+#include "render/picture/png_text.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

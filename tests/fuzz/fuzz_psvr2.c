@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "drivers/psvr2/psvr2_packet.h"
-#include "drivers/psvr2/psvr2_screen.h"
+#include "tests/drivers/psvr2_made.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -55,7 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		require(isfinite(packet.eye[eye].pupil_mm) && packet.eye[eye].pupil_mm >= 0);
 	}
 	/* What was understood is printed to bytes that mean the same. */
-	gz_psvr2_print(&packet, bytes);
+	psvr2_made_packet(&packet, bytes);
 	require(gz_psvr2_parse(bytes, sizeof bytes, &again, &malformed) == GZ_OK);
 	require(again.device_ns == packet.device_ns && again.frame == packet.frame);
 	require(again.eye[GZ_EYE_LEFT].blink == packet.eye[GZ_EYE_LEFT].blink);

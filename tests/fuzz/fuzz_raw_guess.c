@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/volume/raw_guess.h"
+#include "render/data/raw_guess.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/scene_write.h"
+#include "render/scene/scene_write.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		return 0;
 	require(gz_camera_rays(&s.camera, 640, 480, &rays) == GZ_OK);
 	require(!has_display || gz_display_valid(&s.display));
-	require((s.volume_file[0] != '\0') != (s.volume_procedural != 0));
+	require(s.objects.count > 0 || (s.volume_file[0] != '\0') != (s.volume_procedural != 0));
 	require(memchr(s.volume_file, '\0', sizeof s.volume_file) != NULL);
 	require(s.volume_procedural >= 0 && s.volume_procedural <= GZ_PROCEDURAL_COUNT);
 	require(s.rays.ray_sampling_rate > 0 && s.image_sampling_rate > 0);

@@ -4,9 +4,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "render/image.h"
-#include "view/scene_tables.h"
+#include "render/picture/image.h"
 #include "view/session/session_reader.h"
+#include "view/settings/scene_tables.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -31,9 +31,10 @@ static void require_settings(struct gz_scene_settings *settings)
 {
 	struct gz_view_scene_tables tables;
 	gz_view_pick_scene_tables(settings, &tables);
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++)
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++)
 		for (size_t k = 0; k < tables.bindings[i].count; k++)
-			require(gz_option_holds(&tables.options[i][k], tables.bindings[i].target));
+			require(gz_option_holds(&tables.bindings[i].options[k],
+						tables.bindings[i].target));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

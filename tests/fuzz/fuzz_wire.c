@@ -6,8 +6,6 @@
 #include <stdlib.h>
 
 #include "protocol/wire.h"
-#include "protocol/wire_notification.h"
-#include "protocol/wire_viewer.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

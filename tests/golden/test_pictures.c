@@ -3,17 +3,16 @@
  * picture on purpose changes them too. GAZECAST_UPDATE_GOLDEN=1 writes them anew; look at them
  * before they are committed.
  */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "render/scene.h"
+#include "render/plan/method.h"
+#include "render/scene/scene.h"
 
 /* Kernels of different instruction sets may differ by one grey level; between lattice points, means
  * of such values do so too. */
@@ -23,7 +22,7 @@ static void render(const struct gz_scene *scene, int method, struct gz_image *im
 {
 	struct gz_foveation foveation = scene->settings.foveation;
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	struct gz_plan plan = { 0 };
 	foveation.method = method;
 	/* the regions of mdc and ddc are meant for a whole screen */
@@ -42,13 +41,13 @@ static void render(const struct gz_scene *scene, int method, struct gz_image *im
 	assert_int_equal(gz_plan_make(&foveation, &display, (struct gz_point) { 0.4F, 0.55F },
 				      WIDTH, HEIGHT, &plan),
 			 GZ_OK);
-	assert_int_equal(gz_renderer_create("cpu", NULL, NULL, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
-	assert_int_equal(gz_renderer_render(renderer, &scene->settings.camera,
-					    &scene->settings.rays, &plan, image, NULL),
+	assert_int_equal(gz_raycaster_create("cpu", NULL, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_render(renderer, &scene->settings.camera,
+					     &scene->settings.rays, &plan, image, NULL),
 			 GZ_OK);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_plan_free(&plan);
 }
 
@@ -110,7 +109,7 @@ static void pictures_of_every_method_stay_what_they_were(void **state)
 	gz_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(pictures)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pictures_of_every_method_stay_what_they_were),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "gazed_process.h"
 
@@ -21,12 +21,12 @@
 #include "base/clock.h"
 #include "protocol/wire.h"
 
-/* Patience with a daemon on a busy machine, under a sanitizer. */
+/* Longest wait for a daemon on a busy machine, under a sanitizer. */
 #define PATIENCE_NS (20 * GZ_NS_PER_S)
 
 enum { ARGUMENTS_MAX = 32 };
 
-/* Daemons of one test that have not been waited for. */
+/* Daemons of one test that have not ended yet. */
 static pid_t running[8];
 
 static void note_running(pid_t from, pid_t to)
@@ -90,7 +90,7 @@ static bool contains(const char *const *arguments, const char *wanted)
 	return false;
 }
 
-/* The command line: what every test needs, but for what @p start brings itself. */
+/* The command line: what every test needs, except options that @p start gives itself. */
 static void make_arguments(const struct gazed_start *start, const char **argv)
 {
 	int argc = 0;
@@ -110,7 +110,7 @@ static void make_arguments(const struct gazed_start *start, const char **argv)
 	argv[argc] = NULL;
 }
 
-/* In the child: nothing but system calls. */
+/* Runs in the child: system calls only. */
 static void become_gazed(const struct gazed_start *start, const struct gazed_process *process,
 			 const char **argv)
 {

@@ -13,7 +13,7 @@
 
 #include "protocol/gaze.h"
 
-/** A place for daemons: a runtime directory and one for recordings. */
+/** The directories of a daemon: runtime and recordings. */
 struct gazed_place {
 	char directory[64];
 	char recordings[80];
@@ -22,22 +22,22 @@ struct gazed_place {
 /** Make both directories. */
 void gazed_place_make(struct gazed_place *place);
 
-/** Remove both with all that is in them. */
+/** Remove both directories and their content. */
 void gazed_place_remove(struct gazed_place *place);
 
 /** A daemon. */
 struct gazed_process {
 	pid_t pid;
-	char log[128]; /**< file with what it says */
+	char log[128]; /**< file with its log */
 };
 
 /** How a daemon is started. */
 struct gazed_start {
 	const struct gazed_place *place;
-	const char *const *arguments; /**< NULL-terminated; after what every test needs */
-	uint64_t file_size_max;       /**< bytes a file may grow to; 0: as many as may be */
+	const char *const *arguments; /**< NULL-terminated; after those that every test needs */
+	uint64_t file_size_max;       /**< limit of a file's size, bytes; 0: unlimited */
 	bool without_streams;         /**< with standard input, output and error closed */
-	uid_t user;                   /**< whom it runs as, and as which group; 0: as the test */
+	uid_t user;                   /**< user and group; 0: those of the test */
 	gid_t group;                  /**< a further group, with user */
 };
 
@@ -47,19 +47,19 @@ struct gazed_start {
  */
 void gazed_spawn(const struct gazed_start *start, struct gazed_process *out);
 
-/** Kill what a failed test has left running. */
+/** Kill the daemons that a failed test has left running. */
 void gazed_kill_all(void);
 
 /** Wait until its control socket answers; fails the test after 20 s or when it exits. */
 void gazed_wait_ready(const struct gazed_place *place, struct gazed_process *process);
 
-/** Wait for its end, 20 s at most. @return exit status, or -signal */
+/** Wait until it ends, 20 s at most. @return exit status, or -signal */
 int gazed_wait_exit(struct gazed_process *process);
 
 /** Send @p signal and wait for the end. */
 int gazed_stop(struct gazed_process *process, int signal);
 
-/** What it has said so far; static buffer. */
+/** Its log so far; static buffer. */
 const char *gazed_said(const struct gazed_process *process);
 
 /** One request over the control socket; the answer in a static buffer; fails the test after 5 s.
@@ -86,7 +86,7 @@ struct reader {
 	size_t status_count;
 };
 
-/** Subscribe to @p topic of the stream of @p place, also before the daemon runs. */
+/** Subscribe to @p topic of the stream of @p place; works before the daemon runs. */
 void reader_open(struct reader *reader, const struct gazed_place *place, const char *topic);
 
 /** Receive one message, @p timeout_ms at most. @return whether one came */
@@ -98,11 +98,11 @@ void reader_receive_gaze(struct reader *reader, size_t count);
 /** Receive until the daemon's recording is in @p state; fails the test after 20 s. */
 void reader_wait_recording(struct reader *reader, enum gz_recording_state state);
 
-/** Receive what there still is, until nothing comes for @p quiet_ms. */
+/** Receive the remaining messages, until nothing comes for @p quiet_ms. */
 void reader_drain(struct reader *reader, int quiet_ms);
 
-/** Stop listening, and keep what was received. A reader that listens comes back to the next daemon.
- */
+/** Close the socket, and keep what was received. An open reader would connect to the next daemon.
+ * */
 void reader_hang_up(struct reader *reader);
 
 /** Close and free. */

@@ -1,8 +1,8 @@
 #!/bin/bash
 # usage: system_directory.sh GAZED GAZECTL
-# Started by root for a user of its own, the daemon serves the members of that user's group in
-# /run/gazecast, and nobody else. In a mount namespace with a /run of its own; skipped where that is
-# not allowed.
+# If root starts the daemon for a user of its own, it serves the members of that user's group in
+# /run/gazecast, and nobody else. Runs in a mount namespace with its own /run; skipped if that is not
+# allowed.
 set -u
 gazed=$1 gazectl=$2
 if [ "${3:-}" != inside ]; then
@@ -19,7 +19,7 @@ mount -t tmpfs -o mode=755 tmpfs /run || exit 77
 mkdir -m 777 /run/recordings /run/session
 trap 'kill $(jobs -p) 2>/dev/null; wait' EXIT
 unset GAZECAST_RUNTIME_DIR XDG_CONFIG_HOME
-# root's own session must not count once it is another user
+# root's own session must not matter once the daemon is another user
 export XDG_RUNTIME_DIR=/run/session HOME=/run
 "$gazed" --config /dev/null --driver sim --tcp off --daemon.user nobody \
 	--recording.directory /run/recordings 2>/run/said &
@@ -46,7 +46,7 @@ as 54321 "$gazectl" status >/run/status 2>&1 && fail "somebody else can read"
 [ ! -e /run/session/gazecast ] || fail "root's session was used"
 kill -TERM $daemon
 wait $daemon || fail "exit status $?"
-# one that others may enter is closed by root, who owns it, and refused by anybody else
+# a directory that others may enter is closed by root, who owns it, and refused by anyone else
 chmod 755 /run/gazecast
 setpriv --reuid "$user" --regid "$group" --clear-groups env -u XDG_RUNTIME_DIR "$gazed" --config /dev/null \
 	--tcp off 2>/run/said && fail "an open directory was taken"

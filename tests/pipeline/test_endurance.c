@@ -1,7 +1,7 @@
 /* The daemon at a fast tracker's rate for long, and over many samples: nothing lost, no memory
  * taken. usage: test_pipeline_endurance [SECONDS SAMPLES]; the preset is what fits between other
  * tests. */
-#include "check.h"
+#include "suite.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
-/* A sanitizer takes memory and time of its own. */
+/* A sanitizer needs more memory and time. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 enum { SANITIZED = 1, RATE_HZ = 250 };
 #else
@@ -43,7 +43,7 @@ static int tear_down(void **state)
 	return 0;
 }
 
-/* One gaze message, its map alone kept. */
+/* One gaze message, of which only the map is kept. */
 static struct gz_gaze receive_gaze(struct reader *reader)
 {
 	char topic[80];
@@ -59,7 +59,7 @@ static struct gz_gaze receive_gaze(struct reader *reader)
 	return gaze;
 }
 
-/* Every sample from 0 on, once, and no gap. */
+/* Every sample from 0 on exactly once, without a gap. */
 static void check_log(const char *name, uint64_t at_least)
 {
 	char path[256];
@@ -151,7 +151,7 @@ static void gazed_memory_is_the_same_after_many_samples(void **state)
 
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
-int main(int argc, char **argv)
+TEST_SUITE(endurance)
 {
 	if (argc == 3) {
 		seconds = atof(argv[1]);

@@ -1,5 +1,5 @@
-/* The daemon with trackers that misbehave and with more readers than anybody has. */
-#include "check.h"
+/* The daemon with trackers that misbehave and with more readers than in any real use. */
+#include "suite.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -15,11 +15,11 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "drivers/template/template_protocol.h"
+#include "drivers/template_made.h"
 #include "gazed_process.h"
 #include "protocol/wire.h"
 
-/* A thread sanitizer takes half a second for each context of libzmq. */
+/* A thread sanitizer needs half a second for each context of libzmq. */
 #if defined __SANITIZE_THREAD__
 #define READERS 8
 #else
@@ -31,7 +31,7 @@
 static struct gazed_place place;
 static char fifo[128];
 
-/* What plays the tracker: the template's reports through a FIFO. */
+/* The tracker: reports of the template driver through a FIFO. */
 static struct {
 	int fd;
 	uint32_t counter;
@@ -43,7 +43,7 @@ static int set_up(void **state)
 	(void)state;
 	gazed_place_make(&place);
 	snprintf(fifo, sizeof fifo, "%s/fifo", place.directory);
-	/* Open for both, so that neither end waits for the other. */
+	/* Opened for reading and writing, so that neither end waits for the other. */
 	if (mkfifo(fifo, 0600) != 0)
 		return -1;
 	tracker.fd = open(fifo, O_RDWR | O_CLOEXEC);
@@ -73,7 +73,7 @@ static struct gazed_process spawn_with_tracker(void)
 	return process;
 }
 
-/* A good report @p step_us after the last by the device's clock, 2 ms by ours. */
+/* A valid report, @p step_us after the last by the device's clock and 2 ms by ours. */
 static void send_report(int32_t step_us)
 {
 	unsigned char bytes[GZ_TEMPLATE_REPORT_SIZE];
@@ -82,7 +82,7 @@ static void send_report(int32_t step_us)
 					     .clock_us = tracker.clock_us,
 					     .found = { true, true },
 					     .point = { { 0.5f, 0.5f }, { 0.5f, 0.5f } } };
-	gz_template_print(&report, bytes);
+	template_made_report(&report, bytes);
 	assert_int_equal(write(tracker.fd, bytes, sizeof bytes), sizeof bytes);
 	gz_clock_sleep_until_ns(gz_clock_now_ns() + 2 * GZ_NS_PER_MS);
 }
@@ -127,7 +127,7 @@ static void gazed_tracker_that_sends_garbage_is_heard_between_it_and_counted(voi
 		}
 		size_t size = 1 + (random >> 8) % sizeof garbage;
 		assert_int_equal(write(tracker.fd, garbage, size), (ssize_t)size);
-		/* What garbage leaves in the buffer may cost the first report behind it. */
+		/* Garbage left in the buffer may cost the first report after it. */
 		for (int i = 0; i < 3; i++)
 			send_report(2000);
 	}
@@ -170,7 +170,7 @@ static void gazed_device_clock_that_jumps_or_runs_back_never_turns_the_streams_t
 		newest_ns = gaze.host_ns;
 		good += gaze.confidence > 0;
 	}
-	/* Each jump may cost some samples at the same time as the last, not the stream. */
+	/* Each jump may cost some samples with the time of the last one, but not the stream. */
 	if (good < JUMPS * (BETWEEN - 10) + BETWEEN)
 		fail_msg("%llu good samples of %zu", (unsigned long long)good, reader.gaze_count);
 	assert_non_null(strstr(gazed_said(&gazed), "clock jumped"));
@@ -225,7 +225,7 @@ static void gazed_with_more_connections_than_its_soft_limit_of_files_goes_on(voi
 	struct gazed_process gazed;
 	assert_return_code(getrlimit(RLIMIT_NOFILE, &before), errno);
 	if (before.rlim_max < 2 * IDLE)
-		skip(); /* there is nothing to raise */
+		skip(); /* the limit cannot be raised */
 	const char *const arguments[] = { "--control", "tcp://127.0.0.1:*", NULL };
 	low = (struct rlimit) { .rlim_cur = SOFT, .rlim_max = before.rlim_max };
 	assert_return_code(setrlimit(RLIMIT_NOFILE, &low), errno);
@@ -246,7 +246,7 @@ static void gazed_with_more_connections_than_its_soft_limit_of_files_goes_on(voi
 
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(faults)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(gazed_tracker_that_sends_garbage_is_heard_between_it_and_counted),

@@ -1,5 +1,5 @@
 /* The daemon as its users meet it: a process, its sockets, its signals and its files. */
-#include "check.h"
+#include "suite.h"
 
 #include <arpa/inet.h>
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
-/* How many times slower than a daemon of its own a sanitizer's may be. */
+/* How many times slower the daemon may be with a sanitizer. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 enum { SLOWNESS = 10 };
 #else
@@ -51,7 +51,7 @@ static struct gazed_process spawn(const char *const *arguments)
 
 #define SPAWN(...) spawn((const char *const[]) { __VA_ARGS__, NULL })
 
-/* What is in a log, and how it ended. */
+/* The content of a log, and how it ended. */
 struct found {
 	uint64_t samples, first_seq, last_seq;
 	enum gz_gaze_log_ending ending;
@@ -99,15 +99,16 @@ static void gazed_answers_every_letter_within_100_ms(void **state)
 	(void)state;
 	static const char *const requests[][2] = {
 		{ "v", GAZECAST_VERSION },
-		{ "T 5", "time is this machine's monotonic clock, which cannot be set; ask for it "
+		{ "T 5", "the time is this machine's monotonic clock, which cannot be set; read it "
 			 "with t and keep the difference" },
 		{ "C", "this tracker is calibrated by its own software, not by gazed" },
 		{ "c", "this tracker is calibrated by its own software, not by gazed" },
 		{ "bogus", "unknown command" },
 		{ "", "unknown command" },
 		{ "r", "no recording is running" },
-		{ "R ../x", "that is no name for a recording; allowed: 1 to 64 of A-Z a-z 0-9 . _ "
-			    "-" },
+		{ "R ../x",
+		  "this is not a valid name for a recording; allowed: 1 to 64 of A-Z a-z 0-9 . _ "
+		  "-" },
 		{ "R one", "OK" },
 		{ "R two", "a recording is running; end it with r first" },
 		{ "r", "OK" },
@@ -121,13 +122,13 @@ static void gazed_answers_every_letter_within_100_ms(void **state)
 	for (size_t i = 0; i < count; i++) {
 		double ms;
 		const char *answer = gazed_request(&place, requests[i][0], &ms);
-		/* A disk that takes its time to sync. */
+		/* The disk may take long to sync. */
 		while (strstr(answer, "still being written"))
 			answer = gazed_request(&place, requests[i][0], &ms);
 		assert_string_equal(answer, requests[i][1]);
 		late += ms > 100 * SLOWNESS;
 	}
-	/* A machine that is busy with other tests may hold up one or the other. */
+	/* On a machine that is busy with other tests a few answers may be late. */
 	if (late > count / 4)
 		fail_msg("%zu of %zu answers took more than 100 ms", late, count);
 	double seconds = atof(gazed_request(&place, "t", NULL));
@@ -211,7 +212,7 @@ static void gazed_newcomers_do_not_wait_for_the_next_second_s_status(void **stat
 		assert_true(reader_receive(&reader, 5000));
 		reader_close(&reader);
 	}
-	/* Each would wait for most of a second, on average. */
+	/* Otherwise each would wait for most of a second on average. */
 	double seconds = gz_ns_to_s(gz_clock_now_ns() - begin_ns);
 	if (seconds > NEWCOMERS / 2.0)
 		fail_msg("%d newcomers waited %.1f s", NEWCOMERS, seconds);
@@ -244,7 +245,7 @@ static void gazed_latest_is_one_frame_and_the_newest(void **state)
 		assert_true(i == 0 || gaze.seq > last.seq);
 		assert_true(gz_clock_now_ns() - gaze.publish_ns < GZ_NS_PER_S);
 		last = gaze;
-		/* A reader slower than the tracker: it finds the newest all the same. */
+		/* A reader slower than the tracker still gets the newest gaze. */
 		gz_clock_sleep_until_ns(gz_clock_now_ns() + 5 * GZ_NS_PER_MS);
 	}
 	zmq_close(socket);
@@ -252,7 +253,7 @@ static void gazed_latest_is_one_frame_and_the_newest(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* The next message from @p i on that the pipeline made: no status, no notification. */
+/* The next message of the pipeline from @p i on: neither a status nor a notification. */
 static size_t skip_others(const struct reader *reader, size_t i)
 {
 	while (i < reader->count && (strcmp(reader->messages[i].topic, "status") == 0 ||
@@ -261,7 +262,7 @@ static size_t skip_others(const struct reader *reader, size_t i)
 	return i;
 }
 
-/* The place of the gaze message of sample @p seq. */
+/* The index of the gaze message of sample @p seq. */
 static size_t find_gaze(const struct reader *reader, uint64_t seq)
 {
 	for (size_t i = 0; i < reader->count; i++) {
@@ -283,8 +284,7 @@ static bool same_message(const struct received *a, const struct received *b)
 	       memcmp(a->bytes, b->bytes, a->size - ignored) == 0;
 }
 
-/* All that the pipeline made in @p replay against those of @p live from its message @p from on.
- */
+/* Compare all messages of the pipeline in @p replay with those in @p live from index @p from on. */
 static void compare(const struct reader *live, size_t from, const struct reader *replay)
 {
 	size_t a = skip_others(live, from), b = skip_others(replay, 0), compared = 0;
@@ -302,7 +302,7 @@ static void compare(const struct reader *live, size_t from, const struct reader 
 	print_message("           %zu messages are the same\n", compared);
 }
 
-/* Play @p name and keep all that comes of it. */
+/* Replay @p name and keep all messages. */
 static void replay_log(const char *name, struct reader *reader)
 {
 	char path[256];
@@ -335,7 +335,7 @@ static void gazed_replay_gives_the_live_messages_bit_for_bit(void **state)
 	replay_log("live.gzl", &replay);
 	assert_int_equal(replay.gaze_count, live.gaze_count);
 	compare(&live, 0, &replay);
-	/* And the other way round: the live stream had nothing more. */
+	/* Conversely, the live stream had no more messages. */
 	compare(&replay, 0, &live);
 	reader_close(&live);
 	reader_close(&replay);
@@ -351,7 +351,7 @@ static void gazed_recording_begun_in_mid_stream_replays_bit_for_bit(void **state
 	assert_string_equal(gazed_request(&place, "R middle", NULL), "OK");
 	reader_receive_gaze(&live, 1400);
 	assert_string_equal(gazed_request(&place, "r", NULL), "OK");
-	struct found found = read_log("middle.gzl"); /* whole by the time of the answer */
+	struct found found = read_log("middle.gzl"); /* complete when the answer comes */
 	reader_receive_gaze(&live, live.gaze_count + 600);
 	assert_int_equal(gazed_stop(&gazed, SIGINT), 0);
 	reader_drain(&live, 100);
@@ -395,9 +395,9 @@ static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void *
 	unsigned char subscription[8];
 	zmq_setsockopt(socket, ZMQ_RCVTIMEO, &timeout_ms, sizeof timeout_ms);
 	assert_int_equal(zmq_connect(socket, endpoint), 0);
-	/* What is sent before the daemon has subscribed would be lost. */
+	/* Messages sent before the daemon has subscribed would be lost. */
 	assert_true(zmq_recv(socket, subscription, sizeof subscription, 0) >= 0);
-	/* A forged gaze, which goes nowhere, and then the annotation. */
+	/* A forged gaze, which is dropped, and then the annotation. */
 	zmq_send(socket, "gaze.forged", 11, ZMQ_SNDMORE);
 	zmq_send(socket, go, sizeof go - 1, 0);
 	zmq_send(socket, "annotation", 10, ZMQ_SNDMORE);
@@ -408,7 +408,7 @@ static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void *
 	zmq_ctx_term(context);
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 	assert_int_equal(count_topic(&reader, "gaze.forged"), 0);
-	assert_non_null(strstr(gazed_said(&gazed), "topic of the daemon's own"));
+	assert_non_null(strstr(gazed_said(&gazed), "topic that is reserved for the daemon"));
 	assert_int_equal(count_marks("marked.gzl", "go"), 1);
 	reader_close(&reader);
 }
@@ -421,13 +421,13 @@ static void gazed_second_one_in_a_directory_is_refused_and_harms_nothing(void **
 	gazed_wait_ready(&place, &first);
 	struct gazed_process second = SPAWN("--driver", "sim");
 	assert_int_equal(gazed_wait_exit(&second), 1);
-	assert_non_null(strstr(gazed_said(&second), "already serves"));
+	assert_non_null(strstr(gazed_said(&second), "already uses"));
 	assert_non_null(strstr(gazed_said(&second), "GAZECAST_RUNTIME_DIR"));
 	reader_open(&reader, &place, "gaze.");
 	reader_receive_gaze(&reader, 10);
 	reader_close(&reader);
 	assert_int_equal(gazed_stop(&first, SIGTERM), 0);
-	/* And the directory is free again. */
+	/* The directory is free again. */
 	struct gazed_process third = SPAWN("--driver", "sim");
 	gazed_wait_ready(&place, &third);
 	assert_int_equal(gazed_stop(&third, SIGTERM), 0);
@@ -450,7 +450,7 @@ static void gazed_taken_endpoint_is_refused_with_the_remedy(void **state)
 	close(taken);
 	const char *said = gazed_said(&gazed);
 	assert_non_null(strstr(said, endpoint));
-	assert_non_null(strstr(said, "is taken"));
+	assert_non_null(strstr(said, "is in use"));
 	assert_non_null(strstr(said, "--tcp off"));
 	assert_ptr_equal(strchr(said, '\n'), said + strlen(said) - 1); /* one line */
 }
@@ -467,7 +467,7 @@ static void gazed_refuses_bad_configuration_in_one_line(void **state)
 		{ "--bogus", "1", "--bogus: unknown option" },
 		{ "--config", path, "bad.conf:4: sim.rate_hz: many" },
 		{ "--driver", "replay", "--replay.file" },
-		{ "--record", "a/b", "that is no name" },
+		{ "--record", "a/b", "this is not a valid name" },
 		{ "--sim.targets", "/nonexistent", "/nonexistent" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
@@ -494,7 +494,7 @@ static void gazed_killed_loses_no_more_than_a_second_of_the_recording(void **sta
 	if (found.samples + 500 < reader.gaze_count)
 		fail_msg("%llu of %zu samples are in the log", (unsigned long long)found.samples,
 			 reader.gaze_count);
-	/* The sockets and the lock that it left behind are in nobody's way. */
+	/* The sockets and the lock that it left behind do not disturb the next daemon. */
 	struct gazed_process next = SPAWN("--driver", "sim");
 	gazed_wait_ready(&place, &next);
 	assert_int_equal(gazed_stop(&next, SIGTERM), 0);
@@ -564,7 +564,7 @@ static void gazed_reader_that_stops_reading_delays_nobody(void **state)
 	reader_open(&lively, &place, "gaze.");
 	reader_open(&dead, &place, "");
 	zmq_setsockopt(dead.socket, ZMQ_RCVHWM, &small, sizeof small);
-	reader_receive_gaze(&lively, 8000); /* the dead one's queues are long full */
+	reader_receive_gaze(&lively, 8000); /* the queues of the dead reader have long been full */
 	struct gz_gaze first, last;
 	assert_int_equal(
 		gz_wire_decode_gaze(lively.messages[0].bytes, lively.messages[0].size, &first),
@@ -598,10 +598,10 @@ static void gazed_started_with_closed_streams_logs_into_no_socket(void **state)
 	assert_int_equal(read_log("silent.gzl").ending, GZ_GAZE_LOG_WHOLE);
 }
 
-/* Each in a place of its own, so that a failed one is in nobody's way. */
+/* Each in directories of its own, so that a failed test does not disturb the others. */
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(gazed)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(gazed_starts_at_once_and_ends_cleanly_on_each_signal),

@@ -1,6 +1,6 @@
 /* Real processes from end to end: gazed with the simulator, gazeview headless on its latest
  * channel, and this test on its stream, which sees where each saccade of the viewer lands. */
-#include "check.h"
+#include "suite.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -16,7 +16,7 @@
 #include "base/clock.h"
 #include "client/stream.h"
 #include "protocol/endpoint.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 extern char **environ;
 
@@ -31,9 +31,9 @@ enum {
 	PATH_SIZE = 256,
 };
 
-/* A saccade worth following: beyond what a fixation could be mistaken for. */
+/* Smallest saccade that is followed: larger than anything a fixation could be taken for. */
 #define SACCADE_MIN_DEG 4.0
-/* What the picture may miss the landing by. */
+/* Largest distance of the picture's fovea from the landing. */
 #define LANDING_DEG 0.5
 /* Age of the gaze when a frame's plan is made, for the youngest quarter of frames. A machine with
  * other work delays some frames at will, so neither the median nor the oldest is looked at: a
@@ -43,7 +43,7 @@ enum {
  * filter needs to see that the eye rests, and the same allowance. */
 #define DELAY_LEAST_MS 60.0
 
-/* Where the viewer looks: corners and middle, so that saccades are long. */
+/* Targets of the viewer: corners and centre, so that saccades are long. */
 static const char targets[] = "0.2 0.25\n0.8 0.3\n0.5 0.5\n0.25 0.75\n0.75 0.8\n";
 
 struct frame {
@@ -114,7 +114,7 @@ static void take(const struct gz_message *message)
 	}
 }
 
-/* Read the stream until the viewer has ended; its exit status. */
+/* Read the stream until the viewer has ended. @return its exit status */
 static int follow_until_end(struct gz_stream *stream, pid_t viewer)
 {
 	struct gz_message message;
@@ -131,7 +131,7 @@ static int follow_until_end(struct gz_stream *stream, pid_t viewer)
 	return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/* The entries are one a line; only the two keys that this test needs are read. */
+/* There is one entry on each line; only the two keys that this test needs are read. */
 static void read_stats(void)
 {
 	char line[1024];
@@ -169,7 +169,7 @@ static void match_frames(void)
 	}
 }
 
-/* Run the whole pipeline once; the tests look at what came of it. */
+/* Run the whole pipeline once; the tests examine the result. */
 static int run_pipeline(void **state)
 {
 	(void)state;
@@ -180,12 +180,13 @@ static int run_pipeline(void **state)
 	if (!messages || !mkdtemp(folder))
 		return -1;
 	setenv("GAZECAST_RUNTIME_DIR", folder, 1);
-	setenv("XDG_CONFIG_HOME", folder, 1); /* no settings of whoever runs the test */
+	setenv("XDG_CONFIG_HOME", folder, 1); /* no settings of the user who runs the test */
 	FILE *out = fopen(path_of("targets.txt"), "w");
 	if (!out || fputs(targets, out) < 0 || fclose(out) != 0)
 		return -1;
-	/* No spikes, which are landings of no saccade, and no pursuit, which leaves a landing. */
-	const char *const gazed[] = { GAZED,
+	/* No spikes, which look like landings without a saccade, and no pursuit, which leaves the
+	 * landing point. */
+	const char *const gazed[] = { GAZED_PROGRAM,
 				      "--driver=sim",
 				      "--tcp=off",
 				      "--sim.seed=7",
@@ -261,7 +262,7 @@ static int by_value(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* The age that a quarter of some frames stay under. */
+/* The lower quartile of the ages of some frames. */
 static double age_quartile_ms(const struct frame *from, int count)
 {
 	double ages[FRAMES_MAX];
@@ -288,7 +289,7 @@ static int64_t planned_ns(const struct frame *frame)
 	return messages[frame->message].host_ns + (int64_t)(frame->age_ms * 1e6);
 }
 
-/* The first frame that knows of a sample at @p time_ns or later; NULL after the last. */
+/* The first frame whose gaze is of @p time_ns or later; NULL after the last. */
 static const struct frame *frame_knowing_of(int64_t time_ns)
 {
 	for (int i = 0; i < frame_count; i++) {
@@ -298,7 +299,7 @@ static const struct frame *frame_knowing_of(int64_t time_ns)
 	return NULL;
 }
 
-/* Whether the eye had left again: another saccade between the landing and @p time_ns. */
+/* Whether the eye has moved on: another saccade between the landing and @p time_ns. */
 static bool left_again(const struct gz_saccade *landed, int64_t time_ns)
 {
 	for (int i = 0; i < saccade_count; i++) {
@@ -308,7 +309,7 @@ static bool left_again(const struct gz_saccade *landed, int64_t time_ns)
 	return false;
 }
 
-/* Whether the frames could and did follow this one; adds to how promptly. */
+/* Whether the frames could and did follow this saccade; records how quickly. */
 static bool follow(const struct gz_saccade *saccade, double *least_delay_ms)
 {
 	const int64_t landing_ns = saccade->start_ns + saccade->duration_ns;
@@ -380,7 +381,7 @@ static void picture_is_the_full_one_at_the_gaze_and_coarser_far_from_it(void **s
 	assert_true(different_far > 1000);
 }
 
-int main(void)
+TEST_SUITE(saccade_to_picture)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_frame_shows_a_gaze_of_the_stream_in_its_order),

@@ -1,5 +1,5 @@
-/* Who reads the gaze: keys, refusals and what is told of them, with real sockets. */
-#include "check.h"
+/* Who can read the gaze: keys, refusals and what is logged about them, with real sockets. */
+#include "suite.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -18,9 +18,9 @@
 #include "client/gazecast.h"
 #include "client/program.h"
 #include "gazed_process.h"
-#include "protocol/key_file.h"
+#include "protocol/key.h"
 
-/* Patience with a daemon on a busy machine, under a sanitizer. */
+/* Longest wait for a daemon on a busy machine, under a sanitizer. */
 #define PATIENCE_NS (20 * GZ_NS_PER_S)
 
 enum { ATTEMPTS = 8 };
@@ -69,7 +69,7 @@ static const char *read_key(const char *directory, const char *name)
 
 #define GAZECTL_RUN(...) program_run(&program, (const char *const[]) { GAZECTL, __VA_ARGS__, NULL })
 
-/* A port that nobody had a moment ago. */
+/* A port that was free a moment ago. */
 static int free_port(void)
 {
 	struct sockaddr_in address = { .sin_family = AF_INET };
@@ -90,7 +90,7 @@ static int set_up(void **state)
 	snprintf(server_directory, sizeof server_directory, "%s/server", place.directory);
 	snprintf(client_directory, sizeof client_directory, "%s/gazecast", place.directory);
 	snprintf(control, sizeof control, "tcp://127.0.0.1:%d", free_port());
-	/* Where the client's library looks. */
+	/* Where the client library looks for keys. */
 	setenv("XDG_CONFIG_HOME", place.directory, 1);
 	GAZECTL_RUN("keygen", "--server", "--keys", server_directory);
 	assert_int_equal(program.status, 0);
@@ -138,7 +138,7 @@ static struct gazed_process start_curve(void)
 	return gazed;
 }
 
-/* How often the daemon has said @p text. */
+/* How often the daemon has logged @p text. */
 static int count_said(const struct gazed_process *gazed, const char *text)
 {
 	int count = 0;
@@ -190,7 +190,7 @@ static void must_be_refused(const struct gz_keys *keys, const char *why)
 		fail_msg("%s: %s, not %s", gz_result_text(result), captured.last, why);
 }
 
-/* A TCP port that the daemon tells by its local socket. */
+/* A TCP port of the daemon, asked for over its local socket. */
 static int port_by(const char *request)
 {
 	int port = atoi(gazed_request(&place, request, NULL));
@@ -221,7 +221,7 @@ static void curve_authorised_client_reads_stream_latest_and_control(void **state
 	know_server(read_key(server_directory, GZ_SERVER_KEY_FILE));
 	struct gazed_process gazed = start_curve();
 
-	/* By the usual files, without a word about keys. */
+	/* With the usual files, without naming keys. */
 	assert_int_equal(gz_control_open(control, &captured.log, &asked), GZ_OK);
 	assert_non_null(gz_control_keys(asked));
 	assert_int_equal(gz_control_stream_endpoint(asked, (int)(PATIENCE_NS / GZ_NS_PER_MS),
@@ -279,7 +279,7 @@ static void curve_unknown_key_is_refused_each_time_and_logged_once(void **state)
 {
 	(void)state;
 	struct gz_keys keys = own_keys();
-	authorize(read_key(server_directory, GZ_SERVER_KEY_FILE)); /* somebody else's */
+	authorize(read_key(server_directory, GZ_SERVER_KEY_FILE)); /* of another client */
 	struct gazed_process gazed = start_curve();
 	for (int i = 0; i < ATTEMPTS; i++) {
 		must_be_refused(&keys, "refuses our key; add this line to authorized_keys");
@@ -320,15 +320,17 @@ static void curve_wrong_server_key_is_logged_once_on_both_sides(void **state)
 	memcpy(wrong.server_key, wrong.public_key, sizeof wrong.server_key);
 	authorize(keys.public_key);
 	struct gazed_process gazed = start_curve();
-	must_be_refused(&wrong, "most likely its server key is another");
+	must_be_refused(&wrong, "most likely its server key is not the one");
 	assert_int_equal(captured.messages, 1);
 	for (int i = 0; i < ATTEMPTS; i++)
-		must_be_refused(&wrong, "most likely its server key is another");
-	wait_said(&gazed, "127.0.0.1 at socket control is refused: it holds another server key");
+		must_be_refused(&wrong, "most likely its server key is not the one");
+	wait_said(&gazed,
+		  "127.0.0.1 at socket control is refused: it has the key of another server");
 	must_be_let_in(&keys);
-	/* Of whom it was too late to ask for the address there is one more line at most. */
+	/* There is at most one more line, for connections that had closed before their address was
+	 * read. */
 	if (count_said(&gazed, "127.0.0.1 at socket control is refused") != 1 ||
-	    count_said(&gazed, "it holds another server key") > 2)
+	    count_said(&gazed, "it has the key of another server") > 2)
 		fail_msg("not once: %s", gazed_said(&gazed));
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
@@ -340,8 +342,8 @@ static void curve_client_without_keys_is_told_what_it_needs(void **state)
 	struct gz_keys keys = own_keys();
 	struct gazed_process gazed = start_curve();
 	for (int i = 0; i < ATTEMPTS; i++)
-		must_be_refused(NULL, "wants keys: run gazectl keygen --client");
-	wait_said(&gazed, "127.0.0.1 at socket control is refused: it comes without keys");
+		must_be_refused(NULL, "requires keys: run gazectl keygen --client");
+	wait_said(&gazed, "127.0.0.1 at socket control is refused: it has no keys");
 	must_be_let_in(&keys);
 	if (count_said(&gazed, "127.0.0.1 at socket control is refused") != 1)
 		fail_msg("not once: %s", gazed_said(&gazed));
@@ -355,10 +357,11 @@ static void client_with_keys_is_told_that_the_daemon_has_none(void **state)
 	struct gazed_process gazed =
 		spawn((const char *const[]) { "--tcp=loopback", "--control", control, NULL });
 	gazed_wait_ready(&place, &gazed);
-	/* libzmq tells either, as the bytes arrive. */
+	/* libzmq reports one or the other, depending on how the bytes arrive. */
 	enum gz_result result = ask(&keys, (int)(PATIENCE_NS / GZ_NS_PER_MS));
 	assert_int_equal(result, GZ_ERR_ACCESS);
-	if (!strstr(captured.last, "serves without keys") && !strstr(captured.last, "hangs up"))
+	if (!strstr(captured.last, "does not use keys") &&
+	    !strstr(captured.last, "closes the connection"))
 		fail_msg("%s", captured.last);
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
@@ -368,7 +371,7 @@ static void curve_authorized_keys_are_read_again_when_they_change(void **state)
 	(void)state;
 	struct gz_keys keys = own_keys();
 	struct gazed_process gazed = start_curve(); /* without the file */
-	assert_int_equal(count_said(&gazed, "is not there, so no client is let in"), 1);
+	assert_int_equal(count_said(&gazed, "does not exist, so no client is let in"), 1);
 	must_be_refused(&keys, "refuses our key");
 	authorize(keys.public_key);
 	must_be_let_in(&keys);
@@ -387,7 +390,7 @@ static void curve_authorized_keys_are_read_again_when_they_change(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* Refused clients that come again at once, each of them for as long as the test lasts. */
+/* Refused clients that connect again at once, each of them as long as the test lasts. */
 static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **state)
 {
 	(void)state;
@@ -402,8 +405,8 @@ static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **st
 	void *context = zmq_ctx_new(), *flood[CLIENTS];
 	const int linger = 0, again_ms = 1;
 	for (int i = 0; i < CLIENTS; i++) {
-		/* Half of them with an unknown key, which libzmq gives up, half with a wrong one.
-		 */
+		/* Half of them have an unknown key, with which libzmq gives up, half a wrong server
+		 * key. */
 		const char *server = i % 2 ? keys.public_key : keys.server_key;
 		flood[i] = zmq_socket(context, ZMQ_SUB);
 		zmq_setsockopt(flood[i], ZMQ_LINGER, &linger, sizeof linger);
@@ -428,8 +431,8 @@ static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **st
 	for (int i = 0; i < CLIENTS; i++)
 		zmq_close(flood[i]);
 	zmq_ctx_term(context);
-	/* One line for each reason, and one for who had left before it was asked for its address.
-	 */
+	/* One line for each reason, and one for connections that had closed before their address
+	 * was read. */
 	if (count_said(&gazed, "is refused") > 3)
 		fail_msg("%s", gazed_said(&gazed));
 	assert_int_equal(count_said(&gazed, "127.0.0.1 is refused: its key is not in"), 1);
@@ -452,7 +455,7 @@ static void curve_local_sockets_need_no_key(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* Versions of ZMTP before 3 know no keys: RFC 13 and 15. */
+/* Versions of ZMTP before 3 have no keys: RFC 13 and 15. */
 static void curve_peer_of_an_older_protocol_hears_nothing(void **state)
 {
 	(void)state;
@@ -476,7 +479,7 @@ static void curve_peer_of_an_older_protocol_hears_nothing(void **state)
 				 sizeof greetings[i]);
 		while ((n = recv(fd, bytes, sizeof bytes, 0)) > 0)
 			received += (size_t)n;
-		/* Hung up, not waiting for more, after a greeting at most. */
+		/* The connection is closed without waiting for more, after a greeting at most. */
 		if (n < 0 && errno == EAGAIN)
 			fail_msg("greeting %zu: the connection stays, %zu bytes", i, received);
 		if (received > 64)
@@ -500,7 +503,7 @@ static void curve_without_a_safe_secret_key_is_refused_at_start(void **state)
 {
 	(void)state;
 	char path[128];
-	MUST_FAIL("server_key is not there; run gazectl keygen --server", "--tcp=curve",
+	MUST_FAIL("server_key does not exist; run gazectl keygen --server", "--tcp=curve",
 		  "--control", control);
 	snprintf(path, sizeof path, "%s/server_key", server_directory);
 	assert_int_equal(chmod(path, 0640), 0);
@@ -519,9 +522,9 @@ static void curve_without_a_safe_secret_key_is_refused_at_start(void **state)
 static void other_machines_are_refused_without_keys(void **state)
 {
 	(void)state;
-	MUST_FAIL("--network.address: 0.0.0.0 is no loopback address", "--tcp=loopback",
+	MUST_FAIL("--network.address: 0.0.0.0 is not a loopback address", "--tcp=loopback",
 		  "--control", control, "--network.address=0.0.0.0");
-	MUST_FAIL("--network.control: tcp://0.0.0.0:1 is no loopback", "--tcp=loopback",
+	MUST_FAIL("--network.control: tcp://0.0.0.0:1 is not a loopback", "--tcp=loopback",
 		  "--control", "tcp://0.0.0.0:1");
 }
 
@@ -540,7 +543,7 @@ static void keygen_writes_safe_files_and_keeps_what_is_there(void **state)
 	assert_int_equal(program.status, 1);
 	assert_non_null(strstr(program.err_text, "server_key exists and is kept"));
 	assert_string_equal(read_key(server_directory, GZ_SERVER_KEY_FILE), before);
-	/* Half of a pair is left alone, too, and not made whole by another's half. */
+	/* Half of a pair is also left alone, and not completed with the half of another pair. */
 	assert_int_equal(unlink(path), 0);
 	GAZECTL_RUN("keygen", "--server", "--keys", server_directory);
 	assert_int_equal(program.status, 1);
@@ -584,7 +587,7 @@ static void client_key_that_others_can_read_is_refused(void **state)
 	assert_int_equal(unlink(path), 0);
 	assert_int_equal(gz_control_open(control, &captured.log, &asked), GZ_ERR_ACCESS);
 	assert_non_null(strstr(captured.last, "run gazectl keygen --client"));
-	/* An endpoint of another host has nothing to do with keys. */
+	/* No keys are needed for an endpoint of another host. */
 	assert_int_equal(gz_control_open("tcp://127.0.0.2:9", &captured.log, &asked), GZ_OK);
 	assert_null(gz_control_keys(asked));
 	gz_control_close(&asked);
@@ -592,7 +595,7 @@ static void client_key_that_others_can_read_is_refused(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(security)
 {
 	if (!zmq_has("curve"))
 		return 77;

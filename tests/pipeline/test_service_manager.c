@@ -1,5 +1,5 @@
 /* The daemon under a service manager: signs of life, and as which user it runs. */
-#include "check.h"
+#include "suite.h"
 
 #include <dirent.h>
 #include <poll.h>
@@ -17,10 +17,10 @@
 #include "base/clock.h"
 #include "gazed_process.h"
 
-/* Patience with a daemon on a busy machine, under a sanitizer. */
+/* Longest wait for a daemon on a busy machine, under a sanitizer. */
 enum { PATIENCE_MS = 20000 };
 
-/* Of a watchdog that asks for a sign of life each 0.1 s. */
+/* The period of a watchdog that wants a sign of life every 0.1 s. */
 static const char watchdog_usec[] = "200000";
 
 static struct gazed_place place;
@@ -56,7 +56,7 @@ static struct gazed_process spawn(const char *const *arguments)
 
 #define SPAWN(...) spawn((const char *const[]) { __VA_ARGS__, NULL })
 
-/* Play the manager, at a path or at an abstract name. */
+/* Play the service manager, at a path or at an abstract name. */
 static void listen_as_manager(bool abstract)
 {
 	struct sockaddr_un address = { .sun_family = AF_UNIX };
@@ -73,7 +73,7 @@ static void listen_as_manager(bool abstract)
 	setenv("NOTIFY_SOCKET", name, 1);
 }
 
-/* The next word of the daemon within @p timeout_ms, or NULL. */
+/* The next message of the daemon within @p timeout_ms, or NULL. */
 static const char *hear(int timeout_ms)
 {
 	static char text[1024];
@@ -105,7 +105,7 @@ static void manager_is_told_of_start_life_and_end(void **state)
 	hear_until("READY=1", &gazed);
 	hear_until("WATCHDOG=1", &gazed);
 	hear_until("STATUS=sim: running", &gazed);
-	/* Ready means served. */
+	/* Once it is ready, samples are served. */
 	assert_non_null(gazed_request(&place, "v", NULL));
 	hear_until("WATCHDOG=1", &gazed);
 	assert_int_equal(kill(gazed.pid, SIGTERM), 0);
@@ -120,7 +120,7 @@ static void manager_may_listen_at_an_abstract_name(void **state)
 	struct gazed_process gazed = SPAWN("--sim.rate_hz", "120");
 	hear_until("READY=1", &gazed);
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
-	/* Without a watchdog nobody wants signs of life. */
+	/* Without a watchdog no signs of life are sent. */
 	for (const char *text; (text = hear(0));)
 		assert_string_not_equal(text, "WATCHDOG=1");
 }
@@ -186,7 +186,7 @@ static void signs_of_life_end_when_the_serving_thread_hangs(void **state)
 	assert_int_equal(waitpid(thread, NULL, __WALL), thread);
 	while (hear(0))
 		;
-	/* The rest of the daemon lives, which would fool a watchdog that asks there. */
+	/* The rest of the daemon is alive, which would mislead a watchdog that asks there. */
 	assert_non_null(gazed_request(&place, "t", NULL));
 	const char *text = hear(1000);
 	if (text)
@@ -241,7 +241,7 @@ static void user_that_cannot_be_is_refused(void **state)
 {
 	(void)state;
 	static const char *const users[][2] = {
-		{ "no-such-user", "is no user of this machine" },
+		{ "no-such-user", "does not exist on this machine" },
 		{ "root", "root is root" },
 	};
 	for (size_t i = 0; i < sizeof users / sizeof *users; i++) {
@@ -254,7 +254,7 @@ static void user_that_cannot_be_is_refused(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(service_manager)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(manager_is_told_of_start_life_and_end),

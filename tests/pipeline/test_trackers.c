@@ -1,6 +1,6 @@
 /* Trackers that a test can play, behind the whole daemon: Gazepoint's server, Tobii's library, a
  * viewer's pointer and window. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
-/* How long something may take that takes a moment, ns. */
+/* Longest wait for something that takes a moment, ns. */
 #define PATIENCE_NS (20 * GZ_NS_PER_S)
 
 static struct gazed_place place;
@@ -130,7 +130,7 @@ static void gazepoint_that_says_nothing_is_given_up_and_tried_again(void **state
 		if (gz_clock_now_ns() > deadline_ns)
 			fail_msg("%d connections", atomic_load(&server.connections));
 	}
-	assert_non_null(strstr(gazed_said(&gazed), "it says nothing"));
+	assert_non_null(strstr(gazed_said(&gazed), "it sends nothing"));
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 	gazepoint_server_stop(&server);
 }
@@ -197,14 +197,14 @@ static void pointer_leads_the_gaze_and_is_let_go(void **state)
 		reader_receive(&reader, 100);
 		assert_true(gz_clock_now_ns() < deadline_ns);
 	} while (!newest_gaze(&gaze) || gaze.confidence > 0);
-	/* What is pointed at is not passed on as such. */
+	/* The pointer's position is not passed on to readers. */
 	for (size_t i = 0; i < reader.count; i++)
 		assert_string_not_equal(reader.messages[i].topic, GZ_TOPIC_POINTER);
 	gz_viewer_link_close(&link);
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* Tell of the window until a reader of the stream has heard of it @p times times. */
+/* Report the window until a reader of the stream has received it @p times times. */
 static void place_until_passed_on(struct gz_viewer_link *link, const int rect_px[4], size_t times)
 {
 	size_t seen = 0;
@@ -257,7 +257,7 @@ static void window_is_recorded_at_once_and_at_the_start_of_a_later_recording(voi
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(trackers)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(gazepoint_server_may_die_and_return_and_numbers_go_on),

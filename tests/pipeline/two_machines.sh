@@ -1,7 +1,7 @@
 #!/bin/bash
 # usage: two_machines.sh GAZED GAZECTL
-# docs/security.md, step by step, on two machines that are network namespaces: keys, who is refused,
-# a cable that is pulled. Skipped where namespaces are not allowed.
+# docs/security.md, step by step, on two machines that are network namespaces: keys, refusals, a
+# cable that is pulled. Skipped if namespaces are not allowed.
 set -u
 gazed=$1 gazectl=$2
 name=gz$$
@@ -26,7 +26,7 @@ ip netns add "$name-c" && ip link add "${name}d" netns "$name-d" type veth peer 
 	ip -n "$name-d" addr add 10.77.0.1/24 dev "${name}d" && ip -n "$name-c" addr add 10.77.0.2/24 dev "${name}c" &&
 	ip -n "$name-d" link set "${name}d" up && ip -n "$name-c" link set "${name}c" up || { echo "no network"; exit 77; }
 
-# on MACHINE COMMAND...: with a home of its own.
+# on MACHINE COMMAND...: each machine has its own home directory.
 on() {
 	local machine=$1
 	shift
@@ -77,7 +77,7 @@ on c "$gazectl" watch --count 5 --endpoint tcp://10.77.0.1:50020 >"$place/watch"
 [ "$(wc -l <"$place/watch")" = 5 ] || fail "$(cat "$place/watch")"
 on c "$gazectl" record --endpoint tcp://10.77.0.1:50020 remote >/dev/null || fail record
 on c "$gazectl" stop --endpoint tcp://10.77.0.1:50020 >/dev/null || fail stop
-# nothing listens where nobody asked for it
+# no socket is bound that was not asked for
 [ "$(on d ss -Hltn | grep -cv 10.77.0.1:5002)" = 0 ] || fail "$(on d ss -Hltn)"
 rm "$place/watch"
 # 5. the cable is pulled and put back
@@ -86,10 +86,10 @@ ip netns exec "$name-c" env -u XDG_CONFIG_HOME -u GAZECAST_RUNTIME_DIR HOME="$pl
 watch=$!
 wait_until test -s "$place/watch"
 ip -n "$name-c" link set "${name}c" down
-wait_until grep -q "lost tcp://10.77.0.1:50021" "$place/watch-said"
+wait_until grep -q "tcp://10.77.0.1:50021: connection lost" "$place/watch-said"
 on d "$gazectl" status >/dev/null || fail "the daemon suffers from a cable"
 ip -n "$name-c" link set "${name}c" up
-wait_until grep -q "is back" "$place/watch-said"
+wait_until grep -q "connected again" "$place/watch-said"
 kill $watch
 wait $watch || fail "watch does not end well"
 echo "two machines: all steps done"

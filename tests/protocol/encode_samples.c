@@ -1,4 +1,4 @@
-/* Writes one message of each kind into a folder: what read_samples.py reads, and the seeds of
+/* Write one message of each kind into a folder: for read_samples.py, and as seeds of
  * tests/fuzz/corpus/wire. */
 #include <stdio.h>
 

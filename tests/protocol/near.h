@@ -1,13 +1,13 @@
 /**
  * @file
- * Comparing doubles, which cmocka before 1.1.6 cannot.
+ * Comparing doubles: cmocka before 1.1.6 cannot.
  */
 #ifndef GZ_TESTS_PROTOCOL_NEAR_H
 #define GZ_TESTS_PROTOCOL_NEAR_H
 
 #include <math.h>
 
-/** Fails unless both are numbers no farther apart than @p tolerance. */
+/** Fail unless both are numbers that differ by at most @p tolerance. */
 #define assert_near(actual, expected, tolerance)                                     \
 	do {                                                                         \
 		double near_a = (actual), near_b = (expected);                       \

@@ -1,6 +1,6 @@
 /**
  * @file
- * A small gaze log with one of everything, and what stands in it.
+ * A small gaze log with one record of each kind, and its content.
  */
 #ifndef GZ_TESTS_PROTOCOL_SAMPLE_LOG_H
 #define GZ_TESTS_PROTOCOL_SAMPLE_LOG_H
@@ -20,8 +20,8 @@ struct sample_log {
 	struct gz_gaze_log_record records[SAMPLE_LOG_RECORDS];
 	char text[8192];
 	size_t size;
-	size_t header_size;                    /* bytes of the header's lines */
-	size_t record_end[SAMPLE_LOG_RECORDS]; /* bytes up to and with the record's newline */
+	size_t header_size;                    /* bytes of the header */
+	size_t record_end[SAMPLE_LOG_RECORDS]; /* bytes up to the record's newline, inclusive */
 };
 
 static inline struct gz_gaze_log_header sample_header(void)
@@ -82,7 +82,7 @@ static inline void sample_records(struct gz_gaze_log_record records[SAMPLE_LOG_R
 	records[5] = full_sample(9);
 }
 
-/** Write the log whole, "#end" line and all. */
+/** Write the whole log, including the line "#end". */
 static inline void sample_log_make(struct sample_log *log)
 {
 	size_t length;
@@ -115,7 +115,7 @@ static inline uint32_t float_bits(float value)
 	return bits;
 }
 
-/** Bit for bit, but for NaN, which is any NaN. */
+/** Equal bit for bit, except that any NaN equals any other. */
 static inline void assert_same_float(float actual, float expected)
 {
 	if (isnan(actual) && isnan(expected))

@@ -1,6 +1,6 @@
 /**
  * @file
- * One message of each kind with every field set to something of its own.
+ * One message of each kind, with a different value in every field.
  */
 #ifndef GZ_TESTS_PROTOCOL_SAMPLE_MESSAGES_H
 #define GZ_TESTS_PROTOCOL_SAMPLE_MESSAGES_H

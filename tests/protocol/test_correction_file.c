@@ -1,5 +1,5 @@
-/* Stored corrections: what is written is read, and what cannot be is refused. */
-#include "check.h"
+/* Stored corrections: what is written reads back, and impossible values are refused. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static void what_is_written_is_read(void **state)
 	assert_memory_equal(back.display_mm, file.display_mm, sizeof back.display_mm);
 	assert_true(back.before_deg == 1.25 && back.after_deg == 0.5);
 	assert_true(gz_correction_fits(&back, "Eye Tracker 5", "A-12.3", &display));
-	file.serial[0] = '\0'; /* and a second one takes its place */
+	file.serial[0] = '\0'; /* a second one replaces it */
 	assert_int_equal(gz_correction_write(path, &file, &captured.log), GZ_OK);
 	assert_int_equal(gz_correction_read(path, &captured.log, &back), GZ_OK);
 	assert_string_equal(back.serial, "");
@@ -176,7 +176,7 @@ static void place_that_cannot_be_written_is_told(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
-int main(void)
+TEST_SUITE(correction_file)
 {
 	static const struct CMUnitTest tests[] = {
 		TEST(what_is_written_is_read),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/display.h"
 
@@ -87,7 +87,7 @@ static void display_px_per_deg_is_that_of_the_centre(void **state)
 	assert_near(gz_display_px_per_deg(&display), 2 * one_deg_mm, 1e-9);
 }
 
-int main(void)
+TEST_SUITE(display)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(display_default_is_50_4_degrees_wide),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/endpoint.h"
 
@@ -14,8 +14,8 @@
 #include "base/captured_log.h"
 
 struct folder {
-	char path[64];   /* an empty folder of the test's own */
-	char inside[96]; /* a path in it where nothing is */
+	char path[64];   /* an empty folder for the test */
+	char inside[96]; /* a path in it that does not exist */
 	struct captured_log captured;
 };
 
@@ -123,7 +123,7 @@ static void prepare_link_is_refused(void **state)
 {
 	struct folder *folder = *state;
 	assert_int_equal(symlink("/tmp", folder->inside), 0);
-	check_refused(folder, GZ_ERR_ACCESS, "no directory");
+	check_refused(folder, GZ_ERR_ACCESS, "not a directory");
 }
 
 static void prepare_file_is_refused(void **state)
@@ -132,7 +132,7 @@ static void prepare_file_is_refused(void **state)
 	FILE *file = fopen(folder->inside, "w");
 	assert_non_null(file);
 	fclose(file);
-	check_refused(folder, GZ_ERR_ACCESS, "no directory");
+	check_refused(folder, GZ_ERR_ACCESS, "not a directory");
 }
 
 static void prepare_without_parent_fails(void **state)
@@ -146,7 +146,7 @@ static void prepare_anothers_directory_is_refused(void **state)
 {
 	struct folder *folder = *state;
 	if (geteuid() != 0)
-		skip(); /* only root can give a directory away */
+		skip(); /* only root can change the owner of a directory */
 	assert_int_equal(mkdir(folder->inside, 0700), 0);
 	assert_int_equal(chown(folder->inside, 12345, 12345), 0);
 	check_refused(folder, GZ_ERR_ACCESS, "12345");
@@ -173,7 +173,7 @@ static void endpoint_longer_than_a_socket_path_is_refused(void **state)
 	assert_int_equal(gz_endpoint_ipc("/a", "b", text, strlen("ipc:///a/b")), GZ_ERR_FULL);
 }
 
-/* A socket @p name in @p directory. */
+/* Bind a socket @p name in @p directory. */
 static void make_socket(const char *directory, const char *name)
 {
 	struct sockaddr_un address = { .sun_family = AF_UNIX };
@@ -206,7 +206,7 @@ static void reader_waits_where_the_daemon_of_its_user_will_be(void **state)
 	char found[GZ_ENDPOINT_SIZE], wanted[128];
 	struct stat status;
 	if (stat(GZ_SYSTEM_RUNTIME_DIRECTORY "/latest", &status) == 0)
-		skip(); /* a daemon of this machine is there */
+		skip(); /* a system daemon is running */
 	unsetenv("GAZECAST_RUNTIME_DIR");
 	setenv("XDG_RUNTIME_DIR", folder->path, 1);
 	assert_int_equal(gz_endpoint_find("no-such", &folder->captured.log, found, sizeof found),
@@ -216,7 +216,7 @@ static void reader_waits_where_the_daemon_of_its_user_will_be(void **state)
 	unsetenv("XDG_RUNTIME_DIR");
 }
 
-/* Somebody makes the directory in /tmp before the user's daemon does. */
+/* Another user makes the directory in /tmp before the user's daemon does. */
 static void reader_refuses_a_directory_in_tmp_that_is_anothers(void **state)
 {
 	(void)state;
@@ -224,7 +224,7 @@ static void reader_refuses_a_directory_in_tmp_that_is_anothers(void **state)
 	struct stat status;
 	static const char path[] = "/tmp/gazecast-54321";
 	if (geteuid() != 0 || stat(GZ_SYSTEM_RUNTIME_DIRECTORY, &status) == 0)
-		skip(); /* only root can play both */
+		skip(); /* only root can act as both users */
 	assert_int_equal(mkdir(path, 0755), 0);
 	for (int theirs = 0; theirs < 2; theirs++) {
 		int ended;
@@ -248,7 +248,7 @@ static void reader_refuses_a_directory_in_tmp_that_is_anothers(void **state)
 	assert_int_equal(rmdir(path), 0);
 }
 
-int main(void)
+TEST_SUITE(endpoint)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(directory_own_variable_comes_first),

@@ -1,11 +1,11 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/gaze.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Checks that count names exist, differ and are not what stands for none. */
+/* Check that @p count names exist, differ, and are not the name for unknown values. */
 static void check_names(const char *(*name_of)(int), int count)
 {
 	for (int i = 0; i < count; i++) {
@@ -110,7 +110,7 @@ static void sample_with_anything_of_an_eye_is_not_combined_only(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(gaze)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gaze_every_value_has_a_name_of_its_own),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/gaze_log.h"
 
@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "base/number.h"
-#include "protocol/gaze_log_text.h"
+#include "base/text.h"
+#include "protocol/gaze_log_lines.h"
 #include "protocol/sample_log.h"
 
 static void log_round_trip_keeps_header_and_records(void **state)
@@ -96,13 +96,13 @@ static void log_columns_are_as_many_as_fields(void **state)
 static float round_trip(float value, locale_t c_locale)
 {
 	char bytes[64];
-	struct gz_text text;
+	struct gz_gaze_log_text text;
 	size_t length;
 	float back = 12345;
-	gz_text_begin(&text, bytes, sizeof bytes);
-	gz_text_print(&text, "%s", "");
-	gz_text_print_float(&text, value);
-	assert_int_equal(gz_text_end(&text, &length), GZ_OK);
+	gz_gaze_log_text_begin(&text, bytes, sizeof bytes);
+	gz_gaze_log_text_print(&text, "%s", "");
+	gz_gaze_log_text_print_float(&text, value);
+	assert_int_equal(gz_gaze_log_text_end(&text, &length), GZ_OK);
 	assert_int_equal(length, strlen(bytes));
 	assert_true(gz_field_float(bytes, c_locale, &back));
 	return back;
@@ -133,10 +133,10 @@ static void double_of_a_header_comes_back_bit_for_bit(void **state)
 					 DBL_MIN, DBL_MAX, 5e-324, 1e15 / 7, 0x1.fffffffffffffp0 };
 	for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
 		char bytes[64];
-		struct gz_text text;
+		struct gz_gaze_log_text text;
 		double back;
-		gz_text_begin(&text, bytes, sizeof bytes);
-		gz_text_print_double(&text, values[i]);
+		gz_gaze_log_text_begin(&text, bytes, sizeof bytes);
+		gz_gaze_log_text_print_double(&text, values[i]);
 		assert_true(gz_field_double(bytes, c_locale, &back));
 		assert_memory_equal(&back, &values[i], sizeof back);
 	}
@@ -163,7 +163,7 @@ static void number_with_another_decimal_point_gets_a_point(void **state)
 	}
 }
 
-/* Needs a locale with a decimal comma, which a bare system may lack. */
+/* Needs a locale with a decimal comma, which a minimal system may lack. */
 static void log_under_a_comma_locale_is_the_same(void **state)
 {
 	(void)state;
@@ -249,7 +249,7 @@ static void print_into_too_little_room_is_refused(void **state)
 static void log_file_of_many_chunks_is_read_whole(void **state)
 {
 	(void)state;
-	enum { RECORDS = 2000 }; /* some 300 kB, several times what is read at once */
+	enum { RECORDS = 2000 }; /* about 300 kB, several times the size of a chunk */
 	char path[] = "/tmp/gz-log-XXXXXX";
 	FILE *file = fdopen(mkstemp(path), "w");
 	struct gz_gaze_log_header header = sample_header();
@@ -282,7 +282,7 @@ static void log_file_of_many_chunks_is_read_whole(void **state)
 	unlink(path);
 }
 
-static void open_what_is_no_file_fails_with_its_name(void **state)
+static void open_that_fails_logs_the_path(void **state)
 {
 	(void)state;
 	struct captured_log captured;
@@ -297,7 +297,7 @@ static void open_what_is_no_file_fails_with_its_name(void **state)
 	assert_null(reader);
 }
 
-int main(void)
+TEST_SUITE(gaze_log)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(log_round_trip_keeps_header_and_records),
@@ -310,7 +310,7 @@ int main(void)
 		cmocka_unit_test(log_of_longest_texts_fits_the_promised_sizes),
 		cmocka_unit_test(print_into_too_little_room_is_refused),
 		cmocka_unit_test(log_file_of_many_chunks_is_read_whole),
-		cmocka_unit_test(open_what_is_no_file_fails_with_its_name),
+		cmocka_unit_test(open_that_fails_logs_the_path),
 	};
 	return cmocka_run_group_tests_name("gaze_log", tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/gaze_log.h"
 
@@ -7,7 +7,7 @@
 #include "base/captured_log.h"
 #include "protocol/sample_log.h"
 
-/* Bytes in an allocation of exactly their size, so that a sanitizer sees one read too many. */
+/* Bytes in an allocation of exactly their size, so that a sanitizer detects a read past them. */
 static void *exact_copy(const void *bytes, size_t size)
 {
 	void *copy = malloc(size ? size : 1);
@@ -16,7 +16,7 @@ static void *exact_copy(const void *bytes, size_t size)
 	return copy;
 }
 
-/* Read to the end; counts what came. */
+/* Read to the end and count the results. */
 struct tally {
 	size_t records, malformed;
 	enum gz_gaze_log_ending ending;
@@ -112,7 +112,7 @@ static void log_with_any_byte_changed_is_not_whole(void **state)
 		for (size_t i = 0; i < sizeof masks; i++) {
 			struct gz_gaze_log_reader *reader = NULL;
 			bytes[at] = (char)((unsigned char)log.text[at] ^ masks[i]);
-			/* The blanks of the #end line may be tabs. */
+			/* The blanks in the line "#end" may be tabs. */
 			bool equal =
 				at > log.record_end[SAMPLE_LOG_RECORDS - 1] && bytes[at] == '\t';
 			if (gz_gaze_log_open_memory("flip", bytes, log.size, NULL, &reader) ==
@@ -374,7 +374,7 @@ static void file_of_another_kind_is_refused(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(gaze_log_damage)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(log_cut_anywhere_gives_every_whole_line_before),

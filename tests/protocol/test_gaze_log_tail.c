@@ -1,5 +1,5 @@
-/* When a gaze log ends, without reading it all. */
-#include "check.h"
+/* The time of the last sample, found without reading the whole log. */
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static void append_record(FILE *out, const struct gz_gaze_log_record *record)
 	assert_int_equal(fwrite(text, 1, length, out), length);
 }
 
-/* Samples a millisecond apart, from 1 ms on. */
+/* Samples one millisecond apart, from 1 ms on. */
 static FILE *begin(int samples)
 {
 	FILE *out = fopen(path, "wb");
@@ -61,7 +61,7 @@ static void last_sample_is_found_in_short_and_in_long_logs(void **state)
 	found(INT64_C(20000000000));
 }
 
-static void marks_ends_and_cut_lines_behind_it_are_passed_over(void **state)
+static void marks_ends_and_cut_lines_after_it_are_skipped(void **state)
 {
 	(void)state;
 	FILE *out = begin(100);
@@ -84,7 +84,7 @@ static void nul_and_noise_do_not_hide_it(void **state)
 	found(3000000);
 }
 
-static void what_holds_no_sample_is_refused(void **state)
+static void file_without_a_sample_is_refused(void **state)
 {
 	(void)state;
 	int64_t last_ns = 77;
@@ -98,13 +98,13 @@ static void what_holds_no_sample_is_refused(void **state)
 	assert_int_equal(last_ns, 77);
 }
 
-int main(void)
+TEST_SUITE(gaze_log_tail)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(last_sample_is_found_in_short_and_in_long_logs),
-		cmocka_unit_test(marks_ends_and_cut_lines_behind_it_are_passed_over),
+		cmocka_unit_test(marks_ends_and_cut_lines_after_it_are_skipped),
 		cmocka_unit_test(nul_and_noise_do_not_hide_it),
-		cmocka_unit_test(what_holds_no_sample_is_refused),
+		cmocka_unit_test(file_without_a_sample_is_refused),
 	};
 	return cmocka_run_group_tests(tests, make_file, remove_file);
 }

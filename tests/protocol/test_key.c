@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +8,9 @@
 #include <zmq.h>
 
 #include "base/captured_log.h"
-#include "protocol/key_file.h"
+#include "protocol/key.h"
 
-/* The key of ZeroMQ RFC 26's examples, and another. */
+/* The key in the examples of ZeroMQ RFC 26, and another one. */
 static const char key_a[] = "Yne@$w-vo<fVvi]a<NY6T1ed:M$fCG*[IaLV{hID";
 static const char key_b[] = "rq:rM>}U?@Lns47E1%kR.o@n%FcmmsL/@{H8]yf7";
 
@@ -47,7 +47,7 @@ static void key_is_valid_where_libzmq_decodes_it(void **state)
 	assert_false(gz_key_valid("", 0));
 }
 
-/* One byte stands for 85 texts; each of them is told apart from its neighbours by libzmq, too. */
+/* Each byte at each place of the first group: gz_key_valid() agrees with libzmq. */
 static void key_of_any_character_is_judged_as_libzmq_does(void **state)
 {
 	(void)state;
@@ -57,7 +57,7 @@ static void key_of_any_character_is_judged_as_libzmq_does(void **state)
 			uint8_t bytes[32];
 			memcpy(text, key_a, sizeof text);
 			text[place] = (char)c;
-			/* libzmq's table ends at 0x7f. */
+			/* The table of libzmq ends at 0x7f. */
 			bool decoded = c > ' ' && c < 0x7f && zmq_z85_decode(bytes, text) != NULL;
 			if (gz_key_valid(text, GZ_KEY_LENGTH) != decoded)
 				fail_msg("character %d at %d: libzmq %d", c, place, decoded);
@@ -72,7 +72,7 @@ static void key_file_holds_one_key_among_comments(void **state)
 	snprintf(text, sizeof text, "# mine\r\n\n  %s\t\r\n", key_a);
 	assert_int_equal(gz_key_parse("f", text, strlen(text), &captured.log, key), GZ_OK);
 	assert_string_equal(key, key_a);
-	snprintf(text, sizeof text, "%s", key_b); /* without an end of line */
+	snprintf(text, sizeof text, "%s", key_b); /* without a line end */
 	assert_int_equal(gz_key_parse("f", text, strlen(text), &captured.log, key), GZ_OK);
 	assert_string_equal(key, key_b);
 }
@@ -89,7 +89,7 @@ static void key_file_of_anything_else_is_refused_without_showing_it(void **state
 	assert_non_null(strstr(captured.last, "f:1: no key"));
 	assert_null(strstr(captured.last, "Yne@"));
 	assert_int_equal(gz_key_parse("f", "# no\n", 5, &captured.log, key), GZ_ERR_FORMAT);
-	assert_non_null(strstr(captured.last, "no key in it"));
+	assert_non_null(strstr(captured.last, "contains no key"));
 	assert_string_equal(key, "as before");
 }
 
@@ -141,7 +141,7 @@ static void list_with_a_bad_line_is_refused_by_its_number(void **state)
 		{ GZ_KEY_LIST_AUTHORIZED, "%s\nbad\n", "f:2: no key of 40 characters" },
 		{ GZ_KEY_LIST_AUTHORIZED, "\n\n%s a\033[2J\n", "f:3: the comment" },
 		{ GZ_KEY_LIST_AUTHORIZED, "host %s\n", "f:1: no key" },
-		{ GZ_KEY_LIST_SERVERS, "%s\n", "f:1: no key of 40 characters behind the host" },
+		{ GZ_KEY_LIST_SERVERS, "%s\n", "f:1: no key of 40 characters after the host" },
 		{ GZ_KEY_LIST_SERVERS, "h %s\nH 0000000000000000000000000000000000000000\n",
 		  "f:2: a line above gives this host another key" },
 	};
@@ -179,9 +179,9 @@ static void key_file_that_is_no_file_of_keys_is_refused(void **state)
 	snprintf(path, sizeof path, "%s/key", directory);
 	assert_int_equal(gz_key_file_read_secret(path, &captured.log, key), GZ_ERR_NOT_FOUND);
 	assert_int_equal(captured.messages, 0);
-	assert_int_equal(mkfifo(path, 0600), 0); /* which nobody writes into: no wait */
+	assert_int_equal(mkfifo(path, 0600), 0); /* nobody writes into it; reading must not wait */
 	assert_int_equal(gz_key_file_read_secret(path, &captured.log, key), GZ_ERR_ACCESS);
-	assert_non_null(strstr(captured.last, "is no regular file"));
+	assert_non_null(strstr(captured.last, "is not a regular file"));
 	assert_int_equal(unlink(path), 0);
 	FILE *file = fopen(path, "w");
 	for (int i = 0; i <= GZ_KEY_FILE_SIZE_MAX; i++)
@@ -194,7 +194,7 @@ static void key_file_that_is_no_file_of_keys_is_refused(void **state)
 	assert_int_equal(rmdir(directory), 0);
 }
 
-int main(void)
+TEST_SUITE(key)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(key_is_valid_where_libzmq_decodes_it, set_up),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/wire.h"
 
@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Check bytes in an allocation of exactly their size, so that a sanitizer sees a read past it. */
+/* Check bytes in an allocation of exactly their size, so that a sanitizer detects a read past them.
+ */
 static enum gz_result check(const void *bytes, size_t size)
 {
 	unsigned char *copy = malloc(size ? size : 1);
@@ -27,7 +28,7 @@ struct value {
 		text, sizeof text - 1 \
 	}
 
-/* One of each format with the smallest content that tells it from the others. */
+/* One value of each format, with the smallest content that distinguishes it. */
 static const struct value each_format[] = {
 	VALUE("\x00"),
 	VALUE("\x7f"),
@@ -139,7 +140,8 @@ static void count_above_the_bytes_left_is_refused(void **state)
 		VALUE("\xc9\xff\xff\xff\xff\x01\x01"),
 		VALUE("\x82\x01\x01\x01"),
 		VALUE("\x92\x01"),
-		VALUE("\x92\x92\x01\x01"), /* inner one takes what the outer one needs */
+		VALUE("\x92\x92\x01\x01"), /* the inner one takes the values that the outer one
+					      needs */
 	};
 	for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
 		if (check(claims[i].bytes, claims[i].size) != GZ_ERR_PROTOCOL)
@@ -166,7 +168,7 @@ static void nesting_of_eight_passes_and_of_nine_is_refused(void **state)
 	assert_int_equal(check(nine_with_empty, sizeof nine_with_empty - 1), GZ_ERR_PROTOCOL);
 	assert_int_equal(check(nine_maps, sizeof nine_maps - 1), GZ_ERR_PROTOCOL);
 	assert_int_equal(check(nine_maps + 2, sizeof nine_maps - 3), GZ_OK);
-	/* Side by side is not nested. */
+	/* Values side by side are not nested. */
 	assert_int_equal(check("\x93\x91\x01\x91\x01\x91\x01", 7), GZ_OK);
 }
 
@@ -186,7 +188,7 @@ static void values_of_a_million_in_a_row_pass(void **state)
 	free(bytes);
 }
 
-int main(void)
+TEST_SUITE(wire_check)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(value_of_each_format_passes_and_msgpack_agrees),

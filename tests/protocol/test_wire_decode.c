@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/wire.h"
 
@@ -8,7 +8,7 @@
 
 #include "protocol/sample_messages.h"
 
-/* Fails where two floats differ, but for two NaN. */
+/* Fail if two floats differ; NaN equals NaN. */
 #define assert_float_same(actual, expected)                                                        \
 	do {                                                                                       \
 		float same_a = (actual), same_b = (expected);                                      \
@@ -90,8 +90,8 @@ static void gaze_unmeasured_comes_back_as_nan(void **state)
 	eye->origin_mm[0] = eye->origin_mm[1] = eye->origin_mm[2] = NAN;
 	assert_int_equal(gz_wire_encode_gaze(&gaze, &display, &message), GZ_OK);
 	assert_int_equal(gz_wire_decode_gaze(message.bytes, message.size, &back), GZ_OK);
-	gaze.raw.y = NAN;      /* half a place is none */
-	eye->confidence = NAN; /* of an eye that took no part nothing is sent */
+	gaze.raw.y = NAN;      /* a point needs both coordinates */
+	eye->confidence = NAN; /* nothing is sent about an eye that was not used */
 	assert_same_gaze(&back, &gaze);
 }
 
@@ -234,7 +234,7 @@ static void numbers(struct built *built, const char *name, size_t count, const d
 		msgpack_pack_double(&built->packer, values[i]);
 }
 
-/* A vector for each eye, by its number: as text, or as a number where @p old. */
+/* A vector for each eye. The key is its number: as text, or as an integer if @p old. */
 static void vectors(struct built *built, const char *name, bool old, const double right[3],
 		    const double left[3])
 {
@@ -251,7 +251,7 @@ static void vectors(struct built *built, const char *name, bool old, const doubl
 	}
 }
 
-/* A binocular gaze map with the keys that Pupil Capture 3 sends, or one before 2.0. */
+/* A binocular gaze map with the keys of Pupil Capture 3, or of a version before 2.0. */
 static void build_pupil_capture_gaze(struct built *built, bool old)
 {
 	build(built, 8);
@@ -375,7 +375,7 @@ static void gaze_with_the_least_keys_decodes(void **state)
 	msgpack_sbuffer_destroy(&built.buffer);
 }
 
-/* Each adds one pair to a gaze that is good without it. */
+/* Each adds one pair to a valid gaze map. */
 typedef void add_pair(struct built *built);
 
 static void no_pair(struct built *b)
@@ -653,7 +653,7 @@ static void annotation_comes_back_as_it_was_sent(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(wire_decode)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gaze_comes_back_as_it_was_sent),

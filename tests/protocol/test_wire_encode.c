@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "protocol/wire.h"
 
@@ -98,7 +98,7 @@ static void pupil_values_are_those_of_the_eye(void **state)
 	assert_numbers(value_of(pupil, "norm_pos"), (double[]) { 0.5, 0.25 }, 2);
 	assert_number(value_of(pupil, "diameter"), 32.5);
 	assert_number(value_of(pupil, "diameter_3d"), 3.25);
-	/* 75 mm below the eye's height, 500 mm away: straight ahead is pi/2 in both. */
+	/* 75 mm below the eye, 500 mm away; straight ahead both angles are pi/2. */
 	assert_near(value_of(pupil, "phi")->via.f64, 1.57079632679, 1e-9);
 	assert_near(value_of(pupil, "theta")->via.f64, 1.57079632679 - atan(75.0 / 500), 1e-9);
 	assert_number(value_of(pupil, "confidence"), 0.8f);
@@ -193,7 +193,7 @@ static void gaze_unmeasured_is_nil_and_never_nan(void **state)
 	const msgpack_object *pupil = &value_of(map, "base_data")->via.array.ptr[0];
 	assert_nil(value_of(pupil, "diameter"));
 	assert_nil(value_of(pupil, "diameter_3d"));
-	/* What Pupil's readers unpack without a look stays a number. */
+	/* Pupil's readers do not check these values, so they must be numbers. */
 	assert_numbers(value_of(pupil, "norm_pos"), (double[]) { 0.25, 0.5 }, 2);
 	assert_number(value_of(pupil, "confidence"), 0);
 	msgpack_unpacked_destroy(&unpacked);
@@ -414,11 +414,11 @@ static void text_that_is_no_utf8_becomes_question_marks(void **state)
 		{ "\xc3", "?" }, /* cut off */
 		{ "a\xff"
 		  "b",
-		  "a?b" },                      /* never a byte of UTF-8 */
+		  "a?b" },                      /* never occurs in UTF-8 */
 		{ "\xc0\xaf", "??" },           /* overlong */
 		{ "\xe0\x80\xaf", "???" },      /* overlong */
 		{ "\xed\xa0\x80", "???" },      /* half a surrogate pair */
-		{ "\xf4\x90\x80\x80", "????" }, /* past the last character */
+		{ "\xf4\x90\x80\x80", "????" }, /* beyond the last code point */
 		{ "\xe2\x82", "??" },
 		{ "\xf0\x9f\x91", "???" },
 	};
@@ -465,7 +465,8 @@ static void longest_messages_fit(void **state)
 	gaze.event = gaze.final_event = GZ_EVENT_FIXATION;
 	gaze.device_ns = gaze.host_ns = gaze.publish_ns = INT64_MIN + 1;
 	encode_gaze(&gaze, &message);
-	assert_in_range(message.size, 1, 1024); /* and far below what a link takes at once */
+	assert_in_range(message.size, 1,
+			1024); /* far below the size that a connection sends at once */
 	char name[GZ_NAME_SIZE];
 	fill(name, sizeof name);
 	assert_int_equal(gz_wire_encode_surface(&gaze, name, &message), GZ_OK);
@@ -495,7 +496,7 @@ static void equal_messages_are_equal_bytes(void **state)
 	assert_memory_equal(a.bytes, b.bytes, a.size);
 }
 
-int main(void)
+TEST_SUITE(wire_encode)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gaze_has_the_documented_keys_and_no_other),

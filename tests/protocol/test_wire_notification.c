@@ -1,6 +1,6 @@
-#include "check.h"
+#include "suite.h"
 
-#include "protocol/wire_notification.h"
+#include "protocol/wire.h"
 
 #include "base/clock.h"
 #include "unpacked.h"
@@ -17,7 +17,7 @@ static void notification_is_read_with_its_session_name(void **state)
 			 GZ_OK);
 	assert_string_equal(notification.subject, "recording.should_start");
 	assert_string_equal(notification.session_name, "s1");
-	/* Without a name, and with nil for it. */
+	/* Without a name, and with nil as the name. */
 	static const char stop[] = "\x82\xa7subject\xb5recording.should_stop\xacsession_name\xc0";
 	assert_int_equal(gz_wire_decode_notification(stop, sizeof stop - 1, &notification), GZ_OK);
 	assert_string_equal(notification.subject, "recording.should_stop");
@@ -96,7 +96,7 @@ static void calibration_and_doc_notifications_say_why_and_who(void **state)
 	msgpack_unpacked_destroy(&unpacked);
 }
 
-int main(void)
+TEST_SUITE(wire_notification)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(notification_is_read_with_its_session_name),

@@ -1,10 +1,10 @@
-/* What a viewer tells of itself. */
-#include "check.h"
+/* What a viewer reports about itself. */
+#include "suite.h"
 
 #include <string.h>
 
 #include "base/clock.h"
-#include "protocol/wire_viewer.h"
+#include "protocol/wire.h"
 
 static struct gz_wire_message message;
 
@@ -54,7 +54,7 @@ static void window_comes_back_as_it_was_sent(void **state)
 #define POINT(bytes)     "\x81\xa5point" bytes
 #define RECT(a, b, c, d) "\x81\xa4rect\x94" a b c d
 
-static void what_cannot_be_is_refused_and_writes_nothing(void **state)
+static void impossible_values_are_refused_and_nothing_is_written(void **state)
 {
 	(void)state;
 	static const struct {
@@ -92,13 +92,13 @@ static void what_cannot_be_is_refused_and_writes_nothing(void **state)
 			 GZ_OK);
 }
 
-int main(void)
+TEST_SUITE(wire_viewer)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pointer_comes_back_as_it_was_sent),
 		cmocka_unit_test(pointer_that_is_nowhere_says_so),
 		cmocka_unit_test(window_comes_back_as_it_was_sent),
-		cmocka_unit_test(what_cannot_be_is_refused_and_writes_nothing),
+		cmocka_unit_test(impossible_values_are_refused_and_nothing_is_written),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

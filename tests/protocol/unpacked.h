@@ -1,6 +1,6 @@
 /**
  * @file
- * Looking into an encoded message with msgpack-c alone, independent of our decoders.
+ * Inspecting an encoded message with msgpack-c alone, without the decoders of protocol/.
  */
 #ifndef GZ_TESTS_PROTOCOL_UNPACKED_H
 #define GZ_TESTS_PROTOCOL_UNPACKED_H
@@ -12,7 +12,7 @@
 
 #include "protocol/wire.h"
 
-/** Unpack a whole message that must be one map; msgpack_unpacked_destroy() frees. */
+/** Unpack a whole message, which must be one map. msgpack_unpacked_destroy() frees it. */
 static inline const msgpack_object *unpack_map(const struct gz_wire_message *message,
 					       msgpack_unpacked *unpacked)
 {
@@ -27,7 +27,7 @@ static inline const msgpack_object *unpack_map(const struct gz_wire_message *mes
 	return &unpacked->data;
 }
 
-/** The value of @p key, which must be there. */
+/** The value of @p key, which must exist. */
 static inline const msgpack_object *value_of(const msgpack_object *map, const char *key)
 {
 	assert_int_equal(map->type, MSGPACK_OBJECT_MAP);
@@ -41,7 +41,7 @@ static inline const msgpack_object *value_of(const msgpack_object *map, const ch
 	return NULL;
 }
 
-/** All keys in order, parted by blanks, must be @p expected. */
+/** Check that the keys in order, separated by blanks, are @p expected. */
 static inline void assert_keys(const msgpack_object *map, const char *expected)
 {
 	char keys[1024] = "";
@@ -91,7 +91,7 @@ static inline void assert_nil(const msgpack_object *object)
 	assert_int_equal(object->type, MSGPACK_OBJECT_NIL);
 }
 
-/** No real in it, at any depth, is other than finite. */
+/** Check that every real in it, at any depth, is finite. */
 static inline void assert_all_finite(const msgpack_object *object)
 {
 	if (object->type == MSGPACK_OBJECT_FLOAT32 || object->type == MSGPACK_OBJECT_FLOAT64)

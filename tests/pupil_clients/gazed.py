@@ -1,4 +1,4 @@
-"""A gazed under test, with the simulator or as told, and what Pupil's clients do in common."""
+"""A gazed under test, with the simulator unless told otherwise, and what all Pupil clients do."""
 import bisect
 import ctypes
 import os
@@ -120,7 +120,7 @@ class Client:
         return subscriber
 
     def publisher(self):
-        """A PUB socket that the daemon listens to: what it sends comes back on the stream."""
+        """A PUB socket that the daemon reads: its messages come back on the stream."""
         publisher = self.socket(zmq.PUB)
         publisher.connect("tcp://127.0.0.1:" + self.ask("PUB_PORT"))
         echo = self.subscribe("notify.are_you_there")
@@ -137,7 +137,7 @@ class Client:
 
 
 def receive(subscriber):
-    """Topic and map, as every script receives them."""
+    """A topic and a map, received like every script does."""
     topic = subscriber.recv_string()
     assert subscriber.get(zmq.RCVMORE), "a message of one frame"
     payload = msgpack.loads(subscriber.recv(), raw=False)
@@ -155,7 +155,7 @@ def receive_topic(subscriber, wanted):
 
 
 class Bisector:
-    """Data by their time, found again by exactly that time, as PsychoPy's MutableBisector."""
+    """Data by their time, found by exactly that time, like PsychoPy's MutableBisector."""
 
     def __init__(self):
         self.times, self.data = [], []

@@ -37,7 +37,7 @@ class ClientTest(unittest.TestCase):
             self.assertTrue(math.isfinite(value))
 
     def assert_pupil(self, datum):
-        """What data_parse.py of PsychoPy reads of a pupil."""
+        """The fields of a pupil that PsychoPy's data_parse.py reads."""
         self.assertIn(datum["id"], (0, 1))
         self.assert_numbers(datum["sphere"]["center"], 3)
         self.assert_numbers([datum["phi"], datum["theta"]], 2)
@@ -109,7 +109,7 @@ class PsychopyTest(ClientTest):
                         self.assert_pupil(datum)
                     samples += 1
         self.assertGreaterEqual(samples, 100, self.gazed.log())
-        # A surface message that came before we heard of gaze.
+        # A surface message that came before the first gaze message.
         self.assertLessEqual(missed, 1)
         self.assertIn("gaze.3d.01.", seen)
         self.assertEqual(self.client.ask("r"), "OK")
@@ -394,7 +394,7 @@ class NetworkApiTest(ClientTest):
 
 
 class RudeTest(ClientTest):
-    """Clients that die, flood or talk nonsense leave the others their answers."""
+    """Clients that end, flood the daemon or send nonsense do not delay answers to the others."""
 
     def assert_answers(self):
         for _ in range(5):
@@ -450,7 +450,7 @@ class RudeTest(ClientTest):
             self.assertTrue(remote.recv_string().startswith("refused:"), frames)
         for topic in ("gaze.3d.01.", "status", "pupil.0.3d", "surfaces.screen", "blinks"):
             remote.send_multipart([topic.encode(), b"\x80"])
-            self.assertIn("daemon's own", remote.recv_string())
+            self.assertIn("reserved for the daemon", remote.recv_string())
         for text in ("", "x", "R\0", "t t", "\n", "SUB_PORT "):
             self.assertEqual(self.client.ask(text), "unknown command")
 
@@ -497,7 +497,7 @@ class ChainTest(ClientTest):
         self.assertEqual(status["rate_hz"]["nominal"], 240)
 
     def compare(self, client):
-        """That both say the same of the same moments."""
+        """Both report the same gaze at the same times."""
         first = self.client.subscribe("gaze.")
         second = client.subscribe("gaze.")
         raw = {}
@@ -514,7 +514,7 @@ class ChainTest(ClientTest):
             origin = raw.get(gaze["device_ns"])
             if origin is None or origin["raw"] is None or gaze["raw"] is None:
                 continue
-            # The same clock, but for what the comparison of clocks may be wrong by.
+            # The same clock, except for the error of comparing clocks.
             self.assertLess(abs(gaze["host_ns"] - gaze["device_ns"]), 20e6)
             for eye in ("eye0", "eye1"):
                 if origin[eye]["valid"] and gaze[eye]["valid"]:
@@ -576,13 +576,13 @@ class CurveTest(unittest.TestCase):
         self.write("", "server", "gazecast", "authorized_keys")
         self.write("127.0.0.1 " + self.key("server") + "\n",
                    "client", "gazecast", "known_servers")
-        second = self.start_second(self.start_first(), "is looked for until it appears")
+        second = self.start_second(self.start_first(), "not found; retrying")
         self.assertIn("no daemon with the key of known_servers answers", second.log())
 
     def test_daemon_without_keys_is_not_served(self):
         self.write(self.key("client") + " test\n", "server", "gazecast", "authorized_keys")
-        second = self.start_second(self.start_first(), "is looked for until it appears")
-        self.assertIn("nobody answers at", second.log())
+        second = self.start_second(self.start_first(), "not found; retrying")
+        self.assertIn("no answer from", second.log())
 
 
 if __name__ == "__main__":

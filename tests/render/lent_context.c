@@ -1,7 +1,7 @@
 #include "lent_context.h"
 
-#include "check.h"
-#include "render/gl/context_egl.h"
+#include "render/opengl/gl_context.h"
+#include "suite.h"
 
 static enum gz_result make_current(struct gz_gl_context *base)
 {

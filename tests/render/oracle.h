@@ -6,8 +6,8 @@
 #ifndef GZ_TESTS_RENDER_ORACLE_H
 #define GZ_TESTS_RENDER_ORACLE_H
 
-#include "render/renderer.h"
-#include "render/volume/levels.h"
+#include "render/data/levels.h"
+#include "render/raycast/shared/raycaster.h"
 
 struct oracle_occlusion;
 

@@ -13,6 +13,7 @@
 
 #include "oracle.h"
 #include "oracle_light.h"
+#include "render/plan/method.h"
 
 /* The first channel of a pixel that is off, or 3. Half a grey level is rounding, the other half the
  * tables'. */
@@ -27,7 +28,7 @@ static int channel_off(const uint8_t pixel[4], const double rgb[3])
 static void check_set(const struct small_scene *scene, const struct oracle_occlusion *occlusion,
 		      const char *set, int width, int height, int pixels_off)
 {
-	struct gz_renderer *renderer = small_scene_renderer(scene, 2, set);
+	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, set);
 	struct gz_image image = { 0 };
 	small_scene_render(renderer, scene, width, height, &image, NULL);
 	int off = 0;
@@ -43,7 +44,7 @@ static void check_set(const struct small_scene *scene, const struct oracle_occlu
 					 channel, pixel[channel], 255 * rgb[channel]);
 			assert_int_equal(pixel[3], 255);
 		}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 }
 

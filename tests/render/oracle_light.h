@@ -1,12 +1,13 @@
 /**
  * @file
- * Light by the plainest C, as render/ray_params.h and render/occlusion.h say in words.
+ * Light by the plainest C, as render/raycast/shared/ray_params.h and render/light/occlusion.h say
+ * in words.
  */
 #ifndef GZ_TESTS_RENDER_ORACLE_LIGHT_H
 #define GZ_TESTS_RENDER_ORACLE_LIGHT_H
 
-#include "render/renderer.h"
-#include "render/volume/levels.h"
+#include "render/data/levels.h"
+#include "render/raycast/shared/raycaster.h"
 
 /** What lies around each cell. */
 struct oracle_occlusion {

@@ -102,12 +102,12 @@ const char *const *small_scene_simd_sets(void)
 	if (sets[0])
 		return sets;
 	for (size_t i = 0; i < sizeof cpu / sizeof cpu[0]; i++) {
-		const struct gz_renderer_params params = { .threads = 1, .simd = cpu[i] };
-		struct gz_renderer *renderer = NULL;
+		const struct gz_backend_params params = { .threads = 1, .simd = cpu[i] };
+		struct gz_raycaster *renderer = NULL;
 		if (strcmp(small_scene_backend(), "cpu") == 0 &&
-		    gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK)
+		    gz_raycaster_create("cpu", &params, NULL, &renderer) == GZ_OK)
 			sets[count++] = cpu[i];
-		gz_renderer_destroy(&renderer);
+		gz_raycaster_destroy(&renderer);
 	}
 	if (!sets[0])
 		sets[0] = "auto";
@@ -117,26 +117,27 @@ const char *const *small_scene_simd_sets(void)
 bool small_scene_backend_runs(void)
 {
 	struct gz_log log;
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	gz_log_init(&log, NULL, NULL, NULL);
-	const bool runs = gz_renderer_create(small_scene_backend(), NULL, &log, &renderer) == GZ_OK;
-	gz_renderer_destroy(&renderer);
+	const bool runs =
+		gz_raycaster_create(small_scene_backend(), NULL, &log, &renderer) == GZ_OK;
+	gz_raycaster_destroy(&renderer);
 	return runs;
 }
 
-struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
-					 const char *simd)
+struct gz_raycaster *small_scene_renderer(const struct small_scene *scene, int threads,
+					  const char *simd)
 {
-	const struct gz_renderer_params params = { .threads = threads, .simd = simd };
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create(small_scene_backend(), &params, NULL, &renderer),
+	const struct gz_backend_params params = { .threads = threads, .simd = simd };
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(gz_raycaster_create(small_scene_backend(), &params, NULL, &renderer),
 			 GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
 }
 
-void small_scene_render(struct gz_renderer *renderer, const struct small_scene *scene, int width,
+void small_scene_render(struct gz_raycaster *renderer, const struct small_scene *scene, int width,
 			int height, struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	const struct gz_display display =
@@ -145,9 +146,9 @@ void small_scene_render(struct gz_renderer *renderer, const struct small_scene *
 	assert_int_equal(
 		gz_plan_make(&scene->foveation, &display, scene->gaze, width, height, &plan),
 		GZ_OK);
-	assert_int_equal(
-		gz_renderer_render(renderer, &scene->camera, &scene->rays, &plan, image, out_stats),
-		GZ_OK);
+	assert_int_equal(gz_raycaster_render(renderer, &scene->camera, &scene->rays, &plan, image,
+					     out_stats),
+			 GZ_OK);
 	gz_plan_free(&plan);
 }
 
@@ -184,4 +185,12 @@ int image_pixels_apart(const struct gz_image *a, const struct gz_image *b)
 void small_scene_free(struct small_scene *scene)
 {
 	gz_volume_free(&scene->volume);
+}
+
+enum gz_result raycaster_with(const char *backend, const struct raycaster_params *params,
+			      const struct gz_log *log, struct gz_raycaster **out_raycaster)
+{
+	if (strcmp(backend, "gl") == 0)
+		return gz_gl_raycaster_create(&params->backend, &params->hooks, log, out_raycaster);
+	return gz_raycaster_create(backend, &params->backend, log, out_raycaster);
 }

@@ -5,7 +5,8 @@
 #ifndef GZ_TESTS_RENDER_SMALL_SCENE_H
 #define GZ_TESTS_RENDER_SMALL_SCENE_H
 
-#include "render/renderer.h"
+#include "render/raycast/gl/gl_raycaster.h"
+#include "render/raycast/shared/raycaster.h"
 
 /** The default settings with a table of spacings, so that every method has what it needs. */
 struct gz_foveation small_scene_foveation(void);
@@ -39,11 +40,11 @@ const char *const *small_scene_simd_sets(void);
 bool small_scene_backend_runs(void);
 
 /** A renderer with the scene's volume and transfer function; fails the test where that fails. */
-struct gz_renderer *small_scene_renderer(const struct small_scene *scene, int threads,
-					 const char *simd);
+struct gz_raycaster *small_scene_renderer(const struct small_scene *scene, int threads,
+					  const char *simd);
 
 /** Render a frame; fails the test where that fails. */
-void small_scene_render(struct gz_renderer *renderer, const struct small_scene *scene, int width,
+void small_scene_render(struct gz_raycaster *renderer, const struct small_scene *scene, int width,
 			int height, struct gz_image *image, struct gz_frame_stats *out_stats);
 
 /** Greatest difference of any channel of any pixel, 0 to 255, and where. */
@@ -53,5 +54,15 @@ int image_difference(const struct gz_image *a, const struct gz_image *b, int *ou
 int image_pixels_apart(const struct gz_image *a, const struct gz_image *b);
 
 void small_scene_free(struct small_scene *scene);
+
+/** How a test's ray caster is made. */
+struct raycaster_params {
+	struct gz_backend_params backend;
+	struct gz_gl_raycaster_hooks hooks; /**< of gl */
+};
+
+/** gz_raycaster_create() or, for gl, gz_gl_raycaster_create(). */
+enum gz_result raycaster_with(const char *backend, const struct raycaster_params *params,
+			      const struct gz_log *log, struct gz_raycaster **out_raycaster);
 
 #endif

@@ -1,5 +1,5 @@
 /* How the plan follows the eye: each rule by a sequence made for it. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
@@ -430,7 +430,7 @@ static void presets_parse_and_states_have_names(void **state)
 	assert_string_equal(gz_attention_state_name(GZ_ATTENTION_WIDEN), "widen");
 }
 
-int main(void)
+TEST_SUITE(attention)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(first_gaze_is_sharp_where_it_is, begin),

@@ -1,5 +1,5 @@
 /* The attention on what a tracker makes of a simulated eye, whose truth is known. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
@@ -217,7 +217,7 @@ static void blinks_of_a_simulated_eye_hold_its_plan(void **state)
 	assert_true(blinking > 200);
 }
 
-int main(void)
+TEST_SUITE(attention_eye)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(still_eye_sees_a_still_plan_whatever_the_noise),

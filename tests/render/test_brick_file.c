@@ -1,5 +1,5 @@
 /* Files of bricks: what is written is read, and nothing else is. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,9 +9,9 @@
 #include <zlib.h>
 
 #include "base/captured_log.h"
-#include "render/volume/brick_file.h"
-#include "render/volume/brick_write.h"
-#include "render/volume/halve.h"
+#include "render/data/brick_file.h"
+#include "render/data/brick_write.h"
+#include "render/data/halve.h"
 #include "volume_files.h"
 
 static struct gz_volume made(int nx, int ny, int nz, enum gz_voxel_type type)
@@ -387,7 +387,7 @@ static void largest_volume_fits_the_levels(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(brick_file)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_written_is_read_level_by_level),

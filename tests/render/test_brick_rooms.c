@@ -1,7 +1,7 @@
 /* The books of bricks in a fixed number of rooms. */
-#include "check.h"
+#include "suite.h"
 
-#include "render/volume/brick_rooms.h"
+#include "render/data/brick_rooms.h"
 
 enum { BRICKS = 65, ROOMS = 4 };
 
@@ -78,7 +78,7 @@ static void room_of_a_brick_that_cannot_be_read_is_had_at_once(void **state)
 	gz_brick_rooms_free(&rooms);
 }
 
-int main(void)
+TEST_SUITE(brick_rooms)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_comes_in_the_turn_that_took_it_leaves_the_victims_known),

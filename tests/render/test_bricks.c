@@ -1,6 +1,6 @@
 /* Pictures of volumes that are files of bricks: those of the volume in memory once all bricks are
  * there, and never without a part before. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,11 +9,12 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/cpu/cast.h"
-#include "render/renderer.h"
-#include "render/volume/brick_pool.h"
-#include "render/volume/brick_write.h"
-#include "render/volume/halve.h"
+#include "render/data/brick_pool.h"
+#include "render/data/brick_write.h"
+#include "render/data/halve.h"
+#include "render/plan/method.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/shared/raycaster.h"
 #include "small_scene.h"
 #include "volume_files.h"
 
@@ -30,13 +31,14 @@ static struct gz_volume bricks_of(const struct gz_volume *volume, const char *na
 	return bricks;
 }
 
-static struct gz_renderer *renderer_of(const struct small_scene *scene, const char *simd, bool wait)
+static struct gz_raycaster *renderer_of(const struct small_scene *scene, const char *simd,
+					bool wait)
 {
-	const struct gz_renderer_params params = { .simd = simd, .wait_for_bricks = wait };
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	const struct gz_backend_params params = { .simd = simd, .wait_for_bricks = wait };
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(gz_raycaster_create("cpu", &params, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
 }
 
@@ -44,9 +46,9 @@ static struct gz_frame_stats render(const struct small_scene *scene, const char 
 				    struct gz_image *image)
 {
 	struct gz_frame_stats stats;
-	struct gz_renderer *renderer = renderer_of(scene, simd, wait);
+	struct gz_raycaster *renderer = renderer_of(scene, simd, wait);
 	small_scene_render(renderer, scene, WIDTH, HEIGHT, image, &stats);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	return stats;
 }
 
@@ -180,7 +182,7 @@ static void picture_is_whole_from_the_first_and_sharper_later(void **state)
 	struct small_scene bricks = as_bricks(&scene, least_bytes(&scene));
 	struct gz_image whole = { 0 }, image = { 0 };
 	render(&scene, "auto", true, &whole);
-	struct gz_renderer *renderer = renderer_of(&bricks, "auto", false);
+	struct gz_raycaster *renderer = renderer_of(&bricks, "auto", false);
 	struct gz_frame_stats stats = { 0 };
 	small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &image, &stats);
 	assert_true(stats.bricks_coming > 0);
@@ -198,7 +200,7 @@ static void picture_is_whole_from_the_first_and_sharper_later(void **state)
 		small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &image, &stats);
 	}
 	assert_true(total_difference(&whole, &image) * 50 < first);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&whole);
 	gz_image_free(&image);
 	gz_image_free(&none);
@@ -280,7 +282,7 @@ static void room_for_less_than_is_wanted_holds_what_weighs_most(void **state)
 	assert_int_equal(gz_brick_pool_rooms(bricks.volume.bricks), 256);
 	struct gz_image whole = { 0 }, image = { 0 };
 	render(&scene, "auto", true, &whole);
-	struct gz_renderer *renderer = renderer_of(&bricks, "auto", true);
+	struct gz_raycaster *renderer = renderer_of(&bricks, "auto", true);
 	struct gz_frame_stats stats;
 	small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &image, &stats);
 	assert_int_equal(stats.bricks_coming, 0);
@@ -302,7 +304,7 @@ static void room_for_less_than_is_wanted_holds_what_weighs_most(void **state)
 	small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &whole, &stats);
 	int x, y;
 	assert_int_equal(image_difference(&whole, &image, &x, &y), 0);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&whole);
 	gz_image_free(&image);
 	small_scene_free(&bricks);
@@ -330,7 +332,7 @@ static void memory_too_little_for_the_bricks_is_refused_with_the_least(void **st
 }
 
 /* Bricks that the first picture sends for. */
-static uint64_t sent_for(struct gz_renderer *renderer, const struct small_scene *bricks)
+static uint64_t sent_for(struct gz_raycaster *renderer, const struct small_scene *bricks)
 {
 	struct gz_image image = { 0 };
 	struct gz_frame_stats stats = { 0 };
@@ -345,10 +347,10 @@ static void what_is_clipped_away_is_not_sent_for(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_waves(220, 200, 210, GZ_VOXEL_U8);
 	struct small_scene bricks = as_bricks(&scene, 0);
-	struct gz_renderer *renderer = renderer_of(&bricks, "auto", false);
+	struct gz_raycaster *renderer = renderer_of(&bricks, "auto", false);
 	const uint64_t all = sent_for(renderer, &bricks);
 	small_scene_free(&bricks);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 
 	bricks = as_bricks(&scene, 0);
 	renderer = renderer_of(&bricks, "auto", false);
@@ -358,7 +360,7 @@ static void what_is_clipped_away_is_not_sent_for(void **state)
 	if (quarter == 0 || 3 * quarter > all)
 		fail_msg("%llu bricks sent for, %llu of them for a quarter of the box",
 			 (unsigned long long)all, (unsigned long long)quarter);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 
 	renderer = renderer_of(&bricks, "auto", true);
 	struct gz_image image = { 0 };
@@ -375,7 +377,7 @@ static void what_is_clipped_away_is_not_sent_for(void **state)
 		gz_image_free(&whole);
 	}
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&bricks);
 	small_scene_free(&scene);
 }
@@ -385,7 +387,7 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 	(void)state;
 	struct small_scene scene = large_scene();
 	struct small_scene bricks = as_bricks(&scene, least_bytes(&scene));
-	struct gz_renderer *renderer = renderer_of(&bricks, "auto", true);
+	struct gz_raycaster *renderer = renderer_of(&bricks, "auto", true);
 	/* A close look at one corner, then at others: each needs less than there is room for. */
 	for (int corner = 0; corner < 8; corner++) {
 		struct gz_image whole = { 0 }, image = { 0 };
@@ -406,7 +408,7 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 		gz_image_free(&whole);
 		gz_image_free(&image);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&bricks);
 	small_scene_free(&scene);
 }
@@ -478,7 +480,7 @@ static void coarsest_level_that_cannot_be_read_is_refused(void **state)
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(bricks)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(picture_of_all_bricks_is_that_of_the_volume_in_memory),

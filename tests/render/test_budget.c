@@ -1,10 +1,11 @@
 /* A time to keep, against models of what frames cost. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "render/attention/budget.h"
+#include "render/plan/method.h"
 #include "render/plan/plan.h"
 #include "sim/random.h"
 
@@ -264,7 +265,7 @@ static void one_slow_frame_in_a_second_changes_nothing(void **state)
 	assert_true(gz_budget_scale(&budget) == 1);
 }
 
-int main(void)
+TEST_SUITE(budget)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_budget_is_full_detail_whatever_it_takes),

@@ -1,10 +1,10 @@
 /* Bytes that a thread makes ahead of their reader. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/volume/byte_ahead.h"
+#include "render/data/byte_ahead.h"
 
 #define MIB ((uint64_t)1 << 20)
 
@@ -106,7 +106,7 @@ static void end_in_the_middle_stops_the_thread_within_its_ring(void **state)
 	gz_byte_ahead_end(&ahead);
 }
 
-int main(void)
+TEST_SUITE(byte_ahead)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(all_bytes_asked_for_come_in_order_and_no_more_is_taken),

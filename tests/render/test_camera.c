@@ -1,8 +1,8 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
-#include "render/camera.h"
+#include "render/picture/camera.h"
 
 #define CLOSE(a, b) assert_float_equal((float)(a), (float)(b), 1e-5f)
 
@@ -351,7 +351,7 @@ static void axis_views_look_from_right_front_and_above_or_the_other_side(void **
 	CLOSE(c.eye[1], -2);
 }
 
-int main(void)
+TEST_SUITE(camera)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ray_of_the_centre_goes_to_look_at),

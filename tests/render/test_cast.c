@@ -1,16 +1,15 @@
 /* The kernels: against the oracle, against each other, and over threads. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "oracle_check.h"
+#include "render/plan/method.h"
 #include "small_scene.h"
 
 static void cast_of_8_bit_data_equals_the_oracle(void **state)
@@ -159,7 +158,7 @@ static void cast_is_the_same_bits_for_any_number_of_threads(void **state)
 		uint64_t samples = 0;
 		scene.foveation.method = method;
 		for (int threads = 1; threads <= 7; threads += 2) {
-			struct gz_renderer *renderer = small_scene_renderer(&scene, threads, NULL);
+			struct gz_raycaster *renderer = small_scene_renderer(&scene, threads, NULL);
 			struct gz_image image = { 0 };
 			struct gz_frame_stats stats;
 			small_scene_render(renderer, &scene, 317, 203, &image, &stats);
@@ -171,7 +170,7 @@ static void cast_is_the_same_bits_for_any_number_of_threads(void **state)
 				assert_int_equal(stats.samples, samples);
 				gz_image_free(&image);
 			}
-			gz_renderer_destroy(&renderer);
+			gz_raycaster_destroy(&renderer);
 		}
 		gz_image_free(&first);
 	}
@@ -187,7 +186,7 @@ static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **st
 		scene.foveation.method = method;
 		const char *const *const sets = small_scene_simd_sets();
 		for (size_t i = 0; sets[i]; i++) {
-			struct gz_renderer *renderer = small_scene_renderer(&scene, 2, sets[i]);
+			struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, sets[i]);
 			struct gz_image image = { 0 };
 			int x = 0, y = 0;
 			small_scene_render(renderer, &scene, 317, 203, &image, NULL);
@@ -198,7 +197,7 @@ static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **st
 					 sets[i], x, y);
 			if (i > 0)
 				gz_image_free(&image);
-			gz_renderer_destroy(&renderer);
+			gz_raycaster_destroy(&renderer);
 		}
 		gz_image_free(&first);
 	}
@@ -220,17 +219,17 @@ static void samples_are_taken_in_fine_cells_that_show_alone(void **state)
 		.range = { 0, 200 },
 	};
 	memset(voxels, 200, (size_t)64 * 64 * 64);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 256, 256, &image, &all);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	/* A sheet two voxels thick lies in one layer of cells, or two. */
 	memset(voxels, 0, (size_t)64 * 64 * 64);
 	memset(voxels + (size_t)64 * 64 * 17, 200, (size_t)64 * 64 * 2);
 	renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 256, 256, &image, &layer);
 	/* OpenGL and portable kernels ask macrocells alone. */
-	const unsigned share = strncmp(gz_renderer_describe(renderer), "avx", 3) == 0 ? 12 : 6;
-	gz_renderer_destroy(&renderer);
+	const unsigned share = strncmp(gz_raycaster_describe(renderer), "avx", 3) == 0 ? 12 : 6;
+	gz_raycaster_destroy(&renderer);
 	assert_true(layer.samples > 0);
 	if (layer.samples * share > all.samples)
 		fail_msg("%llu samples of %llu", (unsigned long long)layer.samples,
@@ -243,12 +242,12 @@ static void empty_space_takes_no_samples(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_constant(64, 0);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	struct gz_image image = { 0 };
 	struct gz_frame_stats stats;
 	small_scene_render(renderer, &scene, 64, 64, &image, &stats);
 	assert_int_equal(stats.samples, 0);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 	small_scene_free(&scene);
 }
@@ -260,7 +259,7 @@ static void ray_without_early_termination_takes_all_samples_and_shows_the_same(v
 	struct small_scene scene = small_scene_constant(40, 1 - pow(1.0 / 1024, 1.0 / 20));
 	scene.rays.background[0] = 1;
 	for (int integration = 0; integration < 2; integration++) {
-		struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+		struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 		struct gz_image images[2] = { 0 };
 		struct gz_frame_stats stats[2];
 		scene.rays.integration = integration;
@@ -279,7 +278,7 @@ static void ray_without_early_termination_takes_all_samples_and_shows_the_same(v
 		scene.rays.early_termination = true;
 		for (int i = 0; i < 2; i++)
 			gz_image_free(&images[i]);
-		gz_renderer_destroy(&renderer);
+		gz_raycaster_destroy(&renderer);
 	}
 	small_scene_free(&scene);
 }
@@ -287,12 +286,12 @@ static void ray_without_early_termination_takes_all_samples_and_shows_the_same(v
 static void unknown_backend_and_instruction_set_are_refused(void **state)
 {
 	(void)state;
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create("quantum", NULL, NULL, &renderer), GZ_ERR_NOT_FOUND);
-	const struct gz_renderer_params params = { .simd = "mmx" };
-	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_ERR_UNSUPPORTED);
-	const struct gz_renderer_params threads = { .threads = 100000 };
-	assert_int_equal(gz_renderer_create("cpu", &threads, NULL, &renderer), GZ_ERR_INVAL);
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(gz_raycaster_create("quantum", NULL, NULL, &renderer), GZ_ERR_NOT_FOUND);
+	const struct gz_backend_params params = { .simd = "mmx" };
+	assert_int_equal(gz_raycaster_create("cpu", &params, NULL, &renderer), GZ_ERR_UNSUPPORTED);
+	const struct gz_backend_params threads = { .threads = 100000 };
+	assert_int_equal(gz_raycaster_create("cpu", &threads, NULL, &renderer), GZ_ERR_INVAL);
 	assert_null(renderer);
 }
 
@@ -300,35 +299,35 @@ static void render_without_volume_or_with_bad_parameters_is_refused(void **state
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(8, 8, 8, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	struct gz_image image = { 0 };
 	struct gz_plan plan = { 0 };
 	const struct gz_display display = gz_display_default(16, 16);
 	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, 16, 16, &plan),
 			 GZ_OK);
-	assert_int_equal(gz_renderer_create(NULL, NULL, NULL, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
+	assert_int_equal(gz_raycaster_create(NULL, NULL, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
 	assert_int_equal(
-		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		gz_raycaster_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
 		GZ_ERR_INVAL);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_OK);
 	struct gz_camera camera = scene.camera;
 	camera.fov_deg = NAN;
-	assert_int_equal(gz_renderer_render(renderer, &camera, &scene.rays, &plan, &image, NULL),
+	assert_int_equal(gz_raycaster_render(renderer, &camera, &scene.rays, &plan, &image, NULL),
 			 GZ_ERR_INVAL);
 	struct gz_ray_params rays = scene.rays;
 	rays.ray_sampling_rate = NAN;
-	assert_int_equal(gz_renderer_render(renderer, &scene.camera, &rays, &plan, &image, NULL),
+	assert_int_equal(gz_raycaster_render(renderer, &scene.camera, &rays, &plan, &image, NULL),
 			 GZ_ERR_INVAL);
 	gz_plan_free(&plan);
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(cast)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(cast_of_8_bit_data_equals_the_oracle),

@@ -1,16 +1,15 @@
 /* The clip box and jitter: where rays are cut. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "oracle_check.h"
+#include "render/plan/method.h"
 
 static void clip(struct small_scene *scene, const double least[3], const double greatest[3])
 {
@@ -109,13 +108,13 @@ static void clip_that_shows_everything_changes_no_bit(void **state)
 	struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
 	struct gz_image whole = { 0 }, cut = { 0 };
 	scene.transfer.points[0].opacity = scene.transfer.points[1].opacity = 0;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 60, 50, &whole, NULL);
 	/* the waves' first voxels along x are empty */
 	scene.rays.clip.least[0] = 0.05;
 	small_scene_render(renderer, &scene, 60, 50, &cut, NULL);
 	assert_memory_equal(whole.pixels, cut.pixels, 60 * 50 * 4);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&whole);
 	gz_image_free(&cut);
 	small_scene_free(&scene);
@@ -129,7 +128,7 @@ static void clip_of_constant_matter_keeps_its_brightness_for_any_step(void **sta
 	clip(&scene, (const double[3]) { 0.21, 0.3, 0.13 }, (const double[3]) { 0.55, 0.77, 0.64 });
 	scene.foveation.method = GZ_METHOD_STANDARD;
 	scene.rays.ray_sampling_rate = 8;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 90, 80, &reference, NULL);
 	static const double rates[] = { 0.06, 0.37, 1.5 };
 	for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
@@ -142,7 +141,7 @@ static void clip_of_constant_matter_keeps_its_brightness_for_any_step(void **sta
 			fail_msg("rate %g: pixel %d %d differs by %d", rates[i], x, y, difference);
 		gz_image_free(&image);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&reference);
 	small_scene_free(&scene);
 }
@@ -217,19 +216,19 @@ static void jitter_keeps_the_brightness_of_constant_matter(void **state)
 	struct gz_image still = { 0 }, jittered = { 0 };
 	int x = 0, y = 0;
 	scene.foveation.method = GZ_METHOD_STANDARD;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 90, 80, &still, NULL);
 	scene.rays.jitter = 5;
 	scene.rays.ray_sampling_rate = 0.2;
 	small_scene_render(renderer, &scene, 90, 80, &jittered, NULL);
 	assert_in_range(image_difference(&still, &jittered, &x, &y), 0, 1);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&still);
 	gz_image_free(&jittered);
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(clip)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(clip_face_at_each_axis_equals_the_oracle),

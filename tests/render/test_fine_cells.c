@@ -1,16 +1,14 @@
 /* Fine cells: their values are those of their voxels, and their flags what a search says. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/cpu/fine_cells.h"
+#include "render/raycast/cpu/fine_cells.h"
 #include "small_scene.h"
 
 static double voxel_of(const struct gz_volume *volume, const void *values, size_t i)
@@ -206,7 +204,7 @@ static void flags_forget_the_transfer_function_before(void **state)
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(fine_cells)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ranges_are_those_of_the_voxels_that_samples_touch),

@@ -1,5 +1,5 @@
 /* The gl backend beside the cpu's, and what it refuses. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,8 +11,10 @@
 #include <GL/glew.h>
 
 #include "lent_context.h"
-#include "render/gl/compute_program.h"
-#include "render/gl/context_egl.h"
+#include "render/opengl/gl_context.h"
+#include "render/plan/method.h"
+#include "render/raycast/gl/gl_cast.h"
+#include "render/reconstruct/gl/gl_reconstruct.h"
 #include "small_scene.h"
 
 /* Keeps the last message. */
@@ -28,25 +30,26 @@ static void hear(void *user, enum gz_log_level level, const char *module, const 
 		snprintf(heard->text, sizeof heard->text, "%s", message);
 }
 
-static struct gz_renderer *renderer_with(const char *backend,
-					 const struct gz_renderer_params *params,
-					 const struct small_scene *scene)
+static struct gz_raycaster *renderer_with(const char *backend,
+					  const struct raycaster_params *params,
+					  const struct small_scene *scene)
 {
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create(backend, params, NULL, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(raycaster_with(backend, params, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
 }
 
-static struct gz_renderer *renderer_of(const char *backend, const struct small_scene *scene)
+static struct gz_raycaster *renderer_of(const char *backend, const struct small_scene *scene)
 {
-	return renderer_with(backend, NULL, scene);
+	static const struct raycaster_params defaults;
+	return renderer_with(backend, &defaults, scene);
 }
 
 /* Both backends with one scene. */
 struct pair {
-	struct gz_renderer *cpu, *gl;
+	struct gz_raycaster *cpu, *gl;
 	struct gz_image of_cpu, of_gl;
 };
 
@@ -57,8 +60,8 @@ static struct pair pair_of(const struct small_scene *scene)
 
 static void pair_free(struct pair *pair)
 {
-	gz_renderer_destroy(&pair->cpu);
-	gz_renderer_destroy(&pair->gl);
+	gz_raycaster_destroy(&pair->cpu);
+	gz_raycaster_destroy(&pair->gl);
 	gz_image_free(&pair->of_cpu);
 	gz_image_free(&pair->of_gl);
 }
@@ -110,7 +113,7 @@ static void pictures_of_8_bit_data_equal_the_cpus_by_every_method(void **state)
 static void pictures_as_a_graphics_device_makes_them_equal_the_cpus(void **state)
 {
 	(void)state;
-	const struct gz_renderer_params params = { .gl_as_hardware = true };
+	const struct raycaster_params params = { .hooks.as_hardware = true };
 	const enum gz_voxel_type types[] = { GZ_VOXEL_U8, GZ_VOXEL_F32 };
 	for (int i = 0; i < 2; i++) {
 		struct small_scene scene = small_scene_waves(50, 41, 60, types[i]);
@@ -190,7 +193,8 @@ static void pictures_of_any_size_equal_the_cpus(void **state)
 	small_scene_free(&scene);
 }
 
-/* As frames that are kept have it (render/temporal.h): the plan's corner is not the picture's. */
+/* As frames that are kept have it (render/accumulate/temporal.h): the plan's corner is not the
+ * picture's. */
 static void jittered_pictures_of_a_shifted_plan_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -206,11 +210,11 @@ static void jittered_pictures_of_a_shifted_plan_equal_the_cpus(void **state)
 		gz_plan_make(&scene.foveation, &scene.display, scene.gaze, WIDTH, HEIGHT, &plan),
 		GZ_OK);
 	plan.view = (struct gz_plan_view) { WIDTH - 32, HEIGHT - 32, { SHIFT_X, SHIFT_Y } };
+	assert_int_equal(gz_raycaster_render(pair.cpu, &scene.camera, &scene.rays, &plan,
+					     &pair.of_cpu, NULL),
+			 GZ_OK);
 	assert_int_equal(
-		gz_renderer_render(pair.cpu, &scene.camera, &scene.rays, &plan, &pair.of_cpu, NULL),
-		GZ_OK);
-	assert_int_equal(
-		gz_renderer_render(pair.gl, &scene.camera, &scene.rays, &plan, &pair.of_gl, NULL),
+		gz_raycaster_render(pair.gl, &scene.camera, &scene.rays, &plan, &pair.of_gl, NULL),
 		GZ_OK);
 	const int apart = image_pixels_apart(&pair.of_cpu, &pair.of_gl);
 	if (apart * 1000 > WIDTH * HEIGHT)
@@ -229,27 +233,27 @@ static void new_transfer_function_and_volume_replace_the_old(void **state)
 	check_pair(&pair, &scene, 90, 90, "first");
 	scene.transfer.points[1].opacity = 0.5;
 	scene.transfer.points[3].rgb[0] = 0;
-	assert_int_equal(gz_renderer_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(pair.gl, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(pair.gl, &scene.transfer), GZ_OK);
 	check_pair(&pair, &scene, 90, 90, "transfer");
-	assert_int_equal(gz_renderer_set_volume(pair.cpu, &other.volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(pair.gl, &other.volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(pair.cpu, &other.transfer), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(pair.gl, &other.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(pair.cpu, &other.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(pair.gl, &other.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &other.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(pair.gl, &other.transfer), GZ_OK);
 	check_pair(&pair, &other, 90, 90, "volume");
 	pair_free(&pair);
 	small_scene_free(&scene);
 	small_scene_free(&other);
 }
 
-static struct gz_renderer *renderer_in(struct lent_context *lent, const struct small_scene *scene,
-				       const struct gz_log *log)
+static struct gz_raycaster *renderer_in(struct lent_context *lent, const struct small_scene *scene,
+					const struct gz_log *log)
 {
-	const struct gz_renderer_params params = { .gl_context = &lent->base };
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create("gl", &params, log, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	const struct gz_backend_params params = { .gl_context = &lent->base };
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(gz_raycaster_create("gl", &params, log, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
 }
 
@@ -258,7 +262,7 @@ static void picture_left_on_the_device_equals_the_one_read_back(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_waves(24, 24, 24, GZ_VOXEL_U8);
 	struct lent_context lent = lend_context();
-	struct gz_renderer *renderer = renderer_in(&lent, &scene, NULL);
+	struct gz_raycaster *renderer = renderer_in(&lent, &scene, NULL);
 	struct gz_image image = { 0 };
 	enum { WIDTH = 77, HEIGHT = 50 };
 	uint8_t *pixels = calloc(WIDTH * HEIGHT, 4);
@@ -266,7 +270,7 @@ static void picture_left_on_the_device_equals_the_one_read_back(void **state)
 		scene.rays.background[0] = round;
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, NULL);
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, NULL, NULL);
-		const unsigned texture = gz_renderer_picture_texture(renderer);
+		const unsigned texture = gz_raycaster_picture_texture(renderer);
 		assert_int_not_equal(texture, 0);
 		assert_int_equal(lent.egl->ops->make_current(lent.egl), GZ_OK);
 		glBindTexture(GL_TEXTURE_2D, texture);
@@ -277,7 +281,7 @@ static void picture_left_on_the_device_equals_the_one_read_back(void **state)
 	}
 	free(pixels);
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_gl_context_destroy(&lent.egl);
 	small_scene_free(&scene);
 }
@@ -286,17 +290,17 @@ static void picture_without_an_image_is_refused_by_the_cpu(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(8, 8, 8, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = renderer_of("cpu", &scene);
+	struct gz_raycaster *renderer = renderer_of("cpu", &scene);
 	struct gz_plan plan = { 0 };
 	const struct gz_display display = gz_display_default(16, 16);
 	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, 16, 16, &plan),
 			 GZ_OK);
 	assert_int_equal(
-		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, NULL, NULL),
+		gz_raycaster_render(renderer, &scene.camera, &scene.rays, &plan, NULL, NULL),
 		GZ_ERR_INVAL);
-	assert_int_equal(gz_renderer_picture_texture(renderer), 0);
+	assert_int_equal(gz_raycaster_picture_texture(renderer), 0);
 	gz_plan_free(&plan);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -308,7 +312,7 @@ static void lost_context_is_told_and_the_renderer_can_be_destroyed(void **state)
 	struct heard heard = { "" };
 	struct gz_log log;
 	gz_log_init(&log, hear, &heard, NULL);
-	struct gz_renderer *renderer = renderer_in(&lent, &scene, &log);
+	struct gz_raycaster *renderer = renderer_in(&lent, &scene, &log);
 	struct gz_image image = { 0 };
 	struct gz_plan plan = { 0 };
 	const struct gz_display display = gz_display_default(16, 16);
@@ -316,10 +320,10 @@ static void lost_context_is_told_and_the_renderer_can_be_destroyed(void **state)
 			 GZ_OK);
 	lent.lost = true;
 	assert_int_equal(
-		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		gz_raycaster_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
 		GZ_ERR_NO_DEVICE);
 	assert_non_null(strstr(heard.text, "context"));
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_gl_context_destroy(&lent.egl);
 	gz_plan_free(&plan);
 	gz_image_free(&image);
@@ -333,18 +337,18 @@ static void volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line(void 
 	struct heard heard = { "" };
 	struct gz_log log;
 	gz_log_init(&log, hear, &heard, NULL);
-	const struct gz_renderer_params params = { .gl_volume_edge_max = 39 };
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create("gl", &params, &log, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_OK);
+	const struct raycaster_params params = { .hooks.volume_edge_max = 39 };
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(raycaster_with("gl", &params, &log, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene.volume), GZ_OK);
 	if (!strstr(heard.text, "of 39") || !strstr(heard.text, "bricks"))
 		fail_msg("'%s' names neither limit nor consequence", heard.text);
 	/* and what fits is taken as before */
 	struct small_scene small = small_scene_waves(8, 39, 8, GZ_VOXEL_U8);
 	heard.text[0] = '\0';
-	assert_int_equal(gz_renderer_set_volume(renderer, &small.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &small.volume), GZ_OK);
 	assert_string_equal(heard.text, "");
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 	small_scene_free(&small);
 }
@@ -354,12 +358,12 @@ static void volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line(void 
 static int probe(const char *backend)
 {
 	struct gz_log log;
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	gz_log_init(&log, NULL, NULL, NULL);
-	if (gz_renderer_create(backend, NULL, &log, &renderer) != GZ_OK)
+	if (gz_raycaster_create(backend, NULL, &log, &renderer) != GZ_OK)
 		return 1;
-	fprintf(stderr, "%s: %s\n", renderer->ops->name, gz_renderer_describe(renderer));
-	gz_renderer_destroy(&renderer);
+	fprintf(stderr, "%s: %s\n", renderer->ops->name, gz_raycaster_describe(renderer));
+	gz_raycaster_destroy(&renderer);
 	return 0;
 }
 
@@ -367,7 +371,8 @@ static int run_probe(const char *environment, const char *backend, char *said, s
 {
 	char self[512] = "", command[1024];
 	assert_true(readlink("/proc/self/exe", self, sizeof self - 1) > 0);
-	snprintf(command, sizeof command, "%s '%s' --probe %s 2>&1", environment, self, backend);
+	snprintf(command, sizeof command, "%s '%s' test_gl --probe %s 2>&1", environment, self,
+		 backend);
 	FILE *out = popen(command, "r");
 	assert_non_null(out);
 	said[fread(said, 1, size - 1, out)] = '\0';
@@ -404,22 +409,20 @@ static void software_opengl_is_not_what_auto_takes(void **state)
 }
 
 /* Made from shaders/ when the library is built. */
-extern const char gz_glsl_frame_glsl[], gz_glsl_fetch_glsl[], gz_glsl_shade_glsl[],
-	gz_glsl_pyramid_glsl[], gz_glsl_cast_comp[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[],
+extern const char gz_glsl_pyramid_glsl[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[],
 	gz_glsl_regions_comp[];
 
 /* Drivers forgive what the reference compiler does not. */
-static void check_text(const char *defines, const char *const *parts)
+static void check_shader(const struct gz_gl_shader *shader)
 {
 	char path[] = "/tmp/gazecast-shader-XXXXXX.comp", command[128];
 	const int file = mkstemps(path, 5);
 	assert_true(file >= 0);
 	FILE *out = fdopen(file, "w");
-	for (int i = 0; i < gz_compute_head_count; i++)
-		fputs(gz_compute_head[i], out);
-	fputs(defines, out);
-	for (; *parts; parts++)
-		fputs(*parts, out);
+	const char *pieces[GZ_GL_PIECES_MAX];
+	const int count = gz_gl_shader_source(shader, pieces);
+	for (int i = 0; i < count; i++)
+		fputs(pieces[i], out);
 	assert_int_equal(fclose(out), 0);
 	snprintf(command, sizeof command, "glslangValidator -S comp %s", path);
 	const int status = system(command);
@@ -427,41 +430,57 @@ static void check_text(const char *defines, const char *const *parts)
 	assert_int_equal(status, 0);
 }
 
-static void shaders_are_valid_for_the_reference_compiler(void **state)
+static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 {
 	(void)state;
-	static const int bits[] = { 8, 16, 32 };
 	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
 		skip();
-	for (size_t i = 0; i < sizeof bits / sizeof bits[0]; i++)
-		for (int variant = 0; variant < 48; variant++) {
-			char defines[200];
-			snprintf(defines, sizeof defines, "#define VOXEL_BITS %d\n%s%s%s%s%s%s",
-				 bits[i], variant & 1 ? "#define NEAREST\n" : "",
-				 variant & 2 ? "#define FETCH_IMAGES\n" : "",
-				 variant & 4 ? "#define SEGMENTS\n" : "",
-				 variant & 8 ? "#define SHADED\n" : "",
-				 variant >= 16 ? "#define SINGLE\n" : "",
-				 variant >= 32 ? "#define BRICKS\n" : "");
-			check_text(defines, (const char *const[]) {
-						    gz_glsl_frame_glsl, gz_glsl_fetch_glsl,
-						    gz_glsl_shade_glsl, gz_glsl_cast_comp, NULL });
-		}
-	const char *const passes[] = { gz_glsl_fill_comp, gz_glsl_quincunx_comp };
-	for (int variant = 0; variant < 4; variant++) {
-		char defines[80];
-		snprintf(defines, sizeof defines, "%s%s", variant & 1 ? "#define BILINEAR\n" : "",
-			 variant & 2 ? "#define FETCH_IMAGES\n" : "");
-		for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)
-			check_text(defines,
-				   (const char *const[]) { gz_glsl_frame_glsl, gz_glsl_pyramid_glsl,
-							   passes[i], NULL });
-		check_text(defines, (const char *const[]) { gz_glsl_frame_glsl,
-							    gz_glsl_regions_comp, NULL });
-	}
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+		for (int texels = 0; texels < GZ_GL_TEXELS_COUNT; texels++)
+			for (int variant = 0; variant < 16; variant++) {
+				const struct gz_gl_cast_kind kind = {
+					.texels = (enum gz_gl_texels)texels,
+					.type = (enum gz_voxel_type)type,
+					.nearest = variant & 1,
+					.segments = variant & 2,
+					.shaded = variant & 4,
+				};
+				const struct gz_gl_device device = { .software = variant & 8 };
+				char defines[GZ_GL_CAST_DEFINES_SIZE];
+				const struct gz_gl_shader shader =
+					gz_gl_cast_shader(kind, &device, defines);
+				check_shader(&shader);
+			}
 }
 
-int main(int argc, char **argv)
+static void reconstruction_shaders_are_valid_for_the_reference_compiler(void **state)
+{
+	(void)state;
+	static const char *const planes[] = { "", "#define PLANE_VALUE\n", "#define PLANE_ID\n" };
+	const char *const files[][2] = {
+		{ gz_glsl_pyramid_glsl, gz_glsl_fill_comp },
+		{ gz_glsl_pyramid_glsl, gz_glsl_quincunx_comp },
+		{ gz_glsl_regions_comp, NULL },
+	};
+	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
+		skip();
+	for (size_t plane = 0; plane < sizeof planes / sizeof planes[0]; plane++)
+		for (size_t file = 0; file < sizeof files / sizeof files[0]; file++)
+			for (int variant = 0; variant < 4; variant++) {
+				char defines[120];
+				snprintf(defines, sizeof defines, "%s%s%s", planes[plane],
+					 variant & 1 ? "#define BILINEAR\n" : "",
+					 variant & 2 ? "#define FETCH_IMAGES\n" : "");
+				struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
+							       .defines = defines };
+				memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
+				shader.parts[GZ_GL_PLAN_PARTS] = files[file][0];
+				shader.parts[GZ_GL_PLAN_PARTS + 1] = files[file][1];
+				check_shader(&shader);
+			}
+}
+
+TEST_SUITE(gl)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pictures_of_8_bit_data_equal_the_cpus_by_every_method),
@@ -479,7 +498,8 @@ int main(int argc, char **argv)
 		cmocka_unit_test(volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line),
 		cmocka_unit_test(old_or_missing_opengl_is_refused_with_reason_and_remedy),
 		cmocka_unit_test(software_opengl_is_not_what_auto_takes),
-		cmocka_unit_test(shaders_are_valid_for_the_reference_compiler),
+		cmocka_unit_test(cast_shaders_are_valid_for_the_reference_compiler),
+		cmocka_unit_test(reconstruction_shaders_are_valid_for_the_reference_compiler),
 	};
 	if (argc == 3 && strcmp(argv[1], "--probe") == 0)
 		return probe(argv[2]);

@@ -1,16 +1,17 @@
 /* The gl backend and volumes that the device does not hold whole: files of bricks, and volumes in
  * memory beyond its textures or its memory. What they show is what the cpu shows of the volume in
  * memory. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/captured_log.h"
-#include "render/renderer.h"
-#include "render/volume/brick_pool.h"
-#include "render/volume/brick_write.h"
+#include "render/data/brick_pool.h"
+#include "render/data/brick_write.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/raycaster.h"
 #include "small_scene.h"
 #include "volume_files.h"
 
@@ -19,23 +20,23 @@ enum { WIDTH = 160, HEIGHT = 120 };
 /* Bytes of a brick of 8-bit voxels. */
 #define BRICK_BYTES ((size_t)GZ_BRICK_VOXELS)
 
-static struct gz_renderer *renderer_of(const char *backend, const struct small_scene *scene,
-				       struct gz_renderer_params params, const struct gz_log *log)
+static struct gz_raycaster *renderer_of(const char *backend, const struct small_scene *scene,
+					struct raycaster_params params, const struct gz_log *log)
 {
-	struct gz_renderer *renderer = NULL;
-	assert_int_equal(gz_renderer_create(backend, &params, log, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene->volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene->transfer), GZ_OK);
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(raycaster_with(backend, &params, log, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
 	return renderer;
 }
 
 static struct gz_frame_stats render(const char *backend, const struct small_scene *scene,
-				    struct gz_renderer_params params, struct gz_image *image)
+				    struct raycaster_params params, struct gz_image *image)
 {
 	struct gz_frame_stats stats;
-	struct gz_renderer *renderer = renderer_of(backend, scene, params, NULL);
+	struct gz_raycaster *renderer = renderer_of(backend, scene, params, NULL);
 	small_scene_render(renderer, scene, WIDTH, HEIGHT, image, &stats);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	return stats;
 }
 
@@ -60,13 +61,13 @@ static struct small_scene as_bricks(const struct small_scene *scene, size_t bric
 
 /* The cpu's picture of the volume in memory, and gl's of @p other with the same settings. */
 static void check_same(const struct small_scene *memory, const struct gz_volume *other,
-		       struct gz_renderer_params params, const char *what)
+		       struct raycaster_params params, const char *what)
 {
 	struct gz_image a = { 0 }, b = { 0 };
 	struct small_scene shown = *memory;
 	shown.volume = *other;
-	params.wait_for_bricks = true;
-	render("cpu", memory, (struct gz_renderer_params) { 0 }, &a);
+	params.backend.wait_for_bricks = true;
+	render("cpu", memory, (struct raycaster_params) { 0 }, &a);
 	const struct gz_frame_stats stats = render("gl", &shown, params, &b);
 	assert_int_equal(stats.bricks_coming, 0);
 	const int apart = image_pixels_apart(&a, &b);
@@ -98,7 +99,7 @@ static void files_of_bricks_look_like_the_volume_in_memory(void **state)
 		struct small_scene scene = small_scene_waves(d[0], d[1], d[2], cases[i].type);
 		scene.rays.interpolation = cases[i].interpolation;
 		struct small_scene bricks = as_bricks(&scene, 0);
-		const struct gz_renderer_params params = { 0 };
+		const struct raycaster_params params = { 0 };
 		check_same(&scene, &bricks.volume, params, "perspective");
 		scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
 		check_same(&scene, &bricks.volume, params, "orthographic");
@@ -111,7 +112,7 @@ static void volumes_beyond_the_textures_look_the_same(void **state)
 {
 	(void)state;
 	/* Textures of 139 have 64 rooms; the bricks of all levels are 27. */
-	const struct gz_renderer_params params = { .gl_volume_edge_max = 139 };
+	const struct raycaster_params params = { .hooks.volume_edge_max = 139 };
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
 		for (int nearest = 0; nearest < 2; nearest++) {
 			struct small_scene scene = small_scene_waves(140, 40, 35, type);
@@ -126,7 +127,7 @@ static void volumes_beyond_the_textures_look_the_same(void **state)
 static void every_brick_of_the_coarsest_level_is_looked_into(void **state)
 {
 	(void)state;
-	const struct gz_renderer_params params = { .gl_volume_edge_max = 1088 };
+	const struct raycaster_params params = { .hooks.volume_edge_max = 1088 };
 	struct small_scene scene = small_scene_waves(8192, 65, 65, GZ_VOXEL_U8);
 	for (int axis = 0; axis < 3; axis++)
 		scene.camera.eye[axis] = scene.camera.look_at[axis] = axis == 0 ? 0.4 : 0;
@@ -138,7 +139,7 @@ static void every_brick_of_the_coarsest_level_is_looked_into(void **state)
 static void anisotropic_volumes_beyond_the_textures_look_the_same(void **state)
 {
 	(void)state;
-	const struct gz_renderer_params params = { .gl_volume_edge_max = 139 };
+	const struct raycaster_params params = { .hooks.volume_edge_max = 139 };
 	struct small_scene scene = small_scene_waves(140, 60, 20, GZ_VOXEL_U16);
 	scene.volume.spacing[2] = 5;
 	scene.rays.levels = true;
@@ -150,7 +151,7 @@ static void anisotropic_volumes_beyond_the_textures_look_the_same(void **state)
 static void every_way_of_casting_works_by_bricks(void **state)
 {
 	(void)state;
-	const struct gz_renderer_params beyond = { .gl_volume_edge_max = 139 };
+	const struct raycaster_params beyond = { .hooks.volume_edge_max = 139 };
 	struct small_scene scene = small_scene_waves(140, 40, 35, GZ_VOXEL_U16);
 	struct small_scene bricks = as_bricks(&scene, 0);
 	const struct gz_ray_params plain = scene.rays;
@@ -165,7 +166,7 @@ static void every_way_of_casting_works_by_bricks(void **state)
 			variant % 2 ? GZ_INTEGRATION_PREINTEGRATED : GZ_INTEGRATION_SAMPLED;
 		check_same(&scene, &scene.volume, beyond, "beyond");
 		if (variant < 4)
-			check_same(&scene, &bricks.volume, (struct gz_renderer_params) { 0 },
+			check_same(&scene, &bricks.volume, (struct raycaster_params) { 0 },
 				   "bricks");
 	}
 	small_scene_free(&bricks);
@@ -179,8 +180,8 @@ static void occlusion_of_a_file_of_bricks_is_refused(void **state)
 	struct small_scene bricks = as_bricks(&scene, 0);
 	struct captured_log log;
 	captured_log_init(&log, NULL);
-	struct gz_renderer *renderer =
-		renderer_of("gl", &bricks, (struct gz_renderer_params) { 0 }, &log.log);
+	struct gz_raycaster *renderer =
+		renderer_of("gl", &bricks, (struct raycaster_params) { 0 }, &log.log);
 	struct gz_plan plan = { 0 };
 	struct gz_image image = { 0 };
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
@@ -189,10 +190,10 @@ static void occlusion_of_a_file_of_bricks_is_refused(void **state)
 	scene.rays.shading = GZ_SHADING_GRADIENT;
 	scene.rays.light.occlusion = 0.5;
 	assert_int_equal(
-		gz_renderer_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		gz_raycaster_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
 		GZ_ERR_UNSUPPORTED);
 	assert_non_null(strstr(log.last, "occlusion"));
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_plan_free(&plan);
 	gz_image_free(&image);
 	small_scene_free(&bricks);
@@ -207,7 +208,7 @@ static void levels_of_detail_are_those_of_the_cpu(void **state)
 	scene.foveation.method = GZ_METHOD_ACUITY;
 	scene.rays.ray_sampling_rate = 0.5;
 	struct small_scene bricks = as_bricks(&scene, 0);
-	const struct gz_renderer_params none = { 0 }, beyond = { .gl_volume_edge_max = 149 };
+	const struct raycaster_params none = { 0 }, beyond = { .hooks.volume_edge_max = 149 };
 	check_same(&scene, &bricks.volume, none, "acuity");
 	check_same(&scene, &scene.volume, beyond, "acuity");
 	/* From afar all rays take a coarse level. */
@@ -228,7 +229,7 @@ static void eye_inside_sees_the_same(void **state)
 	scene.camera.eye[2] = 0.05;
 	scene.camera.fov_deg = 100;
 	struct small_scene bricks = as_bricks(&scene, 0);
-	check_same(&scene, &bricks.volume, (struct gz_renderer_params) { 0 }, "inside");
+	check_same(&scene, &bricks.volume, (struct raycaster_params) { 0 }, "inside");
 	small_scene_free(&bricks);
 	small_scene_free(&scene);
 }
@@ -247,12 +248,12 @@ static void check_whole(const struct gz_image *whole, const struct gz_image *ima
 }
 
 /* Make pictures until the next one lacks nothing; the last is to be @p resident, bit for bit. */
-static void check_streamed(const struct small_scene *scene, struct gz_renderer_params params,
+static void check_streamed(const struct small_scene *scene, struct raycaster_params params,
 			   const struct gz_image *whole, const struct gz_image *resident)
 {
 	struct gz_image image = { 0 };
 	struct gz_frame_stats stats = { 0 };
-	struct gz_renderer *renderer = renderer_of("gl", scene, params, NULL);
+	struct gz_raycaster *renderer = renderer_of("gl", scene, params, NULL);
 	small_scene_render(renderer, scene, WIDTH, HEIGHT, &image, &stats);
 	assert_true(stats.bricks_coming > 0);
 	assert_true(total_difference(whole, &image) > 0);
@@ -264,7 +265,7 @@ static void check_streamed(const struct small_scene *scene, struct gz_renderer_p
 	small_scene_render(renderer, scene, WIDTH, HEIGHT, &image, &stats);
 	assert_int_equal(stats.bricks_coming, 0);
 	assert_int_equal(total_difference(resident, &image), 0);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 }
 
@@ -274,18 +275,18 @@ static void streamed_picture_is_whole_at_once_and_ends_as_the_one_waited_for(voi
 	/* 34 MiB of bricks, more than half of which show something: one picture brings 16. */
 	struct small_scene scene = small_scene_waves(230, 224, 128, GZ_VOXEL_F32);
 	struct small_scene bricks = as_bricks(&scene, 0);
-	const struct gz_renderer_params wait = { .gl_volume_edge_max = 320,
-						 .wait_for_bricks = true };
+	const struct raycaster_params wait = { .hooks.volume_edge_max = 320,
+					       .backend.wait_for_bricks = true };
 	struct gz_image whole = { 0 }, resident = { 0 };
-	render("cpu", &scene, (struct gz_renderer_params) { 0 }, &whole);
+	render("cpu", &scene, (struct raycaster_params) { 0 }, &whole);
 	render("gl", &bricks, wait, &resident);
 	assert_true(image_pixels_apart(&whole, &resident) * 1000 <= WIDTH * HEIGHT);
-	struct gz_renderer_params params = { .gl_volume_edge_max = 320 };
+	struct raycaster_params params = { .hooks.volume_edge_max = 320 };
 	check_streamed(&bricks, params, &whole, &resident);
 	small_scene_free(&bricks);
 	/* The same volume from memory: cut by the same levels into the same bricks. 6³ rooms hold
 	 * all that shows something. */
-	params.gl_volume_edge_max = 229;
+	params.hooks.volume_edge_max = 229;
 	check_streamed(&scene, params, &whole, &resident);
 	gz_image_free(&whole);
 	gz_image_free(&resident);
@@ -298,12 +299,13 @@ static void few_rooms_hold_what_weighs_most_and_the_picture_stays_whole(void **s
 	struct small_scene scene = small_scene_waves(160, 160, 160, GZ_VOXEL_U8);
 	scene.gaze = (struct gz_point) { 0.3F, 0.4F };
 	struct gz_image whole = { 0 }, image = { 0 }, again = { 0 };
-	render("cpu", &scene, (struct gz_renderer_params) { 0 }, &whole);
+	render("cpu", &scene, (struct raycaster_params) { 0 }, &whole);
 	for (size_t rooms = 1; rooms <= 64; rooms *= 4) {
-		const struct gz_renderer_params params = { .gl_memory_bytes = rooms * BRICK_BYTES,
-							   .wait_for_bricks = true };
+		const struct raycaster_params params = { .backend.gl_memory_bytes =
+								 rooms * BRICK_BYTES,
+							 .backend.wait_for_bricks = true };
 		struct gz_frame_stats stats;
-		struct gz_renderer *renderer = renderer_of("gl", &scene, params, NULL);
+		struct gz_raycaster *renderer = renderer_of("gl", &scene, params, NULL);
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, &stats);
 		assert_int_equal(stats.bricks_coming, 0);
 		/* With one room that is a brick of 5 voxels a side, of which little can be asked.
@@ -314,7 +316,7 @@ static void few_rooms_hold_what_weighs_most_and_the_picture_stays_whole(void **s
 		/* Looked at again, rooms are not taken from each other in turns. */
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &again, &stats);
 		assert_int_equal(total_difference(&again, &image), 0);
-		gz_renderer_destroy(&renderer);
+		gz_raycaster_destroy(&renderer);
 	}
 	long near = 0, far = 0, near_pixels = 0, far_pixels = 0;
 	for (int i = 0; i < WIDTH * HEIGHT; i++) {
@@ -339,9 +341,9 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(160, 160, 160, GZ_VOXEL_U8);
-	const struct gz_renderer_params params = { .gl_memory_bytes = 100 * BRICK_BYTES,
-						   .wait_for_bricks = true };
-	struct gz_renderer *renderer = renderer_of("gl", &scene, params, NULL);
+	const struct raycaster_params params = { .backend.gl_memory_bytes = 100 * BRICK_BYTES,
+						 .backend.wait_for_bricks = true };
+	struct gz_raycaster *renderer = renderer_of("gl", &scene, params, NULL);
 	/* A close look at one corner, then at others: each needs less than there is room for. */
 	scene.camera.fov_deg = 10;
 	for (int corner = 0; corner < 8; corner++) {
@@ -351,7 +353,7 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 			scene.camera.look_at[axis] = 0.3 * side;
 			scene.camera.eye[axis] = 0.62 * side;
 		}
-		render("cpu", &scene, (struct gz_renderer_params) { 0 }, &whole);
+		render("cpu", &scene, (struct raycaster_params) { 0 }, &whole);
 		small_scene_render(renderer, &scene, WIDTH, HEIGHT, &image, NULL);
 		const int apart = image_pixels_apart(&whole, &image);
 		if (apart * 1000 > WIDTH * HEIGHT)
@@ -359,7 +361,7 @@ static void rooms_go_to_what_is_looked_at_now(void **state)
 		gz_image_free(&whole);
 		gz_image_free(&image);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -367,18 +369,18 @@ static void new_transfer_function_shows_other_bricks(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(140, 40, 35, GZ_VOXEL_U8);
-	const struct gz_renderer_params params = { .gl_volume_edge_max = 139,
-						   .wait_for_bricks = true };
+	const struct raycaster_params params = { .hooks.volume_edge_max = 139,
+						 .backend.wait_for_bricks = true };
 	struct gz_image a = { 0 }, b = { 0 };
-	struct gz_renderer *renderer = renderer_of("gl", &scene, params, NULL);
+	struct gz_raycaster *renderer = renderer_of("gl", &scene, params, NULL);
 	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &b, NULL);
 	scene.transfer.points[0].opacity = 0.01;
 	scene.transfer.points[1].opacity = 0.5;
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_OK);
 	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &b, NULL);
 	render("cpu", &scene, params, &a);
 	assert_true(image_pixels_apart(&a, &b) * 1000 <= WIDTH * HEIGHT);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&a);
 	gz_image_free(&b);
 	small_scene_free(&scene);
@@ -391,14 +393,14 @@ static void without_room_for_packed_voxels_they_have_their_own_size(void **state
 		for (int nearest = 0; nearest < 2; nearest++) {
 			struct small_scene scene = small_scene_waves(50, 41, 60, type);
 			const size_t voxels = gz_volume_voxel_count(&scene.volume);
-			const struct gz_renderer_params params = {
-				.gl_memory_bytes = voxels * gz_voxel_size(type),
+			const struct raycaster_params params = {
+				.backend.gl_memory_bytes = voxels * gz_voxel_size(type),
 			};
 			struct captured_log log;
 			captured_log_init(&log, NULL);
-			struct gz_renderer *renderer = renderer_of("gl", &scene, params, &log.log);
+			struct gz_raycaster *renderer = renderer_of("gl", &scene, params, &log.log);
 			assert_int_equal(log.messages, 0); /* which would tell of bricks */
-			gz_renderer_destroy(&renderer);
+			gz_raycaster_destroy(&renderer);
 			scene.rays.interpolation =
 				nearest ? GZ_INTERPOLATION_NEAREST : GZ_INTERPOLATION_TRILINEAR;
 			check_same(&scene, &scene.volume, params, "own size");
@@ -413,27 +415,27 @@ static void device_without_room_for_a_brick_is_refused_and_takes_what_fits_after
 	(void)state;
 	struct small_scene scene = small_scene_waves(60, 50, 40, GZ_VOXEL_F32);
 	struct small_scene small = small_scene_waves(8, 8, 8, GZ_VOXEL_U8);
-	const struct gz_renderer_params params = { .gl_memory_bytes = 2048 };
+	const struct raycaster_params params = { .backend.gl_memory_bytes = 2048 };
 	struct captured_log log;
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	captured_log_init(&log, NULL);
-	assert_int_equal(gz_renderer_create("gl", &params, &log.log, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_ERR_NO_MEM);
+	assert_int_equal(raycaster_with("gl", &params, &log.log, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene.volume), GZ_ERR_NO_MEM);
 	assert_int_equal(log.messages, 1);
 	if (!strstr(log.last, "no room") || !strstr(log.last, "--backend cpu"))
 		fail_msg("'%s' names neither reason nor remedy", log.last);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
-	assert_int_equal(gz_renderer_set_volume(renderer, &small.volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &small.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &small.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &small.transfer), GZ_OK);
 	struct gz_image image = { 0 };
 	small_scene_render(renderer, &small, WIDTH, HEIGHT, &image, NULL);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 	small_scene_free(&scene);
 	small_scene_free(&small);
 }
 
-int main(void)
+TEST_SUITE(gl_bricks)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(files_of_bricks_look_like_the_volume_in_memory),

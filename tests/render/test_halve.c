@@ -1,16 +1,14 @@
 /* A volume at half its resolution: means where they belong. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "render/volume/halve.h"
+#include "render/data/halve.h"
 #include "small_scene.h"
 
 static double voxel(const struct gz_volume *volume, int x, int y, int z)
@@ -155,7 +153,7 @@ static void single_voxel_and_no_axis_are_refused(void **state)
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(halve)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(half_is_the_mean_of_blocks_for_every_type_and_odd_sizes),

@@ -1,5 +1,5 @@
 /* Histograms against a count of every voxel by itself. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/histogram.h"
-#include "render/volume/brick_layout.h"
-#include "render/volume/brick_write.h"
+#include "render/data/brick_layout.h"
+#include "render/data/brick_write.h"
+#include "render/transfer/histogram.h"
 #include "volume_files.h"
 
 static struct gz_volume volume_of(int x, int y, int z, enum gz_voxel_type type)
@@ -299,7 +299,7 @@ static void counting_is_cancelled_and_wrong_arguments_refused(void **state)
 	gz_volume_free(&volume);
 }
 
-int main(void)
+TEST_SUITE(histogram)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_type_is_counted_as_one_by_one),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "base/captured_log.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 #include "volume_files.h"
 
 static struct gz_image image_make(int width, int height)
@@ -191,7 +191,7 @@ static void growing_is_bilinear_between_centres(void **state)
 	gz_image_free(&wide);
 }
 
-int main(void)
+TEST_SUITE(image)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(resize_keeps_the_buffer_that_fits_and_refuses_bad_sizes),

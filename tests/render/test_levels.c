@@ -1,29 +1,28 @@
 /* Levels of detail: what they hold, which is taken, and that it stands where the full volume does.
  */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "oracle.h"
-#include "render/detail.h"
-#include "render/volume/levels.h"
+#include "render/data/levels.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/detail.h"
 #include "small_scene.h"
 
 static const char *const sets[] = { "portable", "avx2", "avx512" };
 
 static bool runs_here(const char *set)
 {
-	const struct gz_renderer_params params = { .threads = 1, .simd = set };
-	struct gz_renderer *renderer = NULL;
-	const bool runs = gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK;
-	gz_renderer_destroy(&renderer);
+	const struct gz_backend_params params = { .threads = 1, .simd = set };
+	struct gz_raycaster *renderer = NULL;
+	const bool runs = gz_raycaster_create("cpu", &params, NULL, &renderer) == GZ_OK;
+	gz_raycaster_destroy(&renderer);
 	return runs;
 }
 
@@ -176,7 +175,7 @@ static void see_from_afar(struct small_scene *scene, int height)
 
 static void check_against_oracle(struct small_scene *scene, const char *set, int side)
 {
-	struct gz_renderer *renderer = small_scene_renderer(scene, 2, set);
+	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, set);
 	struct gz_image image = { 0 };
 	struct gz_levels levels = { 0 };
 	gz_levels_start(&levels, &scene->volume);
@@ -194,14 +193,14 @@ static void check_against_oracle(struct small_scene *scene, const char *set, int
 		for (int channel = 0; channel < 3; channel++)
 			/* half a grey level is rounding; what the tables add grows with the step */
 			if (fabs(image.pixels[4 * i + channel] - 255 * rgb[channel]) > 1.25)
-				fail_msg("%s: pixel %d %d channel %d: %d, oracle %.3f", set,
-					 i % side, i / side, channel, image.pixels[4 * i + channel],
-					 255 * rgb[channel]);
+				fail_msg("%s: pixel %d %d channel %d: %d, oracle %.3f",
+					 set == NULL ? "own set" : set, i % side, i / side, channel,
+					 image.pixels[4 * i + channel], 255 * rgb[channel]);
 	}
 	assert_true(different > 0);
 	gz_levels_free(&levels);
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 }
 
 static void cast_of_a_coarser_level_equals_the_oracle(void **state)
@@ -255,7 +254,7 @@ static void levels_change_no_bit_where_data_are_coarser_than_pixels(void **state
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(64, 64, 64, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
 		struct gz_image without = { 0 }, with = { 0 };
 		scene.foveation.method = method;
@@ -277,7 +276,7 @@ static void levels_change_no_bit_where_data_are_coarser_than_pixels(void **state
 		gz_image_free(&without);
 		gz_image_free(&with);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -289,7 +288,7 @@ static void constant_box_keeps_size_and_brightness_at_every_level(void **state)
 	scene.foveation.method = GZ_METHOD_STANDARD;
 	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
 	scene.rays.levels = true;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	for (double lengths = 1; lengths < 20; lengths *= 2) {
 		struct gz_image full = { 0 }, image = { 0 };
 		int x = 0, y = 0;
@@ -303,7 +302,7 @@ static void constant_box_keeps_size_and_brightness_at_every_level(void **state)
 		gz_image_free(&full);
 		gz_image_free(&image);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -314,30 +313,30 @@ static void levels_follow_a_new_transfer_function_and_a_new_volume(void **state)
 	struct small_scene other = small_scene_waves(50, 80, 40, GZ_VOXEL_U16);
 	see_from_afar(&scene, 40);
 	see_from_afar(&other, 40);
-	struct gz_renderer *used = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *used = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image first = { 0 }, second = { 0 };
 	small_scene_render(used, &scene, 40, 40, &first, NULL);
 	/* what was empty shows now */
 	scene.transfer.points[0].opacity = other.transfer.points[0].opacity = 0.1;
 	struct small_scene *const scenes[] = { &scene, &other };
 	for (int i = 0; i < 2; i++) {
-		struct gz_renderer *fresh = small_scene_renderer(scenes[i], 2, NULL);
+		struct gz_raycaster *fresh = small_scene_renderer(scenes[i], 2, NULL);
 		small_scene_render(fresh, scenes[i], 40, 40, &first, NULL);
 		if (i == 1)
-			assert_int_equal(gz_renderer_set_volume(used, &other.volume), GZ_OK);
-		assert_int_equal(gz_renderer_set_transfer(used, &scenes[i]->transfer), GZ_OK);
+			assert_int_equal(gz_raycaster_set_volume(used, &other.volume), GZ_OK);
+		assert_int_equal(gz_raycaster_set_transfer(used, &scenes[i]->transfer), GZ_OK);
 		small_scene_render(used, scenes[i], 40, 40, &second, NULL);
 		assert_memory_equal(first.pixels, second.pixels, 40 * 40 * 4);
-		gz_renderer_destroy(&fresh);
+		gz_raycaster_destroy(&fresh);
 	}
 	gz_image_free(&first);
 	gz_image_free(&second);
-	gz_renderer_destroy(&used);
+	gz_raycaster_destroy(&used);
 	small_scene_free(&scene);
 	small_scene_free(&other);
 }
 
-int main(void)
+TEST_SUITE(levels)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(steps_are_bounded_where_the_eye_is_close_and_not_from_afar),

@@ -1,15 +1,13 @@
 /* Empty space: found where it is, and nowhere else. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/macrocells.h"
+#include "render/raycast/shared/macrocells.h"
 #include "small_scene.h"
 
 static size_t cell_index(const struct gz_macrocells *cells, int x, int y, int z)
@@ -124,7 +122,7 @@ static void table_follows_the_transfer_function(void **state)
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(macrocells)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ranges_hold_every_voxel_an_interpolation_can_touch),

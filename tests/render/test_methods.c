@@ -1,19 +1,18 @@
 /* Whole pictures by every method: equal to `standard` where they must be. What must hold for every
  * method by every step rule is in tests/bench/test_stability.c. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/cpu/cast.h"
-#include "render/cpu/reconstruct.h"
+#include "render/plan/method.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/reconstruct/cpu/reconstruct.h"
 #include "small_scene.h"
 
 static const struct gz_point gazes[] = {
@@ -38,7 +37,7 @@ static void pixels_on_the_very_rim_of_a_region_are_written(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_constant(8, 0);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image image = { 0 };
 	scene.foveation.method = GZ_METHOD_DDC;
 	for (int axis = 0; axis < 2; axis++)
@@ -53,7 +52,7 @@ static void pixels_on_the_very_rim_of_a_region_are_written(void **state)
 		check_grey(&image, grey, "rim", 0);
 	}
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -65,7 +64,7 @@ static bool must_be_equal(const struct small_scene *scene, const struct gz_displ
 	const double dy = y + 0.5 - (double)scene->gaze.y * height;
 	const struct gz_foveation *f = &scene->foveation;
 	const struct gz_point at = { (float)((x + 0.5) / width), (float)((y + 0.5) / height) };
-	switch ((enum gz_method)f->method) {
+	switch ((enum gz_method_index)f->method) {
 	case GZ_METHOD_MDC:
 	case GZ_METHOD_MDC3:
 		return fabs(dx) < f->mdc_square_px / 2 && fabs(dy) < f->mdc_square_px / 2;
@@ -87,7 +86,7 @@ static void methods_equal_standard_in_their_inner_region(void **state)
 	enum { WIDTH = 900, HEIGHT = 700 };
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	struct small_scene scene = small_scene_waves(48, 48, 48, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image full = { 0 }, image = { 0 };
 	scene.foveation.method = GZ_METHOD_STANDARD;
 	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &full, NULL);
@@ -116,7 +115,7 @@ static void methods_equal_standard_in_their_inner_region(void **state)
 		}
 	gz_image_free(&full);
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -126,7 +125,7 @@ static void foveated_picture_stays_near_the_full_one_everywhere(void **state)
 	/* Guards against gross faults: shifted lattices, seams, wrong weights. */
 	enum { WIDTH = 1000, HEIGHT = 800 };
 	struct small_scene scene = small_scene_waves(32, 32, 32, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image full = { 0 }, image = { 0 };
 	scene.foveation.method = GZ_METHOD_STANDARD;
 	small_scene_render(renderer, &scene, WIDTH, HEIGHT, &full, NULL);
@@ -143,7 +142,7 @@ static void foveated_picture_stays_near_the_full_one_everywhere(void **state)
 	}
 	gz_image_free(&full);
 	gz_image_free(&image);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -160,7 +159,7 @@ static double share_of(const struct gz_region *region, int x, int y)
 }
 
 /* Each lattice over the whole picture by the method uniform, mixed in double precision. */
-static void check_bands(struct gz_renderer *renderer, struct small_scene *scene,
+static void check_bands(struct gz_raycaster *renderer, struct small_scene *scene,
 			const struct gz_plan *plan)
 {
 	struct gz_image image = { 0 }, layers[3] = { 0 };
@@ -200,7 +199,7 @@ static void bands_mix_regions_by_their_weight(void **state)
 	static const int methods[] = { GZ_METHOD_MDC, GZ_METHOD_MDC3, GZ_METHOD_DDC };
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	struct small_scene scene = small_scene_waves(32, 32, 32, GZ_VOXEL_U8);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_foveation *f = &scene.foveation;
 	scene.gaze = (struct gz_point) { 0.45F, 0.55F };
 	f->blend_px = 24;
@@ -218,7 +217,7 @@ static void bands_mix_regions_by_their_weight(void **state)
 		check_bands(renderer, &scene, &plan);
 		gz_plan_free(&plan);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -270,7 +269,7 @@ static void span_of_a_plane_is_the_plane(void **state)
 			check_spans_of_a_plane(gz_row_filters_find(sets[i]));
 }
 
-int main(void)
+TEST_SUITE(methods)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pixels_on_the_very_rim_of_a_region_are_written),

@@ -1,5 +1,5 @@
 /* NRRD files that are written: what the loader reads of them is what was written. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/volume/nrrd_write.h"
+#include "render/data/nrrd_write.h"
 #include "volume_files.h"
 
 static struct gz_volume made(enum gz_voxel_type type)
@@ -149,7 +149,7 @@ static void refused_and_stopped_writing_leaves_nothing(void **state)
 	assert_int_equal(gz_nrrd_write(&volume, path, NULL, NULL), GZ_ERR_INVAL);
 }
 
-int main(void)
+TEST_SUITE(nrrd_write)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_written_is_loaded),

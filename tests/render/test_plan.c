@@ -1,17 +1,16 @@
 /* Where rays go. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/image.h"
+#include "render/picture/image.h"
+#include "render/plan/method.h"
 #include "render/plan/plan.h"
 #include "small_scene.h"
 
@@ -261,7 +260,98 @@ static void trembling_gaze_moves_no_lattice(void **state)
 	gz_plan_free(&b);
 }
 
-int main(void)
+/* Spacing of the finest tile that a pixel lies in. */
+static int tile_spacing_at(const struct gz_plan *plan, int x, int y)
+{
+	int finest = GZ_PYRAMID_SPACING_MAX;
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		const int spacing = plan->layers[tile->layer].spacing;
+		const int down = GZ_TILE_EDGE * spacing;
+		const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
+		if (x >= tile->x && x < tile->x + across && y >= tile->y && y < tile->y + down &&
+		    spacing < finest)
+			finest = spacing;
+	}
+	return finest;
+}
+
+static bool rectangle_holds(const struct gz_plan_rectangle *rectangle, int x, int y)
+{
+	return x >= rectangle->from[0] && x < rectangle->to[0] && y >= rectangle->from[1] &&
+	       y < rectangle->to[1];
+}
+
+static void check_rectangles(const struct gz_plan *plan, const char *name)
+{
+	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
+	const int count = gz_plan_rectangles(plan, rectangles);
+	assert_in_range(count, 1, GZ_PLAN_RECTANGLES_MAX);
+	assert_true(rectangle_holds(&rectangles[0], 0, 0) &&
+		    rectangle_holds(&rectangles[0], plan->width - 1, plan->height - 1));
+	for (int i = 0; i < count; i++) {
+		assert_int_equal(rectangles[i].from[0] % rectangles[i].spacing, 0);
+		assert_int_equal(rectangles[i].from[1] % rectangles[i].spacing, 0);
+		if (i == 0)
+			continue;
+		assert_true(rectangles[i].spacing < rectangles[i - 1].spacing);
+		assert_true(rectangle_holds(&rectangles[i - 1], rectangles[i].from[0],
+					    rectangles[i].from[1]) &&
+			    rectangle_holds(&rectangles[i - 1], rectangles[i].to[0] - 1,
+					    rectangles[i].to[1] - 1));
+	}
+	for (int y = 0; y < plan->height; y += 7)
+		for (int x = 0; x < plan->width; x += 7) {
+			int last = 0;
+			for (int i = 0; i < count; i++)
+				if (rectangle_holds(&rectangles[i], x, y))
+					last = i;
+			if (rectangles[last].spacing > tile_spacing_at(plan, x, y))
+				fail_msg("%s: pixel %d %d has spacing %d, its tile %d", name, x, y,
+					 rectangles[last].spacing, tile_spacing_at(plan, x, y));
+		}
+}
+
+static void rectangles_are_nested_and_as_fine_as_the_tiles(void **state)
+{
+	(void)state;
+	static const struct gz_point gazes[] = { { 0.5F, 0.5F }, { 0.9F, 0.1F }, { -0.3F, 0.5F } };
+	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+		if (gz_methods[method].needs_table)
+			continue; /* a pyramid as acuity is */
+		for (size_t g = 0; g < sizeof gazes / sizeof gazes[0]; g++) {
+			struct gz_plan plan = make(method, gazes[g], 500, 301);
+			check_rectangles(&plan, gz_method_names[method]);
+			gz_plan_free(&plan);
+		}
+	}
+	struct gz_plan plan = make(GZ_METHOD_STANDARD, gazes[0], 500, 301);
+	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
+	assert_int_equal(gz_plan_rectangles(&plan, rectangles), 1);
+	assert_int_equal(rectangles[0].spacing, 1);
+	gz_plan_free(&plan);
+}
+
+static void each_method_is_planned_in_one_way_and_found_by_its_name(void **state)
+{
+	(void)state;
+	for (int i = 0; i < GZ_METHOD_COUNT; i++) {
+		const struct gz_method *method = &gz_methods[i];
+		assert_true(method->is_pyramid == (method->set_curves != NULL));
+		assert_true(method->is_pyramid == (method->add_regions == NULL));
+		assert_non_null(method->help);
+		assert_int_equal(gz_method_find(gz_method_names[i]), i);
+	}
+	assert_null(gz_method_names[GZ_METHOD_COUNT]);
+	assert_int_equal(gz_method_find("none"), -1);
+	const struct gz_foveation full = gz_foveation_full();
+	assert_false(gz_foveation_follows_gaze(&full));
+	struct gz_foveation steps = full;
+	steps.step_rule = GZ_STEP_DISTANCE;
+	assert_true(gz_foveation_follows_gaze(&steps));
+}
+
+TEST_SUITE(plan)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_point_is_cast_at_most_once_for_any_size_and_gaze),
@@ -274,6 +364,8 @@ int main(void)
 		cmocka_unit_test(plan_refuses_what_is_out_of_range),
 		cmocka_unit_test(plan_does_not_depend_on_the_locale),
 		cmocka_unit_test(trembling_gaze_moves_no_lattice),
+		cmocka_unit_test(rectangles_are_nested_and_as_fine_as_the_tiles),
+		cmocka_unit_test(each_method_is_planned_in_one_way_and_found_by_its_name),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,15 @@
 /* What a budget, lost gaze, sampling rates and repetition make of a plan. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <string.h>
 
-#include "render/image.h"
-#include "render/plan/plan_emit.h"
+#include "render/picture/image.h"
+#include "render/plan/method.h"
+#include "render/plan/plan_context.h"
 #include "small_scene.h"
 
 enum { WIDTH = 1920, HEIGHT = 1080 };
@@ -321,7 +320,7 @@ static void bound_on_steps_shortens_acuity_steps_and_moves_no_ray(void **state)
 	gz_plan_free(&f.plan);
 }
 
-int main(void)
+TEST_SUITE(plan_request)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bound_on_steps_shortens_acuity_steps_and_moves_no_ray),

@@ -1,10 +1,8 @@
 /* Pre-integrated transfer functions: the tables, the kernels that take them, and thin layers. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +10,8 @@
 
 #include "base/clock.h"
 #include "oracle.h"
-#include "render/transfer_preintegrated.h"
+#include "render/plan/method.h"
+#include "render/transfer/transfer_preintegrated.h"
 #include "small_scene.h"
 
 enum { SIZE = GZ_PREINTEGRATED_SIZE, STRIDE = GZ_PREINTEGRATED_STRIDE };
@@ -21,10 +20,10 @@ static const char *const sets[] = { "portable", "avx2", "avx512" };
 
 static bool runs_here(const char *set)
 {
-	const struct gz_renderer_params params = { .threads = 1, .simd = set };
-	struct gz_renderer *renderer = NULL;
-	const bool runs = gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK;
-	gz_renderer_destroy(&renderer);
+	const struct gz_backend_params params = { .threads = 1, .simd = set };
+	struct gz_raycaster *renderer = NULL;
+	const bool runs = gz_raycaster_create("cpu", &params, NULL, &renderer) == GZ_OK;
+	gz_raycaster_destroy(&renderer);
 	return runs;
 }
 
@@ -212,7 +211,7 @@ static void tables_are_the_same_bits_for_any_number_of_workers(void **state)
 /* Every pixel of the picture by one instruction set against the oracle. */
 static void check_set(struct small_scene *scene, const char *set, int width, int height)
 {
-	struct gz_renderer *renderer = small_scene_renderer(scene, 2, set);
+	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, set);
 	struct gz_image image = { 0 };
 	scene->foveation.method = GZ_METHOD_STANDARD;
 	scene->rays.integration = GZ_INTEGRATION_PREINTEGRATED;
@@ -231,7 +230,7 @@ static void check_set(struct small_scene *scene, const char *set, int width, int
 	/* half a grey level is rounding, the rest that values are told apart by cells */
 	if (worst > 1.25)
 		fail_msg("%s: %.2f grey levels from the oracle", set, worst);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 }
 
@@ -301,7 +300,7 @@ static void constant_box_keeps_its_brightness_for_any_step(void **state)
 {
 	(void)state;
 	struct small_scene scene = small_scene_constant(64, 0.013);
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image reference = { 0 };
 	scene.foveation.method = GZ_METHOD_STANDARD;
 	scene.rays.ray_sampling_rate = 8;
@@ -317,7 +316,7 @@ static void constant_box_keeps_its_brightness_for_any_step(void **state)
 			fail_msg("rate %g: pixel %d %d differs", rates[i], x, y);
 		gz_image_free(&image);
 	}
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&reference);
 	small_scene_free(&scene);
 }
@@ -331,9 +330,9 @@ static void picture_is_the_same_bits_for_any_number_of_threads(void **state)
 	struct gz_image images[2] = { { 0 }, { 0 } };
 	struct gz_frame_stats stats[2];
 	for (int i = 0; i < 2; i++) {
-		struct gz_renderer *renderer = small_scene_renderer(&scene, 1 + 4 * i, NULL);
+		struct gz_raycaster *renderer = small_scene_renderer(&scene, 1 + 4 * i, NULL);
 		small_scene_render(renderer, &scene, 317, 203, &images[i], &stats[i]);
-		gz_renderer_destroy(&renderer);
+		gz_raycaster_destroy(&renderer);
 	}
 	assert_memory_equal(images[0].pixels, images[1].pixels, 317 * 203 * 4);
 	assert_int_equal(stats[0].samples, stats[1].samples);
@@ -347,14 +346,14 @@ static void empty_space_takes_no_samples(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_constant(64, 0);
 	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	struct gz_image image = { 0 };
 	struct gz_frame_stats stats;
 	small_scene_render(renderer, &scene, 64, 64, &image, &stats);
 	/* a lane takes one segment where it meets the box's far face */
 	if (stats.samples > 2 * 64 * 64)
 		fail_msg("%llu samples", (unsigned long long)stats.samples);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&image);
 	small_scene_free(&scene);
 }
@@ -389,7 +388,7 @@ static struct small_scene shell_scene(void)
 
 /* Share of pixels, of those within the shell's outline, that show less than half of what they do
  * with fine steps. */
-static double share_lost(struct gz_renderer *renderer, struct small_scene *scene, double step,
+static double share_lost(struct gz_raycaster *renderer, struct small_scene *scene, double step,
 			 int integration, const struct gz_image *fine)
 {
 	struct gz_image image = { 0 };
@@ -410,7 +409,7 @@ static void thin_shell_is_lost_by_samples_but_not_by_segments(void **state)
 {
 	(void)state;
 	struct small_scene scene = shell_scene();
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image fine = { 0 };
 	scene.rays.ray_sampling_rate = 32;
 	small_scene_render(renderer, &scene, 160, 120, &fine, NULL);
@@ -429,7 +428,7 @@ static void thin_shell_is_lost_by_samples_but_not_by_segments(void **state)
 			fail_msg("steps of %d: %g of the shell lost", step, preintegrated);
 	}
 	gz_image_free(&fine);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -458,7 +457,7 @@ static void thin_wires_lose_a_bounded_share_of_pixels(void **state)
 {
 	(void)state;
 	struct small_scene scene = wire_scene();
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image fine = { 0 };
 	scene.rays.ray_sampling_rate = 32;
 	small_scene_render(renderer, &scene, 240, 180, &fine, NULL);
@@ -476,7 +475,7 @@ static void thin_wires_lose_a_bounded_share_of_pixels(void **state)
 				 preintegrated);
 	}
 	gz_image_free(&fine);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	small_scene_free(&scene);
 }
 
@@ -485,23 +484,23 @@ static void new_transfer_function_makes_new_tables(void **state)
 	(void)state;
 	struct small_scene scene = small_scene_waves(32, 32, 32, GZ_VOXEL_U8);
 	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
-	struct gz_renderer *used = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *used = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image first = { 0 }, second = { 0 };
 	small_scene_render(used, &scene, 60, 50, &first, NULL);
 	scene.transfer.points[0].opacity = 0.2;
-	assert_int_equal(gz_renderer_set_transfer(used, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(used, &scene.transfer), GZ_OK);
 	small_scene_render(used, &scene, 60, 50, &first, NULL);
-	struct gz_renderer *fresh = small_scene_renderer(&scene, 2, NULL);
+	struct gz_raycaster *fresh = small_scene_renderer(&scene, 2, NULL);
 	small_scene_render(fresh, &scene, 60, 50, &second, NULL);
 	assert_memory_equal(first.pixels, second.pixels, 60 * 50 * 4);
-	gz_renderer_destroy(&used);
-	gz_renderer_destroy(&fresh);
+	gz_raycaster_destroy(&used);
+	gz_raycaster_destroy(&fresh);
 	gz_image_free(&first);
 	gz_image_free(&second);
 	small_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(preintegrated)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(tables_equal_fine_integration_between_two_values),

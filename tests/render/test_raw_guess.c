@@ -1,10 +1,10 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <zstd.h>
 
-#include "render/volume/raw_guess.h"
+#include "render/data/raw_guess.h"
 #include "volume_files.h"
 
 struct named {
@@ -304,7 +304,7 @@ static void bytes_of_a_file_are_those_that_come_out_of_it(void **state)
 	assert_int_equal(gz_raw_file_bytes(files_folder()), 0);
 }
 
-int main(void)
+TEST_SUITE(raw_guess)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(name_and_size_tell_the_layout),

@@ -1,14 +1,15 @@
 /* The pyramid against its formulas (docs/foveation.md), written out point by point over whole
  * lattices. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/cpu/cast.h"
-#include "render/cpu/reconstruct.h"
+#include "render/picture/image.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/reconstruct/cpu/reconstruct.h"
 
 enum { LEVELS_MAX = GZ_PLAN_LAYERS_MAX };
 
@@ -92,7 +93,9 @@ static void make_scene(const struct gz_foveation *foveation, struct gz_point gaz
 	assert_int_equal(gz_plan_make(foveation, &display, gaze, width, height, &scene->plan),
 			 GZ_OK);
 	assert_int_equal(gz_image_resize(&scene->image, width, height), GZ_OK);
-	assert_int_equal(gz_lattices_prepare(&scene->lattices, &scene->plan, &scene->image), GZ_OK);
+	assert_int_equal(
+		gz_lattices_prepare(&scene->lattices, &scene->plan, gz_image_words(&scene->image)),
+		GZ_OK);
 	cast_colours(scene, seed, content);
 }
 
@@ -273,7 +276,7 @@ static void check_pyramid(const struct scene *scene, struct gz_workers *workers)
 			continue;
 		memcpy(image.pixels, cast, bytes);
 		gz_reconstruct(&scene->plan, &scene->lattices, gz_row_filters_find(sets[k]),
-			       workers, &image);
+			       workers, gz_image_words(&image));
 		check_equal(scene, &levels[0], sets[k]);
 	}
 	free(cast);
@@ -413,7 +416,8 @@ static void picture_of_one_colour_stays_it(void **state)
 			make_scene(&foveation, (struct gz_point) { 0.4F, 0.4F }, 301, 207,
 				   colours[i], ONE_COLOUR, &scene);
 			gz_reconstruct(&scene.plan, &scene.lattices,
-				       gz_row_filters_find("portable"), workers, &scene.image);
+				       gz_row_filters_find("portable"), workers,
+				       gz_image_words(&scene.image));
 			const uint32_t *pixels = (const uint32_t *)(const void *)scene.image.pixels;
 			for (int k = 0; k < 301 * 207; k++)
 				assert_int_equal(pixels[k], colours[i]);
@@ -440,7 +444,7 @@ static void edge_never_rings(void **state)
 	assert_memory_equal(even, odd, sizeof even);
 }
 
-int main(void)
+TEST_SUITE(reconstruct)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pyramid_of_any_size_and_gaze_follows_its_formulas),

@@ -1,14 +1,16 @@
 /* Pictures of regions against the formulas of docs/foveation.md, pixel by pixel in double
  * precision, and all instruction sets against each other. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/cpu/cast.h"
-#include "render/cpu/reconstruct.h"
+#include "render/picture/image.h"
+#include "render/plan/method.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/reconstruct/cpu/reconstruct.h"
 
 static const char *const sets[] = { "portable", "avx2", "avx512" };
 
@@ -50,7 +52,9 @@ static void make_scene(const struct gz_foveation *foveation, struct gz_point gaz
 			 GZ_OK);
 	assert_int_equal(scene->plan.reconstruction, GZ_RECONSTRUCT_REGIONS);
 	assert_int_equal(gz_image_resize(&scene->image, width, height), GZ_OK);
-	assert_int_equal(gz_lattices_prepare(&scene->lattices, &scene->plan, &scene->image), GZ_OK);
+	assert_int_equal(
+		gz_lattices_prepare(&scene->lattices, &scene->plan, gz_image_words(&scene->image)),
+		GZ_OK);
 	cast_colours(scene, seed);
 }
 
@@ -122,7 +126,7 @@ static void check_scene(struct scene *scene, struct gz_workers *workers, bool by
 			continue;
 		memcpy(scene->image.pixels, cast, bytes);
 		gz_reconstruct(&scene->plan, &scene->lattices, gz_row_filters_find(sets[set]),
-			       workers, &scene->image);
+			       workers, gz_image_words(&scene->image));
 		if (set == 0) {
 			memcpy(first, scene->image.pixels, bytes);
 			if (by_formula)
@@ -233,7 +237,7 @@ static void shares_of_a_band_are_the_plan_s(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(reconstruct_regions)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(regions_of_any_size_and_gaze_follow_their_formulas),

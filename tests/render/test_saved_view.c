@@ -1,9 +1,9 @@
 /* Cameras as text: read back to the same bits, and anything else refused. */
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
-#include "render/saved_view.h"
+#include "render/scene/saved_view.h"
 
 static struct gz_camera camera_make(void)
 {
@@ -111,7 +111,7 @@ static void views_of_a_scene_may_be_empty_but_not_wrong(void **state)
 	assert_int_equal(gz_saved_views_check(views, "test", NULL), GZ_ERR_FORMAT);
 }
 
-int main(void)
+TEST_SUITE(saved_view)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(both_projections_are_read_back_to_the_same_bits),

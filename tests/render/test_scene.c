@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/scene.h"
+#include "render/plan/method.h"
+#include "render/scene/scene.h"
 #include "volume_files.h"
 
 #define VOLUME   "[volume]\nprocedural = shells\ndims = 12 10 8\n"
@@ -29,10 +30,9 @@ static void every_preset_parses(void **state)
 {
 	(void)state;
 	struct gz_scene_settings settings = { 0 };
-	struct gz_option_binding bindings[GZ_SCENE_BINDINGS];
-	assert_int_equal(gz_scene_bindings(&settings, bindings, GZ_SCENE_BINDINGS),
-			 GZ_SCENE_BINDINGS);
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++)
+	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
+	gz_scene_bind(&settings, bindings);
+	for (size_t i = 0; i < GZ_SCENE_TABLE_COUNT; i++)
 		assert_int_equal(gz_options_preset(&bindings[i]), GZ_OK);
 	assert_true(settings.camera.eye[1] == -2 && settings.camera.up[2] == 1);
 	assert_true(settings.camera.fov_deg == 40 && settings.image_sampling_rate == 1);
@@ -104,7 +104,7 @@ static const struct refusal refusals[] = {
 	{ SCENE "[display]\nmm = 10 10\ndistance_mm = 1\n", "s.scene: display.px: not given" },
 	{ SCENE "[camera]\nfov_deg = 180\n", "s.scene:7: camera.fov_deg: 180 is outside" },
 	{ SCENE "[camera]\nfov_deg = nan\n", "s.scene:7: camera.fov_deg: nan is not a number" },
-	{ SCENE "[camera]\neye = 1 2\n", "s.scene:7: camera.eye: 2 of 3 numbers given" },
+	{ SCENE "[camera]\neye = 1 2\n", "s.scene:7: camera.eye: 3 numbers expected, 2 given" },
 	{ SCENE "[camera]\nfov = 40\n", "s.scene:7: camera.fov: " },
 	{ SCENE "[clip]\nx = 1\n", "s.scene:7: clip.x: " },
 	{ SCENE "[render]\nray_sampling_rate = 0\n", "s.scene:7: render.ray_sampling_rate: 0 is" },
@@ -120,6 +120,21 @@ static const struct refusal refusals[] = {
 	{ "[volume]\nspacing = 1 1 -1\n", "s.scene:2: volume.spacing: -1 is outside" },
 	{ "[volume]\ntype = int64\n", "s.scene:2: volume.type: int64 is not uint8" },
 	{ "nonsense\n", "s.scene:1: " },
+	{ "[object]\nvolume = a.nii\n", "s.scene:1: an object has a name" },
+	{ "[object a.b]\nvolume = a.nii\n", "s.scene:1: an object has a name" },
+	{ "[object a]\n", "s.scene: object a: give one of volume, labels, mesh and particles" },
+	{ "[object a]\nvolume = a.nii\nmesh = a.ply\n", "s.scene: object a: give one of" },
+	{ "[object a]\nmesh = a.ply\n",
+	  "s.scene: object a: the technique raycast does not show mesh" },
+	{ "[object a]\nmesh = a.ply\ntransfer = a.tf\n", "only a volume has a transfer function" },
+	{ "[object a]\nvolume = a.nii\nimportance = 2\n",
+	  "s.scene:3: object a.importance: 2 is outside 0 to 1" },
+	{ "[object a]\nvolume = a.nii\ntechnique = magic\n",
+	  "s.scene:3: object a.technique: magic" },
+	{ "[object a]\nvolume = a.nii\ncolour = red\n", "s.scene:3: object a.colour: unknown key" },
+	{ "[object a]\nvolume = a.nii\n[object b]\nvolume = b.nii\n",
+	  "s.scene: 2 volumes are given, and a scene shows one" },
+	{ SCENE "[object a]\nvolume = a.nii\n", "s.scene: 2 volumes are given" },
 };
 
 static void each_refusal_names_place_and_remedy(void **state)
@@ -140,6 +155,57 @@ static void each_refusal_names_place_and_remedy(void **state)
 		assert_int_equal(s.rays.shading, 42);
 		assert_true(display);
 	}
+}
+
+static void object_sections_are_read_with_their_presets(void **state)
+{
+	(void)state;
+	bool display;
+	const struct gz_scene_settings s =
+		parsed("[object the head]\nvolume = a.nii\nimportance = 0.75\nvisible = no\n"
+		       "template = bones\n",
+		       &display);
+	assert_int_equal(s.objects.count, 1);
+	const struct gz_scene_object *object = &s.objects.items[0];
+	assert_string_equal(gz_scene_object_name(object), "the head");
+	assert_string_equal(object->volume, "a.nii");
+	assert_string_equal(object->template_name, "bones");
+	assert_true(object->importance == 0.75 && !object->visible);
+	assert_int_equal(object->technique, 0);
+	struct gz_scene_settings other = s;
+	assert_true(gz_scene_settings_same(&s, &other));
+	other.objects.items[0].importance = 0.5;
+	assert_false(gz_scene_settings_same(&s, &other));
+}
+
+static void object_with_a_volume_is_loaded_and_listed(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	struct captured_log log;
+	struct gz_object objects[2];
+	const uint8_t voxels[4] = { 0, 1, 2, 3 };
+	captured_log_init(&log, NULL);
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	files_write_text("v.nrrd",
+			 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n\n",
+			 voxels, sizeof voxels);
+	const char *path = files_write_text(
+		"o.scene", "[object tiny]\nvolume = v.nrrd\ntransfer = ramp.tf\n", NULL, 0);
+	if (gz_scene_load(path, NULL, &log.log, &scene) != GZ_OK)
+		fail_msg("%s", log.last);
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 2), 1);
+	assert_ptr_equal(objects[0].volume, &scene.volume);
+	assert_ptr_equal(objects[0].transfer, &scene.transfer);
+	assert_string_equal(objects[0].technique->name, "raycast");
+	assert_int_equal(scene.volume.dims[1], 2);
+	assert_int_equal(scene.transfer.count, 2);
+	scene.settings.objects.items[0].visible = false;
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 2), 0);
+	gz_scene_free(&scene);
+	path = files_write_text("p.scene", "[object tiny]\nvolume = none.nrrd\n", NULL, 0);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "object tiny: none.nrrd is neither beside the scene"));
 }
 
 static void scene_is_loaded_with_what_it_names(void **state)
@@ -250,13 +316,15 @@ static void broken_parts_break_the_scene_with_one_line(void **state)
 	assert_int_equal(log.messages, 2);
 }
 
-int main(void)
+TEST_SUITE(scene)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_preset_parses),
 		cmocka_unit_test(choices_are_in_the_order_of_their_enums),
 		cmocka_unit_test(every_section_is_read),
 		cmocka_unit_test(each_refusal_names_place_and_remedy),
+		cmocka_unit_test(object_sections_are_read_with_their_presets),
+		cmocka_unit_test(object_with_a_volume_is_loaded_and_listed),
 		cmocka_unit_test(scene_is_loaded_with_what_it_names),
 		cmocka_unit_test(procedural_volume_without_dims_has_128_a_side),
 		cmocka_unit_test(file_is_looked_for_beside_the_scene_then_under_the_data_folder),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/scene_open.h"
-#include "render/scene_picture.h"
+#include "render/scene/scene_open.h"
+#include "render/scene/scene_picture.h"
 #include "volume_files.h"
 
 static unsigned char voxels[4 * 4 * 8];
@@ -217,7 +217,7 @@ static void scene_without_a_transfer_function_gets_one(void **state)
 	gz_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(scene_open)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),

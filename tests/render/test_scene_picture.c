@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 #include <zlib.h>
 
 #include "base/captured_log.h"
-#include "render/png_text.h"
-#include "render/scene_picture.h"
+#include "render/picture/png_text.h"
+#include "render/scene/scene_picture.h"
 #include "volume_files.h"
 
 #define SCENE                                                                                     \
@@ -220,7 +220,7 @@ static void texts_of_all_kinds_are_read(void **state)
 	fclose(file);
 }
 
-int main(void)
+TEST_SUITE(scene_picture)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(picture_tells_its_scene_and_transfer_function),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/scene_write.h"
+#include "render/scene/scene_write.h"
 #include "volume_files.h"
 
 #define SCENE "[volume]\nprocedural = shells\n[transfer]\nfile = ramp.tf\n"
@@ -29,10 +29,10 @@ static void assert_same(const struct gz_scene_settings *a, const struct gz_scene
 			const char *text)
 {
 	struct gz_scene_settings one = *a, other = *b;
-	struct gz_option_binding left[GZ_SCENE_BINDINGS], right[GZ_SCENE_BINDINGS];
-	gz_scene_bindings(&one, left, GZ_SCENE_BINDINGS);
-	gz_scene_bindings(&other, right, GZ_SCENE_BINDINGS);
-	for (size_t t = 0; t < GZ_SCENE_BINDINGS; t++)
+	struct gz_option_binding left[GZ_SCENE_TABLE_COUNT], right[GZ_SCENE_TABLE_COUNT];
+	gz_scene_bind(&one, left);
+	gz_scene_bind(&other, right);
+	for (size_t t = 0; t < GZ_SCENE_TABLE_COUNT; t++)
 		for (size_t i = 0; i < left[t].count; i++) {
 			char x[GZ_PATH_SIZE], y[GZ_PATH_SIZE];
 			const struct gz_option *option = &left[t].options[i];
@@ -41,6 +41,7 @@ static void assert_same(const struct gz_scene_settings *a, const struct gz_scene
 			if (strcmp(x, y) != 0)
 				fail_msg("%s: %s became %s in\n%s", option->key, x, y, text);
 		}
+	assert_true(gz_scene_objects_same(&a->objects, &b->objects));
 }
 
 static void assert_prints_back(const struct gz_scene_settings *settings, bool has_display)
@@ -122,14 +123,14 @@ static void every_key_of_every_table_reads_back(void **state)
 	(void)state;
 	struct gz_scene_settings all;
 	assert_int_equal(gz_scene_settings_preset(&all), GZ_OK);
-	struct gz_option_binding every[GZ_SCENE_BINDINGS], bindings[GZ_SCENE_BINDINGS];
-	gz_scene_bindings(&all, every, GZ_SCENE_BINDINGS);
+	struct gz_option_binding every[GZ_SCENE_TABLE_COUNT], bindings[GZ_SCENE_TABLE_COUNT];
+	gz_scene_bind(&all, every);
 	int turn = 0;
-	for (size_t t = 0; t < GZ_SCENE_BINDINGS; t++)
+	for (size_t t = 0; t < GZ_SCENE_TABLE_COUNT; t++)
 		for (size_t i = 0; i < every[t].count; i++, turn++) {
 			struct gz_scene_settings one;
 			gz_scene_settings_preset(&one);
-			gz_scene_bindings(&one, bindings, GZ_SCENE_BINDINGS);
+			gz_scene_bind(&one, bindings);
 			unset(&bindings[t].options[i], bindings[t].target, turn);
 			make_right(&one, bindings[t].options[i].key);
 			if (strcmp(bindings[t].options[i].key, "volume.procedural") == 0)
@@ -226,6 +227,22 @@ static void edited_scene_of_another_volume_loses_what_was_of_the_first(void **st
 	settings.dims[0] = 0;
 	edit(before, &settings, false,
 	     "[volume]\nfile = b.nii\n[transfer]\nfile = a.tf\n[display]\n");
+}
+
+static void objects_are_printed_and_edited_under_their_names(void **state)
+{
+	(void)state;
+	static const char before[] = "; two halves\n[object left]\nvolume = a.nii ; the data\n"
+				     "visible = no\n";
+	bool display;
+	struct gz_scene_settings settings = parsed(before, &display);
+	assert_prints_back(&settings, false);
+	struct gz_scene_object *object = &settings.objects.items[0];
+	object->visible = true;
+	object->importance = 1;
+	edit(before, &settings, false,
+	     "; two halves\n[object left]\nvolume = a.nii ; the data\nvisible = true\n"
+	     "importance = 1\n");
 }
 
 static void text_that_is_no_scene_is_not_edited(void **state)
@@ -364,7 +381,7 @@ static void file_that_is_no_scene_is_replaced_whole(void **state)
 	assert_int_equal(gz_scene_write(&saved, "/no/such/folder/a.scene", NULL), GZ_ERR_IO);
 }
 
-int main(void)
+TEST_SUITE(scene_write)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_key_of_every_table_reads_back),
@@ -373,6 +390,7 @@ int main(void)
 		cmocka_unit_test(value_outside_its_table_is_refused),
 		cmocka_unit_test(edited_scene_keeps_comments_and_lines_that_are_true),
 		cmocka_unit_test(edited_scene_of_another_volume_loses_what_was_of_the_first),
+		cmocka_unit_test(objects_are_printed_and_edited_under_their_names),
 		cmocka_unit_test(text_that_is_no_scene_is_not_edited),
 		cmocka_unit_test(saved_elsewhere_its_files_are_found),
 		cmocka_unit_test(gaze_log_of_a_saved_scene_is_found_other_sources_stay),

@@ -1,16 +1,15 @@
 /* Light on the kernels: against the oracle, and as an eye would have it. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "oracle_check.h"
+#include "render/plan/method.h"
 
 static struct small_scene lit_waves(int nx, int ny, int nz, enum gz_voxel_type type)
 {
@@ -211,13 +210,13 @@ static void shading_with_up_along_the_view_shows_a_picture(void **state)
 	look_from(&scene, 0, -2, 0);
 	memcpy(scene.camera.up, (double[3]) { 0, 3, 0 }, 3 * sizeof(double));
 	scene.foveation.method = GZ_METHOD_STANDARD;
-	struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 	small_scene_render(renderer, &scene, 60, 50, &degenerate, NULL);
 	memcpy(scene.camera.up, (double[3]) { 1, 0, 0 }, 3 * sizeof(double));
 	small_scene_render(renderer, &scene, 60, 50, &given, NULL);
 	assert_memory_equal(degenerate.pixels, given.pixels, 60 * 50 * 4);
 	assert_true(degenerate.pixels[4 * (25 * 60 + 30)] > 0);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&degenerate);
 	gz_image_free(&given);
 	small_scene_free(&scene);
@@ -335,9 +334,9 @@ enum { SIDE = 96 };
 
 static void render(struct small_scene *scene, struct gz_image *image)
 {
-	struct gz_renderer *renderer = small_scene_renderer(scene, 2, NULL);
+	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, NULL);
 	small_scene_render(renderer, scene, SIDE, SIDE, image, NULL);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 }
 
 static int grey(const struct gz_image *image, int x, int y)
@@ -443,7 +442,7 @@ static void shading_is_the_same_bits_for_any_number_of_threads(void **state)
 		struct gz_image first = { 0 };
 		scene.foveation.method = method;
 		for (int threads = 1; threads <= 5; threads += 2) {
-			struct gz_renderer *renderer = small_scene_renderer(&scene, threads, NULL);
+			struct gz_raycaster *renderer = small_scene_renderer(&scene, threads, NULL);
 			struct gz_image image = { 0 };
 			small_scene_render(renderer, &scene, 171, 103, &image, NULL);
 			if (threads == 1) {
@@ -452,7 +451,7 @@ static void shading_is_the_same_bits_for_any_number_of_threads(void **state)
 				assert_memory_equal(first.pixels, image.pixels, 171 * 103 * 4);
 				gz_image_free(&image);
 			}
-			gz_renderer_destroy(&renderer);
+			gz_raycaster_destroy(&renderer);
 		}
 		gz_image_free(&first);
 	}
@@ -466,7 +465,7 @@ static void lit_rays_have_the_same_colour_in_tiles_of_any_spacing(void **state)
 	enum { EDGE = 96 };
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
 		struct small_scene scene = lit_waves(12, 14, 13, (enum gz_voxel_type)type);
-		struct gz_renderer *renderer = small_scene_renderer(&scene, 1, NULL);
+		struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
 		struct gz_image full = { 0 }, coarse = { 0 };
 		scene.foveation.method = GZ_METHOD_STANDARD;
 		small_scene_render(renderer, &scene, EDGE, EDGE, &full, NULL);
@@ -485,7 +484,7 @@ static void lit_rays_have_the_same_colour_in_tiles_of_any_spacing(void **state)
 			}
 		gz_image_free(&full);
 		gz_image_free(&coarse);
-		gz_renderer_destroy(&renderer);
+		gz_raycaster_destroy(&renderer);
 		small_scene_free(&scene);
 	}
 }
@@ -510,7 +509,7 @@ static void light_without_direction_or_beyond_its_range_is_refused(void **state)
 	assert_false(gz_ray_params_valid(&rays));
 }
 
-int main(void)
+TEST_SUITE(shading)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(shading_of_every_voxel_type_equals_the_oracle),

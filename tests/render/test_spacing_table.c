@@ -1,17 +1,16 @@
 /* Tables of spacings: what is read, and what is refused with which words. */
-#include <setjmp.h>
-#include <stdarg.h>
+#include "suite.h"
+
 #include <stddef.h>
 #include <stdint.h>
-
-#include <cmocka.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "render/scene.h"
+#include "render/plan/method.h"
+#include "render/scene/scene.h"
 
 static char message[512];
 
@@ -154,7 +153,7 @@ static void scene_finds_its_table_beside_itself(void **state)
 	rmdir(folder);
 }
 
-int main(void)
+TEST_SUITE(spacing_table)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rows_unit_and_comments_are_read),

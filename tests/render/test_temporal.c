@@ -1,10 +1,11 @@
 /* Accumulation over frames: what it reaches, and that nothing of it stays where it should not. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "render/temporal.h"
+#include "render/accumulate/temporal.h"
+#include "render/plan/method.h"
 #include "small_scene.h"
 
 enum { WIDTH = 230, HEIGHT = 150 };
@@ -12,7 +13,7 @@ enum { WIDTH = 230, HEIGHT = 150 };
 /* A scene whose frames are kept, and the same without. */
 struct bench {
 	struct small_scene scene;
-	struct gz_renderer *renderer;
+	struct gz_raycaster *renderer;
 	struct gz_temporal temporal;
 	struct gz_temporal_params params;
 	struct gz_temporal_content content;
@@ -46,16 +47,14 @@ static void end(struct bench *bench)
 	gz_image_free(&bench->kept);
 	gz_image_free(&bench->alone);
 	gz_image_free(&bench->full);
-	gz_renderer_destroy(&bench->renderer);
+	gz_raycaster_destroy(&bench->renderer);
 	small_scene_free(&bench->scene);
 }
 
 static void keep_frame(struct bench *bench)
 {
 	const struct small_scene *scene = &bench->scene;
-	memcpy(&bench->content.camera, &scene->camera, sizeof scene->camera);
-	memcpy(&bench->content.rays, &scene->rays, sizeof scene->rays);
-	memcpy(&bench->content.foveation, &scene->foveation, sizeof scene->foveation);
+	bench->content.camera = scene->camera;
 	struct gz_display display = scene->display;
 	struct gz_plan_request request = gz_plan_request_make(&scene->foveation, &scene->display,
 							      scene->gaze, WIDTH, HEIGHT);
@@ -63,8 +62,8 @@ static void keep_frame(struct bench *bench)
 			 GZ_OK);
 	assert_int_equal(gz_plan_update(&request, &bench->plan), GZ_OK);
 	gz_temporal_place(&bench->temporal, &bench->plan);
-	assert_int_equal(gz_renderer_render(bench->renderer, &scene->camera, &scene->rays,
-					    &bench->plan, &bench->temporal.frame_image, NULL),
+	assert_int_equal(gz_raycaster_render(bench->renderer, &scene->camera, &scene->rays,
+					     &bench->plan, &bench->temporal.frame_image, NULL),
 			 GZ_OK);
 	assert_int_equal(gz_temporal_end(&bench->temporal, &bench->params, &bench->content,
 					 &bench->plan, &bench->kept),
@@ -170,10 +169,10 @@ static void change(struct bench *bench, int what)
 	case 4:
 		scene->foveation.method = GZ_METHOD_MDC;
 		break;
-	default: /* volume or transfer function, of which the caller tells */
-		bench->content.serial++;
+	default: /* volume or transfer function */
 		break;
 	}
+	bench->content.serial++;
 }
 
 static void nothing_stays_after_any_change(void **state)
@@ -272,7 +271,7 @@ static void picture_too_large_to_be_shifted_is_refused(void **state)
 	end(&bench);
 }
 
-int main(void)
+TEST_SUITE(temporal)
 {
 	if (!small_scene_backend_runs())
 		return 77;

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <locale.h>
 #include <math.h>
@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/captured_log.h"
-#include "render/transfer.h"
+#include "render/transfer/transfer.h"
 #include "volume_files.h"
 
 #define CLOSE(a, b) assert_float_equal((float)(a), (float)(b), 1e-6f)
@@ -283,7 +283,7 @@ static void transfer_that_no_file_can_hold_is_not_written(void **state)
 	assert_int_equal(gz_transfer_write(&t, "/no/such/folder/a.tf", &log.log), GZ_ERR_IO);
 }
 
-int main(void)
+TEST_SUITE(transfer)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_with_every_word_is_read),

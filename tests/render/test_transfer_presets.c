@@ -1,10 +1,10 @@
 /* Presets fit every volume: what they make is a transfer function that a file may hold. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "render/transfer_presets.h"
+#include "render/transfer/transfer_presets.h"
 
 static const int small[3] = { 40, 30, 20 };
 static const double cubes[3] = { 1, 1, 1 };
@@ -138,7 +138,7 @@ static void each_has_a_name_a_title_and_a_line(void **state)
 	assert_null(gz_transfer_preset_names[GZ_PRESET_COUNT]);
 }
 
-int main(void)
+TEST_SUITE(transfer_presets)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(each_is_valid_for_each_type_and_hides_the_background),

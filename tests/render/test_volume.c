@@ -1,10 +1,10 @@
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/captured_log.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 
 static struct gz_volume volume_of(int x, int y, int z, enum gz_voxel_type type)
 {
@@ -251,7 +251,7 @@ static void names_match_their_enums(void **state)
 	assert_int_equal(procedural, GZ_PROCEDURAL_COUNT);
 }
 
-int main(void)
+TEST_SUITE(volume)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(allocated_volume_is_aligned_and_padded_with_zeros),

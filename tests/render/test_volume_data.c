@@ -1,7 +1,7 @@
 /* Real volumes, found under $GAZECAST_DATA/volumes: size, range, sum and three voxels of each. The
  * numbers were computed from the files by numpy, without this code. Where a header's frame is LPS,
  * numpy flipped x and y. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 
 /* Voxels at (x/2, y/2, z/2), (x/3, y/2, 2z/3), (2x/3, y/4, z/2). */
 struct expectation {
@@ -204,7 +204,7 @@ static void every_volume_has_the_values_of_its_file(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(volume_data)
 {
 	if (!getenv("GAZECAST_DATA")) {
 		printf("GAZECAST_DATA is not set: nothing to load\n");

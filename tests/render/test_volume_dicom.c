@@ -1,5 +1,5 @@
 /* DICOM series: order, orientation, scales and bits of the numbers, and what is refused. */
-#include "check.h"
+#include "suite.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #include "base/captured_log.h"
 #include "dicom_files.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 #include "volume_files.h"
 
 #define SERIES "1.2.3.4.5"
@@ -305,7 +305,7 @@ static void file_cut_anywhere_or_lying_is_refused_or_whole(void **state)
 	check_refused(dicom_sample_write(&sample, "cut.dcm"), GZ_ERR_FORMAT, "mm apart");
 }
 
-int main(void)
+TEST_SUITE(volume_dicom)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(folder_of_one_series_is_ordered_by_place_and_turned,

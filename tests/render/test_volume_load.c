@@ -1,6 +1,6 @@
 /* Volumes of 3 x 2 x 2 voxels whose value tells where they come from: each format, type, byte order
  * and orientation. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 #include "volume_files.h"
 
 #define X     3
@@ -610,7 +610,7 @@ static void scratch_folder_holds_the_same_voxels(void **state)
 	assert_non_null(strstr(log.last, "/nowhere/at/all"));
 }
 
-int main(void)
+TEST_SUITE(volume_load)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(loading_is_told_and_stopped),

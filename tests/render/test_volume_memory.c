@@ -1,7 +1,7 @@
 /* Peak memory of loading 256 MiB of voxels, by every way in: at most 1.3 times the volume above a
  * process that loads almost nothing; of showing them with all levels of detail at most 1.25. The
  * files hold zeros, so that they take no disk. */
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -12,9 +12,10 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/renderer.h"
-#include "render/volume/brick_write.h"
-#include "render/volume/volume.h"
+#include "render/data/brick_write.h"
+#include "render/data/volume.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/raycaster.h"
 #include "volume_files.h"
 
 #define MIB        (1024 * 1024)
@@ -147,23 +148,23 @@ static int show(const char *path, const struct gz_raw_layout *raw, const struct 
 	static const struct gz_transfer fog = { .count = 1,
 						.points = { { 0, { 1, 1, 1 }, 0.01 } } };
 	const struct gz_camera camera = { .eye = { 1, 2, 1 }, .up = { 0, 0, 1 }, .fov_deg = 40 };
-	const struct gz_renderer_params params = { .wait_for_bricks = true };
+	const struct gz_backend_params params = { .wait_for_bricks = true };
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	struct gz_foveation foveation = gz_foveation_default();
 	struct gz_ray_params rays = gz_ray_params_default();
-	struct gz_renderer *renderer = NULL;
+	struct gz_raycaster *renderer = NULL;
 	struct gz_volume volume;
 	struct gz_plan plan = { 0 };
 	struct gz_image image = { 0 };
 	foveation.method = GZ_METHOD_ACUITY;
 	rays.levels = true;
 	return gz_volume_load(path, raw, loading, NULL, &volume) == GZ_OK &&
-	       gz_renderer_create("cpu", &params, NULL, &renderer) == GZ_OK &&
-	       gz_renderer_set_volume(renderer, &volume) == GZ_OK &&
-	       gz_renderer_set_transfer(renderer, &fog) == GZ_OK &&
+	       gz_raycaster_create("cpu", &params, NULL, &renderer) == GZ_OK &&
+	       gz_raycaster_set_volume(renderer, &volume) == GZ_OK &&
+	       gz_raycaster_set_transfer(renderer, &fog) == GZ_OK &&
 	       gz_plan_make(&foveation, &display, (struct gz_point) { 0.5F, 0.5F }, WIDTH, HEIGHT,
 			    &plan) == GZ_OK &&
-	       gz_renderer_render(renderer, &camera, &rays, &plan, &image, NULL) == GZ_OK;
+	       gz_raycaster_render(renderer, &camera, &rays, &plan, &image, NULL) == GZ_OK;
 }
 
 static long peak_of_showing(const char *name, const struct gz_raw_layout *raw, size_t brick_bytes)
@@ -211,7 +212,7 @@ static void bricks_take_the_memory_they_are_given(void **state)
 	assert_true(mib >= 32 && mib <= 80);
 }
 
-int main(void)
+TEST_SUITE(volume_memory)
 {
 #ifdef SANITIZED
 	printf("a sanitizer's own memory would be measured\n");

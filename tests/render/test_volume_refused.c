@@ -1,5 +1,5 @@
 /* Volumes that must be refused: with which result, and a line that says what is wrong. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
 #include "volume_files.h"
 
 static const uint8_t zeros[4096];
@@ -413,7 +413,7 @@ static void metaimage_headers_that_are_wrong_are_refused_by_line(void **state)
 	check_texts("r.mha", refusals, sizeof refusals / sizeof refusals[0]);
 }
 
-int main(void)
+TEST_SUITE(volume_refused)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_that_is_none_is_refused),

@@ -1,10 +1,10 @@
 /* Voxels of a file in a volume whose axes are turned and flipped in every way. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/volume/voxel_place.h"
+#include "render/data/voxel_place.h"
 
 static const int permutations[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 },
 					{ 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
@@ -120,7 +120,7 @@ static void slab_fills_lines_and_stays_small_beside_the_volume(void **state)
 	assert_in_range(slab, 2 << 20, ((size_t)2 << 30) / 128);
 }
 
-int main(void)
+TEST_SUITE(voxel_place)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_turn_puts_every_voxel_in_its_place),

@@ -1,10 +1,8 @@
+#include "suite.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "sim/random.h"
 
@@ -19,7 +17,7 @@
 static void bits_of_known_state_are_those_of_the_publication(void **state)
 {
 	(void)state;
-	/* State 1, 2, 3, 4: worked by hand from the definition. */
+	/* For the state 1, 2, 3, 4; computed by hand from the definition. */
 	struct gz_random random = { .state = { 1, 2, 3, 4 } };
 	assert_int_equal(gz_random_bits(&random), 11520);
 	assert_int_equal(gz_random_bits(&random), 0);
@@ -99,7 +97,7 @@ static void angle_of_the_axes_is_exact(void **state)
 	CHECK_NEAR(gz_portable_atan2(0, -1), acos(-1), 1e-15);
 }
 
-int main(void)
+TEST_SUITE(random)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bits_of_known_state_are_those_of_the_publication),

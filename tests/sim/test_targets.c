@@ -1,14 +1,12 @@
+#include "suite.h"
+
 #include <math.h>
 #include <png.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "sim/targets.h"
 
@@ -70,7 +68,7 @@ static void missing_file_is_refused(void **state)
 	assert_int_equal(gz_targets_from_png("/nonexistent/x", NULL, &targets), GZ_ERR_NOT_FOUND);
 }
 
-/** A flat picture with two bright discs, the left one brighter. */
+/* A uniform picture with two bright discs, the left one brighter. */
 static float *make_picture(void)
 {
 	float *picture = malloc(sizeof *picture * WIDTH * HEIGHT);
@@ -157,7 +155,7 @@ static void picture_without_pixels_is_refused(void **state)
 	assert_int_equal(gz_targets_from_luminance(flat, 1, 20000, &targets), GZ_ERR_INVAL);
 }
 
-int main(void)
+TEST_SUITE(targets)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(list_with_comments_is_read),

@@ -1,12 +1,10 @@
+#include "suite.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "sim/tracker.h"
@@ -74,7 +72,7 @@ static void same_seed_gives_the_same_bits(void **state)
 	gz_sim_tracker_destroy(&b);
 }
 
-/** FNV-1a over what was measured. */
+/* FNV-1a hash of the measurements. */
 static uint64_t digest(const struct gz_sim_params *params, int count)
 {
 	struct gz_sim_tracker *tracker = tracker_of(params);
@@ -235,7 +233,7 @@ static void combined_only_measures_no_eye(void **state)
 	gz_sim_tracker_destroy(&tracker);
 }
 
-static void calibration_moves_what_is_told_and_leaves_the_truth(void **state)
+static void calibration_moves_the_measurement_and_not_the_truth(void **state)
 {
 	(void)state;
 	struct gz_sim_params params = clean_params(250);
@@ -271,7 +269,8 @@ static void eyes_look_from_their_place_to_the_point(void **state)
 	gz_sim_tracker_next(tracker, &s);
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		const struct gz_eye_sample *eye = &s.sample.eye[i];
-		double way = -eye->origin_mm[2] / eye->direction[2]; /* to the display's plane */
+		double way = -eye->origin_mm[2] /
+			     eye->direction[2]; /* distance to the plane of the display */
 		double x_mm = eye->origin_mm[0] + way * eye->direction[0];
 		double y_mm = eye->origin_mm[1] + way * eye->direction[1];
 		CHECK_BETWEEN(x_mm / display.mm[0] + 0.5 - eye->point.x, -1e-4, 1e-4);
@@ -341,7 +340,7 @@ static void wrong_settings_are_refused(void **state)
 	gz_sim_tracker_destroy(NULL);
 }
 
-int main(void)
+TEST_SUITE(tracker)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_preset_parses),
@@ -354,7 +353,7 @@ int main(void)
 		cmocka_unit_test(noise_and_eye_loss_are_as_wanted),
 		cmocka_unit_test(blinks_measure_nothing),
 		cmocka_unit_test(combined_only_measures_no_eye),
-		cmocka_unit_test(calibration_moves_what_is_told_and_leaves_the_truth),
+		cmocka_unit_test(calibration_moves_the_measurement_and_not_the_truth),
 		cmocka_unit_test(eyes_look_from_their_place_to_the_point),
 		cmocka_unit_test(device_clock_has_its_offset_and_skew),
 		cmocka_unit_test(arrival_follows_exposure_by_the_latency),

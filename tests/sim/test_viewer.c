@@ -1,11 +1,9 @@
+#include "suite.h"
+
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "base/clock.h"
 #include "sim/tracker.h"
@@ -22,18 +20,18 @@ enum { STEP_NS = 1000000 };
 
 static const int64_t START_NS = INT64_C(7000000000);
 
-/** What is counted over a long run. */
+/* Statistics of a long run. */
 struct counts {
 	double seconds;
 	double event_s[GZ_EVENT_COUNT];
 	int fixations, saccades, pursuits, blinks, microsaccades;
-	double fixation_s, shortest_s, longest_s; /* of those that no blink or pursuit touches */
+	double fixation_s, shortest_s, longest_s; /* of those not next to a blink or pursuit */
 	double amplitude_deg, amplitude_greatest_deg;
 	double drift_deg_s;
-	double worst_peak, worst_duration_ms; /* against the main sequence */
+	double worst_peak, worst_duration_ms; /* compared with the main sequence */
 };
 
-/** One saccade as sampled. */
+/* One saccade, as measured from samples. */
 struct seen_saccade {
 	struct gz_point start;
 	int64_t start_ns;
@@ -132,7 +130,7 @@ static void saccades_lie_on_the_main_sequence(void **state)
 		      c.worst_peak * 100, c.worst_duration_ms);
 	assert_true(c.saccades > 1000);
 	CHECK_BETWEEN(c.worst_peak, 0, 0.02);
-	CHECK_BETWEEN(c.worst_duration_ms, 0, 2.0); /* two steps of the sampling */
+	CHECK_BETWEEN(c.worst_duration_ms, 0, 2.0); /* two sampling steps */
 }
 
 static void main_sequence_reaches_900_deg_s_at_most(void **state)
@@ -161,7 +159,7 @@ static void fixational_movement_stays_under_1_degree(void **state)
 			farthest = fmax(farthest,
 					gz_display_angle_deg(&display, first.point, now.point));
 	}
-	CHECK_BETWEEN(farthest, 0.2, 1.3); /* the microsaccades from side to side */
+	CHECK_BETWEEN(farthest, 0.2, 1.3); /* the microsaccades, from one side to the other */
 }
 
 static void truth_does_not_depend_on_the_steps(void **state)
@@ -183,7 +181,7 @@ static void truth_does_not_depend_on_the_steps(void **state)
 	}
 }
 
-static void time_going_back_tells_the_last_truth(void **state)
+static void time_going_back_gives_the_last_truth(void **state)
 {
 	(void)state;
 	struct gz_viewer_params params = gz_sim_default_params().viewer;
@@ -261,7 +259,7 @@ static void a_single_target_is_fixated_for_ever(void **state)
 	}
 }
 
-/* Told where to look while it views freely. */
+/* The viewer is told where to look while it looks around freely. */
 static void a_viewer_that_follows_rests_on_its_aim_until_it_is_free_again(void **state)
 {
 	(void)state;
@@ -295,7 +293,7 @@ static void a_viewer_that_follows_rests_on_its_aim_until_it_is_free_again(void *
 	CHECK_BETWEEN(farthest_deg, 2, 60);
 }
 
-int main(void)
+TEST_SUITE(viewer)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(long_run_has_the_stated_statistics),
@@ -303,7 +301,7 @@ int main(void)
 		cmocka_unit_test(main_sequence_reaches_900_deg_s_at_most),
 		cmocka_unit_test(fixational_movement_stays_under_1_degree),
 		cmocka_unit_test(truth_does_not_depend_on_the_steps),
-		cmocka_unit_test(time_going_back_tells_the_last_truth),
+		cmocka_unit_test(time_going_back_gives_the_last_truth),
 		cmocka_unit_test(gaze_stays_on_small_and_large_displays),
 		cmocka_unit_test(targets_are_looked_at_by_weight),
 		cmocka_unit_test(a_single_target_is_fixated_for_ever),

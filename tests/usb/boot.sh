@@ -1,7 +1,7 @@
 #!/bin/bash
-# boot.sh SCRATCH KERNEL RULES TEST PROGRAM...: boots the guest by pure emulation, runs TEST in it and
-# exits as that does, or with 77 where the guest cannot be made here. RULES is the folder with the
-# udev rules, PROGRAM what the test starts.
+# boot.sh SCRATCH KERNEL RULES TEST PROGRAM...: boots the guest by pure emulation and runs TEST in it.
+# Exits with the status of TEST, or with 77 if the guest cannot be made here. RULES is the folder with
+# the udev rules, PROGRAM what the test starts.
 set -euo pipefail
 scratch=$1
 kernel=$2
@@ -17,7 +17,7 @@ for tool in qemu-system-x86_64 busybox cpio strip udevadm; do
 	fi
 done
 if [ ! -f "$kernel/vmlinuz" ]; then
-	echo "usb tests are skipped: there is no kernel; the test usb.kernel says why"
+	echo "usb tests are skipped: no kernel; the test usb.kernel says why"
 	exit 77
 fi
 mkdir -p "$scratch"
@@ -25,7 +25,7 @@ console=$scratch/console.log
 "$here/initramfs.sh" "$kernel" "$scratch/root" "$rules" "$@" >"$scratch/initramfs"
 rm -rf "$scratch/root"
 
-# The first serial line is the test's, the second one the kernel's.
+# The first serial line belongs to the test, the second one to the kernel.
 timeout -k 5 200 qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 512 \
 	-nodefaults -display none -nic none -no-reboot \
 	-kernel "$kernel/vmlinuz" -initrd "$scratch/initramfs" \
@@ -35,8 +35,8 @@ rm -f "$scratch/initramfs"
 
 status=$(sed -n 's/^guest: exit status //p' "$console" | tail -n 1)
 if [ "$status" != 0 ]; then
-	[ -n "$status" ] || echo "the guest did not come to its end"
-	echo "the kernel's last lines, of $scratch/kernel.log:"
+	[ -n "$status" ] || echo "the guest did not finish"
+	echo "last lines of the kernel, from $scratch/kernel.log:"
 	tail -n 20 "$scratch/kernel.log"
 	exit 1
 fi

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "functionfs.h"
 
@@ -12,7 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Descriptors as FunctionFS takes them: a header, then those of full and of high speed. */
+/* Descriptors in the format of FunctionFS: a header, then the descriptors for full and for high
+ * speed. */
 static size_t lay_out(const struct functionfs_descriptors *descriptors, uint8_t *out, size_t room)
 {
 	uint32_t flags = FUNCTIONFS_HAS_FS_DESC | FUNCTIONFS_HAS_HS_DESC;
@@ -52,7 +53,7 @@ static void answer(struct functionfs *function, const struct usb_ctrlrequest *re
 	size_t wanted = request->wLength < sizeof bytes ? request->wLength : sizeof bytes;
 	if (request->bRequestType & USB_DIR_IN) {
 		ssize_t size = function->calls->get(function->player, request, bytes);
-		if (size < 0) /* going the wrong way stalls */
+		if (size < 0) /* a transfer in the wrong direction stalls */
 			size = read(function->control, bytes, 0);
 		else
 			size = write(function->control, bytes,
@@ -112,14 +113,6 @@ void functionfs_start(struct functionfs *function, struct gadget *gadget, const 
 bool functionfs_send(struct functionfs *function, const void *bytes, size_t size)
 {
 	return write(function->endpoint, bytes, size) == (ssize_t)size;
-}
-
-void functionfs_stall(struct functionfs *function)
-{
-	uint8_t byte;
-	/* Reading from an endpoint that sends stalls it, and says so by this error. */
-	assert_int_equal(read(function->endpoint, &byte, 1), -1);
-	assert_int_equal(errno, EBADMSG);
 }
 
 void functionfs_stop(struct functionfs *function)

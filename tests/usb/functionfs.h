@@ -1,7 +1,7 @@
 /**
  * @file
- * A USB function that a program plays by itself (FunctionFS): its descriptors, its answers to
- * control transfers and what its endpoint sends.
+ * A USB function that a program plays (FunctionFS): its descriptors, its answers to control
+ * transfers and the packets of its endpoint.
  */
 #ifndef GZ_TESTS_USB_FUNCTIONFS_H
 #define GZ_TESTS_USB_FUNCTIONFS_H
@@ -16,12 +16,12 @@
 
 #include "gadget.h"
 
-/** Longest data of a control transfer that is played. */
+/** Most data of a control transfer, bytes. */
 #define FUNCTIONFS_CONTROL_MAX 1024
 
-/** What plays a function. Both calls come from the function's own thread. */
+/** Callbacks of a function. Both are called on the thread of the function. */
 struct functionfs_player {
-	/** The host wants data. @return bytes put into @p bytes, or -1 to stall. */
+	/** The host requests data. @return bytes written to @p bytes, or -1 to stall. */
 	ssize_t (*get)(void *player, const struct usb_ctrlrequest *request, uint8_t *bytes);
 
 	/** The host has sent data. */
@@ -29,7 +29,7 @@ struct functionfs_player {
 		    size_t size);
 };
 
-/** A function with one IN endpoint that matters, its newest one. */
+/** A function with one IN endpoint that is used, the last one described. */
 struct functionfs {
 	const struct functionfs_player *calls;
 	void *player;
@@ -39,29 +39,26 @@ struct functionfs {
 	pthread_t thread;
 	bool running;
 	atomic_bool stop;
-	bool refuses_data; /**< control transfers by which the host sends something are stalled */
+	bool refuses_data; /**< control transfers with data from the host are stalled */
 };
 
-/** What a function is made of. */
+/** Descriptors of a function. */
 struct functionfs_descriptors {
 	const void *bytes; /**< interface and endpoint descriptors, the same at every speed */
 	size_t size;
 	uint32_t count; /**< descriptors in @p bytes */
-	int endpoints;  /**< endpoints among them */
+	int endpoints;  /**< number of endpoints among them */
 };
 
 /** Make the function @p name of @p gadget and start to play it. */
 void functionfs_start(struct functionfs *function, struct gadget *gadget, const char *name,
 		      const struct functionfs_descriptors *descriptors);
 
-/** Send a packet over the endpoint. Waits until the host has taken it. @return false where it has
- *  not: unplugged, or not configured */
+/** Send a packet on the endpoint and wait until the host has read it. @return false if the host
+ * does not: unplugged, or not configured */
 bool functionfs_send(struct functionfs *function, const void *bytes, size_t size);
 
-/** Stall the endpoint, until the host clears that. */
-void functionfs_stall(struct functionfs *function);
-
-/** End it, once its gadget is unplugged and taken apart. For a teardown, too. */
+/** End it, after its gadget has been removed. For teardowns, too. */
 void functionfs_stop(struct functionfs *function);
 
 #endif

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "gadget.h"
 
@@ -84,7 +84,7 @@ void gadget_unplug(struct gadget *gadget)
 	gadget_write(gadget->path, "UDC", "\n", 1);
 }
 
-/* Remove what lies in @p folder of the gadget: links, then folders. */
+/* Remove the contents of @p folder of the gadget: links, then folders. */
 static void empty_folder(const struct gadget *gadget, const char *folder)
 {
 	char path[512];
@@ -108,7 +108,7 @@ void gadget_remove(struct gadget *gadget)
 	snprintf(path, sizeof path, "%s/UDC", gadget->path);
 	int fd = open(path, O_WRONLY | O_CLOEXEC);
 	if (fd >= 0) {
-		/* Refused where it is unplugged already. */
+		/* Refused if it is not plugged in. */
 		ssize_t ignored = write(fd, "\n", 1);
 		(void)ignored;
 		close(fd);
@@ -119,4 +119,12 @@ void gadget_remove(struct gadget *gadget)
 	empty_folder(gadget, "strings");
 	rmdir(gadget->path);
 	gadget->path[0] = '\0';
+}
+
+void gadget_stall(int endpoint)
+{
+	uint8_t byte;
+	/* Reading from an endpoint that sends stalls it and returns this error. */
+	assert_int_equal(read(endpoint, &byte, 1), -1);
+	assert_int_equal(errno, EBADMSG);
 }

@@ -1,8 +1,8 @@
 /**
  * @file
- * A USB device made of nothing but configfs and one of the guest's controllers without hardware
+ * A USB device made with configfs on one of the controllers of the guest that have no hardware
  * (dummy_hcd). Its functions are played by hid_gadget.h and functionfs.h. Every call fails the test
- * where the kernel refuses.
+ * if the kernel refuses.
  */
 #ifndef GZ_TESTS_USB_GADGET_H
 #define GZ_TESTS_USB_GADGET_H
@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** What a device says of itself. */
+/** Identity of a device. */
 struct gadget_identity {
 	uint16_t vendor;
 	uint16_t product;
@@ -23,33 +23,37 @@ struct gadget_identity {
 /** A device. */
 struct gadget {
 	int controller; /**< 0 or 1: where it is plugged in */
-	char path[64];  /**< of its folder in configfs */
+	char path[64];  /**< path of its folder in configfs */
 };
 
-/** Make a device without functions, unplugged, for @p controller. */
+/** Make a device without functions, not plugged in, for @p controller. */
 void gadget_make(struct gadget *gadget, int controller, const struct gadget_identity *identity);
 
-/** Make the function @p kind ("hid", "ffs") called @p name; its folder into @p path of @p size. */
+/** Make the function @p kind ("hid", "ffs") with the name @p name. @param[out] path  of its folder,
+ * @p size bytes */
 void gadget_add_function(struct gadget *gadget, const char *kind, const char *name, char *path,
 			 size_t size);
 
-/** Put the function into the device's configuration. */
+/** Add the function to the configuration of the device. */
 void gadget_link_function(struct gadget *gadget, const char *kind, const char *name);
 
-/** Write @p size bytes into the file @p name of @p folder. */
+/** Write @p size bytes to the file @p name in @p folder. */
 void gadget_write(const char *folder, const char *name, const void *bytes, size_t size);
 
-/** The same for text made as by printf(). */
+/** Write formatted text to the file @p name in @p folder. */
 void gadget_print(const char *folder, const char *name, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 
 /** Plug it in; returns before the host has enumerated it. */
 void gadget_plug(struct gadget *gadget);
 
-/** Pull it out. */
+/** Unplug it. */
 void gadget_unplug(struct gadget *gadget);
 
-/** Unplug it, and take configfs apart. Never fails a test, so that it may end one. */
+/** Unplug it and remove it from configfs. Never fails a test, so that a teardown may call it. */
 void gadget_remove(struct gadget *gadget);
+
+/** Stall an IN endpoint, until the host clears that. */
+void gadget_stall(int endpoint);
 
 #endif

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "guest.h"
 

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "hid_function.h"
 
@@ -16,50 +16,38 @@ enum {
 	DESCRIPTOR_REPORT = 0x22,
 };
 
-/* The end of a collection that never began. */
+/* The end of a collection that was never opened. */
 static const uint8_t broken_descriptor[] = { 0x05, 0x12, 0x09, 0x01, 0xC0, 0xC0, 0x81, 0x02 };
 
-static size_t report_descriptor(const struct hid_function *tracker, const uint8_t **out_bytes)
+/* Write the report descriptor. @return its size */
+static size_t report_descriptor(const struct hid_function *tracker, uint8_t *bytes)
 {
+	struct hid_made made = { 0 };
 	if (tracker->broken_descriptor) {
-		*out_bytes = broken_descriptor;
+		memcpy(bytes, broken_descriptor, sizeof broken_descriptor);
 		return sizeof broken_descriptor;
 	}
-	*out_bytes = hid_layout_reference.descriptor;
-	return hid_layout_reference.descriptor_size;
+	hid_made_tracker(&made, HID_LAYOUT_REFERENCE);
+	assert_true(made.size <= FUNCTIONFS_CONTROL_MAX);
+	memcpy(bytes, made.bytes, made.size);
+	return made.size;
 }
 
-static void put(uint8_t *bytes, int size, uint32_t value)
-{
-	for (int i = 0; i < size; i++)
-		bytes[i] = (uint8_t)(value >> (8 * i));
-}
-
-/* A feature report, with its ID. */
+/* Write a feature report, with its ID. @return its size, -1 if there is none */
 static ssize_t get_feature(struct hid_function *tracker, uint8_t id, uint8_t *report)
 {
+	enum hid_layout layout = HID_LAYOUT_REFERENCE;
 	tracker->feature_reads++;
-	report[0] = id;
 	switch (id) {
 	case REPORT_CAPABILITIES:
-		report[1] = 1; /* fine gaze */
-		put(report + 2, 4, 500000);
-		put(report + 6, 4, 650000);
-		put(report + 10, 4, 900000);
-		put(report + 14, 4, 600000);
-		put(report + 18, 4, 400000);
-		return 22;
+		return (ssize_t)hid_made_capabilities(layout, 500000, 650000, 900000, report);
 	case REPORT_CONFIGURATION:
-		put(report + 11, 4, (uint32_t)tracker->screen_um[0]);
-		put(report + 15, 4, (uint32_t)tracker->screen_um[1]);
-		return 19;
+		return (ssize_t)hid_made_configuration(layout, tracker->screen_um[0],
+						       tracker->screen_um[1], report);
 	case REPORT_STATUS:
-		report[1] = STATUS_READY;
-		put(report + 2, 2, MADE_RATE_HZ);
-		return 4;
+		return (ssize_t)hid_made_status(layout, STATUS_READY, MADE_RATE_HZ, report);
 	case REPORT_CONTROL:
-		report[1] = (uint8_t)tracker->mode;
-		return 2;
+		return (ssize_t)hid_made_control(layout, tracker->mode, report);
 	default:
 		return -1;
 	}
@@ -67,13 +55,10 @@ static ssize_t get_feature(struct hid_function *tracker, uint8_t id, uint8_t *re
 
 static ssize_t get_descriptor(struct hid_function *tracker, uint8_t type, uint8_t *bytes)
 {
-	const uint8_t *descriptor;
-	size_t size = report_descriptor(tracker, &descriptor);
 	if (type != DESCRIPTOR_REPORT)
 		return -1;
 	tracker->descriptor_reads++;
-	memcpy(bytes, descriptor, size);
-	return (ssize_t)size;
+	return (ssize_t)report_descriptor(tracker, bytes);
 }
 
 static ssize_t get(void *player, const struct usb_ctrlrequest *request, uint8_t *bytes)
@@ -103,12 +88,12 @@ static void set(void *player, const struct usb_ctrlrequest *request, const uint8
 
 static const struct functionfs_player calls = { .get = get, .set = set };
 
-/* The interface, HID and endpoint descriptors (HID 1.11, section 7.1). 64 bytes a packet: what full
- * speed allows, so that the reference's report of 65 bytes takes two. */
+/* The interface, HID and endpoint descriptors (HID 1.11, section 7.1). Packets have 64 bytes, the
+ * maximum at full speed, so that the reference report of 65 bytes takes two. */
 static void start_function(struct hid_function *tracker, const char *serial)
 {
-	const uint8_t *unused;
-	size_t size = report_descriptor(tracker, &unused);
+	uint8_t descriptor[FUNCTIONFS_CONTROL_MAX];
+	size_t size = report_descriptor(tracker, descriptor);
 	const uint8_t bytes[] = {
 		9,
 		USB_DT_INTERFACE,
@@ -153,9 +138,9 @@ static void start_function(struct hid_function *tracker, const char *serial)
 static void send_sample(void *argument, const struct made_sample *sample)
 {
 	struct hid_function *tracker = argument;
-	uint8_t report[HID_REPORT_MAX] = { 0 };
-	hid_layout_reference.encode(sample, report);
-	functionfs_send(&tracker->function, report, hid_layout_reference.report_size);
+	uint8_t report[HID_REPORT_MAX];
+	size_t size = hid_gadget_report(HID_LAYOUT_REFERENCE, sample, report);
+	functionfs_send(&tracker->function, report, size);
 }
 
 void hid_function_plug(struct hid_function *tracker, int controller, const char *name,
@@ -163,8 +148,10 @@ void hid_function_plug(struct hid_function *tracker, int controller, const char 
 {
 	struct gadget_identity identity = { 0x1209, 0x0002, "Gazecast", name, serial };
 	tracker->made = true;
-	tracker->mode = 4; /* head position, of no use here */
-	tracker->stream = (struct made_stream) { .send = send_sample, .tracker = tracker };
+	tracker->mode = 4; /* head position, which is useless here */
+	tracker->stream = (struct made_stream) {
+		.send = send_sample, .tracker = tracker, .has_clock = true, .tolerance = 1e-4
+	};
 	gadget_make(&tracker->gadget, controller, &identity);
 	start_function(tracker, serial);
 	gadget_plug(&tracker->gadget);

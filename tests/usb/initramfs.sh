@@ -1,7 +1,7 @@
 #!/bin/bash
-# initramfs.sh KERNEL STAGE RULES PROGRAM...: the guest's whole file system on standard output. KERNEL is
-# what kernel.sh made, STAGE a scratch folder, RULES the folder with the project's udev rules. Programs
-# come into /usr/bin, with the shared libraries they need.
+# initramfs.sh KERNEL STAGE RULES PROGRAM...: writes the whole file system of the guest to standard
+# output. KERNEL is the folder of kernel.sh, STAGE a scratch folder, RULES the folder with the udev rules
+# of the project. Programs go to /usr/bin, with the shared libraries that they need.
 set -euo pipefail
 kernel=$1
 stage=$2

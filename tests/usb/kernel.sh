@@ -1,12 +1,12 @@
 #!/bin/bash
 # kernel.sh FOLDER: puts the distribution's kernel and the modules that the guest needs into FOLDER,
-# once. The package is downloaded and unpacked, never installed, by any user. Exits 77 where it
-# cannot be had, with one line that says why.
+# once. Any user can run it: the package is downloaded and unpacked, never installed. Exits 77 with
+# one line that says why if it cannot be downloaded.
 set -euo pipefail
 folder=$1
 # The package that depends on the newest kernel of the distribution.
 meta=linux-image-amd64
-# What guest/init loads; the modules that these need come with them.
+# The modules that guest/init loads; their dependencies are added.
 wanted='dummy_hcd|usb_f_hid|usb_f_fs|gadgetfs|usbhid|hid-generic'
 
 skip() {
@@ -14,12 +14,12 @@ skip() {
 	exit 77
 }
 
-# reason: what apt says is wrong, in one line.
+# reason: the error of apt, in one line.
 reason() {
 	grep -m 1 -E '^(W|E): Failed|^E:' "$folder/apt.log" || tail -n 1 "$folder/apt.log"
 }
 
-# The lists of this system may be missing or old: the second try uses lists of our own.
+# The package lists of this system may be missing or old: the second attempt uses its own lists.
 private=(-o "Dir::State::Lists=$folder/apt/lists" -o "Dir::Cache=$folder/apt/cache"
 	-o APT::Sandbox::User= -o Debug::NoLocking=1)
 

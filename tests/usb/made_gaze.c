@@ -1,11 +1,11 @@
-#include "check.h"
+#include "suite.h"
 
 #include "made_gaze.h"
 
 #include <signal.h>
 #include <time.h>
 
-/* Up and down between 0 and 1 with @p period samples. */
+/* Moves up and down between 0 and 1, with a period of @p period samples. */
 static double wander(uint64_t number, uint64_t period)
 {
 	double phase = (double)(number % period) / (double)period;
@@ -16,7 +16,7 @@ struct made_sample made_gaze(uint64_t number)
 {
 	return (struct made_sample) {
 		.number = number,
-		/* No exposure is quite on time. */
+		/* Exposures are never exactly on time. */
 		.device_us = MADE_CLOCK_START_US + (int64_t)number * MADE_PERIOD_US +
 			     (int64_t)(number * 37 % 101 * 15),
 		.x = 0.25 + 0.5 * wander(number, 1700),
@@ -37,7 +37,7 @@ static int64_t boottime_us(void)
 	return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-static void *run(void *argument)
+static void *run_stream(void *argument)
 {
 	struct made_stream *stream = argument;
 	struct timespec pause = { .tv_nsec = 500000 };
@@ -62,13 +62,13 @@ static void wake(int signal)
 
 void made_stream_start(struct made_stream *stream)
 {
-	/* Without SA_RESTART: it ends a write that waits. */
+	/* Without SA_RESTART the signal ends a blocking write(). */
 	const struct sigaction action = { .sa_handler = wake };
 	sigaction(SIGUSR1, &action, NULL);
 	stream->stop = false;
 	if (stream->start_us == 0)
 		stream->start_us = boottime_us();
-	assert_int_equal(pthread_create(&stream->thread, NULL, run, stream), 0);
+	assert_int_equal(pthread_create(&stream->thread, NULL, run_stream, stream), 0);
 	stream->running = true;
 }
 
@@ -78,7 +78,7 @@ void made_stream_stop(struct made_stream *stream)
 	if (!stream->running)
 		return;
 	stream->stop = true;
-	/* It may wait for a host that reads no more. */
+	/* The thread may wait for a host that no longer reads. */
 	do {
 		pthread_kill(stream->thread, SIGUSR1);
 		clock_gettime(CLOCK_REALTIME, &deadline);

@@ -1,7 +1,7 @@
 /**
  * @file
  * Gaze whose truth is known: a point that wanders over a screen, computed from the number of the
- * sample. A tracker sends it, and who receives it finds the number by the device's time.
+ * sample. A tracker sends it, and a receiver finds the number by the device time.
  */
 #ifndef GZ_TESTS_USB_MADE_GAZE_H
 #define GZ_TESTS_USB_MADE_GAZE_H
@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** The screen of the tests, mm. */
+/** Screen of the tests, mm. */
 #define MADE_WIDTH_MM  500.0
 #define MADE_HEIGHT_MM 300.0
 
@@ -32,26 +32,28 @@ struct made_sample {
 /** Sample @p number. Slow enough for an eye, never at rest, within the screen. */
 struct made_sample made_gaze(uint64_t number);
 
-/** The sample that a device stamped @p device_ns. */
+/** The sample whose device time is @p device_ns. */
 struct made_sample made_gaze_at(int64_t device_ns);
 
-/** Samples that go out as time passes, from a thread of their own. The device's clock runs on while
- *  the host is suspended or the stream stopped; what is due then is never sent. Zero-initialised is
- *  none. */
+/** Sends samples as time passes, on a thread of its own. The device clock runs on while the host is
+ * suspended or the stream is stopped; samples that were due then are never sent. Zero-initialised
+ * is none. */
 struct made_stream {
-	/** Called with each sample that is due; one that does not go out is lost. */
+	/** Called with each sample that is due. A sample that cannot be sent is lost. */
 	void (*send)(void *tracker, const struct made_sample *sample);
 	void *tracker;
+	bool has_clock;   /**< the tracker stamps its samples */
+	double tolerance; /**< of its points, screen sides; by how they are encoded */
 	pthread_t thread;
 	bool running;
 	atomic_bool stop;
 	_Atomic int64_t start_us; /**< CLOCK_BOOTTIME at which sample 0 was due */
 };
 
-/** Begin, or go on. */
+/** Start, or continue. */
 void made_stream_start(struct made_stream *stream);
 
-/** Stop; nothing happens where it does not run. */
+/** Stop. Does nothing if it is not running. */
 void made_stream_stop(struct made_stream *stream);
 
 #endif

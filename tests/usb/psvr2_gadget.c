@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include "psvr2_gadget.h"
 
@@ -16,13 +16,15 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "drivers/frame_bytes.h"
+#include "gadget.h"
 
 #define FOLDER   "/dev/gadget"
 #define CONTROL  FOLDER "/dummy_udc"
 #define ENDPOINT FOLDER "/ep1in-bulk"
 
 enum {
-	INTERFACES = 6, /* 0 to 4 have no endpoints, and no use here */
+	INTERFACES = 6, /* 0 to 4 have no endpoints and are not used here */
 	ENDPOINT_ADDRESS = 0x85,
 	STRING_MAKER = 1,
 	STRING_NAME = 2,
@@ -34,15 +36,8 @@ enum {
 	CONTROL_MAX = 1024,
 };
 
-/* The headset falls silent where it is not told again to send. */
+/* The headset stops sending if the request is not repeated. */
 #define ON_NS (2 * GZ_NS_PER_S)
-
-static uint8_t *put(uint8_t *bytes, size_t size, uint64_t value)
-{
-	for (size_t i = 0; i < size; i++)
-		*bytes++ = (uint8_t)(value >> (8 * i));
-	return bytes;
-}
 
 static uint8_t *append(uint8_t *bytes, const void *more, size_t size)
 {
@@ -50,7 +45,7 @@ static uint8_t *append(uint8_t *bytes, const void *more, size_t size)
 	return bytes + size;
 }
 
-/* The endpoint's descriptor, for full (64 bytes a packet) or high speed. */
+/* The descriptor of the endpoint, for full (64 bytes a packet) or high speed. */
 static uint8_t *append_endpoint(uint8_t *bytes, uint16_t packet_size)
 {
 	const uint8_t descriptor[] = {
@@ -98,7 +93,7 @@ static uint8_t *append_configuration(uint8_t *bytes, uint16_t packet_size)
 	return append_endpoint(bytes, packet_size);
 }
 
-/* What GadgetFS wants first: configurations of both speeds, and the device. */
+/* Write what GadgetFS expects first: configurations for both speeds, and the device. */
 static void describe(struct psvr2_gadget *headset)
 {
 	static const uint8_t device[USB_DT_DEVICE_SIZE] = {
@@ -122,7 +117,7 @@ static void describe(struct psvr2_gadget *headset)
 		1,
 	};
 	uint8_t bytes[512];
-	uint8_t *end = put(bytes, 4, 0);
+	uint8_t *end = frame_put(bytes, 4, 0);
 	end = append_configuration(end, 64);
 	end = append_configuration(end, 512);
 	end = append(end, device, sizeof device);
@@ -130,11 +125,11 @@ static void describe(struct psvr2_gadget *headset)
 		fail_msg("GadgetFS refuses the descriptors: %s", strerror(errno));
 }
 
-/* The host has chosen the configuration: the endpoint may be used. */
+/* The host has chosen the configuration: open the endpoint. */
 static void open_endpoint(struct psvr2_gadget *headset)
 {
 	uint8_t bytes[4 + 2 * USB_DT_ENDPOINT_SIZE];
-	put(bytes, 4, 1);
+	frame_put(bytes, 4, 1);
 	append_endpoint(append_endpoint(bytes + 4, 64), 512);
 	int fd = open(ENDPOINT, O_RDWR | O_CLOEXEC);
 	if (fd < 0 || write(fd, bytes, sizeof bytes) != sizeof bytes)
@@ -165,15 +160,15 @@ static void note_request(struct psvr2_gadget *headset, const struct usb_ctrlrequ
 static ssize_t string_descriptor(const struct psvr2_gadget *headset, uint8_t number, uint8_t *bytes)
 {
 	const char *const texts[] = { "", "Sony Corp.", "PlayStation VR2", headset->serial };
-	if (number == 0) { /* the languages: English */
-		put(bytes, 4, 0x04090304);
+	if (number == 0) { /* the list of languages: English */
+		frame_put(bytes, 4, 0x04090304);
 		return 4;
 	}
 	if (number > STRING_SERIAL)
 		return -1;
 	uint8_t *end = bytes + 2;
 	for (const char *text = texts[number]; *text; text++)
-		end = put(end, 2, (uint8_t)*text);
+		end = frame_put(end, 2, (uint8_t)*text);
 	bytes[0] = (uint8_t)(end - bytes);
 	bytes[1] = USB_DT_STRING;
 	return end - bytes;
@@ -185,14 +180,14 @@ static void answer_in(struct psvr2_gadget *headset, const struct usb_ctrlrequest
 	ssize_t size = -1;
 	if (request->bRequest == USB_REQ_GET_DESCRIPTOR && request->wValue >> 8 == USB_DT_STRING)
 		size = string_descriptor(headset, (uint8_t)request->wValue, bytes);
-	if (size < 0) /* the wrong way stalls */
+	if (size < 0) /* a transfer in the wrong direction stalls */
 		size = read(headset->control, bytes, 0);
 	else
 		size = write(headset->control, bytes,
 			     size < request->wLength ? (size_t)size : request->wLength);
 }
 
-/* The data may still be on their way. */
+/* The data may not have arrived yet. */
 static ssize_t read_data(struct psvr2_gadget *headset, uint8_t *bytes, size_t wanted)
 {
 	const struct timespec pause = { .tv_nsec = 200000 };
@@ -238,63 +233,38 @@ static void *play(void *argument)
 	return NULL;
 }
 
-static uint8_t *put_float(uint8_t *bytes, double value)
+/* The ray from an eye to the point of the sample on the screen: +x right, +y down, +z ahead. */
+static struct gz_psvr2_ray ray_to(const struct made_sample *sample, double right_mm, bool known)
 {
-	float number = (float)value;
-	uint32_t bits;
-	memcpy(&bits, &number, sizeof bits);
-	return put(bytes, 4, bits);
-}
-
-static uint8_t *put_vector(uint8_t *bytes, const double vector[3])
-{
-	for (size_t i = 0; i < 3; i++)
-		bytes = put_float(bytes, vector[i]);
-	return bytes;
-}
-
-/* A known origin, and the direction from there to the sample's point on the screen: +x is to the
- * wearer's left, +y up, +z ahead. */
-static void put_ray(uint8_t *bytes, const struct made_sample *sample, double left_mm, bool known)
-{
-	const double origin[3] = { left_mm, 0, 0 };
 	double direction[3] = {
-		(0.5 - sample->x) * MADE_WIDTH_MM - left_mm,
-		(0.5 - sample->y) * MADE_HEIGHT_MM,
+		(sample->x - 0.5) * MADE_WIDTH_MM - right_mm,
+		(sample->y - 0.5) * MADE_HEIGHT_MM,
 		PSVR2_DISTANCE_MM,
 	};
 	double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
 			     direction[2] * direction[2]);
+	struct gz_psvr2_ray ray = { known, known, { (float)right_mm, 0, 0 }, { 0 } };
 	for (size_t i = 0; i < 3; i++)
-		direction[i] /= length;
-	bytes = put(bytes, 4, known);
-	bytes = put_vector(bytes, origin);
-	bytes = put(bytes, 4, known);
-	put_vector(bytes, direction);
+		ray.direction[i] = (float)(direction[i] / length);
+	return ray;
 }
 
 void psvr2_gadget_encode(const struct psvr2_gadget *headset, const struct made_sample *sample,
-			 uint8_t packet[PSVR2_PACKET_SIZE])
+			 uint8_t packet[GZ_PSVR2_PACKET_SIZE])
 {
-	const struct {
-		size_t offset;
-		double left_mm, pupil_mm;
-	} eyes[2] = { { 0x5C, 31.5, 3.25 }, { 0xA4, -31.5, 3.5 } };
 	bool open = !headset->blinking;
-	memset(packet, 0, PSVR2_PACKET_SIZE);
-	memcpy(packet, "GS", 2);
-	put(packet + 2, 2, 1);
-	put(packet + 4, 4, PSVR2_PACKET_SIZE);
-	put(packet + 0x50, 8, (uint64_t)sample->device_us);
-	put(packet + 0x58, 4, sample->number);
-	for (size_t i = 0; i < 2; i++) {
-		uint8_t *eye = packet + eyes[i].offset;
-		put_ray(eye, sample, eyes[i].left_mm, open);
-		put_float(put(eye + 0x20, 4, open), eyes[i].pupil_mm);
-		put(put(eye + 0x40, 4, 1), 4, !open);
-	}
-	put_ray(packet + 0xEC, sample, 0, open);
-	put_float(packet + 0x144, PSVR2_DISTANCE_MM);
+	const struct gz_psvr2_packet laid_out = {
+		.device_ns = sample->device_us * GZ_NS_PER_US,
+		.frame = (uint32_t)sample->number,
+		.eye = {
+			[GZ_EYE_LEFT] = { ray_to(sample, -31.5, open), open, 3.25f, !open },
+			[GZ_EYE_RIGHT] = { ray_to(sample, 31.5, open), open, 3.5f, !open },
+		},
+		.combined = ray_to(sample, 0, open),
+		.has_convergence = true,
+		.convergence_mm = (float)PSVR2_DISTANCE_MM,
+	};
+	psvr2_made_packet(&laid_out, packet);
 }
 
 bool psvr2_gadget_send(struct psvr2_gadget *headset, const void *packet, size_t size)
@@ -306,7 +276,7 @@ bool psvr2_gadget_send(struct psvr2_gadget *headset, const void *packet, size_t 
 static void send_sample(void *argument, const struct made_sample *sample)
 {
 	struct psvr2_gadget *headset = argument;
-	uint8_t packet[PSVR2_PACKET_SIZE];
+	uint8_t packet[GZ_PSVR2_PACKET_SIZE];
 	int64_t on_ns = headset->on_ns;
 	if (on_ns == 0 || gz_clock_now_ns() - on_ns > ON_NS)
 		return;
@@ -319,6 +289,8 @@ void psvr2_gadget_plug(struct psvr2_gadget *headset, const char *serial)
 	headset->serial = serial;
 	headset->stream.send = send_sample;
 	headset->stream.tracker = headset;
+	headset->stream.has_clock = true;
+	headset->stream.tolerance = 1e-4;
 	headset->endpoint = -1;
 	headset->stop = false;
 	headset->on_ns = 0;
@@ -335,11 +307,11 @@ void psvr2_gadget_plug(struct psvr2_gadget *headset, const char *serial)
 
 void psvr2_gadget_unplug(struct psvr2_gadget *headset)
 {
-	/* GadgetFS cannot let the device go while somebody writes to it. */
+	/* GadgetFS cannot release the device while a thread writes to it. */
 	made_stream_stop(&headset->stream);
 	headset->stop = true;
 	pthread_join(headset->thread, NULL);
-	close(headset->control); /* the host sees it go here */
+	close(headset->control); /* the host sees the device go */
 	if (headset->endpoint >= 0)
 		close(headset->endpoint);
 	headset->endpoint = -1;
@@ -348,10 +320,7 @@ void psvr2_gadget_unplug(struct psvr2_gadget *headset)
 
 void psvr2_gadget_stall(struct psvr2_gadget *headset)
 {
-	uint8_t byte;
-	/* Reading from an endpoint that sends stalls it, and says so by this error. */
-	assert_int_equal(read(headset->endpoint, &byte, 1), -1);
-	assert_int_equal(errno, EBADMSG);
+	gadget_stall(headset->endpoint);
 }
 
 void psvr2_gadget_remove(struct psvr2_gadget *headset)

@@ -1,6 +1,6 @@
 /**
  * @file
- * What a recording holds, for tests.
+ * Reads the contents of a recording.
  */
 #ifndef GZ_TESTS_USB_RECORDED_H
 #define GZ_TESTS_USB_RECORDED_H
@@ -9,19 +9,19 @@
 
 #include "protocol/gaze_log.h"
 
-/** A gaze log, counted. */
+/** What a gaze log contains. */
 struct recorded {
 	uint64_t samples;
 	uint64_t first_seq, last_seq;
 	uint64_t outages;   /**< gap records without a number of samples: the tracker was gone */
-	uint64_t missing;   /**< samples that gap records tell of */
+	uint64_t missing;   /**< samples reported missing by gap records */
 	int64_t longest_ns; /**< longest time between two samples, host time */
-	int64_t backwards;  /**< samples whose host time is not after the one before */
-	uint64_t malformed; /**< lines */
+	int64_t backwards;  /**< samples whose host time is not after that of the last one */
+	uint64_t malformed; /**< malformed lines */
 	enum gz_gaze_log_ending ending;
 };
 
-/** Read @p name of the folder @p recordings; fails the test where that is no gaze log. */
+/** Read the file @p name in the folder @p recordings; fails the test if it is not a gaze log. */
 struct recorded recorded_read(const char *recordings, const char *name);
 
 #endif

@@ -1,5 +1,5 @@
-/* What happens to the machine that the daemon runs on: its disk fills up, it is suspended. */
-#include "check.h"
+/* The machine of the daemon: its disk fills up, it is suspended. */
+#include "suite.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -64,7 +64,7 @@ static void full_disk_ends_the_recording_and_not_the_stream(void **state)
 	assert_int_equal(found.malformed, 0);
 	assert_int_equal(found.last_seq - found.first_seq + 1, found.samples);
 
-	/* With space again, it records again. */
+	/* When there is space again, it records again. */
 	assert_int_equal(mount("tmpfs", place.recordings, "tmpfs", MS_REMOUNT, "size=1m"), 0);
 	assert_string_equal(gazed_request(&place, "R again", NULL), "OK");
 	reader_wait_recording(&reader, GZ_RECORDING_ON);
@@ -76,7 +76,7 @@ static void full_disk_ends_the_recording_and_not_the_stream(void **state)
 	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
 }
 
-static void suspended_daemon_goes_on_where_it_stopped(void **state)
+static void suspended_daemon_continues_where_it_stopped(void **state)
 {
 	(void)state;
 	struct gazed_process gazed = SPAWN("--sim.rate_hz", "200", "--sim.loss", "0");
@@ -96,7 +96,7 @@ static void suspended_daemon_goes_on_where_it_stopped(void **state)
 	assert_int_equal(found.malformed, 0);
 	assert_int_equal(found.backwards, 0);
 	assert_int_equal(found.samples + found.missing, found.last_seq - found.first_seq + 1);
-	/* Host time stands still while the machine sleeps. */
+	/* Host time stands still while the machine is suspended. */
 	assert_true(found.longest_ns < GZ_NS_PER_S);
 }
 
@@ -106,7 +106,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(full_disk_ends_the_recording_and_not_the_stream),
-		TEST(suspended_daemon_goes_on_where_it_stopped),
+		TEST(suspended_daemon_continues_where_it_stopped),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

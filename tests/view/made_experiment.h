@@ -5,7 +5,7 @@
 #ifndef GZ_TESTS_VIEW_MADE_EXPERIMENT_H
 #define GZ_TESTS_VIEW_MADE_EXPERIMENT_H
 
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The file of answers. */
-#include "check.h"
+#include "suite.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -10,6 +10,7 @@
 
 #include "base/captured_log.h"
 #include "base/clock.h"
+#include "render/plan/method.h"
 #include "view/experiment/answers.h"
 #include "view/made_experiment.h"
 
@@ -195,8 +196,8 @@ static void file_that_is_there_is_left_alone(void **state)
 	assert_int_equal(open_answers(&desk, false), GZ_OK);
 	answer(&desk, 0);
 	gz_answers_close(&desk.answers);
-	char before[4096];
-	snprintf(before, sizeof before, "%s", content_of(desk.path));
+	char *before = strdup(content_of(desk.path));
+	assert_non_null(before);
 	assert_int_equal(open_answers(&desk, false), GZ_ERR_BUSY);
 	snprintf(expected, sizeof expected,
 		 "%s: is there already, with 1 of 4 trials; go on with it by --resume, or begin "
@@ -204,6 +205,7 @@ static void file_that_is_there_is_left_alone(void **state)
 		 desk.path);
 	assert_string_equal(captured.last, expected);
 	assert_string_equal(content_of(desk.path), before);
+	free(before);
 	get_up(&desk);
 }
 
@@ -351,7 +353,7 @@ static void labels_are_letters_and_digits(void **state)
 		     gz_answers_label_valid("0123456789012345678901234567890123456789"));
 }
 
-int main(void)
+TEST_SUITE(answers)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rows_tell_what_was_shown_and_answered),

@@ -1,5 +1,5 @@
 /* An experiment's file: what holds for each trial, and what is refused. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "render/plan/method.h"
 #include "view/experiment/answer_keys.h"
 #include "view/experiment/experiment.h"
 
@@ -318,7 +319,7 @@ static void texts_change_the_fingerprint(void **state)
 	remove_place(&place);
 }
 
-int main(void)
+TEST_SUITE(experiment)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(shortest_experiment_has_one_block_of_all_its_trials),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "view/folder.h"
+#include "view/files/folder.h"
 
 static char place[64];
 
@@ -132,7 +132,7 @@ static void folder_that_is_not_there_leaves_the_present_one(void **state)
 	gz_folder_free(&folder);
 }
 
-int main(void)
+TEST_SUITE(folder)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(folders_come_first_then_what_can_be_opened_in_order),

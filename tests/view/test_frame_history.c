@@ -1,9 +1,9 @@
 /* What the last frames cost: the newest first, the oldest forgotten, medians and percentiles. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
-#include "view/frame_history.h"
+#include "view/frame/frame_history.h"
 
 static void add(struct gz_frame_history *history, double cast_ms)
 {
@@ -69,7 +69,7 @@ static void parts_below_nothing_and_no_numbers_count_as_nothing(void **state)
 	assert_true(gz_frame_cost_total_ms(gz_frame_history_at(&history, 0)) == 2);
 }
 
-int main(void)
+TEST_SUITE(frame_history)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_frame_costs_nothing),

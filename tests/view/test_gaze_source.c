@@ -1,5 +1,5 @@
 /* Gaze sources: a log shows the last sample at or before each frame, as the pipeline saw it. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "base/clock.h"
 #include "filter/pipeline.h"
 #include "protocol/gaze_log.h"
-#include "view/gaze_source.h"
+#include "view/gaze/gaze_source.h"
 
 enum { SAMPLES = 400 };
 
@@ -357,7 +357,7 @@ static void sources_that_are_no_logs_have_no_place_and_are_always_there(void **s
 	gz_gaze_source_destroy(&source);
 }
 
-int main(void)
+TEST_SUITE(gaze_source)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(log_shows_the_last_sample_at_or_before_each_frame),

@@ -1,10 +1,10 @@
 /* How good a gaze is, in words, and how often it comes. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "view/gaze_state.h"
+#include "view/gaze/gaze_state.h"
 
 #define MS INT64_C(1000000)
 
@@ -213,7 +213,7 @@ static void rate_bears_times_from_end_to_end_of_the_clock(void **state)
 	assert_int_equal(rate.count, 2);
 }
 
-int main(void)
+TEST_SUITE(gaze_state)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gaze_that_comes_in_time_is_good_whatever_the_eye_does),

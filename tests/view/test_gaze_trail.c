@@ -1,9 +1,9 @@
 /* The last second of a gaze. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 
-#include "view/gaze_trail.h"
+#include "view/gaze/gaze_trail.h"
 
 #define MS    INT64_C(1000000)
 #define APART 0.001f
@@ -107,7 +107,7 @@ static void full_trail_forgets_the_oldest(void **state)
 		fail_msg("newest is %g", (double)newest);
 }
 
-int main(void)
+TEST_SUITE(gaze_trail)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(mouse_that_rests_becomes_a_disc_that_stops_growing),

@@ -1,5 +1,5 @@
 /* Keys are found by words, and how far work is is told in a few. */
-#include "check.h"
+#include "suite.h"
 
 #include "view/panels/keys_panel.h"
 #include "view/panels/progress_panel.h"
@@ -38,7 +38,7 @@ static void time_left_is_told_once_there_is_something_to_tell_it_by(void **state
 	assert_string_equal(text, "");
 }
 
-int main(void)
+TEST_SUITE(keys_panel)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(row_is_found_by_words_of_what_it_does_its_keys_and_its_group),

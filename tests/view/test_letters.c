@@ -1,10 +1,10 @@
 /* Letters: which side of the patient is at which edge of the picture. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "view/letters.h"
+#include "view/draw/letters.h"
 
 static void assert_letters(const struct gz_camera *camera, const char *left, const char *right,
 			   const char *top, const char *bottom)
@@ -109,7 +109,7 @@ static void picture_without_room_is_left_alone(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(letters)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(views_along_the_axes_have_the_letters_of_an_atlas),

@@ -1,13 +1,13 @@
 /* What a terminal shows while a volume is loaded, and how a signal stops that. */
-#include "check.h"
+#include "suite.h"
 
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/volume/volume.h"
-#include "view/loading_bar.h"
+#include "render/data/volume.h"
+#include "view/headless/loading_bar.h"
 
 static volatile sig_atomic_t handed_on;
 
@@ -88,7 +88,7 @@ static void signal_stops_the_loading_and_is_handed_on(void **state)
 	sigaction(SIGINT, &before, NULL);
 }
 
-int main(void)
+TEST_SUITE(loading_bar)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(text_says_what_how_far_and_how_long_still),

@@ -1,11 +1,11 @@
 /* What has been logged lately is kept for the window, and counted where it is the same. */
-#include "check.h"
+#include "suite.h"
 
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "view/notices.h"
+#include "view/panels/notices.h"
 
 enum { SAYERS = 4, EACH = 500 };
 
@@ -124,7 +124,7 @@ static void messages_of_several_threads_are_all_counted(void **state)
 	gz_notices_free(&notices);
 }
 
-int main(void)
+TEST_SUITE(notices)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(newest_message_comes_first),

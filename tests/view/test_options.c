@@ -1,12 +1,13 @@
 /* gazeview's command line: what it takes, what it refuses and with which words. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/captured_log.h"
-#include "view/options.h"
+#include "render/plan/method.h"
+#include "view/options/options.h"
 
 enum { ARGUMENTS_MAX = 24 };
 
@@ -330,10 +331,10 @@ static void help_names_every_option_and_every_key_that_can_be_given(void **state
 	for (size_t i = 0; i < gz_view_option_count; i++)
 		assert_non_null(strstr(text, gz_view_option_table[i].key));
 	struct gz_scene_settings settings;
-	struct gz_option_binding tables[GZ_SCENE_BINDINGS];
-	gz_scene_bindings(&settings, tables, GZ_SCENE_BINDINGS);
+	struct gz_option_binding tables[GZ_SCENE_TABLE_COUNT];
+	gz_scene_bind(&settings, tables);
 	int hidden = 0;
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++) {
+	for (size_t i = 0; i < GZ_SCENE_TABLE_COUNT; i++) {
 		for (size_t k = 0; k < tables[i].count; k++) {
 			const char *key = tables[i].options[k].key;
 			bool taken = strncmp(key, "volume.", 7) != 0 &&
@@ -359,7 +360,7 @@ static void help_and_version_need_no_scene(void **state)
 	assert_true(options.version);
 }
 
-int main(void)
+TEST_SUITE(options)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(command_line_of_the_manual_is_read),

@@ -1,11 +1,12 @@
 /* A plan as coloured cells: each place has the colour of the tile that shows there. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "view/plan_cells.h"
-#include "view/viridis.h"
+#include "render/plan/method.h"
+#include "view/draw/plan_cells.h"
+#include "view/draw/viridis.h"
 
 enum { WIDTH = 650, HEIGHT = 402 };
 
@@ -145,7 +146,7 @@ static void colours_grow_lighter_and_keep_to_their_ends(void **state)
 	assert_memory_equal(rgb, other, 3);
 }
 
-int main(void)
+TEST_SUITE(plan_cells)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(standard_has_one_colour_and_a_scale_that_shows_it_is_fine),

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "view/recent.h"
+#include "view/files/recent.h"
 
 static char place[64];
 
@@ -106,7 +106,7 @@ static void place_follows_the_environment(void **state)
 	assert_int_equal(gz_recent_file(path), GZ_ERR_NOT_FOUND);
 }
 
-int main(void)
+TEST_SUITE(recent)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(latest_is_on_top_and_in_the_list_once),

@@ -1,12 +1,14 @@
 /* The standard picture made beside the frames: the same as a frame's, and only of what was asked
  * for last. */
-#include "check.h"
+#include "suite.h"
 
 #include <semaphore.h>
 #include <string.h>
 
+#include "render/plan/method.h"
+#include "render/scene/techniques.h"
 #include "render/small_scene.h"
-#include "view/reference.h"
+#include "view/frame/reference.h"
 
 enum { WIDTH = 70, HEIGHT = 75 }; /* strips of which the last is lower */
 
@@ -31,6 +33,7 @@ static void start(struct bench *bench)
 	bench->scene.display = gz_display_default(WIDTH, HEIGHT);
 	assert_int_equal(sem_init(&bench->finished, 0, 0), 0);
 	const struct gz_reference_source source = {
+		.technique = gz_techniques[0],
 		.volume = &bench->scene.volume,
 		.threads = 2,
 		.finished = finish,
@@ -75,15 +78,15 @@ static void take(struct bench *bench)
 
 static void expect_frame(const struct bench *bench, double rate)
 {
-	struct gz_renderer *renderer;
+	struct gz_raycaster *renderer;
 	struct gz_image cast = { 0 }, picture = { 0 };
 	struct small_scene scene = bench->scene;
-	const struct gz_renderer_params params = { .threads = 1 };
+	const struct gz_backend_params params = { .threads = 1 };
 	const int width = (int)(WIDTH * rate), height = (int)(HEIGHT * rate);
 	int x, y;
-	assert_int_equal(gz_renderer_create("cpu", &params, NULL, &renderer), GZ_OK);
-	assert_int_equal(gz_renderer_set_volume(renderer, &scene.volume), GZ_OK);
-	assert_int_equal(gz_renderer_set_transfer(renderer, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_create("cpu", &params, NULL, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene.volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_OK);
 	small_scene_render(renderer, &scene, width, height, &cast, NULL);
 	assert_int_equal(gz_image_resize(&picture, WIDTH, HEIGHT), GZ_OK);
 	if (rate == 1)
@@ -93,7 +96,7 @@ static void expect_frame(const struct bench *bench, double rate)
 	const int apart = image_difference(&picture, &bench->image, &x, &y);
 	if (apart != 0)
 		fail_msg("rate %g: %d levels apart at %d %d", rate, apart, x, y);
-	gz_renderer_destroy(&renderer);
+	gz_raycaster_destroy(&renderer);
 	gz_image_free(&cast);
 	gz_image_free(&picture);
 }
@@ -180,7 +183,7 @@ static void stopping_at_any_time_is_right(void **state)
 	gz_reference_worker_stop(NULL);
 }
 
-int main(void)
+TEST_SUITE(reference)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(strips_make_the_picture_of_one_frame_bit_for_bit),

@@ -1,5 +1,5 @@
 /* An experiment as it goes, by a clock that the test holds. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -447,7 +447,7 @@ static void answer_that_cannot_be_kept_ends_the_experiment(void **state)
 	end(&stage);
 }
 
-int main(void)
+TEST_SUITE(run)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(trial_goes_from_cross_to_answer_with_marks_at_each_step),

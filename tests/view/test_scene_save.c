@@ -1,4 +1,4 @@
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/scene_open.h"
-#include "view/scene_save.h"
+#include "render/scene/scene_open.h"
+#include "view/files/scene_save.h"
 
 #define RAMP "0 0 0 0 0\n1 1 1 1 0.5\n"
 
@@ -160,7 +160,7 @@ static void what_cannot_be_written_leaves_the_settings(void **state)
 	gz_scene_free(&scene);
 }
 
-int main(void)
+TEST_SUITE(scene_save)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(scene_whose_transfer_function_is_a_file_names_it),

@@ -1,5 +1,5 @@
 /* The order of trials. */
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
@@ -205,7 +205,7 @@ static void random_blocks_leave_practice_in_its_place(void **state)
 	free_experiment(&made);
 }
 
-int main(void)
+TEST_SUITE(sequence)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(order_follows_seed_participant_and_session_alone),

@@ -1,6 +1,6 @@
 /* Sessions: what is written is read back to the bit, and what nobody can have written is refused
  * with its line. */
-#include "check.h"
+#include "suite.h"
 
 #include <fcntl.h>
 #include <math.h>
@@ -14,6 +14,7 @@
 
 #include "base/captured_log.h"
 #include "protocol/gaze_log.h"
+#include "render/plan/method.h"
 #include "view/session/session_reader.h"
 #include "view/session/session_text.h"
 #include "view/session/session_writer.h"
@@ -443,7 +444,7 @@ static void lines_that_nobody_wrote_are_refused_with_their_number(void **state)
 		{ HEAD "!set\tcamera.eye\n", ":6", "no value" },
 		{ HEAD "!set\tcamera.nose\t1\n", ":6", "no such setting" },
 		{ HEAD "!set\tvolume.file\tx\n", ":6", "no such setting" },
-		{ HEAD "!set\tcamera.eye\t1 2\n", ":6", "2 of 3 numbers" },
+		{ HEAD "!set\tcamera.eye\t1 2\n", ":6", "3 numbers expected" },
 		{ HEAD "!set\tfoveation.table\t/etc/passwd\n", ":6", "not a file of" },
 		{ HEAD "!transfer\t0 0 0 0 2\n", ":6", "out of range" },
 		{ HEAD "!mark\t1\n", ":6", "the number of fields" },
@@ -502,7 +503,7 @@ static void changed_numbers_are_warned_of_at_the_end(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
-int main(void)
+TEST_SUITE(session)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(frame_is_read_back_to_the_bit),

@@ -1,9 +1,10 @@
 /* Which settings of the panel count with the others as they are. */
-#include "check.h"
+#include "suite.h"
 
 #include <string.h>
 
-#include "view/setting_applies.h"
+#include "render/plan/method.h"
+#include "view/settings/setting_applies.h"
 
 static struct gz_scene_settings settings_of(int method)
 {
@@ -74,7 +75,7 @@ static void rows_behind_a_switch_count_once_it_is_on(void **state)
 	assert_true(gz_setting_applies(&settings, "foveation.acuity_slope"));
 }
 
-int main(void)
+TEST_SUITE(setting_applies)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rows_of_foveation_count_with_the_methods_that_use_them),

@@ -1,5 +1,5 @@
 /* The statistics file is whole JSON at every moment; the line says the same. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "view/stats.h"
+#include "view/frame/stats.h"
 
 static char folder[] = "/tmp/gazecast-test-stats-XXXXXX";
 static char path[64];
@@ -177,7 +177,7 @@ static void close_of_nothing_is_allowed(void **state)
 	gz_stats_close(NULL);
 }
 
-int main(void)
+TEST_SUITE(stats)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_without_frames_is_whole),

@@ -1,5 +1,5 @@
 /* Which targets are shown, and in which order. */
-#include "check.h"
+#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "view/options.h"
-#include "view/target_options.h"
+#include "view/options/options.h"
+#include "view/options/target_options.h"
 
 static struct captured_log captured;
 
@@ -123,7 +123,7 @@ static void targets_go_with_no_scene_and_with_a_window_only(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(target_options)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(layouts_begin_in_the_middle_and_reach_every_corner),

@@ -1,10 +1,10 @@
 /* Which monitor is the tracker's, and where a window is on it. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "view/tracker_display.h"
+#include "view/gaze/tracker_display.h"
 
 /* A 4K one at the left, two of 1920x1080 beside it: one of 24 inches, one of 27. */
 static struct gz_monitor_list three(void)
@@ -177,7 +177,7 @@ static void window_without_a_size_or_a_monitor_is_the_whole(void **state)
 	}
 }
 
-int main(void)
+TEST_SUITE(tracker_display)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(monitor_of_a_window_holds_its_middle_else_is_the_first),

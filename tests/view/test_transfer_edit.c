@@ -1,10 +1,10 @@
 /* What is edited stays a valid transfer function, and every step can be taken back. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "view/transfer_edit.h"
+#include "view/panels/transfer_edit.h"
 
 static const struct gz_transfer four = {
 	.count = 4,
@@ -271,7 +271,7 @@ static void axis_of_opacity_leads_back_and_spreads_small_ones(void **state)
 		    gz_transfer_axis_opacity(-7, true) == 0);
 }
 
-int main(void)
+TEST_SUITE(transfer_edit)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(point_is_added_on_the_curve_with_its_colour),

@@ -1,6 +1,6 @@
 /* Videos: when a picture stands in them, at what size, and what becomes of an ffmpeg that is
  * missing, slow or dies. Stand-ins of ffmpeg are scripts. */
-#include "check.h"
+#include "suite.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -311,7 +311,7 @@ static void killed_ffmpeg_is_told_by_its_signal(void **state)
 	assert_non_null(strstr(self->log.last, "ended by signal 9"));
 }
 
-int main(void)
+TEST_SUITE(video)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(clock_gives_each_frame_made_at_the_videos_rate_one_picture),

@@ -262,7 +262,7 @@ class Validate(unittest.TestCase):
         self.assertEqual(self.status()["correction"]["x"], [0, 1, 0])
         done = self.validate("--forget")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("nothing is stored", done.stderr)
+        self.assertIn("no correction is stored", done.stderr)
 
     def test_file_of_another_display_under_this_ones_name_is_refused(self):
         folder = os.path.join(self.place, "config/gazecast/corrections")
@@ -388,7 +388,7 @@ class Validate(unittest.TestCase):
         self.stop_daemon(signal.SIGKILL)
         status, out, err = self.finish(gazectl)
         self.assertEqual((status, out), (3, ""), err)
-        self.assertIn("does gazed still run?", err)
+        self.assertIn("is gazed still running?", err)
 
     def test_tracker_that_is_lost_on_the_way_is_told(self):
         self.start_simulator()
@@ -405,7 +405,7 @@ class Validate(unittest.TestCase):
         self.assertIn("the tracker is ended", done.stderr)
         done = self.validate("--instructions=no")  # and now there is none to begin with
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertIn("nothing to check", done.stderr)
+        self.assertIn("cannot be checked", done.stderr)
 
     def test_missing_gazeview_is_one_line(self):
         self.start_simulator()

@@ -12,8 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "protocol/gaze.h"
-#include "render/file_path.h"
 
 #define GZ_LOG_MODULE "video"
 

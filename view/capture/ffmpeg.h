@@ -8,7 +8,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /** A running ffmpeg. */
 struct gz_ffmpeg;

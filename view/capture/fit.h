@@ -6,7 +6,7 @@
 #define GZ_VIEW_CAPTURE_FIT_H
 
 #include "base/result.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /** Room for gz_image_fit(), kept from picture to picture; zero-initialised is empty. */
 struct gz_image_fit {

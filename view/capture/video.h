@@ -11,7 +11,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /** Pictures that wait for ffmpeg at most. Chosen: a third of a second at 24 a second, 64 MiB at
  * 1920x1080. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/plan/method.h"
 
 static const struct gz_condition *condition_of(const struct gz_answer_row *row)
 {

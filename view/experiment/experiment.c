@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "view/experiment/experiment_internal.h"
-#include "view/scene_tables.h"
+#include "view/settings/scene_tables.h"
 
 const struct gz_experiment_setting *gz_experiment_find_setting(
 	const struct gz_experiment_section *section, const char *key, int alternative)
@@ -34,8 +34,8 @@ enum gz_result gz_alternative_apply(const struct gz_alternative *alternative,
 	for (size_t i = 0; i < alternative->setting_count; i++) {
 		size_t table = 0;
 		const struct gz_experiment_setting *setting = alternative->settings[i];
-		const struct gz_option *option =
-			gz_options_find(tables.bindings, GZ_SCENE_BINDINGS, setting->key, &table);
+		const struct gz_option *option = gz_options_find(
+			tables.bindings, GZ_VIEW_SCENE_TABLES, setting->key, &table);
 		if (!option || gz_option_parse(option, setting->value,
 					       tables.bindings[table].target, NULL, 0) != GZ_OK)
 			return GZ_ERR_INVAL;

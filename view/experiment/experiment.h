@@ -19,7 +19,7 @@
 #include "base/log.h"
 #include "base/option.h"
 #include "base/result.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 /* Limits chosen: beyond what somebody sits through, within what a mistyped number makes. */
 #define GZ_EXPERIMENT_SECTIONS_MAX 256   /**< trials, and blocks */

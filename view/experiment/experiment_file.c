@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "view/experiment/experiment_internal.h"
-#include "view/scene_tables.h"
+#include "view/settings/scene_tables.h"
 
 #define GZ_LOG_MODULE "experiment"
 
@@ -127,7 +127,7 @@ static struct gz_option_binding own_binding(struct reader *reader)
 					    NULL };
 }
 
-enum { TABLES_MAX = GZ_SCENE_BINDINGS + 2 };
+enum { TABLES_MAX = GZ_VIEW_SCENE_TABLES + 2 };
 
 /* Every table that the section's keys are of: its own, trials', the scene's. */
 static size_t all_tables(struct reader *reader, struct gz_option_binding out_tables[TABLES_MAX])

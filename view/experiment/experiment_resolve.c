@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
-#include "render/file_path.h"
+#include "base/file.h"
+#include "base/text.h"
 #include "view/experiment/answer_keys.h"
 #include "view/experiment/experiment_internal.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/file_path.h"
+#include "base/file.h"
 #include "view/experiment/experiment_internal.h"
 
 #define GZ_LOG_MODULE "experiment"

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/plan/method.h"
 #include "view/experiment/answer_keys.h"
 
 /* Texts before a trial, in their order. */

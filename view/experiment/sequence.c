@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
+#include "base/text.h"
 #include "sim/random.h"
 #include "view/experiment/experiment_internal.h"
 

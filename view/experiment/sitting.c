@@ -1,4 +1,5 @@
 #include "view/experiment/sitting.h"
+#include "render/plan/method.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 #include "protocol/gaze.h"
-#include "view/tracker_display.h"
+#include "view/gaze/tracker_display.h"
 
 /** Sources that can be chosen: a row each. */
 enum gz_gaze_panel_source {

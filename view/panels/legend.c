@@ -2,8 +2,8 @@
 
 #include <stdio.h>
 
+#include "view/draw/viridis.h"
 #include "view/panels/widgets.h"
-#include "view/viridis.h"
 
 /* Unscaled (chosen: six numbers stand apart). */
 #define MARGIN  8.0f

@@ -5,8 +5,8 @@
 #ifndef GZ_VIEW_LEGEND_H
 #define GZ_VIEW_LEGEND_H
 
-#include "render/view_settings.h"
-#include "view/plan_cells.h"
+#include "render/scene/view_settings.h"
+#include "view/draw/plan_cells.h"
 
 /**
  * Draw it at the top left, below @p below.

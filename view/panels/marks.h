@@ -6,7 +6,7 @@
 #ifndef GZ_VIEW_MARKS_H
 #define GZ_VIEW_MARKS_H
 
-#include "view/letters.h"
+#include "view/draw/letters.h"
 #include "view/panels/widgets.h"
 
 /** Draw a text on a dark ground at the top left, @p below being the lower edge of the one above it

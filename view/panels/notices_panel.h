@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "view/notices.h"
+#include "view/panels/notices.h"
 
 /** Draw @p count messages at the lower right, the first lowest. @return the one that was clicked;
  *  @p count: none */

@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 
-#include "view/folder.h"
-#include "view/recent.h"
+#include "view/files/folder.h"
+#include "view/files/recent.h"
 
 enum { GZ_PANEL_MESSAGE_SIZE = 256 };
 

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "protocol/gaze.h"
-#include "render/volume/raw_guess.h"
+#include "render/data/raw_guess.h"
 
 /** What it shows. Zero-initialised is closed. */
 struct gz_raw_panel {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "render/transfer_presets.h"
+#include "render/transfer/transfer_presets.h"
 #include "view/panels/widgets.h"
 
 /* Unscaled (chosen: a bin of 256 is two coordinates wide). */

@@ -10,10 +10,10 @@
 #include <stddef.h>
 
 #include "protocol/gaze.h"
-#include "render/histogram.h"
-#include "render/volume/volume.h"
+#include "render/data/volume.h"
+#include "render/transfer/histogram.h"
+#include "view/panels/transfer_edit.h"
 #include "view/panels/transfer_plot.h"
-#include "view/transfer_edit.h"
 
 /** What it asks for that is not its own to do. */
 enum gz_transfer_wish {

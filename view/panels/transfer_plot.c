@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "view/transfer_edit.h"
+#include "view/panels/transfer_edit.h"
 
 /* Unscaled. */
 #define BAND_HEIGHT  16.0f

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "render/histogram.h"
-#include "render/transfer.h"
+#include "render/transfer/histogram.h"
+#include "render/transfer/transfer.h"
 #include "view/panels/widgets.h"
 
 /** Height of its canvas, unscaled. */

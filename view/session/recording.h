@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "view/frame.h"
+#include "view/frame/frame.h"
 #include "view/session/session_writer.h"
 
 /** What is shown as a recording begins. */

@@ -11,8 +11,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "view/frame.h"
-#include "view/options.h"
+#include "view/frame/frame.h"
+#include "view/options/options.h"
 #include "view/session/session.h"
 
 /** A session being replayed. */

@@ -16,8 +16,8 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/attention/attention.h"
-#include "render/volume/volume_identity.h"
-#include "view/gaze_source.h"
+#include "render/data/volume_identity.h"
+#include "view/gaze/gaze_source.h"
 
 #define GZ_SESSION_ENDING   ".session"
 #define GZ_SESSION_SCENE    "scene.scene"

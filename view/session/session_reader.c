@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "view/scene_tables.h"
 #include "view/session/session_text.h"
+#include "view/settings/scene_tables.h"
 
 #define GZ_LOG_MODULE "session"
 
@@ -196,7 +196,7 @@ static enum gz_result take_set(struct gz_session_reader *reader, struct gz_sessi
 		return refuse(reader, "no value behind a setting; the file is damaged");
 	gz_view_pick_scene_tables(&state->settings, &tables);
 	const struct gz_option *option =
-		gz_options_find(tables.bindings, GZ_SCENE_BINDINGS, key, &binding);
+		gz_options_find(tables.bindings, GZ_VIEW_SCENE_TABLES, key, &binding);
 	if (!option)
 		return refuse(reader,
 			      "%.*s: no such setting; the file is damaged or of a later "

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
-#include "render/image.h"
+#include "base/text.h"
+#include "render/picture/image.h"
 
 /* In the order of a frame's fields. */
 static const char *const columns[] = {

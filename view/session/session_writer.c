@@ -10,10 +10,10 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "protocol/gaze_log_writer.h"
-#include "render/scene_write.h"
-#include "view/scene_tables.h"
+#include "protocol/gaze_log.h"
+#include "render/scene/scene_write.h"
 #include "view/session/session_text.h"
+#include "view/settings/scene_tables.h"
 
 #define GZ_LOG_MODULE "session"
 
@@ -305,19 +305,18 @@ static enum gz_result print_changes(struct gz_session_writer *writer,
 	struct gz_scene_settings *before = &writer->settings;
 	memcpy(&now, settings, sizeof now);
 	keep_names(before, &now);
-	if (memcmp(&now, before, sizeof now) == 0)
+	if (gz_scene_settings_same(&now, before))
 		return GZ_OK;
-	if (memcmp(&now.foveation.table, &before->foveation.table, sizeof now.foveation.table) !=
-	    0) {
+	if (!gz_spacing_table_same(&now.foveation.table, &before->foveation.table)) {
 		const enum gz_result r = copy_table(writer, &now.foveation);
 		if (r != GZ_OK)
 			return r;
 	}
 	gz_view_pick_scene_tables(before, &old);
 	gz_view_pick_scene_tables(&now, &new);
-	for (size_t i = 0; i < GZ_SCENE_BINDINGS; i++)
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++)
 		for (size_t k = 0; k < old.bindings[i].count; k++)
-			print_change(&old.options[i][k], old.bindings[i].target,
+			print_change(&old.bindings[i].options[k], old.bindings[i].target,
 				     new.bindings[i].target, &writer->lines);
 	memcpy(before, &now, sizeof now);
 	return GZ_OK;

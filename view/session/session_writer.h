@@ -11,7 +11,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 #include "view/session/session.h"
 
 /** A session in the making. */

@@ -2,17 +2,18 @@
 
 #include <GLFW/glfw3.h>
 
-#include "view/letters.h"
+#include "render/plan/method.h"
+#include "view/draw/letters.h"
 #include "view/panels/marks.h"
 #include "view/panels/settings_panel.h"
-#include "view/setting_applies.h"
+#include "view/settings/setting_applies.h"
 #include "view/window/window_state.h"
 
 static void choose_method(struct gz_window *window, int method)
 {
 	if (!window->maker)
 		return;
-	if (method == GZ_METHOD_TABLE && window->settings.foveation.table.count == 0)
+	if (gz_methods[method].needs_table && window->settings.foveation.table.count == 0)
 		return; /* the scene has none to show */
 	window->settings.foveation.method = method;
 	window->cast_needed = true;
@@ -127,7 +128,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	if (!window->settings_panel.open || !window->maker)
 		return;
 	window->settings_panel.bindings = window->tables.bindings;
-	window->settings_panel.count = GZ_SCENE_BINDINGS;
+	window->settings_panel.count = GZ_VIEW_SCENE_TABLES;
 	window->settings_panel.applies = setting_applies;
 	window->settings_panel.user = &window->settings;
 	window->settings_panel.margin_top = window->panels_top;

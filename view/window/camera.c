@@ -5,8 +5,8 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/camera.h"
-#include "render/saved_view.h"
+#include "render/picture/camera.h"
+#include "render/scene/saved_view.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"

@@ -7,9 +7,10 @@
 
 #include <GLFW/glfw3.h>
 
-#include "view/compare.h"
+#include "render/scene/techniques.h"
+#include "view/draw/compare.h"
+#include "view/frame/reference.h"
 #include "view/panels/widgets.h"
-#include "view/reference.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -123,6 +124,7 @@ static void start(struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	const struct gz_reference_source source = {
+		.technique = gz_techniques[0],
 		.volume = &scene->volume,
 		.threads = (window->options->threads + 1) / 2,
 		.finished = wake_loop,

@@ -5,8 +5,8 @@
 
 #include <GLFW/glfw3.h>
 
-#include "view/context_loss.h"
 #include "view/panels/widgets.h"
+#include "view/window/context_loss.h"
 #include "view/window/part.h"
 #include "view/window/window_state.h"
 

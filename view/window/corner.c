@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "view/gaze_state.h"
+#include "view/gaze/gaze_state.h"
 #include "view/panels/marks.h"
 #include "view/window/displays.h"
 #include "view/window/gaze_sources.h"

@@ -6,7 +6,7 @@
 #ifndef GZ_VIEW_WINDOW_DISPLAYS_H
 #define GZ_VIEW_WINDOW_DISPLAYS_H
 
-#include "view/tracker_display.h"
+#include "view/gaze/tracker_display.h"
 #include "view/window/part.h"
 
 /** The part. */

@@ -7,12 +7,12 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/scene_open.h"
-#include "render/volume/dicom_series.h"
+#include "render/data/dicom_series.h"
+#include "render/scene/scene_open.h"
+#include "view/files/scene_save.h"
 #include "view/panels/open_panel.h"
 #include "view/panels/raw_panel.h"
 #include "view/panels/save_panel.h"
-#include "view/scene_save.h"
 #include "view/window/gaze_sources.h"
 #include "view/window/loading.h"
 #include "view/window/transfer.h"

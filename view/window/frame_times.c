@@ -5,11 +5,11 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/frame_history.h"
+#include "view/frame/frame_history.h"
 #include "view/panels/frame_times_panel.h"
 #include "view/panels/settings_panel.h"
 #include "view/panels/widgets.h"
-#include "view/setting_applies.h"
+#include "view/settings/setting_applies.h"
 #include "view/window/gaze_settings.h"
 #include "view/window/window_state.h"
 
@@ -108,7 +108,7 @@ static void draw_settings(struct gz_window *window)
 	static const char *const prefixes[] = { "foveation.", NULL };
 	const struct gz_settings_panel rows = {
 		.bindings = window->tables.bindings,
-		.count = GZ_SCENE_BINDINGS,
+		.count = GZ_VIEW_SCENE_TABLES,
 		.applies = setting_applies,
 		.user = &window->settings,
 	};

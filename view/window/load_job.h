@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 #include "base/log.h"
-#include "view/frame.h"
-#include "view/options.h"
+#include "view/frame/frame.h"
+#include "view/options/options.h"
 #include "view/window/loading.h"
 
 enum { GZ_LOAD_WHAT_SIZE = 256 };

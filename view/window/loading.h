@@ -10,7 +10,7 @@
 
 #include "base/result.h"
 #include "protocol/gaze.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 #include "view/window/part.h"
 
 /** What is to be shown. Zero-initialised but for the path: a scene's file as it is. */

@@ -43,7 +43,7 @@ struct gz_frame_maker *gz_window_leave_maker(struct gz_window *window);
  * that fails. @return what gz_frame_maker_start() returns; logged */
 enum gz_result gz_window_swap_to_job(struct gz_window *window, struct gz_load_job *job);
 
-/** Whether cpu casts the rays of the next scene: as gz_caster_takes_cpu() says, and from
+/** Whether cpu casts the rays of the next scene: as gz_frame_takes_cpu() says, and from
  *  GZ_WINDOW_LOSSES_TO_CPU on. */
 bool gz_window_takes_cpu(struct gz_window *window);
 

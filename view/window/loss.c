@@ -2,7 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/context_loss.h"
+#include "view/window/context_loss.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"

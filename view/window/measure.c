@@ -9,7 +9,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"

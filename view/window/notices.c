@@ -6,7 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/notices.h"
+#include "view/panels/notices.h"
 #include "view/panels/notices_panel.h"
 #include "view/window/window_state.h"
 

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "view/overlay.h"
+#include "view/draw/overlay.h"
 #include "view/panels/legend.h"
 #include "view/window/window_state.h"
 

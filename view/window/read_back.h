@@ -6,7 +6,7 @@
 #define GZ_VIEW_WINDOW_READ_BACK_H
 
 #include "base/result.h"
-#include "render/image.h"
+#include "render/picture/image.h"
 
 /**
  * Read the window's framebuffer, before it is swapped. Waits for what is being drawn.

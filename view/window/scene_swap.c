@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "view/caster.h"
 #include "view/window/loading_state.h"
 #include "view/window/part.h"
 
@@ -51,7 +50,7 @@ struct gz_frame_maker *gz_window_leave_maker(struct gz_window *window)
 bool gz_window_takes_cpu(struct gz_window *window)
 {
 	return window->losses >= GZ_WINDOW_LOSSES_TO_CPU ||
-	       gz_caster_takes_cpu(window->options, &window->context.base, window->log);
+	       gz_frame_takes_cpu(window->options, &window->context.base, window->log);
 }
 
 enum gz_result gz_window_start_maker(struct gz_window *window, struct gz_frame_maker *maker)

@@ -9,7 +9,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/scene_picture.h"
+#include "render/scene/scene_picture.h"
 #include "view/capture/file_name.h"
 #include "view/window/loading.h"
 #include "view/window/read_back.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "view/gaze_trail.h"
+#include "view/gaze/gaze_trail.h"
 #include "view/panels/widgets.h"
 #include "view/window/window_state.h"
 

@@ -9,8 +9,8 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/histogram.h"
-#include "render/scene_files.h"
+#include "render/scene/scene_files.h"
+#include "render/transfer/histogram.h"
 #include "view/panels/transfer_panel.h"
 #include "view/panels/widgets.h"
 #include "view/window/loading.h"

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "render/transfer.h"
+#include "render/transfer/transfer.h"
 #include "view/window/part.h"
 
 /** The part. */

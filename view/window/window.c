@@ -7,9 +7,11 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/context_loss.h"
-#include "view/display_loss.h"
+#include "render/plan/method.h"
+#include "render/scene/techniques.h"
 #include "view/panels/widgets.h"
+#include "view/window/context_loss.h"
+#include "view/window/display_loss.h"
 #include "view/window/displays.h"
 #include "view/window/experiment.h"
 #include "view/window/files.h"
@@ -35,25 +37,18 @@ static enum gz_result open_display(const struct gz_log *log)
 	       gz_window_glfw_reason());
 	return GZ_ERR_NO_DEVICE;
 }
-
-static bool same_display(const struct gz_display *a, const struct gz_display *b)
-{
-	return a->px[0] == b->px[0] && a->px[1] == b->px[1] && a->mm[0] == b->mm[0] &&
-	       a->mm[1] == b->mm[1] && a->distance_mm == b->distance_mm;
-}
-
 /* Whether where the picture is sharp, or what it is on, is another than in the one shown. */
 static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	if (gaze->focus) {
 		gz_frame_set_focus(window->maker, &gaze->reading, gaze->focus);
-		return gaze->focus_new || !same_display(&gaze->display, &window->shown_display);
+		return gaze->focus_new || !gz_display_same(&gaze->display, &window->shown_display);
 	}
 	bool moved = !window->gaze_frozen &&
 		     gz_frame_attend(window->maker, &window->settings.attention, &gaze->reading,
 				     &gaze->display, gz_clock_now_ns());
 	return moved || gz_frame_settling(window->maker) ||
-	       !same_display(&gaze->display, &window->shown_display);
+	       !gz_display_same(&gaze->display, &window->shown_display);
 }
 
 static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
@@ -87,7 +82,7 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 static bool settings_valid(const struct gz_scene_settings *settings)
 {
 	const struct gz_foveation *foveation = &settings->foveation;
-	bool table_there = foveation->method != GZ_METHOD_TABLE || foveation->table.count > 0;
+	bool table_there = !gz_method_of(foveation)->needs_table || foveation->table.count > 0;
 	return table_there && gz_scene_settings_check(settings, "settings", NULL) == GZ_OK;
 }
 
@@ -138,8 +133,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
 		       int height)
 {
-	struct gz_scene_settings before;
-	memcpy(&before, &window->settings, sizeof before);
+	const struct gz_scene_settings before = window->settings;
 	window->present_needed = false;
 	if (window->any_shown)
 		gz_quad_draw(&window->quad, width, height);
@@ -157,8 +151,7 @@ void gz_window_present(struct gz_window *window, const struct gz_window_gaze *ga
 	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 		if ((*part)->presented)
 			(*part)->presented(window);
-	/* Copied whole, so that padding is the same too. */
-	if (memcmp(&before, &window->settings, sizeof before) != 0)
+	if (!gz_scene_settings_same(&before, &window->settings))
 		take_changes(window, &before);
 }
 
@@ -306,9 +299,9 @@ static void close_window(struct gz_window *window)
 /* What is wrong with the command line is known before there is a window. */
 static enum gz_result check_backend(const struct gz_view_options *options, const struct gz_log *log)
 {
-	const struct gz_renderer_params params = { .threads = options->threads,
-						   .simd = options->simd };
-	return gz_renderer_check(options->backend, &params, log);
+	const struct gz_backend_params params = { .threads = options->threads,
+						  .simd = options->simd };
+	return gz_techniques[0]->check(options->backend, &params, log);
 }
 
 /* The scene that the program was started with comes as any other does. */

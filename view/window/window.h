@@ -8,8 +8,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "view/notices.h"
-#include "view/options.h"
+#include "view/options/options.h"
+#include "view/panels/notices.h"
 
 /**
  * Show the scene until the window is closed; without one, or where it cannot be shown, the window

@@ -12,15 +12,15 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "render/gl/gl_context.h"
-#include "view/frame.h"
-#include "view/gaze_source.h"
-#include "view/notices.h"
-#include "view/options.h"
+#include "render/opengl/gl_context.h"
+#include "view/draw/quad.h"
+#include "view/frame/frame.h"
+#include "view/gaze/gaze_source.h"
+#include "view/gaze/tracker_display.h"
+#include "view/options/options.h"
+#include "view/panels/notices.h"
 #include "view/panels/settings_panel.h"
-#include "view/quad.h"
-#include "view/scene_tables.h"
-#include "view/tracker_display.h"
+#include "view/settings/scene_tables.h"
 
 struct GLFWmonitor;
 struct GLFWwindow;

@@ -1,4 +1,4 @@
-/* gazectl convert: recordings of other programs to gaze logs, and gaze logs to theirs. */
+/* gazectl convert: recordings of other programs to gaze logs, and gaze logs to other formats. */
 #include "client/gazectl/gazectl.h"
 
 #include <inttypes.h>
@@ -25,19 +25,18 @@ struct convert_settings {
 static const struct gz_option convert_options[] = {
 	GZ_COMMAND_HELP_OPTION,
 	{ "from", GZ_OPTION_STRING, AT(from), 0, 16, 0, NULL, "",
-	  "gzl, pupil, eyelink or tobii; empty: as the file looks" },
+	  "format of INPUT: gzl, pupil, eyelink or tobii; empty: recognised by its content" },
 	{ "to", GZ_OPTION_STRING, AT(to), 0, 16, 0, NULL, "",
-	  "gzl, csv or bids; empty: as OUTPUT ends" },
-	{ "force", GZ_OPTION_BOOL, AT(force), 0, 0, 0, NULL, "false",
-	  "replace files that are there" },
+	  "format of OUTPUT: gzl, csv or bids; empty: by the ending of its name" },
+	{ "force", GZ_OPTION_BOOL, AT(force), 0, 0, 0, NULL, "false", "replace existing files" },
 	{ "display.px", GZ_OPTION_SIZE, AT(display_px), 0, GZ_DISPLAY_SIDE_MAX_PX, 0, NULL, "0x0",
-	  "the display, pixels; 0x0: as the file says" },
+	  "size of the display, pixels; 0x0: from the file" },
 	{ "display.mm", GZ_OPTION_DOUBLE, AT(display_mm), 0, 100000, 2, NULL, "0 0",
-	  "its width and height, mm; 0 0: as the file says" },
+	  "width and height of the display, mm; 0 0: from the file" },
 	{ "display.distance_mm", GZ_OPTION_DOUBLE, AT(distance_mm), 0, 100000, 0, NULL, "0",
-	  "from the eyes to its centre, mm; 0: as the file says" },
+	  "distance from the eyes to the centre of the display, mm; 0: from the file" },
 	{ "rate-hz", GZ_OPTION_DOUBLE, AT(rate_hz), 0, 100000, 0, NULL, "0",
-	  "the tracker's nominal rate, Hz; 0: as the file says" },
+	  "nominal rate of the tracker, Hz; 0: from the file" },
 };
 
 /* One conversion. */
@@ -65,9 +64,9 @@ static enum gz_result pass_record(void *user, const struct gz_gaze_log_record *r
 	return conversion->sink.record(conversion->sink.user, record);
 }
 
-/* What the command line says of the display comes before what a gaze log says. */
-static struct gz_gaze_log_header adjusted(const struct gz_gaze_log_header *read,
-					  const struct convert_settings *settings)
+/* The header of a gaze log with the display and the rate from the command line. */
+static struct gz_gaze_log_header override_header(const struct gz_gaze_log_header *read,
+						 const struct convert_settings *settings)
 {
 	struct gz_gaze_log_header header = *read;
 	if (settings->display_px[0] > 0 && settings->display_px[1] > 0)
@@ -90,7 +89,7 @@ static enum gz_result read_gzl(struct conversion *conversion)
 	if (result != GZ_OK)
 		return result;
 	struct gz_gaze_log_header header =
-		adjusted(gz_gaze_log_header(reader), conversion->settings);
+		override_header(gz_gaze_log_header(reader), conversion->settings);
 	result = pass_header(conversion, &header);
 	while (result == GZ_OK) {
 		result = gz_gaze_log_read(reader, &record);
@@ -123,12 +122,12 @@ static enum gz_result read_foreign(struct conversion *conversion, struct gz_text
 	const struct gz_recording_sink sink = { conversion, pass_header, pass_record };
 	enum gz_result result = reader->read(lines, &settings, &sink, &conversion->counts);
 	if (result == GZ_ERR_IO && conversion->counts.samples == 0)
-		gz_err(conversion->log, "%s cannot be read", conversion->input);
+		gz_err(conversion->log, "%s cannot be read; is it damaged?", conversion->input);
 	return result;
 }
 
-/* The reader that --from names, or that the first line with text on it shows. NULL stands for a
- * gaze log, as does false for none. */
+/* Choose the reader by --from, or by the first line that is not empty. @param[out] out_reader NULL:
+ * the input is a gaze log @return false: no reader fits; logged */
 static bool choose_reader(const struct conversion *conversion, struct gz_text_lines *lines,
 			  const struct gz_recording_reader **out_reader)
 {
@@ -141,7 +140,7 @@ static bool choose_reader(const struct conversion *conversion, struct gz_text_li
 		*out_reader = gz_recording_reader_find(from);
 		if (!*out_reader)
 			gz_err(conversion->log,
-			       "--from %s: no such format; allowed: gzl, pupil, eyelink, tobii",
+			       "--from %s: unknown format; allowed: gzl, pupil, eyelink, tobii",
 			       from);
 		return *out_reader != NULL;
 	}
@@ -158,8 +157,7 @@ static bool choose_reader(const struct conversion *conversion, struct gz_text_li
 			return true;
 	}
 	gz_err(conversion->log,
-	       "%s looks like no recording that is known; say which with --from pupil, eyelink, "
-	       "tobii or gzl",
+	       "%s: the format is not recognised; give it with --from pupil, eyelink, tobii or gzl",
 	       conversion->input);
 	return false;
 }
@@ -190,25 +188,26 @@ static const struct gz_recording_writer *choose_writer(const char *to, const cha
 	const struct gz_recording_writer *writer =
 		to[0] ? gz_recording_writer_find(to) : gz_recording_writer_of(output);
 	if (!writer && to[0])
-		gz_err(log, "--to %s: no such format; allowed: gzl, csv, bids", to);
+		gz_err(log, "--to %s: unknown format; allowed: gzl, csv, bids", to);
 	else if (!writer)
 		gz_err(log,
-		       "%s: which format? End it in .gzl, .csv or _physio.tsv.gz, or give --to",
+		       "%s: unknown format; end the name in .gzl, .csv or _physio.tsv.gz, or give "
+		       "--to",
 		       output);
 	return writer;
 }
 
-static void report(const struct conversion *conversion, const char *output)
+static void print_result(const struct conversion *conversion, const char *output)
 {
 	printf("%s: %" PRIu64 " samples, %" PRIu64 " gaps, %" PRIu64 " marks", output,
 	       conversion->counts.samples, conversion->gaps, conversion->marks);
 	if (conversion->counts.skipped)
-		printf("; %" PRIu64 " lines could not be read and were left out",
+		printf("; %" PRIu64 " lines could not be read and were skipped",
 		       conversion->counts.skipped);
 	putchar('\n');
 }
 
-static enum gazectl_exit convert(struct conversion *conversion, const char *output)
+static enum gazectl_exit convert_recording(struct conversion *conversion, const char *output)
 {
 	const struct convert_settings *settings = conversion->settings;
 	const struct gz_recording_writer *writer =
@@ -219,32 +218,32 @@ static enum gazectl_exit convert(struct conversion *conversion, const char *outp
 		return GAZECTL_USAGE;
 	enum gz_result result = read_input(conversion);
 	if (result == GZ_OK && conversion->counts.samples == 0) {
-		gz_err(conversion->log, "%s holds no sample", conversion->input);
+		gz_err(conversion->log, "%s has no samples", conversion->input);
 		result = GZ_ERR_FORMAT;
 	}
 	enum gz_result ended = writer->close(&conversion->sink, result == GZ_OK);
 	if (result != GZ_OK || ended != GZ_OK)
 		return GAZECTL_FAILED;
-	report(conversion, output);
+	print_result(conversion, output);
 	return conversion->damaged ? GAZECTL_DAMAGED : GAZECTL_DONE;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int convert_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct convert_settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazectl_convert, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazectl_convert, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count < 2) {
-		gz_err(log, "from what to what? gazectl convert INPUT OUTPUT");
+		gz_err(log, "two files are needed: gazectl convert INPUT OUTPUT");
 		return GAZECTL_USAGE;
 	}
 	struct conversion conversion = { .settings = &settings,
 					 .input = operands.items[0],
 					 .log = log };
-	return convert(&conversion, operands.items[1]);
+	return convert_recording(&conversion, operands.items[1]);
 }
 
 const struct gz_command gazectl_convert = {
@@ -255,10 +254,10 @@ const struct gz_command gazectl_convert = {
 	.summary = "convert recordings from and to gaze logs",
 	.details =
 		"Reads gaze logs, and, plain or gzip, Pupil's gaze_positions.csv, EyeLink's .asc "
-		"and Tobii's .tsv;\nwrites gaze logs (.gzl), tables (.csv) and BIDS "
-		"(_physio.tsv.gz). Where a file does not tell its display,\ngive it: angles need "
-		"one.\n",
+		"and Tobii's .tsv.\nWrites gaze logs (.gzl), tables (.csv) and BIDS "
+		"(_physio.tsv.gz). If a file does not contain the\nsize of its display, give it "
+		"here: it is needed to compute angles.\n",
 	.options = convert_options,
 	.option_count = sizeof convert_options / sizeof convert_options[0],
-	.run = run,
+	.run = convert_run,
 };

@@ -1,7 +1,7 @@
-/* EyeLink recordings as edf2asc writes them (.asc), of gaze positions: SR Research's "EyeLink 1000
- * User Manual", section "ASC file format". Sample lines are a time in ms and, for each eye that was
- * tracked, left before right, x and y in pixels and the pupil's size in a unit of its own; what
- * follows (velocities, resolution, head target, flags) is left out. */
+/* The reader of EyeLink recordings of gaze positions as edf2asc writes them (.asc): SR Research,
+ * "EyeLink 1000 User Manual", section "ASC file format". A sample line has a time in ms and, for
+ * each tracked eye, left before right, x and y in pixels and the size of the pupil in a unit of its
+ * own. The fields after them (velocities, resolution, head target, flags) are ignored. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,14 +21,14 @@ struct eyelink {
 	double rectangle_px[4]; /* left, top, right, bottom of the screen's pixels, inclusive */
 	bool has_rectangle;
 	bool sent_header;
-	bool recording; /* within a block */
+	bool recording; /* inside a block of samples */
 	double last_ms;
-	int same_ms; /* samples before this one that show the same whole millisecond */
+	int same_ms; /* samples before this one with the same whole millisecond */
 	uint64_t seq;
 	struct gz_gaze_log_record record; /* large */
 };
 
-static bool recognises(const char *line)
+static bool eyelink_recognises(const char *line)
 {
 	return strncmp(line, "** CONVERTED FROM", 17) == 0 ||
 	       strncmp(line, "** VERSION: EYELINK", 19) == 0;
@@ -44,7 +44,7 @@ static bool is_time_ms(double ms)
 	return ms >= 0 && ms < 1e12;
 }
 
-static enum gz_result send_header(struct eyelink *eyelink)
+static enum gz_result send_eyelink_header(struct eyelink *eyelink)
 {
 	struct gz_convert_settings settings = *eyelink->settings;
 	if (eyelink->sent_header)
@@ -60,14 +60,14 @@ static enum gz_result send_header(struct eyelink *eyelink)
 	return eyelink->sink->header(eyelink->sink->user, &header);
 }
 
-static enum gz_result send(struct eyelink *eyelink)
+static enum gz_result send_eyelink_record(struct eyelink *eyelink)
 {
-	enum gz_result result = send_header(eyelink);
+	enum gz_result result = send_eyelink_header(eyelink);
 	return result == GZ_OK ? eyelink->sink->record(eyelink->sink->user, &eyelink->record)
 			       : result;
 }
 
-/* "GAZE_COORDS <left> <top> <right> <bottom>", and the same of the display. */
+/* Parse "GAZE_COORDS <left> <top> <right> <bottom>", or DISPLAY_COORDS with the same numbers. */
 static void take_rectangle(struct eyelink *eyelink, const char *text)
 {
 	double r[4];
@@ -86,23 +86,24 @@ static void take_rectangle(struct eyelink *eyelink, const char *text)
 	eyelink->has_rectangle = true;
 }
 
-/* "MSG <time> <text>": screen coordinates, or a mark. */
-static enum gz_result take_message(struct eyelink *eyelink, const char *text)
+/* Take "MSG <time> <text>": screen coordinates, or a mark. */
+static enum gz_result take_eyelink_message(struct eyelink *eyelink, const char *text)
 {
 	double ms;
 	if (!gz_text_take_number(&text, &ms) || !is_time_ms(ms))
 		return GZ_OK;
 	take_rectangle(eyelink, text);
-	/* What is said before the first sample waits for nothing: the header needs the rate. */
+	/* Marks before the first sample are dropped: the header, which must come before them, needs
+	 * the rate. */
 	if (!eyelink->sent_header)
 		return GZ_OK;
 	eyelink->record.kind = GZ_GAZE_LOG_MARK;
 	eyelink->record.host_ns = ns_of_ms(ms);
 	gz_text_copy(eyelink->record.text, sizeof eyelink->record.text, text);
-	return send(eyelink);
+	return send_eyelink_record(eyelink);
 }
 
-/* "SAMPLES GAZE LEFT RIGHT … RATE 500.00 …" */
+/* Take "SAMPLES GAZE LEFT RIGHT … RATE 500.00 …": the eyes and the rate of the next block. */
 static enum gz_result take_samples_line(struct eyelink *eyelink, char *line)
 {
 	struct gz_text_fields fields;
@@ -121,7 +122,8 @@ static enum gz_result take_samples_line(struct eyelink *eyelink, char *line)
 	if (gaze)
 		return GZ_OK;
 	gz_err(eyelink->settings->log,
-	       "%s:%llu: its samples are no gaze positions; convert it with edf2asc's gaze output",
+	       "%s:%llu: the samples are not gaze positions; convert the recording again with the "
+	       "gaze output of edf2asc",
 	       eyelink->settings->name, (unsigned long long)gz_text_lines_number(eyelink->lines));
 	return GZ_ERR_UNSUPPORTED;
 }
@@ -140,11 +142,11 @@ static enum gz_result begin_block(struct eyelink *eyelink, const char *text)
 	eyelink->record.host_ns = ns_of_ms(ms);
 	eyelink->record.missing = 0;
 	snprintf(eyelink->record.text, sizeof eyelink->record.text, "recording was paused");
-	return send(eyelink);
+	return send_eyelink_record(eyelink);
 }
 
-/* At 2000 Hz two samples show the same millisecond. */
-static int64_t time_ns(struct eyelink *eyelink, double ms)
+/* The time of a sample. At 2000 Hz two samples have the same millisecond. */
+static int64_t sample_time_ns(struct eyelink *eyelink, double ms)
 {
 	double period_ms = eyelink->rate_hz > 0 ? 1000 / eyelink->rate_hz : 0;
 	eyelink->same_ms = ms == eyelink->last_ms && period_ms < 1 ? eyelink->same_ms + 1 : 0;
@@ -152,8 +154,8 @@ static int64_t time_ns(struct eyelink *eyelink, double ms)
 	return ns_of_ms(ms + eyelink->same_ms * period_ms);
 }
 
-static void take_eye(const struct eyelink *eyelink, const struct gz_text_fields *fields,
-		     size_t first, struct gz_eye_sample *eye)
+static void take_eyelink_eye(const struct eyelink *eyelink, const struct gz_text_fields *fields,
+			     size_t first, struct gz_eye_sample *eye)
 {
 	const double *r = eyelink->rectangle_px;
 	double x_px = gz_text_field_number(fields, first);
@@ -163,7 +165,7 @@ static void take_eye(const struct eyelink *eyelink, const struct gz_text_fields 
 	eye->valid = isfinite(eye->point.x);
 }
 
-static enum gz_result take_sample(struct eyelink *eyelink, char *line)
+static enum gz_result take_eyelink_sample(struct eyelink *eyelink, char *line)
 {
 	struct gz_text_fields fields;
 	gz_text_split(line, ' ', &fields);
@@ -174,47 +176,47 @@ static enum gz_result take_sample(struct eyelink *eyelink, char *line)
 	}
 	if (!eyelink->has_rectangle) {
 		gz_err(eyelink->settings->log,
-		       "%s: no GAZE_COORDS before its samples: give the screen with --display.px "
-		       "WxH",
+		       "%s: no GAZE_COORDS before the samples; give the size of the screen with "
+		       "--display.px WxH",
 		       eyelink->settings->name);
 		return GZ_ERR_FORMAT;
 	}
 	struct gz_sample *sample = &eyelink->record.sample;
 	*sample = gz_sample_unmeasured();
 	sample->seq = eyelink->seq++;
-	sample->host_ns = sample->device_ns = time_ns(eyelink, ms);
+	sample->host_ns = sample->device_ns = sample_time_ns(eyelink, ms);
 	size_t first = 1;
 	for (int eye = GZ_EYE_LEFT; eye >= GZ_EYE_RIGHT; eye--) {
 		if (!eyelink->eye[eye])
 			continue;
-		take_eye(eyelink, &fields, first, &sample->eye[eye]);
+		take_eyelink_eye(eyelink, &fields, first, &sample->eye[eye]);
 		first += 3;
 	}
 	eyelink->record.kind = GZ_GAZE_LOG_SAMPLE;
 	eyelink->counts->samples++;
-	return send(eyelink);
+	return send_eyelink_record(eyelink);
 }
 
-static enum gz_result take_line(struct eyelink *eyelink, char *line)
+static enum gz_result take_eyelink_line(struct eyelink *eyelink, char *line)
 {
 	if (line[0] >= '0' && line[0] <= '9')
-		return eyelink->recording ? take_sample(eyelink, line) : GZ_OK;
+		return eyelink->recording ? take_eyelink_sample(eyelink, line) : GZ_OK;
 	if (strncmp(line, "MSG", 3) == 0)
-		return take_message(eyelink, line + 3);
+		return take_eyelink_message(eyelink, line + 3);
 	if (strncmp(line, "SAMPLES", 7) == 0)
 		return take_samples_line(eyelink, line);
 	if (strncmp(line, "START", 5) == 0)
 		return begin_block(eyelink, line + 5);
 	if (strncmp(line, "END", 3) == 0)
 		eyelink->recording = false;
-	/* Events are the tracker's opinion of its samples; the rest is settings. */
+	/* Other lines are settings, or events that the tracker derived from its samples. */
 	return GZ_OK;
 }
 
-static enum gz_result read_eyelink(struct gz_text_lines *lines,
-				   const struct gz_convert_settings *settings,
-				   const struct gz_recording_sink *sink,
-				   struct gz_convert_counts *counts)
+static enum gz_result read_eyelink_export(struct gz_text_lines *lines,
+					  const struct gz_convert_settings *settings,
+					  const struct gz_recording_sink *sink,
+					  struct gz_convert_counts *counts)
 {
 	struct eyelink eyelink = {
 		.lines = lines, .settings = settings, .sink = sink, .counts = counts, .last_ms = -1
@@ -231,7 +233,7 @@ static enum gz_result read_eyelink(struct gz_text_lines *lines,
 			counts->skipped++;
 			continue;
 		}
-		result = take_line(&eyelink, line);
+		result = take_eyelink_line(&eyelink, line);
 		if (result != GZ_OK)
 			return result;
 	}
@@ -240,7 +242,7 @@ static enum gz_result read_eyelink(struct gz_text_lines *lines,
 
 const struct gz_recording_reader gz_recording_reader_eyelink = {
 	.name = "eyelink",
-	.help = "EyeLink .asc, of gaze positions",
-	.recognises = recognises,
-	.read = read_eyelink,
+	.help = "EyeLink .asc with gaze positions",
+	.recognises = eyelink_recognises,
+	.read = read_eyelink_export,
 };

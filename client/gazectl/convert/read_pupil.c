@@ -1,6 +1,6 @@
-/* gaze_positions.csv as Pupil Player exports it (docs.pupil-labs.com, "Raw data exporter"): one
- * line a gaze datum, columns named in the first line, norm_pos with its origin at the bottom left
- * of the scene camera's picture, eye 0 the right one. */
+/* The reader of gaze_positions.csv as Pupil Player exports it (docs.pupil-labs.com, "Raw data
+ * exporter"): a line for each gaze datum, columns named in the first line, norm_pos with its origin
+ * at the bottom left of the scene camera's picture, eye 0 is the right eye. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ enum column {
 	COLUMN_COUNT = NORMAL1 + 3,
 };
 
-/* "timestamp" in exports of versions before 1.8. */
+/* Names of the columns. gaze_timestamp is called "timestamp" by versions before 1.8. */
 static const char *const column_names[COLUMN_COUNT] = {
 	"gaze_timestamp",   "confidence",       "norm_pos_x",       "norm_pos_y",
 	"base_data",        "eye_center0_3d_x", "eye_center0_3d_y", "eye_center0_3d_z",
@@ -32,14 +32,15 @@ static const char *const column_names[COLUMN_COUNT] = {
 	"gaze_normal1_z",
 };
 
-static bool recognises(const char *line)
+static bool pupil_recognises(const char *line)
 {
 	return strstr(line, "norm_pos_x") && strstr(line, "norm_pos_y") &&
 	       strstr(line, "timestamp") && strchr(line, ',');
 }
 
-/* Where each column is; GZ_TEXT_FIELDS_MAX where it is not. */
-static bool find_columns(const struct gz_text_fields *names, size_t columns[COLUMN_COUNT])
+/* Find the index of each column, GZ_TEXT_FIELDS_MAX for a missing one. @return whether the
+ * necessary ones exist */
+static bool find_pupil_columns(const struct gz_text_fields *names, size_t columns[COLUMN_COUNT])
 {
 	for (int c = 0; c < COLUMN_COUNT; c++) {
 		columns[c] = GZ_TEXT_FIELDS_MAX;
@@ -52,7 +53,7 @@ static bool find_columns(const struct gz_text_fields *names, size_t columns[COLU
 	       columns[X] < GZ_TEXT_FIELDS_MAX && columns[Y] < GZ_TEXT_FIELDS_MAX;
 }
 
-/* base_data is "<time>-<eye> …": which eyes the datum was made of; without it, both. */
+/* The eyes from which a datum was computed: base_data is "<time>-<eye> …". Without it, both. */
 static void find_eyes(const struct gz_text_fields *fields, size_t column, bool eyes[GZ_EYE_COUNT])
 {
 	eyes[GZ_EYE_RIGHT] = eyes[GZ_EYE_LEFT] = true;
@@ -62,8 +63,8 @@ static void find_eyes(const struct gz_text_fields *fields, size_t column, bool e
 	eyes[GZ_EYE_LEFT] = strstr(fields->field[column], "-1") != NULL;
 }
 
-static void take_eye(const struct gz_text_fields *fields, const size_t *center,
-		     const size_t *normal, struct gz_eye_sample *eye)
+static void take_pupil_eye(const struct gz_text_fields *fields, const size_t *center,
+			   const size_t *normal, struct gz_eye_sample *eye)
 {
 	for (int i = 0; i < 3; i++) {
 		eye->origin_mm[i] = (float)gz_text_field_number(fields, center[i]);
@@ -71,8 +72,8 @@ static void take_eye(const struct gz_text_fields *fields, const size_t *center,
 	}
 }
 
-static bool take_sample(const struct gz_text_fields *fields, const size_t columns[COLUMN_COUNT],
-			struct gz_sample *out_sample)
+static bool take_pupil_sample(const struct gz_text_fields *fields,
+			      const size_t columns[COLUMN_COUNT], struct gz_sample *out_sample)
 {
 	bool eyes[GZ_EYE_COUNT];
 	double time_s = gz_text_field_number(fields, columns[TIME]);
@@ -88,48 +89,48 @@ static bool take_sample(const struct gz_text_fields *fields, const size_t column
 		struct gz_eye_sample *eye = &out_sample->eye[e];
 		if (!eyes[e])
 			continue;
-		take_eye(fields, &columns[e == GZ_EYE_RIGHT ? CENTER0 : CENTER1],
-			 &columns[e == GZ_EYE_RIGHT ? NORMAL0 : NORMAL1], eye);
+		take_pupil_eye(fields, &columns[e == GZ_EYE_RIGHT ? CENTER0 : CENTER1],
+			       &columns[e == GZ_EYE_RIGHT ? NORMAL0 : NORMAL1], eye);
 		eye->confidence = (float)confidence;
 		eye->point = gz_recording_point(x, 1 - y);
-		/* Pupil itself calls a datum of confidence 0 no measurement. */
+		/* For Pupil a datum with confidence 0 is not a measurement. */
 		eye->valid = confidence > 0 && isfinite(eye->point.x);
 	}
 	return true;
 }
 
-static enum gz_result read_names(struct gz_text_lines *lines,
-				 const struct gz_convert_settings *settings,
-				 size_t columns[COLUMN_COUNT])
+static enum gz_result read_pupil_columns(struct gz_text_lines *lines,
+					 const struct gz_convert_settings *settings,
+					 size_t columns[COLUMN_COUNT])
 {
 	char *line;
 	struct gz_text_fields names;
 	enum gz_result result = gz_text_lines_next(lines, &line);
 	if (result == GZ_OK) {
 		gz_text_split(line, ',', &names);
-		if (find_columns(&names, columns))
+		if (find_pupil_columns(&names, columns))
 			return GZ_OK;
 	}
 	gz_err(settings->log,
-	       "%s:1: needs the columns gaze_timestamp, confidence, norm_pos_x and norm_pos_y",
+	       "%s:1: the columns gaze_timestamp, confidence, norm_pos_x and norm_pos_y are needed",
 	       settings->name);
 	return GZ_ERR_FORMAT;
 }
 
-static enum gz_result read_pupil(struct gz_text_lines *lines,
-				 const struct gz_convert_settings *settings,
-				 const struct gz_recording_sink *sink,
-				 struct gz_convert_counts *counts)
+static enum gz_result read_pupil_export(struct gz_text_lines *lines,
+					const struct gz_convert_settings *settings,
+					const struct gz_recording_sink *sink,
+					struct gz_convert_counts *counts)
 {
 	size_t columns[COLUMN_COUNT];
 	struct gz_text_fields fields;
 	struct gz_gaze_log_record record = { .kind = GZ_GAZE_LOG_SAMPLE };
-	enum gz_result result = read_names(lines, settings, columns);
+	enum gz_result result = read_pupil_columns(lines, settings, columns);
 	if (result != GZ_OK)
 		return result;
 	gz_warn(settings->log,
-		"%s: its points lie in the scene camera's picture, not on a display, unless they "
-		"come from a surface",
+		"%s: the points are in the picture of the scene camera, not on a display, unless "
+		"they were exported from a surface",
 		settings->name);
 	struct gz_gaze_log_header header = gz_recording_header(settings, "Pupil");
 	char *line;
@@ -138,7 +139,7 @@ static enum gz_result read_pupil(struct gz_text_lines *lines,
 		result = gz_text_lines_next(lines, &line);
 		if (result == GZ_OK && line[0]) {
 			gz_text_split(line, ',', &fields);
-			if (take_sample(&fields, columns, &record.sample)) {
+			if (take_pupil_sample(&fields, columns, &record.sample)) {
 				record.sample.seq = counts->samples++;
 				result = sink->record(sink->user, &record);
 			} else {
@@ -154,6 +155,6 @@ static enum gz_result read_pupil(struct gz_text_lines *lines,
 const struct gz_recording_reader gz_recording_reader_pupil = {
 	.name = "pupil",
 	.help = "Pupil's gaze_positions.csv",
-	.recognises = recognises,
-	.read = read_pupil,
+	.recognises = pupil_recognises,
+	.read = read_pupil_export,
 };

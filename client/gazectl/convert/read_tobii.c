@@ -1,7 +1,7 @@
-/* Tables with tabs from Tobii's programs: Tobii Pro Lab ("Gaze point left X [DACS px]"), Tobii
- * Studio ("GazePointLeftX (ADCSpx)") and the matrices of the Matlab SDK ("LGazePos2dx"). Columns
- * are found by their names, whatever their order; the names are those of exports in public data
- * sets. A decimal comma is understood. */
+/* The reader of tab-separated tables from Tobii's programs: Tobii Pro Lab ("Gaze point left X [DACS
+ * px]"), Tobii Studio ("GazePointLeftX (ADCSpx)") and the matrices of the Matlab SDK
+ * ("LGazePos2dx"). Columns are found by their names, in any order; the names are those of exports
+ * in public data sets. A decimal comma is accepted. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 #define GZ_LOG_MODULE "tobii"
 
-/* Of one eye. */
+/* Columns of one eye. */
 enum eye_column {
 	X_NORM,
 	Y_NORM,
@@ -26,12 +26,13 @@ enum eye_column {
 	EYE_COLUMNS = ORIGIN + 3,
 };
 
-/* Of the line. */
+/* Columns of the line. */
 enum line_column { DEVICE_US, HOST_US, HOST_MS, SENSOR, EVENT, WIDTH, HEIGHT, LINE_COLUMNS };
 
 enum { NAMES_MAX = 4, NOWHERE = GZ_TEXT_FIELDS_MAX };
 
-/* Names in small letters and digits alone; '?' stands for the side: l, r or left, right. */
+/* Names of columns, reduced to lower-case letters and digits. '?' stands for "left" or "right", '#'
+ * for "l" or "r". */
 static const char *const eye_names[EYE_COLUMNS][NAMES_MAX] = {
 	[X_NORM] = { "gazepoint?xdacsnorm", "#gazepos2dx" },
 	[Y_NORM] = { "gazepoint?ydacsnorm", "#gazepos2dy" },
@@ -63,7 +64,7 @@ struct columns {
 
 struct tobii {
 	const struct gz_convert_settings *settings;
-	struct gz_convert_settings known; /* the same, and what the lines tell */
+	struct gz_convert_settings known; /* the settings, completed from the file */
 	const struct gz_recording_sink *sink;
 	struct gz_convert_counts *counts;
 	struct columns columns;
@@ -72,7 +73,7 @@ struct tobii {
 	struct gz_gaze_log_record record;
 };
 
-/* Small letters and digits of a column's name. "[μs]" becomes "us". */
+/* Reduce the name of a column to lower-case letters and digits. "[μs]" becomes "us". */
 static void plain_name(const char *name, char *plain, size_t size)
 {
 	size_t used = 0;
@@ -86,7 +87,7 @@ static void plain_name(const char *name, char *plain, size_t size)
 	plain[used] = '\0';
 }
 
-/* @p pattern with the side put in for '?' or '#'. */
+/* Replace '?' or '#' in @p pattern by the side of the eye. */
 static void name_of_side(const char *pattern, enum gz_eye eye, char *name, size_t size)
 {
 	size_t at = strcspn(pattern, "?#");
@@ -123,7 +124,7 @@ static bool has_points(const struct columns *columns)
 	return false;
 }
 
-static bool find_columns(const struct gz_text_fields *names, struct columns *columns)
+static bool find_tobii_columns(const struct gz_text_fields *names, struct columns *columns)
 {
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		for (int c = 0; c < EYE_COLUMNS; c++)
@@ -135,7 +136,7 @@ static bool find_columns(const struct gz_text_fields *names, struct columns *col
 	return timed && has_points(columns);
 }
 
-static bool recognises(const char *line)
+static bool tobii_recognises(const char *line)
 {
 	static const char *const words[] = {
 		"Gaze point left X",  "GazePointLeftX",  "LGazePos2dx",
@@ -147,7 +148,7 @@ static bool recognises(const char *line)
 	return false;
 }
 
-static double number(const struct tobii *tobii, size_t column)
+static double field_number(const struct tobii *tobii, size_t column)
 {
 	return gz_text_field_number(&tobii->fields, column);
 }
@@ -157,12 +158,13 @@ static bool is_time(double value, double unit_ns)
 	return fabs(value) * unit_ns < 9e18;
 }
 
-/* The recording's own clock is the host's; where there is none, the tracker's stands for it. */
+/* Read the times of a line. The clock of the recording counts as the host's; without it, the clock
+ * of the tracker does. */
 static bool take_times(const struct tobii *tobii, struct gz_sample *sample)
 {
-	double device_us = number(tobii, tobii->columns.line[DEVICE_US]);
-	double host_us = number(tobii, tobii->columns.line[HOST_US]);
-	double host_ms = number(tobii, tobii->columns.line[HOST_MS]);
+	double device_us = field_number(tobii, tobii->columns.line[DEVICE_US]);
+	double host_us = field_number(tobii, tobii->columns.line[HOST_US]);
+	double host_ms = field_number(tobii, tobii->columns.line[HOST_MS]);
 	if (is_time(device_us, 1e3))
 		sample->device_ns = (int64_t)llround(device_us * 1e3);
 	if (is_time(host_us, 1e3))
@@ -176,51 +178,53 @@ static bool take_times(const struct tobii *tobii, struct gz_sample *sample)
 	return true;
 }
 
-/* "Valid", or a code of 0 or 1 of which Tobii says that the eye is certain, or probably right. */
+/* Whether the validity is "Valid", or a code for an eye that was found with certainty (0) or
+ * probably (1). Without the column, true. */
 static bool is_valid(const struct tobii *tobii, size_t column)
 {
 	if (column >= tobii->fields.count)
 		return true;
-	double code = number(tobii, column);
+	double code = field_number(tobii, column);
 	return isfinite(code) ? code >= 0 && code <= 1
 			      : gz_text_begins(tobii->fields.field[column], "valid");
 }
 
-/* A point in parts of the display, from the columns that are there; NaN where there is none. */
-static struct gz_point take_point(const struct tobii *tobii, const size_t *columns)
+/* The point on the normalised display area, from the columns that exist; NaN if there is none. */
+static struct gz_point take_tobii_point(const struct tobii *tobii, const size_t *columns)
 {
 	const struct gz_convert_settings *known = &tobii->known;
-	double x = number(tobii, columns[X_NORM]), y = number(tobii, columns[Y_NORM]);
+	double x = field_number(tobii, columns[X_NORM]), y = field_number(tobii, columns[Y_NORM]);
 	if (!isfinite(x) || !isfinite(y)) {
-		x = number(tobii, columns[X_PX]) / known->display_px[0];
-		y = number(tobii, columns[Y_PX]) / known->display_px[1];
+		x = field_number(tobii, columns[X_PX]) / known->display_px[0];
+		y = field_number(tobii, columns[Y_PX]) / known->display_px[1];
 	}
 	if (!isfinite(x) || !isfinite(y)) {
-		x = number(tobii, columns[X_MM]) / known->display_mm[0];
-		y = number(tobii, columns[Y_MM]) / known->display_mm[1];
+		x = field_number(tobii, columns[X_MM]) / known->display_mm[0];
+		y = field_number(tobii, columns[Y_MM]) / known->display_mm[1];
 	}
 	return gz_recording_point(x, y);
 }
 
-static void take_eye(const struct tobii *tobii, const size_t *columns, struct gz_eye_sample *eye)
+static void take_tobii_eye(const struct tobii *tobii, const size_t *columns,
+			   struct gz_eye_sample *eye)
 {
-	eye->point = take_point(tobii, columns);
+	eye->point = take_tobii_point(tobii, columns);
 	eye->valid = is_valid(tobii, columns[VALIDITY]) && isfinite(eye->point.x);
-	double pupil_mm = number(tobii, columns[PUPIL]);
+	double pupil_mm = field_number(tobii, columns[PUPIL]);
 	if (pupil_mm > 0)
 		eye->pupil_mm = (float)pupil_mm;
 	for (int i = 0; i < 3; i++)
-		eye->origin_mm[i] = (float)number(tobii, columns[ORIGIN + i]);
+		eye->origin_mm[i] = (float)field_number(tobii, columns[ORIGIN + i]);
 }
 
-/* The recording's size stands in every line. */
-static enum gz_result send_header(struct tobii *tobii)
+/* Send the header once. The size of the recording is in every line. */
+static enum gz_result send_tobii_header(struct tobii *tobii)
 {
 	if (tobii->sent_header)
 		return GZ_OK;
 	tobii->sent_header = true;
 	for (int i = 0; i < 2; i++) {
-		double px = number(tobii, tobii->columns.line[WIDTH + i]);
+		double px = field_number(tobii, tobii->columns.line[WIDTH + i]);
 		if (tobii->known.display_px[i] == 0 && px >= 1 && px <= GZ_DISPLAY_SIDE_MAX_PX)
 			tobii->known.display_px[i] = (int)px;
 	}
@@ -228,7 +232,7 @@ static enum gz_result send_header(struct tobii *tobii)
 	return tobii->sink->header(tobii->sink->user, &header);
 }
 
-static enum gz_result take_event(struct tobii *tobii, int64_t host_ns)
+static enum gz_result take_tobii_event(struct tobii *tobii, int64_t host_ns)
 {
 	size_t column = tobii->columns.line[EVENT];
 	if (column >= tobii->fields.count || !tobii->fields.field[column][0])
@@ -246,7 +250,7 @@ static bool is_of_another_sensor(const struct tobii *tobii)
 	       !gz_text_begins(tobii->fields.field[column], "eye");
 }
 
-static bool is_measured(const struct gz_sample *sample)
+static bool has_measurement(const struct gz_sample *sample)
 {
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		if (isfinite(sample->eye[eye].point.x) || isfinite(sample->eye[eye].origin_mm[0]))
@@ -254,11 +258,11 @@ static bool is_measured(const struct gz_sample *sample)
 	return false;
 }
 
-static enum gz_result take_line(struct tobii *tobii, char *line)
+static enum gz_result take_tobii_line(struct tobii *tobii, char *line)
 {
 	struct gz_sample *sample = &tobii->record.sample;
 	gz_text_split(line, '\t', &tobii->fields);
-	enum gz_result result = send_header(tobii);
+	enum gz_result result = send_tobii_header(tobii);
 	if (result != GZ_OK)
 		return result;
 	*sample = gz_sample_unmeasured();
@@ -266,14 +270,14 @@ static enum gz_result take_line(struct tobii *tobii, char *line)
 		tobii->counts->skipped++;
 		return GZ_OK;
 	}
-	result = take_event(tobii, sample->host_ns);
+	result = take_tobii_event(tobii, sample->host_ns);
 	if (result != GZ_OK || is_of_another_sensor(tobii))
 		return result;
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
-		take_eye(tobii, tobii->columns.eye[eye], &sample->eye[eye]);
-	/* A line for an event alone has no tracker's time and measures nothing; a line of a lost
-	 * gaze has its time. */
-	if (!is_measured(sample) && sample->device_ns == GZ_NO_DEVICE_TIME &&
+		take_tobii_eye(tobii, tobii->columns.eye[eye], &sample->eye[eye]);
+	/* A line for an event only has no time of the tracker and no measurement. A line for lost
+	 * gaze has the time. */
+	if (!has_measurement(sample) && sample->device_ns == GZ_NO_DEVICE_TIME &&
 	    tobii->columns.line[DEVICE_US] != NOWHERE)
 		return GZ_OK;
 	sample->seq = tobii->counts->samples++;
@@ -290,43 +294,43 @@ static bool needs_px(const struct tobii *tobii)
 	       columns->line[WIDTH] == NOWHERE && tobii->known.display_mm[0] == 0;
 }
 
-static enum gz_result read_names(struct tobii *tobii, struct gz_text_lines *lines)
+static enum gz_result read_tobii_columns(struct tobii *tobii, struct gz_text_lines *lines)
 {
 	char *line;
 	const struct gz_log *log = tobii->settings->log;
 	if (gz_text_lines_next(lines, &line) == GZ_OK) {
 		gz_text_split(line, '\t', &tobii->fields);
-		if (find_columns(&tobii->fields, &tobii->columns)) {
+		if (find_tobii_columns(&tobii->fields, &tobii->columns)) {
 			if (!needs_px(tobii))
 				return GZ_OK;
 			gz_err(log,
-			       "%s: its points are in pixels of a display it does not tell: give "
-			       "it with --display.px WxH",
+			       "%s: the points are in pixels, but the size of the display is "
+			       "missing; give it with --display.px WxH",
 			       tobii->settings->name);
 			return GZ_ERR_FORMAT;
 		}
 	}
 	gz_err(log,
-	       "%s:1: no columns of a timestamp and of gaze points of an eye; export them from "
-	       "Tobii Pro Lab as a single standard file (.tsv)",
+	       "%s:1: there are no columns for a timestamp and for the gaze points of an eye; "
+	       "export them from Tobii Pro Lab as a single standard file (.tsv)",
 	       tobii->settings->name);
 	return GZ_ERR_FORMAT;
 }
 
-static enum gz_result read_tobii(struct gz_text_lines *lines,
-				 const struct gz_convert_settings *settings,
-				 const struct gz_recording_sink *sink,
-				 struct gz_convert_counts *counts)
+static enum gz_result read_tobii_export(struct gz_text_lines *lines,
+					const struct gz_convert_settings *settings,
+					const struct gz_recording_sink *sink,
+					struct gz_convert_counts *counts)
 {
 	struct tobii tobii = {
 		.settings = settings, .known = *settings, .sink = sink, .counts = counts
 	};
 	char *line;
-	enum gz_result result = read_names(&tobii, lines);
+	enum gz_result result = read_tobii_columns(&tobii, lines);
 	while (result == GZ_OK || result == GZ_ERR_FULL) {
 		result = gz_text_lines_next(lines, &line);
 		if (result == GZ_OK && line[0])
-			result = take_line(&tobii, line);
+			result = take_tobii_line(&tobii, line);
 		else if (result == GZ_ERR_FULL)
 			counts->skipped++;
 	}
@@ -335,7 +339,7 @@ static enum gz_result read_tobii(struct gz_text_lines *lines,
 
 const struct gz_recording_reader gz_recording_reader_tobii = {
 	.name = "tobii",
-	.help = "Tobii Pro Lab's or Studio's .tsv",
-	.recognises = recognises,
-	.read = read_tobii,
+	.help = ".tsv from Tobii Pro Lab or Tobii Studio",
+	.recognises = tobii_recognises,
+	.read = read_tobii_export,
 };

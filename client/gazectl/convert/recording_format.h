@@ -1,7 +1,7 @@
 /**
  * @file
- * Recordings of other programs: what reads them, what writes them. A reader pushes the header and
- * then record by record into a sink; a writer is a sink. None keeps a recording in memory.
+ * Formats of recordings: readers and writers. A reader pushes the header and then the records, one
+ * by one, into a sink; a writer is a sink. Neither keeps a recording in memory.
  */
 #ifndef GZ_CLIENT_GAZECTL_CONVERT_RECORDING_FORMAT_H
 #define GZ_CLIENT_GAZECTL_CONVERT_RECORDING_FORMAT_H
@@ -14,46 +14,48 @@
 #include "client/gazectl/convert/text_lines.h"
 #include "protocol/gaze_log.h"
 
-/** Where a recording goes. The header comes once, before the first record. */
+/** The destination of a recording. The header comes once, before the first record. */
 struct gz_recording_sink {
 	void *user;
-	/** @retval GZ_OK  else reading ends with this result, which is not GZ_ERR_END or
-	 * GZ_ERR_FULL; logged by the sink */
+	/** Take the header. A result other than GZ_OK ends the reading with that result, which must
+	 * not be GZ_ERR_END or GZ_ERR_FULL; the sink has logged it. */
 	enum gz_result (*header)(void *user, const struct gz_gaze_log_header *header);
-	/** As header. */
+	/** Take a record. Results as for the header. */
 	enum gz_result (*record)(void *user, const struct gz_gaze_log_record *record);
 };
 
-/** What the user knows and a file may not tell. */
+/** What the user gives because the file may not contain it. */
 struct gz_convert_settings {
-	int display_px[2];    /**< 0: as the file says */
-	double display_mm[2]; /**< 0: as the file says */
-	double distance_mm;   /**< 0: as the file says */
-	double rate_hz;       /**< nominal; 0: as the file says */
-	const char *name;     /**< of the file, for messages and as the tracker's name */
+	int display_px[2];    /**< 0: from the file */
+	double display_mm[2]; /**< 0: from the file */
+	double distance_mm;   /**< 0: from the file */
+	double rate_hz;       /**< nominal; 0: from the file */
+	const char *name;     /**< of the file, for messages */
 	const struct gz_log *log;
 };
 
-/** What came of reading. */
+/** What was read. */
 struct gz_convert_counts {
 	uint64_t samples;
-	uint64_t skipped; /**< lines that hold no sample that could be read; the first ones are
-			     logged */
+	uint64_t skipped; /**< lines without a sample that could be read */
 };
 
 /** A format that can be read. Tables are const and have static storage. */
 struct gz_recording_reader {
 	const char *name; /**< as in "--from name" */
 	const char *help; /**< one line */
-	/** Whether the file's first line with text on it looks like one of this kind. */
+	/** Whether the first line of a file that is not empty looks like this format. */
 	bool (*recognises)(const char *line);
 	/**
 	 * Read to the end.
 	 *
-	 * @retval GZ_ERR_FORMAT       not of this kind, or without what is needed; logged with line
-	 * @retval GZ_ERR_UNSUPPORTED  of this kind, but of no use here; logged with the remedy
-	 * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
-	 * @return what the sink answers, where that is no GZ_OK
+	 * @param counts  counted up
+	 * @retval GZ_ERR_FORMAT       another format, or something necessary is missing; logged
+	 * with the line
+	 * @retval GZ_ERR_UNSUPPORTED  this format, but without gaze on a display; logged with the
+	 *                             remedy
+	 * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  not logged
+	 * @return else the result of the sink, if that is not GZ_OK
 	 */
 	enum gz_result (*read)(struct gz_text_lines *lines,
 			       const struct gz_convert_settings *settings,
@@ -61,7 +63,7 @@ struct gz_recording_reader {
 			       struct gz_convert_counts *counts);
 };
 
-/** All of them, NULL-terminated: pupil, eyelink, tobii. */
+/** All readers, NULL-terminated: pupil, eyelink, tobii. */
 extern const struct gz_recording_reader *const gz_recording_readers[];
 
 /** Find a reader by name, or NULL. */
@@ -80,46 +82,48 @@ struct gz_recording_output;
 /** A format that can be written. Tables are const and have static storage. */
 struct gz_recording_writer {
 	const char *name;   /**< as in "--to name" */
-	const char *ending; /**< of the files that it writes */
+	const char *ending; /**< of the names of its files */
 	const char *help;   /**< one line */
 	/**
-	 * Begin. Files are not made before the header comes.
+	 * Begin to write. Files are created when the header comes.
 	 *
-	 * @param path      of the file to write; the names of others are made from it
-	 * @param overwrite whether files that are there may be replaced
-	 * @retval GZ_ERR_INVAL   @p path does not end as it must; logged
-	 * @retval GZ_ERR_NO_MEM  logged
+	 * @param path           of the file to write; further files get names made from it
+	 * @param overwrite      whether existing files may be replaced
+	 * @param[out] out_sink  filled; end it with close()
+	 * @retval GZ_ERR_INVAL   @p path has another ending; logged
+	 * @retval GZ_ERR_NO_MEM  no memory
 	 */
 	enum gz_result (*open)(const char *path, bool overwrite, const struct gz_log *log,
 			       struct gz_recording_sink *out_sink);
 	/**
-	 * End and free; the sink's user is gone then.
+	 * End writing and free the sink's user.
 	 *
-	 * @param complete  false removes what was written
-	 * @retval GZ_ERR_IO  the disk is full or failing: what was written was removed; logged
+	 * @param complete  false: remove what was written
+	 * @retval GZ_ERR_IO  the disk is full or failing; what was written was removed; logged
 	 */
 	enum gz_result (*close)(struct gz_recording_sink *sink, bool complete);
 };
 
-/** All of them, NULL-terminated: gzl, csv, bids. */
+/** All writers, NULL-terminated: gzl, bids, csv. */
 extern const struct gz_recording_writer *const gz_recording_writers[];
 
 /** Find a writer by name, or NULL. */
 const struct gz_recording_writer *gz_recording_writer_find(const char *name);
 
-/** Find the writer whose ending @p path has, or NULL. */
+/** Find the writer by the ending of @p path, or NULL. */
 const struct gz_recording_writer *gz_recording_writer_of(const char *path);
 
 extern const struct gz_recording_writer gz_recording_writer_gzl;
 extern const struct gz_recording_writer gz_recording_writer_csv;
 extern const struct gz_recording_writer gz_recording_writer_bids;
 
-/** The header that a foreign file leads to: names, rate, and the display if all of it is known. */
+/** The header of a log converted from another format: names, rate, and the display if all of it is
+ * known. */
 struct gz_gaze_log_header gz_recording_header(const struct gz_convert_settings *settings,
 					      const char *tracker);
 
-/** A point in parts of the display; NaN in both where either is not finite, or farther from it than
- * a thousand displays (chosen: no tracker says so, and a float holds it). */
+/** A point on the normalised display area. NaN in both coordinates if either is not finite or
+ * beyond ±1000 (chosen: no tracker reports that, and a float holds it). */
 struct gz_point gz_recording_point(double x, double y);
 
 #endif

@@ -7,17 +7,17 @@
 #include <strings.h>
 #include <zlib.h>
 
-#include "base/number.h"
+#include "base/text.h"
 
 enum { CHUNK = 65536 };
 
 struct gz_text_lines {
-	gzFile file; /* NULL where memory is read */
+	gzFile file; /* NULL: memory is read */
 	const unsigned char *memory;
 	size_t memory_left;
 	uint64_t number;
-	bool again;
-	size_t filled, taken; /* of the chunk */
+	bool again;           /* see gz_text_lines_again() */
+	size_t filled, taken; /* bytes of the chunk */
 	unsigned char chunk[CHUNK];
 	char line[GZ_TEXT_LINE_SIZE];
 };
@@ -66,8 +66,8 @@ enum gz_result gz_text_lines_open_memory(const void *bytes, size_t size,
 	return GZ_OK;
 }
 
-/* The next bytes into the chunk; 0 at the end. */
-static int fill(struct gz_text_lines *lines)
+/* Read the next bytes into the chunk. @return how many; 0 at the end, negative on failure */
+static int fill_chunk(struct gz_text_lines *lines)
 {
 	if (lines->file)
 		return gzread(lines->file, lines->chunk, CHUNK);
@@ -79,14 +79,14 @@ static int fill(struct gz_text_lines *lines)
 	return (int)size;
 }
 
-/* One line into the buffer. GZ_ERR_END where there is none. */
-static enum gz_result gather(struct gz_text_lines *lines, size_t *out_length)
+/* Read one line into the buffer. @retval GZ_ERR_END  there is none */
+static enum gz_result gather_line(struct gz_text_lines *lines, size_t *out_length)
 {
 	size_t length = 0;
 	bool any = false, too_long = false;
 	for (;;) {
 		if (lines->taken == lines->filled) {
-			int size = fill(lines);
+			int size = fill_chunk(lines);
 			if (size < 0)
 				return GZ_ERR_IO;
 			if (size == 0 && !any)
@@ -114,7 +114,7 @@ enum gz_result gz_text_lines_next(struct gz_text_lines *lines, char **out_line)
 	static const char mark[] = "\xef\xbb\xbf";
 	size_t length = 0;
 	if (!lines->again) {
-		enum gz_result result = gather(lines, &length);
+		enum gz_result result = gather_line(lines, &length);
 		if (result == GZ_OK || result == GZ_ERR_FULL)
 			lines->number++;
 		if (result != GZ_OK)
@@ -222,35 +222,47 @@ bool gz_text_begins(const char *text, const char *word)
 	return strncasecmp(text, word, strlen(word)) == 0;
 }
 
-/* Bytes of the UTF-8 character at @p text, 0 where there is none. */
-static size_t character_length(const unsigned char *text)
+size_t gz_text_utf8_length(const char *text)
 {
-	static const unsigned char firsts[] = { 0xc2, 0xe0, 0xf0 }, lasts[] = { 0xdf, 0xef, 0xf4 };
-	if (text[0] < 0x80)
+	const unsigned char *s = (const unsigned char *)text;
+	static const struct {
+		unsigned char first, last; /* range of the first byte */
+		unsigned char low, high;   /* range of the second byte */
+		size_t length;
+	} rows[] = {
+		/* RFC 3629, section 4 */
+		{ 0xC2, 0xDF, 0x80, 0xBF, 2 }, { 0xE0, 0xE0, 0xA0, 0xBF, 3 },
+		{ 0xE1, 0xEC, 0x80, 0xBF, 3 }, { 0xED, 0xED, 0x80, 0x9F, 3 },
+		{ 0xEE, 0xEF, 0x80, 0xBF, 3 }, { 0xF0, 0xF0, 0x90, 0xBF, 4 },
+		{ 0xF1, 0xF3, 0x80, 0xBF, 4 }, { 0xF4, 0xF4, 0x80, 0x8F, 4 },
+	};
+	if (s[0] < 0x80)
 		return 1;
-	for (size_t length = 2; length <= 4; length++) {
-		if (text[0] < firsts[length - 2] || text[0] > lasts[length - 2])
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		if (s[0] < rows[i].first || s[0] > rows[i].last)
 			continue;
-		for (size_t i = 1; i < length; i++)
-			if ((text[i] & 0xc0) != 0x80)
+		if (s[1] < rows[i].low || s[1] > rows[i].high)
+			return 0;
+		for (size_t k = 2; k < rows[i].length; k++)
+			if ((s[k] & 0xC0) != 0x80)
 				return 0;
-		return length;
+		return rows[i].length;
 	}
 	return 0;
 }
 
 void gz_text_copy(char *to, size_t size, const char *text)
 {
-	const unsigned char *from = (const unsigned char *)text;
+	const char *from = text;
 	size_t used = 0;
 	while (*from) {
-		size_t length = character_length(from);
+		size_t length = gz_text_utf8_length(from);
 		if (used + (length ? length : 1) >= size)
 			break;
 		if (length == 0)
 			to[used++] = '?';
 		for (size_t i = 0; i < length; i++)
-			to[used++] = (char)from[i];
+			to[used++] = from[i];
 		from += length ? length : 1;
 	}
 	to[used] = '\0';

@@ -11,7 +11,7 @@
 
 #include "base/result.h"
 
-/** Longest line, bytes. Chosen: ten times the widest export seen. */
+/** Room for a line with its NUL, bytes. Chosen: ten times the widest export seen. */
 #define GZ_TEXT_LINE_SIZE 65536
 
 /** Most fields of a line. Chosen: Tobii's exports have some hundred columns. */
@@ -21,35 +21,38 @@
 struct gz_text_lines;
 
 /**
- * Open @p path, plain or gzip.
+ * Open the file @p path, plain or gzip.
  *
+ * @param[out] out_lines  owned by the caller: gz_text_lines_close()
  * @retval GZ_ERR_NOT_FOUND, GZ_ERR_ACCESS, GZ_ERR_IO, GZ_ERR_NO_MEM  not logged
  */
 enum gz_result gz_text_lines_open(const char *path, struct gz_text_lines **out_lines);
 
-/** As gz_text_lines_open() over memory, which must stay until the lines are closed; plain text. */
+/** Open @p size bytes of plain text in memory, which must stay until the lines are closed.
+ * Otherwise like gz_text_lines_open(). */
 enum gz_result gz_text_lines_open_memory(const void *bytes, size_t size,
 					 struct gz_text_lines **out_lines);
 
 /**
- * The next line, without its end ("\n" or "\r\n"), a byte order mark cut off the first. Bytes of 0
- * in a line become blanks.
+ * Read the next line, without its end ("\n" or "\r\n") and, for the first line, without a byte
+ * order mark. Bytes of 0 in a line become blanks.
  *
  * @param[out] out_line  may be written to; valid until the next call
- * @retval GZ_ERR_END     there is none
- * @retval GZ_ERR_FULL    it is longer than GZ_TEXT_LINE_SIZE - 1; skipped, the next one may follow
+ * @retval GZ_ERR_END     there are no more lines
+ * @retval GZ_ERR_FULL    the line is longer than GZ_TEXT_LINE_SIZE - 1 bytes; it is skipped, and
+ * the next call goes on after it
  * @retval GZ_ERR_IO      reading or decompressing failed
  */
 enum gz_result gz_text_lines_next(struct gz_text_lines *lines, char **out_line);
 
-/** Give the newest line again, unchanged, at the next call. Call it before the line is written to.
- */
+/** Make the next call of gz_text_lines_next() return the newest line again. Call this before the
+ * line is written to. */
 void gz_text_lines_again(struct gz_text_lines *lines);
 
 /** Number of the newest line, from 1. */
 uint64_t gz_text_lines_number(const struct gz_text_lines *lines);
 
-/** Close and set to NULL. Accepts a pointer to NULL. */
+/** Close the file, free and set *lines to NULL. Accepts a pointer to NULL. */
 void gz_text_lines_close(struct gz_text_lines **lines);
 
 /** Fields of a line. */
@@ -59,27 +62,34 @@ struct gz_text_fields {
 };
 
 /**
- * Split @p line at each @p separator; quotes round a field are taken off. Fields beyond
+ * Split @p line at each @p separator and remove quotes around fields. Fields beyond
  * GZ_TEXT_FIELDS_MAX are left out. A blank as @p separator stands for any run of blanks and tabs.
+ *
+ * @param line             written to; the fields point into it
+ * @param[out] out_fields  filled
  */
 void gz_text_split(char *line, char separator, struct gz_text_fields *out_fields);
 
-/** The field's number, NaN where it is empty, no number or not there. A decimal comma counts as a
- * point. */
+/** The number in a field; NaN if the field is empty, missing or not a number. A decimal comma
+ * counts as a point. */
 double gz_text_field_number(const struct gz_text_fields *fields, size_t index);
 
 /**
- * Take a number off the front of @p *text, which is moved behind it and the blanks that follow.
+ * Read a number at the beginning of *text, and move *text past it and the blanks that follow.
  *
- * @param[out] out_value  written only on true
+ * @param[out] out_value  written on true only
+ * @return whether there is a number
  */
 bool gz_text_take_number(const char **text, double *out_value);
 
-/** Whether @p text begins with @p word, case not counting. */
+/** Whether @p text begins with @p word, ignoring case. */
 bool gz_text_begins(const char *text, const char *word);
 
-/** Copy @p text to @p to, cut at a whole character where it is too long; bytes that are no UTF-8
- * become '?'. */
+/** Bytes of the UTF-8 character at the beginning of @p text (RFC 3629), 0 if it is not UTF-8. */
+size_t gz_text_utf8_length(const char *text);
+
+/** Copy @p text into @p to of @p size bytes, cut between characters if it is too long; bytes that
+ * are not UTF-8 become '?'. */
 void gz_text_copy(char *to, size_t size, const char *text);
 
 #endif

@@ -1,14 +1,15 @@
-/* Writes tables for spreadsheets and statistics: samples, one a line, and, where there are any,
- * gaps, marks and window positions in a second file beside it. An empty field was not measured. */
+/* The writer of tables for spreadsheets and statistics: a line for each sample; gaps, marks and
+ * window positions, if there are any, in a second file beside it. An empty field was not measured.
+ */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/number.h"
+#include "base/text.h"
 #include "client/gazectl/convert/recording_format.h"
-#include "client/gazectl/output_file.h"
+#include "client/gazectl/output.h"
 
 #define GZ_LOG_MODULE "csv"
 
@@ -20,7 +21,7 @@ struct gz_recording_output {
 	struct gz_output_file events;
 };
 
-static void put_float(FILE *out, float value)
+static void write_float(FILE *out, float value)
 {
 	char text[32];
 	fputc(',', out);
@@ -31,44 +32,44 @@ static void put_float(FILE *out, float value)
 	fputs(text, out);
 }
 
-/* Nanoseconds as seconds, every digit kept. */
-static void put_time(FILE *out, int64_t ns)
+/* Print nanoseconds as seconds with all digits. */
+static void write_seconds(FILE *out, int64_t ns)
 {
 	uint64_t size = ns < 0 ? -(uint64_t)ns : (uint64_t)ns;
 	fprintf(out, "%s%" PRIu64 ".%09" PRIu64, ns < 0 ? "-" : "", size / GZ_NS_PER_S,
 		size % GZ_NS_PER_S);
 }
 
-static void put_eye(FILE *out, const struct gz_eye_sample *eye)
+static void write_csv_eye(FILE *out, const struct gz_eye_sample *eye)
 {
-	put_float(out, eye->point.x);
-	put_float(out, eye->point.y);
+	write_float(out, eye->point.x);
+	write_float(out, eye->point.y);
 	fprintf(out, ",%d", eye->valid);
-	put_float(out, eye->confidence);
-	put_float(out, eye->pupil_mm);
+	write_float(out, eye->confidence);
+	write_float(out, eye->pupil_mm);
 	for (int i = 0; i < 3; i++)
-		put_float(out, eye->origin_mm[i]);
+		write_float(out, eye->origin_mm[i]);
 	for (int i = 0; i < 3; i++)
-		put_float(out, eye->direction[i]);
+		write_float(out, eye->direction[i]);
 }
 
-static void put_sample(FILE *out, const struct gz_sample *sample)
+static void write_csv_sample(FILE *out, const struct gz_sample *sample)
 {
 	fprintf(out, "%" PRIu64 ",", sample->seq);
-	put_time(out, sample->host_ns);
+	write_seconds(out, sample->host_ns);
 	fputc(',', out);
 	if (sample->device_ns != GZ_NO_DEVICE_TIME)
-		put_time(out, sample->device_ns);
-	put_float(out, sample->point.x);
-	put_float(out, sample->point.y);
+		write_seconds(out, sample->device_ns);
+	write_float(out, sample->point.x);
+	write_float(out, sample->point.y);
 	fprintf(out, ",%d", sample->valid);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
-		put_eye(out, &sample->eye[eye]);
+		write_csv_eye(out, &sample->eye[eye]);
 	fputc('\n', out);
 }
 
-/* RFC 4180: quotes round the field, quotes within it twice. */
-static void put_text(FILE *out, const char *text)
+/* Print a field in quotes, quotes inside it doubled (RFC 4180). */
+static void write_quoted(FILE *out, const char *text)
 {
 	fputc('"', out);
 	for (; *text; text++) {
@@ -79,16 +80,16 @@ static void put_text(FILE *out, const char *text)
 	fputc('"', out);
 }
 
-static enum gz_result check(const struct gz_recording_output *output,
-			    const struct gz_output_file *file)
+static enum gz_result check_csv_file(const struct gz_recording_output *output,
+				     const struct gz_output_file *file)
 {
 	if (!ferror(file->text))
 		return GZ_OK;
-	gz_err(output->log, "cannot write %s: is its disk full?", file->path);
+	gz_err(output->log, "cannot write %s; is the disk full?", file->path);
 	return GZ_ERR_IO;
 }
 
-static enum gz_result begin(void *user, const struct gz_gaze_log_header *header)
+static enum gz_result csv_begin(void *user, const struct gz_gaze_log_header *header)
 {
 	(void)header;
 	struct gz_recording_output *output = user;
@@ -105,11 +106,11 @@ static enum gz_result begin(void *user, const struct gz_gaze_log_header *header)
 			",eye%d_dir_x,eye%d_dir_y,eye%d_dir_z",
 			eye, eye, eye, eye, eye, eye, eye, eye, eye, eye, eye);
 	fputc('\n', out);
-	return check(output, &output->samples);
+	return check_csv_file(output, &output->samples);
 }
 
-/* "NAME.csv" has its events in "NAME_events.csv". */
-static enum gz_result begin_events(struct gz_recording_output *output)
+/* The events of "NAME.csv" go into "NAME_events.csv". */
+static enum gz_result begin_csv_events(struct gz_recording_output *output)
 {
 	char path[GZ_PATH_SIZE + 16];
 	size_t stem = strlen(output->path) - strlen(".csv");
@@ -121,15 +122,15 @@ static enum gz_result begin_events(struct gz_recording_output *output)
 	return result;
 }
 
-static enum gz_result add_event(struct gz_recording_output *output,
-				const struct gz_gaze_log_record *record)
+static enum gz_result add_csv_event(struct gz_recording_output *output,
+				    const struct gz_gaze_log_record *record)
 {
-	enum gz_result result = output->events.open ? GZ_OK : begin_events(output);
+	enum gz_result result = output->events.open ? GZ_OK : begin_csv_events(output);
 	if (result != GZ_OK)
 		return result;
 	FILE *out = output->events.text;
 	char text[GZ_GAZE_LOG_TEXT_SIZE + 64];
-	put_time(out, record->host_ns);
+	write_seconds(out, record->host_ns);
 	if (record->kind == GZ_GAZE_LOG_GAP) {
 		fputs(",gap,", out);
 		snprintf(text, sizeof text, "%" PRIu64 " samples missing: %s", record->missing,
@@ -142,25 +143,25 @@ static enum gz_result add_event(struct gz_recording_output *output,
 		fputs(",mark,", out);
 		snprintf(text, sizeof text, "%s", record->text);
 	}
-	put_text(out, text);
+	write_quoted(out, text);
 	fputc('\n', out);
-	return check(output, &output->events);
+	return check_csv_file(output, &output->events);
 }
 
-static enum gz_result add(void *user, const struct gz_gaze_log_record *record)
+static enum gz_result csv_add(void *user, const struct gz_gaze_log_record *record)
 {
 	struct gz_recording_output *output = user;
 	if (record->kind != GZ_GAZE_LOG_SAMPLE)
-		return add_event(output, record);
-	put_sample(output->samples.text, &record->sample);
-	return check(output, &output->samples);
+		return add_csv_event(output, record);
+	write_csv_sample(output->samples.text, &record->sample);
+	return check_csv_file(output, &output->samples);
 }
 
-static enum gz_result open_csv(const char *path, bool overwrite, const struct gz_log *log,
+static enum gz_result csv_open(const char *path, bool overwrite, const struct gz_log *log,
 			       struct gz_recording_sink *out_sink)
 {
 	if (gz_recording_writer_of(path) != &gz_recording_writer_csv) {
-		gz_err(log, "%s: a table's name ends in .csv", path);
+		gz_err(log, "%s: the name of a table must end in .csv", path);
 		return GZ_ERR_INVAL;
 	}
 	struct gz_recording_output *output = calloc(1, sizeof *output);
@@ -170,12 +171,12 @@ static enum gz_result open_csv(const char *path, bool overwrite, const struct gz
 	output->overwrite = overwrite;
 	snprintf(output->path, sizeof output->path, "%s", path);
 	out_sink->user = output;
-	out_sink->header = begin;
-	out_sink->record = add;
+	out_sink->header = csv_begin;
+	out_sink->record = csv_add;
 	return GZ_OK;
 }
 
-static enum gz_result close_csv(struct gz_recording_sink *sink, bool complete)
+static enum gz_result csv_close(struct gz_recording_sink *sink, bool complete)
 {
 	struct gz_recording_output *output = sink->user;
 	enum gz_result result = gz_output_end(&output->samples, complete, output->log);
@@ -189,7 +190,7 @@ static enum gz_result close_csv(struct gz_recording_sink *sink, bool complete)
 const struct gz_recording_writer gz_recording_writer_csv = {
 	.name = "csv",
 	.ending = ".csv",
-	.help = "table of samples, with _events.csv beside it for marks and gaps",
-	.open = open_csv,
-	.close = close_csv,
+	.help = "table of samples; marks and gaps are in a second table, _events.csv",
+	.open = csv_open,
+	.close = csv_close,
 };

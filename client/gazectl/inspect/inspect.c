@@ -1,4 +1,4 @@
-/* gazectl inspect: what a gaze log holds, as a table or as JSON. */
+/* gazectl inspect: the content of a gaze log, as a table, as JSON and as a picture. */
 #include "client/gazectl/gazectl.h"
 
 #include <inttypes.h>
@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "client/gazectl/inspect/log_picture.h"
 #include "client/gazectl/inspect/log_summary.h"
-#include "client/gazectl/output_file.h"
+#include "client/gazectl/output.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
@@ -33,12 +33,12 @@ static const struct gz_option inspect_options[] = {
 	  .offset = offsetof(struct inspect_settings, picture),
 	  .max = GZ_PATH_SIZE,
 	  .preset = "",
-	  .help = "draw the path and the fixations into this file (.svg)" },
+	  .help = "draw the path of the gaze and the fixations into this file (.svg)" },
 	{ .key = "force",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct inspect_settings, force),
 	  .preset = "false",
-	  .help = "replace a picture that is there" },
+	  .help = "replace an existing picture" },
 };
 
 static const char *ending_name(enum gz_gaze_log_ending ending)
@@ -61,7 +61,7 @@ static double percent(uint64_t part, uint64_t whole)
 	return whole ? 100 * (double)part / (double)whole : NAN;
 }
 
-static void print_header(const struct gz_gaze_log_header *header)
+static void print_log_header(const struct gz_gaze_log_header *header)
 {
 	printf("tracker      %s%s%s\n", header->tracker, header->serial[0] ? " " : "",
 	       header->serial);
@@ -72,18 +72,18 @@ static void print_header(const struct gz_gaze_log_header *header)
 		       header->display.px[1], header->display.mm[0], header->display.mm[1],
 		       header->display.distance_mm);
 	else
-		printf("display      unknown: angles assume one 50.4 deg wide\n");
+		printf("display      unknown: angles assume a width of 50.4 deg\n");
 }
 
 static const char *ending_text(enum gz_gaze_log_ending ending)
 {
 	switch (ending) {
 	case GZ_GAZE_LOG_WHOLE:
-		return "whole: count and checksum are right";
+		return "whole: sample count and checksum are correct";
 	case GZ_GAZE_LOG_CUT:
-		return "cut: its end is missing, what stands before it is good";
+		return "cut: the end is missing, the part before it is valid";
 	case GZ_GAZE_LOG_CORRUPTED:
-		return "corrupted: count or checksum is wrong, something was changed";
+		return "corrupted: sample count or checksum is wrong, the file was changed";
 	case GZ_GAZE_LOG_UNREAD:
 		break;
 	}
@@ -94,7 +94,7 @@ static void print_extent(const struct gz_log_summary *summary, double nominal_hz
 {
 	printf("file         %s\n", ending_text(summary->ending));
 	if (summary->malformed)
-		printf("malformed    %" PRIu64 " lines, left out\n", summary->malformed);
+		printf("malformed    %" PRIu64 " lines, skipped\n", summary->malformed);
 	printf("duration     %.3f s\n", summary->duration_s);
 	printf("samples      %" PRIu64 "\n", summary->samples);
 	printf("rate         %.2f Hz", summary->rate_hz);
@@ -105,7 +105,8 @@ static void print_extent(const struct gz_log_summary *summary, double nominal_hz
 	       percent(summary->missing, summary->samples + summary->missing));
 }
 
-static void print_eye(const char *name, const struct gz_log_summary *summary, enum gz_eye eye)
+static void print_eye_validity(const char *name, const struct gz_log_summary *summary,
+			       enum gz_eye eye)
 {
 	if (summary->eye_measured[eye])
 		printf(", %s %.2f %%", name, percent(summary->eye_valid[eye], summary->samples));
@@ -117,8 +118,8 @@ static void print_quality(const struct gz_log_summary *summary)
 {
 	if (summary->samples > 0) {
 		printf("valid        %.2f %%", percent(summary->valid, summary->samples));
-		print_eye("right eye", summary, GZ_EYE_RIGHT);
-		print_eye("left eye", summary, GZ_EYE_LEFT);
+		print_eye_validity("right eye", summary, GZ_EYE_RIGHT);
+		print_eye_validity("left eye", summary, GZ_EYE_LEFT);
 		putchar('\n');
 	}
 	if (isfinite(summary->noise_deg))
@@ -143,7 +144,7 @@ static void print_quality(const struct gz_log_summary *summary)
 	puts(rejected ? ")" : "");
 }
 
-/* One line a bin, with a bar whose length is its share of the fullest. */
+/* Print a line for each bin, with a bar whose length is its share of the largest. */
 static void print_histogram(const struct gz_log_intervals *intervals)
 {
 	static const char bar[] = "########################################";
@@ -178,13 +179,13 @@ static void print_intervals(const struct gz_log_intervals *intervals)
 	print_histogram(intervals);
 }
 
-/* Where the viewer's window was; nothing where no viewer told. */
-static void print_window(const struct gz_log_summary *summary)
+/* Print the position of the viewer's window, if the log has one. */
+static void print_viewer_window(const struct gz_log_summary *summary)
 {
 	const int *px = summary->window_px;
 	if (summary->windows > 0)
-		printf("window       %dx%d px at %d, %d at last, of %" PRIu64 " places\n", px[2],
-		       px[3], px[0], px[1], summary->windows);
+		printf("window       %dx%d px at %d, %d, the last of %" PRIu64 " positions\n",
+		       px[2], px[3], px[0], px[1], summary->windows);
 }
 
 static void print_marks(struct gz_log_summary *summary)
@@ -200,140 +201,140 @@ static void print_marks(struct gz_log_summary *summary)
 		printf("  … and %" PRIu64 " more\n", summary->mark_count - GZ_LOG_SUMMARY_MARKS);
 }
 
-static void print_json_header(struct gz_json *json, const struct gz_gaze_log_header *header)
+/* The settings of the pipeline, as texts. */
+static json_t *json_settings(const struct gz_gaze_log_header *header)
 {
-	gz_json_begin(json, "tracker");
-	gz_json_text(json, "name", header->tracker);
-	gz_json_text(json, "serial", header->serial);
-	gz_json_end(json);
-	gz_json_text(json, "started", header->started);
-	gz_json_text(json, "software", header->software);
+	json_t *settings = json_object();
+	for (size_t i = 0; i < header->setting_count; i++) {
+		json_t *key = gz_output_json_text(header->settings[i].key);
+		json_object_set_new(settings, json_string_value(key),
+				    gz_output_json_text(header->settings[i].value));
+		json_decref(key);
+	}
+	return settings;
+}
+
+static json_t *json_header(const struct gz_gaze_log_header *header)
+{
+	json_t *json = json_pack("{so so so}", "tracker",
+				 gz_output_json_tracker(header->tracker, header->serial), "started",
+				 gz_output_json_text(header->started), "software",
+				 gz_output_json_text(header->software));
 	if (header->has_display)
-		gz_json_display(json, "display", &header->display);
-	gz_json_begin(json, "pipeline");
-	for (size_t i = 0; i < header->setting_count; i++)
-		gz_json_text(json, header->settings[i].key, header->settings[i].value);
-	gz_json_end(json);
+		json_object_set_new(json, "display", gz_output_json_display(&header->display));
+	json_object_set_new(json, "pipeline", json_settings(header));
+	return json;
 }
 
-static void print_json_extent(struct gz_json *json, const struct gz_log_summary *summary,
-			      double nominal_hz)
+static json_t *json_extent(const struct gz_log_summary *summary, double nominal_hz)
 {
-	gz_json_text(json, "ending", ending_name(summary->ending));
-	gz_json_uint(json, "malformed", summary->malformed);
-	gz_json_double(json, "duration_s", summary->duration_s);
-	gz_json_uint(json, "samples", summary->samples);
-	gz_json_begin(json, "rate_hz");
-	gz_json_double(json, "nominal", nominal_hz);
-	gz_json_double(json, "measured", summary->rate_hz);
-	gz_json_end(json);
-	gz_json_uint(json, "gaps", summary->gaps);
-	gz_json_uint(json, "missing", summary->missing);
+	return json_pack("{ss so so so so so so}", "ending", ending_name(summary->ending),
+			 "malformed", gz_output_json_count(summary->malformed), "duration_s",
+			 gz_output_json_number(summary->duration_s), "samples",
+			 gz_output_json_count(summary->samples), "rate_hz",
+			 gz_output_json_rate(nominal_hz, summary->rate_hz), "gaps",
+			 gz_output_json_count(summary->gaps), "missing",
+			 gz_output_json_count(summary->missing));
 }
 
-static void print_json_eye(struct gz_json *json, const char *name,
-			   const struct gz_log_summary *summary, enum gz_eye eye)
+static json_t *json_eye(const struct gz_log_summary *summary, enum gz_eye eye)
 {
 	double fraction = percent(summary->eye_valid[eye], summary->samples) / 100;
-	gz_json_double(json, name, summary->eye_measured[eye] ? fraction : NAN);
+	return gz_output_json_number(summary->eye_measured[eye] ? fraction : NAN);
 }
 
-static void print_json_quality(struct gz_json *json, const struct gz_log_summary *summary)
+static json_t *json_log_quality(const struct gz_log_summary *summary)
 {
-	gz_json_begin(json, "valid_fraction");
-	gz_json_double(json, "gaze", percent(summary->valid, summary->samples) / 100);
-	print_json_eye(json, "eye0", summary, GZ_EYE_RIGHT);
-	print_json_eye(json, "eye1", summary, GZ_EYE_LEFT);
-	gz_json_end(json);
-	gz_json_double(json, "noise_deg", summary->noise_deg);
-	gz_json_uint(json, "fixations", summary->fixations);
-	gz_json_uint(json, "saccades", summary->saccades);
-	gz_json_uint(json, "blinks", summary->blinks);
-	gz_json_begin(json, "rejected");
+	json_t *rejected = json_object();
 	for (int i = GZ_REJECT_NONE + 1; i < GZ_REJECT_COUNT; i++)
-		gz_json_uint(json, gz_rejection_name((enum gz_rejection)i), summary->rejected[i]);
-	gz_json_end(json);
+		json_object_set_new(rejected, gz_rejection_name((enum gz_rejection)i),
+				    gz_output_json_count(summary->rejected[i]));
+	return json_pack("{s{so so so} so so so so so}", "valid_fraction", "gaze",
+			 gz_output_json_number(percent(summary->valid, summary->samples) / 100),
+			 "eye0", json_eye(summary, GZ_EYE_RIGHT), "eye1",
+			 json_eye(summary, GZ_EYE_LEFT), "noise_deg",
+			 gz_output_json_number(summary->noise_deg), "fixations",
+			 gz_output_json_count(summary->fixations), "saccades",
+			 gz_output_json_count(summary->saccades), "blinks",
+			 gz_output_json_count(summary->blinks), "rejected", rejected);
 }
 
-static void print_json_intervals(struct gz_json *json, const struct gz_log_intervals *intervals)
+static json_t *json_intervals(const struct gz_log_intervals *intervals)
 {
-	gz_json_begin(json, "intervals");
-	gz_json_uint(json, "count", intervals->count);
-	gz_json_uint(json, "backward", intervals->backward);
-	gz_json_int(json, "min_ns", intervals->min_ns);
-	gz_json_int(json, "median_ns", intervals->median_ns);
-	gz_json_int(json, "p99_ns", intervals->p99_ns);
-	gz_json_int(json, "max_ns", intervals->max_ns);
-	gz_json_begin_list(json, "histogram");
+	json_t *histogram = json_array();
 	for (int i = 0; i < GZ_LOG_SUMMARY_BINS; i++) {
 		bool open = i == GZ_LOG_SUMMARY_BINS - 1;
-		gz_json_begin(json, NULL);
-		gz_json_double(json, "below_medians", open ? NAN : gz_log_summary_bin_ends[i]);
-		gz_json_uint(json, "count", intervals->bins[i]);
-		gz_json_end(json);
+		json_array_append_new(
+			histogram,
+			json_pack("{so so}", "below_medians",
+				  gz_output_json_number(open ? NAN : gz_log_summary_bin_ends[i]),
+				  "count", gz_output_json_count(intervals->bins[i])));
 	}
-	gz_json_end_list(json);
-	gz_json_end(json);
+	return json_pack("{so so sI sI sI sI so}", "count", gz_output_json_count(intervals->count),
+			 "backward", gz_output_json_count(intervals->backward), "min_ns",
+			 (json_int_t)intervals->min_ns, "median_ns",
+			 (json_int_t)intervals->median_ns, "p99_ns", (json_int_t)intervals->p99_ns,
+			 "max_ns", (json_int_t)intervals->max_ns, "histogram", histogram);
 }
 
-static void print_json_window(struct gz_json *json, const struct gz_log_summary *summary)
+static json_t *json_events(const struct gz_log_summary *summary)
 {
-	gz_json_uint(json, "window_count", summary->windows);
-	if (summary->windows == 0)
-		return;
-	gz_json_begin_list(json, "window_px");
-	for (int i = 0; i < 4; i++)
-		gz_json_int(json, NULL, summary->window_px[i]);
-	gz_json_end_list(json);
+	const int *px = summary->window_px;
+	json_t *json = json_pack("{so so}", "intervals", json_intervals(&summary->intervals),
+				 "window_count", gz_output_json_count(summary->windows));
+	if (summary->windows > 0)
+		json_object_set_new(json, "window_px",
+				    json_pack("[iiii]", px[0], px[1], px[2], px[3]));
+	json_object_set_new(json, "mark_count", gz_output_json_count(summary->mark_count));
+	json_t *marks = json_array();
+	for (size_t i = 0; i < summary->mark_count && i < GZ_LOG_SUMMARY_MARKS; i++)
+		json_array_append_new(marks,
+				      json_pack("{sI so}", "host_ns",
+						(json_int_t)summary->marks[i].host_ns, "text",
+						gz_output_json_text(summary->marks[i].text)));
+	json_object_set_new(json, "marks", marks);
+	return json;
 }
 
-static void print_json_marks(struct gz_json *json, const struct gz_log_summary *summary)
+/* One object with the members of all parts. */
+static json_t *json_log(const struct gz_gaze_log_header *header,
+			const struct gz_log_summary *summary)
 {
-	gz_json_uint(json, "mark_count", summary->mark_count);
-	gz_json_begin_list(json, "marks");
-	for (size_t i = 0; i < summary->mark_count && i < GZ_LOG_SUMMARY_MARKS; i++) {
-		gz_json_begin(json, NULL);
-		gz_json_int(json, "host_ns", summary->marks[i].host_ns);
-		gz_json_text(json, "text", summary->marks[i].text);
-		gz_json_end(json);
+	json_t *json = json_header(header);
+	json_t *const parts[] = { json_extent(summary, header->rate_hz), json_log_quality(summary),
+				  json_events(summary) };
+	bool complete = json != NULL;
+	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+		complete = json_object_update(json, parts[i]) == 0 && complete;
+		json_decref(parts[i]);
 	}
-	gz_json_end_list(json);
+	if (complete)
+		return json;
+	json_decref(json);
+	return NULL;
 }
 
-static void print_json(const struct gz_gaze_log_header *header,
-		       const struct gz_log_summary *summary)
-{
-	struct gz_json json = { .out = stdout };
-	gz_json_begin(&json, NULL);
-	print_json_header(&json, header);
-	print_json_extent(&json, summary, header->rate_hz);
-	print_json_quality(&json, summary);
-	print_json_intervals(&json, &summary->intervals);
-	print_json_window(&json, summary);
-	print_json_marks(&json, summary);
-	gz_json_end(&json);
-}
-
-static void print_table(const struct gz_gaze_log_header *header, struct gz_log_summary *summary)
+static void print_log_table(const struct gz_gaze_log_header *header, struct gz_log_summary *summary)
 {
 	struct gz_gaze_log_header printable = *header;
 	gazectl_make_printable(printable.tracker);
 	gazectl_make_printable(printable.serial);
 	gazectl_make_printable(printable.started);
 	gazectl_make_printable(printable.software);
-	print_header(&printable);
+	print_log_header(&printable);
 	print_extent(summary, header->rate_hz);
 	print_quality(summary);
 	print_intervals(&summary->intervals);
-	print_window(summary);
+	print_viewer_window(summary);
 	print_marks(summary);
 }
 
-static enum gz_result draw(const char *path, const struct gz_log_summary *summary, FILE *out)
+static enum gz_result draw_picture_of(const char *path, const struct gz_log_summary *summary,
+				      FILE *out)
 {
 	struct gz_gaze_log_reader *reader = NULL;
 	const char *slash = strrchr(path, '/');
-	/* The first reading has said all there is to say of it. */
+	/* Without a log: the first reading has already reported what is wrong with the file. */
 	enum gz_result result = gz_gaze_log_open(path, NULL, &reader);
 	if (result == GZ_OK)
 		result = gz_log_picture(reader, slash ? slash + 1 : path, summary->first_ns,
@@ -342,17 +343,18 @@ static enum gz_result draw(const char *path, const struct gz_log_summary *summar
 	return result;
 }
 
-static enum gz_result write_picture(const struct inspect_settings *settings, const char *path,
-				    const struct gz_log_summary *summary, const struct gz_log *log)
+static enum gz_result write_log_picture(const struct inspect_settings *settings, const char *path,
+					const struct gz_log_summary *summary,
+					const struct gz_log *log)
 {
 	struct gz_output_file file;
 	enum gz_result result =
 		gz_output_begin(&file, settings->picture, settings->force, GZ_OUTPUT_TEXT, log);
 	if (result != GZ_OK)
 		return result;
-	result = draw(path, summary, file.text);
+	result = draw_picture_of(path, summary, file.text);
 	if (result != GZ_OK)
-		gz_err(log, "no picture of %s: %s", path, gz_result_text(result));
+		gz_err(log, "cannot draw %s: %s", path, gz_result_text(result));
 	enum gz_result ended = gz_output_end(&file, result == GZ_OK, log);
 	return result == GZ_OK ? ended : result;
 }
@@ -364,30 +366,34 @@ static enum gazectl_exit inspect(struct gz_gaze_log_reader *reader, const char *
 	enum gz_result result = summary ? gz_log_summarize(reader, log, summary) : GZ_ERR_NO_MEM;
 	enum gazectl_exit status = GAZECTL_FAILED;
 	if (result != GZ_OK) {
-		gz_err(log, "the log cannot be read to its end: %s", gz_result_text(result));
+		gz_err(log, "%s cannot be read to its end: %s", path, gz_result_text(result));
 	} else {
 		if (settings->json)
-			print_json(gz_gaze_log_header(reader), summary);
+			result = gz_output_json_print(json_log(gz_gaze_log_header(reader), summary),
+						      stdout, log);
 		else
-			print_table(gz_gaze_log_header(reader), summary);
-		status = summary->ending == GZ_GAZE_LOG_WHOLE ? GAZECTL_DONE : GAZECTL_DAMAGED;
-		if (settings->picture[0] && write_picture(settings, path, summary, log) != GZ_OK)
+			print_log_table(gz_gaze_log_header(reader), summary);
+		if (result == GZ_OK)
+			status = summary->ending == GZ_GAZE_LOG_WHOLE ? GAZECTL_DONE
+								      : GAZECTL_DAMAGED;
+		if (settings->picture[0] &&
+		    write_log_picture(settings, path, summary, log) != GZ_OK)
 			status = GAZECTL_FAILED;
 	}
 	free(summary);
 	return status;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int inspect_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct inspect_settings settings;
 	struct gz_operands operands;
-	int status;
-	if (!gz_command_read_arguments(&gazectl_inspect, argc, argv, log, &settings, &operands,
-				       &status))
+	int status =
+		gz_command_read_arguments(&gazectl_inspect, argc, argv, log, &settings, &operands);
+	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count == 0) {
-		gz_err(log, "which file? Name a .gzl: gazectl inspect FILE");
+		gz_err(log, "no file given: gazectl inspect FILE.gzl");
 		return GAZECTL_USAGE;
 	}
 	if (gz_output_check_svg(settings.picture, log) != GZ_OK)
@@ -405,10 +411,11 @@ const struct gz_command gazectl_inspect = {
 	.name = "inspect",
 	.operands = "FILE",
 	.operands_max = 1,
-	.summary = "print what a gaze log holds",
-	.details = "Length, rate, gaps, validity of each eye, noise, events, intervals and marks; "
-		   "also of a\nlog that was cut or changed, which it says, with exit status 4.\n",
+	.summary = "print the content of a gaze log",
+	.details = "Prints length, rate, gaps, validity of each eye, noise, events, intervals and "
+		   "marks. A log that\nwas cut or changed is printed too, with a remark and exit "
+		   "status 4.\n",
 	.options = inspect_options,
 	.option_count = sizeof inspect_options / sizeof inspect_options[0],
-	.run = run,
+	.run = inspect_run,
 };

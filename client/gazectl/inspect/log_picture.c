@@ -6,27 +6,27 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/number.h"
-#include "client/gazectl/inspect/log_pipeline.h"
+#include "base/text.h"
+#include "client/gazectl/inspect/log_summary.h"
 #include "filter/angle.h"
 
 #define GZ_LOG_MODULE "picture"
 
-/* Sizes in the picture's units; chosen to be looked at 1000 wide. */
+/* Sizes in units of the picture, which is 1000 wide; chosen. */
 enum {
 	WIDTH = 1000,
 	MARGIN = 24,
 	TITLE = 36,
-	STRIP = 110,                  /* height of each coordinate over time */
-	COLUMNS = WIDTH - 2 * MARGIN, /* of a strip */
-	LABELLED = 150,               /* fixations that get their number */
+	STRIP = 110,                  /* height of a strip: one coordinate over time */
+	COLUMNS = WIDTH - 2 * MARGIN, /* columns of a strip */
+	LABELLED = 150,               /* most fixations that are numbered */
 };
 
-/* Radius of a fixation of 250 ms, the mean one (Bauer 2018, section 2.2); its area goes with its
- * duration. */
+/* Radius of a fixation of 250 ms, the mean duration (Bauer 2018, section 2.2); the area of a circle
+ * is proportional to the duration. */
 static const double RADIUS = 9;
 
-/* Steps of the path that are left out, degrees: less than a line's width. */
+/* Shorter steps of the path are left out, degrees. Chosen: less than the width of a line. */
 static const double STEP_DEG = 0.08;
 
 /* The range of a coordinate within one column of a strip. */
@@ -37,15 +37,15 @@ struct column {
 
 struct path_point {
 	float x, y;
-	bool first; /* after a blink, a loss or a gap */
+	bool first; /* the first after a blink, a loss or a gap: no line leads to it */
 };
 
 struct picture {
 	struct gz_pipeline pipeline;
 	int64_t first_ns, span_ns;
 	size_t point_count;
-	bool cut; /* there are more points */
-	bool broken;
+	bool cut;    /* further points were left out */
+	bool broken; /* the next point is the first of a line */
 	struct path_point point[GZ_LOG_PICTURE_POINTS];
 	size_t fixation_count;
 	struct gz_fixation fixation[GZ_LOG_PICTURE_FIXATIONS];
@@ -55,7 +55,7 @@ struct picture {
 	int64_t mark_ns[256];
 };
 
-static int column_of(const struct picture *picture, int64_t host_ns)
+static int column_at(const struct picture *picture, int64_t host_ns)
 {
 	double part = (double)(host_ns - picture->first_ns) / (double)picture->span_ns;
 	int column = (int)(part * COLUMNS);
@@ -64,7 +64,7 @@ static int column_of(const struct picture *picture, int64_t host_ns)
 
 static void add_to_column(struct picture *picture, const struct gz_gaze *gaze)
 {
-	struct column *column = &picture->column[column_of(picture, gaze->host_ns)];
+	struct column *column = &picture->column[column_at(picture, gaze->host_ns)];
 	const float value[2] = { gaze->point.x, gaze->point.y };
 	if (gaze->event == GZ_EVENT_BLINK || gaze->event == GZ_EVENT_LOST) {
 		column->missing = true;
@@ -115,7 +115,7 @@ static void add_events(struct picture *picture, const struct gz_pipeline_output 
 		picture->blinks += output->blinks[i].onset;
 }
 
-static void add_record(struct picture *picture, const struct gz_gaze_log_record *record)
+static void trace_record(struct picture *picture, const struct gz_gaze_log_record *record)
 {
 	struct gz_pipeline_output output;
 	if (record->kind == GZ_GAZE_LOG_MARK && picture->mark_count < 256)
@@ -131,7 +131,7 @@ static void add_record(struct picture *picture, const struct gz_gaze_log_record 
 	add_events(picture, &output);
 }
 
-static enum gz_result read_records(struct picture *picture, struct gz_gaze_log_reader *reader)
+static enum gz_result trace_records(struct picture *picture, struct gz_gaze_log_reader *reader)
 {
 	struct gz_gaze_log_record record;
 	for (;;) {
@@ -139,14 +139,14 @@ static enum gz_result read_records(struct picture *picture, struct gz_gaze_log_r
 		if (result == GZ_ERR_END)
 			return GZ_OK;
 		if (result == GZ_OK)
-			add_record(picture, &record);
+			trace_record(picture, &record);
 		else if (result != GZ_ERR_FORMAT)
 			return result;
 	}
 }
 
-/* A number with two digits behind the point. */
-static void put(FILE *out, const char *before, double value)
+/* Print @p before and a number with two decimals. */
+static void print_scaled(FILE *out, const char *before, double value)
 {
 	char text[64];
 	snprintf(text, sizeof text, "%.2f", value);
@@ -154,7 +154,7 @@ static void put(FILE *out, const char *before, double value)
 	fprintf(out, "%s%s", before, text);
 }
 
-static void put_text(FILE *out, const char *text)
+static void print_escaped(FILE *out, const char *text)
 {
 	for (; *text; text++) {
 		if (*text == '<')
@@ -166,9 +166,9 @@ static void put_text(FILE *out, const char *text)
 	}
 }
 
-/* From dark blue over green to yellow: early to late, told apart by every eye (the ends and three
- * points between of viridis, van der Walt and Smith 2015). */
-static void put_colour(FILE *out, double part)
+/* Print a colour from dark blue (early) through green to yellow (late), which people with colour
+ * vision deficiencies can tell apart: five points of viridis (van der Walt and Smith 2015). */
+static void print_colour(FILE *out, double part)
 {
 	static const int stops[5][3] = {
 		{ 68, 1, 84 }, { 59, 82, 139 }, { 33, 145, 140 }, { 94, 201, 98 }, { 253, 231, 37 }
@@ -182,12 +182,12 @@ static void put_colour(FILE *out, double part)
 		(int)lround(stops[stop][2] + rest * (stops[stop + 1][2] - stops[stop][2])));
 }
 
-/* Where the display is in the picture. */
+/* The area of the display in the picture. */
 struct frame {
 	double x, y, width, height;
 };
 
-static struct frame frame_of(const struct gz_display *display)
+static struct frame display_frame(const struct gz_display *display)
 {
 	double width = COLUMNS, height = width * display->mm[1] / display->mm[0];
 	if (height > 2 * WIDTH) { /* an upright display */
@@ -197,12 +197,12 @@ static struct frame frame_of(const struct gz_display *display)
 	return (struct frame) { (WIDTH - width) / 2, TITLE + MARGIN, width, height };
 }
 
-static double x_of(const struct frame *frame, float x)
+static double frame_x(const struct frame *frame, float x)
 {
 	return frame->x + frame->width * (double)x;
 }
 
-static double y_of(const struct frame *frame, float y)
+static double frame_y(const struct frame *frame, float y)
 {
 	return frame->y + frame->height * (double)y;
 }
@@ -214,8 +214,8 @@ static void draw_path(const struct picture *picture, const struct frame *frame, 
 	      out);
 	for (size_t i = 0; i < picture->point_count; i++) {
 		const struct path_point *point = &picture->point[i];
-		put(out, point->first ? "M" : "L", x_of(frame, point->x));
-		put(out, " ", y_of(frame, point->y));
+		print_scaled(out, point->first ? "M" : "L", frame_x(frame, point->x));
+		print_scaled(out, " ", frame_y(frame, point->y));
 	}
 	fputs("\"/>\n", out);
 }
@@ -225,21 +225,21 @@ static void draw_fixation(const struct picture *picture, const struct frame *fra
 {
 	const struct gz_fixation *fixation = &picture->fixation[number];
 	double ms = gz_ns_to_ms(fixation->duration_ns);
-	double x = x_of(frame, fixation->point.x), y = y_of(frame, fixation->point.y);
-	put(out, "<circle cx=\"", x);
-	put(out, "\" cy=\"", y);
-	put(out, "\" r=\"", RADIUS * sqrt(ms / 250));
+	double x = frame_x(frame, fixation->point.x), y = frame_y(frame, fixation->point.y);
+	print_scaled(out, "<circle cx=\"", x);
+	print_scaled(out, "\" cy=\"", y);
+	print_scaled(out, "\" r=\"", RADIUS * sqrt(ms / 250));
 	fputs("\" fill-opacity=\"0.45\" stroke=\"#333\" stroke-width=\"0.5\" fill=\"", out);
-	put_colour(out,
-		   (double)(fixation->onset_ns - picture->first_ns) / (double)picture->span_ns);
+	print_colour(out,
+		     (double)(fixation->onset_ns - picture->first_ns) / (double)picture->span_ns);
 	fprintf(out, "\"><title>%zu: ", number + 1);
-	put(out, "", gz_ns_to_s(fixation->onset_ns - picture->first_ns));
-	put(out, " s, ", ms);
+	print_scaled(out, "", gz_ns_to_s(fixation->onset_ns - picture->first_ns));
+	print_scaled(out, " s, ", ms);
 	fputs(" ms</title></circle>\n", out);
 	if (picture->fixation_count > LABELLED)
 		return;
-	put(out, "<text class=\"n\" x=\"", x);
-	put(out, "\" y=\"", y + 3);
+	print_scaled(out, "<text class=\"n\" x=\"", x);
+	print_scaled(out, "\" y=\"", y + 3);
 	fprintf(out, "\">%zu</text>\n", number + 1);
 }
 
@@ -247,34 +247,35 @@ static void draw_strip(const struct picture *picture, int coordinate, double top
 {
 	double height = STRIP - 10;
 	fprintf(out, "<text x=\"%d\" y=\"", MARGIN - 14);
-	put(out, "", top + height / 2);
+	print_scaled(out, "", top + height / 2);
 	fprintf(out, "\">%s</text>\n<rect class=\"f\" x=\"%d\" width=\"%d\" y=\"",
 		coordinate ? "y" : "x", MARGIN, COLUMNS);
-	put(out, "", top);
-	put(out, "\" height=\"", height);
+	print_scaled(out, "", top);
+	print_scaled(out, "\" height=\"", height);
 	fputs("\"/>\n<path stroke=\"#e3b7b0\" stroke-width=\"1\" d=\"", out);
 	for (int i = 0; i < COLUMNS; i++) {
 		if (!picture->column[i].missing)
 			continue;
-		put(out, "M", MARGIN + i + 0.5);
-		put(out, " ", top);
-		put(out, "v", height);
+		print_scaled(out, "M", MARGIN + i + 0.5);
+		print_scaled(out, " ", top);
+		print_scaled(out, "v", height);
 	}
 	fputs("\"/>\n<path fill=\"none\" stroke=\"#1f5f8b\" stroke-width=\"1.2\" d=\"", out);
 	for (int i = 0; i < COLUMNS; i++) {
 		const struct column *column = &picture->column[i];
 		double low = fmin(fmax((double)column->low[coordinate], 0), 1);
 		double high = fmin(fmax((double)column->high[coordinate], 0), 1);
-		if (coordinate == 0) { /* to the right is up */
+		if (coordinate == 0) { /* right is drawn upwards */
 			double right = 1 - low;
 			low = 1 - high;
 			high = right;
 		}
 		if (!column->any)
 			continue;
-		put(out, i > 0 && picture->column[i - 1].any ? "L" : "M", MARGIN + i + 0.5);
-		put(out, " ", top + height * low);
-		put(out, "V", top + height * high + 0.01);
+		print_scaled(out, i > 0 && picture->column[i - 1].any ? "L" : "M",
+			     MARGIN + i + 0.5);
+		print_scaled(out, " ", top + height * low);
+		print_scaled(out, "V", top + height * high + 0.01);
 	}
 	fputs("\"/>\n", out);
 }
@@ -283,8 +284,8 @@ static void draw_marks(const struct picture *picture, double top, FILE *out)
 {
 	fputs("<path stroke=\"#c2571a\" stroke-width=\"1\" d=\"", out);
 	for (size_t i = 0; i < picture->mark_count; i++) {
-		put(out, "M", MARGIN + column_of(picture, picture->mark_ns[i]) + 0.5);
-		put(out, " ", top);
+		print_scaled(out, "M", MARGIN + column_at(picture, picture->mark_ns[i]) + 0.5);
+		print_scaled(out, " ", top);
 		fputs("v8", out);
 	}
 	fputs("\"/>\n", out);
@@ -293,20 +294,20 @@ static void draw_marks(const struct picture *picture, double top, FILE *out)
 static void draw_title(const struct picture *picture, const char *name, FILE *out)
 {
 	fprintf(out, "<text class=\"t\" x=\"%d\" y=\"24\">", MARGIN);
-	put_text(out, name);
+	print_escaped(out, name);
 	fprintf(out, "</text>\n<text x=\"%d\" y=\"44\">", MARGIN);
-	put(out, "", (double)picture->span_ns * 1e-9);
+	print_scaled(out, "", (double)picture->span_ns * 1e-9);
 	fprintf(out,
 		" s, %" PRIu64 " samples, %" PRIu64 " fixations, %" PRIu64 " saccades, %" PRIu64
-		" blinks; circles: fixations, area their duration, "
+		" blinks; circles: fixations, their area is the duration, "
 		"early dark, late bright%s</text>\n",
 		picture->samples, picture->fixations, picture->saccades, picture->blinks,
-		picture->cut ? "; the path's end is left out" : "");
+		picture->cut ? "; the end of the path is left out" : "");
 }
 
-static void draw(const struct picture *picture, const char *name, FILE *out)
+static void draw_recording(const struct picture *picture, const char *name, FILE *out)
 {
-	struct frame frame = frame_of(&picture->pipeline.display);
+	struct frame frame = display_frame(&picture->pipeline.display);
 	double strips = frame.y + frame.height + 20, end_s = (double)picture->span_ns * 1e-9;
 	int height = (int)ceil(strips + 2 * STRIP + 30);
 	fprintf(out,
@@ -318,10 +319,10 @@ static void draw(const struct picture *picture, const char *name, FILE *out)
 		"<rect width=\"%d\" height=\"%d\" fill=\"#f4f5f6\"/>\n",
 		WIDTH, height, WIDTH, height, WIDTH, height);
 	draw_title(picture, name, out);
-	put(out, "<rect class=\"f\" x=\"", frame.x);
-	put(out, "\" y=\"", frame.y);
-	put(out, "\" width=\"", frame.width);
-	put(out, "\" height=\"", frame.height);
+	print_scaled(out, "<rect class=\"f\" x=\"", frame.x);
+	print_scaled(out, "\" y=\"", frame.y);
+	print_scaled(out, "\" width=\"", frame.width);
+	print_scaled(out, "\" height=\"", frame.height);
 	fputs("\"/>\n", out);
 	draw_path(picture, &frame, out);
 	for (size_t i = 0; i < picture->fixation_count; i++)
@@ -331,7 +332,7 @@ static void draw(const struct picture *picture, const char *name, FILE *out)
 	draw_marks(picture, strips + 2 * STRIP - 6, out);
 	fprintf(out, "<text x=\"%d\" y=\"%d\">0 s</text>\n<text class=\"e\" x=\"%d\" y=\"%d\">",
 		MARGIN, height - 12, WIDTH - MARGIN, height - 12);
-	put(out, "", end_s);
+	print_scaled(out, "", end_s);
 	fputs(" s</text>\n</svg>\n", out);
 }
 
@@ -346,9 +347,9 @@ enum gz_result gz_log_picture(struct gz_gaze_log_reader *reader, const char *nam
 	picture->span_ns = span_ns == 0 || span_ns > INT64_MAX ? 1 : (int64_t)span_ns;
 	picture->broken = true;
 	gz_log_pipeline_init(&picture->pipeline, gz_gaze_log_header(reader), log);
-	enum gz_result result = read_records(picture, reader);
+	enum gz_result result = trace_records(picture, reader);
 	if (result == GZ_OK)
-		draw(picture, name, out);
+		draw_recording(picture, name, out);
 	free(picture);
 	return result;
 }

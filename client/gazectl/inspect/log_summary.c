@@ -6,15 +6,52 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "client/gazectl/inspect/log_pipeline.h"
 #include "filter/pipeline.h"
 
-#define GZ_LOG_MODULE "summary"
+#define GZ_LOG_MODULE "pipeline"
+
+/* The settings with which the log was recorded, as far as this version knows them. */
+static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header *header,
+						 const struct gz_log *log)
+{
+	struct gz_pipeline_params params = gz_pipeline_default_params();
+	const struct gz_option_binding binding = {
+		.options = gz_pipeline_options,
+		.count = gz_pipeline_option_count,
+		.target = &params,
+	};
+	for (size_t i = 0; i < header->setting_count; i++) {
+		char key[GZ_NAME_SIZE + 16], message[256] = "unknown";
+		snprintf(key, sizeof key, "pipeline.%s", header->settings[i].key);
+		const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
+		if (!option || gz_option_parse(option, header->settings[i].value, &params, message,
+					       sizeof message) != GZ_OK)
+			gz_warn(log, "%s %s: %s; using the default", key, header->settings[i].value,
+				message);
+	}
+	char reason[256];
+	if (gz_pipeline_check_params(&params, reason, sizeof reason) != GZ_OK) {
+		gz_warn(log, "%s; using the default", reason);
+		params.correct = gz_pipeline_default_params().correct;
+	}
+	return params;
+}
+
+void gz_log_pipeline_init(struct gz_pipeline *pipeline, const struct gz_gaze_log_header *header,
+			  const struct gz_log *log)
+{
+	struct gz_pipeline_params params = recorded_params(header, log);
+	struct gz_display display = gz_display_default(1920, 1080);
+	if (header->has_display)
+		display = header->display;
+	gz_pipeline_init(pipeline, &params, &display);
+}
 
 const double gz_log_summary_bin_ends[GZ_LOG_SUMMARY_BINS - 1] = { 0.5, 0.75, 0.9, 1.1, 1.25,
 								  1.5, 2.5,  4.5, 10.5 };
 
-/* Chosen: memory for an hour at 1200 Hz is made in 12 steps. */
+/* Room for intervals at first; it is doubled when it is full. Chosen: an hour at 1200 Hz takes 12
+ * steps. */
 enum { INTERVALS_FIRST = 1024 };
 
 struct summarizer {
@@ -89,7 +126,8 @@ static void add_mark(struct gz_log_summary *summary, const struct gz_gaze_log_re
 	summary->mark_count++;
 }
 
-static enum gz_result add_record(struct summarizer *s, const struct gz_gaze_log_record *record)
+static enum gz_result summarise_record(struct summarizer *s,
+				       const struct gz_gaze_log_record *record)
 {
 	enum gz_result result;
 	switch (record->kind) {
@@ -147,11 +185,11 @@ static void sort_intervals(struct summarizer *s)
 			->bins[bin_of((double)s->intervals_ns[i] / (double)intervals->median_ns)]++;
 }
 
-static void finish(struct summarizer *s)
+static void finish_summary(struct summarizer *s)
 {
 	struct gz_log_summary *summary = &s->summary;
 	sort_intervals(s);
-	/* Unsigned, because the times of a damaged log may be any. */
+	/* Unsigned, because a damaged log may hold any times. */
 	uint64_t duration_ns = (uint64_t)summary->last_ns - (uint64_t)summary->first_ns;
 	summary->duration_s = (double)duration_ns * 1e-9;
 	if (duration_ns > 0)
@@ -160,7 +198,7 @@ static void finish(struct summarizer *s)
 	summary->noise_deg = gz_pipeline_noise_deg(&s->pipeline);
 }
 
-static enum gz_result read_records(struct summarizer *s, struct gz_gaze_log_reader *reader)
+static enum gz_result summarise_records(struct summarizer *s, struct gz_gaze_log_reader *reader)
 {
 	for (;;) {
 		struct gz_gaze_log_record record;
@@ -172,7 +210,7 @@ static enum gz_result read_records(struct summarizer *s, struct gz_gaze_log_read
 			continue;
 		}
 		if (result == GZ_OK)
-			result = add_record(s, &record);
+			result = summarise_record(s, &record);
 		if (result != GZ_OK)
 			return result;
 	}
@@ -185,9 +223,9 @@ enum gz_result gz_log_summarize(struct gz_gaze_log_reader *reader, const struct 
 	if (!s)
 		return GZ_ERR_NO_MEM;
 	gz_log_pipeline_init(&s->pipeline, gz_gaze_log_header(reader), log);
-	enum gz_result result = read_records(s, reader);
+	enum gz_result result = summarise_records(s, reader);
 	if (result == GZ_OK) {
-		finish(s);
+		finish_summary(s);
 		s->summary.ending = gz_gaze_log_ending(reader);
 		*out_summary = s->summary;
 	}

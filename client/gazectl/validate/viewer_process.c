@@ -13,20 +13,20 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/number.h"
+#include "base/text.h"
 #include "protocol/gaze.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
 extern char **environ;
 
-/* Most arguments that are passed on. */
+/* Most arguments passed to gazeview. */
 enum { ARGUMENTS_MAX = 40 };
 
-/* Words of a line: its name and up to five numbers. */
+/* Most words of a line: its name and five numbers. */
 enum { WORDS_MAX = 6 };
 
-/* How long one that was asked to end may take, before it is killed; chosen. */
+/* How long gazeview may take to end before it is killed; chosen. */
 static const int64_t END_PATIENCE_NS = 2 * GZ_NS_PER_S;
 
 struct words {
@@ -34,7 +34,7 @@ struct words {
 	char *word[WORDS_MAX];
 };
 
-static bool split(char *line, struct words *words)
+static bool split_words(char *line, struct words *words)
 {
 	words->count = 0;
 	for (char *word; (word = gz_number_next_word(&line, " ")) != NULL;) {
@@ -45,7 +45,7 @@ static bool split(char *line, struct words *words)
 	return words->count > 0;
 }
 
-static bool whole(const struct words *words, int i, int64_t max, int64_t *out_value)
+static bool parse_whole_word(const struct words *words, int i, int64_t max, int64_t *out_value)
 {
 	long long value;
 	if (!gz_number_parse_whole(words->word[i], &value) || value < 0 || value > max)
@@ -57,8 +57,8 @@ static bool whole(const struct words *words, int i, int64_t max, int64_t *out_va
 static bool parse_screen(const struct words *words, struct gz_viewer_event *event)
 {
 	int64_t px[2];
-	if (words->count != 3 || !whole(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
-	    !whole(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]))
+	if (words->count != 3 || !parse_whole_word(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
+	    !parse_whole_word(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]))
 		return false;
 	event->px[0] = (int)px[0];
 	event->px[1] = (int)px[1];
@@ -69,10 +69,10 @@ static bool parse_shown(const struct words *words, struct gz_viewer_event *event
 {
 	int64_t index, count;
 	double x, y;
-	if (words->count != 6 || !whole(words, 1, INT32_MAX, &index) ||
-	    !whole(words, 2, INT32_MAX, &count) || index >= count ||
+	if (words->count != 6 || !parse_whole_word(words, 1, INT32_MAX, &index) ||
+	    !parse_whole_word(words, 2, INT32_MAX, &count) || index >= count ||
 	    !gz_number_parse(words->word[3], &x) || !gz_number_parse(words->word[4], &y) ||
-	    !whole(words, 5, INT64_MAX, &event->time_ns))
+	    !parse_whole_word(words, 5, INT64_MAX, &event->time_ns))
 		return false;
 	event->index = (size_t)index;
 	event->count = (size_t)count;
@@ -83,8 +83,8 @@ static bool parse_shown(const struct words *words, struct gz_viewer_event *event
 static bool parse_hidden(const struct words *words, struct gz_viewer_event *event)
 {
 	int64_t index;
-	if (words->count != 3 || !whole(words, 1, INT32_MAX, &index) ||
-	    !whole(words, 2, INT64_MAX, &event->time_ns))
+	if (words->count != 3 || !parse_whole_word(words, 1, INT32_MAX, &index) ||
+	    !parse_whole_word(words, 2, INT64_MAX, &event->time_ns))
 		return false;
 	event->index = (size_t)index;
 	return true;
@@ -92,7 +92,7 @@ static bool parse_hidden(const struct words *words, struct gz_viewer_event *even
 
 static bool parse_end(const struct words *words, struct gz_viewer_event *event)
 {
-	return words->count == 2 && whole(words, 1, INT64_MAX, &event->time_ns);
+	return words->count == 2 && parse_whole_word(words, 1, INT64_MAX, &event->time_ns);
 }
 
 enum gz_result gz_viewer_event_parse(const char *line, struct gz_viewer_event *out_event)
@@ -114,7 +114,7 @@ enum gz_result gz_viewer_event_parse(const char *line, struct gz_viewer_event *o
 	if (length >= sizeof text)
 		return GZ_ERR_FORMAT;
 	memcpy(text, line, length + 1);
-	if (!split(text, &words))
+	if (!split_words(text, &words))
 		return GZ_ERR_FORMAT;
 	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
 		struct gz_viewer_event event = { .kind = kinds[i].kind };
@@ -128,8 +128,8 @@ enum gz_result gz_viewer_event_parse(const char *line, struct gz_viewer_event *o
 	return GZ_ERR_FORMAT;
 }
 
-/* gazeview in the folder that this program was started from. */
-static bool find_beside(char *path, size_t size)
+/* The path of gazeview in the directory of this program. @return whether it can be run */
+static bool find_gazeview_beside(char *path, size_t size)
 {
 	static const char name[] = "gazeview";
 	ssize_t length = readlink("/proc/self/exe", path, size - 1);
@@ -143,8 +143,8 @@ static bool find_beside(char *path, size_t size)
 	return access(path, X_OK) == 0;
 }
 
-/* Its standard output becomes the pipe's end @p write_end. @return 0, or an errno */
-static int spawn(const char *path, char *const *argv, int write_end, pid_t *out_process)
+/* Start a program whose standard output is @p write_end of a pipe. @return 0, or an errno */
+static int spawn_with_output(const char *path, char *const *argv, int write_end, pid_t *out_process)
 {
 	posix_spawn_file_actions_t actions;
 	int failure = posix_spawn_file_actions_init(&actions);
@@ -164,29 +164,29 @@ enum gz_result gz_viewer_process_start(struct gz_viewer_process *viewer, const c
 	char *argv[ARGUMENTS_MAX + 2] = { path };
 	int ends[2];
 	snprintf(path, sizeof path, "%s", program);
-	if (!program[0] && !find_beside(path, sizeof path))
+	if (!program[0] && !find_gazeview_beside(path, sizeof path))
 		snprintf(path, sizeof path, "gazeview");
 	for (int i = 0; i < ARGUMENTS_MAX && arguments[i]; i++)
-		argv[i + 1] = (char *)arguments[i]; /* which changes none of them */
+		argv[i + 1] = (char *)arguments[i]; /* posix_spawnp() does not change them */
 	if (pipe2(ends, O_CLOEXEC) != 0) {
-		gz_err(log, "no pipe for gazeview: %s", strerror(errno));
+		gz_err(log, "cannot make a pipe for gazeview: %s", strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	*viewer = (struct gz_viewer_process) { .out = ends[0], .log = log };
 	fcntl(ends[0], F_SETFL, O_NONBLOCK);
-	int failure = spawn(path, argv, ends[1], &viewer->process);
+	int failure = spawn_with_output(path, argv, ends[1], &viewer->process);
 	close(ends[1]);
 	if (failure == 0)
 		return GZ_OK;
 	close(ends[0]);
 	*viewer = (struct gz_viewer_process) { .out = -1 };
-	gz_err(log, "cannot start %s: %s; install gazeview, or name it with --gazeview PATH", path,
-	       strerror(failure));
+	gz_err(log, "cannot start %s: %s; install gazeview, or give its path with --gazeview PATH",
+	       path, strerror(failure));
 	return failure == ENOENT || failure == EACCES ? GZ_ERR_NOT_FOUND : GZ_ERR_NO_MEM;
 }
 
-/* Cut the first line off the buffer. */
-static bool next_line(struct gz_viewer_process *viewer, char line[GZ_VIEWER_LINE_SIZE])
+/* Cut the first line off the buffer. @return whether there is a complete one */
+static bool cut_line(struct gz_viewer_process *viewer, char line[GZ_VIEWER_LINE_SIZE])
 {
 	char *end = memchr(viewer->buffer, '\n', viewer->used);
 	if (!end)
@@ -203,31 +203,33 @@ enum gz_result gz_viewer_process_read(struct gz_viewer_process *viewer,
 				      struct gz_viewer_event *out_event)
 {
 	char line[GZ_VIEWER_LINE_SIZE];
-	if (!next_line(viewer, line)) {
+	if (!cut_line(viewer, line)) {
 		if (viewer->out < 0)
 			return GZ_ERR_TIMEOUT;
 		ssize_t n = read(viewer->out, viewer->buffer + viewer->used,
 				 sizeof viewer->buffer - viewer->used);
 		if (n < 0 && (errno == EAGAIN || errno == EINTR))
 			return GZ_ERR_TIMEOUT;
-		if (n <= 0) { /* also where a line has no end in sight */
+		if (n <= 0) { /* also if a line does not fit the buffer */
 			close(viewer->out);
 			viewer->out = -1;
 			*out_event = (struct gz_viewer_event) { .kind = GZ_VIEWER_GONE };
 			return GZ_OK;
 		}
 		viewer->used += (size_t)n;
-		if (!next_line(viewer, line))
+		if (!cut_line(viewer, line))
 			return GZ_ERR_TIMEOUT;
 	}
 	if (gz_viewer_event_parse(line, out_event) == GZ_OK)
 		return GZ_OK;
-	gz_err(viewer->log, "gazeview says \"%s\", which is not understood: is it of this version?",
+	gz_err(viewer->log,
+	       "gazeview printed \"%s\", which gazectl does not understand: are both of the same "
+	       "version?",
 	       line);
 	return GZ_ERR_FORMAT;
 }
 
-static bool has_ended(pid_t process, int *status)
+static bool wait_for_end(pid_t process, int *status)
 {
 	int64_t deadline_ns = gz_clock_now_ns() + END_PATIENCE_NS;
 	while (waitpid(process, status, WNOHANG) == 0) {
@@ -248,7 +250,7 @@ int gz_viewer_process_end(struct gz_viewer_process *viewer)
 		close(viewer->out);
 	if (open)
 		kill(viewer->process, SIGTERM);
-	if (!has_ended(viewer->process, &status)) {
+	if (!wait_for_end(viewer->process, &status)) {
 		kill(viewer->process, SIGKILL);
 		waitpid(viewer->process, &status, 0);
 	}

@@ -1,6 +1,6 @@
 /**
  * @file
- * gazeview as a child that shows targets, and the lines in which it tells what is on the display.
+ * gazeview as a child process that shows targets, and the lines in which it reports them.
  */
 #ifndef GZ_CLIENT_GAZECTL_VALIDATE_VIEWER_PROCESS_H
 #define GZ_CLIENT_GAZECTL_VALIDATE_VIEWER_PROCESS_H
@@ -14,71 +14,74 @@
 #include "base/result.h"
 #include "protocol/display.h"
 
-/** Longest line that is understood, with its NUL. */
+/** Room for a line with its NUL, bytes; longer lines are not understood. */
 #define GZ_VIEWER_LINE_SIZE 256
 
-/** What a line tells of. */
+/** What a line reports. */
 enum gz_viewer_event_kind {
-	GZ_VIEWER_SCREEN, /**< the display's pixels */
-	GZ_VIEWER_SHOWN,
-	GZ_VIEWER_HIDDEN,
-	GZ_VIEWER_FINISHED,
-	GZ_VIEWER_CANCELLED,
-	GZ_VIEWER_GONE, /**< it has closed its output: it has ended, or is about to */
+	GZ_VIEWER_SCREEN,    /**< the size of the display, pixels */
+	GZ_VIEWER_SHOWN,     /**< a target has appeared */
+	GZ_VIEWER_HIDDEN,    /**< a target has vanished */
+	GZ_VIEWER_FINISHED,  /**< all targets were shown */
+	GZ_VIEWER_CANCELLED, /**< the person has cancelled */
+	GZ_VIEWER_GONE, /**< not a line: it has closed its output, so it has ended or soon will */
 };
 
-/** One line, understood. */
+/** A parsed line. */
 struct gz_viewer_event {
 	enum gz_viewer_event_kind kind;
-	int px[2];             /**< SCREEN; 0 0 if it does not know */
+	int px[2];             /**< SCREEN; 0 0 if unknown */
 	size_t index, count;   /**< SHOWN, HIDDEN (index only) */
 	struct gz_point point; /**< SHOWN: on the display */
-	int64_t time_ns;       /**< all but SCREEN and GONE: host time */
+	int64_t time_ns;       /**< host time; not in SCREEN and GONE */
 };
 
 /**
- * Understand one line, without its newline.
+ * Parse one line, without its newline.
  *
  * @param[out] out_event  written on success only
- * @retval GZ_ERR_FORMAT  it is none of the lines of view/target_window.h, or has numbers that
- *                        cannot be: an index not below the count, a place that is not finite
+ * @retval GZ_ERR_FORMAT  it is none of the lines of view/target/target_window.h, or has invalid
+ *                        numbers: an index not below the count, a point that is not finite
  */
 enum gz_result gz_viewer_event_parse(const char *line, struct gz_viewer_event *out_event);
 
-/** A running gazeview. Zero-initialised is none. */
+/** A running gazeview. Zero-initialised: none. */
 struct gz_viewer_process {
 	pid_t process; /**< 0: none */
-	int out;       /**< its standard output, to be polled; -1 when it is closed */
+	int out;       /**< its standard output; -1: closed */
 	const struct gz_log *log;
 	size_t used;
 	char buffer[GZ_VIEWER_LINE_SIZE];
 };
 
 /**
- * Start it.
+ * Start gazeview.
  *
- * @param program    path of gazeview; empty: beside this program, else in PATH
- * @param arguments  behind its name, NULL-terminated
- * @param log        borrowed; may be NULL
- * @retval GZ_ERR_NOT_FOUND  there is no such program; logged
- * @retval GZ_ERR_NO_MEM     no room for a process; logged
+ * @param[out] viewer  filled; gz_viewer_process_end()
+ * @param program      path of gazeview; empty: in the directory of this program, else in PATH
+ * @param arguments    arguments after its name, NULL-terminated, at most 40
+ * @param log          borrowed; may be NULL
+ * @retval GZ_ERR_NOT_FOUND  the program does not exist or cannot be run; logged
+ * @retval GZ_ERR_NO_MEM     no pipe or no process; logged
  */
 enum gz_result gz_viewer_process_start(struct gz_viewer_process *viewer, const char *program,
 				       const char *const *arguments, const struct gz_log *log);
 
 /**
- * Take the next line that is there; never waits.
+ * Read the next line. Never waits.
  *
- * @retval GZ_ERR_TIMEOUT  none is there now
- * @retval GZ_ERR_FORMAT   a line that is not understood, logged; go on or give up
+ * @param[out] out_event  written on success only
+ * @retval GZ_ERR_TIMEOUT  there is no line now
+ * @retval GZ_ERR_FORMAT   the line is not understood; logged; the next call goes on after it
  */
 enum gz_result gz_viewer_process_read(struct gz_viewer_process *viewer,
 				      struct gz_viewer_event *out_event);
 
 /**
- * End it if it still runs, and wait until it has gone.
+ * End gazeview if it is still running, and wait until it has ended. One that does not react to
+ * SIGTERM within two seconds is killed.
  *
- * @return its exit status; -1 if a signal ended it or there was none
+ * @return its exit status; -1 if a signal ended it, or if none was running
  */
 int gz_viewer_process_end(struct gz_viewer_process *viewer);
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # usage: check.sh BUILD SOURCE CC CXX PUBLISHER
-# Installs the library into an empty place, builds a program against it as a user would, with
-# pkg-config alone, and lets it read from a publisher.
+# Installs the library into an empty directory, builds a program against it like a user, with
+# pkg-config only, and lets it read from a publisher.
 set -eu
 build=$1 source=$2 cc=$3 cxx=$4 publisher=$5
 command -v pkg-config >/dev/null || { echo "no pkg-config"; exit 77; }
@@ -10,7 +10,7 @@ publisher_id=
 trap '[ -z "$publisher_id" ] || kill "$publisher_id"; rm -rf "$place"' EXIT
 fail() { echo "$*" >&2; exit 1; }
 
-# Once under a prefix that differs from the configured one, once staged as a package is.
+# Once under a prefix that differs from the configured one, once staged like a package.
 cmake --install "$build" --component library --prefix "$place/prefix" >/dev/null
 DESTDIR=$place/stage cmake --install "$build" --component library --prefix /usr >/dev/null
 [ -n "$(find "$place/stage/usr" -name 'libgazecast.so.0')" ] || fail "DESTDIR: no libgazecast.so.0"
@@ -24,7 +24,7 @@ program=$source/tests/client/install/latest.c
 # shellcheck disable=SC2086
 "$cxx" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only "$program" $flags
 
-# The library shows the documented functions, all of them and no others.
+# The library exports all documented functions and no others.
 library=$(find "$place/prefix" -name libgazecast.so)
 nm -D --defined-only "$library" | sed -n 's/.* T //p' | sort >"$place/shown"
 sed -n 's/^[ \t]*\(gz_[a-z0-9_]*\);.*/\1/p' "$source/client/gazecast.map" | sort >"$place/listed"

@@ -1,0 +1,6 @@
+/* The bare loop for one instruction set; the vocabulary comes before what speaks it. */
+#include "render/raycast/cpu/simd_portable.h"
+
+#include "bench/probes/cast_limit_loop.h"
+
+DEFINE_LIMIT(gz_limit_portable)

@@ -1,0 +1,267 @@
+/*
+ * The pipeline beside the 1 euro filter and plain I-VT, on recordings that two people labelled:
+ * agreement, jitter and lag (bench/filter/stillness.h). With a folder as its argument, draws jitter
+ * over lag there: docs/images/jitter-over-lag.svg.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "bench/filter/baselines.h"
+#include "bench/filter/labelled_recording.h"
+#include "bench/filter/stillness.h"
+#include "bench/filter/sweep.h"
+#include "bench/filter/track.h"
+#include "bench/report/filter_chart.h"
+
+enum { SKIPPED = 77, STIMULI = 3, CODERS = 2, FILES_MAX = 12 };
+
+/* A step between samples of these recordings, ms: 500 Hz. */
+static const double SAMPLE_MS = 2;
+
+static const char *const STIMULUS_NAMES[STIMULI] = { "img", "dots", "video" };
+static const char *const CODER_NAMES[CODERS] = { "MN", "RA" };
+static const char *const FILES[STIMULI][FILES_MAX] = {
+	{ "img_TH34_img_Europe", "img_TH34_img_vy", "img_TL20_img_konijntjes", "img_UH21_img_Rome",
+	  "img_UH29_img_Europe", "img_UL23_img_Europe", "img_UL43_img_Rome" },
+	{ "dots_TH20_trial1", "dots_TL22_trial17", "dots_UH21_trial17", "dots_UH25_trial1",
+	  "dots_UL27_trial17" },
+	{ "video_TH34_video_BergoDalbana", "video_TL30_video_triple_jump",
+	  "video_UH21_video_BergoDalbana", "video_UL23_video_triple_jump" },
+};
+
+/** Whose a recording is. */
+struct origin {
+	int stimulus, coder;
+};
+
+/** All of them. */
+struct tracks {
+	struct gz_gaze_track track[STIMULI * CODERS * FILES_MAX];
+	struct origin origin[STIMULI * CODERS * FILES_MAX];
+	size_t count;
+};
+
+/** Counts for Cohen's kappa, one against the rest. */
+struct agreement {
+	double both, ours, theirs, all;
+};
+
+static double kappa(const struct agreement *a)
+{
+	double neither = a->all - a->ours - a->theirs + a->both;
+	double observed = (a->both + neither) / a->all;
+	double chance = (a->ours * a->theirs + (a->all - a->ours) * (a->all - a->theirs)) /
+			(a->all * a->all);
+	return (observed - chance) / (1 - chance);
+}
+
+static void count_agreement(const struct gz_gaze_track *track, enum gz_event event,
+			    struct agreement *agreement)
+{
+	for (size_t i = 0; i < track->count; i++) {
+		const bool ours = track->event[i] == event, theirs = track->label[i] == event;
+		agreement->all++;
+		agreement->ours += ours;
+		agreement->theirs += theirs;
+		agreement->both += ours && theirs;
+	}
+}
+
+/* The mean over both people. */
+static double kappa_of(const struct tracks *tracks, int stimulus, enum gz_event event)
+{
+	double sum = 0;
+	for (int coder = 0; coder < CODERS; coder++) {
+		struct agreement agreement = { .all = 0 };
+		for (size_t f = 0; f < tracks->count; f++)
+			if (tracks->origin[f].stimulus == stimulus &&
+			    tracks->origin[f].coder == coder)
+				count_agreement(&tracks->track[f], event, &agreement);
+		sum += kappa(&agreement) / CODERS;
+	}
+	return sum;
+}
+
+static void run_pipeline(struct tracks *tracks, bool certain)
+{
+	for (size_t f = 0; f < tracks->count; f++)
+		gz_gaze_track_run_pipeline(&tracks->track[f], NULL, certain);
+}
+
+static bool is_saccade(const struct gz_gaze_track *track, size_t i, double threshold_deg_s)
+{
+	if (i == 0 || !track->sample[i].valid || !track->sample[i - 1].valid)
+		return false;
+	const double step_deg =
+		gz_display_angle_deg(&track->display, track->raw[i], track->raw[i - 1]);
+	return gz_is_saccade_by_velocity(threshold_deg_s, step_deg,
+					 gz_gaze_track_elapsed_ms(track, i - 1, i) / 1000);
+}
+
+static void run_velocity_threshold(struct tracks *tracks, double threshold_deg_s)
+{
+	for (size_t f = 0; f < tracks->count; f++) {
+		struct gz_gaze_track *track = &tracks->track[f];
+		for (size_t i = 0; i < track->count; i++)
+			track->event[i] = is_saccade(track, i, threshold_deg_s) ? GZ_EVENT_SACCADE
+					  : track->sample[i].valid              ? GZ_EVENT_FIXATION
+										: GZ_EVENT_LOST;
+	}
+}
+
+static void print_agreement(const char *name, const struct tracks *tracks)
+{
+	printf("%-30s", name);
+	for (int i = 0; i < STIMULI; i++)
+		printf("  %.3f %.3f", kappa_of(tracks, i, GZ_EVENT_SACCADE),
+		       kappa_of(tracks, i, GZ_EVENT_FIXATION));
+	putchar('\n');
+}
+
+static void compare_labels(struct tracks *tracks)
+{
+	char name[64];
+	printf("kappa with the coders           ");
+	for (int i = 0; i < STIMULI; i++)
+		printf("%-5s sacc fix  ", STIMULUS_NAMES[i]);
+	putchar('\n');
+	run_pipeline(tracks, true);
+	print_agreement("pipeline, certain label", tracks);
+	run_pipeline(tracks, false);
+	print_agreement("pipeline, label at once", tracks);
+	static const double thresholds[] = { 30, 50, 75, 100, 130 };
+	for (size_t i = 0; i < sizeof thresholds / sizeof thresholds[0]; i++) {
+		run_velocity_threshold(tracks, thresholds[i]);
+		snprintf(name, sizeof name, "I-VT at %.0f deg/s", thresholds[i]);
+		print_agreement(name, tracks);
+	}
+}
+
+static void print_sweep(const char *name, const struct gz_sweep *sweep)
+{
+	for (size_t i = 0; i < sweep->count; i++) {
+		const struct gz_stillness *still = &sweep->point[i].stillness;
+		printf("%-26s %-8.4g  jitter %.3f  distance %.3f  lag %5.2f samples\n", name,
+		       sweep->point[i].setting, still->jitter, still->distance,
+		       still->lag_ms / SAMPLE_MS);
+	}
+}
+
+static bool draw(const struct gz_sweep *ours, const struct gz_sweep *theirs, const char *folder)
+{
+	struct gz_log log;
+	bool drawn;
+	gz_log_init(&log, NULL, NULL, NULL);
+	return gz_filter_chart_draw(ours, theirs, SAMPLE_MS, folder, &log, &drawn) == GZ_OK;
+}
+
+/** @return whether the pipeline's curve lies below at every lag from one sample to 20 */
+static bool compare_curves(struct tracks *tracks, const char *folder)
+{
+	const struct gz_pipeline_params params = gz_pipeline_default_params();
+	const struct gz_sweep ours = gz_sweep_pipeline(tracks->track, tracks->count, &params);
+	const struct gz_sweep theirs = gz_sweep_one_euro(tracks->track, tracks->count);
+	print_sweep("pipeline, smooth_pass_deg", &ours);
+	print_sweep("1 euro, beta", &theirs);
+	const double lag_ms =
+		gz_sweep_first_not_below(&ours, &theirs, SAMPLE_MS, 20 * SAMPLE_MS, SAMPLE_MS / 4);
+	const bool below = isnan(lag_ms);
+	if (!below)
+		printf("at a lag of %.2f samples: jitter %.3f against %.3f\n", lag_ms / SAMPLE_MS,
+		       gz_sweep_jitter_at(&ours, lag_ms), gz_sweep_jitter_at(&theirs, lag_ms));
+	printf("the pipeline's jitter lies below the 1 euro filter's at every lag from 1 to 20 "
+	       "samples: %s\n",
+	       below ? "yes" : "no");
+	return (!folder || draw(&ours, &theirs, folder)) && below;
+}
+
+static enum gz_event event_of(int label)
+{
+	switch (label) {
+	case GZ_HUMAN_FIXATION:
+		return GZ_EVENT_FIXATION;
+	case GZ_HUMAN_SACCADE:
+		return GZ_EVENT_SACCADE;
+	case GZ_HUMAN_PURSUIT:
+		return GZ_EVENT_PURSUIT;
+	case GZ_HUMAN_BLINK:
+		return GZ_EVENT_BLINK;
+	default: /* a glissade, or what nobody could name */
+		return GZ_EVENT_LOST;
+	}
+}
+
+static bool take_recording(const struct gz_labelled_recording *recording, struct gz_gaze_track *out)
+{
+	if (gz_gaze_track_start(recording->count, &recording->display, out) != GZ_OK)
+		return false;
+	for (size_t i = 0; i < recording->count; i++) {
+		out->sample[i] = recording->sample[i];
+		out->raw[i] = recording->sample[i].point;
+		out->label[i] = event_of(recording->label[i]);
+	}
+	return true;
+}
+
+/** One person corrected one file, which then has another name. */
+static bool read_track(const char *data, int coder, const char *file, struct gz_gaze_track *out)
+{
+	char path[1024];
+	bool corrected = coder == 0 && strcmp(file, "img_UH29_img_Europe") == 0;
+	snprintf(path, sizeof path, "%s/gaze/andersson2017/%s_labelled_%s%s.tsv.gz", data,
+		 corrected ? "fix_UH29_img_Europe" : file, corrected ? "FIX_" : "",
+		 CODER_NAMES[coder]);
+	struct gz_labelled_recording recording;
+	const bool taken =
+		gz_labelled_recording_read(path, &recording) && take_recording(&recording, out);
+	gz_labelled_recording_free(&recording);
+	return taken;
+}
+
+static bool read_tracks(const char *data, struct tracks *tracks)
+{
+	for (int stimulus = 0; stimulus < STIMULI; stimulus++)
+		for (int coder = 0; coder < CODERS; coder++)
+			for (int f = 0; f < FILES_MAX && FILES[stimulus][f]; f++) {
+				if (!read_track(data, coder, FILES[stimulus][f],
+						&tracks->track[tracks->count]))
+					return false;
+				tracks->origin[tracks->count++] =
+					(struct origin) { stimulus, coder };
+			}
+	return true;
+}
+
+static void free_tracks(struct tracks *tracks)
+{
+	for (size_t f = 0; f < tracks->count; f++)
+		gz_gaze_track_free(&tracks->track[f]);
+	free(tracks);
+}
+
+int main(int argc, char **argv)
+{
+	const char *data = getenv("GAZECAST_DATA");
+	struct tracks *tracks = calloc(1, sizeof *tracks);
+	if (!tracks)
+		return 1;
+	if (argc > 2 || (argc == 2 && argv[1][0] == '-')) {
+		printf("usage: gaze_filter [FOLDER]\n");
+		free_tracks(tracks);
+		return argc == 2 && strcmp(argv[1], "--help") == 0 ? 0 : 2;
+	}
+	if (!data || !read_tracks(data, tracks)) {
+		printf("no recordings: GAZECAST_DATA must name the folder that has "
+		       "gaze/andersson2017\n");
+		free_tracks(tracks);
+		return SKIPPED;
+	}
+	compare_labels(tracks);
+	bool below = compare_curves(tracks, argc == 2 ? argv[1] : NULL);
+	free_tracks(tracks);
+	return below ? 0 : 1;
+}

@@ -1,0 +1,97 @@
+/**
+ * @file
+ * Accumulation over frames, above the backends: each frame's lattices are shifted by some pixels,
+ * so that rays go where none went before, and what earlier frames saw is kept (docs/foveation.md).
+ * Off unless it is asked for; without it nothing is kept and no lattice moves.
+ */
+#ifndef GZ_RENDER_ACCUMULATE_TEMPORAL_H
+#define GZ_RENDER_ACCUMULATE_TEMPORAL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/option.h"
+#include "base/result.h"
+#include "base/workers.h"
+#include "render/picture/camera.h"
+#include "render/picture/image.h"
+#include "render/plan/plan.h"
+
+/** Lattices move by 0 to this less 1 pixels along each axis: the widest spacing. */
+#define GZ_TEMPORAL_SHIFTS 32
+
+/** Section [temporal] of a scene. */
+struct gz_temporal_params {
+	bool accumulate;
+	double weight; /**< share of earlier frames in pixels between rays while the camera moves,
+			  [0, 0.98] */
+};
+
+/** Table over struct gz_temporal_params. */
+extern const struct gz_option gz_temporal_options[];
+extern const size_t gz_temporal_option_count;
+
+/** The table's presets. */
+struct gz_temporal_params gz_temporal_default(void);
+
+/** What a frame shows. Frames that differ in anything but the camera share nothing. */
+struct gz_temporal_content {
+	struct gz_camera camera;
+	uint64_t serial; /**< the caller counts up when anything else changes what is shown */
+};
+
+/** Zero-initialised is empty; keep it from frame to frame. */
+struct gz_temporal {
+	struct gz_workers *workers;
+	int width, height;
+	unsigned frame;        /**< which shift: 0 to GZ_TEMPORAL_SHIFTS squared, less 1 */
+	unsigned still_frames; /**< since the camera moved or the history began */
+	bool any;              /**< there is a history */
+	int shift[2];          /**< of the frame in the making */
+	struct gz_temporal_content shown;  /**< what the history shows */
+	struct gz_image frame_image;       /**< render into this */
+	struct gz_image history, moved;    /**< size of the picture */
+	uint8_t *kept, *kept_moved, *cast; /**< for each pixel, how it is known */
+};
+
+/**
+ * Begin a frame: choose its shift and drop the history if it shows something else.
+ *
+ * @param content   what the frame shows
+ * @param[in,out] request  of a plan for the picture; becomes that of a plan for
+ *                         temporal->frame_image, which is larger by GZ_TEMPORAL_SHIFTS
+ * @param[in,out] display  the request's, a copy that is the caller's: becomes the larger picture's
+ * @retval GZ_ERR_INVAL   the picture is too large for that; the request is unchanged
+ * @retval GZ_ERR_NO_MEM  no room or no threads; the request is unchanged
+ */
+enum gz_result gz_temporal_begin(struct gz_temporal *temporal,
+				 const struct gz_temporal_content *content,
+				 struct gz_plan_request *request, struct gz_display *display);
+
+/** Tell the plan, just made by the request, where its pixels lie. Then render it into
+ * temporal->frame_image. */
+void gz_temporal_place(const struct gz_temporal *temporal, struct gz_plan *plan);
+
+/**
+ * End a frame: join temporal->frame_image and the history.
+ *
+ * @param content  as begun with
+ * @param plan     that made frame_image
+ * @param image    the picture; resized. Where every pixel was cast it is that frame's, bit for bit
+ * @retval GZ_ERR_NO_MEM  no room
+ */
+enum gz_result gz_temporal_end(struct gz_temporal *temporal,
+			       const struct gz_temporal_params *params,
+			       const struct gz_temporal_content *content,
+			       const struct gz_plan *plan, struct gz_image *image);
+
+/** Whether further frames of the same content would still change the picture. */
+bool gz_temporal_settling(const struct gz_temporal *temporal);
+
+/** Drop the history: the next frame begins anew. */
+void gz_temporal_forget(struct gz_temporal *temporal);
+
+/** Free and zero. */
+void gz_temporal_free(struct gz_temporal *temporal);
+
+#endif

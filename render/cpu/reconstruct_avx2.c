@@ -1,8 +1,0 @@
-/* The row filters for one instruction set; compiled with its flags. The vocabulary comes before the
- * filters that speak it. */
-#include "render/cpu/points_avx2.h"
-
-#include "render/cpu/reconstruct_rows.h"
-#include "render/cpu/reconstruct_spans.h"
-
-const struct gz_row_filters gz_row_filters_avx2 = GZ_ROW_FILTERS("avx2");

@@ -1,0 +1,319 @@
+#include "render/data/byte_stream.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include "render/data/byte_ahead.h"
+
+#define GZ_LOG_MODULE "volume"
+
+#define INPUT_SIZE ((size_t)128 << 10)
+
+/* Fewer bytes are not worth a thread (chosen: some milliseconds of decoding). */
+#define AHEAD_BYTES_LEAST ((uint64_t)1 << 20)
+
+/* Best ratio of deflate: 1032 to 1, zlib's technical details (zlib.net/zlib_tech.html). */
+#define ZLIB_RATIO 1032
+/* Best ratio of zstd: a block of 128 KiB from a header of 3 bytes and one byte to repeat, RFC 8878,
+ * 3.1.1.2. */
+#define ZSTD_RATIO 32768
+/* zlib reads zlib and gzip heads alike where this is added to the window bits (zlib.h,
+ * inflateInit2). */
+#define ZLIB_AUTOMATIC 32
+
+struct gz_byte_stream {
+	const char *path;
+	const struct gz_log *log;
+	enum gz_coding coding;
+	gz_byte_source *source; /* of plain bytes, in place of the file */
+	void *source_user;
+	int fd;
+	uint64_t stored; /* bytes of the file from the offset on */
+	uint8_t *input;  /* compressed bytes read, of which [input_at, input_size) are left */
+	size_t input_at, input_size;
+	z_stream zlib;
+	bool zlib_ready;
+	ZSTD_DCtx *zstd;
+	bool began;  /* the first member */
+	bool inside; /* a member or frame has begun and not ended */
+	bool hungry; /* the decoder needs input to go on */
+	bool ended;
+	struct gz_byte_ahead *ahead; /* while it runs, the decoder above is its thread's */
+};
+
+static enum gz_result open_regular(struct gz_byte_stream *stream, uint64_t offset)
+{
+	struct stat status;
+	/* O_NONBLOCK: opening a pipe that nobody writes to would wait for ever. */
+	stream->fd = open(stream->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (stream->fd < 0 || fstat(stream->fd, &status) != 0) {
+		int saved = errno;
+		gz_err(stream->log, "%s: cannot open the file: %s; check its name and permissions",
+		       stream->path, strerror(saved));
+		return saved == ENOENT || saved == ENOTDIR ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
+	}
+	if (!S_ISREG(status.st_mode)) {
+		gz_err(stream->log, "%s: not a regular file; name the file that holds the data",
+		       stream->path);
+		return GZ_ERR_FORMAT;
+	}
+	if ((uint64_t)status.st_size < offset) {
+		gz_err(stream->log,
+		       "%s: truncated: data should begin at byte %llu, the file has %llu; fetch it "
+		       "again",
+		       stream->path, (unsigned long long)offset,
+		       (unsigned long long)status.st_size);
+		return GZ_ERR_FORMAT;
+	}
+	stream->stored = (uint64_t)status.st_size - offset;
+	if (lseek(stream->fd, (off_t)offset, SEEK_SET) < 0)
+		return GZ_ERR_IO;
+	(void)posix_fadvise(stream->fd, 0, 0, POSIX_FADV_SEQUENTIAL); /* only a hint */
+	return GZ_OK;
+}
+
+static enum gz_result open_decoder(struct gz_byte_stream *stream)
+{
+	if (stream->coding == GZ_CODING_PLAIN)
+		return GZ_OK;
+	stream->input = malloc(INPUT_SIZE);
+	if (stream->coding == GZ_CODING_ZLIB)
+		stream->zlib_ready =
+			inflateInit2(&stream->zlib, MAX_WBITS + ZLIB_AUTOMATIC) == Z_OK;
+	else
+		stream->zstd = ZSTD_createDCtx();
+	if (stream->input && (stream->zlib_ready || stream->zstd))
+		return GZ_OK;
+	gz_err(stream->log, "%s: no memory to decompress it", stream->path);
+	return GZ_ERR_NO_MEM;
+}
+
+enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint64_t offset,
+				   const struct gz_log *log, struct gz_byte_stream **out_stream)
+{
+	struct gz_byte_stream *stream = calloc(1, sizeof *stream);
+	if (!stream) {
+		gz_err(log, "%s: no memory to read it", path);
+		return GZ_ERR_NO_MEM;
+	}
+	stream->path = path;
+	stream->log = log;
+	stream->coding = coding;
+	stream->fd = -1;
+	stream->hungry = true;
+	enum gz_result result = open_regular(stream, offset);
+	if (result == GZ_OK)
+		result = open_decoder(stream);
+	if (result != GZ_OK) {
+		gz_byte_stream_close(&stream);
+		return result;
+	}
+	*out_stream = stream;
+	return GZ_OK;
+}
+
+enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t bound,
+				   const char *path, const struct gz_log *log,
+				   struct gz_byte_stream **out_stream)
+{
+	struct gz_byte_stream *stream = calloc(1, sizeof *stream);
+	if (!stream) {
+		gz_err(log, "%s: no memory to read it", path);
+		return GZ_ERR_NO_MEM;
+	}
+	stream->path = path;
+	stream->log = log;
+	stream->coding = GZ_CODING_PLAIN;
+	stream->source = source;
+	stream->source_user = user;
+	stream->stored = bound;
+	stream->fd = -1;
+	*out_stream = stream;
+	return GZ_OK;
+}
+
+uint64_t gz_byte_stream_bound(const struct gz_byte_stream *stream)
+{
+	static const uint64_t ratios[] = { 1, ZLIB_RATIO, ZSTD_RATIO };
+	uint64_t ratio = ratios[stream->coding];
+	return stream->stored > UINT64_MAX / ratio ? UINT64_MAX : stream->stored * ratio;
+}
+
+static enum gz_result read_file(struct gz_byte_stream *stream, void *buffer, size_t size,
+				size_t *out_got)
+{
+	size_t got = 0;
+	while (got < size) {
+		ssize_t n = read(stream->fd, (char *)buffer + got, size - got);
+		if (n == 0)
+			break;
+		if (n < 0 && errno == EINTR)
+			continue;
+		if (n < 0) {
+			gz_err(stream->log, "%s: cannot read the file: %s", stream->path,
+			       strerror(errno));
+			return GZ_ERR_IO;
+		}
+		got += (size_t)n;
+	}
+	*out_got = got;
+	return GZ_OK;
+}
+
+static enum gz_result refuse_damaged(const struct gz_byte_stream *stream, const char *what)
+{
+	gz_err(stream->log, "%s: damaged compressed data: %s; fetch the file again", stream->path,
+	       what);
+	return GZ_ERR_FORMAT;
+}
+
+/* Have compressed bytes at hand, or mark the end of the file. */
+static enum gz_result fill_input(struct gz_byte_stream *stream)
+{
+	if (stream->input_at < stream->input_size)
+		return GZ_OK;
+	stream->input_at = 0;
+	enum gz_result result = read_file(stream, stream->input, INPUT_SIZE, &stream->input_size);
+	if (result != GZ_OK || stream->input_size > 0)
+		return result;
+	stream->ended = true;
+	return stream->inside ? refuse_damaged(stream, "cut off before its end") : GZ_OK;
+}
+
+/* One step of zlib into [*got, size) of the buffer. */
+static enum gz_result step_zlib(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				size_t *got)
+{
+	z_stream *z = &stream->zlib;
+	size_t room = size - *got;
+	if (!stream->inside && stream->began) {
+		/* Another gzip member begins with 1f (RFC 1952); anything else is not ours. */
+		stream->ended = stream->input[stream->input_at] != 0x1f || inflateReset(z) != Z_OK;
+		if (stream->ended)
+			return GZ_OK;
+	}
+	stream->inside = stream->began = true;
+	z->next_in = stream->input + stream->input_at;
+	z->avail_in = (uInt)(stream->input_size - stream->input_at);
+	z->next_out = buffer + *got;
+	z->avail_out = (uInt)(room < (1u << 30) ? room : 1u << 30);
+	int status = inflate(z, Z_NO_FLUSH);
+	*got = (size_t)(z->next_out - buffer);
+	stream->input_at = stream->input_size - z->avail_in;
+	if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
+		return refuse_damaged(stream, z->msg ? z->msg : "no zlib or gzip data");
+	stream->inside = status != Z_STREAM_END;
+	return GZ_OK;
+}
+
+/* One step of zstd into [*got, size) of the buffer. */
+static enum gz_result step_zstd(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				size_t *got)
+{
+	ZSTD_inBuffer in = { stream->input, stream->input_size, stream->input_at };
+	ZSTD_outBuffer out = { buffer, size, *got };
+	size_t left = ZSTD_decompressStream(stream->zstd, &out, &in);
+	if (ZSTD_isError(left))
+		return refuse_damaged(stream, ZSTD_getErrorName(left));
+	stream->inside = left != 0;
+	stream->input_at = in.pos;
+	*got = out.pos;
+	return GZ_OK;
+}
+
+static enum gz_result decode(void *user, void *buffer, size_t size, size_t *out_got)
+{
+	struct gz_byte_stream *stream = user;
+	size_t got = 0;
+	while (got < size) {
+		enum gz_result result = stream->hungry ? fill_input(stream) : GZ_OK;
+		if (result == GZ_OK && !stream->ended)
+			result = stream->coding == GZ_CODING_ZLIB
+					 ? step_zlib(stream, buffer, size, &got)
+					 : step_zstd(stream, buffer, size, &got);
+		if (result != GZ_OK)
+			return result;
+		if (stream->ended)
+			break;
+		/* A decoder that filled the buffer may hold more, with no input left to give it. */
+		stream->hungry = got < size || !stream->inside;
+	}
+	*out_got = got;
+	return GZ_OK;
+}
+
+void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes)
+{
+	if (stream->coding == GZ_CODING_PLAIN || stream->ahead || bytes < AHEAD_BYTES_LEAST)
+		return;
+	/* Without room or a thread the reader decodes, as it does behind these bytes. */
+	(void)gz_byte_ahead_start(decode, stream, bytes, &stream->ahead);
+}
+
+/* What the thread has made; behind that, the stream is the reader's own again. */
+static enum gz_result read_made(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				size_t *out_got)
+{
+	size_t made = 0, own = 0;
+	enum gz_result result = gz_byte_ahead_read(stream->ahead, buffer, size, &made);
+	if (result == GZ_OK && made < size) {
+		gz_byte_ahead_end(&stream->ahead);
+		result = decode(stream, buffer + made, size - made, &own);
+	}
+	if (result == GZ_OK)
+		*out_got = made + own;
+	return result;
+}
+
+enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, size_t size,
+				   size_t *out_got)
+{
+	if (stream->source)
+		return stream->source(stream->source_user, buffer, size, out_got);
+	if (stream->coding == GZ_CODING_PLAIN)
+		return read_file(stream, buffer, size, out_got);
+	return stream->ahead ? read_made(stream, buffer, size, out_got)
+			     : decode(stream, buffer, size, out_got);
+}
+
+enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count)
+{
+	uint8_t scrap[4096];
+	while (count > 0) {
+		size_t wanted = count < sizeof scrap ? (size_t)count : sizeof scrap, got = 0;
+		enum gz_result result = gz_byte_stream_read(stream, scrap, wanted, &got);
+		if (result != GZ_OK)
+			return result;
+		if (got == 0) {
+			gz_err(stream->log,
+			       "%s: truncated: it ends %llu bytes before its data begin; fetch it "
+			       "again",
+			       stream->path, (unsigned long long)count);
+			return GZ_ERR_FORMAT;
+		}
+		count -= got;
+	}
+	return GZ_OK;
+}
+
+void gz_byte_stream_close(struct gz_byte_stream **stream)
+{
+	struct gz_byte_stream *s = *stream;
+	if (!s)
+		return;
+	gz_byte_ahead_end(&s->ahead);
+	if (s->fd >= 0)
+		close(s->fd);
+	if (s->zlib_ready)
+		inflateEnd(&s->zlib);
+	ZSTD_freeDCtx(s->zstd);
+	free(s->input);
+	free(s);
+	*stream = NULL;
+}

@@ -1,0 +1,532 @@
+/* DCMTK is C++, so this file is. Nothing it throws leaves it. */
+#include "render/data/dicom_series.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <dirent.h>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <sys/stat.h>
+#include <vector>
+
+#include "render/data/dicom_head.hpp"
+
+#include <dcmtk/dcmdata/dcrledrg.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+
+#define GZ_LOG_MODULE "dicom"
+
+namespace
+{
+
+using namespace gz_dicom;
+
+/* Files of a folder that are looked at. Chosen: a long perfusion study has some ten thousand. */
+const size_t files_max = 65536;
+
+/* How far the distance of two slices may be from that of most, as a share (chosen: beyond it a file
+ * is missing), and how far a slice may be shifted within its plane against the next before the log
+ * says that the gantry was tilted, degrees. */
+const double uneven = 0.05;
+const double tilt_deg = 1.0;
+
+void prepare_library()
+{
+	static std::once_flag once;
+	std::call_once(once, [] {
+		OFLog::configure(OFLogger::OFF_LOG_LEVEL); /* this program tells what is wrong */
+		DJDecoderRegistration::registerCodecs();
+		DJLSDecoderRegistration::registerCodecs();
+		DcmRLEDecoderRegistration::registerCodecs();
+	});
+}
+
+class reader
+{
+      public:
+	reader(const char *name, const gz_log *sink) : path(name), log(sink)
+	{
+	}
+	gz_result open();
+	gz_result read(void *voxels);
+	gz_dicom_geometry geometry {};
+
+      private:
+	gz_result collect();
+	gz_result collect_folder(const std::string &folder);
+	gz_result choose(const std::string &wanted);
+	gz_result check_head(const head &h) const;
+	gz_result join();
+	gz_result place();
+	gz_result order();
+	gz_result measure();
+	void note_tilt(const vector3 &normal) const;
+	void finish();
+	gz_result decode(const slice &s);
+	void widen(const slice &s, void *voxels) const;
+
+	std::string path;
+	const gz_log *log;
+	std::vector<head> heads;
+	format numbers;
+	std::vector<slice> slices;
+	bool scaled_apart = false; /* slices have scales of their own */
+	size_t next = 0;
+	std::unique_ptr<DcmFileFormat> file; /* of the slice read last */
+	std::string file_path;
+	Uint32 fragment = 0;
+	std::vector<Uint16> pixels;
+};
+
+gz_result reader::collect()
+{
+	struct stat status;
+	if (stat(path.c_str(), &status) != 0) {
+		gz_err(log, "%s: cannot open it: %s; check its name and permissions", path.c_str(),
+		       strerror(errno));
+		return GZ_ERR_NOT_FOUND;
+	}
+	std::string folder = path, wanted;
+	if (!S_ISDIR(status.st_mode)) {
+		head h;
+		if (!read_head(path, h)) {
+			gz_err(log, "%s: no DICOM image; name a file that holds one, or its folder",
+			       path.c_str());
+			return GZ_ERR_FORMAT;
+		}
+		wanted = h.series_uid;
+		const bool alone = h.slices.size() > 1;
+		heads.push_back(h);
+		if (alone)
+			return GZ_OK;
+		heads.clear();
+		const size_t slash = path.rfind('/');
+		folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+	}
+	const gz_result r = collect_folder(folder);
+	return r == GZ_OK ? choose(wanted) : r;
+}
+
+/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
+gz_result reader::collect_folder(const std::string &folder)
+{
+	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
+	if (!entries) {
+		gz_err(log, "%s: cannot read the folder: %s; check its permissions", folder.c_str(),
+		       strerror(errno));
+		return GZ_ERR_IO;
+	}
+	size_t seen = 0, damaged = 0;
+	std::string example;
+	for (dirent *entry; (entry = readdir(entries.get())) && seen < files_max; seen++) {
+		head h;
+		if (entry->d_name[0] == '.')
+			continue;
+		const std::string name = folder + "/" + entry->d_name;
+		if (read_head(name, h))
+			heads.push_back(std::move(h));
+		else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
+			example = name;
+	}
+	if (damaged > 0)
+		gz_warn(log,
+			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
+			"again",
+			example.c_str(), damaged);
+	return GZ_OK;
+}
+
+/* Keep one series; with none wanted there must be only one. */
+gz_result reader::choose(const std::string &wanted)
+{
+	std::map<std::string, size_t> count;
+	for (const head &h : heads)
+		count[h.series_uid]++;
+	if (count.empty()) {
+		gz_err(log, "%s: no DICOM image in this folder; name another", path.c_str());
+		return GZ_ERR_FORMAT;
+	}
+	if (count.size() > 1 && wanted.empty()) {
+		std::string names;
+		for (const auto &series : count) {
+			const auto first =
+				std::find_if(heads.begin(), heads.end(), [&](const head &h) {
+					return h.series_uid == series.first;
+				});
+			names += (names.empty() ? "" : ", ") + first->path + " (" +
+				 first->description + ", " + std::to_string(series.second) + ")";
+		}
+		gz_err(log, "%s: holds %zu series; name one file of the one wanted: %s",
+		       path.c_str(), count.size(), names.c_str());
+		return GZ_ERR_FORMAT;
+	}
+	if (!wanted.empty() || count.size() > 1)
+		heads.erase(std::remove_if(heads.begin(), heads.end(),
+					   [&](const head &h) { return h.series_uid != wanted; }),
+			    heads.end());
+	return GZ_OK;
+}
+
+gz_result reader::check_head(const head &h) const
+{
+	const format &f = h.numbers;
+	if (f.bits_allocated < 0) {
+		gz_err(log, "%s: colour, %d values a pixel; only one is shown as a volume",
+		       h.path.c_str(), -f.bits_allocated);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if ((f.bits_allocated != 8 && f.bits_allocated != 16) || f.bits_stored < 1 ||
+	    f.bits_stored > f.bits_allocated || f.high_bit < f.bits_stored - 1 ||
+	    f.high_bit >= f.bits_allocated) {
+		gz_err(log, "%s: pixels of %d bits in %d up to bit %d; 8 and 16 are read",
+		       h.path.c_str(), f.bits_stored, f.bits_allocated, f.high_bit);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (f.columns < 1 || f.rows < 1 || f.columns > GZ_VOLUME_DIM_MAX ||
+	    f.rows > GZ_VOLUME_DIM_MAX || !(f.spacing[0] > 0) || !(f.spacing[1] > 0)) {
+		gz_err(log, "%s: %d x %d pixels, %g x %g mm apart; allowed: 1 to %d, above 0",
+		       h.path.c_str(), f.columns, f.rows, f.spacing[0], f.spacing[1],
+		       GZ_VOLUME_DIM_MAX);
+		return GZ_ERR_FORMAT;
+	}
+	const uint64_t frame_bytes =
+		(uint64_t)f.columns * (uint64_t)f.rows * (uint64_t)(f.bits_allocated / 8);
+	if (h.frames > GZ_VOLUME_DIM_MAX || h.frames * frame_bytes > h.bytes) {
+		gz_err(log,
+		       "%s: truncated: %llu frames of %llu bytes are more than it can hold, or "
+		       "more "
+		       "than %d; fetch it again",
+		       h.path.c_str(), (unsigned long long)h.frames,
+		       (unsigned long long)frame_bytes, GZ_VOLUME_DIM_MAX);
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
+}
+
+/* The slices of all files, which must be of one format. */
+gz_result reader::join()
+{
+	std::sort(heads.begin(), heads.end(),
+		  [](const head &a, const head &b) { return a.path < b.path; });
+	numbers = heads[0].numbers;
+	for (const head &h : heads) {
+		const gz_result result = check_head(h);
+		if (result != GZ_OK)
+			return result;
+		if (!(h.numbers == numbers)) {
+			gz_err(log,
+			       "%s: its pixels are not as those of %s; keep one kind in the folder",
+			       h.path.c_str(), heads[0].path.c_str());
+			return GZ_ERR_FORMAT;
+		}
+		geometry.bytes_bound += h.bytes;
+		slices.insert(slices.end(), h.slices.begin(), h.slices.end());
+	}
+	if (slices.size() > (size_t)GZ_VOLUME_DIM_MAX * 16) {
+		gz_err(log, "%s: %zu slices; name a folder with fewer", path.c_str(),
+		       slices.size());
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
+}
+
+/* Where each slice lies along the stack; by number where the files do not say. */
+gz_result reader::place()
+{
+	geometry.oriented =
+		std::all_of(slices.begin(), slices.end(), [](const slice &s) { return s.placed; });
+	if (!geometry.oriented) {
+		gz_warn(log,
+			"%s: does not say where its slices lie; taken in the order of their "
+			"numbers",
+			path.c_str());
+		for (slice &s : slices)
+			s.along = s.number + (double)s.frame;
+		return GZ_OK;
+	}
+	const slice &first = slices[0];
+	const vector3 normal = cross(first.row, first.column);
+	if (std::fabs(dot(normal, normal) - 1) > 0.02) {
+		gz_err(log, "%s: the directions of its rows and columns are no right angle",
+		       first.path.c_str());
+		return GZ_ERR_FORMAT;
+	}
+	for (slice &s : slices) {
+		if (dot(s.row, first.row) < 0.999 || dot(s.column, first.column) < 0.999) {
+			gz_err(log,
+			       "%s: lies in another plane than %s; keep one stack in the folder",
+			       s.path.c_str(), first.path.c_str());
+			return GZ_ERR_FORMAT;
+		}
+		s.along = dot(s.position, normal);
+	}
+	return GZ_OK;
+}
+
+/* Sort, and keep the first of several at one place: a series over time. */
+gz_result reader::order()
+{
+	std::stable_sort(slices.begin(), slices.end(), [](const slice &a, const slice &b) {
+		return a.along < b.along || (a.along == b.along && a.number < b.number);
+	});
+	const size_t all = slices.size();
+	slices.erase(std::unique(slices.begin(), slices.end(),
+				 [](const slice &a, const slice &b) {
+					 return b.along - a.along < 1e-3;
+				 }),
+		     slices.end());
+	if (slices.size() < all)
+		gz_warn(log,
+			"%s: several images at one place; the first of each is shown (%zu of %zu)",
+			path.c_str(), slices.size(), all);
+	if (slices.size() <= GZ_VOLUME_DIM_MAX)
+		return GZ_OK;
+	gz_err(log, "%s: %zu slices; allowed: %d", path.c_str(), slices.size(), GZ_VOLUME_DIM_MAX);
+	return GZ_ERR_FORMAT;
+}
+
+void reader::note_tilt(const vector3 &normal) const
+{
+	vector3 shift {};
+	for (int i = 0; i < 3; i++)
+		shift.x[i] = slices.back().position.x[i] - slices.front().position.x[i];
+	const double length = std::sqrt(dot(shift, shift));
+	const double angle =
+		std::acos(std::min(1.0, dot(shift, normal) / length)) * 180 / 3.14159265358979;
+	if (angle > tilt_deg)
+		gz_warn(log,
+			"%s: slices are shifted against each other, a gantry tilted by %.1f "
+			"degrees; shown as if it were not",
+			path.c_str(), angle);
+}
+
+/* The distance of most slices, which must be that of all. */
+gz_result reader::measure()
+{
+	geometry.spacing[2] = numbers.thickness > 0 ? numbers.thickness : numbers.spacing[0];
+	if (!geometry.oriented || slices.size() < 2)
+		return GZ_OK;
+	std::vector<double> gaps;
+	for (size_t i = 1; i < slices.size(); i++)
+		gaps.push_back(slices[i].along - slices[i - 1].along);
+	std::vector<double> sorted = gaps;
+	std::sort(sorted.begin(), sorted.end());
+	const double usual = sorted[sorted.size() / 2];
+	for (size_t i = 0; i < gaps.size(); i++)
+		if (std::fabs(gaps[i] - usual) > uneven * usual) {
+			gz_err(log,
+			       "%s: %g mm to the next slice where others have %g; is a file "
+			       "missing?",
+			       slices[i].path.c_str(), gaps[i], usual);
+			return GZ_ERR_FORMAT;
+		}
+	geometry.spacing[2] =
+		(slices.back().along - slices.front().along) / (double)(slices.size() - 1);
+	note_tilt(cross(slices[0].row, slices[0].column));
+	return GZ_OK;
+}
+
+/* Patient coordinates of DICOM go left and to the back, ours right and to the front. */
+void reader::finish()
+{
+	const vector3 normal = cross(slices[0].row, slices[0].column);
+	const vector3 identity[3] = { { { 1, 0, 0 } }, { { 0, 1, 0 } }, { { 0, 0, 1 } } };
+	const vector3 axes[3] = { slices[0].row, slices[0].column, normal };
+	for (int axis = 0; axis < 3; axis++)
+		for (int i = 0; i < 3; i++)
+			geometry.direction[axis][i] = !geometry.oriented ? identity[axis].x[i]
+						      : i < 2            ? -axes[axis].x[i]
+									 : axes[axis].x[i];
+	geometry.dims[0] = numbers.columns;
+	geometry.dims[1] = numbers.rows;
+	geometry.dims[2] = (int)slices.size();
+	geometry.spacing[0] = numbers.spacing[0];
+	geometry.spacing[1] = numbers.spacing[1];
+	scaled_apart = std::any_of(slices.begin(), slices.end(), [&](const slice &s) {
+		return s.slope != slices[0].slope || s.intercept != slices[0].intercept;
+	});
+	geometry.slope = scaled_apart ? 1 : slices[0].slope;
+	geometry.intercept = scaled_apart ? 0 : slices[0].intercept;
+	const bool bytes = numbers.bits_stored <= 8;
+	geometry.type = scaled_apart        ? GZ_RAW_FLOAT32
+			: numbers.is_signed ? bytes ? GZ_RAW_INT8 : GZ_RAW_INT16
+			: bytes             ? GZ_RAW_UINT8
+					    : GZ_RAW_UINT16;
+	/* Numbers may be wider in memory than in the file. */
+	geometry.bytes_bound *= 4;
+}
+
+gz_result reader::open()
+{
+	gz_result result = collect();
+	if (result == GZ_OK)
+		result = join();
+	if (result == GZ_OK)
+		result = place();
+	if (result == GZ_OK)
+		result = order();
+	if (result == GZ_OK)
+		result = measure();
+	if (result == GZ_OK)
+		finish();
+	return result;
+}
+
+/* One frame into `pixels`, as it is stored. */
+gz_result reader::decode(const slice &s)
+{
+	if (!file || file_path != s.path) {
+		file.reset(new DcmFileFormat);
+		file_path = s.path;
+		fragment = 0;
+		if (file->loadFile(s.path.c_str(), EXS_Unknown, EGL_noChange, head_element_max,
+				   ERM_fileOnly)
+			    .bad()) {
+			gz_err(log, "%s: cannot be read again; was it moved?", s.path.c_str());
+			return GZ_ERR_IO;
+		}
+	}
+	DcmDataset &data = *file->getDataset();
+	if (!(format_of(data) == numbers)) {
+		gz_err(log, "%s: changed while it was read", s.path.c_str());
+		return GZ_ERR_FORMAT;
+	}
+	DcmElement *element = nullptr;
+	DcmPixelData *pixel_data = nullptr;
+	if (data.findAndGetElement(DCM_PixelData, element).good())
+		pixel_data = dynamic_cast<DcmPixelData *>(element); /* a VR may lie */
+	OFString colour;
+	const OFCondition done =
+		pixel_data ? pixel_data->getUncompressedFrame(
+				     &data, s.frame, fragment, pixels.data(),
+				     (Uint32)(pixels.size() * sizeof pixels[0]), colour)
+			   : EC_CorruptedData;
+	if (done.good())
+		return GZ_OK;
+	const DcmXfer coding(data.getOriginalXfer());
+	const bool unknown = done == EC_CannotChangeRepresentation ||
+			     done == EC_UnsupportedEncoding || done == EC_RepresentationNotFound;
+	gz_err(log, "%s: its pixels, %s, cannot be decoded: %s; %s", s.path.c_str(),
+	       coding.getXferName(), done.text(),
+	       unknown ? "convert it, for instance with gdcmconv --raw" : "fetch it again");
+	return unknown ? GZ_ERR_UNSUPPORTED : GZ_ERR_FORMAT;
+}
+
+/* Stored bits to numbers of the geometry's type: other bits, overlays of old, are masked out. */
+void reader::widen(const slice &s, void *voxels) const
+{
+	const size_t count = (size_t)numbers.columns * (size_t)numbers.rows;
+	const int shift = numbers.high_bit + 1 - numbers.bits_stored;
+	const uint32_t mask = (1U << numbers.bits_stored) - 1;
+	const uint32_t sign = numbers.is_signed ? 1U << (numbers.bits_stored - 1) : 0;
+	const uint8_t *narrow = (const uint8_t *)pixels.data();
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t raw = numbers.bits_allocated == 8 ? narrow[i] : pixels[i];
+		const int32_t value = (int32_t)(((raw >> shift & mask) ^ sign)) - (int32_t)sign;
+		switch (geometry.type) {
+		case GZ_RAW_UINT8:
+			((uint8_t *)voxels)[i] = (uint8_t)value;
+			break;
+		case GZ_RAW_INT8:
+			((int8_t *)voxels)[i] = (int8_t)value;
+			break;
+		case GZ_RAW_UINT16:
+			((uint16_t *)voxels)[i] = (uint16_t)value;
+			break;
+		case GZ_RAW_INT16:
+			((int16_t *)voxels)[i] = (int16_t)value;
+			break;
+		default:
+			((float *)voxels)[i] = (float)(value * s.slope + s.intercept);
+			break;
+		}
+	}
+}
+
+gz_result reader::read(void *voxels)
+{
+	const slice &s = slices[next];
+	pixels.resize(((size_t)numbers.columns * (size_t)numbers.rows *
+			       (size_t)(numbers.bits_allocated / 8) +
+		       1) /
+		      2);
+	const gz_result result = decode(s);
+	if (result != GZ_OK)
+		return result;
+	widen(s, voxels);
+	next++;
+	return GZ_OK;
+}
+
+} // namespace
+
+struct gz_dicom_series {
+	reader slices;
+	const gz_log *log;
+};
+
+extern "C" enum gz_result gz_dicom_series_open(const char *path, const struct gz_log *log,
+					       struct gz_dicom_series **out_series)
+{
+	try {
+		prepare_library();
+		std::unique_ptr<gz_dicom_series> series(
+			new gz_dicom_series { reader(path, log), log });
+		const gz_result result = series->slices.open();
+		if (result == GZ_OK)
+			*out_series = series.release();
+		return result;
+	} catch (const std::bad_alloc &) {
+		gz_err(log, "%s: no memory to read it", path);
+		return GZ_ERR_NO_MEM;
+	} catch (const std::exception &e) {
+		gz_err(log, "%s: cannot be read: %s", path, e.what());
+		return GZ_ERR_FORMAT;
+	}
+}
+
+extern "C" const struct gz_dicom_geometry *gz_dicom_series_geometry(
+	const struct gz_dicom_series *series)
+{
+	return &series->slices.geometry;
+}
+
+extern "C" enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels)
+{
+	try {
+		return series->slices.read(voxels);
+	} catch (const std::bad_alloc &) {
+		gz_err(series->log, "no memory to decode a DICOM image");
+		return GZ_ERR_NO_MEM;
+	} catch (const std::exception &e) {
+		gz_err(series->log, "a DICOM image cannot be read: %s", e.what());
+		return GZ_ERR_FORMAT;
+	}
+}
+
+extern "C" void gz_dicom_series_close(struct gz_dicom_series **series)
+{
+	delete *series;
+	*series = nullptr;
+}
+
+extern "C" bool gz_dicom_is(const char *path)
+{
+	struct stat status;
+	if (stat(path, &status) != 0)
+		return false;
+	if (S_ISDIR(status.st_mode))
+		return true;
+	char preamble[132];
+	std::unique_ptr<FILE, int (*)(FILE *)> in(
+		S_ISREG(status.st_mode) ? fopen(path, "rb") : nullptr, fclose);
+	return in && fread(preamble, 1, sizeof preamble, in.get()) == sizeof preamble &&
+	       memcmp(preamble + 128, "DICM", 4) == 0;
+}

@@ -1,0 +1,73 @@
+/**
+ * @file
+ * One DICOM series as a stack of slices in order: DCMTK behind a C interface.
+ *
+ * The slices are the files of one series in one folder, or the frames of one file. They are ordered
+ * by where they lie along the normal of their planes (DICOM PS3.3, C.7.6.2.1.1), not by name or
+ * number.
+ */
+#ifndef GZ_RENDER_DATA_DICOM_SERIES_H
+#define GZ_RENDER_DATA_DICOM_SERIES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/data/volume.h"
+
+struct gz_dicom_series;
+
+/** What the slices have in common. */
+struct gz_dicom_geometry {
+	int dims[3];            /**< columns, rows, slices */
+	double spacing[3];      /**< mm between columns, rows, slices */
+	double direction[3][3]; /**< [axis][x, y, z] in RAS+ */
+	bool oriented;          /**< the files told where they lie */
+	enum gz_raw_type type;  /**< of what gz_dicom_series_read() gives, in host byte order */
+	double slope, intercept;
+	uint64_t bytes_bound; /**< the most bytes that the files' pixel data can hold */
+};
+
+/**
+ * Find the slices.
+ *
+ * @param path  a folder that holds one series, or one file of a series (its folder is looked
+ * through for the others), or a file with several frames
+ * @param[out] out_series  owned by the caller: gz_dicom_series_close()
+ * @retval GZ_ERR_NOT_FOUND    no such file or folder; logged
+ * @retval GZ_ERR_FORMAT       no DICOM image there, several series, slices that do not fit
+ *                             together or lie unevenly; logged with the remedy
+ * @retval GZ_ERR_UNSUPPORTED  colour, or a compression that is not read; logged with the remedy
+ * @retval GZ_ERR_NO_MEM       logged
+ */
+enum gz_result gz_dicom_series_open(const char *path, const struct gz_log *log,
+				    struct gz_dicom_series **out_series);
+
+/** What was found. */
+const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_series *series);
+
+/**
+ * Decode the next slice.
+ *
+ * @param[out] voxels  columns * rows numbers of the geometry's type
+ * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
+ */
+enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels);
+
+/** Close and set to NULL. Accepts a pointer to NULL. */
+void gz_dicom_series_close(struct gz_dicom_series **series);
+
+/** Whether a path is a folder, or a file that says it is DICOM by its preamble (PS3.10, 7.1). */
+bool gz_dicom_is(const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

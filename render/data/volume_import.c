@@ -1,0 +1,378 @@
+#include "render/data/volume_import.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/data/voxel_convert.h"
+#include "render/data/voxel_place.h"
+
+#define GZ_LOG_MODULE "volume"
+
+/* Numbers read at once. Chosen: fits a second-level cache with its conversion. */
+#define CHUNK_NUMBERS 16384
+
+/* Directions whose determinant, of unit vectors, is below this do not span space (chosen). */
+#define SINGULAR 1e-3
+
+/* From here on the log says that a volume is oblique (chosen: below, nobody would see it). */
+#define OBLIQUE_DEG 1.0
+
+#define DEG_PER_RAD (180.0 / 3.14159265358979323846)
+
+struct gz_import_layout gz_import_layout_default(void)
+{
+	return (struct gz_import_layout) {
+		.dims = { 1, 1, 1 },
+		.spacing = { 1, 1, 1 },
+		.direction = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } },
+		.type = GZ_RAW_UINT8,
+		.slope = 1,
+	};
+}
+
+size_t gz_raw_type_size(enum gz_raw_type type)
+{
+	return (unsigned)type < GZ_RAW_TYPE_COUNT ? gz_voxel_conversions[type].size : 0;
+}
+
+/* Where the voxels of the file's axes go. */
+struct axis_map {
+	int world[3]; /* the world axis nearest to each file axis */
+	bool flip[3];
+};
+
+/* Everything that one import needs, made once. */
+struct import {
+	const struct gz_import_layout *layout;
+	const struct gz_voxel_conversion *conversion;
+	const char *path;
+	const struct gz_loading *loading;
+	const struct gz_log *log;
+	struct gz_volume *volume;
+	bool swap;
+	struct gz_voxel_place place;
+};
+
+static enum gz_result check_layout(const struct gz_import_layout *layout, const char *path,
+				   const struct gz_log *log)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		if (layout->dims[axis] < 1 || layout->dims[axis] > GZ_VOLUME_DIM_MAX) {
+			gz_err(log, "%s: %d voxels along axis %d; allowed: 1 to %d", path,
+			       layout->dims[axis], axis + 1, GZ_VOLUME_DIM_MAX);
+			return GZ_ERR_FORMAT;
+		}
+		double spacing = layout->spacing[axis];
+		if (!isfinite(layout->dims[axis] * spacing) || spacing <= 0) {
+			gz_err(log,
+			       "%s: spacing %g along axis %d; it must be above 0, and the edge "
+			       "finite",
+			       path, spacing, axis + 1);
+			return GZ_ERR_FORMAT;
+		}
+	}
+	const double lengths = gz_volume_edge_lengths(layout->dims, layout->spacing);
+	if (!(lengths <= GZ_VOLUME_EDGE_LENGTHS_MAX)) {
+		gz_err(log,
+		       "%s: spacing %g %g %g makes the longest edge %g times the finest spacing; "
+		       "allowed: %d; correct the spacing or resample the volume",
+		       path, layout->spacing[0], layout->spacing[1], layout->spacing[2], lengths,
+		       GZ_VOLUME_EDGE_LENGTHS_MAX);
+		return GZ_ERR_FORMAT;
+	}
+	if (!isfinite(layout->slope) || layout->slope == 0 || !isfinite(layout->intercept)) {
+		gz_err(log, "%s: values scaled by %g and %g; they must be finite, the first not 0",
+		       path, layout->slope, layout->intercept);
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
+}
+
+static bool unit_directions(const struct gz_import_layout *layout, double out[3][3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		const double *d = layout->direction[axis];
+		double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		if (!isfinite(length) || !(length > 0))
+			return false;
+		for (int i = 0; i < 3; i++)
+			out[axis][i] = d[i] / length;
+	}
+	const double(*u)[3] = (const double(*)[3])out;
+	double determinant = u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) -
+			     u[0][1] * (u[1][0] * u[2][2] - u[1][2] * u[2][0]) +
+			     u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
+	return fabs(determinant) > SINGULAR;
+}
+
+/* The permutation whose axes agree best with the directions: the greatest sum of cosines. */
+static void nearest_axes(const double unit[3][3], struct axis_map *out_map)
+{
+	static const int permutations[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 },
+						{ 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
+	double best = -1;
+	for (int p = 0; p < 6; p++) {
+		const int *world = permutations[p];
+		double sum = 0;
+		for (int axis = 0; axis < 3; axis++)
+			sum += fabs(unit[axis][world[axis]]);
+		if (sum > best) {
+			best = sum;
+			memcpy(out_map->world, world, sizeof out_map->world);
+		}
+	}
+	for (int axis = 0; axis < 3; axis++)
+		out_map->flip[axis] = unit[axis][out_map->world[axis]] < 0;
+}
+
+static enum gz_result map_axes(const struct gz_import_layout *layout, const char *path,
+			       const struct gz_log *log, struct axis_map *out_map)
+{
+	double unit[3][3], worst_deg = 0;
+	if (!unit_directions(layout, unit)) {
+		gz_err(log, "%s: the directions of its axes do not span space; correct its header",
+		       path);
+		return GZ_ERR_FORMAT;
+	}
+	nearest_axes((const double(*)[3])unit, out_map);
+	for (int axis = 0; axis < 3; axis++) {
+		double cosine = fmin(1, fabs(unit[axis][out_map->world[axis]]));
+		worst_deg = fmax(worst_deg, acos(cosine) * DEG_PER_RAD);
+	}
+	if (worst_deg > OBLIQUE_DEG)
+		gz_info(log, "%s: oblique by %.1f degrees; shown along the nearest axes", path,
+			worst_deg);
+	return GZ_OK;
+}
+
+/* Refuse a size that the file cannot hold before memory is taken for it. */
+static enum gz_result check_size(const struct gz_byte_stream *stream, const struct import *import,
+				 uint64_t bytes)
+{
+	uint64_t bound = gz_byte_stream_bound(stream);
+	if (bytes <= bound)
+		return GZ_OK;
+	const int *dims = import->layout->dims;
+	gz_err(import->log,
+	       "%s: truncated: %d x %d x %d voxels of %s are %llu bytes, the file can hold %llu; "
+	       "correct dims and type, or fetch it again",
+	       import->path, dims[0], dims[1], dims[2], gz_raw_type_names[import->layout->type],
+	       (unsigned long long)bytes, (unsigned long long)bound);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result allocate(struct import *import, const struct axis_map *map)
+{
+	struct gz_volume *volume = import->volume;
+	const struct gz_import_layout *layout = import->layout;
+	for (int axis = 0; axis < 3; axis++) {
+		volume->dims[map->world[axis]] = layout->dims[axis];
+		volume->spacing[map->world[axis]] = layout->spacing[axis];
+	}
+	volume->type = import->conversion->type;
+	const char *scratch = import->loading ? import->loading->scratch : NULL;
+	const enum gz_result result = gz_volume_allocate_in(volume, import->loading);
+	if (result != GZ_OK) {
+		double mib = (double)gz_volume_voxel_count(volume) *
+			     (double)gz_voxel_size(volume->type) / (1 << 20);
+		if (scratch)
+			gz_err(import->log, "%s: no %.0f MiB for voxels in %s: %s; make room there",
+			       import->path, mib, scratch, gz_result_text(result));
+		else
+			gz_err(import->log,
+			       "%s: no memory for %.0f MiB of voxels; write it as bricks (gazeview "
+			       "--write-volume) or use a smaller volume",
+			       import->path, mib);
+		return result;
+	}
+	volume->oriented = layout->oriented;
+	volume->slope = layout->slope;
+	volume->intercept = layout->intercept + layout->slope * import->conversion->offset;
+
+	const ptrdiff_t step[3] = { 1, volume->dims[0],
+				    (ptrdiff_t)volume->dims[0] * volume->dims[1] };
+	for (int axis = 0; axis < 3; axis++) {
+		ptrdiff_t stride = step[map->world[axis]];
+		import->place.dims[axis] = layout->dims[axis];
+		if (map->flip[axis])
+			import->place.first += stride * (layout->dims[axis] - 1);
+		import->place.stride[axis] = map->flip[axis] ? -stride : stride;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result refuse_truncated(const struct import *import, uint64_t got, uint64_t wanted)
+{
+	gz_err(import->log,
+	       "%s: truncated: %llu of %llu bytes of voxels; correct dims and type, or fetch it "
+	       "again",
+	       import->path, (unsigned long long)got, (unsigned long long)wanted);
+	return GZ_ERR_FORMAT;
+}
+
+/* What is read and not placed yet. */
+struct slab {
+	uint8_t *numbers; /* CHUNK_NUMBERS of the file */
+	uint8_t *voxels;  /* made of them */
+	size_t filled;
+};
+
+/* Voxels from number `index` of the file on, until the slab has `count`. */
+static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct import *import,
+				uint64_t index, size_t count, struct slab *slab)
+{
+	const size_t size = import->conversion->size;
+	const size_t voxel_size = gz_voxel_size(import->volume->type);
+	const uint64_t all = gz_volume_voxel_count(import->volume);
+	for (slab->filled = 0; slab->filled < count;) {
+		const uint64_t at = index + slab->filled;
+		const size_t left = count - slab->filled;
+		const size_t wanted = left < CHUNK_NUMBERS ? left : CHUNK_NUMBERS;
+		size_t got = 0;
+		if (!gz_loading_goes_on(import->loading, (double)at / (double)all, import->path))
+			return GZ_ERR_CANCELLED;
+		const enum gz_result result =
+			gz_byte_stream_read(stream, slab->numbers, wanted * size, &got);
+		if (result != GZ_OK)
+			return result;
+		if (got < wanted * size)
+			return refuse_truncated(import, at * size + got, all * size);
+		import->conversion->convert(slab->numbers, wanted, import->swap,
+					    slab->voxels + slab->filled * voxel_size);
+		slab->filled += wanted;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct import *import,
+				  uint64_t count)
+{
+	const enum gz_voxel_type type = import->volume->type;
+	const size_t most = gz_voxel_place_most(&import->place, type);
+	struct slab slab = { .numbers = malloc(CHUNK_NUMBERS * import->conversion->size),
+			     .voxels = malloc(most * gz_voxel_size(type)) };
+	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result != GZ_OK)
+		gz_err(import->log, "%s: no memory to read it", import->path);
+	gz_byte_stream_read_ahead(stream, count * import->conversion->size);
+	for (uint64_t index = 0; index < count && result == GZ_OK;) {
+		const size_t next = gz_voxel_place_next(&import->place, type, index);
+		result = fill_slab(stream, import, index, next, &slab);
+		if (result == GZ_OK)
+			gz_voxel_place(&import->place, import->volume, slab.voxels, index, next);
+		index += next;
+	}
+	free(slab.numbers);
+	free(slab.voxels);
+	return result;
+}
+
+/* Also brings the decoder to its checksum: bytes too many are often the first sign of damage. They
+ * are followed for as long again as the voxels, no farther. */
+static enum gz_result check_end(struct gz_byte_stream *stream, const struct import *import,
+				uint64_t bytes)
+{
+	uint8_t scrap[4096];
+	uint64_t more = 0;
+	size_t got = 0;
+	if (import->layout->more_follows)
+		return GZ_OK;
+	do {
+		enum gz_result result = gz_byte_stream_read(stream, scrap, sizeof scrap, &got);
+		if (result != GZ_OK)
+			return result;
+		more += got;
+	} while (got == sizeof scrap && more < bytes);
+	if (more > 0)
+		gz_warn(import->log,
+			"%s: data go on behind the last voxel and are left out; are dims and type "
+			"right?",
+			import->path);
+	return GZ_OK;
+}
+
+/* Replace what is not finite by the least finite value. */
+static enum gz_result make_finite(const struct import *import)
+{
+	if (import->volume->type != GZ_VOXEL_F32)
+		return GZ_OK;
+	float *v = import->volume->voxels;
+	size_t count = gz_volume_voxel_count(import->volume), bad = 0;
+	float least = FLT_MAX;
+	for (size_t i = 0; i < count; i++) {
+		bool good = isfinite(v[i]);
+		bad += !good;
+		least = good && v[i] < least ? v[i] : least;
+	}
+	if (bad == 0)
+		return GZ_OK;
+	if (bad == count) {
+		gz_err(import->log, "%s: no finite value in it; are type and endian right?",
+		       import->path);
+		return GZ_ERR_FORMAT;
+	}
+	for (size_t i = 0; i < count; i++)
+		v[i] = isfinite(v[i]) ? v[i] : least;
+	gz_warn(import->log, "%s: %zu values are NaN or infinite as float; shown as the least, %g",
+		import->path, bad, (double)least);
+	return GZ_OK;
+}
+
+static enum gz_result check_range(const struct import *import)
+{
+	const struct gz_volume *volume = import->volume;
+	double low = volume->slope * volume->stored_min + volume->intercept;
+	double high = volume->slope * volume->stored_max + volume->intercept;
+	if (isfinite(low) && isfinite(high))
+		return GZ_OK;
+	gz_err(import->log, "%s: values scaled by %g and %g are not finite; correct its header",
+	       import->path, import->layout->slope, import->layout->intercept);
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_volume_import(struct gz_byte_stream *stream,
+				const struct gz_import_layout *layout, const char *path,
+				const struct gz_loading *loading, const struct gz_log *log,
+				struct gz_volume *out_volume)
+{
+	const uint16_t one = 1;
+	bool host_big_endian = *(const uint8_t *)&one == 0;
+	struct gz_volume volume = { 0 };
+	struct axis_map map;
+	struct import import = { .layout = layout,
+				 .conversion = &gz_voxel_conversions[layout->type],
+				 .path = path,
+				 .loading = loading,
+				 .log = log,
+				 .volume = &volume,
+				 .swap = layout->big_endian != host_big_endian };
+
+	enum gz_result result = check_layout(layout, path, log);
+	/* At most 2^42 numbers of 8 bytes: no overflow. */
+	uint64_t count =
+		(uint64_t)layout->dims[0] * (uint64_t)layout->dims[1] * (uint64_t)layout->dims[2];
+	if (result == GZ_OK)
+		result = check_size(stream, &import, count * import.conversion->size);
+	if (result == GZ_OK)
+		result = map_axes(layout, path, log, &map);
+	if (result == GZ_OK)
+		result = allocate(&import, &map);
+	if (result == GZ_OK)
+		result = read_voxels(stream, &import, count);
+	if (result == GZ_OK)
+		result = check_end(stream, &import, count * import.conversion->size);
+	if (result == GZ_OK)
+		result = make_finite(&import);
+	if (result == GZ_OK) {
+		gz_volume_find_range(&volume);
+		result = check_range(&import);
+	}
+	if (result != GZ_OK) {
+		gz_volume_free(&volume);
+		return result;
+	}
+	*out_volume = volume;
+	return GZ_OK;
+}

@@ -1,0 +1,56 @@
+/**
+ * @file
+ * From the voxels of a file to a volume: what every loader does once it knows the layout.
+ *
+ * Voxels are turned to RAS+ by the permutation and flips of the file's axes that lie nearest to its
+ * directions. An oblique volume is not resampled: it is shown along the anatomical axes nearest to
+ * its own, and the log says by how much they differ.
+ */
+#ifndef GZ_RENDER_DATA_VOLUME_IMPORT_H
+#define GZ_RENDER_DATA_VOLUME_IMPORT_H
+
+#include <stdbool.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/data/byte_stream.h"
+#include "render/data/volume.h"
+
+/** What a file says of its voxels. Axes are the file's own, the fastest first. */
+struct gz_import_layout {
+	int dims[3];
+	double spacing[3];
+	double direction[3][3]; /**< [axis][x, y, z]: where each axis points in RAS+; any length */
+	bool oriented;          /**< direction is anatomical */
+	enum gz_raw_type type;
+	bool big_endian;
+	double slope, intercept; /**< data value = slope * number in the file + intercept */
+	bool more_follows;       /**< bytes behind the voxels are expected */
+};
+
+/** One voxel of spacing 1 of unsigned bytes, axes as stored, slope 1: a loader's starting point. */
+struct gz_import_layout gz_import_layout_default(void);
+
+/** Bytes of one voxel of @p type in a file. */
+size_t gz_raw_type_size(enum gz_raw_type type);
+
+/**
+ * Read the voxels and make the volume of them. Signed integers move into unsigned ones and the
+ * intercept makes up for it; 32-bit integers and doubles become float.
+ *
+ * @param stream  at the first voxel
+ * @param layout  checked here: any number may stand in it
+ * @param path    for messages, and for @p loading
+ * @param loading  see gz_volume_load()
+ * @param[out] out_volume  the caller frees it with gz_volume_free()
+ * @retval GZ_ERR_FORMAT  dims, spacing, directions, slope or length of the data are wrong; logged
+ * @retval GZ_ERR_IO      logged
+ * @retval GZ_ERR_NO_MEM  logged with the size asked for
+ * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ */
+enum gz_result gz_volume_import(struct gz_byte_stream *stream,
+				const struct gz_import_layout *layout, const char *path,
+				const struct gz_loading *loading, const struct gz_log *log,
+				struct gz_volume *out_volume);
+
+#endif

@@ -1,0 +1,175 @@
+#include "render/data/voxel_place.h"
+
+#include <string.h>
+
+#include "render/data/voxel_convert.h"
+
+enum {
+	LINE_BYTES = 64, /* of a cache line */
+	TILE_COLUMNS =
+		32, /* of the file's fastest axis; chosen: a tile fills a few lines of each */
+};
+
+/* Voxels of a slab that no axis is turned in: chosen, fits a second-level cache. */
+#define RUN_VOXELS ((size_t)16384)
+
+/* Room for a slab, bytes: chosen, 16 slices of 256 x 256 voxels of 16 bits; no more than a share of
+ * the volume, so that loading takes little beside it. */
+#define SLAB_BYTES ((size_t)2 << 20)
+#define SLAB_SHARE 128
+
+/* The axis of the file that the volume's fastest one is. */
+static int fastest_axis(const struct gz_voxel_place *place)
+{
+	int fastest = 0;
+	for (int axis = 1; axis < 3; axis++) {
+		const bool steps_one = place->stride[axis] == 1 || place->stride[axis] == -1;
+		/* An axis of one voxel may share the step with the one that counts. */
+		if (steps_one && place->dims[axis] > 1)
+			fastest = axis;
+	}
+	return fastest;
+}
+
+/* Voxels of the file from one row or slice to the next. */
+static size_t unit_of(const struct gz_voxel_place *place, int axis)
+{
+	const size_t row = (size_t)place->dims[0];
+	return axis == 1 ? row : row * (size_t)place->dims[1];
+}
+
+/* Rows or slices to a slab. */
+static size_t thickness(const struct gz_voxel_place *place, int axis, enum gz_voxel_type type)
+{
+	const size_t size = gz_voxel_size(type), unit = unit_of(place, axis) * size;
+	const size_t whole = unit_of(place, 2) * (size_t)place->dims[2] * size;
+	const size_t room = whole / SLAB_SHARE > SLAB_BYTES ? whole / SLAB_SHARE : SLAB_BYTES;
+	const size_t line = LINE_BYTES / size, fit = room / unit;
+	return fit < 1 ? 1 : fit < line ? fit : line;
+}
+
+static size_t least(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
+size_t gz_voxel_place_next(const struct gz_voxel_place *place, enum gz_voxel_type type,
+			   uint64_t index)
+{
+	const int axis = fastest_axis(place);
+	if (axis == 0) {
+		const uint64_t left = unit_of(place, 2) * (uint64_t)place->dims[2] - index;
+		return left < RUN_VOXELS ? (size_t)left : RUN_VOXELS;
+	}
+	const size_t unit = unit_of(place, axis), along = (size_t)place->dims[axis];
+	const size_t at = (size_t)(index / unit % along);
+	return least(thickness(place, axis, type), along - at) * unit;
+}
+
+size_t gz_voxel_place_most(const struct gz_voxel_place *place, enum gz_voxel_type type)
+{
+	const int axis = fastest_axis(place);
+	return axis == 0 ? RUN_VOXELS : thickness(place, axis, type) * unit_of(place, axis);
+}
+
+static char *address(const struct gz_voxel_place *place, const struct gz_volume *volume, size_t x,
+		     size_t y, size_t z)
+{
+	const ptrdiff_t at = place->first + (ptrdiff_t)x * place->stride[0] +
+			     (ptrdiff_t)y * place->stride[1] + (ptrdiff_t)z * place->stride[2];
+	return (char *)volume->voxels + at * (ptrdiff_t)gz_voxel_size(volume->type);
+}
+
+/* Rows whose voxels lie one after the other in the volume too, maybe backwards. */
+static void place_runs(const struct gz_voxel_place *place, const struct gz_volume *volume,
+		       const char *from, uint64_t index, size_t count)
+{
+	const size_t width = (size_t)place->dims[0], height = (size_t)place->dims[1];
+	const size_t size = gz_voxel_size(volume->type);
+	size_t x = (size_t)(index % width), row = (size_t)(index / width);
+	while (count > 0) {
+		const size_t run = least(count, width - x);
+		gz_voxel_scatter(volume->type, from, run,
+				 address(place, volume, x, row % height, row / height),
+				 place->stride[0]);
+		from += run * size;
+		count -= run;
+		x = 0;
+		row++;
+	}
+}
+
+/* A tile: columns of the file's fastest axis by rows (or slices) that are neighbours in the
+ * volume. */
+struct tile {
+	const char *from;
+	size_t pitch; /* voxels of the file between its rows */
+	size_t rows, columns;
+	bool backwards; /* the first row comes last in the volume */
+};
+
+#define DEFINE_TURN(name, type)                                                          \
+	static void name(const struct tile *tile, type *out)                             \
+	{                                                                                \
+		for (size_t row = 0; row < tile->rows; row++) {                          \
+			const type *in = (const type *)tile->from + row * tile->pitch;   \
+			type *to = out + (tile->backwards ? tile->rows - 1 - row : row); \
+			for (size_t i = 0; i < tile->columns; i++)                       \
+				to[i * (LINE_BYTES / sizeof(type))] = in[i];             \
+		}                                                                        \
+	}
+
+DEFINE_TURN(turn_1, uint8_t)
+DEFINE_TURN(turn_2, uint16_t)
+DEFINE_TURN(turn_4, uint32_t)
+
+/* Each column becomes a run of the volume, a line of `lines`. */
+static void turn(const struct tile *tile, size_t size, void *lines)
+{
+	if (size == 1)
+		turn_1(tile, lines);
+	else if (size == 2)
+		turn_2(tile, lines);
+	else
+		turn_4(tile, lines);
+}
+
+/* One row of tiles, the first voxel of which is (0, y, z) of the file. */
+static void place_tiles(const struct gz_voxel_place *place, const struct gz_volume *volume,
+			struct tile *tile, size_t y, size_t z, int axis)
+{
+	_Alignas(LINE_BYTES) char lines[TILE_COLUMNS * LINE_BYTES];
+	const size_t size = gz_voxel_size(volume->type), width = (size_t)place->dims[0];
+	const size_t last = tile->backwards ? tile->rows - 1 : 0;
+	for (size_t x = 0; x < width; x += TILE_COLUMNS) {
+		tile->columns = least(TILE_COLUMNS, width - x);
+		turn(tile, size, lines);
+		tile->from += tile->columns * size;
+		for (size_t i = 0; i < tile->columns; i++)
+			memcpy(address(place, volume, x + i, y + (axis == 1 ? last : 0),
+				       z + (axis == 2 ? last : 0)),
+			       lines + i * LINE_BYTES, tile->rows * size);
+	}
+}
+
+void gz_voxel_place(const struct gz_voxel_place *place, const struct gz_volume *volume,
+		    const void *voxels, uint64_t index, size_t count)
+{
+	const int axis = fastest_axis(place);
+	if (axis == 0) {
+		place_runs(place, volume, voxels, index, count);
+		return;
+	}
+	const size_t width = (size_t)place->dims[0], height = (size_t)place->dims[1];
+	const size_t unit = unit_of(place, axis);
+	const size_t z = (size_t)(index / width / height), y = (size_t)(index / width % height);
+	for (size_t row = 0; row < unit / width; row++) {
+		struct tile tile = {
+			.from = (const char *)voxels + row * width * gz_voxel_size(volume->type),
+			.pitch = unit,
+			.rows = count / unit,
+			.backwards = place->stride[axis] < 0,
+		};
+		place_tiles(place, volume, &tile, y + row, z, axis);
+	}
+}

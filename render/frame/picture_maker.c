@@ -1,0 +1,443 @@
+#include "render/frame/picture_maker.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+#define GZ_LOG_MODULE "picture"
+
+/* Objects of a picture. Chosen: an atlas of the brain has 116 regions. */
+enum { OBJECTS_MAX = 1024 };
+
+/* Tables over a technique's settings. */
+enum { BINDINGS_MAX = 16 };
+
+struct gz_picture_maker {
+	const struct gz_log *log;
+	struct gz_picture_maker_params params;
+	const struct gz_technique *technique; /* NULL before anything is shown */
+	struct gz_drawer *drawer;
+	struct gz_object *objects;
+	size_t object_count;
+	struct gz_plan plan;
+	struct gz_temporal temporal;
+	struct gz_temporal_content content; /* of the picture in the making */
+	struct {
+		void *settings; /* a copy of the technique's; NULL before the first */
+		struct gz_foveation foveation;
+	} kept_by;            /* what the accumulated pictures were made with */
+	struct gz_image cast; /* at the rays' resolution, only where that is not the picture's */
+	struct gz_image image;
+};
+
+/* What the steps of one picture share. */
+struct making {
+	struct gz_picture_maker *maker;
+	const struct gz_picture_request *request;
+	struct gz_plan *plan;
+	struct gz_image *image;
+	bool accumulates, on_device;
+	struct gz_picture_cost cost;
+};
+
+struct gz_focus gz_focus_at(struct gz_point point)
+{
+	return (struct gz_focus) { .point = point, .scale = 1, .widen = 0 };
+}
+
+enum gz_result gz_picture_maker_create(const struct gz_picture_maker_params *params,
+				       const struct gz_log *log,
+				       struct gz_picture_maker **out_maker)
+{
+	struct gz_picture_maker *maker = calloc(1, sizeof *maker);
+	if (!maker)
+		return GZ_ERR_NO_MEM;
+	maker->log = log;
+	maker->params = *params;
+	*out_maker = maker;
+	return GZ_OK;
+}
+
+static bool chooses_backend(const struct gz_picture_maker *maker)
+{
+	const char *backend = maker->params.backend;
+	return !backend || strcmp(backend, "auto") == 0;
+}
+
+static bool draws_by_cpu(const struct gz_picture_maker *maker)
+{
+	return maker->drawer && strcmp(maker->drawer->ops->backend(maker->drawer), "cpu") == 0;
+}
+
+/* Whether cpu may draw in place of a backend that has failed. */
+static bool cpu_may_take_over(const struct gz_picture_maker *maker, enum gz_result failure)
+{
+	if (!maker->params.cpu_takes_over || !maker->drawer || draws_by_cpu(maker))
+		return false;
+	return failure == GZ_ERR_NO_DEVICE || failure == GZ_ERR_NO_MEM ||
+	       (failure == GZ_ERR_UNSUPPORTED && chooses_backend(maker));
+}
+
+static enum gz_result show_on_drawer(struct gz_picture_maker *maker)
+{
+	return maker->drawer->ops->show(maker->drawer, maker->objects, maker->object_count);
+}
+
+static enum gz_result let_cpu_take_over(struct gz_picture_maker *maker)
+{
+	gz_warn(maker->log, "the cpu backend draws from now on");
+	gz_drawer_destroy(&maker->drawer);
+	enum gz_result result = maker->technique->create("cpu", &maker->params.backend_params,
+							 maker->log, &maker->drawer);
+	if (result == GZ_OK)
+		result = show_on_drawer(maker);
+	return result;
+}
+
+/* Objects that one drawer can show. */
+static enum gz_result check_objects(const struct gz_picture_maker *maker,
+				    const struct gz_object *objects, size_t count)
+{
+	if (count < 1 || count > OBJECTS_MAX) {
+		gz_err(maker->log, "a picture shows 1 to %d objects, not %zu", OBJECTS_MAX, count);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	for (size_t i = 1; i < count; i++)
+		if (objects[i].technique != objects[0].technique) {
+			gz_err(maker->log,
+			       "the objects of a picture are drawn by one technique, not by %s and "
+			       "%s",
+			       objects[0].technique->name, objects[i].technique->name);
+			return GZ_ERR_UNSUPPORTED;
+		}
+	if (count > objects[0].technique->objects_max) {
+		gz_err(maker->log, "%s draws at most %zu objects in a picture, not %zu",
+		       objects[0].technique->name, objects[0].technique->objects_max, count);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result keep_objects(struct gz_picture_maker *maker, const struct gz_object *objects,
+				   size_t count)
+{
+	struct gz_object *copy = malloc(count * sizeof *copy);
+	if (!copy)
+		return GZ_ERR_NO_MEM;
+	memcpy(copy, objects, count * sizeof *copy);
+	free(maker->objects);
+	maker->objects = copy;
+	maker->object_count = count;
+	return GZ_OK;
+}
+
+static enum gz_result open_drawer(struct gz_picture_maker *maker,
+				  const struct gz_technique *technique)
+{
+	if (maker->technique == technique && maker->drawer)
+		return GZ_OK;
+	gz_drawer_destroy(&maker->drawer);
+	free(maker->kept_by.settings);
+	maker->kept_by.settings = NULL;
+	maker->technique = technique;
+	return technique->create(maker->params.backend, &maker->params.backend_params, maker->log,
+				 &maker->drawer);
+}
+
+enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
+				     const struct gz_object *objects, size_t count)
+{
+	enum gz_result result = check_objects(maker, objects, count);
+	gz_picture_maker_forget(maker);
+	if (result == GZ_OK)
+		result = keep_objects(maker, objects, count);
+	if (result == GZ_OK)
+		result = open_drawer(maker, objects[0].technique);
+	if (result == GZ_OK) {
+		result = show_on_drawer(maker);
+		if (chooses_backend(maker) && cpu_may_take_over(maker, result))
+			result = let_cpu_take_over(maker);
+	}
+	if (result == GZ_ERR_NO_MEM)
+		gz_err(maker->log, "no memory to draw with; close other programs, or show less");
+	if (result != GZ_OK)
+		gz_drawer_destroy(&maker->drawer);
+	return result;
+}
+
+/* Rays along a side of the picture; 0 where there would be none or too many. */
+static int rays_along(int side, double rate)
+{
+	const double rays = round(side * rate);
+	return rays >= 1 && rays <= GZ_IMAGE_SIDE_MAX ? (int)rays : 0;
+}
+
+static double sampling_rate(const struct gz_picture_request *request)
+{
+	return request->image_sampling_rate > 0 ? request->image_sampling_rate : 1;
+}
+
+/* Whether two structs of the technique's settings hold equal values. */
+static bool same_settings(const struct gz_technique *technique, const void *a, const void *b)
+{
+	struct gz_option_binding of_a[BINDINGS_MAX], of_b[BINDINGS_MAX];
+	const size_t count = technique->bind((void *)a, of_a, BINDINGS_MAX);
+	technique->bind((void *)b, of_b, BINDINGS_MAX);
+	for (size_t i = 0; i < count; i++)
+		if (!gz_options_same(of_a[i].options, of_a[i].count, of_a[i].target,
+				     of_b[i].target))
+			return false;
+	return true;
+}
+
+/* What is accumulated is worth nothing once anything but the camera has changed. */
+static enum gz_result note_content(struct making *making)
+{
+	struct gz_picture_maker *maker = making->maker;
+	const struct gz_picture_request *request = making->request;
+	const size_t size = maker->technique->settings_size;
+	const bool same =
+		maker->kept_by.settings &&
+		same_settings(maker->technique, maker->kept_by.settings, request->settings) &&
+		gz_foveation_same(&maker->kept_by.foveation, request->foveation);
+	if (!maker->kept_by.settings)
+		maker->kept_by.settings = malloc(size);
+	if (!maker->kept_by.settings)
+		return GZ_ERR_NO_MEM;
+	if (!same)
+		maker->content.serial++;
+	memcpy(maker->kept_by.settings, request->settings, size);
+	maker->kept_by.foveation = *request->foveation;
+	maker->content.camera = *request->camera;
+	return GZ_OK;
+}
+
+static bool shows_bricks(const struct gz_picture_maker *maker)
+{
+	for (size_t i = 0; i < maker->object_count; i++)
+		if (maker->objects[i].volume && maker->objects[i].volume->bricks)
+			return true;
+	return false;
+}
+
+/* The request becomes that of a shifted plan, where earlier pictures are kept. */
+static enum gz_result begin_accumulation(struct making *making, struct gz_plan_request *plan,
+					 struct gz_display *display)
+{
+	struct gz_picture_maker *maker = making->maker;
+	if (!making->accumulates) {
+		gz_temporal_forget(&maker->temporal);
+		return GZ_OK;
+	}
+	if (shows_bricks(maker)) {
+		gz_err(maker->log, "temporal.accumulate: bricks change while they are looked at; "
+				   "set it to no, or show a volume that fits into memory");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = note_content(making);
+	return result == GZ_OK ? gz_temporal_begin(&maker->temporal, &maker->content, plan, display)
+			       : result;
+}
+
+static struct gz_shot shot_of(const struct making *making)
+{
+	return (struct gz_shot) {
+		.camera = making->request->camera,
+		.settings = making->request->settings,
+		.plan = making->plan,
+	};
+}
+
+/* The plan's request, in rays, for the whole picture or one strip. */
+static enum gz_result plan_request_of(const struct making *making,
+				      struct gz_plan_request *out_request)
+{
+	const struct gz_picture_request *request = making->request;
+	const double rate = sampling_rate(request);
+	const int rows = request->strip.rows > 0 ? request->strip.rows : request->height;
+	const int size[2] = { rays_along(request->width, rate), rays_along(rows, rate) };
+	if (size[0] == 0 || size[1] == 0) {
+		gz_err(making->maker->log,
+		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
+		       "rate "
+		       "or the size",
+		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
+		return GZ_ERR_INVAL;
+	}
+	struct gz_plan_request plan = gz_plan_request_make(request->foveation, request->display,
+							   request->focus.point, size[0], size[1]);
+	plan.rays_per_px = rate;
+	plan.scale = request->focus.scale;
+	plan.widen = request->focus.widen;
+	const struct gz_drawer *drawer = making->maker->drawer;
+	const struct gz_shot shot = shot_of(making);
+	if (drawer->ops->bound_plan)
+		drawer->ops->bound_plan(drawer, &shot, &plan);
+	*out_request = plan;
+	return GZ_OK;
+}
+
+static enum gz_result make_plan(struct making *making)
+{
+	const struct gz_picture_request *request = making->request;
+	struct gz_picture_maker *maker = making->maker;
+	struct gz_display display = *request->display;
+	struct gz_plan_request plan;
+	enum gz_result result = plan_request_of(making, &plan);
+	if (result == GZ_OK)
+		result = begin_accumulation(making, &plan, &display);
+	if (request->fresh_plan)
+		making->plan->made_for.valid = false;
+	if (result == GZ_OK)
+		result = gz_plan_update(&plan, making->plan);
+	if (result == GZ_OK && making->accumulates)
+		gz_temporal_place(&maker->temporal, making->plan);
+	if (result == GZ_OK && request->strip.rows > 0)
+		making->plan->view = (struct gz_plan_view) {
+			.width = rays_along(request->width, sampling_rate(request)),
+			.height = rays_along(request->height, sampling_rate(request)),
+			.shift = { 0, -rays_along(request->strip.top, sampling_rate(request)) },
+		};
+	making->cost.kept = result == GZ_OK && making->accumulates && maker->temporal.any;
+	return result;
+}
+
+/* Draw; where the backend has failed for good, by cpu. */
+static enum gz_result draw(struct making *making, struct gz_image *image)
+{
+	struct gz_picture_maker *maker = making->maker;
+	const struct gz_shot shot = shot_of(making);
+	making->on_device = making->on_device && maker->drawer->ops->keeps_on_device(maker->drawer);
+	enum gz_result result = maker->drawer->ops->draw(
+		maker->drawer, &shot, making->on_device ? NULL : image, &making->cost.stats);
+	if (!cpu_may_take_over(maker, result) ||
+	    (result == GZ_ERR_NO_DEVICE && making->request->loss_returned))
+		return result;
+	making->on_device = false;
+	result = let_cpu_take_over(maker);
+	if (result == GZ_OK)
+		result = maker->drawer->ops->draw(maker->drawer, &shot, image, &making->cost.stats);
+	return result;
+}
+
+static enum gz_result draw_and_accumulate(struct making *making, struct gz_image *target)
+{
+	struct gz_picture_maker *maker = making->maker;
+	making->on_device = false;
+	enum gz_result result = draw(making, &maker->temporal.frame_image);
+	const int64_t start_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = gz_temporal_end(&maker->temporal, making->request->temporal,
+					 &maker->content, making->plan, target);
+	making->cost.stats.reconstruct_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return result;
+}
+
+/* Rays first; then, where there are more or fewer rays than pixels, the picture. */
+static enum gz_result draw_picture(struct making *making)
+{
+	const struct gz_picture_request *request = making->request;
+	struct gz_picture_maker *maker = making->maker;
+	const int rows = request->strip.rows > 0 ? request->strip.rows : request->height;
+	const bool direct = sampling_rate(request) == 1;
+	struct gz_image *target = direct ? making->image : &maker->cast;
+	making->on_device = direct && request->on_device;
+	enum gz_result result =
+		making->accumulates ? draw_and_accumulate(making, target) : draw(making, target);
+	if (result != GZ_OK || direct)
+		return result;
+	const int64_t start_ns = gz_clock_now_ns();
+	result = gz_image_resize(making->image, request->width, rows);
+	if (result == GZ_OK)
+		gz_image_resample(&maker->cast, making->image);
+	making->cost.stats.reconstruct_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return result;
+}
+
+/* Whoever does not support something has logged it, and so has whoever lost the device. */
+static void log_failure(const struct making *making, enum gz_result failure)
+{
+	if (failure != GZ_ERR_UNSUPPORTED && failure != GZ_ERR_NO_DEVICE)
+		gz_err(making->maker->log,
+		       "cannot draw a picture of %dx%d: %s; check the camera "
+		       "and the size",
+		       making->request->width, making->request->height, gz_result_text(failure));
+}
+
+enum gz_result gz_picture_make(struct gz_picture_maker *maker,
+			       const struct gz_picture_request *request,
+			       struct gz_image **out_image, struct gz_picture_cost *out_cost)
+{
+	if (!maker->drawer)
+		return GZ_ERR_INVAL;
+	struct making making = {
+		.maker = maker,
+		.request = request,
+		.plan = request->plan ? request->plan : &maker->plan,
+		.image = request->image ? request->image : &maker->image,
+		.accumulates = request->temporal && request->temporal->accumulate,
+	};
+	const int64_t start_ns = gz_clock_now_ns();
+	enum gz_result result = make_plan(&making);
+	const int64_t planned_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = draw_picture(&making);
+	if (result != GZ_OK) {
+		log_failure(&making, result);
+		return result;
+	}
+	making.cost.plan_ms = gz_ns_to_ms(planned_ns - start_ns);
+	making.cost.total_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	*out_image = making.on_device ? NULL : making.image;
+	if (out_cost)
+		*out_cost = making.cost;
+	return GZ_OK;
+}
+
+unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker)
+{
+	return maker->drawer ? maker->drawer->ops->picture_texture(maker->drawer) : 0;
+}
+
+const struct gz_plan *gz_picture_maker_plan(const struct gz_picture_maker *maker)
+{
+	return &maker->plan;
+}
+
+const char *gz_picture_maker_backend(const struct gz_picture_maker *maker)
+{
+	return maker->drawer ? maker->drawer->ops->backend(maker->drawer) : "";
+}
+
+const char *gz_picture_maker_describe(const struct gz_picture_maker *maker)
+{
+	return maker->drawer ? maker->drawer->ops->describe(maker->drawer) : "";
+}
+
+bool gz_picture_maker_settling(const struct gz_picture_maker *maker)
+{
+	return gz_temporal_settling(&maker->temporal);
+}
+
+void gz_picture_maker_forget(struct gz_picture_maker *maker)
+{
+	gz_temporal_forget(&maker->temporal);
+}
+
+void gz_picture_maker_destroy(struct gz_picture_maker **maker)
+{
+	struct gz_picture_maker *self = *maker;
+	if (!self)
+		return;
+	gz_drawer_destroy(&self->drawer);
+	gz_plan_free(&self->plan);
+	gz_temporal_free(&self->temporal);
+	gz_image_free(&self->cast);
+	gz_image_free(&self->image);
+	free(self->kept_by.settings);
+	free(self->objects);
+	free(self);
+	*maker = NULL;
+}

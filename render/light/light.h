@@ -1,0 +1,68 @@
+/**
+ * @file
+ * The directional light: section [light] of a scene, and what of it holds for all samples of a
+ * frame.
+ */
+#ifndef GZ_RENDER_LIGHT_LIGHT_H
+#define GZ_RENDER_LIGHT_LIGHT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/option.h"
+#include "render/data/volume.h"
+#include "render/picture/camera.h"
+#include "render/transfer/transfer_table.h"
+
+/** What a light's direction turns with. */
+enum gz_light_frame {
+	GZ_LIGHT_CAMERA, /**< x right, y up, z towards the viewer */
+	GZ_LIGHT_WORLD,
+};
+
+/**
+ * One light, far away and white, and how surfaces answer it. At a sample with the colour c let
+ *
+ *   g = gradient of the data in world directions, in units of the transfer function's value (0 to 1
+ *       over its range) per voxel length: along each axis the central difference between what lies
+ *       one voxel to either side, interpolated as the samples are, clamped at the box
+ *   N = g / |g|, V towards the eye along the ray, L towards the light, H halfway between V and L
+ *   f = clamp(N.V / GZ_LIGHT_FACING, -1, 1): which side the eye sees; both are lit alike
+ *   d = max(f * N.L, 0)
+ *   s = |N.H|^shininess * min(d / GZ_LIGHT_FACING, 1)                        (Blinn 1977)
+ *   lit = c * (ambient * (1 - occlusion * o) + diffuse * d) + specular * s
+ *   w = |g|^2 / (|g|^2 + GZ_LIGHT_GRADIENT^2)
+ *
+ * with o what lies around, see render/light/occlusion.h. The sample's colour becomes c + w (lit -
+ * c), clamped to [0, 1] a channel: where the gradient is too small to have a direction, c stays as
+ * it is. Nothing of it changes opacity. f and s are ramps, not steps, because a side that is seen
+ * edge on would otherwise be bright or dark by chance. The constants are in
+ * render/light/light_constants.h.
+ */
+struct gz_light {
+	double direction[3];               /**< towards the light; any length but 0 */
+	int frame;                         /**< enum gz_light_frame */
+	double ambient, diffuse, specular; /**< [0, 1] */
+	double shininess;                  /**< [1, 1000] */
+	double occlusion; /**< how much of the ambient light what lies around may take, [0, 1]; 0 =
+			     none is looked for */
+	double occlusion_radius; /**< how far around, voxel lengths */
+};
+
+/** Table over struct gz_light: "light.…". */
+extern const struct gz_option gz_light_options[];
+extern const size_t gz_light_option_count;
+
+/** Whether every field is within its range and the direction is one. */
+bool gz_light_valid(const struct gz_light *light);
+
+/** Unit vector towards the light, in world directions, for the camera that made @p rays. */
+void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame *rays,
+			double out_direction[3]);
+
+/** By what to multiply the difference between the stored values one voxel to either side, along
+ *  each axis, to have the gradient of struct gz_light. */
+void gz_light_gradient_scale(const struct gz_volume *volume, const struct gz_transfer_table *table,
+			     double out_scale[3]);
+
+#endif

@@ -1,0 +1,120 @@
+#include "render/opengl/gl_target.h"
+
+#include <stdbool.h>
+
+#include <GL/glew.h>
+
+#define GZ_LOG_MODULE "gl"
+
+static const struct {
+	GLenum internal, format, type;
+} plane_formats[GZ_GL_TARGET_PLANES] = {
+	[GZ_GL_TARGET_COLOUR] = { GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE },
+	[GZ_GL_TARGET_ID] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
+	[GZ_GL_TARGET_VALUE] = { GL_R32F, GL_RED, GL_FLOAT },
+};
+
+static unsigned wanted_planes(const struct gz_gl_target *target)
+{
+	unsigned planes = 0;
+	for (int i = 0; i < GZ_GL_TARGET_PLANES; i++)
+		if (target->planes[i])
+			planes |= 1U << i;
+	return planes;
+}
+
+static void attach_planes(struct gz_gl_target *target, unsigned planes)
+{
+	GLenum buffers[GZ_GL_TARGET_PLANES];
+	for (int i = 0; i < GZ_GL_TARGET_PLANES; i++) {
+		buffers[i] = GL_NONE;
+		if (!(planes >> i & 1))
+			continue;
+		target->planes[i] = gz_gl_texture(GL_TEXTURE_2D);
+		glTexStorage2D(GL_TEXTURE_2D, 1, plane_formats[i].internal, target->width,
+			       target->height);
+		buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+		glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target->planes[i],
+				       0);
+	}
+	glDrawBuffers(GZ_GL_TARGET_PLANES, buffers);
+	target->depth = gz_gl_texture(GL_TEXTURE_2D);
+	glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT32F, target->width, target->height);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target->depth,
+			       0);
+	glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+enum gz_result gz_gl_target_resize(struct gz_gl_target *target, const struct gz_gl_device *device,
+				   unsigned planes, int width, int height, const struct gz_log *log)
+{
+	if (target->framebuffer && target->width == width && target->height == height &&
+	    wanted_planes(target) == planes)
+		return GZ_OK;
+	gz_gl_target_free(target);
+	target->width = width;
+	target->height = height;
+	glGenFramebuffers(1, &target->framebuffer);
+	glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+	attach_planes(target, planes);
+	const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+	glBindFramebuffer(GL_FRAMEBUFFER, 0);
+	enum gz_result result = gz_gl_device_errors(device);
+	if (result == GZ_OK && !complete)
+		result = GZ_ERR_UNSUPPORTED;
+	if (result == GZ_OK)
+		return GZ_OK;
+	gz_err(log, "the graphics device has no framebuffer of %d x %d px: %s", width, height,
+	       gz_result_text(result));
+	gz_gl_target_free(target);
+	return result;
+}
+
+void gz_gl_target_begin(const struct gz_gl_target *target)
+{
+	glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+	glViewport(0, 0, target->width, target->height);
+	glEnable(GL_DEPTH_TEST);
+	glDisable(GL_BLEND);
+}
+
+void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4])
+{
+	static const GLuint no_id[4] = { 0 };
+	static const GLfloat no_value[4] = { 0 }, farthest = 1;
+	if (target->planes[GZ_GL_TARGET_COLOUR])
+		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_COLOUR, colour);
+	if (target->planes[GZ_GL_TARGET_ID])
+		glClearBufferuiv(GL_COLOR, GZ_GL_TARGET_ID, no_id);
+	if (target->planes[GZ_GL_TARGET_VALUE])
+		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_VALUE, no_value);
+	glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
+void gz_gl_target_end(void)
+{
+	glDisable(GL_DEPTH_TEST);
+	glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
+		       uint32_t *out_words)
+{
+	glBindTexture(GL_TEXTURE_2D, target->planes[plane]);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glGetTexImage(GL_TEXTURE_2D, 0, plane_formats[plane].format, plane_formats[plane].type,
+		      out_words);
+	glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void gz_gl_target_free(struct gz_gl_target *target)
+{
+	for (int i = 0; i < GZ_GL_TARGET_PLANES; i++)
+		if (target->planes[i])
+			glDeleteTextures(1, &target->planes[i]);
+	if (target->depth)
+		glDeleteTextures(1, &target->depth);
+	if (target->framebuffer)
+		glDeleteFramebuffers(1, &target->framebuffer);
+	*target = (struct gz_gl_target) { 0 };
+}

@@ -1,0 +1,321 @@
+#include "render/picture/camera.h"
+
+#include <math.h>
+
+#define RAD_PER_DEG (3.14159265358979323846 / 180.0)
+
+/* Chosen: an orbit stops this far from the poles, where up and the view would be parallel. */
+#define POLE_MARGIN_DEG 1.0
+
+/* Below this sine of the angle between them, up counts as parallel to the view (chosen: well above
+ * rounding, well below any angle meant). */
+#define PARALLEL_SINE 1e-6
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* False for a vector that has no direction. Scaled first, so that no length over- or underflows. */
+static bool normalise(double v[3])
+{
+	double scale = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+	if (!(scale > 0) || !isfinite(scale))
+		return false;
+	for (int i = 0; i < 3; i++)
+		v[i] /= scale;
+	double length = sqrt(dot(v, v));
+	for (int i = 0; i < 3; i++)
+		v[i] /= length;
+	return true;
+}
+
+static bool finite3(const double v[3])
+{
+	return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+/* Right-handed: right x up = backward. */
+struct view_axes {
+	double forward[3], right[3], up[3];
+};
+
+static void least_parallel_axis(const double v[3], double out[3])
+{
+	int least = 0;
+	for (int i = 1; i < 3; i++)
+		least = fabs(v[i]) < fabs(v[least]) ? i : least;
+	for (int i = 0; i < 3; i++)
+		out[i] = i == least;
+}
+
+static bool forward_of(const struct gz_camera *camera, double out[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = camera->look_at[i] - camera->eye[i];
+	return normalise(out);
+}
+
+/* To the right of the view as up says, its length the sine between them; false where up says
+ * nothing. */
+static bool right_by_up(const struct gz_camera *camera, const double forward[3], double out[3])
+{
+	double up[3] = { camera->up[0], camera->up[1], camera->up[2] };
+	if (!normalise(up))
+		return false;
+	cross(forward, up, out);
+	return sqrt(dot(out, out)) >= PARALLEL_SINE;
+}
+
+bool gz_camera_up_counts(const struct gz_camera *camera)
+{
+	double forward[3], right[3];
+	return forward_of(camera, forward) && right_by_up(camera, forward, right);
+}
+
+static bool view_axes_make(const struct gz_camera *camera, struct view_axes *out)
+{
+	double other[3];
+	if (!forward_of(camera, out->forward))
+		return false;
+	if (!right_by_up(camera, out->forward, out->right)) {
+		least_parallel_axis(out->forward, other);
+		cross(out->forward, other, out->right);
+	}
+	normalise(out->right);
+	cross(out->right, out->forward, out->up);
+	return true;
+}
+
+static bool camera_valid(const struct gz_camera *camera)
+{
+	if (!finite3(camera->eye) || !finite3(camera->look_at) || !finite3(camera->up))
+		return false;
+	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
+		return camera->fov_deg > 0 && camera->fov_deg < 180;
+	return camera->projection == GZ_PROJECTION_ORTHOGRAPHIC && camera->height > 0 &&
+	       isfinite(camera->height);
+}
+
+/* Height of the picture: world units, or, in perspective, at distance 1. */
+static double picture_height(const struct gz_camera *camera)
+{
+	if (camera->projection == GZ_PROJECTION_ORTHOGRAPHIC)
+		return camera->height;
+	return 2 * tan(0.5 * camera->fov_deg * RAD_PER_DEG);
+}
+
+/* out00 + x dx + y dy = the point of the picture plane under the centre of pixel (x, y). */
+static void picture_plane(const struct view_axes *axes, double height, int width_px, int height_px,
+			  const double centre[3], double out00[3], double dx[3], double dy[3])
+{
+	double pixel = height / height_px; /* pixels are square */
+	for (int i = 0; i < 3; i++) {
+		dx[i] = pixel * axes->right[i];
+		dy[i] = -pixel * axes->up[i];
+		out00[i] = centre[i] + 0.5 * (1 - width_px) * dx[i] + 0.5 * (1 - height_px) * dy[i];
+	}
+}
+
+enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int height,
+			      struct gz_ray_frame *out_rays)
+{
+	struct view_axes axes;
+	if (width < 1 || height < 1 || !camera_valid(camera) || !view_axes_make(camera, &axes))
+		return GZ_ERR_INVAL;
+
+	struct gz_ray_frame rays = { 0 };
+	double extent = picture_height(camera);
+	if (camera->projection == GZ_PROJECTION_PERSPECTIVE) {
+		for (int i = 0; i < 3; i++)
+			rays.origin00[i] = camera->eye[i];
+		picture_plane(&axes, extent, width, height, axes.forward, rays.direction00,
+			      rays.direction_dx, rays.direction_dy);
+	} else {
+		for (int i = 0; i < 3; i++)
+			rays.direction00[i] = axes.forward[i];
+		picture_plane(&axes, extent, width, height, camera->eye, rays.origin00,
+			      rays.origin_dx, rays.origin_dy);
+	}
+	*out_rays = rays;
+	return GZ_OK;
+}
+
+/* Rodrigues' rotation of v about the unit vector axis. */
+static void rotate(double v[3], const double axis[3], double angle_deg)
+{
+	double c = cos(angle_deg * RAD_PER_DEG), s = sin(angle_deg * RAD_PER_DEG);
+	double side[3], along = dot(axis, v) * (1 - c);
+	cross(axis, v, side);
+	for (int i = 0; i < 3; i++)
+		v[i] = v[i] * c + side[i] * s + axis[i] * along;
+}
+
+static void rotate_eye(struct gz_camera *camera, const double axis[3], double angle_deg)
+{
+	double arm[3];
+	for (int i = 0; i < 3; i++)
+		arm[i] = camera->eye[i] - camera->look_at[i];
+	rotate(arm, axis, angle_deg);
+	for (int i = 0; i < 3; i++)
+		camera->eye[i] = camera->look_at[i] + arm[i];
+}
+
+/* The axis that turning goes about: up as given, or what the picture shows as up where it has no
+ * direction. */
+static bool turn_axis(const struct gz_camera *camera, double out[3])
+{
+	struct view_axes axes;
+	for (int i = 0; i < 3; i++)
+		out[i] = camera->up[i];
+	if (normalise(out))
+		return true;
+	if (!view_axes_make(camera, &axes))
+		return false;
+	for (int i = 0; i < 3; i++)
+		out[i] = axes.up[i];
+	return true;
+}
+
+void gz_camera_turn(struct gz_camera *camera, double angle_deg)
+{
+	double axis[3];
+	if (isfinite(angle_deg) && turn_axis(camera, axis))
+		rotate_eye(camera, axis, angle_deg);
+}
+
+void gz_camera_orbit(struct gz_camera *camera, double right_deg, double down_deg)
+{
+	struct view_axes axes;
+	double pole[3];
+	if (!isfinite(right_deg) || !isfinite(down_deg) || !turn_axis(camera, pole))
+		return;
+	rotate_eye(camera, pole, -right_deg);
+	if (!view_axes_make(camera, &axes))
+		return;
+	/* Dragging down tips the near side down, which is the eye going up: its angle from the pole
+	 * shrinks. */
+	double from_pole_deg = acos(fmax(-1, fmin(1, -dot(axes.forward, pole)))) / RAD_PER_DEG;
+	double wanted_deg = from_pole_deg - down_deg;
+	wanted_deg = fmax(POLE_MARGIN_DEG, fmin(180 - POLE_MARGIN_DEG, wanted_deg));
+	rotate_eye(camera, axes.right, wanted_deg - from_pole_deg);
+}
+
+void gz_camera_zoom(struct gz_camera *camera, double factor)
+{
+	if (!(factor > 0) || !isfinite(factor))
+		return;
+	if (camera->projection == GZ_PROJECTION_ORTHOGRAPHIC) {
+		camera->height *= factor;
+		return;
+	}
+	for (int i = 0; i < 3; i++)
+		camera->eye[i] =
+			camera->look_at[i] + factor * (camera->eye[i] - camera->look_at[i]);
+}
+
+static double distance_of(const struct gz_camera *camera)
+{
+	double arm[3];
+	for (int i = 0; i < 3; i++)
+		arm[i] = camera->eye[i] - camera->look_at[i];
+	return sqrt(dot(arm, arm));
+}
+
+void gz_camera_pan(struct gz_camera *camera, double right_heights, double up_heights)
+{
+	struct view_axes axes;
+	if (!isfinite(right_heights) || !isfinite(up_heights) || !camera_valid(camera) ||
+	    !view_axes_make(camera, &axes))
+		return;
+	double height = picture_height(camera);
+	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
+		height *= distance_of(camera);
+	for (int i = 0; i < 3; i++) {
+		const double way =
+			height * (right_heights * axes.right[i] + up_heights * axes.up[i]);
+		camera->eye[i] -= way;
+		camera->look_at[i] -= way;
+	}
+}
+
+void gz_camera_roll(struct gz_camera *camera, double angle_deg)
+{
+	struct view_axes axes;
+	if (!isfinite(angle_deg) || !view_axes_make(camera, &axes))
+		return;
+	for (int i = 0; i < 3; i++)
+		camera->up[i] = axes.up[i];
+	/* Clockwise seen from the eye, so that what it sees goes the other way. */
+	rotate(camera->up, axes.forward, angle_deg);
+}
+
+void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection projection)
+{
+	const double distance = distance_of(camera);
+	const double per_distance = 2 * tan(0.5 * camera->fov_deg * RAD_PER_DEG);
+	if (projection == camera->projection)
+		return;
+	if (!(distance > 0) || !(per_distance > 0) || !isfinite(distance * per_distance))
+		return;
+	if (projection == GZ_PROJECTION_ORTHOGRAPHIC)
+		camera->height = distance * per_distance;
+	else
+		for (int i = 0; i < 3; i++)
+			camera->eye[i] =
+				camera->look_at[i] + camera->height / per_distance / distance *
+							     (camera->eye[i] - camera->look_at[i]);
+	camera->projection = projection;
+}
+
+void gz_camera_look_along(struct gz_camera *camera, int axis, bool other)
+{
+	const double distance = distance_of(camera);
+	if (axis < 0 || axis > 2 || !(distance > 0) || !isfinite(distance))
+		return;
+	for (int i = 0; i < 3; i++) {
+		camera->eye[i] = camera->look_at[i];
+		camera->up[i] = i == (axis == 2 ? 1 : 2);
+	}
+	camera->eye[axis] += other ? -distance : distance;
+}
+
+bool gz_camera_project(const struct gz_camera *camera, int width, int height, const double world[3],
+		       struct gz_point *out_point)
+{
+	struct view_axes axes;
+	double arm[3];
+	if (width < 1 || height < 1 || !camera_valid(camera) || !view_axes_make(camera, &axes))
+		return false;
+	for (int i = 0; i < 3; i++)
+		arm[i] = world[i] - camera->eye[i];
+	double depth = dot(arm, axes.forward);
+	if (!(depth > 0))
+		return false;
+	double extent = picture_height(camera);
+	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
+		extent *= depth;
+	double pixels_per_unit = height / extent;
+	out_point->x = (float)(0.5 + dot(arm, axes.right) * pixels_per_unit / width);
+	out_point->y = (float)(0.5 - dot(arm, axes.up) * pixels_per_unit / height);
+	return true;
+}
+
+static bool same_vector(const double a[3], const double b[3])
+{
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+bool gz_camera_same(const struct gz_camera *a, const struct gz_camera *b)
+{
+	return same_vector(a->eye, b->eye) && same_vector(a->look_at, b->look_at) &&
+	       same_vector(a->up, b->up) && a->fov_deg == b->fov_deg && a->height == b->height &&
+	       a->projection == b->projection;
+}

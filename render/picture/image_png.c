@@ -1,0 +1,200 @@
+/* Pictures to and from PNG files, by libpng. */
+#define GZ_LOG_MODULE "image"
+#include "render/picture/image.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Measured on a rendered head of 1024 x 1024 pixels: level 2 takes a quarter of the time of zlib's
+ * default of 6 and a quarter more bytes; the filter "up" saves a tenth of them over "sub". */
+#define PNG_COMPRESSION_LEVEL 2
+
+static void on_png_error(png_structp png, png_const_charp message)
+{
+	(void)message; /* errno says more */
+	png_longjmp(png, 1);
+}
+
+static void on_png_warning(png_structp png, png_const_charp message)
+{
+	(void)png;
+	(void)message;
+}
+
+/* What goes into a file. */
+struct content {
+	const struct gz_image *image;
+	const struct gz_image_text *texts;
+	size_t text_count;
+};
+
+static void set_texts(png_structp png, png_infop info, const struct content *content)
+{
+	for (size_t i = 0; i < content->text_count; i++) {
+		/* libpng copies both, and writes to neither. */
+		png_text entry = { 0 };
+		entry.compression = PNG_ITXT_COMPRESSION_NONE;
+		entry.key = (png_charp)(uintptr_t)content->texts[i].keyword;
+		entry.text = (png_charp)(uintptr_t)content->texts[i].text;
+		png_set_text(png, info, &entry, 1);
+	}
+}
+
+/* Nothing is changed between setjmp and a longjmp but what libpng owns. */
+static bool write_rows(png_structp png, png_infop info, FILE *file, const struct content *content)
+{
+	const struct gz_image *image = content->image;
+	if (setjmp(png_jmpbuf(png)))
+		return false;
+	png_init_io(png, file);
+	png_set_compression_level(png, PNG_COMPRESSION_LEVEL);
+	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
+	png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
+		     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+		     PNG_FILTER_TYPE_DEFAULT);
+	set_texts(png, info, content);
+	png_write_info(png, info);
+	png_set_filler(png, 0, PNG_FILLER_AFTER); /* drops the A of each pixel */
+	for (int y = 0; y < image->height; y++)
+		png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
+	png_write_end(png, NULL);
+	return true;
+}
+
+static bool write_stream(FILE *file, const struct content *content)
+{
+	png_structp png =
+		png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, on_png_warning);
+	png_infop info = png ? png_create_info_struct(png) : NULL;
+	bool written = info && write_rows(png, info, file, content);
+	png_destroy_write_struct(&png, &info);
+	return written;
+}
+
+/* A file of its own, so that no one ever finds half a picture under the final name. */
+static FILE *open_temporary(const char *name)
+{
+	int fd = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+	if (fd < 0)
+		return NULL;
+	FILE *file = fdopen(fd, "wb");
+	if (!file) {
+		close(fd);
+		unlink(name);
+	}
+	return file;
+}
+
+/* Writes, closes, and says what went wrong by errno. */
+static bool write_and_close(FILE *file, const struct content *content)
+{
+	errno = 0;
+	bool written = write_stream(file, content) && fflush(file) == 0;
+	int saved = errno;
+	if (fclose(file) != 0 && written) {
+		written = false;
+		saved = errno;
+	}
+	errno = saved ? saved : EIO;
+	return written;
+}
+
+static bool write_regular(const struct content *content, const char *path)
+{
+	char *name = NULL;
+	if (asprintf(&name, "%s.%ld.part", path, (long)getpid()) < 0)
+		return false;
+	FILE *file = open_temporary(name);
+	bool written = false;
+	if (file) {
+		written = write_and_close(file, content) && rename(name, path) == 0;
+		int saved = errno;
+		if (!written)
+			unlink(name);
+		errno = saved;
+	}
+	free(name);
+	return written;
+}
+
+/* A device or pipe cannot be replaced by a file: it is written to. */
+static bool write_special(const struct content *content, const char *path)
+{
+	FILE *file = fopen(path, "wb");
+	return file && write_and_close(file, content);
+}
+
+enum gz_result gz_image_write_png(const struct gz_image *image, const char *path,
+				  const struct gz_log *log)
+{
+	return gz_image_write_png_with(image, NULL, 0, path, log);
+}
+
+enum gz_result gz_image_write_png_with(const struct gz_image *image,
+				       const struct gz_image_text *texts, size_t count,
+				       const char *path, const struct gz_log *log)
+{
+	const struct content content = { image, texts, count };
+	struct stat status;
+	if (!image->pixels || image->width < 1 || image->height < 1)
+		return GZ_ERR_INVAL;
+	bool special = stat(path, &status) == 0 && !S_ISREG(status.st_mode);
+	if (special ? write_special(&content, path) : write_regular(&content, path))
+		return GZ_OK;
+	gz_err(log, "%s: cannot write the picture: %s; name a writable folder with free space",
+	       path, strerror(errno));
+	return GZ_ERR_IO;
+}
+
+static enum gz_result read_pixels(png_image *png, const char *path, const struct gz_log *log,
+				  struct gz_image *out_image)
+{
+	struct gz_image image = { 0 };
+	if (png->width > GZ_IMAGE_SIDE_MAX || png->height > GZ_IMAGE_SIDE_MAX) {
+		gz_err(log, "%s: %u x %u pixels; at most %d a side are read", path, png->width,
+		       png->height, GZ_IMAGE_SIDE_MAX);
+		return GZ_ERR_FORMAT;
+	}
+	if (gz_image_resize(&image, (int)png->width, (int)png->height) != GZ_OK) {
+		gz_err(log, "%s: no memory for %u x %u pixels", path, png->width, png->height);
+		return GZ_ERR_NO_MEM;
+	}
+	png->format = PNG_FORMAT_RGBA;
+	if (!png_image_finish_read(png, NULL, image.pixels, 0, NULL)) {
+		gz_err(log, "%s: damaged PNG: %s", path, png->message);
+		gz_image_free(&image);
+		return GZ_ERR_FORMAT;
+	}
+	size_t count = (size_t)image.width * (size_t)image.height;
+	for (size_t i = 0; i < count; i++)
+		image.pixels[4 * i + 3] = 255;
+	gz_image_free(out_image);
+	*out_image = image;
+	return GZ_OK;
+}
+
+enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
+				 struct gz_image *out_image)
+{
+	png_image png = { .version = PNG_IMAGE_VERSION };
+	FILE *file = fopen(path, "rb");
+	if (!file) {
+		gz_err(log, "%s: cannot open the picture: %s", path, strerror(errno));
+		return GZ_ERR_NOT_FOUND;
+	}
+	enum gz_result result = GZ_ERR_FORMAT;
+	if (png_image_begin_read_from_stdio(&png, file))
+		result = read_pixels(&png, path, log, out_image);
+	else
+		gz_err(log, "%s: not a PNG picture: %s", path, png.message);
+	png_image_free(&png);
+	fclose(file);
+	return result;
+}

@@ -1,0 +1,235 @@
+/*
+ * The kernel: one tile of rays, front to back, SIMD_LANES at a time. Included by one file an
+ * instruction set, behind that set's vocabulary (simd_*.h). Voxel type and interpolation are
+ * constants of each instance, so that the compiler drops what it does not need.
+ *
+ * A ray is cut into segments of one step from where it enters the box, or a jitter before; a sample
+ * sits in the middle of each, at k + 1/2 steps. Where the box, or the clip box, cuts a segment at
+ * either end of the ray, its sample sits in the middle of what is left and its opacity is corrected
+ * for that length. k is a count, so skipping empty space never shifts the phase.
+ */
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/cast_fetch.h"
+#include "render/raycast/cpu/cast_fine.h"
+#ifdef SIMD_BLOCKS
+#include "render/raycast/cpu/cast_together.h"
+#else
+#include "render/raycast/cpu/cast_scattered.h"
+#endif
+#include "render/raycast/cpu/cast_light.h"
+#include "render/raycast/cpu/cast_look_up.h"
+#include "render/raycast/cpu/cast_preintegrated.h"
+#include "render/raycast/cpu/cast_rays.h"
+#include "render/raycast/cpu/cast_settle.h"
+#include "render/raycast/cpu/cast_shade.h"
+#include "render/raycast/cpu/cast_skip.h"
+
+/* Let the lanes that ask know how far their samples show something; put them behind what is empty.
+ */
+SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k, vf *until)
+{
+	vf leave;
+	const vm empty = vm_and(look_up_cell(cast, rays, *k, asks, &leave), asks);
+	/* A sample that rounding puts just behind its own cell's end is taken too. */
+	*until = vf_select(vm_but(asks, empty), vf_max(leave, *k + vf_set(0.5F)), *until);
+	/* To the first sample at or behind the empty box's far side; at least one on. */
+	const vf ahead = vf_max(vf_ceil(leave - *k), vf_set(1));
+	*k = vf_select(empty, *k + ahead, *k);
+}
+
+/* Behind what is empty for sure around samples that show nothing. */
+SIMD vf skip(const struct gz_cast *cast, const struct rays *rays, vf k, vm running)
+{
+	vf leave;
+	const vm empty = look_up_cell(cast, rays, k, running, &leave);
+	const vf ahead = vf_select(empty, vf_max(vf_ceil(leave - k), vf_set(1)), vf_set(1));
+	return vf_select(running, k + ahead, k);
+}
+
+/* All whole segments, each ray for itself. Which sample comes next depends on the cells alone, not
+ * on what samples show, so that one need not be finished before the next begins. */
+SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			  const struct look_up *look_up, int step, const struct rays *rays,
+			  vm alive, struct light *light)
+{
+	vf k = rays->first + vf_set(0.5F);
+	const vf end = rays->end; /* k + 1/2 <= end */
+	vf until = vf_set(-1);    /* samples before it are taken */
+	uint32_t samples = 0;
+	for (;;) {
+		const vm asks = vm_but(vm_and(alive, vf_less(k, end)), vf_less(k, until));
+		if (vm_any(asks))
+			look_ahead(cast, rays, asks, &k, &until);
+		const vm running = vf_less(k, end);
+		const vm takes = vm_and(running, vf_less(k, until));
+		const vm needed = vm_and(takes, alive);
+		if (!vm_any(needed)) {
+			if (!vm_any(vm_and(running, alive)))
+				break;
+			continue;
+		}
+		samples += vm_count(needed);
+		const vf value = fetch_sample(cast, type, nearest, rays, k, needed);
+		const vi entry = entry_of(look_up->scale, look_up->bias, value);
+		const vf at = k;
+		k = vf_select(takes, k + vf_set(1), k);
+		vf opacity;
+		vi colour;
+		gather_pair(cast->step_table[step], entry, vm_all(), &opacity, &colour);
+		composite_at(cast, type, nearest, rays, at, colour, opacity, needed, light);
+		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
+	}
+	return samples;
+}
+
+/* All whole segments, each ray for itself, of those samples alone that may show something. */
+SIMD uint32_t march_fine(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			 const struct look_up *look_up, int step, const struct rays *rays, vm alive,
+			 struct light *light)
+{
+	vf k = rays->first + vf_set(0.5F);
+	struct waiting before = none_waiting();
+	uint32_t samples = 0;
+	for (;;) {
+		const vm running = vf_less(k, rays->end);
+		if (!vm_any(vm_and(running, alive)))
+			break;
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		const vm shows = vm_and(fine_shows(cast, at, running), alive);
+		if (!vm_any(shows)) {
+			k = skip(cast, rays, k, running);
+			continue;
+		}
+		const vf value = fetch_sample(cast, type, nearest, rays, k, shows);
+		samples += settle(cast, type, nearest, step, rays, &before, &alive, light);
+		before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					    shows };
+		k = vf_select(running, k + vf_set(1), k);
+	}
+	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
+}
+
+/* All whole segments. */
+SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
+		    const struct rays *rays, struct light *light)
+{
+	const struct look_up look_up = look_up_of(cast, type, nearest);
+	const vm alive =
+		vm_and(rays->hit, vf_less(vf_set(cast->end_transmittance), light->through));
+	if (!vm_any(alive))
+		return 0;
+#ifdef SIMD_GATHERS
+	if (cast->fine[0].flags) {
+#ifdef SIMD_BLOCKS
+		const struct beam beam = beam_of(rays);
+		if (beam.grid < GZ_FINE_GRIDS)
+			return march_beam(cast, type, nearest, &look_up, step, rays, &beam, alive,
+					  light);
+#endif
+		return march_fine(cast, type, nearest, &look_up, step, rays, alive, light);
+	}
+#endif
+	return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
+}
+
+/* A part of a segment, at either end of the whole ones: around k, of a length in steps. */
+SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
+			 const struct rays *rays, vf k, vf steps, struct light *light)
+{
+	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
+	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
+	if (!vm_any(mask))
+		return 0;
+	vf leave;
+	mask = vm_but(mask, look_up_cell(cast, rays, k, mask, &leave));
+	if (!vm_any(mask))
+		return 0;
+	const vi entry = entry_of(vf_set(cast->entry_scale), vf_set(cast->entry_bias),
+				  sample_at(cast, type, nearest, rays, k, mask));
+	vf extinction;
+	vi colour;
+	gather_pair(cast->extinction, entry, mask, &extinction, &colour);
+	const vf length = steps * vf_set(cast->voxel_lengths[step]);
+	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
+	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
+	composite_at(cast, type, nearest, rays, k, colour, opacity, visible, light);
+	return vm_count(mask);
+}
+
+SIMD uint32_t cast_by_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			      int step, const struct rays *rays, struct light *light)
+{
+	uint32_t samples =
+		march_part(cast, type, nearest, step, rays, rays->head_at, rays->head, light);
+	samples += march(cast, type, nearest, step, rays, light);
+	return samples + march_part(cast, type, nearest, step, rays,
+				    vf_fma(rays->rest, vf_set(0.5F), rays->end), rays->rest, light);
+}
+
+SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *tile,
+			uint32_t out_pixels[GZ_TILE_RAYS], enum gz_voxel_type type, int nearest,
+			int rich)
+{
+	uint32_t samples = 0;
+	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
+		const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
+		struct rays rays;
+		struct view view;
+		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
+		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
+			    vm_from_bits(tile->active >> first), &rays);
+		if (!vm_any(rays.hit)) {
+			vi_store(out_pixels + first, to_pixel(cast, &light));
+			continue;
+		}
+		if (rich && cast->light.on) {
+			set_up_view(cast, tile->step, &rays, &view);
+			rays.view = &view;
+		}
+		samples +=
+			rich && cast->preintegrated_extinction
+				? cast_by_segments(cast, type, nearest, tile->step, &rays, &light)
+				: cast_by_samples(cast, type, nearest, tile->step, &rays, &light);
+		vi_store(out_pixels + first, to_pixel(cast, &light));
+	}
+	return samples;
+}
+
+#define DEFINE_TILE(name, type, nearest, rich)                                            \
+	static uint32_t name(const struct gz_cast *cast, const struct gz_cast_tile *tile, \
+			     uint32_t out_pixels[GZ_TILE_RAYS])                           \
+	{                                                                                 \
+		return cast_tile(cast, tile, out_pixels, type, nearest, rich);            \
+	}
+
+DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0, 0)
+DEFINE_TILE(tile_u16, GZ_VOXEL_U16, 0, 0)
+DEFINE_TILE(tile_f32, GZ_VOXEL_F32, 0, 0)
+DEFINE_TILE(tile_u8_nearest, GZ_VOXEL_U8, 1, 0)
+DEFINE_TILE(tile_u16_nearest, GZ_VOXEL_U16, 1, 0)
+DEFINE_TILE(tile_f32_nearest, GZ_VOXEL_F32, 1, 0)
+DEFINE_TILE(rich_u8, GZ_VOXEL_U8, 0, 1)
+DEFINE_TILE(rich_u16, GZ_VOXEL_U16, 0, 1)
+DEFINE_TILE(rich_f32, GZ_VOXEL_F32, 0, 1)
+DEFINE_TILE(rich_u8_nearest, GZ_VOXEL_U8, 1, 1)
+DEFINE_TILE(rich_u16_nearest, GZ_VOXEL_U16, 1, 1)
+DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, 1)
+
+#define GZ_CAST_KERNELS(set)                                                       \
+	{                                                                          \
+		.name = set,                                                     \
+		.tile = {                                                        \
+			[GZ_CAST_PLAIN] = {                                      \
+				[GZ_VOXEL_U8] = { tile_u8, tile_u8_nearest },    \
+				[GZ_VOXEL_U16] = { tile_u16, tile_u16_nearest }, \
+				[GZ_VOXEL_F32] = { tile_f32, tile_f32_nearest }, \
+			},                                                       \
+			[GZ_CAST_RICH] = {                                       \
+				[GZ_VOXEL_U8] = { rich_u8, rich_u8_nearest },    \
+				[GZ_VOXEL_U16] = { rich_u16, rich_u16_nearest }, \
+				[GZ_VOXEL_F32] = { rich_f32, rich_f32_nearest }, \
+			},                                                       \
+		}, \
+	}

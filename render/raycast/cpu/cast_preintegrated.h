@@ -1,0 +1,139 @@
+/*
+ * Segments instead of samples: colour and opacity by the values at both ends of each, from a
+ * pre-integrated table, so that no thin layer is stepped over. The end of a segment is the
+ * beginning of the next.
+ * A part of the kernel: see cast_kernel.h.
+ */
+#ifndef GZ_RENDER_RAYCAST_CPU_CAST_PREINTEGRATED_H
+#define GZ_RENDER_RAYCAST_CPU_CAST_PREINTEGRATED_H
+
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/cast_fetch.h"
+#include "render/raycast/cpu/cast_light.h"
+#include "render/raycast/cpu/cast_look_up.h"
+#include "render/raycast/cpu/cast_rays.h"
+#include "render/raycast/cpu/cast_shade.h"
+#include "render/raycast/cpu/cast_skip.h"
+#include "render/transfer/transfer_preintegrated.h"
+
+/* The cell of an entry of the transfer function, and the place of a pair in the table. */
+SIMD vi preintegrated_cell(vi entry)
+{
+	return vi_shift_right(entry, __builtin_ctz(GZ_PREINTEGRATED_STRIDE));
+}
+
+SIMD vi preintegrated_pair(vi front, vi back)
+{
+	return vi_or(vi_shift_left(front, __builtin_ctz(GZ_PREINTEGRATED_SIZE)), back);
+}
+
+/*
+ * Let the lanes that ask, at the fronts of their segments, know how far these are to be taken; put
+ * them behind the segments that lie in empty space as a whole. One that begins there and ends
+ * outside is taken. Nothing shows between two values that lie in empty cells next to each other:
+ * these share voxels, so there is no gap between the values they hold.
+ */
+SIMD void look_ahead_segments(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k,
+			      vf *until, vm *known)
+{
+	vf leave;
+	const vm empty = vm_and(look_up_cell(cast, rays, *k, asks, &leave), asks);
+	const vf next = vf_select(empty, vf_max(vf_floor(leave), *k), *k);
+	*known = vm_but(*known, vf_less(*k, next));
+	*k = next;
+	/* Whatever rounding says of where a cell ends: one segment on. */
+	const vf one = *k + vf_set(0.5F);
+	*until = vf_select(asks, vf_select(empty, one, vf_max(leave, one)), *until);
+}
+
+/* All whole segments; k counts their fronts. */
+SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     int step, const struct rays *rays, struct light *light)
+{
+	const struct look_up look_up = look_up_of(cast, type, nearest);
+	const vf end = rays->end;
+	vf k = rays->first;
+	vf until = vf_set(-1); /* segments that begin before it are taken */
+	vi front = vi_set(0);
+	uint32_t samples = 0;
+	vm alive = rays->hit;
+	vm known = vm_but(alive, alive); /* front is that of k */
+	for (;;) {
+		const vm asks = vm_but(vm_and(alive, vf_less(k, end)), vf_less(k, until));
+		if (vm_any(asks))
+			look_ahead_segments(cast, rays, asks, &k, &until, &known);
+		const vm takes = vm_and(alive, vf_less(k, end));
+		if (!vm_any(takes))
+			break;
+		const vm lacks = vm_but(takes, known);
+		if (vm_any(lacks)) {
+			const vf value = fetch_sample(cast, type, nearest, rays, k, lacks);
+			front = vi_select(
+				lacks,
+				preintegrated_cell(entry_of(look_up.scale, look_up.bias, value)),
+				front);
+			samples += vm_count(lacks);
+		}
+		k = vf_select(takes, k + vf_set(1), k);
+		const vf value = fetch_sample(cast, type, nearest, rays, k, takes);
+		const vi back = preintegrated_cell(entry_of(look_up.scale, look_up.bias, value));
+		samples += vm_count(takes);
+		vf opacity;
+		vi colour;
+		gather_pair(cast->preintegrated[step], preintegrated_pair(front, back), takes,
+			    &opacity, &colour);
+		composite_at(cast, type, nearest, rays, k - vf_set(0.5F), colour, opacity, takes,
+			     light);
+		front = back;
+		known = takes;
+		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
+	}
+	return samples;
+}
+
+/* A part of a segment: from front on, `steps` of a step long. */
+SIMD uint32_t march_segment_part(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+				 int step, const struct rays *rays, vf front, vf steps,
+				 struct light *light)
+{
+	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
+	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
+	if (!vm_any(mask))
+		return 0;
+	vf leave;
+	const vf back = front + steps;
+	const vm empty = look_up_cell(cast, rays, front, mask, &leave);
+	mask = vm_but(mask, vm_but(empty, vf_less(leave, back)));
+	if (!vm_any(mask))
+		return 0;
+	const vf scale = vf_set(cast->entry_scale), bias = vf_set(cast->entry_bias);
+	const vi cells[2] = {
+		preintegrated_cell(
+			entry_of(scale, bias, sample_at(cast, type, nearest, rays, front, mask))),
+		preintegrated_cell(
+			entry_of(scale, bias, sample_at(cast, type, nearest, rays, back, mask))),
+	};
+	vf extinction;
+	vi colour;
+	gather_pair(cast->preintegrated_extinction, preintegrated_pair(cells[0], cells[1]), mask,
+		    &extinction, &colour);
+	const vf length = steps * vf_set(cast->voxel_lengths[step]);
+	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
+	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
+	composite_at(cast, type, nearest, rays, vf_fma(steps, vf_set(0.5F), front), colour, opacity,
+		     visible, light);
+	return 2 * vm_count(mask);
+}
+
+SIMD uint32_t cast_by_segments(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			       int step, const struct rays *rays, struct light *light)
+{
+	const vf from = vf_fma(rays->head, vf_set(-0.5F), rays->head_at);
+	uint32_t samples =
+		march_segment_part(cast, type, nearest, step, rays, from, rays->head, light);
+	samples += march_segments(cast, type, nearest, step, rays, light);
+	return samples +
+	       march_segment_part(cast, type, nearest, step, rays, rays->end, rays->rest, light);
+}
+
+#endif

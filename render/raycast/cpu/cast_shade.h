@@ -1,0 +1,258 @@
+/*
+ * How a sample answers light: struct gz_light says what is computed here.
+ * A part of the kernel: see cast_kernel.h.
+ */
+#ifndef GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
+#define GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
+
+#include "render/light/light_constants.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/cast_fetch.h"
+#include "render/raycast/cpu/cast_light.h"
+#include "render/raycast/cpu/cast_rays.h"
+#include "render/raycast/shared/cast_constants.h"
+
+SIMD void set_up_view(const struct gz_cast *cast, int step, const struct rays *rays,
+		      struct view *view)
+{
+	vf length2 = vf_set(1e-12F); /* where eye and light are opposite there is no half */
+	for (int axis = 0; axis < 3; axis++) {
+		const float world_per_step = cast->world_per_voxel[axis] / cast->step[step];
+		view->eye[axis] = rays->delta[axis] * vf_set(-world_per_step);
+		view->half[axis] = view->eye[axis] + vf_set(cast->light.towards[axis]);
+		length2 = vf_fma(view->half[axis], view->half[axis], length2);
+	}
+	const vf inverse = vf_set(1) / vf_sqrt(length2);
+	for (int axis = 0; axis < 3; axis++)
+		view->half[axis] = view->half[axis] * inverse;
+}
+
+/* log2 of x > 0, to 2e-7: x = 2^whole * m with m around 1, and log m = 2 artanh((m - 1) / (m + 1))
+ * by its series, to the 9th power. */
+SIMD vf log2_positive(vf x)
+{
+	const int32_t root_half = 0x3F3504F3; /* bits of sqrt(1/2), the least m */
+	const vi bits = vi_add(vi_bits(x), vi_set(0x3F800000 - root_half));
+	const vf whole = vf_from_i(vi_add(vi_shift_right(bits, 23), vi_set(-127)));
+	const vf m = vf_bits(vi_add(vi_and(bits, vi_set(0x7FFFFF)), vi_set(root_half)));
+	const vf z = (m - vf_set(1)) / (m + vf_set(1));
+	const vf z2 = z * z;
+	vf p = vf_set(1.0F / 9);
+	p = vf_fma(p, z2, vf_set(1.0F / 7));
+	p = vf_fma(p, z2, vf_set(1.0F / 5));
+	p = vf_fma(p, z2, vf_set(1.0F / 3));
+	p = vf_fma(p, z2, vf_set(1));
+	return vf_fma(p * z, vf_set(2.88539008177793F), whole); /* 2 / ln 2 */
+}
+
+/* Of a and b, unit vectors or 0. */
+SIMD vf dot(const vf a[3], const vf b[3])
+{
+	return vf_fma(a[2], b[2], vf_fma(a[1], b[1], a[0] * b[0]));
+}
+
+SIMD vf clamp(vf x, vf least, vf greatest)
+{
+	return vf_min(vf_max(x, least), greatest);
+}
+
+/* The gradient's differences at places counted from the first datum, by two samples along each
+ * axis. */
+SIMD void difference_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const vf at[3], vm mask, vf difference[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		vf side[2];
+		for (int i = 0; i < 2; i++) {
+			vf there[3] = { at[0], at[1], at[2] };
+			there[axis] = there[axis] + vf_set(i ? 1.0F : -1.0F);
+			side[i] = nearest ? sample_nearest(cast, type, there, mask)
+					  : sample_trilinear(cast, type, there, mask);
+		}
+		difference[axis] = side[1] - side[0];
+	}
+}
+
+/* Four voxels of a row, beginning before the index. */
+SIMD void load_four(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask,
+		    vf row[4])
+{
+	const vi first = vi_add(index, vi_set(-1));
+	if (type == GZ_VOXEL_U8) {
+		const vi four = vi_gather(cast->voxels, first, 1, mask);
+		row[0] = vf_from_i(vi_and(four, vi_set(0xFF)));
+		row[1] = vf_from_i(vi_and(vi_shift_right(four, 8), vi_set(0xFF)));
+		row[2] = vf_from_i(vi_and(vi_shift_right(four, 16), vi_set(0xFF)));
+		row[3] = vf_from_i(vi_shift_right(four, 24));
+	} else {
+		load_pair(cast, type, first, mask, &row[0], &row[1]);
+		load_pair(cast, type, vi_add(index, vi_set(1)), mask, &row[2], &row[3]);
+	}
+}
+
+/* The same trilinear, where all that is needed lies within the data: samples a voxel apart share
+ * most of their voxels. */
+SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
+			    vm mask, vf difference[3])
+{
+	vf share[3], value[4], along[4];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
+	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
+	const vi down_y = vi_set(-cast->stride[1]), down_z = vi_set(-cast->stride[2]);
+	const vi first = vi_add(index[0], vi_add(vi_mul(index[1], up_y), vi_mul(index[2], up_z)));
+	const vi rows[4] = { first, vi_add(first, up_y), vi_add(first, up_z),
+			     vi_add(vi_add(first, up_y), up_z) };
+	for (int i = 0; i < 4; i++) { /* bit 0: y, bit 1: z */
+		vf four[4];
+		load_four(cast, type, rows[i], mask, four);
+		value[i] = mix(four[1], four[2], share[0]);
+		along[i] = mix(four[2], four[3], share[0]) - mix(four[0], four[1], share[0]);
+	}
+	vf across[2], before[2], behind[2];
+	for (int i = 0; i < 2; i++) {
+		const vf low = load_row(cast, type, vi_add(rows[2 * i], down_y), mask, share[0]);
+		const vf high = load_row(cast, type, vi_add(rows[2 * i + 1], up_y), mask, share[0]);
+		across[i] =
+			mix(value[2 * i + 1], high, share[1]) - mix(low, value[2 * i], share[1]);
+		before[i] = load_row(cast, type, vi_add(rows[i], down_z), mask, share[0]);
+		behind[i] = load_row(cast, type, vi_add(rows[i + 2], up_z), mask, share[0]);
+	}
+	const vf lower = mix(value[0], value[1], share[1]);
+	const vf upper = mix(value[2], value[3], share[1]);
+	difference[0] =
+		mix(mix(along[0], along[1], share[1]), mix(along[2], along[3], share[1]), share[2]);
+	difference[1] = mix(across[0], across[1], share[2]);
+	difference[2] = mix(upper, mix(behind[0], behind[1], share[1]), share[2]) -
+			mix(mix(before[0], before[1], share[1]), lower, share[2]);
+}
+
+/* The gradient at places counted from the first datum. */
+SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			const vf at[3], vm mask, vf gradient[3])
+{
+	vm outside = vm_but(mask, mask); /* less than a voxel, and rounding, from the last datum */
+	for (int axis = 0; axis < 3; axis++)
+		outside =
+			vm_or(outside, vm_or(vf_less(at[axis], vf_set(1)),
+					     vf_less(vf_set(cast->dims[axis] - 2.01F), at[axis])));
+	/* The two round differently, so that which one a ray takes must not depend on its
+	 * neighbours.
+	 */
+	const vm inside = vm_but(mask, outside);
+	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
+	if (by_voxels)
+		difference_voxels(cast, type, at, inside, gradient);
+	if (!by_voxels || vm_any(vm_and(mask, outside))) {
+		vf samples[3];
+		difference_samples(cast, type, nearest, at, mask, samples);
+		for (int axis = 0; axis < 3; axis++)
+			gradient[axis] = by_voxels
+						 ? vf_select(outside, samples[axis], gradient[axis])
+						 : samples[axis];
+	}
+	for (int axis = 0; axis < 3; axis++)
+		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
+}
+
+/* What lies around, at places counted from the first datum: trilinear in the grid of occlusion. */
+SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mask)
+{
+	vf share[3];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const vf place = vf_fma(at[axis], vf_set(light->cell_scale[axis]),
+					vf_set(light->cell_bias[axis]));
+		const vf inside = clamp(place, vf_set(0), vf_set(light->cell_greatest[axis]));
+		index[axis] = vi_min(vi_trunc(inside), vi_set(light->cell_last[axis]));
+		share[axis] = inside - vf_from_i(index[axis]);
+	}
+	const vi up_y = vi_set(light->cell_stride[1]), up_z = vi_set(light->cell_stride[2]);
+	const vi first = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
+	vf rows[4];
+	for (int i = 0; i < 4; i++) {
+		vi row = first;
+		row = i & 1 ? vi_add(row, up_y) : row;
+		row = i & 2 ? vi_add(row, up_z) : row;
+		const vi pair = vi_gather(light->cells, row, 2, mask);
+		rows[i] = mix(vf_from_i(vi_and(pair, vi_set(0xFFFF))),
+			      vf_from_i(vi_shift_right(pair, 16)), share[0]);
+	}
+	const vf filled =
+		mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+	return clamp(vf_fma(filled, vf_set(2.0F / 65535), vf_set(-1)), vf_set(0), vf_set(1));
+}
+
+/* By what to multiply a colour, and how much white to add to it. */
+struct shine {
+	vf factor, white;
+};
+
+SIMD struct shine find_shine(const struct gz_cast_light *light, const struct view *view,
+			     const vf normal[3], vf occlusion)
+{
+	const vf facing = vf_set(1 / GZ_LIGHT_FACING);
+	const vf towards[3] = { vf_set(light->towards[0]), vf_set(light->towards[1]),
+				vf_set(light->towards[2]) };
+	const vf side = clamp(dot(normal, view->eye) * facing, vf_set(-1), vf_set(1));
+	const vf diffuse = vf_max(side * dot(normal, towards), vf_set(0));
+	const vf cosine = clamp(vf_abs(dot(normal, view->half)), vf_set(1e-12F), vf_set(1));
+	const vf gloss = exp2_negative(vf_set(light->shininess) * log2_positive(cosine)) *
+			 vf_min(diffuse * facing, vf_set(1));
+	const vf ambient = vf_set(light->ambient) * (vf_set(1) - occlusion);
+	return (struct shine) { vf_fma(diffuse, vf_set(light->diffuse), ambient),
+				gloss * vf_set(light->specular) };
+}
+
+/* A channel of a colour, from 0 to full. */
+SIMD vf shade_channel(vf colour, float full, const struct shine *shine, vf weight)
+{
+	const vf lit =
+		vf_min(vf_fma(colour, shine->factor, shine->white * vf_set(full)), vf_set(full));
+	return vf_fma(weight, lit - colour, colour);
+}
+
+/* Light a colour at k. Not part of the loop around it: called for what shows, which is seldom, and
+ * one for all voxel types is a twelfth of the code. */
+static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
+						     enum gz_voxel_type type, int nearest,
+						     const struct rays *rays, vf k, vm mask,
+						     struct colour colour)
+{
+	vf at[3], gradient[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	find_gradient(cast, type, nearest, at, mask, gradient);
+	const vf length2 = dot(gradient, gradient);
+	const vf weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
+	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
+	for (int axis = 0; axis < 3; axis++)
+		gradient[axis] = gradient[axis] * inverse;
+	vf occlusion = vf_set(0);
+	if (cast->light.cells)
+		occlusion = find_occlusion(&cast->light, at, mask) * vf_set(cast->light.occlusion);
+	const struct shine shine = find_shine(&cast->light, rays->view, gradient, occlusion);
+	return (struct colour) {
+		shade_channel(colour.red, 2047, &shine, weight),
+		shade_channel(colour.green, 2047, &shine, weight),
+		shade_channel(colour.blue, 1023, &shine, weight),
+	};
+}
+
+/* Add the colour of what lies at k, lit where there is light. */
+SIMD void composite_at(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+		       const struct rays *rays, vf k, vi packed, vf opacity, vm mask,
+		       struct light *light)
+{
+	struct colour colour = unpack_colour(packed);
+	if (rays->view) {
+		const vm visible = vm_and(mask, vf_less(vf_set(0), opacity));
+		if (!vm_any(visible))
+			return;
+		colour = shade(cast, type, nearest, rays, k, visible, colour);
+	}
+	composite_colour(colour, opacity, mask, light);
+}
+
+#endif

@@ -1,0 +1,327 @@
+/*
+ * Marching side by side: all rays of a tile at the same distance from the eye, so that a block of
+ * voxels serves them all. Distances are counted in levels, samples from the first of all rays on;
+ * which levels show something is asked for the tile as a whole, for sixteen at a time, and those
+ * that do are listed before any is sampled. Where one ray's cell shows something, all take their
+ * samples: in an empty cell they have no opacity.
+ * A part of the kernel, for sets with blocks: see cast_kernel.h.
+ */
+#ifndef GZ_RENDER_RAYCAST_CPU_CAST_TOGETHER_H
+#define GZ_RENDER_RAYCAST_CPU_CAST_TOGETHER_H
+
+#include "render/raycast/cpu/cast_block.h"
+#include "render/raycast/cpu/cast_fine.h"
+#include "render/raycast/cpu/cast_look_up.h"
+#include "render/raycast/cpu/cast_settle.h"
+#include <math.h>
+
+/* How far apart, voxels, the rays of a tile may be to go side by side. Chosen by measuring: up to 2
+ * a block holds them all wherever they are, at 3 by luck alone, and single loads serve the rest. */
+#define TOGETHER_SPREAD 2.5F
+/* The same for a wide block, along x and across. Rays that far apart gain more from a block, so
+ * that one which holds them at the near side of the volume alone pays too. */
+#define TOGETHER_SPREAD_WIDE   7.0F
+#define TOGETHER_SPREAD_ACROSS 3.5F
+/* How much farther than it seems a ray may be from where it should be: rounding, voxels. */
+#define TOGETHER_SLACK (1.0F / 32)
+
+/* Levels that are listed at a time. Chosen: a stretch is seldom longer. */
+enum { LEVELS_LISTED = 64 };
+
+/* The box round all rays of a tile, over the levels: corners go straight, those of the rays are
+ * never outside. x, y, z and 0, counted from the first datum. */
+struct beam {
+	__m128 low, high;           /* at level 0 */
+	__m128 low_step, high_step; /* from one level to the next */
+	float spread;               /* the longest edge anywhere, voxels */
+	float spread_x, spread_yz;  /* the longest along x, and across */
+	int grid;                   /* of the fine cells that are at least as long */
+	float levels_per_voxel;     /* of the corner and axis that goes fastest */
+	vf first;                   /* the k of level 0 */
+	float count;                /* levels */
+};
+
+/* Sample k of level 0: the first of the ray that has its own first, and those of the others that
+ * are level with it, which may lie before they come to the box. */
+SIMD vf level_start(const struct rays *rays)
+{
+	const float nearest = _mm512_mask_reduce_min_ps(rays->hit, rays->zero + rays->first);
+	return vf_set(0.5F) + _mm512_roundscale_ps(vf_set(nearest) - rays->zero,
+						   _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+}
+
+/* The box round the places of k. */
+SIMD void beam_corners(const struct rays *rays, vf k, __m128 *low, __m128 *high)
+{
+	float least[3], most[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const vf at = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		least[axis] = _mm512_mask_reduce_min_ps(rays->hit, at);
+		most[axis] = _mm512_mask_reduce_max_ps(rays->hit, at);
+	}
+	const __m128 slack = _mm_set1_ps(TOGETHER_SLACK);
+	*low = _mm_sub_ps(_mm_setr_ps(least[0], least[1], least[2], 0), slack);
+	*high = _mm_add_ps(_mm_setr_ps(most[0], most[1], most[2], 0), slack);
+}
+
+SIMD float greatest_of_four(__m128 x)
+{
+	const __m128 two = _mm_max_ps(x, _mm_movehl_ps(x, x));
+	return _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)));
+}
+
+SIMD __m128 absolute_of_four(__m128 x)
+{
+	return _mm_andnot_ps(_mm_set1_ps(-0.0F), x);
+}
+
+/* Each ray goes straight and evenly, so that the least of all over the levels is bent one way only
+ * and lies beyond the line between its ends. */
+SIMD struct beam beam_of(const struct rays *rays)
+{
+	struct beam beam = { .first = level_start(rays) };
+	beam.count = ceilf(_mm512_mask_reduce_max_ps(rays->hit, rays->end - beam.first));
+	__m128 low, high;
+	beam_corners(rays, beam.first, &beam.low, &beam.high);
+	beam_corners(rays, beam.first + vf_set(beam.count), &low, &high);
+	const __m128 share = _mm_set1_ps(1 / fmaxf(beam.count, 1));
+	beam.low_step = _mm_mul_ps(_mm_sub_ps(low, beam.low), share);
+	beam.high_step = _mm_mul_ps(_mm_sub_ps(high, beam.high), share);
+	const __m128 edges = _mm_max_ps(_mm_sub_ps(beam.high, beam.low), _mm_sub_ps(high, low));
+	beam.spread_x = edges[0];
+	beam.spread_yz = fmaxf(edges[1], edges[2]);
+	beam.spread = fmaxf(beam.spread_x, beam.spread_yz);
+	while (beam.grid < GZ_FINE_GRIDS && beam.spread > (float)(GZ_FINE_EDGE << beam.grid))
+		beam.grid++;
+	beam.levels_per_voxel = 1 / greatest_of_four(_mm_max_ps(absolute_of_four(beam.low_step),
+								absolute_of_four(beam.high_step)));
+	return beam;
+}
+
+/* The cells of a corner along one axis at several levels. */
+SIMD vi beam_cells(const struct gz_cast_grid *grid, const __m128 *corner, const __m128 *step,
+		   int axis, vf level)
+{
+	const vf place = vf_fma(level, vf_set((*step)[axis] * grid->cells_per_voxel),
+				vf_set((*corner)[axis] * grid->cells_per_voxel));
+	return vi_min(vi_trunc(vf_max(place, vf_set(0))), vi_set((int32_t)grid->last[axis]));
+}
+
+/* Which of sixteen levels show something in any cell that the beam's box touches, which is no
+ * longer than a cell. */
+SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level)
+{
+	const struct gz_cast_grid *grid = &cast->fine[beam->grid];
+	vi index = vi_set(0), axes = vi_set(0);
+	for (int axis = 0; axis < 3; axis++) {
+		const vi cell = beam_cells(grid, &beam->low, &beam->low_step, axis, level);
+		const vi last = beam_cells(grid, &beam->high, &beam->high_step, axis, level);
+		axes = _mm512_mask_or_epi32(axes, _mm512_cmplt_epi32_mask(cell, last), axes,
+					    vi_set(1 << axis));
+		index = vi_add(index, vi_mul(cell, vi_set(grid->stride[axis])));
+	}
+	const vm asked = vf_less(level, vf_set(beam->count));
+	const vi flags = vi_gather(grid->flags, index, 1, asked);
+	return _mm512_mask_test_epi32_mask(asked, _mm512_srlv_epi32(flags, axes), vi_set(1));
+}
+
+/* How many levels behind one that shows nothing are empty too, by the macrocells. */
+SIMD float beam_empty(const struct gz_cast *cast, const struct beam *beam, float level)
+{
+	const __m128 low = _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low);
+	const __m128 last =
+		_mm_setr_ps(cast->cell_last[0], cast->cell_last[1], cast->cell_last[2], 0);
+	const __m128 place = _mm_mul_ps(_mm_add_ps(low, _mm_set1_ps(0.5F)),
+					_mm_set1_ps(1.0F / GZ_MACROCELL_EDGE));
+	const __m128i cell =
+		_mm_cvttps_epi32(_mm_min_ps(_mm_max_ps(place, _mm_setzero_ps()), last));
+	const int64_t index = _mm_cvtsi128_si32(cell) +
+			      (int64_t)_mm_extract_epi32(cell, 1) * cast->cell_stride[1] +
+			      (int64_t)_mm_extract_epi32(cell, 2) * cast->cell_stride[2];
+	/* Cells less than this away are empty; the low corner is anywhere in its own. */
+	const int away = cast->reach[index] - GZ_REACH_BORDER;
+	const float free = (float)((away - 1) * GZ_MACROCELL_EDGE) - beam->spread;
+	return fmaxf(floorf(free * beam->levels_per_voxel), 0);
+}
+
+/* List levels that show something, from `from` on, which moves on; none at the end. */
+SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float *from,
+		     float levels[LEVELS_LISTED + SIMD_LANES])
+{
+	const vf sixteen = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+	int count = 0;
+	while (*from < beam->count && count < LEVELS_LISTED) {
+		const vf level = vf_set(*from) + sixteen;
+		const vm shows = beam_shows(cast, beam, level);
+		*from += SIMD_LANES;
+		if (shows) {
+			vf_store(levels + count, _mm512_maskz_compress_ps(shows, level));
+			count += (int)vm_count(shows);
+		} else {
+			*from += beam_empty(cast, beam, *from - 1);
+		}
+	}
+	return count;
+}
+
+/* Load the block of a level. */
+SIMD void beam_block(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
+		     const struct beam *beam, float level, struct block *block)
+{
+	block_take(cast, type, wide, _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low),
+		   block);
+}
+
+/* The values at k of the lanes of mask, by the block if it holds them. */
+SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
+		       const struct rays *rays, vf k, vm needed, const struct block *block)
+{
+	vf at[3], places[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	if (__builtin_expect(!block_places(cast, block, wide, at, needed, places), 0))
+		return fetch_sample(cast, type, 0, rays, k, needed);
+	return block_sample(block, type, wide, places);
+}
+
+/* Take the samples of levels. Of one sample to the next, the block of voxels is fetched while the
+ * one before it is interpolated, whose colour is looked up while the next is: a processor that runs
+ * ahead of a dozen loads, but not of two samples, has something to do meanwhile. */
+SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
+			    const struct look_up *look_up, int step, const struct rays *rays,
+			    const struct beam *beam, const float *levels, int count, vm *alive,
+			    struct waiting *before, struct light *light)
+{
+	uint32_t samples = 0;
+	struct block block, next;
+	beam_block(cast, type, wide, beam, levels[0], &block);
+	for (int i = 0; i < count && vm_any(*alive); i++) {
+		beam_block(cast, type, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
+		const vf k = beam->first + vf_set(levels[i]);
+		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
+		const vf value =
+			fetch_together(cast, type, wide, rays, k, vm_and(within, *alive), &block);
+		samples += settle(cast, type, 0, step, rays, before, alive, light);
+		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					     within };
+		block = next;
+	}
+	return samples;
+}
+
+/* Levels where rays have samples that show something. */
+struct showing {
+	int count;
+	float level[LEVELS_LISTED + SIMD_LANES];
+	vm rays[LEVELS_LISTED + SIMD_LANES];
+	/* of each ray, the voxel that is fetched first; 0, which is at hand, where none is */
+	int32_t first[LEVELS_LISTED + SIMD_LANES][SIMD_LANES];
+};
+
+/* How many levels before its turn the voxels of one are sent for. Chosen by measuring. */
+enum { LEVELS_AHEAD = 2 };
+
+/* Send for the voxels that the rays of a level will fetch. */
+SIMD void send_for(const struct gz_cast *cast, enum gz_voxel_type type, const int32_t *first)
+{
+	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
+	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
+	const char *voxels = cast->voxels;
+	for (int lane = 0; lane < SIMD_LANES; lane++) {
+		const char *row = voxels + first[lane] * bytes;
+		_mm_prefetch(row, _MM_HINT_T0);
+		_mm_prefetch(row + up_y * bytes, _MM_HINT_T0);
+		_mm_prefetch(row + up_z * bytes, _MM_HINT_T0);
+		_mm_prefetch(row + (up_y + up_z) * bytes, _MM_HINT_T0);
+	}
+}
+
+SIMD void find_showing(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
+		       const struct beam *beam, const float *levels, int count,
+		       struct showing *showing)
+{
+	int kept = 0;
+	for (int i = 0; i < count; i++) {
+		const vf k = beam->first + vf_set(levels[i]);
+		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+		const vm shows = fine_shows(cast, at, within);
+		showing->level[kept] = levels[i];
+		showing->rays[kept] = shows;
+		_mm512_storeu_si512(showing->first[kept],
+				    _mm512_maskz_mov_epi32(shows, first_voxel(cast, at)));
+		kept += vm_any(shows);
+	}
+	showing->count = kept;
+	for (int i = 0; i < kept && i < LEVELS_AHEAD; i++)
+		send_for(cast, type, showing->first[i]);
+}
+
+/* Take the samples of levels where rays are too far apart for a block: those alone that show
+ * something. */
+SIMD uint32_t take_scattered(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const struct look_up *look_up, int step, const struct rays *rays,
+			     const struct beam *beam, const float *levels, int count, vm *alive,
+			     struct waiting *before, struct light *light)
+{
+	struct showing showing;
+	uint32_t samples = 0;
+	find_showing(cast, type, rays, beam, levels, count, &showing);
+	for (int i = 0; i < showing.count && vm_any(*alive); i++) {
+		const vf k = beam->first + vf_set(showing.level[i]);
+		if (i + LEVELS_AHEAD < showing.count)
+			send_for(cast, type, showing.first[i + LEVELS_AHEAD]);
+		const vf value =
+			fetch_sample(cast, type, nearest, rays, k, vm_and(showing.rays[i], *alive));
+		samples += settle(cast, type, nearest, step, rays, before, alive, light);
+		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+					     showing.rays[i] };
+	}
+	return samples;
+}
+
+/* How the rays of a tile get their voxels: by blocks, by wide blocks, each its own. */
+enum company { SIDE_BY_SIDE, IN_A_ROW, SCATTERED };
+
+SIMD enum company company_of(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			     const struct beam *beam)
+{
+	if (nearest)
+		return SCATTERED;
+	if (beam->spread <= TOGETHER_SPREAD && blocks_fit(cast, type, 0))
+		return SIDE_BY_SIDE;
+	return beam->spread_x <= TOGETHER_SPREAD_WIDE &&
+			       beam->spread_yz <= TOGETHER_SPREAD_ACROSS &&
+			       blocks_fit(cast, type, 1)
+		       ? IN_A_ROW
+		       : SCATTERED;
+}
+
+/* All whole segments. */
+SIMD uint32_t march_beam(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+			 const struct look_up *look_up, int step, const struct rays *rays,
+			 const struct beam *beam, vm alive, struct light *light)
+{
+	float levels[LEVELS_LISTED + SIMD_LANES];
+	struct waiting before = none_waiting();
+	const enum company company = company_of(cast, type, nearest, beam);
+	uint32_t samples = 0;
+	float from = 0;
+	int count;
+	while (vm_any(alive) && (count = list_levels(cast, beam, &from, levels)) > 0) {
+		if (company == SIDE_BY_SIDE)
+			samples += take_together(cast, type, 0, look_up, step, rays, beam, levels,
+						 count, &alive, &before, light);
+		else if (type != GZ_VOXEL_F32 && company == IN_A_ROW)
+			samples += take_together(cast, type, 1, look_up, step, rays, beam, levels,
+						 count, &alive, &before, light);
+		else
+			samples += take_scattered(cast, type, nearest, look_up, step, rays, beam,
+						  levels, count, &alive, &before, light);
+	}
+	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
+}
+
+#endif

@@ -1,0 +1,526 @@
+#include "render/raycast/cpu/cpu_raycaster.h"
+
+#include <math.h>
+#include <stdalign.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/workers.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/fine_cells.h"
+#include "render/raycast/shared/brick_stream.h"
+#include "render/raycast/shared/detail.h"
+#include "render/raycast/shared/lighting.h"
+#include "render/raycast/shared/preintegration.h"
+#include "render/raycast/shared/voxel_rays.h"
+#include "render/reconstruct/cpu/lattice.h"
+#include "render/reconstruct/cpu/reconstruct.h"
+
+#define GZ_LOG_MODULE "cpu"
+
+/* Tiles one thread takes at a time. Chosen: enough to hide the counter, few enough to balance the
+ * ends. */
+enum { TILES_A_PART = 16 };
+
+/* A worker's own count, a cache line apart from the next. */
+struct sample_count {
+	alignas(64) uint64_t samples;
+};
+
+struct cpu_raycaster {
+	struct gz_raycaster base;
+	struct gz_workers *workers;
+	const struct gz_cast_kernels *kernels;
+	const struct gz_volume *volume; /* borrowed */
+	struct gz_detail detail;
+	struct gz_fine_cells fine[GZ_LEVELS_MAX]; /* of each level that is in memory */
+	struct gz_brick_stream stream;            /* of a volume of bricks */
+	size_t bricks_coming;                     /* of the last picture */
+	bool wait_for_bricks;
+	bool has_transfer;
+	struct gz_transfer_table table;
+	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
+	double step_length[GZ_PLAN_STEPS_MAX];
+	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
+	struct gz_preintegration preintegration;
+	struct gz_lighting lighting;
+	struct gz_lattices lattices;
+	struct sample_count counts[GZ_WORKERS_MAX];
+	char description[64];
+};
+
+struct tile_offsets {
+	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS];
+};
+
+/* What the workers are given. */
+struct cast_job {
+	struct gz_cast casts[GZ_LEVELS_MAX]; /* of each level of detail */
+	int cast_count;
+	const struct gz_detail *detail;
+	const struct gz_ray_params *rays;
+	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
+			       */
+	const struct gz_plan *plan;
+	struct gz_lattices *lattices;
+	gz_cast_tile_function *tile;
+	struct sample_count *counts;
+	struct tile_offsets offsets[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
+	int jitter; /* seed */
+};
+
+static struct cpu_raycaster *cpu_of(struct gz_raycaster *raycaster)
+{
+	return (struct cpu_raycaster *)raycaster;
+}
+
+static void free_fine_cells(struct cpu_raycaster *cpu)
+{
+	for (int i = 0; i < GZ_LEVELS_MAX; i++)
+		gz_fine_cells_free(&cpu->fine[i]);
+}
+
+static void cpu_destroy(struct gz_raycaster *raycaster)
+{
+	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	gz_workers_destroy(&cpu->workers);
+	gz_detail_free(&cpu->detail);
+	free_fine_cells(cpu);
+	gz_brick_stream_free(&cpu->stream);
+	gz_lighting_free(&cpu->lighting);
+	gz_lattices_free(&cpu->lattices);
+	free(cpu->step_table);
+	gz_preintegration_free(&cpu->preintegration);
+	free(cpu);
+}
+
+enum gz_result gz_cpu_raycaster_check(const struct gz_backend_params *params,
+				      const struct gz_log *log)
+{
+	if (gz_cast_kernels_find(params->simd))
+		return GZ_OK;
+	gz_err(log, "this processor does not run '%s': take auto, portable, avx2 or avx512",
+	       params->simd);
+	return GZ_ERR_UNSUPPORTED;
+}
+
+static enum gz_result start(struct cpu_raycaster *cpu, const struct gz_backend_params *params)
+{
+	enum gz_result result = gz_cpu_raycaster_check(params, cpu->base.log);
+	if (result != GZ_OK)
+		return result;
+	cpu->kernels = gz_cast_kernels_find(params->simd);
+	result = gz_workers_create(params->threads, &cpu->workers);
+	if (result != GZ_OK) {
+		gz_err(cpu->base.log, "cannot start %d threads: %s", params->threads,
+		       gz_result_text(result));
+		return result;
+	}
+	snprintf(cpu->description, sizeof cpu->description, "%s, %d threads", cpu->kernels->name,
+		 gz_workers_count(cpu->workers));
+	return GZ_OK;
+}
+
+static enum gz_result cpu_create(const struct gz_backend_params *params, const struct gz_log *log,
+				 struct gz_raycaster **out_raycaster)
+{
+	/* The counters are aligned, so the struct is. */
+	struct cpu_raycaster *cpu = aligned_alloc(alignof(struct cpu_raycaster), sizeof *cpu);
+	if (!cpu)
+		return GZ_ERR_NO_MEM;
+	memset(cpu, 0, sizeof *cpu);
+	cpu->base = (struct gz_raycaster) { .ops = &gz_cpu_raycaster_ops, .log = log };
+	cpu->wait_for_bricks = params->wait_for_bricks;
+	cpu->step_table = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->step_table);
+	const enum gz_result result = cpu->step_table ? start(cpu, params) : GZ_ERR_NO_MEM;
+	if (result != GZ_OK) {
+		cpu_destroy(&cpu->base);
+		return result;
+	}
+	*out_raycaster = &cpu->base;
+	return GZ_OK;
+}
+
+static enum gz_result cpu_set_volume(struct gz_raycaster *raycaster, const struct gz_volume *volume)
+{
+	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	cpu->volume = NULL;
+	cpu->has_transfer = false;
+	gz_brick_stream_forget(&cpu->stream);
+	/* Gathers take 32-bit signed indices. */
+	if (!volume->bricks && gz_volume_voxel_count(volume) > INT32_MAX) {
+		gz_err(raycaster->log,
+		       "a volume of %d x %d x %d voxels in memory is beyond the cpu backend's "
+		       "2^31; "
+		       "write it as bricks (gazeview --write-volume) and show these",
+		       volume->dims[0], volume->dims[1], volume->dims[2]);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	enum gz_result result = gz_detail_start(&cpu->detail, volume);
+	free_fine_cells(cpu);
+	if (result == GZ_OK && !volume->bricks)
+		result = gz_fine_cells_build(volume, cpu->workers, &cpu->fine[0]);
+	if (result != GZ_OK) {
+		gz_err(raycaster->log, "no memory for the macrocells of the volume");
+		return result;
+	}
+	cpu->volume = volume;
+	return GZ_OK;
+}
+
+static void classify_fine_cells(struct cpu_raycaster *cpu, int level)
+{
+	if (cpu->fine[level].least)
+		gz_fine_cells_classify(&cpu->fine[level], &cpu->detail.cells[level], &cpu->table,
+				       cpu->workers);
+}
+
+/* The levels of detail that a frame asks for. Without memory for fine cells the kernels do with
+ * macrocells. */
+static void make_levels(struct cpu_raycaster *cpu)
+{
+	gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
+	for (int i = 1; i < cpu->detail.levels.count && !cpu->volume->bricks; i++)
+		if (!cpu->fine[i].least &&
+		    gz_fine_cells_build(&cpu->detail.levels.level[i].volume, cpu->workers,
+					&cpu->fine[i]) == GZ_OK)
+			classify_fine_cells(cpu, i);
+}
+
+static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
+				       const struct gz_transfer *transfer)
+{
+	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	if (!cpu->volume)
+		return GZ_ERR_INVAL;
+	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
+	gz_detail_classify(&cpu->detail, &cpu->table);
+	for (int i = 0; i < cpu->detail.levels.count; i++)
+		classify_fine_cells(cpu, i);
+	gz_brick_stream_forget(&cpu->stream);
+	memset(cpu->step_length, 0, sizeof cpu->step_length);
+	gz_preintegration_forget(&cpu->preintegration);
+	gz_lighting_forget(&cpu->lighting);
+	cpu->has_transfer = true;
+	return GZ_OK;
+}
+
+/* A level of detail, in its own voxel coordinates. */
+static void fill_volume(const struct cpu_raycaster *cpu, int index, const struct gz_clip_box *clip,
+			struct gz_cast *cast)
+{
+	const struct gz_level *level = &cpu->detail.levels.level[index];
+	const struct gz_volume *volume = &level->volume;
+	const struct gz_macrocells *cells = &cpu->detail.cells[index];
+	const int32_t strides[3] = {
+		1,
+		volume->dims[0],
+		volume->dims[0] * volume->dims[1],
+	};
+	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
+	double half[3];
+	gz_volume_half_extent(cpu->volume, half);
+	cast->voxels = volume->voxels;
+	cast->reach = cells->reach;
+	for (int axis = 0; axis < 3; axis++) {
+		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
+		cast->box[axis] = (float)box;
+		cast->clip_least[axis] = (float)(clip->least[axis] * box);
+		cast->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
+		cast->dims[axis] = (float)volume->dims[axis];
+		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
+		/* With one voxel there is no neighbour to step to. */
+		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? strides[axis] : 0;
+		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
+		cast->cell_stride[axis] = cell_strides[axis];
+		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box);
+	}
+}
+
+static void fill_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *cast)
+{
+	for (int i = 0; i < GZ_FINE_GRIDS; i++) {
+		const struct gz_fine_grid *from = &cells->grid[i];
+		struct gz_cast_grid *grid = &cast->fine[i];
+		grid->flags = from->flags;
+		grid->cells_per_voxel = 1.0F / (float)(GZ_FINE_EDGE << i);
+		int32_t stride = 1;
+		for (int axis = 0; axis < 3; axis++) {
+			grid->last[axis] = (float)(from->dims[axis] - 1);
+			grid->stride[axis] = stride;
+			stride *= from->dims[axis];
+		}
+	}
+}
+
+static void fill_rays(const struct cpu_raycaster *cpu, int index, const struct gz_ray_frame *rays,
+		      struct gz_cast *cast)
+{
+	const int *factor = cpu->detail.levels.level[index].factor;
+	struct gz_voxel_rays full;
+	gz_voxel_rays_make(cpu->volume, rays, &full);
+	const struct gz_ray_frame *frame = &full.frame;
+	for (int axis = 0; axis < 3; axis++) {
+		cast->origin00[axis] = (float)(frame->origin00[axis] / factor[axis]);
+		cast->origin_dx[axis] = (float)(frame->origin_dx[axis] / factor[axis]);
+		cast->origin_dy[axis] = (float)(frame->origin_dy[axis] / factor[axis]);
+		cast->direction00[axis] = (float)(frame->direction00[axis] / factor[axis]);
+		cast->direction_dx[axis] = (float)(frame->direction_dx[axis] / factor[axis]);
+		cast->direction_dy[axis] = (float)(frame->direction_dy[axis] / factor[axis]);
+	}
+}
+
+static void fill_transfer(struct cpu_raycaster *cpu, const struct gz_plan *plan,
+			  const struct gz_ray_params *rays, struct gz_cast *cast)
+{
+	cast->entry_scale = (float)cpu->table.scale;
+	cast->entry_bias = (float)cpu->table.bias;
+	cast->extinction = cpu->table.entries;
+	for (int i = 0; i < plan->step_count; i++) {
+		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		if (cpu->step_length[i] != length) {
+			gz_transfer_table_step(&cpu->table, length, cpu->step_table[i]);
+			cpu->step_length[i] = length;
+		}
+		cast->step_table[i] = cpu->step_table[i];
+		cast->voxel_lengths[i] = (float)length;
+		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
+	}
+	for (int channel = 0; channel < 3; channel++)
+		cast->background[channel] = (float)rays->background[channel];
+	cast->end_transmittance = gz_ray_end_transmittance(rays);
+}
+
+/* Tables for segments, where rays are integrated by them. After fill_transfer(). */
+static enum gz_result fill_preintegration(struct cpu_raycaster *cpu, const struct gz_plan *plan,
+					  const struct gz_ray_params *rays, struct gz_cast *cast)
+{
+	cast->preintegrated_extinction = NULL;
+	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
+		return GZ_OK;
+	struct gz_preintegration *preintegration = &cpu->preintegration;
+	const enum gz_result result = gz_preintegration_make(
+		preintegration, &cpu->table, cpu->step_length, plan->step_count, cpu->workers);
+	if (result != GZ_OK)
+		return result;
+	cast->preintegrated_extinction = preintegration->extinction;
+	for (int i = 0; i < plan->step_count; i++)
+		cast->preintegrated[i] = preintegration->step[i];
+	return GZ_OK;
+}
+
+/* Where the rays of a tile go, seen from its corner. */
+static void fill_offsets(struct cast_job *job)
+{
+	for (int layer = 0; layer < job->plan->layer_count; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++) {
+			struct tile_offsets *offsets = &job->offsets[layer][pattern];
+			const int spacing = job->plan->layers[layer].spacing;
+			for (int i = 0; i < GZ_TILE_RAYS; i++) {
+				offsets->x[i] = (float)(gz_tile_columns[pattern][i] * spacing);
+				offsets->y[i] = (float)(gz_tile_rows[i] * spacing);
+			}
+		}
+}
+
+/* The rays of a tile, in pixels of the picture that the camera frames. */
+static void fill_tile(const struct cast_job *job, const struct gz_tile *tile,
+		      struct gz_cast_tile *out_rays)
+{
+	const struct tile_offsets *offsets = &job->offsets[tile->layer][tile->pattern];
+	const int x = tile->x - job->plan->view.shift[0], y = tile->y - job->plan->view.shift[1];
+	out_rays->step = tile->step;
+	out_rays->active = gz_plan_tile_active(job->plan, tile);
+	for (int i = 0; i < GZ_TILE_RAYS; i++) {
+		out_rays->x[i] = (float)x + offsets->x[i];
+		out_rays->y[i] = (float)y + offsets->y[i];
+		out_rays->jitter[i] = 0;
+	}
+	for (int i = 0; job->jitter != 0 && i < GZ_TILE_RAYS; i++)
+		out_rays->jitter[i] =
+			gz_ray_jitter((int)out_rays->x[i], (int)out_rays->y[i], job->jitter);
+}
+
+/* Which level of detail a tile takes. */
+static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
+{
+	return gz_detail_choose(job->detail, job->plan, job->rays, job->pixel_lengths, tile->layer,
+				tile->pattern, tile->step);
+}
+
+static int level_of(const void *user, const struct gz_tile *tile)
+{
+	return tile_level(user, tile);
+}
+
+/* Lead a cast of a level of detail to the bricks that are there. */
+static void lead_to_bricks(const struct gz_brick_layout *layout, int level,
+			   const struct gz_brick_view *view, struct gz_cast *cast)
+{
+	struct gz_brick_lookup lookup;
+	gz_brick_lookup_make(layout, level, &lookup);
+	cast->voxels = view->voxels;
+	cast->bricks.table = view->table + lookup.first;
+	memcpy(cast->bricks.stride, lookup.stride, sizeof lookup.stride);
+	memcpy(cast->bricks.last, lookup.last, sizeof lookup.last);
+	memcpy(cast->bricks.scale, lookup.scale, sizeof lookup.scale);
+}
+
+/* Have the bricks that there are, and send for those that the picture lacks. */
+static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_camera *camera,
+				  const struct gz_ray_params *rays, struct cast_job *job)
+{
+	const struct gz_brick_file *file = gz_brick_pool_file(cpu->volume->bricks);
+	const struct gz_brick_stream_frame frame = {
+		.detail = &cpu->detail,
+		.layout = &file->layout,
+		.entries = file->entries,
+		.table = &cpu->table,
+		.plan = job->plan,
+		.key = gz_brick_stream_key_of(camera, rays, job->plan, job->pixel_lengths),
+		.tile_level = job->pixel_lengths > 0 ? level_of : NULL,
+		.user = job,
+	};
+	const enum gz_result result = gz_brick_stream_find(&cpu->stream, &frame);
+	if (result != GZ_OK)
+		return result;
+	struct gz_brick_view view;
+	gz_brick_pool_turn(cpu->volume->bricks, cpu->stream.wants.want, cpu->stream.wants.count,
+			   cpu->wait_for_bricks, &view);
+	cpu->bricks_coming = view.coming;
+	for (int i = 0; i < job->cast_count; i++)
+		lead_to_bricks(&file->layout, cpu->detail.brick_level[i], &view, &job->casts[i]);
+	return GZ_OK;
+}
+
+static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, int worker)
+{
+	struct gz_cast_tile rays;
+	uint32_t pixels[GZ_TILE_RAYS];
+	fill_tile(job, tile, &rays);
+	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
+	gz_lattices_store(job->lattices, job->plan, tile, rays.active, pixels);
+}
+
+static void cast_part(void *user, size_t part, int worker)
+{
+	const struct cast_job *job = user;
+	const size_t from = part * TILES_A_PART;
+	const size_t to = from + TILES_A_PART < job->plan->tile_count ? from + TILES_A_PART
+								      : job->plan->tile_count;
+	for (size_t i = from; i < to; i++)
+		cast_tile(job, &job->plan->tiles[i], worker);
+}
+
+static uint64_t cast_tiles(struct cpu_raycaster *cpu, struct cast_job *job)
+{
+	memset(cpu->counts, 0, sizeof cpu->counts);
+	gz_workers_run(cpu->workers, cast_part, job,
+		       (job->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
+	uint64_t samples = 0;
+	for (int i = 0; i < gz_workers_count(cpu->workers); i++)
+		samples += cpu->counts[i].samples;
+	return samples;
+}
+
+static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_camera *camera,
+				 const struct gz_ray_frame *ray_frame,
+				 const struct gz_ray_params *rays, struct cast_job *job)
+{
+	const double pixel_lengths =
+		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->view.height);
+	const bool coarser = gz_detail_wanted(job->plan, rays, pixel_lengths);
+	if (coarser)
+		make_levels(cpu);
+	job->detail = &cpu->detail;
+	job->rays = rays;
+	job->pixel_lengths = coarser ? pixel_lengths : 0;
+	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
+	const enum gz_result result = fill_preintegration(cpu, job->plan, rays, &job->casts[0]);
+	if (result != GZ_OK) {
+		gz_err(cpu->base.log, "no memory for pre-integrated tables: take sampled");
+		return result;
+	}
+	job->cast_count = coarser ? cpu->detail.levels.count : 1;
+	for (int i = 0; i < job->cast_count; i++) {
+		job->casts[i] = job->casts[0];
+		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
+		fill_fine_cells(&cpu->fine[i], &job->casts[i]);
+		fill_rays(cpu, i, ray_frame, &job->casts[i]);
+		gz_lighting_fill(&cpu->lighting, cpu->volume, cpu->detail.levels.level[i].factor,
+				 &cpu->table, rays, ray_frame, &job->casts[i].light);
+	}
+	return GZ_OK;
+}
+
+static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
+				 const struct gz_ray_params *rays, const struct gz_plan *plan,
+				 struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	if (!cpu->volume || !cpu->has_transfer)
+		return GZ_ERR_INVAL;
+	struct gz_ray_frame ray_frame;
+	enum gz_result result =
+		gz_camera_rays(camera, plan->view.width, plan->view.height, &ray_frame);
+	if (result == GZ_OK)
+		result = gz_image_resize(image, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = gz_lattices_prepare(&cpu->lattices, plan, gz_image_words(image));
+	if (result != GZ_OK)
+		return result;
+
+	const int64_t start_ns = gz_clock_now_ns();
+	result = gz_lighting_prepare(&cpu->lighting, cpu->volume, &cpu->table, rays, cpu->workers,
+				     raycaster->log);
+	if (result != GZ_OK)
+		return result;
+	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
+	const bool rich = rays->shading != GZ_SHADING_NONE ||
+			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
+	const enum gz_cast_variant variant = rich ? GZ_CAST_RICH : GZ_CAST_PLAIN;
+	struct cast_job job = {
+		.plan = plan,
+		.lattices = &cpu->lattices,
+		.tile = cpu->kernels->tile[variant][cpu->volume->type][nearest],
+		.counts = cpu->counts,
+		.jitter = rays->jitter,
+	};
+	result = fill_casts(cpu, camera, &ray_frame, rays, &job);
+	if (result == GZ_OK && cpu->volume->bricks)
+		result = take_bricks(cpu, camera, rays, &job);
+	if (result != GZ_OK)
+		return result;
+	fill_offsets(&job);
+	const uint64_t samples = cast_tiles(cpu, &job);
+	const int64_t cast_ns = gz_clock_now_ns();
+	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,
+		       gz_image_words(image));
+	if (out_stats)
+		*out_stats = (struct gz_frame_stats) {
+			.rays = plan->ray_count,
+			.samples = samples,
+			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
+			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.gpu_ms = NAN,
+			.bricks_coming = cpu->volume->bricks ? cpu->bricks_coming : 0,
+		};
+	return GZ_OK;
+}
+
+static const char *cpu_describe(const struct gz_raycaster *raycaster)
+{
+	return ((const struct cpu_raycaster *)raycaster)->description;
+}
+
+const struct gz_raycaster_ops gz_cpu_raycaster_ops = {
+	.name = "cpu",
+	.create = cpu_create,
+	.set_volume = cpu_set_volume,
+	.set_transfer = cpu_set_transfer,
+	.render = cpu_render,
+	.describe = cpu_describe,
+	.destroy = cpu_destroy,
+};

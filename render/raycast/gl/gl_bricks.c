@@ -1,0 +1,294 @@
+#include "render/raycast/gl/gl_bricks.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include "render/raycast/gl/gl_texels.h"
+
+/* Given to the device for one picture that does not wait, bytes. Chosen: some milliseconds of a
+ * slow bus, and yet all of what is near a new gaze within a few pictures. */
+#define PICTURE_BYTES ((size_t)16 << 20)
+
+/* Bits of a table's entry that a room's place along each axis has, above the level's. */
+enum { PLACE_BITS = 9, PLACE_MAX = 1 << PLACE_BITS };
+
+_Static_assert(GZ_BRICK_LEVEL_BITS + 3 * PLACE_BITS <= 32, "an entry is 32 bits");
+_Static_assert(GZ_BRICK_LEVEL_BITS == GZ_GL_BRICK_LEVEL_BITS &&
+		       GZ_BRICK_LEVELS_MAX == GZ_GL_BRICK_LEVELS &&
+		       GZ_BRICK_EDGE == GZ_GL_BRICK_EDGE &&
+		       GZ_BRICK_STORED_EDGE == GZ_GL_BRICK_STORED_EDGE &&
+		       PLACE_BITS == GZ_GL_BRICK_PLACE_BITS,
+	       "the shaders are told what is so");
+
+static size_t brick_bytes(enum gz_voxel_type type)
+{
+	return GZ_BRICK_VOXELS * gz_voxel_size(type);
+}
+
+/* A block of rooms as near to a cube as the device allows, of about @p count; of no fewer where
+ * that is possible and @p round_up. */
+static void shape_atlas(size_t count, bool round_up, int most_along, int out_along[3])
+{
+	const int side = (int)floor(cbrt((double)count) + 1e-6);
+	out_along[0] = side < 1 ? 1 : side > most_along ? most_along : side;
+	size_t left = count / (size_t)out_along[0];
+	const int next = (int)floor(sqrt((double)left) + 1e-6);
+	out_along[1] = next < 1 ? 1 : next > most_along ? most_along : next;
+	const size_t layer = (size_t)out_along[0] * (size_t)out_along[1];
+	left = round_up ? (count + layer - 1) / layer : count / layer;
+	out_along[2] = left < 1 ? 1 : left > (size_t)most_along ? most_along : (int)left;
+}
+
+static size_t room_count(const int along[3])
+{
+	return (size_t)along[0] * (size_t)along[1] * (size_t)along[2];
+}
+
+static enum gz_result try_atlas(struct gz_gl_bricks *bricks, const struct gz_gl_device *device)
+{
+	const int edge = GZ_BRICK_STORED_EDGE;
+	bricks->atlas = gz_gl_texture(GL_TEXTURE_3D);
+	glTexStorage3D(GL_TEXTURE_3D, 1,
+		       gz_gl_texel_format(GZ_GL_TEXELS_BRICKS, bricks->type)->internal,
+		       bricks->along[0] * edge, bricks->along[1] * edge, bricks->along[2] * edge);
+	glBindTexture(GL_TEXTURE_3D, 0);
+	const enum gz_result result = gz_gl_device_errors(device);
+	if (result != GZ_OK) {
+		glDeleteTextures(1, &bricks->atlas);
+		bricks->atlas = 0;
+	}
+	return result;
+}
+
+/* Room for all, or for half as many until the device has it. */
+static enum gz_result make_atlas(struct gz_gl_bricks *bricks, const struct gz_gl_device *device)
+{
+	const struct gz_brick_layout *layout = bricks->source.layout;
+	const struct gz_brick_level *last = &layout->levels[layout->level_count - 1];
+	const size_t least = layout->brick_count - last->first;
+	const size_t all = layout->brick_count < bricks->source.rooms_useful
+				   ? layout->brick_count
+				   : bricks->source.rooms_useful;
+	const size_t affordable = (size_t)device->memory_max / brick_bytes(bricks->type);
+	size_t count = affordable < all ? affordable : all;
+	int most_along = device->volume_edge_max / GZ_BRICK_STORED_EDGE;
+	most_along = most_along < PLACE_MAX ? most_along : PLACE_MAX;
+	enum gz_result result = GZ_ERR_NO_MEM;
+	for (; count >= least && most_along > 0 && result != GZ_OK; count /= 2) {
+		shape_atlas(count, true, most_along, bricks->along);
+		if (count < all || room_count(bricks->along) > affordable)
+			shape_atlas(count, false, most_along, bricks->along);
+		if (room_count(bricks->along) < least)
+			return GZ_ERR_NO_MEM;
+		result = try_atlas(bricks, device);
+		if (result == GZ_ERR_NO_DEVICE)
+			return result;
+	}
+	return result == GZ_OK ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static enum gz_result make_table(struct gz_gl_bricks *bricks, const struct gz_gl_device *device)
+{
+	const size_t bytes = bricks->source.layout->brick_count * sizeof *bricks->entries;
+	if ((int64_t)bytes > device->storage_max)
+		return GZ_ERR_NO_MEM;
+	bricks->entries = malloc(bytes);
+	if (!bricks->entries)
+		return GZ_ERR_NO_MEM;
+	glGenBuffers(1, &bricks->table);
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, bricks->table);
+	glBufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, NULL, GL_DYNAMIC_DRAW);
+	return gz_gl_device_errors(device);
+}
+
+static void place_of(const struct gz_gl_bricks *bricks, int32_t room, int out_place[3])
+{
+	out_place[0] = room % bricks->along[0];
+	out_place[1] = room / bricks->along[0] % bricks->along[1];
+	out_place[2] = room / bricks->along[0] / bricks->along[1];
+}
+
+/* A brick's voxels into its room. */
+static void give(const struct gz_gl_bricks *bricks, int32_t room, const void *voxels)
+{
+	const struct gz_gl_texel_format *format =
+		gz_gl_texel_format(GZ_GL_TEXELS_BRICKS, bricks->type);
+	const int edge = GZ_BRICK_STORED_EDGE;
+	int place[3];
+	place_of(bricks, room, place);
+	glTexSubImage3D(GL_TEXTURE_3D, 0, place[0] * edge, place[1] * edge, place[2] * edge, edge,
+			edge, edge, format->external, format->type, voxels);
+}
+
+static void begin_giving(const struct gz_gl_bricks *bricks)
+{
+	glBindTexture(GL_TEXTURE_3D, bricks->atlas);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+}
+
+static void end_giving(void)
+{
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glBindTexture(GL_TEXTURE_3D, 0);
+}
+
+/* The coarse levels, coarsest first: what a finer one lacks then shows the coarser. */
+static void pin_levels(struct gz_gl_bricks *bricks)
+{
+	const struct gz_brick_layout *layout = bricks->source.layout;
+	const int finest = gz_brick_rooms_pinned_level(layout, bricks->rooms.count);
+	begin_giving(bricks);
+	for (int level = layout->level_count - 1; level >= finest; level--) {
+		const size_t end = level + 1 < layout->level_count ? layout->levels[level + 1].first
+								   : layout->brick_count;
+		for (size_t i = layout->levels[level].first; i < end; i++) {
+			const void *voxels = gz_brick_source_read(&bricks->source, i);
+			if (!voxels)
+				continue;
+			const int32_t room = gz_brick_rooms_pin(&bricks->rooms, (uint32_t)i);
+			give(bricks, room, voxels);
+			gz_brick_rooms_let_in(&bricks->rooms, room);
+		}
+	}
+	end_giving();
+}
+
+enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl_device *device,
+				 const struct gz_detail *detail)
+{
+	gz_gl_bricks_free(bricks);
+	bricks->type = detail->levels.level[0].volume.type;
+	enum gz_result result = gz_brick_source_open(&bricks->source, detail);
+	if (result == GZ_OK)
+		result = make_atlas(bricks, device);
+	if (result == GZ_OK) {
+		const size_t all = bricks->source.layout->brick_count;
+		const size_t there = room_count(bricks->along);
+		result = gz_brick_rooms_init(&bricks->rooms, bricks->source.layout,
+					     there < all ? there : all);
+	}
+	if (result == GZ_OK)
+		result = make_table(bricks, device);
+	if (result == GZ_OK) {
+		pin_levels(bricks);
+		result = gz_gl_device_errors(device);
+	}
+	if (result != GZ_OK)
+		gz_gl_bricks_free(bricks);
+	return result;
+}
+
+/* Give the device what has come of what is wanted. @return whether something waits for another
+ * picture's time */
+static bool give_wanted(struct gz_gl_bricks *bricks, bool wait)
+{
+	const struct gz_brick_wants *wants = &bricks->stream.wants;
+	const size_t each = brick_bytes(bricks->type);
+	bool later = false;
+	size_t given = 0;
+	for (size_t i = 0; i < wants->count && !later; i++) {
+		const struct gz_brick_want *want = &wants->want[i];
+		if (bricks->rooms.room_of[want->brick] != GZ_BRICK_NOWHERE)
+			continue;
+		if (!gz_brick_rooms_has(&bricks->rooms, want->weight))
+			break;
+		const void *voxels = gz_brick_source_read(&bricks->source, want->brick);
+		if (!voxels)
+			continue;
+		later = !wait && given + each > PICTURE_BYTES && given > 0;
+		if (later)
+			break;
+		const int32_t room = gz_brick_rooms_take(&bricks->rooms, want->brick, want->weight);
+		give(bricks, room, voxels);
+		gz_brick_rooms_let_in(&bricks->rooms, room);
+		given += each;
+	}
+	return later;
+}
+
+/* Rooms in the books to rooms in the atlas. */
+static void give_table(struct gz_gl_bricks *bricks)
+{
+	const uint32_t level_mask = (1U << GZ_BRICK_LEVEL_BITS) - 1;
+	const size_t count = bricks->source.layout->brick_count;
+	if (bricks->table_changes == bricks->rooms.changes)
+		return;
+	for (size_t i = 0; i < count; i++) {
+		const int32_t entry = bricks->rooms.table[i];
+		int place[3];
+		place_of(bricks, entry >> GZ_BRICK_LEVEL_BITS, place);
+		bricks->entries[i] = ((uint32_t)entry & level_mask) |
+				     (uint32_t)place[0] << GZ_BRICK_LEVEL_BITS |
+				     (uint32_t)place[1] << (GZ_BRICK_LEVEL_BITS + PLACE_BITS) |
+				     (uint32_t)place[2] << (GZ_BRICK_LEVEL_BITS + 2 * PLACE_BITS);
+	}
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, bricks->table);
+	glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *bricks->entries),
+			bricks->entries);
+	bricks->table_changes = bricks->rooms.changes;
+}
+
+enum gz_result gz_gl_bricks_turn(struct gz_gl_bricks *bricks, struct gz_brick_stream_frame frame,
+				 bool wait)
+{
+	frame.layout = bricks->source.layout;
+	frame.entries = bricks->source.entries;
+	const enum gz_result result = gz_brick_stream_find(&bricks->stream, &frame);
+	if (result != GZ_OK)
+		return result;
+	const struct gz_brick_wants *wants = &bricks->stream.wants;
+	bricks->coming = gz_brick_source_turn(&bricks->source, wants->want, wants->count, wait);
+	gz_brick_rooms_turn(&bricks->rooms, wants->want, wants->count);
+	begin_giving(bricks);
+	bricks->coming += give_wanted(bricks, wait);
+	end_giving();
+	give_table(bricks);
+	return GZ_OK;
+}
+
+void gz_gl_bricks_fill(const struct gz_gl_bricks *bricks, int level, struct gz_gl_cast_block *block)
+{
+	struct gz_brick_lookup lookup;
+	gz_brick_lookup_make(bricks->source.layout, level, &lookup);
+	block->brick_table[0] = (uint32_t)lookup.first;
+	block->brick_table[1] = (uint32_t)lookup.stride[1];
+	block->brick_table[2] = (uint32_t)lookup.stride[2];
+	for (int axis = 0; axis < 3; axis++) {
+		block->brick_last[axis] = lookup.last[axis];
+		for (int i = 0; i < GZ_BRICK_LEVELS_MAX; i++)
+			block->brick_scales[i][axis] = lookup.scale[axis][i];
+	}
+}
+
+void gz_gl_bricks_bind(const struct gz_gl_bricks *bricks)
+{
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_BRICKS, bricks->table);
+}
+
+void gz_gl_bricks_forget(struct gz_gl_bricks *bricks)
+{
+	gz_brick_stream_forget(&bricks->stream);
+}
+
+void gz_gl_bricks_abandon(struct gz_gl_bricks *bricks)
+{
+	gz_brick_source_close(&bricks->source);
+	gz_brick_rooms_free(&bricks->rooms);
+	gz_brick_stream_free(&bricks->stream);
+	free(bricks->entries);
+	*bricks = (struct gz_gl_bricks) { 0 };
+}
+
+void gz_gl_bricks_free(struct gz_gl_bricks *bricks)
+{
+	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
+	 */
+	if (bricks->atlas)
+		glDeleteTextures(1, &bricks->atlas);
+	if (bricks->table)
+		glDeleteBuffers(1, &bricks->table);
+	gz_gl_bricks_abandon(bricks);
+}

@@ -1,0 +1,353 @@
+#include "render/raycast/gl/gl_raycaster.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
+#include "render/raycast/gl/gl_cast.h"
+#include "render/raycast/gl/gl_scene.h"
+#include "render/reconstruct/gl/gl_plan.h"
+#include "render/reconstruct/gl/gl_points.h"
+#include "render/reconstruct/gl/gl_reconstruct.h"
+
+#define GZ_LOG_MODULE "gl"
+
+enum { REASON_SIZE = 200 };
+
+/* Moments of a frame. */
+enum { MARK_START, MARK_CAST, MARK_END };
+
+struct gl_raycaster {
+	struct gz_raycaster base;
+	struct gz_gl_context *context;
+	struct gz_gl_context *own_context; /* the same, where this raycaster made it */
+	struct gz_gl_device device;
+	struct gz_gl_scene scene;
+	struct gz_gl_plan plan;
+	struct gz_gl_points colours;
+	struct gz_gl_cast cast;
+	struct gz_gl_reconstruct reconstruct;
+	struct gz_gl_timer timer;
+	bool wait_for_bricks;
+};
+
+static struct gl_raycaster *gl_of(struct gz_raycaster *raycaster)
+{
+	return (struct gl_raycaster *)raycaster;
+}
+
+static enum gz_result enter(struct gl_raycaster *gl)
+{
+	const enum gz_result result = gl->context->ops->make_current(gl->context);
+	if (result != GZ_OK)
+		gz_err(gl->base.log, "the OpenGL context cannot be used any more");
+	return result;
+}
+
+static void leave(struct gl_raycaster *gl)
+{
+	gl->context->ops->release(gl->context);
+}
+
+static void gl_destroy(struct gz_raycaster *raycaster)
+{
+	struct gl_raycaster *gl = gl_of(raycaster);
+	if (gl->context && gl->context->ops->make_current(gl->context) == GZ_OK) {
+		gz_gl_scene_free(&gl->scene);
+		gz_gl_plan_free(&gl->plan);
+		gz_gl_points_free(&gl->colours);
+		gz_gl_cast_free(&gl->cast);
+		gz_gl_reconstruct_free(&gl->reconstruct);
+		gz_gl_timer_free(&gl->timer);
+		leave(gl);
+	} else {
+		/* What a lost context held is gone with it. */
+		gz_gl_scene_forget(&gl->scene);
+	}
+	gz_gl_context_destroy(&gl->own_context);
+	free(gl);
+}
+
+/* The context that was given, or one of its own. */
+static enum gz_result open_context(struct gl_raycaster *gl, const struct gz_backend_params *params,
+				   char *reason)
+{
+	gl->context = params->gl_context;
+	if (gl->context)
+		return GZ_OK;
+	const enum gz_result result =
+		gz_gl_context_egl(params->gl_hardware_only, &gl->own_context, reason, REASON_SIZE);
+	gl->context = gl->own_context;
+	return result;
+}
+
+static void apply_hooks(const struct gz_gl_raycaster_hooks *hooks, struct gz_gl_device *device)
+{
+	if (hooks->as_hardware)
+		device->software = false;
+	if (hooks->volume_edge_max > 0 && hooks->volume_edge_max < device->volume_edge_max)
+		device->volume_edge_max = hooks->volume_edge_max;
+}
+
+static enum gz_result open_device(struct gl_raycaster *gl, const struct gz_backend_params *params,
+				  char *reason)
+{
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_device_open(&gl->device, reason, REASON_SIZE);
+	leave(gl);
+	if (result == GZ_OK && gl->device.software && params->gl_hardware_only) {
+		snprintf(reason, REASON_SIZE, "%.120s is software", gl->device.description);
+		result = GZ_ERR_UNSUPPORTED;
+	}
+	if (params->gl_memory_bytes > 0) {
+		gl->device.memory_max = (int64_t)params->gl_memory_bytes;
+		gl->device.memory_told = true;
+	}
+	return result;
+}
+
+enum gz_result gz_gl_raycaster_create(const struct gz_backend_params *params,
+				      const struct gz_gl_raycaster_hooks *hooks,
+				      const struct gz_log *log, struct gz_raycaster **out_raycaster)
+{
+	char reason[REASON_SIZE] = "its context cannot be made current";
+	struct gl_raycaster *gl = calloc(1, sizeof *gl);
+	if (!gl)
+		return GZ_ERR_NO_MEM;
+	gl->base = (struct gz_raycaster) { .ops = &gz_gl_raycaster_ops, .log = log };
+	gl->wait_for_bricks = params->wait_for_bricks;
+	enum gz_result result = open_context(gl, params, reason);
+	if (result == GZ_OK)
+		result = open_device(gl, params, reason);
+	if (result != GZ_OK) {
+		/* Whoever only tries takes cpu then; whoever insists must be told what to do. */
+		if (params->gl_hardware_only)
+			gz_debug(log, "cpu casts the rays: %s", reason);
+		else
+			gz_err(log,
+			       "no OpenGL 4.3: %s; update the graphics driver, or take "
+			       "--backend cpu",
+			       reason);
+		gl_destroy(&gl->base);
+		return result;
+	}
+	apply_hooks(hooks, &gl->device);
+	*out_raycaster = &gl->base;
+	return GZ_OK;
+}
+
+static enum gz_result gl_create(const struct gz_backend_params *params, const struct gz_log *log,
+				struct gz_raycaster **out_raycaster)
+{
+	static const struct gz_gl_raycaster_hooks none;
+	return gz_gl_raycaster_create(params, &none, log, out_raycaster);
+}
+
+static enum gz_result gl_set_volume(struct gz_raycaster *raycaster, const struct gz_volume *volume)
+{
+	struct gl_raycaster *gl = gl_of(raycaster);
+	gl->scene.volume = NULL; /* borrowed until now */
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_scene_set_volume(&gl->scene, &gl->device, volume, raycaster->log);
+	leave(gl);
+	return result;
+}
+
+static enum gz_result gl_set_transfer(struct gz_raycaster *raycaster,
+				      const struct gz_transfer *transfer)
+{
+	struct gl_raycaster *gl = gl_of(raycaster);
+	if (!gl->scene.volume)
+		return GZ_ERR_INVAL;
+	enum gz_result result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	gz_gl_scene_set_transfer(&gl->scene, transfer);
+	result = gz_gl_device_errors(&gl->device);
+	leave(gl);
+	if (result != GZ_OK)
+		gz_err(raycaster->log, "the graphics device did not take the transfer function: %s",
+		       gz_result_text(result));
+	return result;
+}
+
+/* Room on the device for what the frame's passes write. */
+static enum gz_result make_room(struct gl_raycaster *gl, const struct gz_plan *plan)
+{
+	enum gz_result result =
+		gz_gl_points_prepare(&gl->colours, &gl->device, gl->plan.point_count);
+	if (result == GZ_OK)
+		result = gz_gl_cast_prepare(&gl->cast, &gl->device);
+	if (result != GZ_OK)
+		gz_err(gl->base.log, "the graphics device has no room for a picture of %d x %d px",
+		       plan->width, plan->height);
+	return result;
+}
+
+/* The blocks of all levels that tiles take, and what else the passes need. */
+static enum gz_result prepare(struct gl_raycaster *gl, const struct gz_camera *camera,
+			      const struct gz_ray_frame *world, const struct gz_ray_params *rays,
+			      const struct gz_plan *plan)
+{
+	struct gz_gl_cast_block block = { 0 };
+	struct gz_gl_tile_levels levels;
+	const struct gz_log *log = gl->base.log;
+	enum gz_result result = gz_gl_scene_prepare(&gl->scene, &gl->device, camera, rays, plan,
+						    gl->wait_for_bricks, &levels, log);
+	if (result == GZ_OK)
+		result = gz_gl_plan_prepare(&gl->plan, &gl->device, plan, &levels, log);
+	if (result == GZ_OK)
+		result = make_room(gl, plan);
+	if (result != GZ_OK)
+		return result;
+	for (int i = 0; i < gl->scene.level_count; i++) {
+		if (i > 0 && gl->plan.level_ranges[i].count == 0)
+			continue;
+		gz_gl_scene_fill(&gl->scene, i, world, rays, plan, &block);
+		gz_gl_cast_set_block(&gl->cast, i, &block);
+	}
+	gz_gl_plan_bind(&gl->plan);
+	gz_gl_points_bind(&gl->colours);
+	gz_gl_scene_bind(&gl->scene);
+	return GZ_OK;
+}
+
+static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_params *rays)
+{
+	struct gz_gl_cast_job job = {
+		.device = &gl->device,
+		.gl_plan = &gl->plan,
+		.kind = { .type = gl->scene.volume->type,
+			  .nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
+			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+			  .shaded = rays->shading == GZ_SHADING_GRADIENT },
+		.log = gl->base.log,
+	};
+	enum gz_result result = GZ_OK;
+	for (int i = 0; i < gl->scene.level_count && result == GZ_OK; i++) {
+		if (gl->plan.level_ranges[i].count == 0)
+			continue;
+		gz_gl_volume_bind(&gl->scene.levels[i], job.kind.type);
+		job.kind.texels = gl->scene.levels[i].texels;
+		job.level = i;
+		result = gz_gl_cast_tiles(&gl->cast, &job);
+	}
+	return result;
+}
+
+/* All passes of a frame. */
+static enum gz_result draw(struct gl_raycaster *gl, const struct gz_ray_params *rays,
+			   const struct gz_plan *plan)
+{
+	const struct gz_gl_reconstruct_job job = {
+		.device = &gl->device,
+		.gl_plan = &gl->plan,
+		.plan = plan,
+		.points = &gl->colours,
+		.kind = GZ_PLANE_COLOUR,
+		.log = gl->base.log,
+	};
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
+	enum gz_result result = cast_levels(gl, rays);
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
+	if (result == GZ_OK)
+		result = gz_gl_reconstruct(&gl->reconstruct, &job);
+	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_END);
+	return result;
+}
+
+/* The picture to where it is wanted, and whether all went well. */
+static enum gz_result deliver(struct gl_raycaster *gl, const struct gz_plan *plan,
+			      struct gz_image *image)
+{
+	enum gz_result result = GZ_OK;
+	if (image)
+		result = gz_gl_points_read(&gl->colours, &gl->device,
+					   (size_t)plan->width * (size_t)plan->height,
+					   gz_image_words(image));
+	else
+		gz_gl_points_to_texture(&gl->colours, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = gz_gl_device_errors(&gl->device);
+	if (result != GZ_OK)
+		gz_err(gl->base.log, "%s failed a frame: %s", gl->device.description,
+		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result));
+	return result;
+}
+
+/* The plan's pixel (0, 0) is the picture's -shift. */
+static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		rays->origin00[axis] -=
+			shift[0] * rays->origin_dx[axis] + shift[1] * rays->origin_dy[axis];
+		rays->direction00[axis] -=
+			shift[0] * rays->direction_dx[axis] + shift[1] * rays->direction_dy[axis];
+	}
+}
+
+static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
+				const struct gz_ray_params *rays, const struct gz_plan *plan,
+				struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct gl_raycaster *gl = gl_of(raycaster);
+	struct gz_ray_frame world;
+	if (!gl->scene.volume || !gl->scene.has_transfer)
+		return GZ_ERR_INVAL;
+	enum gz_result result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
+	if (result == GZ_OK)
+		shift_rays(plan->view.shift, &world);
+	if (result == GZ_OK && image)
+		result = gz_image_resize(image, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = enter(gl);
+	if (result != GZ_OK)
+		return result;
+	result = prepare(gl, camera, &world, rays, plan);
+	if (result == GZ_OK)
+		result = draw(gl, rays, plan);
+	if (result == GZ_OK)
+		result = deliver(gl, plan, image);
+	if (result == GZ_OK && out_stats)
+		*out_stats = (struct gz_frame_stats) {
+			.rays = plan->ray_count,
+			.samples = gz_gl_cast_samples(&gl->cast, &gl->device),
+			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
+			.reconstruct_ms =
+				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),
+			.gpu_ms = gl->device.software ? NAN
+						      : gz_gl_timer_ms(&gl->timer, &gl->device,
+								       MARK_START, MARK_END),
+			.bricks_coming = gl->scene.bricks.coming,
+		};
+	leave(gl);
+	return result;
+}
+
+static unsigned gl_picture_texture(const struct gz_raycaster *raycaster)
+{
+	return ((const struct gl_raycaster *)raycaster)->colours.picture;
+}
+
+static const char *gl_describe(const struct gz_raycaster *raycaster)
+{
+	return ((const struct gl_raycaster *)raycaster)->device.description;
+}
+
+const struct gz_raycaster_ops gz_gl_raycaster_ops = {
+	.name = "gl",
+	.create = gl_create,
+	.set_volume = gl_set_volume,
+	.set_transfer = gl_set_transfer,
+	.render = gl_render,
+	.picture_texture = gl_picture_texture,
+	.describe = gl_describe,
+	.destroy = gl_destroy,
+};

@@ -1,0 +1,387 @@
+#include "render/raycast/gl/gl_scene.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include "render/raycast/shared/voxel_rays.h"
+
+#define GZ_LOG_MODULE "gl"
+
+static void free_levels(struct gz_gl_scene *scene)
+{
+	for (int i = 0; i < GZ_LEVELS_MAX; i++)
+		gz_gl_volume_free(&scene->levels[i]);
+	scene->level_count = 0;
+	gz_gl_bricks_free(&scene->bricks);
+	scene->bricked = false;
+}
+
+/* Threads for what processors do; work is done without them where there are none to be had. */
+static struct gz_workers *workers_of(struct gz_gl_scene *scene)
+{
+	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
+		scene->workers = NULL;
+	return scene->workers;
+}
+
+/* The macrocells of all levels must have textures, whatever their voxels are in. */
+static bool cells_fit(const struct gz_gl_scene *scene, const struct gz_gl_device *device)
+{
+	for (int axis = 0; axis < 3; axis++)
+		if (scene->detail.cells[0].dims[axis] > device->texture_edge_max)
+			return false;
+	return true;
+}
+
+/* By bricks, of all levels at once. */
+static enum gz_result set_bricks(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				 const struct gz_log *log)
+{
+	gz_detail_make_levels(&scene->detail, workers_of(scene), NULL, log);
+	if (!cells_fit(scene, device)) {
+		gz_err(log,
+		       "the macrocells of a volume of %d x %d x %d voxels are beyond this OpenGL's "
+		       "3D textures of %d; take --backend cpu",
+		       scene->detail.levels.level[0].volume.dims[0],
+		       scene->detail.levels.level[0].volume.dims[1],
+		       scene->detail.levels.level[0].volume.dims[2], device->texture_edge_max);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = gz_gl_bricks_open(&scene->bricks, device, &scene->detail);
+	if (result != GZ_OK) {
+		gz_err(log,
+		       "no room on the graphics device for bricks of the volume: %s; take "
+		       "--backend cpu",
+		       gz_result_text(result));
+		return result;
+	}
+	scene->bricked = true;
+	scene->level_count = scene->detail.levels.count;
+	for (int i = 0; i < scene->level_count; i++)
+		gz_gl_volume_lend(&scene->levels[i], scene->bricks.atlas);
+	return GZ_OK;
+}
+
+/* Why a volume in memory is shown by bricks, and by how many at once. */
+static void tell_bricked(const struct gz_gl_scene *scene, const struct gz_gl_device *device,
+			 const struct gz_volume *volume, enum gz_result why,
+			 const struct gz_log *log)
+{
+	if (why == GZ_ERR_UNSUPPORTED)
+		gz_info(log,
+			"%d x %d x %d voxels are beyond this OpenGL's 3D textures of %d: they are "
+			"shown by bricks, %zu of %zu at once",
+			volume->dims[0], volume->dims[1], volume->dims[2], device->volume_edge_max,
+			scene->bricks.rooms.count, scene->bricks.source.layout->brick_count);
+	else
+		gz_info(log,
+			"the graphics device has no room for the whole volume: it is shown by "
+			"bricks, %zu of %zu at once",
+			scene->bricks.rooms.count, scene->bricks.source.layout->brick_count);
+}
+
+enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				      const struct gz_volume *volume, const struct gz_log *log)
+{
+	scene->volume = NULL;
+	scene->has_transfer = false;
+	free_levels(scene);
+	const enum gz_result whole = volume->bricks
+					     ? GZ_ERR_UNSUPPORTED
+					     : gz_gl_volume_load(&scene->levels[0], device, volume);
+	if (whole == GZ_ERR_NO_DEVICE) {
+		gz_err(log, "the context is lost");
+		return whole;
+	}
+	enum gz_result result = gz_detail_start(&scene->detail, volume);
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for the macrocells of the volume");
+		return result;
+	}
+	scene->level_count = 1;
+	if (whole != GZ_OK)
+		result = set_bricks(scene, device, log);
+	if (result == GZ_OK && whole != GZ_OK && !volume->bricks)
+		tell_bricked(scene, device, volume, whole, log);
+	if (result == GZ_OK)
+		scene->volume = volume;
+	return result;
+}
+
+void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer)
+{
+	gz_transfer_table_bake(transfer, scene->volume, &scene->table);
+	gz_detail_classify(&scene->detail, &scene->table);
+	for (int i = 0; i < scene->level_count; i++)
+		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+	gz_preintegration_forget(&scene->preintegration);
+	gz_lighting_forget(&scene->lighting);
+	gz_gl_tables_forget(&scene->tables);
+	gz_gl_bricks_forget(&scene->bricks);
+	scene->has_transfer = true;
+}
+
+static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				     const struct gz_plan *plan, const struct gz_log *log)
+{
+	double lengths[GZ_PLAN_STEPS_MAX];
+	for (int i = 0; i < plan->step_count; i++) {
+		lengths[i] = plan->steps[i] / rays->ray_sampling_rate;
+		gz_gl_tables_samples(&scene->tables, &scene->table, i, lengths[i]);
+	}
+	gz_gl_tables_samples(&scene->tables, &scene->table, GZ_PLAN_STEPS_MAX, 1);
+	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
+		return GZ_OK;
+	struct gz_preintegration *preintegration = &scene->preintegration;
+	const enum gz_result result = gz_preintegration_make(preintegration, &scene->table, lengths,
+							     plan->step_count, workers_of(scene));
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for pre-integrated tables: take sampled");
+		return result;
+	}
+	for (int i = 0; i < plan->step_count; i++)
+		gz_gl_tables_segments(&scene->tables, i, lengths[i], preintegration->step[i]);
+	gz_gl_tables_segments(&scene->tables, GZ_PLAN_STEPS_MAX, 1, preintegration->extinction);
+	return GZ_OK;
+}
+
+/* Give the device the grid of occlusion, where a frame wants one and has made it anew. */
+static void load_occlusion(struct gz_gl_scene *scene)
+{
+	const struct gz_occlusion *grid = &scene->lighting.occlusion;
+	const int *dims = grid->dims;
+	if (memcmp(scene->occlusion_dims, dims, sizeof scene->occlusion_dims) != 0) {
+		if (scene->occlusion)
+			glDeleteTextures(1, &scene->occlusion);
+		scene->occlusion = gz_gl_texture(GL_TEXTURE_3D);
+		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R16UI, dims[0], dims[1], dims[2]);
+		memcpy(scene->occlusion_dims, dims, sizeof scene->occlusion_dims);
+	}
+	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, dims[0], dims[1], dims[2], GL_RED_INTEGER,
+			GL_UNSIGNED_SHORT, grid->cells);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glBindTexture(GL_TEXTURE_3D, 0);
+}
+
+static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				    const struct gz_log *log)
+{
+	struct gz_lighting *lighting = &scene->lighting;
+	const bool was_current = lighting->current;
+	const double radius = lighting->radius;
+	const struct gz_clip_box clip = lighting->clip;
+	const enum gz_result result = gz_lighting_prepare(lighting, scene->volume, &scene->table,
+							  rays, workers_of(scene), log);
+	if (result == GZ_OK && lighting->current &&
+	    (!was_current || radius != lighting->radius ||
+	     !gz_clip_box_same(&clip, &lighting->clip)))
+		load_occlusion(scene);
+	return result;
+}
+
+/* Make the coarser levels and give them to the device, unless it has them. */
+static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+			   const struct gz_log *log)
+{
+	if (scene->level_count > 1 || scene->detail.failed || scene->bricked)
+		return;
+	gz_detail_make_levels(&scene->detail, workers_of(scene), &scene->table, log);
+	const int count = scene->detail.levels.count;
+	for (int i = 1; i < count; i++) {
+		if (gz_gl_volume_load(&scene->levels[i], device,
+				      &scene->detail.levels.level[i].volume) != GZ_OK) {
+			gz_warn(log,
+				"no room on the graphics device for coarser levels of the volume: "
+				"rays take the finest %d alone",
+				i);
+			scene->detail.failed = true; /* said once */
+			return;
+		}
+		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+		scene->level_count = i + 1;
+	}
+}
+
+/* The level of each kind of tile. */
+static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan *plan,
+			  const struct gz_ray_params *rays, double pixel_lengths,
+			  struct gz_gl_tile_levels *out_levels)
+{
+	for (int layer = 0; layer < plan->layer_count; layer++)
+		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
+			for (int step = 0; step < plan->step_count; step++) {
+				const int level =
+					gz_detail_choose(&scene->detail, plan, rays, pixel_lengths,
+							 layer, pattern, step);
+				out_levels->of[layer][pattern][step] =
+					(uint8_t)(level < scene->level_count
+							  ? level
+							  : scene->level_count - 1);
+			}
+}
+
+static int level_of(const void *user, const struct gz_tile *tile)
+{
+	const struct gz_gl_tile_levels *levels = user;
+	return levels->of[tile->layer][tile->pattern][tile->step];
+}
+
+/* @p levels: NULL where all tiles take the finest. */
+static enum gz_result prepare_bricks(struct gz_gl_scene *scene,
+				     const struct gz_brick_stream_key *key,
+				     const struct gz_plan *plan,
+				     const struct gz_gl_tile_levels *levels, bool wait,
+				     const struct gz_log *log)
+{
+	const struct gz_brick_stream_frame frame = {
+		.detail = &scene->detail,
+		.table = &scene->table,
+		.plan = plan,
+		.key = *key,
+		.tile_level = levels ? level_of : NULL,
+		.user = levels,
+	};
+	const enum gz_result result = gz_gl_bricks_turn(&scene->bricks, frame, wait);
+	if (result == GZ_ERR_NO_MEM)
+		gz_err(log, "no memory for the list of bricks that the picture shows");
+	return result;
+}
+
+enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				   const struct gz_camera *camera, const struct gz_ray_params *rays,
+				   const struct gz_plan *plan, bool wait,
+				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log)
+{
+	const double pixel_lengths =
+		gz_levels_pixel_lengths(scene->volume, camera, plan->view.height);
+	memset(out_levels, 0, sizeof *out_levels);
+	const bool coarser = gz_detail_wanted(plan, rays, pixel_lengths);
+	if (coarser) {
+		prepare_levels(scene, device, log);
+		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
+	}
+	enum gz_result result = prepare_light(scene, rays, log);
+	if (result == GZ_OK)
+		result = prepare_tables(scene, rays, plan, log);
+	if (result == GZ_OK && scene->bricked) {
+		const struct gz_brick_stream_key key =
+			gz_brick_stream_key_of(camera, rays, plan, coarser ? pixel_lengths : 0);
+		result = prepare_bricks(scene, &key, plan, coarser ? out_levels : NULL, wait, log);
+	}
+	return result;
+}
+
+static void to_floats(const double source[3], const int divisor[3], float out[4])
+{
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = (float)(source[axis] / divisor[axis]);
+}
+
+static void fill_rays(const struct gz_gl_scene *scene, const int factor[3],
+		      const struct gz_ray_frame *world, struct gz_gl_cast_block *block)
+{
+	struct gz_voxel_rays rays;
+	gz_voxel_rays_make(scene->volume, world, &rays);
+	to_floats(rays.frame.origin00, factor, block->origin00);
+	to_floats(rays.frame.origin_dx, factor, block->origin_dx);
+	to_floats(rays.frame.origin_dy, factor, block->origin_dy);
+	to_floats(rays.frame.direction00, factor, block->direction00);
+	to_floats(rays.frame.direction_dx, factor, block->direction_dx);
+	to_floats(rays.frame.direction_dy, factor, block->direction_dy);
+	for (int axis = 0; axis < 3; axis++)
+		block->world_per_voxel[axis] = (float)(rays.world_per_voxel[axis] * factor[axis]);
+}
+
+static void fill_volume(const struct gz_gl_scene *scene, int index, const struct gz_clip_box *clip,
+			struct gz_gl_cast_block *block)
+{
+	const struct gz_level *level = &scene->detail.levels.level[index];
+	for (int axis = 0; axis < 3; axis++) {
+		const int dim = level->volume.dims[axis];
+		const double box = (double)scene->volume->dims[axis] / level->factor[axis];
+		block->dims[axis] = (float)dim;
+		block->box[axis] = (float)box;
+		block->clip_least[axis] = (float)(clip->least[axis] * box);
+		block->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
+		block->cell_counts[axis] = (float)scene->detail.cells[index].dims[axis];
+	}
+}
+
+static void fill_light(const struct gz_gl_scene *scene, const int factor[3],
+		       const struct gz_ray_frame *world, const struct gz_ray_params *rays,
+		       struct gz_gl_cast_block *block)
+{
+	struct gz_cast_light light;
+	gz_lighting_fill(&scene->lighting, scene->volume, factor, &scene->table, rays, world,
+			 &light);
+	for (int axis = 0; axis < 3; axis++) {
+		block->light_towards[axis] = light.towards[axis];
+		block->gradient_scale[axis] = light.gradient_scale[axis];
+		block->occlusion_scale[axis] = light.cell_scale[axis];
+		block->occlusion_bias[axis] = light.cell_bias[axis];
+		block->occlusion_last[axis] = light.cell_greatest[axis];
+	}
+	block->light_towards[3] = light.cells ? light.occlusion : 0;
+	block->light_terms[0] = light.ambient;
+	block->light_terms[1] = light.diffuse;
+	block->light_terms[2] = light.specular;
+	block->light_terms[3] = light.shininess;
+}
+
+void gz_gl_scene_bind(const struct gz_gl_scene *scene)
+{
+	gz_gl_tables_bind(&scene->tables);
+	if (scene->bricked)
+		gz_gl_bricks_bind(&scene->bricks);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_OCCLUSION);
+	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glActiveTexture(GL_TEXTURE0);
+}
+
+void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
+		      const struct gz_ray_params *rays, const struct gz_plan *plan,
+		      struct gz_gl_cast_block *block)
+{
+	const double voxel_length = gz_volume_voxel_length(scene->volume);
+	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
+	fill_volume(scene, level, &rays->clip, block);
+	fill_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
+	if (scene->bricked)
+		gz_gl_bricks_fill(&scene->bricks, scene->detail.brick_level[level], block);
+	block->jitter[0] = (uint32_t)rays->jitter;
+	block->jitter[1] = (uint32_t)plan->view.shift[0];
+	block->jitter[2] = (uint32_t)plan->view.shift[1];
+	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
+	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
+	block->transfer[2] = gz_ray_end_transmittance(rays);
+	for (int i = 0; i < plan->step_count; i++) {
+		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		block->steps[i][0] = (float)(length * voxel_length);
+		block->steps[i][1] = (float)length;
+	}
+	for (int channel = 0; channel < 3; channel++)
+		block->background[channel] = (float)rays->background[channel];
+}
+
+void gz_gl_scene_forget(struct gz_gl_scene *scene)
+{
+	gz_gl_bricks_abandon(&scene->bricks);
+	gz_detail_free(&scene->detail);
+	gz_preintegration_free(&scene->preintegration);
+	gz_lighting_free(&scene->lighting);
+	gz_workers_destroy(&scene->workers);
+	*scene = (struct gz_gl_scene) { 0 };
+}
+
+void gz_gl_scene_free(struct gz_gl_scene *scene)
+{
+	free_levels(scene);
+	gz_gl_tables_free(&scene->tables);
+	if (scene->occlusion)
+		glDeleteTextures(1, &scene->occlusion);
+	gz_gl_scene_forget(scene);
+}

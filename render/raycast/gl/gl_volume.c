@@ -1,0 +1,175 @@
+#include "render/raycast/gl/gl_volume.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include "render/raycast/gl/cast_block.h"
+
+/* Bytes handed to the driver at a time, which may copy them first. Chosen: a small part of any
+ * volume that matters, large beside the cost of a call. */
+#define UPLOAD_BYTES ((size_t)16 << 20)
+
+/* A row of 8-bit voxels, each with its neighbours along x, y and both. */
+static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, uint32_t *out)
+{
+	for (int x = 0; x + 1 < count; x++)
+		out[x] = (uint32_t)row[x] | (uint32_t)row[x + 1] << 8 |
+			 (uint32_t)next_row[x] << 16 | (uint32_t)next_row[x + 1] << 24;
+	const int last = count - 1;
+	out[last] = row[last] * 0x101U | (next_row[last] * 0x101U) << 16;
+}
+
+/* A row of 16-bit voxels, each with its neighbour along x. */
+static void pack_row_u16(const uint16_t *row, int count, uint32_t *out)
+{
+	for (int x = 0; x + 1 < count; x++)
+		out[x] = (uint32_t)row[x] | (uint32_t)row[x + 1] << 16;
+	out[count - 1] = row[count - 1] * 0x10001U;
+}
+
+/* One slice of texels. */
+static void pack_slice(const struct gz_volume *volume, int z, uint32_t *out)
+{
+	const size_t columns = (size_t)volume->dims[0], rows = (size_t)volume->dims[1];
+	for (size_t y = 0; y < rows; y++, out += columns) {
+		const size_t row = ((size_t)z * rows + y) * columns;
+		const size_t next_row = y + 1 < rows ? row + columns : row;
+		if (volume->type == GZ_VOXEL_U8)
+			pack_row_u8((const uint8_t *)volume->voxels + row,
+				    (const uint8_t *)volume->voxels + next_row, volume->dims[0],
+				    out);
+		else if (volume->type == GZ_VOXEL_U16)
+			pack_row_u16((const uint16_t *)volume->voxels + row, volume->dims[0], out);
+		else
+			memcpy(out, (const float *)volume->voxels + row, columns * sizeof *out);
+	}
+}
+
+/* Packed texels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
+static enum gz_result upload_packed(const struct gz_volume *volume)
+{
+	const struct gz_gl_texel_format *format =
+		gz_gl_texel_format(GZ_GL_TEXELS_PACKED, volume->type);
+	const int *dims = volume->dims;
+	const size_t slice = (size_t)dims[0] * (size_t)dims[1];
+	const size_t slice_bytes = slice * sizeof(uint32_t);
+	const int slices = slice_bytes < UPLOAD_BYTES ? (int)(UPLOAD_BYTES / slice_bytes) : 1;
+	uint32_t *texels = malloc(slice_bytes * (size_t)slices);
+	if (!texels)
+		return GZ_ERR_NO_MEM;
+	for (int z = 0; z < dims[2]; z += slices) {
+		const int count = z + slices < dims[2] ? slices : dims[2] - z;
+		for (int i = 0; i < count; i++)
+			pack_slice(volume, z + i, texels + (size_t)i * slice);
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1], count,
+				format->external, format->type, texels);
+	}
+	free(texels);
+	return GZ_OK;
+}
+
+/* Voxels as they are to the bound texture, a slice at a time. */
+static enum gz_result upload_single(const struct gz_volume *volume)
+{
+	const struct gz_gl_texel_format *format =
+		gz_gl_texel_format(GZ_GL_TEXELS_SINGLE, volume->type);
+	const int *dims = volume->dims;
+	const size_t slice_bytes = (size_t)dims[0] * (size_t)dims[1] * format->bytes;
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	for (int z = 0; z < dims[2]; z++)
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1], 1, format->external,
+				format->type,
+				(const char *)volume->voxels + (size_t)z * slice_bytes);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	return GZ_OK;
+}
+
+static bool fits_edges(const struct gz_gl_device *device, const struct gz_volume *volume)
+{
+	for (int axis = 0; axis < 3; axis++)
+		if (volume->dims[axis] > device->volume_edge_max)
+			return false;
+	return true;
+}
+
+static enum gz_result load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+			   const struct gz_volume *volume, enum gz_gl_texels texels)
+{
+	const struct gz_gl_texel_format *format = gz_gl_texel_format(texels, volume->type);
+	const size_t bytes = gz_volume_voxel_count(volume) * format->bytes;
+	if (device->memory_told && bytes > (size_t)device->memory_max)
+		return GZ_ERR_NO_MEM;
+	gl->texels = texels;
+	gl->voxels = gz_gl_texture(GL_TEXTURE_3D);
+	glTexStorage3D(GL_TEXTURE_3D, 1, format->internal, volume->dims[0], volume->dims[1],
+		       volume->dims[2]);
+	enum gz_result result = gz_gl_device_errors(device);
+	if (result == GZ_OK) {
+		result = texels == GZ_GL_TEXELS_PACKED ? upload_packed(volume)
+						       : upload_single(volume);
+		const enum gz_result errors = gz_gl_device_errors(device);
+		result = result == GZ_OK ? errors : result;
+	}
+	glBindTexture(GL_TEXTURE_3D, 0);
+	if (result != GZ_OK)
+		gz_gl_volume_free(gl);
+	return result;
+}
+
+enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+				 const struct gz_volume *volume)
+{
+	gz_gl_volume_free(gl);
+	if (!fits_edges(device, volume))
+		return GZ_ERR_UNSUPPORTED;
+	enum gz_result result = load(gl, device, volume, GZ_GL_TEXELS_PACKED);
+	if (result == GZ_ERR_NO_MEM && volume->type != GZ_VOXEL_F32)
+		result = load(gl, device, volume, GZ_GL_TEXELS_SINGLE);
+	return result;
+}
+
+void gz_gl_volume_lend(struct gz_gl_volume *gl, unsigned atlas)
+{
+	gz_gl_volume_free(gl);
+	gl->texels = GZ_GL_TEXELS_BRICKS;
+	gl->voxels = atlas;
+}
+
+void gz_gl_volume_classify(struct gz_gl_volume *gl, const struct gz_macrocells *cells)
+{
+	if (!gl->reach) {
+		gl->reach = gz_gl_texture(GL_TEXTURE_3D);
+		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R8UI, cells->dims[0], cells->dims[1],
+			       cells->dims[2]);
+	}
+	glBindTexture(GL_TEXTURE_3D, gl->reach);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, cells->dims[0], cells->dims[1], cells->dims[2],
+			GL_RED_INTEGER, GL_UNSIGNED_BYTE, cells->reach);
+	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+	glBindTexture(GL_TEXTURE_3D, 0);
+}
+
+void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
+{
+	glBindImageTexture(GZ_GL_UNIT_VOXELS, gl->voxels, 0, GL_TRUE, 0, GL_READ_ONLY,
+			   gz_gl_texel_format(gl->texels, type)->internal);
+	glBindImageTexture(GZ_GL_UNIT_REACH, gl->reach, 0, GL_TRUE, 0, GL_READ_ONLY, GL_R8UI);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_REACH);
+	glBindTexture(GL_TEXTURE_3D, gl->reach);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_VOXELS);
+	glBindTexture(GL_TEXTURE_3D, gl->voxels);
+}
+
+void gz_gl_volume_free(struct gz_gl_volume *gl)
+{
+	const bool lent = gl->texels == GZ_GL_TEXELS_BRICKS;
+	const GLuint textures[] = { lent ? 0 : gl->voxels, gl->reach };
+	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
+	 */
+	if (gl->voxels || gl->reach)
+		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
+	*gl = (struct gz_gl_volume) { 0 };
+}

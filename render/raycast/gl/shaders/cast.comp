@@ -1,0 +1,284 @@
+// Rays of tiles, front to back: the same samples, ends and colours as the cpu backend's kernel, which says how
+// rays are cut into segments (render/raycast/cpu/cast_kernel.h).
+layout(local_size_x = GROUP_SIZE) in;
+
+layout(location = 2) uniform uint detail; // level that this dispatch casts
+
+layout(std430, binding = 3) buffer Counts
+{
+	uint counts[];
+};
+
+struct Ray {
+	vec3 start, delta, inverse; // voxel coordinates; position = start + k * delta
+	float first, end;           // whole segments: from k = first to k = end
+	float head, head_at;        // length of a part of one before them, and its middle
+	float rest;                 // length of a part of one behind them
+};
+
+struct Light {
+	vec3 colour;
+	float through;
+};
+
+// Samples looked up before the first of them is composited, so that none waits for another's texels. A lit one
+// has enough to fetch.
+#ifdef SHADED
+#define BATCH 1
+#else
+#define BATCH 4
+#endif
+
+// Whether it is so for a ray that is cast side by side with this one.
+bool any_of_warp(bool so)
+{
+#ifdef GL_ARB_shader_group_vote
+	return anyInvocationARB(so);
+#else
+	return so;
+#endif
+}
+
+// gz_ray_jitter() of render/raycast/shared/ray_params.h, which says why.
+float jitter_of(uvec2 pixel)
+{
+	if (jitter.x == 0U)
+		return 0.0;
+	uvec3 word = uvec3(pixel - jitter.yz, jitter.x) * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	word.x += word.y * word.z;
+	word.y += word.z * word.x;
+	word.z += word.x * word.y;
+	word ^= word >> 16;
+	word.x += word.y * word.z;
+	return float(word.x >> 8) * (1.0 / 16777216.0);
+}
+
+// Where the ray meets the whole box, and where it is within what is shown of it; segments are counted from
+// a share of one before the box.
+Ray set_up_ray(uvec2 at, float step_length)
+{
+	vec2 pixel = vec2(at);
+	vec3 origin = fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
+	vec3 direction =
+		fma(vec3(pixel.y), direction_dy.xyz, fma(vec3(pixel.x), direction_dx.xyz, direction00.xyz));
+	vec3 raw = direction * (step_length / length(direction * world_per_voxel.xyz));
+	Ray ray;
+	ray.delta = mix(raw, vec3(1e-12), lessThan(abs(raw), vec3(1e-12)));
+	ray.inverse = 1.0 / ray.delta;
+	vec3 whole = min(-origin * ray.inverse, (box.xyz - origin) * ray.inverse);
+	vec3 a = (clip_least.xyz - origin) * ray.inverse, b = (clip_greatest.xyz - origin) * ray.inverse;
+	vec3 near = min(a, b), far = max(a, b);
+	float box_at = max(max(whole.x, whole.y), max(whole.z, 0.0));
+	float enter = max(max(near.x, near.y), max(near.z, 0.0));
+	float leave = min(min(far.x, far.y), far.z);
+	float shift = jitter_of(at);
+	bool hit = enter < leave;
+	float from = hit ? enter - box_at + shift : 0.0, to = hit ? leave - box_at + shift : 0.0;
+	ray.first = ceil(from);
+	ray.end = floor(to);
+	ray.head = min(ray.first, to) - from;
+	ray.head_at = fma(ray.head, 0.5, from);
+	// Where all lies within one segment, the head is all there is.
+	ray.rest = ray.end < ray.first ? 0.0 : to - ray.end;
+	ray.start = fma(vec3(box_at - shift), ray.delta, origin);
+	return ray;
+}
+
+// Whether the macrocell at k is empty; until: up to which k all cells are of its kind.
+bool look_up_cell(Ray ray, float k, out float until)
+{
+	vec3 at = fma(vec3(k), ray.delta, ray.start);
+	vec3 cell = floor(clamp(at * (1.0 / float(GZ_MACROCELL_EDGE)), vec3(0.0), top_cell));
+	int away = int(FETCH(reaches, ivec3(cell)).r) - GZ_REACH_BORDER;
+	float reach = float(abs(away));
+	vec3 edge = mix(cell + (1.0 - reach), cell + reach, greaterThan(ray.delta, vec3(0.0)));
+	vec3 leave = (edge * float(GZ_MACROCELL_EDGE) - ray.start) * ray.inverse;
+	until = min(min(leave.x, leave.y), leave.z);
+	return away > 0;
+}
+
+// Add the colour of what lies at k.
+void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light light)
+{
+	vec3 colour = unpack_colour(packed_colour);
+#ifdef SHADED
+	if (opacity > 0.0)
+		colour = shade(colour, fma(vec3(k), ray.delta, ray.start));
+#endif
+	float weight = light.through * opacity;
+	light.colour = fma(vec3(weight), colour, light.colour);
+	light.through -= weight;
+}
+
+#ifdef SEGMENTS
+// Segments instead of samples: colour and opacity by the values at both ends of each, as the cpu backend's
+// render/raycast/cpu/cast_preintegrated.h does it and says.
+int cell_at(Ray ray, float k)
+{
+	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start))) / (GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE);
+}
+
+uint march_segments(Ray ray, int step_index, inout Light light)
+{
+	uint samples = 0U;
+	float k = ray.first, until = -1.0;
+	int front = -1; // cell at k; -1 = not known
+	while (k < ray.end) {
+		if (k >= until) {
+			float leave;
+			bool empty = look_up_cell(ray, k, leave);
+			float next = empty ? max(floor(leave), k) : k;
+			front = k < next ? -1 : front;
+			k = next;
+			until = empty ? k + 0.5 : max(leave, k + 0.5);
+		}
+		if (k < ray.end) {
+			if (front < 0) {
+				front = cell_at(ray, k);
+				samples++;
+			}
+			k += 1.0;
+			int back = cell_at(ray, k);
+			samples++;
+			uvec2 look = FETCH(segments, ivec3(back, front, step_index)).rg;
+			composite(ray, k - 0.5, look.y, uintBitsToFloat(look.x), light);
+			front = back;
+			if (light.through <= transfer_map.z)
+				return samples;
+		}
+	}
+	return samples;
+}
+
+// A part of a segment: from `from` on, of a length in steps.
+uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Light light)
+{
+	float leave, to = from + part;
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= transfer_map.z)
+		return 0U;
+	if (look_up_cell(ray, from, leave) && leave >= to)
+		return 0U;
+	uvec2 look = FETCH(segments, ivec3(cell_at(ray, to), cell_at(ray, from), GZ_PLAN_STEPS_MAX)).rg;
+	float extinction = uintBitsToFloat(look.x);
+	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
+	composite(ray, fma(part, 0.5, from), look.y, opacity, light);
+	return 2U;
+}
+#else
+uvec2 look_up(Ray ray, float k, int step_index)
+{
+	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+	return FETCH(transfer, ivec2(entry, step_index)).rg;
+}
+
+// BATCH samples from k on, as far as there are any; k is then behind them.
+void march_batch(Ray ray, int step_index, inout float k, inout Light light)
+{
+	float from = k;
+	uvec2 looks[BATCH];
+	for (int i = 0; i < BATCH; i++)
+		looks[i] = look_up(ray, from + float(i), step_index);
+	for (int i = 0; i < BATCH; i++) {
+		bool takes = i == 0 || (k < ray.end && light.through > transfer_map.z);
+		composite(ray, from + float(i), looks[i].y, takes ? uintBitsToFloat(looks[i].x) : 0.0, light);
+		k += takes ? 1.0 : 0.0;
+	}
+}
+
+// On to the first occupied cell, if there is one; then its samples. Two loops in turn, so that rays that skip
+// and rays that sample do not wait for each other at every step. A ray that has left its cell goes on while
+// others of its warp are in theirs: it would have to wait for them, and what is empty shows nothing. Loops ask
+// at their ends whether they go on: where the lanes of a processor are the rays, they run through the rest of
+// a loop that all have left.
+uint march(Ray ray, int step_index, inout Light light)
+{
+	float samples = 0.0, k = ray.first + 0.5;
+	while (k < ray.end && light.through > transfer_map.z) {
+		float until;
+		bool empty;
+		do {
+			empty = look_up_cell(ray, k, until);
+			k += empty ? max(ceil(until - k), 1.0) : 0.0;
+		} while (empty && k < ray.end);
+		samples -= k;
+		bool goes = !empty;
+		if (goes) {
+			do {
+				march_batch(ray, step_index, k, light);
+				goes = k < ray.end && light.through > transfer_map.z;
+				goes = goes && any_of_warp(k < until);
+			} while (goes);
+		}
+		samples += k;
+	}
+	return uint(samples);
+}
+
+// A part of a segment, at either end of the whole ones: around k, of a length in steps.
+uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light light)
+{
+	float until;
+	if (part <= GZ_LAST_SEGMENT_LEAST || light.through <= transfer_map.z ||
+		look_up_cell(ray, k, until))
+		return 0U;
+	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+	uvec2 look = FETCH(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX)).rg;
+	float extinction = uintBitsToFloat(look.x);
+	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
+	composite(ray, k, look.y, opacity, light);
+	return 1U;
+}
+#endif
+
+uint to_pixel(Light light)
+{
+	vec3 colour = fma(vec3(light.through), background.xyz,
+		light.colour * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
+	uvec3 bytes = uvec3(fma(clamp(colour, 0.0, 1.0), vec3(255.0), vec3(0.5)));
+	return bytes.r | bytes.g << 8 | bytes.b << 16 | 0xFF000000U;
+}
+
+// Into its lattice and, in a pyramid, into those coarser ones that have the point too.
+void store(Tile tile, uvec2 at, uint pixel)
+{
+	uint end = plan.y == 1U ? plan.x : tile.layer + 1U;
+	for (uint i = tile.layer; i < end; i++) {
+		uvec4 layer = layers[i];
+		uvec2 place = at / layer.w;
+		if (place * layer.w != at)
+			return;
+		if (place.x < layer.y && place.y < layer.z)
+			points[layer.x + place.y * layer.y + place.x] = pixel;
+	}
+}
+
+void main()
+{
+	uint index = first_item + gl_GlobalInvocationID.x / TILE_RAYS;
+	uint ray_index = gl_LocalInvocationID.x % TILE_RAYS;
+	if (index >= item_end)
+		return;
+	Tile tile = unpack_tile(tiles[index]);
+	if (tile.detail != detail || (tile.active_rays >> ray_index & 1U) == 0U)
+		return;
+	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
+	read_frame();
+	vec2 step_lengths = steps[tile.step].xy;
+	Ray ray = set_up_ray(at, step_lengths.x);
+	Light light = Light(vec3(0.0), 1.0);
+#ifdef SHADED
+	set_up_view(ray.delta, step_lengths.x);
+#endif
+#ifdef SEGMENTS
+	uint samples = segment_part(ray, fma(ray.head, -0.5, ray.head_at), ray.head, step_lengths.y, light);
+	samples += march_segments(ray, int(tile.step), light);
+	samples += segment_part(ray, ray.end, ray.rest, step_lengths.y, light);
+#else
+	uint samples = march_part(ray, ray.head_at, ray.head, step_lengths.y, light);
+	samples += march(ray, int(tile.step), light);
+	samples += march_part(ray, fma(ray.rest, 0.5, ray.end), ray.rest, step_lengths.y, light);
+#endif
+	store(tile, at, to_pixel(light));
+	if (samples > 0U)
+		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);
+}

@@ -1,0 +1,141 @@
+// From a place in voxel coordinates to the value there and its entry in the transfer function. Weights are
+// full floats: a sampler's own have 8 bits, which would show against the cpu backend.
+//
+// A texel is 32 bits, which every GPU fetches at its full rate: one float, or a 16-bit voxel and its neighbour
+// along x, or an 8-bit voxel and its neighbours along x, y and both. So a sample takes 8, 4 or 2 fetches.
+// SINGLE, where these have no room: one voxel of its own size, 8 fetches. BRICKS: the same in the rooms of an
+// atlas, where a table says which brick, of this level of detail or a coarser one, a place leads to.
+//
+// The same words are read as texels or, by FETCH_IMAGES, as those of images, which spares Mesa's processor
+// the arithmetic of levels that the textures do not have.
+#ifdef FETCH_IMAGES
+#define FETCH(from, place) imageLoad(from, place)
+#if VOXEL_BITS == 32
+layout(binding = 0, r32f) readonly uniform image3D voxels;
+#elif defined(SINGLE) && VOXEL_BITS == 8
+layout(binding = 0, r8ui) readonly uniform uimage3D voxels;
+#elif defined(SINGLE)
+layout(binding = 0, r16ui) readonly uniform uimage3D voxels;
+#else
+layout(binding = 0, r32ui) readonly uniform uimage3D voxels;
+#endif
+layout(binding = 1, r8ui) readonly uniform uimage3D reaches;
+layout(binding = 2, rg32ui) readonly uniform uimage2D transfer;
+layout(binding = 3, rg32ui) readonly uniform uimage2DArray segments;
+#else
+#define FETCH(from, place) texelFetch(from, place, 0)
+#if VOXEL_BITS == 32
+layout(binding = 0) uniform sampler3D voxels;
+#else
+layout(binding = 0) uniform usampler3D voxels;
+#endif
+layout(binding = 1) uniform usampler3D reaches;   // of macrocells
+layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; a row a step
+// The same of segments, by the cells at their ends; a layer a step.
+layout(binding = 3) uniform usampler2DArray segments;
+#endif
+
+// What every sample needs of the frame, found once a ray: a processor reads a uniform block lane by lane, and
+// compilers take a mere copy of it for the block itself, so each of these is worked out.
+vec3 top_voxel;    // greatest index
+ivec3 lower_voxel; // greatest index of the lower of two neighbours
+vec3 top_cell;
+vec2 entry_map;    // scale and bias from stored value to entry and a half
+
+void read_frame()
+{
+	top_voxel = dims.xyz - 1.0;
+	lower_voxel = max(ivec3(dims.xyz) - 2, 0);
+	top_cell = cell_counts.xyz - 1.0;
+	entry_map = transfer_map.xy * float(GZ_TRANSFER_TABLE_SIZE - 1) + vec2(0.0, 0.5);
+}
+
+#ifdef BRICKS
+layout(std430, binding = 4) readonly buffer Bricks
+{
+	uint bricks[]; // by number: level in the lowest bits, then the room's place along x, y and z
+};
+
+// The first texel of the brick over a place, and the place in it, counted from the first datum: 1/2 to 32 1/2.
+// The cpu backend's render/raycast/cpu/cast_bricks.h does the same.
+vec3 find_brick(vec3 at, out ivec3 first)
+{
+	vec3 brick = floor(clamp(at * (1.0 / float(BRICK_EDGE)), vec3(0.0), brick_last.xyz));
+	uvec3 number = uvec3(brick);
+	uint entry = bricks[brick_table.x + number.x + number.y * brick_table.y + number.z * brick_table.z];
+	const uint mask = (1U << BRICK_PLACE_BITS) - 1U;
+	uint room = entry >> BRICK_LEVEL_BITS;
+	first = ivec3(room & mask, room >> BRICK_PLACE_BITS & mask, room >> 2 * BRICK_PLACE_BITS) *
+		BRICK_STORED_EDGE;
+	vec3 scale = brick_scales[entry & ((1U << BRICK_LEVEL_BITS) - 1U)].xyz;
+	return at * scale - floor(brick * scale) * float(BRICK_EDGE) + 0.5;
+}
+#endif
+
+#ifdef NEAREST
+float sample_at(vec3 at)
+{
+#ifdef BRICKS
+	ivec3 first;
+	vec3 inside = find_brick(at, first) + 0.5;
+	ivec3 place = first + ivec3(clamp(inside, vec3(0.0), vec3(BRICK_STORED_EDGE - 1)));
+#else
+	ivec3 place = ivec3(clamp(floor(at), vec3(0.0), top_voxel));
+#endif
+#if VOXEL_BITS == 32 || defined(SINGLE)
+	return float(FETCH(voxels, place).r);
+#else
+	return float(FETCH(voxels, place).r & ((1U << VOXEL_BITS) - 1U));
+#endif
+}
+#else
+// The four voxels of a square: at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+vec4 square(ivec3 low, int high_x, int high_y)
+{
+#if VOXEL_BITS == 32 || defined(SINGLE)
+	return vec4(FETCH(voxels, low).r, FETCH(voxels, ivec3(high_x, low.y, low.z)).r,
+		FETCH(voxels, ivec3(low.x, high_y, low.z)).r,
+		FETCH(voxels, ivec3(high_x, high_y, low.z)).r);
+#elif VOXEL_BITS == 8
+	uint texel = FETCH(voxels, low).r;
+	return vec4(uvec4(texel, texel >> 8, texel >> 16, texel >> 24) & 255U);
+#else
+	uvec2 rows = uvec2(FETCH(voxels, low).r, FETCH(voxels, ivec3(low.x, high_y, low.z)).r);
+	return vec4(rows.x & 0xFFFFU, rows.x >> 16, rows.y & 0xFFFFU, rows.y >> 16);
+#endif
+}
+
+float sample_at(vec3 at)
+{
+#ifdef BRICKS
+	ivec3 first;
+	vec3 place = max(find_brick(at, first), vec3(0.0));
+	ivec3 low = min(ivec3(place), ivec3(BRICK_STORED_EDGE - 2));
+	vec3 share = min(place - vec3(low), vec3(1.0));
+	low += first;
+	ivec3 high = low + 1;
+#else
+	vec3 place = clamp(at - 0.5, vec3(0.0), top_voxel);
+	ivec3 low = min(ivec3(place), lower_voxel);
+	ivec3 high = min(low + 1, ivec3(top_voxel));
+	vec3 share = place - vec3(low);
+#endif
+	vec4 near = square(low, high.x, high.y);
+	vec4 far = square(ivec3(low.xy, high.z), high.x, high.y);
+	vec4 plane = fma(vec4(share.z), far - near, near);
+	vec2 row = fma(vec2(share.y), plane.zw - plane.xy, plane.xy);
+	return fma(share.x, row.y - row.x, row.x);
+}
+#endif
+
+// The transfer function's entry for a stored value.
+int entry_of(float stored)
+{
+	float entry = fma(stored, entry_map.x, entry_map.y);
+	return int(clamp(entry, 0.5, float(GZ_TRANSFER_TABLE_SIZE) - 0.5));
+}
+
+vec3 unpack_colour(uint colour)
+{
+	return vec3(float(colour >> 21), float(colour >> 10 & 2047U), float(colour & 1023U));
+}

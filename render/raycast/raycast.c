@@ -1,0 +1,150 @@
+#include "render/raycast/raycast.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "render/raycast/shared/detail.h"
+#include "render/raycast/shared/raycaster.h"
+
+#define GZ_LOG_MODULE "raycast"
+
+struct raycast_drawer {
+	struct gz_drawer base;
+	struct gz_raycaster *raycaster;
+	const struct gz_log *log;
+	struct gz_object shown; /* its pointers are NULL before the first */
+	double prepare_ms;      /* since the last picture */
+};
+
+static struct raycast_drawer *raycast_of(struct gz_drawer *drawer)
+{
+	return (struct raycast_drawer *)drawer;
+}
+
+static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_object *objects,
+				   size_t count)
+{
+	struct raycast_drawer *self = raycast_of(drawer);
+	const struct gz_object *object = &objects[0];
+	if (count != 1 || !object->volume || !object->transfer) {
+		gz_err(self->log, "raycast shows one volume in a picture; %zu objects are given",
+		       count);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const int64_t start_ns = gz_clock_now_ns();
+	const bool same_volume = self->shown.volume == object->volume &&
+				 self->shown.data_revision == object->data_revision;
+	const bool same_transfer = same_volume && self->shown.transfer == object->transfer &&
+				   self->shown.transfer_revision == object->transfer_revision;
+	enum gz_result result = GZ_OK;
+	self->shown.volume = NULL; /* until all of it is taken */
+	if (!same_volume)
+		result = gz_raycaster_set_volume(self->raycaster, object->volume);
+	if (result == GZ_OK && !same_transfer)
+		result = gz_raycaster_set_transfer(self->raycaster, object->transfer);
+	if (result == GZ_OK)
+		self->shown = *object;
+	self->prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return result;
+}
+
+static void raycast_bound_plan(const struct gz_drawer *drawer, const struct gz_shot *shot,
+			       struct gz_plan_request *request)
+{
+	const struct raycast_drawer *self = (const struct raycast_drawer *)drawer;
+	if (self->shown.volume && request->height > 0) /* gz_plan_update() refuses others */
+		request->steps_per_px = gz_detail_steps_per_px(self->shown.volume, shot->camera,
+							       shot->settings, request->height);
+}
+
+static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
+				   struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct raycast_drawer *self = raycast_of(drawer);
+	const enum gz_result result = gz_raycaster_render(
+		self->raycaster, shot->camera, shot->settings, shot->plan, image, out_stats);
+	if (result == GZ_OK && out_stats)
+		out_stats->prepare_ms = self->prepare_ms;
+	if (result == GZ_OK)
+		self->prepare_ms = 0;
+	return result;
+}
+
+static unsigned raycast_picture_texture(const struct gz_drawer *drawer)
+{
+	return gz_raycaster_picture_texture(((const struct raycast_drawer *)drawer)->raycaster);
+}
+
+static bool raycast_keeps_on_device(const struct gz_drawer *drawer)
+{
+	return ((const struct raycast_drawer *)drawer)->raycaster->ops->picture_texture != NULL;
+}
+
+static const char *raycast_backend(const struct gz_drawer *drawer)
+{
+	return ((const struct raycast_drawer *)drawer)->raycaster->ops->name;
+}
+
+static const char *raycast_describe(const struct gz_drawer *drawer)
+{
+	return gz_raycaster_describe(((const struct raycast_drawer *)drawer)->raycaster);
+}
+
+static void raycast_destroy(struct gz_drawer *drawer)
+{
+	struct raycast_drawer *self = raycast_of(drawer);
+	gz_raycaster_destroy(&self->raycaster);
+	free(self);
+}
+
+static const struct gz_drawer_ops raycast_ops = {
+	.show = raycast_show,
+	.bound_plan = raycast_bound_plan,
+	.draw = raycast_draw,
+	.keeps_on_device = raycast_keeps_on_device,
+	.picture_texture = raycast_picture_texture,
+	.backend = raycast_backend,
+	.describe = raycast_describe,
+	.destroy = raycast_destroy,
+};
+
+static enum gz_result raycast_create(const char *backend, const struct gz_backend_params *params,
+				     const struct gz_log *log, struct gz_drawer **out_drawer)
+{
+	struct raycast_drawer *self = calloc(1, sizeof *self);
+	if (!self)
+		return GZ_ERR_NO_MEM;
+	self->base.ops = &raycast_ops;
+	self->log = log;
+	const enum gz_result result = gz_raycaster_create(backend, params, log, &self->raycaster);
+	if (result != GZ_OK) {
+		free(self);
+		return result;
+	}
+	*out_drawer = &self->base;
+	return GZ_OK;
+}
+
+static size_t raycast_bind(void *settings, struct gz_option_binding *out_bindings, size_t room)
+{
+	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
+	gz_ray_params_bind(settings, bindings);
+	const size_t count = room < GZ_RAY_BINDINGS ? room : GZ_RAY_BINDINGS;
+	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
+	return GZ_RAY_BINDINGS;
+}
+
+static const char *const raycast_backends[] = { "gl", "cpu", NULL };
+
+const struct gz_technique gz_raycast_technique = {
+	.name = "raycast",
+	.help = "casts rays through a volume, coloured by its transfer function",
+	.shows = GZ_OBJECT_VOLUME,
+	.objects_max = 1,
+	.backends = raycast_backends,
+	.check = gz_raycaster_check,
+	.create = raycast_create,
+	.settings_size = sizeof(struct gz_ray_params),
+	.bind = raycast_bind,
+};

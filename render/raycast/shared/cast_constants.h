@@ -1,0 +1,29 @@
+/**
+ * @file
+ * Constants of casting. C and shaders share them: this text also
+ * stands in front of every shader that needs it, so it holds nothing but comments and #defines that
+ * mean the same in C and in GLSL 4.30: whole numbers (with U where unsigned), and single-precision
+ * numbers with F.
+ */
+#ifndef GZ_RENDER_RAYCAST_SHARED_CAST_CONSTANTS_H
+#define GZ_RENDER_RAYCAST_SHARED_CAST_CONSTANTS_H
+
+/** Edge of a macrocell, voxels. */
+#define GZ_MACROCELL_EDGE 8
+/** Between cells of reach where something shows, below, and empty ones. */
+#define GZ_REACH_BORDER 128
+#define GZ_REACH_MAX    127
+
+/** A ray ends when less than this share of the light behind it would come through. */
+#define GZ_TRANSMITTANCE_END (1.0F / 1024.0F)
+
+/** A last, partial segment shorter than this share of a step is left out: chosen, far below what
+ *  changes a pixel. */
+#define GZ_LAST_SEGMENT_LEAST 1e-4F
+
+/** The linear congruential step of gz_ray_jitter()'s hash (Press et al., Numerical Recipes, 7.1).
+ */
+#define GZ_JITTER_MULTIPLIER 1664525U
+#define GZ_JITTER_INCREMENT  1013904223U
+
+#endif

@@ -1,0 +1,91 @@
+#include "render/raycast/shared/ray_params.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "render/raycast/shared/cast_constants.h"
+
+static const char *const interpolation_names[] = { "trilinear", "nearest", NULL };
+static const char *const integration_names[] = { "sampled", "preintegrated", NULL };
+static const char *const shading_names[] = { "none", "gradient", NULL };
+
+#define AT(field) offsetof(struct gz_ray_params, field)
+
+const struct gz_option gz_ray_options[] = {
+	{ "render.background", GZ_OPTION_DOUBLE, AT(background), 0, 1, .count = 3,
+	  .preset = "0 0 0", .help = "red, green, blue" },
+	{ "render.ray_sampling_rate", GZ_OPTION_DOUBLE, AT(ray_sampling_rate),
+	  GZ_RAY_SAMPLING_RATE_MIN, GZ_RAY_SAMPLING_RATE_MAX, .preset = "1.5",
+	  .help = "samples per voxel length" },
+	{ "render.interpolation", GZ_OPTION_CHOICE, AT(interpolation),
+	  .choices = interpolation_names, .preset = "trilinear", .help = "between voxels" },
+	{ "render.integration", GZ_OPTION_CHOICE, AT(integration), .choices = integration_names,
+	  .preset = "sampled",
+	  .help = "preintegrated takes in all values between two samples, so that no thin layer is "
+		  "stepped over" },
+	{ "render.shading", GZ_OPTION_CHOICE, AT(shading), .choices = shading_names,
+	  .preset = "none", .help = "how light falls: gradient takes section [light]" },
+	{ "render.levels", GZ_OPTION_BOOL, AT(levels), .preset = "no",
+	  .help = "sample a coarser level of the volume where rays and steps are wide" },
+	{ "render.jitter", GZ_OPTION_INT, AT(jitter), 0, 2147483647, .preset = "0",
+	  .help = "seed of a shift of each ray's samples, which turns rings into noise; 0 = none" },
+	{ "render.early_termination", GZ_OPTION_BOOL, AT(early_termination), .preset = "yes",
+	  .help = "end rays that next to no light comes through; no is slower, for comparison" },
+};
+const size_t gz_ray_option_count = sizeof gz_ray_options / sizeof gz_ray_options[0];
+
+void gz_ray_params_bind(struct gz_ray_params *rays,
+			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS])
+{
+	const struct gz_option_binding bindings[GZ_RAY_BINDINGS] = {
+		{ gz_ray_options, gz_ray_option_count, rays, NULL },
+		{ gz_light_options, gz_light_option_count, &rays->light, NULL },
+		{ gz_clip_options, gz_clip_option_count, &rays->clip, NULL },
+	};
+	memcpy(out_bindings, bindings, sizeof bindings);
+}
+
+struct gz_ray_params gz_ray_params_default(void)
+{
+	struct gz_ray_params rays = { 0 };
+	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
+	gz_ray_params_bind(&rays, bindings);
+	for (size_t i = 0; i < GZ_RAY_BINDINGS; i++)
+		gz_options_preset(&bindings[i]);
+	return rays;
+}
+
+bool gz_ray_params_valid(const struct gz_ray_params *rays)
+{
+	return gz_options_hold(gz_ray_options, gz_ray_option_count, rays) &&
+	       gz_light_valid(&rays->light) && gz_clip_box_valid(&rays->clip);
+}
+
+bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b)
+{
+	return gz_options_same(gz_ray_options, gz_ray_option_count, a, b) &&
+	       gz_options_same(gz_light_options, gz_light_option_count, &a->light, &b->light) &&
+	       gz_clip_box_same(&a->clip, &b->clip);
+}
+
+float gz_ray_end_transmittance(const struct gz_ray_params *rays)
+{
+	return rays->early_termination ? GZ_TRANSMITTANCE_END : 0;
+}
+
+float gz_ray_jitter(int x, int y, int seed)
+{
+	if (seed == 0)
+		return 0;
+	uint32_t a = (uint32_t)x * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	uint32_t b = (uint32_t)y * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	uint32_t c = (uint32_t)seed * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
+	a += b * c;
+	b += c * a;
+	c += a * b;
+	a ^= a >> 16;
+	b ^= b >> 16;
+	c ^= c >> 16;
+	a += b * c;
+	return (float)(a >> 8) * 0x1p-24F;
+}

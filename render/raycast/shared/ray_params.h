@@ -1,0 +1,90 @@
+/**
+ * @file
+ * How rays are integrated, whatever the plan and the backend: the section [render] of a scene,
+ * with its light and clip box.
+ */
+#ifndef GZ_RENDER_RAYCAST_SHARED_RAY_PARAMS_H
+#define GZ_RENDER_RAYCAST_SHARED_RAY_PARAMS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/option.h"
+#include "render/data/clip_box.h"
+#include "render/light/light.h"
+
+/** Limits of ray_sampling_rate. Chosen: a step of 20 voxels shows nothing, one of 1/32 changes no
+ *  picture. */
+#define GZ_RAY_SAMPLING_RATE_MIN 0.05
+#define GZ_RAY_SAMPLING_RATE_MAX 32
+
+enum gz_interpolation { GZ_INTERPOLATION_TRILINEAR, GZ_INTERPOLATION_NEAREST };
+
+enum gz_shading {
+	GZ_SHADING_NONE,     /**< the transfer function's colour as it is */
+	GZ_SHADING_GRADIENT, /**< Blinn-Phong by the gradient, see struct gz_light */
+};
+
+/** How the transfer function is applied along a ray. */
+enum gz_integration {
+	GZ_INTEGRATION_SAMPLED,       /**< to the value in the middle of each segment */
+	GZ_INTEGRATION_PREINTEGRATED, /**< to all values between those at both ends of a segment,
+					 taken as linear between (Engel, Kraus and Ertl 2001) */
+};
+
+/** How rays are integrated. */
+struct gz_ray_params {
+	double ray_sampling_rate; /**< samples per voxel length at full resolution */
+	int interpolation;        /**< enum gz_interpolation */
+	int integration;          /**< enum gz_integration */
+	int shading;              /**< enum gz_shading */
+	bool levels;              /**< where steps and rays lie more than a voxel apart, sample a
+				     coarser level of the volume (Levoy and Whitaker 1990) */
+	int jitter;               /**< seed of gz_ray_jitter(); 0 = none */
+	bool early_termination;   /**< a ray ends when less than GZ_TRANSMITTANCE_END of the light
+				     behind it would come through; else when none would */
+	double background[3];     /**< [0, 1] each */
+	struct gz_light light;
+	struct gz_clip_box clip;
+};
+
+/** Table over struct gz_ray_params without its light and clip box: "render.…". */
+extern const struct gz_option gz_ray_options[];
+extern const size_t gz_ray_option_count;
+
+/** Tables that gz_ray_params_bind() gives. */
+#define GZ_RAY_BINDINGS 3
+
+/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…". The bindings have no
+ *  flags and borrow @p rays. */
+void gz_ray_params_bind(struct gz_ray_params *rays,
+			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
+
+/** The table's presets. */
+struct gz_ray_params gz_ray_params_default(void);
+
+/** Whether every field is within its range, as the table would have it, and the box holds
+ *  something. */
+bool gz_ray_params_valid(const struct gz_ray_params *rays);
+
+/** Whether every option has equal values. */
+bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b);
+
+/** The share of light with which a ray ends: GZ_TRANSMITTANCE_END, or 0 without early termination.
+ */
+float gz_ray_end_transmittance(const struct gz_ray_params *rays);
+
+/**
+ * By how much the segments of the ray through pixel (x, y) begin before it enters the box, [0, 1)
+ * of a step: the first segment then is what lies within the box, treated as one cut by a clip face.
+ * 24 bits of a hash of x, y and the seed: the first component of pcg3d (Jarzynski and Olano, Hash
+ * Functions for GPU Rendering, JCGT 9(3), 2020), in arithmetic modulo 2^32 the same everywhere:
+ *
+ *   a, b, c = each of x, y, seed * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT
+ *   a += b c;  b += c a;  c += a b;  each ^= itself >> 16;  a += b c;  the shift is (a >> 8) / 2^24
+ *
+ * 0 for a seed of 0.
+ */
+float gz_ray_jitter(int x, int y, int seed);
+
+#endif

@@ -1,0 +1,163 @@
+#include "render/reconstruct/cpu/lattice.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room behind each lattice, so that wide loads at its end stay inside. */
+enum { PADDING_POINTS = 32 };
+
+/* The first layer of spacing 1. A second one, by odd parameters, has room of its own, so that no
+ * two threads write one pixel. */
+static bool lies_in_picture(const struct gz_plan *plan, int layer)
+{
+	for (int earlier = 0; earlier < layer; earlier++)
+		if (plan->layers[earlier].spacing == 1)
+			return false;
+	return plan->layers[layer].spacing == 1;
+}
+
+static size_t points_outside_picture(const struct gz_plan *plan)
+{
+	size_t points = 0;
+	for (int i = 0; i < plan->layer_count; i++)
+		if (!lies_in_picture(plan, i))
+			points += (size_t)plan->layers[i].columns * (size_t)plan->layers[i].rows +
+				  PADDING_POINTS;
+	return points;
+}
+
+/* Blocks of all tiles: roots of the plan's quadtree, as far as the coarsest lattice reaches. */
+static enum gz_result prepare_blocks(struct gz_lattices *lattices, const struct gz_plan *plan)
+{
+	const struct gz_plan_layer *coarsest = &plan->layers[plan->layer_count - 1];
+	const int blocks_a_root =
+		(GZ_TILE_EDGE * coarsest->spacing + GZ_BLOCK_EDGE - 1) / GZ_BLOCK_EDGE;
+	const int columns = ((coarsest->columns - 1) / GZ_TILE_EDGE + 1) * blocks_a_root;
+	const int rows = ((coarsest->rows - 1) / GZ_TILE_EDGE + 1) * blocks_a_root;
+	const size_t needed = (size_t)columns * (size_t)rows;
+	if (needed > lattices->block_capacity) {
+		uint8_t *blocks = realloc(lattices->blocks, needed);
+		if (!blocks)
+			return GZ_ERR_NO_MEM;
+		lattices->blocks = blocks;
+		lattices->block_capacity = needed;
+	}
+	lattices->block_columns = columns;
+	memset(lattices->blocks, 0, needed);
+	return GZ_OK;
+}
+
+void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile)
+{
+	if (tile->layer == 0)
+		return;
+	const int edge = GZ_TILE_EDGE * lattices->layers[tile->layer].spacing / GZ_BLOCK_EDGE;
+	const size_t width = (size_t)(tile->pattern == GZ_TILE_QUINCUNX ? 2 * edge : edge);
+	uint8_t *row = lattices->blocks +
+		       (ptrdiff_t)(tile->y / GZ_BLOCK_EDGE) * lattices->block_columns +
+		       tile->x / GZ_BLOCK_EDGE;
+	for (int i = 0; i < edge; i++, row += lattices->block_columns)
+		memset(row, 2 * tile->layer + tile->pattern, width);
+}
+
+static void store_point(const struct gz_lattice *lattice, int column, int row, uint32_t pixel)
+{
+	if (column < lattice->columns && row < lattice->rows)
+		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
+}
+
+/* A tile of which all points lie on its lattice, whose first is (column, row). */
+static void store_whole(const struct gz_lattice *lattice, int pattern, int column, int row,
+			const uint32_t *pixels)
+{
+	uint32_t *to = lattice->points + (size_t)row * lattice->stride + (size_t)column;
+	const uint8_t *columns = gz_tile_columns[pattern];
+	for (int y = 0; y < GZ_TILE_EDGE; y++, to += lattice->stride) {
+		if (pattern == GZ_TILE_SQUARE)
+			memcpy(to, pixels + GZ_TILE_EDGE * y, GZ_TILE_EDGE * sizeof *to);
+		for (int x = 0; pattern != GZ_TILE_SQUARE && x < GZ_TILE_EDGE; x++)
+			to[columns[GZ_TILE_EDGE * y + x]] = pixels[GZ_TILE_EDGE * y + x];
+	}
+}
+
+/* Points of a pyramid that are points of coarser lattices too, each of which has every second point
+ * of the one before, along x and y, or fewer. */
+static void store_coarser(const struct gz_lattices *lattices, const struct gz_tile *tile, int last,
+			  int column, int row, const uint32_t *pixels)
+{
+	const uint8_t *columns = gz_tile_columns[tile->pattern];
+	const int spacing = lattices->layers[tile->layer].spacing;
+	for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
+		const int x = column + columns[i], y = row + gz_tile_rows[i];
+		if ((x | y) & 1)
+			continue;
+		for (int layer = tile->layer + 1; layer <= last; layer++) {
+			const struct gz_lattice *lattice = &lattices->layers[layer];
+			const int shift = __builtin_ctz((unsigned)lattice->spacing) -
+					  __builtin_ctz((unsigned)spacing);
+			if ((x | y) & ((1 << shift) - 1))
+				break;
+			store_point(lattice, x >> shift, y >> shift, pixels[i]);
+		}
+	}
+}
+
+void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
+		       const struct gz_tile *tile, uint32_t active,
+		       const uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE])
+{
+	const struct gz_lattice *lattice = &lattices->layers[tile->layer];
+	const uint8_t *columns = gz_tile_columns[tile->pattern];
+	const int column = tile->x / lattice->spacing, row = tile->y / lattice->spacing;
+	if (active == 0xFFFF)
+		store_whole(lattice, tile->pattern, column, row, pixels);
+	else
+		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++)
+			store_point(lattice, column + columns[i], row + gz_tile_rows[i], pixels[i]);
+	if (plan->reconstruction != GZ_RECONSTRUCT_PYRAMID)
+		return;
+	gz_lattices_mark(lattices, tile);
+	store_coarser(lattices, tile, plan->layer_count - 1, column, row, pixels);
+}
+
+enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,
+				   uint32_t *picture)
+{
+	const size_t needed = points_outside_picture(plan);
+	if (needed > lattices->capacity) {
+		uint32_t *memory = realloc(lattices->memory, needed * sizeof *memory);
+		if (!memory)
+			return GZ_ERR_NO_MEM;
+		lattices->memory = memory;
+		lattices->capacity = needed;
+	}
+	if (plan->reconstruction == GZ_RECONSTRUCT_PYRAMID) {
+		const enum gz_result result = prepare_blocks(lattices, plan);
+		if (result != GZ_OK)
+			return result;
+	}
+	lattices->count = plan->layer_count;
+	uint32_t *next = lattices->memory;
+	for (int i = 0; i < plan->layer_count; i++) {
+		const struct gz_plan_layer *layer = &plan->layers[i];
+		struct gz_lattice *lattice = &lattices->layers[i];
+		lattice->spacing = layer->spacing;
+		lattice->columns = layer->columns;
+		lattice->rows = layer->rows;
+		lattice->stride = (size_t)layer->columns;
+		if (lies_in_picture(plan, i)) {
+			lattice->points = picture;
+			continue;
+		}
+		lattice->points = next;
+		next += (size_t)layer->columns * (size_t)layer->rows + PADDING_POINTS;
+	}
+	return GZ_OK;
+}
+
+void gz_lattices_free(struct gz_lattices *lattices)
+{
+	free(lattices->memory);
+	free(lattices->blocks);
+	*lattices = (struct gz_lattices) { 0 };
+}

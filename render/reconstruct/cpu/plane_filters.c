@@ -1,0 +1,82 @@
+/* Filters of planes beside the colours. Points may have nothing to say: INFINITY in a plane of
+ * numbers. Where one of the points that a filter reads has nothing, there is no mean: the nearer
+ * points count, then the nearest. Numbers of objects never mix. */
+#include <math.h>
+
+#include "render/reconstruct/cpu/reconstruct.h"
+
+static float value_mean_of_2(float a, float b)
+{
+	const float mean = 0.5F * (a + b);
+	return isfinite(mean) ? mean : a;
+}
+
+static float value_mean_of_4(float a, float b, float c, float d)
+{
+	const float mean = 0.25F * (a + b + c + d);
+	return isfinite(mean) ? mean : a;
+}
+
+/* Catmull-Rom, never outside of [b, c]. */
+static float value_cubic(float a, float b, float c, float d)
+{
+	const float value = (9 * (b + c) - (a + d)) / 16;
+	if (!isfinite(value))
+		return value_mean_of_2(b, c);
+	return fminf(fmaxf(value, fminf(b, c)), fmaxf(b, c));
+}
+
+static float value_mix(float a, float b, float share)
+{
+	const float mixed = a + (b - a) * share;
+	if (isfinite(mixed))
+		return mixed;
+	return share < 0.5F ? a : b;
+}
+
+#define POINT       float
+#define PLANE(name) value_##name
+#include "render/reconstruct/cpu/plane_rows.h"
+
+static uint32_t id_mean_of_2(uint32_t a, uint32_t b)
+{
+	(void)b;
+	return a;
+}
+
+static uint32_t id_mean_of_4(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+	(void)b, (void)c, (void)d;
+	return a;
+}
+
+static uint32_t id_cubic(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+	(void)a, (void)c, (void)d;
+	return b;
+}
+
+static uint32_t id_mix(uint32_t a, uint32_t b, float share)
+{
+	return share < 0.5F ? a : b;
+}
+
+#define POINT       uint32_t
+#define PLANE(name) id_##name
+#include "render/reconstruct/cpu/plane_rows.h"
+
+struct gz_row_filters gz_row_filters_of_plane(enum gz_plane_kind kind,
+					      const struct gz_row_filters *colours)
+{
+	struct gz_row_filters filters = *colours;
+	const struct gz_row_filters *own = kind == GZ_PLANE_VALUE ? &value_filters : &id_filters;
+	if (kind == GZ_PLANE_COLOUR)
+		return filters;
+	filters.double_cubic = own->double_cubic;
+	filters.double_mean = own->double_mean;
+	filters.quincunx_cubic = own->quincunx_cubic;
+	filters.quincunx_mean = own->quincunx_mean;
+	filters.span = own->span;
+	filters.blend = own->blend;
+	return filters;
+}

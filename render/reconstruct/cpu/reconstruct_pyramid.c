@@ -1,0 +1,416 @@
+/*
+ * Pyramid reconstruction: the lattice of spacing s is filled from that of 2s, coarse to fine, where
+ * nothing was cast (docs/foveation.md has the formulas).
+ *
+ * The picture is cut into squares, and each is made in one go: its part of every lattice is filled
+ * in a scratch buffer that stays in the cache, with a margin as wide as the filters of the next
+ * finer lattice reach, and the last fill writes the picture. Points of margins are made more than
+ * once, always the same, so squares need nothing of each other. Lattices coarser than any tile that
+ * a square looks at are left alone, and so is all arithmetic where everything that the filters
+ * would read is of one colour: that colour is what they would make of it.
+ */
+#include <string.h>
+
+#include "render/reconstruct/cpu/reconstruct.h"
+
+enum {
+	SQUARE_WIDTH = GZ_ROW_STREAMED, /* px; chosen: margins are a tenth of the work, and the
+					   buffers fit a */
+	SQUARE_HEIGHT = 128,            /* second-level cache */
+	BLOCK = GZ_BLOCK_EDGE,
+	REACH = 3, /* how far a filter of quincunx tiles looks along an axis */
+	/* A lattice's part of a square: half of it, and at both ends what the filters of two finer
+	 * lattices reach, a start rounded down to even each time. */
+	PATCH_WIDTH = SQUARE_WIDTH / 2 + 4 + 2 * (REACH + 1),
+	PATCH_HEIGHT = SQUARE_HEIGHT / 2 + 4 + 2 * (REACH + 1),
+	LEFT = 16, /* room for points beyond the rim, and aligned */
+	PATCH_STRIDE = LEFT + (PATCH_WIDTH + REACH + 2 * GZ_ROW_POINTS + 15) / 16 * 16,
+	PATCH_ROWS = PATCH_HEIGHT + 2 * REACH + 1,
+	FLAT_WIDTH = 2 * GZ_ROW_POINTS, /* px whose source is looked at together for one colour */
+};
+
+/* Columns [x0, x1) and rows [y0, y1) of a lattice. */
+struct range {
+	int x0, y0, x1, y1;
+};
+
+/* A part of a lattice. */
+struct patch {
+	struct range all;    /* what is there before quincunx tiles are filled */
+	struct range needed; /* what finer lattices look at */
+	int columns, rows;   /* of the whole lattice */
+	ptrdiff_t stride;
+	uint32_t *first;              /* point (all.x0, all.y0) */
+	bool cast, quincunx, coarser; /* what its blocks ask for */
+};
+
+/* What is to be done with a run of blocks. */
+enum fill {
+	FILL_NONE,     /* every point was cast */
+	FILL_QUINCUNX, /* every second was */
+	FILL_COARSER,  /* from the next coarser lattice */
+};
+
+struct square {
+	const struct gz_plan *plan;
+	const struct gz_lattices *lattices;
+	const struct gz_row_filters *filters;
+	bool stream;
+	struct patch patches[GZ_PLAN_LAYERS_MAX];
+	uint32_t unused_row[SQUARE_WIDTH];
+};
+
+static uint32_t *at(const struct patch *patch, int x, int y)
+{
+	return patch->first + (y - patch->all.y0) * patch->stride + (x - patch->all.x0);
+}
+
+static int least(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+static int block_end(int x, int end)
+{
+	return least(x - x % BLOCK + BLOCK, end);
+}
+
+static enum fill fill_of_block(const struct square *square, int level, int x, int y)
+{
+	const int tile =
+		gz_lattices_block(square->lattices, (x / BLOCK) << level, (y / BLOCK) << level);
+	if (tile / 2 > level)
+		return FILL_COARSER;
+	return tile == 2 * level + 1 ? FILL_QUINCUNX : FILL_NONE;
+}
+
+/* The end of the run of blocks that begins at (x, y) and asks for the same, `last` at most. */
+static int run_end(const struct square *square, int level, int x, int y, int last,
+		   enum fill *out_fill)
+{
+	*out_fill = fill_of_block(square, level, x, y);
+	int end = x - x % BLOCK + BLOCK;
+	while (end < last && fill_of_block(square, level, end, y) == *out_fill)
+		end += BLOCK;
+	return least(end, last);
+}
+
+/* Rows y and y + 1, points [x, end), from the coarser lattice; of rows before `bottom`. */
+static void fill_rows(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *patch = &square->patches[level];
+	const struct patch *coarse = &square->patches[level + 1];
+	const uint32_t *row = at(coarse, x / 2, y / 2);
+	uint32_t *even = at(patch, x, y);
+	uint32_t *odd = y + 1 < bottom ? even + patch->stride : square->unused_row;
+	const bool stream = level == 0 && square->stream;
+	if (square->plan->filter == GZ_FILTER_BILINEAR)
+		square->filters->double_mean(row, coarse->stride, even, odd, end - x, stream);
+	else
+		square->filters->double_cubic(row, coarse->stride, even, odd, end - x, stream);
+}
+
+/* Whether all that filters read for points [x, end) of rows [y, bottom) is of one colour. */
+static bool is_flat(const struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *coarse = &square->patches[level + 1];
+	const int left = x / 2 - 1, right = (end - 1) / 2 + 3;
+	const int top = y / 2 - 1, below = (bottom - 1) / 2 + 3;
+	return square->filters->all_are(at(coarse, left, top), coarse->stride, right - left,
+					below - top, *at(coarse, x / 2, y / 2));
+}
+
+/* Points [x, end) of rows [y, bottom), as many as a block has, from the coarser lattice. */
+static void fill_run(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *coarse = &square->patches[level + 1];
+	const bool stream = level == 0 && square->stream;
+	for (int to; x < end; x = to) {
+		to = least(x + FLAT_WIDTH, end);
+		const bool flat = is_flat(square, level, x, to, y, bottom);
+		const uint32_t colour = *at(coarse, x / 2, y / 2);
+		for (int next = to; next < end; to = next) {
+			next = least(to + FLAT_WIDTH, end);
+			if (is_flat(square, level, to, next, y, bottom) != flat ||
+			    (flat && *at(coarse, to / 2, y / 2) != colour))
+				break;
+		}
+		if (flat)
+			for (int row = y; row < bottom; row++)
+				square->filters->fill(colour, at(&square->patches[level], x, row),
+						      to - x, stream);
+		else
+			for (int row = y; row < bottom; row += 2)
+				fill_rows(square, level, x, to, row, bottom);
+	}
+}
+
+static void take_cast_rows(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct gz_lattice *lattice = &square->lattices->layers[level];
+	for (int row = y; row < bottom; row++)
+		memcpy(at(&square->patches[level], x, row),
+		       lattice->points + (size_t)row * lattice->stride + (size_t)x,
+		       (size_t)(end - x) * 4);
+}
+
+/* What was cast, and what comes from the coarser lattice. */
+static void fill_patch(struct square *square, int level)
+{
+	const struct range *all = &square->patches[level].all;
+	for (int y = all->y0, bottom; y < all->y1; y = bottom) {
+		bottom = block_end(y, all->y1);
+		enum fill fill;
+		for (int x = all->x0, end; x < all->x1; x = end) {
+			end = run_end(square, level, x, y, all->x1, &fill);
+			if (fill == FILL_COARSER)
+				fill_run(square, level, x, end, y, bottom);
+			else if (level > 0) /* level 0 is cast into the picture */
+				take_cast_rows(square, level, x, end, y, bottom);
+		}
+	}
+}
+
+/* Index of the point that stands for number i of a lattice's count: mirrored about both ends, which
+ * keeps odd numbers odd. */
+static int mirrored(int i, int count)
+{
+	const int period = 2 * (count - 1);
+	if (period == 0)
+		return 0;
+	i = (i % period + period) % period;
+	return i < count ? i : period - i;
+}
+
+/* Give a patch that touches the lattice's rim the points beyond. */
+static void extend_beyond_rim(const struct patch *patch)
+{
+	const struct range *all = &patch->all;
+	for (int i = 1; i <= REACH; i++) {
+		const int left = mirrored(-i, patch->columns), right = all->x1 - 1 + i;
+		const int stands_in = mirrored(right, patch->columns);
+		for (int y = all->y0; y < all->y1; y++) {
+			if (all->x0 == 0)
+				*at(patch, -i, y) = *at(patch, left, y);
+			if (all->x1 == patch->columns)
+				*at(patch, right, y) = *at(patch, stands_in, y);
+		}
+	}
+	const size_t row_bytes = (size_t)(all->x1 - all->x0 + 2 * REACH) * 4;
+	for (int i = 1; i <= REACH; i++) {
+		if (all->y0 == 0)
+			memcpy(at(patch, all->x0 - REACH, -i),
+			       at(patch, all->x0 - REACH, mirrored(-i, patch->rows)), row_bytes);
+		if (all->y1 == patch->rows)
+			memcpy(at(patch, all->x0 - REACH, all->y1 - 1 + i),
+			       at(patch, all->x0 - REACH, mirrored(all->y1 - 1 + i, patch->rows)),
+			       row_bytes);
+	}
+}
+
+/* A lattice of one column or one row has neighbours along the other axis only: it is filled as odd
+ * rows are, from points that lie along that axis. */
+static void fill_quincunx_line(struct square *square, int level, int x, int end, int y)
+{
+	const struct patch *patch = &square->patches[level];
+	const ptrdiff_t step = patch->columns == 1 ? patch->stride : 1;
+	for (x += (x + y) % 2 == 0; x < end; x += 2) {
+		uint32_t *point = at(patch, x, y);
+		uint32_t made;
+		if (square->plan->filter == GZ_FILTER_BILINEAR)
+			square->filters->double_mean(point - step, 2 * step, square->unused_row,
+						     &made, 1, false);
+		else
+			square->filters->double_cubic(point - step, 2 * step, square->unused_row,
+						      &made, 1, false);
+		*point = made;
+	}
+}
+
+/* Rows y, which is even, and y + 1 if it is before `bottom`. */
+static void fill_quincunx_rows(struct square *square, int level, int x, int end, int y, int bottom)
+{
+	const struct patch *patch = &square->patches[level];
+	const int rows = least(bottom - y, 2), first = x % 2 == 0;
+	if (patch->columns == 1 || patch->rows == 1) {
+		for (int row = y; row < y + rows; row++)
+			fill_quincunx_line(square, level, x, end, row);
+		return;
+	}
+	if (square->plan->filter == GZ_FILTER_BILINEAR)
+		square->filters->quincunx_mean(at(patch, x, y), patch->stride, first, rows,
+					       end - x);
+	else
+		square->filters->quincunx_cubic(at(patch, x, y), patch->stride, first, rows,
+						end - x);
+}
+
+/* The points between those of quincunx tiles. */
+static void fill_quincunx(struct square *square, int level)
+{
+	const struct range *needed = &square->patches[level].needed;
+	enum fill fill;
+	for (int y = needed->y0, bottom; y < needed->y1; y = bottom) {
+		bottom = block_end(y, needed->y1);
+		for (int x = needed->x0, end; x < needed->x1; x = end) {
+			end = run_end(square, level, x, y, needed->x1, &fill);
+			for (int row = y; row < bottom && fill == FILL_QUINCUNX; row += 2)
+				fill_quincunx_rows(square, level, x, end, row, bottom);
+		}
+	}
+}
+
+static bool at_rim(const struct patch *patch)
+{
+	return patch->all.x0 == 0 || patch->all.y0 == 0 || patch->all.x1 == patch->columns ||
+	       patch->all.y1 == patch->rows;
+}
+
+static void fill_level(struct square *square, int level)
+{
+	const struct patch *patch = &square->patches[level];
+	fill_patch(square, level);
+	if (level == 0)
+		return;
+	if (at_rim(patch))
+		extend_beyond_rim(patch);
+	if (!patch->quincunx)
+		return;
+	fill_quincunx(square, level);
+	if (at_rim(patch))
+		extend_beyond_rim(patch);
+}
+
+/* The finest lattice on which something was cast that the square looks at. */
+static int finest_cast(const struct square *square)
+{
+	int level = 0;
+	while (!square->patches[level].cast && !square->patches[level].quincunx)
+		level++;
+	return level;
+}
+
+/* Fill the square in the one colour of all that it needs of a lattice. Whether it is one. */
+static bool fill_flat_square(const struct square *square, int level)
+{
+	const struct patch *patch = &square->patches[level], *picture = &square->patches[0];
+	const struct range *needed = &patch->needed;
+	const uint32_t colour = *at(patch, needed->x0, needed->y0);
+	if (!square->filters->all_are(at(patch, needed->x0, needed->y0), patch->stride,
+				      needed->x1 - needed->x0, needed->y1 - needed->y0, colour))
+		return false;
+	for (int y = picture->all.y0; y < picture->all.y1; y++)
+		square->filters->fill(colour, at(picture, picture->all.x0, y),
+				      picture->all.x1 - picture->all.x0, square->stream);
+	return true;
+}
+
+/* Note what the blocks of a range ask for. */
+static void survey(const struct square *square, int level, const struct range *range,
+		   struct patch *patch)
+{
+	enum fill fill;
+	for (int y = range->y0; y < range->y1; y = block_end(y, range->y1))
+		for (int x = range->x0, end; x < range->x1; x = end) {
+			end = run_end(square, level, x, y, range->x1, &fill);
+			patch->cast |= fill == FILL_NONE;
+			patch->quincunx |= fill == FILL_QUINCUNX;
+			patch->coarser |= fill == FILL_COARSER;
+		}
+}
+
+/* What columns or rows [*from, *to) of a lattice take from those of the next coarser one: one
+ * before and two behind. Starts are even, so that pairs are whole. */
+static void halve_range(int *from, int *to, int count)
+{
+	*from = *from / 2 - 1;
+	*from = *from > 0 ? *from - *from % 2 : 0;
+	*to = least((*to - 1) / 2 + 3, count);
+}
+
+/* As far as quincunx tiles look. */
+static void widen_range(int *from, int *to, int count)
+{
+	*from = *from > REACH ? *from - REACH - 1 : 0;
+	*to = least(*to + REACH, count);
+}
+
+static void lay_out_coarser(struct square *square, int level, uint32_t *memory)
+{
+	const struct gz_lattice *lattice = &square->lattices->layers[level];
+	struct patch *patch = &square->patches[level];
+	*patch = (struct patch) {
+		.needed = square->patches[level - 1].all,
+		.columns = lattice->columns,
+		.rows = lattice->rows,
+		.stride = PATCH_STRIDE,
+		.first = memory + (ptrdiff_t)REACH * PATCH_STRIDE + LEFT,
+	};
+	halve_range(&patch->needed.x0, &patch->needed.x1, patch->columns);
+	halve_range(&patch->needed.y0, &patch->needed.y1, patch->rows);
+	survey(square, level, &patch->needed, patch);
+	patch->all = patch->needed;
+	if (!patch->quincunx)
+		return;
+	widen_range(&patch->all.x0, &patch->all.x1, patch->columns);
+	widen_range(&patch->all.y0, &patch->all.y1, patch->rows);
+	survey(square, level, &patch->all, patch);
+}
+
+static void lay_out_picture(struct square *square, int column, int row)
+{
+	const struct gz_lattice *picture = &square->lattices->layers[0];
+	struct patch *patch = &square->patches[0];
+	patch->all = (struct range) {
+		column * SQUARE_WIDTH,
+		row * SQUARE_HEIGHT,
+		least((column + 1) * SQUARE_WIDTH, picture->columns),
+		least((row + 1) * SQUARE_HEIGHT, picture->rows),
+	};
+	patch->needed = patch->all;
+	patch->columns = picture->columns;
+	patch->rows = picture->rows;
+	patch->stride = (ptrdiff_t)picture->stride;
+	patch->first = picture->points + patch->all.y0 * patch->stride + patch->all.x0;
+	survey(square, 0, &patch->all, patch);
+}
+
+/* The coarsest lattice on which all that the square needs was cast, or the coarsest of all. */
+static int lay_out(struct square *square, int column, int row,
+		   uint32_t memory[][PATCH_ROWS * PATCH_STRIDE])
+{
+	lay_out_picture(square, column, row);
+	int level = 0;
+	while (square->patches[level].coarser && level + 1 < square->lattices->count) {
+		level++;
+		lay_out_coarser(square, level, memory[level - 1]);
+	}
+	return level;
+}
+
+void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
+			   const struct gz_row_filters *filters, int column, int row)
+{
+	uint32_t memory[GZ_PLAN_LAYERS_MAX - 1][PATCH_ROWS * PATCH_STRIDE];
+	struct square square = {
+		.plan = plan,
+		.lattices = lattices,
+		.filters = filters,
+		.stream = gz_reconstruct_streams(plan),
+	};
+	const int coarsest = lay_out(&square, column, row, memory);
+	if (coarsest == 0)
+		return;
+	const int finest = finest_cast(&square);
+	for (int level = coarsest; level >= 0; level--) {
+		fill_level(&square, level);
+		if (level > 0 && level == finest && fill_flat_square(&square, level))
+			return;
+	}
+}
+
+void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows)
+{
+	*out_columns = (plan->width + SQUARE_WIDTH - 1) / SQUARE_WIDTH;
+	*out_rows = (plan->height + SQUARE_HEIGHT - 1) / SQUARE_HEIGHT;
+}

@@ -1,0 +1,195 @@
+#include "render/reconstruct/gl/gl_reconstruct.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#define GZ_LOG_MODULE "gl"
+
+/* Made from files when the program is built. */
+extern const char gz_glsl_plan_constants_h[];
+extern const char gz_glsl_plan_glsl[];
+extern const char gz_glsl_pyramid_glsl[];
+extern const char gz_glsl_fill_comp[];
+extern const char gz_glsl_quincunx_comp[];
+extern const char gz_glsl_regions_comp[];
+
+#define TEXT_OF(number)      #number
+#define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
+
+static const char plan_sizes[] = DEFINE("GROUP_SIZE", GZ_GL_GROUP_SIZE)
+	DEFINE("TILE_POINTS", GZ_GL_TILE_POINTS) DEFINE("IMAGE_POINTS", GZ_GL_IMAGE_POINTS);
+
+const char *const gz_gl_plan_parts[GZ_GL_PLAN_PARTS] = { gz_glsl_plan_constants_h, plan_sizes,
+							 gz_glsl_plan_glsl };
+
+/* Locations and sizes of the shaders. */
+enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BLOCK_EDGE = 8 };
+enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
+
+static const char *const plane_defines[GZ_PLANE_KIND_COUNT] = {
+	[GZ_PLANE_COLOUR] = "",
+	[GZ_PLANE_VALUE] = "#define PLANE_VALUE\n",
+	[GZ_PLANE_ID] = "#define PLANE_ID\n",
+};
+
+const char *gz_gl_device_defines(const struct gz_gl_device *device)
+{
+	return device->software ? "#define FETCH_IMAGES\n" : "";
+}
+
+void gz_gl_dispatch(const struct gz_gl_device *device, struct gz_gl_items items)
+{
+	const size_t most = (size_t)device->groups_max * items.a_group;
+	const size_t end = items.first + items.count;
+	for (size_t from = items.first; from < end;) {
+		const size_t left = end - from, now = left < most ? left : most;
+		glUniform1ui(FIRST_ITEM, (GLuint)from);
+		glUniform1ui(ITEM_END, (GLuint)(from + now));
+		glDispatchCompute((GLuint)((now + items.a_group - 1) / items.a_group), 1, 1);
+		from += now;
+	}
+}
+
+static void await_points(void)
+{
+	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+/* One pass: its file, and one before it or NULL. */
+struct plane_pass {
+	const char *name, *before, *file;
+	bool bilinear;
+};
+
+/* Use the program of a pass, made if there is none yet. */
+static enum gz_result use_pass(unsigned *program, const struct plane_pass *pass,
+			       const struct gz_gl_reconstruct_job *job)
+{
+	if (!*program) {
+		char defines[120];
+		snprintf(defines, sizeof defines, "%s%s%s", plane_defines[job->kind],
+			 pass->bilinear ? "#define BILINEAR\n" : "",
+			 gz_gl_device_defines(job->device));
+		struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
+					       .name = pass->name,
+					       .defines = defines };
+		int count = GZ_GL_PLAN_PARTS;
+		memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
+		if (pass->before)
+			shader.parts[count++] = pass->before;
+		shader.parts[count] = pass->file;
+		*program = gz_gl_program(&shader, 1, "use --backend cpu", job->log);
+	}
+	if (!*program)
+		return GZ_ERR_UNSUPPORTED;
+	glUseProgram(*program);
+	return GZ_OK;
+}
+
+/* Numbers of objects are not filtered: the shaders' shorter path does. */
+static bool is_bilinear(const struct gz_gl_reconstruct_job *job)
+{
+	return job->plan->filter == GZ_FILTER_BILINEAR || job->kind == GZ_PLANE_ID;
+}
+
+/* A pass of the pyramid over lattice @p level, ready to be dispatched. */
+static enum gz_result use_pyramid_pass(unsigned programs[2], struct plane_pass pass, int level,
+				       const struct gz_gl_reconstruct_job *job)
+{
+	pass.before = gz_glsl_pyramid_glsl;
+	pass.bilinear = is_bilinear(job);
+	const enum gz_result result = use_pass(&programs[pass.bilinear], &pass, job);
+	if (result != GZ_OK)
+		return result;
+	await_points();
+	glUniform1ui(LEVEL, (GLuint)level);
+	return GZ_OK;
+}
+
+/* Points of lattice @p level that lie in coarser tiles. */
+static enum gz_result fill_level(struct gz_gl_reconstruct *programs,
+				 const struct gz_gl_reconstruct_job *job, int level)
+{
+	const size_t tiles = job->plan->tile_count;
+	const size_t first = level + 1 < job->plan->layer_count
+				     ? job->gl_plan->ranges[level + 1][0].first
+				     : tiles;
+	if (first == tiles)
+		return GZ_OK;
+	const struct plane_pass pass = { .name = "fill.comp", .file = gz_glsl_fill_comp };
+	const enum gz_result result = use_pyramid_pass(programs->fill[job->kind], pass, level, job);
+	if (result == GZ_OK)
+		gz_gl_dispatch(job->device, (struct gz_gl_items) { first, tiles - first, 1 });
+	return result;
+}
+
+/* Points of lattice @p level between those of quincunx tiles. */
+static enum gz_result fill_quincunx(struct gz_gl_reconstruct *programs,
+				    const struct gz_gl_reconstruct_job *job, int level)
+{
+	const struct gz_gl_tile_range *range = &job->gl_plan->ranges[level][GZ_TILE_QUINCUNX];
+	if (range->count == 0)
+		return GZ_OK;
+	const struct plane_pass pass = { .name = "quincunx.comp", .file = gz_glsl_quincunx_comp };
+	const enum gz_result result =
+		use_pyramid_pass(programs->quincunx[job->kind], pass, level, job);
+	if (result == GZ_OK)
+		gz_gl_dispatch(job->device,
+			       (struct gz_gl_items) { range->first, range->count, TILES_A_GROUP });
+	return result;
+}
+
+static enum gz_result fill_pyramid(struct gz_gl_reconstruct *programs,
+				   const struct gz_gl_reconstruct_job *job)
+{
+	enum gz_result result = GZ_OK;
+	for (int level = job->plan->layer_count - 1; level >= 0 && result == GZ_OK; level--) {
+		result = fill_level(programs, job, level);
+		if (result == GZ_OK)
+			result = fill_quincunx(programs, job, level);
+	}
+	return result;
+}
+
+static enum gz_result fill_regions(struct gz_gl_reconstruct *programs,
+				   const struct gz_gl_reconstruct_job *job)
+{
+	const struct plane_pass pass = { .name = "regions.comp", .file = gz_glsl_regions_comp };
+	enum gz_result result = use_pass(&programs->regions[job->kind], &pass, job);
+	if (result == GZ_OK)
+		result = gz_gl_plan_bind_spans(job->gl_plan, job->plan, job->log);
+	if (result != GZ_OK)
+		return result;
+	await_points();
+	glUniform1ui(FIRST_ITEM, 0);
+	glDispatchCompute((GLuint)((job->plan->width + BLOCK_EDGE - 1) / BLOCK_EDGE),
+			  (GLuint)((job->plan->height + BLOCK_EDGE - 1) / BLOCK_EDGE), 1);
+	return GZ_OK;
+}
+
+enum gz_result gz_gl_reconstruct(struct gz_gl_reconstruct *programs,
+				 const struct gz_gl_reconstruct_job *job)
+{
+	enum gz_result result = GZ_OK;
+	gz_gl_points_bind(job->points);
+	if (job->plan->reconstruction == GZ_RECONSTRUCT_PYRAMID)
+		result = fill_pyramid(programs, job);
+	else if (job->plan->reconstruction == GZ_RECONSTRUCT_REGIONS)
+		result = fill_regions(programs, job);
+	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+			GL_SHADER_STORAGE_BARRIER_BIT);
+	glUseProgram(0);
+	return result;
+}
+
+void gz_gl_reconstruct_free(struct gz_gl_reconstruct *programs)
+{
+	const GLuint *names = &programs->fill[0][0];
+	/* Without a program GLEW may have no functions yet. */
+	for (size_t i = 0; i < sizeof *programs / sizeof *names; i++)
+		if (names[i])
+			glDeleteProgram(names[i]);
+	*programs = (struct gz_gl_reconstruct) { 0 };
+}

@@ -1,0 +1,168 @@
+#include "render/scene/scene_objects.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/ini.h"
+#include "render/scene/techniques.h"
+
+#define GZ_LOG_MODULE "scene"
+
+static const char section_start[] = "object";
+
+#define AT(field) offsetof(struct gz_scene_object, field)
+
+const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
+	{ "object.technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_names,
+	  .preset = "raycast", .help = "how the object is drawn" },
+	{ "object.volume", GZ_OPTION_STRING, AT(volume), .max = GZ_SCENE_FILE_SIZE, .preset = "",
+	  .help = "volume file, looked up as volume.file" },
+	{ "object.transfer", GZ_OPTION_STRING, AT(transfer), .max = GZ_SCENE_FILE_SIZE,
+	  .preset = "", .help = "transfer function of the volume; without it one is made" },
+	{ "object.labels", GZ_OPTION_STRING, AT(labels), .max = GZ_SCENE_FILE_SIZE, .preset = "",
+	  .help = "label volume, a whole number for each region" },
+	{ "object.mesh", GZ_OPTION_STRING, AT(mesh), .max = GZ_SCENE_FILE_SIZE, .preset = "",
+	  .help = "triangle mesh" },
+	{ "object.particles", GZ_OPTION_STRING, AT(particles), .max = GZ_SCENE_FILE_SIZE,
+	  .preset = "", .help = "particles of a liquid" },
+	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
+	  .help = "whether the object is drawn" },
+	{ "object.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0.5",
+	  .help = "how much the object matters, 0 to 1" },
+	{ "object.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_NAME_SIZE, .preset = "",
+	  .help = "template of illustrative settings" },
+};
+
+struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
+					      struct gz_scene_object_table *table)
+{
+	for (size_t i = 0; i < GZ_SCENE_OBJECT_OPTIONS; i++) {
+		table->options[i] = gz_scene_object_options[i];
+		snprintf(table->keys[i], sizeof table->keys[i], "%s%s", object->section,
+			 strchr(gz_scene_object_options[i].key, '.'));
+		table->options[i].key = table->keys[i];
+	}
+	return (struct gz_option_binding) { table->options, GZ_SCENE_OBJECT_OPTIONS, object, NULL };
+}
+
+const char *gz_scene_object_name(const struct gz_scene_object *object)
+{
+	return object->section + sizeof section_start;
+}
+
+int gz_scene_objects_find(const struct gz_scene_objects *objects, const char *section)
+{
+	for (size_t i = 0; i < objects->count; i++)
+		if (strcmp(objects->items[i].section, section) == 0)
+			return (int)i;
+	return -1;
+}
+
+/* The text whose sections are looked for. */
+struct object_scan {
+	const char *name;
+	const struct gz_log *log;
+	struct gz_scene_objects *objects;
+};
+
+static enum gz_result refuse_section(const struct object_scan *scan, int line, const char *what)
+{
+	gz_err(scan->log, "%s:%d: %s", scan->name, line, what);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result note_section(void *user, const struct gz_ini_item *item)
+{
+	const struct object_scan *scan = user;
+	struct gz_scene_objects *objects = scan->objects;
+	const size_t length = sizeof section_start - 1;
+	const char *section = item->section;
+	if (strncmp(section, section_start, length) != 0 ||
+	    (section[length] != ' ' && section[length] != '\0') ||
+	    gz_scene_objects_find(objects, section) >= 0)
+		return GZ_OK;
+	if (section[length] == '\0' || strchr(section, '.') || section[length + 1] == ' ')
+		return refuse_section(scan, item->line,
+				      "an object has a name without a dot, as in [object liver]");
+	if (objects->count == GZ_SCENE_OBJECTS_MAX)
+		return refuse_section(scan, item->line, "a scene has at most 32 objects");
+	struct gz_scene_object *object = &objects->items[objects->count++];
+	snprintf(object->section, sizeof object->section, "%s", section);
+	const struct gz_option_binding binding = { gz_scene_object_options, GZ_SCENE_OBJECT_OPTIONS,
+						   object, NULL };
+	return gz_options_preset(&binding);
+}
+
+enum gz_result gz_scene_objects_scan(const char *name, const char *text, size_t size,
+				     const struct gz_log *log, struct gz_scene_objects *out_objects)
+{
+	struct object_scan scan = { name, log, out_objects };
+	*out_objects = (struct gz_scene_objects) { 0 };
+	return text ? gz_ini_read_text(name, text, size, note_section, &scan, log)
+		    : gz_ini_read_file(name, note_section, &scan, log);
+}
+
+/* The kinds of data that an object is given, with the names of their keys. */
+static unsigned data_of(const struct gz_scene_object *object, const char **out_last)
+{
+	const struct {
+		const char *file, *name;
+		enum gz_object_data kind;
+	} data[] = {
+		{ object->volume, "volume", GZ_OBJECT_VOLUME },
+		{ object->labels, "labels", GZ_OBJECT_LABELS },
+		{ object->mesh, "mesh", GZ_OBJECT_MESH },
+		{ object->particles, "particles", GZ_OBJECT_PARTICLES },
+	};
+	unsigned kinds = 0;
+	for (size_t i = 0; i < sizeof data / sizeof data[0]; i++)
+		if (data[i].file[0]) {
+			kinds |= data[i].kind;
+			*out_last = data[i].name;
+		}
+	return kinds;
+}
+
+static enum gz_result check_object(const struct gz_scene_object *object, const char *name,
+				   const struct gz_log *log)
+{
+	const struct gz_technique *technique = gz_techniques[object->technique];
+	const char *given = "";
+	const unsigned kinds = data_of(object, &given);
+	if (kinds == 0 || (kinds & (kinds - 1)) != 0) {
+		gz_err(log, "%s: %s: give one of volume, labels, mesh and particles", name,
+		       object->section);
+		return GZ_ERR_FORMAT;
+	}
+	if (object->transfer[0] && kinds != GZ_OBJECT_VOLUME) {
+		gz_err(log, "%s: %s: only a volume has a transfer function; remove transfer", name,
+		       object->section);
+		return GZ_ERR_FORMAT;
+	}
+	if (technique->shows & kinds)
+		return GZ_OK;
+	gz_err(log, "%s: %s: the technique %s does not show %s; choose another technique", name,
+	       object->section, technique->name, given);
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, const char *name,
+				      const struct gz_log *log)
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < objects->count && result == GZ_OK; i++)
+		result = check_object(&objects->items[i], name, log);
+	return result;
+}
+
+bool gz_scene_objects_same(const struct gz_scene_objects *a, const struct gz_scene_objects *b)
+{
+	if (a->count != b->count)
+		return false;
+	for (size_t i = 0; i < a->count; i++)
+		if (strcmp(a->items[i].section, b->items[i].section) != 0 ||
+		    !gz_options_same(gz_scene_object_options, GZ_SCENE_OBJECT_OPTIONS, &a->items[i],
+				     &b->items[i]))
+			return false;
+	return true;
+}

@@ -1,0 +1,251 @@
+#include "render/scene/scene_open.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "render/data/dicom_series.h"
+#include "render/data/raw_guess.h"
+#include "render/scene/scene_picture.h"
+
+#define GZ_LOG_MODULE "scene"
+
+#define RADIANS_PER_DEGREE 0.017453292519943295
+
+/* How much of half a picture a box may take. Chosen: it does not touch the edges. */
+#define FIT_SHARE 0.9
+
+static bool is_folder(const char *path)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+enum gz_file_kind gz_file_kind_by_name(const char *path)
+{
+	static const struct {
+		const char *ending;
+		enum gz_file_kind kind;
+	} kinds[] = {
+		{ ".scene", GZ_FILE_SCENE }, { ".png", GZ_FILE_PICTURE },
+		{ ".tf", GZ_FILE_TRANSFER }, { ".gzl", GZ_FILE_GAZE_LOG },
+		{ ".nii", GZ_FILE_VOLUME },  { ".nii.gz", GZ_FILE_VOLUME },
+		{ ".nrrd", GZ_FILE_VOLUME }, { ".nhdr", GZ_FILE_VOLUME },
+		{ ".mhd", GZ_FILE_VOLUME },  { ".mha", GZ_FILE_VOLUME },
+		{ ".gzb", GZ_FILE_VOLUME },  { ".dcm", GZ_FILE_VOLUME },
+	};
+	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+		if (gz_path_ends(path, kinds[i].ending))
+			return kinds[i].kind;
+	return gz_raw_is_name(path) ? GZ_FILE_RAW : GZ_FILE_OTHER;
+}
+
+enum gz_file_kind gz_file_kind_of(const char *path)
+{
+	const enum gz_file_kind kind = gz_file_kind_by_name(path);
+	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
+	return looked_into && (is_folder(path) || gz_dicom_is(path)) ? GZ_FILE_VOLUME : kind;
+}
+
+enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_raw_layout *raw,
+					    const struct gz_log *log,
+					    struct gz_scene_settings *out_settings)
+{
+	struct gz_scene_settings settings;
+	char *real = realpath(path, NULL);
+	if (!real) {
+		gz_err(log, "%s: cannot be opened: %s; check the path", path, strerror(errno));
+		return GZ_ERR_NOT_FOUND;
+	}
+	enum gz_result result = gz_scene_settings_preset(&settings);
+	if (strlen(real) >= sizeof settings.volume_file) {
+		gz_err(log, "%s: the path is too long; move the file", path);
+		result = GZ_ERR_FULL;
+	}
+	if (result == GZ_OK) {
+		memcpy(settings.volume_file, real, strlen(real) + 1);
+		if (raw) {
+			memcpy(settings.dims, raw->dims, sizeof settings.dims);
+			memcpy(settings.spacing, raw->spacing, sizeof settings.spacing);
+			settings.type = (int)raw->type;
+			settings.endian = raw->big_endian ? 1 : 0;
+		}
+		*out_settings = settings;
+	}
+	free(real);
+	return result;
+}
+
+/* Unit vectors to the right, upwards and along the view. */
+static void view_axes(const struct gz_camera *camera, double axes[3][3])
+{
+	struct gz_ray_frame rays;
+	double *right = axes[0], *up = axes[1], *along = axes[2];
+	struct gz_camera parallel = *camera;
+	parallel.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	gz_camera_rays(&parallel, 2, 2, &rays);
+	for (int i = 0; i < 3; i++) {
+		right[i] = rays.origin_dx[i];
+		up[i] = -rays.origin_dy[i];
+		along[i] = rays.direction00[i];
+	}
+	for (int a = 0; a < 3; a++) {
+		const double length = sqrt(axes[a][0] * axes[a][0] + axes[a][1] * axes[a][1] +
+					   axes[a][2] * axes[a][2]);
+		for (int i = 0; i < 3; i++)
+			axes[a][i] /= length;
+	}
+}
+
+void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume)
+{
+	double half[3], axes[3][3], distance = 0, greatest = 0;
+	const double slope = FIT_SHARE * tan(camera->fov_deg * RADIANS_PER_DEGREE / 2);
+	gz_volume_half_extent(volume, half);
+	view_axes(camera, axes);
+	for (int corner = 0; corner < 8; corner++) {
+		double at[3] = { 0, 0, 0 };
+		for (int a = 0; a < 3; a++)
+			for (int i = 0; i < 3; i++)
+				at[a] += axes[a][i] * (corner >> i & 1 ? half[i] : -half[i]);
+		const double aside = fmax(fabs(at[0]), fabs(at[1]));
+		distance = fmax(distance, aside / slope - at[2]);
+		greatest = fmax(greatest, aside);
+	}
+	camera->height = 2 * greatest / FIT_SHARE;
+	for (int i = 0; i < 3; i++) {
+		camera->look_at[i] = 0;
+		camera->eye[i] = -axes[2][i] * distance;
+	}
+}
+
+static bool is_same_camera(const struct gz_camera *a, const struct gz_camera *b)
+{
+	return memcmp(a->eye, b->eye, sizeof a->eye) == 0 &&
+	       memcmp(a->look_at, b->look_at, sizeof a->look_at) == 0 &&
+	       memcmp(a->up, b->up, sizeof a->up) == 0 && a->height == b->height;
+}
+
+/* From the front, the right and above. Where the volume tells its sides, y points to the front. */
+static void choose_view(struct gz_camera *camera, const struct gz_volume *volume)
+{
+	const double eye[3] = { 0.8, volume->oriented ? 1.3 : -1.3, 0.5 };
+	memcpy(camera->eye, eye, sizeof eye);
+	gz_camera_fit(camera, volume);
+}
+
+static enum gz_result change_settings(const struct gz_scene_request *request,
+				      struct gz_scene_settings *settings, const struct gz_log *log)
+{
+	const enum gz_result result =
+		request->change ? request->change(request->user, settings) : GZ_OK;
+	return result == GZ_OK ? gz_scene_settings_check(settings, request->path, log) : result;
+}
+
+static enum gz_result open_volume(const struct gz_scene_request *request,
+				  const struct gz_raw_layout *raw, const struct gz_log *log,
+				  struct gz_scene *out_scene)
+{
+	struct gz_scene_settings settings;
+	enum gz_result result = gz_scene_settings_for_volume(request->path, raw, log, &settings);
+	if (result != GZ_OK)
+		return result;
+	const struct gz_camera preset = settings.camera;
+	result = change_settings(request, &settings, log);
+	const struct gz_scene_parts parts = {
+		.name = request->path,
+		.settings = &settings,
+		.volume_alone = request->volume_alone,
+	};
+	if (result == GZ_OK)
+		result = gz_scene_load_parts(&parts, request->loading, log, out_scene);
+	if (result == GZ_OK && is_same_camera(&settings.camera, &preset))
+		choose_view(&out_scene->settings.camera, &out_scene->volume);
+	return result;
+}
+
+static enum gz_result open_raw(const struct gz_scene_request *request, const struct gz_log *log,
+			       struct gz_scene *out_scene)
+{
+	struct gz_raw_guess guess = { 0 };
+	if (request->raw)
+		return open_volume(request, request->raw, log, out_scene);
+	const uint64_t bytes = gz_raw_file_bytes(request->path);
+	const size_t count = gz_raw_guess(request->path, bytes, &guess, 1);
+	const struct gz_raw_layout *layout = &guess.layout;
+	if (count > 0 && guess.certain) {
+		gz_info(log, "%s: taken as %d x %d x %d %s, since %s", request->path,
+			layout->dims[0], layout->dims[1], layout->dims[2],
+			gz_raw_type_names[layout->type], guess.reason);
+		return open_volume(request, layout, log, out_scene);
+	}
+	if (count > 0)
+		gz_err(log,
+		       "%s: has no header; tell its layout: --volume.dims \"%d %d %d\" "
+		       "--volume.type %s would fit (%s)",
+		       request->path, layout->dims[0], layout->dims[1], layout->dims[2],
+		       gz_raw_type_names[layout->type], guess.reason);
+	else
+		gz_err(log,
+		       "%s: has no header; tell its layout, as in --volume.dims \"256 256 128\" "
+		       "--volume.type uint8",
+		       request->path);
+	return GZ_ERR_INVAL;
+}
+
+static enum gz_result open_picture(const struct gz_scene_request *request, const struct gz_log *log,
+				   struct gz_scene *out_scene)
+{
+	struct gz_scene_picture picture;
+	enum gz_result result = gz_scene_picture_read(request->path, log, &picture);
+	if (result != GZ_OK)
+		return result;
+	char named[GZ_PATH_SIZE];
+	memcpy(named, picture.settings.transfer_file, sizeof named);
+	result = change_settings(request, &picture.settings, log);
+	if (strcmp(named, picture.settings.transfer_file) != 0)
+		picture.has_transfer = false;
+	const struct gz_scene_parts parts = {
+		.name = request->path,
+		.settings = &picture.settings,
+		.has_display = picture.has_display,
+		.transfer = picture.has_transfer ? &picture.transfer : NULL,
+	};
+	if (result == GZ_OK)
+		result = gz_scene_load_parts(&parts, request->loading, log, out_scene);
+	if (result == GZ_OK)
+		gz_scene_picture_check(&picture, &out_scene->volume, request->path, log);
+	return result;
+}
+
+enum gz_result gz_scene_open(const struct gz_scene_request *request, const struct gz_log *log,
+			     struct gz_scene *out_scene)
+{
+	const enum gz_file_kind kind = gz_file_kind_of(request->path);
+	if (request->raw && kind != GZ_FILE_RAW) {
+		gz_err(log, "%s: no raw file, so that it takes no layout; leave out --volume.dims",
+		       request->path);
+		return GZ_ERR_INVAL;
+	}
+	switch (kind) {
+	case GZ_FILE_SCENE:
+	case GZ_FILE_OTHER:
+		return gz_scene_load_changed(request->path, request->change, request->user,
+					     request->loading, log, out_scene);
+	case GZ_FILE_VOLUME:
+		return open_volume(request, NULL, log, out_scene);
+	case GZ_FILE_RAW:
+		return open_raw(request, log, out_scene);
+	case GZ_FILE_PICTURE:
+		return open_picture(request, log, out_scene);
+	case GZ_FILE_TRANSFER:
+	case GZ_FILE_GAZE_LOG:
+		break;
+	}
+	gz_err(log, "%s: a %s shows nothing by itself; open a scene or a volume, then this",
+	       request->path, kind == GZ_FILE_TRANSFER ? "transfer function" : "gaze log");
+	return GZ_ERR_INVAL;
+}

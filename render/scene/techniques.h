@@ -1,0 +1,16 @@
+/**
+ * @file
+ * All techniques, in the order in which options name them.
+ */
+#ifndef GZ_RENDER_SCENE_TECHNIQUES_H
+#define GZ_RENDER_SCENE_TECHNIQUES_H
+
+#include "render/technique/technique.h"
+
+/** All techniques, NULL-terminated; the first is the default. */
+extern const struct gz_technique *const gz_techniques[];
+
+/** Their names in the same order, NULL-terminated. */
+extern const char *const gz_technique_names[];
+
+#endif

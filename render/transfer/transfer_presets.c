@@ -1,0 +1,210 @@
+#include "render/transfer/transfer_presets.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* All looks are chosen by eye on the scenes of etc/scenes/. */
+
+/* A colour, 0 to 1. */
+struct colour {
+	double r, g, b;
+};
+
+/* A transfer function being made, in data values. */
+struct making {
+	const struct gz_histogram *histogram;
+	double edge; /* of the volume, voxel lengths */
+	double low, high;
+	struct gz_transfer *transfer;
+};
+
+/* Opacity of a voxel length, of what hides `hidden` of its background over `share` of the volume's
+ * longest edge: gz_transfer_opacity_over() the other way round. */
+static double per_voxel(const struct making *making, double hidden, double share)
+{
+	return 1 - pow(1 - hidden, 1 / fmax(share * making->edge, 1));
+}
+
+static double at_share(const struct making *making, double share)
+{
+	return making->low + share * (making->high - making->low);
+}
+
+/* The mean of the values on one side of @p threshold. */
+static double mean_beyond(const struct making *making, double threshold, bool below)
+{
+	const struct gz_histogram *histogram = making->histogram;
+	double sum = 0, count = 0;
+	for (int bin = 0; bin < histogram->bins; bin++) {
+		const double value = gz_histogram_bin_value(histogram, bin);
+		if ((value < threshold) == below) {
+			sum += value * (double)histogram->counts[bin];
+			count += (double)histogram->counts[bin];
+		}
+	}
+	return count > 0 ? sum / count : threshold;
+}
+
+/* Halfway from the background, which may be no black, to where it and the object part: its noise is
+ * left out, the object's faint parts are not. */
+static double end_of_background(const struct making *making, bool dark)
+{
+	const double threshold = gz_histogram_threshold(making->histogram);
+	return (mean_beyond(making, threshold, dark) + threshold) / 2;
+}
+
+/* The next point; values rise, and what lies beyond the range is cut off. */
+static void add(struct making *making, double value, struct colour colour, double opacity)
+{
+	struct gz_transfer *transfer = making->transfer;
+	const double width = making->high - making->low;
+	double at = width > 0 ? fmin(fmax((value - making->low) / width, 0), 1) : 0;
+	const size_t count = transfer->count;
+	if (count > 0)
+		at = fmax(at, transfer->points[count - 1].value);
+	if (count > 1 && at <= transfer->points[count - 2].value)
+		return; /* two make a step, a third would never be seen */
+	transfer->points[transfer->count++] = (struct gz_transfer_point) {
+		.value = at,
+		.rgb = { colour.r, colour.g, colour.b },
+		.opacity = opacity,
+	};
+}
+
+static void make_tissue(struct making *making)
+{
+	double threshold[2];
+	gz_histogram_two_thresholds(making->histogram, threshold);
+	const struct colour dark = { 0.35, 0.12, 0.08 }, flesh = { 0.85, 0.52, 0.40 };
+	const struct colour ivory = { 0.97, 0.93, 0.83 };
+	const double veil = per_voxel(making, 0.75, 0.1), solid = per_voxel(making, 0.97, 0.02);
+	const double ramp = at_share(making, 0.04) - making->low;
+	add(making, making->low, dark, 0);
+	add(making, threshold[0] - ramp, dark, 0);
+	add(making, threshold[0] + ramp, flesh, veil);
+	add(making, fmax(threshold[1] - ramp, threshold[0] + ramp), flesh, veil);
+	add(making, threshold[1] + 2 * ramp, ivory, solid);
+	add(making, making->high, (struct colour) { 1, 1, 1 }, solid);
+}
+
+static void make_surface(struct making *making)
+{
+	const double threshold = gz_histogram_threshold(making->histogram);
+	const double ramp = at_share(making, 0.03) - making->low;
+	const double solid = per_voxel(making, 0.98, 0.015);
+	const struct colour stone = { 0.88, 0.84, 0.76 };
+	add(making, making->low, stone, 0);
+	add(making, threshold - ramp, stone, 0);
+	add(making, threshold + ramp, stone, solid);
+	add(making, making->high, (struct colour) { 1, 0.98, 0.94 }, solid);
+}
+
+/* Values near one of its own are seen, others are not. */
+static void add_shell(struct making *making, double value, double ramp, struct colour colour,
+		      double opacity)
+{
+	add(making, value - ramp, colour, 0);
+	add(making, value, colour, opacity);
+	add(making, value + ramp, colour, 0);
+}
+
+static void make_glass(struct making *making)
+{
+	double threshold[2];
+	gz_histogram_two_thresholds(making->histogram, threshold);
+	const double ramp = fmin(at_share(making, 0.05) - making->low,
+				 fmax((threshold[1] - threshold[0]) / 2, 0));
+	const struct colour blue = { 0.45, 0.72, 0.95 }, amber = { 1.0, 0.72, 0.30 };
+	add(making, making->low, blue, 0);
+	add_shell(making, threshold[0], ramp, blue, per_voxel(making, 0.3, 0.02));
+	add_shell(making, threshold[1], ramp, amber, per_voxel(making, 0.8, 0.02));
+	add(making, making->high, amber, 0);
+}
+
+/* From nothing at the background to dense at the other end of the range. */
+static void make_grey(struct making *making)
+{
+	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
+	const double begin = end_of_background(making, true);
+	const double grey = (begin - making->low) / fmax(making->high - making->low, 1e-300);
+	add(making, making->low, black, 0);
+	add(making, begin, (struct colour) { grey, grey, grey }, 0);
+	add(making, making->high, white, per_voxel(making, 0.98, 0.06));
+}
+
+static void make_heat(struct making *making)
+{
+	const double begin = end_of_background(making, true), rest = making->high - begin;
+	const double dense = per_voxel(making, 0.98, 0.05);
+	add(making, making->low, (struct colour) { 0, 0, 0 }, 0);
+	add(making, begin, (struct colour) { 0.20, 0, 0.02 }, 0);
+	add(making, begin + 0.3 * rest, (struct colour) { 0.80, 0.10, 0.02 }, 0.1 * dense);
+	add(making, begin + 0.6 * rest, (struct colour) { 1, 0.60, 0.05 }, 0.35 * dense);
+	add(making, begin + 0.85 * rest, (struct colour) { 1, 0.92, 0.45 }, 0.75 * dense);
+	add(making, making->high, (struct colour) { 1, 1, 1 }, dense);
+}
+
+static void make_inverse(struct making *making)
+{
+	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
+	const double end = end_of_background(making, false);
+	const double grey = (making->high - end) / fmax(making->high - making->low, 1e-300);
+	add(making, making->low, white, per_voxel(making, 0.98, 0.06));
+	add(making, end, (struct colour) { grey, grey, grey }, 0);
+	add(making, making->high, black, 0);
+}
+
+static void make_xray(struct making *making)
+{
+	const struct colour white = { 1, 1, 1 };
+	add(making, making->low, white, 0);
+	add(making, end_of_background(making, true), white, 0);
+	add(making, making->high, white, per_voxel(making, 0.97, 0.8));
+}
+
+/* One look. */
+static const struct preset {
+	struct gz_transfer_preset_text text;
+	void (*make)(struct making *making);
+} presets[GZ_PRESET_COUNT] = {
+	[GZ_PRESET_TISSUE] = { { "Soft tissue and bone",
+				 "what is soft as a veil, what is dense solid" },
+			       make_tissue },
+	[GZ_PRESET_SURFACE] = { { "Surface", "one surface where object and background part" },
+				make_surface },
+	[GZ_PRESET_GLASS] = { { "Glass", "two see-through surfaces, the inner one amber" },
+			      make_glass },
+	[GZ_PRESET_GREY] = { { "Grey ramp", "the brighter, the denser" }, make_grey },
+	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities" }, make_heat },
+	[GZ_PRESET_INVERSE] = { { "Inverse", "the darker, the denser: for a bright background" },
+				make_inverse },
+	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing hides" }, make_xray },
+};
+
+const char *const gz_transfer_preset_names[] = { "tissue", "surface", "glass", "grey",
+						 "heat",   "inverse", "xray",  NULL };
+
+const struct gz_transfer_preset_text *gz_transfer_preset_text(enum gz_transfer_preset which)
+{
+	return &presets[which].text;
+}
+
+void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_histogram *histogram,
+			     const struct gz_volume *volume, struct gz_transfer *out_transfer)
+{
+	*out_transfer = (struct gz_transfer) { .interpolation = GZ_TRANSFER_LINEAR };
+	struct making making = {
+		.histogram = histogram,
+		.edge = gz_volume_edge_lengths(volume->dims, volume->spacing),
+		.low = histogram->data_min,
+		.high = histogram->data_max,
+		.transfer = out_transfer,
+	};
+	const double top = gz_histogram_percentile(histogram, 0.9999);
+	if (top - making.low < (making.high - making.low) / 2 && top > making.low)
+		making.high = top;
+	presets[which].make(&making);
+	out_transfer->has_range = making.high > making.low;
+	out_transfer->range[0] = making.low;
+	out_transfer->range[1] = making.high;
+}

@@ -1,0 +1,88 @@
+#include "render/transfer/transfer_table.h"
+
+#include <math.h>
+
+enum { LAST = GZ_TRANSFER_TABLE_SIZE - 1 };
+
+static uint32_t pack_colour(const double rgba[4])
+{
+	const uint32_t red = (uint32_t)lround(rgba[0] * 2047);
+	const uint32_t green = (uint32_t)lround(rgba[1] * 2047);
+	const uint32_t blue = (uint32_t)lround(rgba[2] * 1023);
+	return red << 21 | green << 10 | blue;
+}
+
+/* The stored values between which the table lies: where the function's range and the data overlap
+ * or, where they do not, all that lies on one side of it. */
+static void table_span(const double range[2], const struct gz_volume *volume, double *out_low,
+		       double *out_high)
+{
+	double low = (range[0] - volume->intercept) / volume->slope;
+	double high = (range[1] - volume->intercept) / volume->slope;
+	if (low > high) {
+		const double swap = low;
+		low = high;
+		high = swap;
+	}
+	low = fmin(fmax(low, volume->stored_min), volume->stored_max);
+	high = fmin(fmax(high, volume->stored_min), volume->stored_max);
+	*out_low = low;
+	*out_high = high;
+}
+
+void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
+			    struct gz_transfer_table *out_table)
+{
+	const double data[2] = {
+		volume->slope * (volume->slope > 0 ? volume->stored_min : volume->stored_max) +
+			volume->intercept,
+		volume->slope * (volume->slope > 0 ? volume->stored_max : volume->stored_min) +
+			volume->intercept,
+	};
+	const double *range = transfer->has_range ? transfer->range : data;
+	double low, high;
+	table_span(range, volume, &low, &high);
+
+	out_table->value_per_stored =
+		range[1] != range[0] ? volume->slope / (range[1] - range[0]) : 0;
+	out_table->scale = high > low ? LAST / (high - low) : 0;
+	out_table->bias = -low * out_table->scale;
+	out_table->visible_before[0] = 0;
+	for (int i = 0; i <= LAST; i++) {
+		const double stored = low + i * (high - low) / LAST;
+		const double value = volume->slope * stored + volume->intercept;
+		const double width = range[1] - range[0];
+		double rgba[4];
+		gz_transfer_evaluate(transfer, width != 0 ? (value - range[0]) / width : 0, rgba);
+		out_table->entries[i].extinction = (float)log2(1 - rgba[3]);
+		out_table->entries[i].colour = pack_colour(rgba);
+		out_table->visible_before[i + 1] =
+			(uint16_t)(out_table->visible_before[i] + (rgba[3] > 0));
+	}
+}
+
+void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
+			    struct gz_transfer_entry out_entries[GZ_TRANSFER_TABLE_SIZE])
+{
+	for (int i = 0; i <= LAST; i++) {
+		const double extinction = (double)table->entries[i].extinction;
+		out_entries[i] = (struct gz_transfer_entry) {
+			.opacity = extinction < 0 ? (float)-expm1(length * extinction * M_LN2) : 0,
+			.colour = table->entries[i].colour,
+		};
+	}
+}
+
+static int entry_of(const struct gz_transfer_table *table, double stored, double rounding)
+{
+	const double entry = floor(stored * table->scale + table->bias + rounding);
+	return entry < 0 ? 0 : entry > LAST ? LAST : (int)entry;
+}
+
+bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest)
+{
+	/* One entry wider than rounding needs: the cast computes in single precision. */
+	const int from = entry_of(table, least, -0.5);
+	const int to = entry_of(table, greatest, 1.5);
+	return table->visible_before[to + 1] > table->visible_before[from];
+}

@@ -1,0 +1,57 @@
+#include "view/capture/output.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define GZ_LOG_MODULE "gazeview"
+
+void gz_output_folder(const char *path, char *out, size_t size)
+{
+	const char *slash = strrchr(path, '/');
+	const int length = slash ? (int)(slash - path) + (slash == path) : 1;
+	snprintf(out, size, "%.*s", length, slash ? path : ".");
+}
+
+static enum gz_result check_folder(const char *option, const char *path, const struct gz_log *log)
+{
+	char folder[GZ_PATH_SIZE];
+	struct stat status;
+	if (!path[0])
+		return GZ_OK;
+	gz_output_folder(path, folder, sizeof folder);
+	errno = ENOTDIR;
+	if (stat(folder, &status) == 0 && S_ISDIR(status.st_mode) &&
+	    access(folder, W_OK | X_OK) == 0)
+		return GZ_OK;
+	gz_err(log, "--%s %s: cannot be written: %s: %s; make that folder, or name another", option,
+	       path, folder, strerror(errno));
+	return GZ_ERR_IO;
+}
+
+/* What is there already may be written to where its folder may not: pictures go into devices and
+ * pipes, statistics into a plain file. */
+static bool is_there(const char *path, bool plain)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && !S_ISDIR(status.st_mode) &&
+	       S_ISREG(status.st_mode) == plain && access(path, W_OK) == 0;
+}
+
+enum gz_result gz_output_check(const struct gz_view_options *options, const struct gz_log *log)
+{
+	char picture[GZ_PATH_SIZE] = "";
+	/* What is wrong with the pattern itself, the options have refused. */
+	if (options->out[0])
+		(void)gz_pattern_format(options->out, 0, picture, sizeof picture);
+	enum gz_result r = GZ_OK;
+	if (!is_there(picture, false))
+		r = check_folder("out", picture, log);
+	if (r == GZ_OK && !is_there(options->video, true))
+		r = check_folder("video", options->video, log);
+	if (r == GZ_OK && !is_there(options->stats, true))
+		r = check_folder("stats", options->stats, log);
+	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;
+}

@@ -1,0 +1,25 @@
+/**
+ * @file
+ * Where gazeview's files go: looked at before anything is loaded or rendered for them.
+ */
+#ifndef GZ_VIEW_CAPTURE_OUTPUT_H
+#define GZ_VIEW_CAPTURE_OUTPUT_H
+
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "view/options/options.h"
+
+/** The folder that @p path is in: "." where it names none. Cut to @p size bytes. */
+void gz_output_folder(const char *path, char *out, size_t size);
+
+/**
+ * Check that the files that the options name (--out, --video, --stats, --write-volume) can be made:
+ * that their folders are there and may be written to, or they are there themselves.
+ *
+ * @retval GZ_ERR_IO  one cannot; logged with the option and the remedy
+ */
+enum gz_result gz_output_check(const struct gz_view_options *options, const struct gz_log *log);
+
+#endif

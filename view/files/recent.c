@@ -1,0 +1,84 @@
+#include "view/files/recent.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/text.h"
+
+enum gz_result gz_recent_file(char out_path[GZ_PATH_SIZE])
+{
+	const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+	int length = -1;
+	/* Relative paths there are to be ignored. */
+	if (state && state[0] == '/')
+		length = snprintf(out_path, GZ_PATH_SIZE, "%s/gazecast/recent", state);
+	else if (home && home[0] == '/')
+		length = snprintf(out_path, GZ_PATH_SIZE, "%s/.local/state/gazecast/recent", home);
+	return length > 0 && length < GZ_PATH_SIZE ? GZ_OK : GZ_ERR_NOT_FOUND;
+}
+
+void gz_recent_read(const char *file, struct gz_recent *out_recent)
+{
+	char line[GZ_PATH_SIZE + 1];
+	*out_recent = (struct gz_recent) { 0 };
+	FILE *stream = fopen(file, "re");
+	while (stream && out_recent->count < GZ_RECENT_MAX && fgets(line, sizeof line, stream)) {
+		char *end = strchr(line, '\n');
+		if (!end) { /* too long: the rest of it is no path either */
+			for (int c = fgetc(stream); c != '\n' && c != EOF;)
+				c = fgetc(stream);
+			continue;
+		}
+		*end = '\0';
+		if (line[0] == '/')
+			memcpy(out_recent->paths[out_recent->count++], line,
+			       (size_t)(end - line) + 1);
+	}
+	if (stream)
+		fclose(stream);
+}
+
+void gz_recent_add(struct gz_recent *recent, const char *path)
+{
+	char *real = realpath(path, NULL);
+	if (!real || strlen(real) >= GZ_PATH_SIZE || strpbrk(real, "\n")) {
+		free(real);
+		return;
+	}
+	size_t at = 0;
+	while (at < recent->count && strcmp(recent->paths[at], real) != 0)
+		at++;
+	if (at == recent->count && recent->count < GZ_RECENT_MAX)
+		recent->count++;
+	if (at == GZ_RECENT_MAX)
+		at--;
+	memmove(recent->paths[1], recent->paths[0], at * sizeof recent->paths[0]);
+	memcpy(recent->paths[0], real, strlen(real) + 1);
+	free(real);
+}
+
+/* The folders above a file, for the user alone, as the specification asks. */
+static void make_folders(const char *file)
+{
+	char path[GZ_PATH_SIZE];
+	snprintf(path, sizeof path, "%s", file);
+	for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+		*slash = '\0';
+		mkdir(path, S_IRWXU);
+		*slash = '/';
+	}
+}
+
+enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
+			       const struct gz_log *log)
+{
+	struct gz_text text = { 0 };
+	for (size_t i = 0; i < recent->count; i++)
+		gz_text_add(&text, "%s\n", recent->paths[i]);
+	make_folders(file);
+	const enum gz_result result = gz_text_write(&text, file, log);
+	gz_text_free(&text);
+	return result;
+}

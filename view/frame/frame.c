@@ -1,0 +1,466 @@
+#include "view/frame/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "render/frame/picture_maker.h"
+#include "render/plan/method.h"
+#include "render/scene/scene_open.h"
+#include "render/scene/techniques.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+/* Half the cross's arms and half its thickness, px (chosen: seen at arm's length, hides little). */
+enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
+
+struct gz_frame_maker {
+	const struct gz_log *log;
+	struct gz_scene scene;
+	struct gz_picture_maker *pictures; /* NULL before it is started */
+	uint64_t transfer_revision;        /* of the scene's transfer function */
+	struct gz_attention attention;
+	struct gz_gaze_reading reading; /* that the attention took last */
+	struct gz_focus focus;          /* that it made of it */
+	struct gz_focus made;           /* of the last frame made */
+	struct {
+		int method, width, height;
+	} spent; /* what the budget's times are of */
+	bool any_made;
+	bool standard_told; /* that it keeps no time */
+};
+
+/* Pixels of the rays' grid along a side; 0 where that is no picture. */
+static int cast_side(int side, double rate)
+{
+	double scaled = round(side * rate);
+	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
+}
+
+static enum gz_result find_cast_size(int width, int height, double rate, const struct gz_log *log,
+				     int out_size[2])
+{
+	out_size[0] = cast_side(width, rate);
+	out_size[1] = cast_side(height, rate);
+	if (out_size[0] > 0 && out_size[1] > 0)
+		return GZ_OK;
+	gz_err(log,
+	       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the rate or the "
+	       "size",
+	       width, height, rate, GZ_IMAGE_SIDE_MAX);
+	return GZ_ERR_INVAL;
+}
+
+/* What is asked for over the scene's own, and what contradicts it, before anything large is read.
+ */
+struct change {
+	const struct gz_view_options *options;
+	const struct gz_frame_scene *scene;
+	const struct gz_log *log;
+};
+
+/* A table of spacings is found beside the scene that names it. */
+static void keep(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
+{
+	const struct gz_foveation own = settings->foveation;
+	const struct gz_clip_box clip = settings->rays.clip;
+	settings->rays = kept->rays;
+	settings->rays.clip = clip;
+	settings->image_sampling_rate = kept->image_sampling_rate;
+	settings->foveation = kept->foveation;
+	settings->foveation.table = own.table;
+	memcpy(settings->foveation.table_file, own.table_file, sizeof own.table_file);
+	if (gz_method_of(&kept->foveation)->needs_table)
+		settings->foveation.method = own.method;
+	settings->attention = kept->attention;
+	settings->temporal = kept->temporal;
+	settings->view = kept->view;
+}
+
+static enum gz_result change_settings(void *user, struct gz_scene_settings *settings)
+{
+	const struct change *change = user;
+	const struct gz_view_options *options = change->options;
+	const struct gz_backend_params params = { .threads = options->threads,
+						  .simd = options->simd };
+	int size[2];
+	enum gz_result r = gz_techniques[0]->check(options->backend, &params, change->log);
+	if (r == GZ_OK && change->scene->by_options)
+		r = gz_view_options_apply(options, settings);
+	if (r == GZ_OK && change->scene->kept)
+		keep(change->scene->kept, settings);
+	if (r == GZ_OK && options->headless)
+		r = find_cast_size(options->size_px[0], options->size_px[1],
+				   settings->image_sampling_rate, change->log, size);
+	return r;
+}
+
+static enum gz_result load(const struct change *change, const struct gz_loading *loading,
+			   struct gz_scene *out_scene)
+{
+	const struct gz_frame_scene *scene = change->scene;
+	struct change user = *change;
+	struct gz_raw_layout told;
+	const bool is_told = scene->by_options && gz_view_options_raw(change->options, &told);
+	const struct gz_scene_request request = {
+		.path = scene->path,
+		.raw = scene->raw ? scene->raw
+		       : is_told  ? &told
+				  : NULL,
+		.change = change_settings,
+		.user = &user,
+		.loading = loading,
+	};
+	return gz_scene_open(&request, change->log, out_scene);
+}
+
+struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *options)
+{
+	return (struct gz_frame_scene) { .path = options->scene, .by_options = true };
+}
+
+enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
+				     const struct gz_frame_scene *scene,
+				     const struct gz_loading *loading, const struct gz_log *log,
+				     struct gz_frame_maker **out_maker)
+{
+	struct gz_frame_maker *maker = calloc(1, sizeof *maker);
+	if (!maker)
+		return GZ_ERR_NO_MEM;
+	maker->log = log;
+	const struct gz_attention_params attention = gz_attention_default();
+	gz_attention_init(&maker->attention, &attention);
+	maker->focus = maker->attention.focus;
+	const struct change change = { options, scene, log };
+	enum gz_result r = load(&change, loading, &maker->scene);
+	if (r != GZ_OK) {
+		gz_frame_maker_destroy(&maker);
+		return r;
+	}
+	*out_maker = maker;
+	return GZ_OK;
+}
+
+static enum gz_result show_scene(struct gz_frame_maker *maker)
+{
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	const size_t count =
+		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
+	for (size_t i = 0; i < count; i++)
+		objects[i].transfer_revision = maker->transfer_revision;
+	return gz_picture_maker_show(maker->pictures, objects, count);
+}
+
+static struct gz_backend_params backend_params(const struct gz_view_options *options,
+					       struct gz_gl_context *gl_context)
+{
+	return (struct gz_backend_params) {
+		.threads = options->threads,
+		.simd = options->simd,
+		.wait_for_bricks = options->bricks == GZ_BRICKS_AUTO
+					   ? options->headless
+					   : options->bricks == GZ_BRICKS_WAIT,
+		.gl_context = gl_context,
+		.gl_memory_bytes = (size_t)options->gl_memory_mib << 20,
+	};
+}
+
+static enum gz_result start_pictures(struct gz_frame_maker *maker,
+				     const struct gz_picture_maker_params *params)
+{
+	enum gz_result r = gz_picture_maker_create(params, maker->log, &maker->pictures);
+	if (r == GZ_OK)
+		r = show_scene(maker);
+	if (r != GZ_OK) {
+		gz_picture_maker_destroy(&maker->pictures);
+		return r;
+	}
+	gz_debug(maker->log, "%s", gz_picture_maker_describe(maker->pictures));
+	return r;
+}
+
+enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
+				    const struct gz_view_options *options,
+				    struct gz_gl_context *gl_context)
+{
+	const struct gz_picture_maker_params params = {
+		.backend = options->backend,
+		.backend_params = backend_params(options, gl_context),
+		.cpu_takes_over = true,
+	};
+	return start_pictures(maker, &params);
+}
+
+enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
+					const struct gz_view_options *options)
+{
+	const struct gz_picture_maker_params params = {
+		.backend = "cpu",
+		.backend_params = backend_params(options, NULL),
+	};
+	return start_pictures(maker, &params);
+}
+
+bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
+			const struct gz_log *log)
+{
+	const struct gz_backend_params params = backend_params(options, gl_context);
+	struct gz_drawer *drawer = NULL;
+	if (strcmp(options->backend, "cpu") == 0)
+		return true;
+	if (strcmp(options->backend, "auto") != 0 ||
+	    gz_techniques[0]->create("auto", &params, log, &drawer) != GZ_OK)
+		return false;
+	const bool cpu = strcmp(drawer->ops->backend(drawer), "cpu") == 0;
+	gz_drawer_destroy(&drawer);
+	return cpu;
+}
+
+void gz_frame_maker_stop(struct gz_frame_maker *maker)
+{
+	gz_picture_maker_destroy(&maker->pictures);
+}
+
+bool gz_frame_maker_started(const struct gz_frame_maker *maker)
+{
+	return maker->pictures != NULL;
+}
+
+const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
+{
+	return &maker->scene;
+}
+
+enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
+				     const struct gz_transfer *transfer)
+{
+	maker->scene.transfer = *transfer;
+	maker->transfer_revision++;
+	maker->any_made = false;
+	const enum gz_result r = show_scene(maker);
+	if (r != GZ_OK)
+		gz_err(maker->log, "cannot take the transfer function: %s", gz_result_text(r));
+	return r;
+}
+
+bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
+		     const struct gz_gaze_reading *reading, const struct gz_display *display,
+		     int64_t time_ns)
+{
+	const struct gz_attention_gaze gaze = {
+		.known = reading->known,
+		.point = reading->point,
+		.has_age = reading->has_age,
+		.age_ns = reading->age_ns,
+		.has_event = reading->has_event,
+		.event = reading->event,
+		.noise_deg = reading->noise_deg,
+	};
+	gz_attention_set_params(&maker->attention, params);
+	maker->reading = *reading;
+	maker->focus = gz_attention_step(&maker->attention, &gaze, display, time_ns);
+	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made);
+}
+
+void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
+			const struct gz_focus *focus)
+{
+	maker->reading = *reading;
+	maker->focus = *focus;
+}
+
+const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker)
+{
+	return &maker->reading;
+}
+
+const char *gz_frame_backend(const struct gz_frame_maker *maker)
+{
+	return gz_picture_maker_backend(maker->pictures);
+}
+
+void gz_frame_forget(struct gz_frame_maker *maker)
+{
+	gz_picture_maker_forget(maker->pictures);
+}
+
+bool gz_frame_settled(const struct gz_frame_maker *maker)
+{
+	return gz_attention_settled(&maker->attention);
+}
+
+bool gz_frame_refinable(const struct gz_frame_maker *maker)
+{
+	return !gz_budget_at_rest(&maker->attention.budget);
+}
+
+bool gz_frame_settling(const struct gz_frame_maker *maker)
+{
+	return gz_picture_maker_settling(maker->pictures);
+}
+
+static enum gz_result make_picture(struct gz_frame_maker *maker,
+				   const struct gz_frame_request *request,
+				   struct gz_image **out_image, struct gz_frame_record *record)
+{
+	const struct gz_scene_settings *settings = request->settings;
+	const struct gz_picture_request picture = {
+		.camera = &settings->camera,
+		.settings = &settings->rays,
+		.foveation = &settings->foveation,
+		.display = request->display,
+		.focus = maker->focus,
+		.width = request->width,
+		.height = request->height,
+		.image_sampling_rate = settings->image_sampling_rate,
+		.temporal = &settings->temporal,
+		.on_device = request->on_device,
+		.loss_returned = request->loss_is_callers,
+	};
+	struct gz_picture_cost cost;
+	const enum gz_result r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
+	if (r != GZ_OK)
+		return r;
+	record->total_ms = cost.total_ms;
+	record->plan_ms = cost.plan_ms;
+	record->cast_ms = cost.stats.cast_ms;
+	record->reconstruct_ms = cost.stats.reconstruct_ms;
+	record->rays = cost.stats.rays;
+	record->bricks_coming = cost.stats.bricks_coming;
+	record->samples = cost.stats.samples;
+	record->kept = cost.kept;
+	return GZ_OK;
+}
+
+void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
+{
+	if (!maker->scene.volume.oriented)
+		gz_warn(maker->log, "no letters: the volume does not tell where right, front and "
+				    "up are; give one that does, as NIfTI and DICOM do");
+}
+
+/* A time to keep makes plans coarser, and this method's is never coarse. */
+static void tell_standard(struct gz_frame_maker *maker)
+{
+	if (maker->attention.params.budget_ms <= 0 || maker->standard_told)
+		return;
+	maker->standard_told = true;
+	gz_warn(maker->log,
+		"attention.budget_ms %g: standard casts every ray, whatever time that takes; "
+		"take a method that can keep it, such as acuity",
+		maker->attention.params.budget_ms);
+}
+
+static const char *budget_state(const struct gz_frame_maker *maker,
+				const struct gz_frame_record *record)
+{
+	const struct gz_budget *budget = &maker->attention.budget;
+	if (record->budget_ms > 0 && !gz_methods[maker->spent.method].can_be_coarser)
+		return gz_budget_state_name(
+			record->total_ms > record->budget_ms ? GZ_BUDGET_OVER : GZ_BUDGET_WITHIN);
+	return gz_budget_state_name(budget->state);
+}
+
+/* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. What
+ * another method or size took tells nothing. */
+static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+		       double total_ms)
+{
+	int method = request->settings->foveation.method;
+	const struct gz_plan *plan = gz_picture_maker_plan(maker->pictures);
+	bool same = maker->spent.method == method && maker->spent.width == plan->width &&
+		    maker->spent.height == plan->height;
+	if (!same)
+		gz_attention_forget_spent(&maker->attention);
+	maker->spent.method = method;
+	maker->spent.width = plan->width;
+	maker->spent.height = plan->height;
+	if (!gz_methods[method].can_be_coarser) {
+		tell_standard(maker);
+		return;
+	}
+	if (gz_attention_spent(&maker->attention, total_ms))
+		gz_warn(maker->log,
+			"attention.budget_ms %g is out of reach: %s took %.1f ms with its coarsest "
+			"plan; allow more time, lower the size or render.ray_sampling_rate, or try "
+			"another method",
+			maker->attention.params.budget_ms, gz_method_names[method], total_ms);
+}
+
+static struct gz_frame_record begin_record(const struct gz_frame_maker *maker,
+					   const struct gz_frame_request *request)
+{
+	const struct gz_gaze_reading *reading = &maker->reading;
+	return (struct gz_frame_record) {
+		.method = gz_method_names[request->settings->foveation.method],
+		.width = request->width,
+		.height = request->height,
+		.gaze_known = reading->known,
+		.gaze = reading->point,
+		.age_known = reading->known && reading->has_age,
+		.gaze_age_ms = gz_ns_to_ms(reading->age_ns),
+		.attention = gz_attention_state_name(maker->attention.state),
+		.focus = maker->focus,
+		.budget_ms = maker->attention.params.budget_ms,
+	};
+}
+
+enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			     struct gz_image **out_image, struct gz_frame_record *out_record)
+{
+	struct gz_frame_record record = begin_record(maker, request);
+	enum gz_result r = make_picture(maker, request, out_image, &record);
+	if (r != GZ_OK)
+		return r;
+	maker->made = maker->focus;
+	maker->any_made = true;
+	tell_spent(maker, request, record.total_ms);
+	record.budget = budget_state(maker, &record);
+	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
+	*out_record = record;
+	return GZ_OK;
+}
+
+unsigned gz_frame_texture(const struct gz_frame_maker *maker)
+{
+	return gz_picture_maker_texture(maker->pictures);
+}
+
+const struct gz_plan *gz_frame_plan(const struct gz_frame_maker *maker)
+{
+	return gz_picture_maker_plan(maker->pictures);
+}
+
+static void fill(struct gz_image *image, int left, int top, int right, int bottom)
+{
+	static const uint8_t colour[4] = { 255, 64, 64, 255 };
+	for (int y = top < 0 ? 0 : top; y <= bottom && y < image->height; y++) {
+		for (int x = left < 0 ? 0 : left; x <= right && x < image->width; x++)
+			memcpy(image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x),
+			       colour, sizeof colour);
+	}
+}
+
+void gz_frame_draw_cross(struct gz_image *image, struct gz_point at)
+{
+	double x = floor((double)at.x * image->width), y = floor((double)at.y * image->height);
+	if (!(x >= -CROSS_ARM_PX && x < image->width + CROSS_ARM_PX) ||
+	    !(y >= -CROSS_ARM_PX && y < image->height + CROSS_ARM_PX))
+		return;
+	int column = (int)x, row = (int)y;
+	fill(image, column - CROSS_ARM_PX, row - CROSS_HALF_PX, column + CROSS_ARM_PX,
+	     row + CROSS_HALF_PX);
+	fill(image, column - CROSS_HALF_PX, row - CROSS_ARM_PX, column + CROSS_HALF_PX,
+	     row + CROSS_ARM_PX);
+}
+
+void gz_frame_maker_destroy(struct gz_frame_maker **maker)
+{
+	if (!maker || !*maker)
+		return;
+	gz_picture_maker_destroy(&(*maker)->pictures);
+	gz_scene_free(&(*maker)->scene);
+	free(*maker);
+	*maker = NULL;
+}

@@ -1,0 +1,289 @@
+#include "view/frame/reference.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "protocol/display.h"
+#include "render/frame/picture_maker.h"
+#include "render/plan/plan.h"
+
+#define GZ_LOG_MODULE "reference"
+
+/* Rows cast between two looks at whether they are still wanted (chosen: some ms of casting). */
+#define STRIP_ROWS 32
+/* What frames are made of comes first (chosen: half-way to the least). */
+#define NICENESS 10
+
+struct gz_reference_worker {
+	struct gz_reference_source source;
+	pthread_t thread;
+	pthread_mutex_t lock;
+	pthread_cond_t wake;
+	atomic_bool outdated; /* what is in the making */
+	atomic_int rows_done, rows_asked;
+	/* under the lock */
+	bool quit, wanted, any_asked, ready;
+	uint64_t revision; /* of the transfer function */
+	struct gz_reference_view asked;
+	struct gz_transfer transfer;
+	struct gz_image finished;
+	/* the thread's alone */
+	struct gz_picture_maker *pictures;
+	struct gz_transfer shown;
+	uint64_t shown_revision;
+	struct gz_image cast, picture;
+};
+
+static int threads_of(const struct gz_reference_source *source)
+{
+	long processors = source->threads > 0 ? source->threads : sysconf(_SC_NPROCESSORS_ONLN) / 2;
+	return processors < 1 ? 1 : processors > 256 ? 256 : (int)processors;
+}
+
+static enum gz_result cast_strip(struct gz_reference_worker *worker,
+				 const struct gz_reference_view *view, struct gz_image *image,
+				 int row)
+{
+	const struct gz_foveation foveation = gz_foveation_full();
+	const int rows = image->height - row < STRIP_ROWS ? image->height - row : STRIP_ROWS;
+	const struct gz_display display = gz_display_default(image->width, rows);
+	const struct gz_picture_request request = {
+		.camera = &view->camera,
+		.settings = &view->rays,
+		.foveation = &foveation,
+		.display = &display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = image->width,
+		.height = image->height,
+		.strip = { row, rows },
+	};
+	struct gz_image *strip;
+	const enum gz_result r = gz_picture_make(worker->pictures, &request, &strip, NULL);
+	if (r != GZ_OK)
+		return r;
+	const size_t stride = 4 * (size_t)image->width;
+	memcpy(image->pixels + stride * (size_t)row, strip->pixels, stride * (size_t)rows);
+	return GZ_OK;
+}
+
+static enum gz_result cast_all(struct gz_reference_worker *worker,
+			       const struct gz_reference_view *view, struct gz_image *image)
+{
+	enum gz_result r = GZ_OK;
+	atomic_store(&worker->rows_asked, image->height);
+	for (int row = 0; row < image->height && r == GZ_OK; row += STRIP_ROWS) {
+		if (atomic_load(&worker->outdated))
+			return GZ_ERR_CANCELLED;
+		r = cast_strip(worker, view, image, row);
+		atomic_store(&worker->rows_done, row + STRIP_ROWS);
+	}
+	return r;
+}
+
+/* Rays first, then, where there are more or fewer rays than pixels, the picture. */
+static enum gz_result make(struct gz_reference_worker *worker, const struct gz_reference_view *view)
+{
+	const int width = (int)lround(view->width * view->image_sampling_rate);
+	const int height = (int)lround(view->height * view->image_sampling_rate);
+	const bool direct = width == view->width && height == view->height;
+	struct gz_image *target = direct ? &worker->picture : &worker->cast;
+	enum gz_result r = gz_image_resize(target, width, height);
+	if (r == GZ_OK)
+		r = cast_all(worker, view, target);
+	if (r == GZ_OK && !direct) {
+		r = gz_image_resize(&worker->picture, view->width, view->height);
+		if (r == GZ_OK)
+			gz_image_resample(target, &worker->picture);
+	}
+	return r;
+}
+
+/* Show the volume by the newest transfer function. */
+static enum gz_result show_newest(struct gz_reference_worker *worker)
+{
+	pthread_mutex_lock(&worker->lock);
+	worker->shown = worker->transfer;
+	worker->shown_revision = worker->revision;
+	pthread_mutex_unlock(&worker->lock);
+	const struct gz_object object = {
+		.technique = worker->source.technique,
+		.id = 1,
+		.volume = worker->source.volume,
+		.transfer = &worker->shown,
+		.transfer_revision = worker->shown_revision,
+	};
+	return gz_picture_maker_show(worker->pictures, &object, 1);
+}
+
+/* Until there is something to make. @return whether there is; else the thread is to end */
+static bool wait_for_work(struct gz_reference_worker *worker, struct gz_reference_view *out_view)
+{
+	pthread_mutex_lock(&worker->lock);
+	while (!worker->quit && !worker->wanted)
+		pthread_cond_wait(&worker->wake, &worker->lock);
+	const bool go_on = !worker->quit;
+	*out_view = worker->asked;
+	worker->wanted = false;
+	atomic_store(&worker->outdated, worker->quit);
+	atomic_store(&worker->rows_done, 0);
+	pthread_mutex_unlock(&worker->lock);
+	return go_on;
+}
+
+static void hand_over(struct gz_reference_worker *worker, enum gz_result result)
+{
+	pthread_mutex_lock(&worker->lock);
+	const bool is_current = !atomic_load(&worker->outdated);
+	if (is_current && result == GZ_OK) {
+		const struct gz_image room = worker->finished;
+		worker->finished = worker->picture;
+		worker->picture = room;
+		worker->ready = true;
+	}
+	if (is_current)
+		atomic_store(&worker->rows_done, -1);
+	pthread_mutex_unlock(&worker->lock);
+	if (result != GZ_OK && result != GZ_ERR_CANCELLED)
+		gz_err(worker->source.log, "no standard picture to compare with: %s",
+		       gz_result_text(result));
+	if (is_current)
+		worker->source.finished(worker->source.user);
+}
+
+static void *run(void *user)
+{
+	struct gz_reference_worker *worker = user;
+	struct gz_reference_view view;
+	/* Of this thread and those that it starts (Linux). Where it is refused they are like
+	 * others. */
+	(void)setpriority(PRIO_PROCESS, 0, NICENESS);
+	while (wait_for_work(worker, &view)) {
+		enum gz_result r = show_newest(worker);
+		if (r == GZ_OK)
+			r = make(worker, &view);
+		hand_over(worker, r);
+	}
+	gz_image_free(&worker->cast);
+	gz_image_free(&worker->picture);
+	return NULL;
+}
+
+enum gz_result gz_reference_worker_start(const struct gz_reference_source *source,
+					 const struct gz_transfer *transfer,
+					 struct gz_reference_worker **out_worker)
+{
+	if (source->volume->bricks)
+		return GZ_ERR_UNSUPPORTED;
+	struct gz_reference_worker *worker = calloc(1, sizeof *worker);
+	if (!worker)
+		return GZ_ERR_NO_MEM;
+	worker->source = *source;
+	worker->transfer = *transfer;
+	const struct gz_picture_maker_params params = {
+		.backend = "cpu",
+		.backend_params = { .threads = threads_of(source) },
+	};
+	if (gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
+		free(worker);
+		return GZ_ERR_NO_MEM;
+	}
+	atomic_store(&worker->rows_done, -1);
+	pthread_mutex_init(&worker->lock, NULL);
+	pthread_cond_init(&worker->wake, NULL);
+	if (pthread_create(&worker->thread, NULL, run, worker) != 0) {
+		pthread_cond_destroy(&worker->wake);
+		pthread_mutex_destroy(&worker->lock);
+		gz_picture_maker_destroy(&worker->pictures);
+		free(worker);
+		return GZ_ERR_NO_MEM;
+	}
+	*out_worker = worker;
+	return GZ_OK;
+}
+
+/* Under the lock. */
+static void want(struct gz_reference_worker *worker)
+{
+	worker->wanted = true;
+	worker->ready = false;
+	atomic_store(&worker->outdated, true);
+	atomic_store(&worker->rows_done, 0);
+	pthread_cond_signal(&worker->wake);
+}
+
+void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
+				      const struct gz_transfer *transfer)
+{
+	pthread_mutex_lock(&worker->lock);
+	if (!gz_transfer_same(&worker->transfer, transfer)) {
+		worker->transfer = *transfer;
+		worker->revision++;
+		if (worker->any_asked)
+			want(worker);
+	}
+	pthread_mutex_unlock(&worker->lock);
+}
+
+static bool same_view(const struct gz_reference_view *a, const struct gz_reference_view *b)
+{
+	return gz_camera_same(&a->camera, &b->camera) && gz_ray_params_same(&a->rays, &b->rays) &&
+	       a->image_sampling_rate == b->image_sampling_rate && a->width == b->width &&
+	       a->height == b->height;
+}
+
+void gz_reference_worker_ask(struct gz_reference_worker *worker,
+			     const struct gz_reference_view *view)
+{
+	pthread_mutex_lock(&worker->lock);
+	if (!worker->any_asked || !same_view(&worker->asked, view)) {
+		worker->asked = *view;
+		worker->any_asked = true;
+		want(worker);
+	}
+	pthread_mutex_unlock(&worker->lock);
+}
+
+bool gz_reference_worker_busy(struct gz_reference_worker *worker, double *out_share)
+{
+	const int done = atomic_load(&worker->rows_done);
+	const int asked = atomic_load(&worker->rows_asked);
+	*out_share = done < 0 ? 1 : asked > 0 ? fmin(1, (double)done / asked) : 0;
+	return done >= 0;
+}
+
+bool gz_reference_worker_take(struct gz_reference_worker *worker, struct gz_image *image)
+{
+	pthread_mutex_lock(&worker->lock);
+	const bool ready = worker->ready;
+	if (ready) {
+		const struct gz_image room = *image;
+		*image = worker->finished;
+		worker->finished = room;
+		worker->ready = false;
+	}
+	pthread_mutex_unlock(&worker->lock);
+	return ready;
+}
+
+void gz_reference_worker_stop(struct gz_reference_worker **worker)
+{
+	if (!worker || !*worker)
+		return;
+	pthread_mutex_lock(&(*worker)->lock);
+	(*worker)->quit = true;
+	atomic_store(&(*worker)->outdated, true);
+	pthread_cond_signal(&(*worker)->wake);
+	pthread_mutex_unlock(&(*worker)->lock);
+	pthread_join((*worker)->thread, NULL);
+	pthread_cond_destroy(&(*worker)->wake);
+	pthread_mutex_destroy(&(*worker)->lock);
+	gz_image_free(&(*worker)->finished);
+	gz_picture_maker_destroy(&(*worker)->pictures);
+	free(*worker);
+	*worker = NULL;
+}

@@ -1,0 +1,145 @@
+#include "view/gaze/gaze_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+
+/* Over which a rate is told, and how close readings are kept. */
+#define RATE_SPAN_NS  GZ_NS_PER_S
+#define RATE_APART_NS (GZ_NS_PER_S / 100)
+/* Less says nothing: chosen, a fifth of the span. */
+#define RATE_LEAST_NS (RATE_SPAN_NS / 5)
+
+static void say(struct gz_gaze_state *state, enum gz_gaze_level level, const char *what,
+		const char *more)
+{
+	state->level = level;
+	snprintf(state->reason, sizeof state->reason, "%s%s", what, more);
+}
+
+/* A daemon is there, and gives no gaze: its tracker has a reason. */
+static void say_tracker(const struct gz_status *status, struct gz_gaze_state *state)
+{
+	char text[GZ_REASON_SIZE];
+	if (!status || status->tracker.state == GZ_TRACKER_RUNNING) {
+		say(state, GZ_GAZE_LEVEL_WARN, "NO GAZE yet from the daemon", "; the mouse leads");
+		return;
+	}
+	snprintf(text, sizeof text, "NO TRACKER: %.31s %s%s%.100s", status->tracker.name,
+		 gz_tracker_state_name(status->tracker.state),
+		 status->tracker.reason[0] ? ", " : "", status->tracker.reason);
+	say(state, GZ_GAZE_LEVEL_WARN, text, "; the mouse leads");
+}
+
+static bool is_of_another_tracker(const struct gz_gaze_signs *signs)
+{
+	return signs->wants_pointer && signs->status && signs->status->tracker.name[0] &&
+	       strcmp(signs->status->tracker.name, "pointer") != 0;
+}
+
+static void say_silent(const struct gz_gaze_signs *signs, struct gz_gaze_state *state)
+{
+	const struct gz_status *status = signs->status;
+	const bool stopped = status && status->tracker.state != GZ_TRACKER_RUNNING;
+	say(state, GZ_GAZE_LEVEL_BAD, "SILENT for more than a second",
+	    stopped ? ": the tracker is " : "");
+	if (stopped)
+		strncat(state->reason, gz_tracker_state_name(status->tracker.state),
+			sizeof state->reason - strlen(state->reason) - 1);
+}
+
+static bool is_lost(const struct gz_gaze_reading *reading)
+{
+	return reading->has_event && reading->event == GZ_EVENT_LOST;
+}
+
+static void judge_daemon(const struct gz_gaze_signs *signs, struct gz_gaze_state *state)
+{
+	if (!signs->reading.connected)
+		say(state, GZ_GAZE_LEVEL_WARN, "NO DAEMON: start gazed", "; the mouse leads");
+	else if (!signs->reading.known)
+		say_tracker(signs->status, state);
+	else if (is_of_another_tracker(signs))
+		say(state, GZ_GAZE_LEVEL_WARN,
+		    "OTHER TRACKER: gazed needs --driver pointer, it reads ",
+		    signs->status->tracker.name);
+}
+
+static void judge_age(const struct gz_gaze_signs *signs, struct gz_gaze_state *state)
+{
+	const struct gz_gaze_reading *reading = &signs->reading;
+	if (signs->from_daemon && (!reading->connected || !reading->known))
+		return;
+	if (signs->log_ended)
+		say(state, GZ_GAZE_LEVEL_WARN, "LOG AT ITS END", "");
+	else if (reading->has_age && reading->age_ns > GZ_GAZE_SILENT_NS)
+		say_silent(signs, state);
+	else if (is_lost(reading))
+		say(state, GZ_GAZE_LEVEL_BAD, "EYE LOST", "");
+	else if (state->level == GZ_GAZE_LEVEL_GOOD && reading->has_age &&
+		 reading->age_ns > GZ_GAZE_LATE_NS)
+		say(state, GZ_GAZE_LEVEL_WARN, "LATE: older than 50 ms", "");
+	else if (state->level == GZ_GAZE_LEVEL_GOOD && signs->losing)
+		say(state, GZ_GAZE_LEVEL_WARN, "LOSING samples between tracker and daemon", "");
+}
+
+void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *out_state)
+{
+	struct gz_gaze_state state = { .level = GZ_GAZE_LEVEL_GOOD };
+	if (signs->from_daemon)
+		judge_daemon(signs, &state);
+	if (signs->from_daemon || signs->from_log)
+		judge_age(signs, &state);
+	if (state.level == GZ_GAZE_LEVEL_GOOD && signs->from_daemon && signs->window_elsewhere)
+		say(&state, GZ_GAZE_LEVEL_WARN, "OTHER DISPLAY: the tracker's is not the window's",
+		    "; D goes there");
+	*out_state = state;
+}
+
+/* Times of a log are anybody's. */
+static int64_t span_ns(int64_t from_ns, int64_t to_ns)
+{
+	int64_t span;
+	return __builtin_sub_overflow(to_ns, from_ns, &span) ? INT64_MAX : span;
+}
+
+static size_t newest(const struct gz_gaze_rate *rate)
+{
+	return (rate->next + GZ_GAZE_RATE_ROOM - 1) % GZ_GAZE_RATE_ROOM;
+}
+
+void gz_gaze_rate_step(struct gz_gaze_rate *rate, const struct gz_gaze_reading *reading)
+{
+	if (!reading->numbered)
+		return;
+	const size_t last = newest(rate);
+	if (rate->count > 0 && (reading->seq < rate->kept[last].seq ||
+				reading->sample_ns < rate->kept[last].sample_ns))
+		*rate = (struct gz_gaze_rate) { 0 };
+	if (rate->count > 0 &&
+	    span_ns(rate->kept[last].sample_ns, reading->sample_ns) < RATE_APART_NS)
+		return;
+	rate->kept[rate->next].seq = reading->seq;
+	rate->kept[rate->next].sample_ns = reading->sample_ns;
+	rate->next = (rate->next + 1) % GZ_GAZE_RATE_ROOM;
+	rate->count += rate->count < GZ_GAZE_RATE_ROOM;
+}
+
+double gz_gaze_rate_hz(const struct gz_gaze_rate *rate)
+{
+	if (rate->count < 2)
+		return 0;
+	const size_t last = newest(rate);
+	size_t first = last;
+	for (size_t i = 1; i < rate->count; i++) {
+		const size_t at = (last + GZ_GAZE_RATE_ROOM - i) % GZ_GAZE_RATE_ROOM;
+		if (span_ns(rate->kept[at].sample_ns, rate->kept[last].sample_ns) > RATE_SPAN_NS)
+			break;
+		first = at;
+	}
+	const int64_t time_ns = span_ns(rate->kept[first].sample_ns, rate->kept[last].sample_ns);
+	return time_ns < RATE_LEAST_NS ? 0
+				       : (double)(rate->kept[last].seq - rate->kept[first].seq) /
+						 gz_ns_to_s(time_ns);
+}

@@ -1,0 +1,392 @@
+#include "view/headless/headless.h"
+
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "render/plan/method.h"
+#include "view/capture/output.h"
+#include "view/capture/video.h"
+#include "view/draw/letters.h"
+#include "view/frame/frame.h"
+#include "view/frame/stats.h"
+#include "view/gaze/gaze_source.h"
+#include "view/headless/loading_bar.h"
+#include "view/session/recording.h"
+#include "view/session/replay.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+/* How long the first frame waits for a daemon's first message (chosen: a local connection stands
+ * within some ms; a tracker that starts needs longer than anyone waits), for its display (chosen:
+ * status comes once a second), and how often it looks. */
+#define FIRST_GAZE_WAIT_NS   (500 * GZ_NS_PER_MS)
+#define FIRST_STATUS_WAIT_NS (1200 * GZ_NS_PER_MS)
+#define FIRST_GAZE_POLL_NS   (1 * GZ_NS_PER_MS)
+
+enum { LINE_SIZE = 512 };
+
+/* Set by the handler; the only state a signal can reach. */
+static volatile sig_atomic_t signal_seen;
+
+struct headless {
+	const struct gz_view_options *options;
+	const struct gz_log *log;
+	struct gz_frame_maker *maker;
+	struct gz_gaze_source *source;
+	struct gz_stats_file *stats;
+	struct gz_video *video;
+	struct gz_session_writer *session; /* in recording */
+	struct gz_replay *replay;
+	struct gz_scene_settings settings; /* the camera turns */
+	int64_t start_ns;
+	bool silence_told; /* that a daemon says nothing was said */
+};
+
+static void on_signal(int number)
+{
+	signal_seen = number;
+}
+
+/* Once each: a second signal of a kind ends the program in the middle of a frame that takes too
+ * long.
+ */
+static void catch_signals(void)
+{
+	struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
+	sigemptyset(&action.sa_mask);
+	signal_seen = 0;
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+}
+
+static enum gz_result open_source(const struct gz_gaze_choice *choice, const struct gz_log *log,
+				  struct gz_gaze_source **out_source)
+{
+	switch (choice->kind) {
+	case GZ_GAZE_LATEST:
+		return gz_gaze_source_latest(choice->text, log, out_source);
+	case GZ_GAZE_LOG:
+		return gz_gaze_source_log(choice->text, log, out_source);
+	case GZ_GAZE_CENTRE: /* set anew before each frame */
+	case GZ_GAZE_FIXED:
+	case GZ_GAZE_MOUSE:
+	case GZ_GAZE_POINTER:
+		break;
+	}
+	return gz_gaze_source_fixed(choice->point, out_source);
+}
+
+/* Where the camera's look_at is in the picture; its middle if the eye cannot see it. */
+static struct gz_point centre_of(const struct headless *self)
+{
+	struct gz_point centre = { 0.5f, 0.5f };
+	const struct gz_camera *camera = &self->settings.camera;
+	gz_camera_project(camera, self->options->size_px[0], self->options->size_px[1],
+			  camera->look_at, &centre);
+	return centre;
+}
+
+static struct gz_display display_now(struct headless *self)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(self->maker);
+	struct gz_display known;
+	const struct gz_display *best = NULL;
+	if (scene->has_display)
+		best = &scene->settings.display;
+	else if (gz_gaze_source_display(self->source, &known))
+		best = &known;
+	return gz_view_display(self->options, best, self->options->size_px[0],
+			       self->options->size_px[1]);
+}
+
+/* Time of a frame after the first, whole ns. Dividing last keeps whole results exact: a sample at
+ * the very time of a frame belongs to it. */
+static int64_t frame_time_ns(const struct headless *self, int frame)
+{
+	return (int64_t)floor((double)frame * (double)GZ_NS_PER_S / self->options->fps);
+}
+
+static struct gz_gaze_reading gaze_now(struct headless *self, int frame)
+{
+	struct gz_gaze_reading reading;
+	gz_gaze_source_read(self->source, frame_time_ns(self, frame), &reading);
+	if (self->options->gaze.kind == GZ_GAZE_CENTRE)
+		reading.point = centre_of(self);
+	if (!reading.known && !self->silence_told) {
+		const char *endpoint = self->options->gaze.text;
+		gz_warn(self->log,
+			"no gaze from %s yet; going on with the plan at the centre (start gazed, "
+			"or see gazectl status)",
+			endpoint[0] ? endpoint : "the local daemon");
+		self->silence_told = true;
+	}
+	return reading;
+}
+
+static bool display_settled(struct headless *self)
+{
+	const struct gz_view_options *options = self->options;
+	struct gz_display display;
+	return gz_frame_maker_scene(self->maker)->has_display ||
+	       (options->display_mm[0] > 0 && options->display_distance_mm > 0) ||
+	       gz_gaze_source_display(self->source, &display);
+}
+
+/* A daemon that runs gets the time to answer, so that the first frames are not blind and have the
+ * geometry of those that follow. */
+static void await_daemon(struct headless *self)
+{
+	int64_t start_ns = gz_clock_now_ns(), now_ns = start_ns;
+	struct gz_gaze_reading reading;
+	while (!signal_seen) {
+		gz_gaze_source_read(self->source, 0, &reading);
+		if (reading.known && (display_settled(self) || !self->source->ops->display))
+			return;
+		if (now_ns - start_ns > (reading.known ? FIRST_STATUS_WAIT_NS : FIRST_GAZE_WAIT_NS))
+			return;
+		now_ns += FIRST_GAZE_POLL_NS;
+		gz_clock_sleep_until_ns(now_ns);
+	}
+}
+
+/* Nothing where the volume does not tell its sides. */
+static void draw_letters(const struct headless *self, struct gz_image *image)
+{
+	struct gz_letters letters;
+	if (gz_frame_maker_scene(self->maker)->volume.oriented &&
+	    gz_letters_of_camera(&self->settings.camera, &letters) == GZ_OK)
+		gz_letters_draw(&letters, image);
+}
+
+static enum gz_result write_png(const struct headless *self, const struct gz_image *image,
+				int frame)
+{
+	char path[GZ_PATH_SIZE];
+	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
+	if (r != GZ_OK) {
+		gz_err(self->log, "--out: the name of picture %d is too long; shorten it", frame);
+		return r;
+	}
+	return gz_image_write_png(image, path, self->log);
+}
+
+/* When a frame is shown: a live one when it has been made. */
+static int64_t shown_ns(const struct headless *self, int frame)
+{
+	if (self->replay)
+		return gz_replay_frame(self->replay)->time_ns;
+	return self->source->ops->live ? gz_clock_now_ns() - self->start_ns
+				       : frame_time_ns(self, frame);
+}
+
+/* ffmpeg starts with the first picture: what fails before leaves no file. */
+static enum gz_result add_to_video(struct headless *self, const struct gz_image *image, int frame)
+{
+	const struct gz_video_params params = {
+		.path = self->options->video,
+		.width = image->width,
+		.height = image->height,
+		.fps = self->options->fps,
+		.wait = true,
+	};
+	enum gz_result r = GZ_OK;
+	if (!self->video)
+		r = gz_video_open(&params, self->log, &self->video);
+	return r == GZ_OK ? gz_video_show(self->video, image, shown_ns(self, frame)) : r;
+}
+
+static enum gz_result write_picture(struct headless *self, struct gz_image *image,
+				    const struct gz_frame_record *record, int frame)
+{
+	const struct gz_view_options *options = self->options;
+	if (!options->out[0] && !options->video[0])
+		return GZ_OK;
+	if (self->settings.view.gaze_cursor && record->gaze_known)
+		gz_frame_draw_cross(image, record->gaze);
+	if (self->settings.view.letters)
+		draw_letters(self, image);
+	enum gz_result r = options->out[0] ? write_png(self, image, frame) : GZ_OK;
+	return r == GZ_OK && options->video[0] ? add_to_video(self, image, frame) : r;
+}
+
+static enum gz_result print_line(const struct headless *self, const struct gz_frame_record *record)
+{
+	char line[LINE_SIZE];
+	gz_frame_record_print(record, line, sizeof line);
+	if (puts(line) >= 0 && fflush(stdout) == 0)
+		return GZ_OK;
+	gz_err(self->log, "cannot write to stdout: %s; give it a place with room", strerror(errno));
+	return GZ_ERR_IO;
+}
+
+/* The session begins with the first frame: only then is it known what it is on. */
+static enum gz_result begin_session(struct headless *self, const struct gz_display *display)
+{
+	const struct gz_recording_start start = {
+		.path = self->options->record,
+		.scene = self->options->scene,
+		.maker = self->maker,
+		.settings = &self->settings,
+		.display = display,
+		.source = self->source->ops->name,
+		.rate_hz = self->options->fps,
+		.now_ns = self->start_ns,
+	};
+	return gz_recording_begin(&start, self->log, &self->session);
+}
+
+/* As the settings and the maker's focus say, and all that is to be had of it. */
+static enum gz_result make_frame(struct headless *self, const struct gz_frame_request *request,
+				 int frame)
+{
+	struct gz_frame_record record;
+	struct gz_image *image;
+	enum gz_result r = gz_frame_make(self->maker, request, &image, &record);
+	if (r == GZ_OK && self->session)
+		r = gz_recording_add(self->session, self->maker, request, &record,
+				     shown_ns(self, frame));
+	if (r == GZ_OK)
+		r = print_line(self, &record);
+	if (r == GZ_OK && self->stats)
+		r = gz_stats_add(self->stats, &record);
+	if (r == GZ_OK && self->replay)
+		gz_replay_compare(self->replay, &record);
+	return r == GZ_OK ? write_picture(self, image, &record, frame) : r;
+}
+
+static enum gz_result one_frame(struct headless *self, int frame)
+{
+	if (self->source->ops->live)
+		gz_clock_sleep_until_ns(self->start_ns + frame_time_ns(self, frame));
+	const struct gz_gaze_reading gaze = gaze_now(self, frame);
+	const struct gz_display display = display_now(self);
+	const struct gz_frame_request request = {
+		.settings = &self->settings,
+		.display = &display,
+		.width = self->options->size_px[0],
+		.height = self->options->size_px[1],
+	};
+	gz_frame_attend(self->maker, &self->settings.attention, &gaze, &display,
+			self->source->ops->live ? gz_clock_now_ns() : frame_time_ns(self, frame));
+	enum gz_result r = GZ_OK;
+	if (self->options->record[0] && !self->session)
+		r = begin_session(self, &display);
+	if (r == GZ_OK && self->session)
+		r = gz_session_writer_gaze(self->session, &gaze,
+					   self->start_ns + shown_ns(self, frame));
+	if (r == GZ_OK)
+		r = make_frame(self, &request, frame);
+	gz_camera_turn(&self->settings.camera, self->options->turn_deg);
+	return r;
+}
+
+static enum gz_result one_replayed_frame(struct headless *self, int frame)
+{
+	enum gz_result r = gz_replay_next(self->replay);
+	if (r != GZ_OK)
+		return r;
+	const struct gz_session_frame *recorded = gz_replay_frame(self->replay);
+	memcpy(&self->settings, gz_replay_settings(self->replay), sizeof self->settings);
+	const struct gz_frame_request request = {
+		.settings = &self->settings,
+		.display = &recorded->display,
+		.width = recorded->width,
+		.height = recorded->height,
+	};
+	r = gz_replay_ready(self->replay);
+	return r == GZ_OK ? make_frame(self, &request, frame) : r;
+}
+
+static enum gz_result finish_video(struct headless *self, int64_t end_ns)
+{
+	if (self->video)
+		gz_video_finish(self->video, end_ns);
+	return gz_video_close(&self->video);
+}
+
+static enum gz_result replay_frames(struct headless *self)
+{
+	enum gz_result r = GZ_OK;
+	for (int frame = 0; r == GZ_OK && !signal_seen; frame++)
+		r = one_replayed_frame(self, frame);
+	/* The last one is shown for as long as any. */
+	const int64_t end_ns = shown_ns(self, 0) + (int64_t)(1e9 / self->options->fps);
+	const enum gz_result closed = finish_video(self, end_ns);
+	return r == GZ_OK || r == GZ_ERR_END ? closed : r;
+}
+
+static enum gz_result all_frames(struct headless *self)
+{
+	enum gz_result r = GZ_OK;
+	if (self->source->ops->live)
+		await_daemon(self);
+	self->start_ns = gz_clock_now_ns();
+	int frame = 0;
+	for (; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
+		r = one_frame(self, frame);
+	const enum gz_result recorded = gz_session_writer_end(&self->session);
+	const enum gz_result closed = finish_video(self, shown_ns(self, frame));
+	return r != GZ_OK ? r : recorded != GZ_OK ? recorded : closed;
+}
+
+/* A replay is the same each time, but for what depends on how fast the machine is. */
+static void warn_of_budget(const struct headless *self)
+{
+	const bool keeps = gz_method_of(&self->settings.foveation)->can_be_coarser;
+	if (self->settings.attention.budget_ms > 0 && keeps && !self->source->ops->live &&
+	    !self->options->replay[0])
+		gz_warn(self->log,
+			"attention.budget_ms %g: the pictures depend on how fast this machine is; "
+			"set it to 0 for the same ones each time",
+			self->settings.attention.budget_ms);
+}
+
+static enum gz_result load(struct headless *self)
+{
+	const struct gz_frame_scene scene = gz_frame_scene_of_options(self->options);
+	struct gz_loading_bar bar;
+	gz_loading_bar_begin(&bar, self->log);
+	const enum gz_result r =
+		gz_frame_maker_create(self->options, &scene, &bar.loading, self->log, &self->maker);
+	gz_loading_bar_end(&bar);
+	return r;
+}
+
+enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
+				int *out_signal)
+{
+	struct headless self = { .options = options, .log = log };
+	catch_signals();
+	/* First what is known sooner than a volume is loaded: where files go, and the gaze. */
+	enum gz_result r = gz_recording_check(options->record, log);
+	if (r == GZ_OK)
+		r = gz_output_check(options, log);
+	if (r == GZ_OK)
+		r = open_source(&options->gaze, log, &self.source);
+	if (r == GZ_OK)
+		r = load(&self);
+	if (r == GZ_OK)
+		r = gz_frame_maker_start(self.maker, options, NULL);
+	if (r == GZ_OK && options->stats[0])
+		r = gz_stats_open(options->stats, log, &self.stats);
+	if (r == GZ_OK) {
+		self.settings = gz_frame_maker_scene(self.maker)->settings;
+		warn_of_budget(&self);
+		if (self.settings.view.letters)
+			gz_frame_tell_unoriented(self.maker);
+		r = options->replay[0] ? gz_replay_open(options, self.maker, log, &self.replay)
+				       : all_frames(&self);
+	}
+	if (r == GZ_OK && self.replay)
+		r = replay_frames(&self);
+	gz_replay_close(&self.replay);
+	gz_stats_close(&self.stats);
+	gz_frame_maker_destroy(&self.maker);
+	gz_gaze_source_destroy(&self.source);
+	*out_signal = signal_seen;
+	return r;
+}

@@ -1,0 +1,541 @@
+#include "view/options/options.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/picture/image.h"
+#include "render/plan/method.h"
+#include "view/options/options_check.h"
+
+#define GZ_LOG_MODULE "gazeview"
+
+#define AT(field) offsetof(struct gz_view_options, field)
+
+static const char *const bricks_names[] = { "auto", "wait", "stream", NULL };
+static const char *const endian_names[] = { "little", "big", NULL };
+
+const struct gz_option gz_view_option_table[] = {
+	{ .key = "scene",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(scene),
+	  .max = GZ_PATH_SIZE,
+	  .help = "what to show: a scene, a volume, or a picture that gazeview saved; may also "
+		  "stand alone, without --scene" },
+	{ .key = "headless",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(headless),
+	  .preset = "false",
+	  .help = "render without a window" },
+	{ .key = "size",
+	  .type = GZ_OPTION_SIZE,
+	  .offset = AT(size_px),
+	  .min = 1,
+	  .max = GZ_IMAGE_SIDE_MAX,
+	  .preset = "1280x720",
+	  .help = "picture, px" },
+	{ .key = "gaze",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(gaze_text),
+	  .max = GZ_PATH_SIZE,
+	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, pointer (the mouse by way of "
+		  "gazed "
+		  "--driver pointer), the endpoint of a latest channel or FILE.gzl; without it "
+		  "centre if headless, else daemon" },
+	{ .key = "fps",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(fps),
+	  .min = 0.01,
+	  .max = 10000,
+	  .preset = "60",
+	  .help = "frames a second of gaze time" },
+	{ .key = "method",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(method),
+	  .choices = gz_method_names,
+	  .help = "foveation method; without it the scene's" },
+	{ .key = "backend",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(backend),
+	  .max = GZ_NAME_SIZE,
+	  .preset = "auto",
+	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto: gl where a GPU does its "
+		  "work" },
+	{ .key = "threads",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(threads),
+	  .min = 0,
+	  .max = 256,
+	  .preset = "0",
+	  .help = "threads of the cpu backend; 0 takes one a processor" },
+	{ .key = "simd",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(simd),
+	  .max = GZ_NAME_SIZE,
+	  .preset = "auto",
+	  .help = "instructions of the cpu backend: auto, portable, avx2, avx512" },
+	{ .key = "gl-memory",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(gl_memory_mib),
+	  .min = 0,
+	  .max = 1 << 24,
+	  .preset = "0",
+	  .help = "memory of the graphics device that the gl backend takes for voxels, MiB; 0 "
+		  "takes "
+		  "what there is; what does not fit whole is shown by bricks" },
+	{ .key = "frames",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(frames),
+	  .min = 1,
+	  .max = 100000000,
+	  .preset = "1",
+	  .help = "pictures to render headless" },
+	{ .key = "out",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(out),
+	  .max = GZ_PATH_SIZE,
+	  .help = "PNG to write, headless; for several frames a pattern such as frame-%04d.png" },
+	{ .key = "video",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(video),
+	  .max = GZ_PATH_SIZE,
+	  .help = "video to write, headless, --fps pictures a second, by ffmpeg: .mp4 or what else "
+		  "its "
+		  "ending names" },
+	{ .key = "pictures",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(pictures),
+	  .max = GZ_PATH_SIZE,
+	  .preset = ".",
+	  .help = "folder for what F9, F10 and F12 write: sessions, videos, screenshots" },
+	{ .key = "record",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(record),
+	  .max = GZ_PATH_SIZE,
+	  .help = "folder NAME.session to make: what each picture is made of, to be shown again" },
+	{ .key = "replay",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(replay),
+	  .max = GZ_PATH_SIZE,
+	  .help = "NAME.session to show again, picture by picture, in place of a scene and a "
+		  "gaze" },
+	{ .key = "measure-window",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(measure_window),
+	  .min = 0,
+	  .max = 100000,
+	  .preset = "0",
+	  .help = "show so many frames each of a bare picture, of the window and of the window "
+		  "with "
+		  "panels, tell what they took, and end" },
+	{ .key = "stats",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(stats),
+	  .max = GZ_PATH_SIZE,
+	  .help = "JSON file for what each frame cost, headless" },
+	{ .key = "write-volume",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(write_volume),
+	  .max = GZ_PATH_SIZE,
+	  .help = "write the scene's volume to this file, .gzb (bricks, for volumes larger than "
+		  "the "
+		  "memory) or .nrrd, and show nothing" },
+	{ .key = "bricks",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(bricks),
+	  .choices = bricks_names,
+	  .preset = "auto",
+	  .help = "each picture of a volume shown by bricks waits for all it shows, or streams: "
+		  "coarse first, sharper later; auto waits if headless" },
+	{ .key = "turn",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(turn_deg),
+	  .min = -360,
+	  .max = 360,
+	  .preset = "0",
+	  .help = "turn the camera by so many degrees a frame" },
+	{ .key = "cross",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(cross),
+	  .preset = "false",
+	  .help = "short for --view.gaze_cursor" },
+	{ .key = "letters",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(letters),
+	  .preset = "false",
+	  .help = "short for --view.letters" },
+	{ .key = "fullscreen",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(fullscreen),
+	  .preset = "false",
+	  .help = "start the window full screen" },
+	{ .key = "vsync",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(vsync),
+	  .preset = "true",
+	  .help = "short for --view.vsync" },
+	{ .key = "interface-scale",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(interface_scale),
+	  .min = 0,
+	  .max = 8,
+	  .preset = "0",
+	  .help = "size of texts and panels; 0 takes what the display says, 1 is small" },
+	{ .key = "gaze-fills-window",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(gaze_fills_window),
+	  .preset = "false",
+	  .help = "the daemon's gaze spans the window instead of the monitor it is on" },
+	{ .key = "tracker-display",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(tracker_display),
+	  .max = GZ_NAME_SIZE,
+	  .help = "short for --view.tracker_display: a monitor's name, or its number from 1" },
+	{ .key = "display-px",
+	  .type = GZ_OPTION_SIZE,
+	  .offset = AT(display_px),
+	  .min = 1,
+	  .max = 32768,
+	  .help = "display, px; headless the picture fills it" },
+	{ .key = "display-mm",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(display_mm),
+	  .min = 1,
+	  .max = 100000,
+	  .count = 2,
+	  .help = "display's width and height, mm, as \"565 318\"" },
+	{ .key = "distance-mm",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(display_distance_mm),
+	  .min = 1,
+	  .max = 100000,
+	  .help = "from the eye to the display, mm" },
+	{ .key = "volume.dims",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(volume_dims),
+	  .min = 1,
+	  .max = GZ_VOLUME_DIM_MAX,
+	  .count = 3,
+	  .help = "voxels along x, y, z of a raw file that stands for a scene, as \"256 256 128\"; "
+		  "without it its name and its size must tell" },
+	{ .key = "volume.type",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(volume_type),
+	  .choices = gz_raw_type_names,
+	  .help = "type of its voxels" },
+	{ .key = "volume.endian",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(volume_endian),
+	  .choices = endian_names,
+	  .help = "byte order of its voxels; without it little" },
+	{ .key = "volume.spacing",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(volume_spacing),
+	  .min = 1e-9,
+	  .max = 1e9,
+	  .count = 3,
+	  .help = "between its voxels along x, y, z, mm; without it 1" },
+	{ .key = "transfer.file",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(transfer_file),
+	  .max = GZ_PATH_SIZE,
+	  .help = "transfer function, .tf, in place of the scene's" },
+	{ .key = "help",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(help),
+	  .preset = "false",
+	  .help = "print this and exit" },
+	{ .key = "version",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(version),
+	  .preset = "false",
+	  .help = "print the version and exit" },
+};
+
+const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
+
+/* Tables of gazeview's own: the one above, that of the targets and that of experiments. */
+enum { OWN_BINDINGS = 3 };
+
+static bool starts_with(const char *text, const char *start)
+{
+	return strncmp(text, start, strlen(start)) == 0;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+	size_t length = strlen(text), tail = strlen(end);
+	return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+/* One finite number up to @p end; strtod() alone would also take blanks, hex and "inf". */
+static bool parse_number(const char *text, char end, float *out_value, const char **out_rest)
+{
+	size_t length = strspn(text, "+-.0123456789eE");
+	if (length == 0 || text[length] != end)
+		return false;
+	char *stop;
+	float value = strtof(text, &stop);
+	if (stop != text + length || !isfinite(value))
+		return false;
+	*out_value = value;
+	*out_rest = stop + (end != '\0');
+	return true;
+}
+
+static bool parse_point(const char *text, struct gz_point *out_point)
+{
+	struct gz_point point;
+	const char *rest;
+	if (!parse_number(text, ',', &point.x, &rest) || !parse_number(rest, '\0', &point.y, &rest))
+		return false;
+	*out_point = point;
+	return true;
+}
+
+enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
+				    struct gz_gaze_choice *out_choice)
+{
+	struct gz_gaze_choice choice = { .kind = GZ_GAZE_CENTRE };
+	if (strlen(text) >= sizeof choice.text) {
+		gz_err(log, "--gaze: too long; at most %zu bytes are taken",
+		       sizeof choice.text - 1);
+		return GZ_ERR_INVAL;
+	}
+	if (strcmp(text, "mouse") == 0) {
+		choice.kind = GZ_GAZE_MOUSE;
+	} else if (strcmp(text, "pointer") == 0) {
+		choice.kind = GZ_GAZE_POINTER;
+	} else if (strcmp(text, "daemon") == 0) {
+		choice.kind = GZ_GAZE_LATEST;
+	} else if (starts_with(text, "ipc://") || starts_with(text, "tcp://")) {
+		choice.kind = GZ_GAZE_LATEST;
+		memcpy(choice.text, text, strlen(text) + 1);
+	} else if (ends_with(text, ".gzl")) {
+		choice.kind = GZ_GAZE_LOG;
+		memcpy(choice.text, text, strlen(text) + 1);
+	} else if (parse_point(text, &choice.point)) {
+		choice.kind = GZ_GAZE_FIXED;
+	} else if (strcmp(text, "centre") != 0) {
+		gz_err(log,
+		       "--gaze %s: not understood; give two finite numbers as 0.5,0.5, or centre, "
+		       "daemon, mouse, pointer, ipc://..., tcp://... or FILE.gzl",
+		       text);
+		return GZ_ERR_INVAL;
+	}
+	*out_choice = choice;
+	return GZ_OK;
+}
+
+struct gz_display gz_view_display(const struct gz_view_options *options,
+				  const struct gz_display *known, int width, int height)
+{
+	struct gz_display display = known ? *known : gz_display_default(width, height);
+	if (options->display_px[0] > 0)
+		memcpy(display.px, options->display_px, sizeof display.px);
+	if (options->display_mm[0] > 0)
+		memcpy(display.mm, options->display_mm, sizeof display.mm);
+	if (options->display_distance_mm > 0)
+		display.distance_mm = options->display_distance_mm;
+	return display;
+}
+
+/* Scenes' files have "levels = yes", so that it is tried here too. */
+static bool is_switch_value(const char *argument)
+{
+	static const char *const values[] = { "yes", "no", "true", "false", "on", "off" };
+	for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
+		if (strcmp(argument, values[i]) == 0)
+			return true;
+	return false;
+}
+
+static enum gz_result take_positional(struct gz_view_options *options, const char *const *arguments,
+				      int count, const struct gz_log *log)
+{
+	if (count == 0)
+		return GZ_OK;
+	if ((count > 1 || options->scene[0]) && is_switch_value(arguments[count - 1])) {
+		gz_err(log, "%s: a switch takes its value after =, as in --render.levels=%s",
+		       arguments[count - 1], arguments[count - 1]);
+		return GZ_ERR_INVAL;
+	}
+	if (count > 1 || options->scene[0]) {
+		gz_err(log, "%s: one scene at a time; remove it, or the other one",
+		       arguments[count - 1]);
+		return GZ_ERR_INVAL;
+	}
+	if (strlen(arguments[0]) >= sizeof options->scene) {
+		gz_err(log, "scene: the path is longer than %zu bytes; move it",
+		       sizeof options->scene - 1);
+		return GZ_ERR_INVAL;
+	}
+	memcpy(options->scene, arguments[0], strlen(arguments[0]) + 1);
+	return GZ_OK;
+}
+
+/* --method is short for --foveation.method; both at once say nothing certain. */
+static enum gz_result check_method_once(const struct gz_view_options *options,
+					const struct gz_view_scene_tables *tables,
+					const struct gz_log *log)
+{
+	const bool *given = options->scene_given;
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES && options->method >= 0; i++) {
+		for (size_t k = 0; k < tables->bindings[i].count; k++) {
+			if (*given++ &&
+			    strcmp(tables->bindings[i].options[k].key, "foveation.method") == 0) {
+				gz_err(log, "--method: --foveation.method says that too; give one "
+					    "of them");
+				return GZ_ERR_INVAL;
+			}
+		}
+	}
+	return GZ_OK;
+}
+
+/* Short for keys of section view. */
+static void apply_short_names(const struct gz_view_options *options, struct gz_view_settings *view)
+{
+	view->gaze_cursor = view->gaze_cursor || options->cross;
+	view->letters = view->letters || options->letters;
+	view->vsync = view->vsync && options->vsync;
+	if (options->gaze_text[0])
+		memcpy(view->gaze, options->gaze_text, sizeof view->gaze);
+	if (options->tracker_display[0])
+		memcpy(view->tracker_display, options->tracker_display,
+		       sizeof view->tracker_display);
+}
+
+static enum gz_result read_arguments(int argc, char *const *argv,
+				     struct gz_view_scene_tables *tables, const struct gz_log *log,
+				     struct gz_view_options *options)
+{
+	struct gz_option_binding bindings[OWN_BINDINGS + GZ_VIEW_SCENE_TABLES] = {
+		{ gz_view_option_table, gz_view_option_count, options, options->given },
+		{ gz_target_option_table, gz_target_option_count, &options->target, NULL },
+		{ gz_sitting_option_table, gz_sitting_option_count, &options->sitting, NULL },
+	};
+	bool *given = options->scene_given;
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
+		bindings[OWN_BINDINGS + i] = tables->bindings[i];
+		bindings[OWN_BINDINGS + i].given = given;
+		given += tables->bindings[i].count;
+	}
+	if (gz_view_scene_key_count(tables) > GZ_VIEW_SCENE_KEYS_MAX) {
+		gz_err(log, "a scene has more keys than gazeview keeps; report this as a defect");
+		return GZ_ERR_FULL;
+	}
+	struct gz_operands operands = { .count = 0 };
+	enum gz_result r = gz_options_preset(&bindings[0]);
+	for (size_t i = 1; i < OWN_BINDINGS && r == GZ_OK; i++)
+		r = gz_options_preset(&bindings[i]);
+	if (r == GZ_OK)
+		r = gz_options_read_arguments(bindings, OWN_BINDINGS + GZ_VIEW_SCENE_TABLES, argc,
+					      argv, &operands, log);
+	if (r == GZ_OK && !options->help && !options->version)
+		r = take_positional(options, operands.items, operands.count, log);
+	return r;
+}
+
+enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz_log *log,
+				    struct gz_view_options *out_options)
+{
+	struct gz_view_scene_tables tables;
+	memset(out_options, 0, sizeof *out_options);
+	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
+	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
+	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
+	if (r != GZ_OK || out_options->help || out_options->version)
+		return r;
+	const char *gaze = out_options->gaze_text;
+	if (!gaze[0])
+		gaze = out_options->headless ? "centre" : "daemon";
+	r = gz_gaze_choice_parse(gaze, log, &out_options->gaze);
+	if (r == GZ_OK)
+		r = check_method_once(out_options, &tables, log);
+	return r == GZ_OK ? gz_view_options_check(out_options, log) : r;
+}
+
+bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw)
+{
+	struct gz_raw_layout raw = {
+		.type = (enum gz_raw_type)options->volume_type,
+		.big_endian = options->volume_endian == 1,
+	};
+	if (options->volume_dims[0] < 1 || options->volume_type < 0)
+		return false;
+	memcpy(raw.dims, options->volume_dims, sizeof raw.dims);
+	for (int axis = 0; axis < 3; axis++)
+		raw.spacing[axis] =
+			options->volume_spacing[axis] > 0 ? options->volume_spacing[axis] : 1;
+	*out_raw = raw;
+	return true;
+}
+
+/* A file named on the command line lies where the program was called, not beside the scene. What is
+ * not there is told by who opens it. */
+static void apply_transfer(const struct gz_view_options *options,
+			   struct gz_scene_settings *settings)
+{
+	if (!options->transfer_file[0])
+		return;
+	char *real = realpath(options->transfer_file, NULL);
+	const bool fits = real && strlen(real) < sizeof settings->transfer_file;
+	const char *path = fits ? real : options->transfer_file;
+	memset(settings->transfer_file, 0, sizeof settings->transfer_file);
+	memcpy(settings->transfer_file, path, strlen(path));
+	free(real);
+}
+
+enum gz_result gz_view_options_apply(const struct gz_view_options *options,
+				     struct gz_scene_settings *settings)
+{
+	struct gz_scene_settings given = options->scene_settings;
+	struct gz_view_scene_tables from, to;
+	gz_view_pick_scene_tables(&given, &from);
+	gz_view_pick_scene_tables(settings, &to);
+	char text[GZ_PATH_SIZE];
+	const bool *is_given = options->scene_given;
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
+		for (size_t k = 0; k < from.bindings[i].count; k++) {
+			const struct gz_option *option = &from.bindings[i].options[k];
+			if (!*is_given++)
+				continue;
+			enum gz_result r = gz_option_format(option, from.bindings[i].target, text,
+							    sizeof text);
+			if (r == GZ_OK)
+				r = gz_option_parse(option, text, to.bindings[i].target, NULL, 0);
+			if (r != GZ_OK)
+				return r;
+		}
+	}
+	if (options->method >= 0)
+		settings->foveation.method = options->method;
+	apply_short_names(options, &settings->view);
+	apply_transfer(options, settings);
+	return GZ_OK;
+}
+
+void gz_view_options_print_help(FILE *out)
+{
+	const struct gz_option_binding own[OWN_BINDINGS] = {
+		{ gz_view_option_table, gz_view_option_count, NULL, NULL },
+		{ gz_target_option_table, gz_target_option_count, NULL, NULL },
+		{ gz_sitting_option_table, gz_sitting_option_count, NULL, NULL },
+	};
+	struct gz_scene_settings settings;
+	struct gz_view_scene_tables tables;
+	gz_view_pick_scene_tables(&settings, &tables);
+	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
+	      "  gazeview SCENE\n"
+	      "  gazeview VOLUME\n"
+	      "  gazeview --headless --scene SCENE --out frame.png\n"
+	      "  gazeview --targets 9\n"
+	      "  gazeview --replay NAME.session\n"
+	      "  gazeview --experiment FILE --participant 07\n\n",
+	      out);
+	gz_options_print_help(own, OWN_BINDINGS, out);
+	fputs("\nKeys of the scene; given here they come before the scene's own:\n\n", out);
+	gz_options_print_help(tables.bindings, GZ_VIEW_SCENE_TABLES, out);
+}

@@ -1,0 +1,103 @@
+#include "view/options/target_options.h"
+
+#include <string.h>
+
+#include "base/clock.h"
+#include "sim/random.h"
+
+#define AT(field) offsetof(struct gz_target_options, field)
+
+static const char *const order_names[] = { "fixed", "random", NULL };
+static const char *const advance_names[] = { "auto", "space", NULL };
+
+const struct gz_option gz_target_option_table[] = {
+	{ .key = "targets",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(targets),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "show fixation targets instead of a scene: 5, 9, 13, or a file with lines "
+		  "\"x y\"; "
+		  "standard output tells when each is there" },
+	{ .key = "duration",
+	  .type = GZ_OPTION_DOUBLE,
+	  .offset = AT(duration_s),
+	  .min = 0.5,
+	  .max = 60,
+	  .preset = "2.5",
+	  .help = "each target stays for so long, s" },
+	{ .key = "order",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(order),
+	  .choices = order_names,
+	  .preset = "random",
+	  .help = "in which order targets come: as listed, or at random" },
+	{ .key = "seed",
+	  .type = GZ_OPTION_INT,
+	  .offset = AT(seed),
+	  .min = 0,
+	  .max = 2147483647,
+	  .preset = "0",
+	  .help = "of the random order; 0 takes another one each time" },
+	{ .key = "advance",
+	  .type = GZ_OPTION_CHOICE,
+	  .offset = AT(advance),
+	  .choices = advance_names,
+	  .preset = "auto",
+	  .help = "the next target comes by itself, or when the space bar is pressed" },
+	{ .key = "instructions",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(instructions),
+	  .preset = "true",
+	  .help = "say first what to do, and wait for the space bar" },
+	{ .key = "window",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = AT(windowed),
+	  .preset = "false",
+	  .help = "show targets, or an experiment, in a window instead of on the whole display" },
+};
+
+const size_t gz_target_option_count =
+	sizeof gz_target_option_table / sizeof gz_target_option_table[0];
+
+/* From the middle outwards; the first 5, 9 or 13 are the layouts. */
+static const struct gz_point layout[] = {
+	{ 0.5f, 0.5f }, { 0.1f, 0.1f }, { 0.9f, 0.1f }, { 0.1f, 0.9f }, { 0.9f, 0.9f },
+	{ 0.5f, 0.1f }, { 0.1f, 0.5f }, { 0.9f, 0.5f }, { 0.5f, 0.9f }, { 0.3f, 0.3f },
+	{ 0.7f, 0.3f }, { 0.3f, 0.7f }, { 0.7f, 0.7f },
+};
+
+/* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
+static void shuffle(struct gz_targets *targets, int seed)
+{
+	uint64_t start = seed > 0 ? (uint64_t)seed : (uint64_t)gz_clock_now_ns();
+	struct gz_random random = gz_random_seeded(start, 0);
+	for (size_t i = targets->count; i > 1; i--) {
+		size_t chosen = (size_t)(gz_random_uniform(&random) * (double)i);
+		struct gz_target last = targets->target[i - 1];
+		targets->target[i - 1] = targets->target[chosen];
+		targets->target[chosen] = last;
+	}
+}
+
+enum gz_result gz_target_places(const struct gz_target_options *options, const struct gz_log *log,
+				struct gz_targets *out_targets)
+{
+	static const char *const names[] = { "5", "9", "13" };
+	static const size_t counts[] = { 5, 9, 13 };
+	struct gz_targets targets = { .count = 0 };
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+		if (strcmp(options->targets, names[i]) == 0)
+			targets.count = counts[i];
+	for (size_t i = 0; i < targets.count; i++)
+		targets.target[i] = (struct gz_target) { layout[i], 1 };
+	if (targets.count == 0) {
+		enum gz_result r = gz_targets_load(options->targets, log, &targets);
+		if (r != GZ_OK)
+			return r;
+	}
+	if (options->order == GZ_TARGET_ORDER_RANDOM)
+		shuffle(&targets, options->seed);
+	*out_targets = targets;
+	return GZ_OK;
+}

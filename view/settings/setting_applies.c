@@ -1,0 +1,96 @@
+#include "view/settings/setting_applies.h"
+
+#include <string.h>
+
+#include "render/plan/method.h"
+
+typedef bool applies_function(const struct gz_scene_settings *settings);
+
+static bool in_perspective(const struct gz_scene_settings *settings)
+{
+	return settings->camera.projection == GZ_PROJECTION_PERSPECTIVE;
+}
+
+static bool in_parallel(const struct gz_scene_settings *settings)
+{
+	return !in_perspective(settings);
+}
+
+static bool with_light(const struct gz_scene_settings *settings)
+{
+	return settings->rays.shading == GZ_SHADING_GRADIENT;
+}
+
+static bool with_occlusion(const struct gz_scene_settings *settings)
+{
+	return with_light(settings) && settings->rays.light.occlusion > 0;
+}
+
+static bool with_borders(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->has_borders;
+}
+
+static bool with_a_pyramid(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->is_pyramid;
+}
+
+/* Acuity sets the steps where they go by it, whatever sets the spacings. */
+static bool by_acuity(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->own_steps == GZ_STEPS_RUNG ||
+	       settings->foveation.step_rule == GZ_STEP_ACUITY;
+}
+
+static bool by_distance(const struct gz_scene_settings *settings)
+{
+	return settings->foveation.step_rule == GZ_STEP_DISTANCE;
+}
+
+static bool with_the_gaze(const struct gz_scene_settings *settings)
+{
+	return gz_foveation_follows_gaze(&settings->foveation);
+}
+
+static bool with_a_scale(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->can_be_coarser;
+}
+
+static bool with_the_past(const struct gz_scene_settings *settings)
+{
+	return settings->temporal.accumulate;
+}
+
+static bool with_a_split(const struct gz_scene_settings *settings)
+{
+	return settings->view.compare == GZ_COMPARE_SPLIT;
+}
+
+static bool with_a_difference(const struct gz_scene_settings *settings)
+{
+	return settings->view.compare == GZ_COMPARE_DIFFERENCE;
+}
+
+/* The first that the key is or begins with. */
+static const struct {
+	const char *key;
+	applies_function *applies;
+} conditions[] = {
+	{ "camera.fov_deg", in_perspective },           { "camera.height", in_parallel },
+	{ "light.occlusion_radius", with_occlusion },   { "light.", with_light },
+	{ "foveation.reconstruction", with_a_pyramid }, { "foveation.acuity_", by_acuity },
+	{ "foveation.blend_px", with_borders },         { "foveation.step_floor", by_distance },
+	{ "attention.budget_ms", with_a_scale },        { "attention.", with_the_gaze },
+	{ "temporal.weight", with_the_past },           { "view.split", with_a_split },
+	{ "view.difference_gain", with_a_difference },
+};
+
+bool gz_setting_applies(const struct gz_scene_settings *settings, const char *key)
+{
+	for (size_t i = 0; i < sizeof conditions / sizeof conditions[0]; i++)
+		if (strncmp(key, conditions[i].key, strlen(conditions[i].key)) == 0)
+			return conditions[i].applies(settings);
+	return true;
+}

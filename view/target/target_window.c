@@ -1,0 +1,367 @@
+#include "view/target/target_window.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include <GL/glew.h>
+
+#include <GLFW/glfw3.h>
+
+#include "base/clock.h"
+#include "render/opengl/gl_program.h"
+#include "view/options/target_options.h"
+#include "view/panels/marks.h"
+#include "view/window/context_loss.h"
+#include "view/window/display_loss.h"
+#include "view/window/window_state.h"
+
+#define GZ_LOG_MODULE "targets"
+
+/* How large a target appears, in its final size, and how long it shrinks: chosen, the shrinking is
+ * over before samples count. */
+#define FIRST_SCALE 3.0
+#define SHRINK_S    0.6
+
+/* A dot below this is no dot any more, px (chosen). */
+#define DOT_MIN_PX 1.5
+
+/* Where the display's refresh is not waited for, a frame lasts so long, s (chosen). */
+#define FRAME_S (1.0 / 120)
+
+/* Made from shaders/ when the program is built. */
+extern const char gz_glsl_quad_vert[];
+extern const char gz_glsl_target_frag[];
+
+struct target_window {
+	const struct gz_view_options *options;
+	const struct gz_log *log;
+	GLFWwindow *glfw;
+	bool has_widgets;
+	GLuint program, vertices;
+	struct gz_targets targets;
+	size_t index;     /* of the target shown, or to be shown next */
+	bool started;     /* the instructions have been read */
+	int64_t shown_ns; /* when the target appeared; 0: it has not */
+	bool space;       /* was pressed since the last frame */
+	bool cancelled;
+};
+
+static const char *instructions_of(const struct gz_target_options *options)
+{
+	if (options->advance == GZ_TARGET_ADVANCE_SPACE)
+		return "Look at the middle of each target.\n"
+		       "Press SPACE while you do; then the next one comes.\n"
+		       "Keep your head still.\n\n"
+		       "SPACE begins. ESC leaves.";
+	return "Look at the middle of each target until the next one comes.\n"
+	       "Keep your head still. The best time to blink\n"
+	       "is when a target has just come.\n\n"
+	       "SPACE begins. ESC leaves.";
+}
+
+static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
+{
+	(void)scancode;
+	(void)mods;
+	struct target_window *window = glfwGetWindowUserPointer(glfw);
+	if (action != GLFW_PRESS)
+		return;
+	if (key == GLFW_KEY_ESCAPE)
+		window->cancelled = true;
+	if (key == GLFW_KEY_SPACE)
+		window->space = true;
+}
+
+/* The reason of GLFW's last failure, for the one line that tells of it. */
+static const char *glfw_reason(void)
+{
+	const char *reason = NULL;
+	glfwGetError(&reason);
+	return reason ? reason : "no reason given";
+}
+
+/* The monitor that has the pixels of the tracker's display; the primary one where none has. */
+static GLFWmonitor *find_monitor(const struct target_window *window)
+{
+	int count;
+	const int *px = window->options->display_px;
+	GLFWmonitor **monitors = glfwGetMonitors(&count);
+	for (int i = 0; i < count && px[0] > 0; i++) {
+		const GLFWvidmode *mode = glfwGetVideoMode(monitors[i]);
+		if (mode && mode->width == px[0] && mode->height == px[1])
+			return monitors[i];
+	}
+	if (px[0] > 0 && !window->options->target.windowed)
+		gz_warn(window->log,
+			"no monitor has %dx%d px, as the tracker's display is said to have: the "
+			"targets come on the primary one; correct display.px in gazed.conf",
+			px[0], px[1]);
+	return glfwGetPrimaryMonitor();
+}
+
+static enum gz_result create_window(struct target_window *window)
+{
+	int width = window->options->size_px[0], height = window->options->size_px[1];
+	GLFWmonitor *monitor = find_monitor(window);
+	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
+	bool whole = mode && !window->options->target.windowed;
+	if (whole) {
+		width = mode->width;
+		height = mode->height;
+		glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate);
+	}
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); /* targets stay when the focus goes */
+	glfwWindowHint(GLFW_DEPTH_BITS, 0);
+	glfwWindowHint(GLFW_STENCIL_BITS, 0);
+	gz_context_loss_hint();
+	window->glfw =
+		glfwCreateWindow(width, height, "gazeview targets", whole ? monitor : NULL, NULL);
+	return window->glfw ? GZ_OK : GZ_ERR_UNSUPPORTED;
+}
+
+static enum gz_result load_opengl(struct target_window *window)
+{
+	glfwMakeContextCurrent(window->glfw);
+	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
+	if (glewInit() != GLEW_OK || !GLEW_VERSION_3_3)
+		return GZ_ERR_UNSUPPORTED;
+	glfwSwapInterval(window->options->vsync ? 1 : 0);
+	return GZ_OK;
+}
+
+static enum gz_result open_drawing(struct target_window *window)
+{
+	const struct gz_gl_shader shaders[2] = {
+		{ GZ_GL_VERTEX, "quad.vert", NULL, { gz_glsl_quad_vert } },
+		{ GZ_GL_FRAGMENT, "target.frag", NULL, { gz_glsl_target_frag } },
+	};
+	window->program = gz_gl_program(shaders, 2, "use --headless", window->log);
+	if (!window->program)
+		return GZ_ERR_UNSUPPORTED;
+	glGenVertexArrays(1, &window->vertices);
+	glfwSetWindowUserPointer(window->glfw, window);
+	glfwSetKeyCallback(window->glfw, on_key);
+	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+	window->has_widgets = gz_widgets_init(window->glfw, window->options->interface_scale);
+	return window->has_widgets ? GZ_OK : GZ_ERR_UNSUPPORTED;
+}
+
+static enum gz_result open_window(struct target_window *window)
+{
+	if (!glfwInit()) {
+		gz_err(window->log,
+		       "no window: %s; set DISPLAY to the X server of the tracker's "
+		       "display",
+		       glfw_reason());
+		return GZ_ERR_NO_DEVICE;
+	}
+	enum gz_result r = create_window(window);
+	if (r == GZ_OK)
+		r = load_opengl(window);
+	if (r == GZ_OK)
+		r = open_drawing(window);
+	if (r != GZ_OK)
+		gz_err(window->log, "no window with OpenGL 3.3: %s; update the graphics driver",
+		       glfw_reason());
+	return r;
+}
+
+/* The window's content as a part of its monitor: corner and size, 0 to 1. */
+struct share {
+	double corner[2], size[2];
+};
+
+static struct share share_of_monitor(GLFWwindow *glfw, const GLFWvidmode *mode)
+{
+	int x, y, left, top, width, height;
+	GLFWmonitor *monitor = gz_window_monitor(glfw);
+	glfwGetWindowSize(glfw, &width, &height);
+	if (!mode || !monitor || glfwGetWindowMonitor(glfw) || mode->width < 1 || mode->height < 1)
+		return (struct share) { { 0, 0 }, { 1, 1 } };
+	glfwGetWindowPos(glfw, &x, &y);
+	glfwGetMonitorPos(monitor, &left, &top);
+	return (struct share) {
+		.corner = { (double)(x - left) / mode->width, (double)(y - top) / mode->height },
+		.size = { (double)width / mode->width, (double)height / mode->height },
+	};
+}
+
+static const GLFWvidmode *mode_of(GLFWwindow *glfw)
+{
+	GLFWmonitor *monitor = gz_window_monitor(glfw);
+	return monitor ? glfwGetVideoMode(monitor) : NULL;
+}
+
+/* Framebuffer pixels for a degree in the middle of the display. */
+static double px_per_deg(const struct target_window *window, int width, int height)
+{
+	struct share share = share_of_monitor(window->glfw, mode_of(window->glfw));
+	struct gz_display display = gz_view_display(window->options, NULL, width, height);
+	display.px[0] = width;
+	display.px[1] = height;
+	if (window->options->display_mm[0] > 0)
+		display.mm[0] *= share.size[0];
+	return gz_display_px_per_deg(&display);
+}
+
+static double scale_at(const struct target_window *window, int64_t now_ns)
+{
+	double left = window->shown_ns ? 1 - gz_ns_to_s(now_ns - window->shown_ns) / SHRINK_S : 1;
+	return 1 + (FIRST_SCALE - 1) * fmax(0, left);
+}
+
+static void set_number(const struct target_window *window, const char *name, double value)
+{
+	glUniform1f(glGetUniformLocation(window->program, name), (float)value);
+}
+
+/* Draw the ground, and the target of the moment where there is one. */
+static void draw(const struct target_window *window)
+{
+	int width, height;
+	glfwGetFramebufferSize(window->glfw, &width, &height);
+	bool there = window->started && window->index < window->targets.count;
+	struct gz_point at = there ? window->targets.target[window->index].point
+				   : (struct gz_point) { 0.5f, 0.5f };
+	double deg = px_per_deg(window, width, height) * scale_at(window, gz_clock_now_ns());
+	double dot = fmax(DOT_MIN_PX, deg * GZ_TARGET_DOT_DEG / 2);
+	glViewport(0, 0, width, height);
+	glDisable(GL_BLEND);
+	glUseProgram(window->program);
+	glUniform2f(glGetUniformLocation(window->program, "size"), (float)width, (float)height);
+	glUniform2f(glGetUniformLocation(window->program, "centre"), at.x * (float)width,
+		    at.y * (float)height);
+	set_number(window, "radius", there ? fmax(3 * dot, deg * GZ_TARGET_DISC_DEG / 2) : 0);
+	set_number(window, "dot_radius", dot);
+	set_number(window, "arm", dot);
+	glBindVertexArray(window->vertices);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+	if (window->started)
+		return;
+	gz_widgets_begin();
+	gz_marks_draw_message(instructions_of(&window->options->target));
+	gz_widgets_end();
+}
+
+static void tell_shown(const struct target_window *window)
+{
+	struct share share = share_of_monitor(window->glfw, mode_of(window->glfw));
+	struct gz_point at = window->targets.target[window->index].point;
+	printf("shown %zu %zu %.9g %.9g %" PRId64 "\n", window->index, window->targets.count,
+	       share.corner[0] + at.x * share.size[0], share.corner[1] + at.y * share.size[1],
+	       window->shown_ns);
+	fflush(stdout);
+}
+
+static void tell_time(const char *what)
+{
+	printf("%s %" PRId64 "\n", what, gz_clock_now_ns());
+	fflush(stdout);
+}
+
+/* Let everybody see what was drawn. */
+static void swap(struct target_window *window)
+{
+	glfwSwapBuffers(window->glfw);
+	if (!window->started || window->shown_ns || window->index >= window->targets.count)
+		return;
+	glFinish();
+	window->shown_ns = gz_clock_now_ns();
+	tell_shown(window);
+}
+
+/* Whether the target has been there for long enough. */
+static bool is_over(const struct target_window *window)
+{
+	const struct gz_target_options *options = &window->options->target;
+	if (!window->shown_ns)
+		return false;
+	bool time = gz_ns_to_s(gz_clock_now_ns() - window->shown_ns) >= options->duration_s;
+	return time && (options->advance == GZ_TARGET_ADVANCE_AUTO || window->space);
+}
+
+/* Go on where that is due. The space bar counts only when it is waited for. */
+static void advance(struct target_window *window)
+{
+	if (!window->started) {
+		window->started = window->space || !window->options->target.instructions;
+	} else if (is_over(window)) {
+		printf("hidden %zu %" PRId64 "\n", window->index, gz_clock_now_ns());
+		fflush(stdout);
+		window->index++;
+		window->shown_ns = 0;
+	}
+	window->space = false;
+}
+
+static enum gz_result loop(struct target_window *window)
+{
+	const GLFWvidmode *mode = mode_of(window->glfw);
+	printf("screen %d %d\n", mode ? mode->width : 0, mode ? mode->height : 0);
+	fflush(stdout);
+	while (window->index < window->targets.count) {
+		draw(window);
+		swap(window);
+		glfwWaitEventsTimeout(FRAME_S);
+		if (gz_context_is_lost()) {
+			gz_err(window->log, "the graphics driver has lost the window's context: "
+					    "the targets end here; begin again");
+			tell_time("cancelled");
+			return GZ_ERR_NO_DEVICE;
+		}
+		if (window->cancelled || glfwWindowShouldClose(window->glfw)) {
+			tell_time("cancelled");
+			return GZ_ERR_END;
+		}
+		advance(window);
+	}
+	draw(window);
+	swap(window);
+	tell_time("finished");
+	return GZ_OK;
+}
+
+static void close_window(struct target_window *window)
+{
+	if (window->glfw) {
+		if (window->has_widgets)
+			gz_widgets_free();
+		if (window->program)
+			glDeleteProgram(window->program);
+		if (window->vertices)
+			glDeleteVertexArrays(1, &window->vertices);
+		glfwDestroyWindow(window->glfw);
+	}
+	glfwTerminate();
+}
+
+static enum gz_result run(void *user)
+{
+	struct target_window *window = user;
+	enum gz_result r = open_window(window);
+	if (r == GZ_OK)
+		r = loop(window);
+	close_window(window);
+	return r;
+}
+
+enum gz_result gz_view_targets(const struct gz_view_options *options, const struct gz_log *log)
+{
+	struct target_window window = { .options = options, .log = log };
+	bool lost = false;
+	enum gz_result r = gz_target_places(&options->target, log, &window.targets);
+	if (r != GZ_OK)
+		return r;
+	r = gz_display_loss_guard(run, &window, &lost);
+	if (lost) {
+		gz_err(log, "the display is gone: its X server has ended or is out of reach; the "
+			    "targets end here");
+		tell_time("cancelled");
+	}
+	return r;
+}
