@@ -11,9 +11,6 @@
 /* Objects of a picture. Chosen: an atlas of the brain has 116 regions. */
 enum { OBJECTS_MAX = 1024 };
 
-/* Tables over a technique's settings. */
-enum { BINDINGS_MAX = 16 };
-
 struct gz_picture_maker {
 	const struct gz_log *log;
 	struct gz_picture_maker_params params;
@@ -179,29 +176,16 @@ static double sampling_rate(const struct gz_picture_request *request)
 	return request->image_sampling_rate > 0 ? request->image_sampling_rate : 1;
 }
 
-/* Whether two structs of the technique's settings hold equal values. */
-static bool same_settings(const struct gz_technique *technique, const void *a, const void *b)
-{
-	struct gz_option_binding of_a[BINDINGS_MAX], of_b[BINDINGS_MAX];
-	const size_t count = technique->bind((void *)a, of_a, BINDINGS_MAX);
-	technique->bind((void *)b, of_b, BINDINGS_MAX);
-	for (size_t i = 0; i < count; i++)
-		if (!gz_options_same(of_a[i].options, of_a[i].count, of_a[i].target,
-				     of_b[i].target))
-			return false;
-	return true;
-}
-
 /* What is accumulated is worth nothing once anything but the camera has changed. */
 static enum gz_result note_content(struct making *making)
 {
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_picture_request *request = making->request;
 	const size_t size = maker->technique->settings_size;
-	const bool same =
-		maker->kept_by.settings &&
-		same_settings(maker->technique, maker->kept_by.settings, request->settings) &&
-		gz_foveation_same(&maker->kept_by.foveation, request->foveation);
+	const bool same = maker->kept_by.settings &&
+			  gz_technique_settings_same(maker->technique, maker->kept_by.settings,
+						     request->settings) &&
+			  gz_foveation_same(&maker->kept_by.foveation, request->foveation);
 	if (!maker->kept_by.settings)
 		maker->kept_by.settings = malloc(size);
 	if (!maker->kept_by.settings)

@@ -1,6 +1,7 @@
 /**
  * @file
- * All techniques, in the order in which options name them.
+ * The table of techniques, in the order in which options name them. A new technique is one row
+ * here.
  */
 #ifndef GZ_RENDER_SCENE_TECHNIQUES_H
 #define GZ_RENDER_SCENE_TECHNIQUES_H
@@ -10,7 +11,7 @@
 /** All techniques, NULL-terminated; the first is the default. */
 extern const struct gz_technique *const gz_techniques[];
 
-/** Their names in the same order, NULL-terminated. */
+/** The techniques' names in the same order, NULL-terminated. */
 extern const char *const gz_technique_names[];
 
 #endif

@@ -6,3 +6,16 @@ void gz_drawer_destroy(struct gz_drawer **drawer)
 		(*drawer)->ops->destroy(*drawer);
 	*drawer = NULL;
 }
+
+bool gz_technique_settings_same(const struct gz_technique *technique, const void *a, const void *b)
+{
+	struct gz_option_binding of_a[GZ_TECHNIQUE_BINDINGS_MAX], of_b[GZ_TECHNIQUE_BINDINGS_MAX];
+	/* Bindings can set what they are bound to; here they only read. */
+	const size_t count = technique->bind((void *)a, of_a, GZ_TECHNIQUE_BINDINGS_MAX);
+	technique->bind((void *)b, of_b, GZ_TECHNIQUE_BINDINGS_MAX);
+	for (size_t i = 0; i < count; i++)
+		if (!gz_options_same(of_a[i].options, of_a[i].count, of_a[i].target,
+				     of_b[i].target))
+			return false;
+	return true;
+}

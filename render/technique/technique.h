@@ -1,7 +1,8 @@
 /**
  * @file
- * What a technique is: a way to make a picture of objects. Every technique is a row of a const
- * table (render/scene/techniques.h); programs ask the row, and none names a technique.
+ * The contract between a technique and the picture maker. A technique is a way to draw objects.
+ * Each technique is a row of the const table gz_techniques (render/scene/techniques.h). Programs
+ * ask the row; none of them names a technique.
  */
 #ifndef GZ_RENDER_TECHNIQUE_TECHNIQUE_H
 #define GZ_RENDER_TECHNIQUE_TECHNIQUE_H
@@ -31,83 +32,84 @@ enum gz_object_data {
 
 struct gz_technique;
 
-/** One thing in a picture. What it points to is borrowed. */
+/** One thing in a picture. All pointers are borrowed. */
 struct gz_object {
-	const struct gz_technique *technique; /**< that draws it */
+	const struct gz_technique *technique; /**< draws the object */
 	uint32_t id;                          /**< in planes of object ids: 1 or more */
 	const struct gz_volume *volume;       /**< NULL: none */
 	const struct gz_transfer *transfer;   /**< of the volume */
-	/** Numbers that the owner counts up when it changes what the pointers above lead to. */
+	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };
 
-/** How pictures are made on this machine. */
+/** How this machine draws. */
 struct gz_backend_params {
-	int threads;      /**< cpu: 0 = one for each processor, else 1 to 256 */
-	const char *simd; /**< cpu: NULL or "auto", else "portable", "avx2", "avx512" */
-	/** Of data that is shown by bricks: each picture waits for all bricks that it shows, or for
-	 *  as many as there is room for; else it shows those that are there, coarse ones first. */
+	int threads;      /**< cpu: 1 to 256; 0 = one for each processor */
+	const char *simd; /**< cpu: "portable", "avx2" or "avx512"; NULL or "auto" = the best */
+	/** Volumes of bricks: each picture waits until the bricks that it shows are loaded, as many
+	 *  as fit. Otherwise a picture shows the bricks that are there, coarse ones first. */
 	bool wait_for_bricks;
-	/** gl: where to draw; borrowed, outlives the drawer. NULL = without a window, from EGL. A
-	 *  program with windows must give a window's (render/opengl/gl_context.h). */
+	/** gl: where to draw; borrowed, outlives the drawer. NULL = a context of its own from EGL,
+	 *  without a window. A program with windows must pass a window's context
+	 *  (render/opengl/gl_context.h). */
 	struct gz_gl_context *gl_context;
-	bool gl_hardware_only; /**< gl: refuse OpenGL whose work a processor does */
-	/** gl: most bytes of the device's memory that voxels take; what does not fit whole is shown
-	 *  by bricks. 0 = what the driver has. */
+	bool gl_hardware_only; /**< gl: refuse an OpenGL that runs on the processor */
+	/** gl: limit of the device memory for voxels, bytes; a volume that does not fit is shown by
+	 *  bricks. 0 = as much as the driver has. */
 	size_t gl_memory_bytes;
 };
 
 /** What one frame cost. */
 struct gz_frame_stats {
-	uint64_t rays;     /**< cast, those that miss everything included */
+	uint64_t rays;     /**< cast, including those that miss everything */
 	uint64_t samples;  /**< interpolations of data */
-	double prepare_ms; /**< preparation that is kept for later frames; 0 = nothing was due */
+	double prepare_ms; /**< work that later frames reuse; 0 = none was due */
 	double cast_ms;
 	double reconstruct_ms;
-	double gpu_ms; /**< gl: cast and reconstruction by the device's clock; NaN where there is
-			    none, or a processor does the device's work */
-	uint64_t bricks_coming; /**< bricks that were asked for and are not there yet. While it is
-				     above 0, making the same picture again makes it sharper */
+	double gpu_ms; /**< gl: cast and reconstruction by the device's clock; NaN if the device has
+			    no clock or is a processor */
+	uint64_t bricks_coming; /**< bricks that were requested and are not loaded yet. While it is
+				     above 0, the same picture made again is sharper */
 };
 
-/** One picture to be drawn. What it points to is borrowed. */
+/** One picture to draw. All pointers are borrowed. */
 struct gz_shot {
 	const struct gz_camera *camera;
-	const void *settings; /**< of the technique: the struct that its options describe */
+	const void *settings; /**< the struct that the technique's options describe */
 	const struct gz_plan *plan;
 };
 
 struct gz_drawer;
 
-/** What a technique at work must provide. Every table is const and has static storage. One thread
+/** What a technique must provide to draw. Every table is const and has static storage. One thread
  *  at a time may use a drawer. */
 struct gz_drawer_ops {
 	/**
-	 * Show these objects from the next picture on. Prepares what can be kept between frames,
-	 * and prepares only what has changed by the objects' revisions. Returns what the
+	 * Show these objects from the next picture on. Prepares what later frames can reuse, and
+	 * only the parts whose revisions have changed. May block for seconds. Returns what the
 	 * technique's create() documents; logged.
 	 */
 	enum gz_result (*show)(struct gz_drawer *drawer, const struct gz_object *objects,
 			       size_t count);
-	/** Optional. Bound a plan by what the picture shows, before it is made: shot->plan is not
-	 *  looked at. */
+	/** Optional. Limit a plan by what the picture shows. Called before the plan is made, so
+	 *  shot->plan must not be read. */
 	void (*bound_plan)(const struct gz_drawer *drawer, const struct gz_shot *shot,
 			   struct gz_plan_request *request);
-	/** Draw a picture of the plan's size; every pixel is written. @p image NULL leaves it on
-	 * the device, see picture_texture. @p out_stats may be NULL. GZ_ERR_NO_DEVICE: the device
-	 * is lost; logged, as all failures. */
+	/** Draw a picture of the plan's size and write every pixel. @p image NULL leaves the
+	 * picture on the device (see picture_texture). @p out_stats may be NULL.
+	 * GZ_ERR_NO_DEVICE: the device is lost. Every failure is logged. */
 	enum gz_result (*draw)(struct gz_drawer *drawer, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats);
-	/** Whether pictures can stay on the device: else draw needs an image. */
+	/** Whether pictures can stay on the device. If not, draw needs an image. */
 	bool (*keeps_on_device)(const struct gz_drawer *drawer);
-	/** OpenGL's name of the texture, RGBA8 with row 0 on top, that holds the last picture
+	/** OpenGL's name of the texture (RGBA8, row 0 on top) that holds the last picture drawn
 	 *  without an image; valid until the next one. 0: none. */
 	unsigned (*picture_texture)(const struct gz_drawer *drawer);
-	/** Name of the backend: "cpu", "gl". */
+	/** Name of the backend: "cpu", "gl". Static text. */
 	const char *(*backend)(const struct gz_drawer *drawer);
-	/** One line for reports, as in "avx512, 2 threads"; the drawer's. */
+	/** One line for reports, such as "avx512, 2 threads"; owned by the drawer. */
 	const char *(*describe)(const struct gz_drawer *drawer);
-	/** Free it. Also correct after a failed show. */
+	/** Free the drawer. Also correct after a failed show. */
 	void (*destroy)(struct gz_drawer *drawer);
 };
 
@@ -116,15 +118,20 @@ struct gz_drawer {
 	const struct gz_drawer_ops *ops;
 };
 
+/** Most option tables of one technique. Chosen: a scene has a dozen. */
+#define GZ_TECHNIQUE_BINDINGS_MAX 16
+
 /** One technique. Every row is const and has static storage. */
 struct gz_technique {
 	const char *name;            /**< in scenes and on command lines */
 	const char *help;            /**< one line */
 	unsigned shows;              /**< enum gz_object_data: the kinds of data it can show */
 	size_t objects_max;          /**< most objects of one picture */
-	const char *const *backends; /**< their names, NULL-terminated, best first on a graphics
-					  device */
-	/** Check a backend's name and parameters before there is anything to show. Logged. */
+	const char *const *backends; /**< names, NULL-terminated, best first on a graphics device */
+	/**
+	 * Check a backend's name and parameters before there is anything to show. Logged. Returns
+	 * the failures of create() but GZ_ERR_NO_MEM.
+	 */
 	enum gz_result (*check)(const char *backend, const struct gz_backend_params *params,
 				const struct gz_log *log);
 	/**
@@ -132,20 +139,27 @@ struct gz_technique {
 	 *
 	 * @param backend  a name of backends; NULL or "auto" lets the technique choose
 	 * @param log      outlives the drawer
-	 * @param[out] out_drawer  owned by the caller: gz_drawer_destroy()
+	 * @param[out] out_drawer  owned by the caller, who frees it with gz_drawer_destroy()
 	 * @retval GZ_ERR_NOT_FOUND    no such backend; logged
 	 * @retval GZ_ERR_UNSUPPORTED  this machine cannot run it; logged
-	 * @retval GZ_ERR_NO_MEM       no room
+	 * @retval GZ_ERR_NO_MEM       out of memory
 	 */
 	enum gz_result (*create)(const char *backend, const struct gz_backend_params *params,
 				 const struct gz_log *log, struct gz_drawer **out_drawer);
 	size_t settings_size; /**< bytes of the struct that gz_shot.settings points to */
-	/** The tables over that struct; bindings borrow @p settings.
-	 *  Writes at most @p room. @return how many there are */
+	/**
+	 * List the option tables of that struct. The bindings borrow @p settings. Writes at most
+	 * @p room of them.
+	 *
+	 * @return how many there are, at most GZ_TECHNIQUE_BINDINGS_MAX
+	 */
 	size_t (*bind)(void *settings, struct gz_option_binding *out_bindings, size_t room);
 };
 
-/** Destroy and set to NULL. Accepts a pointer to NULL. */
+/** Destroy the drawer and set the pointer to NULL. Accepts a pointer to NULL. */
 void gz_drawer_destroy(struct gz_drawer **drawer);
+
+/** Whether two structs of a technique's settings have equal values for all its options. */
+bool gz_technique_settings_same(const struct gz_technique *technique, const void *a, const void *b);
 
 #endif
