@@ -6,10 +6,10 @@
 
 enum { GLYPH_WIDTH = 5, GLYPH_HEIGHT = 7, GLYPH_ADVANCE = 6 };
 
-/* A picture has room for so many glyphs in its height (chosen: read at arm's length). */
+/* Glyphs that fit into the height of a picture (chosen: readable at arm's length). */
 #define GLYPHS_PER_HEIGHT 36
 
-/* An axis counts from here on: sin(20 degrees). */
+/* Share of the direction from which an axis counts: sin(20 degrees). */
 #define LEAST_SHARE 0.3420201433256687
 
 /* Rows from the top; the leftmost column is the highest of five bits. */
@@ -67,7 +67,7 @@ enum gz_result gz_letters_of_camera(const struct gz_camera *camera, struct gz_le
 	return GZ_OK;
 }
 
-static void fill(struct gz_image *image, int left, int top, int size, uint8_t level)
+static void fill_square(struct gz_image *image, int left, int top, int size, uint8_t level)
 {
 	const uint8_t colour[4] = { level, level, level, 255 };
 	for (int y = top < 0 ? 0 : top; y < top + size && y < image->height; y++)
@@ -84,15 +84,22 @@ static const uint8_t *rows_of(char letter)
 	return NULL;
 }
 
-/* Every dot of a glyph as a square: @p grow px wider on each side for the ground. */
-static void draw_glyph(struct gz_image *image, const uint8_t *rows, int left, int top, int dot,
-		       int grow, uint8_t level)
+/* How the dots of glyphs are drawn. */
+struct pen {
+	int dot;  /* size of a dot, px */
+	int grow; /* px that each dot is larger on each side: the rim */
+	uint8_t level;
+};
+
+static void draw_glyph(struct gz_image *image, const uint8_t *rows, int left, int top,
+		       const struct pen *pen)
 {
 	for (int row = 0; row < GLYPH_HEIGHT; row++)
 		for (int column = 0; column < GLYPH_WIDTH; column++)
 			if (rows[row] >> (GLYPH_WIDTH - 1 - column) & 1)
-				fill(image, left + column * dot - grow, top + row * dot - grow,
-				     dot + 2 * grow, level);
+				fill_square(image, left + column * pen->dot - pen->grow,
+					    top + row * pen->dot - pen->grow,
+					    pen->dot + 2 * pen->grow, pen->level);
 }
 
 static int text_width(const char *text, int dot)
@@ -102,11 +109,11 @@ static int text_width(const char *text, int dot)
 
 static void draw_text(struct gz_image *image, const char *text, int left, int top, int dot)
 {
-	int grow = (dot + 1) / 2;
-	for (int ground = 1; ground >= 0; ground--)
+	const struct pen pens[] = { { dot, (dot + 1) / 2, 0 }, { dot, 0, 235 } }; /* rim, letter */
+	for (size_t pen = 0; pen < sizeof pens / sizeof pens[0]; pen++)
 		for (int i = 0; text[i]; i++)
 			draw_glyph(image, rows_of(text[i]), left + i * GLYPH_ADVANCE * dot, top,
-				   dot, ground ? grow : 0, ground ? 0 : 235);
+				   &pens[pen]);
 }
 
 void gz_letters_draw(const struct gz_letters *letters, struct gz_image *image)

@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 
-#include "view/draw/viridis.h"
 #include "view/panels/widgets.h"
 
 /* Unscaled (chosen: six numbers stand apart). */

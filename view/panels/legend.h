@@ -6,7 +6,7 @@
 #define GZ_VIEW_LEGEND_H
 
 #include "render/scene/view_settings.h"
-#include "view/draw/plan_cells.h"
+#include "view/draw/overlay.h"
 
 /**
  * Draw it at the top left, below @p below.

@@ -8,7 +8,7 @@
 #include <GLFW/glfw3.h>
 
 #include "render/scene/techniques.h"
-#include "view/draw/compare.h"
+#include "view/draw/quad.h"
 #include "view/frame/reference.h"
 #include "view/panels/widgets.h"
 #include "view/window/window_state.h"

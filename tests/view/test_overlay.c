@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "render/plan/method.h"
-#include "view/draw/plan_cells.h"
-#include "view/draw/viridis.h"
+#include "view/draw/overlay.h"
 
 enum { WIDTH = 650, HEIGHT = 402 };
 
@@ -146,7 +145,7 @@ static void colours_grow_lighter_and_keep_to_their_ends(void **state)
 	assert_memory_equal(rgb, other, 3);
 }
 
-TEST_SUITE(plan_cells)
+TEST_SUITE(overlay)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(standard_has_one_colour_and_a_scale_that_shows_it_is_fine),
