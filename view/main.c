@@ -5,7 +5,6 @@
 #include "base/log.h"
 #include "view/experiment/sitting.h"
 #include "view/headless/headless.h"
-#include "view/headless/write_volume.h"
 #include "view/options/options.h"
 #include "view/panels/notices.h"
 #include "view/session/replay.h"
@@ -28,8 +27,8 @@ static enum gz_result list_trials(const struct gz_view_options *options, const s
 	return GZ_OK;
 }
 
-static int run(struct gz_view_options *options, const struct gz_log *log,
-	       struct gz_notices *notices)
+static int run_mode(struct gz_view_options *options, const struct gz_log *log,
+		    struct gz_notices *notices)
 {
 	int signal_number = 0;
 	if (options->target.targets[0])
@@ -58,7 +57,7 @@ static int show(int argc, char **argv, struct gz_view_options *options, struct g
 	else if (options->version)
 		puts("gazeview " GAZECAST_VERSION);
 	else
-		return run(options, &log, notices);
+		return run_mode(options, &log, notices);
 	return EXIT_SUCCESS;
 }
 

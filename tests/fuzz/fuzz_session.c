@@ -6,7 +6,7 @@
 
 #include "render/picture/image.h"
 #include "view/session/session_reader.h"
-#include "view/settings/scene_tables.h"
+#include "view/settings/scene_keys.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

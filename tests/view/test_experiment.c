@@ -8,7 +8,6 @@
 
 #include "base/captured_log.h"
 #include "render/plan/method.h"
-#include "view/experiment/answer_keys.h"
 #include "view/experiment/experiment.h"
 
 static struct captured_log captured;

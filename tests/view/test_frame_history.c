@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "view/frame/frame_history.h"
+#include "view/frame/stats.h"
 
 static void add(struct gz_frame_history *history, double cast_ms)
 {

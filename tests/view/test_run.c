@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "view/experiment/answer_keys.h"
+#include "view/experiment/experiment.h"
 #include "view/experiment/run.h"
 #include "view/made_experiment.h"
 

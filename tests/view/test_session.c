@@ -16,7 +16,7 @@
 #include "protocol/gaze_log.h"
 #include "render/plan/method.h"
 #include "view/session/session_reader.h"
-#include "view/session/session_text.h"
+#include "view/session/session.h"
 #include "view/session/session_writer.h"
 
 static const char scene_text[] = "[volume]\nprocedural = shells\ndims = 8 8 8\n"

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "render/plan/method.h"
-#include "view/settings/setting_applies.h"
+#include "view/settings/scene_keys.h"
 
 static struct gz_scene_settings settings_of(int method)
 {

@@ -11,10 +11,8 @@
 
 #include "base/captured_log.h"
 #include "base/clock.h"
-#include "view/capture/file_name.h"
-#include "view/capture/fit.h"
+#include "view/capture/output.h"
 #include "view/capture/video.h"
-#include "view/capture/video_clock.h"
 
 static const double rates[] = { 1, 12.5, 23.976, 24, 25, 29.97, 30, 50, 59.94, 60, 72, 90, 120 };
 

@@ -43,7 +43,7 @@ struct arguments {
 	size_t count;
 };
 
-static void append(struct arguments *arguments, const char *const *words)
+static void append_arguments(struct arguments *arguments, const char *const *words)
 {
 	for (; *words && arguments->count + 1 < ARGUMENTS_MAX; words++)
 		arguments->words[arguments->count++] = *words;
@@ -64,19 +64,19 @@ static void append_coding(struct arguments *arguments, const char *path)
 	const bool movie = gz_path_ends(path, ".mp4") || gz_path_ends(path, ".m4v") ||
 			   gz_path_ends(path, ".mov");
 	if (movie || gz_path_ends(path, ".mkv")) {
-		append(arguments, even);
-		append(arguments, h264);
+		append_arguments(arguments, even);
+		append_arguments(arguments, h264);
 	} else if (gz_path_ends(path, ".webm")) {
-		append(arguments, even);
-		append(arguments, vp9);
+		append_arguments(arguments, even);
+		append_arguments(arguments, vp9);
 	}
 	if (movie)
-		append(arguments, faststart);
+		append_arguments(arguments, faststart);
 }
 
 /* Its standard input, output and error, no other file of ours, and signals as a shell would have
  * them. A group of its own: what a terminal sends to ours must not end a video before we do. */
-static int spawn(struct gz_ffmpeg *ffmpeg, int input, char *const *words)
+static int spawn_ffmpeg(struct gz_ffmpeg *ffmpeg, int input, char *const *words)
 {
 	posix_spawn_file_actions_t files;
 	posix_spawnattr_t attributes;
@@ -100,7 +100,7 @@ static int spawn(struct gz_ffmpeg *ffmpeg, int input, char *const *words)
 	return error;
 }
 
-static int start(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *params, int input)
+static int start_child(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *params, int input)
 {
 	char size[32], rate[32], name[GZ_PATH_SIZE + 8];
 	snprintf(size, sizeof size, "%dx%d", params->width, params->height);
@@ -113,12 +113,12 @@ static int start(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *params
 	};
 	const char *const target[] = { name, NULL };
 	struct arguments arguments = { .count = 0 };
-	append(&arguments, taken);
+	append_arguments(&arguments, taken);
 	append_coding(&arguments, params->path);
-	append(&arguments, target);
+	append_arguments(&arguments, target);
 	char *words[ARGUMENTS_MAX]; /* exec's type lacks const, its meaning does not */
 	memcpy(words, arguments.words, sizeof words);
-	return spawn(ffmpeg, input, words);
+	return spawn_ffmpeg(ffmpeg, input, words);
 }
 
 static enum gz_result tell_start(const struct gz_log *log, const char *path, int error)
@@ -134,7 +134,7 @@ static enum gz_result tell_start(const struct gz_log *log, const char *path, int
 }
 
 /* What was opened, of a child that is not there. */
-static void release(struct gz_ffmpeg *ffmpeg)
+static void release_ffmpeg(struct gz_ffmpeg *ffmpeg)
 {
 	if (ffmpeg->pictures >= 0)
 		close(ffmpeg->pictures);
@@ -161,18 +161,18 @@ enum gz_result gz_ffmpeg_start(const struct gz_ffmpeg_params *params, const stru
 	int error = ffmpeg->words < 0 || pipe2(ends, O_CLOEXEC) != 0 ? errno : 0;
 	ffmpeg->pictures = ends[1];
 	if (!error)
-		error = start(ffmpeg, params, ends[0]);
+		error = start_child(ffmpeg, params, ends[0]);
 	if (ends[0] >= 0)
 		close(ends[0]);
 	if (error) {
-		release(ffmpeg);
+		release_ffmpeg(ffmpeg);
 		return tell_start(log, params->path, error);
 	}
 	*out_ffmpeg = ffmpeg;
 	return GZ_OK;
 }
 
-static bool write_all(int fd, const uint8_t *bytes, size_t size)
+static bool write_pipe(int fd, const uint8_t *bytes, size_t size)
 {
 	while (size > 0) {
 		ssize_t n = write(fd, bytes, size);
@@ -195,7 +195,7 @@ static bool write_quietly(int fd, const uint8_t *bytes, size_t size)
 	sigemptyset(&pipe_signal);
 	sigaddset(&pipe_signal, SIGPIPE);
 	pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
-	bool done = write_all(fd, bytes, size);
+	bool done = write_pipe(fd, bytes, size);
 	if (!done && !sigismember(&before, SIGPIPE))
 		while (sigtimedwait(&pipe_signal, NULL, &at_once) < 0 && errno == EINTR)
 			;
@@ -269,6 +269,6 @@ enum gz_result gz_ffmpeg_end(struct gz_ffmpeg **ffmpeg)
 	const bool good = !self->broken && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 	if (!good)
 		tell_end(self, status);
-	release(self);
+	release_ffmpeg(self);
 	return good ? GZ_OK : GZ_ERR_IO;
 }

@@ -1,14 +1,90 @@
 #include "view/capture/video.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "view/capture/ffmpeg.h"
-#include "view/capture/fit.h"
-#include "view/capture/video_clock.h"
 
 #define GZ_LOG_MODULE "video"
+
+void gz_video_clock_start(struct gz_video_clock *clock, double fps, int64_t start_ns)
+{
+	*clock = (struct gz_video_clock) { .fps = fps, .start_ns = start_ns };
+}
+
+uint64_t gz_video_clock_pass(struct gz_video_clock *clock, int64_t time_ns)
+{
+	if (time_ns <= clock->start_ns)
+		return 0;
+	/* Dividing last keeps whole results exact: the time of picture k, floored to ns, is not
+	 * beyond k. */
+	const double elapsed_ns = (double)(time_ns - clock->start_ns);
+	const double reached = ceil(elapsed_ns * clock->fps / (double)GZ_NS_PER_S);
+	/* Chosen: what no double counts exactly is no time of a video. */
+	if (!(reached < 0x1p53))
+		return 0;
+	const uint64_t count = (uint64_t)reached;
+	const uint64_t due = count > clock->passed ? count - clock->passed : 0;
+	clock->passed += due;
+	return due;
+}
+
+static size_t row_bytes(const struct gz_image *image)
+{
+	return (size_t)image->width * 4;
+}
+
+static int scaled_side(int side, double scale)
+{
+	const int scaled = (int)lround(side * scale);
+	return scaled > 0 ? scaled : 1;
+}
+
+static void blacken(struct gz_image *image)
+{
+	static const uint8_t black[4] = { 0, 0, 0, 255 };
+	const size_t count = (size_t)image->width * (size_t)image->height;
+	for (size_t i = 0; i < count; i++)
+		memcpy(image->pixels + 4 * i, black, sizeof black);
+}
+
+/* @p source fits into @p target. */
+static void place_in_middle(const struct gz_image *source, struct gz_image *target)
+{
+	const size_t left = (size_t)(target->width - source->width) / 2 * 4;
+	const int top = (target->height - source->height) / 2;
+	for (int y = 0; y < source->height; y++)
+		memcpy(target->pixels + (size_t)(top + y) * row_bytes(target) + left,
+		       source->pixels + (size_t)y * row_bytes(source), row_bytes(source));
+}
+
+enum gz_result gz_image_fit(struct gz_image_fit *fit, const struct gz_image *source,
+			    struct gz_image *target)
+{
+	if (source->width == target->width && source->height == target->height) {
+		memcpy(target->pixels, source->pixels, row_bytes(source) * (size_t)source->height);
+		return GZ_OK;
+	}
+	const double scale = fmin((double)target->width / source->width,
+				  (double)target->height / source->height);
+	const int width = scaled_side(source->width, scale);
+	const int height = scaled_side(source->height, scale);
+	const enum gz_result r = gz_image_resize(&fit->scaled, width, height);
+	if (r != GZ_OK)
+		return r;
+	gz_image_resample(source, &fit->scaled);
+	blacken(target);
+	place_in_middle(&fit->scaled, target);
+	return GZ_OK;
+}
+
+void gz_image_fit_free(struct gz_image_fit *fit)
+{
+	gz_image_free(&fit->scaled);
+}
 
 /* A picture that waits, and how often it stands in the video. */
 struct entry {
@@ -82,7 +158,7 @@ static void *write_queue(void *argument)
 	return NULL;
 }
 
-static void release(struct gz_video *video)
+static void release_video(struct gz_video *video)
 {
 	for (size_t i = 0; i < GZ_VIDEO_QUEUE; i++)
 		gz_image_free(&video->queue[i].image);
@@ -93,8 +169,8 @@ static void release(struct gz_video *video)
 	free(video);
 }
 
-static enum gz_result start(struct gz_video *video, const struct gz_video_params *params,
-			    const struct gz_log *log)
+static enum gz_result start_video(struct gz_video *video, const struct gz_video_params *params,
+				  const struct gz_log *log)
 {
 	const struct gz_ffmpeg_params ffmpeg = {
 		.path = params->path,
@@ -124,9 +200,9 @@ enum gz_result gz_video_open(const struct gz_video_params *params, const struct 
 	video->wait = params->wait;
 	pthread_mutex_init(&video->mutex, NULL);
 	pthread_cond_init(&video->changed, NULL);
-	const enum gz_result r = start(video, params, log);
+	const enum gz_result r = start_video(video, params, log);
 	if (r != GZ_OK) {
-		release(video);
+		release_video(video);
 		return r;
 	}
 	*out_video = video;
@@ -156,7 +232,7 @@ static void queue_shown(struct gz_video *video, uint64_t repeats)
 	pthread_cond_broadcast(&video->changed);
 }
 
-static enum gz_result hand_over(struct gz_video *video, uint64_t repeats)
+static enum gz_result queue_repeats(struct gz_video *video, uint64_t repeats)
 {
 	pthread_mutex_lock(&video->mutex);
 	if (repeats > 0)
@@ -179,7 +255,7 @@ enum gz_result gz_video_pass(struct gz_video *video, int64_t time_ns)
 {
 	if (!video->any_shown)
 		return GZ_OK;
-	return hand_over(video, gz_video_clock_pass(&video->clock, time_ns));
+	return queue_repeats(video, gz_video_clock_pass(&video->clock, time_ns));
 }
 
 enum gz_result gz_video_show(struct gz_video *video, const struct gz_image *image, int64_t time_ns)
@@ -201,7 +277,7 @@ void gz_video_finish(struct gz_video *video, int64_t time_ns)
 	uint64_t repeats = video->any_shown ? gz_video_clock_pass(&video->clock, time_ns) : 0;
 	if (video->any_shown && video->clock.passed == 0)
 		repeats = 1;
-	(void)hand_over(video, repeats);
+	(void)queue_repeats(video, repeats);
 	count_dropped(video);
 	video->any_shown = false;
 	pthread_mutex_lock(&video->mutex);
@@ -227,6 +303,6 @@ enum gz_result gz_video_close(struct gz_video **video)
 	gz_video_finish(self, INT64_MIN);
 	pthread_join(self->thread, NULL);
 	const enum gz_result r = self->result;
-	release(self);
+	release_video(self);
 	return r;
 }

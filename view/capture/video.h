@@ -77,4 +77,38 @@ struct gz_video_status gz_video_status(struct gz_video *video);
  */
 enum gz_result gz_video_close(struct gz_video **video);
 
+/** Picture k of the video shows what was shown at start_ns + k / fps. */
+struct gz_video_clock {
+	double fps; /**< above 0 */
+	int64_t start_ns;
+	uint64_t passed; /**< pictures that gz_video_clock_pass() has counted so far */
+};
+
+/** Start at @p start_ns. */
+void gz_video_clock_start(struct gz_video_clock *clock, double fps, int64_t start_ns);
+
+/**
+ * What was shown last has been shown until @p time_ns.
+ *
+ * @return how many pictures of the video show it: those before @p time_ns that none has shown yet
+ */
+uint64_t gz_video_clock_pass(struct gz_video_clock *clock, int64_t time_ns);
+
+/** Room for gz_image_fit(), kept from picture to picture; zero-initialised is empty. */
+struct gz_image_fit {
+	struct gz_image scaled;
+};
+
+/**
+ * Copy @p source into @p target, whose size stays: as it is where the sizes are the same, else
+ * scaled as far as it fits, its shape kept, in the middle of black.
+ *
+ * @retval GZ_ERR_NO_MEM  no room
+ */
+enum gz_result gz_image_fit(struct gz_image_fit *fit, const struct gz_image *source,
+			    struct gz_image *target);
+
+/** Free what it holds and zero it. */
+void gz_image_fit_free(struct gz_image_fit *fit);
+
 #endif

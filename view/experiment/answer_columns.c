@@ -1,9 +1,12 @@
 #include "view/experiment/answer_columns.h"
 
 #include <inttypes.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/utsname.h>
 
 #include "base/clock.h"
 #include "render/plan/method.h"
@@ -23,7 +26,7 @@ static const struct gz_alternative *shown_in(const struct gz_answer_row *row, in
 								    interval)];
 }
 
-static void none(char *text, size_t size)
+static void print_none(char *text, size_t size)
 {
 	snprintf(text, size, "n/a");
 }
@@ -33,18 +36,18 @@ static void print_span(int64_t from_ns, int64_t to_ns, char *text, size_t size)
 	if (from_ns && to_ns)
 		snprintf(text, size, "%.6f", gz_ns_to_s(to_ns - from_ns));
 	else
-		none(text, size);
+		print_none(text, size);
 }
 
-static void print_text(const char *value, char *text, size_t size)
+static void print_text_cell(const char *value, char *text, size_t size)
 {
 	snprintf(text, size, "%s", value && value[0] ? value : "n/a");
 }
 
-static void print_number(double value, const char *format, char *text, size_t size)
+static void print_number_cell(double value, const char *format, char *text, size_t size)
 {
 	if (isnan(value))
-		none(text, size);
+		print_none(text, size);
 	else
 		snprintf(text, size, strcmp(format, "%.1f") == 0 ? "%.1f" : "%.4f", value);
 }
@@ -63,7 +66,7 @@ PRINTER(print_duration)
 
 PRINTER(print_type)
 {
-	print_text(condition_of(row)->label, text, size);
+	print_text_cell(condition_of(row)->label, text, size);
 }
 
 PRINTER(print_trial)
@@ -73,7 +76,7 @@ PRINTER(print_trial)
 
 PRINTER(print_block)
 {
-	print_text(row->result->presentation->block->label, text, size);
+	print_text_cell(row->result->presentation->block->label, text, size);
 }
 
 PRINTER(print_practice)
@@ -89,16 +92,16 @@ PRINTER(print_repetition)
 PRINTER(print_order)
 {
 	const struct gz_presentation *presentation = row->result->presentation;
-	print_text(presentation->condition->params.intervals == 1 ? "a"
-		   : presentation->swapped                        ? "ba"
-								  : "ab",
-		   text, size);
+	print_text_cell(presentation->condition->params.intervals == 1 ? "a"
+			: presentation->swapped                        ? "ba"
+								       : "ab",
+			text, size);
 }
 
 static void print_scene(const struct gz_alternative *alternative, char *text, size_t size)
 {
 	const char *slash = alternative ? strrchr(alternative->scene, '/') : NULL;
-	print_text(slash ? slash + 1 : alternative ? alternative->scene : NULL, text, size);
+	print_text_cell(slash ? slash + 1 : alternative ? alternative->scene : NULL, text, size);
 }
 
 PRINTER(print_scene_1)
@@ -113,7 +116,7 @@ PRINTER(print_scene_2)
 
 static void print_method(const struct gz_alternative *alternative, char *text, size_t size)
 {
-	print_text(alternative ? gz_method_names[alternative->method] : NULL, text, size);
+	print_text_cell(alternative ? gz_method_names[alternative->method] : NULL, text, size);
 }
 
 PRINTER(print_method_1)
@@ -131,7 +134,7 @@ static void print_settings(const struct gz_alternative *alternative, char *text,
 	if (alternative && alternative->setting_count > 0)
 		gz_alternative_print(alternative, text, size);
 	else
-		none(text, size);
+		print_none(text, size);
 }
 
 PRINTER(print_settings_1)
@@ -177,19 +180,19 @@ static const struct gz_answer *answer_of(const struct gz_answer_row *row)
 PRINTER(print_response)
 {
 	const struct gz_answer *answer = answer_of(row);
-	print_text(answer ? answer->name : NULL, text, size);
+	print_text_cell(answer ? answer->name : NULL, text, size);
 }
 
 PRINTER(print_key)
 {
 	const struct gz_answer *answer = answer_of(row);
-	print_text(answer ? answer->key_name : NULL, text, size);
+	print_text_cell(answer ? answer->key_name : NULL, text, size);
 }
 
 PRINTER(print_chosen)
 {
 	int chosen = row->result->chosen;
-	print_text(chosen < 0 ? NULL : chosen == 0 ? "a" : "b", text, size);
+	print_text_cell(chosen < 0 ? NULL : chosen == 0 ? "a" : "b", text, size);
 }
 
 PRINTER(print_chosen_method)
@@ -201,7 +204,7 @@ PRINTER(print_chosen_method)
 PRINTER(print_correct)
 {
 	int right = row->result->right;
-	print_text(right < 0 ? NULL : right ? "1" : "0", text, size);
+	print_text_cell(right < 0 ? NULL : right ? "1" : "0", text, size);
 }
 
 PRINTER(print_response_time)
@@ -222,12 +225,12 @@ PRINTER(print_dropped)
 
 PRINTER(print_frame_ms)
 {
-	print_number(row->result->frame_ms, "%.1f", text, size);
+	print_number_cell(row->result->frame_ms, "%.1f", text, size);
 }
 
 PRINTER(print_gaze_loss)
 {
-	print_number(row->result->gaze_loss, "%.4f", text, size);
+	print_number_cell(row->result->gaze_loss, "%.4f", text, size);
 }
 
 PRINTER(print_restarts)
@@ -237,12 +240,12 @@ PRINTER(print_restarts)
 
 PRINTER(print_participant)
 {
-	print_text(row->participant, text, size);
+	print_text_cell(row->participant, text, size);
 }
 
 PRINTER(print_session)
 {
-	print_text(row->session, text, size);
+	print_text_cell(row->session, text, size);
 }
 
 PRINTER(print_run)
@@ -307,3 +310,65 @@ const struct gz_answer_column gz_answer_columns[] = {
 /* clang-format on */
 
 const size_t gz_answer_column_count = sizeof gz_answer_columns / sizeof gz_answer_columns[0];
+
+static void set_text(json_t *object, const char *key, const char *text)
+{
+	if (text && text[0])
+		json_object_set_new(object, key, json_string(text));
+}
+
+/* "a: one | b: two" as an object. */
+static json_t *levels_of(const char *text)
+{
+	json_t *levels = json_object();
+	while (levels && text && *text) {
+		size_t length = strcspn(text, "|"), key = strcspn(text, ":");
+		bool more = text[length] == '|';
+		char *name = strndup(text, key);
+		const char *value = text + key + 2; /* behind ": " */
+		size_t value_length = length - key - 2 - (more ? 1 : 0);
+		if (name)
+			json_object_set_new(levels, name, json_stringn(value, value_length));
+		free(name);
+		text += length + (more ? 2 : 0); /* behind "| " */
+	}
+	return levels;
+}
+
+static json_t *column_json(const struct gz_answer_column *column)
+{
+	json_t *object = json_object();
+	set_text(object, "Description", column->help);
+	set_text(object, "Units", column->units);
+	if (column->levels)
+		json_object_set_new(object, "Levels", levels_of(column->levels));
+	return object;
+}
+
+static json_t *software_of(const char *version)
+{
+	struct utsname system;
+	json_t *object = json_object();
+	if (uname(&system) == 0)
+		set_text(object, "OperatingSystem", system.sysname);
+	set_text(object, "SoftwareName", "gazeview");
+	set_text(object, "SoftwareVersion", version);
+	return object;
+}
+
+enum gz_result gz_answer_columns_write(const char *path, const struct gz_experiment *experiment,
+				       const char *version)
+{
+	json_t *root = json_object();
+	set_text(root, "TaskName", experiment->params.name);
+	set_text(root, "Instructions", experiment->instructions);
+	json_object_set_new(root, "StimulusPresentation", software_of(version));
+	for (size_t i = 0; i < gz_answer_column_count; i++)
+		json_object_set_new(root, gz_answer_columns[i].name,
+				    column_json(&gz_answer_columns[i]));
+	if (!root)
+		return GZ_ERR_NO_MEM;
+	int failed = json_dump_file(root, path, JSON_INDENT(2));
+	json_decref(root);
+	return failed ? GZ_ERR_IO : GZ_OK;
+}

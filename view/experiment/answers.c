@@ -35,17 +35,18 @@ bool gz_answers_label_valid(const char *label)
 	       strlen(label) < GZ_PARTICIPANT_SIZE;
 }
 
-static bool ends_with(const char *text, const char *end)
+/* Whether --answers names the file itself. */
+static bool is_answer_file(const char *place)
 {
-	size_t length = strlen(text), tail = strlen(end);
-	return length > tail && strcmp(text + length - tail, end) == 0;
+	const char *ending = strrchr(place, '.');
+	return ending && ending > place && strcmp(ending, ".tsv") == 0;
 }
 
 enum gz_result gz_answers_path(const struct gz_experiment *experiment,
 			       const struct gz_answers_request *request, char *path, size_t size)
 {
 	int length = 0;
-	if (ends_with(request->place, ".tsv"))
+	if (is_answer_file(request->place))
 		length = snprintf(path, size, "%s", request->place);
 	else
 		length = snprintf(path, size, "%s/sub-%s%s%s_task-%s_events.tsv",
@@ -55,8 +56,8 @@ enum gz_result gz_answers_path(const struct gz_experiment *experiment,
 	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
 }
 
-static struct gz_answer_row row_of(const struct gz_answers *answers,
-				   const struct gz_trial_result *result, int64_t start_ns)
+static struct gz_answer_row answer_row_of(const struct gz_answers *answers,
+					  const struct gz_trial_result *result, int64_t start_ns)
 {
 	return (struct gz_answer_row) {
 		.experiment = answers->experiment,
@@ -76,7 +77,7 @@ static enum gz_result refuse_io(const struct gz_answers *answers, const char *wh
 }
 
 /* All of it, and onto the disk. */
-static enum gz_result append(const struct gz_answers *answers, const char *text)
+static enum gz_result append_row(const struct gz_answers *answers, const char *text)
 {
 	size_t size = strlen(text);
 	while (size > 0) {
@@ -143,7 +144,7 @@ static enum gz_result read_lines(const struct gz_answers *answers, struct lines 
 }
 
 /* The next whole line without its end; NULL behind the last. */
-static char *next_line(struct lines *lines)
+static char *next_row(struct lines *lines)
 {
 	if (lines->next >= lines->text + lines->whole)
 		return NULL;
@@ -175,7 +176,7 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 		.index = answers->done,
 		.presentation = &answers->sequence->presentations[answers->done],
 	};
-	const struct gz_answer_row row = row_of(answers, &result, 0);
+	const struct gz_answer_row row = answer_row_of(answers, &result, 0);
 	for (size_t i = 0; i < gz_answer_column_count; i++) {
 		const struct gz_answer_column *column = &gz_answer_columns[i];
 		char *cell = strsep(&line, "\t");
@@ -198,7 +199,7 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 
 static enum gz_result check_lines(struct gz_answers *answers, struct lines *lines)
 {
-	char *header = header_text(), *line = next_line(lines);
+	char *header = header_text(), *line = next_row(lines);
 	if (!header)
 		return GZ_ERR_NO_MEM;
 	header[strlen(header) - 1] = '\0';
@@ -209,13 +210,13 @@ static enum gz_result check_lines(struct gz_answers *answers, struct lines *line
 	if (line ? strcmp(line, header) != 0 : strncmp(lines->text, header, lines->size) != 0)
 		result = refuse_line(answers, lines, "other columns than this version writes");
 	free(header);
-	while (result == GZ_OK && (line = next_line(lines)) != NULL)
+	while (result == GZ_OK && (line = next_row(lines)) != NULL)
 		result = check_row(answers, lines, line);
 	return result;
 }
 
 /* What a power cut has left of a row goes. */
-static enum gz_result cut(const struct gz_answers *answers, const struct lines *lines)
+static enum gz_result cut_partial_row(const struct gz_answers *answers, const struct lines *lines)
 {
 	if (lines->whole < lines->size) {
 		gz_warn(answers->log, "%s: the last row is not whole; its trial comes again",
@@ -231,13 +232,13 @@ static enum gz_result cut(const struct gz_answers *answers, const struct lines *
 static enum gz_result write_header(const struct gz_answers *answers)
 {
 	char *header = header_text();
-	enum gz_result result = header ? append(answers, header) : GZ_ERR_NO_MEM;
+	enum gz_result result = header ? append_row(answers, header) : GZ_ERR_NO_MEM;
 	free(header);
 	return result;
 }
 
 /* Two programs that write one file would spoil it. */
-static enum gz_result lock(const struct gz_answers *answers)
+static enum gz_result lock_answers(const struct gz_answers *answers)
 {
 	if (flock(answers->fd, LOCK_EX | LOCK_NB) == 0)
 		return GZ_OK;
@@ -245,7 +246,7 @@ static enum gz_result lock(const struct gz_answers *answers)
 	return GZ_ERR_BUSY;
 }
 
-static enum gz_result take_up(struct gz_answers *answers)
+static enum gz_result resume_answers(struct gz_answers *answers)
 {
 	struct lines lines = { 0 };
 	answers->fd = open(answers->path, O_RDWR | O_CLOEXEC);
@@ -256,7 +257,7 @@ static enum gz_result take_up(struct gz_answers *answers)
 	}
 	if (answers->fd < 0)
 		return refuse_io(answers, "cannot be opened");
-	enum gz_result result = lock(answers);
+	enum gz_result result = lock_answers(answers);
 	if (result == GZ_OK)
 		result = read_lines(answers, &lines);
 	if (result == GZ_OK)
@@ -267,7 +268,7 @@ static enum gz_result take_up(struct gz_answers *answers)
 		result = GZ_ERR_BUSY;
 	}
 	if (result == GZ_OK)
-		result = cut(answers, &lines);
+		result = cut_partial_row(answers, &lines);
 	if (result == GZ_OK && lines.whole == 0)
 		result = write_header(answers);
 	free(lines.text);
@@ -283,7 +284,7 @@ static enum gz_result refuse_present(const struct gz_answers *answers)
 	there.fd = open(answers->path, O_RDONLY | O_CLOEXEC);
 	there.log = NULL;
 	if (there.fd >= 0 && read_lines(&there, &lines) == GZ_OK)
-		while (next_line(&lines))
+		while (next_row(&lines))
 			rows++;
 	free(lines.text);
 	if (there.fd >= 0)
@@ -302,7 +303,7 @@ static enum gz_result make_new(struct gz_answers *answers)
 		return refuse_present(answers);
 	if (answers->fd < 0)
 		return refuse_io(answers, "cannot be made");
-	enum gz_result result = lock(answers);
+	enum gz_result result = lock_answers(answers);
 	return result == GZ_OK ? write_header(answers) : result;
 }
 
@@ -336,7 +337,7 @@ enum gz_result gz_answers_open(const struct gz_experiment *experiment,
 	if (result != GZ_OK)
 		gz_err(log, "--answers: the path is too long; give another folder");
 	else
-		result = request->resume ? take_up(answers) : make_new(answers);
+		result = request->resume ? resume_answers(answers) : make_new(answers);
 	if (result != GZ_OK) {
 		if (answers->fd >= 0)
 			close(answers->fd);
@@ -362,7 +363,7 @@ enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_tria
 				int64_t start_ns)
 {
 	char cell[GZ_ANSWER_CELL_SIZE];
-	const struct gz_answer_row row = row_of(answers, result, start_ns);
+	const struct gz_answer_row row = answer_row_of(answers, result, start_ns);
 	char *text = NULL;
 	size_t size = 0;
 	FILE *memory = open_memstream(&text, &size);
@@ -373,7 +374,7 @@ enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_tria
 		fprintf(memory, "%s%s", i ? "\t" : "", cell);
 	}
 	fputc('\n', memory);
-	enum gz_result written = fclose(memory) == 0 ? append(answers, text) : GZ_ERR_NO_MEM;
+	enum gz_result written = fclose(memory) == 0 ? append_row(answers, text) : GZ_ERR_NO_MEM;
 	free(text);
 	answers->done += written == GZ_OK;
 	return written;

@@ -230,4 +230,20 @@ void gz_alternative_print(const struct gz_alternative *alternative, char *text, 
 /** Free what it holds and zero it. */
 void gz_experiment_free(struct gz_experiment *experiment);
 
+/** A key: the small letter or the digit itself, or one of these. */
+enum gz_answer_key {
+	GZ_KEY_NONE = 0,
+	GZ_KEY_SPACE = ' ',
+	GZ_KEY_LEFT = 256,
+	GZ_KEY_RIGHT,
+	GZ_KEY_UP,
+	GZ_KEY_DOWN,
+	GZ_KEY_RETURN,
+	GZ_KEY_ESCAPE, /**< leaves; answers nothing */
+};
+
+/** The key named @p name: "a" to "z", "0" to "9", "left", "right", "up", "down", "space" or
+ *  "return"; GZ_KEY_NONE for anything else. */
+int gz_answer_key_of(const char *name);
+
 #endif

@@ -1,13 +1,123 @@
-/* Reading an experiment's file: lines into sections, each value checked by itself. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "view/experiment/experiment.h"
 #include "view/experiment/experiment_internal.h"
-#include "view/settings/scene_tables.h"
+#include "view/settings/scene_keys.h"
 
 #define GZ_LOG_MODULE "experiment"
+
+static const char *const asks_names[] = { "auto", "interval", "answer", NULL };
+static const char *const interval_order_names[] = { "balanced", "random", "ab", "ba", NULL };
+static const char *const order_names[] = { "random", "full_random", "listed", NULL };
+static const char *const block_order_names[] = { "listed", "random", "rotated", NULL };
+static const char *const gaze_names[] = { "optional", "required", NULL };
+
+#define AT(field) offsetof(struct gz_trial_params, field)
+
+const struct gz_option gz_trial_options[] = {
+	{ "scene", GZ_OPTION_STRING, AT(scene), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "scene file, relative to the experiment's folder" },
+	{ "intervals", GZ_OPTION_INT, AT(intervals), 1, 2, .preset = "2",
+	  .help = "number of pictures shown one after the other" },
+	{ "interval_order", GZ_OPTION_CHOICE, AT(interval_order), .choices = interval_order_names,
+	  .preset = "balanced",
+	  .help = "which alternative comes first: each in half of the repeats, drawn each time, a "
+		  "or b" },
+	{ "fixation_s", GZ_OPTION_DOUBLE, AT(fixation_s), 0, 60, .preset = "1",
+	  .help = "time of the cross before the first interval, s" },
+	{ "duration_s", GZ_OPTION_DOUBLE, AT(duration_s), 0.01, 3600, .preset = "2",
+	  .help = "time of each interval, s" },
+	{ "blank_s", GZ_OPTION_DOUBLE, AT(blank_s), 0, 60, .preset = "0.5",
+	  .help = "time of the empty screen between the intervals, s" },
+	{ "pause_s", GZ_OPTION_DOUBLE, AT(pause_s), 0, 60, .preset = "0.5",
+	  .help = "time of the empty screen after the answer, s" },
+	{ "question", GZ_OPTION_STRING, AT(question), .max = GZ_INI_LINE_SIZE,
+	  .preset = "Which was sharper, the first or the second?",
+	  .help = "text shown after the last interval" },
+	{ "asks", GZ_OPTION_CHOICE, AT(asks), .choices = asks_names, .preset = "auto",
+	  .help = "what a key stands for: interval (first key, first interval), answer, or auto: "
+		  "by intervals" },
+	{ "keys", GZ_OPTION_STRING, AT(keys), .max = GZ_INI_LINE_SIZE, .preset = "1 2",
+	  .help = "keys that answer: a to z, 0 to 9, left, right, up, down, space, return" },
+	{ "answers", GZ_OPTION_STRING, AT(answers), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "name of each key's answer; empty: first second, or the names of the keys" },
+	{ "correct", GZ_OPTION_STRING, AT(correct), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "the correct alternative (a or b) or answer; empty: none is correct" },
+	{ "timeout_s", GZ_OPTION_DOUBLE, AT(timeout_s), 0, 3600, .preset = "0",
+	  .help = "longest wait for an answer, s; 0: no limit" },
+	{ "feedback", GZ_OPTION_BOOL, AT(feedback), .preset = "no",
+	  .help = "tell the participant whether the answer was correct" },
+	{ "feedback_s", GZ_OPTION_DOUBLE, AT(feedback_s), 0.1, 60, .preset = "0.8",
+	  .help = "time of the feedback, s" },
+	{ "feedback_correct", GZ_OPTION_STRING, AT(feedback_correct), .max = GZ_INI_LINE_SIZE,
+	  .preset = "Correct", .help = "text after a correct answer" },
+	{ "feedback_wrong", GZ_OPTION_STRING, AT(feedback_wrong), .max = GZ_INI_LINE_SIZE,
+	  .preset = "Wrong", .help = "text after a wrong answer" },
+	{ "feedback_late", GZ_OPTION_STRING, AT(feedback_late), .max = GZ_INI_LINE_SIZE,
+	  .preset = "Too late", .help = "text when the wait for an answer has ended" },
+};
+
+const size_t gz_trial_option_count = sizeof gz_trial_options / sizeof gz_trial_options[0];
+
+#undef AT
+#define AT(field) offsetof(struct gz_block_params, field)
+
+const struct gz_option gz_block_options[] = {
+	{ "trials", GZ_OPTION_STRING, AT(trials), .max = GZ_INI_LINE_SIZE, .preset = "*",
+	  .help = "names of trials, separated by blanks; * matches any part of a name" },
+	{ "repeats", GZ_OPTION_INT, AT(repeats), 1, 1000, .preset = "1",
+	  .help = "number of times each trial comes" },
+	{ "order", GZ_OPTION_CHOICE, AT(order), .choices = order_names, .preset = "random",
+	  .help = "random: each trial once before any comes again; full_random: over all repeats; "
+		  "listed" },
+	{ "practice", GZ_OPTION_BOOL, AT(practice), .preset = "no",
+	  .help = "mark the block's trials as practice in the answers" },
+	{ "break_every", GZ_OPTION_INT, AT(break_every), 0, 10000, .preset = "0",
+	  .help = "number of trials between breaks; 0: no breaks" },
+	{ "break_text", GZ_OPTION_STRING, AT(break_text), .max = GZ_INI_LINE_SIZE,
+	  .preset = "Have a break.\\nPress Space to continue.", .help = "text shown in a break" },
+	{ "instructions", GZ_OPTION_STRING, AT(instructions), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "text shown before the block" },
+	{ "instructions_file", GZ_OPTION_STRING, AT(instructions_file), .max = GZ_INI_LINE_SIZE,
+	  .preset = "", .help = "text file to show before the block" },
+};
+
+const size_t gz_block_option_count = sizeof gz_block_options / sizeof gz_block_options[0];
+
+#undef AT
+#define AT(field) offsetof(struct gz_experiment_params, field)
+
+const struct gz_option gz_experiment_options[] = {
+	{ "name", GZ_OPTION_STRING, AT(name), .max = GZ_EXPERIMENT_LABEL_SIZE, .preset = "",
+	  .help = "name of the task in the names of files: letters and digits" },
+	{ "seed", GZ_OPTION_INT, AT(seed), 0, 2147483647, .preset = "1",
+	  .help = "random seed of all orders, together with participant and session" },
+	{ "block_order", GZ_OPTION_CHOICE, AT(block_order), .choices = block_order_names,
+	  .preset = "listed",
+	  .help = "order of the blocks; rotated: participant n starts with block n; practice keeps "
+		  "its place" },
+	{ "gaze", GZ_OPTION_CHOICE, AT(gaze), .choices = gaze_names, .preset = "optional",
+	  .help = "required: no interval starts without gaze from a tracker" },
+	{ "instructions", GZ_OPTION_STRING, AT(instructions), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "text shown first" },
+	{ "instructions_file", GZ_OPTION_STRING, AT(instructions_file), .max = GZ_INI_LINE_SIZE,
+	  .preset = "", .help = "text file to show first" },
+	{ "goodbye", GZ_OPTION_STRING, AT(goodbye), .max = GZ_INI_LINE_SIZE,
+	  .preset = "That was all. Thank you.\\nPress Space to finish.",
+	  .help = "text shown last; empty: none" },
+	{ "ground", GZ_OPTION_DOUBLE, AT(ground), 0, 1, .count = 3, .preset = "0.5 0.5 0.5",
+	  .help = "red, green, blue of the screen between pictures" },
+	{ "text_size", GZ_OPTION_DOUBLE, AT(text_size), 0.005, 0.2, .preset = "0.035",
+	  .help = "height of a line of text, as a fraction of the screen's" },
+	{ "fixation_deg", GZ_OPTION_DOUBLE, AT(fixation_deg), 0.05, 10, .preset = "0.6",
+	  .help = "width of the cross, degrees" },
+};
+
+const size_t gz_experiment_option_count =
+	sizeof gz_experiment_options / sizeof gz_experiment_options[0];
 
 /* Longest file read, bytes. Chosen: as settings files. */
 enum { MOST_BYTES = 1 << 20 };
@@ -28,8 +138,8 @@ struct reader {
 	struct gz_view_scene_tables tables;
 };
 
-static enum gz_result refuse_section(const struct reader *reader, const struct gz_ini_item *item,
-				     const char *what)
+static enum gz_result refuse_experiment_section(const struct reader *reader,
+						const struct gz_ini_item *item, const char *what)
 {
 	gz_err(reader->log, "%s:%d: [%s]: %s", reader->experiment->path, item->line, item->section,
 	       what);
@@ -70,16 +180,18 @@ static enum gz_result begin_named(struct reader *reader, const struct gz_ini_ite
 	char what[96];
 	const struct gz_experiment_section *first = find_section(sections, *count, label);
 	if (!is_label(label))
-		return refuse_section(reader, item,
-				      "no name; letters, digits and _ . + - make one, as in "
-				      "[trial fine]");
+		return refuse_experiment_section(
+			reader, item,
+			"no name; letters, digits and _ . + - make one, as in "
+			"[trial fine]");
 	if (first) {
 		snprintf(what, sizeof what, "begun in line %d already; rename one of them",
 			 first->line);
-		return refuse_section(reader, item, what);
+		return refuse_experiment_section(reader, item, what);
 	}
 	if (*count == GZ_EXPERIMENT_SECTIONS_MAX)
-		return refuse_section(reader, item, "more than 256 of these; make several files");
+		return refuse_experiment_section(reader, item,
+						 "more than 256 of these; make several files");
 	reader->section = &sections[(*count)++];
 	*reader->section = (struct gz_experiment_section) { .line = item->line };
 	memcpy(reader->section->label, label, strlen(label) + 1);
@@ -96,11 +208,12 @@ static enum gz_result begin_section(struct reader *reader, const struct gz_ini_i
 		return begin_named(reader, item, item->section + 6, experiment->sections,
 				   &experiment->section_count);
 	if (strcmp(item->section, "experiment") != 0)
-		return refuse_section(reader, item,
-				      "unknown section; [experiment], [trial NAME] and [block "
-				      "NAME] are allowed");
+		return refuse_experiment_section(
+			reader, item,
+			"unknown section; [experiment], [trial NAME] and [block "
+			"NAME] are allowed");
 	if (reader->common_begun)
-		return refuse_section(reader, item, "given twice; keep one");
+		return refuse_experiment_section(reader, item, "given twice; keep one");
 	reader->common_begun = true;
 	reader->section = &experiment->common;
 	reader->section->line = item->line;
@@ -166,8 +279,8 @@ static int take_prefix(const char **key)
 }
 
 /* Put it into its section, as long as it is there for the first time. */
-static enum gz_result keep(struct reader *reader, const struct gz_ini_item *item,
-			   const struct gz_experiment_setting *setting)
+static enum gz_result keep_setting(struct reader *reader, const struct gz_ini_item *item,
+				   const struct gz_experiment_setting *setting)
 {
 	struct gz_experiment_section *section = reader->section;
 	const struct gz_experiment_setting *first =
@@ -229,16 +342,16 @@ static enum gz_result take_value(struct reader *reader, const struct gz_ini_item
 	};
 	snprintf(setting.key, sizeof setting.key, "%s", key);
 	snprintf(setting.value, sizeof setting.value, "%s", item->value);
-	return keep(reader, item, &setting);
+	return keep_setting(reader, item, &setting);
 }
 
-static enum gz_result take(void *user, const struct gz_ini_item *item)
+static enum gz_result take_item(void *user, const struct gz_ini_item *item)
 {
 	struct reader *reader = user;
 	return item->name ? take_value(reader, item) : begin_section(reader, item);
 }
 
-static enum gz_result begin(struct reader *reader, const char *path)
+static enum gz_result begin_reading(struct reader *reader, const char *path)
 {
 	struct gz_experiment *experiment = reader->experiment;
 	*experiment = (struct gz_experiment) { 0 };
@@ -266,9 +379,9 @@ enum gz_result gz_experiment_parse(const char *path, const char *text, size_t si
 		return GZ_ERR_NO_MEM;
 	reader->experiment = &experiment;
 	reader->log = log;
-	enum gz_result result = begin(reader, path);
+	enum gz_result result = begin_reading(reader, path);
 	if (result == GZ_OK)
-		result = gz_ini_read_text(path, text, size, take, reader, log);
+		result = gz_ini_read_text(path, text, size, take_item, reader, log);
 	free(reader);
 	if (result == GZ_OK) {
 		experiment.fingerprint = gz_experiment_hash(GZ_EXPERIMENT_HASH_START, text, size);

@@ -8,7 +8,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "view/experiment/answer_keys.h"
+#include "view/experiment/experiment.h"
 #include "view/experiment/experiment_internal.h"
 
 #define GZ_LOG_MODULE "experiment"
@@ -24,8 +24,8 @@ struct maker {
 
 /* The setting that counts; NULL if there is none. One for the alternative comes before one for
  * both in the same section. */
-static const struct gz_experiment_setting *find(const struct maker *maker, const char *key,
-						int alternative)
+static const struct gz_experiment_setting *find_setting(const struct maker *maker, const char *key,
+							int alternative)
 {
 	for (int level = LEVELS - 1; level >= 0; level--) {
 		const struct gz_experiment_section *section = maker->levels[level];
@@ -40,13 +40,13 @@ static const struct gz_experiment_setting *find(const struct maker *maker, const
 	return NULL;
 }
 
-__attribute__((format(printf, 3, 4))) static enum gz_result refuse(const struct maker *maker,
-								   const char *key,
-								   const char *format, ...)
+__attribute__((format(printf, 3, 4))) static enum gz_result refuse_trial(const struct maker *maker,
+									 const char *key,
+									 const char *format, ...)
 {
 	char what[512];
 	va_list arguments;
-	const struct gz_experiment_setting *setting = find(maker, key, -1);
+	const struct gz_experiment_setting *setting = find_setting(maker, key, -1);
 	va_start(arguments, format);
 	vsnprintf(what, sizeof what, format, arguments);
 	va_end(arguments);
@@ -79,7 +79,7 @@ static enum gz_result take_params(const struct maker *maker)
 	enum gz_result result = gz_options_preset(&binding);
 	for (size_t i = 0; i < gz_trial_option_count && result == GZ_OK; i++) {
 		const struct gz_experiment_setting *setting =
-			find(maker, gz_trial_options[i].key, -1);
+			find_setting(maker, gz_trial_options[i].key, -1);
 		if (setting)
 			result = gz_option_parse(&gz_trial_options[i], setting->value, params, NULL,
 						 0);
@@ -96,50 +96,51 @@ static const char *alternative_name(int alternative)
 	return alternative == 0 ? "a" : "b";
 }
 
-static enum gz_result take_scene(const struct maker *maker, int which)
+static enum gz_result take_scene_file(const struct maker *maker, int which)
 {
 	struct gz_alternative *alternative = &maker->condition->alternatives[which];
-	const struct gz_experiment_setting *setting = find(maker, "scene", which);
+	const struct gz_experiment_setting *setting = find_setting(maker, "scene", which);
 	if (!setting || !setting->value[0])
-		return refuse(maker, "scene",
-			      "not given for %s; name a scene's file, as in scene "
-			      "= shells.scene",
-			      alternative_name(which));
+		return refuse_trial(maker, "scene",
+				    "not given for %s; name a scene's file, as in scene "
+				    "= shells.scene",
+				    alternative_name(which));
 	if (gz_path_beside(maker->experiment->path, setting->value, alternative->scene,
 			   sizeof alternative->scene) != GZ_OK)
-		return refuse(maker, "scene", "the path is too long; move the file");
+		return refuse_trial(maker, "scene", "the path is too long; move the file");
 	return GZ_OK;
 }
 
 /* Whether another setting of a section that counts more, or of this alternative, has taken its
  * place; it then comes as that one. */
-static bool counts(const struct maker *maker, const struct gz_experiment_setting *setting,
-		   int alternative)
+static bool setting_counts(const struct maker *maker, const struct gz_experiment_setting *setting,
+			   int alternative)
 {
 	return setting->of_scene &&
 	       (setting->alternative < 0 || setting->alternative == alternative) &&
-	       find(maker, setting->key, alternative) == setting;
+	       find_setting(maker, setting->key, alternative) == setting;
 }
 
 static enum gz_result take_alternative(const struct maker *maker, int which)
 {
 	struct gz_alternative *alternative = &maker->condition->alternatives[which];
-	enum gz_result result = take_scene(maker, which);
+	enum gz_result result = take_scene_file(maker, which);
 	for (int level = 0; level < LEVELS && result == GZ_OK; level++) {
 		const struct gz_experiment_section *section = maker->levels[level];
 		for (size_t i = 0; section && i < section->setting_count; i++) {
-			if (!counts(maker, &section->settings[i], which))
+			if (!setting_counts(maker, &section->settings[i], which))
 				continue;
 			if (alternative->setting_count == GZ_EXPERIMENT_SETTINGS_MAX)
-				return refuse(maker, section->settings[i].key,
-					      "more than 64 keys of a scene; put them into one");
+				return refuse_trial(
+					maker, section->settings[i].key,
+					"more than 64 keys of a scene; put them into one");
 			alternative->settings[alternative->setting_count++] = &section->settings[i];
 		}
 	}
 	return result;
 }
 
-static size_t split(char *text, char **out_words, size_t room)
+static size_t split_words(char *text, char **out_words, size_t room)
 {
 	size_t count = 0;
 	char *rest = text, *word;
@@ -158,26 +159,27 @@ static bool is_answer(const char *text)
 	return text[strspn(text, allowed)] == '\0' && strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
 }
 
-static enum gz_result take_keys(const struct maker *maker)
+static enum gz_result take_answer_keys(const struct maker *maker)
 {
 	struct gz_condition *condition = maker->condition;
 	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
 	memcpy(text, condition->params.keys, sizeof text);
-	size_t count = split(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	size_t count = split_words(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
 	if (count == 0 || count > GZ_EXPERIMENT_ANSWERS_MAX)
-		return refuse(maker, "keys", "%zu keys; 1 to %d are allowed", count,
-			      GZ_EXPERIMENT_ANSWERS_MAX);
+		return refuse_trial(maker, "keys", "%zu keys; 1 to %d are allowed", count,
+				    GZ_EXPERIMENT_ANSWERS_MAX);
 	for (size_t i = 0; i < count; i++) {
 		int key = gz_answer_key_of(words[i]);
 		if (key == GZ_KEY_NONE)
-			return refuse(maker, "keys",
-				      "%.20s is no key; a to z, 0 to 9, left, right, up, down, "
-				      "space and return are allowed",
-				      words[i]);
+			return refuse_trial(
+				maker, "keys",
+				"%.20s is no key; a to z, 0 to 9, left, right, up, down, "
+				"space and return are allowed",
+				words[i]);
 		for (size_t k = 0; k < i; k++)
 			if (condition->answers[k].key == key)
-				return refuse(maker, "keys", "%s stands there twice; keep one",
-					      words[i]);
+				return refuse_trial(maker, "keys",
+						    "%s stands there twice; keep one", words[i]);
 		condition->answers[i].key = key;
 		snprintf(condition->answers[i].key_name, sizeof condition->answers[i].key_name,
 			 "%s", words[i]);
@@ -203,23 +205,24 @@ static enum gz_result take_answers(const struct maker *maker)
 	struct gz_condition *condition = maker->condition;
 	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
 	memcpy(text, condition->params.answers, sizeof text);
-	size_t count = split(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	size_t count = split_words(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
 	name_answers(condition);
 	if (count == 0)
 		return GZ_OK;
 	if (count != condition->answer_count)
-		return refuse(maker, "answers", "%zu answers for %zu keys; give one for each",
-			      count, condition->answer_count);
+		return refuse_trial(maker, "answers", "%zu answers for %zu keys; give one for each",
+				    count, condition->answer_count);
 	for (size_t i = 0; i < count; i++) {
 		if (!is_answer(words[i]))
-			return refuse(maker, "answers",
-				      "%.60s: letters, digits and _ . + - make a name of at most "
-				      "49 bytes",
-				      words[i]);
+			return refuse_trial(
+				maker, "answers",
+				"%.60s: letters, digits and _ . + - make a name of at most "
+				"49 bytes",
+				words[i]);
 		for (size_t k = 0; k < i; k++)
 			if (strcmp(condition->answers[k].name, words[i]) == 0)
-				return refuse(maker, "answers", "%s stands there twice; keep one",
-					      words[i]);
+				return refuse_trial(maker, "answers",
+						    "%s stands there twice; keep one", words[i]);
 		snprintf(condition->answers[i].name, sizeof condition->answers[i].name, "%s",
 			 words[i]);
 	}
@@ -233,11 +236,11 @@ static enum gz_result check_asks(const struct maker *maker)
 	if (params->asks == GZ_ASKS_AUTO)
 		params->asks = params->intervals == 2 ? GZ_ASKS_INTERVAL : GZ_ASKS_ANSWER;
 	if (params->asks == GZ_ASKS_INTERVAL && params->intervals != 2)
-		return refuse(maker, "asks",
-			      "interval, but there is one only; set intervals = 2 "
-			      "or asks = answer");
+		return refuse_trial(maker, "asks",
+				    "interval, but there is one only; set intervals = 2 "
+				    "or asks = answer");
 	if (params->asks == GZ_ASKS_INTERVAL && condition->answer_count < 2)
-		return refuse(maker, "keys", "one key for two intervals; give one for each");
+		return refuse_trial(maker, "keys", "one key for two intervals; give one for each");
 	return GZ_OK;
 }
 
@@ -248,12 +251,12 @@ static enum gz_result take_correct(const struct maker *maker)
 	condition->correct = -1;
 	if (!correct[0])
 		return condition->params.feedback
-			       ? refuse(maker, "feedback",
-					"nothing is right or wrong; give correct = as well")
+			       ? refuse_trial(maker, "feedback",
+					      "nothing is right or wrong; give correct = as well")
 			       : GZ_OK;
 	if (condition->params.asks == GZ_ASKS_INTERVAL) {
 		if (strcmp(correct, "a") != 0 && strcmp(correct, "b") != 0)
-			return refuse(maker, "correct", "%.60s: a or b is allowed", correct);
+			return refuse_trial(maker, "correct", "%.60s: a or b is allowed", correct);
 		condition->correct = correct[0] - 'a';
 		return GZ_OK;
 	}
@@ -262,8 +265,8 @@ static enum gz_result take_correct(const struct maker *maker)
 			condition->correct = (int)i;
 	return condition->correct >= 0
 		       ? GZ_OK
-		       : refuse(maker, "correct", "%.60s is none of the answers; name one of them",
-				correct);
+		       : refuse_trial(maker, "correct",
+				      "%.60s is none of the answers; name one of them", correct);
 }
 
 /* What a trial says of an alternative that it does not have. */
@@ -272,10 +275,10 @@ static enum gz_result check_second(const struct maker *maker)
 	const struct gz_experiment_section *trial = maker->levels[LEVELS - 1];
 	for (size_t i = 0; i < trial->setting_count; i++)
 		if (trial->settings[i].alternative == 1)
-			return refuse(maker, "intervals",
-				      "1, but line %d is for a second; set intervals = 2, or "
-				      "remove it",
-				      trial->settings[i].line);
+			return refuse_trial(maker, "intervals",
+					    "1, but line %d is for a second; set intervals = 2, or "
+					    "remove it",
+					    trial->settings[i].line);
 	return GZ_OK;
 }
 
@@ -288,7 +291,7 @@ static enum gz_result make_condition(const struct maker *maker)
 	for (int which = 0; which < intervals && result == GZ_OK; which++)
 		result = take_alternative(maker, which);
 	if (result == GZ_OK)
-		result = take_keys(maker);
+		result = take_answer_keys(maker);
 	if (result == GZ_OK)
 		result = check_asks(maker);
 	if (result == GZ_OK)
@@ -314,8 +317,8 @@ static enum gz_result refuse_block(const struct resolver *resolver,
 }
 
 /* Mark the trials that a name means. @return whether there is one */
-static bool choose(const struct gz_experiment *experiment, const char *name,
-		   size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], size_t *count)
+static bool choose_named(const struct gz_experiment *experiment, const char *name,
+			 size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], size_t *count)
 {
 	bool any = false;
 	for (size_t i = 0; i < experiment->trial_count; i++) {
@@ -339,9 +342,9 @@ static enum gz_result choose_trials(const struct resolver *resolver,
 	char text[GZ_INI_LINE_SIZE], what[96];
 	char *words[GZ_INI_LINE_SIZE];
 	memcpy(text, params->trials, sizeof text);
-	size_t words_count = split(text, words, GZ_INI_LINE_SIZE), count = 0;
+	size_t words_count = split_words(text, words, GZ_INI_LINE_SIZE), count = 0;
 	for (size_t i = 0; i < words_count; i++) {
-		if (choose(resolver->experiment, words[i], chosen, &count))
+		if (choose_named(resolver->experiment, words[i], chosen, &count))
 			continue;
 		snprintf(what, sizeof what, "no [trial %.50s]; correct the name", words[i]);
 		return refuse_block(resolver, section, "trials", what);

@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "render/plan/method.h"
-#include "view/experiment/answer_keys.h"
+#include "view/experiment/experiment.h"
 
 /* Texts before a trial, in their order. */
 enum page { PAGE_INSTRUCTIONS, PAGE_BLOCK, PAGE_BREAK, PAGE_NONE };
@@ -40,7 +40,7 @@ int gz_presentation_alternative(const struct gz_presentation *presentation, int 
 	return presentation->swapped ? 1 - interval : interval;
 }
 
-static void enter(struct gz_run *run, enum gz_run_phase phase)
+static void enter_phase(struct gz_run *run, enum gz_run_phase phase)
 {
 	run->phase = phase;
 	run->shown_ns = 0;
@@ -71,7 +71,7 @@ static void turn_page(struct gz_run *run, int page)
 	while (page < PAGE_NONE && !page_is_due(run, (enum page)page))
 		page++;
 	run->page = page;
-	enter(run, page < PAGE_NONE ? GZ_RUN_TEXT : GZ_RUN_PREPARE);
+	enter_phase(run, page < PAGE_NONE ? GZ_RUN_TEXT : GZ_RUN_PREPARE);
 }
 
 static void clear_trial(struct gz_run *run, int restarts)
@@ -101,7 +101,7 @@ static void begin_trial(struct gz_run *run, int64_t now_ns)
 	run->complete = true;
 	run->page = PAGE_NONE;
 	mark(run, now_ns, "experiment %s ends", run->experiment->params.name);
-	enter(run, run->experiment->params.goodbye[0] ? GZ_RUN_TEXT : GZ_RUN_ENDED);
+	enter_phase(run, run->experiment->params.goodbye[0] ? GZ_RUN_TEXT : GZ_RUN_ENDED);
 }
 
 void gz_run_begin(struct gz_run *run, const struct gz_experiment *experiment,
@@ -120,10 +120,10 @@ void gz_run_begin(struct gz_run *run, const struct gz_experiment *experiment,
 	begin_trial(run, 0);
 }
 
-static void end(struct gz_run *run, enum gz_result result)
+static void end_run(struct gz_run *run, enum gz_result result)
 {
 	run->result = result;
-	enter(run, GZ_RUN_ENDED);
+	enter_phase(run, GZ_RUN_ENDED);
 }
 
 /* Median of the times from swap to swap, ms: the middle of its bin. */
@@ -139,7 +139,7 @@ static double median_ms(const struct gz_trial_frames *frames)
 }
 
 /* What the answer says, by what the question asks. */
-static void judge(struct gz_run *run)
+static void judge_answer(struct gz_run *run)
 {
 	struct gz_trial_result *trial = &run->trial;
 	const struct gz_condition *condition = trial->presentation->condition;
@@ -158,7 +158,7 @@ static void finish_trial(struct gz_run *run, int answer, int64_t now_ns)
 	const struct gz_condition *condition = trial->presentation->condition;
 	trial->answer = answer;
 	trial->end_ns = now_ns;
-	judge(run);
+	judge_answer(run);
 	trial->frames = run->frames.count;
 	trial->dropped = run->frames.dropped;
 	trial->frame_ms = median_ms(&run->frames);
@@ -175,11 +175,11 @@ static void finish_trial(struct gz_run *run, int answer, int64_t now_ns)
 					  : "");
 	enum gz_result result = run->sink.over ? run->sink.over(run->sink.user, trial) : GZ_OK;
 	if (result != GZ_OK)
-		end(run, result);
+		end_run(run, result);
 	else if (condition->params.feedback)
-		enter(run, GZ_RUN_FEEDBACK);
+		enter_phase(run, GZ_RUN_FEEDBACK);
 	else
-		enter(run, GZ_RUN_PAUSE);
+		enter_phase(run, GZ_RUN_PAUSE);
 }
 
 /* How long the phase lasts, s. */
@@ -209,7 +209,7 @@ static double phase_s(const struct gz_run *run)
 
 /* Whether the frame that is next shown is nearer to the phase's end than the one after. A phase of
  * no length is over before it is shown. */
-static bool is_over(const struct gz_run *run, const struct gz_run_input *input)
+static bool phase_is_over(const struct gz_run *run, const struct gz_run_input *input)
 {
 	double length_s = phase_s(run);
 	if (length_s <= 0)
@@ -226,7 +226,7 @@ static void leave_fixation(struct gz_run *run, const struct gz_run_input *input,
 	bool waits = run->experiment->params.gaze == GZ_GAZE_REQUIRED && !input->gaze_there;
 	if (!waits) {
 		run->gaze_missing = false;
-		enter(run, GZ_RUN_INTERVAL);
+		enter_phase(run, GZ_RUN_INTERVAL);
 		*changed = true;
 		return;
 	}
@@ -240,13 +240,13 @@ static void leave_fixation(struct gz_run *run, const struct gz_run_input *input,
 static void leave_interval(struct gz_run *run)
 {
 	if (run->interval + 1 < run->trial.presentation->condition->params.intervals)
-		enter(run, GZ_RUN_BLANK);
+		enter_phase(run, GZ_RUN_BLANK);
 	else
-		enter(run, GZ_RUN_QUESTION);
+		enter_phase(run, GZ_RUN_QUESTION);
 }
 
 /* Go one phase on, whose time has come. */
-static bool advance(struct gz_run *run, const struct gz_run_input *input)
+static bool advance_phase(struct gz_run *run, const struct gz_run_input *input)
 {
 	bool changed = true;
 	switch (run->phase) {
@@ -258,13 +258,13 @@ static bool advance(struct gz_run *run, const struct gz_run_input *input)
 		return true;
 	case GZ_RUN_BLANK:
 		run->interval++;
-		enter(run, GZ_RUN_INTERVAL);
+		enter_phase(run, GZ_RUN_INTERVAL);
 		return true;
 	case GZ_RUN_QUESTION:
 		finish_trial(run, -1, input->now_ns);
 		return true;
 	case GZ_RUN_FEEDBACK:
-		enter(run, GZ_RUN_PAUSE);
+		enter_phase(run, GZ_RUN_PAUSE);
 		return true;
 	case GZ_RUN_PAUSE:
 		run->index++;
@@ -282,16 +282,16 @@ bool gz_run_step(struct gz_run *run, const struct gz_run_input *input)
 	if (run->phase == GZ_RUN_PREPARE) {
 		if (!input->ready)
 			return false;
-		enter(run, GZ_RUN_FIXATION);
-		if (is_over(run, input))
-			advance(run, input);
+		enter_phase(run, GZ_RUN_FIXATION);
+		if (phase_is_over(run, input))
+			advance_phase(run, input);
 		return true;
 	}
 	bool changed = false;
 	/* Phases of no length are passed through; none of them follows itself. */
-	for (int i = 0; i < GZ_RUN_ENDED && is_over(run, input); i++) {
+	for (int i = 0; i < GZ_RUN_ENDED && phase_is_over(run, input); i++) {
 		enum gz_run_phase before = run->phase;
-		changed = advance(run, input) || changed;
+		changed = advance_phase(run, input) || changed;
 		if (run->phase == before || run->phase == GZ_RUN_PREPARE)
 			break;
 	}
@@ -389,20 +389,20 @@ static void ask_to_leave(struct gz_run *run, int64_t now_ns)
 	run->left = run->phase;
 	if (run->trial.begin_ns && !run->trial.end_ns)
 		mark(run, now_ns, "trial %zu interrupted", run->index + 1);
-	enter(run, GZ_RUN_LEAVING);
+	enter_phase(run, GZ_RUN_LEAVING);
 }
 
 /* Not left after all: a trial that had begun begins again, one that was over is not seen twice. */
-static void stay(struct gz_run *run, int64_t now_ns)
+static void stay_after_all(struct gz_run *run, int64_t now_ns)
 {
 	if (run->left == GZ_RUN_TEXT || run->left == GZ_RUN_PREPARE) {
-		enter(run, run->left);
+		enter_phase(run, run->left);
 	} else if (run->trial.end_ns) {
 		run->index++;
 		begin_trial(run, now_ns);
 	} else {
 		clear_trial(run, run->trial.restarts + 1);
-		enter(run, GZ_RUN_PREPARE);
+		enter_phase(run, GZ_RUN_PREPARE);
 	}
 }
 
@@ -411,7 +411,7 @@ static bool key_in_text(struct gz_run *run, int key)
 	if (key != GZ_KEY_SPACE || !run->shown_ns)
 		return false;
 	if (run->complete)
-		enter(run, GZ_RUN_ENDED);
+		enter_phase(run, GZ_RUN_ENDED);
 	else
 		turn_page(run, run->page + 1);
 	return true;
@@ -436,11 +436,11 @@ void gz_run_stop(struct gz_run *run, enum gz_result result, int64_t now_ns)
 	if (run->phase == GZ_RUN_ENDED)
 		return;
 	if (run->complete) {
-		enter(run, GZ_RUN_ENDED);
+		enter_phase(run, GZ_RUN_ENDED);
 		return;
 	}
 	mark(run, now_ns, "experiment %s left", run->experiment->params.name);
-	end(run, result);
+	end_run(run, result);
 }
 
 static bool key_in_leaving(struct gz_run *run, int key, int64_t now_ns)
@@ -450,7 +450,7 @@ static bool key_in_leaving(struct gz_run *run, int key, int64_t now_ns)
 		return true;
 	}
 	if (key == GZ_KEY_SPACE)
-		stay(run, now_ns);
+		stay_after_all(run, now_ns);
 	return key == GZ_KEY_SPACE;
 }
 
@@ -462,7 +462,7 @@ bool gz_run_key(struct gz_run *run, int key, int64_t now_ns)
 		return key_in_leaving(run, key, now_ns);
 	if (key == GZ_KEY_ESCAPE) {
 		if (run->complete)
-			enter(run, GZ_RUN_ENDED);
+			enter_phase(run, GZ_RUN_ENDED);
 		else
 			ask_to_leave(run, now_ns);
 		return true;

@@ -17,12 +17,12 @@ struct maker {
 };
 
 /* 0 to below @p end, each as likely. */
-static size_t draw(struct gz_random *random, size_t end)
+static size_t draw_below(struct gz_random *random, size_t end)
 {
 	return (size_t)(gz_random_uniform(random) * (double)end);
 }
 
-static void swap(struct gz_presentation *a, struct gz_presentation *b)
+static void swap_presentations(struct gz_presentation *a, struct gz_presentation *b)
 {
 	struct gz_presentation kept = *a;
 	*a = *b;
@@ -30,16 +30,16 @@ static void swap(struct gz_presentation *a, struct gz_presentation *b)
 }
 
 /* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
-static void shuffle(struct gz_random *random, struct gz_presentation *items, size_t count)
+static void shuffle_trials(struct gz_random *random, struct gz_presentation *items, size_t count)
 {
 	for (size_t i = count; i > 1; i--)
-		swap(&items[i - 1], &items[draw(random, i)]);
+		swap_presentations(&items[i - 1], &items[draw_below(random, i)]);
 }
 
 static void shuffle_blocks(struct gz_random *random, const struct gz_block **blocks, size_t count)
 {
 	for (size_t i = count; i > 1; i--) {
-		size_t chosen = draw(random, i);
+		size_t chosen = draw_below(random, i);
 		const struct gz_block *last = blocks[i - 1];
 		blocks[i - 1] = blocks[chosen];
 		blocks[chosen] = last;
@@ -47,13 +47,13 @@ static void shuffle_blocks(struct gz_random *random, const struct gz_block **blo
 }
 
 /* Which way round each of a condition's repeats is. An odd one out is drawn. */
-static void balance(struct gz_random *random, bool *swapped, size_t count)
+static void balance_order(struct gz_random *random, bool *swapped, size_t count)
 {
 	bool more = gz_random_uniform(random) < 0.5;
 	for (size_t i = 0; i < count; i++)
 		swapped[i] = i < count / 2 || (i == count - 1 && count % 2 && more);
 	for (size_t i = count; i > 1; i--) {
-		size_t chosen = draw(random, i);
+		size_t chosen = draw_below(random, i);
 		bool last = swapped[i - 1];
 		swapped[i - 1] = swapped[chosen];
 		swapped[chosen] = last;
@@ -68,7 +68,7 @@ static void draw_ways(struct gz_random *random, const struct gz_condition *condi
 		return;
 	switch ((enum gz_experiment_interval_order)condition->params.interval_order) {
 	case GZ_INTERVALS_BALANCED:
-		balance(random, swapped, count);
+		balance_order(random, swapped, count);
 		return;
 	case GZ_INTERVALS_RANDOM:
 		for (size_t i = 0; i < count; i++)
@@ -104,8 +104,8 @@ static enum gz_result list_block(struct maker *maker, const struct gz_block *blo
 }
 
 /* Repeats are counted as they come. */
-static enum gz_result number(const struct gz_block *block, struct gz_presentation *items,
-			     size_t count)
+static enum gz_result number_repeats(const struct gz_block *block, struct gz_presentation *items,
+				     size_t count)
 {
 	int *seen = calloc(block->condition_count, sizeof *seen);
 	if (!seen)
@@ -126,15 +126,16 @@ static enum gz_result add_block(struct maker *maker, const struct gz_block *bloc
 	if (result != GZ_OK)
 		return result;
 	if (block->params.order == GZ_ORDER_FULL)
-		shuffle(&maker->random, items, each * repeats);
+		shuffle_trials(&maker->random, items, each * repeats);
 	for (size_t i = 0; block->params.order == GZ_ORDER_RANDOM && i < repeats; i++)
-		shuffle(&maker->random, items + i * each, each);
+		shuffle_trials(&maker->random, items + i * each, each);
 	maker->sequence.count += each * repeats;
-	return number(block, items, each * repeats);
+	return number_repeats(block, items, each * repeats);
 }
 
-static enum gz_result rotate(const struct gz_experiment *experiment, const char *participant,
-			     const struct gz_log *log, const struct gz_block **blocks, size_t count)
+static enum gz_result rotate_blocks(const struct gz_experiment *experiment, const char *participant,
+				    const struct gz_log *log, const struct gz_block **blocks,
+				    size_t count)
 {
 	long long whole;
 	const struct gz_block *rotated[GZ_EXPERIMENT_SECTIONS_MAX];
@@ -168,7 +169,7 @@ static enum gz_result order_blocks(struct maker *maker, const char *participant,
 	if (experiment->params.block_order == GZ_BLOCKS_RANDOM)
 		shuffle_blocks(&maker->random, counted, count);
 	else if (experiment->params.block_order == GZ_BLOCKS_ROTATED && count > 0)
-		result = rotate(experiment, participant, log, counted, count);
+		result = rotate_blocks(experiment, participant, log, counted, count);
 	for (size_t i = 0; i < experiment->block_count; i++)
 		out_blocks[i] = experiment->blocks[i].params.practice ? &experiment->blocks[i]
 								      : counted[next++];

@@ -8,7 +8,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static int compare(const void *left, const void *right)
+static int compare_entries(const void *left, const void *right)
 {
 	const struct gz_folder_entry *a = left, *b = right;
 	if (a->is_folder != b->is_folder)
@@ -23,7 +23,7 @@ static bool is_listed(const struct gz_folder_entry *entry, const struct gz_folde
 	       entry->kind == GZ_FILE_PICTURE;
 }
 
-static enum gz_result append(struct gz_folder *folder, const struct gz_folder_entry *entry)
+static enum gz_result append_entry(struct gz_folder *folder, const struct gz_folder_entry *entry)
 {
 	if (folder->count == folder->room) {
 		const size_t room = folder->room ? 2 * folder->room : 64;
@@ -37,8 +37,8 @@ static enum gz_result append(struct gz_folder *folder, const struct gz_folder_en
 	return GZ_OK;
 }
 
-static enum gz_result add(struct gz_folder *folder, DIR *stream, const char *name,
-			  const struct gz_folder_filter *filter)
+static enum gz_result list_entry(struct gz_folder *folder, DIR *stream, const char *name,
+				 const struct gz_folder_filter *filter)
 {
 	struct gz_folder_entry entry = { .kind = gz_file_kind_by_name(name) };
 	struct stat status;
@@ -50,7 +50,7 @@ static enum gz_result add(struct gz_folder *folder, DIR *stream, const char *nam
 	entry.is_folder = S_ISDIR(status.st_mode);
 	entry.bytes = (uint64_t)status.st_size;
 	if (entry.is_folder || (S_ISREG(status.st_mode) && is_listed(&entry, filter)))
-		return append(folder, &entry);
+		return append_entry(folder, &entry);
 	folder->others++;
 	return GZ_OK;
 }
@@ -60,9 +60,9 @@ static enum gz_result read_stream(DIR *stream, const struct gz_folder_filter *fi
 {
 	enum gz_result result = GZ_OK;
 	for (struct dirent *entry; result == GZ_OK && (entry = readdir(stream));)
-		result = add(folder, stream, entry->d_name, filter);
+		result = list_entry(folder, stream, entry->d_name, filter);
 	if (folder->count > 0)
-		qsort(folder->entries, folder->count, sizeof folder->entries[0], compare);
+		qsort(folder->entries, folder->count, sizeof folder->entries[0], compare_entries);
 	return result;
 }
 

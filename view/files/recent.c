@@ -60,7 +60,7 @@ void gz_recent_add(struct gz_recent *recent, const char *path)
 }
 
 /* The folders above a file, for the user alone, as the specification asks. */
-static void make_folders(const char *file)
+static void make_state_folders(const char *file)
 {
 	char path[GZ_PATH_SIZE];
 	snprintf(path, sizeof path, "%s", file);
@@ -77,7 +77,7 @@ enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
 	struct gz_text text = { 0 };
 	for (size_t i = 0; i < recent->count; i++)
 		gz_text_add(&text, "%s\n", recent->paths[i]);
-	make_folders(file);
+	make_state_folders(file);
 	const enum gz_result result = gz_text_write(&text, file, log);
 	gz_text_free(&text);
 	return result;

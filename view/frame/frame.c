@@ -61,7 +61,7 @@ struct change {
 };
 
 /* A table of spacings is found beside the scene that names it. */
-static void keep(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
+static void keep_settings(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
 {
 	const struct gz_foveation own = settings->foveation;
 	const struct gz_clip_box clip = settings->rays.clip;
@@ -78,7 +78,7 @@ static void keep(const struct gz_scene_settings *kept, struct gz_scene_settings 
 	settings->view = kept->view;
 }
 
-static enum gz_result change_settings(void *user, struct gz_scene_settings *settings)
+static enum gz_result override_settings(void *user, struct gz_scene_settings *settings)
 {
 	const struct change *change = user;
 	const struct gz_view_options *options = change->options;
@@ -89,15 +89,15 @@ static enum gz_result change_settings(void *user, struct gz_scene_settings *sett
 	if (r == GZ_OK && change->scene->by_options)
 		r = gz_view_options_apply(options, settings);
 	if (r == GZ_OK && change->scene->kept)
-		keep(change->scene->kept, settings);
+		keep_settings(change->scene->kept, settings);
 	if (r == GZ_OK && options->headless)
 		r = find_cast_size(options->size_px[0], options->size_px[1],
 				   settings->image_sampling_rate, change->log, size);
 	return r;
 }
 
-static enum gz_result load(const struct change *change, const struct gz_loading *loading,
-			   struct gz_scene *out_scene)
+static enum gz_result open_frame_scene(const struct change *change,
+				       const struct gz_loading *loading, struct gz_scene *out_scene)
 {
 	const struct gz_frame_scene *scene = change->scene;
 	struct change user = *change;
@@ -108,7 +108,7 @@ static enum gz_result load(const struct change *change, const struct gz_loading 
 		.raw = scene->raw ? scene->raw
 		       : is_told  ? &told
 				  : NULL,
-		.change = change_settings,
+		.change = override_settings,
 		.user = &user,
 		.loading = loading,
 	};
@@ -133,7 +133,7 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	gz_attention_init(&maker->attention, &attention);
 	maker->focus = maker->attention.focus;
 	const struct change change = { options, scene, log };
-	enum gz_result r = load(&change, loading, &maker->scene);
+	enum gz_result r = open_frame_scene(&change, loading, &maker->scene);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
 		return r;
@@ -142,7 +142,7 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
-static enum gz_result show_scene(struct gz_frame_maker *maker)
+static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 {
 	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
 	const size_t count =
@@ -171,7 +171,7 @@ static enum gz_result start_pictures(struct gz_frame_maker *maker,
 {
 	enum gz_result r = gz_picture_maker_create(params, maker->log, &maker->pictures);
 	if (r == GZ_OK)
-		r = show_scene(maker);
+		r = show_scene_objects(maker);
 	if (r != GZ_OK) {
 		gz_picture_maker_destroy(&maker->pictures);
 		return r;
@@ -238,7 +238,7 @@ enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 	maker->scene.transfer = *transfer;
 	maker->transfer_revision++;
 	maker->any_made = false;
-	const enum gz_result r = show_scene(maker);
+	const enum gz_result r = show_scene_objects(maker);
 	if (r != GZ_OK)
 		gz_err(maker->log, "cannot take the transfer function: %s", gz_result_text(r));
 	return r;
@@ -300,9 +300,10 @@ bool gz_frame_settling(const struct gz_frame_maker *maker)
 	return gz_picture_maker_settling(maker->pictures);
 }
 
-static enum gz_result make_picture(struct gz_frame_maker *maker,
-				   const struct gz_frame_request *request,
-				   struct gz_image **out_image, struct gz_frame_record *record)
+static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
+					 const struct gz_frame_request *request,
+					 struct gz_image **out_image,
+					 struct gz_frame_record *record)
 {
 	const struct gz_scene_settings *settings = request->settings;
 	const struct gz_picture_request picture = {
@@ -341,7 +342,7 @@ void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
 }
 
 /* A time to keep makes plans coarser, and this method's is never coarse. */
-static void tell_standard(struct gz_frame_maker *maker)
+static void warn_standard_ignores_budget(struct gz_frame_maker *maker)
 {
 	if (maker->attention.params.budget_ms <= 0 || maker->standard_told)
 		return;
@@ -377,7 +378,7 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 	maker->spent.width = plan->width;
 	maker->spent.height = plan->height;
 	if (!gz_methods[method].can_be_coarser) {
-		tell_standard(maker);
+		warn_standard_ignores_budget(maker);
 		return;
 	}
 	if (gz_attention_spent(&maker->attention, total_ms))
@@ -410,7 +411,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 			     struct gz_image **out_image, struct gz_frame_record *out_record)
 {
 	struct gz_frame_record record = begin_record(maker, request);
-	enum gz_result r = make_picture(maker, request, out_image, &record);
+	enum gz_result r = make_frame_picture(maker, request, out_image, &record);
 	if (r != GZ_OK)
 		return r;
 	maker->made = maker->focus;
@@ -432,7 +433,7 @@ const struct gz_plan *gz_frame_plan(const struct gz_frame_maker *maker)
 	return gz_picture_maker_plan(maker->pictures);
 }
 
-static void fill(struct gz_image *image, int left, int top, int right, int bottom)
+static void fill_rectangle(struct gz_image *image, int left, int top, int right, int bottom)
 {
 	static const uint8_t colour[4] = { 255, 64, 64, 255 };
 	for (int y = top < 0 ? 0 : top; y <= bottom && y < image->height; y++) {
@@ -449,10 +450,10 @@ void gz_frame_draw_cross(struct gz_image *image, struct gz_point at)
 	    !(y >= -CROSS_ARM_PX && y < image->height + CROSS_ARM_PX))
 		return;
 	int column = (int)x, row = (int)y;
-	fill(image, column - CROSS_ARM_PX, row - CROSS_HALF_PX, column + CROSS_ARM_PX,
-	     row + CROSS_HALF_PX);
-	fill(image, column - CROSS_HALF_PX, row - CROSS_ARM_PX, column + CROSS_HALF_PX,
-	     row + CROSS_ARM_PX);
+	fill_rectangle(image, column - CROSS_ARM_PX, row - CROSS_HALF_PX, column + CROSS_ARM_PX,
+		       row + CROSS_HALF_PX);
+	fill_rectangle(image, column - CROSS_HALF_PX, row - CROSS_ARM_PX, column + CROSS_HALF_PX,
+		       row + CROSS_ARM_PX);
 }
 
 void gz_frame_maker_destroy(struct gz_frame_maker **maker)

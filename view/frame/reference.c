@@ -39,7 +39,7 @@ struct gz_reference_worker {
 	struct gz_image cast, picture;
 };
 
-static int threads_of(const struct gz_reference_source *source)
+static int reference_threads(const struct gz_reference_source *source)
 {
 	long processors = source->threads > 0 ? source->threads : sysconf(_SC_NPROCESSORS_ONLN) / 2;
 	return processors < 1 ? 1 : processors > 256 ? 256 : (int)processors;
@@ -86,7 +86,8 @@ static enum gz_result cast_all(struct gz_reference_worker *worker,
 }
 
 /* Rays first, then, where there are more or fewer rays than pixels, the picture. */
-static enum gz_result make(struct gz_reference_worker *worker, const struct gz_reference_view *view)
+static enum gz_result make_reference(struct gz_reference_worker *worker,
+				     const struct gz_reference_view *view)
 {
 	const int width = (int)lround(view->width * view->image_sampling_rate);
 	const int height = (int)lround(view->height * view->image_sampling_rate);
@@ -135,7 +136,7 @@ static bool wait_for_work(struct gz_reference_worker *worker, struct gz_referenc
 	return go_on;
 }
 
-static void hand_over(struct gz_reference_worker *worker, enum gz_result result)
+static void publish_reference(struct gz_reference_worker *worker, enum gz_result result)
 {
 	pthread_mutex_lock(&worker->lock);
 	const bool is_current = !atomic_load(&worker->outdated);
@@ -155,7 +156,7 @@ static void hand_over(struct gz_reference_worker *worker, enum gz_result result)
 		worker->source.finished(worker->source.user);
 }
 
-static void *run(void *user)
+static void *reference_thread(void *user)
 {
 	struct gz_reference_worker *worker = user;
 	struct gz_reference_view view;
@@ -165,8 +166,8 @@ static void *run(void *user)
 	while (wait_for_work(worker, &view)) {
 		enum gz_result r = show_newest(worker);
 		if (r == GZ_OK)
-			r = make(worker, &view);
-		hand_over(worker, r);
+			r = make_reference(worker, &view);
+		publish_reference(worker, r);
 	}
 	gz_image_free(&worker->cast);
 	gz_image_free(&worker->picture);
@@ -186,7 +187,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	worker->transfer = *transfer;
 	const struct gz_picture_maker_params params = {
 		.backend = "cpu",
-		.backend_params = { .threads = threads_of(source) },
+		.backend_params = { .threads = reference_threads(source) },
 	};
 	if (gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
 		free(worker);
@@ -195,7 +196,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	atomic_store(&worker->rows_done, -1);
 	pthread_mutex_init(&worker->lock, NULL);
 	pthread_cond_init(&worker->wake, NULL);
-	if (pthread_create(&worker->thread, NULL, run, worker) != 0) {
+	if (pthread_create(&worker->thread, NULL, reference_thread, worker) != 0) {
 		pthread_cond_destroy(&worker->wake);
 		pthread_mutex_destroy(&worker->lock);
 		gz_picture_maker_destroy(&worker->pictures);
@@ -207,7 +208,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 }
 
 /* Under the lock. */
-static void want(struct gz_reference_worker *worker)
+static void request_reference(struct gz_reference_worker *worker)
 {
 	worker->wanted = true;
 	worker->ready = false;
@@ -224,7 +225,7 @@ void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 		worker->transfer = *transfer;
 		worker->revision++;
 		if (worker->any_asked)
-			want(worker);
+			request_reference(worker);
 	}
 	pthread_mutex_unlock(&worker->lock);
 }
@@ -243,7 +244,7 @@ void gz_reference_worker_ask(struct gz_reference_worker *worker,
 	if (!worker->any_asked || !same_view(&worker->asked, view)) {
 		worker->asked = *view;
 		worker->any_asked = true;
-		want(worker);
+		request_reference(worker);
 	}
 	pthread_mutex_unlock(&worker->lock);
 }

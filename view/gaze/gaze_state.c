@@ -11,8 +11,8 @@
 /* Less says nothing: chosen, a fifth of the span. */
 #define RATE_LEAST_NS (RATE_SPAN_NS / 5)
 
-static void say(struct gz_gaze_state *state, enum gz_gaze_level level, const char *what,
-		const char *more)
+static void set_reason(struct gz_gaze_state *state, enum gz_gaze_level level, const char *what,
+		       const char *more)
 {
 	state->level = level;
 	snprintf(state->reason, sizeof state->reason, "%s%s", what, more);
@@ -23,13 +23,14 @@ static void say_tracker(const struct gz_status *status, struct gz_gaze_state *st
 {
 	char text[GZ_REASON_SIZE];
 	if (!status || status->tracker.state == GZ_TRACKER_RUNNING) {
-		say(state, GZ_GAZE_LEVEL_WARN, "NO GAZE yet from the daemon", "; the mouse leads");
+		set_reason(state, GZ_GAZE_LEVEL_WARN, "NO GAZE yet from the daemon",
+			   "; the mouse leads");
 		return;
 	}
 	snprintf(text, sizeof text, "NO TRACKER: %.31s %s%s%.100s", status->tracker.name,
 		 gz_tracker_state_name(status->tracker.state),
 		 status->tracker.reason[0] ? ", " : "", status->tracker.reason);
-	say(state, GZ_GAZE_LEVEL_WARN, text, "; the mouse leads");
+	set_reason(state, GZ_GAZE_LEVEL_WARN, text, "; the mouse leads");
 }
 
 static bool is_of_another_tracker(const struct gz_gaze_signs *signs)
@@ -42,14 +43,14 @@ static void say_silent(const struct gz_gaze_signs *signs, struct gz_gaze_state *
 {
 	const struct gz_status *status = signs->status;
 	const bool stopped = status && status->tracker.state != GZ_TRACKER_RUNNING;
-	say(state, GZ_GAZE_LEVEL_BAD, "SILENT for more than a second",
-	    stopped ? ": the tracker is " : "");
+	set_reason(state, GZ_GAZE_LEVEL_BAD, "SILENT for more than a second",
+		   stopped ? ": the tracker is " : "");
 	if (stopped)
 		strncat(state->reason, gz_tracker_state_name(status->tracker.state),
 			sizeof state->reason - strlen(state->reason) - 1);
 }
 
-static bool is_lost(const struct gz_gaze_reading *reading)
+static bool eye_is_lost(const struct gz_gaze_reading *reading)
 {
 	return reading->has_event && reading->event == GZ_EVENT_LOST;
 }
@@ -57,13 +58,14 @@ static bool is_lost(const struct gz_gaze_reading *reading)
 static void judge_daemon(const struct gz_gaze_signs *signs, struct gz_gaze_state *state)
 {
 	if (!signs->reading.connected)
-		say(state, GZ_GAZE_LEVEL_WARN, "NO DAEMON: start gazed", "; the mouse leads");
+		set_reason(state, GZ_GAZE_LEVEL_WARN, "NO DAEMON: start gazed",
+			   "; the mouse leads");
 	else if (!signs->reading.known)
 		say_tracker(signs->status, state);
 	else if (is_of_another_tracker(signs))
-		say(state, GZ_GAZE_LEVEL_WARN,
-		    "OTHER TRACKER: gazed needs --driver pointer, it reads ",
-		    signs->status->tracker.name);
+		set_reason(state, GZ_GAZE_LEVEL_WARN,
+			   "OTHER TRACKER: gazed needs --driver pointer, it reads ",
+			   signs->status->tracker.name);
 }
 
 static void judge_age(const struct gz_gaze_signs *signs, struct gz_gaze_state *state)
@@ -72,16 +74,17 @@ static void judge_age(const struct gz_gaze_signs *signs, struct gz_gaze_state *s
 	if (signs->from_daemon && (!reading->connected || !reading->known))
 		return;
 	if (signs->log_ended)
-		say(state, GZ_GAZE_LEVEL_WARN, "LOG AT ITS END", "");
+		set_reason(state, GZ_GAZE_LEVEL_WARN, "LOG AT ITS END", "");
 	else if (reading->has_age && reading->age_ns > GZ_GAZE_SILENT_NS)
 		say_silent(signs, state);
-	else if (is_lost(reading))
-		say(state, GZ_GAZE_LEVEL_BAD, "EYE LOST", "");
+	else if (eye_is_lost(reading))
+		set_reason(state, GZ_GAZE_LEVEL_BAD, "EYE LOST", "");
 	else if (state->level == GZ_GAZE_LEVEL_GOOD && reading->has_age &&
 		 reading->age_ns > GZ_GAZE_LATE_NS)
-		say(state, GZ_GAZE_LEVEL_WARN, "LATE: older than 50 ms", "");
+		set_reason(state, GZ_GAZE_LEVEL_WARN, "LATE: older than 50 ms", "");
 	else if (state->level == GZ_GAZE_LEVEL_GOOD && signs->losing)
-		say(state, GZ_GAZE_LEVEL_WARN, "LOSING samples between tracker and daemon", "");
+		set_reason(state, GZ_GAZE_LEVEL_WARN, "LOSING samples between tracker and daemon",
+			   "");
 }
 
 void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *out_state)
@@ -92,8 +95,8 @@ void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *o
 	if (signs->from_daemon || signs->from_log)
 		judge_age(signs, &state);
 	if (state.level == GZ_GAZE_LEVEL_GOOD && signs->from_daemon && signs->window_elsewhere)
-		say(&state, GZ_GAZE_LEVEL_WARN, "OTHER DISPLAY: the tracker's is not the window's",
-		    "; D goes there");
+		set_reason(&state, GZ_GAZE_LEVEL_WARN,
+			   "OTHER DISPLAY: the tracker's is not the window's", "; D goes there");
 	*out_state = state;
 }
 

@@ -7,7 +7,7 @@
 
 #define SHORTEST_FIXATION_NS (GZ_NS_PER_S / 10)
 
-static void forget(struct gz_gaze_trail *trail, int stays)
+static void forget_stays(struct gz_gaze_trail *trail, int stays)
 {
 	trail->count -= stays;
 	memmove(trail->stays, trail->stays + stays, (size_t)trail->count * sizeof trail->stays[0]);
@@ -19,7 +19,7 @@ static bool forget_old(struct gz_gaze_trail *trail, int64_t now_ns)
 	int old = 0;
 	while (old < trail->count - 1 && now_ns - trail->stays[old].to_ns >= GZ_GAZE_TRAIL_NS)
 		old++;
-	forget(trail, old);
+	forget_stays(trail, old);
 	return old > 0;
 }
 
@@ -31,7 +31,7 @@ static bool is_seen(const struct gz_gaze_reading *reading)
 	       isfinite(reading->point.y);
 }
 
-static bool near(struct gz_point a, struct gz_point b, float apart)
+static bool are_near(struct gz_point a, struct gz_point b, float apart)
 {
 	return fabsf(a.x - b.x) <= apart && fabsf(a.y - b.y) <= apart;
 }
@@ -48,11 +48,11 @@ static bool lengthen(struct gz_gaze_stay *stay, struct gz_point point, int64_t n
 	return stay->point.x != was.x || stay->point.y != was.y;
 }
 
-static void begin(struct gz_gaze_trail *trail, const struct gz_gaze_reading *reading,
-		  int64_t now_ns)
+static void begin_stay(struct gz_gaze_trail *trail, const struct gz_gaze_reading *reading,
+		       int64_t now_ns)
 {
 	if (trail->count == GZ_GAZE_TRAIL_ROOM)
-		forget(trail, 1);
+		forget_stays(trail, 1);
 	trail->stays[trail->count++] = (struct gz_gaze_stay) {
 		.point = reading->point,
 		.from_ns = now_ns,
@@ -62,8 +62,8 @@ static void begin(struct gz_gaze_trail *trail, const struct gz_gaze_reading *rea
 }
 
 /* Takes the reading in. @return whether that shows */
-static bool take(struct gz_gaze_trail *trail, const struct gz_gaze_reading *reading, float apart,
-		 int64_t now_ns)
+static bool add_gaze(struct gz_gaze_trail *trail, const struct gz_gaze_reading *reading,
+		     float apart, int64_t now_ns)
 {
 	struct gz_gaze_stay *newest = trail->count > 0 ? &trail->stays[trail->count - 1] : NULL;
 	const bool fixates = reading->has_event && reading->event == GZ_EVENT_FIXATION;
@@ -74,7 +74,7 @@ static bool take(struct gz_gaze_trail *trail, const struct gz_gaze_reading *read
 		/* Its disc grows while it is young. */
 		return now_ns - newest->from_ns < GZ_GAZE_TRAIL_NS;
 	}
-	if (newest && !reading->has_event && near(newest->point, reading->point, apart)) {
+	if (newest && !reading->has_event && are_near(newest->point, reading->point, apart)) {
 		const bool was = newest->fixation;
 		newest->to_ns = now_ns;
 		newest->fixation = now_ns - newest->from_ns >= SHORTEST_FIXATION_NS;
@@ -82,7 +82,7 @@ static bool take(struct gz_gaze_trail *trail, const struct gz_gaze_reading *read
 	}
 	if (newest)
 		newest->to_ns = now_ns;
-	begin(trail, reading, now_ns);
+	begin_stay(trail, reading, now_ns);
 	return true;
 }
 
@@ -90,7 +90,7 @@ bool gz_gaze_trail_step(struct gz_gaze_trail *trail, const struct gz_gaze_readin
 			float apart, int64_t now_ns)
 {
 	const bool forgotten = forget_old(trail, now_ns);
-	const bool taken = take(trail, reading, apart, now_ns);
+	const bool taken = add_gaze(trail, reading, apart, now_ns);
 	const bool lost = trail->count == 1 && !is_seen(reading) &&
 			  now_ns - trail->stays[0].to_ns >= GZ_GAZE_TRAIL_NS;
 	if (lost)

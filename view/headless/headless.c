@@ -5,9 +5,14 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
+#include "base/file.h"
+#include "render/data/brick_write.h"
+#include "render/data/nrrd_write.h"
 #include "render/plan/method.h"
+#include "render/scene/scene_open.h"
 #include "view/capture/output.h"
 #include "view/capture/video.h"
 #include "view/draw/letters.h"
@@ -15,8 +20,8 @@
 #include "view/frame/stats.h"
 #include "view/gaze/gaze_source.h"
 #include "view/headless/loading_bar.h"
-#include "view/session/recording.h"
 #include "view/session/replay.h"
+#include "view/session/session_writer.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -46,7 +51,7 @@ struct headless {
 	bool silence_told; /* that a daemon says nothing was said */
 };
 
-static void on_signal(int number)
+static void on_end_signal(int number)
 {
 	signal_seen = number;
 }
@@ -56,15 +61,16 @@ static void on_signal(int number)
  */
 static void catch_signals(void)
 {
-	struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
+	struct sigaction action = { .sa_handler = on_end_signal, .sa_flags = (int)SA_RESETHAND };
 	sigemptyset(&action.sa_mask);
 	signal_seen = 0;
 	sigaction(SIGINT, &action, NULL);
 	sigaction(SIGTERM, &action, NULL);
 }
 
-static enum gz_result open_source(const struct gz_gaze_choice *choice, const struct gz_log *log,
-				  struct gz_gaze_source **out_source)
+static enum gz_result create_gaze_source(const struct gz_gaze_choice *choice,
+					 const struct gz_log *log,
+					 struct gz_gaze_source **out_source)
 {
 	switch (choice->kind) {
 	case GZ_GAZE_LATEST:
@@ -154,7 +160,7 @@ static void await_daemon(struct headless *self)
 }
 
 /* Nothing where the volume does not tell its sides. */
-static void draw_letters(const struct headless *self, struct gz_image *image)
+static void draw_side_letters(const struct headless *self, struct gz_image *image)
 {
 	struct gz_letters letters;
 	if (gz_frame_maker_scene(self->maker)->volume.oriented &&
@@ -199,8 +205,8 @@ static enum gz_result add_to_video(struct headless *self, const struct gz_image 
 	return r == GZ_OK ? gz_video_show(self->video, image, shown_ns(self, frame)) : r;
 }
 
-static enum gz_result write_picture(struct headless *self, struct gz_image *image,
-				    const struct gz_frame_record *record, int frame)
+static enum gz_result write_headless_picture(struct headless *self, struct gz_image *image,
+					     const struct gz_frame_record *record, int frame)
 {
 	const struct gz_view_options *options = self->options;
 	if (!options->out[0] && !options->video[0])
@@ -208,12 +214,13 @@ static enum gz_result write_picture(struct headless *self, struct gz_image *imag
 	if (self->settings.view.gaze_cursor && record->gaze_known)
 		gz_frame_draw_cross(image, record->gaze);
 	if (self->settings.view.letters)
-		draw_letters(self, image);
+		draw_side_letters(self, image);
 	enum gz_result r = options->out[0] ? write_png(self, image, frame) : GZ_OK;
 	return r == GZ_OK && options->video[0] ? add_to_video(self, image, frame) : r;
 }
 
-static enum gz_result print_line(const struct headless *self, const struct gz_frame_record *record)
+static enum gz_result print_frame_line(const struct headless *self,
+				       const struct gz_frame_record *record)
 {
 	char line[LINE_SIZE];
 	gz_frame_record_print(record, line, sizeof line);
@@ -240,8 +247,8 @@ static enum gz_result begin_session(struct headless *self, const struct gz_displ
 }
 
 /* As the settings and the maker's focus say, and all that is to be had of it. */
-static enum gz_result make_frame(struct headless *self, const struct gz_frame_request *request,
-				 int frame)
+static enum gz_result make_headless_frame(struct headless *self,
+					  const struct gz_frame_request *request, int frame)
 {
 	struct gz_frame_record record;
 	struct gz_image *image;
@@ -250,15 +257,15 @@ static enum gz_result make_frame(struct headless *self, const struct gz_frame_re
 		r = gz_recording_add(self->session, self->maker, request, &record,
 				     shown_ns(self, frame));
 	if (r == GZ_OK)
-		r = print_line(self, &record);
+		r = print_frame_line(self, &record);
 	if (r == GZ_OK && self->stats)
 		r = gz_stats_add(self->stats, &record);
 	if (r == GZ_OK && self->replay)
 		gz_replay_compare(self->replay, &record);
-	return r == GZ_OK ? write_picture(self, image, &record, frame) : r;
+	return r == GZ_OK ? write_headless_picture(self, image, &record, frame) : r;
 }
 
-static enum gz_result one_frame(struct headless *self, int frame)
+static enum gz_result render_frame(struct headless *self, int frame)
 {
 	if (self->source->ops->live)
 		gz_clock_sleep_until_ns(self->start_ns + frame_time_ns(self, frame));
@@ -279,12 +286,12 @@ static enum gz_result one_frame(struct headless *self, int frame)
 		r = gz_session_writer_gaze(self->session, &gaze,
 					   self->start_ns + shown_ns(self, frame));
 	if (r == GZ_OK)
-		r = make_frame(self, &request, frame);
+		r = make_headless_frame(self, &request, frame);
 	gz_camera_turn(&self->settings.camera, self->options->turn_deg);
 	return r;
 }
 
-static enum gz_result one_replayed_frame(struct headless *self, int frame)
+static enum gz_result replay_frame(struct headless *self, int frame)
 {
 	enum gz_result r = gz_replay_next(self->replay);
 	if (r != GZ_OK)
@@ -298,7 +305,7 @@ static enum gz_result one_replayed_frame(struct headless *self, int frame)
 		.height = recorded->height,
 	};
 	r = gz_replay_ready(self->replay);
-	return r == GZ_OK ? make_frame(self, &request, frame) : r;
+	return r == GZ_OK ? make_headless_frame(self, &request, frame) : r;
 }
 
 static enum gz_result finish_video(struct headless *self, int64_t end_ns)
@@ -312,14 +319,14 @@ static enum gz_result replay_frames(struct headless *self)
 {
 	enum gz_result r = GZ_OK;
 	for (int frame = 0; r == GZ_OK && !signal_seen; frame++)
-		r = one_replayed_frame(self, frame);
+		r = replay_frame(self, frame);
 	/* The last one is shown for as long as any. */
 	const int64_t end_ns = shown_ns(self, 0) + (int64_t)(1e9 / self->options->fps);
 	const enum gz_result closed = finish_video(self, end_ns);
 	return r == GZ_OK || r == GZ_ERR_END ? closed : r;
 }
 
-static enum gz_result all_frames(struct headless *self)
+static enum gz_result render_frames(struct headless *self)
 {
 	enum gz_result r = GZ_OK;
 	if (self->source->ops->live)
@@ -327,7 +334,7 @@ static enum gz_result all_frames(struct headless *self)
 	self->start_ns = gz_clock_now_ns();
 	int frame = 0;
 	for (; frame < self->options->frames && r == GZ_OK && !signal_seen; frame++)
-		r = one_frame(self, frame);
+		r = render_frame(self, frame);
 	const enum gz_result recorded = gz_session_writer_end(&self->session);
 	const enum gz_result closed = finish_video(self, shown_ns(self, frame));
 	return r != GZ_OK ? r : recorded != GZ_OK ? recorded : closed;
@@ -345,7 +352,7 @@ static void warn_of_budget(const struct headless *self)
 			self->settings.attention.budget_ms);
 }
 
-static enum gz_result load(struct headless *self)
+static enum gz_result load_scene_shown(struct headless *self)
 {
 	const struct gz_frame_scene scene = gz_frame_scene_of_options(self->options);
 	struct gz_loading_bar bar;
@@ -366,9 +373,9 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	if (r == GZ_OK)
 		r = gz_output_check(options, log);
 	if (r == GZ_OK)
-		r = open_source(&options->gaze, log, &self.source);
+		r = create_gaze_source(&options->gaze, log, &self.source);
 	if (r == GZ_OK)
-		r = load(&self);
+		r = load_scene_shown(&self);
 	if (r == GZ_OK)
 		r = gz_frame_maker_start(self.maker, options, NULL);
 	if (r == GZ_OK && options->stats[0])
@@ -379,7 +386,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 		if (self.settings.view.letters)
 			gz_frame_tell_unoriented(self.maker);
 		r = options->replay[0] ? gz_replay_open(options, self.maker, log, &self.replay)
-				       : all_frames(&self);
+				       : render_frames(&self);
 	}
 	if (r == GZ_OK && self.replay)
 		r = replay_frames(&self);
@@ -388,5 +395,81 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	gz_frame_maker_destroy(&self.maker);
 	gz_gaze_source_destroy(&self.source);
 	*out_signal = signal_seen;
+	return r;
+}
+
+typedef enum gz_result write_function(const struct gz_volume *volume, const char *path,
+				      const struct gz_loading *loading, const struct gz_log *log);
+
+static write_function *writer_of(const char *path, const struct gz_log *log)
+{
+	if (gz_path_ends(path, ".gzb"))
+		return gz_bricks_write;
+	if (gz_path_ends(path, ".nrrd"))
+		return gz_nrrd_write;
+	gz_err(log, "--write-volume %s: end it in .gzb for bricks or in .nrrd", path);
+	return NULL;
+}
+
+static size_t quarter_of_memory(void)
+{
+	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
+}
+
+static enum gz_result load_volume_to_write(const struct gz_view_options *options,
+					   const struct gz_loading *where, const struct gz_log *log,
+					   struct gz_scene *out_scene)
+{
+	struct gz_loading_bar bar;
+	gz_loading_bar_begin(&bar, log);
+	bar.loading.scratch = where->scratch;
+	bar.loading.scratch_from = where->scratch_from;
+	struct gz_raw_layout raw;
+	const struct gz_scene_request request = {
+		.path = options->scene,
+		.raw = gz_view_options_raw(options, &raw) ? &raw : NULL,
+		.loading = &bar.loading,
+		.volume_alone = true,
+	};
+	const enum gz_result r = gz_scene_open(&request, log, out_scene);
+	gz_loading_bar_end(&bar);
+	return r;
+}
+
+static enum gz_result write_to(const struct gz_view_options *options,
+			       const struct gz_loading *where, write_function *writer,
+			       const struct gz_volume *volume, const struct gz_log *log)
+{
+	struct gz_loading_bar bar;
+	if (volume->bricks) {
+		gz_err(log, "--write-volume: the scene's volume is a file of bricks already");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	gz_loading_bar_begin(&bar, log);
+	bar.loading.scratch = where->scratch;
+	bar.loading.scratch_from = where->scratch_from;
+	const enum gz_result r = writer(volume, options->write_volume, &bar.loading, log);
+	gz_loading_bar_end(&bar);
+	return r;
+}
+
+enum gz_result gz_view_write_volume(const struct gz_view_options *options, const struct gz_log *log)
+{
+	char folder[GZ_PATH_SIZE];
+	struct gz_scene scene = { 0 };
+	write_function *writer = writer_of(options->write_volume, log);
+	if (!writer)
+		return GZ_ERR_UNSUPPORTED;
+	enum gz_result r = gz_output_check(options, log);
+	if (r != GZ_OK)
+		return r;
+	gz_output_folder(options->write_volume, folder, sizeof folder);
+	const struct gz_loading where = { .scratch = folder, .scratch_from = quarter_of_memory() };
+	r = load_volume_to_write(options, &where, log, &scene);
+	if (r != GZ_OK)
+		return r;
+	r = write_to(options, &where, writer, &scene.volume, log);
+	gz_scene_free(&scene);
 	return r;
 }

@@ -21,4 +21,16 @@
 enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
 				int *out_signal);
 
+/**
+ * Load or make the volume of the scene that the options name and write it, by the name's ending as
+ * bricks (.gzb) or NRRD (.nrrd). A volume of more than a quarter of the machine's memory is kept
+ * meanwhile in a nameless file beside the new one.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  another ending; logged
+ * @return else what gz_scene_load(), gz_bricks_write() and gz_nrrd_write() return; logged but for
+ * GZ_ERR_CANCELLED, which a signal gives
+ */
+enum gz_result gz_view_write_volume(const struct gz_view_options *options,
+				    const struct gz_log *log);
+
 #endif

@@ -18,7 +18,7 @@ enum { NAME_COLUMNS = 32, BAR_COLUMNS = 24, LINE_SIZE = 128 };
 /* Set by the handler; the only state a signal can reach. */
 static volatile sig_atomic_t signal_seen;
 
-static void on_signal(int number)
+static void on_loading_signal(int number)
 {
 	signal_seen = number;
 }
@@ -38,7 +38,7 @@ void gz_loading_bar_text(const char *what, double share, double spent_s, char *o
 		 BAR_COLUMNS - filled, "", 100 * share, left);
 }
 
-static void draw(struct gz_loading_bar *bar, int64_t now_ns, double share, const char *what)
+static void draw_bar(struct gz_loading_bar *bar, int64_t now_ns, double share, const char *what)
 {
 	char text[LINE_SIZE];
 	gz_loading_bar_text(what, share, gz_ns_to_s(now_ns - bar->begin_ns), text, sizeof text);
@@ -49,7 +49,7 @@ static void draw(struct gz_loading_bar *bar, int64_t now_ns, double share, const
 	bar->drawn = true;
 }
 
-static bool report(void *user, double share, const char *what)
+static bool report_loading(void *user, double share, const char *what)
 {
 	struct gz_loading_bar *bar = user;
 	const int64_t now_ns = gz_clock_now_ns();
@@ -58,20 +58,21 @@ static bool report(void *user, double share, const char *what)
 	if (now_ns < bar->next_ns)
 		return true;
 	bar->next_ns = bar->terminal ? now_ns + BAR_EVERY_NS : INT64_MAX;
-	draw(bar, now_ns, share, what);
+	draw_bar(bar, now_ns, share, what);
 	return true;
 }
 
 void gz_loading_bar_begin(struct gz_loading_bar *bar, const struct gz_log *log)
 {
 	*bar = (struct gz_loading_bar) {
-		.loading = { .report = report, .user = bar },
+		.loading = { .report = report_loading, .user = bar },
 		.log = log,
 		.begin_ns = gz_clock_now_ns(),
 		.terminal = isatty(STDERR_FILENO) == 1,
 	};
 	bar->next_ns = bar->begin_ns + (bar->terminal ? BAR_AFTER_NS : LINE_AFTER_NS);
-	struct sigaction action = { .sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND };
+	struct sigaction action = { .sa_handler = on_loading_signal,
+				    .sa_flags = (int)SA_RESETHAND };
 	sigemptyset(&action.sa_mask);
 	signal_seen = 0;
 	sigaction(SIGINT, &action, &bar->interrupt);

@@ -1,13 +1,14 @@
 #include "view/options/options.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/picture/image.h"
 #include "render/plan/method.h"
-#include "view/options/options_check.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -17,243 +18,315 @@ static const char *const bricks_names[] = { "auto", "wait", "stream", NULL };
 static const char *const endian_names[] = { "little", "big", NULL };
 
 const struct gz_option gz_view_option_table[] = {
-	{ .key = "scene",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(scene),
-	  .max = GZ_PATH_SIZE,
+	{ "scene", GZ_OPTION_STRING, AT(scene), .max = GZ_PATH_SIZE,
 	  .help = "what to show: a scene, a volume, or a picture that gazeview saved; may also "
 		  "stand alone, without --scene" },
-	{ .key = "headless",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(headless),
-	  .preset = "false",
+	{ "headless", GZ_OPTION_BOOL, AT(headless), .preset = "false",
 	  .help = "render without a window" },
-	{ .key = "size",
-	  .type = GZ_OPTION_SIZE,
-	  .offset = AT(size_px),
-	  .min = 1,
-	  .max = GZ_IMAGE_SIDE_MAX,
-	  .preset = "1280x720",
+	{ "size", GZ_OPTION_SIZE, AT(size_px), 1, GZ_IMAGE_SIDE_MAX, .preset = "1280x720",
 	  .help = "picture, px" },
-	{ .key = "gaze",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(gaze_text),
-	  .max = GZ_PATH_SIZE,
+	{ "gaze", GZ_OPTION_STRING, AT(gaze_text), .max = GZ_PATH_SIZE,
 	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, pointer (the mouse by way of "
-		  "gazed "
-		  "--driver pointer), the endpoint of a latest channel or FILE.gzl; without it "
-		  "centre if headless, else daemon" },
-	{ .key = "fps",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(fps),
-	  .min = 0.01,
-	  .max = 10000,
-	  .preset = "60",
+		  "gazed --driver pointer), the endpoint of a latest channel or FILE.gzl; without "
+		  "it centre if headless, else daemon" },
+	{ "fps", GZ_OPTION_DOUBLE, AT(fps), 0.01, 10000, .preset = "60",
 	  .help = "frames a second of gaze time" },
-	{ .key = "method",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(method),
-	  .choices = gz_method_names,
+	{ "method", GZ_OPTION_CHOICE, AT(method), .choices = gz_method_names,
 	  .help = "foveation method; without it the scene's" },
-	{ .key = "backend",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(backend),
-	  .max = GZ_NAME_SIZE,
-	  .preset = "auto",
+	{ "backend", GZ_OPTION_STRING, AT(backend), .max = GZ_NAME_SIZE, .preset = "auto",
 	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto: gl where a GPU does its "
 		  "work" },
-	{ .key = "threads",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(threads),
-	  .min = 0,
-	  .max = 256,
-	  .preset = "0",
+	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
 	  .help = "threads of the cpu backend; 0 takes one a processor" },
-	{ .key = "simd",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(simd),
-	  .max = GZ_NAME_SIZE,
-	  .preset = "auto",
+	{ "simd", GZ_OPTION_STRING, AT(simd), .max = GZ_NAME_SIZE, .preset = "auto",
 	  .help = "instructions of the cpu backend: auto, portable, avx2, avx512" },
-	{ .key = "gl-memory",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(gl_memory_mib),
-	  .min = 0,
-	  .max = 1 << 24,
-	  .preset = "0",
+	{ "gl-memory", GZ_OPTION_INT, AT(gl_memory_mib), 0, 1 << 24, .preset = "0",
 	  .help = "memory of the graphics device that the gl backend takes for voxels, MiB; 0 "
-		  "takes "
-		  "what there is; what does not fit whole is shown by bricks" },
-	{ .key = "frames",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(frames),
-	  .min = 1,
-	  .max = 100000000,
-	  .preset = "1",
+		  "takes what there is; what does not fit whole is shown by bricks" },
+	{ "frames", GZ_OPTION_INT, AT(frames), 1, 100000000, .preset = "1",
 	  .help = "pictures to render headless" },
-	{ .key = "out",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(out),
-	  .max = GZ_PATH_SIZE,
+	{ "out", GZ_OPTION_STRING, AT(out), .max = GZ_PATH_SIZE,
 	  .help = "PNG to write, headless; for several frames a pattern such as frame-%04d.png" },
-	{ .key = "video",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(video),
-	  .max = GZ_PATH_SIZE,
+	{ "video", GZ_OPTION_STRING, AT(video), .max = GZ_PATH_SIZE,
 	  .help = "video to write, headless, --fps pictures a second, by ffmpeg: .mp4 or what else "
-		  "its "
-		  "ending names" },
-	{ .key = "pictures",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(pictures),
-	  .max = GZ_PATH_SIZE,
-	  .preset = ".",
+		  "its ending names" },
+	{ "pictures", GZ_OPTION_STRING, AT(pictures), .max = GZ_PATH_SIZE, .preset = ".",
 	  .help = "folder for what F9, F10 and F12 write: sessions, videos, screenshots" },
-	{ .key = "record",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(record),
-	  .max = GZ_PATH_SIZE,
+	{ "record", GZ_OPTION_STRING, AT(record), .max = GZ_PATH_SIZE,
 	  .help = "folder NAME.session to make: what each picture is made of, to be shown again" },
-	{ .key = "replay",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(replay),
-	  .max = GZ_PATH_SIZE,
+	{ "replay", GZ_OPTION_STRING, AT(replay), .max = GZ_PATH_SIZE,
 	  .help = "NAME.session to show again, picture by picture, in place of a scene and a "
 		  "gaze" },
-	{ .key = "measure-window",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(measure_window),
-	  .min = 0,
-	  .max = 100000,
-	  .preset = "0",
+	{ "measure-window", GZ_OPTION_INT, AT(measure_window), 0, 100000, .preset = "0",
 	  .help = "show so many frames each of a bare picture, of the window and of the window "
-		  "with "
-		  "panels, tell what they took, and end" },
-	{ .key = "stats",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(stats),
-	  .max = GZ_PATH_SIZE,
+		  "with panels, tell what they took, and end" },
+	{ "stats", GZ_OPTION_STRING, AT(stats), .max = GZ_PATH_SIZE,
 	  .help = "JSON file for what each frame cost, headless" },
-	{ .key = "write-volume",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(write_volume),
-	  .max = GZ_PATH_SIZE,
+	{ "write-volume", GZ_OPTION_STRING, AT(write_volume), .max = GZ_PATH_SIZE,
 	  .help = "write the scene's volume to this file, .gzb (bricks, for volumes larger than "
-		  "the "
-		  "memory) or .nrrd, and show nothing" },
-	{ .key = "bricks",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(bricks),
-	  .choices = bricks_names,
-	  .preset = "auto",
+		  "the memory) or .nrrd, and show nothing" },
+	{ "bricks", GZ_OPTION_CHOICE, AT(bricks), .choices = bricks_names, .preset = "auto",
 	  .help = "each picture of a volume shown by bricks waits for all it shows, or streams: "
 		  "coarse first, sharper later; auto waits if headless" },
-	{ .key = "turn",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(turn_deg),
-	  .min = -360,
-	  .max = 360,
-	  .preset = "0",
+	{ "turn", GZ_OPTION_DOUBLE, AT(turn_deg), -360, 360, .preset = "0",
 	  .help = "turn the camera by so many degrees a frame" },
-	{ .key = "cross",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(cross),
-	  .preset = "false",
+	{ "cross", GZ_OPTION_BOOL, AT(cross), .preset = "false",
 	  .help = "short for --view.gaze_cursor" },
-	{ .key = "letters",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(letters),
-	  .preset = "false",
+	{ "letters", GZ_OPTION_BOOL, AT(letters), .preset = "false",
 	  .help = "short for --view.letters" },
-	{ .key = "fullscreen",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(fullscreen),
-	  .preset = "false",
+	{ "fullscreen", GZ_OPTION_BOOL, AT(fullscreen), .preset = "false",
 	  .help = "start the window full screen" },
-	{ .key = "vsync",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(vsync),
-	  .preset = "true",
-	  .help = "short for --view.vsync" },
-	{ .key = "interface-scale",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(interface_scale),
-	  .min = 0,
-	  .max = 8,
-	  .preset = "0",
+	{ "vsync", GZ_OPTION_BOOL, AT(vsync), .preset = "true", .help = "short for --view.vsync" },
+	{ "interface-scale", GZ_OPTION_DOUBLE, AT(interface_scale), 0, 8, .preset = "0",
 	  .help = "size of texts and panels; 0 takes what the display says, 1 is small" },
-	{ .key = "gaze-fills-window",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(gaze_fills_window),
-	  .preset = "false",
+	{ "gaze-fills-window", GZ_OPTION_BOOL, AT(gaze_fills_window), .preset = "false",
 	  .help = "the daemon's gaze spans the window instead of the monitor it is on" },
-	{ .key = "tracker-display",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(tracker_display),
-	  .max = GZ_NAME_SIZE,
+	{ "tracker-display", GZ_OPTION_STRING, AT(tracker_display), .max = GZ_NAME_SIZE,
 	  .help = "short for --view.tracker_display: a monitor's name, or its number from 1" },
-	{ .key = "display-px",
-	  .type = GZ_OPTION_SIZE,
-	  .offset = AT(display_px),
-	  .min = 1,
-	  .max = 32768,
+	{ "display-px", GZ_OPTION_SIZE, AT(display_px), 1, 32768,
 	  .help = "display, px; headless the picture fills it" },
-	{ .key = "display-mm",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(display_mm),
-	  .min = 1,
-	  .max = 100000,
-	  .count = 2,
+	{ "display-mm", GZ_OPTION_DOUBLE, AT(display_mm), 1, 100000, .count = 2,
 	  .help = "display's width and height, mm, as \"565 318\"" },
-	{ .key = "distance-mm",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(display_distance_mm),
-	  .min = 1,
-	  .max = 100000,
+	{ "distance-mm", GZ_OPTION_DOUBLE, AT(display_distance_mm), 1, 100000,
 	  .help = "from the eye to the display, mm" },
-	{ .key = "volume.dims",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(volume_dims),
-	  .min = 1,
-	  .max = GZ_VOLUME_DIM_MAX,
-	  .count = 3,
+	{ "volume.dims", GZ_OPTION_INT, AT(volume_dims), 1, GZ_VOLUME_DIM_MAX, .count = 3,
 	  .help = "voxels along x, y, z of a raw file that stands for a scene, as \"256 256 128\"; "
 		  "without it its name and its size must tell" },
-	{ .key = "volume.type",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(volume_type),
-	  .choices = gz_raw_type_names,
+	{ "volume.type", GZ_OPTION_CHOICE, AT(volume_type), .choices = gz_raw_type_names,
 	  .help = "type of its voxels" },
-	{ .key = "volume.endian",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(volume_endian),
-	  .choices = endian_names,
+	{ "volume.endian", GZ_OPTION_CHOICE, AT(volume_endian), .choices = endian_names,
 	  .help = "byte order of its voxels; without it little" },
-	{ .key = "volume.spacing",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(volume_spacing),
-	  .min = 1e-9,
-	  .max = 1e9,
-	  .count = 3,
+	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(volume_spacing), 1e-9, 1e9, .count = 3,
 	  .help = "between its voxels along x, y, z, mm; without it 1" },
-	{ .key = "transfer.file",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(transfer_file),
-	  .max = GZ_PATH_SIZE,
+	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function, .tf, in place of the scene's" },
-	{ .key = "help",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(help),
-	  .preset = "false",
-	  .help = "print this and exit" },
-	{ .key = "version",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(version),
-	  .preset = "false",
+	{ "help", GZ_OPTION_BOOL, AT(help), .preset = "false", .help = "print this and exit" },
+	{ "version", GZ_OPTION_BOOL, AT(version), .preset = "false",
 	  .help = "print the version and exit" },
 };
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
+
+/* Targets are for somebody who sits there and sees nothing else. */
+static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
+{
+	const char *other = options->scene[0]    ? "a scene"
+			    : options->headless  ? "--headless"
+			    : options->record[0] ? "--record"
+			    : options->replay[0] ? "--replay"
+						 : NULL;
+	if (!other)
+		return GZ_OK;
+	gz_err(log, "--targets: %s cannot go with it; remove one of them", other);
+	return GZ_ERR_INVAL;
+}
+
+/* A session has what these say. */
+static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
+{
+	static const char *const others[] = {
+		"scene",         "size",        "gaze",        "frames",        "turn",
+		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
+		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
+	};
+	const char *other = options->scene[0] ? "scene" : NULL;
+	for (size_t i = 0; i < gz_view_option_count && !other; i++)
+		for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
+			if (options->given[i] &&
+			    strcmp(gz_view_option_table[i].key, others[k]) == 0)
+				other = others[k];
+	if (!other)
+		return GZ_OK;
+	gz_err(log, "--replay: --%s cannot go with it: the session says that; remove one of them",
+	       other);
+	return GZ_ERR_INVAL;
+}
+
+/* A layout is told by dims and type; the rest has presets. */
+static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
+{
+	const bool dims = options->volume_dims[0] > 0, type = options->volume_type >= 0;
+	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0;
+	if (dims == type && (dims || !more))
+		return GZ_OK;
+	gz_err(log, "--volume.%s: not given; a raw file needs both dims and type",
+	       dims ? "type" : "dims");
+	return GZ_ERR_INVAL;
+}
+
+/* A key of a scene that says what is shown, not on which display. */
+static bool any_scene_key(const struct gz_view_options *options)
+{
+	struct gz_scene_settings settings;
+	struct gz_view_scene_tables tables;
+	bool any = false;
+	const bool *given = options->scene_given;
+	gz_view_pick_scene_tables(&settings, &tables);
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
+		for (size_t k = 0; k < tables.bindings[i].count; k++) {
+			const char *key = tables.bindings[i].options[k].key;
+			const bool display = strcmp(key, "view.vsync") == 0 ||
+					     strcmp(key, "view.tracker_display") == 0;
+			any = (*given++ && !display) || any;
+		}
+	}
+	return any;
+}
+
+/* What is shown, and how, says the experiment alone. */
+static enum gz_result check_experiment(const struct gz_view_options *options,
+				       const struct gz_log *log)
+{
+	const char *other = options->target.targets[0]  ? "--targets"
+			    : options->scene[0]         ? "a scene"
+			    : options->method >= 0      ? "--method"
+			    : options->turn_deg != 0    ? "--turn"
+			    : options->write_volume[0]  ? "--write-volume"
+			    : options->out[0]           ? "--out"
+			    : options->video[0]         ? "--video"
+			    : options->transfer_file[0] ? "--transfer.file"
+			    : options->record[0]        ? "--record"
+			    : options->replay[0]        ? "--replay"
+			    : options->stats[0]         ? "--stats"
+			    : options->cross            ? "--cross"
+			    : options->letters          ? "--letters"
+			    : any_scene_key(options)    ? "a key of a scene"
+							: NULL;
+	if (!other)
+		return gz_sitting_options_check(&options->sitting, log);
+	gz_err(log,
+	       "--experiment: %s cannot go with it, since the file says what is shown; remove one "
+	       "of them",
+	       other);
+	return GZ_ERR_INVAL;
+}
+
+static enum gz_result check_options(const struct gz_view_options *options, const struct gz_log *log)
+{
+	if (options->sitting.file[0])
+		return check_experiment(options, log);
+	const enum gz_result r = gz_sitting_options_check(&options->sitting, log);
+	if (r != GZ_OK)
+		return r;
+	if (options->target.targets[0])
+		return check_targets(options, log);
+	if (options->replay[0] && check_replay(options, log) != GZ_OK)
+		return GZ_ERR_INVAL;
+	if (!options->scene[0] && !options->replay[0] &&
+	    (options->headless || options->write_volume[0])) {
+		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
+		return GZ_ERR_INVAL;
+	}
+	bool by_mouse =
+		options->gaze.kind == GZ_GAZE_MOUSE || options->gaze.kind == GZ_GAZE_POINTER;
+	if (options->headless && by_mouse) {
+		gz_err(log,
+		       "--gaze %s: there is no mouse without a window; leave out --headless, or "
+		       "give X,Y",
+		       options->gaze_text);
+		return GZ_ERR_INVAL;
+	}
+	if (check_raw(options, log) != GZ_OK)
+		return GZ_ERR_INVAL;
+	const char *file = options->out[0]     ? "out"
+			   : options->video[0] ? "video"
+			   : options->stats[0] ? "stats"
+					       : NULL;
+	if (!options->headless && file) {
+		gz_err(log, "--%s: only written without a window; add --headless", file);
+		return GZ_ERR_INVAL;
+	}
+	/* A session hardly has but one frame. */
+	const int frames = options->replay[0] ? INT_MAX : options->frames;
+	return options->out[0] ? gz_pattern_check(options->out, frames, log) : GZ_OK;
+}
+
+/* The whole of a pattern's grammar, in one place. */
+struct pattern {
+	size_t start, end; /* of the conversion; equal if there is none */
+	bool zeros;
+	int width;
+	int conversions;
+};
+
+static bool scan_pattern(const char *text, struct pattern *out_pattern)
+{
+	struct pattern pattern = { 0 };
+	for (size_t i = 0; text[i]; i++) {
+		if (text[i] != '%')
+			continue;
+		if (text[i + 1] == '%') {
+			i++;
+			continue;
+		}
+		size_t at = i + 1;
+		pattern.start = i;
+		pattern.zeros = text[at] == '0';
+		at += pattern.zeros;
+		pattern.width = 0;
+		if (text[at] >= '1' && text[at] <= '9')
+			pattern.width = text[at++] - '0';
+		if (text[at] != 'd')
+			return false;
+		pattern.end = at + 1;
+		pattern.conversions++;
+		i = at;
+	}
+	*out_pattern = pattern;
+	return true;
+}
+
+enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz_log *log)
+{
+	struct pattern scanned;
+	if (!scan_pattern(pattern, &scanned)) {
+		gz_err(log,
+		       "--out %s: only %%d, %%4d or %%04d (width 1 to 9) may follow a percent "
+		       "sign; "
+		       "write %%%% for the sign itself",
+		       pattern);
+		return GZ_ERR_INVAL;
+	}
+	if (scanned.conversions > 1) {
+		gz_err(log, "--out %s: the frame number stands there %d times; once is enough",
+		       pattern, scanned.conversions);
+		return GZ_ERR_INVAL;
+	}
+	if (frames > 1 && scanned.conversions == 0) {
+		gz_err(log,
+		       "--out %s: several frames need a number in the name, as in "
+		       "frame-%%04d.png",
+		       pattern);
+		return GZ_ERR_INVAL;
+	}
+	return GZ_OK;
+}
+
+enum gz_result gz_pattern_format(const char *pattern, int number, char *path, size_t size)
+{
+	struct pattern scanned;
+	if (!scan_pattern(pattern, &scanned) || scanned.conversions > 1)
+		return GZ_ERR_INVAL;
+	size_t used = 0;
+	for (size_t i = 0; pattern[i]; i++) {
+		if (used + 1 >= size)
+			return GZ_ERR_FULL;
+		if (scanned.conversions == 1 && i == scanned.start) {
+			int length =
+				snprintf(path + used, size - used, scanned.zeros ? "%0*d" : "%*d",
+					 scanned.width, number);
+			if (length < 0 || (size_t)length >= size - used)
+				return GZ_ERR_FULL;
+			used += (size_t)length;
+			i = scanned.end - 1;
+			continue;
+		}
+		i += pattern[i] == '%'; /* "%%" */
+		path[used++] = pattern[i];
+	}
+	path[used] = '\0';
+	return GZ_OK;
+}
 
 /* Tables of gazeview's own: the one above, that of the targets and that of experiments. */
 enum { OWN_BINDINGS = 3 };
@@ -263,10 +336,10 @@ static bool starts_with(const char *text, const char *start)
 	return strncmp(text, start, strlen(start)) == 0;
 }
 
-static bool ends_with(const char *text, const char *end)
+static bool is_gaze_log(const char *text)
 {
-	size_t length = strlen(text), tail = strlen(end);
-	return length >= tail && strcmp(text + length - tail, end) == 0;
+	const char *ending = strrchr(text, '.');
+	return ending && strcmp(ending, ".gzl") == 0;
 }
 
 /* One finite number up to @p end; strtod() alone would also take blanks, hex and "inf". */
@@ -312,7 +385,7 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 	} else if (starts_with(text, "ipc://") || starts_with(text, "tcp://")) {
 		choice.kind = GZ_GAZE_LATEST;
 		memcpy(choice.text, text, strlen(text) + 1);
-	} else if (ends_with(text, ".gzl")) {
+	} else if (is_gaze_log(text)) {
 		choice.kind = GZ_GAZE_LOG;
 		memcpy(choice.text, text, strlen(text) + 1);
 	} else if (parse_point(text, &choice.point)) {
@@ -454,7 +527,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	r = gz_gaze_choice_parse(gaze, log, &out_options->gaze);
 	if (r == GZ_OK)
 		r = check_method_once(out_options, &tables, log);
-	return r == GZ_OK ? gz_view_options_check(out_options, log) : r;
+	return r == GZ_OK ? check_options(out_options, log) : r;
 }
 
 bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw)

@@ -17,7 +17,7 @@
 #include "render/scene/scene.h"
 #include "view/experiment/sitting.h"
 #include "view/options/target_options.h"
-#include "view/settings/scene_tables.h"
+#include "view/settings/scene_keys.h"
 
 /** Most options of gz_view_option_table. */
 #define GZ_VIEW_OPTIONS_MAX 64

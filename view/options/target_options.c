@@ -11,49 +11,20 @@ static const char *const order_names[] = { "fixed", "random", NULL };
 static const char *const advance_names[] = { "auto", "space", NULL };
 
 const struct gz_option gz_target_option_table[] = {
-	{ .key = "targets",
-	  .type = GZ_OPTION_STRING,
-	  .offset = AT(targets),
-	  .max = GZ_PATH_SIZE,
-	  .preset = "",
-	  .help = "show fixation targets instead of a scene: 5, 9, 13, or a file with lines "
-		  "\"x y\"; "
-		  "standard output tells when each is there" },
-	{ .key = "duration",
-	  .type = GZ_OPTION_DOUBLE,
-	  .offset = AT(duration_s),
-	  .min = 0.5,
-	  .max = 60,
-	  .preset = "2.5",
+	{ "targets", GZ_OPTION_STRING, AT(targets), .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "show fixation targets instead of a scene: 5, 9, 13, or a file with lines \"x "
+		  "y\"; standard output tells when each is there" },
+	{ "duration", GZ_OPTION_DOUBLE, AT(duration_s), 0.5, 60, .preset = "2.5",
 	  .help = "each target stays for so long, s" },
-	{ .key = "order",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(order),
-	  .choices = order_names,
-	  .preset = "random",
+	{ "order", GZ_OPTION_CHOICE, AT(order), .choices = order_names, .preset = "random",
 	  .help = "in which order targets come: as listed, or at random" },
-	{ .key = "seed",
-	  .type = GZ_OPTION_INT,
-	  .offset = AT(seed),
-	  .min = 0,
-	  .max = 2147483647,
-	  .preset = "0",
+	{ "seed", GZ_OPTION_INT, AT(seed), 0, 2147483647, .preset = "0",
 	  .help = "of the random order; 0 takes another one each time" },
-	{ .key = "advance",
-	  .type = GZ_OPTION_CHOICE,
-	  .offset = AT(advance),
-	  .choices = advance_names,
-	  .preset = "auto",
+	{ "advance", GZ_OPTION_CHOICE, AT(advance), .choices = advance_names, .preset = "auto",
 	  .help = "the next target comes by itself, or when the space bar is pressed" },
-	{ .key = "instructions",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(instructions),
-	  .preset = "true",
+	{ "instructions", GZ_OPTION_BOOL, AT(instructions), .preset = "true",
 	  .help = "say first what to do, and wait for the space bar" },
-	{ .key = "window",
-	  .type = GZ_OPTION_BOOL,
-	  .offset = AT(windowed),
-	  .preset = "false",
+	{ "window", GZ_OPTION_BOOL, AT(windowed), .preset = "false",
 	  .help = "show targets, or an experiment, in a window instead of on the whole display" },
 };
 
@@ -68,7 +39,7 @@ static const struct gz_point layout[] = {
 };
 
 /* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
-static void shuffle(struct gz_targets *targets, int seed)
+static void shuffle_targets(struct gz_targets *targets, int seed)
 {
 	uint64_t start = seed > 0 ? (uint64_t)seed : (uint64_t)gz_clock_now_ns();
 	struct gz_random random = gz_random_seeded(start, 0);
@@ -97,7 +68,7 @@ enum gz_result gz_target_places(const struct gz_target_options *options, const s
 			return r;
 	}
 	if (options->order == GZ_TARGET_ORDER_RANDOM)
-		shuffle(&targets, options->seed);
+		shuffle_targets(&targets, options->seed);
 	*out_targets = targets;
 	return GZ_OK;
 }

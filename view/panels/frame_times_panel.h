@@ -5,7 +5,7 @@
 #ifndef GZ_VIEW_FRAME_TIMES_PANEL_H
 #define GZ_VIEW_FRAME_TIMES_PANEL_H
 
-#include "view/frame/frame_history.h"
+#include "view/frame/stats.h"
 
 /** Draw the plot, a column a frame, the newest at the right, and its numbers. @param budget_ms a
  * line; 0: none */

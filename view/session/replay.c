@@ -64,7 +64,7 @@ enum gz_result gz_replay_adopt(struct gz_view_options *options, const struct gz_
 	return GZ_OK;
 }
 
-static enum gz_result check_volume(const struct gz_replay *replay)
+static enum gz_result check_recorded_volume(const struct gz_replay *replay)
 {
 	const struct gz_volume *volume = &gz_frame_maker_scene(replay->maker)->volume;
 	const struct gz_volume_identity *recorded = &gz_session_header(replay->reader)->volume;
@@ -92,7 +92,7 @@ enum gz_result gz_replay_open(const struct gz_view_options *options, struct gz_f
 	replay->state.transfer = scene->transfer;
 	enum gz_result r = gz_session_open(options->replay, log, &replay->reader);
 	if (r == GZ_OK)
-		r = check_volume(replay);
+		r = check_recorded_volume(replay);
 	if (r != GZ_OK) {
 		gz_replay_close(&replay);
 		return r;

@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "view/session/session_text.h"
-#include "view/settings/scene_tables.h"
+#include "view/session/session.h"
+#include "view/settings/scene_keys.h"
 
 #define GZ_LOG_MODULE "session"
 
@@ -30,8 +30,8 @@ struct gz_session_reader {
 	char scratch[GZ_SESSION_LINE_SIZE + 2]; /* a line in parts */
 };
 
-__attribute__((format(printf, 2, 3))) static enum gz_result refuse(struct gz_session_reader *reader,
-								   const char *format, ...)
+__attribute__((format(printf, 2, 3))) static enum gz_result refuse_session_line(
+	struct gz_session_reader *reader, const char *format, ...)
 {
 	char what[MESSAGE_SIZE];
 	va_list arguments;
@@ -51,7 +51,7 @@ static enum gz_result end_cut(struct gz_session_reader *reader)
 }
 
 /* The next line, without its newline, into the reader's buffer. */
-static enum gz_result next_line(struct gz_session_reader *reader)
+static enum gz_result next_session_line(struct gz_session_reader *reader)
 {
 	if (reader->pending) {
 		reader->pending = false;
@@ -69,8 +69,9 @@ static enum gz_result next_line(struct gz_session_reader *reader)
 	if (length == 0 || reader->line[length - 1] != '\n') {
 		if (length <= GZ_SESSION_LINE_SIZE && feof(reader->file))
 			return end_cut(reader);
-		return refuse(reader, "longer than any line, or with a NUL in it; the file is "
-				      "damaged");
+		return refuse_session_line(reader,
+					   "longer than any line, or with a NUL in it; the file is "
+					   "damaged");
 	}
 	reader->crc_before = reader->crc;
 	reader->crc = (uint32_t)crc32(reader->crc, (const Bytef *)reader->line, (uInt)length);
@@ -83,40 +84,44 @@ static bool is_end(const struct gz_session_reader *reader)
 	return strncmp(reader->line, "#end", 4) == 0;
 }
 
-static enum gz_result take_header_line(struct gz_session_reader *reader)
+static enum gz_result parse_header_line(struct gz_session_reader *reader)
 {
 	strcpy(reader->scratch, reader->line);
 	if (gz_session_parse_header_line(reader->scratch, &reader->header) == GZ_OK)
 		return GZ_OK;
-	return refuse(reader, "%.40s: its value cannot be one; the file is damaged", reader->line);
+	return refuse_session_line(reader, "%.40s: its value cannot be one; the file is damaged",
+				   reader->line);
 }
 
-static enum gz_result read_header(struct gz_session_reader *reader)
+static enum gz_result read_session_header(struct gz_session_reader *reader)
 {
-	enum gz_result r = next_line(reader);
+	enum gz_result r = next_session_line(reader);
 	if (r == GZ_OK && strcmp(reader->line, GZ_SESSION_FIRST_LINE) != 0)
-		r = refuse(reader, "not \"" GZ_SESSION_FIRST_LINE "\": it is no session, or one "
-				   "of a later version");
+		r = refuse_session_line(reader, "not \"" GZ_SESSION_FIRST_LINE
+						"\": it is no session, or one "
+						"of a later version");
 	if (r == GZ_OK)
-		r = next_line(reader);
+		r = next_session_line(reader);
 	while (r == GZ_OK && reader->line[0] == '#' && !is_end(reader)) {
-		r = take_header_line(reader);
+		r = parse_header_line(reader);
 		if (r == GZ_OK)
-			r = next_line(reader);
+			r = next_session_line(reader);
 	}
 	if (r == GZ_ERR_END) /* cut behind its header: no frames, which reading will tell */
-		return reader->line_number > 0 ? GZ_OK
-					       : refuse(reader, "empty: nothing was recorded");
+		return reader->line_number > 0
+			       ? GZ_OK
+			       : refuse_session_line(reader, "empty: nothing was recorded");
 	if (r != GZ_OK)
 		return r;
 	reader->pending = true;
 	if (reader->header.volume.dims[0] > 0 && reader->header.volume.spacing[0] > 0)
 		return GZ_OK;
-	return refuse(reader, "no #volume_dims and #volume_spacing before it; the file is damaged");
+	return refuse_session_line(
+		reader, "no #volume_dims and #volume_spacing before it; the file is damaged");
 }
 
-static enum gz_result start(const char *name, FILE *file, const struct gz_log *log,
-			    struct gz_session_reader **out_reader)
+static enum gz_result start_reader(const char *name, FILE *file, const struct gz_log *log,
+				   struct gz_session_reader **out_reader)
 {
 	struct gz_session_reader *reader = calloc(1, sizeof *reader);
 	if (!reader) {
@@ -127,7 +132,7 @@ static enum gz_result start(const char *name, FILE *file, const struct gz_log *l
 	reader->file = file;
 	reader->crc = (uint32_t)crc32(0, NULL, 0);
 	snprintf(reader->name, sizeof reader->name, "%s", name);
-	const enum gz_result r = read_header(reader);
+	const enum gz_result r = read_session_header(reader);
 	if (r != GZ_OK) {
 		gz_session_close(&reader);
 		return r;
@@ -158,7 +163,7 @@ enum gz_result gz_session_open(const char *path, const struct gz_log *log,
 		gz_err(log, "%s: cannot be opened: %s", name, strerror(errno));
 		return GZ_ERR_IO;
 	}
-	return start(name, file, log, out_reader);
+	return start_reader(name, file, log, out_reader);
 }
 
 enum gz_result gz_session_open_memory(const char *name, const char *text, size_t size,
@@ -167,7 +172,7 @@ enum gz_result gz_session_open_memory(const char *name, const char *text, size_t
 {
 	/* Read only, whatever the type says. */
 	FILE *file = fmemopen((void *)(uintptr_t)text, size, "rb");
-	return file ? start(name, file, log, out_reader) : GZ_ERR_NO_MEM;
+	return file ? start_reader(name, file, log, out_reader) : GZ_ERR_NO_MEM;
 }
 
 const struct gz_session_header *gz_session_header(const struct gz_session_reader *reader)
@@ -187,34 +192,38 @@ static bool cut_set(struct gz_session_reader *reader, char **out_key, char **out
 	return true;
 }
 
-static enum gz_result take_set(struct gz_session_reader *reader, struct gz_session_state *state)
+static enum gz_result parse_set_line(struct gz_session_reader *reader,
+				     struct gz_session_state *state)
 {
 	struct gz_view_scene_tables tables;
 	char *key, *value, message[MESSAGE_SIZE / 2];
 	size_t binding;
 	if (!cut_set(reader, &key, &value))
-		return refuse(reader, "no value behind a setting; the file is damaged");
+		return refuse_session_line(reader,
+					   "no value behind a setting; the file is damaged");
 	gz_view_pick_scene_tables(&state->settings, &tables);
 	const struct gz_option *option =
 		gz_options_find(tables.bindings, GZ_VIEW_SCENE_TABLES, key, &binding);
 	if (!option)
-		return refuse(reader,
-			      "%.*s: no such setting; the file is damaged or of a later "
-			      "version",
-			      WORD_SIZE, key);
+		return refuse_session_line(
+			reader,
+			"%.*s: no such setting; the file is damaged or of a later "
+			"version",
+			WORD_SIZE, key);
 	const bool table = strcmp(key, "foveation.table") == 0;
 	if (table && strchr(value, '/'))
-		return refuse(reader, "foveation.table: not a file of the session's folder");
+		return refuse_session_line(reader,
+					   "foveation.table: not a file of the session's folder");
 	state->table_changed = state->table_changed || table;
 	if (gz_option_parse(option, value, tables.bindings[binding].target, message,
 			    sizeof message) != GZ_OK)
-		return refuse(reader, "%.*s: %s", WORD_SIZE, key, message);
+		return refuse_session_line(reader, "%.*s: %s", WORD_SIZE, key, message);
 	return GZ_OK;
 }
 
 /* A line of tabs between what are lines of a .tf file. */
-static enum gz_result take_transfer(struct gz_session_reader *reader,
-				    struct gz_session_state *state)
+static enum gz_result parse_transfer_line(struct gz_session_reader *reader,
+					  struct gz_session_state *state)
 {
 	char name[GZ_PATH_SIZE + 32];
 	char *text = strcpy(reader->scratch, reader->line + sizeof GZ_SESSION_TRANSFER_WORD);
@@ -229,13 +238,13 @@ static enum gz_result take_transfer(struct gz_session_reader *reader,
 	return GZ_OK;
 }
 
-static enum gz_result take_end(struct gz_session_reader *reader)
+static enum gz_result parse_end_line(struct gz_session_reader *reader)
 {
 	uint64_t frames;
 	uint32_t crc;
 	strcpy(reader->scratch, reader->line);
 	if (!gz_session_parse_end(reader->scratch, &frames, &crc))
-		return refuse(reader, "not the end of a session; the file is damaged");
+		return refuse_session_line(reader, "not the end of a session; the file is damaged");
 	if (frames != reader->frames || crc != reader->crc_before)
 		gz_warn(reader->log,
 			"%s: not as it was recorded: %llu frames of %llu, or other numbers in them",
@@ -244,16 +253,17 @@ static enum gz_result take_end(struct gz_session_reader *reader)
 	return reader->ended = GZ_ERR_END;
 }
 
-static enum gz_result take_frame(struct gz_session_reader *reader,
-				 struct gz_session_frame *out_frame)
+static enum gz_result parse_frame_line(struct gz_session_reader *reader,
+				       struct gz_session_frame *out_frame)
 {
 	struct gz_session_frame frame;
 	const char *what = "";
 	strcpy(reader->scratch, reader->line);
 	if (gz_session_parse_frame(reader->scratch, &frame, &what) != GZ_OK)
-		return refuse(reader, "%s: not what a frame's may be; the file is damaged", what);
+		return refuse_session_line(
+			reader, "%s: not what a frame's may be; the file is damaged", what);
 	if (frame.time_ns < reader->time_ns)
-		return refuse(reader, "time_ns: before that of the frame above");
+		return refuse_session_line(reader, "time_ns: before that of the frame above");
 	reader->time_ns = frame.time_ns;
 	reader->frames++;
 	*out_frame = frame;
@@ -270,15 +280,15 @@ enum gz_result gz_session_read(struct gz_session_reader *reader, struct gz_sessi
 			       struct gz_session_frame *out_frame)
 {
 	state->transfer_changed = state->table_changed = false;
-	while (reader->ended == GZ_OK && next_line(reader) == GZ_OK) {
+	while (reader->ended == GZ_OK && next_session_line(reader) == GZ_OK) {
 		if (begins_with(reader->line, GZ_SESSION_SET_WORD))
-			(void)take_set(reader, state);
+			(void)parse_set_line(reader, state);
 		else if (begins_with(reader->line, GZ_SESSION_TRANSFER_WORD))
-			(void)take_transfer(reader, state);
+			(void)parse_transfer_line(reader, state);
 		else if (is_end(reader))
-			(void)take_end(reader);
+			(void)parse_end_line(reader);
 		else
-			return take_frame(reader, out_frame);
+			return parse_frame_line(reader, out_frame);
 	}
 	return reader->ended;
 }

@@ -12,8 +12,8 @@
 
 #include "protocol/gaze_log.h"
 #include "render/scene/scene_write.h"
-#include "view/session/session_text.h"
-#include "view/settings/scene_tables.h"
+#include "view/session/session.h"
+#include "view/settings/scene_keys.h"
 
 #define GZ_LOG_MODULE "session"
 
@@ -36,8 +36,8 @@ struct gz_session_writer {
 	struct gz_gaze_log_writer gaze;
 };
 
-static enum gz_result make_path(const struct gz_session_writer *writer, const char *name,
-				char path[GZ_PATH_SIZE])
+static enum gz_result path_in_session(const struct gz_session_writer *writer, const char *name,
+				      char path[GZ_PATH_SIZE])
 {
 	const int length = snprintf(path, GZ_PATH_SIZE, "%s/%s", writer->path, name);
 	if (length > 0 && length < GZ_PATH_SIZE)
@@ -48,7 +48,7 @@ static enum gz_result make_path(const struct gz_session_writer *writer, const ch
 }
 
 /* Whatever has gone wrong, it is told once, and nothing more is written. */
-static enum gz_result fail(struct gz_session_writer *writer, const char *what, int error)
+static enum gz_result stop_recording(struct gz_session_writer *writer, const char *what, int error)
 {
 	if (!writer->failed)
 		gz_err(writer->log,
@@ -58,7 +58,7 @@ static enum gz_result fail(struct gz_session_writer *writer, const char *what, i
 	return GZ_ERR_IO;
 }
 
-static size_t write_all(int fd, const char *bytes, size_t size)
+static size_t write_lines(int fd, const char *bytes, size_t size)
 {
 	size_t done = 0;
 	while (done < size) {
@@ -78,16 +78,16 @@ static enum gz_result flush(struct gz_session_writer *writer)
 {
 	struct gz_text *lines = &writer->lines;
 	if (lines->failed)
-		return fail(writer, GZ_SESSION_FRAMES, ENOMEM);
+		return stop_recording(writer, GZ_SESSION_FRAMES, ENOMEM);
 	if (lines->length == 0)
 		return GZ_OK;
-	const size_t done = write_all(writer->frames_fd, lines->bytes, lines->length);
+	const size_t done = write_lines(writer->frames_fd, lines->bytes, lines->length);
 	if (done < lines->length) {
 		const int error = errno;
 		/* Where even that fails, a line without its end is left, which readers drop. */
 		if (ftruncate(writer->frames_fd, (off_t)writer->size) == 0)
 			lseek(writer->frames_fd, (off_t)writer->size, SEEK_SET);
-		return fail(writer, GZ_SESSION_FRAMES, error);
+		return stop_recording(writer, GZ_SESSION_FRAMES, error);
 	}
 	writer->crc =
 		(uint32_t)crc32(writer->crc, (const Bytef *)lines->bytes, (uInt)lines->length);
@@ -99,7 +99,7 @@ static enum gz_result flush(struct gz_session_writer *writer)
 static int create(const struct gz_session_writer *writer, const char *name)
 {
 	char path[GZ_PATH_SIZE];
-	if (make_path(writer, name, path) != GZ_OK)
+	if (path_in_session(writer, name, path) != GZ_OK)
 		return -1;
 	const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 	if (fd < 0)
@@ -129,7 +129,7 @@ static enum gz_result copy_table(struct gz_session_writer *writer, struct gz_fov
 	snprintf(foveation->table_file, sizeof foveation->table_file, "table-%d.txt",
 		 ++writer->tables);
 	print_table(&foveation->table, &text);
-	enum gz_result r = make_path(writer, foveation->table_file, path);
+	enum gz_result r = path_in_session(writer, foveation->table_file, path);
 	if (r == GZ_OK)
 		r = gz_text_write(&text, path, writer->log);
 	gz_text_free(&text);
@@ -137,14 +137,14 @@ static enum gz_result copy_table(struct gz_session_writer *writer, struct gz_fov
 }
 
 /* The scene, named from its new place, with what else it needs beside it. */
-static enum gz_result write_scene(struct gz_session_writer *writer,
-				  const struct gz_session_start *start)
+static enum gz_result write_session_scene(struct gz_session_writer *writer,
+					  const struct gz_session_start *start)
 {
 	char path[GZ_PATH_SIZE], transfer[GZ_PATH_SIZE];
 	struct gz_scene_settings *settings = &writer->settings;
-	enum gz_result r = make_path(writer, GZ_SESSION_SCENE, path);
+	enum gz_result r = path_in_session(writer, GZ_SESSION_SCENE, path);
 	if (r == GZ_OK)
-		r = make_path(writer, GZ_SESSION_TRANSFER, transfer);
+		r = path_in_session(writer, GZ_SESSION_TRANSFER, transfer);
 	if (r == GZ_OK)
 		r = gz_transfer_write(start->transfer, transfer, writer->log);
 	settings->foveation.table_file[0] = settings->transfer_also[0] = '\0';
@@ -203,10 +203,10 @@ static enum gz_result begin_gaze(struct gz_session_writer *writer,
 	enum gz_result r = gz_gaze_log_writer_begin(&writer->gaze, writer->gaze_fd, &header);
 	if (r == GZ_OK)
 		r = gz_gaze_log_writer_flush(&writer->gaze);
-	return r == GZ_OK ? r : fail(writer, GZ_SESSION_GAZE, errno);
+	return r == GZ_OK ? r : stop_recording(writer, GZ_SESSION_GAZE, errno);
 }
 
-static enum gz_result make_folder(const struct gz_session_writer *writer)
+static enum gz_result make_session_folder(const struct gz_session_writer *writer)
 {
 	if (mkdir(writer->path, 0700) == 0)
 		return GZ_OK;
@@ -231,7 +231,7 @@ static void remove_all(const struct gz_session_writer *writer)
 	rmdir(writer->path);
 }
 
-static void release(struct gz_session_writer *writer)
+static void release_session_writer(struct gz_session_writer *writer)
 {
 	if (writer->frames_fd >= 0)
 		close(writer->frames_fd);
@@ -253,19 +253,19 @@ enum gz_result gz_session_writer_begin(const struct gz_session_start *start,
 	snprintf(writer->path, sizeof writer->path, "%s", start->path);
 	memcpy(&writer->settings, start->settings, sizeof writer->settings);
 	writer->transfer = *start->transfer;
-	enum gz_result r = make_folder(writer);
+	enum gz_result r = make_session_folder(writer);
 	if (r != GZ_OK) {
-		release(writer);
+		release_session_writer(writer);
 		return r;
 	}
-	r = write_scene(writer, start);
+	r = write_session_scene(writer, start);
 	if (r == GZ_OK)
 		r = begin_frames(writer, start);
 	if (r == GZ_OK)
 		r = begin_gaze(writer, start);
 	if (r != GZ_OK) {
 		remove_all(writer);
-		release(writer);
+		release_session_writer(writer);
 		return r;
 	}
 	*out_writer = writer;
@@ -348,7 +348,7 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 		return GZ_ERR_IO;
 	const enum gz_result r = print_changes(writer, settings);
 	if (r != GZ_OK)
-		return fail(writer, "a table of spacings", errno);
+		return stop_recording(writer, "a table of spacings", errno);
 	if (!gz_transfer_same(&writer->transfer, transfer)) {
 		print_transfer(transfer, &writer->lines);
 		writer->transfer = *transfer;
@@ -381,7 +381,7 @@ enum gz_result gz_session_writer_gaze(struct gz_session_writer *writer,
 	enum gz_result r = gz_gaze_log_writer_add(&writer->gaze, &record);
 	if (r == GZ_OK)
 		r = gz_gaze_log_writer_flush(&writer->gaze);
-	return r == GZ_OK ? r : fail(writer, GZ_SESSION_GAZE, errno);
+	return r == GZ_OK ? r : stop_recording(writer, GZ_SESSION_GAZE, errno);
 }
 
 uint64_t gz_session_writer_frames(const struct gz_session_writer *writer)
@@ -405,8 +405,65 @@ enum gz_result gz_session_writer_end(struct gz_session_writer **writer)
 		gz_session_print_end(self->frames, self->crc, &self->lines);
 		r = flush(self);
 		if (r == GZ_OK && gz_gaze_log_writer_end(&self->gaze) != GZ_OK)
-			r = fail(self, GZ_SESSION_GAZE, errno);
+			r = stop_recording(self, GZ_SESSION_GAZE, errno);
 	}
-	release(self);
+	release_session_writer(self);
 	return r;
+}
+
+enum gz_result gz_recording_check(const char *path, const struct gz_log *log)
+{
+	if (access(path, F_OK) != 0)
+		return GZ_OK;
+	gz_err(log, "--record %s: is there already; choose another name", path);
+	return GZ_ERR_BUSY;
+}
+
+enum gz_result gz_recording_begin(const struct gz_recording_start *start, const struct gz_log *log,
+				  struct gz_session_writer **out_writer)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(start->maker);
+	const struct gz_session_start session = {
+		.path = start->path,
+		.scene = start->scene,
+		.settings = start->settings,
+		.has_display = scene->has_display,
+		.transfer = &scene->transfer,
+		.volume = &scene->volume,
+		.display = start->display,
+		.software = "gazeview " GAZECAST_VERSION,
+		.backend = gz_frame_backend(start->maker),
+		.source = start->source,
+		.rate_hz = start->rate_hz,
+		.now_ns = start->now_ns,
+	};
+	const enum gz_result r = gz_session_writer_begin(&session, log, out_writer);
+	if (r != GZ_OK)
+		return r;
+	gz_frame_forget(start->maker);
+	if (scene->volume.bricks)
+		gz_warn(log,
+			"%s: a replay shows all of the file of bricks, not what had been read "
+			"of it by each frame",
+			start->path);
+	return GZ_OK;
+}
+
+enum gz_result gz_recording_add(struct gz_session_writer *writer,
+				const struct gz_frame_maker *maker,
+				const struct gz_frame_request *request,
+				const struct gz_frame_record *record, int64_t time_ns)
+{
+	const struct gz_session_frame frame = {
+		.time_ns = time_ns > 0 ? time_ns : 0,
+		.width = request->width,
+		.height = request->height,
+		.display = *request->display,
+		.reading = *gz_frame_reading(maker),
+		.focus = record->focus,
+		.kept = record->kept,
+		.took_ms = record->total_ms,
+	};
+	return gz_session_writer_add(writer, request->settings,
+				     &gz_frame_maker_scene(maker)->transfer, &frame);
 }

@@ -60,7 +60,7 @@ static const char *instructions_of(const struct gz_target_options *options)
 	       "SPACE begins. ESC leaves.";
 }
 
-static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
+static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
 {
 	(void)scancode;
 	(void)mods;
@@ -100,7 +100,7 @@ static GLFWmonitor *find_monitor(const struct target_window *window)
 	return glfwGetPrimaryMonitor();
 }
 
-static enum gz_result create_window(struct target_window *window)
+static enum gz_result create_target_window(struct target_window *window)
 {
 	int width = window->options->size_px[0], height = window->options->size_px[1];
 	GLFWmonitor *monitor = find_monitor(window);
@@ -134,7 +134,7 @@ static enum gz_result load_opengl(struct target_window *window)
 	return GZ_OK;
 }
 
-static enum gz_result open_drawing(struct target_window *window)
+static enum gz_result open_target_drawing(struct target_window *window)
 {
 	const struct gz_gl_shader shaders[2] = {
 		{ GZ_GL_VERTEX, "quad.vert", NULL, { gz_glsl_quad_vert } },
@@ -145,7 +145,7 @@ static enum gz_result open_drawing(struct target_window *window)
 		return GZ_ERR_UNSUPPORTED;
 	glGenVertexArrays(1, &window->vertices);
 	glfwSetWindowUserPointer(window->glfw, window);
-	glfwSetKeyCallback(window->glfw, on_key);
+	glfwSetKeyCallback(window->glfw, on_target_key);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
 	window->has_widgets = gz_widgets_init(window->glfw, window->options->interface_scale);
 	return window->has_widgets ? GZ_OK : GZ_ERR_UNSUPPORTED;
@@ -160,11 +160,11 @@ static enum gz_result open_window(struct target_window *window)
 		       glfw_reason());
 		return GZ_ERR_NO_DEVICE;
 	}
-	enum gz_result r = create_window(window);
+	enum gz_result r = create_target_window(window);
 	if (r == GZ_OK)
 		r = load_opengl(window);
 	if (r == GZ_OK)
-		r = open_drawing(window);
+		r = open_target_drawing(window);
 	if (r != GZ_OK)
 		gz_err(window->log, "no window with OpenGL 3.3: %s; update the graphics driver",
 		       glfw_reason());
@@ -198,7 +198,7 @@ static const GLFWvidmode *mode_of(GLFWwindow *glfw)
 }
 
 /* Framebuffer pixels for a degree in the middle of the display. */
-static double px_per_deg(const struct target_window *window, int width, int height)
+static double target_px_per_deg(const struct target_window *window, int width, int height)
 {
 	struct share share = share_of_monitor(window->glfw, mode_of(window->glfw));
 	struct gz_display display = gz_view_display(window->options, NULL, width, height);
@@ -209,7 +209,7 @@ static double px_per_deg(const struct target_window *window, int width, int heig
 	return gz_display_px_per_deg(&display);
 }
 
-static double scale_at(const struct target_window *window, int64_t now_ns)
+static double target_scale(const struct target_window *window, int64_t now_ns)
 {
 	double left = window->shown_ns ? 1 - gz_ns_to_s(now_ns - window->shown_ns) / SHRINK_S : 1;
 	return 1 + (FIRST_SCALE - 1) * fmax(0, left);
@@ -221,14 +221,15 @@ static void set_number(const struct target_window *window, const char *name, dou
 }
 
 /* Draw the ground, and the target of the moment where there is one. */
-static void draw(const struct target_window *window)
+static void draw_target(const struct target_window *window)
 {
 	int width, height;
 	glfwGetFramebufferSize(window->glfw, &width, &height);
 	bool there = window->started && window->index < window->targets.count;
 	struct gz_point at = there ? window->targets.target[window->index].point
 				   : (struct gz_point) { 0.5f, 0.5f };
-	double deg = px_per_deg(window, width, height) * scale_at(window, gz_clock_now_ns());
+	double deg =
+		target_px_per_deg(window, width, height) * target_scale(window, gz_clock_now_ns());
 	double dot = fmax(DOT_MIN_PX, deg * GZ_TARGET_DOT_DEG / 2);
 	glViewport(0, 0, width, height);
 	glDisable(GL_BLEND);
@@ -265,7 +266,7 @@ static void tell_time(const char *what)
 }
 
 /* Let everybody see what was drawn. */
-static void swap(struct target_window *window)
+static void swap_target(struct target_window *window)
 {
 	glfwSwapBuffers(window->glfw);
 	if (!window->started || window->shown_ns || window->index >= window->targets.count)
@@ -276,7 +277,7 @@ static void swap(struct target_window *window)
 }
 
 /* Whether the target has been there for long enough. */
-static bool is_over(const struct target_window *window)
+static bool target_is_over(const struct target_window *window)
 {
 	const struct gz_target_options *options = &window->options->target;
 	if (!window->shown_ns)
@@ -286,11 +287,11 @@ static bool is_over(const struct target_window *window)
 }
 
 /* Go on where that is due. The space bar counts only when it is waited for. */
-static void advance(struct target_window *window)
+static void advance_targets(struct target_window *window)
 {
 	if (!window->started) {
 		window->started = window->space || !window->options->target.instructions;
-	} else if (is_over(window)) {
+	} else if (target_is_over(window)) {
 		printf("hidden %zu %" PRId64 "\n", window->index, gz_clock_now_ns());
 		fflush(stdout);
 		window->index++;
@@ -299,14 +300,14 @@ static void advance(struct target_window *window)
 	window->space = false;
 }
 
-static enum gz_result loop(struct target_window *window)
+static enum gz_result show_targets(struct target_window *window)
 {
 	const GLFWvidmode *mode = mode_of(window->glfw);
 	printf("screen %d %d\n", mode ? mode->width : 0, mode ? mode->height : 0);
 	fflush(stdout);
 	while (window->index < window->targets.count) {
-		draw(window);
-		swap(window);
+		draw_target(window);
+		swap_target(window);
 		glfwWaitEventsTimeout(FRAME_S);
 		if (gz_context_is_lost()) {
 			gz_err(window->log, "the graphics driver has lost the window's context: "
@@ -318,15 +319,15 @@ static enum gz_result loop(struct target_window *window)
 			tell_time("cancelled");
 			return GZ_ERR_END;
 		}
-		advance(window);
+		advance_targets(window);
 	}
-	draw(window);
-	swap(window);
+	draw_target(window);
+	swap_target(window);
 	tell_time("finished");
 	return GZ_OK;
 }
 
-static void close_window(struct target_window *window)
+static void close_target_window(struct target_window *window)
 {
 	if (window->glfw) {
 		if (window->has_widgets)
@@ -340,13 +341,13 @@ static void close_window(struct target_window *window)
 	glfwTerminate();
 }
 
-static enum gz_result run(void *user)
+static enum gz_result run_targets(void *user)
 {
 	struct target_window *window = user;
 	enum gz_result r = open_window(window);
 	if (r == GZ_OK)
-		r = loop(window);
-	close_window(window);
+		r = show_targets(window);
+	close_target_window(window);
 	return r;
 }
 
@@ -357,7 +358,7 @@ enum gz_result gz_view_targets(const struct gz_view_options *options, const stru
 	enum gz_result r = gz_target_places(&options->target, log, &window.targets);
 	if (r != GZ_OK)
 		return r;
-	r = gz_display_loss_guard(run, &window, &lost);
+	r = gz_display_loss_guard(run_targets, &window, &lost);
 	if (lost) {
 		gz_err(log, "the display is gone: its X server has ended or is out of reach; the "
 			    "targets end here");

@@ -6,7 +6,7 @@
 #include "view/draw/letters.h"
 #include "view/panels/marks.h"
 #include "view/panels/settings_panel.h"
-#include "view/settings/setting_applies.h"
+#include "view/settings/scene_keys.h"
 #include "view/window/window_state.h"
 
 static void choose_method(struct gz_window *window, int method)

@@ -6,7 +6,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "view/capture/file_name.h"
+#include "view/capture/output.h"
 #include "view/capture/video.h"
 #include "view/panels/marks.h"
 #include "view/window/read_back.h"

@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "client/viewer_link.h"
-#include "view/experiment/answer_keys.h"
+#include "view/experiment/experiment.h"
 #include "view/panels/experiment_screen.h"
 #include "view/window/displays.h"
 #include "view/window/experiment_state.h"

@@ -5,11 +5,11 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/frame/frame_history.h"
+#include "view/frame/stats.h"
 #include "view/panels/frame_times_panel.h"
 #include "view/panels/settings_panel.h"
 #include "view/panels/widgets.h"
-#include "view/settings/setting_applies.h"
+#include "view/settings/scene_keys.h"
 #include "view/window/gaze_settings.h"
 #include "view/window/window_state.h"
 

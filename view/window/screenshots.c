@@ -10,7 +10,7 @@
 #include <GLFW/glfw3.h>
 
 #include "render/scene/scene_picture.h"
-#include "view/capture/file_name.h"
+#include "view/capture/output.h"
 #include "view/window/loading.h"
 #include "view/window/read_back.h"
 #include "view/window/window_state.h"

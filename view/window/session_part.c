@@ -6,9 +6,9 @@
 
 #include <GLFW/glfw3.h>
 
-#include "view/capture/file_name.h"
+#include "view/capture/output.h"
 #include "view/panels/marks.h"
-#include "view/session/recording.h"
+#include "view/session/session_writer.h"
 #include "view/window/loading.h"
 #include "view/window/window_state.h"
 

@@ -20,7 +20,7 @@
 #include "view/options/options.h"
 #include "view/panels/notices.h"
 #include "view/panels/settings_panel.h"
-#include "view/settings/scene_tables.h"
+#include "view/settings/scene_keys.h"
 
 struct GLFWmonitor;
 struct GLFWwindow;

@@ -1,4 +1,4 @@
-#include "view/session/session_text.h"
+#include "view/session/session.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -42,7 +42,7 @@ static void print_double(double value, struct gz_text *text)
 		gz_text_add(text, "%.17g", value);
 }
 
-static void print_point(bool known, struct gz_point point, struct gz_text *text)
+static void print_point_fields(bool known, struct gz_point point, struct gz_text *text)
 {
 	if (known && isfinite(point.x) && isfinite(point.y))
 		gz_text_add(text, "%.9g\t%.9g\t", (double)point.x, (double)point.y);
@@ -79,13 +79,13 @@ void gz_session_print_frame(const struct gz_session_frame *frame, struct gz_text
 		    frame->height, display->px[0], display->px[1]);
 	gz_text_add(text, "%.17g\t%.17g\t%.17g\t", display->mm[0], display->mm[1],
 		    display->distance_mm);
-	print_point(reading->known, reading->point, text);
+	print_point_fields(reading->known, reading->point, text);
 	if (reading->has_age)
 		gz_text_add(text, "%" PRId64, reading->age_ns);
 	gz_text_add(text, "\t%s\t", reading->has_event ? gz_event_name(reading->event) : "");
 	print_double(reading->noise_deg, text);
 	gz_text_add(text, "\t");
-	print_point(true, focus->point, text);
+	print_point_fields(true, focus->point, text);
 	gz_text_add(text, "%.17g\t%.17g\t%d\t%.3f\n", focus->scale, focus->widen, frame->kept,
 		    frame->took_ms);
 }
@@ -97,7 +97,7 @@ void gz_session_print_end(uint64_t frames, uint32_t crc, struct gz_text *text)
 
 /* Cut a line at its tabs. @return how many fields it has, room + 1 for more than there is room for
  */
-static int cut(char *line, char **fields, int room)
+static int split_fields(char *line, char **fields, int room)
 {
 	int count = 0;
 	while (line && count < room) {
@@ -144,7 +144,7 @@ struct fields {
 	int wrong; /* COLUMNS: none */
 };
 
-static const char *next_field(struct fields *fields)
+static const char *next_frame_field(struct fields *fields)
 {
 	return fields->texts[fields->next++];
 }
@@ -158,19 +158,19 @@ static void expect(struct fields *fields, bool good)
 static double take_double(struct fields *fields, double least, double most)
 {
 	double value = 0;
-	expect(fields,
-	       gz_number_parse(next_field(fields), &value) && value >= least && value <= most);
+	expect(fields, gz_number_parse(next_frame_field(fields), &value) && value >= least &&
+			       value <= most);
 	return value;
 }
 
 /* Both empty: NaN, and false. */
-static bool take_point(struct fields *fields, struct gz_point *out_point)
+static bool take_gaze_point(struct fields *fields, struct gz_point *out_point)
 {
 	struct gz_point point = { NAN, NAN };
-	const char *x = next_field(fields);
+	const char *x = next_frame_field(fields);
 	const bool known = x[0] != '\0';
 	expect(fields, !known || read_float(x, &point.x));
-	const char *y = next_field(fields);
+	const char *y = next_frame_field(fields);
 	expect(fields, known ? read_float(y, &point.y) : y[0] == '\0');
 	*out_point = point;
 	return known;
@@ -191,15 +191,15 @@ static void take_reading(struct fields *fields, struct gz_gaze_reading *out_read
 {
 	struct gz_gaze_reading reading = { .connected = true, .noise_deg = NAN };
 	long long age = 0;
-	reading.known = take_point(fields, &reading.point);
-	const char *field = next_field(fields);
+	reading.known = take_gaze_point(fields, &reading.point);
+	const char *field = next_frame_field(fields);
 	reading.has_age = field[0] != '\0';
 	expect(fields, !reading.has_age || read_int(field, INT64_MIN, INT64_MAX, &age));
 	reading.age_ns = age;
-	field = next_field(fields);
+	field = next_frame_field(fields);
 	reading.has_event = field[0] != '\0';
 	expect(fields, !reading.has_event || read_event(field, &reading.event));
-	field = next_field(fields);
+	field = next_frame_field(fields);
 	expect(fields, field[0] == '\0' || (gz_number_parse(field, &reading.noise_deg) &&
 					    reading.noise_deg >= 0));
 	*out_reading = reading;
@@ -208,8 +208,8 @@ static void take_reading(struct fields *fields, struct gz_gaze_reading *out_read
 static void take_display(struct fields *fields, struct gz_display *display)
 {
 	for (int i = 0; i < 2; i++)
-		expect(fields,
-		       read_side(next_field(fields), GZ_DISPLAY_SIDE_MAX_PX, &display->px[i]));
+		expect(fields, read_side(next_frame_field(fields), GZ_DISPLAY_SIDE_MAX_PX,
+					 &display->px[i]));
 	display->mm[0] = take_double(fields, 0, HUGE_VAL);
 	display->mm[1] = take_double(fields, 0, HUGE_VAL);
 	display->distance_mm = take_double(fields, 0, HUGE_VAL);
@@ -222,20 +222,20 @@ enum gz_result gz_session_parse_frame(char *line, struct gz_session_frame *out_f
 	struct fields fields = { .wrong = COLUMNS };
 	struct gz_session_frame frame = { 0 };
 	long long number = 0;
-	if (cut(line, fields.texts, COLUMNS) != COLUMNS) {
+	if (split_fields(line, fields.texts, COLUMNS) != COLUMNS) {
 		*out_what = "the number of fields";
 		return GZ_ERR_FORMAT;
 	}
-	expect(&fields, read_int(next_field(&fields), 0, INT64_MAX, &number));
+	expect(&fields, read_int(next_frame_field(&fields), 0, INT64_MAX, &number));
 	frame.time_ns = number;
-	expect(&fields, read_side(next_field(&fields), GZ_IMAGE_SIDE_MAX, &frame.width));
-	expect(&fields, read_side(next_field(&fields), GZ_IMAGE_SIDE_MAX, &frame.height));
+	expect(&fields, read_side(next_frame_field(&fields), GZ_IMAGE_SIDE_MAX, &frame.width));
+	expect(&fields, read_side(next_frame_field(&fields), GZ_IMAGE_SIDE_MAX, &frame.height));
 	take_display(&fields, &frame.display);
 	take_reading(&fields, &frame.reading);
-	(void)take_point(&fields, &frame.focus.point);
+	(void)take_gaze_point(&fields, &frame.focus.point);
 	frame.focus.scale = take_double(&fields, 1, 1e6);
 	frame.focus.widen = take_double(&fields, 0, 1);
-	expect(&fields, read_int(next_field(&fields), 0, 1, &number));
+	expect(&fields, read_int(next_frame_field(&fields), 0, 1, &number));
 	frame.kept = number == 1;
 	frame.took_ms = take_double(&fields, 0, HUGE_VAL);
 	if (fields.wrong != COLUMNS) {
@@ -265,7 +265,7 @@ static bool read_crc(const char *field, uint32_t *out_crc)
 static bool read_doubles(char *value, double *out, int count)
 {
 	char *fields[3];
-	if (cut(value, fields, count) != count)
+	if (split_fields(value, fields, count) != count)
 		return false;
 	for (int i = 0; i < count; i++)
 		if (!gz_number_parse(fields[i], &out[i]))
@@ -276,7 +276,7 @@ static bool read_doubles(char *value, double *out, int count)
 static bool read_dims(char *value, int dims[3])
 {
 	char *fields[3];
-	if (cut(value, fields, 3) != 3)
+	if (split_fields(value, fields, 3) != 3)
 		return false;
 	for (int i = 0; i < 3; i++)
 		if (!read_side(fields[i], GZ_VOLUME_DIM_MAX, &dims[i]))
@@ -344,7 +344,7 @@ bool gz_session_parse_end(char *line, uint64_t *out_frames, uint32_t *out_crc)
 	long long frames;
 	static const char word[] = "#end ";
 	if (strncmp(line, word, sizeof word - 1) != 0 ||
-	    cut(line + sizeof word - 1, fields, 2) != 2)
+	    split_fields(line + sizeof word - 1, fields, 2) != 2)
 		return false;
 	if (!read_int(fields[0], 0, INT64_MAX, &frames) || !read_crc(fields[1], out_crc))
 		return false;

@@ -1,0 +1,41 @@
+/**
+ * @file
+ * The scene keys that can change while a scene is shown: those of the tables that name neither the
+ * data nor the display. The command line accepts them and the settings panel shows them.
+ */
+#ifndef GZ_VIEW_SETTINGS_SCENE_KEYS_H
+#define GZ_VIEW_SETTINGS_SCENE_KEYS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/option.h"
+#include "render/scene/scene.h"
+
+/** Number of tables whose keys can change. */
+#define GZ_VIEW_SCENE_TABLES 9
+
+/** Upper limit of the number of keys in these tables; gz_view_scene_key_count() stays below it. */
+#define GZ_VIEW_SCENE_KEYS_MAX 256
+
+/** The tables. gz_view_pick_scene_tables() fills them. */
+struct gz_view_scene_tables {
+	struct gz_option_binding bindings[GZ_VIEW_SCENE_TABLES]; /**< given is NULL */
+};
+
+/** Bind the tables to @p settings, which is borrowed and must outlive @p out_tables. */
+void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
+			       struct gz_view_scene_tables *out_tables);
+
+/** The number of keys in all tables together. */
+size_t gz_view_scene_key_count(const struct gz_view_scene_tables *tables);
+
+/**
+ * Whether a scene key has any effect given the other settings. For example, "camera.height" has an
+ * effect in an orthographic view only.
+ *
+ * @param key  a key of the scene's tables; keys without a condition always have an effect
+ */
+bool gz_setting_applies(const struct gz_scene_settings *settings, const char *key);
+
+#endif
