@@ -13,8 +13,7 @@ enum { MESSAGE_SIZE = 400 };
 static const char *const heads[] = {
 	[GZ_GL_VERTEX] = "#version 330 core\n",
 	[GZ_GL_FRAGMENT] = "#version 330 core\n",
-	[GZ_GL_COMPUTE] = "#version 430 core\n"
-			  "#extension GL_ARB_shader_group_vote : enable\n",
+	[GZ_GL_COMPUTE] = "#version 430 core\n#extension GL_ARB_shader_group_vote : enable\n",
 };
 
 static const GLenum stages[] = {

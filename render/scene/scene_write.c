@@ -58,17 +58,17 @@ static void begin_writing(struct writing *writing, const struct gz_scene_saved *
 	}
 }
 
-/* What a text says now of the settings of a table. */
-static const void *said_by(const struct writing *writing, size_t table,
-			   struct gz_scene_settings *said)
+/* The settings that a text now gives to the table of a key; the presets for an object that it
+ * lacks. */
+static const void *said_by(const struct key *key, size_t table, struct gz_scene_settings *said)
 {
 	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
 	gz_scene_bind(said, bindings);
 	if (table < GZ_SCENE_TABLE_COUNT)
 		return bindings[table].target;
-	const struct gz_scene_object *own = writing->bindings[table].target;
+	const struct gz_scene_object *own = key->target;
 	const int object = gz_scene_objects_find(&said->objects, own->section);
-	return object < 0 ? writing->preset_bindings[table].target : &said->objects.items[object];
+	return object < 0 ? key->preset_target : &said->objects.items[object];
 }
 
 static struct key key_of(const struct writing *writing, size_t table, size_t index)
@@ -233,7 +233,7 @@ enum gz_result gz_scene_edit(const struct gz_scene_saved *saved, const char *nam
 	for (size_t table = 0; table < writing.tables && result == GZ_OK; table++)
 		for (size_t i = 0; i < writing.bindings[table].count && result == GZ_OK; i++) {
 			const struct key key = key_of(&writing, table, i);
-			result = edit_key(&writing, &key, said_by(&writing, table, &said), text);
+			result = edit_key(&writing, &key, said_by(&key, table, &said), text);
 		}
 	return result == GZ_OK ? finish(text, log) : result;
 }
@@ -408,7 +408,7 @@ static enum gz_result check_reads_back(const struct writing *writing, const char
 		for (size_t i = 0; i < writing->bindings[table].count; i++) {
 			const struct key key = key_of(writing, table, i);
 			if (!is_wanted(writing, &key) ||
-			    format_same(key.option, key.target, said_by(writing, table, &read)))
+			    format_same(key.option, key.target, said_by(&key, table, &read)))
 				continue;
 			gz_err(writing->log,
 			       "%s: %s cannot be written so that it reads back; rename the file "

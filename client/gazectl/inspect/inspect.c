@@ -301,10 +301,11 @@ static json_t *json_log(const struct gz_gaze_log_header *header,
 			const struct gz_log_summary *summary)
 {
 	json_t *json = json_header(header);
-	json_t *const parts[] = { json_extent(summary, header->rate_hz), json_log_quality(summary),
-				  json_events(summary) };
+	enum { PARTS = 3 };
+	json_t *const parts[PARTS] = { json_extent(summary, header->rate_hz),
+				       json_log_quality(summary), json_events(summary) };
 	bool complete = json != NULL;
-	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+	for (size_t i = 0; i < PARTS; i++) {
 		complete = json_object_update(json, parts[i]) == 0 && complete;
 		json_decref(parts[i]);
 	}
