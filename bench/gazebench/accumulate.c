@@ -9,7 +9,7 @@
 
 #include "bench/study/accumulation.h"
 #include "bench/study/ask.h"
-#include "bench/study/machine.h"
+#include "bench/study/study.h"
 #include "bench/study/reference.h"
 
 #define GZ_LOG_MODULE "gazebench"

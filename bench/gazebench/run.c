@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/text.h"
-#include "bench/study/machine.h"
+#include "bench/study/study.h"
 #include "bench/study/reference.h"
 #include "bench/study/run.h"
 

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "bench/gazebench/gazebench.h"
-#include "bench/study/variant.h"
+#include "bench/study/stage.h"
 #include "render/plan/method.h"
 #include "render/scene/scene.h"
 #include "render/scene/techniques.h"

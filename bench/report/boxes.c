@@ -18,7 +18,7 @@ static void add_row(const struct gz_study *study, const struct gz_series *series
 {
 	char words[GZ_NAMES_SIZE], cut[GZ_NAMES_SIZE];
 	const struct gz_study_variant *variant = &study->variants[series->variant];
-	const struct gz_distribution *ms = &series->frame_ms;
+	const struct gz_distribution *ms = &series->columns[GZ_COLUMN_FRAME];
 	gz_variant_words(variant, words);
 	snprintf(cut, sizeof cut, "%.*s%s", characters, words,
 		 strlen(words) > (size_t)characters ? "…" : "");
@@ -54,8 +54,8 @@ static enum gz_result draw_on(const struct gz_summary *summary, const struct gz_
 	for (size_t i = 0; i < group->curve_count; i++)
 		for (size_t k = 0; k < group->curves[i].count; k++) {
 			const struct gz_series *series = &group->series[group->curves[i].series[k]];
-			least = fmin(least, series->frame_ms.least);
-			greatest = fmax(greatest, series->frame_ms.p99);
+			least = fmin(least, series->columns[GZ_COLUMN_FRAME].least);
+			greatest = fmax(greatest, series->columns[GZ_COLUMN_FRAME].p99);
 			add_row(summary->study, series, rows++, characters, &table);
 		}
 	const bool names_above = kind == GZ_CANVAS_NARROW;

@@ -186,17 +186,16 @@ static void add_times(const struct gz_summary *summary, const struct gz_group *g
 {
 	(void)summary;
 	(void)group;
-	const struct gz_distribution *frame = &series->frame_ms;
+	const struct gz_distribution *frame = &series->columns[GZ_COLUMN_FRAME];
 	begin_row(words, false, out);
 	add_number(frame->mean, "", out);
 	add_number(frame->median, "", out);
 	add_number(frame->p90, "", out);
 	add_number(frame->p99, "", out);
 	add_number(frame->perceived, "", out);
-	add_number(series->plan_ms.mean, "", out);
-	add_number(series->cast_ms.mean, "", out);
-	add_number(series->reconstruct_ms.mean, "", out);
-	add_number(series->gpu_ms.mean, "", out);
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
+		if (gz_study_columns[id].title)
+			add_number(series->columns[id].mean, "", out);
 	add_number(series->rays, "", out);
 	add_number(series->samples / 1e6, "", out);
 	end_row(out);
@@ -205,16 +204,18 @@ static void add_times(const struct gz_summary *summary, const struct gz_group *g
 void gz_page_time_table(const struct gz_summary *summary, const struct gz_group *group,
 			struct gz_text *out)
 {
-	static const char *const headings[] = {
-		"variant", "mean, ms",     "p50",
-		"p90",     "p99",          "time-weighted mean",
-		"plan",    "cast",         "reconstruct",
-		"GPU",     "rays a frame", "million samples a frame",
-		NULL
+	const char *headings[GZ_STUDY_COLUMNS + 9] = {
+		"variant", "mean, ms", "p50", "p90", "p99", "time-weighted mean"
 	};
+	size_t count = 6;
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
+		if (gz_study_columns[id].title)
+			headings[count++] = gz_study_columns[id].title;
+	headings[count++] = "rays a frame";
+	headings[count] = "million samples a frame";
 	gz_text_add(out, "<h3>Times of frames</h3>\n<p>The time-weighted mean, Σt²/Σt, is what is "
-			 "on screen at a moment picked at random: long frames stay longer. Plan, "
-			 "cast, reconstruct and GPU are means, ms.</p>\n");
+			 "on screen at a moment picked at random: long frames stay longer. The "
+			 "parts of a frame are means, ms.</p>\n");
 	begin_table("Times of frames", headings, out);
 	each_series(summary, group, add_times, out);
 	end_table(out);
@@ -226,10 +227,10 @@ static void add_cast(const struct gz_summary *summary, const struct gz_group *gr
 	(void)summary;
 	(void)group;
 	begin_row(words, false, out);
-	add_number(series->cast_ms.mean, "", out);
-	add_number(series->cast_ms.variance, "", out);
+	add_number(series->columns[GZ_COLUMN_CAST].mean, "", out);
+	add_number(series->columns[GZ_COLUMN_CAST].variance, "", out);
 	add_number(series->overhead_ms.mean, "", out);
-	add_number(series->frame_ms.sum, "", out);
+	add_number(series->columns[GZ_COLUMN_FRAME].sum, "", out);
 	end_row(out);
 }
 

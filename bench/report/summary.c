@@ -6,35 +6,31 @@
 
 #include "bench/report/summary_parts.h"
 
-/* What a column of rows is. */
-enum column { PLAN, CAST, RECONSTRUCT, FRAME, GPU, OVERHEAD };
-
-static double column_value(const struct gz_study_row *row, enum column column)
-{
-	switch (column) {
-	case PLAN:
-		return row->plan_ms;
-	case CAST:
-		return row->cast_ms;
-	case RECONSTRUCT:
-		return row->reconstruct_ms;
-	case FRAME:
-		return row->frame_ms;
-	case GPU:
-		return row->gpu_ms;
-	case OVERHEAD:
-		return row->frame_ms - row->cast_ms;
-	}
-	return NAN;
-}
-
 /* Distribution of a column of @p rows; @p room for all of them. */
-static struct gz_distribution column_of(const struct gz_study_row *const *rows, size_t count,
-					enum column column, double *room)
+static struct gz_distribution join_column(const struct gz_study_row *const *rows, size_t count,
+					  enum gz_study_column_id column, double *room)
 {
 	for (size_t i = 0; i < count; i++)
-		room[i] = column_value(rows[i], column);
+		room[i] = gz_study_column_value(column, rows[i]);
 	return gz_distribution_of(room, count);
+}
+
+/* Of each frame what it takes beside casting. */
+static struct gz_distribution join_overhead(const struct gz_study_row *const *rows, size_t count,
+					    double *room)
+{
+	for (size_t i = 0; i < count; i++)
+		room[i] = rows[i]->frame_ms - rows[i]->cast_ms;
+	return gz_distribution_of(room, count);
+}
+
+static double mean_column(const struct gz_study_row *const *rows, size_t count,
+			  enum gz_study_column_id column)
+{
+	double mean = 0;
+	for (size_t i = 0; i < count; i++)
+		mean += gz_study_column_value(column, rows[i]) / (double)count;
+	return mean;
 }
 
 static struct gz_series_point point_of(const struct gz_study_row *const *rows, size_t count,
@@ -48,12 +44,10 @@ static struct gz_series_point point_of(const struct gz_study_row *const *rows, s
 			    [GZ_AGAINST_STANDARD] = first->standard },
 		.flicker = first->flicker,
 	};
-	point.frame_ms = column_of(rows, count, FRAME, room).median;
-	point.cast_ms = column_of(rows, count, CAST, room).median;
-	for (size_t i = 0; i < count; i++) {
-		point.rays += (double)rows[i]->rays / (double)count;
-		point.samples += (double)rows[i]->samples / (double)count;
-	}
+	point.frame_ms = join_column(rows, count, GZ_COLUMN_FRAME, room).median;
+	point.cast_ms = join_column(rows, count, GZ_COLUMN_CAST, room).median;
+	point.rays = mean_column(rows, count, GZ_COLUMN_RAYS);
+	point.samples = mean_column(rows, count, GZ_COLUMN_SAMPLES);
 	return point;
 }
 
@@ -105,12 +99,10 @@ static enum gz_result fill_series(struct gz_series *series, const struct gz_stud
 				  size_t count, double *room)
 {
 	series->row_count = count;
-	series->plan_ms = column_of(rows, count, PLAN, room);
-	series->cast_ms = column_of(rows, count, CAST, room);
-	series->reconstruct_ms = column_of(rows, count, RECONSTRUCT, room);
-	series->frame_ms = column_of(rows, count, FRAME, room);
-	series->gpu_ms = column_of(rows, count, GPU, room);
-	series->overhead_ms = column_of(rows, count, OVERHEAD, room);
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
+		if (gz_study_columns[id].join == GZ_JOIN_FRAMES)
+			series->columns[id] = join_column(rows, count, id, room);
+	series->overhead_ms = join_overhead(rows, count, room);
 	const enum gz_result result = find_points(series, rows, count, room);
 	if (result != GZ_OK)
 		return result;

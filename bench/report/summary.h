@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "bench/report/distribution.h"
 #include "bench/report/error_metric.h"
+#include "bench/study/columns.h"
 #include "bench/study/study.h"
 
 /** Stands for "no such series". */
@@ -43,7 +44,8 @@ struct gz_series {
 	size_t row_count;
 	struct gz_series_point *points;
 	size_t point_count;
-	struct gz_distribution plan_ms, cast_ms, reconstruct_ms, frame_ms, gpu_ms;
+	/** Over all frames, of the columns that GZ_JOIN_FRAMES joins; the others are zero. */
+	struct gz_distribution columns[GZ_STUDY_COLUMNS];
 	/** Of each frame what it takes beside casting: plan, reconstruction, hand-over. */
 	struct gz_distribution overhead_ms;
 	double typical_ms; /**< mean over points of their median frame times */

@@ -81,12 +81,11 @@ static json_t *series_to_json(const struct gz_study *study, const struct gz_seri
 	json_object_set_new(object, "rays", number(series->rays));
 	json_object_set_new(object, "samples", number(series->samples));
 	json_object_set_new(object, "bound_share", number(series->bound_share));
-	json_object_set_new(object, "plan_ms", distribution(&series->plan_ms));
-	json_object_set_new(object, "cast_ms", distribution(&series->cast_ms));
-	json_object_set_new(object, "reconstruct_ms", distribution(&series->reconstruct_ms));
-	json_object_set_new(object, "frame_ms", distribution(&series->frame_ms));
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
+		if (gz_study_columns[id].join == GZ_JOIN_FRAMES)
+			json_object_set_new(object, gz_study_columns[id].name,
+					    distribution(&series->columns[id]));
 	json_object_set_new(object, "overhead_ms", distribution(&series->overhead_ms));
-	json_object_set_new(object, "gpu_ms", distribution(&series->gpu_ms));
 	json_object_set_new(object, "flicker", distribution(&series->flicker));
 	json_object_set_new(object, "errors", errors(series));
 	return object;

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "filter/pipeline.h"
+#include "protocol/gaze_log.h"
 #include "sim/random.h"
 
 #define GZ_LOG_MODULE "path"
@@ -22,7 +24,7 @@ struct gz_point gz_gaze_path_s(double t)
 				   (float)(0.05 + 0.9 * t) };
 }
 
-enum gz_result gz_gaze_path_add(struct gz_gaze_path *path, struct gz_point gaze)
+static enum gz_result add_point(struct gz_gaze_path *path, struct gz_point gaze)
 {
 	if (path->count == GZ_STUDY_POINTS_MAX)
 		return GZ_ERR_FULL;
@@ -44,6 +46,99 @@ void gz_gaze_path_free(struct gz_gaze_path *path)
 	free(path->points);
 	*path = (struct gz_gaze_path) { 0 };
 }
+
+/* ---- recordings ---- */
+
+struct player {
+	const char *file;
+	const struct gz_log *log;
+	struct gz_gaze_log_reader *reader;
+	struct gz_pipeline pipeline;
+	bool samples; /* one point each; else one a fixation */
+	bool open;    /* the newest fixation has not ended yet: it is at */
+	struct gz_point at;
+	struct gz_gaze_path *path;
+};
+
+static enum gz_result add_output(struct player *player, const struct gz_pipeline_output *output)
+{
+	enum gz_result result = GZ_OK;
+	if (player->samples) {
+		const enum gz_event event = output->gaze.event;
+		/* In a blink or when it is lost, the point is where it was last. */
+		const bool there = event != GZ_EVENT_BLINK && event != GZ_EVENT_LOST &&
+				   output->rejection == GZ_REJECT_NONE;
+		return there ? add_point(player->path, output->gaze.point) : GZ_OK;
+	}
+	for (size_t i = 0; i < output->fixation_count && result == GZ_OK; i++) {
+		const struct gz_fixation *fixation = &output->fixations[i];
+		player->open = !fixation->final;
+		player->at = fixation->point;
+		if (fixation->final)
+			result = add_point(player->path, fixation->point);
+	}
+	return result;
+}
+
+static enum gz_result play(struct player *player)
+{
+	struct gz_gaze_log_record *record = malloc(sizeof *record);
+	struct gz_pipeline_output output;
+	enum gz_result result = record ? GZ_OK : GZ_ERR_NO_MEM;
+	while (result == GZ_OK) {
+		result = gz_gaze_log_read(player->reader, record);
+		if (result == GZ_ERR_FORMAT) { /* logged; it goes on behind the line */
+			result = GZ_OK;
+			continue;
+		}
+		if (result != GZ_OK || record->kind != GZ_GAZE_LOG_SAMPLE)
+			continue;
+		gz_pipeline_step(&player->pipeline, &record->sample, &output);
+		result = add_output(player, &output);
+	}
+	free(record);
+	if (result != GZ_ERR_END)
+		return result;
+	/* A recording may end within a fixation. */
+	return player->open ? add_point(player->path, player->at) : GZ_OK;
+}
+
+static enum gz_result prepare_pipeline(struct player *player)
+{
+	const struct gz_gaze_log_header *header = gz_gaze_log_header(player->reader);
+	struct gz_gaze_path *path = player->path;
+	struct gz_pipeline_params params;
+	const enum gz_result result =
+		gz_pipeline_recorded_params(header, player->file, player->log, &params);
+	if (result != GZ_OK)
+		return result;
+	path->has_display = header->has_display && gz_display_valid(&header->display);
+	/* Only its angles matter here, and those of the default are the same at any size. */
+	const struct gz_display assumed = gz_display_default(1920, 1080);
+	path->display = path->has_display ? header->display : assumed;
+	gz_pipeline_init(&player->pipeline, &params, &path->display);
+	return GZ_OK;
+}
+
+static enum gz_result add_recording(const char *file, bool samples, const struct gz_log *log,
+				    struct gz_gaze_path *path)
+{
+	struct player player = { .file = file, .log = log, .samples = samples, .path = path };
+	enum gz_result result = gz_gaze_log_open(file, log, &player.reader);
+	if (result == GZ_OK)
+		result = prepare_pipeline(&player);
+	if (result == GZ_OK)
+		result = play(&player);
+	gz_gaze_log_close(&player.reader);
+	if (result == GZ_OK && path->count == 0) {
+		gz_err(log, "%s: holds no %s; record where someone looks at the display", file,
+		       samples ? "valid gaze" : "fixation, as far as its gaze is valid");
+		result = GZ_ERR_FORMAT;
+	}
+	return result;
+}
+
+/* ---- paths ---- */
 
 bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_display *b)
 {
@@ -76,7 +171,7 @@ static enum gz_result add_s(long long count, struct gz_gaze_path *path)
 {
 	enum gz_result result = GZ_OK;
 	for (long long i = 0; i < count && result == GZ_OK; i++)
-		result = gz_gaze_path_add(path, gz_gaze_path_s(((double)i + 0.5) / (double)count));
+		result = add_point(path, gz_gaze_path_s(((double)i + 0.5) / (double)count));
 	return result;
 }
 
@@ -88,7 +183,7 @@ static enum gz_result add_grid(long long columns, long long rows, struct gz_gaze
 			(float)(((double)(i % columns) + 0.5) / (double)columns),
 			(float)(((double)(i / columns) + 0.5) / (double)rows),
 		};
-		result = gz_gaze_path_add(path, gaze);
+		result = add_point(path, gaze);
 	}
 	return result;
 }
@@ -101,7 +196,7 @@ static enum gz_result add_random(long long count, uint64_t seed, struct gz_gaze_
 		struct gz_point gaze;
 		gaze.x = (float)gz_random_uniform(&random);
 		gaze.y = (float)gz_random_uniform(&random);
-		result = gz_gaze_path_add(path, gaze);
+		result = add_point(path, gaze);
 	}
 	return result;
 }
@@ -160,15 +255,15 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 	if (strncmp(text, "random:", 7) == 0 && parse_count(text + 7, &count))
 		return add_random(count, settings->seed, path);
 	if (strcmp(text, "centre") == 0)
-		return gz_gaze_path_add(path, (struct gz_point) { 0.5F, 0.5F });
+		return add_point(path, (struct gz_point) { 0.5F, 0.5F });
 	if (parse_place(text, &gaze))
-		return gz_gaze_path_add(path, gaze);
+		return add_point(path, gaze);
 	if (ends_with(text, ".gzl"))
-		return gz_gaze_path_add_log(text, false, log, path);
+		return add_recording(text, false, log, path);
 	if (ends_with(text, ".gzl:samples") && strlen(text) < sizeof file) {
 		snprintf(file, sizeof file, "%.*s", (int)(strlen(text) - (sizeof samples - 1)),
 			 text);
-		return gz_gaze_path_add_log(file, true, log, path);
+		return add_recording(file, true, log, path);
 	}
 	return refuse(text, log);
 }

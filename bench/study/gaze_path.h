@@ -63,15 +63,7 @@ struct gz_point gz_gaze_path_s(double t);
 /** Whether both are seen under the same angles, to a hundredth: pixels do not count. */
 bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_display *b);
 
-/** Append a point; for what makes paths. GZ_ERR_FULL beyond GZ_STUDY_POINTS_MAX, GZ_ERR_NO_MEM. */
-enum gz_result gz_gaze_path_add(struct gz_gaze_path *path, struct gz_point gaze);
-
 /** Free what it holds and zero it. */
 void gz_gaze_path_free(struct gz_gaze_path *path);
-
-/** Append a recording's points, one a fixation or one a sample. Errors as of gz_gaze_path_make();
- *  the caller frees the path in any case. */
-enum gz_result gz_gaze_path_add_log(const char *file, bool samples, const struct gz_log *log,
-				    struct gz_gaze_path *path);
 
 #endif

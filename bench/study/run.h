@@ -37,7 +37,7 @@ struct gz_study_outcome {
  * @param[out] out_outcome  filled once the folder is open, also where the run ends early
  * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived; the folder holds whole units; not logged
  * @retval GZ_ERR_FULL       the disk is full; the folder holds whole units; logged
- * @return else what gz_study_ask(), gz_study_writer_open() and gz_measurer_measure() return; logged
+ * @return else what gz_study_ask(), gz_study_writer_open() and gz_picture_make() return; logged
  */
 enum gz_result gz_study_run(const struct gz_study_request *request, const char *folder,
 			    const char *cache,

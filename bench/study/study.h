@@ -89,7 +89,7 @@ struct gz_study_errors {
 	double perceived_psnr_db, perceived_ssim, perceived_flip;
 };
 
-/** One counted frame. */
+/** One counted frame; bench/study/columns.h names what is measured. */
 struct gz_study_row {
 	uint16_t scene, size, backend, variant; /**< places in the study's lists */
 	uint32_t point;                         /**< place in the study's points */
@@ -98,6 +98,9 @@ struct gz_study_row {
 	double plan_ms, cast_ms, reconstruct_ms;
 	double frame_ms; /**< wall time of the whole frame, plan included */
 	double gpu_ms;   /**< GL_TIME_ELAPSED; NaN where there is none */
+	/** What the technique prepared and keeps between frames; of a point's first counted frame,
+	 *  with its warm-up frames. NaN in studies of versions that did not measure it. */
+	double prepare_ms;
 	uint64_t rays, samples;
 	/** Of the picture at this gaze with the camera not turned: the same for all frames of one
 	 *  point and variant. */
@@ -196,5 +199,21 @@ struct gz_study_errors gz_study_errors_unmeasured(void);
 
 /** Free what it holds and zero it. */
 void gz_study_free(struct gz_study *study);
+
+/** Describe this machine and build: host_cpu, memory, system and compiler. "unknown" stands for
+ *  what cannot be told. */
+void gz_study_machine_describe(struct gz_study_machine *out_machine);
+
+/**
+ * The commit of a program, so that two programs of one commit are told apart where somebody has
+ * changed files since: behind a commit that does not say all, "unknown" or one that ends with
+ * "-dirty", stand the first digits of the SHA-256 of the program's own file.
+ *
+ * @param commit        as cmake/commit.cmake tells it
+ * @param file          of the program: "/proc/self/exe" is the one that runs. One that cannot be
+ *                      read adds nothing
+ * @param[out] out_text  "0123abc", "0123abc-dirty-89ab01cd45ef"
+ */
+void gz_study_identify(const char *commit, const char *file, char out_text[GZ_STUDY_TEXT_SIZE]);
 
 #endif

@@ -24,7 +24,7 @@ dims = 24 24 24
 [transfer]
 file = a.tf
 """
-TIMES = {"plan_ms", "cast_ms", "reconstruct_ms", "frame_ms", "gpu_ms"}
+TIMES = {"plan_ms", "cast_ms", "reconstruct_ms", "frame_ms", "gpu_ms", "prepare_ms"}
 
 
 class Run(unittest.TestCase):

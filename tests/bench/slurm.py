@@ -25,7 +25,7 @@ SKIPPED = 77
 SHARDS = 4
 PATH = os.pathsep.join([os.environ.get("PATH", ""), "/usr/sbin", "/sbin"])
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo"]
-TIMES = {"plan_ms", "cast_ms", "reconstruct_ms", "frame_ms", "gpu_ms"}
+TIMES = {"plan_ms", "cast_ms", "reconstruct_ms", "frame_ms", "gpu_ms", "prepare_ms"}
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 SCENE = """[volume]

@@ -72,6 +72,7 @@ static void fill_rows(struct gz_study *study)
 		row->reconstruct_ms = number + .5;
 		row->frame_ms = number + .75;
 		row->gpu_ms = i % 2 ? NAN : number;
+		row->prepare_ms = number / 16;
 		row->rays = 1000 + unit;
 		row->samples = (UINT64_C(1) << 40) + unit;
 		row->converged = example_errors(number);

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/text.h"
+#include "bench/study/columns.h"
 #include "bench/study/study_folder.h"
 #include "study_example.h"
 
@@ -96,19 +98,6 @@ static void same(double a, double b)
 		fail_msg("%.12g is not %.12g", a, b);
 }
 
-static void same_errors(const struct gz_study_errors *a, const struct gz_study_errors *b)
-{
-	same(a->psnr_db, b->psnr_db);
-	same(a->ssim, b->ssim);
-	same(a->flip, b->flip);
-	same(a->foveal_psnr_db, b->foveal_psnr_db);
-	same(a->foveal_ssim, b->foveal_ssim);
-	same(a->foveal_flip, b->foveal_flip);
-	same(a->perceived_psnr_db, b->perceived_psnr_db);
-	same(a->perceived_ssim, b->perceived_ssim);
-	same(a->perceived_flip, b->perceived_flip);
-}
-
 static void same_row(const struct gz_study_row *a, const struct gz_study_row *b)
 {
 	assert_int_equal(a->scene, b->scene);
@@ -118,16 +107,8 @@ static void same_row(const struct gz_study_row *a, const struct gz_study_row *b)
 	assert_int_equal(a->point, b->point);
 	assert_int_equal(a->frame, b->frame);
 	assert_memory_equal(&a->gaze, &b->gaze, sizeof a->gaze);
-	same(a->plan_ms, b->plan_ms);
-	same(a->cast_ms, b->cast_ms);
-	same(a->reconstruct_ms, b->reconstruct_ms);
-	same(a->frame_ms, b->frame_ms);
-	same(a->gpu_ms, b->gpu_ms);
-	assert_true(a->rays == b->rays && a->samples == b->samples);
-	same_errors(&a->converged, &b->converged);
-	same_errors(&a->standard, &b->standard);
-	same(a->flicker, b->flicker);
-	same(a->reference_db, b->reference_db);
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
+		same(gz_study_column_value(id, a), gz_study_column_value(id, b));
 }
 
 static void same_study(const struct gz_study *a, const struct gz_study *b)
@@ -262,10 +243,13 @@ static void damaged_rows_are_refused_with_their_line(void **state)
 		{ "mdc,0,0,1,", "mdc,0,0,2,", "frames.csv:5: frame is '2' where '1' follows" },
 		{ ",0.125,", ",-0.125,", "frames.csv:2: plan_ms is '-0.125'" },
 		{ ",0.125,", ",1 2,", "frames.csv:2: plan_ms is '1 2'" },
-		{ ",70\n", "\n", "frames.csv:2: reference_db is ''" },
-		{ ",70\n", ",70,1\n", "frames.csv:2: there is more than reference_db" },
+		{ ",70,0\n", ",70\n", "frames.csv:2: prepare_ms is ''" },
+		{ ",70,0\n", ",70,0,1\n", "frames.csv:2: there is more than prepare_ms" },
 		{ "\"head, \"\"old\"\"\",hard", "\"head,hard", "frames.csv:50: scene" },
 		{ "scene,transfer", "scene,transfers", "frames.csv:1: does not name the columns" },
+		{ ",plan_ms,", ",", "frames.csv:1: does not name the columns" },
+		{ ",plan_ms,", ",plan_ms,plan_ms,", "frames.csv:1: does not name the columns" },
+		{ ",plan_ms,", ",plan_s,", "frames.csv:1: does not name the columns" },
 	};
 	for (size_t i = 0; i < sizeof damages / sizeof damages[0]; i++) {
 		name_folder(NULL);
@@ -274,6 +258,56 @@ static void damaged_rows_are_refused_with_their_line(void **state)
 		refused(GZ_ERR_FORMAT, damages[i].message);
 		gz_study_free(&study);
 	}
+}
+
+/* Cut the last column off every line of frames.csv. */
+static void drop_last_column(void)
+{
+	char *text = read_text("frames.csv"), *to = text;
+	for (char *line = text, *end; (end = strchr(line, '\n')); line = end + 1) {
+		const char *comma = memrchr(line, ',', (size_t)(end - line));
+		memmove(to, line, (size_t)(comma - line));
+		to += comma - line;
+		*to++ = '\n';
+	}
+	write_text("frames.csv", text, (size_t)(to - text));
+	free(text);
+}
+
+static void study_of_a_version_without_preparation_time_is_read_and_not_resumed(void **state)
+{
+	(void)state;
+	struct gz_study study = written(0, 1), read;
+	struct gz_study_writer *writer;
+	size_t done;
+	drop_last_column();
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	for (size_t i = 0; i < study.row_count; i++) {
+		assert_true(isnan(read.rows[i].prepare_ms));
+		study.rows[i].prepare_ms = NAN;
+	}
+	same_study(&read, &study);
+	gz_study_free(&read);
+	study.complete = false;
+	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &writer, &done),
+			 GZ_ERR_FORMAT);
+	gz_study_free(&study);
+}
+
+static void columns_stand_in_the_documentation_as_in_the_table(void **state)
+{
+	(void)state;
+	struct gz_text text = { 0 };
+	assert_int_equal(gz_text_add_file(&text, GZ_SOURCE_DIR "/docs/gazebench.md"), GZ_OK);
+	for (int id = 0; id < GZ_STUDY_COLUMNS; id++) {
+		const struct gz_study_column *column = &gz_study_columns[id];
+		char line[512];
+		snprintf(line, sizeof line, "| `%s` | %s | %s |\n", column->name, column->unit,
+			 column->meaning);
+		if (!strstr(text.bytes, line))
+			fail_msg("docs/gazebench.md lacks the line %s", line);
+	}
+	gz_text_free(&text);
 }
 
 static void rows_beyond_the_last_are_refused(void **state)
@@ -470,6 +504,10 @@ TEST_SUITE(study_folder)
 				       name_folder),
 		cmocka_unit_test_setup(complete_study_without_all_rows_is_refused, name_folder),
 		cmocka_unit_test_setup(damaged_rows_are_refused_with_their_line, name_folder),
+		cmocka_unit_test_setup(
+			study_of_a_version_without_preparation_time_is_read_and_not_resumed,
+			name_folder),
+		cmocka_unit_test(columns_stand_in_the_documentation_as_in_the_table),
 		cmocka_unit_test_setup(rows_beyond_the_last_are_refused, name_folder),
 		cmocka_unit_test_setup(damaged_json_is_refused, name_folder),
 		cmocka_unit_test_setup(folder_without_a_study_is_not_found, name_folder),

@@ -12,9 +12,9 @@
 
 #include "base/captured_log.h"
 #include "base/command.h"
-#include "bench/study/machine.h"
 #include "bench/study/merge.h"
 #include "bench/study/run.h"
+#include "bench/study/study.h"
 #include "bench/study/study_folder.h"
 #include "drivers/made_log.h"
 

@@ -79,11 +79,11 @@ static void ratios_of_disturbed_frames_come_from_medians(void **state)
 	assert_near(acuity->mean_ratio, (102. / 12 + 52. / 6) / 2, "mean of ratios");
 	assert_near(acuity->least_ratio, 102. / 12, "least ratio");
 	assert_near(group->series[0].ratio_of_means, 1, "standard over itself");
-	assert_near(acuity->cast_ms.mean, 1332. / 6 - 3, "mean cast time");
+	assert_near(acuity->columns[GZ_COLUMN_CAST].mean, 1332. / 6 - 3, "mean cast time");
 	assert_near(acuity->overhead_ms.mean, 3, "mean overhead");
-	assert_near(acuity->frame_ms.sum, 1332, "sum of frame times");
-	assert_near(acuity->frame_ms.perceived, (100. + 144 + 490000 + 16 + 36 + 360000) / 1332,
-		    "perceived frame time");
+	assert_near(acuity->columns[GZ_COLUMN_FRAME].sum, 1332, "sum of frame times");
+	assert_near(acuity->columns[GZ_COLUMN_FRAME].perceived,
+		    (100. + 144 + 490000 + 16 + 36 + 360000) / 1332, "perceived frame time");
 	assert_near(acuity->bound_share, 800 / (0.04 * 10000), "rays over the bound's");
 	assert_near(group->bound_ms, (102. + 52) / 2 * 0.04, "time of the bound's rays");
 	gz_summary_free(&summary);
