@@ -21,24 +21,25 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.method", GZ_OPTION_CHOICE, AT(method), .choices = gz_method_names,
 	  .preset = "acuity", .help = "where rays go" },
 	{ "foveation.step_rule", GZ_OPTION_CHOICE, AT(step_rule), .choices = gz_step_rule_names,
-	  .preset = "method",
-	  .help = "when steps along a ray grow with the distance from the gaze" },
+	  .preset = "method", .help = "how steps along a ray grow away from the gaze" },
 	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,
-	  .preset = "catmull_rom", .help = "acuity, table: how pixels between rays are filled" },
+	  .preset = "catmull_rom",
+	  .help = "acuity, table: filter that fills the pixels between rays" },
 	{ "foveation.acuity_slope", GZ_OPTION_DOUBLE, AT(acuity_slope), 0.001, 1, .preset = "0.022",
-	  .help = "how fast acuity falls: degrees per cycle for each degree of eccentricity" },
+	  .help = "loss of acuity: degrees per cycle for each degree of eccentricity" },
+	/* The preset is 1/48. */
 	{ "foveation.acuity_foveal_deg", GZ_OPTION_DOUBLE, AT(acuity_foveal_deg), 0.001, 1,
-	  /* 1/48 */
 	  .preset = "0.020833333333333332",
-	  .help = "smallest cycle that is seen at the gaze, degrees" },
+	  .help = "smallest cycle that the eye resolves at the gaze, degrees" },
 	{ "foveation.mdc_square_px", GZ_OPTION_DOUBLE, AT(mdc_square_px), 1, GZ_IMAGE_SIDE_MAX,
 	  .preset = "350", .help = "mdc, mdc3: edge of the fine square, px" },
 	{ "foveation.mdc_spacing", GZ_OPTION_INT, AT(mdc_spacing), 1, GZ_SPACING_MAX, .preset = "2",
 	  .help = "mdc, mdc3: spacing outside the square, px" },
 	{ "foveation.mdc3_square_px", GZ_OPTION_DOUBLE, AT(mdc3_square_px), 1, GZ_IMAGE_SIDE_MAX,
-	  .preset = "900", .help = "mdc3: edge of the square outside which rays are coarsest, px" },
+	  .preset = "900",
+	  .help = "mdc3: edge of the square around which the third region lies, px" },
 	{ "foveation.mdc3_spacing", GZ_OPTION_INT, AT(mdc3_spacing), 1, GZ_SPACING_MAX,
-	  .preset = "4", .help = "mdc3: spacing outside that square, px" },
+	  .preset = "4", .help = "mdc3: spacing in the third region, px" },
 	{ "foveation.ddc_inner_px", GZ_OPTION_DOUBLE, AT(ddc_inner_px), 1, GZ_IMAGE_SIDE_MAX,
 	  .count = 2, .preset = "200 160", .help = "ddc: semi-axes of the inner ellipse, px" },
 	{ "foveation.ddc_middle_px", GZ_OPTION_DOUBLE, AT(ddc_middle_px), 1, GZ_IMAGE_SIDE_MAX,
@@ -46,17 +47,15 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.ddc_spacing", GZ_OPTION_INT, AT(ddc_spacing), 1, GZ_SPACING_MAX, .count = 3,
 	  .preset = "1 2 7", .help = "ddc: spacing of the inner, middle and outer region, px" },
 	{ "foveation.blend_px", GZ_OPTION_DOUBLE, AT(blend_px), 0, 1000, .preset = "0",
-	  .help = "mdc, mdc3, ddc: width of the band in which a region fades into the next, px; 0 "
-		  "= a "
-		  "hard border" },
+	  .help = "mdc, mdc3, ddc: width of the band in which a region fades into the next, px; "
+		  "0 = a hard border" },
 	{ "foveation.uniform_spacing", GZ_OPTION_INT, AT(uniform_spacing), 1, GZ_SPACING_MAX,
 	  .preset = "2", .help = "uniform: spacing everywhere, px" },
 	{ "foveation.step_floor", GZ_OPTION_DOUBLE, AT(step_floor), 0.0625, 1, .preset = "0.25",
 	  .help = "distance rule: least share of the scene's sampling rate" },
 	{ "foveation.table", GZ_OPTION_STRING, AT(table_file), .max = GZ_PATH_SIZE, .preset = "",
-	  .help = "table: file of spacings and steps by eccentricity, looked up beside the scene, "
-		  "then "
-		  "under $GAZECAST_DATA" },
+	  .help = "table: file of spacings and steps by eccentricity; searched beside the scene, "
+		  "then under $GAZECAST_DATA" },
 };
 const size_t gz_foveation_option_count =
 	sizeof gz_foveation_options / sizeof gz_foveation_options[0];
@@ -123,7 +122,7 @@ struct spacing_table_parser {
 	struct gz_spacing_table table;
 };
 
-/* What each column may be. */
+/* Range of each column. */
 static const struct {
 	const char *name;
 	double min, max;
@@ -165,11 +164,11 @@ static enum gz_result append_spacing_row(struct spacing_table_parser *parser,
 		if (numbers[0] <= above->eccentricity_deg)
 			return refuse_spacing_table(
 				parser, "eccentricity",
-				"not above that of the row before; let them rise");
+				"not above the previous row's; write rows in rising order");
 		if (numbers[1] < above->spacing || numbers[2] < above->step)
 			return refuse_spacing_table(
 				parser, numbers[1] < above->spacing ? "spacing" : "step",
-				"below that of the row before; outwards it may only grow");
+				"below the previous row's; it must not fall outwards");
 	}
 	table->rows[table->count++] = (struct gz_spacing_row) {
 		.eccentricity_deg = numbers[0],

@@ -1,6 +1,6 @@
 /**
  * @file
- * What a plan can be told: section [foveation] of a scene, and tables of spacings.
+ * Settings of a plan: section [foveation] of a scene, and tables of spacings.
  */
 #ifndef GZ_RENDER_PLAN_FOVEATION_H
 #define GZ_RENDER_PLAN_FOVEATION_H
@@ -19,19 +19,19 @@
 
 /** When steps along a ray grow with the distance from the gaze. */
 enum gz_step_rule {
-	GZ_STEP_METHOD, /**< as the method's row says */
+	GZ_STEP_METHOD, /**< by gz_method.own_steps */
 	GZ_STEP_NONE,   /**< never */
 	/** Bauer 2018, section 3.2.3: the sampling rate is max(sf * sr, floor) with
-	 *  sf = 1 - d / diagonal, and is unchanged within 10 px of the gaze. */
+	 *  sf = 1 - d / diagonal. It is unchanged within 10 px of the gaze. */
 	GZ_STEP_DISTANCE,
-	/** With the spacing that the eye resolves: docs/foveation.md. */
+	/** By the spacing that the eye resolves: docs/foveation.md. */
 	GZ_STEP_ACUITY,
 };
 
 /** "method", "none", "distance", "acuity"; NULL-terminated. */
 extern const char *const gz_step_rule_names[];
 
-/** How a pyramid fills the points between cast ones: docs/foveation.md has the formulas. */
+/** How a pyramid fills the points between cast rays: docs/foveation.md has the formulas. */
 enum gz_filter {
 	GZ_FILTER_CATMULL_ROM, /**< from four points along an axis, clamped to the nearer two */
 	GZ_FILTER_BILINEAR,
@@ -57,16 +57,16 @@ struct gz_spacing_table {
 	struct gz_spacing_row rows[GZ_SPACING_TABLE_MAX];
 };
 
-/** Everything that a method can be told; the option keys are "foveation.<name>". */
+/** All settings of the methods; the option keys are "foveation.<name>". */
 struct gz_foveation {
 	int method;               /**< index into gz_methods (method.h) */
 	int step_rule;            /**< enum gz_step_rule */
-	int filter;               /**< enum gz_filter; for pyramids, regions are bilinear */
+	int filter;               /**< enum gz_filter; pyramids only, regions are bilinear */
 	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
 	double mdc_square_px;     /**< edge of the fine square, px of the picture */
 	int mdc_spacing;          /**< outside the square */
-	double mdc3_square_px;    /**< edge of the square that mdc3's third region surrounds */
+	double mdc3_square_px;    /**< edge of the square around which mdc3's third region lies */
 	int mdc3_spacing;         /**< in the third region */
 	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse, px of the picture */
 	double ddc_middle_px[2];  /**< semi-axes of the middle ellipse */
@@ -74,8 +74,8 @@ struct gz_foveation {
 	double blend_px;          /**< band at the borders of regions; 0 = a hard border */
 	int uniform_spacing;
 	double step_floor; /**< least sampling rate as a share of the full one, (0, 1] */
-	char table_file[GZ_PATH_SIZE]; /**< the user's table; empty: none */
-	struct gz_spacing_table table; /**< what that file says: gz_spacing_table_load() */
+	char table_file[GZ_PATH_SIZE]; /**< path of the user's table; empty: none */
+	struct gz_spacing_table table; /**< contents of that file: gz_spacing_table_load() */
 };
 
 /** Table over struct gz_foveation: "foveation.…". */
@@ -85,21 +85,21 @@ extern const size_t gz_foveation_option_count;
 /** The presets of the option table. */
 struct gz_foveation gz_foveation_default(void);
 
-/** The presets with the method that casts a ray for every pixel: what others are compared with. */
+/** The presets with the method that casts a ray for every pixel: the reference for comparisons. */
 struct gz_foveation gz_foveation_full(void);
 
-/** Whether every option is within its range, and the table of spacings is valid where the method
- *  needs one. */
+/** Whether every option is within its range and, if the method needs one, the table of spacings is
+ *  valid. */
 bool gz_foveation_valid(const struct gz_foveation *foveation);
 
-/** Whether every option has equal values, and the tables of spacings are the same. */
+/** Whether all options have equal values and the tables of spacings are the same. */
 bool gz_foveation_same(const struct gz_foveation *a, const struct gz_foveation *b);
 
-/** Whether the plan depends on where someone looks: its spacings by the method, or its steps by the
- *  rule. */
+/** Whether the plan depends on where someone looks: by the method's spacings or by the step rule.
+ */
 bool gz_foveation_follows_gaze(const struct gz_foveation *foveation);
 
-/** Whether a table keeps what struct gz_spacing_table promises. */
+/** Whether a table keeps the rules of struct gz_spacing_table. */
 bool gz_spacing_table_valid(const struct gz_spacing_table *table);
 
 /** Whether two tables have equal rows in the same unit. */

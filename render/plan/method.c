@@ -12,7 +12,7 @@ const char *const gz_method_names[] = {
 	[GZ_METHOD_TABLE] = "table",       [GZ_METHOD_COUNT] = NULL,
 };
 
-/* A layer that shows within a shape round the gaze. */
+/* A layer that shows within a shape around the gaze. */
 static void add_region(const struct gz_plan_context *context, struct gz_plan *plan, int spacing,
 		       enum gz_region_shape shape, double half_x_px, double half_y_px)
 {
@@ -86,7 +86,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.add_regions = add_standard,
 	},
 	[GZ_METHOD_MDC] = {
-		.help = "a fine square round the gaze, coarser outside (Bauer 2018, 3.2.4)",
+		.help = "a fine square around the gaze, coarser outside (Bauer 2018, 3.2.4)",
 		.follows_gaze = true,
 		.sharp_at_gaze = true,
 		.can_be_coarser = true,
@@ -104,7 +104,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.add_regions = add_ddc,
 	},
 	[GZ_METHOD_ACUITY] = {
-		.help = "rays as dense as the eye resolves at each eccentricity",
+		.help = "rays as dense as the eye can resolve at each eccentricity",
 		.follows_gaze = true,
 		.sharp_at_gaze = true,
 		.can_be_coarser = true,
@@ -122,7 +122,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.add_regions = add_mdc3,
 	},
 	[GZ_METHOD_UNIFORM] = {
-		.help = "the same spacing everywhere, wherever the gaze is",
+		.help = "one spacing everywhere, independent of the gaze",
 		.can_be_coarser = true,
 		.own_steps = GZ_STEPS_ONE,
 		.add_regions = add_uniform,

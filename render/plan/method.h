@@ -1,7 +1,7 @@
 /**
  * @file
- * The foveation methods. A method decides where rays go and how long their steps are; its row
- * answers every question that other code has about it.
+ * The foveation methods. A method decides where rays go and how long their steps are. Its row in
+ * gz_methods[] answers every question that other code has about it.
  */
 #ifndef GZ_RENDER_PLAN_METHOD_H
 #define GZ_RENDER_PLAN_METHOD_H
@@ -13,8 +13,8 @@
 struct gz_plan;
 struct gz_plan_context;
 
-/** Rows of gz_methods, in the order of the option's values. Code outside render/plan/ asks the row
- *  instead of comparing with these. */
+/** Rows of gz_methods, in the order of the option's values. Only method.c and tests name them;
+ * other code asks the row. */
 enum gz_method_index {
 	GZ_METHOD_STANDARD,
 	GZ_METHOD_MDC,
@@ -29,7 +29,7 @@ enum gz_method_index {
 /** Where the steps of a plan come from. */
 enum gz_plan_steps {
 	GZ_STEPS_ONE,      /**< 1 everywhere */
-	GZ_STEPS_DISTANCE, /**< Bauer's rule */
+	GZ_STEPS_DISTANCE, /**< by distance from the gaze (GZ_STEP_DISTANCE) */
 	GZ_STEPS_RUNG,     /**< from the spacing that the eye resolves */
 	GZ_STEPS_TABLE,    /**< from the user's table */
 };
@@ -38,14 +38,14 @@ enum gz_plan_steps {
 struct gz_method {
 	const char *help;    /**< one line for lists */
 	bool follows_gaze;   /**< spacings depend on where someone looks */
-	bool sharp_at_gaze;  /**< with its presets, every pixel of the fovea is a ray's */
-	bool can_be_coarser; /**< a time budget and a lost gaze make it coarser */
+	bool sharp_at_gaze;  /**< with its presets, each pixel of the fovea has a ray */
+	bool can_be_coarser; /**< a time budget and a lost gaze can make it coarser */
 	bool needs_table;    /**< a table of spacings must be given */
-	bool has_borders;    /**< regions meet at borders, which foveation.blend_px softens */
-	bool is_pyramid;     /**< spacings grow in octaves, which foveation.reconstruction fills */
+	bool has_borders;    /**< its regions meet at borders, which foveation.blend_px softens */
+	bool is_pyramid; /**< its lattices form a pyramid, which foveation.reconstruction fills */
 	enum gz_plan_steps own_steps; /**< what GZ_STEP_METHOD means */
-	/** Pyramids: set the context's spacing, and step if own_steps is GZ_STEPS_TABLE, by
-	 *  eccentricity. NULL for methods of regions. */
+	/** Pyramids: set the context's spacing by eccentricity, and its step if own_steps is
+	 *  GZ_STEPS_TABLE. NULL for methods of regions. */
 	void (*set_curves)(struct gz_plan_context *context);
 	/** Methods of regions: add the plan's layers, nearest to the gaze first. NULL for
 	 *  pyramids. */
@@ -65,7 +65,7 @@ const struct gz_method *gz_method_of(const struct gz_foveation *foveation);
 /** The name of a foveation's method; static text. */
 const char *gz_method_name(const struct gz_foveation *foveation);
 
-/** Index of a method by its name; -1 if there is none of that name. */
+/** Index of the method with this name; -1 if there is none. */
 int gz_method_find(const char *name);
 
 /** Index of the method that casts a ray for every pixel. */

@@ -76,9 +76,9 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 							    : gz_plan_regions(&context, plan);
 }
 
-/* Also where the tiles do not depend on it: bricks are fetched by the focus, and the view may have
- * been shifted since. */
-static void aim(const struct gz_plan_request *request, struct gz_plan *plan)
+/* Done even if the tiles stay: bricks are fetched by the focus, and the view may have been shifted
+ * since. */
+static void aim_plan(const struct gz_plan_request *request, struct gz_plan *plan)
 {
 	const bool known = isfinite(request->gaze.x) && isfinite(request->gaze.y);
 	plan->view = (struct gz_plan_view) { request->width, request->height, { 0, 0 } };
@@ -90,7 +90,7 @@ enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_p
 {
 	if (!request_valid(request))
 		return GZ_ERR_INVAL;
-	aim(request, plan);
+	aim_plan(request, plan);
 	if (is_made_for(plan, request))
 		return GZ_OK;
 	plan->made_for.valid = false;
@@ -188,7 +188,7 @@ uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *t
 	const int last = GZ_TILE_EDGE * GZ_TILE_EDGE - 1;
 	if (tile->x + columns[last] * layer->spacing <= (layer->columns - 1) * layer->spacing &&
 	    tile->y + gz_tile_rows[last] * layer->spacing <= (layer->rows - 1) * layer->spacing)
-		return 0xFFFF; /* all of it inside: nearly always */
+		return 0xFFFF; /* wholly inside: the usual case */
 	uint32_t active = 0;
 	for (int i = 0; i <= last; i++)
 		if (on_lattice(plan, tile->layer, tile->x + columns[i] * layer->spacing,
@@ -197,8 +197,8 @@ uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *t
 	return active;
 }
 
-/* The spacing of a layer of a pyramid's quincunx tiles is that of the square lattice they thin out.
- */
+/* Grow a rectangle around a tile. A quincunx tile counts with the spacing of the square lattice
+ * that it thins out, which is finer than its own. */
 static void enclose_tile(const struct gz_plan *plan, const struct gz_tile *tile,
 			 struct gz_plan_rectangle *rectangle)
 {
@@ -216,7 +216,7 @@ static void enclose_tile(const struct gz_plan *plan, const struct gz_tile *tile,
 	}
 }
 
-/* The rectangle that encloses all tiles of layers that are at most as coarse as @p spacing. */
+/* The rectangle that encloses all tiles of spacing @p spacing or finer; false if there are none. */
 static bool enclose_layers(const struct gz_plan *plan, int spacing,
 			   struct gz_plan_rectangle *out_rectangle)
 {
@@ -235,8 +235,7 @@ static bool enclose_layers(const struct gz_plan *plan, int spacing,
 			out_rectangle->spacing = own;
 		any = true;
 	}
-	for (int axis = 0; axis < 2 && any;
-	     axis++) /* the finer lattice is part of the coarser one's */
+	for (int axis = 0; axis < 2 && any; axis++)
 		out_rectangle->from[axis] -= out_rectangle->from[axis] % out_rectangle->spacing;
 	return any;
 }
@@ -255,7 +254,7 @@ int gz_plan_rectangles(const struct gz_plan *plan,
 	int count = 0, spacing = GZ_PYRAMID_SPACING_MAX;
 	struct gz_plan_rectangle rectangle;
 	while (spacing > 0 && enclose_layers(plan, spacing, &rectangle)) {
-		/* Beginning at a multiple of its own spacing may have moved it out of those before.
+		/* Its corner was rounded down to its own spacing, perhaps out of the coarser ones.
 		 */
 		for (int i = 0; i < count; i++)
 			enclose_rectangle(&rectangle, &out_rectangles[i]);

@@ -1,17 +1,18 @@
 /**
  * @file
  * The foveation plan: which rays are cast and how long their steps are. A method only emits tiles;
- * one kernel per backend casts them and one reconstruction fills the pixels between
+ * one kernel per backend casts them, and one reconstruction fills the pixels between rays
  * (docs/foveation.md).
  *
- * A tile is a block of GZ_TILE_EDGE x GZ_TILE_EDGE rays whose positions are multiples of a spacing
- * of G pixels: the lattice is fixed to the screen, not to the gaze. A square tile takes every point
- * of its block; a quincunx tile takes every second one, like the black fields of a chessboard,
- * which is a lattice of spacing G * sqrt(2) turned by 45 degrees: the rung between G and 2G.
- * Quincunx tiles lie on layers of spacing 2 or more, and in pairs, one above the other, that fill a
- * square of 2 * GZ_TILE_EDGE spacings whose corner is a multiple of its edge.
+ * A tile is a block of GZ_TILE_EDGE x GZ_TILE_EDGE rays. With a spacing of G pixels, ray positions
+ * are multiples of G: the lattice is fixed to the screen, not to the gaze. A square tile takes
+ * every lattice point of its block. A quincunx tile takes every second one, like the black fields
+ * of a chessboard: a lattice of spacing G * sqrt(2), turned by 45 degrees, which is the rung
+ * between G and 2G. Quincunx tiles lie on layers of spacing 2 or more. They come in pairs, one
+ * above the other, that fill a square of 2 * GZ_TILE_EDGE spacings whose corner is a multiple of
+ * its edge.
  *
- * Lattice point (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G), which
+ * Lattice point (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G). Points
  * may lie beyond the right and lower edge of the picture, so that every pixel lies between four
  * points.
  */
@@ -28,7 +29,7 @@
 #include "render/plan/foveation.h"
 #include "render/plan/plan_constants.h"
 
-/** Which points of its block a tile takes. */
+/** Which lattice points of its block a tile takes. */
 enum gz_tile_pattern {
 	GZ_TILE_SQUARE,   /**< ray (c, r) at x + c * G, y + r * G */
 	GZ_TILE_QUINCUNX, /**< ray (c, r) at x + (2c + r mod 2) * G, y + r * G: pyramids only */
@@ -47,19 +48,20 @@ struct gz_tile {
 extern const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE];
 extern const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE];
 
-/** How pixels are made of lattice points. */
+/** How pixels are made from lattice points. */
 enum gz_reconstruction {
 	GZ_RECONSTRUCT_DIRECT,  /**< one layer of spacing 1 is the picture */
-	GZ_RECONSTRUCT_PYRAMID, /**< layer k has spacing 2^k; a finer lattice is filled from the
-				   next coarser */
+	GZ_RECONSTRUCT_PYRAMID, /**< layer k has spacing 2^k; each lattice is filled from the next
+				   coarser one */
 	GZ_RECONSTRUCT_REGIONS, /**< each pixel takes the first layer whose region holds it,
-				   bilinearly; within its blend band the layers behind shine
-				   through by gz_region_weight() */
+				   bilinearly; within that layer's blend band it is mixed with the
+				   layers behind by gz_region_weight() */
 };
 
-/** Where a layer of a region plan shows: a pixel belongs to it if its centre is inside. */
+/** Where a layer of a region plan shows: a pixel belongs to it if the pixel's centre is inside. */
 enum gz_region_shape { GZ_REGION_ALL, GZ_REGION_RECTANGLE, GZ_REGION_ELLIPSE };
 
+/** The part of the picture in which a layer shows. */
 struct gz_region {
 	enum gz_region_shape shape;
 	double centre_px[2];
@@ -67,26 +69,27 @@ struct gz_region {
 	double blend_px;   /**< width of the band inside the rim where the layer fades; 0 = none */
 };
 
-/** Whether a pixel belongs to a region. Plan and reconstruction both ask here, so that rounding at
- * a rim cannot make them differ. Never turns true again farther from the centre along an axis. */
+/** Whether a pixel belongs to a region. Plan and reconstruction both call this function, so
+ * rounding at a rim cannot make them differ. Along an axis away from the centre, false never turns
+ * to true again. */
 bool gz_region_holds(const struct gz_region *region, double x, double y);
 
 /** Columns of row @p y of a picture of @p width px that a region holds: [*out_from, *out_to), empty
- *  if none. */
+ *  if there are none. */
 void gz_region_columns(const struct gz_region *region, int y, int width, int *out_from,
 		       int *out_to);
 
 /**
- * Share of a layer in a pixel of its region, [0, 1]; what is left goes to the layers behind, by the
- * same rule. 1 without a band, 0 outside; within the band it is
- * (1 - r) * min(half_px) / blend_px, where r is max(|u|, |v|) for a rectangle and
- * sqrt(u * u + v * v) for an ellipse, (u, v) = (position - centre_px) / half_px.
+ * Share of a layer in a pixel of its region, [0, 1]. The rest goes to the layers behind, by the
+ * same rule. 1 without a band, 0 outside the region; within the band it is (1 - r) * min(half_px) /
+ * blend_px, where r is max(|u|, |v|) for a rectangle and sqrt(u * u + v * v) for an ellipse, (u, v)
+ * = (position - centre_px) / half_px.
  */
 double gz_region_weight(const struct gz_region *region, double x, double y);
 
 /** One lattice of a plan. */
 struct gz_plan_layer {
-	int spacing;
+	int spacing;       /**< px */
 	int columns, rows; /**< lattice points */
 	struct gz_region region;
 };
@@ -94,29 +97,30 @@ struct gz_plan_layer {
 #define GZ_PLAN_SCALE_MAX     64
 #define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
 
-/** What is asked of one frame's plan. gz_plan_request_make() gives it with nothing special. */
+/** What one frame's plan is made from. gz_plan_request_make() fills in the usual values. */
 struct gz_plan_request {
 	const struct gz_foveation *foveation; /**< within the table's ranges */
 	const struct gz_display *display;     /**< of the picture, which fills it */
-	struct gz_point gaze; /**< normalised; may lie outside [0, 1]; NaN or infinite counts as
-				 lost: the centre */
+	struct gz_point gaze; /**< normalised; may lie outside [0, 1]; NaN or infinite means lost:
+				 the centre is used */
 	int width, height;    /**< rays along each side, 1 to GZ_IMAGE_SIDE_MAX */
-	double rays_per_px;   /**< rays per edge of a pixel of the picture, 1/16 to 16: what sizes
-				 in px are multiplied by */
+	double rays_per_px;   /**< rays per edge of a pixel of the picture, 1/16 to 16: sizes in px
+				 are multiplied by it */
 	/**
-	 * A budget's handle, 1 to GZ_PLAN_SCALE_MAX: the cost falls as it rises. Spacings outside
-	 * the fovea (2.5 degrees round the gaze; for regions, the first one) grow by up to
-	 * GZ_PLAN_SCALE_OUTSIDE, steadily from 2.5 to 5 degrees, and steps with them; past that,
-	 * everything grows by scale / GZ_PLAN_SCALE_OUTSIDE, the fovea too. `standard` ignores it.
+	 * How coarse a budget makes the plan, 1 to GZ_PLAN_SCALE_MAX: the cost falls as it rises.
+	 * Outside the fovea (2.5 degrees around the gaze; for regions, the first one) spacings and
+	 * steps grow by up to GZ_PLAN_SCALE_OUTSIDE, rising linearly from 2.5 to 5 degrees. Beyond
+	 * that scale everything grows by scale / GZ_PLAN_SCALE_OUTSIDE, including the fovea.
+	 * Methods with gz_method.can_be_coarser false ignore it.
 	 */
 	double scale;
-	/** How lost the gaze is, [0, 1]: 0 trusts it, 1 is a uniform plan of at most the same cost.
-	 *  `standard` and `uniform` are what they are. */
+	/** How lost the gaze is, [0, 1]: 0 trusts it; 1 gives a uniform plan of at most the same
+	 *  cost. Methods that do not follow the gaze ignore it. */
 	double widen;
 	/**
-	 * How long the steps of the acuity rule may become, [0, 1]: so many of the scene's steps
-	 * for each pixel that a tile's rays lie apart, but one in any case. 1 bounds nothing.
-	 * Whoever knows the scene sets it (gz_detail_steps_per_px()).
+	 * Limit of the acuity rule's steps, [0, 1]: steps of the scene per pixel between a tile's
+	 * rays, and never less than one step. 1 limits nothing. Techniques set it from the scene
+	 * (gz_detail_steps_per_px()).
 	 */
 	double steps_per_px;
 };
@@ -128,12 +132,12 @@ struct gz_plan_view {
 	int shift[2];
 };
 
-/** A plan. Zero-initialised is empty; keep it from frame to frame so that its arrays are reused,
- *  and one for each kind of frame, so that a plan that nothing has changed is not made again. */
+/** A plan. Zero-initialised is empty. Keep one plan for each kind of frame from frame to frame: its
+ *  arrays are reused, and an unchanged request does not make it again. */
 struct gz_plan {
 	int width, height;
-	struct gz_plan_view view; /**< the same size and no shift, unless temporal.h says so */
-	double focus_px[2]; /**< what it was made for: the gaze, or the centre where that is lost */
+	struct gz_plan_view view; /**< same size and no shift, unless temporal.h shifts frames */
+	double focus_px[2]; /**< the gaze that it was made for, or the centre if it was lost */
 	enum gz_reconstruction reconstruction;
 	enum gz_filter filter; /**< of a pyramid */
 	int layer_count;
@@ -152,25 +156,26 @@ struct gz_plan {
 	} made_for; /**< what the tiles were made for */
 };
 
-/** A request with one ray a pixel, scale 1, widen 0 and unbounded steps. Borrows what it points to.
+/** A request with one ray a pixel, scale 1, widen 0 and unlimited steps. The pointers are borrowed.
  */
 struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,
 					    const struct gz_display *display, struct gz_point gaze,
 					    int width, int height);
 
 /**
- * Make the plan of one frame, or leave it as it is where it was made for the same request.
+ * Make the plan of one frame. A plan that was made for an equal request keeps its tiles.
  *
  * @param request        borrowed until the call returns
  * @param[in,out] plan   overwritten; its array grows where needed
- * @retval GZ_ERR_INVAL   a size or parameter out of range, or the method table without a table
- * @retval GZ_ERR_NO_MEM  no room for the tiles
+ * @retval GZ_ERR_INVAL   a size or parameter is out of range, or the method needs a table and has
+ *                        none
+ * @retval GZ_ERR_NO_MEM  out of memory for the tiles
  *
  * Threads: one at a time per plan.
  */
 enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_plan *plan);
 
-/** Whether two plans have the same tiles since they were made for the same request. */
+/** Whether two plans have the same tiles because they were made for equal requests. */
 bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b);
 
 /** gz_plan_update() of gz_plan_request_make(). */
@@ -179,29 +184,30 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
 
 /**
  * Which rays of a tile are cast: those whose point lies on its layer's lattice or, in a pyramid, on
- * that of a coarser layer beyond it.
+ * that of a coarser layer, which reaches farther.
  *
  * @return bit r * GZ_TILE_EDGE + c for the ray at column c, row r of the tile
  */
 uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *tile);
 
-/** A rectangle of a rasterised picture: pixels [from, to) along x and y, one sample in every
- *  spacing x spacing of them. */
+/** A rectangle of a rasterised picture: pixels [from, to) along x and y, with one sample in each
+ *  spacing x spacing block of them. */
 struct gz_plan_rectangle {
 	int from[2], to[2]; /**< from: multiples of spacing */
-	int spacing;
+	int spacing;        /**< px */
 };
 
 /** Most rectangles of a plan. */
 #define GZ_PLAN_RECTANGLES_MAX GZ_PLAN_LAYERS_MAX
 
 /**
- * The plan for techniques that draw triangles instead of casting rays: nested rectangles, the
- * coarsest first. The first is the whole picture. Each further one is finer, lies within the one
- * before and encloses every tile that is finer than the one before, so that the last rectangle that
- * holds a pixel is at least as fine there as the tiles are.
+ * The plan for techniques that draw triangles instead of casting rays: nested rectangles, coarsest
+ * first. The first is the whole picture. Each further one is finer, lies within the previous one
+ * and encloses every tile that is finer than the previous one. At each pixel the last rectangle
+ * that holds it is therefore at least as fine as the tiles are.
  *
- * @param[out] out_rectangles  the first of them
+ * @param plan  made by gz_plan_update()
+ * @param[out] out_rectangles  the first so many of them are written
  * @return how many, 1 to GZ_PLAN_RECTANGLES_MAX
  */
 int gz_plan_rectangles(const struct gz_plan *plan,
@@ -210,8 +216,13 @@ int gz_plan_rectangles(const struct gz_plan *plan,
 /** Free the tiles and zero the plan. */
 void gz_plan_free(struct gz_plan *plan);
 
-/** Spacing in pixels, not rounded, that the eye resolves at a pixel: omega(e) / 2 by the geometry,
- * the smaller of both directions on the flat screen (docs/foveation.md). */
+/**
+ * Spacing that the eye resolves at a place, px, not rounded: omega(e) / 2 by the geometry of the
+ * display, the smaller of both directions on the flat screen (docs/foveation.md).
+ *
+ * @param gaze, pixel    normalised places on the display
+ * @param width, height  of the picture that fills the display, px
+ */
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, struct gz_point pixel, int width, int height);
 

@@ -1,9 +1,8 @@
 /**
  * @file
- * Sizes of a plan. C and shaders share them: this text also
- * stands in front of every shader that needs it, so it holds nothing but comments and #defines that
- * mean the same in C and in GLSL 4.30: whole numbers (with U where unsigned), and single-precision
- * numbers with F.
+ * Sizes of a plan, shared by C and shaders. The build puts this text in front of every shader that
+ * needs it. It may hold only comments and #defines that mean the same in C and in GLSL 4.30: whole
+ * numbers (with U if unsigned) and single-precision numbers with F.
  */
 #ifndef GZ_RENDER_PLAN_PLAN_CONSTANTS_H
 #define GZ_RENDER_PLAN_PLAN_CONSTANTS_H

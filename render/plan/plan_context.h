@@ -1,6 +1,6 @@
 /**
  * @file
- * Inside the plan: what the methods share. Only files of render/plan/ include it.
+ * Internal to render/plan/: what the methods share about one frame.
  */
 #ifndef GZ_RENDER_PLAN_PLAN_CONTEXT_H
 #define GZ_RENDER_PLAN_PLAN_CONTEXT_H
@@ -16,17 +16,18 @@ struct gz_plan_curve {
 	double slope[GZ_SPACING_TABLE_MAX]; /**< from knot i to i + 1 */
 };
 
-/** What a method needs to know of a frame. */
+/** What a method needs to know about a frame. */
 struct gz_plan_context {
 	const struct gz_foveation *foveation;
 	int width, height;
 	double diagonal_px; /**< of the picture, in rays */
 	double rays_per_px;
-	double gaze_px[2]; /**< in rays, whose centres are whole numbers; may lie outside */
+	double gaze_px[2]; /**< in rays, whose centres are whole numbers; may lie outside the
+			      picture */
 	enum gz_plan_steps steps;
-	double gaze_unit[3]; /**< from the eye to the gaze */
-	double px_mm[2];     /**< from ray to ray */
-	double centre_px[2]; /**< the point of the picture straight in front of the eye */
+	double gaze_unit[3]; /**< unit vector from the eye to the gaze */
+	double px_mm[2];     /**< distance between neighbouring rays */
+	double centre_px[2]; /**< point of the picture straight in front of the eye */
 	double distance_mm;
 	double rays_per_mm;           /**< along the axis with fewer */
 	struct gz_plan_curve spacing; /**< rad, or px with spacing_in_px */
@@ -38,18 +39,18 @@ struct gz_plan_context {
 	double uniform_px; /**< spacing of the uniform plan that widen leads to, once known */
 };
 
-/** Prepare the context of a frame. A gaze that is NaN or infinite becomes the centre. */
+/** Prepare the context of a frame. A gaze that is NaN or infinite is replaced by the centre. */
 void gz_plan_context_make(const struct gz_plan_request *request,
 			  struct gz_plan_context *out_context);
 
-/** The spacing curve of what the eye resolves. */
+/** Set the spacing curve to what the eye resolves. */
 void gz_plan_set_acuity_curve(struct gz_plan_context *context);
 
-/** The spacing and step curves of the user's table. */
+/** Set the spacing and step curves from the user's table. */
 void gz_plan_set_table_curves(struct gz_plan_context *context);
 
-/** Spacing in px that the curve asks for at position (x, y), in rays and not necessarily whole, as
- *  scaled and widened. It grows with the distance from the gaze. */
+/** Spacing in px that the curve asks for at position (x, y), after scaling and widening. Positions
+ *  are in rays and need not be whole. The spacing grows with the distance from the gaze. */
 double gz_plan_spacing_at(const struct gz_plan_context *context, double x, double y);
 
 /** Rungs of the ladder of spacings: 1, 2, 2 sqrt 2, 4, ... 16 sqrt 2, 32, each with its step. */
@@ -59,22 +60,23 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
  *  rung 0 is layer 0. */
 extern const double gz_ladder_px[GZ_LADDER_RUNGS];
 
-/** The coarsest rung whose spacing is at most @p spacing_px; 0 below 2 px, where the display limits
- *  the eye. */
+/** The coarsest rung whose spacing is at most @p spacing_px. 0 below 2 px, where the display is
+ *  coarser than the eye. */
 int gz_ladder_rung(double spacing_px);
 
-/** Set the step multipliers that the context's rule asks for. */
+/** Set the plan's step multipliers by the context's step rule. */
 void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *plan);
 
-/** Index of the step multiplier for the block of @p edge pixels at (x, y), by its point nearest to
- *  the gaze, so that no ray of the block has a longer step than its own distance allows. */
+/** Index of the step multiplier for the block of @p edge pixels at (x, y). The block's point
+ * nearest to the gaze decides, so no ray of the block has a longer step than its own distance
+ * allows. */
 int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
 		     int y, int edge);
 
 /** Make room for @p count more tiles. GZ_ERR_NO_MEM. */
 enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count);
 
-/** Append a tile, for which there must be room, if it casts anything. */
+/** Append a tile unless it casts no ray. There must be room for it. */
 void gz_plan_append(struct gz_plan *plan, struct gz_tile tile);
 
 /** gz_plan_append() for a tile all of whose points lie on its lattice. */
@@ -88,10 +90,10 @@ static inline void gz_plan_append_whole(struct gz_plan *plan, struct gz_tile til
 struct gz_plan_layer gz_plan_layer_make(int width, int height, int spacing,
 					struct gz_region region);
 
-/** Fill layers, reconstruction and tiles of a method with gz_method.add_regions. */
+/** Fill layers, reconstruction and tiles for a method with gz_method.add_regions. */
 enum gz_result gz_plan_regions(const struct gz_plan_context *context, struct gz_plan *plan);
 
-/** Fill layers, reconstruction and tiles of a method with gz_method.set_curves. */
+/** Fill layers, reconstruction and tiles for a method with gz_method.set_curves. */
 enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *plan);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * Methods that ask for a spacing at each eccentricity: a quadtree of tiles, split while a finer
- * spacing is asked for than a tile would show.
+ * Pyramids: methods that give a spacing at each eccentricity. A quadtree of tiles is split wherever
+ * the method asks for a finer spacing than a tile has.
  */
 #include <math.h>
 
@@ -15,7 +15,7 @@ static double nearest_to(double place, int from, int edge)
 	return place < from ? from : place > from + edge ? from + edge : place;
 }
 
-/* What a block asks for: the spacing at its point nearest to the gaze. */
+/* The spacing that a block needs: that of its point nearest to the gaze. */
 static double block_spacing(const struct gz_plan_context *context, int x, int y, int edge)
 {
 	const double near_x = nearest_to(context->gaze_px[0], x, edge);
@@ -27,7 +27,7 @@ static void append_node(const struct gz_plan_context *context, struct gz_plan *p
 			int layer, enum gz_tile_pattern pattern)
 {
 	const int rung = layer == 0 ? 0 : 2 * layer - (pattern == GZ_TILE_SQUARE);
-	/* A step of this rung's own, or one that serves whatever is cast. */
+	/* With the acuity rule each rung has its own step. */
 	const int step = context->steps == GZ_STEPS_RUNG
 				 ? rung
 				 : gz_plan_step_for(context, plan, x, y, GZ_TILE_EDGE << layer);
@@ -48,8 +48,8 @@ static void append_node(const struct gz_plan_context *context, struct gz_plan *p
 		gz_plan_append(plan, tile);
 }
 
-/* A node is cast by one square tile of its own level's lattice or, one above the other, by two
- * quincunx tiles of the level below; else it is split. */
+/* A node becomes one square tile of its own level's lattice, or two quincunx tiles of the next
+ * finer level, one above the other; or it is split. */
 static void subdivide(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
 		      int level)
 {
@@ -94,7 +94,7 @@ static void make_pyramid(const struct gz_plan_context *context, struct gz_plan *
 		};
 }
 
-/* Rays per pixel that the rungs take, from a grid of places. */
+/* Mean rays per pixel of the rungs, sampled on a grid of places. */
 static double mean_density(const struct gz_plan_context *context)
 {
 	enum { GRID = 24 }; /* chosen: within 2 % of the plan's own count at 1920 x 1080 */
@@ -108,7 +108,7 @@ static double mean_density(const struct gz_plan_context *context)
 	return sum / (GRID * GRID);
 }
 
-/* The finest rung that costs no more, everywhere, than the plan does that trusts the gaze. */
+/* The finest rung that, used everywhere, costs no more than the plan that trusts the gaze. */
 static void find_uniform(struct gz_plan_context *context)
 {
 	const double widen = context->widen;
@@ -131,7 +131,7 @@ enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *p
 	const int bottom = plan->layers[LEVELS - 1].rows * GZ_PYRAMID_SPACING_MAX;
 	for (int y = 0; y < bottom; y += root)
 		for (int x = 0; x < right; x += root) {
-			/* all of a root split to the last */
+			/* room for a root that is split all the way down */
 			const enum gz_result result =
 				gz_plan_reserve(plan, (size_t)1 << (2 * (LEVELS - 1)));
 			if (result != GZ_OK)

@@ -1,12 +1,12 @@
 /*
- * Methods of nested regions: the full picture, a uniform one, and those of Bauer 2018. A layer's
- * tiles are emitted where a pixel that shows the layer has one of its four lattice points.
+ * Methods of nested regions: the full picture, a uniform one, and those of Bauer 2018. A tile is
+ * emitted if one of its points is among the four lattice points of a pixel that shows its layer.
  */
 #include <math.h>
 
 #include "render/plan/plan_context.h"
 
-/* A block of pixels, corners included. */
+/* A block of pixels, including its corners. */
 struct block {
 	double x0, y0, x1, y1;
 };
@@ -22,7 +22,7 @@ bool gz_region_holds(const struct gz_region *region, double x, double y)
 	return fmax(fabs(u), fabs(v)) <= 1;
 }
 
-/* Distance from the middle of a shape to its rim is 1. */
+/* Distance from the centre of a shape, where its rim is at 1. */
 static double region_radius(const struct gz_region *region, double x, double y)
 {
 	const double u = (x - region->centre_px[0]) / region->half_px[0];
@@ -59,8 +59,7 @@ void gz_region_columns(const struct gz_region *region, int y, int width, int *ou
 		half *= sqrt(1 - v * v);
 	int from = (int)fmin(fmax(ceil(region->centre_px[0] - half), 0), width);
 	int to = (int)fmin(fmax(floor(region->centre_px[0] + half) + 1, 0), width);
-	/* The formula rounds in its own way: the region itself decides on the columns at its rim.
-	 */
+	/* The formula rounds differently than gz_region_holds(), which decides at the rim. */
 	while (from < to && !gz_region_holds(region, from, y))
 		from++;
 	while (from > 0 && gz_region_holds(region, from - 1, y))
@@ -80,7 +79,7 @@ static bool region_touches(const struct gz_region *region, const struct block *b
 	return gz_region_holds(region, x, y);
 }
 
-/* Every shape is convex: a block is inside if its corners are. */
+/* Every shape is convex: a block is inside if its four corners are. */
 static bool region_holds_block(const struct gz_region *region, const struct block *block)
 {
 	return gz_region_holds(region, block->x0, block->y0) &&
@@ -105,7 +104,8 @@ static bool region_hides_block(const struct gz_region *region, const struct bloc
 /* How much of a layer shows in a block of its tiles. */
 enum shows { SHOWS_NOTHING, SHOWS_PARTLY, SHOWS_WHOLLY };
 
-/* Whether pixels that lattice points of this block of tiles reach show this layer. */
+/* How much of a layer shows in the pixels that interpolate between points of this block of tiles.
+ */
 static enum shows tiles_show(const struct gz_plan *plan, int layer, int x, int y, int edge)
 {
 	const int reach = plan->layers[layer].spacing - 1;
@@ -128,12 +128,13 @@ static enum shows tiles_show(const struct gz_plan *plan, int layer, int x, int y
 	return beside_others && region_holds_block(region, &block) ? SHOWS_WHOLLY : SHOWS_PARTLY;
 }
 
-/* Tiles along an edge of a block: neighbours on the screen are neighbours in time and share the
- * cache. A block of which a part shows is cut into parts of a quarter of its edge. */
+/* Tiles along an edge of a block. Tiles are emitted block by block so that neighbours on the screen
+ * are cast one after the other and share the cache. A block that shows in part is cut into CUTS x
+ * CUTS parts. */
 enum { TILES_A_BLOCK = 16, CUTS = 4 };
 
-static uint8_t step_of(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
-		       int y, int edge)
+static uint8_t region_step(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
+			   int y, int edge)
 {
 	if (context->steps == GZ_STEPS_ONE)
 		return 0;
@@ -155,7 +156,7 @@ static void emit_all(const struct gz_plan_context *context, struct gz_plan *plan
 				.x = (uint16_t)x,
 				.y = (uint16_t)y,
 				.layer = (uint8_t)layer,
-				.step = step_of(context, plan, x, y, edge),
+				.step = region_step(context, plan, x, y, edge),
 			};
 			if (x + last <= right && y + last <= bottom)
 				gz_plan_append_whole(plan, tile);
@@ -204,7 +205,7 @@ static double whole_spacing(double spacing)
 	return fmin(fmax(spacing, 1), GZ_SPACING_MAX);
 }
 
-/* What a budget makes of a layer's spacing: the regions past the first give way first. */
+/* A layer's spacing under a budget: the regions past the first become coarser first. */
 static double scaled_spacing(const struct gz_plan_context *context, int layer, int layers,
 			     int spacing)
 {
@@ -212,7 +213,7 @@ static double scaled_spacing(const struct gz_plan_context *context, int layer, i
 	return whole_spacing(round(spacing * outside * context->scale_all));
 }
 
-/* Spacing of the uniform plan that costs no more than the regions, from a grid of places. */
+/* Spacing of the uniform plan that costs no more than the regions, sampled on a grid of places. */
 static double uniform_spacing(const struct gz_plan *plan)
 {
 	enum { GRID = 32 };

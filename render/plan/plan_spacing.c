@@ -1,5 +1,5 @@
 /*
- * Spacings and steps: what the eye resolves where, by the geometry of the display.
+ * Spacings and step lengths: what the eye resolves at each place, by the geometry of the display.
  *
  * Minimum angle of resolution omega(e) = m * e + omega0 in degrees per cycle (Guenter et al.,
  * "Foveated 3D Graphics", 2012, section 3); two samples a cycle, so the spacing is omega(e) / 2.
@@ -9,8 +9,8 @@
 #include "render/plan/plan_context.h"
 
 static const double deg_per_rad = 57.29577951308232;
-static const double fovea_deg = 2.5;      /* docs/architecture.md */
-static const double full_scale_deg = 5.0; /* chosen: a fovea's radius farther */
+static const double fovea_deg = 2.5;      /* docs/units.md */
+static const double full_scale_deg = 5.0; /* chosen: twice the fovea's radius */
 
 static void curve_add(struct gz_plan_curve *curve, double at_deg, double value)
 {
@@ -71,7 +71,7 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 {
 	const struct gz_display *display = request->display;
 	const int width = request->width, height = request->height;
-	/* A gaze that is no place counts as lost: the plan is made for the centre. */
+	/* A lost gaze: the plan is made for the centre. */
 	struct gz_point gaze = request->gaze;
 	if (!isfinite(gaze.x) || !isfinite(gaze.y))
 		gaze = (struct gz_point) { 0.5F, 0.5F };
@@ -106,7 +106,7 @@ void gz_plan_context_make(const struct gz_plan_request *request,
 	set_geometry(request, out_context);
 	if (method->set_curves)
 		method->set_curves(out_context);
-	else /* steps may go by acuity where spacings do not */
+	else /* the acuity step rule may be set for a method of regions */
 		gz_plan_set_acuity_curve(out_context);
 }
 
@@ -120,8 +120,8 @@ static double angle_of_chord(double c2)
 	return sqrt(c2) * (1 + c2 * (1.0 / 24 + c2 * (3.0 / 640 + c2 * (5.0 / 7168))));
 }
 
-/* How much coarser a budget makes this eccentricity. */
-static double scale_at(const struct gz_plan_context *context, double eccentricity_rad)
+/* Factor by which a budget enlarges spacings at this eccentricity. */
+static double budget_scale_at(const struct gz_plan_context *context, double eccentricity_rad)
 {
 	const double beyond =
 		(eccentricity_rad * deg_per_rad - fovea_deg) / (full_scale_deg - fovea_deg);
@@ -129,8 +129,9 @@ static double scale_at(const struct gz_plan_context *context, double eccentricit
 	return context->scale_all * (1 + (context->scale_outside - 1) * share);
 }
 
-/* Densities of rays, not spacings, are mixed: then the cost of the mixture is the mixture of the
- * costs. As less is known of the gaze, a spacing is rounded to the nearest rung instead of down. */
+/* Mixes densities of rays, not spacings, so that the cost of the mixture is the mixture of the
+ * costs. The more the gaze is lost, the more a spacing is rounded to the nearest rung instead of
+ * down. */
 static double widened(const struct gz_plan_context *context, double spacing_px)
 {
 	const double quarter_octave = 1.189207115002721;
@@ -140,7 +141,7 @@ static double widened(const struct gz_plan_context *context, double spacing_px)
 	return (1 + w * (quarter_octave - 1)) / sqrt(density);
 }
 
-/* Angle between the gaze and a position, and how far from the eye the position is. */
+/* Angle between the gaze and a position, rad, and the position's distance from the eye. */
 static double eccentricity_at(const struct gz_plan_context *context, double x, double y,
 			      double *out_length_mm)
 {
@@ -155,9 +156,9 @@ static double eccentricity_at(const struct gz_plan_context *context, double x, d
 }
 
 /*
- * Spacing by geometry: at the distance |p| from the eye, a length of s mm across the line of sight
- * spans s / |p| rad. Along the radius a flat screen is oblique and the same length spans less, so
- * the finer of both directions is the one across.
+ * At the distance |p| from the eye, a length of s mm across the line of sight spans s / |p| rad.
+ * Along the radius from the screen's centre a flat screen is seen at a slant and the same length
+ * spans less, so the direction across needs the finer spacing.
  */
 double gz_plan_spacing_at(const struct gz_plan_context *context, double x, double y)
 {
@@ -167,7 +168,7 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 	if (!context->spacing_in_px)
 		spacing *= length_mm * context->rays_per_mm;
 	if (context->scale_all * context->scale_outside > 1)
-		spacing *= scale_at(context, eccentricity);
+		spacing *= budget_scale_at(context, eccentricity);
 	return context->widen > 0 ? widened(context, spacing) : spacing;
 }
 
@@ -175,7 +176,7 @@ static double table_step_at(const struct gz_plan_context *context, double x, dou
 {
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
-	return curve_at(&context->step, eccentricity) * scale_at(context, eccentricity);
+	return curve_at(&context->step, eccentricity) * budget_scale_at(context, eccentricity);
 }
 
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
@@ -192,8 +193,8 @@ double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct g
 
 /* Step lengths. */
 
-/* Powers of two, and from 2 on the quincunx between them. Chosen: none between 1 and 2, where the
- * display, not the eye, is the limit and the picture shall equal the full one. */
+/* Powers of two and, from 2 on, the quincunx between them. Chosen: no rung between 1 and 2, where
+ * the display is coarser than the eye, so that the picture equals the full one there. */
 const double gz_ladder_px[GZ_LADDER_RUNGS] = {
 	1, 2, 2 * M_SQRT2, 4, 4 * M_SQRT2, 8, 8 * M_SQRT2, 16, 16 * M_SQRT2, 32,
 };
@@ -206,9 +207,9 @@ int gz_ladder_rung(double spacing_px)
 	return rung;
 }
 
-/* Multipliers of the distance rule and of tables: a geometric ladder from 1 to the longest, so that
- * one opacity table a rung serves all tiles. A tile takes the rung below its exact multiplier:
- * never coarser than asked. */
+/* Multipliers of the distance rule and of tables: a geometric ladder from 1 to the longest, since
+ * each multiplier needs an opacity table. A tile takes the rung below its exact multiplier, so its
+ * step is never longer than asked for. */
 static void make_even_ladder(double top, struct gz_plan *plan)
 {
 	plan->step_count = top > 1 ? GZ_PLAN_STEPS_MAX : 1;
@@ -216,13 +217,13 @@ static void make_even_ladder(double top, struct gz_plan *plan)
 		plan->steps[i] = (float)pow(top, (double)i / (GZ_PLAN_STEPS_MAX - 1));
 }
 
-/* Steps by rung: docs/foveation.md. Chosen: a step may grow more slowly than the spacing, since
- * errors along a ray show as shape, not only as blur. */
+/* Steps by rung (docs/foveation.md). Chosen: they grow more slowly than the spacing, since errors
+ * along a ray change shapes instead of only blurring them. */
 static const float acuity_steps[GZ_LADDER_RUNGS] = {
 	1, 2, 2.5F, 3, 3.5F, 4, 5, 6, 7, 8,
 };
 
-/* Past this a ray sees nothing of a volume. */
+/* With longer steps a ray misses most of a volume. */
 static const double step_max = 16;
 
 static void make_acuity_ladder(const struct gz_plan_context *context, struct gz_plan *plan)
@@ -261,7 +262,7 @@ void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *p
 	}
 }
 
-/* The longest step that is no longer than asked. */
+/* Index of the longest step that is at most @p step. */
 static int rung_below(const struct gz_plan *plan, double step)
 {
 	int rung = 0;
@@ -293,8 +294,7 @@ int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan
 		return rung_below(plan, table_step_at(context, near_x, near_y));
 	if (context->steps == GZ_STEPS_RUNG)
 		return gz_ladder_rung(gz_plan_spacing_at(context, near_x, near_y));
-	/* A picture's sides are far from where squares overflow: hypot() costs three times a root.
-	 */
+	/* Not hypot(): it costs three times as much, and these squares cannot overflow. */
 	const double x_px = near_x - context->gaze_px[0], y_px = near_y - context->gaze_px[1];
 	return distance_step(context, plan, sqrt(x_px * x_px + y_px * y_px));
 }

@@ -1,5 +1,5 @@
-/* Tables of spacings from anywhere: whatever the bytes, what is read keeps the header's promises
- * and makes a plan. */
+/* Tables of spacings from untrusted bytes: a table that is read keeps the header's promises and
+ * makes a plan. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -32,5 +32,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	require(plan.ray_count > 0 && plan.ray_count <= (uint64_t)2 * WIDTH * HEIGHT);
 	for (int i = 0; i < plan.step_count; i++)
 		require(plan.steps[i] >= 1 && plan.steps[i] <= 16.001F);
+	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
+	const int count = gz_plan_rectangles(&plan, rectangles);
+	require(count >= 1 && count <= GZ_PLAN_RECTANGLES_MAX);
+	require(rectangles[0].to[0] == WIDTH && rectangles[0].to[1] == HEIGHT);
 	return 0;
 }

@@ -260,20 +260,34 @@ static void trembling_gaze_moves_no_lattice(void **state)
 	gz_plan_free(&b);
 }
 
-/* Spacing of the finest tile that a pixel lies in. */
-static int tile_spacing_at(const struct gz_plan *plan, int x, int y)
+/* For each pixel, the spacing of the finest tile that it lies in. The caller frees it. */
+static uint8_t *finest_spacings(const struct gz_plan *plan)
 {
-	int finest = GZ_PYRAMID_SPACING_MAX;
+	const size_t width = (size_t)plan->width;
+	uint8_t *finest = malloc(width * (size_t)plan->height);
+	assert_non_null(finest);
+	memset(finest, UINT8_MAX, width * (size_t)plan->height);
 	for (size_t i = 0; i < plan->tile_count; i++) {
 		const struct gz_tile *tile = &plan->tiles[i];
 		const int spacing = plan->layers[tile->layer].spacing;
 		const int down = GZ_TILE_EDGE * spacing;
 		const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
-		if (x >= tile->x && x < tile->x + across && y >= tile->y && y < tile->y + down &&
-		    spacing < finest)
-			finest = spacing;
+		for (int y = tile->y; y < tile->y + down && y < plan->height; y++)
+			for (int x = tile->x; x < tile->x + across && x < plan->width; x++) {
+				uint8_t *here = &finest[(size_t)y * width + (size_t)x];
+				*here = spacing < *here ? (uint8_t)spacing : *here;
+			}
 	}
 	return finest;
+}
+
+/* The spacing that a plan of regions has at a pixel: of the first layer whose region holds it. */
+static int region_spacing_at(const struct gz_plan *plan, int x, int y)
+{
+	int layer = 0;
+	while (!gz_region_holds(&plan->layers[layer].region, x, y))
+		layer++;
+	return plan->layers[layer].spacing;
 }
 
 static bool rectangle_holds(const struct gz_plan_rectangle *rectangle, int x, int y)
@@ -282,54 +296,105 @@ static bool rectangle_holds(const struct gz_plan_rectangle *rectangle, int x, in
 	       y < rectangle->to[1];
 }
 
+static void check_nested(const struct gz_plan *plan, const struct gz_plan_rectangle *rectangles,
+			 int count)
+{
+	assert_in_range(count, 1, GZ_PLAN_RECTANGLES_MAX);
+	const int size[2] = { plan->width, plan->height };
+	for (int axis = 0; axis < 2; axis++) {
+		assert_int_equal(rectangles[0].from[axis], 0);
+		assert_int_equal(rectangles[0].to[axis], size[axis]);
+	}
+	for (int i = 0; i < count; i++)
+		for (int axis = 0; axis < 2; axis++) {
+			assert_int_equal(rectangles[i].from[axis] % rectangles[i].spacing, 0);
+			assert_true(rectangles[i].from[axis] < rectangles[i].to[axis]);
+			if (i == 0)
+				continue;
+			assert_true(rectangles[i].spacing < rectangles[i - 1].spacing);
+			assert_true(rectangles[i].from[axis] >= rectangles[i - 1].from[axis]);
+			assert_true(rectangles[i].to[axis] <= rectangles[i - 1].to[axis]);
+		}
+}
+
 static void check_rectangles(const struct gz_plan *plan, const char *name)
 {
 	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
 	const int count = gz_plan_rectangles(plan, rectangles);
-	assert_in_range(count, 1, GZ_PLAN_RECTANGLES_MAX);
-	assert_true(rectangle_holds(&rectangles[0], 0, 0) &&
-		    rectangle_holds(&rectangles[0], plan->width - 1, plan->height - 1));
-	for (int i = 0; i < count; i++) {
-		assert_int_equal(rectangles[i].from[0] % rectangles[i].spacing, 0);
-		assert_int_equal(rectangles[i].from[1] % rectangles[i].spacing, 0);
-		if (i == 0)
-			continue;
-		assert_true(rectangles[i].spacing < rectangles[i - 1].spacing);
-		assert_true(rectangle_holds(&rectangles[i - 1], rectangles[i].from[0],
-					    rectangles[i].from[1]) &&
-			    rectangle_holds(&rectangles[i - 1], rectangles[i].to[0] - 1,
-					    rectangles[i].to[1] - 1));
-	}
-	for (int y = 0; y < plan->height; y += 7)
-		for (int x = 0; x < plan->width; x += 7) {
-			int last = 0;
+	const bool regions = plan->reconstruction == GZ_RECONSTRUCT_REGIONS;
+	uint8_t *tiles = finest_spacings(plan);
+	check_nested(plan, rectangles, count);
+	for (int y = 0; y < plan->height; y++)
+		for (int x = 0; x < plan->width; x++) {
+			int last = 0, finest = tiles[y * plan->width + x];
 			for (int i = 0; i < count; i++)
 				if (rectangle_holds(&rectangles[i], x, y))
 					last = i;
-			if (rectangles[last].spacing > tile_spacing_at(plan, x, y))
+			assert_int_not_equal(finest, UINT8_MAX); /* tiles lie on every pixel */
+			if (rectangles[last].spacing > finest)
 				fail_msg("%s: pixel %d %d has spacing %d, its tile %d", name, x, y,
-					 rectangles[last].spacing, tile_spacing_at(plan, x, y));
+					 rectangles[last].spacing, finest);
+			if (regions && rectangles[last].spacing > region_spacing_at(plan, x, y))
+				fail_msg("%s: pixel %d %d has spacing %d, its region %d", name, x,
+					 y, rectangles[last].spacing,
+					 region_spacing_at(plan, x, y));
 		}
+	free(tiles);
 }
 
 static void rectangles_are_nested_and_as_fine_as_the_tiles(void **state)
 {
 	(void)state;
-	static const struct gz_point gazes[] = { { 0.5F, 0.5F }, { 0.9F, 0.1F }, { -0.3F, 0.5F } };
-	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
-		if (gz_methods[method].needs_table)
-			continue; /* a pyramid as acuity is */
-		for (size_t g = 0; g < sizeof gazes / sizeof gazes[0]; g++) {
-			struct gz_plan plan = make(method, gazes[g], 500, 301);
-			check_rectangles(&plan, gz_method_names[method]);
-			gz_plan_free(&plan);
-		}
-	}
-	struct gz_plan plan = make(GZ_METHOD_STANDARD, gazes[0], 500, 301);
+	static const struct gz_point gazes[] = {
+		{ 0.5F, 0.5F }, { 0.9F, 0.1F }, { -0.3F, 0.5F }, { NAN, NAN }
+	};
+	static const struct {
+		double scale, widen;
+	} coarser[] = { { 1, 0 }, { 3, 0 }, { GZ_PLAN_SCALE_MAX, 0 }, { 1, 0.4 }, { 2, 1 } };
+	enum { WIDTH = 500, HEIGHT = 301 };
+	struct gz_foveation foveation = small_scene_foveation();
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	foveation.blend_px = 12;
+	for (foveation.method = 0; foveation.method < GZ_METHOD_COUNT; foveation.method++)
+		for (size_t g = 0; g < sizeof gazes / sizeof gazes[0]; g++)
+			for (size_t c = 0; c < sizeof coarser / sizeof coarser[0]; c++) {
+				struct gz_plan plan = { 0 };
+				struct gz_plan_request request = gz_plan_request_make(
+					&foveation, &display, gazes[g], WIDTH, HEIGHT);
+				request.scale = coarser[c].scale;
+				request.widen = coarser[c].widen;
+				assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+				check_rectangles(&plan, gz_method_name(&foveation));
+				gz_plan_free(&plan);
+			}
+	struct gz_plan plan = make(GZ_METHOD_STANDARD, gazes[0], WIDTH, HEIGHT);
 	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
 	assert_int_equal(gz_plan_rectangles(&plan, rectangles), 1);
 	assert_int_equal(rectangles[0].spacing, 1);
 	gz_plan_free(&plan);
+}
+
+/* Without this every method could be covered by one rectangle of full resolution. */
+static void rectangles_are_coarser_away_from_the_gaze(void **state)
+{
+	(void)state;
+	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+		struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
+		struct gz_plan plan = make(method, (struct gz_point) { 0.5F, 0.5F }, 1920, 1080);
+		const int count = gz_plan_rectangles(&plan, rectangles);
+		double samples = 0;
+		for (int i = 0; i < count; i++) {
+			const struct gz_plan_rectangle *one = &rectangles[i];
+			samples += (one->to[0] - one->from[0]) / (double)one->spacing *
+				   (one->to[1] - one->from[1]) / one->spacing;
+		}
+		/* rectangles enclose ellipses and overlap, and a quincunx counts twice: measured
+		 * 1.9 for acuity */
+		if (samples > 2 * (double)plan.ray_count)
+			fail_msg("%s: %g samples for %llu rays", gz_method_names[method], samples,
+				 (unsigned long long)plan.ray_count);
+		gz_plan_free(&plan);
+	}
 }
 
 static void each_method_is_planned_in_one_way_and_found_by_its_name(void **state)
@@ -365,6 +430,7 @@ TEST_SUITE(plan)
 		cmocka_unit_test(plan_does_not_depend_on_the_locale),
 		cmocka_unit_test(trembling_gaze_moves_no_lattice),
 		cmocka_unit_test(rectangles_are_nested_and_as_fine_as_the_tiles),
+		cmocka_unit_test(rectangles_are_coarser_away_from_the_gaze),
 		cmocka_unit_test(each_method_is_planned_in_one_way_and_found_by_its_name),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
