@@ -1,14 +1,14 @@
 /**
  * @file
- * Programs for the graphics device: shader files put together, compiled and linked. All calls need
- * the context current.
+ * Programs for the graphics device: shader files joined, compiled and linked. gz_gl_program() needs
+ * a current context.
  */
 #ifndef GZ_RENDER_OPENGL_GL_PROGRAM_H
 #define GZ_RENDER_OPENGL_GL_PROGRAM_H
 
 #include "base/log.h"
 
-/** What a shader does. */
+/** Kinds of shader. */
 enum gz_gl_stage { GZ_GL_VERTEX, GZ_GL_FRAGMENT, GZ_GL_COMPUTE };
 
 /** Most files of one shader. */
@@ -17,31 +17,31 @@ enum gz_gl_stage { GZ_GL_VERTEX, GZ_GL_FRAGMENT, GZ_GL_COMPUTE };
 /** One shader's text. */
 struct gz_gl_shader {
 	enum gz_gl_stage stage;
-	const char *name;                   /**< in messages: that of the last file */
+	const char *name;                   /**< for messages: the last file's */
 	const char *defines;                /**< lines of #define before all files; may be NULL */
 	const char *parts[GZ_GL_PARTS_MAX]; /**< the files in order; NULL ends them */
 };
 
-/** Most pieces of one shader's source. */
+/** Most pieces of one shader's source: version, defines, parts. */
 #define GZ_GL_PIECES_MAX (GZ_GL_PARTS_MAX + 2)
 
 /**
- * The source of a shader as the driver gets it: the version (430 for compute shaders, 330 for
- * others), the defines, the parts.
+ * The pieces of a shader's source, in the order in which the driver gets them: the version (430 for
+ * compute shaders, 330 for others), the defines, the parts.
  *
- * @param[out] out_pieces  in order; borrowed from @p shader, or static
- * @return how many
+ * @param[out] out_pieces  borrowed from @p shader, or static
+ * @return number of pieces
  */
 int gz_gl_shader_source(const struct gz_gl_shader *shader,
 			const char *out_pieces[GZ_GL_PIECES_MAX]);
 
 /**
- * Compile and link.
+ * Compile and link a program.
  *
  * @param shaders  one compute shader, or a vertex and a fragment shader
- * @param remedy   what a user can do if the driver refuses, as in "use --backend cpu"
- * @return OpenGL's name of the program, which the caller deletes; 0 where the driver refuses it:
- *         logged
+ * @param remedy   advice for the user if the driver refuses, such as "use --backend cpu"
+ * @return OpenGL's name of the program, which the caller deletes; 0 if the driver refuses it, which
+ *         is logged
  */
 unsigned gz_gl_program(const struct gz_gl_shader *shaders, int count, const char *remedy,
 		       const struct gz_log *log);

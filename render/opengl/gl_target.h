@@ -1,7 +1,7 @@
 /**
  * @file
- * Where triangles are drawn: a framebuffer with the planes that a pass writes. All calls need the
- * context current.
+ * A framebuffer for triangles, with the planes that a pass writes. All calls need a current
+ * context.
  */
 #ifndef GZ_RENDER_OPENGL_GL_TARGET_H
 #define GZ_RENDER_OPENGL_GL_TARGET_H
@@ -12,11 +12,10 @@
 #include "base/result.h"
 #include "render/opengl/gl_device.h"
 
-/** Planes of a target: fragment shaders write GZ_GL_TARGET_COLOUR to location 0, the next to 1, …
- */
+/** Planes of a target. Fragment shaders write each to the location of its number. */
 enum gz_gl_target_plane {
 	GZ_GL_TARGET_COLOUR, /**< RGBA8 */
-	GZ_GL_TARGET_ID,     /**< R32UI: an object's number; 0 = nothing */
+	GZ_GL_TARGET_ID,     /**< R32UI: an object's id; 0 = no object */
 	GZ_GL_TARGET_VALUE,  /**< R32F: any number */
 	GZ_GL_TARGET_PLANES,
 };
@@ -24,13 +23,13 @@ enum gz_gl_target_plane {
 /** A framebuffer. Zero-initialised is empty; keep it from frame to frame. */
 struct gz_gl_target {
 	unsigned framebuffer;                 /**< OpenGL's names; 0: none */
-	unsigned planes[GZ_GL_TARGET_PLANES]; /**< textures; 0 where the plane is not wanted */
+	unsigned planes[GZ_GL_TARGET_PLANES]; /**< textures; 0 if the plane is not wanted */
 	unsigned depth;                       /**< texture, DEPTH_COMPONENT32F */
 	int width, height;
 };
 
 /**
- * Make a framebuffer of @p width x @p height pixels, or keep it where it is one already.
+ * Make a framebuffer of @p width x @p height pixels, or keep the one there is if it fits.
  *
  * @param planes  bits 1 << enum gz_gl_target_plane of the planes wanted; depth is always there
  * @retval GZ_ERR_NO_MEM       the device has no room; logged. The target is empty
@@ -40,17 +39,17 @@ enum gz_result gz_gl_target_resize(struct gz_gl_target *target, const struct gz_
 				   unsigned planes, int width, int height,
 				   const struct gz_log *log);
 
-/** Draw into the target from now on, over its whole size; with depth test. */
+/** Draw into the target from now on, over its whole size, with depth test and without blending. */
 void gz_gl_target_begin(const struct gz_gl_target *target);
 
-/** Clear all planes: colour to @p colour (R, G, B, A in [0, 1]), numbers to 0, depth to the
- * farthest. Between begin and end. */
+/** Clear all planes: colour to @p colour (R, G, B, A in [0, 1]), ids and values to 0, depth to
+ * the farthest. Call it between begin and end. */
 void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]);
 
-/** Draw where it was drawn before: the default framebuffer, without depth test. */
+/** Draw into the default framebuffer again, without depth test. */
 void gz_gl_target_end(void);
 
-/** Read a plane back: width x height words of 32 bits, row 0 as drawn at the bottom. */
+/** Read a plane back: width x height words of 32 bits, row 0 is the bottom one. */
 void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
 		       uint32_t *out_words);
 

@@ -51,7 +51,7 @@ struct gz_backend_params {
 	bool wait_for_bricks;
 	/** gl: where to draw; borrowed, outlives the drawer. NULL = a context of its own from EGL,
 	 *  without a window. A program with windows must pass a window's context
-	 *  (render/opengl/gl_context.h). */
+	 *  (render/opengl/gl_device.h). */
 	struct gz_gl_context *gl_context;
 	bool gl_hardware_only; /**< gl: refuse an OpenGL that runs on the processor */
 	/** gl: limit of the device memory for voxels, bytes; a volume that does not fit is shown by

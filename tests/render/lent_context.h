@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
 
 struct lent_context {
 	struct gz_gl_context base;

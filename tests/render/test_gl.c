@@ -11,7 +11,7 @@
 #include <GL/glew.h>
 
 #include "lent_context.h"
-#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
 #include "render/plan/method.h"
 #include "render/raycast/gl/gl_cast.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"

@@ -8,7 +8,7 @@
 
 #include "lent_context.h"
 #include "render/frame/picture_maker.h"
-#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 #include "small_scene.h"

@@ -9,7 +9,7 @@
 #include <GL/glew.h>
 
 #include "base/workers.h"
-#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
 #include "render/opengl/gl_program.h"
 #include "render/opengl/gl_target.h"
 #include "render/picture/plane.h"
@@ -168,7 +168,6 @@ static void numbers_and_objects_are_reconstructed_by_every_method(void **state)
 
 /* The device, and what a frame needs of it. */
 struct gl {
-	struct gz_gl_context *context;
 	struct gz_gl_device device;
 	struct gz_gl_plan plan;
 	struct gz_gl_points points;
@@ -179,11 +178,10 @@ static struct gl gl;
 
 static void open_gl(void)
 {
-	char reason[200];
-	if (gz_gl_context_egl(false, &gl.context, reason, sizeof reason) != GZ_OK)
+	const struct gz_gl_setup setup = { .lent = NULL };
+	if (gz_gl_device_create(&setup, NULL, &gl.device) != GZ_OK)
 		skip();
-	assert_int_equal(gl.context->ops->make_current(gl.context), GZ_OK);
-	assert_int_equal(gz_gl_device_open(&gl.device, reason, sizeof reason), GZ_OK);
+	assert_int_equal(gz_gl_device_enter(&gl.device), GZ_OK);
 }
 
 static void close_gl(void)
@@ -191,8 +189,8 @@ static void close_gl(void)
 	gz_gl_plan_free(&gl.plan);
 	gz_gl_points_free(&gl.points);
 	gz_gl_reconstruct_free(&gl.programs);
-	gl.context->ops->release(gl.context);
-	gz_gl_context_destroy(&gl.context);
+	gz_gl_device_leave(&gl.device);
+	gz_gl_device_destroy(&gl.device);
 }
 
 /* The cast lattices as the device lays them out: the picture, then the others. */

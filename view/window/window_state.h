@@ -12,7 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "render/opengl/gl_context.h"
+#include "render/opengl/gl_device.h"
 #include "view/draw/quad.h"
 #include "view/frame/frame.h"
 #include "view/gaze/gaze_source.h"

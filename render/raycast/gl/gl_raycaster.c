@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/opengl/gl_context.h"
 #include "render/opengl/gl_device.h"
 #include "render/raycast/gl/gl_cast.h"
 #include "render/raycast/gl/gl_scene.h"
@@ -15,15 +14,11 @@
 
 #define GZ_LOG_MODULE "gl"
 
-enum { REASON_SIZE = 200 };
-
 /* Moments of a frame. */
 enum { MARK_START, MARK_CAST, MARK_END };
 
 struct gl_raycaster {
 	struct gz_raycaster base;
-	struct gz_gl_context *context;
-	struct gz_gl_context *own_context; /* the same, where this raycaster made it */
 	struct gz_gl_device device;
 	struct gz_gl_scene scene;
 	struct gz_gl_plan plan;
@@ -39,49 +34,32 @@ static struct gl_raycaster *gl_of(struct gz_raycaster *raycaster)
 	return (struct gl_raycaster *)raycaster;
 }
 
-static enum gz_result enter(struct gl_raycaster *gl)
+/* Make the context current until gz_gl_device_leave(). A lost context is logged. */
+static enum gz_result enter_device(const struct gl_raycaster *gl)
 {
-	const enum gz_result result = gl->context->ops->make_current(gl->context);
+	const enum gz_result result = gz_gl_device_enter(&gl->device);
 	if (result != GZ_OK)
 		gz_err(gl->base.log, "the OpenGL context cannot be used any more");
 	return result;
 }
 
-static void leave(struct gl_raycaster *gl)
-{
-	gl->context->ops->release(gl->context);
-}
-
 static void gl_destroy(struct gz_raycaster *raycaster)
 {
 	struct gl_raycaster *gl = gl_of(raycaster);
-	if (gl->context && gl->context->ops->make_current(gl->context) == GZ_OK) {
+	if (gz_gl_device_enter(&gl->device) == GZ_OK) {
 		gz_gl_scene_free(&gl->scene);
 		gz_gl_plan_free(&gl->plan);
 		gz_gl_points_free(&gl->colours);
 		gz_gl_cast_free(&gl->cast);
 		gz_gl_reconstruct_free(&gl->reconstruct);
 		gz_gl_timer_free(&gl->timer);
-		leave(gl);
+		gz_gl_device_leave(&gl->device);
 	} else {
-		/* What a lost context held is gone with it. */
+		/* A lost context took its objects with it. */
 		gz_gl_scene_forget(&gl->scene);
 	}
-	gz_gl_context_destroy(&gl->own_context);
+	gz_gl_device_destroy(&gl->device);
 	free(gl);
-}
-
-/* The context that was given, or one of its own. */
-static enum gz_result open_context(struct gl_raycaster *gl, const struct gz_backend_params *params,
-				   char *reason)
-{
-	gl->context = params->gl_context;
-	if (gl->context)
-		return GZ_OK;
-	const enum gz_result result =
-		gz_gl_context_egl(params->gl_hardware_only, &gl->own_context, reason, REASON_SIZE);
-	gl->context = gl->own_context;
-	return result;
 }
 
 static void apply_hooks(const struct gz_gl_raycaster_hooks *hooks, struct gz_gl_device *device)
@@ -92,47 +70,22 @@ static void apply_hooks(const struct gz_gl_raycaster_hooks *hooks, struct gz_gl_
 		device->volume_edge_max = hooks->volume_edge_max;
 }
 
-static enum gz_result open_device(struct gl_raycaster *gl, const struct gz_backend_params *params,
-				  char *reason)
-{
-	enum gz_result result = enter(gl);
-	if (result != GZ_OK)
-		return result;
-	result = gz_gl_device_open(&gl->device, reason, REASON_SIZE);
-	leave(gl);
-	if (result == GZ_OK && gl->device.software && params->gl_hardware_only) {
-		snprintf(reason, REASON_SIZE, "%.120s is software", gl->device.description);
-		result = GZ_ERR_UNSUPPORTED;
-	}
-	if (params->gl_memory_bytes > 0) {
-		gl->device.memory_max = (int64_t)params->gl_memory_bytes;
-		gl->device.memory_told = true;
-	}
-	return result;
-}
-
 enum gz_result gz_gl_raycaster_create(const struct gz_backend_params *params,
 				      const struct gz_gl_raycaster_hooks *hooks,
 				      const struct gz_log *log, struct gz_raycaster **out_raycaster)
 {
-	char reason[REASON_SIZE] = "its context cannot be made current";
+	const struct gz_gl_setup setup = {
+		.lent = params->gl_context,
+		.hardware_only = params->gl_hardware_only,
+		.memory_bytes = params->gl_memory_bytes,
+	};
 	struct gl_raycaster *gl = calloc(1, sizeof *gl);
 	if (!gl)
 		return GZ_ERR_NO_MEM;
 	gl->base = (struct gz_raycaster) { .ops = &gz_gl_raycaster_ops, .log = log };
 	gl->wait_for_bricks = params->wait_for_bricks;
-	enum gz_result result = open_context(gl, params, reason);
-	if (result == GZ_OK)
-		result = open_device(gl, params, reason);
+	const enum gz_result result = gz_gl_device_create(&setup, log, &gl->device);
 	if (result != GZ_OK) {
-		/* Whoever only tries takes cpu then; whoever insists must be told what to do. */
-		if (params->gl_hardware_only)
-			gz_debug(log, "cpu casts the rays: %s", reason);
-		else
-			gz_err(log,
-			       "no OpenGL 4.3: %s; update the graphics driver, or take "
-			       "--backend cpu",
-			       reason);
 		gl_destroy(&gl->base);
 		return result;
 	}
@@ -152,11 +105,11 @@ static enum gz_result gl_set_volume(struct gz_raycaster *raycaster, const struct
 {
 	struct gl_raycaster *gl = gl_of(raycaster);
 	gl->scene.volume = NULL; /* borrowed until now */
-	enum gz_result result = enter(gl);
+	enum gz_result result = enter_device(gl);
 	if (result != GZ_OK)
 		return result;
 	result = gz_gl_scene_set_volume(&gl->scene, &gl->device, volume, raycaster->log);
-	leave(gl);
+	gz_gl_device_leave(&gl->device);
 	return result;
 }
 
@@ -166,12 +119,12 @@ static enum gz_result gl_set_transfer(struct gz_raycaster *raycaster,
 	struct gl_raycaster *gl = gl_of(raycaster);
 	if (!gl->scene.volume)
 		return GZ_ERR_INVAL;
-	enum gz_result result = enter(gl);
+	enum gz_result result = enter_device(gl);
 	if (result != GZ_OK)
 		return result;
 	gz_gl_scene_set_transfer(&gl->scene, transfer);
 	result = gz_gl_device_errors(&gl->device);
-	leave(gl);
+	gz_gl_device_leave(&gl->device);
 	if (result != GZ_OK)
 		gz_err(raycaster->log, "the graphics device did not take the transfer function: %s",
 		       gz_result_text(result));
@@ -179,7 +132,7 @@ static enum gz_result gl_set_transfer(struct gz_raycaster *raycaster,
 }
 
 /* Room on the device for what the frame's passes write. */
-static enum gz_result make_room(struct gl_raycaster *gl, const struct gz_plan *plan)
+static enum gz_result reserve_outputs(struct gl_raycaster *gl, const struct gz_plan *plan)
 {
 	enum gz_result result =
 		gz_gl_points_prepare(&gl->colours, &gl->device, gl->plan.point_count);
@@ -192,9 +145,9 @@ static enum gz_result make_room(struct gl_raycaster *gl, const struct gz_plan *p
 }
 
 /* The blocks of all levels that tiles take, and what else the passes need. */
-static enum gz_result prepare(struct gl_raycaster *gl, const struct gz_camera *camera,
-			      const struct gz_ray_frame *world, const struct gz_ray_params *rays,
-			      const struct gz_plan *plan)
+static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_camera *camera,
+				    const struct gz_ray_frame *world,
+				    const struct gz_ray_params *rays, const struct gz_plan *plan)
 {
 	struct gz_gl_cast_block block = { 0 };
 	struct gz_gl_tile_levels levels;
@@ -204,7 +157,7 @@ static enum gz_result prepare(struct gl_raycaster *gl, const struct gz_camera *c
 	if (result == GZ_OK)
 		result = gz_gl_plan_prepare(&gl->plan, &gl->device, plan, &levels, log);
 	if (result == GZ_OK)
-		result = make_room(gl, plan);
+		result = reserve_outputs(gl, plan);
 	if (result != GZ_OK)
 		return result;
 	for (int i = 0; i < gl->scene.level_count; i++) {
@@ -243,8 +196,8 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 }
 
 /* All passes of a frame. */
-static enum gz_result draw(struct gl_raycaster *gl, const struct gz_ray_params *rays,
-			   const struct gz_plan *plan)
+static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_ray_params *rays,
+				 const struct gz_plan *plan)
 {
 	const struct gz_gl_reconstruct_job job = {
 		.device = &gl->device,
@@ -264,8 +217,8 @@ static enum gz_result draw(struct gl_raycaster *gl, const struct gz_ray_params *
 }
 
 /* The picture to where it is wanted, and whether all went well. */
-static enum gz_result deliver(struct gl_raycaster *gl, const struct gz_plan *plan,
-			      struct gz_image *image)
+static enum gz_result deliver_picture(struct gl_raycaster *gl, const struct gz_plan *plan,
+				      struct gz_image *image)
 {
 	enum gz_result result = GZ_OK;
 	if (image)
@@ -307,14 +260,14 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)
-		result = enter(gl);
+		result = enter_device(gl);
 	if (result != GZ_OK)
 		return result;
-	result = prepare(gl, camera, &world, rays, plan);
+	result = prepare_frame(gl, camera, &world, rays, plan);
 	if (result == GZ_OK)
-		result = draw(gl, rays, plan);
+		result = draw_frame(gl, rays, plan);
 	if (result == GZ_OK)
-		result = deliver(gl, plan, image);
+		result = deliver_picture(gl, plan, image);
 	if (result == GZ_OK && out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
@@ -327,7 +280,7 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 								       MARK_START, MARK_END),
 			.bricks_coming = gl->scene.bricks.coming,
 		};
-	leave(gl);
+	gz_gl_device_leave(&gl->device);
 	return result;
 }
 

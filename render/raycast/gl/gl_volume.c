@@ -99,7 +99,7 @@ static enum gz_result load(struct gz_gl_volume *gl, const struct gz_gl_device *d
 {
 	const struct gz_gl_texel_format *format = gz_gl_texel_format(texels, volume->type);
 	const size_t bytes = gz_volume_voxel_count(volume) * format->bytes;
-	if (device->memory_told && bytes > (size_t)device->memory_max)
+	if (device->memory_known && bytes > (size_t)device->memory_max)
 		return GZ_ERR_NO_MEM;
 	gl->texels = texels;
 	gl->voxels = gz_gl_texture(GL_TEXTURE_3D);
