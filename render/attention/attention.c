@@ -4,33 +4,67 @@
 
 #include "base/clock.h"
 
-/* The dead band never grows past this, degrees. Chosen: tremor, drift and microsaccades stay under
- * 1 degree (Bauer 2018, section 2.2), so more is a movement whatever the tracker's noise. */
+#define AT(field) offsetof(struct gz_attention_params, field)
+
+const struct gz_option gz_attention_options[] = {
+	{ "attention.dead_band_deg", GZ_OPTION_DOUBLE, AT(dead_band_deg), 0, 10, .preset = "0.5",
+	  .help = "how far a tracker's gaze may move before the plan follows, degrees" },
+	{ "attention.dead_band_noise", GZ_OPTION_DOUBLE, AT(dead_band_noise), 0, 10, .preset = "2",
+	  .help = "the same limit as a multiple of the tracker's noise, up to 1.5 degrees; the "
+		  "larger "
+		  "one counts" },
+	{ "attention.saccade_scale", GZ_OPTION_DOUBLE, AT(saccade_scale), 1, GZ_BUDGET_SCALE_MAX,
+	  .preset = "2", .help = "factor on spacings outside the fovea in a saccade; 1 = none" },
+	{ "attention.blink_ms", GZ_OPTION_DOUBLE, AT(blink_ms), 0, 10000, .preset = "500",
+	  .help = "longest blink, and greatest age of a gaze that is used, ms" },
+	{ "attention.hold_ms", GZ_OPTION_DOUBLE, AT(hold_ms), 0, 1e6, .preset = "150",
+	  .help = "how long the plan keeps its place after the gaze is lost, ms" },
+	{ "attention.widen_ms", GZ_OPTION_DOUBLE, AT(widen_ms), 0, 1e6, .preset = "500",
+	  .help = "how long the plan then takes to become uniform, ms; 0 = it stays" },
+	{ "attention.budget_ms", GZ_OPTION_DOUBLE, AT(budget_ms), 0, 10000, .preset = "0",
+	  .help = "time that 95 of 100 frames may take, ms; the plan gets as coarse as needed; "
+		  "0 = no limit" },
+};
+const size_t gz_attention_option_count =
+	sizeof gz_attention_options / sizeof gz_attention_options[0];
+
+struct gz_attention_params gz_attention_default(void)
+{
+	struct gz_attention_params params = { 0 };
+	const struct gz_option_binding binding = {
+		.options = gz_attention_options,
+		.count = gz_attention_option_count,
+		.target = &params,
+	};
+	gz_options_preset(&binding);
+	return params;
+}
+
+/* Upper limit of the dead band, degrees. Chosen: tremor, drift and microsaccades stay under 1
+ * degree (Bauer 2018, section 2.2), so more is a movement even with a noisy tracker. */
 #define DEAD_BAND_MAX_DEG 1.5
 
-/* Of a gaze that no tracker tells, such as the mouse's, which has no noise: degrees. Chosen: a
- * pixel or two, so that the last bits of a number change no picture. */
+/* Dead band of a gaze without a tracker and its noise, such as the mouse's, degrees. Chosen: a
+ * pixel or two, so that rounding changes no picture. */
 #define EXACT_BAND_DEG 0.05
 
-/* A saccade that lasts longer is none, and is not worth being blind for. A saccade of 90 degrees
- * takes 2.2 * 90 + 21 ms (Carpenter, "Movements of the Eyes", 1988). */
+/* Longest saccade; a longer one is a wrong label. A saccade of 90 degrees takes 2.2 * 90 + 21 ms
+ * (Carpenter, "Movements of the Eyes", 1988). */
 #define SACCADE_MAX_MS 219
 
-/* After a landing the plan goes on with the gaze for so long: the tracker has yet to find out where
- * exactly the eye has come to rest, and an update 5 to 60 ms after the movement goes unseen (Bauer
- * 2018, section 2.2). */
+/* After a landing the plan follows every sample for this long, while the tracker settles on the
+ * exact place. Nobody notices an update 5 to 60 ms after the movement (Bauer 2018, section 2.2). */
 #define LANDING_MS 60
 
-/* Until a pursuit has lasted so long it may be a label that does not last: chosen, what noise makes
- * of the end of a saccade. */
+/* A shorter pursuit is ignored. Chosen: noise makes such labels of the end of a saccade. */
 #define PURSUIT_MIN_MS 100
 
-/* A gaze farther off than so many dead bands has not been pursued there: chosen, what an eye covers
- * in the longest pursued frames. */
+/* A gaze farther away than so many dead bands did not get there by pursuit. Chosen: the distance
+ * that a pursuing eye covers in the longest frames. */
 #define PURSUIT_MAX_BANDS 4
 
-/* Widening is done in so many steps. Chosen: each is a small change; while nothing changes nothing
- * need be drawn. */
+/* Steps in which a plan widens. Chosen: each is a small change, and between two of them nothing
+ * needs to be drawn. */
 #define WIDEN_STEPS 16
 
 static const char *const state_names[] = { "fixation", "saccade", "pursuit",
@@ -76,7 +110,7 @@ void gz_attention_set_params(struct gz_attention *attention,
 double gz_attention_dead_band_deg(const struct gz_attention_params *params, double noise_deg)
 {
 	double by_noise = params->dead_band_noise * noise_deg;
-	if (!(by_noise > params->dead_band_deg)) /* also where the noise is not known */
+	if (!(by_noise > params->dead_band_deg)) /* also if the noise is NaN */
 		return params->dead_band_deg;
 	return fmin(by_noise, fmax(params->dead_band_deg, DEAD_BAND_MAX_DEG));
 }
@@ -86,14 +120,14 @@ static bool finite_point(struct gz_point point)
 	return isfinite(point.x) && isfinite(point.y);
 }
 
-/* What the gaze says the eye does, before anything is remembered. */
+/* The state by this gaze alone, without history. */
 static enum gz_attention_state state_of(const struct gz_attention_params *params,
 					const struct gz_attention_gaze *gaze)
 {
 	bool silent = gaze->has_age && gz_ns_to_ms(gaze->age_ns) > params->blink_ms;
 	if (!gaze->known || silent)
 		return GZ_ATTENTION_HOLD;
-	/* The point behind closed lids is nobody's matter. */
+	/* The point does not count while the lids are closed. */
 	if (gaze->has_event && gaze->event == GZ_EVENT_BLINK)
 		return GZ_ATTENTION_BLINK;
 	if (!finite_point(gaze->point) || (gaze->has_event && gaze->event == GZ_EVENT_LOST))
@@ -105,7 +139,7 @@ static enum gz_attention_state state_of(const struct gz_attention_params *params
 	return GZ_ATTENTION_FIXATION;
 }
 
-/* How far the gaze is from where the plan is sharp; endless where that is nowhere. */
+/* Angle from the gaze to where the plan is sharp; infinite if the plan is sharp nowhere. */
 static double distance_deg(const struct gz_attention *attention,
 			   const struct gz_attention_gaze *gaze, const struct gz_display *display)
 {
@@ -114,12 +148,12 @@ static double distance_deg(const struct gz_attention *attention,
 	return focus->widen > 0 || isnan(deg) ? INFINITY : deg;
 }
 
-static void look(struct gz_attention *attention, struct gz_point point, double scale)
+static void aim_focus(struct gz_attention *attention, struct gz_point point, double scale)
 {
 	attention->focus = (struct gz_focus) { .point = point, .scale = scale, .widen = 0 };
 }
 
-static bool is_lost(enum gz_attention_state state)
+static bool is_lost_state(enum gz_attention_state state)
 {
 	return state == GZ_ATTENTION_HOLD || state == GZ_ATTENTION_WIDEN;
 }
@@ -129,22 +163,22 @@ static double for_ms(const struct gz_attention *attention)
 	return gz_ns_to_ms(attention->now_ns - attention->said_ns);
 }
 
-/* Vision is suppressed, but the label may be wrong: while the eye has gone nowhere nothing changes,
- * and no saccade lasts for ever. */
-static void in_saccade(struct gz_attention *attention, struct gz_point point, double distance,
-		       double band)
+/* Vision is suppressed in a saccade, but the label may be wrong: nothing changes until the eye has
+ * left the dead band, and a saccade that is too long gets full detail again. */
+static void follow_saccade(struct gz_attention *attention, struct gz_point point, double distance,
+			   double band)
 {
 	bool suppressed = for_ms(attention) <= SACCADE_MAX_MS;
 	if (!attention->on_way && distance <= band)
 		return;
-	look(attention, point, suppressed ? attention->params.saccade_scale : 1);
+	aim_focus(attention, point, suppressed ? attention->params.saccade_scale : 1);
 	attention->on_way = true;
 }
 
-/* At rest in a new place, or soon to be. */
-static void land(struct gz_attention *attention, struct gz_point point)
+/* The eye is at rest in a new place, or soon will be. */
+static void land_at(struct gz_attention *attention, struct gz_point point)
 {
-	look(attention, point, 1);
+	aim_focus(attention, point, 1);
 	attention->on_way = false;
 	attention->landed = true;
 	attention->landed_ns = attention->now_ns;
@@ -156,23 +190,23 @@ static bool just_landed(const struct gz_attention *attention)
 	       gz_ns_to_ms(attention->now_ns - attention->landed_ns) <= LANDING_MS;
 }
 
-/* The plan is drawn along, a dead band behind: it moves as smoothly as the gaze, and for noise not
- * at all. */
-static void in_pursuit(struct gz_attention *attention, struct gz_point to, double distance,
-		       double band)
+/* The plan follows one dead band behind the gaze, so it moves as smoothly as the gaze and noise
+ * does not move it. */
+static void follow_pursuit(struct gz_attention *attention, struct gz_point to, double distance,
+			   double band)
 {
 	struct gz_point from = attention->focus.point;
 	if (distance <= band)
 		return;
 	float share = (float)(1 - band / distance);
-	look(attention,
-	     (struct gz_point) { from.x + share * (to.x - from.x),
-				 from.y + share * (to.y - from.y) },
-	     1);
+	aim_focus(attention,
+		  (struct gz_point) { from.x + share * (to.x - from.x),
+				      from.y + share * (to.y - from.y) },
+		  1);
 }
 
-static void seen(struct gz_attention *attention, const struct gz_attention_gaze *gaze,
-		 const struct gz_display *display)
+static void follow_seen_gaze(struct gz_attention *attention, const struct gz_attention_gaze *gaze,
+			     const struct gz_display *display)
 {
 	double band = gaze->has_event
 			      ? gz_attention_dead_band_deg(&attention->params, gaze->noise_deg)
@@ -181,16 +215,17 @@ static void seen(struct gz_attention *attention, const struct gz_attention_gaze 
 	bool pursued = attention->state == GZ_ATTENTION_PURSUIT &&
 		       for_ms(attention) >= PURSUIT_MIN_MS && distance < PURSUIT_MAX_BANDS * band;
 	if (attention->state == GZ_ATTENTION_SACCADE)
-		in_saccade(attention, gaze->point, distance, band);
+		follow_saccade(attention, gaze->point, distance, band);
 	else if (!attention->on_way && just_landed(attention))
-		look(attention, gaze->point, 1);
+		aim_focus(attention, gaze->point, 1);
 	else if (!attention->on_way && pursued)
-		in_pursuit(attention, gaze->point, distance, band);
+		follow_pursuit(attention, gaze->point, distance, band);
 	else if (attention->on_way || distance > band)
-		land(attention, gaze->point);
+		land_at(attention, gaze->point);
 }
 
-/* A blink that is too long is lost from its longest on, anything else from now on. */
+/* A blink that is too long counts as lost from the end of the longest blink, any other gaze from
+ * now. */
 static int64_t lost_since_ns(const struct gz_attention *attention)
 {
 	if (attention->said != GZ_ATTENTION_BLINK)
@@ -198,7 +233,7 @@ static int64_t lost_since_ns(const struct gz_attention *attention)
 	return attention->said_ns + (int64_t)(attention->params.blink_ms * (double)GZ_NS_PER_MS);
 }
 
-static void unseen(struct gz_attention *attention, bool was_lost)
+static void hold_or_widen(struct gz_attention *attention, bool was_lost)
 {
 	const struct gz_attention_params *params = &attention->params;
 	if (!was_lost)
@@ -210,7 +245,7 @@ static void unseen(struct gz_attention *attention, bool was_lost)
 		return;
 	attention->state = GZ_ATTENTION_WIDEN;
 	double share = fmin(past_ms / params->widen_ms, 1);
-	/* Up to the next step at once, so that it begins when the time to hold is over. */
+	/* Rounded up, so that widening begins at once when the hold time is over. */
 	double widen = fmin(floor(share * WIDEN_STEPS) + 1, WIDEN_STEPS) / WIDEN_STEPS;
 	attention->focus.widen = fmax(attention->focus.widen, widen);
 }
@@ -236,16 +271,16 @@ struct gz_focus gz_attention_step(struct gz_attention *attention,
 				  const struct gz_attention_gaze *gaze,
 				  const struct gz_display *display, int64_t now_ns)
 {
-	bool was_lost = attention->started && is_lost(attention->state);
+	bool was_lost = attention->started && is_lost_state(attention->state);
 	take_time(attention, state_of(&attention->params, gaze), now_ns);
 	attention->state = attention->said;
 	if (attention->state == GZ_ATTENTION_BLINK &&
 	    for_ms(attention) > attention->params.blink_ms)
 		attention->state = GZ_ATTENTION_HOLD;
-	if (is_lost(attention->state))
-		unseen(attention, was_lost);
+	if (is_lost_state(attention->state))
+		hold_or_widen(attention, was_lost);
 	else if (attention->state != GZ_ATTENTION_BLINK)
-		seen(attention, gaze, display);
+		follow_seen_gaze(attention, gaze, display);
 	return with_budget(attention);
 }
 
@@ -268,7 +303,8 @@ bool gz_attention_settled(const struct gz_attention *attention)
 
 bool gz_attention_spent(struct gz_attention *attention, double frame_ms)
 {
-	/* In a saccade a frame is cheaper than those that follow. */
+	/* A frame in a saccade is cheaper than the frames that follow and says nothing about them.
+	 */
 	bool cheap = attention->focus.scale > 1 && frame_ms <= attention->params.budget_ms;
 	return !cheap && gz_budget_step(&attention->budget, frame_ms);
 }

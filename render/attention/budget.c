@@ -4,29 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More frames than 5 % of the window. */
+/* So many slow frames are more than 5 % of the window. */
 #define OVER_MIN (GZ_BUDGET_WINDOW / 20 + 1)
-/* Frames that come so soon after one another are one cause. */
+/* Slow frames within this many frames have one cause. */
 #define OVER_SPAN (OVER_MIN + 1)
 
-/* What one rung costs at most: rays go with the scale's square, 2^(2/4). */
+/* Greatest ratio of the cost of neighbouring rungs: rays grow with the scale's square, 2^(2/4). */
 #define RUNG_COST 1.4142135623730951
 
-/* What is aimed at, as a share of the budget. Chosen: with one rung's cost, frames may vary by a
- * tenth without a change. */
+/* Share of the budget to aim at. Chosen: frame times may vary by a tenth without a change. */
 #define AIM 0.9
 
-/* The same for the rungs that are left out at once, since not all of a frame goes with its rays. */
+/* The share when several rungs are skipped at once, since only part of a frame scales with its
+ * rays. */
 #define LEAP_AIM 0.8
 
 /* Most doublings of a leap: from the first rung to the last. */
 #define LEAPS_MAX 4
 
-/* Clearly cheaper than when a finer rung failed (chosen). */
+/* Frames below this share of their time at the failed trial are clearly cheaper (chosen). */
 #define CHEAPER 0.8
 
-/* Most doublings of the time before a finer rung is tried again (chosen: 40 * 2^8 frames are some
- * minutes). */
+/* Most doublings of the wait before the next trial (chosen: 40 * 2^8 frames are some minutes). */
 #define FAILS_MAX 8
 
 static const char *const state_names[] = { "off", "within", "over", "limit" };
@@ -51,7 +50,7 @@ double gz_budget_scale(const struct gz_budget *budget)
 	return exp2(budget->rung * 0.25);
 }
 
-static void keep(struct gz_budget *budget, double frame_ms)
+static void add_frame_time(struct gz_budget *budget, double frame_ms)
 {
 	if (budget->count == GZ_BUDGET_WINDOW) {
 		budget->count--;
@@ -70,30 +69,31 @@ static int count_over(const struct gz_budget *budget, int newest)
 	return over;
 }
 
-static int ascending(const void *a, const void *b)
+static int compare_ms(const void *a, const void *b)
 {
 	double left = *(const double *)a, right = *(const double *)b;
 	return (left > right) - (left < right);
 }
 
-/* So that OVER_MIN - 1 of the newest frames are above it: of a whole window the percentile. */
+/* The time that OVER_MIN - 1 of the newest frames exceed: for a whole window, its 95th percentile.
+ */
 static double upper_ms(const struct gz_budget *budget, int newest)
 {
 	double sorted[GZ_BUDGET_WINDOW];
 	memcpy(sorted, budget->frames_ms + budget->count - newest,
 	       (size_t)newest * sizeof sorted[0]);
-	qsort(sorted, (size_t)newest, sizeof sorted[0], ascending);
+	qsort(sorted, (size_t)newest, sizeof sorted[0], compare_ms);
 	return sorted[newest - OVER_MIN];
 }
 
-static void choose(struct gz_budget *budget, int rung)
+static void go_to_rung(struct gz_budget *budget, int rung)
 {
 	budget->rung = rung < GZ_BUDGET_RUNGS ? rung : GZ_BUDGET_RUNGS - 1;
 	budget->count = 0;
 	budget->waited = 0;
 }
 
-/* As many rungs as the frames were too slow, if they come in a row; else 0. */
+/* Rungs that the excess needs if slow frames come together; 0 if they are scattered. */
 static int rungs_needed(const struct gz_budget *budget)
 {
 	int newest = budget->count < OVER_SPAN ? budget->count : OVER_SPAN;
@@ -101,7 +101,7 @@ static int rungs_needed(const struct gz_budget *budget)
 		return 0;
 	double excess = upper_ms(budget, newest) / (LEAP_AIM * budget->budget_ms);
 	double rungs = ceil(log(excess) / log(RUNG_COST));
-	/* What did not help is done twice as far: rays may be the smaller part of a frame. */
+	/* Doubled after each attempt that did not help: rays may be the smaller part of a frame. */
 	return (int)fmin(fmax(ldexp(rungs, budget->leaps), 1), GZ_BUDGET_RUNGS);
 }
 
@@ -111,24 +111,24 @@ static void count_failure(struct gz_budget *budget, int from)
 		budget->tries[from].fails++;
 }
 
-/* A trial has failed: at least back to where it came from, where all was well. */
+/* A trial has failed: go back at least to the rung before it, which kept the budget. */
 static void end_trial(struct gz_budget *budget, int needed)
 {
 	int from = budget->tried_from, rung = budget->rung + needed;
 	count_failure(budget, from);
 	budget->tried_from = 0;
-	choose(budget, rung > from ? rung : from);
+	go_to_rung(budget, rung > from ? rung : from);
 }
 
-/* Now and then a slow frame: one rung, and no hurry back. */
+/* Scattered slow frames: one rung coarser, and a long wait before the next trial. */
 static void go_one_coarser(struct gz_budget *budget)
 {
-	choose(budget, budget->rung + 1);
+	go_to_rung(budget, budget->rung + 1);
 	budget->tries[budget->rung].before_ms = AIM * budget->budget_ms / RUNG_COST;
 	count_failure(budget, budget->rung);
 }
 
-/* @return true the first time that there is no coarser rung. */
+/* Returns true the first time that there is no coarser rung. */
 static bool go_coarser(struct gz_budget *budget)
 {
 	if (budget->rung == GZ_BUDGET_RUNGS - 1) {
@@ -143,7 +143,7 @@ static bool go_coarser(struct gz_budget *budget)
 	else if (needed == 0)
 		go_one_coarser(budget);
 	else
-		choose(budget, budget->rung + needed);
+		go_to_rung(budget, budget->rung + needed);
 	if (needed > 0 && budget->leaps < LEAPS_MAX)
 		budget->leaps++;
 	return false;
@@ -153,11 +153,11 @@ static bool may_try(struct gz_budget *budget, double percentile_ms)
 {
 	int rung = budget->rung;
 	if (percentile_ms < CHEAPER * budget->tries[rung].before_ms)
-		budget->tries[rung].fails = 0; /* another scene */
+		budget->tries[rung].fails = 0; /* the scene has changed */
 	return budget->tries[rung].fails == 0 || budget->waited >= 1 << budget->tries[rung].fails;
 }
 
-/* To the finest rung that would still be fast enough; after a failure only to the next. */
+/* Go to the finest rung that should still be fast enough; after a failure, only to the next one. */
 static void try_finer(struct gz_budget *budget)
 {
 	double percentile_ms = upper_ms(budget, GZ_BUDGET_WINDOW);
@@ -172,11 +172,11 @@ static void try_finer(struct gz_budget *budget)
 	if (rung == from)
 		return;
 	budget->tries[from].before_ms = percentile_ms;
-	choose(budget, rung);
+	go_to_rung(budget, rung);
 	budget->tried_from = from;
 }
 
-/* A whole window that was fast enough: what was on trial has passed. */
+/* A whole window was fast enough: a trial has passed. */
 static void take_window(struct gz_budget *budget)
 {
 	budget->tried_from = 0;
@@ -190,7 +190,7 @@ bool gz_budget_step(struct gz_budget *budget, double frame_ms)
 {
 	if (budget->state == GZ_BUDGET_OFF || !(frame_ms >= 0) || !isfinite(frame_ms))
 		return false;
-	keep(budget, frame_ms);
+	add_frame_time(budget, frame_ms);
 	if (budget->state != GZ_BUDGET_LIMIT || frame_ms <= budget->budget_ms)
 		budget->state = frame_ms > budget->budget_ms ? GZ_BUDGET_OVER : GZ_BUDGET_WITHIN;
 	if (count_over(budget, GZ_BUDGET_WINDOW) >= OVER_MIN)

@@ -1,14 +1,14 @@
 /**
  * @file
- * A time to keep: how much coarser a plan must be for the 95th percentile of its frames to stay
- * within so many milliseconds. Pure steps over a state: no clock, no allocation.
+ * The frame-time budget: how much coarser a plan must be so that the 95th percentile of the frame
+ * times stays within the budget. Pure steps over a state: no clock, no allocation.
  *
- * Scales are rungs, so that a frame's jitter changes no picture. Too slow is seen as soon as it is
- * certain (3 of the last 40 frames, that is more than 5 %), and answered at once by as many rungs
- * as the frames were too slow, and twice as far where that did not help. A finer rung is tried
- * after 40 frames that left room for what a rung costs at most. Where that fails, or slow frames
- * are strewn among fast ones, it is not tried again before the frames are clearly cheaper or, each
- * time, twice as many have passed.
+ * The scale moves on rungs, so jitter of the frame times changes no picture. When 3 of the last 40
+ * frames (more than 5 %) are too slow, the plan becomes coarser at once, by as many rungs as the
+ * excess needs, and by twice as many if that did not help. A finer rung is tried after 40 frames
+ * that left room for the greatest cost of a rung. If the trial fails, or slow frames are scattered
+ * among fast ones, the next trial waits until frames are clearly cheaper or, after each failure,
+ * twice as many frames have passed.
  */
 #ifndef GZ_RENDER_BUDGET_H
 #define GZ_RENDER_BUDGET_H
@@ -21,15 +21,15 @@
 /** The scale of the last rung: 2^((GZ_BUDGET_RUNGS - 1) / 4). */
 #define GZ_BUDGET_SCALE_MAX 64
 
-/** Frames that the percentile is of: the least in which 5 % is more than one. */
+/** Frames of the percentile: the fewest of which 5 % is more than one frame. */
 #define GZ_BUDGET_WINDOW 40
 
-/** For statistics. */
+/** How the frames keep the budget; for statistics. */
 enum gz_budget_state {
-	GZ_BUDGET_OFF,    /**< none is set */
-	GZ_BUDGET_WITHIN, /**< so far as is known */
-	GZ_BUDGET_OVER,   /**< the last frame was not */
-	GZ_BUDGET_LIMIT,  /**< out of reach with the coarsest plan */
+	GZ_BUDGET_OFF,    /**< no budget is set */
+	GZ_BUDGET_WITHIN, /**< the last frame kept it */
+	GZ_BUDGET_OVER,   /**< the last frame exceeded it */
+	GZ_BUDGET_LIMIT,  /**< even the coarsest plan exceeds it */
 	GZ_BUDGET_STATE_COUNT,
 };
 
@@ -42,33 +42,34 @@ struct gz_budget {
 	int rung;
 	enum gz_budget_state state;
 	bool limit_told;
-	int count; /**< frames since the rung was chosen, up to GZ_BUDGET_WINDOW; the newest last */
+	int count; /**< frames since the rung changed, up to GZ_BUDGET_WINDOW; newest last */
 	double frames_ms[GZ_BUDGET_WINDOW];
-	int leaps;  /**< over the budget in a row, since a whole window was not */
-	int waited; /**< whole windows since the rung was chosen */
+	int leaps;  /**< answers to slow frames since the last whole window within the budget */
+	int waited; /**< whole windows since the rung changed */
 
-	/** How it went when the rung was last left for a finer one. */
+	/** For each rung, the result of the last trial of a finer one. */
 	struct {
-		double before_ms; /**< percentile that made it try; infinite: never failed */
-		int fails;        /**< since frames were last clearly cheaper */
+		double before_ms; /**< percentile before the trial; infinite: no trial has failed */
+		int fails;        /**< failed trials since frames were last clearly cheaper */
 	} tries[GZ_BUDGET_RUNGS];
-	int tried_from; /**< the rung that the present one is tried from; 0 if none is on trial */
+	int tried_from; /**< the rung before the present trial; 0 = no trial */
 };
 
 /** Start at full detail. @p budget_ms above 0, or 0 for no limit. */
 void gz_budget_init(struct gz_budget *budget, double budget_ms);
 
-/** How much coarser the next frame is to be: 1 to GZ_BUDGET_SCALE_MAX. */
+/** Factor on the next frame's spacings: 1 to GZ_BUDGET_SCALE_MAX. */
 double gz_budget_scale(const struct gz_budget *budget);
 
 /**
- * What the frame with gz_budget_scale() took. Not finite or below 0 counts for nothing.
+ * Report the time of a frame with gz_budget_scale(). Times that are not finite or below 0 are
+ * ignored.
  *
- * @return true once since gz_budget_init(): when the coarsest plan turns out not to be enough
+ * @return true once since gz_budget_init(), when even the coarsest plan exceeds the budget
  */
 bool gz_budget_step(struct gz_budget *budget, double frame_ms);
 
-/** Whether a few more frames like the last would not make it finer. */
+/** Whether a few more frames like the last ones would leave the scale as it is. */
 bool gz_budget_at_rest(const struct gz_budget *budget);
 
 #endif

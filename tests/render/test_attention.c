@@ -57,7 +57,7 @@ static struct gz_focus step_event(enum gz_event event, double deg)
 	return step(&gaze);
 }
 
-/* The same for a while; what the last frame of it is made of. */
+/* Repeats a frame for some ms; returns the focus of the last one. */
 static struct gz_focus go_on(enum gz_event event, double deg, double ms)
 {
 	int64_t end_ns = now_ns + (int64_t)(ms * (double)GZ_NS_PER_MS);
@@ -199,7 +199,7 @@ static void saccade_that_goes_nowhere_changes_nothing(void **state)
 	}
 }
 
-static void saccade_without_end_is_no_saccade(void **state)
+static void saccade_that_lasts_too_long_is_ignored(void **state)
 {
 	(void)state;
 	go_on(GZ_EVENT_FIXATION, 0, 100);
@@ -209,7 +209,7 @@ static void saccade_without_end_is_no_saccade(void **state)
 	assert_sharp_at(&focus, 12);
 }
 
-static void pursuit_is_drawn_along_within_a_dead_band(void **state)
+static void pursuit_is_followed_one_dead_band_behind(void **state)
 {
 	(void)state;
 	struct gz_focus last = step_event(GZ_EVENT_FIXATION, 0);
@@ -285,7 +285,7 @@ static void lost_gaze_holds_then_widens_and_its_return_is_sharp(void **state)
 	assert_loss_is_answered(none);
 }
 
-static void gaze_that_is_no_place_counts_as_lost(void **state)
+static void gaze_of_nan_or_infinity_counts_as_lost(void **state)
 {
 	(void)state;
 	const struct gz_point places[] = {
@@ -402,7 +402,7 @@ static void budget_makes_the_whole_plan_coarser_and_saccades_more_so(void **stat
 	assert_true(free_again.scale == 1);
 }
 
-static void frames_of_saccades_do_not_make_it_finer(void **state)
+static void cheap_frames_of_saccades_do_not_make_the_plan_finer(void **state)
 {
 	(void)state;
 	params.budget_ms = 10;
@@ -443,11 +443,11 @@ TEST_SUITE(attention)
 		cmocka_unit_test_setup(landing_within_the_dead_band_of_the_way_is_sharp_too, begin),
 		cmocka_unit_test_setup(saccade_between_two_frames_is_sharp_at_its_end, begin),
 		cmocka_unit_test_setup(saccade_that_goes_nowhere_changes_nothing, begin),
-		cmocka_unit_test_setup(saccade_without_end_is_no_saccade, begin),
-		cmocka_unit_test_setup(pursuit_is_drawn_along_within_a_dead_band, begin),
+		cmocka_unit_test_setup(saccade_that_lasts_too_long_is_ignored, begin),
+		cmocka_unit_test_setup(pursuit_is_followed_one_dead_band_behind, begin),
 		cmocka_unit_test_setup(blink_holds_the_plan, begin),
 		cmocka_unit_test_setup(lost_gaze_holds_then_widens_and_its_return_is_sharp, begin),
-		cmocka_unit_test_setup(gaze_that_is_no_place_counts_as_lost, begin),
+		cmocka_unit_test_setup(gaze_of_nan_or_infinity_counts_as_lost, begin),
 		cmocka_unit_test_setup(gaze_older_than_a_blink_counts_as_lost, begin),
 		cmocka_unit_test_setup(blink_that_does_not_end_is_a_loss, begin),
 		cmocka_unit_test_setup(blink_then_loss_holds_for_as_long_again, begin),
@@ -457,7 +457,7 @@ TEST_SUITE(attention)
 		cmocka_unit_test_setup(time_that_runs_backwards_counts_as_standing_still, begin),
 		cmocka_unit_test_setup(budget_makes_the_whole_plan_coarser_and_saccades_more_so,
 				       begin),
-		cmocka_unit_test_setup(frames_of_saccades_do_not_make_it_finer, begin),
+		cmocka_unit_test_setup(cheap_frames_of_saccades_do_not_make_the_plan_finer, begin),
 		cmocka_unit_test_setup(presets_parse_and_states_have_names, begin),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

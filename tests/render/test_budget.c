@@ -53,7 +53,7 @@ static struct run run(struct gz_budget *budget, const struct cost *cost, int fra
 	return run;
 }
 
-static void no_budget_is_full_detail_whatever_it_takes(void **state)
+static void without_a_budget_detail_is_always_full(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -65,7 +65,7 @@ static void no_budget_is_full_detail_whatever_it_takes(void **state)
 	assert_int_equal(budget.state, GZ_BUDGET_OFF);
 }
 
-static void frames_that_keep_it_stay_at_full_detail(void **state)
+static void frames_within_the_budget_stay_at_full_detail(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -78,7 +78,7 @@ static void frames_that_keep_it_stay_at_full_detail(void **state)
 	assert_int_equal(held.changes, 0);
 }
 
-static void dearer_scene_is_answered_within_few_frames(void **state)
+static void slower_scene_gets_coarser_within_a_few_frames(void **state)
 {
 	(void)state;
 	for (int times = 2; times <= 8; times++) {
@@ -121,7 +121,7 @@ static void percentile_is_kept_and_the_scale_comes_to_rest(void **state)
 }
 
 /* The plan's own rays, 150 ns each, the gaze on its way about the picture. */
-static void plans_of_every_method_keep_it_while_the_gaze_moves(void **state)
+static void plans_of_every_method_keep_the_budget_while_the_gaze_moves(void **state)
 {
 	(void)state;
 	static const int methods[] = { GZ_METHOD_ACUITY, GZ_METHOD_MDC, GZ_METHOD_DDC,
@@ -159,7 +159,7 @@ static void plans_of_every_method_keep_it_while_the_gaze_moves(void **state)
 	}
 }
 
-static void cheaper_scene_brings_the_detail_back(void **state)
+static void faster_scene_regains_its_detail(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -184,7 +184,7 @@ static double stair_ms(double scale)
 	return 1 + 80 / (spacing * spacing);
 }
 
-static void cost_that_leaps_is_tried_ever_more_rarely(void **state)
+static void failing_trials_become_rarer(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -200,7 +200,7 @@ static void cost_that_leaps_is_tried_ever_more_rarely(void **state)
 	assert_in_range(late_over, 0, 12);
 }
 
-static void budget_out_of_reach_is_told_once(void **state)
+static void unreachable_budget_is_reported_once(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -220,7 +220,7 @@ static void budget_out_of_reach_is_told_once(void **state)
 	assert_int_equal(budget.state, GZ_BUDGET_LIMIT);
 }
 
-static void it_rests_once_a_window_has_told_that_it_must_stay(void **state)
+static void budget_rests_after_a_window_without_a_finer_rung(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -239,7 +239,7 @@ static void it_rests_once_a_window_has_told_that_it_must_stay(void **state)
 	assert_true(gz_budget_at_rest(&budget));
 }
 
-static void times_that_are_none_count_for_nothing(void **state)
+static void invalid_times_are_ignored(void **state)
 {
 	(void)state;
 	struct gz_budget budget;
@@ -268,16 +268,16 @@ static void one_slow_frame_in_a_second_changes_nothing(void **state)
 TEST_SUITE(budget)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(no_budget_is_full_detail_whatever_it_takes),
-		cmocka_unit_test(frames_that_keep_it_stay_at_full_detail),
-		cmocka_unit_test(dearer_scene_is_answered_within_few_frames),
+		cmocka_unit_test(without_a_budget_detail_is_always_full),
+		cmocka_unit_test(frames_within_the_budget_stay_at_full_detail),
+		cmocka_unit_test(slower_scene_gets_coarser_within_a_few_frames),
 		cmocka_unit_test(percentile_is_kept_and_the_scale_comes_to_rest),
-		cmocka_unit_test(plans_of_every_method_keep_it_while_the_gaze_moves),
-		cmocka_unit_test(cheaper_scene_brings_the_detail_back),
-		cmocka_unit_test(cost_that_leaps_is_tried_ever_more_rarely),
-		cmocka_unit_test(budget_out_of_reach_is_told_once),
-		cmocka_unit_test(it_rests_once_a_window_has_told_that_it_must_stay),
-		cmocka_unit_test(times_that_are_none_count_for_nothing),
+		cmocka_unit_test(plans_of_every_method_keep_the_budget_while_the_gaze_moves),
+		cmocka_unit_test(faster_scene_regains_its_detail),
+		cmocka_unit_test(failing_trials_become_rarer),
+		cmocka_unit_test(unreachable_budget_is_reported_once),
+		cmocka_unit_test(budget_rests_after_a_window_without_a_finer_rung),
+		cmocka_unit_test(invalid_times_are_ignored),
 		cmocka_unit_test(one_slow_frame_in_a_second_changes_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
