@@ -1,12 +1,12 @@
-/* Keys are found by words, and how far work is is told in a few. */
+/* The list of keys is searched by words; progress is printed in a few. */
 #include "suite.h"
 
+#include "view/panels/file_dialogs.h"
 #include "view/panels/keys_panel.h"
-#include "view/panels/progress_panel.h"
 
 static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume" };
 
-static void row_is_found_by_words_of_what_it_does_its_keys_and_its_group(void **state)
+static void row_is_found_by_words_of_help_keys_and_group(void **state)
 {
 	(void)state;
 	assert_true(gz_keys_row_matches(&row, ""));
@@ -24,7 +24,7 @@ static void row_without_one_of_the_words_is_not_found(void **state)
 	assert_false(gz_keys_row_matches(&row, "volumes"));
 }
 
-static void time_left_is_told_once_there_is_something_to_tell_it_by(void **state)
+static void progress_text_has_the_time_left_once_it_can_be_told(void **state)
 {
 	(void)state;
 	char text[64];
@@ -41,9 +41,9 @@ static void time_left_is_told_once_there_is_something_to_tell_it_by(void **state
 TEST_SUITE(keys_panel)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(row_is_found_by_words_of_what_it_does_its_keys_and_its_group),
+		cmocka_unit_test(row_is_found_by_words_of_help_keys_and_group),
 		cmocka_unit_test(row_without_one_of_the_words_is_not_found),
-		cmocka_unit_test(time_left_is_told_once_there_is_something_to_tell_it_by),
+		cmocka_unit_test(progress_text_has_the_time_left_once_it_can_be_told),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -248,12 +248,12 @@ static void nearest_point_is_found_within_reach(void **state)
 	(void)state;
 	struct gz_transfer_edit *edit = begun(&four);
 	/* A plot of 400 times 100 px. */
-	assert_int_equal(gz_transfer_edit_nearest(edit, 0.26, 0.15, 400, 100, 8, false), 1);
-	assert_int_equal(gz_transfer_edit_nearest(edit, 0.26, 0.25, 400, 100, 8, false),
-			 GZ_TRANSFER_EDIT_NONE);
-	assert_int_equal(gz_transfer_edit_nearest(edit, 0.25, gz_transfer_axis_of(0.1, true), 400,
-						  100, 1, true),
-			 1);
+	struct gz_transfer_place place = { 0.26, 0.15, 400, 100, false };
+	assert_int_equal(gz_transfer_edit_nearest(edit, &place, 8), 1);
+	place.height = 0.25;
+	assert_int_equal(gz_transfer_edit_nearest(edit, &place, 8), GZ_TRANSFER_EDIT_NONE);
+	place = (struct gz_transfer_place) { 0.25, gz_transfer_axis_of(0.1, true), 400, 100, true };
+	assert_int_equal(gz_transfer_edit_nearest(edit, &place, 1), 1);
 	gz_transfer_edit_destroy(&edit);
 }
 

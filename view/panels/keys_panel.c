@@ -14,7 +14,7 @@
 
 enum { COLUMNS_MAX = 3 };
 
-static bool has_word(const char *text, const char *word, size_t length)
+static bool has_word_anywhere(const char *text, const char *word, size_t length)
 {
 	for (; *text; text++) {
 		size_t same = 0;
@@ -31,15 +31,16 @@ bool gz_keys_row_matches(const struct gz_keys_row *row, const char *filter)
 {
 	for (const char *at = filter + strspn(filter, " "); *at; at += strspn(at, " ")) {
 		const size_t length = strcspn(at, " ");
-		if (!has_word(row->help, at, length) && !has_word(row->keys, at, length) &&
-		    !has_word(row->group, at, length))
+		if (!has_word_anywhere(row->help, at, length) &&
+		    !has_word_anywhere(row->keys, at, length) &&
+		    !has_word_anywhere(row->group, at, length))
 			return false;
 		at += length;
 	}
 	return true;
 }
 
-static size_t count_lines(const struct gz_keys_row *rows, size_t count, const char *filter)
+static size_t count_keys_lines(const struct gz_keys_row *rows, size_t count, const char *filter)
 {
 	size_t lines = 0;
 	for (size_t i = 0; i < count; i++) {
@@ -49,7 +50,7 @@ static size_t count_lines(const struct gz_keys_row *rows, size_t count, const ch
 	return lines;
 }
 
-static void draw_heading(const char *group)
+static void draw_keys_heading(const char *group)
 {
 	char heading[64];
 	snprintf(heading, sizeof heading, "%s", group);
@@ -57,11 +58,12 @@ static void draw_heading(const char *group)
 	gz_widget_text(gz_paint_amber, heading);
 }
 
-/* A group is not cut: the next column begins with the next one. @return as gz_keys_panel_draw() */
-static size_t draw_rows(const struct gz_keys_panel *panel, const struct gz_keys_row *rows,
-			size_t count, int columns)
+/* Groups are not divided: a new column begins with a group. @return what gz_keys_panel_draw() does
+ */
+static size_t draw_keys_rows(const struct gz_keys_panel *panel, const struct gz_keys_row *rows,
+			     size_t count, int columns)
 {
-	const size_t share = count_lines(rows, count, panel->filter) / (size_t)columns + 1;
+	const size_t share = count_keys_lines(rows, count, panel->filter) / (size_t)columns + 1;
 	const char *group = NULL;
 	size_t lines = 0, chosen = count;
 	int column = 1;
@@ -76,7 +78,7 @@ static size_t draw_rows(const struct gz_keys_panel *panel, const struct gz_keys_
 				column++;
 			}
 			group = rows[i].group;
-			draw_heading(group);
+			draw_keys_heading(group);
 			lines++;
 		}
 		snprintf(id, sizeof id, "##%zu", i);
@@ -87,8 +89,8 @@ static size_t draw_rows(const struct gz_keys_panel *panel, const struct gz_keys_
 	return chosen;
 }
 
-static size_t first_match(const struct gz_keys_panel *panel, const struct gz_keys_row *rows,
-			  size_t count)
+static size_t first_matching_row(const struct gz_keys_panel *panel, const struct gz_keys_row *rows,
+				 size_t count)
 {
 	for (size_t i = 0; i < count && panel->filter[0]; i++)
 		if (gz_keys_row_matches(&rows[i], panel->filter))
@@ -97,7 +99,8 @@ static size_t first_match(const struct gz_keys_panel *panel, const struct gz_key
 }
 
 /* The field, and Enter in it. */
-static size_t draw_filter(struct gz_keys_panel *panel, const struct gz_keys_row *rows, size_t count)
+static size_t draw_keys_filter(struct gz_keys_panel *panel, const struct gz_keys_row *rows,
+			       size_t count)
 {
 	gz_widget_label("Find");
 	gz_widgets_same_line(0);
@@ -106,7 +109,7 @@ static size_t draw_filter(struct gz_keys_panel *panel, const struct gz_keys_row 
 		gz_widgets_focus_next();
 	panel->search = false;
 	gz_widget_text_field("##find", panel->filter, sizeof panel->filter, false);
-	return gz_widget_entered() ? first_match(panel, rows, count) : count;
+	return gz_widget_entered() ? first_matching_row(panel, rows, count) : count;
 }
 
 size_t gz_keys_panel_draw(struct gz_keys_panel *panel, const struct gz_keys_row *rows, size_t count)
@@ -120,9 +123,9 @@ size_t gz_keys_panel_draw(struct gz_keys_panel *panel, const struct gz_keys_row 
 	};
 	size_t chosen = count;
 	if (gz_panel_begin("Keys", &place, &panel->open)) {
-		chosen = draw_filter(panel, rows, count);
+		chosen = draw_keys_filter(panel, rows, count);
 		gz_widget_columns_begin("##columns", columns);
-		const size_t clicked = draw_rows(panel, rows, count, columns);
+		const size_t clicked = draw_keys_rows(panel, rows, count, columns);
 		gz_widget_columns_end();
 		chosen = clicked < count ? clicked : chosen;
 	}

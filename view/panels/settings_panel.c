@@ -20,23 +20,23 @@
 #define METHOD_KEY    "foveation.method"
 #define METHOD_PREFIX "foveation."
 
-static void *field_of(const struct gz_option_binding *binding, const struct gz_option *option)
+static void *setting_field(const struct gz_option_binding *binding, const struct gz_option *option)
 {
 	return (char *)binding->target + option->offset;
 }
 
-static int count_of(const struct gz_option *option)
+static int count_of_values(const struct gz_option *option)
 {
 	return option->count > 0 ? (int)option->count : 1;
 }
 
-/* "light.ambient": its section ends here. */
+/* Length of the section's name in a key: 5 in "light.ambient". */
 static size_t section_length(const struct gz_option *option)
 {
 	return strcspn(option->key, ".");
 }
 
-/* "ray_sampling_rate" as "ray sampling rate", behind the dots. */
+/* "render.ray_sampling_rate" is shown as "ray sampling rate". */
 static void print_label(const struct gz_option *option, char *text, size_t size)
 {
 	const char *dot = strrchr(option->key, '.');
@@ -46,8 +46,9 @@ static void print_label(const struct gz_option *option, char *text, size_t size)
 			*at = ' ';
 }
 
-/* A row named after a method that is not the chosen one: "foveation.mdc_spacing" while that is
- * "ddc". The longest name counts, so that "mdc3" has its own; those of "mdc" are its too. */
+/* Whether a row is named after a method that is not the chosen one: "foveation.mdc_spacing" while
+ * "ddc" is chosen. The longest name counts, so that "mdc3" has rows of its own; it has those of
+ * "mdc" too. */
 static bool is_of_another_method(const struct gz_option *option, const struct gz_option *method,
 				 int chosen)
 {
@@ -68,7 +69,7 @@ static bool is_of_another_method(const struct gz_option *option, const struct gz
 	return owner >= 0 && strncmp(method->choices[chosen], method->choices[owner], longest) != 0;
 }
 
-/* Dragged by a hundredth of the number a pixel: whatever its size, it can be set. */
+/* A drag changes a number by a hundredth of itself per pixel, so that any magnitude can be set. */
 static struct gz_number_range range_of(const struct gz_option *option, double value)
 {
 	const bool whole = option->type == GZ_OPTION_INT;
@@ -84,7 +85,7 @@ static struct gz_number_range range_of(const struct gz_option *option, double va
 	};
 }
 
-static bool draw_widget(const struct gz_option *option, void *field)
+static bool draw_setting_widget(const struct gz_option *option, void *field)
 {
 	struct gz_number_range range;
 	switch (option->type) {
@@ -94,14 +95,14 @@ static bool draw_widget(const struct gz_option *option, void *field)
 		return gz_widget_choice("##value", field, option->choices);
 	case GZ_OPTION_INT:
 		range = range_of(option, *(int *)field);
-		return gz_widget_ints("##value", field, count_of(option), &range);
+		return gz_widget_ints("##value", field, count_of_values(option), &range);
 	case GZ_OPTION_DOUBLE:
 		if (strcmp(option->key, "render.background") == 0)
 			return gz_widget_colour("##value", field);
 		range = range_of(option, *(double *)field);
-		return gz_widget_doubles("##value", field, count_of(option), &range);
+		return gz_widget_doubles("##value", field, count_of_values(option), &range);
 	case GZ_OPTION_STRING:
-		/* Taken as a whole: half a file's name would be looked for. */
+		/* Enter ends it: an unfinished file name would be looked up. */
 		return gz_widget_text_field("##value", field, (size_t)option->max, true);
 	case GZ_OPTION_SIZE:
 		break;
@@ -109,8 +110,8 @@ static bool draw_widget(const struct gz_option *option, void *field)
 	return false;
 }
 
-static bool draw_row(const struct gz_settings_panel *panel, const struct gz_option_binding *binding,
-		     const struct gz_option *option)
+static bool draw_setting(const struct gz_settings_panel *panel,
+			 const struct gz_option_binding *binding, const struct gz_option *option)
 {
 	char label[64];
 	print_label(option, label, sizeof label);
@@ -120,14 +121,14 @@ static bool draw_row(const struct gz_settings_panel *panel, const struct gz_opti
 	gz_widget_tooltip(option->help);
 	gz_widgets_same_line(LABEL_SHARE);
 	gz_widgets_next_width(0);
-	const bool changed = draw_widget(option, field_of(binding, option));
+	const bool changed = draw_setting_widget(option, setting_field(binding, option));
 	gz_widget_tooltip(option->help);
 	gz_widgets_enable();
 	gz_widgets_pop_id();
 	return changed;
 }
 
-static bool draw_heading(const struct gz_option *option)
+static bool draw_section_heading(const struct gz_option *option)
 {
 	char heading[64];
 	snprintf(heading, sizeof heading, "%.*s", (int)section_length(option), option->key);
@@ -147,7 +148,7 @@ static bool same_section(const struct gz_option *a, const struct gz_option *b)
 	return length == section_length(b) && strncmp(a->key, b->key, length) == 0;
 }
 
-/* A place in all tables as one list; binding at count behind the last row. */
+/* A position in the concatenation of all tables; binding is count behind the last row. */
 struct row {
 	size_t binding, option;
 };
@@ -157,8 +158,9 @@ static const struct gz_option *row_option(const struct gz_settings_panel *panel,
 	return &panel->bindings[row.binding].options[row.option];
 }
 
-/* From @p row on, itself included, the first that has a widget. */
-static bool find_row(const struct gz_settings_panel *panel, struct row *row)
+/* Advance @p row to the next row with a widget, which may be itself. @return false: there is none
+ */
+static bool find_setting_row(const struct gz_settings_panel *panel, struct row *row)
 {
 	for (; row->binding < panel->count; row->binding++, row->option = 0)
 		for (; row->option < panel->bindings[row->binding].count; row->option++)
@@ -170,53 +172,54 @@ static bool find_row(const struct gz_settings_panel *panel, struct row *row)
 static bool is_first_of_section(const struct gz_settings_panel *panel,
 				const struct gz_option *option)
 {
-	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+	for (struct row row = { 0, 0 }; find_setting_row(panel, &row); row.option++)
 		if (same_section(row_option(panel, row), option))
 			return row_option(panel, row) == option;
 	return false;
 }
 
-/* The method that is chosen, by which rows of others are left out; option NULL: none is. */
+/* The chosen method; rows of other methods are left out. option NULL: no table has a method. */
 struct method {
 	const struct gz_option *option;
 	int chosen;
 };
 
-static struct method find_method(const struct gz_settings_panel *panel)
+static struct method find_chosen_method(const struct gz_settings_panel *panel)
 {
 	size_t at = 0;
 	const struct gz_option *option =
 		gz_options_find(panel->bindings, panel->count, METHOD_KEY, &at);
 	return (struct method) { option,
-				 option ? *(int *)field_of(&panel->bindings[at], option) : -1 };
+				 option ? *(int *)setting_field(&panel->bindings[at], option)
+					: -1 };
 }
 
-static bool draw_row_of_method(const struct gz_settings_panel *panel, struct row row,
-			       const struct method *method)
+static bool draw_setting_of_method(const struct gz_settings_panel *panel, struct row row,
+				   const struct method *method)
 {
 	const struct gz_option *option = row_option(panel, row);
 	if (method->option && is_of_another_method(option, method->option, method->chosen))
 		return false;
-	return draw_row(panel, &panel->bindings[row.binding], option);
+	return draw_setting(panel, &panel->bindings[row.binding], option);
 }
 
 static bool draw_section(const struct gz_settings_panel *panel, const struct gz_option *section,
 			 const struct method *method)
 {
 	bool changed = false;
-	if (!draw_heading(section))
+	if (!draw_section_heading(section))
 		return false;
-	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+	for (struct row row = { 0, 0 }; find_setting_row(panel, &row); row.option++)
 		if (same_section(row_option(panel, row), section))
-			changed |= draw_row_of_method(panel, row, method);
+			changed |= draw_setting_of_method(panel, row, method);
 	return changed;
 }
 
-/* What is changed most comes first; the other sections follow as the tables have them. */
+/* Sections that are changed most come first; the others follow in the order of the tables. */
 static const char *const first_sections[] = { "foveation.", "render.", "view.", "clip.", "light." };
 enum { FIRST_SECTIONS = sizeof first_sections / sizeof first_sections[0] };
 
-/* Which of them it is; FIRST_SECTIONS: none. */
+/* Index in first_sections of the option's section; FIRST_SECTIONS: not among them. */
 static int section_rank(const struct gz_option *option)
 {
 	int rank = 0;
@@ -228,10 +231,10 @@ static int section_rank(const struct gz_option *option)
 
 static bool draw_sections(const struct gz_settings_panel *panel)
 {
-	const struct method method = find_method(panel);
+	const struct method method = find_chosen_method(panel);
 	bool changed = false;
 	for (int rank = 0; rank <= FIRST_SECTIONS; rank++)
-		for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++) {
+		for (struct row row = { 0, 0 }; find_setting_row(panel, &row); row.option++) {
 			const struct gz_option *option = row_option(panel, row);
 			if (section_rank(option) == rank && is_first_of_section(panel, option))
 				changed |= draw_section(panel, option, &method);
@@ -249,11 +252,11 @@ static bool begins_with_any(const char *key, const char *const prefixes[])
 
 bool gz_settings_rows_draw(const struct gz_settings_panel *panel, const char *const prefixes[])
 {
-	const struct method method = find_method(panel);
+	const struct method method = find_chosen_method(panel);
 	bool changed = false;
-	for (struct row row = { 0, 0 }; find_row(panel, &row); row.option++)
+	for (struct row row = { 0, 0 }; find_setting_row(panel, &row); row.option++)
 		if (begins_with_any(row_option(panel, row)->key, prefixes))
-			changed |= draw_row_of_method(panel, row, &method);
+			changed |= draw_setting_of_method(panel, row, &method);
 	return changed;
 }
 

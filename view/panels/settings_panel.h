@@ -1,21 +1,21 @@
 /**
  * @file
- * The panel of settings: a widget for each row of the option tables, under a heading for each
+ * The settings panel: a widget for each row of the option tables, under a heading for each
  * section. Inside a frame of panels/widgets.h.
  */
-#ifndef GZ_VIEW_SETTINGS_PANEL_H
-#define GZ_VIEW_SETTINGS_PANEL_H
+#ifndef GZ_VIEW_PANELS_SETTINGS_PANEL_H
+#define GZ_VIEW_PANELS_SETTINGS_PANEL_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
 #include "base/option.h"
 
-/** What it shows and changes. */
+/** What the panel shows and changes. */
 struct gz_settings_panel {
 	const struct gz_option_binding *bindings;
 	size_t count;
-	/** Whether a row counts, by its key; others are shown grey. NULL: all do. */
+	/** Whether the option with @p key has an effect at present; others are grey. NULL: all. */
 	bool (*applies)(const void *user, const char *key);
 	const void *user;
 	float margin_top; /**< kept free above it, screen coordinates */
@@ -23,18 +23,20 @@ struct gz_settings_panel {
 };
 
 /**
- * Draw only the rows whose keys begin with one of @p prefixes, NULL-terminated, without headings,
- * in the panel that is open.
+ * Draw the rows whose keys begin with one of @p prefixes, without headings, into the panel that is
+ * open.
  *
- * @return as gz_settings_panel_draw()
+ * @param prefixes  NULL-terminated
+ * @return what gz_settings_panel_draw() returns
  */
 bool gz_settings_rows_draw(const struct gz_settings_panel *panel, const char *const prefixes[]);
 
 /**
- * Draw it at the right of the window.
+ * Draw the panel at the right of the window. Rows of foveation methods other than the chosen one
+ * are left out.
  *
- * @return whether a target of the bindings has been changed: within its row's range, a text when
- *         Enter ends it. Rows of foveation methods other than the one chosen are left out
+ * @return whether a target of the bindings was changed. Numbers keep to the range of their row; a
+ *         text changes when Enter is pressed
  */
 bool gz_settings_panel_draw(struct gz_settings_panel *panel);
 

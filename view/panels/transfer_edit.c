@@ -6,20 +6,20 @@
 
 #define AXIS_K 10000.0
 
-/* As it was, is and will be again: a ring, the present among them. */
+/* A ring of past, present and future functions. */
 enum { SLOTS = GZ_TRANSFER_EDIT_STEPS + 1 };
 
 struct gz_transfer_edit {
 	struct gz_transfer slots[SLOTS];
-	int now;          /* the slot of the present */
-	int past, future; /* slots before and behind it */
+	int now;          /* slot of the present function */
+	int past, future; /* number of slots before and behind it */
 	struct gz_transfer saved;
 	uint64_t changes;
 	bool dragging;
 	bool drag_has_step;
 };
 
-static struct gz_transfer *present(struct gz_transfer_edit *edit)
+static struct gz_transfer *present_transfer(struct gz_transfer_edit *edit)
 {
 	return &edit->slots[edit->now];
 }
@@ -65,7 +65,7 @@ void gz_transfer_edit_restart(struct gz_transfer_edit *edit, const struct gz_tra
 {
 	edit->saved = *transfer;
 	edit->now = edit->past = edit->future = 0;
-	*present(edit) = edit->saved;
+	*present_transfer(edit) = edit->saved;
 	edit->dragging = false;
 	edit->changes++;
 }
@@ -75,7 +75,7 @@ void gz_transfer_edit_saved(struct gz_transfer_edit *edit)
 	edit->saved = *gz_transfer_edit_now(edit);
 }
 
-static void step_back(struct gz_transfer_edit *edit)
+static void step_back_once(struct gz_transfer_edit *edit)
 {
 	edit->now = (edit->now + SLOTS - 1) % SLOTS;
 	edit->past--;
@@ -99,36 +99,36 @@ void gz_transfer_edit_end(struct gz_transfer_edit *edit)
 {
 	if (edit->dragging && edit->drag_has_step) {
 		const int before = (edit->now + SLOTS - 1) % SLOTS;
-		if (gz_transfer_same(present(edit), &edit->slots[before])) {
-			step_back(edit);
+		if (gz_transfer_same(present_transfer(edit), &edit->slots[before])) {
+			step_back_once(edit);
 			edit->future = 0;
 		}
 	}
 	edit->dragging = false;
 }
 
-/* What is changed from now on, as a step of its own unless it belongs to the drag's. */
-static struct gz_transfer *change(struct gz_transfer_edit *edit)
+/* The function to change: a new step, unless a drag has begun one. */
+static struct gz_transfer *begin_change(struct gz_transfer_edit *edit)
 {
 	edit->changes++;
 	if (edit->dragging && edit->drag_has_step)
-		return present(edit);
+		return present_transfer(edit);
 	const int next = (edit->now + 1) % SLOTS;
-	edit->slots[next] = *present(edit);
+	edit->slots[next] = *present_transfer(edit);
 	edit->now = next;
 	edit->past += edit->past < GZ_TRANSFER_EDIT_STEPS;
 	edit->future = 0;
 	edit->drag_has_step = true;
-	return present(edit);
+	return present_transfer(edit);
 }
 
 void gz_transfer_edit_replace(struct gz_transfer_edit *edit, const struct gz_transfer *transfer)
 {
-	if (!gz_transfer_same(transfer, present(edit)))
-		*change(edit) = *transfer;
+	if (!gz_transfer_same(transfer, present_transfer(edit)))
+		*begin_change(edit) = *transfer;
 }
 
-static double within(double value)
+static double within_0_1(double value)
 {
 	return value > 0 ? value < 1 ? value : 1 : 0;
 }
@@ -140,8 +140,8 @@ bool gz_transfer_edit_has_room(const struct gz_transfer_edit *edit)
 
 size_t gz_transfer_edit_add(struct gz_transfer_edit *edit, double value, double opacity)
 {
-	const struct gz_transfer *now = present(edit);
-	value = within(value);
+	const struct gz_transfer *now = present_transfer(edit);
+	value = within_0_1(value);
 	size_t at = 0, equal = 0;
 	for (; at < now->count && now->points[at].value <= value; at++)
 		equal += now->points[at].value == value;
@@ -149,32 +149,32 @@ size_t gz_transfer_edit_add(struct gz_transfer_edit *edit, double value, double 
 		return GZ_TRANSFER_EDIT_NONE;
 	double rgba[4];
 	gz_transfer_evaluate(now, value, rgba);
-	struct gz_transfer *transfer = change(edit);
+	struct gz_transfer *transfer = begin_change(edit);
 	struct gz_transfer_point *point = &transfer->points[at];
 	memmove(point + 1, point, (transfer->count - at) * sizeof *point);
 	transfer->count++;
 	*point = (struct gz_transfer_point) {
 		.value = value,
 		.rgb = { rgba[0], rgba[1], rgba[2] },
-		.opacity = within(opacity),
+		.opacity = within_0_1(opacity),
 	};
 	return at;
 }
 
 bool gz_transfer_edit_remove(struct gz_transfer_edit *edit, size_t point)
 {
-	if (present(edit)->count < 2 || point >= present(edit)->count)
+	if (present_transfer(edit)->count < 2 || point >= present_transfer(edit)->count)
 		return false;
-	struct gz_transfer *transfer = change(edit);
+	struct gz_transfer *transfer = begin_change(edit);
 	transfer->count--;
 	memmove(&transfer->points[point], &transfer->points[point + 1],
 		(transfer->count - point) * sizeof transfer->points[0]);
 	return true;
 }
 
-/* How far a point may go down and up. */
-static void room_of(const struct gz_transfer *transfer, size_t point, double *out_least,
-		    double *out_greatest)
+/* The values that a point may have between its neighbours. */
+static void room_of_point(const struct gz_transfer *transfer, size_t point, double *out_least,
+			  double *out_greatest)
 {
 	const struct gz_transfer_point *p = &transfer->points[point];
 	*out_least = 0;
@@ -192,51 +192,51 @@ static void room_of(const struct gz_transfer *transfer, size_t point, double *ou
 void gz_transfer_edit_move(struct gz_transfer_edit *edit, size_t point, double value,
 			   double opacity)
 {
-	const struct gz_transfer *now = present(edit);
+	const struct gz_transfer *now = present_transfer(edit);
 	if (point >= now->count)
 		return;
 	struct gz_transfer_point moved = now->points[point];
 	double least, greatest;
-	room_of(now, point, &least, &greatest);
+	room_of_point(now, point, &least, &greatest);
 	if (isfinite(value))
 		moved.value = fmin(fmax(value, least), greatest);
 	if (isfinite(opacity))
-		moved.opacity = within(opacity);
+		moved.opacity = within_0_1(opacity);
 	if (!gz_transfer_point_same(&moved, &now->points[point]))
-		change(edit)->points[point] = moved;
+		begin_change(edit)->points[point] = moved;
 }
 
 void gz_transfer_edit_colour(struct gz_transfer_edit *edit, size_t point, const double rgb[3])
 {
-	if (point >= present(edit)->count)
+	if (point >= present_transfer(edit)->count)
 		return;
-	struct gz_transfer_point coloured = present(edit)->points[point];
+	struct gz_transfer_point coloured = present_transfer(edit)->points[point];
 	for (int i = 0; i < 3; i++)
-		coloured.rgb[i] = within(rgb[i]);
-	if (!gz_transfer_point_same(&coloured, &present(edit)->points[point]))
-		change(edit)->points[point] = coloured;
+		coloured.rgb[i] = within_0_1(rgb[i]);
+	if (!gz_transfer_point_same(&coloured, &present_transfer(edit)->points[point]))
+		begin_change(edit)->points[point] = coloured;
 }
 
 void gz_transfer_edit_interpolate(struct gz_transfer_edit *edit,
 				  enum gz_transfer_interpolation interpolation)
 {
-	if (present(edit)->interpolation != interpolation)
-		change(edit)->interpolation = interpolation;
+	if (present_transfer(edit)->interpolation != interpolation)
+		begin_change(edit)->interpolation = interpolation;
 }
 
 bool gz_transfer_edit_range(struct gz_transfer_edit *edit, const double range[2])
 {
-	const struct gz_transfer *now = present(edit);
+	const struct gz_transfer *now = present_transfer(edit);
 	if (!range) {
 		if (now->has_range)
-			change(edit)->has_range = false;
+			begin_change(edit)->has_range = false;
 		return true;
 	}
 	if (!isfinite(range[0]) || !isfinite(range[1]) || !(range[0] < range[1]))
 		return false;
 	if (now->has_range && now->range[0] == range[0] && now->range[1] == range[1])
 		return true;
-	struct gz_transfer *transfer = change(edit);
+	struct gz_transfer *transfer = begin_change(edit);
 	transfer->has_range = true;
 	memcpy(transfer->range, range, sizeof transfer->range);
 	return true;
@@ -257,7 +257,7 @@ bool gz_transfer_edit_undo(struct gz_transfer_edit *edit)
 	gz_transfer_edit_end(edit);
 	if (!gz_transfer_edit_can_undo(edit))
 		return false;
-	step_back(edit);
+	step_back_once(edit);
 	return true;
 }
 
@@ -273,16 +273,17 @@ bool gz_transfer_edit_redo(struct gz_transfer_edit *edit)
 	return true;
 }
 
-size_t gz_transfer_edit_nearest(const struct gz_transfer_edit *edit, double value, double height,
-				double per_value, double per_height, double reach, bool logarithmic)
+size_t gz_transfer_edit_nearest(const struct gz_transfer_edit *edit,
+				const struct gz_transfer_place *place, double reach)
 {
 	const struct gz_transfer *now = gz_transfer_edit_now(edit);
 	size_t nearest = GZ_TRANSFER_EDIT_NONE;
 	double least = reach;
 	for (size_t i = 0; i < now->count; i++) {
-		const double at = gz_transfer_axis_of(now->points[i].opacity, logarithmic);
-		const double distance = hypot((now->points[i].value - value) * per_value,
-					      (at - height) * per_height);
+		const double at = gz_transfer_axis_of(now->points[i].opacity, place->logarithmic);
+		const double distance =
+			hypot((now->points[i].value - place->value) * place->per_value,
+			      (at - place->height) * place->per_height);
 		if (distance <= least) {
 			least = distance;
 			nearest = i;
@@ -299,6 +300,6 @@ double gz_transfer_axis_of(double opacity, bool logarithmic)
 double gz_transfer_axis_opacity(double height, bool logarithmic)
 {
 	if (!logarithmic || height >= 1)
-		return within(height);
-	return within(expm1(within(height) * log1p(AXIS_K)) / AXIS_K);
+		return within_0_1(height);
+	return within_0_1(expm1(within_0_1(height) * log1p(AXIS_K)) / AXIS_K);
 }

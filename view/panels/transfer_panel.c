@@ -8,25 +8,25 @@
 
 /* Unscaled (chosen: a bin of 256 is two coordinates wide). */
 #define WIDTH 540.0f
-/* How near a point is grabbed, unscaled (chosen: twice its disc). */
+/* Distance from which a point is grabbed, unscaled (chosen: twice its disc). */
 #define REACH 10.0f
 /* One notch of the wheel over the axis (chosen: seven notches double it). */
 #define ZOOM_PER_NOTCH 0.9
 #define PAN_PER_NOTCH  0.1
-/* The narrowest part of the axis that is shown, of all (chosen: less than a 16-bit value's share of
- * it on a wide display). */
+/* Narrowest part of the axis that can be shown, as a share (chosen: less than a 16-bit value's
+ * share on a wide display). */
 #define SHOWN_LEAST 1e-5
-/* One press of an arrow key, of what is shown (chosen: from one side to the other in 200). */
+/* Step of an arrow key, as a share of the axis shown (chosen: 200 presses from side to side). */
 #define ARROW_STEP      0.005
 #define ARROW_STEP_FINE 0.0005
 
-static const struct gz_transfer *now(const struct gz_transfer_panel *panel)
+static const struct gz_transfer *edited(const struct gz_transfer_panel *panel)
 {
 	return gz_transfer_edit_now(panel->edit);
 }
 
-/* What one press of a button or key changes is one step. */
-static void touch(struct gz_transfer_panel *panel)
+/* All changes during one press of a button or key are one step. */
+static void begin_step(struct gz_transfer_panel *panel)
 {
 	if (!gz_transfer_edit_in_drag(panel->edit))
 		gz_transfer_edit_begin(panel->edit);
@@ -43,15 +43,15 @@ static void data_range(const struct gz_volume *volume, double out_range[2])
 static void function_range(const struct gz_transfer_panel *panel, double out_range[2])
 {
 	data_range(panel->volume, out_range);
-	if (now(panel)->has_range) {
-		out_range[0] = now(panel)->range[0];
-		out_range[1] = now(panel)->range[1];
+	if (edited(panel)->has_range) {
+		out_range[0] = edited(panel)->range[0];
+		out_range[1] = edited(panel)->range[1];
 	}
 	if (!(out_range[1] > out_range[0])) /* all values are one */
 		out_range[1] = out_range[0] + 1;
 }
 
-/* All values that the data have or the function tells of. */
+/* All values of the data and of the function's range. */
 static void whole_axis(const struct gz_transfer_panel *panel, double out_range[2])
 {
 	double range[2];
@@ -61,7 +61,7 @@ static void whole_axis(const struct gz_transfer_panel *panel, double out_range[2
 	out_range[1] = fmax(out_range[1], range[1]);
 }
 
-static void zoom(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+static void zoom_axis(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
 {
 	double whole[2], *shown = panel->plot.shown;
 	whole_axis(panel, whole);
@@ -85,33 +85,34 @@ static void zoom(struct gz_transfer_panel *panel, const struct gz_canvas *canvas
 	shown[1] = left + wide;
 }
 
-static size_t nearest(const struct gz_transfer_panel *panel, struct gz_place at)
+static size_t nearest_point(const struct gz_transfer_panel *panel, struct gz_place at)
 {
 	const struct gz_transfer_plot *plot = &panel->plot;
-	const double per_value =
-		(double)(gz_transfer_plot_x(plot, 1) - gz_transfer_plot_x(plot, 0));
-	const double per_height = (double)(plot->opposite.y - plot->corner.y);
-	const double height = gz_transfer_axis_of(gz_transfer_plot_opacity(plot, at.y),
-						  plot->opacity_logarithmic);
-	return gz_transfer_edit_nearest(panel->edit, gz_transfer_plot_value(plot, at.x), height,
-					per_value, per_height, (double)(REACH * gz_widgets_scale()),
-					plot->opacity_logarithmic);
+	const struct gz_transfer_place place = {
+		.value = gz_transfer_plot_value(plot, at.x),
+		.height = gz_transfer_axis_of(gz_transfer_plot_opacity(plot, at.y),
+					      plot->opacity_logarithmic),
+		.per_value = (double)(gz_transfer_plot_x(plot, 1) - gz_transfer_plot_x(plot, 0)),
+		.per_height = (double)(plot->opposite.y - plot->corner.y),
+		.logarithmic = plot->opacity_logarithmic,
+	};
+	return gz_transfer_edit_nearest(panel->edit, &place, (double)(REACH * gz_widgets_scale()));
 }
 
-/* In the band a point is found by its value alone. */
+/* In the band of colours only the value counts. */
 static size_t nearest_in_band(const struct gz_transfer_panel *panel, float x)
 {
 	size_t found = 0;
-	for (size_t i = 1; i < now(panel)->count; i++)
-		if (fabsf(gz_transfer_plot_x(&panel->plot, now(panel)->points[i].value) - x) <
-		    fabsf(gz_transfer_plot_x(&panel->plot, now(panel)->points[found].value) - x))
+	for (size_t i = 1; i < edited(panel)->count; i++)
+		if (fabsf(gz_transfer_plot_x(&panel->plot, edited(panel)->points[i].value) - x) <
+		    fabsf(gz_transfer_plot_x(&panel->plot, edited(panel)->points[found].value) - x))
 			found = i;
 	return found;
 }
 
-static void grip(struct gz_transfer_panel *panel, size_t point, struct gz_place mouse)
+static void grip_point(struct gz_transfer_panel *panel, size_t point, struct gz_place mouse)
 {
-	const struct gz_transfer_point *p = &now(panel)->points[point];
+	const struct gz_transfer_point *p = &edited(panel)->points[point];
 	panel->selected = point;
 	panel->dragged = true;
 	panel->grip_at = mouse;
@@ -121,28 +122,28 @@ static void grip(struct gz_transfer_panel *panel, size_t point, struct gz_place 
 	panel->grip_opacity = p->opacity;
 }
 
-static void press(struct gz_transfer_panel *panel, struct gz_place mouse)
+static void press_on_plot(struct gz_transfer_panel *panel, struct gz_place mouse)
 {
 	if (mouse.y > panel->plot.opposite.y + REACH * gz_widgets_scale()) {
 		panel->selected = nearest_in_band(panel, mouse.x);
 		return;
 	}
-	touch(panel);
-	size_t point = nearest(panel, mouse);
+	begin_step(panel);
+	size_t point = nearest_point(panel, mouse);
 	if (point == GZ_TRANSFER_EDIT_NONE)
 		point = gz_transfer_edit_add(panel->edit,
 					     gz_transfer_plot_value(&panel->plot, mouse.x),
 					     gz_transfer_plot_opacity(&panel->plot, mouse.y));
 	if (point != GZ_TRANSFER_EDIT_NONE)
-		grip(panel, point, mouse);
+		grip_point(panel, point, mouse);
 }
 
-/* A point follows the mouse; with Shift along that axis alone along which it has gone farther. */
-static void drag(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+/* The point follows the mouse; with Shift only along the axis on which it has moved farther. */
+static void drag_point(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
 {
 	const struct gz_place mouse = canvas->mouse;
 	if (mouse.x == panel->grip_at.x && mouse.y == panel->grip_at.y)
-		return; /* a click, or held still */
+		return; /* a click, or not moved yet */
 	double value = gz_transfer_plot_value(&panel->plot, mouse.x + panel->grip.x);
 	double opacity = gz_transfer_plot_opacity(&panel->plot, mouse.y + panel->grip.y);
 	if (canvas->shift) {
@@ -156,21 +157,21 @@ static void drag(struct gz_transfer_panel *panel, const struct gz_canvas *canvas
 
 static void remove_point(struct gz_transfer_panel *panel, size_t point)
 {
-	touch(panel);
+	begin_step(panel);
 	if (gz_transfer_edit_remove(panel->edit, point) && panel->selected > point)
 		panel->selected--;
 }
 
-/* Halfway to the next point, or from the last to the end. */
+/* Halfway to the next point, or to the end. */
 static void insert_point(struct gz_transfer_panel *panel)
 {
-	const struct gz_transfer *transfer = now(panel);
+	const struct gz_transfer *transfer = edited(panel);
 	const size_t at = panel->selected;
 	const double from = transfer->points[at].value;
 	const double to = at + 1 < transfer->count ? transfer->points[at + 1].value : 1;
 	double rgba[4];
 	gz_transfer_evaluate(transfer, (from + to) / 2, rgba);
-	touch(panel);
+	begin_step(panel);
 	const size_t point = gz_transfer_edit_add(panel->edit, (from + to) / 2, rgba[3]);
 	if (point != GZ_TRANSFER_EDIT_NONE)
 		panel->selected = point;
@@ -179,7 +180,7 @@ static void insert_point(struct gz_transfer_panel *panel)
 static void move_by_arrows(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
 {
 	const struct gz_transfer_plot *plot = &panel->plot;
-	const struct gz_transfer_point *p = &now(panel)->points[panel->selected];
+	const struct gz_transfer_point *p = &edited(panel)->points[panel->selected];
 	const double step = canvas->control ? ARROW_STEP_FINE : ARROW_STEP;
 	const double wide = gz_transfer_plot_value(plot, plot->opposite.x) -
 			    gz_transfer_plot_value(plot, plot->corner.x);
@@ -190,12 +191,12 @@ static void move_by_arrows(struct gz_transfer_panel *panel, const struct gz_canv
 	if (canvas->arrow_y)
 		opacity = gz_transfer_axis_opacity(height + canvas->arrow_y * step,
 						   plot->opacity_logarithmic);
-	touch(panel);
+	begin_step(panel);
 	gz_transfer_edit_move(panel->edit, panel->selected, value, opacity);
 }
 
-/* @return whether Tab leads on to the next widget: the last point is passed */
-static bool take_keys(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+/* @return whether Tab moves on to the next widget, behind the last point */
+static bool take_canvas_keys(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
 {
 	if (canvas->arrow_x || canvas->arrow_y)
 		move_by_arrows(panel, canvas);
@@ -203,7 +204,7 @@ static bool take_keys(struct gz_transfer_panel *panel, const struct gz_canvas *c
 		remove_point(panel, panel->selected);
 	if (canvas->insert_pressed)
 		insert_point(panel);
-	const bool last = panel->selected + 1 >= now(panel)->count;
+	const bool last = panel->selected + 1 >= edited(panel)->count;
 	if (canvas->step > 0 && !last)
 		panel->selected++;
 	if (canvas->step < 0 && panel->selected > 0)
@@ -211,30 +212,30 @@ static bool take_keys(struct gz_transfer_panel *panel, const struct gz_canvas *c
 	return canvas->step > 0 && last;
 }
 
-static void take_mouse(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
+static void take_canvas_mouse(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
 {
 	if (canvas->wheel != 0)
-		zoom(panel, canvas);
+		zoom_axis(panel, canvas);
 	if (canvas->pressed)
-		press(panel, canvas->mouse);
-	/* Taken back in the middle of it: the drag has ended. */
+		press_on_plot(panel, canvas->mouse);
+	/* An undo ends the drag. */
 	panel->dragged = panel->dragged && gz_transfer_edit_in_drag(panel->edit);
 	if (panel->dragged && (canvas->held || canvas->released))
-		drag(panel, canvas);
+		drag_point(panel, canvas);
 	if (!canvas->held)
 		panel->dragged = false;
 	if (canvas->right_pressed) {
-		const size_t point = nearest(panel, canvas->mouse);
+		const size_t point = nearest_point(panel, canvas->mouse);
 		if (point != GZ_TRANSFER_EDIT_NONE)
 			remove_point(panel, point);
 	}
 }
 
-/* What was taken back or loaded may have fewer points. */
+/* After undo or load there may be fewer points. */
 static void keep_selection(struct gz_transfer_panel *panel)
 {
-	if (panel->selected >= now(panel)->count)
-		panel->selected = now(panel)->count - 1;
+	if (panel->selected >= edited(panel)->count)
+		panel->selected = edited(panel)->count - 1;
 }
 
 static void prepare_plot(struct gz_transfer_panel *panel, const struct gz_canvas *canvas)
@@ -247,8 +248,8 @@ static void prepare_plot(struct gz_transfer_panel *panel, const struct gz_canvas
 		whole_axis(panel, panel->plot.shown);
 }
 
-static void print_note(const struct gz_transfer_panel *panel, const struct gz_canvas *canvas,
-		       char *text, size_t size)
+static void print_plot_note(const struct gz_transfer_panel *panel, const struct gz_canvas *canvas,
+			    char *text, size_t size)
 {
 	const struct gz_transfer_plot *plot = &panel->plot;
 	text[0] = '\0';
@@ -267,14 +268,14 @@ static void draw_colour_popup(struct gz_transfer_panel *panel, bool open)
 {
 	double rgb[3];
 	for (int i = 0; i < 3; i++)
-		rgb[i] = now(panel)->points[panel->selected].rgb[i];
+		rgb[i] = edited(panel)->points[panel->selected].rgb[i];
 	if (!gz_widget_colour_popup("colour of a point", open, rgb))
 		return;
-	touch(panel);
+	begin_step(panel);
 	gz_transfer_edit_colour(panel->edit, panel->selected, rgb);
 }
 
-static void draw_canvas(struct gz_transfer_panel *panel)
+static void draw_curve_canvas(struct gz_transfer_panel *panel)
 {
 	struct gz_canvas canvas;
 	char note[64];
@@ -283,14 +284,14 @@ static void draw_canvas(struct gz_transfer_panel *panel)
 	panel->focus = false;
 	gz_widget_canvas("curve", GZ_TRANSFER_PLOT_HEIGHT, &canvas);
 	prepare_plot(panel, &canvas);
-	take_mouse(panel, &canvas);
+	take_canvas_mouse(panel, &canvas);
 	keep_selection(panel);
-	const bool leave = canvas.focused && take_keys(panel, &canvas);
+	const bool leave = canvas.focused && take_canvas_keys(panel, &canvas);
 	keep_selection(panel);
 	prepare_plot(panel, &canvas);
 	panel->plot.selected = panel->selected;
-	print_note(panel, &canvas, note, sizeof note);
-	gz_transfer_plot_draw(&panel->plot, now(panel), panel->histogram, note);
+	print_plot_note(panel, &canvas, note, sizeof note);
+	gz_transfer_plot_draw(&panel->plot, edited(panel), panel->histogram, note);
 	gz_widget_canvas_end();
 	draw_colour_popup(panel, canvas.double_pressed);
 	if (leave)
@@ -298,9 +299,9 @@ static void draw_canvas(struct gz_transfer_panel *panel)
 }
 
 /* Value in data units, opacity and colour of the selected point. */
-static void draw_point(struct gz_transfer_panel *panel)
+static void draw_point_fields(struct gz_transfer_panel *panel)
 {
-	const struct gz_transfer_point point = now(panel)->points[panel->selected];
+	const struct gz_transfer_point point = edited(panel)->points[panel->selected];
 	double range[2], rgb[3] = { point.rgb[0], point.rgb[1], point.rgb[2] };
 	function_range(panel, range);
 	const double wide = range[1] - range[0];
@@ -310,31 +311,31 @@ static void draw_point(struct gz_transfer_panel *panel)
 	const struct gz_number_range opacities = { 0, 1, false, false, 0.002, "opacity %.5g" };
 	gz_widgets_next_width(0.24f);
 	if (gz_widget_doubles("##value", &value, 1, &values)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_move(panel->edit, panel->selected, (value - range[0]) / wide, NAN);
 	}
 	gz_widget_tooltip("data value of the point");
 	gz_widgets_same_line(0);
 	gz_widgets_next_width(0.23f);
 	if (gz_widget_doubles("##opacity", &opacity, 1, &opacities)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_move(panel->edit, panel->selected, NAN, opacity);
 	}
-	gz_widget_tooltip("its opacity per voxel length, 0 to 1");
+	gz_widget_tooltip("opacity of the point per voxel length, 0 to 1");
 	gz_widgets_same_line(0);
 	gz_widgets_next_width(0.35f);
 	if (gz_widget_colour("##colour", rgb)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_colour(panel->edit, panel->selected, rgb);
 	}
 	gz_widgets_same_line(0);
-	gz_widgets_disable(now(panel)->count < 2);
+	gz_widgets_disable(edited(panel)->count < 2);
 	if (gz_widget_button("Remove"))
 		remove_point(panel, panel->selected);
 	gz_widgets_enable();
 }
 
-static void draw_presets(struct gz_transfer_panel *panel)
+static void draw_preset_choice(struct gz_transfer_panel *panel)
 {
 	char lines[GZ_PRESET_COUNT][96];
 	const char *names[GZ_PRESET_COUNT + 2] = { "Presets" };
@@ -356,10 +357,10 @@ static void draw_presets(struct gz_transfer_panel *panel)
 		panel->whole_lost = false;
 	}
 	gz_widgets_enable();
-	gz_widget_tooltip("looks fitted to this volume by its histogram");
+	gz_widget_tooltip("transfer functions fitted to the histogram of this volume");
 }
 
-static void draw_steps(struct gz_transfer_panel *panel)
+static void draw_undo_buttons(struct gz_transfer_panel *panel)
 {
 	gz_widgets_same_line(0);
 	gz_widgets_disable(!gz_transfer_edit_can_undo(panel->edit));
@@ -376,21 +377,21 @@ static void draw_steps(struct gz_transfer_panel *panel)
 	keep_selection(panel);
 }
 
-static void draw_interpolation(struct gz_transfer_panel *panel)
+static void draw_interpolation_choice(struct gz_transfer_panel *panel)
 {
 	static const char *const names[] = { "linear", "quadratic", NULL };
-	int interpolation = (int)now(panel)->interpolation;
+	int interpolation = (int)edited(panel)->interpolation;
 	gz_widgets_same_line(0);
 	gz_widgets_next_width(0.18f);
 	if (gz_widget_choice("##interpolation", &interpolation, names)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_interpolate(panel->edit,
 					     (enum gz_transfer_interpolation)interpolation);
 	}
-	gz_widget_tooltip("between points: straight, or easing in and out of each");
+	gz_widget_tooltip("between points: straight lines, or easing in and out");
 }
 
-static void draw_axes(struct gz_transfer_panel *panel)
+static void draw_axis_switches(struct gz_transfer_panel *panel)
 {
 	bool opacity = !panel->opacity_linear, counts = !panel->counts_linear;
 	gz_widgets_same_line(0);
@@ -401,17 +402,17 @@ static void draw_axes(struct gz_transfer_panel *panel)
 		panel->counts_linear = !counts;
 }
 
-static void draw_range(struct gz_transfer_panel *panel)
+static void draw_range_fields(struct gz_transfer_panel *panel)
 {
-	bool own = now(panel)->has_range;
+	bool own = edited(panel)->has_range;
 	double range[2];
 	function_range(panel, range);
 	if (gz_widget_checkbox("range", &own)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_range(panel->edit, own ? range : NULL);
 	}
-	gz_widget_tooltip("the data values that the first and the last point can reach; without "
-			  "one, the volume's least and greatest");
+	gz_widget_tooltip("data values of the left and right end; off: least and greatest value of "
+			  "the volume");
 	gz_widgets_same_line(0);
 	gz_widgets_disable(!own);
 	gz_widgets_next_width(0.42f);
@@ -419,7 +420,7 @@ static void draw_range(struct gz_transfer_panel *panel)
 		-1e38, 1e38, false, false, (range[1] - range[0]) / 500, "%.6g"
 	};
 	if (gz_widget_doubles("##range", range, 2, &limits)) {
-		touch(panel);
+		begin_step(panel);
 		gz_transfer_edit_range(panel->edit, range);
 	}
 	gz_widgets_enable();
@@ -428,15 +429,15 @@ static void draw_range(struct gz_transfer_panel *panel)
 	if (gz_widget_button("Whole axis"))
 		panel->whole_lost = false;
 	gz_widgets_enable();
-	gz_widget_tooltip("the wheel zooms, with Shift it moves the axis");
+	gz_widget_tooltip("the wheel zooms; with Shift it scrolls");
 }
 
-static enum gz_transfer_wish draw_file(struct gz_transfer_panel *panel)
+static enum gz_transfer_wish draw_file_row(struct gz_transfer_panel *panel)
 {
 	enum gz_transfer_wish wish = GZ_TRANSFER_WISH_NONE;
 	gz_widgets_next_width(0.6f);
 	gz_widget_text_field("##file", panel->file, sizeof panel->file, false);
-	gz_widget_tooltip("a file of a transfer function, .tf");
+	gz_widget_tooltip("file of the transfer function (.tf)");
 	gz_widgets_same_line(0);
 	gz_widgets_disable(!panel->file[0]);
 	if (gz_widget_button("Load"))
@@ -450,17 +451,17 @@ static enum gz_transfer_wish draw_file(struct gz_transfer_panel *panel)
 	return wish;
 }
 
-static enum gz_transfer_wish draw_content(struct gz_transfer_panel *panel)
+static enum gz_transfer_wish draw_transfer_content(struct gz_transfer_panel *panel)
 {
 	keep_selection(panel);
-	draw_presets(panel);
-	draw_steps(panel);
-	draw_interpolation(panel);
-	draw_axes(panel);
-	draw_canvas(panel);
-	draw_point(panel);
-	draw_range(panel);
-	return draw_file(panel);
+	draw_preset_choice(panel);
+	draw_undo_buttons(panel);
+	draw_interpolation_choice(panel);
+	draw_axis_switches(panel);
+	draw_curve_canvas(panel);
+	draw_point_fields(panel);
+	draw_range_fields(panel);
+	return draw_file_row(panel);
 }
 
 enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel)
@@ -475,7 +476,7 @@ enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel)
 	if (!gz_widgets_in_use())
 		gz_transfer_edit_end(panel->edit);
 	if (gz_panel_begin("Transfer function", &place, &panel->open))
-		wish = draw_content(panel);
+		wish = draw_transfer_content(panel);
 	gz_panel_end();
 	return wish;
 }

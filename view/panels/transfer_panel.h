@@ -3,8 +3,8 @@
  * The panel in which a transfer function is edited, over its histogram. Inside a frame of
  * panels/widgets.h.
  */
-#ifndef GZ_VIEW_TRANSFER_PANEL_H
-#define GZ_VIEW_TRANSFER_PANEL_H
+#ifndef GZ_VIEW_PANELS_TRANSFER_PANEL_H
+#define GZ_VIEW_PANELS_TRANSFER_PANEL_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -15,22 +15,23 @@
 #include "view/panels/transfer_edit.h"
 #include "view/panels/transfer_plot.h"
 
-/** What it asks for that is not its own to do. */
+/** What the panel asks its caller to do. */
 enum gz_transfer_wish {
 	GZ_TRANSFER_WISH_NONE,
-	GZ_TRANSFER_WISH_LOAD, /**< the file that file names */
-	GZ_TRANSFER_WISH_SAVE, /**< to it */
+	GZ_TRANSFER_WISH_LOAD, /**< load panel->file */
+	GZ_TRANSFER_WISH_SAVE, /**< save to panel->file */
 };
 
-/** What it shows and changes, and how. Zero-initialised but for what is set before each drawing. */
+/** What the panel shows and changes. Zero-initialise it; set the first fields before each drawing.
+ */
 struct gz_transfer_panel {
 	/* set before each drawing */
 	struct gz_transfer_edit *edit;
-	const struct gz_histogram *histogram; /**< of volume; NULL while it is counted */
+	const struct gz_histogram *histogram; /**< of volume; NULL while it is being counted */
 	const struct gz_volume *volume;
 	float margin_top, margin_bottom; /**< kept free above and below it, screen coordinates */
 
-	bool focus; /**< the curve has the keyboard from now on; false afterwards */
+	bool focus; /**< give the keyboard to the curve; set to false once done */
 
 	bool open; /**< false once its cross was clicked */
 	char file[GZ_PATH_SIZE];
@@ -38,16 +39,16 @@ struct gz_transfer_panel {
 	/* the panel's own */
 	struct gz_transfer_plot plot;
 	size_t selected;
-	bool whole_lost; /**< the axis shows what the user chose, not all values */
+	bool whole_lost; /**< the axis shows a part that the user chose */
 	bool opacity_linear, counts_linear;
-	bool dragged;                    /**< the point selected, by the mouse */
-	struct gz_place grip;            /**< from the mouse to the point, when the drag began */
+	bool dragged;                    /**< the mouse drags the selected point */
+	struct gz_place grip;            /**< from the mouse to the point when the drag began */
 	struct gz_place grip_at;         /**< the mouse then */
 	double grip_value, grip_opacity; /**< the point then */
 };
 
-/** Draw it at the lower left, and change what is edited as the user says. All that is done with one
- *  press of a button or key is one step. */
+/** Draw the panel at the lower left, and apply the user's changes. Everything done during one press
+ * of a button or key is one step of undo. */
 enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel);
 
 #endif

@@ -8,9 +8,9 @@
 /* Unscaled. */
 #define BAND_HEIGHT  16.0f
 #define GAP          4.0f
-#define MARGIN       8.0f /* discs at the ends are seen whole */
+#define MARGIN       8.0f /* room for the discs at the ends */
 #define POINT_RADIUS 5.0f
-/* Columns that the curve and its colours are drawn in (chosen: two screen coordinates). */
+/* Width of the columns that the curve and its colours are drawn in (chosen: fine enough). */
 #define COLUMN 2.0f
 
 enum { COLUMNS_MAX = 2048 };
@@ -32,7 +32,7 @@ void gz_transfer_plot_lay_out(struct gz_transfer_plot *plot, const struct gz_can
 	plot->band[1] = (struct gz_place) { right, bottom };
 }
 
-static double width_of(const double range[2])
+static double width_of_range(const double range[2])
 {
 	return range[1] > range[0] ? range[1] - range[0] : 1;
 }
@@ -41,19 +41,19 @@ double gz_transfer_plot_value(const struct gz_transfer_plot *plot, float x)
 {
 	const double share =
 		(double)(x - plot->corner.x) / fmax(1, (double)(plot->opposite.x - plot->corner.x));
-	const double data = plot->shown[0] + share * width_of(plot->shown);
-	return (data - plot->range[0]) / width_of(plot->range);
+	const double data = plot->shown[0] + share * width_of_range(plot->shown);
+	return (data - plot->range[0]) / width_of_range(plot->range);
 }
 
 static float x_of_data(const struct gz_transfer_plot *plot, double data)
 {
-	const double share = (data - plot->shown[0]) / width_of(plot->shown);
+	const double share = (data - plot->shown[0]) / width_of_range(plot->shown);
 	return plot->corner.x + (float)(share * (double)(plot->opposite.x - plot->corner.x));
 }
 
 float gz_transfer_plot_x(const struct gz_transfer_plot *plot, double value)
 {
-	return x_of_data(plot, plot->range[0] + value * width_of(plot->range));
+	return x_of_data(plot, plot->range[0] + value * width_of_range(plot->range));
 }
 
 double gz_transfer_plot_opacity(const struct gz_transfer_plot *plot, float y)
@@ -69,14 +69,14 @@ float gz_transfer_plot_y(const struct gz_transfer_plot *plot, double opacity)
 	return plot->opposite.y - (float)height * (plot->opposite.y - plot->corner.y);
 }
 
-static struct gz_paint paint_of(const double rgba[4], uint8_t alpha)
+static struct gz_paint paint_of_rgb(const double rgba[4], uint8_t alpha)
 {
 	return (struct gz_paint) { (uint8_t)lround(rgba[0] * 255), (uint8_t)lround(rgba[1] * 255),
 				   (uint8_t)lround(rgba[2] * 255), alpha };
 }
 
-/* Lines at some opacities, with their numbers. */
-static void draw_grid(const struct gz_transfer_plot *plot)
+/* Lines at some opacities. */
+static void draw_opacity_grid(const struct gz_transfer_plot *plot)
 {
 	static const double linear[] = { 0, 0.25, 0.5, 0.75, 1 };
 	static const double logarithmic[] = { 0, 0.0001, 0.001, 0.01, 0.1, 1 };
@@ -90,7 +90,7 @@ static void draw_grid(const struct gz_transfer_plot *plot)
 	}
 }
 
-static void draw_grid_labels(const struct gz_transfer_plot *plot)
+static void draw_opacity_labels(const struct gz_transfer_plot *plot)
 {
 	static const double linear[] = { 0.25, 0.5, 0.75 };
 	static const double logarithmic[] = { 0.001, 0.01, 0.1 };
@@ -105,8 +105,8 @@ static void draw_grid_labels(const struct gz_transfer_plot *plot)
 	}
 }
 
-/* The count that fills the height. Linear: the highest but one, as one bin of background would
- * leave nothing of the others. */
+/* The count that fills the height. On a linear axis the second largest: a bin of background would
+ * flatten all others. */
 static uint64_t full_count(const struct gz_histogram *histogram, bool logarithmic)
 {
 	uint64_t second = 0;
@@ -121,7 +121,7 @@ static uint64_t full_count(const struct gz_histogram *histogram, bool logarithmi
 	return logarithmic || second == 0 ? histogram->most : second;
 }
 
-/* The greatest count of the bins that a column of the plot stands for. */
+/* The greatest count of the bins in a column of the plot. */
 static uint64_t column_count(const struct gz_histogram *histogram, double from, double to)
 {
 	uint64_t greatest = 0;
@@ -138,7 +138,8 @@ static void draw_histogram(const struct gz_transfer_plot *plot,
 			   const struct gz_histogram *histogram)
 {
 	const double full = (double)full_count(histogram, plot->counts_logarithmic);
-	const double per_x = width_of(plot->shown) / (double)(plot->opposite.x - plot->corner.x);
+	const double per_x =
+		width_of_range(plot->shown) / (double)(plot->opposite.x - plot->corner.x);
 	const float height = plot->opposite.y - plot->corner.y;
 	for (float x = plot->corner.x; x < plot->opposite.x; x += 1) {
 		const double from = plot->shown[0] + (double)(x - plot->corner.x) * per_x;
@@ -154,7 +155,7 @@ static void draw_histogram(const struct gz_transfer_plot *plot,
 	}
 }
 
-/* The colours under the curve, and in the band; beyond its range the function keeps those of its
+/* The colours under the curve and in the band; beyond its range the function has the colours of its
  * ends. */
 static void draw_colours(const struct gz_transfer_plot *plot, const struct gz_transfer *transfer)
 {
@@ -166,23 +167,23 @@ static void draw_colours(const struct gz_transfer_plot *plot, const struct gz_tr
 		const float top = gz_transfer_plot_y(plot, (left[3] + right[3]) / 2);
 		gz_draw_fading_rectangle(GZ_LAYER_PANEL, (struct gz_place) { x, top },
 					 (struct gz_place) { end, plot->opposite.y },
-					 paint_of(left, 110), paint_of(right, 110));
+					 paint_of_rgb(left, 110), paint_of_rgb(right, 110));
 		gz_draw_fading_rectangle(GZ_LAYER_PANEL, (struct gz_place) { x, plot->band[0].y },
 					 (struct gz_place) { end, plot->band[1].y },
-					 paint_of(left, 255), paint_of(right, 255));
+					 paint_of_rgb(left, 255), paint_of_rgb(right, 255));
 		for (int i = 0; i < 4; i++)
 			left[i] = right[i];
 	}
 }
 
-/* The curve's places: a column each, and the points themselves, as peaks may be narrower. */
-struct curve {
+/* Points of the curve: one a column, and the control points, as peaks may be narrower. */
+struct opacity_curve {
 	struct gz_place places[COLUMNS_MAX + GZ_TRANSFER_POINTS_MAX];
 	size_t count;
-	size_t next; /* point */
+	size_t next; /* control point */
 };
 
-static void add_points_before(struct curve *curve, const struct gz_transfer_plot *plot,
+static void add_points_before(struct opacity_curve *curve, const struct gz_transfer_plot *plot,
 			      const struct gz_transfer *transfer, float x)
 {
 	for (; curve->next < transfer->count; curve->next++) {
@@ -198,7 +199,7 @@ static void add_points_before(struct curve *curve, const struct gz_transfer_plot
 
 static void draw_curve(const struct gz_transfer_plot *plot, const struct gz_transfer *transfer)
 {
-	struct curve curve;
+	struct opacity_curve curve;
 	curve.count = curve.next = 0;
 	const float width = plot->opposite.x - plot->corner.x;
 	const float column = fmaxf(COLUMN, width / (COLUMNS_MAX - 2));
@@ -213,7 +214,8 @@ static void draw_curve(const struct gz_transfer_plot *plot, const struct gz_tran
 	gz_draw_lines(GZ_LAYER_PANEL, curve.places, curve.count, dim, 1.5f);
 }
 
-static void draw_points(const struct gz_transfer_plot *plot, const struct gz_transfer *transfer)
+static void draw_control_points(const struct gz_transfer_plot *plot,
+				const struct gz_transfer *transfer)
 {
 	for (size_t i = 0; i < transfer->count; i++) {
 		const struct gz_transfer_point *point = &transfer->points[i];
@@ -226,12 +228,12 @@ static void draw_points(const struct gz_transfer_plot *plot, const struct gz_tra
 		gz_draw_disc(GZ_LAYER_PANEL, at, POINT_RADIUS + (selected ? 3.5f : 2), ring);
 		gz_draw_disc(GZ_LAYER_PANEL, at, POINT_RADIUS + (selected ? 2.5f : 1),
 			     selected ? bright : dim);
-		gz_draw_disc(GZ_LAYER_PANEL, at, POINT_RADIUS, paint_of(rgba, 255));
+		gz_draw_disc(GZ_LAYER_PANEL, at, POINT_RADIUS, paint_of_rgb(rgba, 255));
 	}
 }
 
-/* The data values at both ends. */
-static void draw_axis(const struct gz_transfer_plot *plot)
+/* The data values at both ends of the axis. */
+static void draw_value_axis(const struct gz_transfer_plot *plot)
 {
 	char text[32];
 	const float y = plot->band[1].y + GAP * gz_widgets_scale();
@@ -246,14 +248,14 @@ static void draw_axis(const struct gz_transfer_plot *plot)
 void gz_transfer_plot_draw(const struct gz_transfer_plot *plot, const struct gz_transfer *transfer,
 			   const struct gz_histogram *histogram, const char *note)
 {
-	draw_grid(plot);
+	draw_opacity_grid(plot);
 	if (histogram && histogram->total > 0)
 		draw_histogram(plot, histogram);
 	draw_colours(plot, transfer);
-	draw_grid_labels(plot);
+	draw_opacity_labels(plot);
 	draw_curve(plot, transfer);
-	draw_points(plot, transfer);
-	draw_axis(plot);
+	draw_control_points(plot, transfer);
+	draw_value_axis(plot);
 	if (note) {
 		const float room = gz_text_room(1, note).x;
 		const struct gz_place at = { (plot->corner.x + plot->opposite.x - room) / 2,

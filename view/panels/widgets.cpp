@@ -24,14 +24,14 @@ constexpr float PADDING = 5;
 constexpr float PANEL_ALPHA = 0.85F;
 constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 
-/* Dear ImGui has answered a key after so many frames. */
+/* Frames after which Dear ImGui has answered a key. */
 constexpr int FRAMES_TO_ANSWER = 4;
 
-/* Height of a line of text: that of Dear ImGui's own font, so that panels are as high without the
- * others. */
+/* Height of a line of text, as of Dear ImGui's own font: panels have the same height with any font.
+ */
 constexpr float FONT_PX = 13;
 
-/* Text that is drawn larger comes from a font so many times larger. */
+/* Large text is drawn with a font of this many times the size. */
 constexpr float LARGE = 2;
 
 /* Where distributions keep a font with the characters below: Debian and Ubuntu, Fedora, Arch,
@@ -50,19 +50,19 @@ const char *const FONT_FILES[] = {
 const ImWchar GLYPHS[] = { 0x20,   0xff,   0x391,  0x3c9,  0x2010, 0x2026, 0x2032,
 			   0x2033, 0x2190, 0x2193, 0x2248, 0x2265, 0 };
 
-/* Longest text that is typed, a path with its end. */
+/* Size of the longest text that can be typed, a path with its NUL, bytes. */
 constexpr size_t TEXT_SIZE = 4096;
 
-/* Keys of canvases, and what they are to GLFW. */
+/* Keys that canvases answer, and their GLFW codes. */
 enum Key { LEFT, RIGHT, UP, DOWN, TAB, DELETE_KEY, BACKSPACE, INSERT, ESCAPE, KEYS };
 constexpr int GLFW_KEYS[KEYS] = { GLFW_KEY_LEFT,      GLFW_KEY_RIGHT,  GLFW_KEY_UP,
 				  GLFW_KEY_DOWN,      GLFW_KEY_TAB,    GLFW_KEY_DELETE,
 				  GLFW_KEY_BACKSPACE, GLFW_KEY_INSERT, GLFW_KEY_ESCAPE };
 
-/* Keys pressed since the last frame that are remembered; more nobody presses in one. */
+/* Most keys that are remembered from one frame to the next (chosen: nobody presses more). */
 constexpr int NOTED_MAX = 8;
 
-/* What is remembered from frame to frame. */
+/* State kept from frame to frame. */
 struct Memory {
 	int noted[NOTED_MAX]; /* of GLFW */
 	int noted_count;
@@ -89,7 +89,7 @@ float interface_scale(GLFWwindow *window)
 	if (memory().asked_scale > 0)
 		return memory().asked_scale;
 	glfwGetWindowContentScale(window, &x, &y);
-	/* Where a screen coordinate is several pixels already. */
+	/* A screen coordinate may be several pixels already. */
 	glfwGetWindowSize(window, &width, &height);
 	glfwGetFramebufferSize(window, &width_px, &height_px);
 	if (width > 0 && width_px > width)
@@ -105,7 +105,7 @@ const char *font_file()
 	return nullptr;
 }
 
-/* Dear ImGui's own font is of pixels, and only whole ones look well. */
+/* Dear ImGui's own font is a bitmap, which looks right at whole multiples only. */
 void add_font(const char *file, float px)
 {
 	ImFontConfig config;
@@ -118,7 +118,7 @@ void add_font(const char *file, float px)
 	ImGui::GetIO().Fonts->AddFontDefault(&config);
 }
 
-/* Drawn at the size that they are shown in: letters made larger would be blurred. */
+/* Fonts are rasterised at the size they are shown in; scaled letters would be blurred. */
 void make_interface(float scale)
 {
 	const char *file = font_file();
@@ -130,14 +130,14 @@ void make_interface(float scale)
 	memory().scale = scale;
 }
 
-/* The one whose letters need least change. */
+/* The font whose letters are scaled least. */
 ImFont *font_for(float size)
 {
 	const ImFontAtlas *fonts = ImGui::GetIO().Fonts;
 	return fonts->Fonts[size > (1 + LARGE) / 2 ? 1 : 0];
 }
 
-ImVec2 vector(gz_place place)
+ImVec2 vector_of(gz_place place)
 {
 	return ImVec2(place.x, place.y);
 }
@@ -186,16 +186,25 @@ void set_panel_place(const gz_panel_place &place, bool movable)
 					    ImVec2(width > 0 ? width : width_max, height_max));
 }
 
-bool draw_numbers(const char *id, ImGuiDataType type, void *values, int count, const void *least,
-		  const void *greatest, const gz_number_range &range)
+/* Numbers of one type, with limits of that type. */
+struct Numbers {
+	ImGuiDataType type;
+	void *values;
+	int count;
+	const void *least, *greatest;
+};
+
+bool draw_numbers(const char *id, const Numbers &numbers, const gz_number_range &range)
 {
 	ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
 	if (!range.slider)
-		return ImGui::DragScalarN(id, type, values, count, static_cast<float>(range.speed),
-					  least, greatest, range.format, flags);
+		return ImGui::DragScalarN(id, numbers.type, numbers.values, numbers.count,
+					  static_cast<float>(range.speed), numbers.least,
+					  numbers.greatest, range.format, flags);
 	if (range.logarithmic)
 		flags |= ImGuiSliderFlags_Logarithmic;
-	return ImGui::SliderScalarN(id, type, values, count, least, greatest, range.format, flags);
+	return ImGui::SliderScalarN(id, numbers.type, numbers.values, numbers.count, numbers.least,
+				    numbers.greatest, range.format, flags);
 }
 
 void destroy_context()
@@ -204,22 +213,21 @@ void destroy_context()
 	ImGui::DestroyContext();
 }
 
-/* A canvas is a window of its own, in which keys lead nowhere by themselves: the only kind of it.
- */
+/* A canvas is a child window without keyboard navigation; no other window is. */
 bool canvas_has_keyboard()
 {
 	const ImGuiWindow *window = ImGui::GetCurrentContext()->NavWindow;
 	return window && window->WasActive && (window->Flags & ImGuiWindowFlags_NoNavInputs);
 }
 
-/* Where a panel remembers that its canvas is to have the keyboard. */
+/* Under this name a panel remembers that its canvas gets the keyboard. */
 ImGuiID focus_mark()
 {
 	return ImGui::GetID("##canvas has the keyboard");
 }
 
-/* Arrows lead through panels only where Tab or a dialog has led into them: else a panel that was
- * clicked, or is merely there, would take them from the camera. */
+/* Arrow keys navigate panels only after Tab or in a dialog. Otherwise a panel that is open or was
+ * clicked would take them from the camera. */
 void let_keys_lead()
 {
 	ImGuiIO &io = ImGui::GetIO();
@@ -232,8 +240,8 @@ void let_keys_lead()
 		io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
 }
 
-/* Before 1.87 Dear ImGui looks at keys once a frame: one that was let go of before is down for this
- * one, so that it counts. */
+/* Dear ImGui before 1.87 samples keys once a frame. A key that was pressed and released in between
+ * is held down for one frame, so that it counts. */
 #if IMGUI_VERSION_NUM < 18700
 void hold_brief_keys()
 {
@@ -264,7 +272,7 @@ void let_go_of_brief_keys()
 }
 #endif
 
-/* Enter on the widget that keys have led to: Dear ImGui itself answers the space bar alone. */
+/* Enter on the focused widget; Dear ImGui itself answers Space only. */
 bool entered_by_keys()
 {
 	return memory().enter_pressed && ImGui::GetIO().NavVisible && ImGui::IsItemFocused();
@@ -432,7 +440,7 @@ void gz_widgets_release_keyboard(void)
 
 void gz_draw_line(gz_layer layer, gz_place from, gz_place to, gz_paint paint, float thickness)
 {
-	list_of(layer)->AddLine(vector(from), vector(to), colour(paint),
+	list_of(layer)->AddLine(vector_of(from), vector_of(to), colour(paint),
 				thickness * gz_widgets_scale());
 }
 
@@ -440,39 +448,41 @@ void gz_draw_lines(gz_layer layer, const gz_place *places, size_t count, gz_pain
 		   float thickness)
 {
 	for (size_t i = 0; i < count; i++)
-		list_of(layer)->PathLineTo(vector(places[i]));
+		list_of(layer)->PathLineTo(vector_of(places[i]));
 	list_of(layer)->PathStroke(colour(paint), 0, thickness * gz_widgets_scale());
 }
 
 void gz_draw_rectangle(gz_layer layer, gz_place corner, gz_place opposite, gz_paint paint,
 		       float radius)
 {
-	list_of(layer)->AddRectFilled(vector(corner), vector(opposite), colour(paint),
+	list_of(layer)->AddRectFilled(vector_of(corner), vector_of(opposite), colour(paint),
 				      radius * gz_widgets_scale());
 }
 
 void gz_draw_fading_rectangle(gz_layer layer, gz_place corner, gz_place opposite, gz_paint left,
 			      gz_paint right)
 {
-	list_of(layer)->AddRectFilledMultiColor(vector(corner), vector(opposite), colour(left),
-						colour(right), colour(right), colour(left));
+	list_of(layer)->AddRectFilledMultiColor(vector_of(corner), vector_of(opposite),
+						colour(left), colour(right), colour(right),
+						colour(left));
 }
 
 void gz_draw_disc(gz_layer layer, gz_place centre, float radius, gz_paint paint)
 {
-	list_of(layer)->AddCircleFilled(vector(centre), radius * gz_widgets_scale(), colour(paint));
+	list_of(layer)->AddCircleFilled(vector_of(centre), radius * gz_widgets_scale(),
+					colour(paint));
 }
 
 void gz_draw_circle(gz_layer layer, gz_place centre, float radius, gz_paint paint, float thickness)
 {
 	const float scale = gz_widgets_scale();
-	list_of(layer)->AddCircle(vector(centre), radius * scale, colour(paint), 0,
+	list_of(layer)->AddCircle(vector_of(centre), radius * scale, colour(paint), 0,
 				  thickness * scale);
 }
 
 void gz_draw_text(gz_layer layer, gz_place at, float size, gz_paint paint, const char *text)
 {
-	list_of(layer)->AddText(font_for(size), size * ImGui::GetFontSize(), vector(at),
+	list_of(layer)->AddText(font_for(size), size * ImGui::GetFontSize(), vector_of(at),
 				colour(paint), text);
 }
 
@@ -667,13 +677,14 @@ bool gz_widget_ints(const char *id, int *values, int count, const gz_number_rang
 {
 	const int least = static_cast<int>(range->least);
 	const int greatest = static_cast<int>(range->greatest);
-	return draw_numbers(id, ImGuiDataType_S32, values, count, &least, &greatest, *range);
+	return draw_numbers(id, { ImGuiDataType_S32, values, count, &least, &greatest }, *range);
 }
 
 bool gz_widget_doubles(const char *id, double *values, int count, const gz_number_range *range)
 {
-	return draw_numbers(id, ImGuiDataType_Double, values, count, &range->least,
-			    &range->greatest, *range);
+	return draw_numbers(
+		id, { ImGuiDataType_Double, values, count, &range->least, &range->greatest },
+		*range);
 }
 
 static void to_shown(const double rgb[3], float shown[3])
@@ -709,16 +720,16 @@ bool gz_widget_colour_popup(const char *id, bool open, double rgb[3])
 	return changed && from_shown(shown, rgb);
 }
 
-/* Dear ImGui keeps what is typed until Enter is pressed. */
+/* Dear ImGui keeps what is typed until Enter is pressed; @p text changes then. */
 bool gz_widget_text_field(const char *id, char *text, size_t size, bool by_enter)
 {
-	char typed[TEXT_SIZE] = ""; /* its end too: settings are compared byte by byte */
+	char typed[TEXT_SIZE];
 	if (size > sizeof typed)
 		return false;
 	snprintf(typed, size, "%s", text);
 	if (!ImGui::InputText(id, typed, size, by_enter ? ImGuiInputTextFlags_EnterReturnsTrue : 0))
 		return false;
-	memcpy(text, typed, size);
+	snprintf(text, size, "%s", typed);
 	return true;
 }
 

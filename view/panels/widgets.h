@@ -1,19 +1,19 @@
 /**
  * @file
- * What panels are made of: widgets, and shapes drawn over the picture. Dear ImGui behind a C
- * interface: panels/widgets.cpp is the one file of C++ here, and the one that knows of it.
+ * Panels, widgets, and shapes drawn over the picture: Dear ImGui behind a C interface. Only
+ * panels/widgets.cpp is C++ and uses Dear ImGui.
  *
- * Places and lengths are in the window's screen coordinates, as GLFW's cursor is, from the top left
- * corner; lengths marked "unscaled" are multiplied by gz_widgets_scale(). Texts are UTF-8 and
- * borrowed until the call returns. Everything but gz_widgets_init(), gz_widgets_free() and the
- * questions about mouse and keyboard stands between gz_widgets_begin() and gz_widgets_end(), on the
- * thread with the window's OpenGL context.
+ * Places and lengths are in the window's screen coordinates, like GLFW's cursor, from the top left
+ * corner. Lengths marked "unscaled" are multiplied by gz_widgets_scale(). Texts are UTF-8 and
+ * borrowed until the call returns. Call everything but gz_widgets_init(), gz_widgets_free() and the
+ * questions about mouse and keyboard between gz_widgets_begin() and gz_widgets_end(), on the thread
+ * with the window's OpenGL context.
  *
- * A widget is told from others of its panel by its id, which is not shown where it begins with
- * "##"; gz_widgets_push_id() tells rows of a list apart.
+ * An id identifies a widget within its panel; it is also its text, unless it begins with "##".
+ * gz_widgets_push_id() tells rows of a list apart.
  */
-#ifndef GZ_VIEW_WIDGETS_H
-#define GZ_VIEW_WIDGETS_H
+#ifndef GZ_VIEW_PANELS_WIDGETS_H
+#define GZ_VIEW_PANELS_WIDGETS_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -35,17 +35,17 @@ struct gz_paint {
 	uint8_t red, green, blue, alpha;
 };
 
-/** Text on any picture, what is to be seen to, and what is wrong. */
+/** Text, warnings, errors, and the ground behind text. */
 extern const struct gz_paint gz_paint_plain, gz_paint_amber, gz_paint_red, gz_paint_ground;
 
 /** What a shape is drawn on. */
 enum gz_layer {
 	GZ_LAYER_PICTURE, /**< over the picture, under the panels */
-	GZ_LAYER_PANEL,   /**< in the panel that is open: shapes after widgets lie over them */
+	GZ_LAYER_PANEL,   /**< in the open panel, over the widgets before */
 	GZ_LAYER_TOP,     /**< over the panels */
 };
 
-/** A corner or side that a panel keeps to. */
+/** The corner where a panel appears. */
 enum gz_panel_at {
 	GZ_PANEL_TOP_LEFT,
 	GZ_PANEL_TOP_RIGHT,
@@ -54,59 +54,59 @@ enum gz_panel_at {
 	GZ_PANEL_MIDDLE,
 };
 
-/** Where a panel stands when it appears; one with a title that is neither a dialog nor in the
- * middle is then dragged by it. */
+/** Where a panel appears. A panel with a title can be dragged, unless it is a dialog or in the
+ *  middle. */
 struct gz_panel_place {
 	enum gz_panel_at at;
-	float margin_top, margin_bottom; /**< kept free beyond the usual margin */
-	float width;                     /**< unscaled, cut to the window; 0: as wide as it needs */
+	float margin_top, margin_bottom; /**< kept free in addition to the usual margin */
+	float width;                     /**< unscaled, limited by the window; 0: as needed */
 	bool takes_keyboard; /**< it is a dialog: the first widget has the keyboard, and nothing
-				beneath it can be clicked */
+				below it can be clicked */
 };
 
-/** What the mouse and the keyboard do to a canvas. */
+/** Mouse and keyboard on a canvas. */
 struct gz_canvas {
 	struct gz_place corner, size; /**< of its area */
 	struct gz_place mouse;
 	bool hovered;        /**< the mouse is over it */
-	bool focused;        /**< keys are its own: it was clicked last, or reached by Tab */
+	bool focused;        /**< it has the keyboard: clicked last, or reached by Tab */
 	bool pressed;        /**< the left button went down on it since the last frame */
-	bool double_pressed; /**< twice in short order */
+	bool double_pressed; /**< a double click */
 	bool right_pressed;
 	bool held;     /**< the left button went down on it and still is */
 	bool released; /**< that button went up since the last frame */
 	bool shift, control;
 	float wheel;          /**< notches, up positive; 0 unless hovered */
 	int arrow_x, arrow_y; /**< presses of the arrow keys, right and up positive; focused */
-	int step;             /**< presses of Tab, with Shift negative; focused: whoever comes to
-				 the end of what the canvas has calls gz_widgets_focus_next() */
+	int step;             /**< presses of Tab, with Shift negative; focused. Call
+				 gz_widgets_focus_next() at the end of the canvas's points */
 	bool delete_pressed;  /**< Delete or Backspace; focused */
 	bool insert_pressed;  /**< Insert; focused */
 };
 
 /**
- * Set up. The window's OpenGL context must be current; callbacks that the window has stay in force
- * and are called first.
+ * Set up Dear ImGui. The window's OpenGL context must be current. Callbacks that the window has are
+ * kept and called first.
  *
- * @param scale  of the interface; 0: what the display says
+ * @param scale  scale of the interface; 0: that of the display
  * @return false if Dear ImGui cannot be set up
  */
 bool gz_widgets_init(struct GLFWwindow *window, double scale);
 
-/** The display may say another scale than before: the interface follows, unless one was asked for.
- *  Outside a frame. */
+/** Take over the scale of the window's display, unless gz_widgets_init() was given one. Outside a
+ *  frame. */
 void gz_widgets_follow_scale(struct GLFWwindow *window);
 
-/** Take down what gz_widgets_init() set up; nothing if it did not. */
+/** Undo gz_widgets_init(); nothing if it was not called or failed. */
 void gz_widgets_free(void);
 
-/** Begin a frame over what is in the current framebuffer. */
+/** Begin a frame. It is drawn over the content of the current framebuffer. */
 void gz_widgets_begin(void);
 
 /** Draw the frame. */
 void gz_widgets_end(void);
 
-/** How many screen coordinates an unscaled one is: 1, more where a display has small pixels. */
+/** Screen coordinates per unscaled one: 1, more on a display with small pixels. */
 float gz_widgets_scale(void);
 
 /** Size of the window. */
@@ -115,106 +115,105 @@ struct gz_place gz_widgets_room(void);
 /** Height of a line of text. */
 float gz_widgets_line_height(void);
 
-/** Whether the mouse is a panel's: over it, or dragging something of it. As of the last frame. */
+/** Whether the mouse is over a panel or drags something of it, as of the last frame. */
 bool gz_widgets_have_mouse(void);
 
-/** Whether a panel lies at a place of the window, as of the last frame: whoever clicks there before
- *  the next one means the panel, though gz_widgets_have_mouse() does not know yet. */
+/** Whether a panel lies at a place of the window, as of the last frame. Unlike
+ *  gz_widgets_have_mouse() this is correct for a mouse that has moved since. */
 bool gz_widgets_lie_at(float x, float y);
 
-/** Whether a text is being typed: no key is the window's. As of the last frame. */
+/** Whether a text field has the keyboard, as of the last frame: the window must not take keys. */
 bool gz_widgets_have_text(void);
 
-/** Whether somebody moves about in the panels by keys: arrows, Tab, Space, Enter, Delete and Escape
- * are not the window's. As of the last frame. */
+/** Whether keys navigate the panels, as of the last frame: the window must not take arrows, Tab,
+ *  Space, Enter, Delete and Escape. */
 bool gz_widgets_have_navigation(void);
 
-/** Whether a dialog is open, a panel that takes the keyboard: no key is the window's, and nothing
- *  beneath it can be clicked. */
+/** Whether a dialog is open (struct gz_panel_place's takes_keyboard): the window must not take
+ * keys, and nothing below the dialog can be clicked. */
 bool gz_widgets_have_dialog(void);
 
-/** A key has been pressed, however shortly: what gz_widget_entered() and the like go by. @param key
- *  of GLFW */
+/** Tell of a pressed key, so that short presses count too. @param key of GLFW */
 void gz_widgets_note_key(int key);
 
-/** Whether a widget is held by the mouse or typed in, or an arrow key is held: what changes until
- * that ends is one change. */
+/** Whether the mouse holds a widget, a text field is edited or an arrow key is held. All changes
+ * until that ends are one step. */
 bool gz_widgets_in_use(void);
 
-/** Give keys back to the window: no widget has them. */
+/** Take the keyboard from all widgets. */
 void gz_widgets_release_keyboard(void);
 
-/** A line, @p thickness wide, unscaled. */
+/** Draw a line; thickness unscaled. */
 void gz_draw_line(enum gz_layer layer, struct gz_place from, struct gz_place to,
 		  struct gz_paint paint, float thickness);
 
-/** Lines through @p count places. */
+/** Draw lines through @p count places; thickness unscaled. */
 void gz_draw_lines(enum gz_layer layer, const struct gz_place *places, size_t count,
 		   struct gz_paint paint, float thickness);
 
-/** A filled rectangle, its corners round by @p radius, unscaled. */
+/** Draw a filled rectangle, its corners rounded by @p radius, unscaled. */
 void gz_draw_rectangle(enum gz_layer layer, struct gz_place corner, struct gz_place opposite,
 		       struct gz_paint paint, float radius);
 
-/** A filled rectangle that fades from its left colour to its right one. */
+/** Draw a filled rectangle that fades from its left colour to its right one. */
 void gz_draw_fading_rectangle(enum gz_layer layer, struct gz_place corner, struct gz_place opposite,
 			      struct gz_paint left, struct gz_paint right);
 
-/** A filled disc; radius unscaled. */
+/** Draw a filled disc; radius unscaled. */
 void gz_draw_disc(enum gz_layer layer, struct gz_place centre, float radius, struct gz_paint paint);
 
-/** A circle; radius and thickness unscaled. */
+/** Draw a circle; radius and thickness unscaled. */
 void gz_draw_circle(enum gz_layer layer, struct gz_place centre, float radius,
 		    struct gz_paint paint, float thickness);
 
-/** A line of text, @p size times the usual one, its top left corner at @p at. */
+/** Draw a line of text, @p size times the usual size, its top left corner at @p at. */
 void gz_draw_text(enum gz_layer layer, struct gz_place at, float size, struct gz_paint paint,
 		  const char *text);
 
-/** Room that a text takes, lines parted by newlines. */
+/** Size of a text, whose lines are separated by newlines. */
 struct gz_place gz_text_room(float size, const char *text);
 
-/** Lines of text on a dark ground, so that they read on any picture. @return the ground's lower
- * right corner */
+/** Draw lines of text on a dark ground, readable on any picture. @return lower right corner of the
+ *  ground */
 struct gz_place gz_draw_caption(enum gz_layer layer, struct gz_place at, struct gz_paint paint,
 				const char *text);
 
 /**
- * Open a panel; gz_panel_end() closes it, whatever this returns.
+ * Begin a panel; call gz_panel_end() whatever this returns.
  *
  * @param title  unique; shown at its top unless it begins with "##"
- * @param open   in: whether it is there at all; out: false once its cross was clicked. NULL: it has
- *               no cross
- * @return whether its content is seen; else widgets in it can be left out
+ * @param[in,out] open  set to false when the panel's cross is clicked; NULL: it has no cross
+ * @return false if its content is hidden, so that its widgets can be left out
  */
 bool gz_panel_begin(const char *title, const struct gz_panel_place *place, bool *open);
 
-/** Close the panel that gz_panel_begin() opened. */
+/** End the panel that gz_panel_begin() began. */
 void gz_panel_end(void);
 
-/** Tell widgets apart that have the same id, until gz_widgets_pop_id(). */
+/** Put @p id before the ids of widgets until gz_widgets_pop_id(), so that equal ids differ. */
 void gz_widgets_push_id(const char *id);
 
 /** See gz_widgets_push_id(). */
 void gz_widgets_pop_id(void);
 
-/** Widgets until gz_widgets_enable() are grey and do nothing, if @p disabled. Calls pair up. */
+/** If @p disabled, widgets until gz_widgets_enable() are grey and do nothing. Calls come in pairs.
+ */
 void gz_widgets_disable(bool disabled);
 
 /** See gz_widgets_disable(). */
 void gz_widgets_enable(void);
 
-/** The next widget stands in the same line as the last one, @p share of the panel's width from its
- * left, or right behind it where that is 0. */
+/** Put the next widget into the same line, @p share of the panel's width from the left; 0: right
+ *  behind the last one. */
 void gz_widgets_same_line(float share);
 
-/** The next widget is so wide: a share of the panel; 0: the rest of the line. */
+/** Width of the next widget, as a share of the panel; 0: the rest of the line. */
 void gz_widgets_next_width(float share);
 
-/** The next widget has the keyboard from now on. */
+/** Give the keyboard to the next widget. */
 void gz_widgets_focus_next(void);
 
-/** The next canvas of the panel has the keyboard from now on. */
+/** Give the keyboard to the next canvas of the panel. */
 void gz_widgets_focus_canvas(void);
 
 /** A line between groups of widgets. */
@@ -223,19 +222,19 @@ void gz_widget_separator(void);
 /** Text, wrapped at the panel's edge. */
 void gz_widget_text(struct gz_paint paint, const char *text);
 
-/** Text in one line, in the height of widgets beside it. */
+/** Text in one line, aligned with widgets beside it. */
 void gz_widget_label(const char *text);
 
-/** A text that appears while the mouse rests on the last widget, also a grey one. */
+/** A text that appears while the mouse rests on the last widget, even a disabled one. */
 void gz_widget_tooltip(const char *text);
 
-/** Whether the mouse has just been pressed on the last widget, a text as well. */
+/** Whether the last widget, which may be a text, was clicked. */
 bool gz_widget_clicked(void);
 
-/** A heading that folds away what is below it. @return whether that is shown */
+/** A heading that folds what is below it. @return whether that is shown */
 bool gz_widget_heading(const char *id, bool open_at_first);
 
-/** @return whether it was pressed */
+/** A button. @return whether it was pressed */
 bool gz_widget_button(const char *id);
 
 /** A box to tick. @return whether it was changed */
@@ -251,45 +250,45 @@ bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked);
  *  or Enter pressed on it */
 bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right);
 
-/** What follows stands in the first of @p count columns, until gz_widget_columns_next(). */
+/** Begin @p count columns; widgets go into the first until gz_widget_columns_next(). */
 void gz_widget_columns_begin(const char *id, int count);
 
-/** What follows stands in the next column. */
+/** Go on to the next column. */
 void gz_widget_columns_next(void);
 
-/** See gz_widget_columns_begin(). */
+/** End the columns. */
 void gz_widget_columns_end(void);
 
-/** A list that scrolls, @p lines high, whose rows are reached by the arrow keys as widgets are;
- * gz_widget_list_end() ends it in any case. */
+/** Begin a scrolling list, @p lines high, whose rows arrow keys reach; call gz_widget_list_end()
+ *  whatever this returns. @return false if its content is hidden */
 bool gz_widget_list_begin(const char *id, int lines);
 
-/** See gz_widget_list_begin(). */
+/** End the list. */
 void gz_widget_list_end(void);
 
-/** How numbers are set. */
+/** How a number is edited. */
 struct gz_number_range {
-	double least, greatest; /**< kept to, also where they are typed */
-	bool slider;            /**< else dragged, by @p speed a pixel */
+	double least, greatest; /**< limits, also for typed numbers */
+	bool slider;            /**< a slider; else a drag changes it by @p speed per pixel */
 	bool logarithmic;       /**< slider only; least above 0 */
 	double speed;
 	const char *format; /**< of printf, one number */
 };
 
-/** @p count ints, 1 to 4. @return whether one was changed */
+/** Fields for @p count ints, 1 to 4. @return whether one was changed */
 bool gz_widget_ints(const char *id, int *values, int count, const struct gz_number_range *range);
 
-/** @p count doubles, 1 to 4. @return whether one was changed */
+/** Fields for @p count doubles, 1 to 4. @return whether one was changed */
 bool gz_widget_doubles(const char *id, double *values, int count,
 		       const struct gz_number_range *range);
 
-/** Red, green, blue, 0 to 1. @return whether it was changed */
+/** A field for red, green, blue, 0 to 1. @return whether it was changed */
 bool gz_widget_colour(const char *id, double rgb[3]);
 
 /**
- * The same, larger, at the mouse until it is clicked elsewhere or Escape is pressed.
+ * A large colour field at the mouse, until a click elsewhere or Escape.
  *
- * @param open  it appears now
+ * @param open  show it from now on
  * @return whether @p rgb was changed
  */
 bool gz_widget_colour_popup(const char *id, bool open, double rgb[3]);
@@ -297,8 +296,8 @@ bool gz_widget_colour_popup(const char *id, bool open, double rgb[3]);
 /**
  * A field for a text of less than @p size bytes.
  *
- * @param by_enter  true: the text changes when Enter is pressed, as a whole; false: at each key
- * @return whether it has changed, or Enter was pressed
+ * @param by_enter  the text changes when Enter is pressed; else with each key
+ * @return whether the text was changed, or Enter was pressed
  */
 bool gz_widget_text_field(const char *id, char *text, size_t size, bool by_enter);
 
@@ -308,26 +307,25 @@ bool gz_widgets_enter_pressed(void);
 /** Whether Enter was pressed in the last text field. */
 bool gz_widget_entered(void);
 
-/** Whether Enter was pressed and no widget of the dialog answers it. */
+/** Whether Enter was pressed and no widget of the dialog takes it. */
 bool gz_dialog_entered(void);
 
 /** Whether Escape was pressed. */
 bool gz_dialog_escaped(void);
 
-/** A bar, @p share of it full, with a text on it; below 0: something is going on, nobody knows how
- * far. */
+/** A progress bar with a text on it. @param share 0 to 1; below 0: not known */
 void gz_widget_progress(double share, const char *text);
 
-/** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL; mouse and
- * keyboard do nothing to it. */
+/** An area of @p height (unscaled) and the panel's width, to be drawn on with GZ_LAYER_PANEL. It
+ * does not answer mouse and keyboard. */
 void gz_widget_area(float height, struct gz_place *out_corner, struct gz_place *out_size);
 
-/** An area of @p height (unscaled) across the panel to draw on with GZ_LAYER_PANEL, until
- * gz_widget_canvas_end(). While it has the keyboard, arrows and Tab do not lead out of it; Escape
- * does. */
+/** Begin an area of @p height (unscaled) and the panel's width, to be drawn on with GZ_LAYER_PANEL
+ * until gz_widget_canvas_end(). While it has the keyboard, arrows and Tab stay in it; Escape leaves
+ * it. */
 void gz_widget_canvas(const char *id, float height, struct gz_canvas *out_canvas);
 
-/** Widgets are below it again. */
+/** End the canvas; widgets follow below it. */
 void gz_widget_canvas_end(void);
 
 #ifdef __cplusplus

@@ -6,8 +6,8 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
-#include "view/panels/progress_panel.h"
-#include "view/panels/welcome_panel.h"
+#include "view/panels/file_dialogs.h"
+#include "view/panels/marks.h"
 #include "view/window/loading_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -140,7 +140,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	struct gz_load_job *job = window->loading->job;
 	(void)gaze;
 	if (!window->maker && !job)
-		gz_welcome_panel_draw();
+		gz_marks_draw_welcome();
 	if (!job || !panel_due(job, window->maker != NULL))
 		return;
 	const struct gz_load_progress progress = gz_load_job_progress(job);

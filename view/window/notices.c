@@ -7,7 +7,6 @@
 
 #include "base/clock.h"
 #include "view/panels/notices.h"
-#include "view/panels/notices_panel.h"
 #include "view/window/window_state.h"
 
 /* How long messages are shown (chosen: two lines are read in three seconds; who warns wants to be

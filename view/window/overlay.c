@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "view/draw/overlay.h"
-#include "view/panels/legend.h"
+#include "view/panels/marks.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -66,7 +66,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	(void)gaze;
 	const struct gz_plan_cells *cells = &window->overlay->cells;
 	if (is_shown(window))
-		window->panels_top = gz_legend_draw(window->panels_top,
+		window->panels_top = gz_marks_draw_legend(window->panels_top,
 						    (enum gz_view_overlay)window->overlay->shown,
 						    cells, window->shown.image_sampling_rate);
 }
