@@ -222,7 +222,7 @@ class Headless(unittest.TestCase):
         done = self.good(
             "--attention.budget_ms", 0.001, "--frames", 60, "--stats", self.path("stats.json")
         )
-        self.assertEqual(done.stderr.count("out of reach"), 1, done.stderr)
+        self.assertEqual(done.stderr.count("cannot be kept"), 1, done.stderr)
         frames = self.frames()
         self.assertEqual(frames[0]["scale"], 1)
         self.assertEqual((frames[-1]["scale"], frames[-1]["budget"]), (64, "limit"))

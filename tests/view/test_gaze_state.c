@@ -99,7 +99,7 @@ static void daemon_without_a_tracker_tells_its_reason(void **state)
 	/* The longest reason fits, and the remedy stays. */
 	memset(status.tracker.reason, 'x', sizeof status.tracker.reason - 1);
 	gz_gaze_state_of(&signs, &told);
-	assert_non_null(strstr(told.reason, "; the mouse leads"));
+	assert_non_null(strstr(told.reason, "; using the mouse"));
 }
 
 static void pointer_from_another_tracker_is_told(void **state)

@@ -96,11 +96,11 @@ static void file_is_whole_after_each_frame(void **state)
 	assert_int_equal(entries, 3);
 	assert_non_null(strstr(
 		text, "{\"method\": \"acuity\", \"backend\": \"cpu\", \"width\": 640, \"height\": "
-		      "360, \"rays\": 12345, \"samples\": 9876543210, \"plan_ms\": 0.2500, "
-		      "\"cast_ms\": 10.5000, \"reconstruct_ms\": 1.2500, \"total_ms\": 12.1250, "
-		      "\"gaze\": [0.25, -0.5], \"gaze_age_ms\": 3.5000, \"attention\": "
+		      "360, \"rays\": 12345, \"samples\": 9876543210, \"plan_ms\": 0.25, "
+		      "\"cast_ms\": 10.5, \"reconstruct_ms\": 1.25, \"total_ms\": 12.125, "
+		      "\"gaze\": [0.25, -0.5], \"gaze_age_ms\": 3.5, \"attention\": "
 		      "\"fixation\", \"focus\": [0.25, -0.5], \"scale\": 1.5, \"widen\": 0.25, "
-		      "\"budget_ms\": 12, \"budget\": \"over\"}"));
+		      "\"budget_ms\": 12.0, \"budget\": \"over\"}"));
 }
 
 static void what_is_not_there_is_null(void **state)

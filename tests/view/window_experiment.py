@@ -253,7 +253,7 @@ class Experiment(WindowCase):
         self.begin("--gaze", "0.5,0.5", "--window", "--size", "4200x100")
         self.answer(self.ended, "space")
         said = self.finish(1)
-        self.assertIn("4200x100 at image_sampling_rate 4 is not 1 to 16384 rays a side", said)
+        self.assertIn("4200x100 at image_sampling_rate 4 does not give 1 to 16384 rays a side", said)
         self.assertIn("its picture cannot be made, so that the experiment ends", said)
         self.assertEqual(said.count("image_sampling_rate 4"), 1, said)
         self.assertEqual(self.rows(), [])

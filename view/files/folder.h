@@ -1,6 +1,6 @@
 /**
  * @file
- * What is in a folder, for somebody who looks for something to open.
+ * The contents of a folder, for the list from which the user opens a scene, volume or picture.
  */
 #ifndef GZ_VIEW_FILES_FOLDER_H
 #define GZ_VIEW_FILES_FOLDER_H
@@ -13,53 +13,63 @@
 #include "protocol/gaze.h"
 #include "render/scene/scene_open.h"
 
+/** Size of an entry's name with its NUL, bytes. Longer names are left out. */
 #define GZ_FOLDER_NAME_SIZE 256
 
-/** Most entries of a folder that are listed. Chosen: more nobody looks through. */
+/** Largest number of entries read. Chosen: nobody searches a longer list by eye. */
 #define GZ_FOLDER_ENTRIES_MAX 20000
 
-/** Something in a folder. */
+/** One file or folder. */
 struct gz_folder_entry {
 	char name[GZ_FOLDER_NAME_SIZE];
 	bool is_folder;
-	enum gz_file_kind kind; /**< by its name */
+	enum gz_file_kind kind; /**< judged by the name */
 	uint64_t bytes;
 };
 
-/** A folder, read. Zero-initialised holds none. */
+/** A folder that was read. Zero-initialised: no folder. */
 struct gz_folder {
-	char path[GZ_PATH_SIZE];         /**< absolute */
-	struct gz_folder_entry *entries; /**< folders first, then by name, numbers in it by value */
+	char path[GZ_PATH_SIZE]; /**< absolute */
+	/** Folders first, then files; each by name, with numbers in names compared by value. */
+	struct gz_folder_entry *entries;
 	size_t count, room;
-	size_t others; /**< files that are none to open, not listed */
+	size_t others; /**< files left out because gazeview cannot open them */
 };
 
-/** What is listed beside folders, scenes, volumes and pictures. */
+/** What is listed besides folders, scenes, volumes and pictures. */
 struct gz_folder_filter {
-	bool others; /**< every other file too */
-	bool hidden; /**< names that begin with a dot too */
+	bool others; /**< all other files */
+	bool hidden; /**< names that begin with a dot */
 };
 
 /**
- * Read a folder, in place of the one that @p folder holds.
+ * Read a folder and replace what @p folder holds.
  *
- * @param[out] message  on failure: what is wrong, one line
- * @retval GZ_ERR_IO      it cannot be read; @p folder is as it was
- * @retval GZ_ERR_NO_MEM  @p folder is as it was
+ * @param[out] message  on failure: the reason, one line, cut to @p message_size bytes
+ * @retval GZ_ERR_IO      the folder cannot be read; @p folder is unchanged
+ * @retval GZ_ERR_NO_MEM  out of memory; @p folder is unchanged
  */
 enum gz_result gz_folder_read(const char *path, const struct gz_folder_filter *filter,
 			      struct gz_folder *folder, char *message, size_t message_size);
 
-/** The first entry whose name begins with @p text, letters alike in either case, else the first
- * that has it within; folder->count if none does. An empty text: no entry. */
+/**
+ * Find an entry, ignoring case.
+ *
+ * @return the index of the first name that begins with @p text, otherwise of the first that
+ *         contains it, otherwise folder->count. An empty text finds nothing.
+ */
 size_t gz_folder_find(const struct gz_folder *folder, const char *text);
 
-/** The path of something in the folder; absolute names stay, "~/" is the user's own folder.
- *  GZ_ERR_FULL: it does not fit, and @p out_path is an empty string */
+/**
+ * The path of @p name relative to the folder. An absolute name stays as it is; "~/" stands for the
+ * user's home folder.
+ *
+ * @retval GZ_ERR_FULL  the path does not fit; @p out_path is an empty string
+ */
 enum gz_result gz_folder_path_of(const struct gz_folder *folder, const char *name,
 				 char out_path[GZ_PATH_SIZE]);
 
-/** Free what it holds and zero it. */
+/** Free the entries and zero @p folder. */
 void gz_folder_free(struct gz_folder *folder);
 
 #endif

@@ -11,7 +11,7 @@ enum gz_result gz_recent_file(char out_path[GZ_PATH_SIZE])
 {
 	const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
 	int length = -1;
-	/* Relative paths there are to be ignored. */
+	/* The specification: relative paths are ignored. */
 	if (state && state[0] == '/')
 		length = snprintf(out_path, GZ_PATH_SIZE, "%s/gazecast/recent", state);
 	else if (home && home[0] == '/')
@@ -26,7 +26,7 @@ void gz_recent_read(const char *file, struct gz_recent *out_recent)
 	FILE *stream = fopen(file, "re");
 	while (stream && out_recent->count < GZ_RECENT_MAX && fgets(line, sizeof line, stream)) {
 		char *end = strchr(line, '\n');
-		if (!end) { /* too long: the rest of it is no path either */
+		if (!end) { /* too long: skip the rest of the line */
 			for (int c = fgetc(stream); c != '\n' && c != EOF;)
 				c = fgetc(stream);
 			continue;
@@ -59,7 +59,7 @@ void gz_recent_add(struct gz_recent *recent, const char *path)
 	free(real);
 }
 
-/* The folders above a file, for the user alone, as the specification asks. */
+/* Create the folders above a file with mode 0700, as the specification asks. */
 static void make_state_folders(const char *file)
 {
 	char path[GZ_PATH_SIZE];

@@ -1,8 +1,8 @@
 /**
  * @file
- * What has been shown lately: a list in $XDG_STATE_HOME/gazecast/recent, else
- * ~/.local/state/gazecast/recent (XDG Base Directory Specification 0.8), one absolute path a line,
- * the latest first.
+ * The list of recently shown files: $XDG_STATE_HOME/gazecast/recent, otherwise
+ * ~/.local/state/gazecast/recent (XDG Base Directory Specification 0.8). One absolute path a line,
+ * newest first.
  */
 #ifndef GZ_VIEW_FILES_RECENT_H
 #define GZ_VIEW_FILES_RECENT_H
@@ -13,26 +13,35 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 
-/** Chosen: a list that is taken in at a glance. */
+/** Largest number of paths. Chosen: a list that can be read at a glance. */
 #define GZ_RECENT_MAX 12
 
-/** Zero-initialised is empty. */
+/** The list. Zero-initialised: empty. */
 struct gz_recent {
 	char paths[GZ_RECENT_MAX][GZ_PATH_SIZE];
 	size_t count;
 };
 
-/** Where the list is kept. @retval GZ_ERR_NOT_FOUND  neither variable is set, or too long */
+/**
+ * The path of the list's file.
+ *
+ * @retval GZ_ERR_NOT_FOUND  neither XDG_STATE_HOME nor HOME is an absolute path, or it is too long
+ */
 enum gz_result gz_recent_file(char out_path[GZ_PATH_SIZE]);
 
-/** Read a list; lines that are no absolute path or too long are left out. A file that is not there
- *  is an empty list. */
+/** Read the list. Lines that are not absolute paths or are too long are skipped; a missing file
+ * gives an empty list. */
 void gz_recent_read(const char *file, struct gz_recent *out_recent);
 
-/** Put a path on top, made absolute; it is in the list once. Nothing for what is not there. */
+/** Move @p path, made absolute, to the top of the list. A path that does not exist, is too long or
+ * contains a line break is ignored. */
 void gz_recent_add(struct gz_recent *recent, const char *path);
 
-/** Write a list, making its folder. GZ_ERR_IO: it cannot be written; logged */
+/**
+ * Write the list, creating its folders.
+ *
+ * @retval GZ_ERR_IO  the file cannot be written; logged
+ */
 enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
 			       const struct gz_log *log);
 

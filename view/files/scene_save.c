@@ -17,8 +17,8 @@ enum gz_result gz_scene_save_path(const char *typed, char out_path[GZ_PATH_SIZE]
 	return length > 0 && length < GZ_PATH_SIZE ? GZ_OK : GZ_ERR_FULL;
 }
 
-/* Length of a path without the endings of its last name: of "a.nii.gz" that of "a". A dot in front
- * is no ending. */
+/* Length of a path without all endings of its last name: 1 for "a.nii.gz". A leading dot begins no
+ * ending. */
 static size_t stem_length(const char *path)
 {
 	const char *slash = strrchr(path, '/');
@@ -38,7 +38,8 @@ void gz_scene_save_suggest(const char *path, char out_path[GZ_PATH_SIZE])
 		snprintf(out_path, GZ_PATH_SIZE, "untitled%s", scene_ending);
 }
 
-/* Whether what the settings name, or the volume alone, gives the transfer function shown. */
+/* Whether the file that the settings name, or the volume's default, is the transfer function shown.
+ */
 static bool is_kept(const struct gz_scene_save *save)
 {
 	const char *name = save->scene.settings->transfer_file;

@@ -12,26 +12,27 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* Half the cross's arms and half its thickness, px (chosen: seen at arm's length, hides little). */
+/* Half the length and half the thickness of the cross's arms, px. Chosen: visible at arm's length,
+ * and hides little. */
 enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
 
 struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
-	struct gz_picture_maker *pictures; /* NULL before it is started */
+	struct gz_picture_maker *pictures; /* NULL: not started */
 	uint64_t transfer_revision;        /* of the scene's transfer function */
 	struct gz_attention attention;
-	struct gz_gaze_reading reading; /* that the attention took last */
-	struct gz_focus focus;          /* that it made of it */
-	struct gz_focus made;           /* of the last frame made */
+	struct gz_gaze_reading reading; /* the last one passed to the attention */
+	struct gz_focus focus;          /* the attention's answer */
+	struct gz_focus made;           /* focus of the last frame made */
 	struct {
 		int method, width, height;
-	} spent; /* what the budget's times are of */
+	} spent; /* method and size the budget's times belong to */
 	bool any_made;
-	bool standard_told; /* that it keeps no time */
+	bool standard_told; /* the warning that standard ignores the budget was logged */
 };
 
-/* Pixels of the rays' grid along a side; 0 where that is no picture. */
+/* Number of rays along a side; 0: outside 1 to GZ_IMAGE_SIDE_MAX. */
 static int cast_side(int side, double rate)
 {
 	double scaled = round(side * rate);
@@ -46,21 +47,20 @@ static enum gz_result find_cast_size(int width, int height, double rate, const s
 	if (out_size[0] > 0 && out_size[1] > 0)
 		return GZ_OK;
 	gz_err(log,
-	       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the rate or the "
-	       "size",
+	       "%dx%d at image_sampling_rate %g does not give 1 to %d rays a side; change the rate "
+	       "or the size",
 	       width, height, rate, GZ_IMAGE_SIDE_MAX);
 	return GZ_ERR_INVAL;
 }
 
-/* What is asked for over the scene's own, and what contradicts it, before anything large is read.
- */
+/* Overrides of the scene's settings; contradictions are found before large files are read. */
 struct change {
 	const struct gz_view_options *options;
 	const struct gz_frame_scene *scene;
 	const struct gz_log *log;
 };
 
-/* A table of spacings is found beside the scene that names it. */
+/* The spacing table stays the scene's own, as its file is found beside the scene. */
 static void keep_settings(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
 {
 	const struct gz_foveation own = settings->foveation;
@@ -240,7 +240,7 @@ enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 	maker->any_made = false;
 	const enum gz_result r = show_scene_objects(maker);
 	if (r != GZ_OK)
-		gz_err(maker->log, "cannot take the transfer function: %s", gz_result_text(r));
+		gz_err(maker->log, "cannot use the transfer function: %s", gz_result_text(r));
 	return r;
 }
 
@@ -337,19 +337,19 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 void gz_frame_tell_unoriented(const struct gz_frame_maker *maker)
 {
 	if (!maker->scene.volume.oriented)
-		gz_warn(maker->log, "no letters: the volume does not tell where right, front and "
-				    "up are; give one that does, as NIfTI and DICOM do");
+		gz_warn(maker->log, "no letters: the volume does not store its orientation; use a "
+				    "format that does, such as NIfTI or DICOM");
 }
 
-/* A time to keep makes plans coarser, and this method's is never coarse. */
+/* A budget makes plans coarser, and standard never is. */
 static void warn_standard_ignores_budget(struct gz_frame_maker *maker)
 {
 	if (maker->attention.params.budget_ms <= 0 || maker->standard_told)
 		return;
 	maker->standard_told = true;
 	gz_warn(maker->log,
-		"attention.budget_ms %g: standard casts every ray, whatever time that takes; "
-		"take a method that can keep it, such as acuity",
+		"attention.budget_ms %g: standard casts all rays and ignores the budget; choose a "
+		"method that can keep it, such as acuity",
 		maker->attention.params.budget_ms);
 }
 
@@ -363,8 +363,8 @@ static const char *budget_state(const struct gz_frame_maker *maker,
 	return gz_budget_state_name(budget->state);
 }
 
-/* The time to keep is of rays and pixels alone, not of what is drawn or written afterwards. What
- * another method or size took tells nothing. */
+/* The budget covers rays and pixels only, not what is drawn or written afterwards. Times of another
+ * method or size do not count. */
 static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 		       double total_ms)
 {
@@ -383,8 +383,8 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 	}
 	if (gz_attention_spent(&maker->attention, total_ms))
 		gz_warn(maker->log,
-			"attention.budget_ms %g is out of reach: %s took %.1f ms with its coarsest "
-			"plan; allow more time, lower the size or render.ray_sampling_rate, or try "
+			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its coarsest "
+			"plan; raise it, lower the size or render.ray_sampling_rate, or try "
 			"another method",
 			maker->attention.params.budget_ms, gz_method_names[method], total_ms);
 }

@@ -1,7 +1,7 @@
 /**
  * @file
- * One frame: gaze to attention to plan to picture, with what each step cost. Headless and window
- * share it.
+ * One frame of gazeview: gaze to attention to plan to picture, with what each step cost. Shared by
+ * the window and headless rendering. One thread, unless a function says otherwise.
  */
 #ifndef GZ_VIEW_FRAME_FRAME_H
 #define GZ_VIEW_FRAME_FRAME_H
@@ -15,44 +15,43 @@
 #include "view/gaze/gaze_source.h"
 #include "view/options/options.h"
 
-/** A scene with the renderer that shows it. */
+/** A scene and the renderer that shows it. */
 struct gz_frame_maker;
 
-/** What one frame is to be. */
+/** What one frame shows. */
 struct gz_frame_request {
-	const struct gz_scene_settings *settings; /**< all but volume, transfer and display count */
-	const struct gz_display *display;         /**< of the picture: it fills this one */
+	const struct gz_scene_settings *settings; /**< volume, transfer and display are ignored */
+	const struct gz_display *display;         /**< the picture fills it */
 	int width, height;                        /**< of the finished picture, px */
-	bool on_device;       /**< leave the picture on the graphics device if it is made there */
-	bool loss_is_callers; /**< a lost context is returned, not made up for by cpu */
+	bool on_device;       /**< leave the picture on the graphics device if made there */
+	bool loss_is_callers; /**< return a lost context instead of falling back to cpu */
 };
 
-/** Which scene a maker is to show. */
+/** Which scene a maker shows. */
 struct gz_frame_scene {
-	/** Of a scene's file, beside which names in the scene are looked up first, or of whatever
-	 *  gz_scene_open() takes. */
+	/** Path of the scene file, or of anything else that gz_scene_open() accepts. Files named in
+	 * the scene are looked up beside it first. */
 	const char *path;
-	/** The layout of the raw file that @p path is; NULL: the options' or what its name tells.
-	 */
+	/** Layout of a raw file; NULL: from the options, otherwise from the file's name. */
 	const struct gz_raw_layout *raw;
-	/** The command line's keys come before the scene's own. */
+	/** The command line's keys replace the scene's. */
 	bool by_options;
-	/** These come before both, but for volume, transfer function, camera, clip box and display,
-	 *  and a table of spacings; NULL: nothing stays. */
+	/** Settings that replace both, except volume, transfer function, camera, clip box, display
+	 * and spacing table; NULL: none. */
 	const struct gz_scene_settings *kept;
 };
 
-/** The scene that the options name, with their keys. */
+/** The scene that the options name, with the command line's keys. */
 struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *options);
 
 /**
- * Load a scene. Everything is borrowed until the call returns, but for the log.
+ * Load a scene. All arguments but the log are borrowed until the call returns.
  *
- * @param options  for scene->by_options, and what a renderer will need
- * @param loading  who is told how far it is, and may stop it; NULL for nobody
+ * @param options  used if scene->by_options, and for the renderer to come
+ * @param loading  receives the progress and may cancel; NULL: none
  * @param log      outlives the maker
- * @param[out] out_maker  owned by the caller: gz_frame_maker_destroy()
- * @return what gz_scene_load() returns; logged but for GZ_ERR_CANCELLED, which @p loading gives
+ * @param[out] out_maker  the caller frees it with gz_frame_maker_destroy()
+ * @return the results of gz_scene_open(); logged except GZ_ERR_CANCELLED, which @p loading causes
  *
  * Threads: any.
  */
@@ -62,116 +61,114 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 				     struct gz_frame_maker **out_maker);
 
 /**
- * Make the renderer, before the first frame.
+ * Create the renderer. Call it before the first frame.
  *
- * @param options     as before; outlives the maker
- * @param gl_context  of the window that shows the pictures, outlives the maker; NULL without one
- * @return what gz_picture_maker_show() returns; logged
+ * @param options     the options of gz_frame_maker_create(); outlive the maker
+ * @param gl_context  of the window that shows the pictures, outlives the maker; NULL: no window
+ * @return the results of gz_picture_maker_show(); logged
  */
 enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
 				    const struct gz_view_options *options,
 				    struct gz_gl_context *gl_context);
 
-/** Make a renderer of the cpu backend, whatever the options say. @return as before; logged */
+/** Create a renderer of the cpu backend whatever the options say. Results as for
+ * gz_frame_maker_start(); logged. */
 enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 					const struct gz_view_options *options);
 
-/** Whether gz_frame_maker_start() would begin with the cpu backend, which may be made on any
- * thread.
- */
+/** Whether gz_frame_maker_start() would choose the cpu backend, which any thread may create. */
 bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
 			const struct gz_log *log);
 
-/** Destroy the renderer, while its context is there; another may be started. */
+/** Destroy the renderer while its context exists. Another one may be started. */
 void gz_frame_maker_stop(struct gz_frame_maker *maker);
 
-/** Whether it has a renderer. */
+/** Whether the maker has a renderer. */
 bool gz_frame_maker_started(const struct gz_frame_maker *maker);
 
-/** The scene as loaded and overridden. Valid until the maker is destroyed. */
+/** The scene as loaded, with all overrides. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 
 /**
- * Show the scene by another transfer function from the next frame on; what earlier frames saw is
- * forgotten. Between frames, after gz_frame_maker_start().
+ * Use another transfer function from the next frame on, and drop what earlier frames accumulated.
+ * Call it between frames, after gz_frame_maker_start().
  *
  * @param transfer  valid; copied
- * @return what gz_raycaster_set_transfer() returns; logged
+ * @return the results of gz_picture_maker_show(); logged
  */
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer);
 
 /**
- * Let the attention (render/attention/attention.h) take the gaze of the next frame.
+ * Pass the gaze of the next frame to the attention (render/attention/attention.h).
  *
  * @param reading  its point is on @p display
- * @param time_ns  of the frame, from any origin: a log's own time, else the host's
- * @return whether the plan of the next frame differs from that of the last one made; true before
- *         the first
+ * @param time_ns  of the frame, from any origin: the log's time, otherwise the host's
+ * @return whether the next frame's plan differs from that of the last frame made; true before the
+ *         first frame
  */
 bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
 		     const struct gz_gaze_reading *reading, const struct gz_display *display,
 		     int64_t time_ns);
 
 /**
- * Take a focus as it was, in place of gz_frame_attend(): a replay does not depend on what frames
- * took when they were recorded, or take now.
+ * Set a recorded focus in place of gz_frame_attend(), so that a replay depends neither on the times
+ * of the recorded frames nor on those of its own.
  *
- * @param reading  what was known of the gaze then, for the record of the frame
+ * @param reading  the recorded gaze, for the frame's record
  */
 void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
 			const struct gz_focus *focus);
 
-/** What the attention took last: gz_frame_attend() or gz_frame_set_focus(). */
+/** The reading last passed to gz_frame_attend() or gz_frame_set_focus(). */
 const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker);
 
-/** What casts its rays: "cpu", "gl". After gz_frame_maker_start(); static text. */
+/** The name of the backend, "cpu" or "gl"; static text. Call it after gz_frame_maker_start(). */
 const char *gz_frame_backend(const struct gz_frame_maker *maker);
 
-/** Forget what earlier frames saw: temporal.accumulate begins anew with the next. */
+/** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);
 
-/** Whether the plan stays as it is while the gaze does; else gz_frame_attend() is due each frame.
- */
+/** Whether the plan stays the same while the gaze does; otherwise call gz_frame_attend() each
+ * frame. */
 bool gz_frame_settled(const struct gz_frame_maker *maker);
 
-/** Whether the same frame again may turn out finer: the time to keep has made it coarse, and a few
- *  more frames will tell whether it must be. */
+/** Whether rendering the same frame again may give a finer picture: the budget has made the plan
+ * coarse and is still adapting. */
 bool gz_frame_refinable(const struct gz_frame_maker *maker);
 
-/** Whether further frames that ask for the same would still change the picture:
- * temporal.accumulate.
- */
+/** Whether further equal frames would still change the picture: temporal.accumulate. */
 bool gz_frame_settling(const struct gz_frame_maker *maker);
 
 /**
- * Render one frame, sharp where gz_frame_attend() left it; before the first in the centre.
+ * Render one frame with the focus of gz_frame_attend() or gz_frame_set_focus(); at the centre
+ * before either was called.
  *
- * @param[out] out_image   the picture, owned by the maker, valid until the next call; NULL where
- *                         it stayed on the device: see gz_frame_texture()
- * @param[out] out_record  what it cost
- * @retval GZ_ERR_INVAL   the picture at the scene's image_sampling_rate is too large or vanishes,
- *                        or the camera is none; logged
- * @retval GZ_ERR_NO_MEM  no room; logged
- * @retval GZ_ERR_NO_DEVICE  the context is lost, and that is the caller's; logged
+ * @param[out] out_image   the picture, owned by the maker and valid until the next call; NULL if it
+ *                         stayed on the device: see gz_frame_texture()
+ * @param[out] out_record  what the frame cost
+ * @retval GZ_ERR_INVAL      the picture has no or too many rays at the scene's image_sampling_rate,
+ *                           or the camera is invalid; logged
+ * @retval GZ_ERR_NO_MEM     out of memory; logged
+ * @retval GZ_ERR_NO_DEVICE  the context is lost and request->loss_is_callers is set; logged
  */
 enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			     struct gz_image **out_image, struct gz_frame_record *out_record);
 
-/** OpenGL's name of the texture with the last picture that stayed on the device, valid until the
+/** OpenGL's name of the texture with the last picture that stayed on the device. Valid until the
  * next frame. */
 unsigned gz_frame_texture(const struct gz_frame_maker *maker);
 
 /** The plan of the last picture; without tiles before the first. Valid until the next frame. */
 const struct gz_plan *gz_frame_plan(const struct gz_frame_maker *maker);
 
-/** Log why no letters can be drawn, where the volume does not tell its sides. */
+/** Warn that no letters can be drawn if the volume does not store its orientation. */
 void gz_frame_tell_unoriented(const struct gz_frame_maker *maker);
 
-/** Draw a cross at a place of the display that the picture fills; nothing where it is outside. */
+/** Draw a cross at @p at, a point on the picture, 0 to 1. Parts outside the picture are cut. */
 void gz_frame_draw_cross(struct gz_image *image, struct gz_point at);
 
-/** Destroy and set to NULL. Accepts a pointer to NULL. */
+/** Destroy the maker and set the pointer to NULL. Accepts NULL and a pointer to NULL. */
 void gz_frame_maker_destroy(struct gz_frame_maker **maker);
 
 #endif

@@ -14,9 +14,9 @@
 
 #define GZ_LOG_MODULE "reference"
 
-/* Rows cast between two looks at whether they are still wanted (chosen: some ms of casting). */
+/* Rows cast between two checks for a newer request. Chosen: some ms of casting. */
 #define STRIP_ROWS 32
-/* What frames are made of comes first (chosen: half-way to the least). */
+/* Priority below that of the frames. Chosen: half-way to the lowest. */
 #define NICENESS 10
 
 struct gz_reference_worker {
@@ -24,15 +24,15 @@ struct gz_reference_worker {
 	pthread_t thread;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
-	atomic_bool outdated; /* what is in the making */
+	atomic_bool outdated; /* the picture being rendered is no longer wanted */
 	atomic_int rows_done, rows_asked;
-	/* under the lock */
+	/* protected by the lock */
 	bool quit, wanted, any_asked, ready;
 	uint64_t revision; /* of the transfer function */
 	struct gz_reference_view asked;
 	struct gz_transfer transfer;
 	struct gz_image finished;
-	/* the thread's alone */
+	/* used by the thread only */
 	struct gz_picture_maker *pictures;
 	struct gz_transfer shown;
 	uint64_t shown_revision;
@@ -85,7 +85,7 @@ static enum gz_result cast_all(struct gz_reference_worker *worker,
 	return r;
 }
 
-/* Rays first, then, where there are more or fewer rays than pixels, the picture. */
+/* Cast the rays; if their number differs from that of the pixels, resample. */
 static enum gz_result make_reference(struct gz_reference_worker *worker,
 				     const struct gz_reference_view *view)
 {
@@ -104,7 +104,7 @@ static enum gz_result make_reference(struct gz_reference_worker *worker,
 	return r;
 }
 
-/* Show the volume by the newest transfer function. */
+/* Show the volume with the newest transfer function. */
 static enum gz_result show_newest(struct gz_reference_worker *worker)
 {
 	pthread_mutex_lock(&worker->lock);
@@ -121,7 +121,7 @@ static enum gz_result show_newest(struct gz_reference_worker *worker)
 	return gz_picture_maker_show(worker->pictures, &object, 1);
 }
 
-/* Until there is something to make. @return whether there is; else the thread is to end */
+/* Wait for a request. @return false: the thread must end */
 static bool wait_for_work(struct gz_reference_worker *worker, struct gz_reference_view *out_view)
 {
 	pthread_mutex_lock(&worker->lock);
@@ -150,7 +150,7 @@ static void publish_reference(struct gz_reference_worker *worker, enum gz_result
 		atomic_store(&worker->rows_done, -1);
 	pthread_mutex_unlock(&worker->lock);
 	if (result != GZ_OK && result != GZ_ERR_CANCELLED)
-		gz_err(worker->source.log, "no standard picture to compare with: %s",
+		gz_err(worker->source.log, "cannot render the standard picture for comparison: %s",
 		       gz_result_text(result));
 	if (is_current)
 		worker->source.finished(worker->source.user);
@@ -160,8 +160,8 @@ static void *reference_thread(void *user)
 {
 	struct gz_reference_worker *worker = user;
 	struct gz_reference_view view;
-	/* Of this thread and those that it starts (Linux). Where it is refused they are like
-	 * others. */
+	/* On Linux this holds for this thread and those it starts. If it is refused, they run at
+	 * the normal priority. */
 	(void)setpriority(PRIO_PROCESS, 0, NICENESS);
 	while (wait_for_work(worker, &view)) {
 		enum gz_result r = show_newest(worker);
@@ -207,7 +207,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	return GZ_OK;
 }
 
-/* Under the lock. */
+/* The caller holds the lock. */
 static void request_reference(struct gz_reference_worker *worker)
 {
 	worker->wanted = true;

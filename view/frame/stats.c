@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,8 +12,8 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* One entry, with room to spare: a dozen numbers, four short names. */
-enum { ENTRY_SIZE = 1024, NUMBER_SIZE = 40 };
+/* Size of an entry, bytes, with room to spare; digits that a double keeps; size of the age. */
+enum { ENTRY_SIZE = 1024, NUMBER_DIGITS = 15, NUMBER_SIZE = 40 };
 
 static const char head[] = "{\"frames\": [";
 static const char tail[] = "\n]}\n";
@@ -20,7 +21,7 @@ static const char tail[] = "\n]}\n";
 struct gz_stats_file {
 	const struct gz_log *log;
 	int fd;
-	off_t end; /* where the next entry goes: over the tail */
+	off_t end; /* where the next entry goes: it replaces the tail */
 	bool any;
 	char path[]; /* for messages */
 };
@@ -38,61 +39,62 @@ void gz_frame_record_print(const struct gz_frame_record *record, char *text, siz
 		 record->reconstruct_ms, record->total_ms, age);
 }
 
-/* JSON has no NaN and no infinity. */
-static void print_number(double value, const char *format, char text[NUMBER_SIZE])
+/* JSON has neither NaN nor infinity. */
+static json_t *number_json(double value)
 {
-	if (isfinite(value))
-		snprintf(text, NUMBER_SIZE, format, value);
-	else
-		snprintf(text, NUMBER_SIZE, "null");
+	return isfinite(value) ? json_real(value) : json_null();
 }
 
-static void print_point(struct gz_point point, char *text, size_t size)
+/* To 0.1 us: more digits are noise. */
+static json_t *milliseconds_json(double ms)
 {
-	if (isfinite(point.x) && isfinite(point.y))
-		snprintf(text, size, "[%.9g, %.9g]", (double)point.x, (double)point.y);
-	else
-		snprintf(text, size, "null");
+	return number_json(round(ms * 1e4) / 1e4);
 }
 
-/* What the plan was made of; a comma before it. */
-static void print_attention(const struct gz_frame_record *record, char *text, size_t size)
+static json_t *point_json(bool known, struct gz_point point)
 {
-	char focus[2 * NUMBER_SIZE], scale[NUMBER_SIZE], widen[NUMBER_SIZE], budget[NUMBER_SIZE];
-	print_point(record->focus.point, focus, sizeof focus);
-	print_number(record->focus.scale, "%.6g", scale);
-	print_number(record->focus.widen, "%.6g", widen);
-	print_number(record->budget_ms > 0 ? record->budget_ms : NAN, "%.6g", budget);
-	snprintf(text, size,
-		 ", \"attention\": \"%s\", \"focus\": %s, \"scale\": %s, \"widen\": %s, "
-		 "\"budget_ms\": %s, \"budget\": \"%s\"",
-		 record->attention, focus, scale, widen, budget, record->budget);
+	if (!known || !isfinite(point.x) || !isfinite(point.y))
+		return json_null();
+	return json_pack("[f, f]", (double)point.x, (double)point.y);
 }
 
-static int print_entry(const struct gz_frame_record *record, bool first, char *text, size_t size)
+static json_t *record_json(const struct gz_frame_record *record)
 {
-	char plan[NUMBER_SIZE], cast[NUMBER_SIZE], reconstruct[NUMBER_SIZE], total[NUMBER_SIZE];
-	char age[NUMBER_SIZE], gaze[2 * NUMBER_SIZE], attention[10 * NUMBER_SIZE];
-	print_number(record->plan_ms, "%.4f", plan);
-	print_number(record->cast_ms, "%.4f", cast);
-	print_number(record->reconstruct_ms, "%.4f", reconstruct);
-	print_number(record->total_ms, "%.4f", total);
-	print_number(record->age_known ? record->gaze_age_ms : NAN, "%.4f", age);
-	const struct gz_point unknown = { NAN, NAN };
-	print_point(record->gaze_known ? record->gaze : unknown, gaze, sizeof gaze);
-	print_attention(record, attention, sizeof attention);
-	return snprintf(text, size,
-			"%s\n{\"method\": \"%s\", \"backend\": \"%s\", \"width\": %d, \"height\": "
-			"%d, \"rays\": %llu, \"samples\": %llu, \"plan_ms\": %s, \"cast_ms\": %s, "
-			"\"reconstruct_ms\": %s, \"total_ms\": %s, \"gaze\": %s, \"gaze_age_ms\": "
-			"%s%s}%s",
-			first ? "" : ",", record->method, record->backend, record->width,
-			record->height, (unsigned long long)record->rays,
-			(unsigned long long)record->samples, plan, cast, reconstruct, total, gaze,
-			age, attention, tail);
+	return json_pack(
+		"{s:s, s:s, s:i, s:i, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:o, "
+		"s:o, s:s}",
+		"method", record->method, "backend", record->backend, "width", record->width,
+		"height", record->height, "rays", (json_int_t)record->rays, "samples",
+		(json_int_t)record->samples, "plan_ms", milliseconds_json(record->plan_ms),
+		"cast_ms", milliseconds_json(record->cast_ms), "reconstruct_ms",
+		milliseconds_json(record->reconstruct_ms), "total_ms",
+		milliseconds_json(record->total_ms), "gaze",
+		point_json(record->gaze_known, record->gaze), "gaze_age_ms",
+		milliseconds_json(record->age_known ? record->gaze_age_ms : NAN), "attention",
+		record->attention, "focus", point_json(true, record->focus.point), "scale",
+		number_json(record->focus.scale), "widen", number_json(record->focus.widen),
+		"budget_ms", number_json(record->budget_ms > 0 ? record->budget_ms : NAN), "budget",
+		record->budget);
 }
 
-/* All of it at @p at, in one write where the system allows: a reader never sees half an entry. */
+/* The entry with what separates it from the one before, and the end of the file. @return its
+ * length, 0: no room */
+static size_t print_entry(const struct gz_frame_record *record, bool first, char text[ENTRY_SIZE])
+{
+	json_t *entry = record_json(record);
+	char object[ENTRY_SIZE];
+	const size_t length =
+		entry ? json_dumpb(entry, object, sizeof object, JSON_REAL_PRECISION(NUMBER_DIGITS))
+		      : 0;
+	json_decref(entry);
+	if (length == 0 || length >= sizeof object)
+		return 0;
+	const int printed = snprintf(text, ENTRY_SIZE, "%s\n%.*s%s", first ? "" : ",", (int)length,
+				     object, tail);
+	return printed > 0 && printed < ENTRY_SIZE ? (size_t)printed : 0;
+}
+
+/* Write everything at @p at, usually in one call: a reader does not see half an entry. */
 static enum gz_result write_at(struct gz_stats_file *file, const char *text, size_t size, off_t at)
 {
 	while (size > 0) {
@@ -101,7 +103,7 @@ static enum gz_result write_at(struct gz_stats_file *file, const char *text, siz
 			continue;
 		if (written <= 0) {
 			gz_err(file->log,
-			       "cannot write %s: %s; free some room or name another file",
+			       "cannot write %s: %s; free some space or name another file",
 			       file->path, strerror(errno));
 			return GZ_ERR_IO;
 		}
@@ -118,13 +120,12 @@ static enum gz_result open_plain(struct gz_stats_file *file)
 	file->fd = open(file->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (file->fd < 0 || fstat(file->fd, &state) != 0) {
 		gz_err(file->log,
-		       "cannot write %s: %s; name a file in a folder that exists and is "
-		       "yours",
+		       "cannot write %s: %s; name a file in a folder that you may write to",
 		       file->path, strerror(errno));
 		return GZ_ERR_IO;
 	}
 	if (!S_ISREG(state.st_mode)) {
-		gz_err(file->log, "cannot write statistics into %s: no plain file; name one",
+		gz_err(file->log, "cannot write statistics to %s: not a regular file; name one",
 		       file->path);
 		return GZ_ERR_IO;
 	}
@@ -154,7 +155,7 @@ enum gz_result gz_stats_open(const char *path, const struct gz_log *log,
 	return GZ_OK;
 }
 
-/* A half written entry is cut off again, so that what is there still parses. */
+/* Cut off a half-written entry, so that the file still parses. */
 static void cut_back(struct gz_stats_file *file)
 {
 	if (ftruncate(file->fd, file->end) == 0)
@@ -164,15 +165,15 @@ static void cut_back(struct gz_stats_file *file)
 enum gz_result gz_stats_add(struct gz_stats_file *file, const struct gz_frame_record *record)
 {
 	char text[ENTRY_SIZE];
-	int length = print_entry(record, !file->any, text, sizeof text);
-	if (length < 0 || (size_t)length >= sizeof text)
+	const size_t length = print_entry(record, !file->any, text);
+	if (length == 0)
 		return GZ_ERR_INVAL;
-	enum gz_result r = write_at(file, text, (size_t)length, file->end);
+	enum gz_result r = write_at(file, text, length, file->end);
 	if (r != GZ_OK) {
 		cut_back(file);
 		return r;
 	}
-	file->end += length - (off_t)(sizeof tail - 1);
+	file->end += (off_t)length - (off_t)(sizeof tail - 1);
 	file->any = true;
 	return GZ_OK;
 }
@@ -192,7 +193,7 @@ void gz_frame_history_add(struct gz_frame_history *history, const struct gz_fram
 	struct gz_frame_cost *kept = &history->costs[history->next];
 	*kept = *cost;
 	for (int part = 0; part < GZ_FRAME_PARTS; part++)
-		kept->ms[part] = fmax(0, cost->ms[part]); /* 0 also of what is no number */
+		kept->ms[part] = fmax(0, cost->ms[part]); /* NaN becomes 0 */
 	history->next = (history->next + 1) % GZ_FRAME_HISTORY_SIZE;
 	if (history->count < GZ_FRAME_HISTORY_SIZE)
 		history->count++;

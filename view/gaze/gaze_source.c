@@ -15,7 +15,7 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* A point somebody else sets: once for "fixed", by every motion for "mouse". */
+/* A point that the caller sets: once for "fixed", on every motion for "mouse". */
 struct point_source {
 	struct gz_gaze_source base;
 	bool known;
@@ -110,22 +110,22 @@ void gz_gaze_source_destroy(struct gz_gaze_source **source)
 	*source = NULL;
 }
 
-/* Where the local daemon is found is looked at again so often while there is none (chosen: it is
- * there a second after it was started, and costs a few calls). */
+/* How often the local daemon's endpoint is looked up while it is not connected. Chosen: the source
+ * connects within a second of the daemon's start, and a lookup costs a few system calls. */
 #define FIND_INTERVAL_NS GZ_NS_PER_S
 
 struct latest_source {
 	struct gz_gaze_source base;
 	const struct gz_log *log;
-	bool finds; /* no endpoint was named */
+	bool finds; /* no endpoint was named: look the local one up */
 	char found[GZ_ENDPOINT_SIZE];
-	int64_t find_ns; /* when it is looked for again */
+	int64_t find_ns; /* time of the next lookup */
 	struct gz_client *client;
-	struct gz_stream *status; /* NULL where the stream's endpoint cannot be told */
-	double noise_deg;         /* as status tells it; NaN before that */
+	struct gz_stream *status; /* NULL: the stream's endpoint is unknown */
+	double noise_deg;         /* from the status; NaN: none yet */
 	bool has_display;
 	struct gz_display display;
-	bool has_told; /* what follows */
+	bool has_told; /* told is valid */
 	struct gz_status told;
 };
 
@@ -147,8 +147,8 @@ static void take_status(struct latest_source *self)
 	}
 }
 
-/* A daemon that comes later may bind its sockets elsewhere: that of the system, or the user's. The
- * reader is kept where no other one can be had. */
+/* A daemon that starts later may bind other sockets: the system's or the user's. If no new client
+ * can be opened, the old one is kept. */
 static void find_again(struct latest_source *self)
 {
 	char endpoint[GZ_ENDPOINT_SIZE];
@@ -195,7 +195,7 @@ static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
 	gz_client_get_counters(self->client, &counters);
 	reading.connected = counters.connected;
 	if (!reading.connected) {
-		self->has_told = false; /* the next one may be another */
+		self->has_told = false; /* the next daemon may differ */
 		find_again(self);
 	}
 	take_status(self);
@@ -234,7 +234,7 @@ static const struct gz_gaze_source_ops latest_ops = {
 	.destroy = latest_destroy,
 };
 
-/* Where no status can be had, none is waited for. */
+/* Without a display slot, callers do not wait for a status. */
 static const struct gz_gaze_source_ops latest_alone_ops = {
 	.name = "daemon",
 	.live = true,
@@ -242,7 +242,8 @@ static const struct gz_gaze_source_ops latest_alone_ops = {
 	.destroy = latest_destroy,
 };
 
-/* The stream beside a latest channel: the same folder. A TCP port says nothing about another. */
+/* The endpoint of the stream: in the same folder as the latest channel. A TCP port does not give
+ * the other one. */
 static bool stream_beside(const char *latest, char *text, size_t size)
 {
 	static const char name[] = "/latest";
@@ -276,7 +277,7 @@ enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *
 		endpoint = NULL;
 	self->log = log;
 	self->finds = !endpoint;
-	/* Where it cannot be told, gz_client_open() says why. */
+	/* If no endpoint is found, gz_client_open() logs the reason. */
 	if (self->finds &&
 	    gz_endpoint_find("latest", NULL, self->found, sizeof self->found) != GZ_OK)
 		self->found[0] = '\0';
@@ -296,18 +297,18 @@ struct log_source {
 	const struct gz_log *log;
 	struct gz_gaze_log_reader *reader;
 	struct gz_pipeline pipeline;
-	bool has_display; /* the log's own, not the default */
+	bool has_display; /* display is from the log, not the default */
 	struct gz_display display;
 	int64_t start_ns;         /* host_ns of the first sample */
-	bool has_last;            /* last_ns holds something */
-	int64_t last_ns;          /* host_ns of the last sample, as the file's end has it */
-	bool pending_known;       /* a sample has been read that its time has not come for */
-	struct gz_sample pending; /* only then */
+	bool has_last;            /* last_ns is valid */
+	int64_t last_ns;          /* host_ns of the last sample in the file */
+	bool pending_known;       /* pending is valid */
+	struct gz_sample pending; /* the next sample; its time has not come */
 	struct gz_gaze_reading reading;
 	int64_t shown_ns; /* host_ns of the sample in reading */
 };
 
-/* The next sample into pending; marks, gaps and unreadable lines are stepped over. */
+/* Read the next sample into pending; skip marks, gaps and unreadable lines. */
 static void fetch_sample(struct log_source *self)
 {
 	struct gz_gaze_log_record record;
@@ -315,7 +316,7 @@ static void fetch_sample(struct log_source *self)
 	for (;;) {
 		enum gz_result r = gz_gaze_log_read(self->reader, &record);
 		if (r == GZ_ERR_FORMAT)
-			continue; /* logged by the reader; it goes on behind the line */
+			continue; /* logged by the reader, which continues after the line */
 		if (r != GZ_OK)
 			return;
 		if (record.kind != GZ_GAZE_LOG_SAMPLE)
@@ -346,7 +347,7 @@ static void step_log(struct log_source *self)
 	fetch_sample(self);
 }
 
-/* Times of a log are anybody's: what does not fit stays at the end of time. */
+/* The times in a log may be any numbers: results saturate at INT64_MAX. */
 static int64_t add_ns(int64_t time_ns, int64_t by_ns)
 {
 	int64_t sum;
@@ -372,7 +373,7 @@ static void log_read(struct gz_gaze_source *source, int64_t time_ns,
 
 bool gz_gaze_source_log_forward(struct gz_gaze_source *source, int64_t time_ns, int64_t budget_ns)
 {
-	/* Samples between looks at the clock: chosen, some tens of microseconds. */
+	/* Samples between reads of the clock. Chosen: some tens of microseconds of work. */
 	enum { AT_ONCE = 64 };
 	struct log_source *self = (struct log_source *)source;
 	const int64_t until_ns = gz_clock_now_ns() + budget_ns;
@@ -434,13 +435,13 @@ static enum gz_result prepare_log(struct log_source *self, const char *path)
 	if (r != GZ_OK)
 		return r;
 	self->has_display = header->has_display && gz_display_valid(&header->display);
-	/* Only its angles matter here, and those of the default are the same at any size. */
+	/* Only angles matter here, and the default display has the same at any size. */
 	self->display = self->has_display ? header->display : gz_display_default(1920, 1080);
 	gz_pipeline_init(&self->pipeline, &params, &self->display);
 	fetch_sample(self);
 	if (!self->pending_known) {
-		gz_err(self->log, "%s: holds no sample; record for longer, or give another log",
-		       path);
+		gz_err(self->log,
+		       "%s: the log has no samples; record for longer or name another log", path);
 		return GZ_ERR_FORMAT;
 	}
 	self->start_ns = self->shown_ns = self->pending.host_ns;

@@ -1,7 +1,7 @@
 /**
  * @file
- * Where the gaze comes from: a point that stays, the mouse, a daemon's latest channel, or a gaze
- * log run through the daemon's pipeline in process. All behind one small table.
+ * Sources of the gaze behind one small table: a fixed point, the mouse, a daemon's latest channel,
+ * or a gaze log run through the daemon's pipeline in process.
  */
 #ifndef GZ_VIEW_GAZE_GAZE_SOURCE_H
 #define GZ_VIEW_GAZE_GAZE_SOURCE_H
@@ -19,17 +19,17 @@ extern "C" {
 
 /** What a source knows at one moment. */
 struct gz_gaze_reading {
-	bool known;            /**< point holds something; it stays so through blinks and loss */
-	struct gz_point point; /**< normalised display area */
-	bool has_age;
-	int64_t age_ns;      /**< of the sample that gave the point; only with has_age */
-	bool connected;      /**< whoever gives the gaze is there now; true where nobody need be */
-	bool has_event;      /**< the source tells what the eye does */
-	enum gz_event event; /**< only with has_event */
-	double noise_deg;    /**< of the tracker, sample to sample; NaN where not known */
-	bool numbered;       /**< the sample has a number and a time */
-	uint64_t seq;        /**< counts the tracker's samples; only with numbered */
-	int64_t sample_ns;   /**< its time, host's or the log's; only with numbered */
+	bool known;            /**< point is valid; stays true through blinks and loss */
+	struct gz_point point; /**< on the display, 0 to 1 */
+	bool has_age;          /**< age_ns is valid */
+	int64_t age_ns;        /**< age of the sample that gave the point */
+	bool connected;        /**< the source is reachable; always true for a point and a log */
+	bool has_event;        /**< event is valid */
+	enum gz_event event;   /**< what the eye does */
+	double noise_deg;      /**< sample-to-sample noise of the tracker, degrees; NaN: unknown */
+	bool numbered;         /**< seq and sample_ns are valid */
+	uint64_t seq;          /**< number of the tracker's sample */
+	int64_t sample_ns;     /**< time of the sample, on the host's or the log's clock */
 };
 
 struct gz_gaze_source;
@@ -37,16 +37,15 @@ struct gz_gaze_source;
 /** What a source must provide. Every table is const and has static storage. */
 struct gz_gaze_source_ops {
 	const char *name; /**< for the text line: "fixed", "mouse", "daemon", "log" */
-	/** The source lives in real time: frames must be paced, and time_ns is not looked at. */
-	bool live;
-	/** The newest gaze at @p time_ns after the first frame. Never blocks on others. */
+	bool live;        /**< runs in real time: the caller paces frames, and time_ns is ignored */
+	/** Read the newest gaze at @p time_ns after the first frame. Never blocks. */
 	void (*read)(struct gz_gaze_source *source, int64_t time_ns,
 		     struct gz_gaze_reading *out_reading);
-	/** Optional. The display geometry the source brings, if it knows one by now. */
+	/** Optional. Get the display geometry. @return false while it is unknown */
 	bool (*display)(struct gz_gaze_source *source, struct gz_display *out_display);
-	/** Optional. What the daemon behind it last told of itself; NULL before it did. Valid
-	 * until the next read. */
+	/** Optional. The daemon's latest status, valid until the next read; NULL: none yet. */
 	const struct gz_status *(*status)(const struct gz_gaze_source *source);
+	/** Free the source. Also correct after a failed start. */
 	void (*destroy)(struct gz_gaze_source *source);
 };
 
@@ -55,68 +54,70 @@ struct gz_gaze_source {
 	const struct gz_gaze_source_ops *ops;
 };
 
-/** A point that never moves. GZ_ERR_NO_MEM. */
+/** Create a source whose gaze stays at @p point. GZ_ERR_NO_MEM: out of memory. */
 enum gz_result gz_gaze_source_fixed(struct gz_point point, struct gz_gaze_source **out_source);
 
-/** The mouse: unknown until the first gz_gaze_source_move(). GZ_ERR_NO_MEM. */
+/** Create a source for the mouse. Its gaze is unknown until gz_gaze_source_move(). GZ_ERR_NO_MEM:
+ * out of memory. */
 enum gz_result gz_gaze_source_mouse(struct gz_gaze_source **out_source);
 
-/** The mouse is at @p point, normalised; of a source made by gz_gaze_source_mouse() only. */
+/** Set the gaze of a mouse source to @p point, 0 to 1. Does nothing for other sources. */
 void gz_gaze_source_move(struct gz_gaze_source *source, struct gz_point point);
 
 /**
- * A daemon's latest channel. Its age is host time less the sample's time.
+ * Create a source for a daemon's latest channel. Age is the host's time minus the sample's time.
+ * Succeeds also while no daemon runs.
  *
- * @param endpoint  NULL or empty for the local daemon's
- * @retval GZ_ERR_INVAL   @p endpoint is no ZeroMQ endpoint; logged
- * @retval GZ_ERR_NO_MEM  no room
- *
- * Succeeds also while no daemon runs. @p log is borrowed.
+ * @param endpoint  ZeroMQ endpoint; NULL or empty: the local daemon's
+ * @param log       borrowed, outlives the source
+ * @retval GZ_ERR_INVAL   @p endpoint is not a ZeroMQ endpoint; logged
+ * @retval GZ_ERR_NO_MEM  out of memory
  */
 enum gz_result gz_gaze_source_latest(const char *endpoint, const struct gz_log *log,
 				     struct gz_gaze_source **out_source);
 
 /**
- * A gaze log. With t0 the host_ns of its first sample, reading at time_ns gives the last sample at
- * or before t0 + time_ns, as the pipeline saw it with the log's own settings and display; its age
- * is t0 + time_ns less the sample's host_ns. Times must not run backwards from read to read.
+ * Create a source for a gaze log. Let t0 be the host_ns of the first sample: reading at time_ns
+ * gives the last sample at or before t0 + time_ns, filtered with the log's own settings and
+ * display. Age is t0 + time_ns minus the sample's host_ns. Times must not decrease from read to
+ * read.
  *
+ * @param log  borrowed, outlives the source
  * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  logged
- * @retval GZ_ERR_FORMAT  no gaze log, a setting that the pipeline refuses, or not one sample;
- * logged
+ * @retval GZ_ERR_FORMAT  not a gaze log, a setting the pipeline refuses, or no sample; logged
  */
 enum gz_result gz_gaze_source_log(const char *path, const struct gz_log *log,
 				  struct gz_gaze_source **out_source);
 
-/** How far a log has been gone through. */
+/** The position in a gaze log. */
 struct gz_gaze_log_place {
-	int64_t at_ns;     /**< from its first sample to the newest one that was read */
-	int64_t length_ns; /**< from its first sample to its last one; negative where not known */
-	bool ended;        /**< its last sample was read */
+	int64_t at_ns;     /**< from the first sample to the newest one read */
+	int64_t length_ns; /**< from the first sample to the last one; negative: unknown */
+	bool ended;        /**< the last sample was read */
 };
 
-/** Where a log is; of a source made by gz_gaze_source_log() only: false for others. */
+/** Get the position of a log source. @return false for other sources */
 bool gz_gaze_source_log_place(const struct gz_gaze_source *source,
 			      struct gz_gaze_log_place *out_place);
 
 /**
- * Go on in a log to @p time_ns, as reading it would, but for no longer than @p budget_ns.
+ * Advance a log source to @p time_ns as reading would, but stop after about @p budget_ns of work.
  *
- * @return whether it is there; true for other sources
+ * @return whether it has reached @p time_ns; always true for other sources
  */
 bool gz_gaze_source_log_forward(struct gz_gaze_source *source, int64_t time_ns, int64_t budget_ns);
 
-/** See gz_gaze_source_ops; NULL where the source has none. */
+/** Call the source's status slot; NULL if it has none. */
 const struct gz_status *gz_gaze_source_status(const struct gz_gaze_source *source);
 
-/** See gz_gaze_source_ops. */
+/** Call the source's read slot. */
 void gz_gaze_source_read(struct gz_gaze_source *source, int64_t time_ns,
 			 struct gz_gaze_reading *out_reading);
 
-/** See gz_gaze_source_ops; false where the source has none. */
+/** Call the source's display slot; false if it has none. */
 bool gz_gaze_source_display(struct gz_gaze_source *source, struct gz_display *out_display);
 
-/** Destroy and set to NULL. Accepts a pointer to NULL. */
+/** Destroy the source and set the pointer to NULL. Accepts NULL and a pointer to NULL. */
 void gz_gaze_source_destroy(struct gz_gaze_source **source);
 
 #ifdef __cplusplus

@@ -5,10 +5,10 @@
 
 #include "base/clock.h"
 
-/* Over which a rate is told, and how close readings are kept. */
+/* The span a rate is measured over, and the smallest distance of the readings kept. */
 #define RATE_SPAN_NS  GZ_NS_PER_S
 #define RATE_APART_NS (GZ_NS_PER_S / 100)
-/* Less says nothing: chosen, a fifth of the span. */
+/* The shortest span that gives a rate. Chosen: a fifth of the full span. */
 #define RATE_LEAST_NS (RATE_SPAN_NS / 5)
 
 static void set_reason(struct gz_gaze_state *state, enum gz_gaze_level level, const char *what,
@@ -18,19 +18,19 @@ static void set_reason(struct gz_gaze_state *state, enum gz_gaze_level level, co
 	snprintf(state->reason, sizeof state->reason, "%s%s", what, more);
 }
 
-/* A daemon is there, and gives no gaze: its tracker has a reason. */
+/* The daemon is connected and gives no gaze: its tracker has a reason. */
 static void say_tracker(const struct gz_status *status, struct gz_gaze_state *state)
 {
 	char text[GZ_REASON_SIZE];
 	if (!status || status->tracker.state == GZ_TRACKER_RUNNING) {
 		set_reason(state, GZ_GAZE_LEVEL_WARN, "NO GAZE yet from the daemon",
-			   "; the mouse leads");
+			   "; using the mouse");
 		return;
 	}
 	snprintf(text, sizeof text, "NO TRACKER: %.31s %s%s%.100s", status->tracker.name,
 		 gz_tracker_state_name(status->tracker.state),
 		 status->tracker.reason[0] ? ", " : "", status->tracker.reason);
-	set_reason(state, GZ_GAZE_LEVEL_WARN, text, "; the mouse leads");
+	set_reason(state, GZ_GAZE_LEVEL_WARN, text, "; using the mouse");
 }
 
 static bool is_of_another_tracker(const struct gz_gaze_signs *signs)
@@ -59,12 +59,12 @@ static void judge_daemon(const struct gz_gaze_signs *signs, struct gz_gaze_state
 {
 	if (!signs->reading.connected)
 		set_reason(state, GZ_GAZE_LEVEL_WARN, "NO DAEMON: start gazed",
-			   "; the mouse leads");
+			   "; using the mouse");
 	else if (!signs->reading.known)
 		say_tracker(signs->status, state);
 	else if (is_of_another_tracker(signs))
 		set_reason(state, GZ_GAZE_LEVEL_WARN,
-			   "OTHER TRACKER: gazed needs --driver pointer, it reads ",
+			   "OTHER TRACKER: start gazed with --driver pointer; it reads ",
 			   signs->status->tracker.name);
 }
 
@@ -96,11 +96,11 @@ void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *o
 		judge_age(signs, &state);
 	if (state.level == GZ_GAZE_LEVEL_GOOD && signs->from_daemon && signs->window_elsewhere)
 		set_reason(&state, GZ_GAZE_LEVEL_WARN,
-			   "OTHER DISPLAY: the tracker's is not the window's", "; D goes there");
+			   "OTHER DISPLAY: the window is not on the tracker's display", "; press D to move it");
 	*out_state = state;
 }
 
-/* Times of a log are anybody's. */
+/* The times in a log may be any numbers. */
 static int64_t span_ns(int64_t from_ns, int64_t to_ns)
 {
 	int64_t span;

@@ -1,7 +1,7 @@
 /**
  * @file
- * Whether a gaze can be relied on: what is wrong with it, how badly, in words; and how often it
- * comes. Pure: no clock, no input or output.
+ * Judges the gaze: what is wrong with it, how badly, in words; and measures its sample rate. Pure:
+ * no clock, no I/O.
  */
 #ifndef GZ_VIEW_GAZE_GAZE_STATE_H
 #define GZ_VIEW_GAZE_GAZE_STATE_H
@@ -17,46 +17,46 @@
 extern "C" {
 #endif
 
-/** An older gaze is late. Of the 50 to 70 ms from eye to picture that foveated rendering bears
- * (Albert, Patney, Luebke and Kim 2017, Latency Requirements for Foveated Rendering in Virtual
- * Reality, abstract) nothing is left to make the picture in. */
+/** Age from which a gaze is late, ns. Foveated rendering tolerates 50 to 70 ms from eye movement to
+ * picture (Albert, Patney, Luebke and Kim 2017, Latency Requirements for Foveated Rendering in
+ * Virtual Reality, abstract); a gaze this old leaves no time to render. */
 #define GZ_GAZE_LATE_NS INT64_C(50000000)
 
-/** An older gaze is silent: it has no age that runs on any more. */
+/** Age from which a gaze is silent, ns: its age is no longer shown counting. */
 #define GZ_GAZE_SILENT_NS INT64_C(1000000000)
 
-/** How badly. */
+/** How bad the state is. */
 enum gz_gaze_level {
 	GZ_GAZE_LEVEL_GOOD,
 	GZ_GAZE_LEVEL_WARN, /**< amber */
 	GZ_GAZE_LEVEL_BAD,  /**< red */
 };
 
-/** What is known. */
+/** What is known about the gaze. */
 struct gz_gaze_signs {
 	bool from_daemon;
 	bool from_log;
-	bool wants_pointer;             /**< the mouse, by way of the daemon */
-	struct gz_gaze_reading reading; /**< of the source that is asked for */
-	const struct gz_status *status; /**< of the daemon; NULL: not told */
-	bool losing;                    /**< samples were lost just now */
+	bool wants_pointer;             /**< the user chose the mouse through the daemon */
+	struct gz_gaze_reading reading; /**< from the source the user chose */
+	const struct gz_status *status; /**< of the daemon; NULL: unknown */
+	bool losing;                    /**< samples were lost recently */
 	bool log_ended;
 	bool window_elsewhere; /**< the window is not on the tracker's display */
 };
 
-/** What follows from it. */
+/** The verdict. */
 struct gz_gaze_state {
 	enum gz_gaze_level level;
-	char reason[2 * GZ_REASON_SIZE]; /**< begins with a word in capitals; empty where GOOD */
+	char reason[2 * GZ_REASON_SIZE]; /**< begins with a word in capitals; empty if GOOD */
 };
 
-/** The worst that the signs say. */
+/** Judge the signs and return the worst verdict. */
 void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *out_state);
 
-/** Readings that a rate is made of, a hundredth of a second apart at least. */
+/** Number of readings kept for a rate, at least 10 ms apart. */
 enum { GZ_GAZE_RATE_ROOM = 128 };
 
-/** Counts. Zero-initialised has counted nothing. */
+/** Measures the sample rate. Zero-initialised: nothing measured. */
 struct gz_gaze_rate {
 	struct {
 		uint64_t seq;
@@ -65,11 +65,11 @@ struct gz_gaze_rate {
 	size_t count, next;
 };
 
-/** Take a reading; those without a number are left out. One that does not go on from the one before
- * begins anew. */
+/** Take a reading. Readings without a number are ignored; if the number or time decreases, the
+ * measurement starts again. */
 void gz_gaze_rate_step(struct gz_gaze_rate *rate, const struct gz_gaze_reading *reading);
 
-/** Samples a second over the last second; 0 while there are too few to tell. */
+/** Samples per second over the last second; 0 while there are too few readings. */
 double gz_gaze_rate_hz(const struct gz_gaze_rate *rate);
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@ static void forget_stays(struct gz_gaze_trail *trail, int stays)
 	memmove(trail->stays, trail->stays + stays, (size_t)trail->count * sizeof trail->stays[0]);
 }
 
-/* The newest stay is now, however long it lasts. */
+/* The newest stay is never dropped, however long it lasts. */
 static bool forget_old(struct gz_gaze_trail *trail, int64_t now_ns)
 {
 	int old = 0;
@@ -36,7 +36,7 @@ static bool are_near(struct gz_point a, struct gz_point b, float apart)
 	return fabsf(a.x - b.x) <= apart && fabsf(a.y - b.y) <= apart;
 }
 
-/* Into the mean of a fixation, by the time that it stayed at each place. */
+/* Extend a fixation: its point becomes the mean, weighted by time. @return whether it moved */
 static bool lengthen(struct gz_gaze_stay *stay, struct gz_point point, int64_t now_ns)
 {
 	const int64_t before_ns = stay->to_ns - stay->from_ns, all_ns = now_ns - stay->from_ns;
@@ -61,7 +61,7 @@ static void begin_stay(struct gz_gaze_trail *trail, const struct gz_gaze_reading
 	};
 }
 
-/* Takes the reading in. @return whether that shows */
+/* @return whether the drawn trail changes */
 static bool add_gaze(struct gz_gaze_trail *trail, const struct gz_gaze_reading *reading,
 		     float apart, int64_t now_ns)
 {
@@ -71,7 +71,7 @@ static bool add_gaze(struct gz_gaze_trail *trail, const struct gz_gaze_reading *
 		return false;
 	if (newest && reading->has_event && fixates && newest->fixation) {
 		lengthen(newest, reading->point, now_ns);
-		/* Its disc grows while it is young. */
+		/* Its disc grows at first. */
 		return now_ns - newest->from_ns < GZ_GAZE_TRAIL_NS;
 	}
 	if (newest && !reading->has_event && are_near(newest->point, reading->point, apart)) {
@@ -95,7 +95,7 @@ bool gz_gaze_trail_step(struct gz_gaze_trail *trail, const struct gz_gaze_readin
 			  now_ns - trail->stays[0].to_ns >= GZ_GAZE_TRAIL_NS;
 	if (lost)
 		trail->count = 0;
-	/* More than the one that is now: the others fade. */
+	/* Stays other than the newest fade. */
 	return forgotten || taken || lost || trail->count > 1;
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Relative. See gz_tracker_display_choose(). */
+/* Relative tolerance of a side in mm: see gz_tracker_display_choose(). */
 #define SIDE_TOLERANCE 0.05
 
 int gz_monitor_at(const struct gz_monitor_list *list, const int rect_px[4])
@@ -43,7 +43,7 @@ static bool same_mm(const struct gz_monitor *monitor, const struct gz_display *d
 	return true;
 }
 
-/* What a daemon says that was told nothing. */
+/* Whether the daemon assumed the display for lack of configuration. */
 static bool is_assumed(const struct gz_display *display)
 {
 	const struct gz_display assumed = gz_display_default(display->px[0], display->px[1]);
@@ -58,7 +58,7 @@ static bool both(const struct gz_monitor *monitor, const struct gz_display *disp
 	return same_px(monitor, display) && same_mm(monitor, display);
 }
 
-/* The only one that passes, or that of several on which the window is. */
+/* The only monitor that passes; among several, the window's; -1 if that does not pass. */
 static int find_by(const struct gz_monitor_list *list, monitor_test *test,
 		   const struct gz_display *display, int at_window)
 {

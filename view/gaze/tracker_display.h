@@ -1,8 +1,8 @@
 /**
  * @file
- * Which monitor a tracker's gaze is on, and which part of it a window is. A tracker's points are on
- * its own display; with several monitors the window's place there is an offset to them (Bauer 2018,
- * section 2.4). Pure: monitors come in as a list.
+ * Chooses the monitor that the tracker's gaze refers to, and converts its points to the window. A
+ * tracker reports points on its own display; with several monitors the window's position on that
+ * display is an offset (Bauer 2018, section 2.4). Pure: the caller passes the list of monitors.
  */
 #ifndef GZ_VIEW_GAZE_TRACKER_DISPLAY_H
 #define GZ_VIEW_GAZE_TRACKER_DISPLAY_H
@@ -16,75 +16,76 @@
 extern "C" {
 #endif
 
-/** Monitors that are told apart; further ones are not seen (chosen: more than a desk bears). */
+/** Largest number of monitors; further ones are ignored. Chosen: more than fit on a desk. */
 enum { GZ_MONITORS_MAX = 16 };
 
 /** A monitor. */
 struct gz_monitor {
-	char name[GZ_NAME_SIZE]; /**< as the display server has it: "DP-1" */
-	int rect_px[4];          /**< x y w h among all monitors; w and h above 0 */
-	double mm[2];            /**< its size; 0 where it does not tell */
-	double refresh_hz;       /**< 0 where it does not tell */
+	char name[GZ_NAME_SIZE]; /**< the display server's name, such as "DP-1" */
+	int rect_px[4];          /**< x y w h on the desktop; w and h above 0 */
+	double mm[2];            /**< width and height; 0: unknown */
+	double refresh_hz;       /**< 0: unknown */
 };
 
-/** All that there are, the primary one first. */
+/** All monitors, the primary one first. */
 struct gz_monitor_list {
 	struct gz_monitor monitors[GZ_MONITORS_MAX];
 	int count;
 };
 
-/** Why a monitor is the tracker's. */
+/** Why a monitor was chosen. */
 enum gz_tracker_display_reason {
-	GZ_TRACKER_DISPLAY_ALONE,     /**< there is no other */
-	GZ_TRACKER_DISPLAY_NAMED,     /**< the user says so */
-	GZ_TRACKER_DISPLAY_DESCRIBED, /**< it has the size that the daemon tells */
-	GZ_TRACKER_DISPLAY_WINDOW,    /**< the window is there, and nothing else is known */
+	GZ_TRACKER_DISPLAY_ALONE,     /**< it is the only one */
+	GZ_TRACKER_DISPLAY_NAMED,     /**< the user named it */
+	GZ_TRACKER_DISPLAY_DESCRIBED, /**< it has the size that the daemon reports */
+	GZ_TRACKER_DISPLAY_WINDOW,    /**< the window is on it, and nothing else is known */
 };
 
-/** What came of the choice. */
+/** The choice. */
 struct gz_tracker_display {
-	int monitor; /**< index in the list; -1: there is no monitor */
+	int monitor; /**< index in the list; -1: the list is empty */
 	enum gz_tracker_display_reason reason;
-	bool named_is_absent; /**< the one that the user named is not there */
+	bool named_is_absent; /**< the monitor that the user named does not exist */
 };
 
-/** A window's content as a part of a monitor: corner and size, in sides of the monitor. */
+/** The window's content as a part of a monitor: corner and size, as fractions of the monitor. */
 struct gz_window_share {
 	double x, y, width, height;
 };
 
-/** The monitor that holds the middle of @p rect_px, x y w h; the first one where none does; -1 if
- * there is none. */
+/** The index of the monitor that contains the centre of @p rect_px (x y w h), otherwise 0; -1 if
+ * the list is empty. */
 int gz_monitor_at(const struct gz_monitor_list *list, const int rect_px[4]);
 
-/** The monitor of a name, or of a number from 1 on. @return its index; -1: there is none such */
+/** The index of the monitor with a name, or with a number counted from 1; -1: no such monitor. */
 int gz_monitor_named(const struct gz_monitor_list *list, const char *text);
 
 /**
- * Choose.
+ * Choose the tracker's monitor: the named one, otherwise the only one, otherwise the one the daemon
+ * describes, otherwise the window's.
  *
- * @param named      by the user, as gz_monitor_named() takes it; empty: nothing
- * @param described  as the daemon tells it; NULL: not at all. One that is gz_display_default()'s is
- *                   an assumption, and tells nothing
+ * A monitor matches the description if it has the same pixels. If none has, as on desktops that
+ * scale, it matches if it has the same size in mm within 5 % (chosen: monitors report sizes rounded
+ * to centimetres). Among several, one that matches in both is taken, then the window's.
+ *
+ * @param named      the user's choice for gz_monitor_named(); empty: none
+ * @param described  the display the daemon reports; NULL: none. The size of gz_display_default() is
+ *                   an assumption of the daemon and is ignored
  * @param window_px  the window, x y w h
- *
- * A description is met by a monitor of the same pixels or, where none has them, as under desktops
- * that scale, of the same millimetres, to 5 % (chosen: what monitors tell of themselves is rounded
- * to centimetres). Of several the one whose millimetres agree too, then the window's.
  */
 struct gz_tracker_display gz_tracker_display_choose(const struct gz_monitor_list *list,
 						    const char *named,
 						    const struct gz_display *described,
 						    const int window_px[4]);
 
-/** The part of @p monitor that a window is; beyond 0 to 1 where it is on another one. The whole
- * where @p monitor is NULL or the window has no size. */
+/** The part of @p monitor that the window covers; outside 0 to 1 if the window is elsewhere. The
+ * whole monitor if @p monitor is NULL or the window has no size. */
 struct gz_window_share gz_window_share_of(const struct gz_monitor *monitor, const int window_px[4]);
 
-/** Whether no pixel of the window is on that monitor. */
+/** Whether the window is entirely outside the monitor. */
 bool gz_window_share_is_elsewhere(const struct gz_window_share *share);
 
-/** A point of the monitor as one of the window. */
+/** Convert a point on the monitor to a point on the window. */
 struct gz_point gz_window_share_point(const struct gz_window_share *share, struct gz_point point);
 
 #ifdef __cplusplus
