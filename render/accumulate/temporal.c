@@ -8,9 +8,10 @@
 
 const struct gz_option gz_temporal_options[] = {
 	{ "temporal.accumulate", GZ_OPTION_BOOL, AT(accumulate), .preset = "no",
-	  .help = "keep what earlier frames saw: a still picture becomes sharp everywhere" },
+	  .help = "keep what earlier frames saw, so that a still picture becomes sharp "
+		  "everywhere" },
 	{ "temporal.weight", GZ_OPTION_DOUBLE, AT(weight), 0, 0.98, .preset = "0.9",
-	  .help = "share of earlier frames between rays while the camera moves" },
+	  .help = "share of earlier frames in pixels between rays while the camera moves" },
 };
 const size_t gz_temporal_option_count = sizeof gz_temporal_options / sizeof gz_temporal_options[0];
 
@@ -26,23 +27,24 @@ struct gz_temporal_params gz_temporal_default(void)
 	return params;
 }
 
-/* How a pixel is known: by a ray of the layer of that number, between rays of that layer more
- * BETWEEN, or not at all. In a history, between rays is the number of frames it is the mean of,
- * more BETWEEN. */
+/* How a pixel is known, one byte: the layer whose ray was cast there; BETWEEN + the layer whose
+ * rays lie around it; or UNKNOWN. In a history, a pixel between rays holds BETWEEN + the number of
+ * frames that it is the mean of. */
 enum { BETWEEN = 16, MEAN_MAX = 64, UNKNOWN = 255 };
 
 enum {
 	SHIFTS = GZ_TEMPORAL_SHIFTS,
 	FRAMES = SHIFTS * SHIFTS, /* until every pixel was cast */
-	GRID = 16,                /* px between places where movement is found; linear between */
+	GRID = 16,                /* px between places where movement is computed; linear between */
 	ROWS_A_PART = 16,
 };
 
-/* The eye's way round the volume that a history may span, degrees. Chosen: with it the error stays
+/* How far the camera may turn around the volume within a history, degrees. Chosen: the error stays
  * below that of single frames at any speed (tests/render/test_temporal.c). */
 #define PARALLAX_DEG 0.7
 
-struct job {
+/* What the threads that join a frame share. */
+struct join {
 	struct gz_temporal *temporal;
 	const struct gz_plan *plan;
 	double weight;
@@ -52,9 +54,9 @@ struct job {
 };
 
 /*
- * Shift of a frame. Of each 4^k frames in a row, aligned, each shift by less than 2^k pixels comes
- * once, so that a lattice of spacing 2^k is whole after 4^k frames; wide lattices, whose turn takes
- * longest, get their larger parts from the digits that change first.
+ * Shift of a frame. Each aligned run of 4^k frames has each shift of less than 2^k pixels once, so
+ * a lattice of spacing 2^k has covered every pixel after 4^k frames. Wide lattices take longest, so
+ * their large shifts also depend on the digits that change fastest.
  */
 static void find_shift(unsigned frame, int shift[2])
 {
@@ -71,7 +73,7 @@ static void find_shift(unsigned frame, int shift[2])
 	}
 }
 
-static enum gz_result resize(struct gz_temporal *temporal, int width, int height)
+static enum gz_result resize_history(struct gz_temporal *temporal, int width, int height)
 {
 	const size_t count = (size_t)width * (size_t)height;
 	if (!temporal->workers && gz_workers_create(0, &temporal->workers) != GZ_OK)
@@ -102,7 +104,7 @@ enum gz_result gz_temporal_begin(struct gz_temporal *temporal,
 	if (request->width > GZ_IMAGE_SIDE_MAX - SHIFTS ||
 	    request->height > GZ_IMAGE_SIDE_MAX - SHIFTS)
 		return GZ_ERR_INVAL;
-	const enum gz_result result = resize(temporal, request->width, request->height);
+	const enum gz_result result = resize_history(temporal, request->width, request->height);
 	if (result != GZ_OK)
 		return result;
 	if (!temporal->any || temporal->shown.serial != content->serial)
@@ -129,7 +131,7 @@ void gz_temporal_place(const struct gz_temporal *temporal, struct gz_plan *plan)
 	};
 }
 
-static void mark(const struct gz_temporal *temporal, int x, int y, uint8_t how)
+static void mark_pixel(const struct gz_temporal *temporal, int x, int y, uint8_t how)
 {
 	if (x < 0 || y < 0 || x >= temporal->width || y >= temporal->height)
 		return;
@@ -137,8 +139,7 @@ static void mark(const struct gz_temporal *temporal, int x, int y, uint8_t how)
 	*cast = how < *cast ? how : *cast;
 }
 
-/* Whether pixel (x, y) of the plan is what a layer says there, and no other. Layers of a pyramid do
- * not compete. */
+/* Whether pixel (x, y) of the plan shows this layer alone. In a pyramid every layer does. */
 static bool shows_alone(const struct gz_plan *plan, int layer, int x, int y)
 {
 	if (plan->reconstruction != GZ_RECONSTRUCT_REGIONS)
@@ -149,21 +150,22 @@ static bool shows_alone(const struct gz_plan *plan, int layer, int x, int y)
 	return gz_region_weight(&plan->layers[layer].region, x, y) >= 1;
 }
 
-/* The pixels of a tile's rays. Rays that are cast for the sake of their neighbours alone, beside
- * the region of their layer or in its band, show nowhere. */
-static void mark_rays(const struct gz_temporal *temporal, const struct gz_plan *plan,
-		      const struct gz_tile *tile)
+/* Mark the pixels of a tile's rays. Some rays only support the interpolation of their neighbours:
+ * those beside the region of their layer, or in its band. They are no pixel's colour. */
+static void mark_tile_rays(const struct gz_temporal *temporal, const struct gz_plan *plan,
+			   const struct gz_tile *tile)
 {
 	const int spacing = plan->layers[tile->layer].spacing;
 	for (int ray = 0; ray < GZ_TILE_EDGE * GZ_TILE_EDGE; ray++) {
 		const int x = tile->x + gz_tile_columns[tile->pattern][ray] * spacing;
 		const int y = tile->y + gz_tile_rows[ray] * spacing;
 		if (shows_alone(plan, tile->layer, x, y))
-			mark(temporal, x - temporal->shift[0], y - temporal->shift[1], tile->layer);
+			mark_pixel(temporal, x - temporal->shift[0], y - temporal->shift[1],
+				   tile->layer);
 	}
 }
 
-/* How the frame knows each pixel; where tiles lie on each other the finest counts. */
+/* Mark how the frame knows each pixel; where tiles overlap, the finest counts. */
 static void mark_tiles(const struct gz_temporal *temporal, const struct gz_plan *plan)
 {
 	memset(temporal->cast, UNKNOWN, (size_t)temporal->width * (size_t)temporal->height);
@@ -175,8 +177,8 @@ static void mark_tiles(const struct gz_temporal *temporal, const struct gz_plan 
 		const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
 		for (int y = y0; y < y0 + down && spacing > 1; y++)
 			for (int x = x0; x < x0 + across; x++)
-				mark(temporal, x, y, (uint8_t)(BETWEEN + tile->layer));
-		mark_rays(temporal, plan, tile);
+				mark_pixel(temporal, x, y, (uint8_t)(BETWEEN + tile->layer));
+		mark_tile_rays(temporal, plan, tile);
 	}
 }
 
@@ -188,8 +190,8 @@ static const uint8_t *frame_pixel(const struct gz_temporal *temporal, int x, int
 	       4 * ((size_t)y * (size_t)temporal->frame_image.width + (size_t)x);
 }
 
-/* One pixel of a still picture: a ray's colour stays until a finer layer's ray comes; between rays
- * it is the mean of all frames. */
+/* One pixel of a still picture. A ray's colour stays until the ray of a finer layer comes; between
+ * rays the pixel is the mean of all frames. */
 static void join_still(uint8_t *pixel, uint8_t *kept, const uint8_t *now, uint8_t cast)
 {
 	if (cast < BETWEEN) {
@@ -208,11 +210,11 @@ static void join_still(uint8_t *pixel, uint8_t *kept, const uint8_t *now, uint8_
 	*kept = (uint8_t)(BETWEEN + (frames < MEAN_MAX ? frames + 1 : MEAN_MAX));
 }
 
-/* Least and greatest of each channel round a pixel, a spacing away. */
-static void find_range(const struct job *job, int x, int y, int spacing, int least[4],
-		       int greatest[4])
+/* Least and greatest value of each channel in the 3x3 pixels a spacing apart around a pixel. */
+static void neighbourhood_range(const struct join *join, int x, int y, int spacing, int least[4],
+				int greatest[4])
 {
-	const struct gz_temporal *temporal = job->temporal;
+	const struct gz_temporal *temporal = join->temporal;
 	for (int c = 0; c < 4; c++) {
 		least[c] = 255;
 		greatest[c] = 0;
@@ -229,66 +231,68 @@ static void find_range(const struct job *job, int x, int y, int spacing, int lea
 	}
 }
 
-/* One pixel while the camera moves: a ray's colour is taken; between rays it is mixed with what was
- * there, no farther from the frame than its neighbourhood is. */
-static void join_moved(const struct job *job, int x, int y, uint8_t *pixel, uint8_t *kept,
+/* One pixel while the camera moves. A ray's colour is taken; between rays the history is mixed in,
+ * clamped to the range of the frame's neighbourhood. */
+static void join_moved(const struct join *join, int x, int y, uint8_t *pixel, uint8_t *kept,
 		       uint8_t cast)
 {
-	const uint8_t *now = frame_pixel(job->temporal, x, y);
+	const uint8_t *now = frame_pixel(join->temporal, x, y);
 	if (cast < BETWEEN || *kept == UNKNOWN) {
 		memcpy(pixel, now, 4);
 	} else {
 		int least[4], greatest[4];
-		const int spacing = job->plan->layers[cast - BETWEEN].spacing;
-		find_range(job, x, y, spacing, least, greatest);
+		const int spacing = join->plan->layers[cast - BETWEEN].spacing;
+		neighbourhood_range(join, x, y, spacing, least, greatest);
 		for (int c = 0; c < 4; c++) {
 			const double before = fmin(fmax(pixel[c], least[c]), greatest[c]);
-			pixel[c] = (uint8_t)(now[c] + (before - now[c]) * job->weight + 0.5);
+			pixel[c] = (uint8_t)(now[c] + (before - now[c]) * join->weight + 0.5);
 		}
 	}
-	*kept = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: worth four frames if it stops */
+	*kept = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: counts as the mean of 4 frames */
 }
 
 static void join_rows(void *user, size_t part, int worker)
 {
 	(void)worker;
-	const struct job *job = user;
-	struct gz_temporal *temporal = job->temporal;
+	const struct join *join = user;
+	struct gz_temporal *temporal = join->temporal;
 	const int from = (int)part * ROWS_A_PART;
 	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
 		const size_t row = (size_t)y * (size_t)temporal->width;
 		for (int x = 0; x < temporal->width; x++) {
 			const size_t i = row + (size_t)x;
 			uint8_t *pixel = temporal->history.pixels + 4 * i;
-			if (job->before)
-				join_moved(job, x, y, pixel, &temporal->kept[i], temporal->cast[i]);
+			if (join->before)
+				join_moved(join, x, y, pixel, &temporal->kept[i],
+					   temporal->cast[i]);
 			else
 				join_still(pixel, &temporal->kept[i], frame_pixel(temporal, x, y),
 					   temporal->cast[i]);
 		}
-		memcpy(job->out + row, temporal->history.pixels + 4 * row,
+		memcpy(join->out + row, temporal->history.pixels + 4 * row,
 		       (size_t)temporal->width * 4);
 	}
 }
 
-/* Where the earlier frame had what pixel (x, y) shows: at the place of its ray that is nearest to
- * the volume's centre, since no ray knows how deep its colour lies. NAN where it had not. */
-static void find_movement(const struct job *job, int x, int y, double place[2])
+/* The place in the earlier frame of what pixel (x, y) shows now. Rays do not know the depth of
+ * their colour, so the point of the ray nearest to the volume's centre stands for it. NAN: not in
+ * view. */
+static void find_movement(const struct join *join, int x, int y, double place[2])
 {
 	double origin[3], direction[3], world[3], along = 0, length2 = 0;
 	for (int axis = 0; axis < 3; axis++) {
-		origin[axis] = job->rays.origin00[axis] + x * job->rays.origin_dx[axis] +
-			       y * job->rays.origin_dy[axis];
-		direction[axis] = job->rays.direction00[axis] + x * job->rays.direction_dx[axis] +
-				  y * job->rays.direction_dy[axis];
+		origin[axis] = join->rays.origin00[axis] + x * join->rays.origin_dx[axis] +
+			       y * join->rays.origin_dy[axis];
+		direction[axis] = join->rays.direction00[axis] + x * join->rays.direction_dx[axis] +
+				  y * join->rays.direction_dy[axis];
 		along -= origin[axis] * direction[axis];
 		length2 += direction[axis] * direction[axis];
 	}
 	for (int axis = 0; axis < 3; axis++)
 		world[axis] = origin[axis] + direction[axis] * fmax(along / length2, 1e-3);
 	struct gz_point point;
-	const int width = job->temporal->width, height = job->temporal->height;
-	if (!gz_camera_project(job->before, width, height, world, &point)) {
+	const int width = join->temporal->width, height = join->temporal->height;
+	if (!gz_camera_project(join->before, width, height, world, &point)) {
 		place[0] = place[1] = NAN;
 		return;
 	}
@@ -296,8 +300,8 @@ static void find_movement(const struct job *job, int x, int y, double place[2])
 	place[1] = (double)point.y * height - 0.5;
 }
 
-/* A pixel of the history between four; false beyond its edges. */
-static bool fetch(const struct gz_temporal *temporal, double x, double y, uint8_t *pixel)
+/* A pixel of the history, interpolated between four; false beyond its edges. */
+static bool sample_history(const struct gz_temporal *temporal, double x, double y, uint8_t *pixel)
 {
 	if (!(x >= 0 && y >= 0 && x <= temporal->width - 1 && y <= temporal->height - 1))
 		return false;
@@ -314,17 +318,17 @@ static bool fetch(const struct gz_temporal *temporal, double x, double y, uint8_
 	return true;
 }
 
-/* Rows of the history as the camera sees it now, a square of the grid after the other. */
+/* Move rows of the history to where the camera sees them now, one square of the grid at a time. */
 static void move_rows(void *user, size_t part, int worker)
 {
 	(void)worker;
-	const struct job *job = user;
-	struct gz_temporal *temporal = job->temporal;
+	const struct join *join = user;
+	struct gz_temporal *temporal = join->temporal;
 	const int top = (int)part * GRID;
 	for (int left = 0; left < temporal->width; left += GRID) {
 		double corners[4][2];
 		for (int k = 0; k < 4; k++)
-			find_movement(job, left + (k & 1) * GRID, top + (k >> 1) * GRID,
+			find_movement(join, left + (k & 1) * GRID, top + (k >> 1) * GRID,
 				      corners[k]);
 		for (int y = top; y < top + GRID && y < temporal->height; y++)
 			for (int x = left; x < left + GRID && x < temporal->width; x++) {
@@ -339,14 +343,14 @@ static void move_rows(void *user, size_t part, int worker)
 						    corners[3][axis] * u) *
 							   v;
 				const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
-				const bool known = fetch(temporal, at[0], at[1],
-							 temporal->moved.pixels + 4 * i);
+				const bool known = sample_history(temporal, at[0], at[1],
+								  temporal->moved.pixels + 4 * i);
 				temporal->kept_moved[i] = known ? BETWEEN : UNKNOWN;
 			}
 	}
 }
 
-/* How far the eye went round the volume's centre. */
+/* Angle that the camera moved around the volume's centre. */
 static double parallax_deg(const struct gz_camera *before, const struct gz_camera *now)
 {
 	double product = 0, before2 = 0, now2 = 0;
@@ -359,17 +363,18 @@ static double parallax_deg(const struct gz_camera *before, const struct gz_camer
 	return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) * 180 / M_PI : 180; /* NAN too */
 }
 
-/* What lies before or behind the place that movement is found for moves otherwise; weighted means
- * reach back over 1 / (1 - weight) frames, so the weight keeps within that what the eye went. */
-static double weight_of(double weight, double deg)
+/* Content in front of or behind the place that stands for a ray moves differently. A weighted mean
+ * reaches back over 1 / (1 - weight) frames; the weight is limited so that the camera turns by at
+ * most PARALLAX_DEG within them. */
+static double history_weight(double weight, double deg)
 {
 	return fmax(fmin(weight, 1 - deg / PARALLAX_DEG), 0);
 }
 
-static void move_history(struct job *job)
+static void move_history(struct join *join)
 {
-	struct gz_temporal *temporal = job->temporal;
-	gz_workers_run(temporal->workers, move_rows, job,
+	struct gz_temporal *temporal = join->temporal;
+	gz_workers_run(temporal->workers, move_rows, join,
 		       ((size_t)temporal->height + GRID - 1) / GRID);
 	const struct gz_image image = temporal->history;
 	temporal->history = temporal->moved;
@@ -387,7 +392,7 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 	enum gz_result result = gz_image_resize(image, temporal->width, temporal->height);
 	if (result != GZ_OK)
 		return result;
-	struct job job = {
+	struct join join = {
 		.temporal = temporal,
 		.plan = plan,
 		.out = (uint32_t *)(void *)image->pixels, /* aligned to 64 bytes (image.h) */
@@ -396,14 +401,15 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 	if (!temporal->any) {
 		memset(temporal->kept, UNKNOWN, (size_t)temporal->width * (size_t)temporal->height);
 	} else if (!gz_camera_same(&temporal->shown.camera, &content->camera) &&
-		   gz_camera_rays(&content->camera, temporal->width, temporal->height, &job.rays) ==
-			   GZ_OK) {
-		job.before = &temporal->shown.camera;
-		job.weight = weight_of(params->weight, parallax_deg(job.before, &content->camera));
-		move_history(&job);
+		   gz_camera_rays(&content->camera, temporal->width, temporal->height,
+				  &join.rays) == GZ_OK) {
+		join.before = &temporal->shown.camera;
+		join.weight =
+			history_weight(params->weight, parallax_deg(join.before, &content->camera));
+		move_history(&join);
 		temporal->still_frames = 0;
 	}
-	gz_workers_run(temporal->workers, join_rows, &job,
+	gz_workers_run(temporal->workers, join_rows, &join,
 		       ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART);
 	temporal->shown = *content;
 	temporal->any = true;

@@ -1,8 +1,9 @@
 /**
  * @file
- * Accumulation over frames, above the backends: each frame's lattices are shifted by some pixels,
- * so that rays go where none went before, and what earlier frames saw is kept (docs/foveation.md).
- * Off unless it is asked for; without it nothing is kept and no lattice moves.
+ * Accumulation over frames. Each frame shifts its lattices by some pixels, so that rays go where
+ * none went before, and what earlier frames saw is kept (docs/foveation.md). It works on finished
+ * pictures and is the same for all backends. It is off by default; then nothing is kept and no
+ * lattice moves.
  */
 #ifndef GZ_RENDER_ACCUMULATE_TEMPORAL_H
 #define GZ_RENDER_ACCUMULATE_TEMPORAL_H
@@ -17,7 +18,7 @@
 #include "render/picture/image.h"
 #include "render/plan/plan.h"
 
-/** Lattices move by 0 to this less 1 pixels along each axis: the widest spacing. */
+/** Lattices move by 0 to GZ_TEMPORAL_SHIFTS - 1 pixels along each axis: the widest spacing. */
 #define GZ_TEMPORAL_SHIFTS 32
 
 /** Section [temporal] of a scene. */
@@ -34,20 +35,20 @@ extern const size_t gz_temporal_option_count;
 /** The table's presets. */
 struct gz_temporal_params gz_temporal_default(void);
 
-/** What a frame shows. Frames that differ in anything but the camera share nothing. */
+/** What a frame shows. Frames that differ in more than the camera do not share a history. */
 struct gz_temporal_content {
 	struct gz_camera camera;
-	uint64_t serial; /**< the caller counts up when anything else changes what is shown */
+	uint64_t serial; /**< the caller increases it when anything else changes what is shown */
 };
 
-/** Zero-initialised is empty; keep it from frame to frame. */
+/** The history. Zero-initialised is empty; keep it from frame to frame. One thread at a time. */
 struct gz_temporal {
 	struct gz_workers *workers;
 	int width, height;
-	unsigned frame;        /**< which shift: 0 to GZ_TEMPORAL_SHIFTS squared, less 1 */
-	unsigned still_frames; /**< since the camera moved or the history began */
+	unsigned frame;        /**< index of the shift, 0 to GZ_TEMPORAL_SHIFTS squared - 1 */
+	unsigned still_frames; /**< frames since the camera moved or the history began */
 	bool any;              /**< there is a history */
-	int shift[2];          /**< of the frame in the making */
+	int shift[2];          /**< of the current frame, px */
 	struct gz_temporal_content shown;  /**< what the history shows */
 	struct gz_image frame_image;       /**< render into this */
 	struct gz_image history, moved;    /**< size of the picture */
@@ -55,30 +56,32 @@ struct gz_temporal {
 };
 
 /**
- * Begin a frame: choose its shift and drop the history if it shows something else.
+ * Begin a frame: choose its shift, and drop the history if it shows something else.
  *
  * @param content   what the frame shows
- * @param[in,out] request  of a plan for the picture; becomes that of a plan for
- *                         temporal->frame_image, which is larger by GZ_TEMPORAL_SHIFTS
- * @param[in,out] display  the request's, a copy that is the caller's: becomes the larger picture's
- * @retval GZ_ERR_INVAL   the picture is too large for that; the request is unchanged
- * @retval GZ_ERR_NO_MEM  no room or no threads; the request is unchanged
+ * @param[in,out] request  for the picture's plan; changed into one for temporal->frame_image, which
+ *                         is larger by GZ_TEMPORAL_SHIFTS along each axis
+ * @param[in,out] display  the caller's copy of the request's display; enlarged by the same pixels.
+ *                         The request then points to it
+ * @retval GZ_ERR_INVAL   the picture is too large to be shifted; the request is unchanged
+ * @retval GZ_ERR_NO_MEM  out of memory or threads; the request is unchanged
  */
 enum gz_result gz_temporal_begin(struct gz_temporal *temporal,
 				 const struct gz_temporal_content *content,
 				 struct gz_plan_request *request, struct gz_display *display);
 
-/** Tell the plan, just made by the request, where its pixels lie. Then render it into
- * temporal->frame_image. */
+/** Set where the pixels of a plan lie that was made from the request. The caller then renders the
+ * plan into temporal->frame_image. */
 void gz_temporal_place(const struct gz_temporal *temporal, struct gz_plan *plan);
 
 /**
- * End a frame: join temporal->frame_image and the history.
+ * End a frame: join temporal->frame_image with the history.
  *
- * @param content  as begun with
- * @param plan     that made frame_image
- * @param image    the picture; resized. Where every pixel was cast it is that frame's, bit for bit
- * @retval GZ_ERR_NO_MEM  no room
+ * @param content  the one passed to gz_temporal_begin()
+ * @param plan     the plan of frame_image
+ * @param[out] image  the picture; resized. A pixel that was cast is the frame's, bit for bit, where
+ * the plan casts every pixel
+ * @retval GZ_ERR_NO_MEM  out of memory
  */
 enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 			       const struct gz_temporal_params *params,
@@ -88,10 +91,10 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 /** Whether further frames of the same content would still change the picture. */
 bool gz_temporal_settling(const struct gz_temporal *temporal);
 
-/** Drop the history: the next frame begins anew. */
+/** Drop the history: the next frame starts a new one. */
 void gz_temporal_forget(struct gz_temporal *temporal);
 
-/** Free and zero. */
+/** Free the history and zero it. */
 void gz_temporal_free(struct gz_temporal *temporal);
 
 #endif

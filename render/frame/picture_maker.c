@@ -20,12 +20,12 @@ struct gz_picture_maker {
 	size_t object_count;
 	struct gz_plan plan;
 	struct gz_temporal temporal;
-	struct gz_temporal_content content; /* of the picture in the making */
+	struct gz_temporal_content content; /* of the current picture */
 	struct {
 		void *settings; /* a copy of the technique's; NULL before the first */
 		struct gz_foveation foveation;
 	} kept_by;            /* what the accumulated pictures were made with */
-	struct gz_image cast; /* at the rays' resolution, only where that is not the picture's */
+	struct gz_image cast; /* at the rays' resolution, if that is not the picture's */
 	struct gz_image image;
 };
 
@@ -93,7 +93,7 @@ static enum gz_result let_cpu_take_over(struct gz_picture_maker *maker)
 	return result;
 }
 
-/* Objects that one drawer can show. */
+/* Check that one drawer can show all the objects. */
 static enum gz_result check_objects(const struct gz_picture_maker *maker,
 				    const struct gz_object *objects, size_t count)
 {
@@ -104,8 +104,7 @@ static enum gz_result check_objects(const struct gz_picture_maker *maker,
 	for (size_t i = 1; i < count; i++)
 		if (objects[i].technique != objects[0].technique) {
 			gz_err(maker->log,
-			       "the objects of a picture are drawn by one technique, not by %s and "
-			       "%s",
+			       "one technique draws all objects of a picture; here are %s and %s",
 			       objects[0].technique->name, objects[i].technique->name);
 			return GZ_ERR_UNSUPPORTED;
 		}
@@ -164,7 +163,7 @@ enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 	return result;
 }
 
-/* Rays along a side of the picture; 0 where there would be none or too many. */
+/* Rays along a side of the picture; 0 if there would be none or too many. */
 static int rays_along(int side, double rate)
 {
 	const double rays = round(side * rate);
@@ -176,7 +175,7 @@ static double sampling_rate(const struct gz_picture_request *request)
 	return request->image_sampling_rate > 0 ? request->image_sampling_rate : 1;
 }
 
-/* What is accumulated is worth nothing once anything but the camera has changed. */
+/* Accumulated pictures are dropped when anything but the camera has changed. */
 static enum gz_result note_content(struct making *making)
 {
 	struct gz_picture_maker *maker = making->maker;
@@ -206,7 +205,7 @@ static bool shows_bricks(const struct gz_picture_maker *maker)
 	return false;
 }
 
-/* The request becomes that of a shifted plan, where earlier pictures are kept. */
+/* With accumulation, turn the request into one for a shifted plan. */
 static enum gz_result begin_accumulation(struct making *making, struct gz_plan_request *plan,
 					 struct gz_display *display)
 {
@@ -216,8 +215,9 @@ static enum gz_result begin_accumulation(struct making *making, struct gz_plan_r
 		return GZ_OK;
 	}
 	if (shows_bricks(maker)) {
-		gz_err(maker->log, "temporal.accumulate: bricks change while they are looked at; "
-				   "set it to no, or show a volume that fits into memory");
+		gz_err(maker->log,
+		       "temporal.accumulate: volumes of bricks change while they are shown; "
+		       "set it to no, or show a volume that fits into memory");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	const enum gz_result result = note_content(making);
@@ -234,7 +234,7 @@ static struct gz_shot shot_of(const struct making *making)
 	};
 }
 
-/* The plan's request, in rays, for the whole picture or one strip. */
+/* The request for the plan, in rays, of the whole picture or of one strip. */
 static enum gz_result plan_request_of(const struct making *making,
 				      struct gz_plan_request *out_request)
 {
@@ -245,8 +245,8 @@ static enum gz_result plan_request_of(const struct making *making,
 	if (size[0] == 0 || size[1] == 0) {
 		gz_err(making->maker->log,
 		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
-		       "rate "
-		       "or the size",
+		       "rate or "
+		       "the size",
 		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
 		return GZ_ERR_INVAL;
 	}
@@ -288,8 +288,8 @@ static enum gz_result make_plan(struct making *making)
 	return result;
 }
 
-/* Draw; where the backend has failed for good, by cpu. */
-static enum gz_result draw(struct making *making, struct gz_image *image)
+/* Draw. If the backend fails for good, cpu takes over. */
+static enum gz_result draw_frame(struct making *making, struct gz_image *image)
 {
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_shot shot = shot_of(making);
@@ -310,7 +310,7 @@ static enum gz_result draw_and_accumulate(struct making *making, struct gz_image
 {
 	struct gz_picture_maker *maker = making->maker;
 	making->on_device = false;
-	enum gz_result result = draw(making, &maker->temporal.frame_image);
+	enum gz_result result = draw_frame(making, &maker->temporal.frame_image);
 	const int64_t start_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
 		result = gz_temporal_end(&maker->temporal, making->request->temporal,
@@ -319,7 +319,7 @@ static enum gz_result draw_and_accumulate(struct making *making, struct gz_image
 	return result;
 }
 
-/* Rays first; then, where there are more or fewer rays than pixels, the picture. */
+/* Cast the rays and, if there are more or fewer rays than pixels, resample them to the picture. */
 static enum gz_result draw_picture(struct making *making)
 {
 	const struct gz_picture_request *request = making->request;
@@ -328,8 +328,8 @@ static enum gz_result draw_picture(struct making *making)
 	const bool direct = sampling_rate(request) == 1;
 	struct gz_image *target = direct ? making->image : &maker->cast;
 	making->on_device = direct && request->on_device;
-	enum gz_result result =
-		making->accumulates ? draw_and_accumulate(making, target) : draw(making, target);
+	enum gz_result result = making->accumulates ? draw_and_accumulate(making, target)
+						    : draw_frame(making, target);
 	if (result != GZ_OK || direct)
 		return result;
 	const int64_t start_ns = gz_clock_now_ns();
@@ -340,13 +340,12 @@ static enum gz_result draw_picture(struct making *making)
 	return result;
 }
 
-/* Whoever does not support something has logged it, and so has whoever lost the device. */
+/* The code that found something unsupported, or lost the device, has logged it already. */
 static void log_failure(const struct making *making, enum gz_result failure)
 {
 	if (failure != GZ_ERR_UNSUPPORTED && failure != GZ_ERR_NO_DEVICE)
 		gz_err(making->maker->log,
-		       "cannot draw a picture of %dx%d: %s; check the camera "
-		       "and the size",
+		       "cannot draw a picture of %dx%d: %s; check the camera and the size",
 		       making->request->width, making->request->height, gz_result_text(failure));
 }
 

@@ -1,7 +1,7 @@
 /**
  * @file
- * The picture maker: objects, a camera, a display and a focus become a picture, whatever the
- * technique and the backend. The window, headless rendering, the bench and the tests use it.
+ * The picture maker turns objects, a camera, a display and a focus into a picture, with any
+ * technique and backend. The window, headless rendering, the bench and the tests use it.
  */
 #ifndef GZ_RENDER_FRAME_PICTURE_MAKER_H
 #define GZ_RENDER_FRAME_PICTURE_MAKER_H
@@ -19,63 +19,64 @@
 #include "render/plan/plan.h"
 #include "render/technique/technique.h"
 
-/** What makes pictures of some objects. One thread at a time may use it. */
+/** Makes pictures of some objects. One thread at a time may use it. */
 struct gz_picture_maker;
 
-/** How it makes them. Texts are borrowed and outlive the maker. */
+/** How a maker draws. Texts are borrowed and outlive the maker. */
 struct gz_picture_maker_params {
 	const char *backend; /**< "auto", or a name of the technique's backends */
 	struct gz_backend_params backend_params;
-	/** cpu draws in place of a backend that fails for good: its device is lost or has no room,
-	 * or "auto" chose it and it cannot do what is asked. A warning tells. */
+	/** Let cpu replace a backend that fails for good: its device is lost or out of memory, or
+	 *  "auto" chose it and it does not support what is shown. Logged as a warning. */
 	bool cpu_takes_over;
 };
 
 /**
- * Make a maker. It opens its backend when it is first shown something.
+ * Create a maker. Its backend opens at the first gz_picture_maker_show().
  *
  * @param log  outlives the maker; may be NULL
- * @param[out] out_maker  owned by the caller: gz_picture_maker_destroy()
- * @retval GZ_ERR_NO_MEM  no room
+ * @param[out] out_maker  owned by the caller, who frees it with gz_picture_maker_destroy()
+ * @retval GZ_ERR_NO_MEM  out of memory
  */
 enum gz_result gz_picture_maker_create(const struct gz_picture_maker_params *params,
 				       const struct gz_log *log,
 				       struct gz_picture_maker **out_maker);
 
 /**
- * Show these objects from the next picture on. The list is copied; what objects point to is
- * borrowed until another list is shown or the maker is destroyed. Only what has changed by the
- * objects' revisions is prepared again.
+ * Show these objects from the next picture on. The list is copied. What objects point to is
+ * borrowed until another list is shown or the maker is destroyed. Only data whose revision has
+ * changed are prepared again.
  *
- * @retval GZ_ERR_UNSUPPORTED  no objects, objects of several techniques, or something that the
- *                             technique or its backend cannot show; logged
- * @return else what gz_technique.create and gz_drawer_ops.show return; logged
+ * @param count  1 to 1024
+ * @retval GZ_ERR_UNSUPPORTED  no objects, too many, objects of several techniques, or something
+ * that the technique or its backend cannot show; logged
+ * @return otherwise the failures of gz_technique.create and gz_drawer_ops.show; logged
  */
 enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 				     const struct gz_object *objects, size_t count);
 
-/** One picture to be made. What it points to is borrowed until the call returns. */
+/** One picture to make. All pointers are borrowed until the call returns. */
 struct gz_picture_request {
 	const struct gz_camera *camera;
 	const void *settings; /**< of the technique */
 	const struct gz_foveation *foveation;
 	const struct gz_display *display; /**< of the picture, which fills it */
-	struct gz_focus focus;            /**< where the plan is sharp; see gz_focus_at() */
+	struct gz_focus focus;            /**< where the plan is sharp: gz_focus_at() */
 	int width, height;                /**< of the picture, px */
 	double image_sampling_rate;       /**< rays per pixel edge; 0 means 1 */
-	/** Keep what earlier pictures saw; NULL or without accumulate: keep nothing. */
+	/** Accumulation over pictures; NULL or without accumulate: none. */
 	const struct gz_temporal_params *temporal;
-	/** Make only some rows, for a picture in strips: the image gets rows [top, top + rows) of a
-	 *  picture of width x height. rows = 0 makes all. */
+	/** For a picture in strips: make only rows [top, top + rows) of the picture of width x
+	 *  height. rows = 0 makes all of it. */
 	struct {
 		int top, rows;
 	} strip;
-	bool on_device;     /**< leave the picture on the device if it is made there */
-	bool fresh_plan;    /**< make the plan again even if it would be the same */
+	bool on_device;     /**< leave the picture on the device if it is drawn there */
+	bool fresh_plan;    /**< make the plan again even if the request is the same */
 	bool loss_returned; /**< return GZ_ERR_NO_DEVICE instead of letting cpu take over */
-	/** The caller's plan, to be kept from picture to picture; NULL: the maker's own. */
+	/** The caller's plan, kept from picture to picture; NULL: the maker's own. */
 	struct gz_plan *plan;
-	/** Where the picture goes, resized; NULL: the maker's own image. */
+	/** The caller's image for the picture, resized; NULL: the maker's own. */
 	struct gz_image *image;
 };
 
@@ -87,20 +88,20 @@ struct gz_picture_cost {
 	struct gz_frame_stats stats; /**< reconstruct_ms includes resampling and accumulation */
 	double plan_ms;
 	double total_ms; /**< wall time of the call */
-	bool kept;       /**< what earlier pictures saw is in it */
+	bool kept;       /**< earlier pictures contributed to it */
 };
 
 /**
  * Make one picture of what is shown.
  *
- * @param[out] out_image  the picture, valid until the next call; NULL where it stayed on the
- * device: see gz_picture_maker_texture()
+ * @param[out] out_image  the picture, valid until the next call; NULL if it stayed on the device:
+ *                        gz_picture_maker_texture()
  * @param[out] out_cost   may be NULL
- * @retval GZ_ERR_INVAL  nothing is shown, the picture at its sampling rate is too large or has no
- *                       ray, or a value is out of range; logged
- * @retval GZ_ERR_NO_MEM       no room; logged
- * @retval GZ_ERR_UNSUPPORTED  something that the technique or the backend cannot do; logged
- * @retval GZ_ERR_NO_DEVICE    the device is lost, and request->loss_returned; logged
+ * @retval GZ_ERR_INVAL        nothing is shown, the picture at its sampling rate is too large or
+ * has no ray, or a value is out of range; logged
+ * @retval GZ_ERR_NO_MEM       out of memory; logged
+ * @retval GZ_ERR_UNSUPPORTED  the technique or the backend cannot do it; logged
+ * @retval GZ_ERR_NO_DEVICE    the device is lost, and request->loss_returned is set; logged
  */
 enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 			       const struct gz_picture_request *request,
@@ -110,24 +111,24 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
  * next picture. 0: none. */
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker);
 
-/** The maker's own plan, of the last picture; without tiles before the first. */
+/** The maker's own plan, as of the last picture; without tiles before the first. */
 const struct gz_plan *gz_picture_maker_plan(const struct gz_picture_maker *maker);
 
-/** What draws: "cpu", "gl"; "" before anything is shown. Static text. */
+/** Name of the backend that draws: "cpu", "gl"; "" before anything is shown. Static text. */
 const char *gz_picture_maker_backend(const struct gz_picture_maker *maker);
 
-/** One line for reports, as in "avx512, 2 threads"; "" before anything is shown. Valid until other
- *  objects are shown. */
+/** One line for reports, such as "avx512, 2 threads"; "" before anything is shown. Valid until
+ * other objects are shown. */
 const char *gz_picture_maker_describe(const struct gz_picture_maker *maker);
 
-/** Whether further pictures of the same request would still change: accumulation goes on. */
+/** Whether further pictures of the same request would still change, because they accumulate. */
 bool gz_picture_maker_settling(const struct gz_picture_maker *maker);
 
 /** Forget what earlier pictures saw. */
 void gz_picture_maker_forget(struct gz_picture_maker *maker);
 
-/** Destroy and set to NULL, while the context that it draws with is there. Accepts a pointer to
- *  NULL. */
+/** Destroy the maker and set the pointer to NULL. The context that it draws with must still exist.
+ *  Accepts a pointer to NULL. */
 void gz_picture_maker_destroy(struct gz_picture_maker **maker);
 
 #endif

@@ -1,4 +1,4 @@
-/* The picture maker: the backend that is asked for and, where it fails for good, cpu; strips,
+/* The picture maker: its backend, and cpu in place of one that fails for good; strips,
  * revisions, accumulation and refusals. */
 #include "suite.h"
 
@@ -13,7 +13,7 @@
 #include "render/scene/techniques.h"
 #include "small_scene.h"
 
-/* Keeps the messages. */
+/* Collects the messages. */
 struct heard {
 	char text[1024];
 };
@@ -90,7 +90,7 @@ static struct gz_image copy_of(const struct gz_image *image)
 	return copy;
 }
 
-static void lost_context_costs_no_picture(void **state)
+static void cpu_takes_over_after_a_lost_context(void **state)
 {
 	(void)state;
 	struct lent_context lent = lend_context();
@@ -123,7 +123,7 @@ static void lost_context_costs_no_picture(void **state)
 	gz_gl_context_destroy(&lent.egl);
 }
 
-static void loss_of_a_context_is_returned_to_who_asks_for_it(void **state)
+static void lost_context_is_returned_if_the_request_says_so(void **state)
 {
 	(void)state;
 	for (int returned = 0; returned < 2; returned++) {
@@ -149,7 +149,7 @@ static void loss_of_a_context_is_returned_to_who_asks_for_it(void **state)
 	}
 }
 
-static void auto_takes_the_cpu_where_no_gpu_is_and_says_nothing(void **state)
+static void auto_takes_the_cpu_without_a_gpu_and_logs_nothing(void **state)
 {
 	(void)state;
 	const struct gz_picture_maker_params params = { .backend = "auto", .cpu_takes_over = true };
@@ -192,7 +192,7 @@ static void graphics_memory_too_small_for_the_volume_shows_bricks(void **state)
 	take_down(&all);
 }
 
-static void wrong_request_is_no_reason_to_take_the_cpu(void **state)
+static void invalid_request_does_not_switch_to_the_cpu(void **state)
 {
 	(void)state;
 	const struct gz_picture_maker_params params = { .backend = "gl", .cpu_takes_over = true };
@@ -284,7 +284,7 @@ static void accumulation_starts_again_when_a_setting_changes(void **state)
 	take_down(&all);
 }
 
-static void what_no_technique_can_show_is_refused(void **state)
+static void objects_that_no_technique_shows_are_refused(void **state)
 {
 	(void)state;
 	const struct gz_picture_maker_params params = { .backend = "cpu" };
@@ -309,14 +309,14 @@ TEST_SUITE(picture_maker)
 		cmocka_unit_test(strips_make_the_whole_picture),
 		cmocka_unit_test(objects_are_prepared_again_only_when_they_change),
 		cmocka_unit_test(accumulation_starts_again_when_a_setting_changes),
-		cmocka_unit_test(what_no_technique_can_show_is_refused),
+		cmocka_unit_test(objects_that_no_technique_shows_are_refused),
 	};
 	const struct CMUnitTest on_gl[] = {
-		cmocka_unit_test(lost_context_costs_no_picture),
-		cmocka_unit_test(loss_of_a_context_is_returned_to_who_asks_for_it),
-		cmocka_unit_test(auto_takes_the_cpu_where_no_gpu_is_and_says_nothing),
+		cmocka_unit_test(cpu_takes_over_after_a_lost_context),
+		cmocka_unit_test(lost_context_is_returned_if_the_request_says_so),
+		cmocka_unit_test(auto_takes_the_cpu_without_a_gpu_and_logs_nothing),
 		cmocka_unit_test(graphics_memory_too_small_for_the_volume_shows_bricks),
-		cmocka_unit_test(wrong_request_is_no_reason_to_take_the_cpu),
+		cmocka_unit_test(invalid_request_does_not_switch_to_the_cpu),
 	};
 	struct gz_gl_context *context = NULL;
 	char reason[200];

@@ -1,4 +1,4 @@
-/* Accumulation over frames: what it reaches, and that nothing of it stays where it should not. */
+/* Accumulation over frames: what it converges to, and when its history is dropped. */
 #include "suite.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 enum { WIDTH = 230, HEIGHT = 150 };
 
-/* A scene whose frames are kept, and the same without. */
+/* A scene with accumulation, and the same scene without. */
 struct bench {
 	struct small_scene scene;
 	struct gz_raycaster *renderer;
@@ -175,7 +175,7 @@ static void change(struct bench *bench, int what)
 	bench->content.serial++;
 }
 
-static void nothing_stays_after_any_change(void **state)
+static void any_change_drops_the_history(void **state)
 {
 	(void)state;
 	for (int what = 0; what < 6; what++) {
@@ -200,7 +200,7 @@ static void nothing_stays_after_any_change(void **state)
 	}
 }
 
-/* Mean error with and without while the camera turns. */
+/* Mean error with and without accumulation while the camera turns. */
 static void turn(double deg, double *out_kept, double *out_alone)
 {
 	enum { BEFORE = 8, FRAMES = 20 };
@@ -236,7 +236,7 @@ static void turning_camera_has_less_error_than_without(void **state)
 	}
 }
 
-static void leap_of_the_camera_leaves_no_ghost(void **state)
+static void jump_of_the_camera_leaves_no_ghost(void **state)
 {
 	(void)state;
 	struct bench bench;
@@ -280,9 +280,9 @@ TEST_SUITE(temporal)
 		cmocka_unit_test(
 			still_picture_of_regions_converges_to_standard_beside_their_borders),
 		cmocka_unit_test(fovea_is_that_of_standard_in_every_frame),
-		cmocka_unit_test(nothing_stays_after_any_change),
+		cmocka_unit_test(any_change_drops_the_history),
 		cmocka_unit_test(turning_camera_has_less_error_than_without),
-		cmocka_unit_test(leap_of_the_camera_leaves_no_ghost),
+		cmocka_unit_test(jump_of_the_camera_leaves_no_ghost),
 		cmocka_unit_test(picture_too_large_to_be_shifted_is_refused),
 	};
 	return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
