@@ -11,10 +11,10 @@
 #include "view/target/target_window.h"
 #include "view/window/window.h"
 
-/* What a shell reports for a process that a signal ended. */
+/* Exit status of a shell for a process ended by a signal, less its number. */
 enum { EXIT_SIGNAL = 128 };
 
-/* Everything that the experiment names is looked for. */
+/* Check everything the experiment names, and list its trials. */
 static enum gz_result list_trials(const struct gz_view_options *options, const struct gz_log *log)
 {
 	struct gz_sitting *sitting;

@@ -160,7 +160,7 @@ class Session(unittest.TestCase):
         session = self.path("a.session")
         for more in (("--size", "9x9"), (SCENE,), ("--gaze", "0,0"), ("--frames", 3),
                      ("--record", "b"), ("--display-px", "9x9")):
-            self.refused(self.view("--replay", session, *more), "cannot go with it")
+            self.refused(self.view("--replay", session, *more), "cannot be combined with it")
         self.refused(self.view("--replay", self.path("none")), "no session")
         self.refused(self.view("--replay", session, "--out", "a.png"), "need a number")
         self.refused(self.view(SCENE, "--record", session), "choose another name")

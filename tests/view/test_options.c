@@ -188,10 +188,10 @@ static void raw_file_gets_the_layout_that_is_told(void **state)
 static void half_a_layout_is_refused(void **state)
 {
 	(void)state;
-	assert_refused("a.raw --volume.dims=2@3@4", "volume.type: not given");
-	assert_refused("a.raw --volume.type uint8", "volume.dims: not given");
-	assert_refused("a.raw --volume.endian big", "volume.dims: not given");
-	assert_refused("a.raw --volume.spacing=1@1@1", "volume.dims: not given");
+	assert_refused("a.raw --volume.dims=2@3@4", "volume.type: missing");
+	assert_refused("a.raw --volume.type uint8", "volume.dims: missing");
+	assert_refused("a.raw --volume.endian big", "volume.dims: missing");
+	assert_refused("a.raw --volume.spacing=1@1@1", "volume.dims: missing");
 }
 
 static void transfer_function_of_the_command_line_is_found_from_everywhere(void **state)

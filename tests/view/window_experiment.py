@@ -244,7 +244,7 @@ class Experiment(WindowCase):
         self.assertIn("short.experiment:15: [trial fine] a: no scene ",
                       self.refused(scene="nowhere.scene"))
         self.assertIn("--gaze 0.5,0.5: ", self.refused("--gaze", "0.5,0.5", gaze="required"))
-        self.assertIn("--experiment: --method cannot go with it", self.refused("--method", "mdc"))
+        self.assertIn("--experiment: --method cannot be combined with it", self.refused("--method", "mdc"))
         self.assertIn("short.experiment:15: [experiment] questions: unknown key; did you mean "
                       "question?", self.refused(questions="x"))
 

@@ -10,15 +10,16 @@
 
 const struct gz_option gz_sitting_option_table[] = {
 	{ "experiment", GZ_OPTION_STRING, AT(file), .max = GZ_PATH_SIZE, .preset = "",
-	  .help = "run the experiment of this file, full screen; headless: list its trials" },
+	  .help = "run the experiment in this file, full screen; headless: check it and list its "
+		  "trials" },
 	{ "participant", GZ_OPTION_STRING, AT(participant), .max = GZ_PARTICIPANT_SIZE,
-	  .preset = "", .help = "whose answers: letters and digits, as 07" },
+	  .preset = "", .help = "participant's label: letters and digits, such as 07" },
 	{ "session", GZ_OPTION_STRING, AT(session), .max = GZ_PARTICIPANT_SIZE, .preset = "",
-	  .help = "which sitting of several: letters and digits" },
+	  .help = "session's label, if there are several: letters and digits" },
 	{ "answers", GZ_OPTION_STRING, AT(answers), .max = GZ_PATH_SIZE, .preset = ".",
-	  .help = "folder for the answers, or the file itself, which ends in .tsv" },
+	  .help = "folder for the answers, or the file itself, ending in .tsv" },
 	{ "resume", GZ_OPTION_BOOL, AT(resume), .preset = "false",
-	  .help = "go on with the answers of an experiment that was left" },
+	  .help = "continue an experiment that was left, adding to its answers" },
 };
 
 const size_t gz_sitting_option_count =

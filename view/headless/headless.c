@@ -25,9 +25,9 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* How long the first frame waits for a daemon's first message (chosen: a local connection stands
- * within some ms; a tracker that starts needs longer than anyone waits), for its display (chosen:
- * status comes once a second), and how often it looks. */
+/* The longest waits for a daemon's first gaze (chosen: a local connection is made within some ms; a
+ * tracker that is only starting takes too long to wait for) and for its display (chosen: the status
+ * comes once a second), and the interval between two checks. */
 #define FIRST_GAZE_WAIT_NS   (500 * GZ_NS_PER_MS)
 #define FIRST_STATUS_WAIT_NS (1200 * GZ_NS_PER_MS)
 #define FIRST_GAZE_POLL_NS   (1 * GZ_NS_PER_MS)
@@ -44,11 +44,11 @@ struct headless {
 	struct gz_gaze_source *source;
 	struct gz_stats_file *stats;
 	struct gz_video *video;
-	struct gz_session_writer *session; /* in recording */
+	struct gz_session_writer *session; /* NULL: not recording */
 	struct gz_replay *replay;
-	struct gz_scene_settings settings; /* the camera turns */
+	struct gz_scene_settings settings; /* of the next frame; the camera turns */
 	int64_t start_ns;
-	bool silence_told; /* that a daemon says nothing was said */
+	bool silence_told; /* the warning about a silent daemon was logged */
 };
 
 static void on_end_signal(int number)
@@ -56,9 +56,7 @@ static void on_end_signal(int number)
 	signal_seen = number;
 }
 
-/* Once each: a second signal of a kind ends the program in the middle of a frame that takes too
- * long.
- */
+/* Each signal is caught once: a second one ends the program in the middle of a frame. */
 static void catch_signals(void)
 {
 	struct sigaction action = { .sa_handler = on_end_signal, .sa_flags = (int)SA_RESETHAND };
@@ -77,7 +75,7 @@ static enum gz_result create_gaze_source(const struct gz_gaze_choice *choice,
 		return gz_gaze_source_latest(choice->text, log, out_source);
 	case GZ_GAZE_LOG:
 		return gz_gaze_source_log(choice->text, log, out_source);
-	case GZ_GAZE_CENTRE: /* set anew before each frame */
+	case GZ_GAZE_CENTRE: /* set before each frame */
 	case GZ_GAZE_FIXED:
 	case GZ_GAZE_MOUSE:
 	case GZ_GAZE_POINTER:
@@ -86,7 +84,7 @@ static enum gz_result create_gaze_source(const struct gz_gaze_choice *choice,
 	return gz_gaze_source_fixed(choice->point, out_source);
 }
 
-/* Where the camera's look_at is in the picture; its middle if the eye cannot see it. */
+/* The projection of the camera's look_at; the centre of the picture if it is behind the eye. */
 static struct gz_point centre_of(const struct headless *self)
 {
 	struct gz_point centre = { 0.5f, 0.5f };
@@ -109,8 +107,8 @@ static struct gz_display display_now(struct headless *self)
 			       self->options->size_px[1]);
 }
 
-/* Time of a frame after the first, whole ns. Dividing last keeps whole results exact: a sample at
- * the very time of a frame belongs to it. */
+/* Time of a frame after the first, ns. Dividing last keeps whole results exact: a sample at exactly
+ * the time of a frame belongs to it. */
 static int64_t frame_time_ns(const struct headless *self, int frame)
 {
 	return (int64_t)floor((double)frame * (double)GZ_NS_PER_S / self->options->fps);
@@ -125,8 +123,8 @@ static struct gz_gaze_reading gaze_now(struct headless *self, int frame)
 	if (!reading.known && !self->silence_told) {
 		const char *endpoint = self->options->gaze.text;
 		gz_warn(self->log,
-			"no gaze from %s yet; going on with the plan at the centre (start gazed, "
-			"or see gazectl status)",
+			"no gaze from %s yet; the plan stays at the centre (start gazed, "
+			"or run gazectl status)",
 			endpoint[0] ? endpoint : "the local daemon");
 		self->silence_told = true;
 	}
@@ -142,8 +140,8 @@ static bool display_settled(struct headless *self)
 	       gz_gaze_source_display(self->source, &display);
 }
 
-/* A daemon that runs gets the time to answer, so that the first frames are not blind and have the
- * geometry of those that follow. */
+/* Give a running daemon time to answer, so that the first frames have a gaze and the same display
+ * as those that follow. */
 static void await_daemon(struct headless *self)
 {
 	int64_t start_ns = gz_clock_now_ns(), now_ns = start_ns;
@@ -159,7 +157,7 @@ static void await_daemon(struct headless *self)
 	}
 }
 
-/* Nothing where the volume does not tell its sides. */
+/* Draws nothing if the volume does not store its orientation. */
 static void draw_side_letters(const struct headless *self, struct gz_image *image)
 {
 	struct gz_letters letters;
@@ -174,13 +172,14 @@ static enum gz_result write_png(const struct headless *self, const struct gz_ima
 	char path[GZ_PATH_SIZE];
 	enum gz_result r = gz_pattern_format(self->options->out, frame, path, sizeof path);
 	if (r != GZ_OK) {
-		gz_err(self->log, "--out: the name of picture %d is too long; shorten it", frame);
+		gz_err(self->log, "--out: the name of picture %d is too long; shorten the pattern",
+		       frame);
 		return r;
 	}
 	return gz_image_write_png(image, path, self->log);
 }
 
-/* When a frame is shown: a live one when it has been made. */
+/* The time a frame is shown: a live one once it is made. */
 static int64_t shown_ns(const struct headless *self, int frame)
 {
 	if (self->replay)
@@ -189,7 +188,7 @@ static int64_t shown_ns(const struct headless *self, int frame)
 				       : frame_time_ns(self, frame);
 }
 
-/* ffmpeg starts with the first picture: what fails before leaves no file. */
+/* ffmpeg starts with the first picture: an earlier error leaves no file. */
 static enum gz_result add_to_video(struct headless *self, const struct gz_image *image, int frame)
 {
 	const struct gz_video_params params = {
@@ -246,7 +245,7 @@ static enum gz_result begin_session(struct headless *self, const struct gz_displ
 	return gz_recording_begin(&start, self->log, &self->session);
 }
 
-/* As the settings and the maker's focus say, and all that is to be had of it. */
+/* Render a frame and write everything the options ask for. */
 static enum gz_result make_headless_frame(struct headless *self,
 					  const struct gz_frame_request *request, int frame)
 {
@@ -320,7 +319,7 @@ static enum gz_result replay_frames(struct headless *self)
 	enum gz_result r = GZ_OK;
 	for (int frame = 0; r == GZ_OK && !signal_seen; frame++)
 		r = replay_frame(self, frame);
-	/* The last one is shown for as long as any. */
+	/* The last frame is shown for one frame time. */
 	const int64_t end_ns = shown_ns(self, 0) + (int64_t)(1e9 / self->options->fps);
 	const enum gz_result closed = finish_video(self, end_ns);
 	return r == GZ_OK || r == GZ_ERR_END ? closed : r;
@@ -340,15 +339,16 @@ static enum gz_result render_frames(struct headless *self)
 	return r != GZ_OK ? r : recorded != GZ_OK ? recorded : closed;
 }
 
-/* A replay is the same each time, but for what depends on how fast the machine is. */
+/* Without a live gaze a run gives the same pictures each time, unless a budget adapts to the
+ * machine. */
 static void warn_of_budget(const struct headless *self)
 {
 	const bool keeps = gz_method_of(&self->settings.foveation)->can_be_coarser;
 	if (self->settings.attention.budget_ms > 0 && keeps && !self->source->ops->live &&
 	    !self->options->replay[0])
 		gz_warn(self->log,
-			"attention.budget_ms %g: the pictures depend on how fast this machine is; "
-			"set it to 0 for the same ones each time",
+			"attention.budget_ms %g: the pictures depend on the speed of this machine; "
+			"set it to 0 for the same pictures each time",
 			self->settings.attention.budget_ms);
 }
 
@@ -368,7 +368,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 {
 	struct headless self = { .options = options, .log = log };
 	catch_signals();
-	/* First what is known sooner than a volume is loaded: where files go, and the gaze. */
+	/* Check first what needs no volume: the output files and the gaze. */
 	enum gz_result r = gz_recording_check(options->record, log);
 	if (r == GZ_OK)
 		r = gz_output_check(options, log);
@@ -407,7 +407,7 @@ static write_function *writer_of(const char *path, const struct gz_log *log)
 		return gz_bricks_write;
 	if (gz_path_ends(path, ".nrrd"))
 		return gz_nrrd_write;
-	gz_err(log, "--write-volume %s: end it in .gzb for bricks or in .nrrd", path);
+	gz_err(log, "--write-volume %s: unknown ending; use .gzb for bricks or .nrrd", path);
 	return NULL;
 }
 
@@ -443,7 +443,7 @@ static enum gz_result write_to(const struct gz_view_options *options,
 {
 	struct gz_loading_bar bar;
 	if (volume->bricks) {
-		gz_err(log, "--write-volume: the scene's volume is a file of bricks already");
+		gz_err(log, "--write-volume: the scene's volume is already stored in bricks");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	gz_loading_bar_begin(&bar, log);

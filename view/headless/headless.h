@@ -1,6 +1,6 @@
 /**
  * @file
- * gazeview without a window: a sequence of frames to files and lines.
+ * gazeview without a window: renders a sequence of frames into files, or writes a volume.
  */
 #ifndef GZ_VIEW_HEADLESS_HEADLESS_H
 #define GZ_VIEW_HEADLESS_HEADLESS_H
@@ -10,25 +10,26 @@
 #include "view/options/options.h"
 
 /**
- * Render options->frames pictures, a line on stdout for each.
+ * Render options->frames pictures, or all frames of options->replay, and print a line on stdout for
+ * each.
  *
- * A live gaze is followed in real time: frame k is made no earlier than k / fps seconds after the
- * first. Any other gaze runs as fast as frames are made, its time being k / fps.
+ * With a live gaze, frame k is rendered no earlier than k / fps seconds after the first. Any other
+ * gaze is read at time k / fps, and frames follow as fast as possible.
  *
- * @param[out] out_signal  SIGINT or SIGTERM if that ended the sequence between two frames, else 0
- * @return GZ_OK also then; else what went wrong, logged
+ * @param[out] out_signal  SIGINT or SIGTERM if one ended the sequence between two frames, else 0
+ * @return GZ_OK also after a signal; otherwise the first error, logged
  */
 enum gz_result gz_view_headless(const struct gz_view_options *options, const struct gz_log *log,
 				int *out_signal);
 
 /**
- * Load or make the volume of the scene that the options name and write it, by the name's ending as
- * bricks (.gzb) or NRRD (.nrrd). A volume of more than a quarter of the machine's memory is kept
- * meanwhile in a nameless file beside the new one.
+ * gazeview --write-volume: load or generate the volume of the scene that the options name and write
+ * it. The ending chooses the format: bricks (.gzb) or NRRD (.nrrd). Meanwhile a volume larger than
+ * a quarter of the machine's memory is kept in an unnamed file beside the new one.
  *
- * @retval GZ_ERR_UNSUPPORTED  another ending; logged
- * @return else what gz_scene_load(), gz_bricks_write() and gz_nrrd_write() return; logged but for
- * GZ_ERR_CANCELLED, which a signal gives
+ * @retval GZ_ERR_UNSUPPORTED  another ending, or the volume is stored in bricks already; logged
+ * @return otherwise the results of gz_scene_open(), gz_bricks_write() and gz_nrrd_write(); logged
+ *         except GZ_ERR_CANCELLED, which a signal causes
  */
 enum gz_result gz_view_write_volume(const struct gz_view_options *options,
 				    const struct gz_log *log);

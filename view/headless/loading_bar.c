@@ -8,7 +8,7 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* Chosen: what is over within a third of a second needs no bar; ten times a second is enough. */
+/* Chosen: loading of less than a third of a second needs no bar; ten updates a second suffice. */
 #define BAR_AFTER_NS  (300 * GZ_NS_PER_MS)
 #define BAR_EVERY_NS  (100 * GZ_NS_PER_MS)
 #define LINE_AFTER_NS (1000 * GZ_NS_PER_MS)

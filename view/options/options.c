@@ -19,87 +19,87 @@ static const char *const endian_names[] = { "little", "big", NULL };
 
 const struct gz_option gz_view_option_table[] = {
 	{ "scene", GZ_OPTION_STRING, AT(scene), .max = GZ_PATH_SIZE,
-	  .help = "what to show: a scene, a volume, or a picture that gazeview saved; may also "
-		  "stand alone, without --scene" },
+	  .help = "what to show: a scene, a volume, or a picture saved by gazeview; --scene may be "
+		  "left out" },
 	{ "headless", GZ_OPTION_BOOL, AT(headless), .preset = "false",
 	  .help = "render without a window" },
 	{ "size", GZ_OPTION_SIZE, AT(size_px), 1, GZ_IMAGE_SIDE_MAX, .preset = "1280x720",
-	  .help = "picture, px" },
+	  .help = "size of the picture, px" },
 	{ "gaze", GZ_OPTION_STRING, AT(gaze_text), .max = GZ_PATH_SIZE,
-	  .help = "X,Y (0,0 top left to 1,1), centre, daemon, mouse, pointer (the mouse by way of "
-		  "gazed --driver pointer), the endpoint of a latest channel or FILE.gzl; without "
-		  "it centre if headless, else daemon" },
+	  .help = "gaze source: X,Y (0,0 top left to 1,1), centre, daemon, mouse, pointer (the "
+		  "mouse through gazed --driver pointer), the endpoint of a latest channel, or "
+		  "FILE.gzl; default: daemon, or centre if headless" },
 	{ "fps", GZ_OPTION_DOUBLE, AT(fps), 0.01, 10000, .preset = "60",
-	  .help = "frames a second of gaze time" },
+	  .help = "frames per second of gaze time" },
 	{ "method", GZ_OPTION_CHOICE, AT(method), .choices = gz_method_names,
-	  .help = "foveation method; without it the scene's" },
+	  .help = "foveation method; default: the scene's" },
 	{ "backend", GZ_OPTION_STRING, AT(backend), .max = GZ_NAME_SIZE, .preset = "auto",
-	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto: gl where a GPU does its "
-		  "work" },
+	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it)" },
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
-	  .help = "threads of the cpu backend; 0 takes one a processor" },
+	  .help = "threads of the cpu backend; 0: one per processor" },
 	{ "simd", GZ_OPTION_STRING, AT(simd), .max = GZ_NAME_SIZE, .preset = "auto",
-	  .help = "instructions of the cpu backend: auto, portable, avx2, avx512" },
+	  .help = "instruction set of the cpu backend: auto, portable, avx2, avx512" },
 	{ "gl-memory", GZ_OPTION_INT, AT(gl_memory_mib), 0, 1 << 24, .preset = "0",
-	  .help = "memory of the graphics device that the gl backend takes for voxels, MiB; 0 "
-		  "takes what there is; what does not fit whole is shown by bricks" },
+	  .help = "graphics memory that the gl backend uses for voxels, MiB; 0: all that is free; "
+		  "a volume that does not fit is shown in bricks" },
 	{ "frames", GZ_OPTION_INT, AT(frames), 1, 100000000, .preset = "1",
-	  .help = "pictures to render headless" },
+	  .help = "number of pictures to render headless" },
 	{ "out", GZ_OPTION_STRING, AT(out), .max = GZ_PATH_SIZE,
-	  .help = "PNG to write, headless; for several frames a pattern such as frame-%04d.png" },
+	  .help = "PNG file to write, headless; several frames need a pattern such as "
+		  "frame-%04d.png" },
 	{ "video", GZ_OPTION_STRING, AT(video), .max = GZ_PATH_SIZE,
-	  .help = "video to write, headless, --fps pictures a second, by ffmpeg: .mp4 or what else "
-		  "its ending names" },
+	  .help = "video file to write with ffmpeg, headless, at --fps: .mp4 or another ending "
+		  "that ffmpeg knows" },
 	{ "pictures", GZ_OPTION_STRING, AT(pictures), .max = GZ_PATH_SIZE, .preset = ".",
-	  .help = "folder for what F9, F10 and F12 write: sessions, videos, screenshots" },
+	  .help = "folder for the sessions, videos and screenshots written by F9, F10 and F12" },
 	{ "record", GZ_OPTION_STRING, AT(record), .max = GZ_PATH_SIZE,
-	  .help = "folder NAME.session to make: what each picture is made of, to be shown again" },
+	  .help = "folder NAME.session to create: a recording of all inputs of each picture, for "
+		  "--replay" },
 	{ "replay", GZ_OPTION_STRING, AT(replay), .max = GZ_PATH_SIZE,
-	  .help = "NAME.session to show again, picture by picture, in place of a scene and a "
-		  "gaze" },
+	  .help = "NAME.session to show again picture by picture, instead of a scene and a gaze" },
 	{ "measure-window", GZ_OPTION_INT, AT(measure_window), 0, 100000, .preset = "0",
-	  .help = "show so many frames each of a bare picture, of the window and of the window "
-		  "with panels, tell what they took, and end" },
+	  .help = "show this many frames each of a bare picture, the window, and the window with "
+		  "panels; print the times and exit" },
 	{ "stats", GZ_OPTION_STRING, AT(stats), .max = GZ_PATH_SIZE,
-	  .help = "JSON file for what each frame cost, headless" },
+	  .help = "JSON file for the cost of each frame, headless" },
 	{ "write-volume", GZ_OPTION_STRING, AT(write_volume), .max = GZ_PATH_SIZE,
-	  .help = "write the scene's volume to this file, .gzb (bricks, for volumes larger than "
-		  "the memory) or .nrrd, and show nothing" },
+	  .help = "write the scene's volume to this file and exit: .gzb (bricks, for volumes "
+		  "larger than memory) or .nrrd" },
 	{ "bricks", GZ_OPTION_CHOICE, AT(bricks), .choices = bricks_names, .preset = "auto",
-	  .help = "each picture of a volume shown by bricks waits for all it shows, or streams: "
-		  "coarse first, sharper later; auto waits if headless" },
+	  .help = "pictures of a volume in bricks: wait for all visible bricks, or stream: coarse "
+		  "first, sharper later; auto: wait if headless" },
 	{ "turn", GZ_OPTION_DOUBLE, AT(turn_deg), -360, 360, .preset = "0",
-	  .help = "turn the camera by so many degrees a frame" },
+	  .help = "turn the camera by this angle each frame, degrees" },
 	{ "cross", GZ_OPTION_BOOL, AT(cross), .preset = "false",
 	  .help = "short for --view.gaze_cursor" },
 	{ "letters", GZ_OPTION_BOOL, AT(letters), .preset = "false",
 	  .help = "short for --view.letters" },
 	{ "fullscreen", GZ_OPTION_BOOL, AT(fullscreen), .preset = "false",
-	  .help = "start the window full screen" },
+	  .help = "start with a full-screen window" },
 	{ "vsync", GZ_OPTION_BOOL, AT(vsync), .preset = "true", .help = "short for --view.vsync" },
 	{ "interface-scale", GZ_OPTION_DOUBLE, AT(interface_scale), 0, 8, .preset = "0",
-	  .help = "size of texts and panels; 0 takes what the display says, 1 is small" },
+	  .help = "size of text and panels; 1 is small; 0: from the display" },
 	{ "gaze-fills-window", GZ_OPTION_BOOL, AT(gaze_fills_window), .preset = "false",
-	  .help = "the daemon's gaze spans the window instead of the monitor it is on" },
+	  .help = "map the daemon's gaze to the window instead of the monitor" },
 	{ "tracker-display", GZ_OPTION_STRING, AT(tracker_display), .max = GZ_NAME_SIZE,
 	  .help = "short for --view.tracker_display: a monitor's name, or its number from 1" },
 	{ "display-px", GZ_OPTION_SIZE, AT(display_px), 1, 32768,
-	  .help = "display, px; headless the picture fills it" },
+	  .help = "size of the display, px; headless, the picture fills it" },
 	{ "display-mm", GZ_OPTION_DOUBLE, AT(display_mm), 1, 100000, .count = 2,
-	  .help = "display's width and height, mm, as \"565 318\"" },
+	  .help = "width and height of the display, mm, such as \"565 318\"" },
 	{ "distance-mm", GZ_OPTION_DOUBLE, AT(display_distance_mm), 1, 100000,
-	  .help = "from the eye to the display, mm" },
+	  .help = "distance from the eye to the display, mm" },
 	{ "volume.dims", GZ_OPTION_INT, AT(volume_dims), 1, GZ_VOLUME_DIM_MAX, .count = 3,
-	  .help = "voxels along x, y, z of a raw file that stands for a scene, as \"256 256 128\"; "
-		  "without it its name and its size must tell" },
+	  .help = "voxels along x, y, z of a raw file shown without a scene, such as \"256 256 "
+		  "128\"; default: from its name and size" },
 	{ "volume.type", GZ_OPTION_CHOICE, AT(volume_type), .choices = gz_raw_type_names,
-	  .help = "type of its voxels" },
+	  .help = "type of the raw file's voxels" },
 	{ "volume.endian", GZ_OPTION_CHOICE, AT(volume_endian), .choices = endian_names,
-	  .help = "byte order of its voxels; without it little" },
+	  .help = "byte order of the raw file's voxels; default: little" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(volume_spacing), 1e-9, 1e9, .count = 3,
-	  .help = "between its voxels along x, y, z, mm; without it 1" },
+	  .help = "voxel spacing along x, y, z, mm; default: 1" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
-	  .help = "transfer function, .tf, in place of the scene's" },
+	  .help = "transfer function (.tf) to use instead of the scene's" },
 	{ "help", GZ_OPTION_BOOL, AT(help), .preset = "false", .help = "print this and exit" },
 	{ "version", GZ_OPTION_BOOL, AT(version), .preset = "false",
 	  .help = "print the version and exit" },
@@ -107,7 +107,7 @@ const struct gz_option gz_view_option_table[] = {
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
 
-/* Targets are for somebody who sits there and sees nothing else. */
+/* Nothing else is shown together with targets. */
 static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
 {
 	const char *other = options->scene[0]    ? "a scene"
@@ -117,11 +117,11 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 						 : NULL;
 	if (!other)
 		return GZ_OK;
-	gz_err(log, "--targets: %s cannot go with it; remove one of them", other);
+	gz_err(log, "--targets: %s cannot be combined with it; remove one of them", other);
 	return GZ_ERR_INVAL;
 }
 
-/* A session has what these say. */
+/* The session holds what these options set. */
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
@@ -137,24 +137,26 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 				other = others[k];
 	if (!other)
 		return GZ_OK;
-	gz_err(log, "--replay: --%s cannot go with it: the session says that; remove one of them",
+	gz_err(log,
+	       "--replay: --%s cannot be combined with it, as the session sets it; remove one of "
+	       "them",
 	       other);
 	return GZ_ERR_INVAL;
 }
 
-/* A layout is told by dims and type; the rest has presets. */
+/* A layout needs dims and type; the rest has presets. */
 static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
 {
 	const bool dims = options->volume_dims[0] > 0, type = options->volume_type >= 0;
 	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0;
 	if (dims == type && (dims || !more))
 		return GZ_OK;
-	gz_err(log, "--volume.%s: not given; a raw file needs both dims and type",
+	gz_err(log, "--volume.%s: missing; a raw file needs both dims and type",
 	       dims ? "type" : "dims");
 	return GZ_ERR_INVAL;
 }
 
-/* A key of a scene that says what is shown, not on which display. */
+/* Whether a scene key was given, other than those that concern the display. */
 static bool any_scene_key(const struct gz_view_options *options)
 {
 	struct gz_scene_settings settings;
@@ -173,7 +175,7 @@ static bool any_scene_key(const struct gz_view_options *options)
 	return any;
 }
 
-/* What is shown, and how, says the experiment alone. */
+/* The experiment alone determines what is shown. */
 static enum gz_result check_experiment(const struct gz_view_options *options,
 				       const struct gz_log *log)
 {
@@ -195,8 +197,9 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 	if (!other)
 		return gz_sitting_options_check(&options->sitting, log);
 	gz_err(log,
-	       "--experiment: %s cannot go with it, since the file says what is shown; remove one "
-	       "of them",
+	       "--experiment: %s cannot be combined with it, as the file sets what is shown; "
+	       "remove "
+	       "one of them",
 	       other);
 	return GZ_ERR_INVAL;
 }
@@ -214,14 +217,14 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 		return GZ_ERR_INVAL;
 	if (!options->scene[0] && !options->replay[0] &&
 	    (options->headless || options->write_volume[0])) {
-		gz_err(log, "no scene; give one, as in: gazeview --scene head.scene (see --help)");
+		gz_err(log, "no scene; name one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}
 	bool by_mouse =
 		options->gaze.kind == GZ_GAZE_MOUSE || options->gaze.kind == GZ_GAZE_POINTER;
 	if (options->headless && by_mouse) {
 		gz_err(log,
-		       "--gaze %s: there is no mouse without a window; leave out --headless, or "
+		       "--gaze %s: needs a window; remove --headless or "
 		       "give X,Y",
 		       options->gaze_text);
 		return GZ_ERR_INVAL;
@@ -233,17 +236,17 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 			   : options->stats[0] ? "stats"
 					       : NULL;
 	if (!options->headless && file) {
-		gz_err(log, "--%s: only written without a window; add --headless", file);
+		gz_err(log, "--%s: is written headless only; add --headless", file);
 		return GZ_ERR_INVAL;
 	}
-	/* A session hardly has but one frame. */
+	/* A session usually has several frames. */
 	const int frames = options->replay[0] ? INT_MAX : options->frames;
 	return options->out[0] ? gz_pattern_check(options->out, frames, log) : GZ_OK;
 }
 
-/* The whole of a pattern's grammar, in one place. */
+/* A parsed pattern. */
 struct pattern {
-	size_t start, end; /* of the conversion; equal if there is none */
+	size_t start, end; /* of the conversion; equal: none */
 	bool zeros;
 	int width;
 	int conversions;
@@ -288,8 +291,8 @@ enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz
 		return GZ_ERR_INVAL;
 	}
 	if (scanned.conversions > 1) {
-		gz_err(log, "--out %s: the frame number stands there %d times; once is enough",
-		       pattern, scanned.conversions);
+		gz_err(log, "--out %s: has %d frame numbers; keep one", pattern,
+		       scanned.conversions);
 		return GZ_ERR_INVAL;
 	}
 	if (frames > 1 && scanned.conversions == 0) {
@@ -328,7 +331,7 @@ enum gz_result gz_pattern_format(const char *pattern, int number, char *path, si
 	return GZ_OK;
 }
 
-/* Tables of gazeview's own: the one above, that of the targets and that of experiments. */
+/* Tables of the command line itself: its own, that of the targets and that of experiments. */
 enum { OWN_BINDINGS = 3 };
 
 static bool starts_with(const char *text, const char *start)
@@ -342,7 +345,7 @@ static bool is_gaze_log(const char *text)
 	return ending && strcmp(ending, ".gzl") == 0;
 }
 
-/* One finite number up to @p end; strtod() alone would also take blanks, hex and "inf". */
+/* One finite number up to @p end; strtof() alone would also accept blanks, hex and "inf". */
 static bool parse_number(const char *text, char end, float *out_value, const char **out_rest)
 {
 	size_t length = strspn(text, "+-.0123456789eE");
@@ -372,7 +375,7 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 {
 	struct gz_gaze_choice choice = { .kind = GZ_GAZE_CENTRE };
 	if (strlen(text) >= sizeof choice.text) {
-		gz_err(log, "--gaze: too long; at most %zu bytes are taken",
+		gz_err(log, "--gaze: too long; at most %zu bytes are allowed",
 		       sizeof choice.text - 1);
 		return GZ_ERR_INVAL;
 	}
@@ -392,7 +395,8 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 		choice.kind = GZ_GAZE_FIXED;
 	} else if (strcmp(text, "centre") != 0) {
 		gz_err(log,
-		       "--gaze %s: not understood; give two finite numbers as 0.5,0.5, or centre, "
+		       "--gaze %s: not a gaze source; give two finite numbers such as 0.5,0.5, or "
+		       "centre, "
 		       "daemon, mouse, pointer, ipc://..., tcp://... or FILE.gzl",
 		       text);
 		return GZ_ERR_INVAL;
@@ -414,7 +418,7 @@ struct gz_display gz_view_display(const struct gz_view_options *options,
 	return display;
 }
 
-/* Scenes' files have "levels = yes", so that it is tried here too. */
+/* Scene files have "levels = yes", so users try "--render.levels yes". */
 static bool is_switch_value(const char *argument)
 {
 	static const char *const values[] = { "yes", "no", "true", "false", "on", "off" };
@@ -435,12 +439,11 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 		return GZ_ERR_INVAL;
 	}
 	if (count > 1 || options->scene[0]) {
-		gz_err(log, "%s: one scene at a time; remove it, or the other one",
-		       arguments[count - 1]);
+		gz_err(log, "%s: a second scene; remove one of them", arguments[count - 1]);
 		return GZ_ERR_INVAL;
 	}
 	if (strlen(arguments[0]) >= sizeof options->scene) {
-		gz_err(log, "scene: the path is longer than %zu bytes; move it",
+		gz_err(log, "scene: the path is longer than %zu bytes; move the file",
 		       sizeof options->scene - 1);
 		return GZ_ERR_INVAL;
 	}
@@ -448,7 +451,7 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 	return GZ_OK;
 }
 
-/* --method is short for --foveation.method; both at once say nothing certain. */
+/* --method is short for --foveation.method; both at once contradict each other. */
 static enum gz_result check_method_once(const struct gz_view_options *options,
 					const struct gz_view_scene_tables *tables,
 					const struct gz_log *log)
@@ -458,7 +461,7 @@ static enum gz_result check_method_once(const struct gz_view_options *options,
 		for (size_t k = 0; k < tables->bindings[i].count; k++) {
 			if (*given++ &&
 			    strcmp(tables->bindings[i].options[k].key, "foveation.method") == 0) {
-				gz_err(log, "--method: --foveation.method says that too; give one "
+				gz_err(log, "--method: --foveation.method sets the same; give one "
 					    "of them");
 				return GZ_ERR_INVAL;
 			}
@@ -467,7 +470,7 @@ static enum gz_result check_method_once(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
-/* Short for keys of section view. */
+/* Short names of keys in section view. */
 static void apply_short_names(const struct gz_view_options *options, struct gz_view_settings *view)
 {
 	view->gaze_cursor = view->gaze_cursor || options->cross;
@@ -496,7 +499,7 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 		given += tables->bindings[i].count;
 	}
 	if (gz_view_scene_key_count(tables) > GZ_VIEW_SCENE_KEYS_MAX) {
-		gz_err(log, "a scene has more keys than gazeview keeps; report this as a defect");
+		gz_err(log, "a scene has more keys than gazeview can store; report this as a bug");
 		return GZ_ERR_FULL;
 	}
 	struct gz_operands operands = { .count = 0 };
@@ -546,8 +549,8 @@ bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_la
 	return true;
 }
 
-/* A file named on the command line lies where the program was called, not beside the scene. What is
- * not there is told by who opens it. */
+/* A file named on the command line is relative to the current folder, not to the scene. If it is
+ * missing, whoever opens it reports that. */
 static void apply_transfer(const struct gz_view_options *options,
 			   struct gz_scene_settings *settings)
 {
@@ -600,7 +603,7 @@ void gz_view_options_print_help(FILE *out)
 	struct gz_scene_settings settings;
 	struct gz_view_scene_tables tables;
 	gz_view_pick_scene_tables(&settings, &tables);
-	fputs("gazeview - shows a volume, sharp where someone looks\n\n"
+	fputs("gazeview - show a volume, sharp where someone looks\n\n"
 	      "  gazeview SCENE\n"
 	      "  gazeview VOLUME\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"
@@ -609,6 +612,6 @@ void gz_view_options_print_help(FILE *out)
 	      "  gazeview --experiment FILE --participant 07\n\n",
 	      out);
 	gz_options_print_help(own, OWN_BINDINGS, out);
-	fputs("\nKeys of the scene; given here they come before the scene's own:\n\n", out);
+	fputs("\nScene keys; given here they replace the scene's own values:\n\n", out);
 	gz_options_print_help(tables.bindings, GZ_VIEW_SCENE_TABLES, out);
 }

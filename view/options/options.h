@@ -1,7 +1,7 @@
 /**
  * @file
- * gazeview's command line: one table, the scene's own keys beside it, and the small texts that need
- * a parser of their own (--gaze, --out).
+ * gazeview's command line: its option table, the scene keys it accepts, and the texts with a parser
+ * of their own (--gaze, --out).
  */
 #ifndef GZ_VIEW_OPTIONS_OPTIONS_H
 #define GZ_VIEW_OPTIONS_OPTIONS_H
@@ -19,34 +19,34 @@
 #include "view/options/target_options.h"
 #include "view/settings/scene_keys.h"
 
-/** Most options of gz_view_option_table. */
+/** Upper limit of gz_view_option_count. */
 #define GZ_VIEW_OPTIONS_MAX 64
 
-/** Where the gaze comes from. */
+/** Kind of gaze source. */
 enum gz_gaze_kind {
-	GZ_GAZE_CENTRE, /**< where the camera's look_at appears */
-	GZ_GAZE_FIXED,
+	GZ_GAZE_CENTRE,  /**< the projection of the camera's look_at */
+	GZ_GAZE_FIXED,   /**< a point */
 	GZ_GAZE_MOUSE,   /**< window only */
-	GZ_GAZE_POINTER, /**< the mouse, through the local daemon's pointer driver; window only */
+	GZ_GAZE_POINTER, /**< the mouse through the local daemon's pointer driver; window only */
 	GZ_GAZE_LATEST,  /**< a daemon's latest channel */
 	GZ_GAZE_LOG,     /**< a gaze log, through the daemon's pipeline in process */
 };
 
-/** What a picture of a volume shown by bricks does about those that are not there yet. */
+/** What to do about bricks of the volume that are not loaded yet. */
 enum gz_bricks_rule {
-	GZ_BRICKS_AUTO, /**< wait without a window, else stream */
-	GZ_BRICKS_WAIT,
-	GZ_BRICKS_STREAM, /**< show coarser ones meanwhile */
+	GZ_BRICKS_AUTO,   /**< wait if headless, otherwise stream */
+	GZ_BRICKS_WAIT,   /**< wait for all visible bricks */
+	GZ_BRICKS_STREAM, /**< show coarser bricks meanwhile */
 };
 
-/** --gaze, understood. */
+/** The parsed --gaze. */
 struct gz_gaze_choice {
 	enum gz_gaze_kind kind;
 	struct gz_point point;   /**< FIXED */
-	char text[GZ_PATH_SIZE]; /**< LATEST: endpoint, empty for the local daemon's; LOG: path */
+	char text[GZ_PATH_SIZE]; /**< LATEST: endpoint, empty: the local daemon's; LOG: path */
 };
 
-/** Everything the command line says. */
+/** Everything on the command line. */
 struct gz_view_options {
 	bool help;
 	bool version;
@@ -56,17 +56,17 @@ struct gz_view_options {
 	char gaze_text[GZ_PATH_SIZE];
 	struct gz_gaze_choice gaze;
 	double fps;
-	int method; /**< enum gz_method; -1: as the scene says */
+	int method; /**< enum gz_method; -1: the scene's */
 	char backend[GZ_NAME_SIZE];
 	int threads;
 	char simd[GZ_NAME_SIZE];
-	int gl_memory_mib; /**< 0: what the device has */
+	int gl_memory_mib; /**< 0: all that is free */
 	int frames;
-	char out[GZ_PATH_SIZE];          /**< empty: no pictures are written */
+	char out[GZ_PATH_SIZE];          /**< empty: write no pictures */
 	char video[GZ_PATH_SIZE];        /**< empty: none */
 	char record[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
 	char replay[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
-	char pictures[GZ_PATH_SIZE];     /**< folder for what a window writes */
+	char pictures[GZ_PATH_SIZE];     /**< folder for the files a window writes */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	int bricks;                      /**< enum gz_bricks_rule */
@@ -75,10 +75,10 @@ struct gz_view_options {
 	bool letters;
 	bool fullscreen;
 	bool vsync;
-	double interface_scale; /**< 0: what the display says */
-	int measure_window;     /**< frames of each kind; 0: nothing is measured */
+	double interface_scale; /**< 0: from the display */
+	int measure_window;     /**< frames of each kind; 0: do not measure */
 	bool gaze_fills_window;
-	char tracker_display[GZ_NAME_SIZE]; /**< empty: as the scene says */
+	char tracker_display[GZ_NAME_SIZE]; /**< empty: the scene's */
 	int display_px[2];                  /**< 0: not given */
 	double display_mm[2];               /**< 0: not given */
 	double display_distance_mm;         /**< 0: not given */
@@ -87,18 +87,17 @@ struct gz_view_options {
 	int volume_type;                  /**< enum gz_raw_type; -1: not given */
 	int volume_endian;                /**< 0 little, 1 big; -1: not given */
 	double volume_spacing[3];         /**< 0: not given */
-	char transfer_file[GZ_PATH_SIZE]; /**< in place of the scene's; empty: not given */
+	char transfer_file[GZ_PATH_SIZE]; /**< replaces the scene's; empty: not given */
 
-	struct gz_target_options target; /**< targets instead of a scene, where any are named */
+	struct gz_target_options target; /**< targets instead of a scene, if any are named */
 
-	struct gz_sitting_options
-		sitting; /**< an experiment instead of a scene, where one is named */
+	struct gz_sitting_options sitting; /**< an experiment instead of a scene, if one is named */
 
-	bool given[GZ_VIEW_OPTIONS_MAX]; /**< of gz_view_option_table, in its order */
+	bool given[GZ_VIEW_OPTIONS_MAX]; /**< for each row of gz_view_option_table */
 
-	/** Scene keys given on the command line, to be copied over what the scene file says. */
+	/** Scene keys given on the command line; gz_view_options_apply() copies them. */
 	struct gz_scene_settings scene_settings;
-	bool scene_given[GZ_VIEW_SCENE_KEYS_MAX]; /**< table by table */
+	bool scene_given[GZ_VIEW_SCENE_KEYS_MAX]; /**< for each key, table by table */
 };
 
 /** Table over struct gz_view_options. */
@@ -106,54 +105,62 @@ extern const struct gz_option gz_view_option_table[];
 extern const size_t gz_view_option_count;
 
 /**
- * Read the command line, and check what needs no file.
+ * Read the command line and check everything that needs no file: for instance that headless output
+ * is not asked for in a window, and the mouse not without one.
  *
- * @param[out] out_options  filled also on failure, as far as it went
- * @retval GZ_ERR_INVAL  refused; logged, one line with the remedy
+ * @param[out] out_options  on failure filled up to the error
+ * @retval GZ_ERR_INVAL  refused; one line is logged, with the remedy
  */
 enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz_log *log,
 				    struct gz_view_options *out_options);
 
-/** Print how gazeview is called, every option, and the scene keys that may be given too. */
+/** Print --help: usage, all options, and the scene keys that are accepted. */
 void gz_view_options_print_help(FILE *out);
 
-/** The layout of a raw file that the options tell. @return false: they tell none */
+/** Get the layout of a raw file from the options. @return false if they give none */
 bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_layout *out_raw);
 
-/** Copy the scene keys of the command line, --method and --transfer.file over the scene's own. */
+/**
+ * Replace the scene's settings by the command line's scene keys, --method, --transfer.file and the
+ * short names of view keys.
+ *
+ * @return GZ_OK; an error of gz_option_format() or gz_option_parse() would be a bug
+ */
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings);
 
 /**
- * Understand a --gaze text: "centre", "mouse", "pointer", "daemon", "X,Y", an endpoint (ipc://,
- * tcp://) or the name of a .gzl file.
+ * Parse --gaze: "centre", "mouse", "pointer", "daemon", "X,Y", an endpoint (ipc://, tcp://) or the
+ * name of a .gzl file.
  *
- * @retval GZ_ERR_INVAL  none of these, or a number that is not finite; logged
+ * @retval GZ_ERR_INVAL  none of these, a number that is not finite, or too long; logged
  */
 enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 				    struct gz_gaze_choice *out_choice);
 
 /**
- * Check a PATTERN for @p frames pictures: at most one conversion, %d with an optional 0 and width
- * (1 to 9), "%%" for a percent sign; exactly one where there are several pictures.
+ * Check a pattern for the names of @p frames pictures. It has at most one conversion, %d with an
+ * optional 0 and width (1 to 9), and exactly one if there are several pictures. "%%" is a percent
+ * sign.
  *
  * @retval GZ_ERR_INVAL  refused; logged
  */
 enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz_log *log);
 
 /**
- * The name of picture @p number by a checked pattern.
+ * Print the name of picture @p number.
  *
  * @retval GZ_ERR_FULL   @p size is too small
- * @retval GZ_ERR_INVAL  a pattern that gz_pattern_check() refuses
+ * @retval GZ_ERR_INVAL  gz_pattern_check() refuses the pattern
  */
 enum gz_result gz_pattern_format(const char *pattern, int number, char *path, size_t size);
 
 /**
- * The geometry of the picture's display: the command line over @p known, field by field, over the
- * default at the picture's size.
+ * The geometry of the picture's display. Each field comes from the command line, otherwise from
+ * @p known, otherwise from the default display of the picture's size.
  *
- * @param known  from the scene, the log or the daemon, the first that knows; NULL if none does
+ * @param known          from the scene, the log or the daemon, the first that has one; NULL: none
+ * @param width, height  of the picture, px
  */
 struct gz_display gz_view_display(const struct gz_view_options *options,
 				  const struct gz_display *known, int width, int height);

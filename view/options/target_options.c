@@ -13,32 +13,32 @@ static const char *const advance_names[] = { "auto", "space", NULL };
 const struct gz_option gz_target_option_table[] = {
 	{ "targets", GZ_OPTION_STRING, AT(targets), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "show fixation targets instead of a scene: 5, 9, 13, or a file with lines \"x "
-		  "y\"; standard output tells when each is there" },
+		  "y\"; events are printed on standard output" },
 	{ "duration", GZ_OPTION_DOUBLE, AT(duration_s), 0.5, 60, .preset = "2.5",
-	  .help = "each target stays for so long, s" },
+	  .help = "time each target is shown, s" },
 	{ "order", GZ_OPTION_CHOICE, AT(order), .choices = order_names, .preset = "random",
-	  .help = "in which order targets come: as listed, or at random" },
+	  .help = "order of the targets: as listed or random" },
 	{ "seed", GZ_OPTION_INT, AT(seed), 0, 2147483647, .preset = "0",
-	  .help = "of the random order; 0 takes another one each time" },
+	  .help = "random seed of the order; 0: a new order each time" },
 	{ "advance", GZ_OPTION_CHOICE, AT(advance), .choices = advance_names, .preset = "auto",
-	  .help = "the next target comes by itself, or when the space bar is pressed" },
+	  .help = "go to the next target automatically, or when Space is pressed" },
 	{ "instructions", GZ_OPTION_BOOL, AT(instructions), .preset = "true",
-	  .help = "say first what to do, and wait for the space bar" },
+	  .help = "show instructions first and wait for Space" },
 	{ "window", GZ_OPTION_BOOL, AT(windowed), .preset = "false",
-	  .help = "show targets, or an experiment, in a window instead of on the whole display" },
+	  .help = "show targets or an experiment in a window instead of full screen" },
 };
 
 const size_t gz_target_option_count =
 	sizeof gz_target_option_table / sizeof gz_target_option_table[0];
 
-/* From the middle outwards; the first 5, 9 or 13 are the layouts. */
+/* From the centre outwards: the first 5, 9 or 13 make a layout. */
 static const struct gz_point layout[] = {
 	{ 0.5f, 0.5f }, { 0.1f, 0.1f }, { 0.9f, 0.1f }, { 0.1f, 0.9f }, { 0.9f, 0.9f },
 	{ 0.5f, 0.1f }, { 0.1f, 0.5f }, { 0.9f, 0.5f }, { 0.5f, 0.9f }, { 0.3f, 0.3f },
 	{ 0.7f, 0.3f }, { 0.3f, 0.7f }, { 0.7f, 0.7f },
 };
 
-/* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
+/* All orders are equally likely (Fisher and Yates; Durstenfeld 1964). */
 static void shuffle_targets(struct gz_targets *targets, int seed)
 {
 	uint64_t start = seed > 0 ? (uint64_t)seed : (uint64_t)gz_clock_now_ns();

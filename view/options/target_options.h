@@ -1,6 +1,6 @@
 /**
  * @file
- * What gazeview is told of fixation targets: which places, for how long, in which order.
+ * Options of the fixation targets: which positions, for how long, in which order.
  */
 #ifndef GZ_VIEW_OPTIONS_TARGET_OPTIONS_H
 #define GZ_VIEW_OPTIONS_TARGET_OPTIONS_H
@@ -14,25 +14,27 @@
 #include "protocol/gaze.h"
 #include "sim/targets.h"
 
+/** Order of the targets. */
 enum gz_target_order {
 	GZ_TARGET_ORDER_FIXED, /**< as listed */
 	GZ_TARGET_ORDER_RANDOM,
 };
 
+/** When the next target is shown. */
 enum gz_target_advance {
-	GZ_TARGET_ADVANCE_AUTO,  /**< each target stays for its time */
-	GZ_TARGET_ADVANCE_SPACE, /**< each stays until the space bar is pressed after its time */
+	GZ_TARGET_ADVANCE_AUTO,  /**< after the duration */
+	GZ_TARGET_ADVANCE_SPACE, /**< when Space is pressed, after the duration at the earliest */
 };
 
-/** Settings; one table describes them: gz_target_option_table. */
+/** The options, described by gz_target_option_table. */
 struct gz_target_options {
-	char targets[GZ_PATH_SIZE]; /**< "5", "9", "13" or a file's name; empty: no targets */
-	double duration_s;          /**< each stays for at least so long */
+	char targets[GZ_PATH_SIZE]; /**< "5", "9", "13" or a file; empty: no targets */
+	double duration_s;          /**< shortest time of a target, s */
 	int order;                  /**< enum gz_target_order */
-	int seed;                   /**< of the random order; 0: another one each time */
+	int seed;                   /**< of the random order; 0: a new order each time */
 	int advance;                /**< enum gz_target_advance */
-	bool instructions;          /**< begin with them, and wait for the space bar */
-	bool windowed;              /**< in a window instead of the whole display */
+	bool instructions;          /**< show instructions first and wait for Space */
+	bool windowed;              /**< in a window instead of full screen */
 };
 
 /** Table over struct gz_target_options. */
@@ -40,14 +42,14 @@ extern const struct gz_option gz_target_option_table[];
 extern const size_t gz_target_option_count;
 
 /**
- * The places that @p options name, in the order in which they are to be shown.
+ * The positions of the targets in the order they are shown.
  *
- * "5" are the middle and four at a tenth from the edges, "9" a grid of three by three with the same
- * outline, "13" these and four half-way to the corners: the layouts of common calibrations. Else
- * the file that gz_targets_load() reads; weights do not matter.
+ * "5": the centre and four at a tenth from the edges; "9": a three-by-three grid with the same
+ * outline; "13": these and four half-way to the corners. These are the layouts of common
+ * calibrations. Any other text is a file for gz_targets_load(); its weights are ignored.
  *
  * @param[out] out_targets  written on success only
- * @return GZ_OK, or what gz_targets_load() returns; logged
+ * @return the results of gz_targets_load(); logged
  */
 enum gz_result gz_target_places(const struct gz_target_options *options, const struct gz_log *log,
 				struct gz_targets *out_targets);

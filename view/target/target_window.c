@@ -18,18 +18,18 @@
 
 #define GZ_LOG_MODULE "targets"
 
-/* How large a target appears, in its final size, and how long it shrinks: chosen, the shrinking is
- * over before samples count. */
+/* Scale at which a target appears, and the time it takes to shrink to 1. Chosen: it has shrunk
+ * before samples are evaluated. */
 #define FIRST_SCALE 3.0
 #define SHRINK_S    0.6
 
-/* A dot below this is no dot any more, px (chosen). */
+/* Smallest radius of the dot, px. Chosen: still visible. */
 #define DOT_MIN_PX 1.5
 
-/* Where the display's refresh is not waited for, a frame lasts so long, s (chosen). */
+/* Time of a frame with V-sync off, s (chosen). */
 #define FRAME_S (1.0 / 120)
 
-/* Made from shaders/ when the program is built. */
+/* Generated from shaders/ by the build. */
 extern const char gz_glsl_quad_vert[];
 extern const char gz_glsl_target_frag[];
 
@@ -40,24 +40,24 @@ struct target_window {
 	bool has_widgets;
 	GLuint program, vertices;
 	struct gz_targets targets;
-	size_t index;     /* of the target shown, or to be shown next */
-	bool started;     /* the instructions have been read */
-	int64_t shown_ns; /* when the target appeared; 0: it has not */
-	bool space;       /* was pressed since the last frame */
+	size_t index;     /* of the current or next target */
+	bool started;     /* the instructions were confirmed */
+	int64_t shown_ns; /* time the target appeared; 0: not yet */
+	bool space;       /* Space was pressed since the last frame */
 	bool cancelled;
 };
 
 static const char *instructions_of(const struct gz_target_options *options)
 {
 	if (options->advance == GZ_TARGET_ADVANCE_SPACE)
-		return "Look at the middle of each target.\n"
-		       "Press SPACE while you do; then the next one comes.\n"
+		return "Look at the centre of each target.\n"
+		       "Press Space while you look at it to go to the next.\n"
 		       "Keep your head still.\n\n"
-		       "SPACE begins. ESC leaves.";
-	return "Look at the middle of each target until the next one comes.\n"
+		       "Press Space to start, Escape to leave.";
+	return "Look at the centre of each target until the next one appears.\n"
 	       "Keep your head still. The best time to blink\n"
-	       "is when a target has just come.\n\n"
-	       "SPACE begins. ESC leaves.";
+	       "is when a target has just appeared.\n\n"
+	       "Press Space to start, Escape to leave.";
 }
 
 static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
@@ -73,7 +73,7 @@ static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, i
 		window->space = true;
 }
 
-/* The reason of GLFW's last failure, for the one line that tells of it. */
+/* The reason of GLFW's last error, for the log. */
 static const char *glfw_reason(void)
 {
 	const char *reason = NULL;
@@ -81,7 +81,7 @@ static const char *glfw_reason(void)
 	return reason ? reason : "no reason given";
 }
 
-/* The monitor that has the pixels of the tracker's display; the primary one where none has. */
+/* The monitor with the tracker's display size in px, otherwise the primary one. */
 static GLFWmonitor *find_monitor(const struct target_window *window)
 {
 	int count;
@@ -94,8 +94,8 @@ static GLFWmonitor *find_monitor(const struct target_window *window)
 	}
 	if (px[0] > 0 && !window->options->target.windowed)
 		gz_warn(window->log,
-			"no monitor has %dx%d px, as the tracker's display is said to have: the "
-			"targets come on the primary one; correct display.px in gazed.conf",
+			"no monitor has the %dx%d px of the tracker's display: the "
+			"targets are shown on the primary one; correct display.px in gazed.conf",
 			px[0], px[1]);
 	return glfwGetPrimaryMonitor();
 }
@@ -115,7 +115,7 @@ static enum gz_result create_target_window(struct target_window *window)
 	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
 	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
 	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); /* targets stay when the focus goes */
+	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); /* keep showing targets without the focus */
 	glfwWindowHint(GLFW_DEPTH_BITS, 0);
 	glfwWindowHint(GLFW_STENCIL_BITS, 0);
 	gz_context_loss_hint();
@@ -127,7 +127,7 @@ static enum gz_result create_target_window(struct target_window *window)
 static enum gz_result load_opengl(struct target_window *window)
 {
 	glfwMakeContextCurrent(window->glfw);
-	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
+	glewExperimental = GL_TRUE; /* core profiles have no old extension list */
 	if (glewInit() != GLEW_OK || !GLEW_VERSION_3_3)
 		return GZ_ERR_UNSUPPORTED;
 	glfwSwapInterval(window->options->vsync ? 1 : 0);
@@ -166,12 +166,13 @@ static enum gz_result open_window(struct target_window *window)
 	if (r == GZ_OK)
 		r = open_target_drawing(window);
 	if (r != GZ_OK)
-		gz_err(window->log, "no window with OpenGL 3.3: %s; update the graphics driver",
+		gz_err(window->log,
+		       "no window with OpenGL 3.3: %s; update the graphics driver",
 		       glfw_reason());
 	return r;
 }
 
-/* The window's content as a part of its monitor: corner and size, 0 to 1. */
+/* The window's content as a part of its monitor: corner and size, as fractions of its sides. */
 struct share {
 	double corner[2], size[2];
 };
@@ -197,7 +198,7 @@ static const GLFWvidmode *mode_of(GLFWwindow *glfw)
 	return monitor ? glfwGetVideoMode(monitor) : NULL;
 }
 
-/* Framebuffer pixels for a degree in the middle of the display. */
+/* Framebuffer pixels per degree at the centre of the display. */
 static double target_px_per_deg(const struct target_window *window, int width, int height)
 {
 	struct share share = share_of_monitor(window->glfw, mode_of(window->glfw));
@@ -220,7 +221,7 @@ static void set_number(const struct target_window *window, const char *name, dou
 	glUniform1f(glGetUniformLocation(window->program, name), (float)value);
 }
 
-/* Draw the ground, and the target of the moment where there is one. */
+/* Draw the background and the current target, if any. */
 static void draw_target(const struct target_window *window)
 {
 	int width, height;
@@ -265,7 +266,7 @@ static void tell_time(const char *what)
 	fflush(stdout);
 }
 
-/* Let everybody see what was drawn. */
+/* Show what was drawn. */
 static void swap_target(struct target_window *window)
 {
 	glfwSwapBuffers(window->glfw);
@@ -276,7 +277,7 @@ static void swap_target(struct target_window *window)
 	tell_shown(window);
 }
 
-/* Whether the target has been there for long enough. */
+/* Whether the next target is due. */
 static bool target_is_over(const struct target_window *window)
 {
 	const struct gz_target_options *options = &window->options->target;
@@ -286,7 +287,7 @@ static bool target_is_over(const struct target_window *window)
 	return time && (options->advance == GZ_TARGET_ADVANCE_AUTO || window->space);
 }
 
-/* Go on where that is due. The space bar counts only when it is waited for. */
+/* Go to the next target if it is due. Space counts only while the window waits for it. */
 static void advance_targets(struct target_window *window)
 {
 	if (!window->started) {
@@ -310,8 +311,8 @@ static enum gz_result show_targets(struct target_window *window)
 		swap_target(window);
 		glfwWaitEventsTimeout(FRAME_S);
 		if (gz_context_is_lost()) {
-			gz_err(window->log, "the graphics driver has lost the window's context: "
-					    "the targets end here; begin again");
+			gz_err(window->log, "the graphics driver lost the window's context: "
+					    "no more targets are shown; start again");
 			tell_time("cancelled");
 			return GZ_ERR_NO_DEVICE;
 		}
@@ -360,8 +361,8 @@ enum gz_result gz_view_targets(const struct gz_view_options *options, const stru
 		return r;
 	r = gz_display_loss_guard(run_targets, &window, &lost);
 	if (lost) {
-		gz_err(log, "the display is gone: its X server has ended or is out of reach; the "
-			    "targets end here");
+		gz_err(log, "the connection to the X server is lost: no more "
+			    "targets are shown");
 		tell_time("cancelled");
 	}
 	return r;
