@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "bench/report/names.h"
+#include "bench/report/template.h"
 
 struct gz_advice_question gz_advice_preset(const struct gz_group *group)
 {

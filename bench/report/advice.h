@@ -5,8 +5,8 @@
 #ifndef GZ_BENCH_REPORT_ADVICE_H
 #define GZ_BENCH_REPORT_ADVICE_H
 
+#include "base/text.h"
 #include "bench/report/summary.h"
-#include "bench/report/text.h"
 
 /** Bound on perceived FLIP unless another is asked for. Chosen: what FLIP says of two greys that
  *  are one level of 255 apart, 0.029855 (data of its authors), which nobody tells apart. */

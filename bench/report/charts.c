@@ -2,13 +2,15 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include "bench/report/child.h"
-#include "bench/report/palette.h"
+#include "protocol/gaze.h"
 
 #define GZ_LOG_MODULE "report"
 
@@ -24,6 +26,57 @@ static const struct {
 	{ "heat.gp", gz_chart_heat_gp },
 	{ "boxes.gp", gz_chart_boxes_gp },
 };
+
+/* ---- running gnuplot ---- */
+
+/* Variables that a child needs to find its parts. */
+static const char *const kept[] = { "PATH", "HOME", "LD_LIBRARY_PATH", "XDG_CACHE_HOME" };
+
+enum { KEPT = sizeof kept / sizeof kept[0], VARIABLE_SIZE = 8192 };
+
+static enum gz_result spawn_child(const char *folder, char *const *arguments, const char *output,
+				  char *const *environment, pid_t *out_pid)
+{
+	posix_spawn_file_actions_t actions;
+	if (posix_spawn_file_actions_init(&actions) != 0)
+		return GZ_ERR_NO_MEM;
+	posix_spawn_file_actions_addchdir_np(&actions, folder);
+	posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+	posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output,
+					 O_WRONLY | O_CREAT | O_TRUNC, 0666);
+	posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+	const int error =
+		posix_spawnp(out_pid, arguments[0], &actions, NULL, arguments, environment);
+	posix_spawn_file_actions_destroy(&actions);
+	if (error == 0)
+		return GZ_OK;
+	return error == ENOENT || error == EACCES || error == ENOTDIR ? GZ_ERR_NOT_FOUND
+								      : GZ_ERR_IO;
+}
+
+enum gz_result gz_child_run(const char *folder, char *const *arguments, const char *output,
+			    int *out_status)
+{
+	char variables[KEPT][VARIABLE_SIZE], locale[] = "LC_ALL=C.UTF-8";
+	char *environment[KEPT + 2] = { locale };
+	int count = 1;
+	for (int i = 0; i < KEPT; i++) {
+		const char *value = getenv(kept[i]);
+		if (value &&
+		    snprintf(variables[i], VARIABLE_SIZE, "%s=%s", kept[i], value) < VARIABLE_SIZE)
+			environment[count++] = variables[i];
+	}
+	pid_t pid;
+	int status;
+	const enum gz_result result = spawn_child(folder, arguments, output, environment, &pid);
+	if (result != GZ_OK)
+		return result;
+	while (waitpid(pid, &status, 0) < 0)
+		if (errno != EINTR)
+			return GZ_ERR_IO;
+	*out_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+	return GZ_OK;
+}
 
 struct gz_canvas gz_canvas_of(enum gz_canvas_kind kind)
 {
@@ -253,4 +306,57 @@ enum gz_result gz_charts_draw(struct gz_charts *charts, const char *script, cons
 		return take_output(charts, name, canvas->kind);
 	log_what_it_said(charts, name);
 	return result;
+}
+
+/* ---- colours ---- */
+
+struct entry {
+	const char *method; /* NULL: none */
+	uint32_t light, dark;
+	int point;
+};
+
+static const struct entry entries[] = {
+	{ "standard", 0x3d444d, 0xc9d1d9, 5 }, { "acuity", 0xb84700, 0xff9a52, 7 },
+	{ "mdc", 0x0067a3, 0x62bbf2, 9 },      { "ddc", 0x00755a, 0x41cfa4, 13 },
+	{ "mdc3", 0x7c3a9a, 0xd6a1f0, 11 },    { "uniform", 0x6b5f00, 0xd9c64a, 15 },
+	{ "table", 0xa6265e, 0xf590b8, 4 },    { NULL, GZ_COLOUR_INK, 0xe6e9ed, 0 },
+	{ NULL, GZ_COLOUR_GRID, 0x2c3239, 0 }, { NULL, GZ_COLOUR_MUTE, 0x9aa4af, 0 },
+	{ NULL, GZ_COLOUR_PALE, 0x47505a, 0 }, { NULL, GZ_COLOUR_PAGE, 0x14171b, 0 },
+};
+
+struct gz_method_look gz_method_look(const char *method)
+{
+	for (size_t i = 0; i < sizeof entries / sizeof entries[0]; i++)
+		if (entries[i].method && strcmp(entries[i].method, method) == 0)
+			return (struct gz_method_look) { entries[i].light, entries[i].point };
+	return (struct gz_method_look) { GZ_COLOUR_MUTE, 6 };
+}
+
+/* gnuplot writes a colour in two ways. */
+static void add_rule(struct gz_text *out, const char *attribute, uint32_t light, uint32_t dark)
+{
+	const int r = (int)(light >> 16), g = (int)(light >> 8 & 255), b = (int)(light & 255);
+	gz_text_add(out,
+		    "[%s=\"rgb(%3d, %3d, %3d)\"],[%s=\"rgb(%d,%d,%d)\"]"
+		    "{%s:#%06x}\n",
+		    attribute, r, g, b, attribute, r, g, b, attribute, dark);
+}
+
+void gz_palette_add_dark(struct gz_text *out, const char *svg)
+{
+	const char *end = strstr(svg, "<svg");
+	end = end ? strchr(end, '>') : NULL;
+	if (!end) {
+		gz_text_add(out, "%s", svg);
+		return;
+	}
+	gz_text_add_bytes(out, svg, (size_t)(end + 1 - svg));
+	gz_text_add(out, "\n<style>@media (prefers-color-scheme:dark){\n");
+	for (size_t i = 0; i < sizeof entries / sizeof entries[0]; i++) {
+		add_rule(out, "fill", entries[i].light, entries[i].dark);
+		add_rule(out, "stroke", entries[i].light, entries[i].dark);
+		add_rule(out, "color", entries[i].light, entries[i].dark);
+	}
+	gz_text_add(out, "}</style>%s", end + 1);
 }

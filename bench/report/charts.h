@@ -11,10 +11,11 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/log.h"
 #include "base/result.h"
-#include "bench/report/text.h"
+#include "base/text.h"
 #include "protocol/gaze.h"
 
 /** What a chart is drawn on. */
@@ -82,5 +83,36 @@ enum gz_result gz_charts_draw(struct gz_charts *charts, const char *script, cons
 
 /** The chart of this name, or NULL. */
 const struct gz_chart *gz_charts_find(const struct gz_charts *charts, const char *name);
+
+/** Colours that are no method's. */
+#define GZ_COLOUR_INK  0x1b1f24 /**< axes, text */
+#define GZ_COLOUR_GRID 0xdfe3e8 /**< lines of the grid */
+#define GZ_COLOUR_MUTE 0x5c6570 /**< what is said by the way */
+#define GZ_COLOUR_PALE 0xcdd3da /**< the front, behind everything */
+#define GZ_COLOUR_PAGE 0xfdfdfe /**< halos: the page itself */
+
+/** How a method looks. */
+struct gz_method_look {
+	uint32_t colour; /**< on a light page, 0xRRGGBB */
+	int point;       /**< gnuplot's type of point */
+};
+
+/** The look of a method; unknown ones look like each other. */
+struct gz_method_look gz_method_look(const char *method);
+
+/** Add to @p out the SVG @p svg of gnuplot, with a style that turns its colours on dark pages. */
+void gz_palette_add_dark(struct gz_text *out, const char *svg);
+
+/**
+ * Run a program in @p folder, in the locale "C.UTF-8", without input; what it prints goes to the
+ * file @p output inside the folder.
+ *
+ * @param arguments  [0] is the program, looked up in $PATH; NULL behind the last
+ * @param[out] out_status  what it exited with, or -1 if a signal ended it
+ * @retval GZ_ERR_NOT_FOUND  there is no such program
+ * @retval GZ_ERR_IO         it cannot be started
+ */
+enum gz_result gz_child_run(const char *folder, char *const *arguments, const char *output,
+			    int *out_status);
 
 #endif

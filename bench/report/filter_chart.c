@@ -4,7 +4,6 @@
 #include <stdio.h>
 
 #include "bench/report/charts.h"
-#include "bench/report/palette.h"
 #include "bench/report/plot.h"
 
 #define GZ_LOG_MODULE "report"

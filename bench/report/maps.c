@@ -1,11 +1,16 @@
 /* Time and error over the gaze, with the picture behind. */
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
-#include "bench/report/chart_parts.h"
 #include "bench/report/names.h"
-#include "bench/report/picture.h"
 #include "bench/report/study_charts.h"
+#include "bench/study/stage.h"
+#include "render/frame/picture_maker.h"
+
+#define GZ_LOG_MODULE "report"
 
 /* Width of the picture behind, px: as wide as it is shown on a screen of high resolution. Its light
  * is taken down to this share so that points stand out. Both chosen. */
@@ -19,6 +24,105 @@
  * canvases, px. */
 #define NEAREST_MAX 1000
 #define POINT_PX    7.5
+
+/* ---- the picture behind ---- */
+
+/* Widest picture that is rendered for a report, px. Chosen: more than it is ever shown with. */
+#define WIDTH_MAX 640
+
+static void picture_path(const struct gz_study_scene *scene, const char *folder,
+			 char out_path[GZ_PATH_SIZE])
+{
+	char name[2 * GZ_STUDY_TEXT_SIZE + 16];
+	snprintf(name, sizeof name, "standard-%s-%s", scene->name, scene->transfer);
+	for (char *byte = name; *byte; byte++)
+		if (!isalnum((unsigned char)*byte) && !strchr("._-", *byte))
+			*byte = '-';
+	snprintf(out_path, GZ_PATH_SIZE, "%.400s/%s.png", folder, name);
+}
+
+/* The scene's transfer function that shows what the study saw; false if it has none. */
+static bool find_transfer(const struct gz_stage *stage, const struct gz_study_scene *was,
+			  struct gz_transfer *out_transfer)
+{
+	char name[GZ_STUDY_TEXT_SIZE], hash[GZ_STUDY_HASH_SIZE];
+	for (size_t i = 0; i < gz_stage_transfer_count(stage); i++)
+		if (gz_stage_transfer(stage, i, name, out_transfer) == GZ_OK &&
+		    gz_stage_data_hash(stage, out_transfer, hash) == GZ_OK &&
+		    strcmp(hash, was->data_hash) == 0)
+			return true;
+	return false;
+}
+
+static enum gz_result render_standard(const struct gz_scene *scene, const struct gz_camera *camera,
+				      const struct gz_log *log, struct gz_image *picture)
+{
+	const struct gz_picture_maker_params params = {
+		.backend = "cpu",
+		.backend_params = { .wait_for_bricks = true },
+	};
+	const struct gz_foveation standard = gz_foveation_full();
+	const struct gz_display display = gz_display_default(picture->width, picture->height);
+	const struct gz_picture_request request = {
+		.camera = camera,
+		.settings = &scene->settings.rays,
+		.foveation = &standard,
+		.display = &display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = picture->width,
+		.height = picture->height,
+		.image = picture,
+	};
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_picture_maker *maker = NULL;
+	struct gz_image *made;
+	const size_t count =
+		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
+	enum gz_result result = gz_picture_maker_create(&params, log, &maker);
+	if (result == GZ_OK)
+		result = gz_picture_maker_show(maker, objects, count);
+	if (result == GZ_OK)
+		result = gz_picture_make(maker, &request, &made, NULL);
+	gz_picture_maker_destroy(&maker);
+	return result;
+}
+
+static enum gz_result render_scene(const struct gz_study *study, size_t place,
+				   const struct gz_log *log, struct gz_image *picture)
+{
+	const struct gz_study_scene *was = &study->scenes[place];
+	struct gz_stage stage = { .log = log };
+	const int *size = study->sizes[0];
+	const int width = size[0] < WIDTH_MAX ? size[0] : WIDTH_MAX;
+	const int height = (int)fmax(1, round((double)width * size[1] / size[0]));
+	if (access(was->path, R_OK) != 0 || gz_stage_load(&stage, was->path) != GZ_OK)
+		return GZ_ERR_NOT_FOUND;
+	enum gz_result result = find_transfer(&stage, was, &stage.scene.transfer)
+					? gz_image_resize(picture, width, height)
+					: GZ_ERR_NOT_FOUND;
+	if (result == GZ_OK)
+		result = render_standard(&stage.scene, &was->camera, log, picture);
+	gz_stage_free(&stage);
+	return result;
+}
+
+enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, const char *folder,
+				 const struct gz_log *log, struct gz_image *picture)
+{
+	char path[GZ_PATH_SIZE];
+	picture_path(&study->scenes[scene], folder, path);
+	if (access(path, R_OK) == 0)
+		return gz_image_read_png(path, log, picture);
+	const enum gz_result result = render_scene(study, scene, log, picture);
+	if (result == GZ_OK)
+		return gz_image_write_png(picture, path, log);
+	if (result != GZ_ERR_NO_MEM)
+		gz_warn(log,
+			"%s: no picture lies behind its maps: %s is not there, or not what it "
+			"was",
+			study->scenes[scene].name, study->scenes[scene].path);
+	return result == GZ_ERR_NO_MEM ? result : GZ_ERR_NOT_FOUND;
+}
 
 /* What all maps of a group share. */
 struct background {
@@ -35,8 +139,9 @@ static void dim(struct gz_image *image)
 }
 
 /* The study's picture of the scene, small and dimmed, where gnuplot finds it. */
-static enum gz_result prepare(const struct gz_summary *summary, const struct gz_group *group,
-			      const struct gz_charts *charts, struct background *out)
+static enum gz_result prepare_background(const struct gz_summary *summary,
+					 const struct gz_group *group,
+					 const struct gz_charts *charts, struct background *out)
 {
 	char path[GZ_PATH_SIZE];
 	const int *size = summary->study->sizes[group->size];
@@ -80,30 +185,31 @@ struct shown {
 	bool of_error;
 	enum gz_error_reference reference;
 	enum gz_error_measure measure;
+	double range[2]; /* of the values that are finite; set by add_map_points() */
 };
 
-static double value_of(const struct gz_series_point *point, const struct shown *shown)
+static double map_value(const struct gz_series_point *point, const struct shown *shown)
 {
 	return shown->of_error ? gz_error_value(shown->measure, &point->errors[shown->reference])
 			       : point->frame_ms;
 }
 
-/* Points in the picture's pixels; the range of the values that are finite. */
-static size_t add_points(const struct gz_series *series, const struct background *background,
-			 const struct shown *shown, struct gz_text *table, double range[2])
+/* Points in the picture's pixels. */
+static size_t add_map_points(const struct gz_series *series, const struct background *background,
+			     struct shown *shown, struct gz_text *table)
 {
 	size_t count = 0;
-	range[0] = INFINITY;
-	range[1] = -INFINITY;
+	shown->range[0] = INFINITY;
+	shown->range[1] = -INFINITY;
 	for (size_t i = 0; i < series->point_count; i++) {
 		const struct gz_series_point *point = &series->points[i];
-		const double value = value_of(point, shown);
+		const double value = map_value(point, shown);
 		if (!isfinite(value) || !isfinite(point->gaze.x) || !isfinite(point->gaze.y))
 			continue;
 		gz_text_add(table, "%.6g\t%.6g\t%.6g\n", point->gaze.x * background->width,
 			    point->gaze.y * background->height, value);
-		range[0] = fmin(range[0], value);
-		range[1] = fmax(range[1], value);
+		shown->range[0] = fmin(shown->range[0], value);
+		shown->range[1] = fmax(shown->range[1], value);
 		count++;
 	}
 	return count;
@@ -130,23 +236,23 @@ static double nearest_px(const struct gz_series *series, const struct background
 	return sum / (double)count;
 }
 
-static double step_of(double span)
+static double tick_step_of(double span)
 {
 	const double power = pow(10, floor(log10(span / 4)));
 	const double digit = span / 4 / power;
 	return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
-static void add_settings(const struct gz_summary *summary, const struct gz_series *series,
-			 const struct background *background, const struct shown *shown,
-			 const struct gz_canvas *canvas, const double range[2],
-			 struct gz_text *settings)
+static void add_map_settings(const struct gz_summary *summary, const struct gz_series *series,
+			     const struct background *background, const struct shown *shown,
+			     const struct gz_canvas *canvas, struct gz_text *settings)
 {
 	char words[GZ_NAMES_SIZE], title[2 * GZ_NAMES_SIZE];
-	const double least = shown->of_error && range[0] > 0 && range[1] > range[0] * 1.001
-				     ? range[0]
-				     : range[0] * 0.999;
-	const double greatest = fmax(range[1], least + 1e-9 + fabs(least) * 0.002);
+	const double least =
+		shown->of_error && shown->range[0] > 0 && shown->range[1] > shown->range[0] * 1.001
+			? shown->range[0]
+			: shown->range[0] * 0.999;
+	const double greatest = fmax(shown->range[1], least + 1e-9 + fabs(least) * 0.002);
 	const double scale =
 		(double)(canvas->width - canvas->left - canvas->right) / background->width;
 	const double size = fmin(fmax(nearest_px(series, background) * scale / POINT_PX, 0.5), 2);
@@ -160,19 +266,18 @@ static void add_settings(const struct gz_summary *summary, const struct gz_serie
 		    "value_first = %.9g\nvalue_last = %.9g\nvalue_step = %.9g\n",
 		    background->has_picture, background->width, background->height,
 		    background->picture_dx, background->picture_dy, size, least, greatest,
-		    step_of(greatest - least));
+		    tick_step_of(greatest - least));
 }
 
 static enum gz_result draw_map(const struct gz_summary *summary, const struct gz_group *group,
 			       size_t place, const struct background *background,
-			       const struct shown *shown, struct gz_charts *charts)
+			       struct shown *shown, struct gz_charts *charts)
 {
 	char name[GZ_NAMES_SIZE];
-	double range[2];
 	const struct gz_series *series = &group->series[place];
 	struct gz_text table = { 0 };
 	enum gz_result result = GZ_OK;
-	const size_t count = add_points(series, background, shown, &table, range);
+	const size_t count = add_map_points(series, background, shown, &table);
 	gz_map_chart_name(summary, group, place, shown->of_error, name);
 	/* One SVG does for all pages: maps stand side by side. */
 	for (int kind = 0; kind < GZ_CANVAS_KINDS && result == GZ_OK && count > 0; kind++) {
@@ -186,7 +291,7 @@ static enum gz_result draw_map(const struct gz_summary *summary, const struct gz
 		canvas.bottom = 40;
 		canvas.height = canvas.top + canvas.bottom +
 				(canvas.width - 28) * background->height / background->width;
-		add_settings(summary, series, background, shown, &canvas, range, &settings);
+		add_map_settings(summary, series, background, shown, &canvas, &settings);
 		result = gz_charts_draw(charts, "heat.gp", name, &canvas, &settings, &table);
 		gz_text_free(&settings);
 	}
@@ -201,7 +306,7 @@ enum gz_result gz_maps_draw(const struct gz_summary *summary, const struct gz_gr
 	struct shown time = { 0 };
 	struct shown error = { .of_error = true, .reference = gz_group_reference(group) };
 	const bool has_error = gz_group_measure(group, &error.measure);
-	enum gz_result result = prepare(summary, group, charts, &background);
+	enum gz_result result = prepare_background(summary, group, charts, &background);
 	for (size_t i = 0; i < group->series_count && i < MAPS_MAX && result == GZ_OK; i++) {
 		result = draw_map(summary, group, i, &background, &time, charts);
 		if (result == GZ_OK && has_error)

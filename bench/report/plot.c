@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/report/labels.h"
-
 /* Outside every axis: what a block holds that has nothing to draw. */
 #define NOWHERE "nan\tnan\t0\t0\t-\n"
 
@@ -197,21 +195,31 @@ static const char *fit_label(const char *text, const struct gz_canvas *canvas,
 	return cut;
 }
 
-static void add_label(struct placing *placing, const struct gz_plot_curve *curve,
-		      const struct gz_plot_point *point, const char *text, double font_px,
-		      bool must, struct gz_text *table)
+/* A text at a point of a curve. */
+struct point_label {
+	const struct gz_plot_curve *curve;
+	const struct gz_plot_point *point;
+	const char *text;
+	double font_px;
+	bool must; /* it is placed whatever it lies on */
+};
+
+static void add_point_label(struct placing *placing, const struct point_label *label,
+			    struct gz_text *table)
 {
-	double x, y;
-	int side;
 	char cut[GZ_PLOT_LABEL_SIZE];
-	text = fit_label(text, placing->canvas, cut);
-	if (!text[0] ||
-	    !gz_labels_place(&placing->field, x_px(placing, point->x), y_px(placing, point->y),
-			     characters(text) * CHARACTER * font_px, font_px * 1.1, must, &x, &y,
-			     &side))
+	const char *text = fit_label(label->text, placing->canvas, cut);
+	struct gz_label place = {
+		.x = x_px(placing, label->point->x),
+		.y = y_px(placing, label->point->y),
+		.width = characters(text) * CHARACTER * label->font_px,
+		.height = label->font_px * 1.1,
+		.must = label->must,
+	};
+	if (!text[0] || !gz_labels_place(&placing->field, &place))
 		return;
-	gz_text_add(table, "%.9g\t%.9g\t%u\t%d\t", x_at_px(placing, x), y_at_px(placing, y),
-		    (unsigned)curve->colour, side);
+	gz_text_add(table, "%.9g\t%.9g\t%u\t%d\t", x_at_px(placing, place.anchor_x),
+		    y_at_px(placing, place.anchor_y), (unsigned)label->curve->colour, place.side);
 	gz_chart_add_cell(table, text);
 	gz_text_add(table, "\n");
 }
@@ -227,15 +235,21 @@ static void add_labels(struct placing *placing, struct gz_text *table)
 	avoid_curves(placing);
 	for (size_t i = 0; i < placing->plot->curve_count; i++) {
 		const struct gz_plot_curve *curve = &placing->plot->curves[i];
-		if (curve->point_count > 0)
-			add_label(placing, curve, &curve->points[curve->point_count - 1],
-				  curve->name, font_px, true, &names);
+		if (curve->point_count > 0) {
+			const struct point_label name = {
+				curve, &curve->points[curve->point_count - 1], curve->name, font_px,
+				true,
+			};
+			add_point_label(placing, &name, &names);
+		}
 	}
 	for (size_t i = 0; i < placing->plot->curve_count; i++)
 		for (size_t k = 0; k < placing->plot->curves[i].point_count; k++) {
 			const struct gz_plot_curve *curve = &placing->plot->curves[i];
-			add_label(placing, curve, &curve->points[k], curve->points[k].label,
-				  0.84 * font_px, false, &labels);
+			const struct point_label label = { curve, &curve->points[k],
+							   curve->points[k].label, 0.84 * font_px,
+							   false };
+			add_point_label(placing, &label, &labels);
 		}
 	gz_text_add(table, NOWHERE "%s\n\n" NOWHERE "%s", labels.bytes ? labels.bytes : "",
 		    names.bytes ? names.bytes : "");
@@ -272,7 +286,7 @@ static void add_front(const struct gz_plot *plot, struct gz_text *table)
 }
 
 /* Points of all curves, or those with a ring; an empty line ends a curve. */
-static void add_points(const struct gz_plot *plot, bool only_marked, struct gz_text *table)
+static void add_plot_points(const struct gz_plot *plot, bool only_marked, struct gz_text *table)
 {
 	gz_text_add(table, NOWHERE);
 	for (size_t i = 0; i < plot->curve_count; i++) {
@@ -308,8 +322,8 @@ static int left_px(const struct gz_plot *plot, const struct gz_canvas *canvas)
 	return wanted > canvas->left ? wanted : canvas->left;
 }
 
-static void add_settings(const struct gz_plot *plot, const struct gz_canvas *canvas,
-			 struct gz_text *settings)
+static void add_plot_settings(const struct gz_plot *plot, const struct gz_canvas *canvas,
+			      struct gz_text *settings)
 {
 	gz_chart_set_text(settings, "title_text", plot->title);
 	gz_chart_set_text(settings, "x_title", plot->x.title);
@@ -329,21 +343,21 @@ static void add_settings(const struct gz_plot *plot, const struct gz_canvas *can
 		    plot->bound > 0 && share(&plot->x, plot->bound) < 0.5);
 }
 
-static enum gz_result draw_on(struct gz_charts *charts, const char *name, enum gz_canvas_kind kind,
-			      const struct gz_plot *plot)
+static enum gz_result draw_plot_on(struct gz_charts *charts, const char *name,
+				   enum gz_canvas_kind kind, const struct gz_plot *plot)
 {
 	struct gz_canvas canvas = gz_canvas_of(kind);
 	canvas.left = left_px(plot, &canvas);
 	struct gz_text settings = { 0 }, table = { 0 };
 	struct placing placing = { .plot = plot, .canvas = &canvas };
-	add_settings(plot, &canvas, &settings);
+	add_plot_settings(plot, &canvas, &settings);
 	add_front(plot, &table);
 	gz_text_add(&table, "\n\n");
-	add_points(plot, false, &table); /* as lines */
+	add_plot_points(plot, false, &table); /* as lines */
 	gz_text_add(&table, "\n\n");
-	add_points(plot, false, &table);
+	add_plot_points(plot, false, &table);
 	gz_text_add(&table, "\n\n");
-	add_points(plot, true, &table);
+	add_plot_points(plot, true, &table);
 	gz_text_add(&table, "\n\n");
 	add_labels(&placing, &table);
 	const enum gz_result result =
@@ -362,6 +376,99 @@ enum gz_result gz_plot_draw(struct gz_charts *charts, const char *name, struct g
 	if (!fit_axes(plot))
 		return GZ_OK;
 	for (int kind = 0; kind < GZ_CANVAS_KINDS && result == GZ_OK; kind++)
-		result = draw_on(charts, name, kind, plot);
+		result = draw_plot_on(charts, name, kind, plot);
 	return result;
+}
+
+/* ---- labels ---- */
+
+/* From a point to the nearest edge of its label, px. Chosen: clear of a point's ring. */
+#define GAP 12.0
+
+/* A line is kept clear by boxes of this many pixels. */
+#define LINE_STEP 6.0
+
+void gz_labels_avoid(struct gz_label_field *field, struct gz_box box, double weight)
+{
+	if (field->count == field->room) {
+		const size_t room = field->room * 2 + 64;
+		struct gz_box *taken = realloc(field->taken, room * sizeof taken[0]);
+		if (!taken)
+			return;
+		field->taken = taken;
+		double *weights = realloc(field->weights, room * sizeof weights[0]);
+		if (!weights)
+			return;
+		field->weights = weights;
+		field->room = room;
+	}
+	field->taken[field->count] = box;
+	field->weights[field->count++] = weight;
+}
+
+void gz_labels_avoid_line(struct gz_label_field *field, double x0, double y0, double x1, double y1)
+{
+	const int steps = (int)fmin(hypot(x1 - x0, y1 - y0) / LINE_STEP, 1000) + 1;
+	for (int i = 0; i <= steps; i++) {
+		const double x = x0 + (x1 - x0) * i / steps, y = y0 + (y1 - y0) * i / steps;
+		gz_labels_avoid(field, (struct gz_box) { x - 1, y - 1, x + 1, y + 1 },
+				GZ_LABEL_ON_LINE);
+	}
+}
+
+static bool overlap(struct gz_box a, struct gz_box b)
+{
+	return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+}
+
+static double cost_of(const struct gz_label_field *field, struct gz_box box)
+{
+	double cost = 0;
+	if (box.left < field->area.left || box.right > field->area.right ||
+	    box.top < field->area.top || box.bottom > field->area.bottom)
+		cost += 50 * GZ_LABEL_ON_LABEL;
+	for (size_t i = 0; i < field->count; i++)
+		if (overlap(box, field->taken[i]))
+			cost += field->weights[i];
+	return cost;
+}
+
+bool gz_labels_place(struct gz_label_field *field, struct gz_label *label)
+{
+	/* Right, above, left, below, then the diagonals, then the same farther out. */
+	static const double directions[][2] = { { 1, 0 },  { 0, -1 },  { -1, 0 }, { 0, 1 },
+						{ 1, -1 }, { -1, -1 }, { 1, 1 },  { -1, 1 } };
+	const double half_width = label->width / 2, half_height = label->height / 2;
+	double best = INFINITY;
+	struct gz_box box = { 0, 0, 0, 0 };
+	int side = 0;
+	for (int ring = 0; ring < 3; ring++)
+		for (size_t i = 0; i < sizeof directions / sizeof directions[0]; i++) {
+			const double far = GAP * (1 + 0.8 * ring);
+			const double cx = label->x + directions[i][0] * (far + half_width);
+			const double cy = label->y + directions[i][1] * (far * 0.7 + half_height);
+			const struct gz_box here = { cx - half_width, cy - half_height,
+						     cx + half_width, cy + half_height };
+			/* A little for each step away from the first choice. */
+			const double cost = cost_of(field, here) + 0.1 * (double)i + 1.5 * ring;
+			if (cost < best) {
+				best = cost;
+				box = here;
+				side = (int)directions[i][0];
+			}
+		}
+	if (!label->must && best >= GZ_LABEL_ON_LABEL)
+		return false;
+	gz_labels_avoid(field, box, GZ_LABEL_ON_LABEL);
+	label->anchor_x = side > 0 ? box.left : side < 0 ? box.right : (box.left + box.right) / 2;
+	label->anchor_y = (box.top + box.bottom) / 2;
+	label->side = side;
+	return true;
+}
+
+void gz_labels_free(struct gz_label_field *field)
+{
+	free(field->taken);
+	free(field->weights);
+	*field = (struct gz_label_field) { 0 };
 }

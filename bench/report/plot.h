@@ -6,6 +6,8 @@
 #ifndef GZ_BENCH_REPORT_PLOT_H
 #define GZ_BENCH_REPORT_PLOT_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "bench/report/charts.h"
@@ -65,5 +67,47 @@ void gz_plot_free(struct gz_plot *plot);
  * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
  */
 enum gz_result gz_plot_draw(struct gz_charts *charts, const char *name, struct gz_plot *plot);
+
+/** A rectangle of the canvas, px, y down. */
+struct gz_box {
+	double left, top, right, bottom;
+};
+
+/** What has been placed on a canvas so far. Zero-initialised but for @p area is empty. */
+struct gz_label_field {
+	struct gz_box area; /**< labels stay inside */
+	struct gz_box *taken;
+	double *weights; /**< how bad it is to lie on it */
+	size_t count, room;
+};
+
+/** Cost of lying on something. */
+#define GZ_LABEL_ON_LINE  1.0
+#define GZ_LABEL_ON_POINT 6.0
+#define GZ_LABEL_ON_LABEL 40.0
+
+/** Keep labels off a rectangle. Without memory it is forgotten. */
+void gz_labels_avoid(struct gz_label_field *field, struct gz_box box, double weight);
+
+/** Keep labels off a line. */
+void gz_labels_avoid_line(struct gz_label_field *field, double x0, double y0, double x1, double y1);
+
+/** A label at a point, px. */
+struct gz_label {
+	double x, y;          /**< the point */
+	double width, height; /**< of the label */
+	bool must;            /**< place it whatever it lies on */
+	/** Set by gz_labels_place(): its centre, or the middle of the edge that is next to the
+	 * point, so that no guess of its width parts them. */
+	double anchor_x, anchor_y;
+	int side; /**< likewise: 0 centre, 1 left edge (it is right of the point), -1 right edge */
+};
+
+/** Find the best of the places around a point for a label and take it. False where it would lie on
+ *  another label or outside, and need not be placed. */
+bool gz_labels_place(struct gz_label_field *field, struct gz_label *label);
+
+/** Free what it holds and zero it. */
+void gz_labels_free(struct gz_label_field *field);
 
 #endif

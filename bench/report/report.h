@@ -1,12 +1,14 @@
 /**
  * @file
- * The report of a study: summary.json, charts, report.html.
+ * The report of a study: summary.json, charts, and report.html, one page that holds everything and
+ * loads nothing from elsewhere.
  */
 #ifndef GZ_BENCH_REPORT_REPORT_H
 #define GZ_BENCH_REPORT_REPORT_H
 
 #include "base/log.h"
 #include "base/result.h"
+#include "bench/report/charts.h"
 #include "bench/report/summary.h"
 
 /**
@@ -17,5 +19,10 @@
  */
 enum gz_result gz_report_write(const struct gz_summary *summary, const char *folder,
 			       const struct gz_log *log);
+
+/** Append the whole page to @p out, with those charts that were drawn. Sets failed where memory
+ *  runs out. */
+void gz_page_write(const struct gz_summary *summary, const struct gz_charts *charts,
+		   struct gz_text *out);
 
 #endif

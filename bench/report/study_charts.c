@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bench/report/chart_parts.h"
+#include "bench/report/charts.h"
 #include "bench/report/names.h"
-#include "bench/report/palette.h"
 #include "bench/report/plot.h"
 
 bool gz_group_measure(const struct gz_group *group, enum gz_error_measure *out_measure)
@@ -135,8 +134,8 @@ bool gz_growth_chart_name(const struct gz_summary *summary, size_t scaling, char
 	return true;
 }
 
-static bool add_growth(const struct gz_study *study, const struct gz_scaling *scaling,
-		       struct gz_plot_curve *out)
+static bool add_growth_curve(const struct gz_study *study, const struct gz_scaling *scaling,
+			     struct gz_plot_curve *out)
 {
 	char words[GZ_NAMES_SIZE];
 	const struct gz_study_variant *variant = &study->variants[scaling->variant];
@@ -179,10 +178,90 @@ static enum gz_result draw_growth(const struct gz_summary *summary, size_t first
 	bool sound = gz_plot_start(&plot, shared_count(summary, first));
 	for (size_t i = first, k = 0; i < summary->scaling_count && sound; i++)
 		if (share_chart(&summary->scalings[first], &summary->scalings[i]))
-			sound = add_growth(summary->study, &summary->scalings[i],
-					   &plot.curves[k++]);
+			sound = add_growth_curve(summary->study, &summary->scalings[i],
+						 &plot.curves[k++]);
 	const enum gz_result result = sound ? gz_plot_draw(charts, name, &plot) : GZ_ERR_NO_MEM;
 	gz_plot_free(&plot);
+	return result;
+}
+
+/* ---- boxes of frame times ---- */
+
+/* A row's height, px: on a narrow canvas a name and, below it, a box. */
+static int row_px(const struct gz_canvas *canvas)
+{
+	return canvas->kind == GZ_CANVAS_NARROW ? 42 : 30;
+}
+
+static void add_box_row(const struct gz_study *study, const struct gz_series *series, size_t row,
+			int characters, struct gz_text *table)
+{
+	char words[GZ_NAMES_SIZE], cut[GZ_NAMES_SIZE];
+	const struct gz_study_variant *variant = &study->variants[series->variant];
+	const struct gz_distribution *ms = &series->columns[GZ_COLUMN_FRAME];
+	gz_variant_words(variant, words);
+	snprintf(cut, sizeof cut, "%.*s%s", characters, words,
+		 strlen(words) > (size_t)characters ? "…" : "");
+	gz_text_add(table, "%zu\t", row);
+	gz_chart_add_cell(table, cut);
+	gz_text_add(table, "\t%.9g\t%.9g\t%.9g\t%.9g\t%.9g\t%u\n", ms->least, ms->p25, ms->median,
+		    ms->p75, ms->p99, (unsigned)gz_method_look(variant->method).colour);
+}
+
+/* As many as the longest name has, or the canvas has room for. */
+static int characters_for(const struct gz_study *study, const struct gz_group *group,
+			  enum gz_canvas_kind kind)
+{
+	const int most = kind == GZ_CANVAS_NARROW ? 48 : 40;
+	int longest = 8;
+	for (size_t i = 0; i < group->series_count; i++) {
+		char words[GZ_NAMES_SIZE];
+		gz_variant_words(&study->variants[group->series[i].variant], words);
+		longest = (int)fmax(longest, (double)strlen(words));
+	}
+	return longest < most ? longest : most;
+}
+
+static enum gz_result draw_boxes_on(const struct gz_summary *summary, const struct gz_group *group,
+				    enum gz_canvas_kind kind, struct gz_charts *charts)
+{
+	char name[GZ_NAMES_SIZE];
+	struct gz_canvas canvas = gz_canvas_of(kind);
+	struct gz_text settings = { 0 }, table = { 0 };
+	const int characters = characters_for(summary->study, group, kind);
+	double least = INFINITY, greatest = 0;
+	size_t rows = 0;
+	for (size_t i = 0; i < group->curve_count; i++)
+		for (size_t k = 0; k < group->curves[i].count; k++) {
+			const struct gz_series *series = &group->series[group->curves[i].series[k]];
+			least = fmin(least, series->columns[GZ_COLUMN_FRAME].least);
+			greatest = fmax(greatest, series->columns[GZ_COLUMN_FRAME].p99);
+			add_box_row(summary->study, series, rows++, characters, &table);
+		}
+	const bool names_above = kind == GZ_CANVAS_NARROW;
+	canvas.left = names_above ? 14 : (int)((characters + 2) * canvas.font_px * 0.58);
+	canvas.height = canvas.top + canvas.bottom + (int)rows * row_px(&canvas);
+	gz_chart_set_text(&settings, "title_text", "time of a frame, ms");
+	gz_chart_set_text(&settings, "x_title", "box: half of all frames; line: 99 of 100");
+	const double first = fmax(least, 1e-4) / 1.15, last = fmax(greatest, 2e-4) * 1.15;
+	gz_text_add(&settings,
+		    "x_first = %.9g\nx_last = %.9g\nx_decades = %.9g\nrows = %zu\n"
+		    "names_above = %d\n",
+		    first, last, log10(last / first) * (names_above ? 2 : 1), rows, names_above);
+	gz_chart_name(summary, "boxes", group, name);
+	const enum gz_result result =
+		gz_charts_draw(charts, "boxes.gp", name, &canvas, &settings, &table);
+	gz_text_free(&settings);
+	gz_text_free(&table);
+	return result;
+}
+
+static enum gz_result draw_boxes(const struct gz_summary *summary, const struct gz_group *group,
+				 struct gz_charts *charts)
+{
+	enum gz_result result = GZ_OK;
+	for (int kind = 0; kind < GZ_CANVAS_KINDS && result == GZ_OK; kind++)
+		result = draw_boxes_on(summary, group, kind, charts);
 	return result;
 }
 
@@ -193,7 +272,7 @@ static enum gz_result draw_group(const struct gz_summary *summary, const struct 
 	for (int measure = 0; measure < GZ_ERROR_MEASURES && result == GZ_OK; measure++)
 		result = draw_pareto(summary, group, measure, charts);
 	if (result == GZ_OK)
-		result = gz_boxes_draw(summary, group, charts);
+		result = draw_boxes(summary, group, charts);
 	if (result == GZ_OK)
 		result = gz_maps_draw(summary, group, charts);
 	return result;

@@ -7,6 +7,7 @@
 
 #include "bench/report/charts.h"
 #include "bench/report/summary.h"
+#include "render/picture/image.h"
 
 /**
  * Draw all charts of a study. Where there is a picture of a scene (gz_report_picture()), it lies
@@ -31,5 +32,22 @@ bool gz_growth_chart_name(const struct gz_summary *summary, size_t scaling, char
 /** The measure of error that a group's first chart, maps and advice are about: perceived FLIP, or
  *  the first that was measured. False if none was. */
 bool gz_group_measure(const struct gz_group *group, enum gz_error_measure *out_measure);
+
+/** Draw the maps of time and of error over the gaze of a group's series. Errors as of
+ *  gz_study_charts_draw(). */
+enum gz_result gz_maps_draw(const struct gz_summary *summary, const struct gz_group *group,
+			    struct gz_charts *charts);
+
+/**
+ * The picture of one of the study's scenes with the first of its sizes, or smaller, by standard: as
+ * FOLDER/standard-SCENE-TRANSFER.png holds it, else rendered from the scene's file and kept there.
+ *
+ * @param[in,out] picture  zeroed, or one to be replaced
+ * @retval GZ_ERR_NOT_FOUND  there is neither, or the scene is not what it was: no transfer
+ *                           function over its volume has the study's data_hash; a warning says so
+ * @retval GZ_ERR_NO_MEM
+ */
+enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, const char *folder,
+				 const struct gz_log *log, struct gz_image *picture);
 
 #endif

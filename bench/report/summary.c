@@ -1,10 +1,9 @@
 #include "bench/report/summary.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "bench/report/summary_parts.h"
 
 /* Distribution of a column of @p rows; @p room for all of them. */
 static struct gz_distribution join_column(const struct gz_study_row *const *rows, size_t count,
@@ -185,6 +184,185 @@ static size_t pick(const struct gz_study_row *rows, size_t count, size_t variant
 	return found;
 }
 
+/* ---- fronts and curves ---- */
+
+/* Mean cost of a series; NaN where it was not measured. */
+static double mean_cost(const struct gz_series *series, enum gz_error_reference reference,
+			enum gz_error_measure measure)
+{
+	return gz_error_cost(gz_error_metrics[measure].kind,
+			     series->errors[reference][measure].mean);
+}
+
+static bool on_front(const struct gz_group *group, size_t place, enum gz_error_reference reference,
+		     enum gz_error_measure measure)
+{
+	const double ms = group->series[place].typical_ms;
+	const double cost = mean_cost(&group->series[place], reference, measure);
+	if (isnan(cost))
+		return false;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const double other_ms = group->series[i].typical_ms;
+		const double other = mean_cost(&group->series[i], reference, measure);
+		if (other_ms <= ms && other <= cost && (other_ms < ms || other < cost))
+			return false;
+	}
+	return true;
+}
+
+static void find_fronts(struct gz_group *group)
+{
+	for (size_t i = 0; i < group->series_count; i++)
+		for (int reference = 0; reference < GZ_ERROR_REFERENCES; reference++)
+			for (int measure = 0; measure < GZ_ERROR_MEASURES; measure++)
+				group->series[i].front[reference][measure] =
+					on_front(group, i, reference, measure);
+}
+
+static struct gz_curve *curve_of(struct gz_group *group, const char *method)
+{
+	for (size_t i = 0; i < group->curve_count; i++)
+		if (group->curves[i].method && strcmp(group->curves[i].method, method) == 0)
+			return &group->curves[i];
+	return NULL;
+}
+
+/* Insert a series into a curve behind those that take more samples. */
+static void insert_series(const struct gz_group *group, struct gz_curve *curve, size_t place)
+{
+	size_t at = curve->count++;
+	for (; at > 0; at--) {
+		if (group->series[curve->series[at - 1]].samples >= group->series[place].samples)
+			break;
+		curve->series[at] = curve->series[at - 1];
+	}
+	curve->series[at] = place;
+}
+
+static enum gz_result find_curves(const struct gz_study *study, struct gz_group *group)
+{
+	group->curves = calloc(group->series_count, sizeof group->curves[0]);
+	if (!group->curves)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const char *method = study->variants[group->series[i].variant].method;
+		struct gz_curve *curve = curve_of(group, method);
+		if (!curve) {
+			size_t *room = calloc(group->series_count, sizeof room[0]);
+			if (!room)
+				return GZ_ERR_NO_MEM;
+			curve = &group->curves[group->curve_count++];
+			*curve = (struct gz_curve) { .method = method, .series = room };
+		}
+		insert_series(group, curve, i);
+	}
+	return GZ_OK;
+}
+
+enum gz_error_reference gz_group_reference(const struct gz_group *group)
+{
+	for (size_t i = 0; i < group->series_count; i++)
+		for (int measure = 0; measure < GZ_ERROR_MEASURES; measure++)
+			if (group->series[i].errors[GZ_AGAINST_CONVERGED][measure].count > 0)
+				return GZ_AGAINST_CONVERGED;
+	return GZ_AGAINST_STANDARD;
+}
+
+/* A place on a curve, and the best one so far. */
+struct place {
+	double limited, wanted; /* what must be within a limit, what is to be least */
+	size_t series;
+};
+
+static void take_curve(struct place *best, double wanted, size_t series)
+{
+	if (isnan(best->wanted) || wanted < best->wanted) {
+		best->wanted = wanted;
+		best->series = series;
+	}
+}
+
+/* The least "wanted" where "limited" is at most @p limit, along the line through @p places. */
+static struct place least_within(const struct place *places, size_t count, double limit)
+{
+	struct place best = { NAN, NAN, GZ_SERIES_NONE };
+	for (size_t i = 0; i < count; i++) {
+		const struct place *here = &places[i], *next = here + 1;
+		if (here->limited <= limit)
+			take_curve(&best, here->wanted, here->series);
+		if (i + 1 == count || (here->limited <= limit) == (next->limited <= limit))
+			continue;
+		const double share = (limit - here->limited) / (next->limited - here->limited);
+		take_curve(&best, here->wanted + share * (next->wanted - here->wanted),
+			   here->series);
+	}
+	return best;
+}
+
+/* What of a curve is limited: its cost, or its time. */
+struct curve_limit {
+	enum gz_error_reference reference;
+	enum gz_error_measure measure;
+	bool of_cost;
+	double limit;
+};
+
+/* The least of what is not limited. */
+static double least_on_curve(const struct gz_group *group, const struct gz_curve *curve,
+			     const struct curve_limit *limit, size_t *out_series)
+{
+	struct place *places = calloc(curve->count, sizeof places[0]);
+	if (!places)
+		return NAN;
+	size_t count = 0;
+	for (size_t i = 0; i < curve->count; i++) {
+		const struct gz_series *series = &group->series[curve->series[i]];
+		const double cost = mean_cost(series, limit->reference, limit->measure);
+		if (isnan(cost))
+			continue;
+		places[count++] = (struct place) { limit->of_cost ? cost : series->typical_ms,
+						   limit->of_cost ? series->typical_ms : cost,
+						   curve->series[i] };
+	}
+	const struct place best = least_within(places, count, limit->limit);
+	free(places);
+	*out_series = best.series;
+	return best.wanted;
+}
+
+double gz_curve_time_at_cost(const struct gz_group *group, const struct gz_curve *curve,
+			     enum gz_error_reference reference, enum gz_error_measure measure,
+			     double cost, size_t *out_series)
+{
+	const struct curve_limit limit = { reference, measure, true, cost };
+	return least_on_curve(group, curve, &limit, out_series);
+}
+
+double gz_curve_cost_at_time(const struct gz_group *group, const struct gz_curve *curve,
+			     enum gz_error_reference reference, enum gz_error_measure measure,
+			     double limit_ms, size_t *out_series)
+{
+	const struct curve_limit limit = { reference, measure, false, limit_ms };
+	return least_on_curve(group, curve, &limit, out_series);
+}
+
+size_t gz_group_cheapest_within(const struct gz_group *group, enum gz_error_reference reference,
+				enum gz_error_measure measure, double cost)
+{
+	size_t best = GZ_SERIES_NONE;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const struct gz_series *series = &group->series[i];
+		const struct gz_error_summary *errors = &series->errors[reference][measure];
+		/* A point without an error says nothing about it. */
+		if (errors->count < series->point_count ||
+		    !(gz_error_cost(gz_error_metrics[measure].kind, errors->worst) <= cost))
+			continue;
+		if (best == GZ_SERIES_NONE || series->typical_ms < group->series[best].typical_ms)
+			best = i;
+	}
+	return best;
+}
+
 static enum gz_result fill_group(const struct gz_study *study, const struct gz_study_row *rows,
 				 size_t count, struct gz_group *group)
 {
@@ -211,8 +389,172 @@ static enum gz_result fill_group(const struct gz_study *study, const struct gz_s
 	for (size_t i = 0; i < count; i++)
 		group->reference_db = fmin(group->reference_db, rows[i].reference_db);
 	relate(study, group);
-	gz_group_find_fronts(group);
-	return gz_group_find_curves(study, group);
+	find_fronts(group);
+	return find_curves(study, group);
+}
+
+/* ---- growth ---- */
+
+static bool several_x(const struct gz_scaling_point *points, size_t count)
+{
+	for (size_t i = 1; i < count; i++)
+		if (points[i].x != points[0].x)
+			return true;
+	return false;
+}
+
+bool gz_scaling_fit(const struct gz_scaling_point *points, size_t count, double *out_exponent,
+		    double *out_factor, double *out_r2)
+{
+	for (size_t i = 0; i < count; i++)
+		if (!(points[i].x > 0) || !(points[i].ms > 0))
+			return false;
+	if (!several_x(points, count))
+		return false;
+	double mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+	for (size_t i = 0; i < count; i++) {
+		mean_x += log(points[i].x) / (double)count;
+		mean_y += log(points[i].ms) / (double)count;
+	}
+	for (size_t i = 0; i < count; i++) {
+		const double x = log(points[i].x) - mean_x, y = log(points[i].ms) - mean_y;
+		xx += x * x;
+		xy += x * y;
+		yy += y * y;
+	}
+	*out_exponent = xy / xx;
+	*out_factor = exp(mean_y - *out_exponent * mean_x);
+	*out_r2 = yy > 0 ? xy * xy / (xx * yy) : 1;
+	return true;
+}
+
+/* "cpu:threads=2,simd=avx2" is the stem "cpu:,simd=avx2" with 2 threads; 0 where the text does not
+ * say how many. */
+static int threads_of(const char *backend, char stem[GZ_NAME_SIZE])
+{
+	static const char key[] = "threads=";
+	const char *at = strstr(backend, key);
+	snprintf(stem, GZ_NAME_SIZE, "%s", backend);
+	if (!at)
+		return 0;
+	const char *digits = at + sizeof key - 1;
+	const size_t length = strspn(digits, "0123456789");
+	if (length == 0 || length > 4)
+		return 0;
+	snprintf(stem, GZ_NAME_SIZE, "%.*s%s", (int)(at - backend), backend, digits + length);
+	return (int)strtol(digits, NULL, 10);
+}
+
+static double x_of(const struct gz_study *study, const struct gz_group *group,
+		   enum gz_scaling_kind kind)
+{
+	char stem[GZ_NAME_SIZE];
+	const int *dims = study->scenes[group->scene].dims, *size = study->sizes[group->size];
+	switch (kind) {
+	case GZ_SCALING_PIXELS:
+		return (double)size[0] * size[1];
+	case GZ_SCALING_VOXELS:
+		return (double)dims[0] * dims[1] * dims[2];
+	case GZ_SCALING_THREADS:
+		return threads_of(study->backends[group->backend], stem);
+	}
+	return 0;
+}
+
+/* Whether two groups differ in nothing but what @p kind is about. */
+static bool alike_but(const struct gz_study *study, const struct gz_group *a,
+		      const struct gz_group *b, enum gz_scaling_kind kind)
+{
+	char stems[2][GZ_NAME_SIZE];
+	switch (kind) {
+	case GZ_SCALING_PIXELS:
+		return a->scene == b->scene && a->backend == b->backend;
+	case GZ_SCALING_VOXELS:
+		return a->size == b->size && a->backend == b->backend;
+	case GZ_SCALING_THREADS:
+		threads_of(study->backends[a->backend], stems[0]);
+		threads_of(study->backends[b->backend], stems[1]);
+		return a->scene == b->scene && a->size == b->size &&
+		       strcmp(stems[0], stems[1]) == 0;
+	}
+	return false;
+}
+
+static const struct gz_series *find_series(const struct gz_group *group, size_t variant)
+{
+	for (size_t i = 0; i < group->series_count; i++)
+		if (group->series[i].variant == variant)
+			return &group->series[i];
+	return NULL;
+}
+
+static int compare_points(const void *a, const void *b)
+{
+	const struct gz_scaling_point *p = a, *q = b;
+	return (p->x > q->x) - (p->x < q->x);
+}
+
+/* One variant from the groups that are like @p first, of which it is the first; a fit that cannot
+ * be made leaves nothing. */
+static enum gz_result fit_variant(struct gz_summary *summary, size_t first, size_t variant,
+				  enum gz_scaling_kind kind)
+{
+	const struct gz_group *group = &summary->groups[first];
+	struct gz_scaling scaling = { .kind = kind,
+				      .variant = variant,
+				      .scene = group->scene,
+				      .size = group->size,
+				      .backend = group->backend };
+	scaling.points = calloc(summary->group_count, sizeof scaling.points[0]);
+	if (!scaling.points)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = first; i < summary->group_count; i++) {
+		const struct gz_group *other = &summary->groups[i];
+		const struct gz_series *series = find_series(other, variant);
+		const double x = x_of(summary->study, other, kind);
+		if (series && x > 0 && alike_but(summary->study, group, other, kind))
+			scaling.points[scaling.point_count++] =
+				(struct gz_scaling_point) { x, series->typical_ms };
+	}
+	qsort(scaling.points, scaling.point_count, sizeof scaling.points[0], compare_points);
+	struct gz_scaling *grown = NULL;
+	if (gz_scaling_fit(scaling.points, scaling.point_count, &scaling.exponent, &scaling.factor,
+			   &scaling.r2)) {
+		grown = realloc(summary->scalings, (summary->scaling_count + 1) * sizeof grown[0]);
+		if (!grown) {
+			free(scaling.points);
+			return GZ_ERR_NO_MEM;
+		}
+		summary->scalings = grown;
+		summary->scalings[summary->scaling_count++] = scaling;
+	} else {
+		free(scaling.points);
+	}
+	return GZ_OK;
+}
+
+static bool is_first_of_its_like(const struct gz_summary *summary, size_t place,
+				 enum gz_scaling_kind kind)
+{
+	for (size_t i = 0; i < place; i++)
+		if (alike_but(summary->study, &summary->groups[i], &summary->groups[place], kind))
+			return false;
+	return true;
+}
+
+static enum gz_result find_scalings(struct gz_summary *summary)
+{
+	for (int kind = GZ_SCALING_PIXELS; kind <= GZ_SCALING_THREADS; kind++)
+		for (size_t i = 0; i < summary->group_count; i++) {
+			if (!is_first_of_its_like(summary, i, kind))
+				continue;
+			for (size_t v = 0; v < summary->study->variant_count; v++) {
+				const enum gz_result result = fit_variant(summary, i, v, kind);
+				if (result != GZ_OK)
+					return result;
+			}
+		}
+	return GZ_OK;
 }
 
 static bool same_group(const struct gz_study_row *a, const struct gz_study_row *b)
@@ -273,7 +615,7 @@ enum gz_result gz_summary_make(const struct gz_study *study, struct gz_summary *
 		result = fill_group(study, row, end - i, group);
 	}
 	if (result == GZ_OK)
-		result = gz_summary_find_scalings(&summary);
+		result = find_scalings(&summary);
 	if (result == GZ_OK)
 		*out_summary = summary;
 	else

@@ -11,8 +11,7 @@
 #define GZ_BENCH_REPORT_SUMMARY_H
 
 #include "base/result.h"
-#include "bench/report/distribution.h"
-#include "bench/report/error_metric.h"
+#include "bench/report/measures.h"
 #include "bench/study/columns.h"
 #include "bench/study/study.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/report/child.h"
+#include "bench/report/charts.h"
 #include "called.h"
 
 int place_make(struct place *place)

@@ -5,7 +5,7 @@
 #ifndef GZ_TESTS_BENCH_CALLED_H
 #define GZ_TESTS_BENCH_CALLED_H
 
-#include "bench/report/text.h"
+#include "base/text.h"
 
 /** A folder that is made anew for each test; said.txt in it is what was said last. */
 struct place {

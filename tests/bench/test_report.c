@@ -7,11 +7,12 @@
 #include <string.h>
 
 #include "bench/report/advice.h"
-#include "bench/report/labels.h"
+#include "bench/report/charts.h"
 #include "bench/report/names.h"
-#include "bench/report/page.h"
-#include "bench/report/palette.h"
-#include "bench/report/picture.h"
+#include "bench/report/plot.h"
+#include "bench/report/report.h"
+#include "bench/report/study_charts.h"
+#include "bench/report/template.h"
 #include "bench/study/stage.h"
 #include "made_study.h"
 
@@ -376,20 +377,70 @@ static void base64_is_that_of_the_standard(void **state)
 	}
 }
 
+static void template_is_filled_from_json(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *page, *json, *filled;
+	} pages[] = {
+		{ "a{{t}}b", "{\"t\": \"<&>\"}", "a&lt;&amp;&gt;b" },
+		{ "{{o.n}} {{none}}.", "{\"o\": {\"n\": 7}}", "7 ." },
+		{ "{{x|number}} {{y|number}} {{z|number}}",
+		  "{\"x\": 1234.5, \"y\": null, \"z\": \"inf\"}", "1234 – ∞" },
+		{ "{{x|percent}} {{x|similarity}} {{x|times}}", "{\"x\": 0.25}",
+		  "25 % 0.2500 0.25×" },
+		{ "{{t|svg}}{{t|html}}", "{\"t\": \"<b>\"}", "PGI+<b>" },
+		{ "{{#l}}{{.}},{{/l}}{{^l}}none{{/l}}", "{\"l\": [1, 2]}", "1,2," },
+		{ "{{#l}}{{.}},{{/l}}{{^l}}none{{/l}}", "{\"l\": []}", "none" },
+		{ "{{#o}}{{in}}{{out}}{{/o}}", "{\"out\": \"o\", \"o\": {\"in\": \"i\"}}", "io" },
+		{ "{{#a}}{{#a}}x{{/a}}{{/a}}{{#b}}y{{/b}}", "{\"a\": true, \"b\": false}", "x" },
+		{ "{{<f}}[{{t}}]{{/f}}{{>f}}{{>f}}", "{\"t\": \"i\"}", "[i][i]" },
+	};
+	for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
+		struct gz_text out = { 0 };
+		json_t *json = json_loads(pages[i].json, 0, NULL);
+		assert_true(gz_template_fill(pages[i].page, json, &out));
+		assert_string_equal(out.bytes ? out.bytes : "", pages[i].filled);
+		json_decref(json);
+		gz_text_free(&out);
+	}
+}
+
+static void template_that_is_wrong_is_refused(void **state)
+{
+	(void)state;
+	static const char *const pages[] = { "{{t",
+					     "{{#t}}a",
+					     "{{/t}}",
+					     "{{t|none}}",
+					     "{{>none}}",
+					     "{{}}",
+					     "{{<f}}{{>f}}{{/f}}{{>f}}" };
+	json_t *json = json_pack("{s:s}", "t", "text");
+	for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
+		struct gz_text out = { 0 };
+		if (gz_template_fill(pages[i], json, &out))
+			fail_msg("%s is filled", pages[i]);
+		gz_text_free(&out);
+	}
+	json_decref(json);
+}
+
 static void labels_lie_off_points_and_off_each_other(void **state)
 {
 	(void)state;
 	struct gz_label_field field = { .area = { 0, 0, 200, 100 } };
-	double x[2], y[2];
-	int side[2];
+	struct gz_label first = { .x = 90, .y = 50, .width = 40, .height = 10 }, second = first;
+	struct gz_label wide = { .x = 90, .y = 50, .width = 400, .height = 10 };
 	gz_labels_avoid(&field, (struct gz_box) { 100, 40, 160, 60 }, GZ_LABEL_ON_POINT);
-	assert_true(gz_labels_place(&field, 90, 50, 40, 10, false, &x[0], &y[0], &side[0]));
-	assert_true(side[0] <= 0); /* right of it is a point */
-	assert_true(gz_labels_place(&field, 90, 50, 40, 10, false, &x[1], &y[1], &side[1]));
-	assert_true(fabs(y[0] - y[1]) >= 10 || side[0] != side[1]);
+	assert_true(gz_labels_place(&field, &first));
+	assert_true(first.side <= 0); /* right of it is a point */
+	assert_true(gz_labels_place(&field, &second));
+	assert_true(fabs(first.anchor_y - second.anchor_y) >= 10 || first.side != second.side);
 	/* Nowhere is there room: left out, unless it must be. */
-	assert_false(gz_labels_place(&field, 90, 50, 400, 10, false, &x[0], &y[0], &side[0]));
-	assert_true(gz_labels_place(&field, 90, 50, 400, 10, true, &x[0], &y[0], &side[0]));
+	assert_false(gz_labels_place(&field, &wide));
+	wide.must = true;
+	assert_true(gz_labels_place(&field, &wide));
 	gz_labels_free(&field);
 }
 
@@ -422,6 +473,8 @@ TEST_SUITE(report)
 		cmocka_unit_test(page_of_a_partial_study_or_one_shard_says_so),
 		cmocka_unit_test(page_without_errors_has_no_empty_tables_of_them),
 		cmocka_unit_test(base64_is_that_of_the_standard),
+		cmocka_unit_test(template_is_filled_from_json),
+		cmocka_unit_test(template_that_is_wrong_is_refused),
 		cmocka_unit_test(labels_lie_off_points_and_off_each_other),
 		cmocka_unit_test(chart_gets_colours_for_dark_pages_and_stays_as_it_is),
 	};

@@ -3,8 +3,8 @@
  * The measures of error that a study holds, and how they are averaged: as a cost that is 0 for
  * equal pictures and grows, never as decibels or as similarity.
  */
-#ifndef GZ_BENCH_REPORT_ERROR_METRIC_H
-#define GZ_BENCH_REPORT_ERROR_METRIC_H
+#ifndef GZ_BENCH_REPORT_MEASURES_H
+#define GZ_BENCH_REPORT_MEASURES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -66,5 +66,29 @@ double gz_error_of_cost(enum gz_error_kind kind, double cost);
 
 /** Whether greater values mean less error. */
 bool gz_error_rises(enum gz_error_kind kind);
+
+/** Of values that are numbers; every field but count is NaN where there are none. */
+struct gz_distribution {
+	size_t count;
+	double mean;
+	double variance; /**< of the values as a whole population: divided by their number */
+	double least, p25, median, p75, p90, p95, p99, greatest;
+	double sum;
+	/** Time-weighted mean, sum of squares over sum: of frame times, what is on screen at a
+	 *  moment picked at random, since long frames stay longer. */
+	double perceived;
+};
+
+/**
+ * The quantile @p share of sorted values, linear between the two nearest (type 7 of Hyndman and
+ * Fan 1996, what numpy and R do unless told otherwise).
+ *
+ * @param share  0 to 1
+ * @return NaN for none
+ */
+double gz_quantile(const double *sorted, size_t count, double share);
+
+/** Sort @p values in place, NaN left out, and sum them up. */
+struct gz_distribution gz_distribution_of(double *values, size_t count);
 
 #endif
