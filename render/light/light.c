@@ -2,28 +2,30 @@
 
 #include <math.h>
 
+#include "render/picture/vector.h"
+
 static const char *const light_frame_names[] = { "camera", "world", NULL };
 
 #define AT(field) offsetof(struct gz_light, field)
 
 const struct gz_option gz_light_options[] = {
 	{ "light.direction", GZ_OPTION_DOUBLE, AT(direction), -1e6, 1e6, .count = 3,
-	  .preset = "-0.3 0.5 1", .help = "towards the light" },
+	  .preset = "-0.3 0.5 1", .help = "direction towards the light, any length" },
 	{ "light.frame", GZ_OPTION_CHOICE, AT(frame), .choices = light_frame_names,
 	  .preset = "camera",
-	  .help = "whose axes: camera (right, up, towards the viewer) or world" },
+	  .help = "axes of light.direction: camera (right, up, towards the viewer) or world" },
 	{ "light.ambient", GZ_OPTION_DOUBLE, AT(ambient), 0, 1, .preset = "0.35",
-	  .help = "share of light that comes from everywhere" },
+	  .help = "ambient light, the share that comes from all directions" },
 	{ "light.diffuse", GZ_OPTION_DOUBLE, AT(diffuse), 0, 1, .preset = "0.65",
-	  .help = "share that goes with the angle of the surface" },
+	  .help = "diffuse reflection, the share that depends on the angle of the surface" },
 	{ "light.specular", GZ_OPTION_DOUBLE, AT(specular), 0, 1, .preset = "0.25",
 	  .help = "strength of highlights" },
 	{ "light.shininess", GZ_OPTION_DOUBLE, AT(shininess), 1, 1000, .preset = "24",
-	  .help = "how small highlights are" },
+	  .help = "exponent of highlights; larger is smaller and sharper" },
 	{ "light.occlusion", GZ_OPTION_DOUBLE, AT(occlusion), 0, 1, .preset = "0",
-	  .help = "how much of the ambient light what lies around may take" },
+	  .help = "ambient occlusion, the share of ambient light that surroundings can block" },
 	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(occlusion_radius), 2, 64, .preset = "8",
-	  .help = "how far around, voxel lengths" },
+	  .help = "radius of ambient occlusion, voxel lengths" },
 };
 const size_t gz_light_option_count = sizeof gz_light_options / sizeof gz_light_options[0];
 
@@ -34,31 +36,18 @@ bool gz_light_valid(const struct gz_light *light)
 	       (direction[0] != 0 || direction[1] != 0 || direction[2] != 0);
 }
 
-static void normalise(double v[3])
-{
-	const double scale = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-	for (int i = 0; i < 3; i++)
-		v[i] /= scale;
-	const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-	for (int i = 0; i < 3; i++)
-		v[i] /= length;
-}
-
-/* Right, up and towards the viewer, from how rays differ between pixels. */
+/* Axes of the camera in world directions: right, up, towards the viewer. */
 static void camera_axes(const struct gz_ray_frame *rays, double axes[3][3])
 {
 	double *right = axes[0], *up = axes[1], *back = axes[2];
 	for (int i = 0; i < 3; i++) {
-		/* one of the two is zero, by projection */
+		/* one of the two terms is zero, depending on the projection */
 		right[i] = rays->origin_dx[i] + rays->direction_dx[i];
 		up[i] = -rays->origin_dy[i] - rays->direction_dy[i];
 	}
-	normalise(right);
-	normalise(up);
-	for (int i = 0; i < 3; i++) {
-		const int j = (i + 1) % 3, k = (i + 2) % 3;
-		back[i] = right[j] * up[k] - right[k] * up[j];
-	}
+	(void)gz_normalise3(right);
+	(void)gz_normalise3(up);
+	gz_cross3(right, up, back);
 }
 
 void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame *rays,
@@ -66,13 +55,13 @@ void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame 
 {
 	double given[3] = { light->direction[0], light->direction[1], light->direction[2] };
 	double axes[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-	normalise(given);
+	(void)gz_normalise3(given);
 	if (light->frame == GZ_LIGHT_CAMERA)
 		camera_axes(rays, axes);
 	for (int i = 0; i < 3; i++)
 		out_direction[i] =
 			given[0] * axes[0][i] + given[1] * axes[1][i] + given[2] * axes[2][i];
-	normalise(out_direction);
+	(void)gz_normalise3(out_direction);
 }
 
 void gz_light_gradient_scale(const struct gz_volume *volume, const struct gz_transfer_table *table,

@@ -1,7 +1,7 @@
 /**
  * @file
- * The directional light: section [light] of a scene, and what of it holds for all samples of a
- * frame.
+ * The directional light: section [light] of a scene, and the numbers that are the same for all
+ * samples of a frame.
  */
 #ifndef GZ_RENDER_LIGHT_LIGHT_H
 #define GZ_RENDER_LIGHT_LIGHT_H
@@ -14,14 +14,14 @@
 #include "render/picture/camera.h"
 #include "render/transfer/transfer_table.h"
 
-/** What a light's direction turns with. */
+/** The axes that a light's direction refers to. */
 enum gz_light_frame {
 	GZ_LIGHT_CAMERA, /**< x right, y up, z towards the viewer */
 	GZ_LIGHT_WORLD,
 };
 
 /**
- * One light, far away and white, and how surfaces answer it. At a sample with the colour c let
+ * One distant white light, and how surfaces reflect it. At a sample with the colour c let
  *
  *   g = gradient of the data in world directions, in units of the transfer function's value (0 to 1
  *       over its range) per voxel length: along each axis the central difference between what lies
@@ -33,10 +33,10 @@ enum gz_light_frame {
  *   lit = c * (ambient * (1 - occlusion * o) + diffuse * d) + specular * s
  *   w = |g|^2 / (|g|^2 + GZ_LIGHT_GRADIENT^2)
  *
- * with o what lies around, see render/light/occlusion.h. The sample's colour becomes c + w (lit -
- * c), clamped to [0, 1] a channel: where the gradient is too small to have a direction, c stays as
- * it is. Nothing of it changes opacity. f and s are ramps, not steps, because a side that is seen
- * edge on would otherwise be bright or dark by chance. The constants are in
+ * with o the ambient occlusion, see render/light/occlusion.h. The sample's colour becomes
+ * c + w (lit - c), each channel clamped to [0, 1]: if the gradient is too small to have a
+ * direction, c does not change. Lighting never changes opacity. f and s are ramps, not steps,
+ * because a surface seen edge-on would otherwise be bright or dark by chance. The constants are in
  * render/light/light_constants.h.
  */
 struct gz_light {
@@ -44,24 +44,24 @@ struct gz_light {
 	int frame;                         /**< enum gz_light_frame */
 	double ambient, diffuse, specular; /**< [0, 1] */
 	double shininess;                  /**< [1, 1000] */
-	double occlusion; /**< how much of the ambient light what lies around may take, [0, 1]; 0 =
-			     none is looked for */
-	double occlusion_radius; /**< how far around, voxel lengths */
+	double occlusion;        /**< share of ambient light that surroundings can block, [0, 1];
+				    0 turns ambient occlusion off */
+	double occlusion_radius; /**< voxel lengths */
 };
 
 /** Table over struct gz_light: "light.…". */
 extern const struct gz_option gz_light_options[];
 extern const size_t gz_light_option_count;
 
-/** Whether every field is within its range and the direction is one. */
+/** Whether every field is within its range and the direction is not zero. */
 bool gz_light_valid(const struct gz_light *light);
 
 /** Unit vector towards the light, in world directions, for the camera that made @p rays. */
 void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame *rays,
 			double out_direction[3]);
 
-/** By what to multiply the difference between the stored values one voxel to either side, along
- *  each axis, to have the gradient of struct gz_light. */
+/** The factor for each axis that turns the difference between the stored values one voxel to either
+ *  side into the gradient of struct gz_light. */
 void gz_light_gradient_scale(const struct gz_volume *volume, const struct gz_transfer_table *table,
 			     double out_scale[3]);
 

@@ -4,18 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What counts as filled to the brim. A cell of 32^3 voxels, the largest, sums up to below 2^32. */
+/* A voxel that is filled completely. The largest cell, 32^3 voxels, sums up to less than 2^32. */
 enum { FULL = 65535 };
 
-/* Cells to each side that the weights of an axis reach: a cell is longer than R / 8, because
- * halving it twice from R / 2, once for the power of two and once for coarse spacing, is the most.
- */
+/* Most cells that the weights reach to either side. A cell is longer than R / 8: it is at most R /
+ * 2 and is halved at most twice, once for the power of two and once for coarse spacing. */
 enum { REACH_MAX = 8 };
 
 /* Cells along the longest axis. */
 enum { LINE_MAX_CELLS = GZ_VOLUME_DIM_MAX };
 
-/* Stored values of integer voxels. */
+/* Number of stored values of 16-bit voxels. */
 enum { INTEGER_VALUES = 65536 };
 
 static double finest_spacing(const struct gz_volume *volume)
@@ -36,20 +35,20 @@ void gz_occlusion_edges(const struct gz_volume *volume, double radius, int out_e
 	}
 }
 
-/* What the workers are given. */
+/* The job that the workers share. */
 struct job {
 	const struct gz_volume *volume;
 	const struct gz_transfer_table *table;
 	struct gz_occlusion *occlusion;
-	int from[3], to[3];                        /* voxels within the clip box */
-	uint16_t by_entry[GZ_TRANSFER_TABLE_SIZE]; /* how much it fills */
-	uint16_t by_value[INTEGER_VALUES];         /* the same of integer voxels */
-	int axis;                                  /* of the weighting */
+	int from[3], to[3];                        /* voxels within the clip box, [from, to) */
+	uint16_t by_entry[GZ_TRANSFER_TABLE_SIZE]; /* how much a voxel fills, by its table entry */
+	uint16_t by_value[INTEGER_VALUES];         /* how much a voxel fills, by its stored value */
+	int axis;                                  /* along which cells are weighted */
 	float weights[2 * REACH_MAX + 1]; /* from the cell at -reach to the one at +reach */
 	int reach;
 };
 
-static int entry_of(const struct gz_transfer_table *table, float stored)
+static int nearest_entry(const struct gz_transfer_table *table, float stored)
 {
 	const float last = GZ_TRANSFER_TABLE_SIZE - 1;
 	const float entry = stored * (float)table->scale + (float)table->bias + 0.5F;
@@ -66,10 +65,10 @@ static void find_filled(struct job *job, double radius)
 		return;
 	const int values = job->volume->type == GZ_VOXEL_U8 ? 256 : INTEGER_VALUES;
 	for (int value = 0; value < values; value++)
-		job->by_value[value] = job->by_entry[entry_of(job->table, (float)value)];
+		job->by_value[value] = job->by_entry[nearest_entry(job->table, (float)value)];
 }
 
-/* Voxels whose middle lies in the clip box. */
+/* The voxels whose centres lie in the clip box. */
 static void find_clip(struct job *job, const struct gz_clip_box *clip)
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -92,7 +91,7 @@ static uint32_t sum_row(const struct job *job, size_t from, int count)
 			sum += job->by_value[((const uint16_t *)volume->voxels)[from + (size_t)i]];
 	else
 		for (int i = 0; i < count; i++)
-			sum += job->by_entry[entry_of(
+			sum += job->by_entry[nearest_entry(
 				job->table, ((const float *)volume->voxels)[from + (size_t)i])];
 	return sum;
 }
@@ -200,7 +199,7 @@ static void run_parts(struct gz_workers *workers, gz_workers_part *part, struct 
 		part(job, i, 0);
 }
 
-static void run(struct job *job, double radius, struct gz_workers *workers)
+static void make_grid(struct job *job, double radius, struct gz_workers *workers)
 {
 	const int *dims = job->occlusion->dims;
 	run_parts(workers, fill_part, job, (size_t)dims[1] * (size_t)dims[2]);
@@ -231,7 +230,7 @@ enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 	job->occlusion = occlusion;
 	find_filled(job, radius);
 	find_clip(job, clip);
-	run(job, radius, workers);
+	make_grid(job, radius, workers);
 	free(job);
 	return GZ_OK;
 }

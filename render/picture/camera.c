@@ -1,43 +1,20 @@
 #include "render/picture/camera.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "render/picture/vector.h"
 
 #define RAD_PER_DEG (3.14159265358979323846 / 180.0)
 
-/* Chosen: an orbit stops this far from the poles, where up and the view would be parallel. */
+/* Chosen: an orbit stops this far before the poles, where up and the view would be parallel. */
 #define POLE_MARGIN_DEG 1.0
 
-/* Below this sine of the angle between them, up counts as parallel to the view (chosen: well above
- * rounding, well below any angle meant). */
+/* Up counts as parallel to the view if the sine of the angle between them is below this (chosen:
+ * well above rounding errors, well below any angle that a user sets). */
 #define PARALLEL_SINE 1e-6
 
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/* False for a vector that has no direction. Scaled first, so that no length over- or underflows. */
-static bool normalise(double v[3])
-{
-	double scale = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-	if (!(scale > 0) || !isfinite(scale))
-		return false;
-	for (int i = 0; i < 3; i++)
-		v[i] /= scale;
-	double length = sqrt(dot(v, v));
-	for (int i = 0; i < 3; i++)
-		v[i] /= length;
-	return true;
-}
-
-static bool finite3(const double v[3])
+static bool is_finite3(const double v[3])
 {
 	return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
@@ -60,18 +37,18 @@ static bool forward_of(const struct gz_camera *camera, double out[3])
 {
 	for (int i = 0; i < 3; i++)
 		out[i] = camera->look_at[i] - camera->eye[i];
-	return normalise(out);
+	return gz_normalise3(out);
 }
 
-/* To the right of the view as up says, its length the sine between them; false where up says
- * nothing. */
+/* The direction to the right of the view; its length is the sine of the angle between view and up.
+ * False if up has no direction or is parallel to the view. */
 static bool right_by_up(const struct gz_camera *camera, const double forward[3], double out[3])
 {
 	double up[3] = { camera->up[0], camera->up[1], camera->up[2] };
-	if (!normalise(up))
+	if (!gz_normalise3(up))
 		return false;
-	cross(forward, up, out);
-	return sqrt(dot(out, out)) >= PARALLEL_SINE;
+	gz_cross3(forward, up, out);
+	return gz_length3(out) >= PARALLEL_SINE;
 }
 
 bool gz_camera_up_counts(const struct gz_camera *camera)
@@ -87,16 +64,16 @@ static bool view_axes_make(const struct gz_camera *camera, struct view_axes *out
 		return false;
 	if (!right_by_up(camera, out->forward, out->right)) {
 		least_parallel_axis(out->forward, other);
-		cross(out->forward, other, out->right);
+		gz_cross3(out->forward, other, out->right);
 	}
-	normalise(out->right);
-	cross(out->right, out->forward, out->up);
+	gz_normalise3(out->right);
+	gz_cross3(out->right, out->forward, out->up);
 	return true;
 }
 
 static bool camera_valid(const struct gz_camera *camera)
 {
-	if (!finite3(camera->eye) || !finite3(camera->look_at) || !finite3(camera->up))
+	if (!is_finite3(camera->eye) || !is_finite3(camera->look_at) || !is_finite3(camera->up))
 		return false;
 	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
 		return camera->fov_deg > 0 && camera->fov_deg < 180;
@@ -104,7 +81,7 @@ static bool camera_valid(const struct gz_camera *camera)
 	       isfinite(camera->height);
 }
 
-/* Height of the picture: world units, or, in perspective, at distance 1. */
+/* Height of the picture, world units; in perspective, at distance 1 from the eye. */
 static double picture_height(const struct gz_camera *camera)
 {
 	if (camera->projection == GZ_PROJECTION_ORTHOGRAPHIC)
@@ -112,16 +89,23 @@ static double picture_height(const struct gz_camera *camera)
 	return 2 * tan(0.5 * camera->fov_deg * RAD_PER_DEG);
 }
 
-/* out00 + x dx + y dy = the point of the picture plane under the centre of pixel (x, y). */
-static void picture_plane(const struct view_axes *axes, double height, int width_px, int height_px,
-			  const double centre[3], double out00[3], double dx[3], double dy[3])
+/* The plane of a picture: the centre of pixel (x, y) is at00 + x dx + y dy. */
+struct picture_plane {
+	double at00[3], dx[3], dy[3];
+};
+
+/* The picture plane whose middle is @p centre, with square pixels of edge @p pixel. */
+static struct picture_plane picture_plane_at(const struct view_axes *axes, const double centre[3],
+					     double pixel, int width, int height)
 {
-	double pixel = height / height_px; /* pixels are square */
+	struct picture_plane plane;
 	for (int i = 0; i < 3; i++) {
-		dx[i] = pixel * axes->right[i];
-		dy[i] = -pixel * axes->up[i];
-		out00[i] = centre[i] + 0.5 * (1 - width_px) * dx[i] + 0.5 * (1 - height_px) * dy[i];
+		plane.dx[i] = pixel * axes->right[i];
+		plane.dy[i] = -pixel * axes->up[i];
+		plane.at00[i] = centre[i] + 0.5 * (1 - width) * plane.dx[i] +
+				0.5 * (1 - height) * plane.dy[i];
 	}
+	return plane;
 }
 
 enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int height,
@@ -132,28 +116,27 @@ enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int hei
 		return GZ_ERR_INVAL;
 
 	struct gz_ray_frame rays = { 0 };
-	double extent = picture_height(camera);
-	if (camera->projection == GZ_PROJECTION_PERSPECTIVE) {
-		for (int i = 0; i < 3; i++)
-			rays.origin00[i] = camera->eye[i];
-		picture_plane(&axes, extent, width, height, axes.forward, rays.direction00,
-			      rays.direction_dx, rays.direction_dy);
-	} else {
-		for (int i = 0; i < 3; i++)
-			rays.direction00[i] = axes.forward[i];
-		picture_plane(&axes, extent, width, height, camera->eye, rays.origin00,
-			      rays.origin_dx, rays.origin_dy);
-	}
+	const bool perspective = camera->projection == GZ_PROJECTION_PERSPECTIVE;
+	const struct picture_plane plane =
+		picture_plane_at(&axes, perspective ? axes.forward : camera->eye,
+				 picture_height(camera) / height, width, height);
+	memcpy(perspective ? rays.direction00 : rays.origin00, plane.at00, sizeof plane.at00);
+	memcpy(perspective ? rays.direction_dx : rays.origin_dx, plane.dx, sizeof plane.dx);
+	memcpy(perspective ? rays.direction_dy : rays.origin_dy, plane.dy, sizeof plane.dy);
+	if (perspective)
+		memcpy(rays.origin00, camera->eye, sizeof rays.origin00);
+	else
+		memcpy(rays.direction00, axes.forward, sizeof rays.direction00);
 	*out_rays = rays;
 	return GZ_OK;
 }
 
 /* Rodrigues' rotation of v about the unit vector axis. */
-static void rotate(double v[3], const double axis[3], double angle_deg)
+static void rotate_vector(double v[3], const double axis[3], double angle_deg)
 {
 	double c = cos(angle_deg * RAD_PER_DEG), s = sin(angle_deg * RAD_PER_DEG);
-	double side[3], along = dot(axis, v) * (1 - c);
-	cross(axis, v, side);
+	double side[3], along = gz_dot3(axis, v) * (1 - c);
+	gz_cross3(axis, v, side);
 	for (int i = 0; i < 3; i++)
 		v[i] = v[i] * c + side[i] * s + axis[i] * along;
 }
@@ -163,19 +146,18 @@ static void rotate_eye(struct gz_camera *camera, const double axis[3], double an
 	double arm[3];
 	for (int i = 0; i < 3; i++)
 		arm[i] = camera->eye[i] - camera->look_at[i];
-	rotate(arm, axis, angle_deg);
+	rotate_vector(arm, axis, angle_deg);
 	for (int i = 0; i < 3; i++)
 		camera->eye[i] = camera->look_at[i] + arm[i];
 }
 
-/* The axis that turning goes about: up as given, or what the picture shows as up where it has no
- * direction. */
+/* The axis that the eye turns about: the camera's up, or the picture's if up is zero. */
 static bool turn_axis(const struct gz_camera *camera, double out[3])
 {
 	struct view_axes axes;
 	for (int i = 0; i < 3; i++)
 		out[i] = camera->up[i];
-	if (normalise(out))
+	if (gz_normalise3(out))
 		return true;
 	if (!view_axes_make(camera, &axes))
 		return false;
@@ -200,9 +182,8 @@ void gz_camera_orbit(struct gz_camera *camera, double right_deg, double down_deg
 	rotate_eye(camera, pole, -right_deg);
 	if (!view_axes_make(camera, &axes))
 		return;
-	/* Dragging down tips the near side down, which is the eye going up: its angle from the pole
-	 * shrinks. */
-	double from_pole_deg = acos(fmax(-1, fmin(1, -dot(axes.forward, pole)))) / RAD_PER_DEG;
+	/* Dragging down tips the near side of the volume down: the eye rises towards the pole. */
+	double from_pole_deg = acos(fmax(-1, fmin(1, -gz_dot3(axes.forward, pole)))) / RAD_PER_DEG;
 	double wanted_deg = from_pole_deg - down_deg;
 	wanted_deg = fmax(POLE_MARGIN_DEG, fmin(180 - POLE_MARGIN_DEG, wanted_deg));
 	rotate_eye(camera, axes.right, wanted_deg - from_pole_deg);
@@ -226,7 +207,7 @@ static double distance_of(const struct gz_camera *camera)
 	double arm[3];
 	for (int i = 0; i < 3; i++)
 		arm[i] = camera->eye[i] - camera->look_at[i];
-	return sqrt(dot(arm, arm));
+	return gz_length3(arm);
 }
 
 void gz_camera_pan(struct gz_camera *camera, double right_heights, double up_heights)
@@ -253,8 +234,8 @@ void gz_camera_roll(struct gz_camera *camera, double angle_deg)
 		return;
 	for (int i = 0; i < 3; i++)
 		camera->up[i] = axes.up[i];
-	/* Clockwise seen from the eye, so that what it sees goes the other way. */
-	rotate(camera->up, axes.forward, angle_deg);
+	/* Up turns clockwise seen from the eye, so the picture turns counter-clockwise. */
+	rotate_vector(camera->up, axes.forward, angle_deg);
 }
 
 void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection projection)
@@ -296,15 +277,15 @@ bool gz_camera_project(const struct gz_camera *camera, int width, int height, co
 		return false;
 	for (int i = 0; i < 3; i++)
 		arm[i] = world[i] - camera->eye[i];
-	double depth = dot(arm, axes.forward);
+	double depth = gz_dot3(arm, axes.forward);
 	if (!(depth > 0))
 		return false;
 	double extent = picture_height(camera);
 	if (camera->projection == GZ_PROJECTION_PERSPECTIVE)
 		extent *= depth;
 	double pixels_per_unit = height / extent;
-	out_point->x = (float)(0.5 + dot(arm, axes.right) * pixels_per_unit / width);
-	out_point->y = (float)(0.5 - dot(arm, axes.up) * pixels_per_unit / height);
+	out_point->x = (float)(0.5 + gz_dot3(arm, axes.right) * pixels_per_unit / width);
+	out_point->y = (float)(0.5 - gz_dot3(arm, axes.up) * pixels_per_unit / height);
 	return true;
 }
 

@@ -12,20 +12,22 @@
 
 enum gz_projection { GZ_PROJECTION_PERSPECTIVE, GZ_PROJECTION_ORTHOGRAPHIC };
 
+/** A camera. Valid if everything is finite, eye and look_at differ, and fov_deg (perspective) or
+ *  height (orthographic) is in range. */
 struct gz_camera {
 	double eye[3];
 	double look_at[3];
-	double up[3];
-	double fov_deg; /**< vertical, above 0 and below 180; perspective */
-	double height;  /**< of the view, world units, above 0; orthographic */
+	double up[3];   /**< any length; parallel to the view or zero: see gz_camera_rays() */
+	double fov_deg; /**< perspective: vertical field of view, degrees, above 0 and below 180 */
+	double height;  /**< orthographic: height of the view, world units, above 0 */
 	enum gz_projection projection;
 };
 
 /**
- * A camera made ready for a picture: the ray of pixel (x, y), row 0 on top, through its centre, is
+ * The rays of a picture. The ray through the centre of pixel (x, y), row 0 on top, is
  *   origin    = origin00    + x * origin_dx    + y * origin_dy
  *   direction = direction00 + x * direction_dx + y * direction_dy   (not normalised)
- * where one of the two differences is zero, by projection.
+ * The differences of origin are zero in perspective, those of direction in orthographic projection.
  */
 struct gz_ray_frame {
 	double origin00[3], origin_dx[3], origin_dy[3];
@@ -33,52 +35,61 @@ struct gz_ray_frame {
 };
 
 /**
- * Prepare rays for a picture. An up vector parallel to the view (or zero) is replaced by the axis
- * least parallel to it.
+ * Make the rays of a picture. An up vector that is zero or parallel to the view is replaced by the
+ * axis least parallel to the view.
  *
- * @retval GZ_ERR_INVAL  eye equals look_at, something is not finite, or a value is out of range
+ * @param width, height  of the picture, px, at least 1
+ * @retval GZ_ERR_INVAL  the camera is not valid, or a side is below 1; not logged
  */
 enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int height,
 			      struct gz_ray_frame *out_rays);
 
-/** Whether up has a direction other than the view's, so that it is not replaced. */
+/** Whether up is used: it is not zero and not parallel to the view. */
 bool gz_camera_up_counts(const struct gz_camera *camera);
 
-/** Turn the eye about the up axis through look_at, degrees; positive turns counter-clockwise seen
- * from the tip of up. */
+/** Turn the eye about the axis up through look_at, degrees; positive angles turn counter-clockwise
+ *  seen from the tip of up. Nothing happens if the angle is not finite. */
 void gz_camera_turn(struct gz_camera *camera, double angle_deg);
 
-/** Orbit for a mouse drag: about up, and about the view's right axis, stopping short of the poles.
- */
+/** Orbit for a mouse drag, degrees: to the right about up, and down about the view's right axis.
+ *  The eye stops one degree before the poles. */
 void gz_camera_orbit(struct gz_camera *camera, double right_deg, double down_deg);
 
-/** Multiply the distance to look_at (perspective) or the height (orthographic) by @p factor > 0. */
+/** Multiply the distance to look_at (perspective) or the height (orthographic) by @p factor, which
+ *  must be above 0; otherwise nothing happens. */
 void gz_camera_zoom(struct gz_camera *camera, double factor);
 
-/** Move what is in the picture by shares of the picture's height: in perspective, what is as far as
- * look_at. Eye and look_at go the other way. */
+/** Move the picture's content to the right and up, as shares of the picture's height; in
+ *  perspective the content at the distance of look_at. Eye and look_at move the other way. */
 void gz_camera_pan(struct gz_camera *camera, double right_heights, double up_heights);
 
-/** Turn the picture about its centre, counter-clockwise; up becomes what the picture has on top. */
+/** Turn the picture about its centre, degrees counter-clockwise. Up becomes the direction that is
+ * on top of the picture. */
 void gz_camera_roll(struct gz_camera *camera, double angle_deg);
 
-/** Change the projection so that what is at look_at keeps its size: by the height or, in
- * perspective, by the distance. Nothing where that is out of reach. */
+/** Change the projection and keep the size of what is at look_at: sets the height, or, for
+ *  perspective, the distance. Nothing happens if there is no such height or distance. */
 void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection projection);
 
 /**
- * Look along an axis of the world at look_at, from as far as before: from +x, +y or +z, which of a
- * volume that tells its sides are right, front and above. On top is z, along z itself y.
+ * Look along an axis of the world at look_at, from the current distance: from +x, +y or +z, which
+ * are right, front and above of an oriented volume. z is on top, or y if the view is along z.
  *
- * @param axis   0 to 2; nothing for others
- * @param other  from the other side
+ * @param axis   0 to 2; nothing happens for others
+ * @param other  look from the opposite side
  */
 void gz_camera_look_along(struct gz_camera *camera, int axis, bool other);
 
 /** Whether two cameras hold equal values. */
 bool gz_camera_same(const struct gz_camera *a, const struct gz_camera *b);
 
-/** Where a world point appears: normalised picture coordinates. False if it is behind the eye. */
+/**
+ * Where a point of the world appears in the picture.
+ *
+ * @param width, height   of the picture, px
+ * @param[out] out_point  normalised picture coordinates, 0 to 1 within the picture
+ * @return false if the point is behind the eye or the camera is not valid
+ */
 bool gz_camera_project(const struct gz_camera *camera, int width, int height, const double world[3],
 		       struct gz_point *out_point);
 

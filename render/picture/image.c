@@ -29,9 +29,9 @@ void gz_image_free(struct gz_image *image)
 	*image = (struct gz_image) { 0 };
 }
 
-/* The source pixels under one target pixel along one axis, in source pixels. */
+/* The source pixels that one target pixel covers along one axis, in source pixels. */
 struct footprint {
-	double begin, end; /* bilinear: end is begin */
+	double begin, end; /* equal: interpolate at begin */
 	int first, last;
 };
 
@@ -44,14 +44,14 @@ static struct footprint footprint_of(int target, int target_count, int source_co
 {
 	double scale = (double)source_count / target_count;
 	struct footprint f = { .begin = target * scale, .end = (target + 1) * scale };
-	if (scale <= 1) /* between the centres of two source pixels */
+	if (scale <= 1) /* interpolate between the centres of two source pixels */
 		f.begin = f.end = (target + 0.5) * scale - 0.5;
 	f.first = clamp_index(floor(f.begin), source_count);
 	f.last = clamp_index(scale <= 1 ? floor(f.begin) + 1 : ceil(f.end) - 1, source_count);
 	return f;
 }
 
-static double weight_of(const struct footprint *f, int i)
+static double source_weight(const struct footprint *f, int i)
 {
 	if (f->end > f->begin)
 		return fmin(f->end, i + 1) - fmax(f->begin, i);
@@ -64,9 +64,9 @@ static void resample_pixel(const struct gz_image *source, const struct footprint
 	double sum[3] = { 0 }, total = 0;
 	for (int y = fy->first; y <= fy->last; y++) {
 		const uint8_t *row = source->pixels + (size_t)y * (size_t)source->width * 4;
-		double wy = weight_of(fy, y);
+		double wy = source_weight(fy, y);
 		for (int x = fx->first; x <= fx->last; x++) {
-			double w = wy * weight_of(fx, x);
+			double w = wy * source_weight(fx, x);
 			total += w;
 			for (int c = 0; c < 3; c++)
 				sum[c] += w * row[(size_t)x * 4 + (size_t)c];

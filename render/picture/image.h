@@ -7,9 +7,11 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/log.h"
 #include "base/result.h"
+#include "base/text.h"
 
 /** Longest side of a picture, pixels. */
 #define GZ_IMAGE_SIDE_MAX 16384
@@ -20,11 +22,16 @@ struct gz_image {
 	uint8_t *pixels;   /**< width * height * 4 bytes, aligned to 64 */
 };
 
-/** Make room for a picture, keeping the buffer where it already fits; contents are undefined.
- *  GZ_ERR_INVAL, GZ_ERR_NO_MEM leave the image as it was. Zero-initialised is a valid start. */
+/**
+ * Make room for a picture of @p width by @p height pixels. The buffer is kept if it has the right
+ * size; what the pixels hold is undefined. A zero-initialised image may be resized.
+ *
+ * @retval GZ_ERR_INVAL   a side is not 1 to GZ_IMAGE_SIDE_MAX; the image is unchanged
+ * @retval GZ_ERR_NO_MEM  the image is unchanged
+ */
 enum gz_result gz_image_resize(struct gz_image *image, int width, int height);
 
-/** The pixels as words, as planes have them. */
+/** The pixels as words of struct gz_plane: R in the lowest byte on a little-endian machine. */
 static inline uint32_t *gz_image_words(const struct gz_image *image)
 {
 	return (uint32_t *)(void *)image->pixels; /* aligned to 64 bytes */
@@ -33,29 +40,58 @@ static inline uint32_t *gz_image_words(const struct gz_image *image)
 /** Free the pixels and zero the struct. */
 void gz_image_free(struct gz_image *image);
 
-/** Write an opaque RGB PNG. GZ_ERR_IO (disk full, no such folder): logged; no partial file stays.
+/**
+ * Write an opaque RGB PNG. A regular file is written under a temporary name and then renamed, so
+ * that @p path never holds half a picture; a device or pipe is written to directly.
+ *
+ * @retval GZ_ERR_INVAL  @p image has no pixels; not logged
+ * @retval GZ_ERR_IO     the disk is full, there is no such folder, …; logged
  */
 enum gz_result gz_image_write_png(const struct gz_image *image, const char *path,
 				  const struct gz_log *log);
 
 /** A text in a PNG: an iTXt chunk (PNG third edition, section 11.3.3.4). */
 struct gz_image_text {
-	const char *keyword; /**< 1 to 79 bytes of Latin-1, no blank at an end */
+	const char *keyword; /**< 1 to 79 bytes of Latin-1, no blank at either end */
 	const char *text;    /**< UTF-8 */
 };
 
-/** As gz_image_write_png(), with texts before the pixels. */
+/** As gz_image_write_png(); puts @p count texts in front of the pixels. */
 enum gz_result gz_image_write_png_with(const struct gz_image *image,
 				       const struct gz_image_text *texts, size_t count,
 				       const char *path, const struct gz_log *log);
 
-/** Read any PNG as RGBA, alpha forced to 255; what @p out_image held (zeroed: nothing) is freed.
- * GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT, GZ_ERR_NO_MEM: logged. */
+/**
+ * Read any PNG as RGBA; alpha becomes 255.
+ *
+ * @param[out] out_image  what it held is freed; zero-initialised is empty
+ * @retval GZ_ERR_NOT_FOUND  the file cannot be opened; logged
+ * @retval GZ_ERR_FORMAT     no PNG, damaged, or a side above GZ_IMAGE_SIDE_MAX; logged
+ * @retval GZ_ERR_NO_MEM     logged
+ */
 enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 				 struct gz_image *out_image);
 
-/** Scale @p source to the size of @p target: box filter where it shrinks, bilinear where it grows.
+/** Longest text that is read from a PNG, bytes. Chosen: as long as the longest scene. */
+#define GZ_IMAGE_TEXT_MAX ((size_t)1 << 20)
+
+/**
+ * Find the first text with a keyword in a PNG: a tEXt, zTXt or iTXt chunk (PNG third edition,
+ * sections 11.3.3.2 to 11.3.3.4), compressed or not, before or after the pixels. The pixels are
+ * decoded only to reach texts after them.
+ *
+ * @param file           at the beginning of a PNG; where it stands afterwards is undefined
+ * @param keyword        1 to 79 bytes
+ * @param[out] out_text  must be empty; receives the text
+ * @retval GZ_ERR_NOT_FOUND  no text has the keyword; not logged
+ * @retval GZ_ERR_FORMAT     no text has the keyword, and the file is no PNG, cut off or damaged, or
+ *                           a text in it is damaged or too long; not logged
+ * @retval GZ_ERR_NO_MEM     not logged
  */
+enum gz_result gz_image_find_text(FILE *file, const char *keyword, struct gz_text *out_text);
+
+/** Scale @p source to the size of @p target: a box filter where it shrinks, bilinear interpolation
+ *  where it grows. Both need pixels; otherwise nothing happens. */
 void gz_image_resample(const struct gz_image *source, struct gz_image *target);
 
 #endif

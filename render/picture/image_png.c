@@ -1,4 +1,4 @@
-/* Pictures to and from PNG files, by libpng. */
+/* PNG files by libpng: pictures, and the texts beside them. */
 #define GZ_LOG_MODULE "image"
 #include "render/picture/image.h"
 
@@ -22,13 +22,13 @@ static void on_png_error(png_structp png, png_const_charp message)
 	png_longjmp(png, 1);
 }
 
-static void on_png_warning(png_structp png, png_const_charp message)
+static void ignore_png_warning(png_structp png, png_const_charp message)
 {
 	(void)png;
 	(void)message;
 }
 
-/* What goes into a file. */
+/* What is written to a file. */
 struct content {
 	const struct gz_image *image;
 	const struct gz_image_text *texts;
@@ -38,7 +38,7 @@ struct content {
 static void set_texts(png_structp png, png_infop info, const struct content *content)
 {
 	for (size_t i = 0; i < content->text_count; i++) {
-		/* libpng copies both, and writes to neither. */
+		/* libpng copies both strings and does not write to them. */
 		png_text entry = { 0 };
 		entry.compression = PNG_ITXT_COMPRESSION_NONE;
 		entry.key = (png_charp)(uintptr_t)content->texts[i].keyword;
@@ -47,7 +47,7 @@ static void set_texts(png_structp png, png_infop info, const struct content *con
 	}
 }
 
-/* Nothing is changed between setjmp and a longjmp but what libpng owns. */
+/* Changes no local variable after setjmp, so that longjmp leaves none undefined. */
 static bool write_rows(png_structp png, png_infop info, FILE *file, const struct content *content)
 {
 	const struct gz_image *image = content->image;
@@ -61,7 +61,7 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 		     PNG_FILTER_TYPE_DEFAULT);
 	set_texts(png, info, content);
 	png_write_info(png, info);
-	png_set_filler(png, 0, PNG_FILLER_AFTER); /* drops the A of each pixel */
+	png_set_filler(png, 0, PNG_FILLER_AFTER); /* leaves out A of each pixel */
 	for (int y = 0; y < image->height; y++)
 		png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
 	png_write_end(png, NULL);
@@ -70,15 +70,15 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 
 static bool write_stream(FILE *file, const struct content *content)
 {
-	png_structp png =
-		png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error, on_png_warning);
+	png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, on_png_error,
+						  ignore_png_warning);
 	png_infop info = png ? png_create_info_struct(png) : NULL;
 	bool written = info && write_rows(png, info, file, content);
 	png_destroy_write_struct(&png, &info);
 	return written;
 }
 
-/* A file of its own, so that no one ever finds half a picture under the final name. */
+/* The file under its temporary name, so that the final name never holds half a picture. */
 static FILE *open_temporary(const char *name)
 {
 	int fd = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -92,7 +92,7 @@ static FILE *open_temporary(const char *name)
 	return file;
 }
 
-/* Writes, closes, and says what went wrong by errno. */
+/* On failure errno tells why. */
 static bool write_and_close(FILE *file, const struct content *content)
 {
 	errno = 0;
@@ -124,7 +124,7 @@ static bool write_regular(const struct content *content, const char *path)
 	return written;
 }
 
-/* A device or pipe cannot be replaced by a file: it is written to. */
+/* A device or pipe is written to; it must not be replaced by a file. */
 static bool write_special(const struct content *content, const char *path)
 {
 	FILE *file = fopen(path, "wb");
@@ -196,5 +196,80 @@ enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 		gz_err(log, "%s: not a PNG picture: %s", path, png.message);
 	png_image_free(&png);
 	fclose(file);
+	return result;
+}
+
+/* Texts that are being read. */
+struct text_search {
+	bool damaged; /* a chunk of text could not be read */
+};
+
+/* libpng warns of a damaged chunk that it leaves out, by "tEXt: …". */
+static void note_damaged_text(png_structp png, png_const_charp message)
+{
+	struct text_search *search = png_get_error_ptr(png);
+	static const char *const types[] = { "tEXt", "zTXt", "iTXt" };
+	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+		search->damaged |= strncmp(message, types[i], strlen(types[i])) == 0;
+}
+
+/* Read the chunks before the pixels into @p info. Returns false if the file is no PNG or damaged;
+ * texts before the damage are in @p info all the same. */
+static bool read_first_chunks(png_structp png, png_infop info, FILE *file)
+{
+	if (setjmp(png_jmpbuf(png)))
+		return false;
+	png_init_io(png, file);
+	png_set_user_limits(png, GZ_IMAGE_SIDE_MAX, GZ_IMAGE_SIDE_MAX);
+	png_set_chunk_malloc_max(png, GZ_IMAGE_TEXT_MAX);
+	png_read_info(png, info);
+	return true;
+}
+
+/* Read the chunks behind the pixels. libpng finds them only by decoding all rows. */
+static bool read_last_chunks(png_structp png, png_infop info)
+{
+	if (setjmp(png_jmpbuf(png)))
+		return false;
+	const int passes = png_set_interlace_handling(png);
+	png_read_update_info(png, info);
+	for (int pass = 0; pass < passes; pass++)
+		for (png_uint_32 y = 0; y < png_get_image_height(png, info); y++)
+			png_read_row(png, NULL, NULL);
+	png_read_end(png, info);
+	return true;
+}
+
+static const png_text *find_png_text(png_structp png, png_infop info, const char *keyword)
+{
+	png_textp texts = NULL;
+	const int count = png_get_text(png, info, &texts, NULL);
+	for (int i = 0; i < count; i++)
+		if (strcmp(texts[i].key, keyword) == 0)
+			return &texts[i];
+	return NULL;
+}
+
+enum gz_result gz_image_find_text(FILE *file, const char *keyword, struct gz_text *out_text)
+{
+	struct text_search search = { .damaged = false };
+	png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &search, on_png_error,
+						 note_damaged_text);
+	png_infop info = png ? png_create_info_struct(png) : NULL;
+	enum gz_result result = GZ_ERR_NO_MEM;
+	if (info) {
+		bool whole = read_first_chunks(png, info, file);
+		const png_text *found = find_png_text(png, info, keyword);
+		if (whole && !found) {
+			whole = read_last_chunks(png, info);
+			found = find_png_text(png, info, keyword);
+		}
+		result = whole && !search.damaged ? GZ_ERR_NOT_FOUND : GZ_ERR_FORMAT;
+		if (found) {
+			gz_text_add(out_text, "%s", found->text);
+			result = out_text->failed ? GZ_ERR_NO_MEM : GZ_OK;
+		}
+	}
+	png_destroy_read_struct(&png, &info, NULL);
 	return result;
 }

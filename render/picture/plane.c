@@ -4,7 +4,7 @@
 
 #include "render/picture/image.h"
 
-/* Rows are read and written in whole registers; a few words behind the last may be read. */
+/* Kernels use whole registers and may read a few words after the last one. */
 enum { ALIGNMENT = 64 };
 
 enum gz_result gz_plane_resize(struct gz_plane *plane, enum gz_plane_kind kind, int width,

@@ -1,6 +1,6 @@
 /**
  * @file
- * Planes of a picture beside its colours: depth, object numbers, any number for each pixel.
+ * Planes of a picture: 32 bits for each pixel, which are a colour, a value or an object number.
  */
 #ifndef GZ_RENDER_PICTURE_PLANE_H
 #define GZ_RENDER_PICTURE_PLANE_H
@@ -24,15 +24,19 @@ struct gz_plane {
 	enum gz_plane_kind kind;
 	int width, height; /**< 1 to GZ_IMAGE_SIDE_MAX */
 	uint32_t *words;   /**< width * height, aligned to 64 bytes */
-	size_t capacity;   /**< words there is room for */
+	size_t capacity;   /**< words allocated */
 };
 
-/** Make room for a plane; what it held is undefined then. GZ_ERR_INVAL, GZ_ERR_NO_MEM leave it as
- * it was. */
+/**
+ * Make room for a plane of @p width by @p height pixels; what the words hold is undefined.
+ *
+ * @retval GZ_ERR_INVAL   a side is not 1 to GZ_IMAGE_SIDE_MAX; the plane is unchanged
+ * @retval GZ_ERR_NO_MEM  the plane is unchanged
+ */
 enum gz_result gz_plane_resize(struct gz_plane *plane, enum gz_plane_kind kind, int width,
 			       int height);
 
-/** The number at a pixel of a GZ_PLANE_VALUE. */
+/** The value of pixel (@p x, @p y) of a GZ_PLANE_VALUE. */
 static inline float gz_plane_value(const struct gz_plane *plane, int x, int y)
 {
 	float value;

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "render/data/volume_identity.h"
-#include "render/picture/png_text.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -77,7 +76,7 @@ enum gz_result gz_scene_picture_write(const struct gz_image *image,
 static enum gz_result find_text(FILE *file, const char *keyword, struct gz_text *out_text)
 {
 	rewind(file);
-	return gz_png_text_find(file, keyword, out_text);
+	return gz_image_find_text(file, keyword, out_text);
 }
 
 static enum gz_result take_scene(FILE *file, const char *path, const struct gz_log *log,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/picture/png_text.h"
+#include "render/picture/image.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -15,9 +15,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	FILE *file = size > 0 ? fmemopen((void *)(uintptr_t)data, size, "rb") : NULL;
 	if (!file)
 		return 0;
-	const enum gz_result result = gz_png_text_find(file, "gazecast.scene", &text);
+	const enum gz_result result = gz_image_find_text(file, "gazecast.scene", &text);
 	if (result == GZ_OK && text.length > 0 &&
-	    (text.length > GZ_PNG_TEXT_MAX || text.bytes[text.length] != '\0'))
+	    (text.length > GZ_IMAGE_TEXT_MAX || text.bytes[text.length] != '\0'))
 		abort();
 	gz_text_free(&text);
 	fclose(file);

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "render/picture/vector.h"
+
 static double voxel(const struct gz_volume *volume, int x, int y, int z)
 {
 	const int *dims = volume->dims;
@@ -37,30 +39,16 @@ double oracle_sample(const struct gz_volume *volume, int interpolation, const do
 	return sum;
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void normalise(double a[3])
-{
-	const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-	for (int axis = 0; axis < 3; axis++)
-		a[axis] /= length;
-}
-
 static void make_ray(const struct gz_camera *camera, int width, int height, int x, int y,
 		     double origin[3], double direction[3])
 {
 	double forward[3], right[3], up[3];
 	for (int axis = 0; axis < 3; axis++)
 		forward[axis] = camera->look_at[axis] - camera->eye[axis];
-	normalise(forward);
-	cross(forward, camera->up, right);
-	normalise(right);
-	cross(right, forward, up);
+	(void)gz_normalise3(forward);
+	gz_cross3(forward, camera->up, right);
+	(void)gz_normalise3(right);
+	gz_cross3(right, forward, up);
 	const bool flat = camera->projection == GZ_PROJECTION_ORTHOGRAPHIC;
 	const double view = flat ? camera->height : 2 * tan(camera->fov_deg * M_PI / 360);
 	const double u = (x + 0.5 - 0.5 * width) / height * view;
@@ -70,7 +58,7 @@ static void make_ray(const struct gz_camera *camera, int width, int height, int 
 		origin[axis] = camera->eye[axis] + (flat ? aside : 0);
 		direction[axis] = forward[axis] + (flat ? 0 : aside);
 	}
-	normalise(direction);
+	(void)gz_normalise3(direction);
 }
 
 /* Shorten out_span to where a coordinate of the ray lies between two values. */

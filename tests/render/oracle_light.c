@@ -4,25 +4,7 @@
 #include <stdlib.h>
 
 #include "oracle.h"
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static void normalise(double a[3])
-{
-	const double length = sqrt(dot(a, a));
-	for (int axis = 0; axis < 3; axis++)
-		a[axis] = length > 0 ? a[axis] / length : 0;
-}
+#include "render/picture/vector.h"
 
 static double clamp(double x, double least, double greatest)
 {
@@ -59,17 +41,17 @@ static void towards_light(const struct gz_camera *camera, const struct gz_light 
 	double forward[3], right[3], up[3];
 	for (int axis = 0; axis < 3; axis++)
 		forward[axis] = camera->look_at[axis] - camera->eye[axis];
-	normalise(forward);
-	cross(forward, camera->up, right);
-	normalise(right);
-	cross(right, forward, up);
+	(void)gz_normalise3(forward);
+	gz_cross3(forward, camera->up, right);
+	(void)gz_normalise3(right);
+	gz_cross3(right, forward, up);
 	for (int axis = 0; axis < 3; axis++)
 		out[axis] = light->frame == GZ_LIGHT_WORLD
 				    ? light->direction[axis]
 				    : light->direction[0] * right[axis] +
 					      light->direction[1] * up[axis] -
 					      light->direction[2] * forward[axis];
-	normalise(out);
+	(void)gz_normalise3(out);
 }
 
 static void gradient(const struct gz_volume *volume, const struct gz_level *level,
@@ -128,14 +110,14 @@ void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 		to_eye[axis] = -direction[axis];
 		half[axis] = to_eye[axis] + to_light[axis];
 	}
-	normalise(normal);
-	normalise(half);
+	(void)gz_normalise3(normal);
+	(void)gz_normalise3(half);
 	const double edge = 0.0625, weak = 0.02;
-	const double facing = clamp(dot(normal, to_eye) / edge, -1, 1);
-	const double d = fmax(facing * dot(normal, to_light), 0);
-	const double s = pow(fabs(dot(normal, half)), light->shininess) * fmin(d / edge, 1);
+	const double facing = clamp(gz_dot3(normal, to_eye) / edge, -1, 1);
+	const double d = fmax(facing * gz_dot3(normal, to_light), 0);
+	const double s = pow(fabs(gz_dot3(normal, half)), light->shininess) * fmin(d / edge, 1);
 	const double o = occlusion ? light->occlusion * occlusion_at(level, occlusion, at) : 0;
-	const double weight = dot(g, g) / (dot(g, g) + weak * weak);
+	const double weight = gz_dot3(g, g) / (gz_dot3(g, g) + weak * weak);
 	for (int channel = 0; channel < 3; channel++) {
 		const double lit = rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d) +
 				   light->specular * s;

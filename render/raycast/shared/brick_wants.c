@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/picture/vector.h"
+
 /* Pixels from the gaze in which the spacing that the eye resolves grows by one pixel: m / 2 of
  * docs/foveation.md, small angles, m = 0.022. */
 #define RESOLVED_PX 90
@@ -35,31 +37,14 @@ struct appearance {
 	double depth;        /* world units, of its centre */
 };
 
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double norm(const double a[3])
-{
-	return sqrt(dot(a, a));
-}
-
 /* The inverse of the matrix whose columns are one pixel right, one down, and the first ray. */
 static bool invert(const double right[3], const double down[3], const double first[3],
 		   double out[3][3])
 {
-	cross(down, first, out[0]);
-	cross(first, right, out[1]);
-	cross(right, down, out[2]);
-	const double determinant = dot(right, out[0]);
+	gz_cross3(down, first, out[0]);
+	gz_cross3(first, right, out[1]);
+	gz_cross3(right, down, out[2]);
+	const double determinant = gz_dot3(right, out[0]);
 	for (int row = 0; row < 3; row++)
 		for (int i = 0; i < 3; i++)
 			out[row][i] /= determinant;
@@ -79,23 +64,23 @@ static enum gz_result begin(struct search *search)
 	const double *down = search->perspective ? rays.direction_dy : rays.origin_dy;
 	if (!invert(right, down, rays.direction00, search->to_picture))
 		return GZ_ERR_INVAL;
-	cross(down, right, search->forward);
-	const double length = norm(search->forward);
-	const double sign = dot(search->forward, rays.direction00) < 0 ? -1 : 1;
+	gz_cross3(down, right, search->forward);
+	const double length = gz_length3(search->forward);
+	const double sign = gz_dot3(search->forward, rays.direction00) < 0 ? -1 : 1;
 	for (int i = 0; i < 3; i++) {
 		search->origin[i] = rays.origin00[i];
 		search->forward[i] *= sign / length;
 	}
 	/* At depth 1 along forward, a pixel's ray has gone 1 / (direction00 . forward). */
-	const double along = dot(rays.direction00, search->forward);
-	search->pixel_per_world = (search->perspective ? along : 1) / norm(right);
+	const double along = gz_dot3(rays.direction00, search->forward);
+	search->pixel_per_world = (search->perspective ? along : 1) / gz_length3(right);
 	gz_volume_half_extent(scene->volume, search->half);
 	search->longest = 0;
 	for (int axis = 0; axis < 3; axis++)
 		search->longest = fmax(search->longest,
 				       scene->volume->dims[axis] * scene->volume->spacing[axis]);
 	const double centre[3] = { -search->origin[0], -search->origin[1], -search->origin[2] };
-	search->near = fmax(0, dot(centre, search->forward) - norm(search->half));
+	search->near = fmax(0, gz_dot3(centre, search->forward) - gz_length3(search->half));
 	return GZ_OK;
 }
 
@@ -107,8 +92,8 @@ static bool appears(const struct search *search, const double centre[3], double 
 	for (int i = 0; i < 3; i++)
 		from[i] = centre[i] - search->origin[i];
 	for (int i = 0; i < 3; i++)
-		at[i] = dot(search->to_picture[i], from);
-	const double depth = dot(from, search->forward);
+		at[i] = gz_dot3(search->to_picture[i], from);
+	const double depth = gz_dot3(from, search->forward);
 	*out = (struct appearance) { .depth = depth };
 	if (depth < -radius)
 		return false;
@@ -122,7 +107,7 @@ static bool appears(const struct search *search, const double centre[3], double 
 	out->x = search->perspective ? at[0] / at[2] : at[0];
 	out->y = search->perspective ? at[1] / at[2] : at[1];
 	/* Towards the picture's edge a ball is drawn out by up to 1 / cos of the angle there. */
-	const double stretch = search->perspective ? norm(from) / depth : 1;
+	const double stretch = search->perspective ? gz_length3(from) / depth : 1;
 	out->radius = out->scale * radius * stretch + 1;
 	return out->x + out->radius > 0 && out->y + out->radius > 0 &&
 	       out->x - out->radius < search->scene->width &&
@@ -185,7 +170,7 @@ static double weigh(const struct search *search, int level, const struct appeara
 			     ldexp(volume->spacing[axis] / search->longest, l->halvings[axis]));
 	const double *focus = search->scene->focus_px;
 	const double off = fmax(0, hypot(seen->x - focus[0], seen->y - focus[1]) - seen->radius);
-	const double deep = (seen->depth - search->near) / (2 * norm(search->half));
+	const double deep = (seen->depth - search->near) / (2 * gz_length3(search->half));
 	return fmin(voxel * seen->scale, 1e6) / (1 + off / RESOLVED_PX) /
 	       (1 + FAR_SHARE * fmin(fmax(deep, 0), 1));
 }
