@@ -97,7 +97,7 @@ class Session(unittest.TestCase):
         with open(frames, "w", encoding="utf-8") as out:
             out.writelines(lines)
         done = self.good("--replay", self.path("a.session"), "--out", self.path("is-%d.png"))
-        self.assertIn("not as it was recorded", done.stderr)
+        self.assertIn("the file was changed", done.stderr)
         self.assertTrue(self.read("is-0.png") == self.read("was-0.png"))
         self.assertTrue(self.read("is-1.png") == self.read("other.png"))
         self.assertTrue(self.read("is-2.png") == self.read("other.png"))
@@ -118,7 +118,7 @@ class Session(unittest.TestCase):
             out.writelines(lines[:-2] + [lines[-2][:20]])
         done = self.good("--replay", self.path("a.session"))
         self.assertEqual(len(done.stdout.splitlines()), 2)
-        self.assertIn("2 frames are whole", done.stderr)
+        self.assertIn("2 frames are complete", done.stderr)
 
     @unittest.skipUnless(shutil.which("ffprobe"), "ffmpeg is not installed")
     def test_video_of_a_replay_shows_each_picture_for_as_long_as_it_was_shown(self):
@@ -143,7 +143,7 @@ class Session(unittest.TestCase):
         with open(scene, "w", encoding="utf-8") as out:
             out.write(text.replace("dims = 64 64 64", "dims = 60 64 64"))
         self.refused(self.view("--replay", self.path("a.session")), "60x64x64",
-                     "another than was recorded")
+                     "differs from the recorded one")
 
     def test_damaged_line_ends_it_with_its_number(self):
         self.record(frames=2)
@@ -161,7 +161,7 @@ class Session(unittest.TestCase):
         for more in (("--size", "9x9"), (SCENE,), ("--gaze", "0,0"), ("--frames", 3),
                      ("--record", "b"), ("--display-px", "9x9")):
             self.refused(self.view("--replay", session, *more), "cannot be combined with it")
-        self.refused(self.view("--replay", self.path("none")), "no session")
+        self.refused(self.view("--replay", self.path("none")), "not a session")
         self.refused(self.view("--replay", session, "--out", "a.png"), "need a number")
         self.refused(self.view(SCENE, "--record", session), "choose another name")
 

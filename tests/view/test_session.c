@@ -15,8 +15,8 @@
 #include "base/captured_log.h"
 #include "protocol/gaze_log.h"
 #include "render/plan/method.h"
-#include "view/session/session_reader.h"
 #include "view/session/session.h"
+#include "view/session/session_reader.h"
 #include "view/session/session_writer.h"
 
 static const char scene_text[] = "[volume]\nprocedural = shells\ndims = 8 8 8\n"
@@ -318,7 +318,7 @@ static void killed_recording_is_read_to_its_last_whole_line(void **state)
 	assert_int_equal(self->log.messages, 0);
 	assert_int_equal(gz_session_read(reader, &self->state, &frame), GZ_ERR_END);
 	assert_int_equal(self->log.level, GZ_LOG_WARN);
-	assert_non_null(strstr(self->log.last, "2 frames are whole"));
+	assert_non_null(strstr(self->log.last, "2 frames are complete"));
 	gz_session_close(&reader);
 	gz_session_writer_end(&writer);
 }
@@ -410,18 +410,18 @@ static void volumes_that_differ_are_told_apart(void **state)
 			      "#volume_spacing 1\t1\t1\n#volume_range 0\t1\n"
 #define FRAME "0\t64\t48\t64\t48\t564\t423\t600\t0.5\t0.5\t\t\t\t0.5\t0.5\t1\t0\t0\t1.000\n"
 
-static void lines_that_nobody_wrote_are_refused_with_their_number(void **state)
+static void malformed_lines_are_refused_with_their_number(void **state)
 {
 	static const struct {
 		const char *text, *line, *what;
 	} cases[] = {
 		{ "", ":0", "nothing was recorded" },
-		{ "#gazecast-session 2\n", ":1", "no session" },
-		{ "time_ns\twidth\n", ":1", "no session" },
+		{ "#gazecast-session 2\n", ":1", "not a session" },
+		{ "time_ns\twidth\n", ":1", "not a session" },
 		{ GZ_SESSION_FIRST_LINE "\n#volume_dims 8\t8\n", ":2", "#volume_dims" },
 		{ GZ_SESSION_FIRST_LINE "\n#volume_dims 8\t8\t99999\n", ":2", "#volume_dims" },
 		{ GZ_SESSION_FIRST_LINE "\n#volume_crc 12345\n", ":2", "#volume_crc" },
-		{ GZ_SESSION_FIRST_LINE "\n" FRAME, ":2", "no #volume_dims" },
+		{ GZ_SESSION_FIRST_LINE "\n" FRAME, ":2", "#volume_dims or" },
 		{ HEAD "0\t64\n", ":6", "the number of fields" },
 		{ HEAD FRAME "\n", ":7", "the number of fields" },
 		{ HEAD "-1" FRAME, ":6", "time_ns" },
@@ -440,15 +440,15 @@ static void lines_that_nobody_wrote_are_refused_with_their_number(void **state)
 		{ HEAD "0\t64\t48\t64\t48\t5\t4\t6\t\t\t\t\t\t\t\t0.5\t0\t0\t1\n", ":6", "scale" },
 		{ HEAD "0\t64\t48\t64\t48\t5\t4\t6\t\t\t\t\t\t\t\t1\t2\t0\t1\n", ":6", "widen" },
 		{ HEAD "0\t64\t48\t64\t48\t5\t4\t6\t\t\t\t\t\t\t\t1\t0\t2\t1\n", ":6", "kept" },
-		{ HEAD "5" FRAME FRAME, ":7", "before that of the frame above" },
-		{ HEAD "!set\tcamera.eye\n", ":6", "no value" },
-		{ HEAD "!set\tcamera.nose\t1\n", ":6", "no such setting" },
-		{ HEAD "!set\tvolume.file\tx\n", ":6", "no such setting" },
+		{ HEAD "5" FRAME FRAME, ":7", "earlier than that of the previous" },
+		{ HEAD "!set\tcamera.eye\n", ":6", "without a value" },
+		{ HEAD "!set\tcamera.nose\t1\n", ":6", "unknown setting" },
+		{ HEAD "!set\tvolume.file\tx\n", ":6", "unknown setting" },
 		{ HEAD "!set\tcamera.eye\t1 2\n", ":6", "3 numbers expected" },
-		{ HEAD "!set\tfoveation.table\t/etc/passwd\n", ":6", "not a file of" },
+		{ HEAD "!set\tfoveation.table\t/etc/passwd\n", ":6", "not a file in" },
 		{ HEAD "!transfer\t0 0 0 0 2\n", ":6", "out of range" },
 		{ HEAD "!mark\t1\n", ":6", "the number of fields" },
-		{ HEAD FRAME "#end 1\n", ":7", "not the end" },
+		{ HEAD FRAME "#end 1\n", ":7", "invalid last line" },
 	};
 	struct fixture *self = *state;
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -497,7 +497,7 @@ static void changed_numbers_are_warned_of_at_the_end(void **state)
 	assert_int_equal(gz_session_read(reader, &self->state, &frame), GZ_OK);
 	assert_int_equal(gz_session_read(reader, &self->state, &frame), GZ_ERR_END);
 	assert_int_equal(self->log.level, GZ_LOG_WARN);
-	assert_non_null(strstr(self->log.last, "not as it was recorded"));
+	assert_non_null(strstr(self->log.last, "the file was changed"));
 	gz_session_close(&reader);
 }
 
@@ -516,7 +516,7 @@ TEST_SUITE(session)
 		TEST(session_that_is_there_is_not_written_over),
 		TEST(session_in_no_folder_is_refused_and_leaves_nothing),
 		TEST(volumes_that_differ_are_told_apart),
-		TEST(lines_that_nobody_wrote_are_refused_with_their_number),
+		TEST(malformed_lines_are_refused_with_their_number),
 		TEST(line_without_end_is_refused),
 		TEST(changed_numbers_are_warned_of_at_the_end),
 	};

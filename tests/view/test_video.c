@@ -295,7 +295,7 @@ static void dying_ffmpeg_is_told_with_its_last_words(void **state)
 	assert_true(gz_video_status(video).failed);
 	assert_int_equal(gz_video_close(&video), GZ_ERR_IO);
 	assert_int_equal(self->log.messages, 1);
-	assert_non_null(strstr(self->log.last, "ffmpeg says: \"first; No  [31mspace left\";"));
+	assert_non_null(strstr(self->log.last, "ffmpeg: \"first; No  [31mspace left\";"));
 }
 
 static void killed_ffmpeg_is_told_by_its_signal(void **state)

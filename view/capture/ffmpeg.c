@@ -19,7 +19,7 @@
 
 extern char **environ;
 
-/* Even sides, and colours as they will be marked. */
+/* Even sides, and colours converted to BT.709. */
 static const char even_filter[] =
 	"pad=ceil(iw/2)*2:ceil(ih/2)*2,"
 	"scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
@@ -32,12 +32,12 @@ struct gz_ffmpeg {
 	char path[GZ_PATH_SIZE];
 	int width, height;
 	pid_t child;
-	int pictures; /* pipe to its standard input */
-	int words;    /* file of its standard error */
-	bool broken;  /* it no longer reads */
+	int pictures; /* pipe to ffmpeg's standard input */
+	int words;    /* memory file for its standard error */
+	bool broken;  /* ffmpeg no longer reads */
 };
 
-/* Words of a command line; the texts are the caller's. */
+/* Arguments of a command; the texts are borrowed. */
 struct arguments {
 	const char *words[ARGUMENTS_MAX];
 	size_t count;
@@ -50,8 +50,8 @@ static void append_arguments(struct arguments *arguments, const char *const *wor
 	arguments->words[arguments->count] = NULL;
 }
 
-/* How the file is coded. Constant rate factor 18 is what x264's authors call visually lossless or
- * nearly so; 24 is about that for VP9. faststart puts the index in front, for browsers. */
+/* Codec arguments. x264's authors call constant rate factor 18 visually lossless or nearly so; 24
+ * is about the same for VP9. faststart puts the index first, for browsers. */
 static void append_coding(struct arguments *arguments, const char *path)
 {
 	static const char *const even[] = {
@@ -74,8 +74,8 @@ static void append_coding(struct arguments *arguments, const char *path)
 		append_arguments(arguments, faststart);
 }
 
-/* Its standard input, output and error, no other file of ours, and signals as a shell would have
- * them. A group of its own: what a terminal sends to ours must not end a video before we do. */
+/* The child gets its three standard files, no other file of ours, and default signals. It has a
+ * process group of its own, so that Ctrl-C in the terminal does not end the video before we do. */
 static int spawn_ffmpeg(struct gz_ffmpeg *ffmpeg, int input, char *const *words)
 {
 	posix_spawn_file_actions_t files;
@@ -105,7 +105,8 @@ static int start_child(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *
 	char size[32], rate[32], name[GZ_PATH_SIZE + 8];
 	snprintf(size, sizeof size, "%dx%d", params->width, params->height);
 	snprintf(rate, sizeof rate, "%.9g", params->fps);
-	snprintf(name, sizeof name, "file:%s", params->path); /* whatever it begins with */
+	snprintf(name, sizeof name, "file:%s",
+		 params->path); /* "file:" protects names such as "a:b" */
 	const char *const taken[] = {
 		"ffmpeg",     "-hide_banner", "-nostats", "-loglevel", "error", "-y",
 		"-f",         "rawvideo",     "-pix_fmt", "rgb0",      "-s",    size,
@@ -116,7 +117,7 @@ static int start_child(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *
 	append_arguments(&arguments, taken);
 	append_coding(&arguments, params->path);
 	append_arguments(&arguments, target);
-	char *words[ARGUMENTS_MAX]; /* exec's type lacks const, its meaning does not */
+	char *words[ARGUMENTS_MAX]; /* posix_spawn() does not change them */
 	memcpy(words, arguments.words, sizeof words);
 	return spawn_ffmpeg(ffmpeg, input, words);
 }
@@ -125,7 +126,7 @@ static enum gz_result tell_start(const struct gz_log *log, const char *path, int
 {
 	if (error == ENOENT) {
 		gz_err(log,
-		       "%s: there is no ffmpeg to write videos with; install the package ffmpeg",
+		       "%s: ffmpeg, which writes videos, was not found; install the package ffmpeg",
 		       path);
 		return GZ_ERR_NOT_FOUND;
 	}
@@ -133,7 +134,7 @@ static enum gz_result tell_start(const struct gz_log *log, const char *path, int
 	return GZ_ERR_IO;
 }
 
-/* What was opened, of a child that is not there. */
+/* Close the files and free. The child has ended or was never started. */
 static void release_ffmpeg(struct gz_ffmpeg *ffmpeg)
 {
 	if (ffmpeg->pictures >= 0)
@@ -186,8 +187,8 @@ static bool write_pipe(int fd, const uint8_t *bytes, size_t size)
 	return true;
 }
 
-/* A pipe that nobody reads sends this thread a signal: held back here, it is taken away before it
- * could end the program. */
+/* Writing to a pipe without a reader raises SIGPIPE. Block it here and consume it before it can end
+ * the program. */
 static bool write_quietly(int fd, const uint8_t *bytes, size_t size)
 {
 	sigset_t pipe_signal, before;
@@ -213,8 +214,8 @@ enum gz_result gz_ffmpeg_write(struct gz_ffmpeg *ffmpeg, const struct gz_image *
 	return ffmpeg->broken ? GZ_ERR_IO : GZ_OK;
 }
 
-/* The last two lines, since the last alone may say but which file it was; without what terminals
- * would take for commands. */
+/* The last two lines of ffmpeg's messages (the last alone may only name the file), without control
+ * characters. */
 static void find_last_words(int fd, char *words, size_t size)
 {
 	char tail[TAIL_SIZE];
@@ -243,15 +244,15 @@ static void tell_end(const struct gz_ffmpeg *ffmpeg, int status)
 	find_last_words(ffmpeg->words, words, sizeof words);
 	if (words[0])
 		gz_err(ffmpeg->log,
-		       "%s: the video is not whole: ffmpeg says: \"%s\"; see whether its folder "
-		       "has "
-		       "room and may be written to, and its ending is one of a video",
+		       "%s: the video is incomplete: ffmpeg: \"%s\"; check that the folder is "
+		       "writable and "
+		       "has space, and that the ending is a video's",
 		       ffmpeg->path, words);
 	else if (WIFSIGNALED(status))
-		gz_err(ffmpeg->log, "%s: the video is not whole: ffmpeg was ended by signal %d",
+		gz_err(ffmpeg->log, "%s: the video is incomplete: ffmpeg was ended by signal %d",
 		       ffmpeg->path, WTERMSIG(status));
 	else
-		gz_err(ffmpeg->log, "%s: the video is not whole: ffmpeg ended with status %d",
+		gz_err(ffmpeg->log, "%s: the video is incomplete: ffmpeg exited with status %d",
 		       ffmpeg->path, WIFEXITED(status) ? WEXITSTATUS(status) : -1);
 }
 

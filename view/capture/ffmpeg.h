@@ -1,7 +1,7 @@
 /**
  * @file
- * The distribution's ffmpeg as a child process that takes raw pictures and writes a video. One
- * thread at a time.
+ * The system's ffmpeg as a child process that reads raw pictures from a pipe and writes a video.
+ * One thread at a time.
  */
 #ifndef GZ_VIEW_CAPTURE_FFMPEG_H
 #define GZ_VIEW_CAPTURE_FFMPEG_H
@@ -13,41 +13,42 @@
 /** A running ffmpeg. */
 struct gz_ffmpeg;
 
-/** What it is to write. */
+/** What ffmpeg writes. */
 struct gz_ffmpeg_params {
-	const char *path;  /**< of the video; its ending chooses the kind, see gz_ffmpeg_start() */
-	int width, height; /**< of every picture, px */
-	double fps;        /**< pictures a second, above 0 */
+	const char *path;  /**< of the video; the ending chooses the format: gz_ffmpeg_start() */
+	int width, height; /**< of each picture, px */
+	double fps;        /**< pictures per second, above 0 */
 };
 
 /**
- * Start it. A file of that name is written over.
+ * Start ffmpeg. An existing file is replaced.
  *
- * .mp4, .m4v, .mov and .mkv become H.264 with 4:2:0 chroma, which every player shows, .webm VP9;
- * any other ending is left to ffmpeg. Sides of an odd number of pixels, which 4:2:0 has not, get a
- * black column or row more. Colours are marked as BT.709, which they are converted by.
+ * .mp4, .m4v, .mov and .mkv become H.264 with 4:2:0 chroma, which all players support; .webm
+ * becomes VP9; ffmpeg decides about other endings. 4:2:0 needs even sides: odd ones get a black
+ * column or row. Colours are converted to BT.709 and marked as such.
  *
- * @param[out] out_ffmpeg  owned by the caller: gz_ffmpeg_end()
- * @retval GZ_ERR_NOT_FOUND  there is no ffmpeg on the PATH; logged with the remedy
- * @retval GZ_ERR_IO         it cannot be started; logged
- * @retval GZ_ERR_NO_MEM     no room
+ * @param[out] out_ffmpeg  the caller ends it with gz_ffmpeg_end()
+ * @retval GZ_ERR_NOT_FOUND  no ffmpeg on the PATH; logged with the remedy
+ * @retval GZ_ERR_IO         ffmpeg cannot be started; logged
+ * @retval GZ_ERR_NO_MEM     out of memory
  */
 enum gz_result gz_ffmpeg_start(const struct gz_ffmpeg_params *params, const struct gz_log *log,
 			       struct gz_ffmpeg **out_ffmpeg);
 
 /**
- * Hand over a picture; waits until ffmpeg has taken it.
+ * Send a picture to ffmpeg. Blocks until ffmpeg has read it.
  *
- * @param image  of the size that was said
- * @retval GZ_ERR_INVAL  it is not
- * @retval GZ_ERR_IO     ffmpeg has ended; why, gz_ffmpeg_end() logs
+ * @param image  of the size in the parameters
+ * @retval GZ_ERR_INVAL  another size
+ * @retval GZ_ERR_IO     ffmpeg has ended; gz_ffmpeg_end() logs the reason
  */
 enum gz_result gz_ffmpeg_write(struct gz_ffmpeg *ffmpeg, const struct gz_image *image);
 
 /**
- * Let it finish the file, wait for that, free and set to NULL. Accepts a pointer to NULL: GZ_OK.
+ * Close the pipe, wait until ffmpeg has finished the file, free and set the pointer to NULL.
+ * Accepts a pointer to NULL: GZ_OK.
  *
- * @retval GZ_ERR_IO  it failed; logged with its last words
+ * @retval GZ_ERR_IO  ffmpeg failed; logged with its last messages
  */
 enum gz_result gz_ffmpeg_end(struct gz_ffmpeg **ffmpeg);
 

@@ -27,13 +27,13 @@ static enum gz_result check_folder(const char *option, const char *path, const s
 	if (stat(folder, &status) == 0 && S_ISDIR(status.st_mode) &&
 	    access(folder, W_OK | X_OK) == 0)
 		return GZ_OK;
-	gz_err(log, "--%s %s: cannot be written: %s: %s; make that folder, or name another", option,
-	       path, folder, strerror(errno));
+	gz_err(log, "--%s %s: cannot be written: %s: %s; create that folder or name another",
+	       option, path, folder, strerror(errno));
 	return GZ_ERR_IO;
 }
 
-/* What is there already may be written to where its folder may not: pictures go into devices and
- * pipes, statistics into a plain file. */
+/* An existing file may be writable in a folder that is not. Pictures may go to devices and pipes,
+ * statistics to a regular file only. */
 static bool is_there(const char *path, bool plain)
 {
 	struct stat status;
@@ -44,7 +44,7 @@ static bool is_there(const char *path, bool plain)
 enum gz_result gz_output_check(const struct gz_view_options *options, const struct gz_log *log)
 {
 	char picture[GZ_PATH_SIZE] = "";
-	/* What is wrong with the pattern itself, the options have refused. */
+	/* The options have checked the pattern. */
 	if (options->out[0])
 		(void)gz_pattern_format(options->out, 0, picture, sizeof picture);
 	enum gz_result r = GZ_OK;
@@ -57,7 +57,7 @@ enum gz_result gz_output_check(const struct gz_view_options *options, const stru
 	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;
 }
 
-/* More within one second do not happen. */
+/* Most names of one second. Chosen: more do not happen. */
 enum { NUMBERS = 100 };
 
 enum gz_result gz_capture_name(const char *folder, const char *ending, char out_path[GZ_PATH_SIZE])

@@ -19,11 +19,11 @@ uint64_t gz_video_clock_pass(struct gz_video_clock *clock, int64_t time_ns)
 {
 	if (time_ns <= clock->start_ns)
 		return 0;
-	/* Dividing last keeps whole results exact: the time of picture k, floored to ns, is not
-	 * beyond k. */
+	/* Dividing last keeps whole results exact: the time of picture k, rounded down to ns, does
+	 * not exceed k. */
 	const double elapsed_ns = (double)(time_ns - clock->start_ns);
 	const double reached = ceil(elapsed_ns * clock->fps / (double)GZ_NS_PER_S);
-	/* Chosen: what no double counts exactly is no time of a video. */
+	/* Chosen: beyond what a double counts exactly, the time is invalid. */
 	if (!(reached < 0x1p53))
 		return 0;
 	const uint64_t count = (uint64_t)reached;
@@ -51,7 +51,7 @@ static void blacken(struct gz_image *image)
 		memcpy(image->pixels + 4 * i, black, sizeof black);
 }
 
-/* @p source fits into @p target. */
+/* The source is not larger than the target. */
 static void place_in_middle(const struct gz_image *source, struct gz_image *target)
 {
 	const size_t left = (size_t)(target->width - source->width) / 2 * 4;
@@ -86,37 +86,37 @@ void gz_image_fit_free(struct gz_image_fit *fit)
 	gz_image_free(&fit->scaled);
 }
 
-/* A picture that waits, and how often it stands in the video. */
+/* A picture in the queue, and how often to write it. */
 struct entry {
 	struct gz_image image;
 	uint64_t repeats;
 };
 
 struct gz_video {
-	struct gz_ffmpeg *ffmpeg; /* the thread's, once that runs */
+	struct gz_ffmpeg *ffmpeg; /* used by the thread once it runs */
 	pthread_t thread;
 	double fps;
 	bool wait;
 
-	/* the caller's alone */
+	/* used by the caller only */
 	struct gz_video_clock clock;
 	struct gz_image_fit fit;
-	struct gz_image shown; /* since the newest gz_video_show() */
+	struct gz_image shown; /* the last gz_video_show() */
 	bool any_shown;
-	bool handed; /* shown is the queue's newest, or was before that ran empty */
-	bool missed; /* there was no room for it when its time came */
+	bool handed; /* shown was put into the queue */
+	bool missed; /* the queue was full when it was due */
 
-	/* shared */
+	/* shared, protected by the mutex */
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
 	struct entry queue[GZ_VIDEO_QUEUE];
-	size_t first, count; /* the first is being written while the thread is busy */
+	size_t first, count; /* the thread may be writing the first */
 	bool ending;
 	enum gz_result result;
 	struct gz_video_status status;
 };
 
-/* Up to the whole of an entry, without the lock; more repeats may be added to it meanwhile. */
+/* Write an entry without holding the lock; the caller may add repeats meanwhile. */
 static enum gz_result write_entry(struct gz_video *video, const struct entry *entry)
 {
 	enum gz_result r = GZ_OK;
@@ -209,7 +209,7 @@ enum gz_result gz_video_open(const struct gz_video_params *params, const struct 
 	return GZ_OK;
 }
 
-/* Without room, the picture before stands for this one too. Under the lock. */
+/* If the queue is full, repeat the previous picture. The caller holds the lock. */
 static void queue_shown(struct gz_video *video, uint64_t repeats)
 {
 	while (video->wait && !video->handed && video->count == GZ_VIDEO_QUEUE &&
@@ -242,7 +242,7 @@ static enum gz_result queue_repeats(struct gz_video *video, uint64_t repeats)
 	return failed ? GZ_ERR_IO : GZ_OK;
 }
 
-/* What was shown gives way to something else; whether it ever came into the video. */
+/* Another picture follows: count the last one if it was never written. */
 static void count_dropped(struct gz_video *video)
 {
 	pthread_mutex_lock(&video->mutex);

@@ -15,11 +15,11 @@ struct gz_replay {
 	struct gz_session_reader *reader;
 	struct gz_session_state state;
 	struct gz_session_frame frame;
-	struct gz_scene_settings settings; /* recorded, and the command line's over them */
+	struct gz_scene_settings settings; /* recorded, with the command line's keys */
 	bool compared;
 };
 
-/* The first frame, whatever its settings. */
+/* Read the header and the first frame, ignoring its settings. */
 static enum gz_result read_first(const char *path, const struct gz_log *log,
 				 struct gz_session_header *out_header,
 				 struct gz_session_frame *out_frame)
@@ -35,7 +35,7 @@ static enum gz_result read_first(const char *path, const struct gz_log *log,
 	}
 	r = gz_session_read(reader, state, out_frame);
 	if (r == GZ_ERR_END) {
-		gz_err(log, "%s: there is not one frame in it; record for longer", path);
+		gz_err(log, "%s: the session has no frames; record for longer", path);
 		r = GZ_ERR_FORMAT;
 	}
 	*out_header = *gz_session_header(reader);
@@ -72,8 +72,8 @@ static enum gz_result check_recorded_volume(const struct gz_replay *replay)
 	if (gz_volume_identity_same(&here, recorded))
 		return GZ_OK;
 	gz_err(replay->log,
-	       "%s: the volume (%dx%dx%d, %g to %g) is another than was recorded (%dx%dx%d, %g to "
-	       "%g); let " GZ_SESSION_SCENE " in it name that one",
+	       "%s: the volume (%dx%dx%d, %g to %g) differs from the recorded one (%dx%dx%d, %g to "
+	       "%g); name that one in its " GZ_SESSION_SCENE,
 	       replay->options->replay, here.dims[0], here.dims[1], here.dims[2], here.least,
 	       here.greatest, recorded->dims[0], recorded->dims[1], recorded->dims[2],
 	       recorded->least, recorded->greatest);
@@ -101,7 +101,7 @@ enum gz_result gz_replay_open(const struct gz_view_options *options, struct gz_f
 	return GZ_OK;
 }
 
-/* Recorded settings, the command line's over them, as they go together. */
+/* The recorded settings with the command line's keys, checked together. */
 static enum gz_result take_settings(struct gz_replay *replay)
 {
 	char place[GZ_PATH_SIZE];
@@ -154,7 +154,7 @@ void gz_replay_compare(struct gz_replay *replay, const struct gz_frame_record *r
 	if (strcmp(record->backend, recorded) != 0)
 		gz_warn(replay->log,
 			"%s: recorded with backend %s, shown with %s: colours may differ by one "
-			"step in places; give --backend %s for the same pictures",
+			"step in places; use --backend %s for the same pictures",
 			replay->options->replay, recorded, record->backend, recorded);
 }
 

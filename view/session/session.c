@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "render/picture/image.h"
 
-/* In the order of a frame's fields. */
+/* Names of a frame's fields, in their order. */
 static const char *const columns[] = {
 	"time_ns",
 	"width_px",
@@ -35,7 +35,7 @@ enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 static const char *const type_names[GZ_VOXEL_TYPE_COUNT] = { "uint8", "uint16", "float32" };
 
-/* Nothing for what is not finite. */
+/* A number that is not finite gives an empty field. */
 static void print_double(double value, struct gz_text *text)
 {
 	if (isfinite(value))
@@ -95,8 +95,7 @@ void gz_session_print_end(uint64_t frames, uint32_t crc, struct gz_text *text)
 	gz_text_add(text, "#end %" PRIu64 "\t%08" PRIx32 "\n", frames, crc);
 }
 
-/* Cut a line at its tabs. @return how many fields it has, room + 1 for more than there is room for
- */
+/* Split a line at its tabs. @return the number of fields; room + 1 if there are more than room */
 static int split_fields(char *line, char **fields, int room)
 {
 	int count = 0;
@@ -130,14 +129,14 @@ static bool read_side(const char *field, int most, int *out_value)
 static bool read_float(const char *field, float *out_value)
 {
 	double value;
-	/* What is beyond a float's range became infinite when it was one. */
+	/* A number outside the range of float becomes infinite. */
 	if (!gz_number_parse(field, &value) || !isfinite((float)value))
 		return false;
 	*out_value = (float)value;
 	return true;
 }
 
-/* The fields are read one after the other; the first that is wrong is remembered. */
+/* Fields are parsed in order; wrong is the first invalid one. */
 struct fields {
 	char *texts[COLUMNS];
 	int next;
@@ -163,7 +162,7 @@ static double take_double(struct fields *fields, double least, double most)
 	return value;
 }
 
-/* Both empty: NaN, and false. */
+/* @return false if both fields are empty; the point is then NaN */
 static bool take_gaze_point(struct fields *fields, struct gz_point *out_point)
 {
 	struct gz_point point = { NAN, NAN };

@@ -20,14 +20,14 @@ struct gz_session_reader {
 	char name[GZ_PATH_SIZE];
 	FILE *file;
 	struct gz_session_header header;
-	uint64_t line_number;     /* of the line in hand */
-	bool pending;             /* it has not been taken yet */
-	uint32_t crc, crc_before; /* of all bytes with the line in hand, and without it */
-	enum gz_result ended;     /* what every further read returns; GZ_OK: none */
+	uint64_t line_number;     /* of the current line */
+	bool pending;             /* the current line has not been parsed yet */
+	uint32_t crc, crc_before; /* of all bytes with and without the current line */
+	enum gz_result ended;     /* result of all further reads; GZ_OK: not ended */
 	uint64_t frames;
-	int64_t time_ns;                        /* of the newest frame */
+	int64_t time_ns;                        /* of the last frame */
 	char line[GZ_SESSION_LINE_SIZE + 2];    /* with newline and NUL */
-	char scratch[GZ_SESSION_LINE_SIZE + 2]; /* a line in parts */
+	char scratch[GZ_SESSION_LINE_SIZE + 2]; /* copy of the line, to be split */
 };
 
 __attribute__((format(printf, 2, 3))) static enum gz_result refuse_session_line(
@@ -45,12 +45,12 @@ __attribute__((format(printf, 2, 3))) static enum gz_result refuse_session_line(
 
 static enum gz_result end_cut(struct gz_session_reader *reader)
 {
-	gz_warn(reader->log, "%s: it ends before its end was written; %llu frames are whole",
+	gz_warn(reader->log, "%s: the session was cut short; %llu frames are complete",
 		reader->name, (unsigned long long)reader->frames);
 	return reader->ended = GZ_ERR_END;
 }
 
-/* The next line, without its newline, into the reader's buffer. */
+/* Read the next line, without its newline, into the reader's buffer. */
 static enum gz_result next_session_line(struct gz_session_reader *reader)
 {
 	if (reader->pending) {
@@ -70,8 +70,7 @@ static enum gz_result next_session_line(struct gz_session_reader *reader)
 		if (length <= GZ_SESSION_LINE_SIZE && feof(reader->file))
 			return end_cut(reader);
 		return refuse_session_line(reader,
-					   "longer than any line, or with a NUL in it; the file is "
-					   "damaged");
+					   "line too long, or contains a NUL; the file is damaged");
 	}
 	reader->crc_before = reader->crc;
 	reader->crc = (uint32_t)crc32(reader->crc, (const Bytef *)reader->line, (uInt)length);
@@ -89,7 +88,7 @@ static enum gz_result parse_header_line(struct gz_session_reader *reader)
 	strcpy(reader->scratch, reader->line);
 	if (gz_session_parse_header_line(reader->scratch, &reader->header) == GZ_OK)
 		return GZ_OK;
-	return refuse_session_line(reader, "%.40s: its value cannot be one; the file is damaged",
+	return refuse_session_line(reader, "%.40s: invalid value; the file is damaged",
 				   reader->line);
 }
 
@@ -98,8 +97,7 @@ static enum gz_result read_session_header(struct gz_session_reader *reader)
 	enum gz_result r = next_session_line(reader);
 	if (r == GZ_OK && strcmp(reader->line, GZ_SESSION_FIRST_LINE) != 0)
 		r = refuse_session_line(reader, "not \"" GZ_SESSION_FIRST_LINE
-						"\": it is no session, or one "
-						"of a later version");
+						"\": not a session, or one of a later version");
 	if (r == GZ_OK)
 		r = next_session_line(reader);
 	while (r == GZ_OK && reader->line[0] == '#' && !is_end(reader)) {
@@ -107,17 +105,18 @@ static enum gz_result read_session_header(struct gz_session_reader *reader)
 		if (r == GZ_OK)
 			r = next_session_line(reader);
 	}
-	if (r == GZ_ERR_END) /* cut behind its header: no frames, which reading will tell */
+	if (r == GZ_ERR_END) /* cut short after the header: reading finds no frames */
 		return reader->line_number > 0
 			       ? GZ_OK
-			       : refuse_session_line(reader, "empty: nothing was recorded");
+			       : refuse_session_line(reader,
+						     "the file is empty; nothing was recorded");
 	if (r != GZ_OK)
 		return r;
 	reader->pending = true;
 	if (reader->header.volume.dims[0] > 0 && reader->header.volume.spacing[0] > 0)
 		return GZ_OK;
 	return refuse_session_line(
-		reader, "no #volume_dims and #volume_spacing before it; the file is damaged");
+		reader, "#volume_dims or #volume_spacing is missing; the file is damaged");
 }
 
 static enum gz_result start_reader(const char *name, FILE *file, const struct gz_log *log,
@@ -153,8 +152,8 @@ enum gz_result gz_session_open(const char *path, const struct gz_log *log,
 	}
 	if (stat(name, &status) != 0 || !S_ISREG(status.st_mode)) {
 		gz_err(log,
-		       "%s: no session: there is no file %s; give the folder that a session "
-		       "was recorded into",
+		       "%s: not a session: there is no file %s; name the folder of a recorded "
+		       "session",
 		       path, name);
 		return GZ_ERR_NOT_FOUND;
 	}
@@ -170,7 +169,7 @@ enum gz_result gz_session_open_memory(const char *name, const char *text, size_t
 				      const struct gz_log *log,
 				      struct gz_session_reader **out_reader)
 {
-	/* Read only, whatever the type says. */
+	/* fmemopen() in mode "r" does not write to the buffer. */
 	FILE *file = fmemopen((void *)(uintptr_t)text, size, "rb");
 	return file ? start_reader(name, file, log, out_reader) : GZ_ERR_NO_MEM;
 }
@@ -180,7 +179,7 @@ const struct gz_session_header *gz_session_header(const struct gz_session_reader
 	return &reader->header;
 }
 
-/* The two words of a line behind its first, in scratch. */
+/* Split off the key and the value of a !set line, in scratch. */
 static bool cut_set(struct gz_session_reader *reader, char **out_key, char **out_value)
 {
 	strcpy(reader->scratch, reader->line);
@@ -200,20 +199,18 @@ static enum gz_result parse_set_line(struct gz_session_reader *reader,
 	size_t binding;
 	if (!cut_set(reader, &key, &value))
 		return refuse_session_line(reader,
-					   "no value behind a setting; the file is damaged");
+					   "a setting without a value; the file is damaged");
 	gz_view_pick_scene_tables(&state->settings, &tables);
 	const struct gz_option *option =
 		gz_options_find(tables.bindings, GZ_VIEW_SCENE_TABLES, key, &binding);
 	if (!option)
 		return refuse_session_line(
-			reader,
-			"%.*s: no such setting; the file is damaged or of a later "
-			"version",
+			reader, "%.*s: unknown setting; the file is damaged or of a later version",
 			WORD_SIZE, key);
 	const bool table = strcmp(key, "foveation.table") == 0;
 	if (table && strchr(value, '/'))
 		return refuse_session_line(reader,
-					   "foveation.table: not a file of the session's folder");
+					   "foveation.table: not a file in the session's folder");
 	state->table_changed = state->table_changed || table;
 	if (gz_option_parse(option, value, tables.bindings[binding].target, message,
 			    sizeof message) != GZ_OK)
@@ -221,7 +218,7 @@ static enum gz_result parse_set_line(struct gz_session_reader *reader,
 	return GZ_OK;
 }
 
-/* A line of tabs between what are lines of a .tf file. */
+/* The lines of a .tf file, separated by tabs. */
 static enum gz_result parse_transfer_line(struct gz_session_reader *reader,
 					  struct gz_session_state *state)
 {
@@ -231,7 +228,7 @@ static enum gz_result parse_transfer_line(struct gz_session_reader *reader,
 		*tab = '\n';
 	snprintf(name, sizeof name, "%s:%llu: %s", reader->name,
 		 (unsigned long long)reader->line_number, GZ_SESSION_TRANSFER_WORD);
-	/* What is wrong is logged by it, under that name. */
+	/* gz_transfer_parse() logs errors under that name. */
 	if (gz_transfer_parse(name, text, strlen(text), reader->log, &state->transfer) != GZ_OK)
 		return reader->ended = GZ_ERR_FORMAT;
 	state->transfer_changed = true;
@@ -244,10 +241,10 @@ static enum gz_result parse_end_line(struct gz_session_reader *reader)
 	uint32_t crc;
 	strcpy(reader->scratch, reader->line);
 	if (!gz_session_parse_end(reader->scratch, &frames, &crc))
-		return refuse_session_line(reader, "not the end of a session; the file is damaged");
+		return refuse_session_line(reader, "invalid last line; the file is damaged");
 	if (frames != reader->frames || crc != reader->crc_before)
 		gz_warn(reader->log,
-			"%s: not as it was recorded: %llu frames of %llu, or other numbers in them",
+			"%s: the file was changed: %llu of %llu frames, or other contents",
 			reader->name, (unsigned long long)reader->frames,
 			(unsigned long long)frames);
 	return reader->ended = GZ_ERR_END;
@@ -260,10 +257,11 @@ static enum gz_result parse_frame_line(struct gz_session_reader *reader,
 	const char *what = "";
 	strcpy(reader->scratch, reader->line);
 	if (gz_session_parse_frame(reader->scratch, &frame, &what) != GZ_OK)
-		return refuse_session_line(
-			reader, "%s: not what a frame's may be; the file is damaged", what);
+		return refuse_session_line(reader, "%s: invalid in a frame; the file is damaged",
+					   what);
 	if (frame.time_ns < reader->time_ns)
-		return refuse_session_line(reader, "time_ns: before that of the frame above");
+		return refuse_session_line(reader,
+					   "time_ns: earlier than that of the previous frame");
 	reader->time_ns = frame.time_ns;
 	reader->frames++;
 	*out_frame = frame;

@@ -21,16 +21,16 @@ struct gz_session_writer {
 	const struct gz_log *log;
 	char path[GZ_PATH_SIZE];
 	int frames_fd, gaze_fd;
-	struct gz_text lines; /* that go out together */
-	uint64_t size;        /* bytes of whole lines in the file */
-	uint32_t crc;         /* of them */
+	struct gz_text lines; /* to be written together */
+	uint64_t size;        /* of the complete lines in the file, bytes */
+	uint32_t crc;         /* of these lines */
 	uint64_t frames;
 	bool any; /* a frame has been added */
 	bool failed;
-	int tables;                        /* files of spacings made so far */
-	struct gz_scene_settings settings; /* of the newest frame, as the file has them */
+	int tables;                        /* spacing tables written so far */
+	struct gz_scene_settings settings; /* of the last frame in the file */
 	struct gz_transfer transfer;
-	bool gaze_known; /* gaze_ns and gaze_samples hold something */
+	bool gaze_known; /* gaze_ns is valid */
 	int64_t gaze_ns;
 	uint64_t gaze_samples;
 	struct gz_gaze_log_writer gaze;
@@ -47,12 +47,12 @@ static enum gz_result path_in_session(const struct gz_session_writer *writer, co
 	return GZ_ERR_FULL;
 }
 
-/* Whatever has gone wrong, it is told once, and nothing more is written. */
+/* Log the first error and write nothing more. */
 static enum gz_result stop_recording(struct gz_session_writer *writer, const char *what, int error)
 {
 	if (!writer->failed)
 		gz_err(writer->log,
-		       "%s: the recording stops: %s: %s; the %llu frames before are whole",
+		       "%s: the recording stops: %s: %s; the %llu frames before are complete",
 		       writer->path, what, strerror(error), (unsigned long long)writer->frames);
 	writer->failed = true;
 	return GZ_ERR_IO;
@@ -73,7 +73,7 @@ static size_t write_lines(int fd, const char *bytes, size_t size)
 	return done;
 }
 
-/* All lines gathered, or none of them. */
+/* Write all collected lines, or none of them. */
 static enum gz_result flush(struct gz_session_writer *writer)
 {
 	struct gz_text *lines = &writer->lines;
@@ -84,7 +84,7 @@ static enum gz_result flush(struct gz_session_writer *writer)
 	const size_t done = write_lines(writer->frames_fd, lines->bytes, lines->length);
 	if (done < lines->length) {
 		const int error = errno;
-		/* Where even that fails, a line without its end is left, which readers drop. */
+		/* If that fails as well, readers drop the incomplete line. */
 		if (ftruncate(writer->frames_fd, (off_t)writer->size) == 0)
 			lseek(writer->frames_fd, (off_t)writer->size, SEEK_SET);
 		return stop_recording(writer, GZ_SESSION_FRAMES, error);
@@ -103,7 +103,7 @@ static int create(const struct gz_session_writer *writer, const char *name)
 		return -1;
 	const int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 	if (fd < 0)
-		gz_err(writer->log, "cannot make %s: %s; choose another folder", path,
+		gz_err(writer->log, "cannot create %s: %s; choose another folder", path,
 		       strerror(errno));
 	return fd;
 }
@@ -117,7 +117,7 @@ static void print_table(const struct gz_spacing_table *table, struct gz_text *te
 			    table->rows[i].spacing, table->rows[i].step);
 }
 
-/* A table of spacings is taken into the folder; @p foveation then names the copy. */
+/* Copy the spacing table into the folder; @p foveation then names the copy. */
 static enum gz_result copy_table(struct gz_session_writer *writer, struct gz_foveation *foveation)
 {
 	struct gz_text text = { 0 };
@@ -136,7 +136,7 @@ static enum gz_result copy_table(struct gz_session_writer *writer, struct gz_fov
 	return r;
 }
 
-/* The scene, named from its new place, with what else it needs beside it. */
+/* Write the scene, with paths relative to its new place, and the files it needs. */
 static enum gz_result write_session_scene(struct gz_session_writer *writer,
 					  const struct gz_session_start *start)
 {
@@ -211,13 +211,13 @@ static enum gz_result make_session_folder(const struct gz_session_writer *writer
 	if (mkdir(writer->path, 0700) == 0)
 		return GZ_OK;
 	const int error = errno;
-	gz_err(writer->log, "%s: the session's folder cannot be made: %s; %s", writer->path,
+	gz_err(writer->log, "%s: cannot create the session's folder: %s; %s", writer->path,
 	       strerror(error),
-	       error == EEXIST ? "choose another name" : "name one that may be written to");
+	       error == EEXIST ? "choose another name" : "choose a folder that you may write to");
 	return error == EEXIST ? GZ_ERR_BUSY : GZ_ERR_IO;
 }
 
-/* What has been made of it. Files of a folder that nobody else writes to. */
+/* Remove a session whose start failed. Nobody else writes to the folder. */
 static void remove_all(const struct gz_session_writer *writer)
 {
 	static const char *const names[] = {
@@ -272,7 +272,7 @@ enum gz_result gz_session_writer_begin(const struct gz_session_start *start,
 	return GZ_OK;
 }
 
-/* What the file has of a setting, and what it is now. */
+/* Append a line if a setting differs from the one in the file. */
 static void print_change(const struct gz_option *option, const void *before, const void *now,
 			 struct gz_text *lines)
 {
@@ -280,13 +280,13 @@ static void print_change(const struct gz_option *option, const void *before, con
 	if (gz_option_format(option, before, old, sizeof old) != GZ_OK ||
 	    gz_option_format(option, now, new, sizeof new) != GZ_OK || strcmp(old, new) == 0)
 		return;
-	/* A text that no scene's file could have. */
+	/* A scene file cannot hold a line break. */
 	if (strpbrk(new, "\r\n"))
 		return;
 	gz_text_add(lines, GZ_SESSION_SET_WORD "\t%s\t%s\n", option->key, new);
 }
 
-/* Names of files are those of the session's folder. */
+/* Keep the names of the copies in the session's folder. */
 static void keep_names(const struct gz_scene_settings *from, struct gz_scene_settings *to)
 {
 	memcpy(to->volume_file, from->volume_file, sizeof to->volume_file);
@@ -296,7 +296,7 @@ static void keep_names(const struct gz_scene_settings *from, struct gz_scene_set
 	       sizeof to->foveation.table_file);
 }
 
-/* Lines for what has changed; the writer's settings become those. */
+/* Append lines for what changed; the writer's settings become the new ones. */
 static enum gz_result print_changes(struct gz_session_writer *writer,
 				    const struct gz_scene_settings *settings)
 {
@@ -322,7 +322,7 @@ static enum gz_result print_changes(struct gz_session_writer *writer,
 	return GZ_OK;
 }
 
-/* A line of tabs between what are lines of a .tf file. */
+/* The lines of a .tf file, separated by tabs. */
 static void print_transfer(const struct gz_transfer *transfer, struct gz_text *lines)
 {
 	struct gz_text text = { 0 };
@@ -348,7 +348,7 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 		return GZ_ERR_IO;
 	const enum gz_result r = print_changes(writer, settings);
 	if (r != GZ_OK)
-		return stop_recording(writer, "a table of spacings", errno);
+		return stop_recording(writer, "the spacing table", errno);
 	if (!gz_transfer_same(&writer->transfer, transfer)) {
 		print_transfer(transfer, &writer->lines);
 		writer->transfer = *transfer;
@@ -415,7 +415,7 @@ enum gz_result gz_recording_check(const char *path, const struct gz_log *log)
 {
 	if (access(path, F_OK) != 0)
 		return GZ_OK;
-	gz_err(log, "--record %s: is there already; choose another name", path);
+	gz_err(log, "--record %s: already exists; choose another name", path);
 	return GZ_ERR_BUSY;
 }
 
@@ -443,8 +443,8 @@ enum gz_result gz_recording_begin(const struct gz_recording_start *start, const 
 	gz_frame_forget(start->maker);
 	if (scene->volume.bricks)
 		gz_warn(log,
-			"%s: a replay shows all of the file of bricks, not what had been read "
-			"of it by each frame",
+			"%s: a replay shows all bricks of the volume, not only those loaded at "
+			"the time",
 			start->path);
 	return GZ_OK;
 }
