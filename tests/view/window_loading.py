@@ -199,7 +199,7 @@ class WindowLoading(WindowCase):
         self.until(self.welcomes, "welcome")
         status, said = self.quit()
         self.assertEqual(status, 0)
-        self.assertIn("the loading was cancelled", said)
+        self.assertIn("loading was cancelled", said)
 
     def test_scene_stays_while_another_is_loaded_until_that_is_cancelled(self):
         self.start("--gaze", "0.5,0.5", "--method", "standard")

@@ -12,9 +12,7 @@
 #include "render/opengl/gl_program.h"
 #include "view/options/target_options.h"
 #include "view/panels/marks.h"
-#include "view/window/context_loss.h"
-#include "view/window/display_loss.h"
-#include "view/window/window_state.h"
+#include "view/window/glfw.h"
 
 #define GZ_LOG_MODULE "targets"
 
@@ -37,6 +35,7 @@ struct target_window {
 	const struct gz_view_options *options;
 	const struct gz_log *log;
 	GLFWwindow *glfw;
+	struct gz_display_loss loss;
 	bool has_widgets;
 	GLuint program, vertices;
 	struct gz_targets targets;
@@ -73,14 +72,6 @@ static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, i
 		window->space = true;
 }
 
-/* The reason of GLFW's last error, for the log. */
-static const char *glfw_reason(void)
-{
-	const char *reason = NULL;
-	glfwGetError(&reason);
-	return reason ? reason : "no reason given";
-}
-
 /* The monitor with the tracker's display size in px, otherwise the primary one. */
 static GLFWmonitor *find_monitor(const struct target_window *window)
 {
@@ -111,27 +102,11 @@ static enum gz_result create_target_window(struct target_window *window)
 		height = mode->height;
 		glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate);
 	}
-	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-	glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+	gz_glfw_hint_context(3, 3);
 	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); /* keep showing targets without the focus */
-	glfwWindowHint(GLFW_DEPTH_BITS, 0);
-	glfwWindowHint(GLFW_STENCIL_BITS, 0);
-	gz_context_loss_hint();
 	window->glfw =
 		glfwCreateWindow(width, height, "gazeview targets", whole ? monitor : NULL, NULL);
 	return window->glfw ? GZ_OK : GZ_ERR_UNSUPPORTED;
-}
-
-static enum gz_result load_opengl(struct target_window *window)
-{
-	glfwMakeContextCurrent(window->glfw);
-	glewExperimental = GL_TRUE; /* core profiles have no old extension list */
-	if (glewInit() != GLEW_OK || !GLEW_VERSION_3_3)
-		return GZ_ERR_UNSUPPORTED;
-	glfwSwapInterval(window->options->vsync ? 1 : 0);
-	return GZ_OK;
 }
 
 static enum gz_result open_target_drawing(struct target_window *window)
@@ -157,18 +132,21 @@ static enum gz_result open_window(struct target_window *window)
 		gz_err(window->log,
 		       "no window: %s; set DISPLAY to the X server of the tracker's "
 		       "display",
-		       glfw_reason());
+		       gz_glfw_reason());
 		return GZ_ERR_NO_DEVICE;
 	}
+	gz_glfw_watch_display(&window->loss);
 	enum gz_result r = create_target_window(window);
-	if (r == GZ_OK)
-		r = load_opengl(window);
-	if (r == GZ_OK)
-		r = open_target_drawing(window);
+	const char *missing = r == GZ_OK ? gz_glfw_load_opengl(window->glfw) : gz_glfw_reason();
+	if (missing) {
+		gz_err(window->log, "no window with OpenGL 3.3: %s; update the graphics driver",
+		       missing);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	glfwSwapInterval(window->options->vsync ? 1 : 0);
+	r = open_target_drawing(window);
 	if (r != GZ_OK)
-		gz_err(window->log,
-		       "no window with OpenGL 3.3: %s; update the graphics driver",
-		       glfw_reason());
+		gz_err(window->log, "the targets cannot be drawn; update the graphics driver");
 	return r;
 }
 
@@ -180,7 +158,7 @@ struct share {
 static struct share share_of_monitor(GLFWwindow *glfw, const GLFWvidmode *mode)
 {
 	int x, y, left, top, width, height;
-	GLFWmonitor *monitor = gz_window_monitor(glfw);
+	GLFWmonitor *monitor = gz_glfw_monitor_of(glfw);
 	glfwGetWindowSize(glfw, &width, &height);
 	if (!mode || !monitor || glfwGetWindowMonitor(glfw) || mode->width < 1 || mode->height < 1)
 		return (struct share) { { 0, 0 }, { 1, 1 } };
@@ -194,7 +172,7 @@ static struct share share_of_monitor(GLFWwindow *glfw, const GLFWvidmode *mode)
 
 static const GLFWvidmode *mode_of(GLFWwindow *glfw)
 {
-	GLFWmonitor *monitor = gz_window_monitor(glfw);
+	GLFWmonitor *monitor = gz_glfw_monitor_of(glfw);
 	return monitor ? glfwGetVideoMode(monitor) : NULL;
 }
 
@@ -310,7 +288,7 @@ static enum gz_result show_targets(struct target_window *window)
 		draw_target(window);
 		swap_target(window);
 		glfwWaitEventsTimeout(FRAME_S);
-		if (gz_context_is_lost()) {
+		if (gz_glfw_context_lost()) {
 			gz_err(window->log, "the graphics driver lost the window's context: "
 					    "no more targets are shown; start again");
 			tell_time("cancelled");
@@ -342,28 +320,26 @@ static void close_target_window(struct target_window *window)
 	glfwTerminate();
 }
 
-static enum gz_result run_targets(void *user)
+/* GLFW and OpenGL must not be used any more. */
+static void tell_display_lost(void *user)
 {
-	struct target_window *window = user;
-	enum gz_result r = open_window(window);
-	if (r == GZ_OK)
-		r = show_targets(window);
-	close_target_window(window);
-	return r;
+	const struct target_window *window = user;
+	gz_err(window->log, "the display is gone: its X server has ended or is out of reach; no "
+			    "more targets are "
+			    "shown");
+	tell_time("cancelled");
 }
 
 enum gz_result gz_view_targets(const struct gz_view_options *options, const struct gz_log *log)
 {
 	struct target_window window = { .options = options, .log = log };
-	bool lost = false;
+	window.loss = (struct gz_display_loss) { .lost = tell_display_lost, .user = &window };
 	enum gz_result r = gz_target_places(&options->target, log, &window.targets);
 	if (r != GZ_OK)
 		return r;
-	r = gz_display_loss_guard(run_targets, &window, &lost);
-	if (lost) {
-		gz_err(log, "the connection to the X server is lost: no more "
-			    "targets are shown");
-		tell_time("cancelled");
-	}
+	r = open_window(&window);
+	if (r == GZ_OK)
+		r = show_targets(&window);
+	close_target_window(&window);
 	return r;
 }

@@ -1,5 +1,5 @@
-#include "view/window/basics.h"
-
+/* The part that has the foveation methods, the settings panel, the letters of a patient's sides,
+ * the gaze cursor, full screen, and quitting. Its state is in struct gz_window. */
 #include <GLFW/glfw3.h>
 
 #include "render/plan/method.h"
@@ -14,7 +14,7 @@ static void choose_method(struct gz_window *window, int method)
 	if (!window->maker)
 		return;
 	if (gz_methods[method].needs_table && window->settings.foveation.table.count == 0)
-		return; /* the scene has none to show */
+		return; /* the scene has no table of spacings */
 	window->settings.foveation.method = method;
 	window->cast_needed = true;
 }
@@ -49,7 +49,7 @@ static void toggle_fullscreen(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
-static void quit(struct gz_window *window, int number)
+static void quit_program(struct gz_window *window, int number)
 {
 	(void)number;
 	glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
@@ -65,20 +65,20 @@ static void quit(struct gz_window *window, int number)
 		.key = GLFW_KEY_KP_##digit, .number = (method), .run = choose_method \
 	}
 
-static bool is_open(const struct gz_window *window)
+static bool is_settings_open(const struct gz_window *window)
 {
 	return window->settings_panel.open;
 }
 
-static const struct gz_window_action actions[] = {
-	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle_settings },
+static const struct gz_window_action basics_actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_settings_open, .run = toggle_settings },
 	METHOD(1, 0, "1", "method standard: every ray"),
-	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around"),
+	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around it"),
 	METHOD(3, 2, "3", "method ddc: two ellipses"),
-	METHOD(4, 3, "4", "method acuity: as the eye resolves"),
+	METHOD(4, 3, "4", "method acuity: as fine as the eye resolves"),
 	METHOD(5, 4, "5", "method mdc3: three squares"),
-	METHOD(6, 5, "6", "method uniform: everywhere the same"),
-	METHOD(7, 6, "7", "method table: as a file says"),
+	METHOD(6, 5, "6", "method uniform: the same everywhere"),
+	METHOD(7, 6, "7", "method table: spacings from a file"),
 	{ .letter = 'c',
 	  .keys = "C",
 	  .help = "cross at the gaze",
@@ -87,7 +87,7 @@ static const struct gz_window_action actions[] = {
 	{ .letter = 'p', .keys = "P", .help = "all settings of the scene", .run = toggle_settings },
 	{ .letter = 'l',
 	  .keys = "L",
-	  .help = "letters: which side is where",
+	  .help = "letters: sides of the patient",
 	  .run = toggle_letters },
 	{ .letter = 'f',
 	  .keys = "F F11",
@@ -97,18 +97,18 @@ static const struct gz_window_action actions[] = {
 	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
 	{ .letter = 'q',
 	  .keys = "Q or Esc",
-	  .help = "quit; Esc first closes what is open",
+	  .help = "quit; Esc first closes open panels",
 	  .group = "window",
-	  .run = quit },
-	{ .key = GLFW_KEY_ESCAPE, .run = quit },
+	  .run = quit_program },
+	{ .key = GLFW_KEY_ESCAPE, .run = quit_program },
 };
 
-static bool setting_applies(const void *user, const char *key)
+static bool setting_has_effect(const void *user, const char *key)
 {
 	return gz_setting_applies(user, key);
 }
 
-static void draw_letters(struct gz_window *window)
+static void draw_side_letters(struct gz_window *window)
 {
 	struct gz_letters letters;
 	if (window->settings.view.letters && window->maker &&
@@ -117,11 +117,11 @@ static void draw_letters(struct gz_window *window)
 		gz_marks_draw_letters(&letters);
 }
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_basics(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_place room = gz_widgets_room();
 	const struct gz_point at = gaze->reading.point;
-	draw_letters(window);
+	draw_side_letters(window);
 	if (window->settings.view.gaze_cursor && gaze->reading.known)
 		gz_marks_draw_cross((struct gz_place) { at.x * room.x, at.y * room.y });
 	window->cross_drawn = at;
@@ -129,24 +129,24 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 		return;
 	window->settings_panel.bindings = window->tables.bindings;
 	window->settings_panel.count = GZ_VIEW_SCENE_TABLES;
-	window->settings_panel.applies = setting_applies;
+	window->settings_panel.applies = setting_has_effect;
 	window->settings_panel.user = &window->settings;
 	window->settings_panel.margin_top = window->panels_top;
 	gz_settings_panel_draw(&window->settings_panel);
 }
 
-static bool follows(struct gz_window *window, const struct gz_window_gaze *gaze)
+static bool cursor_follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_point at = gaze->reading.point;
 	return window->settings.view.gaze_cursor &&
 	       (at.x != window->cross_drawn.x || at.y != window->cross_drawn.y);
 }
 
-const struct gz_window_part gz_window_basics = {
+const struct gz_window_part gz_window_basics_part = {
 	.name = "basics",
 	.title = "picture",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.follows = follows,
-	.panels = draw_panels,
+	.actions = basics_actions,
+	.action_count = sizeof basics_actions / sizeof basics_actions[0],
+	.follows = cursor_follows,
+	.panels = draw_basics,
 };

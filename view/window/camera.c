@@ -1,5 +1,4 @@
-#include "view/window/camera.h"
-
+/* The part that moves the camera: by mouse and keys, to views along an axis, and to saved views. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,12 +10,11 @@
 
 #define GZ_LOG_MODULE "window"
 
-/* A drag over the window's height turns by this much (chosen: half a turn within one sweep). */
+/* Rotation by a drag over the window's height (chosen: half a turn in one sweep). */
 #define DRAG_DEG_PER_HEIGHT 180.0
-/* One notch of the wheel, or one press of a key (chosen: seven notches halve the distance). */
+/* Change of distance per notch of the wheel or press of a key (chosen: seven halve it). */
 #define ZOOM_PER_NOTCH 0.9
-/* One press of a key (chosen: a quarter of a turn in nine presses; the picture's height in twenty).
- */
+/* Per press of a key (chosen: a quarter turn in nine presses; the picture's height in twenty). */
 #define KEY_DEG     10.0
 #define KEY_HEIGHTS 0.05
 
@@ -25,7 +23,8 @@ enum direction { LEFT, RIGHT, UP, DOWN };
 static const double rightward[] = { [LEFT] = -1, [RIGHT] = 1, [UP] = 0, [DOWN] = 0 };
 static const double upward[] = { [LEFT] = 0, [RIGHT] = 0, [UP] = 1, [DOWN] = -1 };
 
-static struct gz_camera *camera_of(struct gz_window *window)
+/* The camera, which is about to change. */
+static struct gz_camera *changed_camera(struct gz_window *window)
 {
 	window->cast_needed = true;
 	return &window->settings.camera;
@@ -36,59 +35,59 @@ static bool has_scene(const struct gz_window *window)
 	return window->maker != NULL;
 }
 
-/* The eye goes where the arrow points. */
-static void orbit(struct gz_window *window, int direction)
+/* The eye moves to where the arrow points. */
+static void orbit_by_key(struct gz_window *window, int direction)
 {
-	gz_camera_orbit(camera_of(window), -rightward[direction] * KEY_DEG,
+	gz_camera_orbit(changed_camera(window), -rightward[direction] * KEY_DEG,
 			upward[direction] * KEY_DEG);
 }
 
-static void pan(struct gz_window *window, int direction)
+static void pan_by_key(struct gz_window *window, int direction)
 {
-	gz_camera_pan(camera_of(window), -rightward[direction] * KEY_HEIGHTS,
+	gz_camera_pan(changed_camera(window), -rightward[direction] * KEY_HEIGHTS,
 		      -upward[direction] * KEY_HEIGHTS);
 }
 
-static void zoom(struct gz_window *window, int notches)
+static void zoom_by_key(struct gz_window *window, int notches)
 {
-	gz_camera_zoom(camera_of(window), pow(ZOOM_PER_NOTCH, notches));
+	gz_camera_zoom(changed_camera(window), pow(ZOOM_PER_NOTCH, notches));
 }
 
 static void switch_projection(struct gz_window *window, int number)
 {
 	(void)number;
-	struct gz_camera *camera = camera_of(window);
+	struct gz_camera *camera = changed_camera(window);
 	gz_camera_set_projection(camera, camera->projection == GZ_PROJECTION_PERSPECTIVE
 						 ? GZ_PROJECTION_ORTHOGRAPHIC
 						 : GZ_PROJECTION_PERSPECTIVE);
 }
 
-static void reset(struct gz_window *window, int number)
+static void reset_camera(struct gz_window *window, int number)
 {
 	(void)number;
-	*camera_of(window) = gz_frame_maker_scene(window->maker)->settings.camera;
+	*changed_camera(window) = gz_frame_maker_scene(window->maker)->settings.camera;
 }
 
-/* Axes 1 to 3, negative from the other side. */
+/* Axes 1 to 3; negative: from the other side. */
 static void look_along(struct gz_window *window, int axis)
 {
-	gz_camera_look_along(camera_of(window), abs(axis) - 1, axis < 0);
+	gz_camera_look_along(changed_camera(window), abs(axis) - 1, axis < 0);
 }
 
 static void save_view(struct gz_window *window, int number)
 {
 	gz_saved_view_print(&window->settings.camera, window->settings.view.saved[number]);
-	gz_info(window->log, "view saved: F%d shows it, saving the scene keeps it", number + 1);
+	gz_info(window->log, "view stored: F%d shows it; save the scene to keep it", number + 1);
 }
 
 static void show_view(struct gz_window *window, int number)
 {
 	const char *text = window->settings.view.saved[number];
 	if (!text[0])
-		gz_info(window->log, "no view is saved there; Shift+F%d saves this one",
-			number + 1);
+		gz_info(window->log, "no view stored on F%d yet; Shift+F%d stores this one",
+			number + 1, number + 1);
 	else
-		gz_saved_view_parse(text, camera_of(window));
+		gz_saved_view_parse(text, changed_camera(window));
 }
 
 #define ARROW(name, what, with, function)                                                       \
@@ -110,38 +109,38 @@ static void show_view(struct gz_window *window, int number)
 		.applies = has_scene, .run = save_view                                             \
 	}
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action camera_actions[] = {
 	{ .key = GLFW_KEY_LEFT,
 	  .repeats = true,
 	  .number = LEFT,
 	  .keys = "arrows",
 	  .help = "turn; or drag the picture",
 	  .applies = has_scene,
-	  .run = orbit },
-	ARROW(RIGHT, RIGHT, 0, orbit),
-	ARROW(UP, UP, 0, orbit),
-	ARROW(DOWN, DOWN, 0, orbit),
+	  .run = orbit_by_key },
+	ARROW(RIGHT, RIGHT, 0, orbit_by_key),
+	ARROW(UP, UP, 0, orbit_by_key),
+	ARROW(DOWN, DOWN, 0, orbit_by_key),
 	{ .key = GLFW_KEY_LEFT,
 	  .modifiers = GZ_KEY_SHIFT,
 	  .repeats = true,
 	  .number = LEFT,
 	  .keys = "Shift+arrows",
-	  .help = "move sideways; or drag by the right button",
+	  .help = "move sideways; or drag with the right button",
 	  .applies = has_scene,
-	  .run = pan },
-	ARROW(RIGHT, RIGHT, GZ_KEY_SHIFT, pan),
-	ARROW(UP, UP, GZ_KEY_SHIFT, pan),
-	ARROW(DOWN, DOWN, GZ_KEY_SHIFT, pan),
+	  .run = pan_by_key },
+	ARROW(RIGHT, RIGHT, GZ_KEY_SHIFT, pan_by_key),
+	ARROW(UP, UP, GZ_KEY_SHIFT, pan_by_key),
+	ARROW(DOWN, DOWN, GZ_KEY_SHIFT, pan_by_key),
 	{ .letter = '+',
 	  .repeats = true,
 	  .number = 1,
 	  .keys = "+ -",
-	  .help = "zoom; or turn the wheel. Shift+drag rolls",
+	  .help = "zoom; or the wheel. Shift+drag rolls",
 	  .applies = has_scene,
-	  .run = zoom },
-	ARROW(KP_ADD, 1, 0, zoom),
-	{ .letter = '-', .repeats = true, .number = -1, .applies = has_scene, .run = zoom },
-	ARROW(KP_SUBTRACT, -1, 0, zoom),
+	  .run = zoom_by_key },
+	ARROW(KP_ADD, 1, 0, zoom_by_key),
+	{ .letter = '-', .repeats = true, .number = -1, .applies = has_scene, .run = zoom_by_key },
+	ARROW(KP_SUBTRACT, -1, 0, zoom_by_key),
 	{ .letter = 'o',
 	  .keys = "O",
 	  .help = "perspective or orthographic",
@@ -160,13 +159,13 @@ static const struct gz_window_action actions[] = {
 	AXIS('z', 3),
 	{ .letter = 'r',
 	  .keys = "R",
-	  .help = "camera as in the scene",
+	  .help = "reset the camera to the scene's",
 	  .applies = has_scene,
-	  .run = reset },
+	  .run = reset_camera },
 	{ .key = GLFW_KEY_F1,
 	  .number = 0,
 	  .keys = "F1 to F8",
-	  .help = "show a saved view; with Shift save this one",
+	  .help = "show a stored view; with Shift store this one",
 	  .applies = has_scene,
 	  .run = show_view },
 	{ .key = GLFW_KEY_F1,
@@ -183,10 +182,10 @@ static const struct gz_window_action actions[] = {
 	VIEW(8),
 };
 
-/* What a drag does, by how it began. */
+/* What a drag does. */
 enum drag { DRAG_ORBIT, DRAG_PAN, DRAG_ROLL };
 
-static bool grab(struct gz_window *window, int button, int modifiers)
+static bool grab_camera(struct gz_window *window, int button, int modifiers)
 {
 	if (button == GLFW_MOUSE_BUTTON_MIDDLE || button == GLFW_MOUSE_BUTTON_RIGHT)
 		window->camera_drag = DRAG_PAN;
@@ -197,15 +196,15 @@ static bool grab(struct gz_window *window, int button, int modifiers)
 	return true;
 }
 
-/* What is seen follows the hand. */
-static void drag(struct gz_window *window, double right, double down)
+/* The picture follows the mouse. */
+static void drag_camera(struct gz_window *window, double right, double down)
 {
 	int width, height;
 	glfwGetWindowSize(window->glfw, &width, &height);
 	if (height < 1)
 		return;
 	const double deg = DRAG_DEG_PER_HEIGHT / height;
-	struct gz_camera *camera = camera_of(window);
+	struct gz_camera *camera = changed_camera(window);
 	if (window->camera_drag == DRAG_PAN)
 		gz_camera_pan(camera, right / height, -down / height);
 	else if (window->camera_drag == DRAG_ROLL)
@@ -214,16 +213,16 @@ static void drag(struct gz_window *window, double right, double down)
 		gz_camera_orbit(camera, -right * deg, -down * deg);
 }
 
-static void wheel(struct gz_window *window, double up)
+static void zoom_by_wheel(struct gz_window *window, double up)
 {
-	gz_camera_zoom(camera_of(window), pow(ZOOM_PER_NOTCH, up));
+	gz_camera_zoom(changed_camera(window), pow(ZOOM_PER_NOTCH, up));
 }
 
-const struct gz_window_part gz_window_camera = {
+const struct gz_window_part gz_window_camera_part = {
 	.name = "camera",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.grab = grab,
-	.drag = drag,
-	.wheel = wheel,
+	.actions = camera_actions,
+	.action_count = sizeof camera_actions / sizeof camera_actions[0],
+	.grab = grab_camera,
+	.drag = drag_camera,
+	.wheel = zoom_by_wheel,
 };

@@ -1,43 +1,70 @@
-#include "view/window/capture.h"
-
+/* The part that writes pictures and videos: F12 and F10. */
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <GLFW/glfw3.h>
 
+#include "render/scene/scene_picture.h"
 #include "view/capture/output.h"
 #include "view/capture/video.h"
 #include "view/panels/marks.h"
-#include "view/window/read_back.h"
+#include "view/window/loading.h"
 #include "view/window/window_state.h"
 
-#define GZ_LOG_MODULE "video"
+#define GZ_LOG_MODULE "capture"
 
-/* How often a video is brought up to date while nothing moves, s (chosen: the time shown runs, and
- * a long rest goes out in parts). */
+/* Interval of updating a video while nothing changes, s (chosen: the time shown runs, and a long
+ * rest is written in parts). */
 #define VIDEO_PATIENCE_S 0.25
 
-struct gz_window_capture_state {
+/* A picture alone, or with all that lies over it. */
+enum picture_kind { NOTHING, PICTURE, WITH_PANELS };
+
+/* Interval of asking whether a picture has been written, s (chosen: reported soon). */
+#define WRITTEN_PATIENCE_S 0.1
+
+/* A picture that is written on a thread, as compressing takes longer than a frame. */
+struct picture_job {
+	pthread_t thread;
+	const struct gz_log *log;
+	struct gz_image image;
+	char path[GZ_PATH_SIZE];
+	bool has_scene;
+	char scene_path[GZ_PATH_SIZE];
+	struct gz_scene_saved saved; /* points to the next ones */
+	struct gz_scene_settings settings;
+	struct gz_transfer transfer;
+	const struct gz_volume *volume; /* of the scene, which outlives the job */
+	enum gz_result result;
+	atomic_bool over;
+};
+
+struct video_capture {
 	bool wanted; /* begins with the next picture drawn */
 	bool ending; /* it is being finished */
 	struct gz_video *video;
 	char path[GZ_PATH_SIZE];
 	int64_t start_ns;
-	int64_t drawn_s; /* of the mark, as last drawn */
+	int64_t drawn_s; /* time in the mark, as last drawn */
 	struct gz_image image;
 };
 
-static enum gz_result open_part(struct gz_window *window)
-{
-	window->capture = calloc(1, sizeof *window->capture);
-	return window->capture ? GZ_OK : GZ_ERR_NO_MEM;
-}
+struct gz_window_capture {
+	struct video_capture video;
+	enum picture_kind picture_wanted;
+	struct picture_job *picture; /* being written; NULL: none */
+};
 
-/* The file is whole, or why it is not has been logged. */
+/* ---- videos ---- */
+
+/* Finish the file; failures are logged. */
 static void close_video(struct gz_window *window)
 {
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	if (!self->video)
 		return;
 	if (!self->ending)
@@ -46,8 +73,9 @@ static void close_video(struct gz_window *window)
 	const enum gz_result r = gz_video_close(&self->video);
 	if (r == GZ_OK && status.dropped > 0)
 		gz_warn(window->log,
-			"%s written; %llu pictures came too quickly for ffmpeg, the ones before "
-			"stand for them",
+			"%s written; %llu frames were dropped, as ffmpeg was too slow; the "
+			"previous "
+			"frame was repeated",
 			self->path, (unsigned long long)status.dropped);
 	else if (r == GZ_OK)
 		gz_info(window->log, "%s written", self->path);
@@ -57,7 +85,7 @@ static void close_video(struct gz_window *window)
 
 static void begin_video(struct gz_window *window)
 {
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	enum gz_result r = gz_capture_name(window->options->pictures, ".mp4", self->path);
 	const struct gz_video_params params = {
 		.path = self->path,
@@ -72,10 +100,10 @@ static void begin_video(struct gz_window *window)
 		gz_err(window->log, "no video: %s; see --pictures", gz_result_text(r));
 }
 
-static void toggle(struct gz_window *window, int number)
+static void toggle_video(struct gz_window *window, int number)
 {
 	(void)number;
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	window->present_needed = true;
 	if (self->ending) {
 		gz_warn(window->log, "%s is still being written; wait a moment", self->path);
@@ -85,27 +113,27 @@ static void toggle(struct gz_window *window, int number)
 	} else if (window->maker) {
 		self->wanted = true;
 	} else {
-		gz_warn(window->log, "no scene is shown to make a video of; open one");
+		gz_warn(window->log, "no scene is shown; open one to record a video");
 	}
 }
 
-static void turn(struct gz_window *window)
+static void turn_video(struct gz_window *window)
 {
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	if (!self->video)
 		return;
 	if (gz_video_status(self->video).over) {
 		close_video(window);
 	} else if (!self->ending) {
-		(void)gz_video_pass(self->video, gz_clock_now_ns()); /* if it fails, it is over */
+		(void)gz_video_pass(self->video, gz_clock_now_ns()); /* a failure ends it */
 		const int64_t now_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
 		window->present_needed = window->present_needed || now_s != self->drawn_s;
 	}
 }
 
-static void paint(struct gz_window *window, int width, int height)
+static void paint_video(struct gz_window *window, int width, int height)
 {
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	if (!self->wanted && (!self->video || self->ending))
 		return;
 	if (gz_window_read_back(width, height, &self->image) != GZ_OK)
@@ -117,48 +145,189 @@ static void paint(struct gz_window *window, int width, int height)
 		(void)gz_video_show(self->video, &self->image, gz_clock_now_ns());
 }
 
-static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_capture_mark(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
-	struct gz_window_capture_state *self = window->capture;
+	struct video_capture *self = &window->capture->video;
 	if (!self->video)
 		return;
 	self->drawn_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
 	gz_marks_draw_running(0, self->ending ? "writing video" : "video", true, self->drawn_s);
 }
 
-static double patience_s(const struct gz_window *window)
+static double video_patience_s(const struct gz_window *window)
 {
-	const struct gz_window_capture_state *self = window->capture;
+	const struct video_capture *self = &window->capture->video;
 	return self->video ? VIDEO_PATIENCE_S : INFINITY;
 }
 
-static void close_part(struct gz_window *window)
+/* ---- pictures ---- */
+
+static void *write_picture_file(void *argument)
 {
-	if (window->capture) {
-		close_video(window);
-		gz_image_free(&window->capture->image);
-	}
-	free(window->capture);
-	window->capture = NULL;
+	struct picture_job *job = argument;
+	job->result = job->has_scene
+			      ? gz_scene_picture_write(&job->image, &job->saved, &job->transfer,
+						       job->volume, job->path, job->log)
+			      : gz_image_write_png(&job->image, job->path, job->log);
+	atomic_store(&job->over, true);
+	return NULL;
 }
 
-static const struct gz_window_action actions[] = {
+/* Wait for the picture that is being written, and log its path. */
+static void finish_picture(struct gz_window_capture *self)
+{
+	struct picture_job *job = self->picture;
+	if (!job)
+		return;
+	pthread_join(job->thread, NULL);
+	if (job->result == GZ_OK)
+		gz_info(job->log, "%s written", job->path);
+	gz_image_free(&job->image);
+	free(job);
+	self->picture = NULL;
+}
+
+static void add_scene(const struct gz_window *window, struct picture_job *job)
+{
+	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	job->has_scene = true;
+	memcpy(&job->settings, &window->shown, sizeof job->settings);
+	memcpy(&job->transfer, &scene->transfer, sizeof job->transfer);
+	job->volume = &scene->volume;
+	snprintf(job->scene_path, sizeof job->scene_path, "%s", gz_window_scene_path(window));
+	job->saved = (struct gz_scene_saved) {
+		.settings = &job->settings,
+		.has_display = scene->has_display,
+		.path = job->scene_path,
+	};
+}
+
+static enum gz_result start_picture_job(struct gz_window *window, struct picture_job *job,
+					int width, int height)
+{
+	enum gz_result r = gz_capture_name(window->options->pictures, ".png", job->path);
+	if (r == GZ_OK)
+		r = gz_window_read_back(width, height, &job->image);
+	if (r != GZ_OK)
+		return r;
+	if (window->maker && window->any_shown)
+		add_scene(window, job);
+	return pthread_create(&job->thread, NULL, write_picture_file, job) == 0 ? GZ_OK
+										: GZ_ERR_NO_MEM;
+}
+
+static void take_picture(struct gz_window *window, int width, int height)
+{
+	struct gz_window_capture *self = window->capture;
+	self->picture_wanted = NOTHING;
+	finish_picture(self);
+	struct picture_job *job = calloc(1, sizeof *job);
+	enum gz_result r = GZ_ERR_NO_MEM;
+	if (job) {
+		job->log = window->log;
+		r = start_picture_job(window, job, width, height);
+	}
+	if (r == GZ_OK) {
+		self->picture = job;
+		return;
+	}
+	gz_err(window->log, "no picture: %s; see --pictures", gz_result_text(r));
+	if (job)
+		gz_image_free(&job->image);
+	free(job);
+}
+
+static void paint_picture(struct gz_window *window, int width, int height)
+{
+	if (window->capture->picture_wanted == PICTURE)
+		take_picture(window, width, height);
+}
+
+static void take_screen(struct gz_window *window, int width, int height)
+{
+	if (window->capture->picture_wanted == WITH_PANELS)
+		take_picture(window, width, height);
+}
+
+static void want_picture(struct gz_window *window, int kind)
+{
+	window->capture->picture_wanted = (enum picture_kind)kind;
+	window->present_needed = true;
+}
+
+static void turn_picture(struct gz_window *window)
+{
+	struct picture_job *job = window->capture->picture;
+	if (job && atomic_load(&job->over))
+		finish_picture(window->capture);
+}
+
+static double picture_patience_s(const struct gz_window *window)
+{
+	return window->capture->picture ? WRITTEN_PATIENCE_S : INFINITY;
+}
+
+static void leave_pictured_scene(struct gz_window *window)
+{
+	finish_picture(window->capture);
+}
+
+/* ---- the part ---- */
+
+static void turn_capture(struct gz_window *window)
+{
+	turn_video(window);
+	turn_picture(window);
+}
+
+static void paint_capture(struct gz_window *window, int width, int height)
+{
+	paint_video(window, width, height);
+	paint_picture(window, width, height);
+}
+
+static double capture_patience_s(const struct gz_window *window)
+{
+	return fmin(video_patience_s(window), picture_patience_s(window));
+}
+
+static void close_capture(struct gz_window *window)
+{
+	close_video(window);
+	gz_image_free(&window->capture->video.image);
+	finish_picture(window->capture);
+}
+
+static const struct gz_window_action capture_actions[] = {
 	{ .key = GLFW_KEY_F10,
 	  .keys = "F10",
-	  .help = "begin or end a video of the picture",
-	  .run = toggle },
+	  .help = "start or stop a video of the picture",
+	  .run = toggle_video },
+	{ .key = GLFW_KEY_F12,
+	  .number = PICTURE,
+	  .keys = "F12",
+	  .help = "save the picture, with its scene in it",
+	  .run = want_picture },
+	{ .key = GLFW_KEY_F12,
+	  .modifiers = GZ_KEY_SHIFT,
+	  .number = WITH_PANELS,
+	  .keys = "Shift+F12",
+	  .help = "save the whole window as a picture",
+	  .run = want_picture },
 };
 
-const struct gz_window_part gz_window_capture = {
+const struct gz_window_part gz_window_capture_part = {
 	.name = "capture",
 	.title = "record",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_part,
-	.turn = turn,
-	.paint = paint,
-	.panels = panels,
-	.patience_s = patience_s,
-	.close = close_part,
+	.actions = capture_actions,
+	.action_count = sizeof capture_actions / sizeof capture_actions[0],
+	GZ_PART_STATE(capture),
+	.scene_leaving = leave_pictured_scene,
+	.turn = turn_capture,
+	.paint = paint_capture,
+	.panels = draw_capture_mark,
+	.drawn = take_screen,
+	.patience_s = capture_patience_s,
+	.close = close_capture,
 };

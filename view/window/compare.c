@@ -1,9 +1,6 @@
-#include "view/window/compare.h"
-
+/* The part that shows the standard picture beside the method's, or the difference between them. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <GLFW/glfw3.h>
 
@@ -15,13 +12,14 @@
 
 #define GZ_LOG_MODULE "window"
 
-/* How often the bar of a picture in the making is looked at (chosen: seen to go on, and cheap). */
+/* Interval of looking at a picture in the making, and change of its progress that is shown (chosen:
+ * visible, and cheap). */
 #define PROGRESS_S     0.1
 #define PROGRESS_SHARE 0.05
-/* A key moves the divider by this share of the width (chosen: fifty presses from side to side). */
+/* Step of the divider by a key, share of the width (chosen: fifty presses from side to side). */
 #define SPLIT_STEP 0.02
-/* Within so many unscaled screen coordinates of the divider the mouse takes it (chosen: hit with
- * ease, and little of the picture is lost to turning). */
+/* Distance from which the mouse grabs the divider, unscaled (chosen: easy to hit; elsewhere the
+ * mouse turns the camera). */
 #define GRAB_NEAR 6.0
 /* Unscaled. */
 #define LABEL_MARGIN  8.0f
@@ -37,13 +35,13 @@ struct gz_window_compare {
 	double share, share_shown;
 };
 
-static bool is_wanted(const struct gz_window *window)
+static bool is_compare_wanted(const struct gz_window *window)
 {
-	/* An experiment has the processor to itself. */
+	/* An experiment gets the whole processor. */
 	return window->settings.view.compare != GZ_COMPARE_NONE && window->maker && !window->alone;
 }
 
-static void choose_next(struct gz_window *window, int number)
+static void choose_next_compare(struct gz_window *window, int number)
 {
 	(void)number;
 	int *compare = &window->settings.view.compare;
@@ -65,17 +63,17 @@ static void change_gain(struct gz_window *window, int direction)
 	window->present_needed = true;
 }
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action compare_actions[] = {
 	{ .letter = 'v',
 	  .keys = "V",
-	  .help = "split with standard, difference to it, alone",
-	  .run = choose_next },
+	  .help = "compare with standard: split, difference, off",
+	  .run = choose_next_compare },
 	{ .key = GLFW_KEY_LEFT,
 	  .modifiers = GZ_KEY_CONTROL,
 	  .repeats = true,
 	  .number = -1,
 	  .keys = "Ctrl+Left Right",
-	  .help = "move the divider, as by the mouse",
+	  .help = "move the divider; or drag it",
 	  .run = move_split },
 	{ .key = GLFW_KEY_RIGHT,
 	  .modifiers = GZ_KEY_CONTROL,
@@ -91,13 +89,7 @@ static const struct gz_window_action actions[] = {
 	{ .key = GLFW_KEY_DOWN, .modifiers = GZ_KEY_CONTROL, .number = -1, .run = change_gain },
 };
 
-static enum gz_result open_part(struct gz_window *window)
-{
-	window->compare = calloc(1, sizeof *window->compare);
-	return window->compare ? GZ_OK : GZ_ERR_NO_MEM;
-}
-
-static enum gz_result open_drawing(struct gz_window *window)
+static enum gz_result open_compare_drawing(struct gz_window *window)
 {
 	struct gz_window_compare *self = window->compare;
 	const enum gz_result r = gz_compare_init(&self->drawing, window->log);
@@ -106,58 +98,58 @@ static enum gz_result open_drawing(struct gz_window *window)
 	return r;
 }
 
-/* On a thread of the worker's. */
-static void wake_loop(void *user)
+/* Called on the worker's thread. */
+static void wake_loop_for_standard(void *user)
 {
 	(void)user;
 	glfwPostEmptyEvent();
 }
 
-static void drop(struct gz_window_compare *self)
+static void drop_standard(struct gz_window_compare *self)
 {
 	gz_reference_worker_stop(&self->worker);
 	gz_image_free(&self->image);
 	self->any = self->busy = false;
 }
 
-static void start(struct gz_window *window)
+static void start_standard_worker(struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	const struct gz_reference_source source = {
 		.technique = gz_techniques[0],
 		.volume = &scene->volume,
 		.threads = (window->options->threads + 1) / 2,
-		.finished = wake_loop,
+		.finished = wake_loop_for_standard,
 		.log = window->log,
 	};
 	const enum gz_result r =
 		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
 	if (r == GZ_OK)
 		return;
-	gz_err(window->log, "nothing to compare with: %s",
-	       r == GZ_ERR_UNSUPPORTED ? "bricks are fetched for one picture at a time"
+	gz_err(window->log, "no standard picture to compare with: %s",
+	       r == GZ_ERR_UNSUPPORTED ? "volumes of bricks are read for one picture only"
 				       : gz_result_text(r));
 	window->settings.view.compare = GZ_COMPARE_NONE;
 }
 
-/* What is on the screen is what is compared. */
-static void ask(struct gz_window *window)
+/* The standard picture of what is on the screen. */
+static void ask_for_standard(struct gz_window *window)
 {
-	struct gz_reference_view view;
 	if (!window->compare->worker || !window->any_shown)
 		return;
-	memset(&view, 0, sizeof view);
-	memcpy(&view.camera, &window->shown.camera, sizeof view.camera);
-	memcpy(&view.rays, &window->shown.rays, sizeof view.rays);
-	view.image_sampling_rate = window->shown.image_sampling_rate;
-	view.width = window->record.width;
-	view.height = window->record.height;
+	const struct gz_reference_view view = {
+		.camera = window->shown.camera,
+		.rays = window->shown.rays,
+		.image_sampling_rate = window->shown.image_sampling_rate,
+		.width = window->record.width,
+		.height = window->record.height,
+	};
 	gz_reference_worker_set_transfer(window->compare->worker,
 					 &gz_frame_maker_scene(window->maker)->transfer);
 	gz_reference_worker_ask(window->compare->worker, &view);
 }
 
-static void look_at_worker(struct gz_window *window)
+static void take_standard(struct gz_window *window)
 {
 	struct gz_window_compare *self = window->compare;
 	const bool was_busy = self->busy;
@@ -171,27 +163,27 @@ static void look_at_worker(struct gz_window *window)
 		window->present_needed = true;
 }
 
-static void turn(struct gz_window *window)
+static void turn_compare(struct gz_window *window)
 {
 	struct gz_window_compare *self = window->compare;
-	if (!is_wanted(window)) {
-		drop(self);
+	if (!is_compare_wanted(window)) {
+		drop_standard(self);
 		return;
 	}
 	if (!self->worker)
-		start(window);
+		start_standard_worker(window);
 	if (!self->worker)
 		return;
-	ask(window);
-	look_at_worker(window);
+	ask_for_standard(window);
+	take_standard(window);
 }
 
-static void leave_scene(struct gz_window *window)
+static void leave_compared_scene(struct gz_window *window)
 {
-	drop(window->compare);
+	drop_standard(window->compare);
 }
 
-static void paint(struct gz_window *window, int width, int height)
+static void paint_compare(struct gz_window *window, int width, int height)
 {
 	const struct gz_window_compare *self = window->compare;
 	const struct gz_view_settings *view = &window->settings.view;
@@ -212,14 +204,14 @@ static void print_standard(const struct gz_window_compare *self, char *text, siz
 		snprintf(text, size, "standard%s", self->any ? "" : ": none");
 }
 
-static void draw_label(struct gz_window *window, const char *text, float x, bool leftwards)
+static void draw_compare_label(struct gz_window *window, const char *text, float x, bool leftwards)
 {
 	const float unit = gz_widgets_scale();
 	const float width = gz_text_room(1, text).x + 10 * unit; /* with the caption's rim */
 	const struct gz_place room = gz_widgets_room();
 	const float at = leftwards ? x - width - LABEL_MARGIN * unit : x + LABEL_MARGIN * unit;
 	const float left = fmaxf(0, fminf(at, room.x - width));
-	/* At the left below, something else is told. */
+	/* The lower left corner has the caption of the gaze. */
 	const float below = left < CORNER_WIDTH * unit ? CORNER_HEIGHT * unit : 0;
 	const struct gz_place corner = {
 		left,
@@ -230,47 +222,48 @@ static void draw_label(struct gz_window *window, const char *text, float x, bool
 			text);
 }
 
-static void draw_split(struct gz_window *window, const char *standard)
+static void draw_divider(struct gz_window *window, const char *standard)
 {
 	const struct gz_place room = gz_widgets_room();
 	const float x = roundf((float)window->settings.view.split * room.x);
 	const struct gz_place top = { x, 0 }, bottom = { x, room.y };
 	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_ground, 3);
 	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_plain, 1);
-	draw_label(window, window->record.method, x, true);
-	draw_label(window, standard, x, false);
+	draw_compare_label(window, window->record.method, x, true);
+	draw_compare_label(window, standard, x, false);
 }
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_compare_marks(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
 	struct gz_window_compare *self = window->compare;
 	char standard[64], text[128];
-	if (!is_wanted(window) || !window->any_shown)
+	if (!is_compare_wanted(window) || !window->any_shown)
 		return;
 	self->share_shown = self->share;
 	print_standard(self, standard, sizeof standard);
 	if (window->settings.view.compare == GZ_COMPARE_SPLIT) {
-		draw_split(window, standard);
+		draw_divider(window, standard);
 		return;
 	}
 	snprintf(text, sizeof text, "%s less %s, %g times", window->record.method, standard,
 		 window->settings.view.difference_gain);
-	draw_label(window, text, (gz_widgets_room().x - gz_text_room(1, text).x) / 2, false);
+	draw_compare_label(window, text, (gz_widgets_room().x - gz_text_room(1, text).x) / 2,
+			   false);
 }
 
-/* The divider goes with the mouse. */
-static bool grab(struct gz_window *window, int button, int modifiers)
+/* The mouse is near the divider. */
+static bool grab_divider(struct gz_window *window, int button, int modifiers)
 {
 	int width, height;
 	glfwGetWindowSize(window->glfw, &width, &height);
 	const double x = window->settings.view.split * width;
-	return button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_wanted(window) &&
+	return button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_compare_wanted(window) &&
 	       window->settings.view.compare == GZ_COMPARE_SPLIT &&
 	       fabs(window->cursor[0] - x) <= GRAB_NEAR * (double)gz_widgets_scale();
 }
 
-static void drag(struct gz_window *window, double right, double down)
+static void drag_divider(struct gz_window *window, double right, double down)
 {
 	(void)right;
 	(void)down;
@@ -281,40 +274,36 @@ static void drag(struct gz_window *window, double right, double down)
 	window->present_needed = true;
 }
 
-static double patience_s(const struct gz_window *window)
+static double compare_patience_s(const struct gz_window *window)
 {
 	return window->compare->busy ? PROGRESS_S : INFINITY;
 }
 
-static void close_drawing(struct gz_window *window)
+static void close_compare_drawing(struct gz_window *window)
 {
-	if (window->compare)
-		gz_compare_free(&window->compare->drawing);
+	gz_compare_free(&window->compare->drawing);
 }
 
-static void close_part(struct gz_window *window)
+static void close_compare(struct gz_window *window)
 {
-	if (window->compare)
-		drop(window->compare);
-	free(window->compare);
-	window->compare = NULL;
+	drop_standard(window->compare);
 }
 
 const struct gz_window_part gz_window_compare_part = {
 	.name = "compare",
 	.title = "picture",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_part,
-	.gl_open = open_drawing,
-	.scene_leaving = leave_scene,
-	.turn = turn,
-	.frame_made = ask,
-	.paint = paint,
-	.panels = draw_panels,
-	.grab = grab,
-	.drag = drag,
-	.patience_s = patience_s,
-	.gl_close = close_drawing,
-	.close = close_part,
+	.actions = compare_actions,
+	.action_count = sizeof compare_actions / sizeof compare_actions[0],
+	GZ_PART_STATE(compare),
+	.gl_open = open_compare_drawing,
+	.scene_leaving = leave_compared_scene,
+	.turn = turn_compare,
+	.frame_made = ask_for_standard,
+	.paint = paint_compare,
+	.panels = draw_compare_marks,
+	.grab = grab_divider,
+	.drag = drag_divider,
+	.patience_s = compare_patience_s,
+	.gl_close = close_compare_drawing,
+	.close = close_compare,
 };

@@ -1,7 +1,6 @@
 #include "view/window/displays.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <GLFW/glfw3.h>
@@ -11,41 +10,23 @@
 
 #define GZ_LOG_MODULE "window"
 
-/* How often monitors are looked at whose change nobody tells: a mode, a place (chosen: at once for
- * a person, seldom for the display server, which is asked each time). */
+/* Interval of looking at monitors: changes of mode and place come without an event (chosen: soon
+ * for a person, seldom for the display server, which is asked each time). */
 #define LOOK_INTERVAL_NS (2 * GZ_NS_PER_S)
 
 struct gz_window_displays {
 	struct gz_monitor_list list;
 	GLFWmonitor *handles[GZ_MONITORS_MAX]; /* of the list */
-	int64_t looked_ns;                     /* 0: to be looked at anew */
+	int64_t looked_ns;                     /* 0: not looked at yet */
 	int rect_px[4];                        /* of the window */
-	int framebuffer_px[2];                 /* its; 0 while it is minimised */
-	bool rect_old;                         /* it has moved since */
+	int framebuffer_px[2];                 /* of the window; 0 while it is minimised */
+	bool rect_old;                         /* the window has moved since */
 	struct gz_tracker_display chosen;
-	char told[GZ_NAME_SIZE];  /* the monitor that was told of as the tracker's */
-	char asked[GZ_NAME_SIZE]; /* the name that was refused */
+	char told[GZ_NAME_SIZE];  /* the tracker's display that was logged */
+	char asked[GZ_NAME_SIZE]; /* the name that was refused, and logged */
 };
 
-struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw)
-{
-	int x, y, width, height, count;
-	glfwGetWindowPos(glfw, &x, &y);
-	glfwGetWindowSize(glfw, &width, &height);
-	GLFWmonitor **monitors = glfwGetMonitors(&count);
-	for (int i = 0; i < count; i++) {
-		int left, top;
-		const GLFWvidmode *mode = glfwGetVideoMode(monitors[i]);
-		glfwGetMonitorPos(monitors[i], &left, &top);
-		int middle_x = x + width / 2 - left, middle_y = y + height / 2 - top;
-		if (mode && middle_x >= 0 && middle_x < mode->width && middle_y >= 0 &&
-		    middle_y < mode->height)
-			return monitors[i];
-	}
-	return glfwGetPrimaryMonitor();
-}
-
-static bool describe(GLFWmonitor *handle, struct gz_monitor *out_monitor)
+static bool describe_monitor(GLFWmonitor *handle, struct gz_monitor *out_monitor)
 {
 	const GLFWvidmode *mode = glfwGetVideoMode(handle);
 	const char *name = glfwGetMonitorName(handle);
@@ -65,20 +46,20 @@ static bool describe(GLFWmonitor *handle, struct gz_monitor *out_monitor)
 	return true;
 }
 
-static void look(struct gz_window_displays *displays)
+static void look_at_monitors(struct gz_window_displays *displays)
 {
 	int count;
 	GLFWmonitor **handles = glfwGetMonitors(&count);
 	displays->looked_ns = gz_clock_now_ns();
 	displays->list.count = 0;
 	for (int i = 0; i < count && displays->list.count < GZ_MONITORS_MAX; i++) {
-		if (!describe(handles[i], &displays->list.monitors[displays->list.count]))
+		if (!describe_monitor(handles[i], &displays->list.monitors[displays->list.count]))
 			continue;
 		displays->handles[displays->list.count++] = handles[i];
 	}
 }
 
-static const struct gz_display *described(struct gz_window *window, struct gz_display *room)
+static const struct gz_display *display_of_daemon(struct gz_window *window, struct gz_display *room)
 {
 	const struct gz_status *status =
 		window->source ? gz_gaze_source_status(window->source) : NULL;
@@ -100,12 +81,12 @@ static void tell_refused(struct gz_window *window)
 		return;
 	memcpy(displays->asked, named, sizeof displays->asked);
 	gz_warn(window->log,
-		"view.tracker_display %s: there is no such monitor among %d; give the name or the "
-		"number of one (G lists them)",
+		"view.tracker_display %s: no such monitor among %d; give the name or the number of "
+		"one (G lists them)",
 		named, displays->list.count);
 }
 
-/* Where there is one monitor, there is nothing to tell. */
+/* Nothing is said of the only monitor. */
 static void tell_choice(struct gz_window *window)
 {
 	struct gz_window_displays *displays = window->displays;
@@ -118,8 +99,8 @@ static void tell_choice(struct gz_window *window)
 	gz_info(window->log, "the tracker's display is %s, %dx%d px, %.0fx%.0f mm, %s",
 		monitor->name, monitor->rect_px[2], monitor->rect_px[3], monitor->mm[0],
 		monitor->mm[1],
-		reason == GZ_TRACKER_DISPLAY_NAMED ? "as view.tracker_display says"
-						   : "which is what the daemon describes");
+		reason == GZ_TRACKER_DISPLAY_NAMED ? "as set by view.tracker_display"
+						   : "as the daemon describes it");
 }
 
 static void look_at_window(struct gz_window *window)
@@ -129,27 +110,27 @@ static void look_at_window(struct gz_window *window)
 	glfwGetWindowSize(window->glfw, &rect[2], &rect[3]);
 	int *size_px = window->displays->framebuffer_px;
 	glfwGetFramebufferSize(window->glfw, &size_px[0], &size_px[1]);
-	/* X11 leaves such a window its size. */
+	/* X11 keeps the size of a minimised window. */
 	if (glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED))
 		size_px[0] = size_px[1] = 0;
 	window->displays->rect_old = false;
 }
 
-/* The display server is asked no more often than needed: it costs more than all else in a turn. */
-static void turn(struct gz_window *window)
+/* The display server is asked no more often than needed: it costs more than the rest of a turn. */
+static void turn_displays(struct gz_window *window)
 {
 	struct gz_window_displays *displays = window->displays;
 	struct gz_display room;
 	const int64_t now_ns = gz_clock_now_ns();
 	if (displays->looked_ns == 0 || now_ns - displays->looked_ns > LOOK_INTERVAL_NS) {
-		look(displays);
+		look_at_monitors(displays);
 		displays->rect_old = true;
 	}
 	if (displays->rect_old)
 		look_at_window(window);
 	displays->chosen =
 		gz_tracker_display_choose(&displays->list, window->settings.view.tracker_display,
-					  described(window, &room), displays->rect_px);
+					  display_of_daemon(window, &room), displays->rect_px);
 	tell_refused(window);
 	tell_choice(window);
 }
@@ -203,8 +184,8 @@ struct gz_window_share gz_window_share(const struct gz_window *window)
 				  window->displays->rect_px);
 }
 
-/* A window whose monitor has gone lies where nobody sees it. */
-static void bring_back(struct gz_window *window)
+/* Move a window whose monitor has gone onto another one. */
+static void bring_window_back(struct gz_window *window)
 {
 	const struct gz_window_displays *displays = window->displays;
 	const int *rect = displays->rect_px;
@@ -217,21 +198,21 @@ static void bring_back(struct gz_window *window)
 		glfwSetWindowPos(window->glfw, to[0], to[1]);
 }
 
-/* The window's context is current on the one thread that gets events. */
+/* The window's context is current on the thread that gets events. */
 static void on_monitor(GLFWmonitor *monitor, int event)
 {
 	GLFWwindow *glfw = glfwGetCurrentContext();
 	struct gz_window *window = glfw ? glfwGetWindowUserPointer(glfw) : NULL;
 	const char *name = glfwGetMonitorName(monitor);
-	if (!window || !window->displays)
+	if (!window)
 		return;
 	struct gz_window_displays *displays = window->displays;
 	if (event == GLFW_DISCONNECTED)
 		gz_warn(window->log, "monitor %s has gone; the window stays", name ? name : "");
-	look(displays);
+	look_at_monitors(displays);
 	look_at_window(window);
 	if (event == GLFW_DISCONNECTED)
-		bring_back(window);
+		bring_window_back(window);
 	displays->told[0] = '\0';
 	window->cast_needed = true;
 	gz_window_wake_panels(window);
@@ -248,19 +229,16 @@ static void fill_tracker_display(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action displays_actions[] = {
 	{ .letter = 'd',
 	  .keys = "D",
 	  .help = "full screen on the tracker's display",
 	  .run = fill_tracker_display },
 };
 
-static enum gz_result open_part(struct gz_window *window)
+static enum gz_result list_monitors(struct gz_window *window)
 {
-	window->displays = calloc(1, sizeof *window->displays);
-	if (!window->displays)
-		return GZ_ERR_NO_MEM;
-	look(window->displays);
+	look_at_monitors(window->displays);
 	return GZ_OK;
 }
 
@@ -269,7 +247,7 @@ static void on_place(GLFWwindow *glfw, int x_or_width, int y_or_height)
 	const struct gz_window *window = glfwGetWindowUserPointer(glfw);
 	(void)x_or_width;
 	(void)y_or_height;
-	if (window && window->displays)
+	if (window)
 		window->displays->rect_old = true;
 }
 
@@ -278,7 +256,7 @@ static void on_iconify(GLFWwindow *glfw, int iconified)
 	on_place(glfw, iconified, 0);
 }
 
-static enum gz_result attach(struct gz_window *window)
+static enum gz_result attach_display_callbacks(struct gz_window *window)
 {
 	glfwSetMonitorCallback(on_monitor);
 	glfwSetWindowPosCallback(window->glfw, on_place);
@@ -288,19 +266,13 @@ static enum gz_result attach(struct gz_window *window)
 	return GZ_OK;
 }
 
-static void close_part(struct gz_window *window)
-{
-	free(window->displays);
-	window->displays = NULL;
-}
-
-const struct gz_window_part gz_window_display_part = {
+const struct gz_window_part gz_window_displays_part = {
 	.name = "displays",
 	.title = "window",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_part,
-	.gl_open = attach,
-	.turn = turn,
-	.close = close_part,
+	.actions = displays_actions,
+	.action_count = sizeof displays_actions / sizeof displays_actions[0],
+	GZ_PART_STATE(displays),
+	.open = list_monitors,
+	.gl_open = attach_display_callbacks,
+	.turn = turn_displays,
 };

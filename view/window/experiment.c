@@ -13,21 +13,22 @@
 #include "view/experiment/experiment.h"
 #include "view/panels/experiment_screen.h"
 #include "view/window/displays.h"
-#include "view/window/experiment_state.h"
+#include "view/window/gaze.h"
+#include "view/window/glfw.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "experiment"
 
-/* Where the display does not tell its refresh. */
+/* For displays that do not tell their refresh rate. */
 #define USUAL_REFRESH_HZ 60
 
-/* Older gaze is as good as none, ns. Chosen: a few samples of a slow tracker. */
+/* Older gaze counts as missing. Chosen: a few samples of a slow tracker. */
 #define GAZE_AGE_NS (100 * GZ_NS_PER_MS)
 
-/* How soon the bar of a loading is drawn anew, s (chosen). */
+/* Interval of drawing the bar of a loading, s (chosen). */
 #define BAR_PATIENCE_S 0.1
 
-static void mark(void *user, const char *label, int64_t time_ns)
+static void mark_in_log(void *user, const char *label, int64_t time_ns)
 {
 	const struct gz_window *window = user;
 	struct gz_viewer_link *link = window->link ? window->link : window->experiment->link;
@@ -35,15 +36,15 @@ static void mark(void *user, const char *label, int64_t time_ns)
 		gz_viewer_link_annotate(link, label, time_ns);
 }
 
-static enum gz_result take_result(void *user, const struct gz_trial_result *result)
+static enum gz_result write_answer(void *user, const struct gz_trial_result *result)
 {
 	const struct gz_window *window = user;
 	return gz_answers_write(window->experiment->sitting->answers, result,
 				window->experiment->start_ns);
 }
 
-static enum gz_result check_gaze(const struct gz_window *window,
-				 const struct gz_experiment *experiment)
+static enum gz_result check_gaze_kind(const struct gz_window *window,
+				      const struct gz_experiment *experiment)
 {
 	const enum gz_gaze_kind kind = window->options->gaze.kind;
 	const bool tracked =
@@ -51,15 +52,13 @@ static enum gz_result check_gaze(const struct gz_window *window,
 	if (tracked || experiment->params.gaze != GZ_GAZE_REQUIRED)
 		return GZ_OK;
 	gz_err(window->log,
-	       "--gaze %s: %s has gaze = required; take a tracker's, as by --gaze "
-	       "daemon",
+	       "--gaze %s: %s has gaze = required; use a tracker, as with --gaze daemon",
 	       window->options->gaze_text, experiment->path);
 	return GZ_ERR_INVAL;
 }
 
-/* What a scene says of a window with panels does not count; what the command line says of the
- * display does. */
-static enum gz_result choose_view(struct gz_window *window)
+/* Scenes' settings for a window with panels are ignored; the command line's are used. */
+static enum gz_result set_experiment_view(struct gz_window *window)
 {
 	struct gz_scene_settings settings = { 0 };
 	const struct gz_option_binding binding = { gz_view_setting_options,
@@ -73,17 +72,19 @@ static enum gz_result choose_view(struct gz_window *window)
 	return r;
 }
 
-static void begin_run(struct gz_window *window)
+static void begin_trials(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const struct gz_sitting *sitting = state->sitting;
-	const struct gz_run_sink sink = { .user = window, .mark = mark, .over = take_result };
+	const struct gz_run_sink sink = { .user = window,
+					  .mark = mark_in_log,
+					  .over = write_answer };
 	gz_run_begin(&state->run, &sitting->experiment, &sitting->sequence,
 		     sitting->options->participant, sitting->options->session,
 		     gz_answers_done(sitting->answers), &sink);
 }
 
-static enum gz_result open_state(struct gz_window *window)
+static enum gz_result open_experiment(struct gz_window *window)
 {
 	const struct gz_sitting_options *options = &window->options->sitting;
 	if (!options->file[0])
@@ -97,37 +98,37 @@ static enum gz_result open_state(struct gz_window *window)
 	enum gz_result r =
 		gz_sitting_open(options, true, GAZECAST_VERSION, window->log, &state->sitting);
 	if (r == GZ_OK)
-		r = check_gaze(window, &state->sitting->experiment);
+		r = check_gaze_kind(window, &state->sitting->experiment);
 	if (r == GZ_OK)
-		r = choose_view(window);
-	/* A daemon may record though the gaze is not its own. */
+		r = set_experiment_view(window);
+	/* A daemon may record even if the gaze comes from elsewhere. */
 	if (r == GZ_OK && !window->link)
 		r = gz_viewer_link_open(NULL, window->log, &state->link);
 	if (r == GZ_OK)
-		begin_run(window);
+		begin_trials(window);
 	return r;
 }
 
-/* Full screen, without a cursor; whoever looks away does not end it. */
-static enum gz_result gl_open(struct gz_window *window)
+/* Full screen, without a cursor, also when the window loses the focus. */
+static enum gz_result open_experiment_window(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
 		return GZ_OK;
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
-	glfwSetDropCallback(window->glfw, NULL); /* nothing else is shown */
+	glfwSetDropCallback(window->glfw, NULL); /* files cannot be dropped */
 	glfwSetWindowAttrib(window->glfw, GLFW_AUTO_ICONIFY, GLFW_FALSE);
 	if (!state->placed && !window->options->target.windowed)
 		gz_window_toggle_fullscreen(window);
 	state->placed = true;
-	GLFWmonitor *monitor = gz_window_monitor(window->glfw);
+	GLFWmonitor *monitor = gz_glfw_monitor_of(window->glfw);
 	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
 	const int hz = mode && mode->refreshRate > 0 ? mode->refreshRate : USUAL_REFRESH_HZ;
 	state->refresh_ns = GZ_NS_PER_S / hz;
 	return GZ_OK;
 }
 
-/* The tracker's display is known once a daemon has told of it. */
+/* The tracker's display is known once the daemon has described it. */
 static void follow_display(struct gz_window *window)
 {
 	const struct gz_window_experiment *state = window->experiment;
@@ -137,16 +138,16 @@ static void follow_display(struct gz_window *window)
 		gz_window_fill_monitor(window, wanted);
 }
 
-static void finish(struct gz_window *window, enum gz_result result)
+static void finish_experiment(struct gz_window *window, enum gz_result result)
 {
 	gz_run_stop(&window->experiment->run, result, gz_clock_now_ns());
 	glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
 }
 
-/* Once before its first interval each picture of the trial is made, unseen, so that nothing is left
- * to be made ready later; the first interval's last, which is shown next. @return whether that is
+/* Before the first interval make each picture of the trial once, unseen, so that nothing has to be
+ * prepared later; that of the first interval last, as it is shown next. @return whether that is
  * done */
-static bool warm(struct gz_window *window)
+static bool warm_trial_up(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const struct gz_presentation *presentation = state->run.trial.presentation;
@@ -170,19 +171,19 @@ static bool warm(struct gz_window *window)
 	const enum gz_result r =
 		gz_experiment_show(window, &presentation->condition->alternatives[which]);
 	if (r != GZ_OK)
-		finish(window, r);
+		finish_experiment(window, r);
 	return false;
 }
 
-/* What the phase shows, or will show next, is made; in others nothing is. */
-static void choose_picture(struct gz_window *window)
+/* Make the picture that the phase shows or will show next, if there is one. */
+static void choose_trial_picture(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const struct gz_run *run = &state->run;
 	const struct gz_presentation *presentation = run->trial.presentation;
 	const bool seen = run->phase == GZ_RUN_INTERVAL;
 	const bool next = (run->phase == GZ_RUN_FIXATION || run->phase == GZ_RUN_BLANK) &&
-			  run->shown_ns; /* the screen in between comes first */
+			  run->shown_ns; /* the screen in between is shown first */
 	window->picture_hidden =
 		!seen && !next && !(run->phase == GZ_RUN_PREPARE && state->warming);
 	if (!seen && !next)
@@ -192,10 +193,10 @@ static void choose_picture(struct gz_window *window)
 	const enum gz_result r =
 		gz_experiment_show(window, &presentation->condition->alternatives[which]);
 	if (r != GZ_OK)
-		finish(window, r);
+		finish_experiment(window, r);
 }
 
-static void tell_absence(struct gz_window *window)
+static void tell_missing_gaze(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const bool shown = state->run.phase == GZ_RUN_INTERVAL;
@@ -204,16 +205,18 @@ static void tell_absence(struct gz_window *window)
 		return;
 	state->absence_told = true;
 	if (shown)
-		gz_warn(window->log, "no tracker's gaze: pictures are sharp where it was last, or "
-				     "at the mouse; is gazed running, and does it see the eye?");
+		gz_warn(window->log,
+			"no gaze from the tracker: pictures are sharp at the last gaze or at "
+			"the mouse; is gazed running, and does it see the eye?");
 	else
-		gz_warn(window->log, "no tracker's gaze: the experiment waits for it; is gazed "
-				     "running, and does it see the eye?");
+		gz_warn(window->log,
+			"no gaze from the tracker: the experiment waits for it; is gazed "
+			"running, and does it see the eye?");
 }
 
-/* How long a frame takes now: the display's refresh, or the shorter of the last two turns in this
- * phase, so that the making of its first picture does not count. */
-static int64_t frame_ns(struct gz_window_experiment *state, int64_t now_ns)
+/* Duration of a frame: the display's refresh or, if it is longer, the shorter of the last two turns
+ * in this phase, which leaves out the first picture. */
+static int64_t frame_duration_ns(struct gz_window_experiment *state, int64_t now_ns)
 {
 	const bool same = state->turn_phase == state->run.phase && state->run.shown_ns;
 	const int64_t spent_ns = same ? now_ns - state->turn_ns : 0;
@@ -225,57 +228,56 @@ static int64_t frame_ns(struct gz_window_experiment *state, int64_t now_ns)
 	return usual_ns > state->refresh_ns ? usual_ns : state->refresh_ns;
 }
 
-static void step(struct gz_window *window)
+static void step_experiment(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const int64_t now_ns = gz_clock_now_ns();
 	const struct gz_run_input input = {
 		.now_ns = now_ns,
-		.refresh_ns = frame_ns(state, now_ns),
-		.ready = warm(window),
+		.refresh_ns = frame_duration_ns(state, now_ns),
+		.ready = warm_trial_up(window),
 		.gaze_there = state->gaze_there,
 	};
 	if (gz_run_step(&state->run, &input))
 		window->present_needed = true;
-	choose_picture(window);
-	tell_absence(window);
+	choose_trial_picture(window);
+	tell_missing_gaze(window);
 	/* In an interval each refresh is a frame, so that times from one to the next tell of
 	 * those that were missed. */
 	if (state->run.phase == GZ_RUN_INTERVAL || gz_experiment_loaded_share(state) < 1)
 		window->present_needed = true;
 }
 
-/* A picture that could not be made has closed its scene. Why has been logged. */
-static enum gz_result check_picture(const struct gz_window *window)
+/* A picture that could not be made has closed its scene; why is logged. */
+static enum gz_result check_trial_picture(const struct gz_window *window)
 {
 	const struct gz_alternative *shown = window->experiment->shown;
 	if (!shown || window->maker)
 		return GZ_OK;
 	gz_err(window->log,
-	       "%s: its picture cannot be made, so that the experiment ends; what was answered is "
-	       "kept",
+	       "%s: its picture cannot be made; the experiment ends, and answers so far are kept",
 	       shown->scene);
 	return GZ_ERR_UNSUPPORTED;
 }
 
-static void turn(struct gz_window *window)
+static void turn_experiment(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
 		return;
 	follow_display(window);
-	enum gz_result r = state->run.phase == GZ_RUN_ENDED ? GZ_OK : check_picture(window);
+	enum gz_result r = state->run.phase == GZ_RUN_ENDED ? GZ_OK : check_trial_picture(window);
 	if (r == GZ_OK)
 		r = gz_experiment_load_ahead(window);
 	if (r != GZ_OK)
-		finish(window, r);
+		finish_experiment(window, r);
 	else if (state->run.phase != GZ_RUN_ENDED)
-		step(window);
+		step_experiment(window);
 	if (state->run.phase == GZ_RUN_ENDED)
 		glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
 }
 
-static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
+static void note_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
@@ -290,13 +292,13 @@ static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 	state->px_per_deg = gz_display_px_per_deg(&gaze->display);
 }
 
-static void frame_made(struct gz_window *window)
+static void note_frame(struct gz_window *window)
 {
 	if (window->experiment && window->record.bricks_coming == 0)
 		window->experiment->frame_made = true;
 }
 
-static void paint(struct gz_window *window, int width, int height)
+static void paint_ground(struct gz_window *window, int width, int height)
 {
 	const struct gz_window_experiment *state = window->experiment;
 	if (!state || (state->run.phase == GZ_RUN_INTERVAL && window->any_shown))
@@ -317,7 +319,7 @@ static float cross_width(const struct gz_window *window)
 	return (float)(px * gz_widgets_room().x / fmax(1, width));
 }
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_experiment_screen(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_window_experiment *state = window->experiment;
 	(void)gaze;
@@ -332,7 +334,7 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 	};
 	if (screen.phase == GZ_RUN_FIXATION && screen.gaze_missing)
 		gz_experiment_screen_text(&look, "The eye tracker does not see your eyes.\nSit as "
-						 "before: it goes on by itself.");
+						 "you did before; it goes on by itself.");
 	else if (screen.phase == GZ_RUN_FIXATION)
 		gz_experiment_screen_cross(&look, cross_width(window));
 	else if (screen.text)
@@ -347,8 +349,8 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 		gz_experiment_screen_bar(&look, share);
 }
 
-/* When what was swapped is there: the driver has no more to do. */
-static void presented(struct gz_window *window)
+/* The frame is shown once the driver has finished. */
+static void note_presented(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
@@ -366,12 +368,12 @@ static void presented(struct gz_window *window)
 		state->start_ns = state->run.trial.begin_ns;
 }
 
-static double patience_s(const struct gz_window *window)
+static double experiment_patience_s(const struct gz_window *window)
 {
 	const struct gz_window_experiment *state = window->experiment;
 	if (!state)
 		return INFINITY;
-	/* The swap waits for the display where it can: less than a refresh is left to wait. */
+	/* With V-sync the swap waits for the display; less than a refresh is left. */
 	const double refresh_s = gz_ns_to_s(state->refresh_ns) / 2;
 	const struct gz_presentation *presentation = state->run.trial.presentation;
 	switch (state->run.phase) {
@@ -387,7 +389,7 @@ static double patience_s(const struct gz_window *window)
 	}
 }
 
-/* Letters by the user's layout, digits by their place: some layouts have them with Shift. */
+/* Letters by the user's layout; digits by their position, as some layouts need Shift for them. */
 static int answer_key(int key, int scancode)
 {
 	static const struct {
@@ -409,7 +411,7 @@ static int answer_key(int key, int scancode)
 	return name ? gz_answer_key_of(name) : GZ_KEY_NONE;
 }
 
-static bool take_key(struct gz_window *window, int key, int scancode, bool repeated)
+static bool answer_by_key(struct gz_window *window, int key, int scancode, bool repeated)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const int answer = repeated ? GZ_KEY_NONE : answer_key(key, scancode);
@@ -430,14 +432,14 @@ enum gz_result gz_window_experiment_outcome(struct gz_window *window)
 		gz_info(window->log, "%s: all %zu trials are answered", gz_answers_file(answers),
 			count);
 	else if (done > 0)
-		gz_info(window->log, "%s: %zu of %zu trials are answered; --resume goes on",
+		gz_info(window->log, "%s: %zu of %zu trials are answered; --resume continues",
 			gz_answers_file(answers), done, count);
 	else
-		gz_info(window->log, "left before the first answer: nothing is kept");
+		gz_info(window->log, "left before the first answer; nothing is kept");
 	return state->run.result;
 }
 
-static void close_state(struct gz_window *window)
+static void close_experiment(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
@@ -452,15 +454,15 @@ static void close_state(struct gz_window *window)
 
 const struct gz_window_part gz_window_experiment_part = {
 	.name = "experiment",
-	.open = open_state,
-	.gl_open = gl_open,
-	.turn = turn,
-	.gaze = take_gaze,
-	.frame_made = frame_made,
-	.paint = paint,
-	.panels = draw_panels,
-	.presented = presented,
-	.patience_s = patience_s,
-	.key = take_key,
-	.close = close_state,
+	.open = open_experiment,
+	.gl_open = open_experiment_window,
+	.turn = turn_experiment,
+	.gaze = note_gaze,
+	.frame_made = note_frame,
+	.paint = paint_ground,
+	.panels = draw_experiment_screen,
+	.presented = note_presented,
+	.patience_s = experiment_patience_s,
+	.key = answer_by_key,
+	.close = close_experiment,
 };

@@ -1,5 +1,4 @@
-#include "view/window/files.h"
-
+/* The part that opens and saves: dialogs, dropped files, recent files. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,47 +10,43 @@
 #include "render/scene/scene_open.h"
 #include "view/files/scene_save.h"
 #include "view/panels/file_dialogs.h"
-#include "view/window/gaze_sources.h"
+#include "view/window/gaze.h"
 #include "view/window/loading.h"
 #include "view/window/transfer.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
-/* The state of this part. */
-struct gz_window_files_state {
+struct gz_window_files {
 	struct gz_open_panel open_panel;
 	struct gz_raw_panel raw_panel;
 	struct gz_save_panel save_panel;
 	struct gz_recent recent;
-	char recent_file[GZ_PATH_SIZE]; /* empty: there is no place for it */
-	char opening[GZ_PATH_SIZE];     /* what the user has asked for, and has not been shown */
-	bool first;                     /* the raw volume that is asked about is the first of all */
-	bool made;                      /* the volume has no transfer function of its own … */
-	struct gz_transfer made_transfer; /* … and gets this one */
-	char made_for[GZ_PATH_SIZE];      /* path of the scene that both are of */
-	/* For messages that belong in a dialog as well as where all go. */
+	char recent_file[GZ_PATH_SIZE];   /* empty: there is no folder for it */
+	char opening[GZ_PATH_SIZE];       /* what the user asked for and is not shown yet */
+	bool first;                       /* the raw dialog is about the file of the command line */
+	bool made;                        /* the scene has no transfer function of its own … */
+	struct gz_transfer made_transfer; /* … and was given this one */
+	char made_for[GZ_PATH_SIZE];      /* path of that scene */
+	/* A log whose last error is also shown in a dialog. */
 	struct gz_log log;
 	const struct gz_log *outer;
 	char last[GZ_PANEL_MESSAGE_SIZE];
 };
 
-/* What is logged while a dialog waits for an answer is seen in it, too. */
+/* Sink of that log. */
 static void keep_message(void *user, enum gz_log_level level, const char *module,
 			 const char *message)
 {
-	struct gz_window_files_state *state = user;
+	struct gz_window_files *state = user;
 	if (level == GZ_LOG_ERROR)
 		snprintf(state->last, sizeof state->last, "%s", message);
 	state->outer->sink(state->outer->user, level, module, message);
 }
 
-static enum gz_result open_state(struct gz_window *window)
+static enum gz_result open_files(struct gz_window *window)
 {
-	struct gz_window_files_state *state = calloc(1, sizeof *state);
-	if (!state)
-		return GZ_ERR_NO_MEM;
-	window->files = state;
+	struct gz_window_files *state = window->files;
 	state->outer = window->log;
 	gz_log_init(&state->log, keep_message, state, window->log->rules);
 	if (gz_recent_file(state->recent_file) == GZ_OK)
@@ -61,18 +56,14 @@ static enum gz_result open_state(struct gz_window *window)
 	return GZ_OK;
 }
 
-static void close_state(struct gz_window *window)
+static void close_files(struct gz_window *window)
 {
-	if (!window->files)
-		return;
 	gz_open_panel_close(&window->files->open_panel);
-	free(window->files);
-	window->files = NULL;
 }
 
 /* ---- opening ---- */
 
-static void load(struct gz_window *window, const char *path, const struct gz_raw_layout *raw)
+static void load_file(struct gz_window *window, const char *path, const struct gz_raw_layout *raw)
 {
 	struct gz_window_load_request *request = calloc(1, sizeof *request);
 	if (!request) {
@@ -92,7 +83,8 @@ static void load(struct gz_window *window, const char *path, const struct gz_raw
 	free(request);
 }
 
-void gz_window_open_file(struct gz_window *window, const char *path)
+/* As if the file had been dropped on the window. */
+static void open_file(struct gz_window *window, const char *path)
 {
 	if (strlen(path) >= GZ_PATH_SIZE) {
 		gz_err(window->log, "%.60s...: the path is longer than %d bytes; move the file",
@@ -104,7 +96,7 @@ void gz_window_open_file(struct gz_window *window, const char *path)
 	case GZ_FILE_VOLUME:
 	case GZ_FILE_PICTURE:
 	case GZ_FILE_OTHER:
-		load(window, path, NULL);
+		load_file(window, path, NULL);
 		return;
 	case GZ_FILE_RAW:
 		gz_raw_panel_show(&window->files->raw_panel, path);
@@ -135,7 +127,7 @@ bool gz_window_ask_layout(struct gz_window *window)
 	return true;
 }
 
-static void folder_of(const char *path, char out_folder[GZ_PATH_SIZE])
+static void folder_of_path(const char *path, char out_folder[GZ_PATH_SIZE])
 {
 	const char *slash = strrchr(path, '/');
 	if (!slash)
@@ -149,24 +141,24 @@ static void show_open_panel(struct gz_window *window, int number)
 {
 	char folder[GZ_PATH_SIZE];
 	(void)number;
-	folder_of(gz_window_scene_path(window), folder);
+	folder_of_path(gz_window_scene_path(window), folder);
 	gz_open_panel_show(&window->files->open_panel, folder, &window->files->recent);
 	gz_window_wake_panels(window);
 }
 
-/* Of several slices any stands for its series; of several other files the first is opened. */
+/* Of several files the first is opened; a DICOM slice stands for its series. */
 static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
 {
 	struct gz_window *window = glfwGetWindowUserPointer(glfw);
-	if (count < 1 || window->alone) /* an experiment shows what it shows */
+	if (count < 1 || window->alone) /* an experiment shows its own scenes */
 		return;
 	if (count > 1)
 		gz_info(window->log, "%d files were dropped: opening %s%s", count, paths[0],
-			gz_dicom_is(paths[0]) ? " and the series that it is of" : " alone");
-	gz_window_open_file(window, paths[0]);
+			gz_dicom_is(paths[0]) ? " with its series" : " only");
+	open_file(window, paths[0]);
 }
 
-static enum gz_result attach(struct gz_window *window)
+static enum gz_result attach_drop_callback(struct gz_window *window)
 {
 	glfwSetDropCallback(window->glfw, on_drop);
 	return GZ_OK;
@@ -174,7 +166,7 @@ static enum gz_result attach(struct gz_window *window)
 
 /* ---- saving ---- */
 
-static struct gz_scene_save what_is_shown(const struct gz_window *window)
+static struct gz_scene_save scene_to_save(const struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	return (struct gz_scene_save) {
@@ -184,10 +176,10 @@ static struct gz_scene_save what_is_shown(const struct gz_window *window)
 	};
 }
 
-static enum gz_result save_to(struct gz_window *window, const char *path)
+static enum gz_result save_scene_to(struct gz_window *window, const char *path)
 {
-	const struct gz_scene_save save = what_is_shown(window);
-	struct gz_window_files_state *state = window->files;
+	const struct gz_scene_save save = scene_to_save(window);
+	struct gz_window_files *state = window->files;
 	state->last[0] = '\0';
 	const enum gz_result r = gz_scene_save(&save, path, &state->log, &window->settings);
 	if (r != GZ_OK)
@@ -216,32 +208,33 @@ static void show_save_panel(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
-/* What would be replaced that is not the scene's own. */
-static bool print_question(struct gz_window *window, const char *path, bool own, char *text,
-			   size_t size)
+/* Ask before files are replaced that are not the scene's own. @return whether there are such files
+ */
+static bool print_replace_question(struct gz_window *window, const char *path, bool own, char *text,
+				   size_t size)
 {
-	const struct gz_scene_save save = what_is_shown(window);
+	const struct gz_scene_save save = scene_to_save(window);
 	char transfer[GZ_PATH_SIZE];
 	const bool scene = !own && access(path, F_OK) == 0;
 	const bool function =
 		gz_scene_save_writes_transfer(&save, path, transfer) && access(transfer, F_OK) == 0;
 	if (scene)
-		snprintf(text, size, "%.150s is there already%s. Replace?", path,
-			 function ? ", and so is its .tf" : "");
+		snprintf(text, size, "%.150s exists%s. Replace?", path,
+			 function ? ", and so does its .tf" : "");
 	else if (function)
-		snprintf(text, size, "%.200s is there already. Replace?", transfer);
+		snprintf(text, size, "%.200s exists. Replace?", transfer);
 	return scene || function;
 }
 
-/* Over the scene's own file without a question, unless a transfer function would be lost. */
-static void save(struct gz_window *window, int number)
+/* The scene's own file is replaced without a question, unless a transfer function would be lost. */
+static void save_scene(struct gz_window *window, int number)
 {
 	char question[GZ_PANEL_MESSAGE_SIZE];
 	const char *path = window->maker ? gz_window_scene_path(window) : "";
 	const bool own = gz_file_kind_by_name(path) == GZ_FILE_SCENE && access(path, F_OK) == 0;
 	struct gz_save_panel *panel = &window->files->save_panel;
-	if (own && !print_question(window, path, true, question, sizeof question)) {
-		if (save_to(window, path) == GZ_OK)
+	if (own && !print_replace_question(window, path, true, question, sizeof question)) {
+		if (save_scene_to(window, path) == GZ_OK)
 			return;
 		show_save_panel(window, number);
 		snprintf(panel->message, sizeof panel->message, "%s", window->files->last);
@@ -252,7 +245,7 @@ static void save(struct gz_window *window, int number)
 		gz_save_panel_ask(panel, question);
 }
 
-static void draw_save_panel(struct gz_window *window)
+static void draw_save_dialog(struct gz_window *window)
 {
 	struct gz_save_panel *panel = &window->files->save_panel;
 	char path[GZ_PATH_SIZE], question[GZ_PANEL_MESSAGE_SIZE];
@@ -261,9 +254,10 @@ static void draw_save_panel(struct gz_window *window)
 		return;
 	if (gz_scene_save_path(panel->path, path) != GZ_OK) {
 		snprintf(panel->message, sizeof panel->message, "the path is too long");
-	} else if (!sure && print_question(window, path, false, question, sizeof question)) {
+	} else if (!sure &&
+		   print_replace_question(window, path, false, question, sizeof question)) {
 		gz_save_panel_ask(panel, question);
-	} else if (save_to(window, path) == GZ_OK) {
+	} else if (save_scene_to(window, path) == GZ_OK) {
 		panel->open = false;
 	} else {
 		snprintf(panel->message, sizeof panel->message, "%s", window->files->last);
@@ -273,28 +267,28 @@ static void draw_save_panel(struct gz_window *window)
 
 /* ---- what is shown ---- */
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_file_dialogs(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	struct gz_window_files_state *state = window->files;
+	struct gz_window_files *state = window->files;
 	char path[GZ_PATH_SIZE];
 	(void)gaze;
 	if (gz_open_panel_draw(&state->open_panel, path)) {
 		gz_open_panel_close(&state->open_panel);
-		gz_window_open_file(window, path);
+		open_file(window, path);
 	}
 	if (gz_raw_panel_draw(&state->raw_panel)) {
 		const struct gz_raw_layout layout = state->raw_panel.layout;
-		load(window, state->raw_panel.path, &layout);
+		load_file(window, state->raw_panel.path, &layout);
 	}
-	draw_save_panel(window);
+	draw_save_dialog(window);
 }
 
-static void scene_shown(struct gz_window *window)
+static void note_scene_shown(struct gz_window *window)
 {
-	struct gz_window_files_state *state = window->files;
+	struct gz_window_files *state = window->files;
 	const char *path = gz_window_scene_path(window);
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
-	/* Brought back after a loss, it may have been edited. */
+	/* A scene that is shown again, as after a failed loading, may have been edited. */
 	if (strcmp(path, state->made_for) != 0 || path[0] == '\0' ||
 	    strcmp(path, state->opening) == 0) {
 		state->made = !scene->settings.transfer_file[0] &&
@@ -302,7 +296,7 @@ static void scene_shown(struct gz_window *window)
 		state->made_transfer = scene->transfer;
 		snprintf(state->made_for, sizeof state->made_for, "%s", path);
 	}
-	/* A study's scenes come and go by themselves. */
+	/* Scenes of an experiment are not recent files. */
 	if (!path[0] || strcmp(path, state->opening) != 0)
 		return;
 	state->opening[0] = '\0';
@@ -311,7 +305,7 @@ static void scene_shown(struct gz_window *window)
 		gz_recent_write(&state->recent, state->recent_file, window->log);
 }
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action files_actions[] = {
 	{ .letter = 'o',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+O",
@@ -321,7 +315,7 @@ static const struct gz_window_action actions[] = {
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+S",
 	  .help = "save the scene",
-	  .run = save },
+	  .run = save_scene },
 	{ .letter = 's',
 	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
 	  .keys = "Ctrl+Shift+S",
@@ -329,13 +323,14 @@ static const struct gz_window_action actions[] = {
 	  .run = show_save_panel },
 };
 
-const struct gz_window_part gz_window_files = {
+const struct gz_window_part gz_window_files_part = {
 	.name = "files",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_state,
-	.gl_open = attach,
-	.scene_shown = scene_shown,
-	.panels = draw_panels,
-	.close = close_state,
+	.actions = files_actions,
+	.action_count = sizeof files_actions / sizeof files_actions[0],
+	GZ_PART_STATE(files),
+	.open = open_files,
+	.gl_open = attach_drop_callback,
+	.scene_shown = note_scene_shown,
+	.panels = draw_file_dialogs,
+	.close = close_files,
 };

@@ -1,48 +1,120 @@
-#include "view/window/window_state.h"
+/* Keys and mouse: to the actions of parts, to the part that has the mouse, and to the mouse's gaze.
+ */
+#include <ctype.h>
+#include <string.h>
 
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
 #include "view/panels/widgets.h"
-#include "view/window/part.h"
+#include "view/window/window_state.h"
+
+/* ---- keys ---- */
+
+/* Keys that navigate panels. */
+static bool is_navigation_key(int key)
+{
+	static const int keys[] = {
+		GLFW_KEY_UP,        GLFW_KEY_DOWN,   GLFW_KEY_LEFT,    GLFW_KEY_RIGHT,
+		GLFW_KEY_TAB,       GLFW_KEY_SPACE,  GLFW_KEY_ENTER,   GLFW_KEY_DELETE,
+		GLFW_KEY_BACKSPACE, GLFW_KEY_ESCAPE, GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN,
+	};
+	for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
+		if (key == keys[i])
+			return true;
+	return false;
+}
+
+/* GZ_KEY_SHIFT and GZ_KEY_CONTROL of GLFW's modifiers. */
+static int modifiers_of(int glfw)
+{
+	return (glfw & GLFW_MOD_SHIFT ? GZ_KEY_SHIFT : 0) |
+	       (glfw & GLFW_MOD_CONTROL ? GZ_KEY_CONTROL : 0);
+}
+
+/* The key's letter in the user's layout, rather than on an American keyboard; 0: it has none. */
+static int letter_of(int key, int scancode)
+{
+	const char *name = key == GLFW_KEY_SPACE ? " " : glfwGetKeyName(key, scancode);
+	return name && name[0] && !name[1] ? tolower((unsigned char)name[0]) : 0;
+}
+
+static bool action_matches(const struct gz_window_action *action, int key, int letter,
+			   int modifiers)
+{
+	if (action->modifiers != modifiers)
+		return false;
+	return action->key ? action->key == key : letter && action->letter == letter;
+}
+
+/* What was pressed: a key, or a character alone. */
+struct pressed_key {
+	int key, letter, modifiers;
+	bool repeated;
+};
+
+/* Run the first action of the parts that applies. */
+static bool run_first(struct gz_window *window, const struct pressed_key *pressed)
+{
+	GZ_FOR_EACH_PART (part) {
+		for (size_t i = 0; i < (*part)->action_count; i++) {
+			const struct gz_window_action *action = &(*part)->actions[i];
+			if (!action_matches(action, pressed->key, pressed->letter,
+					    pressed->modifiers) ||
+			    (action->applies && !action->applies(window)))
+				continue;
+			if (!pressed->repeated || action->repeats)
+				action->run(window, action->number);
+			return true;
+		}
+	}
+	return false;
+}
+
+/* Run the action of a key; all arguments are of GLFW. @return whether there is one */
+static bool run_key(struct gz_window *window, int key, int scancode, int modifiers, bool repeated)
+{
+	if (window->alone)
+		return window->alone->key && window->alone->key(window, key, scancode, repeated);
+	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
+	    (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
+	    (gz_widgets_have_navigation() && is_navigation_key(key)))
+		return false;
+	const struct pressed_key pressed = {
+		.key = key,
+		.letter = letter_of(key, scancode),
+		.modifiers = modifiers_of(modifiers),
+		.repeated = repeated,
+	};
+	return run_first(window, &pressed);
+}
+
+/* Run the action of a typed character that needs Shift on some layouts only. @return whether there
+ * is one */
+static bool run_character(struct gz_window *window, unsigned codepoint)
+{
+	if (window->alone || gz_widgets_have_text() || gz_widgets_have_dialog() ||
+	    (codepoint != '?' && codepoint != '+'))
+		return false;
+	const struct pressed_key pressed = { .letter = (int)codepoint };
+	return run_first(window, &pressed);
+}
+
+/* ---- mouse ---- */
 
 static struct gz_window *window_of(GLFWwindow *glfw)
 {
 	return glfwGetWindowUserPointer(glfw);
 }
 
-void gz_window_fill_monitor(struct gz_window *window, GLFWmonitor *monitor)
-{
-	int *place = window->windowed_place;
-	const bool fills = glfwGetWindowMonitor(window->glfw) != NULL;
-	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
-	if (!monitor && fills)
-		glfwSetWindowMonitor(window->glfw, NULL, place[0], place[1], place[2], place[3],
-				     GLFW_DONT_CARE);
-	if (!mode)
-		return;
-	if (!fills) {
-		glfwGetWindowPos(window->glfw, &place[0], &place[1]);
-		glfwGetWindowSize(window->glfw, &place[2], &place[3]);
-	}
-	glfwSetWindowMonitor(window->glfw, monitor, 0, 0, mode->width, mode->height,
-			     mode->refreshRate);
-}
-
-void gz_window_toggle_fullscreen(struct gz_window *window)
-{
-	const bool fills = glfwGetWindowMonitor(window->glfw) != NULL;
-	gz_window_fill_monitor(window, fills ? NULL : gz_window_monitor(window->glfw));
-}
-
-/* Dear ImGui takes in what happens while it draws, and shows what came of it a frame later. */
+/* Dear ImGui takes input while it draws, and shows the result in the next frame. */
 void gz_window_wake_panels(struct gz_window *window)
 {
 	enum { ANSWER_FRAMES = 3 };
 	window->panel_frames = ANSWER_FRAMES;
 }
 
-static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
+static void on_window_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
 {
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
@@ -50,8 +122,7 @@ static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods
 		return;
 	gz_widgets_note_key(key);
 	window->key_ns = gz_clock_now_ns();
-	window->key_taken =
-		gz_window_run_action(window, key, scancode, mods, action == GLFW_REPEAT);
+	window->key_taken = run_key(window, key, scancode, mods, action == GLFW_REPEAT);
 }
 
 static void on_character(GLFWwindow *glfw, unsigned codepoint)
@@ -59,16 +130,16 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
 	if (!window->key_taken)
-		gz_window_run_character(window, codepoint);
+		run_character(window, codepoint);
 }
 
-static void release(struct gz_window *window, int button)
+static void release_mouse(struct gz_window *window, int button)
 {
 	if (window->grab_button == button)
 		window->grabber = NULL;
 }
 
-/* Also where it has come to a panel since the last frame. */
+/* Dear ImGui itself knows where the mouse was in the last frame only. */
 static bool panels_have_mouse(const struct gz_window *window)
 {
 	return gz_widgets_have_mouse() ||
@@ -80,20 +151,19 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
-		release(window, button);
+		release_mouse(window, button);
 	if (action != GLFW_PRESS || window->alone || window->grabber || !window->maker ||
 	    panels_have_mouse(window))
 		return;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part && !window->grabber;
-	     part++)
-		if ((*part)->grab && (*part)->grab(window, button, gz_window_modifiers(mods)))
+	GZ_FOR_EACH_PART (part)
+		if (!window->grabber && (*part)->grab &&
+		    (*part)->grab(window, button, modifiers_of(mods)))
 			window->grabber = *part;
 	window->grab_button = button;
 }
 
-/* The place in the window becomes the place on the picture; also anew when the window's size
- * changes under a resting mouse. */
-static void move_gaze(struct gz_window *window)
+/* The mouse's gaze is a share of the window, which also changes with the window's size. */
+static void move_mouse_gaze(struct gz_window *window)
 {
 	int width, height;
 	glfwGetWindowSize(window->glfw, &width, &height);
@@ -114,9 +184,9 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 		window->grabber->drag(window, right, down);
 	window->cursor_known = true;
 	gz_window_wake_panels(window);
-	/* Whoever changes a setting wants to see what it does where he looked before. */
+	/* While a setting is changed, its effect is shown at the previous gaze. */
 	if (!gz_widgets_have_mouse())
-		move_gaze(window);
+		move_mouse_gaze(window);
 }
 
 static void on_enter(GLFWwindow *glfw, int entered)
@@ -131,7 +201,7 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	gz_window_wake_panels(window);
 	if (window->alone || panels_have_mouse(window) || !window->maker)
 		return;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->wheel)
 			(*part)->wheel(window, up);
 }
@@ -143,7 +213,7 @@ static void on_size(GLFWwindow *glfw, int width, int height)
 	struct gz_window *window = window_of(glfw);
 	window->cast_needed = true;
 	if (window->cursor_known)
-		move_gaze(window);
+		move_mouse_gaze(window);
 }
 
 static void on_scale(GLFWwindow *glfw, float x, float y)
@@ -165,7 +235,7 @@ void gz_window_input_attach(struct gz_window *window)
 	double x, y;
 	int width, height;
 	glfwSetWindowUserPointer(glfw, window);
-	glfwSetKeyCallback(glfw, on_key);
+	glfwSetKeyCallback(glfw, on_window_key);
 	glfwSetCharCallback(glfw, on_character);
 	glfwSetMouseButtonCallback(glfw, on_button);
 	glfwSetCursorPosCallback(glfw, on_cursor);
@@ -174,7 +244,7 @@ void gz_window_input_attach(struct gz_window *window)
 	glfwSetFramebufferSizeCallback(glfw, on_size);
 	glfwSetWindowRefreshCallback(glfw, on_damage);
 	glfwSetWindowContentScaleCallback(glfw, on_scale);
-	/* A mouse that already rests in the window is a gaze before it moves. */
+	/* A mouse that rests in the window is a gaze before it moves. */
 	glfwGetCursorPos(glfw, &x, &y);
 	glfwGetWindowSize(glfw, &width, &height);
 	if (x >= 0 && y >= 0 && x < width && y < height) {

@@ -1,6 +1,4 @@
-#include "view/window/keys.h"
-
-#include <stdlib.h>
+/* The part that lists the keys of all parts, searches them, and runs them. */
 #include <string.h>
 
 #include <GLFW/glfw3.h>
@@ -9,17 +7,17 @@
 #include "view/panels/widgets.h"
 #include "view/window/window_state.h"
 
-/* Listed at most (chosen: more than twice what there is). */
+/* Most rows (chosen: more than twice as many as there are). */
 enum { ROWS_MAX = 256 };
 
-struct gz_window_keys_state {
+struct gz_window_keys {
 	struct gz_keys_panel panel;
 	struct gz_keys_row rows[ROWS_MAX];
 	const struct gz_window_action *actions[ROWS_MAX];
 	size_t count;
 };
 
-/* What is looked for most comes first (chosen). */
+/* Groups in the order of the list (chosen: what is needed most comes first). */
 static const char *const groups[] = {
 	"gaze", "picture", "transfer function", "camera", "files", "record", "window",
 };
@@ -31,7 +29,7 @@ static const char *group_of(const struct gz_window_part *part,
 	return action->group ? action->group : part->title ? part->title : part->name;
 }
 
-/* Its number in groups; GROUPS: it has none. */
+/* Index in groups; GROUPS: not among them. */
 static size_t rank_of(const char *group)
 {
 	size_t rank = 0;
@@ -40,8 +38,8 @@ static size_t rank_of(const char *group)
 	return rank;
 }
 
-static void list_part(struct gz_window_keys_state *state, const struct gz_window_part *part,
-		      size_t rank)
+static void list_part_keys(struct gz_window_keys *state, const struct gz_window_part *part,
+			   size_t rank)
 {
 	for (size_t i = 0; i < part->action_count && state->count < ROWS_MAX; i++) {
 		const struct gz_window_action *action = &part->actions[i];
@@ -57,24 +55,15 @@ static void list_part(struct gz_window_keys_state *state, const struct gz_window
 	}
 }
 
-static enum gz_result open_state(struct gz_window *window)
+static enum gz_result list_keys(struct gz_window *window)
 {
-	window->keys = calloc(1, sizeof *window->keys);
-	if (!window->keys)
-		return GZ_ERR_NO_MEM;
 	for (size_t rank = 0; rank <= GROUPS; rank++)
-		for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
-			list_part(window->keys, *part, rank);
+		GZ_FOR_EACH_PART (part)
+			list_part_keys(window->keys, *part, rank);
 	return GZ_OK;
 }
 
-static void close_state(struct gz_window *window)
-{
-	free(window->keys);
-	window->keys = NULL;
-}
-
-static void show(struct gz_window *window, bool open, bool search)
+static void show_keys(struct gz_window *window, bool open, bool search)
 {
 	struct gz_keys_panel *panel = &window->keys->panel;
 	panel->open = open;
@@ -85,15 +74,15 @@ static void show(struct gz_window *window, bool open, bool search)
 	gz_window_wake_panels(window);
 }
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_keys(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	struct gz_window_keys_state *state = window->keys;
+	struct gz_window_keys *state = window->keys;
 	(void)gaze;
 	if (!state->panel.open)
 		return;
 	const size_t chosen = gz_keys_panel_draw(&state->panel, state->rows, state->count);
 	if (gz_dialog_escaped())
-		show(window, false, false);
+		show_keys(window, false, false);
 	if (chosen >= state->count)
 		return;
 	const struct gz_window_action *action = state->actions[chosen];
@@ -104,47 +93,47 @@ static void draw_panels(struct gz_window *window, const struct gz_window_gaze *g
 		action->run(window, action->number);
 }
 
-static void toggle(struct gz_window *window, int number)
+static void toggle_keys(struct gz_window *window, int number)
 {
 	(void)number;
-	show(window, !window->keys->panel.open, false);
+	show_keys(window, !window->keys->panel.open, false);
 }
 
-static void find(struct gz_window *window, int number)
+static void find_key(struct gz_window *window, int number)
 {
 	(void)number;
-	show(window, true, true);
+	show_keys(window, true, true);
 }
 
-static void leave_alone(struct gz_window *window, int number)
+static void leave_key_to_panel(struct gz_window *window, int number)
 {
 	(void)window;
 	(void)number;
 }
 
-static bool is_open(const struct gz_window *window)
+static bool are_keys_open(const struct gz_window *window)
 {
-	return window->keys && window->keys->panel.open;
+	return window->keys->panel.open;
 }
 
-static const struct gz_window_action actions[] = {
-	{ .letter = 'h', .keys = "H or ?", .help = "show or hide this list", .run = toggle },
-	{ .letter = '?', .run = toggle },
+static const struct gz_window_action keys_actions[] = {
+	{ .letter = 'h', .keys = "H or ?", .help = "show or hide this list", .run = toggle_keys },
+	{ .letter = '?', .run = toggle_keys },
 	{ .letter = 'p',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+P",
-	  .help = "find a key by what it does; Enter runs it",
-	  .run = find },
-	/* The panel itself takes it: also while a text is typed there. */
-	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = leave_alone },
+	  .help = "find a key by a word; Enter runs it",
+	  .run = find_key },
+	/* The panel takes it itself, even while a text is typed there. */
+	{ .key = GLFW_KEY_ESCAPE, .applies = are_keys_open, .run = leave_key_to_panel },
 };
 
-const struct gz_window_part gz_window_keys = {
+const struct gz_window_part gz_window_keys_part = {
 	.name = "keys",
 	.title = "window",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_state,
-	.panels = draw_panels,
-	.close = close_state,
+	.actions = keys_actions,
+	.action_count = sizeof keys_actions / sizeof keys_actions[0],
+	GZ_PART_STATE(keys),
+	.open = list_keys,
+	.panels = draw_keys,
 };

@@ -1,39 +1,36 @@
 /**
  * @file
- * The part of the window that measures how long it takes from a gaze to light on the display, and
- * waits for the display's refresh or not.
+ * The part of the window that measures the time from a gaze to light on the display, and switches
+ * V-sync.
  *
- * Measured: the age of the gaze's sample when it was taken; from then to the picture's hand-over
- * (plan, rays, panels); from there until the graphics device is done with it, by a fence behind the
- * swap that is looked at each millisecond and waited for by nobody. Estimated: half a refresh of
- * the monitor, for the way from the top of the display to the middle. What the display itself takes
- * is not known to a program. Internal to view/.
+ * Measured are the age of the gaze sample when it was taken; the frame from then to the swap (plan,
+ * rays, panels); and the time from the swap until the graphics device has finished, by a fence
+ * behind the swap that is polled each millisecond. Estimated is half a refresh of the monitor, for
+ * the scan-out from the top of the display to its middle. A program cannot know the delay of the
+ * display itself. Internal to view/.
  */
 #ifndef GZ_VIEW_WINDOW_LATENCY_H
 #define GZ_VIEW_WINDOW_LATENCY_H
 
 #include <stdbool.h>
 
-#include "view/window/part.h"
+struct gz_window;
 
-/** Frames that medians are of. */
+/** Frames in a median. */
 enum { GZ_LATENCY_FRAMES = 64 };
 
-/** Medians over the last frames with a new picture, ms. */
+/** Medians over the last frames that had a new picture, ms. */
 struct gz_latency {
-	int frames;        /**< that they are of, 1 to GZ_LATENCY_FRAMES */
-	bool age_known;    /**< the source tells when its samples were taken */
-	double age_ms;     /**< of the sample, when it was taken; 0 where not known */
-	double frame_ms;   /**< from then to the hand-over of the picture */
-	double present_ms; /**< from there until the device is done: swap to fence */
-	double scanout_ms; /**< estimated; 0 where the refresh is not known */
+	int frames;        /**< number of frames, 1 to GZ_LATENCY_FRAMES */
+	bool age_known;    /**< the source tells the age of its samples */
+	double age_ms;     /**< of the sample when it was taken; 0: not known */
+	double frame_ms;   /**< from then to the swap */
+	double present_ms; /**< from the swap until the device has finished */
+	double scanout_ms; /**< estimated; 0: the refresh rate is not known */
 	double total_ms;   /**< the sum of these four */
 };
 
-/** The part. */
-extern const struct gz_window_part gz_window_latency_part;
-
-/** What was measured so far. @return false before the first frame */
+/** The latency measured so far. @return false before the first frame */
 bool gz_window_latency(const struct gz_window *window, struct gz_latency *out_latency);
 
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file
- * The part of the window that loads scenes, on threads while the window goes on, and shows them:
- * the one that the program was started with too. Internal to view/; main thread only.
+ * The part of the window that loads scenes on threads, shows them, and holds scenes ready. Internal
+ * to view/; main thread only.
  */
 #ifndef GZ_VIEW_WINDOW_LOADING_H
 #define GZ_VIEW_WINDOW_LOADING_H
@@ -11,58 +11,58 @@
 #include "base/result.h"
 #include "protocol/gaze.h"
 #include "render/scene/scene.h"
-#include "view/window/part.h"
 
-/** What is to be shown. Zero-initialised but for the path: a scene's file as it is. */
+struct gz_window;
+
+/** What to load. Zero-initialised except for the path: a scene file with its own settings. */
 struct gz_window_load_request {
-	/** Of a scene's file, beside which names in the scene are looked up first, or of whatever
-	 *  gz_scene_open() takes. */
+	/** Path of what gz_scene_open() accepts. Files named in a scene are looked up beside it
+	 *  first. */
 	char path[GZ_PATH_SIZE];
-	bool has_raw; /**< @p raw is the layout of the raw file that @p path is */
+	bool has_raw; /**< path is a raw file with layout raw */
 	struct gz_raw_layout raw;
-	/** The command line's keys come before the scene's own. For what was named there. */
+	/** Keys of the command line replace the scene's; for what was named there. */
 	bool by_options;
-	/** What the user has set stays: method and its parameters, look of rays and light,
-	 *  attention, view. Volume, transfer function, camera, clip box, display and tables of
-	 *  spacings are the new scene's in any case. */
+	/** Keep the user's settings of method, rays, light, attention and view. Volume, transfer
+	 *  function, camera, clip box, display and tables of spacings are always the new scene's.
+	 */
 	bool keep;
 };
 
 /**
- * Load a scene and show it once it is there, in place of the one shown, which stays until then, and
- * for good where the loading fails or is cancelled. While that takes a moment a panel tells how far
- * it is. A loading that goes on already is cancelled.
+ * Load a scene, and show it when it is ready. The scene shown stays until then, and also if loading
+ * fails or is cancelled. A panel shows the progress. A loading that goes on is cancelled.
  *
- * Both volumes are in memory for the while; where that has no room for them the one shown is closed
- * and the loading begins again, with a warning.
+ * Both volumes are in memory meanwhile. If there is no room for both, the scene shown is closed and
+ * loading begins again, with a warning.
  *
  * @param request  copied
- * @return GZ_OK: it has begun, parts are told by scene_leaving and scene_shown; what goes wrong
- *         later is logged. GZ_ERR_NO_MEM: it has not; logged
+ * @retval GZ_OK          loading has begun; later failures are logged. Parts are told by
+ * scene_leaving and scene_shown
+ * @retval GZ_ERR_NO_MEM  loading has not begun; logged
  */
 enum gz_result gz_window_load(struct gz_window *window,
 			      const struct gz_window_load_request *request);
 
-/** Whether gz_window_load() has begun something that is not shown yet. */
+/** Whether a gz_window_load() goes on. */
 bool gz_window_is_loading(const struct gz_window *window);
 
-/** Stop that; nothing if there is none. */
+/** Cancel the loading, if one goes on. */
 void gz_window_cancel_loading(struct gz_window *window);
 
-/** Path of the scene shown, as its request had it; "" without one. */
+/** Path of the scene shown, as in its request; "": there is no scene. */
 const char *gz_window_scene_path(const struct gz_window *window);
 
-/** The scene shown has been saved, and is the one at @p path from now on, which is shorter than
- * GZ_PATH_SIZE. */
+/** Change the path of the scene shown, which was saved there; shorter than GZ_PATH_SIZE. */
 void gz_window_rename_scene(struct gz_window *window, const char *path);
 
-/** Close the scene shown, if any: the window is as if started without one. */
+/** Close the scene shown, if there is one: the window is empty. */
 void gz_window_close_scene(struct gz_window *window);
 
-/** A scene kept ready, to be shown without any loading. */
+/** A scene held ready, which is shown without loading. */
 struct gz_window_held;
 
-/** How far a held scene is. */
+/** State of a held scene. */
 enum gz_window_held_state {
 	GZ_HELD_COMING,
 	GZ_HELD_READY,
@@ -70,10 +70,10 @@ enum gz_window_held_state {
 };
 
 /**
- * Load a scene beside those that are there, and hold it ready: its renderer too. Nothing of it is
- * seen.
+ * Load a scene in addition to those that are loaded, and hold it ready with its renderer. It is not
+ * shown.
  *
- * @param request     copied; its keep counts for nothing
+ * @param request        copied; its keep is ignored
  * @param[out] out_held  owned by the caller: gz_window_release(), in its part's close at the latest
  * @retval GZ_ERR_NO_MEM  logged
  */
@@ -81,29 +81,26 @@ enum gz_result gz_window_preload(struct gz_window *window,
 				 const struct gz_window_load_request *request,
 				 struct gz_window_held **out_held);
 
-/** @param[out] out_share  how much of it is done, 0 to 1; may be NULL */
+/** State of a held scene. @param[out] out_share  share loaded, 0 to 1; may be NULL */
 enum gz_window_held_state gz_window_held_state(const struct gz_window_held *held,
 					       double *out_share);
 
 /**
- * Show a held scene, as it was loaded, in place of the one shown; that is freed unless it is held
- * too. A loading that goes on is cancelled. The scene stays held, and can be shown again.
+ * Show a held scene with the settings it was loaded with. The previous scene is freed, unless it is
+ * held too. A loading that goes on is cancelled. The scene stays held, and can be shown again.
  *
  * @retval GZ_ERR_INVAL  it is not ready
- * @return also what gz_frame_maker_start() returns, after a lost context; logged, and then no scene
- *         is shown
+ * @return else, after a lost context, what gz_frame_maker_start() returns; logged, and no scene is
+ *         shown then
  */
 enum gz_result gz_window_show(struct gz_window *window, struct gz_window_held *held);
 
-/** Free a held scene and set to NULL; where it is the one shown the window is without a scene.
- *  Accepts a pointer to NULL. */
+/** Free a held scene and set to NULL; if it is shown, the window is empty. Accepts a pointer to
+ *  NULL. */
 void gz_window_release(struct gz_window *window, struct gz_window_held **held);
 
-/** What a load that the program was started for has come to: GZ_OK while it goes on, and once any
- *  scene has been shown. */
+/** Why no scene has been shown since the program was started: the last failure. GZ_OK while loading
+ *  goes on, and once any scene has been shown. */
 enum gz_result gz_window_loading_outcome(const struct gz_window *window);
-
-/** The part. */
-extern const struct gz_window_part gz_window_loading;
 
 #endif

@@ -1,5 +1,4 @@
-#include "view/window/measure.h"
-
+/* What the window itself costs a frame, without casting. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,11 +9,12 @@
 
 #include "base/clock.h"
 #include "render/picture/image.h"
+#include "view/window/gaze.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
-enum way { BARE, CLOSED, OPEN, WAYS };
+enum measured_way { BARE, CLOSED, OPEN, WAYS };
 
 struct measurement {
 	struct gz_window *window;
@@ -24,7 +24,7 @@ struct measurement {
 	struct gz_window_gaze gaze;
 };
 
-/* Another grey a frame: nothing can be left out as known. */
+/* Each frame differs, so that the driver cannot skip an upload. */
 static void change_image(struct gz_image *image, int number)
 {
 	const size_t size = 4 * (size_t)image->width * (size_t)image->height;
@@ -47,7 +47,7 @@ static void show_window(struct measurement *self, bool panels)
 	gz_window_present(window, &self->gaze, self->width, self->height);
 }
 
-static double show_once(struct measurement *self, enum way way)
+static double show_once(struct measurement *self, enum measured_way way)
 {
 	glFinish();
 	const int64_t start_ns = gz_clock_now_ns();
@@ -60,19 +60,19 @@ static double show_once(struct measurement *self, enum way way)
 	return gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 }
 
-static int compare(const void *a, const void *b)
+static int compare_ms(const void *a, const void *b)
 {
 	const double one = *(const double *)a, other = *(const double *)b;
 	return (one > other) - (one < other);
 }
 
-static double median(double *values, int count)
+static double median_ms(double *values, int count)
 {
-	qsort(values, (size_t)count, sizeof values[0], compare);
+	qsort(values, (size_t)count, sizeof values[0], compare_ms);
 	return values[count / 2];
 }
 
-static enum gz_result begin(struct measurement *self, int count)
+static enum gz_result begin_measurement(struct measurement *self, int count)
 {
 	glfwGetFramebufferSize(self->window->glfw, &self->width, &self->height);
 	if (self->width < 1 || self->height < 1)
@@ -86,33 +86,33 @@ static enum gz_result begin(struct measurement *self, int count)
 	return r;
 }
 
-static void end(struct measurement *self)
+static void end_measurement(struct measurement *self)
 {
 	for (int way = 0; way < WAYS; way++)
 		free(self->ms[way]);
 	gz_image_free(&self->image);
 }
 
-/* The first frames make what later ones keep: textures, a font, the panels' places. */
-static void show_all(struct measurement *self, int count)
+/* The first frames are not counted: they make textures, fonts and the panels' places. */
+static void show_all_ways(struct measurement *self, int count)
 {
 	enum { FIRST = 10 };
 	glfwSwapInterval(0);
 	for (int i = -FIRST; i < count; i++)
 		for (int way = 0; way < WAYS; way++) {
 			change_image(&self->image, WAYS * (i + FIRST) + way);
-			const double ms = show_once(self, (enum way)way);
+			const double ms = show_once(self, (enum measured_way)way);
 			if (i >= 0)
 				self->ms[way][i] = ms;
 			glfwPollEvents();
 		}
 }
 
-static void tell(struct measurement *self, int count)
+static void print_measurement(struct measurement *self, int count)
 {
-	const double bare = median(self->ms[BARE], count);
-	const double closed = median(self->ms[CLOSED], count);
-	const double open = median(self->ms[OPEN], count);
+	const double bare = median_ms(self->ms[BARE], count);
+	const double closed = median_ms(self->ms[CLOSED], count);
+	const double open = median_ms(self->ms[OPEN], count);
 	printf("%dx%d bare %.2f ms window %.2f ms %.2f times with panels %.2f ms %.2f times "
 	       "frames %d\n",
 	       self->width, self->height, bare, closed, closed / bare, open, open / bare, count);
@@ -122,13 +122,13 @@ enum gz_result gz_window_measure(struct gz_window *window)
 {
 	const int count = window->options->measure_window;
 	struct measurement self = { .window = window };
-	const enum gz_result r = begin(&self, count);
+	const enum gz_result r = begin_measurement(&self, count);
 	if (r == GZ_OK) {
-		show_all(&self, count);
-		tell(&self, count);
+		show_all_ways(&self, count);
+		print_measurement(&self, count);
 	} else if (r == GZ_ERR_NO_MEM) {
 		gz_err(window->log, "no memory for --measure-window; ask for fewer frames");
 	}
-	end(&self);
+	end_measurement(&self);
 	return r;
 }

@@ -1,8 +1,8 @@
 /**
  * @file
- * What the window is made of: each feature is a part, which has its state to itself, its keys, its
- * panels, and a say at fixed moments of the loop. window.c runs them all, in the order of
- * gz_window_parts; parts do not call each other but by what their headers offer. Internal to view/.
+ * The parts of the window. Each feature is a part: a file with its state, keys and panels, and with
+ * functions that window.c calls at fixed moments of the loop. Parts use each other only by what the
+ * headers of this folder offer. Internal to view/.
  *
  * All of it runs on the main thread, with the window's OpenGL context current.
  */
@@ -20,95 +20,126 @@ struct gz_window_gaze;
 /** Modifiers of a key. */
 enum { GZ_KEY_SHIFT = 1, GZ_KEY_CONTROL = 2 };
 
-/** Something that a key does. */
+/** What a key does. */
 struct gz_window_action {
-	/** A character of the user's layout, in lower case: 'c', '+', ' '; 0 where @p key counts.
-	 */
+	/** A character of the user's keyboard layout, in lower case: 'c', '+', ' '; 0: @p key is
+	 *  used. */
 	char letter;
-	int key;           /**< of GLFW: GLFW_KEY_F12; 0 where @p letter counts */
-	int modifiers;     /**< GZ_KEY_SHIFT, GZ_KEY_CONTROL; exactly these */
-	bool repeats;      /**< also while the key is held */
-	int number;        /**< handed to run: for rows of keys that do the like */
-	const char *keys;  /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, since
-			      another row tells of it */
-	const char *help;  /**< what it does, one line; some 48 letters fit */
-	const char *group; /**< of the list, where it is not the part's; else NULL */
-	/** Whether the key is this one's at the moment; else the next action with it has it. NULL:
-	 *  always. */
+	int key;           /**< of GLFW, as GLFW_KEY_F12; 0: @p letter is used */
+	int modifiers;     /**< exactly these of GZ_KEY_SHIFT, GZ_KEY_CONTROL */
+	bool repeats;      /**< runs again while the key is held */
+	int number;        /**< handed to run, which several rows may share */
+	const char *keys;  /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, as another
+			      row tells of it */
+	const char *help;  /**< what it does; about 48 letters fit */
+	const char *group; /**< group in the list of keys; NULL: that of the part */
+	/** Whether the key is this action's at present; if not, the next action with the key is
+	 *  asked. NULL: always. */
 	bool (*applies)(const struct gz_window *window);
 	void (*run)(struct gz_window *window, int number);
 };
 
-/** A part. Each table is const and has static storage; any slot may be NULL. */
+/** A part. Tables are const and have static storage. Any slot may be NULL or 0. */
 struct gz_window_part {
 	const char *name;
-	/** The group of the list that its keys stand in, of those that keys.c names; NULL: a group
-	 *  of the part's name behind them. */
+	/** Group of its keys in the list, one of those in keys.c; NULL: the part's name, behind
+	 *  them. */
 	const char *title;
 	const struct gz_window_action *actions;
 	size_t action_count;
-	/** Once, before there is a window: make the part's state from the options. Logs what goes
-	 * wrong. */
+	/** The part's state: where struct gz_window points to it, and its size. The window makes
+	 * the states of all parts, zeroed, before any open, and frees each after its close. Set by
+	 *  GZ_PART_STATE(). */
+	size_t state_at, state_size;
+	/** Fill the state from the options, once, before there is a window. Logs failures. */
 	enum gz_result (*open)(struct gz_window *window);
-	/** The OpenGL context is there, for the first time or anew: make what lives in it. GL
-	 * 3.3. */
+	/** Make what lives in the OpenGL context (3.3 or later), which is new: at the start, and
+	 *  after a loss. */
 	enum gz_result (*gl_open)(struct gz_window *window);
-	/** A scene is there to be shown: window->maker, its renderer too, and settings are its. */
+	/** A scene is about to be shown: window->maker, with a renderer, and its settings. */
 	void (*scene_shown)(struct gz_window *window);
-	/** It is about to be freed: nothing may look at it any more, on no thread. */
+	/** The scene is about to be freed: stop using it, on every thread. */
 	void (*scene_leaving)(struct gz_window *window);
-	/** Each turn of the loop, first of all: look at threads and clocks; ask for a frame by
-	 * window->cast_needed or window->present_needed. */
+	/** First in each turn of the loop: check threads and clocks, and ask for a frame by
+	 *  window->cast_needed or window->present_needed. */
 	void (*turn)(struct gz_window *window);
-	/** The gaze of this turn, before anything goes by it: may be replaced. Only with a
-	 * scene. */
+	/** See or replace the gaze of this turn before it is used. Only with a scene. */
 	void (*gaze)(struct gz_window *window, struct gz_window_gaze *gaze);
-	/** A button of the mouse (GLFW_MOUSE_BUTTON_LEFT, …) went down on the picture at
-	 * window->cursor: whether its way until it is released is this part's. The first that says
-	 * so has it. Only with a scene. */
+	/** A button of the mouse (GLFW_MOUSE_BUTTON_LEFT, …) was pressed on the picture at
+	 *  window->cursor. @return true to get the mouse until it is released; later parts are not
+	 *  asked then. Only with a scene. */
 	bool (*grab)(struct gz_window *window, int button, int modifiers);
-	/** The mouse that the part has has moved to window->cursor, by so much. */
+	/** The mouse, which the part has grabbed, moved by this to window->cursor. */
 	void (*drag)(struct gz_window *window, double right, double down);
 	/** The wheel was turned over the picture, notches. Only with a scene. */
 	void (*wheel)(struct gz_window *window, double up);
-	/** Whether what lies over the picture must be drawn anew for this gaze. */
+	/** Whether what the part draws over the picture changes with this gaze. */
 	bool (*follows)(struct gz_window *window, const struct gz_window_gaze *gaze);
-	/** A picture has been cast: window->record tells of it. */
+	/** A picture has been cast; window->record describes it. */
 	void (*frame_made)(struct gz_window *window);
-	/** Draw by OpenGL over the picture, which is in the framebuffer of width times height
-	 * px. */
+	/** Draw by OpenGL over the picture, in a framebuffer of width times height px. */
 	void (*paint)(struct gz_window *window, int width, int height);
-	/** Draw panels and marks by panels/widgets.h. A changed window->settings is checked and
-	 * taken afterwards. */
+	/** Draw panels and marks by panels/widgets.h. Changes of window->settings are checked
+	 *  afterwards. */
 	void (*panels)(struct gz_window *window, const struct gz_window_gaze *gaze);
-	/** Panels have been drawn too, and the framebuffer of width times height px is about to be
-	 * swapped. */
+	/** Panels have been drawn, and the framebuffer of width times height px is about to be
+	 *  swapped. */
 	void (*drawn)(struct gz_window *window, int width, int height);
-	/** What is on the screen has been swapped there. */
+	/** The framebuffer has been swapped. */
 	void (*presented)(struct gz_window *window);
-	/** A key of GLFW was pressed, before any action; only of the part that has the window to
-	 * itself: window->alone. @return whether it was the part's */
+	/** A key of GLFW was pressed. Only of the part that has the window to itself
+	 *  (window->alone). @return whether the part takes the key */
 	bool (*key)(struct gz_window *window, int key, int scancode, bool repeated);
-	/** Seconds until the next turn is due, if no event comes before; INFINITY: whenever. */
+	/** Longest time until the next turn, s, if no event comes before; INFINITY: any. */
 	double (*patience_s)(const struct gz_window *window);
-	/** The OpenGL context goes: delete what lives in it. Correct after a failed gl_open. */
+	/** The OpenGL context is about to go: delete what lives in it. Correct after a failed
+	 *  gl_open. */
 	void (*gl_close)(struct gz_window *window);
-	/** Free the state. Correct after a failed open, and without one. */
+	/** Free what the state holds. Correct without open, and after a failed one. With a
+	 *  state_size only called if there is a state. */
 	void (*close)(struct gz_window *window);
 };
 
-/** All parts, NULL-terminated, in the order in which they are asked. */
+/** The slots for a part whose state is window->@p name. */
+#define GZ_PART_STATE(name)                           \
+	.state_at = offsetof(struct gz_window, name), \
+	.state_size = sizeof *((struct gz_window *)0)->name
+
+/* clang-format off */
+/** All parts, in the order in which they are asked: ROW(name) for gz_window_NAME_part. A new part is
+ *  a file and a row here. */
+#define GZ_WINDOW_PARTS(ROW) \
+	ROW(loading)       /* loads and holds scenes */ \
+	ROW(keys)          /* lists keys */ \
+	ROW(displays)      /* monitors, and which is the tracker's */ \
+	ROW(gaze)          /* sources of the gaze */ \
+	ROW(status)        /* the line on top, and the lower left corner */ \
+	ROW(compare)       /* the standard picture beside the method's */ \
+	ROW(overlay)       /* the tint that shows the plan */ \
+	ROW(trail)         /* the last second of the gaze */ \
+	ROW(camera)        /* moves the camera */ \
+	ROW(frame_times)   /* plots what frames cost */ \
+	ROW(gaze_panel)    /* the panel of the gaze */ \
+	ROW(latency)       /* from gaze to light on the display; V-sync */ \
+	ROW(files)         /* opens and saves */ \
+	ROW(notices)       /* shows messages */ \
+	ROW(transfer)      /* edits the transfer function */ \
+	ROW(replay)        /* shows a session again; behind all that change the gaze */ \
+	ROW(session)       /* records sessions; behind all that change the gaze */ \
+	ROW(capture)       /* writes pictures and videos; behind all that paint */ \
+	ROW(basics)        /* methods, settings, cursor; behind all whose panels Escape closes */ \
+	ROW(experiment)    /* runs an experiment, alone */
+/* clang-format on */
+
+#define GZ_DECLARE_PART(name) extern const struct gz_window_part gz_window_##name##_part;
+GZ_WINDOW_PARTS(GZ_DECLARE_PART)
+#undef GZ_DECLARE_PART
+
+/** The same, NULL-terminated. */
 extern const struct gz_window_part *const gz_window_parts[];
 
-/** GZ_KEY_SHIFT and GZ_KEY_CONTROL of GLFW's modifiers. */
-int gz_window_modifiers(int glfw);
-
-/** Run the action of a key. @param key of GLFW @param scancode of GLFW, for its letter @param
- * modifiers of GLFW @param repeated the key is held @return whether there is one */
-bool gz_window_run_action(struct gz_window *window, int key, int scancode, int modifiers,
-			  bool repeated);
-
-/** Run the action of a typed character that no letter key stands for, as '?' is. */
-bool gz_window_run_character(struct gz_window *window, unsigned codepoint);
+/** Loop over all parts; @p part is declared as a pointer into gz_window_parts. */
+#define GZ_FOR_EACH_PART(part) \
+	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
 
 #endif

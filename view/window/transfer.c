@@ -18,11 +18,11 @@
 
 #define GZ_LOG_MODULE "window"
 
-/* Of what is counted; the plot is no wider. */
+/* The plot is no wider. */
 #define BINS GZ_HISTOGRAM_BINS_MAX
 
-/* A histogram that a thread counts. */
-struct count {
+/* A histogram that is counted on a thread. */
+struct histogram_job {
 	const struct gz_volume *volume;
 	const struct gz_log *log;
 	pthread_t thread;
@@ -32,20 +32,19 @@ struct count {
 	struct gz_histogram histogram;
 };
 
-/* State of the part. */
 struct gz_window_transfer {
 	struct gz_transfer_edit *edit;
 	struct gz_transfer_panel panel;
-	char file[GZ_PATH_SIZE]; /* that has what was loaded or saved last */
-	uint64_t shown;          /* changes that the renderer has */
-	struct count count;
-	bool counted; /* or tried */
+	char file[GZ_PATH_SIZE]; /* file that was loaded or saved last */
+	uint64_t shown;          /* number of changes that the renderer has */
+	struct histogram_job count;
+	bool counted; /* or the attempt failed */
 	bool focus_due;
 };
 
-static void *count_voxels(void *user)
+static void *count_histogram(void *user)
 {
-	struct count *count = user;
+	struct histogram_job *count = user;
 	count->result = gz_histogram_count(count->volume, BINS, 0, &count->cancelled, count->log,
 					   &count->histogram);
 	atomic_store(&count->done, true);
@@ -56,20 +55,20 @@ static void *count_voxels(void *user)
 static void start_counting(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
-	struct count *count = &transfer->count;
+	struct histogram_job *count = &transfer->count;
 	transfer->counted = true;
 	count->volume = &gz_frame_maker_scene(window->maker)->volume;
 	count->log = window->log;
 	atomic_store(&count->cancelled, false);
 	atomic_store(&count->done, false);
-	count->running = pthread_create(&count->thread, NULL, count_voxels, count) == 0;
+	count->running = pthread_create(&count->thread, NULL, count_histogram, count) == 0;
 	if (!count->running)
-		gz_err(window->log, "no thread for the histogram; the editor goes without");
+		gz_err(window->log, "no thread for the histogram; the editor has none");
 }
 
 static void stop_counting(struct gz_window_transfer *transfer)
 {
-	struct count *count = &transfer->count;
+	struct histogram_job *count = &transfer->count;
 	transfer->panel.histogram = NULL;
 	transfer->counted = false;
 	if (!count->running)
@@ -79,9 +78,9 @@ static void stop_counting(struct gz_window_transfer *transfer)
 	count->running = false;
 }
 
-static void take_count(struct gz_window *window)
+static void take_histogram(struct gz_window *window)
 {
-	struct count *count = &window->transfer->count;
+	struct histogram_job *count = &window->transfer->count;
 	if (!count->running || !atomic_load(&count->done))
 		return;
 	pthread_join(count->thread, NULL);
@@ -91,7 +90,7 @@ static void take_count(struct gz_window *window)
 	gz_window_wake_panels(window);
 }
 
-static void toggle(struct gz_window *window, int number)
+static void toggle_transfer_panel(struct gz_window *window, int number)
 {
 	(void)number;
 	struct gz_window_transfer *transfer = window->transfer;
@@ -100,7 +99,7 @@ static void toggle(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
-static void undo(struct gz_window *window, int again)
+static void undo_transfer_step(struct gz_window *window, int again)
 {
 	struct gz_window_transfer *transfer = window->transfer;
 	if (!transfer->panel.open || !transfer->edit)
@@ -112,38 +111,32 @@ static void undo(struct gz_window *window, int again)
 	gz_window_wake_panels(window);
 }
 
-static bool is_open(const struct gz_window *window)
+static bool is_transfer_panel_open(const struct gz_window *window)
 {
-	return window->transfer && window->transfer->panel.open;
+	return window->transfer->panel.open;
 }
 
-static const struct gz_window_action actions[] = {
-	{ .key = GLFW_KEY_ESCAPE, .applies = is_open, .run = toggle },
-	{ .letter = 'e', .keys = "E", .help = "edit the transfer function", .run = toggle },
+static const struct gz_window_action transfer_actions[] = {
+	{ .key = GLFW_KEY_ESCAPE, .applies = is_transfer_panel_open, .run = toggle_transfer_panel },
+	{ .letter = 'e',
+	  .keys = "E",
+	  .help = "edit the transfer function",
+	  .run = toggle_transfer_panel },
 	{ .letter = 'z',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .repeats = true,
 	  .keys = "Ctrl+Z",
-	  .help = "take back the last step there; with Shift: again",
-	  .run = undo },
+	  .help = "undo the last step there; with Shift redo",
+	  .run = undo_transfer_step },
 	{ .letter = 'z',
 	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
 	  .repeats = true,
 	  .number = 1,
-	  .run = undo },
+	  .run = undo_transfer_step },
 };
 
-static enum gz_result open_part(struct gz_window *window)
-{
-	window->transfer = calloc(1, sizeof *window->transfer);
-	if (window->transfer)
-		return GZ_OK;
-	gz_err(window->log, "no memory for the window; close other programs");
-	return GZ_ERR_NO_MEM;
-}
-
-/* The file that the settings name, as it is found from here. */
-static void name_file(struct gz_window *window)
+/* Look up the file that the settings name. */
+static void name_transfer_file(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
 	const char *name = window->settings.transfer_file;
@@ -154,19 +147,18 @@ static void name_file(struct gz_window *window)
 	memcpy(transfer->panel.file, path, sizeof path);
 }
 
-/* The settings name a file from now on, from wherever they are saved to. */
-static void use_file(struct gz_window *window, const char *file)
+/* Name a file in the settings, by a path that is valid from anywhere. */
+static void use_transfer_file(struct gz_window *window, const char *file)
 {
 	char *real = realpath(file, NULL);
 	if (real && strlen(real) < GZ_PATH_SIZE) {
-		memset(window->settings.transfer_file, 0, GZ_PATH_SIZE);
-		memcpy(window->settings.transfer_file, real, strlen(real));
+		memcpy(window->settings.transfer_file, real, strlen(real) + 1);
 	}
 	free(real);
 	gz_window_transfer_saved(window);
 }
 
-static void scene_shown(struct gz_window *window)
+static void edit_scene_transfer(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
@@ -180,16 +172,16 @@ static void scene_shown(struct gz_window *window)
 	transfer->shown = gz_transfer_edit_changes(transfer->edit);
 	transfer->panel.selected = 0;
 	transfer->panel.whole_lost = false;
-	name_file(window);
+	name_transfer_file(window);
 }
 
-static void scene_leaving(struct gz_window *window)
+static void leave_counted_scene(struct gz_window *window)
 {
 	stop_counting(window->transfer);
 }
 
-/* Another part, as a session that is replayed, has set one: it is what is edited from now on. */
-static void follow_others(struct gz_window *window)
+/* Edit a transfer function that another part has set, such as a replay. */
+static void follow_other_parts(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
 	const struct gz_transfer *shown = &gz_frame_maker_scene(window->maker)->transfer;
@@ -200,16 +192,16 @@ static void follow_others(struct gz_window *window)
 	gz_window_wake_panels(window);
 }
 
-/* Before the next frame, the renderer has what is edited. */
-static void turn(struct gz_window *window)
+/* The renderer gets changes before the next frame. */
+static void turn_transfer(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
-	take_count(window);
+	take_histogram(window);
 	if (!window->maker || !transfer->edit)
 		return;
 	const uint64_t changes = gz_transfer_edit_changes(transfer->edit);
 	if (changes == transfer->shown) {
-		follow_others(window);
+		follow_other_parts(window);
 		return;
 	}
 	transfer->shown = changes;
@@ -217,17 +209,17 @@ static void turn(struct gz_window *window)
 	window->cast_needed = true;
 }
 
-static void save(struct gz_window *window)
+static void save_transfer(struct gz_window *window)
 {
 	struct gz_window_transfer *transfer = window->transfer;
 	if (gz_transfer_write(gz_transfer_edit_now(transfer->edit), transfer->panel.file,
 			      window->log) != GZ_OK)
 		return;
 	gz_info(window->log, "%s: transfer function written", transfer->panel.file);
-	use_file(window, transfer->panel.file);
+	use_transfer_file(window, transfer->panel.file);
 }
 
-static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_transfer_editor(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
 	struct gz_window_transfer *transfer = window->transfer;
@@ -246,59 +238,42 @@ static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 	if (wish == GZ_TRANSFER_WISH_LOAD)
 		gz_window_transfer_load(window, panel->file);
 	else if (wish == GZ_TRANSFER_WISH_SAVE)
-		save(window);
-	/* A changed function is shown at once: turn() looks after it. */
+		save_transfer(window);
+	/* turn_transfer() shows changes in the next turn. */
 	if (gz_transfer_edit_changes(transfer->edit) != transfer->shown)
 		gz_window_wake_panels(window);
 }
 
-static double patience_s(const struct gz_window *window)
+static double transfer_patience_s(const struct gz_window *window)
 {
 	const struct gz_window_transfer *transfer = window->transfer;
-	const bool due = transfer && transfer->edit && window->maker &&
+	const bool due = transfer->edit && window->maker &&
 			 gz_transfer_edit_changes(transfer->edit) != transfer->shown;
 	return due ? 0 : INFINITY;
 }
 
-static void close_part(struct gz_window *window)
+static void close_transfer(struct gz_window *window)
 {
-	if (!window->transfer)
-		return;
 	stop_counting(window->transfer);
 	gz_transfer_edit_destroy(&window->transfer->edit);
-	free(window->transfer);
-	window->transfer = NULL;
-}
-
-const struct gz_transfer *gz_window_transfer(const struct gz_window *window, bool *out_differs,
-					     const char **out_file)
-{
-	const struct gz_window_transfer *transfer = window->transfer;
-	if (!window->maker || !transfer || !transfer->edit)
-		return NULL;
-	*out_differs = gz_transfer_edit_differs(transfer->edit);
-	if (out_file)
-		*out_file = transfer->file;
-	return gz_transfer_edit_now(transfer->edit);
 }
 
 void gz_window_transfer_saved(struct gz_window *window)
 {
-	if (!window->transfer || !window->transfer->edit)
+	if (!window->transfer->edit)
 		return;
 	gz_transfer_edit_saved(window->transfer->edit);
-	name_file(window);
+	name_transfer_file(window);
 	gz_window_wake_panels(window);
 }
 
 enum gz_result gz_window_transfer_load(struct gz_window *window, const char *file)
 {
-	struct gz_transfer_edit *edit = window->transfer ? window->transfer->edit : NULL;
+	struct gz_transfer_edit *edit = window->transfer->edit;
 	struct gz_transfer loaded;
 	if (!window->maker || !edit) {
 		gz_err(window->log,
-		       "%s: a transfer function shows nothing by itself; open a scene or a volume "
-		       "first",
+		       "%s: a transfer function needs a volume; open a scene or a volume first",
 		       file);
 		return GZ_ERR_INVAL;
 	}
@@ -307,20 +282,20 @@ enum gz_result gz_window_transfer_load(struct gz_window *window, const char *fil
 		return r;
 	gz_transfer_edit_end(edit);
 	gz_transfer_edit_replace(edit, &loaded);
-	use_file(window, file);
+	use_transfer_file(window, file);
 	return GZ_OK;
 }
 
 const struct gz_window_part gz_window_transfer_part = {
 	.name = "transfer",
 	.title = "transfer function",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_part,
-	.scene_shown = scene_shown,
-	.scene_leaving = scene_leaving,
-	.turn = turn,
-	.panels = panels,
-	.patience_s = patience_s,
-	.close = close_part,
+	.actions = transfer_actions,
+	.action_count = sizeof transfer_actions / sizeof transfer_actions[0],
+	GZ_PART_STATE(transfer),
+	.scene_shown = edit_scene_transfer,
+	.scene_leaving = leave_counted_scene,
+	.turn = turn_transfer,
+	.panels = draw_transfer_editor,
+	.patience_s = transfer_patience_s,
+	.close = close_transfer,
 };

@@ -10,23 +10,25 @@
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 #include "view/panels/widgets.h"
-#include "view/window/context_loss.h"
-#include "view/window/display_loss.h"
 #include "view/window/displays.h"
 #include "view/window/experiment.h"
-#include "view/window/files.h"
+#include "view/window/gaze.h"
+#include "view/window/glfw.h"
 #include "view/window/loading.h"
-#include "view/window/measure.h"
-#include "view/window/part.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
-/* How soon a picture is made again of which bricks are still coming (chosen: some have come). */
+/* Time until a picture is made again while its bricks are still being read (chosen: some have come
+ * by then). */
 #define BRICKS_PATIENCE_S 0.01
-/* How often a window that nobody can see is looked after, whatever its parts wait for (chosen: at
- * no cost; an event, as of its coming back, ends the wait). */
+/* Least time between turns of a window that nobody can see (chosen: costs nothing; the event of its
+ * return ends the wait). */
 #define HIDDEN_PATIENCE_S 0.1
+
+#define PART_ADDRESS(name) &gz_window_##name##_part,
+const struct gz_window_part *const gz_window_parts[] = { GZ_WINDOW_PARTS(PART_ADDRESS) NULL };
+#undef PART_ADDRESS
 
 static enum gz_result open_display(const struct gz_log *log)
 {
@@ -34,10 +36,11 @@ static enum gz_result open_display(const struct gz_log *log)
 		return GZ_OK;
 	gz_err(log,
 	       "no window: %s; set DISPLAY to an X server, or render without one by --headless",
-	       gz_window_glfw_reason());
+	       gz_glfw_reason());
 	return GZ_ERR_NO_DEVICE;
 }
-/* Whether where the picture is sharp, or what it is on, is another than in the one shown. */
+
+/* Whether the focus or the display differs from that of the picture shown. */
 static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	if (gaze->focus) {
@@ -51,8 +54,8 @@ static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *ga
 	       !gz_display_same(&gaze->display, &window->shown_display);
 }
 
-static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
-			   int height)
+static enum gz_result cast_picture(struct gz_window *window, const struct gz_window_gaze *gaze,
+				   int width, int height)
 {
 	const struct gz_frame_request request = {
 		.settings = &window->settings,
@@ -78,7 +81,7 @@ static enum gz_result cast(struct gz_window *window, const struct gz_window_gaze
 	return GZ_OK;
 }
 
-/* What the tables cannot say of each value by itself. */
+/* Rules between values, which the option tables cannot check. */
 static bool settings_valid(const struct gz_scene_settings *settings)
 {
 	const struct gz_foveation *foveation = &settings->foveation;
@@ -86,7 +89,7 @@ static bool settings_valid(const struct gz_scene_settings *settings)
 	return table_there && gz_scene_settings_check(settings, "settings", NULL) == GZ_OK;
 }
 
-/* Another table of spacings is read before anything goes by it; what is wrong with it is logged. */
+/* Read a table of spacings before anything uses it. What is wrong with it is logged. */
 static bool take_table(struct gz_window *window, const struct gz_scene_settings *before)
 {
 	struct gz_foveation *foveation = &window->settings.foveation;
@@ -97,7 +100,7 @@ static bool take_table(struct gz_window *window, const struct gz_scene_settings 
 	return gz_scene_load_table(gz_window_scene_path(window), window->log, foveation) == GZ_OK;
 }
 
-/* Values that do not go together stay what they were. */
+/* Values that contradict each other are not taken. */
 static void take_changes(struct gz_window *window, const struct gz_scene_settings *before)
 {
 	if (!take_table(window, before) || !settings_valid(&window->settings))
@@ -106,9 +109,9 @@ static void take_changes(struct gz_window *window, const struct gz_scene_setting
 	gz_window_wake_panels(window);
 }
 
-/* A frame that cannot be made with what the user has set, such as too many rays, is made as the one
- * before; why has been logged. A part that is alone has set it, and must not take another for it.
- * @return whether there was one */
+/* Return to the settings of the last frame after a frame could not be made, such as with too many
+ * rays; why has been logged. Not in the settings of a part that is alone, which must not be shown
+ * others. @return whether there were such settings */
 static bool take_back(struct gz_window *window)
 {
 	if (!window->any_shown || window->taken_back || window->alone)
@@ -119,12 +122,12 @@ static bool take_back(struct gz_window *window)
 	return true;
 }
 
-static void draw_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_all_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	gz_widgets_begin();
 	window->panels_top = 0;
 	window->panels_bottom = 0;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->panels && (!window->alone || *part == window->alone))
 			(*part)->panels(window, gaze);
 	gz_widgets_end();
@@ -139,33 +142,33 @@ void gz_window_present(struct gz_window *window, const struct gz_window_gaze *ga
 		gz_quad_draw(&window->quad, width, height);
 	else
 		gz_quad_clear(width, height);
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->paint && (!window->alone || *part == window->alone))
 			(*part)->paint(window, width, height);
-	draw_panels(window, gaze);
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	draw_all_panels(window, gaze);
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->drawn)
 			(*part)->drawn(window, width, height);
 	window->swap_ns = gz_clock_now_ns();
 	glfwSwapBuffers(window->glfw);
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->presented)
 			(*part)->presented(window);
 	if (!gz_scene_settings_same(&before, &window->settings))
 		take_changes(window, &before);
 }
 
-/* Whether what lies over the picture must be drawn anew. */
+/* Whether what lies over the picture must be drawn again. */
 static bool parts_follow(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	bool any = false;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->follows && (*part)->follows(window, gaze))
 			any = true;
 	return any;
 }
 
-/* Cast what has changed since the last turn. */
+/* Make a new picture if something has changed since the last turn. */
 static enum gz_result refresh_picture(struct gz_window *window, struct gz_window_gaze *gaze,
 				      int width, int height)
 {
@@ -174,12 +177,12 @@ static enum gz_result refresh_picture(struct gz_window *window, struct gz_window
 		window->cast_needed = true;
 	}
 	gz_window_gaze_now(window, width, height, gaze);
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->gaze)
 			(*part)->gaze(window, gaze);
 	if (!gaze_moved(window, gaze) && !window->cast_needed && !gz_frame_refinable(window->maker))
 		return GZ_OK;
-	enum gz_result r = cast(window, gaze, width, height);
+	enum gz_result r = cast_picture(window, gaze, width, height);
 	if (r == GZ_ERR_NO_DEVICE)
 		return r;
 	if (r != GZ_OK && !take_back(window)) {
@@ -188,19 +191,18 @@ static enum gz_result refresh_picture(struct gz_window *window, struct gz_window
 		return GZ_OK;
 	}
 	window->frame_new = true;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part && r == GZ_OK;
-	     part++)
-		if ((*part)->frame_made)
+	GZ_FOR_EACH_PART (part)
+		if (r == GZ_OK && (*part)->frame_made)
 			(*part)->frame_made(window);
 	return GZ_OK;
 }
 
-/* One turn of the loop: cast and draw what has changed since the last one. */
-static enum gz_result refresh(struct gz_window *window)
+/* One turn of the loop: make and draw what has changed since the last one. */
+static enum gz_result refresh_window(struct gz_window *window)
 {
 	struct gz_window_gaze gaze = { 0 };
 	int width, height;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->turn)
 			(*part)->turn(window);
 	gz_window_framebuffer(window, &width, &height);
@@ -225,27 +227,27 @@ static enum gz_result refresh(struct gz_window *window)
 	return GZ_OK;
 }
 
-static bool is_hidden(const struct gz_window *window)
+static bool is_window_hidden(const struct gz_window *window)
 {
 	int width, height;
 	gz_window_framebuffer(window, &width, &height);
 	return width < 1 || height < 1;
 }
 
-static double patience_s(const struct gz_window *window)
+static double loop_patience_s(const struct gz_window *window)
 {
 	double patience = gz_window_gaze_patience_s(window);
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
+	GZ_FOR_EACH_PART (part)
 		if ((*part)->patience_s)
 			patience = fmin(patience, (*part)->patience_s(window));
 	/* Bricks are coming. */
 	if (window->maker && window->cast_needed)
 		patience = fmin(patience, BRICKS_PATIENCE_S);
-	/* What waits for a picture would wait in vain, and in haste. */
-	return is_hidden(window) ? fmax(patience, HIDDEN_PATIENCE_S) : patience;
+	/* The window is hidden: poll slowly, even if parts wait for a picture. */
+	return is_window_hidden(window) ? fmax(patience, HIDDEN_PATIENCE_S) : patience;
 }
 
-static enum gz_result loop(struct gz_window *window)
+static enum gz_result run_loop(struct gz_window *window)
 {
 	window->cast_needed = true;
 	if (window->options->fullscreen)
@@ -253,7 +255,8 @@ static enum gz_result loop(struct gz_window *window)
 	while (!glfwWindowShouldClose(window->glfw)) {
 		int64_t start_ns = gz_clock_now_ns();
 		gz_window_report(window);
-		enum gz_result r = gz_context_is_lost() ? GZ_ERR_NO_DEVICE : refresh(window);
+		enum gz_result r =
+			gz_glfw_context_lost() ? GZ_ERR_NO_DEVICE : refresh_window(window);
 		if (r == GZ_ERR_NO_DEVICE) {
 			r = gz_window_rebuild(window);
 			start_ns = gz_clock_now_ns();
@@ -264,22 +267,63 @@ static enum gz_result loop(struct gz_window *window)
 			return gz_window_measure(window);
 		if (window->options->measure_window > 0 &&
 		    gz_window_loading_outcome(window) != GZ_OK)
-			return GZ_OK; /* told by who asks for the outcome */
-		/* What the frame took is not waited for again. */
+			return GZ_OK; /* the caller asks for the outcome */
+		/* The time that the frame took is part of the wait. */
 		double spent_s = gz_ns_to_s(gz_clock_now_ns() - start_ns);
-		glfwWaitEventsTimeout(fmax(0, patience_s(window) - spent_s));
+		glfwWaitEventsTimeout(fmax(0, loop_patience_s(window) - spent_s));
 	}
 	return GZ_OK;
 }
 
+/* Where struct gz_window points to the state of a part. */
+static void *state_slot(struct gz_window *window, const struct gz_window_part *part)
+{
+	return (char *)window + part->state_at;
+}
+
+static void *state_of(struct gz_window *window, const struct gz_window_part *part)
+{
+	void *state;
+	memcpy(&state, state_slot(window, part), sizeof state);
+	return state;
+}
+
+static void set_state(struct gz_window *window, const struct gz_window_part *part, void *state)
+{
+	memcpy(state_slot(window, part), &state, sizeof state);
+}
+
+/* States first: parts may ask each other while they open. */
 static enum gz_result open_parts(struct gz_window *window)
 {
 	enum gz_result r = GZ_OK;
-	for (const struct gz_window_part *const *part = gz_window_parts; *part && r == GZ_OK;
-	     part++)
-		if ((*part)->open)
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->state_size > 0)
+			set_state(window, *part, calloc(1, (*part)->state_size));
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->state_size > 0 && !state_of(window, *part)) {
+			gz_err(window->log, "no memory for the window; close other programs");
+			return GZ_ERR_NO_MEM;
+		}
+	GZ_FOR_EACH_PART (part)
+		if (r == GZ_OK && (*part)->open)
 			r = (*part)->open(window);
 	return r;
+}
+
+static void close_parts(struct gz_window *window)
+{
+	GZ_FOR_EACH_PART (part) {
+		const bool stateless = (*part)->state_size == 0;
+		void *state = stateless ? NULL : state_of(window, *part);
+		if ((*part)->close && (stateless || state))
+			(*part)->close(window);
+	}
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->state_size > 0) {
+			free(state_of(window, *part));
+			set_state(window, *part, NULL);
+		}
 }
 
 static void close_window(struct gz_window *window)
@@ -289,14 +333,12 @@ static void close_window(struct gz_window *window)
 	if (!window->context.display_lost)
 		gz_window_drawing_close(window);
 	/* Threads of parts may still wake the loop. */
-	for (const struct gz_window_part *const *part = gz_window_parts; *part; part++)
-		if ((*part)->close)
-			(*part)->close(window);
+	close_parts(window);
 	if (!window->context.display_lost)
 		glfwTerminate();
 }
 
-/* What is wrong with the command line is known before there is a window. */
+/* Errors in the command line are reported before there is a window. */
 static enum gz_result check_backend(const struct gz_view_options *options, const struct gz_log *log)
 {
 	const struct gz_backend_params params = { .threads = options->threads,
@@ -304,7 +346,7 @@ static enum gz_result check_backend(const struct gz_view_options *options, const
 	return gz_techniques[0]->check(options->backend, &params, log);
 }
 
-/* The scene that the program was started with comes as any other does. */
+/* The scene of the command line is loaded like any other. */
 static enum gz_result load_first(struct gz_window *window)
 {
 	struct gz_window_load_request *request = calloc(1, sizeof *request);
@@ -317,9 +359,8 @@ static enum gz_result load_first(struct gz_window *window)
 	return r;
 }
 
-static enum gz_result run(void *user)
+static enum gz_result run_window(struct gz_window *window)
 {
-	struct gz_window *window = user;
 	enum gz_result r = open_parts(window);
 	if (r == GZ_OK)
 		r = gz_window_context_open(window);
@@ -328,27 +369,28 @@ static enum gz_result run(void *user)
 	if (r == GZ_OK && window->options->scene[0] && !gz_window_ask_layout(window))
 		r = load_first(window);
 	if (r == GZ_OK)
-		r = loop(window);
+		r = run_loop(window);
 	if (r == GZ_OK)
 		r = gz_window_loading_outcome(window);
 	return r == GZ_OK ? gz_window_experiment_outcome(window) : r;
 }
 
-/* From now on only what needs no display. */
-static void tell_loss(struct gz_window *window)
+/* Finish what needs no display: recordings, threads. */
+static void end_without_display(void *user)
 {
+	struct gz_window *window = user;
 	window->context.display_lost = true;
 	gz_notices_wake_by(window->notices, NULL);
 	gz_err(window->log,
 	       "the display is gone: its X server has ended or is out of reach; what was recorded "
 	       "until now is kept");
+	close_window(window);
 }
 
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log,
 			      struct gz_notices *notices)
 {
-	bool lost = false;
-	/* The display first: without one there is no use in loading. */
+	/* Without a display there is no use in loading. */
 	enum gz_result r = check_backend(options, log);
 	if (r == GZ_OK)
 		r = open_display(log);
@@ -360,9 +402,9 @@ enum gz_result gz_view_window(const struct gz_view_options *options, const struc
 	window->notices = notices;
 	memcpy(window->size_px, options->size_px, sizeof window->size_px);
 	gz_view_pick_scene_tables(&window->settings, &window->tables);
-	r = gz_display_loss_guard(run, window, &lost);
-	if (lost)
-		tell_loss(window);
+	struct gz_display_loss loss = { .lost = end_without_display, .user = window };
+	gz_glfw_watch_display(&loss);
+	r = run_window(window);
 	close_window(window);
 	free(window);
 	return r;

@@ -1,8 +1,7 @@
 /**
  * @file
- * What the window's parts share: window.c runs the loop, gaze.c says where the gaze is, input.c
- * turns the mouse into changes and hands on keys, and parts (part.h) do the rest. Internal to
- * view/.
+ * What the files of the window share: its state, and what window.c, context.c, input.c and some
+ * parts offer the others. Internal to view/; main thread only.
  */
 #ifndef GZ_VIEW_WINDOW_STATE_H
 #define GZ_VIEW_WINDOW_STATE_H
@@ -21,32 +20,21 @@
 #include "view/panels/notices.h"
 #include "view/panels/settings_panel.h"
 #include "view/settings/scene_keys.h"
+#include "view/window/part.h"
 
 struct GLFWmonitor;
 struct GLFWwindow;
 
-struct gz_overlay;
-struct gz_window_compare;
-struct gz_window_frame_times;
-struct gz_window_part;
-
 enum { GZ_WINDOW_LINE_SIZE = 256 };
 
-/** From so many losses of the context in short order on, cpu casts the rays. */
+/** Losses of the context in quick succession from which cpu casts the rays. */
 enum { GZ_WINDOW_LOSSES_TO_CPU = 2 };
 
-struct gz_window_sources;
-struct gz_window_displays;
-struct gz_window_corner;
-struct gz_window_trail;
-struct gz_window_timing;
-struct gz_window_gaze_settings;
-
-/** The window's OpenGL context as the gl backend takes it. */
+/** The window's OpenGL context, as the gl backend uses it. */
 struct gz_window_context {
 	struct gz_gl_context base;
 	struct GLFWwindow *glfw;
-	bool display_lost; /**< see display_loss.h: nothing may be asked of it */
+	bool display_lost; /**< it must not be used any more: glfw.h */
 };
 
 /** The window of gz_view_window(). */
@@ -56,147 +44,159 @@ struct gz_window {
 	struct gz_notices *notices; /**< what the log has said */
 	struct GLFWwindow *glfw;
 	struct gz_window_context context;
-	struct gz_frame_maker *maker;                  /**< NULL while there is no scene */
-	struct gz_window_loading_state *loading;       /**< see loading.h */
-	struct gz_window_keys_state *keys;             /**< see keys.h */
-	struct gz_window_notices_state *notices_state; /**< see notices.h */
-	struct gz_window_screenshots_state *screenshots;
-	struct gz_window_capture_state *capture;
-	struct gz_window_session_state *session;
-	struct gz_window_replay_state *replay;
+	struct gz_frame_maker *maker; /**< of the scene shown; NULL: there is none */
 	struct gz_quad quad;
 
-	struct gz_window_sources *sources; /**< of the parts of the same names; NULL before they
-					      are open */
+	/* States of the parts: struct gz_window_part's state_size. */
+	struct gz_window_capture *capture;
+	struct gz_window_compare *compare;
 	struct gz_window_displays *displays;
-	struct gz_window_corner *corner;
+	struct gz_window_files *files;
+	struct gz_window_frame_times *frame_times;
+	struct gz_window_gaze_panel *gaze_panel;
+	struct gz_window_keys *keys;
+	struct gz_window_latency *latency;
+	struct gz_window_loading *loading;
+	struct gz_window_notices *notices_state;
+	struct gz_overlay *overlay;
+	struct gz_window_replay *replay;
+	struct gz_window_session *session;
+	struct gz_window_sources *sources;
+	struct gz_window_status *status;
 	struct gz_window_trail *trail;
-	struct gz_window_timing *timing;
-	struct gz_window_gaze_settings *gaze_settings;
-	struct gz_gaze_source *source; /**< that is asked for; NULL for the mouse alone */
+	struct gz_window_transfer *transfer;
+	/** Of part experiment, which makes it itself; NULL: there is no experiment. */
+	struct gz_window_experiment *experiment;
+
+	struct gz_gaze_source *source; /**< the one asked for; NULL: the mouse alone */
 	struct gz_gaze_source *mouse;
-	bool source_missing; /**< it could not be had when it was last read */
-	bool gaze_frozen;    /**< the plan stays where it is while the gaze goes on */
-	struct gz_viewer_link
-		*link; /**< to the daemon's inlet; NULL where there is nothing to tell */
+	bool source_missing;         /**< it gave no gaze when it was last read */
+	bool gaze_frozen;            /**< the plan stays while the gaze goes on */
+	struct gz_viewer_link *link; /**< to the daemon's inlet; NULL: none to be told */
 
-	struct gz_scene_settings settings; /**< as the user has changed them */
-	struct gz_scene_settings shown;    /**< those of the last frame that could be made */
-	bool any_shown;
+	struct gz_scene_settings settings;  /**< as the user has changed them */
+	struct gz_scene_settings shown;     /**< those of the last frame that could be made */
+	bool any_shown;                     /**< there was such a frame of this scene */
 	bool taken_back;                    /**< a frame with other settings could not be made */
-	struct gz_view_scene_tables tables; /**< over settings, for the panel */
-	/** The part that has the window to itself: others draw nothing over the picture and have no
-	 *  keys, and the mouse does not move the camera. NULL: none. */
+	struct gz_view_scene_tables tables; /**< option tables bound to settings */
+	/** The part that has the window to itself: no other part draws over the picture or has
+	 * keys, and the mouse does not move the camera. NULL: none. */
 	const struct gz_window_part *alone;
-	bool picture_hidden; /**< something else fills the window: nothing is cast */
-	struct gz_window_experiment *experiment; /**< of part experiment */
+	bool picture_hidden; /**< nothing is cast, as something else fills the window */
 	struct gz_settings_panel settings_panel;
-	struct gz_window_transfer *transfer;       /**< of transfer.c */
-	struct gz_overlay *overlay;                /**< of part overlay */
-	struct gz_window_compare *compare;         /**< of part compare */
-	struct gz_window_frame_times *frame_times; /**< of part frame times */
-	int camera_drag;     /**< of part camera: what the drag of the mouse does */
-	int panel_frames;    /**< still to be drawn, so that panels answer what has happened */
-	float panels_top;    /**< lower edge of what lies on top, in this frame */
-	float panels_bottom; /**< height of what lies at the bottom left, in this frame */
+	int panel_frames;    /**< frames still to be drawn so that panels answer input */
+	float panels_top;    /**< lower edge of the captions at the top, in this frame */
+	float panels_bottom; /**< height of the caption at the bottom left, in this frame */
 
-	int64_t key_ns; /**< when a key was pressed last, whatever it does */
-	bool key_taken; /**< the last key pressed did something: the character that it types does
-			 * not
-			 */
+	int64_t key_ns; /**< when the last key was pressed */
+	bool key_taken; /**< that key did something: its character is ignored */
 	const struct gz_window_part *grabber; /**< has the mouse; NULL: none */
 	int grab_button;
+	int camera_drag; /**< of part camera: what dragging does */
 	bool cursor_known;
-	bool cursor_inside; /**< the window's content is what the mouse is over */
-	double cursor[2];   /**< screen coordinates of the window */
-	int size_px[2];     /**< that a new window is made with */
-	struct gz_window_files_state *files;
+	bool cursor_inside;    /**< the mouse is over the window's content */
+	double cursor[2];      /**< screen coordinates of the window */
+	int size_px[2];        /**< size of a new window */
 	int windowed_place[4]; /**< x y w h to return to from full screen */
 
-	int losses;      /**< of the context, in short order */
+	int losses;      /**< of the context, in quick succession */
 	int64_t lost_ns; /**< the last one */
 
 	bool cast_needed;    /**< camera, method or size has changed */
 	bool frame_new;      /**< a picture has been cast in this turn */
 	bool present_needed; /**< what lies over the picture has changed */
 
-	/** The frame on the screen. */
+	/* The frame on the screen. */
 	struct gz_frame_record record;
 	struct gz_display shown_display;
 	struct gz_point cross_drawn;
-	int64_t swap_ns; /**< when it was handed over to be shown */
-	char line[GZ_WINDOW_LINE_SIZE];
+	int64_t swap_ns; /**< when it was swapped */
 };
 
-/** The gaze of one moment, on the picture. */
+/** The gaze of one turn, on the picture. */
 struct gz_window_gaze {
 	struct gz_gaze_reading reading; /**< its point is on the picture */
-	struct gz_display display;      /**< of the picture: it fills this one */
-	const char *source;             /**< "daemon", "mouse", … */
-	bool missing;                 /**< the daemon asked for is not there; the mouse stands in */
-	const struct gz_focus *focus; /**< what the plan is made of, in place of what the attention
-					 makes of the reading; NULL: nothing is */
-	bool focus_new;               /**< a frame is to be made with it; only with focus */
-	struct gz_gaze_reading asked; /**< of the source that is asked for, as it gave it */
-	const struct gz_status *status; /**< of the daemon asked for; NULL: not told */
+	struct gz_display display;      /**< geometry of the picture */
+	const char *source;             /**< "daemon", "mouse", …; NULL: no scene is shown */
+	bool missing; /**< the source asked for gives no gaze; the mouse stands in */
+	/** Focus of the plan, in place of what the attention makes of the reading; NULL: none. */
+	const struct gz_focus *focus;
+	bool focus_new;                 /**< make a frame with the focus */
+	struct gz_gaze_reading asked;   /**< as the source asked for gave it */
+	const struct gz_status *status; /**< of the daemon asked for; NULL: not known */
 };
 
-/** The reason of GLFW's last failure, for the one line that tells of it. */
-const char *gz_window_glfw_reason(void);
+/* ---- window.c ---- */
 
-/** Open the window, with OpenGL 4.3 where the gl backend may use it and the driver has it, else
- *  with 3.3, and make its context current. GZ_ERR_UNSUPPORTED: not even that; logged. */
+/** Draw the picture and all that lies over it, on a framebuffer of @p width times @p height px, and
+ *  swap. */
+void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
+		       int height);
+
+/* ---- context.c ---- */
+
+/** Open the window and make its context current: OpenGL 4.3 if the gl backend may use it and the
+ *  driver has it, else 3.3. GZ_ERR_UNSUPPORTED: not even that; logged. */
 enum gz_result gz_window_context_open(struct gz_window *window);
 
-/** Make what draws on it: the picture, and the panel over it. GZ_ERR_UNSUPPORTED: the driver
- * refuses shaders; logged. */
+/** Make what is drawn with: the picture, panels, and what parts need. GZ_ERR_UNSUPPORTED: the
+ * driver refuses shaders; logged. */
 enum gz_result gz_window_drawing_open(struct gz_window *window);
 
-/** Delete that and the window, as far as they are there. */
+/** Delete that and the window, if they exist. */
 void gz_window_drawing_close(struct gz_window *window);
 
 /**
- * Make the window anew, where it was, after its context was lost: with the same backend or, where
- * that loses the next one soon, with cpu.
+ * Replace the window after its context was lost: at the same place, with the same backend or, if
+ * that soon loses the next context too, with cpu.
  *
- * @retval GZ_ERR_NO_DEVICE  the driver loses one after the other; logged
+ * @retval GZ_ERR_NO_DEVICE  the driver loses one context after the other; logged
  * @return else what gz_window_context_open() and gz_frame_maker_start_cpu() return; logged
  */
 enum gz_result gz_window_rebuild(struct gz_window *window);
 
-/** Connect to the daemon that the gaze comes from, to tell it of the window and, where the gaze is
- * the pointer, of that; nothing where it is connected, or the gaze comes from no daemon.
- * @return what gz_viewer_link_open() returns; logged */
-enum gz_result gz_window_report_open(struct gz_window *window);
+/** Read the framebuffer before it is swapped. Waits for drawing to finish. @param[in,out] image
+ *  resized @return what gz_image_resize() returns */
+enum gz_result gz_window_read_back(int width, int height, struct gz_image *image);
 
-/** Tell what has changed. Waits for nobody. */
-void gz_window_report(struct gz_window *window);
-
-/** Where the gaze is now, on a framebuffer of @p width times @p height px. */
-void gz_window_gaze_now(struct gz_window *window, int width, int height,
-			struct gz_window_gaze *out_gaze);
-
-/** Seconds until the gaze must be looked at again, if no event comes before. */
-double gz_window_gaze_patience_s(const struct gz_window *window);
-
-/** Put the picture and all that lies over it on the screen: a framebuffer of @p width times @p
- * height px. */
-void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
-		       int height);
-
-/** Listen to keys, buttons, cursor, wheel and size. Before gz_widgets_init(), which chains them. */
-void gz_window_input_attach(struct gz_window *window);
-
-/** Something that panels may have to answer has happened: they are drawn for a few frames. */
-void gz_window_wake_panels(struct gz_window *window);
-
-/** Into full screen on the monitor that the window is on, or back. */
+/** Go into full screen on the monitor that the window is on, or back. */
 void gz_window_toggle_fullscreen(struct gz_window *window);
 
-/** Into full screen on @p monitor; NULL: back to a window. */
+/** Go into full screen on @p monitor; NULL: back to a window. */
 void gz_window_fill_monitor(struct gz_window *window, struct GLFWmonitor *monitor);
 
-/** The monitor that holds the middle of the window, or the primary one; NULL if there is none. */
-struct GLFWmonitor *gz_window_monitor(struct GLFWwindow *glfw);
+/* ---- input.c ---- */
+
+/** Set callbacks for keys, buttons, cursor, wheel and size. Before gz_widgets_init(), which chains
+ *  them. */
+void gz_window_input_attach(struct gz_window *window);
+
+/** Draw panels for a few frames: something has happened that they may have to answer. */
+void gz_window_wake_panels(struct gz_window *window);
+
+/* ---- measure.c ---- */
+
+/**
+ * Measure what the window itself costs a frame, without casting. Shows frames in three ways in
+ * turn, each options->measure_window times: a bare upload, quad and swap; the window as it is; the
+ * window with settings and frame times open. Prints the medians on stdout, from before the upload
+ * until the graphics device has finished. Pictures have the window's size, and each differs from
+ * the one before.
+ *
+ * @retval GZ_ERR_NO_MEM     no memory; logged
+ * @retval GZ_ERR_NO_DEVICE  the window has no size
+ */
+enum gz_result gz_window_measure(struct gz_window *window);
+
+/* ---- files.c ---- */
+
+/** Ask for the layout of the raw file that the program was started with, if neither the options nor
+ *  its name and size tell it for certain. @return whether it is asked for */
+bool gz_window_ask_layout(struct gz_window *window);
+
+/* ---- gaze_panel.c ---- */
+
+/** Whether the panel of the gaze is open. */
+bool gz_window_gaze_panel_open(const struct gz_window *window);
 
 #endif

@@ -1,8 +1,6 @@
-#include "view/window/session_part.h"
-
+/* The part that records sessions: F9 and --record. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include <GLFW/glfw3.h>
 
@@ -14,29 +12,26 @@
 
 #define GZ_LOG_MODULE "session"
 
-/* The time in the mark runs. */
+/* Interval of updating the time in the mark, s. */
 #define MARK_PATIENCE_S 0.5
 
-struct gz_window_session_state {
+struct gz_window_session {
 	bool wanted; /* begins before the next picture */
-	bool named;  /* --record has not been obeyed yet */
+	bool named;  /* --record asks for a session that has not begun */
 	struct gz_session_writer *writer;
 	int64_t start_ns;
-	int64_t drawn_s; /* of the mark, as last drawn */
+	int64_t drawn_s; /* time in the mark, as last drawn */
 };
 
-static enum gz_result open_part(struct gz_window *window)
+static enum gz_result open_session(struct gz_window *window)
 {
-	window->session = calloc(1, sizeof *window->session);
-	if (!window->session)
-		return GZ_ERR_NO_MEM;
 	window->session->named = window->options->record[0] != '\0';
 	return gz_recording_check(window->options->record, window->log);
 }
 
-static void end(struct gz_window *window)
+static void end_session(struct gz_window *window)
 {
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	if (!self->writer)
 		return;
 	char path[GZ_PATH_SIZE];
@@ -48,9 +43,9 @@ static void end(struct gz_window *window)
 	window->present_needed = true;
 }
 
-static void begin(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void begin_session(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	char path[GZ_PATH_SIZE];
 	if (self->named)
 		snprintf(path, sizeof path, "%s", window->options->record);
@@ -73,45 +68,45 @@ static void begin(struct gz_window *window, const struct gz_window_gaze *gaze)
 		window->cast_needed = window->present_needed = true;
 }
 
-static void toggle(struct gz_window *window, int number)
+static void toggle_session(struct gz_window *window, int number)
 {
 	(void)number;
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	if (self->writer)
-		end(window);
+		end_session(window);
 	else if (window->maker)
 		self->wanted = true;
 	else
-		gz_warn(window->log, "no scene is shown that could be recorded; open one");
+		gz_warn(window->log, "no scene is shown; open one to record a session");
 }
 
-/* The scene of a session is one. */
-static void scene_leaving(struct gz_window *window)
+/* A session has one scene. */
+static void leave_recorded_scene(struct gz_window *window)
 {
-	end(window);
+	end_session(window);
 }
 
-static void scene_shown(struct gz_window *window)
+static void record_first_scene(struct gz_window *window)
 {
 	window->session->wanted = window->session->wanted || window->session->named;
 }
 
-static void take_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
+static void record_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 {
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	if (self->wanted)
-		begin(window, gaze);
+		begin_session(window, gaze);
 	if (self->wanted)
 		self->named = false;
 	self->wanted = false;
 	if (self->writer &&
 	    gz_session_writer_gaze(self->writer, &gaze->reading, gz_clock_now_ns()) != GZ_OK)
-		end(window);
+		end_session(window);
 }
 
-static void frame_made(struct gz_window *window)
+static void record_frame(struct gz_window *window)
 {
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	const struct gz_frame_request request = {
 		.settings = &window->shown,
 		.display = &window->shown_display,
@@ -120,59 +115,57 @@ static void frame_made(struct gz_window *window)
 	};
 	if (self->writer && gz_recording_add(self->writer, window->maker, &request, &window->record,
 					     gz_clock_now_ns() - self->start_ns) != GZ_OK)
-		end(window);
+		end_session(window);
 }
 
-static void turn(struct gz_window *window)
+static void turn_session(struct gz_window *window)
 {
-	const struct gz_window_session_state *self = window->session;
+	const struct gz_window_session *self = window->session;
 	const int64_t now_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
 	if (self->writer && now_s != self->drawn_s)
 		window->present_needed = true;
 }
 
-static void panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void draw_session_mark(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
-	struct gz_window_session_state *self = window->session;
+	struct gz_window_session *self = window->session;
 	if (!self->writer)
 		return;
 	self->drawn_s = (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
 	gz_marks_draw_running(1, "session", true, self->drawn_s);
 }
 
-static double patience_s(const struct gz_window *window)
+static double session_patience_s(const struct gz_window *window)
 {
 	return window->session->writer ? MARK_PATIENCE_S : INFINITY;
 }
 
-static void close_part(struct gz_window *window)
+static void close_session(struct gz_window *window)
 {
-	if (window->session)
-		end(window);
-	free(window->session);
-	window->session = NULL;
+	end_session(window);
 }
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action session_actions[] = {
 	{ .key = GLFW_KEY_F9,
 	  .keys = "F9",
-	  .help = "begin or end a session, for --replay",
-	  .run = toggle },
+	  .help = "start or stop a session, for --replay",
+	  .run = toggle_session },
 };
 
-const struct gz_window_part gz_window_session = {
+const struct gz_window_part gz_window_session_part = {
 	.name = "session",
 	.title = "record",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
-	.open = open_part,
-	.scene_shown = scene_shown,
-	.scene_leaving = scene_leaving,
-	.turn = turn,
-	.gaze = take_gaze,
-	.frame_made = frame_made,
-	.panels = panels,
-	.patience_s = patience_s,
-	.close = close_part,
+	.actions = session_actions,
+	.action_count = sizeof session_actions / sizeof session_actions[0],
+	GZ_PART_STATE(session),
+	.open = open_session,
+	.scene_shown = record_first_scene,
+	.scene_leaving = leave_recorded_scene,
+	.turn = turn_session,
+	.gaze = record_gaze,
+	.frame_made = record_frame,
+	.panels = draw_session_mark,
+	.patience_s = session_patience_s,
+	.close = close_session,
 };
