@@ -1,7 +1,10 @@
 /* The table of rows, and how one is run. */
 #include "bench/stability/stability.h"
 
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bench/stability/stability_bench.h"
@@ -54,7 +57,7 @@ void gz_stability_outcome_free(struct gz_stability_outcome *outcome)
 	*outcome = (struct gz_stability_outcome) { 0 };
 }
 
-static void judge(struct gz_stability_outcome *outcome)
+static void judge_numbers(struct gz_stability_outcome *outcome)
 {
 	if (outcome->verdict != GZ_STABILITY_HOLDS)
 		return;
@@ -81,6 +84,171 @@ enum gz_result gz_stability_run(struct gz_stability_bench *bench,
 		snprintf(outcome->note, sizeof outcome->note, "%s",
 			 bench->said[0] ? bench->said : gz_result_text(bench->failed));
 	}
-	judge(outcome);
+	judge_numbers(outcome);
 	return GZ_OK;
+}
+
+/* ---- outcomes ---- */
+
+void gz_stability_name(struct gz_stability_outcome *outcome, int number, const char *what,
+		       double bound)
+{
+	outcome->numbers[number].what = what;
+	outcome->numbers[number].bound = bound;
+	if (number >= outcome->number_count)
+		outcome->number_count = number + 1;
+}
+
+int gz_stability_apart(const struct gz_image *a, const struct gz_image *b, size_t pixel)
+{
+	int most = 0;
+	for (size_t i = 4 * pixel; i < 4 * pixel + 3; i++) {
+		const int apart = abs(a->pixels[i] - b->pixels[i]);
+		most = apart > most ? apart : most;
+	}
+	return most;
+}
+
+static enum gz_result crop_round(const struct gz_image *image, int x, int y, struct gz_image *out)
+{
+	const int width =
+		image->width - x < GZ_STABILITY_CROP_PX ? image->width - x : GZ_STABILITY_CROP_PX;
+	const int height =
+		image->height - y < GZ_STABILITY_CROP_PX ? image->height - y : GZ_STABILITY_CROP_PX;
+	const enum gz_result result = gz_image_resize(out, width, height);
+	for (int row = 0; row < height && result == GZ_OK; row++)
+		memcpy(out->pixels + (size_t)row * (size_t)width * 4,
+		       image->pixels + ((size_t)(y + row) * (size_t)image->width + (size_t)x) * 4,
+		       (size_t)width * 4);
+	return result;
+}
+
+static int crop_start(int at, int size)
+{
+	const int most = size > GZ_STABILITY_CROP_PX ? size - GZ_STABILITY_CROP_PX : 0;
+	const int start = at - GZ_STABILITY_CROP_PX / 2;
+	return start < 0 ? 0 : start > most ? most : start;
+}
+
+static enum gz_result keep_pixel(struct gz_stability_outcome *outcome,
+				 struct gz_stability_place place, bool fails)
+{
+	struct gz_stability_pixel *worst = &outcome->worst;
+	const size_t width = (size_t)place.got->width;
+	worst->known = true;
+	worst->x = (int)(place.pixel % width);
+	worst->y = (int)(place.pixel / width);
+	memcpy(worst->got, place.got->pixels + 4 * place.pixel, 3);
+	memcpy(worst->wanted, place.wanted->pixels + 4 * place.pixel, 3);
+	if (!fails)
+		return GZ_OK;
+	worst->crop_x = crop_start(worst->x, place.got->width);
+	worst->crop_y = crop_start(worst->y, place.got->height);
+	enum gz_result result =
+		crop_round(place.got, worst->crop_x, worst->crop_y, &worst->got_crop);
+	if (result == GZ_OK)
+		result =
+			crop_round(place.wanted, worst->crop_x, worst->crop_y, &worst->wanted_crop);
+	return result;
+}
+
+/* By how much a number is over its bound: what the worst pixel is chosen by. */
+static double excess(const struct gz_stability_number *number)
+{
+	return (number->value - number->bound) / fmax(fabs(number->bound), 1e-3);
+}
+
+enum gz_result gz_stability_take(struct gz_stability_outcome *outcome, int number, double value,
+				 struct gz_stability_place place, const char *format, ...)
+{
+	struct gz_stability_number *taken = &outcome->numbers[number];
+	const bool first = taken->where[0] == '\0';
+	if (!first && !(value > taken->value))
+		return GZ_OK;
+	taken->value = value;
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(taken->where, sizeof taken->where, format, arguments);
+	va_end(arguments);
+	for (int i = 0; i < outcome->number_count; i++)
+		if (excess(&outcome->numbers[i]) > excess(taken) && outcome->worst.known)
+			return GZ_OK;
+	return place.got ? keep_pixel(outcome, place, value > taken->bound) : GZ_OK;
+}
+
+/* ---- the picture beside a failure ---- */
+
+enum { ENLARGED = 10, GAP = 8, STRONGER = 4 };
+
+static void fill_grey(struct gz_image *image, uint8_t grey)
+{
+	for (size_t i = 0; i < (size_t)image->width * (size_t)image->height * 4; i++)
+		image->pixels[i] = i % 4 == 3 ? 255 : grey;
+}
+
+/* A pixel of panel 0, 1 or 2. */
+static void colour_of(const struct gz_stability_pixel *worst, int panel, int x, int y,
+		      uint8_t out[3])
+{
+	const size_t at = 4 * ((size_t)y * (size_t)worst->got_crop.width + (size_t)x);
+	for (size_t c = 0; c < 3; c++) {
+		const int got = worst->got_crop.pixels[at + c],
+			  wanted = worst->wanted_crop.pixels[at + c];
+		const int difference = STRONGER * abs(got - wanted);
+		out[c] = (uint8_t)(panel == 0   ? got
+				   : panel == 1 ? wanted
+						: (difference > 255 ? 255 : difference));
+	}
+}
+
+static void put_panel(const struct gz_stability_pixel *worst, int panel, struct gz_image *target)
+{
+	const int left = panel * (worst->got_crop.width * ENLARGED + GAP) + GAP;
+	for (int y = 0; y < worst->got_crop.height * ENLARGED; y++)
+		for (int x = 0; x < worst->got_crop.width * ENLARGED; x++)
+			colour_of(worst, panel, x / ENLARGED, y / ENLARGED,
+				  target->pixels + 4 * ((size_t)(y + GAP) * (size_t)target->width +
+							(size_t)(left + x)));
+}
+
+/* A frame round the worst pixel, outside of it. */
+static void put_frame(const struct gz_stability_pixel *worst, int panel, struct gz_image *target)
+{
+	const int left = panel * (worst->got_crop.width * ENLARGED + GAP) + GAP +
+			 (worst->x - worst->crop_x) * ENLARGED;
+	const int top = GAP + (worst->y - worst->crop_y) * ENLARGED;
+	for (int y = top - 2; y < top + ENLARGED + 2; y++)
+		for (int x = left - 2; x < left + ENLARGED + 2; x++) {
+			const bool inside =
+				x >= left && x < left + ENLARGED && y >= top && y < top + ENLARGED;
+			uint8_t *pixel = target->pixels +
+					 4 * ((size_t)y * (size_t)target->width + (size_t)x);
+			if (!inside) {
+				pixel[0] = 255;
+				pixel[1] = 220;
+				pixel[2] = 0;
+			}
+		}
+}
+
+enum gz_result gz_stability_write_picture(const struct gz_stability_outcome *outcome,
+					  const char *path, const struct gz_log *log)
+{
+	const struct gz_stability_pixel *worst = &outcome->worst;
+	struct gz_image picture = { 0 };
+	if (!worst->known || !worst->got_crop.pixels)
+		return GZ_ERR_INVAL;
+	enum gz_result result =
+		gz_image_resize(&picture, 3 * worst->got_crop.width * ENLARGED + 4 * GAP,
+				worst->got_crop.height * ENLARGED + 2 * GAP);
+	if (result != GZ_OK)
+		return result;
+	fill_grey(&picture, 64);
+	for (int panel = 0; panel < 3; panel++) {
+		put_panel(worst, panel, &picture);
+		put_frame(worst, panel, &picture);
+	}
+	result = gz_image_write_png(&picture, path, log);
+	gz_image_free(&picture);
+	return result;
 }

@@ -12,7 +12,7 @@
 #define SHOWS_LEVELS 60
 
 /* How far a pixel is from the background, grey levels. */
-static double shown(const struct gz_image *image, size_t pixel, const double background[3])
+static double shown_at(const struct gz_image *image, size_t pixel, const double background[3])
 {
 	double most = 0;
 	for (size_t c = 0; c < 3; c++)
@@ -35,23 +35,23 @@ struct search {
 	double most_elsewhere; /* %, of all rules */
 };
 
-static bool is_lost(const struct search *search, const struct gz_image *image, size_t pixel,
-		    double there)
+static bool is_lost_pixel(const struct search *search, const struct gz_image *image, size_t pixel,
+			  double there)
 {
-	return shown(image, pixel, search->scene->rays.background) < there / 2;
+	return shown_at(image, pixel, search->scene->rays.background) < there / 2;
 }
 
-static enum gz_result look(struct search *search, struct gz_point gaze, const char *what,
-			   struct gz_stability_outcome *outcome)
+static enum gz_result look_at(struct search *search, struct gz_point gaze, const char *what,
+			      struct gz_stability_outcome *outcome)
 {
 	size_t lost = 0, worst = 0;
 	gz_stability_mark_fovea(&search->foveation, &search->view, gaze, false, search->fovea);
 	for (size_t i = 0; i < (size_t)search->view.width * (size_t)search->view.height; i++) {
-		const double there = shown(search->converged, i, search->scene->rays.background);
+		const double there = shown_at(search->converged, i, search->scene->rays.background);
 		if (there <= SHOWS_LEVELS)
 			continue;
-		const bool is = is_lost(search, &search->image, i, there);
-		const bool was = is && is_lost(search, &search->standard, i, there);
+		const bool is = is_lost_pixel(search, &search->image, i, there);
+		const bool was = is && is_lost_pixel(search, &search->standard, i, there);
 		if (!search->fovea[i]) {
 			search->elsewhere++;
 			search->lost_elsewhere += is && !was;
@@ -85,7 +85,7 @@ static enum gz_result look_around(struct gz_stability_bench *bench, struct searc
 		result = gz_stability_frame_at(bench, search->scene, &search->foveation,
 					       &search->view, gaze, &search->image);
 		if (result == GZ_OK)
-			result = look(search, gaze, what, outcome);
+			result = look_at(search, gaze, what, outcome);
 	}
 	if (result != GZ_OK)
 		return result;
@@ -123,13 +123,13 @@ static void name_numbers(struct gz_stability_outcome *outcome, double bound)
 			  bound);
 }
 
-static enum gz_result start(struct search *search)
+static enum gz_result start_look(struct search *search)
 {
 	search->fovea = malloc((size_t)search->view.width * (size_t)search->view.height);
 	return search->fovea ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
-static void finish(struct search *search, struct gz_stability_outcome *outcome)
+static void finish_look(struct search *search, struct gz_stability_outcome *outcome)
 {
 	const size_t used = strlen(outcome->note);
 	snprintf(outcome->note + used, sizeof outcome->note - used,
@@ -158,7 +158,7 @@ enum gz_result gz_stability_thin(struct gz_stability_bench *bench,
 	/* Steps of 4 voxels, and 8 times as long where the eye sees least, may lose all that
 	 * standard has kept, two fifths. */
 	name_numbers(outcome, 45);
-	enum gz_result result = start(&search);
+	enum gz_result result = start_look(&search);
 	if (result == GZ_OK)
 		result = gz_stability_volume(bench, GZ_STABILITY_WIRES, &scene.volume);
 	for (size_t i = 0; i < sizeof thin_steps / sizeof thin_steps[0] && result == GZ_OK; i++) {
@@ -173,7 +173,7 @@ enum gz_result gz_stability_thin(struct gz_stability_bench *bench,
 			 "%.1f %% lost with steps of %g voxels; ", search.most_elsewhere,
 			 thin_steps[i]);
 	}
-	finish(&search, outcome);
+	finish_look(&search, outcome);
 	return result;
 }
 
@@ -185,9 +185,9 @@ enum gz_result gz_stability_lost(struct gz_stability_bench *bench,
 				 .foveation = bench->foveation };
 	/* Chosen: scenes are sampled finely enough for what they show. */
 	name_numbers(outcome, 5);
-	enum gz_result result = start(&search);
+	enum gz_result result = start_look(&search);
 	if (result == GZ_OK)
 		result = look_by_rules(bench, &search, "the scene", outcome);
-	finish(&search, outcome);
+	finish_look(&search, outcome);
 	return result;
 }
