@@ -19,7 +19,8 @@ static bool grow(struct gz_labelled_recording *recording, size_t *capacity)
 	return sample && label;
 }
 
-static void add(struct gz_labelled_recording *recording, double x_px, double y_px, int label)
+static void add_labelled(struct gz_labelled_recording *recording, double x_px, double y_px,
+			 int label)
 {
 	size_t i = recording->count++;
 	struct gz_sample sample = gz_sample_unmeasured();
@@ -53,7 +54,7 @@ bool gz_labelled_recording_read(const char *path, struct gz_labelled_recording *
 			      &y_px, &label) == 6 &&
 		       grow(out, &capacity);
 		if (good)
-			add(out, x_px, y_px, label);
+			add_labelled(out, x_px, y_px, label);
 	}
 	gzclose(file);
 	return good && out->count > 0;

@@ -9,8 +9,8 @@
 
 #include "bench/study/accumulation.h"
 #include "bench/study/ask.h"
+#include "bench/study/errors.h"
 #include "bench/study/study.h"
-#include "bench/study/reference.h"
 
 #define GZ_LOG_MODULE "gazebench"
 
@@ -87,7 +87,7 @@ struct session {
 	json_t *list;      /* NULL: words */
 };
 
-static json_t *number(double value)
+static json_t *error_number(double value)
 {
 	return isfinite(value) ? json_real(value) : isnan(value) ? json_null() : json_string("inf");
 }
@@ -97,18 +97,19 @@ static void add_json(const struct session *session, const struct gz_accumulation
 {
 	const struct gz_study *study = &session->study;
 	const struct gz_study_errors *errors = &row->errors;
-	json_array_append_new(session->list,
-			      json_pack("{ss ss ss ss so so so so so so so so}", "scene",
-					study->scenes[at->scene].name, "transfer",
-					study->scenes[at->scene].transfer, "backend",
-					study->backends[at->backend], "variant",
-					study->variants[at->variant].text, "turn_deg",
-					number(row->turning ? at->turn_deg : 0), "frames",
-					json_integer(row->frames), "frame_ms",
-					number(row->frame_ms), "psnr_db", number(errors->psnr_db),
-					"ssim", number(errors->ssim), "flip", number(errors->flip),
-					"perceived_flip", number(errors->perceived_flip),
-					"foveal_flip", number(errors->foveal_flip)));
+	json_array_append_new(
+		session->list,
+		json_pack("{ss ss ss ss so so so so so so so so}", "scene",
+			  study->scenes[at->scene].name, "transfer",
+			  study->scenes[at->scene].transfer, "backend",
+			  study->backends[at->backend], "variant",
+			  study->variants[at->variant].text, "turn_deg",
+			  error_number(row->turning ? at->turn_deg : 0), "frames",
+			  json_integer(row->frames), "frame_ms", error_number(row->frame_ms),
+			  "psnr_db", error_number(errors->psnr_db), "ssim",
+			  error_number(errors->ssim), "flip", error_number(errors->flip),
+			  "perceived_flip", error_number(errors->perceived_flip), "foveal_flip",
+			  error_number(errors->foveal_flip)));
 }
 
 static void print_row(const struct gz_accumulation_row *row)
@@ -158,7 +159,7 @@ static enum gz_result measure_all(struct session *session)
 	return result;
 }
 
-static int measure(struct session *session, const struct gz_study_request *request)
+static int measure_asked(struct session *session, const struct gz_study_request *request)
 {
 	if (gz_study_ask(request, &session->stage, session->log, &session->study) != GZ_OK)
 		return GAZEBENCH_FAILED;
@@ -172,8 +173,8 @@ static int measure(struct session *session, const struct gz_study_request *reque
 	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
 }
 
-static bool check(const struct settings *settings, const struct gz_operands *scenes,
-		  const struct gz_study_request *request, const struct gz_log *log)
+static bool check_accumulate(const struct settings *settings, const struct gz_operands *scenes,
+			     const struct gz_study_request *request, const struct gz_log *log)
 {
 	if (scenes->count < 1)
 		gz_err(log, "no scene: gazebench accumulate SCENE...");
@@ -184,7 +185,7 @@ static bool check(const struct settings *settings, const struct gz_operands *sce
 	return false;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_accumulate(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands scenes;
@@ -208,7 +209,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 		.program = "gazebench " GAZECAST_VERSION,
 		.commit = commit,
 	};
-	if (!check(&settings, &scenes, &request, log))
+	if (!check_accumulate(&settings, &scenes, &request, log))
 		return GAZEBENCH_USAGE;
 	struct session session = { .settings = &settings,
 				   .log = log,
@@ -216,7 +217,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 				   .cache = gz_reference_cache(settings.cache, cache),
 				   .list = settings.json ? json_array() : NULL };
 	gz_command_catch_signals();
-	status = measure(&session, &request);
+	status = measure_asked(&session, &request);
 	json_decref(session.list);
 	gz_stage_free(&session.stage);
 	gz_study_free(&session.study);
@@ -235,5 +236,5 @@ const struct gz_command gazebench_accumulate = {
 		   "frames that keep nothing, \"by itself\".\ngazebench run measures without it.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_accumulate,
 };

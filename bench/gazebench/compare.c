@@ -46,8 +46,8 @@ static enum gz_result print_metrics(const struct gz_image *reference, const stru
 	return result;
 }
 
-static enum gz_result compare(const char *const files[2], double px_per_deg,
-			      const struct gz_log *log)
+static enum gz_result compare_pictures(const char *const files[2], double px_per_deg,
+				       const struct gz_log *log)
 {
 	struct gz_image pictures[2] = { 0 };
 	struct gz_workers *workers = NULL;
@@ -73,7 +73,7 @@ static enum gz_result compare(const char *const files[2], double px_per_deg,
 	return result;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_compare(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
@@ -85,8 +85,9 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 		gz_err(log, "two pictures are wanted: gazebench compare REFERENCE.png TEST.png");
 		return GAZEBENCH_USAGE;
 	}
-	return compare(operands.items, settings.px_per_deg, log) == GZ_OK ? GAZEBENCH_DONE
-									  : GAZEBENCH_FAILED;
+	return compare_pictures(operands.items, settings.px_per_deg, log) == GZ_OK
+		       ? GAZEBENCH_DONE
+		       : GAZEBENCH_FAILED;
 }
 
 const struct gz_command gazebench_compare = {
@@ -107,5 +108,5 @@ const struct gz_command gazebench_compare = {
 		"with that --ppd.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_compare,
 };

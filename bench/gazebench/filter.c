@@ -10,7 +10,6 @@
 #include <jansson.h>
 
 #include "bench/filter/stillness.h"
-#include "bench/filter/sweep.h"
 #include "bench/filter/track.h"
 #include "bench/report/filter_chart.h"
 
@@ -96,7 +95,7 @@ static void print_lines(const struct findings *found)
 }
 
 /* What is no number in JSON is null. */
-static json_t *number(double value)
+static json_t *filter_number(double value)
 {
 	return isfinite(value) ? json_real(value) : json_null();
 }
@@ -109,11 +108,12 @@ static json_t *sweep_json(const struct findings *found, const char *setting,
 		const struct gz_sweep_point *point = &sweep->point[i];
 		const struct gz_stillness *still = &point->stillness;
 		json_array_append_new(
-			points, json_pack("{s:f, s:o, s:o, s:o, s:o, s:b}", setting, point->setting,
-					  "jitter", number(still->jitter), "distance",
-					  number(still->distance), "lag_samples",
-					  number(still->lag_ms / found->interval_ms), "lag_ms",
-					  number(still->lag_ms), "as_recorded", point->as_given));
+			points,
+			json_pack("{s:f, s:o, s:o, s:o, s:o, s:b}", setting, point->setting,
+				  "jitter", filter_number(still->jitter), "distance",
+				  filter_number(still->distance), "lag_samples",
+				  filter_number(still->lag_ms / found->interval_ms), "lag_ms",
+				  filter_number(still->lag_ms), "as_recorded", point->as_given));
 	}
 	return points;
 }
@@ -127,13 +127,14 @@ static json_t *equal_lag_json(const struct findings *found)
 			rows,
 			json_pack("{s:f, s:f, s:o, s:o}", "lag_samples", equal_lags[i], "lag_ms",
 				  lag_ms, "pipeline",
-				  number(gz_sweep_jitter_at(&found->pipeline, lag_ms)), "one_euro",
-				  number(gz_sweep_jitter_at(&found->one_euro, lag_ms))));
+				  filter_number(gz_sweep_jitter_at(&found->pipeline, lag_ms)),
+				  "one_euro",
+				  filter_number(gz_sweep_jitter_at(&found->one_euro, lag_ms))));
 	}
 	return rows;
 }
 
-static enum gz_result print_json(const struct findings *found, bool drawn)
+static enum gz_result print_filter_json(const struct findings *found, bool drawn)
 {
 	json_t *json = json_pack(
 		"{s:s, s:I, s:f, s:f, s:b, s:I, s:I, s:o, s:o, s:o, s:b}", "log", found->path,
@@ -151,7 +152,7 @@ static enum gz_result print_json(const struct findings *found, bool drawn)
 	return printed ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
-static enum gz_result check(const struct findings *found, const struct gz_log *log)
+static enum gz_result check_filter(const struct findings *found, const struct gz_log *log)
 {
 	if (!found->log.display_known)
 		gz_warn(log,
@@ -185,7 +186,7 @@ static enum gz_result check(const struct findings *found, const struct gz_log *l
 	return GZ_OK;
 }
 
-static void measure(struct findings *found)
+static void measure_log(struct findings *found)
 {
 	struct gz_gaze_track *track = &found->log.track;
 	found->interval_ms = gz_gaze_track_interval_ms(track);
@@ -196,8 +197,8 @@ static void measure(struct findings *found)
 	found->one_euro = gz_sweep_one_euro(track, 1);
 }
 
-static enum gz_result draw(const struct findings *found, const char *folder,
-			   const struct gz_log *log, bool *out_drawn)
+static enum gz_result draw_chart(const struct findings *found, const char *folder,
+				 const struct gz_log *log, bool *out_drawn)
 {
 	if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
 		gz_err(log, "%s: cannot be made: %s", folder, strerror(errno));
@@ -207,18 +208,18 @@ static enum gz_result draw(const struct findings *found, const char *folder,
 				    log, out_drawn);
 }
 
-static enum gz_result tell(struct findings *found, const struct settings *settings,
-			   const struct gz_log *log)
+static enum gz_result tell_words(struct findings *found, const struct settings *settings,
+				 const struct gz_log *log)
 {
-	measure(found);
+	measure_log(found);
 	bool drawn = false;
-	enum gz_result result = check(found, log);
+	enum gz_result result = check_filter(found, log);
 	if (result == GZ_OK && settings->out[0] && lag_known(found))
-		result = draw(found, settings->out, log, &drawn);
+		result = draw_chart(found, settings->out, log, &drawn);
 	if (result != GZ_OK)
 		return result;
 	if (settings->json)
-		return print_json(found, drawn);
+		return print_filter_json(found, drawn);
 	print_lines(found);
 	if (drawn)
 		printf("%s/jitter-over-lag.svg\n%s/jitter-over-lag.png\n", settings->out,
@@ -226,7 +227,7 @@ static enum gz_result tell(struct findings *found, const struct settings *settin
 	return GZ_OK;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_filter(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
@@ -241,7 +242,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	struct findings found = { .path = operands.items[0] };
 	if (gz_gaze_track_read_log(found.path, log, &found.log) != GZ_OK)
 		return GAZEBENCH_FAILED;
-	const enum gz_result result = tell(&found, &settings, log);
+	const enum gz_result result = tell_words(&found, &settings, log);
 	gz_gaze_track_free(&found.log.track);
 	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
 }
@@ -263,5 +264,5 @@ const struct gz_command gazebench_filter = {
 		"says so, and the numbers are told.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_filter,
 };

@@ -20,10 +20,6 @@ enum gazebench_exit {
  *  where files were changed. */
 extern const char gazebench_commit[];
 
-/** Print what can be measured, by what and along what: `gazebench --list`.
- *  @return what the program exits with */
-int gazebench_list(bool as_json);
-
 extern const struct gz_command gazebench_run;        /**< measure: make a study */
 extern const struct gz_command gazebench_merge;      /**< join the shards of a study */
 extern const struct gz_command gazebench_report;     /**< charts, tables, report.html */

@@ -1,11 +1,13 @@
-/* gazebench report: charts and tables of a study. */
-#include "bench/gazebench/gazebench.h"
-
+/* gazebench report and gazebench merge: what is done with the folders of studies. */
+#include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "bench/gazebench/gazebench.h"
 #include "bench/report/advice.h"
 #include "bench/report/report.h"
 #include "bench/report/summary_json.h"
+#include "bench/study/merge.h"
 #include "bench/study/study_folder.h"
 
 #define GZ_LOG_MODULE "gazebench"
@@ -43,7 +45,7 @@ static enum gz_result print_answers(const struct gz_summary *summary, const char
 	return whole ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
-static enum gz_result print_json(const struct gz_summary *summary)
+static enum gz_result print_summary_json(const struct gz_summary *summary)
 {
 	json_t *json = gz_summary_to_json(summary);
 	const bool printed =
@@ -53,8 +55,8 @@ static enum gz_result print_json(const struct gz_summary *summary)
 	return printed ? GZ_OK : GZ_ERR_IO;
 }
 
-static enum gz_result report(const struct gz_study *study, const char *folder, bool json,
-			     const struct gz_log *log)
+static enum gz_result report_study(const struct gz_study *study, const char *folder, bool json,
+				   const struct gz_log *log)
 {
 	struct gz_summary summary;
 	enum gz_result result = gz_summary_make(study, &summary);
@@ -74,12 +76,12 @@ static enum gz_result report(const struct gz_study *study, const char *folder, b
 			study->shard + 1, study->shard_count);
 	result = gz_report_write(&summary, folder, log);
 	if (result == GZ_OK)
-		result = json ? print_json(&summary) : print_answers(&summary, folder);
+		result = json ? print_summary_json(&summary) : print_answers(&summary, folder);
 	gz_summary_free(&summary);
 	return result;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_report(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings;
 	struct gz_operands operands;
@@ -95,7 +97,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	const char *folder = operands.items[0];
 	if (gz_study_read(folder, log, &study) != GZ_OK)
 		return GAZEBENCH_FAILED;
-	const enum gz_result result = report(&study, folder, settings.json, log);
+	const enum gz_result result = report_study(&study, folder, settings.json, log);
 	gz_study_free(&study);
 	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
 }
@@ -114,5 +116,70 @@ const struct gz_command gazebench_report = {
 		"marked.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_report,
+};
+
+/* ---- gazebench merge ---- */
+
+static const struct gz_option merge_options[] = {
+	GZ_COMMAND_HELP_OPTION,
+	{ .key = "json",
+	  .type = GZ_OPTION_BOOL,
+	  .offset = offsetof(struct settings, json),
+	  .preset = "no",
+	  .help = "print what came of it as JSON" },
+};
+
+static void print_merge(const char *folder, const struct gz_study *study, size_t shards,
+			bool as_json)
+{
+	if (!as_json) {
+		printf("%s: %zu shards, %zu rows\n", folder, shards, study->row_count);
+		return;
+	}
+	json_t *json = json_pack("{ss sI sI}", "out", folder, "shards", (json_int_t)shards, "rows",
+				 (json_int_t)study->row_count);
+	json_dumpf(json, stdout, JSON_INDENT(1));
+	printf("\n");
+	json_decref(json);
+}
+
+static int run_merge(int argc, char *const *argv, const struct gz_log *log)
+{
+	struct settings settings;
+	struct gz_operands folders;
+	int status =
+		gz_command_read_arguments(&gazebench_merge, argc, argv, log, &settings, &folders);
+	if (status != GZ_COMMAND_GO_ON)
+		return status;
+	if (folders.count < 2) {
+		gz_err(log, "a folder to make and those of the shards are wanted: gazebench merge "
+			    "OUT DIR...");
+		return GAZEBENCH_USAGE;
+	}
+	struct gz_study *study = calloc(1, sizeof *study);
+	const size_t shards = (size_t)folders.count - 1;
+	enum gz_result result =
+		study ? gz_study_merge(folders.items + 1, shards, log, study) : GZ_ERR_NO_MEM;
+	if (result == GZ_OK) {
+		result = gz_study_write(folders.items[0], study, log);
+		if (result == GZ_OK)
+			print_merge(folders.items[0], study, shards, settings.json);
+		gz_study_free(study);
+	}
+	free(study);
+	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
+}
+
+const struct gz_command gazebench_merge = {
+	.program = "gazebench",
+	.name = "merge",
+	.operands = "OUT DIR...",
+	.operands_max = -1,
+	.summary = "join the shards of a study into one folder",
+	.details = "DIR... are the folders that gazebench run --shard 1/N to N/N has made, in any "
+		   "order.\nThe result is what one run would have measured, but for its times.\n",
+	.options = merge_options,
+	.option_count = sizeof merge_options / sizeof merge_options[0],
+	.run = run_merge,
 };

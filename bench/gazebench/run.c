@@ -9,9 +9,9 @@
 
 #include "base/clock.h"
 #include "base/text.h"
-#include "bench/study/study.h"
-#include "bench/study/reference.h"
+#include "bench/study/errors.h"
 #include "bench/study/run.h"
+#include "bench/study/study.h"
 
 #define GZ_LOG_MODULE "gazebench"
 
@@ -193,7 +193,7 @@ static void show_progress(void *user, const struct gz_study_progress *now)
 
 /* ---- what came of it ---- */
 
-static void print_outcome(const struct settings *settings, const struct gz_study_outcome *outcome)
+static void print_run(const struct settings *settings, const struct gz_study_outcome *outcome)
 {
 	if (settings->json) {
 		json_t *json = json_pack(
@@ -239,8 +239,8 @@ static bool parse_shard(const char *text, int *out_shard, int *out_count)
 	return true;
 }
 
-static bool check(const struct settings *settings, const struct gz_operands *scenes,
-		  const struct gz_log *log)
+static bool check_run(const struct settings *settings, const struct gz_operands *scenes,
+		      const struct gz_log *log)
 {
 	if (scenes->count < 1)
 		gz_err(log, "no scene: gazebench run SCENE... --out DIR");
@@ -251,7 +251,7 @@ static bool check(const struct settings *settings, const struct gz_operands *sce
 	return false;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_run(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands scenes;
@@ -279,7 +279,7 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	};
 	gz_study_identify(gazebench_commit, "/proc/self/exe", commit);
 	memcpy(request.display_mm, settings.display_mm, sizeof request.display_mm);
-	if (!check(&settings, &scenes, log))
+	if (!check_run(&settings, &scenes, log))
 		return GAZEBENCH_USAGE;
 	if (!parse_shard(settings.shard, &request.shard, &request.shard_count)) {
 		gz_err(log, "--shard %s: write I/N, the I-th of N parts, I from 1 to N",
@@ -294,12 +294,13 @@ static int run(int argc, char *const *argv, const struct gz_log *log)
 	struct progress progress = { .terminal = isatty(STDERR_FILENO) };
 	struct gz_study_outcome outcome;
 	gz_command_catch_signals();
-	const enum gz_result result =
-		gz_study_run(&request, settings.out, kept, show_progress, &progress, log, &outcome);
+	const enum gz_result result = gz_study_run(
+		&request, settings.out, kept,
+		(struct gz_study_listener) { show_progress, &progress }, log, &outcome);
 	if (progress.terminal && result != GZ_OK)
 		fputs("\r\033[K", stderr);
 	if (outcome.units > 0)
-		print_outcome(&settings, &outcome);
+		print_run(&settings, &outcome);
 	return exit_of(result, &settings, &outcome, log);
 }
 
@@ -316,5 +317,5 @@ const struct gz_command gazebench_run = {
 		"frame.\nWhat was interrupted goes on when the same is run again.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_run,
 };

@@ -172,8 +172,8 @@ static enum gz_result write_picture(struct session *session, const struct gz_sta
 	return gz_stability_write_picture(outcome, out_path, session->log);
 }
 
-static void print_text(const char *method, const struct gz_stability_outcome *outcome,
-		       const char *picture)
+static void print_row_text(const char *method, const struct gz_stability_outcome *outcome,
+			   const char *picture)
 {
 	const struct gz_stability_pixel *worst = &outcome->worst;
 	printf("  %-9s %-14s ", method, gz_stability_verdict_text(outcome->verdict));
@@ -235,9 +235,9 @@ static void print_json_number(const struct gz_stability_number *number)
 	printf("}");
 }
 
-static void print_json(const struct session *session, const struct gz_stability_row *row,
-		       const char *method, const struct gz_stability_outcome *outcome,
-		       const char *picture)
+static void print_rows_json(const struct session *session, const struct gz_stability_row *row,
+			    const char *method, const struct gz_stability_outcome *outcome,
+			    const char *picture)
 {
 	printf("%s\n  {\"backend\": \"%s\", \"row\": \"%s\", \"method\": \"%s\", \"holds\": ",
 	       session->printed ? "," : "", session->backend, row->name, method);
@@ -259,7 +259,7 @@ static void print_json(const struct session *session, const struct gz_stability_
 	printf("}");
 }
 
-static void count(struct session *session, enum gz_stability_verdict verdict)
+static void count_rows(struct session *session, enum gz_stability_verdict verdict)
 {
 	session->held += verdict == GZ_STABILITY_HOLDS;
 	session->failed += verdict == GZ_STABILITY_FAILS;
@@ -279,12 +279,12 @@ static enum gz_result run_row(struct session *session, const struct gz_stability
 		result = write_picture(session, row, method, &outcome, picture, sizeof picture);
 	if (result == GZ_OK) {
 		if (session->settings.json)
-			print_json(session, row, method, &outcome, picture);
+			print_rows_json(session, row, method, &outcome, picture);
 		else
-			print_text(method, &outcome, picture);
+			print_row_text(method, &outcome, picture);
 		session->printed = true;
 		fflush(stdout);
-		count(session, outcome.verdict);
+		count_rows(session, outcome.verdict);
 	}
 	gz_stability_outcome_free(&outcome);
 	return result;
@@ -430,7 +430,7 @@ static int run_session(struct session *session, const char *path)
 	return run_rows(session);
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_stability(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct session session;
 	struct gz_operands operands;
@@ -464,5 +464,5 @@ const struct gz_command gazebench_stability = {
 		   "4 where one fails.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_stability,
 };

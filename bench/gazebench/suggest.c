@@ -172,13 +172,13 @@ static void print_words(const struct gz_study *study, const struct gz_group *con
 	}
 }
 
-static json_t *number(double value)
+static json_t *advice_number(double value)
 {
 	return isfinite(value) ? json_real(value) : isnan(value) ? json_null() : json_string("inf");
 }
 
-static json_t *group_to_json(const struct gz_study *study, const struct gz_group *group,
-			     const struct gz_advice_question *question, size_t place)
+static json_t *size_to_json(const struct gz_study *study, const struct gz_group *group,
+			    const struct gz_advice_question *question, size_t place)
 {
 	const struct gz_series *series = &group->series[place];
 	const struct gz_error_summary *errors =
@@ -188,15 +188,17 @@ static json_t *group_to_json(const struct gz_study *study, const struct gz_group
 	return json_pack("{s:s, s:[i,i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i}", "transfer",
 			 study->scenes[group->scene].transfer, "size", study->sizes[group->size][0],
 			 study->sizes[group->size][1], "backend", study->backends[group->backend],
-			 "ms", number(series->typical_ms), "standard_ms", number(standard_ms),
-			 "ratio", number(series->ratio_of_means), "rays", number(series->rays),
-			 "mean", number(errors->mean), "p95", number(errors->p95), "worst",
-			 number(errors->worst), "points", (int)errors->count);
+			 "ms", advice_number(series->typical_ms), "standard_ms",
+			 advice_number(standard_ms), "ratio", advice_number(series->ratio_of_means),
+			 "rays", advice_number(series->rays), "mean", advice_number(errors->mean),
+			 "p95", advice_number(errors->p95), "worst", advice_number(errors->worst),
+			 "points", (int)errors->count);
 }
 
-static enum gz_result print_json(const struct gz_study *study, const struct gz_group *const *groups,
-				 size_t count, const struct gz_advice_question *question,
-				 size_t variant, const char *out)
+static enum gz_result print_advice_json(const struct gz_study *study,
+					const struct gz_group *const *groups, size_t count,
+					const struct gz_advice_question *question, size_t variant,
+					const char *out)
 {
 	json_t *list = json_array();
 	const size_t shown = variant == GZ_SERIES_NONE ? 0 : variant;
@@ -204,7 +206,7 @@ static enum gz_result print_json(const struct gz_study *study, const struct gz_g
 		const size_t place = series_of(groups[i], shown);
 		if (place != GZ_SERIES_NONE)
 			json_array_append_new(list,
-					      group_to_json(study, groups[i], question, place));
+					      size_to_json(study, groups[i], question, place));
 	}
 	json_t *json =
 		json_pack("{s:s, s:s, s:b, s:s, s:f, s:s, s:s?, s:o}", "scene",
@@ -256,8 +258,8 @@ static enum gz_result suggest(const struct gz_summary *summary, const struct set
 		if (settings->out[0])
 			result = write_scene(study, groups[0], settings, variant, log);
 		if (result == GZ_OK && settings->json)
-			result =
-				print_json(study, groups, count, &question, variant, settings->out);
+			result = print_advice_json(study, groups, count, &question, variant,
+						   settings->out);
 		else if (result == GZ_OK)
 			print_words(study, groups, count, &question, variant);
 	}
@@ -287,7 +289,7 @@ static enum gz_result suggest_from(const char *folder, const struct settings *se
 	return result;
 }
 
-static int run(int argc, char *const *argv, const struct gz_log *log)
+static int run_suggest(int argc, char *const *argv, const struct gz_log *log)
 {
 	struct settings settings = { .bound = NAN };
 	struct gz_operands operands;
@@ -321,5 +323,5 @@ const struct gz_command gazebench_suggest = {
 		"with its settings; other lines stay as they are.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
-	.run = run,
+	.run = run_suggest,
 };

@@ -20,7 +20,7 @@ struct pass {
 	float *out;
 };
 
-static int clamp(int value, int last)
+static int clamp_index(int value, int last)
 {
 	return value < 0 ? 0 : value > last ? last : value;
 }
@@ -67,7 +67,7 @@ static void filter_row_across(const struct pass *pass, const float *in, float *o
 	for (int x = 0; x < pass->width; x += COLUMNS) {
 		const int count = pass->width - x < COLUMNS ? pass->width - x : COLUMNS;
 		for (int i = 0; i < count + 2 * radius; i++)
-			padded[i] = in[clamp(x + i - radius, pass->width - 1)];
+			padded[i] = in[clamp_index(x + i - radius, pass->width - 1)];
 		sum_taps(from, pass->kernel->weights, taps, count, false, out + x);
 	}
 }
@@ -78,7 +78,7 @@ static void filter_row_down(const struct pass *pass, int y, float *out)
 	const float *from[2 * GZ_KERNEL_RADIUS_MAX + 1];
 	float weights[2 * GZ_KERNEL_RADIUS_MAX + 1];
 	for (int tap = 0; tap < taps; tap++) {
-		const int row = clamp(y + tap - radius, pass->height - 1);
+		const int row = clamp_index(y + tap - radius, pass->height - 1);
 		from[tap] = pass->in + (size_t)row * (size_t)pass->width;
 		weights[tap] = pass->kernel->weights[tap] * pass->scale;
 	}
@@ -109,13 +109,12 @@ static void down_part(void *user, size_t part, int worker)
 		filter_row_down(pass, y, pass->out + (size_t)y * (size_t)pass->width);
 }
 
-void gz_convolve(const float *in, int width, int height, const struct gz_kernel *across,
-		 const struct gz_kernel *down, float scale, bool add, struct gz_workers *workers,
-		 float *scratch, float *out)
+void gz_convolve(const struct gz_convolution *of, struct gz_workers *workers)
 {
-	const size_t parts = ((size_t)height + ROWS_A_PART - 1) / ROWS_A_PART;
-	struct pass pass = { in, width, height, across, 1, false, scratch };
+	const size_t parts = ((size_t)of->height + ROWS_A_PART - 1) / ROWS_A_PART;
+	struct pass pass = { of->in, of->width, of->height, of->across, 1, false, of->scratch };
 	gz_workers_run(workers, across_part, &pass, parts);
-	pass = (struct pass) { scratch, width, height, down, scale, add, out };
+	pass = (struct pass) { of->scratch, of->width, of->height, of->down,
+			       of->scale,   of->add,   of->out };
 	gz_workers_run(workers, down_part, &pass, parts);
 }

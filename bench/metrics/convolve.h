@@ -18,16 +18,17 @@ struct gz_kernel {
 	float weights[2 * GZ_KERNEL_RADIUS_MAX + 1];
 };
 
-/**
- * Filter a plane across, then down. Beyond its edges a plane goes on with its outermost values.
- *
- * @param in, out        width * height values; different planes
- * @param scratch        as large, overwritten
- * @param scale          of the result
- * @param add            add to what @p out holds, instead of overwriting it
- */
-void gz_convolve(const float *in, int width, int height, const struct gz_kernel *across,
-		 const struct gz_kernel *down, float scale, bool add, struct gz_workers *workers,
-		 float *scratch, float *out);
+/** A separable filter and the planes it goes over: width * height values each, all different. */
+struct gz_convolution {
+	const float *in;
+	float *out, *scratch; /**< scratch is overwritten */
+	int width, height;
+	const struct gz_kernel *across, *down;
+	float scale; /**< of the result */
+	bool add;    /**< add to what @p out holds, instead of overwriting it */
+};
+
+/** Filter a plane across, then down. Beyond its edges a plane goes on with its outermost values. */
+void gz_convolve(const struct gz_convolution *convolution, struct gz_workers *workers);
 
 #endif

@@ -88,10 +88,10 @@ enum gz_result gz_flip(const struct gz_image *reference, const struct gz_image *
  *
  * @param display  geometry of the picture, which fills it
  * @param gaze     normalised
- * @param from_deg, to_deg  from included, to excluded
+ * @param ring_deg  least (included) and greatest (excluded) eccentricity, degrees
  */
 enum gz_result gz_weights_ring(const struct gz_display *display, struct gz_point gaze, int width,
-			       int height, double from_deg, double to_deg, struct gz_map *out_map);
+			       int height, const double ring_deg[2], struct gz_map *out_map);
 
 /**
  * What a pixel counts for the eye: f_c(e)^2, f_c the highest frequency that is seen at its

@@ -10,10 +10,8 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "bench/filter/baselines.h"
 #include "bench/filter/labelled_recording.h"
 #include "bench/filter/stillness.h"
-#include "bench/filter/sweep.h"
 #include "bench/filter/track.h"
 #include "bench/report/filter_chart.h"
 

@@ -9,7 +9,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "bench/filter/sweep.h"
+#include "bench/filter/stillness.h"
 
 /**
  * Draw FOLDER/jitter-over-lag.svg and .png. Lags beyond 40 ms, ten samples and what the pipeline

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/command.h"
 #include "bench/study/errors.h"
-#include "bench/study/reference.h"
 
 #define GZ_LOG_MODULE "study"
 
@@ -62,7 +61,7 @@ static enum gz_result frame(struct run *run, bool kept)
 	return result;
 }
 
-static int by_value(const void *a, const void *b)
+static int compare_times(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
@@ -71,7 +70,7 @@ static int by_value(const void *a, const void *b)
 static double take_median(struct run *run)
 {
 	const int count = run->time_count < TIMES_MAX ? run->time_count : TIMES_MAX;
-	qsort(run->times_ms, (size_t)count, sizeof run->times_ms[0], by_value);
+	qsort(run->times_ms, (size_t)count, sizeof run->times_ms[0], compare_times);
 	run->time_count = 0;
 	return count % 2 ? run->times_ms[count / 2]
 			 : (run->times_ms[count / 2 - 1] + run->times_ms[count / 2]) / 2;
@@ -155,7 +154,7 @@ static enum gz_result measure_turning(struct run *run, struct gz_accumulation_ro
 	return result == GZ_OK ? measure_alone(run, true, &rows[0]) : result;
 }
 
-static enum gz_result begin(struct run *run)
+static enum gz_result begin_pictures(struct run *run)
 {
 	const struct gz_accumulation_request *request = run->request;
 	const struct gz_study *study = request->study;
@@ -184,7 +183,7 @@ static enum gz_result begin(struct run *run)
 			       : result;
 }
 
-static void end(struct run *run)
+static void end_pictures(struct run *run)
 {
 	gz_workers_destroy(&run->workers);
 	gz_image_free(&run->image);
@@ -204,7 +203,7 @@ enum gz_result gz_accumulation_measure(const struct gz_accumulation_request *req
 	run->request = request;
 	run->log = log;
 	run->stage = stage;
-	enum gz_result result = begin(run);
+	enum gz_result result = begin_pictures(run);
 	if (result == GZ_OK)
 		result = measure_still(run, out_rows);
 	if (result == GZ_OK)
@@ -212,7 +211,7 @@ enum gz_result gz_accumulation_measure(const struct gz_accumulation_request *req
 	if (result != GZ_OK && result != GZ_ERR_CANCELLED && result != GZ_ERR_UNSUPPORTED)
 		gz_err(log, "%s at %dx%d: %s", request->study->variants[request->variant].text,
 		       run->width, run->height, gz_result_text(result));
-	end(run);
+	end_pictures(run);
 	free(run);
 	return result;
 }

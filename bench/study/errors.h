@@ -1,12 +1,23 @@
 /**
  * @file
  * How far the picture of a variant is from a reference, as studies keep it.
+ *
+ * The reference is the converged picture: every pixel, a step of 1/8 voxel length, no ray ended
+ * early, no coarser levels, no jitter. It is made a second time with half the step; how far both
+ * are apart is what the reference itself may be wrong by. Both are made by the cpu backend and kept
+ * as PNG in a folder, by the hash of all that they depend on, so that each camera, scene and size
+ * is made once.
  */
 #ifndef GZ_BENCH_STUDY_ERRORS_H
 #define GZ_BENCH_STUDY_ERRORS_H
 
+#include "base/log.h"
+#include "base/result.h"
 #include "bench/metrics/metrics.h"
 #include "bench/study/study.h"
+#include "render/frame/picture_maker.h"
+#include "render/picture/image.h"
+#include "render/raycast/shared/ray_params.h"
 
 /** The error of each pixel, by each metric. Zero-initialised is empty. */
 struct gz_error_maps {
@@ -61,5 +72,51 @@ enum gz_result gz_errors_change(const struct gz_image *before, const struct gz_i
 /** Free and zero. */
 void gz_error_maps_free(struct gz_error_maps *maps);
 void gz_error_weights_free(struct gz_error_weights *weights);
+
+/** Samples per voxel length of the converged picture. */
+#define GZ_REFERENCE_RATE 8
+
+/** Below this PSNR between both a warning is told, dB. Chosen: an error of a quarter of a grey
+ *  level, which is far below any that is measured against it. */
+#define GZ_REFERENCE_LEAST_DB 60
+
+/** What a converged picture is of. */
+struct gz_reference_request {
+	struct gz_picture_maker *maker; /**< cpu, which shows volume and transfer function */
+	const char *data_hash;          /**< of volume and transfer function */
+	const char *program;            /**< what makes it, with its commit */
+	const struct gz_camera *camera;
+	const struct gz_ray_params *rays; /**< of the scene */
+	const struct gz_display *display; /**< any that is valid */
+	int width, height;
+	const char *cache; /**< folder, made where it is not there; NULL: nothing is kept */
+};
+
+/**
+ * The converged picture: from the cache, or made and kept there. A cache that cannot be written is
+ * warned of, and done without.
+ *
+ * @param[in,out] image      the picture
+ * @param[in,out] half_step  that of half the step
+ * @param[out] out_db        PSNR between both, infinite where they are the same
+ * @param[out] out_made      it was not in the cache
+ * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived (gz_command_catch_signals()); not logged
+ * @retval GZ_ERR_NO_MEM     logged; and what gz_picture_make() returns
+ */
+enum gz_result gz_reference_get(const struct gz_reference_request *request,
+				const struct gz_log *log, struct gz_image *image,
+				struct gz_image *half_step, double *out_db, bool *out_made);
+
+/** Rays of a converged picture over those of a scene. */
+struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double rate);
+
+/**
+ * The folder where references are kept: @p given or, where that is empty, "gazecast/references" in
+ * $XDG_CACHE_HOME or in ~/.cache (XDG Base Directory Specification).
+ *
+ * @param room  for its name, valid as long as what is returned is used
+ * @return NULL where none is given and neither is known, or the name is too long
+ */
+const char *gz_reference_cache(const char *given, char room[GZ_PATH_SIZE]);
 
 #endif

@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/command.h"
 #include "bench/study/errors.h"
-#include "bench/study/reference.h"
 #include "bench/study/stage.h"
 #include "bench/study/study_folder.h"
 
@@ -391,8 +390,7 @@ struct run {
 	struct measurer *measurer;
 	struct gz_study_row *rows; /* of one unit */
 	struct gz_study_outcome *outcome;
-	void (*progress)(void *user, const struct gz_study_progress *progress);
-	void *user;
+	struct gz_study_listener listener;
 	int64_t start_ns;
 	double work_before; /* of units that were there already */
 };
@@ -417,7 +415,7 @@ static double work_of(const struct run *run, size_t count)
 
 static void tell_progress(const struct run *run, size_t done)
 {
-	if (!run->progress)
+	if (!run->listener.progress)
 		return;
 	const size_t units = run->outcome->units;
 	const double all = work_of(run, units), now = work_of(run, done);
@@ -432,7 +430,7 @@ static void tell_progress(const struct run *run, size_t done)
 						 : NAN,
 		.what = run->study->scenes[row.scene].name,
 	};
-	run->progress(run->user, &progress);
+	run->listener.progress(run->listener.user, &progress);
 }
 
 static enum gz_result run_units(struct run *run)
@@ -496,18 +494,15 @@ static enum gz_result begin_run(struct run *run, const char *folder, const char 
 }
 
 enum gz_result gz_study_run(const struct gz_study_request *request, const char *folder,
-			    const char *cache,
-			    void (*progress)(void *user, const struct gz_study_progress *progress),
-			    void *user, const struct gz_log *log,
-			    struct gz_study_outcome *out_outcome)
+			    const char *cache, struct gz_study_listener listener,
+			    const struct gz_log *log, struct gz_study_outcome *out_outcome)
 {
 	struct run run = {
 		.log = log,
 		.study = calloc(1, sizeof *run.study),
 		.stage = { .log = log },
 		.outcome = out_outcome,
-		.progress = progress,
-		.user = user,
+		.listener = listener,
 	};
 	*out_outcome = (struct gz_study_outcome) { 0 };
 	if (!run.study)

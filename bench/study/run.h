@@ -26,23 +26,27 @@ struct gz_study_outcome {
 	bool complete;
 };
 
+/** Who is told how far a run is. */
+struct gz_study_listener {
+	/** Before each unit and at the end; NULL: nobody is told. */
+	void (*progress)(void *user, const struct gz_study_progress *progress);
+	void *user;
+};
+
 /**
- * Run a study, or go on with one.
+ * Run a study, or resume one.
  *
  * @param request   what is asked
  * @param folder    made where it is not there; or one of the same study
  * @param cache     folder of references; NULL: none are kept
- * @param progress  told before each unit and at the end; may be NULL
- * @param user      passed to it
+ * @param listener  copied
  * @param[out] out_outcome  filled once the folder is open, also where the run ends early
  * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived; the folder holds whole units; not logged
  * @retval GZ_ERR_FULL       the disk is full; the folder holds whole units; logged
  * @return else what gz_study_ask(), gz_study_writer_open() and gz_picture_make() return; logged
  */
 enum gz_result gz_study_run(const struct gz_study_request *request, const char *folder,
-			    const char *cache,
-			    void (*progress)(void *user, const struct gz_study_progress *progress),
-			    void *user, const struct gz_log *log,
-			    struct gz_study_outcome *out_outcome);
+			    const char *cache, struct gz_study_listener listener,
+			    const struct gz_log *log, struct gz_study_outcome *out_outcome);
 
 #endif

@@ -11,7 +11,6 @@
 #include <jansson.h>
 
 #include "bench/filter/stillness.h"
-#include "bench/filter/sweep.h"
 #include "bench/filter/track.h"
 #include "called.h"
 #include "protocol/gaze_log.h"

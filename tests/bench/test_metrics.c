@@ -238,8 +238,11 @@ static void weights_follow_the_eccentricity(void **state)
 	const struct gz_point gaze = { 0.25F, 0.5F };
 	struct gz_map acuity = { 0 }, fovea = { 0 }, rest = { 0 };
 	assert_int_equal(gz_weights_acuity(&display, gaze, 504, 300, &acuity), GZ_OK);
-	assert_int_equal(gz_weights_ring(&display, gaze, 504, 300, 0, GZ_FOVEA_DEG, &fovea), GZ_OK);
-	assert_int_equal(gz_weights_ring(&display, gaze, 504, 300, GZ_FOVEA_DEG, 180, &rest),
+	assert_int_equal(gz_weights_ring(&display, gaze, 504, 300,
+					 (const double[2]) { 0, GZ_FOVEA_DEG }, &fovea),
+			 GZ_OK);
+	assert_int_equal(gz_weights_ring(&display, gaze, 504, 300,
+					 (const double[2]) { GZ_FOVEA_DEG, 180 }, &rest),
 			 GZ_OK);
 	const size_t at_gaze = 150 * 504 + 126, far = 150 * 504 + 500;
 	near((double)acuity.values[at_gaze], 1, 0.1);

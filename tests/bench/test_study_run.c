@@ -18,6 +18,8 @@
 #include "bench/study/study_folder.h"
 #include "drivers/made_log.h"
 
+static const struct gz_study_listener nobody = { NULL, NULL };
+
 static char root[] = "/tmp/gz_run_XXXXXX";
 static char scene_file[64], second_file[64], cache[64];
 static struct captured_log captured;
@@ -107,7 +109,7 @@ static struct gz_study run(const struct gz_study_request *request, const char *f
 {
 	struct gz_study_outcome outcome;
 	struct gz_study study = { 0 };
-	if (gz_study_run(request, folder, cache, NULL, NULL, &captured.log, &outcome) != GZ_OK)
+	if (gz_study_run(request, folder, cache, nobody, &captured.log, &outcome) != GZ_OK)
 		fail_msg("%s", captured.last);
 	assert_int_equal(outcome.done, outcome.units);
 	assert_true(outcome.complete);
@@ -124,7 +126,7 @@ static void refused(const struct gz_study_request *request, enum gz_result expec
 	struct gz_study_outcome outcome;
 	const char *folder = new_folder();
 	const enum gz_result result =
-		gz_study_run(request, folder, cache, NULL, NULL, &captured.log, &outcome);
+		gz_study_run(request, folder, cache, nobody, &captured.log, &outcome);
 	if (result != expected || !strstr(captured.last, part))
 		fail_msg("%d, not %d, with '%s', not '%s'", result, expected, captured.last, part);
 	assert_int_equal(access(folder, F_OK), -1);
@@ -317,7 +319,7 @@ static void table_of_a_variant_belongs_to_the_study(void **state)
 	assert_true(study.rows[2].rays < study.rows[0].rays);
 	gz_study_free(&study);
 	write_table("0 1 1\n5 5 2\n");
-	assert_int_equal(gz_study_run(&request, folder, cache, NULL, NULL, &captured.log, &outcome),
+	assert_int_equal(gz_study_run(&request, folder, cache, nobody, &captured.log, &outcome),
 			 GZ_ERR_INVAL);
 	assert_non_null(strstr(captured.last, "is not the same scene"));
 }
@@ -340,8 +342,9 @@ static int run_into(const struct gz_study_request *request, const char *folder, 
 	if (child == 0) {
 		struct gz_study_outcome outcome;
 		gz_command_catch_signals();
-		const enum gz_result result =
-			gz_study_run(request, folder, cache, end_early, &number, NULL, &outcome);
+		const enum gz_result result = gz_study_run(
+			request, folder, cache, (struct gz_study_listener) { end_early, &number },
+			NULL, &outcome);
 		_exit(-(int)result);
 	}
 	assert_int_equal(waitpid(child, &status, 0), child);
@@ -396,7 +399,7 @@ static void run_of_something_else_into_the_same_folder_is_refused(void **state)
 	struct gz_study study = run(&request, folder);
 	gz_study_free(&study);
 	request.methods = "acuity,ddc";
-	assert_int_equal(gz_study_run(&request, folder, cache, NULL, NULL, &captured.log, &outcome),
+	assert_int_equal(gz_study_run(&request, folder, cache, nobody, &captured.log, &outcome),
 			 GZ_ERR_INVAL);
 	assert_non_null(strstr(captured.last, "a method is ddc, and was mdc:mdc_square_px=10"));
 }
