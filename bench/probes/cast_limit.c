@@ -15,6 +15,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "render/raycast/shared/raycaster.h"
 #include "render/raycast/shared/voxel_rays.h"
 #include "render/scene/scene.h"
 

@@ -203,12 +203,10 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 				 char out_name[GZ_STUDY_TEXT_SIZE],
 				 struct gz_transfer *out_transfer)
 {
+	const char *name = gz_scene_transfer_name(&stage->scene.settings);
 	char file[GZ_PATH_SIZE];
 	if (which == 0)
-		snprintf(file, sizeof file, "%s",
-			 stage->scene.settings.transfer_file[0]
-				 ? stage->scene.settings.transfer_file
-				 : "made-for-the-volume.tf");
+		snprintf(file, sizeof file, "%s", name[0] ? name : "made-for-the-volume.tf");
 	else if (!find_name(stage->scene.settings.transfer_also, which - 1, file))
 		return GZ_ERR_INVAL;
 	gz_study_file_name(file, ".tf", out_name);

@@ -8,7 +8,7 @@
 
 #define GZ_LOG_MODULE "scene"
 
-static const char section_start[] = "object";
+static const char object_word[] = "object";
 
 #define AT(field) offsetof(struct gz_scene_object, field)
 
@@ -16,21 +16,23 @@ const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
 	{ "object.technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_names,
 	  .preset = "raycast", .help = "how the object is drawn" },
 	{ "object.volume", GZ_OPTION_STRING, AT(volume), .max = GZ_SCENE_FILE_SIZE, .preset = "",
-	  .help = "volume file, looked up as volume.file" },
+	  .help = "volume file, searched as volume.file is" },
 	{ "object.transfer", GZ_OPTION_STRING, AT(transfer), .max = GZ_SCENE_FILE_SIZE,
-	  .preset = "", .help = "transfer function of the volume; without it one is made" },
+	  .preset = "",
+	  .help = "transfer function of the volume; transfer.file replaces it; without both one is "
+		  "made" },
 	{ "object.labels", GZ_OPTION_STRING, AT(labels), .max = GZ_SCENE_FILE_SIZE, .preset = "",
-	  .help = "label volume, a whole number for each region" },
+	  .help = "label volume: a whole number for each region" },
 	{ "object.mesh", GZ_OPTION_STRING, AT(mesh), .max = GZ_SCENE_FILE_SIZE, .preset = "",
 	  .help = "triangle mesh" },
 	{ "object.particles", GZ_OPTION_STRING, AT(particles), .max = GZ_SCENE_FILE_SIZE,
 	  .preset = "", .help = "particles of a liquid" },
 	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
-	  .help = "whether the object is drawn" },
+	  .help = "whether the object is shown" },
 	{ "object.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0.5",
-	  .help = "how much the object matters, 0 to 1" },
+	  .help = "importance of the object for illustrative techniques, 0 to 1" },
 	{ "object.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_NAME_SIZE, .preset = "",
-	  .help = "template of illustrative settings" },
+	  .help = "name of a template of illustrative settings" },
 };
 
 struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
@@ -47,7 +49,7 @@ struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
 
 const char *gz_scene_object_name(const struct gz_scene_object *object)
 {
-	return object->section + sizeof section_start;
+	return object->section + sizeof object_word;
 }
 
 int gz_scene_objects_find(const struct gz_scene_objects *objects, const char *section)
@@ -58,34 +60,36 @@ int gz_scene_objects_find(const struct gz_scene_objects *objects, const char *se
 	return -1;
 }
 
-/* The text whose sections are looked for. */
+/* A scan of a text for objects. */
 struct object_scan {
 	const char *name;
 	const struct gz_log *log;
 	struct gz_scene_objects *objects;
 };
 
-static enum gz_result refuse_section(const struct object_scan *scan, int line, const char *what)
+static enum gz_result refuse_object_section(const struct object_scan *scan, int line,
+					    const char *what)
 {
 	gz_err(scan->log, "%s:%d: %s", scan->name, line, what);
 	return GZ_ERR_FORMAT;
 }
 
-static enum gz_result note_section(void *user, const struct gz_ini_item *item)
+static enum gz_result add_object_section(void *user, const struct gz_ini_item *item)
 {
 	const struct object_scan *scan = user;
 	struct gz_scene_objects *objects = scan->objects;
-	const size_t length = sizeof section_start - 1;
+	const size_t length = sizeof object_word - 1;
 	const char *section = item->section;
-	if (strncmp(section, section_start, length) != 0 ||
+	if (strncmp(section, object_word, length) != 0 ||
 	    (section[length] != ' ' && section[length] != '\0') ||
 	    gz_scene_objects_find(objects, section) >= 0)
 		return GZ_OK;
 	if (section[length] == '\0' || strchr(section, '.') || section[length + 1] == ' ')
-		return refuse_section(scan, item->line,
-				      "an object has a name without a dot, as in [object liver]");
+		return refuse_object_section(
+			scan, item->line,
+			"an object has a name without a dot, as in [object liver]");
 	if (objects->count == GZ_SCENE_OBJECTS_MAX)
-		return refuse_section(scan, item->line, "a scene has at most 32 objects");
+		return refuse_object_section(scan, item->line, "a scene has at most 32 objects");
 	struct gz_scene_object *object = &objects->items[objects->count++];
 	snprintf(object->section, sizeof object->section, "%s", section);
 	const struct gz_option_binding binding = { gz_scene_object_options, GZ_SCENE_OBJECT_OPTIONS,
@@ -98,37 +102,73 @@ enum gz_result gz_scene_objects_scan(const char *name, const char *text, size_t 
 {
 	struct object_scan scan = { name, log, out_objects };
 	*out_objects = (struct gz_scene_objects) { 0 };
-	return text ? gz_ini_read_text(name, text, size, note_section, &scan, log)
-		    : gz_ini_read_file(name, note_section, &scan, log);
+	return text ? gz_ini_read_text(name, text, size, add_object_section, &scan, log)
+		    : gz_ini_read_file(name, add_object_section, &scan, log);
 }
 
-/* The kinds of data that an object is given, with the names of their keys. */
-static unsigned data_of(const struct gz_scene_object *object, const char **out_last)
+/* The keys that name an object's data, and the kinds of data. */
+static const struct {
+	const char *key;
+	enum gz_object_data kind;
+	size_t offset; /* of the file in struct gz_scene_object */
+} data_keys[] = {
+	{ "volume", GZ_OBJECT_VOLUME, AT(volume) },
+	{ "labels", GZ_OBJECT_LABELS, AT(labels) },
+	{ "mesh", GZ_OBJECT_MESH, AT(mesh) },
+	{ "particles", GZ_OBJECT_PARTICLES, AT(particles) },
+};
+
+enum { DATA_KEYS = sizeof data_keys / sizeof data_keys[0] };
+
+/* The kinds of data that an object is given, as bits, and the key of the last one. */
+static unsigned kinds_of(const struct gz_scene_object *object, const char **out_key)
 {
-	const struct {
-		const char *file, *name;
-		enum gz_object_data kind;
-	} data[] = {
-		{ object->volume, "volume", GZ_OBJECT_VOLUME },
-		{ object->labels, "labels", GZ_OBJECT_LABELS },
-		{ object->mesh, "mesh", GZ_OBJECT_MESH },
-		{ object->particles, "particles", GZ_OBJECT_PARTICLES },
-	};
 	unsigned kinds = 0;
-	for (size_t i = 0; i < sizeof data / sizeof data[0]; i++)
-		if (data[i].file[0]) {
-			kinds |= data[i].kind;
-			*out_last = data[i].name;
+	for (size_t i = 0; i < DATA_KEYS; i++)
+		if (((const char *)object + data_keys[i].offset)[0] != '\0') {
+			kinds |= data_keys[i].kind;
+			*out_key = data_keys[i].key;
 		}
 	return kinds;
+}
+
+/* The first technique that shows a kind of data; NULL if none does. */
+static const struct gz_technique *technique_for(unsigned kind)
+{
+	for (size_t i = 0; gz_techniques[i]; i++)
+		if (gz_techniques[i]->shows & kind)
+			return gz_techniques[i];
+	return NULL;
+}
+
+/* Refuse a kind of data that the object's technique does not show: name a technique that does, or
+ * the kinds that some technique shows. */
+static enum gz_result refuse_kind(const struct gz_scene_object *object, const char *key,
+				  const struct gz_technique *other, const char *name,
+				  const struct gz_log *log)
+{
+	char shown[64] = "";
+	size_t used = 0;
+	if (other) {
+		gz_err(log, "%s: %s: the technique %s does not show %s; set technique = %s", name,
+		       object->section, gz_techniques[object->technique]->name, key, other->name);
+		return GZ_ERR_FORMAT;
+	}
+	for (size_t i = 0; i < DATA_KEYS; i++)
+		if (technique_for(data_keys[i].kind))
+			used += (size_t)snprintf(shown + used, sizeof shown - used, "%s%s",
+						 used ? ", " : "", data_keys[i].key);
+	gz_err(log, "%s: %s: no technique of this version shows %s; an object may have: %s", name,
+	       object->section, key, shown);
+	return GZ_ERR_FORMAT;
 }
 
 static enum gz_result check_object(const struct gz_scene_object *object, const char *name,
 				   const struct gz_log *log)
 {
 	const struct gz_technique *technique = gz_techniques[object->technique];
-	const char *given = "";
-	const unsigned kinds = data_of(object, &given);
+	const char *key = "";
+	const unsigned kinds = kinds_of(object, &key);
 	if (kinds == 0 || (kinds & (kinds - 1)) != 0) {
 		gz_err(log, "%s: %s: give one of volume, labels, mesh and particles", name,
 		       object->section);
@@ -141,9 +181,7 @@ static enum gz_result check_object(const struct gz_scene_object *object, const c
 	}
 	if (technique->shows & kinds)
 		return GZ_OK;
-	gz_err(log, "%s: %s: the technique %s does not show %s; choose another technique", name,
-	       object->section, technique->name, given);
-	return GZ_ERR_FORMAT;
+	return refuse_kind(object, key, technique_for(kinds), name, log);
 }
 
 enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, const char *name,

@@ -1,6 +1,6 @@
 /**
  * @file
- * The things that a scene shows: sections [object NAME]. A scene with a section [volume] instead
+ * The objects of a scene: sections [object NAME]. A scene with a section [volume] and no objects
  * shows that volume alone.
  */
 #ifndef GZ_RENDER_SCENE_SCENE_OBJECTS_H
@@ -23,18 +23,19 @@
 /** Bytes of a file name in an object with its NUL: a scene's line holds fewer (base/ini.h). */
 #define GZ_SCENE_FILE_SIZE 256
 
-/** One object, as its table reads it. Files are empty where they are not given. */
+/** One object. Names of files are empty if they are not given. */
 struct gz_scene_object {
 	char section[GZ_SCENE_SECTION_SIZE]; /**< "object NAME" */
 	int technique;                       /**< index into gz_techniques */
 	char volume[GZ_SCENE_FILE_SIZE];
-	char transfer[GZ_SCENE_FILE_SIZE]; /**< of the volume; empty: one is made for it */
+	char transfer[GZ_SCENE_FILE_SIZE]; /**< of the volume; empty: gz_scene_transfer_name() */
 	char labels[GZ_SCENE_FILE_SIZE];
 	char mesh[GZ_SCENE_FILE_SIZE];
 	char particles[GZ_SCENE_FILE_SIZE];
 	bool visible;
-	double importance;                /**< [0, 1] */
-	char template_name[GZ_NAME_SIZE]; /**< of illustrative settings; empty: none */
+	double importance;                /**< [0, 1]; no technique of this version uses it */
+	char template_name[GZ_NAME_SIZE]; /**< of illustrative settings, which no technique of this
+					     version uses; empty: none */
 };
 
 /** All objects of a scene. Zero-initialised has none. */
@@ -56,33 +57,34 @@ struct gz_scene_object_table {
 	char keys[GZ_SCENE_OBJECT_OPTIONS][GZ_SCENE_SECTION_SIZE + 16];
 };
 
-/** Fill @p table with the options of an object, under its own keys. The binding borrows both. */
+/** Fill @p table with the options of an object, under the object's own keys. The binding borrows
+ *  both. */
 struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
 					      struct gz_scene_object_table *table);
 
-/** The object's name: its section without the word "object". Points into it. */
+/** The object's name: its section without the word "object". Borrowed from @p object. */
 const char *gz_scene_object_name(const struct gz_scene_object *object);
 
-/** Index of the object of a section's name; -1 if there is none. */
+/** Index of the object with this section; -1 if there is none. */
 int gz_scene_objects_find(const struct gz_scene_objects *objects, const char *section);
 
 /**
- * Find the sections [object NAME] of a scene's text, each an object with presets.
+ * Find the sections [object NAME] of a scene's text. Each becomes an object with presets.
  *
- * @param name  stands for the text in messages; without a text, the file to read
- * @param text  @p size bytes; NULL reads the file
+ * @param name  the text's name in messages; if @p text is NULL, the file to read
+ * @param text  @p size bytes, or NULL
  * @param[out] out_objects  in their order
  * @retval GZ_ERR_FORMAT  more than GZ_SCENE_OBJECTS_MAX, or a section without a name; logged
- * @return else what gz_ini_read_text() or gz_ini_read_file() returns; logged
+ * @return otherwise what gz_ini_read_text() or gz_ini_read_file() returns; logged
  */
 enum gz_result gz_scene_objects_scan(const char *name, const char *text, size_t size,
 				     const struct gz_log *log,
 				     struct gz_scene_objects *out_objects);
 
 /**
- * Check that each object has one kind of data, which its technique shows.
+ * Check that each object has exactly one kind of data, and that its technique shows that kind.
  *
- * @param name  stands for where they come from in messages
+ * @param name  the objects' source in messages
  * @retval GZ_ERR_FORMAT  refused; logged with the key and the remedy
  */
 enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, const char *name,

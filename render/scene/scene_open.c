@@ -15,10 +15,10 @@
 
 #define RADIANS_PER_DEGREE 0.017453292519943295
 
-/* How much of half a picture a box may take. Chosen: it does not touch the edges. */
+/* Share of the picture that a fitted box takes. Chosen: it does not touch the edges. */
 #define FIT_SHARE 0.9
 
-static bool is_folder(const char *path)
+static bool names_folder(const char *path)
 {
 	struct stat status;
 	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
@@ -47,7 +47,7 @@ enum gz_file_kind gz_file_kind_of(const char *path)
 {
 	const enum gz_file_kind kind = gz_file_kind_by_name(path);
 	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
-	return looked_into && (is_folder(path) || gz_dicom_is(path)) ? GZ_FILE_VOLUME : kind;
+	return looked_into && (names_folder(path) || gz_dicom_is(path)) ? GZ_FILE_VOLUME : kind;
 }
 
 enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_raw_layout *raw,
@@ -122,23 +122,27 @@ void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume)
 	}
 }
 
-static bool is_same_camera(const struct gz_camera *a, const struct gz_camera *b)
+/* Whether two cameras stand in one place. The field of view may differ: the view is fitted to it.
+ */
+static bool same_camera_place(const struct gz_camera *a, const struct gz_camera *b)
 {
-	return memcmp(a->eye, b->eye, sizeof a->eye) == 0 &&
-	       memcmp(a->look_at, b->look_at, sizeof a->look_at) == 0 &&
-	       memcmp(a->up, b->up, sizeof a->up) == 0 && a->height == b->height;
+	bool same = a->height == b->height;
+	for (int i = 0; i < 3; i++)
+		same = same && a->eye[i] == b->eye[i] && a->look_at[i] == b->look_at[i] &&
+		       a->up[i] == b->up[i];
+	return same;
 }
 
-/* From the front, the right and above. Where the volume tells its sides, y points to the front. */
-static void choose_view(struct gz_camera *camera, const struct gz_volume *volume)
+/* From the front, the right and above. In an oriented volume y points to the front. */
+static void choose_first_view(struct gz_camera *camera, const struct gz_volume *volume)
 {
 	const double eye[3] = { 0.8, volume->oriented ? 1.3 : -1.3, 0.5 };
 	memcpy(camera->eye, eye, sizeof eye);
 	gz_camera_fit(camera, volume);
 }
 
-static enum gz_result change_settings(const struct gz_scene_request *request,
-				      struct gz_scene_settings *settings, const struct gz_log *log)
+static enum gz_result change_and_check(const struct gz_scene_request *request,
+				       struct gz_scene_settings *settings, const struct gz_log *log)
 {
 	const enum gz_result result =
 		request->change ? request->change(request->user, settings) : GZ_OK;
@@ -154,7 +158,7 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result != GZ_OK)
 		return result;
 	const struct gz_camera preset = settings.camera;
-	result = change_settings(request, &settings, log);
+	result = change_and_check(request, &settings, log);
 	const struct gz_scene_parts parts = {
 		.name = request->path,
 		.settings = &settings,
@@ -162,8 +166,8 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	};
 	if (result == GZ_OK)
 		result = gz_scene_load_parts(&parts, request->loading, log, out_scene);
-	if (result == GZ_OK && is_same_camera(&settings.camera, &preset))
-		choose_view(&out_scene->settings.camera, &out_scene->volume);
+	if (result == GZ_OK && same_camera_place(&settings.camera, &preset))
+		choose_first_view(&out_scene->settings.camera, &out_scene->volume);
 	return result;
 }
 
@@ -205,7 +209,7 @@ static enum gz_result open_picture(const struct gz_scene_request *request, const
 		return result;
 	char named[GZ_PATH_SIZE];
 	memcpy(named, picture.settings.transfer_file, sizeof named);
-	result = change_settings(request, &picture.settings, log);
+	result = change_and_check(request, &picture.settings, log);
 	if (strcmp(named, picture.settings.transfer_file) != 0)
 		picture.has_transfer = false;
 	const struct gz_scene_parts parts = {
@@ -225,16 +229,20 @@ enum gz_result gz_scene_open(const struct gz_scene_request *request, const struc
 			     struct gz_scene *out_scene)
 {
 	const enum gz_file_kind kind = gz_file_kind_of(request->path);
+	const struct gz_scene_source source = {
+		.path = request->path,
+		.change = request->change,
+		.user = request->user,
+	};
 	if (request->raw && kind != GZ_FILE_RAW) {
-		gz_err(log, "%s: no raw file, so that it takes no layout; leave out --volume.dims",
+		gz_err(log, "%s: not a raw file, so it takes no layout; leave out --volume.dims",
 		       request->path);
 		return GZ_ERR_INVAL;
 	}
 	switch (kind) {
 	case GZ_FILE_SCENE:
 	case GZ_FILE_OTHER:
-		return gz_scene_load_changed(request->path, request->change, request->user,
-					     request->loading, log, out_scene);
+		return gz_scene_load_changed(&source, request->loading, log, out_scene);
 	case GZ_FILE_VOLUME:
 		return open_volume(request, NULL, log, out_scene);
 	case GZ_FILE_RAW:

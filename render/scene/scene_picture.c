@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/data/volume_identity.h"
+#include "render/scene/scene_files.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -29,9 +30,9 @@ void gz_volume_mark(const struct gz_volume *volume, char out_mark[GZ_VOLUME_MARK
 			 identity.crc);
 }
 
-/* The scene in words, with names that are found from everywhere. */
-static enum gz_result describe(const struct gz_scene_saved *saved, const struct gz_log *log,
-			       struct gz_text *text)
+/* The scene as text, with absolute file names. */
+static enum gz_result print_anchored_scene(const struct gz_scene_saved *saved,
+					   const struct gz_log *log, struct gz_text *text)
 {
 	struct gz_scene_settings settings = *saved->settings, read;
 	const struct gz_scene_saved anchored = { &settings, saved->has_display, "" };
@@ -55,10 +56,10 @@ enum gz_result gz_scene_picture_write(const struct gz_image *image,
 	char mark[GZ_VOLUME_MARK_SIZE];
 	struct gz_image_text texts[4] = { { "Software", "gazeview" } };
 	size_t count = 1;
-	if (describe(saved, log, &scene) == GZ_OK)
+	if (print_anchored_scene(saved, log, &scene) == GZ_OK)
 		texts[count++] = (struct gz_image_text) { scene_keyword, scene.bytes };
 	else
-		gz_warn(log, "%s: the picture is written without its scene", path);
+		gz_warn(log, "%s: the picture is saved without its scene", path);
 	if (count > 1 && transfer)
 		gz_transfer_print(transfer, &function);
 	if (function.bytes && !function.failed)
@@ -79,17 +80,16 @@ static enum gz_result find_text(FILE *file, const char *keyword, struct gz_text 
 	return gz_image_find_text(file, keyword, out_text);
 }
 
-static enum gz_result take_scene(FILE *file, const char *path, const struct gz_log *log,
-				 struct gz_scene_picture *picture)
+static enum gz_result read_scene_text(FILE *file, const char *path, const struct gz_log *log,
+				      struct gz_scene_picture *picture)
 {
 	struct gz_text text = { 0 };
 	enum gz_result result = find_text(file, scene_keyword, &text);
 	if (result == GZ_ERR_NOT_FOUND)
-		gz_err(log, "%s: a picture that holds no scene; open one that gazeview saved",
-		       path);
+		gz_err(log, "%s: this picture holds no scene; open one that gazeview saved", path);
 	else if (result != GZ_OK)
-		gz_err(log, "%s: no scene can be read from it (%s); it is damaged, or no PNG", path,
-		       gz_result_text(result));
+		gz_err(log, "%s: no scene can be read (%s); the file is damaged, or not a PNG",
+		       path, gz_result_text(result));
 	else
 		result = gz_scene_parse(path, text.bytes ? text.bytes : "", text.length, log,
 					&picture->settings, &picture->has_display);
@@ -97,8 +97,8 @@ static enum gz_result take_scene(FILE *file, const char *path, const struct gz_l
 	return result;
 }
 
-static enum gz_result take_transfer(FILE *file, const char *path, const struct gz_log *log,
-				    struct gz_scene_picture *picture)
+static enum gz_result read_transfer_text(FILE *file, const char *path, const struct gz_log *log,
+					 struct gz_scene_picture *picture)
 {
 	struct gz_text text = { 0 };
 	enum gz_result result = find_text(file, transfer_keyword, &text);
@@ -110,7 +110,7 @@ static enum gz_result take_transfer(FILE *file, const char *path, const struct g
 	return result == GZ_ERR_NOT_FOUND ? GZ_OK : result;
 }
 
-static void take_mark(FILE *file, struct gz_scene_picture *picture)
+static void read_mark(FILE *file, struct gz_scene_picture *picture)
 {
 	struct gz_text text = { 0 };
 	if (find_text(file, volume_keyword, &text) == GZ_OK)
@@ -128,11 +128,11 @@ enum gz_result gz_scene_picture_read(const char *path, const struct gz_log *log,
 		gz_err(log, "%s: cannot be opened: %s; check the path", path, strerror(saved));
 		return saved == ENOENT ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
 	}
-	enum gz_result result = take_scene(file, path, log, &picture);
+	enum gz_result result = read_scene_text(file, path, log, &picture);
 	if (result == GZ_OK)
-		result = take_transfer(file, path, log, &picture);
+		result = read_transfer_text(file, path, log, &picture);
 	if (result == GZ_OK)
-		take_mark(file, &picture);
+		read_mark(file, &picture);
 	fclose(file);
 	if (result == GZ_OK)
 		*out_picture = picture;
@@ -146,7 +146,7 @@ bool gz_scene_picture_check(const struct gz_scene_picture *picture, const struct
 	gz_volume_mark(volume, mark);
 	if (!picture->mark[0] || strcmp(mark, picture->mark) == 0)
 		return true;
-	gz_warn(log, "%s was made of other data (%s); %s now holds %s", path, picture->mark,
+	gz_warn(log, "%s was made from other data (%s); %s now holds %s", path, picture->mark,
 		picture->settings.volume_file[0] ? picture->settings.volume_file : "the formula",
 		mark);
 	return false;

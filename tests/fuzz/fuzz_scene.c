@@ -1,5 +1,5 @@
-/* Scenes from anywhere, without the files that they name: whatever the bytes, settings that are
- * accepted make a valid camera and display, and are written as a scene that says the same. */
+/* Scenes from untrusted bytes, without the files that they name: settings that are
+ * accepted make a valid camera and display, and are written as a scene with the same values. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

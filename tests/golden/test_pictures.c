@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "render/plan/method.h"
+#include "render/raycast/shared/raycaster.h"
 #include "render/scene/scene.h"
 
 /* Kernels of different instruction sets may differ by one grey level; between lattice points, means

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "render/scene/saved_view.h"
+#include "render/scene/view_settings.h"
 
 static struct gz_camera camera_make(void)
 {

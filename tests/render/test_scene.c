@@ -124,13 +124,19 @@ static const struct refusal refusals[] = {
 	{ "[object a.b]\nvolume = a.nii\n", "s.scene:1: an object has a name" },
 	{ "[object a]\n", "s.scene: object a: give one of volume, labels, mesh and particles" },
 	{ "[object a]\nvolume = a.nii\nmesh = a.ply\n", "s.scene: object a: give one of" },
-	{ "[object a]\nmesh = a.ply\n",
-	  "s.scene: object a: the technique raycast does not show mesh" },
+	{ "[object a]\nmesh = a.ply\n", "s.scene: object a: no technique of this version shows "
+					"mesh; an object may have: volume" },
+	{ "[object a]\nlabels = a.nii\n", "no technique of this version shows labels" },
+	{ "[object a]\nparticles = a.csv\n", "no technique of this version shows particles" },
+	{ "[object a]\nvolume = a.raw\n[volume]\ndims = 1 2 3\n",
+	  "s.scene: volume.dims: a raw file needs both dims and type" },
+	{ "[object a]\nvolume = a.raw\n[volume]\nendian = big\n", "a raw file needs both dims" },
+	{ "[object a]\nvolume = a.nii\nvolume = b.nii\n", "s.scene:3: object a.volume: " },
 	{ "[object a]\nmesh = a.ply\ntransfer = a.tf\n", "only a volume has a transfer function" },
 	{ "[object a]\nvolume = a.nii\nimportance = 2\n",
 	  "s.scene:3: object a.importance: 2 is outside 0 to 1" },
 	{ "[object a]\nvolume = a.nii\ntechnique = magic\n",
-	  "s.scene:3: object a.technique: magic" },
+	  "s.scene:3: object a.technique: magic is not raycast" },
 	{ "[object a]\nvolume = a.nii\ncolour = red\n", "s.scene:3: object a.colour: unknown key" },
 	{ "[object a]\nvolume = a.nii\n[object b]\nvolume = b.nii\n",
 	  "s.scene: 2 volumes are given, and a scene shows one" },
@@ -208,6 +214,50 @@ static void object_with_a_volume_is_loaded_and_listed(void **state)
 	assert_non_null(strstr(log.last, "object tiny: none.nrrd is neither beside the scene"));
 }
 
+static void transfer_file_replaces_that_of_the_object(void **state)
+{
+	(void)state;
+	bool display;
+	struct gz_scene_settings s =
+		parsed("[object a]\nvolume = a.nii\ntransfer = own.tf\n", &display);
+	assert_string_equal(gz_scene_transfer_name(&s), "own.tf");
+	strcpy(s.transfer_file, "other.tf");
+	assert_string_equal(gz_scene_transfer_name(&s), "other.tf");
+	s = parsed("[object a]\nvolume = a.nii\n[transfer]\nfile = b.tf\n", &display);
+	assert_string_equal(gz_scene_transfer_name(&s), "b.tf");
+	s = parsed("[object a]\nvolume = a.nii\n", &display);
+	assert_string_equal(gz_scene_transfer_name(&s), "");
+}
+
+static void settings_differ_by_every_key(void **state)
+{
+	(void)state;
+	bool display;
+	const struct gz_scene_settings s = parsed(SCENE, &display);
+	struct gz_scene_settings other;
+	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
+	for (size_t table = 0; table < GZ_SCENE_TABLE_COUNT; table++) {
+		gz_scene_bind(&other, bindings);
+		for (size_t i = 0; i < bindings[table].count; i++) {
+			const struct gz_option *option = &bindings[table].options[i];
+			unsigned char *value;
+			memcpy(&other, &s, sizeof other);
+			assert_true(gz_scene_settings_same(&s, &other));
+			value = (unsigned char *)bindings[table].target + option->offset;
+			if (option->type == GZ_OPTION_STRING)
+				value[0] = value[0] == 'z' ? 'y' : 'z', value[1] = '\0';
+			else if (option->type == GZ_OPTION_BOOL)
+				*(bool *)value = !*(bool *)value;
+			else if (option->type == GZ_OPTION_DOUBLE)
+				*(double *)(void *)value += 0.25;
+			else
+				*(int *)(void *)value += 1;
+			if (gz_scene_settings_same(&s, &other))
+				fail_msg("%s is not compared", option->key);
+		}
+	}
+}
+
 static void scene_is_loaded_with_what_it_names(void **state)
 {
 	(void)state;
@@ -240,7 +290,7 @@ static void procedural_volume_without_dims_has_128_a_side(void **state)
 	gz_scene_free(&scene);
 }
 
-static void file_is_looked_for_beside_the_scene_then_under_the_data_folder(void **state)
+static void file_is_searched_beside_the_scene_then_under_the_data_folder(void **state)
 {
 	(void)state;
 	static const char text[] = "[volume]\nfile = v.raw\ndims = 2 2 1\ntype = uint8\n"
@@ -325,9 +375,11 @@ TEST_SUITE(scene)
 		cmocka_unit_test(each_refusal_names_place_and_remedy),
 		cmocka_unit_test(object_sections_are_read_with_their_presets),
 		cmocka_unit_test(object_with_a_volume_is_loaded_and_listed),
+		cmocka_unit_test(transfer_file_replaces_that_of_the_object),
+		cmocka_unit_test(settings_differ_by_every_key),
 		cmocka_unit_test(scene_is_loaded_with_what_it_names),
 		cmocka_unit_test(procedural_volume_without_dims_has_128_a_side),
-		cmocka_unit_test(file_is_looked_for_beside_the_scene_then_under_the_data_folder),
+		cmocka_unit_test(file_is_searched_beside_the_scene_then_under_the_data_folder),
 		cmocka_unit_test(missing_files_are_named_with_a_remedy),
 		cmocka_unit_test(broken_parts_break_the_scene_with_one_line),
 	};

@@ -156,8 +156,8 @@ static void layout_for_what_has_one_is_refused(void **state)
 {
 	(void)state;
 	const struct gz_raw_layout layout = { .dims = { 4, 4, 8 }, .spacing = { 1, 1, 1 } };
-	assert_refused(write_nrrd("v.nrrd"), &layout, GZ_ERR_INVAL, "no raw file");
-	assert_refused("a.scene", &layout, GZ_ERR_INVAL, "no raw file");
+	assert_refused(write_nrrd("v.nrrd"), &layout, GZ_ERR_INVAL, "not a raw file");
+	assert_refused("a.scene", &layout, GZ_ERR_INVAL, "not a raw file");
 }
 
 static void what_shows_nothing_is_refused(void **state)
@@ -198,7 +198,7 @@ static void picture_opens_the_scene_that_it_shows(void **state)
 			 voxels, sizeof voxels);
 	const struct gz_scene_request request = { .path = path };
 	assert_int_equal(gz_scene_open(&request, &log.log, &scene), GZ_OK);
-	assert_non_null(strstr(log.last, "was made of other data"));
+	assert_non_null(strstr(log.last, "was made from other data"));
 	gz_scene_free(&scene);
 	unlink(files_path("v.nrrd"));
 	assert_refused(path, NULL, GZ_ERR_NOT_FOUND, "volume.file");

@@ -72,7 +72,7 @@ static void picture_tells_its_scene_and_transfer_function(void **state)
 	assert_int_equal(back.width, 5);
 	((unsigned char *)volume.voxels)[100] ^= 1;
 	assert_false(gz_scene_picture_check(&picture, &volume, path, &log.log));
-	assert_non_null(strstr(log.last, "was made of other data"));
+	assert_non_null(strstr(log.last, "was made from other data"));
 	gz_volume_free(&volume);
 	gz_image_free(&image);
 	gz_image_free(&back);

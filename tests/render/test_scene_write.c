@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "render/scene/scene.h"
+#include "render/scene/scene_files.h"
 #include "render/scene/scene_write.h"
 #include "volume_files.h"
 
@@ -245,6 +247,18 @@ static void objects_are_printed_and_edited_under_their_names(void **state)
 	     "importance = 1\n");
 }
 
+static void scene_saved_over_other_objects_loses_theirs(void **state)
+{
+	(void)state;
+	bool display;
+	struct gz_scene_settings settings = parsed("[object left]\nvolume = a.nii\n", &display);
+	edit("; mine\n[object right]\nvolume = b.nii\n[camera]\nheight = 2\n", &settings, false,
+	     "[object left]\nvolume = a.nii\n");
+	settings = parsed(SCENE, &display);
+	edit("[object right]\nvolume = b.nii\n", &settings, false,
+	     "[volume]\nprocedural = shells\n\n[transfer]\nfile = ramp.tf\n");
+}
+
 static void text_that_is_no_scene_is_not_edited(void **state)
 {
 	(void)state;
@@ -391,6 +405,7 @@ TEST_SUITE(scene_write)
 		cmocka_unit_test(edited_scene_keeps_comments_and_lines_that_are_true),
 		cmocka_unit_test(edited_scene_of_another_volume_loses_what_was_of_the_first),
 		cmocka_unit_test(objects_are_printed_and_edited_under_their_names),
+		cmocka_unit_test(scene_saved_over_other_objects_loses_theirs),
 		cmocka_unit_test(text_that_is_no_scene_is_not_edited),
 		cmocka_unit_test(saved_elsewhere_its_files_are_found),
 		cmocka_unit_test(gaze_log_of_a_saved_scene_is_found_other_sources_stay),

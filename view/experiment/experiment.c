@@ -219,8 +219,12 @@ static enum gz_result check_alternative(struct check *check, struct gz_alternati
 		       check->place, alternative->scene);
 		return GZ_ERR_NOT_FOUND;
 	}
-	enum gz_result result =
-		gz_scene_try(alternative->scene, apply, check, check->log, &settings);
+	const struct gz_scene_source source = {
+		.path = alternative->scene,
+		.change = apply,
+		.user = check,
+	};
+	enum gz_result result = gz_scene_try(&source, check->log, &settings);
 	if (result == GZ_OK)
 		alternative->method = settings.foveation.method;
 	else

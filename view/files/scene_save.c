@@ -42,7 +42,7 @@ void gz_scene_save_suggest(const char *path, char out_path[GZ_PATH_SIZE])
  */
 static bool is_kept(const struct gz_scene_save *save)
 {
-	const char *name = save->scene.settings->transfer_file;
+	const char *name = gz_scene_transfer_name(save->scene.settings);
 	char path[GZ_PATH_SIZE];
 	struct gz_transfer read;
 	if (!save->transfer)

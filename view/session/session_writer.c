@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include "protocol/gaze_log.h"
+#include "render/scene/scene_files.h"
 #include "render/scene/scene_write.h"
 #include "view/session/session.h"
 #include "view/settings/scene_keys.h"

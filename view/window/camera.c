@@ -5,7 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include "render/picture/camera.h"
-#include "render/scene/saved_view.h"
+#include "render/scene/view_settings.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"

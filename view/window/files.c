@@ -291,7 +291,7 @@ static void note_scene_shown(struct gz_window *window)
 	/* A scene that is shown again, as after a failed loading, may have been edited. */
 	if (strcmp(path, state->made_for) != 0 || path[0] == '\0' ||
 	    strcmp(path, state->opening) == 0) {
-		state->made = !scene->settings.transfer_file[0] &&
+		state->made = !gz_scene_transfer_name(&scene->settings)[0] &&
 			      gz_file_kind_by_name(path) != GZ_FILE_PICTURE;
 		state->made_transfer = scene->transfer;
 		snprintf(state->made_for, sizeof state->made_for, "%s", path);

@@ -1,0 +1,376 @@
+#include "render/scene/scene_settings.h"
+
+#include <string.h>
+
+#define GZ_LOG_MODULE "scene"
+
+_Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_RAYS + 2 &&
+		       GZ_RAY_BINDINGS == 3,
+	       "gz_ray_params_bind() fills three tables");
+_Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
+
+static const char *const procedural_names[] = { "none", "shells", "supernova", "chameleon", NULL };
+static const char *const endian_names[] = { "little", "big", NULL };
+static const char *const projection_names[] = { "perspective", "orthographic", NULL };
+
+#define AT(field) offsetof(struct gz_scene_settings, field)
+
+static const struct gz_option volume_options[] = {
+	{ "volume.file", GZ_OPTION_STRING, AT(volume_file), .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, DICOM (.dcm or a folder), "
+		  ".gzb, "
+		  "or raw data; searched beside the scene, then under $GAZECAST_DATA" },
+	{ "volume.procedural", GZ_OPTION_CHOICE, AT(volume_procedural), .choices = procedural_names,
+	  .preset = "none", .help = "volume computed by a formula; needs no file" },
+	{ "volume.dims", GZ_OPTION_INT, AT(dims), 1, GZ_VOLUME_DIM_MAX, .count = 3,
+	  .help = "voxels along x y z; raw files and procedural volumes" },
+	{ "volume.type", GZ_OPTION_CHOICE, AT(type), .choices = gz_raw_type_names,
+	  .help = "voxel type; raw files, and uint8, uint16 or float32 for procedural volumes" },
+	{ "volume.endian", GZ_OPTION_CHOICE, AT(endian), .choices = endian_names,
+	  .preset = "little", .help = "byte order; raw files" },
+	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(spacing), 1e-9, 1e9, .count = 3, .preset = "1 1 1",
+	  .help = "voxel spacing x y z, mm; raw files and procedural volumes" },
+	{ "volume.memory_mib", GZ_OPTION_INT, AT(memory_mib), 0, 1 << 20, .preset = "0",
+	  .help = "memory for the bricks that are shown, MiB; 0 = a quarter of the machine's" },
+};
+
+static const struct gz_option transfer_options[] = {
+	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "transfer function, .tf; searched as volume.file is; without it one is made for "
+		  "the volume" },
+	{ "transfer.also", GZ_OPTION_STRING, AT(transfer_also), .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "further transfer functions for gazebench, separated by blanks" },
+};
+
+static const struct gz_option camera_options[] = {
+	{ "camera.eye", GZ_OPTION_DOUBLE, AT(camera.eye), -1e6, 1e6, .count = 3, .preset = "0 -2 0",
+	  .help = "position of the eye; the volume's longest edge is 1, its centre 0 0 0" },
+	{ "camera.look_at", GZ_OPTION_DOUBLE, AT(camera.look_at), -1e6, 1e6, .count = 3,
+	  .preset = "0 0 0", .help = "point in the picture's centre" },
+	{ "camera.up", GZ_OPTION_DOUBLE, AT(camera.up), -1e6, 1e6, .count = 3, .preset = "0 0 1",
+	  .help = "direction that points up in the picture" },
+	{ "camera.fov_deg", GZ_OPTION_DOUBLE, AT(camera.fov_deg), 0.01, 179, .preset = "40",
+	  .help = "vertical field of view, degrees; perspective" },
+	{ "camera.height", GZ_OPTION_DOUBLE, AT(camera.height), 1e-6, 1e6, .preset = "1.5",
+	  .help = "height of the view, world units; orthographic" },
+	{ "camera.projection", GZ_OPTION_CHOICE, AT(camera.projection), .choices = projection_names,
+	  .preset = "perspective", .help = "projection of the camera" },
+};
+
+static const struct gz_option image_options[] = {
+	{ "render.image_sampling_rate", GZ_OPTION_DOUBLE, AT(image_sampling_rate), 0.1, 4,
+	  .preset = "1", .help = "rays per pixel edge" },
+};
+
+static const struct gz_option display_options[] = {
+	{ "display.px", GZ_OPTION_INT, AT(display.px), 1, 32768, .count = 2,
+	  .help = "width and height of the display, px" },
+	{ "display.mm", GZ_OPTION_DOUBLE, AT(display.mm), 1, 100000, .count = 2,
+	  .help = "width and height of the display, mm" },
+	{ "display.distance_mm", GZ_OPTION_DOUBLE, AT(display.distance_mm), 1, 100000,
+	  .help = "distance from the eye to the display's centre, mm" },
+};
+
+#define BIND(table)                                                     \
+	{                                                               \
+		table, sizeof(table) / sizeof(table)[0], settings, NULL \
+	}
+
+void gz_scene_bind(struct gz_scene_settings *settings,
+		   struct gz_option_binding out_bindings[GZ_SCENE_TABLE_COUNT])
+{
+	const struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT] = {
+		[GZ_SCENE_VOLUME] = BIND(volume_options),
+		[GZ_SCENE_TRANSFER] = BIND(transfer_options),
+		[GZ_SCENE_CAMERA] = BIND(camera_options),
+		[GZ_SCENE_IMAGE] = BIND(image_options),
+		[GZ_SCENE_DISPLAY] = BIND(display_options),
+		[GZ_SCENE_FOVEATION] = { gz_foveation_options, gz_foveation_option_count,
+					 &settings->foveation, NULL },
+		[GZ_SCENE_ATTENTION] = { gz_attention_options, gz_attention_option_count,
+					 &settings->attention, NULL },
+		[GZ_SCENE_TEMPORAL] = { gz_temporal_options, gz_temporal_option_count,
+					&settings->temporal, NULL },
+		[GZ_SCENE_VIEW] = { gz_view_setting_options, gz_view_setting_option_count,
+				    &settings->view, NULL },
+	};
+	memcpy(out_bindings, bindings, sizeof bindings);
+	gz_ray_params_bind(&settings->rays, &out_bindings[GZ_SCENE_RAYS]);
+}
+
+static enum gz_result preset_tables(const struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT])
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < GZ_SCENE_TABLE_COUNT && result == GZ_OK; i++)
+		result = gz_options_preset(&bindings[i]);
+	return result;
+}
+
+enum gz_result gz_scene_settings_preset(struct gz_scene_settings *out_settings)
+{
+	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
+	*out_settings = (struct gz_scene_settings) { 0 };
+	gz_scene_bind(out_settings, bindings);
+	return preset_tables(bindings);
+}
+
+bool gz_scene_settings_same(const struct gz_scene_settings *a, const struct gz_scene_settings *b)
+{
+	struct gz_option_binding of_a[GZ_SCENE_TABLE_COUNT], of_b[GZ_SCENE_TABLE_COUNT];
+	/* Bindings can set what they are bound to; here they only read. */
+	gz_scene_bind((struct gz_scene_settings *)a, of_a);
+	gz_scene_bind((struct gz_scene_settings *)b, of_b);
+	for (size_t i = 0; i < GZ_SCENE_TABLE_COUNT; i++)
+		if (!gz_options_same(of_a[i].options, of_a[i].count, of_a[i].target,
+				     of_b[i].target))
+			return false;
+	return gz_scene_objects_same(&a->objects, &b->objects) &&
+	       gz_spacing_table_same(&a->foveation.table, &b->foveation.table);
+}
+
+int gz_scene_procedural_type(int volume_procedural)
+{
+	static const int raw[GZ_VOXEL_TYPE_COUNT] = {
+		[GZ_VOXEL_U8] = GZ_RAW_UINT8,
+		[GZ_VOXEL_U16] = GZ_RAW_UINT16,
+		[GZ_VOXEL_F32] = GZ_RAW_FLOAT32,
+	};
+	return raw[gz_procedural_type((enum gz_procedural)(volume_procedural - 1))];
+}
+
+bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_type *out_type)
+{
+	*out_type = settings->type == GZ_RAW_UINT8    ? GZ_VOXEL_U8
+		    : settings->type == GZ_RAW_UINT16 ? GZ_VOXEL_U16
+						      : GZ_VOXEL_F32;
+	return *out_type != GZ_VOXEL_F32 || settings->type == GZ_RAW_FLOAT32;
+}
+
+const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings)
+{
+	for (size_t i = 0; i < settings->objects.count; i++)
+		if (settings->objects.items[i].volume[0])
+			return &settings->objects.items[i];
+	return NULL;
+}
+
+const char *gz_scene_transfer_name(const struct gz_scene_settings *settings)
+{
+	const struct gz_scene_object *object = gz_scene_volume_object(settings);
+	if (settings->transfer_file[0] || !object)
+		return settings->transfer_file;
+	return object->transfer;
+}
+
+enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
+				       const struct gz_log *log)
+{
+	struct gz_ray_frame rays;
+	if (gz_camera_rays(&settings->camera, 1, 1, &rays) != GZ_OK) {
+		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
+		return GZ_ERR_FORMAT;
+	}
+	if (gz_saved_views_check(settings->view.saved, name, log) != GZ_OK)
+		return GZ_ERR_FORMAT;
+	if (gz_ray_params_valid(&settings->rays)) {
+		if (!gz_camera_up_counts(&settings->camera))
+			gz_warn(log,
+				"%s: camera.up: 0 0 0 or along the view, so nothing is up; the "
+				"axis "
+				"farthest from the view is used instead",
+				name);
+		return GZ_OK;
+	}
+	const struct gz_clip_box *clip = &settings->rays.clip;
+	bool below = true;
+	for (int axis = 0; axis < 3; axis++)
+		below = below && clip->least[axis] < clip->greatest[axis];
+	gz_err(log, "%s: %s", name,
+	       below ? "light.direction must not be 0 0 0"
+		     : "clip.least must be below clip.greatest along each axis");
+	return GZ_ERR_FORMAT;
+}
+
+/* Most options of a table of which the reader must know whether they are given. */
+enum { GIVEN_MAX = 8 };
+
+_Static_assert(sizeof volume_options / sizeof volume_options[0] <= GIVEN_MAX &&
+		       sizeof camera_options / sizeof camera_options[0] <= GIVEN_MAX,
+	       "a flag for each option");
+
+/* A scene while it is read. */
+struct scene_reader {
+	const char *name;
+	const struct gz_log *log;
+	struct gz_scene_settings *settings;
+	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT + GZ_SCENE_OBJECTS_MAX];
+	size_t binding_count;
+	struct gz_scene_object_table object_tables[GZ_SCENE_OBJECTS_MAX];
+	bool given[GZ_SCENE_DISPLAY + 1][GIVEN_MAX];
+};
+
+static enum gz_result refuse_key(const struct scene_reader *reader, const char *key,
+				 const char *what)
+{
+	gz_err(reader->log, "%s: %s: %s", reader->name, key, what);
+	return GZ_ERR_FORMAT;
+}
+
+/* Preset the settings and bind them, with a table for each object of the text; without a text, of
+ * the file of the reader's name. */
+static enum gz_result bind_reader(struct scene_reader *reader, const char *text, size_t size)
+{
+	struct gz_scene_settings *settings = reader->settings;
+	*settings = (struct gz_scene_settings) { 0 };
+	gz_scene_bind(settings, reader->bindings);
+	for (size_t i = GZ_SCENE_VOLUME; i <= GZ_SCENE_DISPLAY; i++)
+		reader->bindings[i].given = reader->given[i];
+	enum gz_result result = preset_tables(reader->bindings);
+	if (result == GZ_OK)
+		result = gz_scene_objects_scan(reader->name, text, size, reader->log,
+					       &settings->objects);
+	reader->binding_count = GZ_SCENE_TABLE_COUNT;
+	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++)
+		reader->bindings[reader->binding_count++] = gz_scene_object_bind(
+			&settings->objects.items[i], &reader->object_tables[i]);
+	return result;
+}
+
+/* Whether the text gives a key of the tables up to GZ_SCENE_DISPLAY. */
+static bool key_given(const struct scene_reader *reader, const char *key)
+{
+	size_t table = 0;
+	const struct gz_option *option =
+		gz_options_find(reader->bindings, GZ_SCENE_DISPLAY + 1, key, &table);
+	return option && reader->given[table][option - reader->bindings[table].options];
+}
+
+static enum gz_result check_procedural(const struct scene_reader *reader)
+{
+	struct gz_scene_settings *settings = reader->settings;
+	enum gz_voxel_type type;
+	if (!key_given(reader, "volume.type"))
+		settings->type = gz_scene_procedural_type(settings->volume_procedural);
+	if (key_given(reader, "volume.endian"))
+		return refuse_key(reader, "volume.procedural",
+				  "takes dims, type and spacing only; leave out endian");
+	if (!gz_scene_made_type(settings, &type))
+		return refuse_key(reader, "volume.type",
+				  "a procedural volume has uint8, uint16 or float32");
+	return GZ_OK;
+}
+
+/* The layout of a raw file is given as a whole or not at all. */
+static enum gz_result check_raw_layout(const struct scene_reader *reader)
+{
+	const bool dims = key_given(reader, "volume.dims"), type = key_given(reader, "volume.type");
+	const bool any = dims || type || key_given(reader, "volume.endian") ||
+			 key_given(reader, "volume.spacing");
+	if (!any || (dims && type))
+		return GZ_OK;
+	return refuse_key(reader, "volume.dims",
+			  "a raw file needs both dims and type; other files none of them");
+}
+
+static enum gz_result check_volume_keys(const struct scene_reader *reader)
+{
+	const struct gz_scene_settings *settings = reader->settings;
+	const bool file = settings->volume_file[0] != '\0';
+	if (file && settings->volume_procedural)
+		return refuse_key(reader, "volume.file", "given with volume.procedural; keep one");
+	if (settings->volume_procedural)
+		return check_procedural(reader);
+	if (!file && settings->objects.count == 0)
+		return refuse_key(reader, "volume.file",
+				  "not given; name a volume, or set volume.procedural");
+	return check_raw_layout(reader);
+}
+
+/* No technique draws two volumes into one picture. */
+static enum gz_result check_one_volume(const struct scene_reader *reader)
+{
+	const struct gz_scene_settings *settings = reader->settings;
+	size_t volumes = settings->volume_file[0] || settings->volume_procedural;
+	for (size_t i = 0; i < settings->objects.count; i++)
+		volumes += settings->objects.items[i].volume[0] != '\0';
+	if (volumes <= 1)
+		return GZ_OK;
+	gz_err(reader->log, "%s: %zu volumes are given, and a scene shows one; keep one",
+	       reader->name, volumes);
+	return GZ_ERR_FORMAT;
+}
+
+static enum gz_result check_display_keys(const struct scene_reader *reader, bool *out_has_display)
+{
+	static const char *const keys[] = { "display.px", "display.mm", "display.distance_mm" };
+	const char *missing = NULL;
+	int given = 0;
+	for (int i = 0; i < 3; i++) {
+		const bool here = key_given(reader, keys[i]);
+		given += here;
+		missing = here || missing ? missing : keys[i];
+	}
+	*out_has_display = given == 3;
+	if (given == 0 || given == 3)
+		return GZ_OK;
+	return refuse_key(reader, missing, "not given; px, mm and distance_mm go together");
+}
+
+/* Check the keys that depend on each other and on whether they are given. */
+static enum gz_result check_given(const struct scene_reader *reader, bool *out_has_display)
+{
+	enum gz_result result = check_volume_keys(reader);
+	if (result == GZ_OK)
+		result = gz_scene_objects_check(&reader->settings->objects, reader->name,
+						reader->log);
+	if (result == GZ_OK)
+		result = check_one_volume(reader);
+	if (result == GZ_OK)
+		result = check_display_keys(reader, out_has_display);
+	return result;
+}
+
+enum gz_result gz_scene_parse(const char *name, const char *text, size_t size,
+			      const struct gz_log *log, struct gz_scene_settings *out_settings,
+			      bool *out_has_display)
+{
+	struct gz_scene_settings settings;
+	struct scene_reader reader = { .name = name, .log = log, .settings = &settings };
+	bool has_display = false;
+	enum gz_result result = bind_reader(&reader, text, size);
+	if (result == GZ_OK)
+		result = gz_options_read_text(reader.bindings, reader.binding_count, name, text,
+					      size, log);
+	if (result == GZ_OK)
+		result = check_given(&reader, &has_display);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(&settings, name, log);
+	if (result != GZ_OK)
+		return result;
+	*out_settings = settings;
+	*out_has_display = has_display;
+	return GZ_OK;
+}
+
+enum gz_result gz_scene_read(const struct gz_scene_source *source, const struct gz_log *log,
+			     struct gz_scene_settings *out_settings, bool *out_has_display)
+{
+	struct gz_scene_settings settings;
+	struct scene_reader reader = { .name = source->path, .log = log, .settings = &settings };
+	bool has_display = false;
+	enum gz_result result = bind_reader(&reader, NULL, 0);
+	if (result == GZ_OK)
+		result = gz_options_read_file(reader.bindings, reader.binding_count, source->path,
+					      log);
+	if (result == GZ_OK)
+		result = check_given(&reader, &has_display);
+	if (result == GZ_OK && source->change)
+		result = source->change(source->user, &settings);
+	if (result == GZ_OK)
+		result = gz_scene_settings_check(&settings, source->path, log);
+	if (result != GZ_OK)
+		return result;
+	*out_settings = settings;
+	*out_has_display = has_display;
+	return GZ_OK;
+}
