@@ -33,10 +33,11 @@ static void check_condition(const struct gz_condition *condition)
 /* Answer each question at once; texts and blanks take a second a step. */
 static void run_through(const struct gz_experiment *experiment, const struct gz_sequence *sequence)
 {
-	static struct gz_run run; /* of some size */
+	static struct gz_run run; /* too large for the stack */
 	struct gz_run_screen screen;
 	int64_t now_ns = 1;
-	gz_run_begin(&run, experiment, sequence, "1", "", 0, &(struct gz_run_sink) { 0 });
+	const struct gz_run_start start = { experiment, sequence, "1", "", 0, { 0 } };
+	gz_run_begin(&run, &start);
 	for (size_t i = 0; i < 40 && run.phase != GZ_RUN_ENDED; i++) {
 		const struct gz_run_input input = { now_ns, 1, true, true };
 		gz_run_step(&run, &input);

@@ -200,7 +200,7 @@ static void file_that_is_there_is_left_alone(void **state)
 	assert_non_null(before);
 	assert_int_equal(open_answers(&desk, false), GZ_ERR_BUSY);
 	snprintf(expected, sizeof expected,
-		 "%s: is there already, with 1 of 4 trials; go on with it by --resume, or begin "
+		 "%s: already exists, with 1 of 4 trials; continue it with --resume, or start "
 		 "another --session",
 		 desk.path);
 	assert_string_equal(captured.last, expected);
@@ -248,7 +248,7 @@ static void row_that_is_not_whole_comes_again(void **state)
 	assert_int_equal(truncate(desk.path, (off_t)size - 5), 0);
 	assert_int_equal(open_answers(&desk, true), GZ_OK);
 	assert_int_equal(gz_answers_done(desk.answers), 1);
-	assert_non_null(strstr(captured.last, "the last row is not whole; its trial comes again"));
+	assert_non_null(strstr(captured.last, "the last row is incomplete; its trial is repeated"));
 	answer(&desk, 1);
 	gz_answers_close(&desk.answers);
 	assert_int_equal(strlen(content_of(desk.path)), size);
@@ -265,8 +265,8 @@ static void answers_of_another_order_are_not_gone_on_with(void **state)
 	gz_answers_close(&desk.answers);
 	desk.made.experiment.params.seed = 2;
 	assert_int_equal(open_answers(&desk, true), GZ_ERR_FORMAT);
-	assert_non_null(strstr(captured.last, ":2: seed is 1, where this experiment has 2; go on "
-					      "with the file, seed and session"));
+	assert_non_null(strstr(captured.last, ":2: seed is 1, but this experiment has 2; continue "
+					      "with the experiment, seed and session"));
 	desk.made.experiment.params.seed = 1;
 	desk.made.experiment.fingerprint++;
 	assert_int_equal(open_answers(&desk, true), GZ_ERR_FORMAT);
@@ -286,7 +286,7 @@ static void what_is_no_file_of_answers_is_refused(void **state)
 		fclose(file);
 		assert_int_equal(open_answers(&desk, true), GZ_ERR_FORMAT);
 		assert_non_null(
-			strstr(captured.last, ":1: other columns than this version writes"));
+			strstr(captured.last, ":1: the columns differ from those of this version"));
 		assert_string_equal(content_of(desk.path), texts[i]);
 	}
 	get_up(&desk);
@@ -312,7 +312,7 @@ static void file_in_writing_is_not_shared(void **state)
 	other = desk;
 	other.answers = NULL;
 	assert_int_equal(open_answers(&other, true), GZ_ERR_BUSY);
-	assert_non_null(strstr(captured.last, "another gazeview writes it"));
+	assert_non_null(strstr(captured.last, "another gazeview is writing it"));
 	get_up(&desk);
 }
 
@@ -338,9 +338,10 @@ static void folder_that_is_not_there_is_refused(void **state)
 	assert_int_equal(gz_answers_open(&desk.made.experiment, &desk.made.sequence, &request,
 					 &captured.log, &desk.answers),
 			 GZ_ERR_IO);
-	assert_string_equal(captured.last,
-			    "/nowhere/at/all/sub-07_task-sharp_events.tsv: cannot be made: No such "
-			    "file or directory; make room, or give another --answers");
+	assert_string_equal(
+		captured.last,
+		"/nowhere/at/all/sub-07_task-sharp_events.tsv: cannot be created: No such "
+		"file or directory; free some space or choose another --answers");
 	get_up(&desk);
 }
 

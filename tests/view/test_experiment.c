@@ -130,23 +130,21 @@ static void one_interval_is_answered_by_its_answers(void **state)
 static const struct {
 	const char *text, *message;
 } refused[] = {
-	{ "", "/place/e.experiment:1: [experiment] name: not given; letters and digits make one" },
+	{ "", "/place/e.experiment:1: [experiment] name: missing; use letters and digits" },
 	{ "[experiment]\nscene = s\n[trial a]\n",
-	  "/place/e.experiment:1: [experiment] name: not given; letters and digits make one" },
+	  "/place/e.experiment:1: [experiment] name: missing; use letters and digits" },
 	{ "[experiment]\nname = a b\n[trial a]\n",
 	  "/place/e.experiment:2: [experiment] name: only letters and digits are allowed" },
-	{ HEAD,
-	  "/place/e.experiment:2: [experiment] name: no [trial NAME] in the file; write one" },
+	{ HEAD, "/place/e.experiment:2: [experiment] name: the file has no [trial NAME]; add one" },
 	{ "[experiment]\nname = n\n[trial a]\n",
-	  "/place/e.experiment:3: [trial a] scene: not given for a; name a scene's file, as in "
+	  "/place/e.experiment:3: [trial a] scene: missing for a; name a scene file, as in "
 	  "scene = shells.scene" },
 	{ HEAD "[trials a]\n", "/place/e.experiment:4: [trials a]: unknown section; [experiment], "
 			       "[trial NAME] and [block NAME] are allowed" },
-	{ HEAD "[trial ]\n",
-	  "/place/e.experiment:4: [trial ]: no name; letters, digits and _ . + - "
-	  "make one, as in [trial fine]" },
+	{ HEAD "[trial ]\n", "/place/e.experiment:4: [trial ]: not a name; use letters, digits and "
+			     "_ . + -, as in [trial fine]" },
 	{ HEAD "[trial a]\n[trial a]\n",
-	  "/place/e.experiment:5: [trial a]: begun in line 4 already; rename one of them" },
+	  "/place/e.experiment:5: [trial a]: already used in line 4; rename one of them" },
 	{ HEAD "[trial a]\nduration = 3\n",
 	  "/place/e.experiment:5: [trial a] duration: unknown key; did you mean duration_s?" },
 	{ HEAD "[trial a]\nduration_s = 0\n",
@@ -154,47 +152,46 @@ static const struct {
 	{ HEAD "[trial a]\nblank_s = 1\nblank_s = 2\n",
 	  "/place/e.experiment:6: [trial a] blank_s: given twice, first in line 5; keep one" },
 	{ HEAD "[trial a]\na.blank_s = 1\n",
-	  "/place/e.experiment:5: [trial a] a.blank_s: is the same for both alternatives; only "
-	  "scene and a scene's keys may have a. or b. in front" },
+	  "/place/e.experiment:5: [trial a] a.blank_s: applies to both alternatives; only scene "
+	  "and scene keys may have the prefix a. or b." },
 	{ HEAD "[trial a]\nvolume.file = x.nii\n",
-	  "/place/e.experiment:5: [trial a] volume.file: stands in a scene only; name another "
+	  "/place/e.experiment:5: [trial a] volume.file: is allowed in a scene only; use another "
 	  "scene, as in scene = other.scene" },
 	{ HEAD "[trial a]\nb.foveation.method = sharp\n",
 	  "/place/e.experiment:5: [trial a] b.foveation.method: sharp is not standard, mdc, "
 	  "ddc, acuity, mdc3, uniform or table" },
 	{ HEAD "[trial a]\nview.overlay = step\n",
-	  "/place/e.experiment:5: [trial a] view.overlay: is of a window with panels; an "
-	  "experiment shows the picture alone" },
-	{ HEAD "[trial a]\nrepeats = 3\n",
-	  "/place/e.experiment:5: [trial a] repeats: unknown key; docs/experiments.md lists them "
-	  "all" },
-	{ HEAD "[trial a]\nkeys = 1 escape\n",
-	  "/place/e.experiment:5: [trial a] keys: escape is no key; a to z, 0 to 9, left, right, "
-	  "up, down, space and return are allowed" },
+	  "/place/e.experiment:5: [trial a] view.overlay: belongs to a window with panels; an "
+	  "experiment shows only the picture" },
+	{ HEAD "[trial a]\nrepeats = 3\n", "/place/e.experiment:5: [trial a] repeats: unknown key; "
+					   "docs/experiments.md lists all keys" },
+	{ HEAD "[trial a]\nkeys = 1 escape\n", "/place/e.experiment:5: [trial a] keys: escape is "
+					       "not a key; a to z, 0 to 9, left, right, "
+					       "up, down, space and return are allowed" },
 	{ HEAD "[trial a]\nkeys = 1 1\n",
-	  "/place/e.experiment:5: [trial a] keys: 1 stands there twice; keep one" },
+	  "/place/e.experiment:5: [trial a] keys: 1 is given twice; keep one" },
 	{ HEAD "[trial a]\nanswers = yes\n",
 	  "/place/e.experiment:5: [trial a] answers: 1 answers for 2 keys; give one for each" },
 	{ HEAD "[trial a]\ncorrect = first\n",
 	  "/place/e.experiment:5: [trial a] correct: first: a or b is allowed" },
-	{ HEAD "[trial a]\nfeedback = yes\n",
-	  "/place/e.experiment:5: [trial a] feedback: nothing is right or wrong; give correct = as "
-	  "well" },
+	{ HEAD "[trial a]\nfeedback = yes\n", "/place/e.experiment:5: [trial a] feedback: needs a "
+					      "correct answer; set correct as well" },
 	{ HEAD "[trial a]\nintervals = 1\nb.foveation.method = mdc\nkeys = y n\n",
-	  "/place/e.experiment:5: [trial a] intervals: 1, but line 6 is for a second; set "
-	  "intervals = 2, or remove it" },
+	  "/place/e.experiment:5: [trial a] intervals: 1, but line 6 is for a second one; set "
+	  "intervals = 2 or remove it" },
 	{ HEAD "[trial a]\nintervals = 1\nasks = interval\n",
-	  "/place/e.experiment:6: [trial a] asks: interval, but there is one only; set intervals = "
+	  "/place/e.experiment:6: [trial a] asks: interval, but there is only one; set intervals = "
 	  "2 or asks = answer" },
 	{ HEAD "[trial a]\n[block b]\ntrials = a c\n",
 	  "/place/e.experiment:6: [block b] trials: no [trial c]; correct the name" },
 	{ HEAD "[trial a]\n[trial c]\n[block b]\nrepeats = 1000\n[block d]\nrepeats = 1000\n"
 	       "[block e]\nrepeats = 1000\n[block f]\nrepeats = 1000\n[block g]\nrepeats = 1000\n"
 	       "[block h]\n",
-	  "/place/e.experiment:16: [block h] repeats: more than 10000 trials in all; take fewer" },
+	  "/place/e.experiment:16: [block h] repeats: more than 10000 trials in total; reduce "
+	  "them" },
 	{ HEAD "instructions = x\ninstructions_file = y\n[trial a]\n",
-	  "/place/e.experiment:5: [experiment] instructions_file: given with instructions; keep "
-	  "one" },
+	  "/place/e.experiment:5: [experiment] instructions_file: given together with "
+	  "instructions; keep one" },
 	{ HEAD "instructions_file = nowhere.txt\n[trial a]\n",
 	  "/place/e.experiment:4: instructions_file: /place/nowhere.txt cannot be opened: No such "
 	  "file or directory" },

@@ -45,9 +45,15 @@ static void begin_at(struct stage *stage, const char *text, size_t first)
 {
 	*stage = (struct stage) { .now_ns = 1000 * GZ_NS_PER_MS };
 	make_experiment(&stage->made, text);
-	const struct gz_run_sink sink = { stage, take_mark, take_result };
-	gz_run_begin(&stage->run, &stage->made.experiment, &stage->made.sequence, "07", "1", first,
-		     &sink);
+	const struct gz_run_start start = {
+		.experiment = &stage->made.experiment,
+		.sequence = &stage->made.sequence,
+		.participant = "07",
+		.session = "1",
+		.first = first,
+		.sink = { stage, take_mark, take_result },
+	};
+	gz_run_begin(&stage->run, &start);
 }
 
 static void begin(struct stage *stage, const char *text)

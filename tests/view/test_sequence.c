@@ -175,9 +175,8 @@ static void rotated_blocks_begin_one_further_for_each_participant(void **state)
 	struct gz_sequence none;
 	assert_int_equal(gz_sequence_make(&made.experiment, "ann", "", &captured.log, &none),
 			 GZ_ERR_INVAL);
-	assert_string_equal(captured.last, "/place/e.experiment: block_order: rotated goes by the "
-					   "participant's number, and --participant ann is none; "
-					   "give digits");
+	assert_string_equal(captured.last, "/place/e.experiment: block_order: rotated needs a "
+					   "number, and --participant ann is not one; give digits");
 	free_experiment(&made);
 }
 

@@ -184,7 +184,7 @@ class Experiment(WindowCase):
         self.assertEqual(len(kept), 1)
         refused = run(GAZEVIEW, *self.words(), env=self.environment)
         self.assertEqual(refused.returncode, 1)
-        self.assertIn("is there already, with 1 of 4 trials", refused.stderr)
+        self.assertIn("already exists, with 1 of 4 trials", refused.stderr)
         self.assertEqual(self.rows(), kept)
         self.begin("--gaze", "0.5,0.5", "--resume")
         self.answer(self.ended, "space", "1")
@@ -254,7 +254,7 @@ class Experiment(WindowCase):
         self.answer(self.ended, "space")
         said = self.finish(1)
         self.assertIn("4200x100 at image_sampling_rate 4 does not give 1 to 16384 rays a side", said)
-        self.assertIn("its picture cannot be made, so that the experiment ends", said)
+        self.assertIn("its picture cannot be created, so that the experiment ends", said)
         self.assertEqual(said.count("image_sampling_rate 4"), 1, said)
         self.assertEqual(self.rows(), [])
 

@@ -16,7 +16,7 @@ static const struct gz_condition *condition_of(const struct gz_answer_row *row)
 	return row->result->presentation->condition;
 }
 
-/* The alternative of an interval; NULL where there is none. */
+/* The alternative shown in an interval; NULL: the trial has no such interval. */
 static const struct gz_alternative *shown_in(const struct gz_answer_row *row, int interval)
 {
 	const struct gz_condition *condition = condition_of(row);
@@ -270,42 +270,42 @@ PRINTER(print_host_ns)
 
 /* clang-format off */
 const struct gz_answer_column gz_answer_columns[] = {
-	{ "onset", "When the trial's first screen appeared, after the run's first trial began.", "s", NULL, false, print_onset },
-	{ "duration", "From then until the answer, or the end of the wait for it.", "s", NULL, false, print_duration },
-	{ "trial_type", "Name of the trial in the experiment's file.", NULL, NULL, true, print_type },
+	{ "onset", "Time of the trial's first screen, from the start of the run's first trial.", "s", NULL, false, print_onset },
+	{ "duration", "From the onset to the answer, or to the end of the wait for it.", "s", NULL, false, print_duration },
+	{ "trial_type", "Name of the trial in the experiment file.", NULL, NULL, true, print_type },
 	{ "trial", "Number of the trial in the session, from 1.", NULL, NULL, true, print_trial },
-	{ "block", "Name of the block in the experiment's file.", NULL, NULL, true, print_block },
-	{ "practice", "Whether the trial is practice, which does not count.", NULL, "0: it counts | 1: practice", true, print_practice },
-	{ "repetition", "How often the trial has come in its block, from 1.", NULL, NULL, true, print_repetition },
-	{ "order", "Which alternative of the experiment's file was shown in which interval.", NULL, "a: one interval | ab: a first | ba: b first", true, print_order },
-	{ "scene_1", "File of the scene in the first interval.", NULL, NULL, true, print_scene_1 },
+	{ "block", "Name of the block in the experiment file.", NULL, NULL, true, print_block },
+	{ "practice", "Whether the trial is practice.", NULL, "0: counts | 1: practice", true, print_practice },
+	{ "repetition", "Number of the repeat of the trial in its block, from 1.", NULL, NULL, true, print_repetition },
+	{ "order", "Order in which the alternatives were shown.", NULL, "a: one interval | ab: a first | ba: b first", true, print_order },
+	{ "scene_1", "Scene file of the first interval.", NULL, NULL, true, print_scene_1 },
 	{ "method_1", "Foveation method in the first interval.", NULL, NULL, true, print_method_1 },
-	{ "settings_1", "Keys of the scene that the experiment set in the first interval.", NULL, NULL, true, print_settings_1 },
-	{ "scene_2", "File of the scene in the second interval.", NULL, NULL, true, print_scene_2 },
+	{ "settings_1", "Scene keys that the experiment set in the first interval.", NULL, NULL, true, print_settings_1 },
+	{ "scene_2", "Scene file of the second interval.", NULL, NULL, true, print_scene_2 },
 	{ "method_2", "Foveation method in the second interval.", NULL, NULL, true, print_method_2 },
-	{ "settings_2", "Keys of the scene that the experiment set in the second interval.", NULL, NULL, true, print_settings_2 },
-	{ "interval_1_onset", "When the first interval's first frame was shown.", "s", NULL, false, print_onset_1 },
-	{ "interval_1_duration", "Until the next screen was shown.", "s", NULL, false, print_duration_1 },
-	{ "interval_2_onset", "When the second interval's first frame was shown.", "s", NULL, false, print_onset_2 },
-	{ "interval_2_duration", "Until the next screen was shown.", "s", NULL, false, print_duration_2 },
-	{ "question_onset", "When the question was shown.", "s", NULL, false, print_question },
-	{ "response", "The answer, by its name in the experiment's file.", NULL, NULL, false, print_response },
-	{ "response_key", "The key that gave it.", NULL, NULL, false, print_key },
+	{ "settings_2", "Scene keys that the experiment set in the second interval.", NULL, NULL, true, print_settings_2 },
+	{ "interval_1_onset", "Time of the first frame of the first interval.", "s", NULL, false, print_onset_1 },
+	{ "interval_1_duration", "From that frame to the next screen.", "s", NULL, false, print_duration_1 },
+	{ "interval_2_onset", "Time of the first frame of the second interval.", "s", NULL, false, print_onset_2 },
+	{ "interval_2_duration", "From that frame to the next screen.", "s", NULL, false, print_duration_2 },
+	{ "question_onset", "Time the question was shown.", "s", NULL, false, print_question },
+	{ "response", "Name of the answer in the experiment file.", NULL, NULL, false, print_response },
+	{ "response_key", "Key that gave the answer.", NULL, NULL, false, print_key },
 	{ "response_time", "From the question to the answer.", "s", NULL, false, print_response_time },
-	{ "chosen", "The alternative that was shown in the interval answered.", NULL, "a: the first of the file | b: the second", false, print_chosen },
+	{ "chosen", "Alternative shown in the interval that was chosen.", NULL, "a: alternative a | b: alternative b", false, print_chosen },
 	{ "chosen_method", "Foveation method of that alternative.", NULL, NULL, false, print_chosen_method },
-	{ "correct", "Whether the answer was the right one of the experiment's file.", NULL, "0: wrong, or none in time | 1: right", false, print_correct },
-	{ "frames", "Times from frame to frame measured in the intervals.", NULL, NULL, false, print_frames },
-	{ "dropped_frames", "Refreshes of the display in the intervals that showed no new frame.", NULL, NULL, false, print_dropped },
-	{ "median_frame_ms", "Median time from one frame to the next in the intervals.", "ms", NULL, false, print_frame_ms },
-	{ "gaze_loss", "Share of the intervals' time in which the tracker did not see the eye.", NULL, NULL, false, print_gaze_loss },
-	{ "restarts", "How often the trial was interrupted and begun again.", NULL, NULL, false, print_restarts },
+	{ "correct", "Whether the answer was correct according to the experiment file.", NULL, "0: wrong or too late | 1: correct", false, print_correct },
+	{ "frames", "Number of frame times measured in the intervals.", NULL, NULL, false, print_frames },
+	{ "dropped_frames", "Number of display refreshes without a new frame in the intervals.", NULL, NULL, false, print_dropped },
+	{ "median_frame_ms", "Median time between frames in the intervals.", "ms", NULL, false, print_frame_ms },
+	{ "gaze_loss", "Fraction of the intervals in which the tracker did not see the eye.", NULL, NULL, false, print_gaze_loss },
+	{ "restarts", "Number of times the trial was interrupted and restarted.", NULL, NULL, false, print_restarts },
 	{ "participant", "Label of the participant.", NULL, NULL, true, print_participant },
 	{ "session", "Label of the session.", NULL, NULL, true, print_session },
-	{ "run", "How often the session had been begun, from 1; onsets count from each run's own start.", NULL, NULL, false, print_run },
-	{ "seed", "Of the orders that were drawn.", NULL, NULL, true, print_seed },
-	{ "experiment", "Fingerprint of the experiment's file: FNV-1a, 64 bits.", NULL, NULL, true, print_experiment },
-	{ "host_ns", "The trial's onset on the computer's monotonic clock, that of the gaze log.", "ns", NULL, false, print_host_ns },
+	{ "run", "Number of the run of the session, from 1; onsets are relative to the start of each run.", NULL, NULL, false, print_run },
+	{ "seed", "Random seed of the experiment.", NULL, NULL, true, print_seed },
+	{ "experiment", "Fingerprint of the experiment file: 64-bit FNV-1a.", NULL, NULL, true, print_experiment },
+	{ "host_ns", "Onset of the trial on the host's monotonic clock, which the gaze log uses.", "ns", NULL, false, print_host_ns },
 };
 /* clang-format on */
 
@@ -317,7 +317,7 @@ static void set_text(json_t *object, const char *key, const char *text)
 		json_object_set_new(object, key, json_string(text));
 }
 
-/* "a: one | b: two" as an object. */
+/* Convert "a: one | b: two" to an object. */
 static json_t *levels_of(const char *text)
 {
 	json_t *levels = json_object();

@@ -13,7 +13,7 @@
 
 #define GZ_LOG_MODULE "experiment"
 
-/* Largest file that is gone on with, bytes. Chosen: more than the most trials write. */
+/* Largest file to continue, bytes. Chosen: more than the largest number of trials needs. */
 enum { MOST_BYTES = 1 << 26 };
 
 struct gz_answers {
@@ -71,12 +71,12 @@ static struct gz_answer_row answer_row_of(const struct gz_answers *answers,
 
 static enum gz_result refuse_io(const struct gz_answers *answers, const char *what)
 {
-	gz_err(answers->log, "%s: %s: %s; make room, or give another --answers", answers->path,
-	       what, strerror(errno));
+	gz_err(answers->log, "%s: %s: %s; free some space or choose another --answers",
+	       answers->path, what, strerror(errno));
 	return GZ_ERR_IO;
 }
 
-/* All of it, and onto the disk. */
+/* Write the text and flush it to the disk. */
 static enum gz_result append_row(const struct gz_answers *answers, const char *text)
 {
 	size_t size = strlen(text);
@@ -107,10 +107,10 @@ static char *header_text(void)
 	return text;
 }
 
-/* The text of a file that is gone on with. */
+/* The text of a file to continue. */
 struct lines {
 	char *text, *next;
-	size_t size, whole; /* bytes up to the last line's end */
+	size_t size, whole; /* bytes of complete lines */
 	int number;
 };
 
@@ -143,7 +143,7 @@ static enum gz_result read_lines(const struct gz_answers *answers, struct lines 
 	return GZ_OK;
 }
 
-/* The next whole line without its end; NULL behind the last. */
+/* The next complete line without its newline; NULL after the last. */
 static char *next_row(struct lines *lines)
 {
 	if (lines->next >= lines->text + lines->whole)
@@ -160,18 +160,18 @@ static enum gz_result refuse_line(const struct gz_answers *answers, const struct
 				  const char *what)
 {
 	gz_err(answers->log,
-	       "%s:%d: %s; go on with the file, seed and session that it was begun with, or begin "
-	       "another --session",
+	       "%s:%d: %s; continue with the experiment, seed and session it was started with, or "
+	       "start another --session",
 	       answers->path, lines->number, what);
 	return GZ_ERR_FORMAT;
 }
 
-/* Whether a row is what the sequence has there. */
+/* Compare a row with the sequence. */
 static enum gz_result check_row(struct gz_answers *answers, const struct lines *lines, char *line)
 {
 	char expected[GZ_ANSWER_CELL_SIZE], what[256];
 	if (answers->done == answers->sequence->count)
-		return refuse_line(answers, lines, "more rows than there are trials");
+		return refuse_line(answers, lines, "more rows than trials");
 	const struct gz_trial_result result = {
 		.index = answers->done,
 		.presentation = &answers->sequence->presentations[answers->done],
@@ -181,7 +181,7 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 		const struct gz_answer_column *column = &gz_answer_columns[i];
 		char *cell = strsep(&line, "\t");
 		if (!cell)
-			return refuse_line(answers, lines, "a row with cells missing");
+			return refuse_line(answers, lines, "a row has too few cells");
 		if (strcmp(column->name, "run") == 0 && atoi(cell) >= answers->run)
 			answers->run = atoi(cell) + 1;
 		if (!column->identity)
@@ -189,12 +189,12 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 		column->print(&row, expected, sizeof expected);
 		if (strcmp(cell, expected) == 0)
 			continue;
-		snprintf(what, sizeof what, "%s is %.60s, where this experiment has %.60s",
+		snprintf(what, sizeof what, "%s is %.60s, but this experiment has %.60s",
 			 column->name, cell, expected);
 		return refuse_line(answers, lines, what);
 	}
 	answers->done++;
-	return line ? refuse_line(answers, lines, "a row with cells too many") : GZ_OK;
+	return line ? refuse_line(answers, lines, "a row has too many cells") : GZ_OK;
 }
 
 static enum gz_result check_lines(struct gz_answers *answers, struct lines *lines)
@@ -206,20 +206,21 @@ static enum gz_result check_lines(struct gz_answers *answers, struct lines *line
 	enum gz_result result = GZ_OK;
 	if (!line)
 		lines->number = 1;
-	/* What a power cut has left of a header is its beginning. */
+	/* After a power cut the file may hold the beginning of the header. */
 	if (line ? strcmp(line, header) != 0 : strncmp(lines->text, header, lines->size) != 0)
-		result = refuse_line(answers, lines, "other columns than this version writes");
+		result = refuse_line(answers, lines,
+				     "the columns differ from those of this version");
 	free(header);
 	while (result == GZ_OK && (line = next_row(lines)) != NULL)
 		result = check_row(answers, lines, line);
 	return result;
 }
 
-/* What a power cut has left of a row goes. */
+/* Remove the incomplete row that a power cut leaves. */
 static enum gz_result cut_partial_row(const struct gz_answers *answers, const struct lines *lines)
 {
 	if (lines->whole < lines->size) {
-		gz_warn(answers->log, "%s: the last row is not whole; its trial comes again",
+		gz_warn(answers->log, "%s: the last row is incomplete; its trial is repeated",
 			answers->path);
 		if (ftruncate(answers->fd, (off_t)lines->whole) != 0)
 			return refuse_io(answers, "cannot be written");
@@ -237,12 +238,13 @@ static enum gz_result write_header(const struct gz_answers *answers)
 	return result;
 }
 
-/* Two programs that write one file would spoil it. */
+/* Two programs must not write the same file. */
 static enum gz_result lock_answers(const struct gz_answers *answers)
 {
 	if (flock(answers->fd, LOCK_EX | LOCK_NB) == 0)
 		return GZ_OK;
-	gz_err(answers->log, "%s: another gazeview writes it; end that first", answers->path);
+	gz_err(answers->log, "%s: another gazeview is writing it; end that one first",
+	       answers->path);
 	return GZ_ERR_BUSY;
 }
 
@@ -251,8 +253,7 @@ static enum gz_result resume_answers(struct gz_answers *answers)
 	struct lines lines = { 0 };
 	answers->fd = open(answers->path, O_RDWR | O_CLOEXEC);
 	if (answers->fd < 0 && errno == ENOENT) {
-		gz_err(answers->log, "%s: not there, so nothing to go on with; leave out --resume",
-		       answers->path);
+		gz_err(answers->log, "%s: does not exist; leave out --resume", answers->path);
 		return GZ_ERR_NOT_FOUND;
 	}
 	if (answers->fd < 0)
@@ -263,7 +264,7 @@ static enum gz_result resume_answers(struct gz_answers *answers)
 	if (result == GZ_OK)
 		result = check_lines(answers, &lines);
 	if (result == GZ_OK && answers->done == answers->sequence->count) {
-		gz_err(answers->log, "%s: all %zu trials are answered; begin another --session",
+		gz_err(answers->log, "%s: all %zu trials are answered; start another --session",
 		       answers->path, answers->done);
 		result = GZ_ERR_BUSY;
 	}
@@ -275,7 +276,7 @@ static enum gz_result resume_answers(struct gz_answers *answers)
 	return result;
 }
 
-/* Why a file that is there stays as it is. */
+/* Refuse to overwrite an existing file, and log how many trials it has. */
 static enum gz_result refuse_present(const struct gz_answers *answers)
 {
 	struct lines lines = { 0 };
@@ -290,7 +291,7 @@ static enum gz_result refuse_present(const struct gz_answers *answers)
 	if (there.fd >= 0)
 		close(there.fd);
 	gz_err(answers->log,
-	       "%s: is there already, with %zu of %zu trials; go on with it by --resume, or begin "
+	       "%s: already exists, with %zu of %zu trials; continue it with --resume, or start "
 	       "another --session",
 	       answers->path, rows > 0 ? rows - 1 : 0, answers->sequence->count);
 	return GZ_ERR_BUSY;
@@ -302,7 +303,7 @@ static enum gz_result make_new(struct gz_answers *answers)
 	if (answers->fd < 0 && errno == EEXIST)
 		return refuse_present(answers);
 	if (answers->fd < 0)
-		return refuse_io(answers, "cannot be made");
+		return refuse_io(answers, "cannot be created");
 	enum gz_result result = lock_answers(answers);
 	return result == GZ_OK ? write_header(answers) : result;
 }
@@ -313,7 +314,8 @@ static void write_columns(const struct gz_answers *answers)
 	snprintf(path, sizeof path, "%.*s.json", (int)(strlen(answers->path) - strlen(".tsv")),
 		 answers->path);
 	if (gz_answer_columns_write(path, answers->experiment, answers->request.version) != GZ_OK)
-		gz_warn(answers->log, "%s: cannot be written; the answers will be", path);
+		gz_warn(answers->log, "%s: cannot be written; the answers are written without it",
+			path);
 }
 
 enum gz_result gz_answers_open(const struct gz_experiment *experiment,
@@ -335,7 +337,7 @@ enum gz_result gz_answers_open(const struct gz_experiment *experiment,
 	enum gz_result result =
 		gz_answers_path(experiment, request, answers->path, sizeof answers->path);
 	if (result != GZ_OK)
-		gz_err(log, "--answers: the path is too long; give another folder");
+		gz_err(log, "--answers: the path is too long; choose another folder");
 	else
 		result = request->resume ? resume_answers(answers) : make_new(answers);
 	if (result != GZ_OK) {

@@ -102,7 +102,7 @@ void gz_experiment_free(struct gz_experiment *experiment)
 	*experiment = (struct gz_experiment) { 0 };
 }
 
-/* Where a text is named, for messages. */
+/* The section that names a text, for messages. */
 struct place {
 	const struct gz_experiment *experiment;
 	const struct gz_log *log;
@@ -141,7 +141,7 @@ static enum gz_result read_text(const struct place *place, const char *name, cha
 		return GZ_OK;
 	}
 	free(text);
-	snprintf(what, sizeof what, "%s is no text of at most %d bytes", path,
+	snprintf(what, sizeof what, "%s is not a text of at most %d bytes", path,
 		 GZ_EXPERIMENT_TEXT_SIZE - 1);
 	return refuse_text(place, failed ? "cannot be read" : what,
 			   failed ? GZ_ERR_IO : GZ_ERR_FORMAT);
@@ -178,16 +178,16 @@ enum gz_result gz_experiment_read_texts(struct gz_experiment *experiment, const 
 	return result;
 }
 
-/* One alternative in checking. */
+/* One alternative being checked. */
 struct check {
 	const struct gz_experiment *experiment;
 	const struct gz_log *log;
 	const struct gz_condition *condition;
 	int which;
-	char place[GZ_PATH_SIZE + 128]; /* of it in the file, for messages */
+	char place[GZ_PATH_SIZE + 128]; /* its place in the file, for messages */
 };
 
-/* The line that counts most for it: that of its last setting, else of its trial. */
+/* The line for messages: that of the last setting, otherwise of the trial. */
 static int line_of(const struct check *check)
 {
 	const struct gz_alternative *alternative = &check->condition->alternatives[check->which];
@@ -214,8 +214,7 @@ static enum gz_result check_alternative(struct check *check, struct gz_alternati
 		 line_of(check), check->condition->label, 'a' + check->which);
 	if (access(alternative->scene, R_OK) != 0) {
 		gz_err(check->log,
-		       "%s: no scene %s; correct the name, which is beside the "
-		       "experiment",
+		       "%s: no scene %s; correct the name, which is relative to the experiment",
 		       check->place, alternative->scene);
 		return GZ_ERR_NOT_FOUND;
 	}
@@ -228,7 +227,7 @@ static enum gz_result check_alternative(struct check *check, struct gz_alternati
 	if (result == GZ_OK)
 		alternative->method = settings.foveation.method;
 	else
-		gz_err(check->log, "%s: cannot be shown, as said above", check->place);
+		gz_err(check->log, "%s: cannot be shown, see the message above", check->place);
 	return result;
 }
 

@@ -119,19 +119,19 @@ const struct gz_option gz_experiment_options[] = {
 const size_t gz_experiment_option_count =
 	sizeof gz_experiment_options / sizeof gz_experiment_options[0];
 
-/* Longest file read, bytes. Chosen: as settings files. */
+/* Longest file, bytes. Chosen: like other settings files. */
 enum { MOST_BYTES = 1 << 20 };
 
-/* Room for what gz_option_parse() says. */
+/* Size of a message of gz_option_parse(). */
 enum { MESSAGE_SIZE = 512 };
 
-/* A file in reading. */
+/* A file being read. */
 struct reader {
 	struct gz_experiment *experiment;
 	const struct gz_log *log;
-	struct gz_experiment_section *section; /* that lines go into */
+	struct gz_experiment_section *section; /* the current section */
 	bool common_begun;
-	/* What values are tried on. */
+	/* Values are parsed into these to check them. */
 	struct gz_trial_params trial;
 	struct gz_block_params block;
 	struct gz_scene_settings scene;
@@ -154,7 +154,7 @@ static enum gz_result refuse_value(const struct reader *reader, const struct gz_
 	return GZ_ERR_FORMAT;
 }
 
-/* Names go into a table of tab-separated values, and into labels of marks. */
+/* Names become part of tab-separated values and of marks in the gaze log. */
 static bool is_label(const char *text)
 {
 	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -172,7 +172,7 @@ static struct gz_experiment_section *find_section(struct gz_experiment_section *
 	return NULL;
 }
 
-/* A new section of a list that has room for GZ_EXPERIMENT_SECTIONS_MAX. */
+/* Add a section to a list of at most GZ_EXPERIMENT_SECTIONS_MAX. */
 static enum gz_result begin_named(struct reader *reader, const struct gz_ini_item *item,
 				  const char *label, struct gz_experiment_section *sections,
 				  size_t *count)
@@ -182,16 +182,15 @@ static enum gz_result begin_named(struct reader *reader, const struct gz_ini_ite
 	if (!is_label(label))
 		return refuse_experiment_section(
 			reader, item,
-			"no name; letters, digits and _ . + - make one, as in "
-			"[trial fine]");
+			"not a name; use letters, digits and _ . + -, as in [trial fine]");
 	if (first) {
-		snprintf(what, sizeof what, "begun in line %d already; rename one of them",
+		snprintf(what, sizeof what, "already used in line %d; rename one of them",
 			 first->line);
 		return refuse_experiment_section(reader, item, what);
 	}
 	if (*count == GZ_EXPERIMENT_SECTIONS_MAX)
 		return refuse_experiment_section(reader, item,
-						 "more than 256 of these; make several files");
+						 "more than 256 of these; split the file");
 	reader->section = &sections[(*count)++];
 	*reader->section = (struct gz_experiment_section) { .line = item->line };
 	memcpy(reader->section->label, label, strlen(label) + 1);
@@ -210,8 +209,7 @@ static enum gz_result begin_section(struct reader *reader, const struct gz_ini_i
 	if (strcmp(item->section, "experiment") != 0)
 		return refuse_experiment_section(
 			reader, item,
-			"unknown section; [experiment], [trial NAME] and [block "
-			"NAME] are allowed");
+			"unknown section; [experiment], [trial NAME] and [block NAME] are allowed");
 	if (reader->common_begun)
 		return refuse_experiment_section(reader, item, "given twice; keep one");
 	reader->common_begun = true;
@@ -227,7 +225,7 @@ static bool of_trials(const struct reader *reader)
 	       reader->section < experiment->trials + experiment->trial_count;
 }
 
-/* The section's own table over what its values go into; none in a trial. */
+/* The table of the section's own settings; empty in a trial. */
 static struct gz_option_binding own_binding(struct reader *reader)
 {
 	if (reader->section == &reader->experiment->common)
@@ -242,7 +240,7 @@ static struct gz_option_binding own_binding(struct reader *reader)
 
 enum { TABLES_MAX = GZ_VIEW_SCENE_TABLES + 2 };
 
-/* Every table that the section's keys are of: its own, trials', the scene's. */
+/* All tables with keys for the section: its own, the trials', the scene's. */
 static size_t all_tables(struct reader *reader, struct gz_option_binding out_tables[TABLES_MAX])
 {
 	out_tables[0] = own_binding(reader);
@@ -258,17 +256,18 @@ static enum gz_result refuse_unknown(struct reader *reader, const struct gz_ini_
 	struct gz_option_binding tables[TABLES_MAX];
 	size_t count = all_tables(reader, tables);
 	const char *near = gz_options_nearest(tables, count, key);
-	char what[160] = "unknown key; docs/experiments.md lists them all";
+	char what[160] = "unknown key; docs/experiments.md lists all keys";
 	if (strncmp(key, "volume.", 7) == 0 || strncmp(key, "transfer.", 9) == 0 ||
 	    strncmp(key, "display.", 8) == 0)
-		snprintf(what, sizeof what,
-			 "stands in a scene only; name another scene, as in scene = other.scene");
+		snprintf(
+			what, sizeof what,
+			"is allowed in a scene only; use another scene, as in scene = other.scene");
 	else if (near)
 		snprintf(what, sizeof what, "unknown key; did you mean %s?", near);
 	return refuse_value(reader, item, what);
 }
 
-/* Which alternative a key is for; moves it behind "a." or "b.". */
+/* Skip a prefix "a." or "b.". @return its alternative; -1: no prefix */
 static int take_prefix(const char **key)
 {
 	if (((*key)[0] != 'a' && (*key)[0] != 'b') || (*key)[1] != '.')
@@ -278,7 +277,7 @@ static int take_prefix(const char **key)
 	return alternative;
 }
 
-/* Put it into its section, as long as it is there for the first time. */
+/* Add a setting to its section; refuse a repeated one. */
 static enum gz_result keep_setting(struct reader *reader, const struct gz_ini_item *item,
 				   const struct gz_experiment_setting *setting)
 {
@@ -321,15 +320,16 @@ static enum gz_result take_value(struct reader *reader, const struct gz_ini_item
 	if (!option)
 		return refuse_unknown(reader, item, key);
 	if (strncmp(key, "view.", 5) == 0 || strncmp(key, "views.", 6) == 0)
-		return refuse_value(reader, item,
-				    "is of a window with panels; an experiment shows the picture "
-				    "alone");
+		return refuse_value(
+			reader, item,
+			"belongs to a window with panels; an experiment shows only the picture");
 	if (alternative >= 0 && table < 2 && strcmp(key, "scene") != 0)
 		return refuse_value(reader, item,
-				    "is the same for both alternatives; only scene and a scene's "
-				    "keys may have a. or b. in front");
+				    "applies to both alternatives; only scene and scene keys may "
+				    "have the prefix a. or b.");
 	if (has_control(item->value))
-		return refuse_value(reader, item, "a tab or control character; use blanks");
+		return refuse_value(reader, item,
+				    "contains a tab or control character; use blanks");
 	char message[MESSAGE_SIZE];
 	if (gz_option_parse(option, item->value, tables[table].target, message, sizeof message) !=
 	    GZ_OK)
@@ -413,8 +413,9 @@ enum gz_result gz_experiment_load(const char *path, const struct gz_log *log,
 		gz_err(log, "%s: cannot be read: %s", path, strerror(errno));
 		result = GZ_ERR_IO;
 	} else if (size > MOST_BYTES) {
-		gz_err(log, "%s: longer than %d bytes, so no experiment; check the path", path,
-		       MOST_BYTES);
+		gz_err(log,
+		       "%s: longer than %d bytes and therefore not an experiment; check the path",
+		       path, MOST_BYTES);
 		result = GZ_ERR_FORMAT;
 	} else if (text) {
 		result = gz_experiment_parse(path, text, size, log, out_experiment);

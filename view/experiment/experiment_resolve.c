@@ -1,5 +1,5 @@
-/* From the sections of an experiment's file to conditions: what holds for each trial in each block,
- * and whether it goes together. */
+/* Builds conditions from the sections of an experiment file: collects the settings of each trial in
+ * each block and checks them against each other. */
 #include <fnmatch.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 
 #define GZ_LOG_MODULE "experiment"
 
-/* A condition in the making, with the sections that it is made of, the last counting most. */
+/* A condition being built, and its sections; later ones override earlier ones. */
 enum { LEVELS = 3 };
 struct maker {
 	const struct gz_experiment *experiment;
@@ -22,8 +22,8 @@ struct maker {
 	struct gz_condition *condition;
 };
 
-/* The setting that counts; NULL if there is none. One for the alternative comes before one for
- * both in the same section. */
+/* The setting that applies; NULL: none. Within a section, one for the alternative overrides one for
+ * both. */
 static const struct gz_experiment_setting *find_setting(const struct maker *maker, const char *key,
 							int alternative)
 {
@@ -56,7 +56,7 @@ __attribute__((format(printf, 3, 4))) static enum gz_result refuse_trial(const s
 	return GZ_ERR_FORMAT;
 }
 
-/* "\n" in the file is a line break on the screen. */
+/* Replace "\n" by a line break. */
 static void unescape(char *text)
 {
 	char *to = text;
@@ -102,8 +102,7 @@ static enum gz_result take_scene_file(const struct maker *maker, int which)
 	const struct gz_experiment_setting *setting = find_setting(maker, "scene", which);
 	if (!setting || !setting->value[0])
 		return refuse_trial(maker, "scene",
-				    "not given for %s; name a scene's file, as in scene "
-				    "= shells.scene",
+				    "missing for %s; name a scene file, as in scene = shells.scene",
 				    alternative_name(which));
 	if (gz_path_beside(maker->experiment->path, setting->value, alternative->scene,
 			   sizeof alternative->scene) != GZ_OK)
@@ -111,8 +110,7 @@ static enum gz_result take_scene_file(const struct maker *maker, int which)
 	return GZ_OK;
 }
 
-/* Whether another setting of a section that counts more, or of this alternative, has taken its
- * place; it then comes as that one. */
+/* Whether a scene setting applies to the alternative and is not overridden. */
 static bool setting_counts(const struct maker *maker, const struct gz_experiment_setting *setting,
 			   int alternative)
 {
@@ -133,7 +131,7 @@ static enum gz_result take_alternative(const struct maker *maker, int which)
 			if (alternative->setting_count == GZ_EXPERIMENT_SETTINGS_MAX)
 				return refuse_trial(
 					maker, section->settings[i].key,
-					"more than 64 keys of a scene; put them into one");
+					"more than 64 scene keys; put them into a scene");
 			alternative->settings[alternative->setting_count++] = &section->settings[i];
 		}
 	}
@@ -171,15 +169,14 @@ static enum gz_result take_answer_keys(const struct maker *maker)
 	for (size_t i = 0; i < count; i++) {
 		int key = gz_answer_key_of(words[i]);
 		if (key == GZ_KEY_NONE)
-			return refuse_trial(
-				maker, "keys",
-				"%.20s is no key; a to z, 0 to 9, left, right, up, down, "
-				"space and return are allowed",
-				words[i]);
+			return refuse_trial(maker, "keys",
+					    "%.20s is not a key; a to z, 0 to 9, left, right, up, "
+					    "down, space and return are allowed",
+					    words[i]);
 		for (size_t k = 0; k < i; k++)
 			if (condition->answers[k].key == key)
-				return refuse_trial(maker, "keys",
-						    "%s stands there twice; keep one", words[i]);
+				return refuse_trial(maker, "keys", "%s is given twice; keep one",
+						    words[i]);
 		condition->answers[i].key = key;
 		snprintf(condition->answers[i].key_name, sizeof condition->answers[i].key_name,
 			 "%s", words[i]);
@@ -188,7 +185,7 @@ static enum gz_result take_answer_keys(const struct maker *maker)
 	return GZ_OK;
 }
 
-/* What keys stand for where the file does not say. */
+/* Default names of the answers. */
 static void name_answers(struct gz_condition *condition)
 {
 	static const char *const ordinals[] = { "first", "second" };
@@ -214,15 +211,14 @@ static enum gz_result take_answers(const struct maker *maker)
 				    count, condition->answer_count);
 	for (size_t i = 0; i < count; i++) {
 		if (!is_answer(words[i]))
-			return refuse_trial(
-				maker, "answers",
-				"%.60s: letters, digits and _ . + - make a name of at most "
-				"49 bytes",
-				words[i]);
+			return refuse_trial(maker, "answers",
+					    "%.60s: not a name; use letters, digits and _ . + -, "
+					    "at most 49 bytes",
+					    words[i]);
 		for (size_t k = 0; k < i; k++)
 			if (strcmp(condition->answers[k].name, words[i]) == 0)
-				return refuse_trial(maker, "answers",
-						    "%s stands there twice; keep one", words[i]);
+				return refuse_trial(maker, "answers", "%s is given twice; keep one",
+						    words[i]);
 		snprintf(condition->answers[i].name, sizeof condition->answers[i].name, "%s",
 			 words[i]);
 	}
@@ -236,9 +232,9 @@ static enum gz_result check_asks(const struct maker *maker)
 	if (params->asks == GZ_ASKS_AUTO)
 		params->asks = params->intervals == 2 ? GZ_ASKS_INTERVAL : GZ_ASKS_ANSWER;
 	if (params->asks == GZ_ASKS_INTERVAL && params->intervals != 2)
-		return refuse_trial(maker, "asks",
-				    "interval, but there is one only; set intervals = 2 "
-				    "or asks = answer");
+		return refuse_trial(
+			maker, "asks",
+			"interval, but there is only one; set intervals = 2 or asks = answer");
 	if (params->asks == GZ_ASKS_INTERVAL && condition->answer_count < 2)
 		return refuse_trial(maker, "keys", "one key for two intervals; give one for each");
 	return GZ_OK;
@@ -252,7 +248,7 @@ static enum gz_result take_correct(const struct maker *maker)
 	if (!correct[0])
 		return condition->params.feedback
 			       ? refuse_trial(maker, "feedback",
-					      "nothing is right or wrong; give correct = as well")
+					      "needs a correct answer; set correct as well")
 			       : GZ_OK;
 	if (condition->params.asks == GZ_ASKS_INTERVAL) {
 		if (strcmp(correct, "a") != 0 && strcmp(correct, "b") != 0)
@@ -266,18 +262,18 @@ static enum gz_result take_correct(const struct maker *maker)
 	return condition->correct >= 0
 		       ? GZ_OK
 		       : refuse_trial(maker, "correct",
-				      "%.60s is none of the answers; name one of them", correct);
+				      "%.60s is not one of the answers; name one of them", correct);
 }
 
-/* What a trial says of an alternative that it does not have. */
+/* Refuse settings for alternative b in a trial with one interval. */
 static enum gz_result check_second(const struct maker *maker)
 {
 	const struct gz_experiment_section *trial = maker->levels[LEVELS - 1];
 	for (size_t i = 0; i < trial->setting_count; i++)
 		if (trial->settings[i].alternative == 1)
 			return refuse_trial(maker, "intervals",
-					    "1, but line %d is for a second; set intervals = 2, or "
-					    "remove it",
+					    "1, but line %d is for a second one; set intervals = 2 "
+					    "or remove it",
 					    trial->settings[i].line);
 	return GZ_OK;
 }
@@ -299,7 +295,7 @@ static enum gz_result make_condition(const struct maker *maker)
 	return result == GZ_OK ? take_correct(maker) : result;
 }
 
-/* An experiment's blocks in the making. */
+/* An experiment whose blocks are being built. */
 struct resolver {
 	struct gz_experiment *experiment;
 	const struct gz_log *log;
@@ -316,7 +312,7 @@ static enum gz_result refuse_block(const struct resolver *resolver,
 	return GZ_ERR_FORMAT;
 }
 
-/* Mark the trials that a name means. @return whether there is one */
+/* Add the trials that match a name. @return whether any does */
 static bool choose_named(const struct gz_experiment *experiment, const char *name,
 			 size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], size_t *count)
 {
@@ -350,7 +346,7 @@ static enum gz_result choose_trials(const struct resolver *resolver,
 		return refuse_block(resolver, section, "trials", what);
 	}
 	if (count == 0)
-		return refuse_block(resolver, section, "trials", "none named; * means all");
+		return refuse_block(resolver, section, "trials", "no trial named; * matches all");
 	*out_count = count;
 	return GZ_OK;
 }
@@ -404,7 +400,7 @@ static enum gz_result make_block(struct resolver *resolver,
 	enum gz_result result = take_block_params(section, &block->params);
 	if (result == GZ_OK && block->params.instructions[0] && block->params.instructions_file[0])
 		result = refuse_block(resolver, section, "instructions_file",
-				      "given with instructions; keep one");
+				      "given together with instructions; keep one");
 	if (result == GZ_OK)
 		result = choose_trials(resolver, section, &block->params, chosen, &count);
 	if (result != GZ_OK)
@@ -412,7 +408,7 @@ static enum gz_result make_block(struct resolver *resolver,
 	resolver->presentations += count * (size_t)block->params.repeats;
 	if (resolver->presentations > GZ_EXPERIMENT_TRIALS_MAX)
 		return refuse_block(resolver, section, "repeats",
-				    "more than 10000 trials in all; take fewer");
+				    "more than 10000 trials in total; reduce them");
 	block->conditions = calloc(count, sizeof *block->conditions);
 	if (!block->conditions)
 		return GZ_ERR_NO_MEM;
@@ -443,12 +439,12 @@ static enum gz_result check_common(const struct resolver *resolver)
 	if (!params->name[0] || params->name[strspn(params->name, allowed)])
 		return refuse_common(resolver, "name",
 				     params->name[0] ? "only letters and digits are allowed"
-						     : "not given; letters and digits make one");
+						     : "missing; use letters and digits");
 	if (params->instructions[0] && params->instructions_file[0])
 		return refuse_common(resolver, "instructions_file",
-				     "given with instructions; keep one");
+				     "given together with instructions; keep one");
 	if (experiment->trial_count == 0)
-		return refuse_common(resolver, "name", "no [trial NAME] in the file; write one");
+		return refuse_common(resolver, "name", "the file has no [trial NAME]; add one");
 	unescape(params->instructions);
 	unescape(params->goodbye);
 	return GZ_OK;

@@ -9,13 +9,13 @@
 #include "render/plan/method.h"
 #include "view/experiment/experiment.h"
 
-/* Texts before a trial, in their order. */
+/* Texts before a trial, in order. */
 enum page { PAGE_INSTRUCTIONS, PAGE_BLOCK, PAGE_BREAK, PAGE_NONE };
 
-/* Longest label of a mark, with its NUL: within what an annotation takes. */
+/* Size of a mark's label with its NUL: fits into an annotation. */
 enum { LABEL_SIZE = 200 };
 
-/* How long the cross waits for a gaze before it says so (chosen: longer than any blink). */
+/* Time without gaze after which the cross says so. Chosen: longer than a blink. */
 #define GAZE_PATIENCE_NS GZ_NS_PER_S
 
 __attribute__((format(printf, 3, 4))) static void mark(struct gz_run *run, int64_t time_ns,
@@ -65,7 +65,7 @@ static bool page_is_due(const struct gz_run *run, enum page page)
 	return false;
 }
 
-/* The next text before the trial, from @p page on; behind the last one the trial. */
+/* Show the next due text from @p page on, or prepare the trial after the last. */
 static void turn_page(struct gz_run *run, int page)
 {
 	while (page < PAGE_NONE && !page_is_due(run, (enum page)page))
@@ -90,7 +90,7 @@ static void clear_trial(struct gz_run *run, int restarts)
 	run->gaze_missing = false;
 }
 
-/* The trial at the index, with the texts before it; or the end. */
+/* Start the current trial with the texts before it, or finish the experiment. */
 static void begin_trial(struct gz_run *run, int64_t now_ns)
 {
 	clear_trial(run, 0);
@@ -104,18 +104,16 @@ static void begin_trial(struct gz_run *run, int64_t now_ns)
 	enter_phase(run, run->experiment->params.goodbye[0] ? GZ_RUN_TEXT : GZ_RUN_ENDED);
 }
 
-void gz_run_begin(struct gz_run *run, const struct gz_experiment *experiment,
-		  const struct gz_sequence *sequence, const char *participant, const char *session,
-		  size_t first, const struct gz_run_sink *sink)
+void gz_run_begin(struct gz_run *run, const struct gz_run_start *start)
 {
 	*run = (struct gz_run) {
-		.experiment = experiment,
-		.sequence = sequence,
-		.sink = *sink,
-		.participant = participant,
-		.session = session,
-		.index = first,
-		.first = first,
+		.experiment = start->experiment,
+		.sequence = start->sequence,
+		.sink = start->sink,
+		.participant = start->participant,
+		.session = start->session,
+		.index = start->first,
+		.first = start->first,
 	};
 	begin_trial(run, 0);
 }
@@ -126,7 +124,7 @@ static void end_run(struct gz_run *run, enum gz_result result)
 	enter_phase(run, GZ_RUN_ENDED);
 }
 
-/* Median of the times from swap to swap, ms: the middle of its bin. */
+/* Median time between swaps, ms: the centre of its bin. */
 static double median_ms(const struct gz_trial_frames *frames)
 {
 	uint64_t seen = 0;
@@ -138,7 +136,7 @@ static double median_ms(const struct gz_trial_frames *frames)
 	return NAN;
 }
 
-/* What the answer says, by what the question asks. */
+/* Evaluate the answer. */
 static void judge_answer(struct gz_run *run)
 {
 	struct gz_trial_result *trial = &run->trial;
@@ -151,7 +149,7 @@ static void judge_answer(struct gz_run *run)
 		trial->right = trial->answer >= 0 && said == condition->correct;
 }
 
-/* The trial is over, by answer @p answer or, at -1, without one. */
+/* Finish the trial with an answer; -1: none in time. */
 static void finish_trial(struct gz_run *run, int answer, int64_t now_ns)
 {
 	struct gz_trial_result *trial = &run->trial;
@@ -182,7 +180,7 @@ static void finish_trial(struct gz_run *run, int answer, int64_t now_ns)
 		enter_phase(run, GZ_RUN_PAUSE);
 }
 
-/* How long the phase lasts, s. */
+/* Duration of the current phase, s. */
 static double phase_s(const struct gz_run *run)
 {
 	const struct gz_presentation *presentation = run->trial.presentation;
@@ -207,8 +205,8 @@ static double phase_s(const struct gz_run *run)
 	}
 }
 
-/* Whether the frame that is next shown is nearer to the phase's end than the one after. A phase of
- * no length is over before it is shown. */
+/* Whether the next frame is closer to the phase's end than the one after it. A phase of zero length
+ * is over before it is shown. */
 static bool phase_is_over(const struct gz_run *run, const struct gz_run_input *input)
 {
 	double length_s = phase_s(run);
@@ -220,7 +218,7 @@ static bool phase_is_over(const struct gz_run *run, const struct gz_run_input *i
 	return input->now_ns + input->refresh_ns / 2 >= run->shown_ns + length_ns;
 }
 
-/* FIXATION is over; where a gaze is asked for, only once it is there. */
+/* Leave FIXATION; if gaze is required, only once there is some. */
 static void leave_fixation(struct gz_run *run, const struct gz_run_input *input, bool *changed)
 {
 	bool waits = run->experiment->params.gaze == GZ_GAZE_REQUIRED && !input->gaze_there;
@@ -245,7 +243,7 @@ static void leave_interval(struct gz_run *run)
 		enter_phase(run, GZ_RUN_QUESTION);
 }
 
-/* Go one phase on, whose time has come. */
+/* Go to the next phase. */
 static bool advance_phase(struct gz_run *run, const struct gz_run_input *input)
 {
 	bool changed = true;
@@ -288,7 +286,7 @@ bool gz_run_step(struct gz_run *run, const struct gz_run_input *input)
 		return true;
 	}
 	bool changed = false;
-	/* Phases of no length are passed through; none of them follows itself. */
+	/* Skip phases of zero length; none follows itself. */
 	for (int i = 0; i < GZ_RUN_ENDED && phase_is_over(run, input); i++) {
 		enum gz_run_phase before = run->phase;
 		changed = advance_phase(run, input) || changed;
@@ -298,7 +296,7 @@ bool gz_run_step(struct gz_run *run, const struct gz_run_input *input)
 	return changed;
 }
 
-/* The trial is shown for the first time. */
+/* Mark the start of a trial. */
 static void tell_begun(struct gz_run *run, int64_t now_ns)
 {
 	const struct gz_presentation *presentation = run->trial.presentation;
@@ -316,7 +314,7 @@ static void tell_begun(struct gz_run *run, int64_t now_ns)
 							    : "ab");
 }
 
-/* What was shown before is gone with that. */
+/* Mark the end of an interval. */
 static void tell_interval_off(struct gz_run *run, int interval, int64_t now_ns)
 {
 	if (!run->trial.on_ns[interval] || run->trial.off_ns[interval])
@@ -383,7 +381,7 @@ void gz_run_frame(struct gz_run *run, const struct gz_run_frame *frame)
 	frames->dropped += refreshes > 1 ? (uint64_t)refreshes - 1 : 0;
 }
 
-/* Escape: ask once more. */
+/* Escape: ask whether to leave. */
 static void ask_to_leave(struct gz_run *run, int64_t now_ns)
 {
 	run->left = run->phase;
@@ -392,7 +390,7 @@ static void ask_to_leave(struct gz_run *run, int64_t now_ns)
 	enter_phase(run, GZ_RUN_LEAVING);
 }
 
-/* Not left after all: a trial that had begun begins again, one that was over is not seen twice. */
+/* Continue after all: restart an interrupted trial, but do not repeat an answered one. */
 static void stay_after_all(struct gz_run *run, int64_t now_ns)
 {
 	if (run->left == GZ_RUN_TEXT || run->left == GZ_RUN_PREPARE) {
@@ -507,7 +505,7 @@ void gz_run_screen(const struct gz_run *run, struct gz_run_screen *out_screen)
 	else if (run->phase == GZ_RUN_FEEDBACK)
 		screen.text = feedback_text(run);
 	else if (run->phase == GZ_RUN_LEAVING)
-		screen.text = "Leave?\nEscape leaves, Space goes on.";
+		screen.text = "Leave the experiment?\nPress Escape to leave, Space to continue.";
 	else if (run->phase == GZ_RUN_INTERVAL)
 		screen.alternative =
 			&presentation->condition->alternatives[gz_presentation_alternative(

@@ -9,14 +9,14 @@
 
 #define GZ_LOG_MODULE "experiment"
 
-/* A sequence in the making. */
+/* A sequence being made. */
 struct maker {
 	const struct gz_experiment *experiment;
 	struct gz_random random;
 	struct gz_sequence sequence;
 };
 
-/* 0 to below @p end, each as likely. */
+/* A uniform random number from 0 to end - 1. */
 static size_t draw_below(struct gz_random *random, size_t end)
 {
 	return (size_t)(gz_random_uniform(random) * (double)end);
@@ -29,7 +29,7 @@ static void swap_presentations(struct gz_presentation *a, struct gz_presentation
 	*b = kept;
 }
 
-/* Every order is as likely as any other (Fisher and Yates; Durstenfeld 1964). */
+/* All orders are equally likely (Fisher and Yates; Durstenfeld 1964). */
 static void shuffle_trials(struct gz_random *random, struct gz_presentation *items, size_t count)
 {
 	for (size_t i = count; i > 1; i--)
@@ -46,7 +46,7 @@ static void shuffle_blocks(struct gz_random *random, const struct gz_block **blo
 	}
 }
 
-/* Which way round each of a condition's repeats is. An odd one out is drawn. */
+/* Swap half of a condition's repeats, at random. With an odd number, one more or one less. */
 static void balance_order(struct gz_random *random, bool *swapped, size_t count)
 {
 	bool more = gz_random_uniform(random) < 0.5;
@@ -82,7 +82,7 @@ static void draw_ways(struct gz_random *random, const struct gz_condition *condi
 	}
 }
 
-/* Every repeat of every condition, repeat by repeat. */
+/* List all repeats of all conditions, repeat by repeat. */
 static enum gz_result list_block(struct maker *maker, const struct gz_block *block,
 				 struct gz_presentation *items)
 {
@@ -103,7 +103,7 @@ static enum gz_result list_block(struct maker *maker, const struct gz_block *blo
 	return GZ_OK;
 }
 
-/* Repeats are counted as they come. */
+/* Number the presentations, and the repeats of each condition, in their order. */
 static enum gz_result number_repeats(const struct gz_block *block, struct gz_presentation *items,
 				     size_t count)
 {
@@ -141,9 +141,8 @@ static enum gz_result rotate_blocks(const struct gz_experiment *experiment, cons
 	const struct gz_block *rotated[GZ_EXPERIMENT_SECTIONS_MAX];
 	if (!gz_number_parse_whole(participant, &whole) || whole < 0) {
 		gz_err(log,
-		       "%s: block_order: rotated goes by the participant's number, and "
-		       "--participant "
-		       "%s is none; give digits",
+		       "%s: block_order: rotated needs a number, and --participant %s is not one; "
+		       "give digits",
 		       experiment->path, participant);
 		return GZ_ERR_INVAL;
 	}
@@ -154,7 +153,7 @@ static enum gz_result rotate_blocks(const struct gz_experiment *experiment, cons
 	return GZ_OK;
 }
 
-/* The blocks in their order; those of practice stay where they are. */
+/* Order the blocks; practice blocks keep their places. */
 static enum gz_result order_blocks(struct maker *maker, const char *participant,
 				   const struct gz_log *log,
 				   const struct gz_block *out_blocks[GZ_EXPERIMENT_SECTIONS_MAX])
@@ -176,7 +175,7 @@ static enum gz_result order_blocks(struct maker *maker, const char *participant,
 	return result;
 }
 
-/* Participants of one seed have orders of their own, and so have their sessions. */
+/* Each participant and session has an order of its own. */
 static uint64_t stream_of(const char *participant, const char *session)
 {
 	uint64_t hash =
@@ -205,7 +204,7 @@ enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const ch
 	};
 	const size_t count = count_presentations(experiment);
 	if (count == 0)
-		return GZ_ERR_INVAL; /* of an experiment that was not read */
+		return GZ_ERR_INVAL; /* the experiment was not read */
 	maker.sequence.presentations = calloc(count, sizeof *maker.sequence.presentations);
 	if (!maker.sequence.presentations)
 		return GZ_ERR_NO_MEM;

@@ -35,21 +35,18 @@ enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options
 							    : NULL;
 		if (!other)
 			return GZ_OK;
-		gz_err(log, "--%s: of an experiment, and none is given; add --experiment FILE",
-		       other);
+		gz_err(log, "--%s: needs an experiment; add --experiment FILE", other);
 		return GZ_ERR_INVAL;
 	}
 	if (!gz_answers_label_valid(options->participant)) {
 		gz_err(log,
-		       "--participant%s%s: %s; letters and digits make one, as in "
-		       "--participant 07",
+		       "--participant%s%s: %s; give letters and digits, as in --participant 07",
 		       options->participant[0] ? " " : "", options->participant,
-		       options->participant[0] ? "no label" : "not given");
+		       options->participant[0] ? "not a label" : "missing");
 		return GZ_ERR_INVAL;
 	}
 	if (options->session[0] && !gz_answers_label_valid(options->session)) {
-		gz_err(log, "--session %s: no label; letters and digits make one",
-		       options->session);
+		gz_err(log, "--session %s: not a label; give letters and digits", options->session);
 		return GZ_ERR_INVAL;
 	}
 	return GZ_OK;
@@ -94,7 +91,7 @@ enum gz_result gz_sitting_open(const struct gz_sitting_options *options, bool wi
 	return GZ_OK;
 }
 
-/* What a trial takes but for the wait for its answer, s. */
+/* Time of a trial without the wait for its answer, s. */
 static double length_s(const struct gz_condition *condition)
 {
 	const struct gz_trial_params *params = &condition->params;

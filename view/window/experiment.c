@@ -76,12 +76,15 @@ static void begin_trials(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	const struct gz_sitting *sitting = state->sitting;
-	const struct gz_run_sink sink = { .user = window,
-					  .mark = mark_in_log,
-					  .over = write_answer };
-	gz_run_begin(&state->run, &sitting->experiment, &sitting->sequence,
-		     sitting->options->participant, sitting->options->session,
-		     gz_answers_done(sitting->answers), &sink);
+	const struct gz_run_start start = {
+		.experiment = &sitting->experiment,
+		.sequence = &sitting->sequence,
+		.participant = sitting->options->participant,
+		.session = sitting->options->session,
+		.first = gz_answers_done(sitting->answers),
+		.sink = { .user = window, .mark = mark_in_log, .over = write_answer },
+	};
+	gz_run_begin(&state->run, &start);
 }
 
 static enum gz_result open_experiment(struct gz_window *window)
