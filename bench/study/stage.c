@@ -218,7 +218,8 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 
 /* ---- entering ---- */
 
-/* Show the scene by the stage's transfer function on a backend, opened when first asked for. */
+/* Show the scene by the stage's transfer function on a backend, opened when first asked for. The
+ * maker borrows the texts of @p backend. */
 static enum gz_result show_scene(struct gz_stage *stage, const struct gz_study_backend *backend,
 				 struct gz_picture_maker **maker)
 {
@@ -249,15 +250,15 @@ static enum gz_result show_scene(struct gz_stage *stage, const struct gz_study_b
 static enum gz_result show_on_backends(struct gz_stage *stage, const struct gz_study *study,
 				       char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
 {
-	const struct gz_study_backend cpu = { .name = "cpu", .simd = "auto" };
+	static const struct gz_study_backend cpu = { .name = "cpu", .simd = "auto" };
 	enum gz_result result = GZ_OK;
 	if (study->accuracy == GZ_STUDY_ACCURACY_ALL)
 		result = show_scene(stage, &cpu, &stage->cpu);
 	for (size_t i = 0; i < study->backend_count && result == GZ_OK; i++) {
-		struct gz_study_backend backend;
-		result = gz_study_backend_parse(study->backends[i], stage->log, &backend);
+		struct gz_study_backend *backend = &stage->backend_params[i];
+		result = gz_study_backend_parse(study->backends[i], stage->log, backend);
 		if (result == GZ_OK)
-			result = show_scene(stage, &backend, &stage->backends[i]);
+			result = show_scene(stage, backend, &stage->backends[i]);
 		if (result == GZ_OK && out_descriptions)
 			snprintf(out_descriptions[i], GZ_STUDY_TEXT_SIZE, "%s",
 				 gz_picture_maker_describe(stage->backends[i]));

@@ -35,7 +35,9 @@ struct gz_stage {
 	uint64_t transfer_revision;
 	struct gz_picture_maker *cpu; /**< makes converged pictures; may be NULL */
 	struct gz_picture_maker *backends[GZ_STUDY_LIST_MAX]; /**< of the study; may be NULL */
-	struct gz_variant_settings *variants;                 /**< of the study, over the scene's */
+	/** How each of them draws; they borrow its texts. */
+	struct gz_study_backend backend_params[GZ_STUDY_LIST_MAX];
+	struct gz_variant_settings *variants; /**< of the study, over the scene's */
 	size_t entered; /**< place in the study's list of what is shown, and 1; 0 = nothing */
 };
 
