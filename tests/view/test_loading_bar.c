@@ -7,7 +7,7 @@
 
 #include "base/captured_log.h"
 #include "render/data/volume.h"
-#include "view/headless/loading_bar.h"
+#include "view/headless/headless.h"
 
 static volatile sig_atomic_t handed_on;
 

@@ -34,7 +34,7 @@ static enum gz_result check_folder(const char *option, const char *path, const s
 
 /* An existing file may be writable in a folder that is not. Pictures may go to devices and pipes,
  * statistics to a regular file only. */
-static bool is_there(const char *path, bool plain)
+static bool is_writable_file(const char *path, bool plain)
 {
 	struct stat status;
 	return stat(path, &status) == 0 && !S_ISDIR(status.st_mode) &&
@@ -48,11 +48,11 @@ enum gz_result gz_output_check(const struct gz_view_options *options, const stru
 	if (options->out[0])
 		(void)gz_pattern_format(options->out, 0, picture, sizeof picture);
 	enum gz_result r = GZ_OK;
-	if (!is_there(picture, false))
+	if (!is_writable_file(picture, false))
 		r = check_folder("out", picture, log);
-	if (r == GZ_OK && !is_there(options->video, true))
+	if (r == GZ_OK && !is_writable_file(options->video, true))
 		r = check_folder("video", options->video, log);
-	if (r == GZ_OK && !is_there(options->stats, true))
+	if (r == GZ_OK && !is_writable_file(options->stats, true))
 		r = check_folder("stats", options->stats, log);
 	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;
 }

@@ -1,4 +1,5 @@
-#include "view/experiment/answer_columns.h"
+/* The columns of a file of answers, as text and as the JSON file that describes them. */
+#include "view/experiment/experiment_internal.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -311,7 +312,7 @@ const struct gz_answer_column gz_answer_columns[] = {
 
 const size_t gz_answer_column_count = sizeof gz_answer_columns / sizeof gz_answer_columns[0];
 
-static void set_text(json_t *object, const char *key, const char *text)
+static void set_text_member(json_t *object, const char *key, const char *text)
 {
 	if (text && text[0])
 		json_object_set_new(object, key, json_string(text));
@@ -338,8 +339,8 @@ static json_t *levels_of(const char *text)
 static json_t *column_json(const struct gz_answer_column *column)
 {
 	json_t *object = json_object();
-	set_text(object, "Description", column->help);
-	set_text(object, "Units", column->units);
+	set_text_member(object, "Description", column->help);
+	set_text_member(object, "Units", column->units);
 	if (column->levels)
 		json_object_set_new(object, "Levels", levels_of(column->levels));
 	return object;
@@ -350,9 +351,9 @@ static json_t *software_of(const char *version)
 	struct utsname system;
 	json_t *object = json_object();
 	if (uname(&system) == 0)
-		set_text(object, "OperatingSystem", system.sysname);
-	set_text(object, "SoftwareName", "gazeview");
-	set_text(object, "SoftwareVersion", version);
+		set_text_member(object, "OperatingSystem", system.sysname);
+	set_text_member(object, "SoftwareName", "gazeview");
+	set_text_member(object, "SoftwareVersion", version);
 	return object;
 }
 
@@ -360,8 +361,8 @@ enum gz_result gz_answer_columns_write(const char *path, const struct gz_experim
 				       const char *version)
 {
 	json_t *root = json_object();
-	set_text(root, "TaskName", experiment->params.name);
-	set_text(root, "Instructions", experiment->instructions);
+	set_text_member(root, "TaskName", experiment->params.name);
+	set_text_member(root, "Instructions", experiment->instructions);
 	json_object_set_new(root, "StimulusPresentation", software_of(version));
 	for (size_t i = 0; i < gz_answer_column_count; i++)
 		json_object_set_new(root, gz_answer_columns[i].name,

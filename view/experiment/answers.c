@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "view/experiment/answer_columns.h"
+#include "view/experiment/experiment_internal.h"
 
 #define GZ_LOG_MODULE "experiment"
 

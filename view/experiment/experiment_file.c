@@ -345,13 +345,13 @@ static enum gz_result take_value(struct reader *reader, const struct gz_ini_item
 	return keep_setting(reader, item, &setting);
 }
 
-static enum gz_result take_item(void *user, const struct gz_ini_item *item)
+static enum gz_result read_experiment_item(void *user, const struct gz_ini_item *item)
 {
 	struct reader *reader = user;
 	return item->name ? take_value(reader, item) : begin_section(reader, item);
 }
 
-static enum gz_result begin_reading(struct reader *reader, const char *path)
+static enum gz_result begin_experiment_file(struct reader *reader, const char *path)
 {
 	struct gz_experiment *experiment = reader->experiment;
 	*experiment = (struct gz_experiment) { 0 };
@@ -379,9 +379,9 @@ enum gz_result gz_experiment_parse(const char *path, const char *text, size_t si
 		return GZ_ERR_NO_MEM;
 	reader->experiment = &experiment;
 	reader->log = log;
-	enum gz_result result = begin_reading(reader, path);
+	enum gz_result result = begin_experiment_file(reader, path);
 	if (result == GZ_OK)
-		result = gz_ini_read_text(path, text, size, take_item, reader, log);
+		result = gz_ini_read_text(path, text, size, read_experiment_item, reader, log);
 	free(reader);
 	if (result == GZ_OK) {
 		experiment.fingerprint = gz_experiment_hash(GZ_EXPERIMENT_HASH_START, text, size);

@@ -215,7 +215,7 @@ double gz_frame_cost_total_ms(const struct gz_frame_cost *cost)
 	return total;
 }
 
-static int compare_ms(const void *a, const void *b)
+static int compare_costs_ms(const void *a, const void *b)
 {
 	const double one = *(const double *)a, other = *(const double *)b;
 	return (one > other) - (one < other);
@@ -231,7 +231,7 @@ double gz_frame_history_quantile_ms(const struct gz_frame_history *history, enum
 		const struct gz_frame_cost *cost = gz_frame_history_at(history, i);
 		values[i] = part == GZ_FRAME_PARTS ? gz_frame_cost_total_ms(cost) : cost->ms[part];
 	}
-	qsort(values, history->count, sizeof values[0], compare_ms);
+	qsort(values, history->count, sizeof values[0], compare_costs_ms);
 	const double rank = ceil(share * (double)history->count);
 	return values[rank < 1 ? 0 : (size_t)rank - 1];
 }
