@@ -3,7 +3,42 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <zlib.h>
+
+const char *const gz_labelled_stimulus_names[GZ_LABELLED_STIMULI] = { "img", "dots", "video" };
+
+const struct gz_labelled_file gz_labelled_files[GZ_LABELLED_FILES] = {
+	{ GZ_LABELLED_IMAGES, "img_TH34_img_Europe" },
+	{ GZ_LABELLED_IMAGES, "img_TH34_img_vy" },
+	{ GZ_LABELLED_IMAGES, "img_TL20_img_konijntjes" },
+	{ GZ_LABELLED_IMAGES, "img_UH21_img_Rome" },
+	{ GZ_LABELLED_IMAGES, "img_UH29_img_Europe" },
+	{ GZ_LABELLED_IMAGES, "img_UL23_img_Europe" },
+	{ GZ_LABELLED_IMAGES, "img_UL43_img_Rome" },
+	{ GZ_LABELLED_DOTS, "dots_TH20_trial1" },
+	{ GZ_LABELLED_DOTS, "dots_TL22_trial17" },
+	{ GZ_LABELLED_DOTS, "dots_UH21_trial17" },
+	{ GZ_LABELLED_DOTS, "dots_UH25_trial1" },
+	{ GZ_LABELLED_DOTS, "dots_UL27_trial17" },
+	{ GZ_LABELLED_VIDEOS, "video_TH34_video_BergoDalbana" },
+	{ GZ_LABELLED_VIDEOS, "video_TL30_video_triple_jump" },
+	{ GZ_LABELLED_VIDEOS, "video_UH21_video_BergoDalbana" },
+	{ GZ_LABELLED_VIDEOS, "video_UL23_video_triple_jump" },
+};
+
+/* Coder MN corrected one file, which therefore has another name. */
+static gzFile open_recording(const char *data, size_t file, int coder)
+{
+	static const char *const coders[GZ_LABELLED_CODERS] = { "MN", "RA" };
+	const char *name = gz_labelled_files[file].name;
+	const bool corrected = coder == 0 && strcmp(name, "img_UH29_img_Europe") == 0;
+	char path[1024];
+	const int length = snprintf(
+		path, sizeof path, "%s/gaze/andersson2017/%s_labelled_%s%s.tsv.gz", data,
+		corrected ? "fix_UH29_img_Europe" : name, corrected ? "FIX_" : "", coders[coder]);
+	return length < (int)sizeof path ? gzopen(path, "rb") : NULL;
+}
 
 static bool grow(struct gz_labelled_recording *recording, size_t *capacity)
 {
@@ -36,10 +71,11 @@ static void add_labelled(struct gz_labelled_recording *recording, double x_px, d
 	recording->label[i] = label;
 }
 
-bool gz_labelled_recording_read(const char *path, struct gz_labelled_recording *out)
+bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
+				struct gz_labelled_recording *out)
 {
 	*out = (struct gz_labelled_recording) { .display = { { 1024, 768 }, { 380, 300 }, 670 } };
-	gzFile file = gzopen(path, "rb");
+	gzFile file = data ? open_recording(data, recording, coder) : NULL;
 	if (!file)
 		return false;
 	char line[256];
@@ -65,4 +101,21 @@ void gz_labelled_recording_free(struct gz_labelled_recording *recording)
 	free(recording->sample);
 	free(recording->label);
 	*recording = (struct gz_labelled_recording) { .count = 0 };
+}
+
+void gz_agreement_add(struct gz_agreement *agreement, bool ours, bool theirs)
+{
+	agreement->all++;
+	agreement->both += ours && theirs;
+	agreement->ours += ours;
+	agreement->theirs += theirs;
+}
+
+double gz_agreement_kappa(const struct gz_agreement *a)
+{
+	const double neither = a->all - a->ours - a->theirs + a->both;
+	const double observed = (a->both + neither) / a->all;
+	const double chance = (a->ours * a->theirs + (a->all - a->ours) * (a->all - a->theirs)) /
+			      (a->all * a->all);
+	return (observed - chance) / (1 - chance);
 }

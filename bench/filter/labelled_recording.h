@@ -32,9 +32,49 @@ struct gz_labelled_recording {
 	int *label;
 };
 
-/** Read a file; false if it is not there or not such a file. Free with
- * gz_labelled_recording_free(). */
-bool gz_labelled_recording_read(const char *path, struct gz_labelled_recording *out);
+/** What people looked at while they were recorded. */
+enum gz_labelled_stimulus {
+	GZ_LABELLED_IMAGES,
+	GZ_LABELLED_DOTS, /**< that move */
+	GZ_LABELLED_VIDEOS,
+	GZ_LABELLED_STIMULI,
+};
+
+/** "img", "dots", "video". */
+extern const char *const gz_labelled_stimulus_names[GZ_LABELLED_STIMULI];
+
+#define GZ_LABELLED_CODERS 2  /**< people who labelled each recording: "MN" and "RA" */
+#define GZ_LABELLED_FILES  16 /**< recordings, each labelled by both */
+
+/** The recordings, those of one stimulus behind each other. */
+extern const struct gz_labelled_file {
+	enum gz_labelled_stimulus stimulus;
+	const char *name; /**< of its files, without the coder */
+} gz_labelled_files[GZ_LABELLED_FILES];
+
+/**
+ * Read a recording as one of the coders labelled it: GAZECAST_DATA/gaze/andersson2017/...tsv.gz.
+ *
+ * @param data   the folder of data; NULL: there is none
+ * @param file   place in gz_labelled_files
+ * @param coder  0 or 1
+ * @param[out] out  free with gz_labelled_recording_free(), in any case
+ * @return false if it is not there or not such a file
+ */
+bool gz_labelled_recording_read(const char *data, size_t file, int coder,
+				struct gz_labelled_recording *out);
+
+/** Samples for Cohen's kappa, one label against the rest. */
+struct gz_agreement {
+	double both, ours, theirs, all;
+};
+
+/** Count one sample. */
+void gz_agreement_add(struct gz_agreement *agreement, bool ours, bool theirs);
+
+/** Cohen's kappa ("A coefficient of agreement for nominal scales", 1960): 1 for the same labels, 0
+ *  for as many alike as by chance. */
+double gz_agreement_kappa(const struct gz_agreement *agreement);
 
 /** Free what gz_labelled_recording_read() allocated. */
 void gz_labelled_recording_free(struct gz_labelled_recording *recording);

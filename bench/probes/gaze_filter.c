@@ -15,71 +15,40 @@
 #include "bench/filter/track.h"
 #include "bench/report/filter_chart.h"
 
-enum { SKIPPED = 77, STIMULI = 3, CODERS = 2, FILES_MAX = 12 };
+enum { SKIPPED = 77, TRACKS = GZ_LABELLED_FILES * GZ_LABELLED_CODERS };
 
 /* A step between samples of these recordings, ms: 500 Hz. */
 static const double SAMPLE_MS = 2;
 
-static const char *const STIMULUS_NAMES[STIMULI] = { "img", "dots", "video" };
-static const char *const CODER_NAMES[CODERS] = { "MN", "RA" };
-static const char *const FILES[STIMULI][FILES_MAX] = {
-	{ "img_TH34_img_Europe", "img_TH34_img_vy", "img_TL20_img_konijntjes", "img_UH21_img_Rome",
-	  "img_UH29_img_Europe", "img_UL23_img_Europe", "img_UL43_img_Rome" },
-	{ "dots_TH20_trial1", "dots_TL22_trial17", "dots_UH21_trial17", "dots_UH25_trial1",
-	  "dots_UL27_trial17" },
-	{ "video_TH34_video_BergoDalbana", "video_TL30_video_triple_jump",
-	  "video_UH21_video_BergoDalbana", "video_UL23_video_triple_jump" },
-};
-
 /** Whose a recording is. */
 struct origin {
-	int stimulus, coder;
+	enum gz_labelled_stimulus stimulus;
+	int coder;
 };
 
 /** All of them. */
 struct tracks {
-	struct gz_gaze_track track[STIMULI * CODERS * FILES_MAX];
-	struct origin origin[STIMULI * CODERS * FILES_MAX];
+	struct gz_gaze_track track[TRACKS];
+	struct origin origin[TRACKS];
 	size_t count;
 };
 
-/** Counts for Cohen's kappa, one against the rest. */
-struct agreement {
-	double both, ours, theirs, all;
-};
-
-static double kappa(const struct agreement *a)
-{
-	double neither = a->all - a->ours - a->theirs + a->both;
-	double observed = (a->both + neither) / a->all;
-	double chance = (a->ours * a->theirs + (a->all - a->ours) * (a->all - a->theirs)) /
-			(a->all * a->all);
-	return (observed - chance) / (1 - chance);
-}
-
-static void count_agreement(const struct gz_gaze_track *track, enum gz_event event,
-			    struct agreement *agreement)
-{
-	for (size_t i = 0; i < track->count; i++) {
-		const bool ours = track->event[i] == event, theirs = track->label[i] == event;
-		agreement->all++;
-		agreement->ours += ours;
-		agreement->theirs += theirs;
-		agreement->both += ours && theirs;
-	}
-}
-
 /* The mean over both people. */
-static double kappa_of(const struct tracks *tracks, int stimulus, enum gz_event event)
+static double mean_kappa(const struct tracks *tracks, int stimulus, enum gz_event event)
 {
 	double sum = 0;
-	for (int coder = 0; coder < CODERS; coder++) {
-		struct agreement agreement = { .all = 0 };
-		for (size_t f = 0; f < tracks->count; f++)
-			if (tracks->origin[f].stimulus == stimulus &&
-			    tracks->origin[f].coder == coder)
-				count_agreement(&tracks->track[f], event, &agreement);
-		sum += kappa(&agreement) / CODERS;
+	for (int coder = 0; coder < GZ_LABELLED_CODERS; coder++) {
+		struct gz_agreement agreement = { .all = 0 };
+		for (size_t f = 0; f < tracks->count; f++) {
+			const struct gz_gaze_track *track = &tracks->track[f];
+			const struct origin *origin = &tracks->origin[f];
+			if ((int)origin->stimulus != stimulus || origin->coder != coder)
+				continue;
+			for (size_t i = 0; i < track->count; i++)
+				gz_agreement_add(&agreement, track->event[i] == event,
+						 track->label[i] == event);
+		}
+		sum += gz_agreement_kappa(&agreement) / GZ_LABELLED_CODERS;
 	}
 	return sum;
 }
@@ -114,9 +83,9 @@ static void run_velocity_threshold(struct tracks *tracks, double threshold_deg_s
 static void print_agreement(const char *name, const struct tracks *tracks)
 {
 	printf("%-30s", name);
-	for (int i = 0; i < STIMULI; i++)
-		printf("  %.3f %.3f", kappa_of(tracks, i, GZ_EVENT_SACCADE),
-		       kappa_of(tracks, i, GZ_EVENT_FIXATION));
+	for (int i = 0; i < GZ_LABELLED_STIMULI; i++)
+		printf("  %.3f %.3f", mean_kappa(tracks, i, GZ_EVENT_SACCADE),
+		       mean_kappa(tracks, i, GZ_EVENT_FIXATION));
 	putchar('\n');
 }
 
@@ -124,8 +93,8 @@ static void compare_labels(struct tracks *tracks)
 {
 	char name[64];
 	printf("kappa with the coders           ");
-	for (int i = 0; i < STIMULI; i++)
-		printf("%-5s sacc fix  ", STIMULUS_NAMES[i]);
+	for (int i = 0; i < GZ_LABELLED_STIMULI; i++)
+		printf("%-5s sacc fix  ", gz_labelled_stimulus_names[i]);
 	putchar('\n');
 	run_pipeline(tracks, true);
 	print_agreement("pipeline, certain label", tracks);
@@ -139,7 +108,7 @@ static void compare_labels(struct tracks *tracks)
 	}
 }
 
-static void print_sweep(const char *name, const struct gz_sweep *sweep)
+static void print_curve(const char *name, const struct gz_sweep *sweep)
 {
 	for (size_t i = 0; i < sweep->count; i++) {
 		const struct gz_stillness *still = &sweep->point[i].stillness;
@@ -149,7 +118,8 @@ static void print_sweep(const char *name, const struct gz_sweep *sweep)
 	}
 }
 
-static bool draw(const struct gz_sweep *ours, const struct gz_sweep *theirs, const char *folder)
+static bool draw_curves(const struct gz_sweep *ours, const struct gz_sweep *theirs,
+			const char *folder)
 {
 	struct gz_log log;
 	bool drawn;
@@ -163,8 +133,8 @@ static bool compare_curves(struct tracks *tracks, const char *folder)
 	const struct gz_pipeline_params params = gz_pipeline_default_params();
 	const struct gz_sweep ours = gz_sweep_pipeline(tracks->track, tracks->count, &params);
 	const struct gz_sweep theirs = gz_sweep_one_euro(tracks->track, tracks->count);
-	print_sweep("pipeline, smooth_pass_deg", &ours);
-	print_sweep("1 euro, beta", &theirs);
+	print_curve("pipeline, smooth_pass_deg", &ours);
+	print_curve("1 euro, beta", &theirs);
 	const double lag_ms =
 		gz_sweep_first_not_below(&ours, &theirs, SAMPLE_MS, 20 * SAMPLE_MS, SAMPLE_MS / 4);
 	const bool below = isnan(lag_ms);
@@ -174,7 +144,7 @@ static bool compare_curves(struct tracks *tracks, const char *folder)
 	printf("the pipeline's jitter lies below the 1 euro filter's at every lag from 1 to 20 "
 	       "samples: %s\n",
 	       below ? "yes" : "no");
-	return (!folder || draw(&ours, &theirs, folder)) && below;
+	return (!folder || draw_curves(&ours, &theirs, folder)) && below;
 }
 
 static enum gz_event event_of(int label)
@@ -205,31 +175,28 @@ static bool take_recording(const struct gz_labelled_recording *recording, struct
 	return true;
 }
 
-/** One person corrected one file, which then has another name. */
-static bool read_track(const char *data, int coder, const char *file, struct gz_gaze_track *out)
+static bool read_track(const char *data, size_t file, int coder, struct gz_gaze_track *out)
 {
-	char path[1024];
-	bool corrected = coder == 0 && strcmp(file, "img_UH29_img_Europe") == 0;
-	snprintf(path, sizeof path, "%s/gaze/andersson2017/%s_labelled_%s%s.tsv.gz", data,
-		 corrected ? "fix_UH29_img_Europe" : file, corrected ? "FIX_" : "",
-		 CODER_NAMES[coder]);
 	struct gz_labelled_recording recording;
-	const bool taken =
-		gz_labelled_recording_read(path, &recording) && take_recording(&recording, out);
+	const bool taken = gz_labelled_recording_read(data, file, coder, &recording) &&
+			   take_recording(&recording, out);
 	gz_labelled_recording_free(&recording);
 	return taken;
 }
 
-static bool read_tracks(const char *data, struct tracks *tracks)
+/* Those of one stimulus and coder behind each other. */
+static bool read_all_tracks(const char *data, struct tracks *tracks)
 {
-	for (int stimulus = 0; stimulus < STIMULI; stimulus++)
-		for (int coder = 0; coder < CODERS; coder++)
-			for (int f = 0; f < FILES_MAX && FILES[stimulus][f]; f++) {
-				if (!read_track(data, coder, FILES[stimulus][f],
-						&tracks->track[tracks->count]))
+	for (int stimulus = 0; stimulus < GZ_LABELLED_STIMULI; stimulus++)
+		for (int coder = 0; coder < GZ_LABELLED_CODERS; coder++)
+			for (size_t f = 0; f < GZ_LABELLED_FILES; f++) {
+				const struct origin origin = { gz_labelled_files[f].stimulus,
+							       coder };
+				if ((int)origin.stimulus != stimulus)
+					continue;
+				if (!read_track(data, f, coder, &tracks->track[tracks->count]))
 					return false;
-				tracks->origin[tracks->count++] =
-					(struct origin) { stimulus, coder };
+				tracks->origin[tracks->count++] = origin;
 			}
 	return true;
 }
@@ -252,7 +219,7 @@ int main(int argc, char **argv)
 		free_tracks(tracks);
 		return argc == 2 && strcmp(argv[1], "--help") == 0 ? 0 : 2;
 	}
-	if (!data || !read_tracks(data, tracks)) {
+	if (!read_all_tracks(data, tracks)) {
 		printf("no recordings: GAZECAST_DATA must name the folder that has "
 		       "gaze/andersson2017\n");
 		free_tracks(tracks);

@@ -16,7 +16,9 @@
 #include "filter/pipeline.h"
 #include "sim/random.h"
 
-enum { SKIPPED = 77, KINDS = 3, CODERS = 2, TRACKS_MAX = 40, PARTS = 6, SETTINGS = 6 };
+enum { SKIPPED = 77, PARTS = 6, SETTINGS = 6 };
+enum { KINDS = GZ_LABELLED_STIMULI, CODERS = GZ_LABELLED_CODERS };
+enum { TRACKS_MAX = GZ_LABELLED_FILES * CODERS };
 enum { TRIALS_MAX = 2000 };
 
 /** A setting and the range that was searched. */
@@ -32,34 +34,7 @@ static const struct {
 	{ "pipeline.pursuit_begins", 0.5, 0.75 },
 };
 
-static const char *const KIND_NAMES[KINDS] = { "img", "dots", "video" };
-static const char *const CODER_NAMES[CODERS] = { "MN", "RA" };
 static const double WANTED[KINDS] = { 0.70, 0.63, 0.45 };
-
-static const char *const FILES[] = {
-	"img_TH34_img_Europe",
-	"img_TH34_img_vy",
-	"img_TL20_img_konijntjes",
-	"img_UH21_img_Rome",
-	"img_UH29_img_Europe",
-	"img_UL23_img_Europe",
-	"img_UL43_img_Rome",
-	"dots_TH20_trial1",
-	"dots_TL22_trial17",
-	"dots_UH21_trial17",
-	"dots_UH25_trial1",
-	"dots_UL27_trial17",
-	"video_TH34_video_BergoDalbana",
-	"video_TL30_video_triple_jump",
-	"video_UH21_video_BergoDalbana",
-	"video_UL23_video_triple_jump",
-};
-enum { FILE_COUNT = sizeof FILES / sizeof FILES[0] };
-
-/** Counts of fixation, one against the rest. */
-struct counts {
-	double both, ours, theirs, all;
-};
 
 struct track {
 	struct gz_labelled_recording recording;
@@ -69,7 +44,7 @@ struct track {
 /** One choice of settings, between 0 and 1 in its range, and what it gives on each track. */
 struct trial {
 	double place[SETTINGS];
-	struct counts counts[TRACKS_MAX];
+	struct gz_agreement counts[TRACKS_MAX];
 	double score;
 };
 
@@ -80,15 +55,7 @@ struct fit {
 	size_t trial_count;
 };
 
-static double kappa(const struct counts *c)
-{
-	double observed = (c->all - c->ours - c->theirs + 2 * c->both) / c->all;
-	double chance = (c->ours * c->theirs + (c->all - c->ours) * (c->all - c->theirs)) /
-			(c->all * c->all);
-	return (observed - chance) / (1 - chance);
-}
-
-static void add_counts(struct counts *sum, const struct counts *c)
+static void add_counts(struct gz_agreement *sum, const struct gz_agreement *c)
 {
 	sum->both += c->both;
 	sum->ours += c->ours;
@@ -112,10 +79,11 @@ static struct gz_pipeline_params params_at(const double place[SETTINGS])
 	return params;
 }
 
-static struct counts count_track(const struct track *track, const struct gz_pipeline_params *params)
+static struct gz_agreement count_track(const struct track *track,
+				       const struct gz_pipeline_params *params)
 {
 	const struct gz_labelled_recording *r = &track->recording;
-	struct counts c = { .all = (double)r->count };
+	struct gz_agreement c = { .all = (double)r->count };
 	struct gz_pipeline pipeline;
 	gz_pipeline_init(&pipeline, params, &r->display);
 	for (size_t i = 0; i < r->count; i++) {
@@ -137,13 +105,13 @@ static double kind_kappa(const struct fit *fit, const struct trial *trial, int k
 {
 	double sum = 0;
 	for (int coder = 0; coder < CODERS; coder++) {
-		struct counts all = { .all = 0 };
+		struct gz_agreement all = { .all = 0 };
 		for (size_t f = 0; f < fit->track_count; f++) {
 			const struct track *t = &fit->track[f];
 			if (t->kind == kind && t->coder == coder && t->part != without)
 				add_counts(&all, &trial->counts[f]);
 		}
-		sum += kappa(&all) / CODERS;
+		sum += gz_agreement_kappa(&all) / CODERS;
 	}
 	return sum;
 }
@@ -168,7 +136,7 @@ static double nearness(const struct trial *a, const struct trial *b)
 }
 
 /** The trial whose neighbourhood is best. */
-static const struct trial *choose(struct fit *fit, int without)
+static const struct trial *choose_trial(struct fit *fit, int without)
 {
 	const struct trial *best = NULL;
 	double best_score = -INFINITY;
@@ -189,20 +157,15 @@ static const struct trial *choose(struct fit *fit, int without)
 	return best;
 }
 
-static bool read_tracks(const char *data, struct fit *fit)
+static bool read_fit_tracks(const char *data, struct fit *fit)
 {
 	int of_kind[KINDS] = { 0 };
-	for (int f = 0; f < FILE_COUNT; f++) {
-		int kind = FILES[f][0] == 'i' ? 0 : FILES[f][0] == 'd' ? 1 : 2;
-		int part = of_kind[kind]++ % PARTS;
+	for (size_t f = 0; f < GZ_LABELLED_FILES; f++) {
+		const int kind = (int)gz_labelled_files[f].stimulus;
+		const int part = of_kind[kind]++ % PARTS;
 		for (int coder = 0; coder < CODERS; coder++) {
-			bool corrected = coder == 0 && strcmp(FILES[f], "img_UH29_img_Europe") == 0;
-			char path[1024];
-			snprintf(path, sizeof path, "%s/gaze/andersson2017/%s_labelled_%s%s.tsv.gz",
-				 data, corrected ? "fix_UH29_img_Europe" : FILES[f],
-				 corrected ? "FIX_" : "", CODER_NAMES[coder]);
 			struct track *track = &fit->track[fit->track_count];
-			if (!gz_labelled_recording_read(path, &track->recording))
+			if (!gz_labelled_recording_read(data, f, coder, &track->recording))
 				return false;
 			track->kind = kind;
 			track->coder = coder;
@@ -230,7 +193,8 @@ static void print_choice(const struct fit *fit, const struct trial *trial, const
 {
 	printf("%-24s", name);
 	for (int kind = 0; kind < KINDS; kind++)
-		printf(" %s %.3f", KIND_NAMES[kind], kind_kappa(fit, trial, kind, -1));
+		printf(" %s %.3f", gz_labelled_stimulus_names[kind],
+		       kind_kappa(fit, trial, kind, -1));
 	for (int i = 0; i < SETTINGS; i++)
 		printf("  %.3g",
 		       RANGES[i].low + trial->place[i] * (RANGES[i].high - RANGES[i].low));
@@ -242,7 +206,7 @@ static void cross_validate(struct fit *fit)
 {
 	static struct trial held_out;
 	for (int part = 0; part < PARTS; part++) {
-		const struct trial *chosen = choose(fit, part);
+		const struct trial *chosen = choose_trial(fit, part);
 		print_choice(fit, chosen, "without a part: all");
 		for (size_t f = 0; f < fit->track_count; f++)
 			if (fit->track[f].part == part)
@@ -250,7 +214,8 @@ static void cross_validate(struct fit *fit)
 	}
 	printf("%-24s", "on what was kept out:");
 	for (int kind = 0; kind < KINDS; kind++)
-		printf(" %s %.3f", KIND_NAMES[kind], kind_kappa(fit, &held_out, kind, -1));
+		printf(" %s %.3f", gz_labelled_stimulus_names[kind],
+		       kind_kappa(fit, &held_out, kind, -1));
 	putchar('\n');
 }
 
@@ -265,11 +230,11 @@ int main(int argc, char **argv)
 	struct fit *fit = calloc(1, sizeof *fit);
 	if (!fit)
 		return 1;
-	bool ready = data && read_tracks(data, fit);
+	bool ready = read_fit_tracks(data, fit);
 	if (ready) {
 		printf("kappa on fixations, and the settings in the order of the table\n");
 		try_settings(fit, (size_t)trials);
-		print_choice(fit, choose(fit, -1), "chosen on all:");
+		print_choice(fit, choose_trial(fit, -1), "chosen on all:");
 		cross_validate(fit);
 	} else {
 		printf("no recordings: GAZECAST_DATA must name the folder that has "

@@ -17,69 +17,37 @@
 
 enum { SKIPPED = 77, LIST_MAX = 4096 };
 
-/* Stimuli, their files, and the required agreement (docs and README of the recordings). */
+/* The required agreement on each stimulus (docs and README of the recordings). */
 struct stimulus {
 	const char *name;
 	double saccade_kappa, fixation_kappa; /**< wanted */
 	double saccade_floor, fixation_floor; /* slightly below what was achieved before */
 	double noise_most, distance_most;     /* relative to the raw signal */
-	const char *files[12];                /* without the coder; NULL-terminated */
 };
 
-static const struct stimulus STIMULI[] = {
-	{ "img",
+static const struct stimulus STIMULI[GZ_LABELLED_STIMULI] = {
+	[GZ_LABELLED_IMAGES] = { "img",
 	  0.80,
 	  0.70,
 	  0.84,
 	  0.70,
 	  0.20,
-	  1.00,
-	  { "img_TH34_img_Europe", "img_TH34_img_vy", "img_TL20_img_konijntjes",
-	    "img_UH21_img_Rome", "img_UH29_img_Europe", "img_UL23_img_Europe",
-	    "img_UL43_img_Rome" } },
-	{ "dots",
+	  1.00, },
+	[GZ_LABELLED_DOTS] = { "dots",
 	  0.78,
 	  0.63,
 	  0.78,
 	  0.63,
 	  0.31, /* 0.18 without one stretch, which only one of the two people calls a fixation: */
-	  1.00, /* the eye moves 1.7 degrees in it */
-	  { "dots_TH20_trial1", "dots_TL22_trial17", "dots_UH21_trial17", "dots_UH25_trial1",
-	    "dots_UL27_trial17" } },
-	{ "video",
+	  1.00, /* the eye moves 1.7 degrees in it */ },
+	[GZ_LABELLED_VIDEOS] = { "video",
 	  0.79,
 	  0.45,
 	  0.81,
 	  0.48,
 	  0.20,
-	  1.00,
-	  { "video_TH34_video_BergoDalbana", "video_TL30_video_triple_jump",
-	    "video_UH21_video_BergoDalbana", "video_UL23_video_triple_jump" } },
+	  1.00, },
 };
-
-static const char *const CODERS[] = { "MN", "RA" };
-
-/* Counts for Cohen's kappa, one label against the rest. */
-struct agreement {
-	double both, ours, theirs, all;
-};
-
-static void count_agreement(struct agreement *a, bool ours, bool theirs)
-{
-	a->all++;
-	a->both += ours && theirs;
-	a->ours += ours;
-	a->theirs += theirs;
-}
-
-static double kappa(const struct agreement *a)
-{
-	double neither = a->all - a->ours - a->theirs + a->both;
-	double observed = (a->both + neither) / a->all;
-	double chance = (a->ours * a->theirs + (a->all - a->ours) * (a->all - a->theirs)) /
-			(a->all * a->all);
-	return (observed - chance) / (1 - chance);
-}
 
 /* Values whose median is needed. */
 struct list {
@@ -109,7 +77,7 @@ static double list_part(struct list *list, double part)
 
 /* All measures of one stimulus. */
 struct measures {
-	struct agreement at_once[2][2], certain[2][2];         /* per coder; saccade and fixation */
+	struct gz_agreement at_once[2][2], certain[2][2];      /* per coder; saccade and fixation */
 	double raw_step2, smooth_step2, raw_off2, smooth_off2; /* sums over fixations */
 	struct list onset_lag, landing_deg;
 };
@@ -121,10 +89,8 @@ struct run {
 	enum gz_event *at_once, *certain;
 };
 
-static bool run_pipeline(struct run *run, const struct gz_pipeline_params *params, const char *path)
+static bool run_pipeline(struct run *run, const struct gz_pipeline_params *params)
 {
-	if (!gz_labelled_recording_read(path, &run->recording))
-		return false;
 	size_t count = run->recording.count;
 	run->smooth = calloc(count, sizeof *run->smooth);
 	run->raw = calloc(count, sizeof *run->raw);
@@ -160,14 +126,14 @@ static void measure_agreement(const struct run *run, int coder, struct measures 
 {
 	for (size_t i = 0; i < run->recording.count; i++) {
 		int label = run->recording.label[i];
-		count_agreement(&m->at_once[coder][0], run->at_once[i] == GZ_EVENT_SACCADE,
-				label == GZ_HUMAN_SACCADE);
-		count_agreement(&m->at_once[coder][1], run->at_once[i] == GZ_EVENT_FIXATION,
-				label == GZ_HUMAN_FIXATION);
-		count_agreement(&m->certain[coder][0], run->certain[i] == GZ_EVENT_SACCADE,
-				label == GZ_HUMAN_SACCADE);
-		count_agreement(&m->certain[coder][1], run->certain[i] == GZ_EVENT_FIXATION,
-				label == GZ_HUMAN_FIXATION);
+		gz_agreement_add(&m->at_once[coder][0], run->at_once[i] == GZ_EVENT_SACCADE,
+				 label == GZ_HUMAN_SACCADE);
+		gz_agreement_add(&m->at_once[coder][1], run->at_once[i] == GZ_EVENT_FIXATION,
+				 label == GZ_HUMAN_FIXATION);
+		gz_agreement_add(&m->certain[coder][0], run->certain[i] == GZ_EVENT_SACCADE,
+				 label == GZ_HUMAN_SACCADE);
+		gz_agreement_add(&m->certain[coder][1], run->certain[i] == GZ_EVENT_FIXATION,
+				 label == GZ_HUMAN_FIXATION);
 	}
 }
 
@@ -269,33 +235,24 @@ static void measure_stretches(const struct run *run, struct measures *m)
 	}
 }
 
-/* Coder MN corrected one file, which therefore has another name. */
-static void path_of(const char *folder, const char *file, const char *coder, char *path,
-		    size_t size)
-{
-	bool corrected = strcmp(file, "img_UH29_img_Europe") == 0 && strcmp(coder, "MN") == 0;
-	if (corrected)
-		snprintf(path, size, "%s/fix_UH29_img_Europe_labelled_FIX_MN.tsv.gz", folder);
-	else
-		snprintf(path, size, "%s/%s_labelled_%s.tsv.gz", folder, file, coder);
-}
-
-static bool measure_stimulus(const struct stimulus *stimulus, const char *folder,
+static bool measure_stimulus(int stimulus, const char *data,
 			     const struct gz_pipeline_params *params, struct measures *m)
 {
-	for (int coder = 0; coder < 2; coder++) {
-		for (int i = 0; stimulus->files[i]; i++) {
-			char path[1024];
+	for (int coder = 0; coder < GZ_LABELLED_CODERS; coder++) {
+		for (size_t i = 0; i < GZ_LABELLED_FILES; i++) {
 			struct run run = { .smooth = NULL };
-			path_of(folder, stimulus->files[i], CODERS[coder], path, sizeof path);
-			bool ran = run_pipeline(&run, params, path);
+			if ((int)gz_labelled_files[i].stimulus != stimulus)
+				continue;
+			bool ran = gz_labelled_recording_read(data, i, coder, &run.recording) &&
+				   run_pipeline(&run, params);
 			if (ran) {
 				measure_agreement(&run, coder, m);
 				measure_stretches(&run, m);
 			}
 			run_free(&run);
 			if (!ran) {
-				fprintf(stderr, "cannot read %s\n", path);
+				fprintf(stderr, "%s: cannot read %s\n", data,
+					gz_labelled_files[i].name);
 				return false;
 			}
 		}
@@ -303,9 +260,9 @@ static bool measure_stimulus(const struct stimulus *stimulus, const char *folder
 	return true;
 }
 
-static double mean_kappa(struct agreement a[2][2], int event)
+static double mean_kappa(struct gz_agreement a[2][2], int event)
 {
-	return (kappa(&a[0][event]) + kappa(&a[1][event])) / 2;
+	return (gz_agreement_kappa(&a[0][event]) + gz_agreement_kappa(&a[1][event])) / 2;
 }
 
 static void print_measures(const struct stimulus *stimulus, struct measures *m)
@@ -355,12 +312,10 @@ TEST_SUITE(recordings)
 	if (gz_options_read_arguments(&binding, 1, argc, argv, NULL, &log) != GZ_OK)
 		return 2;
 	int failures = 0;
-	char folder[512];
-	snprintf(folder, sizeof folder, "%s/gaze/andersson2017", data);
-	for (size_t i = 0; i < sizeof STIMULI / sizeof STIMULI[0]; i++) {
+	for (int i = 0; i < GZ_LABELLED_STIMULI; i++) {
 		static struct measures m;
 		m = (struct measures) { .raw_step2 = 0 };
-		if (!measure_stimulus(&STIMULI[i], folder, &params, &m))
+		if (!measure_stimulus(i, data, &params, &m))
 			return SKIPPED;
 		print_measures(&STIMULI[i], &m);
 		failures += !good_enough(&STIMULI[i], &m);
