@@ -28,7 +28,7 @@ const struct gz_labelled_file gz_labelled_files[GZ_LABELLED_FILES] = {
 };
 
 /* Coder MN corrected one file, which therefore has another name. */
-static gzFile open_recording(const char *data, size_t file, int coder)
+static gzFile open_labelled(const char *data, size_t file, int coder)
 {
 	static const char *const coders[GZ_LABELLED_CODERS] = { "MN", "RA" };
 	const char *name = gz_labelled_files[file].name;
@@ -75,7 +75,7 @@ bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
 				struct gz_labelled_recording *out)
 {
 	*out = (struct gz_labelled_recording) { .display = { { 1024, 768 }, { 380, 300 }, 670 } };
-	gzFile file = data ? open_recording(data, recording, coder) : NULL;
+	gzFile file = data ? open_labelled(data, recording, coder) : NULL;
 	if (!file)
 		return false;
 	char line[256];

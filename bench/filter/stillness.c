@@ -26,7 +26,7 @@ static size_t stretch_end(const struct gz_gaze_track *track, size_t begin)
 	return end;
 }
 
-static double squared(double x)
+static double square_of(double x)
 {
 	return x * x;
 }
@@ -37,12 +37,13 @@ static void add_steps(const struct gz_gaze_track *track, size_t begin, size_t en
 	for (size_t i = begin; i < end; i++) {
 		if (!good_at(track, i))
 			continue;
-		sums->raw_off2 += squared(apart_deg(track, track->raw[i], centre));
-		sums->our_off2 += squared(apart_deg(track, track->point[i], centre));
+		sums->raw_off2 += square_of(apart_deg(track, track->raw[i], centre));
+		sums->our_off2 += square_of(apart_deg(track, track->point[i], centre));
 		if (i == begin || !good_at(track, i - 1))
 			continue;
-		sums->raw_step2 += squared(apart_deg(track, track->raw[i], track->raw[i - 1]));
-		sums->our_step2 += squared(apart_deg(track, track->point[i], track->point[i - 1]));
+		sums->raw_step2 += square_of(apart_deg(track, track->raw[i], track->raw[i - 1]));
+		sums->our_step2 +=
+			square_of(apart_deg(track, track->point[i], track->point[i - 1]));
 	}
 }
 
@@ -77,7 +78,7 @@ static double along_deg(const struct gz_gaze_track *track, const struct way *way
 {
 	const double from_deg = apart_deg(track, point, way->from);
 	const double to_deg = apart_deg(track, point, way->to);
-	return (squared(from_deg) + squared(way->deg) - squared(to_deg)) / (2 * way->deg);
+	return (square_of(from_deg) + square_of(way->deg) - square_of(to_deg)) / (2 * way->deg);
 }
 
 /* When a path has first done so much of a way, in ms from sample begin on, between samples too; a

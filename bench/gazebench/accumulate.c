@@ -121,8 +121,8 @@ static void print_row(const struct gz_accumulation_row *row)
 	       row->frame_ms, row->errors.psnr_db, row->errors.flip, row->errors.perceived_flip);
 }
 
-static enum gz_result measure_variant(struct session *session,
-				      const struct gz_accumulation_request *at)
+static enum gz_result accumulate_variant(struct session *session,
+					 const struct gz_accumulation_request *at)
 {
 	const struct gz_study *study = &session->study;
 	struct gz_accumulation_row rows[GZ_ACCUMULATION_ROWS];
@@ -144,7 +144,7 @@ static enum gz_result measure_variant(struct session *session,
 	return GZ_OK;
 }
 
-static enum gz_result measure_all(struct session *session)
+static enum gz_result accumulate_all(struct session *session)
 {
 	const struct gz_study *study = &session->study;
 	struct gz_accumulation_request at = { .study = study,
@@ -155,7 +155,7 @@ static enum gz_result measure_all(struct session *session)
 		for (at.backend = 0; at.backend < study->backend_count; at.backend++)
 			for (at.variant = 0; at.variant < study->variant_count && result == GZ_OK;
 			     at.variant++)
-				result = measure_variant(session, &at);
+				result = accumulate_variant(session, &at);
 	return result;
 }
 
@@ -163,7 +163,7 @@ static int measure_asked(struct session *session, const struct gz_study_request 
 {
 	if (gz_study_ask(request, &session->stage, session->log, &session->study) != GZ_OK)
 		return GAZEBENCH_FAILED;
-	const enum gz_result result = measure_all(session);
+	const enum gz_result result = accumulate_all(session);
 	if (session->list && result == GZ_OK) {
 		json_dumpf(session->list, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
 		printf("\n");

@@ -343,7 +343,8 @@ static enum gz_result run_backends(struct session *session)
 	return ran ? result : GZ_ERR_UNSUPPORTED;
 }
 
-static enum gz_result add_variant(struct session *session, const char *scene, const char *text)
+static enum gz_result add_checked_method(struct session *session, const char *scene,
+					 const char *text)
 {
 	const struct gz_variant_settings of_scene = { session->scene.settings.foveation,
 						      session->scene.settings.rays };
@@ -371,10 +372,10 @@ static enum gz_result add_variants(struct session *session, const char *scene)
 	enum gz_result result = GZ_OK;
 	if (*list == '\0')
 		for (int i = 0; i < GZ_METHOD_COUNT && result == GZ_OK; i++)
-			result = add_variant(session, scene, gz_method_names[i]);
+			result = add_checked_method(session, scene, gz_method_names[i]);
 	else
 		while (result == GZ_OK && gz_list_next(&list, text, sizeof text))
-			result = add_variant(session, scene, text);
+			result = add_checked_method(session, scene, text);
 	return result;
 }
 

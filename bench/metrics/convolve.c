@@ -20,7 +20,7 @@ struct pass {
 	float *out;
 };
 
-static int clamp_index(int value, int last)
+static int clamp_to_edge(int value, int last)
 {
 	return value < 0 ? 0 : value > last ? last : value;
 }
@@ -67,7 +67,7 @@ static void filter_row_across(const struct pass *pass, const float *in, float *o
 	for (int x = 0; x < pass->width; x += COLUMNS) {
 		const int count = pass->width - x < COLUMNS ? pass->width - x : COLUMNS;
 		for (int i = 0; i < count + 2 * radius; i++)
-			padded[i] = in[clamp_index(x + i - radius, pass->width - 1)];
+			padded[i] = in[clamp_to_edge(x + i - radius, pass->width - 1)];
 		sum_taps(from, pass->kernel->weights, taps, count, false, out + x);
 	}
 }
@@ -78,7 +78,7 @@ static void filter_row_down(const struct pass *pass, int y, float *out)
 	const float *from[2 * GZ_KERNEL_RADIUS_MAX + 1];
 	float weights[2 * GZ_KERNEL_RADIUS_MAX + 1];
 	for (int tap = 0; tap < taps; tap++) {
-		const int row = clamp_index(y + tap - radius, pass->height - 1);
+		const int row = clamp_to_edge(y + tap - radius, pass->height - 1);
 		from[tap] = pass->in + (size_t)row * (size_t)pass->width;
 		weights[tap] = pass->kernel->weights[tap] * pass->scale;
 	}

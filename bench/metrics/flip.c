@@ -414,7 +414,7 @@ static float greatest_difference(const struct flip_colours *colours)
 	return difference;
 }
 
-static void compare_pictures(struct work *work)
+static void compare_by_flip(struct work *work)
 {
 	const size_t parts = ((size_t)work->height + ROWS_A_PART - 1) / ROWS_A_PART;
 	gz_workers_run(work->workers, opponent_part, work, parts);
@@ -453,7 +453,7 @@ enum gz_result gz_flip(const struct gz_image *reference, const struct gz_image *
 	work.colour_max = greatest_difference(&work.colours);
 	work.out = out_map->values;
 	make_feature_kernels(&work);
-	compare_pictures(&work);
+	compare_by_flip(&work);
 	free(work.memory);
 	return GZ_OK;
 }

@@ -105,7 +105,7 @@ static void time_limit(struct bench *bench, struct timing *timing)
 	note(timing, started_ns, samples);
 }
 
-static int time_frame(struct bench *bench, int which, struct timing *timing)
+static int time_cast(struct bench *bench, int which, struct timing *timing)
 {
 	struct gz_frame_stats stats;
 	const double started_ns = processor_ns();
@@ -117,11 +117,12 @@ static int time_frame(struct bench *bench, int which, struct timing *timing)
 	return 0;
 }
 
-static int measure(struct bench *bench, int rounds, struct timing frames[2], struct timing *limit)
+static int measure_casts(struct bench *bench, int rounds, struct timing frames[2],
+			 struct timing *limit)
 {
 	for (int round = 0; round < rounds; round++) {
 		for (int which = 0; which < 2; which++)
-			if (time_frame(bench, which, &frames[which]) != 0)
+			if (time_cast(bench, which, &frames[which]) != 0)
 				return -1;
 		time_limit(bench, limit);
 	}
@@ -190,7 +191,7 @@ static int run(struct bench *bench, int rounds)
 	if (make_plans(bench) != 0 || choose_set(bench) != 0)
 		return -1;
 	fill_cast(bench);
-	if (measure(bench, rounds, frames, &limit) != 0)
+	if (measure_casts(bench, rounds, frames, &limit) != 0)
 		return -1;
 	print("bare loop", &limit, &limit);
 	print("standard", &frames[0], &limit);

@@ -286,7 +286,7 @@ static double bare_wake_share(int rate_hz)
 	       1e-9 * (double)(after.tv_nsec - before.tv_nsec);
 }
 
-static int compare(const void *a, const void *b)
+static int compare_loads(const void *a, const void *b)
 {
 	double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
@@ -301,7 +301,7 @@ static void print_reader(int number, struct reader *reader)
 {
 	double *ms = reader->latency_ms;
 	uint64_t gaps = reader->last_seq - reader->first_seq + 1 - reader->count;
-	qsort(ms, reader->count, sizeof *ms, compare);
+	qsort(ms, reader->count, sizeof *ms, compare_loads);
 	double p99_ms = percentile(ms, reader->count, 0.99);
 	printf("stream reader %d: %zu samples, %llu missing; sample to subscriber p50 %.3f ms, "
 	       "p99 %.3f ms, p99.9 %.3f ms, worst %.3f ms (target p99 %.2f ms: %s)\n",
@@ -339,7 +339,7 @@ static void start_readers(struct reader *readers, const struct settings *setting
 	}
 }
 
-static int measure(const char *directory, const struct settings *settings)
+static int measure_load(const char *directory, const struct settings *settings)
 {
 	static struct reader readers[2 * READERS_MAX];
 	struct usage before, after;
@@ -406,7 +406,7 @@ int main(int argc, char **argv)
 		perror("mkdtemp");
 		return EXIT_FAILURE;
 	}
-	int result = measure(directory, &settings);
+	int result = measure_load(directory, &settings);
 	remove_directory(directory);
 	return result;
 }

@@ -38,7 +38,7 @@ static enum gz_result measure_flip(struct bench *bench)
 		       &bench->map);
 }
 
-static int compare(const void *a, const void *b)
+static int by_time(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
@@ -57,7 +57,7 @@ static int print_metric(struct bench *bench, const char *name,
 		if (i >= 0)
 			ms[i] = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	}
-	qsort(ms, (size_t)bench->rounds, sizeof *ms, compare);
+	qsort(ms, (size_t)bench->rounds, sizeof *ms, by_time);
 	printf("%-5s least %7.1f ms  median %7.1f ms  mean value %.6f\n", name, ms[0],
 	       ms[bench->rounds / 2], gz_map_mean(&bench->map));
 	return 0;

@@ -208,7 +208,7 @@ struct bench {
 	const char *prefix;
 };
 
-static int compare_times(const void *a, const void *b)
+static int compare_series_times(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
@@ -216,7 +216,7 @@ static int compare_times(const void *a, const void *b)
 
 static double median_of(struct series *series, int count)
 {
-	qsort(series->time_ms, (size_t)count, sizeof series->time_ms[0], compare_times);
+	qsort(series->time_ms, (size_t)count, sizeof series->time_ms[0], compare_series_times);
 	return series->time_ms[count / 2];
 }
 
@@ -370,7 +370,7 @@ static bool measure_one(struct bench *bench)
 	return measure_regions(bench);
 }
 
-static bool measure_all(struct bench *bench, const char *sizes)
+static bool measure_kinds(struct bench *bench, const char *sizes)
 {
 	for (const char *size = sizes; size; size = strchr(size, ',')) {
 		size += *size == ',';
@@ -417,7 +417,7 @@ int main(int argc, char **argv)
 	const bool done = gz_workers_create(0, &bench.workers) == GZ_OK &&
 			  gz_picture_maker_create(&params, &bench.log, &bench.maker) == GZ_OK &&
 			  gz_picture_maker_show(bench.maker, objects, count) == GZ_OK &&
-			  measure_all(&bench, argv[2]);
+			  measure_kinds(&bench, argv[2]);
 	release_all(&bench);
 	return done ? 0 : 1;
 }

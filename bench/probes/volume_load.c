@@ -15,7 +15,7 @@ static int ascending(const void *a, const void *b)
 	return left < right ? -1 : left > right;
 }
 
-static int measure(const char *path, const struct gz_log *log)
+static int measure_load_times(const char *path, const struct gz_log *log)
 {
 	double took_ms[RUNS];
 	double mib = 0;
@@ -45,7 +45,7 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	}
 	for (int i = 1; i < argc; i++)
-		if (measure(argv[i], &log) != EXIT_SUCCESS)
+		if (measure_load_times(argv[i], &log) != EXIT_SUCCESS)
 			return EXIT_FAILURE;
 	return EXIT_SUCCESS;
 }

@@ -131,8 +131,8 @@ static bool add_best(struct gz_plot *plot)
 	return true;
 }
 
-static bool fill(const struct gz_sweep *pipeline, const struct gz_sweep *one_euro,
-		 double interval_ms, struct gz_plot *plot)
+static bool fill_curve(const struct gz_sweep *pipeline, const struct gz_sweep *one_euro,
+		       double interval_ms, struct gz_plot *plot)
 {
 	const double most_ms = most_lag_ms(pipeline, interval_ms);
 	*plot = (struct gz_plot) {
@@ -156,7 +156,7 @@ enum gz_result gz_filter_chart_draw(const struct gz_sweep *pipeline,
 	if (result != GZ_OK)
 		return result;
 	const bool drawn = charts.available;
-	result = fill(pipeline, one_euro, interval_ms, &plot) ? GZ_OK : GZ_ERR_NO_MEM;
+	result = fill_curve(pipeline, one_euro, interval_ms, &plot) ? GZ_OK : GZ_ERR_NO_MEM;
 	if (result == GZ_OK)
 		result = gz_plot_draw(&charts, "jitter-over-lag", &plot);
 	else

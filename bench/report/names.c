@@ -11,7 +11,7 @@ struct line {
 	size_t length;
 };
 
-static void append(struct line *line, const char *text, size_t length)
+static void append_to_line(struct line *line, const char *text, size_t length)
 {
 	if (line->length + length >= GZ_NAMES_SIZE)
 		length = GZ_NAMES_SIZE - 1 - line->length;
@@ -23,13 +23,13 @@ static void append(struct line *line, const char *text, size_t length)
 		line->bytes[--line->length] = '\0';
 }
 
-static void append_text(struct line *line, const char *text)
+static void append_words(struct line *line, const char *text)
 {
-	append(line, text, strlen(text));
+	append_to_line(line, text, strlen(text));
 }
 
 /* "px" of "blend_px": a unit stands behind its value. */
-static const char *unit_of(const char *key, size_t length)
+static const char *unit_of_key(const char *key, size_t length)
 {
 	static const char *const units[] = { "px", "deg" };
 	for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
@@ -49,10 +49,10 @@ static void append_key(struct line *line, const char *method, const char *key, s
 		key += prefix + 1;
 		length -= prefix + 1;
 	}
-	const char *unit = unit_of(key, length);
+	const char *unit = unit_of_key(key, length);
 	length -= unit ? strlen(unit) + 1 : 0;
 	for (size_t i = 0; i < length; i++)
-		append(line, key[i] == '_' ? " " : key + i, 1);
+		append_to_line(line, key[i] == '_' ? " " : key + i, 1);
 }
 
 /* Options behind the method, each as "key value", commas between. */
@@ -63,16 +63,16 @@ static void append_options(struct line *line, const struct gz_study_variant *var
 	while (at) {
 		const char *option = at + 1;
 		const size_t length = strcspn(option, ":"), key = strcspn(option, "=:");
-		const char *unit = unit_of(option, key);
-		append_text(line, first ? "" : ", ");
+		const char *unit = unit_of_key(option, key);
+		append_words(line, first ? "" : ", ");
 		append_key(line, variant->method, option, key);
 		if (key < length) {
-			append_text(line, " ");
-			append(line, option + key + 1, length - key - 1);
+			append_words(line, " ");
+			append_to_line(line, option + key + 1, length - key - 1);
 		}
 		if (unit) {
-			append_text(line, " ");
-			append_text(line, unit);
+			append_words(line, " ");
+			append_words(line, unit);
 		}
 		first = false;
 		at = strchr(option, ':');
@@ -83,9 +83,9 @@ void gz_variant_words(const struct gz_study_variant *variant, char out_words[GZ_
 {
 	struct line line = { out_words, 0 };
 	out_words[0] = '\0';
-	append_text(&line, variant->method);
+	append_words(&line, variant->method);
 	if (strchr(variant->text, ':')) {
-		append_text(&line, ", ");
+		append_words(&line, ", ");
 		append_options(&line, variant);
 	}
 }
@@ -128,9 +128,9 @@ void gz_variant_label(const struct gz_study *study, const struct gz_group *group
 	struct line line = { out_label, 0 };
 	out_label[0] = '\0';
 	if (!strchr(variant->text, ':'))
-		append_text(&line, curve->count > 1 ? "preset" : "");
+		append_words(&line, curve->count > 1 ? "preset" : "");
 	else if (one_key(study, group, curve, &key, &length))
-		append_text(&line, strchr(variant->text, '=') + 1);
+		append_words(&line, strchr(variant->text, '=') + 1);
 	else
 		append_options(&line, variant);
 }
@@ -142,9 +142,9 @@ void gz_curve_name(const struct gz_study *study, const struct gz_group *group,
 	size_t length;
 	struct line line = { out_name, 0 };
 	out_name[0] = '\0';
-	append_text(&line, curve->method);
+	append_words(&line, curve->method);
 	if (one_key(study, group, curve, &key, &length)) {
-		append_text(&line, ", ");
+		append_words(&line, ", ");
 		append_key(&line, curve->method, key, length);
 	}
 }
@@ -187,7 +187,7 @@ void gz_chart_name(const struct gz_summary *summary, const char *kind, const str
 	const struct gz_study *study = summary->study;
 	struct line line = { out_name, 0 };
 	out_name[0] = '\0';
-	append_text(&line, kind);
+	append_words(&line, kind);
 	if (group && summary->group_count > 1) {
 		char rest[GZ_NAMES_SIZE];
 		const struct gz_study_scene *scene = &study->scenes[group->scene];
@@ -195,7 +195,7 @@ void gz_chart_name(const struct gz_summary *summary, const char *kind, const str
 		snprintf(rest, sizeof rest, "-%.80s%s%.80s-%dx%d-%.40s", scene->name,
 			 same ? "" : "-", same ? "" : scene->transfer, study->sizes[group->size][0],
 			 study->sizes[group->size][1], study->backends[group->backend]);
-		append_text(&line, rest);
+		append_words(&line, rest);
 	}
 	for (char *byte = out_name; *byte; byte++)
 		if (!isalnum((unsigned char)*byte) && !strchr("._-", *byte))

@@ -103,7 +103,7 @@ static double share(const struct gz_plot_axis *axis, double value)
 	return (value - axis->first) / (axis->last - axis->first);
 }
 
-static double value_at(const struct gz_plot_axis *axis, double where)
+static double axis_value_at(const struct gz_plot_axis *axis, double where)
 {
 	if (axis->logarithmic)
 		return axis->first * pow(axis->last / axis->first, where);
@@ -134,15 +134,16 @@ static double y_px(const struct placing *placing, double y)
 static double x_at_px(const struct placing *placing, double px)
 {
 	const struct gz_canvas *canvas = placing->canvas;
-	return value_at(&placing->plot->x,
-			(px - canvas->left) / (canvas->width - canvas->left - canvas->right));
+	return axis_value_at(&placing->plot->x,
+			     (px - canvas->left) / (canvas->width - canvas->left - canvas->right));
 }
 
 static double y_at_px(const struct placing *placing, double px)
 {
 	const struct gz_canvas *canvas = placing->canvas;
-	return value_at(&placing->plot->y, (canvas->height - canvas->bottom - px) /
-						   (canvas->height - canvas->top - canvas->bottom));
+	return axis_value_at(&placing->plot->y,
+			     (canvas->height - canvas->bottom - px) /
+				     (canvas->height - canvas->top - canvas->bottom));
 }
 
 /* Characters, not bytes, of UTF-8. */

@@ -22,7 +22,7 @@ extern const char gz_report_html[];
  * so texts are not checked for UTF-8.
  */
 
-static void set_text(json_t *object, const char *key, const char *text)
+static void set_member_text(json_t *object, const char *key, const char *text)
 {
 	json_object_set_new(object, key, json_string_nocheck(text));
 }
@@ -46,10 +46,10 @@ static json_t *make_figure(const struct gz_charts *charts, const char *name, con
 	const char *wide = chart->svg[GZ_CANVAS_WIDE];
 	const char *narrow = chart->svg[GZ_CANVAS_NARROW]; /* maps are the same on both */
 	json_t *figure = json_object();
-	set_text(figure, "class", class_name);
-	set_text(figure, "caption", caption);
-	set_text(figure, "narrow", narrow ? narrow : wide);
-	set_text(figure, "shown", small && narrow ? narrow : wide);
+	set_member_text(figure, "class", class_name);
+	set_member_text(figure, "caption", caption);
+	set_member_text(figure, "narrow", narrow ? narrow : wide);
+	set_member_text(figure, "shown", small && narrow ? narrow : wide);
 	json_object_set_new(figure, "small", json_boolean(small));
 	return figure;
 }
@@ -120,10 +120,10 @@ static json_t *make_maps(const struct gz_summary *summary, const struct gz_group
 
 /* ---- tables ---- */
 
-static json_t *make_table(const char *caption)
+static json_t *make_report_table(const char *caption)
 {
 	json_t *table = json_object(), *rows = json_array(), *headings = json_array();
-	set_text(table, "caption", caption);
+	set_member_text(table, "caption", caption);
 	json_object_set_new(table, "headings", headings);
 	json_object_set_new(table, "rows", rows);
 	return table;
@@ -138,7 +138,7 @@ static void add_heading(json_t *table, const char *text)
 static json_t *add_table_row(json_t *table, const char *name)
 {
 	json_t *row = json_object(), *cells = json_array();
-	set_text(row, "name", name);
+	set_member_text(row, "name", name);
 	json_object_set_new(row, "cells", cells);
 	json_array_append_new(json_object_get(table, "rows"), row);
 	return cells;
@@ -148,8 +148,8 @@ static json_t *add_table_row(json_t *table, const char *name)
 static void add_cell(json_t *cells, const char *text, const char *near)
 {
 	json_t *cell = json_object();
-	set_text(cell, "text", text);
-	set_text(cell, "near", near ? near : "");
+	set_member_text(cell, "text", text);
+	set_member_text(cell, "near", near ? near : "");
 	json_array_append_new(cells, cell);
 }
 
@@ -203,7 +203,7 @@ static json_t *make_error_table(const struct gz_study *study, const struct gz_gr
 	snprintf(caption, sizeof caption, "Errors against %s%s",
 		 gz_error_reference_names[reference],
 		 reference == GZ_AGAINST_CONVERGED ? ", the picture of very short steps" : "");
-	json_t *table = make_table(caption);
+	json_t *table = make_report_table(caption);
 	add_heading(table, "variant");
 	for (int measure = 0; measure < GZ_ERROR_MEASURES; measure++) {
 		add_heading(table, gz_error_metrics[measure].title);
@@ -239,7 +239,7 @@ static json_t *make_equal_error_table(const struct gz_study *study, const struct
 	char caption[GZ_NAMES_SIZE];
 	snprintf(caption, sizeof caption, "Time at foveal FLIP of %g or less",
 		 GZ_EQUAL_FOVEAL_FLIP);
-	json_t *table = make_table(caption);
+	json_t *table = make_report_table(caption);
 	add_heading(table, "method");
 	add_heading(table, "against converged, ms");
 	add_heading(table, "against standard, ms");
@@ -264,7 +264,7 @@ static json_t *make_equal_time_table(const struct gz_study *study, const struct 
 	char heading[64];
 	const enum gz_error_reference reference = gz_group_reference(group);
 	const double standard_ms = group->series[group->standard].typical_ms;
-	json_t *table = make_table("Least perceived FLIP in a given time");
+	json_t *table = make_report_table("Least perceived FLIP in a given time");
 	add_heading(table, "method");
 	for (int k = 0; k < GZ_EQUAL_TIMES; k++) {
 		snprintf(heading, sizeof heading, "in %.3g ms (1/%g of standard)",
@@ -302,7 +302,7 @@ static json_t *make_growth(const struct gz_summary *summary, const struct gz_cha
 						"exponent", "r²",   "points" };
 	static const char *const kinds[] = { "pixels", "voxels", "threads" };
 	char name[GZ_NAMES_SIZE], words[GZ_NAMES_SIZE];
-	json_t *growth = make_table("Growth, t = a·xᵏ by least squares in logarithms");
+	json_t *growth = make_report_table("Growth, t = a·xᵏ by least squares in logarithms");
 	json_t *figures = json_array();
 	for (size_t i = 0; i < sizeof headings / sizeof headings[0]; i++)
 		add_heading(growth, headings[i]);
@@ -338,7 +338,7 @@ static void add_series(const struct gz_summary *summary, const struct gz_group *
 	json_t *means = json_array();
 	char words[GZ_NAMES_SIZE];
 	gz_variant_words(&summary->study->variants[series->variant], words);
-	set_text(variant, "words", words);
+	set_member_text(variant, "words", words);
 	json_object_set(variant, "perceived",
 			json_object_get(errors, gz_error_metrics[GZ_PERCEIVED_FLIP].key));
 	json_object_set_new(variant, "rays_share",
@@ -360,7 +360,7 @@ static void add_answer(const struct gz_summary *summary, const struct gz_group *
 	struct gz_text text = { 0 };
 	gz_advice_tell(summary->study, group, &question, gz_advice_find(group, &question), true,
 		       &text);
-	set_text(out, "answer", text.bytes ? text.bytes : "");
+	set_member_text(out, "answer", text.bytes ? text.bytes : "");
 	gz_text_free(&text);
 	json_object_set_new(out, "first_chart",
 			    gz_group_measure(group, &measure)
@@ -393,7 +393,7 @@ static void add_group(const struct gz_summary *summary, size_t place,
 	enum gz_error_measure measure;
 	char words[GZ_NAMES_SIZE];
 	gz_group_words(summary->study, group, words);
-	set_text(out, "title", words);
+	set_member_text(out, "title", words);
 	json_object_set_new(out, "number", json_integer((json_int_t)place + 1));
 	json_object_set_new(out, "is_first", json_boolean(place == 0)); /* in the page's header */
 	add_answer(summary, group, charts, out);
@@ -417,8 +417,8 @@ static void add_fact(json_t *facts, const char *name, const char *text)
 {
 	json_t *fact = json_object();
 	if (text[0]) {
-		set_text(fact, "name", name);
-		set_text(fact, "text", text);
+		set_member_text(fact, "name", name);
+		set_member_text(fact, "text", text);
 		json_array_append(facts, fact);
 	}
 	json_decref(fact);
@@ -597,7 +597,7 @@ void gz_page_write(const struct gz_summary *summary, const struct gz_charts *cha
 		json_object_set_new(page, "growth", make_growth(summary, charts));
 	json_object_set_new(page, "facts", make_facts(summary->study));
 	add_command(summary->study, &command);
-	set_text(page, "command", command.bytes ? command.bytes : "");
+	set_member_text(page, "command", command.bytes ? command.bytes : "");
 	if (!page || !gz_template_fill(gz_report_html, page, out) || command.failed)
 		out->failed = true;
 	gz_text_free(&command);

@@ -196,7 +196,7 @@ static json_t *scaling_to_json(const struct gz_study *study, const struct gz_sca
 	return object;
 }
 
-static json_t *machine_to_json(const struct gz_study *study)
+static json_t *summary_machine_to_json(const struct gz_study *study)
 {
 	const struct gz_study_machine *machine = &study->machine;
 	json_t *backends = json_object();
@@ -230,7 +230,7 @@ static json_t *head_to_json(const struct gz_study *study)
 	json_object_set_new(object, "frames_per_point", json_integer(study->frames_per_point));
 	json_object_set_new(object, "warm_up_frames", json_integer(study->warm_up_frames));
 	json_object_set_new(object, "seed", json_integer((json_int_t)study->seed));
-	json_object_set_new(object, "machine", machine_to_json(study));
+	json_object_set_new(object, "machine", summary_machine_to_json(study));
 	return object;
 }
 

@@ -216,7 +216,7 @@ static bool fill_within(struct filling *filling, const json_t *scope, const char
 	return sound;
 }
 
-static bool is_there(const json_t *value)
+static bool has_something(const json_t *value)
 {
 	return value && !json_is_null(value) && !json_is_false(value) &&
 	       (!json_is_array(value) || json_array_size(value) > 0) &&
@@ -228,7 +228,7 @@ static bool fill_section(struct filling *filling, char kind, const char *name, c
 {
 	const json_t *value = find_value(filling, name);
 	bool sound = true;
-	if (kind == '<' || is_there(value) != (kind == '#'))
+	if (kind == '<' || has_something(value) != (kind == '#'))
 		return true;
 	if (kind == '^' || !json_is_array(value))
 		return fill_within(filling,

@@ -283,7 +283,7 @@ static void forget_pictures(struct gz_stability_bench *bench)
 	bench->kept_count = bench->kept_bytes = 0;
 }
 
-static enum gz_result make_room(struct gz_stability_bench *bench)
+static enum gz_result make_room_for_picture(struct gz_stability_bench *bench)
 {
 	if (bench->kept_count < bench->kept_capacity)
 		return GZ_OK;
@@ -309,7 +309,7 @@ enum gz_result gz_stability_wanted_picture(struct gz_stability_bench *bench,
 	const size_t bytes = (size_t)view->width * (size_t)view->height * 4;
 	if (bench->kept_bytes + bytes > KEPT_BYTES_MAX)
 		forget_pictures(bench);
-	enum gz_result result = make_room(bench);
+	enum gz_result result = make_room_for_picture(bench);
 	if (result != GZ_OK)
 		return result;
 	struct gz_stability_kept *kept = &bench->kept[bench->kept_count];

@@ -61,7 +61,7 @@ static enum gz_result frame(struct run *run, bool kept)
 	return result;
 }
 
-static int compare_times(const void *a, const void *b)
+static int compare_frame_times(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
@@ -70,7 +70,7 @@ static int compare_times(const void *a, const void *b)
 static double take_median(struct run *run)
 {
 	const int count = run->time_count < TIMES_MAX ? run->time_count : TIMES_MAX;
-	qsort(run->times_ms, (size_t)count, sizeof run->times_ms[0], compare_times);
+	qsort(run->times_ms, (size_t)count, sizeof run->times_ms[0], compare_frame_times);
 	run->time_count = 0;
 	return count % 2 ? run->times_ms[count / 2]
 			 : (run->times_ms[count / 2 - 1] + run->times_ms[count / 2]) / 2;

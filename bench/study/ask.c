@@ -111,7 +111,7 @@ static enum gz_result make_bound_rays(struct gz_study *study, const struct gz_lo
 
 /* ---- lists ---- */
 
-static enum gz_result add_variant(struct asking *asking, const char *text)
+static enum gz_result ask_variant(struct asking *asking, const char *text)
 {
 	struct gz_study *study = asking->study;
 	/* The scene's own settings come later; what is asked must be good over any. */
@@ -147,10 +147,10 @@ static enum gz_result list_variants(struct asking *asking)
 	study->variants = calloc(GZ_STUDY_LIST_MAX, sizeof *study->variants);
 	if (!study->variants)
 		return out_of_memory(asking);
-	enum gz_result result = add_variant(asking, "standard");
+	enum gz_result result = ask_variant(asking, "standard");
 	for (const char *list = asking->request->methods;
 	     result == GZ_OK && gz_list_next(&list, item, sizeof item);)
-		result = add_variant(asking, item);
+		result = ask_variant(asking, item);
 	return result;
 }
 
@@ -334,7 +334,7 @@ static enum gz_result check_name(const struct asking *asking, const struct gz_st
 	return GZ_OK;
 }
 
-static enum gz_result add_scene(struct asking *asking, const char *path, size_t transfer)
+static enum gz_result ask_scene(struct asking *asking, const char *path, size_t transfer)
 {
 	struct gz_study *study = asking->study;
 	struct gz_transfer function;
@@ -381,7 +381,7 @@ static enum gz_result list_scenes(struct asking *asking)
 		const size_t transfers =
 			result == GZ_OK ? gz_stage_transfer_count(asking->stage) : 0;
 		for (size_t k = 0; k < transfers && result == GZ_OK; k++)
-			result = add_scene(asking, path, k);
+			result = ask_scene(asking, path, k);
 	}
 	return result;
 }
@@ -422,7 +422,7 @@ static enum gz_result make_path(struct asking *asking)
 	return gz_hash_end(&hash, study->path_hash);
 }
 
-static void take_numbers(const struct gz_study_request *request, struct gz_study *study)
+static void take_size_list(const struct gz_study_request *request, struct gz_study *study)
 {
 	study->seed = request->seed;
 	study->camera_count = request->cameras;
@@ -464,7 +464,7 @@ enum gz_result gz_study_ask(const struct gz_study_request *request, struct gz_st
 	if (!study)
 		return GZ_ERR_NO_MEM;
 	struct asking asking = { .request = request, .log = log, .stage = stage, .study = study };
-	take_numbers(request, study);
+	take_size_list(request, study);
 	enum gz_result result = list_all(&asking);
 	if (result == GZ_OK)
 		result = make_path(&asking);

@@ -87,7 +87,7 @@ void gz_study_rows_print_head(FILE *file)
 }
 
 /* The column of this name, length bytes; GZ_STUDY_COLUMNS: none. */
-static enum gz_study_column_id find_column(const char *name, size_t length)
+static enum gz_study_column_id find_study_column(const char *name, size_t length)
 {
 	enum gz_study_column_id id = 0;
 	while (id < GZ_STUDY_COLUMNS && (strlen(gz_study_columns[id].name) != length ||
@@ -105,7 +105,7 @@ bool gz_study_rows_parse_head(const char *line, struct gz_study_layout *out_layo
 	line += sizeof PLACE_NAMES - 1;
 	while (*line == ',') {
 		const size_t length = strcspn(++line, ",");
-		const enum gz_study_column_id id = find_column(line, length);
+		const enum gz_study_column_id id = find_study_column(line, length);
 		if (id == GZ_STUDY_COLUMNS || there[id])
 			return false;
 		there[id] = true;

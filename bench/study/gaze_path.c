@@ -24,7 +24,7 @@ struct gz_point gz_gaze_path_s(double t)
 				   (float)(0.05 + 0.9 * t) };
 }
 
-static enum gz_result add_point(struct gz_gaze_path *path, struct gz_point gaze)
+static enum gz_result append_path_point(struct gz_gaze_path *path, struct gz_point gaze)
 {
 	if (path->count == GZ_STUDY_POINTS_MAX)
 		return GZ_ERR_FULL;
@@ -68,14 +68,14 @@ static enum gz_result add_output(struct player *player, const struct gz_pipeline
 		/* In a blink or when it is lost, the point is where it was last. */
 		const bool there = event != GZ_EVENT_BLINK && event != GZ_EVENT_LOST &&
 				   output->rejection == GZ_REJECT_NONE;
-		return there ? add_point(player->path, output->gaze.point) : GZ_OK;
+		return there ? append_path_point(player->path, output->gaze.point) : GZ_OK;
 	}
 	for (size_t i = 0; i < output->fixation_count && result == GZ_OK; i++) {
 		const struct gz_fixation *fixation = &output->fixations[i];
 		player->open = !fixation->final;
 		player->at = fixation->point;
 		if (fixation->final)
-			result = add_point(player->path, fixation->point);
+			result = append_path_point(player->path, fixation->point);
 	}
 	return result;
 }
@@ -100,7 +100,7 @@ static enum gz_result play(struct player *player)
 	if (result != GZ_ERR_END)
 		return result;
 	/* A recording may end within a fixation. */
-	return player->open ? add_point(player->path, player->at) : GZ_OK;
+	return player->open ? append_path_point(player->path, player->at) : GZ_OK;
 }
 
 static enum gz_result prepare_pipeline(struct player *player)
@@ -151,7 +151,7 @@ bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_displ
 	return true;
 }
 
-static enum gz_result refuse(const char *text, const struct gz_log *log)
+static enum gz_result refuse_path(const char *text, const struct gz_log *log)
 {
 	gz_err(log,
 	       "%s: no such path: sweep:s, sweep:s:N, grid:NxM, random:N, centre, X,Y, FILE.gzl or "
@@ -171,7 +171,7 @@ static enum gz_result add_s(long long count, struct gz_gaze_path *path)
 {
 	enum gz_result result = GZ_OK;
 	for (long long i = 0; i < count && result == GZ_OK; i++)
-		result = add_point(path, gz_gaze_path_s(((double)i + 0.5) / (double)count));
+		result = append_path_point(path, gz_gaze_path_s(((double)i + 0.5) / (double)count));
 	return result;
 }
 
@@ -183,7 +183,7 @@ static enum gz_result add_grid(long long columns, long long rows, struct gz_gaze
 			(float)(((double)(i % columns) + 0.5) / (double)columns),
 			(float)(((double)(i / columns) + 0.5) / (double)rows),
 		};
-		result = add_point(path, gaze);
+		result = append_path_point(path, gaze);
 	}
 	return result;
 }
@@ -196,7 +196,7 @@ static enum gz_result add_random(long long count, uint64_t seed, struct gz_gaze_
 		struct gz_point gaze;
 		gaze.x = (float)gz_random_uniform(&random);
 		gaze.y = (float)gz_random_uniform(&random);
-		result = add_point(path, gaze);
+		result = append_path_point(path, gaze);
 	}
 	return result;
 }
@@ -255,9 +255,9 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 	if (strncmp(text, "random:", 7) == 0 && parse_count(text + 7, &count))
 		return add_random(count, settings->seed, path);
 	if (strcmp(text, "centre") == 0)
-		return add_point(path, (struct gz_point) { 0.5F, 0.5F });
+		return append_path_point(path, (struct gz_point) { 0.5F, 0.5F });
 	if (parse_place(text, &gaze))
-		return add_point(path, gaze);
+		return append_path_point(path, gaze);
 	if (ends_with(text, ".gzl"))
 		return add_recording(text, false, log, path);
 	if (ends_with(text, ".gzl:samples") && strlen(text) < sizeof file) {
@@ -265,7 +265,7 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 			 text);
 		return add_recording(file, true, log, path);
 	}
-	return refuse(text, log);
+	return refuse_path(text, log);
 }
 
 static bool is_recording(const char *text)

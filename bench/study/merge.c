@@ -75,7 +75,7 @@ static enum gz_result read_shards(struct joining *joining)
 	return GZ_OK;
 }
 
-static enum gz_result join_rows(const struct joining *joining, struct gz_study *study)
+static enum gz_result join_shard_rows(const struct joining *joining, struct gz_study *study)
 {
 	const size_t units = gz_study_unit_count(study), per = gz_study_unit_rows(study);
 	const size_t shards = (size_t)joining->shards[0].shard_count;
@@ -94,7 +94,7 @@ static enum gz_result join_rows(const struct joining *joining, struct gz_study *
 }
 
 /* Append what differs, as far as there is room. */
-static void append(char text[GZ_STUDY_TEXT_SIZE], const char *other)
+static void append_other(char text[GZ_STUDY_TEXT_SIZE], const char *other)
 {
 	const size_t length = strlen(text);
 	if (!strstr(text, other) && length + strlen(other) + 3 < GZ_STUDY_TEXT_SIZE)
@@ -105,12 +105,12 @@ static void join_machines(const struct joining *joining, struct gz_study *study)
 {
 	for (size_t i = 0; i < joining->count; i++) {
 		const struct gz_study_machine *other = &joining->shards[i].machine;
-		append(study->machine.host_cpu, other->host_cpu);
-		append(study->machine.memory, other->memory);
-		append(study->machine.system, other->system);
-		append(study->machine.compiler, other->compiler);
+		append_other(study->machine.host_cpu, other->host_cpu);
+		append_other(study->machine.memory, other->memory);
+		append_other(study->machine.system, other->system);
+		append_other(study->machine.compiler, other->compiler);
 		for (size_t k = 0; k < study->backend_count; k++)
-			append(study->machine.backends[k], other->backends[k]);
+			append_other(study->machine.backends[k], other->backends[k]);
 	}
 }
 
@@ -124,7 +124,7 @@ static enum gz_result join(const struct joining *joining, struct gz_study *out_s
 		return GZ_ERR_NO_MEM;
 	*study = *first;
 	study->rows = NULL;
-	const enum gz_result result = join_rows(joining, study);
+	const enum gz_result result = join_shard_rows(joining, study);
 	if (result == GZ_OK) {
 		join_machines(joining, study);
 		study->shard = 0;

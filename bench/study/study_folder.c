@@ -380,7 +380,7 @@ static enum gz_result open_rows(struct gz_study_writer *writer)
 }
 
 /* What is written counts once all of it is on the disk; else the file is as it was. */
-static enum gz_result append_text(struct gz_study_writer *writer, const char *text, size_t size)
+static enum gz_result append_to_rows(struct gz_study_writer *writer, const char *text, size_t size)
 {
 	int error = 0;
 	if (lseek(writer->file, writer->bytes, SEEK_SET) < 0)
@@ -415,7 +415,7 @@ static enum gz_result append_rows(struct gz_study_writer *writer, const struct g
 	const bool whole = !ferror(memory);
 	enum gz_result result = fclose(memory) == 0 && whole ? GZ_OK : GZ_ERR_NO_MEM;
 	if (result == GZ_OK)
-		result = append_text(writer, text, size);
+		result = append_to_rows(writer, text, size);
 	free(text);
 	return result;
 }
