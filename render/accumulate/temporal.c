@@ -251,7 +251,7 @@ static void join_moved(const struct join *join, int x, int y, uint8_t *pixel, ui
 	*kept = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: counts as the mean of 4 frames */
 }
 
-static void join_rows(void *user, size_t part, int worker)
+static void join_history_rows(void *user, size_t part, int worker)
 {
 	(void)worker;
 	const struct join *join = user;
@@ -409,7 +409,7 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 		move_history(&join);
 		temporal->still_frames = 0;
 	}
-	gz_workers_run(temporal->workers, join_rows, &join,
+	gz_workers_run(temporal->workers, join_history_rows, &join,
 		       ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART);
 	temporal->shown = *content;
 	temporal->any = true;

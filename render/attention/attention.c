@@ -121,8 +121,8 @@ static bool finite_point(struct gz_point point)
 }
 
 /* The state by this gaze alone, without history. */
-static enum gz_attention_state state_of(const struct gz_attention_params *params,
-					const struct gz_attention_gaze *gaze)
+static enum gz_attention_state state_by_gaze(const struct gz_attention_params *params,
+					     const struct gz_attention_gaze *gaze)
 {
 	bool silent = gaze->has_age && gz_ns_to_ms(gaze->age_ns) > params->blink_ms;
 	if (!gaze->known || silent)
@@ -272,7 +272,7 @@ struct gz_focus gz_attention_step(struct gz_attention *attention,
 				  const struct gz_display *display, int64_t now_ns)
 {
 	bool was_lost = attention->started && is_lost_state(attention->state);
-	take_time(attention, state_of(&attention->params, gaze), now_ns);
+	take_time(attention, state_by_gaze(&attention->params, gaze), now_ns);
 	attention->state = attention->said;
 	if (attention->state == GZ_ATTENTION_BLINK &&
 	    for_ms(attention) > attention->params.blink_ms)

@@ -69,7 +69,7 @@ static int count_over(const struct gz_budget *budget, int newest)
 	return over;
 }
 
-static int compare_ms(const void *a, const void *b)
+static int ascending_frame_ms(const void *a, const void *b)
 {
 	double left = *(const double *)a, right = *(const double *)b;
 	return (left > right) - (left < right);
@@ -82,7 +82,7 @@ static double upper_ms(const struct gz_budget *budget, int newest)
 	double sorted[GZ_BUDGET_WINDOW];
 	memcpy(sorted, budget->frames_ms + budget->count - newest,
 	       (size_t)newest * sizeof sorted[0]);
-	qsort(sorted, (size_t)newest, sizeof sorted[0], compare_ms);
+	qsort(sorted, (size_t)newest, sizeof sorted[0], ascending_frame_ms);
 	return sorted[newest - OVER_MIN];
 }
 

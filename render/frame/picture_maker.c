@@ -97,8 +97,14 @@ static enum gz_result let_cpu_take_over(struct gz_picture_maker *maker)
 static enum gz_result check_objects(const struct gz_picture_maker *maker,
 				    const struct gz_object *objects, size_t count)
 {
-	if (count < 1 || count > OBJECTS_MAX) {
-		gz_err(maker->log, "a picture shows 1 to %d objects, not %zu", OBJECTS_MAX, count);
+	if (count < 1) {
+		gz_err(maker->log,
+		       "no object is visible; set visible = yes for one of the scene's");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (count > OBJECTS_MAX) {
+		gz_err(maker->log, "a picture shows at most %d objects, not %zu", OBJECTS_MAX,
+		       count);
 		return GZ_ERR_UNSUPPORTED;
 	}
 	for (size_t i = 1; i < count; i++)
@@ -289,7 +295,7 @@ static enum gz_result make_plan(struct making *making)
 }
 
 /* Draw. If the backend fails for good, cpu takes over. */
-static enum gz_result draw_frame(struct making *making, struct gz_image *image)
+static enum gz_result draw_or_take_over(struct making *making, struct gz_image *image)
 {
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_shot shot = shot_of(making);
@@ -310,7 +316,7 @@ static enum gz_result draw_and_accumulate(struct making *making, struct gz_image
 {
 	struct gz_picture_maker *maker = making->maker;
 	making->on_device = false;
-	enum gz_result result = draw_frame(making, &maker->temporal.frame_image);
+	enum gz_result result = draw_or_take_over(making, &maker->temporal.frame_image);
 	const int64_t start_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
 		result = gz_temporal_end(&maker->temporal, making->request->temporal,
@@ -329,7 +335,7 @@ static enum gz_result draw_picture(struct making *making)
 	struct gz_image *target = direct ? making->image : &maker->cast;
 	making->on_device = direct && request->on_device;
 	enum gz_result result = making->accumulates ? draw_and_accumulate(making, target)
-						    : draw_frame(making, target);
+						    : draw_or_take_over(making, target);
 	if (result != GZ_OK || direct)
 		return result;
 	const int64_t start_ns = gz_clock_now_ns();

@@ -80,12 +80,11 @@ struct scene_move {
 	const struct gz_log *log;
 };
 
-static enum gz_result move_name(const struct scene_move *move, const char *name,
-				char out_name[GZ_PATH_SIZE])
+/* The absolute path of a file; a name that is not found stays. */
+static enum gz_result anchor_name(const struct scene_move *move, const char *name,
+				  char out_name[GZ_PATH_SIZE])
 {
 	char path[GZ_PATH_SIZE];
-	if (move->to)
-		return gz_scene_rename_file(move->from, name, move->to, out_name);
 	if (!name[0] || gz_scene_find_file(move->from, name, path) != GZ_OK) {
 		memmove(out_name, name, strlen(name) + 1);
 		return GZ_OK;
@@ -98,19 +97,26 @@ static enum gz_result move_name(const struct scene_move *move, const char *name,
 	return fits ? GZ_OK : GZ_ERR_FULL;
 }
 
+static enum gz_result move_name(const struct scene_move *move, const char *key, const char *name,
+				char out_name[GZ_PATH_SIZE])
+{
+	const enum gz_result result =
+		move->to ? gz_scene_rename_file(move->from, name, move->to, out_name)
+			 : anchor_name(move, name, out_name);
+	if (result != GZ_OK)
+		gz_err(move->log, "%s: the path of %s is too long for a scene; move the file", key,
+		       name);
+	return result;
+}
+
 static enum gz_result move_field(const struct scene_move *move, const char *key,
 				 char name[GZ_PATH_SIZE])
 {
 	char moved[GZ_PATH_SIZE];
-	const enum gz_result result = move_name(move, name, moved);
-	if (result != GZ_OK) {
-		gz_err(move->log, "%s: the path of %s is too long for a scene; move the file", key,
-		       name);
-		return result;
-	}
-	memset(name, 0, GZ_PATH_SIZE); /* equal settings are equal bytes */
-	memcpy(name, moved, strlen(moved) + 1);
-	return GZ_OK;
+	const enum gz_result result = move_name(move, key, name, moved);
+	if (result == GZ_OK)
+		memcpy(name, moved, strlen(moved) + 1);
+	return result;
 }
 
 /* Append one of several names to @p all. */
@@ -119,12 +125,9 @@ static enum gz_result move_listed(const struct scene_move *move, const char *nam
 {
 	static const char key[] = "transfer.also";
 	char moved[GZ_PATH_SIZE];
-	const enum gz_result result = move_name(move, name, moved);
-	if (result != GZ_OK) {
-		gz_err(move->log, "%s: the path of %s is too long for a scene; move the file", key,
-		       name);
+	const enum gz_result result = move_name(move, key, name, moved);
+	if (result != GZ_OK)
 		return result;
-	}
 	if (strcmp(moved, name) != 0 && strpbrk(moved, BLANKS)) {
 		gz_err(move->log,
 		       "%s: the path of %s has a blank, which separates names there; save the "
@@ -155,10 +158,8 @@ static enum gz_result move_list(const struct scene_move *move, char names[GZ_PAT
 	}
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(move->log, "transfer.also: no memory for the paths");
-	if (result == GZ_OK) {
-		memset(names, 0, GZ_PATH_SIZE);
-		memcpy(names, all.bytes ? all.bytes : "", all.length);
-	}
+	if (result == GZ_OK)
+		memcpy(names, all.bytes ? all.bytes : "", all.length + 1);
 	gz_text_free(&all);
 	return result;
 }

@@ -294,6 +294,7 @@ static void objects_that_no_technique_shows_are_refused(void **state)
 	assert_int_equal(gz_picture_maker_create(&params, &all.log, &all.maker), GZ_OK);
 	assert_int_equal(make(&all), GZ_ERR_INVAL); /* nothing is shown yet */
 	assert_int_equal(gz_picture_maker_show(all.maker, &all.object, 0), GZ_ERR_UNSUPPORTED);
+	assert_non_null(strstr(all.heard.text, "no object is visible; set visible = yes"));
 	objects[0] = objects[1] = all.object;
 	assert_int_equal(gz_picture_maker_show(all.maker, objects, 2), GZ_ERR_UNSUPPORTED);
 	assert_non_null(strstr(all.heard.text, "at most 1 objects"));
