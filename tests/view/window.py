@@ -27,7 +27,7 @@ class Window(WindowCase):
 
     def test_keys_choose_the_methods_and_each_has_its_own_picture(self):
         self.start("--gaze", "mouse")
-        self.move(20, 60)  # most of the window is far from there
+        self.move(20, 60)  # far from most of the window
         pictures = {}
         before = self.rest()
         for key in ("1", "3", "2", "4", "1"):
@@ -68,7 +68,7 @@ class Window(WindowCase):
         self.until(lambda p: self.below_line(p) == self.below_line(first), "as at first")
 
     def test_h_shows_the_keys_and_hides_them(self):
-        # By a method that no gaze changes: with the mouse outside, others widen after a while.
+        # Use a method that ignores the gaze: others widen while the mouse is outside.
         self.start("--gaze", "mouse", "--method", "standard")
         before = self.rest()
         self.tool("key", "h")
@@ -137,15 +137,15 @@ class Window(WindowCase):
         self.addCleanup(lambda: os.path.exists(self.lost) and os.unlink(self.lost))
         kept = self.environment
         self.addCleanup(setattr, self, "environment", kept)
-        # The shared objects of a sanitizer must not insist on being first.
+        # The runtime of a sanitizer must accept not to be loaded first.
         self.environment = dict(kept, LD_PRELOAD=library, LOSE_CONTEXT=self.lost, GZ_LOG="info")
         self.environment["ASAN_OPTIONS"] += ":verify_asan_link_order=0"
         self.start(*more)
 
     def lose(self):
-        """The context is lost, and its window gone; the next one shows a picture."""
+        """Lose the context and wait for the next window's picture."""
         open(self.lost, "w", encoding="utf-8").close()
-        # Wakes a viewer that waits; one that does not has no window by now.
+        # Wakes a viewer that waits; another one may have no window by now.
         self.tool("mousemove", 200 + int(self.window) % 2, 100)
         deadline = time.monotonic() + 15
         while os.path.exists(self.lost):
@@ -157,7 +157,7 @@ class Window(WindowCase):
         for backend in ("cpu", "gl"):
             self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", backend,
                                "--render.background", "0.2 0.4 0.6")
-            # The settings and the place stay, too.
+            # Settings and place are kept.
             self.tool("windowsize", self.window, 500, 400)
             self.until(lambda p: p.at(497, 397) == (51, 102, 153), "a place")
             self.tool("key", "4")
@@ -171,7 +171,7 @@ class Window(WindowCase):
             self.assertEqual(said.count("has lost the window's context"), 1, said)
             self.assertNotIn("the cpu backend casts", said)
 
-    def test_context_lost_again_leaves_the_rays_to_the_cpu_and_a_third_time_ends(self):
+    def test_second_lost_context_switches_to_cpu_and_third_ends(self):
         self.start_to_lose("--gaze", "0.5,0.5", "--method", "standard", "--backend", "gl")
         before = self.rest()
         for _ in range(2):
@@ -186,7 +186,7 @@ class Window(WindowCase):
         self.assertIn("--headless", said.splitlines()[-1])
 
     def close(self, one, other):
-        """Within a grey level: another backend."""
+        """Whether pictures of different backends are equal, within a grey level."""
         return all(abs(a - b) <= 1 for x in range(100, 380, 7) for y in range(60, 250, 7)
                    for a, b in zip(one.at(x, y), other.at(x, y)))
 
@@ -215,7 +215,7 @@ class Window(WindowCase):
         self.until(lambda p: not self.amber(p) and self.cross_at(p, 60, 280), "mouse by choice")
 
     def log_lines(self, kind):
-        """The fields of all records of that kind, once the recording is whole."""
+        """The fields of all records of a kind, once the recording is complete."""
         names = os.listdir(self.recordings.name)
         self.assertEqual(len(names), 1, names)
         with open(os.path.join(self.recordings.name, names[0]), encoding="utf-8") as log:
@@ -231,10 +231,10 @@ class Window(WindowCase):
             picture = self.until(
                 lambda p: not self.amber(p) and self.near(self.red_middle(p), (x, y)),
                 "cross at the pointer %d" % x)
-        # Out of the window: the last place holds.
+        # Outside the window the last place holds.
         self.tool("mousemove", *SCREEN)
         self.until(lambda p: self.near(self.red_middle(p), (330, 120)), "cross stays")
-        # A daemon with another tracker is no pointer, and one that is gone leaves the mouse.
+        # A daemon with another tracker gives no pointer; without a daemon the mouse stands in.
         self.stop_daemon()
         self.move(150, 200)
         self.until(lambda p: self.amber(p) and self.cross_at(p, 150, 200), "mouse stands in")
@@ -245,7 +245,7 @@ class Window(WindowCase):
         self.start_daemon("--driver=sim", "--recording.directory=" + self.recordings.name)
         self.start("--gaze", "daemon")
         self.until(lambda p: not self.amber(p), "a daemon")
-        time.sleep(1.2)  # the window is told each second, so the daemon knows it by now
+        time.sleep(1.2)  # the window is reported each second
         done = run(GAZECTL, "record", "later", env=self.environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.tool("windowmove", self.window, 100, 50)
@@ -271,7 +271,7 @@ class Window(WindowCase):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(200, 150)
         before = self.grab()
-        # The curve has the keyboard at first: it is given back, too.
+        # The curve has the keyboard first, and gives it back.
         for key, times in (("p", 1), ("e", 2)):
             self.tool("key", key)
             self.until_changed(before, "panel of " + key)
@@ -294,7 +294,7 @@ class Window(WindowCase):
             self.assertEqual(self.viewer.communicate()[1], "")
             self.viewer = None
 
-    def test_no_display_is_one_line_with_the_way_without_one(self):
+    def test_no_display_is_one_line_that_suggests_headless(self):
         environment = dict(self.environment)
         del environment["DISPLAY"]
         done = run(GAZEVIEW, SCENE, env=environment)
@@ -302,7 +302,7 @@ class Window(WindowCase):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertIn("--headless", done.stderr)
 
-    def test_old_opengl_is_one_line_with_the_way_without_it(self):
+    def test_old_opengl_is_one_line_that_suggests_headless(self):
         environment = dict(self.environment, MESA_GL_VERSION_OVERRIDE="2.1")
         done = run(GAZEVIEW, SCENE, env=environment)
         self.assertEqual((done.returncode, done.stdout), (1, ""))

@@ -1,5 +1,5 @@
-"""What the tests of gazeview's window share: a server without a monitor, the window on it, keys and
-mouse by xdotool, and what is seen. Each of them is
+"""Shared by the tests of gazeview's window: an X server without a monitor, the window on it, keys and
+mouse by xdotool, and screenshots. Each test is called as
 
     NAME.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
@@ -23,8 +23,8 @@ SCENE = write_scene(PLACE.name, SCENES)
 SCREEN = (900, 700)
 SIZE = (480, 320)
 CROSS = (255, 64, 64)
-LINE_HEIGHT = 40  # the text line is above
-CORNER_HEIGHT = 64  # what tells of the gaze is below
+LINE_HEIGHT = 40  # the caption at the top
+CORNER_HEIGHT = 64  # the caption of the gaze at the bottom
 
 for tool in ("Xvfb", "xdotool", "ffmpeg"):
     if not shutil.which(tool):
@@ -39,8 +39,8 @@ class WindowCase(unittest.TestCase):
         cls.environment = dict(
             os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
             GAZECAST_RUNTIME_DIR=cls.place.name, XDG_STATE_HOME=cls.place.name,
-            # Mesa's drivers keep some bytes when they are unloaded, which leaves no name to excuse
-            # them by; what is ours is looked at by the tests without a window.
+            # Mesa's drivers leak some bytes and are unloaded before the report, so that no
+            # suppression can name them. Tests without a window look for our leaks.
             ASAN_OPTIONS=os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0",
         )
         cls.environment.pop("WAYLAND_DISPLAY", None)
@@ -82,7 +82,7 @@ class WindowCase(unittest.TestCase):
         return done.stdout
 
     def launch(self, *words):
-        """gazeview, with exactly these words; its window, which need not show a picture yet."""
+        """Start gazeview with exactly these arguments, and wait for its window."""
         self.tool("mousemove", *SCREEN)
         self.viewer = subprocess.Popen(
             [GAZEVIEW, "--size", "%dx%d" % SIZE, *words], env=self.environment,
@@ -94,7 +94,7 @@ class WindowCase(unittest.TestCase):
         self.window = found.stdout.split()[0]
 
     def start(self, *more, scene=SCENE):
-        """gazeview with a scene, the small one unless told; its first picture."""
+        """Start gazeview with a scene, by default the small one. -> its first picture"""
         self.launch(scene, *more)
         return self.until(self.shows_something, "a first picture")
 
@@ -114,13 +114,13 @@ class WindowCase(unittest.TestCase):
         return Picture(width, height, rows)
 
     def ticks(self):
-        """Of the processor, that the viewer has had."""
+        """Processor time of the viewer so far, clock ticks."""
         with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
             fields = stat.read().rsplit(")", 1)[1].split()
         return int(fields[11]) + int(fields[12])
 
     def waits(self):
-        """Whether all its threads wait for something, however busy the machine is."""
+        """Whether all threads of the viewer wait, however busy the machine is."""
         threads = "/proc/%d/task" % self.viewer.pid
         for thread in os.listdir(threads):
             try:
@@ -128,11 +128,11 @@ class WindowCase(unittest.TestCase):
                     if stat.read().rsplit(")", 1)[1].split()[0] in "RD":
                         return False
             except FileNotFoundError:
-                pass  # it has ended
+                pass  # the thread has ended
         return True
 
     def rest(self):
-        """The screenshot once the viewer has done all that it was asked for."""
+        """A screenshot once the viewer has nothing more to do."""
         deadline = time.monotonic() + 15
         still = 0
         before = self.ticks()
@@ -146,7 +146,7 @@ class WindowCase(unittest.TestCase):
         return self.grab()
 
     def until(self, good, what):
-        """The first screenshot that @good accepts; whoever waits longer than 15 s has failed."""
+        """The first screenshot that @good accepts; fails after 15 s."""
         deadline = time.monotonic() + 15
         while True:
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")
@@ -165,7 +165,7 @@ class WindowCase(unittest.TestCase):
         return picture
 
     def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
-        """What no text lies over."""
+        """The part of a picture that is not covered by captions."""
         return picture.part(0, LINE_HEIGHT, width, height - CORNER_HEIGHT)
 
     def until_changed(self, before, what):
@@ -176,7 +176,7 @@ class WindowCase(unittest.TestCase):
         self.tool("mousemove", "--window", self.window, x, y)
 
     def cross_at(self, picture, x, y):
-        """A red upright cross whose middle is there, to a pixel or two."""
+        """Whether a red upright cross has its middle there, to a pixel or two."""
         arms = ((0, 0), (8, 0), (-8, 0), (0, 8), (0, -8))
         return any(
             all(picture.at(x + a + i, y + b + j) == CROSS for a, b in arms)
@@ -184,10 +184,10 @@ class WindowCase(unittest.TestCase):
         )
 
     def found(self, than=None):
-        """A window of the viewer's is there, another one than the one named."""
+        """Wait for a window of the viewer, other than @than."""
         deadline = time.monotonic() + 20
         while True:
-            # A search fails also where a window goes while it looks.
+            # A search also fails if a window is closed meanwhile.
             found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
                         env=self.environment)
             others = [name for name in found.stdout.split() if name != than]
@@ -198,13 +198,13 @@ class WindowCase(unittest.TestCase):
             time.sleep(0.05)
 
     def messages(self):
-        """What the viewer has said, once it has ended."""
+        """The viewer's messages, once it has ended."""
         said = self.viewer.communicate(timeout=20)[1]
         self.viewer = None
         return said
 
     def corner_has(self, picture, is_it):
-        """Whether what tells of the gaze has so much of a colour as text has."""
+        """Whether the caption of the gaze has text of a colour."""
         width, height = SIZE
         return 100 < sum(
             is_it(*picture.at(x, y)) for x in range(8, width - 10)
@@ -218,7 +218,7 @@ class WindowCase(unittest.TestCase):
         return place and all(abs(a - b) <= 3 for a, b in zip(place, wanted))
 
     def red_middle(self, picture):
-        """The middle of all that has the cross's colour, or None."""
+        """The middle of all pixels with the cross's colour, or None."""
         places = [
             (x, y) for y in range(LINE_HEIGHT, SIZE[1], 2) for x in range(SIZE[0])
             if picture.at(x, y) == CROSS
@@ -228,7 +228,7 @@ class WindowCase(unittest.TestCase):
         return tuple(sum(place[i] for place in places) // len(places) for i in (0, 1))
 
     def processor_share(self, rest_s=2):
-        """Of one core, while nothing happens for so long."""
+        """Share of one core used while nothing happens for @rest_s."""
         before, start = self.ticks(), time.monotonic()
-        time.sleep(rest_s)  # what is measured is a rest
+        time.sleep(rest_s)  # the time that is measured
         return (self.ticks() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - start)

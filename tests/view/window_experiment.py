@@ -1,4 +1,4 @@
-"""gazeview --experiment in the real window: answered by keys, left by Escape, gone on with."""
+"""gazeview --experiment in the real window: answered by keys, left by Escape, resumed."""
 
 import csv
 import os
@@ -65,11 +65,11 @@ class Experiment(WindowCase):
         return self.viewer.poll() is not None
 
     def press(self, key):
-        """Whoever looks for the window while it closes is told of an error."""
+        """xdotool fails if the window closes meanwhile."""
         run("xdotool", "key", key, env=self.environment)
 
     def answer(self, done, *keys):
-        """Press these in turn, each of which counts at its own time, until @done."""
+        """Press keys in turn, each of which counts in its own phase, until @done."""
         deadline = time.monotonic() + 60
         turn = 0
         while not done():
@@ -85,7 +85,7 @@ class Experiment(WindowCase):
         return said
 
     def whole(self, picture, colour):
-        """Whether nothing but that is in the corners of the screen."""
+        """Whether the corners of the screen have only that colour."""
         return all(picture.at(x, y) == colour for x in (2, SCREEN[0] - 3)
                    for y in (2, SCREEN[1] - 3))
 
@@ -104,7 +104,7 @@ class Experiment(WindowCase):
                              "standard" if row["chosen"] == "a" else "acuity")
             self.assertEqual(row["correct"], "1" if row["chosen"] == "a" else "0")
             self.assertGreater(float(row["response_time"]), 0)
-            # Machines are slow at times, never fast.
+            # A machine may be slow, but never too fast.
             for interval in ("1", "2"):
                 self.assertGreater(float(row["interval_%s_duration" % interval]), 0.15)
             self.assertGreater(int(row["frames"]), 0)
@@ -174,12 +174,12 @@ class Experiment(WindowCase):
             self.assertEqual(begun[label], int(row["host_ns"]))
             self.assertTrue(0 <= float(row["gaze_loss"]) <= 1, row["gaze_loss"])
 
-    def test_escape_keeps_what_was_answered_and_resume_goes_on(self):
+    def test_escape_keeps_the_answers_and_resume_continues(self):
         self.begin("--gaze", "0.5,0.5")
         self.answer(lambda: len(self.rows()) == 1, "space", "1")
         self.answer(self.ended, "Escape")
         said = self.finish(1)
-        self.assertIn("1 of 4 trials are answered; --resume goes on", said)
+        self.assertIn("1 of 4 trials are answered; --resume continues", said)
         kept = self.rows()
         self.assertEqual(len(kept), 1)
         refused = run(GAZEVIEW, *self.words(), env=self.environment)
@@ -210,7 +210,7 @@ class Experiment(WindowCase):
         if not library:
             self.skipTest("LOSE_CONTEXT_LIBRARY names nothing to preload")
         lost, kept = os.path.join(self.folder, "lost"), self.environment
-        # The shared objects of a sanitizer must not insist on being first.
+        # The runtime of a sanitizer must accept not to be loaded first.
         losing = dict(kept, LD_PRELOAD=library, LOSE_CONTEXT=lost,
                       ASAN_OPTIONS=kept["ASAN_OPTIONS"] + ":verify_asan_link_order=0")
         for backend in ("cpu", "gl"):
@@ -240,7 +240,7 @@ class Experiment(WindowCase):
         self.assertEqual([name for name in os.listdir(self.folder) if "events" in name], [])
         return done.stderr
 
-    def test_what_cannot_be_shown_is_refused_before_anything_is(self):
+    def test_what_cannot_be_shown_is_refused_at_the_start(self):
         self.assertIn("short.experiment:15: [trial fine] a: no scene ",
                       self.refused(scene="nowhere.scene"))
         self.assertIn("--gaze 0.5,0.5: ", self.refused("--gaze", "0.5,0.5", gaze="required"))
@@ -253,8 +253,8 @@ class Experiment(WindowCase):
         self.begin("--gaze", "0.5,0.5", "--window", "--size", "4200x100")
         self.answer(self.ended, "space")
         said = self.finish(1)
-        self.assertIn("4200x100 at image_sampling_rate 4 does not give 1 to 16384 rays a side", said)
-        self.assertIn("its picture cannot be created, so that the experiment ends", said)
+        self.assertIn("4200x100 at image_sampling_rate 4 is not 1 to 16384 rays a side", said)
+        self.assertIn("its picture cannot be made; the experiment ends", said)
         self.assertEqual(said.count("image_sampling_rate 4"), 1, said)
         self.assertEqual(self.rows(), [])
 

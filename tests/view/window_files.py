@@ -48,13 +48,13 @@ class Files(WindowCase):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def press(self, key):
-        """Held long enough for a frame to see it."""
+        """Press a key long enough for a frame to see it."""
         self.tool("keydown", *key.split("+"))
         time.sleep(0.15)
         self.tool("keyup", *reversed(key.split("+")))
 
     def keys(self, key):
-        """With the mouse on the window, which has the keyboard then."""
+        """Press a key with the mouse on the window, which then has the keyboard."""
         self.move(SIZE[0] // 2, SIZE[1] // 2)
         self.tool("key", key)
 
@@ -71,11 +71,11 @@ class Files(WindowCase):
             time.sleep(0.05)
 
     def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
-        """Where neither the line nor a message lies over it."""
+        """The part of a picture without captions and messages."""
         return picture.part(0, LINE_HEIGHT, width, height * 2 // 3)
 
     def headless(self, path, *more):
-        """The same without a window."""
+        """The same picture without a window."""
         out = os.path.join(self.folder, "headless.png")
         done = run(GAZEVIEW, "--headless", path, "--size", "%dx%d" % SIZE, "--out", out, *more,
                    env=self.environment)
@@ -83,7 +83,7 @@ class Files(WindowCase):
         return self.below_line(read_png(out))
 
     def dialog_there(self, picture):
-        """A title bar's blue in the upper half."""
+        """Whether a blue title bar is in the upper half."""
         return 200 < sum(
             abs(r - 41) + abs(g - 74) + abs(b - 122) < 12
             for y in range(0, SIZE[1] // 2) for x in range(0, SIZE[0], 2)
@@ -97,10 +97,10 @@ class Files(WindowCase):
         return max(middle) > 120 and all(max(edge) < 60 for edge in edges)
 
     def enter_text(self, text):
-        """In place of what a field has."""
+        """Replace the text of a field."""
         self.tool("key", "ctrl+a")
         self.tool("type", "--delay", "20", text)
-        time.sleep(0.3)  # the field shows it before Enter counts
+        time.sleep(0.3)  # the field takes it before Enter counts
 
     def test_dropped_volume_is_shown(self):
         self.start("--gaze", "mouse", "--method", "standard")
@@ -109,12 +109,12 @@ class Files(WindowCase):
         self.until_changed(before, "the ball")
         self.until(self.bright_in_the_middle, "the ball in the middle")
 
-    def test_of_several_dropped_files_one_is_opened_and_that_is_told(self):
+    def test_of_several_dropped_files_one_is_opened_with_a_message(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.drop(self.write_nrrd("one.nrrd"), self.write_nrrd("two.nrrd"))
         self.until(self.bright_in_the_middle, "the ball in the middle")
         self.tool("key", "q")
-        self.assertIn("2 files were dropped: opening %s alone"
+        self.assertIn("2 files were dropped: opening %s only"
                       % os.path.join(self.folder, "one.nrrd"), self.messages())
 
     def test_dropped_transfer_function_colours_the_volume(self):
@@ -148,14 +148,14 @@ class Files(WindowCase):
         self.until(lambda p: self.below_line(p) == shown, "as in the picture")
         self.assertTrue(self.headless(picture) == shown, "another picture")
 
-    def test_dropped_file_that_shows_nothing_is_told_and_the_picture_stays(self):
+    def test_dropped_file_that_cannot_be_shown_is_a_message_and_the_picture_stays(self):
         self.start("--gaze", "mouse", "--method", "standard")
         before = self.below_line(self.grab())
         self.drop(self.write("notes.txt", "milk, bread\n"))
         self.drop(self.write("half.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
                              b"sizes: 9 9 9\nencoding: raw\n\nabc"))
         deadline = time.monotonic() + 15
-        while True:  # until both have been tried, the last one by a thread
+        while True:  # until both have been tried, the last one on a thread
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.5)
             if not self.busy():
@@ -183,7 +183,7 @@ class Files(WindowCase):
         recent = os.path.join(self.place.name, "gazecast", "recent")
         self.until_there(recent, lambda text: text.splitlines()[0].endswith("/ball.nrrd"))
 
-    def test_dialog_goes_by_escape_and_the_window_stays(self):
+    def test_escape_closes_the_dialog_but_not_the_window(self):
         self.start("--gaze", "mouse", "--method", "standard")
         before = self.below_line(self.grab())
         self.keys("ctrl+o")
@@ -211,7 +211,7 @@ class Files(WindowCase):
         self.assertTrue(self.headless(path) == shown, "another picture")
 
     def until_still(self):
-        """What is shown once two screenshots in a row are the same."""
+        """A screenshot once two in a row are equal."""
         last = self.below_line(self.grab())
         while True:
             now = self.below_line(self.grab())
@@ -227,7 +227,7 @@ class Files(WindowCase):
         self.until(self.dialog_there, "the dialog")
         self.enter_text(path)
         self.press("Return")
-        time.sleep(0.5)  # nothing must come of it
+        time.sleep(0.5)  # nothing may happen
         with open(path, encoding="utf-8") as file:
             self.assertEqual(file.read(), other)
         self.press("Return")
@@ -260,7 +260,7 @@ class Files(WindowCase):
         self.tool("key", "Return")
         self.until(lambda p: not self.dialog_there(p), "a picture")
 
-    def test_raw_volume_whose_name_tells_all_needs_no_question(self):
+    def test_raw_volume_with_its_layout_in_the_name_needs_no_question(self):
         path = self.write("ball_%dx%dx%d_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")
         self.until(self.bright_in_the_middle, "the ball in the middle")

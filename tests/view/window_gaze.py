@@ -1,4 +1,4 @@
-"""The gaze in gazeview's window: its sources, what the corner says of it, trail, freeze, displays.
+"""The gaze in gazeview's window: sources, corner, trail, freeze, displays.
 
 window_gaze.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
@@ -25,7 +25,7 @@ class Gaze(WindowCase):
         return [line for line in said.splitlines() if what in line]
 
     def record(self):
-        """A gaze log of a second or so. -> path"""
+        """Record a gaze log of about a second. -> path"""
         folder = tempfile.TemporaryDirectory(prefix="gazecast-test-recordings-")
         self.addCleanup(folder.cleanup)
         self.start_daemon("--driver=sim", "--sim.blinks_per_min=0",
@@ -33,13 +33,13 @@ class Gaze(WindowCase):
         deadline = time.monotonic() + 15
         while run(GAZECTL, "record", "short", env=self.environment).returncode != 0:
             self.assertLess(time.monotonic(), deadline, "nothing is recorded")
-        time.sleep(1)  # what is recorded
+        time.sleep(1)  # the time that is recorded
         self.stop_daemon()
         names = os.listdir(folder.name)
         self.assertEqual(len(names), 1, names)
         return os.path.join(folder.name, names[0])
 
-    def test_log_leads_until_its_end_and_is_one_of_those_that_m_goes_through(self):
+    def test_log_gives_the_gaze_until_its_end_and_m_reaches_it_again(self):
         path = self.record()
         self.start("--gaze", path, "--cross", "--method", "standard")
         self.until(self.amber, "its end")
@@ -48,7 +48,7 @@ class Gaze(WindowCase):
         self.until(lambda p: self.cross_at(p, 240, 160), "led by a fixed point")
         self.tool("key", "m", "m")
         self.until(lambda p: self.cross_at(p, 60, 200), "led by the mouse")
-        # The pointer and the log again, from its start.
+        # Over the pointer to the log again, from its start.
         self.tool("key", "m", "m")
         self.until(lambda p: self.plain(p) and not self.amber(p), "led by the log")
         self.until(self.amber, "its end again")
@@ -61,7 +61,7 @@ class Gaze(WindowCase):
                    not self.cross_at(p, 60, 200), "led by the daemon")
         self.tool("key", "m")
         self.until(lambda p: self.cross_at(p, 60, 200), "led by the mouse")
-        # The daemon reads no pointer, and nobody named an endpoint or a log.
+        # The daemon reads no pointer, and no endpoint or log was named.
         self.tool("key", "m")
         self.until(lambda p: self.cross_at(p, 240, 160), "led by a fixed point")
         self.move(70, 210)
@@ -131,7 +131,7 @@ class Gaze(WindowCase):
         self.until(lambda p: p.at(897, 697) == (0, 0, 0), "a window again")
 
     def start_on_two(self, *more):
-        """The left half of the screen is a monitor, and so is the right one."""
+        """Make each half of the screen a monitor."""
         library = os.environ.get("TWO_MONITORS_LIBRARY")
         if not library:
             self.skipTest("TWO_MONITORS_LIBRARY names nothing to preload")
@@ -156,13 +156,13 @@ class Gaze(WindowCase):
         self.tool("key", "d")
         self.until(lambda p: p.at(890, 600) == black and p.at(430, 100) == blue, "back")
 
-    def test_window_on_a_monitor_that_goes_comes_to_another_with_a_message(self):
+    def test_window_on_an_unplugged_monitor_moves_to_another_with_a_message(self):
         self.start_on_two("--tracker-display", "2", "--gaze", "0.5,0.5")
         blue = (51, 102, 153)
         self.tool("key", "d")
         self.until(lambda p: p.at(890, 600) == blue and p.at(100, 600) != blue, "on the right")
         open(self.unplug, "w", encoding="utf-8").close()
-        self.tool("key", "c")  # something happens
+        self.tool("key", "c")  # an event
         self.until(lambda p: p.at(5, 600) == blue, "on the left")
         self.viewer.terminate()
         said = self.viewer.communicate(timeout=20)[1]
@@ -181,20 +181,20 @@ class Gaze(WindowCase):
         self.tool("mousemove", "--window", self.window, 60, 90)
         self.tool("click", 1)
         self.until(lambda p: not self.cross_at(p, 350, 250), "no fixed point any more")
-        for y in (290, 300):  # the first of them still is the panel's
+        for y in (290, 300):  # the first is still in the panel
             self.move(600, y)
             self.grab()
         self.until(lambda p: self.cross_at(p, 600, 300), "led by the mouse")
         self.tool("key", "g")
         self.until(lambda p: p.part(20, 50, 300, 200) == before.part(20, 50, 300, 200), "no panel")
 
-    def test_unknown_monitor_is_told_and_the_window_goes_on(self):
+    def test_unknown_monitor_is_a_warning(self):
         self.start("--gaze", "mouse", "--tracker-display", "DP-9")
         self.viewer.terminate()
         said = self.viewer.communicate(timeout=20)[1]
         self.viewer = None
         self.assertEqual(len(self.rows(said, "DP-9")), 1, said)
-        self.assertIn("there is no such monitor", said)
+        self.assertIn("no such monitor", said)
 
     def test_resting_gaze_of_a_daemon_takes_hardly_any_processor_time(self):
         if os.environ.get("SANITIZED"):
@@ -205,7 +205,7 @@ class Gaze(WindowCase):
             self.move(200, 150)
             self.until(lambda p: self.plain(p) and not self.amber(p), "a gaze")
             self.until(lambda p: self.processor_share(1) < 0.1, "it has come to rest")
-            # The least of a few: others use the machine, too.
+            # The least of several: others use the machine too.
             self.assertLess(min(self.processor_share() for _ in range(3)), 0.03,
                             "at %d Hz" % rate)
             self.stop()

@@ -36,7 +36,7 @@ def scene_of(name, volume):
         volume, os.path.join(SCENES, "shells.tf")))
 
 
-# Half a minute's work, which is cancelled each time.
+# Loads for half a minute, unless cancelled.
 SLOW = scene_of("slow.scene", "procedural = supernova\ndims = 640 640 640\ntype = uint8")
 
 NRRD = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n"
@@ -46,7 +46,7 @@ NORMAL, ICONIC = 1, 3
 
 
 def set_property(display, window, name, kind, bits, value, count):
-    """Of a window; 0: of the root."""
+    """Set a property of a window; 0: the root."""
     x11 = ctypes.CDLL("libX11.so.6")
     x11.XOpenDisplay.restype = ctypes.c_void_p
     x11.XInternAtom.restype = x11.XDefaultRootWindow.restype = ctypes.c_ulong
@@ -58,17 +58,17 @@ def set_property(display, window, name, kind, bits, value, count):
 
 
 def set_state(display, window, state):
-    """Say what a window manager says of a window."""
+    """Set the state of a window as a window manager does."""
     value = (ctypes.c_long * 2)(state, 0)
     set_property(display, window, b"WM_STATE", b"WM_STATE", 32, value, 2)
 
 
 def set_resources(display, text):
-    """As xrdb does."""
+    """Set X resources as xrdb does."""
     set_property(display, 0, b"RESOURCE_MANAGER", b"STRING", 8, text, len(text))
 
 
-# What cannot be shown, and what must be said of it.
+# Files that cannot be shown, and part of the message.
 BAD = {
     "no such file": (os.path.join(PLACE.name, "nowhere.scene"), "no such file"),
     "an error in a line": (write("wrong.scene", "[volume]\nprocedural = shells\nsize = 3\n"),
@@ -81,31 +81,31 @@ BAD = {
                       "half.nrrd"),
 }
 
-# The dialog refuses the other one itself.
+# The dialog itself refuses the other one.
 READABLE = [what for what in BAD if what != "no such file"]
 
 
 class WindowLoading(WindowCase):
     def says_error(self, picture, place=CORNER):
-        """Red letters."""
+        """Whether there are red letters."""
         left, top, right, bottom = place
         pixels = (picture.at(x, y) for x in range(left, right) for y in range(top, bottom))
         return sum(r > 200 and 60 < g < 130 and b < 110 for r, g, b in pixels) > 40
 
     def welcomes(self, picture):
-        """A dark ground with text in the middle."""
+        """Whether there is text on a dark ground in the middle."""
         letters = sum(picture.at(x, y)[0] > 120 for x in range(MIDDLE[0], MIDDLE[2])
                       for y in range(MIDDLE[1], MIDDLE[3]))
         return picture.at(5, 5) == GROUND and letters > 100
 
     def quit(self):
-        """-> exit status, messages"""
+        """Quit. -> exit status, messages"""
         self.tool("key", "q")
         status = self.viewer.wait(timeout=20)
         return status, self.messages()
 
     def open(self, path):
-        """By the dialog, whose title and field are above what is in the middle."""
+        """Open a file by the dialog."""
         place = (30, 10, 440, 92)
         before = self.grab()
         self.tool("key", "ctrl+o")
@@ -121,7 +121,7 @@ class WindowLoading(WindowCase):
         self.until(typed, "typed")
         self.tool("key", "Return")
 
-    def test_window_without_a_scene_welcomes_and_ends_well(self):
+    def test_window_without_a_scene_shows_a_welcome_and_exits_with_0(self):
         self.launch()
         self.until(self.welcomes, "welcome")
         for key in ("1", "r", "p", "l", "c", "i", "Left", "space", "F5", "f", "f", "p"):
@@ -138,7 +138,7 @@ class WindowLoading(WindowCase):
     def shows_ground(self, picture):
         return picture.at(5, SIZE[1] - 5) == GROUND
 
-    def test_what_cannot_be_shown_is_said_in_the_window_which_stays(self):
+    def test_what_cannot_be_shown_is_an_error_in_the_window(self):
         for what, (path, message) in BAD.items():
             with self.subTest(what):
                 self.launch(path)
@@ -157,7 +157,7 @@ class WindowLoading(WindowCase):
                 self.open(BAD[what][0])
                 self.until(self.says_error, what)
                 self.until(lambda p: p.part(*place) == before.part(*place), "the scene")
-                # Seen for a second, it goes at a key.
+                # After a second a key removes it.
                 time.sleep(1.2)
                 self.tool("key", "shift")
                 self.until(lambda p: not self.says_error(p), "read")
@@ -184,10 +184,10 @@ class WindowLoading(WindowCase):
         self.assertEqual(self.quit()[0], 0)
 
     def bar(self, picture):
-        """The panel of a loading: a button in the middle."""
+        """Whether the progress panel is shown: a button in the middle."""
         return picture.part(*MIDDLE) != bytes(GROUND) * (len(picture.part(*MIDDLE)) // 3)
 
-    def test_loading_goes_on_while_the_window_answers_and_is_cancelled(self):
+    def test_window_answers_while_a_scene_loads_and_escape_cancels(self):
         self.launch(SLOW)
         first = self.until(self.bar, "a bar")
         self.until(lambda p: p.part(*MIDDLE) != first.part(*MIDDLE), "it moves")
@@ -215,7 +215,7 @@ class WindowLoading(WindowCase):
         self.until(lambda p: p.part(*place) == before.part(*place), "standard")
         self.tool("key", "Escape")
         self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "no bar")
-        # A second one takes the place of one that is under way.
+        # A second loading replaces the first.
         self.open(SLOW)
         self.open(SCENE)
         self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "the same scene anew")
@@ -232,7 +232,7 @@ class WindowLoading(WindowCase):
         self.until(self.bar, "a bar")
         self.assertEqual(self.quit()[0], 0)
 
-    def test_display_that_goes_is_a_message_and_an_exit_status(self):
+    def test_lost_display_is_a_message_and_an_exit_status(self):
         kept = self.environment
         self.addCleanup(setattr, self, "environment", kept)
         for words in ([SCENE, "--turn", "1"], [SCENE, "--gaze", "0.5,0.5"], [SLOW], []):
@@ -248,7 +248,7 @@ class WindowLoading(WindowCase):
             self.assertEqual(said.count("\n"), 1, said)
             self.assertIn("the display is gone", said)
 
-    def test_display_that_goes_ends_the_targets_with_a_message(self):
+    def test_lost_display_ends_the_targets_with_a_message(self):
         server, display = start_server(SCREEN)
         self.viewer = subprocess.Popen(
             [GAZEVIEW, "--targets", "9"], env=dict(self.environment, DISPLAY=display),
@@ -266,7 +266,7 @@ class WindowLoading(WindowCase):
     def test_minimised_window_makes_no_pictures(self):
         self.start("--gaze", "0.5,0.5", "--turn", "1")
         self.assertGreater(self.ticks_in(0.5), 2)
-        # What a window manager writes there.
+        # As a window manager does.
         for state, rests in ((ICONIC, True), (NORMAL, False)):
             set_state(self.environment["DISPLAY"], int(self.window), state)
             deadline = time.monotonic() + 15
@@ -278,7 +278,7 @@ class WindowLoading(WindowCase):
         time.sleep(seconds)
         return self.ticks() - before
 
-    def test_window_of_one_pixel_goes_on(self):
+    def test_window_of_one_pixel_keeps_working(self):
         self.start("--gaze", "0.5,0.5", "--interface-scale", "2")
         self.tool("windowsize", self.window, 1, 1)
         self.rest()
@@ -316,7 +316,7 @@ class WindowLoading(WindowCase):
         self.until(lambda p: p.part(*MIDDLE) == before.part(*MIDDLE), "as before")
         self.assertEqual(self.quit()[0], 0)
 
-    def test_interface_is_drawn_at_the_scale_that_the_display_says(self):
+    def test_interface_follows_the_scale_of_the_display(self):
         self.launch()
         small = self.letters(self.until(self.welcomes, "welcome"))
         self.assertEqual(self.quit()[0], 0)

@@ -23,12 +23,12 @@ COARSE = (*STILL, "--method", "acuity", "--foveation.acuity_slope", "0.1")
 class PictureWindow(WindowCase):
     def start(self, *more):
         super().start(*more)
-        self.move(WIDTH - 5, LINE_HEIGHT + 20)  # whose window has the mouse has the keys
+        self.move(WIDTH - 5, LINE_HEIGHT + 20)  # the window with the mouse has the keyboard
     def part(self, picture, left, right, top=TOP, bottom=BOTTOM):
         return picture.part(left, top, right, bottom)
 
     def tint(self, before, after, x, y):
-        """The overlay's colour: what is left when the picture's share is taken away."""
+        """The tint's colour: what is left when the picture's share is removed."""
         share = 0.36
         return tuple((b - (1 - share) * a) / share
                      for a, b in zip(before.at(x, y), after.at(x, y)))
@@ -80,7 +80,7 @@ class PictureWindow(WindowCase):
         self.assertNotEqual(self.part(standard, *right), self.part(foveated, *right))
         fovea = (MIDDLE - 12, MIDDLE - 3, HEIGHT // 2 - 12, HEIGHT // 2 + 12)
         self.assertEqual(self.part(split, *fovea), self.part(standard, *fovea))
-        # By the mouse, which turns nothing there; the gaze stays.
+        # The mouse does not turn the camera there; the gaze stays.
         self.move(MIDDLE, 100)
         self.tool("mousedown", 1)
         self.move(MIDDLE + 40, 110)
@@ -103,7 +103,7 @@ class PictureWindow(WindowCase):
         self.tool("key", "Left")
         self.tool("key", "Up")
         both = self.until(lambda p: self.part(p, 4, 230) != self.part(first, 4, 230), "turned")
-        # By standard itself both halves are the same picture as without a divider.
+        # With method standard both halves are the same picture.
         self.tool("key", "v")
         self.tool("key", "v")
         alone = self.until(lambda p: self.part(p, 230, 250) != self.part(both, 230, 250), "alone")
@@ -196,7 +196,7 @@ class PictureWindow(WindowCase):
                    "0 1 0", "--camera.projection", "orthographic", "--camera.height", "1.25")
         self.until(lambda p: self.below_line(p) == self.below_line(shown), "the same by keys")
 
-    def test_view_that_is_none_is_refused_with_its_form(self):
+    def test_malformed_view_is_refused_with_its_format(self):
         done = run(GAZEVIEW, SCENE, "--headless", "--size", "8x8", "--views.2", "from the left",
                    env=self.environment)
         self.assertEqual((done.returncode, done.stdout), (1, ""))
@@ -221,7 +221,7 @@ class PictureWindow(WindowCase):
         self.until(lambda p: p.part(*panel) == before.part(*panel), "none")
 
     def extent(self, picture, width, height):
-        """How wide and how high what is in the window's middle is, px."""
+        """Width and height of the object in the middle, px."""
         ground = picture.at(width - 3, height // 2)
         across = [x for x in range(width) if picture.at(x, height // 2) != ground]
         down = [y for y in range(LINE_HEIGHT, height - CORNER_HEIGHT)
@@ -235,12 +235,12 @@ class PictureWindow(WindowCase):
         self.assertGreater(high, 50)
         for width, height in ((400, 600), (700, 400)):
             self.tool("windowsize", self.window, width, height)
-            # As high as before by the window's height, and as wide by its own.
+            # Its height follows the window's, and its width its own height.
             scale = height / HEIGHT
             self.until(lambda p: all(abs(got - wanted * scale) <= 4 for got, wanted in zip(
                 self.extent(p, width, height), (wide, high))), "%d x %d" % (width, height))
 
-    def test_what_the_window_costs_is_measured_and_told(self):
+    def test_measure_window_prints_the_cost_of_the_window(self):
         done = run(GAZEVIEW, SCENE, "--size", "320x200", "--gaze", "0.5,0.5", "--measure-window",
                    "5", env=self.environment)
         self.assertEqual((done.returncode, done.stderr), (0, ""))

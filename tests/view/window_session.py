@@ -1,4 +1,4 @@
-"""What leaves gazeview's window: sessions, videos and screenshots, made by keys and looked at.
+"""Sessions, videos and screenshots, made by keys in gazeview's window and checked.
 
 window_session.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
@@ -46,7 +46,7 @@ class Leaves(WindowCase):
         return said
 
     def appears(self, pattern, count=1):
-        """The files of that name once there are so many, and no longer grow."""
+        """The files with a name, once all are there and no longer grow."""
         deadline, before = time.monotonic() + 15, None
         while True:
             found = sorted(glob.glob(self.path(pattern)))
@@ -66,7 +66,7 @@ class Leaves(WindowCase):
             for r, g, b in (picture.at(x, y) for x in range(width - 160, width))
         )
 
-    def test_session_replays_to_the_very_pictures_that_were_on_the_screen(self):
+    def test_session_replays_to_the_pictures_that_were_on_the_screen(self):
         self.begin()
         self.move(100, 200)
         self.key("F9")
@@ -114,7 +114,7 @@ class Leaves(WindowCase):
         while "all" not in said:
             said = self.viewer.stderr.readline()
             self.assertTrue(said, "gazeview has ended")
-        frames = int(re.search(r"all (\d+) frames were shown; the last one stays", said)[1])
+        frames = int(re.search(r"all (\d+) frames have been shown; the last one stays", said)[1])
         self.key("F12")
         (shot,) = self.appears("gazeview-*.png")
         self.quit()
@@ -123,7 +123,7 @@ class Leaves(WindowCase):
         last = read_png(self.path("f%04d.png" % (frames - 1)))
         self.assertTrue(read_png(shot) == last, "the last picture is another")
 
-    def test_video_of_the_window_has_the_pictures_and_goes_on_while_they_stand(self):
+    def test_video_of_the_window_has_its_pictures_and_continues_while_nothing_changes(self):
         self.begin("--fps", "20")
         self.key("F10")
         self.until(self.red_dot, "a red dot")

@@ -13,7 +13,7 @@ import unittest
 from picture import read_png, run, write_scene
 from window_case import GAZEVIEW, PLACE, SCENE, SCENES, SCREEN, WindowCase
 
-# The plot without the interface being scaled: its width, its height.
+# Width and height of the plot at scale 1.
 PLOT = (508, 171)
 SHOWN = (560, 60, 890, 640)  # the picture beside the panel
 FIXED = ("--gaze", "0.5,0.5", "--method", "standard", "--backend", "cpu")
@@ -21,7 +21,7 @@ FUNCTION = os.path.join(PLACE.name, "edited.tf")
 
 
 def own_function():
-    """The scene gets a transfer function that may be written over."""
+    """Give the scene a transfer function that may be overwritten."""
     shutil.copy(os.path.join(SCENES, "shells.tf"), FUNCTION)
     write_scene(PLACE.name, SCENES)
     with open(SCENE, encoding="utf-8") as source:
@@ -42,7 +42,7 @@ class TransferWindow(WindowCase):
         self.start(*FIXED)
         self.tool("windowsize", self.window, *SCREEN)
         self.tool("mousemove", SCREEN[0] - 3, SCREEN[1] // 2)
-        # Beyond the window the screen is black, which the scene's background is not.
+        # The screen outside the window is black, unlike the scene's background.
         self.until(lambda p: p.at(SCREEN[0] - 3, SCREEN[1] - 3) != (0, 0, 0), "large window")
         before = self.settled()
         self.tool("key", "e")
@@ -62,7 +62,7 @@ class TransferWindow(WindowCase):
         return False
 
     def point_at(self, value, opacity):
-        """Of a point, on an axis of opacity that is logarithmic."""
+        """Place of a point, on a logarithmic axis of opacity."""
         height = math.log1p(1e4 * opacity) / math.log1p(1e4)
         return (round(self.corner[0] + value * PLOT[0]),
                 round(self.corner[1] - height * PLOT[1]))
@@ -80,7 +80,7 @@ class TransferWindow(WindowCase):
         return self.until(lambda p: self.same(p, before), what)
 
     def settled(self):
-        """What is on the screen when two screenshots in a row are alike."""
+        """A screenshot once two in a row are equal."""
         before = self.grab()
         while True:
             time.sleep(0.3)
@@ -92,7 +92,7 @@ class TransferWindow(WindowCase):
     def press(self, key, times=1):
         for _ in range(times):
             self.tool("keydown", key)
-            time.sleep(0.12)  # Dear ImGui sees what is down while it draws
+            time.sleep(0.12)  # Dear ImGui reads buttons while it draws
             self.tool("keyup", key)
             time.sleep(0.12)
 
@@ -106,7 +106,7 @@ class TransferWindow(WindowCase):
         self.tool("mouseup", 1)
         time.sleep(0.2)
 
-    def test_dragged_point_changes_the_picture_and_undo_brings_the_very_same_back(self):
+    def test_dragged_point_changes_the_picture_and_undo_restores_it(self):
         first = self.open_editor()
         self.drag(self.point_at(0.65, 0.2), self.point_at(0.62, 0.0))
         self.until_other(first, "dragged")
@@ -161,7 +161,7 @@ class TransferWindow(WindowCase):
         self.move(*self.point_at(0.65, 0.2))
         self.tool("click", "--repeat", 2, "--delay", 80, 1)
         time.sleep(0.5)
-        # The square of shades, right below the mouse: grey.
+        # The colour square, right below the mouse: grey.
         x, y = self.point_at(0.65, 0.2)
         self.move(x + 20, y + 100)
         self.tool("click", 1)
@@ -189,7 +189,7 @@ class TransferWindow(WindowCase):
         self.assertEqual(done.returncode, 0, done.stderr + saved)
         self.assertTrue(read_png(out).part(*SHOWN) == self.shown(changed), saved)
 
-    def test_keys_are_the_windows_again_after_escape(self):
+    def test_escape_gives_the_keyboard_back_to_the_window(self):
         self.open_editor()
         self.press("Escape")
         self.press("e")
@@ -216,7 +216,7 @@ class TransferWindow(WindowCase):
         done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED, "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(read_png(out).part(*SHOWN) == self.shown(chosen), "another picture")
-        # It is what the file has: taken back, it differs, and the first picture is there again.
+        # It is saved: after undo it differs, and the first picture is shown again.
         self.tool("key", "ctrl+z")
         self.until_same(first, "without preset")
 

@@ -67,7 +67,7 @@ enum gz_result gz_letters_of_camera(const struct gz_camera *camera, struct gz_le
 	return GZ_OK;
 }
 
-static void fill_square(struct gz_image *image, int left, int top, int size, uint8_t level)
+static void fill_dot(struct gz_image *image, int left, int top, int size, uint8_t level)
 {
 	const uint8_t colour[4] = { level, level, level, 255 };
 	for (int y = top < 0 ? 0 : top; y < top + size && y < image->height; y++)
@@ -97,9 +97,9 @@ static void draw_glyph(struct gz_image *image, const uint8_t *rows, int left, in
 	for (int row = 0; row < GLYPH_HEIGHT; row++)
 		for (int column = 0; column < GLYPH_WIDTH; column++)
 			if (rows[row] >> (GLYPH_WIDTH - 1 - column) & 1)
-				fill_square(image, left + column * pen->dot - pen->grow,
-					    top + row * pen->dot - pen->grow,
-					    pen->dot + 2 * pen->grow, pen->level);
+				fill_dot(image, left + column * pen->dot - pen->grow,
+					 top + row * pen->dot - pen->grow, pen->dot + 2 * pen->grow,
+					 pen->level);
 }
 
 static int text_width(const char *text, int dot)

@@ -437,8 +437,7 @@ bool gz_save_panel_draw(struct gz_save_panel *panel, bool *out_sure)
 
 /* ---- progress ---- */
 
-/* Share done and seconds spent from which the time left is shown (chosen: earlier it is a guess).
- */
+/* Share and seconds from which the time left is shown (chosen: earlier it is a guess). */
 #define SHARE_LEAST 0.05
 #define SPENT_LEAST 0.5
 

@@ -58,8 +58,7 @@ static void draw_keys_heading(const char *group)
 	gz_widget_text(gz_paint_amber, heading);
 }
 
-/* Groups are not divided: a new column begins with a group. @return what gz_keys_panel_draw() does
- */
+/* A new column begins with a group. @return what gz_keys_panel_draw() does */
 static size_t draw_keys_rows(const struct gz_keys_panel *panel, const struct gz_keys_row *rows,
 			     size_t count, int columns)
 {

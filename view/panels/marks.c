@@ -4,8 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Unscaled lengths, and sizes of text in that of the interface (chosen: as Dear ImGui's own style).
- */
+/* Unscaled lengths, and sizes of text relative to the interface's (chosen: Dear ImGui's style). */
 #define MARGIN        8.0f
 #define PADDING       5.0f
 #define CROSS_ARM     12.0f

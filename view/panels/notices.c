@@ -30,8 +30,7 @@ static void remove_notice(struct gz_notices *notices, size_t at)
 		(notices->count - at) * sizeof notices->notices[0]);
 }
 
-/* Remove the notice with this level and text, or the oldest one if there is no room for a new one.
- */
+/* Remove the notice with this level and text; without one, the oldest if all places are taken. */
 static struct gz_notice take_out(struct gz_notices *notices, const struct gz_notice *said)
 {
 	for (size_t i = 0; i < notices->count; i++) {

@@ -158,8 +158,7 @@ static const struct gz_option *row_option(const struct gz_settings_panel *panel,
 	return &panel->bindings[row.binding].options[row.option];
 }
 
-/* Advance @p row to the next row with a widget, which may be itself. @return false: there is none
- */
+/* Advance to the next row with a widget, which may be this one. @return false: there is none */
 static bool find_setting_row(const struct gz_settings_panel *panel, struct row *row)
 {
 	for (; row->binding < panel->count; row->binding++, row->option = 0)

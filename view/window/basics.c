@@ -29,7 +29,7 @@ static void toggle_cross(struct gz_window *window, int number)
 static void toggle_settings(struct gz_window *window, int number)
 {
 	(void)number;
-	window->settings_panel.open = !window->settings_panel.open;
+	window->settings_open = !window->settings_open;
 	gz_window_wake_panels(window);
 }
 
@@ -67,7 +67,7 @@ static void quit_program(struct gz_window *window, int number)
 
 static bool is_settings_open(const struct gz_window *window)
 {
-	return window->settings_panel.open;
+	return window->settings_open;
 }
 
 static const struct gz_window_action basics_actions[] = {
@@ -108,7 +108,17 @@ static bool setting_has_effect(const void *user, const char *key)
 	return gz_setting_applies(user, key);
 }
 
-static void draw_side_letters(struct gz_window *window)
+struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window)
+{
+	return (struct gz_settings_panel) {
+		.bindings = window->tables.bindings,
+		.count = GZ_VIEW_SCENE_TABLES,
+		.applies = setting_has_effect,
+		.user = &window->settings,
+	};
+}
+
+static void draw_patient_letters(struct gz_window *window)
 {
 	struct gz_letters letters;
 	if (window->settings.view.letters && window->maker &&
@@ -121,18 +131,17 @@ static void draw_basics(struct gz_window *window, const struct gz_window_gaze *g
 {
 	const struct gz_place room = gz_widgets_room();
 	const struct gz_point at = gaze->reading.point;
-	draw_side_letters(window);
+	draw_patient_letters(window);
 	if (window->settings.view.gaze_cursor && gaze->reading.known)
 		gz_marks_draw_cross((struct gz_place) { at.x * room.x, at.y * room.y });
 	window->cross_drawn = at;
-	if (!window->settings_panel.open || !window->maker)
+	if (!window->settings_open || !window->maker)
 		return;
-	window->settings_panel.bindings = window->tables.bindings;
-	window->settings_panel.count = GZ_VIEW_SCENE_TABLES;
-	window->settings_panel.applies = setting_has_effect;
-	window->settings_panel.user = &window->settings;
-	window->settings_panel.margin_top = window->panels_top;
-	gz_settings_panel_draw(&window->settings_panel);
+	struct gz_settings_panel panel = gz_window_settings_rows(window);
+	panel.margin_top = window->panels_top;
+	panel.open = true;
+	gz_settings_panel_draw(&panel);
+	window->settings_open = panel.open;
 }
 
 static bool cursor_follows(struct gz_window *window, const struct gz_window_gaze *gaze)

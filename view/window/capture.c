@@ -163,7 +163,7 @@ static double video_patience_s(const struct gz_window *window)
 
 /* ---- pictures ---- */
 
-static void *write_picture_file(void *argument)
+static void *write_captured_picture(void *argument)
 {
 	struct picture_job *job = argument;
 	job->result = job->has_scene
@@ -188,7 +188,7 @@ static void finish_picture(struct gz_window_capture *self)
 	self->picture = NULL;
 }
 
-static void add_scene(const struct gz_window *window, struct picture_job *job)
+static void add_captured_scene(const struct gz_window *window, struct picture_job *job)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	job->has_scene = true;
@@ -212,9 +212,9 @@ static enum gz_result start_picture_job(struct gz_window *window, struct picture
 	if (r != GZ_OK)
 		return r;
 	if (window->maker && window->any_shown)
-		add_scene(window, job);
-	return pthread_create(&job->thread, NULL, write_picture_file, job) == 0 ? GZ_OK
-										: GZ_ERR_NO_MEM;
+		add_captured_scene(window, job);
+	return pthread_create(&job->thread, NULL, write_captured_picture, job) == 0 ? GZ_OK
+										    : GZ_ERR_NO_MEM;
 }
 
 static void take_picture(struct gz_window *window, int width, int height)

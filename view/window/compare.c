@@ -252,7 +252,7 @@ static void draw_compare_marks(struct gz_window *window, const struct gz_window_
 			   false);
 }
 
-/* The mouse is near the divider. */
+/* Whether the mouse is near the divider. */
 static bool grab_divider(struct gz_window *window, int button, int modifiers)
 {
 	int width, height;

@@ -245,8 +245,8 @@ static void step_experiment(struct gz_window *window)
 		window->present_needed = true;
 	choose_trial_picture(window);
 	tell_missing_gaze(window);
-	/* In an interval each refresh is a frame, so that times from one to the next tell of
-	 * those that were missed. */
+	/* In an interval every refresh is a frame, so that missed ones are seen in the times
+	 * between frames. */
 	if (state->run.phase == GZ_RUN_INTERVAL || gz_experiment_loaded_share(state) < 1)
 		window->present_needed = true;
 }

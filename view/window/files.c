@@ -208,8 +208,7 @@ static void show_save_panel(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
-/* Ask before files are replaced that are not the scene's own. @return whether there are such files
- */
+/* Ask before files are replaced that are not the scene's own. @return whether there are any */
 static bool print_replace_question(struct gz_window *window, const char *path, bool own, char *text,
 				   size_t size)
 {

@@ -195,11 +195,6 @@ static void keep_frame_cost(struct gz_window *window)
 	gz_frame_history_add(&self->history, &cost);
 }
 
-static bool setting_has_effect(const void *user, const char *key)
-{
-	return gz_setting_applies(user, key);
-}
-
 /* The range of the option is too wide for a slider. */
 static void draw_budget(struct gz_window *window)
 {
@@ -222,12 +217,7 @@ static void draw_budget(struct gz_window *window)
 static void draw_settings(struct gz_window *window)
 {
 	static const char *const prefixes[] = { "foveation.", NULL };
-	const struct gz_settings_panel rows = {
-		.bindings = window->tables.bindings,
-		.count = GZ_VIEW_SCENE_TABLES,
-		.applies = setting_has_effect,
-		.user = &window->settings,
-	};
+	const struct gz_settings_panel rows = gz_window_settings_rows(window);
 	draw_budget(window);
 	gz_settings_rows_draw(&rows, prefixes);
 }

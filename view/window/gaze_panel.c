@@ -302,7 +302,7 @@ static void fill_gaze_panel(struct gz_window *window, struct gz_window_gaze_pane
 	panel->frozen = window->gaze_frozen;
 }
 
-/* The source follows the setting in the next turn, since others use the present one in this frame.
+/* The source follows the setting in the next turn: other parts use the present one in this frame.
  */
 static void ask_for_panel_source(struct gz_window *window, const struct gaze_panel *panel)
 {

@@ -1,5 +1,4 @@
-/* Keys and mouse: to the actions of parts, to the part that has the mouse, and to the mouse's gaze.
- */
+/* Keys run the actions of parts; the mouse is a gaze, and moves what the part that has it moves. */
 #include <ctype.h>
 #include <string.h>
 

@@ -45,21 +45,25 @@ struct gz_window_latency {
 	bool vsync, vsync_known; /* as set last */
 };
 
-static int compare_doubles(const void *a, const void *b)
+static int compare_latencies(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 	return (x > y) - (x < y);
+}
+
+double gz_latency_median_ms(double *values_ms, int count)
+{
+	qsort(values_ms, (size_t)count, sizeof values_ms[0], compare_latencies);
+	return (values_ms[(count - 1) / 2] + values_ms[count / 2]) / 2;
 }
 
 /* Median of the doubles at @p offset in the frames kept. */
 static double median_of_field(const struct gz_window_latency *timing, size_t offset)
 {
 	double values[GZ_LATENCY_FRAMES] = { 0 };
-	const int count = timing->kept_count;
-	for (int i = 0; i < count; i++)
+	for (int i = 0; i < timing->kept_count; i++)
 		memcpy(&values[i], (const char *)&timing->kept[i] + offset, sizeof values[i]);
-	qsort(values, (size_t)count, sizeof values[0], compare_doubles);
-	return (values[(count - 1) / 2] + values[count / 2]) / 2;
+	return gz_latency_median_ms(values, timing->kept_count);
 }
 
 bool gz_window_latency(const struct gz_window *window, struct gz_latency *out_latency)

@@ -33,4 +33,7 @@ struct gz_latency {
 /** The latency measured so far. @return false before the first frame */
 bool gz_window_latency(const struct gz_window *window, struct gz_latency *out_latency);
 
+/** The median of @p count values, at least one, which are sorted. */
+double gz_latency_median_ms(double *values_ms, int count);
+
 #endif

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "render/picture/image.h"
 #include "view/window/gaze.h"
+#include "view/window/latency.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -42,7 +43,7 @@ static void show_window(struct measurement *self, bool panels)
 {
 	struct gz_window *window = self->window;
 	window->settings.view.frame_times = panels;
-	window->settings_panel.open = panels;
+	window->settings_open = panels;
 	window->frame_new = true;
 	gz_window_present(window, &self->gaze, self->width, self->height);
 }
@@ -58,18 +59,6 @@ static double show_once(struct measurement *self, enum measured_way way)
 		show_window(self, way == OPEN);
 	glFinish();
 	return gz_ns_to_ms(gz_clock_now_ns() - start_ns);
-}
-
-static int compare_ms(const void *a, const void *b)
-{
-	const double one = *(const double *)a, other = *(const double *)b;
-	return (one > other) - (one < other);
-}
-
-static double median_ms(double *values, int count)
-{
-	qsort(values, (size_t)count, sizeof values[0], compare_ms);
-	return values[count / 2];
 }
 
 static enum gz_result begin_measurement(struct measurement *self, int count)
@@ -110,9 +99,9 @@ static void show_all_ways(struct measurement *self, int count)
 
 static void print_measurement(struct measurement *self, int count)
 {
-	const double bare = median_ms(self->ms[BARE], count);
-	const double closed = median_ms(self->ms[CLOSED], count);
-	const double open = median_ms(self->ms[OPEN], count);
+	const double bare = gz_latency_median_ms(self->ms[BARE], count);
+	const double closed = gz_latency_median_ms(self->ms[CLOSED], count);
+	const double open = gz_latency_median_ms(self->ms[OPEN], count);
 	printf("%dx%d bare %.2f ms window %.2f ms %.2f times with panels %.2f ms %.2f times "
 	       "frames %d\n",
 	       self->width, self->height, bare, closed, closed / bare, open, open / bare, count);

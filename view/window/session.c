@@ -43,7 +43,7 @@ static void end_session(struct gz_window *window)
 	window->present_needed = true;
 }
 
-static void begin_session(struct gz_window *window, const struct gz_window_gaze *gaze)
+static void begin_recording(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	struct gz_window_session *self = window->session;
 	char path[GZ_PATH_SIZE];
@@ -95,7 +95,7 @@ static void record_gaze(struct gz_window *window, struct gz_window_gaze *gaze)
 {
 	struct gz_window_session *self = window->session;
 	if (self->wanted)
-		begin_session(window, gaze);
+		begin_recording(window, gaze);
 	if (self->wanted)
 		self->named = false;
 	self->wanted = false;

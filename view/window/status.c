@@ -13,8 +13,7 @@
 #include "view/window/latency.h"
 #include "view/window/window_state.h"
 
-/* Least time between changes of numbers, and that a warning is shown (chosen: readable, and cheap).
- */
+/* Least time between changes of numbers, and for a warning (chosen: readable, and cheap). */
 #define NUMBERS_INTERVAL_NS (GZ_NS_PER_S / 2)
 /* Lost samples are reported for this time after the daemon has told of them (chosen: three of its
  * status messages). */

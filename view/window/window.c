@@ -276,21 +276,21 @@ static enum gz_result run_loop(struct gz_window *window)
 }
 
 /* Where struct gz_window points to the state of a part. */
-static void *state_slot(struct gz_window *window, const struct gz_window_part *part)
+static void *part_state_slot(struct gz_window *window, const struct gz_window_part *part)
 {
 	return (char *)window + part->state_at;
 }
 
-static void *state_of(struct gz_window *window, const struct gz_window_part *part)
+static void *part_state(struct gz_window *window, const struct gz_window_part *part)
 {
 	void *state;
-	memcpy(&state, state_slot(window, part), sizeof state);
+	memcpy(&state, part_state_slot(window, part), sizeof state);
 	return state;
 }
 
-static void set_state(struct gz_window *window, const struct gz_window_part *part, void *state)
+static void set_part_state(struct gz_window *window, const struct gz_window_part *part, void *state)
 {
-	memcpy(state_slot(window, part), &state, sizeof state);
+	memcpy(part_state_slot(window, part), &state, sizeof state);
 }
 
 /* States first: parts may ask each other while they open. */
@@ -299,9 +299,9 @@ static enum gz_result open_parts(struct gz_window *window)
 	enum gz_result r = GZ_OK;
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->state_size > 0)
-			set_state(window, *part, calloc(1, (*part)->state_size));
+			set_part_state(window, *part, calloc(1, (*part)->state_size));
 	GZ_FOR_EACH_PART (part)
-		if ((*part)->state_size > 0 && !state_of(window, *part)) {
+		if ((*part)->state_size > 0 && !part_state(window, *part)) {
 			gz_err(window->log, "no memory for the window; close other programs");
 			return GZ_ERR_NO_MEM;
 		}
@@ -315,14 +315,14 @@ static void close_parts(struct gz_window *window)
 {
 	GZ_FOR_EACH_PART (part) {
 		const bool stateless = (*part)->state_size == 0;
-		void *state = stateless ? NULL : state_of(window, *part);
+		void *state = stateless ? NULL : part_state(window, *part);
 		if ((*part)->close && (stateless || state))
 			(*part)->close(window);
 	}
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->state_size > 0) {
-			free(state_of(window, *part));
-			set_state(window, *part, NULL);
+			free(part_state(window, *part));
+			set_part_state(window, *part, NULL);
 		}
 }
 

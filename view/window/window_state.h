@@ -83,7 +83,7 @@ struct gz_window {
 	 * keys, and the mouse does not move the camera. NULL: none. */
 	const struct gz_window_part *alone;
 	bool picture_hidden; /**< nothing is cast, as something else fills the window */
-	struct gz_settings_panel settings_panel;
+	bool settings_open;  /**< the settings panel is open */
 	int panel_frames;    /**< frames still to be drawn so that panels answer input */
 	float panels_top;    /**< lower edge of the captions at the top, in this frame */
 	float panels_bottom; /**< height of the caption at the bottom left, in this frame */
@@ -173,6 +173,12 @@ void gz_window_input_attach(struct gz_window *window);
 
 /** Draw panels for a few frames: something has happened that they may have to answer. */
 void gz_window_wake_panels(struct gz_window *window);
+
+/* ---- basics.c ---- */
+
+/** Rows of the settings panel: the options of window->settings, with those grey that have no
+ * effect. */
+struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window);
 
 /* ---- measure.c ---- */
 
