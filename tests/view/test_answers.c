@@ -111,7 +111,7 @@ static void cell_of(const char *path, const char *column, int row, char cell[256
 	snprintf(cell, 256, "%s", found);
 }
 
-static void rows_tell_what_was_shown_and_answered(void **state)
+static void rows_have_what_was_shown_and_answered(void **state)
 {
 	(void)state;
 	static const struct {
@@ -187,7 +187,7 @@ static void every_column_is_described_beside_the_answers(void **state)
 	get_up(&desk);
 }
 
-static void file_that_is_there_is_left_alone(void **state)
+static void existing_file_is_not_changed(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -209,7 +209,7 @@ static void file_that_is_there_is_left_alone(void **state)
 	get_up(&desk);
 }
 
-static void resumed_file_goes_on_behind_its_last_trial(void **state)
+static void resumed_file_continues_after_its_last_trial(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -235,7 +235,7 @@ static void resumed_file_goes_on_behind_its_last_trial(void **state)
 	get_up(&desk);
 }
 
-static void row_that_is_not_whole_comes_again(void **state)
+static void incomplete_row_is_repeated(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -255,7 +255,7 @@ static void row_that_is_not_whole_comes_again(void **state)
 	get_up(&desk);
 }
 
-static void answers_of_another_order_are_not_gone_on_with(void **state)
+static void answers_of_another_order_cannot_be_resumed(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -274,7 +274,7 @@ static void answers_of_another_order_are_not_gone_on_with(void **state)
 	get_up(&desk);
 }
 
-static void what_is_no_file_of_answers_is_refused(void **state)
+static void other_files_are_refused(void **state)
 {
 	(void)state;
 	static const char *const texts[] = { "onset\tduration\n1\t2\n", "\n", "a\tb" };
@@ -292,7 +292,7 @@ static void what_is_no_file_of_answers_is_refused(void **state)
 	get_up(&desk);
 }
 
-static void nothing_to_go_on_with_is_told(void **state)
+static void resuming_without_a_file_is_refused(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -302,7 +302,7 @@ static void nothing_to_go_on_with_is_told(void **state)
 	get_up(&desk);
 }
 
-static void file_in_writing_is_not_shared(void **state)
+static void file_being_written_is_locked(void **state)
 {
 	(void)state;
 	struct desk desk, other;
@@ -316,7 +316,7 @@ static void file_in_writing_is_not_shared(void **state)
 	get_up(&desk);
 }
 
-static void file_without_a_trial_is_not_left_behind(void **state)
+static void file_without_a_trial_is_removed(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -329,7 +329,7 @@ static void file_without_a_trial_is_not_left_behind(void **state)
 	get_up(&desk);
 }
 
-static void folder_that_is_not_there_is_refused(void **state)
+static void missing_folder_is_refused(void **state)
 {
 	(void)state;
 	struct desk desk;
@@ -357,17 +357,17 @@ static void labels_are_letters_and_digits(void **state)
 TEST_SUITE(answers)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(rows_tell_what_was_shown_and_answered),
+		cmocka_unit_test(rows_have_what_was_shown_and_answered),
 		cmocka_unit_test(every_column_is_described_beside_the_answers),
-		cmocka_unit_test(file_that_is_there_is_left_alone),
-		cmocka_unit_test(resumed_file_goes_on_behind_its_last_trial),
-		cmocka_unit_test(row_that_is_not_whole_comes_again),
-		cmocka_unit_test(answers_of_another_order_are_not_gone_on_with),
-		cmocka_unit_test(what_is_no_file_of_answers_is_refused),
-		cmocka_unit_test(nothing_to_go_on_with_is_told),
-		cmocka_unit_test(file_in_writing_is_not_shared),
-		cmocka_unit_test(file_without_a_trial_is_not_left_behind),
-		cmocka_unit_test(folder_that_is_not_there_is_refused),
+		cmocka_unit_test(existing_file_is_not_changed),
+		cmocka_unit_test(resumed_file_continues_after_its_last_trial),
+		cmocka_unit_test(incomplete_row_is_repeated),
+		cmocka_unit_test(answers_of_another_order_cannot_be_resumed),
+		cmocka_unit_test(other_files_are_refused),
+		cmocka_unit_test(resuming_without_a_file_is_refused),
+		cmocka_unit_test(file_being_written_is_locked),
+		cmocka_unit_test(file_without_a_trial_is_removed),
+		cmocka_unit_test(missing_folder_is_refused),
 		cmocka_unit_test(labels_are_letters_and_digits),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

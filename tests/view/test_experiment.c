@@ -19,7 +19,7 @@ static enum gz_result parse(const char *text, struct gz_experiment *experiment)
 				   experiment);
 }
 
-static void shortest_experiment_has_one_block_of_all_its_trials(void **state)
+static void experiment_without_blocks_has_one_of_all_trials(void **state)
 {
 	(void)state;
 	struct gz_experiment e;
@@ -52,7 +52,7 @@ static const char levels[] =
 	"[trial x]\nduration_s = 5\nfoveation.acuity_slope = 0.03\n"
 	"[trial y]\nb.foveation.method = mdc\na.foveation.acuity_slope = 0.04\n";
 
-static void trial_comes_before_block_and_block_before_experiment(void **state)
+static void trial_overrides_block_and_block_overrides_experiment(void **state)
 {
 	(void)state;
 	struct gz_experiment e;
@@ -67,7 +67,7 @@ static void trial_comes_before_block_and_block_before_experiment(void **state)
 	gz_experiment_free(&e);
 }
 
-static void keys_of_a_scene_reach_the_alternative_that_they_are_for(void **state)
+static void scene_keys_reach_their_alternative(void **state)
 {
 	(void)state;
 	struct gz_experiment e;
@@ -89,7 +89,7 @@ static void keys_of_a_scene_reach_the_alternative_that_they_are_for(void **state
 	gz_experiment_free(&e);
 }
 
-static void names_with_a_star_choose_trials_in_the_order_of_the_file(void **state)
+static void star_selects_trials_in_file_order(void **state)
 {
 	(void)state;
 	struct gz_experiment e;
@@ -106,7 +106,7 @@ static void names_with_a_star_choose_trials_in_the_order_of_the_file(void **stat
 	gz_experiment_free(&e);
 }
 
-static void one_interval_is_answered_by_its_answers(void **state)
+static void one_interval_asks_for_an_answer(void **state)
 {
 	(void)state;
 	struct gz_experiment e;
@@ -197,7 +197,7 @@ static const struct {
 	  "file or directory" },
 };
 
-static void what_does_not_go_together_is_refused_with_its_line(void **state)
+static void invalid_experiments_are_refused_with_their_line(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
@@ -247,7 +247,7 @@ static void remove_place(const struct place *place)
 	assert_int_equal(rmdir(place->folder), 0);
 }
 
-static void checked_alternatives_know_their_methods_and_texts_are_read(void **state)
+static void check_sets_methods_and_texts_are_read(void **state)
 {
 	(void)state;
 	struct place place;
@@ -282,7 +282,7 @@ static void refuse_check(const char *trial, enum gz_result result, const char *w
 	remove_place(&place);
 }
 
-static void scenes_and_tables_that_are_not_there_are_refused_before_anything_is_shown(void **state)
+static void missing_scenes_and_tables_are_refused(void **state)
 {
 	(void)state;
 	refuse_check("b.scene = other.scene\n", GZ_ERR_NOT_FOUND,
@@ -293,7 +293,7 @@ static void scenes_and_tables_that_are_not_there_are_refused_before_anything_is_
 		     "e.experiment:6: [trial t] b: ");
 }
 
-static void texts_change_the_fingerprint(void **state)
+static void text_files_change_the_fingerprint(void **state)
 {
 	(void)state;
 	struct place place;
@@ -318,16 +318,15 @@ static void texts_change_the_fingerprint(void **state)
 TEST_SUITE(experiment)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(shortest_experiment_has_one_block_of_all_its_trials),
-		cmocka_unit_test(trial_comes_before_block_and_block_before_experiment),
-		cmocka_unit_test(keys_of_a_scene_reach_the_alternative_that_they_are_for),
-		cmocka_unit_test(names_with_a_star_choose_trials_in_the_order_of_the_file),
-		cmocka_unit_test(one_interval_is_answered_by_its_answers),
-		cmocka_unit_test(what_does_not_go_together_is_refused_with_its_line),
-		cmocka_unit_test(checked_alternatives_know_their_methods_and_texts_are_read),
-		cmocka_unit_test(
-			scenes_and_tables_that_are_not_there_are_refused_before_anything_is_shown),
-		cmocka_unit_test(texts_change_the_fingerprint),
+		cmocka_unit_test(experiment_without_blocks_has_one_of_all_trials),
+		cmocka_unit_test(trial_overrides_block_and_block_overrides_experiment),
+		cmocka_unit_test(scene_keys_reach_their_alternative),
+		cmocka_unit_test(star_selects_trials_in_file_order),
+		cmocka_unit_test(one_interval_asks_for_an_answer),
+		cmocka_unit_test(invalid_experiments_are_refused_with_their_line),
+		cmocka_unit_test(check_sets_methods_and_texts_are_read),
+		cmocka_unit_test(missing_scenes_and_tables_are_refused),
+		cmocka_unit_test(text_files_change_the_fingerprint),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

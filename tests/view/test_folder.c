@@ -64,7 +64,7 @@ static void assert_names(const struct gz_folder *folder, const char *expected)
 	assert_string_equal(names, expected);
 }
 
-static void folders_come_first_then_what_can_be_opened_in_order(void **state)
+static void folders_come_first_then_openable_files_in_order(void **state)
 {
 	(void)state;
 	struct gz_folder folder = read_place(false, false);
@@ -77,7 +77,7 @@ static void folders_come_first_then_what_can_be_opened_in_order(void **state)
 	assert_null(folder.entries);
 }
 
-static void other_and_hidden_files_come_when_asked_for(void **state)
+static void other_and_hidden_files_are_listed_on_request(void **state)
 {
 	(void)state;
 	struct gz_folder folder = read_place(true, true);
@@ -117,7 +117,7 @@ static void names_become_paths(void **state)
 	assert_int_equal(gz_folder_path_of(&folder, name, path), GZ_ERR_FULL);
 }
 
-static void folder_that_is_not_there_leaves_the_present_one(void **state)
+static void missing_folder_leaves_the_current_one(void **state)
 {
 	(void)state;
 	const struct gz_folder_filter filter = { 0 };
@@ -135,11 +135,11 @@ static void folder_that_is_not_there_leaves_the_present_one(void **state)
 TEST_SUITE(folder)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(folders_come_first_then_what_can_be_opened_in_order),
-		cmocka_unit_test(other_and_hidden_files_come_when_asked_for),
+		cmocka_unit_test(folders_come_first_then_openable_files_in_order),
+		cmocka_unit_test(other_and_hidden_files_are_listed_on_request),
 		cmocka_unit_test(typed_text_finds_the_beginning_of_a_name_first),
 		cmocka_unit_test(names_become_paths),
-		cmocka_unit_test(folder_that_is_not_there_leaves_the_present_one),
+		cmocka_unit_test(missing_folder_leaves_the_current_one),
 	};
 	return cmocka_run_group_tests(tests, make_place, remove_place);
 }

@@ -14,7 +14,7 @@ static void add(struct gz_frame_history *history, double cast_ms)
 	gz_frame_history_add(history, &cost);
 }
 
-static void no_frame_costs_nothing(void **state)
+static void empty_history_costs_nothing(void **state)
 {
 	(void)state;
 	const struct gz_frame_history history = { 0 };
@@ -22,7 +22,7 @@ static void no_frame_costs_nothing(void **state)
 	assert_true(gz_frame_history_quantile_ms(&history, GZ_FRAME_PARTS, 0.5) == 0);
 }
 
-static void newest_frame_is_first_and_the_oldest_are_forgotten(void **state)
+static void newest_frame_is_first_and_oldest_are_dropped(void **state)
 {
 	(void)state;
 	struct gz_frame_history history = { 0 };
@@ -36,7 +36,7 @@ static void newest_frame_is_first_and_the_oldest_are_forgotten(void **state)
 	assert_null(gz_frame_history_at(&history, GZ_FRAME_HISTORY_SIZE));
 }
 
-static void quantiles_are_those_of_the_nearest_rank(void **state)
+static void quantiles_use_nearest_rank(void **state)
 {
 	(void)state;
 	struct gz_frame_history history = { 0 };
@@ -58,7 +58,7 @@ static void quantiles_are_those_of_the_nearest_rank(void **state)
 	}
 }
 
-static void parts_below_nothing_and_no_numbers_count_as_nothing(void **state)
+static void negative_and_nan_parts_count_as_zero(void **state)
 {
 	(void)state;
 	struct gz_frame_history history = { 0 };
@@ -72,10 +72,10 @@ static void parts_below_nothing_and_no_numbers_count_as_nothing(void **state)
 TEST_SUITE(frame_history)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(no_frame_costs_nothing),
-		cmocka_unit_test(newest_frame_is_first_and_the_oldest_are_forgotten),
-		cmocka_unit_test(quantiles_are_those_of_the_nearest_rank),
-		cmocka_unit_test(parts_below_nothing_and_no_numbers_count_as_nothing),
+		cmocka_unit_test(empty_history_costs_nothing),
+		cmocka_unit_test(newest_frame_is_first_and_oldest_are_dropped),
+		cmocka_unit_test(quantiles_use_nearest_rank),
+		cmocka_unit_test(negative_and_nan_parts_count_as_zero),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

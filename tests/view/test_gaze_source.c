@@ -125,7 +125,7 @@ static void log_shows_the_last_sample_at_or_before_each_frame(void **state)
 	assert_null(source);
 }
 
-static void log_at_the_very_time_of_a_sample_shows_it(void **state)
+static void log_at_the_exact_time_of_a_sample_shows_it(void **state)
 {
 	(void)state;
 	struct gz_gaze_log_header header = header_of_log();
@@ -159,7 +159,7 @@ static void log_holds_its_point_through_a_blink(void **state)
 	gz_gaze_source_destroy(&source);
 }
 
-static void log_of_times_at_the_ends_of_the_clock_is_read(void **state)
+static void log_with_extreme_times_is_read(void **state)
 {
 	(void)state;
 	static const int64_t times_ns[] = { INT64_MAX - 30, INT64_MAX, INT64_MIN };
@@ -315,7 +315,7 @@ static void destroy_of_nothing_is_allowed(void **state)
 	gz_gaze_source_destroy(NULL);
 }
 
-static void log_goes_forward_in_pieces_and_arrives_as_by_reading(void **state)
+static void log_advanced_in_pieces_ends_like_reading(void **state)
 {
 	(void)state;
 	struct gz_gaze_log_header header = header_of_log();
@@ -345,7 +345,7 @@ static void log_goes_forward_in_pieces_and_arrives_as_by_reading(void **state)
 	gz_gaze_source_destroy(&whole);
 }
 
-static void sources_that_are_no_logs_have_no_place_and_are_always_there(void **state)
+static void other_sources_have_no_place_and_need_no_advance(void **state)
 {
 	(void)state;
 	struct gz_gaze_source *source = NULL;
@@ -361,14 +361,14 @@ TEST_SUITE(gaze_source)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(log_shows_the_last_sample_at_or_before_each_frame),
-		cmocka_unit_test(log_at_the_very_time_of_a_sample_shows_it),
+		cmocka_unit_test(log_at_the_exact_time_of_a_sample_shows_it),
 		cmocka_unit_test(log_holds_its_point_through_a_blink),
-		cmocka_unit_test(log_of_times_at_the_ends_of_the_clock_is_read),
+		cmocka_unit_test(log_with_extreme_times_is_read),
 		cmocka_unit_test(log_brings_its_own_display),
 		cmocka_unit_test(log_with_a_setting_the_pipeline_refuses_is_refused),
 		cmocka_unit_test(log_without_a_sample_is_refused),
-		cmocka_unit_test(log_goes_forward_in_pieces_and_arrives_as_by_reading),
-		cmocka_unit_test(sources_that_are_no_logs_have_no_place_and_are_always_there),
+		cmocka_unit_test(log_advanced_in_pieces_ends_like_reading),
+		cmocka_unit_test(other_sources_have_no_place_and_need_no_advance),
 		cmocka_unit_test(fixed_point_stays_and_has_no_age),
 		cmocka_unit_test(mouse_is_unknown_until_it_moves),
 		cmocka_unit_test(latest_without_a_daemon_is_unknown_and_not_connected),

@@ -33,7 +33,7 @@ static void judged(const struct gz_gaze_signs *signs, enum gz_gaze_level level, 
 	assert_int_equal(state.level == GZ_GAZE_LEVEL_GOOD, state.reason[0] == '\0');
 }
 
-static void gaze_that_comes_in_time_is_good_whatever_the_eye_does(void **state)
+static void timely_gaze_is_good_whatever_the_eye_does(void **state)
 {
 	(void)state;
 	struct gz_gaze_signs signs = good_daemon();
@@ -59,7 +59,7 @@ static void late_is_amber_and_silent_is_red(void **state)
 	judged(&signs, GZ_GAZE_LEVEL_BAD, "SILENT");
 }
 
-static void lost_eye_is_red_also_where_it_is_late(void **state)
+static void lost_eye_is_red_even_if_late(void **state)
 {
 	(void)state;
 	struct gz_gaze_signs signs = good_daemon();
@@ -70,7 +70,7 @@ static void lost_eye_is_red_also_where_it_is_late(void **state)
 	judged(&signs, GZ_GAZE_LEVEL_BAD, "EYE LOST");
 }
 
-static void missing_daemon_is_amber_and_nothing_else_is_said_of_it(void **state)
+static void missing_daemon_is_amber_and_hides_other_reasons(void **state)
 {
 	(void)state;
 	struct gz_gaze_signs signs = good_daemon();
@@ -79,7 +79,7 @@ static void missing_daemon_is_amber_and_nothing_else_is_said_of_it(void **state)
 	judged(&signs, GZ_GAZE_LEVEL_WARN, "NO DAEMON");
 }
 
-static void daemon_without_a_tracker_tells_its_reason(void **state)
+static void daemon_without_tracker_gives_its_reason(void **state)
 {
 	(void)state;
 	static struct gz_status status;
@@ -102,7 +102,7 @@ static void daemon_without_a_tracker_tells_its_reason(void **state)
 	assert_non_null(strstr(told.reason, "; using the mouse"));
 }
 
-static void pointer_from_another_tracker_is_told(void **state)
+static void other_tracker_than_the_pointer_is_reported(void **state)
 {
 	(void)state;
 	static struct gz_status status;
@@ -130,7 +130,7 @@ static void loss_and_another_display_are_amber(void **state)
 	judged(&signs, GZ_GAZE_LEVEL_GOOD, "");
 }
 
-static void log_at_its_end_says_so_and_the_mouse_is_always_good(void **state)
+static void ended_log_is_reported_and_mouse_is_always_good(void **state)
 {
 	(void)state;
 	struct gz_gaze_signs signs = good_daemon();
@@ -164,7 +164,7 @@ static void rate_hz(const struct gz_gaze_rate *rate, double wanted, double toler
 		fail_msg("%.3f Hz, not %.3f", hz, wanted);
 }
 
-static void rate_counts_samples_that_were_not_read_too(void **state)
+static void rate_counts_unread_samples(void **state)
 {
 	(void)state;
 	struct gz_gaze_rate rate = { 0 };
@@ -178,7 +178,7 @@ static void rate_counts_samples_that_were_not_read_too(void **state)
 	rate_hz(&rate, 30, 0.1);
 }
 
-static void rate_is_of_the_last_second_alone(void **state)
+static void rate_covers_the_last_second_only(void **state)
 {
 	(void)state;
 	struct gz_gaze_rate rate = { 0 };
@@ -187,7 +187,7 @@ static void rate_is_of_the_last_second_alone(void **state)
 	rate_hz(&rate, 60, 0.5);
 }
 
-static void rate_begins_anew_where_numbers_or_times_go_back(void **state)
+static void rate_restarts_when_numbers_or_times_decrease(void **state)
 {
 	(void)state;
 	struct gz_gaze_rate rate = { 0 };
@@ -199,7 +199,7 @@ static void rate_begins_anew_where_numbers_or_times_go_back(void **state)
 	rate_hz(&rate, 500, 1);
 }
 
-static void rate_bears_times_from_end_to_end_of_the_clock(void **state)
+static void rate_accepts_extreme_times(void **state)
 {
 	(void)state;
 	struct gz_gaze_rate rate = { 0 };
@@ -216,18 +216,18 @@ static void rate_bears_times_from_end_to_end_of_the_clock(void **state)
 TEST_SUITE(gaze_state)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(gaze_that_comes_in_time_is_good_whatever_the_eye_does),
+		cmocka_unit_test(timely_gaze_is_good_whatever_the_eye_does),
 		cmocka_unit_test(late_is_amber_and_silent_is_red),
-		cmocka_unit_test(lost_eye_is_red_also_where_it_is_late),
-		cmocka_unit_test(missing_daemon_is_amber_and_nothing_else_is_said_of_it),
-		cmocka_unit_test(daemon_without_a_tracker_tells_its_reason),
-		cmocka_unit_test(pointer_from_another_tracker_is_told),
+		cmocka_unit_test(lost_eye_is_red_even_if_late),
+		cmocka_unit_test(missing_daemon_is_amber_and_hides_other_reasons),
+		cmocka_unit_test(daemon_without_tracker_gives_its_reason),
+		cmocka_unit_test(other_tracker_than_the_pointer_is_reported),
 		cmocka_unit_test(loss_and_another_display_are_amber),
-		cmocka_unit_test(log_at_its_end_says_so_and_the_mouse_is_always_good),
-		cmocka_unit_test(rate_counts_samples_that_were_not_read_too),
-		cmocka_unit_test(rate_is_of_the_last_second_alone),
-		cmocka_unit_test(rate_begins_anew_where_numbers_or_times_go_back),
-		cmocka_unit_test(rate_bears_times_from_end_to_end_of_the_clock),
+		cmocka_unit_test(ended_log_is_reported_and_mouse_is_always_good),
+		cmocka_unit_test(rate_counts_unread_samples),
+		cmocka_unit_test(rate_covers_the_last_second_only),
+		cmocka_unit_test(rate_restarts_when_numbers_or_times_decrease),
+		cmocka_unit_test(rate_accepts_extreme_times),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ static bool step(struct gz_gaze_trail *trail, struct gz_gaze_reading reading, in
 	return gz_gaze_trail_step(trail, &reading, APART, now_ns);
 }
 
-static void mouse_that_rests_becomes_a_disc_that_stops_growing(void **state)
+static void resting_mouse_becomes_a_disc_that_stops_growing(void **state)
 {
 	(void)state;
 	struct gz_gaze_trail trail = { 0 };
@@ -42,7 +42,7 @@ static void mouse_that_rests_becomes_a_disc_that_stops_growing(void **state)
 	assert_int_equal(trail.count, 1);
 }
 
-static void line_fades_for_a_second_and_is_forgotten(void **state)
+static void line_fades_for_a_second_and_is_dropped(void **state)
 {
 	(void)state;
 	struct gz_gaze_trail trail = { 0 };
@@ -95,7 +95,7 @@ static void closed_and_lost_eyes_leave_no_trail(void **state)
 	assert_false(step(&trail, with_event(0.5f, GZ_EVENT_LOST), 1200 * MS));
 }
 
-static void full_trail_forgets_the_oldest(void **state)
+static void full_trail_drops_the_oldest(void **state)
 {
 	(void)state;
 	struct gz_gaze_trail trail = { 0 };
@@ -110,11 +110,11 @@ static void full_trail_forgets_the_oldest(void **state)
 TEST_SUITE(gaze_trail)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(mouse_that_rests_becomes_a_disc_that_stops_growing),
-		cmocka_unit_test(line_fades_for_a_second_and_is_forgotten),
+		cmocka_unit_test(resting_mouse_becomes_a_disc_that_stops_growing),
+		cmocka_unit_test(line_fades_for_a_second_and_is_dropped),
 		cmocka_unit_test(fixation_of_a_tracker_is_one_stay_at_its_mean),
 		cmocka_unit_test(closed_and_lost_eyes_leave_no_trail),
-		cmocka_unit_test(full_trail_forgets_the_oldest),
+		cmocka_unit_test(full_trail_drops_the_oldest),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

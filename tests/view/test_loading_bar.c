@@ -16,7 +16,7 @@ static void on_signal(int number)
 	handed_on = number;
 }
 
-static void text_says_what_how_far_and_how_long_still(void **state)
+static void text_has_name_share_and_time_left(void **state)
 {
 	(void)state;
 	char text[128];
@@ -28,7 +28,7 @@ static void text_says_what_how_far_and_how_long_still(void **state)
 	assert_string_equal(text, "head.nii.gz [########################] 100 % 0 s left");
 }
 
-static void text_of_a_long_name_keeps_its_end_and_fits_a_line(void **state)
+static void long_name_is_cut_at_its_beginning(void **state)
 {
 	(void)state;
 	char text[128];
@@ -38,7 +38,7 @@ static void text_of_a_long_name_keeps_its_end_and_fits_a_line(void **state)
 	assert_true(strlen(text) <= 78);
 }
 
-static void quick_loading_says_nothing(void **state)
+static void quick_loading_prints_nothing(void **state)
 {
 	(void)state;
 	struct captured_log log;
@@ -51,7 +51,7 @@ static void quick_loading_says_nothing(void **state)
 	assert_false(bar.drawn);
 }
 
-static void slow_loading_off_a_terminal_says_one_line(void **state)
+static void slow_loading_without_terminal_logs_one_line(void **state)
 {
 	(void)state;
 	struct captured_log log;
@@ -68,7 +68,7 @@ static void slow_loading_off_a_terminal_says_one_line(void **state)
 	assert_non_null(strstr(log.last, "50 %"));
 }
 
-static void signal_stops_the_loading_and_is_handed_on(void **state)
+static void signal_cancels_loading_and_is_raised_again(void **state)
 {
 	(void)state;
 	static const int dims[3] = { 16, 16, 16 };
@@ -91,11 +91,11 @@ static void signal_stops_the_loading_and_is_handed_on(void **state)
 TEST_SUITE(loading_bar)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(text_says_what_how_far_and_how_long_still),
-		cmocka_unit_test(text_of_a_long_name_keeps_its_end_and_fits_a_line),
-		cmocka_unit_test(quick_loading_says_nothing),
-		cmocka_unit_test(slow_loading_off_a_terminal_says_one_line),
-		cmocka_unit_test(signal_stops_the_loading_and_is_handed_on),
+		cmocka_unit_test(text_has_name_share_and_time_left),
+		cmocka_unit_test(long_name_is_cut_at_its_beginning),
+		cmocka_unit_test(quick_loading_prints_nothing),
+		cmocka_unit_test(slow_loading_without_terminal_logs_one_line),
+		cmocka_unit_test(signal_cancels_loading_and_is_raised_again),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

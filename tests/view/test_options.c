@@ -73,7 +73,7 @@ static void scene_may_stand_alone(void **state)
 	assert_refused("--headless", "--scene");
 }
 
-static void gaze_without_option_is_centre_headless_and_daemon_in_a_window(void **state)
+static void default_gaze_is_centre_headless_and_daemon_in_a_window(void **state)
 {
 	(void)state;
 	assert_int_equal(read_line("a.scene --headless"), GZ_OK);
@@ -110,7 +110,7 @@ static void gaze_texts_choose_their_sources(void **state)
 	}
 }
 
-static void gaze_that_is_no_finite_pair_is_refused(void **state)
+static void gaze_that_is_not_a_finite_pair_is_refused(void **state)
 {
 	(void)state;
 	const char *const bad[] = { "nan,0.5", "0.5,nan", "inf,0",     "0,-inf",  "0.5",
@@ -147,7 +147,7 @@ static void values_outside_their_range_are_refused(void **state)
 	assert_refused("a.scene --frames 2 --frames 3", "frames");
 }
 
-static void options_that_contradict_each_other_are_refused(void **state)
+static void contradictory_options_are_refused(void **state)
 {
 	(void)state;
 	assert_refused("a.scene --headless --gaze mouse", "mouse");
@@ -158,14 +158,14 @@ static void options_that_contradict_each_other_are_refused(void **state)
 		       "foveation.method");
 }
 
-static void what_a_scene_shows_cannot_be_overridden(void **state)
+static void data_of_a_scene_cannot_be_overridden(void **state)
 {
 	(void)state;
 	assert_refused("a.scene --volume.file b.nii", "volume.file");
 	assert_refused("a.scene --transfer.also b.tf", "transfer.also");
 }
 
-static void raw_file_gets_the_layout_that_is_told(void **state)
+static void raw_file_gets_the_layout_in_the_options(void **state)
 {
 	(void)state;
 	struct gz_raw_layout raw;
@@ -194,7 +194,7 @@ static void half_a_layout_is_refused(void **state)
 	assert_refused("a.raw --volume.spacing=1@1@1", "volume.dims: missing");
 }
 
-static void transfer_function_of_the_command_line_is_found_from_everywhere(void **state)
+static void transfer_function_on_the_command_line_is_made_absolute(void **state)
 {
 	(void)state;
 	static struct gz_scene_settings settings;
@@ -207,7 +207,7 @@ static void transfer_function_of_the_command_line_is_found_from_everywhere(void 
 	assert_string_equal(settings.transfer_file, "none.tf");
 }
 
-static void scene_keys_given_come_before_the_scenes_own(void **state)
+static void given_scene_keys_override_the_scene(void **state)
 {
 	(void)state;
 	static struct gz_scene_settings settings;
@@ -227,7 +227,7 @@ static void scene_keys_given_come_before_the_scenes_own(void **state)
 	assert_true(settings.foveation.step_floor == floor);
 }
 
-static void scene_without_overrides_stays_as_it_is(void **state)
+static void scene_without_overrides_is_unchanged(void **state)
 {
 	(void)state;
 	static struct gz_scene_settings settings, before;
@@ -239,7 +239,7 @@ static void scene_without_overrides_stays_as_it_is(void **state)
 	assert_memory_equal(&settings, &before, sizeof settings);
 }
 
-static void pattern_puts_the_number_where_it_stands(void **state)
+static void pattern_inserts_the_number(void **state)
 {
 	(void)state;
 	const struct {
@@ -296,7 +296,7 @@ static void pattern_that_does_not_fit_is_refused(void **state)
 	assert_int_equal(gz_pattern_format("%9d", 1, path, sizeof path), GZ_ERR_FULL);
 }
 
-static void display_fields_given_come_before_those_known(void **state)
+static void given_display_fields_override_known_ones(void **state)
 {
 	(void)state;
 	const struct gz_display known = { .px = { 800, 600 },
@@ -324,7 +324,7 @@ static char *help_text(void)
 	return text;
 }
 
-static void help_names_every_option_and_every_key_that_can_be_given(void **state)
+static void help_lists_all_options_and_scene_keys(void **state)
 {
 	(void)state;
 	char *text = help_text();
@@ -365,22 +365,22 @@ TEST_SUITE(options)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(command_line_of_the_manual_is_read),
 		cmocka_unit_test(scene_may_stand_alone),
-		cmocka_unit_test(gaze_without_option_is_centre_headless_and_daemon_in_a_window),
+		cmocka_unit_test(default_gaze_is_centre_headless_and_daemon_in_a_window),
 		cmocka_unit_test(gaze_texts_choose_their_sources),
-		cmocka_unit_test(gaze_that_is_no_finite_pair_is_refused),
+		cmocka_unit_test(gaze_that_is_not_a_finite_pair_is_refused),
 		cmocka_unit_test(values_outside_their_range_are_refused),
-		cmocka_unit_test(options_that_contradict_each_other_are_refused),
-		cmocka_unit_test(what_a_scene_shows_cannot_be_overridden),
-		cmocka_unit_test(raw_file_gets_the_layout_that_is_told),
+		cmocka_unit_test(contradictory_options_are_refused),
+		cmocka_unit_test(data_of_a_scene_cannot_be_overridden),
+		cmocka_unit_test(raw_file_gets_the_layout_in_the_options),
 		cmocka_unit_test(half_a_layout_is_refused),
-		cmocka_unit_test(transfer_function_of_the_command_line_is_found_from_everywhere),
-		cmocka_unit_test(scene_keys_given_come_before_the_scenes_own),
-		cmocka_unit_test(scene_without_overrides_stays_as_it_is),
-		cmocka_unit_test(pattern_puts_the_number_where_it_stands),
+		cmocka_unit_test(transfer_function_on_the_command_line_is_made_absolute),
+		cmocka_unit_test(given_scene_keys_override_the_scene),
+		cmocka_unit_test(scene_without_overrides_is_unchanged),
+		cmocka_unit_test(pattern_inserts_the_number),
 		cmocka_unit_test(pattern_with_anything_but_one_number_is_refused),
 		cmocka_unit_test(pattern_that_does_not_fit_is_refused),
-		cmocka_unit_test(display_fields_given_come_before_those_known),
-		cmocka_unit_test(help_names_every_option_and_every_key_that_can_be_given),
+		cmocka_unit_test(given_display_fields_override_known_ones),
+		cmocka_unit_test(help_lists_all_options_and_scene_keys),
 		cmocka_unit_test(help_and_version_need_no_scene),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

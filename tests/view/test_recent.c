@@ -35,7 +35,7 @@ static int remove_place(void **state)
 	return system(command);
 }
 
-static void latest_is_on_top_and_in_the_list_once(void **state)
+static void newest_path_is_first_and_listed_once(void **state)
 {
 	(void)state;
 	struct gz_recent recent = { 0 };
@@ -52,7 +52,7 @@ static void latest_is_on_top_and_in_the_list_once(void **state)
 	assert_string_equal(recent.paths[0], file_of(5));
 }
 
-static void list_is_written_and_read_in_a_folder_that_is_made(void **state)
+static void list_is_written_to_a_new_folder_and_read_back(void **state)
 {
 	(void)state;
 	static struct gz_recent recent, read;
@@ -73,7 +73,7 @@ static void list_is_written_and_read_in_a_folder_that_is_made(void **state)
 	assert_int_equal(gz_recent_write(&recent, "/proc/no/recent", NULL), GZ_ERR_IO);
 }
 
-static void lines_that_are_no_paths_are_left_out(void **state)
+static void lines_that_are_not_paths_are_skipped(void **state)
 {
 	(void)state;
 	static struct gz_recent read;
@@ -90,7 +90,7 @@ static void lines_that_are_no_paths_are_left_out(void **state)
 	assert_string_equal(read.paths[0], "/fine");
 }
 
-static void place_follows_the_environment(void **state)
+static void path_of_the_list_follows_the_environment(void **state)
 {
 	(void)state;
 	char path[GZ_PATH_SIZE];
@@ -109,10 +109,10 @@ static void place_follows_the_environment(void **state)
 TEST_SUITE(recent)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(latest_is_on_top_and_in_the_list_once),
-		cmocka_unit_test(list_is_written_and_read_in_a_folder_that_is_made),
-		cmocka_unit_test(lines_that_are_no_paths_are_left_out),
-		cmocka_unit_test(place_follows_the_environment),
+		cmocka_unit_test(newest_path_is_first_and_listed_once),
+		cmocka_unit_test(list_is_written_to_a_new_folder_and_read_back),
+		cmocka_unit_test(lines_that_are_not_paths_are_skipped),
+		cmocka_unit_test(path_of_the_list_follows_the_environment),
 	};
 	return cmocka_run_group_tests(tests, make_place, remove_place);
 }

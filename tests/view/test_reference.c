@@ -101,7 +101,7 @@ static void expect_frame(const struct bench *bench, double rate)
 	gz_image_free(&picture);
 }
 
-static void strips_make_the_picture_of_one_frame_bit_for_bit(void **state)
+static void strips_equal_one_frame_bit_for_bit(void **state)
 {
 	(void)state;
 	struct bench bench;
@@ -136,7 +136,7 @@ static void newest_request_wins(void **state)
 	stop(&bench);
 }
 
-static void same_request_is_not_made_again(void **state)
+static void equal_request_is_not_rendered_again(void **state)
 {
 	(void)state;
 	struct bench bench;
@@ -153,7 +153,7 @@ static void same_request_is_not_made_again(void **state)
 	stop(&bench);
 }
 
-static void another_transfer_function_makes_it_anew(void **state)
+static void new_transfer_function_renders_again(void **state)
 {
 	(void)state;
 	struct bench bench;
@@ -168,7 +168,7 @@ static void another_transfer_function_makes_it_anew(void **state)
 	stop(&bench);
 }
 
-static void stopping_at_any_time_is_right(void **state)
+static void worker_can_stop_at_any_time(void **state)
 {
 	(void)state;
 	struct bench bench;
@@ -186,11 +186,11 @@ static void stopping_at_any_time_is_right(void **state)
 TEST_SUITE(reference)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(strips_make_the_picture_of_one_frame_bit_for_bit),
+		cmocka_unit_test(strips_equal_one_frame_bit_for_bit),
 		cmocka_unit_test(newest_request_wins),
-		cmocka_unit_test(same_request_is_not_made_again),
-		cmocka_unit_test(another_transfer_function_makes_it_anew),
-		cmocka_unit_test(stopping_at_any_time_is_right),
+		cmocka_unit_test(equal_request_is_not_rendered_again),
+		cmocka_unit_test(new_transfer_function_renders_again),
+		cmocka_unit_test(worker_can_stop_at_any_time),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

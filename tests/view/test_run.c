@@ -159,7 +159,7 @@ static void trial_goes_from_cross_to_answer_with_marks_at_each_step(void **state
 	end(&stage);
 }
 
-static void result_tells_times_answer_and_what_is_right(void **state)
+static void result_has_times_answer_and_correctness(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -182,7 +182,7 @@ static void result_tells_times_answer_and_what_is_right(void **state)
 	end(&stage);
 }
 
-static void keys_count_only_once_the_question_is_on_the_screen(void **state)
+static void keys_count_only_while_the_question_is_shown(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -203,7 +203,7 @@ static void keys_count_only_once_the_question_is_on_the_screen(void **state)
 	end(&stage);
 }
 
-static void nothing_begins_before_the_pictures_are_ready(void **state)
+static void trial_waits_for_its_pictures(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -218,7 +218,7 @@ static void nothing_begins_before_the_pictures_are_ready(void **state)
 	end(&stage);
 }
 
-static void wait_for_an_answer_ends_in_time_and_tells_so(void **state)
+static void wait_for_an_answer_times_out(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -236,7 +236,7 @@ static void wait_for_an_answer_ends_in_time_and_tells_so(void **state)
 	end(&stage);
 }
 
-static void feedback_says_what_was_right(void **state)
+static void feedback_says_whether_the_answer_was_correct(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -255,7 +255,7 @@ static void feedback_says_what_was_right(void **state)
 	}
 }
 
-static void texts_wait_for_space_in_their_order(void **state)
+static void texts_come_in_order_and_wait_for_space(void **state)
 {
 	(void)state;
 	static const char *const expected[] = { "Hello", "Block", "Rest", "Bye" };
@@ -288,7 +288,7 @@ static void texts_wait_for_space_in_their_order(void **state)
 	end(&stage);
 }
 
-static void escape_asks_and_space_begins_the_trial_again(void **state)
+static void escape_asks_and_space_restarts_the_trial(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -315,7 +315,7 @@ static void escape_asks_and_space_begins_the_trial_again(void **state)
 	end(&stage);
 }
 
-static void escape_twice_leaves_and_nothing_follows(void **state)
+static void second_escape_leaves(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -333,7 +333,7 @@ static void escape_twice_leaves_and_nothing_follows(void **state)
 	end(&stage);
 }
 
-static void trial_that_is_answered_is_not_seen_again_after_escape(void **state)
+static void answered_trial_is_not_repeated_after_escape(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -353,7 +353,7 @@ static void trial_that_is_answered_is_not_seen_again_after_escape(void **state)
 	end(&stage);
 }
 
-static void run_that_goes_on_begins_where_it_was_left(void **state)
+static void resumed_run_starts_at_the_first_unanswered_trial(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -400,7 +400,7 @@ static void dropped_frames_and_lost_gaze_are_counted_in_intervals_only(void **st
 	end(&stage);
 }
 
-static void required_gaze_holds_the_cross_until_it_is_there(void **state)
+static void required_gaze_extends_the_cross(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -420,7 +420,7 @@ static void required_gaze_holds_the_cross_until_it_is_there(void **state)
 	end(&stage);
 }
 
-static void phases_without_length_are_not_shown(void **state)
+static void phases_of_zero_length_are_skipped(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -439,7 +439,7 @@ static void phases_without_length_are_not_shown(void **state)
 	end(&stage);
 }
 
-static void answer_that_cannot_be_kept_ends_the_experiment(void **state)
+static void answer_that_cannot_be_stored_ends_the_run(void **state)
 {
 	(void)state;
 	struct stage stage;
@@ -457,20 +457,20 @@ TEST_SUITE(run)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(trial_goes_from_cross_to_answer_with_marks_at_each_step),
-		cmocka_unit_test(result_tells_times_answer_and_what_is_right),
-		cmocka_unit_test(keys_count_only_once_the_question_is_on_the_screen),
-		cmocka_unit_test(nothing_begins_before_the_pictures_are_ready),
-		cmocka_unit_test(wait_for_an_answer_ends_in_time_and_tells_so),
-		cmocka_unit_test(feedback_says_what_was_right),
-		cmocka_unit_test(texts_wait_for_space_in_their_order),
-		cmocka_unit_test(escape_asks_and_space_begins_the_trial_again),
-		cmocka_unit_test(escape_twice_leaves_and_nothing_follows),
-		cmocka_unit_test(trial_that_is_answered_is_not_seen_again_after_escape),
-		cmocka_unit_test(run_that_goes_on_begins_where_it_was_left),
+		cmocka_unit_test(result_has_times_answer_and_correctness),
+		cmocka_unit_test(keys_count_only_while_the_question_is_shown),
+		cmocka_unit_test(trial_waits_for_its_pictures),
+		cmocka_unit_test(wait_for_an_answer_times_out),
+		cmocka_unit_test(feedback_says_whether_the_answer_was_correct),
+		cmocka_unit_test(texts_come_in_order_and_wait_for_space),
+		cmocka_unit_test(escape_asks_and_space_restarts_the_trial),
+		cmocka_unit_test(second_escape_leaves),
+		cmocka_unit_test(answered_trial_is_not_repeated_after_escape),
+		cmocka_unit_test(resumed_run_starts_at_the_first_unanswered_trial),
 		cmocka_unit_test(dropped_frames_and_lost_gaze_are_counted_in_intervals_only),
-		cmocka_unit_test(required_gaze_holds_the_cross_until_it_is_there),
-		cmocka_unit_test(phases_without_length_are_not_shown),
-		cmocka_unit_test(answer_that_cannot_be_kept_ends_the_experiment),
+		cmocka_unit_test(required_gaze_extends_the_cross),
+		cmocka_unit_test(phases_of_zero_length_are_skipped),
+		cmocka_unit_test(answer_that_cannot_be_stored_ends_the_run),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,7 +61,7 @@ static struct gz_scene load(const char *path)
 	return scene;
 }
 
-static void scene_whose_transfer_function_is_a_file_names_it(void **state)
+static void scene_names_the_file_of_its_transfer_function(void **state)
 {
 	(void)state;
 	char file[GZ_PATH_SIZE];
@@ -109,7 +109,7 @@ static void changed_transfer_function_is_written_beside_the_scene(void **state)
 	gz_scene_free(&first);
 }
 
-static void transfer_function_that_the_volume_gets_by_itself_is_no_file(void **state)
+static void default_transfer_function_is_not_written(void **state)
 {
 	(void)state;
 	char file[GZ_PATH_SIZE];
@@ -123,7 +123,7 @@ static void transfer_function_that_the_volume_gets_by_itself_is_no_file(void **s
 	gz_scene_free(&scene);
 }
 
-static void path_gets_its_ending_and_a_suggestion_is_beside_the_volume(void **state)
+static void path_gets_its_ending_and_suggestion_lies_beside_the_volume(void **state)
 {
 	(void)state;
 	static const char *const rows[][2] = {
@@ -146,7 +146,7 @@ static void path_gets_its_ending_and_a_suggestion_is_beside_the_volume(void **st
 	assert_int_equal(gz_scene_save_path(long_name, path), GZ_ERR_FULL);
 }
 
-static void what_cannot_be_written_leaves_the_settings(void **state)
+static void failed_save_leaves_the_settings(void **state)
 {
 	(void)state;
 	const char *from = write_text("e.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
@@ -163,11 +163,11 @@ static void what_cannot_be_written_leaves_the_settings(void **state)
 TEST_SUITE(scene_save)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(scene_whose_transfer_function_is_a_file_names_it),
+		cmocka_unit_test(scene_names_the_file_of_its_transfer_function),
 		cmocka_unit_test(changed_transfer_function_is_written_beside_the_scene),
-		cmocka_unit_test(transfer_function_that_the_volume_gets_by_itself_is_no_file),
-		cmocka_unit_test(path_gets_its_ending_and_a_suggestion_is_beside_the_volume),
-		cmocka_unit_test(what_cannot_be_written_leaves_the_settings),
+		cmocka_unit_test(default_transfer_function_is_not_written),
+		cmocka_unit_test(path_gets_its_ending_and_suggestion_lies_beside_the_volume),
+		cmocka_unit_test(failed_save_leaves_the_settings),
 	};
 	unsetenv("GAZECAST_DATA");
 	return cmocka_run_group_tests(tests, make_place, remove_place);

@@ -32,7 +32,7 @@ static bool same(const struct gz_sequence *a, const struct gz_sequence *b)
 	return equal;
 }
 
-static void order_follows_seed_participant_and_session_alone(void **state)
+static void order_depends_on_seed_participant_and_session_only(void **state)
 {
 	(void)state;
 	struct made_experiment made;
@@ -73,7 +73,7 @@ static void each_condition_comes_once_before_any_comes_again(void **state)
 	free_experiment(&made);
 }
 
-static void balanced_intervals_come_half_each_way_for_every_condition(void **state)
+static void balanced_intervals_have_each_order_equally_often(void **state)
 {
 	(void)state;
 	struct made_experiment made;
@@ -88,7 +88,7 @@ static void balanced_intervals_come_half_each_way_for_every_condition(void **sta
 	free_experiment(&made);
 }
 
-static void odd_repeats_lean_either_way_over_participants(void **state)
+static void odd_repeat_gets_either_order(void **state)
 {
 	(void)state;
 	struct made_experiment made;
@@ -111,7 +111,7 @@ static void odd_repeats_lean_either_way_over_participants(void **state)
 	free_experiment(&made);
 }
 
-static void interval_orders_of_the_file_are_kept(void **state)
+static void fixed_interval_orders_are_kept(void **state)
 {
 	(void)state;
 	struct made_experiment made;
@@ -156,7 +156,7 @@ static void print_blocks(const struct gz_sequence *sequence, char text[32])
 		strcat(text, sequence->presentations[i].block->label);
 }
 
-static void rotated_blocks_begin_one_further_for_each_participant(void **state)
+static void rotated_blocks_start_one_further_for_each_participant(void **state)
 {
 	(void)state;
 	static const char *const expected[] = { "tryabc", "trybca", "trycab", "tryabc" };
@@ -180,7 +180,7 @@ static void rotated_blocks_begin_one_further_for_each_participant(void **state)
 	free_experiment(&made);
 }
 
-static void random_blocks_leave_practice_in_its_place(void **state)
+static void random_blocks_leave_practice_in_place(void **state)
 {
 	(void)state;
 	struct made_experiment made;
@@ -207,14 +207,14 @@ static void random_blocks_leave_practice_in_its_place(void **state)
 TEST_SUITE(sequence)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(order_follows_seed_participant_and_session_alone),
+		cmocka_unit_test(order_depends_on_seed_participant_and_session_only),
 		cmocka_unit_test(each_condition_comes_once_before_any_comes_again),
-		cmocka_unit_test(balanced_intervals_come_half_each_way_for_every_condition),
-		cmocka_unit_test(odd_repeats_lean_either_way_over_participants),
-		cmocka_unit_test(interval_orders_of_the_file_are_kept),
+		cmocka_unit_test(balanced_intervals_have_each_order_equally_often),
+		cmocka_unit_test(odd_repeat_gets_either_order),
+		cmocka_unit_test(fixed_interval_orders_are_kept),
 		cmocka_unit_test(full_random_order_mixes_repeats),
-		cmocka_unit_test(rotated_blocks_begin_one_further_for_each_participant),
-		cmocka_unit_test(random_blocks_leave_practice_in_its_place),
+		cmocka_unit_test(rotated_blocks_start_one_further_for_each_participant),
+		cmocka_unit_test(random_blocks_leave_practice_in_place),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -175,7 +175,7 @@ static void frame_is_read_back_to_the_bit(void **state)
 	check_round_trip(&frame);
 }
 
-static void session_is_read_back_frame_by_frame_with_what_changed(void **state)
+static void session_is_read_back_with_its_changes(void **state)
 {
 	struct fixture *self = *state;
 	struct gz_session_frame frame;
@@ -223,7 +223,7 @@ static void session_is_read_back_frame_by_frame_with_what_changed(void **state)
 	assert_null(reader);
 }
 
-static void scene_beside_it_is_that_of_the_start(void **state)
+static void scene_file_has_the_settings_of_the_start(void **state)
 {
 	struct fixture *self = *state;
 	char path[160];
@@ -241,7 +241,7 @@ static void scene_beside_it_is_that_of_the_start(void **state)
 	gz_scene_free(&scene);
 }
 
-static void tables_of_spacings_are_taken_along(void **state)
+static void spacing_tables_are_copied(void **state)
 {
 	struct fixture *self = *state;
 	struct gz_session_frame frame;
@@ -300,7 +300,7 @@ static void gaze_log_has_each_sample_once(void **state)
 	gz_gaze_log_close(&log);
 }
 
-static void killed_recording_is_read_to_its_last_whole_line(void **state)
+static void killed_recording_is_read_to_its_last_complete_line(void **state)
 {
 	struct fixture *self = *state;
 	char path[160];
@@ -323,7 +323,7 @@ static void killed_recording_is_read_to_its_last_whole_line(void **state)
 	gz_session_writer_end(&writer);
 }
 
-static void full_disk_stops_it_once_and_leaves_what_is_whole(void **state)
+static void full_disk_ends_the_recording_with_complete_lines(void **state)
 {
 	struct fixture *self = *state;
 	struct rlimit before, small = { .rlim_cur = 2000 };
@@ -359,7 +359,7 @@ static void full_disk_stops_it_once_and_leaves_what_is_whole(void **state)
 	gz_session_close(&reader);
 }
 
-static void session_that_is_there_is_not_written_over(void **state)
+static void existing_session_is_not_overwritten(void **state)
 {
 	struct fixture *self = *state;
 	struct gz_session_writer *writer = begin(self), *other = NULL;
@@ -380,7 +380,7 @@ static void session_that_is_there_is_not_written_over(void **state)
 	gz_session_close(&reader);
 }
 
-static void session_in_no_folder_is_refused_and_leaves_nothing(void **state)
+static void session_in_missing_folder_is_refused(void **state)
 {
 	struct fixture *self = *state;
 	struct gz_session_writer *writer = NULL;
@@ -392,7 +392,7 @@ static void session_in_no_folder_is_refused_and_leaves_nothing(void **state)
 	assert_null(writer);
 }
 
-static void volumes_that_differ_are_told_apart(void **state)
+static void different_volumes_differ_in_identity(void **state)
 {
 	struct fixture *self = *state;
 	const struct gz_volume_identity a = gz_volume_identify(&self->volume);
@@ -486,7 +486,7 @@ static void line_without_end_is_refused(void **state)
 	free(text);
 }
 
-static void changed_numbers_are_warned_of_at_the_end(void **state)
+static void changed_file_is_warned_of_at_the_end(void **state)
 {
 	static const char text[] = HEAD FRAME "#end 1\t00000000\n";
 	struct fixture *self = *state;
@@ -507,18 +507,18 @@ TEST_SUITE(session)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(frame_is_read_back_to_the_bit),
-		TEST(session_is_read_back_frame_by_frame_with_what_changed),
-		TEST(scene_beside_it_is_that_of_the_start),
-		TEST(tables_of_spacings_are_taken_along),
+		TEST(session_is_read_back_with_its_changes),
+		TEST(scene_file_has_the_settings_of_the_start),
+		TEST(spacing_tables_are_copied),
 		TEST(gaze_log_has_each_sample_once),
-		TEST(killed_recording_is_read_to_its_last_whole_line),
-		TEST(full_disk_stops_it_once_and_leaves_what_is_whole),
-		TEST(session_that_is_there_is_not_written_over),
-		TEST(session_in_no_folder_is_refused_and_leaves_nothing),
-		TEST(volumes_that_differ_are_told_apart),
+		TEST(killed_recording_is_read_to_its_last_complete_line),
+		TEST(full_disk_ends_the_recording_with_complete_lines),
+		TEST(existing_session_is_not_overwritten),
+		TEST(session_in_missing_folder_is_refused),
+		TEST(different_volumes_differ_in_identity),
 		TEST(malformed_lines_are_refused_with_their_number),
 		TEST(line_without_end_is_refused),
-		TEST(changed_numbers_are_warned_of_at_the_end),
+		TEST(changed_file_is_warned_of_at_the_end),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

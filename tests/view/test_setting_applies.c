@@ -17,7 +17,7 @@ static struct gz_scene_settings settings_of(int method)
 	return settings;
 }
 
-static void rows_of_foveation_count_with_the_methods_that_use_them(void **state)
+static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 {
 	(void)state;
 	static const struct {
@@ -42,7 +42,7 @@ static void rows_of_foveation_count_with_the_methods_that_use_them(void **state)
 		}
 }
 
-static void rows_behind_a_switch_count_once_it_is_on(void **state)
+static void keys_behind_a_switch_apply_once_it_is_on(void **state)
 {
 	(void)state;
 	struct gz_scene_settings settings = settings_of(GZ_METHOD_STANDARD);
@@ -78,8 +78,8 @@ static void rows_behind_a_switch_count_once_it_is_on(void **state)
 TEST_SUITE(setting_applies)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(rows_of_foveation_count_with_the_methods_that_use_them),
-		cmocka_unit_test(rows_behind_a_switch_count_once_it_is_on),
+		cmocka_unit_test(foveation_keys_apply_to_the_methods_that_use_them),
+		cmocka_unit_test(keys_behind_a_switch_apply_once_it_is_on),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

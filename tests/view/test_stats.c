@@ -69,7 +69,7 @@ static void assert_tail_closes(const char *text)
 	assert_string_equal(text + length - 4, "\n]}\n");
 }
 
-static void file_without_frames_is_whole(void **state)
+static void file_without_frames_is_complete(void **state)
 {
 	(void)state;
 	struct gz_stats_file *file = NULL;
@@ -79,7 +79,7 @@ static void file_without_frames_is_whole(void **state)
 	assert_null(file);
 }
 
-static void file_is_whole_after_each_frame(void **state)
+static void file_is_complete_after_each_frame(void **state)
 {
 	(void)state;
 	struct gz_stats_file *file = NULL;
@@ -103,7 +103,7 @@ static void file_is_whole_after_each_frame(void **state)
 		      "\"budget_ms\": 12.0, \"budget\": \"over\"}"));
 }
 
-static void what_is_not_there_is_null(void **state)
+static void unknown_values_are_null(void **state)
 {
 	(void)state;
 	struct gz_stats_file *file = NULL;
@@ -141,7 +141,7 @@ static void older_file_is_replaced(void **state)
 	assert_string_equal(content(), "{\"frames\": [\n]}\n");
 }
 
-static void place_that_cannot_be_written_is_refused(void **state)
+static void unwritable_file_is_refused(void **state)
 {
 	(void)state;
 	const char *const bad[] = { "/no/such/folder/s.json", "/tmp", "/dev/null", "" };
@@ -156,7 +156,7 @@ static void place_that_cannot_be_written_is_refused(void **state)
 	}
 }
 
-static void line_tells_what_the_file_tells(void **state)
+static void line_has_the_values_of_the_file(void **state)
 {
 	(void)state;
 	char line[512];
@@ -180,12 +180,12 @@ static void close_of_nothing_is_allowed(void **state)
 TEST_SUITE(stats)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(file_without_frames_is_whole),
-		cmocka_unit_test(file_is_whole_after_each_frame),
-		cmocka_unit_test(what_is_not_there_is_null),
+		cmocka_unit_test(file_without_frames_is_complete),
+		cmocka_unit_test(file_is_complete_after_each_frame),
+		cmocka_unit_test(unknown_values_are_null),
 		cmocka_unit_test(older_file_is_replaced),
-		cmocka_unit_test(place_that_cannot_be_written_is_refused),
-		cmocka_unit_test(line_tells_what_the_file_tells),
+		cmocka_unit_test(unwritable_file_is_refused),
+		cmocka_unit_test(line_has_the_values_of_the_file),
 		cmocka_unit_test(close_of_nothing_is_allowed),
 	};
 	return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -29,7 +29,7 @@ static bool has(const struct gz_targets *targets, float x, float y)
 	return false;
 }
 
-static void layouts_begin_in_the_middle_and_reach_every_corner(void **state)
+static void layouts_start_at_the_centre_and_reach_all_corners(void **state)
 {
 	(void)state;
 	static const char *const names[] = { "5", "9", "13" };
@@ -77,7 +77,7 @@ static void random_order_shows_each_target_once_and_follows_its_seed(void **stat
 	assert_in_range(differ, 15, 19);
 }
 
-static void list_of_ones_own_is_taken_and_a_bad_one_refused(void **state)
+static void file_of_targets_is_read_and_an_invalid_one_refused(void **state)
 {
 	(void)state;
 	char path[] = "/tmp/gazecast-test-targets-XXXXXX";
@@ -104,7 +104,7 @@ static enum gz_result read_words(int argc, char *const *argv, struct gz_view_opt
 	return gz_view_options_read(argc, argv, &captured.log, options);
 }
 
-static void targets_go_with_no_scene_and_with_a_window_only(void **state)
+static void targets_need_a_window_and_no_scene(void **state)
 {
 	(void)state;
 	static char name[] = "gazeview", targets[] = "--targets=9", scene[] = "a.scene",
@@ -126,10 +126,10 @@ static void targets_go_with_no_scene_and_with_a_window_only(void **state)
 TEST_SUITE(target_options)
 {
 	static const struct CMUnitTest tests[] = {
-		cmocka_unit_test(layouts_begin_in_the_middle_and_reach_every_corner),
+		cmocka_unit_test(layouts_start_at_the_centre_and_reach_all_corners),
 		cmocka_unit_test(random_order_shows_each_target_once_and_follows_its_seed),
-		cmocka_unit_test(list_of_ones_own_is_taken_and_a_bad_one_refused),
-		cmocka_unit_test(targets_go_with_no_scene_and_with_a_window_only),
+		cmocka_unit_test(file_of_targets_is_read_and_an_invalid_one_refused),
+		cmocka_unit_test(targets_need_a_window_and_no_scene),
 	};
 	return cmocka_run_group_tests_name("view.target_options", tests, NULL, NULL);
 }

@@ -37,7 +37,7 @@ static void choose(const struct gz_monitor_list *list, const char *named,
 	assert_false(choice.named_is_absent);
 }
 
-static void monitor_of_a_window_holds_its_middle_else_is_the_first(void **state)
+static void monitor_of_a_window_contains_its_centre_or_is_the_first(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three(), none = { .count = 0 };
@@ -62,7 +62,7 @@ static void monitor_is_named_by_name_or_number_and_by_nothing_else(void **state)
 		assert_int_equal(gz_monitor_named(&list, refused[i]), -1);
 }
 
-static void name_comes_before_description_before_the_window(void **state)
+static void name_overrides_description_overrides_window(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -72,7 +72,7 @@ static void name_comes_before_description_before_the_window(void **state)
 	choose(&list, "", NULL, on_third, 2, GZ_TRACKER_DISPLAY_WINDOW);
 }
 
-static void absent_name_is_told_and_the_rest_decides(void **state)
+static void unknown_name_is_reported_and_the_rest_decides(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -85,7 +85,7 @@ static void absent_name_is_told_and_the_rest_decides(void **state)
 	assert_int_equal(choice.monitor, 0);
 }
 
-static void description_of_several_is_decided_by_millimetres_then_by_the_window(void **state)
+static void ambiguous_description_is_decided_by_mm_then_by_window(void **state)
 {
 	(void)state;
 	struct gz_monitor_list list = three();
@@ -99,7 +99,7 @@ static void description_of_several_is_decided_by_millimetres_then_by_the_window(
 	choose(&list, "", &scaled, on_first, 1, GZ_TRACKER_DISPLAY_DESCRIBED);
 }
 
-static void assumed_and_impossible_descriptions_say_nothing(void **state)
+static void assumed_and_invalid_descriptions_are_ignored(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -109,7 +109,7 @@ static void assumed_and_impossible_descriptions_say_nothing(void **state)
 	choose(&list, "", &impossible, on_second, 1, GZ_TRACKER_DISPLAY_WINDOW);
 }
 
-static void only_monitor_is_the_trackers_and_none_is_none(void **state)
+static void only_monitor_is_chosen_and_empty_list_gives_none(void **state)
 {
 	(void)state;
 	struct gz_monitor_list list = three();
@@ -126,7 +126,7 @@ static void near(double a, double b)
 		fail_msg("%.9g is not %.9g", a, b);
 }
 
-static void point_of_the_monitor_becomes_one_of_the_window_by_its_offset(void **state)
+static void point_on_monitor_becomes_point_on_window(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -143,7 +143,7 @@ static void point_of_the_monitor_becomes_one_of_the_window_by_its_offset(void **
 	near(on.y, 1);
 }
 
-static void window_on_another_monitor_has_the_gaze_off_its_picture(void **state)
+static void window_on_another_monitor_has_gaze_outside(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -160,7 +160,7 @@ static void window_on_another_monitor_has_the_gaze_off_its_picture(void **state)
 	assert_false(gz_window_share_is_elsewhere(&across));
 }
 
-static void window_without_a_size_or_a_monitor_is_the_whole(void **state)
+static void window_without_size_or_monitor_covers_everything(void **state)
 {
 	(void)state;
 	const struct gz_monitor_list list = three();
@@ -180,17 +180,16 @@ static void window_without_a_size_or_a_monitor_is_the_whole(void **state)
 TEST_SUITE(tracker_display)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(monitor_of_a_window_holds_its_middle_else_is_the_first),
+		cmocka_unit_test(monitor_of_a_window_contains_its_centre_or_is_the_first),
 		cmocka_unit_test(monitor_is_named_by_name_or_number_and_by_nothing_else),
-		cmocka_unit_test(name_comes_before_description_before_the_window),
-		cmocka_unit_test(absent_name_is_told_and_the_rest_decides),
-		cmocka_unit_test(
-			description_of_several_is_decided_by_millimetres_then_by_the_window),
-		cmocka_unit_test(assumed_and_impossible_descriptions_say_nothing),
-		cmocka_unit_test(only_monitor_is_the_trackers_and_none_is_none),
-		cmocka_unit_test(point_of_the_monitor_becomes_one_of_the_window_by_its_offset),
-		cmocka_unit_test(window_on_another_monitor_has_the_gaze_off_its_picture),
-		cmocka_unit_test(window_without_a_size_or_a_monitor_is_the_whole),
+		cmocka_unit_test(name_overrides_description_overrides_window),
+		cmocka_unit_test(unknown_name_is_reported_and_the_rest_decides),
+		cmocka_unit_test(ambiguous_description_is_decided_by_mm_then_by_window),
+		cmocka_unit_test(assumed_and_invalid_descriptions_are_ignored),
+		cmocka_unit_test(only_monitor_is_chosen_and_empty_list_gives_none),
+		cmocka_unit_test(point_on_monitor_becomes_point_on_window),
+		cmocka_unit_test(window_on_another_monitor_has_gaze_outside),
+		cmocka_unit_test(window_without_size_or_monitor_covers_everything),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

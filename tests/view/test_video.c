@@ -16,7 +16,7 @@
 
 static const double rates[] = { 1, 12.5, 23.976, 24, 25, 29.97, 30, 50, 59.94, 60, 72, 90, 120 };
 
-static void clock_gives_each_frame_made_at_the_videos_rate_one_picture(void **state)
+static void clock_at_the_videos_rate_counts_one_picture_a_frame(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
@@ -32,7 +32,7 @@ static void clock_gives_each_frame_made_at_the_videos_rate_one_picture(void **st
 	}
 }
 
-static void clock_repeats_what_stands_and_passes_over_what_is_quick(void **state)
+static void clock_repeats_slow_pictures_and_skips_fast_ones(void **state)
 {
 	(void)state;
 	struct gz_video_clock clock;
@@ -72,7 +72,7 @@ static void picture_of_the_same_size_is_copied(void **state)
 	gz_image_fit_free(&fit);
 }
 
-static void picture_of_another_shape_stands_in_the_middle_of_black(void **state)
+static void picture_of_another_shape_is_centred_on_black(void **state)
 {
 	(void)state;
 	struct gz_image_fit fit = { 0 };
@@ -86,7 +86,7 @@ static void picture_of_another_shape_stands_in_the_middle_of_black(void **state)
 	gz_image_fit_free(&fit);
 }
 
-static void picture_thinner_than_a_pixel_when_scaled_is_one_pixel_thin(void **state)
+static void scaled_picture_is_at_least_one_pixel_wide(void **state)
 {
 	(void)state;
 	struct gz_image_fit fit = { 0 };
@@ -99,7 +99,7 @@ static void picture_thinner_than_a_pixel_when_scaled_is_one_pixel_thin(void **st
 	gz_image_fit_free(&fit);
 }
 
-static void names_by_the_time_are_of_nothing_that_is_there_and_sort_in_their_order(void **state)
+static void names_by_time_are_unused_and_sort_in_order(void **state)
 {
 	(void)state;
 	char folder[] = "/tmp/gazecast-test-name-XXXXXX", paths[3][GZ_PATH_SIZE];
@@ -197,7 +197,7 @@ static void read_values(const struct stand_in *self, char *text)
 	fclose(file);
 }
 
-static void video_has_each_picture_for_as_long_as_it_was_shown(void **state)
+static void video_shows_each_picture_for_its_time(void **state)
 {
 	struct stand_in *self = *state;
 	char values[64];
@@ -232,7 +232,7 @@ static void video_closed_at_once_has_one_picture(void **state)
 	assert_string_equal(values, "7");
 }
 
-static void slow_ffmpeg_costs_pictures_which_are_counted_but_no_time(void **state)
+static void slow_ffmpeg_drops_and_counts_pictures_without_blocking(void **state)
 {
 	enum { SHOWN = 1000 };
 	struct stand_in *self = *state;
@@ -261,7 +261,7 @@ static void slow_ffmpeg_costs_pictures_which_are_counted_but_no_time(void **stat
 	unlink(go);
 }
 
-static void missing_ffmpeg_is_told_with_the_remedy(void **state)
+static void missing_ffmpeg_is_reported_with_the_remedy(void **state)
 {
 	struct stand_in *self = *state;
 	struct gz_video *video = NULL;
@@ -283,7 +283,7 @@ static enum gz_result show_until_it_fails(struct gz_video *video)
 	return r;
 }
 
-static void dying_ffmpeg_is_told_with_its_last_words(void **state)
+static void failing_ffmpeg_is_reported_with_its_messages(void **state)
 {
 	struct stand_in *self = *state;
 	struct gz_video *video;
@@ -298,7 +298,7 @@ static void dying_ffmpeg_is_told_with_its_last_words(void **state)
 	assert_non_null(strstr(self->log.last, "ffmpeg: \"first; No  [31mspace left\";"));
 }
 
-static void killed_ffmpeg_is_told_by_its_signal(void **state)
+static void killed_ffmpeg_is_reported_with_its_signal(void **state)
 {
 	struct stand_in *self = *state;
 	struct gz_video *video;
@@ -312,25 +312,23 @@ static void killed_ffmpeg_is_told_by_its_signal(void **state)
 TEST_SUITE(video)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(clock_gives_each_frame_made_at_the_videos_rate_one_picture),
-		cmocka_unit_test(clock_repeats_what_stands_and_passes_over_what_is_quick),
-		cmocka_unit_test(
-			names_by_the_time_are_of_nothing_that_is_there_and_sort_in_their_order),
+		cmocka_unit_test(clock_at_the_videos_rate_counts_one_picture_a_frame),
+		cmocka_unit_test(clock_repeats_slow_pictures_and_skips_fast_ones),
+		cmocka_unit_test(names_by_time_are_unused_and_sort_in_order),
 		cmocka_unit_test(picture_of_the_same_size_is_copied),
-		cmocka_unit_test(picture_of_another_shape_stands_in_the_middle_of_black),
-		cmocka_unit_test(picture_thinner_than_a_pixel_when_scaled_is_one_pixel_thin),
-		cmocka_unit_test_setup_teardown(video_has_each_picture_for_as_long_as_it_was_shown,
-						set_up, tear_down),
+		cmocka_unit_test(picture_of_another_shape_is_centred_on_black),
+		cmocka_unit_test(scaled_picture_is_at_least_one_pixel_wide),
+		cmocka_unit_test_setup_teardown(video_shows_each_picture_for_its_time, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(video_closed_at_once_has_one_picture, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(
-			slow_ffmpeg_costs_pictures_which_are_counted_but_no_time, set_up,
-			tear_down),
-		cmocka_unit_test_setup_teardown(missing_ffmpeg_is_told_with_the_remedy, set_up,
+			slow_ffmpeg_drops_and_counts_pictures_without_blocking, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(missing_ffmpeg_is_reported_with_the_remedy, set_up,
 						tear_down),
-		cmocka_unit_test_setup_teardown(dying_ffmpeg_is_told_with_its_last_words, set_up,
-						tear_down),
-		cmocka_unit_test_setup_teardown(killed_ffmpeg_is_told_by_its_signal, set_up,
+		cmocka_unit_test_setup_teardown(failing_ffmpeg_is_reported_with_its_messages,
+						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(killed_ffmpeg_is_reported_with_its_signal, set_up,
 						tear_down),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
