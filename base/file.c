@@ -24,6 +24,22 @@ enum gz_result gz_path_beside(const char *file, const char *name, char *out_path
 	return gz_text_print(out_path, size, "%.*s%s", folder, file, name);
 }
 
+size_t gz_write_all(int fd, const void *bytes, size_t size)
+{
+	const char *from = bytes;
+	size_t done = 0;
+	while (done < size) {
+		const ssize_t n = write(fd, from + done, size - done);
+		if (n > 0)
+			done += (size_t)n;
+		else if (n == 0)
+			errno = ENOSPC;
+		if (n == 0 || (n < 0 && errno != EINTR))
+			break;
+	}
+	return done;
+}
+
 /* Log why the file cannot be written, from errno's value @p error. */
 static enum gz_result refuse_writing(const struct gz_part_file *file, int error)
 {

@@ -25,6 +25,14 @@ bool gz_path_ends(const char *path, const char *ending);
  */
 enum gz_result gz_path_beside(const char *file, const char *name, char *out_path, size_t size);
 
+/**
+ * Write all bytes to a file descriptor, continuing after signals and partial writes.
+ *
+ * @return the number of bytes written; less than @p size only after an error, with its cause in
+ *         errno
+ */
+size_t gz_write_all(int fd, const void *bytes, size_t size);
+
 /** What a file's name ends in while the file is being written. */
 #define GZ_PART_ENDING ".part"
 

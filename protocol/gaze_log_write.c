@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/file.h"
 #include "base/text.h"
 #include "protocol/gaze_log_lines.h"
 
@@ -208,25 +209,6 @@ enum gz_result gz_gaze_log_print_end(uint64_t samples, uint32_t crc, char *text,
 /* Size of the longest "#end" line: two numbers. */
 enum { END_LINE_SIZE = 64 };
 
-/* Write all @p bytes. @return how many were written: less than @p size only after an error, whose
- * cause errno has */
-static size_t write_log_bytes(int fd, const unsigned char *bytes, size_t size)
-{
-	size_t done = 0;
-	while (done < size) {
-		ssize_t n = write(fd, bytes + done, size - done);
-		if (n > 0) {
-			done += (size_t)n;
-		} else if (n == 0) {
-			errno = ENOSPC;
-			break;
-		} else if (errno != EINTR) {
-			break;
-		}
-	}
-	return done;
-}
-
 static uint64_t count_samples(const unsigned char *lines, size_t size)
 {
 	uint64_t samples = 0;
@@ -255,7 +237,7 @@ static enum gz_result write_end_line(struct gz_gaze_log_writer *writer)
 		gz_gaze_log_print_end(writer->samples, writer->crc, line, sizeof line, &length);
 	if (result != GZ_OK)
 		return result;
-	size_t done = write_log_bytes(writer->fd, (const unsigned char *)line, length);
+	size_t done = gz_write_all(writer->fd, (const unsigned char *)line, length);
 	return done == length ? GZ_OK : GZ_ERR_IO;
 }
 
@@ -288,7 +270,7 @@ enum gz_result gz_gaze_log_writer_flush(struct gz_gaze_log_writer *writer)
 {
 	if (writer->used == 0)
 		return GZ_OK;
-	size_t done = write_log_bytes(writer->fd, writer->buffer, writer->used);
+	size_t done = gz_write_all(writer->fd, writer->buffer, writer->used);
 	if (done < writer->used) {
 		int error = errno;
 		cut_after_last_line(writer, done);

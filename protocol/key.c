@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/text.h"
 
 #define GZ_LOG_MODULE "key"
@@ -441,15 +442,8 @@ enum gz_result gz_key_directory_make(const char *directory, const struct gz_log 
 
 static bool write_key_bytes(int fd, const char *text)
 {
-	size_t size = strlen(text);
-	while (size > 0) {
-		ssize_t n = write(fd, text, size);
-		if (n < 0 && errno != EINTR)
-			return false;
-		text += n > 0 ? n : 0;
-		size -= n > 0 ? (size_t)n : 0;
-	}
-	return fsync(fd) == 0;
+	const size_t size = strlen(text);
+	return gz_write_all(fd, text, size) == size && fsync(fd) == 0;
 }
 
 enum gz_result gz_key_file_write(const char *path, bool secret, const char *text,

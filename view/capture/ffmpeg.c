@@ -173,20 +173,6 @@ enum gz_result gz_ffmpeg_start(const struct gz_ffmpeg_params *params, const stru
 	return GZ_OK;
 }
 
-static bool write_pipe(int fd, const uint8_t *bytes, size_t size)
-{
-	while (size > 0) {
-		ssize_t n = write(fd, bytes, size);
-		if (n < 0 && errno == EINTR)
-			continue;
-		if (n <= 0)
-			return false;
-		bytes += n;
-		size -= (size_t)n;
-	}
-	return true;
-}
-
 /* Writing to a pipe without a reader raises SIGPIPE. Block it here and consume it before it can end
  * the program. */
 static bool write_quietly(int fd, const uint8_t *bytes, size_t size)
@@ -196,7 +182,7 @@ static bool write_quietly(int fd, const uint8_t *bytes, size_t size)
 	sigemptyset(&pipe_signal);
 	sigaddset(&pipe_signal, SIGPIPE);
 	pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
-	bool done = write_pipe(fd, bytes, size);
+	bool done = gz_write_all(fd, bytes, size) == size;
 	if (!done && !sigismember(&before, SIGPIPE))
 		while (sigtimedwait(&pipe_signal, NULL, &at_once) < 0 && errno == EINTR)
 			;

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file.h"
+#include "base/text.h"
 #include "view/experiment/experiment_internal.h"
 
 #define GZ_LOG_MODULE "experiment"
@@ -77,33 +79,23 @@ static enum gz_result refuse_io(const struct gz_answers *answers, const char *wh
 }
 
 /* Write the text and flush it to the disk. */
-static enum gz_result append_row(const struct gz_answers *answers, const char *text)
+static enum gz_result append_row(const struct gz_answers *answers, const struct gz_text *text)
 {
-	size_t size = strlen(text);
-	while (size > 0) {
-		ssize_t written = write(answers->fd, text, size);
-		if (written < 0 && errno == EINTR)
-			continue;
-		if (written < 0)
-			return refuse_io(answers, "cannot be written");
-		text += written;
-		size -= (size_t)written;
-	}
-	return fsync(answers->fd) == 0 ? GZ_OK : refuse_io(answers, "cannot be written");
+	if (text->failed)
+		return GZ_ERR_NO_MEM;
+	if (gz_write_all(answers->fd, text->bytes, text->length) < text->length ||
+	    fsync(answers->fd) != 0)
+		return refuse_io(answers, "cannot be written");
+	return GZ_OK;
 }
 
-static char *header_text(void)
+/* The names of the columns. The caller frees the text. */
+static struct gz_text header_text(void)
 {
-	size_t size = 2;
+	struct gz_text text = { 0 };
 	for (size_t i = 0; i < gz_answer_column_count; i++)
-		size += strlen(gz_answer_columns[i].name) + 1;
-	char *text = calloc(1, size);
-	for (size_t i = 0; text && i < gz_answer_column_count; i++) {
-		strcat(text, i ? "\t" : "");
-		strcat(text, gz_answer_columns[i].name);
-	}
-	if (text)
-		strcat(text, "\n");
+		gz_text_add(&text, "%s%s", i ? "\t" : "", gz_answer_columns[i].name);
+	gz_text_add(&text, "\n");
 	return text;
 }
 
@@ -199,18 +191,22 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 
 static enum gz_result check_lines(struct gz_answers *answers, struct lines *lines)
 {
-	char *header = header_text(), *line = next_row(lines);
-	if (!header)
+	struct gz_text header = header_text();
+	char *line = next_row(lines);
+	if (header.failed) {
+		gz_text_free(&header);
 		return GZ_ERR_NO_MEM;
-	header[strlen(header) - 1] = '\0';
+	}
 	enum gz_result result = GZ_OK;
 	if (!line)
 		lines->number = 1;
+	const size_t length = header.length - 1; /* without the newline */
 	/* After a power cut the file may hold the beginning of the header. */
-	if (line ? strcmp(line, header) != 0 : strncmp(lines->text, header, lines->size) != 0)
+	if (line ? strlen(line) != length || memcmp(line, header.bytes, length) != 0
+		 : lines->size > length || memcmp(lines->text, header.bytes, lines->size) != 0)
 		result = refuse_line(answers, lines,
 				     "the columns differ from those of this version");
-	free(header);
+	gz_text_free(&header);
 	while (result == GZ_OK && (line = next_row(lines)) != NULL)
 		result = check_row(answers, lines, line);
 	return result;
@@ -232,9 +228,9 @@ static enum gz_result cut_partial_row(const struct gz_answers *answers, const st
 
 static enum gz_result write_header(const struct gz_answers *answers)
 {
-	char *header = header_text();
-	enum gz_result result = header ? append_row(answers, header) : GZ_ERR_NO_MEM;
-	free(header);
+	struct gz_text header = header_text();
+	const enum gz_result result = append_row(answers, &header);
+	gz_text_free(&header);
 	return result;
 }
 
@@ -308,11 +304,19 @@ static enum gz_result make_new(struct gz_answers *answers)
 	return result == GZ_OK ? write_header(answers) : result;
 }
 
+enum { COLUMNS_PATH_SIZE = GZ_PATH_SIZE + 8 };
+
+/* The file that describes the columns. */
+static void print_columns_path(const struct gz_answers *answers, char path[COLUMNS_PATH_SIZE])
+{
+	snprintf(path, COLUMNS_PATH_SIZE, "%.*s.json",
+		 (int)(strlen(answers->path) - strlen(".tsv")), answers->path);
+}
+
 static void write_columns(const struct gz_answers *answers)
 {
-	char path[GZ_PATH_SIZE + 8];
-	snprintf(path, sizeof path, "%.*s.json", (int)(strlen(answers->path) - strlen(".tsv")),
-		 answers->path);
+	char path[COLUMNS_PATH_SIZE];
+	print_columns_path(answers, path);
 	if (gz_answer_columns_write(path, answers->experiment, answers->request.version) != GZ_OK)
 		gz_warn(answers->log, "%s: cannot be written; the answers are written without it",
 			path);
@@ -366,18 +370,14 @@ enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_tria
 {
 	char cell[GZ_ANSWER_CELL_SIZE];
 	const struct gz_answer_row row = answer_row_of(answers, result, start_ns);
-	char *text = NULL;
-	size_t size = 0;
-	FILE *memory = open_memstream(&text, &size);
-	if (!memory)
-		return GZ_ERR_NO_MEM;
+	struct gz_text text = { 0 };
 	for (size_t i = 0; i < gz_answer_column_count; i++) {
 		gz_answer_columns[i].print(&row, cell, sizeof cell);
-		fprintf(memory, "%s%s", i ? "\t" : "", cell);
+		gz_text_add(&text, "%s%s", i ? "\t" : "", cell);
 	}
-	fputc('\n', memory);
-	enum gz_result written = fclose(memory) == 0 ? append_row(answers, text) : GZ_ERR_NO_MEM;
-	free(text);
+	gz_text_add(&text, "\n");
+	const enum gz_result written = append_row(answers, &text);
+	gz_text_free(&text);
 	answers->done += written == GZ_OK;
 	return written;
 }
@@ -388,10 +388,9 @@ void gz_answers_close(struct gz_answers **answers)
 	if (!closed)
 		return;
 	if (closed->done == 0) {
-		char path[GZ_PATH_SIZE + 8];
+		char path[COLUMNS_PATH_SIZE];
 		unlink(closed->path);
-		snprintf(path, sizeof path, "%.*s.json",
-			 (int)(strlen(closed->path) - strlen(".tsv")), closed->path);
+		print_columns_path(closed, path);
 		unlink(path);
 	}
 	close(closed->fd);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/file.h"
 #include "protocol/gaze_log.h"
 #include "render/scene/scene_files.h"
 #include "render/scene/scene_write.h"
@@ -40,8 +41,7 @@ struct gz_session_writer {
 static enum gz_result path_in_session(const struct gz_session_writer *writer, const char *name,
 				      char path[GZ_PATH_SIZE])
 {
-	const int length = snprintf(path, GZ_PATH_SIZE, "%s/%s", writer->path, name);
-	if (length > 0 && length < GZ_PATH_SIZE)
+	if (gz_text_print(path, GZ_PATH_SIZE, "%s/%s", writer->path, name) == GZ_OK)
 		return GZ_OK;
 	gz_err(writer->log, "%s: the path of the session is too long; choose a shorter one",
 	       writer->path);
@@ -59,21 +59,6 @@ static enum gz_result stop_recording(struct gz_session_writer *writer, const cha
 	return GZ_ERR_IO;
 }
 
-static size_t write_lines(int fd, const char *bytes, size_t size)
-{
-	size_t done = 0;
-	while (done < size) {
-		const ssize_t n = write(fd, bytes + done, size - done);
-		if (n > 0)
-			done += (size_t)n;
-		else if (n == 0)
-			errno = ENOSPC;
-		if (n == 0 || (n < 0 && errno != EINTR))
-			break;
-	}
-	return done;
-}
-
 /* Write all collected lines, or none of them. */
 static enum gz_result flush(struct gz_session_writer *writer)
 {
@@ -82,7 +67,7 @@ static enum gz_result flush(struct gz_session_writer *writer)
 		return stop_recording(writer, GZ_SESSION_FRAMES, ENOMEM);
 	if (lines->length == 0)
 		return GZ_OK;
-	const size_t done = write_lines(writer->frames_fd, lines->bytes, lines->length);
+	const size_t done = gz_write_all(writer->frames_fd, lines->bytes, lines->length);
 	if (done < lines->length) {
 		const int error = errno;
 		/* If that fails as well, readers drop the incomplete line. */
