@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "render/reconstruct/gl/plan_block.h"
+#include "render/reconstruct/gl/gl_plan.h"
 
 /* Plain numbers: they are pasted into the shaders' text. */
 

@@ -9,7 +9,6 @@
 #include "render/raycast/gl/gl_cast.h"
 #include "render/raycast/gl/gl_scene.h"
 #include "render/reconstruct/gl/gl_plan.h"
-#include "render/reconstruct/gl/gl_points.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"
 
 #define GZ_LOG_MODULE "gl"

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Room behind each lattice, so that wide loads at its end stay inside. */
+/* Padding after each lattice, so that wide loads at its end stay inside. */
 enum { PADDING_POINTS = 32 };
 
-/* The first layer of spacing 1. A second one, by odd parameters, has room of its own, so that no
- * two threads write one pixel. */
+/* Whether a layer is the first of spacing 1. Unusual parameters give a second one, which has memory
+ * of its own so that no two threads write one pixel. */
 static bool lies_in_picture(const struct gz_plan *plan, int layer)
 {
 	for (int earlier = 0; earlier < layer; earlier++)
@@ -26,7 +26,7 @@ static size_t points_outside_picture(const struct gz_plan *plan)
 	return points;
 }
 
-/* Blocks of all tiles: roots of the plan's quadtree, as far as the coarsest lattice reaches. */
+/* Make room for the blocks of all roots of the plan's quadtree. */
 static enum gz_result prepare_blocks(struct gz_lattices *lattices, const struct gz_plan *plan)
 {
 	const struct gz_plan_layer *coarsest = &plan->layers[plan->layer_count - 1];
@@ -66,7 +66,7 @@ static void store_point(const struct gz_lattice *lattice, int column, int row, u
 		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
 }
 
-/* A tile of which all points lie on its lattice, whose first is (column, row). */
+/* Store a tile that lies wholly on its lattice and begins at (column, row). */
 static void store_whole(const struct gz_lattice *lattice, int pattern, int column, int row,
 			const uint32_t *pixels)
 {
@@ -80,8 +80,8 @@ static void store_whole(const struct gz_lattice *lattice, int pattern, int colum
 	}
 }
 
-/* Points of a pyramid that are points of coarser lattices too, each of which has every second point
- * of the one before, along x and y, or fewer. */
+/* Store the points of a tile that coarser lattices of the pyramid have too. Each coarser lattice
+ * has at most every second point of the finer one along x and y. */
 static void store_coarser(const struct gz_lattices *lattices, const struct gz_tile *tile, int last,
 			  int column, int row, const uint32_t *pixels)
 {

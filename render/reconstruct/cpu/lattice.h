@@ -1,6 +1,6 @@
 /**
  * @file
- * Where cast rays lie until the picture is made of them: one lattice of pixels a layer of the plan.
+ * The colours of cast rays before reconstruction: one lattice of points for each layer of the plan.
  */
 #ifndef GZ_RENDER_RECONSTRUCT_CPU_LATTICE_H
 #define GZ_RENDER_RECONSTRUCT_CPU_LATTICE_H
@@ -11,46 +11,45 @@
 #include "base/result.h"
 #include "render/plan/plan.h"
 
-/** The points of one layer. The first layer of spacing 1 lies in the
- *  picture itself. */
+/** The points of one layer. The first layer of spacing 1 lies in the picture itself. */
 struct gz_lattice {
-	uint32_t *points; /**< row by row; 32 more behind the last may be read */
+	uint32_t *points; /**< row by row; 32 more after the last may be read */
 	size_t stride;    /**< points from one row to the next */
 	int spacing, columns, rows;
 };
 
-/** Edge of the blocks that are filled alike, points of the lattice that is filled: the smallest
- * tile that leaves points to fill covers as many on the next finer lattice. */
+/** Edge of a block of points that are filled alike: the smallest tile that leaves points to fill
+ *  covers so many points of the next finer lattice. */
 #define GZ_BLOCK_EDGE 8
 
 /** All layers of a frame. Zero-initialised is empty; keep it from frame to frame. */
 struct gz_lattices {
 	int count;
 	struct gz_lattice layers[GZ_PLAN_LAYERS_MAX];
-	uint32_t *memory; /**< of the layers outside the picture */
+	uint32_t *memory; /**< for the layers outside the picture */
 	size_t capacity;  /**< points */
-	/* of a pyramid: for each block of GZ_BLOCK_EDGE x GZ_BLOCK_EDGE pixels, 2 * layer + pattern
-	 * of its tile, 0 where tiles are of layer 0 */
+	/** For a pyramid: 2 * layer + pattern of the tile at each block of GZ_BLOCK_EDGE x
+	 *  GZ_BLOCK_EDGE pixels; 0 for tiles of layer 0. */
 	uint8_t *blocks;
 	size_t block_capacity;
 	int block_columns;
 };
 
-/** Lay out the layers of @p plan, the first of spacing 1 in @p picture, which has the plan's size
- * and is aligned to 64 bytes. GZ_ERR_NO_MEM. Contents are undefined. */
+/** Lay out the layers of @p plan. The first of spacing 1 lies in @p picture, which has the plan's
+ *  size and is aligned to 64 bytes. The points are undefined. GZ_ERR_NO_MEM: out of memory. */
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,
 				   uint32_t *picture);
 
-/** Note which blocks a tile covers, for the reconstruction of a pyramid. Threads: any number, each
- * with tiles of its own. */
+/** Note which blocks a tile of a pyramid covers. Threads: any number, each with tiles of its own.
+ */
 void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile);
 
 /**
- * Put the colours of a tile's rays where they belong: on its layer's lattice and, in a pyramid, on
- * those of all coarser layers that have the point too; there, mark its blocks as well.
+ * Store the colours of a tile's rays on its layer's lattice. In a pyramid, store them on all
+ * coarser lattices that have the point too, and mark the tile's blocks.
  *
- * @param active  of gz_plan_tile_active()
- * @param pixels  by ray
+ * @param active  from gz_plan_tile_active()
+ * @param pixels  colours by ray
  *
  * Threads: any number, each with tiles of its own.
  */

@@ -1,6 +1,6 @@
-/* Filters of planes beside the colours. Points may have nothing to say: INFINITY in a plane of
- * numbers. Where one of the points that a filter reads has nothing, there is no mean: the nearer
- * points count, then the nearest. Numbers of objects never mix. */
+/* Filters of planes of values and of object ids. INFINITY marks a point without a value. If a
+ * filter reads such a point, it takes the mean of the nearer points instead, and failing that the
+ * nearest point. Object ids never mix. */
 #include <math.h>
 
 #include "render/reconstruct/cpu/reconstruct.h"
@@ -17,7 +17,7 @@ static float value_mean_of_4(float a, float b, float c, float d)
 	return isfinite(mean) ? mean : a;
 }
 
-/* Catmull-Rom, never outside of [b, c]. */
+/* Catmull-Rom, clamped to [b, c]. */
 static float value_cubic(float a, float b, float c, float d)
 {
 	const float value = (9 * (b + c) - (a + d)) / 16;

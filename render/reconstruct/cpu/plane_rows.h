@@ -1,10 +1,10 @@
 /*
- * The row filters of planes that are no colours (struct gz_row_filters), point by point. Included
- * once for each kind of plane, after these have been defined:
+ * The row filters (struct gz_row_filters) of planes other than colours, point by point.
+ * plane_filters.c includes this once for each kind of plane, after it defines:
  *
  *   POINT                        the C type of a point, 32 bits
  *   PLANE(name)                  the name of a function of this kind
- *   PLANE(mean_of_2)(a, b)       between two points; the first is the nearer where that matters
+ *   PLANE(mean_of_2)(a, b)       between two points, the nearer first
  *   PLANE(mean_of_4)(a, b, c, d) between four
  *   PLANE(cubic)(a, b, c, d)     halfway between b and c
  *   PLANE(mix)(a, b, share)      b with a share in [0, 1], and a
@@ -37,7 +37,7 @@ static void PLANE(double_cubic)(const uint32_t *row, ptrdiff_t stride, uint32_t 
 				uint32_t *odd, int count, bool stream)
 {
 	(void)stream;
-	POINT below[4]; /* from one before on */
+	POINT below[4]; /* points i - 1 to i + 2 of the row between */
 	for (int i = 0; i < 3; i++)
 		below[i] = PLANE(cubic_below)(row, stride, i - 1);
 	for (int i = 0; 2 * i < count; i++) {
@@ -74,7 +74,7 @@ static void PLANE(double_mean)(const uint32_t *row, ptrdiff_t stride, uint32_t *
 	}
 }
 
-/* Points first, first + 2, ... of a row and, if there are two, the others of the next. */
+/* Make points first, first + 2, ... of a row and, with two rows, the others of the next. */
 static void PLANE(quincunx)(uint32_t *row, ptrdiff_t stride, int first, int rows, int count,
 			    bool is_cubic)
 {

@@ -1,13 +1,13 @@
 /*
- * Pyramid reconstruction: the lattice of spacing s is filled from that of 2s, coarse to fine, where
- * nothing was cast (docs/foveation.md has the formulas).
+ * Pyramid reconstruction: from coarse to fine, the points of the lattice of spacing s that were not
+ * cast are filled from the lattice of spacing 2s (docs/foveation.md has the formulas).
  *
- * The picture is cut into squares, and each is made in one go: its part of every lattice is filled
- * in a scratch buffer that stays in the cache, with a margin as wide as the filters of the next
- * finer lattice reach, and the last fill writes the picture. Points of margins are made more than
- * once, always the same, so squares need nothing of each other. Lattices coarser than any tile that
- * a square looks at are left alone, and so is all arithmetic where everything that the filters
- * would read is of one colour: that colour is what they would make of it.
+ * The picture is cut into squares, and each square is finished before the next. Its part of every
+ * lattice is filled in a scratch buffer that stays in the cache, with a margin as wide as the
+ * filters of the next finer lattice reach; the last fill writes the picture. Margins overlap and
+ * are made more than once, with equal results, so squares do not depend on each other. A square
+ * skips the lattices that are coarser than all tiles it reads. Where all points that the filters
+ * would read have one colour, the result is that colour and nothing is computed.
  */
 #include <string.h>
 
@@ -34,20 +34,20 @@ struct range {
 	int x0, y0, x1, y1;
 };
 
-/* A part of a lattice. */
+/* A square's part of a lattice. */
 struct patch {
-	struct range all;    /* what is there before quincunx tiles are filled */
-	struct range needed; /* what finer lattices look at */
+	struct range all;    /* filled before quincunx tiles are */
+	struct range needed; /* read by finer lattices */
 	int columns, rows;   /* of the whole lattice */
 	ptrdiff_t stride;
 	uint32_t *first;              /* point (all.x0, all.y0) */
-	bool cast, quincunx, coarser; /* what its blocks ask for */
+	bool cast, quincunx, coarser; /* which kinds of fill its blocks need */
 };
 
-/* What is to be done with a run of blocks. */
+/* How a run of blocks is filled. */
 enum fill {
 	FILL_NONE,     /* every point was cast */
-	FILL_QUINCUNX, /* every second was */
+	FILL_QUINCUNX, /* every second point was cast */
 	FILL_COARSER,  /* from the next coarser lattice */
 };
 
@@ -60,19 +60,14 @@ struct square {
 	uint32_t unused_row[SQUARE_WIDTH];
 };
 
-static uint32_t *at(const struct patch *patch, int x, int y)
+static uint32_t *point_at(const struct patch *patch, int x, int y)
 {
 	return patch->first + (y - patch->all.y0) * patch->stride + (x - patch->all.x0);
 }
 
-static int least(int a, int b)
-{
-	return a < b ? a : b;
-}
-
 static int block_end(int x, int end)
 {
-	return least(x - x % BLOCK + BLOCK, end);
+	return gz_least(x - x % BLOCK + BLOCK, end);
 }
 
 static enum fill fill_of_block(const struct square *square, int level, int x, int y)
@@ -84,7 +79,7 @@ static enum fill fill_of_block(const struct square *square, int level, int x, in
 	return tile == 2 * level + 1 ? FILL_QUINCUNX : FILL_NONE;
 }
 
-/* The end of the run of blocks that begins at (x, y) and asks for the same, `last` at most. */
+/* The end of the run of blocks from (x, y) on that are filled alike, `last` at most. */
 static int run_end(const struct square *square, int level, int x, int y, int last,
 		   enum fill *out_fill)
 {
@@ -92,16 +87,16 @@ static int run_end(const struct square *square, int level, int x, int y, int las
 	int end = x - x % BLOCK + BLOCK;
 	while (end < last && fill_of_block(square, level, end, y) == *out_fill)
 		end += BLOCK;
-	return least(end, last);
+	return gz_least(end, last);
 }
 
-/* Rows y and y + 1, points [x, end), from the coarser lattice; of rows before `bottom`. */
-static void fill_rows(struct square *square, int level, int x, int end, int y, int bottom)
+/* Fill points [x, end) of rows y and y + 1, if below `bottom`, from the coarser lattice. */
+static void double_row(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *patch = &square->patches[level];
 	const struct patch *coarse = &square->patches[level + 1];
-	const uint32_t *row = at(coarse, x / 2, y / 2);
-	uint32_t *even = at(patch, x, y);
+	const uint32_t *row = point_at(coarse, x / 2, y / 2);
+	uint32_t *even = point_at(patch, x, y);
 	uint32_t *odd = y + 1 < bottom ? even + patch->stride : square->unused_row;
 	const bool stream = level == 0 && square->stream;
 	if (square->plan->filter == GZ_FILTER_BILINEAR)
@@ -110,38 +105,41 @@ static void fill_rows(struct square *square, int level, int x, int end, int y, i
 		square->filters->double_cubic(row, coarse->stride, even, odd, end - x, stream);
 }
 
-/* Whether all that filters read for points [x, end) of rows [y, bottom) is of one colour. */
-static bool is_flat(const struct square *square, int level, int x, int end, int y, int bottom)
+/* Whether all points that filters read for [x, end) of rows [y, bottom) have one colour. */
+static bool source_is_flat(const struct square *square, int level, int x, int end, int y,
+			   int bottom)
 {
 	const struct patch *coarse = &square->patches[level + 1];
 	const int left = x / 2 - 1, right = (end - 1) / 2 + 3;
 	const int top = y / 2 - 1, below = (bottom - 1) / 2 + 3;
-	return square->filters->all_are(at(coarse, left, top), coarse->stride, right - left,
-					below - top, *at(coarse, x / 2, y / 2));
+	return square->filters->all_are(point_at(coarse, left, top), coarse->stride, right - left,
+					below - top, *point_at(coarse, x / 2, y / 2));
 }
 
-/* Points [x, end) of rows [y, bottom), as many as a block has, from the coarser lattice. */
-static void fill_run(struct square *square, int level, int x, int end, int y, int bottom)
+/* Fill points [x, end) of rows [y, bottom), which lie in one row of blocks, from the coarser
+ * lattice. */
+static void fill_block_run(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *coarse = &square->patches[level + 1];
 	const bool stream = level == 0 && square->stream;
 	for (int to; x < end; x = to) {
-		to = least(x + FLAT_WIDTH, end);
-		const bool flat = is_flat(square, level, x, to, y, bottom);
-		const uint32_t colour = *at(coarse, x / 2, y / 2);
+		to = gz_least(x + FLAT_WIDTH, end);
+		const bool flat = source_is_flat(square, level, x, to, y, bottom);
+		const uint32_t colour = *point_at(coarse, x / 2, y / 2);
 		for (int next = to; next < end; to = next) {
-			next = least(to + FLAT_WIDTH, end);
-			if (is_flat(square, level, to, next, y, bottom) != flat ||
-			    (flat && *at(coarse, to / 2, y / 2) != colour))
+			next = gz_least(to + FLAT_WIDTH, end);
+			if (source_is_flat(square, level, to, next, y, bottom) != flat ||
+			    (flat && *point_at(coarse, to / 2, y / 2) != colour))
 				break;
 		}
 		if (flat)
 			for (int row = y; row < bottom; row++)
-				square->filters->fill(colour, at(&square->patches[level], x, row),
+				square->filters->fill(colour,
+						      point_at(&square->patches[level], x, row),
 						      to - x, stream);
 		else
 			for (int row = y; row < bottom; row += 2)
-				fill_rows(square, level, x, to, row, bottom);
+				double_row(square, level, x, to, row, bottom);
 	}
 }
 
@@ -149,12 +147,12 @@ static void take_cast_rows(struct square *square, int level, int x, int end, int
 {
 	const struct gz_lattice *lattice = &square->lattices->layers[level];
 	for (int row = y; row < bottom; row++)
-		memcpy(at(&square->patches[level], x, row),
+		memcpy(point_at(&square->patches[level], x, row),
 		       lattice->points + (size_t)row * lattice->stride + (size_t)x,
 		       (size_t)(end - x) * 4);
 }
 
-/* What was cast, and what comes from the coarser lattice. */
+/* Take the points that were cast, and fill those that come from the coarser lattice. */
 static void fill_patch(struct square *square, int level)
 {
 	const struct range *all = &square->patches[level].all;
@@ -164,15 +162,15 @@ static void fill_patch(struct square *square, int level)
 		for (int x = all->x0, end; x < all->x1; x = end) {
 			end = run_end(square, level, x, y, all->x1, &fill);
 			if (fill == FILL_COARSER)
-				fill_run(square, level, x, end, y, bottom);
+				fill_block_run(square, level, x, end, y, bottom);
 			else if (level > 0) /* level 0 is cast into the picture */
 				take_cast_rows(square, level, x, end, y, bottom);
 		}
 	}
 }
 
-/* Index of the point that stands for number i of a lattice's count: mirrored about both ends, which
- * keeps odd numbers odd. */
+/* The index, within a lattice of `count` points, that stands for index i outside: mirrored about
+ * both ends, which keeps odd numbers odd. */
 static int mirrored(int i, int count)
 {
 	const int period = 2 * (count - 1);
@@ -182,7 +180,7 @@ static int mirrored(int i, int count)
 	return i < count ? i : period - i;
 }
 
-/* Give a patch that touches the lattice's rim the points beyond. */
+/* Fill the points beyond the lattice's rim in a patch that touches it. */
 static void extend_beyond_rim(const struct patch *patch)
 {
 	const struct range *all = &patch->all;
@@ -191,31 +189,33 @@ static void extend_beyond_rim(const struct patch *patch)
 		const int stands_in = mirrored(right, patch->columns);
 		for (int y = all->y0; y < all->y1; y++) {
 			if (all->x0 == 0)
-				*at(patch, -i, y) = *at(patch, left, y);
+				*point_at(patch, -i, y) = *point_at(patch, left, y);
 			if (all->x1 == patch->columns)
-				*at(patch, right, y) = *at(patch, stands_in, y);
+				*point_at(patch, right, y) = *point_at(patch, stands_in, y);
 		}
 	}
 	const size_t row_bytes = (size_t)(all->x1 - all->x0 + 2 * REACH) * 4;
 	for (int i = 1; i <= REACH; i++) {
 		if (all->y0 == 0)
-			memcpy(at(patch, all->x0 - REACH, -i),
-			       at(patch, all->x0 - REACH, mirrored(-i, patch->rows)), row_bytes);
+			memcpy(point_at(patch, all->x0 - REACH, -i),
+			       point_at(patch, all->x0 - REACH, mirrored(-i, patch->rows)),
+			       row_bytes);
 		if (all->y1 == patch->rows)
-			memcpy(at(patch, all->x0 - REACH, all->y1 - 1 + i),
-			       at(patch, all->x0 - REACH, mirrored(all->y1 - 1 + i, patch->rows)),
+			memcpy(point_at(patch, all->x0 - REACH, all->y1 - 1 + i),
+			       point_at(patch, all->x0 - REACH,
+					mirrored(all->y1 - 1 + i, patch->rows)),
 			       row_bytes);
 	}
 }
 
-/* A lattice of one column or one row has neighbours along the other axis only: it is filled as odd
- * rows are, from points that lie along that axis. */
+/* Fill the missing points of a lattice of one column or one row, which has neighbours along the
+ * other axis only, by the filters for odd rows along that axis. */
 static void fill_quincunx_line(struct square *square, int level, int x, int end, int y)
 {
 	const struct patch *patch = &square->patches[level];
 	const ptrdiff_t step = patch->columns == 1 ? patch->stride : 1;
 	for (x += (x + y) % 2 == 0; x < end; x += 2) {
-		uint32_t *point = at(patch, x, y);
+		uint32_t *point = point_at(patch, x, y);
 		uint32_t made;
 		if (square->plan->filter == GZ_FILTER_BILINEAR)
 			square->filters->double_mean(point - step, 2 * step, square->unused_row,
@@ -227,26 +227,26 @@ static void fill_quincunx_line(struct square *square, int level, int x, int end,
 	}
 }
 
-/* Rows y, which is even, and y + 1 if it is before `bottom`. */
+/* Fill the missing points of rows y, which is even, and y + 1 if it is before `bottom`. */
 static void fill_quincunx_rows(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *patch = &square->patches[level];
-	const int rows = least(bottom - y, 2), first = x % 2 == 0;
+	const int rows = gz_least(bottom - y, 2), first = x % 2 == 0;
 	if (patch->columns == 1 || patch->rows == 1) {
 		for (int row = y; row < y + rows; row++)
 			fill_quincunx_line(square, level, x, end, row);
 		return;
 	}
 	if (square->plan->filter == GZ_FILTER_BILINEAR)
-		square->filters->quincunx_mean(at(patch, x, y), patch->stride, first, rows,
+		square->filters->quincunx_mean(point_at(patch, x, y), patch->stride, first, rows,
 					       end - x);
 	else
-		square->filters->quincunx_cubic(at(patch, x, y), patch->stride, first, rows,
+		square->filters->quincunx_cubic(point_at(patch, x, y), patch->stride, first, rows,
 						end - x);
 }
 
-/* The points between those of quincunx tiles. */
-static void fill_quincunx(struct square *square, int level)
+/* Fill the points that quincunx tiles lack. */
+static void fill_square_quincunx(struct square *square, int level)
 {
 	const struct range *needed = &square->patches[level].needed;
 	enum fill fill;
@@ -266,7 +266,7 @@ static bool at_rim(const struct patch *patch)
 	       patch->all.y1 == patch->rows;
 }
 
-static void fill_level(struct square *square, int level)
+static void fill_square_level(struct square *square, int level)
 {
 	const struct patch *patch = &square->patches[level];
 	fill_patch(square, level);
@@ -276,12 +276,12 @@ static void fill_level(struct square *square, int level)
 		extend_beyond_rim(patch);
 	if (!patch->quincunx)
 		return;
-	fill_quincunx(square, level);
+	fill_square_quincunx(square, level);
 	if (at_rim(patch))
 		extend_beyond_rim(patch);
 }
 
-/* The finest lattice on which something was cast that the square looks at. */
+/* The finest lattice on which points were cast that the square reads. */
 static int finest_cast(const struct square *square)
 {
 	int level = 0;
@@ -290,24 +290,25 @@ static int finest_cast(const struct square *square)
 	return level;
 }
 
-/* Fill the square in the one colour of all that it needs of a lattice. Whether it is one. */
+/* Fill the square with one colour if all points that it needs of a lattice have that colour.
+ * Returns whether it did. */
 static bool fill_flat_square(const struct square *square, int level)
 {
 	const struct patch *patch = &square->patches[level], *picture = &square->patches[0];
 	const struct range *needed = &patch->needed;
-	const uint32_t colour = *at(patch, needed->x0, needed->y0);
-	if (!square->filters->all_are(at(patch, needed->x0, needed->y0), patch->stride,
+	const uint32_t colour = *point_at(patch, needed->x0, needed->y0);
+	if (!square->filters->all_are(point_at(patch, needed->x0, needed->y0), patch->stride,
 				      needed->x1 - needed->x0, needed->y1 - needed->y0, colour))
 		return false;
 	for (int y = picture->all.y0; y < picture->all.y1; y++)
-		square->filters->fill(colour, at(picture, picture->all.x0, y),
+		square->filters->fill(colour, point_at(picture, picture->all.x0, y),
 				      picture->all.x1 - picture->all.x0, square->stream);
 	return true;
 }
 
-/* Note what the blocks of a range ask for. */
-static void survey(const struct square *square, int level, const struct range *range,
-		   struct patch *patch)
+/* Note which kinds of fill the blocks of a range need. */
+static void survey_blocks(const struct square *square, int level, const struct range *range,
+			  struct patch *patch)
 {
 	enum fill fill;
 	for (int y = range->y0; y < range->y1; y = block_end(y, range->y1))
@@ -319,20 +320,20 @@ static void survey(const struct square *square, int level, const struct range *r
 		}
 }
 
-/* What columns or rows [*from, *to) of a lattice take from those of the next coarser one: one
- * before and two behind. Starts are even, so that pairs are whole. */
+/* From columns or rows [*from, *to) of a lattice to those that they need of the next coarser one:
+ * one before and two after. Starts are even, so that pairs are whole. */
 static void halve_range(int *from, int *to, int count)
 {
 	*from = *from / 2 - 1;
 	*from = *from > 0 ? *from - *from % 2 : 0;
-	*to = least((*to - 1) / 2 + 3, count);
+	*to = gz_least((*to - 1) / 2 + 3, count);
 }
 
-/* As far as quincunx tiles look. */
-static void widen_range(int *from, int *to, int count)
+/* Widen a range by the reach of the filters of quincunx tiles. */
+static void widen_for_quincunx(int *from, int *to, int count)
 {
 	*from = *from > REACH ? *from - REACH - 1 : 0;
-	*to = least(*to + REACH, count);
+	*to = gz_least(*to + REACH, count);
 }
 
 static void lay_out_coarser(struct square *square, int level, uint32_t *memory)
@@ -348,13 +349,13 @@ static void lay_out_coarser(struct square *square, int level, uint32_t *memory)
 	};
 	halve_range(&patch->needed.x0, &patch->needed.x1, patch->columns);
 	halve_range(&patch->needed.y0, &patch->needed.y1, patch->rows);
-	survey(square, level, &patch->needed, patch);
+	survey_blocks(square, level, &patch->needed, patch);
 	patch->all = patch->needed;
 	if (!patch->quincunx)
 		return;
-	widen_range(&patch->all.x0, &patch->all.x1, patch->columns);
-	widen_range(&patch->all.y0, &patch->all.y1, patch->rows);
-	survey(square, level, &patch->all, patch);
+	widen_for_quincunx(&patch->all.x0, &patch->all.x1, patch->columns);
+	widen_for_quincunx(&patch->all.y0, &patch->all.y1, patch->rows);
+	survey_blocks(square, level, &patch->all, patch);
 }
 
 static void lay_out_picture(struct square *square, int column, int row)
@@ -364,20 +365,20 @@ static void lay_out_picture(struct square *square, int column, int row)
 	patch->all = (struct range) {
 		column * SQUARE_WIDTH,
 		row * SQUARE_HEIGHT,
-		least((column + 1) * SQUARE_WIDTH, picture->columns),
-		least((row + 1) * SQUARE_HEIGHT, picture->rows),
+		gz_least((column + 1) * SQUARE_WIDTH, picture->columns),
+		gz_least((row + 1) * SQUARE_HEIGHT, picture->rows),
 	};
 	patch->needed = patch->all;
 	patch->columns = picture->columns;
 	patch->rows = picture->rows;
 	patch->stride = (ptrdiff_t)picture->stride;
 	patch->first = picture->points + patch->all.y0 * patch->stride + patch->all.x0;
-	survey(square, 0, &patch->all, patch);
+	survey_blocks(square, 0, &patch->all, patch);
 }
 
-/* The coarsest lattice on which all that the square needs was cast, or the coarsest of all. */
-static int lay_out(struct square *square, int column, int row,
-		   uint32_t memory[][PATCH_ROWS * PATCH_STRIDE])
+/* Lay out the square's patches. Returns the coarsest lattice that it needs. */
+static int lay_out_square(struct square *square, int column, int row,
+			  uint32_t memory[][PATCH_ROWS * PATCH_STRIDE])
 {
 	lay_out_picture(square, column, row);
 	int level = 0;
@@ -398,12 +399,12 @@ void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices 
 		.filters = filters,
 		.stream = gz_reconstruct_streams(plan),
 	};
-	const int coarsest = lay_out(&square, column, row, memory);
+	const int coarsest = lay_out_square(&square, column, row, memory);
 	if (coarsest == 0)
 		return;
 	const int finest = finest_cast(&square);
 	for (int level = coarsest; level >= 0; level--) {
-		fill_level(&square, level);
+		fill_square_level(&square, level);
 		if (level > 0 && level == finest && fill_flat_square(&square, level))
 			return;
 	}

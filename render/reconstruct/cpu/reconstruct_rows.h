@@ -1,13 +1,18 @@
 /*
- * The row filters of the pyramid (docs/foveation.md gives their formulas). Included by one file an
- * instruction set, behind that set's vocabulary (points_*.h): whole numbers, which give the same
- * bits everywhere.
+ * The row filters of the pyramid. docs/foveation.md gives their formulas; they use whole numbers,
+ * which give the same bits on every processor.
+ *
+ * The filters are written once and compiled once for each instruction set. The file of a set
+ * (reconstruct_avx2.c, ...) defines the vocabulary, which is a vector type `vp` of POINTS points
+ * and its operations, then includes this file and reconstruct_spans.h, and is compiled with the
+ * set's flags. gz_row_filters_find() chooses at run time. reconstruct_avx512.c comments the
+ * vocabulary.
  */
 #include "render/reconstruct/cpu/reconstruct.h"
 
 #include <string.h>
 
-_Static_assert(POINTS <= GZ_ROW_POINTS, "reads go no farther than callers are told");
+_Static_assert(POINTS <= GZ_ROW_POINTS, "reads stay within what callers are told");
 
 /* (a + b) / 2 */
 SIMD vp mean_down(vp a, vp b)
@@ -15,7 +20,7 @@ SIMD vp mean_down(vp a, vp b)
 	return vp_not(vp_mean(vp_not(a), vp_not(b)));
 }
 
-/* (a + b + c + d + 2) / 4: the mean of two means, less what both have rounded up too often. */
+/* (a + b + c + d + 2) / 4: the mean of two means, less 1 where rounding was up once too often. */
 SIMD vp mean_of_4(vp a, vp b, vp c, vp d)
 {
 	const vp first = vp_mean(a, b), second = vp_mean(c, d);
@@ -24,10 +29,12 @@ SIMD vp mean_of_4(vp a, vp b, vp c, vp d)
 	return vp_but(vp_mean(first, second), odd);
 }
 
-/* Catmull-Rom at 1/2 between b and c, with a before and d behind; never outside of [b, c]. With m
- * and n the means of b, c and of a, d it is m and an eighth of m - n, which takes 9 bits: half of
- * it above -256 takes 8. Where b + c is even that half is raised by 2, so that its quarter rounds;
- * what it loses at 255 lies outside of [b, c]. */
+/* Catmull-Rom halfway between b and c, with a before b and d after c, clamped to [b, c].
+ *
+ * With m the mean of b and c and n the mean of a and d, the value is m + (m - n) / 8. The
+ * difference takes 9 bits, so half of it plus 128 is used, which takes 8. Where b + c is even, that
+ * half is raised by 2 so that its quarter rounds; what saturates at 255 lies outside of [b, c]
+ * anyway. */
 SIMD vp cubic(vp a, vp b, vp c, vp d)
 {
 	const vp m = vp_mean(b, c), n = vp_mean(a, d);
@@ -38,7 +45,7 @@ SIMD vp cubic(vp a, vp b, vp c, vp d)
 	return vp_least(vp_greatest(value, vp_least(b, c)), vp_greatest(b, c));
 }
 
-/* Where a filled row goes. */
+/* How a filled row is written. */
 enum store { STORE_CACHED, STORE_STREAMED };
 
 SIMD void store_pair(uint32_t *out, vp even, vp odd, enum store store)
@@ -54,7 +61,7 @@ SIMD void store_pair(uint32_t *out, vp even, vp odd, enum store store)
 	}
 }
 
-/* The same for the last points of a row, less than 2 * POINTS. */
+/* Store the last points of a row, less than 2 * POINTS. */
 SIMD void store_rest(uint32_t *out, vp even, vp odd, int count)
 {
 	uint32_t points[2 * POINTS];
@@ -62,13 +69,13 @@ SIMD void store_rest(uint32_t *out, vp even, vp odd, int count)
 	memcpy(out, points, (size_t)count * sizeof *out);
 }
 
-/* The points that columns of the coarser lattice leave to two rows of the finer one: POINTS of the
- * lattice's own, and those behind each. */
+/* Points of two rows of the finer lattice: those above POINTS points of the coarser lattice, and
+ * the one to the right of each. */
 struct two_rows {
 	vp even, even_next, odd, odd_next;
 };
 
-/* Points of one row of the coarser lattice and the one halfway to the next. */
+/* Points of one row of the coarser lattice, and of the row halfway to the next. */
 struct source {
 	vp row, between;
 };
@@ -83,7 +90,7 @@ SIMD struct source cubic_source(const uint32_t *row, ptrdiff_t stride)
 	};
 }
 
-/* Of points from one before on. */
+/* The points halfway to the right of `points`, which begin one point earlier. */
 SIMD vp cubic_behind(vp points, vp next)
 {
 	return cubic(points, vp_from(1, points, next), vp_from(2, points, next),
@@ -100,12 +107,22 @@ SIMD struct two_rows cubic_rows(const struct source *here, const struct source *
 	};
 }
 
-SIMD void double_cubic_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
-			  int count, enum store store)
+/* Two rows to fill from a row of the coarser lattice: see double_cubic of struct gz_row_filters. */
+struct doubling {
+	const uint32_t *row;
+	ptrdiff_t stride;
+	uint32_t *even, *odd;
+	int count;
+};
+
+SIMD void double_cubic_to(const struct doubling *job, enum store store)
 {
-	row--;
+	const uint32_t *row = job->row - 1;
+	const ptrdiff_t stride = job->stride;
+	uint32_t *even = job->even, *odd = job->odd;
 	struct source here = cubic_source(row, stride);
-	for (; count > 0; count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
+	for (int count = job->count; count > 0;
+	     count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
 		row += POINTS;
 		const struct source next = cubic_source(row, stride);
 		const struct two_rows made = cubic_rows(&here, &next);
@@ -120,10 +137,13 @@ SIMD void double_cubic_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even,
 	}
 }
 
-SIMD void double_mean_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
-			 int count, enum store store)
+SIMD void double_mean_to(const struct doubling *job, enum store store)
 {
-	for (; count > 0; count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
+	const uint32_t *row = job->row;
+	const ptrdiff_t stride = job->stride;
+	uint32_t *even = job->even, *odd = job->odd;
+	for (int count = job->count; count > 0;
+	     count -= 2 * POINTS, even += 2 * POINTS, odd += 2 * POINTS) {
 		const vp a = vp_load(row), b = vp_load(row + 1);
 		const vp c = vp_load(row + stride), d = vp_load(row + stride + 1);
 		const vp across = mean_down(a, b), down = vp_mean(a, c);
@@ -139,8 +159,8 @@ SIMD void double_mean_to(const uint32_t *row, ptrdiff_t stride, uint32_t *even, 
 	}
 }
 
-/* Points before the first that stores past the caches may begin with: whole lines of the caches,
- * which leave at once. */
+/* Points up to the next whole cache line, where stores past the caches may begin: a whole line
+ * leaves the processor at once. */
 enum { LINE = 16 };
 
 SIMD int before_line(const uint32_t *out)
@@ -165,7 +185,7 @@ static void stream_row(const uint32_t *points, uint32_t *out, int count)
 	memcpy(out + x, points + x, (size_t)(count - x) * sizeof *out);
 }
 
-static void copy(const uint32_t *points, uint32_t *out, int count, bool stream)
+static void copy_points(const uint32_t *points, uint32_t *out, int count, bool stream)
 {
 	if (stream)
 		stream_row(points, out, count);
@@ -173,39 +193,42 @@ static void copy(const uint32_t *points, uint32_t *out, int count, bool stream)
 		memcpy(out, points, (size_t)count * sizeof *out);
 }
 
-typedef void row_filter(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
-			int count, enum store store);
+typedef void row_filter(const struct doubling *job, enum store store);
 
-/* Straight to where the rows go, or by way of the first cache where wide stores do not fit. */
-SIMD void double_to(row_filter *filter, const uint32_t *row, ptrdiff_t stride, uint32_t *even,
-		    uint32_t *odd, int count, bool stream)
+/* Write the rows directly, or by way of the first cache if they are not aligned for streaming. */
+SIMD void double_to(row_filter *filter, const struct doubling *job, bool stream)
 {
 	if (!stream) {
-		filter(row, stride, even, odd, count, STORE_CACHED);
-	} else if (before_line(even) == 0 && before_line(odd) == 0) {
-		filter(row, stride, even, odd, count, STORE_STREAMED);
+		filter(job, STORE_CACHED);
+	} else if (before_line(job->even) == 0 && before_line(job->odd) == 0) {
+		filter(job, STORE_STREAMED);
 	} else {
 		uint32_t rows[2][GZ_ROW_STREAMED];
-		filter(row, stride, rows[0], rows[1], count, STORE_CACHED);
-		stream_row(rows[0], even, count);
-		stream_row(rows[1], odd, count);
+		const struct doubling cached = { job->row, job->stride, rows[0], rows[1],
+						 job->count };
+		filter(&cached, STORE_CACHED);
+		stream_row(rows[0], job->even, job->count);
+		stream_row(rows[1], job->odd, job->count);
 	}
 }
 
 static void double_cubic(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
 			 int count, bool stream)
 {
-	double_to(double_cubic_to, row, stride, even, odd, count, stream);
+	const struct doubling job = { row, stride, even, odd, count };
+	double_to(double_cubic_to, &job, stream);
 }
 
 static void double_mean(const uint32_t *row, ptrdiff_t stride, uint32_t *even, uint32_t *odd,
 			int count, bool stream)
 {
-	double_to(double_mean_to, row, stride, even, odd, count, stream);
+	const struct doubling job = { row, stride, even, odd, count };
+	double_to(double_mean_to, &job, stream);
 }
 
-/* Points of two rows in turn: of the first where a quincunx tile's points are missing there, which
- * is number `first`, `first` + 2..., of the second elsewhere, where they are missing in that. */
+/* Alternate points of two rows: the missing ones. A quincunx tile lacks points `first`, `first` +
+ * 2,
+ * ... of the first row and the others of the second. */
 SIMD vp in_turn(vp of_first, vp of_second, int first)
 {
 	return first ? vp_alternate(of_second, of_first) : vp_alternate(of_first, of_second);
@@ -227,7 +250,7 @@ SIMD void store_first(uint32_t *points, vp a, int count)
 	memcpy(points, all, (size_t)count * sizeof *points);
 }
 
-/* What was made goes to its places in both rows, or in the first. */
+/* Put the points made for in_turn() back into both rows, or into the first only. */
 SIMD void put_in_turn(uint32_t *points, ptrdiff_t stride, vp made, int first, int rows, int count)
 {
 	store_first(points, in_turn(made, vp_load(points), first), count);
@@ -280,7 +303,7 @@ static void quincunx_mean(uint32_t *row, ptrdiff_t stride, int first, int rows, 
 		quincunx_mean_at(row, stride, 0, rows, count);
 }
 
-/* Wide loads overlap at the end of a row. */
+/* Whether a row has one colour. The last wide load overlaps the one before. */
 SIMD bool row_is(const uint32_t *points, int columns, uint32_t colour)
 {
 	int x = 0;
@@ -305,7 +328,7 @@ static bool all_are(const uint32_t *points, ptrdiff_t stride, int columns, int r
 	return true;
 }
 
-static void fill(uint32_t colour, uint32_t *out, int count, bool stream)
+static void fill_points(uint32_t colour, uint32_t *out, int count, bool stream)
 {
 	const vp all = vp_set(colour);
 	int x = 0;
@@ -322,15 +345,15 @@ static void fill(uint32_t colour, uint32_t *out, int count, bool stream)
 		out[x] = colour;
 }
 
-static void settle(void)
+static void settle_stores(void)
 {
 	vp_settle();
 }
 
-#define GZ_ROW_FILTERS(set)                                                                       \
-	{                                                                                         \
-		.name = set, .double_cubic = double_cubic, .double_mean = double_mean,            \
-		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,                 \
-		.all_are = all_are, .fill = fill, .copy = copy, .span = span, .weights = weights, \
-		.blend = blend, .settle = settle,                                                 \
+#define GZ_ROW_FILTERS(set)                                                                      \
+	{                                                                                        \
+		.name = set, .double_cubic = double_cubic, .double_mean = double_mean,           \
+		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,                \
+		.all_are = all_are, .fill = fill_points, .copy = copy_points, .span = fill_span, \
+		.weights = find_weights, .blend = blend_points, .settle = settle_stores,         \
 	}

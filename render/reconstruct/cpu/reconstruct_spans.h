@@ -1,11 +1,11 @@
 /*
- * Pixels of regions: bilinear interpolation of one lattice, and mixing where regions fade. Included
- * by one file an instruction set, behind that set's vocabulary (points_*.h).
+ * The row filters of regions: bilinear interpolation of one lattice, and mixing where regions fade.
+ * Included after reconstruct_rows.h, which explains the scheme.
  *
- * Between points it is whole numbers of 1/128 of a grey level: a row between two lattice rows
- * first, then from cell to cell by multiples of the slope. Rounding leaves at most (1 + spacing) /
- * 256 of a level beyond the last half; nothing where the spacing is a power of two up to 8. Where
- * it is 2 the means of two and four bytes are the same.
+ * Interpolation uses whole numbers of 1/128 grey level: first a row between two lattice rows, then
+ * multiples of the slope within each cell. Rounding errs by at most (1 + spacing) / 256 of a level
+ * beyond the last half, and not at all for spacings 2, 4 and 8. For spacing 2 the means of two and
+ * of four bytes give the same values.
  */
 #include "render/reconstruct/cpu/reconstruct.h"
 
@@ -25,16 +25,16 @@ typedef uint16_t strip_u16 __attribute__((vector_size(2 * CHANNELS * STRIP)));
 typedef uint64_t strip_u64 __attribute__((vector_size(2 * CHANNELS * STRIP)));
 typedef uint8_t strip_u8 __attribute__((vector_size(CHANNELS * STRIP)));
 
-/* What all cells of a span have in common. */
-struct span {
+/* A lattice spacing, and how to divide by it. */
+struct cell_spacing {
 	int spacing;
-	int shift; /* of the spacing, a power of two; else -1 */
+	int shift; /* log2 of a spacing that is a power of two; else -1 */
 };
 
-/* Points between two lattice rows, `down` below the upper, with half a level for the rounding to
- * come. Loops without a branch: compilers make vectors of them. */
-static void between_rows(const struct span *span, const uint8_t *above, const uint8_t *below,
-			 int down, int count, uint16_t *restrict out)
+/* Points between two lattice rows, `down` pixels below the upper, plus half a level for later
+ * rounding. Loops have no branch, so that compilers vectorise them. */
+static void between_rows(const struct cell_spacing *span, const uint8_t *above,
+			 const uint8_t *below, int down, int count, uint16_t *restrict out)
 {
 	const uint16_t below_weight = (uint16_t)down;
 	const uint16_t above_weight = (uint16_t)(span->spacing - down);
@@ -57,9 +57,8 @@ static void between_rows(const struct span *span, const uint8_t *above, const ui
 	}
 }
 
-/* Slopes from pixel to pixel within each cell. A slope that is no whole number is rounded to the
- * nearest. */
-static void find_slopes(const struct span *span, const uint16_t *points, int count,
+/* Slopes from pixel to pixel within each cell, rounded to the nearest whole number. */
+static void find_slopes(const struct cell_spacing *span, const uint16_t *points, int count,
 			int16_t *restrict out)
 {
 	if (span->shift >= 0) {
@@ -75,7 +74,7 @@ static void find_slopes(const struct span *span, const uint16_t *points, int cou
 				   16);
 }
 
-/* A point in all pixels of a strip. */
+/* One point in every pixel of a strip. */
 SIMD strip_u16 load_point(const void *point)
 {
 	uint64_t bits;
@@ -83,7 +82,7 @@ SIMD strip_u16 load_point(const void *point)
 	return (strip_u16)(bits - (strip_u64) { 0 });
 }
 
-/* 0 in the first pixel, 1 in the second... */
+/* 0 in the first pixel, 1 in the second, ... */
 SIMD strip_u16 count_pixels(void)
 {
 	strip_u16 numbers = { 0 };
@@ -92,8 +91,8 @@ SIMD strip_u16 count_pixels(void)
 	return numbers;
 }
 
-/* Pixels of cells in a row, a strip at a time: what is written too much, less than a strip, the
- * next cell puts right. Inlined, so that a spacing known to the compiler costs no loop. */
+/* Pixels of neighbouring cells, a strip at a time. A cell may write up to a strip too much, which
+ * the next cell overwrites. Inlined, so that a spacing known to the compiler costs no loop. */
 SIMD void fill_cells(int spacing, const uint16_t *points, const int16_t *slopes, int cells,
 		     uint32_t *out)
 {
@@ -110,8 +109,8 @@ SIMD void fill_cells(int spacing, const uint16_t *points, const int16_t *slopes,
 	}
 }
 
-static void fill_run(int spacing, const uint16_t *points, const int16_t *slopes, int cells,
-		     uint32_t *out)
+static void fill_cell_run(int spacing, const uint16_t *points, const int16_t *slopes, int cells,
+			  uint32_t *out)
 {
 	switch (spacing) {
 	case 4:
@@ -126,13 +125,13 @@ static void fill_run(int spacing, const uint16_t *points, const int16_t *slopes,
 	}
 }
 
-/* The cells' points and those behind the last. Beyond a lattice's last column its own points stand
- * in, without weight, and on a lattice row the row below, which may not exist, has none. */
+/* Fill cells wider than two pixels. Beyond a lattice's last column its last points stand in, with
+ * weight 0; on a lattice row the row below, which may not exist, has weight 0 too. */
 static void fill_by_slopes(const struct gz_lattice *lattice, int y, int column, int cells,
 			   uint32_t *out)
 {
 	const int spacing = lattice->spacing;
-	const struct span span = {
+	const struct cell_spacing span = {
 		spacing,
 		(spacing & (spacing - 1)) == 0 ? __builtin_ctz((unsigned)spacing) : -1,
 	};
@@ -149,10 +148,11 @@ static void fill_by_slopes(const struct gz_lattice *lattice, int y, int column, 
 		memcpy(points + CHANNELS * count, points + CHANNELS * (count - 1),
 		       CHANNELS * sizeof *points);
 	find_slopes(&span, points, CHANNELS * cells, slopes);
-	fill_run(spacing, points, slopes, cells, out);
+	fill_cell_run(spacing, points, slopes, cells, out);
 }
 
-/* Cells of two pixels. Reads stay in the lattice's row and what lies behind it (lattice.h). */
+/* Fill cells of two pixels. Reads stay in the lattice's row and the padding behind it (lattice.h).
+ */
 static void fill_by_means(const struct gz_lattice *lattice, int y, int column, int cells,
 			  uint32_t *out)
 {
@@ -165,8 +165,9 @@ static void fill_by_means(const struct gz_lattice *lattice, int y, int column, i
 	}
 }
 
-/* Whether all points of cells of more than two pixels are of one colour, and so the pixels. */
-static bool is_flat(const struct gz_lattice *lattice, int y, int column, int cells, uint32_t colour)
+/* Whether all points of cells, and so all their pixels, have one colour. */
+static bool cells_are_flat(const struct gz_lattice *lattice, int y, int column, int cells,
+			   uint32_t colour)
 {
 	const uint32_t *above =
 		lattice->points + (size_t)(y / lattice->spacing) * lattice->stride + column;
@@ -175,29 +176,36 @@ static bool is_flat(const struct gz_lattice *lattice, int y, int column, int cel
 		       y % lattice->spacing ? 2 : 1, colour);
 }
 
-/* The end of the cells from `column` on that are flat in the same colour, or of those that are not,
- * by groups as wide as a register. */
+/* The end of the run of cells from `column` on that have one colour, or of those that do not,
+ * in groups as wide as a register. */
 static int run_of_cells(const struct gz_lattice *lattice, int y, int column, int end,
 			bool *out_flat)
 {
 	const uint32_t colour =
 		lattice->points[(size_t)(y / lattice->spacing) * lattice->stride + column];
 	int to = column + POINTS < end ? column + POINTS : end;
-	*out_flat = is_flat(lattice, y, column, to - column, colour);
+	*out_flat = cells_are_flat(lattice, y, column, to - column, colour);
 	while (to < end) {
 		const int next = to + POINTS < end ? to + POINTS : end;
 		const uint32_t own =
 			lattice->points[(size_t)(y / lattice->spacing) * lattice->stride + to];
-		if (is_flat(lattice, y, to, next - to, *out_flat ? colour : own) != *out_flat)
+		if (cells_are_flat(lattice, y, to, next - to, *out_flat ? colour : own) !=
+		    *out_flat)
 			break;
 		to = next;
 	}
 	return to;
 }
 
-/* Pixels of cells [column, end), less those before x0 and from x1 on. */
-static void fill_cells_of_row(const struct gz_lattice *lattice, int y, int column, int end, int x0,
-			      int x1, uint32_t *out)
+/* Pixels [x0, x1) of a row; `out` is the place of pixel x0. */
+struct pixel_run {
+	int x0, x1;
+	uint32_t *out;
+};
+
+/* Those pixels of a run that lie in cells [column, end). */
+static void fill_cells_of_row(const struct gz_lattice *lattice, int y, int column, int end,
+			      const struct pixel_run *run)
 {
 	const int spacing = lattice->spacing, cells_a_chunk = PIXELS_A_CHUNK / spacing;
 	uint32_t pixels[PIXELS_A_CHUNK + 2 * POINTS];
@@ -207,22 +215,23 @@ static void fill_cells_of_row(const struct gz_lattice *lattice, int y, int colum
 			fill_by_means(lattice, y, column, to - column, pixels);
 		else
 			fill_by_slopes(lattice, y, column, to - column, pixels);
-		const int first = column * spacing > x0 ? column * spacing : x0;
-		const int last = to * spacing < x1 ? to * spacing : x1;
-		copy(pixels + (first - column * spacing), out + (first - x0), last - first, false);
+		const int first = column * spacing > run->x0 ? column * spacing : run->x0;
+		const int last = to * spacing < run->x1 ? to * spacing : run->x1;
+		copy_points(pixels + (first - column * spacing), run->out + (first - run->x0),
+			    last - first, false);
 	}
 }
 
-static void span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *out)
+static void fill_span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32_t *out)
 {
 	const int spacing = lattice->spacing, end = (x1 - 1) / spacing + 1;
 	const uint32_t *row = lattice->points + (size_t)(y / spacing) * lattice->stride;
 	if (spacing == 1) {
-		copy(row + x0, out, x1 - x0, false);
+		copy_points(row + x0, out, x1 - x0, false);
 		return;
 	}
-	if (spacing == 2) { /* two means are done as soon as looked at */
-		fill_cells_of_row(lattice, y, x0 / 2, end, x0, x1, out);
+	if (spacing == 2) { /* two means cost no more than the search for flat cells */
+		fill_cells_of_row(lattice, y, x0 / 2, end, &(struct pixel_run) { x0, x1, out });
 		return;
 	}
 	bool flat;
@@ -230,46 +239,49 @@ static void span(const struct gz_lattice *lattice, int y, int x0, int x1, uint32
 		to = run_of_cells(lattice, y, column, end, &flat);
 		const int first = column * spacing > x0 ? column * spacing : x0;
 		const int last = to * spacing < x1 ? to * spacing : x1;
+		const struct pixel_run run = { first, last, out + (first - x0) };
 		if (flat)
-			fill(row[column], out + (first - x0), last - first, false);
+			fill_points(row[column], run.out, last - first, false);
 		else
-			fill_cells_of_row(lattice, y, column, to, first, last, out + (first - x0));
+			fill_cells_of_row(lattice, y, column, to, &run);
 	}
 }
 
-static double lesser(double a, double b)
+static double least_of(double a, double b)
 {
 	return a < b ? a : b;
 }
 
-static double larger(double a, double b)
+static double greatest_of(double a, double b)
 {
 	return a > b ? a : b;
 }
 
-/* gz_region_weight() without its divisions: what that changes is far below the 1/512 that lies
- * between a full share and the least that is rounded to it. */
-static void weights(const struct gz_region *region, int y, int x0, int count, uint32_t *out)
+/* gz_region_weight() without its divisions. The difference is far below 1/512, the distance between
+ * a full share and the least that is rounded to it. */
+static void find_weights(const struct gz_region *region, int y, int x0, int count, uint32_t *out)
 {
 	const double centre = region->centre_px[0], per_px = 1 / region->half_px[0];
 	const double v = (y - region->centre_px[1]) / region->half_px[1];
-	const double bands = lesser(region->half_px[0], region->half_px[1]) / region->blend_px;
+	const double bands = least_of(region->half_px[0], region->half_px[1]) / region->blend_px;
 	if (region->shape == GZ_REGION_ELLIPSE)
 		for (int i = 0; i < count; i++) {
 			const double u = (x0 + i - centre) * per_px;
 			const double share = (1 - sqrt(u * u + v * v)) * bands;
-			out[i] = (uint32_t)(int32_t)(lesser(larger(share, 0), 1) * 256 + 0.5);
+			out[i] =
+				(uint32_t)(int32_t)(least_of(greatest_of(share, 0), 1) * 256 + 0.5);
 		}
 	else
 		for (int i = 0; i < count; i++) {
 			const double u = (x0 + i - centre) * per_px;
-			const double share = (1 - larger(fabs(u), fabs(v))) * bands;
-			out[i] = (uint32_t)(int32_t)(lesser(larger(share, 0), 1) * 256 + 0.5);
+			const double share = (1 - greatest_of(fabs(u), fabs(v))) * bands;
+			out[i] =
+				(uint32_t)(int32_t)(least_of(greatest_of(share, 0), 1) * 256 + 0.5);
 		}
 }
 
-static void blend(const uint32_t *behind, const uint32_t *shares, uint32_t *restrict points,
-		  int count)
+static void blend_points(const uint32_t *behind, const uint32_t *shares, uint32_t *restrict points,
+			 int count)
 {
 	const uint32_t channels = 0x00FF00FFU, half = 0x00800080U;
 	for (int i = 0; i < count; i++) {

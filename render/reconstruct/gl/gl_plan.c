@@ -13,8 +13,9 @@ _Static_assert(GZ_PLAN_LAYERS_MAX <= 8 && GZ_TILE_PATTERN_COUNT <= 4 &&
 		       GZ_GL_TILE_LEVELS_MAX <= 8 && GZ_PLAN_STEPS_MAX <= 256,
 	       "a tile's numbers fit the bits they are packed into");
 
-/* The first layer of spacing 1 is the picture itself. A second one, by odd parameters, has room of
- * its own, so that no two rays write one pixel. */
+/* Place the lattices one after the other. The first layer of spacing 1 is the picture itself.
+ * Unusual parameters give a second one, which has room of its own so that no two rays write one
+ * pixel. */
 static size_t lay_out_lattices(const struct gz_plan *plan, struct gz_gl_plan_block *block)
 {
 	size_t next = (size_t)plan->width * (size_t)plan->height;
@@ -61,9 +62,9 @@ static void fill_plan_block(const struct gz_plan *plan, struct gz_gl_plan_block 
 	}
 }
 
-/* Counting sort by layer and pattern keeps the plan's order within each: neighbours stay together,
- * and a pass over one kind takes one range. */
-static void sort_ranges(struct gz_gl_plan *gl_plan, const struct gz_plan *plan)
+/* Find the ranges of a counting sort by layer and pattern. It keeps the plan's order within each,
+ * so neighbours stay together, and a pass over one kind takes one range. */
+static void find_tile_ranges(struct gz_gl_plan *gl_plan, const struct gz_plan *plan)
 {
 	memset(gl_plan->ranges, 0, sizeof gl_plan->ranges);
 	for (size_t i = 0; i < plan->tile_count; i++)
@@ -76,8 +77,8 @@ static void sort_ranges(struct gz_gl_plan *gl_plan, const struct gz_plan *plan)
 		}
 }
 
-/* Make a range hold an item. */
-static void widen_range(struct gz_gl_tile_range *range, size_t item)
+/* Extend a range to hold an item. */
+static void extend_tile_range(struct gz_gl_tile_range *range, size_t item)
 {
 	const size_t end = range->first + range->count;
 	const size_t first = range->count == 0 || item < range->first ? item : range->first;
@@ -85,7 +86,7 @@ static void widen_range(struct gz_gl_tile_range *range, size_t item)
 	range->first = first;
 }
 
-/* Tiles into their ranges, each with the level of detail that it takes. */
+/* Pack tiles into their ranges, each with its level of detail. */
 static void pack_tiles(struct gz_gl_plan *gl_plan, const struct gz_plan *plan,
 		       const struct gz_gl_tile_levels *levels, uint32_t (*out_words)[2])
 {
@@ -102,7 +103,7 @@ static void pack_tiles(struct gz_gl_plan *gl_plan, const struct gz_plan *plan,
 		words[0] = (uint32_t)tile->x | (uint32_t)tile->y << 16;
 		words[1] = (uint32_t)tile->layer | (uint32_t)tile->pattern << 3 | level << 5 |
 			   (uint32_t)tile->step << 8 | gz_plan_tile_active(plan, tile) << 16;
-		widen_range(&gl_plan->level_ranges[level], place);
+		extend_tile_range(&gl_plan->level_ranges[level], place);
 	}
 }
 
@@ -113,19 +114,19 @@ static enum gz_result refuse_plan(const struct gz_plan *plan, const struct gz_lo
 	return GZ_ERR_NO_MEM;
 }
 
-static bool has_tiles(const struct gz_gl_plan *gl_plan, const struct gz_plan *plan,
-		      const struct gz_gl_tile_levels *levels)
+static bool device_has_tiles(const struct gz_gl_plan *gl_plan, const struct gz_plan *plan,
+			     const struct gz_gl_tile_levels *levels)
 {
 	return gl_plan->packed.valid && gz_plan_same(&gl_plan->packed.plan, plan) &&
 	       memcmp(&gl_plan->packed.levels, levels, sizeof *levels) == 0;
 }
 
-/* Give the device the tiles of a plan, unless it has them. */
-static enum gz_result give_tiles(struct gz_gl_plan *gl_plan, const struct gz_gl_device *device,
-				 const struct gz_plan *plan, const struct gz_gl_tile_levels *levels,
-				 const struct gz_log *log)
+/* Upload the tiles of a plan, unless the device has them. */
+static enum gz_result upload_tiles(struct gz_gl_plan *gl_plan, const struct gz_gl_device *device,
+				   const struct gz_plan *plan,
+				   const struct gz_gl_tile_levels *levels, const struct gz_log *log)
 {
-	if (plan->tile_count == 0 || has_tiles(gl_plan, plan, levels))
+	if (plan->tile_count == 0 || device_has_tiles(gl_plan, plan, levels))
 		return GZ_OK;
 	gl_plan->packed.valid = false;
 	gl_plan->packed.spans_valid = false;
@@ -134,7 +135,7 @@ static enum gz_result give_tiles(struct gz_gl_plan *gl_plan, const struct gz_gl_
 		gz_gl_device_errors(device);
 		return refuse_plan(plan, log);
 	}
-	sort_ranges(gl_plan, plan);
+	find_tile_ranges(gl_plan, plan);
 	pack_tiles(gl_plan, plan, levels, words);
 	glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
 	gl_plan->packed.plan = *plan;
@@ -143,7 +144,7 @@ static enum gz_result give_tiles(struct gz_gl_plan *gl_plan, const struct gz_gl_
 	return GZ_OK;
 }
 
-static void give_block(struct gz_gl_plan *gl_plan, const struct gz_gl_plan_block *block)
+static void upload_plan_block(struct gz_gl_plan *gl_plan, const struct gz_gl_plan_block *block)
 {
 	gz_gl_buffer_reserve(&gl_plan->block, sizeof *block, GL_STREAM_DRAW);
 	glBindBuffer(GL_UNIFORM_BUFFER, gl_plan->block.name);
@@ -165,8 +166,8 @@ enum gz_result gz_gl_plan_prepare(struct gz_gl_plan *gl_plan, const struct gz_gl
 		return GZ_ERR_UNSUPPORTED;
 	}
 	fill_plan_block(plan, &block);
-	give_block(gl_plan, &block);
-	return give_tiles(gl_plan, device, plan, levels, log);
+	upload_plan_block(gl_plan, &block);
+	return upload_tiles(gl_plan, device, plan, levels, log);
 }
 
 void gz_gl_plan_bind(const struct gz_gl_plan *gl_plan)

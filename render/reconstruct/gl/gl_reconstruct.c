@@ -7,7 +7,7 @@
 
 #define GZ_LOG_MODULE "gl"
 
-/* Made from files when the program is built. */
+/* Shader texts, embedded when the program is built. */
 extern const char gz_glsl_plan_constants_h[];
 extern const char gz_glsl_plan_glsl[];
 extern const char gz_glsl_pyramid_glsl[];
@@ -24,7 +24,7 @@ static const char plan_sizes[] = DEFINE("GROUP_SIZE", GZ_GL_GROUP_SIZE)
 const char *const gz_gl_plan_parts[GZ_GL_PLAN_PARTS] = { gz_glsl_plan_constants_h, plan_sizes,
 							 gz_glsl_plan_glsl };
 
-/* Locations and sizes of the shaders. */
+/* Uniform locations and the work-group edge of the shaders. */
 enum { FIRST_ITEM = 0, ITEM_END = 1, LEVEL = 2, BLOCK_EDGE = 8 };
 enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
 
@@ -33,6 +33,82 @@ static const char *const plane_defines[GZ_PLANE_KIND_COUNT] = {
 	[GZ_PLANE_VALUE] = "#define PLANE_VALUE\n",
 	[GZ_PLANE_ID] = "#define PLANE_ID\n",
 };
+
+/* Mesa's software renderer reads a storage buffer lane by lane, so shaders read texels there. */
+static void make_point_texels(struct gz_gl_points *points)
+{
+	if (!points->texels)
+		glGenTextures(1, &points->texels);
+	glBindTexture(GL_TEXTURE_BUFFER, points->texels);
+	glTexBuffer(GL_TEXTURE_BUFFER, GL_R32UI, points->points.name);
+	glBindTexture(GL_TEXTURE_BUFFER, 0);
+}
+
+enum gz_result gz_gl_points_prepare(struct gz_gl_points *points, const struct gz_gl_device *device,
+				    size_t count)
+{
+	const size_t size = count * sizeof(uint32_t);
+	const bool grows = size > points->points.size;
+	gz_gl_buffer_reserve(&points->points, size, GL_DYNAMIC_COPY);
+	if (device->software && grows)
+		make_point_texels(points);
+	const enum gz_result result = gz_gl_device_errors(device);
+	if (result != GZ_OK)
+		points->points.size = 0;
+	return result;
+}
+
+void gz_gl_points_bind(const struct gz_gl_points *points)
+{
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_POINTS, points->points.name);
+	if (points->texels)
+		glBindImageTexture(GZ_GL_IMAGE_POINTS, points->texels, 0, GL_FALSE, 0, GL_READ_ONLY,
+				   GL_R32UI);
+}
+
+enum gz_result gz_gl_points_read(struct gz_gl_points *points, const struct gz_gl_device *device,
+				 size_t count, uint32_t *out_words)
+{
+	const size_t bytes = count * sizeof *out_words;
+	gz_gl_buffer_bring(device, &points->points, bytes, &points->staging);
+	const void *words =
+		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+	if (!words) {
+		const enum gz_result result = gz_gl_device_errors(device);
+		return result == GZ_OK ? GZ_ERR_NO_MEM : result;
+	}
+	memcpy(out_words, words, bytes);
+	glUnmapBuffer(GL_COPY_READ_BUFFER);
+	return GZ_OK;
+}
+
+void gz_gl_points_to_texture(struct gz_gl_points *points, int width, int height)
+{
+	if (points->picture_width != width || points->picture_height != height) {
+		if (points->picture)
+			glDeleteTextures(1, &points->picture);
+		points->picture = gz_gl_texture(GL_TEXTURE_2D);
+		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
+		points->picture_width = width;
+		points->picture_height = height;
+	}
+	glBindBuffer(GL_PIXEL_UNPACK_BUFFER, points->points.name);
+	glBindTexture(GL_TEXTURE_2D, points->picture);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, NULL);
+	glBindTexture(GL_TEXTURE_2D, 0);
+	glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+void gz_gl_points_free(struct gz_gl_points *points)
+{
+	gz_gl_buffer_free(&points->points);
+	gz_gl_buffer_free(&points->staging);
+	if (points->picture)
+		glDeleteTextures(1, &points->picture);
+	if (points->texels)
+		glDeleteTextures(1, &points->texels);
+	*points = (struct gz_gl_points) { 0 };
+}
 
 const char *gz_gl_device_defines(const struct gz_gl_device *device)
 {
@@ -52,18 +128,19 @@ void gz_gl_dispatch(const struct gz_gl_device *device, struct gz_gl_items items)
 	}
 }
 
+/* Later passes see what earlier ones have written. */
 static void await_points(void)
 {
 	glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-/* One pass: its file, and one before it or NULL. */
+/* A pass: its file, and a file before it or NULL. */
 struct plane_pass {
 	const char *name, *before, *file;
 	bool bilinear;
 };
 
-/* Use the program of a pass, made if there is none yet. */
+/* Use the program of a pass; compile it the first time. */
 static enum gz_result use_pass(unsigned *program, const struct plane_pass *pass,
 			       const struct gz_gl_reconstruct_job *job)
 {
@@ -88,13 +165,13 @@ static enum gz_result use_pass(unsigned *program, const struct plane_pass *pass,
 	return GZ_OK;
 }
 
-/* Numbers of objects are not filtered: the shaders' shorter path does. */
+/* Object ids are not filtered, so they take the shaders' shorter path. */
 static bool is_bilinear(const struct gz_gl_reconstruct_job *job)
 {
 	return job->plan->filter == GZ_FILTER_BILINEAR || job->kind == GZ_PLANE_ID;
 }
 
-/* A pass of the pyramid over lattice @p level, ready to be dispatched. */
+/* Use a pass of the pyramid over one lattice, ready for dispatch. */
 static enum gz_result use_pyramid_pass(unsigned programs[2], struct plane_pass pass, int level,
 				       const struct gz_gl_reconstruct_job *job)
 {
@@ -108,9 +185,9 @@ static enum gz_result use_pyramid_pass(unsigned programs[2], struct plane_pass p
 	return GZ_OK;
 }
 
-/* Points of lattice @p level that lie in coarser tiles. */
-static enum gz_result fill_level(struct gz_gl_reconstruct *programs,
-				 const struct gz_gl_reconstruct_job *job, int level)
+/* Fill the points of a lattice that lie in coarser tiles. */
+static enum gz_result fill_pyramid_level(struct gz_gl_reconstruct *programs,
+					 const struct gz_gl_reconstruct_job *job, int level)
 {
 	const size_t tiles = job->plan->tile_count;
 	const size_t first = level + 1 < job->plan->layer_count
@@ -125,9 +202,9 @@ static enum gz_result fill_level(struct gz_gl_reconstruct *programs,
 	return result;
 }
 
-/* Points of lattice @p level between those of quincunx tiles. */
-static enum gz_result fill_quincunx(struct gz_gl_reconstruct *programs,
-				    const struct gz_gl_reconstruct_job *job, int level)
+/* Fill the points of a lattice that quincunx tiles lack. */
+static enum gz_result fill_pyramid_quincunx(struct gz_gl_reconstruct *programs,
+					    const struct gz_gl_reconstruct_job *job, int level)
 {
 	const struct gz_gl_tile_range *range = &job->gl_plan->ranges[level][GZ_TILE_QUINCUNX];
 	if (range->count == 0)
@@ -146,9 +223,9 @@ static enum gz_result fill_pyramid(struct gz_gl_reconstruct *programs,
 {
 	enum gz_result result = GZ_OK;
 	for (int level = job->plan->layer_count - 1; level >= 0 && result == GZ_OK; level--) {
-		result = fill_level(programs, job, level);
+		result = fill_pyramid_level(programs, job, level);
 		if (result == GZ_OK)
-			result = fill_quincunx(programs, job, level);
+			result = fill_pyramid_quincunx(programs, job, level);
 	}
 	return result;
 }

@@ -1,8 +1,8 @@
-// The points of one lattice of a pyramid that lie in coarser tiles, from the next coarser lattice: each of its
-// points gives four. A work-group a tile.
+// Fills the points of one lattice of a pyramid that lie in coarser tiles, from the next coarser lattice: each of
+// its points gives four. One work-group for each tile.
 layout(local_size_x = 8, local_size_y = 4) in;
 
-const ivec4 reach = ivec4(-1, 0, 1, 2); // of the filters
+const ivec4 reach = ivec4(-1, 0, 1, 2); // of the filters, points
 
 #ifdef BILINEAR
 void fill(uvec4 fine, uvec4 coarse, ivec2 place)
@@ -20,7 +20,7 @@ void fill(uvec4 fine, uvec4 coarse, ivec2 place)
 void fill(uvec4 fine, uvec4 coarse, ivec2 place)
 {
 	ivec4 columns = mirrored(place.x + reach, int(coarse.y)), rows = mirrored(place.y + reach, int(coarse.z));
-	VALUES here[4], below[4]; // of a row, and halfway to the next
+	VALUES here[4], below[4]; // points of a row, and of the row halfway to the next
 	for (int i = 0; i < 4; i++) {
 		here[i] = point_of(coarse, columns[i], rows[1]);
 		below[i] = cubic(point_of(coarse, columns[i], rows[0]), here[i],

@@ -1,20 +1,21 @@
-// What every shader knows of a plan: struct gz_gl_plan_block of plan_block.h, and the points of all lattices of
-// one plane, one after the other. The plane's picture is the first width * height of them.
+// What every shader knows of a plan: struct gz_gl_plan_block of gl_plan.h, and the points of all lattices of one
+// plane, one after the other. The first width * height points are the plane's picture.
 layout(std140, binding = 0) uniform Plan
 {
 	uvec4 plan;                             // layers, 1 for a pyramid, width, height
 	uvec4 layers[GZ_PLAN_LAYERS_MAX];       // first point, columns, rows, spacing
 	vec4 region_places[GZ_PLAN_LAYERS_MAX]; // centre, half size, px
-	vec4 region_fades[GZ_PLAN_LAYERS_MAX];  // by how much per radius, 0 = not; 1 for an ellipse
+	vec4 region_fades[GZ_PLAN_LAYERS_MAX];  // rise of the share per radius, 0 = no band; 1 for an ellipse
 	uvec4 tile_points[TILE_POINTS];
 };
 
 layout(std430, binding = 1) buffer Points
 {
-	uint points[]; // of a colour: R, G, B, A from the lowest byte
+	uint points[]; // a colour: R, G, B, A from the lowest byte
 };
 
-// The same to read, as texels by FETCH_IMAGES: Mesa's processor reads a storage buffer lane by lane.
+// Reads a point; with FETCH_IMAGES as a texel, since Mesa's software renderer reads a storage buffer lane by
+// lane.
 #ifdef FETCH_IMAGES
 layout(binding = IMAGE_POINTS, r32ui) readonly uniform uimageBuffer point_texels;
 #define POINT(index) imageLoad(point_texels, int(index)).r

@@ -1,9 +1,9 @@
-// The filters of the pyramid, docs/foveation.md. Colours are whole numbers with the cpu backend's bits; they are
-// opaque, so that three channels are all there is to them. Layer k of a pyramid has a spacing of 2^k.
+// The filters of the pyramid (docs/foveation.md). Colours are whole numbers and equal those of the cpu backend bit
+// for bit; they are opaque, so three channels are enough. Layer k of a pyramid has spacing 2^k.
 layout(location = 2) uniform uint level;
 
 #if defined(PLANE_ID)
-// Numbers of objects have no mean: the first of the points, which is the nearer, stands for all.
+// Object ids do not mix: the first point, which is the nearest, stands for all.
 #define VALUES uint
 
 VALUES unpacked_point(uint point)
@@ -31,7 +31,7 @@ VALUES cubic(VALUES a, VALUES b, VALUES c, VALUES d)
 	return b;
 }
 #elif defined(PLANE_VALUE)
-// Where one of the points has nothing there is no mean: the nearer ones count, then the first.
+// If a point has no value, the nearer points count, then the first.
 #define VALUES float
 
 VALUES unpacked_point(uint point)
@@ -90,7 +90,7 @@ VALUES mean_of_4(VALUES a, VALUES b, VALUES c, VALUES d)
 	return (a + b + c + d + 2) >> 2;
 }
 
-// Catmull-Rom halfway between b and c, never outside of them.
+// Catmull-Rom halfway between b and c, clamped to [b, c].
 VALUES cubic(VALUES a, VALUES b, VALUES c, VALUES d)
 {
 	VALUES m = (b + c + 1) >> 1, n = (a + d + 1) >> 1;
@@ -99,7 +99,7 @@ VALUES cubic(VALUES a, VALUES b, VALUES c, VALUES d)
 }
 #endif
 
-// Numbers up to three beyond either end of a count, mirrored about it: as often as a count of two takes.
+// Mirrors indices up to three beyond either end of [0, count), as often as a count of two needs.
 ivec4 mirrored(ivec4 i, int count)
 {
 	int period = 2 * (count - 1);

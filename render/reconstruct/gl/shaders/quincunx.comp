@@ -1,8 +1,7 @@
-// The points between those of quincunx tiles, from points 1 and 3 away along both axes of the same
-// lattice.
+// Fills the points that quincunx tiles lack, from points 1 and 3 away along both axes of the same lattice.
 layout(local_size_x = GROUP_SIZE) in;
 
-const ivec4 reach = ivec4(-3, -1, 1, 3); // of the filters
+const ivec4 reach = ivec4(-3, -1, 1, 3); // of the filters, points
 
 VALUES between(uvec4 layer, ivec2 at)
 {

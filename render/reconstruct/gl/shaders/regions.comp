@@ -1,5 +1,5 @@
-// Pixels of a plan of regions: each from the first layer whose columns hold it, bilinearly, and where that one
-// fades, from those behind it. The processor has found which columns a layer has in a row.
+// Fills the pixels of a plan of regions: each bilinearly from the first layer whose columns hold it, and where that
+// layer fades, also from those behind it. The host has found the columns of each layer in each row.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, binding = 2) readonly buffer Spans
@@ -7,8 +7,8 @@ layout(std430, binding = 2) readonly buffer Spans
 	uvec2 spans[]; // layer after layer, row after row: from, to
 };
 
-// Rounded down: whole numbers up to 2^16 by a spacing, up to 2^17 by its square. A quotient that is no whole
-// number is farther from one than floats err, and processors divide whole numbers one by one.
+// Division rounded down: numbers up to 2^16 by a spacing, up to 2^17 by its square. A quotient that is no whole
+// number is farther from one than floats err. Floats, because software divides whole numbers one by one.
 uvec2 quotient(uvec2 number, uint by)
 {
 	return uvec2((vec2(number) + 0.5) / float(by));
@@ -20,7 +20,7 @@ uvec4 quotient(uvec4 number, uint by)
 }
 
 #if defined(PLANE_VALUE) || defined(PLANE_ID)
-// b with a share in [0, 1], and a. Where either has nothing there is no mean: the nearer counts.
+// Mixes b, with a share in [0, 1], and a. If either has no value, the nearer counts.
 uint mixed(uint a, uint b, float share)
 {
 #ifdef PLANE_VALUE
@@ -49,7 +49,7 @@ uint interpolated(uvec4 layer, uvec2 at)
 {
 	uint spacing = layer.w, area = spacing * spacing;
 	uvec2 place = quotient(at, spacing), along = at - place * spacing;
-	// On the last row or column the next has no weight and may not exist.
+	// Beyond the last row or column the weight is 0 and there may be no point.
 	uvec2 next = min(place + 1U, layer.yz - 1U);
 	uvec2 rows = layer.x + uvec2(place.y, next.y) * layer.y;
 	uvec4 corners = uvec4(POINT(rows.x + place.x), POINT(rows.x + next.x), POINT(rows.y + place.x),
@@ -63,7 +63,7 @@ uint interpolated(uvec4 layer, uvec2 at)
 	return bytes.x | bytes.y | bytes.z | bytes.w;
 }
 
-// Mean of two pixels, the first with `weight` of 256.
+// The mean of two pixels; `weight` of 256 is that of the first.
 uint blend(uint a, uint b, uint weight)
 {
 	const uint channels = 0x00FF00FFU, half_level = 0x00800080U;
@@ -73,7 +73,7 @@ uint blend(uint a, uint b, uint weight)
 }
 #endif
 
-// Share of a layer in a pixel of its columns, of 256: gz_region_weight() of render/plan/plan.h.
+// Share of a layer in a pixel of its columns, 256 = 1: gz_region_weight() of render/plan/plan.h.
 uint weight_of(uint layer, uvec2 at)
 {
 	vec4 place = region_places[layer];
@@ -99,7 +99,7 @@ void main()
 	uvec2 at = gl_GlobalInvocationID.xy;
 	if (at.x >= plan.z || at.y >= plan.w)
 		return;
-	uint last = 0U; // the first that hides all behind it
+	uint last = 0U; // the first layer that hides all behind it
 	while (last + 1U < plan.x && !(is_in(last, at) && weight_of(last, at) == 256U))
 		last++;
 	uint pixel = pixel_of(last, at);
