@@ -15,8 +15,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "render/raycast/shared/ray_params.h"
 #include "render/raycast/shared/raycaster.h"
-#include "render/raycast/shared/voxel_rays.h"
 #include "render/scene/scene.h"
 
 enum { ROUNDS_MAX = 1000 };
@@ -62,7 +62,7 @@ static void fill_cast(struct bench *bench)
 	struct gz_ray_frame world;
 	struct gz_voxel_rays rays;
 	gz_camera_rays(&bench->scene.settings.camera, bench->width, bench->height, &world);
-	gz_voxel_rays_make(volume, &world, &rays);
+	gz_voxel_rays_make(volume, (const int[3]) { 1, 1, 1 }, &world, &rays);
 	double longest = 0;
 	for (int axis = 0; axis < 3; axis++)
 		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);

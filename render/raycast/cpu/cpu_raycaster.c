@@ -14,7 +14,6 @@
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/raycast/shared/preintegration.h"
-#include "render/raycast/shared/voxel_rays.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
 
@@ -258,17 +257,16 @@ static void fill_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *c
 static void fill_rays(const struct cpu_raycaster *cpu, int index, const struct gz_ray_frame *rays,
 		      struct gz_cast *cast)
 {
-	const int *factor = cpu->detail.levels.level[index].factor;
-	struct gz_voxel_rays full;
-	gz_voxel_rays_make(cpu->volume, rays, &full);
-	const struct gz_ray_frame *frame = &full.frame;
+	struct gz_voxel_rays level_rays;
+	gz_voxel_rays_make(cpu->volume, cpu->detail.levels.level[index].factor, rays, &level_rays);
+	const struct gz_ray_frame *frame = &level_rays.frame;
 	for (int axis = 0; axis < 3; axis++) {
-		cast->origin00[axis] = (float)(frame->origin00[axis] / factor[axis]);
-		cast->origin_dx[axis] = (float)(frame->origin_dx[axis] / factor[axis]);
-		cast->origin_dy[axis] = (float)(frame->origin_dy[axis] / factor[axis]);
-		cast->direction00[axis] = (float)(frame->direction00[axis] / factor[axis]);
-		cast->direction_dx[axis] = (float)(frame->direction_dx[axis] / factor[axis]);
-		cast->direction_dy[axis] = (float)(frame->direction_dy[axis] / factor[axis]);
+		cast->origin00[axis] = (float)frame->origin00[axis];
+		cast->origin_dx[axis] = (float)frame->origin_dx[axis];
+		cast->origin_dy[axis] = (float)frame->origin_dy[axis];
+		cast->direction00[axis] = (float)frame->direction00[axis];
+		cast->direction_dx[axis] = (float)frame->direction_dx[axis];
+		cast->direction_dy[axis] = (float)frame->direction_dy[axis];
 	}
 }
 
@@ -346,8 +344,7 @@ static void fill_tile(const struct cast_job *job, const struct gz_tile *tile,
 /* Which level of detail a tile takes. */
 static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
 {
-	return gz_detail_choose(job->detail, job->plan, job->rays, job->pixel_lengths, tile->layer,
-				tile->pattern, tile->step);
+	return gz_detail_choose(job->detail, job->plan, job->rays, job->pixel_lengths, tile);
 }
 
 static int level_of(const void *user, const struct gz_tile *tile)
@@ -449,8 +446,8 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_fine_cells(&cpu->fine[i], &job->casts[i]);
 		fill_rays(cpu, i, ray_frame, &job->casts[i]);
-		gz_lighting_fill(&cpu->lighting, cpu->volume, cpu->detail.levels.level[i].factor,
-				 &cpu->table, rays, ray_frame, &job->casts[i].light);
+		gz_lighting_fill(&cpu->lighting, cpu->detail.levels.level[i].factor, rays,
+				 ray_frame, &job->casts[i].light);
 	}
 	return GZ_OK;
 }

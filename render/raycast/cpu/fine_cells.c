@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/raycast/shared/voxel_ranges.h"
-
 _Static_assert(2 * GZ_FINE_EDGE == GZ_MACROCELL_EDGE, "two fine cells along a macrocell's edge");
 
 static const struct gz_range_blocks fine_blocks = { GZ_FINE_EDGE, 0, 1 };
@@ -39,10 +37,12 @@ static void find_slice(void *user, size_t part, int worker)
 	char *scratch = job->scratch + (size_t)worker * gz_voxel_ranges_scratch(job->volume);
 	const size_t size = gz_voxel_size(cells->type);
 	size_t index = part * slice_of(grid);
-	for (int y = 0; y < grid->dims[1]; y++, index += row_of(grid))
-		gz_voxel_ranges_row(job->volume, &fine_blocks, y, (int)part, grid->dims[0], scratch,
-				    (char *)cells->least + index * size,
+	for (int y = 0; y < grid->dims[1]; y++, index += row_of(grid)) {
+		const struct gz_range_row at = { job->volume, &fine_blocks, y, (int)part,
+						 grid->dims[0] };
+		gz_voxel_ranges_row(&at, scratch, (char *)cells->least + index * size,
 				    (char *)cells->greatest + index * size);
+	}
 }
 
 static enum gz_result allocate(const struct gz_volume *volume, struct gz_fine_cells *cells)

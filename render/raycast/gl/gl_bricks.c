@@ -6,6 +6,7 @@
 
 #include <GL/glew.h>
 
+#include "render/data/brick_cut.h"
 #include "render/raycast/gl/gl_texels.h"
 
 /* Given to the device for one picture that does not wait, bytes. Chosen: some milliseconds of a
@@ -22,6 +23,157 @@ _Static_assert(GZ_BRICK_LEVEL_BITS == GZ_GL_BRICK_LEVEL_BITS &&
 		       GZ_BRICK_STORED_EDGE == GZ_GL_BRICK_STORED_EDGE &&
 		       PLACE_BITS == GZ_GL_BRICK_PLACE_BITS,
 	       "the shaders are told what is so");
+
+_Static_assert(GZ_BRICK_EDGE % GZ_MACROCELL_EDGE == 0, "a brick is whole macrocells");
+
+static void close_brick_source(struct gz_brick_source *source)
+{
+	free(source->cut_entries);
+	free(source->cut);
+	*source = (struct gz_brick_source) { 0 };
+}
+
+/* The layout of bricks cut out of a volume in memory and its levels. */
+static void lay_out_cut_bricks(const struct gz_levels *levels, struct gz_brick_layout *out_layout)
+{
+	struct gz_brick_layout layout = { .level_count = levels->count };
+	for (int i = 0; i < levels->count; i++) {
+		struct gz_brick_level *level = &layout.levels[i];
+		level->first = layout.brick_count;
+		size_t bricks = 1;
+		for (int axis = 0; axis < 3; axis++) {
+			const int dim = levels->level[i].volume.dims[axis];
+			level->dims[axis] = dim;
+			level->bricks[axis] = (dim + GZ_BRICK_EDGE - 1) / GZ_BRICK_EDGE;
+			level->halvings[axis] = ilogb(levels->level[i].factor[axis]);
+			bricks *= (size_t)level->bricks[axis];
+		}
+		layout.brick_count += bricks;
+	}
+	*out_layout = layout;
+}
+
+static void widen_entry(struct gz_brick_entry *entry, float least, float greatest)
+{
+	entry->least = fminf(entry->least, least);
+	entry->greatest = fmaxf(entry->greatest, greatest);
+}
+
+/* Widen an entry by the ranges of a brick's macrocells. */
+static void widen_by_cells(const struct gz_macrocells *cells, const int brick[3],
+			   struct gz_brick_entry *entry)
+{
+	enum { ALONG = GZ_BRICK_EDGE / GZ_MACROCELL_EDGE };
+	int first[3], end[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const int last = (brick[axis] + 1) * ALONG;
+		first[axis] = brick[axis] * ALONG;
+		end[axis] = last < cells->dims[axis] ? last : cells->dims[axis];
+	}
+	for (int z = first[2]; z < end[2]; z++)
+		for (int y = first[1]; y < end[1]; y++) {
+			const size_t row = ((size_t)z * (size_t)cells->dims[1] + (size_t)y) *
+					   (size_t)cells->dims[0];
+			for (int x = first[0]; x < end[0]; x++)
+				widen_entry(entry, cells->least[row + (size_t)x],
+					    cells->greatest[row + (size_t)x]);
+		}
+}
+
+/* Widen an entry by the ranges of the finer bricks under it. */
+static void widen_by_children(const struct gz_brick_source *source, int level, const int brick[3],
+			      struct gz_brick_entry *entry)
+{
+	int first[3], end[3];
+	gz_brick_children(source->layout, level, brick, first, end);
+	for (int z = first[2]; z < end[2]; z++)
+		for (int y = first[1]; y < end[1]; y++)
+			for (int x = first[0]; x < end[0]; x++) {
+				const size_t child = gz_brick_number(source->layout, level - 1,
+								     (const int[3]) { x, y, z });
+				widen_entry(entry, source->entries[child].least,
+					    source->entries[child].greatest);
+			}
+}
+
+/* Find the ranges of all bricks, finest first, as they are numbered. */
+static void find_cut_ranges(struct gz_brick_source *source)
+{
+	for (size_t i = 0; i < source->layout->brick_count; i++) {
+		struct gz_brick_entry entry = { .least = INFINITY, .greatest = -INFINITY };
+		int level, brick[3];
+		gz_brick_place(source->layout, i, &level, brick);
+		widen_by_cells(&source->detail->cells[level], brick, &entry);
+		if (level > 0)
+			widen_by_children(source, level, brick, &entry);
+		source->cut_entries[i] = entry;
+	}
+}
+
+static enum gz_result open_cut_source(struct gz_brick_source *source,
+				      const struct gz_detail *detail)
+{
+	lay_out_cut_bricks(&detail->levels, &source->cut_layout);
+	const size_t count = source->cut_layout.brick_count;
+	if (count == 0)
+		return GZ_ERR_INVAL;
+	source->detail = detail;
+	source->cut_entries = malloc(count * sizeof *source->cut_entries);
+	source->cut = malloc(GZ_BRICK_VOXELS * gz_voxel_size(detail->levels.level[0].volume.type));
+	if (!source->cut_entries || !source->cut) {
+		close_brick_source(source);
+		return GZ_ERR_NO_MEM;
+	}
+	source->layout = &source->cut_layout;
+	source->entries = source->cut_entries;
+	source->rooms_useful = count;
+	find_cut_ranges(source);
+	return GZ_OK;
+}
+
+/* Between two pictures: ask for wanted bricks. Returns how many are coming; 0 for a volume in
+ * memory, which has all. */
+static size_t turn_brick_source(struct gz_brick_source *source, const struct gz_brick_want *wants,
+				size_t count, bool wait)
+{
+	if (!source->pool)
+		return 0;
+	gz_brick_pool_turn(source->pool, wants, count, wait, &source->view);
+	return source->view.coming;
+}
+
+/* Open the bricks of a volume; GZ_ERR_INVAL without one. */
+static enum gz_result open_brick_source(struct gz_brick_source *source,
+					const struct gz_detail *detail)
+{
+	struct gz_brick_pool *pool = detail->levels.level[0].volume.bricks;
+	close_brick_source(source);
+	if (!pool)
+		return open_cut_source(source, detail);
+	source->pool = pool;
+	source->layout = &gz_brick_pool_file(pool)->layout;
+	source->entries = gz_brick_pool_file(pool)->entries;
+	source->rooms_useful = gz_brick_pool_rooms(pool);
+	turn_brick_source(source, NULL, 0, false);
+	return GZ_OK;
+}
+
+/* GZ_BRICK_VOXELS voxels of a brick, valid until the next call; NULL while they are not loaded. */
+static const void *read_source_brick(struct gz_brick_source *source, size_t brick)
+{
+	int level, place[3];
+	gz_brick_place(source->layout, brick, &level, place);
+	if (!source->pool) {
+		gz_brick_cut(&source->detail->levels.level[level].volume, place, source->cut);
+		return source->cut;
+	}
+	const int32_t entry = source->view.table[brick];
+	if (entry < 0 || (entry & ((1 << GZ_BRICK_LEVEL_BITS) - 1)) != level)
+		return NULL; /* a coarser brick stands in */
+	const size_t bytes =
+		GZ_BRICK_VOXELS * gz_voxel_size(gz_brick_pool_file(source->pool)->header.type);
+	return (const char *)source->view.voxels + (size_t)(entry >> GZ_BRICK_LEVEL_BITS) * bytes;
+}
 
 static size_t brick_bytes(enum gz_voxel_type type)
 {
@@ -145,7 +297,7 @@ static void pin_levels(struct gz_gl_bricks *bricks)
 		const size_t end = level + 1 < layout->level_count ? layout->levels[level + 1].first
 								   : layout->brick_count;
 		for (size_t i = layout->levels[level].first; i < end; i++) {
-			const void *voxels = gz_brick_source_read(&bricks->source, i);
+			const void *voxels = read_source_brick(&bricks->source, i);
 			if (!voxels)
 				continue;
 			const int32_t room = gz_brick_rooms_pin(&bricks->rooms, (uint32_t)i);
@@ -161,7 +313,7 @@ enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl
 {
 	gz_gl_bricks_free(bricks);
 	bricks->type = detail->levels.level[0].volume.type;
-	enum gz_result result = gz_brick_source_open(&bricks->source, detail);
+	enum gz_result result = open_brick_source(&bricks->source, detail);
 	if (result == GZ_OK)
 		result = make_atlas(bricks, device);
 	if (result == GZ_OK) {
@@ -195,7 +347,7 @@ static bool give_wanted(struct gz_gl_bricks *bricks, bool wait)
 			continue;
 		if (!gz_brick_rooms_has(&bricks->rooms, want->weight))
 			break;
-		const void *voxels = gz_brick_source_read(&bricks->source, want->brick);
+		const void *voxels = read_source_brick(&bricks->source, want->brick);
 		if (!voxels)
 			continue;
 		later = !wait && given + each > PICTURE_BYTES && given > 0;
@@ -240,7 +392,7 @@ enum gz_result gz_gl_bricks_turn(struct gz_gl_bricks *bricks, struct gz_brick_st
 	if (result != GZ_OK)
 		return result;
 	const struct gz_brick_wants *wants = &bricks->stream.wants;
-	bricks->coming = gz_brick_source_turn(&bricks->source, wants->want, wants->count, wait);
+	bricks->coming = turn_brick_source(&bricks->source, wants->want, wants->count, wait);
 	gz_brick_rooms_turn(&bricks->rooms, wants->want, wants->count);
 	begin_giving(bricks);
 	bricks->coming += give_wanted(bricks, wait);
@@ -275,7 +427,7 @@ void gz_gl_bricks_forget(struct gz_gl_bricks *bricks)
 
 void gz_gl_bricks_abandon(struct gz_gl_bricks *bricks)
 {
-	gz_brick_source_close(&bricks->source);
+	close_brick_source(&bricks->source);
 	gz_brick_rooms_free(&bricks->rooms);
 	gz_brick_stream_free(&bricks->stream);
 	free(bricks->entries);

@@ -12,11 +12,29 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/data/brick_pool.h"
 #include "render/data/brick_rooms.h"
 #include "render/opengl/gl_device.h"
 #include "render/raycast/gl/cast_block.h"
-#include "render/raycast/shared/brick_source.h"
 #include "render/raycast/shared/brick_stream.h"
+#include "render/raycast/shared/detail.h"
+
+/** The bricks of any volume: those of a file, loaded when they are wanted, or cut out of a volume
+ * in memory and its levels. Zero-initialised is none. */
+struct gz_brick_source {
+	const struct gz_brick_layout *layout;
+	const struct gz_brick_entry
+		*entries;    /**< by a brick's number; cut bricks: only the range */
+	size_t rooms_useful; /**< no more bricks than this are loaded at once */
+	/* for a file */
+	struct gz_brick_pool *pool; /**< borrowed; NULL for a volume in memory */
+	struct gz_brick_view view;
+	/* for a volume in memory */
+	const struct gz_detail *detail; /**< borrowed */
+	struct gz_brick_layout cut_layout;
+	struct gz_brick_entry *cut_entries;
+	void *cut; /**< the brick cut last */
+};
 
 /** Zero-initialised is none. */
 struct gz_gl_bricks {

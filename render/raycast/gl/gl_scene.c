@@ -5,8 +5,6 @@
 
 #include <GL/glew.h>
 
-#include "render/raycast/shared/voxel_rays.h"
-
 #define GZ_LOG_MODULE "gl"
 
 static void free_levels(struct gz_gl_scene *scene)
@@ -214,9 +212,13 @@ static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan 
 	for (int layer = 0; layer < plan->layer_count; layer++)
 		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
 			for (int step = 0; step < plan->step_count; step++) {
-				const int level =
-					gz_detail_choose(&scene->detail, plan, rays, pixel_lengths,
-							 layer, pattern, step);
+				const struct gz_tile tile = {
+					.layer = (uint8_t)layer,
+					.pattern = (uint8_t)pattern,
+					.step = (uint8_t)step,
+				};
+				const int level = gz_detail_choose(&scene->detail, plan, rays,
+								   pixel_lengths, &tile);
 				out_levels->of[layer][pattern][step] =
 					(uint8_t)(level < scene->level_count
 							  ? level
@@ -275,23 +277,23 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 	return result;
 }
 
-static void to_floats(const double source[3], const int divisor[3], float out[4])
+static void vector_to_floats(const double source[3], float out[4])
 {
 	for (int axis = 0; axis < 3; axis++)
-		out[axis] = (float)(source[axis] / divisor[axis]);
+		out[axis] = (float)source[axis];
 }
 
 static void fill_rays(const struct gz_gl_scene *scene, const int factor[3],
 		      const struct gz_ray_frame *world, struct gz_gl_cast_block *block)
 {
 	struct gz_voxel_rays rays;
-	gz_voxel_rays_make(scene->volume, world, &rays);
-	to_floats(rays.frame.origin00, factor, block->origin00);
-	to_floats(rays.frame.origin_dx, factor, block->origin_dx);
-	to_floats(rays.frame.origin_dy, factor, block->origin_dy);
-	to_floats(rays.frame.direction00, factor, block->direction00);
-	to_floats(rays.frame.direction_dx, factor, block->direction_dx);
-	to_floats(rays.frame.direction_dy, factor, block->direction_dy);
+	gz_voxel_rays_make(scene->volume, factor, world, &rays);
+	vector_to_floats(rays.frame.origin00, block->origin00);
+	vector_to_floats(rays.frame.origin_dx, block->origin_dx);
+	vector_to_floats(rays.frame.origin_dy, block->origin_dy);
+	vector_to_floats(rays.frame.direction00, block->direction00);
+	vector_to_floats(rays.frame.direction_dx, block->direction_dx);
+	vector_to_floats(rays.frame.direction_dy, block->direction_dy);
 	for (int axis = 0; axis < 3; axis++)
 		block->world_per_voxel[axis] = (float)(rays.world_per_voxel[axis] * factor[axis]);
 }
@@ -316,8 +318,7 @@ static void fill_light(const struct gz_gl_scene *scene, const int factor[3],
 		       struct gz_gl_cast_block *block)
 {
 	struct gz_cast_light light;
-	gz_lighting_fill(&scene->lighting, scene->volume, factor, &scene->table, rays, world,
-			 &light);
+	gz_lighting_fill(&scene->lighting, factor, rays, world, &light);
 	for (int axis = 0; axis < 3; axis++) {
 		block->light_towards[axis] = light.towards[axis];
 		block->gradient_scale[axis] = light.gradient_scale[axis];

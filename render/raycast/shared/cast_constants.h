@@ -1,16 +1,16 @@
 /**
  * @file
- * Constants of casting. C and shaders share them: this text also
- * stands in front of every shader that needs it, so it holds nothing but comments and #defines that
- * mean the same in C and in GLSL 4.30: whole numbers (with U where unsigned), and single-precision
- * numbers with F.
+ * Constants of casting that C and shaders share. This text is put in front of every shader that
+ * needs it, so it holds only comments and #defines that mean the same in C and in GLSL 4.30: whole
+ * numbers (with U if unsigned) and single-precision numbers with F.
  */
 #ifndef GZ_RENDER_RAYCAST_SHARED_CAST_CONSTANTS_H
 #define GZ_RENDER_RAYCAST_SHARED_CAST_CONSTANTS_H
 
 /** Edge of a macrocell, voxels. */
 #define GZ_MACROCELL_EDGE 8
-/** Between cells of reach where something shows, below, and empty ones. */
+/** Values of reach (macrocells.h) up to this belong to cells where something shows, those above to
+ *  empty ones. */
 #define GZ_REACH_BORDER 128
 #define GZ_REACH_MAX    127
 

@@ -3,22 +3,22 @@
 #include <math.h>
 
 #include "render/data/brick_pool.h"
-#include "render/raycast/shared/brick_cells.h"
 
 #define GZ_LOG_MODULE "render"
 
-/* The levels of a file of bricks that one in memory would have too, with the cells of each. */
+/* Take those levels of a file of bricks that a volume in memory would have, each with its
+ * macrocells. */
 static enum gz_result start_bricks(struct gz_detail *detail, const struct gz_volume *volume)
 {
 	const struct gz_brick_file *file = gz_brick_pool_file(volume->bricks);
 	struct gz_macrocells finer = { 0 }, cells = { 0 };
-	enum gz_result result = gz_brick_cells_finest(file, &detail->cells[0]);
+	enum gz_result result = gz_macrocells_of_bricks(file, &detail->cells[0]);
 	gz_levels_start(&detail->levels, volume);
 	for (int i = 1; i < file->layout.level_count && result == GZ_OK; i++) {
 		const int before = detail->levels.count - 1;
 		const bool follows = detail->brick_level[before] == i - 1;
-		result = gz_brick_cells_coarser(file, i, follows ? &detail->cells[before] : &finer,
-						&cells);
+		result = gz_macrocells_of_coarser_bricks(
+			file, i, follows ? &detail->cells[before] : &finer, &cells);
 		gz_macrocells_free(&finer);
 		if (result == GZ_OK && gz_levels_add(&detail->levels, &file->layout.levels[i])) {
 			detail->brick_level[detail->levels.count - 1] = i;
@@ -53,8 +53,8 @@ void gz_detail_classify(struct gz_detail *detail, const struct gz_transfer_table
 		gz_macrocells_classify(&detail->cells[i], table);
 }
 
-static enum gz_result build(struct gz_detail *detail, struct gz_workers *workers,
-			    const struct gz_transfer_table *table)
+static enum gz_result build_levels(struct gz_detail *detail, struct gz_workers *workers,
+				   const struct gz_transfer_table *table)
 {
 	enum gz_result result = gz_levels_build(&detail->levels, workers);
 	for (int i = 1; i < detail->levels.count && result == GZ_OK; i++) {
@@ -71,7 +71,7 @@ void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 {
 	if (detail->levels.count != 1 || detail->failed || detail->levels.level[0].volume.bricks)
 		return;
-	if (build(detail, workers, table) == GZ_OK)
+	if (build_levels(detail, workers, table) == GZ_OK)
 		return;
 	gz_warn(log, "no memory for coarser levels of the volume: all rays take the full one");
 	detail->failed = true;
@@ -81,7 +81,7 @@ void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 		gz_macrocells_free(&detail->cells[i]);
 }
 
-/* Between rays of a tile, in pixels. */
+/* Distance between neighbouring rays of a tile, px. */
 static double pixels_apart(const struct gz_plan *plan, int layer, int pattern)
 {
 	return (pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1) * plan->layers[layer].spacing;
@@ -101,11 +101,12 @@ bool gz_detail_wanted(const struct gz_plan *plan, const struct gz_ray_params *ra
 }
 
 int gz_detail_choose(const struct gz_detail *detail, const struct gz_plan *plan,
-		     const struct gz_ray_params *rays, double pixel_lengths, int layer, int pattern,
-		     int step)
+		     const struct gz_ray_params *rays, double pixel_lengths,
+		     const struct gz_tile *tile)
 {
-	return gz_levels_choose(&detail->levels, pixels_apart(plan, layer, pattern) * pixel_lengths,
-				(double)plan->steps[step] / rays->ray_sampling_rate);
+	return gz_levels_choose(&detail->levels,
+				pixels_apart(plan, tile->layer, tile->pattern) * pixel_lengths,
+				(double)plan->steps[tile->step] / rays->ray_sampling_rate);
 }
 
 double gz_detail_steps_per_px(const struct gz_volume *volume, const struct gz_camera *camera,

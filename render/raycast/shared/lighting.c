@@ -23,11 +23,13 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 				   const struct gz_log *log)
 {
 	const double radius = rays->light.occlusion_radius;
+	lighting->volume = volume;
+	lighting->table = table;
 	if (!wants_occlusion(rays))
 		return GZ_OK;
 	if (volume->bricks) {
-		gz_err(log, "ambient occlusion looks at all voxels, which a volume of bricks has "
-			    "not in memory: set light.occlusion to 0");
+		gz_err(log, "ambient occlusion reads all voxels, but a volume of bricks is not "
+			    "wholly in memory: set light.occlusion to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	if (lighting->current && lighting->radius == radius &&
@@ -53,8 +55,7 @@ static void fill_occlusion(const struct gz_occlusion *occlusion, const int facto
 	const int32_t strides[3] = { 1, dims[0], dims[0] * dims[1] };
 	light->cells = occlusion->cells;
 	for (int axis = 0; axis < 3; axis++) {
-		/* from the level's data, whose middles lie half a voxel in, to the cells', as far
-		 * in */
+		/* The first datum lies half a voxel in, the first cell's middle half a cell. */
 		const double scale = (double)factor[axis] / occlusion->edge[axis];
 		light->cell_scale[axis] = (float)scale;
 		light->cell_bias[axis] = (float)(0.5 * scale - 0.5);
@@ -64,15 +65,14 @@ static void fill_occlusion(const struct gz_occlusion *occlusion, const int facto
 	}
 }
 
-void gz_lighting_fill(const struct gz_lighting *lighting, const struct gz_volume *volume,
-		      const int factor[3], const struct gz_transfer_table *table,
+void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		      const struct gz_ray_params *rays, const struct gz_ray_frame *ray_frame,
 		      struct gz_cast_light *out_light)
 {
 	const struct gz_light *light = &rays->light;
 	double towards[3], scale[3];
 	gz_light_direction(light, ray_frame, towards);
-	gz_light_gradient_scale(volume, table, scale);
+	gz_light_gradient_scale(lighting->volume, lighting->table, scale);
 	*out_light = (struct gz_cast_light) {
 		.on = rays->shading == GZ_SHADING_GRADIENT,
 		.ambient = (float)light->ambient,

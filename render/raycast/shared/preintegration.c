@@ -9,19 +9,20 @@ void gz_preintegration_forget(struct gz_preintegration *preintegration)
 		preintegration->length[i] = 0;
 }
 
-static bool allocate(struct gz_transfer_entry **entries)
+static bool allocate_entries(struct gz_transfer_entry **entries)
 {
 	if (!*entries)
 		*entries = malloc(GZ_PREINTEGRATED_ENTRIES * sizeof **entries);
 	return *entries != NULL;
 }
 
-static enum gz_result sum_up(struct gz_preintegration *preintegration,
-			     const struct gz_transfer_table *table, struct gz_workers *workers)
+static enum gz_result sum_transfer(struct gz_preintegration *preintegration,
+				   const struct gz_transfer_table *table,
+				   struct gz_workers *workers)
 {
 	if (!preintegration->sums)
 		preintegration->sums = malloc(sizeof *preintegration->sums);
-	if (!preintegration->sums || !allocate(&preintegration->extinction))
+	if (!preintegration->sums || !allocate_entries(&preintegration->extinction))
 		return GZ_ERR_NO_MEM;
 	gz_transfer_sums_make(table, preintegration->sums);
 	gz_transfer_preintegrate_extinction(preintegration->sums, workers,
@@ -35,11 +36,11 @@ enum gz_result gz_preintegration_make(struct gz_preintegration *preintegration,
 				      int count, struct gz_workers *workers)
 {
 	enum gz_result result =
-		preintegration->summed ? GZ_OK : sum_up(preintegration, table, workers);
+		preintegration->summed ? GZ_OK : sum_transfer(preintegration, table, workers);
 	for (int i = 0; i < count && result == GZ_OK; i++) {
 		if (preintegration->length[i] == lengths[i])
 			continue;
-		if (!allocate(&preintegration->step[i]))
+		if (!allocate_entries(&preintegration->step[i]))
 			return GZ_ERR_NO_MEM;
 		gz_transfer_preintegrate(preintegration->sums, lengths[i], workers,
 					 preintegration->step[i]);

@@ -1,7 +1,7 @@
 /**
  * @file
- * How rays are integrated, whatever the plan and the backend: the section [render] of a scene,
- * with its light and clip box.
+ * How rays are integrated: the section [render] of a scene with its light and clip box, the same
+ * for every plan and backend; and a picture's rays in the coordinates that the kernels use.
  */
 #ifndef GZ_RENDER_RAYCAST_SHARED_RAY_PARAMS_H
 #define GZ_RENDER_RAYCAST_SHARED_RAY_PARAMS_H
@@ -11,7 +11,9 @@
 
 #include "base/option.h"
 #include "render/data/clip_box.h"
+#include "render/data/volume.h"
 #include "render/light/light.h"
+#include "render/picture/camera.h"
 
 /** Limits of ray_sampling_rate. Chosen: a step of 20 voxels shows nothing, one of 1/32 changes no
  *  picture. */
@@ -21,8 +23,8 @@
 enum gz_interpolation { GZ_INTERPOLATION_TRILINEAR, GZ_INTERPOLATION_NEAREST };
 
 enum gz_shading {
-	GZ_SHADING_NONE,     /**< the transfer function's colour as it is */
-	GZ_SHADING_GRADIENT, /**< Blinn-Phong by the gradient, see struct gz_light */
+	GZ_SHADING_NONE,     /**< the transfer function's colour */
+	GZ_SHADING_GRADIENT, /**< Blinn-Phong with the gradient as normal: struct gz_light */
 };
 
 /** How the transfer function is applied along a ray. */
@@ -86,5 +88,17 @@ float gz_ray_end_transmittance(const struct gz_ray_params *rays);
  * 0 for a seed of 0.
  */
 float gz_ray_jitter(int x, int y, int seed);
+
+/** A picture's rays through one level of a volume, in voxel coordinates: voxel i along an axis
+ * spans [i, i + 1), its datum lies at i + 1/2. */
+struct gz_voxel_rays {
+	struct gz_ray_frame frame;
+	double world_per_voxel[3]; /**< of the full volume: world units per voxel along each axis */
+};
+
+/** Turn the rays of a camera into those of a level. @p factor is the ratio of the volume's voxels
+ * to the level's along each axis: 1 for the full volume. */
+void gz_voxel_rays_make(const struct gz_volume *volume, const int factor[3],
+			const struct gz_ray_frame *world, struct gz_voxel_rays *out_rays);
 
 #endif

@@ -23,8 +23,8 @@ struct gz_raycaster_ops {
 	const char *name; /**< "cpu", "gl" */
 	enum gz_result (*create)(const struct gz_backend_params *params, const struct gz_log *log,
 				 struct gz_raycaster **out_raycaster);
-	/** Borrow @p volume until the next call or destroy; prepare what skipping empty space
-	 *  needs. */
+	/** Borrow @p volume until the next call or destroy, and prepare for skipping empty space.
+	 */
 	enum gz_result (*set_volume)(struct gz_raycaster *raycaster,
 				     const struct gz_volume *volume);
 	/** Copy @p transfer; needs a volume. */
@@ -53,19 +53,19 @@ extern const struct gz_raycaster_ops *const gz_raycaster_backends[];
 /**
  * Make a ray caster.
  *
- * @param backend  name of one of gz_raycaster_backends; NULL or "auto" for gl where a GPU does its
- *                 work, else cpu, which is about three times as fast as OpenGL on a processor
+ * @param backend  name of one of gz_raycaster_backends; NULL or "auto" for gl if a GPU runs it,
+ * else cpu, which is about three times as fast as OpenGL in software
  * @param params   NULL for the defaults
  * @param[out] out_raycaster  owned by the caller: gz_raycaster_destroy()
- * @retval GZ_ERR_NOT_FOUND    no such backend; logged with those there are
+ * @retval GZ_ERR_NOT_FOUND    no such backend; logged with the names of all
  * @retval GZ_ERR_UNSUPPORTED  this machine cannot run it, or not with that SIMD path; logged
  */
 enum gz_result gz_raycaster_create(const char *backend, const struct gz_backend_params *params,
 				   const struct gz_log *log, struct gz_raycaster **out_raycaster);
 
 /**
- * Check what can be known of a ray caster's settings before there is anything to show: that the
- * backend exists, and that the processor runs the instructions.
+ * Check a ray caster's settings before there is anything to show: that the backend exists, and that
+ * the processor has the instructions.
  *
  * @return what gz_raycaster_create() would return for these reasons; logged
  */
@@ -88,9 +88,9 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
  * @param[out] out_stats  may be NULL
  * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
  * @retval GZ_ERR_NO_MEM  no room for the picture; gl: on the graphics device, logged
- * @retval GZ_ERR_UNSUPPORTED  gl: something it cannot do is asked for; logged
- * @retval GZ_ERR_NO_DEVICE    gl: the context is lost; logged. Destroy the ray caster; cpu can go
- * on
+ * @retval GZ_ERR_UNSUPPORTED  gl: the device or driver cannot do this; logged
+ * @retval GZ_ERR_NO_DEVICE    gl: the context is lost; logged. Destroy the ray caster; cpu still
+ *                             works
  *
  * The same inputs give the same bits, for any number of threads; gl: on the same device and driver.
  * Threads: one at a time for each ray caster.

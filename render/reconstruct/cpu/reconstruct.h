@@ -100,6 +100,7 @@ void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *o
 void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
 			   const struct gz_row_filters *filters, int column, int row);
 
+/** The lesser of two numbers. */
 static inline int gz_least(int a, int b)
 {
 	return a < b ? a : b;
