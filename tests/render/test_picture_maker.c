@@ -90,15 +90,21 @@ static struct gz_image copy_of(const struct gz_image *image)
 	return copy;
 }
 
+/* Draw by gl on a lent context, and let cpu take over. */
+static struct gz_picture_maker_params params_on(struct lent_context *lent)
+{
+	return (struct gz_picture_maker_params) {
+		.backend = "gl",
+		.backend_params = { .gl_context = &lent->base },
+		.cpu_takes_over = true,
+	};
+}
+
 static void cpu_takes_over_after_a_lost_context(void **state)
 {
 	(void)state;
 	struct lent_context lent = lend_context();
-	const struct gz_picture_maker_params params = {
-		.backend = "gl",
-		.backend_params = { .gl_context = &lent.base },
-		.cpu_takes_over = true,
-	};
+	const struct gz_picture_maker_params params = params_on(&lent);
 	struct set_up all;
 	set_up(&all);
 	assert_int_equal(show(&all, &params), GZ_OK);
@@ -128,11 +134,7 @@ static void lost_context_is_returned_if_the_request_says_so(void **state)
 	(void)state;
 	for (int returned = 0; returned < 2; returned++) {
 		struct lent_context lent = lend_context();
-		const struct gz_picture_maker_params params = {
-			.backend = "gl",
-			.backend_params = { .gl_context = &lent.base },
-			.cpu_takes_over = true,
-		};
+		const struct gz_picture_maker_params params = params_on(&lent);
 		struct set_up all;
 		set_up(&all);
 		all.request.on_device = true;

@@ -1,4 +1,4 @@
-/* What a budget, lost gaze, sampling rates and repetition make of a plan. */
+/* How a budget, a lost gaze, sampling rates and repetition change a plan. */
 #include "suite.h"
 
 #include <stddef.h>
@@ -180,7 +180,7 @@ static void sizes_in_pixels_do_not_change_with_the_sampling_rate(void **state)
 	gz_plan_free(&f.plan);
 }
 
-static void plan_is_made_anew_only_where_something_changed(void **state)
+static void plan_is_made_again_only_after_a_change(void **state)
 {
 	(void)state;
 	struct fixture f;
@@ -208,7 +208,7 @@ static void plan_is_made_anew_only_where_something_changed(void **state)
 	gz_plan_free(&f.plan);
 }
 
-static void standard_plan_stays_wherever_someone_looks(void **state)
+static void standard_plan_does_not_depend_on_the_gaze(void **state)
 {
 	(void)state;
 	struct fixture f;
@@ -225,7 +225,7 @@ static void standard_plan_stays_wherever_someone_looks(void **state)
 	gz_plan_free(&f.plan);
 }
 
-static void refused_request_leaves_no_plan_to_be_kept(void **state)
+static void refused_request_leaves_no_valid_plan(void **state)
 {
 	(void)state;
 	static const double wrong[][3] = { { 0, 1, 0 },    { 1, 0.5, 0 }, { 1, 65, 0 },
@@ -330,9 +330,9 @@ TEST_SUITE(plan_request)
 		cmocka_unit_test(widened_plan_is_uniform_and_costs_no_more),
 		cmocka_unit_test(widening_keeps_the_cost_on_its_way),
 		cmocka_unit_test(sizes_in_pixels_do_not_change_with_the_sampling_rate),
-		cmocka_unit_test(plan_is_made_anew_only_where_something_changed),
-		cmocka_unit_test(standard_plan_stays_wherever_someone_looks),
-		cmocka_unit_test(refused_request_leaves_no_plan_to_be_kept),
+		cmocka_unit_test(plan_is_made_again_only_after_a_change),
+		cmocka_unit_test(standard_plan_does_not_depend_on_the_gaze),
+		cmocka_unit_test(refused_request_leaves_no_valid_plan),
 		cmocka_unit_test(steps_of_a_table_are_never_longer_than_it_says),
 		cmocka_unit_test(largest_sizes_have_plans),
 	};

@@ -7,24 +7,15 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "base/text.h"
 #include "render/plan/method.h"
 #include "render/scene/scene.h"
+#include "scene_text.h"
 #include "volume_files.h"
 
 #define VOLUME   "[volume]\nprocedural = shells\ndims = 12 10 8\n"
 #define TRANSFER "[transfer]\nfile = ramp.tf\n"
 #define SCENE    VOLUME TRANSFER
-
-static struct gz_scene_settings parsed(const char *text, bool *out_has_display)
-{
-	struct gz_scene_settings settings;
-	struct captured_log log;
-	captured_log_init(&log, NULL);
-	if (gz_scene_parse("s.scene", text, strlen(text), &log.log, &settings, out_has_display) !=
-	    GZ_OK)
-		fail_msg("refused: %s", log.last);
-	return settings;
-}
 
 static void every_preset_parses(void **state)
 {
@@ -46,15 +37,16 @@ static void choices_are_in_the_order_of_their_enums(void **state)
 {
 	(void)state;
 	bool display;
-	struct gz_scene_settings s =
-		parsed("[volume]\nprocedural = supernova\n" TRANSFER
-		       "[camera]\nprojection = orthographic\n[render]\ninterpolation = nearest\n",
-		       &display);
+	struct gz_scene_settings s = scene_of_text(
+		"[volume]\nprocedural = supernova\n" TRANSFER
+		"[camera]\nprojection = orthographic\n[render]\ninterpolation = nearest\n",
+		&display);
 	assert_int_equal(s.volume_procedural, GZ_PROCEDURAL_SUPERNOVA + 1);
 	assert_int_equal(s.camera.projection, GZ_PROJECTION_ORTHOGRAPHIC);
 	assert_int_equal(s.rays.interpolation, GZ_INTERPOLATION_NEAREST);
-	s = parsed("[volume]\nfile = a.raw\ndims = 1 2 3\ntype = float64\nendian = big\n" TRANSFER,
-		   &display);
+	s = scene_of_text(
+		"[volume]\nfile = a.raw\ndims = 1 2 3\ntype = float64\nendian = big\n" TRANSFER,
+		&display);
 	assert_int_equal(s.type, GZ_RAW_FLOAT64);
 	assert_int_equal(s.endian, 1);
 	assert_int_equal(s.dims[2], 3);
@@ -65,13 +57,13 @@ static void every_section_is_read(void **state)
 {
 	(void)state;
 	bool display = false;
-	struct gz_scene_settings s =
-		parsed(SCENE "[camera]\neye = 1 2 3 ; a comment\nlook_at = 0.5 0 0\nup = 0 1 0\n"
-			     "fov_deg = 30.5\nheight = 2\n[render]\nbackground = 0.1 0.2 0.3\n"
-			     "ray_sampling_rate = 2\nimage_sampling_rate = 0.5\nshading = none\n"
-			     "[foveation]\nmethod = acuity\n"
-			     "[display]\npx = 1920 1080\nmm = 520 290\ndistance_mm = 650\n",
-		       &display);
+	struct gz_scene_settings s = scene_of_text(
+		SCENE "[camera]\neye = 1 2 3 ; a comment\nlook_at = 0.5 0 0\nup = 0 1 0\n"
+		      "fov_deg = 30.5\nheight = 2\n[render]\nbackground = 0.1 0.2 0.3\n"
+		      "ray_sampling_rate = 2\nimage_sampling_rate = 0.5\nshading = none\n"
+		      "[foveation]\nmethod = acuity\n"
+		      "[display]\npx = 1920 1080\nmm = 520 290\ndistance_mm = 650\n",
+		&display);
 	assert_true(s.camera.eye[2] == 3 && s.camera.look_at[0] == 0.5 && s.camera.up[1] == 1);
 	assert_true(s.camera.fov_deg == 30.5 && s.camera.height == 2);
 	assert_true(s.rays.background[2] == 0.3 && s.rays.ray_sampling_rate == 2);
@@ -168,9 +160,9 @@ static void object_sections_are_read_with_their_presets(void **state)
 	(void)state;
 	bool display;
 	const struct gz_scene_settings s =
-		parsed("[object the head]\nvolume = a.nii\nimportance = 0.75\nvisible = no\n"
-		       "template = bones\n",
-		       &display);
+		scene_of_text("[object the head]\nvolume = a.nii\nimportance = 0.75\nvisible = no\n"
+			      "template = bones\n",
+			      &display);
 	assert_int_equal(s.objects.count, 1);
 	const struct gz_scene_object *object = &s.objects.items[0];
 	assert_string_equal(gz_scene_object_name(object), "the head");
@@ -219,13 +211,13 @@ static void transfer_file_replaces_that_of_the_object(void **state)
 	(void)state;
 	bool display;
 	struct gz_scene_settings s =
-		parsed("[object a]\nvolume = a.nii\ntransfer = own.tf\n", &display);
+		scene_of_text("[object a]\nvolume = a.nii\ntransfer = own.tf\n", &display);
 	assert_string_equal(gz_scene_transfer_name(&s), "own.tf");
 	strcpy(s.transfer_file, "other.tf");
 	assert_string_equal(gz_scene_transfer_name(&s), "other.tf");
-	s = parsed("[object a]\nvolume = a.nii\n[transfer]\nfile = b.tf\n", &display);
+	s = scene_of_text("[object a]\nvolume = a.nii\n[transfer]\nfile = b.tf\n", &display);
 	assert_string_equal(gz_scene_transfer_name(&s), "b.tf");
-	s = parsed("[object a]\nvolume = a.nii\n", &display);
+	s = scene_of_text("[object a]\nvolume = a.nii\n", &display);
 	assert_string_equal(gz_scene_transfer_name(&s), "");
 }
 
@@ -233,7 +225,7 @@ static void settings_differ_by_every_key(void **state)
 {
 	(void)state;
 	bool display;
-	const struct gz_scene_settings s = parsed(SCENE, &display);
+	const struct gz_scene_settings s = scene_of_text(SCENE, &display);
 	struct gz_scene_settings other;
 	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
 	for (size_t table = 0; table < GZ_SCENE_TABLE_COUNT; table++) {
@@ -256,6 +248,33 @@ static void settings_differ_by_every_key(void **state)
 				fail_msg("%s is not compared", option->key);
 		}
 	}
+}
+
+static void assert_documented(const struct gz_text *document, const char *key)
+{
+	char quoted[128];
+	snprintf(quoted, sizeof quoted, "`%s`", key);
+	if (!strstr(document->bytes, quoted))
+		fail_msg("docs/scenes.md lacks %s", key);
+}
+
+static void every_key_is_documented(void **state)
+{
+	(void)state;
+	struct gz_scene_settings settings = { 0 };
+	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
+	struct gz_text document = { 0 };
+	assert_int_equal(gz_text_add_file(&document, SCENES_DOCUMENT), GZ_OK);
+	gz_scene_bind(&settings, bindings);
+	for (size_t table = 0; table < GZ_SCENE_TABLE_COUNT; table++)
+		for (size_t i = 0; i < bindings[table].count; i++) {
+			const char *key = bindings[table].options[i].key;
+			if (strncmp(key, "views.", 6) != 0) /* documented as 1 to 8 */
+				assert_documented(&document, key);
+		}
+	for (size_t i = 0; i < GZ_SCENE_OBJECT_OPTIONS; i++)
+		assert_documented(&document, strchr(gz_scene_object_options[i].key, '.') + 1);
+	gz_text_free(&document);
 }
 
 static void scene_is_loaded_with_what_it_names(void **state)
@@ -377,6 +396,7 @@ TEST_SUITE(scene)
 		cmocka_unit_test(object_with_a_volume_is_loaded_and_listed),
 		cmocka_unit_test(transfer_file_replaces_that_of_the_object),
 		cmocka_unit_test(settings_differ_by_every_key),
+		cmocka_unit_test(every_key_is_documented),
 		cmocka_unit_test(scene_is_loaded_with_what_it_names),
 		cmocka_unit_test(procedural_volume_without_dims_has_128_a_side),
 		cmocka_unit_test(file_is_searched_beside_the_scene_then_under_the_data_folder),

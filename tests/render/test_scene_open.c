@@ -120,7 +120,7 @@ static enum gz_result look_from_below(void *user, struct gz_scene_settings *sett
 	return GZ_OK;
 }
 
-static void changed_camera_stays(void **state)
+static void camera_of_the_request_is_kept(void **state)
 {
 	(void)state;
 	struct gz_scene scene;
@@ -131,7 +131,7 @@ static void changed_camera_stays(void **state)
 	gz_scene_free(&scene);
 }
 
-static void raw_file_is_taken_as_told_or_as_its_name_says_for_certain(void **state)
+static void raw_file_opens_with_a_given_or_a_certain_layout(void **state)
 {
 	(void)state;
 	const struct gz_raw_layout layout = { .dims = { 8, 4, 2 },
@@ -152,7 +152,7 @@ static void raw_file_is_taken_as_told_or_as_its_name_says_for_certain(void **sta
 		       "--volume.dims \"4 4 4\" --volume.type uint16 would fit");
 }
 
-static void layout_for_what_has_one_is_refused(void **state)
+static void layout_for_a_file_with_a_header_is_refused(void **state)
 {
 	(void)state;
 	const struct gz_raw_layout layout = { .dims = { 4, 4, 8 }, .spacing = { 1, 1, 1 } };
@@ -160,7 +160,7 @@ static void layout_for_what_has_one_is_refused(void **state)
 	assert_refused("a.scene", &layout, GZ_ERR_INVAL, "not a raw file");
 }
 
-static void what_shows_nothing_is_refused(void **state)
+static void files_that_show_nothing_are_refused(void **state)
 {
 	(void)state;
 	assert_refused("a.tf", NULL, GZ_ERR_INVAL, "a transfer function shows nothing by itself");
@@ -223,10 +223,10 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
-		cmocka_unit_test(changed_camera_stays),
-		cmocka_unit_test(raw_file_is_taken_as_told_or_as_its_name_says_for_certain),
-		cmocka_unit_test(layout_for_what_has_one_is_refused),
-		cmocka_unit_test(what_shows_nothing_is_refused),
+		cmocka_unit_test(camera_of_the_request_is_kept),
+		cmocka_unit_test(raw_file_opens_with_a_given_or_a_certain_layout),
+		cmocka_unit_test(layout_for_a_file_with_a_header_is_refused),
+		cmocka_unit_test(files_that_show_nothing_are_refused),
 		cmocka_unit_test(picture_opens_the_scene_that_it_shows),
 		cmocka_unit_test(scene_without_a_transfer_function_gets_one),
 	};

@@ -9,6 +9,7 @@
 #include "base/captured_log.h"
 #include "render/picture/image.h"
 #include "render/scene/scene_picture.h"
+#include "scene_text.h"
 #include "volume_files.h"
 
 #define SCENE                                                                                     \
@@ -27,15 +28,6 @@ static struct gz_image grey(int width, int height)
 	return image;
 }
 
-static struct gz_scene_settings settings_of(const char *text)
-{
-	struct gz_scene_settings settings;
-	bool display;
-	assert_int_equal(gz_scene_parse("s.scene", text, strlen(text), NULL, &settings, &display),
-			 GZ_OK);
-	return settings;
-}
-
 static void made_volume(struct gz_volume *out_volume)
 {
 	const int dims[3] = { 12, 10, 8 };
@@ -45,11 +37,11 @@ static void made_volume(struct gz_volume *out_volume)
 			 GZ_OK);
 }
 
-static void picture_tells_its_scene_and_transfer_function(void **state)
+static void picture_holds_its_scene_and_transfer_function(void **state)
 {
 	(void)state;
 	struct gz_image image = grey(5, 4), back = { 0 };
-	struct gz_scene_settings settings = settings_of(SCENE);
+	struct gz_scene_settings settings = scene_of_text(SCENE, NULL);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	struct gz_scene_picture picture;
 	struct gz_volume volume;
@@ -78,12 +70,12 @@ static void picture_tells_its_scene_and_transfer_function(void **state)
 	gz_image_free(&back);
 }
 
-static void names_of_files_are_absolute_in_it(void **state)
+static void file_names_in_a_picture_are_absolute(void **state)
 {
 	(void)state;
 	struct gz_image image = grey(2, 2);
 	struct gz_scene_picture picture;
-	struct gz_scene_settings settings = settings_of("[volume]\nfile = v.nii\n");
+	struct gz_scene_settings settings = scene_of_text("[volume]\nfile = v.nii\n", NULL);
 	char scene[GZ_PATH_SIZE];
 	files_write("v.nii", "x", 1);
 	snprintf(scene, sizeof scene, "%s", files_path("a.scene"));
@@ -98,13 +90,13 @@ static void names_of_files_are_absolute_in_it(void **state)
 	gz_image_free(&image);
 }
 
-static void scene_that_cannot_be_told_leaves_the_picture(void **state)
+static void picture_is_saved_without_a_scene_that_cannot_be_printed(void **state)
 {
 	(void)state;
 	struct gz_image image = grey(2, 2);
 	struct gz_scene_picture picture;
 	struct captured_log log;
-	struct gz_scene_settings settings = settings_of(SCENE);
+	struct gz_scene_settings settings = scene_of_text(SCENE, NULL);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	captured_log_init(&log, NULL);
 	settings.camera.fov_deg = -1;
@@ -116,7 +108,7 @@ static void scene_that_cannot_be_told_leaves_the_picture(void **state)
 	gz_image_free(&image);
 }
 
-static void what_is_no_picture_is_refused(void **state)
+static void files_that_are_not_pictures_are_refused(void **state)
 {
 	(void)state;
 	struct gz_scene_picture picture;
@@ -226,10 +218,10 @@ static void texts_of_all_kinds_are_read(void **state)
 TEST_SUITE(scene_picture)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(picture_tells_its_scene_and_transfer_function),
-		cmocka_unit_test(names_of_files_are_absolute_in_it),
-		cmocka_unit_test(scene_that_cannot_be_told_leaves_the_picture),
-		cmocka_unit_test(what_is_no_picture_is_refused),
+		cmocka_unit_test(picture_holds_its_scene_and_transfer_function),
+		cmocka_unit_test(file_names_in_a_picture_are_absolute),
+		cmocka_unit_test(picture_is_saved_without_a_scene_that_cannot_be_printed),
+		cmocka_unit_test(files_that_are_not_pictures_are_refused),
 		cmocka_unit_test(damaged_picture_is_refused_or_read_as_it_was),
 		cmocka_unit_test(texts_of_all_kinds_are_read),
 	};

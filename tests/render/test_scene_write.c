@@ -11,20 +11,10 @@
 #include "render/scene/scene.h"
 #include "render/scene/scene_files.h"
 #include "render/scene/scene_write.h"
+#include "scene_text.h"
 #include "volume_files.h"
 
 #define SCENE "[volume]\nprocedural = shells\n[transfer]\nfile = ramp.tf\n"
-
-static struct gz_scene_settings parsed(const char *text, bool *out_has_display)
-{
-	struct gz_scene_settings settings;
-	struct captured_log log;
-	captured_log_init(&log, NULL);
-	if (gz_scene_parse("s.scene", text, strlen(text), &log.log, &settings, out_has_display) !=
-	    GZ_OK)
-		fail_msg("refused: %s\n%s", log.last, text);
-	return settings;
-}
 
 /* Every value of every table, as text: equal settings are those of equal texts. */
 static void assert_same(const struct gz_scene_settings *a, const struct gz_scene_settings *b,
@@ -55,7 +45,7 @@ static void assert_prints_back(const struct gz_scene_settings *settings, bool ha
 	captured_log_init(&log, NULL);
 	if (gz_scene_print(&saved, &log.log, &text) != GZ_OK)
 		fail_msg("not printed: %s", log.last);
-	struct gz_scene_settings read = parsed(text.bytes, &display);
+	struct gz_scene_settings read = scene_of_text(text.bytes, &display);
 	if (!has_display) {
 		assert_int_equal(read.display.px[0], 0);
 		read.display = settings->display;
@@ -146,12 +136,13 @@ static void every_key_of_every_table_reads_back(void **state)
 	assert_prints_back(&all, true);
 }
 
-static void only_what_differs_from_its_preset_is_printed(void **state)
+static void only_values_that_differ_from_presets_are_printed(void **state)
 {
 	(void)state;
 	bool display;
 	struct gz_text text = { 0 };
-	struct gz_scene_settings settings = parsed(SCENE "[camera]\nfov_deg = 40\n", &display);
+	struct gz_scene_settings settings =
+		scene_of_text(SCENE "[camera]\nfov_deg = 40\n", &display);
 	settings.rays.ray_sampling_rate = 2;
 	settings.image_sampling_rate = 0.1 + 0.2;
 	const struct gz_scene_saved saved = { &settings, false, "" };
@@ -167,8 +158,8 @@ static void type_of_a_procedural_volume_is_kept(void **state)
 {
 	(void)state;
 	bool display;
-	struct gz_scene_settings settings =
-		parsed("[volume]\nprocedural = supernova\n[transfer]\nfile = a.tf\n", &display);
+	struct gz_scene_settings settings = scene_of_text(
+		"[volume]\nprocedural = supernova\n[transfer]\nfile = a.tf\n", &display);
 	assert_int_equal(settings.type, GZ_RAW_FLOAT32);
 	assert_prints_back(&settings, false);
 	settings.type = GZ_RAW_UINT8;
@@ -181,7 +172,7 @@ static void value_outside_its_table_is_refused(void **state)
 	bool display;
 	struct gz_text text = { 0 };
 	struct captured_log log;
-	struct gz_scene_settings settings = parsed(SCENE, &display);
+	struct gz_scene_settings settings = scene_of_text(SCENE, &display);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	captured_log_init(&log, NULL);
 	settings.camera.fov_deg = NAN;
@@ -207,7 +198,7 @@ static void edited_scene_keeps_comments_and_lines_that_are_true(void **state)
 	bool display;
 	const char before[] =
 		"; my scene\n" SCENE "[camera]\n  fov_deg=3.0e1 ; narrow\nheight = 1.50\n";
-	struct gz_scene_settings settings = parsed(before, &display);
+	struct gz_scene_settings settings = scene_of_text(before, &display);
 	edit(before, &settings, false, before);
 	settings.camera.fov_deg = 40;
 	settings.foveation.mdc_square_px = 400;
@@ -216,14 +207,14 @@ static void edited_scene_keeps_comments_and_lines_that_are_true(void **state)
 	     "mdc_square_px = 400\n");
 }
 
-static void edited_scene_of_another_volume_loses_what_was_of_the_first(void **state)
+static void edited_scene_of_another_volume_loses_keys_of_the_first(void **state)
 {
 	(void)state;
 	bool display;
 	const char before[] = "[volume]\nfile = a.raw\ndims = 2 3 4\ntype = uint16 ; as told\n"
 			      "endian = big\nspacing = 1 1 2\n[transfer]\nfile = a.tf\n"
 			      "[display]\npx = 100 100\nmm = 10 10\ndistance_mm = 600\n";
-	struct gz_scene_settings settings = parsed(before, &display);
+	struct gz_scene_settings settings = scene_of_text(before, &display);
 	memset(settings.volume_file, 0, sizeof settings.volume_file);
 	strcpy(settings.volume_file, "b.nii");
 	settings.dims[0] = 0;
@@ -237,7 +228,7 @@ static void objects_are_printed_and_edited_under_their_names(void **state)
 	static const char before[] = "; two halves\n[object left]\nvolume = a.nii ; the data\n"
 				     "visible = no\n";
 	bool display;
-	struct gz_scene_settings settings = parsed(before, &display);
+	struct gz_scene_settings settings = scene_of_text(before, &display);
 	assert_prints_back(&settings, false);
 	struct gz_scene_object *object = &settings.objects.items[0];
 	object->visible = true;
@@ -251,10 +242,11 @@ static void scene_saved_over_other_objects_loses_theirs(void **state)
 {
 	(void)state;
 	bool display;
-	struct gz_scene_settings settings = parsed("[object left]\nvolume = a.nii\n", &display);
+	struct gz_scene_settings settings =
+		scene_of_text("[object left]\nvolume = a.nii\n", &display);
 	edit("; mine\n[object right]\nvolume = b.nii\n[camera]\nheight = 2\n", &settings, false,
 	     "[object left]\nvolume = a.nii\n");
-	settings = parsed(SCENE, &display);
+	settings = scene_of_text(SCENE, &display);
 	edit("[object right]\nvolume = b.nii\n", &settings, false,
 	     "[volume]\nprocedural = shells\n\n[transfer]\nfile = ramp.tf\n");
 }
@@ -264,7 +256,7 @@ static void text_that_is_no_scene_is_not_edited(void **state)
 	(void)state;
 	bool display;
 	struct gz_text text = { 0 };
-	struct gz_scene_settings settings = parsed(SCENE, &display);
+	struct gz_scene_settings settings = scene_of_text(SCENE, &display);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	gz_text_add(&text, "nonsense\n");
 	assert_int_equal(gz_scene_edit(&saved, "s.scene", NULL, &text), GZ_ERR_FORMAT);
@@ -280,7 +272,7 @@ static void make_folder(const char *name)
 		fail_msg("%s: cannot be made", path);
 }
 
-static void saved_elsewhere_its_files_are_found(void **state)
+static void files_of_a_scene_saved_elsewhere_are_found(void **state)
 {
 	(void)state;
 	struct gz_scene scene;
@@ -323,7 +315,7 @@ static void gaze_log_of_a_saved_scene_is_found_other_sources_stay(void **state)
 {
 	(void)state;
 	bool display;
-	struct gz_scene_settings settings = parsed(SCENE, &display);
+	struct gz_scene_settings settings = scene_of_text(SCENE, &display);
 	char from[GZ_PATH_SIZE], to[GZ_PATH_SIZE];
 	files_write("eye.gzl", "x", 1);
 	make_folder("logs");
@@ -348,7 +340,7 @@ static void file_in_a_folder_below_is_named_relative(void **state)
 	char scene[GZ_PATH_SIZE];
 	snprintf(scene, sizeof scene, "%s", files_path("below/a.scene"));
 	struct gz_scene_settings settings =
-		parsed("[volume]\nfile = v.nii\n[transfer]\nfile = none.tf\n", &display);
+		scene_of_text("[volume]\nfile = v.nii\n[transfer]\nfile = none.tf\n", &display);
 	const struct gz_scene_saved saved = { &settings, false, scene };
 	const char *up = files_path("up.scene");
 	assert_int_equal(gz_scene_write(&saved, up, NULL), GZ_OK);
@@ -366,7 +358,7 @@ static void name_that_a_line_cannot_hold_is_refused_and_the_file_stays(void **st
 	bool display;
 	struct captured_log log;
 	struct gz_text text = { 0 };
-	struct gz_scene_settings settings = parsed(SCENE, &display);
+	struct gz_scene_settings settings = scene_of_text(SCENE, &display);
 	const char *path = files_write("kept.scene", SCENE, sizeof SCENE - 1);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	captured_log_init(&log, NULL);
@@ -385,7 +377,7 @@ static void file_that_is_no_scene_is_replaced_whole(void **state)
 	(void)state;
 	bool display;
 	struct gz_text text = { 0 };
-	struct gz_scene_settings settings = parsed(SCENE, &display);
+	struct gz_scene_settings settings = scene_of_text(SCENE, &display);
 	const char *path = files_write("notes.txt", "milk, bread\n", 12);
 	const struct gz_scene_saved saved = { &settings, false, "" };
 	assert_int_equal(gz_scene_write(&saved, path, NULL), GZ_OK);
@@ -399,15 +391,15 @@ TEST_SUITE(scene_write)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_key_of_every_table_reads_back),
-		cmocka_unit_test(only_what_differs_from_its_preset_is_printed),
+		cmocka_unit_test(only_values_that_differ_from_presets_are_printed),
 		cmocka_unit_test(type_of_a_procedural_volume_is_kept),
 		cmocka_unit_test(value_outside_its_table_is_refused),
 		cmocka_unit_test(edited_scene_keeps_comments_and_lines_that_are_true),
-		cmocka_unit_test(edited_scene_of_another_volume_loses_what_was_of_the_first),
+		cmocka_unit_test(edited_scene_of_another_volume_loses_keys_of_the_first),
 		cmocka_unit_test(objects_are_printed_and_edited_under_their_names),
 		cmocka_unit_test(scene_saved_over_other_objects_loses_theirs),
 		cmocka_unit_test(text_that_is_no_scene_is_not_edited),
-		cmocka_unit_test(saved_elsewhere_its_files_are_found),
+		cmocka_unit_test(files_of_a_scene_saved_elsewhere_are_found),
 		cmocka_unit_test(gaze_log_of_a_saved_scene_is_found_other_sources_stay),
 		cmocka_unit_test(file_in_a_folder_below_is_named_relative),
 		cmocka_unit_test(name_that_a_line_cannot_hold_is_refused_and_the_file_stays),

@@ -1,33 +1,23 @@
-/* Tables of spacings: what is read, and what is refused with which words. */
+/* Tables of spacings: what is read, and what is refused with which heard.last. */
 #include "suite.h"
 
 #include <stddef.h>
 #include <stdint.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/captured_log.h"
 #include "render/plan/method.h"
 #include "render/scene/scene.h"
+#include "volume_files.h"
 
-static char message[512];
-
-static void keep(void *user, enum gz_log_level level, const char *module, const char *text)
-{
-	(void)user;
-	(void)level;
-	(void)module;
-	snprintf(message, sizeof message, "%s", text);
-}
+static struct captured_log heard;
 
 static enum gz_result parse(const char *text, size_t size, struct gz_spacing_table *out)
 {
-	struct gz_log log;
-	gz_log_init(&log, keep, NULL, NULL);
-	message[0] = '\0';
-	return gz_spacing_table_parse("t", text, size, &log, out);
+	captured_log_init(&heard, NULL);
+	return gz_spacing_table_parse("t", text, size, &heard.log, out);
 }
 
 static void rows_unit_and_comments_are_read(void **state)
@@ -43,7 +33,7 @@ static void rows_unit_and_comments_are_read(void **state)
 	assert_true(gz_spacing_table_valid(&table));
 }
 
-static void pixels_are_the_unit_unless_told(void **state)
+static void pixels_are_the_default_unit(void **state)
 {
 	(void)state;
 	struct gz_spacing_table table;
@@ -52,7 +42,7 @@ static void pixels_are_the_unit_unless_told(void **state)
 	assert_int_equal(table.count, 1);
 }
 
-static void what_is_wrong_is_refused_with_its_line(void **state)
+static void errors_are_refused_with_their_line(void **state)
 {
 	(void)state;
 	static const struct {
@@ -84,22 +74,22 @@ static void what_is_wrong_is_refused_with_its_line(void **state)
 		assert_int_equal(parse(cases[i].text, strlen(cases[i].text), &table),
 				 GZ_ERR_FORMAT);
 		assert_int_equal(table.count, 77);
-		if (strncmp(message, cases[i].says, strlen(cases[i].says)) != 0)
-			fail_msg("\"%s\": said \"%s\", not \"%s\"", cases[i].text, message,
+		if (strncmp(heard.last, cases[i].says, strlen(cases[i].says)) != 0)
+			fail_msg("\"%s\": said \"%s\", not \"%s\"", cases[i].text, heard.last,
 				 cases[i].says);
 	}
 }
 
-static void bytes_that_are_no_text_are_refused(void **state)
+static void binary_bytes_are_refused(void **state)
 {
 	(void)state;
 	char text[400];
 	struct gz_spacing_table table;
 	assert_int_equal(parse("0 1\0001", 6, &table), GZ_ERR_FORMAT);
-	assert_non_null(strstr(message, "NUL"));
+	assert_non_null(strstr(heard.last, "NUL"));
 	memset(text, ' ', sizeof text);
 	assert_int_equal(parse(text, sizeof text, &table), GZ_ERR_FORMAT);
-	assert_non_null(strstr(message, "longer than 255"));
+	assert_non_null(strstr(heard.last, "longer than 255"));
 }
 
 static void sixty_five_rows_are_one_too_many(void **state)
@@ -115,51 +105,38 @@ static void sixty_five_rows_are_one_too_many(void **state)
 	assert_int_equal(parse(text, full, &table), GZ_OK);
 	assert_int_equal(table.count, GZ_SPACING_TABLE_MAX);
 	assert_int_equal(parse(text, used, &table), GZ_ERR_FORMAT);
-	assert_non_null(strstr(message, "t:65: row: one too many"));
-}
-
-static void write_file(const char *path, const char *text)
-{
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	assert_int_equal(fclose(file), 0);
+	assert_non_null(strstr(heard.last, "t:65: row: one too many"));
 }
 
 static void scene_finds_its_table_beside_itself(void **state)
 {
 	(void)state;
-	char folder[] = "/tmp/gz_table_XXXXXX", scene[64], table[64];
 	struct gz_foveation foveation = gz_foveation_default();
-	struct gz_log log;
-	assert_non_null(mkdtemp(folder));
-	snprintf(scene, sizeof scene, "%s/a.scene", folder);
-	snprintf(table, sizeof table, "%s/mine.txt", folder);
-	write_file(table, "0 1 1\n20 8 3\n");
-	gz_log_init(&log, keep, NULL, NULL);
+	char scene[GZ_PATH_SIZE];
+	files_write_text("mine.txt", "0 1 1\n20 8 3\n", NULL, 0);
+	snprintf(scene, sizeof scene, "%s", files_path("a.scene"));
+	captured_log_init(&heard, NULL);
 	foveation.method = GZ_METHOD_TABLE;
-	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_ERR_FORMAT);
-	assert_non_null(strstr(message, "foveation.table: not given"));
+	assert_int_equal(gz_scene_load_table(scene, &heard.log, &foveation), GZ_ERR_FORMAT);
+	assert_non_null(strstr(heard.last, "foveation.table: not given"));
 	strcpy(foveation.table_file, "mine.txt");
-	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_OK);
+	assert_int_equal(gz_scene_load_table(scene, &heard.log, &foveation), GZ_OK);
 	assert_int_equal(foveation.table.count, 2);
 	strcpy(foveation.table_file, "other.txt");
-	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_ERR_NOT_FOUND);
-	assert_non_null(strstr(message, "foveation.table: other.txt is neither"));
+	assert_int_equal(gz_scene_load_table(scene, &heard.log, &foveation), GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(heard.last, "foveation.table: other.txt is neither"));
 	foveation.method = GZ_METHOD_ACUITY;
 	foveation.table_file[0] = '\0';
-	assert_int_equal(gz_scene_load_table(scene, &log, &foveation), GZ_OK);
-	unlink(table);
-	rmdir(folder);
+	assert_int_equal(gz_scene_load_table(scene, &heard.log, &foveation), GZ_OK);
 }
 
 TEST_SUITE(spacing_table)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rows_unit_and_comments_are_read),
-		cmocka_unit_test(pixels_are_the_unit_unless_told),
-		cmocka_unit_test(what_is_wrong_is_refused_with_its_line),
-		cmocka_unit_test(bytes_that_are_no_text_are_refused),
+		cmocka_unit_test(pixels_are_the_default_unit),
+		cmocka_unit_test(errors_are_refused_with_their_line),
+		cmocka_unit_test(binary_bytes_are_refused),
 		cmocka_unit_test(sixty_five_rows_are_one_too_many),
 		cmocka_unit_test(scene_finds_its_table_beside_itself),
 	};
