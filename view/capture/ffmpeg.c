@@ -231,8 +231,7 @@ static void tell_end(const struct gz_ffmpeg *ffmpeg, int status)
 	if (words[0])
 		gz_err(ffmpeg->log,
 		       "%s: the video is incomplete: ffmpeg: \"%s\"; check that the folder is "
-		       "writable and "
-		       "has space, and that the ending is a video's",
+		       "writable and has space, and that the ending is a video's",
 		       ffmpeg->path, words);
 	else if (WIFSIGNALED(status))
 		gz_err(ffmpeg->log, "%s: the video is incomplete: ffmpeg was ended by signal %d",

@@ -7,6 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/text.h"
+
 #define GZ_LOG_MODULE "gazeview"
 
 void gz_output_folder(const char *path, char *out, size_t size)
@@ -70,9 +72,8 @@ enum gz_result gz_capture_name(const char *folder, const char *ending, char out_
 	for (int i = 1; i <= NUMBERS; i++) {
 		if (i > 1)
 			snprintf(number, sizeof number, "_%d", i);
-		const int length = snprintf(path, sizeof path, "%s/gazeview-%s%s%s", folder, when,
-					    number, ending);
-		if (length < 0 || length >= GZ_PATH_SIZE)
+		if (gz_text_print(path, sizeof path, "%s/gazeview-%s%s%s", folder, when, number,
+				  ending) != GZ_OK)
 			return GZ_ERR_FULL;
 		if (access(path, F_OK) != 0) {
 			snprintf(out_path, GZ_PATH_SIZE, "%s", path);

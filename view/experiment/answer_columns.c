@@ -326,12 +326,12 @@ static json_t *levels_of(const char *text)
 		size_t length = strcspn(text, "|"), key = strcspn(text, ":");
 		bool more = text[length] == '|';
 		char *name = strndup(text, key);
-		const char *value = text + key + 2; /* behind ": " */
+		const char *value = text + key + 2; /* after ": " */
 		size_t value_length = length - key - 2 - (more ? 1 : 0);
 		if (name)
 			json_object_set_new(levels, name, json_stringn(value, value_length));
 		free(name);
-		text += length + (more ? 2 : 0); /* behind "| " */
+		text += length + (more ? 2 : 0); /* after "| " */
 	}
 	return levels;
 }

@@ -31,10 +31,7 @@ struct gz_answers {
 
 bool gz_answers_label_valid(const char *label)
 {
-	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-				      "0123456789";
-	return label[0] && label[strspn(label, allowed)] == '\0' &&
-	       strlen(label) < GZ_PARTICIPANT_SIZE;
+	return gz_experiment_is_word(label) && strlen(label) < GZ_PARTICIPANT_SIZE;
 }
 
 /* Whether --answers names the file itself. */
@@ -47,15 +44,12 @@ static bool is_answer_file(const char *place)
 enum gz_result gz_answers_path(const struct gz_experiment *experiment,
 			       const struct gz_answers_request *request, char *path, size_t size)
 {
-	int length = 0;
 	if (is_answer_file(request->place))
-		length = snprintf(path, size, "%s", request->place);
-	else
-		length = snprintf(path, size, "%s/sub-%s%s%s_task-%s_events.tsv",
-				  request->place[0] ? request->place : ".", request->participant,
-				  request->session[0] ? "_ses-" : "", request->session,
-				  experiment->params.name);
-	return length > 0 && (size_t)length < size ? GZ_OK : GZ_ERR_FULL;
+		return gz_text_print(path, size, "%s", request->place);
+	return gz_text_print(path, size, "%s/sub-%s%s%s_task-%s_events.tsv",
+			     request->place[0] ? request->place : ".", request->participant,
+			     request->session[0] ? "_ses-" : "", request->session,
+			     experiment->params.name);
 }
 
 static struct gz_answer_row answer_row_of(const struct gz_answers *answers,

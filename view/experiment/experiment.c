@@ -31,6 +31,19 @@ int gz_answer_key_of(const char *name)
 	return (key >= 'a' && key <= 'z') || (key >= '0' && key <= '9') ? key : GZ_KEY_NONE;
 }
 
+#define LETTERS_AND_DIGITS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+
+bool gz_experiment_is_word(const char *text)
+{
+	return text[0] && text[strspn(text, LETTERS_AND_DIGITS)] == '\0';
+}
+
+bool gz_experiment_is_label(const char *text)
+{
+	return text[0] && text[strspn(text, LETTERS_AND_DIGITS "_.+-")] == '\0' &&
+	       strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
+}
+
 const struct gz_experiment_setting *gz_experiment_find_setting(
 	const struct gz_experiment_section *section, const char *key, int alternative)
 {

@@ -154,15 +154,6 @@ static enum gz_result refuse_value(const struct reader *reader, const struct gz_
 	return GZ_ERR_FORMAT;
 }
 
-/* Names become part of tab-separated values and of marks in the gaze log. */
-static bool is_label(const char *text)
-{
-	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-				      "0123456789_.+-";
-	return text[0] && text[strspn(text, allowed)] == '\0' &&
-	       strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
-}
-
 static struct gz_experiment_section *find_section(struct gz_experiment_section *sections,
 						  size_t count, const char *label)
 {
@@ -179,7 +170,7 @@ static enum gz_result begin_named(struct reader *reader, const struct gz_ini_ite
 {
 	char what[96];
 	const struct gz_experiment_section *first = find_section(sections, *count, label);
-	if (!is_label(label))
+	if (!gz_experiment_is_label(label))
 		return refuse_experiment_section(
 			reader, item,
 			"not a name; use letters, digits and _ . + -, as in [trial fine]");

@@ -12,6 +12,13 @@
 #include "view/experiment/experiment.h"
 #include "view/experiment/run.h"
 
+/** Whether @p text is one or more ASCII letters and digits, like a BIDS label. */
+bool gz_experiment_is_word(const char *text);
+
+/** Whether @p text is a name of a trial, block or answer: ASCII letters, digits and _ . + -,
+ * shorter than GZ_EXPERIMENT_LABEL_SIZE bytes. */
+bool gz_experiment_is_label(const char *text);
+
 /**
  * Build the blocks and conditions from the sections and check values against each other.
  *

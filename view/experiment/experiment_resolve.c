@@ -150,13 +150,6 @@ static size_t split_at_blanks(char *text, char **out_words, size_t room)
 	return count;
 }
 
-static bool is_answer(const char *text)
-{
-	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-				      "0123456789_.+-";
-	return text[strspn(text, allowed)] == '\0' && strlen(text) < GZ_EXPERIMENT_LABEL_SIZE;
-}
-
 static enum gz_result take_answer_keys(const struct maker *maker)
 {
 	struct gz_condition *condition = maker->condition;
@@ -210,7 +203,7 @@ static enum gz_result take_answers(const struct maker *maker)
 		return refuse_trial(maker, "answers", "%zu answers for %zu keys; give one for each",
 				    count, condition->answer_count);
 	for (size_t i = 0; i < count; i++) {
-		if (!is_answer(words[i]))
+		if (!gz_experiment_is_label(words[i]))
 			return refuse_trial(maker, "answers",
 					    "%.60s: not a name; use letters, digits and _ . + -, "
 					    "at most 49 bytes",
@@ -432,11 +425,9 @@ static enum gz_result refuse_common(const struct resolver *resolver, const char 
 
 static enum gz_result check_common(const struct resolver *resolver)
 {
-	static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-				      "0123456789";
 	struct gz_experiment *experiment = resolver->experiment;
 	struct gz_experiment_params *params = &experiment->params;
-	if (!params->name[0] || params->name[strspn(params->name, allowed)])
+	if (!gz_experiment_is_word(params->name))
 		return refuse_common(resolver, "name",
 				     params->name[0] ? "only letters and digits are allowed"
 						     : "missing; use letters and digits");

@@ -8,6 +8,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
+
 static int compare_entries(const void *left, const void *right)
 {
 	const struct gz_folder_entry *a = left, *b = right;
@@ -107,18 +109,12 @@ enum gz_result gz_folder_path_of(const struct gz_folder *folder, const char *nam
 				 char out_path[GZ_PATH_SIZE])
 {
 	const char *home = getenv("HOME");
-	int length;
 	if (name[0] == '/')
-		length = snprintf(out_path, GZ_PATH_SIZE, "%s", name);
-	else if (name[0] == '~' && (name[1] == '/' || !name[1]) && home)
-		length = snprintf(out_path, GZ_PATH_SIZE, "%s%s", home, name + 1);
-	else
-		length = snprintf(out_path, GZ_PATH_SIZE, "%s/%s",
-				  strcmp(folder->path, "/") == 0 ? "" : folder->path, name);
-	if (length >= 0 && length < GZ_PATH_SIZE)
-		return GZ_OK;
-	out_path[0] = '\0';
-	return GZ_ERR_FULL;
+		return gz_text_print(out_path, GZ_PATH_SIZE, "%s", name);
+	if (name[0] == '~' && (name[1] == '/' || !name[1]) && home)
+		return gz_text_print(out_path, GZ_PATH_SIZE, "%s%s", home, name + 1);
+	return gz_text_print(out_path, GZ_PATH_SIZE, "%s/%s",
+			     strcmp(folder->path, "/") == 0 ? "" : folder->path, name);
 }
 
 void gz_folder_free(struct gz_folder *folder)

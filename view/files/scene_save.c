@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "render/scene/scene_files.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -13,8 +14,7 @@ static const char scene_ending[] = ".scene", transfer_ending[] = ".tf";
 enum gz_result gz_scene_save_path(const char *typed, char out_path[GZ_PATH_SIZE])
 {
 	const char *ending = gz_path_ends(typed, scene_ending) ? "" : scene_ending;
-	const int length = snprintf(out_path, GZ_PATH_SIZE, "%s%s", typed, ending);
-	return length > 0 && length < GZ_PATH_SIZE ? GZ_OK : GZ_ERR_FULL;
+	return gz_text_print(out_path, GZ_PATH_SIZE, "%s%s", typed, ending);
 }
 
 /* Length of a path without all endings of its last name: 1 for "a.nii.gz". A leading dot begins no

@@ -12,7 +12,8 @@
 
 #define GZ_LOG_MODULE "gazeview"
 
-/* Size of an entry, bytes, with room to spare; digits that a double keeps; size of the age. */
+/* Sizes of texts, bytes: an entry has a dozen numbers and four short names. NUMBER_DIGITS: decimal
+ * digits that a double keeps. */
 enum { ENTRY_SIZE = 1024, NUMBER_DIGITS = 15, NUMBER_SIZE = 40 };
 
 static const char head[] = "{\"frames\": [";
@@ -45,7 +46,7 @@ static json_t *number_json(double value)
 	return isfinite(value) ? json_real(value) : json_null();
 }
 
-/* To 0.1 us: more digits are noise. */
+/* Rounded to 0.1 us; further digits are noise. */
 static json_t *milliseconds_json(double ms)
 {
 	return number_json(round(ms * 1e4) / 1e4);
@@ -77,8 +78,8 @@ static json_t *record_json(const struct gz_frame_record *record)
 		record->budget);
 }
 
-/* The entry with what separates it from the one before, and the end of the file. @return its
- * length, 0: no room */
+/* Print the separator, the entry and the tail of the file. @return the length; 0: it does not fit,
+ * or out of memory */
 static size_t print_entry(const struct gz_frame_record *record, bool first, char text[ENTRY_SIZE])
 {
 	json_t *entry = record_json(record);

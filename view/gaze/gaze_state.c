@@ -96,7 +96,8 @@ void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *o
 		judge_age(signs, &state);
 	if (state.level == GZ_GAZE_LEVEL_GOOD && signs->from_daemon && signs->window_elsewhere)
 		set_reason(&state, GZ_GAZE_LEVEL_WARN,
-			   "OTHER DISPLAY: the window is not on the tracker's display", "; press D to move it");
+			   "OTHER DISPLAY: the window is not on the tracker's display",
+			   "; press D to move it");
 	*out_state = state;
 }
 

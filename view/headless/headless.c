@@ -203,8 +203,8 @@ static struct gz_gaze_reading gaze_now(struct headless *self, int frame)
 	if (!reading.known && !self->silence_told) {
 		const char *endpoint = self->options->gaze.text;
 		gz_warn(self->log,
-			"no gaze from %s yet; the plan stays at the centre (start gazed, "
-			"or run gazectl status)",
+			"no gaze from %s yet; the plan stays at the centre (start gazed, or run "
+			"gazectl status)",
 			endpoint[0] ? endpoint : "the local daemon");
 		self->silence_told = true;
 	}
@@ -305,11 +305,11 @@ static enum gz_result print_frame_line(const struct headless *self,
 	gz_frame_record_print(record, line, sizeof line);
 	if (puts(line) >= 0 && fflush(stdout) == 0)
 		return GZ_OK;
-	gz_err(self->log, "cannot write to stdout: %s; give it a place with room", strerror(errno));
+	gz_err(self->log, "cannot write to standard output: %s; free some space", strerror(errno));
 	return GZ_ERR_IO;
 }
 
-/* The session begins with the first frame: only then is it known what it is on. */
+/* A session begins with the first frame, when the display is known. */
 static enum gz_result begin_session(struct headless *self, const struct gz_display *display)
 {
 	const struct gz_recording_start start = {

@@ -198,8 +198,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 		return gz_sitting_options_check(&options->sitting, log);
 	gz_err(log,
 	       "--experiment: %s cannot be combined with it, as the file sets what is shown; "
-	       "remove "
-	       "one of them",
+	       "remove one of them",
 	       other);
 	return GZ_ERR_INVAL;
 }
@@ -223,9 +222,7 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 	bool by_mouse =
 		options->gaze.kind == GZ_GAZE_MOUSE || options->gaze.kind == GZ_GAZE_POINTER;
 	if (options->headless && by_mouse) {
-		gz_err(log,
-		       "--gaze %s: needs a window; remove --headless or "
-		       "give X,Y",
+		gz_err(log, "--gaze %s: needs a window; remove --headless or give X,Y",
 		       options->gaze_text);
 		return GZ_ERR_INVAL;
 	}
@@ -285,8 +282,7 @@ enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz
 	if (!scan_pattern(pattern, &scanned)) {
 		gz_err(log,
 		       "--out %s: only %%d, %%4d or %%04d (width 1 to 9) may follow a percent "
-		       "sign; "
-		       "write %%%% for the sign itself",
+		       "sign; write %%%% for the sign itself",
 		       pattern);
 		return GZ_ERR_INVAL;
 	}
@@ -297,8 +293,7 @@ enum gz_result gz_pattern_check(const char *pattern, int frames, const struct gz
 	}
 	if (frames > 1 && scanned.conversions == 0) {
 		gz_err(log,
-		       "--out %s: several frames need a number in the name, as in "
-		       "frame-%%04d.png",
+		       "--out %s: several frames need a number in the name, as in frame-%%04d.png",
 		       pattern);
 		return GZ_ERR_INVAL;
 	}
@@ -396,8 +391,7 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 	} else if (strcmp(text, "centre") != 0) {
 		gz_err(log,
 		       "--gaze %s: not a gaze source; give two finite numbers such as 0.5,0.5, or "
-		       "centre, "
-		       "daemon, mouse, pointer, ipc://..., tcp://... or FILE.gzl",
+		       "centre, daemon, mouse, pointer, ipc://..., tcp://... or FILE.gzl",
 		       text);
 		return GZ_ERR_INVAL;
 	}

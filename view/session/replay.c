@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "view/session/session_reader.h"
 
 #define GZ_LOG_MODULE "replay"
@@ -51,9 +52,8 @@ enum gz_result gz_replay_adopt(struct gz_view_options *options, const struct gz_
 	const enum gz_result r = read_first(options->replay, log, &header, &frame);
 	if (r != GZ_OK)
 		return r;
-	const int length = snprintf(options->scene, sizeof options->scene, "%s/" GZ_SESSION_SCENE,
-				    options->replay);
-	if (length < 0 || (size_t)length >= sizeof options->scene) {
+	if (gz_text_print(options->scene, sizeof options->scene, "%s/" GZ_SESSION_SCENE,
+			  options->replay) != GZ_OK) {
 		gz_err(log, "--replay %s: the path is too long; move the session", options->replay);
 		return GZ_ERR_FULL;
 	}

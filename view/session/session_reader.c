@@ -145,8 +145,7 @@ enum gz_result gz_session_open(const char *path, const struct gz_log *log,
 {
 	char name[GZ_PATH_SIZE];
 	struct stat status;
-	const int length = snprintf(name, sizeof name, "%s/" GZ_SESSION_FRAMES, path);
-	if (length < 0 || length >= GZ_PATH_SIZE) {
+	if (gz_text_print(name, sizeof name, "%s/" GZ_SESSION_FRAMES, path) != GZ_OK) {
 		gz_err(log, "%s: the path is too long; move the session", path);
 		return GZ_ERR_FULL;
 	}

@@ -25,7 +25,7 @@ struct gz_session_writer {
 	int frames_fd, gaze_fd;
 	struct gz_text lines; /* to be written together */
 	uint64_t size;        /* of the complete lines in the file, bytes */
-	uint32_t crc;         /* of these lines */
+	uint32_t crc;         /* CRC-32 of these lines */
 	uint64_t frames;
 	bool any; /* a frame has been added */
 	bool failed;
@@ -429,8 +429,8 @@ enum gz_result gz_recording_begin(const struct gz_recording_start *start, const 
 	gz_frame_forget(start->maker);
 	if (scene->volume.bricks)
 		gz_warn(log,
-			"%s: a replay shows all bricks of the volume, not only those loaded at "
-			"the time",
+			"%s: a replay shows all bricks of the volume, not only those loaded at the "
+			"time",
 			start->path);
 	return GZ_OK;
 }

@@ -58,7 +58,7 @@ static bool with_a_pyramid(const struct gz_scene_settings *settings)
 	return gz_method_of(&settings->foveation)->is_pyramid;
 }
 
-/* Acuity sets the steps where they go by it, whatever sets the spacings. */
+/* The acuity keys also apply if only the step lengths follow acuity. */
 static bool by_acuity(const struct gz_scene_settings *settings)
 {
 	return gz_method_of(&settings->foveation)->own_steps == GZ_STEPS_RUNG ||
@@ -95,7 +95,7 @@ static bool with_a_difference(const struct gz_scene_settings *settings)
 	return settings->view.compare == GZ_COMPARE_DIFFERENCE;
 }
 
-/* The first that the key is or begins with. */
+/* The first row whose key begins the given one applies. */
 static const struct {
 	const char *key;
 	applies_function *applies;

@@ -85,8 +85,8 @@ static GLFWmonitor *find_monitor(const struct target_window *window)
 	}
 	if (px[0] > 0 && !window->options->target.windowed)
 		gz_warn(window->log,
-			"no monitor has the %dx%d px of the tracker's display: the "
-			"targets are shown on the primary one; correct display.px in gazed.conf",
+			"no monitor has the %dx%d px of the tracker's display: the targets are "
+			"shown on the primary one; correct display.px in gazed.conf",
 			px[0], px[1]);
 	return glfwGetPrimaryMonitor();
 }
@@ -130,8 +130,7 @@ static enum gz_result open_window(struct target_window *window)
 {
 	if (!glfwInit()) {
 		gz_err(window->log,
-		       "no window: %s; set DISPLAY to the X server of the tracker's "
-		       "display",
+		       "no window: %s; set DISPLAY to the X server of the tracker's display",
 		       gz_glfw_reason());
 		return GZ_ERR_NO_DEVICE;
 	}
@@ -289,8 +288,8 @@ static enum gz_result show_targets(struct target_window *window)
 		swap_target(window);
 		glfwWaitEventsTimeout(FRAME_S);
 		if (gz_glfw_context_lost()) {
-			gz_err(window->log, "the graphics driver lost the window's context: "
-					    "no more targets are shown; start again");
+			gz_err(window->log, "the graphics driver lost the window's context: no "
+					    "more targets are shown; start again");
 			tell_time("cancelled");
 			return GZ_ERR_NO_DEVICE;
 		}
@@ -325,8 +324,7 @@ static void tell_display_lost(void *user)
 {
 	const struct target_window *window = user;
 	gz_err(window->log, "the display is gone: its X server has ended or is out of reach; no "
-			    "more targets are "
-			    "shown");
+			    "more targets are shown");
 	tell_time("cancelled");
 }
 
