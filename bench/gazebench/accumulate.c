@@ -42,34 +42,34 @@ static const struct gz_option options[] = {
 	  .offset = AT(methods),
 	  .max = LIST_SIZE,
 	  .preset = "acuity,mdc,ddc",
-	  .help = "beside standard, each with options, as for gazebench run" },
+	  .help = "methods beside standard, with options as for gazebench run" },
 	{ .key = "size",
 	  .type = GZ_OPTION_SIZE,
 	  .offset = AT(size),
 	  .min = 1,
 	  .max = GZ_IMAGE_SIDE_MAX,
 	  .preset = "1024x1024",
-	  .help = "of the picture, px" },
+	  .help = "picture size, px" },
 	{ .key = "backend",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(backend),
 	  .max = LIST_SIZE,
 	  .preset = "cpu",
-	  .help = "as for gazebench run, parted by commas" },
+	  .help = "backends, separated by commas, as for gazebench run" },
 	{ .key = "turn",
 	  .type = GZ_OPTION_DOUBLE,
 	  .offset = AT(turn_deg),
 	  .min = -180,
 	  .max = 180,
 	  .preset = "0.1",
-	  .help = "what the camera that moves turns a frame, degrees" },
+	  .help = "degrees that the moving camera turns a frame" },
 	{ .key = "cache",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(cache),
 	  .max = GZ_PATH_SIZE,
 	  .preset = "",
-	  .help = "folder where converged pictures are kept; else gazecast/references in the "
-		  "user's cache" },
+	  .help = "folder for converged pictures (default: gazecast/references in the user's "
+		  "cache)" },
 	{ .key = "json",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = AT(json),
@@ -230,10 +230,13 @@ const struct gz_command gazebench_accumulate = {
 	.operands = "SCENE...",
 	.operands_max = -1,
 	.summary = "measure what keeping earlier frames gains",
-	.details = "The error of each method's picture against the converged one and the time of a "
-		   "frame, with\ntemporal.accumulate: after 1, 4, 16 and 64 frames while gaze and "
-		   "camera are still, and of the\nlast of 16 frames while the camera turns; beside "
-		   "frames that keep nothing, \"by itself\".\ngazebench run measures without it.\n",
+	.details = "Prints the time of a frame and the error of each method's picture against the "
+		   "converged one, with\n"
+		   "temporal.accumulate: after 1, 4, 16 and 64 frames while gaze and camera are "
+		   "still, and for the\n"
+		   "last of 16 frames while the camera turns. \"by itself\" is a frame that keeps "
+		   "nothing.\n"
+		   "gazebench run measures without accumulation.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_accumulate,

@@ -97,15 +97,14 @@ const struct gz_command gazebench_compare = {
 	.operands_max = 2,
 	.summary = "print how far two pictures are apart",
 	.details =
-		"Prints lines \"name value\": psnr_db, ssim, flip (0 = alike, 1 = as far apart as "
-		"can be).\nssim is nan where a picture is smaller than its window of 11 pixels.\n"
-		"flip depends on how large a pixel appears. Without --ppd that is as FLIP's "
-		"authors "
-		"have it: a display of\n3840 px and 0.7 m across, seen from 0.7 m. gazebench run "
-		"takes "
-		"the pixels per degree of the scene's\ndisplay, so its numbers are those of "
-		"compare "
-		"with that --ppd.\n",
+		"Prints lines \"name value\": psnr_db, ssim, flip (0 = identical, 1 = maximally "
+		"different).\n"
+		"ssim is nan if a picture is smaller than its window of 11 pixels.\n"
+		"flip depends on how large a pixel appears. The default --ppd is that of FLIP's "
+		"authors: a\n"
+		"display of 3840 px and 0.7 m across, seen from 0.7 m. gazebench run uses the "
+		"pixels per\n"
+		"degree of the scene's display; compare with that --ppd gives the same numbers.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_compare,

@@ -253,15 +253,18 @@ const struct gz_command gazebench_filter = {
 	.operands = "LOG",
 	.operands_max = 1,
 	.summary = "measure jitter and lag of the gaze filter on a recording",
-	.details =
-		"LOG is a gaze log (.gzl); it runs through the pipeline with its own settings, "
-		"whose certain labels\ntell fixations and saccades. Prints, for the pipeline with "
-		"smooth_pass_deg swept and for the\n1 euro filter with beta swept: jitter, the "
-		"step-to-step RMS within fixations, of the raw signal's;\ndistance from a "
-		"fixation's centre, likewise; and lag, how much later 20, 50 and 80 % of a "
-		"saccade's\nway are done, in samples and ms, over saccades above 2 degrees. The "
-		"raw signal's are 1, 1 and 0.\nCharts are drawn by gnuplot; without it a warning "
-		"says so, and the numbers are told.\n",
+	.details = "LOG is a gaze log (.gzl). It runs through the pipeline with its recorded "
+		   "settings; the pipeline's\n"
+		   "final labels distinguish fixations and saccades. Prints, for the pipeline "
+		   "swept over\n"
+		   "smooth_pass_deg and for the 1 euro filter swept over beta, relative to the raw "
+		   "signal (1, 1, 0):\n"
+		   "jitter, the step-to-step RMS within fixations; the RMS distance from a "
+		   "fixation's centre; and\n"
+		   "lag, how much later 20, 50 and 80 % of a saccade's way are done, in samples "
+		   "and ms, over\n"
+		   "saccades above 2 degrees. gnuplot draws the chart; without it there is a "
+		   "warning.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_filter,

@@ -23,7 +23,7 @@ static const struct gz_option options[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct settings, json),
 	  .preset = "false",
-	  .help = "print summary.json instead of words" },
+	  .help = "print summary.json instead of text" },
 };
 
 /* What the page says first, for each of its sections. */
@@ -61,7 +61,7 @@ static enum gz_result report_study(const struct gz_study *study, const char *fol
 	struct gz_summary summary;
 	enum gz_result result = gz_summary_make(study, &summary);
 	if (result == GZ_ERR_END) {
-		gz_err(log, "%s: no frame was measured yet: gazebench run goes on with it", folder);
+		gz_err(log, "%s: no frame was measured yet; gazebench run resumes it", folder);
 		return result;
 	}
 	if (result != GZ_OK) {
@@ -109,11 +109,12 @@ const struct gz_command gazebench_report = {
 	.operands_max = 1,
 	.summary = "chart a study, sum it up, and write it as a page",
 	.details =
-		"Writes into the study's folder: report.html, which holds everything and needs "
-		"no network;\nsummary.json; each chart as SVG and PNG. Prints what the page says "
-		"first, and its name.\nCharts are drawn by gnuplot; without it a warning says so, "
-		"and all else is written.\nA partial study is reported as far as it goes, and "
-		"marked.\n",
+		"Writes into the study's folder: report.html, a complete page that needs no "
+		"network;\n"
+		"summary.json; each chart as SVG and PNG. Prints the page's first paragraph and "
+		"its path.\n"
+		"gnuplot draws the charts; without it there is a warning and the tables remain.\n"
+		"A partial study is reported as far as it was measured, and marked.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_report,
@@ -127,7 +128,7 @@ static const struct gz_option merge_options[] = {
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct settings, json),
 	  .preset = "no",
-	  .help = "print what came of it as JSON" },
+	  .help = "print the result as JSON" },
 };
 
 static void print_merge(const char *folder, const struct gz_study *study, size_t shards,
@@ -177,8 +178,9 @@ const struct gz_command gazebench_merge = {
 	.operands = "OUT DIR...",
 	.operands_max = -1,
 	.summary = "join the shards of a study into one folder",
-	.details = "DIR... are the folders that gazebench run --shard 1/N to N/N has made, in any "
-		   "order.\nThe result is what one run would have measured, but for its times.\n",
+	.details =
+		"DIR... are the folders made by gazebench run --shard 1/N to N/N, in any order.\n"
+		"The result is the study that one run would have made, except for its times.\n",
 	.options = merge_options,
 	.option_count = sizeof merge_options / sizeof merge_options[0],
 	.run = run_merge,

@@ -34,33 +34,33 @@ static const struct gz_option options[] = {
 	  .offset = offsetof(struct settings, backends),
 	  .max = LIST_SIZE,
 	  .preset = "",
-	  .help = "backends to test, as cpu,gl; empty: all that run here" },
+	  .help = "backends to test: cpu,gl (default: all that run here)" },
 	{ .key = "methods",
 	  .type = GZ_OPTION_STRING,
 	  .offset = offsetof(struct settings, methods),
 	  .max = LIST_SIZE,
 	  .preset = "",
-	  .help = "METHOD[:OPTION=VALUE…],…, options of [foveation] and [render]; empty: all "
-		  "methods" },
+	  .help = "METHOD[:OPTION=VALUE…],…, options of [foveation] and [render] (default: all "
+		  "methods)" },
 	{ .key = "rows",
 	  .type = GZ_OPTION_STRING,
 	  .offset = offsetof(struct settings, rows),
 	  .max = LIST_SIZE,
 	  .preset = "",
-	  .help = "rows to run, as tremble,border; empty: all" },
+	  .help = "rows to run: tremble,border (default: all)" },
 	{ .key = "size",
 	  .type = GZ_OPTION_SIZE,
 	  .offset = offsetof(struct settings, size),
 	  .min = 1,
 	  .max = GZ_IMAGE_SIDE_MAX,
 	  .preset = "960x540",
-	  .help = "of the picture, px" },
+	  .help = "picture size, px" },
 	{ .key = "out",
 	  .type = GZ_OPTION_STRING,
 	  .offset = offsetof(struct settings, out),
 	  .max = GZ_PATH_SIZE,
 	  .preset = "",
-	  .help = "folder for pictures of failures; empty: NAME-stability, made when needed" },
+	  .help = "folder for pictures of failures, made when needed (default: NAME-stability)" },
 	{ .key = "json",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct settings, json),
@@ -458,11 +458,12 @@ const struct gz_command gazebench_stability = {
 	.operands = "SCENE",
 	.operands_max = 1,
 	.summary = "check, on a scene, where foveated methods fail",
-	.details = "Prints a line for each row, method and backend: whether it holds, what was "
-		   "measured and the\nbound. Beneath what fails: what was rendered, the worst "
-		   "pixel and the path of a picture\nof it (got, wanted, difference). Rows about "
-		   "odd volumes bring their own. docs/gazebench.md\nexplains the rows. Exits with "
-		   "4 where one fails.\n",
+	.details = "Prints a line for each row, method and backend: whether it holds, the measured "
+		   "value and its\n"
+		   "bound. Below a failure: what was rendered, the worst pixel, and the path of a "
+		   "picture\n"
+		   "(got, wanted, difference). Rows about odd volumes use volumes of their own.\n"
+		   "docs/gazebench.md explains the rows. Exits with 4 if a row fails.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_stability,

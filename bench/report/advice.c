@@ -159,7 +159,7 @@ static void say_errors(const struct teller *teller, size_t series)
 		 "%s against %s is %.3g on average and %.3g at worst of %zu places of the gaze%s.",
 		 metric->title, gz_error_reference_names[teller->question->reference], errors->mean,
 		 errors->worst, errors->count,
-		 metric->kind == GZ_ERROR_FLIP ? " (0 = alike, 1 = as far apart as can be)" : "");
+		 metric->kind == GZ_ERROR_FLIP ? " (0 = identical, 1 = maximally different)" : "");
 	say(teller, text);
 }
 

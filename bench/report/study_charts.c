@@ -32,8 +32,8 @@ static void set_error_axis(struct gz_plot *plot, enum gz_error_measure measure,
 			   enum gz_error_reference reference)
 {
 	const struct gz_error_metric *metric = &gz_error_metrics[measure];
-	const char *best = metric->kind == GZ_ERROR_FLIP   ? "0 = alike"
-			   : metric->kind == GZ_ERROR_SSIM ? "1 = alike"
+	const char *best = metric->kind == GZ_ERROR_FLIP   ? "0 = identical"
+			   : metric->kind == GZ_ERROR_SSIM ? "1 = identical"
 							   : "dB";
 	plot->y.from_zero = metric->kind == GZ_ERROR_FLIP;
 	plot->y.falls = gz_error_rises(metric->kind);

@@ -188,7 +188,8 @@ static enum gz_result list_sizes(struct asking *asking)
 			good = memcmp(study->sizes[i], size, sizeof size) != 0;
 		if (!good) {
 			gz_err(asking->log,
-			       "'%s': sizes are WIDTHxHEIGHT of 1 to %d pixels a side, parted by "
+			       "'%s': sizes are WIDTHxHEIGHT of 1 to %d pixels a side, separated "
+			       "by "
 			       "commas, each once",
 			       item, GZ_IMAGE_SIDE_MAX);
 			return GZ_ERR_INVAL;

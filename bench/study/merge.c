@@ -33,7 +33,7 @@ static enum gz_result check_shard(struct joining *joining, size_t i)
 		return GZ_ERR_INVAL;
 	}
 	if (!shard->complete) {
-		gz_err(joining->log, "%s is not complete: run its shard again, which goes on",
+		gz_err(joining->log, "%s is not complete: run its shard again to resume it",
 		       folder);
 		return GZ_ERR_INVAL;
 	}

@@ -58,7 +58,7 @@ static enum gz_result read_asked(const char *folder, const struct gz_log *log,
 	json_t *json = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
 	fclose(file);
 	if (!json) {
-		gz_err(log, "%s:%d: %s: the study is damaged; measure it anew", path, error.line,
+		gz_err(log, "%s:%d: %s: the study is damaged; measure it again", path, error.line,
 		       error.text);
 		return GZ_ERR_FORMAT;
 	}
@@ -124,7 +124,7 @@ static enum gz_result read_unit(struct reader *reader, size_t unit, bool *out_wh
 		struct gz_study_row row = gz_study_unit_row(study, unit, k);
 		if (!gz_study_rows_parse(study, &reader->layout, reader->line, &row, what,
 					 sizeof what)) {
-			gz_err(reader->log, "%s:%zu: %s: the study is damaged; measure it anew",
+			gz_err(reader->log, "%s:%zu: %s: the study is damaged; measure it again",
 			       reader->path, reader->line_number, what);
 			return GZ_ERR_FORMAT;
 		}
@@ -147,7 +147,7 @@ static enum gz_result read_units(struct reader *reader)
 	if (!gz_study_rows_parse_head(reader->line, &reader->layout)) {
 		gz_err(reader->log,
 		       "%s:1: does not name the columns of this version; measure it "
-		       "anew, or use the program that made it",
+		       "again, or use the program that made it",
 		       reader->path);
 		return GZ_ERR_FORMAT;
 	}
@@ -165,7 +165,7 @@ static enum gz_result read_units(struct reader *reader)
 	}
 	if (whole && next_row_line(reader)) {
 		gz_err(reader->log,
-		       "%s:%zu: there are more lines than the study has; measure it anew",
+		       "%s:%zu: there are more lines than the study has; measure it again",
 		       reader->path, reader->line_number);
 		return GZ_ERR_FORMAT;
 	}
@@ -185,7 +185,7 @@ static enum gz_result check_row_count(const struct reader *reader)
 		return GZ_OK;
 	gz_err(reader->log,
 	       "%s:%zu: the study says that it is complete, and %zu of %zu rows are there; measure "
-	       "it anew",
+	       "it again",
 	       reader->path, reader->line_number, study->row_count, rows);
 	return GZ_ERR_FORMAT;
 }
@@ -244,8 +244,7 @@ static enum gz_result fail_to_write(const struct gz_log *log, const char *path, 
 {
 	if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
 		gz_err(log,
-		       "%s: no room left: %s; make room and run the same again, which goes on "
-		       "from here",
+		       "%s: no room left: %s; make room and run the same command again to resume",
 		       path, strerror(error));
 		return GZ_ERR_FULL;
 	}

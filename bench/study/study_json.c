@@ -183,7 +183,7 @@ __attribute__((format(printf, 2, 3))) static void refuse(struct reader *reader, 
 	va_start(arguments, format);
 	vsnprintf(what, sizeof what, format, arguments);
 	va_end(arguments);
-	gz_err(reader->log, "%s: %s: the study is damaged; measure it anew", reader->name, what);
+	gz_err(reader->log, "%s: %s: the study is damaged; measure it again", reader->name, what);
 	reader->result = GZ_ERR_FORMAT;
 }
 
@@ -452,7 +452,7 @@ static bool is_this_version(const json_t *json, const char *name, const struct g
 	if (version != GZ_STUDY_VERSION)
 		gz_err(log,
 		       "%s: is of version %lld and this program reads version %d; measure it "
-		       "anew, or use the program that made it",
+		       "again, or use the program that made it",
 		       name, version, GZ_STUDY_VERSION);
 	return version == GZ_STUDY_VERSION;
 }
