@@ -1,4 +1,4 @@
-/* Experiments from anywhere, without the files that they name: what is accepted has an order in
+/* Experiments from anywhere, without the files that they name: an accepted one has an order in
  * which every trial can be shown and answered. */
 #include <stdbool.h>
 #include <stddef.h>

@@ -57,7 +57,7 @@ class Headless(unittest.TestCase):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertIn(word, done.stderr)
 
-    def test_every_method_writes_its_pictures_lines_and_statistics(self):
+    def test_each_method_writes_pictures_lines_and_statistics(self):
         pictures = {}
         for method in METHODS:
             name = method + ".json"
@@ -87,7 +87,7 @@ class Headless(unittest.TestCase):
         colours = {pictures["standard"].at(x, y) for x in range(96) for y in range(64)}
         self.assertGreater(len(colours), 50, "nothing is to be seen")
 
-    def test_standard_casts_every_pixel_and_foveation_fewer(self):
+    def test_standard_casts_all_rays_and_foveation_fewer(self):
         for method in METHODS:
             self.good("--method", method, "--stats", self.path(method), size="640x360")
         rays = {method: self.frames(method)[0]["rays"] for method in METHODS}
@@ -95,7 +95,7 @@ class Headless(unittest.TestCase):
         for method in METHODS[1:]:
             self.assertLess(rays[method], rays["standard"])
 
-    def test_picture_at_the_gaze_is_the_standard_one_and_elsewhere_not(self):
+    def test_picture_equals_the_standard_one_only_at_the_gaze(self):
         for method in ("standard", "acuity"):
             self.good(
                 "--method", method, "--gaze", "0.3,0.5", "--out", self.path(method + ".png"),
@@ -132,7 +132,7 @@ class Headless(unittest.TestCase):
         for gaze in ("0,0", "1,1", "-5,0.5", "1e9,-1e9"):
             self.good("--gaze", gaze, "--cross", "--out", self.path("edge.png"))
 
-    def test_gaze_outside_the_picture_is_kept_as_it_is(self):
+    def test_gaze_outside_the_picture_is_not_clamped(self):
         for method in METHODS:
             self.good("--gaze", "-0.5,1.75", "--method", method, "--stats", self.path("stats.json"))
             self.assertEqual(self.frames()[0]["gaze"], [-0.5, 1.75])
@@ -156,9 +156,9 @@ class Headless(unittest.TestCase):
                 point = "\t\t0" if x is None else "%g\t0.5\t1" % x
                 out.write("%d\t\t%d\t%s%s\n" % (seq, host_ns, point, 2 * no_eye))
 
-    def test_log_shows_in_frame_k_the_last_sample_until_k_over_fps(self):
-        # Ten ms apart, so that every third frame is at the very time of a sample, but for frame 3,
-        # which is one ns before; the eye jumps at 45 ms.
+    def test_frame_k_uses_the_last_sample_of_a_log_until_k_over_fps(self):
+        # Ten ms apart: every third frame has exactly the time of a sample, except frame 3, which is
+        # one ns earlier; the eye jumps at 45 ms.
         times = [10**9 + 10**7 * i + (i == 5) for i in range(90)]
         self.write_log("short.gzl", [(t, 0.25 if t < 1045000000 else 0.75) for t in times])
         self.good(
@@ -186,7 +186,7 @@ class Headless(unittest.TestCase):
                   self.path("stats.json"), *more, size="320x180")
         return self.frames()
 
-    def test_plan_follows_the_eye_of_a_log_as_it_should(self):
+    def test_plan_follows_the_eye_movements_of_a_log(self):
         frames = self.attention_frames()
         by_state = {}
         for frame in frames:
@@ -218,7 +218,7 @@ class Headless(unittest.TestCase):
         )
         self.assertEqual(first, second)
 
-    def test_budget_out_of_reach_makes_plans_coarse_and_is_told_once(self):
+    def test_budget_that_cannot_be_kept_gives_the_coarsest_plan_and_one_warning(self):
         done = self.good(
             "--attention.budget_ms", 0.001, "--frames", 60, "--stats", self.path("stats.json")
         )
@@ -229,7 +229,7 @@ class Headless(unittest.TestCase):
         self.assertEqual(frames[-1]["budget_ms"], 0.001)
         self.assertLess(frames[-1]["rays"], frames[0]["rays"] / 4)
 
-    def test_budget_with_standard_is_told_once_and_changes_nothing(self):
+    def test_budget_with_standard_gives_one_warning_and_no_change(self):
         done = self.good(
             "--method", "standard", "--attention.budget_ms", 0.001, "--frames", 45, "--stats",
             self.path("stats.json"),
@@ -250,7 +250,7 @@ class Headless(unittest.TestCase):
         for frame in self.frames():
             self.assertEqual((frame["scale"], frame["budget"]), (1, "within"))
 
-    def test_camera_inside_the_volume_and_along_its_up_makes_a_picture(self):
+    def test_camera_inside_the_volume_and_parallel_to_up_works(self):
         for words in (
             ("--camera.eye", "0.01 0.02 0.03"),
             ("--camera.eye", "0 0 2", "--camera.up", "0 0 1"),
@@ -264,7 +264,7 @@ class Headless(unittest.TestCase):
                 colours = {picture.at(x, y) for x in range(96) for y in range(64)}
                 self.assertGreater(len(colours), 20, "%r shows nothing" % (words,))
 
-    def test_letters_stand_in_the_picture_of_an_oriented_volume(self):
+    def test_oriented_volume_gets_letters(self):
         for name, more in (("plain.png", ()), ("letters.png", ("--letters",))):
             done = self.good("--out", self.path(name), "--method", "standard", *more,
                              size="320x180")
@@ -275,7 +275,7 @@ class Headless(unittest.TestCase):
             self.assertFalse(plain.part(*edge) == letters.part(*edge), "no letter there")
         self.assertTrue(plain.part(60, 50, 260, 130) == letters.part(60, 50, 260, 130))
 
-    def test_endpoint_without_a_daemon_goes_on_with_no_gaze_and_says_so_once(self):
+    def test_endpoint_without_a_daemon_gives_one_warning_and_no_gaze(self):
         endpoint = "ipc://" + self.path("latest")
         done = self.good(
             "--gaze", endpoint, "--frames", 4, "--fps", 200, "--stats", self.path("stats.json")
@@ -288,7 +288,7 @@ class Headless(unittest.TestCase):
             self.assertIsNone(frame["gaze"])
             self.assertIsNone(frame["gaze_age_ms"])
 
-    def test_what_cannot_work_is_refused_in_one_line(self):
+    def test_invalid_command_lines_are_refused_in_one_line(self):
         for words, said in (
             (("--gaze", "nan,0.5"), "--gaze"),
             (("--gaze", "0.5,inf"), "--gaze"),
@@ -308,7 +308,7 @@ class Headless(unittest.TestCase):
             (("--out", self.path("f%d/%%.png")), "--out " + self.path("f0/%.png")),
             (("--foveation.method", "table"), "foveation.table"),
         ):
-            # Before the volume is read, or its absence would be what is told.
+            # Checked before the volume is read: otherwise the missing volume would be reported.
             for scene in (SCENE, self.scene_of("none.nii")):
                 with self.subTest(words=words, scene=scene):
                     self.refused(self.render(*words, scene=scene), said)
@@ -358,7 +358,7 @@ class Headless(unittest.TestCase):
         again = run(GAZEVIEW, "--write-volume", self.path("b.gzb"), self.scene_of("volume.gzb"))
         self.refused(again, "already")
 
-    def test_picture_that_cannot_be_written_ends_it_and_the_statistics_still_parse(self):
+    def test_unwritable_picture_ends_the_run_and_the_statistics_parse(self):
         os.mkdir(self.path("f-1.png"))
         done = self.render(
             "--out", self.path("f-%d.png"), "--frames", 5, "--stats", self.path("stats.json")
@@ -368,7 +368,7 @@ class Headless(unittest.TestCase):
         self.assertIn(self.path("f-1.png"), done.stderr)
         self.assertLessEqual(len(self.frames()), 2)
 
-    def test_picture_goes_into_a_device_whose_folder_may_not_be_written_to(self):
+    def test_picture_is_written_to_a_device_in_an_unwritable_folder(self):
         nobody = 65534 if os.geteuid() == 0 else None
         scene = os.path.join(SCENES, "shells.scene")
         words = [GAZEVIEW, "--headless", "--scene", scene, "--size", "16x16", "--out", "/dev/null"]
@@ -378,7 +378,7 @@ class Headless(unittest.TestCase):
             self.skipTest("nobody may run it")
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_camera_inside_the_volume_takes_no_longer_steps(self):
+    def test_camera_inside_the_volume_does_not_lengthen_steps(self):
         where = ("--camera.eye", "0.05 -0.15 0.02", "--camera.look_at", "0.3 0.5 0.1")
         pictures = []
         for rule in ("method", "none"):
@@ -387,7 +387,7 @@ class Headless(unittest.TestCase):
             pictures.append(read_png(self.path("in.png")))
         self.assertTrue(pictures[0] == pictures[1])
 
-    def test_up_that_says_nothing_is_replaced_with_one_line(self):
+    def test_up_parallel_to_the_view_is_replaced_with_one_warning(self):
         pictures = []
         for up in ("0 0 2", "0 0 0", "1 0 0"):
             done = self.good("--camera.eye", "0 0 2", "--camera.look_at", "0 0 0",
@@ -398,7 +398,7 @@ class Headless(unittest.TestCase):
             pictures.append(read_png(self.path("up.png")))
         self.assertTrue(pictures[0] == pictures[1] == pictures[2])
 
-    def test_signal_ends_it_between_frames_and_the_statistics_parse(self):
+    def test_signal_ends_the_run_between_frames_and_the_statistics_parse(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             process = subprocess.Popen(
                 [GAZEVIEW, "--headless", "--scene", SCENE, "--size", "96x64", "--frames",
@@ -413,7 +413,7 @@ class Headless(unittest.TestCase):
             self.assertEqual(process.returncode, -number if kill else 128 + number)
             self.assertGreaterEqual(len(self.frames()), 2)
 
-    def test_second_signal_ends_a_frame_that_takes_too_long(self):
+    def test_second_signal_ends_a_slow_frame(self):
         process = subprocess.Popen(
             [GAZEVIEW, "--headless", "--scene", SCENE, "--size", "8192x8192", "--method",
              "standard", "--render.ray_sampling_rate", "32", "--stats", self.path("stats.json")],

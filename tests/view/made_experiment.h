@@ -17,7 +17,7 @@ struct made_experiment {
 	struct gz_sequence sequence;
 };
 
-/** Read @p text, which is right, and draw the order of participant 07, session 1. */
+/** Read @p text, which must be valid, and draw the order of participant 07, session 1. */
 static inline void make_experiment(struct made_experiment *made, const char *text)
 {
 	assert_int_equal(gz_experiment_parse("/place/e.experiment", text, strlen(text), NULL,

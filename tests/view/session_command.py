@@ -1,4 +1,4 @@
-"""gazeview's sessions without a window: recorded, and shown again to the bit.
+"""gazeview's sessions without a window: recorded, and replayed to the bit.
 
 session_command.py GAZEVIEW SCENES-FOLDER
 """
@@ -56,7 +56,7 @@ class Session(unittest.TestCase):
         self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing turned")
         self.replay_is_the_same()
 
-    def test_replay_of_frames_that_keep_earlier_ones_gives_the_same_pictures(self):
+    def test_replay_of_accumulated_frames_gives_the_same_pictures(self):
         self.record("--temporal.accumulate", "--method", "uniform", turn=0.02)
         self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing was kept")
         with open(self.path("a.session/frames.tsv"), encoding="utf-8") as source:
@@ -64,7 +64,7 @@ class Session(unittest.TestCase):
         self.assertEqual([frame[-2] for frame in frames], ["0", "1", "1", "1", "1"])
         self.replay_is_the_same()
 
-    def test_replay_does_not_depend_on_what_frames_took(self):
+    def test_replay_does_not_depend_on_frame_times(self):
         self.record("--attention.budget_ms", 0.001, frames=12)
         with open(self.path("a.session/frames.tsv"), encoding="utf-8") as source:
             text = source.read()
@@ -74,7 +74,7 @@ class Session(unittest.TestCase):
         self.assertGreater(len(scales), 1, "no plan was made coarser")
         self.replay_is_the_same(frames=12)
 
-    def test_command_line_comes_before_what_was_recorded(self):
+    def test_command_line_overrides_recorded_settings(self):
         self.record("--method", "ddc", frames=2)
         stats = self.path("stats.json")
         self.good("--replay", self.path("a.session"), "--method", "standard", "--stats", stats)
@@ -83,7 +83,7 @@ class Session(unittest.TestCase):
         self.assertEqual([f["method"] for f in frames], ["standard"] * 2)
         self.assertEqual([f["rays"] for f in frames], [120 * 90] * 2)
 
-    def test_transfer_function_changes_where_it_did(self):
+    def test_transfer_function_changes_at_the_recorded_frame(self):
         self.record(frames=3, turn=0)
         function = ["0 0 0 0 0", "0.5 1 0 0 0.1", "1 0 1 0 0.5"]
         with open(self.path("other.tf"), "w", encoding="utf-8") as out:
@@ -109,7 +109,7 @@ class Session(unittest.TestCase):
         self.good("--replay", self.path("elsewhere"), "--out", self.path("is-%d.png"))
         self.assertTrue(self.read("is-1.png") == self.read("was-1.png"))
 
-    def test_killed_recording_is_shown_as_far_as_it_is_whole(self):
+    def test_killed_recording_is_replayed_up_to_its_last_complete_line(self):
         self.record(frames=3)
         frames = self.path("a.session/frames.tsv")
         with open(frames, encoding="utf-8") as source:
@@ -121,7 +121,7 @@ class Session(unittest.TestCase):
         self.assertIn("2 frames are complete", done.stderr)
 
     @unittest.skipUnless(shutil.which("ffprobe"), "ffmpeg is not installed")
-    def test_video_of_a_replay_shows_each_picture_for_as_long_as_it_was_shown(self):
+    def test_video_of_a_replay_shows_each_picture_for_its_time(self):
         self.record("--fps", 10, frames=6)
         video = self.path("a.mp4")
         self.good("--replay", self.path("a.session"), "--fps", 20, "--video", video)
@@ -145,7 +145,7 @@ class Session(unittest.TestCase):
         self.refused(self.view("--replay", self.path("a.session")), "60x64x64",
                      "differs from the recorded one")
 
-    def test_damaged_line_ends_it_with_its_number(self):
+    def test_damaged_line_is_refused_with_its_number(self):
         self.record(frames=2)
         frames = self.path("a.session/frames.tsv")
         with open(frames, encoding="utf-8") as source:
@@ -155,7 +155,7 @@ class Session(unittest.TestCase):
             out.write(text.replace("!set\tcamera.eye\t", "!set\tcamera.eye\tx"))
         self.refused(self.view("--replay", self.path("a.session")), ":%d: camera.eye" % number)
 
-    def test_what_contradicts_the_session_is_refused(self):
+    def test_contradictory_options_are_refused(self):
         self.record(frames=1)
         session = self.path("a.session")
         for more in (("--size", "9x9"), (SCENE,), ("--gaze", "0,0"), ("--frames", 3),

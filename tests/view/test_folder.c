@@ -7,42 +7,19 @@
 #include <unistd.h>
 
 #include "view/files/folder.h"
-
-static char place[64];
-
-static void touch(const char *name)
-{
-	char path[GZ_PATH_SIZE];
-	snprintf(path, sizeof path, "%s/%s", place, name);
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs("xyz", file);
-	fclose(file);
-}
+#include "view/place.h"
 
 static int make_place(void **state)
 {
-	char path[GZ_PATH_SIZE];
 	(void)state;
-	snprintf(place, sizeof place, "/tmp/gazeview-test-folder-XXXXXX");
-	if (!mkdtemp(place))
+	if (create_place() != 0)
 		return 1;
 	static const char *const files[] = { "b10.nii",   "b9.nii",        "a.scene",
 					     "notes.txt", ".hidden.scene", "p.png" };
 	for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
-		touch(files[i]);
-	snprintf(path, sizeof path, "%s/zoo", place);
-	mkdir(path, 0700);
-	snprintf(path, sizeof path, "%s/fifo.raw", place);
-	return mkfifo(path, 0600);
-}
-
-static int remove_place(void **state)
-{
-	char command[128];
-	(void)state;
-	snprintf(command, sizeof command, "rm -r '%s'", place);
-	return system(command);
+		write_in_place(files[i], "xyz");
+	mkdir(in_place("zoo"), 0700);
+	return mkfifo(in_place("fifo.raw"), 0600);
 }
 
 static struct gz_folder read_place(bool others, bool hidden)

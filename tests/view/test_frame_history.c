@@ -1,4 +1,4 @@
-/* What the last frames cost: the newest first, the oldest forgotten, medians and percentiles. */
+/* Costs of the last frames: newest first, oldest dropped, quantiles. */
 #include "suite.h"
 
 #include <math.h>

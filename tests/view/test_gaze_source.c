@@ -15,7 +15,7 @@
 
 enum { SAMPLES = 400 };
 
-/* 250 Hz from a time that no frame falls on by accident. */
+/* 250 Hz, from a time that no frame hits by accident. */
 #define START_NS  INT64_C(1000000007)
 #define PERIOD_NS INT64_C(4000000)
 
@@ -83,7 +83,7 @@ static void write_log(const struct gz_gaze_log_header *header, int samples)
 				 GZ_OK);
 		fwrite(text, 1, length, out);
 		if (i % 50 != 7)
-			continue; /* marks and gaps stand between samples and are stepped over */
+			continue; /* marks and gaps between samples are skipped */
 		record = (struct gz_gaze_log_record) { .kind = GZ_GAZE_LOG_MARK,
 						       .host_ns = record.sample.host_ns };
 		strcpy(record.text, "a mark");
@@ -181,7 +181,7 @@ static void log_with_extreme_times_is_read(void **state)
 	assert_int_equal(gz_gaze_source_log(path, NULL, &source), GZ_OK);
 	gz_gaze_source_read(source, 20, &reading);
 	assert_true(reading.known && reading.age_ns == 20);
-	gz_gaze_source_read(source, 40, &reading); /* all three have come; the last is the oldest */
+	gz_gaze_source_read(source, 40, &reading); /* all three are due; the last is the oldest */
 	assert_true(reading.known && reading.age_ns == INT64_MAX);
 	gz_gaze_source_destroy(&source);
 }
@@ -326,7 +326,7 @@ static void log_advanced_in_pieces_ends_like_reading(void **state)
 	write_log(&header, SAMPLES);
 	assert_int_equal(gz_gaze_source_log(path, NULL, &pieces), GZ_OK);
 	assert_int_equal(gz_gaze_source_log(path, NULL, &whole), GZ_OK);
-	/* No time at all still is a step. */
+	/* Even without time one step is made. */
 	int turns = 1;
 	while (!gz_gaze_source_log_forward(pieces, time_ns, 0))
 		turns++;

@@ -1,4 +1,4 @@
-/* How good a gaze is, in words, and how often it comes. */
+/* The verdict on a gaze, and its rate. */
 #include "suite.h"
 
 #include <math.h>
@@ -194,7 +194,7 @@ static void rate_restarts_when_numbers_or_times_decrease(void **state)
 	feed(&rate, 1000, 0, 250, 2, 4);
 	rate_hz(&rate, 250, 0.5);
 	feed(&rate, 0, INT64_C(9000000000), 500, 0.1, 8);
-	rate_hz(&rate, 0, 0); /* too short to tell */
+	rate_hz(&rate, 0, 0); /* too short for a rate */
 	feed(&rate, 50, INT64_C(9100000000), 500, 1, 8);
 	rate_hz(&rate, 500, 1);
 }

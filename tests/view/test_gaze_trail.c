@@ -36,7 +36,7 @@ static void resting_mouse_becomes_a_disc_that_stops_growing(void **state)
 	assert_true(step(&trail, at(0.5f, 0.5f), 100 * MS));
 	assert_true(trail.stays[0].fixation);
 	assert_true(step(&trail, at(0.5f, 0.5f), 500 * MS));
-	/* Nothing changes any more: nothing is drawn. */
+	/* Nothing changes: no drawing. */
 	assert_false(step(&trail, at(0.5f, 0.5f), 1000 * MS));
 	assert_false(step(&trail, at(0.5f, 0.5f), 60000 * MS));
 	assert_int_equal(trail.count, 1);

@@ -1,4 +1,4 @@
-/* What a terminal shows while a volume is loaded, and how a signal stops that. */
+/* The progress bar of loading, and cancelling by a signal. */
 #include "suite.h"
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-/* gazeview's command line: what it takes, what it refuses and with which words. */
+/* gazeview's command line: what it accepts, and its messages about what it refuses. */
 #include "suite.h"
 
 #include <stdio.h>
@@ -32,7 +32,7 @@ static enum gz_result read_line(const char *line)
 	return gz_view_options_read(argc, argv, &captured.log, &options);
 }
 
-/* Refused, in one message that names @p word. */
+/* Check that a command line is refused with one message that contains @p word. */
 static void assert_refused(const char *line, const char *word)
 {
 	assert_int_equal(read_line(line), GZ_ERR_INVAL);

@@ -7,32 +7,19 @@
 #include <unistd.h>
 
 #include "view/files/recent.h"
-
-static char place[64];
+#include "view/place.h"
 
 static const char *file_of(int number)
 {
-	static char path[GZ_PATH_SIZE];
-	snprintf(path, sizeof path, "%s/%d.scene", place, number);
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fclose(file);
-	return path;
+	char name[32];
+	snprintf(name, sizeof name, "%d.scene", number);
+	return write_in_place(name, "");
 }
 
 static int make_place(void **state)
 {
 	(void)state;
-	snprintf(place, sizeof place, "/tmp/gazeview-test-recent-XXXXXX");
-	return mkdtemp(place) ? 0 : 1;
-}
-
-static int remove_place(void **state)
-{
-	char command[128];
-	(void)state;
-	snprintf(command, sizeof command, "rm -r '%s'", place);
-	return system(command);
+	return create_place();
 }
 
 static void newest_path_is_first_and_listed_once(void **state)

@@ -1,4 +1,4 @@
-/* An experiment as it goes, by a clock that the test holds. */
+/* A run of an experiment, with a clock set by the test. */
 #include "suite.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 /* A display of 100 Hz: a frame is shown every 10 ms. */
 #define REFRESH_NS (10 * GZ_NS_PER_MS)
 
-/* A run with whoever is told of it. */
+/* A run and the sink of its events. */
 struct stage {
 	struct made_experiment made;
 	struct gz_run run;
@@ -66,7 +66,7 @@ static void end(struct stage *stage)
 	free_experiment(&stage->made);
 }
 
-/* One frame: what is due, then its swap. */
+/* One frame: a step, then the swap. */
 static void frame(struct stage *stage)
 {
 	const struct gz_run_input input = {
@@ -88,7 +88,7 @@ static void frames(struct stage *stage, int count)
 		frame(stage);
 }
 
-/* Until something else is on the screen; not for ever. */
+/* Frames until the screen changes, with a limit. */
 static enum gz_run_phase next_phase(struct stage *stage)
 {
 	const enum gz_run_phase before = stage->run.phase;
@@ -106,7 +106,7 @@ static void press(struct stage *stage, int key)
 	gz_run_key(&stage->run, key, stage->now_ns);
 }
 
-/* Through what a trial shows, to its question. */
+/* Run a trial up to its question. */
 static void watch(struct stage *stage)
 {
 	for (int i = 0; i < 10 && stage->run.phase != GZ_RUN_QUESTION; i++)

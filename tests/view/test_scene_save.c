@@ -9,45 +9,16 @@
 #include "base/captured_log.h"
 #include "render/scene/scene_open.h"
 #include "view/files/scene_save.h"
+#include "view/place.h"
 
 #define RAMP "0 0 0 0 0\n1 1 1 1 0.5\n"
-
-static char place[64];
-
-static const char *in_place(const char *name)
-{
-	static char paths[4][GZ_PATH_SIZE];
-	static int next;
-	char *path = paths[next++ % 4];
-	snprintf(path, GZ_PATH_SIZE, "%s/%s", place, name);
-	return path;
-}
-
-static const char *write_text(const char *name, const char *text)
-{
-	const char *path = in_place(name);
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	fclose(file);
-	return path;
-}
 
 static int make_place(void **state)
 {
 	(void)state;
-	snprintf(place, sizeof place, "/tmp/gazeview-test-save-XXXXXX");
-	if (!mkdtemp(place))
+	if (create_place() != 0)
 		return 1;
 	return mkdir(in_place("other"), 0700);
-}
-
-static int remove_place(void **state)
-{
-	char command[128];
-	(void)state;
-	snprintf(command, sizeof command, "rm -r '%s'", place);
-	return system(command);
 }
 
 static struct gz_scene load(const char *path)
@@ -65,9 +36,9 @@ static void scene_names_the_file_of_its_transfer_function(void **state)
 {
 	(void)state;
 	char file[GZ_PATH_SIZE];
-	write_text("a.tf", RAMP);
-	const char *from = write_text("a.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
-						 "[transfer]\nfile = a.tf\n");
+	write_in_place("a.tf", RAMP);
+	const char *from = write_in_place("a.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
+						     "[transfer]\nfile = a.tf\n");
 	struct gz_scene scene = load(from);
 	const struct gz_scene_save save = { { &scene.settings, false, from },
 					    &scene.transfer,
@@ -87,9 +58,9 @@ static void changed_transfer_function_is_written_beside_the_scene(void **state)
 {
 	(void)state;
 	char file[GZ_PATH_SIZE];
-	write_text("c.tf", RAMP);
-	const char *from = write_text("c.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
-						 "[transfer]\nfile = c.tf\n");
+	write_in_place("c.tf", RAMP);
+	const char *from = write_in_place("c.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n"
+						     "[transfer]\nfile = c.tf\n");
 	/* Of the same name as the first, so that one is not taken for the other. */
 	const char *to = in_place("other/c.scene");
 	struct gz_scene scene = load(from);
@@ -113,7 +84,8 @@ static void default_transfer_function_is_not_written(void **state)
 {
 	(void)state;
 	char file[GZ_PATH_SIZE];
-	const char *from = write_text("d.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
+	const char *from =
+		write_in_place("d.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
 	struct gz_scene scene = load(from);
 	struct gz_transfer made = scene.transfer;
 	struct gz_scene_save save = { { &scene.settings, false, from }, &scene.transfer, &made };
@@ -149,7 +121,8 @@ static void path_gets_its_ending_and_suggestion_lies_beside_the_volume(void **st
 static void failed_save_leaves_the_settings(void **state)
 {
 	(void)state;
-	const char *from = write_text("e.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
+	const char *from =
+		write_in_place("e.scene", "[volume]\nprocedural = shells\ndims = 8 8 8\n");
 	struct gz_scene scene = load(from);
 	const struct gz_scene_save save = { { &scene.settings, false, from },
 					    &scene.transfer,

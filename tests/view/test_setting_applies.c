@@ -1,4 +1,4 @@
-/* Which settings of the panel count with the others as they are. */
+/* Which settings have an effect, given the others. */
 #include "suite.h"
 
 #include <string.h>
@@ -27,7 +27,8 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 		{ "foveation.blend_px", { 0, 1, 1, 0, 1, 0, 0 } },
 		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1 } },
 		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0 } },
-		{ "foveation.table", { 1, 1, 1, 1, 1, 1, 1 } }, /* to be named first */
+		{ "foveation.table",
+		  { 1, 1, 1, 1, 1, 1, 1 } }, /* must be named before the method is used */
 		{ "foveation.method", { 1, 1, 1, 1, 1, 1, 1 } },
 		{ "attention.dead_band_deg", { 0, 1, 1, 1, 1, 0, 1 } },
 		{ "attention.budget_ms", { 0, 1, 1, 1, 1, 1, 1 } },

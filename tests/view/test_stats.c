@@ -1,4 +1,4 @@
-/* The statistics file is whole JSON at every moment; the line says the same. */
+/* The statistics file is complete JSON at any time; the text line has the same values. */
 #include "suite.h"
 
 #include <math.h>

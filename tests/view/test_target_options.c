@@ -1,4 +1,4 @@
-/* Which targets are shown, and in which order. */
+/* Positions and order of the targets. */
 #include "suite.h"
 
 #include <stdio.h>

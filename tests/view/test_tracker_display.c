@@ -1,4 +1,4 @@
-/* Which monitor is the tracker's, and where a window is on it. */
+/* The tracker's monitor, and the window's part of it. */
 #include "suite.h"
 
 #include <math.h>
@@ -94,7 +94,7 @@ static void ambiguous_description_is_decided_by_mm_then_by_window(void **state)
 	choose(&list, "", &of_hdmi_2, on_first, 2, GZ_TRACKER_DISPLAY_DESCRIBED);
 	choose(&list, "", &of_neither, on_third, 2, GZ_TRACKER_DISPLAY_DESCRIBED);
 	choose(&list, "", &of_neither, on_first, 0, GZ_TRACKER_DISPLAY_WINDOW);
-	/* A desktop that scales: no pixels agree. */
+	/* A desktop that scales: no size in px matches. */
 	const struct gz_display scaled = { { 2560, 1440 }, { 530, 300 }, 650 };
 	choose(&list, "", &scaled, on_first, 1, GZ_TRACKER_DISPLAY_DESCRIBED);
 }
@@ -154,7 +154,7 @@ static void window_on_another_monitor_has_gaze_outside(void **state)
 			&share, (struct gz_point) { (float)i / 10, (float)i / 10 });
 		assert_true(on.x > 1);
 	}
-	/* A window across the edge is not elsewhere. */
+	/* A window across the edge is not outside. */
 	const int astride[4] = { 3800, 200, 200, 200 };
 	const struct gz_window_share across = gz_window_share_of(&list.monitors[1], astride);
 	assert_false(gz_window_share_is_elsewhere(&across));

@@ -122,7 +122,7 @@ static void names_by_time_are_unused_and_sort_in_order(void **state)
 	assert_int_equal(gz_capture_name(deep, ".png", paths[0]), GZ_ERR_FULL);
 }
 
-/* A folder with a script that is the only ffmpeg there is. */
+/* A folder with a script as the only ffmpeg on the PATH. */
 struct stand_in {
 	char folder[64];
 	char script[96], output[96];
@@ -156,7 +156,7 @@ static int tear_down(void **state)
 	return 0;
 }
 
-/* @p body with the path of the video, ffmpeg's last word, in $out. */
+/* Write the script; $out is the path of the video, ffmpeg's last argument. */
 static void write_script(const struct stand_in *self, const char *body)
 {
 	FILE *file = fopen(self->script, "w");
@@ -243,7 +243,7 @@ static void slow_ffmpeg_drops_and_counts_pictures_without_blocking(void **state)
 		 go);
 	write_script(self, body);
 	struct gz_video_params params = params_of(self, false);
-	params.width = 512; /* eight and a pipe full are fewer than those shown */
+	params.width = 512; /* the queue and a full pipe hold fewer pictures than were shown */
 	assert_int_equal(gz_video_open(&params, &self->log.log, &video), GZ_OK);
 	for (int k = 0; k < SHOWN; k++)
 		show(video, (uint8_t)(k % 7), 100 * k);
@@ -272,7 +272,7 @@ static void missing_ffmpeg_is_reported_with_the_remedy(void **state)
 	assert_non_null(strstr(self->log.last, "install the package ffmpeg"));
 }
 
-/* Pictures until the end of ffmpeg is seen; it ends the program if its signal gets through. */
+/* Show pictures until the video fails. SIGPIPE, if it got through, would end the program. */
 static enum gz_result show_until_it_fails(struct gz_video *video)
 {
 	struct gz_image image = make_image(4, 2, 1);

@@ -1,4 +1,4 @@
-"""gazeview --headless --video, looked at with ffprobe and ffmpeg.
+"""gazeview --headless --video, checked with ffprobe and ffmpeg.
 
 video_command.py GAZEVIEW SCENES-FOLDER
 """
@@ -90,13 +90,13 @@ class Video(unittest.TestCase):
         self.assertGreater(min(picture.at(20, 2)), 200)
         self.assertLess(max(picture.at(63, 20) + picture.at(20, 41)), 90)
 
-    def test_ending_chooses_the_kind(self):
+    def test_ending_chooses_the_format(self):
         for ending, codec in (("webm", "vp9"), ("mkv", "h264"), ("gif", "gif")):
             video = self.path("a." + ending)
             self.good("--size", "32x32", "--video", video)
             self.assertEqual(probe(video)["codec_name"], codec)
 
-    def test_name_that_looks_like_an_option_or_a_protocol_is_a_name(self):
+    def test_name_like_an_option_or_a_protocol_is_a_file(self):
         for name in ("-y.mp4", "http:a.mp4"):
             done = self.render("--size", "32x32", "--video=" + name, cwd=self.place.name)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -115,13 +115,13 @@ class Video(unittest.TestCase):
         self.refused(done, video, "install the package ffmpeg")
         self.assertFalse(os.path.exists(video))
 
-    def test_full_disk_ends_it_with_what_ffmpeg_says(self):
+    def test_full_disk_ends_the_run_with_the_message_of_ffmpeg(self):
         video = self.path("full.mp4")
         os.symlink("/dev/full", video)
         done = self.render("--size", "320x240", "--frames", 5, "--turn", 9, "--video", video)
         self.refused(done, video, "No space left on device")
 
-    def test_folder_that_is_not_there_is_refused_before_anything_is_loaded(self):
+    def test_missing_folder_is_refused_before_anything_is_loaded(self):
         done = self.render("--video", self.path("no/a.mp4"))
         self.refused(done, "--video", "No such file")
         self.assertEqual(done.stdout, "")
