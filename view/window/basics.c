@@ -154,8 +154,7 @@ static bool cursor_follows(struct gz_window *window, const struct gz_window_gaze
 const struct gz_window_part gz_window_basics_part = {
 	.name = "basics",
 	.title = "picture",
-	.actions = basics_actions,
-	.action_count = sizeof basics_actions / sizeof basics_actions[0],
+	GZ_PART_ACTIONS(basics_actions),
 	.follows = cursor_follows,
 	.panels = draw_basics,
 };

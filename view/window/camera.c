@@ -220,8 +220,7 @@ static void zoom_by_wheel(struct gz_window *window, double up)
 
 const struct gz_window_part gz_window_camera_part = {
 	.name = "camera",
-	.actions = camera_actions,
-	.action_count = sizeof camera_actions / sizeof camera_actions[0],
+	GZ_PART_ACTIONS(camera_actions),
 	.grab = grab_camera,
 	.drag = drag_camera,
 	.wheel = zoom_by_wheel,

@@ -320,8 +320,7 @@ static const struct gz_window_action capture_actions[] = {
 const struct gz_window_part gz_window_capture_part = {
 	.name = "capture",
 	.title = "record",
-	.actions = capture_actions,
-	.action_count = sizeof capture_actions / sizeof capture_actions[0],
+	GZ_PART_ACTIONS(capture_actions),
 	GZ_PART_STATE(capture),
 	.scene_leaving = leave_pictured_scene,
 	.turn = turn_capture,

@@ -292,8 +292,7 @@ static void close_compare(struct gz_window *window)
 const struct gz_window_part gz_window_compare_part = {
 	.name = "compare",
 	.title = "picture",
-	.actions = compare_actions,
-	.action_count = sizeof compare_actions / sizeof compare_actions[0],
+	GZ_PART_ACTIONS(compare_actions),
 	GZ_PART_STATE(compare),
 	.gl_open = open_compare_drawing,
 	.scene_leaving = leave_compared_scene,

@@ -269,8 +269,7 @@ static enum gz_result attach_display_callbacks(struct gz_window *window)
 const struct gz_window_part gz_window_displays_part = {
 	.name = "displays",
 	.title = "window",
-	.actions = displays_actions,
-	.action_count = sizeof displays_actions / sizeof displays_actions[0],
+	GZ_PART_ACTIONS(displays_actions),
 	GZ_PART_STATE(displays),
 	.open = list_monitors,
 	.gl_open = attach_display_callbacks,

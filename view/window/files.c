@@ -324,8 +324,7 @@ static const struct gz_window_action files_actions[] = {
 
 const struct gz_window_part gz_window_files_part = {
 	.name = "files",
-	.actions = files_actions,
-	.action_count = sizeof files_actions / sizeof files_actions[0],
+	GZ_PART_ACTIONS(files_actions),
 	GZ_PART_STATE(files),
 	.open = open_files,
 	.gl_open = attach_drop_callback,

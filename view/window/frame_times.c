@@ -244,8 +244,7 @@ static void draw_frame_times(struct gz_window *window, const struct gz_window_ga
 const struct gz_window_part gz_window_frame_times_part = {
 	.name = "frame times",
 	.title = "picture",
-	.actions = frame_times_actions,
-	.action_count = sizeof frame_times_actions / sizeof frame_times_actions[0],
+	GZ_PART_ACTIONS(frame_times_actions),
 	GZ_PART_STATE(frame_times),
 	.scene_shown = forget_frame_times,
 	.gaze = note_frame_start,

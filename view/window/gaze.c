@@ -409,8 +409,7 @@ static void close_gaze(struct gz_window *window)
 const struct gz_window_part gz_window_gaze_part = {
 	.name = "gaze sources",
 	.title = "gaze",
-	.actions = gaze_actions,
-	.action_count = sizeof gaze_actions / sizeof gaze_actions[0],
+	GZ_PART_ACTIONS(gaze_actions),
 	GZ_PART_STATE(sources),
 	.open = open_gaze,
 	.turn = turn_gaze,

@@ -394,8 +394,7 @@ bool gz_window_gaze_panel_open(const struct gz_window *window)
 const struct gz_window_part gz_window_gaze_panel_part = {
 	.name = "gaze settings",
 	.title = "gaze",
-	.actions = gaze_panel_actions,
-	.action_count = sizeof gaze_panel_actions / sizeof gaze_panel_actions[0],
+	GZ_PART_ACTIONS(gaze_panel_actions),
 	GZ_PART_STATE(gaze_panel),
 	.follows = log_slider_follows,
 	.panels = draw_gaze,

@@ -15,8 +15,9 @@
 #define RESET_S    2.0
 #define INTERVAL_S 0.05
 
-/* Of GLFW/glfw3native.h, which needs the header of Xrandr for other functions. */
-GLFWAPI Display *glfwGetX11Display(void);
+/* Of GLFW/glfw3native.h, which needs the header of Xrandr for other functions. Weak, as a GLFW that
+ * is made for Wayland has none. */
+__attribute__((weak)) Display *glfwGetX11Display(void);
 
 const char *gz_glfw_reason(void)
 {
@@ -104,7 +105,11 @@ static void end_process(Display *display, void *user)
 
 void gz_glfw_watch_display(struct gz_display_loss *loss)
 {
+	Display *display = glfwGetX11Display ? glfwGetX11Display() : NULL;
+	glfwGetError(NULL); /* under Wayland the call fails */
+	if (!display)
+		return;
 	loss->thread = pthread_self();
 	XSetIOErrorHandler(ignore_io_error);
-	XSetIOErrorExitHandler(glfwGetX11Display(), end_process, loss);
+	XSetIOErrorExitHandler(display, end_process, loss);
 }

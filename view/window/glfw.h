@@ -47,7 +47,7 @@ struct gz_display_loss {
  * EXIT_FAILURE. Xlib allows nothing else inside GLFW, which would wait for events for ever.
  *
  * Call after glfwInit(), on the thread that uses GLFW. If another thread meets the loss, the
- * process ends without the call, with a line on stderr.
+ * process ends without the call, with a line on stderr. Does nothing without X11.
  */
 void gz_glfw_watch_display(struct gz_display_loss *loss);
 

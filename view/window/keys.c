@@ -131,8 +131,7 @@ static const struct gz_window_action keys_actions[] = {
 const struct gz_window_part gz_window_keys_part = {
 	.name = "keys",
 	.title = "window",
-	.actions = keys_actions,
-	.action_count = sizeof keys_actions / sizeof keys_actions[0],
+	GZ_PART_ACTIONS(keys_actions),
 	GZ_PART_STATE(keys),
 	.open = list_keys,
 	.panels = draw_keys,

@@ -197,8 +197,7 @@ static void drop_all_fences(struct gz_window *window)
 const struct gz_window_part gz_window_latency_part = {
 	.name = "latency",
 	.title = "window",
-	.actions = latency_actions,
-	.action_count = sizeof latency_actions / sizeof latency_actions[0],
+	GZ_PART_ACTIONS(latency_actions),
 	GZ_PART_STATE(latency),
 	.turn = turn_latency,
 	.gaze = note_gaze_age,

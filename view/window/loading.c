@@ -562,7 +562,7 @@ static void close_loading(struct gz_window *window)
 	free_ended(window->loading, true);
 }
 
-static const struct gz_window_action actions[] = {
+static const struct gz_window_action loading_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE,
 	  .keys = "Esc",
 	  .help = "cancel loading",
@@ -573,8 +573,7 @@ static const struct gz_window_action actions[] = {
 const struct gz_window_part gz_window_loading_part = {
 	.name = "loading",
 	.title = "window",
-	.actions = actions,
-	.action_count = sizeof actions / sizeof actions[0],
+	GZ_PART_ACTIONS(loading_actions),
 	GZ_PART_STATE(loading),
 	.turn = turn_loading,
 	.frame_made = log_first_picture,

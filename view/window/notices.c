@@ -146,8 +146,7 @@ static const struct gz_window_action notices_actions[] = {
 const struct gz_window_part gz_window_notices_part = {
 	.name = "notices",
 	.title = "window",
-	.actions = notices_actions,
-	.action_count = sizeof notices_actions / sizeof notices_actions[0],
+	GZ_PART_ACTIONS(notices_actions),
 	GZ_PART_STATE(notices_state),
 	.gl_open = wake_loop_by_notices,
 	.turn = turn_notices,

@@ -70,8 +70,7 @@ static void close_tint(struct gz_window *window)
 const struct gz_window_part gz_window_overlay_part = {
 	.name = "overlay",
 	.title = "picture",
-	.actions = overlay_actions,
-	.action_count = sizeof overlay_actions / sizeof overlay_actions[0],
+	GZ_PART_ACTIONS(overlay_actions),
 	GZ_PART_STATE(overlay),
 	.gl_open = open_tint,
 	.scene_shown = forget_plan,

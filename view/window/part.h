@@ -100,6 +100,9 @@ struct gz_window_part {
 	void (*close)(struct gz_window *window);
 };
 
+/** The slots actions and action_count for an array of actions. */
+#define GZ_PART_ACTIONS(array) .actions = (array), .action_count = sizeof(array) / sizeof(array)[0]
+
 /** The slots for a part whose state is window->@p name. */
 #define GZ_PART_STATE(name)                           \
 	.state_at = offsetof(struct gz_window, name), \

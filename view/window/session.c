@@ -156,8 +156,7 @@ static const struct gz_window_action session_actions[] = {
 const struct gz_window_part gz_window_session_part = {
 	.name = "session",
 	.title = "record",
-	.actions = session_actions,
-	.action_count = sizeof session_actions / sizeof session_actions[0],
+	GZ_PART_ACTIONS(session_actions),
 	GZ_PART_STATE(session),
 	.open = open_session,
 	.scene_shown = record_first_scene,

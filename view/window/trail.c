@@ -104,8 +104,7 @@ static double trail_patience_s(const struct gz_window *window)
 const struct gz_window_part gz_window_trail_part = {
 	.name = "trail",
 	.title = "gaze",
-	.actions = trail_actions,
-	.action_count = sizeof trail_actions / sizeof trail_actions[0],
+	GZ_PART_ACTIONS(trail_actions),
 	GZ_PART_STATE(trail),
 	.follows = trail_follows,
 	.panels = draw_trail,

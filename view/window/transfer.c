@@ -289,8 +289,7 @@ enum gz_result gz_window_transfer_load(struct gz_window *window, const char *fil
 const struct gz_window_part gz_window_transfer_part = {
 	.name = "transfer",
 	.title = "transfer function",
-	.actions = transfer_actions,
-	.action_count = sizeof transfer_actions / sizeof transfer_actions[0],
+	GZ_PART_ACTIONS(transfer_actions),
 	GZ_PART_STATE(transfer),
 	.scene_shown = edit_scene_transfer,
 	.scene_leaving = leave_counted_scene,
