@@ -179,6 +179,7 @@ static void picture_opens_the_scene_that_it_shows(void **state)
 	captured_log_init(&log, NULL);
 	const char *path = files_path("p.png");
 	assert_int_equal(gz_image_resize(&image, 4, 4), GZ_OK);
+	memset(image.pixels, 0, (size_t)4 * 4 * 4);
 	scene.settings.camera.fov_deg = 33;
 	scene.transfer.points[0].opacity = 0.375;
 	const struct gz_scene_saved saved = { &scene.settings, false, "" };
