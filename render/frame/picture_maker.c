@@ -176,6 +176,22 @@ static int rays_along(int side, double rate)
 	return rays >= 1 && rays <= GZ_IMAGE_SIDE_MAX ? (int)rays : 0;
 }
 
+enum gz_result gz_picture_count_rays(const int size_px[2], double rate, const struct gz_log *log,
+				     int out_rays[2])
+{
+	const int rays[2] = { rays_along(size_px[0], rate), rays_along(size_px[1], rate) };
+	if (rays[0] == 0 || rays[1] == 0) {
+		gz_err(log,
+		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
+		       "rate "
+		       "or the size",
+		       size_px[0], size_px[1], rate, GZ_IMAGE_SIDE_MAX);
+		return GZ_ERR_INVAL;
+	}
+	memcpy(out_rays, rays, sizeof rays);
+	return GZ_OK;
+}
+
 static double sampling_rate(const struct gz_picture_request *request)
 {
 	return request->image_sampling_rate > 0 ? request->image_sampling_rate : 1;
@@ -247,17 +263,14 @@ static enum gz_result plan_request_of(const struct making *making,
 	const struct gz_picture_request *request = making->request;
 	const double rate = sampling_rate(request);
 	const int rows = request->strip.rows > 0 ? request->strip.rows : request->height;
-	const int size[2] = { rays_along(request->width, rate), rays_along(rows, rate) };
-	if (size[0] == 0 || size[1] == 0) {
-		gz_err(making->maker->log,
-		       "%dx%d at image_sampling_rate %g is not 1 to %d rays a side; change the "
-		       "rate or "
-		       "the size",
-		       request->width, request->height, rate, GZ_IMAGE_SIDE_MAX);
-		return GZ_ERR_INVAL;
-	}
+	const int size_px[2] = { request->width, rows };
+	int rays[2];
+	const enum gz_result result =
+		gz_picture_count_rays(size_px, rate, making->maker->log, rays);
+	if (result != GZ_OK)
+		return result;
 	struct gz_plan_request plan = gz_plan_request_make(request->foveation, request->display,
-							   request->focus.point, size[0], size[1]);
+							   request->focus.point, rays[0], rays[1]);
 	plan.rays_per_px = rate;
 	plan.scale = request->focus.scale;
 	plan.widen = request->focus.widen;

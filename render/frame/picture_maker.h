@@ -80,6 +80,18 @@ struct gz_picture_request {
 	struct gz_image *image;
 };
 
+/**
+ * Count the rays along each side of a picture.
+ *
+ * @param size_px  width and height of the picture
+ * @param rate     rays per pixel edge, above 0
+ * @param log      may be NULL
+ * @param[out] out_rays  along the width and the height; written on success only
+ * @retval GZ_ERR_INVAL  not 1 to GZ_IMAGE_SIDE_MAX along a side; logged with the remedy
+ */
+enum gz_result gz_picture_count_rays(const int size_px[2], double rate, const struct gz_log *log,
+				     int out_rays[2]);
+
 /** The focus of a plan that trusts the gaze at @p point, normalised. */
 struct gz_focus gz_focus_at(struct gz_point point);
 

@@ -32,27 +32,6 @@ struct gz_frame_maker {
 	bool standard_told; /* the warning that standard ignores the budget was logged */
 };
 
-/* Number of rays along a side; 0: outside 1 to GZ_IMAGE_SIDE_MAX. */
-static int cast_side(int side, double rate)
-{
-	double scaled = round(side * rate);
-	return scaled >= 1 && scaled <= GZ_IMAGE_SIDE_MAX ? (int)scaled : 0;
-}
-
-static enum gz_result find_cast_size(int width, int height, double rate, const struct gz_log *log,
-				     int out_size[2])
-{
-	out_size[0] = cast_side(width, rate);
-	out_size[1] = cast_side(height, rate);
-	if (out_size[0] > 0 && out_size[1] > 0)
-		return GZ_OK;
-	gz_err(log,
-	       "%dx%d at image_sampling_rate %g does not give 1 to %d rays a side; change the rate "
-	       "or the size",
-	       width, height, rate, GZ_IMAGE_SIDE_MAX);
-	return GZ_ERR_INVAL;
-}
-
 /* Overrides of the scene's settings; contradictions are found before large files are read. */
 struct change {
 	const struct gz_view_options *options;
@@ -84,15 +63,15 @@ static enum gz_result override_settings(void *user, struct gz_scene_settings *se
 	const struct gz_view_options *options = change->options;
 	const struct gz_backend_params params = { .threads = options->threads,
 						  .simd = options->simd };
-	int size[2];
+	int rays[2];
 	enum gz_result r = gz_techniques[0]->check(options->backend, &params, change->log);
 	if (r == GZ_OK && change->scene->by_options)
 		r = gz_view_options_apply(options, settings);
 	if (r == GZ_OK && change->scene->kept)
 		keep_settings(change->scene->kept, settings);
 	if (r == GZ_OK && options->headless)
-		r = find_cast_size(options->size_px[0], options->size_px[1],
-				   settings->image_sampling_rate, change->log, size);
+		r = gz_picture_count_rays(options->size_px, settings->image_sampling_rate,
+					  change->log, rays);
 	return r;
 }
 
