@@ -79,6 +79,21 @@ double gz_random_gamma(struct gz_random *random, int shape)
 	return sum / shape;
 }
 
+void gz_random_shuffle(struct gz_random *random, void *items, size_t count, size_t size)
+{
+	unsigned char *bytes = items;
+	for (size_t i = count; i > 1; i--) {
+		unsigned char *last = bytes + (i - 1) * size;
+		unsigned char *chosen =
+			bytes + (size_t)(gz_random_uniform(random) * (double)i) * size;
+		for (size_t k = 0; k < size; k++) {
+			const unsigned char kept = last[k];
+			last[k] = chosen[k];
+			chosen[k] = kept;
+		}
+	}
+}
+
 double gz_portable_log(double x)
 {
 	/* x = m 2^e with m near 1; log m = 2 artanh((m - 1) / (m + 1)), a series in odd powers. */

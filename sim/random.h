@@ -7,6 +7,7 @@
 #ifndef GZ_SIM_RANDOM_H
 #define GZ_SIM_RANDOM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 /** State of the generator xoshiro256**: Blackman and Vigna, "Scrambled linear pseudorandom number
@@ -38,6 +39,10 @@ double gz_random_exponential(struct gz_random *random);
 
 /** Gamma with mean 1 and the given shape, 1 or more: a sum of exponentials (Erlang). */
 double gz_random_gamma(struct gz_random *random, int shape);
+
+/** Shuffle @p count items of @p size bytes. All orders are equally likely (Fisher and Yates;
+ * Durstenfeld, Communications of the ACM 7, 1964). */
+void gz_random_shuffle(struct gz_random *random, void *items, size_t count, size_t size);
 
 /** Natural logarithm of x > 0; relative error below 1e-14. */
 double gz_portable_log(double x);

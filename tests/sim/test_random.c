@@ -71,6 +71,25 @@ static void gammas_have_mean_1_and_variance_of_their_shape(void **state)
 	}
 }
 
+static void shuffle_gives_all_orders_equally_often(void **state)
+{
+	(void)state;
+	enum { DRAWS = 6000 };
+	struct gz_random random = gz_random_seeded(5, 0);
+	int seen[3][3] = { { 0 } }; /* by the first and the second item */
+	for (int i = 0; i < DRAWS; i++) {
+		int items[] = { 0, 1, 2 };
+		gz_random_shuffle(&random, items, 3, sizeof items[0]);
+		assert_int_equal(items[0] + items[1] + items[2], 3);
+		seen[items[0]][items[1]]++;
+	}
+	for (int first = 0; first < 3; first++)
+		for (int second = 0; second < 3; second++)
+			if (first != second)
+				assert_in_range(seen[first][second], DRAWS / 6 - 150,
+						DRAWS / 6 + 150);
+}
+
 static void portable_functions_agree_with_the_library(void **state)
 {
 	(void)state;
@@ -104,6 +123,7 @@ TEST_SUITE(random)
 		cmocka_unit_test(streams_of_one_seed_differ),
 		cmocka_unit_test(normals_have_mean_0_and_deviation_1),
 		cmocka_unit_test(gammas_have_mean_1_and_variance_of_their_shape),
+		cmocka_unit_test(shuffle_gives_all_orders_equally_often),
 		cmocka_unit_test(portable_functions_agree_with_the_library),
 		cmocka_unit_test(angle_of_the_axes_is_exact),
 	};

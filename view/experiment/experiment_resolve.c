@@ -138,7 +138,7 @@ static enum gz_result take_alternative(const struct maker *maker, int which)
 	return result;
 }
 
-static size_t split_at_blanks(char *text, char **out_words, size_t room)
+static size_t split_names(char *text, char **out_words, size_t room)
 {
 	size_t count = 0;
 	char *rest = text, *word;
@@ -155,7 +155,7 @@ static enum gz_result take_answer_keys(const struct maker *maker)
 	struct gz_condition *condition = maker->condition;
 	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
 	memcpy(text, condition->params.keys, sizeof text);
-	size_t count = split_at_blanks(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	size_t count = split_names(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
 	if (count == 0 || count > GZ_EXPERIMENT_ANSWERS_MAX)
 		return refuse_trial(maker, "keys", "%zu keys; 1 to %d are allowed", count,
 				    GZ_EXPERIMENT_ANSWERS_MAX);
@@ -195,7 +195,7 @@ static enum gz_result take_answers(const struct maker *maker)
 	struct gz_condition *condition = maker->condition;
 	char text[GZ_INI_LINE_SIZE], *words[GZ_EXPERIMENT_ANSWERS_MAX];
 	memcpy(text, condition->params.answers, sizeof text);
-	size_t count = split_at_blanks(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
+	size_t count = split_names(text, words, GZ_EXPERIMENT_ANSWERS_MAX);
 	name_answers(condition);
 	if (count == 0)
 		return GZ_OK;
@@ -331,7 +331,7 @@ static enum gz_result choose_trials(const struct resolver *resolver,
 	char text[GZ_INI_LINE_SIZE], what[96];
 	char *words[GZ_INI_LINE_SIZE];
 	memcpy(text, params->trials, sizeof text);
-	size_t words_count = split_at_blanks(text, words, GZ_INI_LINE_SIZE), count = 0;
+	size_t words_count = split_names(text, words, GZ_INI_LINE_SIZE), count = 0;
 	for (size_t i = 0; i < words_count; i++) {
 		if (choose_named(resolver->experiment, words[i], chosen, &count))
 			continue;

@@ -16,48 +16,13 @@ struct maker {
 	struct gz_sequence sequence;
 };
 
-/* A uniform random number from 0 to end - 1. */
-static size_t draw_below(struct gz_random *random, size_t end)
-{
-	return (size_t)(gz_random_uniform(random) * (double)end);
-}
-
-static void swap_presentations(struct gz_presentation *a, struct gz_presentation *b)
-{
-	struct gz_presentation kept = *a;
-	*a = *b;
-	*b = kept;
-}
-
-/* All orders are equally likely (Fisher and Yates; Durstenfeld 1964). */
-static void shuffle_trials(struct gz_random *random, struct gz_presentation *items, size_t count)
-{
-	for (size_t i = count; i > 1; i--)
-		swap_presentations(&items[i - 1], &items[draw_below(random, i)]);
-}
-
-static void shuffle_blocks(struct gz_random *random, const struct gz_block **blocks, size_t count)
-{
-	for (size_t i = count; i > 1; i--) {
-		size_t chosen = draw_below(random, i);
-		const struct gz_block *last = blocks[i - 1];
-		blocks[i - 1] = blocks[chosen];
-		blocks[chosen] = last;
-	}
-}
-
 /* Swap half of a condition's repeats, at random. With an odd number, one more or one less. */
 static void balance_order(struct gz_random *random, bool *swapped, size_t count)
 {
 	bool more = gz_random_uniform(random) < 0.5;
 	for (size_t i = 0; i < count; i++)
 		swapped[i] = i < count / 2 || (i == count - 1 && count % 2 && more);
-	for (size_t i = count; i > 1; i--) {
-		size_t chosen = draw_below(random, i);
-		bool last = swapped[i - 1];
-		swapped[i - 1] = swapped[chosen];
-		swapped[chosen] = last;
-	}
+	gz_random_shuffle(random, swapped, count, sizeof *swapped);
 }
 
 static void draw_ways(struct gz_random *random, const struct gz_condition *condition, bool *swapped,
@@ -126,9 +91,9 @@ static enum gz_result add_block(struct maker *maker, const struct gz_block *bloc
 	if (result != GZ_OK)
 		return result;
 	if (block->params.order == GZ_ORDER_FULL)
-		shuffle_trials(&maker->random, items, each * repeats);
+		gz_random_shuffle(&maker->random, items, each * repeats, sizeof *items);
 	for (size_t i = 0; block->params.order == GZ_ORDER_RANDOM && i < repeats; i++)
-		shuffle_trials(&maker->random, items + i * each, each);
+		gz_random_shuffle(&maker->random, items + i * each, each, sizeof *items);
 	maker->sequence.count += each * repeats;
 	return number_repeats(block, items, each * repeats);
 }
@@ -166,7 +131,7 @@ static enum gz_result order_blocks(struct maker *maker, const char *participant,
 		if (!experiment->blocks[i].params.practice)
 			counted[count++] = &experiment->blocks[i];
 	if (experiment->params.block_order == GZ_BLOCKS_RANDOM)
-		shuffle_blocks(&maker->random, counted, count);
+		gz_random_shuffle(&maker->random, counted, count, sizeof *counted);
 	else if (experiment->params.block_order == GZ_BLOCKS_ROTATED && count > 0)
 		result = rotate_blocks(experiment, participant, log, counted, count);
 	for (size_t i = 0; i < experiment->block_count; i++)

@@ -38,17 +38,11 @@ static const struct gz_point layout[] = {
 	{ 0.7f, 0.3f }, { 0.3f, 0.7f }, { 0.7f, 0.7f },
 };
 
-/* All orders are equally likely (Fisher and Yates; Durstenfeld 1964). */
 static void shuffle_targets(struct gz_targets *targets, int seed)
 {
-	uint64_t start = seed > 0 ? (uint64_t)seed : (uint64_t)gz_clock_now_ns();
+	const uint64_t start = seed > 0 ? (uint64_t)seed : (uint64_t)gz_clock_now_ns();
 	struct gz_random random = gz_random_seeded(start, 0);
-	for (size_t i = targets->count; i > 1; i--) {
-		size_t chosen = (size_t)(gz_random_uniform(&random) * (double)i);
-		struct gz_target last = targets->target[i - 1];
-		targets->target[i - 1] = targets->target[chosen];
-		targets->target[chosen] = last;
-	}
+	gz_random_shuffle(&random, targets->target, targets->count, sizeof targets->target[0]);
 }
 
 enum gz_result gz_target_places(const struct gz_target_options *options, const struct gz_log *log,
