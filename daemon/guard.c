@@ -29,7 +29,7 @@ enum { PEERS_MAX = 64 };
 enum { AT_ONCE = 64 };
 
 /* Kinds of message about an address; each is logged once a minute. */
-enum notice { LET_IN, UNKNOWN_KEY, WRONG_SERVER_KEY, WITHOUT_KEYS, NO_HANDSHAKE };
+enum notice { LET_IN, UNKNOWN_KEY, WRONG_SERVER_KEY, WITHOUT_KEYS, LEFT };
 
 /* A connection that may still fail. */
 struct peer {
@@ -189,25 +189,26 @@ static void peer_arrived(struct gz_connections *connections, int fd)
 	memcpy(peer->address, address, sizeof address);
 }
 
-static const char *handshake_failure_text(enum notice failure)
-{
-	switch (failure) {
-	case WRONG_SERVER_KEY:
-		return "it has the key of another server; give it the line that gazectl keygen "
-		       "--server prints here";
-	case WITHOUT_KEYS:
-		return "it has no keys; run gazectl keygen --client there";
-	default:
-		return "it does not speak CurveZMQ; is it a client of gazed?";
-	}
-}
-
 static void log_handshake_failure(struct gz_connections *connections, const char *address)
 {
+	const struct gz_log *log = connections->guard->log;
+	const char *name = connections->name;
 	char more[64];
-	if (log_permitted(connections->guard, address, connections->failure, more, sizeof more))
-		gz_warn(connections->guard->log, "%s at socket %s is refused: %s%s", address,
-			connections->name, handshake_failure_text(connections->failure), more);
+	if (!log_permitted(connections->guard, address, connections->failure, more, sizeof more))
+		return;
+	if (connections->failure == WRONG_SERVER_KEY)
+		gz_warn(log,
+			"%s at socket %s is refused: it has the key of another server; give it the "
+			"line that gazectl keygen --server prints here%s",
+			address, name, more);
+	else if (connections->failure == WITHOUT_KEYS)
+		gz_warn(log,
+			"%s at socket %s is refused: it has no keys; run gazectl keygen --client "
+			"there%s",
+			address, name, more);
+	else /* no refusal: a client that changes its mind does so too */
+		gz_info(log, "%s at socket %s does not finish the handshake%s", address, name,
+			more);
 }
 
 static void peer_left(struct gz_connections *connections, int fd)
@@ -222,21 +223,24 @@ static void peer_left(struct gz_connections *connections, int fd)
 		peer->fd = -1;
 }
 
-static void handshake_failed(struct gz_connections *connections, int error)
+static void handshake_failed(struct gz_connections *connections, enum notice failure)
 {
 	connections->failing = true;
-	connections->failure =
-		error == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC ? WRONG_SERVER_KEY : WITHOUT_KEYS;
+	connections->failure = failure;
 }
 
 /* Take one event: a frame of u16 number and u32 value in the host's byte order, and a frame with
  * the socket's own address (zmq_socket_monitor(3)). libzmq's only I/O thread reports a failed
- * handshake and the end of that connection with no other event between them. @return whether there
- * was an event */
+ * handshake and the end of that connection with no other event between them.
+ *
+ * A client may close the connection before libzmq has read what it sent: then libzmq finds no
+ * fault, only the end (NO_DETAIL). So does a local client that gives up; it needs no keys, and
+ * nothing is logged. @return whether there was an event */
 static bool take_monitor_event(struct gz_connections *connections)
 {
+	static const char tcp[] = { 't', 'c', 'p', ':' };
 	unsigned char frame[6];
-	char address[1];
+	char address[sizeof tcp] = "";
 	if (zmq_recv(connections->monitor, frame, sizeof frame, ZMQ_DONTWAIT) != sizeof frame)
 		return false;
 	uint16_t event;
@@ -249,7 +253,12 @@ static bool take_monitor_event(struct gz_connections *connections)
 	else if (event == ZMQ_EVENT_DISCONNECTED)
 		peer_left(connections, value);
 	else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL)
-		handshake_failed(connections, value);
+		handshake_failed(connections, value == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC
+						      ? WRONG_SERVER_KEY
+						      : WITHOUT_KEYS);
+	else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL &&
+		 memcmp(address, tcp, sizeof tcp) == 0)
+		handshake_failed(connections, LEFT);
 	return true;
 }
 
@@ -339,7 +348,8 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 	connections->monitor = zmq_socket(guard->context, ZMQ_PAIR);
 	int events = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED;
 	if (guard->zap)
-		events |= ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
+		events |=
+			ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL;
 	snprintf(endpoint, sizeof endpoint, "inproc://monitor-%s", name);
 	if (connections->monitor) {
 		set_guard_option(connections->monitor, ZMQ_LINGER, 0);

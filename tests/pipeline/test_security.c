@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 #include <zmq.h>
 
@@ -190,6 +191,19 @@ static void must_be_refused(const struct gz_keys *keys, const char *why)
 		fail_msg("%s: %s, not %s", gz_result_text(result), captured.last, why);
 }
 
+/* Be refused until the daemon has logged @p text with our address. If a connection has closed
+ * before the daemon reads its address, it logs "an unknown address" instead. */
+static void be_refused_until_said(const struct gz_keys *keys, const char *why,
+				  const struct gazed_process *gazed, const char *text)
+{
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	while (count_said(gazed, text) == 0) {
+		if (gz_clock_now_ns() > deadline_ns)
+			fail_msg("gazed does not say \"%s\" but: %s", text, gazed_said(gazed));
+		must_be_refused(keys, why);
+	}
+}
+
 /* A TCP port of the daemon, asked for over its local socket. */
 static int port_by(const char *request)
 {
@@ -324,8 +338,9 @@ static void curve_wrong_server_key_is_logged_once_on_both_sides(void **state)
 	assert_int_equal(captured.messages, 1);
 	for (int i = 0; i < ATTEMPTS; i++)
 		must_be_refused(&wrong, "most likely its server key is not the one");
-	wait_said(&gazed,
-		  "127.0.0.1 at socket control is refused: it has the key of another server");
+	be_refused_until_said(
+		&wrong, "most likely its server key is not the one", &gazed,
+		"127.0.0.1 at socket control is refused: it has the key of another server");
 	must_be_let_in(&keys);
 	/* There is at most one more line, for connections that had closed before their address was
 	 * read. */
@@ -343,11 +358,51 @@ static void curve_client_without_keys_is_told_what_it_needs(void **state)
 	struct gazed_process gazed = start_curve();
 	for (int i = 0; i < ATTEMPTS; i++)
 		must_be_refused(NULL, "requires keys: run gazectl keygen --client");
-	wait_said(&gazed, "127.0.0.1 at socket control is refused: it has no keys");
+	be_refused_until_said(NULL, "requires keys: run gazectl keygen --client", &gazed,
+			      "127.0.0.1 at socket control is refused: it has no keys");
 	must_be_let_in(&keys);
 	if (count_said(&gazed, "127.0.0.1 at socket control is refused") != 1)
 		fail_msg("not once: %s", gazed_said(&gazed));
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
+/* Connect to the control socket and close at once. */
+static void leave_in_the_handshake(int family, const struct sockaddr *address, socklen_t size)
+{
+	int fd = socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_true(fd >= 0);
+	assert_return_code(connect(fd, address, size), errno);
+	close(fd);
+}
+
+static void curve_client_that_leaves_in_the_handshake_is_logged_unless_it_is_local(void **state)
+{
+	(void)state;
+	static const char text[] = "at socket control does not finish the handshake";
+	char endpoint[64];
+	struct gz_client *client;
+	struct gz_keys keys = own_keys();
+	authorize(keys.public_key);
+	struct gazed_process gazed = start_curve();
+	struct sockaddr_un local = { .sun_family = AF_UNIX };
+	struct sockaddr_in remote = { .sin_family = AF_INET };
+	snprintf(local.sun_path, sizeof local.sun_path, "%s/control", place.directory);
+	remote.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	remote.sin_port = htons((uint16_t)atoi(strrchr(control, ':') + 1));
+	for (int i = 0; i < ATTEMPTS; i++)
+		leave_in_the_handshake(AF_UNIX, (struct sockaddr *)&local, sizeof local);
+	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", port_by("LATEST_PORT"));
+	assert_int_equal(gz_client_open_with_keys(endpoint, &keys, &captured.log, &client), GZ_OK);
+	receive_latest(client); /* the daemon has heard of the local connections before this one */
+	gz_client_close(&client);
+	if (count_said(&gazed, text) != 0)
+		fail_msg("%s", gazed_said(&gazed));
+	for (int i = 0; i < ATTEMPTS; i++)
+		leave_in_the_handshake(AF_INET, (struct sockaddr *)&remote, sizeof remote);
+	wait_said(&gazed, text);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	/* Once with the address and once without. */
+	assert_in_range(count_said(&gazed, text), 1, 2);
 }
 
 static void client_with_keys_is_told_that_the_daemon_has_none(void **state)
@@ -606,6 +661,7 @@ TEST_SUITE(security)
 		TEST(curve_unknown_key_hears_nothing_of_the_stream),
 		TEST(curve_wrong_server_key_is_logged_once_on_both_sides),
 		TEST(curve_client_without_keys_is_told_what_it_needs),
+		TEST(curve_client_that_leaves_in_the_handshake_is_logged_unless_it_is_local),
 		TEST(client_with_keys_is_told_that_the_daemon_has_none),
 		TEST(curve_authorized_keys_are_read_again_when_they_change),
 		TEST(curve_flood_of_refused_clients_takes_nothing_from_a_reader),
