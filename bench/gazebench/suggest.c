@@ -8,7 +8,6 @@
 
 #include "bench/report/advice.h"
 #include "bench/report/names.h"
-#include "bench/report/scene_edit.h"
 #include "bench/report/summary_json.h"
 #include "bench/study/study_folder.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bench/report/scene_edit.h"
+#include "bench/report/advice.h"
 
 static void variant_sets_each_option_in_its_section(void **state)
 {
