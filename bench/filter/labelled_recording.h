@@ -46,7 +46,7 @@ extern const char *const gz_labelled_stimulus_names[GZ_LABELLED_STIMULI];
 #define GZ_LABELLED_CODERS 2  /**< people who labelled each recording: "MN" and "RA" */
 #define GZ_LABELLED_FILES  16 /**< recordings, each labelled by both */
 
-/** The recordings, those of one stimulus behind each other. */
+/** The recordings, grouped by stimulus. */
 extern const struct gz_labelled_file {
 	enum gz_labelled_stimulus stimulus;
 	const char *name; /**< of its files, without the coder */
@@ -59,7 +59,7 @@ extern const struct gz_labelled_file {
  * @param file   place in gz_labelled_files
  * @param coder  0 or 1
  * @param[out] out  free with gz_labelled_recording_free(), in any case
- * @return false if it is not there or not such a file
+ * @return false if it is missing or not such a file
  */
 bool gz_labelled_recording_read(const char *data, size_t file, int coder,
 				struct gz_labelled_recording *out);

@@ -1,6 +1,6 @@
 /**
  * @file
- * A recording of gaze, who looked at what when as far as it is known, and what a filter made of it.
+ * A gaze recording: its samples, the known events, and the output of a filter.
  *
  * What the pipeline is compared with is here too: the 1 euro filter, and velocity-threshold
  * identification.
@@ -52,8 +52,8 @@ double gz_gaze_track_interval_ms(const struct gz_gaze_track *track);
  * Run the pipeline over it: fills @p point and @p event.
  *
  * @param params   NULL for the defaults
- * @param certain  @p event is the label that the pipeline tells later (gz_gaze.final_event); else
- *                 the one that it tells at once
+ * @param certain  @p event is the pipeline's final label (gz_gaze.final_event); else its immediate
+ *                 one
  */
 void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
 				const struct gz_pipeline_params *params, bool certain);

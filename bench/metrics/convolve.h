@@ -28,7 +28,7 @@ struct gz_convolution {
 	bool add;    /**< add to what @p out holds, instead of overwriting it */
 };
 
-/** Filter a plane across, then down. Beyond its edges a plane goes on with its outermost values. */
+/** Filter a plane across, then down. Its edge values continue beyond its edges. */
 void gz_convolve(const struct gz_convolution *convolution, struct gz_workers *workers);
 
 #endif

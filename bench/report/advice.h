@@ -13,18 +13,18 @@
 #include "bench/study/study.h"
 
 /** Bound on perceived FLIP unless another is asked for. Chosen: what FLIP says of two greys that
- *  are one level of 255 apart, 0.029855 (data of its authors), which nobody tells apart. */
+ *  are one level of 255 apart, 0.029855 (data of its authors), which nobody can distinguish. */
 #define GZ_ADVICE_BOUND "0.03"
 
-/** What is asked. */
+/** A question. */
 struct gz_advice_question {
 	enum gz_error_measure measure;
 	enum gz_error_reference reference;
 	double bound; /**< in the measure's own unit */
 };
 
-/** What is asked of a group unless something else is: perceived FLIP within GZ_ADVICE_BOUND,
- *  against what gz_group_reference() says. */
+/** The default question about a group: perceived FLIP within GZ_ADVICE_BOUND against
+ *  gz_group_reference(). */
 struct gz_advice_question gz_advice_preset(const struct gz_group *group);
 
 /** Place of the cheapest series that holds the bound at every measured point, or
@@ -40,8 +40,8 @@ bool gz_advice_has_errors(const struct gz_group *const *groups, size_t count,
 			  const struct gz_advice_question *question);
 
 /**
- * The variant that holds the bound at every measured point of each of these groups and takes least,
- * by the geometric mean of its times over those of standard where that was measured.
+ * The variant that holds the bound at every measured point of each of these groups and has the
+ * least time: the geometric mean over the groups, relative to standard if that was measured.
  *
  * @return its place in the study's list, or GZ_SERIES_NONE
  */
@@ -49,17 +49,17 @@ size_t gz_advice_choose(const struct gz_study *study, const struct gz_group *con
 			size_t count, const struct gz_advice_question *question);
 
 /**
- * The answer as a paragraph of plain words.
+ * Append the answer as a paragraph of text.
  *
- * @param series  what was found for the question, or GZ_SERIES_NONE
- * @param html  whether what counts is marked by <strong>, and texts are escaped
+ * @param series  the answer to the question, or GZ_SERIES_NONE
+ * @param html    mark the important words by <strong> and escape texts
  */
 void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
 		    const struct gz_advice_question *question, size_t series, bool html,
 		    struct gz_text *out);
 
 /**
- * Set everything that a variant says, in the sections where scenes have it.
+ * Set all options of a variant in the sections where scenes have them.
  *
  * @retval GZ_ERR_INVAL  the variant has an option that scenes do not have; logged
  */
@@ -71,9 +71,9 @@ enum gz_result gz_scene_text_set_variant(struct gz_text *text,
  * Write a copy of a scene with a variant's settings.
  *
  * @param scene  file to copy
- * @param copy   file to make; must not be there, and what the scene names by relative paths must be
- *               found from it
- * @retval GZ_ERR_BUSY       @p copy is there; logged
+ * @param copy   file to make; it must not exist, and the relative paths in the scene must work from
+ *               its folder
+ * @retval GZ_ERR_BUSY       @p copy exists; logged
  * @retval GZ_ERR_NOT_FOUND  no such scene, or a file of it would not be found; logged
  * @retval GZ_ERR_FORMAT     the scene is refused; logged
  * @retval GZ_ERR_INVAL      of gz_scene_text_set_variant()

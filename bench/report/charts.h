@@ -1,10 +1,10 @@
 /**
  * @file
- * Charts drawn by gnuplot, run as a child. Scripts are bench/report/charts/; what they draw reaches
- * them in files, and no shell sees any of it.
+ * Charts drawn by gnuplot, run as a child process without a shell. The scripts are
+ * bench/report/charts/; files pass the data to them.
  *
  * Each chart is drawn on three canvases: as SVG for wide pages, which is also FOLDER/NAME.svg, as
- * SVG for pages of a hand's width, and as FOLDER/NAME.png.
+ * SVG for narrow pages, and as FOLDER/NAME.png.
  *
  * Methods keep their colours in every report. They differ in lightness and in shape of their points
  * too, so that no one needs to tell hues apart, and each is dark (or light) enough to be read as
@@ -22,7 +22,7 @@
 #include "base/text.h"
 #include "protocol/gaze.h"
 
-/** What a chart is drawn on. */
+/** Where a chart is drawn. */
 enum gz_canvas_kind { GZ_CANVAS_WIDE, GZ_CANVAS_NARROW, GZ_CANVAS_PNG, GZ_CANVAS_KINDS };
 
 /** Size and margins of a canvas, px; of a PNG those before it is scaled by two. */
@@ -39,12 +39,12 @@ struct gz_chart {
 	char *svg[GZ_CANVAS_KINDS]; /**< texts; NULL for GZ_CANVAS_PNG */
 };
 
-/** What draws charts into a folder. */
+/** Draws charts into a folder. */
 struct gz_charts {
 	const struct gz_log *log;
 	char folder[GZ_PATH_SIZE];
 	char work[GZ_PATH_SIZE]; /**< a folder of its own, inside; empty where nothing is drawn */
-	bool available;          /**< false without gnuplot: every drawing is left out in silence */
+	bool available;          /**< false without gnuplot: drawing does nothing */
 	struct gz_chart *charts;
 	size_t count;
 };
@@ -91,7 +91,7 @@ const struct gz_chart *gz_charts_find(const struct gz_charts *charts, const char
 /** Colours that are no method's. */
 #define GZ_COLOUR_INK  0x1b1f24 /**< axes, text */
 #define GZ_COLOUR_GRID 0xdfe3e8 /**< lines of the grid */
-#define GZ_COLOUR_MUTE 0x5c6570 /**< what is said by the way */
+#define GZ_COLOUR_MUTE 0x5c6570 /**< secondary text */
 #define GZ_COLOUR_PALE 0xcdd3da /**< the front, behind everything */
 #define GZ_COLOUR_PAGE 0xfdfdfe /**< halos: the page itself */
 
@@ -101,7 +101,7 @@ struct gz_method_look {
 	int point;       /**< gnuplot's type of point */
 };
 
-/** The look of a method; unknown ones look like each other. */
+/** The look of a method; all unknown methods share one look. */
 struct gz_method_look gz_method_look(const char *method);
 
 /** Add to @p out the SVG @p svg of gnuplot, with a style that turns its colours on dark pages. */

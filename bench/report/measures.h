@@ -64,24 +64,24 @@ double gz_error_cost(enum gz_error_kind kind, double value);
 /** The value that has this cost: infinite dB for none. */
 double gz_error_of_cost(enum gz_error_kind kind, double cost);
 
-/** Whether greater values mean less error. */
+/** Whether greater values mean a smaller error. */
 bool gz_error_rises(enum gz_error_kind kind);
 
-/** Of values that are numbers; every field but count is NaN where there are none. */
+/** Statistics of the values that are not NaN; without any, every field but count is NaN. */
 struct gz_distribution {
 	size_t count;
 	double mean;
 	double variance; /**< of the values as a whole population: divided by their number */
 	double least, p25, median, p75, p90, p95, p99, greatest;
 	double sum;
-	/** Time-weighted mean, sum of squares over sum: of frame times, what is on screen at a
+	/** Time-weighted mean, sum of squares over sum: of frame times, the one on screen at a
 	 *  moment picked at random, since long frames stay longer. */
 	double perceived;
 };
 
 /**
  * The quantile @p share of sorted values, linear between the two nearest (type 7 of Hyndman and
- * Fan 1996, what numpy and R do unless told otherwise).
+ * Fan 1996, the default of numpy and R).
  *
  * @param share  0 to 1
  * @return NaN for none

@@ -1,6 +1,6 @@
 /**
  * @file
- * What people call variants and groups of a study, and names for their files.
+ * Readable names of variants and groups of a study, and names for their files.
  */
 #ifndef GZ_BENCH_REPORT_NAMES_H
 #define GZ_BENCH_REPORT_NAMES_H
@@ -16,23 +16,22 @@
 void gz_variant_words(const struct gz_study_variant *variant, char out_words[GZ_NAMES_SIZE]);
 
 /**
- * What tells a variant from the others of its curve: "0.0275" where they differ in one option
- * only, "slope 0.0275, levels yes" else, "preset" for the method alone beside others, empty for
- * one that stands alone.
+ * What distinguishes a variant from the others of its curve: "0.0275" if they differ in one option
+ * only, otherwise "slope 0.0275, levels yes"; "preset" for the method without options among others,
+ * empty for the only variant.
  */
 void gz_variant_label(const struct gz_study *study, const struct gz_group *group,
 		      const struct gz_curve *curve, size_t series, char out_label[GZ_NAMES_SIZE]);
 
-/** A curve's name: "acuity", and where its variants differ in one option "acuity, slope". */
+/** A curve's name: "acuity", or "acuity, slope" if its variants differ in one option. */
 void gz_curve_name(const struct gz_study *study, const struct gz_group *group,
 		   const struct gz_curve *curve, char out_name[GZ_NAMES_SIZE]);
 
-/** "head (bone) at 1024×1024 on cpu": the transfer function where it has another name. */
+/** "head (bone) at 1024×1024 on cpu": with the transfer function if its name differs. */
 void gz_group_words(const struct gz_study *study, const struct gz_group *group,
 		    char out_words[GZ_NAMES_SIZE]);
 
-/** What a fit of growth is of, which stays the same: "head on cpu", "all scenes at 1024×1024 on
- *  cpu". */
+/** What stays the same in a fit of growth: "head on cpu", "all scenes at 1024×1024 on cpu". */
 void gz_growth_words(const struct gz_study *study, const struct gz_scaling *scaling,
 		     char out_words[GZ_NAMES_SIZE]);
 

@@ -11,7 +11,7 @@
 
 /**
  * Draw all charts of a study. Where there is a picture of a scene (gz_report_picture()), it lies
- * behind its maps of the gaze. Without gnuplot nothing is drawn, and that is no fault.
+ * behind its maps of the gaze. Without gnuplot nothing is drawn, and the call succeeds.
  *
  * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged; what was drawn before stays
  */

@@ -3,9 +3,9 @@
  * A study summed up: for each scene, size and backend (a group) each variant (a series), its times,
  * its gain over standard, its errors. Pure computation from rows.
  *
- * Two kinds of time. Distributions count every frame as it was. What methods are compared by is the
- * typical time: the median of a point's frames, averaged over points, so that frames which the
- * machine disturbed do not decide and repeated runs agree.
+ * There are two kinds of time. Distributions count every frame. Methods are compared by their
+ * typical time: the median of a point's frames, averaged over points, which single disturbed frames
+ * do not change.
  */
 #ifndef GZ_BENCH_REPORT_SUMMARY_H
 #define GZ_BENCH_REPORT_SUMMARY_H
@@ -45,14 +45,14 @@ struct gz_series {
 	size_t point_count;
 	/** Over all frames, of the columns that GZ_JOIN_FRAMES joins; the others are zero. */
 	struct gz_distribution columns[GZ_STUDY_COLUMNS];
-	/** Of each frame what it takes beside casting: plan, reconstruction, hand-over. */
+	/** What a frame takes besides casting: plan, reconstruction, hand-over. */
 	struct gz_distribution overhead_ms;
 	double typical_ms; /**< mean over points of their median frame times */
 	/** Standard's time over this one's, by medians of points that both have; NaN where standard
 	 *  was not measured. Of the means; the mean of each point's; the least of them. */
 	double ratio_of_means, mean_ratio, least_ratio;
 	double rays, samples; /**< mean of a frame */
-	/** Rays over those of the acuity bound at the same points; NaN without a bound. */
+	/** Rays over the acuity bound's rays at the same points; NaN without a bound. */
 	double bound_share;
 	struct gz_error_summary errors[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];
 	struct gz_distribution flicker; /**< over points */
@@ -72,7 +72,7 @@ struct gz_curve {
 /** One scene with one transfer function, at one size, by one backend. */
 struct gz_group {
 	size_t scene, size, backend; /**< places in the study's lists */
-	struct gz_series *series;    /**< those that have rows, in the study's order */
+	struct gz_series *series;    /**< variants with rows, in the study's order */
 	size_t series_count;
 	size_t standard; /**< place of standard, or GZ_SERIES_NONE */
 	struct gz_curve *curves;
@@ -98,7 +98,7 @@ struct gz_scaling {
 	enum gz_scaling_kind kind;
 	size_t variant;
 	size_t scene, size; /**< what stays the same: pixels: scene; voxels: size; threads: both */
-	size_t backend;     /**< likewise; of threads the first of them */
+	size_t backend;     /**< for threads, the first of them */
 	double exponent, factor;         /**< t = factor * x^exponent, ms */
 	double r2;                       /**< share of the logarithms' variance that it explains */
 	struct gz_scaling_point *points; /**< by x */
@@ -108,7 +108,7 @@ struct gz_scaling {
 /** A study summed up. Points into the study, which must outlive it. */
 struct gz_summary {
 	const struct gz_study *study;
-	struct gz_group *groups; /**< those that have rows */
+	struct gz_group *groups; /**< groups with rows */
 	size_t group_count;
 	struct gz_scaling *scalings;
 	size_t scaling_count;
@@ -143,7 +143,7 @@ double gz_curve_time_at_cost(const struct gz_group *group, const struct gz_curve
 			     double cost, size_t *out_series);
 
 /**
- * The least mean cost of a curve within @p limit_ms, interpolated likewise.
+ * The least mean cost of a curve within @p limit_ms, by the same interpolation.
  *
  * @return NaN where even its cheapest takes longer, or has no such error
  */
@@ -163,7 +163,7 @@ size_t gz_group_cheapest_within(const struct gz_group *group, enum gz_error_refe
  * Fit t = factor * x^exponent by least squares in logarithms.
  *
  * @param points  at least two different x, all above 0
- * @return false where there are not; then nothing is written
+ * @return false if there are fewer; then nothing is written
  */
 bool gz_scaling_fit(const struct gz_scaling_point *points, size_t count, double *out_exponent,
 		    double *out_factor, double *out_r2);

@@ -22,12 +22,13 @@
 #define GZ_EQUAL_TIMES 4
 extern const double gz_equal_time_shares[GZ_EQUAL_TIMES];
 
-/** The whole summary: the caller's, json_decref(). What was not measured is null, an infinite PSNR
- *  the text "inf". NULL where there is no memory. */
+/** The whole summary: the caller's, json_decref(). A value that was not measured is null, an
+ * infinite PSNR the text "inf". NULL if memory runs out. */
 json_t *gz_summary_to_json(const struct gz_summary *summary);
 
 /**
- * Write JSON to a file under another name first, so that what is there is whole or as it was.
+ * Write JSON to a file through a temporary name, so that an existing file is replaced completely or
+ * stays.
  *
  * @retval GZ_ERR_IO  logged
  */

@@ -23,9 +23,9 @@
 
 #define GZ_STABILITY_TEXT_SIZE 256 /**< bytes of any text below with its NUL */
 #define GZ_STABILITY_NUMBERS   3   /**< most numbers that one row measures */
-#define GZ_STABILITY_CROP_PX   32  /**< edge of what is kept round a worst pixel */
+#define GZ_STABILITY_CROP_PX   32  /**< edge of the crop around a worst pixel */
 
-/** What is looked at. Volume and transfer function are borrowed. */
+/** A scene. Volume and transfer function are borrowed. */
 struct gz_stability_scene {
 	const struct gz_volume *volume;
 	const struct gz_transfer *transfer;
@@ -43,7 +43,7 @@ struct gz_stability_scene {
 typedef enum gz_result gz_stability_wanted(void *user, const struct gz_stability_scene *scene,
 					   int width, int height, struct gz_image *image);
 
-/** What the rows are run on. */
+/** Settings of the rows. */
 struct gz_stability_settings {
 	struct gz_stability_scene scene;
 	struct gz_display display;   /**< of the picture, which fills it */
@@ -55,7 +55,7 @@ struct gz_stability_settings {
 	const struct gz_log *log; /**< NULL: silent */
 };
 
-/** What a row came to. */
+/** Result of a row. */
 enum gz_stability_verdict {
 	GZ_STABILITY_HOLDS,
 	GZ_STABILITY_FAILS,
@@ -70,7 +70,7 @@ const char *gz_stability_verdict_text(enum gz_stability_verdict verdict);
 struct gz_stability_number {
 	const char *what; /**< with its unit; static text */
 	double value, bound;
-	char where[GZ_STABILITY_TEXT_SIZE]; /**< what was rendered when it was worst */
+	char where[GZ_STABILITY_TEXT_SIZE]; /**< what was rendered at its worst */
 };
 
 /** The pixel that is farthest off, in the number that is. */
@@ -122,8 +122,8 @@ extern const struct gz_stability_row gz_stability_rows[];
 enum gz_result gz_stability_create(const struct gz_stability_settings *settings,
 				   struct gz_stability_bench **out_bench);
 
-/** From now on test this backend. On failure, which is that of gz_picture_maker_show(), no row can
- * be run. */
+/** Test this backend from now on. If gz_picture_maker_show() fails, its error is returned and no
+ * row can be run. */
 enum gz_result gz_stability_use_backend(struct gz_stability_bench *bench, const char *backend);
 
 /**
@@ -142,7 +142,7 @@ void gz_stability_use_method(struct gz_stability_bench *bench, const struct gz_f
  *
  * @param[in,out] outcome  emptied and filled; a frame that fails makes it fail or refused, with the
  *                         reason in its note
- * @retval GZ_ERR_NO_MEM  no room for what is compared with
+ * @retval GZ_ERR_NO_MEM  no room for reference pictures
  * @retval GZ_ERR_INVAL   no backend or method is in use
  */
 enum gz_result gz_stability_run(struct gz_stability_bench *bench,
@@ -159,8 +159,8 @@ void gz_stability_outcome_free(struct gz_stability_outcome *outcome);
 void gz_stability_destroy(struct gz_stability_bench **bench);
 
 /**
- * Write what is round the worst pixel as a picture, enlarged: what was rendered, what was wanted,
- * and the difference four times as strong; the pixel itself is framed.
+ * Write the surroundings of the worst pixel as an enlarged picture: rendered, wanted, and the
+ * difference four times as strong, with the pixel framed.
  *
  * @retval GZ_ERR_INVAL   the outcome has no such pixel
  * @retval GZ_ERR_NO_MEM  no room

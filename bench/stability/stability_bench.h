@@ -79,7 +79,7 @@ struct gz_stability_bench {
 	struct gz_stability_maker tested, portable;
 	struct gz_plan plan; /**< of the last frame */
 	struct gz_frame_stats stats;
-	struct gz_volume volumes[GZ_STABILITY_VOLUME_COUNT]; /**< those that a row has asked for */
+	struct gz_volume volumes[GZ_STABILITY_VOLUME_COUNT]; /**< made on first use */
 	struct gz_stability_kept *kept;
 	size_t kept_count, kept_capacity, kept_bytes;
 	enum gz_result failed;  /**< GZ_OK, or what the picture maker under test failed with */
@@ -127,7 +127,7 @@ enum gz_result gz_stability_standard(struct gz_stability_bench *bench,
 				     const struct gz_stability_scene *scene,
 				     const struct gz_stability_view *view, struct gz_image *image);
 
-/** The picture that is wanted, kept for those who ask again. @param[out] out_image  owned by the
+/** The reference picture, cached. @param[out] out_image  owned by the
  *  bench, valid until the next call. */
 enum gz_result gz_stability_wanted_picture(struct gz_stability_bench *bench,
 					   const struct gz_stability_scene *scene,

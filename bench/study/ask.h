@@ -1,7 +1,7 @@
 /**
  * @file
- * From what somebody asks to a study without rows: lists are read, scenes loaded and hashed, the
- * path made.
+ * From a request to a study without rows: lists are parsed, scenes loaded and hashed, the path
+ * made.
  */
 #ifndef GZ_BENCH_STUDY_ASK_H
 #define GZ_BENCH_STUDY_ASK_H
@@ -12,7 +12,7 @@
 #include "bench/study/stage.h"
 #include "bench/study/study.h"
 
-/** What somebody asks. */
+/** A request. */
 struct gz_study_request {
 	const char *const *scenes; /**< paths */
 	size_t scene_count;
@@ -27,27 +27,27 @@ struct gz_study_request {
 	int frames, warm_up;
 	int shard, shard_count; /**< shard from 0 */
 	enum gz_study_accuracy accuracy;
-	double display_mm[2];       /**< 0 = not told */
-	double display_distance_mm; /**< 0 = not told */
+	double display_mm[2];       /**< 0 = not given */
+	double display_distance_mm; /**< 0 = not given */
 	const char *program, *commit;
 };
 
 /**
- * Whether the lists and the path of a request can be read, before any file is: of a recording only
- * its name counts.
+ * Check the lists and the path of a request without reading any file; of a recording only the name
+ * is checked.
  *
- * @retval GZ_ERR_INVAL   one cannot; logged with what is allowed
+ * @retval GZ_ERR_INVAL   one is wrong; logged with the allowed values
  * @retval GZ_ERR_NO_MEM  logged
  */
 enum gz_result gz_study_check(const struct gz_study_request *request, const struct gz_log *log);
 
 /**
- * Make the study that is asked for.
+ * Make the requested study.
  *
  * @param stage           loads the scenes; afterwards it may hold one of them
  * @param[out] out_study  without rows, incomplete; backends are not described yet. The caller's:
  *                        gz_study_free()
- * @retval GZ_ERR_INVAL   something asked for is not there, doubled or too much; a recording of
+ * @retval GZ_ERR_INVAL   something is missing, doubled or too large, or the recording is of
  *                        another display; logged with the remedy
  * @return else what loading scenes, paths and transfer functions return; logged
  */

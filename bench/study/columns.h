@@ -86,8 +86,9 @@ void gz_study_rows_print(const struct gz_study *study, const struct gz_study_row
  *
  * @param layout        of the file
  * @param line          without its newline; changed
- * @param[in,out] row   of gz_study_unit_row(): what the line must be of; what was measured is set
- * @param[out] what     on false, what is wrong with it
+ * @param[in,out] row   of gz_study_unit_row(): says which row the line must be; the measured values
+ * are set
+ * @param[out] what     on false, the error
  * @param what_size     bytes of @p what
  */
 bool gz_study_rows_parse(const struct gz_study *study, const struct gz_study_layout *layout,

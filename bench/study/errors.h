@@ -25,8 +25,8 @@ struct gz_error_maps {
 	bool has_ssim; /**< no: the picture is smaller than the window */
 };
 
-/** What pixels count round one place of the gaze. Zero-initialised is empty; keep it, so that its
- *  buffers are reused. */
+/** Weights of pixels for one gaze point. Zero-initialised is empty; keep it to reuse its buffers.
+ */
 struct gz_error_weights {
 	struct gz_map foveal, perceived;           /**< of every pixel */
 	struct gz_map foveal_ssim, perceived_ssim; /**< of those that SSIM has a value for */
@@ -76,11 +76,11 @@ void gz_error_weights_free(struct gz_error_weights *weights);
 /** Samples per voxel length of the converged picture. */
 #define GZ_REFERENCE_RATE 8
 
-/** Below this PSNR between both a warning is told, dB. Chosen: an error of a quarter of a grey
- *  level, which is far below any that is measured against it. */
+/** Below this PSNR between both pictures there is a warning, dB. Chosen: an error of a quarter of a
+ * grey level, which is far below any that is measured against it. */
 #define GZ_REFERENCE_LEAST_DB 60
 
-/** What a converged picture is of. */
+/** What a converged picture shows. */
 struct gz_reference_request {
 	struct gz_picture_maker *maker; /**< cpu, which shows volume and transfer function */
 	const char *data_hash;          /**< of volume and transfer function */
@@ -89,12 +89,12 @@ struct gz_reference_request {
 	const struct gz_ray_params *rays; /**< of the scene */
 	const struct gz_display *display; /**< any that is valid */
 	int width, height;
-	const char *cache; /**< folder, made where it is not there; NULL: nothing is kept */
+	const char *cache; /**< folder, created if missing; NULL: nothing is kept */
 };
 
 /**
- * The converged picture: from the cache, or made and kept there. A cache that cannot be written is
- * warned of, and done without.
+ * The converged picture: from the cache, or made and kept there. If the cache cannot be
+ * written, there is a warning and nothing is kept.
  *
  * @param[in,out] image      the picture
  * @param[in,out] half_step  that of half the step
@@ -107,7 +107,7 @@ enum gz_result gz_reference_get(const struct gz_reference_request *request,
 				const struct gz_log *log, struct gz_image *image,
 				struct gz_image *half_step, double *out_db, bool *out_made);
 
-/** Rays of a converged picture over those of a scene. */
+/** Ray settings of a converged picture, from those of a scene. */
 struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double rate);
 
 /**

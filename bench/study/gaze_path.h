@@ -19,10 +19,10 @@
 #include "base/result.h"
 #include "bench/study/study.h"
 
-/** Points of sweep:s unless told otherwise: Bauer 2018, table 5.1. */
+/** Default number of points of sweep:s: Bauer 2018, table 5.1. */
 #define GZ_GAZE_PATH_SWEEP_POINTS 584
 
-/** What a path is made by. */
+/** How a path is made. */
 struct gz_gaze_path_settings {
 	const char *text; /**< as above */
 	uint64_t seed;
@@ -46,21 +46,21 @@ struct gz_gaze_path {
  * Make a path.
  *
  * @param[out] out_path  1 to GZ_STUDY_POINTS_MAX points; the caller's: gz_gaze_path_free()
- * @retval GZ_ERR_INVAL      no such path; logged with those there are
+ * @retval GZ_ERR_INVAL      no such path; logged with the possible ones
  * @retval GZ_ERR_FORMAT     a recording that is none, or without valid gaze; logged
  * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  logged
  */
 enum gz_result gz_gaze_path_make(const struct gz_gaze_path_settings *settings,
 				 const struct gz_log *log, struct gz_gaze_path *out_path);
 
-/** Whether gz_gaze_path_make() knows such a path; what a recording holds does not count.
- *  GZ_ERR_INVAL: logged with those there are; GZ_ERR_NO_MEM. */
+/** Check the form of a path; a recording's content is not read.
+ *  GZ_ERR_INVAL: logged with the possible ones; GZ_ERR_NO_MEM. */
 enum gz_result gz_gaze_path_check(const char *text, const struct gz_log *log);
 
 /** The point at @p t of the S, [0, 1]. */
 struct gz_point gz_gaze_path_s(double t);
 
-/** Whether both are seen under the same angles, to a hundredth: pixels do not count. */
+/** Whether both appear under the same angles, to a hundredth; pixels are not compared. */
 bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_display *b);
 
 /** Free what it holds and zero it. */

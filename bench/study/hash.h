@@ -1,6 +1,6 @@
 /**
  * @file
- * SHA-256 of what is measured, so that the same is known again.
+ * SHA-256 of scenes, data and settings, to recognise equal ones.
  */
 #ifndef GZ_BENCH_STUDY_HASH_H
 #define GZ_BENCH_STUDY_HASH_H

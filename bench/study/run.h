@@ -1,6 +1,7 @@
 /**
  * @file
- * Running a study: unit by unit into its folder, so that whatever ends it, it can be gone on with.
+ * Running a study: it is written unit by unit into its folder, so that an interrupted run can be
+ * resumed.
  */
 #ifndef GZ_BENCH_STUDY_RUN_H
 #define GZ_BENCH_STUDY_RUN_H
@@ -14,21 +15,21 @@ struct gz_study_progress {
 	size_t units;     /**< of the shard */
 	size_t done;      /**< of them */
 	double share;     /**< done of the whole work, units by their pixels */
-	double left_s;    /**< seconds that the rest may take; NaN while that cannot be told */
-	const char *what; /**< scene that is measured next; valid during the call */
+	double left_s;    /**< estimated time left, s; NaN before there is an estimate */
+	const char *what; /**< scene measured next; valid during the call */
 };
 
-/** What came of a run. */
+/** Result of a run. */
 struct gz_study_outcome {
 	size_t units, done; /**< of the shard; done ones are in the folder */
-	size_t resumed;     /**< of done: those that were there before */
+	size_t resumed;     /**< units of done that were there before the run */
 	size_t rows;        /**< in the folder */
 	bool complete;
 };
 
-/** Who is told how far a run is. */
+/** Receives progress reports. */
 struct gz_study_listener {
-	/** Before each unit and at the end; NULL: nobody is told. */
+	/** Called before each unit and at the end; NULL: no reports. */
 	void (*progress)(void *user, const struct gz_study_progress *progress);
 	void *user;
 };
@@ -37,10 +38,10 @@ struct gz_study_listener {
  * Run a study, or resume one.
  *
  * @param request   what is asked
- * @param folder    made where it is not there; or one of the same study
- * @param cache     folder of references; NULL: none are kept
+ * @param folder    created if missing; or the folder of the same study
+ * @param cache     folder for references; NULL: they are not kept
  * @param listener  copied
- * @param[out] out_outcome  filled once the folder is open, also where the run ends early
+ * @param[out] out_outcome  filled once the folder is open, even if the run ends early
  * @retval GZ_ERR_CANCELLED  SIGINT or SIGTERM has arrived; the folder holds whole units; not logged
  * @retval GZ_ERR_FULL       the disk is full; the folder holds whole units; logged
  * @return else what gz_study_ask(), gz_study_writer_open() and gz_picture_make() return; logged

@@ -1,7 +1,7 @@
 /**
  * @file
- * The scene that is measured at the moment: its volume, its picture makers, the settings of its
- * variants.
+ * The scene under measurement: its volume, its picture makers, and the settings of its variants,
+ * read from texts such as "acuity:acuity_slope=0.0275:levels=yes".
  */
 #ifndef GZ_BENCH_STUDY_STAGE_H
 #define GZ_BENCH_STUDY_STAGE_H
@@ -38,7 +38,7 @@ struct gz_stage {
 	/** How each of them draws; they borrow its texts. */
 	struct gz_study_backend backend_params[GZ_STUDY_LIST_MAX];
 	struct gz_variant_settings *variants; /**< of the study, over the scene's */
-	size_t entered; /**< place in the study's list of what is shown, and 1; 0 = nothing */
+	size_t entered; /**< 1 + place of the shown scene in the study's list; 0 = none */
 };
 
 /**
@@ -49,7 +49,7 @@ struct gz_stage {
  */
 enum gz_result gz_stage_load(struct gz_stage *stage, const char *path);
 
-/** How many transfer functions the loaded scene names: 1 and those of transfer.also. */
+/** Number of transfer functions of the loaded scene: 1 plus those of transfer.also. */
 size_t gz_stage_transfer_count(const struct gz_stage *stage);
 
 /**
@@ -91,10 +91,10 @@ struct gz_variant_settings {
  * it; each further one is OPTION=VALUE with an option of the scene's sections [foveation] or
  * [render]. A table of spacings is only named: gz_scene_load_table().
  *
- * @param scene             of the scene: what is not given stays so
+ * @param scene             of the scene: the defaults
  * @param[out] out_settings may be @p scene
- * @retval GZ_ERR_INVAL  no such method or option, or a value out of range; logged with what is
- *                       allowed
+ * @retval GZ_ERR_INVAL  no such method or option, or a value out of range; logged with the allowed
+ *                       values
  */
 enum gz_result gz_variant_parse(const char *text, const struct gz_variant_settings *scene,
 				const struct gz_log *log, struct gz_variant_settings *out_settings);

@@ -1,7 +1,7 @@
 /**
  * @file
- * A study: what was asked of gazebench, what it ran on, and one row for every frame. Running one
- * makes it, reports and suggestions read it, its folder keeps it (bench/study/study_folder.h).
+ * A study: the request, the machine, and one row for every frame. A run makes it, reports and
+ * suggestions read it, its folder stores it (bench/study/study_folder.h).
  *
  * Nothing is averaged before it is stored.
  */
@@ -54,7 +54,7 @@ enum gz_study_accuracy {
 /** "none", "standard", "all"; NULL-terminated. */
 extern const char *const gz_study_accuracy_names[];
 
-/** A method with its options: what is compared. */
+/** A method with its options. */
 struct gz_study_variant {
 	/** As given: "acuity", "acuity:acuity_slope=0.0275", any keys of [foveation] and [render].
 	 *  "standard" is always among them, as the first. */
@@ -68,7 +68,7 @@ struct gz_study_point {
 	uint32_t camera;      /**< 0 = the scene's own, else the n-th random one */
 };
 
-/** What it ran on: for people, and so that shards of different programs are told apart. */
+/** The machine and the program, for readers and to distinguish shards of different programs. */
 struct gz_study_machine {
 	char host_cpu[GZ_STUDY_TEXT_SIZE]; /**< "AMD EPYC 9R14, 2 processors" */
 	char memory[GZ_STUDY_TEXT_SIZE];
@@ -97,7 +97,7 @@ struct gz_study_row {
 	struct gz_point gaze;
 	double plan_ms, cast_ms, reconstruct_ms;
 	double frame_ms; /**< wall time of the whole frame, plan included */
-	double gpu_ms;   /**< GL_TIME_ELAPSED; NaN where there is none */
+	double gpu_ms;   /**< GL_TIME_ELAPSED; NaN without a device clock */
 	/** What the technique prepared and keeps between frames; of a point's first counted frame,
 	 *  with its warm-up frames. NaN in studies of versions that did not measure it. */
 	double prepare_ms;
@@ -135,7 +135,7 @@ struct gz_study {
 	uint32_t camera_count; /**< random ones; 0 = only the scene's own */
 	uint64_t seed;
 	int frames_per_point;
-	int warm_up_frames; /**< before those of each variant at each point, not counted */
+	int warm_up_frames; /**< of each variant at each point, not counted */
 	enum gz_study_accuracy accuracy;
 	/** Acuity bound: the share of pixels' rays that the eye needs at all, of each scene, size
 	 *  and point; scene_count * size_count * point_count values, points fastest. */
@@ -162,8 +162,8 @@ size_t gz_study_shard_unit_count(const struct gz_study *study);
 size_t gz_study_unit_rows(const struct gz_study *study);
 
 /**
- * What row @p k of unit @p unit is of: scene, size, backend, variant, point, frame and gaze are
- * set, all that is measured is 0 or, where it need not be, NaN.
+ * Row @p k of unit @p unit before it is measured: scene, size, backend, variant, point, frame and
+ * gaze are set; measured values are 0, or NaN where measuring is optional.
  *
  * @param unit  below gz_study_unit_count(); points count fastest, then backends, sizes, scenes
  * @param k     below gz_study_unit_rows()
@@ -185,10 +185,10 @@ struct gz_display gz_study_display(const struct gz_study *study, size_t scene, s
 void gz_study_file_name(const char *path, const char *ending, char out_name[GZ_STUDY_TEXT_SIZE]);
 
 /**
- * What was asked of one study and not of the other: lists, hashes, points, frames, program and
- * commit; not the machine, the shard and how far it is. Paths of scenes do not count, hashes do.
+ * Whether two studies were requested differently: lists, hashes, points, frames, program and
+ * commit; not the machine, the shard and the progress. Hashes of scenes count, their paths do not.
  *
- * @param[out] what  on true, what differs first: "size 2 is 640x480, and was 800x600"
+ * @param[out] what  on true, the first difference: "size 2 is 640x480, and was 800x600"
  * @param size       bytes of @p what
  */
 bool gz_study_differs(const struct gz_study *study, const struct gz_study *was, char *what,

@@ -5,7 +5,7 @@
  *   study.json  what was asked, what it ran on, whether it is complete
  *   frames.csv  one line a row under one line of names; texts instead of places in lists
  *
- * docs/gazebench.md describes both for scripts. Reports add their own files beside them.
+ * docs/gazebench.md describes both for scripts. Reports add their own files.
  */
 #ifndef GZ_BENCH_STUDY_STUDY_FOLDER_H
 #define GZ_BENCH_STUDY_STUDY_FOLDER_H
@@ -15,8 +15,8 @@
 #include "bench/study/study.h"
 
 /**
- * Read a study from its folder. One that was interrupted is read as far as it goes: the lines of
- * the last unit, where they are not all there, do not count, and complete is false.
+ * Read a study from its folder. An interrupted study is read up to its last complete unit, and
+ * complete is false.
  *
  * @param[out] out_study  the caller frees it with gz_study_free()
  * @retval GZ_ERR_NOT_FOUND  no such folder, or no study in it; logged
@@ -27,7 +27,7 @@ enum gz_result gz_study_read(const char *folder, const struct gz_log *log,
 			     struct gz_study *out_study);
 
 /**
- * Write a study with all its rows into a folder, made where it is not there.
+ * Write a study with all its rows into a folder, which is created if missing.
  *
  * @retval GZ_ERR_BUSY  the folder is there and not empty; logged
  * @retval GZ_ERR_FULL  no room on the disk; logged
@@ -37,27 +37,27 @@ enum gz_result gz_study_write(const char *folder, const struct gz_study *study,
 			      const struct gz_log *log);
 
 /**
- * Whether a study may be written into a folder, as far as that can be told at once: it is not there
- * yet, or empty, or holds a study.
+ * Quick check whether a study may be written into a folder: it does not exist, is empty, or holds a
+ * study.
  *
  * @retval GZ_ERR_BUSY  it holds something else; logged
  */
 enum gz_result gz_study_folder_check(const char *folder, const struct gz_log *log);
 
-/** Writes the folder of a study unit by unit: whatever ends the program, what is there can be read
- *  and taken up. */
+/** Writes the folder of a study unit by unit: if the process is killed, complete units survive and
+ *  the study can be resumed. */
 struct gz_study_writer;
 
 /**
- * Begin a folder, made where it is not there, or go on with one where the same was asked.
+ * Begin a folder, created if missing, or resume a study of the same request.
  *
- * @param study  what is asked; borrowed until the writer is destroyed. Its rows do not count
+ * @param study  the request; borrowed until the writer is destroyed; its rows are ignored
  * @param[out] out_writer  owned by the caller: gz_study_writer_destroy()
- * @param[out] out_done    units of the shard that are there already, the first ones
- * @retval GZ_ERR_INVAL   a study of something else is there; logged with what differs
+ * @param[out] out_done    units of the shard that are already complete, the first ones
+ * @retval GZ_ERR_INVAL   it holds a study of another request; logged with the difference
  * @retval GZ_ERR_BUSY    the folder holds something that is no study, or another program writes
  *                        it; logged
- * @retval GZ_ERR_FORMAT  the study that is there is damaged; logged with file:line
+ * @retval GZ_ERR_FORMAT  the study in it is damaged; logged with file:line
  * @retval GZ_ERR_FULL    no room on the disk; logged
  * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
  */
@@ -74,7 +74,7 @@ enum gz_result gz_study_writer_open(const char *folder, const struct gz_study *s
  */
 enum gz_result gz_study_writer_add(struct gz_study_writer *writer, const struct gz_study_row *rows);
 
-/** Say in the folder that the study is complete. Errors as of gz_study_writer_add(). */
+/** Mark the study as complete. Errors as of gz_study_writer_add(). */
 enum gz_result gz_study_writer_finish(struct gz_study_writer *writer);
 
 /** Close the files and set to NULL. Accepts a pointer to NULL. */
