@@ -198,7 +198,8 @@ static enum gz_result read_samples(struct gz_gaze_log_reader *reader,
 	enum gz_result result = record ? GZ_OK : GZ_ERR_NO_MEM;
 	while (result == GZ_OK) {
 		result = gz_gaze_log_read(reader, record);
-		if (result == GZ_ERR_FORMAT) /* logged; it goes on behind the line */
+		if (result ==
+		    GZ_ERR_FORMAT) /* logged; reading continues after the damaged record */
 			result = GZ_OK;
 		else if (result == GZ_OK && record->kind == GZ_GAZE_LOG_SAMPLE)
 			result = add_log_sample(samples, &pipeline, &record->sample);

@@ -1,4 +1,4 @@
-/* gazebench accumulate: what keeping earlier frames gains. */
+/* gazebench accumulate: the gain of keeping earlier frames. */
 #include "bench/gazebench/gazebench.h"
 
 #include <jansson.h>
@@ -72,7 +72,7 @@ struct pictures {
 	int time_count;
 };
 
-/* One frame, as a viewer makes it, and what it takes. */
+/* One frame, as a viewer makes it, and its time. */
 static enum gz_result accumulation_frame(struct pictures *pictures, bool kept)
 {
 	const struct gz_picture_request request = {
@@ -176,7 +176,7 @@ static enum gz_result measure_still(struct pictures *pictures, struct accumulati
 	return result;
 }
 
-/* The camera comes to rest nowhere: what is compared is the picture of its last place. */
+/* The camera does not stop: the picture of its last place is compared. */
 static enum gz_result measure_turning(struct pictures *pictures, struct accumulation_row rows[2])
 {
 	enum gz_result result = GZ_OK;

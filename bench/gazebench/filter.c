@@ -40,7 +40,7 @@ static const struct gz_option options[] = {
 static const double equal_lags[] = { 1, 2, 3, 5, 10, 20 };
 enum { EQUAL_LAGS = sizeof equal_lags / sizeof equal_lags[0] };
 
-/* What is told of a log. */
+/* Results of a log. */
 struct findings {
 	const char *path;
 	struct gz_gaze_log_track log;

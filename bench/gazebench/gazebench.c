@@ -60,7 +60,7 @@ static void print_item(json_t *list, const char *kind, const char *name, const c
 		printf("%-8s %-22s %s\n", kind, name, text);
 }
 
-/* An option with what it allows and what it is where neither variant nor scene sets it. */
+/* An option with its range and default. */
 static void print_option(json_t *list, const struct gz_option *option, const char *name)
 {
 	const bool limited = option->type != GZ_OPTION_STRING;

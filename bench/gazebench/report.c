@@ -1,4 +1,4 @@
-/* gazebench report and gazebench merge: what is done with the folders of studies. */
+/* gazebench report and gazebench merge: commands on folders of studies. */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>

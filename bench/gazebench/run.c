@@ -190,7 +190,7 @@ static void show_progress(void *user, const struct gz_study_progress *now)
 	}
 }
 
-/* ---- what came of it ---- */
+/* ---- the outcome ---- */
 
 static void print_run(const struct settings *settings, const struct gz_study_outcome *outcome)
 {

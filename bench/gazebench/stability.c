@@ -72,7 +72,7 @@ static const struct gz_option options[] = {
 struct variant {
 	char text[TEXT_SIZE];
 	struct gz_variant_settings settings;
-	bool every_step_rule; /* it names none itself */
+	bool every_step_rule; /* it does not set its own */
 };
 
 /* A command's run. */
@@ -110,7 +110,7 @@ static const char *row_at(size_t index)
 	return gz_stability_rows[index].name;
 }
 
-/* Refuse names that are none, with those there are. */
+/* Refuse unknown names and list the known ones. */
 static bool check_list(const char *list, const char *what, name_at *at, const struct gz_log *log)
 {
 	char item[LIST_SIZE], known[LIST_SIZE] = "";
@@ -145,7 +145,7 @@ static void default_folder(const char *scene, char *out, size_t size)
 	snprintf(out, size, "%.*s-stability", dot && dot > name ? (int)(dot - name) : 200, name);
 }
 
-/* The picture of a failure; its path, or "" where there is none. */
+/* The picture of a failure; its path, or "" without one. */
 static enum gz_result write_picture(struct session *session, const struct gz_stability_row *row,
 				    const char *method, const struct gz_stability_outcome *outcome,
 				    char *out_path, size_t size)
@@ -221,7 +221,7 @@ static void print_json_pixel(const struct gz_stability_pixel *worst)
 		       worst->wanted[0], worst->wanted[1], worst->wanted[2]);
 }
 
-/* JSON has no word for numbers that are none. */
+/* JSON has no NaN. */
 static void print_json_number(const struct gz_stability_number *number)
 {
 	printf("{\"what\": ");
@@ -310,7 +310,7 @@ static enum gz_result run_variants(struct session *session, const struct gz_stab
 
 static enum gz_result run_backend(struct session *session)
 {
-	/* gl names itself in what it says. */
+	/* gl's description has its own name. */
 	const char *described = gz_stability_describe(session->bench);
 	const bool named = strncmp(described, session->backend, strlen(session->backend)) == 0;
 	if (!session->settings.json)
@@ -358,11 +358,11 @@ static enum gz_result add_checked_method(struct session *session, const char *sc
 		return result;
 	snprintf(variant->text, sizeof variant->text, "%s", text);
 	variant->every_step_rule = !strstr(text, "step_rule=");
-	/* The method table has a table of the bench's where the user has none. */
+	/* The method table gets the bench's table if the user gives none. */
 	struct gz_foveation *foveation = &variant->settings.foveation;
 	if (foveation->table_file[0])
 		result = gz_scene_load_table(scene, session->log, foveation);
-	return result == GZ_ERR_INVAL ? GZ_ERR_FORMAT : result; /* what it names is at fault */
+	return result == GZ_ERR_INVAL ? GZ_ERR_FORMAT : result; /* the named file is at fault */
 }
 
 static enum gz_result add_variants(struct session *session, const char *scene)

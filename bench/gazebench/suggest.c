@@ -110,7 +110,7 @@ static bool is_asked(const struct gz_study *study, const struct gz_group *group,
 		(size[0] == settings->size[0] && size[1] == settings->size[1]));
 }
 
-/* The groups that are asked about, all of one scene; NULL and logged if there are none. */
+/* The groups in question, all of one scene; NULL and logged if there are none. */
 static const struct gz_group **choose_groups(const struct gz_summary *summary,
 					     const struct settings *settings,
 					     const struct gz_log *log, size_t *out_count)

@@ -38,7 +38,7 @@ static void sum_group(const float *const *taps, const float *weights, int count,
 	memcpy(out, sums, sizeof sums);
 }
 
-/* Weighted sums of what lies at the same place behind each of the taps. */
+/* Weighted sums of the values at the same offset from each tap. */
 static void sum_taps(const float *const *taps, const float *weights, int count, int width, bool add,
 		     float *out)
 {

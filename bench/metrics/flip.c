@@ -131,7 +131,7 @@ static inline float unit(float value)
 static inline float lab_root(float share)
 {
 	const float delta = 6.0F / 29, cube = delta * delta * delta;
-	/* Of what is not below the bound, so that it is a normal number. */
+	/* The maximum with the bound keeps it a normal number. */
 	const float root = gz_cube_root(share > cube ? share : cube);
 	const float line = share * (1 / (3 * delta * delta)) + 4.0F / 29;
 	return share > cube ? root : line;
@@ -183,7 +183,7 @@ static const struct sensitivity {
 	{ { 34.1, 13.5 }, { 0.04, 0.025 } },
 };
 
-/* Planes of one picture: opponent colours, the same blurred, and what its features are made of. */
+/* Planes of one picture: opponent colours, blurred ones, and the derivatives of its features. */
 enum plane { OPPONENT, BLURRED = 3, EDGE_X = 6, EDGE_Y, POINT_X, POINT_Y, PLANES };
 
 struct work {
@@ -288,7 +288,7 @@ static void make_feature_kernels(struct work *work)
 static void feature(const struct work *work, int picture, const struct gz_kernel *across,
 		    const struct gz_kernel *down, enum plane out)
 {
-	/* Lightness as [0, 1]; what is added to all of it the balanced kernels do not see. */
+	/* Lightness as [0, 1]; the balanced kernels ignore a constant offset. */
 	gz_convolve(
 		&(struct gz_convolution) {
 			.in = flip_plane(work, picture, OPPONENT),

@@ -1,4 +1,4 @@
-/* The bare loop for one instruction set; the vocabulary comes before what speaks it. */
+/* The bare loop for one instruction set; the vector types come first. */
 #include "render/raycast/cpu/simd_portable.h"
 
 #include "bench/probes/cast_limit_loop.h"

@@ -158,7 +158,7 @@ static enum gz_event event_of(int label)
 		return GZ_EVENT_PURSUIT;
 	case GZ_HUMAN_BLINK:
 		return GZ_EVENT_BLINK;
-	default: /* a glissade, or what nobody could name */
+	default: /* a glissade, or undefined */
 		return GZ_EVENT_LOST;
 	}
 }

@@ -116,7 +116,7 @@ static double kind_kappa(const struct fit *fit, const struct trial *trial, int k
 	return sum;
 }
 
-/** How far above what is wanted, with little for more than 0.02 above. */
+/** Margin above the wanted agreement; more than 0.02 adds nothing. */
 static double score_of(const struct fit *fit, const struct trial *trial, int without)
 {
 	double sum = 0;

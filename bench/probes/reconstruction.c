@@ -120,7 +120,7 @@ static void pull_row(void *user, size_t row, int worker)
 	}
 }
 
-/* A fine row: what is not known comes from the coarse level, bilinearly. */
+/* A fine row: unknown pixels come from the coarse level, bilinearly. */
 static void push_row(void *user, size_t row, int worker)
 {
 	(void)worker;
@@ -245,7 +245,7 @@ static bool render(struct bench *bench, int method, int filter, struct gz_image 
 	return true;
 }
 
-/* One picture of a kind and what making it of the rays took. */
+/* One picture of a kind and the time to make it from the rays. */
 static bool make_one(struct bench *bench, int kind, double *out_ms)
 {
 	const bool push_pull = kind == KINDS - 1;

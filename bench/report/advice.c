@@ -183,7 +183,7 @@ static void tell_winner(const struct teller *teller, size_t winner)
 	say_errors(teller, winner);
 }
 
-/* Slower variants may hold the bound too, so that standard is not said to be the only one. */
+/* Slower variants may hold the bound too; then standard is not called the only one. */
 static void tell_standard(const struct teller *teller, size_t winner)
 {
 	char text[GZ_NAMES_SIZE];
@@ -234,7 +234,7 @@ void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
 
 /* ---- scene files ---- */
 
-/* The section in which scenes have an option; NULL if none does. */
+/* The section of an option in scenes; NULL if it has none. */
 static const char *section_of(const char *name)
 {
 	struct gz_foveation foveation;

@@ -110,7 +110,7 @@ static double last_x(const struct gz_plot_curve *curve)
 	return last;
 }
 
-/* From the pipeline's least jitter to the right: what more lag would have to beat. */
+/* From the pipeline's least jitter to the right: the jitter that more lag would have to beat. */
 static bool add_best(struct gz_plot *plot)
 {
 	const struct gz_plot_curve *pipeline = &plot->curves[PIPELINE];

@@ -96,7 +96,7 @@ static const struct gz_study_variant *variant_of(const struct gz_study *study,
 	return &study->variants[group->series[series].variant];
 }
 
-/* The key that is all that the curve's variants differ in: false if there is none. */
+/* The one key in which all variants of the curve differ: false if there is no such key. */
 static bool one_key(const struct gz_study *study, const struct gz_group *group,
 		    const struct gz_curve *curve, const char **out_key, size_t *out_length)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Outside every axis: what a block holds that has nothing to draw. */
+/* Outside every axis: the content of an empty block. */
 #define NOWHERE "nan\tnan\t0\t0\t-\n"
 
 /* Mean width of a character, of its font's size. Chosen: sans-serif, a little wide. */
@@ -60,7 +60,7 @@ static void fit_axis(struct gz_plot_axis *axis, double least, double greatest)
 		axis->last = greatest * margin * pow(greatest / least, axis->name_room);
 		return;
 	}
-	/* Where all values are one, a tenth of it tells how far away others would be. */
+	/* If all values are equal, the axis spans a tenth of the value. */
 	const double span = greatest > least ? greatest - least
 			    : greatest != 0  ? 0.1 * fabs(greatest)
 					     : 1;

@@ -101,7 +101,7 @@ static void append_maps(const struct gz_summary *summary, const struct gz_group 
 	}
 }
 
-/* Maps of the advised variant and of standard are seen at once, the others on demand. */
+/* The maps of the advised variant and of standard are visible, the others folded away. */
 static json_t *make_maps(const struct gz_summary *summary, const struct gz_group *group,
 			 const struct gz_charts *charts)
 {
@@ -172,7 +172,7 @@ static void add_error_cell(json_t *cells, enum gz_error_kind kind, double value)
 	}
 }
 
-/* A value that was interpolated, and the variant next to it. */
+/* An interpolated value, and the variant next to it. */
 static void add_near_cell(json_t *cells, const struct gz_study *study, const struct gz_group *group,
 			  double value, size_t series)
 {
@@ -328,7 +328,7 @@ static json_t *make_growth(const struct gz_summary *summary, const struct gz_cha
 
 /* ---- groups ---- */
 
-/* Add to a variant of summary.json what its rows show beside. */
+/* Add to a variant of summary.json the further values of its table rows. */
 static void add_series(const struct gz_summary *summary, const struct gz_group *group,
 		       const struct gz_series *series, json_t *variant)
 {
@@ -411,7 +411,7 @@ static void add_group(const struct gz_summary *summary, size_t place,
 		json_object_set_new(out, "maps", make_maps(summary, group, charts));
 }
 
-/* ---- what it ran on ---- */
+/* ---- the machine and the command ---- */
 
 static void add_fact(json_t *facts, const char *name, const char *text)
 {
@@ -517,7 +517,7 @@ static void add_display(const struct gz_study *study, struct gz_text *out)
 		    numbers[2]);
 }
 
-/* The command that makes the study, or goes on with it. */
+/* The command that makes or resumes the study. */
 static void add_command(const struct gz_study *study, struct gz_text *out)
 {
 	gz_text_add(out, "gazebench run");

@@ -14,7 +14,7 @@ static struct gz_distribution join_column(const struct gz_study_row *const *rows
 	return gz_distribution_of(room, count);
 }
 
-/* Of each frame what it takes beside casting. */
+/* Frame time besides casting. */
 static struct gz_distribution join_overhead(const struct gz_study_row *const *rows, size_t count,
 					    double *room)
 {
@@ -270,7 +270,7 @@ enum gz_error_reference gz_group_reference(const struct gz_group *group)
 
 /* A place on a curve, and the best one so far. */
 struct place {
-	double limited, wanted; /* what must be within a limit, what is to be least */
+	double limited, wanted; /* the limited value, and the one to be least */
 	size_t series;
 };
 
@@ -307,7 +307,7 @@ struct curve_limit {
 	double limit;
 };
 
-/* The least of what is not limited. */
+/* The least value of the other quantity. */
 static double least_on_curve(const struct gz_group *group, const struct gz_curve *curve,
 			     const struct curve_limit *limit, size_t *out_series)
 {

@@ -96,7 +96,7 @@ static const json_t *find_value(const struct filling *filling, const char *path)
 	return value;
 }
 
-/* What summaries write: numbers, null for what was not measured, "inf". */
+/* Numbers as summaries write them: null for not measured, "inf" for infinity. */
 static double number_of(const json_t *value)
 {
 	if (json_is_number(value))

@@ -152,7 +152,7 @@ static enum gz_result keep_pixel(struct gz_stability_outcome *outcome,
 	return result;
 }
 
-/* By how much a number is over its bound: what the worst pixel is chosen by. */
+/* Relative excess of a number over its bound; the worst pixel is of the greatest. */
 static double excess(const struct gz_stability_number *number)
 {
 	return (number->value - number->bound) / fmax(fabs(number->bound), 1e-3);

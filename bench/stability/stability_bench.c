@@ -62,14 +62,14 @@ enum gz_result gz_stability_use_backend(struct gz_stability_bench *bench, const 
 	if (result == GZ_OK)
 		result = gz_stability_show(bench, &bench->settings.scene);
 	if (result != GZ_OK) {
-		if (bench->said[0]) /* it tells people why the backend does not start */
+		if (bench->said[0]) /* the reason why the backend does not start */
 			gz_err(bench->settings.log, "%s", bench->said);
 		gz_picture_maker_destroy(&bench->tested.maker);
 	}
 	return result;
 }
 
-/* Stands in where the user has none. */
+/* Used if the user gives none. */
 static const struct gz_spacing_table small_table = {
 	.in_deg = true,
 	.count = 3,
@@ -163,7 +163,7 @@ enum gz_result gz_stability_volume(struct gz_stability_bench *bench, enum gz_sta
 	return result;
 }
 
-/* Show a scene; what is shown already costs nothing. */
+/* Show a scene; a scene that is shown already costs nothing. */
 static enum gz_result show_on(struct gz_stability_maker *on, const struct gz_stability_scene *scene)
 {
 	const bool same_transfer =
@@ -429,7 +429,7 @@ static enum gz_result cook(const struct recipe *recipe, struct gz_volume *out_vo
 	return GZ_OK;
 }
 
-/* The loaders turn what no kernel reads; so it has to come from a file. */
+/* Loaders convert types that no kernel reads, so the volume comes from a file. */
 enum { FILE_EDGE = 20, FILE_BYTES = FILE_EDGE * FILE_EDGE * FILE_EDGE * 2 };
 
 static void fill_file(bool big_endian, bool has_sign, uint8_t bytes[FILE_BYTES])
@@ -490,7 +490,7 @@ enum gz_result gz_stability_volume_make(enum gz_stability_volume which, const st
 
 /* ---- the fovea ---- */
 
-/* With the distance rule steps are as they are within 10 px (Bauer 2018, 3.2.3). */
+/* The distance rule leaves steps unchanged within 10 px (Bauer 2018, 3.2.3). */
 #define DISTANCE_RULE_PX 10
 
 /* cos 2.5 degrees */

@@ -1,4 +1,4 @@
-/* Rows about what rays show: brightness, volumes, cameras, transfer functions. */
+/* Rows about the values of rays: brightness, volumes, cameras, transfer functions. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -197,7 +197,7 @@ static enum gz_result compare_steps(struct gz_stability_bench *bench, const stru
 		const double rate = scene.rays.ray_sampling_rate / (double)bench->plan.steps[step];
 		if (check->fine_rate == 0 &&
 		    (!memchr(compared->steps, step, pixels) || rate < GZ_RAY_SAMPLING_RATE_MIN))
-			continue; /* not taken, or beyond what a scene can be told */
+			continue; /* not taken, or outside a scene's range */
 		scene.rays.ray_sampling_rate = check->fine_rate > 0 ? check->fine_rate : rate;
 		result = gz_stability_wanted_picture(bench, &scene, &check->view, &wanted);
 		if (result != GZ_OK)
@@ -452,7 +452,7 @@ enum gz_result gz_stability_spike(struct gz_stability_bench *bench,
 	/* A segment's ends are known to one of 512 cells: 18 of a voxel here, 1.5 levels. */
 	gz_stability_name(outcome, 0, levels_off, 2);
 	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
-	/* Within half a voxel of its faces the ramp is none. */
+	/* Within half a voxel of its faces the ramp is constant. */
 	set(scene.rays.clip.least, 0.1, 0.1, 0.1);
 	set(scene.rays.clip.greatest, 0.9, 0.9, 0.9);
 	enum gz_result result = gz_stability_volume(bench, GZ_STABILITY_RAMP, &scene.volume);
@@ -468,7 +468,7 @@ enum gz_result gz_stability_spike(struct gz_stability_bench *bench,
 	return result;
 }
 
-/* The scene's view, made smaller where it is large: what these rows look at is no finer. */
+/* The scene's view, reduced if it is large: these rows look at nothing finer. */
 static struct gz_stability_view middling_view(const struct gz_stability_bench *bench)
 {
 	struct gz_stability_view view = gz_stability_scene_view(bench);

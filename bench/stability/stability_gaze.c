@@ -11,7 +11,7 @@
 
 static const struct gz_point centre = { 0.5F, 0.5F };
 
-/* Where a gaze may be; those that are no place come last. */
+/* Gaze points; NaN and infinite ones come last. */
 static const struct gz_point gazes[] = {
 	{ 0.5F, 0.5F },   { 0, 0.5F },        { 0.5F, 1 },        { 0, 0 },    { 1, 1 },
 	{ 0.98F, 0.02F }, { -0.01F, 0.4F },   { -0.4F, 0.5F },    { 0.5F, 3 }, { 1e30F, -1e30F },

@@ -10,7 +10,7 @@
 
 enum { PATH_MAX_POINTS = 32 };
 
-/* Two frames in turn and what the fovea of both is. */
+/* Two frames in turn and their common fovea. */
 struct motion {
 	struct gz_stability_view view;
 	struct gz_foveation foveation;
@@ -190,11 +190,11 @@ static struct gz_focus landing_focus(const struct gz_display *display,
 	return focus;
 }
 
-/* Saccades between two places and what their landing is held against. */
+/* Saccades between two places and the reference of their landing. */
 struct landing {
 	struct gz_point ends[2];
 	struct gz_foveation foveation;
-	struct gz_image full, image; /* by `standard`, and what is looked at */
+	struct gz_image full, image; /* by `standard`, and under test */
 	uint8_t *fovea;              /* marks of pixels */
 };
 
@@ -420,7 +420,7 @@ static enum gz_result check_gradual(struct gz_stability_bench *bench, struct swe
 				 (struct gz_stability_place) { 0 }, "rings of %d px", RING_PX);
 }
 
-/* Regions: a band hides what a hard border shows. */
+/* Regions: a blend band hides a hard border. */
 static enum gz_result check_band(struct gz_stability_bench *bench, struct sweep *sweep,
 				 const struct gz_image *wanted,
 				 struct gz_stability_outcome *outcome)

@@ -1,4 +1,4 @@
-/* Rows about what is thinner than a step or a spacing. */
+/* Rows about structures thinner than a step or a spacing. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ struct search {
 	struct gz_stability_view view;
 	struct gz_foveation foveation;
 	const struct gz_image *converged;
-	struct gz_image standard; /* what this has lost is not the method's doing */
+	struct gz_image standard; /* what it loses is not the method's fault */
 	bool absolute;            /* but in the fovea it must not have lost anything either */
 	struct gz_image image;
 	uint8_t *fovea;
@@ -98,7 +98,7 @@ static enum gz_result look_around(struct gz_stability_bench *bench, struct searc
 				 gz_step_rule_names[search->foveation.step_rule]);
 }
 
-/* By every rule, after what standard loses. */
+/* By every step rule, without the pixels that standard loses. */
 static enum gz_result look_by_rules(struct gz_stability_bench *bench, struct search *search,
 				    const char *what, struct gz_stability_outcome *outcome)
 {
@@ -183,7 +183,7 @@ enum gz_result gz_stability_lost(struct gz_stability_bench *bench,
 	struct search search = { .scene = &bench->settings.scene,
 				 .view = gz_stability_scene_view(bench),
 				 .foveation = bench->foveation };
-	/* Chosen: scenes are sampled finely enough for what they show. */
+	/* Chosen: scenes sample their content finely enough. */
 	name_numbers(outcome, 5);
 	enum gz_result result = start_look(&search);
 	if (result == GZ_OK)

@@ -114,7 +114,7 @@ static enum gz_result make_bound_rays(struct gz_study *study, const struct gz_lo
 static enum gz_result ask_variant(struct asking *asking, const char *text)
 {
 	struct gz_study *study = asking->study;
-	/* The scene's own settings come later; what is asked must be good over any. */
+	/* The scene's own settings come later; the request must be valid over any. */
 	const struct gz_variant_settings defaults = { gz_foveation_default(),
 						      gz_ray_params_default() };
 	struct gz_variant_settings settings;

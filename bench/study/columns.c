@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-/* What a line begins with says what it is of; then come the numbers of the table. */
+/* The first fields identify the row; the columns of the table follow. */
 #define PLACE_NAMES "scene,transfer,width,height,backend,variant,point,camera,frame,gaze_x,gaze_y"
 
 #define AT(field) offsetof(struct gz_study_row, field)
@@ -135,7 +135,7 @@ static void print_csv_text(const char *text, FILE *file)
 	fputc('"', file);
 }
 
-/* Shortest of those that read back as the same double, as a rule. */
+/* Nine significant digits: short, and exact enough for times and errors. */
 static void print_csv_number(double value, FILE *file)
 {
 	char text[40];

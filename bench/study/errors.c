@@ -36,7 +36,7 @@ static void weigh_part(void *user, size_t part, int worker)
 					      weighing->height, &weights->perceived);
 }
 
-/* Leave out what is nearer to an edge than SSIM's window reaches. */
+/* Cut off the edges that SSIM's window does not reach. */
 static enum gz_result crop_to_windows(const struct gz_map *map, struct gz_map *out_map)
 {
 	enum { RADIUS = 5 }; /* GZ_SSIM_GAUSSIAN */

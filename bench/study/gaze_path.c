@@ -87,7 +87,8 @@ static enum gz_result play(struct player *player)
 	enum gz_result result = record ? GZ_OK : GZ_ERR_NO_MEM;
 	while (result == GZ_OK) {
 		result = gz_gaze_log_read(player->reader, record);
-		if (result == GZ_ERR_FORMAT) { /* logged; it goes on behind the line */
+		if (result ==
+		    GZ_ERR_FORMAT) { /* logged; reading continues after the damaged record */
 			result = GZ_OK;
 			continue;
 		}

@@ -93,7 +93,7 @@ static enum gz_result join_shard_rows(const struct joining *joining, struct gz_s
 	return GZ_OK;
 }
 
-/* Append what differs, as far as there is room. */
+/* Append a different text, if there is room. */
 static void append_other(char text[GZ_STUDY_TEXT_SIZE], const char *other)
 {
 	const size_t length = strlen(text);

@@ -37,7 +37,7 @@ struct measurer {
 	double reference_db;
 	struct shown reference_of;  /* converged is of this scene, size and camera */
 	bool has_reference;         /* converged is of something */
-	struct gz_error_maps maps;  /* of what is in the making */
+	struct gz_error_maps maps;  /* of the current variant */
 	struct gz_error_maps whole; /* of standard against converged */
 	struct shown whole_of;      /* what whole is of */
 	bool has_whole;             /* whole is of something */
@@ -457,7 +457,7 @@ static enum gz_result run_units(struct run *run)
 	return result;
 }
 
-/* The renderers of the first unit say what they are: that is written into the folder. */
+/* The folder gets the descriptions of the renderers of the first unit. */
 static enum gz_result describe_backends(struct run *run)
 {
 	if (gz_study_shard_unit_count(run->study) == 0) {

@@ -112,7 +112,7 @@ void gz_study_file_name(const char *path, const char *ending, char out_name[GZ_S
 	snprintf(out_name, GZ_STUDY_TEXT_SIZE, "%.*s", (int)length, name);
 }
 
-/* Where two studies are compared: what is asked, and what was; the first difference is told. */
+/* Receives the first difference of two studies. */
 struct comparison {
 	char *what;
 	size_t size;

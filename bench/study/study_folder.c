@@ -172,7 +172,7 @@ static enum gz_result read_units(struct reader *reader)
 	return GZ_OK;
 }
 
-/* Whether the rows are what the study says of itself. */
+/* Whether there are as many rows as the study says. */
 static enum gz_result check_row_count(const struct reader *reader)
 {
 	const struct gz_study *study = reader->study;
@@ -321,7 +321,7 @@ static enum gz_result write_json(const char *folder, const struct gz_study *stud
 	return result;
 }
 
-/* Whether a folder holds nothing, or only what a writer leaves that was ended at its very start. */
+/* Whether a folder is empty, or holds only the remains of a writer killed at its start. */
 static bool is_empty(const char *folder)
 {
 	DIR *directory = opendir(folder);
@@ -398,7 +398,7 @@ static enum gz_result append_to_rows(struct gz_study_writer *writer, const char 
 	return fail_to_write(writer->log, writer->rows_path, error);
 }
 
-/* Append rows, or the line of names where there are none. */
+/* Append rows, or without any the line of names. */
 static enum gz_result append_rows(struct gz_study_writer *writer, const struct gz_study_row *rows,
 				  size_t count)
 {
@@ -426,7 +426,7 @@ static enum gz_result begin_rows(struct gz_study_writer *writer)
 	return writer->bytes == 0 ? append_rows(writer, NULL, 0) : GZ_OK;
 }
 
-/* The study that is there, as far as it goes, if it is what is asked. */
+/* Refuse the study in the folder if it is not the requested one. */
 static enum gz_result check_same(const struct gz_study_writer *writer, const struct gz_study *there)
 {
 	char what[3 * GZ_STUDY_TEXT_SIZE];
