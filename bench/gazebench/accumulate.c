@@ -202,8 +202,8 @@ static enum gz_result begin_pictures(struct pictures *pictures)
 		return result;
 	if (pictures->stage->scene.volume.bricks) {
 		gz_err(pictures->log,
-		       "%s: frames are not kept with a file of bricks, which changes while it is "
-		       "looked at; take the volume itself",
+		       "%s: a file of bricks cannot be measured, because it changes while it is "
+		       "shown; use the volume itself",
 		       study->scenes[request->scene].path);
 		return GZ_ERR_UNSUPPORTED;
 	}
@@ -416,7 +416,8 @@ static int measure_asked(struct session *session, const struct gz_study_request 
 		printf("\n");
 	}
 	if (result == GZ_ERR_CANCELLED)
-		gz_err(session->log, "interrupted: the rows above are whole, the others missing");
+		gz_err(session->log,
+		       "interrupted: the rows above are complete, the others are missing");
 	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
 }
 

@@ -56,8 +56,8 @@ static enum gz_result compare_pictures(const char *const files[2], double px_per
 		result = gz_image_read_png(files[i], log, &pictures[i]);
 	if (result == GZ_OK &&
 	    (pictures[0].width != pictures[1].width || pictures[0].height != pictures[1].height)) {
-		gz_err(log, "%s is %dx%d and %s is %dx%d: only pictures of one size compare",
-		       files[0], pictures[0].width, pictures[0].height, files[1], pictures[1].width,
+		gz_err(log, "%s is %dx%d and %s is %dx%d: the sizes must be equal", files[0],
+		       pictures[0].width, pictures[0].height, files[1], pictures[1].width,
 		       pictures[1].height);
 		result = GZ_ERR_INVAL;
 	} else if (result == GZ_OK) {
@@ -82,7 +82,7 @@ static int run_compare(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 2) {
-		gz_err(log, "two pictures are wanted: gazebench compare REFERENCE.png TEST.png");
+		gz_err(log, "give two pictures: gazebench compare REFERENCE.png TEST.png");
 		return GAZEBENCH_USAGE;
 	}
 	return compare_pictures(operands.items, settings.px_per_deg, log) == GZ_OK

@@ -156,8 +156,8 @@ static enum gz_result check_filter(const struct findings *found, const struct gz
 {
 	if (!found->log.display_known)
 		gz_warn(log,
-			"%s: does not say what display it was recorded on: angles are those of the "
-			"default, 50.4 degrees wide",
+			"%s: does not name its display: angles are those of the default, 50.4 "
+			"degrees wide",
 			found->path);
 	if (!(found->interval_ms > 0)) {
 		gz_err(log, "%s: a single sample; record for longer, or give another log",
@@ -166,22 +166,21 @@ static enum gz_result check_filter(const struct findings *found, const struct gz
 	}
 	if (found->given->fixations == 0) {
 		gz_err(log,
-		       "%s: holds no fixation, as far as its gaze is valid; record where someone "
-		       "looks at the display",
+		       "%s: holds no fixation with valid gaze; record someone who looks at the "
+		       "display",
 		       found->path);
 		return GZ_ERR_FORMAT;
 	}
 	if (isnan(found->given->jitter)) {
 		gz_err(log,
-		       "%s: its fixations are without any noise, which nothing can be "
-		       "compared with; give a log of a tracker",
+		       "%s: its fixations have no noise to compare with; give a log of a tracker",
 		       found->path);
 		return GZ_ERR_FORMAT;
 	}
 	if (!lag_known(found))
 		gz_warn(log,
-			"%s: holds no whole saccade above %d degrees: no lag and no chart, jitter "
-			"alone",
+			"%s: holds no complete saccade above %d degrees: no lag and no chart, only "
+			"jitter",
 			found->path, GZ_LAG_LEAST_DEG);
 	return GZ_OK;
 }
@@ -236,7 +235,7 @@ static int run_filter(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
-		gz_err(log, "one gaze log is wanted: gazebench filter LOG.gzl");
+		gz_err(log, "give one gaze log: gazebench filter LOG.gzl");
 		return GAZEBENCH_USAGE;
 	}
 	struct findings found = { .path = operands.items[0] };

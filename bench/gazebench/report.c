@@ -91,7 +91,7 @@ static int run_report(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
-		gz_err(log, "one folder is wanted: gazebench report DIR");
+		gz_err(log, "give one folder: gazebench report DIR");
 		return GAZEBENCH_USAGE;
 	}
 	const char *folder = operands.items[0];
@@ -154,8 +154,8 @@ static int run_merge(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (folders.count < 2) {
-		gz_err(log, "a folder to make and those of the shards are wanted: gazebench merge "
-			    "OUT DIR...");
+		gz_err(log,
+		       "give a new folder and those of the shards: gazebench merge OUT DIR...");
 		return GAZEBENCH_USAGE;
 	}
 	struct gz_study *study = calloc(1, sizeof *study);

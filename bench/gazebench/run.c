@@ -215,8 +215,8 @@ static int exit_of(enum gz_result result, const struct settings *settings,
 		return GAZEBENCH_DONE;
 	if (outcome->units == 0 || (result != GZ_ERR_CANCELLED && result != GZ_ERR_FULL))
 		return result == GZ_ERR_CANCELLED ? GAZEBENCH_PARTIAL : GAZEBENCH_FAILED;
-	gz_warn(log, "%s holds %zu of %zu units: run the same again to go on", settings->out,
-		outcome->done, outcome->units);
+	gz_warn(log, "%s holds %zu of %zu units: run the same command again to resume",
+		settings->out, outcome->done, outcome->units);
 	return GAZEBENCH_PARTIAL;
 }
 

@@ -411,7 +411,8 @@ static int run_rows(struct session *session)
 		printf("%d held, %d failed, %d refused, %d do not apply\n", session->held,
 		       session->failed, session->refused, session->apart);
 	if (result == GZ_ERR_CANCELLED)
-		gz_err(session->log, "interrupted: the rows above are whole, the others missing");
+		gz_err(session->log,
+		       "interrupted: the rows above are complete, the others are missing");
 	if (result != GZ_OK)
 		return GAZEBENCH_FAILED;
 	return session->failed ? GAZEBENCH_UNSTABLE : GAZEBENCH_DONE;
@@ -441,7 +442,7 @@ static int run_stability(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
-		gz_err(log, "one scene is wanted: gazebench stability SCENE");
+		gz_err(log, "give one scene: gazebench stability SCENE");
 		return GAZEBENCH_USAGE;
 	}
 	if (!check_lists(&session.settings, log))

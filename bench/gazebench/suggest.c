@@ -279,7 +279,7 @@ static enum gz_result suggest_from(const char *folder, const struct settings *se
 		gz_err(log, "%s: %s", folder,
 		       result == GZ_ERR_END ? "no frame was measured yet" : gz_result_text(result));
 	if (result == GZ_OK && (!study.complete || study.shard_count > 1))
-		gz_warn(log, "%s: a part of a study: its other points may need more", folder);
+		gz_warn(log, "%s: a partial study: its other points may need more", folder);
 	if (result == GZ_OK) {
 		result = suggest(&summary, settings, log);
 		gz_summary_free(&summary);
@@ -297,12 +297,11 @@ static int run_suggest(int argc, char *const *argv, const struct gz_log *log)
 	if (status != GZ_COMMAND_GO_ON)
 		return status;
 	if (operands.count != 1) {
-		gz_err(log, "one folder is wanted: gazebench suggest DIR");
+		gz_err(log, "give one folder: gazebench suggest DIR");
 		return GAZEBENCH_USAGE;
 	}
 	if (isnan(settings.bound) && gz_error_rises(gz_error_metrics[settings.metric].kind)) {
-		gz_err(log, "--bound is wanted: what %s must be at least",
-		       gz_error_metrics[settings.metric].title);
+		gz_err(log, "give --bound: the least %s", gz_error_metrics[settings.metric].title);
 		return GAZEBENCH_USAGE;
 	}
 	return suggest_from(operands.items[0], &settings, log) == GZ_OK ? GAZEBENCH_DONE

@@ -271,7 +271,7 @@ enum gz_result gz_scene_text_set_variant(struct gz_text *text,
 			*value++ = '\0';
 		const char *section = section_of(option);
 		if (!section || !value) {
-			gz_err(log, "%s: %s is no option of a scene", variant->text, option);
+			gz_err(log, "%s: %s is not an option of a scene", variant->text, option);
 			return GZ_ERR_INVAL;
 		}
 		gz_ini_text_set(text, section, option, value);
@@ -288,8 +288,8 @@ static enum gz_result check_file(const char *scene, const char *copy, const char
 	    gz_path_beside(copy, name, after, sizeof after) != GZ_OK || access(before, F_OK) != 0 ||
 	    access(after, F_OK) == 0)
 		return GZ_OK;
-	gz_err(log, "%s: %s = %s lies beside %s and would not be found: write the copy there", copy,
-	       key, name, scene);
+	gz_err(log, "%s: %s = %s is relative to %s and would not be found: write the copy there",
+	       copy, key, name, scene);
 	return GZ_ERR_NOT_FOUND;
 }
 
@@ -315,7 +315,7 @@ enum gz_result gz_scene_copy_with(const char *scene, const char *copy,
 {
 	struct gz_text text = { 0 };
 	if (access(copy, F_OK) == 0) {
-		gz_err(log, "%s is there already: name another file, or remove it", copy);
+		gz_err(log, "%s already exists: name another file, or remove it", copy);
 		return GZ_ERR_BUSY;
 	}
 	enum gz_result result = gz_text_add_file(&text, scene);

@@ -132,9 +132,8 @@ static enum gz_result look_for_gnuplot(struct gz_charts *charts)
 	int status;
 	const enum gz_result result = gz_child_run(charts->work, arguments, "said.txt", &status);
 	if (result == GZ_ERR_NOT_FOUND) {
-		gz_warn(charts->log,
-			"gnuplot is not installed: there are no charts; install gnuplot-nox "
-			"and run the same again");
+		gz_warn(charts->log, "gnuplot is not installed: there are no charts; install "
+				     "gnuplot-nox and run the same command again");
 		return GZ_OK;
 	}
 	charts->available = result == GZ_OK && status == 0;

@@ -117,9 +117,7 @@ enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, con
 	if (result == GZ_OK)
 		return gz_image_write_png(picture, path, log);
 	if (result != GZ_ERR_NO_MEM)
-		gz_warn(log,
-			"%s: no picture lies behind its maps: %s is not there, or not what it "
-			"was",
+		gz_warn(log, "%s: its maps have no picture: %s is missing or has changed",
 			study->scenes[scene].name, study->scenes[scene].path);
 	return result == GZ_ERR_NO_MEM ? result : GZ_ERR_NOT_FOUND;
 }

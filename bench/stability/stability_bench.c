@@ -34,8 +34,8 @@ enum gz_result gz_stability_create(const struct gz_stability_settings *settings,
 		return GZ_ERR_INVAL;
 	if (settings->scene.volume->bricks) {
 		gz_err(settings->log,
-		       "a volume of bricks can be shown by one renderer at a time, and "
-		       "this needs two: convert it to one that fits into memory");
+		       "only one renderer at a time can show a volume of bricks, and this needs "
+		       "two: convert it to one that fits into memory");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	struct gz_stability_bench *bench = calloc(1, sizeof *bench);

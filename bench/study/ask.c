@@ -216,8 +216,8 @@ static enum gz_result list_backends(struct asking *asking)
 		for (size_t i = 0; i < study->backend_count && good; i++)
 			good = strcmp(study->backends[i], item) != 0;
 		if (!good) {
-			gz_err(asking->log, "%s: given twice among the backends, or one too many",
-			       item);
+			gz_err(asking->log,
+			       "%s: given twice among the backends, or too many backends", item);
 			return GZ_ERR_INVAL;
 		}
 		snprintf(study->backends[study->backend_count++], GZ_NAME_SIZE, "%.*s",
@@ -254,7 +254,7 @@ static enum gz_result find_display(const struct asking *asking, struct gz_study_
 		return GZ_OK;
 	gz_err(asking->log,
 	       "%s was recorded on another display, %g x %g mm at %g mm, than %s is shown on, %g x "
-	       "%g mm at %g mm: leave the display out of the scene and the command line, or take a "
+	       "%g mm at %g mm: remove the display from the scene and the command line, or use a "
 	       "recording of that display",
 	       request->path, asking->path.display.mm[0], asking->path.display.mm[1],
 	       asking->path.display.distance_mm, scene->name, display.mm[0], display.mm[1],
@@ -319,16 +319,15 @@ static enum gz_result check_name(const struct asking *asking, const struct gz_st
 		if (strcmp(study->scenes[i].name, scene->name) == 0 &&
 		    strcmp(study->scenes[i].transfer, scene->transfer) == 0) {
 			gz_err(asking->log,
-			       "%s: a scene %s with a transfer function %s is there already; give "
-			       "files names that differ",
+			       "%s: a scene %s with a transfer function %s is in the study "
+			       "already; give the files different names",
 			       scene->path, scene->name, scene->transfer);
 			return GZ_ERR_INVAL;
 		}
 	for (const char *at = scene->path; *at; at++)
 		if (iscntrl((unsigned char)*at)) {
 			gz_err(asking->log,
-			       "%s: a name with control characters cannot be kept in "
-			       "a table; rename it",
+			       "%s: names with control characters are not allowed; rename it",
 			       scene->path);
 			return GZ_ERR_INVAL;
 		}

@@ -274,7 +274,7 @@ static enum gz_result get_picture(const struct gz_reference_request *request,
 	result = render_converged(request, rate, image);
 	if (result == GZ_OK && request->cache &&
 	    (!make_folders(request->cache) || gz_image_write_png(image, path, log) != GZ_OK))
-		gz_warn(log, "%s: cannot keep a reference; it is made again where it is needed",
+		gz_warn(log, "%s: cannot keep a reference; it is made again when needed",
 			request->cache);
 	return result;
 }
@@ -296,7 +296,7 @@ enum gz_result gz_reference_get(const struct gz_reference_request *request,
 		if (*out_db < GZ_REFERENCE_LEAST_DB)
 			gz_warn(log,
 				"the converged picture of %dx%d is %.1f dB from one of half its "
-				"step, not %d: errors smaller than that tell nothing",
+				"step, not %d: smaller errors are meaningless",
 				request->width, request->height, *out_db, GZ_REFERENCE_LEAST_DB);
 	} else if (result != GZ_ERR_CANCELLED) {
 		gz_err(log, "cannot make the converged picture of %dx%d: %s", request->width,

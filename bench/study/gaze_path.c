@@ -132,8 +132,8 @@ static enum gz_result add_recording(const char *file, bool samples, const struct
 		result = play(&player);
 	gz_gaze_log_close(&player.reader);
 	if (result == GZ_OK && path->count == 0) {
-		gz_err(log, "%s: holds no %s; record where someone looks at the display", file,
-		       samples ? "valid gaze" : "fixation, as far as its gaze is valid");
+		gz_err(log, "%s: holds no %s; record someone who looks at the display", file,
+		       samples ? "valid gaze" : "fixation with valid gaze");
 		result = GZ_ERR_FORMAT;
 	}
 	return result;
@@ -330,7 +330,7 @@ enum gz_result gz_gaze_path_make(const struct gz_gaze_path_settings *settings,
 	} else if (result == GZ_OK) {
 		thin_out(settings, &path);
 		if (path.count == 0) {
-			gz_err(log, "%s: no point lies within the picture; leave out --per-cell",
+			gz_err(log, "%s: no point lies within the picture; omit --per-cell",
 			       settings->text);
 			result = GZ_ERR_INVAL;
 		}

@@ -160,8 +160,8 @@ enum gz_result gz_stage_load(struct gz_stage *stage, const char *path)
 	result = hash_volume(&stage->scene.volume, stage->volume_hash);
 	if (result == GZ_OK && stage->scene.settings.image_sampling_rate != 1) {
 		gz_err(stage->log,
-		       "%s: render.image_sampling_rate: must be 1 to be measured; take a scene "
-		       "without it, and other sizes by --size",
+		       "%s: render.image_sampling_rate: must be 1 for measuring; use a scene "
+		       "without it, and --size for other sizes",
 		       path);
 		result = GZ_ERR_INVAL;
 	}
@@ -373,7 +373,7 @@ enum gz_result gz_variant_parse(const char *text, const struct gz_variant_settin
 		return GZ_ERR_INVAL;
 	}
 	if (!copy[0]) {
-		gz_err(log, "a method's name is missing: part methods by one comma each; gazebench "
+		gz_err(log, "a method's name is missing: separate methods by one comma; gazebench "
 			    "--list names them");
 		return GZ_ERR_INVAL;
 	}
@@ -385,7 +385,7 @@ enum gz_result gz_variant_parse(const char *text, const struct gz_variant_settin
 			*value++ = '\0';
 			key = part;
 		} else if (part != copy) {
-			gz_err(log, "%s: %s: write OPTION=VALUE behind the method", text, part);
+			gz_err(log, "%s: %s: write OPTION=VALUE after the method", text, part);
 			return GZ_ERR_INVAL;
 		}
 		const enum gz_result result =

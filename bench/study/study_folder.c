@@ -34,10 +34,7 @@ static enum gz_result open_to_read(const char *path, const struct gz_log *log, F
 	if (*out_file)
 		return GZ_OK;
 	if (errno == ENOENT || errno == ENOTDIR) {
-		gz_err(log,
-		       "%s: no such file: name the folder of a study, as gazebench run --out "
-		       "made it",
-		       path);
+		gz_err(log, "%s: no such file: name a folder that gazebench run --out made", path);
 		return GZ_ERR_NOT_FOUND;
 	}
 	gz_err(log, "%s: cannot be read: %s", path, strerror(errno));
@@ -184,8 +181,8 @@ static enum gz_result check_row_count(const struct reader *reader)
 	if (!study->complete || study->row_count == rows)
 		return GZ_OK;
 	gz_err(reader->log,
-	       "%s:%zu: the study says that it is complete, and %zu of %zu rows are there; measure "
-	       "it again",
+	       "%s:%zu: the study says that it is complete, but has %zu of %zu rows; measure it "
+	       "again",
 	       reader->path, reader->line_number, study->row_count, rows);
 	return GZ_ERR_FORMAT;
 }
@@ -313,7 +310,7 @@ static enum gz_result write_json(const char *folder, const struct gz_study *stud
 {
 	char *text = gz_study_to_text(study);
 	if (!text) {
-		gz_err(log, "%s: no memory, or a name that is no UTF-8", folder);
+		gz_err(log, "%s: no memory, or a name that is not UTF-8", folder);
 		return GZ_ERR_NO_MEM;
 	}
 	const enum gz_result result = replace_file(folder, ASKED_FILE, text, log);
@@ -345,7 +342,7 @@ enum gz_result gz_study_folder_check(const char *folder, const struct gz_log *lo
 {
 	if (access(folder, F_OK) != 0 || is_empty(folder) || has_study(folder, log))
 		return GZ_OK;
-	gz_err(log, "%s: is there and is no study; name a folder that is not there yet", folder);
+	gz_err(log, "%s: exists and is no study; name a new folder", folder);
 	return GZ_ERR_BUSY;
 }
 
@@ -356,7 +353,7 @@ static enum gz_result make_study_folder(const char *folder, const struct gz_log 
 	if (result != GZ_OK || mkdir(folder, 0777) == 0 || errno == EEXIST)
 		return result;
 	if (errno == ENOENT) {
-		gz_err(log, "%s: the folder above it is not there: make it first", folder);
+		gz_err(log, "%s: its parent folder does not exist: make it first", folder);
 		return GZ_ERR_IO;
 	}
 	return fail_to_write(log, folder, errno);
@@ -373,7 +370,8 @@ static enum gz_result open_rows(struct gz_study_writer *writer)
 		return fail_to_write(writer->log, writer->rows_path, errno);
 	if (flock(writer->file, LOCK_EX | LOCK_NB) == 0)
 		return GZ_OK;
-	gz_err(writer->log, "%s: another gazebench writes this study; wait until it has ended",
+	gz_err(writer->log,
+	       "%s: another gazebench is writing this study; wait until it has finished",
 	       writer->folder);
 	return GZ_ERR_BUSY;
 }
@@ -393,7 +391,7 @@ static enum gz_result append_to_rows(struct gz_study_writer *writer, const char 
 		return GZ_OK;
 	}
 	if (ftruncate(writer->file, writer->bytes) != 0)
-		gz_warn(writer->log, "%s: a cut line stays at its end, which readers leave out",
+		gz_warn(writer->log, "%s: an incomplete line stays at its end; readers ignore it",
 			writer->rows_path);
 	return fail_to_write(writer->log, writer->rows_path, error);
 }
@@ -537,8 +535,7 @@ enum gz_result gz_study_write(const char *folder, const struct gz_study *study,
 	struct gz_study_writer *writer = NULL;
 	size_t done;
 	if (has_study(folder, log)) {
-		gz_err(log, "%s: holds a study already; name a folder that is not there yet",
-		       folder);
+		gz_err(log, "%s: already holds a study; name a new folder", folder);
 		return GZ_ERR_BUSY;
 	}
 	struct gz_study *unfinished = malloc(sizeof *unfinished);

@@ -89,7 +89,7 @@ class Run(unittest.TestCase):
             (["run", "a.scene", "--out", "s", "--size", "big"], "WIDTHxHEIGHT"),
             (["run", "a.scene", "--out", "s", "--backend", "quantum"], "cpu, gl"),
             (["run", "a.scene", "--out", "s", "--path", "spiral"], "no such path"),
-            (["suggest", "s", "--metric", "ssim"], "--bound is wanted"),
+            (["suggest", "s", "--metric", "ssim"], "give --bound"),
             (["merge", "s"], "merge OUT DIR"),
         ):
             done = self.gazebench(self.command(*arguments))
@@ -131,7 +131,7 @@ class Run(unittest.TestCase):
         full = self.gazebench(self.measure("s", "--path", path), preexec_fn=small_files)
         self.assertEqual(full.returncode, 3, full.stderr)
         self.assertIn("no room left", full.stderr)
-        self.assertIn("run the same again", full.stderr)
+        self.assertIn("run the same command again", full.stderr)
         self.assertFalse(self.complete("s"))
         part = self.rows("s")
         self.assertGreater(len(part), 0)
@@ -156,7 +156,7 @@ class Run(unittest.TestCase):
             time.sleep(0.002)
         _, messages = child.communicate(timeout=50)
         self.assertEqual(child.returncode, 3, messages)
-        self.assertRegex(messages, "s holds [0-9]+ of 150 units: run the same again")
+        self.assertRegex(messages, "s holds [0-9]+ of 150 units: run the same command again")
         part = self.rows("s")
         self.assertEqual(len(part) % 4, 0)
         done = self.gazebench(command)

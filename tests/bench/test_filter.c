@@ -256,7 +256,7 @@ static void log_of_an_eye_that_stays_has_jitter_but_no_lag(void **state)
 	const struct making making = { .rate_hz = 120, .count = 360, .stare = true };
 	write_log(place, &making);
 	place_run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
-	assert_said(place, 0, "holds no whole saccade above 2 degrees");
+	assert_said(place, 0, "holds no complete saccade above 2 degrees");
 	assert_said(place, 0, "pipeline, smooth_pass_deg");
 	assert_null(strstr(place->said.bytes, "at a lag"));
 	assert_null(strstr(place->said.bytes, "nan"));
@@ -280,7 +280,7 @@ static void logs_that_nothing_can_be_said_of_are_refused(void **state)
 	place_run(place, (const char *[]) { "filter", "nowhere.gzl", NULL });
 	assert_said(place, 1, "nowhere.gzl");
 	place_run(place, (const char *[]) { "filter", NULL });
-	assert_said(place, 2, "one gaze log is wanted");
+	assert_said(place, 2, "give one gaze log");
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 1200 });
 	place_run(place,
 		  (const char *[]) { "filter", "viewer.gzl", "--out", "viewer.gzl/in", NULL });

@@ -229,7 +229,7 @@ static void complete_study_without_all_rows_is_refused(void **state)
 	struct gz_study study = written(0, 1);
 	char *text = read_text("frames.csv");
 	write_text("frames.csv", text, strlen(text) - 1);
-	refused(GZ_ERR_FORMAT, "says that it is complete, and 90 of 96 rows are there");
+	refused(GZ_ERR_FORMAT, "says that it is complete, but has 90 of 96 rows");
 	free(text);
 	gz_study_free(&study);
 }
@@ -379,7 +379,7 @@ static void folder_below_a_missing_one_is_refused_with_what_is_missing(void **st
 	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &writer, &done),
 			 GZ_ERR_IO);
 	assert_null(writer);
-	assert_non_null(strstr(message, "the folder above it is not there"));
+	assert_non_null(strstr(message, "its parent folder does not exist"));
 	gz_study_free(&study);
 }
 
@@ -453,7 +453,7 @@ static void second_writer_is_refused_while_the_first_writes(void **state)
 	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &first, &done), GZ_OK);
 	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &second, &done),
 			 GZ_ERR_BUSY);
-	assert_non_null(strstr(message, "another gazebench writes"));
+	assert_non_null(strstr(message, "another gazebench is writing"));
 	gz_study_writer_destroy(&first);
 	gz_study_free(&study);
 }

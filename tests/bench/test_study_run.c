@@ -459,7 +459,7 @@ static void what_cannot_be_asked_is_refused_before_a_folder_is_made(void **state
 	request = request_of("centre");
 	request.scenes = twice;
 	request.scene_count = 2;
-	refused(&request, GZ_ERR_INVAL, "is there already");
+	refused(&request, GZ_ERR_INVAL, "is in the study already");
 	const char *const missing[] = { "/nowhere.scene" };
 	request.scenes = missing;
 	request.scene_count = 1;

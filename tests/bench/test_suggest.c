@@ -84,7 +84,7 @@ static void suggestion_holds_at_every_point_and_is_written_into_a_copy(void **st
 	gz_text_free(&scene);
 	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head.scene", "--out",
 					    "fast.scene", NULL });
-	assert_said(place, 1, "fast.scene is there already");
+	assert_said(place, 1, "fast.scene already exists");
 }
 
 static void suggestion_of_the_scene_that_needs_more_is_a_dearer_one(void **state)
@@ -127,7 +127,7 @@ static void questions_without_an_answer_are_refused(void **state)
 	assert_said(place, 1, "nothing was measured of this scene");
 	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
 					    "psnr_db", NULL });
-	assert_said(place, 2, "--bound is wanted");
+	assert_said(place, 2, "give --bound");
 	place_run(place, (const char *[]) { "suggest", "study", "--scene", "head", "--metric",
 					    "foveal_flip", NULL });
 	assert_said(place, 1, "foveal FLIP against converged was not measured");
@@ -137,7 +137,7 @@ static void questions_without_an_answer_are_refused(void **state)
 	place_run(place, (const char *[]) { "suggest", "study", "--bound", "nan", NULL });
 	assert_int_equal(place->status, 2);
 	place_run(place, (const char *[]) { "suggest", NULL });
-	assert_said(place, 2, "one folder is wanted");
+	assert_said(place, 2, "give one folder");
 }
 
 static void bound_on_a_measure_that_rises_is_the_least_it_may_be(void **state)
@@ -161,7 +161,7 @@ static void report_of_no_rows_or_of_no_study_is_refused(void **state)
 	place_run(place, (const char *[]) { "report", "nowhere", NULL });
 	assert_int_equal(place->status, 1);
 	place_run(place, (const char *[]) { "report", NULL });
-	assert_said(place, 2, "one folder is wanted");
+	assert_said(place, 2, "give one folder");
 }
 
 static void report_without_gnuplot_has_all_but_charts_and_says_so(void **state)
