@@ -9,33 +9,34 @@
 
 #define GZ_LOG_MODULE "histogram"
 
-/* Stored values of integers. */
+/* Number of stored values of 16-bit integers. */
 enum { VALUES = 65536 };
 
-/* Voxels between two looks at the flag (chosen: about a millisecond). */
+/* Voxels between two checks of the cancel flag (chosen: about a millisecond). */
 enum { PART = 1 << 20 };
 
-/* Tables that a thread counts into in turn: neighbouring voxels are alike and would wait for each
- * other's count. The larger ones of 16 bit would leave the cache if they were as many. */
+/* Each thread counts into several tables in turn: neighbouring voxels are often equal, and
+ * incrementing one counter twice would stall. Fewer tables for 16 bits, so that they fit the cache.
+ */
 enum { WAYS = 4, WAYS_U16 = 2 };
 
-/* One counting. */
+/* The job that the workers share. */
 struct counting {
 	const struct gz_volume *volume;
 	const atomic_bool *cancelled;
 	const struct gz_brick_file *file; /* NULL: voxels are in memory */
 	const struct gz_brick_level *level;
 	double float_low, float_scale; /* bin = (value - low) * scale */
-	int bins;                      /* of floats; of integers every value has a count */
+	int bins;                      /* of floats; integers have one counter a value */
 	int ways;
-	size_t counters;  /* of one way: stored values of integers, else bins */
-	uint64_t *counts; /* by worker, way and value or bin */
-	void *bricks;     /* of each worker, room for one */
+	size_t counters;  /* of one table: one a stored value for integers, one a bin for floats */
+	uint64_t *counts; /* by worker, table and value or bin */
+	void *bricks;     /* a buffer of one brick for each worker */
 	atomic_size_t unreadable;
 	_Atomic(enum gz_result) why;
 };
 
-static bool stopped(const struct counting *counting)
+static bool counting_stopped(const struct counting *counting)
 {
 	return counting->cancelled &&
 	       atomic_load_explicit(counting->cancelled, memory_order_relaxed);
@@ -100,7 +101,7 @@ static void count_row(const struct counting *counting, const void *voxels, size_
 static void count_part(void *user, size_t part, int worker)
 {
 	const struct counting *counting = user;
-	if (stopped(counting))
+	if (counting_stopped(counting))
 		return;
 	const size_t all = gz_volume_voxel_count(counting->volume), from = part * PART;
 	const size_t count = all - from < PART ? all - from : PART;
@@ -108,7 +109,7 @@ static void count_part(void *user, size_t part, int worker)
 	count_row(counting, (const char *)counting->volume->voxels + from * size, count, worker);
 }
 
-/* The voxels of a brick that are its own and within the volume. */
+/* Count a brick's own voxels (not those of its neighbours) that are within the volume. */
 static void count_brick(const struct counting *counting, const int brick[3], const char *voxels,
 			int worker)
 {
@@ -129,7 +130,7 @@ static void count_brick(const struct counting *counting, const int brick[3], con
 static void count_brick_part(void *user, size_t part, int worker)
 {
 	struct counting *counting = user;
-	if (stopped(counting))
+	if (counting_stopped(counting))
 		return;
 	const size_t number = counting->level->first + part;
 	char *voxels = (char *)counting->bricks +
@@ -145,7 +146,7 @@ static void count_brick_part(void *user, size_t part, int worker)
 	count_brick(counting, brick, voxels, worker);
 }
 
-/* Bins of as many values each, at most `bins` of them; their ends lie midway between values. */
+/* At most `bins` bins of equally many values each; their ends lie midway between values. */
 static void lay_out_integers(const struct gz_volume *volume, int bins, struct gz_histogram *out,
 			     int *out_values)
 {
@@ -164,7 +165,7 @@ static void lay_out_floats(const struct gz_volume *volume, int bins, struct gz_h
 	out->width = range / out->bins;
 }
 
-/* The counts of all workers and ways, as bins of stored values. */
+/* Sum the tables of all workers into bins of stored values. */
 static void gather_integers(const struct counting *counting, int tables, int values,
 			    struct gz_histogram *out)
 {
@@ -186,7 +187,7 @@ static void gather_floats(const struct counting *counting, int tables, struct gz
 				counting->counts[(size_t)table * counting->counters + (size_t)bin];
 }
 
-/* From stored to data values, which fall where those rise if the slope is below 0. */
+/* From stored to data values; a negative slope reverses the order of the bins. */
 static void turn_into_data(const struct gz_volume *volume, struct gz_histogram *out)
 {
 	const double high = out->low + out->bins * out->width;
@@ -212,7 +213,7 @@ static size_t level_bricks(const struct gz_brick_level *level)
 	return (size_t)level->bricks[0] * (size_t)level->bricks[1] * (size_t)level->bricks[2];
 }
 
-/* Which bricks are counted. */
+/* Choose the level whose bricks are counted. */
 static void choose_level(struct counting *counting, struct gz_histogram *out)
 {
 	const struct gz_brick_layout *layout = &counting->file->layout;
@@ -237,15 +238,15 @@ static enum gz_result count_bricks(struct counting *counting, struct gz_workers 
 	free(counting->bricks);
 	const size_t unreadable = atomic_load(&counting->unreadable);
 	if (unreadable == bricks) {
-		gz_err(log, "%s: no histogram: not one brick can be read", counting->file->path);
+		gz_err(log, "%s: no histogram: no brick can be read", counting->file->path);
 		return atomic_load(&counting->why);
 	}
 	out->approximate |= unreadable > 0;
 	return GZ_OK;
 }
 
-static enum gz_result count_voxels(struct counting *counting, struct gz_workers *workers,
-				   const struct gz_log *log, struct gz_histogram *out)
+static enum gz_result count_all_voxels(struct counting *counting, struct gz_workers *workers,
+				       const struct gz_log *log, struct gz_histogram *out)
 {
 	if (counting->file)
 		return count_bricks(counting, workers, log, out);
@@ -254,8 +255,8 @@ static enum gz_result count_voxels(struct counting *counting, struct gz_workers 
 	return GZ_OK;
 }
 
-static enum gz_result count_all(struct counting *counting, struct gz_workers *workers, int bins,
-				const struct gz_log *log, struct gz_histogram *out)
+static enum gz_result count_into_bins(struct counting *counting, struct gz_workers *workers,
+				      int bins, const struct gz_log *log, struct gz_histogram *out)
 {
 	const bool floats = counting->volume->type == GZ_VOXEL_F32;
 	counting->ways = counting->volume->type == GZ_VOXEL_U16 ? WAYS_U16 : WAYS;
@@ -274,8 +275,8 @@ static enum gz_result count_all(struct counting *counting, struct gz_workers *wo
 	counting->counts = calloc((size_t)tables * counting->counters, sizeof *counting->counts);
 	if (!counting->counts)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = count_voxels(counting, workers, log, out);
-	if (stopped(counting))
+	enum gz_result result = count_all_voxels(counting, workers, log, out);
+	if (counting_stopped(counting))
 		result = GZ_ERR_CANCELLED;
 	if (result == GZ_OK && floats)
 		gather_floats(counting, tables, out);
@@ -299,7 +300,7 @@ enum gz_result gz_histogram_count(const struct gz_volume *volume, int bins, int 
 	if (volume->bricks)
 		counting.file = gz_brick_pool_file(volume->bricks);
 	struct gz_histogram histogram = { 0 };
-	result = count_all(&counting, workers, bins, log, &histogram);
+	result = count_into_bins(&counting, workers, bins, log, &histogram);
 	gz_workers_destroy(&workers);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(log, "no memory for the histogram; close other programs");
@@ -308,4 +309,126 @@ enum gz_result gz_histogram_count(const struct gz_volume *volume, int bins, int 
 	turn_into_data(volume, &histogram);
 	*out_histogram = histogram;
 	return GZ_OK;
+}
+
+double gz_histogram_bin_value(const struct gz_histogram *histogram, int bin)
+{
+	return histogram->low + (bin + 0.5) * histogram->width;
+}
+
+int gz_histogram_bin_of(const struct gz_histogram *histogram, double value)
+{
+	if (!(histogram->width > 0))
+		return 0;
+	const double bin = (value - histogram->low) / histogram->width;
+	return bin < 1 ? 0 : bin < histogram->bins ? (int)bin : histogram->bins - 1;
+}
+
+static double within_data(const struct gz_histogram *histogram, double value)
+{
+	return fmin(fmax(value, histogram->data_min), histogram->data_max);
+}
+
+double gz_histogram_percentile(const struct gz_histogram *histogram, double share)
+{
+	const double wanted = fmin(fmax(share, 0), 1) * (double)histogram->total;
+	double below = 0;
+	for (int i = 0; i < histogram->bins; i++) {
+		const double count = (double)histogram->counts[i];
+		if (count > 0 && below + count >= wanted) {
+			const double at = i + (wanted - below) / count;
+			return within_data(histogram, histogram->low + at * histogram->width);
+		}
+		below += count;
+	}
+	return histogram->data_max;
+}
+
+/* For each bin: the voxels in the bins before it, and the sum of their bin numbers. */
+struct sums {
+	double count[GZ_HISTOGRAM_BINS_MAX + 1];
+	double moment[GZ_HISTOGRAM_BINS_MAX + 1];
+};
+
+static void sum_bins(const struct gz_histogram *histogram, struct sums *out)
+{
+	out->count[0] = out->moment[0] = 0;
+	for (int i = 0; i < histogram->bins; i++) {
+		const double count = (double)histogram->counts[i];
+		out->count[i + 1] = out->count[i] + count;
+		out->moment[i + 1] = out->moment[i] + count * i;
+	}
+}
+
+/* The term of the class of bins [from, to) in the between-class variance: weight times squared mean
+ * (Otsu 1979, eq. 14). Terms that are equal for all thresholds are left out. */
+static double class_term(const struct sums *sums, int from, int to)
+{
+	const double count = sums->count[to] - sums->count[from];
+	const double moment = sums->moment[to] - sums->moment[from];
+	return count > 0 ? moment * moment / count : 0;
+}
+
+static double value_at_bin(const struct gz_histogram *histogram, double bin)
+{
+	return within_data(histogram, histogram->low + bin * histogram->width);
+}
+
+/* All thresholds within a run of empty bins are equally good: take the middle one. */
+static double best_split(const struct gz_histogram *histogram, const struct sums *sums, int from,
+			 int to)
+{
+	double best = -1;
+	int first = from, last = from;
+	for (int at = from + 1; at < to; at++) {
+		const double term = class_term(sums, from, at) + class_term(sums, at, to);
+		if (term > best) {
+			best = term;
+			first = at;
+		}
+		if (term >= best)
+			last = at;
+	}
+	return value_at_bin(histogram, (first + last) / 2.0);
+}
+
+/* A volume of one value has no classes. */
+static bool one_value(const struct gz_histogram *histogram)
+{
+	return histogram->total == histogram->most;
+}
+
+double gz_histogram_threshold(const struct gz_histogram *histogram)
+{
+	if (one_value(histogram))
+		return histogram->data_min;
+	struct sums sums;
+	sum_bins(histogram, &sums);
+	return best_split(histogram, &sums, 0, histogram->bins);
+}
+
+void gz_histogram_two_thresholds(const struct gz_histogram *histogram, double out_thresholds[2])
+{
+	out_thresholds[0] = out_thresholds[1] = histogram->data_min;
+	if (one_value(histogram))
+		return;
+	struct sums sums;
+	sum_bins(histogram, &sums);
+	const int bins = histogram->bins;
+	double best = -1;
+	int best_low = 0, best_high = 0;
+	for (int low = 1; low < bins; low++) {
+		const double below = class_term(&sums, 0, low);
+		for (int high = low; high < bins; high++) {
+			const double term = below + class_term(&sums, low, high) +
+					    class_term(&sums, high, bins);
+			if (term > best) {
+				best = term;
+				best_low = low;
+				best_high = high;
+			}
+		}
+	}
+	out_thresholds[0] = best_split(histogram, &sums, 0, best_high);
+	out_thresholds[1] = best_split(histogram, &sums, best_low, bins);
 }

@@ -16,8 +16,8 @@ static size_t point_before(const struct gz_transfer *transfer, double value)
 	return low > 0 ? low - 1 : transfer->count;
 }
 
-/* Quadratic: two parabolas that meet in the middle with one slope, flat at both ends. */
-static double ease(enum gz_transfer_interpolation interpolation, double t)
+/* Quadratic: two parabolas, flat at both ends, that meet in the middle with the same slope. */
+static double eased_weight(enum gz_transfer_interpolation interpolation, double t)
 {
 	if (interpolation == GZ_TRANSFER_LINEAR)
 		return t;
@@ -43,7 +43,8 @@ void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, doub
 	if (before + 1 == transfer->count)
 		return;
 	const struct gz_transfer_point *b = a + 1;
-	double weight = ease(transfer->interpolation, (value - a->value) / (b->value - a->value));
+	double weight =
+		eased_weight(transfer->interpolation, (value - a->value) / (b->value - a->value));
 	for (int i = 0; i < 3; i++)
 		out_rgba[i] += weight * (b->rgb[i] - a->rgb[i]);
 	out_rgba[3] += weight * (b->opacity - a->opacity);

@@ -1,6 +1,6 @@
 /**
  * @file
- * Transfer functions: data value to colour and opacity per voxel length, by control points.
+ * Transfer functions: colour and opacity per voxel length by data value, from control points.
  */
 #ifndef GZ_RENDER_TRANSFER_TRANSFER_H
 #define GZ_RENDER_TRANSFER_TRANSFER_H
@@ -16,8 +16,8 @@
 
 enum gz_transfer_interpolation {
 	GZ_TRANSFER_LINEAR,
-	GZ_TRANSFER_QUADRATIC, /**< eases in and out of each point: the weight is a smoothstep made
-				  of two parabolas */
+	GZ_TRANSFER_QUADRATIC, /**< flat at each point: the weight is a smoothstep of two
+				  parabolas */
 };
 
 /** One control point; all in [0, 1]. */
@@ -27,41 +27,57 @@ struct gz_transfer_point {
 	double opacity; /**< per voxel length */
 };
 
-/** Points in rising order of value; clamped beyond the ends. */
+/** A transfer function. Points are in rising order of value; outside them the first or last holds.
+ */
 struct gz_transfer {
 	size_t count; /**< 1 to GZ_TRANSFER_POINTS_MAX */
 	struct gz_transfer_point points[GZ_TRANSFER_POINTS_MAX];
 	enum gz_transfer_interpolation interpolation;
-	bool has_range;  /**< else the volume's minimum and maximum are 0 and 1 */
+	bool has_range;  /**< false: 0 and 1 stand for the volume's minimum and maximum */
 	double range[2]; /**< the data values that 0 and 1 stand for */
 };
 
-/** Whether both stand at one value, with one colour and opacity. */
+/** Whether two points have equal value, colour and opacity. */
 bool gz_transfer_point_same(const struct gz_transfer_point *a, const struct gz_transfer_point *b);
 
-/** Whether both are one function: the same points, interpolation and range. */
+/** Whether two functions have equal points, interpolation and range. */
 bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b);
 
-/** Read a .tf file: lines "value r g b a", "range LO HI", "interpolation linear|quadratic", '#'
- *  comments. GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_FORMAT (NaN, out of [0, 1], values not rising, no
- *  point, unknown word): logged with file:line and what is allowed. */
+/**
+ * Read a .tf file: lines "value r g b a", "range LO HI", "interpolation linear|quadratic", comments
+ * after '#'; docs/scenes.md has the grammar.
+ *
+ * @param log                may be NULL
+ * @param[out] out_transfer  written on GZ_OK
+ * @retval GZ_ERR_NOT_FOUND  no such file; logged
+ * @retval GZ_ERR_IO         the file cannot be read; logged
+ * @retval GZ_ERR_FORMAT     NaN, a number outside [0, 1], values that do not rise, no point, an
+ *                           unknown word or a file above 1 MiB; logged with file, line and remedy
+ * @retval GZ_ERR_NO_MEM     logged
+ */
 enum gz_result gz_transfer_load(const char *path, const struct gz_log *log,
 				struct gz_transfer *out_transfer);
 
-/** As gz_transfer_load() over text in memory; @p name stands for the file in messages. */
+/** As gz_transfer_load(), from @p size bytes of text; messages call it @p name. */
 enum gz_result gz_transfer_parse(const char *name, const char *text, size_t size,
 				 const struct gz_log *log, struct gz_transfer *out_transfer);
 
-/** Append the text of a .tf file, which gz_transfer_parse() reads back to the same bits. */
+/** Append the text of a .tf file. gz_transfer_parse() reads the same bits back. */
 void gz_transfer_print(const struct gz_transfer *transfer, struct gz_text *text);
 
-/** Write a .tf file, whole or not at all. GZ_ERR_INVAL: it has no point or more than
- *  GZ_TRANSFER_POINTS_MAX, or what gz_transfer_parse() would refuse; GZ_ERR_IO, GZ_ERR_NO_MEM;
- *  logged. */
+/**
+ * Write a .tf file. The file is replaced as a whole or not at all.
+ *
+ * @retval GZ_ERR_INVAL   gz_transfer_parse() would refuse it: no point, more than
+ *                        GZ_TRANSFER_POINTS_MAX, …; logged except for too many points
+ * @retval GZ_ERR_IO      the file cannot be written; logged
+ * @retval GZ_ERR_NO_MEM  logged
+ */
 enum gz_result gz_transfer_write(const struct gz_transfer *transfer, const char *path,
 				 const struct gz_log *log);
 
-/** Colour and opacity at @p value in [0, 1] (clamped). Two points of one value make a step. */
+/** Colour and opacity at @p value, which is clamped to [0, 1]. Two points of one value make a step.
+ */
 void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, double out_rgba[4]);
 
 /** Opacity over @p length voxel lengths: 1 - (1 - opacity)^length (docs/units.md). */

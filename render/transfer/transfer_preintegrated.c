@@ -11,9 +11,9 @@ enum {
 };
 _Static_assert(QUARTER *PARTS == STRIDE, "quarters of a segment end between entries");
 
-/* Extinction of what lets nothing through. Chosen: a segment of a 1/32 voxel length over all
- * values, of which one entry is opaque, lets 2^-76 through; and sums of it in double precision are
- * exact to far less than what one can see. */
+/* Extinction that stands for opaque. Chosen: a segment of 1/32 voxel length over all values, of
+ * which one entry is opaque, transmits 2^-76; and rounding errors of sums in double precision stay
+ * far below what is visible. */
 static const double OPAQUE = 1e7;
 
 void gz_transfer_sums_make(const struct gz_transfer_table *table, struct gz_transfer_sums *out_sums)
@@ -36,7 +36,7 @@ void gz_transfer_sums_make(const struct gz_transfer_table *table, struct gz_tran
 	}
 }
 
-/* What the workers are given. */
+/* The job that the workers share. */
 struct baking {
 	const struct gz_transfer_sums *sums;
 	float length; /* of a part of a segment, voxel lengths */
@@ -44,15 +44,16 @@ struct baking {
 	struct gz_transfer_entry *entries;
 };
 
-/* The segments from one cell to all higher ones, by their width in cells less 1: an array for each
- * part and number, so that compilers make vector code of it. */
+/* The segments from one cell to all higher cells, indexed by their width in cells less 1. One array
+ * for each part and number, so that compilers vectorise the loops. */
 struct row {
 	float extinction[PARTS][GZ_PREINTEGRATED_SIZE];
 	float opacity[PARTS][GZ_PREINTEGRATED_SIZE];
 	float rgb[PARTS][3][GZ_PREINTEGRATED_SIZE];
 };
 
-/* 2^-x for x >= 0, to 2e-7: as the kernels' (render/raycast/cpu/cast_light.h). */
+/* 2^-x for x >= 0, error 2e-7: the same polynomial as the kernels'
+ * (render/raycast/cpu/cast_light.h). */
 static inline float exp2_minus(float x)
 {
 	union {
@@ -73,21 +74,22 @@ static inline float exp2_minus(float x)
 	return p * whole.power;
 }
 
-static inline uint32_t pack(float share, float levels)
+static inline uint32_t pack_channel(float share, float levels)
 {
-	/* Differences of sums may be off by rounding. */
+	/* Rounding may take a difference of sums above 1. */
 	const float level = share * levels + 0.5F;
 	return (uint32_t)(int32_t)(level < levels ? level : levels);
 }
 
-static inline uint32_t pack_colour(float red, float green, float blue)
+static inline uint32_t pack_float_colour(float red, float green, float blue)
 {
-	return pack(red, 2047) << 21 | pack(green, 2047) << 10 | pack(blue, 1023);
+	return pack_channel(red, 2047) << 21 | pack_channel(green, 2047) << 10 |
+	       pack_channel(blue, 1023);
 }
 
-/* Mean extinction over a stretch of values, and the mean colour by extinction. */
-static inline void average(const struct gz_transfer_sums *sums, int from, int to,
-			   float *out_extinction, float out_rgb[3])
+/* Mean extinction over the entries [from, to), and their mean colour weighted by extinction. */
+static inline void average_stretch(const struct gz_transfer_sums *sums, int from, int to,
+				   float *out_extinction, float out_rgb[3])
 {
 	const double *low = sums->sum[from], *high = sums->sum[to];
 	const double sum = high[0] - low[0];
@@ -97,16 +99,16 @@ static inline void average(const struct gz_transfer_sums *sums, int from, int to
 		out_rgb[channel] = (float)((high[1 + channel] - low[1 + channel]) * share);
 }
 
-/* The parts of the segments of a row. */
-static void fill_row(const struct baking *job, int low, int count, struct row *row)
+/* Extinction, opacity and colour of each part of the segments of a row. */
+static void fill_segment_row(const struct baking *job, int low, int count, struct row *row)
 {
 	const int from = low * STRIDE + STRIDE / 2;
 	for (int part = 0; part < PARTS; part++) {
 		for (int i = 0; i < count; i++) {
 			const int width = (i + 1) * QUARTER;
 			float rgb[3];
-			average(job->sums, from + part * width, from + (part + 1) * width,
-				&row->extinction[part][i], rgb);
+			average_stretch(job->sums, from + part * width, from + (part + 1) * width,
+					&row->extinction[part][i], rgb);
 			for (int channel = 0; channel < 3; channel++)
 				row->rgb[part][channel][i] = rgb[channel];
 		}
@@ -132,29 +134,29 @@ static void blend_row(const struct row *row, int count, int first, int step,
 		}
 		const float all = 1 - through, share = 1 / (all > 1e-30F ? all : 1e-30F);
 		out_entries[i].opacity = all;
-		out_entries[i].colour = pack_colour(red * share, green * share, blue * share);
+		out_entries[i].colour = pack_float_colour(red * share, green * share, blue * share);
 	}
 }
 
-/* The same where the order is not asked for. */
+/* Segments of a row as means, whatever the order of their colours. */
 static void average_row(const struct baking *job, int low, int count,
 			struct gz_transfer_entry *out_entries)
 {
 	const int from = low * STRIDE + STRIDE / 2;
 	for (int i = 0; i < count; i++) {
 		float extinction, rgb[3];
-		average(job->sums, from, from + (i + 1) * STRIDE, &extinction, rgb);
+		average_stretch(job->sums, from, from + (i + 1) * STRIDE, &extinction, rgb);
 		out_entries[i].extinction = -extinction;
-		out_entries[i].colour = pack_colour(rgb[0], rgb[1], rgb[2]);
+		out_entries[i].colour = pack_float_colour(rgb[0], rgb[1], rgb[2]);
 	}
 }
 
 /* A segment within one cell. */
-static struct gz_transfer_entry within(const struct baking *job, int cell)
+static struct gz_transfer_entry segment_in_cell(const struct baking *job, int cell)
 {
 	float extinction, rgb[3];
-	average(job->sums, cell * STRIDE, (cell + 1) * STRIDE, &extinction, rgb);
-	struct gz_transfer_entry entry = { .colour = pack_colour(rgb[0], rgb[1], rgb[2]) };
+	average_stretch(job->sums, cell * STRIDE, (cell + 1) * STRIDE, &extinction, rgb);
+	struct gz_transfer_entry entry = { .colour = pack_float_colour(rgb[0], rgb[1], rgb[2]) };
 	if (job->extinction)
 		entry.extinction = -extinction;
 	else
@@ -162,8 +164,9 @@ static struct gz_transfer_entry within(const struct baking *job, int cell)
 	return entry;
 }
 
-/* Rows of the table from the diagonal to the right. What falls, from a higher cell to a lower one,
- * lies in columns below it: a block of rows at a time, so that whole cache lines are written. */
+/* Rows of the table from the diagonal to the right: rising segments. Falling ones, from a higher
+ * cell to a lower one, are in the columns below the diagonal. A block of rows is made at a time, so
+ * that whole cache lines are written. */
 static void bake_part(void *user, size_t block, int worker)
 {
 	(void)worker;
@@ -175,13 +178,13 @@ static void bake_part(void *user, size_t block, int worker)
 		const int count = GZ_PREINTEGRATED_SIZE - 1 - low;
 		struct gz_transfer_entry *diagonal =
 			job->entries + (size_t)low * (GZ_PREINTEGRATED_SIZE + 1);
-		*diagonal = within(job, low);
+		*diagonal = segment_in_cell(job, low);
 		if (job->extinction) {
 			average_row(job, low, count, diagonal + 1);
 			average_row(job, low, count, &falling[low - first][low] + 1);
 			continue;
 		}
-		fill_row(job, low, count, &row);
+		fill_segment_row(job, low, count, &row);
 		blend_row(&row, count, 0, 1, diagonal + 1);
 		blend_row(&row, count, PARTS - 1, -1, &falling[low - first][low] + 1);
 	}

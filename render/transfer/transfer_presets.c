@@ -10,7 +10,7 @@ struct colour {
 	double r, g, b;
 };
 
-/* A transfer function being made, in data values. */
+/* A transfer function that is being made; values are data values. */
 struct making {
 	const struct gz_histogram *histogram;
 	double edge; /* of the volume, voxel lengths */
@@ -18,8 +18,8 @@ struct making {
 	struct gz_transfer *transfer;
 };
 
-/* Opacity of a voxel length, of what hides `hidden` of its background over `share` of the volume's
- * longest edge: gz_transfer_opacity_over() the other way round. */
+/* Opacity of one voxel length such that `share` of the volume's longest edge hides `hidden` of what
+ * is behind it: the inverse of gz_transfer_opacity_over(). */
 static double per_voxel(const struct making *making, double hidden, double share)
 {
 	return 1 - pow(1 - hidden, 1 / fmax(share * making->edge, 1));
@@ -45,16 +45,16 @@ static double mean_beyond(const struct making *making, double threshold, bool be
 	return count > 0 ? sum / count : threshold;
 }
 
-/* Halfway from the background, which may be no black, to where it and the object part: its noise is
- * left out, the object's faint parts are not. */
-static double end_of_background(const struct making *making, bool dark)
+/* Halfway from the mean of the background to the threshold between background and object: above the
+ * background's noise, below the faint parts of the object. */
+static double background_end(const struct making *making, bool dark)
 {
 	const double threshold = gz_histogram_threshold(making->histogram);
 	return (mean_beyond(making, threshold, dark) + threshold) / 2;
 }
 
-/* The next point; values rise, and what lies beyond the range is cut off. */
-static void add(struct making *making, double value, struct colour colour, double opacity)
+/* Add the next point. A value below the last point's or outside the range is moved to it. */
+static void add_point(struct making *making, double value, struct colour colour, double opacity)
 {
 	struct gz_transfer *transfer = making->transfer;
 	const double width = making->high - making->low;
@@ -63,7 +63,7 @@ static void add(struct making *making, double value, struct colour colour, doubl
 	if (count > 0)
 		at = fmax(at, transfer->points[count - 1].value);
 	if (count > 1 && at <= transfer->points[count - 2].value)
-		return; /* two make a step, a third would never be seen */
+		return; /* two points of one value make a step; a third is never used */
 	transfer->points[transfer->count++] = (struct gz_transfer_point) {
 		.value = at,
 		.rgb = { colour.r, colour.g, colour.b },
@@ -79,12 +79,12 @@ static void make_tissue(struct making *making)
 	const struct colour ivory = { 0.97, 0.93, 0.83 };
 	const double veil = per_voxel(making, 0.75, 0.1), solid = per_voxel(making, 0.97, 0.02);
 	const double ramp = at_share(making, 0.04) - making->low;
-	add(making, making->low, dark, 0);
-	add(making, threshold[0] - ramp, dark, 0);
-	add(making, threshold[0] + ramp, flesh, veil);
-	add(making, fmax(threshold[1] - ramp, threshold[0] + ramp), flesh, veil);
-	add(making, threshold[1] + 2 * ramp, ivory, solid);
-	add(making, making->high, (struct colour) { 1, 1, 1 }, solid);
+	add_point(making, making->low, dark, 0);
+	add_point(making, threshold[0] - ramp, dark, 0);
+	add_point(making, threshold[0] + ramp, flesh, veil);
+	add_point(making, fmax(threshold[1] - ramp, threshold[0] + ramp), flesh, veil);
+	add_point(making, threshold[1] + 2 * ramp, ivory, solid);
+	add_point(making, making->high, (struct colour) { 1, 1, 1 }, solid);
 }
 
 static void make_surface(struct making *making)
@@ -93,19 +93,19 @@ static void make_surface(struct making *making)
 	const double ramp = at_share(making, 0.03) - making->low;
 	const double solid = per_voxel(making, 0.98, 0.015);
 	const struct colour stone = { 0.88, 0.84, 0.76 };
-	add(making, making->low, stone, 0);
-	add(making, threshold - ramp, stone, 0);
-	add(making, threshold + ramp, stone, solid);
-	add(making, making->high, (struct colour) { 1, 0.98, 0.94 }, solid);
+	add_point(making, making->low, stone, 0);
+	add_point(making, threshold - ramp, stone, 0);
+	add_point(making, threshold + ramp, stone, solid);
+	add_point(making, making->high, (struct colour) { 1, 0.98, 0.94 }, solid);
 }
 
-/* Values near one of its own are seen, others are not. */
+/* Show only values near one value. */
 static void add_shell(struct making *making, double value, double ramp, struct colour colour,
 		      double opacity)
 {
-	add(making, value - ramp, colour, 0);
-	add(making, value, colour, opacity);
-	add(making, value + ramp, colour, 0);
+	add_point(making, value - ramp, colour, 0);
+	add_point(making, value, colour, opacity);
+	add_point(making, value + ramp, colour, 0);
 }
 
 static void make_glass(struct making *making)
@@ -115,51 +115,51 @@ static void make_glass(struct making *making)
 	const double ramp = fmin(at_share(making, 0.05) - making->low,
 				 fmax((threshold[1] - threshold[0]) / 2, 0));
 	const struct colour blue = { 0.45, 0.72, 0.95 }, amber = { 1.0, 0.72, 0.30 };
-	add(making, making->low, blue, 0);
+	add_point(making, making->low, blue, 0);
 	add_shell(making, threshold[0], ramp, blue, per_voxel(making, 0.3, 0.02));
 	add_shell(making, threshold[1], ramp, amber, per_voxel(making, 0.8, 0.02));
-	add(making, making->high, amber, 0);
+	add_point(making, making->high, amber, 0);
 }
 
-/* From nothing at the background to dense at the other end of the range. */
+/* Opacity rises from 0 at the background to dense at the end of the range. */
 static void make_grey(struct making *making)
 {
 	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
-	const double begin = end_of_background(making, true);
+	const double begin = background_end(making, true);
 	const double grey = (begin - making->low) / fmax(making->high - making->low, 1e-300);
-	add(making, making->low, black, 0);
-	add(making, begin, (struct colour) { grey, grey, grey }, 0);
-	add(making, making->high, white, per_voxel(making, 0.98, 0.06));
+	add_point(making, making->low, black, 0);
+	add_point(making, begin, (struct colour) { grey, grey, grey }, 0);
+	add_point(making, making->high, white, per_voxel(making, 0.98, 0.06));
 }
 
 static void make_heat(struct making *making)
 {
-	const double begin = end_of_background(making, true), rest = making->high - begin;
+	const double begin = background_end(making, true), rest = making->high - begin;
 	const double dense = per_voxel(making, 0.98, 0.05);
-	add(making, making->low, (struct colour) { 0, 0, 0 }, 0);
-	add(making, begin, (struct colour) { 0.20, 0, 0.02 }, 0);
-	add(making, begin + 0.3 * rest, (struct colour) { 0.80, 0.10, 0.02 }, 0.1 * dense);
-	add(making, begin + 0.6 * rest, (struct colour) { 1, 0.60, 0.05 }, 0.35 * dense);
-	add(making, begin + 0.85 * rest, (struct colour) { 1, 0.92, 0.45 }, 0.75 * dense);
-	add(making, making->high, (struct colour) { 1, 1, 1 }, dense);
+	add_point(making, making->low, (struct colour) { 0, 0, 0 }, 0);
+	add_point(making, begin, (struct colour) { 0.20, 0, 0.02 }, 0);
+	add_point(making, begin + 0.3 * rest, (struct colour) { 0.80, 0.10, 0.02 }, 0.1 * dense);
+	add_point(making, begin + 0.6 * rest, (struct colour) { 1, 0.60, 0.05 }, 0.35 * dense);
+	add_point(making, begin + 0.85 * rest, (struct colour) { 1, 0.92, 0.45 }, 0.75 * dense);
+	add_point(making, making->high, (struct colour) { 1, 1, 1 }, dense);
 }
 
 static void make_inverse(struct making *making)
 {
 	const struct colour black = { 0, 0, 0 }, white = { 1, 1, 1 };
-	const double end = end_of_background(making, false);
+	const double end = background_end(making, false);
 	const double grey = (making->high - end) / fmax(making->high - making->low, 1e-300);
-	add(making, making->low, white, per_voxel(making, 0.98, 0.06));
-	add(making, end, (struct colour) { grey, grey, grey }, 0);
-	add(making, making->high, black, 0);
+	add_point(making, making->low, white, per_voxel(making, 0.98, 0.06));
+	add_point(making, end, (struct colour) { grey, grey, grey }, 0);
+	add_point(making, making->high, black, 0);
 }
 
 static void make_xray(struct making *making)
 {
 	const struct colour white = { 1, 1, 1 };
-	add(making, making->low, white, 0);
-	add(making, end_of_background(making, true), white, 0);
-	add(making, making->high, white, per_voxel(making, 0.97, 0.8));
+	add_point(making, making->low, white, 0);
+	add_point(making, background_end(making, true), white, 0);
+	add_point(making, making->high, white, per_voxel(making, 0.97, 0.8));
 }
 
 /* One look. */
@@ -168,11 +168,11 @@ static const struct preset {
 	void (*make)(struct making *making);
 } presets[GZ_PRESET_COUNT] = {
 	[GZ_PRESET_TISSUE] = { { "Soft tissue and bone",
-				 "what is soft as a veil, what is dense solid" },
+				 "soft parts as a veil, dense parts solid" },
 			       make_tissue },
-	[GZ_PRESET_SURFACE] = { { "Surface", "one surface where object and background part" },
+	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, between object and background" },
 				make_surface },
-	[GZ_PRESET_GLASS] = { { "Glass", "two see-through surfaces, the inner one amber" },
+	[GZ_PRESET_GLASS] = { { "Glass", "two transparent surfaces, the inner one amber" },
 			      make_glass },
 	[GZ_PRESET_GREY] = { { "Grey ramp", "the brighter, the denser" }, make_grey },
 	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities" }, make_heat },

@@ -4,7 +4,7 @@
 
 enum { LAST = GZ_TRANSFER_TABLE_SIZE - 1 };
 
-static uint32_t pack_colour(const double rgba[4])
+static uint32_t pack_double_colour(const double rgba[4])
 {
 	const uint32_t red = (uint32_t)lround(rgba[0] * 2047);
 	const uint32_t green = (uint32_t)lround(rgba[1] * 2047);
@@ -12,8 +12,8 @@ static uint32_t pack_colour(const double rgba[4])
 	return red << 21 | green << 10 | blue;
 }
 
-/* The stored values between which the table lies: where the function's range and the data overlap
- * or, where they do not, all that lies on one side of it. */
+/* The stored values at the ends of the table: the overlap of the function's range and the data. If
+ * they do not overlap, both ends are the data's end next to the range. */
 static void table_span(const double range[2], const struct gz_volume *volume, double *out_low,
 		       double *out_high)
 {
@@ -55,7 +55,7 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 		double rgba[4];
 		gz_transfer_evaluate(transfer, width != 0 ? (value - range[0]) / width : 0, rgba);
 		out_table->entries[i].extinction = (float)log2(1 - rgba[3]);
-		out_table->entries[i].colour = pack_colour(rgba);
+		out_table->entries[i].colour = pack_double_colour(rgba);
 		out_table->visible_before[i + 1] =
 			(uint16_t)(out_table->visible_before[i] + (rgba[3] > 0));
 	}
@@ -73,7 +73,7 @@ void gz_transfer_table_step(const struct gz_transfer_table *table, double length
 	}
 }
 
-static int entry_of(const struct gz_transfer_table *table, double stored, double rounding)
+static int entry_at_or_below(const struct gz_transfer_table *table, double stored, double rounding)
 {
 	const double entry = floor(stored * table->scale + table->bias + rounding);
 	return entry < 0 ? 0 : entry > LAST ? LAST : (int)entry;
@@ -81,8 +81,8 @@ static int entry_of(const struct gz_transfer_table *table, double stored, double
 
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest)
 {
-	/* One entry wider than rounding needs: the cast computes in single precision. */
-	const int from = entry_of(table, least, -0.5);
-	const int to = entry_of(table, greatest, 1.5);
+	/* One entry wider than rounding needs, because kernels compute in single precision. */
+	const int from = entry_at_or_below(table, least, -0.5);
+	const int to = entry_at_or_below(table, greatest, 1.5);
 	return table->visible_before[to + 1] > table->visible_before[from];
 }

@@ -1,7 +1,7 @@
 /**
  * @file
- * A transfer function baked for a volume's stored values and a set of step lengths: what both
- * backends look up along a ray.
+ * A transfer function as a table over a volume's stored values, for one step length or any: both
+ * backends look it up along a ray.
  */
 #ifndef GZ_RENDER_TRANSFER_TRANSFER_TABLE_H
 #define GZ_RENDER_TRANSFER_TRANSFER_TABLE_H
@@ -14,11 +14,11 @@
 #include "render/transfer/transfer.h"
 #include "render/transfer/transfer_constants.h"
 
-/** What one look-up brings. */
+/** One entry of a table. */
 struct gz_transfer_entry {
-	/** By table: the opacity of one step, [0, 1], or log2 of the transparency of one voxel
-	 * length, 0 or less, from which a step of length d (in voxel lengths) has the opacity 1 -
-	 * exp2(d * extinction): the correction for the step in a form without powers. */
+	/** Which one it is depends on the table: the opacity of one step, [0, 1], or the
+	 * extinction: log2 of the transparency of one voxel length, 0 or less. A step of d voxel
+	 * lengths then has the opacity 1 - exp2(d * extinction). */
 	union {
 		float opacity;
 		float extinction;
@@ -26,19 +26,19 @@ struct gz_transfer_entry {
 	uint32_t colour; /**< 11 bits of red, 11 of green, 10 of blue, from the top */
 };
 
-/** Entry i stands for the stored value low + i * (high - low) / (SIZE - 1); values beyond are
- * clamped. */
+/** Entry i stands for the stored value low + i * (high - low) / (SIZE - 1); values outside [low,
+ *  high] take the first or last entry. */
 struct gz_transfer_table {
 	double scale, bias;      /**< entry = stored * scale + bias */
-	double value_per_stored; /**< by what the function's value, 0 to 1 over its range, grows
-				    with the stored one; 0 for a range without width */
+	double value_per_stored; /**< growth of the function's value (0 to 1 over its range)
+				    per stored value; 0 for a range without width */
 	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE]; /**< with extinction */
-	/** Number of entries before i with any opacity: a range of values shows iff the count grows
-	 *  over it. */
+	/** Number of entries before i with any opacity: a range of values is visible if and only
+	 *  if the count grows over it. */
 	uint16_t visible_before[GZ_TRANSFER_TABLE_SIZE + 1];
 };
 
-/** Bake @p transfer for the stored values of @p volume. */
+/** Make the table of @p transfer for the stored values of @p volume; entries hold extinction. */
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table);
 
