@@ -1,14 +1,139 @@
 /**
  * @file
- * A file of bricks, opened and checked: its index in memory, its voxels read a brick at a time.
+ * How a volume is divided into bricks, level by level, and the file of bricks, opened and checked:
+ * its index is in memory, voxels are read a brick at a time. docs/big-volumes.md describes its
+ * bytes.
+ *
+ * A brick is a cube of GZ_BRICK_EDGE voxels of one level, stored with one more voxel on every side,
+ * so that interpolation within the brick needs no other brick. Outside the volume the nearest voxel
+ * is repeated. Brick (i, j, k) of a level spans its voxel coordinates [32i, 32i + 32) and so on.
+ * The brick of the next coarser level over the same place has the numbers of the halved axes
+ * divided by two.
  */
 #ifndef GZ_RENDER_DATA_BRICK_FILE_H
 #define GZ_RENDER_DATA_BRICK_FILE_H
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "base/log.h"
 #include "base/result.h"
-#include "protocol/gaze.h"
-#include "render/data/brick_layout.h"
+#include "base/sizes.h"
+#include "render/data/volume.h"
+
+#define GZ_BRICK_EDGE        32 /**< voxels; a power of two */
+#define GZ_BRICK_STORED_EDGE 34 /**< with the voxels of its neighbours */
+#define GZ_BRICK_VOXELS      (GZ_BRICK_STORED_EDGE * GZ_BRICK_STORED_EDGE * GZ_BRICK_STORED_EDGE)
+#define GZ_BRICK_LEVELS_MAX  16 /**< 15 halvings make one of GZ_VOLUME_DIM_MAX */
+
+#define GZ_BRICK_CELL_EDGE 8  /**< voxels of the cells whose ranges stand in the file */
+#define GZ_BRICK_CELLS     64 /**< in a brick: four along each axis, x fastest */
+
+/** One level. */
+struct gz_brick_level {
+	int dims[3];     /**< voxels */
+	int bricks[3];   /**< along each axis */
+	int halvings[3]; /**< of each axis since level 0 */
+	size_t first;    /**< the number of its first brick; x varies fastest, then y, then z */
+};
+
+/** All levels, finest first; the last is one brick. */
+struct gz_brick_layout {
+	int level_count;
+	struct gz_brick_level levels[GZ_BRICK_LEVELS_MAX];
+	size_t brick_count; /**< of all levels */
+};
+
+/** Cut a volume: level 0 is the volume, each further one halves the axes that gz_halve_axes()
+ *  names. Dims and spacing are those of a valid volume. */
+void gz_brick_layout_make(const int dims[3], const double spacing[3],
+			  struct gz_brick_layout *out_layout);
+
+/** The number of a brick. */
+size_t gz_brick_number(const struct gz_brick_layout *layout, int level, const int brick[3]);
+
+/** Level and place of a brick, by its number. */
+void gz_brick_place(const struct gz_brick_layout *layout, size_t number, int *out_level,
+		    int out_brick[3]);
+
+/** The brick of the next coarser level over @p brick of @p level, which is not the last. */
+void gz_brick_parent(const struct gz_brick_layout *layout, int level, const int brick[3],
+		     int out_parent[3]);
+
+/** The bricks of the next finer level under @p brick of @p level, which is not 0: those from
+ * @p out_first up to but without @p out_end. */
+void gz_brick_children(const struct gz_brick_layout *layout, int level, const int brick[3],
+		       int out_first[3], int out_end[3]);
+
+/** How a place in the voxel coordinates of a level leads to its brick, and into coarser ones over
+ *  it: brick number first + the sum of stride times the brick along each axis. */
+struct gz_brick_lookup {
+	size_t first;
+	int32_t stride[3];
+	float last[3]; /**< greatest number of a brick */
+	/** Voxels of another level along an edge of one of this level, 1 or less for coarser ones;
+	 *  0 for levels that there are not. */
+	float scale[3][GZ_BRICK_LEVELS_MAX];
+};
+
+/** The lookup of @p level. */
+void gz_brick_lookup_make(const struct gz_brick_layout *layout, int level,
+			  struct gz_brick_lookup *out_lookup);
+
+/** What the index of a file says of one brick. */
+struct gz_brick_entry {
+	uint64_t offset;       /**< of its voxels in the file; 0: every voxel is least */
+	uint32_t crc;          /**< of its voxels' bytes, CRC-32 as in zlib */
+	float least, greatest; /**< stored values, over its voxels and all finer bricks under it */
+};
+
+#define GZ_BRICK_MAGIC        "GZBRICK\n"
+#define GZ_BRICK_VERSION      1
+#define GZ_BRICK_HEADER_BYTES 128
+#define GZ_BRICK_ENTRY_BYTES  24
+#define GZ_BRICK_ALIGN        4096 /**< bricks begin at multiples of it: a page */
+
+/** The header of a file of bricks. */
+struct gz_brick_header {
+	int dims[3];
+	double spacing[3];
+	enum gz_voxel_type type;
+	bool oriented;
+	double slope, intercept, stored_min, stored_max;
+	uint64_t brick_count; /**< entries of the index */
+	uint64_t file_size;
+	uint32_t index_crc, cells_crc;
+};
+
+/** Write the header's bytes. */
+void gz_brick_header_encode(const struct gz_brick_header *header,
+			    uint8_t out_bytes[GZ_BRICK_HEADER_BYTES]);
+
+/**
+ * Read a header, and check every field that can be checked alone.
+ *
+ * @param[out] out_header  written only on success
+ * @return NULL, or what is wrong with it: static text
+ */
+const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
+				   struct gz_brick_header *out_header);
+
+/** Write an entry's bytes. */
+void gz_brick_entry_encode(const struct gz_brick_entry *entry,
+			   uint8_t out_bytes[GZ_BRICK_ENTRY_BYTES]);
+
+/** Read an entry; nothing is checked. */
+struct gz_brick_entry gz_brick_entry_decode(const uint8_t bytes[GZ_BRICK_ENTRY_BYTES]);
+
+/** Where the cells' ranges begin: behind the index. */
+uint64_t gz_brick_cells_offset(uint64_t brick_count);
+
+/** Where the first brick may begin: behind the cells, aligned. @p finest: bricks of level 0. */
+uint64_t gz_brick_data_offset(uint64_t brick_count, uint64_t finest, enum gz_voxel_type type);
+
+/** Swap the bytes of @p count voxels where this machine's order is not the file's. */
+void gz_brick_host_order(enum gz_voxel_type type, size_t count, void *voxels);
 
 /** An open file. Read-only once open: bricks may be read by several threads at once. */
 struct gz_brick_file {
@@ -54,5 +179,15 @@ void gz_brick_file_complain(const struct gz_brick_file *file, size_t brick, enum
 
 /** Close, free, set to NULL. Accepts a pointer to NULL. */
 void gz_brick_file_close(struct gz_brick_file **file);
+
+/**
+ * Copy the voxels of a brick with those of its neighbours on every side; beyond the volume the
+ * nearest voxel is repeated.
+ *
+ * @param volume  the level, in memory
+ * @param brick   its place in the level, within it
+ * @param[out] out_voxels  GZ_BRICK_VOXELS of them, x fastest
+ */
+void gz_brick_cut(const struct gz_volume *volume, const int brick[3], void *out_voxels);
 
 #endif

@@ -1,15 +1,55 @@
-#include "render/data/brick_write.h"
+/* Writing files of bricks. */
+#include "render/data/format.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
 #include "base/file.h"
-#include "render/data/brick_cut.h"
-#include "render/data/brick_layout.h"
-#include "render/data/halve.h"
+#include "render/data/brick_file.h"
+#include "render/data/levels.h"
 
 #define GZ_LOG_MODULE "volume"
+
+static int nearest_index(int value, int last)
+{
+	return value < 0 ? 0 : value > last ? last : value;
+}
+
+/* A row of a brick: voxels from x - 1 on, the volume's ends repeated. */
+static void copy_brick_row(const char *row, int from, int last, size_t size, char *out)
+{
+	for (int i = 0; i < GZ_BRICK_STORED_EDGE;) {
+		const int x = from + i;
+		int run = 1;
+		if (x >= 0 && x < last) {
+			run = last - x;
+			run = run < GZ_BRICK_STORED_EDGE - i ? run : GZ_BRICK_STORED_EDGE - i;
+		}
+		memcpy(out + (size_t)i * size, row + (size_t)nearest_index(x, last) * size,
+		       (size_t)run * size);
+		i += run;
+	}
+}
+
+void gz_brick_cut(const struct gz_volume *volume, const int brick[3], void *out_voxels)
+{
+	const size_t size = gz_voxel_size(volume->type);
+	const int *dims = volume->dims;
+	const int from[3] = { brick[0] * GZ_BRICK_EDGE - 1, brick[1] * GZ_BRICK_EDGE - 1,
+			      brick[2] * GZ_BRICK_EDGE - 1 };
+	char *to = out_voxels;
+	for (int k = 0; k < GZ_BRICK_STORED_EDGE; k++) {
+		const size_t z = (size_t)nearest_index(from[2] + k, dims[2] - 1);
+		for (int j = 0; j < GZ_BRICK_STORED_EDGE; j++) {
+			const size_t y = (size_t)nearest_index(from[1] + j, dims[1] - 1);
+			const size_t row = (z * (size_t)dims[1] + y) * (size_t)dims[0];
+			copy_brick_row((const char *)volume->voxels + row * size, from[0],
+				       dims[0] - 1, size, to);
+			to += GZ_BRICK_STORED_EDGE * size;
+		}
+	}
+}
 
 struct writer {
 	const char *path;
@@ -56,7 +96,7 @@ static box_range *const box_ranges[GZ_VOXEL_TYPE_COUNT] = {
 	[GZ_VOXEL_F32] = box_range_f32,
 };
 
-static float value_of(enum gz_voxel_type type, const void *voxels, size_t index)
+static float voxel_value(enum gz_voxel_type type, const void *voxels, size_t index)
 {
 	if (type == GZ_VOXEL_U8)
 		return (float)((const uint8_t *)voxels)[index];
@@ -82,14 +122,14 @@ static void find_cells(struct writer *writer, enum gz_voxel_type type, size_t nu
 }
 
 /* The range of a brick's own voxels, widened to those of the finer bricks under it. */
-static void find_range(const struct writer *writer, enum gz_voxel_type type, int level,
-		       const int brick[3], struct gz_brick_entry *entry)
+static void find_brick_range(const struct writer *writer, enum gz_voxel_type type, int level,
+			     const int brick[3], struct gz_brick_entry *entry)
 {
 	float own[2];
 	int first[3], end[3];
 	box_ranges[type](writer->voxels, 0, GZ_BRICK_STORED_EDGE, own);
-	entry->least = value_of(type, own, 0);
-	entry->greatest = value_of(type, own, 1);
+	entry->least = voxel_value(type, own, 0);
+	entry->greatest = voxel_value(type, own, 1);
 	if (level == 0)
 		return;
 	gz_brick_children(&writer->layout, level, brick, first, end);
@@ -114,7 +154,7 @@ static enum gz_result write_brick(struct writer *writer, const struct gz_volume 
 	const size_t number = gz_brick_number(&writer->layout, level, brick);
 	struct gz_brick_entry *entry = &writer->entries[number];
 	gz_brick_cut(volume, brick, writer->voxels);
-	find_range(writer, volume->type, level, brick, entry);
+	find_brick_range(writer, volume->type, level, brick, entry);
 	if (level == 0)
 		find_cells(writer, volume->type, number);
 	if (entry->least == entry->greatest)
@@ -149,8 +189,8 @@ static enum gz_result write_level(struct writer *writer, const struct gz_volume 
 }
 
 /* The next coarser level of `volume`, in memory or scratch. */
-static enum gz_result halve(const struct writer *writer, const struct gz_volume *volume, int level,
-			    struct gz_volume *out_half)
+static enum gz_result halve_for_bricks(const struct writer *writer, const struct gz_volume *volume,
+				       int level, struct gz_volume *out_half)
 {
 	struct gz_volume half = *volume;
 	for (int axis = 0; axis < 3; axis++)
@@ -176,7 +216,7 @@ static enum gz_result write_levels(struct writer *writer, const struct gz_volume
 	enum gz_result result = write_level(writer, &at, 0);
 	for (int level = 1; level < writer->layout.level_count && result == GZ_OK; level++) {
 		struct gz_volume half;
-		result = halve(writer, &at, level, &half);
+		result = halve_for_bricks(writer, &at, level, &half);
 		if (level > 1)
 			gz_volume_free(&at);
 		if (result != GZ_OK)
@@ -235,7 +275,7 @@ static enum gz_result write_rest(struct writer *writer, const struct gz_volume *
 	return result == GZ_OK ? gz_part_file_write(&writer->file, bytes, sizeof bytes, 0) : result;
 }
 
-static enum gz_result begin(struct writer *writer, const struct gz_volume *volume)
+static enum gz_result begin_bricks(struct writer *writer, const struct gz_volume *volume)
 {
 	gz_brick_layout_make(volume->dims, volume->spacing, &writer->layout);
 	const struct gz_brick_level *finest = &writer->layout.levels[0];
@@ -256,7 +296,7 @@ static enum gz_result begin(struct writer *writer, const struct gz_volume *volum
 	return gz_part_file_open(&writer->file, writer->path, writer->log);
 }
 
-static enum gz_result finish(struct writer *writer, enum gz_result result)
+static enum gz_result finish_bricks(struct writer *writer, enum gz_result result)
 {
 	result = gz_part_file_close(&writer->file, result);
 	free(writer->entries);
@@ -273,10 +313,10 @@ enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 	};
 	if (!volume->voxels)
 		return GZ_ERR_INVAL;
-	enum gz_result result = begin(&writer, volume);
+	enum gz_result result = begin_bricks(&writer, volume);
 	if (result == GZ_OK)
 		result = write_levels(&writer, volume);
 	if (result == GZ_OK)
 		result = write_rest(&writer, volume);
-	return finish(&writer, result);
+	return finish_bricks(&writer, result);
 }

@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,9 +11,150 @@
 #include <zlib.h>
 #include <zstd.h>
 
-#include "render/data/byte_ahead.h"
-
 #define GZ_LOG_MODULE "volume"
+
+/* Chosen: a block is a fraction of a millisecond of decoding, the ring fits a second-level cache.
+ */
+#define BLOCK_BYTES ((size_t)256 << 10)
+enum { BLOCKS = 4 };
+
+struct block {
+	uint8_t *bytes;
+	size_t size; /* bytes in it */
+	enum gz_result result;
+};
+
+struct gz_byte_ahead {
+	gz_byte_source *source;
+	void *user;
+	uint64_t left; /* bytes to make; the thread's own */
+	pthread_t thread;
+	pthread_mutex_t mutex;
+	pthread_cond_t changed;
+	uint64_t made, taken; /* blocks; guarded by mutex, as what follows */
+	bool through;         /* no more will be made */
+	bool ending;
+	struct block blocks[BLOCKS]; /* the reader's from taken on, the thread's from made on */
+	size_t at;                   /* bytes read of the first; the reader's own */
+	uint8_t memory[BLOCKS * BLOCK_BYTES];
+};
+
+/* The block to fill next; NULL where nobody wants any more. */
+static struct block *await_free_block(struct gz_byte_ahead *ahead)
+{
+	pthread_mutex_lock(&ahead->mutex);
+	while (!ahead->ending && ahead->made - ahead->taken == BLOCKS)
+		pthread_cond_wait(&ahead->changed, &ahead->mutex);
+	struct block *block = ahead->ending ? NULL : &ahead->blocks[ahead->made % BLOCKS];
+	pthread_mutex_unlock(&ahead->mutex);
+	return block;
+}
+
+static void hand_over_block(struct gz_byte_ahead *ahead, bool through)
+{
+	pthread_mutex_lock(&ahead->mutex);
+	ahead->made++;
+	ahead->through = through;
+	pthread_cond_signal(&ahead->changed);
+	pthread_mutex_unlock(&ahead->mutex);
+}
+
+static void *make_blocks(void *user)
+{
+	struct gz_byte_ahead *ahead = user;
+	struct block *block;
+	bool through = false;
+	while (!through && (block = await_free_block(ahead))) {
+		const size_t wanted = ahead->left < BLOCK_BYTES ? (size_t)ahead->left : BLOCK_BYTES;
+		block->size = 0;
+		block->result = ahead->source(ahead->user, block->bytes, wanted, &block->size);
+		ahead->left -= block->size;
+		through = block->result != GZ_OK || block->size < wanted || ahead->left == 0;
+		hand_over_block(ahead, through);
+	}
+	return NULL;
+}
+
+enum gz_result gz_byte_ahead_start(gz_byte_source *source, void *user, uint64_t bytes,
+				   struct gz_byte_ahead **out_ahead)
+{
+	struct gz_byte_ahead *ahead = malloc(sizeof *ahead);
+	if (!ahead)
+		return GZ_ERR_NO_MEM;
+	memset(ahead, 0, offsetof(struct gz_byte_ahead, memory));
+	ahead->source = source;
+	ahead->user = user;
+	ahead->left = bytes;
+	for (int i = 0; i < BLOCKS; i++)
+		ahead->blocks[i].bytes = ahead->memory + (size_t)i * BLOCK_BYTES;
+	pthread_mutex_init(&ahead->mutex, NULL);
+	pthread_cond_init(&ahead->changed, NULL);
+	if (pthread_create(&ahead->thread, NULL, make_blocks, ahead) != 0) {
+		pthread_cond_destroy(&ahead->changed);
+		pthread_mutex_destroy(&ahead->mutex);
+		free(ahead);
+		return GZ_ERR_NO_MEM;
+	}
+	*out_ahead = ahead;
+	return GZ_OK;
+}
+
+/* The block to read next; NULL where no more will come. */
+static struct block *await_made_block(struct gz_byte_ahead *ahead)
+{
+	pthread_mutex_lock(&ahead->mutex);
+	while (ahead->made == ahead->taken && !ahead->through)
+		pthread_cond_wait(&ahead->changed, &ahead->mutex);
+	struct block *block =
+		ahead->made == ahead->taken ? NULL : &ahead->blocks[ahead->taken % BLOCKS];
+	pthread_mutex_unlock(&ahead->mutex);
+	return block;
+}
+
+static void give_block_back(struct gz_byte_ahead *ahead)
+{
+	pthread_mutex_lock(&ahead->mutex);
+	ahead->taken++;
+	ahead->at = 0;
+	pthread_cond_signal(&ahead->changed);
+	pthread_mutex_unlock(&ahead->mutex);
+}
+
+enum gz_result gz_byte_ahead_read(struct gz_byte_ahead *ahead, void *buffer, size_t size,
+				  size_t *out_got)
+{
+	size_t got = 0;
+	struct block *block;
+	while (got < size && (block = await_made_block(ahead))) {
+		if (block->result != GZ_OK)
+			return block->result; /* and stays the next one */
+		const size_t there = block->size - ahead->at;
+		const size_t part = there < size - got ? there : size - got;
+		memcpy((uint8_t *)buffer + got, block->bytes + ahead->at, part);
+		got += part;
+		ahead->at += part;
+		if (ahead->at == block->size)
+			give_block_back(ahead);
+	}
+	*out_got = got;
+	return GZ_OK;
+}
+
+void gz_byte_ahead_end(struct gz_byte_ahead **ahead)
+{
+	struct gz_byte_ahead *a = *ahead;
+	if (!a)
+		return;
+	pthread_mutex_lock(&a->mutex);
+	a->ending = true;
+	pthread_cond_signal(&a->changed);
+	pthread_mutex_unlock(&a->mutex);
+	pthread_join(a->thread, NULL);
+	pthread_cond_destroy(&a->changed);
+	pthread_mutex_destroy(&a->mutex);
+	free(a);
+	*ahead = NULL;
+}
 
 #define INPUT_SIZE ((size_t)128 << 10)
 
@@ -47,31 +190,44 @@ struct gz_byte_stream {
 	struct gz_byte_ahead *ahead; /* while it runs, the decoder above is its thread's */
 };
 
-static enum gz_result open_regular(struct gz_byte_stream *stream, uint64_t offset)
+enum gz_result gz_file_open(const char *path, const struct gz_log *log, int *out_fd,
+			    uint64_t *out_size)
 {
 	struct stat status;
-	/* O_NONBLOCK: opening a pipe that nobody writes to would wait for ever. */
-	stream->fd = open(stream->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-	if (stream->fd < 0 || fstat(stream->fd, &status) != 0) {
-		int saved = errno;
-		gz_err(stream->log, "%s: cannot open the file: %s; check its name and permissions",
-		       stream->path, strerror(saved));
+	/* O_NONBLOCK: opening a pipe without a writer would block for ever. */
+	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+	if (fd < 0 || fstat(fd, &status) != 0) {
+		const int saved = errno;
+		gz_err(log, "%s: cannot open the file: %s; check its name and permissions", path,
+		       strerror(saved));
+		if (fd >= 0)
+			close(fd);
 		return saved == ENOENT || saved == ENOTDIR ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
 	}
 	if (!S_ISREG(status.st_mode)) {
-		gz_err(stream->log, "%s: not a regular file; name the file that holds the data",
-		       stream->path);
+		gz_err(log, "%s: not a regular file; name the file that holds the data", path);
+		close(fd);
 		return GZ_ERR_FORMAT;
 	}
-	if ((uint64_t)status.st_size < offset) {
+	*out_fd = fd;
+	*out_size = (uint64_t)status.st_size;
+	return GZ_OK;
+}
+
+static enum gz_result open_at_offset(struct gz_byte_stream *stream, uint64_t offset)
+{
+	uint64_t size;
+	const enum gz_result result = gz_file_open(stream->path, stream->log, &stream->fd, &size);
+	if (result != GZ_OK)
+		return result;
+	if (size < offset) {
 		gz_err(stream->log,
 		       "%s: truncated: data should begin at byte %llu, the file has %llu; fetch it "
 		       "again",
-		       stream->path, (unsigned long long)offset,
-		       (unsigned long long)status.st_size);
+		       stream->path, (unsigned long long)offset, (unsigned long long)size);
 		return GZ_ERR_FORMAT;
 	}
-	stream->stored = (uint64_t)status.st_size - offset;
+	stream->stored = size - offset;
 	if (lseek(stream->fd, (off_t)offset, SEEK_SET) < 0)
 		return GZ_ERR_IO;
 	(void)posix_fadvise(stream->fd, 0, 0, POSIX_FADV_SEQUENTIAL); /* only a hint */
@@ -94,20 +250,29 @@ static enum gz_result open_decoder(struct gz_byte_stream *stream)
 	return GZ_ERR_NO_MEM;
 }
 
-enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint64_t offset,
-				   const struct gz_log *log, struct gz_byte_stream **out_stream)
+static struct gz_byte_stream *new_stream(const char *path, enum gz_coding coding,
+					 const struct gz_log *log)
 {
 	struct gz_byte_stream *stream = calloc(1, sizeof *stream);
 	if (!stream) {
 		gz_err(log, "%s: no memory to read it", path);
-		return GZ_ERR_NO_MEM;
+		return NULL;
 	}
 	stream->path = path;
 	stream->log = log;
 	stream->coding = coding;
 	stream->fd = -1;
 	stream->hungry = true;
-	enum gz_result result = open_regular(stream, offset);
+	return stream;
+}
+
+enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint64_t offset,
+				   const struct gz_log *log, struct gz_byte_stream **out_stream)
+{
+	struct gz_byte_stream *stream = new_stream(path, coding, log);
+	if (!stream)
+		return GZ_ERR_NO_MEM;
+	enum gz_result result = open_at_offset(stream, offset);
 	if (result == GZ_OK)
 		result = open_decoder(stream);
 	if (result != GZ_OK) {
@@ -122,18 +287,12 @@ enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t 
 				   const char *path, const struct gz_log *log,
 				   struct gz_byte_stream **out_stream)
 {
-	struct gz_byte_stream *stream = calloc(1, sizeof *stream);
-	if (!stream) {
-		gz_err(log, "%s: no memory to read it", path);
+	struct gz_byte_stream *stream = new_stream(path, GZ_CODING_PLAIN, log);
+	if (!stream)
 		return GZ_ERR_NO_MEM;
-	}
-	stream->path = path;
-	stream->log = log;
-	stream->coding = GZ_CODING_PLAIN;
 	stream->source = source;
 	stream->source_user = user;
 	stream->stored = bound;
-	stream->fd = -1;
 	*out_stream = stream;
 	return GZ_OK;
 }
@@ -227,7 +386,7 @@ static enum gz_result step_zstd(struct gz_byte_stream *stream, uint8_t *buffer, 
 	return GZ_OK;
 }
 
-static enum gz_result decode(void *user, void *buffer, size_t size, size_t *out_got)
+static enum gz_result decode_bytes(void *user, void *buffer, size_t size, size_t *out_got)
 {
 	struct gz_byte_stream *stream = user;
 	size_t got = 0;
@@ -253,7 +412,7 @@ void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes)
 	if (stream->coding == GZ_CODING_PLAIN || stream->ahead || bytes < AHEAD_BYTES_LEAST)
 		return;
 	/* Without room or a thread the reader decodes, as it does behind these bytes. */
-	(void)gz_byte_ahead_start(decode, stream, bytes, &stream->ahead);
+	(void)gz_byte_ahead_start(decode_bytes, stream, bytes, &stream->ahead);
 }
 
 /* What the thread has made; behind that, the stream is the reader's own again. */
@@ -264,7 +423,7 @@ static enum gz_result read_made(struct gz_byte_stream *stream, uint8_t *buffer, 
 	enum gz_result result = gz_byte_ahead_read(stream->ahead, buffer, size, &made);
 	if (result == GZ_OK && made < size) {
 		gz_byte_ahead_end(&stream->ahead);
-		result = decode(stream, buffer + made, size - made, &own);
+		result = decode_bytes(stream, buffer + made, size - made, &own);
 	}
 	if (result == GZ_OK)
 		*out_got = made + own;
@@ -279,7 +438,7 @@ enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, 
 	if (stream->coding == GZ_CODING_PLAIN)
 		return read_file(stream, buffer, size, out_got);
 	return stream->ahead ? read_made(stream, buffer, size, out_got)
-			     : decode(stream, buffer, size, out_got);
+			     : decode_bytes(stream, buffer, size, out_got);
 }
 
 enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count)

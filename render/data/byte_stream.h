@@ -1,6 +1,6 @@
 /**
  * @file
- * The bytes of a file or of what is compressed in it, front to back, in a small fixed memory.
+ * The bytes of a file, decompressed if need be, from front to back in a small fixed memory.
  */
 #ifndef GZ_RENDER_DATA_BYTE_STREAM_H
 #define GZ_RENDER_DATA_BYTE_STREAM_H
@@ -11,6 +11,18 @@
 
 #include "base/log.h"
 #include "base/result.h"
+
+/**
+ * Open a regular file for reading.
+ *
+ * @param[out] out_fd    closed on exec; owned by the caller
+ * @param[out] out_size  bytes
+ * @retval GZ_ERR_NOT_FOUND  no such file; logged
+ * @retval GZ_ERR_IO         it cannot be opened; logged
+ * @retval GZ_ERR_FORMAT     a folder, device or pipe; logged
+ */
+enum gz_result gz_file_open(const char *path, const struct gz_log *log, int *out_fd,
+			    uint64_t *out_size);
 
 /** How the bytes are stored. */
 enum gz_coding {
@@ -84,5 +96,32 @@ enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_byte_stream_close(struct gz_byte_stream **stream);
+
+struct gz_byte_ahead;
+
+/**
+ * Start a thread that reads @p bytes from @p source, no more. It is up to 1 MiB ahead.
+ *
+ * @param source  called on that thread alone until gz_byte_ahead_end()
+ * @param user    handed to @p source
+ * @param[out] out_ahead  owned by the caller: gz_byte_ahead_end()
+ * @retval GZ_ERR_NO_MEM  no room, or no thread to be had; not logged, as one can do without
+ */
+enum gz_result gz_byte_ahead_start(gz_byte_source *source, void *user, uint64_t bytes,
+				   struct gz_byte_ahead **out_ahead);
+
+/**
+ * Read until @p size bytes are there, all that were asked for have come, or the source ends.
+ *
+ * @param[out] out_got  less than @p size where no more will come
+ * @return what @p source returned where it failed, behind all bytes before
+ *
+ * Threads: one at a time.
+ */
+enum gz_result gz_byte_ahead_read(struct gz_byte_ahead *ahead, void *buffer, size_t size,
+				  size_t *out_got);
+
+/** End the thread, wherever it is, free, set to NULL. Accepts a pointer to NULL. */
+void gz_byte_ahead_end(struct gz_byte_ahead **ahead);
 
 #endif

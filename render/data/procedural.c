@@ -6,11 +6,56 @@
 #include <stdint.h>
 
 #include "base/workers.h"
-#include "render/data/procedural_chameleon.h"
-#include "render/data/procedural_noise.h"
+#include "render/data/procedural.h"
 #include "render/data/volume.h"
 
 #define GZ_LOG_MODULE "volume"
+
+/* One of 12 directions at a lattice point, by an integer hash, times the offset from it: Perlin,
+ * "Improving noise", SIGGRAPH 2002; the hash is the finaliser of MurmurHash3. */
+static double gradient(int32_t x, int32_t y, int32_t z, const double d[3])
+{
+	uint32_t h =
+		(uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ (uint32_t)z * 0xc2b2ae3du;
+	h ^= h >> 16;
+	h *= 0x85ebca6bu;
+	h ^= h >> 13;
+	h *= 0xc2b2ae35u;
+	h ^= h >> 16;
+	uint32_t edge = h % 12;
+	double a = d[edge >> 2], b = d[((edge >> 2) + 1) % 3];
+	return ((edge & 1) ? -a : a) + ((edge & 2) ? -b : b);
+}
+
+static double fade(double t)
+{
+	return t * t * t * (t * (t * 6 - 15) + 10);
+}
+
+static double mix(double a, double b, double t)
+{
+	return a + t * (b - a);
+}
+
+double gz_noise(const double p[3])
+{
+	int32_t cell[3];
+	double d[3], w[3], corner[8];
+	for (int i = 0; i < 3; i++) {
+		double whole = floor(p[i]);
+		cell[i] = (int32_t)whole;
+		d[i] = p[i] - whole;
+		w[i] = fade(d[i]);
+	}
+	for (int c = 0; c < 8; c++) {
+		int dx = c & 1, dy = c >> 1 & 1, dz = c >> 2;
+		double offset[3] = { d[0] - dx, d[1] - dy, d[2] - dz };
+		corner[c] = gradient(cell[0] + dx, cell[1] + dy, cell[2] + dz, offset);
+	}
+	double low = mix(mix(corner[0], corner[1], w[0]), mix(corner[2], corner[3], w[0]), w[1]);
+	double high = mix(mix(corner[4], corner[5], w[0]), mix(corner[6], corner[7], w[0]), w[1]);
+	return mix(low, high, w[2]);
+}
 
 const char *const gz_procedural_names[] = { "shells", "supernova", "chameleon", NULL };
 
@@ -26,7 +71,7 @@ static double clamp01(double x)
 	return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-static double smooth(double t)
+static double smoothstep(double t)
 {
 	return t * t * (3 - 2 * t);
 }
@@ -64,8 +109,8 @@ static double shells_at(const double p[3])
 	double s = r > 1e-9 ? 1 / r : 0;
 	double x = p[0] * s, y = p[1] * s, z = p[2] * s;
 	double six = harmonic_6(x, y), four = harmonic_4(x, y), cubic = harmonic_cubic(x, y, z);
-	double petals = smooth(clamp01(0.45 + 1.1 * six + 0.5 * z * z));
-	double bands = smooth(clamp01(0.55 + 2.2 * cubic));
+	double petals = smoothstep(clamp01(0.45 + 1.1 * six + 0.5 * z * z));
+	double bands = smoothstep(clamp01(0.55 + 2.2 * cubic));
 	double layers[5] = {
 		0.30 * petals * bump((r - 0.78 - 0.16 * six) / 0.07),
 		0.48 * bands * bump((r - 0.58 - 0.12 * four * (1 + z)) / 0.06),
@@ -111,7 +156,7 @@ static double supernova_at(const double p[3])
 		return 0;
 	double fine[3] = { 3.1 * p[0] + 0.8 * billow, 3.1 * p[1] - 0.6 * billow, 3.1 * p[2] };
 	double filament = ridges(fine, 4);
-	return shell * smooth(clamp01((filament - 0.35) / 0.6));
+	return shell * smoothstep(clamp01((filament - 0.35) / 0.6));
 }
 
 /* What the formulas give, 0 to 1, times this is the data value. */
@@ -130,7 +175,7 @@ struct making {
 	atomic_bool stopped;
 };
 
-static void put(struct gz_volume *volume, size_t index, double value, double scale)
+static void put_voxel(struct gz_volume *volume, size_t index, double value, double scale)
 {
 	if (volume->type == GZ_VOXEL_U8)
 		((uint8_t *)volume->voxels)[index] = (uint8_t)(255 * value + 0.5);
@@ -164,14 +209,20 @@ static void fill_chameleon_row(const struct making *making, double y, double z, 
 	float values[AT_ONCE];
 	for (int x = 0; x < volume->dims[0]; x += AT_ONCE) {
 		int left = volume->dims[0] - x, count = left < AT_ONCE ? left : AT_ONCE;
-		gz_chameleon_row(making->chameleon, y, z, middle_of(volume, 0, x, longest), step,
-				 count, values);
+		const struct gz_chameleon_row values_at = {
+			.y = y,
+			.z = z,
+			.first = middle_of(volume, 0, x, longest),
+			.step = step,
+			.count = count,
+		};
+		gz_chameleon_draw_row(making->chameleon, &values_at, values);
 		for (int i = 0; i < count; i++)
-			put(volume, row + (size_t)x + (size_t)i, (double)values[i], 1);
+			put_voxel(volume, row + (size_t)x + (size_t)i, (double)values[i], 1);
 	}
 }
 
-static void fill_row(const struct making *making, int y, int z)
+static void fill_procedural_row(const struct making *making, int y, int z)
 {
 	struct gz_volume *volume = making->volume;
 	const int *dims = volume->dims;
@@ -186,7 +237,7 @@ static void fill_row(const struct making *making, int y, int z)
 		p[0] = middle_of(volume, 0, x, longest);
 		double value =
 			making->which == GZ_PROCEDURAL_SHELLS ? shells_at(p) : supernova_at(p);
-		put(volume, row + (size_t)x, value, scale);
+		put_voxel(volume, row + (size_t)x, value, scale);
 	}
 }
 
@@ -200,7 +251,7 @@ static void fill_slice(void *user, size_t part, int worker)
 		if (worker == 0 &&
 		    !gz_loading_goes_on(making->loading, share, gz_procedural_names[making->which]))
 			atomic_store(&making->stopped, true);
-		fill_row(making, y, (int)part);
+		fill_procedural_row(making, y, (int)part);
 	}
 	atomic_fetch_add(&making->slices_done, 1);
 }
@@ -216,7 +267,7 @@ static enum gz_result fill_with(struct making *making)
 	return atomic_load(&making->stopped) ? GZ_ERR_CANCELLED : GZ_OK;
 }
 
-static enum gz_result fill(struct making *making)
+static enum gz_result fill_volume(struct making *making)
 {
 	const struct gz_volume *volume = making->volume;
 	if (making->which != GZ_PROCEDURAL_CHAMELEON)
@@ -239,11 +290,14 @@ enum gz_voxel_type gz_procedural_type(enum gz_procedural which)
 	return types[which];
 }
 
-enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
-				  const double spacing[3], enum gz_voxel_type type,
+enum gz_result gz_volume_generate(const struct gz_procedural_request *request,
 				  const struct gz_loading *loading, const struct gz_log *log,
 				  struct gz_volume *out_volume)
 {
+	const enum gz_procedural which = request->which;
+	const enum gz_voxel_type type = request->type;
+	const int *dims = request->dims;
+	const double *spacing = request->spacing;
 	static const double steps[GZ_VOXEL_TYPE_COUNT] = { 255, 65535, 0 };
 	struct gz_volume volume = { .dims = { dims[0], dims[1], dims[2] },
 				    .spacing = { spacing[0], spacing[1], spacing[2] },
@@ -256,7 +310,7 @@ enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
 	if (result == GZ_OK && steps[type] > 0)
 		volume.slope = value_scale(which) / steps[type];
 	if (result == GZ_OK)
-		result = fill(&making);
+		result = fill_volume(&making);
 	if (result != GZ_OK) {
 		if (result != GZ_ERR_CANCELLED)
 			gz_err(log, "%s: cannot make %d x %d x %d voxels: %s; choose smaller dims",

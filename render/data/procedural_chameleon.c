@@ -2,13 +2,11 @@
  * its box lies, and distances become densities at the end. So a voxel costs what lies near it. Only
  * + - * / and sqrt are used, for the same bits on every machine. x is across the animal, y up, z
  * towards the head; all shapes and numbers are chosen by eye. */
-#include "render/data/procedural_chameleon.h"
+#include "render/data/procedural.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "render/data/procedural_noise.h"
 
 enum tissue { BODY, SKULL, BONE, TISSUES };
 
@@ -46,11 +44,19 @@ static const double spine[][4] = {
 };
 enum { SPINE_POINTS = sizeof spine / sizeof *spine };
 
-static void add_flat(struct gz_chameleon *c, enum tissue tissue, const double a[3],
-		     const double b[3], double radius_a, double radius_b, double flat)
+/* A tube from a to b that is to be added. */
+struct new_tube {
+	const double *a, *b;
+	double radius_a, radius_b;
+	double flat; /* how many times thinner it is across the animal */
+};
+
+static void add_flat_tube(struct gz_chameleon *c, enum tissue tissue, const struct new_tube *tube)
 {
 	if (c->count == TUBES_MAX)
 		return; /* the tests count them */
+	const double *a = tube->a, *b = tube->b, flat = tube->flat;
+	const double radius_a = tube->radius_a, radius_b = tube->radius_b;
 	struct tube *t = &c->tubes[c->count++];
 	double length2 = 0;
 	for (int i = 0; i < 3; i++) {
@@ -69,19 +75,19 @@ static void add_flat(struct gz_chameleon *c, enum tissue tissue, const double a[
 	t->tissue = tissue;
 }
 
-static void add(struct gz_chameleon *c, enum tissue tissue, const double a[3], const double b[3],
-		double radius_a, double radius_b)
+static void add_tube(struct gz_chameleon *c, enum tissue tissue, const double a[3],
+		     const double b[3], double radius_a, double radius_b)
 {
-	add_flat(c, tissue, a, b, radius_a, radius_b, 1);
+	add_flat_tube(c, tissue, &(struct new_tube) { a, b, radius_a, radius_b, 1 });
 }
 
 /* On both sides of the animal. */
-static void add_pair(struct gz_chameleon *c, enum tissue tissue, const double a[3],
-		     const double b[3], double radius_a, double radius_b)
+static void add_tube_pair(struct gz_chameleon *c, enum tissue tissue, const double a[3],
+			  const double b[3], double radius_a, double radius_b)
 {
 	const double mirrored_a[3] = { -a[0], a[1], a[2] }, mirrored_b[3] = { -b[0], b[1], b[2] };
-	add(c, tissue, a, b, radius_a, radius_b);
-	add(c, tissue, mirrored_a, mirrored_b, radius_a, radius_b);
+	add_tube(c, tissue, a, b, radius_a, radius_b);
+	add_tube(c, tissue, mirrored_a, mirrored_b, radius_a, radius_b);
 }
 
 /* Catmull and Rom's curve through the points of the spine, at t between point i and the next. */
@@ -101,9 +107,9 @@ static void add_vertebra(struct gz_chameleon *c, double y, double z, double radi
 {
 	const double middle[3] = { 0, y, z }, tip[3] = { 0, y + spike, z - 0.4 * spike };
 	const double side[3] = { 0.8 * spike, y + 0.2 * spike, z - 0.2 * spike };
-	add(c, BONE, middle, middle, radius, radius);
-	add(c, BONE, middle, tip, 0.35 * radius, 0.0014);
-	add_pair(c, BONE, middle, side, 0.3 * radius, 0.0014);
+	add_tube(c, BONE, middle, middle, radius, radius);
+	add_tube(c, BONE, middle, tip, 0.35 * radius, 0.0014);
+	add_tube_pair(c, BONE, middle, side, 0.3 * radius, 0.0014);
 }
 
 /* One pair of ribs: half an ellipse within the skin, hanging from the spine and swept back. */
@@ -118,7 +124,7 @@ static void add_ribs(struct gz_chameleon *c, const double at[4])
 		sine = sine * turn_cos + cosine * turn_sin;
 		cosine = turned;
 		double to[3] = { wide * sine, at[1] + tall * cosine, at[0] - 0.05 * (1 - cosine) };
-		add_pair(c, BONE, from, to, 0.0076 - 0.0004 * (i - 1), 0.0076 - 0.0004 * i);
+		add_tube_pair(c, BONE, from, to, 0.0076 - 0.0004 * (i - 1), 0.0076 - 0.0004 * i);
 		memcpy(from, to, sizeof from);
 	}
 }
@@ -128,7 +134,7 @@ static void add_crest(struct gz_chameleon *c, const double at[4], double side, d
 {
 	const double root[3] = { 0, at[1] + side * (at[2] - 0.006), at[0] };
 	const double tip[3] = { 0, at[1] + side * (at[2] + length), at[0] - 0.3 * length };
-	add(c, BODY, root, tip, 0.011, 0.0012);
+	add_tube(c, BODY, root, tip, 0.011, 0.0012);
 }
 
 static void add_body(struct gz_chameleon *c)
@@ -139,10 +145,12 @@ static void add_body(struct gz_chameleon *c)
 		for (int k = 1; k <= SPINE_SEGMENTS; k++) {
 			spine_at(i, (double)k / SPINE_SEGMENTS, to);
 			const double a[3] = { 0, from[1], from[0] }, b[3] = { 0, to[1], to[0] };
-			add_flat(c, BODY, a, b, from[2], to[2], 0.5 * (from[3] + to[3]));
+			const double flat = 0.5 * (from[3] + to[3]);
+			add_flat_tube(c, BODY, &(struct new_tube) { a, b, from[2], to[2], flat });
 			if (i < 5)
-				add_flat(c, SKULL, a, b, 0.80 * from[2], 0.80 * to[2],
-					 0.5 * (from[3] + to[3]));
+				add_flat_tube(c, SKULL,
+					      &(struct new_tube) { a, b, 0.80 * from[2],
+								   0.80 * to[2], flat });
 			if (i >= 5 && k % 3 == 1)
 				add_vertebra(c, to[1] + 0.80 * to[2] - 0.012, to[0],
 					     0.011 + 0.03 * to[2], 0.045);
@@ -168,8 +176,8 @@ static void add_tail(struct gz_chameleon *c)
 		double thinner = 0.068 * (1 - share) + 0.012;
 		double size = sqrt(z * z + y * y);
 		double to[3] = { 0, centre[1] + radius * y / size, centre[0] + radius * z / size };
-		add(c, BODY, from, to, thick, thinner);
-		add(c, BONE, from, to, 0.10 * thick + 0.001, 0.10 * thinner + 0.001);
+		add_tube(c, BODY, from, to, thick, thinner);
+		add_tube(c, BONE, from, to, 0.10 * thick + 0.001, 0.10 * thinner + 0.001);
 		if (i % 2 == 0)
 			add_vertebra(c, to[1], to[2], 0.26 * thinner, 0.55 * thinner);
 		double turned = z * turn_cos - y * turn_sin;
@@ -184,10 +192,10 @@ static void add_limb(struct gz_chameleon *c, const double a[3], const double b[3
 		     double radius_b)
 {
 	const double bone = 0.24 * radius_b;
-	add_pair(c, BODY, a, b, radius_a, radius_b);
-	add_pair(c, BONE, a, b, bone, 0.9 * bone);
-	add_pair(c, BONE, a, a, 1.7 * bone, 1.7 * bone);
-	add_pair(c, BONE, b, b, 1.6 * bone, 1.6 * bone);
+	add_tube_pair(c, BODY, a, b, radius_a, radius_b);
+	add_tube_pair(c, BONE, a, b, bone, 0.9 * bone);
+	add_tube_pair(c, BONE, a, a, 1.7 * bone, 1.7 * bone);
+	add_tube_pair(c, BONE, b, b, 1.6 * bone, 1.6 * bone);
 }
 
 /* Two bundles of toes that hold against each other, on a foot at `ankle`. */
@@ -206,12 +214,12 @@ static void add_toes(struct gz_chameleon *c, const double ankle[3])
 			tip[k] = ankle[k] + way[k] - (k == 1 ? 0.012 : 0);
 			claw[k] = tip[k] + (k == 1 ? -0.024 : 0.1 * way[k]);
 		}
-		add_pair(c, BODY, ankle, knuckle, 0.024, 0.017);
-		add_pair(c, BODY, knuckle, tip, 0.017, 0.012);
-		add_pair(c, BODY, tip, claw, 0.008, 0.0012);
-		add_pair(c, BONE, ankle, knuckle, 0.004, 0.0035);
-		add_pair(c, BONE, knuckle, tip, 0.0035, 0.0025);
-		add_pair(c, BONE, knuckle, knuckle, 0.0055, 0.0055);
+		add_tube_pair(c, BODY, ankle, knuckle, 0.024, 0.017);
+		add_tube_pair(c, BODY, knuckle, tip, 0.017, 0.012);
+		add_tube_pair(c, BODY, tip, claw, 0.008, 0.0012);
+		add_tube_pair(c, BONE, ankle, knuckle, 0.004, 0.0035);
+		add_tube_pair(c, BONE, knuckle, tip, 0.0035, 0.0025);
+		add_tube_pair(c, BONE, knuckle, knuckle, 0.0055, 0.0055);
 	}
 }
 
@@ -236,7 +244,7 @@ static void add_legs(struct gz_chameleon *c)
 }
 
 /* Turrets of the eyes with their lenses, jaws, and the bars that hold the casque. */
-static void add_head(struct gz_chameleon *c)
+static void add_chameleon_head(struct gz_chameleon *c)
 {
 	static const double eye[3] = { 0.068, 0.172, 0.722 }, pupil[3] = { 0.108, 0.176, 0.732 };
 	static const double jaw[4][3] = { { 0.046, 0.125, 0.560 },
@@ -246,25 +254,27 @@ static void add_head(struct gz_chameleon *c)
 	static const double casque[3][3] = { { 0.050, 0.190, 0.620 },
 					     { 0.030, 0.285, 0.560 },
 					     { 0.000, 0.335, 0.500 } };
-	add_pair(c, BODY, eye, pupil, 0.056, 0.034);
-	add_pair(c, BONE, pupil, pupil, 0.011, 0.011);
+	add_tube_pair(c, BODY, eye, pupil, 0.056, 0.034);
+	add_tube_pair(c, BONE, pupil, pupil, 0.011, 0.011);
 	for (int i = 0; i < 3; i++)
-		add_pair(c, BONE, jaw[i], jaw[i + 1], 0.010 - 0.002 * i, 0.008 - 0.002 * i);
+		add_tube_pair(c, BONE, jaw[i], jaw[i + 1], 0.010 - 0.002 * i, 0.008 - 0.002 * i);
 	for (int i = 0; i < 2; i++) {
-		add_pair(c, BONE, casque[i], casque[i + 1], 0.007, 0.006);
-		add_pair(c, BODY, casque[i], casque[i + 1], 0.068 - 0.018 * i, 0.050 - 0.014 * i);
+		add_tube_pair(c, BONE, casque[i], casque[i + 1], 0.007, 0.006);
+		add_tube_pair(c, BODY, casque[i], casque[i + 1], 0.068 - 0.018 * i,
+			      0.050 - 0.014 * i);
 	}
 }
 
-/* Distance of each x of the row to the tube's surface, where it is less than what is there. */
-static void draw(const struct tube *t, double y, double z, double first, double step, int count,
-		 double *distances)
+/* Lower the distance of each x of the row to the distance to the tube's surface. */
+static void draw_tube(const struct tube *t, const struct gz_chameleon_row *row, double *distances)
 {
+	const double first = row->first, step = row->step;
+	const int count = row->count;
 	const double before = ceil((t->least[0] - first) / step),
 		     after = floor((t->greatest[0] - first) / step);
 	const int from = before > 0 ? (before < count ? (int)before : count) : 0;
 	const int to = after < count - 1 ? (int)after : count - 1;
-	const double dy = y - t->a[1], dz = z - t->a[2];
+	const double dy = row->y - t->a[1], dz = row->z - t->a[2];
 	for (int i = from; i <= to; i++) {
 		double dx = t->flat * (first + step * i - t->a[0]);
 		double across = t->flat * t->along[0];
@@ -285,10 +295,16 @@ static double covered(double distance, double edge)
 	return share < 0 ? 0 : share > 1 ? 1 : share;
 }
 
-static double within(const double p[3], double x, double y, double z, double rx, double ry,
-		     double rz)
+/* An ellipsoid with axes along x, y, z. */
+struct ellipsoid {
+	double centre[3], radius[3];
+};
+
+/* Above 0 inside. */
+static double inside_ellipsoid(const double p[3], const struct ellipsoid *e)
 {
-	double u = (p[0] - x) / rx, v = (p[1] - y) / ry, w = (p[2] - z) / rz;
+	double u = (p[0] - e->centre[0]) / e->radius[0], v = (p[1] - e->centre[1]) / e->radius[1],
+	       w = (p[2] - e->centre[2]) / e->radius[2];
 	return 1 - (u * u + v * v + w * w);
 }
 
@@ -300,7 +316,8 @@ static double soft_density(double depth, const double p[3])
 	if (depth < 0.026)
 		return 0.44 - 0.20 * (depth - 0.014) / 0.012;
 	double side = p[0] < 0 ? -0.055 : 0.055;
-	double lung = within(p, side, 0.17, 0.16, 0.05, 0.11, 0.15);
+	const struct ellipsoid lungs = { { side, 0.17, 0.16 }, { 0.05, 0.11, 0.15 } };
+	double lung = inside_ellipsoid(p, &lungs);
 	if (lung > 0)
 		return 0.08 + 0.16 * (lung < 0.1 ? 1 - 10 * lung : 0);
 	const double grain[3] = { 42 * p[0], 42 * p[1], 14 * p[2] };
@@ -314,10 +331,14 @@ static double skull_covered(double distance, const double p[3], double edge)
 	if (shell > edge)
 		return 0;
 	double side = p[0] < 0 ? -1 : 1;
-	if (within(p, side * 0.075, 0.172, 0.722, 0.055, 0.062, 0.066) > 0 ||
-	    within(p, side * 0.030, 0.135, 0.850, 0.020, 0.016, 0.024) > 0 ||
-	    within(p, side * 0.085, 0.215, 0.590, 0.050, 0.046, 0.042) > 0)
-		return 0;
+	const struct ellipsoid openings[] = {
+		{ { side * 0.075, 0.172, 0.722 }, { 0.055, 0.062, 0.066 } },
+		{ { side * 0.030, 0.135, 0.850 }, { 0.020, 0.016, 0.024 } },
+		{ { side * 0.085, 0.215, 0.590 }, { 0.050, 0.046, 0.042 } },
+	};
+	for (int i = 0; i < 3; i++)
+		if (inside_ellipsoid(p, &openings[i]) > 0)
+			return 0;
 	return covered(shell, edge);
 }
 
@@ -346,7 +367,7 @@ enum gz_result gz_chameleon_create(double voxel_length, struct gz_chameleon **ou
 	add_body(c);
 	add_tail(c);
 	add_legs(c);
-	add_head(c);
+	add_chameleon_head(c);
 	*out_chameleon = c;
 	return GZ_OK;
 }
@@ -357,10 +378,13 @@ void gz_chameleon_destroy(struct gz_chameleon **chameleon)
 	*chameleon = NULL;
 }
 
-static void part_of_row(const struct gz_chameleon *c, double y, double z, double first, double step,
-			int count, float *out_values)
+/* At most ROW_MAX values. */
+static void draw_part_of_row(const struct gz_chameleon *c, const struct gz_chameleon_row *row,
+			     float *out_values)
 {
 	double rows[TISSUES][ROW_MAX];
+	const double y = row->y, z = row->z;
+	const int count = row->count;
 	bool near = false;
 	for (int k = 0; k < TISSUES; k++)
 		for (int i = 0; i < count; i++)
@@ -370,22 +394,24 @@ static void part_of_row(const struct gz_chameleon *c, double y, double z, double
 		if (y < t->least[1] || y > t->greatest[1] || z < t->least[2] || z > t->greatest[2])
 			continue;
 		near = true;
-		draw(t, y, z, first, step, count, rows[t->tissue]);
+		draw_tube(t, row, rows[t->tissue]);
 	}
 	memset(out_values, 0, sizeof *out_values * (size_t)count);
 	for (int i = 0; near && i < count; i++) {
-		const double p[3] = { first + step * i, y, z };
+		const double p[3] = { row->first + row->step * i, y, z };
 		const double distances[TISSUES] = { rows[BODY][i], rows[SKULL][i], rows[BONE][i] };
 		if (distances[BODY] < far_away || distances[BONE] < far_away)
 			out_values[i] = (float)density(distances, p, c->edge);
 	}
 }
 
-void gz_chameleon_row(const struct gz_chameleon *chameleon, double y, double z, double first,
-		      double step, int count, float *out_values)
+void gz_chameleon_draw_row(const struct gz_chameleon *chameleon, const struct gz_chameleon_row *row,
+			   float *out_values)
 {
-	for (int i = 0; i < count; i += ROW_MAX) {
-		int part = count - i < ROW_MAX ? count - i : ROW_MAX;
-		part_of_row(chameleon, y, z, first + step * i, step, part, out_values + i);
+	for (int i = 0; i < row->count; i += ROW_MAX) {
+		struct gz_chameleon_row part = *row;
+		part.count = row->count - i < ROW_MAX ? row->count - i : ROW_MAX;
+		part.first = row->first + row->step * i;
+		draw_part_of_row(chameleon, &part, out_values + i);
 	}
 }

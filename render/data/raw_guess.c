@@ -1,16 +1,321 @@
+/* The name of a raw file first, then the layouts that it and the size allow. */
 #include "render/data/raw_guess.h"
 
+#include <ctype.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
 
 #include "base/file.h"
-#include "render/data/raw_name.h"
+
+enum { NAME_SIZE = 256, NUMBERS_MAX = 24, NAMED_TYPES = 3 };
+
+/* A number in a name. */
+struct raw_number {
+	double value;
+	bool is_whole; /* no decimals */
+	bool is_glued; /* part of a word, as the 16 of "uint16" */
+	char joint;    /* the one character between it and the next number; 0: there is more */
+};
+
+/* A name, understood. */
+struct raw_name {
+	char text[NAME_SIZE]; /* lower case, without folder and endings */
+	struct raw_number numbers[NUMBERS_MAX];
+	size_t number_count;
+	int types[NAMED_TYPES]; /* enum gz_raw_type, the likeliest first */
+	size_t type_count;      /* 0: none is named */
+	const char *type_word;  /* how it is named; static */
+	bool big_endian;
+	double spacing[3]; /* 1 where none is named */
+	bool has_spacing;
+};
+
+/* Words for types; longer ones before those that they begin with. -1 ends a row. */
+static const struct {
+	const char *word;
+	int types[NAMED_TYPES];
+} type_words[] = {
+	{ "unsigned_char", { GZ_RAW_UINT8, -1 } },
+	{ "unsigned_short", { GZ_RAW_UINT16, -1 } },
+	{ "unsigned_int", { GZ_RAW_UINT32, -1 } },
+	{ "uint8", { GZ_RAW_UINT8, -1 } },
+	{ "uint16", { GZ_RAW_UINT16, -1 } },
+	{ "uint32", { GZ_RAW_UINT32, -1 } },
+	{ "float32", { GZ_RAW_FLOAT32, -1 } },
+	{ "float64", { GZ_RAW_FLOAT64, -1 } },
+	{ "double", { GZ_RAW_FLOAT64, -1 } },
+	{ "float", { GZ_RAW_FLOAT32, -1 } },
+	{ "ushort", { GZ_RAW_UINT16, -1 } },
+	{ "uchar", { GZ_RAW_UINT8, -1 } },
+	{ "ubyte", { GZ_RAW_UINT8, -1 } },
+	{ "schar", { GZ_RAW_INT8, -1 } },
+	{ "sbyte", { GZ_RAW_INT8, -1 } },
+	{ "short", { GZ_RAW_INT16, -1 } },
+	{ "byte", { GZ_RAW_UINT8, -1 } },
+	{ "char", { GZ_RAW_UINT8, GZ_RAW_INT8, -1 } },
+	{ "int8", { GZ_RAW_INT8, -1 } },
+	{ "int16", { GZ_RAW_INT16, -1 } },
+	{ "int32", { GZ_RAW_INT32, -1 } },
+	{ "uint", { GZ_RAW_UINT32, -1 } },
+	{ "int", { GZ_RAW_INT32, -1 } },
+	{ "u8", { GZ_RAW_UINT8, -1 } },
+	{ "u16", { GZ_RAW_UINT16, -1 } },
+	{ "u32", { GZ_RAW_UINT32, -1 } },
+	{ "i8", { GZ_RAW_INT8, -1 } },
+	{ "i16", { GZ_RAW_INT16, -1 } },
+	{ "i32", { GZ_RAW_INT32, -1 } },
+	{ "s8", { GZ_RAW_INT8, -1 } },
+	{ "s16", { GZ_RAW_INT16, -1 } },
+	{ "s32", { GZ_RAW_INT32, -1 } },
+	{ "f32", { GZ_RAW_FLOAT32, -1 } },
+	{ "f64", { GZ_RAW_FLOAT64, -1 } },
+	{ "8ubit", { GZ_RAW_UINT8, -1 } },
+	{ "8bit", { GZ_RAW_UINT8, GZ_RAW_INT8, -1 } },
+	{ "16bit", { GZ_RAW_UINT16, GZ_RAW_INT16, -1 } },
+	{ "32bit", { GZ_RAW_FLOAT32, GZ_RAW_INT32, GZ_RAW_UINT32 } },
+	{ "64bit", { GZ_RAW_FLOAT64, -1 } },
+	{ "8u", { GZ_RAW_UINT8, -1 } },
+	{ "16u", { GZ_RAW_UINT16, -1 } },
+	{ "8s", { GZ_RAW_INT8, -1 } },
+	{ "16s", { GZ_RAW_INT16, -1 } },
+	{ "32f", { GZ_RAW_FLOAT32, -1 } },
+	{ "64f", { GZ_RAW_FLOAT64, -1 } },
+};
+
+/* Words for byte orders; the first that stands by itself, or behind a type, counts. */
+static const struct {
+	const char *word;
+	bool is_big;
+} order_words[] = {
+	{ "bigendian", true }, { "littleendian", false }, { "big", true }, { "little", false },
+	{ "msb", true },       { "lsb", false },          { "be", true },  { "le", false },
+};
+
+static const char *const endings[] = { ".zst", ".gz", ".raw", ".bin", ".dat", ".vol", ".img" };
+
+static bool is_word(char c)
+{
+	return isalnum((unsigned char)c) != 0;
+}
+
+/* The name without folder and endings, in lower case; the sign of multiplication becomes an x. */
+static void take_name_text(const char *path, char out_text[NAME_SIZE])
+{
+	const char *slash = strrchr(path, '/');
+	const char *from = slash ? slash + 1 : path;
+	size_t used = 0;
+	for (; *from && used + 1 < NAME_SIZE; from++) {
+		if (strncmp(from, "\xc3\x97", 2) == 0) {
+			out_text[used++] = 'x';
+			from++;
+			continue;
+		}
+		out_text[used++] = (char)tolower((unsigned char)*from);
+	}
+	out_text[used] = '\0';
+	for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+		const size_t length = strlen(endings[i]);
+		if (used > length && strcmp(out_text + used - length, endings[i]) == 0) {
+			used -= length;
+			out_text[used] = '\0';
+		}
+	}
+}
+
+/* Where a number that begins here ends. A dot belongs to it where one fraction follows: several
+ * dots join whole numbers. */
+static size_t number_end(const char *text, size_t at, bool *out_whole)
+{
+	size_t end = at;
+	*out_whole = true;
+	while (isdigit((unsigned char)text[end]))
+		end++;
+	const bool joined = at > 1 && text[at - 1] == '.' && isdigit((unsigned char)text[at - 2]);
+	if (text[end] != '.' || !isdigit((unsigned char)text[end + 1]) || joined)
+		return end;
+	size_t after = end + 1;
+	while (isdigit((unsigned char)text[after]))
+		after++;
+	if (text[after] == '.' && isdigit((unsigned char)text[after + 1]))
+		return end;
+	*out_whole = false;
+	return after;
+}
+
+/* Whether a number is part of a word: behind a letter that is no x between two numbers, or before
+ * one that belongs to a type, as in "16bit". */
+static bool is_glued(const char *text, size_t start, size_t end)
+{
+	const bool joined =
+		start > 1 && text[start - 1] == 'x' && isdigit((unsigned char)text[start - 2]);
+	if (start > 0 && isalpha((unsigned char)text[start - 1]) && !joined)
+		return true;
+	return isalpha((unsigned char)text[end]) && text[end] != 'x' &&
+	       strncmp(text + end, "mm", 2) != 0;
+}
+
+static void take_name_numbers(struct raw_name *name)
+{
+	const char *text = name->text;
+	for (size_t at = 0; text[at] && name->number_count < NUMBERS_MAX;) {
+		if (!isdigit((unsigned char)text[at])) {
+			at++;
+			continue;
+		}
+		struct raw_number *number = &name->numbers[name->number_count++];
+		const size_t end = number_end(text, at, &number->is_whole);
+		char copy[NAME_SIZE];
+		snprintf(copy, sizeof copy, "%.*s", (int)(end - at), text + at);
+		number->value = strtod(copy, NULL);
+		number->is_glued = is_glued(text, at, end);
+		const char joint = text[end];
+		number->joint =
+			joint && strchr("x_-.,*", joint) && isdigit((unsigned char)text[end + 1])
+				? joint
+				: '\0';
+		at = end;
+	}
+}
+
+/* Whether a word stands at a place by itself: no letter before it, nor digit but behind a number's
+ * own letters, and behind it the end, a byte order or something that is no letter. */
+static bool stands_alone(const char *text, size_t at, size_t length)
+{
+	const char first = text[at], before = at > 0 ? text[at - 1] : '\0';
+	if (isalpha((unsigned char)before) && before != 'x')
+		return false;
+	if (isdigit((unsigned char)first) && isdigit((unsigned char)before))
+		return false;
+	const char *after = text + at + length;
+	if (!is_word(*after))
+		return true;
+	if (*after == 's' && !is_word(after[1])) /* bits, bytes */
+		return true;
+	for (size_t i = 0; i < sizeof order_words / sizeof order_words[0]; i++) {
+		const size_t word = strlen(order_words[i].word);
+		if (strncmp(after, order_words[i].word, word) == 0 && !is_word(after[word]))
+			return true;
+	}
+	return false;
+}
+
+static bool name_has_word(const char *text, const char *word)
+{
+	for (const char *at = strstr(text, word); at; at = strstr(at + 1, word))
+		if (stands_alone(text, (size_t)(at - text), strlen(word)))
+			return true;
+	return false;
+}
+
+static void take_name_type(struct raw_name *name)
+{
+	for (size_t i = 0; i < sizeof type_words / sizeof type_words[0]; i++) {
+		if (!name_has_word(name->text, type_words[i].word))
+			continue;
+		name->type_word = type_words[i].word;
+		for (size_t k = 0; k < NAMED_TYPES && type_words[i].types[k] >= 0; k++)
+			name->types[name->type_count++] = type_words[i].types[k];
+		return;
+	}
+}
+
+/* An order stands by itself, or right behind a type: "int16be". */
+static bool name_has_order(const char *text, const char *word)
+{
+	const size_t length = strlen(word);
+	for (const char *at = strstr(text, word); at; at = strstr(at + 1, word)) {
+		const char before = at > text ? at[-1] : '\0';
+		const bool behind_type = isdigit((unsigned char)before) ||
+					 (at - text >= 5 && strncmp(at - 5, "short", 5) == 0) ||
+					 (at - text >= 5 && strncmp(at - 5, "float", 5) == 0);
+		if ((!is_word(before) || behind_type) && !is_word(at[length]))
+			return true;
+	}
+	return false;
+}
+
+static void take_name_order(struct raw_name *name)
+{
+	for (size_t i = 0; i < sizeof order_words / sizeof order_words[0]; i++)
+		if (name_has_order(name->text, order_words[i].word)) {
+			name->big_endian = order_words[i].is_big;
+			return;
+		}
+}
+
+static bool are_joined(const struct raw_number *numbers)
+{
+	return numbers[0].joint && numbers[0].joint == numbers[1].joint;
+}
+
+/* Three joined numbers of which one has decimals, or that follow three whole ones joined by x; else
+ * one with decimals before "mm". */
+static void take_name_spacing(struct raw_name *name)
+{
+	size_t triples = 0;
+	for (size_t i = 0; i + 2 < name->number_count; i++) {
+		const struct raw_number *n = &name->numbers[i];
+		if (!are_joined(n))
+			continue;
+		const bool whole = n[0].is_whole && n[1].is_whole && n[2].is_whole;
+		if (whole && (triples++ == 0 || n[0].joint != 'x')) {
+			i += n[0].joint == 'x' ? 2 : 0;
+			continue;
+		}
+		if (!(n[0].value > 0 && n[1].value > 0 && n[2].value > 0))
+			continue;
+		for (int axis = 0; axis < 3; axis++)
+			name->spacing[axis] = n[axis].value;
+		name->has_spacing = true;
+		return;
+	}
+	const char *unit = strstr(name->text, "mm");
+	if (!unit || unit == name->text || !isdigit((unsigned char)unit[-1]) || is_word(unit[2]))
+		return;
+	const char *start = unit;
+	while (start > name->text && (isdigit((unsigned char)start[-1]) || start[-1] == '.'))
+		start--;
+	const double edge = strtod(start, NULL);
+	if (!(edge > 0))
+		return;
+	name->spacing[0] = name->spacing[1] = name->spacing[2] = edge;
+	name->has_spacing = true;
+}
+
+static void read_raw_name(const char *path, struct raw_name *out_name)
+{
+	*out_name = (struct raw_name) { .spacing = { 1, 1, 1 } };
+	take_name_text(path, out_name->text);
+	take_name_numbers(out_name);
+	take_name_type(out_name);
+	take_name_order(out_name);
+	take_name_spacing(out_name);
+}
+
+static size_t types_of_bits(int bits, int out_types[NAMED_TYPES])
+{
+	static const struct {
+		int bits, types[NAMED_TYPES];
+	} rows[] = {
+		{ 8, { GZ_RAW_UINT8, GZ_RAW_INT8, -1 } },
+		{ 16, { GZ_RAW_UINT16, GZ_RAW_INT16, -1 } },
+		{ 32, { GZ_RAW_FLOAT32, GZ_RAW_INT32, GZ_RAW_UINT32 } },
+		{ 64, { GZ_RAW_FLOAT64, -1, -1 } },
+	};
+	size_t count = 0;
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+		for (size_t k = 0; k < NAMED_TYPES; k++)
+			if (rows[i].bits == bits && rows[i].types[k] >= 0)
+				out_types[count++] = rows[i].types[k];
+	return count;
+}
 
 /* How much speaks for a guess: first where the dims come from, then the type. Chosen, so that what
  * a name says in full comes before what it says in part, and that before what only fits. */
@@ -29,7 +334,7 @@ enum {
 
 /* Guesses in the making, best first. */
 struct guesses {
-	const struct gz_raw_name *name;
+	const struct raw_name *name;
 	uint64_t bytes;
 	struct gz_raw_guess found[GZ_RAW_GUESSES_MAX];
 	int scores[GZ_RAW_GUESSES_MAX];
@@ -69,7 +374,7 @@ static bool is_known(const struct guesses *guesses, const struct gz_raw_layout *
 	return false;
 }
 
-static void insert(struct guesses *guesses, const struct gz_raw_guess *guess, int score)
+static void insert_guess(struct guesses *guesses, const struct gz_raw_guess *guess, int score)
 {
 	size_t at = guesses->count;
 	while (at > 0 && guesses->scores[at - 1] < score)
@@ -93,9 +398,10 @@ struct type_reason {
 	const char *from;
 };
 
-static void add(struct guesses *guesses, const struct shape *shape, const struct type_reason *type)
+static void add_guess(struct guesses *guesses, const struct shape *shape,
+		      const struct type_reason *type)
 {
-	const struct gz_raw_name *name = guesses->name;
+	const struct raw_name *name = guesses->name;
 	struct gz_raw_guess guess = {
 		.layout = { .type = (enum gz_raw_type)type->type,
 			    .big_endian = name->big_endian && type_bytes[type->type] > 1 },
@@ -109,43 +415,46 @@ static void add(struct guesses *guesses, const struct shape *shape, const struct
 			(type->is_named || type->type == GZ_RAW_UINT8);
 	snprintf(guess.reason, sizeof guess.reason, "%s; %s%s", shape->from, type->from,
 		 guesses->bytes > 0 ? "" : "; how many bytes there are is not known");
-	insert(guesses, &guess, shape->score + type->score);
+	insert_guess(guesses, &guess, shape->score + type->score);
 }
 
 /* With each type that makes the size of @p shape that of the file. */
 static void add_shape(struct guesses *guesses, const struct shape *shape)
 {
-	const struct gz_raw_name *name = guesses->name;
-	int types[GZ_RAW_NAMED_TYPES];
+	const struct raw_name *name = guesses->name;
+	int types[NAMED_TYPES];
 	for (size_t i = 0; i < name->type_count; i++)
-		add(guesses, shape,
-		    &(struct type_reason) { name->types[i], SCORE_TYPE_NAMED - (int)i, i == 0,
-					    "the name tells the type" });
+		add_guess(guesses, shape,
+			  &(struct type_reason) { name->types[i], SCORE_TYPE_NAMED - (int)i, i == 0,
+						  "the name tells the type" });
 	if (shape->bits && name->type_count == 0) {
-		const size_t count = gz_raw_types_of_bits(shape->bits, types);
+		const size_t count = types_of_bits(shape->bits, types);
 		for (size_t i = 0; i < count; i++)
-			add(guesses, shape,
-			    &(struct type_reason) { types[i], SCORE_TYPE_NAMED - (int)i, i == 0,
-						    "the name tells the bits of a voxel" });
+			add_guess(guesses, shape,
+				  &(struct type_reason) { types[i], SCORE_TYPE_NAMED - (int)i,
+							  i == 0,
+							  "the name tells the bits of a voxel" });
 	}
 	if (guesses->bytes == 0)
 		return;
 	for (int bits = 8; bits <= 64; bits *= 2) {
-		const size_t count = gz_raw_types_of_bits(bits, types);
+		const size_t count = types_of_bits(bits, types);
 		const bool another = name->type_count > 0;
 		for (size_t i = 0; i < count; i++)
-			add(guesses, shape,
-			    &(struct type_reason) {
-				    types[i],
-				    (another ? SCORE_TYPE_ANOTHER : SCORE_TYPE_SIZED) - (int)i,
-				    false,
-				    another ? "not the type that the name tells, whose size would "
-					      "be another"
-					    : "the size tells the bytes of a voxel" });
+			add_guess(
+				guesses, shape,
+				&(struct type_reason) {
+					types[i],
+					(another ? SCORE_TYPE_ANOTHER : SCORE_TYPE_SIZED) - (int)i,
+					false,
+					another ? "not the type that the name tells, whose size "
+						  "would "
+						  "be another"
+						: "the size tells the bytes of a voxel" });
 	}
 }
 
-static bool is_edge(const struct gz_raw_number *number)
+static bool can_be_edge(const struct raw_number *number)
 {
 	return number->is_whole && number->value >= 1 && number->value <= GZ_VOLUME_DIM_MAX;
 }
@@ -153,19 +462,20 @@ static bool is_edge(const struct gz_raw_number *number)
 /* Three joined numbers. */
 static void add_triples(struct guesses *guesses)
 {
-	const struct gz_raw_name *name = guesses->name;
+	const struct raw_name *name = guesses->name;
 	for (size_t i = 0; i + 2 < name->number_count; i++) {
-		const struct gz_raw_number *n = &name->numbers[i];
+		const struct raw_number *n = &name->numbers[i];
 		const bool by_x = n[0].joint == 'x' || n[0].joint == '*';
-		if (!n[0].joint || n[0].joint != n[1].joint || !is_edge(&n[0]) || !is_edge(&n[1]) ||
-		    !is_edge(&n[2]) || n[1].is_glued || n[2].is_glued || (n[0].is_glued && !by_x))
+		if (!n[0].joint || n[0].joint != n[1].joint || !can_be_edge(&n[0]) ||
+		    !can_be_edge(&n[1]) || !can_be_edge(&n[2]) || n[1].is_glued || n[2].is_glued ||
+		    (n[0].is_glued && !by_x))
 			continue;
 		struct shape shape = {
 			.dims = { (int)n[0].value, (int)n[1].value, (int)n[2].value },
 			.score = by_x ? SCORE_TRIPLE_X : SCORE_TRIPLE,
 			.from = "the name tells the voxels along x, y, z",
 		};
-		if (n[2].joint && i + 3 < name->number_count && is_edge(&n[3]))
+		if (n[2].joint && i + 3 < name->number_count && can_be_edge(&n[3]))
 			shape.bits = (int)n[3].value;
 		add_shape(guesses, &shape);
 	}
@@ -190,14 +500,14 @@ static void add_slices(struct guesses *guesses, int width, int height, struct sh
 
 static void add_pairs(struct guesses *guesses)
 {
-	const struct gz_raw_name *name = guesses->name;
+	const struct raw_name *name = guesses->name;
 	const struct shape shape = {
 		.score = SCORE_PAIR,
 		.from = "the name tells the voxels along x and y, the size those along z",
 	};
 	for (size_t i = 0; i + 1 < name->number_count; i++) {
-		const struct gz_raw_number *n = &name->numbers[i];
-		if (n[0].joint == 'x' && is_edge(&n[0]) && is_edge(&n[1]) && !n[1].is_glued)
+		const struct raw_number *n = &name->numbers[i];
+		if (n[0].joint == 'x' && can_be_edge(&n[0]) && can_be_edge(&n[1]) && !n[1].is_glued)
 			add_slices(guesses, (int)n[0].value, (int)n[1].value, shape, 2,
 				   GZ_VOLUME_DIM_MAX);
 	}
@@ -217,10 +527,10 @@ static int cube_edge(uint64_t voxels)
 static void add_singles(struct guesses *guesses)
 {
 	enum { EDGE_LEAST = 16 };
-	const struct gz_raw_name *name = guesses->name;
+	const struct raw_name *name = guesses->name;
 	for (size_t i = 0; i < name->number_count; i++) {
-		const struct gz_raw_number *n = &name->numbers[i];
-		const int edge = is_edge(n) && n->value >= EDGE_LEAST ? (int)n->value : 0;
+		const struct raw_number *n = &name->numbers[i];
+		const int edge = can_be_edge(n) && n->value >= EDGE_LEAST ? (int)n->value : 0;
 		if (!edge)
 			continue;
 		const struct shape cube = {
@@ -264,9 +574,9 @@ static void add_by_size(struct guesses *guesses)
 
 size_t gz_raw_guess(const char *name, uint64_t bytes, struct gz_raw_guess *out_guesses, size_t room)
 {
-	struct gz_raw_name read;
+	struct raw_name read;
 	struct guesses guesses = { .name = &read, .bytes = bytes };
-	gz_raw_name_read(name, &read);
+	read_raw_name(name, &read);
 	add_triples(&guesses);
 	if (bytes > 0) {
 		add_pairs(&guesses);
@@ -317,15 +627,4 @@ uint64_t gz_raw_file_bytes(const char *path)
 	}
 	close(fd);
 	return bytes;
-}
-
-bool gz_raw_is_name(const char *path)
-{
-	static const char *const endings[] = {
-		".raw", ".zst", ".gz", ".bin", ".dat", ".vol", ".img"
-	};
-	for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
-		if (gz_path_ends(path, endings[i]) && !gz_path_ends(path, ".nii.gz"))
-			return true;
-	return false;
 }

@@ -54,8 +54,4 @@ uint64_t gz_raw_layout_bytes(const struct gz_raw_layout *layout);
  */
 uint64_t gz_raw_file_bytes(const char *path);
 
-/** Whether a file is taken for raw data by its name: .raw, .bin, .dat, .vol, .img, and .zst or .gz
- *  unless round a header. */
-bool gz_raw_is_name(const char *path);
-
 #endif

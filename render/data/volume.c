@@ -1,13 +1,16 @@
 #include "render/data/volume.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "render/data/brick_pool.h"
-#include "render/data/scratch.h"
 
 /* Chosen: from here on, pages of 2 MiB spare the renderer most address translation misses. */
 #define HUGE_PAGE   ((size_t)2 << 20)
@@ -58,6 +61,42 @@ static bool fits_machine(size_t bytes)
 	return pages <= 0 || page <= 0 || bytes / (size_t)page < (size_t)pages;
 }
 
+/* A file without a name, or, where the file system knows none, one that loses its name at once. */
+static int open_nameless(const char *folder)
+{
+	char path[4096];
+	int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+	if (fd >= 0 || errno == ENOENT)
+		return fd;
+	const int length = snprintf(path, sizeof path, "%s/gazecast-XXXXXX", folder);
+	if (length < 0 || (size_t)length >= sizeof path)
+		return -1;
+	fd = mkostemp(path, O_CLOEXEC);
+	if (fd >= 0)
+		unlink(path);
+	return fd;
+}
+
+/* Map a new nameless file in @p folder, zeroed. Its blocks are reserved first, so that a full disk
+ * is an error here and not a signal later. GZ_ERR_NOT_FOUND: no such folder. */
+static enum gz_result map_scratch(const char *folder, size_t bytes, void **out_memory)
+{
+	int fd = open_nameless(folder);
+	if (fd < 0)
+		return errno == ENOENT ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
+	const int reserved = posix_fallocate(fd, 0, (off_t)bytes);
+	if (reserved != 0) {
+		close(fd);
+		return reserved == ENOSPC || reserved == EFBIG ? GZ_ERR_FULL : GZ_ERR_IO;
+	}
+	void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+	close(fd);
+	if (memory == MAP_FAILED)
+		return GZ_ERR_NO_MEM;
+	*out_memory = memory;
+	return GZ_OK;
+}
+
 static enum gz_result allocate_memory(size_t used, void **out_voxels)
 {
 	size_t align = used >= HUGE_FROM ? HUGE_PAGE : SMALL_ALIGN;
@@ -82,7 +121,7 @@ enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_l
 	const size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
 	const char *scratch = loading && used >= loading->scratch_from ? loading->scratch : NULL;
 	const size_t mapped = scratch ? used + GZ_VOLUME_PADDING : 0;
-	const enum gz_result result = scratch ? gz_scratch_map(scratch, mapped, &volume->voxels)
+	const enum gz_result result = scratch ? map_scratch(scratch, mapped, &volume->voxels)
 					      : allocate_memory(used, &volume->voxels);
 	if (result != GZ_OK)
 		return result;
@@ -158,7 +197,7 @@ void gz_volume_free(struct gz_volume *volume)
 	*volume = (struct gz_volume) { 0 };
 }
 
-static double longest_edge(const struct gz_volume *volume)
+static double longest_box_edge(const struct gz_volume *volume)
 {
 	double longest = 0;
 	for (int axis = 0; axis < 3; axis++)
@@ -168,7 +207,7 @@ static double longest_edge(const struct gz_volume *volume)
 
 void gz_volume_half_extent(const struct gz_volume *volume, double out_half[3])
 {
-	double longest = longest_edge(volume);
+	double longest = longest_box_edge(volume);
 	for (int axis = 0; axis < 3; axis++)
 		out_half[axis] = 0.5 * (volume->dims[axis] * volume->spacing[axis] / longest);
 }
@@ -176,5 +215,46 @@ void gz_volume_half_extent(const struct gz_volume *volume, double out_half[3])
 double gz_volume_voxel_length(const struct gz_volume *volume)
 {
 	double least = fmin(volume->spacing[0], fmin(volume->spacing[1], volume->spacing[2]));
-	return least / longest_edge(volume);
+	return least / longest_box_edge(volume);
+}
+
+/* Runs of bytes that the checksum of a volume takes, see gz_volume_identify(). */
+enum { RUNS = 4096, RUN_BYTES = 64 };
+
+static uint32_t sum_samples(const struct gz_volume *volume)
+{
+	const unsigned char *bytes = volume->voxels;
+	const size_t size = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
+	const size_t stride = size / RUNS > RUN_BYTES ? size / RUNS : RUN_BYTES;
+	uLong crc = crc32(0, NULL, 0);
+	for (size_t at = 0; at < size; at += stride) {
+		const size_t left = size - at;
+		crc = crc32(crc, bytes + at, (uInt)(left < RUN_BYTES ? left : RUN_BYTES));
+	}
+	return (uint32_t)crc;
+}
+
+struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume)
+{
+	const double a = volume->slope * volume->stored_min + volume->intercept;
+	const double b = volume->slope * volume->stored_max + volume->intercept;
+	struct gz_volume_identity identity = {
+		.type = volume->type,
+		.least = a < b ? a : b,
+		.greatest = a < b ? b : a,
+		.has_crc = volume->voxels != NULL,
+		.crc = volume->voxels ? sum_samples(volume) : 0,
+	};
+	memcpy(identity.dims, volume->dims, sizeof identity.dims);
+	memcpy(identity.spacing, volume->spacing, sizeof identity.spacing);
+	return identity;
+}
+
+bool gz_volume_identity_same(const struct gz_volume_identity *a, const struct gz_volume_identity *b)
+{
+	for (int axis = 0; axis < 3; axis++)
+		if (a->dims[axis] != b->dims[axis] || a->spacing[axis] != b->spacing[axis])
+			return false;
+	return a->type == b->type && a->least == b->least && a->greatest == b->greatest &&
+	       (!a->has_crc || !b->has_crc || a->crc == b->crc);
 }

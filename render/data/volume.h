@@ -1,9 +1,9 @@
 /**
  * @file
- * A scalar volume in memory, turned to RAS+, and the loaders that make one.
+ * A scalar volume in memory, turned to RAS+, and how it is loaded, made and identified.
  *
  * World frame: the box has the edges dims * spacing / max(dims * spacing), centred at the origin;
- * data sit at voxel centres; z is up. Voxel length = the smallest spacing.
+ * data sit at voxel centres; z is up. The voxel length is the smallest spacing.
  */
 #ifndef GZ_RENDER_DATA_VOLUME_H
 #define GZ_RENDER_DATA_VOLUME_H
@@ -14,7 +14,42 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/data/loading.h"
+
+/** Whether this machine stores the most significant byte of a number first. */
+static inline bool gz_host_big_endian(void)
+{
+	const uint16_t one = 1;
+	return *(const uint8_t *)&one == 0;
+}
+
+/** What a loader is told beside the file. Zero-initialised is silent, in memory and goes on to the
+ *  end; NULL stands for that everywhere. */
+struct gz_loading {
+	/**
+	 * Told how far the loading is: often, at the beginning and at the end, on the thread that
+	 * loads. May be NULL.
+	 *
+	 * @param user   as below
+	 * @param share  done, 0 to 1
+	 * @param what   is loaded: a path, or the name of a formula; valid during the call
+	 * @return false to stop: the loader frees what it has and returns GZ_ERR_CANCELLED
+	 */
+	bool (*report)(void *user, double share, const char *what);
+	void *user;
+	/** Folder for a nameless file that the voxels are kept in, so that a volume may be larger
+	 *  than the memory; its blocks are freed with the volume. NULL: in memory. Borrowed. */
+	const char *scratch;
+	size_t scratch_from; /**< bytes: smaller volumes stay in memory all the same */
+	/** Bytes of memory for the bricks of a file of bricks; 0: a quarter of the machine's. */
+	size_t brick_bytes;
+};
+
+/** Report a share of the work; false where the loader is to stop. */
+static inline bool gz_loading_goes_on(const struct gz_loading *loading, double share,
+				      const char *what)
+{
+	return !loading || !loading->report || loading->report(loading->user, share, what);
+}
 
 /** How voxels are stored. Loaders turn every other type into one of these without loss where that
  *  can be: signed integers by an offset that goes into the intercept, wider ones as float. */
@@ -121,22 +156,28 @@ extern const char *const gz_procedural_names[];
 /** The type of voxel that a procedural volume has unless told otherwise. */
 enum gz_voxel_type gz_procedural_type(enum gz_procedural which);
 
+/** Which procedural volume to make. */
+struct gz_procedural_request {
+	enum gz_procedural which;
+	const int *dims;       /**< voxels along x, y, z, each 1 to GZ_VOLUME_DIM_MAX */
+	const double *spacing; /**< of voxels along x, y, z, mm, above 0. Formulas are in units of
+				  the box's longest edge in mm, so a shape keeps its proportions
+				  for any spacing */
+	/** Of the voxels. Integers span the formula's values, which are 0 to 255 for shells and 0
+	 * to 1 for the others: data values are the same for every type, except for rounding. */
+	enum gz_voxel_type type;
+};
+
 /**
- * Make a procedural volume, on all processors; the same bits each time.
+ * Make a procedural volume on all processors. The same request gives the same bits each time.
  *
- * @param dims     voxels, each 1 to GZ_VOLUME_DIM_MAX
- * @param spacing  of voxels, mm, as in struct gz_volume. Formulas are in units of the box's longest
- * edge in mm, so a shape keeps its proportions whatever the spacing
- * @param type     of voxel. Integers span the formula's values, which are 0 to 255 for shells and 0
- * to 1 for the others: data values are the same for every type, but for rounding
  * @param loading  see gz_volume_load()
  * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
- * @retval GZ_ERR_INVAL      @p which, @p dims, @p spacing or @p type out of range; dims are logged
+ * @retval GZ_ERR_INVAL      the request is out of range; wrong dims or spacing are logged
  * @retval GZ_ERR_NO_MEM     logged
  * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
  */
-enum gz_result gz_volume_generate(enum gz_procedural which, const int dims[3],
-				  const double spacing[3], enum gz_voxel_type type,
+enum gz_result gz_volume_generate(const struct gz_procedural_request *request,
 				  const struct gz_loading *loading, const struct gz_log *log,
 				  struct gz_volume *out_volume);
 
@@ -170,5 +211,27 @@ void gz_volume_half_extent(const struct gz_volume *volume, double out_half[3]);
 
 /** The voxel length, in world units. */
 double gz_volume_voxel_length(const struct gz_volume *volume);
+
+/** What two volumes hardly share by chance. */
+struct gz_volume_identity {
+	int dims[3];
+	enum gz_voxel_type type;
+	double spacing[3];
+	double least, greatest; /**< data values, as of slope and intercept */
+	bool has_crc;           /**< voxels were looked at: none are at hand of a file of bricks */
+	uint32_t crc;           /**< CRC-32 of some of the voxels, see gz_volume_identify() */
+};
+
+/**
+ * Tell which volume it is.
+ *
+ * The CRC is of 4096 runs of 64 bytes, evenly strewn over the voxels, or of all where they are
+ * fewer: enough to tell volumes apart, and quick for one of any size.
+ */
+struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume);
+
+/** Whether both are of one volume; of a CRC that one of them lacks, nothing is asked. */
+bool gz_volume_identity_same(const struct gz_volume_identity *a,
+			     const struct gz_volume_identity *b);
 
 #endif

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/data/voxel_convert.h"
 #include "render/data/voxel_place.h"
+#include "render/picture/vector.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -47,44 +47,43 @@ struct axis_map {
 struct import {
 	const struct gz_import_layout *layout;
 	const struct gz_voxel_conversion *conversion;
-	const char *path;
-	const struct gz_loading *loading;
-	const struct gz_log *log;
+	const struct gz_volume_file *file;
 	struct gz_volume *volume;
 	bool swap;
 	struct gz_voxel_place place;
 };
 
-static enum gz_result check_layout(const struct gz_import_layout *layout, const char *path,
-				   const struct gz_log *log)
+static enum gz_result check_layout(const struct gz_import_layout *layout,
+				   const struct gz_volume_file *file)
 {
 	for (int axis = 0; axis < 3; axis++) {
 		if (layout->dims[axis] < 1 || layout->dims[axis] > GZ_VOLUME_DIM_MAX) {
-			gz_err(log, "%s: %d voxels along axis %d; allowed: 1 to %d", path,
-			       layout->dims[axis], axis + 1, GZ_VOLUME_DIM_MAX);
+			gz_err(file->log, "%s: %d voxels along axis %d; allowed: 1 to %d",
+			       file->path, layout->dims[axis], axis + 1, GZ_VOLUME_DIM_MAX);
 			return GZ_ERR_FORMAT;
 		}
 		double spacing = layout->spacing[axis];
 		if (!isfinite(layout->dims[axis] * spacing) || spacing <= 0) {
-			gz_err(log,
+			gz_err(file->log,
 			       "%s: spacing %g along axis %d; it must be above 0, and the edge "
 			       "finite",
-			       path, spacing, axis + 1);
+			       file->path, spacing, axis + 1);
 			return GZ_ERR_FORMAT;
 		}
 	}
 	const double lengths = gz_volume_edge_lengths(layout->dims, layout->spacing);
 	if (!(lengths <= GZ_VOLUME_EDGE_LENGTHS_MAX)) {
-		gz_err(log,
+		gz_err(file->log,
 		       "%s: spacing %g %g %g makes the longest edge %g times the finest spacing; "
 		       "allowed: %d; correct the spacing or resample the volume",
-		       path, layout->spacing[0], layout->spacing[1], layout->spacing[2], lengths,
-		       GZ_VOLUME_EDGE_LENGTHS_MAX);
+		       file->path, layout->spacing[0], layout->spacing[1], layout->spacing[2],
+		       lengths, GZ_VOLUME_EDGE_LENGTHS_MAX);
 		return GZ_ERR_FORMAT;
 	}
 	if (!isfinite(layout->slope) || layout->slope == 0 || !isfinite(layout->intercept)) {
-		gz_err(log, "%s: values scaled by %g and %g; they must be finite, the first not 0",
-		       path, layout->slope, layout->intercept);
+		gz_err(file->log,
+		       "%s: values scaled by %g and %g; they must be finite, the first not 0",
+		       file->path, layout->slope, layout->intercept);
 		return GZ_ERR_FORMAT;
 	}
 	return GZ_OK;
@@ -94,16 +93,15 @@ static bool unit_directions(const struct gz_import_layout *layout, double out[3]
 {
 	for (int axis = 0; axis < 3; axis++) {
 		const double *d = layout->direction[axis];
-		double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+		const double length = gz_length3(d);
 		if (!isfinite(length) || !(length > 0))
 			return false;
 		for (int i = 0; i < 3; i++)
 			out[axis][i] = d[i] / length;
 	}
-	const double(*u)[3] = (const double(*)[3])out;
-	double determinant = u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) -
-			     u[0][1] * (u[1][0] * u[2][2] - u[1][2] * u[2][0]) +
-			     u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
+	double normal[3];
+	gz_cross3(out[1], out[2], normal);
+	const double determinant = gz_dot3(out[0], normal);
 	return fabs(determinant) > SINGULAR;
 }
 
@@ -127,13 +125,14 @@ static void nearest_axes(const double unit[3][3], struct axis_map *out_map)
 		out_map->flip[axis] = unit[axis][out_map->world[axis]] < 0;
 }
 
-static enum gz_result map_axes(const struct gz_import_layout *layout, const char *path,
-			       const struct gz_log *log, struct axis_map *out_map)
+static enum gz_result map_axes(const struct gz_import_layout *layout,
+			       const struct gz_volume_file *file, struct axis_map *out_map)
 {
 	double unit[3][3], worst_deg = 0;
 	if (!unit_directions(layout, unit)) {
-		gz_err(log, "%s: the directions of its axes do not span space; correct its header",
-		       path);
+		gz_err(file->log,
+		       "%s: the directions of its axes do not span space; correct its header",
+		       file->path);
 		return GZ_ERR_FORMAT;
 	}
 	nearest_axes((const double(*)[3])unit, out_map);
@@ -142,28 +141,29 @@ static enum gz_result map_axes(const struct gz_import_layout *layout, const char
 		worst_deg = fmax(worst_deg, acos(cosine) * DEG_PER_RAD);
 	}
 	if (worst_deg > OBLIQUE_DEG)
-		gz_info(log, "%s: oblique by %.1f degrees; shown along the nearest axes", path,
-			worst_deg);
+		gz_info(file->log, "%s: oblique by %.1f degrees; shown along the nearest axes",
+			file->path, worst_deg);
 	return GZ_OK;
 }
 
 /* Refuse a size that the file cannot hold before memory is taken for it. */
-static enum gz_result check_size(const struct gz_byte_stream *stream, const struct import *import,
-				 uint64_t bytes)
+static enum gz_result check_claimed_size(const struct gz_byte_stream *stream,
+					 const struct import *import, uint64_t bytes)
 {
 	uint64_t bound = gz_byte_stream_bound(stream);
 	if (bytes <= bound)
 		return GZ_OK;
 	const int *dims = import->layout->dims;
-	gz_err(import->log,
+	gz_err(import->file->log,
 	       "%s: truncated: %d x %d x %d voxels of %s are %llu bytes, the file can hold %llu; "
 	       "correct dims and type, or fetch it again",
-	       import->path, dims[0], dims[1], dims[2], gz_raw_type_names[import->layout->type],
-	       (unsigned long long)bytes, (unsigned long long)bound);
+	       import->file->path, dims[0], dims[1], dims[2],
+	       gz_raw_type_names[import->layout->type], (unsigned long long)bytes,
+	       (unsigned long long)bound);
 	return GZ_ERR_FORMAT;
 }
 
-static enum gz_result allocate(struct import *import, const struct axis_map *map)
+static enum gz_result allocate_voxels(struct import *import, const struct axis_map *map)
 {
 	struct gz_volume *volume = import->volume;
 	const struct gz_import_layout *layout = import->layout;
@@ -172,19 +172,20 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 		volume->spacing[map->world[axis]] = layout->spacing[axis];
 	}
 	volume->type = import->conversion->type;
-	const char *scratch = import->loading ? import->loading->scratch : NULL;
-	const enum gz_result result = gz_volume_allocate_in(volume, import->loading);
+	const char *scratch = import->file->loading ? import->file->loading->scratch : NULL;
+	const enum gz_result result = gz_volume_allocate_in(volume, import->file->loading);
 	if (result != GZ_OK) {
 		double mib = (double)gz_volume_voxel_count(volume) *
 			     (double)gz_voxel_size(volume->type) / (1 << 20);
 		if (scratch)
-			gz_err(import->log, "%s: no %.0f MiB for voxels in %s: %s; make room there",
-			       import->path, mib, scratch, gz_result_text(result));
+			gz_err(import->file->log,
+			       "%s: no %.0f MiB for voxels in %s: %s; make room there",
+			       import->file->path, mib, scratch, gz_result_text(result));
 		else
-			gz_err(import->log,
+			gz_err(import->file->log,
 			       "%s: no memory for %.0f MiB of voxels; write it as bricks (gazeview "
 			       "--write-volume) or use a smaller volume",
-			       import->path, mib);
+			       import->file->path, mib);
 		return result;
 	}
 	volume->oriented = layout->oriented;
@@ -203,12 +204,12 @@ static enum gz_result allocate(struct import *import, const struct axis_map *map
 	return GZ_OK;
 }
 
-static enum gz_result refuse_truncated(const struct import *import, uint64_t got, uint64_t wanted)
+static enum gz_result refuse_short_data(const struct import *import, uint64_t got, uint64_t wanted)
 {
-	gz_err(import->log,
+	gz_err(import->file->log,
 	       "%s: truncated: %llu of %llu bytes of voxels; correct dims and type, or fetch it "
 	       "again",
-	       import->path, (unsigned long long)got, (unsigned long long)wanted);
+	       import->file->path, (unsigned long long)got, (unsigned long long)wanted);
 	return GZ_ERR_FORMAT;
 }
 
@@ -231,14 +232,15 @@ static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct impo
 		const size_t left = count - slab->filled;
 		const size_t wanted = left < CHUNK_NUMBERS ? left : CHUNK_NUMBERS;
 		size_t got = 0;
-		if (!gz_loading_goes_on(import->loading, (double)at / (double)all, import->path))
+		if (!gz_loading_goes_on(import->file->loading, (double)at / (double)all,
+					import->file->path))
 			return GZ_ERR_CANCELLED;
 		const enum gz_result result =
 			gz_byte_stream_read(stream, slab->numbers, wanted * size, &got);
 		if (result != GZ_OK)
 			return result;
 		if (got < wanted * size)
-			return refuse_truncated(import, at * size + got, all * size);
+			return refuse_short_data(import, at * size + got, all * size);
 		import->conversion->convert(slab->numbers, wanted, import->swap,
 					    slab->voxels + slab->filled * voxel_size);
 		slab->filled += wanted;
@@ -255,7 +257,7 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 			     .voxels = malloc(most * gz_voxel_size(type)) };
 	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
 	if (result != GZ_OK)
-		gz_err(import->log, "%s: no memory to read it", import->path);
+		gz_err(import->file->log, "%s: no memory to read it", import->file->path);
 	gz_byte_stream_read_ahead(stream, count * import->conversion->size);
 	for (uint64_t index = 0; index < count && result == GZ_OK;) {
 		const size_t next = gz_voxel_place_next(&import->place, type, index);
@@ -271,8 +273,8 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 
 /* Also brings the decoder to its checksum: bytes too many are often the first sign of damage. They
  * are followed for as long again as the voxels, no farther. */
-static enum gz_result check_end(struct gz_byte_stream *stream, const struct import *import,
-				uint64_t bytes)
+static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct import *import,
+				     uint64_t bytes)
 {
 	uint8_t scrap[4096];
 	uint64_t more = 0;
@@ -286,10 +288,10 @@ static enum gz_result check_end(struct gz_byte_stream *stream, const struct impo
 		more += got;
 	} while (got == sizeof scrap && more < bytes);
 	if (more > 0)
-		gz_warn(import->log,
+		gz_warn(import->file->log,
 			"%s: data go on behind the last voxel and are left out; are dims and type "
 			"right?",
-			import->path);
+			import->file->path);
 	return GZ_OK;
 }
 
@@ -309,65 +311,62 @@ static enum gz_result make_finite(const struct import *import)
 	if (bad == 0)
 		return GZ_OK;
 	if (bad == count) {
-		gz_err(import->log, "%s: no finite value in it; are type and endian right?",
-		       import->path);
+		gz_err(import->file->log, "%s: no finite value in it; are type and endian right?",
+		       import->file->path);
 		return GZ_ERR_FORMAT;
 	}
 	for (size_t i = 0; i < count; i++)
 		v[i] = isfinite(v[i]) ? v[i] : least;
-	gz_warn(import->log, "%s: %zu values are NaN or infinite as float; shown as the least, %g",
-		import->path, bad, (double)least);
+	gz_warn(import->file->log,
+		"%s: %zu values are NaN or infinite as float; shown as the least, %g",
+		import->file->path, bad, (double)least);
 	return GZ_OK;
 }
 
-static enum gz_result check_range(const struct import *import)
+static enum gz_result check_value_range(const struct import *import)
 {
 	const struct gz_volume *volume = import->volume;
 	double low = volume->slope * volume->stored_min + volume->intercept;
 	double high = volume->slope * volume->stored_max + volume->intercept;
 	if (isfinite(low) && isfinite(high))
 		return GZ_OK;
-	gz_err(import->log, "%s: values scaled by %g and %g are not finite; correct its header",
-	       import->path, import->layout->slope, import->layout->intercept);
+	gz_err(import->file->log,
+	       "%s: values scaled by %g and %g are not finite; correct its header",
+	       import->file->path, import->layout->slope, import->layout->intercept);
 	return GZ_ERR_FORMAT;
 }
 
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
-				const struct gz_import_layout *layout, const char *path,
-				const struct gz_loading *loading, const struct gz_log *log,
-				struct gz_volume *out_volume)
+				const struct gz_import_layout *layout,
+				const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
-	const uint16_t one = 1;
-	bool host_big_endian = *(const uint8_t *)&one == 0;
 	struct gz_volume volume = { 0 };
 	struct axis_map map;
 	struct import import = { .layout = layout,
 				 .conversion = &gz_voxel_conversions[layout->type],
-				 .path = path,
-				 .loading = loading,
-				 .log = log,
+				 .file = file,
 				 .volume = &volume,
-				 .swap = layout->big_endian != host_big_endian };
+				 .swap = layout->big_endian != gz_host_big_endian() };
 
-	enum gz_result result = check_layout(layout, path, log);
+	enum gz_result result = check_layout(layout, file);
 	/* At most 2^42 numbers of 8 bytes: no overflow. */
 	uint64_t count =
 		(uint64_t)layout->dims[0] * (uint64_t)layout->dims[1] * (uint64_t)layout->dims[2];
 	if (result == GZ_OK)
-		result = check_size(stream, &import, count * import.conversion->size);
+		result = check_claimed_size(stream, &import, count * import.conversion->size);
 	if (result == GZ_OK)
-		result = map_axes(layout, path, log, &map);
+		result = map_axes(layout, file, &map);
 	if (result == GZ_OK)
-		result = allocate(&import, &map);
+		result = allocate_voxels(&import, &map);
 	if (result == GZ_OK)
 		result = read_voxels(stream, &import, count);
 	if (result == GZ_OK)
-		result = check_end(stream, &import, count * import.conversion->size);
+		result = check_data_end(stream, &import, count * import.conversion->size);
 	if (result == GZ_OK)
 		result = make_finite(&import);
 	if (result == GZ_OK) {
 		gz_volume_find_range(&volume);
-		result = check_range(&import);
+		result = check_value_range(&import);
 	}
 	if (result != GZ_OK) {
 		gz_volume_free(&volume);
@@ -375,4 +374,45 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	}
 	*out_volume = volume;
 	return GZ_OK;
+}
+
+/* Bytes to pass over; those that the layout asks for are checked against the file by the import. */
+static uint64_t bytes_to_skip(const struct gz_voxel_source *source,
+			      const struct gz_import_layout *layout,
+			      const struct gz_byte_stream *stream)
+{
+	if (source->skip != GZ_SKIP_TO_END)
+		return (uint64_t)source->skip;
+	uint64_t needed = gz_raw_type_size(layout->type), there = gz_byte_stream_bound(stream);
+	for (int axis = 0; axis < 3; axis++) {
+		uint64_t dim = layout->dims[axis] > 0 ? (uint64_t)layout->dims[axis] : 0;
+		if (dim > GZ_VOLUME_DIM_MAX)
+			return 0;
+		needed *= dim;
+	}
+	return needed < there ? there - needed : 0;
+}
+
+enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
+				      const struct gz_import_layout *layout,
+				      const struct gz_volume_file *file,
+				      struct gz_volume *out_volume)
+{
+	struct gz_volume_file data = *file;
+	data.path = source->path;
+	struct gz_byte_stream *stream = NULL;
+	if (source->skip == GZ_SKIP_TO_END && source->coding != GZ_CODING_PLAIN) {
+		gz_err(data.log,
+		       "%s: compressed data cannot be found from the end; give what to skip",
+		       source->path);
+		return GZ_ERR_FORMAT;
+	}
+	enum gz_result result = gz_byte_stream_open(source->path, source->coding, source->offset,
+						    data.log, &stream);
+	if (result == GZ_OK)
+		result = gz_byte_stream_skip(stream, bytes_to_skip(source, layout, stream));
+	if (result == GZ_OK)
+		result = gz_volume_import(stream, layout, &data, out_volume);
+	gz_byte_stream_close(&stream);
+	return result;
 }

@@ -1,6 +1,6 @@
 /**
  * @file
- * From the voxels of a file to a volume: what every loader does once it knows the layout.
+ * From the numbers of a file to a volume: what every loader does once it knows the layout.
  *
  * Voxels are turned to RAS+ by the permutation and flips of the file's axes that lie nearest to its
  * directions. An oblique volume is not resampled: it is shown along the anatomical axes nearest to
@@ -10,11 +10,21 @@
 #define GZ_RENDER_DATA_VOLUME_IMPORT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/log.h"
 #include "base/result.h"
+#include "base/sizes.h"
 #include "render/data/byte_stream.h"
 #include "render/data/volume.h"
+
+/** A file that is loaded, as the loaders pass it on. */
+struct gz_volume_file {
+	const char *path;                 /**< borrowed */
+	const struct gz_raw_layout *raw;  /**< of files without a header; else NULL */
+	const struct gz_loading *loading; /**< see gz_volume_load(); may be NULL */
+	const struct gz_log *log;         /**< may be NULL */
+};
 
 /** What a file says of its voxels. Axes are the file's own, the fastest first. */
 struct gz_import_layout {
@@ -40,17 +50,34 @@ size_t gz_raw_type_size(enum gz_raw_type type);
  *
  * @param stream  at the first voxel
  * @param layout  checked here: any number may stand in it
- * @param path    for messages, and for @p loading
- * @param loading  see gz_volume_load()
+ * @param file    its path is for messages and progress
  * @param[out] out_volume  the caller frees it with gz_volume_free()
  * @retval GZ_ERR_FORMAT  dims, spacing, directions, slope or length of the data are wrong; logged
  * @retval GZ_ERR_IO      logged
  * @retval GZ_ERR_NO_MEM  logged with the size asked for
- * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ * @retval GZ_ERR_CANCELLED  the file's loading says so; not logged
  */
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
-				const struct gz_import_layout *layout, const char *path,
-				const struct gz_loading *loading, const struct gz_log *log,
-				struct gz_volume *out_volume);
+				const struct gz_import_layout *layout,
+				const struct gz_volume_file *file, struct gz_volume *out_volume);
+
+/** Skip that puts the voxels at the end of the file. */
+#define GZ_SKIP_TO_END (-1)
+
+/** A place in a file. */
+struct gz_voxel_source {
+	char path[GZ_PATH_SIZE];
+	enum gz_coding coding;
+	uint64_t offset; /**< bytes of the file before the coded data */
+	int64_t skip;    /**< bytes to pass over behind that, after decoding; or GZ_SKIP_TO_END,
+			    for plain data only */
+};
+
+/** Open the source and import the voxels: errors of gz_byte_stream_open(), gz_byte_stream_skip()
+ * and gz_volume_import(), all logged. */
+enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
+				      const struct gz_import_layout *layout,
+				      const struct gz_volume_file *file,
+				      struct gz_volume *out_volume);
 
 #endif

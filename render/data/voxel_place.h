@@ -1,18 +1,36 @@
 /**
  * @file
- * Voxels in the order of a file to their places in a volume whose axes are turned.
+ * From the numbers of a file to the voxels of a volume: conversion of types, and placing in a
+ * volume whose axes are turned.
  *
- * Where the volume's fastest axis is not the file's, neighbours in memory come rows or slices
- * apart. Voxels are therefore placed in slabs of so many rows or slices as fill a cache line of the
- * volume, in small square tiles, so that each line is written once and not once a voxel.
+ * If the volume's fastest axis is not the file's, neighbours in memory are rows or slices apart in
+ * the file. Voxels are therefore placed in slabs of as many rows or slices as fill a cache line of
+ * the volume, in small tiles, so that each line is written once and not once for each voxel.
  */
 #ifndef GZ_RENDER_DATA_VOXEL_PLACE_H
 #define GZ_RENDER_DATA_VOXEL_PLACE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "render/data/volume.h"
+
+/** How one type of number is read. */
+struct gz_voxel_conversion {
+	size_t size;             /**< bytes of a number in the file */
+	enum gz_voxel_type type; /**< what it becomes */
+	double offset;           /**< number = voxel + offset */
+	/** @p source need not be aligned; @p swap: its byte order is not the host's. */
+	void (*convert)(const uint8_t *source, size_t count, bool swap, void *target);
+};
+
+/** One a raw type. */
+extern const struct gz_voxel_conversion gz_voxel_conversions[GZ_RAW_TYPE_COUNT];
+
+/** Write @p count voxels to @p target, @p stride voxels apart (may be negative). */
+void gz_voxel_scatter(enum gz_voxel_type type, const void *source, size_t count, void *target,
+		      ptrdiff_t stride);
 
 /** Where the voxels of a file go. */
 struct gz_voxel_place {

@@ -58,8 +58,9 @@ static enum gz_result make_procedural(const struct scene_loader *loader,
 	enum gz_voxel_type type;
 	if (!gz_scene_made_type(settings, &type))
 		return GZ_ERR_INVAL; /* cannot happen: refused when the settings were read */
-	return gz_volume_generate(which, dims, settings->spacing, type, loader->loading,
-				  loader->log, out_volume);
+	return gz_volume_generate(
+		&(struct gz_procedural_request) { which, dims, settings->spacing, type },
+		loader->loading, loader->log, out_volume);
 }
 
 static enum gz_result load_volume(const struct scene_loader *loader, struct gz_volume *out_volume)

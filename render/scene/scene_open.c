@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/file.h"
-#include "render/data/dicom_series.h"
+#include "render/data/format.h"
 #include "render/data/raw_guess.h"
 #include "render/scene/scene_picture.h"
 
@@ -18,36 +17,31 @@
 /* Share of the picture that a fitted box takes. Chosen: it does not touch the edges. */
 #define FIT_SHARE 0.9
 
-static bool names_folder(const char *path)
-{
-	struct stat status;
-	return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
-
 enum gz_file_kind gz_file_kind_by_name(const char *path)
 {
 	static const struct {
 		const char *ending;
 		enum gz_file_kind kind;
 	} kinds[] = {
-		{ ".scene", GZ_FILE_SCENE }, { ".png", GZ_FILE_PICTURE },
-		{ ".tf", GZ_FILE_TRANSFER }, { ".gzl", GZ_FILE_GAZE_LOG },
-		{ ".nii", GZ_FILE_VOLUME },  { ".nii.gz", GZ_FILE_VOLUME },
-		{ ".nrrd", GZ_FILE_VOLUME }, { ".nhdr", GZ_FILE_VOLUME },
-		{ ".mhd", GZ_FILE_VOLUME },  { ".mha", GZ_FILE_VOLUME },
-		{ ".gzb", GZ_FILE_VOLUME },  { ".dcm", GZ_FILE_VOLUME },
+		{ ".scene", GZ_FILE_SCENE },
+		{ ".png", GZ_FILE_PICTURE },
+		{ ".tf", GZ_FILE_TRANSFER },
+		{ ".gzl", GZ_FILE_GAZE_LOG },
 	};
 	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
 		if (gz_path_ends(path, kinds[i].ending))
 			return kinds[i].kind;
-	return gz_raw_is_name(path) ? GZ_FILE_RAW : GZ_FILE_OTHER;
+	const struct gz_volume_format *format = gz_volume_format_by_name(path);
+	if (!format)
+		return GZ_FILE_OTHER;
+	return format->layout == GZ_LAYOUT_IN_FILE ? GZ_FILE_VOLUME : GZ_FILE_RAW;
 }
 
 enum gz_file_kind gz_file_kind_of(const char *path)
 {
 	const enum gz_file_kind kind = gz_file_kind_by_name(path);
 	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
-	return looked_into && (names_folder(path) || gz_dicom_is(path)) ? GZ_FILE_VOLUME : kind;
+	return looked_into && gz_volume_format_by_content(path) ? GZ_FILE_VOLUME : kind;
 }
 
 enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_raw_layout *raw,

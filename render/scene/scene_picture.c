@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/data/volume_identity.h"
+#include "render/data/volume.h"
 #include "render/scene/scene_files.h"
 
 #define GZ_LOG_MODULE "scene"

@@ -10,15 +10,18 @@
 
 #include "base/captured_log.h"
 #include "render/data/brick_file.h"
-#include "render/data/brick_write.h"
-#include "render/data/halve.h"
+#include "render/data/format.h"
+#include "render/data/levels.h"
 #include "volume_files.h"
 
 static struct gz_volume made(int nx, int ny, int nz, enum gz_voxel_type type)
 {
 	struct gz_volume volume;
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { nx, ny, nz },
-					    (double[3]) { 1, 1, 1 }, type, NULL, NULL, &volume),
+	assert_int_equal(gz_volume_generate(
+				 &(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS,
+								   (int[3]) { nx, ny, nz },
+								   (double[3]) { 1, 1, 1 }, type },
+				 NULL, NULL, &volume),
 			 GZ_OK);
 	return volume;
 }

@@ -1,7 +1,7 @@
 /* The books of bricks in a fixed number of rooms. */
 #include "suite.h"
 
-#include "render/data/brick_rooms.h"
+#include "render/data/brick_pool.h"
 
 enum { BRICKS = 65, ROOMS = 4 };
 

@@ -10,8 +10,8 @@
 
 #include "base/captured_log.h"
 #include "render/data/brick_pool.h"
-#include "render/data/brick_write.h"
-#include "render/data/halve.h"
+#include "render/data/format.h"
+#include "render/data/levels.h"
 #include "render/plan/method.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/shared/raycaster.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/data/byte_ahead.h"
+#include "render/data/byte_stream.h"
 
 #define MIB ((uint64_t)1 << 20)
 

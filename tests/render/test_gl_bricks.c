@@ -9,7 +9,7 @@
 
 #include "base/captured_log.h"
 #include "render/data/brick_pool.h"
-#include "render/data/brick_write.h"
+#include "render/data/format.h"
 #include "render/plan/method.h"
 #include "render/raycast/shared/raycaster.h"
 #include "small_scene.h"

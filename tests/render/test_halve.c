@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/data/halve.h"
+#include "render/data/levels.h"
 #include "small_scene.h"
 
 static double voxel(const struct gz_volume *volume, int x, int y, int z)

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/data/brick_layout.h"
-#include "render/data/brick_write.h"
+#include "render/data/brick_file.h"
+#include "render/data/format.h"
 #include "render/transfer/histogram.h"
 #include "volume_files.h"
 

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
-#include "render/data/nrrd_write.h"
+#include "render/data/format.h"
 #include "volume_files.h"
 
 static struct gz_volume made(enum gz_voxel_type type)

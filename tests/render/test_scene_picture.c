@@ -32,9 +32,11 @@ static void made_volume(struct gz_volume *out_volume)
 {
 	const int dims[3] = { 12, 10, 8 };
 	const double spacing[3] = { 1, 1, 1 };
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, dims, spacing, GZ_VOXEL_U8, NULL,
-					    NULL, out_volume),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, dims,
+								     spacing, GZ_VOXEL_U8 },
+				   NULL, NULL, out_volume),
+		GZ_OK);
 }
 
 static void picture_holds_its_scene_and_transfer_function(void **state)

@@ -12,9 +12,10 @@ static const double cubes[3] = { 1, 1, 1 };
 static struct gz_volume shells(enum gz_voxel_type type)
 {
 	struct gz_volume volume;
-	assert_int_equal(
-		gz_volume_generate(GZ_PROCEDURAL_SHELLS, small, cubes, type, NULL, NULL, &volume),
-		GZ_OK);
+	assert_int_equal(gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS,
+									      small, cubes, type },
+					    NULL, NULL, &volume),
+			 GZ_OK);
 	return volume;
 }
 
@@ -107,9 +108,11 @@ static void far_tail_of_few_voxels_is_left_out_of_the_range(void **state)
 	(void)state;
 	const int dims[3] = { 100, 100, 10 };
 	struct gz_volume volume;
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, dims, cubes, GZ_VOXEL_U16, NULL,
-					    NULL, &volume),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, dims,
+								     cubes, GZ_VOXEL_U16 },
+				   NULL, NULL, &volume),
+		GZ_OK);
 	uint16_t *voxels = volume.voxels;
 	for (size_t i = 0; i < gz_volume_voxel_count(&volume); i++)
 		voxels[i] /= 40;

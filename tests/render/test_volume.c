@@ -133,9 +133,11 @@ static void procedural_volumes_are_the_same_bits_everywhere(void **state)
 	static const int dims[3] = { 40, 36, 30 };
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		struct gz_volume v;
-		assert_int_equal(gz_volume_generate(cases[i].which, dims, cubes, cases[i].type,
-						    NULL, NULL, &v),
-				 GZ_OK);
+		assert_int_equal(
+			gz_volume_generate(&(struct gz_procedural_request) { cases[i].which, dims,
+									     cubes, cases[i].type },
+					   NULL, NULL, &v),
+			GZ_OK);
 		assert_int_equal(v.type, cases[i].type);
 		assert_true(v.stored_min == 0);
 		assert_true(v.stored_max > 0.8);
@@ -150,20 +152,28 @@ static void procedural_shape_keeps_its_proportions_whatever_the_spacing(void **s
 	static const int fine[3] = { 48, 48, 54 }, flat[3] = { 48, 48, 18 };
 	static const double twice[3] = { 2, 2, 2 }, tall[3] = { 1, 1, 3 };
 	struct gz_volume a, b, c;
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, fine, cubes, GZ_VOXEL_U16,
-					    NULL, NULL, &a),
-			 GZ_OK);
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, fine, twice, GZ_VOXEL_U16,
-					    NULL, NULL, &b),
-			 GZ_OK);
 	assert_int_equal(
-		gz_volume_generate(GZ_PROCEDURAL_SHELLS, flat, tall, GZ_VOXEL_U8, NULL, NULL, &c),
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_CHAMELEON, fine,
+								     cubes, GZ_VOXEL_U16 },
+				   NULL, NULL, &a),
+		GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_CHAMELEON, fine,
+								     twice, GZ_VOXEL_U16 },
+				   NULL, NULL, &b),
+		GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, flat,
+								     tall, GZ_VOXEL_U8 },
+				   NULL, NULL, &c),
 		GZ_OK);
 	assert_int_equal(hash_of(&a), hash_of(&b));
 	assert_true(b.spacing[2] == 2 && c.spacing[2] == 3);
 	gz_volume_free(&a);
 	assert_int_equal(
-		gz_volume_generate(GZ_PROCEDURAL_SHELLS, fine, cubes, GZ_VOXEL_U8, NULL, NULL, &a),
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, fine,
+								     cubes, GZ_VOXEL_U8 },
+				   NULL, NULL, &a),
 		GZ_OK);
 	/* A thick slice lies where the middle one of three thin ones does. */
 	const size_t slice = (size_t)48 * 48;
@@ -180,9 +190,11 @@ static void chameleon_is_air_and_tissue_and_bone(void **state)
 	(void)state;
 	static const int dims[3] = { 160, 160, 169 };
 	struct gz_volume v;
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_CHAMELEON, dims, cubes, GZ_VOXEL_U16,
-					    NULL, NULL, &v),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_CHAMELEON, dims,
+								     cubes, GZ_VOXEL_U16 },
+				   NULL, NULL, &v),
+		GZ_OK);
 	const size_t count = gz_volume_voxel_count(&v);
 	size_t air = 0, tissue = 0, bone = 0;
 	for (size_t i = 0; i < count; i++) {
@@ -206,9 +218,11 @@ static void procedural_volume_has_the_same_data_in_every_type(void **state)
 	for (int which = 0; which < GZ_PROCEDURAL_COUNT; which++) {
 		struct gz_volume v[GZ_VOXEL_TYPE_COUNT];
 		for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
-			assert_int_equal(gz_volume_generate((enum gz_procedural)which, dims, cubes,
-							    (enum gz_voxel_type)type, NULL, NULL,
-							    &v[type]),
+			assert_int_equal(gz_volume_generate(
+						 &(struct gz_procedural_request) {
+							 (enum gz_procedural)which, dims, cubes,
+							 (enum gz_voxel_type)type },
+						 NULL, NULL, &v[type]),
 					 GZ_OK);
 		for (size_t i = 0; i < gz_volume_voxel_count(&v[0]); i++) {
 			const double exact = (double)((const float *)v[GZ_VOXEL_F32].voxels)[i];
@@ -228,13 +242,17 @@ static void procedural_volume_of_bad_dims_is_refused_with_a_line(void **state)
 	struct captured_log log;
 	captured_log_init(&log, NULL);
 	struct gz_volume v = { 0 };
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, (int[3]) { 0, 4, 4 }, cubes,
-					    GZ_VOXEL_U8, NULL, &log.log, &v),
+	assert_int_equal(gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS,
+									      (int[3]) { 0, 4, 4 },
+									      cubes, GZ_VOXEL_U8 },
+					    NULL, &log.log, &v),
 			 GZ_ERR_INVAL);
 	assert_int_equal(log.messages, 1);
 	assert_non_null(strstr(log.last, "0 x 4 x 4"));
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_COUNT, (int[3]) { 4, 4, 4 }, cubes,
-					    GZ_VOXEL_U8, NULL, &log.log, &v),
+	assert_int_equal(gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_COUNT,
+									      (int[3]) { 4, 4, 4 },
+									      cubes, GZ_VOXEL_U8 },
+					    NULL, &log.log, &v),
 			 GZ_ERR_INVAL);
 	assert_null(v.voxels);
 }

@@ -12,7 +12,7 @@
 #include <zstd.h>
 
 #include "base/captured_log.h"
-#include "render/data/brick_write.h"
+#include "render/data/format.h"
 #include "render/data/volume.h"
 #include "render/plan/method.h"
 #include "render/raycast/shared/raycaster.h"

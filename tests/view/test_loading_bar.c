@@ -79,9 +79,12 @@ static void signal_cancels_loading_and_is_raised_again(void **state)
 	gz_loading_bar_begin(&bar, NULL);
 	raise(SIGINT);
 	assert_int_equal(handed_on, 0);
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, dims, (double[3]) { 1, 1, 1 },
-					    GZ_VOXEL_U8, &bar.loading, NULL, &volume),
-			 GZ_ERR_CANCELLED);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, dims,
+								     (double[3]) { 1, 1, 1 },
+								     GZ_VOXEL_U8 },
+				   &bar.loading, NULL, &volume),
+		GZ_ERR_CANCELLED);
 	assert_null(volume.voxels);
 	gz_loading_bar_end(&bar);
 	assert_int_equal(handed_on, SIGINT);

@@ -50,9 +50,11 @@ static int set_up(void **state)
 			 GZ_OK);
 	assert_int_equal(gz_transfer_parse("a.tf", tf, sizeof tf - 1, NULL, &self->transfer),
 			 GZ_OK);
-	assert_int_equal(gz_volume_generate(GZ_PROCEDURAL_SHELLS, dims, spacing, GZ_VOXEL_U8, NULL,
-					    NULL, &self->volume),
-			 GZ_OK);
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SHELLS, dims,
+								     spacing, GZ_VOXEL_U8 },
+				   NULL, NULL, &self->volume),
+		GZ_OK);
 	self->display = gz_display_default(64, 48);
 	*state = self;
 	return 0;

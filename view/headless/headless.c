@@ -9,8 +9,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
-#include "render/data/brick_write.h"
-#include "render/data/nrrd_write.h"
+#include "render/data/format.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
 #include "view/capture/output.h"
@@ -481,7 +480,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 typedef enum gz_result write_function(const struct gz_volume *volume, const char *path,
 				      const struct gz_loading *loading, const struct gz_log *log);
 
-static write_function *writer_of(const char *path, const struct gz_log *log)
+static gz_volume_writer *writer_of(const char *path, const struct gz_log *log)
 {
 	if (gz_path_ends(path, ".gzb"))
 		return gz_bricks_write;
@@ -518,7 +517,7 @@ static enum gz_result load_volume_to_write(const struct gz_view_options *options
 }
 
 static enum gz_result write_to(const struct gz_view_options *options,
-			       const struct gz_loading *where, write_function *writer,
+			       const struct gz_loading *where, gz_volume_writer *writer,
 			       const struct gz_volume *volume, const struct gz_log *log)
 {
 	struct gz_loading_bar bar;
@@ -538,7 +537,7 @@ enum gz_result gz_view_write_volume(const struct gz_view_options *options, const
 {
 	char folder[GZ_PATH_SIZE];
 	struct gz_scene scene = { 0 };
-	write_function *writer = writer_of(options->write_volume, log);
+	gz_volume_writer *writer = writer_of(options->write_volume, log);
 	if (!writer)
 		return GZ_ERR_UNSUPPORTED;
 	enum gz_result r = gz_output_check(options, log);

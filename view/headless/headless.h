@@ -13,7 +13,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/data/loading.h"
+#include "render/data/volume.h"
 #include "view/options/options.h"
 
 /**

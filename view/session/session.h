@@ -21,7 +21,7 @@
 #include "base/text.h"
 #include "protocol/gaze.h"
 #include "render/attention/attention.h"
-#include "render/data/volume_identity.h"
+#include "render/data/volume.h"
 #include "view/gaze/gaze_source.h"
 
 #define GZ_SESSION_ENDING   ".session"

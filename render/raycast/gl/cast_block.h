@@ -16,7 +16,7 @@
  *  each other; summed when they are read. A power of two. */
 #define GZ_GL_COUNT_SLOTS 1024
 
-/** As render/data/brick_layout.h and brick_rooms.h have it, and bits of a room's place along each
+/** As render/data/brick_file.h and brick_pool.h have it, and bits of a room's place along each
  *  axis, above those of the level. */
 #define GZ_GL_BRICK_EDGE        32
 #define GZ_GL_BRICK_STORED_EDGE 34

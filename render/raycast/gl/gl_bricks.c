@@ -6,7 +6,7 @@
 
 #include <GL/glew.h>
 
-#include "render/data/brick_cut.h"
+#include "render/data/brick_file.h"
 #include "render/raycast/gl/gl_texels.h"
 
 /* Given to the device for one picture that does not wait, bytes. Chosen: some milliseconds of a

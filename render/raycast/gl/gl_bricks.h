@@ -13,7 +13,6 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/brick_pool.h"
-#include "render/data/brick_rooms.h"
 #include "render/opengl/gl_device.h"
 #include "render/raycast/gl/cast_block.h"
 #include "render/raycast/shared/brick_stream.h"

@@ -13,7 +13,7 @@
 #define GZ_RENDER_RAYCAST_SHARED_BRICK_STREAM_H
 
 #include "base/result.h"
-#include "render/data/brick_rooms.h"
+#include "render/data/brick_pool.h"
 #include "render/picture/camera.h"
 #include "render/plan/plan.h"
 #include "render/raycast/shared/detail.h"

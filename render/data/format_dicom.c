@@ -1,10 +1,11 @@
-/* A DICOM series: slices decoded one after the other and turned as every other volume is. */
+/* DICOM series: a folder, one file of it, or a file with several frames. Slices are decoded one
+ * after the other and turned to RAS+ like those of every other format. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/data/dicom_series.h"
+#include "render/data/format.h"
 #include "render/data/volume_import.h"
-#include "render/data/volume_loaders.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -16,7 +17,7 @@ struct stack {
 	int left;              /* slices not decoded yet */
 };
 
-static enum gz_result read_stack(void *user, void *buffer, size_t size, size_t *out_got)
+static enum gz_result read_slices(void *user, void *buffer, size_t size, size_t *out_got)
 {
 	struct stack *stack = user;
 	size_t got = 0;
@@ -41,16 +42,14 @@ static enum gz_result read_stack(void *user, void *buffer, size_t size, size_t *
 	return GZ_OK;
 }
 
-static enum gz_result import(struct stack *stack, const char *path,
-			     const struct gz_loading *loading, const struct gz_log *log,
-			     struct gz_volume *out_volume)
+static enum gz_result import_slices(struct stack *stack, const struct gz_volume_file *file,
+				    struct gz_volume *out_volume)
 {
 	const struct gz_dicom_geometry *geometry = gz_dicom_series_geometry(stack->series);
-	const uint16_t one = 1;
 	struct gz_import_layout layout = {
 		.oriented = geometry->oriented,
 		.type = geometry->type,
-		.big_endian = *(const uint8_t *)&one == 0,
+		.big_endian = gz_host_big_endian(),
 		.slope = geometry->slope,
 		.intercept = geometry->intercept,
 	};
@@ -63,26 +62,36 @@ static enum gz_result import(struct stack *stack, const char *path,
 	stack->left = layout.dims[2];
 	stack->slice = malloc(stack->slice_size);
 	if (!stack->slice) {
-		gz_err(log, "%s: no memory to read it", path);
+		gz_err(file->log, "%s: no memory to read it", file->path);
 		return GZ_ERR_NO_MEM;
 	}
 	struct gz_byte_stream *stream = NULL;
-	enum gz_result result =
-		gz_byte_stream_from(read_stack, stack, geometry->bytes_bound, path, log, &stream);
+	enum gz_result result = gz_byte_stream_from(read_slices, stack, geometry->bytes_bound,
+						    file->path, file->log, &stream);
 	if (result == GZ_OK)
-		result = gz_volume_import(stream, &layout, path, loading, log, out_volume);
+		result = gz_volume_import(stream, &layout, file, out_volume);
 	gz_byte_stream_close(&stream);
 	return result;
 }
 
-enum gz_result gz_volume_load_dicom(const char *path, const struct gz_loading *loading,
-				    const struct gz_log *log, struct gz_volume *out_volume)
+static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
 	struct stack stack = { 0 };
-	enum gz_result result = gz_dicom_series_open(path, log, &stack.series);
+	enum gz_result result = gz_dicom_series_open(file->path, file->log, &stack.series);
 	if (result == GZ_OK)
-		result = import(&stack, path, loading, log, out_volume);
+		result = import_slices(&stack, file, out_volume);
 	free(stack.slice);
 	gz_dicom_series_close(&stack.series);
 	return result;
 }
+
+const struct gz_volume_format gz_format_dicom = {
+	.name = "DICOM",
+	.endings = { ".dcm" },
+	.layout = GZ_LAYOUT_IN_FILE,
+	.recognise = gz_dicom_is,
+	.load = load_dicom,
+	.limits =
+		"no colour, 8 and 16 bits only, evenly spaced parallel slices, one series a folder;"
+		" of a series over time the first volume",
+};

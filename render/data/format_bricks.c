@@ -1,15 +1,14 @@
-/* A file of bricks as a volume whose voxels are fetched when they are looked at. */
+/* Files of bricks: volumes whose voxels are read when they are visible. */
 #include <string.h>
 
 #include "render/data/brick_pool.h"
-#include "render/data/volume_loaders.h"
+#include "render/data/format.h"
 
-enum gz_result gz_volume_load_bricks(const char *path, const struct gz_loading *loading,
-				     const struct gz_log *log, struct gz_volume *out_volume)
+static enum gz_result load_bricks(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
 	struct gz_brick_pool *pool = NULL;
-	const enum gz_result result =
-		gz_brick_pool_open(path, loading ? loading->brick_bytes : 0, log, &pool);
+	const enum gz_result result = gz_brick_pool_open(
+		file->path, file->loading ? file->loading->brick_bytes : 0, file->log, &pool);
 	if (result != GZ_OK)
 		return result;
 	const struct gz_brick_header *header = &gz_brick_pool_file(pool)->header;
@@ -27,3 +26,12 @@ enum gz_result gz_volume_load_bricks(const char *path, const struct gz_loading *
 	*out_volume = volume;
 	return GZ_OK;
 }
+
+const struct gz_volume_format gz_format_bricks = {
+	.name = "bricks",
+	.endings = { ".gzb" },
+	.layout = GZ_LAYOUT_IN_FILE,
+	.load = load_bricks,
+	.write = gz_bricks_write,
+	.limits = "version 1 of the format only",
+};

@@ -5,9 +5,8 @@
 #include <strings.h>
 
 #include "base/file.h"
+#include "render/data/format.h"
 #include "render/data/text_head.h"
-#include "render/data/volume_loaders.h"
-#include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -24,65 +23,67 @@ struct metaimage {
 	int header_size;
 };
 
-static enum gz_result refuse(struct metaimage *meta, const char *tag, const char *what)
+static enum gz_result refuse_meta(struct metaimage *meta, const char *tag, const char *what)
 {
 	return gz_text_head_refuse(&meta->head, tag, what);
 }
 
-static enum gz_result refuse_unsupported(struct metaimage *meta, const char *tag, const char *what)
+static enum gz_result refuse_meta_unsupported(struct metaimage *meta, const char *tag,
+					      const char *what)
 {
 	(void)gz_text_head_refuse(&meta->head, tag, what);
 	return GZ_ERR_UNSUPPORTED;
 }
 
-static enum gz_result take_dimension(struct metaimage *meta, char *value)
+static enum gz_result take_meta_dimension(struct metaimage *meta, char *value)
 {
 	if (!gz_text_wholes(value, &meta->dimension, 1) || meta->dimension < 1 ||
 	    meta->dimension > AXES_MAX) {
 		meta->dimension = 0;
-		return refuse(meta, "NDims", "must be a number from 1 to 10");
+		return refuse_meta(meta, "NDims", "must be a number from 1 to 10");
 	}
 	if (meta->dimension < 3)
-		return refuse_unsupported(meta, "NDims", "less than 3: this is no volume");
+		return refuse_meta_unsupported(meta, "NDims", "less than 3: this is no volume");
 	return GZ_OK;
 }
 
-static enum gz_result take_sizes(struct metaimage *meta, char *value)
+static enum gz_result take_meta_sizes(struct metaimage *meta, char *value)
 {
 	if (!gz_text_wholes(value, meta->sizes, meta->dimension))
-		return refuse(meta, "DimSize", "write one whole number an axis");
+		return refuse_meta(meta, "DimSize", "write one whole number an axis");
 	meta->has_sizes = true;
 	return GZ_OK;
 }
 
-static enum gz_result take_spacing(struct metaimage *meta, char *value)
+static enum gz_result take_meta_spacing(struct metaimage *meta, char *value)
 {
 	double spacing[AXES_MAX];
 	if (!gz_text_numbers(value, spacing, meta->dimension))
-		return refuse(meta, "ElementSpacing", "write one number an axis");
+		return refuse_meta(meta, "ElementSpacing", "write one number an axis");
 	memcpy(meta->layout.spacing, spacing, sizeof meta->layout.spacing);
 	meta->has_spacing = true;
 	return GZ_OK;
 }
 
 /* The size of an element stands in for a spacing that is not given. */
-static enum gz_result take_size(struct metaimage *meta, char *value)
+static enum gz_result take_meta_size(struct metaimage *meta, char *value)
 {
 	double spacing[AXES_MAX];
 	if (!gz_text_numbers(value, spacing, meta->dimension))
-		return refuse(meta, "ElementSize", "write one number an axis");
+		return refuse_meta(meta, "ElementSize", "write one number an axis");
 	if (!meta->has_spacing)
 		memcpy(meta->layout.spacing, spacing, sizeof meta->layout.spacing);
 	return GZ_OK;
 }
 
 /* Each row is where one axis points. */
-static enum gz_result take_matrix(struct metaimage *meta, char *value)
+static enum gz_result take_meta_matrix(struct metaimage *meta, char *value)
 {
 	static const double to_ras[3] = { -1, -1, 1 };
 	double matrix[AXES_MAX * AXES_MAX];
 	if (!gz_text_numbers(value, matrix, meta->dimension * meta->dimension))
-		return refuse(meta, "TransformMatrix", "write one number an axis and direction");
+		return refuse_meta(meta, "TransformMatrix",
+				   "write one number an axis and direction");
 	for (int axis = 0; axis < 3; axis++)
 		for (int i = 0; i < 3; i++)
 			meta->layout.direction[axis][i] =
@@ -91,7 +92,7 @@ static enum gz_result take_matrix(struct metaimage *meta, char *value)
 	return GZ_OK;
 }
 
-static enum gz_result take_anatomical(struct metaimage *meta, char *value)
+static enum gz_result take_meta_anatomical(struct metaimage *meta, char *value)
 {
 	meta->anatomical[0] = '\0';
 	if (strlen(value) >= 3 && !strchr(value, '?')) {
@@ -101,7 +102,7 @@ static enum gz_result take_anatomical(struct metaimage *meta, char *value)
 	return GZ_OK;
 }
 
-static enum gz_result take_type(struct metaimage *meta, char *value)
+static enum gz_result take_meta_type(struct metaimage *meta, char *value)
 {
 	static const struct {
 		const char *name;
@@ -120,68 +121,69 @@ static enum gz_result take_type(struct metaimage *meta, char *value)
 			return GZ_OK;
 		}
 	}
-	return refuse_unsupported(meta, "ElementType",
-				  "not read; MET_UCHAR to MET_INT, MET_FLOAT and MET_DOUBLE are");
+	return refuse_meta_unsupported(
+		meta, "ElementType",
+		"not read; MET_UCHAR to MET_INT, MET_FLOAT and MET_DOUBLE are");
 }
 
-static bool parse_bool(const char *value, bool *out)
+static bool parse_meta_bool(const char *value, bool *out)
 {
 	*out = strcasecmp(value, "true") == 0 || strcmp(value, "1") == 0;
 	return *out || strcasecmp(value, "false") == 0 || strcmp(value, "0") == 0;
 }
 
-static enum gz_result take_big_endian(struct metaimage *meta, char *value)
+static enum gz_result take_meta_big_endian(struct metaimage *meta, char *value)
 {
-	if (!parse_bool(value, &meta->layout.big_endian))
-		return refuse(meta, "ElementByteOrderMSB", "write True or False");
+	if (!parse_meta_bool(value, &meta->layout.big_endian))
+		return refuse_meta(meta, "ElementByteOrderMSB", "write True or False");
 	return GZ_OK;
 }
 
-static enum gz_result take_binary(struct metaimage *meta, char *value)
+static enum gz_result take_meta_binary(struct metaimage *meta, char *value)
 {
 	bool binary = true;
-	if (!parse_bool(value, &binary))
-		return refuse(meta, "BinaryData", "write True or False");
+	if (!parse_meta_bool(value, &binary))
+		return refuse_meta(meta, "BinaryData", "write True or False");
 	if (!binary)
-		return refuse_unsupported(meta, "BinaryData", "data as text are not read");
+		return refuse_meta_unsupported(meta, "BinaryData", "data as text are not read");
 	return GZ_OK;
 }
 
-static enum gz_result take_compressed(struct metaimage *meta, char *value)
+static enum gz_result take_meta_compressed(struct metaimage *meta, char *value)
 {
 	bool compressed = false;
-	if (!parse_bool(value, &compressed))
-		return refuse(meta, "CompressedData", "write True or False");
+	if (!parse_meta_bool(value, &compressed))
+		return refuse_meta(meta, "CompressedData", "write True or False");
 	meta->source.coding = compressed ? GZ_CODING_ZLIB : GZ_CODING_PLAIN;
 	return GZ_OK;
 }
 
-static enum gz_result take_channels(struct metaimage *meta, char *value)
+static enum gz_result take_meta_channels(struct metaimage *meta, char *value)
 {
 	int channels = 0;
 	if (!gz_text_wholes(value, &channels, 1) || channels != 1)
-		return refuse_unsupported(meta, "ElementNumberOfChannels",
-					  "one number a voxel is read");
+		return refuse_meta_unsupported(meta, "ElementNumberOfChannels",
+					       "one number a voxel is read");
 	return GZ_OK;
 }
 
-static enum gz_result take_header_size(struct metaimage *meta, char *value)
+static enum gz_result take_meta_header_size(struct metaimage *meta, char *value)
 {
 	if (!gz_text_wholes(value, &meta->header_size, 1) || meta->header_size < GZ_SKIP_TO_END)
-		return refuse(meta, "HeaderSize", "must be a whole number, -1 or more");
+		return refuse_meta(meta, "HeaderSize", "must be a whole number, -1 or more");
 	return GZ_OK;
 }
 
 /* The last tag: LOCAL data begin on the next line. */
-static enum gz_result take_data_file(struct metaimage *meta, char *value)
+static enum gz_result take_meta_data_file(struct metaimage *meta, char *value)
 {
 	bool local = strcasecmp(value, "LOCAL") == 0;
 	if (strncmp(value, "LIST", 4) == 0 || strchr(value, '%'))
-		return refuse_unsupported(meta, "ElementDataFile",
-					  "several files are not read; join them into one");
+		return refuse_meta_unsupported(meta, "ElementDataFile",
+					       "several files are not read; join them into one");
 	if (!*value || gz_path_beside(local ? "" : meta->head.path, local ? meta->head.path : value,
 				      meta->source.path, sizeof meta->source.path) != GZ_OK)
-		return refuse(meta, "ElementDataFile", "no name, or one too long");
+		return refuse_meta(meta, "ElementDataFile", "no name, or one too long");
 	meta->source.offset = local ? meta->head.at : 0;
 	meta->has_data = true;
 	return GZ_OK;
@@ -195,54 +197,56 @@ struct tag {
 
 /* Tags that say nothing of layout (Offset, Modality, Comment, …) are passed over. */
 static const struct tag tags[] = {
-	{ "NDims", false, take_dimension },
-	{ "DimSize", true, take_sizes },
-	{ "ElementSpacing", true, take_spacing },
-	{ "ElementSize", true, take_size },
-	{ "TransformMatrix", true, take_matrix },
-	{ "Rotation", true, take_matrix },
-	{ "Orientation", true, take_matrix },
-	{ "AnatomicalOrientation", false, take_anatomical },
-	{ "ElementType", false, take_type },
-	{ "ElementByteOrderMSB", false, take_big_endian },
-	{ "BinaryDataByteOrderMSB", false, take_big_endian },
-	{ "BinaryData", false, take_binary },
-	{ "CompressedData", false, take_compressed },
-	{ "ElementNumberOfChannels", false, take_channels },
-	{ "HeaderSize", false, take_header_size },
-	{ "ElementDataFile", false, take_data_file },
+	{ "NDims", false, take_meta_dimension },
+	{ "DimSize", true, take_meta_sizes },
+	{ "ElementSpacing", true, take_meta_spacing },
+	{ "ElementSize", true, take_meta_size },
+	{ "TransformMatrix", true, take_meta_matrix },
+	{ "Rotation", true, take_meta_matrix },
+	{ "Orientation", true, take_meta_matrix },
+	{ "AnatomicalOrientation", false, take_meta_anatomical },
+	{ "ElementType", false, take_meta_type },
+	{ "ElementByteOrderMSB", false, take_meta_big_endian },
+	{ "BinaryDataByteOrderMSB", false, take_meta_big_endian },
+	{ "BinaryData", false, take_meta_binary },
+	{ "CompressedData", false, take_meta_compressed },
+	{ "ElementNumberOfChannels", false, take_meta_channels },
+	{ "HeaderSize", false, take_meta_header_size },
+	{ "ElementDataFile", false, take_meta_data_file },
 };
 
-static enum gz_result take_line(struct metaimage *meta, char *line)
+static enum gz_result take_meta_line(struct metaimage *meta, char *line)
 {
 	char *equals = strchr(line, '=');
 	if (!equals)
-		return *gz_text_trim(line) ? refuse(meta, line, "no tag; write \"Tag = value\"")
-					   : GZ_OK;
+		return *gz_text_trim(line)
+			       ? refuse_meta(meta, line, "no tag; write \"Tag = value\"")
+			       : GZ_OK;
 	*equals = '\0';
 	const char *name = gz_text_trim(line);
 	for (size_t i = 0; i < sizeof tags / sizeof tags[0]; i++) {
 		if (strcasecmp(name, tags[i].name) != 0)
 			continue;
 		if (tags[i].needs_dimension && meta->dimension == 0)
-			return refuse(meta, name, "comes before NDims; put it below");
+			return refuse_meta(meta, name, "comes before NDims; put it below");
 		return tags[i].take(meta, gz_text_trim(equals + 1));
 	}
 	return GZ_OK;
 }
 
-static enum gz_result read_tags(struct metaimage *meta)
+static enum gz_result read_meta_tags(struct metaimage *meta)
 {
 	char *line;
 	while (!meta->has_data && (line = gz_text_head_line(&meta->head))) {
-		enum gz_result result = take_line(meta, line);
+		enum gz_result result = take_meta_line(meta, line);
 		if (result != GZ_OK)
 			return result;
 	}
 	if (!meta->dimension || !meta->has_sizes || !meta->has_type || !meta->has_data)
-		return refuse(meta, "header",
-			      "NDims, DimSize, ElementType and ElementDataFile must be given; is "
-			      "it a MetaImage?");
+		return refuse_meta(
+			meta, "header",
+			"NDims, DimSize, ElementType and ElementDataFile must be given; is "
+			"it a MetaImage?");
 	return GZ_OK;
 }
 
@@ -260,13 +264,13 @@ static enum gz_result use_letters(struct metaimage *meta)
 				if (meta->anatomical[axis] == from[i][k])
 					d[i] = sign[i][k];
 		if (d[0] == 0 && d[1] == 0 && d[2] == 0)
-			return refuse(meta, "AnatomicalOrientation",
-				      "write three of R or L, A or P, I or S");
+			return refuse_meta(meta, "AnatomicalOrientation",
+					   "write three of R or L, A or P, I or S");
 	}
 	return GZ_OK;
 }
 
-static enum gz_result finish_layout(struct metaimage *meta)
+static enum gz_result finish_meta_layout(struct metaimage *meta)
 {
 	memcpy(meta->layout.dims, meta->sizes, sizeof meta->layout.dims);
 	for (int i = 3; i < meta->dimension; i++)
@@ -279,18 +283,26 @@ static enum gz_result finish_layout(struct metaimage *meta)
 	return !meta->has_matrix && meta->anatomical[0] ? use_letters(meta) : GZ_OK;
 }
 
-enum gz_result gz_volume_load_metaimage(const char *path, const struct gz_loading *loading,
-					const struct gz_log *log, struct gz_volume *out_volume)
+static enum gz_result load_metaimage(const struct gz_volume_file *file,
+				     struct gz_volume *out_volume)
 {
 	struct metaimage meta = { .layout = gz_import_layout_default() };
-	enum gz_result result = gz_text_head_open(&meta.head, path, log);
+	enum gz_result result = gz_text_head_open(&meta.head, file->path, file->log);
 	if (result == GZ_OK)
-		result = read_tags(&meta);
+		result = read_meta_tags(&meta);
 	if (result == GZ_OK)
-		result = finish_layout(&meta);
+		result = finish_meta_layout(&meta);
 	if (result == GZ_OK)
-		result = gz_voxel_source_import(&meta.source, &meta.layout, loading, log,
-						out_volume);
+		result = gz_voxel_source_import(&meta.source, &meta.layout, file, out_volume);
 	gz_text_head_free(&meta.head);
 	return result;
 }
+
+const struct gz_volume_format gz_format_metaimage = {
+	.name = "MetaImage",
+	.endings = { ".mhd", ".mha" },
+	.layout = GZ_LAYOUT_IN_FILE,
+	.load = load_metaimage,
+	.limits = "one number a voxel, data in one file, no data as text; of a series the first "
+		  "volume",
+};

@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "render/data/volume_import.h"
-#include "render/data/volume_loaders.h"
+#include "render/data/format.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -25,43 +24,45 @@ struct nifti_file {
 	struct gz_import_layout layout;
 };
 
-static enum gz_result refuse(const struct nifti_file *file, enum gz_result result, const char *what)
+static enum gz_result refuse_nifti(const struct nifti_file *file, enum gz_result result,
+				   const char *what)
 {
 	gz_err(file->log, "%s: %s", file->path, what);
 	return result;
 }
 
-static int32_t header_size_of(const nifti_1_header *header, bool swapped)
+static int32_t nifti_header_size(const nifti_1_header *header, bool swapped)
 {
 	uint32_t size = (uint32_t)header->sizeof_hdr;
 	return (int32_t)(swapped ? __builtin_bswap32(size) : size);
 }
 
 /* Byte order by sizeof_hdr, then the magic word ("MAGIC"). */
-static enum gz_result check_kind(struct nifti_file *file)
+static enum gz_result check_nifti_kind(struct nifti_file *file)
 {
 	nifti_1_header *header = &file->header;
-	const uint16_t one = 1;
-	bool host_big_endian = *(const uint8_t *)&one == 0;
-	bool swapped = header_size_of(header, false) != HEADER_SIZE;
-	if (header_size_of(header, false) == HEADER2_SIZE ||
-	    header_size_of(header, true) == HEADER2_SIZE)
-		return refuse(file, GZ_ERR_UNSUPPORTED,
-			      "NIfTI-2 is not read; convert it to NIfTI-1");
-	if (header_size_of(header, swapped) != HEADER_SIZE)
-		return refuse(file, GZ_ERR_FORMAT, "no NIfTI header; is it really a .nii file?");
+	bool swapped = nifti_header_size(header, false) != HEADER_SIZE;
+	if (nifti_header_size(header, false) == HEADER2_SIZE ||
+	    nifti_header_size(header, true) == HEADER2_SIZE)
+		return refuse_nifti(file, GZ_ERR_UNSUPPORTED,
+				    "NIfTI-2 is not read; convert it to NIfTI-1");
+	if (nifti_header_size(header, swapped) != HEADER_SIZE)
+		return refuse_nifti(file, GZ_ERR_FORMAT,
+				    "no NIfTI header; is it really a .nii file?");
 	if (memcmp(header->magic, "ni1", 4) == 0)
-		return refuse(file, GZ_ERR_UNSUPPORTED,
-			      "header and data in two files are not read; convert it to one .nii");
+		return refuse_nifti(
+			file, GZ_ERR_UNSUPPORTED,
+			"header and data in two files are not read; convert it to one .nii");
 	if (memcmp(header->magic, "n+1", 4) != 0)
-		return refuse(file, GZ_ERR_FORMAT, "no NIfTI magic word; is it an Analyze file?");
+		return refuse_nifti(file, GZ_ERR_FORMAT,
+				    "no NIfTI magic word; is it an Analyze file?");
 	if (swapped)
 		swap_nifti_header(header, 1);
-	file->layout.big_endian = host_big_endian != swapped;
+	file->layout.big_endian = gz_host_big_endian() != swapped;
 	return GZ_OK;
 }
 
-static enum gz_result take_dims(struct nifti_file *file)
+static enum gz_result take_nifti_dims(struct nifti_file *file)
 {
 	const short *dim = file->header.dim;
 	if (dim[0] < 3 || dim[0] > 7) {
@@ -87,7 +88,7 @@ static enum gz_result take_dims(struct nifti_file *file)
 	return GZ_OK;
 }
 
-static enum gz_result take_type(struct nifti_file *file)
+static enum gz_result take_nifti_type(struct nifti_file *file)
 {
 	static const struct {
 		short code;
@@ -111,7 +112,7 @@ static enum gz_result take_type(struct nifti_file *file)
 }
 
 /* "DATA SCALING": a slope of 0 means none. Some writers mean the same by NaN. */
-static void take_scaling(struct nifti_file *file)
+static void take_nifti_scaling(struct nifti_file *file)
 {
 	float slope = file->header.scl_slope, intercept = file->header.scl_inter;
 	if (slope == 0 || !isfinite(slope) || !isfinite(intercept))
@@ -121,7 +122,7 @@ static void take_scaling(struct nifti_file *file)
 }
 
 /* Columns of the matrix are where the axes point, in RAS+; their lengths are the spacing. */
-static void take_sform(struct nifti_file *file)
+static void take_nifti_sform(struct nifti_file *file)
 {
 	const float *rows[3] = { file->header.srow_x, file->header.srow_y, file->header.srow_z };
 	for (int axis = 0; axis < 3; axis++) {
@@ -135,7 +136,7 @@ static void take_sform(struct nifti_file *file)
 	}
 }
 
-static void take_qform(struct nifti_file *file)
+static void take_nifti_qform(struct nifti_file *file)
 {
 	const nifti_1_header *h = &file->header;
 	float qfac = h->pixdim[0] < 0 ? -1.0f : 1.0f;
@@ -148,20 +149,20 @@ static void take_qform(struct nifti_file *file)
 
 /* "3D IMAGE (VOLUME) ORIENTATION AND LOCATION IN SPACE": method 3 before 2; method 1 tells no
  * orientation. */
-static void take_orientation(struct nifti_file *file)
+static void take_nifti_orientation(struct nifti_file *file)
 {
 	for (int axis = 0; axis < 3; axis++)
 		file->layout.spacing[axis] = (double)file->header.pixdim[axis + 1];
 	file->layout.oriented = true;
 	if (file->header.sform_code > 0)
-		take_sform(file);
+		take_nifti_sform(file);
 	else if (file->header.qform_code > 0)
-		take_qform(file);
+		take_nifti_qform(file);
 	else
 		file->layout.oriented = false;
 }
 
-static enum gz_result take_offset(struct nifti_file *file, uint64_t *out_offset)
+static enum gz_result take_nifti_offset(struct nifti_file *file, uint64_t *out_offset)
 {
 	float offset = file->header.vox_offset;
 	if (!(offset >= HEADER_SIZE && offset <= OFFSET_MAX) || offset != floorf(offset)) {
@@ -173,44 +174,55 @@ static enum gz_result take_offset(struct nifti_file *file, uint64_t *out_offset)
 	return GZ_OK;
 }
 
-static enum gz_result read_header(struct nifti_file *file, struct gz_byte_stream *stream,
-				  uint64_t *out_offset)
+static enum gz_result read_nifti_header(struct nifti_file *file, struct gz_byte_stream *stream,
+					uint64_t *out_offset)
 {
 	size_t got = 0;
 	enum gz_result result =
 		gz_byte_stream_read(stream, &file->header, sizeof file->header, &got);
 	if (result == GZ_OK && got < sizeof file->header)
-		result = refuse(file, GZ_ERR_FORMAT,
-				"truncated: shorter than a NIfTI header; fetch it again");
+		result = refuse_nifti(file, GZ_ERR_FORMAT,
+				      "truncated: shorter than a NIfTI header; fetch it again");
 	if (result == GZ_OK)
-		result = check_kind(file);
+		result = check_nifti_kind(file);
 	if (result == GZ_OK)
-		result = take_dims(file);
+		result = take_nifti_dims(file);
 	if (result == GZ_OK)
-		result = take_type(file);
+		result = take_nifti_type(file);
 	if (result == GZ_OK)
-		result = take_offset(file, out_offset);
+		result = take_nifti_offset(file, out_offset);
 	if (result == GZ_OK) {
-		take_scaling(file);
-		take_orientation(file);
+		take_nifti_scaling(file);
+		take_nifti_orientation(file);
 	}
 	return result;
 }
 
-enum gz_result gz_volume_load_nifti(const char *path, const struct gz_loading *loading,
-				    const struct gz_log *log, struct gz_volume *out_volume)
+static enum gz_result load_nifti(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
-	struct nifti_file file = { .path = path, .log = log, .layout = gz_import_layout_default() };
-	enum gz_coding coding = gz_path_ends(path, ".gz") ? GZ_CODING_ZLIB : GZ_CODING_PLAIN;
+	struct nifti_file nifti = { .path = file->path,
+				    .log = file->log,
+				    .layout = gz_import_layout_default() };
+	enum gz_coding coding = gz_path_ends(file->path, ".gz") ? GZ_CODING_ZLIB : GZ_CODING_PLAIN;
 	struct gz_byte_stream *stream = NULL;
 	uint64_t offset = 0;
-	enum gz_result result = gz_byte_stream_open(path, coding, 0, log, &stream);
+	enum gz_result result = gz_byte_stream_open(file->path, coding, 0, file->log, &stream);
 	if (result == GZ_OK)
-		result = read_header(&file, stream, &offset);
+		result = read_nifti_header(&nifti, stream, &offset);
 	if (result == GZ_OK)
 		result = gz_byte_stream_skip(stream, offset - HEADER_SIZE);
 	if (result == GZ_OK)
-		result = gz_volume_import(stream, &file.layout, path, loading, log, out_volume);
+		result = gz_volume_import(stream, &nifti.layout, file, out_volume);
 	gz_byte_stream_close(&stream);
 	return result;
 }
+
+const struct gz_volume_format gz_format_nifti = {
+	.name = "NIfTI-1",
+	.endings = { ".nii", ".nii.gz" },
+	.layout = GZ_LAYOUT_IN_FILE,
+	.load = load_nifti,
+	.limits =
+		"no NIfTI-2, no header and data in two files, one number a voxel, integers of up to"
+		" 32 bits; of a series the first volume",
+};

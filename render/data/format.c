@@ -1,0 +1,83 @@
+#include "render/data/format.h"
+
+#include "base/file.h"
+#include "base/text.h"
+
+#define GZ_LOG_MODULE "volume"
+
+const struct gz_volume_format *const gz_volume_formats[] = {
+	&gz_format_nifti, &gz_format_nrrd, &gz_format_metaimage,     &gz_format_bricks,
+	&gz_format_dicom, &gz_format_raw,  &gz_format_raw_by_layout,
+};
+const size_t gz_volume_format_count = sizeof gz_volume_formats / sizeof gz_volume_formats[0];
+
+static bool has_ending(const struct gz_volume_format *format, const char *path)
+{
+	for (size_t i = 0; i < GZ_FORMAT_ENDINGS_MAX && format->endings[i]; i++)
+		if (gz_path_ends(path, format->endings[i]))
+			return true;
+	return false;
+}
+
+const struct gz_volume_format *gz_volume_format_by_name(const char *path)
+{
+	for (size_t i = 0; i < gz_volume_format_count; i++)
+		if (has_ending(gz_volume_formats[i], path))
+			return gz_volume_formats[i];
+	return NULL;
+}
+
+const struct gz_volume_format *gz_volume_format_by_content(const char *path)
+{
+	for (size_t i = 0; i < gz_volume_format_count; i++)
+		if (gz_volume_formats[i]->recognise && gz_volume_formats[i]->recognise(path))
+			return gz_volume_formats[i];
+	return NULL;
+}
+
+gz_volume_writer *gz_volume_writer_by_name(const char *path)
+{
+	for (size_t i = 0; i < gz_volume_format_count; i++)
+		if (gz_volume_formats[i]->write &&
+		    gz_path_ends(path, gz_volume_formats[i]->endings[0]))
+			return gz_volume_formats[i]->write;
+	return NULL;
+}
+
+static enum gz_result refuse_unknown(const struct gz_volume_file *file)
+{
+	struct gz_text endings = { 0 };
+	for (size_t i = 0; i < gz_volume_format_count; i++)
+		for (size_t k = 0; k < GZ_FORMAT_ENDINGS_MAX && gz_volume_formats[i]->endings[k];
+		     k++)
+			if (gz_volume_formats[i]->layout != GZ_LAYOUT_IF_GIVEN)
+				gz_text_add(&endings, "%s, ", gz_volume_formats[i]->endings[k]);
+	gz_err(file->log, "%s: unknown kind of volume; %sDICOM files and their folders are read",
+	       file->path, endings.bytes ? endings.bytes : "");
+	gz_text_free(&endings);
+	return GZ_ERR_UNSUPPORTED;
+}
+
+enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
+			      const struct gz_loading *loading, const struct gz_log *log,
+			      struct gz_volume *out_volume)
+{
+	const struct gz_volume_file file = { path, raw, loading, log };
+	const struct gz_volume_format *format = gz_volume_format_by_name(path);
+	if (format && format->layout == GZ_LAYOUT_IF_GIVEN && !raw)
+		format = NULL;
+	/* Names of DICOM files often say nothing. */
+	if (!format && !raw)
+		format = gz_volume_format_by_content(path);
+	if (!format)
+		return refuse_unknown(&file);
+	if (raw && format->layout == GZ_LAYOUT_IN_FILE) {
+		gz_err(log, "%s: has a header; leave out dims, type, endian and spacing", path);
+		return GZ_ERR_INVAL;
+	}
+	if (!raw && format->layout == GZ_LAYOUT_GIVEN) {
+		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
+		return GZ_ERR_INVAL;
+	}
+	return format->load(&file, out_volume);
+}

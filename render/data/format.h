@@ -1,0 +1,107 @@
+/**
+ * @file
+ * The volume formats: one const row and one source file each. A new format is a file format_NAME.c
+ * with its row, and the row's place in gz_volume_formats[].
+ */
+#ifndef GZ_RENDER_DATA_FORMAT_H
+#define GZ_RENDER_DATA_FORMAT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/data/volume.h"
+#include "render/data/volume_import.h"
+
+/** Where the layout of the voxels comes from: dims, type, byte order and spacing. */
+enum gz_layout_source {
+	GZ_LAYOUT_IN_FILE,  /**< the file has a header; giving a layout is an error */
+	GZ_LAYOUT_GIVEN,    /**< the user must give it */
+	GZ_LAYOUT_IF_GIVEN, /**< the file is of this format only if the user gives a layout */
+};
+
+/** Most endings of a format's file names. */
+#define GZ_FORMAT_ENDINGS_MAX 6
+
+/** Writes a volume to @p path; as gz_bricks_write(). */
+typedef enum gz_result gz_volume_writer(const struct gz_volume *volume, const char *path,
+					const struct gz_loading *loading, const struct gz_log *log);
+
+/** One format. Rows are const and have static storage. */
+struct gz_volume_format {
+	const char *name; /**< "NIfTI-1" */
+	/** Endings of file names, ".nii"; unused ones are NULL. Case does not matter. */
+	const char *endings[GZ_FORMAT_ENDINGS_MAX];
+	enum gz_layout_source layout;
+
+	/** Optional: whether @p path is of the format by its content. Called for names whose ending
+	 *  no format has. */
+	bool (*recognise)(const char *path);
+
+	/**
+	 * Load a volume. On failure it logs the reason, except for GZ_ERR_CANCELLED.
+	 *
+	 * @param file             its raw layout is set only if the format needs one
+	 * @param[out] out_volume  written on GZ_OK
+	 */
+	enum gz_result (*load)(const struct gz_volume_file *file, struct gz_volume *out_volume);
+
+	/** Optional: writes files that end in endings[0]. */
+	gz_volume_writer *write;
+
+	const char *limits; /**< what is not read, for people */
+};
+
+/** All formats. If several have an ending of a name, the first counts: ".nii.gz" before ".gz". */
+extern const struct gz_volume_format *const gz_volume_formats[];
+extern const size_t gz_volume_format_count;
+
+/** The format of a file by the ending of its name; NULL if no format has it. */
+const struct gz_volume_format *gz_volume_format_by_name(const char *path);
+
+/** The format of a file by its content; NULL if no format recognises it. Opens the file. */
+const struct gz_volume_format *gz_volume_format_by_content(const char *path);
+
+/** The writer for files that end as @p path does; NULL if there is none. */
+gz_volume_writer *gz_volume_writer_by_name(const char *path);
+
+/** The rows. */
+extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_format_metaimage,
+	gz_format_nifti, gz_format_nrrd, gz_format_raw, gz_format_raw_by_layout;
+
+/**
+ * Write @p volume and its coarser levels to @p path, under another name until it is whole.
+ *
+ * @param volume   with voxels; if these are in a scratch file, so are those of the levels
+ * @param path     replaced if it exists
+ * @param loading  told how far it is, may stop it; its scratch is where the levels are kept, NULL
+ * for memory: an eighth of the volume, and an eighth of that
+ * @retval GZ_ERR_INVAL      @p volume has no voxels
+ * @retval GZ_ERR_IO         @p path cannot be written; logged
+ * @retval GZ_ERR_FULL       the disk is full; logged
+ * @retval GZ_ERR_NO_MEM     no room for the levels; logged
+ * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ *
+ * On failure nothing is left behind.
+ */
+enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
+			       const struct gz_loading *loading, const struct gz_log *log);
+
+/**
+ * Write @p volume as NRRD, encoding raw, under another name until it is whole. NRRD cannot say that
+ * values are scaled, so that the values themselves are written: as integers of 8 or 16 bits where
+ * all of them are such, those with a negative intercept signed; else as floats.
+ *
+ * @param loading  told how far it is, may stop it
+ * @retval GZ_ERR_INVAL        @p volume has no voxels
+ * @retval GZ_ERR_IO           @p path cannot be written; logged
+ * @retval GZ_ERR_FULL         the disk is full; logged
+ * @retval GZ_ERR_CANCELLED    @p loading said so; not logged
+ *
+ * On failure nothing is left behind.
+ */
+enum gz_result gz_nrrd_write(const struct gz_volume *volume, const char *path,
+			     const struct gz_loading *loading, const struct gz_log *log);
+
+#endif

@@ -1,0 +1,551 @@
+/* NRRD, by its definition at teem.sourceforge.net/nrrd/format.html, to which the section numbers
+ * refer. Teem itself is not used: it reads and converts whole arrays, which takes the volume's
+ * memory twice over. */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "render/data/format.h"
+#include "render/data/text_head.h"
+#include "render/picture/vector.h"
+
+#define GZ_LOG_MODULE "volume"
+
+#define AXES_MAX 16 /* NRRD_DIM_MAX */
+#define BLANKS   " \t"
+
+struct nrrd {
+	struct gz_text_head head;
+	struct gz_import_layout layout;
+	struct gz_voxel_source source;
+	int dimension; /* 0 = not given yet */
+	int sizes[AXES_MAX];
+	double spacings[AXES_MAX];
+	double directions[AXES_MAX][3]; /* as written; NaN: none */
+	double sign[3];                 /* of the written space in RAS+ */
+	bool has_type, has_sizes, has_encoding, has_endian, has_spacings, has_directions;
+	bool anatomical, values_first; /* the first axis holds the parts of a value */
+	bool detached;
+	int line_skip;
+};
+
+static enum gz_result refuse_nrrd(struct nrrd *nrrd, const char *key, const char *what)
+{
+	return gz_text_head_refuse(&nrrd->head, key, what);
+}
+
+static enum gz_result refuse_nrrd_unsupported(struct nrrd *nrrd, const char *key, const char *what)
+{
+	(void)gz_text_head_refuse(&nrrd->head, key, what);
+	return GZ_ERR_UNSUPPORTED;
+}
+
+/* Section 5.1, "type". */
+static enum gz_result take_nrrd_type(struct nrrd *nrrd, char *value)
+{
+	static const struct {
+		const char *name;
+		enum gz_raw_type type;
+	} types[] = {
+		{ "uchar", GZ_RAW_UINT8 },
+		{ "unsigned char", GZ_RAW_UINT8 },
+		{ "uint8", GZ_RAW_UINT8 },
+		{ "uint8_t", GZ_RAW_UINT8 },
+		{ "signed char", GZ_RAW_INT8 },
+		{ "int8", GZ_RAW_INT8 },
+		{ "int8_t", GZ_RAW_INT8 },
+		{ "ushort", GZ_RAW_UINT16 },
+		{ "unsigned short", GZ_RAW_UINT16 },
+		{ "unsigned short int", GZ_RAW_UINT16 },
+		{ "uint16", GZ_RAW_UINT16 },
+		{ "uint16_t", GZ_RAW_UINT16 },
+		{ "short", GZ_RAW_INT16 },
+		{ "short int", GZ_RAW_INT16 },
+		{ "signed short", GZ_RAW_INT16 },
+		{ "signed short int", GZ_RAW_INT16 },
+		{ "int16", GZ_RAW_INT16 },
+		{ "int16_t", GZ_RAW_INT16 },
+		{ "uint", GZ_RAW_UINT32 },
+		{ "unsigned int", GZ_RAW_UINT32 },
+		{ "uint32", GZ_RAW_UINT32 },
+		{ "uint32_t", GZ_RAW_UINT32 },
+		{ "int", GZ_RAW_INT32 },
+		{ "signed int", GZ_RAW_INT32 },
+		{ "int32", GZ_RAW_INT32 },
+		{ "int32_t", GZ_RAW_INT32 },
+		{ "float", GZ_RAW_FLOAT32 },
+		{ "double", GZ_RAW_FLOAT64 },
+	};
+	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+		if (strcasecmp(value, types[i].name) == 0) {
+			nrrd->layout.type = types[i].type;
+			nrrd->has_type = true;
+			return GZ_OK;
+		}
+	}
+	return refuse_nrrd_unsupported(nrrd, "type",
+				       "not read; 8 to 32 bit integers, float and double are");
+}
+
+static enum gz_result take_nrrd_dimension(struct nrrd *nrrd, char *value)
+{
+	if (!gz_text_wholes(value, &nrrd->dimension, 1) || nrrd->dimension < 1 ||
+	    nrrd->dimension > AXES_MAX) {
+		nrrd->dimension = 0;
+		return refuse_nrrd(nrrd, "dimension", "must be a number from 1 to 16");
+	}
+	if (nrrd->dimension < 3)
+		return refuse_nrrd_unsupported(nrrd, "dimension", "less than 3: this is no volume");
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_sizes(struct nrrd *nrrd, char *value)
+{
+	if (!gz_text_wholes(value, nrrd->sizes, nrrd->dimension))
+		return refuse_nrrd(nrrd, "sizes", "write one whole number an axis");
+	nrrd->has_sizes = true;
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_spacings(struct nrrd *nrrd, char *value)
+{
+	for (int i = 0; i < nrrd->dimension; i++) {
+		char *word = gz_number_next_word(&value, BLANKS);
+		nrrd->spacings[i] = NAN;
+		if (!word ||
+		    (strcasecmp(word, "nan") != 0 && !gz_number_parse(word, &nrrd->spacings[i])))
+			return refuse_nrrd(nrrd, "spacings", "write one number an axis");
+	}
+	if (gz_number_next_word(&value, BLANKS))
+		return refuse_nrrd(nrrd, "spacings", "more numbers than axes");
+	nrrd->has_spacings = true;
+	return GZ_OK;
+}
+
+/* One "(x,y,z)" or "none" off the front of *text. */
+static bool take_nrrd_vector(char **text, double out[3])
+{
+	char *at = *text + strspn(*text, BLANKS);
+	if (strncasecmp(at, "none", 4) == 0) {
+		out[0] = out[1] = out[2] = NAN;
+		*text = at + 4;
+		return true;
+	}
+	char *close = strchr(at, ')');
+	if (*at != '(' || !close)
+		return false;
+	*close = '\0';
+	*text = close + 1;
+	for (char *c = at; *c; c++)
+		*c = *c == ',' ? ' ' : *c;
+	return gz_text_numbers(at + 1, out, 3);
+}
+
+static enum gz_result take_nrrd_directions(struct nrrd *nrrd, char *value)
+{
+	for (int i = 0; i < nrrd->dimension; i++)
+		if (!take_nrrd_vector(&value, nrrd->directions[i]))
+			return refuse_nrrd(nrrd, "space directions",
+					   "write \"(x,y,z)\" or \"none\" for each axis");
+	if (*gz_text_trim(value))
+		return refuse_nrrd(nrrd, "space directions", "more vectors than axes");
+	nrrd->has_directions = true;
+	return GZ_OK;
+}
+
+/* Section 5.2, "space": the signs that turn its x, y, z to right, anterior, superior. */
+static enum gz_result take_nrrd_space(struct nrrd *nrrd, char *value)
+{
+	static const struct {
+		const char *names[2];
+		double sign[3];
+		bool anatomical;
+	} spaces[] = {
+		{ { "right-anterior-superior", "RAS" }, { 1, 1, 1 }, true },
+		{ { "left-anterior-superior", "LAS" }, { -1, 1, 1 }, true },
+		{ { "left-posterior-superior", "LPS" }, { -1, -1, 1 }, true },
+		{ { "scanner-xyz", "scanner-xyz" }, { 1, 1, 1 }, false },
+		{ { "3D-right-handed", "3D-right-handed" }, { 1, 1, 1 }, false },
+		{ { "3D-left-handed", "3D-left-handed" }, { 1, 1, 1 }, false },
+	};
+	for (size_t i = 0; i < sizeof spaces / sizeof spaces[0]; i++) {
+		if (strcasecmp(value, spaces[i].names[0]) == 0 ||
+		    strcasecmp(value, spaces[i].names[1]) == 0) {
+			memcpy(nrrd->sign, spaces[i].sign, sizeof nrrd->sign);
+			nrrd->anatomical = spaces[i].anatomical;
+			return GZ_OK;
+		}
+	}
+	return refuse_nrrd_unsupported(nrrd, "space",
+				       "not read; RAS, LAS and LPS in three dimensions "
+				       "are");
+}
+
+static enum gz_result take_nrrd_space_dimension(struct nrrd *nrrd, char *value)
+{
+	int dimension = 0;
+	if (!gz_text_wholes(value, &dimension, 1) || dimension != 3)
+		return refuse_nrrd_unsupported(nrrd, "space dimension", "only 3 is read");
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_endian(struct nrrd *nrrd, char *value)
+{
+	nrrd->layout.big_endian = strcasecmp(value, "big") == 0;
+	nrrd->has_endian = true;
+	if (!nrrd->layout.big_endian && strcasecmp(value, "little") != 0)
+		return refuse_nrrd(nrrd, "endian", "write little or big");
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_encoding(struct nrrd *nrrd, char *value)
+{
+	nrrd->has_encoding = true;
+	if (strcasecmp(value, "raw") == 0)
+		nrrd->source.coding = GZ_CODING_PLAIN;
+	else if (strcasecmp(value, "gzip") == 0 || strcasecmp(value, "gz") == 0)
+		nrrd->source.coding = GZ_CODING_ZLIB;
+	else
+		return refuse_nrrd_unsupported(nrrd, "encoding",
+					       "not read; convert the file to raw or gzip");
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_data_file(struct nrrd *nrrd, char *value)
+{
+	if (strncmp(value, "LIST", 4) == 0 || strchr(value, '%'))
+		return refuse_nrrd_unsupported(nrrd, "data file",
+					       "several files are not read; join them into one");
+	if (!*value || gz_path_beside(nrrd->head.path, value, nrrd->source.path,
+				      sizeof nrrd->source.path) != GZ_OK)
+		return refuse_nrrd(nrrd, "data file", "no name, or one too long");
+	nrrd->detached = true;
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_line_skip(struct nrrd *nrrd, char *value)
+{
+	if (!gz_text_wholes(value, &nrrd->line_skip, 1) || nrrd->line_skip < 0)
+		return refuse_nrrd(nrrd, "line skip", "must be a whole number, 0 or more");
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_byte_skip(struct nrrd *nrrd, char *value)
+{
+	long long skip;
+	char *word = gz_number_next_word(&value, BLANKS);
+	if (!word || !gz_number_parse_whole(word, &skip) || skip < GZ_SKIP_TO_END ||
+	    gz_number_next_word(&value, BLANKS))
+		return refuse_nrrd(nrrd, "byte skip", "must be a whole number, -1 or more");
+	nrrd->source.skip = skip;
+	return GZ_OK;
+}
+
+/* Section 5.1, "kinds": whether the first axis runs within a value rather than through space. */
+static enum gz_result take_nrrd_kinds(struct nrrd *nrrd, char *value)
+{
+	static const char *const through_space[] = { "domain", "space", "none", "???" };
+	char *first = gz_number_next_word(&value, BLANKS);
+	nrrd->values_first = first != NULL;
+	for (size_t i = 0; first && i < sizeof through_space / sizeof through_space[0]; i++)
+		if (strcasecmp(first, through_space[i]) == 0)
+			nrrd->values_first = false;
+	return GZ_OK;
+}
+
+struct field {
+	const char *names[2];
+	bool needs_dimension;
+	enum gz_result (*take)(struct nrrd *nrrd, char *value);
+};
+
+/* Fields that say nothing of layout (content, units, labels, …) are passed over. */
+static const struct field fields[] = {
+	{ { "type", "type" }, false, take_nrrd_type },
+	{ { "dimension", "dimension" }, false, take_nrrd_dimension },
+	{ { "sizes", "sizes" }, true, take_nrrd_sizes },
+	{ { "spacings", "spacings" }, true, take_nrrd_spacings },
+	{ { "space", "space" }, false, take_nrrd_space },
+	{ { "space dimension", "space dimension" }, false, take_nrrd_space_dimension },
+	{ { "space directions", "space directions" }, true, take_nrrd_directions },
+	{ { "kinds", "kinds" }, false, take_nrrd_kinds },
+	{ { "endian", "endian" }, false, take_nrrd_endian },
+	{ { "encoding", "encoding" }, false, take_nrrd_encoding },
+	{ { "data file", "datafile" }, false, take_nrrd_data_file },
+	{ { "line skip", "lineskip" }, false, take_nrrd_line_skip },
+	{ { "byte skip", "byteskip" }, false, take_nrrd_byte_skip },
+};
+
+static enum gz_result take_nrrd_line(struct nrrd *nrrd, char *line)
+{
+	char *colon = strchr(line, ':');
+	if (line[0] == '#' || (colon && colon[1] == '=')) /* a comment, a key with its value */
+		return GZ_OK;
+	if (!colon)
+		return refuse_nrrd(nrrd, line,
+				   "neither a field nor a comment; write \"field: value\"");
+	*colon = '\0';
+	const char *name = gz_text_trim(line);
+	for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+		if (strcasecmp(name, fields[i].names[0]) != 0 &&
+		    strcasecmp(name, fields[i].names[1]) != 0)
+			continue;
+		if (fields[i].needs_dimension && nrrd->dimension == 0)
+			return refuse_nrrd(nrrd, name, "comes before dimension; put it below");
+		return fields[i].take(nrrd, gz_text_trim(colon + 1));
+	}
+	return GZ_OK;
+}
+
+/* Up to the blank line, or, in a header of its own, the end of the file. */
+static enum gz_result read_nrrd_fields(struct nrrd *nrrd)
+{
+	char *line = gz_text_head_line(&nrrd->head);
+	if (!line || strncmp(line, "NRRD000", 7) != 0)
+		return refuse_nrrd(nrrd, "NRRD", "no magic word; is it really an NRRD file?");
+	if (line[7] < '1' || line[7] > '5' || line[8])
+		return refuse_nrrd_unsupported(nrrd, "NRRD", "versions 1 to 5 are read");
+	while ((line = gz_text_head_line(&nrrd->head)) && *line) {
+		enum gz_result result = take_nrrd_line(nrrd, line);
+		if (result != GZ_OK)
+			return result;
+	}
+	if (!line && !nrrd->detached)
+		return refuse_nrrd(nrrd, "header",
+				   "no blank line ends it within 256 KiB; is the file cut off?");
+	return GZ_OK;
+}
+
+static enum gz_result check_nrrd_complete(struct nrrd *nrrd)
+{
+	if (!nrrd->dimension || !nrrd->has_type || !nrrd->has_sizes || !nrrd->has_encoding)
+		return refuse_nrrd(nrrd, "header",
+				   "type, dimension, sizes and encoding must be given");
+	if (gz_raw_type_size(nrrd->layout.type) > 1 && !nrrd->has_endian)
+		return refuse_nrrd(nrrd, "header", "endian must be given for this type");
+	return GZ_OK;
+}
+
+/* The first of the three axes that run through space. */
+static int first_space_axis(const struct nrrd *nrrd)
+{
+	int first = nrrd->values_first ? 1 : 0;
+	if (nrrd->has_directions)
+		for (first = 0; first < nrrd->dimension && isnan(nrrd->directions[first][0]);)
+			first++;
+	return first;
+}
+
+static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
+{
+	int first = first_space_axis(nrrd);
+	for (int i = 0; i < first && i < nrrd->dimension; i++)
+		if (nrrd->sizes[i] != 1)
+			return refuse_nrrd_unsupported(nrrd, "sizes",
+						       "several numbers a voxel; one is read");
+	if (first + 3 > nrrd->dimension)
+		return refuse_nrrd_unsupported(nrrd, "sizes",
+					       "fewer than three axes through space");
+	for (int i = first + 3; i < nrrd->dimension; i++)
+		nrrd->layout.more_follows |= nrrd->sizes[i] != 1;
+	if (nrrd->layout.more_follows)
+		gz_warn(nrrd->head.log, "%s: a series of volumes; the first is shown",
+			nrrd->head.path);
+	memcpy(nrrd->layout.dims, nrrd->sizes + first, sizeof nrrd->layout.dims);
+	if (nrrd->has_spacings)
+		memcpy(nrrd->layout.spacing, nrrd->spacings + first, sizeof nrrd->layout.spacing);
+	if (!nrrd->has_directions)
+		return GZ_OK;
+	for (int axis = 0; axis < 3; axis++) {
+		const double *d = nrrd->directions[first + axis];
+		nrrd->layout.spacing[axis] = gz_length3(d);
+		for (int i = 0; i < 3; i++)
+			nrrd->layout.direction[axis][i] = nrrd->sign[i] * d[i];
+	}
+	nrrd->layout.oriented = nrrd->anatomical;
+	return GZ_OK;
+}
+
+/* Lines are skipped before decoding, bytes after it (section 4, "line skip"). */
+static enum gz_result skip_nrrd_lines(struct nrrd *nrrd)
+{
+	struct gz_text_head data = { 0 };
+	if (nrrd->line_skip == 0)
+		return GZ_OK;
+	enum gz_result result = gz_text_head_open(&data, nrrd->source.path, nrrd->head.log);
+	if (result == GZ_OK) {
+		data.at = (size_t)nrrd->source.offset;
+		for (int i = 0; i < nrrd->line_skip && result == GZ_OK; i++)
+			if (!gz_text_head_line(&data))
+				result = refuse_nrrd(nrrd, "line skip",
+						     "more lines than the file has");
+		nrrd->source.offset = data.at;
+	}
+	gz_text_head_free(&data);
+	return result;
+}
+
+static enum gz_result load_nrrd(const struct gz_volume_file *file, struct gz_volume *out_volume)
+{
+	struct nrrd nrrd = { .layout = gz_import_layout_default(), .sign = { 1, 1, 1 } };
+	enum gz_result result = gz_text_head_open(&nrrd.head, file->path, file->log);
+	if (result == GZ_OK)
+		result = read_nrrd_fields(&nrrd);
+	if (result == GZ_OK)
+		result = check_nrrd_complete(&nrrd);
+	if (result == GZ_OK)
+		result = choose_nrrd_axes(&nrrd);
+	if (result == GZ_OK && !nrrd.detached) {
+		nrrd.source.offset = nrrd.head.at;
+		result = gz_path_beside("", file->path, nrrd.source.path, sizeof nrrd.source.path);
+	}
+	if (result == GZ_OK)
+		result = skip_nrrd_lines(&nrrd);
+	if (result == GZ_OK)
+		result = gz_voxel_source_import(&nrrd.source, &nrrd.layout, file, out_volume);
+	gz_text_head_free(&nrrd.head);
+	return result;
+}
+
+/* Chosen: large beside the cost of a call, a moment on any disk. */
+#define CHUNK_VOXELS ((size_t)1 << 21)
+
+enum { HEADER_SIZE = 512 };
+
+/* What the voxels are written as. */
+struct nrrd_form {
+	const char *name; /* of NRRD's type */
+	size_t size;
+	double least, greatest;
+};
+
+static const struct nrrd_form integers[] = {
+	{ "int8", 1, INT8_MIN, INT8_MAX },
+	{ "uint8", 1, 0, UINT8_MAX },
+	{ "int16", 2, INT16_MIN, INT16_MAX },
+	{ "uint16", 2, 0, UINT16_MAX },
+};
+static const struct nrrd_form floats = { "float", sizeof(float), -DBL_MAX, DBL_MAX };
+
+/* NRRD cannot say that values are scaled, so that they are written as they are: as integers of the
+ * width they are stored in, or a greater one, where all of them are such, else as floats. */
+static const struct nrrd_form *nrrd_form_of(const struct gz_volume *volume)
+{
+	const double low = volume->stored_min + volume->intercept;
+	const double high = volume->stored_max + volume->intercept;
+	if (volume->type == GZ_VOXEL_F32 || volume->slope != 1 ||
+	    volume->intercept != rint(volume->intercept))
+		return &floats;
+	for (size_t i = 0; i < sizeof integers / sizeof integers[0]; i++) {
+		const struct nrrd_form *form = &integers[i];
+		const bool is_signed = form->least < 0;
+		if (form->size >= gz_voxel_size(volume->type) && low >= form->least &&
+		    high <= form->greatest && is_signed == (volume->intercept < 0))
+			return form;
+	}
+	return &floats;
+}
+
+static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_form *form,
+			     char *out, size_t size)
+{
+	const int *dims = volume->dims;
+	const double *s = volume->spacing;
+	return snprintf(out, size,
+			"NRRD0005\ntype: %s\ndimension: 3\n%s: %s\nsizes: %d %d %d\n"
+			"space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n"
+			"endian: %s\nencoding: raw\n\n",
+			form->name, volume->oriented ? "space" : "space dimension",
+			volume->oriented ? "right-anterior-superior" : "3", dims[0], dims[1],
+			dims[2], s[0], s[1], s[2], gz_host_big_endian() ? "big" : "little");
+}
+
+static double stored_value(const struct gz_volume *volume, size_t i)
+{
+	switch (volume->type) {
+	case GZ_VOXEL_U8:
+		return ((const uint8_t *)volume->voxels)[i];
+	case GZ_VOXEL_U16:
+		return ((const uint16_t *)volume->voxels)[i];
+	case GZ_VOXEL_F32:
+	case GZ_VOXEL_TYPE_COUNT:
+		break;
+	}
+	return (double)((const float *)volume->voxels)[i];
+}
+
+/* Values as `form` has them. Negative ones keep their two's complement. */
+static void convert_to_form(const struct gz_volume *volume, const struct nrrd_form *form,
+			    size_t first, size_t count, uint8_t *out)
+{
+	for (size_t i = 0; i < count; i++) {
+		const double value =
+			volume->slope * stored_value(volume, first + i) + volume->intercept;
+		const float real = (float)value;
+		const uint16_t word = form == &floats ? 0 : (uint16_t)(int32_t)value;
+		if (form == &floats)
+			memcpy(out + i * sizeof real, &real, sizeof real);
+		else if (form->size == sizeof word)
+			memcpy(out + i * sizeof word, &word, sizeof word);
+		else
+			out[i] = (uint8_t)word;
+	}
+}
+
+static enum gz_result write_nrrd_voxels(const struct gz_part_file *file,
+					const struct gz_volume *volume,
+					const struct nrrd_form *form, uint64_t offset,
+					const struct gz_loading *loading)
+{
+	const size_t count = gz_volume_voxel_count(volume);
+	uint8_t *chunk = malloc(CHUNK_VOXELS * form->size);
+	enum gz_result result = chunk ? GZ_OK : GZ_ERR_NO_MEM;
+	for (size_t at = 0; at < count && result == GZ_OK; at += CHUNK_VOXELS) {
+		const size_t part = count - at < CHUNK_VOXELS ? count - at : CHUNK_VOXELS;
+		if (!gz_loading_goes_on(loading, (double)at / (double)count, file->path)) {
+			result = GZ_ERR_CANCELLED;
+			break;
+		}
+		convert_to_form(volume, form, at, part, chunk);
+		result = gz_part_file_write(file, chunk, part * form->size,
+					    offset + at * form->size);
+	}
+	free(chunk);
+	return result;
+}
+
+enum gz_result gz_nrrd_write(const struct gz_volume *volume, const char *path,
+			     const struct gz_loading *loading, const struct gz_log *log)
+{
+	char header[HEADER_SIZE];
+	struct gz_part_file file;
+	if (!volume->voxels)
+		return GZ_ERR_INVAL;
+	const struct nrrd_form *form = nrrd_form_of(volume);
+	const int length = print_nrrd_header(volume, form, header, sizeof header);
+	if (length < 0 || (size_t)length >= sizeof header)
+		return GZ_ERR_INVAL;
+	enum gz_result result = gz_part_file_open(&file, path, log);
+	if (result == GZ_OK)
+		result = gz_part_file_write(&file, header, (size_t)length, 0);
+	if (result == GZ_OK)
+		result = write_nrrd_voxels(&file, volume, form, (uint64_t)length, loading);
+	return gz_part_file_close(&file, result);
+}
+
+const struct gz_volume_format gz_format_nrrd = {
+	.name = "NRRD",
+	.endings = { ".nrrd", ".nhdr" },
+	.layout = GZ_LAYOUT_IN_FILE,
+	.load = load_nrrd,
+	.write = gz_nrrd_write,
+	.limits =
+		"encodings raw and gzip only, one number a voxel, data in one file; of a series the"
+		" first volume",
+};
