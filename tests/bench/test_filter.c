@@ -225,7 +225,7 @@ static void log_is_measured_in_samples_and_ms_and_drawn(void **state)
 	assert_true(drawn || strstr(place->said.bytes, "there are no charts"));
 }
 
-static void without_gnuplot_the_numbers_are_told(void **state)
+static void without_gnuplot_the_numbers_are_printed(void **state)
 {
 	struct place *place = *state;
 	const struct making making = { .rate_hz = 250, .count = 5000 };
@@ -263,7 +263,7 @@ static void log_of_an_eye_that_stays_has_jitter_but_no_lag(void **state)
 	assert_false(is_there(place, "out/jitter-over-lag.svg"));
 }
 
-static void logs_that_nothing_can_be_said_of_are_refused(void **state)
+static void logs_without_samples_or_fixations_are_refused(void **state)
 {
 	struct place *place = *state;
 	write_log(place, &(struct making) { .rate_hz = 120, .count = 0 });
@@ -297,10 +297,10 @@ TEST_SUITE(filter)
 		IN_A_PLACE(slow_filter_is_late_also_where_a_saccade_has_a_single_sample),
 		IN_A_PLACE(sweep_of_the_pipeline_has_the_recorded_setting_once),
 		IN_A_PLACE(log_is_measured_in_samples_and_ms_and_drawn),
-		IN_A_PLACE(without_gnuplot_the_numbers_are_told),
+		IN_A_PLACE(without_gnuplot_the_numbers_are_printed),
 		IN_A_PLACE(log_without_a_display_takes_the_default_and_says_so),
 		IN_A_PLACE(log_of_an_eye_that_stays_has_jitter_but_no_lag),
-		IN_A_PLACE(logs_that_nothing_can_be_said_of_are_refused),
+		IN_A_PLACE(logs_without_samples_or_fixations_are_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -56,7 +56,7 @@ static void sweep_is_the_mirrored_s(void **state)
 	gz_gaze_path_free(&path);
 }
 
-static void grid_is_the_middles_of_cells_row_by_row(void **state)
+static void grid_takes_cell_centres_row_by_row(void **state)
 {
 	(void)state;
 	struct gz_gaze_path path = path_of("grid:4x2");
@@ -67,7 +67,7 @@ static void grid_is_the_middles_of_cells_row_by_row(void **state)
 	gz_gaze_path_free(&path);
 }
 
-static void centre_and_a_place_are_one_point(void **state)
+static void centre_and_x_y_are_one_point(void **state)
 {
 	(void)state;
 	struct gz_gaze_path path = path_of("centre");
@@ -145,7 +145,7 @@ static void per_cell_keeps_the_first_point_in_each(void **state)
 	assert_non_null(strstr(captured.last, "--per-cell"));
 }
 
-static void path_that_is_none_is_refused(void **state)
+static void unknown_path_is_refused(void **state)
 {
 	(void)state;
 	static const char *const texts[] = { "",          "sweep",       "sweep:t",
@@ -229,7 +229,7 @@ static void recording_without_valid_gaze_is_refused(void **state)
 	assert_non_null(strstr(captured.last, "holds no valid gaze"));
 }
 
-static void recording_that_is_not_there_or_none_is_refused(void **state)
+static void missing_or_damaged_recording_is_refused(void **state)
 {
 	(void)state;
 	struct gz_gaze_path path = { 0 };
@@ -270,18 +270,18 @@ TEST_SUITE(gaze_path)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(sweep_is_the_mirrored_s, begin),
-		cmocka_unit_test_setup(grid_is_the_middles_of_cells_row_by_row, begin),
-		cmocka_unit_test_setup(centre_and_a_place_are_one_point, begin),
+		cmocka_unit_test_setup(grid_takes_cell_centres_row_by_row, begin),
+		cmocka_unit_test_setup(centre_and_x_y_are_one_point, begin),
 		cmocka_unit_test_setup(
 			random_places_are_those_of_the_seed_and_spread_over_the_picture, begin),
 		cmocka_unit_test_setup(points_take_random_cameras_in_turn, begin),
 		cmocka_unit_test_setup(points_nearer_than_min_move_are_left_out, begin),
 		cmocka_unit_test_setup(per_cell_keeps_the_first_point_in_each, begin),
-		cmocka_unit_test_setup(path_that_is_none_is_refused, begin),
+		cmocka_unit_test_setup(unknown_path_is_refused, begin),
 		cmocka_unit_test_setup(recording_gives_one_point_a_fixation, begin),
 		cmocka_unit_test_setup(recording_by_samples_leaves_out_where_gaze_is_lost, begin),
 		cmocka_unit_test_setup(recording_without_valid_gaze_is_refused, begin),
-		cmocka_unit_test_setup(recording_that_is_not_there_or_none_is_refused, begin),
+		cmocka_unit_test_setup(missing_or_damaged_recording_is_refused, begin),
 		cmocka_unit_test_setup(displays_are_the_same_by_their_angles, begin),
 	};
 	return cmocka_run_group_tests(tests, name_log, remove_log);

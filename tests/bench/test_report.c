@@ -53,7 +53,7 @@ static void free_both(struct gz_study *study, struct gz_summary *summary)
 	gz_study_free(study);
 }
 
-static void variants_are_called_as_people_would(void **state)
+static void variants_have_readable_names(void **state)
 {
 	(void)state;
 	struct gz_study study;
@@ -120,7 +120,7 @@ static void answer_names_the_cheapest_within_the_bound_and_what_it_saves(void **
 	free_both(&study, &summary);
 }
 
-static void answer_where_nothing_is_within_the_bound_is_that_standard_remains(void **state)
+static void without_a_variant_within_the_bound_standard_remains(void **state)
 {
 	(void)state;
 	struct gz_study study;
@@ -406,7 +406,7 @@ static void template_is_filled_from_json(void **state)
 	}
 }
 
-static void template_that_is_wrong_is_refused(void **state)
+static void wrong_template_is_refused(void **state)
 {
 	(void)state;
 	static const char *const pages[] = { "{{t",
@@ -459,11 +459,11 @@ static void chart_gets_colours_for_dark_pages_and_stays_as_it_is(void **state)
 TEST_SUITE(report)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(variants_are_called_as_people_would),
+		cmocka_unit_test(variants_have_readable_names),
 		cmocka_unit_test(longest_variant_is_cut_and_not_overrun),
 		cmocka_unit_test(files_of_several_groups_have_their_names_and_no_slash),
 		cmocka_unit_test(answer_names_the_cheapest_within_the_bound_and_what_it_saves),
-		cmocka_unit_test(answer_where_nothing_is_within_the_bound_is_that_standard_remains),
+		cmocka_unit_test(without_a_variant_within_the_bound_standard_remains),
 		cmocka_unit_test(
 			answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable),
 		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
@@ -474,7 +474,7 @@ TEST_SUITE(report)
 		cmocka_unit_test(page_without_errors_has_no_empty_tables_of_them),
 		cmocka_unit_test(base64_is_that_of_the_standard),
 		cmocka_unit_test(template_is_filled_from_json),
-		cmocka_unit_test(template_that_is_wrong_is_refused),
+		cmocka_unit_test(wrong_template_is_refused),
 		cmocka_unit_test(labels_lie_off_points_and_off_each_other),
 		cmocka_unit_test(chart_gets_colours_for_dark_pages_and_stays_as_it_is),
 	};

@@ -96,7 +96,7 @@ static void copy_over_a_file_is_refused(void **state)
 			 GZ_ERR_BUSY);
 }
 
-static void copy_that_would_not_find_its_files_is_refused(void **state)
+static void copy_with_broken_relative_paths_is_refused(void **state)
 {
 	const struct folder *folder = *state;
 	assert_int_equal(gz_scene_copy_with(folder->scene, folder->far_copy, &acuity, NULL),
@@ -125,7 +125,7 @@ TEST_SUITE(scene_edit)
 						make_folder, remove_files),
 		cmocka_unit_test_setup_teardown(copy_over_a_file_is_refused, make_folder,
 						remove_files),
-		cmocka_unit_test_setup_teardown(copy_that_would_not_find_its_files_is_refused,
+		cmocka_unit_test_setup_teardown(copy_with_broken_relative_paths_is_refused,
 						make_folder, remove_files),
 		cmocka_unit_test_setup_teardown(copy_of_no_scene_or_a_bad_one_is_refused,
 						make_folder, remove_files),

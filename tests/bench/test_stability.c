@@ -199,7 +199,7 @@ static void transparent_and_opaque_matter_equal_the_oracle(void **state)
 }
 
 /* Samples miss it (Engel, Kraus and Ertl 2001). */
-static void spike_one_entry_wide_is_what_it_is_by_the_formula(void **state)
+static void spike_one_entry_wide_matches_the_formula(void **state)
 {
 	(void)state;
 	check_row("spike", 64, 48, NULL, 0);
@@ -213,7 +213,7 @@ static void pictures_of_every_size_are_written_whole(void **state)
 }
 
 /* A renderer that keeps what it took for a frame grows without end. */
-static void memory_stays_as_it_is_while_method_and_size_change_each_frame(void **state)
+static void memory_stays_constant_while_method_and_size_change(void **state)
 {
 	(void)state;
 	check_row("churn", 64, 48, NULL, 0);
@@ -327,8 +327,8 @@ TEST_SUITE(stability)
 			gaze_anywhere_or_nowhere_writes_every_pixel_and_is_sharp_where_it_is),
 		cmocka_unit_test(first_frame_after_a_saccade_is_sharp_in_the_fovea),
 		cmocka_unit_test(odd_cameras_equal_the_oracle_and_leave_no_seams),
-		cmocka_unit_test(spike_one_entry_wide_is_what_it_is_by_the_formula),
-		cmocka_unit_test(memory_stays_as_it_is_while_method_and_size_change_each_frame),
+		cmocka_unit_test(spike_one_entry_wide_matches_the_formula),
+		cmocka_unit_test(memory_stays_constant_while_method_and_size_change),
 	};
 	if (!small_scene_backend_runs())
 		return 77;

@@ -176,7 +176,7 @@ static void numbers_are_written_as_short_as_they_can_be(void **state)
 	gz_study_free(&study);
 }
 
-static void study_of_a_program_that_kept_less_of_its_path_is_read(void **state)
+static void study_without_min_move_and_per_cell_is_read(void **state)
 {
 	(void)state;
 	struct gz_study study = written(0, 1), read;
@@ -274,7 +274,7 @@ static void drop_last_column(void)
 	free(text);
 }
 
-static void study_of_a_version_without_preparation_time_is_read_and_not_resumed(void **state)
+static void older_study_without_prepare_ms_is_read_and_not_resumed(void **state)
 {
 	(void)state;
 	struct gz_study study = written(0, 1), read;
@@ -392,7 +392,7 @@ static void study_is_not_written_over_another(void **state)
 }
 
 /* Units added one by one, the writer given up at any of them and opened again. */
-static void interrupted_writer_goes_on_where_it_was(void **state)
+static void interrupted_writer_resumes(void **state)
 {
 	(void)state;
 	struct gz_study study = study_example(0, 1), read;
@@ -459,7 +459,7 @@ static void second_writer_is_refused_while_the_first_writes(void **state)
 }
 
 /* A limit of the size of files stands for a disk without room: both end a write halfway. */
-static void full_disk_leaves_whole_units_and_can_be_gone_on_with(void **state)
+static void full_disk_leaves_whole_units_and_can_be_resumed(void **state)
 {
 	(void)state;
 	struct gz_study study = study_example(0, 1), read;
@@ -497,16 +497,14 @@ TEST_SUITE(study_folder)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup(study_written_is_read, name_folder),
 		cmocka_unit_test_setup(numbers_are_written_as_short_as_they_can_be, name_folder),
-		cmocka_unit_test_setup(study_of_a_program_that_kept_less_of_its_path_is_read,
-				       name_folder),
+		cmocka_unit_test_setup(study_without_min_move_and_per_cell_is_read, name_folder),
 		cmocka_unit_test_setup(shard_written_is_read, name_folder),
 		cmocka_unit_test_setup(interrupted_study_is_read_up_to_its_last_whole_unit,
 				       name_folder),
 		cmocka_unit_test_setup(complete_study_without_all_rows_is_refused, name_folder),
 		cmocka_unit_test_setup(damaged_rows_are_refused_with_their_line, name_folder),
-		cmocka_unit_test_setup(
-			study_of_a_version_without_preparation_time_is_read_and_not_resumed,
-			name_folder),
+		cmocka_unit_test_setup(older_study_without_prepare_ms_is_read_and_not_resumed,
+				       name_folder),
 		cmocka_unit_test(columns_stand_in_the_documentation_as_in_the_table),
 		cmocka_unit_test_setup(rows_beyond_the_last_are_refused, name_folder),
 		cmocka_unit_test_setup(damaged_json_is_refused, name_folder),
@@ -515,11 +513,11 @@ TEST_SUITE(study_folder)
 		cmocka_unit_test_setup(folder_below_a_missing_one_is_refused_with_what_is_missing,
 				       name_folder),
 		cmocka_unit_test_setup(study_is_not_written_over_another, name_folder),
-		cmocka_unit_test_setup(interrupted_writer_goes_on_where_it_was, name_folder),
+		cmocka_unit_test_setup(interrupted_writer_resumes, name_folder),
 		cmocka_unit_test_setup(writer_refuses_the_folder_of_another_study, name_folder),
 		cmocka_unit_test_setup(second_writer_is_refused_while_the_first_writes,
 				       name_folder),
-		cmocka_unit_test_setup(full_disk_leaves_whole_units_and_can_be_gone_on_with,
+		cmocka_unit_test_setup(full_disk_leaves_whole_units_and_can_be_resumed,
 				       name_folder),
 	};
 	return cmocka_run_group_tests(tests, make_root, remove_root);

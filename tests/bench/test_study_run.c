@@ -365,7 +365,7 @@ static void goes_on_to_the_same(const struct gz_study_request *request, const ch
 	gz_study_free(&whole);
 }
 
-static void run_that_is_killed_goes_on_to_the_same_rows(void **state)
+static void killed_run_resumes_to_the_same_rows(void **state)
 {
 	(void)state;
 	const struct gz_study_request request = request_of("random:4");
@@ -375,7 +375,7 @@ static void run_that_is_killed_goes_on_to_the_same_rows(void **state)
 	goes_on_to_the_same(&request, folder);
 }
 
-static void run_that_is_asked_to_end_leaves_whole_units_and_goes_on(void **state)
+static void interrupted_run_leaves_whole_units_and_resumes(void **state)
 {
 	(void)state;
 	static const int numbers[] = { SIGINT, SIGTERM };
@@ -389,7 +389,7 @@ static void run_that_is_asked_to_end_leaves_whole_units_and_goes_on(void **state
 	}
 }
 
-static void run_of_something_else_into_the_same_folder_is_refused(void **state)
+static void different_run_into_the_same_folder_is_refused(void **state)
 {
 	(void)state;
 	struct gz_study_request request = request_of("grid:2x1");
@@ -406,7 +406,7 @@ static void run_of_something_else_into_the_same_folder_is_refused(void **state)
 
 /* ---- refusals ---- */
 
-static void programs_of_one_commit_are_told_apart_where_files_were_changed(void **state)
+static void programs_with_changed_files_differ_within_one_commit(void **state)
 {
 	(void)state;
 	char path[64], other[64];
@@ -427,7 +427,7 @@ static void programs_of_one_commit_are_told_apart_where_files_were_changed(void 
 	assert_string_equal(text, "unknown");
 }
 
-static void what_cannot_be_asked_is_refused_before_a_folder_is_made(void **state)
+static void invalid_request_is_refused_before_a_folder_is_made(void **state)
 {
 	(void)state;
 	struct gz_study_request request = request_of("centre");
@@ -559,15 +559,11 @@ TEST_SUITE(study_run)
 		cmocka_unit_test_setup(shards_that_do_not_belong_together_are_refused, begin),
 		cmocka_unit_test_setup(scene_changed_between_shards_is_refused, begin),
 		cmocka_unit_test_setup(table_of_a_variant_belongs_to_the_study, begin),
-		cmocka_unit_test_setup(run_that_is_killed_goes_on_to_the_same_rows, begin),
-		cmocka_unit_test_setup(run_that_is_asked_to_end_leaves_whole_units_and_goes_on,
-				       begin),
-		cmocka_unit_test_setup(run_of_something_else_into_the_same_folder_is_refused,
-				       begin),
-		cmocka_unit_test_setup(
-			programs_of_one_commit_are_told_apart_where_files_were_changed, begin),
-		cmocka_unit_test_setup(what_cannot_be_asked_is_refused_before_a_folder_is_made,
-				       begin),
+		cmocka_unit_test_setup(killed_run_resumes_to_the_same_rows, begin),
+		cmocka_unit_test_setup(interrupted_run_leaves_whole_units_and_resumes, begin),
+		cmocka_unit_test_setup(different_run_into_the_same_folder_is_refused, begin),
+		cmocka_unit_test_setup(programs_with_changed_files_differ_within_one_commit, begin),
+		cmocka_unit_test_setup(invalid_request_is_refused_before_a_folder_is_made, begin),
 		cmocka_unit_test_setup(recording_of_another_display_is_refused, begin),
 		cmocka_unit_test_setup(converged_picture_is_made_once_and_kept, begin),
 		cmocka_unit_test_setup(picture_smaller_than_a_window_has_no_ssim, begin),

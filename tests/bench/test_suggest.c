@@ -87,7 +87,7 @@ static void suggestion_holds_at_every_point_and_is_written_into_a_copy(void **st
 	assert_said(place, 1, "fast.scene already exists");
 }
 
-static void suggestion_of_the_scene_that_needs_more_is_a_dearer_one(void **state)
+static void suggestion_for_the_harder_scene_costs_more(void **state)
 {
 	struct place *place = *state;
 	write_study(place, true);
@@ -140,7 +140,7 @@ static void questions_without_an_answer_are_refused(void **state)
 	assert_said(place, 2, "give one folder");
 }
 
-static void bound_on_a_measure_that_rises_is_the_least_it_may_be(void **state)
+static void bound_on_ssim_or_psnr_is_a_minimum(void **state)
 {
 	struct place *place = *state;
 	write_study(place, true);
@@ -193,16 +193,15 @@ TEST_SUITE(suggest)
 		cmocka_unit_test_setup_teardown(
 			suggestion_holds_at_every_point_and_is_written_into_a_copy, set_up,
 			place_remove),
-		cmocka_unit_test_setup_teardown(
-			suggestion_of_the_scene_that_needs_more_is_a_dearer_one, set_up,
-			place_remove),
+		cmocka_unit_test_setup_teardown(suggestion_for_the_harder_scene_costs_more, set_up,
+						place_remove),
 		cmocka_unit_test_setup_teardown(
 			suggestion_where_nothing_qualifies_is_standard_and_says_so, set_up,
 			place_remove),
 		cmocka_unit_test_setup_teardown(questions_without_an_answer_are_refused, set_up,
 						place_remove),
-		cmocka_unit_test_setup_teardown(
-			bound_on_a_measure_that_rises_is_the_least_it_may_be, set_up, place_remove),
+		cmocka_unit_test_setup_teardown(bound_on_ssim_or_psnr_is_a_minimum, set_up,
+						place_remove),
 		cmocka_unit_test_setup_teardown(report_of_no_rows_or_of_no_study_is_refused, set_up,
 						place_remove),
 		cmocka_unit_test_setup_teardown(

@@ -31,7 +31,7 @@ static void distribution_of_known_values_has_their_moments_and_quantiles(void **
 	assert_near(all.greatest, 4, "greatest");
 }
 
-static void distribution_of_nothing_is_no_number(void **state)
+static void empty_distribution_is_nan(void **state)
 {
 	(void)state;
 	double values[] = { NAN };
@@ -289,7 +289,7 @@ static void growth_is_fitted_over_pixels_voxels_and_threads(void **state)
 	gz_study_free(&study);
 }
 
-static void fit_of_scattered_points_tells_how_well_it_fits(void **state)
+static void fit_of_scattered_points_has_its_r2(void **state)
 {
 	(void)state;
 	/* Logarithms to base 2: (0, 0), (1, 2), (2, 1): slope 1/2, r2 = 1/4. */
@@ -376,14 +376,14 @@ TEST_SUITE(summary)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(distribution_of_known_values_has_their_moments_and_quantiles),
-		cmocka_unit_test(distribution_of_nothing_is_no_number),
+		cmocka_unit_test(empty_distribution_is_nan),
 		cmocka_unit_test(ratios_of_disturbed_frames_come_from_medians),
 		cmocka_unit_test(errors_are_averaged_as_costs_and_never_as_decibels),
 		cmocka_unit_test(front_holds_what_nothing_beats_in_time_and_error),
 		cmocka_unit_test(equal_error_and_equal_time_are_interpolated_along_a_method),
 		cmocka_unit_test(cheapest_within_a_bound_holds_it_at_every_point),
 		cmocka_unit_test(growth_is_fitted_over_pixels_voxels_and_threads),
-		cmocka_unit_test(fit_of_scattered_points_tells_how_well_it_fits),
+		cmocka_unit_test(fit_of_scattered_points_has_its_r2),
 		cmocka_unit_test(fit_of_one_size_is_refused),
 		cmocka_unit_test(study_without_rows_is_refused),
 		cmocka_unit_test(rows_outside_the_lists_or_out_of_order_are_refused),
