@@ -1,7 +1,6 @@
 /**
  * @file
- * gazeview in a window: GLFW and OpenGL 3.3. Gaze from a daemon or the mouse, keys for the methods,
- * a drag turns the camera.
+ * gazeview in a window, by GLFW and OpenGL 3.3: docs/gazeview.md has its keys.
  */
 #ifndef GZ_VIEW_WINDOW_H
 #define GZ_VIEW_WINDOW_H
@@ -12,14 +11,15 @@
 #include "view/panels/notices.h"
 
 /**
- * Show the scene until the window is closed; without one, or where it cannot be shown, the window
- * says so and waits for another. Draws only what has changed.
+ * Show the scene until the window is closed. Without a scene, or if it cannot be shown, the window
+ * is empty and waits for another one. Draws only what has changed. Call on the main thread.
  *
- * @param notices  what the log says, for people to see
- * @retval GZ_ERR_NO_DEVICE    no display; logged with the way without one
+ * If the display is lost, recordings are finished and the process ends with EXIT_FAILURE.
+ *
+ * @param notices  messages of @p log, to be shown in the window
+ * @retval GZ_ERR_NO_DEVICE    no display; logged with the advice to use --headless
  * @retval GZ_ERR_UNSUPPORTED  no OpenGL 3.3; logged
- * @return else what went wrong with the gaze or the window, or with the scene where none has been
- *         shown until the end; logged
+ * @return else why the gaze or the window failed, or the scene, if none was ever shown; logged
  */
 enum gz_result gz_view_window(const struct gz_view_options *options, const struct gz_log *log,
 			      struct gz_notices *notices);
