@@ -13,57 +13,53 @@
 
 #define AT(field) offsetof(struct gz_study_row, field)
 
-#define TIME(field, title, meaning)                                                            \
-	{                                                                                      \
-#field, "ms", GZ_COLUMN_TIME, GZ_JOIN_FRAMES, AT(field), false, title, meaning \
-	}
-#define COUNT(field, meaning)                                                              \
-	{                                                                                  \
-#field, "", GZ_COLUMN_COUNT, GZ_JOIN_MEAN, AT(field), false, NULL, meaning \
-	}
-#define ERROR(name, unit, field, meaning)                                                  \
-	{                                                                                  \
-		name, unit, GZ_COLUMN_ERROR, GZ_JOIN_SAME, AT(field), false, NULL, meaning \
-	}
+/* clang-format off */
+#define TIME(field) \
+	.name = #field, .unit = "ms", .type = GZ_COLUMN_TIME, .join = GZ_JOIN_FRAMES, .offset = AT(field)
+#define COUNT(field) \
+	.name = #field, .unit = "", .type = GZ_COLUMN_COUNT, .join = GZ_JOIN_MEAN, .offset = AT(field)
+#define ERROR(field) \
+	.name = #field, .type = GZ_COLUMN_ERROR, .join = GZ_JOIN_SAME, .offset = AT(field)
+
+/* One error against one reference. */
+#define ERROR_AGAINST(of, field, of_unit, text) \
+	{ .name = #of "_" #field, .unit = of_unit, .type = GZ_COLUMN_ERROR, .join = GZ_JOIN_SAME, \
+	  .offset = AT(of.field), .meaning = text }
 
 /* The nine errors against one reference. */
-#define ERRORS(of, reference)                                                                    \
-	ERROR(#of "_psnr_db", "dB", of.psnr_db, "PSNR against " reference ", all pixels alike"), \
-		ERROR(#of "_ssim", "", of.ssim, "SSIM, likewise"),                               \
-		ERROR(#of "_flip", "", of.flip, "FLIP, likewise"),                               \
-		ERROR(#of "_foveal_psnr_db", "dB", of.foveal_psnr_db,                            \
-		      "PSNR against " reference " within the fovea"),                            \
-		ERROR(#of "_foveal_ssim", "", of.foveal_ssim, "SSIM, likewise"),                 \
-		ERROR(#of "_foveal_flip", "", of.foveal_flip, "FLIP, likewise"),                 \
-		ERROR(#of "_perceived_psnr_db", "dB", of.perceived_psnr_db,                      \
-		      "PSNR against " reference ", pixels weighted by acuity"),                  \
-		ERROR(#of "_perceived_ssim", "", of.perceived_ssim, "SSIM, likewise"),           \
-		ERROR(#of "_perceived_flip", "", of.perceived_flip, "FLIP, likewise")
+#define ERRORS(of, reference) \
+	ERROR_AGAINST(of, psnr_db, "dB", "PSNR against " reference ", all pixels alike"), \
+	ERROR_AGAINST(of, ssim, "", "SSIM, likewise"), \
+	ERROR_AGAINST(of, flip, "", "FLIP, likewise"), \
+	ERROR_AGAINST(of, foveal_psnr_db, "dB", "PSNR against " reference " within the fovea"), \
+	ERROR_AGAINST(of, foveal_ssim, "", "SSIM, likewise"), \
+	ERROR_AGAINST(of, foveal_flip, "", "FLIP, likewise"), \
+	ERROR_AGAINST(of, perceived_psnr_db, "dB", "PSNR against " reference ", pixels weighted by acuity"), \
+	ERROR_AGAINST(of, perceived_ssim, "", "SSIM, likewise"), \
+	ERROR_AGAINST(of, perceived_flip, "", "FLIP, likewise")
 
 const struct gz_study_column gz_study_columns[GZ_STUDY_COLUMNS] = {
-	[GZ_COLUMN_PLAN] = TIME(plan_ms, "plan", "making the plan"),
-	[GZ_COLUMN_CAST] = TIME(cast_ms, "cast", "casting the rays"),
-	[GZ_COLUMN_RECONSTRUCT] =
-		TIME(reconstruct_ms, "reconstruct", "filling the pixels between rays"),
-	[GZ_COLUMN_FRAME] = TIME(frame_ms, NULL, "the whole frame, by the monotonic clock"),
-	[GZ_COLUMN_GPU] =
-		TIME(gpu_ms, "GPU",
-		     "cast and reconstruction by the graphics device's own clock; `nan` on "
-		     "`cpu` and where a processor does the device's work"),
-	[GZ_COLUMN_RAYS] = COUNT(rays, "rays cast"),
-	[GZ_COLUMN_SAMPLES] = COUNT(samples, "interpolations of voxels"),
+	[GZ_COLUMN_PLAN] = { TIME(plan_ms), .title = "plan", .meaning = "making the plan" },
+	[GZ_COLUMN_CAST] = { TIME(cast_ms), .title = "cast", .meaning = "casting the rays" },
+	[GZ_COLUMN_RECONSTRUCT] = { TIME(reconstruct_ms), .title = "reconstruct",
+		.meaning = "filling the pixels between rays" },
+	[GZ_COLUMN_FRAME] = { TIME(frame_ms), .meaning = "the whole frame, by the monotonic clock" },
+	[GZ_COLUMN_GPU] = { TIME(gpu_ms), .title = "GPU",
+		.meaning = "cast and reconstruction by the graphics device's own clock; `nan` on `cpu` "
+			   "and where a processor does the device's work" },
+	[GZ_COLUMN_RAYS] = { COUNT(rays), .meaning = "rays cast" },
+	[GZ_COLUMN_SAMPLES] = { COUNT(samples), .meaning = "interpolations of voxels" },
 	[GZ_COLUMN_CONVERGED] = ERRORS(converged, "the converged picture"),
 	[GZ_COLUMN_STANDARD] = ERRORS(standard, "`standard`"),
-	[GZ_COLUMN_FLICKER] =
-		ERROR("flicker", "of 255", flicker,
-		      "mean change of the picture while the gaze trembles by a pixel"),
-	[GZ_COLUMN_REFERENCE] = ERROR("reference_db", "dB", reference_db,
-				      "PSNR of the converged picture against one of half its step"),
-	[GZ_COLUMN_PREPARE] = { "prepare_ms", "ms", GZ_COLUMN_TIME, GZ_JOIN_FRAMES, AT(prepare_ms),
-				true, "prepare",
-				"preparation that the technique keeps for later frames; the first "
-				"counted frame has that of the warm-up frames, too" },
+	[GZ_COLUMN_FLICKER] = { ERROR(flicker), .unit = "of 255",
+		.meaning = "mean change of the picture while the gaze trembles by a pixel" },
+	[GZ_COLUMN_REFERENCE] = { ERROR(reference_db), .unit = "dB",
+		.meaning = "PSNR of the converged picture against one of half its step" },
+	[GZ_COLUMN_PREPARE] = { TIME(prepare_ms), .title = "prepare", .later = true,
+		.meaning = "preparation that the technique keeps for later frames; the first counted "
+			   "frame has that of the warm-up frames, too" },
 };
+/* clang-format on */
 
 double gz_study_column_value(enum gz_study_column_id column, const struct gz_study_row *row)
 {
