@@ -29,6 +29,10 @@ enum { MESSAGES_AT_ONCE = 32 };
  * sixty times a second. */
 #define UNREAD_POINTER_NS (60 * GZ_NS_PER_S)
 
+/* Most frames before a request's text: the client's identity, one for each proxy between, and the
+ * empty one. Chosen. */
+enum { ENVELOPE_MAX = 8 };
+
 /* What the next answer waits for. */
 enum pending {
 	PENDING_NONE,
@@ -41,14 +45,18 @@ enum pending {
 
 struct gz_requests {
 	struct gz_requests_parts parts;
-	void *control;  /* REP */
+	/* ROUTER: a REP socket loses the next client's answer when a client sends a message without
+	 * the empty frame and leaves (libzmq 4.3.4: router_t::rollback() forgets _more_out). */
+	void *control;
 	void *commands; /* PAIR, to the service */
 	struct gz_inlet *inlet;
 	struct gz_inlet_message message; /* the message being served; large */
 	int stream_port;
 	int latest_port;
 	enum pending pending;
-	bool owed;       /* a client waits for an answer; otherwise a notification asked */
+	bool owed; /* a client waits for an answer; otherwise a notification asked */
+	zmq_msg_t envelope[ENVELOPE_MAX]; /* of that answer */
+	int envelope_count;
 	uint32_t number; /* of the newest command to the service */
 	int pending_fd;
 	char pending_path[GZ_PATH_SIZE];
@@ -62,6 +70,54 @@ struct gz_requests {
 	enum gz_result failure; /* why the service had to stop */
 };
 
+static void drop_envelope(struct gz_requests *requests)
+{
+	while (requests->envelope_count > 0)
+		zmq_msg_close(&requests->envelope[--requests->envelope_count]);
+}
+
+/* Receive the frames up to the empty one, which the answer repeats. A message that has none, or too
+ * many before it, is dropped: nobody waits for its answer.
+ * @return whether a request follows */
+static bool receive_envelope(struct gz_requests *requests)
+{
+	bool more = true, bottom = false;
+	drop_envelope(requests);
+	while (more && !bottom && requests->envelope_count < ENVELOPE_MAX) {
+		zmq_msg_t *frame = &requests->envelope[requests->envelope_count];
+		zmq_msg_init(frame);
+		requests->envelope_count++;
+		if (zmq_msg_recv(frame, requests->control, ZMQ_DONTWAIT) < 0) {
+			drop_envelope(requests);
+			return false;
+		}
+		more = zmq_msg_more(frame) != 0;
+		bottom = zmq_msg_size(frame) == 0;
+	}
+	if (bottom && more)
+		return true;
+	drop_envelope(requests);
+	while (more) {
+		zmq_msg_t rest;
+		zmq_msg_init(&rest);
+		more = zmq_msg_recv(&rest, requests->control, ZMQ_DONTWAIT) >= 0 &&
+		       zmq_msg_more(&rest);
+		zmq_msg_close(&rest);
+	}
+	return false;
+}
+
+/* The frames of the envelope, then the text. libzmq drops the answer to a client that has left. */
+static bool send_answer(struct gz_requests *requests, const char *text)
+{
+	for (int i = 0; i < requests->envelope_count; i++) {
+		if (zmq_msg_send(&requests->envelope[i], requests->control,
+				 ZMQ_SNDMORE | ZMQ_DONTWAIT) < 0)
+			return false;
+	}
+	return zmq_send(requests->control, text, strlen(text), ZMQ_DONTWAIT) >= 0;
+}
+
 static void reply(struct gz_requests *requests, const char *text)
 {
 	requests->pending = PENDING_NONE;
@@ -72,8 +128,9 @@ static void reply(struct gz_requests *requests, const char *text)
 		return;
 	}
 	requests->owed = false;
-	if (zmq_send(requests->control, text, strlen(text), ZMQ_DONTWAIT) < 0)
+	if (!send_answer(requests, text))
 		gz_debug(requests->parts.log, "cannot send an answer: %s", zmq_strerror(errno));
+	drop_envelope(requests);
 }
 
 static void reply_port(struct gz_requests *requests, int port, const char *channel)
@@ -441,6 +498,8 @@ static void receive_request(struct gz_requests *requests)
 {
 	zmq_msg_t frames[2];
 	struct gz_remote_request request;
+	if (!receive_envelope(requests))
+		return;
 	zmq_msg_init(&frames[0]);
 	zmq_msg_init(&frames[1]);
 	int count = gz_inlet_receive_frames(requests->control, frames);
@@ -475,7 +534,7 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 	};
 	for (;;) {
 		long timeout_ms = milliseconds_left(requests);
-		/* A REP socket must answer before it receives the next request. */
+		/* One request at a time: the next waits until this one is answered. */
 		int count = requests->pending == PENDING_NONE ? 5 : 4;
 		if (zmq_poll(items, count, timeout_ms) < 0 && errno != EINTR)
 			return GZ_ERR_IO;
@@ -505,7 +564,7 @@ void gz_requests_quit_service(struct gz_requests *requests)
 static enum gz_result open_request_sockets(struct gz_requests *requests)
 {
 	int linger = 0, control_linger = GZ_REQUESTS_PATIENCE_MS;
-	requests->control = zmq_socket(requests->parts.context, ZMQ_REP);
+	requests->control = zmq_socket(requests->parts.context, ZMQ_ROUTER);
 	requests->commands = zmq_socket(requests->parts.context, ZMQ_PAIR);
 	if (!requests->control || !requests->commands ||
 	    zmq_setsockopt(requests->control, ZMQ_MAXMSGSIZE, &REQUEST_SIZE_MAX,
@@ -548,6 +607,7 @@ void gz_requests_destroy(struct gz_requests **requests)
 	if (!requests || !*requests)
 		return;
 	gz_inlet_destroy(&(*requests)->inlet);
+	drop_envelope(*requests);
 	if ((*requests)->control) {
 		zmq_socket_monitor((*requests)->control, NULL, 0);
 		zmq_close((*requests)->control);

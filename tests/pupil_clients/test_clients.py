@@ -6,6 +6,7 @@ import collections
 import math
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -397,13 +398,15 @@ class RudeTest(ClientTest):
     """Clients that end, flood the daemon or send nonsense do not delay answers to the others."""
 
     def assert_answers(self):
-        for _ in range(5):
+        """A busy machine may delay some answers, not all."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
             begin = time.monotonic()
             self.assertGreater(float(self.client.ask("t")), 0)
             took = time.monotonic() - begin
             if took < 0.1:
                 return
-        self.fail(f"an answer took {took * 1000:.0f} ms")
+            self.assertLess(begin, deadline, f"an answer took {took * 1000:.0f} ms")
 
     def test_client_that_dies_before_its_answer(self):
         for request in ("t", "R dead", "r", "R", "r", "C"):
@@ -430,6 +433,25 @@ class RudeTest(ClientTest):
             dealer.connect(self.client.address)
             dealer.send_multipart(frames)
             self.assert_answers()
+
+    def test_clients_that_send_no_request_and_leave(self):
+        """The daemon finds their messages when they are gone; the next client's answer comes."""
+        for _ in range(10):
+            context = zmq.Context()
+            dealers = [context.socket(zmq.DEALER) for _ in range(4)]
+            for dealer in dealers:
+                dealer.setsockopt(zmq.RCVTIMEO, PATIENCE_S * 1000)
+                dealer.connect(self.client.address)
+                dealer.send_multipart([b"", b"t"])
+                dealer.recv_multipart()
+            self.gazed.process.send_signal(signal.SIGSTOP)
+            for dealer in dealers:
+                dealer.send_multipart([b"t"])
+                dealer.close(linger=PATIENCE_S * 1000)
+            context.term()
+            self.client.remote.send_string("t")
+            self.gazed.process.send_signal(signal.SIGCONT)
+            self.assertGreater(float(self.client.remote.recv_string()), 0)
 
     def test_bytes_that_are_no_zeromq(self):
         for bytes_ in (b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 64, b"\x00" * 4096,
