@@ -12,9 +12,7 @@ SIMD uint64_t gather_all(const struct gz_cast *cast, const struct gz_cast_tile *
 	uint64_t samples = 0;
 	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
 		struct rays rays;
-		set_up_rays(cast, tile->step, vf_load(tile->x + first), vf_load(tile->y + first),
-			    vf_load(tile->jitter + first), vm_from_bits(tile->active >> first),
-			    &rays);
+		set_up_rays(cast, tile, first, &rays);
 		vf sum = vf_set(0), k = rays.first + vf_set(0.5F);
 		for (;;) {
 			const vm active = vf_less(k, rays.end);

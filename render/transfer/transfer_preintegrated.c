@@ -53,7 +53,7 @@ struct row {
 };
 
 /* 2^-x for x >= 0, error 2e-7: the same polynomial as the kernels'
- * (render/raycast/cpu/cast_light.h). */
+ * (render/raycast/cpu/cast_shade.h). */
 static inline float exp2_minus(float x)
 {
 	union {

@@ -1,6 +1,6 @@
 /**
  * @file
- * Casting one tile of rays on a processor: what the kernels are given, and the kernels there are.
+ * Casting a tile of rays on the processor: the input of the kernels, and the table of kernels.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_H
@@ -18,18 +18,18 @@
 
 #define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
 
-/** Where the voxels of a volume of bricks are. Its level is the one that a cast is for. */
+/** Where the voxels of a volume of bricks are, for one level. */
 struct gz_cast_bricks {
-	/** By brick of the level: room << GZ_BRICK_LEVEL_BITS | the level of the brick there, which
-	 *  is this one or a coarser one. NULL for a volume in memory. */
+	/** For each brick of the level: room << GZ_BRICK_LEVEL_BITS | level of the brick in that
+	 * room, which is this level or a coarser one. NULL for a volume in memory. */
 	const int32_t *table;
 	float last[3]; /**< greatest number of a brick */
 	int32_t stride[3];
-	/** Voxels of another level along an edge of one of this level, 1 or less. */
+	/** By level: its voxels per voxel of this level along each axis, 1 or less. */
 	float scale[3][1 << GZ_BRICK_LEVEL_BITS];
 };
 
-/** Fine cells of one edge (fine_cells.h), by the lower neighbours of a sample. */
+/** One grid of fine cells (fine_cells.h). */
 struct gz_cast_grid {
 	const uint8_t *flags;
 	float cells_per_voxel;
@@ -37,44 +37,44 @@ struct gz_cast_grid {
 	int32_t stride[3];
 };
 
-/** Everything that all tiles of a frame share; read-only while they are cast. Rays are in voxel
- *  coordinates: voxel i along an axis spans [i, i + 1), its datum sits at i + 1/2. */
+/** What all tiles of a frame share; read-only while they are cast. Rays are in voxel coordinates:
+ * voxel i along an axis spans [i, i + 1), its datum lies at i + 1/2. */
 struct gz_cast {
 	/* volume */
 	const void *voxels;
-	float box[3]; /**< far corner of the volume's box; dims but for a coarser level of odd size
+	float box[3]; /**< far corner of the volume: dims, or less for a coarser level of odd size
 		       */
 	float dims[3];
 	int32_t last[3];   /**< greatest index of the lower of two neighbours: max(dims - 2, 0) */
 	int32_t stride[3]; /**< in voxels; 0 along an axis of one voxel, x excepted */
-	struct gz_cast_bricks bricks; /**< voxels is where their rooms begin */
+	struct gz_cast_bricks bricks; /**< their rooms begin at voxels */
 	/* macrocells */
 	const uint8_t *reach;
 	float cell_last[3]; /**< greatest cell index */
 	int32_t cell_stride[3];
-	struct gz_cast_grid fine[GZ_FINE_GRIDS]; /* flags are NULL where there are none */
+	struct gz_cast_grid fine[GZ_FINE_GRIDS]; /* flags are NULL if there are none */
 	/* transfer function */
 	float entry_scale, entry_bias;
 	const struct gz_transfer_entry *extinction; /**< per voxel length */
 	const struct gz_transfer_entry
-		*step_table[GZ_PLAN_STEPS_MAX]; /**< one for each step of the plan */
-	/** with pre-integration: a table for each step of the plan, and that of any length
-	 *  (render/transfer/transfer_preintegrated.h); else NULL */
+		*step_table[GZ_PLAN_STEPS_MAX]; /**< for each step of the plan */
+	/** With pre-integration: a table for each step of the plan, and one for any length
+	 *  (render/transfer/transfer_preintegrated.h). Without: NULL. */
 	const struct gz_transfer_entry *preintegrated[GZ_PLAN_STEPS_MAX];
 	const struct gz_transfer_entry *preintegrated_extinction;
 	/* rays of pixel (x, y): see struct gz_ray_frame */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];
 	float clip_least[3], clip_greatest[3];  /**< voxel coordinates */
-	float world_per_voxel[3];               /**< to measure lengths in world units */
+	float world_per_voxel[3];               /**< world units per voxel */
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
-	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the same in voxel lengths */
+	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the steps in voxel lengths */
 	float background[3];
-	float end_transmittance; /**< a ray ends when less light than this comes through */
+	float end_transmittance; /**< a ray ends when less than this share of light comes through */
 	struct gz_cast_light light;
 };
 
-/** One tile as the kernels take it. */
+/** The rays of a tile. */
 struct gz_cast_tile {
 	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS]; /**< pixels of its rays */
 	float jitter[GZ_TILE_RAYS];             /**< see gz_ray_jitter() */
@@ -85,16 +85,15 @@ struct gz_cast_tile {
 /**
  * Cast a tile.
  *
- * @param[out] out_pixels  R, G, B, 255 in memory order; written for all rays, meaningful for active
- * ones
- * @return voxel interpolations done
+ * @param[out] out_pixels  R, G, B, 255 in memory order; written for all rays, valid for active ones
+ * @return number of voxel interpolations
  *
- * A ray's colour depends on its pixel, spacing aside, and on its step alone: not on the tile.
+ * A ray's colour depends only on its pixel and its step, not on its tile.
  */
 typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct gz_cast_tile *tile,
 				       uint32_t out_pixels[GZ_TILE_RAYS]);
 
-/** What a kernel can do: the plain path stays free of what it seldom needs. */
+/** What a kernel can do. The plain one stays free of what is seldom needed. */
 enum gz_cast_variant {
 	GZ_CAST_PLAIN,
 	GZ_CAST_RICH, /**< light, pre-integration */
@@ -113,8 +112,8 @@ extern const struct gz_cast_kernels gz_cast_avx2;
 extern const struct gz_cast_kernels gz_cast_avx512;
 #endif
 
-/** Kernels by name, or the best this processor runs for NULL or "auto". NULL if it runs none of
- * that name. */
+/** The kernels of an instruction set by name; for NULL or "auto" the best that this processor runs.
+ *  NULL if it runs none of that name. */
 const struct gz_cast_kernels *gz_cast_kernels_find(const char *name);
 
 #endif

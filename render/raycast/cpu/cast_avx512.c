@@ -1,5 +1,4 @@
-/* The kernel for one instruction set; compiled with its flags. The vocabulary comes before the
- * kernel that speaks it. */
+/* The kernels for one instruction set: cast_kernel.h explains the scheme. */
 #include "render/raycast/cpu/simd_avx512.h"
 
 #include "render/raycast/cpu/cast_kernel.h"

@@ -1,14 +1,13 @@
 /*
- * A block of 4 x 4 x 4 voxels in registers, from which all lanes take their eight neighbours by
- * permutation. Rays of a tile lie close together, so that one block serves all of them, where
- * gathers would fetch each voxel many times over. Where they lie farther apart along x, a wide
- * block of 8 x 4 x 4 does it, of 8 and 16 bits. A part of the kernel, for AVX-512: see
- * cast_kernel.h.
+ * Blocks of 4 x 4 x 4 voxels in registers, from which all lanes take their eight neighbours by
+ * permutation. Rays of a tile lie close together, so one block serves all of them, where gathers
+ * would fetch each voxel many times. If rays lie farther apart along x, a wide block of 8 x 4 x 4
+ * voxels of 8 or 16 bits serves them. A part of the kernel, for AVX-512: see cast_kernel.h.
  *
- * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication takes both
- * of a lane: finer than single-precision places are beyond 256 voxels. Values that leave here are
- * in units of 1 / FETCH_UNIT, 16-bit ones less 32768: both go into the look-up's scale. A value
- * does not depend on whether it came by block or one by one.
+ * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication serves
+ * both of a lane's voxels; beyond 256 voxels single-precision places are coarser than that. Values
+ * leave here in units of 1 / FETCH_UNIT, 16-bit ones less 32768, which the scale of the look-up
+ * includes. A value does not depend on whether it came from a block or from single loads.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_BLOCK_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_BLOCK_H
@@ -19,24 +18,21 @@
 
 enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE, BLOCK_WIDE = 8 };
 
-#define FETCH_UNIT(type)   ((type) == GZ_VOXEL_F32 ? 1.0F : 32767.0F)
-#define FETCH_OFFSET(type) ((type) == GZ_VOXEL_U16 ? 32768.0F : 0.0F)
-
 struct block {
-	vf base[3]; /* index of its first voxel, the same in all lanes */
+	vf base[3]; /* index of the first voxel, the same in all lanes */
 	union {
-		vi words[BLOCK_EDGE]; /* 8 and 16 bit: two slices each, wide one */
+		vi words[BLOCK_EDGE]; /* of 8 and 16 bits: two slices a word, wide one */
 		vf slices[BLOCK_EDGE];
 	};
 };
 
-/* Voxels along an edge. */
+/* Voxels along an edge of a block. */
 SIMD float block_edge(int wide, int axis)
 {
 	return wide && axis == 0 ? BLOCK_WIDE : BLOCK_EDGE;
 }
 
-/* Whether there are blocks to be had: of volumes in one piece and large enough. */
+/* Whether a volume has blocks: it must be in one piece and large enough. */
 SIMD int blocks_fit(const struct gz_cast *cast, enum gz_voxel_type type, int wide)
 {
 	return !cast->bricks.table && !(wide && type == GZ_VOXEL_F32) &&
@@ -44,7 +40,7 @@ SIMD int blocks_fit(const struct gz_cast *cast, enum gz_voxel_type type, int wid
 	       cast->dims[2] >= BLOCK_EDGE;
 }
 
-/* Rows of four voxels, stride apart: one slice. */
+/* One slice: rows of four voxels, `stride` apart. */
 SIMD __m128i block_slice_u8(const uint8_t *from, int64_t stride)
 {
 	int32_t rows[BLOCK_EDGE];
@@ -96,7 +92,7 @@ SIMD void block_load_wide(enum gz_voxel_type type, const void *from, int64_t row
 			block_wide_slice(type, (const char *)from + z * slice * bytes, row);
 }
 
-/* All of a block, from rows and slices that lie these strides apart. */
+/* Load a block whose rows and slices lie these strides apart. */
 SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int64_t slice,
 		     struct block *block)
 {
@@ -124,8 +120,7 @@ SIMD void block_load(enum gz_voxel_type type, const void *from, int64_t row, int
 	}
 }
 
-/* Load the block whose first voxel is the one that a place, x, y, z, is in; at the volume's rim, as
- * much of it as lies inside. */
+/* Load the block whose first voxel holds a place (x, y, z), moved into the volume at its rim. */
 SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wide, __m128 place,
 		     struct block *block)
 {
@@ -148,7 +143,7 @@ SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wi
 		block_load(type, voxels, row, slice, block);
 }
 
-/* Beyond the first and the last datum along an axis, places are those of that datum. */
+/* Move places beyond the first or the last datum to that datum. */
 SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, int wide, vf places[3])
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -162,7 +157,7 @@ SIMD void block_clamp(const struct gz_cast *cast, const struct block *block, int
 	}
 }
 
-/* Whether all lanes' places lie in the block. */
+/* Whether the places of all lanes of mask lie in the block. */
 SIMD int block_holds(const vf places[3], int wide, vm mask)
 {
 	/* As unsigned numbers, floats from 0 up have their order and negative ones lie above. */
@@ -176,7 +171,7 @@ SIMD int block_holds(const vf places[3], int wide, vm mask)
 	return !vm_any(vm_or(beyond, _mm512_mask_cmpge_epu32_mask(mask, most, end)));
 }
 
-/* Places within the block; whether those of all lanes of the mask lie in it. */
+/* Find places within the block. Returns whether those of all lanes of mask lie in it. */
 SIMD int block_places(const struct gz_cast *cast, const struct block *block, int wide,
 		      const vf at[3], vm mask, vf places[3])
 {
@@ -188,7 +183,7 @@ SIMD int block_places(const struct gz_cast *cast, const struct block *block, int
 	return block_holds(places, wide, mask);
 }
 
-/* Weights of two words: the share of the higher one above, the rest below. */
+/* Weights of two words: the share of the upper voxel in the high half, the rest in the low half. */
 SIMD vi word_weights(vf share)
 {
 	const vi high = _mm512_cvtps_epi32(share * vf_set(32767));
@@ -212,7 +207,7 @@ SIMD vf mix_pairs(const vi pairs[4], const vf share[3])
 
 SIMD vf block_sample_words(const struct block *block, const vf whole[3], const vf share[3])
 {
-	/* Index of a word in the lower half of each lane, of the next in the upper. */
+	/* The index of a word in the low half of each lane, of the next word in the high half. */
 	const float both = 65537;
 	const vi first = _mm512_cvtps_epi32(vf_fma(
 		whole[2], vf_set(16 * both),
@@ -261,7 +256,7 @@ SIMD vf block_sample_f32(const struct block *block, const vf whole[3], const vf 
 	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
 }
 
-/* 16 bits of each lane, from base + index bytes. Single loads take half the time of a gather. */
+/* 16 bits for each lane, from base + index bytes. Single loads take half the time of a gather. */
 SIMD __m256i load_halves(const uint8_t *base, const int32_t index[SIMD_LANES])
 {
 	__m128i half[2];
@@ -276,7 +271,7 @@ SIMD __m256i load_halves(const uint8_t *base, const int32_t index[SIMD_LANES])
 	return _mm256_set_m128i(half[1], half[0]);
 }
 
-/* 32 bits of each lane, from base + 2 * index bytes. */
+/* 32 bits for each lane, from base + 2 * index bytes. */
 SIMD vi load_words(const uint16_t *base, const int32_t index[SIMD_LANES])
 {
 	__m128i quarter[4];
@@ -290,7 +285,7 @@ SIMD vi load_words(const uint16_t *base, const int32_t index[SIMD_LANES])
 				  _mm256_set_m128i(quarter[3], quarter[2]), 1);
 }
 
-/* Two neighbours along x of each lane, as words. */
+/* Two neighbours along x for each lane, as words. */
 SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
 			const int32_t index[SIMD_LANES])
 {
@@ -300,8 +295,8 @@ SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t fro
 				vi_set((int32_t)0x80008000));
 }
 
-/* The same values one by one, for lanes that lie far apart; those outside the mask take the first
- * voxels, which are at hand. */
+/* The values that blocks would give, from single loads, for lanes that lie far apart. Lanes outside
+ * the mask load the volume's first voxels, which are in the cache. */
 SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
 			 vm mask)
 {
@@ -339,13 +334,14 @@ SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, int wid
 }
 
 /* The value at sample k of the lanes of mask, in FETCH_UNITs, wherever they are. */
-SIMD vf fetch_sample(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-		     const struct rays *rays, vf k, vm mask)
+SIMD vf fetch_sample(const struct march *m, vf k, vm mask)
 {
+	const struct gz_cast *cast = m->cast;
+	const enum gz_voxel_type type = m->reading.type;
 	vf at[3];
 	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	if (nearest)
+		at[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
+	if (m->reading.nearest)
 		return sample_nearest(cast, type, at, mask);
 	if (__builtin_expect(cast->bricks.table != NULL, 0))
 		return (sample_trilinear(cast, type, at, mask) - vf_set(FETCH_OFFSET(type))) *

@@ -1,44 +1,42 @@
 /*
- * The kernel: one tile of rays, front to back, SIMD_LANES at a time. Included by one file an
- * instruction set, behind that set's vocabulary (simd_*.h). Voxel type and interpolation are
- * constants of each instance, so that the compiler drops what it does not need.
+ * The kernel: one tile of rays, front to back, SIMD_LANES at a time.
  *
- * A ray is cut into segments of one step from where it enters the box, or a jitter before; a sample
- * sits in the middle of each, at k + 1/2 steps. Where the box, or the clip box, cuts a segment at
- * either end of the ray, its sample sits in the middle of what is left and its opacity is corrected
- * for that length. k is a count, so skipping empty space never shifts the phase.
+ * The kernel is written once and compiled once for each instruction set. The file of a set
+ * (cast_portable.c, cast_avx2.c, cast_avx512.c) includes the set's vocabulary (simd_avx2.h, ...),
+ * which defines vectors of floats (vf), of integers (vi) and masks (vm) with their operations, then
+ * this file, and is compiled with the set's flags. gz_cast_kernels_find() chooses at run time. Sets
+ * with wide permutations (SIMD_BLOCKS) also march rays side by side (cast_together.h). Within a
+ * set, DEFINE_TILE makes one kernel for each voxel type, interpolation and variant; these are
+ * constants of the kernel, so that the compiler drops what it does not need.
+ *
+ * A ray is cut into segments of one step, from where it enters the box, or a jitter before. A
+ * sample lies in the middle of each, at k + 1/2 steps. Where the box or the clip box cuts a segment
+ * at an end of the ray, the sample lies in the middle of what is left, and its opacity is corrected
+ * for that length. k is a count, so skipping empty space never shifts the samples.
  */
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
-#include "render/raycast/cpu/cast_fine.h"
+#include "render/raycast/cpu/cast_rays.h"
 #ifdef SIMD_BLOCKS
 #include "render/raycast/cpu/cast_together.h"
-#else
-#include "render/raycast/cpu/cast_scattered.h"
 #endif
-#include "render/raycast/cpu/cast_light.h"
-#include "render/raycast/cpu/cast_look_up.h"
 #include "render/raycast/cpu/cast_preintegrated.h"
-#include "render/raycast/cpu/cast_rays.h"
-#include "render/raycast/cpu/cast_settle.h"
 #include "render/raycast/cpu/cast_shade.h"
-#include "render/raycast/cpu/cast_skip.h"
 
-/* Let the lanes that ask know how far their samples show something; put them behind what is empty.
- */
+/* For lanes that ask: find how far their samples show something, or advance past empty space. */
 SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k, vf *until)
 {
 	vf leave;
 	const vm empty = vm_and(look_up_cell(cast, rays, *k, asks, &leave), asks);
-	/* A sample that rounding puts just behind its own cell's end is taken too. */
+	/* Take a sample too that rounding puts just past the end of its own cell. */
 	*until = vf_select(vm_but(asks, empty), vf_max(leave, *k + vf_set(0.5F)), *until);
-	/* To the first sample at or behind the empty box's far side; at least one on. */
+	/* To the first sample at or past the far side of the empty space; at least one on. */
 	const vf ahead = vf_max(vf_ceil(leave - *k), vf_set(1));
 	*k = vf_select(empty, *k + ahead, *k);
 }
 
-/* Behind what is empty for sure around samples that show nothing. */
-SIMD vf skip(const struct gz_cast *cast, const struct rays *rays, vf k, vm running)
+/* Advance past cells known to be empty around samples that show nothing. */
+SIMD vf skip_empty(const struct gz_cast *cast, const struct rays *rays, vf k, vm running)
 {
 	vf leave;
 	const vm empty = look_up_cell(cast, rays, k, running, &leave);
@@ -46,15 +44,16 @@ SIMD vf skip(const struct gz_cast *cast, const struct rays *rays, vf k, vm runni
 	return vf_select(running, k + ahead, k);
 }
 
-/* All whole segments, each ray for itself. Which sample comes next depends on the cells alone, not
- * on what samples show, so that one need not be finished before the next begins. */
-SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			  const struct look_up *look_up, int step, const struct rays *rays,
-			  vm alive, struct light *light)
+/* All whole segments, each ray for itself. Which sample comes next depends only on the cells, not
+ * on what samples show, so one need not be finished before the next begins. */
+SIMD uint32_t march_apart(const struct march *m, const struct look_up *look_up, vm alive,
+			  struct light *light)
 {
+	const struct gz_cast *cast = m->cast;
+	const struct rays *rays = m->rays;
 	vf k = rays->first + vf_set(0.5F);
 	const vf end = rays->end; /* k + 1/2 <= end */
-	vf until = vf_set(-1);    /* samples before it are taken */
+	vf until = vf_set(-1);    /* samples before this k are taken */
 	uint32_t samples = 0;
 	for (;;) {
 		const vm asks = vm_but(vm_and(alive, vf_less(k, end)), vf_less(k, until));
@@ -69,24 +68,25 @@ SIMD uint32_t march_apart(const struct gz_cast *cast, enum gz_voxel_type type, i
 			continue;
 		}
 		samples += vm_count(needed);
-		const vf value = fetch_sample(cast, type, nearest, rays, k, needed);
+		const vf value = fetch_sample(m, k, needed);
 		const vi entry = entry_of(look_up->scale, look_up->bias, value);
 		const vf at = k;
 		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->step_table[step], entry, vm_all(), &opacity, &colour);
-		composite_at(cast, type, nearest, rays, at, colour, opacity, needed, light);
+		gather_pair(cast->step_table[m->step], entry, vm_all(), &opacity, &colour);
+		composite_at(m, at, colour, opacity, needed, light);
 		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
 	}
 	return samples;
 }
 
-/* All whole segments, each ray for itself, of those samples alone that may show something. */
-SIMD uint32_t march_fine(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			 const struct look_up *look_up, int step, const struct rays *rays, vm alive,
+/* All whole segments, each ray for itself, but only the samples that the fine cells say may show
+ * something. */
+SIMD uint32_t march_fine(const struct march *m, const struct look_up *look_up, vm alive,
 			 struct light *light)
 {
+	const struct rays *rays = m->rays;
 	vf k = rays->first + vf_set(0.5F);
 	struct waiting before = none_waiting();
 	uint32_t samples = 0;
@@ -97,47 +97,46 @@ SIMD uint32_t march_fine(const struct gz_cast *cast, enum gz_voxel_type type, in
 		vf at[3];
 		for (int axis = 0; axis < 3; axis++)
 			at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-		const vm shows = vm_and(fine_shows(cast, at, running), alive);
+		const vm shows = vm_and(fine_shows(m->cast, at, running), alive);
 		if (!vm_any(shows)) {
-			k = skip(cast, rays, k, running);
+			k = skip_empty(m->cast, rays, k, running);
 			continue;
 		}
-		const vf value = fetch_sample(cast, type, nearest, rays, k, shows);
-		samples += settle(cast, type, nearest, step, rays, &before, &alive, light);
+		const vf value = fetch_sample(m, k, shows);
+		samples += settle_waiting(m, &before, &alive, light);
 		before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
 					    shows };
 		k = vf_select(running, k + vf_set(1), k);
 	}
-	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
+	return samples + settle_waiting(m, &before, &alive, light);
 }
 
 /* All whole segments. */
-SIMD uint32_t march(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
-		    const struct rays *rays, struct light *light)
+SIMD uint32_t march_whole(const struct march *m, struct light *light)
 {
-	const struct look_up look_up = look_up_of(cast, type, nearest);
+	const struct look_up look_up = look_up_of(m->cast, m->reading);
 	const vm alive =
-		vm_and(rays->hit, vf_less(vf_set(cast->end_transmittance), light->through));
+		vm_and(m->rays->hit, vf_less(vf_set(m->cast->end_transmittance), light->through));
 	if (!vm_any(alive))
 		return 0;
 #ifdef SIMD_GATHERS
-	if (cast->fine[0].flags) {
+	if (m->cast->fine[0].flags) {
 #ifdef SIMD_BLOCKS
-		const struct beam beam = beam_of(rays);
+		const struct beam beam = beam_of(m->rays);
 		if (beam.grid < GZ_FINE_GRIDS)
-			return march_beam(cast, type, nearest, &look_up, step, rays, &beam, alive,
-					  light);
+			return march_beam(m, &look_up, &beam, alive, light);
 #endif
-		return march_fine(cast, type, nearest, &look_up, step, rays, alive, light);
+		return march_fine(m, &look_up, alive, light);
 	}
 #endif
-	return march_apart(cast, type, nearest, &look_up, step, rays, alive, light);
+	return march_apart(m, &look_up, alive, light);
 }
 
-/* A part of a segment, at either end of the whole ones: around k, of a length in steps. */
-SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, int nearest, int step,
-			 const struct rays *rays, vf k, vf steps, struct light *light)
+/* A partial segment at an end of a ray: `steps` long, with its middle at k. */
+SIMD uint32_t march_part(const struct march *m, vf k, vf steps, struct light *light)
 {
+	const struct gz_cast *cast = m->cast;
+	const struct rays *rays = m->rays;
 	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
 	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(mask))
@@ -146,40 +145,37 @@ SIMD uint32_t march_part(const struct gz_cast *cast, enum gz_voxel_type type, in
 	mask = vm_but(mask, look_up_cell(cast, rays, k, mask, &leave));
 	if (!vm_any(mask))
 		return 0;
-	const vi entry = entry_of(vf_set(cast->entry_scale), vf_set(cast->entry_bias),
-				  sample_at(cast, type, nearest, rays, k, mask));
+	const vi entry =
+		entry_of(vf_set(cast->entry_scale), vf_set(cast->entry_bias),
+			 sample_at(cast, m->reading.type, m->reading.nearest, rays, k, mask));
 	vf extinction;
 	vi colour;
 	gather_pair(cast->extinction, entry, mask, &extinction, &colour);
-	const vf length = steps * vf_set(cast->voxel_lengths[step]);
+	const vf length = steps * vf_set(cast->voxel_lengths[m->step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
-	composite_at(cast, type, nearest, rays, k, colour, opacity, visible, light);
+	composite_at(m, k, colour, opacity, visible, light);
 	return vm_count(mask);
 }
 
-SIMD uint32_t cast_by_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			      int step, const struct rays *rays, struct light *light)
+SIMD uint32_t cast_by_samples(const struct march *m, struct light *light)
 {
-	uint32_t samples =
-		march_part(cast, type, nearest, step, rays, rays->head_at, rays->head, light);
-	samples += march(cast, type, nearest, step, rays, light);
-	return samples + march_part(cast, type, nearest, step, rays,
-				    vf_fma(rays->rest, vf_set(0.5F), rays->end), rays->rest, light);
+	const struct rays *rays = m->rays;
+	uint32_t samples = march_part(m, rays->head_at, rays->head, light);
+	samples += march_whole(m, light);
+	return samples +
+	       march_part(m, vf_fma(rays->rest, vf_set(0.5F), rays->end), rays->rest, light);
 }
 
-SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *tile,
-			uint32_t out_pixels[GZ_TILE_RAYS], enum gz_voxel_type type, int nearest,
-			int rich)
+SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile,
+			     uint32_t out_pixels[GZ_TILE_RAYS], struct reading reading, int rich)
 {
 	uint32_t samples = 0;
 	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
-		const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
 		struct rays rays;
 		struct view view;
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
-		set_up_rays(cast, tile->step, x, y, vf_load(tile->jitter + first),
-			    vm_from_bits(tile->active >> first), &rays);
+		set_up_rays(cast, tile, first, &rays);
 		if (!vm_any(rays.hit)) {
 			vi_store(out_pixels + first, to_pixel(cast, &light));
 			continue;
@@ -188,20 +184,20 @@ SIMD uint32_t cast_tile(const struct gz_cast *cast, const struct gz_cast_tile *t
 			set_up_view(cast, tile->step, &rays, &view);
 			rays.view = &view;
 		}
-		samples +=
-			rich && cast->preintegrated_extinction
-				? cast_by_segments(cast, type, nearest, tile->step, &rays, &light)
-				: cast_by_samples(cast, type, nearest, tile->step, &rays, &light);
+		const struct march march = { cast, reading, tile->step, &rays };
+		samples += rich && cast->preintegrated_extinction ? cast_by_segments(&march, &light)
+								  : cast_by_samples(&march, &light);
 		vi_store(out_pixels + first, to_pixel(cast, &light));
 	}
 	return samples;
 }
 
-#define DEFINE_TILE(name, type, nearest, rich)                                            \
-	static uint32_t name(const struct gz_cast *cast, const struct gz_cast_tile *tile, \
-			     uint32_t out_pixels[GZ_TILE_RAYS])                           \
-	{                                                                                 \
-		return cast_tile(cast, tile, out_pixels, type, nearest, rich);            \
+#define DEFINE_TILE(name, type, nearest, rich)                                                    \
+	static uint32_t name(const struct gz_cast *cast, const struct gz_cast_tile *tile,         \
+			     uint32_t out_pixels[GZ_TILE_RAYS])                                   \
+	{                                                                                         \
+		return cast_tile_rays(cast, tile, out_pixels, (struct reading) { type, nearest }, \
+				      rich);                                                      \
 	}
 
 DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0, 0)

@@ -1,37 +1,34 @@
 /*
- * Segments instead of samples: colour and opacity by the values at both ends of each, from a
- * pre-integrated table, so that no thin layer is stepped over. The end of a segment is the
- * beginning of the next.
- * A part of the kernel: see cast_kernel.h.
+ * Segments instead of samples: a pre-integrated table gives colour and opacity by the values at
+ * both ends of a segment, so that no thin layer is missed. The end of a segment is the front of the
+ * next. A part of the kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_PREINTEGRATED_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_PREINTEGRATED_H
 
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
-#include "render/raycast/cpu/cast_light.h"
-#include "render/raycast/cpu/cast_look_up.h"
 #include "render/raycast/cpu/cast_rays.h"
 #include "render/raycast/cpu/cast_shade.h"
-#include "render/raycast/cpu/cast_skip.h"
 #include "render/transfer/transfer_preintegrated.h"
 
-/* The cell of an entry of the transfer function, and the place of a pair in the table. */
+/* From an entry of the transfer function to a row or column of the pre-integrated table. */
 SIMD vi preintegrated_cell(vi entry)
 {
 	return vi_shift_right(entry, __builtin_ctz(GZ_PREINTEGRATED_STRIDE));
 }
 
+/* The place of a pair in the pre-integrated table. */
 SIMD vi preintegrated_pair(vi front, vi back)
 {
 	return vi_or(vi_shift_left(front, __builtin_ctz(GZ_PREINTEGRATED_SIZE)), back);
 }
 
 /*
- * Let the lanes that ask, at the fronts of their segments, know how far these are to be taken; put
- * them behind the segments that lie in empty space as a whole. One that begins there and ends
- * outside is taken. Nothing shows between two values that lie in empty cells next to each other:
- * these share voxels, so there is no gap between the values they hold.
+ * For lanes that ask, at the fronts of their segments: find how far segments are to be taken, and
+ * advance past the segments that lie wholly in empty space. A segment that begins there and ends
+ * outside is taken. Nothing shows between two values of neighbouring empty cells: the cells share
+ * voxels, so there is no gap between their ranges of values.
  */
 SIMD void look_ahead_segments(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k,
 			      vf *until, vm *known)
@@ -41,16 +38,17 @@ SIMD void look_ahead_segments(const struct gz_cast *cast, const struct rays *ray
 	const vf next = vf_select(empty, vf_max(vf_floor(leave), *k), *k);
 	*known = vm_but(*known, vf_less(*k, next));
 	*k = next;
-	/* Whatever rounding says of where a cell ends: one segment on. */
+	/* At least one segment, wherever rounding puts the end of the cell. */
 	const vf one = *k + vf_set(0.5F);
 	*until = vf_select(asks, vf_select(empty, one, vf_max(leave, one)), *until);
 }
 
 /* All whole segments; k counts their fronts. */
-SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			     int step, const struct rays *rays, struct light *light)
+SIMD uint32_t march_segments(const struct march *m, struct light *light)
 {
-	const struct look_up look_up = look_up_of(cast, type, nearest);
+	const struct gz_cast *cast = m->cast;
+	const struct rays *rays = m->rays;
+	const struct look_up look_up = look_up_of(cast, m->reading);
 	const vf end = rays->end;
 	vf k = rays->first;
 	vf until = vf_set(-1); /* segments that begin before it are taken */
@@ -67,7 +65,7 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 			break;
 		const vm lacks = vm_but(takes, known);
 		if (vm_any(lacks)) {
-			const vf value = fetch_sample(cast, type, nearest, rays, k, lacks);
+			const vf value = fetch_sample(m, k, lacks);
 			front = vi_select(
 				lacks,
 				preintegrated_cell(entry_of(look_up.scale, look_up.bias, value)),
@@ -75,15 +73,14 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 			samples += vm_count(lacks);
 		}
 		k = vf_select(takes, k + vf_set(1), k);
-		const vf value = fetch_sample(cast, type, nearest, rays, k, takes);
+		const vf value = fetch_sample(m, k, takes);
 		const vi back = preintegrated_cell(entry_of(look_up.scale, look_up.bias, value));
 		samples += vm_count(takes);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->preintegrated[step], preintegrated_pair(front, back), takes,
+		gather_pair(cast->preintegrated[m->step], preintegrated_pair(front, back), takes,
 			    &opacity, &colour);
-		composite_at(cast, type, nearest, rays, k - vf_set(0.5F), colour, opacity, takes,
-			     light);
+		composite_at(m, k - vf_set(0.5F), colour, opacity, takes, light);
 		front = back;
 		known = takes;
 		alive = vm_and(alive, vf_less(vf_set(cast->end_transmittance), light->through));
@@ -91,11 +88,12 @@ SIMD uint32_t march_segments(const struct gz_cast *cast, enum gz_voxel_type type
 	return samples;
 }
 
-/* A part of a segment: from front on, `steps` of a step long. */
-SIMD uint32_t march_segment_part(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-				 int step, const struct rays *rays, vf front, vf steps,
-				 struct light *light)
+/* A partial segment from `front` on, `steps` long. */
+SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, struct light *light)
 {
+	const struct gz_cast *cast = m->cast;
+	const struct rays *rays = m->rays;
+	const struct reading reading = m->reading;
 	vm mask = vm_and(rays->hit, vf_less(vf_set(GZ_LAST_SEGMENT_LEAST), steps));
 	mask = vm_and(mask, vf_less(vf_set(cast->end_transmittance), light->through));
 	if (!vm_any(mask))
@@ -108,32 +106,31 @@ SIMD uint32_t march_segment_part(const struct gz_cast *cast, enum gz_voxel_type 
 		return 0;
 	const vf scale = vf_set(cast->entry_scale), bias = vf_set(cast->entry_bias);
 	const vi cells[2] = {
+		preintegrated_cell(entry_of(
+			scale, bias,
+			sample_at(cast, reading.type, reading.nearest, rays, front, mask))),
 		preintegrated_cell(
-			entry_of(scale, bias, sample_at(cast, type, nearest, rays, front, mask))),
-		preintegrated_cell(
-			entry_of(scale, bias, sample_at(cast, type, nearest, rays, back, mask))),
+			entry_of(scale, bias,
+				 sample_at(cast, reading.type, reading.nearest, rays, back, mask))),
 	};
 	vf extinction;
 	vi colour;
 	gather_pair(cast->preintegrated_extinction, preintegrated_pair(cells[0], cells[1]), mask,
 		    &extinction, &colour);
-	const vf length = steps * vf_set(cast->voxel_lengths[step]);
+	const vf length = steps * vf_set(cast->voxel_lengths[m->step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
-	composite_at(cast, type, nearest, rays, vf_fma(steps, vf_set(0.5F), front), colour, opacity,
-		     visible, light);
+	composite_at(m, vf_fma(steps, vf_set(0.5F), front), colour, opacity, visible, light);
 	return 2 * vm_count(mask);
 }
 
-SIMD uint32_t cast_by_segments(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			       int step, const struct rays *rays, struct light *light)
+SIMD uint32_t cast_by_segments(const struct march *m, struct light *light)
 {
+	const struct rays *rays = m->rays;
 	const vf from = vf_fma(rays->head, vf_set(-0.5F), rays->head_at);
-	uint32_t samples =
-		march_segment_part(cast, type, nearest, step, rays, from, rays->head, light);
-	samples += march_segments(cast, type, nearest, step, rays, light);
-	return samples +
-	       march_segment_part(cast, type, nearest, step, rays, rays->end, rays->rest, light);
+	uint32_t samples = march_segment_part(m, from, rays->head, light);
+	samples += march_segments(m, light);
+	return samples + march_segment_part(m, rays->end, rays->rest, light);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * Rays in voxel coordinates, cut by the box.
- * A part of the kernel: see cast_kernel.h.
+ * Rays in voxel coordinates, cut by the box, and what the macrocells and fine cells say of the
+ * space along them. A part of the kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_RAYS_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_RAYS_H
@@ -8,28 +8,47 @@
 #include <stddef.h>
 
 #include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/fine_cells.h"
+#include "render/raycast/shared/macrocells.h"
 
-/* What the light on all samples of a ray shares: unit vectors towards the eye, and halfway from
- * there to the light. */
+/* Unit vectors towards the eye, and halfway between eye and light: the same for all samples of a
+ * ray. */
 struct view {
 	vf eye[3], half[3];
 };
 
-/* One chunk of lanes: its rays in voxel coordinates, position = start + k * delta; counted from the
- * first datum, datum + k * delta. */
+/* The rays of one register. After k steps a ray is at start + k * delta in voxel coordinates, which
+ * is datum + k * delta counted from the first datum. */
 struct rays {
 	vf start[3], datum[3], delta[3], inverse[3];
-	vf zero;       /* where k is 0: steps from the origin */
+	vf zero;       /* steps from the origin to k = 0 */
 	vf first, end; /* whole segments: from k = first to k = end */
-	vf head;       /* of a segment, before the first; [0, 1) */
+	vf head;       /* length of the partial segment before the first, [0, 1) */
 	vf head_at;    /* its middle */
-	vf rest;       /* of a segment, behind the last; [0, 1) */
+	vf rest;       /* length of the partial segment after the last, [0, 1) */
 	vm hit;
-	const struct view *view; /* NULL: not lit */
+	const struct view *view; /* NULL: no light */
 };
 
-/* Where the rays meet the whole box, and where they are within what is shown of it: k counted from
- * the origin. */
+/* How voxels are read: constants of each kernel, so that the compiler drops what they exclude.
+ * Passed by value. */
+struct reading {
+	enum gz_voxel_type type;
+	int nearest;
+};
+
+/* What every function along the rays of one register needs. All of them are inlined, so that the
+ * fields stay in registers and the constants stay constants. Do not pass it to a function that is
+ * not inlined. */
+struct march {
+	const struct gz_cast *cast;
+	struct reading reading;
+	int step; /* of the plan */
+	const struct rays *rays;
+};
+
+/* Steps from the origin to where the rays enter the whole box, and to where they enter and leave
+ * the shown part of it. */
 struct cuts {
 	vf box, enter, leave;
 };
@@ -50,7 +69,7 @@ SIMD struct cuts cut_rays(const struct gz_cast *cast, const vf origin[3], const 
 	return cuts;
 }
 
-/* Count segments from a share of one before the box, and find which are whole. */
+/* Count segments from `shift` steps before the box, and find which are whole. */
 SIMD void count_segments(struct cuts cuts, vf shift, struct rays *rays)
 {
 	const vf none = vf_set(0);
@@ -60,14 +79,18 @@ SIMD void count_segments(struct cuts cuts, vf shift, struct rays *rays)
 	rays->end = vf_floor(to);
 	rays->head = vf_min(rays->first, to) - from;
 	rays->head_at = vf_fma(rays->head, vf_set(0.5F), from);
-	/* Where all lies within one segment, the head is all there is. */
+	/* If everything lies within one segment, the head is all. */
 	rays->rest = vf_select(vf_less(rays->end, rays->first), none, to - rays->end);
 }
 
-/* Rays of pixels (x, y), cut by the box and the clip box; segments begin `shift` before the box. */
-SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vf shift, vm active,
+/* Set up SIMD_LANES rays of a tile from number `first` on, cut by the box and the clip box.
+ * Segments begin a jitter before the box. */
+SIMD void set_up_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile, int first,
 		      struct rays *rays)
 {
+	const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
+	const vf shift = vf_load(tile->jitter + first);
+	const vm active = vm_from_bits(tile->active >> first);
 	vf origin[3], direction[3];
 	vf length2 = vf_set(0);
 	for (int axis = 0; axis < 3; axis++) {
@@ -81,7 +104,7 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vf shift
 		length2 = vf_fma(world, world, length2);
 	}
 	/* One step along the ray, in voxel coordinates. */
-	const vf scale = vf_set(cast->step[step]) / vf_sqrt(length2);
+	const vf scale = vf_set(cast->step[tile->step]) / vf_sqrt(length2);
 	for (int axis = 0; axis < 3; axis++) {
 		const vf least = vf_set(1e-12F);
 		const vf raw = direction[axis] * scale;
@@ -99,6 +122,60 @@ SIMD void set_up_rays(const struct gz_cast *cast, int step, vf x, vf y, vf shift
 		rays->start[axis] = vf_fma(zero, rays->delta[axis], origin[axis]);
 		rays->datum[axis] = vf_fma(zero, rays->delta[axis], origin[axis] - vf_set(0.5F));
 	}
+}
+
+/* Find which lanes' macrocells at k are empty, and the k up to which all samples are like this one.
+ */
+SIMD vm look_up_cell(const struct gz_cast *cast, const struct rays *rays, vf k, vm mask, vf *until)
+{
+	vi index = vi_set(0);
+	vf cell[3];
+	for (int axis = 0; axis < 3; axis++) {
+		const vf at = vf_fma(k, rays->delta[axis], rays->start[axis]);
+		const vf place = at * vf_set(1.0F / GZ_MACROCELL_EDGE);
+		cell[axis] =
+			vf_floor(vf_min(vf_max(place, vf_set(0)), vf_set(cast->cell_last[axis])));
+		index = vi_add(index,
+			       vi_mul(vi_trunc(cell[axis]), vi_set(cast->cell_stride[axis])));
+	}
+	const vf away = vf_from_i(vi_and(vi_gather(cast->reach, index, 1, mask), vi_set(0xFF))) -
+			vf_set(GZ_REACH_BORDER);
+	/* Cells less than this distance away are of the same kind. */
+	const vf reach = vf_abs(away);
+	vf leave = vf_set(3e38F);
+	for (int axis = 0; axis < 3; axis++) {
+		const vm forward = vf_less(vf_set(0), rays->delta[axis]);
+		const vf high = cell[axis] + reach, low = cell[axis] + vf_set(1) - reach;
+		const vf edge = vf_select(forward, high, low) * vf_set(GZ_MACROCELL_EDGE);
+		leave = vf_min(leave, (edge - rays->start[axis]) * rays->inverse[axis]);
+	}
+	*until = leave;
+	return vf_less(vf_set(0), away);
+}
+
+/* The fine cell along one axis of places counted from the first datum. */
+SIMD vf fine_place(const struct gz_cast_grid *grid, int axis, vf at)
+{
+	const vf place = at * vf_set(grid->cells_per_voxel);
+	return vf_floor(vf_min(vf_max(place, vf_set(0)), vf_set(grid->last[axis])));
+}
+
+SIMD vi fine_index(const struct gz_cast_grid *grid, const vf cell[3])
+{
+	return vi_add(vi_trunc(cell[0]),
+		      vi_add(vi_mul(vi_trunc(cell[1]), vi_set(grid->stride[1])),
+			     vi_mul(vi_trunc(cell[2]), vi_set(grid->stride[2]))));
+}
+
+/* Which of the samples at these places show something. */
+SIMD vm fine_shows(const struct gz_cast *cast, const vf at[3], vm mask)
+{
+	const struct gz_cast_grid *grid = &cast->fine[0];
+	vf cell[3];
+	for (int axis = 0; axis < 3; axis++)
+		cell[axis] = fine_place(grid, axis, at[axis]);
+	const vi flags = vi_gather(grid->flags, fine_index(grid, cell), 1, mask);
+	return vm_and(mask, vi_nonzero(vi_and(flags, vi_set((int32_t)GZ_FINE_FLAG(0)))));
 }
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * How a sample answers light: struct gz_light says what is computed here.
- * A part of the kernel: see cast_kernel.h.
+ * Colour: light on a sample (struct gz_light has the formulas), gathering front to back, and the
+ * pixel that it becomes. A part of the kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
@@ -8,14 +8,78 @@
 #include "render/light/light_constants.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
-#include "render/raycast/cpu/cast_light.h"
 #include "render/raycast/cpu/cast_rays.h"
 #include "render/raycast/shared/cast_constants.h"
 
+/* Colour gathered so far, front to back, and the share of light that still comes through. */
+struct light {
+	vf red, green, blue, through;
+};
+
+/* 2^x for x <= 0, to 2e-7: the fraction in [-1/2, 1/2] by a polynomial (Taylor of exp(f ln 2),
+ * degree 6), the whole part into the exponent. */
+SIMD vf exp2_negative(vf x)
+{
+	x = vf_max(x, vf_set(-126));
+	const vf whole = vf_floor(x + vf_set(0.5F));
+	const vf f = (x - whole) * vf_set(0.693147180559945F);
+	vf p = vf_set(1.0F / 720);
+	p = vf_fma(p, f, vf_set(1.0F / 120));
+	p = vf_fma(p, f, vf_set(1.0F / 24));
+	p = vf_fma(p, f, vf_set(1.0F / 6));
+	p = vf_fma(p, f, vf_set(0.5F));
+	p = vf_fma(p, f, vf_set(1));
+	p = vf_fma(p, f, vf_set(1));
+	/* whole + 127 is 1 to 127, so the sign bit stays 0 */
+	return p * vf_bits(vi_shift_left(vi_trunc(whole + vf_set(127)), 23));
+}
+
+/* A sample's colour: red and green up to 2047, blue up to 1023. */
+struct colour {
+	vf red, green, blue;
+};
+
+SIMD struct colour unpack_colour(vi packed)
+{
+	return (struct colour) {
+		vf_from_i(vi_shift_right(packed, 21)),
+		vf_from_i(vi_and(vi_shift_right(packed, 10), vi_set(2047))),
+		vf_from_i(vi_and(packed, vi_set(1023))),
+	};
+}
+
+SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct light *light)
+{
+	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
+	light->red = vf_fma(weight, colour.red, light->red);
+	light->green = vf_fma(weight, colour.green, light->green);
+	light->blue = vf_fma(weight, colour.blue, light->blue);
+	light->through = light->through - weight;
+}
+
+SIMD vi to_byte(vf x)
+{
+	return vi_trunc(vf_fma(vf_min(vf_max(x, vf_set(0)), vf_set(1)), vf_set(255), vf_set(0.5F)));
+}
+
+SIMD vi to_pixel(const struct gz_cast *cast, const struct light *light)
+{
+	const vf *t = &light->through;
+	const vi red =
+		to_byte(vf_fma(*t, vf_set(cast->background[0]), light->red * vf_set(1.0F / 2047)));
+	const vi green = to_byte(
+		vf_fma(*t, vf_set(cast->background[1]), light->green * vf_set(1.0F / 2047)));
+	const vi blue =
+		to_byte(vf_fma(*t, vf_set(cast->background[2]), light->blue * vf_set(1.0F / 1023)));
+	const vi opaque = vi_set((int32_t)0xFF000000);
+	return vi_or(vi_or(red, vi_shift_left(green, 8)), vi_or(vi_shift_left(blue, 16), opaque));
+}
+
+/* Find what all lit samples of the rays share. */
 SIMD void set_up_view(const struct gz_cast *cast, int step, const struct rays *rays,
 		      struct view *view)
 {
-	vf length2 = vf_set(1e-12F); /* where eye and light are opposite there is no half */
+	vf length2 = vf_set(1e-12F); /* not 0 where eye and light are opposite */
 	for (int axis = 0; axis < 3; axis++) {
 		const float world_per_step = cast->world_per_voxel[axis] / cast->step[step];
 		view->eye[axis] = rays->delta[axis] * vf_set(-world_per_step);
@@ -45,18 +109,18 @@ SIMD vf log2_positive(vf x)
 	return vf_fma(p * z, vf_set(2.88539008177793F), whole); /* 2 / ln 2 */
 }
 
-/* Of a and b, unit vectors or 0. */
-SIMD vf dot(const vf a[3], const vf b[3])
+/* The scalar product of unit vectors, or of 0. */
+SIMD vf dot_lanes(const vf a[3], const vf b[3])
 {
 	return vf_fma(a[2], b[2], vf_fma(a[1], b[1], a[0] * b[0]));
 }
 
-SIMD vf clamp(vf x, vf least, vf greatest)
+SIMD vf clamp_lanes(vf x, vf least, vf greatest)
 {
 	return vf_min(vf_max(x, least), greatest);
 }
 
-/* The gradient's differences at places counted from the first datum, by two samples along each
+/* The gradient's differences at places counted from the first datum, from two samples along each
  * axis. */
 SIMD void difference_samples(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
 			     const vf at[3], vm mask, vf difference[3])
@@ -73,7 +137,7 @@ SIMD void difference_samples(const struct gz_cast *cast, enum gz_voxel_type type
 	}
 }
 
-/* Four voxels of a row, beginning before the index. */
+/* Four voxels of a row, the first one before the index. */
 SIMD void load_four(const struct gz_cast *cast, enum gz_voxel_type type, vi index, vm mask,
 		    vf row[4])
 {
@@ -90,8 +154,8 @@ SIMD void load_four(const struct gz_cast *cast, enum gz_voxel_type type, vi inde
 	}
 }
 
-/* The same trilinear, where all that is needed lies within the data: samples a voxel apart share
- * most of their voxels. */
+/* The trilinear differences where all voxels that they need lie within the data: samples a voxel
+ * apart share most of their voxels. */
 SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
 			    vm mask, vf difference[3])
 {
@@ -132,14 +196,12 @@ SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type,
 SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
 			const vf at[3], vm mask, vf gradient[3])
 {
-	vm outside = vm_but(mask, mask); /* less than a voxel, and rounding, from the last datum */
+	vm outside = vm_but(mask, mask); /* closer than a voxel, and rounding, to the rim */
 	for (int axis = 0; axis < 3; axis++)
 		outside =
 			vm_or(outside, vm_or(vf_less(at[axis], vf_set(1)),
 					     vf_less(vf_set(cast->dims[axis] - 2.01F), at[axis])));
-	/* The two round differently, so that which one a ray takes must not depend on its
-	 * neighbours.
-	 */
+	/* The two ways round differently, so a ray's way must not depend on its neighbours. */
 	const vm inside = vm_but(mask, outside);
 	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
 	if (by_voxels)
@@ -156,7 +218,7 @@ SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int
 		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }
 
-/* What lies around, at places counted from the first datum: trilinear in the grid of occlusion. */
+/* The occlusion at places counted from the first datum, trilinear in its grid. */
 SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mask)
 {
 	vf share[3];
@@ -164,7 +226,7 @@ SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mas
 	for (int axis = 0; axis < 3; axis++) {
 		const vf place = vf_fma(at[axis], vf_set(light->cell_scale[axis]),
 					vf_set(light->cell_bias[axis]));
-		const vf inside = clamp(place, vf_set(0), vf_set(light->cell_greatest[axis]));
+		const vf inside = clamp_lanes(place, vf_set(0), vf_set(light->cell_greatest[axis]));
 		index[axis] = vi_min(vi_trunc(inside), vi_set(light->cell_last[axis]));
 		share[axis] = inside - vf_from_i(index[axis]);
 	}
@@ -181,10 +243,10 @@ SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mas
 	}
 	const vf filled =
 		mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
-	return clamp(vf_fma(filled, vf_set(2.0F / 65535), vf_set(-1)), vf_set(0), vf_set(1));
+	return clamp_lanes(vf_fma(filled, vf_set(2.0F / 65535), vf_set(-1)), vf_set(0), vf_set(1));
 }
 
-/* By what to multiply a colour, and how much white to add to it. */
+/* The factor of a colour, and the white to add to it. */
 struct shine {
 	vf factor, white;
 };
@@ -195,9 +257,10 @@ SIMD struct shine find_shine(const struct gz_cast_light *light, const struct vie
 	const vf facing = vf_set(1 / GZ_LIGHT_FACING);
 	const vf towards[3] = { vf_set(light->towards[0]), vf_set(light->towards[1]),
 				vf_set(light->towards[2]) };
-	const vf side = clamp(dot(normal, view->eye) * facing, vf_set(-1), vf_set(1));
-	const vf diffuse = vf_max(side * dot(normal, towards), vf_set(0));
-	const vf cosine = clamp(vf_abs(dot(normal, view->half)), vf_set(1e-12F), vf_set(1));
+	const vf side = clamp_lanes(dot_lanes(normal, view->eye) * facing, vf_set(-1), vf_set(1));
+	const vf diffuse = vf_max(side * dot_lanes(normal, towards), vf_set(0));
+	const vf cosine =
+		clamp_lanes(vf_abs(dot_lanes(normal, view->half)), vf_set(1e-12F), vf_set(1));
 	const vf gloss = exp2_negative(vf_set(light->shininess) * log2_positive(cosine)) *
 			 vf_min(diffuse * facing, vf_set(1));
 	const vf ambient = vf_set(light->ambient) * (vf_set(1) - occlusion);
@@ -205,7 +268,7 @@ SIMD struct shine find_shine(const struct gz_cast_light *light, const struct vie
 				gloss * vf_set(light->specular) };
 }
 
-/* A channel of a colour, from 0 to full. */
+/* Light one channel of a colour, 0 to `full`. */
 SIMD vf shade_channel(vf colour, float full, const struct shine *shine, vf weight)
 {
 	const vf lit =
@@ -213,18 +276,18 @@ SIMD vf shade_channel(vf colour, float full, const struct shine *shine, vf weigh
 	return vf_fma(weight, lit - colour, colour);
 }
 
-/* Light a colour at k. Not part of the loop around it: called for what shows, which is seldom, and
- * one for all voxel types is a twelfth of the code. */
+/* Light a colour at k. Not inlined: only visible samples need it, which are few, and one function
+ * for all voxel types is a twelfth of the code. */
 static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
-						     enum gz_voxel_type type, int nearest,
+						     struct reading reading,
 						     const struct rays *rays, vf k, vm mask,
 						     struct colour colour)
 {
 	vf at[3], gradient[3];
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	find_gradient(cast, type, nearest, at, mask, gradient);
-	const vf length2 = dot(gradient, gradient);
+	find_gradient(cast, reading.type, reading.nearest, at, mask, gradient);
+	const vf length2 = dot_lanes(gradient, gradient);
 	const vf weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
 	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
 	for (int axis = 0; axis < 3; axis++)
@@ -240,19 +303,44 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 	};
 }
 
-/* Add the colour of what lies at k, lit where there is light. */
-SIMD void composite_at(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-		       const struct rays *rays, vf k, vi packed, vf opacity, vm mask,
+/* Add the colour of a sample at k of the lanes of mask, lit if the scene has light. */
+SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm mask,
 		       struct light *light)
 {
 	struct colour colour = unpack_colour(packed);
-	if (rays->view) {
+	if (m->rays->view) {
 		const vm visible = vm_and(mask, vf_less(vf_set(0), opacity));
 		if (!vm_any(visible))
 			return;
-		colour = shade(cast, type, nearest, rays, k, visible, colour);
+		colour = shade(m->cast, m->reading, m->rays, k, visible, colour);
 	}
 	composite_colour(colour, opacity, mask, light);
+}
+
+/* A sample whose colour has not been added yet: it is looked up while the next one is fetched, so
+ * that neither waits for the other. */
+struct waiting {
+	vf at;
+	vi entry;
+	vm within; /* lanes that have one */
+};
+
+SIMD struct waiting none_waiting(void)
+{
+	return (struct waiting) { vf_set(0), vi_set(0), vf_less(vf_set(0), vf_set(0)) };
+}
+
+/* Add the waiting sample and find which lanes are still alive. Returns how many lanes it served. */
+SIMD uint32_t settle_waiting(const struct march *m, const struct waiting *waiting, vm *alive,
+			     struct light *light)
+{
+	vf opacity;
+	vi colour;
+	const vm needed = vm_and(waiting->within, *alive);
+	load_pairs(m->cast->step_table[m->step], waiting->entry, &opacity, &colour);
+	composite_at(m, waiting->at, colour, opacity, needed, light);
+	*alive = vm_and(*alive, vf_less(vf_set(m->cast->end_transmittance), light->through));
+	return vm_count(needed);
 }
 
 #endif

@@ -1,48 +1,53 @@
 /*
- * Marching side by side: all rays of a tile at the same distance from the eye, so that a block of
- * voxels serves them all. Distances are counted in levels, samples from the first of all rays on;
- * which levels show something is asked for the tile as a whole, for sixteen at a time, and those
- * that do are listed before any is sampled. Where one ray's cell shows something, all take their
- * samples: in an empty cell they have no opacity.
- * A part of the kernel, for sets with blocks: see cast_kernel.h.
+ * Marching side by side: all rays of a tile at the same distance from the eye, so that one block of
+ * voxels serves them all. A level is one step of all rays, counted from the first ray's first
+ * sample. Sixteen levels at a time are tested for the tile as a whole, and those that show
+ * something are listed before any is sampled. If one ray's cell shows something, all rays take
+ * their samples; those in empty cells have no opacity. A part of the kernel, for sets with blocks:
+ * see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_TOGETHER_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_TOGETHER_H
 
-#include "render/raycast/cpu/cast_block.h"
-#include "render/raycast/cpu/cast_fine.h"
-#include "render/raycast/cpu/cast_look_up.h"
-#include "render/raycast/cpu/cast_settle.h"
 #include <math.h>
 
-/* How far apart, voxels, the rays of a tile may be to go side by side. Chosen by measuring: up to 2
- * a block holds them all wherever they are, at 3 by luck alone, and single loads serve the rest. */
+#include "render/raycast/cpu/cast_block.h"
+#include "render/raycast/cpu/cast_shade.h"
+
+/* Widest extent of a tile's rays, voxels, for blocks. Chosen by measuring: up to 2 a block holds
+ * all rays wherever they are, at 3 only by chance, and single loads serve the rest. */
 #define TOGETHER_SPREAD 2.5F
-/* The same for a wide block, along x and across. Rays that far apart gain more from a block, so
- * that one which holds them at the near side of the volume alone pays too. */
+/* Widest extents for wide blocks, along x and across. Rays that far apart gain more from a block,
+ * so that a block pays even if it holds them only at the near side of the volume. */
 #define TOGETHER_SPREAD_WIDE   7.0F
 #define TOGETHER_SPREAD_ACROSS 3.5F
-/* How much farther than it seems a ray may be from where it should be: rounding, voxels. */
+/* Rounding error of a ray's place, voxels, at most. */
 #define TOGETHER_SLACK (1.0F / 32)
 
 /* Levels that are listed at a time. Chosen: a stretch is seldom longer. */
 enum { LEVELS_LISTED = 64 };
 
-/* The box round all rays of a tile, over the levels: corners go straight, those of the rays are
- * never outside. x, y, z and 0, counted from the first datum. */
+/* Levels that show something. */
+struct level_list {
+	int count;
+	float levels[LEVELS_LISTED + SIMD_LANES];
+};
+
+/* A box around all rays of a tile at each level. Its corners go straight, and no ray is ever
+ * outside. Corners are x, y, z and 0, counted from the first datum. */
 struct beam {
 	__m128 low, high;           /* at level 0 */
 	__m128 low_step, high_step; /* from one level to the next */
-	float spread;               /* the longest edge anywhere, voxels */
-	float spread_x, spread_yz;  /* the longest along x, and across */
+	float spread;               /* longest edge of the box at any level, voxels */
+	float spread_x, spread_yz;  /* longest edges along x, and across */
 	int grid;                   /* of the fine cells that are at least as long */
-	float levels_per_voxel;     /* of the corner and axis that goes fastest */
-	vf first;                   /* the k of level 0 */
+	float levels_per_voxel;     /* of the corner and axis that move fastest */
+	vf first;                   /* k at level 0 */
 	float count;                /* levels */
 };
 
-/* Sample k of level 0: the first of the ray that has its own first, and those of the others that
- * are level with it, which may lie before they come to the box. */
+/* k at level 0: the first sample of the ray that comes first, and the samples of the others that
+ * are level with it, which may lie before they enter the box. */
 SIMD vf level_start(const struct rays *rays)
 {
 	const float nearest = _mm512_mask_reduce_min_ps(rays->hit, rays->zero + rays->first);
@@ -50,7 +55,7 @@ SIMD vf level_start(const struct rays *rays)
 						   _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 }
 
-/* The box round the places of k. */
+/* The box around the places at k. */
 SIMD void beam_corners(const struct rays *rays, vf k, __m128 *low, __m128 *high)
 {
 	float least[3], most[3];
@@ -75,8 +80,8 @@ SIMD __m128 absolute_of_four(__m128 x)
 	return _mm_andnot_ps(_mm_set1_ps(-0.0F), x);
 }
 
-/* Each ray goes straight and evenly, so that the least of all over the levels is bent one way only
- * and lies beyond the line between its ends. */
+/* Each ray moves straight and evenly, so the least coordinate of all rays is a concave function of
+ * the level and never below the line between its ends; likewise for the greatest. */
 SIMD struct beam beam_of(const struct rays *rays)
 {
 	struct beam beam = { .first = level_start(rays) };
@@ -107,7 +112,7 @@ SIMD vi beam_cells(const struct gz_cast_grid *grid, const __m128 *corner, const 
 	return vi_min(vi_trunc(vf_max(place, vf_set(0))), vi_set((int32_t)grid->last[axis]));
 }
 
-/* Which of sixteen levels show something in any cell that the beam's box touches, which is no
+/* Which of sixteen levels show something in any cell that the beam's box touches. The box is no
  * longer than a cell. */
 SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level)
 {
@@ -125,7 +130,7 @@ SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level
 	return _mm512_mask_test_epi32_mask(asked, _mm512_srlv_epi32(flags, axes), vi_set(1));
 }
 
-/* How many levels behind one that shows nothing are empty too, by the macrocells. */
+/* How many levels after one that shows nothing are empty too, by the macrocells. */
 SIMD float beam_empty(const struct gz_cast *cast, const struct beam *beam, float level)
 {
 	const __m128 low = _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low);
@@ -138,15 +143,15 @@ SIMD float beam_empty(const struct gz_cast *cast, const struct beam *beam, float
 	const int64_t index = _mm_cvtsi128_si32(cell) +
 			      (int64_t)_mm_extract_epi32(cell, 1) * cast->cell_stride[1] +
 			      (int64_t)_mm_extract_epi32(cell, 2) * cast->cell_stride[2];
-	/* Cells less than this away are empty; the low corner is anywhere in its own. */
+	/* Cells less than this away are empty; the low corner is anywhere in its own cell. */
 	const int away = cast->reach[index] - GZ_REACH_BORDER;
 	const float free = (float)((away - 1) * GZ_MACROCELL_EDGE) - beam->spread;
 	return fmaxf(floorf(free * beam->levels_per_voxel), 0);
 }
 
-/* List levels that show something, from `from` on, which moves on; none at the end. */
+/* List levels that show something, from `from` on, and advance it. Returns false at the end. */
 SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float *from,
-		     float levels[LEVELS_LISTED + SIMD_LANES])
+		     struct level_list *list)
 {
 	const vf sixteen = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 	int count = 0;
@@ -155,55 +160,63 @@ SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float 
 		const vm shows = beam_shows(cast, beam, level);
 		*from += SIMD_LANES;
 		if (shows) {
-			vf_store(levels + count, _mm512_maskz_compress_ps(shows, level));
+			vf_store(list->levels + count, _mm512_maskz_compress_ps(shows, level));
 			count += (int)vm_count(shows);
 		} else {
 			*from += beam_empty(cast, beam, *from - 1);
 		}
 	}
-	return count;
+	list->count = count;
+	return count > 0;
 }
 
 /* Load the block of a level. */
-SIMD void beam_block(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
-		     const struct beam *beam, float level, struct block *block)
+SIMD void beam_block(const struct march *m, int wide, const struct beam *beam, float level,
+		     struct block *block)
 {
-	block_take(cast, type, wide, _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low),
-		   block);
+	block_take(m->cast, m->reading.type, wide,
+		   _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low), block);
 }
 
-/* The values at k of the lanes of mask, by the block if it holds them. */
-SIMD vf fetch_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
-		       const struct rays *rays, vf k, vm needed, const struct block *block)
+/* The values at k of the needed lanes, from the block if it holds them. */
+SIMD vf fetch_together(const struct march *m, int wide, vf k, vm needed, const struct block *block)
 {
 	vf at[3], places[3];
 	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	if (__builtin_expect(!block_places(cast, block, wide, at, needed, places), 0))
-		return fetch_sample(cast, type, 0, rays, k, needed);
-	return block_sample(block, type, wide, places);
+		at[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
+	if (__builtin_expect(!block_places(m->cast, block, wide, at, needed, places), 0))
+		return fetch_sample(m, k, needed);
+	return block_sample(block, m->reading.type, wide, places);
 }
 
-/* Take the samples of levels. Of one sample to the next, the block of voxels is fetched while the
- * one before it is interpolated, whose colour is looked up while the next is: a processor that runs
- * ahead of a dozen loads, but not of two samples, has something to do meanwhile. */
-SIMD uint32_t take_together(const struct gz_cast *cast, enum gz_voxel_type type, int wide,
-			    const struct look_up *look_up, int step, const struct rays *rays,
-			    const struct beam *beam, const float *levels, int count, vm *alive,
-			    struct waiting *before, struct light *light)
+/* A beam on its way. */
+struct progress {
+	vm alive;
+	struct waiting before;
+	struct light *light;
+};
+
+/* Take the samples of listed levels by blocks. The block of the next sample is loaded while the
+ * present one is interpolated, and its colour is looked up during the next one: a processor that
+ * runs a dozen loads ahead, but not two samples, is never idle. */
+SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up, int wide,
+			    const struct beam *beam, const struct level_list *list,
+			    struct progress *on)
 {
+	const struct rays *rays = m->rays;
+	const float *levels = list->levels;
+	const int count = list->count;
 	uint32_t samples = 0;
 	struct block block, next;
-	beam_block(cast, type, wide, beam, levels[0], &block);
-	for (int i = 0; i < count && vm_any(*alive); i++) {
-		beam_block(cast, type, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
+	beam_block(m, wide, beam, levels[0], &block);
+	for (int i = 0; i < count && vm_any(on->alive); i++) {
+		beam_block(m, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
 		const vf k = beam->first + vf_set(levels[i]);
 		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
-		const vf value =
-			fetch_together(cast, type, wide, rays, k, vm_and(within, *alive), &block);
-		samples += settle(cast, type, 0, step, rays, before, alive, light);
-		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-					     within };
+		const vf value = fetch_together(m, wide, k, vm_and(within, on->alive), &block);
+		samples += settle_waiting(m, &on->before, &on->alive, on->light);
+		on->before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+						within };
 		block = next;
 	}
 	return samples;
@@ -214,15 +227,15 @@ struct showing {
 	int count;
 	float level[LEVELS_LISTED + SIMD_LANES];
 	vm rays[LEVELS_LISTED + SIMD_LANES];
-	/* of each ray, the voxel that is fetched first; 0, which is at hand, where none is */
+	/* index of the first voxel that each ray fetches; 0, which is in the cache, if none */
 	int32_t first[LEVELS_LISTED + SIMD_LANES][SIMD_LANES];
 };
 
-/* How many levels before its turn the voxels of one are sent for. Chosen by measuring. */
+/* How many levels ahead voxels are prefetched. Chosen by measuring. */
 enum { LEVELS_AHEAD = 2 };
 
-/* Send for the voxels that the rays of a level will fetch. */
-SIMD void send_for(const struct gz_cast *cast, enum gz_voxel_type type, const int32_t *first)
+/* Prefetch the voxels that the rays of a level will fetch. */
+SIMD void prefetch_voxels(const struct gz_cast *cast, enum gz_voxel_type type, const int32_t *first)
 {
 	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
 	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
@@ -236,12 +249,14 @@ SIMD void send_for(const struct gz_cast *cast, enum gz_voxel_type type, const in
 	}
 }
 
-SIMD void find_showing(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
-		       const struct beam *beam, const float *levels, int count,
-		       struct showing *showing)
+SIMD void find_showing(const struct march *m, const struct beam *beam,
+		       const struct level_list *list, struct showing *showing)
 {
+	const struct gz_cast *cast = m->cast;
+	const struct rays *rays = m->rays;
+	const float *levels = list->levels;
 	int kept = 0;
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < list->count; i++) {
 		const vf k = beam->first + vf_set(levels[i]);
 		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
 		vf at[3];
@@ -256,39 +271,38 @@ SIMD void find_showing(const struct gz_cast *cast, enum gz_voxel_type type, cons
 	}
 	showing->count = kept;
 	for (int i = 0; i < kept && i < LEVELS_AHEAD; i++)
-		send_for(cast, type, showing->first[i]);
+		prefetch_voxels(cast, m->reading.type, showing->first[i]);
 }
 
-/* Take the samples of levels where rays are too far apart for a block: those alone that show
+/* Take the samples of listed levels where rays are too far apart for a block: only those that show
  * something. */
-SIMD uint32_t take_scattered(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			     const struct look_up *look_up, int step, const struct rays *rays,
-			     const struct beam *beam, const float *levels, int count, vm *alive,
-			     struct waiting *before, struct light *light)
+SIMD uint32_t take_scattered(const struct march *m, const struct look_up *look_up,
+			     const struct beam *beam, const struct level_list *list,
+			     struct progress *on)
 {
 	struct showing showing;
 	uint32_t samples = 0;
-	find_showing(cast, type, rays, beam, levels, count, &showing);
-	for (int i = 0; i < showing.count && vm_any(*alive); i++) {
+	find_showing(m, beam, list, &showing);
+	for (int i = 0; i < showing.count && vm_any(on->alive); i++) {
 		const vf k = beam->first + vf_set(showing.level[i]);
 		if (i + LEVELS_AHEAD < showing.count)
-			send_for(cast, type, showing.first[i + LEVELS_AHEAD]);
-		const vf value =
-			fetch_sample(cast, type, nearest, rays, k, vm_and(showing.rays[i], *alive));
-		samples += settle(cast, type, nearest, step, rays, before, alive, light);
-		*before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-					     showing.rays[i] };
+			prefetch_voxels(m->cast, m->reading.type, showing.first[i + LEVELS_AHEAD]);
+		const vf value = fetch_sample(m, k, vm_and(showing.rays[i], on->alive));
+		samples += settle_waiting(m, &on->before, &on->alive, on->light);
+		on->before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
+						showing.rays[i] };
 	}
 	return samples;
 }
 
-/* How the rays of a tile get their voxels: by blocks, by wide blocks, each its own. */
+/* How the rays of a tile fetch voxels: by blocks, by wide blocks, each for itself. */
 enum company { SIDE_BY_SIDE, IN_A_ROW, SCATTERED };
 
-SIMD enum company company_of(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
+SIMD enum company company_of(const struct gz_cast *cast, struct reading reading,
 			     const struct beam *beam)
 {
-	if (nearest)
+	const enum gz_voxel_type type = reading.type;
+	if (reading.nearest)
 		return SCATTERED;
 	if (beam->spread <= TOGETHER_SPREAD && blocks_fit(cast, type, 0))
 		return SIDE_BY_SIDE;
@@ -299,29 +313,24 @@ SIMD enum company company_of(const struct gz_cast *cast, enum gz_voxel_type type
 		       : SCATTERED;
 }
 
-/* All whole segments. */
-SIMD uint32_t march_beam(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			 const struct look_up *look_up, int step, const struct rays *rays,
+/* All whole segments of a beam. */
+SIMD uint32_t march_beam(const struct march *m, const struct look_up *look_up,
 			 const struct beam *beam, vm alive, struct light *light)
 {
-	float levels[LEVELS_LISTED + SIMD_LANES];
-	struct waiting before = none_waiting();
-	const enum company company = company_of(cast, type, nearest, beam);
+	struct level_list list;
+	struct progress on = { alive, none_waiting(), light };
+	const enum company company = company_of(m->cast, m->reading, beam);
 	uint32_t samples = 0;
 	float from = 0;
-	int count;
-	while (vm_any(alive) && (count = list_levels(cast, beam, &from, levels)) > 0) {
+	while (vm_any(on.alive) && list_levels(m->cast, beam, &from, &list)) {
 		if (company == SIDE_BY_SIDE)
-			samples += take_together(cast, type, 0, look_up, step, rays, beam, levels,
-						 count, &alive, &before, light);
-		else if (type != GZ_VOXEL_F32 && company == IN_A_ROW)
-			samples += take_together(cast, type, 1, look_up, step, rays, beam, levels,
-						 count, &alive, &before, light);
+			samples += take_together(m, look_up, 0, beam, &list, &on);
+		else if (m->reading.type != GZ_VOXEL_F32 && company == IN_A_ROW)
+			samples += take_together(m, look_up, 1, beam, &list, &on);
 		else
-			samples += take_scattered(cast, type, nearest, look_up, step, rays, beam,
-						  levels, count, &alive, &before, light);
+			samples += take_scattered(m, look_up, beam, &list, &on);
 	}
-	return samples + settle(cast, type, nearest, step, rays, &before, &alive, light);
+	return samples + settle_waiting(m, &on.before, &on.alive, light);
 }
 
 #endif

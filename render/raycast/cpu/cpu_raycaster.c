@@ -19,11 +19,38 @@
 
 #define GZ_LOG_MODULE "cpu"
 
-/* Tiles one thread takes at a time. Chosen: enough to hide the counter, few enough to balance the
- * ends. */
+/* Tiles that a thread takes at a time. Chosen: enough to hide the cost of the counter, few enough
+ * that all threads finish together. */
 enum { TILES_A_PART = 16 };
 
-/* A worker's own count, a cache line apart from the next. */
+#ifdef GZ_CAST_X86
+static bool runs_avx512(void)
+{
+	return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+	       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+
+static bool runs_avx2(void)
+{
+	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
+#endif
+
+const struct gz_cast_kernels *gz_cast_kernels_find(const char *name)
+{
+	const bool any = !name || strcmp(name, "auto") == 0;
+#ifdef GZ_CAST_X86
+	if ((any || strcmp(name, gz_cast_avx512.name) == 0) && runs_avx512())
+		return &gz_cast_avx512;
+	if ((any || strcmp(name, gz_cast_avx2.name) == 0) && runs_avx2())
+		return &gz_cast_avx2;
+#endif
+	if (any || strcmp(name, gz_cast_portable.name) == 0)
+		return &gz_cast_portable;
+	return NULL;
+}
+
+/* A worker's own count, in a cache line of its own. */
 struct sample_count {
 	alignas(64) uint64_t samples;
 };
@@ -34,13 +61,13 @@ struct cpu_raycaster {
 	const struct gz_cast_kernels *kernels;
 	const struct gz_volume *volume; /* borrowed */
 	struct gz_detail detail;
-	struct gz_fine_cells fine[GZ_LEVELS_MAX]; /* of each level that is in memory */
-	struct gz_brick_stream stream;            /* of a volume of bricks */
-	size_t bricks_coming;                     /* of the last picture */
+	struct gz_fine_cells fine[GZ_LEVELS_MAX]; /* of each level in memory */
+	struct gz_brick_stream stream;            /* for a volume of bricks */
+	size_t bricks_coming;                     /* after the last picture */
 	bool wait_for_bricks;
 	bool has_transfer;
 	struct gz_transfer_table table;
-	/* tables of steps of these lengths (voxel lengths); 0 = none yet */
+	/* step tables and their lengths, voxel lengths; 0 = no table yet */
 	double step_length[GZ_PLAN_STEPS_MAX];
 	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
 	struct gz_preintegration preintegration;
@@ -50,18 +77,18 @@ struct cpu_raycaster {
 	char description[64];
 };
 
+/* Pixels of a tile's rays from its corner. */
 struct tile_offsets {
 	float x[GZ_TILE_RAYS], y[GZ_TILE_RAYS];
 };
 
-/* What the workers are given. */
+/* What the workers of a frame share. */
 struct cast_job {
 	struct gz_cast casts[GZ_LEVELS_MAX]; /* of each level of detail */
 	int cast_count;
 	const struct gz_detail *detail;
 	const struct gz_ray_params *rays;
-	double pixel_lengths; /* of neighbouring pixels' rays; 0 where only the full volume counts
-			       */
+	double pixel_lengths; /* from gz_levels_pixel_lengths(); 0 if all take the full volume */
 	const struct gz_plan *plan;
 	struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
@@ -105,7 +132,8 @@ enum gz_result gz_cpu_raycaster_check(const struct gz_backend_params *params,
 	return GZ_ERR_UNSUPPORTED;
 }
 
-static enum gz_result start(struct cpu_raycaster *cpu, const struct gz_backend_params *params)
+static enum gz_result start_workers(struct cpu_raycaster *cpu,
+				    const struct gz_backend_params *params)
 {
 	enum gz_result result = gz_cpu_raycaster_check(params, cpu->base.log);
 	if (result != GZ_OK)
@@ -133,7 +161,7 @@ static enum gz_result cpu_create(const struct gz_backend_params *params, const s
 	cpu->base = (struct gz_raycaster) { .ops = &gz_cpu_raycaster_ops, .log = log };
 	cpu->wait_for_bricks = params->wait_for_bricks;
 	cpu->step_table = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->step_table);
-	const enum gz_result result = cpu->step_table ? start(cpu, params) : GZ_ERR_NO_MEM;
+	const enum gz_result result = cpu->step_table ? start_workers(cpu, params) : GZ_ERR_NO_MEM;
 	if (result != GZ_OK) {
 		cpu_destroy(&cpu->base);
 		return result;
@@ -148,7 +176,7 @@ static enum gz_result cpu_set_volume(struct gz_raycaster *raycaster, const struc
 	cpu->volume = NULL;
 	cpu->has_transfer = false;
 	gz_brick_stream_forget(&cpu->stream);
-	/* Gathers take 32-bit signed indices. */
+	/* Gathers take signed indices of 32 bits. */
 	if (!volume->bricks && gz_volume_voxel_count(volume) > INT32_MAX) {
 		gz_err(raycaster->log,
 		       "a volume of %d x %d x %d voxels in memory is beyond the cpu backend's "
@@ -176,8 +204,8 @@ static void classify_fine_cells(struct cpu_raycaster *cpu, int level)
 				       cpu->workers);
 }
 
-/* The levels of detail that a frame asks for. Without memory for fine cells the kernels do with
- * macrocells. */
+/* Make the levels of detail for a frame that needs them. Without memory for fine cells the kernels
+ * use macrocells. */
 static void make_levels(struct cpu_raycaster *cpu)
 {
 	gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
@@ -206,9 +234,9 @@ static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 	return GZ_OK;
 }
 
-/* A level of detail, in its own voxel coordinates. */
-static void fill_volume(const struct cpu_raycaster *cpu, int index, const struct gz_clip_box *clip,
-			struct gz_cast *cast)
+/* Fill in a level of detail, in its own voxel coordinates. */
+static void fill_cast_volume(const struct cpu_raycaster *cpu, int index,
+			     const struct gz_clip_box *clip, struct gz_cast *cast)
 {
 	const struct gz_level *level = &cpu->detail.levels.level[index];
 	const struct gz_volume *volume = &level->volume;
@@ -230,7 +258,7 @@ static void fill_volume(const struct cpu_raycaster *cpu, int index, const struct
 		cast->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
 		cast->dims[axis] = (float)volume->dims[axis];
 		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
-		/* With one voxel there is no neighbour to step to. */
+		/* One voxel along an axis has no neighbour. */
 		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? strides[axis] : 0;
 		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		cast->cell_stride[axis] = cell_strides[axis];
@@ -238,7 +266,7 @@ static void fill_volume(const struct cpu_raycaster *cpu, int index, const struct
 	}
 }
 
-static void fill_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *cast)
+static void fill_cast_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *cast)
 {
 	for (int i = 0; i < GZ_FINE_GRIDS; i++) {
 		const struct gz_fine_grid *from = &cells->grid[i];
@@ -254,8 +282,8 @@ static void fill_fine_cells(const struct gz_fine_cells *cells, struct gz_cast *c
 	}
 }
 
-static void fill_rays(const struct cpu_raycaster *cpu, int index, const struct gz_ray_frame *rays,
-		      struct gz_cast *cast)
+static void fill_cast_rays(const struct cpu_raycaster *cpu, int index,
+			   const struct gz_ray_frame *rays, struct gz_cast *cast)
 {
 	struct gz_voxel_rays level_rays;
 	gz_voxel_rays_make(cpu->volume, cpu->detail.levels.level[index].factor, rays, &level_rays);
@@ -270,8 +298,8 @@ static void fill_rays(const struct cpu_raycaster *cpu, int index, const struct g
 	}
 }
 
-static void fill_transfer(struct cpu_raycaster *cpu, const struct gz_plan *plan,
-			  const struct gz_ray_params *rays, struct gz_cast *cast)
+static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *plan,
+			       const struct gz_ray_params *rays, struct gz_cast *cast)
 {
 	cast->entry_scale = (float)cpu->table.scale;
 	cast->entry_bias = (float)cpu->table.bias;
@@ -291,7 +319,7 @@ static void fill_transfer(struct cpu_raycaster *cpu, const struct gz_plan *plan,
 	cast->end_transmittance = gz_ray_end_transmittance(rays);
 }
 
-/* Tables for segments, where rays are integrated by them. After fill_transfer(). */
+/* Fill in the pre-integrated tables, if the frame uses them. After fill_cast_transfer(). */
 static enum gz_result fill_preintegration(struct cpu_raycaster *cpu, const struct gz_plan *plan,
 					  const struct gz_ray_params *rays, struct gz_cast *cast)
 {
@@ -309,8 +337,8 @@ static enum gz_result fill_preintegration(struct cpu_raycaster *cpu, const struc
 	return GZ_OK;
 }
 
-/* Where the rays of a tile go, seen from its corner. */
-static void fill_offsets(struct cast_job *job)
+/* Find the pixels of a tile's rays from its corner. */
+static void fill_tile_offsets(struct cast_job *job)
 {
 	for (int layer = 0; layer < job->plan->layer_count; layer++)
 		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++) {
@@ -323,9 +351,9 @@ static void fill_offsets(struct cast_job *job)
 		}
 }
 
-/* The rays of a tile, in pixels of the picture that the camera frames. */
-static void fill_tile(const struct cast_job *job, const struct gz_tile *tile,
-		      struct gz_cast_tile *out_rays)
+/* Fill in a tile's rays, in pixels of the picture that the camera frames. */
+static void fill_cast_tile(const struct cast_job *job, const struct gz_tile *tile,
+			   struct gz_cast_tile *out_rays)
 {
 	const struct tile_offsets *offsets = &job->offsets[tile->layer][tile->pattern];
 	const int x = tile->x - job->plan->view.shift[0], y = tile->y - job->plan->view.shift[1];
@@ -341,20 +369,16 @@ static void fill_tile(const struct cast_job *job, const struct gz_tile *tile,
 			gz_ray_jitter((int)out_rays->x[i], (int)out_rays->y[i], job->jitter);
 }
 
-/* Which level of detail a tile takes. */
-static int tile_level(const struct cast_job *job, const struct gz_tile *tile)
+/* The level of detail that a tile takes. */
+static int tile_level(const void *user, const struct gz_tile *tile)
 {
+	const struct cast_job *job = user;
 	return gz_detail_choose(job->detail, job->plan, job->rays, job->pixel_lengths, tile);
 }
 
-static int level_of(const void *user, const struct gz_tile *tile)
-{
-	return tile_level(user, tile);
-}
-
-/* Lead a cast of a level of detail to the bricks that are there. */
-static void lead_to_bricks(const struct gz_brick_layout *layout, int level,
-			   const struct gz_brick_view *view, struct gz_cast *cast)
+/* Point the cast of a level to the bricks in memory. */
+static void fill_cast_bricks(const struct gz_brick_layout *layout, int level,
+			     const struct gz_brick_view *view, struct gz_cast *cast)
 {
 	struct gz_brick_lookup lookup;
 	gz_brick_lookup_make(layout, level, &lookup);
@@ -365,7 +389,7 @@ static void lead_to_bricks(const struct gz_brick_layout *layout, int level,
 	memcpy(cast->bricks.scale, lookup.scale, sizeof lookup.scale);
 }
 
-/* Have the bricks that there are, and send for those that the picture lacks. */
+/* Use the bricks in memory, and ask for those that the picture lacks. */
 static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_camera *camera,
 				  const struct gz_ray_params *rays, struct cast_job *job)
 {
@@ -377,7 +401,7 @@ static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_cam
 		.table = &cpu->table,
 		.plan = job->plan,
 		.key = gz_brick_stream_key_of(camera, rays, job->plan, job->pixel_lengths),
-		.tile_level = job->pixel_lengths > 0 ? level_of : NULL,
+		.tile_level = job->pixel_lengths > 0 ? tile_level : NULL,
 		.user = job,
 	};
 	const enum gz_result result = gz_brick_stream_find(&cpu->stream, &frame);
@@ -388,7 +412,7 @@ static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_cam
 			   cpu->wait_for_bricks, &view);
 	cpu->bricks_coming = view.coming;
 	for (int i = 0; i < job->cast_count; i++)
-		lead_to_bricks(&file->layout, cpu->detail.brick_level[i], &view, &job->casts[i]);
+		fill_cast_bricks(&file->layout, cpu->detail.brick_level[i], &view, &job->casts[i]);
 	return GZ_OK;
 }
 
@@ -396,7 +420,7 @@ static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, in
 {
 	struct gz_cast_tile rays;
 	uint32_t pixels[GZ_TILE_RAYS];
-	fill_tile(job, tile, &rays);
+	fill_cast_tile(job, tile, &rays);
 	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
 	gz_lattices_store(job->lattices, job->plan, tile, rays.active, pixels);
 }
@@ -434,7 +458,7 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 	job->detail = &cpu->detail;
 	job->rays = rays;
 	job->pixel_lengths = coarser ? pixel_lengths : 0;
-	fill_transfer(cpu, job->plan, rays, &job->casts[0]);
+	fill_cast_transfer(cpu, job->plan, rays, &job->casts[0]);
 	const enum gz_result result = fill_preintegration(cpu, job->plan, rays, &job->casts[0]);
 	if (result != GZ_OK) {
 		gz_err(cpu->base.log, "no memory for pre-integrated tables: take sampled");
@@ -443,9 +467,9 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 	job->cast_count = coarser ? cpu->detail.levels.count : 1;
 	for (int i = 0; i < job->cast_count; i++) {
 		job->casts[i] = job->casts[0];
-		fill_volume(cpu, i, &rays->clip, &job->casts[i]);
-		fill_fine_cells(&cpu->fine[i], &job->casts[i]);
-		fill_rays(cpu, i, ray_frame, &job->casts[i]);
+		fill_cast_volume(cpu, i, &rays->clip, &job->casts[i]);
+		fill_cast_fine_cells(&cpu->fine[i], &job->casts[i]);
+		fill_cast_rays(cpu, i, ray_frame, &job->casts[i]);
 		gz_lighting_fill(&cpu->lighting, cpu->detail.levels.level[i].factor, rays,
 				 ray_frame, &job->casts[i].light);
 	}
@@ -490,7 +514,7 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 		result = take_bricks(cpu, camera, rays, &job);
 	if (result != GZ_OK)
 		return result;
-	fill_offsets(&job);
+	fill_tile_offsets(&job);
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,

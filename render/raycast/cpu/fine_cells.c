@@ -7,37 +7,37 @@ _Static_assert(2 * GZ_FINE_EDGE == GZ_MACROCELL_EDGE, "two fine cells along a ma
 
 static const struct gz_range_blocks fine_blocks = { GZ_FINE_EDGE, 0, 1 };
 
-static size_t row_of(const struct gz_fine_grid *grid)
+static size_t fine_row(const struct gz_fine_grid *grid)
 {
 	return (size_t)grid->dims[0];
 }
 
-static size_t slice_of(const struct gz_fine_grid *grid)
+static size_t fine_slice(const struct gz_fine_grid *grid)
 {
-	return row_of(grid) * (size_t)grid->dims[1];
+	return fine_row(grid) * (size_t)grid->dims[1];
 }
 
-static size_t count_of(const struct gz_fine_grid *grid)
+static size_t fine_count(const struct gz_fine_grid *grid)
 {
-	return slice_of(grid) * (size_t)grid->dims[2];
+	return fine_slice(grid) * (size_t)grid->dims[2];
 }
 
-/* What the threads that build cells share. */
-struct building {
+/* What the threads that build fine cells share. */
+struct fine_building {
 	const struct gz_volume *volume;
 	struct gz_fine_cells *cells;
 	char *scratch; /* of each thread */
 };
 
-static void find_slice(void *user, size_t part, int worker)
+static void find_fine_slice(void *user, size_t part, int worker)
 {
-	const struct building *job = user;
+	const struct fine_building *job = user;
 	const struct gz_fine_cells *cells = job->cells;
 	const struct gz_fine_grid *grid = &cells->grid[0];
 	char *scratch = job->scratch + (size_t)worker * gz_voxel_ranges_scratch(job->volume);
 	const size_t size = gz_voxel_size(cells->type);
-	size_t index = part * slice_of(grid);
-	for (int y = 0; y < grid->dims[1]; y++, index += row_of(grid)) {
+	size_t index = part * fine_slice(grid);
+	for (int y = 0; y < grid->dims[1]; y++, index += fine_row(grid)) {
 		const struct gz_range_row at = { job->volume, &fine_blocks, y, (int)part,
 						 grid->dims[0] };
 		gz_voxel_ranges_row(&at, scratch, (char *)cells->least + index * size,
@@ -45,7 +45,8 @@ static void find_slice(void *user, size_t part, int worker)
 	}
 }
 
-static enum gz_result allocate(const struct gz_volume *volume, struct gz_fine_cells *cells)
+static enum gz_result allocate_fine_cells(const struct gz_volume *volume,
+					  struct gz_fine_cells *cells)
 {
 	bool whole = true;
 	for (int i = 0; i < GZ_FINE_GRIDS; i++) {
@@ -53,10 +54,10 @@ static enum gz_result allocate(const struct gz_volume *volume, struct gz_fine_ce
 		const int edge = GZ_FINE_EDGE << i;
 		for (int axis = 0; axis < 3; axis++)
 			grid->dims[axis] = (volume->dims[axis] + edge - 1) / edge;
-		grid->flags = calloc(count_of(grid) + 4, 1);
+		grid->flags = calloc(fine_count(grid) + 4, 1);
 		whole = whole && grid->flags;
 	}
-	const size_t bytes = count_of(&cells->grid[0]) * gz_voxel_size(volume->type);
+	const size_t bytes = fine_count(&cells->grid[0]) * gz_voxel_size(volume->type);
 	cells->type = volume->type;
 	cells->least = malloc(bytes);
 	cells->greatest = malloc(bytes);
@@ -67,35 +68,35 @@ enum gz_result gz_fine_cells_build(const struct gz_volume *volume, struct gz_wor
 				   struct gz_fine_cells *cells)
 {
 	gz_fine_cells_free(cells);
-	struct building job = { .volume = volume, .cells = cells };
+	struct fine_building job = { .volume = volume, .cells = cells };
 	job.scratch = malloc((size_t)gz_workers_count(workers) * gz_voxel_ranges_scratch(volume));
-	if (!job.scratch || allocate(volume, cells) != GZ_OK) {
+	if (!job.scratch || allocate_fine_cells(volume, cells) != GZ_OK) {
 		free(job.scratch);
 		gz_fine_cells_free(cells);
 		return GZ_ERR_NO_MEM;
 	}
-	gz_workers_run(workers, find_slice, &job, (size_t)cells->grid[0].dims[2]);
+	gz_workers_run(workers, find_fine_slice, &job, (size_t)cells->grid[0].dims[2]);
 	free(job.scratch);
 	return GZ_OK;
 }
 
-/* What the threads that classify cells share. */
-struct classifying {
+/* What the threads that classify fine cells share. */
+struct fine_classifying {
 	struct gz_fine_cells *cells;
 	const struct gz_macrocells *coarse;
 	const struct gz_transfer_table *table;
 };
 
-static double value_at(enum gz_voxel_type type, const void *values, size_t index)
+static double stored_value(enum gz_voxel_type type, const void *values, size_t index)
 {
 	return type == GZ_VOXEL_U8    ? ((const uint8_t *)values)[index]
 	       : type == GZ_VOXEL_U16 ? ((const uint16_t *)values)[index]
 				      : (double)((const float *)values)[index];
 }
 
-/* Which cells of a row show something by themselves: only in macrocells that do, whose voxels are
- * those of the fine cells within and more. */
-static void classify_row(const struct classifying *job, int y, int z, size_t first)
+/* Find which cells of a row show something by themselves. Only those in macrocells that show can,
+ * since a macrocell has all voxels of its fine cells. */
+static void classify_fine_row(const struct fine_classifying *job, int y, int z, size_t first)
 {
 	const struct gz_fine_cells *cells = job->cells;
 	const struct gz_macrocells *coarse = job->coarse;
@@ -105,55 +106,56 @@ static void classify_row(const struct classifying *job, int y, int z, size_t fir
 	for (int x = 0; x < cells->grid[0].dims[0]; x++) {
 		const size_t index = first + (size_t)x;
 		flags[x] = coarse->distance[above + (size_t)(x / 2)] == 0 &&
-			   gz_transfer_table_shows(job->table,
-						   value_at(cells->type, cells->least, index),
-						   value_at(cells->type, cells->greatest, index));
+			   gz_transfer_table_shows(
+				   job->table, stored_value(cells->type, cells->least, index),
+				   stored_value(cells->type, cells->greatest, index));
 	}
 }
 
-static void classify_slice(void *user, size_t part, int worker)
+static void classify_fine_slice(void *user, size_t part, int worker)
 {
 	(void)worker;
-	const struct classifying *job = user;
+	const struct fine_classifying *job = user;
 	const struct gz_fine_grid *grid = &job->cells->grid[0];
 	for (int y = 0; y < grid->dims[1]; y++)
-		classify_row(job, y, (int)part, part * slice_of(grid) + (size_t)y * row_of(grid));
+		classify_fine_row(job, y, (int)part,
+				  part * fine_slice(grid) + (size_t)y * fine_row(grid));
 }
 
-/* Let the flags of cells take in those of their neighbours behind along one axis, whose bits below
- * `bits` are what they were before. */
-static void take_in(uint8_t *flags, const uint8_t *behind, size_t count, int bits)
+/* Merge into each cell's flags those of its next neighbour along one axis: the lowest `bits` bits
+ * of both go to the `bits` bits above. */
+static void merge_flags(uint8_t *flags, const uint8_t *next, size_t count, int bits)
 {
 	const unsigned low = (1U << bits) - 1;
 	for (size_t i = 0; i < count; i++)
-		flags[i] = (uint8_t)(flags[i] | ((flags[i] | behind[i]) & low) << bits);
+		flags[i] = (uint8_t)(flags[i] | ((flags[i] | next[i]) & low) << bits);
 }
 
-/* From the bit of each cell by itself to all eight. */
+/* From the flag of each cell by itself to all eight. */
 static void spread_flags(struct gz_fine_grid *grid)
 {
-	const size_t row = row_of(grid), slice = slice_of(grid), count = count_of(grid);
+	const size_t row = fine_row(grid), slice = fine_slice(grid), count = fine_count(grid);
 	const size_t rows = (size_t)grid->dims[1];
 	for (uint8_t *x = grid->flags; x < grid->flags + count; x += row) {
-		take_in(x, x + 1, row - 1, 1);
-		take_in(x + row - 1, x + row - 1, 1, 1);
+		merge_flags(x, x + 1, row - 1, 1);
+		merge_flags(x + row - 1, x + row - 1, 1, 1);
 	}
 	for (uint8_t *y = grid->flags; y < grid->flags + count; y += slice) {
-		take_in(y, y + row, slice - row, 2);
-		take_in(y + (rows - 1) * row, y + (rows - 1) * row, row, 2);
+		merge_flags(y, y + row, slice - row, 2);
+		merge_flags(y + (rows - 1) * row, y + (rows - 1) * row, row, 2);
 	}
-	take_in(grid->flags, grid->flags + slice, count - slice, 4);
-	take_in(grid->flags + count - slice, grid->flags + count - slice, slice, 4);
+	merge_flags(grid->flags, grid->flags + slice, count - slice, 4);
+	merge_flags(grid->flags + count - slice, grid->flags + count - slice, slice, 4);
 }
 
-/* A cell of the next grid by itself is eight of these. */
-static void coarsen(const struct gz_fine_grid *finer, struct gz_fine_grid *grid)
+/* A cell of the next grid is eight cells of this one. */
+static void coarsen_flags(const struct gz_fine_grid *finer, struct gz_fine_grid *grid)
 {
 	uint8_t *flags = grid->flags;
 	for (int z = 0; z < grid->dims[2]; z++)
 		for (int y = 0; y < grid->dims[1]; y++) {
-			const uint8_t *from = finer->flags + (size_t)(2 * z) * slice_of(finer) +
-					      (size_t)(2 * y) * row_of(finer);
+			const uint8_t *from = finer->flags + (size_t)(2 * z) * fine_slice(finer) +
+					      (size_t)(2 * y) * fine_row(finer);
 			for (int x = 0; x < grid->dims[0]; x++)
 				*flags++ = from[2 * x] >> 7;
 		}
@@ -162,11 +164,11 @@ static void coarsen(const struct gz_fine_grid *finer, struct gz_fine_grid *grid)
 void gz_fine_cells_classify(struct gz_fine_cells *cells, const struct gz_macrocells *coarse,
 			    const struct gz_transfer_table *table, struct gz_workers *workers)
 {
-	struct classifying job = { .cells = cells, .coarse = coarse, .table = table };
-	gz_workers_run(workers, classify_slice, &job, (size_t)cells->grid[0].dims[2]);
+	struct fine_classifying job = { .cells = cells, .coarse = coarse, .table = table };
+	gz_workers_run(workers, classify_fine_slice, &job, (size_t)cells->grid[0].dims[2]);
 	spread_flags(&cells->grid[0]);
 	for (int i = 1; i < GZ_FINE_GRIDS; i++) {
-		coarsen(&cells->grid[i - 1], &cells->grid[i]);
+		coarsen_flags(&cells->grid[i - 1], &cells->grid[i]);
 		spread_flags(&cells->grid[i]);
 	}
 }

@@ -4,7 +4,7 @@
 #include <stdint.h>
 
 #define SIMD_LANES   8
-#define SIMD_GATHERS /* a look-up a sample is cheap: cast_fine.h */
+#define SIMD_GATHERS /* a look-up for each sample is cheap: fine_cells.h */
 
 typedef __m256 vf;
 typedef __m256i vi;

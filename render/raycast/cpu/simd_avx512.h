@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define SIMD_LANES   16
-#define SIMD_GATHERS /* a look-up a sample is cheap: cast_fine.h */
+#define SIMD_GATHERS /* a look-up for each sample is cheap: fine_cells.h */
 #define SIMD_BLOCKS  /* registers hold a block of voxels: cast_block.h */
 
 typedef __m512 vf;

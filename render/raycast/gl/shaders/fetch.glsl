@@ -57,7 +57,7 @@ layout(std430, binding = 4) readonly buffer Bricks
 };
 
 // The first texel of the brick over a place, and the place in it, counted from the first datum: 1/2 to 32 1/2.
-// The cpu backend's render/raycast/cpu/cast_bricks.h does the same.
+// The cpu backend's render/raycast/cpu/cast_fetch.h does the same.
 vec3 find_brick(vec3 at, out ivec3 first)
 {
 	vec3 brick = floor(clamp(at * (1.0 / float(BRICK_EDGE)), vec3(0.0), brick_last.xyz));
