@@ -7,13 +7,12 @@
 #include <GL/glew.h>
 
 #include "render/data/brick_file.h"
-#include "render/raycast/gl/gl_texels.h"
 
-/* Given to the device for one picture that does not wait, bytes. Chosen: some milliseconds of a
- * slow bus, and yet all of what is near a new gaze within a few pictures. */
+/* Bytes uploaded for one picture that does not wait. Chosen: some milliseconds of a slow bus, yet
+ * all bricks near a new gaze within a few pictures. */
 #define PICTURE_BYTES ((size_t)16 << 20)
 
-/* Bits of a table's entry that a room's place along each axis has, above the level's. */
+/* Bits of a room's place along each axis in an entry of the table, above those of the level. */
 enum { PLACE_BITS = 9, PLACE_MAX = 1 << PLACE_BITS };
 
 _Static_assert(GZ_BRICK_LEVEL_BITS + 3 * PLACE_BITS <= 32, "an entry is 32 bits");
@@ -22,7 +21,7 @@ _Static_assert(GZ_BRICK_LEVEL_BITS == GZ_GL_BRICK_LEVEL_BITS &&
 		       GZ_BRICK_EDGE == GZ_GL_BRICK_EDGE &&
 		       GZ_BRICK_STORED_EDGE == GZ_GL_BRICK_STORED_EDGE &&
 		       PLACE_BITS == GZ_GL_BRICK_PLACE_BITS,
-	       "the shaders are told what is so");
+	       "the shaders have the constants of C");
 
 _Static_assert(GZ_BRICK_EDGE % GZ_MACROCELL_EDGE == 0, "a brick is whole macrocells");
 
@@ -180,8 +179,8 @@ static size_t brick_bytes(enum gz_voxel_type type)
 	return GZ_BRICK_VOXELS * gz_voxel_size(type);
 }
 
-/* A block of rooms as near to a cube as the device allows, of about @p count; of no fewer where
- * that is possible and @p round_up. */
+/* Shape a block of about @p count rooms as near to a cube as the device allows; with @p round_up of
+ * no fewer if possible. */
 static void shape_atlas(size_t count, bool round_up, int most_along, int out_along[3])
 {
 	const int side = (int)floor(cbrt((double)count) + 1e-6);
@@ -215,7 +214,7 @@ static enum gz_result try_atlas(struct gz_gl_bricks *bricks, const struct gz_gl_
 	return result;
 }
 
-/* Room for all, or for half as many until the device has it. */
+/* Make room for all bricks; halve that until the device has enough memory. */
 static enum gz_result make_atlas(struct gz_gl_bricks *bricks, const struct gz_gl_device *device)
 {
 	const struct gz_brick_layout *layout = bricks->source.layout;
@@ -256,43 +255,45 @@ static enum gz_result make_table(struct gz_gl_bricks *bricks, const struct gz_gl
 	return gz_gl_device_errors(device);
 }
 
-static void place_of(const struct gz_gl_bricks *bricks, int32_t room, int out_place[3])
+static void atlas_place(const struct gz_gl_bricks *bricks, int32_t room, int out_place[3])
 {
 	out_place[0] = room % bricks->along[0];
 	out_place[1] = room / bricks->along[0] % bricks->along[1];
 	out_place[2] = room / bricks->along[0] / bricks->along[1];
 }
 
-/* A brick's voxels into its room. */
-static void give(const struct gz_gl_bricks *bricks, int32_t room, const void *voxels)
+/* Upload a brick's voxels to its room. */
+static void upload_brick(const struct gz_gl_bricks *bricks, int32_t room, const void *voxels)
 {
 	const struct gz_gl_texel_format *format =
 		gz_gl_texel_format(GZ_GL_TEXELS_BRICKS, bricks->type);
 	const int edge = GZ_BRICK_STORED_EDGE;
 	int place[3];
-	place_of(bricks, room, place);
+	atlas_place(bricks, room, place);
 	glTexSubImage3D(GL_TEXTURE_3D, 0, place[0] * edge, place[1] * edge, place[2] * edge, edge,
 			edge, edge, format->external, format->type, voxels);
 }
 
-static void begin_giving(const struct gz_gl_bricks *bricks)
+/* Uploads to the atlas happen between these two. */
+static void begin_uploads(const struct gz_gl_bricks *bricks)
 {
 	glBindTexture(GL_TEXTURE_3D, bricks->atlas);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-static void end_giving(void)
+static void end_uploads(void)
 {
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	glBindTexture(GL_TEXTURE_3D, 0);
 }
 
-/* The coarse levels, coarsest first: what a finer one lacks then shows the coarser. */
-static void pin_levels(struct gz_gl_bricks *bricks)
+/* Upload the coarse levels for good, coarsest first; where a finer brick is missing the coarser one
+ * is shown. */
+static void pin_coarse_levels(struct gz_gl_bricks *bricks)
 {
 	const struct gz_brick_layout *layout = bricks->source.layout;
 	const int finest = gz_brick_rooms_pinned_level(layout, bricks->rooms.count);
-	begin_giving(bricks);
+	begin_uploads(bricks);
 	for (int level = layout->level_count - 1; level >= finest; level--) {
 		const size_t end = level + 1 < layout->level_count ? layout->levels[level + 1].first
 								   : layout->brick_count;
@@ -301,11 +302,11 @@ static void pin_levels(struct gz_gl_bricks *bricks)
 			if (!voxels)
 				continue;
 			const int32_t room = gz_brick_rooms_pin(&bricks->rooms, (uint32_t)i);
-			give(bricks, room, voxels);
+			upload_brick(bricks, room, voxels);
 			gz_brick_rooms_let_in(&bricks->rooms, room);
 		}
 	}
-	end_giving();
+	end_uploads();
 }
 
 enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl_device *device,
@@ -325,7 +326,7 @@ enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl
 	if (result == GZ_OK)
 		result = make_table(bricks, device);
 	if (result == GZ_OK) {
-		pin_levels(bricks);
+		pin_coarse_levels(bricks);
 		result = gz_gl_device_errors(device);
 	}
 	if (result != GZ_OK)
@@ -333,9 +334,8 @@ enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl
 	return result;
 }
 
-/* Give the device what has come of what is wanted. @return whether something waits for another
- * picture's time */
-static bool give_wanted(struct gz_gl_bricks *bricks, bool wait)
+/* Upload the wanted bricks that are loaded. Returns whether some are left for the next picture. */
+static bool upload_wanted(struct gz_gl_bricks *bricks, bool wait)
 {
 	const struct gz_brick_wants *wants = &bricks->stream.wants;
 	const size_t each = brick_bytes(bricks->type);
@@ -354,15 +354,15 @@ static bool give_wanted(struct gz_gl_bricks *bricks, bool wait)
 		if (later)
 			break;
 		const int32_t room = gz_brick_rooms_take(&bricks->rooms, want->brick, want->weight);
-		give(bricks, room, voxels);
+		upload_brick(bricks, room, voxels);
 		gz_brick_rooms_let_in(&bricks->rooms, room);
 		given += each;
 	}
 	return later;
 }
 
-/* Rooms in the books to rooms in the atlas. */
-static void give_table(struct gz_gl_bricks *bricks)
+/* Upload the table: from rooms by number to places in the atlas. */
+static void upload_table(struct gz_gl_bricks *bricks)
 {
 	const uint32_t level_mask = (1U << GZ_BRICK_LEVEL_BITS) - 1;
 	const size_t count = bricks->source.layout->brick_count;
@@ -371,7 +371,7 @@ static void give_table(struct gz_gl_bricks *bricks)
 	for (size_t i = 0; i < count; i++) {
 		const int32_t entry = bricks->rooms.table[i];
 		int place[3];
-		place_of(bricks, entry >> GZ_BRICK_LEVEL_BITS, place);
+		atlas_place(bricks, entry >> GZ_BRICK_LEVEL_BITS, place);
 		bricks->entries[i] = ((uint32_t)entry & level_mask) |
 				     (uint32_t)place[0] << GZ_BRICK_LEVEL_BITS |
 				     (uint32_t)place[1] << (GZ_BRICK_LEVEL_BITS + PLACE_BITS) |
@@ -394,10 +394,10 @@ enum gz_result gz_gl_bricks_turn(struct gz_gl_bricks *bricks, struct gz_brick_st
 	const struct gz_brick_wants *wants = &bricks->stream.wants;
 	bricks->coming = turn_brick_source(&bricks->source, wants->want, wants->count, wait);
 	gz_brick_rooms_turn(&bricks->rooms, wants->want, wants->count);
-	begin_giving(bricks);
-	bricks->coming += give_wanted(bricks, wait);
-	end_giving();
-	give_table(bricks);
+	begin_uploads(bricks);
+	bricks->coming += upload_wanted(bricks, wait);
+	end_uploads();
+	upload_table(bricks);
 	return GZ_OK;
 }
 

@@ -1,9 +1,9 @@
 /**
  * @file
- * Bricks on the graphics device: a 3D texture with rooms for some of them, the atlas, and a buffer
- * that tells the shaders which room each place of each level leads to. Coarse levels are there from
- * the beginning and stay, so that every place has a brick; finer ones come as pictures want them.
- * All calls need the context current.
+ * Bricks on the graphics device: a 3D texture with rooms for some of them, the atlas, and a buffer,
+ * the table, that says for each brick of each level which room to read. Coarse levels are uploaded
+ * at the beginning and stay, so every place has a brick; finer ones come as pictures want them. All
+ * calls need a current context.
  */
 #ifndef GZ_RENDER_RAYCAST_GL_GL_BRICKS_H
 #define GZ_RENDER_RAYCAST_GL_GL_BRICKS_H
@@ -14,7 +14,7 @@
 #include "base/result.h"
 #include "render/data/brick_pool.h"
 #include "render/opengl/gl_device.h"
-#include "render/raycast/gl/cast_block.h"
+#include "render/raycast/gl/gl_cast.h"
 #include "render/raycast/shared/brick_stream.h"
 #include "render/raycast/shared/detail.h"
 
@@ -37,20 +37,20 @@ struct gz_brick_source {
 
 /** Zero-initialised is none. */
 struct gz_gl_bricks {
-	unsigned atlas, table; /**< texture and buffer, names of OpenGL; 0: none */
+	unsigned atlas, table; /**< texture and buffer, OpenGL's names; 0 = none */
 	enum gz_voxel_type type;
 	struct gz_brick_source source;
 	struct gz_brick_rooms rooms;
 	int along[3];           /**< rooms of the atlas along each axis */
 	uint32_t *entries;      /**< the table as the shaders read it */
-	uint64_t table_changes; /**< of the books, that the buffer has */
+	uint64_t table_changes; /**< rooms.changes when the table was uploaded last */
 	struct gz_brick_stream stream;
-	size_t coming; /**< bricks that the last picture wanted and will have later */
+	size_t coming; /**< bricks that the last picture wanted and that come later */
 };
 
 /**
- * Make the atlas and put the coarse levels in: room for all bricks, or for as many as the device
- * has memory for.
+ * Make the atlas, with room for all bricks or for as many as the device has memory for, and upload
+ * the coarse levels.
  *
  * @param detail  the volume with its levels; borrowed until gz_gl_bricks_free()
  * @retval GZ_ERR_NO_MEM     not even the coarsest level has room; not logged
@@ -60,31 +60,30 @@ enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl
 				 const struct gz_detail *detail);
 
 /**
- * Between two pictures: give the device what is wanted and has come, the greatest weight first.
+ * Between two pictures: upload wanted bricks that are loaded, the greatest weight first.
  *
- * @param frame  what the picture is of; layout and entries are filled in here
- * @param wait   until all is there that has room; else only so much is given to the device as a
- *               picture has time for
- * @retval GZ_ERR_NO_MEM  no room for the list of what is wanted
+ * @param frame  the picture; layout and entries are filled in here
+ * @param wait   wait until all bricks are there that have room; else upload only as many as a
+ * picture has time for
+ * @retval GZ_ERR_NO_MEM  no memory for the list of wanted bricks
  */
 enum gz_result gz_gl_bricks_turn(struct gz_gl_bricks *bricks, struct gz_brick_stream_frame frame,
 				 bool wait);
 
-/** Fill what of @p block leads from a level of detail's places to bricks. @p level: of the bricks.
- */
+/** Fill in the fields of @p block that lead to bricks. @p level is one of the bricks'. */
 void gz_gl_bricks_fill(const struct gz_gl_bricks *bricks, int level,
 		       struct gz_gl_cast_block *block);
 
 /** Bind the table. */
 void gz_gl_bricks_bind(const struct gz_gl_bricks *bricks);
 
-/** What is wanted has changed with the transfer function. */
+/** The transfer function has changed: find the wants again. */
 void gz_gl_bricks_forget(struct gz_gl_bricks *bricks);
 
 /** Delete the texture and the buffer, free the rest, and zero the struct. */
 void gz_gl_bricks_free(struct gz_gl_bricks *bricks);
 
-/** The same without a context, whose texture and buffer are gone with it. */
+/** Free and zero without a context: a lost one took texture and buffer with it. */
 void gz_gl_bricks_abandon(struct gz_gl_bricks *bricks);
 
 #endif

@@ -10,7 +10,7 @@
 
 #define GZ_LOG_MODULE "gl"
 
-/* Made from files when the program is built. */
+/* Shader texts, embedded when the program is built. */
 extern const char gz_glsl_transfer_constants_h[];
 extern const char gz_glsl_light_constants_h[];
 extern const char gz_glsl_cast_constants_h[];
@@ -28,11 +28,11 @@ static const char cast_sizes[] = DEFINE("COUNT_SLOTS", GZ_GL_COUNT_SLOTS)
 			DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
 				DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS);
 
-/* Location of the shader's level of detail, and tiles of a work-group. */
+/* Uniform location of the level of detail, and tiles of a work-group. */
 enum { LEVEL = 2, TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
 
-/* From one level's block to the next: a multiple of what any implementation demands of such places
- * (GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT is at most 256). */
+/* Bytes from one level's block to the next: a multiple of the alignment that any implementation may
+ * demand (GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT is at most 256). */
 enum { BLOCK_STRIDE = (sizeof(struct gz_gl_cast_block) + 255) / 256 * 256 };
 
 enum { COUNTS_SIZE = GZ_GL_COUNT_SLOTS * sizeof(uint32_t) };
@@ -82,7 +82,7 @@ void gz_gl_cast_set_block(struct gz_gl_cast *cast, int level, const struct gz_gl
 	glBufferSubData(GL_UNIFORM_BUFFER, (GLintptr)level * BLOCK_STRIDE, sizeof *block, block);
 }
 
-/* Use the program of a kind of cast, made if there is none yet. */
+/* Use the program of a kind of cast; compile it the first time. */
 static enum gz_result use_cast_program(struct gz_gl_cast *cast, const struct gz_gl_cast_job *job)
 {
 	const struct gz_gl_cast_kind kind = job->kind;

@@ -130,7 +130,7 @@ static enum gz_result gl_set_transfer(struct gz_raycaster *raycaster,
 	return result;
 }
 
-/* Room on the device for what the frame's passes write. */
+/* Make room on the device for what the passes write. */
 static enum gz_result reserve_outputs(struct gl_raycaster *gl, const struct gz_plan *plan)
 {
 	enum gz_result result =
@@ -143,26 +143,23 @@ static enum gz_result reserve_outputs(struct gl_raycaster *gl, const struct gz_p
 	return result;
 }
 
-/* The blocks of all levels that tiles take, and what else the passes need. */
-static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_camera *camera,
-				    const struct gz_ray_frame *world,
-				    const struct gz_ray_params *rays, const struct gz_plan *plan)
+/* Prepare what the passes read: the blocks of all levels that tiles take, and bindings. */
+static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_gl_frame *frame)
 {
 	struct gz_gl_cast_block block = { 0 };
 	struct gz_gl_tile_levels levels;
 	const struct gz_log *log = gl->base.log;
-	enum gz_result result = gz_gl_scene_prepare(&gl->scene, &gl->device, camera, rays, plan,
-						    gl->wait_for_bricks, &levels, log);
+	enum gz_result result = gz_gl_scene_prepare(&gl->scene, &gl->device, frame, &levels, log);
 	if (result == GZ_OK)
-		result = gz_gl_plan_prepare(&gl->plan, &gl->device, plan, &levels, log);
+		result = gz_gl_plan_prepare(&gl->plan, &gl->device, frame->plan, &levels, log);
 	if (result == GZ_OK)
-		result = reserve_outputs(gl, plan);
+		result = reserve_outputs(gl, frame->plan);
 	if (result != GZ_OK)
 		return result;
 	for (int i = 0; i < gl->scene.level_count; i++) {
 		if (i > 0 && gl->plan.level_ranges[i].count == 0)
 			continue;
-		gz_gl_scene_fill(&gl->scene, i, world, rays, plan, &block);
+		gz_gl_scene_fill(&gl->scene, i, frame, &block);
 		gz_gl_cast_set_block(&gl->cast, i, &block);
 	}
 	gz_gl_plan_bind(&gl->plan);
@@ -215,7 +212,7 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_ray_pa
 	return result;
 }
 
-/* The picture to where it is wanted, and whether all went well. */
+/* Copy the picture to where it is wanted, and check for errors. */
 static enum gz_result deliver_picture(struct gl_raycaster *gl, const struct gz_plan *plan,
 				      struct gz_image *image)
 {
@@ -234,7 +231,8 @@ static enum gz_result deliver_picture(struct gl_raycaster *gl, const struct gz_p
 	return result;
 }
 
-/* The plan's pixel (0, 0) is the picture's -shift. */
+/* Move rays of the picture's pixels to those of the plan, whose pixel (0, 0) is the picture's
+ * -shift. */
 static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
 {
 	for (int axis = 0; axis < 3; axis++) {
@@ -262,7 +260,14 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 		result = enter_device(gl);
 	if (result != GZ_OK)
 		return result;
-	result = prepare_frame(gl, camera, &world, rays, plan);
+	const struct gz_gl_frame frame = {
+		.camera = camera,
+		.world = &world,
+		.rays = rays,
+		.plan = plan,
+		.wait = gl->wait_for_bricks,
+	};
+	result = prepare_frame(gl, &frame);
 	if (result == GZ_OK)
 		result = draw_frame(gl, rays, plan);
 	if (result == GZ_OK)

@@ -1,7 +1,7 @@
 /**
  * @file
- * The gl backend: OpenGL 4.3 compute shaders over the plan's tiles. The same samples as the cpu
- * backend, so that pictures differ by rounding only.
+ * The gl backend: OpenGL 4.3 compute shaders over the plan's tiles. It takes the samples that the
+ * cpu backend takes, so pictures differ only by rounding.
  */
 #ifndef GZ_RENDER_RAYCAST_GL_GL_RAYCASTER_H
 #define GZ_RENDER_RAYCAST_GL_GL_RAYCASTER_H
@@ -10,9 +10,9 @@
 
 extern const struct gz_raycaster_ops gz_gl_raycaster_ops;
 
-/** What tests ask of a device that it would not do by itself. */
+/** How tests change what a device does. */
 struct gz_gl_raycaster_hooks {
-	bool as_hardware;    /**< draw as on a graphics device, wherever it is */
+	bool as_hardware;    /**< take the paths for a graphics device on any device */
 	int volume_edge_max; /**< show volumes with a longer edge, voxels, by bricks, as with a
 				  driver with smaller textures; 0 = the driver's own limit */
 };

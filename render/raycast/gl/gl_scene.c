@@ -16,7 +16,7 @@ static void free_levels(struct gz_gl_scene *scene)
 	scene->bricked = false;
 }
 
-/* Threads for what processors do; work is done without them where there are none to be had. */
+/* Threads for work on the processor; NULL if there are none, then the caller does the work. */
 static struct gz_workers *workers_of(struct gz_gl_scene *scene)
 {
 	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
@@ -24,7 +24,7 @@ static struct gz_workers *workers_of(struct gz_gl_scene *scene)
 	return scene->workers;
 }
 
-/* The macrocells of all levels must have textures, whatever their voxels are in. */
+/* Whether textures hold the macrocells; with bricks they must, too. */
 static bool cells_fit(const struct gz_gl_scene *scene, const struct gz_gl_device *device)
 {
 	for (int axis = 0; axis < 3; axis++)
@@ -33,7 +33,7 @@ static bool cells_fit(const struct gz_gl_scene *scene, const struct gz_gl_device
 	return true;
 }
 
-/* By bricks, of all levels at once. */
+/* Show the volume by bricks, with all levels at once. */
 static enum gz_result set_bricks(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				 const struct gz_log *log)
 {
@@ -62,10 +62,10 @@ static enum gz_result set_bricks(struct gz_gl_scene *scene, const struct gz_gl_d
 	return GZ_OK;
 }
 
-/* Why a volume in memory is shown by bricks, and by how many at once. */
-static void tell_bricked(const struct gz_gl_scene *scene, const struct gz_gl_device *device,
-			 const struct gz_volume *volume, enum gz_result why,
-			 const struct gz_log *log)
+/* Log why a volume in memory is shown by bricks, and how many fit. */
+static void log_bricked(const struct gz_gl_scene *scene, const struct gz_gl_device *device,
+			const struct gz_volume *volume, enum gz_result why,
+			const struct gz_log *log)
 {
 	if (why == GZ_ERR_UNSUPPORTED)
 		gz_info(log,
@@ -102,7 +102,7 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 	if (whole != GZ_OK)
 		result = set_bricks(scene, device, log);
 	if (result == GZ_OK && whole != GZ_OK && !volume->bricks)
-		tell_bricked(scene, device, volume, whole, log);
+		log_bricked(scene, device, volume, whole, log);
 	if (result == GZ_OK)
 		scene->volume = volume;
 	return result;
@@ -145,7 +145,7 @@ static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_
 	return GZ_OK;
 }
 
-/* Give the device the grid of occlusion, where a frame wants one and has made it anew. */
+/* Upload the grid of occlusion. */
 static void load_occlusion(struct gz_gl_scene *scene)
 {
 	const struct gz_occlusion *grid = &scene->lighting.occlusion;
@@ -181,7 +181,7 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_r
 	return result;
 }
 
-/* Make the coarser levels and give them to the device, unless it has them. */
+/* Make and upload the coarser levels, unless the device has them. */
 static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 			   const struct gz_log *log)
 {
@@ -196,7 +196,7 @@ static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device 
 				"no room on the graphics device for coarser levels of the volume: "
 				"rays take the finest %d alone",
 				i);
-			scene->detail.failed = true; /* said once */
+			scene->detail.failed = true; /* logged once */
 			return;
 		}
 		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
@@ -204,7 +204,7 @@ static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device 
 	}
 }
 
-/* The level of each kind of tile. */
+/* Choose the level of each kind of tile. */
 static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan *plan,
 			  const struct gz_ray_params *rays, double pixel_lengths,
 			  struct gz_gl_tile_levels *out_levels)
@@ -226,54 +226,51 @@ static void choose_levels(const struct gz_gl_scene *scene, const struct gz_plan 
 			}
 }
 
-static int level_of(const void *user, const struct gz_tile *tile)
+static int brick_tile_level(const void *user, const struct gz_tile *tile)
 {
 	const struct gz_gl_tile_levels *levels = user;
 	return levels->of[tile->layer][tile->pattern][tile->step];
 }
 
-/* @p levels: NULL where all tiles take the finest. */
-static enum gz_result prepare_bricks(struct gz_gl_scene *scene,
-				     const struct gz_brick_stream_key *key,
-				     const struct gz_plan *plan,
-				     const struct gz_gl_tile_levels *levels, bool wait,
+/* Upload the bricks of a frame. pixel_lengths is 0 and levels NULL if all tiles take the finest. */
+static enum gz_result prepare_bricks(struct gz_gl_scene *scene, const struct gz_gl_frame *frame,
+				     double pixel_lengths, const struct gz_gl_tile_levels *levels,
 				     const struct gz_log *log)
 {
-	const struct gz_brick_stream_frame frame = {
+	const struct gz_brick_stream_frame wanted = {
 		.detail = &scene->detail,
 		.table = &scene->table,
-		.plan = plan,
-		.key = *key,
-		.tile_level = levels ? level_of : NULL,
+		.plan = frame->plan,
+		.key = gz_brick_stream_key_of(frame->camera, frame->rays, frame->plan,
+					      pixel_lengths),
+		.tile_level = levels ? brick_tile_level : NULL,
 		.user = levels,
 	};
-	const enum gz_result result = gz_gl_bricks_turn(&scene->bricks, frame, wait);
+	const enum gz_result result = gz_gl_bricks_turn(&scene->bricks, wanted, frame->wait);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(log, "no memory for the list of bricks that the picture shows");
 	return result;
 }
 
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
-				   const struct gz_camera *camera, const struct gz_ray_params *rays,
-				   const struct gz_plan *plan, bool wait,
+				   const struct gz_gl_frame *frame,
 				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log)
 {
+	const struct gz_plan *plan = frame->plan;
 	const double pixel_lengths =
-		gz_levels_pixel_lengths(scene->volume, camera, plan->view.height);
+		gz_levels_pixel_lengths(scene->volume, frame->camera, plan->view.height);
 	memset(out_levels, 0, sizeof *out_levels);
-	const bool coarser = gz_detail_wanted(plan, rays, pixel_lengths);
+	const bool coarser = gz_detail_wanted(plan, frame->rays, pixel_lengths);
 	if (coarser) {
 		prepare_levels(scene, device, log);
-		choose_levels(scene, plan, rays, pixel_lengths, out_levels);
+		choose_levels(scene, plan, frame->rays, pixel_lengths, out_levels);
 	}
-	enum gz_result result = prepare_light(scene, rays, log);
+	enum gz_result result = prepare_light(scene, frame->rays, log);
 	if (result == GZ_OK)
-		result = prepare_tables(scene, rays, plan, log);
-	if (result == GZ_OK && scene->bricked) {
-		const struct gz_brick_stream_key key =
-			gz_brick_stream_key_of(camera, rays, plan, coarser ? pixel_lengths : 0);
-		result = prepare_bricks(scene, &key, plan, coarser ? out_levels : NULL, wait, log);
-	}
+		result = prepare_tables(scene, frame->rays, plan, log);
+	if (result == GZ_OK && scene->bricked)
+		result = prepare_bricks(scene, frame, coarser ? pixel_lengths : 0,
+					coarser ? out_levels : NULL, log);
 	return result;
 }
 
@@ -283,8 +280,8 @@ static void vector_to_floats(const double source[3], float out[4])
 		out[axis] = (float)source[axis];
 }
 
-static void fill_rays(const struct gz_gl_scene *scene, const int factor[3],
-		      const struct gz_ray_frame *world, struct gz_gl_cast_block *block)
+static void fill_block_rays(const struct gz_gl_scene *scene, const int factor[3],
+			    const struct gz_ray_frame *world, struct gz_gl_cast_block *block)
 {
 	struct gz_voxel_rays rays;
 	gz_voxel_rays_make(scene->volume, factor, world, &rays);
@@ -298,8 +295,8 @@ static void fill_rays(const struct gz_gl_scene *scene, const int factor[3],
 		block->world_per_voxel[axis] = (float)(rays.world_per_voxel[axis] * factor[axis]);
 }
 
-static void fill_volume(const struct gz_gl_scene *scene, int index, const struct gz_clip_box *clip,
-			struct gz_gl_cast_block *block)
+static void fill_block_volume(const struct gz_gl_scene *scene, int index,
+			      const struct gz_clip_box *clip, struct gz_gl_cast_block *block)
 {
 	const struct gz_level *level = &scene->detail.levels.level[index];
 	for (int axis = 0; axis < 3; axis++) {
@@ -313,9 +310,9 @@ static void fill_volume(const struct gz_gl_scene *scene, int index, const struct
 	}
 }
 
-static void fill_light(const struct gz_gl_scene *scene, const int factor[3],
-		       const struct gz_ray_frame *world, const struct gz_ray_params *rays,
-		       struct gz_gl_cast_block *block)
+static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3],
+			     const struct gz_ray_frame *world, const struct gz_ray_params *rays,
+			     struct gz_gl_cast_block *block)
 {
 	struct gz_cast_light light;
 	gz_lighting_fill(&scene->lighting, factor, rays, world, &light);
@@ -343,14 +340,16 @@ void gz_gl_scene_bind(const struct gz_gl_scene *scene)
 	glActiveTexture(GL_TEXTURE0);
 }
 
-void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
-		      const struct gz_ray_params *rays, const struct gz_plan *plan,
+void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_gl_frame *frame,
 		      struct gz_gl_cast_block *block)
 {
+	const struct gz_ray_frame *world = frame->world;
+	const struct gz_ray_params *rays = frame->rays;
+	const struct gz_plan *plan = frame->plan;
 	const double voxel_length = gz_volume_voxel_length(scene->volume);
-	fill_rays(scene, scene->detail.levels.level[level].factor, world, block);
-	fill_volume(scene, level, &rays->clip, block);
-	fill_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
+	fill_block_rays(scene, scene->detail.levels.level[level].factor, world, block);
+	fill_block_volume(scene, level, &rays->clip, block);
+	fill_block_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
 	if (scene->bricked)
 		gz_gl_bricks_fill(&scene->bricks, scene->detail.brick_level[level], block);
 	block->jitter[0] = (uint32_t)rays->jitter;

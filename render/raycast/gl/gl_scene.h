@@ -1,7 +1,7 @@
 /**
  * @file
- * What is shown, on the graphics device: the volume with its levels of detail, and the transfer
- * function. All calls need the context current.
+ * What the graphics device shows: the volume with its levels of detail, the transfer function and
+ * the light. All calls need a current context.
  */
 #ifndef GZ_RENDER_RAYCAST_GL_GL_SCENE_H
 #define GZ_RENDER_RAYCAST_GL_GL_SCENE_H
@@ -11,10 +11,9 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/picture/camera.h"
-#include "render/raycast/gl/cast_block.h"
 #include "render/raycast/gl/gl_bricks.h"
-#include "render/raycast/gl/gl_tables.h"
-#include "render/raycast/gl/gl_volume.h"
+#include "render/raycast/gl/gl_cast.h"
+#include "render/raycast/gl/gl_textures.h"
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/raycast/shared/preintegration.h"
@@ -29,50 +28,56 @@ struct gz_gl_scene {
 	struct gz_transfer_table table;
 	struct gz_detail detail;
 	struct gz_preintegration preintegration;
-	struct gz_workers *workers;                /**< NULL until there is much to do */
-	struct gz_gl_volume levels[GZ_LEVELS_MAX]; /**< of those that the device has */
+	struct gz_workers *workers;                /**< NULL until needed */
+	struct gz_gl_volume levels[GZ_LEVELS_MAX]; /**< those that the device has */
 	int level_count;
-	bool bricked; /**< voxels come by bricks: */
+	bool bricked; /**< the volume is shown by these bricks: */
 	struct gz_gl_bricks bricks;
 	struct gz_gl_tables tables;
 	struct gz_lighting lighting;
-	unsigned occlusion;    /**< texture of the lighting's grid; 0: none */
+	unsigned occlusion;    /**< texture of the grid of occlusion; 0 = none */
 	int occlusion_dims[3]; /**< of the texture */
 };
 
 /**
- * Show @p volume, borrowed until the next call or gz_gl_scene_free(): whole where the device has
- * room for that, else by bricks, as a file of bricks is.
+ * Show @p volume, borrowed until the next call or gz_gl_scene_free(): whole if the device has room,
+ * else by bricks. A file of bricks is always shown by bricks.
  *
- * @retval GZ_ERR_UNSUPPORTED  the device's textures do not even hold the macrocells; logged
- * @retval GZ_ERR_NO_MEM       no room, on the device not even for the coarsest bricks; logged
+ * @retval GZ_ERR_UNSUPPORTED  the device's textures cannot hold the macrocells; logged
+ * @retval GZ_ERR_NO_MEM       no memory, or no room on the device even for the coarsest bricks;
+ * logged
  * @retval GZ_ERR_NO_DEVICE    the context is lost; logged
  */
 enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				      const struct gz_volume *volume, const struct gz_log *log);
 
-/** Use @p transfer (copied); needs a volume. */
+/** Use @p transfer, which is copied. Needs a volume. */
 void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer);
 
+/** One frame. What it points to is borrowed. */
+struct gz_gl_frame {
+	const struct gz_camera *camera;   /**< valid */
+	const struct gz_ray_frame *world; /**< the camera's rays, by pixels of the plan */
+	const struct gz_ray_params *rays;
+	const struct gz_plan *plan;
+	bool wait; /**< wait until all bricks are there that have room */
+};
+
 /**
- * Have ready what a frame needs: tables of its steps, coarser levels where its rays take them, and
- * those of its bricks that have come.
+ * Prepare a frame: tables of its steps, coarser levels if its rays take them, and the bricks that
+ * are loaded.
  *
- * @param camera  valid
- * @param wait    until all bricks are there that have room
  * @param[out] out_levels  which level each kind of tile takes
- * @retval GZ_ERR_NO_MEM  no room for pre-integrated tables or the list of wanted bricks; logged.
+ * @retval GZ_ERR_NO_MEM  no memory for pre-integrated tables or the list of wanted bricks; logged.
  *                        Without room for coarser levels all rays take the full one
  */
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
-				   const struct gz_camera *camera, const struct gz_ray_params *rays,
-				   const struct gz_plan *plan, bool wait,
+				   const struct gz_gl_frame *frame,
 				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log);
 
-/** Fill what of @p block belongs to a level: rays and volume in its own voxel coordinates, and what
- *  all levels share of rays and transfer function. */
-void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_ray_frame *world,
-		      const struct gz_ray_params *rays, const struct gz_plan *plan,
+/** Fill in @p block for a level: rays and volume in the level's voxel coordinates, and what all
+ * levels share. After gz_gl_scene_prepare() with the same frame. */
+void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct gz_gl_frame *frame,
 		      struct gz_gl_cast_block *block);
 
 /** Bind tables and light to their units. */
@@ -81,7 +86,7 @@ void gz_gl_scene_bind(const struct gz_gl_scene *scene);
 /** Delete and free all of it, and zero the struct. */
 void gz_gl_scene_free(struct gz_gl_scene *scene);
 
-/** The same without a context, whose textures are gone with it. */
+/** Free and zero without a context: a lost one took the textures with it. */
 void gz_gl_scene_forget(struct gz_gl_scene *scene);
 
 #endif

@@ -1,8 +1,8 @@
-// Rays of tiles, front to back: the same samples, ends and colours as the cpu backend's kernel, which says how
-// rays are cut into segments (render/raycast/cpu/cast_kernel.h).
+// Casts rays of tiles, front to back: with the samples, ends and colours of the cpu backend's kernel, which
+// explains how rays are cut into segments (render/raycast/cpu/cast_kernel.h).
 layout(local_size_x = GROUP_SIZE) in;
 
-layout(location = 2) uniform uint detail; // level that this dispatch casts
+layout(location = 2) uniform uint detail; // the level that this dispatch casts
 
 layout(std430, binding = 3) buffer Counts
 {
@@ -12,8 +12,8 @@ layout(std430, binding = 3) buffer Counts
 struct Ray {
 	vec3 start, delta, inverse; // voxel coordinates; position = start + k * delta
 	float first, end;           // whole segments: from k = first to k = end
-	float head, head_at;        // length of a part of one before them, and its middle
-	float rest;                 // length of a part of one behind them
+	float head, head_at;        // length of the partial segment before them, and its middle
+	float rest;                 // length of the partial segment after them
 };
 
 struct Light {
@@ -21,15 +21,15 @@ struct Light {
 	float through;
 };
 
-// Samples looked up before the first of them is composited, so that none waits for another's texels. A lit one
-// has enough to fetch.
+// Samples that are looked up before the first of them is composited, so that their fetches overlap. A lit
+// sample has enough fetches of its own.
 #ifdef SHADED
 #define BATCH 1
 #else
 #define BATCH 4
 #endif
 
-// Whether it is so for a ray that is cast side by side with this one.
+// Whether the condition holds for any ray of the same warp.
 bool any_of_warp(bool so)
 {
 #ifdef GL_ARB_shader_group_vote
@@ -39,7 +39,7 @@ bool any_of_warp(bool so)
 #endif
 }
 
-// gz_ray_jitter() of render/raycast/shared/ray_params.h, which says why.
+// gz_ray_jitter() of render/raycast/shared/ray_params.h, which explains it.
 float jitter_of(uvec2 pixel)
 {
 	if (jitter.x == 0U)
@@ -53,8 +53,7 @@ float jitter_of(uvec2 pixel)
 	return float(word.x >> 8) * (1.0 / 16777216.0);
 }
 
-// Where the ray meets the whole box, and where it is within what is shown of it; segments are counted from
-// a share of one before the box.
+// Cuts a ray by the whole box and by the shown part of it. Segments are counted from a jitter before the box.
 Ray set_up_ray(uvec2 at, float step_length)
 {
 	vec2 pixel = vec2(at);
@@ -78,13 +77,13 @@ Ray set_up_ray(uvec2 at, float step_length)
 	ray.end = floor(to);
 	ray.head = min(ray.first, to) - from;
 	ray.head_at = fma(ray.head, 0.5, from);
-	// Where all lies within one segment, the head is all there is.
+	// If everything lies within one segment, the head is all.
 	ray.rest = ray.end < ray.first ? 0.0 : to - ray.end;
 	ray.start = fma(vec3(box_at - shift), ray.delta, origin);
 	return ray;
 }
 
-// Whether the macrocell at k is empty; until: up to which k all cells are of its kind.
+// Whether the macrocell at k is empty. All cells up to k = until are of its kind.
 bool look_up_cell(Ray ray, float k, out float until)
 {
 	vec3 at = fma(vec3(k), ray.delta, ray.start);
@@ -97,7 +96,7 @@ bool look_up_cell(Ray ray, float k, out float until)
 	return away > 0;
 }
 
-// Add the colour of what lies at k.
+// Adds the colour of a sample at k.
 void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light light)
 {
 	vec3 colour = unpack_colour(packed_colour);
@@ -111,8 +110,7 @@ void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light 
 }
 
 #ifdef SEGMENTS
-// Segments instead of samples: colour and opacity by the values at both ends of each, as the cpu backend's
-// render/raycast/cpu/cast_preintegrated.h does it and says.
+// Segments instead of samples: render/raycast/cpu/cast_preintegrated.h explains them.
 int cell_at(Ray ray, float k)
 {
 	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start))) / (GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE);
@@ -150,7 +148,7 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 	return samples;
 }
 
-// A part of a segment: from `from` on, of a length in steps.
+// A partial segment: from `from` on, `part` steps long.
 uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Light light)
 {
 	float leave, to = from + part;
@@ -171,7 +169,7 @@ uvec2 look_up(Ray ray, float k, int step_index)
 	return FETCH(transfer, ivec2(entry, step_index)).rg;
 }
 
-// BATCH samples from k on, as far as there are any; k is then behind them.
+// Takes up to BATCH samples from k on, and moves k past them.
 void march_batch(Ray ray, int step_index, inout float k, inout Light light)
 {
 	float from = k;
@@ -185,11 +183,11 @@ void march_batch(Ray ray, int step_index, inout float k, inout Light light)
 	}
 }
 
-// On to the first occupied cell, if there is one; then its samples. Two loops in turn, so that rays that skip
-// and rays that sample do not wait for each other at every step. A ray that has left its cell goes on while
-// others of its warp are in theirs: it would have to wait for them, and what is empty shows nothing. Loops ask
-// at their ends whether they go on: where the lanes of a processor are the rays, they run through the rest of
-// a loop that all have left.
+// Takes all whole segments: advances to the next occupied cell, then takes its samples. Two loops in turn, so
+// that rays that skip and rays that sample do not wait for each other at every step. A ray that has left its
+// cell samples on while others of its warp are in theirs: it would have to wait for them, and empty space adds
+// nothing. Loops test their condition at the end: in software the lanes of a processor are the rays, and they
+// run through the rest of a loop that all have left.
 uint march(Ray ray, int step_index, inout Light light)
 {
 	float samples = 0.0, k = ray.first + 0.5;
@@ -214,7 +212,7 @@ uint march(Ray ray, int step_index, inout Light light)
 	return uint(samples);
 }
 
-// A part of a segment, at either end of the whole ones: around k, of a length in steps.
+// A partial segment at an end of a ray: `part` steps long, with its middle at k.
 uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light light)
 {
 	float until;
@@ -238,7 +236,7 @@ uint to_pixel(Light light)
 	return bytes.r | bytes.g << 8 | bytes.b << 16 | 0xFF000000U;
 }
 
-// Into its lattice and, in a pyramid, into those coarser ones that have the point too.
+// Stores a pixel on its lattice and, in a pyramid, on the coarser lattices that have the point too.
 void store(Tile tile, uvec2 at, uint pixel)
 {
 	uint end = plan.y == 1U ? plan.x : tile.layer + 1U;

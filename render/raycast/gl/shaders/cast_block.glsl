@@ -1,22 +1,22 @@
-// What the casting shaders know of the frame: struct gz_gl_cast_block of cast_block.h.
+// What the casting shaders know of the frame: struct gz_gl_cast_block of gl_cast.h.
 layout(std140, binding = 1) uniform Cast
 {
 	vec4 origin00, origin_dx, origin_dy;
 	vec4 direction00, direction_dx, direction_dy;
 	vec4 world_per_voxel;
 	vec4 dims; // voxels
-	vec4 box;  // its far corner: dims, but for a coarser level of an odd size
+	vec4 box;  // far corner: dims, or less for a coarser level of odd size
 	vec4 clip_least, clip_greatest;
 	vec4 cell_counts;
 	vec4 background;
-	vec4 transfer_map; // scale and bias from stored value to share of the table; light with which a ray ends
-	vec4 light_towards; // unit vector in world directions; share of the ambient light that can be kept away
+	vec4 transfer_map; // scale and bias from stored value to share of the table; share of light at which a ray ends
+	vec4 light_towards; // unit vector in world directions; greatest share of the ambient light that is blocked
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 gradient_scale;
-	vec4 occlusion_scale, occlusion_bias, occlusion_last; // to places among its cells; greatest index
-	uvec4 jitter; // seed, 0 = none; where the picture begins in the plan, px
+	vec4 occlusion_scale, occlusion_bias, occlusion_last; // to places among the cells; greatest index
+	uvec4 jitter; // seed, 0 = none; first pixel of the picture in the plan
 	vec4 steps[GZ_PLAN_STEPS_MAX];
-	uvec4 brick_table; // number of the level's first brick; from one to the next along y, z
+	uvec4 brick_table; // number of the level's first brick; bricks from one to the next along y, z
 	vec4 brick_last;   // greatest number of a brick
-	vec4 brick_scales[BRICK_LEVELS]; // voxels of another level along an edge of one of this
+	vec4 brick_scales[BRICK_LEVELS]; // by level: its voxels per voxel of this level
 };

@@ -1,13 +1,13 @@
 // From a place in voxel coordinates to the value there and its entry in the transfer function. Weights are
-// full floats: a sampler's own have 8 bits, which would show against the cpu backend.
+// full floats: those of a sampler have 8 bits, and the difference from the cpu backend would be visible.
 //
-// A texel is 32 bits, which every GPU fetches at its full rate: one float, or a 16-bit voxel and its neighbour
+// A texel has 32 bits, which every GPU fetches at its full rate: one float, or a 16-bit voxel and its neighbour
 // along x, or an 8-bit voxel and its neighbours along x, y and both. So a sample takes 8, 4 or 2 fetches.
-// SINGLE, where these have no room: one voxel of its own size, 8 fetches. BRICKS: the same in the rooms of an
-// atlas, where a table says which brick, of this level of detail or a coarser one, a place leads to.
+// SINGLE: one voxel of its own size, 8 fetches, if there is no room for more. BRICKS: single voxels in the rooms
+// of an atlas, where a table says which brick, of this level of detail or a coarser one, holds a place.
 //
-// The same words are read as texels or, by FETCH_IMAGES, as those of images, which spares Mesa's processor
-// the arithmetic of levels that the textures do not have.
+// With FETCH_IMAGES the words are read as images instead of textures, which saves Mesa's software renderer the
+// arithmetic of mipmaps that do not exist.
 #ifdef FETCH_IMAGES
 #define FETCH(from, place) imageLoad(from, place)
 #if VOXEL_BITS == 32
@@ -29,14 +29,14 @@ layout(binding = 0) uniform sampler3D voxels;
 #else
 layout(binding = 0) uniform usampler3D voxels;
 #endif
-layout(binding = 1) uniform usampler3D reaches;   // of macrocells
-layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; a row a step
-// The same of segments, by the cells at their ends; a layer a step.
+layout(binding = 1) uniform usampler3D reaches;   // by macrocell
+layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; one row for each step
+// Tables of segments, by the cells at their ends; one layer for each step.
 layout(binding = 3) uniform usampler2DArray segments;
 #endif
 
-// What every sample needs of the frame, found once a ray: a processor reads a uniform block lane by lane, and
-// compilers take a mere copy of it for the block itself, so each of these is worked out.
+// What every sample needs of the frame, computed once for each ray: software reads a uniform block lane by lane,
+// and compilers replace a mere copy by the block itself, so each of these is a computed value.
 vec3 top_voxel;    // greatest index
 ivec3 lower_voxel; // greatest index of the lower of two neighbours
 vec3 top_cell;
@@ -56,8 +56,8 @@ layout(std430, binding = 4) readonly buffer Bricks
 	uint bricks[]; // by number: level in the lowest bits, then the room's place along x, y and z
 };
 
-// The first texel of the brick over a place, and the place in it, counted from the first datum: 1/2 to 32 1/2.
-// The cpu backend's render/raycast/cpu/cast_fetch.h does the same.
+// Finds the brick over a place: its first texel, and the place in it counted from its first datum, 1/2 to 32 1/2.
+// find_bricks() of render/raycast/cpu/cast_fetch.h does this for the cpu backend.
 vec3 find_brick(vec3 at, out ivec3 first)
 {
 	vec3 brick = floor(clamp(at * (1.0 / float(BRICK_EDGE)), vec3(0.0), brick_last.xyz));

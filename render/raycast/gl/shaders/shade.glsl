@@ -1,13 +1,13 @@
-// How a sample answers light: struct gz_light of render/raycast/shared/ray_params.h says what is computed here.
-layout(binding = 4) uniform usampler3D occlusions; // 16 bits a cell: struct gz_occlusion
+// Light on a sample: struct gz_light of render/light/light.h has the formulas.
+layout(binding = 4) uniform usampler3D occlusions; // 16 bits for each cell: struct gz_occlusion
 
-vec3 to_eye, halfway; // of the ray at hand, unit vectors in world directions
+vec3 to_eye, halfway; // of this ray: unit vectors in world directions
 
 void set_up_view(vec3 delta, float step_length)
 {
 	to_eye = -delta * world_per_voxel.xyz / step_length;
 	vec3 between = to_eye + light_towards.xyz;
-	halfway = between * inversesqrt(dot(between, between) + 1e-12); // none where they are opposite
+	halfway = between * inversesqrt(dot(between, between) + 1e-12); // 0 where they are opposite
 }
 
 vec3 gradient_at(vec3 at)
@@ -23,7 +23,7 @@ float occlusion_cell(ivec3 place)
 	return float(texelFetch(occlusions, place, 0).r);
 }
 
-// What lies around a place counted from the first datum: trilinear in the grid of occlusion.
+// The occlusion at a place counted from the first datum, trilinear in its grid.
 float occlusion_at(vec3 datum)
 {
 	vec3 place = clamp(fma(datum, occlusion_scale.xyz, occlusion_bias.xyz), vec3(0.0), occlusion_last.xyz);
@@ -38,7 +38,7 @@ float occlusion_at(vec3 datum)
 	return clamp(fma(mix(planes.x, planes.y, share.z), 2.0 / 65535.0, -1.0), 0.0, 1.0);
 }
 
-// A colour of up to 2047, 2047 and 1023, lit.
+// Lights a colour, whose channels reach 2047, 2047 and 1023.
 vec3 shade(vec3 colour, vec3 at)
 {
 	const vec3 full = vec3(2047.0, 2047.0, 1023.0);

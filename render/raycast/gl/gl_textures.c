@@ -1,17 +1,33 @@
-#include "render/raycast/gl/gl_volume.h"
+#include "render/raycast/gl/gl_textures.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include <GL/glew.h>
 
-#include "render/raycast/gl/cast_block.h"
+#include "render/raycast/gl/gl_cast.h"
 
-/* Bytes handed to the driver at a time, which may copy them first. Chosen: a small part of any
- * volume that matters, large beside the cost of a call. */
+const struct gz_gl_texel_format *gz_gl_texel_format(enum gz_gl_texels texels,
+						    enum gz_voxel_type type)
+{
+	static const struct gz_gl_texel_format packed[GZ_VOXEL_TYPE_COUNT] = {
+		[GZ_VOXEL_U8] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4 },
+		[GZ_VOXEL_U16] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4 },
+		[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT, 4 },
+	};
+	static const struct gz_gl_texel_format single[GZ_VOXEL_TYPE_COUNT] = {
+		[GZ_VOXEL_U8] = { GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1 },
+		[GZ_VOXEL_U16] = { GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, 2 },
+		[GZ_VOXEL_F32] = { GL_R32F, GL_RED, GL_FLOAT, 4 },
+	};
+	return texels == GZ_GL_TEXELS_PACKED ? &packed[type] : &single[type];
+}
+
+/* Bytes given to the driver at a time, which may copy them first. Chosen: small beside a large
+ * volume, large beside the cost of a call. */
 #define UPLOAD_BYTES ((size_t)16 << 20)
 
-/* A row of 8-bit voxels, each with its neighbours along x, y and both. */
+/* Pack a row of 8-bit voxels, each with its neighbours along x, y and both. */
 static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, uint32_t *out)
 {
 	for (int x = 0; x + 1 < count; x++)
@@ -21,7 +37,7 @@ static void pack_row_u8(const uint8_t *row, const uint8_t *next_row, int count, 
 	out[last] = row[last] * 0x101U | (next_row[last] * 0x101U) << 16;
 }
 
-/* A row of 16-bit voxels, each with its neighbour along x. */
+/* Pack a row of 16-bit voxels, each with its neighbour along x. */
 static void pack_row_u16(const uint16_t *row, int count, uint32_t *out)
 {
 	for (int x = 0; x + 1 < count; x++)
@@ -29,7 +45,7 @@ static void pack_row_u16(const uint16_t *row, int count, uint32_t *out)
 	out[count - 1] = row[count - 1] * 0x10001U;
 }
 
-/* One slice of texels. */
+/* Pack one slice of texels. */
 static void pack_slice(const struct gz_volume *volume, int z, uint32_t *out)
 {
 	const size_t columns = (size_t)volume->dims[0], rows = (size_t)volume->dims[1];
@@ -47,7 +63,7 @@ static void pack_slice(const struct gz_volume *volume, int z, uint32_t *out)
 	}
 }
 
-/* Packed texels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
+/* Upload packed texels to the bound texture, a few slices at a time. GZ_ERR_NO_MEM. */
 static enum gz_result upload_packed(const struct gz_volume *volume)
 {
 	const struct gz_gl_texel_format *format =
@@ -70,7 +86,7 @@ static enum gz_result upload_packed(const struct gz_volume *volume)
 	return GZ_OK;
 }
 
-/* Voxels as they are to the bound texture, a slice at a time. */
+/* Upload single voxels to the bound texture, a slice at a time. */
 static enum gz_result upload_single(const struct gz_volume *volume)
 {
 	const struct gz_gl_texel_format *format =
@@ -94,8 +110,8 @@ static bool fits_edges(const struct gz_gl_device *device, const struct gz_volume
 	return true;
 }
 
-static enum gz_result load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
-			   const struct gz_volume *volume, enum gz_gl_texels texels)
+static enum gz_result load_texels(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+				  const struct gz_volume *volume, enum gz_gl_texels texels)
 {
 	const struct gz_gl_texel_format *format = gz_gl_texel_format(texels, volume->type);
 	const size_t bytes = gz_volume_voxel_count(volume) * format->bytes;
@@ -124,9 +140,9 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 	gz_gl_volume_free(gl);
 	if (!fits_edges(device, volume))
 		return GZ_ERR_UNSUPPORTED;
-	enum gz_result result = load(gl, device, volume, GZ_GL_TEXELS_PACKED);
+	enum gz_result result = load_texels(gl, device, volume, GZ_GL_TEXELS_PACKED);
 	if (result == GZ_ERR_NO_MEM && volume->type != GZ_VOXEL_F32)
-		result = load(gl, device, volume, GZ_GL_TEXELS_SINGLE);
+		result = load_texels(gl, device, volume, GZ_GL_TEXELS_SINGLE);
 	return result;
 }
 
@@ -172,4 +188,72 @@ void gz_gl_volume_free(struct gz_gl_volume *gl)
 	if (gl->voxels || gl->reach)
 		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
 	*gl = (struct gz_gl_volume) { 0 };
+}
+
+void gz_gl_tables_forget(struct gz_gl_tables *tables)
+{
+	memset(tables->sample_length, 0, sizeof tables->sample_length);
+	memset(tables->segment_length, 0, sizeof tables->segment_length);
+}
+
+/* An entry is two words of 32 bits: a float and a colour. */
+void gz_gl_tables_samples(struct gz_gl_tables *tables, const struct gz_transfer_table *table,
+			  int row, double length)
+{
+	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE];
+	if (tables->sample_length[row] == length)
+		return;
+	if (!tables->samples) {
+		tables->samples = gz_gl_texture(GL_TEXTURE_2D);
+		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
+			       GZ_GL_TABLE_ROWS);
+	}
+	const struct gz_transfer_entry *source = table->entries;
+	if (row < GZ_PLAN_STEPS_MAX) {
+		gz_transfer_table_step(table, length, entries);
+		source = entries;
+	}
+	glBindTexture(GL_TEXTURE_2D, tables->samples);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, row, GZ_TRANSFER_TABLE_SIZE, 1, GL_RG_INTEGER,
+			GL_UNSIGNED_INT, source);
+	glBindTexture(GL_TEXTURE_2D, 0);
+	tables->sample_length[row] = length;
+}
+
+void gz_gl_tables_segments(struct gz_gl_tables *tables, int layer, double length,
+			   const struct gz_transfer_entry *entries)
+{
+	if (tables->segment_length[layer] == length)
+		return;
+	if (!tables->segments) {
+		tables->segments = gz_gl_texture(GL_TEXTURE_2D_ARRAY);
+		glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RG32UI, GZ_PREINTEGRATED_SIZE,
+			       GZ_PREINTEGRATED_SIZE, GZ_GL_TABLE_ROWS);
+	}
+	glBindTexture(GL_TEXTURE_2D_ARRAY, tables->segments);
+	glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, GZ_PREINTEGRATED_SIZE,
+			GZ_PREINTEGRATED_SIZE, 1, GL_RG_INTEGER, GL_UNSIGNED_INT, entries);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, 0);
+	tables->segment_length[layer] = length;
+}
+
+void gz_gl_tables_bind(const struct gz_gl_tables *tables)
+{
+	glBindImageTexture(GZ_GL_UNIT_TRANSFER, tables->samples, 0, GL_FALSE, 0, GL_READ_ONLY,
+			   GL_RG32UI);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_TRANSFER);
+	glBindTexture(GL_TEXTURE_2D, tables->samples);
+	glBindImageTexture(GZ_GL_UNIT_SEGMENTS, tables->segments, 0, GL_TRUE, 0, GL_READ_ONLY,
+			   GL_RG32UI);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_SEGMENTS);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, tables->segments);
+	glActiveTexture(GL_TEXTURE0);
+}
+
+void gz_gl_tables_free(struct gz_gl_tables *tables)
+{
+	const GLuint textures[] = { tables->samples, tables->segments };
+	if (tables->samples || tables->segments)
+		glDeleteTextures(sizeof textures / sizeof textures[0], textures);
+	*tables = (struct gz_gl_tables) { 0 };
 }
