@@ -213,3 +213,36 @@ enum gz_result gz_text_add_file(struct gz_text *text, const char *path)
 		return GZ_ERR_IO;
 	return text->failed ? GZ_ERR_NO_MEM : GZ_OK;
 }
+
+enum gz_result gz_text_load(struct gz_text *text, const struct gz_text_file *file,
+			    const struct gz_log *log)
+{
+	FILE *stream = fopen(file->path, "re");
+	if (!stream) {
+		const int saved = errno;
+		gz_err(log, "%s: cannot open the %s: %s; check its name and permissions",
+		       file->path, file->what, strerror(saved));
+		return saved == ENOENT || saved == ENOTDIR ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
+	}
+	char chunk[16384];
+	size_t got, size = 0;
+	enum gz_result result = GZ_OK;
+	while (size <= file->size_max && (got = fread(chunk, 1, sizeof chunk, stream)) > 0) {
+		gz_text_add_bytes(text, chunk, got);
+		size += got;
+	}
+	if (ferror(stream)) {
+		gz_err(log, "%s: cannot read the %s: %s; name a text file", file->path, file->what,
+		       strerror(errno));
+		result = GZ_ERR_IO;
+	} else if (size > file->size_max) {
+		gz_err(log, "%s: longer than %zu KiB; is this a %s?", file->path,
+		       file->size_max / 1024, file->what);
+		result = GZ_ERR_FORMAT;
+	} else if (text->failed) {
+		gz_err(log, "%s: no memory to read it", file->path);
+		result = GZ_ERR_NO_MEM;
+	}
+	fclose(stream);
+	return result;
+}

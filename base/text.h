@@ -104,4 +104,23 @@ enum gz_result gz_text_write(const struct gz_text *text, const char *path,
  */
 enum gz_result gz_text_add_file(struct gz_text *text, const char *path);
 
+/** A small text file to read. */
+struct gz_text_file {
+	const char *path;
+	const char *what; /**< the file's content in messages, such as "transfer function" */
+	size_t size_max;  /**< bytes; a longer file is refused before it is read whole */
+};
+
+/**
+ * Append the content of a small text file.
+ *
+ * @param[in,out] text  the caller frees it with gz_text_free(), on failure too
+ * @retval GZ_ERR_NOT_FOUND  no such file; logged
+ * @retval GZ_ERR_IO         the file cannot be read; logged
+ * @retval GZ_ERR_FORMAT     the file is longer than size_max; logged
+ * @retval GZ_ERR_NO_MEM     logged
+ */
+enum gz_result gz_text_load(struct gz_text *text, const struct gz_text_file *file,
+			    const struct gz_log *log);
+
 #endif

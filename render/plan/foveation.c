@@ -1,8 +1,5 @@
 #include "render/plan/foveation.h"
 
-#include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -245,43 +242,16 @@ enum gz_result gz_spacing_table_parse(const char *name, const char *text, size_t
 	return GZ_OK;
 }
 
-static enum gz_result read_spacing_table(FILE *file, const char *path, const struct gz_log *log,
-					 struct gz_spacing_table *out_table)
-{
-	char *text = malloc(FILE_SIZE_MAX + 1);
-	if (!text) {
-		gz_err(log, "%s: no memory to read it", path);
-		return GZ_ERR_NO_MEM;
-	}
-	enum gz_result result;
-	const size_t size = fread(text, 1, FILE_SIZE_MAX + 1, file);
-	if (ferror(file)) {
-		gz_err(log, "%s: cannot read the table of spacings: %s; name a text file", path,
-		       strerror(errno));
-		result = GZ_ERR_IO;
-	} else if (size > FILE_SIZE_MAX) {
-		gz_err(log, "%s: longer than 64 KiB; is this a table of spacings?", path);
-		result = GZ_ERR_FORMAT;
-	} else {
-		result = gz_spacing_table_parse(path, text, size, log, out_table);
-	}
-	free(text);
-	return result;
-}
-
 enum gz_result gz_spacing_table_load(const char *path, const struct gz_log *log,
 				     struct gz_spacing_table *out_table)
 {
-	FILE *file = fopen(path, "re");
-	if (!file) {
-		const int saved = errno;
-		gz_err(log,
-		       "%s: cannot open the table of spacings: %s; check its name and permissions",
-		       path, strerror(saved));
-		return saved == ENOENT || saved == ENOTDIR ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
-	}
-	const enum gz_result result = read_spacing_table(file, path, log, out_table);
-	fclose(file);
+	const struct gz_text_file file = { path, "table of spacings", FILE_SIZE_MAX };
+	struct gz_text text = { 0 };
+	enum gz_result result = gz_text_load(&text, &file, log);
+	if (result == GZ_OK)
+		result = gz_spacing_table_parse(path, text.bytes ? text.bytes : "", text.length,
+						log, out_table);
+	gz_text_free(&text);
 	return result;
 }
 

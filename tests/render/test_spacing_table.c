@@ -130,6 +130,29 @@ static void scene_finds_its_table_beside_itself(void **state)
 	assert_int_equal(gz_scene_load_table(scene, &heard.log, &foveation), GZ_OK);
 }
 
+static void file_that_cannot_be_read_is_refused(void **state)
+{
+	(void)state;
+	static char blanks[(1 << 16) + 1];
+	struct gz_spacing_table table;
+	memset(blanks, '\n', sizeof blanks);
+	captured_log_init(&heard, NULL);
+	assert_int_equal(gz_spacing_table_load(files_path("no.txt"), &heard.log, &table),
+			 GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(heard.last, "no.txt: cannot open the table of spacings: "));
+	assert_int_equal(gz_spacing_table_load(files_folder(), &heard.log, &table), GZ_ERR_IO);
+	assert_non_null(strstr(heard.last, "cannot read the table of spacings: "));
+	const char *path = files_write("long.txt", blanks, sizeof blanks);
+	assert_int_equal(gz_spacing_table_load(path, &heard.log, &table), GZ_ERR_FORMAT);
+	assert_non_null(strstr(heard.last, "longer than 64 KiB; is this a table of spacings?"));
+	path = files_write("blank.txt", blanks, sizeof blanks - 1);
+	assert_int_equal(gz_spacing_table_load(path, &heard.log, &table), GZ_ERR_FORMAT);
+	assert_non_null(strstr(heard.last, "blank.txt: no row"));
+	path = files_write("empty.txt", "", 0);
+	assert_int_equal(gz_spacing_table_load(path, &heard.log, &table), GZ_ERR_FORMAT);
+	assert_int_equal(heard.messages, 5);
+}
+
 TEST_SUITE(spacing_table)
 {
 	const struct CMUnitTest tests[] = {
@@ -139,6 +162,7 @@ TEST_SUITE(spacing_table)
 		cmocka_unit_test(binary_bytes_are_refused),
 		cmocka_unit_test(sixty_five_rows_are_one_too_many),
 		cmocka_unit_test(scene_finds_its_table_beside_itself),
+		cmocka_unit_test(file_that_cannot_be_read_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
