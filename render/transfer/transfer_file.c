@@ -1,7 +1,4 @@
 /* Transfer functions from and to text: docs/scenes.md has the grammar. */
-#include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -158,42 +155,16 @@ enum gz_result gz_transfer_parse(const char *name, const char *text, size_t size
 	return GZ_OK;
 }
 
-static enum gz_result parse_stream(FILE *file, const char *path, const struct gz_log *log,
-				   struct gz_transfer *out_transfer)
-{
-	char *text = malloc(FILE_SIZE_MAX + 1);
-	if (!text) {
-		gz_err(log, "%s: no memory to read it", path);
-		return GZ_ERR_NO_MEM;
-	}
-	enum gz_result result;
-	size_t size = fread(text, 1, FILE_SIZE_MAX + 1, file);
-	if (ferror(file)) {
-		gz_err(log, "%s: cannot read the transfer function: %s", path, strerror(errno));
-		result = GZ_ERR_IO;
-	} else if (size > FILE_SIZE_MAX) {
-		gz_err(log, "%s: longer than 1 MiB; is this a transfer function?", path);
-		result = GZ_ERR_FORMAT;
-	} else {
-		result = gz_transfer_parse(path, text, size, log, out_transfer);
-	}
-	free(text);
-	return result;
-}
-
 enum gz_result gz_transfer_load(const char *path, const struct gz_log *log,
 				struct gz_transfer *out_transfer)
 {
-	FILE *file = fopen(path, "re");
-	if (!file) {
-		int saved = errno;
-		gz_err(log,
-		       "%s: cannot open the transfer function: %s; check its name and permissions",
-		       path, strerror(saved));
-		return saved == ENOENT || saved == ENOTDIR ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
-	}
-	enum gz_result result = parse_stream(file, path, log, out_transfer);
-	fclose(file);
+	const struct gz_text_file file = { path, "transfer function", FILE_SIZE_MAX };
+	struct gz_text text = { 0 };
+	enum gz_result result = gz_text_load(&text, &file, log);
+	if (result == GZ_OK)
+		result = gz_transfer_parse(path, text.bytes ? text.bytes : "", text.length, log,
+					   out_transfer);
+	gz_text_free(&text);
 	return result;
 }
 
