@@ -160,7 +160,7 @@ struct gz_stillness gz_stillness_of(const struct gz_gaze_track *tracks, size_t c
 
 /* ---- sweeps ---- */
 
-/* From where on a saccade passes unsmoothed, degrees: this trades lag for jitter. */
+/* Amplitude from which a saccade passes unsmoothed, degrees: this trades lag for jitter. */
 static const double PASSES_DEG[] = { 0, 0.3, 0.6, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 2 };
 
 enum { PASSES = sizeof PASSES_DEG / sizeof PASSES_DEG[0] };

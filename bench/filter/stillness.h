@@ -27,7 +27,7 @@
  *  most fixations are over by then. */
 #define GZ_LAG_MOST_MS 200
 
-/** What a filter reaches. */
+/** Result of a filter. */
 struct gz_stillness {
 	size_t fixations; /**< that jitter and distance are of */
 	size_t saccades;  /**< that lag is of */

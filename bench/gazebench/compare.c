@@ -19,7 +19,7 @@ static const struct gz_option options[] = {
 	  .offset = offsetof(struct settings, px_per_deg),
 	  .min = 1,
 	  .max = 1000,
-	  /* What FLIP's authors use: a 0.7 m wide display of 3840 px seen from 0.7 m. */
+	  /* As FLIP's authors: a 0.7 m wide display of 3840 px seen from 0.7 m. */
 	  .preset = "67.0206",
 	  .help = "pixels a degree of visual angle, for FLIP; run takes the display's" },
 };

@@ -94,7 +94,7 @@ static void print_lines(const struct findings *found)
 		print_equal_lags(found);
 }
 
-/* What is no number in JSON is null. */
+/* NaN is null in JSON. */
 static json_t *filter_number(double value)
 {
 	return isfinite(value) ? json_real(value) : json_null();

@@ -123,7 +123,7 @@ static int print_list(bool as_json)
 
 /* ---- the program ---- */
 
-/* What is no command: --list, with --json behind it or not. */
+/* --list is no command; --json may follow it. */
 static bool asks_for_list(int argc, char **argv)
 {
 	return argc >= 2 && strcmp(argv[1], "--list") == 0 &&

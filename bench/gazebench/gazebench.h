@@ -7,7 +7,7 @@
 
 #include "base/command.h"
 
-/** What gazebench exits with; gazebench(1) lists the same. */
+/** Exit statuses, as in gazebench(1). */
 enum gazebench_exit {
 	GAZEBENCH_DONE = GZ_EXIT_DONE,
 	GAZEBENCH_FAILED = GZ_EXIT_FAILED,

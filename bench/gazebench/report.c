@@ -26,7 +26,7 @@ static const struct gz_option options[] = {
 	  .help = "print summary.json instead of text" },
 };
 
-/* What the page says first, for each of its sections. */
+/* The first paragraph of each section of the page. */
 static enum gz_result print_answers(const struct gz_summary *summary, const char *folder)
 {
 	struct gz_text text = { 0 };

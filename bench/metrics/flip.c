@@ -18,7 +18,7 @@
 
 /* ---- colour spaces (4.1), many pixels at a time ---- */
 
-/* What takes colours from space to space; D65 is white. */
+/* Matrices and tables between colour spaces; white is D65. */
 struct flip_colours {
 	float linear_of_srgb[256]; /* IEC 61966-2-1 */
 	float opponent[3][3]; /* linear RGB to opponent colours, but for the -16 of the first */
@@ -52,7 +52,7 @@ static float linear_of_srgb(int channel)
 	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
 }
 
-/* What takes linear RGB to shares of white's X, Y and Z. */
+/* The matrix from linear RGB to X, Y and Z relative to white. */
 static void shares_of_rgb(double out[3][3])
 {
 	static const double white[3] = { 1, 1, 1 };
@@ -354,7 +354,7 @@ static void colour_differences(float a[3][PIXELS], float b[3][PIXELS], size_t co
 	}
 }
 
-/* What of it is below the knee takes most of the range. */
+/* Differences below the knee take most of the range. */
 static inline float bend(float difference, float most)
 {
 	const float knee = KNEE_SHARE * most;
@@ -363,7 +363,7 @@ static inline float bend(float difference, float most)
 	return difference < knee ? low : high;
 }
 
-/* How far the strengths of a pair of features are apart. */
+/* Difference of the strengths of a pair of features. */
 static void feature_differences(const struct work *work, enum plane x, size_t from, size_t count,
 				float *out)
 {

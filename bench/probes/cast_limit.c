@@ -166,7 +166,7 @@ static int make_plans(struct bench *bench)
 	return 0;
 }
 
-/* What a new volume and a new transfer function cost before the next frame. */
+/* Cost of a new volume and of a new transfer function before the next frame. */
 static int measure_changes(struct bench *bench, int rounds)
 {
 	struct timing volume = { 0 }, transfer = { 0 };

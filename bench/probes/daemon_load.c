@@ -27,7 +27,7 @@ static const double LATENCY_TARGET_MS = 0.25;
 static const long MEMORY_TARGET_KIB = 20 * 1024;
 static const double START_TARGET_MS = 100;
 
-/* How often a reader of latest looks, as a renderer does at each frame. */
+/* How often a reader of latest polls, like a renderer at each frame. */
 enum { FRAMES_HZ = 60 };
 
 enum { READERS_MAX = 256, TASKS_MAX = 32 };

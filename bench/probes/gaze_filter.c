@@ -20,7 +20,7 @@ enum { SKIPPED = 77, TRACKS = GZ_LABELLED_FILES * GZ_LABELLED_CODERS };
 /* A step between samples of these recordings, ms: 500 Hz. */
 static const double SAMPLE_MS = 2;
 
-/** Whose a recording is. */
+/** Stimulus and coder of a recording. */
 struct origin {
 	enum gz_labelled_stimulus stimulus;
 	int coder;
@@ -184,7 +184,7 @@ static bool read_track(const char *data, size_t file, int coder, struct gz_gaze_
 	return taken;
 }
 
-/* Those of one stimulus and coder behind each other. */
+/* Grouped by stimulus, then by coder. */
 static bool read_all_tracks(const char *data, struct tracks *tracks)
 {
 	for (int stimulus = 0; stimulus < GZ_LABELLED_STIMULI; stimulus++)

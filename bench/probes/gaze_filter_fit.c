@@ -1,5 +1,5 @@
 /*
- * How the six settings that tell fixation from pursuit were chosen, and what they reach on
+ * How the six settings that distinguish fixation from pursuit were chosen, and their agreement on
  * recordings that were kept out. Random settings are tried on all recordings; each is scored with
  * its neighbours' scores, so that a plateau wins and not a peak. Then a sixth of the recordings of
  * each kind is kept out at a time, the settings are chosen on the rest, and what they say of those
@@ -201,7 +201,7 @@ static void print_choice(const struct fit *fit, const struct trial *trial, const
 	putchar('\n');
 }
 
-/** What the settings chosen without each part say of it, put together. */
+/** Agreement on each part of the settings chosen without it, joined. */
 static void cross_validate(struct fit *fit)
 {
 	static struct trial held_out;

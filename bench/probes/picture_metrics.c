@@ -1,5 +1,5 @@
 /*
- * What the metrics of bench/metrics/ take: two pictures of noise, of which no pixel is alike.
+ * Times of the metrics of bench/metrics/ on two pictures of noise, which differ in every pixel.
  *
  *   picture_metrics [WIDTHxHEIGHT] [THREADS] [ROUNDS]
  */
@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "bench/metrics/metrics.h"
 
-/* As FLIP's authors look at pictures: bench/gazebench/compare.c. */
+/* The viewing conditions of FLIP's authors: bench/gazebench/compare.c. */
 #define PX_PER_DEG 67.0206
 
 enum { ROUNDS_MAX = 101 };

@@ -47,7 +47,7 @@ static bool shown(const struct gz_stillness *still, double most_ms)
 	return still->lag_ms <= most_ms && still->jitter <= MOST_JITTER;
 }
 
-/* Where the line to a point that is not shown leaves the picture. */
+/* The place where the line to a hidden point leaves the picture. */
 static void cut(const struct gz_plot_point *from, double most_ms, struct gz_plot_point *to)
 {
 	double part = 1;
@@ -59,7 +59,7 @@ static void cut(const struct gz_plot_point *from, double most_ms, struct gz_plot
 	to->y = from->y + part * (to->y - from->y);
 }
 
-/* From the least lag on to where it is cut. */
+/* From the least lag to the cut. */
 static bool add_one_euro(const struct gz_sweep *sweep, double most_ms, struct gz_plot_curve *curve)
 {
 	name_curve(curve, "1 € filter", "acuity");

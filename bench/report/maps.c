@@ -122,7 +122,7 @@ enum gz_result gz_report_picture(const struct gz_study *study, size_t scene, con
 	return result == GZ_ERR_NO_MEM ? result : GZ_ERR_NOT_FOUND;
 }
 
-/* What all maps of a group share. */
+/* Shared by all maps of a group. */
 struct background {
 	bool has_picture;
 	int width, height;             /**< of the coordinates, px */
@@ -178,7 +178,7 @@ void gz_map_chart_name(const struct gz_summary *summary, const struct gz_group *
 	gz_chart_name(summary, kind, group, out_name);
 }
 
-/* What a map shows. */
+/* The content of a map. */
 struct shown {
 	bool of_error;
 	enum gz_error_reference reference;

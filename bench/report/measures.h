@@ -25,14 +25,14 @@ enum gz_error_measure {
 	GZ_ERROR_MEASURES,
 };
 
-/** What a picture was compared with. */
+/** References of errors. */
 enum gz_error_reference {
 	GZ_AGAINST_CONVERGED,
 	GZ_AGAINST_STANDARD,
 	GZ_ERROR_REFERENCES,
 };
 
-/** What a cost is made of. */
+/** How a cost is computed. */
 enum gz_error_kind {
 	GZ_ERROR_FLIP, /**< cost = FLIP */
 	GZ_ERROR_SSIM, /**< cost = 1 - SSIM */

@@ -95,7 +95,7 @@ static bool fit_axes(struct gz_plot *plot)
 	return true;
 }
 
-/* Where a value lies between the ends of its axis, 0 to 1. */
+/* Position of a value on its axis, 0 to 1. */
 static double share(const struct gz_plot_axis *axis, double value)
 {
 	if (axis->logarithmic)

@@ -73,7 +73,7 @@ struct gz_box {
 	double left, top, right, bottom;
 };
 
-/** What has been placed on a canvas so far. Zero-initialised but for @p area is empty. */
+/** Labels placed on a canvas so far. Zero-initialised but for @p area is empty. */
 struct gz_label_field {
 	struct gz_box area; /**< labels stay inside */
 	struct gz_box *taken;

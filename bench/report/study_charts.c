@@ -41,7 +41,7 @@ static void set_error_axis(struct gz_plot *plot, enum gz_error_measure measure,
 		 gz_error_reference_names[reference], best);
 }
 
-/* Where an infinite value is drawn: a little beyond the best finite one. */
+/* The position of an infinite value: a little beyond the best finite one. */
 static double beyond_finite(const struct gz_group *group, enum gz_error_reference reference,
 			    enum gz_error_measure measure)
 {
@@ -208,7 +208,7 @@ static void add_box_row(const struct gz_study *study, const struct gz_series *se
 		    ms->p75, ms->p99, (unsigned)gz_method_look(variant->method).colour);
 }
 
-/* As many as the longest name has, or the canvas has room for. */
+/* Length of the longest name, at most the room on the canvas. */
 static int characters_for(const struct gz_study *study, const struct gz_group *group,
 			  enum gz_canvas_kind kind)
 {

@@ -299,7 +299,7 @@ static struct place least_within(const struct place *places, size_t count, doubl
 	return best;
 }
 
-/* What of a curve is limited: its cost, or its time. */
+/* A limit on the cost or on the time of a curve. */
 struct curve_limit {
 	enum gz_error_reference reference;
 	enum gz_error_measure measure;

@@ -78,7 +78,7 @@ struct gz_group {
 	struct gz_curve *curves;
 	size_t curve_count;
 	double bound_share; /**< mean over measured points: of the pixels' rays; NaN without */
-	/** What the bound's rays would take if each cost what a ray of standard costs. */
+	/** Time of the bound's rays at the cost of standard's rays. */
 	double bound_ms;
 	/** PSNR of the converged picture against one of half its step, at the worst point: how far
 	 *  errors against it can be trusted; NaN where it was not measured. */

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "bench/report/summary.h"
 
-/** What the file says it is, and the version that this program writes. */
+/** Format name and version in the file. */
 #define GZ_SUMMARY_FORMAT  "gazecast summary"
 #define GZ_SUMMARY_VERSION 1
 

@@ -65,7 +65,7 @@ void gz_template_number(double value, const char *unit, char out_text[GZ_TEMPLAT
 
 /* ---- values ---- */
 
-/* Where a template is filled: the objects around, the innermost last. */
+/* State while a template is filled: the enclosing objects, the innermost last. */
 struct filling {
 	const char *page; /* whole, for fragments */
 	const json_t *scopes[DEPTH_MAX];
@@ -184,7 +184,7 @@ static bool next_tag(const char *at, const char **out_begin, const char **out_en
 	return true;
 }
 
-/* Where the section that begins before @p at is closed: the tag's begin, and the text behind it. */
+/* The closing tag of the section that begins before @p at: its begin, and the text after it. */
 static const char *find_close(const char *at, const char *name, const char **out_behind)
 {
 	const char *begin, *end;

@@ -78,7 +78,7 @@ struct gz_stability_pixel {
 	bool known;
 	int x, y; /**< of the picture */
 	uint8_t got[3], wanted[3];
-	/** What lies around it, at most GZ_STABILITY_CROP_PX a side; only of one that fails. */
+	/** Its surroundings, at most GZ_STABILITY_CROP_PX a side; only of a failure. */
 	struct gz_image got_crop, wanted_crop;
 	int crop_x, crop_y; /**< where the crops begin in the picture */
 };
@@ -127,7 +127,7 @@ enum gz_result gz_stability_create(const struct gz_stability_settings *settings,
 enum gz_result gz_stability_use_backend(struct gz_stability_bench *bench, const char *backend);
 
 /**
- * From now on test this method.
+ * Test this method from now on.
  *
  * @param foveation        within its table's ranges; copied. The method table without a table gets
  *                         a small one

@@ -1,7 +1,7 @@
 /**
  * @file
- * What the rows share: frames by the backend under test, the pictures that are wanted, and how an
- * outcome is filled. Not for users of bench/stability/.
+ * Shared by the rows: frames by the backend under test, reference pictures, and filling an
+ * outcome. Not for users of bench/stability/.
  */
 #ifndef GZ_BENCH_STABILITY_STABILITY_BENCH_H
 #define GZ_BENCH_STABILITY_STABILITY_BENCH_H

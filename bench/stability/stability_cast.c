@@ -176,7 +176,7 @@ static size_t count_seams(const struct hulls *hulls, const struct gz_image *got,
 	return count;
 }
 
-/* What comparing a frame comes to. */
+/* Result of comparing a frame. */
 struct compared {
 	const uint8_t *steps; /* of each pixel's ray */
 	struct differences differences;

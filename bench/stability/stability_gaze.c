@@ -71,7 +71,7 @@ static enum gz_result take_equal(const struct gz_image *got, const struct gz_ima
 				 fovea ? "the fovea, against standard" : "against the centre");
 }
 
-/* What is needed for each gaze in turn. */
+/* State for each gaze in turn. */
 struct pictures {
 	struct gz_image full, lost, image;
 	uint8_t *fovea;
@@ -183,7 +183,7 @@ enum gz_result gz_stability_sizes(struct gz_stability_bench *bench,
 
 /* ---- frames that have nothing in common ---- */
 
-/* What was allocated by then stays: chosen, all methods and sizes have come by many times. */
+/* Frames until memory has settled. Chosen: all methods and sizes have been used many times. */
 enum { SETTLED = 500 };
 
 static long resident_kib(void)

@@ -21,7 +21,7 @@ struct motion {
 	uint8_t *fovea;
 };
 
-/* What changed from one frame to the next. */
+/* Change from one frame to the next. */
 static enum gz_result take_change(const struct motion *motion, int newest,
 				  struct gz_stability_outcome *outcome)
 {

@@ -11,7 +11,7 @@
  * it where half of that is missing. Chosen: plainly seen on any display. */
 #define SHOWS_LEVELS 60
 
-/* How far a pixel is from the background, grey levels. */
+/* Difference of a pixel from the background, grey levels. */
 static double shown_at(const struct gz_image *image, size_t pixel, const double background[3])
 {
 	double most = 0;
@@ -20,7 +20,7 @@ static double shown_at(const struct gz_image *image, size_t pixel, const double 
 	return most;
 }
 
-/* What is looked through for lost pixels. */
+/* Pictures in which lost pixels are counted. */
 struct search {
 	const struct gz_stability_scene *scene;
 	struct gz_stability_view view;

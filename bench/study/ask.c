@@ -57,7 +57,7 @@ static double bound_rays(const struct gz_display *display, struct gz_point gaze,
 	return sum / (columns * rows);
 }
 
-/* What the threads share: one part a value. */
+/* Shared by the threads: one part a value. */
 struct job {
 	struct gz_study *study;
 	size_t scene, size;
@@ -228,7 +228,7 @@ static enum gz_result list_backends(struct asking *asking)
 
 /* ---- scenes ---- */
 
-/* How the picture is seen: command line, then scene, then recording, then the default. */
+/* The display: from the command line, the scene, the recording, or the default. */
 static enum gz_result find_display(const struct asking *asking, struct gz_study_scene *scene)
 {
 	const struct gz_study_request *request = asking->request;

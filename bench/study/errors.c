@@ -14,7 +14,7 @@
 
 #define GZ_LOG_MODULE "reference"
 
-/* What the threads share when weights are made: part 0 is the fovea, part 1 the eye's acuity. */
+/* Shared by the threads that make weights: part 0 is the fovea, part 1 the eye's acuity. */
 struct weighing {
 	struct gz_error_weights *weights;
 	const struct gz_display *display;
@@ -192,7 +192,7 @@ struct gz_ray_params gz_reference_rays(const struct gz_ray_params *rays, double 
 	return converged;
 }
 
-/* Of all that the picture depends on. */
+/* Hash of all that the picture depends on. */
 static enum gz_result name_of(const struct gz_reference_request *request,
 			      const struct gz_ray_params *rays, char out_hex[GZ_STUDY_HASH_SIZE])
 {

@@ -1,6 +1,6 @@
 /**
  * @file
- * How far the picture of a variant is from a reference, as studies keep it.
+ * Errors of a variant's picture against a reference.
  *
  * The reference is the converged picture: every pixel, a step of 1/8 voxel length, no ray ended
  * early, no coarser levels, no jitter. It is made a second time with half the step; how far both

@@ -12,7 +12,7 @@
 
 #define GZ_LOG_MODULE "path"
 
-/* Of one seed: places of the gaze; gz_study_camera() takes another. */
+/* Random stream of gaze points; gz_study_camera() uses others. */
 #define GAZE_STREAM 1
 
 /* Cells along an edge of the picture: Bauer 2018, 3.2.8. */
@@ -65,7 +65,7 @@ static enum gz_result add_output(struct player *player, const struct gz_pipeline
 	enum gz_result result = GZ_OK;
 	if (player->samples) {
 		const enum gz_event event = output->gaze.event;
-		/* In a blink or when it is lost, the point is where it was last. */
+		/* In a blink or while the gaze is lost, the point stays at its last place. */
 		const bool there = event != GZ_EVENT_BLINK && event != GZ_EVENT_LOST &&
 				   output->rejection == GZ_REJECT_NONE;
 		return there ? append_path_point(player->path, output->gaze.point) : GZ_OK;

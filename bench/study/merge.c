@@ -130,7 +130,7 @@ static enum gz_result join(const struct joining *joining, struct gz_study *out_s
 		study->shard = 0;
 		study->shard_count = 1;
 		*out_study = *study;
-		/* What has moved is not freed with the shards. */
+		/* The lists have moved and are not freed with the shards. */
 		*first = (struct gz_study) { .rows = own };
 	}
 	free(study);

@@ -18,7 +18,7 @@
 
 /* ---- measuring a unit ---- */
 
-/* What a picture is of, but for its gaze. */
+/* What a picture shows, except for its gaze. */
 struct shown {
 	size_t scene, size, backend;
 	uint32_t camera;
@@ -400,7 +400,7 @@ static size_t unit_number(const struct run *run, size_t i)
 	return (size_t)run->study->shard + i * (size_t)run->study->shard_count;
 }
 
-/* How much work the first so many units of the shard are: their pixels. */
+/* Work of the first units of the shard, measured by their pixels. */
 static double work_of(const struct run *run, size_t count)
 {
 	double work = 0;

@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "bench/study/ask.h"
 
-/** How far a run is. */
+/** Progress of a run. */
 struct gz_study_progress {
 	size_t units;     /**< of the shard */
 	size_t done;      /**< of them */

@@ -73,7 +73,7 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 enum gz_result gz_stage_enter(struct gz_stage *stage, const struct gz_study *study, size_t scene,
 			      char (*out_descriptions)[GZ_STUDY_TEXT_SIZE]);
 
-/** Of a volume and a transfer function: where they are the same, so are pictures of them. */
+/** Hash of a volume and a transfer function; equal hashes give equal pictures. */
 enum gz_result gz_stage_data_hash(const struct gz_stage *stage, const struct gz_transfer *transfer,
 				  char out_hex[GZ_STUDY_HASH_SIZE]);
 

@@ -11,7 +11,7 @@
 #include "bench/study/hash.h"
 #include "sim/random.h"
 
-/* Of one seed: the n-th camera takes the stream this and n; places of the gaze take 1. */
+/* Random streams of one seed: camera n uses this plus n; gaze points use 1. */
 #define CAMERA_STREAM (UINT64_C(1) << 32)
 
 const char *const gz_study_accuracy_names[] = { "none", "standard", "all", NULL };

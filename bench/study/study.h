@@ -43,7 +43,7 @@ struct gz_study_scene {
 	bool display_known;        /**< else the default stands in: see gz_study_display() */
 };
 
-/** Against what errors are measured. */
+/** References of the errors. */
 enum gz_study_accuracy {
 	GZ_STUDY_ACCURACY_NONE,
 	GZ_STUDY_ACCURACY_STANDARD, /**< against standard; the converged picture is left out */
@@ -76,7 +76,7 @@ struct gz_study_machine {
 	char compiler[GZ_STUDY_TEXT_SIZE]; /**< with the build type */
 	char commit[GZ_STUDY_TEXT_SIZE];   /**< of the program; "unknown" outside a repository */
 	char program[GZ_STUDY_TEXT_SIZE];  /**< "gazebench 0.1.0" */
-	/** Of each backend: what gz_picture_maker_describe() says, GPU and driver included. */
+	/** Description of each backend by gz_picture_maker_describe(), GPU and driver included. */
 	char backends[GZ_STUDY_LIST_MAX][GZ_STUDY_TEXT_SIZE];
 };
 

@@ -376,7 +376,7 @@ static enum gz_result open_rows(struct gz_study_writer *writer)
 	return GZ_ERR_BUSY;
 }
 
-/* What is written counts once all of it is on the disk; else the file is as it was. */
+/* The text is complete on the disk on success; otherwise the file is unchanged. */
 static enum gz_result append_to_rows(struct gz_study_writer *writer, const char *text, size_t size)
 {
 	int error = 0;

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "bench/study/study.h"
 
-/** What the file says it is, and which version of that this program reads and writes. */
+/** Format name in the file, and the version that this program reads and writes. */
 #define GZ_STUDY_FORMAT  "gazecast study"
 #define GZ_STUDY_VERSION 1
 
