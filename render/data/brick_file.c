@@ -41,7 +41,7 @@ void gz_brick_layout_make(const int dims[3], const double spacing[3],
 			(size_t)level.bricks[0] * (size_t)level.bricks[1] * (size_t)level.bricks[2];
 		layout.levels[layout.level_count++] = level;
 		gz_halve_axes(level.dims, apart, halve);
-		/* Spacings beyond all reason could take more halvings than there is room for. */
+		/* Extreme spacings could need more levels than there is room for. */
 		if (one_brick(&level) || layout.level_count == GZ_BRICK_LEVELS_MAX)
 			break;
 		for (int axis = 0; axis < 3; axis++) {
@@ -78,7 +78,7 @@ void gz_brick_place(const struct gz_brick_layout *layout, size_t number, int *ou
 	*out_level = level;
 }
 
-/* How often a level's axis is halved to make the next one. */
+/* How many times an axis of a level is halved for the next coarser level. */
 static int halvings(const struct gz_brick_layout *layout, int level, int axis)
 {
 	return layout->levels[level + 1].halvings[axis] - layout->levels[level].halvings[axis];
@@ -174,7 +174,7 @@ static float get_float(const uint8_t *at)
 	return value;
 }
 
-/* Where the header has what. */
+/* Offsets of the header's fields, bytes. */
 enum {
 	AT_VERSION = 8,
 	AT_TYPE = 12,
@@ -235,7 +235,7 @@ static bool sizes_valid(const struct gz_brick_header *header)
 	return gz_volume_edge_lengths(header->dims, header->spacing) <= GZ_VOLUME_EDGE_LENGTHS_MAX;
 }
 
-/* The values that voxels of a type can have; and scaled they are finite. */
+/* Whether the range is possible for the type of voxel, and finite as data values. */
 static bool values_valid(const struct gz_brick_header *header)
 {
 	static const double greatest[GZ_VOXEL_TYPE_COUNT] = { 255, 65535, 3.5e38 };
@@ -262,15 +262,15 @@ const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
 		.cells_crc = get32(bytes + AT_CELLS_CRC),
 	};
 	if (memcmp(bytes, GZ_BRICK_MAGIC, sizeof GZ_BRICK_MAGIC - 1) != 0)
-		return "no file of bricks";
+		return "not a file of bricks";
 	if (get32(bytes + AT_VERSION) != GZ_BRICK_VERSION)
-		return "a version of the format that is not read; write it anew";
+		return "a version of the format that is not read; write it again";
 	if (get32(bytes + AT_CRC) != header_crc(bytes))
-		return "damaged header; write it anew";
+		return "damaged header; write it again";
 	if (get32(bytes + AT_TYPE) >= GZ_VOXEL_TYPE_COUNT ||
 	    get32(bytes + AT_EDGE) != GZ_BRICK_EDGE || get32(bytes + AT_ORIENTED) > 1 ||
 	    get32(bytes + AT_ZERO) != 0 || get32(bytes + AT_ZERO_TOO) != 0)
-		return "a type, an edge or a flag in its header that does not exist";
+		return "an unknown type, edge or flag in its header";
 	header.type = (enum gz_voxel_type)get32(bytes + AT_TYPE);
 	for (size_t axis = 0; axis < 3; axis++) {
 		const uint32_t dim = get32(bytes + AT_DIMS + 4 * axis);
@@ -331,7 +331,7 @@ static enum gz_result refuse_bricks(const struct gz_brick_file *file, const char
 	return GZ_ERR_FORMAT;
 }
 
-/* GZ_ERR_IO where fewer bytes are there; errno is 0 then. */
+/* GZ_ERR_IO also if the file is too short; errno is 0 then. */
 static enum gz_result read_at(int fd, void *bytes, size_t size, uint64_t offset)
 {
 	char *to = bytes;
@@ -395,12 +395,13 @@ static enum gz_result read_brick_header(struct gz_brick_file *file, uint64_t siz
 	const struct gz_brick_header *header = &file->header;
 	gz_brick_layout_make(header->dims, header->spacing, &file->layout);
 	if (header->brick_count != file->layout.brick_count)
-		return refuse_bricks(file, "as many bricks as its dims do not make; write it anew");
+		return refuse_bricks(file,
+				     "its number of bricks does not fit its dims; write it again");
 	const uint64_t least =
 		gz_brick_data_offset(header->brick_count, finest_count(file), header->type);
 	if (header->file_size < least)
-		return refuse_bricks(file, "a size in its header that cannot hold its index");
-	/* Before memory is taken for the index. */
+		return refuse_bricks(file, "the size in its header is too small for its index");
+	/* Checked before memory is allocated for the index. */
 	return size < header->file_size ? refuse_truncated_bricks(file, size, header->file_size)
 					: GZ_OK;
 }
@@ -413,12 +414,12 @@ static const char *check_entry(const struct gz_brick_file *file, const struct gz
 	if (!(entry->least <= entry->greatest) ||
 	    !((double)entry->least >= header->stored_min - 0.5) ||
 	    !((double)entry->greatest <= header->stored_max + 0.5))
-		return "a brick with a range of values that is none";
+		return "a brick has an invalid range of values";
 	if (entry->offset == 0)
-		return entry->least == entry->greatest ? NULL : "a brick without voxels";
+		return entry->least == entry->greatest ? NULL : "a brick has no voxels";
 	if (entry->offset < data || entry->offset % GZ_BRICK_ALIGN != 0 ||
 	    entry->offset > header->file_size || header->file_size - entry->offset < bytes)
-		return "a brick outside of the file";
+		return "a brick is outside the file";
 	return NULL;
 }
 
@@ -465,7 +466,7 @@ static enum gz_result check_cells(const struct gz_brick_file *file)
 		gz_brick_file_cell(file, i / GZ_BRICK_CELLS, (int)(i % GZ_BRICK_CELLS), &least,
 				   &greatest);
 		if (!(least <= greatest) || !isfinite(least) || !isfinite(greatest))
-			return refuse_bricks(file, "a cell with a range of values that is none");
+			return refuse_bricks(file, "a cell has an invalid range of values");
 	}
 	return GZ_OK;
 }
@@ -532,7 +533,7 @@ static void fill_brick(const struct gz_brick_file *file, float value, void *out_
 			((float *)out_voxels)[i] = value;
 }
 
-/* Kernels rely on what volume.h promises of floats. */
+/* Kernels rely on finite floats, see volume.h. */
 static bool brick_all_finite(const float *voxels)
 {
 	bool finite = true;

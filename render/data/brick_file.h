@@ -23,18 +23,18 @@
 #include "render/data/volume.h"
 
 #define GZ_BRICK_EDGE        32 /**< voxels; a power of two */
-#define GZ_BRICK_STORED_EDGE 34 /**< with the voxels of its neighbours */
+#define GZ_BRICK_STORED_EDGE 34 /**< including the voxels of its neighbours */
 #define GZ_BRICK_VOXELS      (GZ_BRICK_STORED_EDGE * GZ_BRICK_STORED_EDGE * GZ_BRICK_STORED_EDGE)
-#define GZ_BRICK_LEVELS_MAX  16 /**< 15 halvings make one of GZ_VOLUME_DIM_MAX */
+#define GZ_BRICK_LEVELS_MAX  16 /**< 15 halvings of GZ_VOLUME_DIM_MAX leave one voxel */
 
-#define GZ_BRICK_CELL_EDGE 8  /**< voxels of the cells whose ranges stand in the file */
+#define GZ_BRICK_CELL_EDGE 8  /**< voxels; the file holds the value range of each cell */
 #define GZ_BRICK_CELLS     64 /**< in a brick: four along each axis, x fastest */
 
 /** One level. */
 struct gz_brick_level {
 	int dims[3];     /**< voxels */
 	int bricks[3];   /**< along each axis */
-	int halvings[3]; /**< of each axis since level 0 */
+	int halvings[3]; /**< number of halvings of each axis since level 0 */
 	size_t first;    /**< the number of its first brick; x varies fastest, then y, then z */
 };
 
@@ -45,15 +45,15 @@ struct gz_brick_layout {
 	size_t brick_count; /**< of all levels */
 };
 
-/** Cut a volume: level 0 is the volume, each further one halves the axes that gz_halve_axes()
- *  names. Dims and spacing are those of a valid volume. */
+/** Divide a volume into levels and bricks: level 0 is the volume, each further level halves the
+ * axes that gz_halve_axes() chooses. Dims and spacing must be those of a valid volume. */
 void gz_brick_layout_make(const int dims[3], const double spacing[3],
 			  struct gz_brick_layout *out_layout);
 
 /** The number of a brick. */
 size_t gz_brick_number(const struct gz_brick_layout *layout, int level, const int brick[3]);
 
-/** Level and place of a brick, by its number. */
+/** Level and place of the brick with number @p number. */
 void gz_brick_place(const struct gz_brick_layout *layout, size_t number, int *out_level,
 		    int out_brick[3]);
 
@@ -61,19 +61,20 @@ void gz_brick_place(const struct gz_brick_layout *layout, size_t number, int *ou
 void gz_brick_parent(const struct gz_brick_layout *layout, int level, const int brick[3],
 		     int out_parent[3]);
 
-/** The bricks of the next finer level under @p brick of @p level, which is not 0: those from
- * @p out_first up to but without @p out_end. */
+/** The bricks of the next finer level under @p brick of @p level, which is not 0: [@p out_first,
+ *  @p out_end) along each axis. */
 void gz_brick_children(const struct gz_brick_layout *layout, int level, const int brick[3],
 		       int out_first[3], int out_end[3]);
 
-/** How a place in the voxel coordinates of a level leads to its brick, and into coarser ones over
- *  it: brick number first + the sum of stride times the brick along each axis. */
+/** How to find the brick at a place in the voxel coordinates of a level, and the coarser bricks
+ * over it. The brick's number is first + the sum of stride times the brick's place along each axis.
+ */
 struct gz_brick_lookup {
 	size_t first;
 	int32_t stride[3];
-	float last[3]; /**< greatest number of a brick */
+	float last[3]; /**< greatest place of a brick along each axis */
 	/** Voxels of another level along an edge of one of this level, 1 or less for coarser ones;
-	 *  0 for levels that there are not. */
+	 *  0 for levels that do not exist. */
 	float scale[3][GZ_BRICK_LEVELS_MAX];
 };
 
@@ -81,18 +82,18 @@ struct gz_brick_lookup {
 void gz_brick_lookup_make(const struct gz_brick_layout *layout, int level,
 			  struct gz_brick_lookup *out_lookup);
 
-/** What the index of a file says of one brick. */
+/** The entry of one brick in the index of a file. */
 struct gz_brick_entry {
-	uint64_t offset;       /**< of its voxels in the file; 0: every voxel is least */
+	uint64_t offset;       /**< of its voxels in the file, bytes; 0: every voxel equals least */
 	uint32_t crc;          /**< of its voxels' bytes, CRC-32 as in zlib */
-	float least, greatest; /**< stored values, over its voxels and all finer bricks under it */
+	float least, greatest; /**< stored values of its voxels and of all finer bricks under it */
 };
 
 #define GZ_BRICK_MAGIC        "GZBRICK\n"
 #define GZ_BRICK_VERSION      1
 #define GZ_BRICK_HEADER_BYTES 128
 #define GZ_BRICK_ENTRY_BYTES  24
-#define GZ_BRICK_ALIGN        4096 /**< bricks begin at multiples of it: a page */
+#define GZ_BRICK_ALIGN        4096 /**< bricks begin at multiples of this: a page */
 
 /** The header of a file of bricks. */
 struct gz_brick_header {
@@ -106,36 +107,37 @@ struct gz_brick_header {
 	uint32_t index_crc, cells_crc;
 };
 
-/** Write the header's bytes. */
+/** Encode a header. */
 void gz_brick_header_encode(const struct gz_brick_header *header,
 			    uint8_t out_bytes[GZ_BRICK_HEADER_BYTES]);
 
 /**
- * Read a header, and check every field that can be checked alone.
+ * Decode a header and check every field that can be checked without the rest of the file.
  *
  * @param[out] out_header  written only on success
- * @return NULL, or what is wrong with it: static text
+ * @return NULL, or a static text that tells what is wrong
  */
 const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
 				   struct gz_brick_header *out_header);
 
-/** Write an entry's bytes. */
+/** Encode an entry. */
 void gz_brick_entry_encode(const struct gz_brick_entry *entry,
 			   uint8_t out_bytes[GZ_BRICK_ENTRY_BYTES]);
 
-/** Read an entry; nothing is checked. */
+/** Decode an entry; nothing is checked. */
 struct gz_brick_entry gz_brick_entry_decode(const uint8_t bytes[GZ_BRICK_ENTRY_BYTES]);
 
-/** Where the cells' ranges begin: behind the index. */
+/** Where the ranges of the cells begin in the file, bytes: after the index. */
 uint64_t gz_brick_cells_offset(uint64_t brick_count);
 
-/** Where the first brick may begin: behind the cells, aligned. @p finest: bricks of level 0. */
+/** Where the first brick may begin in the file, bytes: after the cells, aligned. @p finest is the
+ *  number of bricks of level 0. */
 uint64_t gz_brick_data_offset(uint64_t brick_count, uint64_t finest, enum gz_voxel_type type);
 
-/** Swap the bytes of @p count voxels where this machine's order is not the file's. */
+/** Swap the bytes of @p count voxels if this machine's byte order is not little-endian. */
 void gz_brick_host_order(enum gz_voxel_type type, size_t count, void *voxels);
 
-/** An open file. Read-only once open: bricks may be read by several threads at once. */
+/** An open file of bricks. Read-only: several threads may read bricks at once. */
 struct gz_brick_file {
 	char path[GZ_PATH_SIZE];
 	const struct gz_log *log;
@@ -143,50 +145,50 @@ struct gz_brick_file {
 	struct gz_brick_header header;
 	struct gz_brick_layout layout;
 	struct gz_brick_entry *entries; /**< by a brick's number */
-	void *cells; /**< voxels: least and greatest of each cell of each brick of level 0 */
+	void *cells; /**< least and greatest voxel of each cell of each brick of level 0 */
 };
 
 /**
- * Open a file and check all that it says of itself: every offset lies within it, every range is
- * one.
+ * Open a file and check its header, index and cells: every offset is within the file, every range
+ * is valid.
  *
  * @param log            borrowed until it is closed
  * @param[out] out_file  owned by the caller: gz_brick_file_close()
  * @retval GZ_ERR_NOT_FOUND  no such file; logged
  * @retval GZ_ERR_IO         it cannot be read; logged
- * @retval GZ_ERR_FORMAT     it is none, truncated or damaged; logged
- * @retval GZ_ERR_NO_MEM     no room for the index, which is a part of the file; logged
+ * @retval GZ_ERR_FORMAT     not a file of bricks, truncated or damaged; logged
+ * @retval GZ_ERR_NO_MEM     no memory for the index; logged
  */
 enum gz_result gz_brick_file_open(const char *path, const struct gz_log *log,
 				  struct gz_brick_file **out_file);
 
 /**
- * Read the voxels of a brick, GZ_BRICK_VOXELS of them, in this machine's byte order.
+ * Read the GZ_BRICK_VOXELS voxels of a brick, in this machine's byte order.
  *
  * @retval GZ_ERR_IO      it cannot be read, or the file has become shorter
  * @retval GZ_ERR_FORMAT  its checksum is wrong, or a voxel is not finite
  *
- * Nothing is logged: gz_brick_file_complain() does. Threads: any, at the same time.
+ * Nothing is logged; gz_brick_file_complain() logs. Threads: any number at once.
  */
 enum gz_result gz_brick_file_read(const struct gz_brick_file *file, size_t brick, void *out_voxels);
 
-/** The range of a cell of a brick of level 0; cells count x fastest. */
+/** The range of cell number @p cell (x fastest) of a brick of level 0, stored values. */
 void gz_brick_file_cell(const struct gz_brick_file *file, size_t brick, int cell, float *out_least,
 			float *out_greatest);
 
-/** Log why a brick could not be read, and what is shown instead. */
+/** Log why a brick could not be read, and that a coarser level is shown instead. */
 void gz_brick_file_complain(const struct gz_brick_file *file, size_t brick, enum gz_result why);
 
-/** Close, free, set to NULL. Accepts a pointer to NULL. */
+/** Close the file, free everything and set to NULL. Accepts a pointer to NULL. */
 void gz_brick_file_close(struct gz_brick_file **file);
 
 /**
- * Copy the voxels of a brick with those of its neighbours on every side; beyond the volume the
- * nearest voxel is repeated.
+ * Copy the voxels of a brick, with one voxel of its neighbours on every side, out of a volume in
+ * memory. Outside the volume the nearest voxel is repeated.
  *
  * @param volume  the level, in memory
- * @param brick   its place in the level, within it
- * @param[out] out_voxels  GZ_BRICK_VOXELS of them, x fastest
+ * @param brick   its place in the level; must be within it
+ * @param[out] out_voxels  GZ_BRICK_VOXELS voxels, x fastest
  */
 void gz_brick_cut(const struct gz_volume *volume, const int brick[3], void *out_voxels);
 

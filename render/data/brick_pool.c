@@ -9,7 +9,7 @@
 
 #define GZ_LOG_MODULE "volume"
 
-/* Share of the rooms that coarse levels may keep for good. */
+/* Coarse levels may keep one in so many rooms for good. */
 #define PINNED_SHARE 8
 
 enum gz_result gz_brick_rooms_init(struct gz_brick_rooms *rooms,
@@ -44,8 +44,8 @@ int gz_brick_rooms_pinned_level(const struct gz_brick_layout *layout, size_t cou
 	return level;
 }
 
-/* A brick's entry is its own where it is there, else that of the brick over it; and so on for all
- * bricks under it. */
+/* A brick's entry is the brick itself if it is there, otherwise the entry of the brick over it.
+ * Updates all bricks under it too. */
 static void update_table(struct gz_brick_rooms *rooms, int level, const int brick[3])
 {
 	const struct gz_brick_layout *layout = rooms->layout;
@@ -84,8 +84,8 @@ void gz_brick_rooms_let_in(struct gz_brick_rooms *rooms, int32_t room)
 {
 	struct gz_brick_room *at = &rooms->room[room];
 	at->there = true;
-	/* What was taken in this turn weighs more than all that is still to come: it makes room for
-	 * none of it. What was taken before may. */
+	/* A brick taken in this turn weighs more than those that follow and makes room for none of
+	 * them. A brick taken in an earlier turn may. */
 	if (at->taken_in != rooms->turn)
 		rooms->victims_known = false;
 	update_brick(rooms, at->brick);
@@ -101,7 +101,7 @@ void gz_brick_rooms_give_up(struct gz_brick_rooms *rooms, int32_t room)
 	rooms->victims_known = false;
 }
 
-/* How much a room's brick is worth in this turn: wanted ones by weight, others less, by age. */
+/* Value of a room in this turn: the weight of a wanted brick; less for others, by age. */
 static double room_worth(const struct gz_brick_rooms *rooms, const struct gz_brick_room *room)
 {
 	if (!room->taken)
@@ -130,7 +130,7 @@ static void find_victims(struct gz_brick_rooms *rooms)
 	rooms->victims_known = true;
 }
 
-/* Whether there is an empty room, or the next victim is worth less than @p weight. */
+/* An empty room, or one whose brick is worth less than @p weight. */
 bool gz_brick_rooms_has(struct gz_brick_rooms *rooms, float weight)
 {
 	if (rooms->free_at < rooms->count)
@@ -205,15 +205,15 @@ void gz_brick_rooms_free(struct gz_brick_rooms *rooms)
 	*rooms = (struct gz_brick_rooms) { 0 };
 }
 
-/* Chosen: enough to keep the threads reading through a frame of 100 ms, few enough that a new gaze
- * is answered at once. */
+/* Bricks that are being read at most. Chosen: enough to keep the threads busy for a frame of 100
+ * ms, few enough to follow a new gaze at once. */
 #define ERRANDS_MAX 1024
-/* Chosen: one waits for the disk while the other checks. */
+/* Chosen: one waits for the disk while the other verifies a checksum. */
 #define FETCHERS 2
 #define MIB      ((size_t)1 << 20)
 /* Places in the rooms are 32-bit signed indices, as gathers take them. */
 #define ROOMS_MAX ((size_t)(INT32_MAX / GZ_BRICK_VOXELS))
-/* To bring a brick into a room, and how that went. */
+/* Reading a brick into a room, and its result. */
 struct errand {
 	uint32_t brick;
 	int32_t room;
@@ -224,12 +224,12 @@ struct gz_brick_pool {
 	const struct gz_log *log;
 	struct gz_brick_file *file;
 	size_t brick_bytes;
-	/* the rooms: only rooms on an errand are written to, and no table leads to these */
+	/* the rooms: threads write only to rooms on an errand, which no table points to */
 	size_t mapped;
 	uint8_t *voxels;
 	struct gz_brick_rooms rooms;
 	size_t unreadable; /* bricks */
-	/* between the threads */
+	/* shared between the threads, guarded by mutex */
 	pthread_mutex_t mutex;
 	pthread_cond_t errand_waits, errand_done;
 	bool ending;
@@ -263,21 +263,21 @@ static void *fetch_bricks(void *argument)
 	return NULL;
 }
 
-/* What an errand has brought. */
+/* Take in the result of an errand. */
 static void let_in(struct gz_brick_pool *pool, const struct errand *errand)
 {
 	if (errand->result == GZ_OK) {
 		gz_brick_rooms_let_in(&pool->rooms, errand->room);
 		return;
 	}
-	/* A damaged file has thousands of them: the first, and in the end how many. */
+	/* A damaged file may have thousands: log the first now and their number at the end. */
 	if (pool->unreadable++ == 0)
 		gz_brick_file_complain(pool->file, errand->brick, errand->result);
 	gz_brick_rooms_give_up(&pool->rooms, errand->room);
 }
 
-/* Bring in all that is done; with `wait`, at least one if any is out. Returns how many are out
- * still. */
+/* Take in all finished errands; with `wait`, wait for at least one if any is out. Returns how many
+ * are still out. */
 static size_t collect(struct gz_brick_pool *pool, bool wait)
 {
 	struct errand done[ERRANDS_MAX];
@@ -295,7 +295,7 @@ static size_t collect(struct gz_brick_pool *pool, bool wait)
 	return out;
 }
 
-/* Send for what is wanted and not there, while there is room and anybody to go. */
+/* Start reading wanted bricks that are not there, while there are rooms and free errands. */
 static size_t send_for(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count,
 		       size_t out)
 {
@@ -372,7 +372,7 @@ static enum gz_result count_rooms(const struct gz_brick_pool *pool, size_t memor
 	return GZ_OK;
 }
 
-/* The voxels' pages come when bricks do. */
+/* Pages of the mapping are allocated when bricks are read into them. */
 static enum gz_result make_rooms(struct gz_brick_pool *pool, size_t count)
 {
 	const enum gz_result result = gz_brick_rooms_init(&pool->rooms, &pool->file->layout, count);
@@ -408,7 +408,7 @@ static enum gz_result pin_level(struct gz_brick_pool *pool, int level, bool must
 	return GZ_OK;
 }
 
-/* Coarsest first: what a finer one lacks then shows the coarser. */
+/* Coarsest first, so that a brick missing in a finer level shows the coarser one. */
 static enum gz_result pin_coarse_levels(struct gz_brick_pool *pool)
 {
 	const struct gz_brick_layout *layout = &pool->file->layout;

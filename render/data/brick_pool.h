@@ -17,133 +17,135 @@
 /** Bits of a table's entry that hold the level; those above hold the room. */
 #define GZ_BRICK_LEVEL_BITS 4
 
-/** A brick that a picture would show, and how much its absence would be seen. */
+/** A brick that a picture would use, and how visible its absence would be. */
 struct gz_brick_want {
-	float weight;   /**< above 0; compared with each other only */
+	float weight;   /**< above 0; only comparisons count */
 	uint32_t brick; /**< its number */
 };
 
-/** What is said in place of a room. */
+/** What stands in place of a room. */
 enum {
-	GZ_BRICK_NOWHERE = -1,
-	GZ_BRICK_UNREADABLE = -2, /**< and never will be anywhere */
+	GZ_BRICK_NOWHERE = -1,    /**< the brick has no room */
+	GZ_BRICK_UNREADABLE = -2, /**< it cannot be read and never gets a room */
 };
 
-/** What is in a room. */
+/** One room. */
 struct gz_brick_room {
 	uint32_t brick;
-	bool taken, there; /**< for the brick, which may be on its way; it has come */
-	bool pinned;       /**< it stays */
-	float weight;      /**< when it was last wanted */
-	uint64_t wanted;   /**< the turn in which it was */
+	bool taken;        /**< it belongs to the brick */
+	bool there;        /**< the brick's voxels have arrived */
+	bool pinned;       /**< the brick stays for good */
+	float weight;      /**< of the brick, when it was last wanted */
+	uint64_t wanted;   /**< the turn in which it was last wanted */
 	uint64_t taken_in; /**< the turn in which the room was taken for it */
 };
 
-/** The books. Zero-initialised has no rooms. */
+/** The books of a number of rooms. Zero-initialised has none. */
 struct gz_brick_rooms {
 	const struct gz_brick_layout *layout; /**< borrowed */
 	size_t count;
 	struct gz_brick_room *room;
-	int32_t *room_of; /**< by a brick's number: its room, or what is said in place of one */
-	/** By a brick's number: the finest brick that is there, of its own level or coarser, over
-	 *  its place: room << GZ_BRICK_LEVEL_BITS | level. -1 before any has come. */
+	int32_t *room_of; /**< by a brick's number: its room, GZ_BRICK_NOWHERE or
+			     GZ_BRICK_UNREADABLE */
+	/** By a brick's number: the finest brick that is there over its place, of its own level or
+	 *  coarser: room << GZ_BRICK_LEVEL_BITS | level. -1 before any has arrived. */
 	int32_t *table;
 	uint64_t changes; /**< counts changes of the table */
 	uint64_t turn;
-	size_t free_at;  /**< rooms before it have been taken once */
+	size_t free_at;  /**< all rooms before it have been taken at least once */
 	size_t *victims; /**< rooms, the least valuable first */
 	size_t victim_count, victim_at;
 	bool victims_known;
 };
 
-/** Begin with @p count empty rooms, 1 to the layout's bricks. @p layout: borrowed until
- *  gz_brick_rooms_free(), which is correct also after GZ_ERR_NO_MEM. */
+/** Start with @p count empty rooms, 1 to the number of bricks. @p layout is borrowed until
+ *  gz_brick_rooms_free(), which may also be called after GZ_ERR_NO_MEM. */
 enum gz_result gz_brick_rooms_init(struct gz_brick_rooms *rooms,
 				   const struct gz_brick_layout *layout, size_t count);
 
-/** The finest level that is kept for good with @p count rooms: all coarser ones with it fill an
- *  eighth of them at most (chosen); the last in any case. */
+/** The finest level that stays for good with @p count rooms: this level and all coarser ones fill
+ * at most an eighth of the rooms (chosen). The coarsest always stays. */
 int gz_brick_rooms_pinned_level(const struct gz_brick_layout *layout, size_t count);
 
-/** The next picture wants these; the least valuable rooms are found anew. What is taken until the
- *  next turn is to be taken in the order of its weight, the greatest first. */
+/** Begin a turn: the next picture wants these bricks. Until the next turn, rooms must be taken in
+ *  falling order of weight. */
 void gz_brick_rooms_turn(struct gz_brick_rooms *rooms, const struct gz_brick_want *wants,
 			 size_t count);
 
-/** Whether gz_brick_rooms_take() would find a room. */
+/** Whether gz_brick_rooms_take() would find a room for a brick of this weight. */
 bool gz_brick_rooms_has(struct gz_brick_rooms *rooms, float weight);
 
 /**
- * Take a room for a brick that has none: an empty one, else that of the brick that was not wanted
- * for longest, else that of the one of least weight, if it is less than @p weight.
+ * Take a room for a brick that has none: an empty one, or that of the brick that has not been
+ * wanted for longest, or that of the brick of least weight if it is below @p weight.
  *
- * @return the room; GZ_BRICK_NOWHERE if all are worth more
+ * @return the room, or GZ_BRICK_NOWHERE if all bricks in rooms have more weight
  */
 int32_t gz_brick_rooms_take(struct gz_brick_rooms *rooms, uint32_t brick, float weight);
 
-/** The same for a brick that stays; there must be an empty room. */
+/** Take an empty room, of which there must be one, for a brick that stays for good. */
 int32_t gz_brick_rooms_pin(struct gz_brick_rooms *rooms, uint32_t brick);
 
-/** The brick has come to the room taken for it. */
+/** The brick has arrived in the room taken for it. */
 void gz_brick_rooms_let_in(struct gz_brick_rooms *rooms, int32_t room);
 
-/** It never will: the room is empty again. */
+/** The brick cannot be read: mark it so and empty the room. */
 void gz_brick_rooms_give_up(struct gz_brick_rooms *rooms, int32_t room);
 
-/** Free and zero. */
+/** Free the books and zero them. */
 void gz_brick_rooms_free(struct gz_brick_rooms *rooms);
 
-/** The least number of bricks that a pool has room for, where the file has as many (chosen: a
- *  picture of a thousand pixels a side is not all coarse). */
+/** Least number of rooms of a pool, unless the file has fewer bricks (chosen: enough for a picture
+ * of a thousand pixels a side to show fine levels). */
 #define GZ_BRICK_POOL_LEAST 256
 
 struct gz_brick_pool;
 
-/** What is in memory while a picture is made: valid until the next turn. */
+/** The bricks in memory while a picture is made; valid until the next turn. */
 struct gz_brick_view {
-	/** Voxels of all rooms: that of brick r begins at r * GZ_BRICK_VOXELS. */
+	/** Voxels of all rooms; those of room r begin at r * GZ_BRICK_VOXELS. */
 	const void *voxels;
-	/** By a brick's number: the finest brick in memory, of its own level or coarser, over its
-	 *  place: room << GZ_BRICK_LEVEL_BITS | level. */
+	/** By a brick's number: the finest brick in memory over its place, of its own level or
+	 *  coarser: room << GZ_BRICK_LEVEL_BITS | level. */
 	const int32_t *table;
-	size_t coming; /**< bricks asked for and not there yet */
+	size_t coming; /**< bricks that are being read */
 };
 
 /**
  * Open a file of bricks and read the coarse levels that stay: all that fit an eighth of the memory,
- * and the coarsest in any case.
+ * and always the coarsest.
  *
- * @param memory_bytes   for voxels; 0 = a quarter of the machine's memory. More than the file has
- * is not taken; less than GZ_BRICK_POOL_LEAST bricks, or all of fewer, is refused
+ * @param memory_bytes   for voxels; 0: a quarter of the machine's memory. No more is allocated than
+ * the file needs; too little for GZ_BRICK_POOL_LEAST bricks (or all, if there are fewer) is refused
  * @param[out] out_pool  owned by the caller: gz_brick_pool_destroy()
- * @return what gz_brick_file_open() returns, also where the coarsest level cannot be read; logged
- * @retval GZ_ERR_INVAL  @p memory_bytes is too little; logged with the least
+ * @return the results of gz_brick_file_open() and, for the coarsest level, of gz_brick_file_read();
+ * logged
+ * @retval GZ_ERR_INVAL  @p memory_bytes is too little; logged with the least allowed
  */
 enum gz_result gz_brick_pool_open(const char *path, size_t memory_bytes, const struct gz_log *log,
 				  struct gz_brick_pool **out_pool);
 
-/** The file. Read-only; valid as long as the pool. */
+/** The pool's file; valid as long as the pool. */
 const struct gz_brick_file *gz_brick_pool_file(const struct gz_brick_pool *pool);
 
-/** Bricks that have room at once. */
+/** Number of rooms. */
 size_t gz_brick_pool_rooms(const struct gz_brick_pool *pool);
 
 /**
- * Between two pictures: let in what has come, and send for what is wanted. A wanted brick takes the
- * room of one that is not, the least lately wanted first, else that of one of less weight.
+ * Between two pictures: take in the bricks that have been read, and start reading those that are
+ * wanted. See gz_brick_rooms_take() for the bricks that they replace.
  *
- * @param wants   greatest weight first
- * @param wait    return only when nothing more is coming: the most that there is room for is there
- * @param[out] out_view  what to make the next picture of
+ * @param wants   in falling order of weight
+ * @param wait    return only when all wanted bricks that have room have been read
+ * @param[out] out_view  for the next picture
  *
- * A brick that cannot be read is never asked for again; the first is logged, and how many there
- * were when the pool is destroyed. Threads: one at a time, and none may read what an earlier turn
- * gave.
+ * A brick that cannot be read is not tried again; the first such brick is logged, and their number
+ * when the pool is destroyed. Threads: one at a time; the view of the last turn must not be in use.
  */
 void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count,
 			bool wait, struct gz_brick_view *out_view);
 
-/** End the threads, close the file, free, set to NULL. Accepts a pointer to NULL. */
+/** Stop the threads, close the file, free everything and set to NULL. Accepts a pointer to NULL. */
 void gz_brick_pool_destroy(struct gz_brick_pool **pool);
 
 #endif

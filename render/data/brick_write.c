@@ -16,7 +16,7 @@ static int nearest_index(int value, int last)
 	return value < 0 ? 0 : value > last ? last : value;
 }
 
-/* A row of a brick: voxels from x - 1 on, the volume's ends repeated. */
+/* Copy a row of a brick, from voxel `from` on; outside the volume its end voxels are repeated. */
 static void copy_brick_row(const char *row, int from, int last, size_t size, char *out)
 {
 	for (int i = 0; i < GZ_BRICK_STORED_EDGE;) {
@@ -60,12 +60,12 @@ struct writer {
 	struct gz_brick_layout layout;
 	struct gz_brick_entry *entries;
 	uint8_t *cells;  /* of all bricks of level 0: least and greatest of each cell */
-	uint8_t *voxels; /* of one brick, and zeros up to the next alignment */
-	uint64_t offset; /* where the next brick goes */
-	size_t done;     /* bricks */
+	uint8_t *voxels; /* of one brick, and zeros up to a multiple of GZ_BRICK_ALIGN */
+	uint64_t offset; /* of the next brick in the file, bytes */
+	size_t done;     /* bricks written */
 };
 
-/* Least and greatest of a box of a brick's voxels, `edge` a side. */
+/* Least and greatest voxel of a box of `edge` voxels a side within a brick. */
 #define DEFINE_BOX_RANGE(name, type)                                                      \
 	static void name(const void *voxels, size_t first, int edge, void *out_range)     \
 	{                                                                                 \
@@ -105,7 +105,7 @@ static float voxel_value(enum gz_voxel_type type, const void *voxels, size_t ind
 	return ((const float *)voxels)[index];
 }
 
-/* A cell's voxels and one more on every side, as macrocells have them. */
+/* The ranges of the cells: of a cell's voxels and one more on every side, like macrocells. */
 static void find_cells(struct writer *writer, enum gz_voxel_type type, size_t number)
 {
 	enum { ALONG = GZ_BRICK_EDGE / GZ_BRICK_CELL_EDGE };
@@ -121,7 +121,7 @@ static void find_cells(struct writer *writer, enum gz_voxel_type type, size_t nu
 	}
 }
 
-/* The range of a brick's own voxels, widened to those of the finer bricks under it. */
+/* The range of a brick's voxels and of the finer bricks under it. */
 static void find_brick_range(const struct writer *writer, enum gz_voxel_type type, int level,
 			     const int brick[3], struct gz_brick_entry *entry)
 {
@@ -188,7 +188,7 @@ static enum gz_result write_level(struct writer *writer, const struct gz_volume 
 	return GZ_OK;
 }
 
-/* The next coarser level of `volume`, in memory or scratch. */
+/* Make the next coarser level of `volume`, in memory or in a scratch file. */
 static enum gz_result halve_for_bricks(const struct writer *writer, const struct gz_volume *volume,
 				       int level, struct gz_volume *out_half)
 {
@@ -268,7 +268,7 @@ static enum gz_result write_rest(struct writer *writer, const struct gz_volume *
 	if (result == GZ_OK)
 		result = gz_part_file_write(&writer->file, writer->cells, cells,
 					    gz_brick_cells_offset(header.brick_count));
-	/* A volume of one value has no bricks behind its cells. */
+	/* A volume of one value has no bricks after its cells. */
 	if (result == GZ_OK)
 		result = gz_part_file_resize(&writer->file, header.file_size);
 	gz_brick_header_encode(&header, bytes);

@@ -27,19 +27,20 @@ struct block {
 struct gz_byte_ahead {
 	gz_byte_source *source;
 	void *user;
-	uint64_t left; /* bytes to make; the thread's own */
+	uint64_t left; /* bytes to read; used by the thread alone */
 	pthread_t thread;
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
-	uint64_t made, taken; /* blocks; guarded by mutex, as what follows */
+	uint64_t made, taken; /* blocks; mutex guards these and the next two */
 	bool through;         /* no more will be made */
 	bool ending;
-	struct block blocks[BLOCKS]; /* the reader's from taken on, the thread's from made on */
-	size_t at;                   /* bytes read of the first; the reader's own */
+	struct block
+		blocks[BLOCKS]; /* [taken, made) belong to the reader, the others to the thread */
+	size_t at;              /* bytes read of the first; used by the reader alone */
 	uint8_t memory[BLOCKS * BLOCK_BYTES];
 };
 
-/* The block to fill next; NULL where nobody wants any more. */
+/* The block to fill next; NULL if the reader wants no more. */
 static struct block *await_free_block(struct gz_byte_ahead *ahead)
 {
 	pthread_mutex_lock(&ahead->mutex);
@@ -99,7 +100,7 @@ enum gz_result gz_byte_ahead_start(gz_byte_source *source, void *user, uint64_t 
 	return GZ_OK;
 }
 
-/* The block to read next; NULL where no more will come. */
+/* The block to read next; NULL if no more will come. */
 static struct block *await_made_block(struct gz_byte_ahead *ahead)
 {
 	pthread_mutex_lock(&ahead->mutex);
@@ -127,7 +128,8 @@ enum gz_result gz_byte_ahead_read(struct gz_byte_ahead *ahead, void *buffer, siz
 	struct block *block;
 	while (got < size && (block = await_made_block(ahead))) {
 		if (block->result != GZ_OK)
-			return block->result; /* and stays the next one */
+			return block->result; /* it stays the next block, so each further read fails
+						 too */
 		const size_t there = block->size - ahead->at;
 		const size_t part = there < size - got ? there : size - got;
 		memcpy((uint8_t *)buffer + got, block->bytes + ahead->at, part);
@@ -158,7 +160,7 @@ void gz_byte_ahead_end(struct gz_byte_ahead **ahead)
 
 #define INPUT_SIZE ((size_t)128 << 10)
 
-/* Fewer bytes are not worth a thread (chosen: some milliseconds of decoding). */
+/* Fewer bytes are decoded without a thread (chosen: a few milliseconds of decoding). */
 #define AHEAD_BYTES_LEAST ((uint64_t)1 << 20)
 
 /* Best ratio of deflate: 1032 to 1, zlib's technical details (zlib.net/zlib_tech.html). */
@@ -166,7 +168,7 @@ void gz_byte_ahead_end(struct gz_byte_ahead **ahead)
 /* Best ratio of zstd: a block of 128 KiB from a header of 3 bytes and one byte to repeat, RFC 8878,
  * 3.1.1.2. */
 #define ZSTD_RATIO 32768
-/* zlib reads zlib and gzip heads alike where this is added to the window bits (zlib.h,
+/* Added to the window bits, it makes zlib accept both zlib and gzip headers (zlib.h,
  * inflateInit2). */
 #define ZLIB_AUTOMATIC 32
 
@@ -174,10 +176,10 @@ struct gz_byte_stream {
 	const char *path;
 	const struct gz_log *log;
 	enum gz_coding coding;
-	gz_byte_source *source; /* of plain bytes, in place of the file */
+	gz_byte_source *source; /* of plain bytes, instead of the file */
 	void *source_user;
 	int fd;
-	uint64_t stored; /* bytes of the file from the offset on */
+	uint64_t stored; /* bytes from the offset to the end of the file */
 	uint8_t *input;  /* compressed bytes read, of which [input_at, input_size) are left */
 	size_t input_at, input_size;
 	z_stream zlib;
@@ -187,7 +189,7 @@ struct gz_byte_stream {
 	bool inside; /* a member or frame has begun and not ended */
 	bool hungry; /* the decoder needs input to go on */
 	bool ended;
-	struct gz_byte_ahead *ahead; /* while it runs, the decoder above is its thread's */
+	struct gz_byte_ahead *ahead; /* while it runs, its thread owns the decoder above */
 };
 
 enum gz_result gz_file_open(const char *path, const struct gz_log *log, int *out_fd,
@@ -332,7 +334,7 @@ static enum gz_result refuse_damaged(const struct gz_byte_stream *stream, const 
 	return GZ_ERR_FORMAT;
 }
 
-/* Have compressed bytes at hand, or mark the end of the file. */
+/* Read compressed bytes if none are left, or note the end of the file. */
 static enum gz_result fill_input(struct gz_byte_stream *stream)
 {
 	if (stream->input_at < stream->input_size)
@@ -352,7 +354,7 @@ static enum gz_result step_zlib(struct gz_byte_stream *stream, uint8_t *buffer, 
 	z_stream *z = &stream->zlib;
 	size_t room = size - *got;
 	if (!stream->inside && stream->began) {
-		/* Another gzip member begins with 1f (RFC 1952); anything else is not ours. */
+		/* Another gzip member begins with 1f (RFC 1952); anything else is ignored. */
 		stream->ended = stream->input[stream->input_at] != 0x1f || inflateReset(z) != Z_OK;
 		if (stream->ended)
 			return GZ_OK;
@@ -400,7 +402,7 @@ static enum gz_result decode_bytes(void *user, void *buffer, size_t size, size_t
 			return result;
 		if (stream->ended)
 			break;
-		/* A decoder that filled the buffer may hold more, with no input left to give it. */
+		/* A decoder that filled the buffer may hold more bytes and need no input. */
 		stream->hungry = got < size || !stream->inside;
 	}
 	*out_got = got;
@@ -411,11 +413,11 @@ void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes)
 {
 	if (stream->coding == GZ_CODING_PLAIN || stream->ahead || bytes < AHEAD_BYTES_LEAST)
 		return;
-	/* Without room or a thread the reader decodes, as it does behind these bytes. */
+	/* On failure the reader decodes the bytes itself. */
 	(void)gz_byte_ahead_start(decode_bytes, stream, bytes, &stream->ahead);
 }
 
-/* What the thread has made; behind that, the stream is the reader's own again. */
+/* Read what the thread has decoded; after that the reader uses the decoder itself. */
 static enum gz_result read_made(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
 				size_t *out_got)
 {

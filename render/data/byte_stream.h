@@ -24,7 +24,7 @@
 enum gz_result gz_file_open(const char *path, const struct gz_log *log, int *out_fd,
 			    uint64_t *out_size);
 
-/** How the bytes are stored. */
+/** How bytes are compressed. */
 enum gz_coding {
 	GZ_CODING_PLAIN,
 	GZ_CODING_ZLIB, /**< a zlib stream, or gzip members one after the other */
@@ -33,32 +33,32 @@ enum gz_coding {
 
 struct gz_byte_stream;
 
-/** Bytes from elsewhere: as gz_byte_stream_read(), and it logs. */
+/** A function that gives bytes. Contract as gz_byte_stream_read(); it logs its own errors. */
 typedef enum gz_result gz_byte_source(void *user, void *buffer, size_t size, size_t *out_got);
 
 /**
- * Open a file for reading from @p offset on.
+ * Open a file as a stream that begins at @p offset.
  *
  * @param path      a regular file: folders, devices and pipes are refused
- * @param coding    of what follows @p offset
- * @param offset    bytes of the file to pass over first
+ * @param coding    of the bytes from @p offset on
+ * @param offset    bytes of the file to skip first
  * @param[out] out_stream  owned by the caller: gz_byte_stream_close()
  * @retval GZ_ERR_NOT_FOUND  no such file; logged
  * @retval GZ_ERR_IO         it cannot be opened; logged
- * @retval GZ_ERR_FORMAT     no regular file, or it ends before @p offset; logged
- * @retval GZ_ERR_NO_MEM     no room for the decoder; logged
+ * @retval GZ_ERR_FORMAT     not a regular file, or shorter than @p offset; logged
+ * @retval GZ_ERR_NO_MEM     logged
  *
- * Threads: one at a time per stream. @p path and @p log are borrowed until it is closed.
+ * Threads: one at a time for each stream. @p path and @p log are borrowed until it is closed.
  */
 enum gz_result gz_byte_stream_open(const char *path, enum gz_coding coding, uint64_t offset,
 				   const struct gz_log *log, struct gz_byte_stream **out_stream);
 
 /**
- * A stream over bytes that a function gives.
+ * Make a stream of the bytes that a function gives.
  *
- * @param user   handed to @p source
- * @param bound  the most bytes that can come
- * @param path   what the bytes are of, for messages; borrowed until it is closed, as @p log
+ * @param user   passed to @p source
+ * @param bound  the most bytes that it can give
+ * @param path   for messages; borrowed until the stream is closed, like @p log
  * @param[out] out_stream  owned by the caller: gz_byte_stream_close()
  * @retval GZ_ERR_NO_MEM  logged
  */
@@ -67,14 +67,14 @@ enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t 
 				   struct gz_byte_stream **out_stream);
 
 /**
- * The most bytes that can come out of the whole stream: exact for GZ_CODING_PLAIN, else what the
- * compressed bytes could hold at the best ratio of their coding. Lets a claimed size be refused
- * before memory is taken for it.
+ * The most bytes that the whole stream can give: exact for GZ_CODING_PLAIN, otherwise the
+ * compressed size times the best ratio of the coding. With it a claimed size can be refused before
+ * memory is allocated for it.
  */
 uint64_t gz_byte_stream_bound(const struct gz_byte_stream *stream);
 
 /**
- * Read until @p size bytes are there or the stream ends.
+ * Read @p size bytes, or fewer if the stream ends.
  *
  * @param[out] out_got  less than @p size only at the end
  * @retval GZ_ERR_IO      the file cannot be read; logged
@@ -84,44 +84,45 @@ enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, 
 				   size_t *out_got);
 
 /**
- * Let a thread decode the next @p bytes of a compressed stream while they are read; what is behind
- * them is not looked at. Makes no difference but in time, and none where there is nothing to decode
- * or little of it. Takes 1 MiB until those bytes are read. Messages of the decoder come from that
- * thread.
+ * Let a thread decode the next @p bytes of a compressed stream ahead of the reader, and no more.
+ * The result is the same, only sooner. Does nothing if the stream is not compressed, or for few
+ * bytes. Uses 1 MiB until those bytes are read. The decoder then logs from that thread.
  */
 void gz_byte_stream_read_ahead(struct gz_byte_stream *stream, uint64_t bytes);
 
-/** Pass over @p count bytes. GZ_ERR_FORMAT also where fewer are left; logged. */
+/** Skip @p count bytes. Results as gz_byte_stream_read(); GZ_ERR_FORMAT also if fewer are left;
+ *  logged. */
 enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count);
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_byte_stream_close(struct gz_byte_stream **stream);
 
+/** Bytes that a thread of its own reads ahead of their reader, into a ring of fixed size. */
 struct gz_byte_ahead;
 
 /**
- * Start a thread that reads @p bytes from @p source, no more. It is up to 1 MiB ahead.
+ * Start a thread that reads @p bytes from @p source, and no more. It is up to 1 MiB ahead.
  *
- * @param source  called on that thread alone until gz_byte_ahead_end()
- * @param user    handed to @p source
+ * @param source  called only on that thread, until gz_byte_ahead_end()
+ * @param user    passed to @p source
  * @param[out] out_ahead  owned by the caller: gz_byte_ahead_end()
- * @retval GZ_ERR_NO_MEM  no room, or no thread to be had; not logged, as one can do without
+ * @retval GZ_ERR_NO_MEM  out of memory or threads; not logged, because the caller can read directly
  */
 enum gz_result gz_byte_ahead_start(gz_byte_source *source, void *user, uint64_t bytes,
 				   struct gz_byte_ahead **out_ahead);
 
 /**
- * Read until @p size bytes are there, all that were asked for have come, or the source ends.
+ * Read @p size bytes, or fewer if the thread has read all it was asked for or the source has ended.
  *
- * @param[out] out_got  less than @p size where no more will come
- * @return what @p source returned where it failed, behind all bytes before
+ * @param[out] out_got  less than @p size if no more bytes will come
+ * @return the result of @p source if it failed, once all bytes before the failure are read
  *
  * Threads: one at a time.
  */
 enum gz_result gz_byte_ahead_read(struct gz_byte_ahead *ahead, void *buffer, size_t size,
 				  size_t *out_got);
 
-/** End the thread, wherever it is, free, set to NULL. Accepts a pointer to NULL. */
+/** Stop the thread, free everything and set to NULL. Accepts a pointer to NULL. */
 void gz_byte_ahead_end(struct gz_byte_ahead **ahead);
 
 #endif

@@ -4,9 +4,9 @@
 
 const struct gz_option gz_clip_options[] = {
 	{ "clip.least", GZ_OPTION_DOUBLE, AT(least), 0, 1, .count = 3, .preset = "0 0 0",
-	  .help = "where the part that is shown begins: shares of the box along x, y, z" },
+	  .help = "lower clip bounds along x, y, z, as fractions of the box" },
 	{ "clip.greatest", GZ_OPTION_DOUBLE, AT(greatest), 0, 1, .count = 3, .preset = "1 1 1",
-	  .help = "where it ends" },
+	  .help = "upper clip bounds along x, y, z, as fractions of the box" },
 };
 const size_t gz_clip_option_count = sizeof gz_clip_options / sizeof gz_clip_options[0];
 

@@ -11,10 +11,11 @@
 #include "base/option.h"
 
 /**
- * The part of the box that is shown: shares of its edges, 0 to 1 along x, y, z, least below
- * greatest. A ray is cut into segments from where it enters the whole box, so samples stay where
- * they are without it; a segment that a face of the clip box cuts is sampled in the middle of what
- * is left of it and has the opacity of that length, as the last segment of every ray.
+ * The part of the volume that is shown, as fractions of the box's edges along x, y, z, 0 to 1;
+ * least is below greatest. A ray is divided into segments from where it enters the whole box, so
+ * samples do not move when the clip box changes. A segment that is cut by a face of the clip box is
+ * sampled in the middle of the part that remains and has the opacity of its length, like the last
+ * segment of every ray.
  */
 struct gz_clip_box {
 	double least[3], greatest[3];
@@ -27,7 +28,7 @@ extern const size_t gz_clip_option_count;
 /** Whether two boxes hold equal values. */
 bool gz_clip_box_same(const struct gz_clip_box *a, const struct gz_clip_box *b);
 
-/** Whether the box holds something and lies within the volume's. */
+/** Whether the clip box is not empty and lies within the volume's box. */
 bool gz_clip_box_valid(const struct gz_clip_box *clip);
 
 #endif

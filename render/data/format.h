@@ -71,35 +71,35 @@ extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_forma
 	gz_format_nifti, gz_format_nrrd, gz_format_raw, gz_format_raw_by_layout;
 
 /**
- * Write @p volume and its coarser levels to @p path, under another name until it is whole.
+ * Write @p volume and its coarser levels as a file of bricks. It gets its name when it is complete.
  *
- * @param volume   with voxels; if these are in a scratch file, so are those of the levels
+ * @param volume   must have voxels
  * @param path     replaced if it exists
- * @param loading  told how far it is, may stop it; its scratch is where the levels are kept, NULL
- * for memory: an eighth of the volume, and an eighth of that
+ * @param loading  progress and cancelling; coarser levels are kept in its scratch folder, or in
+ * memory without one: an eighth of the volume, and an eighth of that; may be NULL
  * @retval GZ_ERR_INVAL      @p volume has no voxels
  * @retval GZ_ERR_IO         @p path cannot be written; logged
  * @retval GZ_ERR_FULL       the disk is full; logged
- * @retval GZ_ERR_NO_MEM     no room for the levels; logged
- * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ * @retval GZ_ERR_NO_MEM     no memory for the levels; logged
+ * @retval GZ_ERR_CANCELLED  @p loading stopped it; not logged
  *
- * On failure nothing is left behind.
+ * On failure no file remains.
  */
 enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 			       const struct gz_loading *loading, const struct gz_log *log);
 
 /**
- * Write @p volume as NRRD, encoding raw, under another name until it is whole. NRRD cannot say that
- * values are scaled, so that the values themselves are written: as integers of 8 or 16 bits where
- * all of them are such, those with a negative intercept signed; else as floats.
+ * Write @p volume as NRRD, encoding raw. The file gets its name when it is complete. NRRD cannot
+ * store a slope and an intercept, so data values are written: as integers of 8 or 16 bits if all of
+ * them are such, signed if the intercept is negative, otherwise as floats.
  *
- * @param loading  told how far it is, may stop it
+ * @param loading  progress and cancelling; may be NULL
  * @retval GZ_ERR_INVAL        @p volume has no voxels
  * @retval GZ_ERR_IO           @p path cannot be written; logged
  * @retval GZ_ERR_FULL         the disk is full; logged
- * @retval GZ_ERR_CANCELLED    @p loading said so; not logged
+ * @retval GZ_ERR_CANCELLED    @p loading stopped it; not logged
  *
- * On failure nothing is left behind.
+ * On failure no file remains.
  */
 enum gz_result gz_nrrd_write(const struct gz_volume *volume, const char *path,
 			     const struct gz_loading *loading, const struct gz_log *log);

@@ -17,11 +17,8 @@ void gz_halve_axes(const int dims[3], const double spacing[3], bool out_axes[3])
 		out_axes[axis] = dims[axis] > 1 && spacing[axis] < M_SQRT2 * least;
 }
 
-/*
- * Mean of eight voxels, two of each of four rows; a row that has no partner comes twice, and so
- * does a voxel. Floats are divided before they are added: the sum of the greatest would be
- * infinite.
- */
+/* Mean of eight voxels, two from each of four rows; a row or voxel without a partner is used twice.
+ * Floats are divided before they are added, because the sum of the greatest would be infinite. */
 #define SUM_WHOLE(r, a, b)                                                                 \
 	((unsigned)(r)[0][a] + (r)[0][b] + (r)[1][a] + (r)[1][b] + (r)[2][a] + (r)[2][b] + \
 	 (r)[3][a] + (r)[3][b])
@@ -59,7 +56,7 @@ static halve_row *const halve_rows[GZ_VOXEL_TYPE_COUNT] = {
 	[GZ_VOXEL_F32] = halve_row_f32,
 };
 
-/* The one or two rows or slices that become number i; twice the same where there is but one. */
+/* The two rows or slices that become number i; the same one twice if there is only one. */
 static void partners(int i, int count, bool halves, int out[2])
 {
 	out[0] = halves ? 2 * i : i;
@@ -151,7 +148,7 @@ void gz_levels_start(struct gz_levels *levels, const struct gz_volume *volume)
 	levels->count = 1;
 }
 
-/* What the workers are given. */
+/* The job that the workers share. */
 struct halving {
 	const struct gz_volume *volume, *half;
 };
@@ -163,8 +160,8 @@ static void halve_part(void *user, size_t part, int worker)
 	gz_volume_halve_slice(job->volume, job->half, (int)part);
 }
 
-/* Edge of a level's voxels, in voxel lengths of the full volume. An axis of one voxel has no
- * neighbours to be apart from. */
+/* Edge of a level's voxels, in voxel lengths of the full volume. An axis of one voxel does not
+ * count: its spacing separates nothing. */
 static double level_scale(const struct gz_volume *full, const struct gz_volume *coarse)
 {
 	double least = INFINITY, full_least = INFINITY;
@@ -176,7 +173,7 @@ static double level_scale(const struct gz_volume *full, const struct gz_volume *
 	return least / full_least;
 }
 
-/* The next level of fine. */
+/* Make the next coarser level. */
 static enum gz_result halve_level(const struct gz_volume *full, const struct gz_level *fine,
 				  struct gz_workers *workers, struct gz_level *out_coarse)
 {
@@ -198,7 +195,8 @@ static enum gz_result halve_level(const struct gz_volume *full, const struct gz_
 	return GZ_OK;
 }
 
-/* Edge of a volume that is not halved further, voxels. Chosen: there is nothing left to save. */
+/* A volume whose edges are no longer than this is not halved, voxels. Chosen: nothing left to save.
+ */
 enum { LEAST_EDGE = 8 };
 
 static bool worth_halving(const struct gz_volume *volume)
@@ -207,7 +205,7 @@ static bool worth_halving(const struct gz_volume *volume)
 	       volume->dims[2] > LEAST_EDGE;
 }
 
-/* Whether a level is an eighth of the one before or, sizes being rounded up, would be. */
+/* Whether a level is an eighth of the one before, apart from rounding up. */
 static bool is_an_eighth(const struct gz_level *coarse, const struct gz_level *before)
 {
 	int factor = 1;
@@ -227,7 +225,7 @@ enum gz_result gz_levels_build(struct gz_levels *levels, struct gz_workers *work
 {
 	if (levels->count != 1)
 		return GZ_OK;
-	struct gz_level skipped = { .scale = 0 }; /* the finer one, where it was not kept */
+	struct gz_level skipped = { .scale = 0 }; /* the finer level, if it was not kept */
 	enum gz_result result = GZ_OK;
 	while (levels->count < GZ_LEVELS_MAX && result == GZ_OK) {
 		const struct gz_level *before = &levels->level[levels->count - 1];
@@ -253,7 +251,7 @@ bool gz_levels_add(struct gz_levels *levels, const struct gz_brick_level *brick_
 {
 	const struct gz_volume *full = &levels->level[0].volume;
 	struct gz_level level = { .volume = *full };
-	level.volume.bricks = NULL; /* closed with the full volume */
+	level.volume.bricks = NULL; /* the full volume owns them */
 	for (int axis = 0; axis < 3; axis++) {
 		level.factor[axis] = 1 << brick_level->halvings[axis];
 		level.volume.dims[axis] = brick_level->dims[axis];
@@ -273,7 +271,7 @@ void gz_levels_free(struct gz_levels *levels)
 	*levels = (struct gz_levels) { 0 };
 }
 
-/* From a point to the nearest of the box, world units. */
+/* Distance from a point to the box, world units. */
 static double distance_to_box(const struct gz_volume *volume, const double from[3])
 {
 	double half[3], squares = 0;

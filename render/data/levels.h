@@ -24,90 +24,89 @@
 #include "render/picture/camera.h"
 
 /**
- * Which axes to halve so that voxels tend to cubes: those of more than one voxel whose spacing is
- * below sqrt(2) times the least of such axes, which makes the ratio of any two spacings at most
- * sqrt(2), or smaller than it was.
+ * Choose the axes to halve, so that voxels become more cubic: axes of more than one voxel whose
+ * spacing is below sqrt(2) times the least spacing of such axes. The ratio of any two spacings is
+ * then at most sqrt(2), or smaller than before.
  *
- * @param[out] out_axes  set to what is halved; all false for a single voxel
+ * @param[out] out_axes  true for an axis to halve; all false for a single voxel
  */
 void gz_halve_axes(const int dims[3], const double spacing[3], bool out_axes[3]);
 
 /**
  * Make the half of @p volume.
  *
- * @param axes  which axes to halve; NULL for gz_halve_axes(). One of a single voxel stays as it is
- * @param[out] out_half  owned by the caller: gz_volume_free(). Type, slope and intercept are the
- * volume's; so are stored_min and stored_max, so that a transfer function means the same to both.
- * The spacing of halved axes is doubled
- * @retval GZ_ERR_INVAL   nothing to halve
- * @retval GZ_ERR_NO_MEM  no room
+ * @param axes  the axes to halve; NULL for those of gz_halve_axes(). An axis of one voxel stays
+ * @param[out] out_half  owned by the caller: gz_volume_free(). Type, slope, intercept, stored_min
+ * and stored_max are the volume's, so that a transfer function means the same for both. The spacing
+ * of halved axes is doubled
+ * @retval GZ_ERR_INVAL   no axis can be halved; not logged
+ * @retval GZ_ERR_NO_MEM  not logged
  *
- * One pass over the voxels, a pair of slices at a time. Threads: any; the same bits each time.
+ * One pass over the voxels, a pair of slices at a time. The same bits each time.
  */
 enum gz_result gz_volume_halve(const struct gz_volume *volume, const bool axes[3],
 			       struct gz_volume *out_half);
 
-/** The first part of gz_volume_halve(): allocate, voxels not yet written. Its returns. */
+/** The first part of gz_volume_halve(), with its results: allocate the half, whose voxels are not
+ *  written yet. */
 enum gz_result gz_volume_halve_begin(const struct gz_volume *volume, const bool axes[3],
 				     struct gz_volume *out_half);
 
-/** The other part, for one slice of the half that gz_volume_halve_begin() made of @p volume: slices
- *  may be written by several threads at once. @p z is 0 to half->dims[2] - 1. */
+/** The second part: write slice @p z, 0 to half->dims[2] - 1, of the half that
+ *  gz_volume_halve_begin() made of @p volume. Threads: any, for different slices. */
 void gz_volume_halve_slice(const struct gz_volume *volume, const struct gz_volume *half, int z);
 
 /**
- * One slice of the half from one or two slices of the full volume, for data that are never in
- * memory as a whole.
+ * Make one slice of the half from one or two slices of the full volume.
  *
  * @param type     of both
  * @param dims     columns and rows of the full slices
  * @param halves   whether columns and rows are halved
- * @param lower, upper  the two slices, x varying fastest; the same one twice where the axis across
- * them is not halved or has no partner left
+ * @param lower, upper  the two slices, x varying fastest; the same slice twice if the axis across
+ * them is not halved, or if the last slice has no partner
  * @param[out] out_slice  columns and rows of the half
  *
- * Whole numbers are rounded to the nearest, halves up.
+ * Integers are rounded to the nearest, halves up.
  */
 void gz_halve_slices(enum gz_voxel_type type, const int dims[2], const bool halves[2],
 		     const void *lower, const void *upper, void *out_slice);
 
-/** Most levels, the full volume counted in. Chosen: the last stands for 128 voxel lengths, more
- *  than GZ_SPACING_MAX pixels ever span on a picture that shows anything. */
+/** Most levels, including the full volume. Chosen: a voxel of the last is 128 voxel lengths wide,
+ *  more than GZ_SPACING_MAX pixels span on any useful picture. */
 #define GZ_LEVELS_MAX 8
 
-/** One level. Voxel i spans [i, i + 1) of its own voxel coordinates, which are those of the full
- *  volume divided by factor. */
+/** One level. Its voxel coordinates are those of the full volume divided by factor. */
 struct gz_level {
-	struct gz_volume volume; /**< of level 0 the voxels are borrowed */
+	struct gz_volume volume; /**< level 0 borrows its voxels */
 	int factor[3];           /**< voxels of the full volume along an edge of one of these */
 	double scale;            /**< edge of a voxel, in voxel lengths of the full volume */
 };
 
-/** The levels, finest first. Zero-initialised holds none. */
+/** A pyramid of levels, finest first. Zero-initialised is empty. */
 struct gz_levels {
 	int count;
 	struct gz_level level[GZ_LEVELS_MAX];
 };
 
-/** Start anew with @p volume as the only level, borrowed until gz_levels_free(); frees an earlier
- *  pyramid. */
+/** Make a pyramid with @p volume as its only level, borrowed until gz_levels_free(). Frees what
+ *  @p levels held before. */
 void gz_levels_start(struct gz_levels *levels, const struct gz_volume *volume);
 
 /**
- * Make the coarser levels of a started pyramid, down to one without an edge of more than
- * GZ_MACROCELL_EDGE voxels or to GZ_LEVELS_MAX. Where voxels are far from cubes, one halving leaves
- * more than an eighth of them; such a result is not kept, so that all levels together never take
- * more than a seventh of the volume (and rounding up of odd sizes). Does nothing when already made.
+ * Make the coarser levels, until no edge is longer than 8 voxels or there are GZ_LEVELS_MAX. If
+ * voxels are far from cubic, one halving leaves more than an eighth of them; such a level is not
+ * kept, so that all coarser levels together take at most a seventh of the volume (plus rounding of
+ * odd sizes). Does nothing if they are already made.
  *
- * @param workers  who halve; NULL for the calling thread alone. The same bits for any number
- * @retval GZ_ERR_NO_MEM  no room; the full volume stays the only level
+ * @param workers  share the work; NULL for the calling thread alone. The same bits for any number
+ * @retval GZ_ERR_NO_MEM  the full volume stays the only level; not logged
  */
 enum gz_result gz_levels_build(struct gz_levels *levels, struct gz_workers *workers);
 
 /**
- * Add a level that a file of bricks has, finest first, without voxels.
+ * Add a level of a file of bricks, without voxels. Levels are added finest first.
  *
- * @return false where gz_levels_build() would not keep it, or there are GZ_LEVELS_MAX
+ * @return false if gz_levels_build() would not keep it, or there are GZ_LEVELS_MAX already
  */
 bool gz_levels_add(struct gz_levels *levels, const struct gz_brick_level *brick_level);
 
@@ -115,9 +114,9 @@ bool gz_levels_add(struct gz_levels *levels, const struct gz_brick_level *brick_
 void gz_levels_free(struct gz_levels *levels);
 
 /**
- * How far apart the rays of neighbouring pixels are where they reach the box: voxel lengths.
- * Perspective: at the box's point nearest to the eye, so that nowhere they lie closer; 0 for an eye
- * in the box.
+ * Distance between the rays of neighbouring pixels where they reach the box, voxel lengths. In
+ * perspective: at the point of the box nearest to the eye, where they are closest; 0 for an eye
+ * inside the box.
  *
  * @param camera  valid, see gz_camera_rays()
  * @param height  of the picture, px
@@ -127,9 +126,9 @@ double gz_levels_pixel_lengths(const struct gz_volume *volume, const struct gz_c
 
 /**
  * The level for rays @p across voxel lengths apart with samples @p along voxel lengths apart: the
- * coarsest whose voxels are, at most, sqrt(2) times the smaller of both (the nearest power of two).
- * Level 0 for samples and rays less than sqrt(2) voxel lengths apart: wherever the plan has a
- * spacing and a step of 1, a picture finer than the data is not changed by levels.
+ * coarsest whose voxels are at most sqrt(2) times as wide as the smaller of both (the nearest power
+ * of two). If rays or samples are less than sqrt(2) voxel lengths apart it is level 0, so that
+ * levels do not change a picture finer than the data where spacing and step are 1.
  */
 int gz_levels_choose(const struct gz_levels *levels, double across, double along);
 

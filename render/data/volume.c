@@ -12,7 +12,8 @@
 
 #include "render/data/brick_pool.h"
 
-/* Chosen: from here on, pages of 2 MiB spare the renderer most address translation misses. */
+/* Chosen: volumes from HUGE_FROM bytes on use pages of 2 MiB, which avoids most address translation
+ * misses while rendering. */
 #define HUGE_PAGE   ((size_t)2 << 20)
 #define HUGE_FROM   ((size_t)32 << 20)
 #define SMALL_ALIGN ((size_t)64)
@@ -53,15 +54,16 @@ static bool layout_valid(const struct gz_volume *volume)
 	       gz_voxel_size(volume->type) != 0;
 }
 
-/* Asking for more than the machine has would succeed on a kernel that overcommits, and fail by a
- * signal later. */
+/* Whether the machine has so much memory. On a kernel that overcommits, allocating more would
+ * succeed here and end in a signal later. */
 static bool fits_machine(size_t bytes)
 {
 	long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
 	return pages <= 0 || page <= 0 || bytes / (size_t)page < (size_t)pages;
 }
 
-/* A file without a name, or, where the file system knows none, one that loses its name at once. */
+/* A file without a name, or, if the file system does not support that, one whose name is removed at
+ * once. */
 static int open_nameless(const char *folder)
 {
 	char path[4096];
@@ -136,7 +138,7 @@ enum gz_result gz_volume_allocate(struct gz_volume *volume)
 	return gz_volume_allocate_in(volume, NULL);
 }
 
-/* Least and greatest in RANGE_LANES independent lanes, which is what lets a compiler use SIMD. */
+/* Least and greatest in RANGE_LANES independent lanes, so that the compiler can use SIMD. */
 #define DEFINE_RANGE(name, type)                                                        \
 	static void name(const type *v, size_t count, double *out_min, double *out_max) \
 	{                                                                               \

@@ -22,37 +22,37 @@ static inline bool gz_host_big_endian(void)
 	return *(const uint8_t *)&one == 0;
 }
 
-/** What a loader is told beside the file. Zero-initialised is silent, in memory and goes on to the
- *  end; NULL stands for that everywhere. */
+/** How a volume is loaded, made or written. Zero-initialised, or NULL in its place: no reports,
+ *  voxels in memory, no way to stop. */
 struct gz_loading {
 	/**
-	 * Told how far the loading is: often, at the beginning and at the end, on the thread that
-	 * loads. May be NULL.
+	 * Optional: reports progress, several times, on the thread that loads.
 	 *
-	 * @param user   as below
-	 * @param share  done, 0 to 1
-	 * @param what   is loaded: a path, or the name of a formula; valid during the call
-	 * @return false to stop: the loader frees what it has and returns GZ_ERR_CANCELLED
+	 * @param user   the member user
+	 * @param share  of the work that is done, 0 to 1
+	 * @param what   what is loaded: a path, or the name of a formula; valid during the call
+	 * @return false to stop: the loader frees everything and returns GZ_ERR_CANCELLED
 	 */
 	bool (*report)(void *user, double share, const char *what);
 	void *user;
-	/** Folder for a nameless file that the voxels are kept in, so that a volume may be larger
-	 *  than the memory; its blocks are freed with the volume. NULL: in memory. Borrowed. */
+	/** Folder for a nameless file that holds the voxels, so that a volume may be larger than
+	 *  memory; its disk space is freed with the volume. NULL: voxels in memory. Borrowed. */
 	const char *scratch;
-	size_t scratch_from; /**< bytes: smaller volumes stay in memory all the same */
-	/** Bytes of memory for the bricks of a file of bricks; 0: a quarter of the machine's. */
+	size_t scratch_from; /**< bytes; smaller volumes are kept in memory in any case */
+	/** Memory for the bricks of a file of bricks, bytes; 0: a quarter of the machine's. */
 	size_t brick_bytes;
 };
 
-/** Report a share of the work; false where the loader is to stop. */
+/** Report the share of the work that is done, 0 to 1. Returns false if the loader must stop. */
 static inline bool gz_loading_goes_on(const struct gz_loading *loading, double share,
 				      const char *what)
 {
 	return !loading || !loading->report || loading->report(loading->user, share, what);
 }
 
-/** How voxels are stored. Loaders turn every other type into one of these without loss where that
- *  can be: signed integers by an offset that goes into the intercept, wider ones as float. */
+/** How voxels are stored. Loaders convert every other type into one of these, if possible without
+ *  loss: signed integers get an offset that the intercept takes back, wider numbers become float.
+ */
 enum gz_voxel_type {
 	GZ_VOXEL_U8,
 	GZ_VOXEL_U16, /**< host byte order */
@@ -61,36 +61,37 @@ enum gz_voxel_type {
 	GZ_VOXEL_TYPE_COUNT,
 };
 
-/** Bytes of one voxel. */
+/** Size of a voxel, bytes; 0 for an unknown type. */
 size_t gz_voxel_size(enum gz_voxel_type type);
 
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 
-/** Longest edge of a volume in voxel lengths, which anisotropic spacing stretches. Chosen: four
- * times GZ_VOLUME_DIM_MAX; at the finest sampling a ray across the box then has less than 2^22
- * samples, so that their number and a half is exact in single precision. */
+/** Longest edge of a volume in voxel lengths; it may be longer than its number of voxels if spacing
+ * is anisotropic. Chosen: four times GZ_VOLUME_DIM_MAX. At the finest sampling a ray across the box
+ * then has fewer than 2^22 samples, so that a sample's number plus a half is exact in single
+ * precision. */
 #define GZ_VOLUME_EDGE_LENGTHS_MAX 65536
 
-/** Bytes readable behind the last voxel, so that wide loads need no edge case. */
+/** Readable bytes after the last voxel, so that wide loads need no special case at the end. */
 #define GZ_VOLUME_PADDING 64
 
 struct gz_brick_pool;
 
-/** A volume. Read-only once loaded; may be shared by threads, but for its bricks. */
+/** A volume. Read-only once loaded. Threads may share it, except for its bricks. */
 struct gz_volume {
 	int dims[3];       /**< voxels along x (right), y (front), z (up): x varies fastest */
 	double spacing[3]; /**< between voxel centres, mm or whatever the file has; above 0 */
 	enum gz_voxel_type type;
-	void *voxels; /**< dims[0] * dims[1] * dims[2] of them, and GZ_VOLUME_PADDING bytes; NULL
-			 where there are bricks */
-	struct gz_brick_pool *bricks; /**< of a volume that is fetched from a file of bricks as it
-					 is looked at, by one renderer at a time; else NULL */
+	void *voxels; /**< dims[0] * dims[1] * dims[2] voxels and GZ_VOLUME_PADDING bytes; NULL
+			 if the volume has bricks */
+	struct gz_brick_pool *bricks; /**< of a file of bricks, whose voxels are read when they are
+					 visible, by one renderer at a time; else NULL */
 	double slope;                 /**< data value = slope * stored + intercept; not 0 */
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels */
-	bool oriented;                 /**< the file told where right, front and up are */
-	size_t mapped; /**< bytes of a scratch file that voxels are; 0: they are in memory */
+	bool oriented;                 /**< it is known where right, front and up are */
+	size_t mapped; /**< bytes of the scratch file that holds the voxels; 0: memory */
 };
 
 /** Type names of raw files. */
@@ -109,7 +110,7 @@ enum gz_raw_type {
 /** "uint8", … NULL-terminated, in the order of enum gz_raw_type. */
 extern const char *const gz_raw_type_names[];
 
-/** What a headerless file needs to be told. */
+/** The layout of a file without a header. */
 struct gz_raw_layout {
 	int dims[3];
 	enum gz_raw_type type;
@@ -118,31 +119,30 @@ struct gz_raw_layout {
 };
 
 /**
- * Load a volume; the kind follows from the name: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, .raw,
- * .raw.zst, and .zst or .gz round raw data; .bin, .dat, .vol and .img where @p raw is given; .dcm,
- * a file that says it is DICOM, or a folder of one DICOM series.
+ * Load a volume. The format follows from the ending of the name, or from the content if no format
+ * has the ending: see render/data/format.h.
  *
- * @param path        file
- * @param raw         layout of a headerless file; must be NULL for files that have a header
- * @param loading     who is told how far it is, and where the voxels are kept; NULL for nobody and
- * in memory
- * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
+ * @param path     a file, or a folder of one DICOM series
+ * @param raw      layout of a file without a header; must be NULL for files with a header
+ * @param loading  progress, cancelling, and where voxels are kept; may be NULL
+ * @param log      may be NULL
+ * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
  * @retval GZ_ERR_INVAL        @p raw is missing or must not be given; logged
  * @retval GZ_ERR_NOT_FOUND    no such file; logged
  * @retval GZ_ERR_IO           it cannot be read; logged
- * @retval GZ_ERR_FORMAT       truncated, oversized, contradictory, wrong type; logged with the
- * remedy
- * @retval GZ_ERR_UNSUPPORTED  a kind, dimension or encoding that is not read; logged
+ * @retval GZ_ERR_FORMAT       truncated, too large, contradictory or of a wrong type; logged with
+ *                             the remedy
+ * @retval GZ_ERR_UNSUPPORTED  a format, dimension or encoding that is not read; logged
  * @retval GZ_ERR_NO_MEM       logged with the size asked for
- * @retval GZ_ERR_CANCELLED    @p loading said so; not logged
+ * @retval GZ_ERR_CANCELLED    @p loading stopped it; not logged
  *
- * Peak memory is the volume and a small buffer: slices are turned and converted as they are read.
+ * Peak memory is the volume and a small buffer: slices are converted and turned as they are read.
  */
 enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 			      const struct gz_loading *loading, const struct gz_log *log,
 			      struct gz_volume *out_volume);
 
-/** Volumes made by a formula, for scenes that need no file. */
+/** Volumes computed from a formula, for scenes without a file. */
 enum gz_procedural {
 	GZ_PROCEDURAL_SHELLS,    /**< nested shells with spherical harmonics, like a small atom */
 	GZ_PROCEDURAL_SUPERNOVA, /**< turbulent filaments round a hollow centre, float */
@@ -153,7 +153,7 @@ enum gz_procedural {
 /** "shells", "supernova", "chameleon"; NULL-terminated. */
 extern const char *const gz_procedural_names[];
 
-/** The type of voxel that a procedural volume has unless told otherwise. */
+/** The default type of voxels of a procedural volume. */
 enum gz_voxel_type gz_procedural_type(enum gz_procedural which);
 
 /** Which procedural volume to make. */
@@ -172,65 +172,72 @@ struct gz_procedural_request {
  * Make a procedural volume on all processors. The same request gives the same bits each time.
  *
  * @param loading  see gz_volume_load()
- * @param[out] out_volume  filled; the caller frees it with gz_volume_free()
+ * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
  * @retval GZ_ERR_INVAL      the request is out of range; wrong dims or spacing are logged
  * @retval GZ_ERR_NO_MEM     logged
- * @retval GZ_ERR_CANCELLED  @p loading said so; not logged
+ * @retval GZ_ERR_CANCELLED  @p loading stopped it; not logged
  */
 enum gz_result gz_volume_generate(const struct gz_procedural_request *request,
 				  const struct gz_loading *loading, const struct gz_log *log,
 				  struct gz_volume *out_volume);
 
 /**
- * Allocate voxels for a volume whose dims, spacing and type are set, and clear the padding. Voxels
- * are aligned to 64 bytes. slope becomes 1, intercept 0. GZ_ERR_INVAL for dims out of range,
- * spacing not finite and above 0, or an edge of more than GZ_VOLUME_EDGE_LENGTHS_MAX;
- * GZ_ERR_NO_MEM.
+ * Allocate the voxels of a volume whose dims, spacing and type are set, and clear the padding. What
+ * the voxels hold is undefined; they are aligned to 64 bytes. slope becomes 1, intercept 0.
+ *
+ * @retval GZ_ERR_INVAL   dims out of range, spacing not finite or not above 0, or an edge longer
+ *                        than GZ_VOLUME_EDGE_LENGTHS_MAX; not logged
+ * @retval GZ_ERR_NO_MEM  not logged
  */
 enum gz_result gz_volume_allocate(struct gz_volume *volume);
 
-/** As gz_volume_allocate(), in a nameless file in the folder of @p loading, whose blocks are
- * reserved first; without one, or @p loading NULL, in memory. Further errors: GZ_ERR_FULL where the
- * disk has no room, GZ_ERR_IO. */
+/**
+ * As gz_volume_allocate(), but in a nameless file in the scratch folder of @p loading if it has one
+ * and the voxels take at least scratch_from bytes. Disk space is reserved first, so that a full
+ * disk is an error here and not a signal later.
+ *
+ * @retval GZ_ERR_FULL       the disk is full; not logged
+ * @retval GZ_ERR_NOT_FOUND  there is no such folder; not logged
+ * @retval GZ_ERR_IO         no file can be created there; not logged
+ */
 enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading);
 
-/** Find stored_min and stored_max. */
+/** Set stored_min and stored_max to the least and greatest voxel. */
 void gz_volume_find_range(struct gz_volume *volume);
 
-/** Free the voxels or close the bricks, and zero the struct. Accepts a zeroed one. */
+/** Free the voxels or close the bricks, and zero the struct. Accepts a zero-initialised volume. */
 void gz_volume_free(struct gz_volume *volume);
 
-/** The longest edge in voxel lengths, of any dims and spacing above 0. */
+/** The longest edge of a box of voxels, in voxel lengths; dims and spacing must be above 0. */
 double gz_volume_edge_lengths(const int dims[3], const double spacing[3]);
 
 /** Number of voxels. */
 size_t gz_volume_voxel_count(const struct gz_volume *volume);
 
-/** Half the edges of the world box. */
+/** Half of each edge of the box, world units. */
 void gz_volume_half_extent(const struct gz_volume *volume, double out_half[3]);
 
-/** The voxel length, in world units. */
+/** The voxel length, world units. */
 double gz_volume_voxel_length(const struct gz_volume *volume);
 
-/** What two volumes hardly share by chance. */
+/** Properties that distinguish volumes: sessions and pictures keep them, to notice when a file's
+ * data have changed. */
 struct gz_volume_identity {
 	int dims[3];
 	enum gz_voxel_type type;
 	double spacing[3];
-	double least, greatest; /**< data values, as of slope and intercept */
-	bool has_crc;           /**< voxels were looked at: none are at hand of a file of bricks */
+	double least, greatest; /**< data values: slope and intercept applied */
+	bool has_crc;           /**< false for a file of bricks, whose voxels are not in memory */
 	uint32_t crc;           /**< CRC-32 of some of the voxels, see gz_volume_identify() */
 };
 
 /**
- * Tell which volume it is.
- *
- * The CRC is of 4096 runs of 64 bytes, evenly strewn over the voxels, or of all where they are
- * fewer: enough to tell volumes apart, and quick for one of any size.
+ * Identify a volume. The CRC covers 4096 runs of 64 bytes, evenly spaced over the voxels, or all
+ * voxels if there are fewer: enough to distinguish volumes, and quick for any size.
  */
 struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume);
 
-/** Whether both are of one volume; of a CRC that one of them lacks, nothing is asked. */
+/** Whether two identities are equal. The CRC counts only if both have one. */
 bool gz_volume_identity_same(const struct gz_volume_identity *a,
 			     const struct gz_volume_identity *b);
 

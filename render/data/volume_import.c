@@ -10,13 +10,13 @@
 
 #define GZ_LOG_MODULE "volume"
 
-/* Numbers read at once. Chosen: fits a second-level cache with its conversion. */
+/* Numbers read at once. Chosen: they and their conversion fit a second-level cache. */
 #define CHUNK_NUMBERS 16384
 
-/* Directions whose determinant, of unit vectors, is below this do not span space (chosen). */
+/* Unit vectors with a determinant below this do not span space (chosen). */
 #define SINGULAR 1e-3
 
-/* From here on the log says that a volume is oblique (chosen: below, nobody would see it). */
+/* From this angle on the log says that a volume is oblique (chosen: less is not visible). */
 #define OBLIQUE_DEG 1.0
 
 #define DEG_PER_RAD (180.0 / 3.14159265358979323846)
@@ -37,13 +37,13 @@ size_t gz_raw_type_size(enum gz_raw_type type)
 	return (unsigned)type < GZ_RAW_TYPE_COUNT ? gz_voxel_conversions[type].size : 0;
 }
 
-/* Where the voxels of the file's axes go. */
+/* Which axes of the volume the file's axes become. */
 struct axis_map {
 	int world[3]; /* the world axis nearest to each file axis */
 	bool flip[3];
 };
 
-/* Everything that one import needs, made once. */
+/* One import. */
 struct import {
 	const struct gz_import_layout *layout;
 	const struct gz_voxel_conversion *conversion;
@@ -105,7 +105,7 @@ static bool unit_directions(const struct gz_import_layout *layout, double out[3]
 	return fabs(determinant) > SINGULAR;
 }
 
-/* The permutation whose axes agree best with the directions: the greatest sum of cosines. */
+/* The permutation of axes that agrees best with the directions: the greatest sum of cosines. */
 static void nearest_axes(const double unit[3][3], struct axis_map *out_map)
 {
 	static const int permutations[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 },
@@ -146,7 +146,7 @@ static enum gz_result map_axes(const struct gz_import_layout *layout,
 	return GZ_OK;
 }
 
-/* Refuse a size that the file cannot hold before memory is taken for it. */
+/* Refuse a size that the file cannot hold, before memory is allocated for it. */
 static enum gz_result check_claimed_size(const struct gz_byte_stream *stream,
 					 const struct import *import, uint64_t bytes)
 {
@@ -213,14 +213,14 @@ static enum gz_result refuse_short_data(const struct import *import, uint64_t go
 	return GZ_ERR_FORMAT;
 }
 
-/* What is read and not placed yet. */
+/* Voxels that are read and not placed yet. */
 struct slab {
-	uint8_t *numbers; /* CHUNK_NUMBERS of the file */
-	uint8_t *voxels;  /* made of them */
+	uint8_t *numbers; /* room for CHUNK_NUMBERS of the file */
+	uint8_t *voxels;  /* converted numbers */
 	size_t filled;
 };
 
-/* Voxels from number `index` of the file on, until the slab has `count`. */
+/* Read `count` voxels into the slab, beginning with number `index` of the file. */
 static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct import *import,
 				uint64_t index, size_t count, struct slab *slab)
 {
@@ -271,8 +271,8 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 	return result;
 }
 
-/* Also brings the decoder to its checksum: bytes too many are often the first sign of damage. They
- * are followed for as long again as the voxels, no farther. */
+/* Read on after the voxels: the decoder then checks its checksum, and extra bytes are often the
+ * first sign of damage. At most as many bytes again as the voxels are read. */
 static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct import *import,
 				     uint64_t bytes)
 {
@@ -289,13 +289,14 @@ static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct
 	} while (got == sizeof scrap && more < bytes);
 	if (more > 0)
 		gz_warn(import->file->log,
-			"%s: data go on behind the last voxel and are left out; are dims and type "
+			"%s: there are more data after the last voxel; they are left out; are dims "
+			"and type "
 			"right?",
 			import->file->path);
 	return GZ_OK;
 }
 
-/* Replace what is not finite by the least finite value. */
+/* Replace values that are not finite by the least finite value. */
 static enum gz_result make_finite(const struct import *import)
 {
 	if (import->volume->type != GZ_VOXEL_F32)
@@ -376,7 +377,7 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	return GZ_OK;
 }
 
-/* Bytes to pass over; those that the layout asks for are checked against the file by the import. */
+/* Bytes to skip. gz_volume_import() checks that the voxels fit the file. */
 static uint64_t bytes_to_skip(const struct gz_voxel_source *source,
 			      const struct gz_import_layout *layout,
 			      const struct gz_byte_stream *stream)

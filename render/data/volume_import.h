@@ -26,7 +26,7 @@ struct gz_volume_file {
 	const struct gz_log *log;         /**< may be NULL */
 };
 
-/** What a file says of its voxels. Axes are the file's own, the fastest first. */
+/** The layout of a file's voxels. Axes are the file's own, the fastest first. */
 struct gz_import_layout {
 	int dims[3];
 	double spacing[3];
@@ -35,24 +35,24 @@ struct gz_import_layout {
 	enum gz_raw_type type;
 	bool big_endian;
 	double slope, intercept; /**< data value = slope * number in the file + intercept */
-	bool more_follows;       /**< bytes behind the voxels are expected */
+	bool more_follows;       /**< more bytes after the voxels are no reason for a warning */
 };
 
-/** One voxel of spacing 1 of unsigned bytes, axes as stored, slope 1: a loader's starting point. */
+/** A loader's starting point: one voxel, spacing 1, unsigned bytes, axes as stored, slope 1. */
 struct gz_import_layout gz_import_layout_default(void);
 
 /** Bytes of one voxel of @p type in a file. */
 size_t gz_raw_type_size(enum gz_raw_type type);
 
 /**
- * Read the voxels and make the volume of them. Signed integers move into unsigned ones and the
- * intercept makes up for it; 32-bit integers and doubles become float.
+ * Read the voxels of a file into a volume. Signed integers become unsigned ones with an offset in
+ * the intercept; 32-bit integers and doubles become float.
  *
  * @param stream  at the first voxel
- * @param layout  checked here: any number may stand in it
+ * @param layout  all of it is checked here
  * @param file    its path is for messages and progress
  * @param[out] out_volume  the caller frees it with gz_volume_free()
- * @retval GZ_ERR_FORMAT  dims, spacing, directions, slope or length of the data are wrong; logged
+ * @retval GZ_ERR_FORMAT  wrong dims, spacing, directions, slope or length of the data; logged
  * @retval GZ_ERR_IO      logged
  * @retval GZ_ERR_NO_MEM  logged with the size asked for
  * @retval GZ_ERR_CANCELLED  the file's loading says so; not logged
@@ -61,20 +61,20 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				const struct gz_import_layout *layout,
 				const struct gz_volume_file *file, struct gz_volume *out_volume);
 
-/** Skip that puts the voxels at the end of the file. */
+/** A skip that puts the voxels at the end of the file. */
 #define GZ_SKIP_TO_END (-1)
 
-/** A place in a file. */
+/** Where a header says that the voxels are. */
 struct gz_voxel_source {
 	char path[GZ_PATH_SIZE];
 	enum gz_coding coding;
-	uint64_t offset; /**< bytes of the file before the coded data */
-	int64_t skip;    /**< bytes to pass over behind that, after decoding; or GZ_SKIP_TO_END,
-			    for plain data only */
+	uint64_t offset; /**< bytes of the file before the data */
+	int64_t skip;    /**< bytes to skip after that, of the decoded data; or, for plain data
+			    only, GZ_SKIP_TO_END */
 };
 
-/** Open the source and import the voxels: errors of gz_byte_stream_open(), gz_byte_stream_skip()
- * and gz_volume_import(), all logged. */
+/** Open the source and import its voxels; messages name the source's path. Errors of
+ *  gz_byte_stream_open(), gz_byte_stream_skip() and gz_volume_import(), all logged. */
 enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
 				      const struct gz_import_layout *layout,
 				      const struct gz_volume_file *file,

@@ -45,7 +45,7 @@ static void convert_i8(const uint8_t *source, size_t count, bool swap, void *tar
 		out[i] = source[i] ^ 0x80;
 }
 
-/* The sign bit turned round adds half the range: -32768 becomes 0. */
+/* Flipping the sign bit adds half the range: -32768 becomes 0. */
 #define DEFINE_CONVERT(name, bits, out_type, expression)                               \
 	static void name(const uint8_t *source, size_t count, bool swap, void *target) \
 	{                                                                              \
@@ -109,35 +109,35 @@ enum {
 		32, /* of the file's fastest axis; chosen: a tile fills a few lines of each */
 };
 
-/* Voxels of a slab that no axis is turned in: chosen, fits a second-level cache. */
+/* Voxels of a slab if no axis is turned. Chosen: fits a second-level cache. */
 #define RUN_VOXELS ((size_t)16384)
 
-/* Room for a slab, bytes: chosen, 16 slices of 256 x 256 voxels of 16 bits; no more than a share of
- * the volume, so that loading takes little beside it. */
+/* Size of a slab, bytes. Chosen: 16 slices of 256 x 256 voxels of 16 bits; for large volumes a
+ * share of the volume, so that loading needs little memory beside it. */
 #define SLAB_BYTES ((size_t)2 << 20)
 #define SLAB_SHARE 128
 
-/* The axis of the file that the volume's fastest one is. */
+/* The axis of the file that becomes the volume's fastest axis. */
 static int fastest_axis(const struct gz_voxel_place *place)
 {
 	int fastest = 0;
 	for (int axis = 1; axis < 3; axis++) {
 		const bool steps_one = place->stride[axis] == 1 || place->stride[axis] == -1;
-		/* An axis of one voxel may share the step with the one that counts. */
+		/* An axis of one voxel may have the same step. */
 		if (steps_one && place->dims[axis] > 1)
 			fastest = axis;
 	}
 	return fastest;
 }
 
-/* Voxels of the file from one row or slice to the next. */
+/* Voxels of the file in a row (axis 1) or slice (axis 2). */
 static size_t axis_unit(const struct gz_voxel_place *place, int axis)
 {
 	const size_t row = (size_t)place->dims[0];
 	return axis == 1 ? row : row * (size_t)place->dims[1];
 }
 
-/* Rows or slices to a slab. */
+/* Rows or slices in a slab. */
 static size_t slab_thickness(const struct gz_voxel_place *place, int axis, enum gz_voxel_type type)
 {
 	const size_t size = gz_voxel_size(type), unit = axis_unit(place, axis) * size;
@@ -179,7 +179,7 @@ static char *voxel_address(const struct gz_voxel_place *place, const struct gz_v
 	return (char *)volume->voxels + at * (ptrdiff_t)gz_voxel_size(volume->type);
 }
 
-/* Rows whose voxels lie one after the other in the volume too, maybe backwards. */
+/* Place rows whose voxels are neighbours in the volume too, possibly in reverse order. */
 static void place_runs(const struct gz_voxel_place *place, const struct gz_volume *volume,
 		       const char *from, uint64_t index, size_t count)
 {
@@ -198,13 +198,13 @@ static void place_runs(const struct gz_voxel_place *place, const struct gz_volum
 	}
 }
 
-/* A tile: columns of the file's fastest axis by rows (or slices) that are neighbours in the
- * volume. */
+/* A tile: columns of the file's fastest axis by rows or slices that are neighbours in the volume.
+ */
 struct tile {
 	const char *from;
-	size_t pitch; /* voxels of the file between its rows */
+	size_t pitch; /* voxels of the file from one row to the next */
 	size_t rows, columns;
-	bool backwards; /* the first row comes last in the volume */
+	bool backwards; /* the first row is the last in the volume */
 };
 
 #define DEFINE_TURN(name, type)                                                          \
@@ -222,7 +222,7 @@ DEFINE_TURN(turn_1, uint8_t)
 DEFINE_TURN(turn_2, uint16_t)
 DEFINE_TURN(turn_4, uint32_t)
 
-/* Each column becomes a run of the volume, a line of `lines`. */
+/* Transpose a tile: each column becomes a line of `lines`. */
 static void turn_tile(const struct tile *tile, size_t size, void *lines)
 {
 	if (size == 1)
@@ -233,7 +233,7 @@ static void turn_tile(const struct tile *tile, size_t size, void *lines)
 		turn_4(tile, lines);
 }
 
-/* One row of tiles, the first voxel of which is (0, y, z) of the file. */
+/* Place one row of tiles, whose first voxel is (0, y, z) of the file. */
 static void place_tiles(const struct gz_voxel_place *place, const struct gz_volume *volume,
 			struct tile *tile, size_t y, size_t z, int axis)
 {

@@ -16,50 +16,51 @@
 
 #include "render/data/volume.h"
 
-/** How one type of number is read. */
+/** How numbers of one type become voxels. */
 struct gz_voxel_conversion {
 	size_t size;             /**< bytes of a number in the file */
-	enum gz_voxel_type type; /**< what it becomes */
+	enum gz_voxel_type type; /**< of the voxels */
 	double offset;           /**< number = voxel + offset */
-	/** @p source need not be aligned; @p swap: its byte order is not the host's. */
+	/** Convert @p count numbers. @p source need not be aligned; @p swap: its byte order is not
+	 *  the host's. */
 	void (*convert)(const uint8_t *source, size_t count, bool swap, void *target);
 };
 
-/** One a raw type. */
+/** Indexed by enum gz_raw_type. */
 extern const struct gz_voxel_conversion gz_voxel_conversions[GZ_RAW_TYPE_COUNT];
 
 /** Write @p count voxels to @p target, @p stride voxels apart (may be negative). */
 void gz_voxel_scatter(enum gz_voxel_type type, const void *source, size_t count, void *target,
 		      ptrdiff_t stride);
 
-/** Where the voxels of a file go. */
+/** Where the voxels of a file are placed in a volume. */
 struct gz_voxel_place {
 	int dims[3];         /**< of the file, the fastest first */
-	ptrdiff_t first;     /**< the volume's voxel that the file's first one is */
-	ptrdiff_t stride[3]; /**< voxels of the volume from one to the next along each axis of the
-				file; negative where it is flipped */
+	ptrdiff_t first;     /**< index in the volume of the file's first voxel */
+	ptrdiff_t stride[3]; /**< step in the volume along each axis of the file, voxels; negative
+				if the axis is flipped */
 };
 
 /**
  * How many voxels to place at once.
  *
  * @param type   of the volume's voxels
- * @param index  of the first of them in the file: 0, or where the slab before ended
+ * @param index  number of the first of them in the file: 0, or where the previous slab ended
  * @return 1 to gz_voxel_place_most(); no more than are left
  */
 size_t gz_voxel_place_next(const struct gz_voxel_place *place, enum gz_voxel_type type,
 			   uint64_t index);
 
-/** The most that gz_voxel_place_next() asks for. Their bytes are at most 2 MiB, 1/128 of the volume
- *  or one row or slice of it, whichever is the most. */
+/** The most voxels that gz_voxel_place_next() asks for. They take at most 2 MiB, 1/128 of the
+ * volume, or one row or slice of it, whichever is largest. */
 size_t gz_voxel_place_most(const struct gz_voxel_place *place, enum gz_voxel_type type);
 
 /**
- * Put voxels into @p volume.
+ * Place voxels in @p volume.
  *
- * @param voxels  in the order of the file, converted already
- * @param index   the first one's number in the file
- * @param count   what gz_voxel_place_next() told for @p index
+ * @param voxels  in the order of the file, already converted
+ * @param index   number of the first voxel in the file
+ * @param count   the result of gz_voxel_place_next() for @p index
  */
 void gz_voxel_place(const struct gz_voxel_place *place, const struct gz_volume *volume,
 		    const void *voxels, uint64_t index, size_t count);

@@ -168,17 +168,17 @@ static const struct preset {
 	void (*make)(struct making *making);
 } presets[GZ_PRESET_COUNT] = {
 	[GZ_PRESET_TISSUE] = { { "Soft tissue and bone",
-				 "soft parts as a veil, dense parts solid" },
+				 "soft tissue as a veil, dense tissue solid" },
 			       make_tissue },
-	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, between object and background" },
+	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, where object and background separate" },
 				make_surface },
-	[GZ_PRESET_GLASS] = { { "Glass", "two transparent surfaces, the inner one amber" },
+	[GZ_PRESET_GLASS] = { { "Glass", "two translucent surfaces, the inner one amber" },
 			      make_glass },
-	[GZ_PRESET_GREY] = { { "Grey ramp", "the brighter, the denser" }, make_grey },
+	[GZ_PRESET_GREY] = { { "Grey ramp", "denser is brighter" }, make_grey },
 	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities" }, make_heat },
-	[GZ_PRESET_INVERSE] = { { "Inverse", "the darker, the denser: for a bright background" },
+	[GZ_PRESET_INVERSE] = { { "Inverse", "denser is darker, for a bright background" },
 				make_inverse },
-	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing hides" }, make_xray },
+	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing is hidden" }, make_xray },
 };
 
 const char *const gz_transfer_preset_names[] = { "tissue", "surface", "glass", "grey",

@@ -247,7 +247,7 @@ static void trailing_data_are_left_out_with_a_warning(void **state)
 					&log.log, &v),
 			 GZ_OK);
 	assert_int_equal(log.level, GZ_LOG_WARN);
-	assert_non_null(strstr(log.last, "data go on behind the last voxel"));
+	assert_non_null(strstr(log.last, "more data after the last voxel"));
 	check_straight(&v);
 }
 
