@@ -90,9 +90,21 @@ function(gz_probe name)
 	target_link_libraries(${name} PRIVATE ${P_USES} gz_settings)
 endfunction()
 
-set(gz_test_environment "")
+# The longest wait for a condition in a test (tests/suite.h), and how many times longer a test may take in
+# this build.
+if(GAZECAST_SANITIZE)
+	set(gz_test_patience_s 120)
+	set(gz_test_slowness 4)
+else()
+	set(gz_test_patience_s 30)
+	set(gz_test_slowness 1)
+endif()
+math(EXPR gz_quick_timeout "60 * ${gz_test_slowness}")
+math(EXPR gz_pipeline_timeout "180 * ${gz_test_slowness}")
+
+set(gz_test_environment "GZ_TEST_PATIENCE_S=${gz_test_patience_s}")
 if(GAZECAST_SANITIZE MATCHES thread)
-	set(gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp:die_after_fork=0")
+	list(APPEND gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp:die_after_fork=0")
 endif()
 
 # gz_test_program(NAME SUITES suite... [FOLDER folder] [USES target...] [SOURCES more...]
@@ -119,7 +131,7 @@ function(gz_test_program name)
 	endif()
 	foreach(suite ${T_SUITES})
 		add_test(NAME ${T_FOLDER}.${suite} COMMAND ${target} test_${suite})
-		set_tests_properties(${T_FOLDER}.${suite} PROPERTIES TIMEOUT 60 SKIP_RETURN_CODE 77
+		set_tests_properties(${T_FOLDER}.${suite} PROPERTIES TIMEOUT ${gz_quick_timeout} SKIP_RETURN_CODE 77
 			LABELS quick ENVIRONMENT "${gz_test_environment}")
 	endforeach()
 endfunction()

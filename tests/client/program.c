@@ -12,8 +12,6 @@
 
 #include "base/clock.h"
 
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 void program_start(struct program *program, const char *const *arguments)
 {
 	int out[2], err[2];

@@ -13,9 +13,6 @@
 #include "protocol/endpoint.h"
 #include "protocol/gaze.h"
 
-/** Long enough for anything that should happen at once, even on a busy machine, ns. */
-#define PATIENCE_NS INT64_C(10000000000)
-
 /** Make a new directory and set GAZECAST_RUNTIME_DIR to it. A cmocka group setup. */
 int runtime_directory_make(void **state);
 

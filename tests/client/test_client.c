@@ -56,7 +56,7 @@ static int64_t wait_connected(struct gz_client *client, bool wanted)
 	while (is_connected(client) != wanted) {
 		if (gz_clock_now_ns() > start_ns + PATIENCE_NS)
 			fail_msg("the client is %sconnected for %d s", wanted ? "not " : "",
-				 (int)(PATIENCE_NS / GZ_NS_PER_S));
+				 PATIENCE_S);
 		gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS / 4);
 	}
 	return gz_clock_now_ns() - start_ns;

@@ -33,13 +33,13 @@ static void wait_connection(struct publisher *publisher, struct gz_stream *strea
 	static const unsigned char last[] = { 0x81, 0xa1, 'z', 0x01 };
 	publisher_send(publisher, topic, last, sizeof last);
 	while (message.size != sizeof last)
-		assert_int_equal(gz_stream_read(stream, 5000, &message), GZ_OK);
+		assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
 }
 
 static struct gz_message read_message(struct gz_stream *stream)
 {
 	struct gz_message message;
-	assert_int_equal(gz_stream_read(stream, 5000, &message), GZ_OK);
+	assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
 	return message;
 }
 

@@ -73,7 +73,7 @@ static int tear_down(void **state)
 static void expect_pointer(const struct gz_point *point, int64_t time_ns)
 {
 	struct gz_viewer_pointer pointer;
-	assert_true(receive(5000));
+	assert_true(receive(PATIENCE_MS));
 	assert_string_equal(topic, GZ_TOPIC_POINTER);
 	assert_int_equal(gz_wire_decode_pointer(bytes, (size_t)size, &pointer), GZ_OK);
 	assert_int_equal(pointer.known, point != NULL);
@@ -107,7 +107,7 @@ static void pointer_is_sent_when_it_moves_and_now_and_then_at_rest(void **state)
 static void expect_window(const int *rect_px)
 {
 	struct gz_viewer_window window;
-	assert_true(receive(5000));
+	assert_true(receive(PATIENCE_MS));
 	assert_string_equal(topic, GZ_TOPIC_WINDOW);
 	assert_int_equal(gz_wire_decode_window(bytes, (size_t)size, &window), GZ_OK);
 	assert_int_equal(window.known, rect_px != NULL);

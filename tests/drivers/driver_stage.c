@@ -7,9 +7,6 @@
 
 #include "base/clock.h"
 
-/* A device that is present never needs it; a busy machine may. */
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 static void remember_line(void *user, enum gz_log_level level, const char *module,
 			  const char *message)
 {

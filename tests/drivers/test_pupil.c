@@ -10,9 +10,6 @@
 #include "driver_stage.h"
 #include "pupil_capture.h"
 
-/* Longest wait on a busy machine, ns. */
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 static struct pupil_capture capture;
 static struct gz_device *device;
 static struct driver_stage stage;

@@ -21,9 +21,6 @@
 #include "base/clock.h"
 #include "protocol/wire.h"
 
-/* Longest wait for a daemon on a busy machine, under a sanitizer. */
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 enum { ARGUMENTS_MAX = 32 };
 
 /* Daemons of one test that have not ended yet. */
@@ -186,7 +183,7 @@ static const char *request_within(const struct gazed_place *place, const char *r
 
 const char *gazed_request(const struct gazed_place *place, const char *request, double *out_ms)
 {
-	const char *answer = request_within(place, request, 5000, out_ms);
+	const char *answer = request_within(place, request, PATIENCE_MS, out_ms);
 	if (!answer)
 		fail_msg("no answer to \"%s\"", request);
 	return answer;
@@ -212,7 +209,7 @@ int gazed_wait_exit(struct gazed_process *process)
 	/* A file descriptor of the process becomes readable when it ends. */
 	int fd = (int)syscall(SYS_pidfd_open, process->pid, 0);
 	struct pollfd end = { .fd = fd, .events = POLLIN };
-	if (fd >= 0 && poll(&end, 1, (int)(PATIENCE_NS / GZ_NS_PER_MS)) == 0) {
+	if (fd >= 0 && poll(&end, 1, PATIENCE_MS) == 0) {
 		gazed_kill_all();
 		fail_msg("gazed does not end: %s", gazed_said(process));
 	}
@@ -292,7 +289,7 @@ bool reader_receive(struct reader *reader, int timeout_ms)
 void reader_receive_gaze(struct reader *reader, size_t count)
 {
 	while (reader->gaze_count < count) {
-		if (!reader_receive(reader, (int)(PATIENCE_NS / GZ_NS_PER_MS)))
+		if (!reader_receive(reader, PATIENCE_MS))
 			fail_msg("%zu of %zu gaze messages", reader->gaze_count, count);
 	}
 }

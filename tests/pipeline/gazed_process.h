@@ -50,10 +50,10 @@ void gazed_spawn(const struct gazed_start *start, struct gazed_process *out);
 /** Kill the daemons that a failed test has left running. */
 void gazed_kill_all(void);
 
-/** Wait until its control socket answers; fails the test after 20 s or when it exits. */
+/** Wait until its control socket answers; fails the test when patience ends or when it exits. */
 void gazed_wait_ready(const struct gazed_place *place, struct gazed_process *process);
 
-/** Wait until it ends, 20 s at most. @return exit status, or -signal */
+/** Wait until it ends. @return exit status, or -signal */
 int gazed_wait_exit(struct gazed_process *process);
 
 /** Send @p signal and wait for the end. */
@@ -62,7 +62,8 @@ int gazed_stop(struct gazed_process *process, int signal);
 /** Its log so far; static buffer. */
 const char *gazed_said(const struct gazed_process *process);
 
-/** One request over the control socket; the answer in a static buffer; fails the test after 5 s.
+/** One request over the control socket; the answer in a static buffer; fails the test after
+ * PATIENCE_S.
  *  @param[out] out_ms  how long it took; may be NULL */
 const char *gazed_request(const struct gazed_place *place, const char *request, double *out_ms);
 
@@ -92,10 +93,10 @@ void reader_open(struct reader *reader, const struct gazed_place *place, const c
 /** Receive one message, @p timeout_ms at most. @return whether one came */
 bool reader_receive(struct reader *reader, int timeout_ms);
 
-/** Receive until there are @p count gaze messages; fails the test if none comes for 20 s. */
+/** Receive until there are @p count gaze messages; fails the test if none comes for PATIENCE_S. */
 void reader_receive_gaze(struct reader *reader, size_t count);
 
-/** Receive until the daemon's recording is in @p state; fails the test after 20 s. */
+/** Receive until the daemon's recording is in @p state; fails the test after PATIENCE_S. */
 void reader_wait_recording(struct reader *reader, enum gz_recording_state state);
 
 /** Receive the remaining messages, until nothing comes for @p quiet_ms. */

@@ -49,7 +49,7 @@ static struct gz_gaze receive_gaze(struct reader *reader)
 	char topic[80];
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
 	struct gz_gaze gaze = { 0 };
-	int patience_ms = 20000;
+	int patience_ms = PATIENCE_MS;
 	zmq_setsockopt(reader->socket, ZMQ_RCVTIMEO, &patience_ms, sizeof patience_ms);
 	int length = zmq_recv(reader->socket, topic, sizeof topic, 0);
 	int size = length < 0 ? -1 : zmq_recv(reader->socket, bytes, sizeof bytes, 0);
@@ -121,7 +121,7 @@ static long memory_kib(pid_t pid)
 static void wait_samples(struct reader *reader, uint64_t count)
 {
 	while (reader->status_count == 0 || reader->status.samples < count)
-		if (!reader_receive(reader, 20000))
+		if (!reader_receive(reader, PATIENCE_MS))
 			fail_msg("no status after %llu of %llu samples",
 				 (unsigned long long)reader->status.samples,
 				 (unsigned long long)count);

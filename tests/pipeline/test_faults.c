@@ -101,7 +101,7 @@ static bool is_gaze(const struct received *message)
 
 static void wait_status(struct reader *reader, uint64_t samples)
 {
-	int64_t deadline_ns = gz_clock_now_ns() + 20 * GZ_NS_PER_S;
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	while (reader->status_count == 0 || reader->status.samples < samples) {
 		reader_receive(reader, 1000);
 		if (gz_clock_now_ns() > deadline_ns)

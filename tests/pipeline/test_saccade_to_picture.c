@@ -202,7 +202,7 @@ static int run_pipeline(void **state)
 	gz_endpoint_ipc(folder, "stream", stream_endpoint, sizeof stream_endpoint);
 	if (gz_stream_open(stream_endpoint, NULL, NULL, &stream) != GZ_OK)
 		return -1;
-	int64_t deadline_ns = gz_clock_now_ns() + 10 * GZ_NS_PER_S;
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
 	while (message_count == 0 && gz_clock_now_ns() < deadline_ns) {
 		if (gz_stream_read(stream, 100, &message) == GZ_OK)
 			take(&message);

@@ -21,9 +21,6 @@
 #include "gazed_process.h"
 #include "protocol/key.h"
 
-/* Longest wait for a daemon on a busy machine, under a sanitizer. */
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 enum { ATTEMPTS = 8 };
 
 static struct gazed_place place;
@@ -179,14 +176,14 @@ static struct gz_keys own_keys(void)
 
 static void must_be_let_in(const struct gz_keys *keys)
 {
-	enum gz_result result = ask(keys, (int)(PATIENCE_NS / GZ_NS_PER_MS));
+	enum gz_result result = ask(keys, PATIENCE_MS);
 	if (result != GZ_OK)
 		fail_msg("%s: %s", gz_result_text(result), captured.last);
 }
 
 static void must_be_refused(const struct gz_keys *keys, const char *why)
 {
-	enum gz_result result = ask(keys, (int)(PATIENCE_NS / GZ_NS_PER_MS));
+	enum gz_result result = ask(keys, PATIENCE_MS);
 	if (result != GZ_ERR_ACCESS || !strstr(captured.last, why))
 		fail_msg("%s: %s, not %s", gz_result_text(result), captured.last, why);
 }
@@ -238,12 +235,10 @@ static void curve_authorised_client_reads_stream_latest_and_control(void **state
 	/* With the usual files, without naming keys. */
 	assert_int_equal(gz_control_open(control, &captured.log, &asked), GZ_OK);
 	assert_non_null(gz_control_keys(asked));
-	assert_int_equal(gz_control_stream_endpoint(asked, (int)(PATIENCE_NS / GZ_NS_PER_MS),
-						    endpoint, sizeof endpoint),
+	assert_int_equal(gz_control_stream_endpoint(asked, PATIENCE_MS, endpoint, sizeof endpoint),
 			 GZ_OK);
 	assert_int_equal(gz_stream_open(endpoint, NULL, &captured.log, &stream), GZ_OK);
-	assert_int_equal(gz_stream_read(stream, (int)(PATIENCE_NS / GZ_NS_PER_MS), &message),
-			 GZ_OK);
+	assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
 	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", port_by("LATEST_PORT"));
 	assert_int_equal(gz_client_open(endpoint, &captured.log, &client), GZ_OK);
 	receive_latest(client);
@@ -413,7 +408,7 @@ static void client_with_keys_is_told_that_the_daemon_has_none(void **state)
 		spawn((const char *const[]) { "--tcp=loopback", "--control", control, NULL });
 	gazed_wait_ready(&place, &gazed);
 	/* libzmq reports one or the other, depending on how the bytes arrive. */
-	enum gz_result result = ask(&keys, (int)(PATIENCE_NS / GZ_NS_PER_MS));
+	enum gz_result result = ask(&keys, PATIENCE_MS);
 	assert_int_equal(result, GZ_ERR_ACCESS);
 	if (!strstr(captured.last, "does not use keys") &&
 	    !strstr(captured.last, "closes the connection"))
@@ -476,8 +471,7 @@ static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **st
 	struct gz_message message;
 	assert_int_equal(gz_stream_open(NULL, NULL, &captured.log, &stream), GZ_OK);
 	for (int samples = 0; samples < SAMPLES;) {
-		assert_int_equal(
-			gz_stream_read(stream, (int)(PATIENCE_NS / GZ_NS_PER_MS), &message), GZ_OK);
+		assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
 		samples += message.kind == GZ_MESSAGE_GAZE;
 	}
 	gz_stream_get_counters(stream, &counters);
@@ -526,7 +520,7 @@ static void curve_peer_of_an_older_protocol_hears_nothing(void **state)
 		char bytes[4096];
 		size_t received = 0;
 		ssize_t n;
-		struct timeval patience = { .tv_sec = PATIENCE_NS / GZ_NS_PER_S };
+		struct timeval patience = { .tv_sec = PATIENCE_S };
 		int fd = socket(AF_INET, SOCK_STREAM, 0);
 		setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
 		assert_int_equal(connect(fd, (struct sockaddr *)&address, sizeof address), 0);

@@ -17,9 +17,6 @@
 #include "base/clock.h"
 #include "gazed_process.h"
 
-/* Longest wait for a daemon on a busy machine, under a sanitizer. */
-enum { PATIENCE_MS = 20000 };
-
 /* The period of a watchdog that wants a sign of life every 0.1 s. */
 static const char watchdog_usec[] = "200000";
 

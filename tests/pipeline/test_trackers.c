@@ -15,9 +15,6 @@
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
-/* Longest wait for something that takes a moment, ns. */
-#define PATIENCE_NS (20 * GZ_NS_PER_S)
-
 static struct gazed_place place;
 static struct reader reader;
 static struct gazepoint_server server;
