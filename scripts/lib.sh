@@ -19,9 +19,11 @@ die() {
 	exit 1
 }
 
-child=
+do_step=run_step # how steps are done
+child=           # the process group of the step that runs now
+lane=            # the process group of the steps beside it
 
-# start_child COMMAND...: start it in a process group of its own, so that stop_child ends all of it.
+# start_child COMMAND...: start it in a process group of its own, so that stop_children ends all of it.
 start_child() {
 	set -m
 	"$@" &
@@ -29,45 +31,64 @@ start_child() {
 	set +m
 }
 
-stop_child() {
-	[ -z "$child" ] || kill -TERM -- "-$child" 2>/dev/null || true
+stop_children() {
+	local group
+	for group in $child $lane; do
+		kill -TERM -- "-$group" 2>/dev/null || true
+	done
 	child=
+	lane=
 }
 
-trap stop_child EXIT
+trap stop_children EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 
-# run_step NAME COMMAND...: run a long command with its output in build/logs/NAME.log, showing the last
-# line now and then; on failure show the end of the log and return the command's status.
-run_step() {
-	local name=$1 log=$logs/$1.log every=10 begin=$SECONDS status=0 last
-	shift
+# watch_step NAME SECONDS COMMAND...: while COMMAND succeeds, show the last line of build/logs/NAME.log
+# now and then; NAME began at SECONDS.
+watch_step() {
+	local name=$1 log=$logs/$1.log every=10 begin=$2 last
+	shift 2
 	[ -t 1 ] && every=1
-	start_child "$@" >"$log" 2>&1 </dev/null
 	local next=$((SECONDS + every))
-	while kill -0 "$child" 2>/dev/null; do
+	while "$@" 2>/dev/null; do
 		sleep 0.2
 		[ $SECONDS -ge $next ] || continue
 		next=$((SECONDS + every))
-		last=$(tail -n 1 "$log" | tr -d '\r' | cut -c 1-90)
+		last=$(tail -n 1 "$log" 2>/dev/null | tr -d '\r' | cut -c 1-90)
 		if [ -t 1 ]; then
 			printf '\r\033[K[%3d s] %s: %s' $((SECONDS - started)) "$name" "$last"
 		else
 			say "$name: $last"
 		fi
 	done
-	wait "$child" || status=$?
-	child=
 	[ -t 1 ] && printf '\r\033[K'
+	return 0
+}
+
+# end_step NAME STATUS TEXT: say that a step is done; on failure show the end of its log. Returns STATUS.
+end_step() {
+	local name=$1 log=$logs/$1.log status=$2
 	if [ "$status" -eq 0 ]; then
-		say "$name: done in $((SECONDS - begin)) s"
+		say "$name: done $3"
 	else
-		say "$name: failed (status $status); the end of $log:"
-		grep -nE '(error|FAILED|Failed|\*\*\*)' "$log" | tail -n 20 || true
+		say "$name: failed (status $status) $3; the end of $log:"
+		grep -nE '(error|warning|FAILED|Failed|\*\*\*)' "$log" | tail -n 20 || true
 		tail -n 30 "$log"
 	fi
 	return "$status"
+}
+
+# run_step NAME COMMAND...: run a long command with its output in build/logs/NAME.log, showing the last
+# line now and then; on failure show the end of the log and return the command's status.
+run_step() {
+	local name=$1 begin=$SECONDS status=0
+	shift
+	start_child "$@" >"$logs/$name.log" 2>&1 </dev/null
+	watch_step "$name" $begin kill -0 "$child"
+	wait "$child" || status=$?
+	child=
+	end_step "$name" $status "in $((SECONDS - begin)) s"
 }
 
 # package_list: the file of this distribution: ID-VERSION, else ID, else one of its family.
@@ -122,13 +143,13 @@ install_packages() {
 configure() {
 	local preset=$1 folder=$2
 	shift 2
-	run_step "configure-$(basename "$folder")" cmake --preset "$preset" -B "$folder" "$@"
+	"$do_step" "configure-$(basename "$folder")" cmake --preset "$preset" -B "$folder" "$@"
 }
 
 # build FOLDER [TARGET...]: build all or some targets.
 build() {
 	local folder=$1
 	shift
-	run_step "build-$(basename "$folder")" cmake --build "$folder" -j "$jobs" \
+	"$do_step" "build-$(basename "$folder")" cmake --build "$folder" -j "$jobs" \
 		${1:+--target "$@"}
 }
