@@ -2,6 +2,7 @@
  * preloaded, which redirects accesses to /dev and /sys. */
 #include "suite.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <linux/hidraw.h>
 #include <stdlib.h>
@@ -214,10 +215,12 @@ TEST_SUITE(hid_port)
 			port_read_returns_a_report_or_a_timeout_or_that_it_is_gone, set_up,
 			tear_down),
 	};
-	const char *preloaded = getenv("LD_PRELOAD");
-	if (!preloaded || !strstr(preloaded, "umockdev")) {
-		print_message("umockdev's library is not preloaded\n");
-		return 77;
+	if (!dlopen("libumockdev-preload.so.0", RTLD_NOW | RTLD_NOLOAD)) {
+		const char *preload = getenv("LD_PRELOAD");
+		print_error("umockdev's library is not loaded (LD_PRELOAD is \"%s\"): "
+			    "install the package umockdev and run this by ctest\n",
+			    preload ? preload : "");
+		return 1;
 	}
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
