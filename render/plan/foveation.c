@@ -16,7 +16,7 @@ const char *const gz_filter_names[] = { "catmull_rom", "bilinear", NULL };
 
 const struct gz_option gz_foveation_options[] = {
 	{ "foveation.method", GZ_OPTION_CHOICE, AT(method), .choices = gz_method_names,
-	  .preset = "acuity", .help = "where rays go" },
+	  .preset = "acuity", .help = "foveation method" },
 	{ "foveation.step_rule", GZ_OPTION_CHOICE, AT(step_rule), .choices = gz_step_rule_names,
 	  .preset = "method", .help = "how steps along a ray grow away from the gaze" },
 	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,

@@ -13,24 +13,26 @@ static const char *const shading_names[] = { "none", "gradient", NULL };
 
 const struct gz_option gz_ray_options[] = {
 	{ "render.background", GZ_OPTION_DOUBLE, AT(background), 0, 1, .count = 3,
-	  .preset = "0 0 0", .help = "red, green, blue" },
+	  .preset = "0 0 0", .help = "red, green and blue of the background" },
 	{ "render.ray_sampling_rate", GZ_OPTION_DOUBLE, AT(ray_sampling_rate),
 	  GZ_RAY_SAMPLING_RATE_MIN, GZ_RAY_SAMPLING_RATE_MAX, .preset = "1.5",
 	  .help = "samples per voxel length" },
 	{ "render.interpolation", GZ_OPTION_CHOICE, AT(interpolation),
-	  .choices = interpolation_names, .preset = "trilinear", .help = "between voxels" },
+	  .choices = interpolation_names, .preset = "trilinear",
+	  .help = "how values between voxels are made" },
 	{ "render.integration", GZ_OPTION_CHOICE, AT(integration), .choices = integration_names,
 	  .preset = "sampled",
-	  .help = "preintegrated takes in all values between two samples, so that no thin layer is "
-		  "stepped over" },
+	  .help = "preintegrated: a step takes in all values between its ends, so that no thin "
+		  "layer is missed" },
 	{ "render.shading", GZ_OPTION_CHOICE, AT(shading), .choices = shading_names,
-	  .preset = "none", .help = "how light falls: gradient takes section [light]" },
+	  .preset = "none", .help = "lighting; gradient: by the keys of [light]" },
 	{ "render.levels", GZ_OPTION_BOOL, AT(levels), .preset = "no",
 	  .help = "sample a coarser level of the volume where rays and steps are wide" },
 	{ "render.jitter", GZ_OPTION_INT, AT(jitter), 0, 2147483647, .preset = "0",
-	  .help = "seed of a shift of each ray's samples, which turns rings into noise; 0 = none" },
+	  .help = "random seed that shifts each ray's samples, so that rings become noise; 0 = "
+		  "off" },
 	{ "render.early_termination", GZ_OPTION_BOOL, AT(early_termination), .preset = "yes",
-	  .help = "end rays that next to no light comes through; no is slower, for comparison" },
+	  .help = "stop rays once nearly opaque; no is slower" },
 };
 const size_t gz_ray_option_count = sizeof gz_ray_options / sizeof gz_ray_options[0];
 
