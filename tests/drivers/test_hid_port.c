@@ -82,7 +82,6 @@ static gboolean answer_ioctl(UMockdevIoctlBase *base, UMockdevIoctlClient *clien
 	umockdev_ioctl_client_complete(client, result, result < 0 ? EPIPE : 0);
 	g_free(bytes);
 	umockdev_ioctl_data_unref(data);
-	umockdev_ioctl_data_unref(argument);
 	return TRUE;
 }
 
@@ -96,7 +95,6 @@ static gboolean answer_read(UMockdevIoctlBase *base, UMockdevIoctlClient *client
 		umockdev_ioctl_data_update(data, 0, report, sizeof report);
 	umockdev_ioctl_client_complete(client, lab.gone ? -1 : (long)sizeof report,
 				       lab.gone ? EIO : 0);
-	umockdev_ioctl_data_unref(data);
 	return TRUE;
 }
 
