@@ -56,7 +56,7 @@ static enum gz_result find_points(struct gz_series *series, const struct gz_stud
 	size_t points = 0;
 	for (size_t i = 0; i < count; i++)
 		points += i == 0 || rows[i]->point != rows[i - 1]->point;
-	series->points = calloc(points, sizeof series->points[0]);
+	series->points = calloc(points > 0 ? points : 1, sizeof series->points[0]);
 	if (!series->points)
 		return GZ_ERR_NO_MEM;
 	for (size_t i = 0, end; i < count; i = end) {
@@ -241,7 +241,8 @@ static void insert_series(const struct gz_group *group, struct gz_curve *curve, 
 
 static enum gz_result find_curves(const struct gz_study *study, struct gz_group *group)
 {
-	group->curves = calloc(group->series_count, sizeof group->curves[0]);
+	group->curves =
+		calloc(group->series_count > 0 ? group->series_count : 1, sizeof group->curves[0]);
 	if (!group->curves)
 		return GZ_ERR_NO_MEM;
 	for (size_t i = 0; i < group->series_count; i++) {

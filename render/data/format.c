@@ -21,9 +21,11 @@ static bool has_ending(const struct gz_volume_format *format, const char *path)
 
 const struct gz_volume_format *gz_volume_format_by_name(const char *path)
 {
-	for (size_t i = 0; i < gz_volume_format_count; i++)
-		if (has_ending(gz_volume_formats[i], path))
-			return gz_volume_formats[i];
+	for (size_t i = 0; i < gz_volume_format_count; i++) {
+		const struct gz_volume_format *format = gz_volume_formats[i];
+		if (has_ending(format, path))
+			return format;
+	}
 	return NULL;
 }
 

@@ -387,7 +387,7 @@ static enum gz_result make_block(struct resolver *resolver,
 				 const struct gz_experiment_section *section,
 				 struct gz_block *block)
 {
-	size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX], count = 0;
+	size_t chosen[GZ_EXPERIMENT_SECTIONS_MAX] = { 0 }, count = 0;
 	memcpy(block->label, section->label, sizeof block->label);
 	block->line = section->line;
 	enum gz_result result = take_block_params(section, &block->params);

@@ -131,7 +131,7 @@ static enum gz_result order_blocks(struct maker *maker, const char *participant,
 		if (!experiment->blocks[i].params.practice)
 			counted[count++] = &experiment->blocks[i];
 	if (experiment->params.block_order == GZ_BLOCKS_RANDOM)
-		gz_random_shuffle(&maker->random, counted, count, sizeof *counted);
+		gz_random_shuffle(&maker->random, counted, count, sizeof(const struct gz_block *));
 	else if (experiment->params.block_order == GZ_BLOCKS_ROTATED && count > 0)
 		result = rotate_blocks(experiment, participant, log, counted, count);
 	for (size_t i = 0; i < experiment->block_count; i++)
