@@ -217,6 +217,8 @@ int gazed_wait_exit(struct gazed_process *process)
 		close(fd);
 	assert_int_equal(waitpid(process->pid, &status, 0), process->pid);
 	note_running(process->pid, 0);
+	if (strstr(gazed_said(process), "Sanitizer: "))
+		fail_msg("%s", gazed_said(process));
 	return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
