@@ -31,9 +31,11 @@ const struct gz_volume_format *gz_volume_format_by_name(const char *path)
 
 const struct gz_volume_format *gz_volume_format_by_content(const char *path)
 {
-	for (size_t i = 0; i < gz_volume_format_count; i++)
-		if (gz_volume_formats[i]->recognise && gz_volume_formats[i]->recognise(path))
-			return gz_volume_formats[i];
+	for (size_t i = 0; i < gz_volume_format_count; i++) {
+		const struct gz_volume_format *format = gz_volume_formats[i];
+		if (format->recognise && format->recognise(path))
+			return format;
+	}
 	return NULL;
 }
 
@@ -49,11 +51,13 @@ gz_volume_writer *gz_volume_writer_by_name(const char *path)
 static enum gz_result refuse_unknown(const struct gz_volume_file *file)
 {
 	struct gz_text endings = { 0 };
-	for (size_t i = 0; i < gz_volume_format_count; i++)
-		for (size_t k = 0; k < GZ_FORMAT_ENDINGS_MAX && gz_volume_formats[i]->endings[k];
-		     k++)
-			if (gz_volume_formats[i]->layout != GZ_LAYOUT_IF_GIVEN)
-				gz_text_add(&endings, "%s, ", gz_volume_formats[i]->endings[k]);
+	for (size_t i = 0; i < gz_volume_format_count; i++) {
+		const struct gz_volume_format *format = gz_volume_formats[i];
+		if (format->layout == GZ_LAYOUT_IF_GIVEN)
+			continue;
+		for (size_t k = 0; k < GZ_FORMAT_ENDINGS_MAX && format->endings[k]; k++)
+			gz_text_add(&endings, "%s, ", format->endings[k]);
+	}
 	gz_err(file->log, "%s: unknown kind of volume; %sDICOM files and their folders are read",
 	       file->path, endings.bytes ? endings.bytes : "");
 	gz_text_free(&endings);
