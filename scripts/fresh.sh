@@ -52,6 +52,8 @@ in_root() {
 		bash -c '
 		root=$1 archives=$2 data=$3 command=$4
 		try() { "$@" || echo "fresh: not permitted here: $*"; }
+		# A root that is a mount point permits tests to make mount namespaces of their own.
+		try mount --bind "$root" "$root"
 		try mount -t proc proc "$root/proc"
 		try mount --rbind /sys "$root/sys"
 		try mount --rbind /dev "$root/dev"

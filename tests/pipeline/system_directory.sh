@@ -16,6 +16,9 @@ fail() {
 	exit 1
 }
 mount -t tmpfs -o mode=755 tmpfs /run || exit 77
+# The users of this test may not reach the build folder, as below /root.
+cp "$gazed" "$gazectl" /run/
+gazed=/run/gazed gazectl=/run/gazectl
 mkdir -m 777 /run/recordings /run/session
 trap 'kill $(jobs -p) 2>/dev/null; wait' EXIT
 unset GAZECAST_RUNTIME_DIR XDG_CONFIG_HOME
