@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "daemon/disk_sync.h"
 #include "protocol/gaze.h"
 #include "protocol/gaze_log.h"
 
@@ -219,7 +220,9 @@ struct gz_recorder {
 
 	/* The recorder's thread's. */
 	struct gz_gaze_log_writer writer;
+	struct gz_disk_sync *disk_sync;
 	int64_t next_sync_ns;
+	bool has_synced; /* the file's name is in the directory on the disk, or soon will be */
 };
 
 static void signal_event(int fd)
@@ -257,6 +260,7 @@ static void fail_recording(struct gz_recorder *recorder, int error)
 	snprintf(text, sizeof text, "%s; %s", strerror(error), remedy);
 	gz_err(recorder->log, "%s: recording stopped after %llu samples: %s", recorder->path,
 	       (unsigned long long)recorder->writer.samples, text);
+	(void)gz_disk_sync_wait(recorder->disk_sync); /* the file is in use until then */
 	/* A file without even its header is useless. */
 	if (recorder->writer.size == 0)
 		unlink(recorder->path);
@@ -266,33 +270,14 @@ static void fail_recording(struct gz_recorder *recorder, int error)
 	set_phase(recorder, PHASE_FAILED);
 }
 
-/* Make the file's name in its directory survive a power failure too. */
-static void sync_directory(const struct gz_recorder *recorder)
-{
-	char directory[GZ_PATH_SIZE];
-	snprintf(directory, sizeof directory, "%s", recorder->path);
-	char *slash = strrchr(directory, '/');
-	if (slash)
-		slash[slash == directory] = '\0';
-	else
-		snprintf(directory, sizeof directory, ".");
-	int fd = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (fd < 0)
-		return;
-	if (fsync(fd) != 0)
-		gz_debug(recorder->log, "%s: cannot be synced: %s", directory, strerror(errno));
-	close(fd);
-}
-
 static enum gz_result open_recording(struct gz_recorder *recorder)
 {
 	enum gz_result result =
 		gz_gaze_log_writer_begin(&recorder->writer, recorder->fd, &recorder->header);
 	if (result == GZ_OK)
 		result = gz_gaze_log_writer_flush(&recorder->writer);
-	if (result == GZ_OK)
-		sync_directory(recorder);
 	recorder->next_sync_ns = gz_clock_now_ns();
+	recorder->has_synced = false;
 	return result;
 }
 
@@ -317,13 +302,40 @@ static enum gz_result drain_ring(struct gz_recorder *recorder)
 	return result;
 }
 
-static enum gz_result sync_file(struct gz_recorder *recorder)
+static void directory_of(const char *path, char out_directory[GZ_PATH_SIZE])
 {
-	/* A pipe or /dev/null cannot be synced. */
-	if (fdatasync(recorder->fd) != 0 && errno != EINVAL && errno != EROFS)
-		return GZ_ERR_IO;
+	snprintf(out_directory, GZ_PATH_SIZE, "%s", path);
+	char *slash = strrchr(out_directory, '/');
+	if (slash)
+		slash[slash == out_directory] = '\0';
+	else
+		snprintf(out_directory, GZ_PATH_SIZE, ".");
+}
+
+/* Have the file synced beside this thread, which goes on writing; the first time with its name in
+ * the directory. A disk that needs longer than the interval is asked again once it is done. */
+static enum gz_result request_sync(struct gz_recorder *recorder)
+{
+	char directory[GZ_PATH_SIZE];
+	directory_of(recorder->path, directory);
+	enum gz_result result = gz_disk_sync_request(recorder->disk_sync, recorder->fd,
+						     recorder->has_synced ? NULL : directory);
+	if (result == GZ_ERR_BUSY)
+		return GZ_OK;
+	recorder->has_synced = true;
 	recorder->next_sync_ns = gz_clock_now_ns() + GZ_RECORDER_SYNC_MS * GZ_NS_PER_MS;
-	return GZ_OK;
+	return result;
+}
+
+/* Sync all of the file, and wait for it. */
+static enum gz_result sync_whole_file(struct gz_recorder *recorder)
+{
+	enum gz_result result = gz_disk_sync_wait(recorder->disk_sync);
+	if (result == GZ_OK)
+		result = request_sync(recorder);
+	if (result == GZ_OK)
+		result = gz_disk_sync_wait(recorder->disk_sync);
+	return result;
 }
 
 static enum gz_result finish_recording(struct gz_recorder *recorder)
@@ -333,7 +345,7 @@ static enum gz_result finish_recording(struct gz_recorder *recorder)
 	if (result == GZ_OK)
 		result = gz_gaze_log_writer_end(&recorder->writer);
 	if (result == GZ_OK)
-		result = sync_file(recorder);
+		result = sync_whole_file(recorder);
 	if (result != GZ_OK)
 		return result;
 	close(recorder->fd);
@@ -360,7 +372,7 @@ static void write_recording(struct gz_recorder *recorder)
 		wait_for_recording(recorder, GZ_RECORDER_DRAIN_MS);
 		result = drain_ring(recorder);
 		if (result == GZ_OK && gz_clock_now_ns() >= recorder->next_sync_ns)
-			result = sync_file(recorder);
+			result = request_sync(recorder);
 	}
 	if (result == GZ_OK)
 		result = finish_recording(recorder);
@@ -392,6 +404,8 @@ enum gz_result gz_recorder_create(const struct gz_log *log, struct gz_recorder *
 	recorder->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	recorder->event_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	enum gz_result result = gz_ring_create(GZ_RECORDER_RING, &recorder->ring);
+	if (result == GZ_OK)
+		result = gz_disk_sync_create(log, &recorder->disk_sync);
 	if (result == GZ_OK && (recorder->wake_fd < 0 || recorder->event_fd < 0))
 		result = GZ_ERR_IO;
 	if (result == GZ_OK && pthread_create(&recorder->thread, NULL, recorder_run, recorder) != 0)
@@ -535,6 +549,7 @@ void gz_recorder_destroy(struct gz_recorder **recorder)
 		close(r->wake_fd);
 	if (r->event_fd >= 0)
 		close(r->event_fd);
+	gz_disk_sync_destroy(&r->disk_sync);
 	gz_ring_destroy(&r->ring);
 	pthread_mutex_destroy(&r->error_mutex);
 	free(r);

@@ -5,7 +5,8 @@
  *
  * The thread that reads the tracker hands records over through the ring, without locking or
  * allocating. If the ring is full, the missing samples become a gap record. A record reaches the
- * file within GZ_RECORDER_DRAIN_MS and the disk within a second.
+ * file within GZ_RECORDER_DRAIN_MS, also while the disk is busy, and the disk within a second,
+ * unless that is too slow.
  */
 #ifndef GZ_DAEMON_RECORDER_H
 #define GZ_DAEMON_RECORDER_H

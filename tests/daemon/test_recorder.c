@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +50,37 @@ static void wait_state(struct gz_recorder *recorder, enum gz_recording_state wan
 	}
 	fail_msg("state %s, waited for %s", gz_recording_state_name(status.state),
 		 gz_recording_state_name(wanted));
+}
+
+/* A disk that is busy: while disk_busy is set, syncs of files do not return. */
+static atomic_bool disk_busy;
+static atomic_int syncs_waiting;
+
+int __real_fdatasync(int fd);
+int __wrap_fdatasync(int fd);
+
+int __wrap_fdatasync(int fd)
+{
+	atomic_fetch_add(&syncs_waiting, 1);
+	while (atomic_load(&disk_busy))
+		sched_yield();
+	atomic_fetch_sub(&syncs_waiting, 1);
+	return __real_fdatasync(fd);
+}
+
+/* Wait until @p count samples are in the file. */
+static void wait_samples(const struct gz_recorder *recorder, uint64_t count)
+{
+	struct gz_recorder_status status;
+	const int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	do {
+		gz_recorder_get_status(recorder, &status);
+		if (status.samples >= count)
+			return;
+		sched_yield();
+	} while (gz_clock_now_ns() < deadline_ns);
+	fail_msg("%llu samples in the file, waited for %llu", (unsigned long long)status.samples,
+		 (unsigned long long)count);
 }
 
 static const struct gz_gaze_log_header header = { .tracker = "test", .rate_hz = 1000 };
@@ -126,6 +159,37 @@ static void recorder_destroyed_while_it_records_ends_the_log(void **state)
 	struct found found = read_back();
 	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
 	assert_int_equal(found.samples, 100);
+	unlink(path);
+}
+
+static void recorder_goes_on_writing_while_the_disk_is_busy(void **state)
+{
+	(void)state;
+	struct gz_recorder *recorder = NULL;
+	assert_int_equal(gz_recorder_create(NULL, &recorder), GZ_OK);
+	atomic_store(&disk_busy, true);
+	assert_int_equal(gz_recorder_start(recorder, open_file(), path, &header), GZ_OK);
+	for (uint64_t i = 0; i < 100; i++)
+		push_sample(recorder, i);
+	wait_samples(recorder, 100);
+	const int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	while (atomic_load(&syncs_waiting) == 0 && gz_clock_now_ns() < deadline_ns)
+		sched_yield();
+	assert_int_equal(atomic_load(&syncs_waiting), 1);
+	for (uint64_t i = 100; i < 200; i++)
+		push_sample(recorder, i);
+	wait_samples(recorder, 200);
+	assert_int_equal(atomic_load(&syncs_waiting), 1);
+	struct found found = read_back(); /* as after a kill */
+	assert_int_equal(found.ending, GZ_GAZE_LOG_CUT);
+	assert_int_equal(found.samples, 200);
+	atomic_store(&disk_busy, false);
+	gz_recorder_stop(recorder);
+	wait_state(recorder, GZ_RECORDING_OFF);
+	found = read_back();
+	assert_int_equal(found.ending, GZ_GAZE_LOG_WHOLE);
+	assert_int_equal(found.samples, 200);
+	gz_recorder_destroy(&recorder);
 	unlink(path);
 }
 
@@ -235,6 +299,7 @@ TEST_SUITE(recorder)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(recorder_writes_a_whole_log_with_marks),
 		cmocka_unit_test(recorder_destroyed_while_it_records_ends_the_log),
+		cmocka_unit_test(recorder_goes_on_writing_while_the_disk_is_busy),
 		cmocka_unit_test(recorder_that_cannot_keep_up_says_what_is_missing),
 		cmocka_unit_test(recorder_on_a_full_disk_fails_and_leaves_no_empty_file),
 		cmocka_unit_test(recorder_out_of_room_keeps_whole_lines_and_ends_the_log),
