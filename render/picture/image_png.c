@@ -199,18 +199,31 @@ enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 	return result;
 }
 
+/* A chunk may be so much longer than its text: keyword, language, translated keyword. */
+enum { AROUND_TEXT = 1024 };
+
+/* Chunks that are skipped, so that none takes the memory that it claims. libpng takes each name
+ * with its NUL. */
+static const png_byte unused_chunks[] = "bKGD\0cHRM\0eXIf\0gAMA\0hIST\0iCCP\0oFFs\0pCAL\0sBIT\0"
+					"sCAL\0sPLT\0sTER\0sRGB\0tIME";
+
 /* Texts that are being read. */
 struct text_search {
 	bool damaged; /* a chunk of text could not be read */
 };
 
-/* libpng warns of a damaged chunk that it leaves out, by "tEXt: …". */
+/* libpng warns of a damaged chunk that it leaves out, by "tEXt: …". It only warns of a chunk above
+ * the limit too, before it allocates the length that the chunk claims: reading ends there. */
 static void note_damaged_text(png_structp png, png_const_charp message)
 {
 	struct text_search *search = png_get_error_ptr(png);
 	static const char *const types[] = { "tEXt", "zTXt", "iTXt" };
+	bool text = false;
 	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
-		search->damaged |= strncmp(message, types[i], strlen(types[i])) == 0;
+		text |= strncmp(message, types[i], strlen(types[i])) == 0;
+	search->damaged |= text;
+	if (text && strstr(message, "too large"))
+		png_longjmp(png, 1);
 }
 
 /* Read the chunks before the pixels into @p info. Returns false if the file is no PNG or damaged;
@@ -221,7 +234,9 @@ static bool read_first_chunks(png_structp png, png_infop info, FILE *file)
 		return false;
 	png_init_io(png, file);
 	png_set_user_limits(png, GZ_IMAGE_SIDE_MAX, GZ_IMAGE_SIDE_MAX);
-	png_set_chunk_malloc_max(png, GZ_IMAGE_TEXT_MAX);
+	png_set_chunk_malloc_max(png, GZ_IMAGE_TEXT_MAX + AROUND_TEXT);
+	png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, unused_chunks,
+				    sizeof unused_chunks / 5);
 	png_read_info(png, info);
 	return true;
 }
@@ -264,8 +279,8 @@ enum gz_result gz_image_find_text(FILE *file, const char *keyword, struct gz_tex
 			whole = read_last_chunks(png, info);
 			found = find_png_text(png, info, keyword);
 		}
-		result = whole && !search.damaged ? GZ_ERR_NOT_FOUND : GZ_ERR_FORMAT;
-		if (found) {
+		result = whole && !found && !search.damaged ? GZ_ERR_NOT_FOUND : GZ_ERR_FORMAT;
+		if (found && strlen(found->text) <= GZ_IMAGE_TEXT_MAX) {
 			gz_text_add(out_text, "%s", found->text);
 			result = out_text->failed ? GZ_ERR_NO_MEM : GZ_OK;
 		}

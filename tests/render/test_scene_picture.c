@@ -155,7 +155,8 @@ static void damaged_picture_is_refused_or_read_as_it_was(void **state)
 
 static void put_chunk(FILE *file, const char *type, const void *data, size_t size)
 {
-	const unsigned char length[4] = { 0, 0, (unsigned char)(size >> 8), (unsigned char)size };
+	const unsigned char length[4] = { (unsigned char)(size >> 24), (unsigned char)(size >> 16),
+					  (unsigned char)(size >> 8), (unsigned char)size };
 	uLong crc = crc32(crc32(0, (const Bytef *)type, 4), data, (uInt)size);
 	fwrite(length, 1, 4, file);
 	fwrite(type, 1, 4, file);
@@ -217,6 +218,41 @@ static void texts_of_all_kinds_are_read(void **state)
 	fclose(file);
 }
 
+/* A text of @p length bytes behind a large chunk of another kind. */
+static enum gz_result find_long_text(size_t length)
+{
+	const char *path = files_path("long.png");
+	FILE *file = fopen(path, "w+b");
+	char *data = malloc(2 + length);
+	struct gz_text text = { 0 };
+	memcpy(data, "k\0", 2);
+	memset(data + 2, 'y', length);
+	fwrite("\x89PNG\r\n\x1a\n", 1, 8, file);
+	put_chunk(file, "IHDR", "\0\0\0\1\0\0\0\1\10\0\0\0\0", 13);
+	put_chunk(file, "eXIf", data, 2 + length);
+	put_chunk(file, "tEXt", data, 2 + length);
+	put_text(file, "IDAT", "", 0, "\1\1", true);
+	put_chunk(file, "IEND", "", 0);
+	rewind(file);
+	const enum gz_result result = gz_image_find_text(file, "k", &text);
+	if (result == GZ_OK)
+		assert_int_equal(text.length, length);
+	else
+		assert_null(text.bytes);
+	gz_text_free(&text);
+	free(data);
+	fclose(file);
+	return result;
+}
+
+static void text_above_the_limit_is_refused(void **state)
+{
+	(void)state;
+	assert_int_equal(find_long_text(GZ_IMAGE_TEXT_MAX), GZ_OK);
+	assert_int_equal(find_long_text(GZ_IMAGE_TEXT_MAX + 1), GZ_ERR_FORMAT);
+	assert_int_equal(find_long_text(2 * GZ_IMAGE_TEXT_MAX), GZ_ERR_FORMAT);
+}
+
 TEST_SUITE(scene_picture)
 {
 	const struct CMUnitTest tests[] = {
@@ -226,6 +262,7 @@ TEST_SUITE(scene_picture)
 		cmocka_unit_test(files_that_are_not_pictures_are_refused),
 		cmocka_unit_test(damaged_picture_is_refused_or_read_as_it_was),
 		cmocka_unit_test(texts_of_all_kinds_are_read),
+		cmocka_unit_test(text_above_the_limit_is_refused),
 	};
 	unsetenv("GAZECAST_DATA");
 	return cmocka_run_group_tests(tests, NULL, NULL);
