@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "base/vector.h"
 #include "protocol/display.h"
 
 #define GZ_DEG_PER_RAD 57.295779513082320877
@@ -25,12 +26,6 @@ static inline void gz_direction_deg(const struct gz_display *display, struct gz_
 	double scale = GZ_DEG_PER_RAD / sqrt(mm[0] * mm[0] + mm[1] * mm[1] + mm[2] * mm[2]);
 	for (int i = 0; i < 3; i++)
 		out_deg[i] = scale * mm[i];
-}
-
-/** Length of a vector. */
-static inline double gz_length3(const double v[3])
-{
-	return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 /** Angle between two points of the display, degrees, measured as a chord. */

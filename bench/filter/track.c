@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "filter/pipeline.h"
 #include "protocol/gaze_log.h"
 
@@ -81,12 +82,6 @@ double gz_gaze_track_elapsed_ms(const struct gz_gaze_track *track, size_t from, 
 	return gz_ns_to_s(elapsed_ns) * 1000;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 double gz_gaze_track_interval_ms(const struct gz_gaze_track *track)
 {
 	if (track->count < 2)
@@ -97,7 +92,7 @@ double gz_gaze_track_interval_ms(const struct gz_gaze_track *track)
 		return NAN;
 	for (size_t i = 0; i < steps; i++)
 		step_ms[i] = gz_gaze_track_elapsed_ms(track, i, i + 1);
-	qsort(step_ms, steps, sizeof *step_ms, compare_numbers);
+	qsort(step_ms, steps, sizeof *step_ms, gz_compare_doubles);
 	size_t used = 0;
 	while (used < steps && step_ms[used] <= 1.5 * step_ms[steps / 2])
 		sum_ms += step_ms[used++];

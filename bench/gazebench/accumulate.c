@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/command.h"
 #include "base/log.h"
+#include "base/order.h"
 #include "base/result.h"
 #include "bench/study/ask.h"
 #include "bench/study/errors.h"
@@ -97,16 +98,10 @@ static enum gz_result accumulation_frame(struct pictures *pictures, bool kept)
 	return result;
 }
 
-static int compare_frame_times(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static double take_median(struct pictures *pictures)
 {
 	const int count = pictures->time_count < TIMES_MAX ? pictures->time_count : TIMES_MAX;
-	qsort(pictures->times_ms, (size_t)count, sizeof pictures->times_ms[0], compare_frame_times);
+	qsort(pictures->times_ms, (size_t)count, sizeof pictures->times_ms[0], gz_compare_doubles);
 	pictures->time_count = 0;
 	return count % 2 ? pictures->times_ms[count / 2]
 			 : (pictures->times_ms[count / 2 - 1] + pictures->times_ms[count / 2]) / 2;

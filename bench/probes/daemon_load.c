@@ -19,6 +19,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/option.h"
+#include "base/order.h"
 #include "protocol/wire.h"
 
 /* Targets, printed beside the results: part of a core, ms, KiB, ms. */
@@ -286,12 +287,6 @@ static double bare_wake_share(int rate_hz)
 	       1e-9 * (double)(after.tv_nsec - before.tv_nsec);
 }
 
-static int compare_loads(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static double percentile(const double *sorted, size_t count, double part)
 {
 	return sorted[(size_t)(part * (double)(count - 1) + 0.5)];
@@ -301,7 +296,7 @@ static void print_reader(int number, struct reader *reader)
 {
 	double *ms = reader->latency_ms;
 	uint64_t gaps = reader->last_seq - reader->first_seq + 1 - reader->count;
-	qsort(ms, reader->count, sizeof *ms, compare_loads);
+	qsort(ms, reader->count, sizeof *ms, gz_compare_doubles);
 	double p99_ms = percentile(ms, reader->count, 0.99);
 	printf("stream reader %d: %zu samples, %llu missing; sample to subscriber p50 %.3f ms, "
 	       "p99 %.3f ms, p99.9 %.3f ms, worst %.3f ms (target p99 %.2f ms: %s)\n",

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "base/workers.h"
 #include "bench/metrics/metrics.h"
 #include "render/frame/picture_maker.h"
@@ -208,15 +209,9 @@ struct bench {
 	const char *prefix;
 };
 
-static int compare_series_times(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static double median_of(struct series *series, int count)
 {
-	qsort(series->time_ms, (size_t)count, sizeof series->time_ms[0], compare_series_times);
+	qsort(series->time_ms, (size_t)count, sizeof series->time_ms[0], gz_compare_doubles);
 	return series->time_ms[count / 2];
 }
 

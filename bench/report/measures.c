@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/order.h"
+
 #define AT(field) offsetof(struct gz_study_errors, field)
 
 const struct gz_error_metric gz_error_metrics[GZ_ERROR_MEASURES] = {
@@ -80,12 +82,6 @@ bool gz_error_rises(enum gz_error_kind kind)
 
 /* ---- distributions ---- */
 
-static int compare_values(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 double gz_quantile(const double *sorted, size_t count, double share)
 {
 	if (count == 0)
@@ -116,7 +112,7 @@ struct gz_distribution gz_distribution_of(double *values, size_t count)
 	};
 	if (count == 0)
 		return all;
-	qsort(values, count, sizeof values[0], compare_values);
+	qsort(values, count, sizeof values[0], gz_compare_doubles);
 	double sum = 0, squares = 0, deviations = 0;
 	for (size_t i = 0; i < count; i++) {
 		sum += values[i];

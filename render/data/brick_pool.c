@@ -346,18 +346,12 @@ size_t gz_brick_pool_rooms(const struct gz_brick_pool *pool)
 	return pool->rooms.count;
 }
 
-static size_t quarter_of_memory(void)
-{
-	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
-}
-
 static enum gz_result count_rooms(const struct gz_brick_pool *pool, size_t memory_bytes,
 				  size_t *out_rooms)
 {
 	const size_t bricks = pool->file->layout.brick_count;
 	const size_t least = bricks < GZ_BRICK_POOL_LEAST ? bricks : GZ_BRICK_POOL_LEAST;
-	size_t rooms = (memory_bytes ? memory_bytes : quarter_of_memory()) / pool->brick_bytes;
+	size_t rooms = (memory_bytes ? memory_bytes : gz_volume_memory_bytes()) / pool->brick_bytes;
 	if (memory_bytes && rooms < least) {
 		const size_t mib = (least * pool->brick_bytes + MIB - 1) / MIB;
 		gz_err(pool->log,

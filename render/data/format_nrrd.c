@@ -11,9 +11,9 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "base/vector.h"
 #include "render/data/format.h"
 #include "render/data/text_head.h"
-#include "render/picture/vector.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -28,6 +28,12 @@ size_t gz_voxel_size(enum gz_voxel_type type)
 	return (unsigned)type < GZ_VOXEL_TYPE_COUNT ? sizes[type] : 0;
 }
 
+size_t gz_volume_memory_bytes(void)
+{
+	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
+}
+
 size_t gz_volume_voxel_count(const struct gz_volume *volume)
 {
 	return (size_t)volume->dims[0] * (size_t)volume->dims[1] * (size_t)volume->dims[2];

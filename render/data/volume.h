@@ -211,6 +211,10 @@ void gz_volume_free(struct gz_volume *volume);
 /** The longest edge of a box of voxels, in voxel lengths; dims and spacing must be above 0. */
 double gz_volume_edge_lengths(const int dims[3], const double spacing[3]);
 
+/** Memory that one volume may take unless a setting says otherwise, bytes: a quarter of the
+ *  machine's; 1 GiB if the system does not tell that. */
+size_t gz_volume_memory_bytes(void);
+
 /** Number of voxels. */
 size_t gz_volume_voxel_count(const struct gz_volume *volume);
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "render/data/voxel_place.h"
-#include "render/picture/vector.h"
 
 #define GZ_LOG_MODULE "volume"
 

@@ -1,8 +1,7 @@
 #include "render/light/light.h"
+#include "base/vector.h"
 
 #include <math.h>
-
-#include "render/picture/vector.h"
 
 static const char *const light_frame_names[] = { "camera", "world", NULL };
 

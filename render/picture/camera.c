@@ -1,9 +1,8 @@
 #include "render/picture/camera.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "render/picture/vector.h"
 
 #define RAD_PER_DEG (3.14159265358979323846 / 180.0)
 

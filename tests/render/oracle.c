@@ -1,11 +1,10 @@
 #include "oracle.h"
 
+#include "base/vector.h"
 #include "oracle_light.h"
 
 #include <math.h>
 #include <stdint.h>
-
-#include "render/picture/vector.h"
 
 static double voxel(const struct gz_volume *volume, int x, int y, int z)
 {

@@ -1,10 +1,10 @@
 #include "oracle_light.h"
 
+#include "base/vector.h"
 #include <math.h>
 #include <stdlib.h>
 
 #include "oracle.h"
-#include "render/picture/vector.h"
 
 static double clamp(double x, double least, double greatest)
 {

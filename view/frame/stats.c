@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/order.h"
+
 #define GZ_LOG_MODULE "gazeview"
 
 /* Sizes of texts, bytes: an entry has a dozen numbers and four short names. NUMBER_DIGITS: decimal
@@ -216,12 +218,6 @@ double gz_frame_cost_total_ms(const struct gz_frame_cost *cost)
 	return total;
 }
 
-static int compare_costs_ms(const void *a, const void *b)
-{
-	const double one = *(const double *)a, other = *(const double *)b;
-	return (one > other) - (one < other);
-}
-
 double gz_frame_history_quantile_ms(const struct gz_frame_history *history, enum gz_frame_part part,
 				    double share)
 {
@@ -232,7 +228,7 @@ double gz_frame_history_quantile_ms(const struct gz_frame_history *history, enum
 		const struct gz_frame_cost *cost = gz_frame_history_at(history, i);
 		values[i] = part == GZ_FRAME_PARTS ? gz_frame_cost_total_ms(cost) : cost->ms[part];
 	}
-	qsort(values, history->count, sizeof values[0], compare_costs_ms);
+	qsort(values, history->count, sizeof values[0], gz_compare_doubles);
 	const double rank = ceil(share * (double)history->count);
 	return values[rank < 1 ? 0 : (size_t)rank - 1];
 }

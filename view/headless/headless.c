@@ -490,12 +490,6 @@ static gz_volume_writer *writer_of(const char *path, const struct gz_log *log)
 	return NULL;
 }
 
-static size_t quarter_of_memory(void)
-{
-	const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-	return pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
-}
-
 static enum gz_result load_volume_to_write(const struct gz_view_options *options,
 					   const struct gz_loading *where, const struct gz_log *log,
 					   struct gz_scene *out_scene)
@@ -544,7 +538,8 @@ enum gz_result gz_view_write_volume(const struct gz_view_options *options, const
 	if (r != GZ_OK)
 		return r;
 	gz_output_folder(options->write_volume, folder, sizeof folder);
-	const struct gz_loading where = { .scratch = folder, .scratch_from = quarter_of_memory() };
+	const struct gz_loading where = { .scratch = folder,
+					  .scratch_from = gz_volume_memory_bytes() };
 	r = load_volume_to_write(options, &where, log, &scene);
 	if (r != GZ_OK)
 		return r;

@@ -10,6 +10,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "view/window/displays.h"
 #include "view/window/window_state.h"
 
@@ -45,15 +46,9 @@ struct gz_window_latency {
 	bool vsync, vsync_known; /* as set last */
 };
 
-static int compare_latencies(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 double gz_latency_median_ms(double *values_ms, int count)
 {
-	qsort(values_ms, (size_t)count, sizeof values_ms[0], compare_latencies);
+	qsort(values_ms, (size_t)count, sizeof values_ms[0], gz_compare_doubles);
 	return (values_ms[(count - 1) / 2] + values_ms[count / 2]) / 2;
 }
 

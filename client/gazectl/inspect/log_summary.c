@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "filter/pipeline.h"
 
 #define GZ_LOG_MODULE "pipeline"
@@ -154,12 +155,6 @@ static enum gz_result summarise_record(struct summarizer *s,
 	return GZ_OK;
 }
 
-static int compare_intervals(const void *a, const void *b)
-{
-	int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-	return (x > y) - (x < y);
-}
-
 static size_t bin_of(double medians)
 {
 	size_t bin = 0;
@@ -175,7 +170,7 @@ static void sort_intervals(struct summarizer *s)
 	intervals->count = n;
 	if (n == 0)
 		return;
-	qsort(s->intervals_ns, n, sizeof s->intervals_ns[0], compare_intervals);
+	qsort(s->intervals_ns, n, sizeof s->intervals_ns[0], gz_compare_int64s);
 	intervals->min_ns = s->intervals_ns[0];
 	intervals->median_ns = s->intervals_ns[n / 2];
 	intervals->p99_ns = s->intervals_ns[(n * 99 + 99) / 100 - 1];

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "client/gazectl/validate/validation.h"
 #include "protocol/correction_file.h"
 
@@ -168,14 +169,6 @@ static enum gz_fit_model richest_model(const struct work *work)
 	return n >= GZ_FIT_SHIFT_TARGETS ? GZ_FIT_SHIFT : GZ_FIT_NONE;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-	double x, y;
-	memcpy(&x, a, sizeof x);
-	memcpy(&y, b, sizeof y);
-	return (x > y) - (x < y);
-}
-
 static double median_deg(const double *deg, size_t count)
 {
 	double sorted[GZ_FIT_TARGETS_MAX] = { 0 };
@@ -183,7 +176,7 @@ static double median_deg(const double *deg, size_t count)
 	for (size_t i = 0; i < count; i++)
 		if (isfinite(deg[i]))
 			sorted[n++] = deg[i];
-	qsort(sorted, n, sizeof *sorted, compare_doubles);
+	qsort(sorted, n, sizeof *sorted, gz_compare_doubles);
 	return n > 0 ? sorted[n / 2] : NAN;
 }
 

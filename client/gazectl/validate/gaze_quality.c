@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/order.h"
 #include "filter/angle.h"
 
 /* Share of the samples inside the ellipse of the BCEA. */
@@ -245,14 +246,6 @@ void gz_quality_summarise(const struct gz_quality *targets, size_t count,
 	*out_summary = summary;
 }
 
-static int compare_times(const void *a, const void *b)
-{
-	int64_t x, y;
-	memcpy(&x, a, sizeof x);
-	memcpy(&y, b, sizeof y);
-	return (x > y) - (x < y);
-}
-
 int64_t gz_quality_period_ns(const struct gz_quality_sample *samples, size_t count)
 {
 	if (count < 2)
@@ -262,7 +255,7 @@ int64_t gz_quality_period_ns(const struct gz_quality_sample *samples, size_t cou
 		return -1;
 	for (size_t i = 0; i + 1 < count; i++)
 		steps_ns[i] = samples[i + 1].host_ns - samples[i].host_ns;
-	qsort(steps_ns, count - 1, sizeof *steps_ns, compare_times);
+	qsort(steps_ns, count - 1, sizeof *steps_ns, gz_compare_int64s);
 	int64_t period_ns = steps_ns[(count - 1) / 2];
 	free(steps_ns);
 	return period_ns;

@@ -1,11 +1,10 @@
 #include "render/raycast/shared/brick_stream.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "render/picture/vector.h"
 
 /* Edge of the blocks of the picture whose levels are known, px. Chosen: far smaller than what is
  * worth fetching alone. */

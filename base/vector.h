@@ -1,9 +1,9 @@
 /**
  * @file
- * Vectors of three doubles: points, directions, colours of cameras, lights and volumes.
+ * Vectors of three doubles: points, directions, colours.
  */
-#ifndef GZ_RENDER_PICTURE_VECTOR_H
-#define GZ_RENDER_PICTURE_VECTOR_H
+#ifndef GZ_BASE_VECTOR_H
+#define GZ_BASE_VECTOR_H
 
 #include <math.h>
 #include <stdbool.h>
