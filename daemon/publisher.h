@@ -81,9 +81,10 @@ void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sampl
  * The channels.
  */
 
-/** Messages kept for each reader of the stream (ZMQ_SNDHWM). Chosen: half a second of all messages
- * at 1200 Hz, about 1.5 MB. */
-#define GZ_STREAM_QUEUE 2048
+/** Messages kept for each reader of the stream (ZMQ_SNDHWM). Chosen: 4 s of gaze at 2000 Hz, as the
+ * recorder's ring, for a reader that waits for its disk or its machine. About 8 MB, which slow
+ * readers share. */
+#define GZ_STREAM_QUEUE 8192
 
 /** How long closing waits for readers to take what was sent, ms. Chosen: a live reader needs far
  * less, and a dead one must not block the daemon. */
