@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-from picture import read_png, run, write_scene
+from picture import PATIENCE_S, read_png, run, write_scene
 
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
@@ -373,7 +373,7 @@ class Headless(unittest.TestCase):
         scene = os.path.join(SCENES, "shells.scene")
         words = [GAZEVIEW, "--headless", "--scene", scene, "--size", "16x16", "--out", "/dev/null"]
         try:
-            done = subprocess.run(words, user=nobody, capture_output=True, text=True, timeout=60)
+            done = subprocess.run(words, user=nobody, capture_output=True, text=True, timeout=2 * PATIENCE_S)
         except PermissionError:
             self.skipTest("nobody may run it")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -408,7 +408,7 @@ class Headless(unittest.TestCase):
             for _ in range(3):
                 self.assertRegex(process.stdout.readline(), LINE)
             process.send_signal(number)
-            process.communicate(timeout=20)
+            process.communicate(timeout=PATIENCE_S)
             kill = number == signal.SIGKILL
             self.assertEqual(process.returncode, -number if kill else 128 + number)
             self.assertGreaterEqual(len(self.frames()), 2)
@@ -419,7 +419,7 @@ class Headless(unittest.TestCase):
              "standard", "--render.ray_sampling_rate", "32", "--stats", self.path("stats.json")],
             stdout=subprocess.PIPE, text=True,
         )
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + PATIENCE_S
         while not os.path.exists(self.path("stats.json")) and time.monotonic() < deadline:
             time.sleep(0.01)  # polled: the frame has no other sign of having begun
         while process.poll() is None and time.monotonic() < deadline:

@@ -8,6 +8,9 @@ import zlib
 
 SKIPPED = 77
 
+# The longest wait for a condition, s: longer under sanitizers (cmake/GzTargets.cmake).
+PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "30"))
+
 
 def skip(reason):
     print("skipped:", reason)

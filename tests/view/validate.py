@@ -17,12 +17,11 @@ import tempfile
 import time
 import unittest
 
-from picture import run, skip
+from picture import PATIENCE_S, run, skip
 from xserver import start_server
 
 GAZECTL, GAZEVIEW, GAZED = sys.argv[1:4]
 SCREEN = (960, 540)
-PATIENCE_S = 30
 
 # What the simulated tracker tells instead of x and y: a b c of a + b x + c y.
 ERROR_X = (0.03, 1.04, 0.01)
@@ -110,7 +109,7 @@ class Validate(unittest.TestCase):
     def validate(self, *more, **changes):
         return subprocess.run(
             self.words(*more), env=dict(self.environment, **changes), capture_output=True,
-            text=True, timeout=60, stdin=subprocess.DEVNULL, check=False,
+            text=True, timeout=2 * PATIENCE_S, stdin=subprocess.DEVNULL, check=False,
         )
 
     def measure(self, *more):
@@ -136,7 +135,7 @@ class Validate(unittest.TestCase):
         self.assertEqual(run("xdotool", "key", name, env=self.environment).returncode, 0)
 
     def finish(self, gazectl):
-        out, err = gazectl.communicate(timeout=60)
+        out, err = gazectl.communicate(timeout=2 * PATIENCE_S)
         return gazectl.returncode, out, err
 
     def grab(self):
@@ -144,7 +143,7 @@ class Validate(unittest.TestCase):
             ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
              "%dx%d" % SCREEN, "-i", self.display, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt",
              "gray", "-"],
-            capture_output=True, timeout=20, env=self.environment, check=False,
+            capture_output=True, timeout=PATIENCE_S, env=self.environment, check=False,
         )
         self.assertEqual(len(done.stdout), SCREEN[0] * SCREEN[1], done.stderr)
         return done.stdout

@@ -9,7 +9,7 @@ import tempfile
 import time
 import unittest
 
-from picture import run
+from picture import PATIENCE_S, run
 from window_case import GAZECTL, GAZEVIEW, LINE_HEIGHT, SCENE, SCREEN, SIZE, WindowCase
 
 
@@ -147,7 +147,7 @@ class Window(WindowCase):
         open(self.lost, "w", encoding="utf-8").close()
         # Wakes a viewer that waits; another one may have no window by now.
         self.tool("mousemove", 200 + int(self.window) % 2, 100)
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while os.path.exists(self.lost):
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")
             self.assertLess(time.monotonic(), deadline, "nobody asks whether it is lost")
@@ -180,7 +180,7 @@ class Window(WindowCase):
             self.until(lambda p: self.below_line(p) == self.below_line(before) or
                        self.close(p, before), "the picture")
         open(self.lost, "w", encoding="utf-8").close()
-        self.assertEqual(self.viewer.wait(timeout=20), 1)
+        self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), 1)
         said = self.messages()
         self.assertEqual(said.count("the cpu backend casts the rays from now on"), 1, said)
         self.assertIn("--headless", said.splitlines()[-1])
@@ -282,7 +282,7 @@ class Window(WindowCase):
             self.until(lambda p: p.part(*place) == before.part(*place), "the picture")
             self.assertIsNone(self.viewer.poll())
         self.tool("key", "Escape")
-        self.assertEqual(self.viewer.wait(timeout=15), 0)
+        self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), 0)
         self.viewer = None
 
     def test_escape_and_q_end_it(self):
@@ -290,7 +290,7 @@ class Window(WindowCase):
             self.start("--gaze", "mouse")
             self.move(200, 150)
             self.tool("key", key)
-            self.assertEqual(self.viewer.wait(timeout=15), 0)
+            self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), 0)
             self.assertEqual(self.viewer.communicate()[1], "")
             self.viewer = None
 

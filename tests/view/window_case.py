@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from picture import Picture, run, skip, write_scene
+from picture import PATIENCE_S, Picture, run, skip, write_scene
 from xserver import start_server
 
 GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
@@ -106,7 +106,7 @@ class WindowCase(unittest.TestCase):
             ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
              "%dx%d" % SCREEN, "-i", self.environment["DISPLAY"], "-frames:v", "1", "-f",
              "rawvideo", "-pix_fmt", "rgb24", "-"],
-            capture_output=True, timeout=20, env=self.environment,
+            capture_output=True, timeout=PATIENCE_S, env=self.environment,
         )
         width, height = SCREEN
         self.assertEqual(len(done.stdout), 3 * width * height, done.stderr)
@@ -133,7 +133,7 @@ class WindowCase(unittest.TestCase):
 
     def rest(self):
         """A screenshot once the viewer has nothing more to do."""
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         still = 0
         before = self.ticks()
         while still < 6:
@@ -146,8 +146,8 @@ class WindowCase(unittest.TestCase):
         return self.grab()
 
     def until(self, good, what):
-        """The first screenshot that @good accepts; fails after 15 s."""
-        deadline = time.monotonic() + 15
+        """The first screenshot that @good accepts; fails after PATIENCE_S."""
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")
             picture = self.grab()
@@ -185,7 +185,7 @@ class WindowCase(unittest.TestCase):
 
     def found(self, than=None):
         """Wait for a window of the viewer, other than @than."""
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             # A search also fails if a window is closed meanwhile.
             found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
@@ -199,7 +199,7 @@ class WindowCase(unittest.TestCase):
 
     def messages(self):
         """The viewer's messages, once it has ended."""
-        said = self.viewer.communicate(timeout=20)[1]
+        said = self.viewer.communicate(timeout=PATIENCE_S)[1]
         self.viewer = None
         return said
 

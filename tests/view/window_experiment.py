@@ -8,7 +8,7 @@ import tempfile
 import time
 import unittest
 
-from picture import run
+from picture import PATIENCE_S, run
 from window_case import GAZECTL, GAZEVIEW, SCENE, SCREEN, WindowCase
 
 GROUND = (51, 102, 153)
@@ -70,7 +70,7 @@ class Experiment(WindowCase):
 
     def answer(self, done, *keys):
         """Press keys in turn, each of which counts in its own phase, until @done."""
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 2 * PATIENCE_S
         turn = 0
         while not done():
             self.assertLess(time.monotonic(), deadline, "never came: %r" % self.rows())
@@ -79,7 +79,7 @@ class Experiment(WindowCase):
             time.sleep(0.05)
 
     def finish(self, status):
-        said = self.viewer.communicate(timeout=20)[1]
+        said = self.viewer.communicate(timeout=PATIENCE_S)[1]
         self.assertEqual(self.viewer.returncode, status, said)
         self.viewer = None
         return said
@@ -140,7 +140,7 @@ class Experiment(WindowCase):
     def test_recording_has_the_marks_of_trials_and_answers_in_order(self):
         self.start_daemon("--driver=sim", "--sim.blinks_per_min=0",
                           "--recording.directory=" + self.folder)
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + PATIENCE_S
         while run(GAZECTL, "record", "e", env=self.environment).returncode != 0:
             self.assertLess(time.monotonic(), deadline, "no recording")
             time.sleep(0.1)
@@ -229,7 +229,7 @@ class Experiment(WindowCase):
         self.begin("--gaze", "0.5,0.5")
         self.answer(lambda: len(self.rows()) == 2, "space", "1")
         self.viewer.terminate()
-        self.viewer.communicate(timeout=20)
+        self.viewer.communicate(timeout=PATIENCE_S)
         self.viewer = None
         self.assertEqual([row["response"] for row in self.rows()], ["first", "first"])
 

@@ -10,7 +10,7 @@ import shutil
 import time
 import unittest
 
-from picture import read_png, run
+from picture import PATIENCE_S, read_png, run
 from window_case import GAZEVIEW, LINE_HEIGHT, SCENE, SCENES, SIZE, WindowCase
 
 DROP_FILES = os.environ["DROP_FILES"]
@@ -59,7 +59,7 @@ class Files(WindowCase):
         self.tool("key", key)
 
     def until_there(self, path, is_good=lambda text: True):
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             if os.path.exists(path):
                 with open(path, encoding="utf-8") as file:
@@ -137,7 +137,7 @@ class Files(WindowCase):
         self.tool("mouseup", 1)
         shown = self.until_still()
         self.tool("key", "F12")
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while not glob.glob(os.path.join(self.folder, "*.png")):
             self.assertLess(time.monotonic(), deadline, "no picture is written")
             time.sleep(0.05)
@@ -154,7 +154,7 @@ class Files(WindowCase):
         self.drop(self.write("notes.txt", "milk, bread\n"))
         self.drop(self.write("half.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
                              b"sizes: 9 9 9\nencoding: raw\n\nabc"))
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while True:  # until both have been tried, the last one on a thread
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.5)

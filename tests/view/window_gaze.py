@@ -10,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from picture import run
+from picture import PATIENCE_S, run
 from window_case import GAZECTL, LINE_HEIGHT, WindowCase
 
 
@@ -30,7 +30,7 @@ class Gaze(WindowCase):
         self.addCleanup(folder.cleanup)
         self.start_daemon("--driver=sim", "--sim.blinks_per_min=0",
                           "--recording.directory=" + folder.name)
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while run(GAZECTL, "record", "short", env=self.environment).returncode != 0:
             self.assertLess(time.monotonic(), deadline, "nothing is recorded")
         time.sleep(1)  # the time that is recorded
@@ -165,7 +165,7 @@ class Gaze(WindowCase):
         self.tool("key", "c")  # an event
         self.until(lambda p: p.at(5, 600) == blue, "on the left")
         self.viewer.terminate()
-        said = self.viewer.communicate(timeout=20)[1]
+        said = self.viewer.communicate(timeout=PATIENCE_S)[1]
         self.viewer = None
         self.assertEqual(len(self.rows(said, "monitor RIGHT has gone")), 1, said)
 
@@ -191,7 +191,7 @@ class Gaze(WindowCase):
     def test_unknown_monitor_is_a_warning(self):
         self.start("--gaze", "mouse", "--tracker-display", "DP-9")
         self.viewer.terminate()
-        said = self.viewer.communicate(timeout=20)[1]
+        said = self.viewer.communicate(timeout=PATIENCE_S)[1]
         self.viewer = None
         self.assertEqual(len(self.rows(said, "DP-9")), 1, said)
         self.assertIn("no such monitor", said)

@@ -12,7 +12,7 @@ import sys
 import time
 import unittest
 
-from picture import run
+from picture import PATIENCE_S, run
 from window_case import (
     CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
 )
@@ -101,12 +101,13 @@ class WindowLoading(WindowCase):
     def quit(self):
         """Quit. -> exit status, messages"""
         self.tool("key", "q")
-        status = self.viewer.wait(timeout=20)
+        status = self.viewer.wait(timeout=PATIENCE_S)
         return status, self.messages()
 
     def open(self, path):
         """Open a file by the dialog."""
-        place = (30, 10, 440, 92)
+        # The dialog's own text: above it stands the time of a frame, behind it a bar may move.
+        place = (30, 28, 440, 92)
         before = self.grab()
         self.tool("key", "ctrl+o")
         empty = self.until(lambda p: p.part(*place) != before.part(*place), "a dialog")
@@ -226,7 +227,7 @@ class WindowLoading(WindowCase):
             self.launch(SLOW)
             self.until(self.bar, "a bar")
             self.viewer.send_signal(number)
-            self.assertEqual(self.viewer.wait(timeout=20), -number)
+            self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), -number)
             self.assertEqual(self.messages(), "")
         self.launch(SLOW)
         self.until(self.bar, "a bar")
@@ -242,7 +243,7 @@ class WindowLoading(WindowCase):
             self.until(self.shows_something if words and words[0] == SCENE else self.bar, "a window")
             server.kill()
             server.wait()
-            status = self.viewer.wait(timeout=20)
+            status = self.viewer.wait(timeout=PATIENCE_S)
             said = self.messages()
             self.assertEqual(status, 1, said)
             self.assertEqual(said.count("\n"), 1, said)
@@ -257,7 +258,7 @@ class WindowLoading(WindowCase):
         self.assertIn("screen", self.viewer.stdout.readline())
         server.kill()
         server.wait()
-        out, said = self.viewer.communicate(timeout=20)
+        out, said = self.viewer.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.viewer.returncode, 1)
         self.assertIn("cancelled", out)
         self.assertEqual(said.count("\n"), 1, said)
@@ -269,7 +270,7 @@ class WindowLoading(WindowCase):
         # As a window manager does.
         for state, rests in ((ICONIC, True), (NORMAL, False)):
             set_state(self.environment["DISPLAY"], int(self.window), state)
-            deadline = time.monotonic() + 15
+            deadline = time.monotonic() + PATIENCE_S
             while (self.ticks_in(0.5) <= 1) != rests:
                 self.assertLess(time.monotonic(), deadline, "at rest: %s" % rests)
 

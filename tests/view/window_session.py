@@ -12,7 +12,7 @@ import tempfile
 import time
 import unittest
 
-from picture import read_png, run
+from picture import PATIENCE_S, read_png, run
 from window_case import GAZECTL, GAZEVIEW, SCENE, SIZE, WindowCase
 
 
@@ -41,13 +41,13 @@ class Leaves(WindowCase):
 
     def quit(self):
         self.key("q")
-        _, said = self.viewer.communicate(timeout=20)
+        _, said = self.viewer.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.viewer.returncode, 0, said)
         return said
 
     def appears(self, pattern, count=1):
         """The files with a name, once all are there and no longer grow."""
-        deadline, before = time.monotonic() + 15, None
+        deadline, before = time.monotonic() + PATIENCE_S, None
         while True:
             found = sorted(glob.glob(self.path(pattern)))
             sizes = [os.path.getsize(name) for name in found]

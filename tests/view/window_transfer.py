@@ -10,7 +10,7 @@ import sys
 import time
 import unittest
 
-from picture import read_png, run, write_scene
+from picture import PATIENCE_S, read_png, run, write_scene
 from window_case import GAZEVIEW, PLACE, SCENE, SCENES, SCREEN, WindowCase
 
 # Width and height of the plot at scale 1.
@@ -176,7 +176,7 @@ class TransferWindow(WindowCase):
         changed = self.settled()
         self.tool("key", "ctrl+s")
         written = os.path.splitext(SCENE)[0] + ".tf"
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while not os.path.exists(written):
             self.assertLess(time.monotonic(), deadline, "never saved")
             time.sleep(0.05)
@@ -208,7 +208,7 @@ class TransferWindow(WindowCase):
         before = read_function()
         self.move(left + 380, bottom + 105)
         self.tool("click", 1)
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + PATIENCE_S
         while read_function() == before:
             self.assertLess(time.monotonic(), deadline, "never saved")
             time.sleep(0.05)
