@@ -214,15 +214,27 @@ class Window(WindowCase):
         self.tool("key", "m")
         self.until(lambda p: not self.amber(p) and self.cross_at(p, 60, 280), "mouse by choice")
 
-    def log_lines(self, kind):
-        """The fields of all records of a kind, once the recording is complete."""
-        names = os.listdir(self.recordings.name)
-        self.assertEqual(len(names), 1, names)
-        with open(os.path.join(self.recordings.name, names[0]), encoding="utf-8") as log:
+    def record(self, name):
+        """Begin a recording and end the one before. -> its file"""
+        run(GAZECTL, "stop", env=self.environment)
+        done = run(GAZECTL, "record", name, env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.strip()
+
+    def log_lines(self, path, kind):
+        """The fields of all records of a kind that have been written so far."""
+        with open(path, encoding="utf-8") as log:
             lines = log.read().splitlines()
-        self.assertTrue(lines[-1].startswith("#end "), lines[-1])
         return [line.split("\t") for line in lines if line.startswith(kind + "\t")]
 
+    def rects(self, path):
+        return [line[2:] for line in self.log_lines(path, "!window")]
+
+    def until_logged(self, path, rect):
+        deadline = time.monotonic() + PATIENCE_S
+        while rect not in self.rects(path):
+            self.assertLess(time.monotonic(), deadline, "never logged: %r" % rect)
+            time.sleep(0.05)
     def test_pointer_goes_through_the_daemon_and_leads_the_gaze(self):
         self.start_daemon("--driver=pointer")
         self.start("--gaze", "pointer", "--cross")
@@ -245,16 +257,14 @@ class Window(WindowCase):
         self.start_daemon("--driver=sim", "--recording.directory=" + self.recordings.name)
         self.start("--gaze", "daemon")
         self.until(lambda p: not self.amber(p), "a daemon")
-        time.sleep(1.2)  # the window is reported each second
-        done = run(GAZECTL, "record", "later", env=self.environment)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.until_logged(self.record("first"), ["0", "0", "480", "320"])
+        path = self.record("later")
         self.tool("windowmove", self.window, 100, 50)
-        self.until(lambda p: p.at(50, 25) == (0, 0, 0), "moved")
+        self.until_logged(path, ["100", "50", "480", "320"])
         self.tool("windowsize", self.window, 500, 400)
-        self.until(lambda p: p.at(590, 440) != (0, 0, 0), "resized")
-        time.sleep(0.5)
+        self.until_logged(path, ["100", "50", "500", "400"])
         self.stop_daemon()
-        rects = [line[2:] for line in self.log_lines("!window")]
+        rects = self.rects(path)
         self.assertEqual(rects[0], ["0", "0", "480", "320"])
         self.assertEqual(rects[-1], ["100", "50", "500", "400"])
         self.assertIn(["100", "50", "480", "320"], rects)

@@ -131,19 +131,31 @@ class WindowCase(unittest.TestCase):
                 pass  # the thread has ended
         return True
 
-    def rest(self):
-        """A screenshot once the viewer has nothing more to do."""
+    def until_idle(self):
+        """Wait until the viewer has nothing more to do."""
         deadline = time.monotonic() + PATIENCE_S
         still = 0
         before = self.ticks()
         while still < 6:
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")
             self.assertLess(time.monotonic(), deadline, "it never rests")
-            time.sleep(0.05)
+            time.sleep(0.02)
             now = self.ticks()
             still = still + 1 if now == before and self.waits() else 0
             before = now
+
+    def rest(self):
+        """A screenshot once the viewer has nothing more to do."""
+        self.until_idle()
         return self.grab()
+
+    def press(self, key, times=1):
+        """Press a key until a frame has seen it: Dear ImGui asks once a frame which keys are down."""
+        for _ in range(times):
+            self.tool("keydown", *key.split("+"))
+            self.until_idle()
+            self.tool("keyup", *reversed(key.split("+")))
+            self.until_idle()
 
     def until(self, good, what):
         """The first screenshot that @good accepts; fails after PATIENCE_S."""

@@ -47,12 +47,6 @@ class Files(WindowCase):
         done = run(DROP_FILES, self.window, *paths, env=self.environment)
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def press(self, key):
-        """Press a key long enough for a frame to see it."""
-        self.tool("keydown", *key.split("+"))
-        time.sleep(0.15)
-        self.tool("keyup", *reversed(key.split("+")))
-
     def keys(self, key):
         """Press a key with the mouse on the window, which then has the keyboard."""
         self.move(SIZE[0] // 2, SIZE[1] // 2)
@@ -100,7 +94,7 @@ class Files(WindowCase):
         """Replace the text of a field."""
         self.tool("key", "ctrl+a")
         self.tool("type", "--delay", "20", text)
-        time.sleep(0.3)  # the field takes it before Enter counts
+        self.until_idle()  # the field takes it before Enter counts
 
     def test_dropped_volume_is_shown(self):
         self.start("--gaze", "mouse", "--method", "standard")
@@ -154,21 +148,13 @@ class Files(WindowCase):
         self.drop(self.write("notes.txt", "milk, bread\n"))
         self.drop(self.write("half.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
                              b"sizes: 9 9 9\nencoding: raw\n\nabc"))
-        deadline = time.monotonic() + PATIENCE_S
-        while True:  # until both have been tried, the last one on a thread
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.5)
-            if not self.busy():
-                break
+        self.until_idle()  # both have been tried, the last one on a thread
         self.until(lambda p: True, "still there")
         self.tool("key", "q")
         said = self.messages()
         self.assertIn("notes.txt:1: ", said)
         self.assertIn("half.nrrd: ", said)
         self.assertTrue(before)
-
-    def busy(self):
-        return self.processor_share(0.5) > 0.1
 
     def test_volume_is_opened_by_the_beginning_of_its_name(self):
         shutil.copy(SCENE, os.path.join(self.folder, "a.scene"))
@@ -227,7 +213,6 @@ class Files(WindowCase):
         self.until(self.dialog_there, "the dialog")
         self.enter_text(path)
         self.press("Return")
-        time.sleep(0.5)  # nothing may happen
         with open(path, encoding="utf-8") as file:
             self.assertEqual(file.read(), other)
         self.press("Return")
@@ -256,7 +241,7 @@ class Files(WindowCase):
         self.until(self.dialog_there, "the dialog")
         for key in ("Down", "Up", "Down", "Up"):
             self.tool("key", key)
-            time.sleep(0.3)
+            self.until_idle()
         self.tool("key", "Return")
         self.until(lambda p: not self.dialog_there(p), "a picture")
 

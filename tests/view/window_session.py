@@ -128,7 +128,7 @@ class Leaves(WindowCase):
         self.key("F10")
         self.until(self.red_dot, "a red dot")
         self.drag(200, 200, 90, 40)
-        time.sleep(1)
+        time.sleep(1)  # the time that is filmed
         self.key("F10")
         self.until(lambda p: not self.red_dot(p), "no red dot")
         (video,) = self.appears("*.mp4")

@@ -44,7 +44,7 @@ class TransferWindow(WindowCase):
         self.tool("mousemove", SCREEN[0] - 3, SCREEN[1] // 2)
         # The screen outside the window is black, unlike the scene's background.
         self.until(lambda p: p.at(SCREEN[0] - 3, SCREEN[1] - 3) != (0, 0, 0), "large window")
-        before = self.settled()
+        before = self.rest()
         self.tool("key", "e")
         # The first point, which is selected, has a white ring: at value 0 and opacity 0.
         picture = self.until(self.find_plot, "editor")
@@ -79,38 +79,21 @@ class TransferWindow(WindowCase):
     def until_same(self, before, what):
         return self.until(lambda p: self.same(p, before), what)
 
-    def settled(self):
-        """A screenshot once two in a row are equal."""
-        before = self.grab()
-        while True:
-            time.sleep(0.3)
-            picture = self.grab()
-            if self.same(before, picture):
-                return picture
-            before = picture
-
-    def press(self, key, times=1):
-        for _ in range(times):
-            self.tool("keydown", key)
-            time.sleep(0.12)  # Dear ImGui reads buttons while it draws
-            self.tool("keyup", key)
-            time.sleep(0.12)
-
     def drag(self, start, end):
         self.move(*start)
         self.tool("mousedown", 1)
-        time.sleep(0.2)
+        self.until_idle()
         for i in range(1, 6):
             self.move(*(round(a + (b - a) * i / 5) for a, b in zip(start, end)))
-            time.sleep(0.05)
+            self.until_idle()
         self.tool("mouseup", 1)
-        time.sleep(0.2)
+        self.until_idle()
 
     def test_dragged_point_changes_the_picture_and_undo_restores_it(self):
         first = self.open_editor()
         self.drag(self.point_at(0.65, 0.2), self.point_at(0.62, 0.0))
         self.until_other(first, "dragged")
-        changed = self.settled()
+        changed = self.rest()
         self.tool("key", "ctrl+z")
         self.until_same(first, "taken back")
         self.tool("key", "ctrl+shift+z")
@@ -133,7 +116,7 @@ class TransferWindow(WindowCase):
         # Ninth point, at 0.58; the next is the peak of the yellow shell.
         self.press("Tab", 8)
         self.press("Insert")
-        self.assertTrue(self.same(self.settled(), first), "it lies on the curve")
+        self.assertTrue(self.same(self.rest(), first), "it lies on the curve")
         self.press("Up", 12)
         self.until_other(first, "moved")
         self.press("Delete")
@@ -153,14 +136,14 @@ class TransferWindow(WindowCase):
 
     def test_open_editor_takes_no_processor_time(self):
         self.open_editor()
-        self.settled()
+        self.rest()
         self.assertLess(self.processor_share(), 0.03)
 
     def test_double_click_colours_a_point(self):
         first = self.open_editor()
         self.move(*self.point_at(0.65, 0.2))
         self.tool("click", "--repeat", 2, "--delay", 80, 1)
-        time.sleep(0.5)
+        self.until_idle()
         # The colour square, right below the mouse: grey.
         x, y = self.point_at(0.65, 0.2)
         self.move(x + 20, y + 100)
@@ -173,7 +156,7 @@ class TransferWindow(WindowCase):
         first = self.open_editor()
         self.drag(self.point_at(0.65, 0.2), self.point_at(0.62, 0.0))
         self.until_other(first, "dragged")
-        changed = self.settled()
+        changed = self.rest()
         self.tool("key", "ctrl+s")
         written = os.path.splitext(SCENE)[0] + ".tf"
         deadline = time.monotonic() + PATIENCE_S
@@ -181,7 +164,7 @@ class TransferWindow(WindowCase):
             self.assertLess(time.monotonic(), deadline, "never saved")
             time.sleep(0.05)
         self.addCleanup(os.remove, written)
-        time.sleep(0.5)
+        self.until_idle()
         with open(SCENE, encoding="utf-8") as file:
             saved = file.read()
         out = os.path.join(PLACE.name, "scene.png")
@@ -200,11 +183,11 @@ class TransferWindow(WindowCase):
         left, bottom = self.corner
         self.move(left + 40, bottom - PLOT[1] - 22)
         self.tool("click", 1)
-        time.sleep(0.4)
+        self.until_idle()
         self.move(left + 40, bottom - PLOT[1] - 22 + 37 + 17)
         self.tool("click", 1)
         self.until_other(first, "preset")
-        chosen = self.settled()
+        chosen = self.rest()
         before = read_function()
         self.move(left + 380, bottom + 105)
         self.tool("click", 1)
