@@ -399,7 +399,7 @@ static const struct recipe recipes[GZ_STABILITY_VOLUME_COUNT] = {
 	[GZ_STABILITY_BITS_16] = { { 20, 24, 18 }, 1, GZ_VOXEL_U16, waves },
 };
 
-static void put_voxel(struct gz_volume *volume, size_t index, double value)
+static void put_case_voxel(struct gz_volume *volume, size_t index, double value)
 {
 	if (volume->type == GZ_VOXEL_U8)
 		((uint8_t *)volume->voxels)[index] = (uint8_t)lround(value * 255);
@@ -420,10 +420,10 @@ static enum gz_result cook(const struct recipe *recipe, struct gz_volume *out_vo
 	for (int z = 0; z < volume.dims[2]; z++)
 		for (int y = 0; y < volume.dims[1]; y++)
 			for (int x = 0; x < volume.dims[0]; x++)
-				put_voxel(&volume, index++,
-					  recipe->value((x + 0.5) / volume.dims[0],
-							(y + 0.5) / volume.dims[1],
-							(z + 0.5) / volume.dims[2]));
+				put_case_voxel(&volume, index++,
+					       recipe->value((x + 0.5) / volume.dims[0],
+							     (y + 0.5) / volume.dims[1],
+							     (z + 0.5) / volume.dims[2]));
 	gz_volume_find_range(&volume);
 	*out_volume = volume;
 	return GZ_OK;

@@ -448,15 +448,8 @@ void gz_brick_file_cell(const struct gz_brick_file *file, size_t brick, int cell
 			float *out_greatest)
 {
 	const size_t at = (brick * GZ_BRICK_CELLS + (size_t)cell) * 2;
-	for (size_t i = 0; i < 2; i++) {
-		float *out = i == 0 ? out_least : out_greatest;
-		if (file->header.type == GZ_VOXEL_U8)
-			*out = (float)((const uint8_t *)file->cells)[at + i];
-		else if (file->header.type == GZ_VOXEL_U16)
-			*out = (float)((const uint16_t *)file->cells)[at + i];
-		else
-			*out = ((const float *)file->cells)[at + i];
-	}
+	*out_least = (float)gz_voxel_stored(file->header.type, file->cells, at);
+	*out_greatest = (float)gz_voxel_stored(file->header.type, file->cells, at + 1);
 }
 
 static enum gz_result check_cells(const struct gz_brick_file *file)

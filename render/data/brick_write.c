@@ -96,15 +96,6 @@ static box_range *const box_ranges[GZ_VOXEL_TYPE_COUNT] = {
 	[GZ_VOXEL_F32] = box_range_f32,
 };
 
-static float voxel_value(enum gz_voxel_type type, const void *voxels, size_t index)
-{
-	if (type == GZ_VOXEL_U8)
-		return (float)((const uint8_t *)voxels)[index];
-	if (type == GZ_VOXEL_U16)
-		return (float)((const uint16_t *)voxels)[index];
-	return ((const float *)voxels)[index];
-}
-
 /* The ranges of the cells: of a cell's voxels and one more on every side, like macrocells. */
 static void find_cells(struct writer *writer, enum gz_voxel_type type, size_t number)
 {
@@ -128,8 +119,8 @@ static void find_brick_range(const struct writer *writer, enum gz_voxel_type typ
 	float own[2];
 	int first[3], end[3];
 	box_ranges[type](writer->voxels, 0, GZ_BRICK_STORED_EDGE, own);
-	entry->least = voxel_value(type, own, 0);
-	entry->greatest = voxel_value(type, own, 1);
+	entry->least = (float)gz_voxel_stored(type, own, 0);
+	entry->greatest = (float)gz_voxel_stored(type, own, 1);
 	if (level == 0)
 		return;
 	gz_brick_children(&writer->layout, level, brick, first, end);

@@ -48,7 +48,7 @@ gz_volume_writer *gz_volume_writer_by_name(const char *path)
 	return NULL;
 }
 
-static enum gz_result refuse_unknown(const struct gz_volume_file *file)
+static enum gz_result refuse_unknown_format(const struct gz_volume_file *file)
 {
 	struct gz_text endings = { 0 };
 	for (size_t i = 0; i < gz_volume_format_count; i++) {
@@ -76,7 +76,7 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 	if (!format && !raw)
 		format = gz_volume_format_by_content(path);
 	if (!format)
-		return refuse_unknown(&file);
+		return refuse_unknown_format(&file);
 	if (raw && format->layout == GZ_LAYOUT_IN_FILE) {
 		gz_err(log, "%s: has a header; leave out dims, type, endian and spacing", path);
 		return GZ_ERR_INVAL;

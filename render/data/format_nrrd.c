@@ -466,27 +466,14 @@ static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_f
 			dims[2], s[0], s[1], s[2], gz_host_big_endian() ? "big" : "little");
 }
 
-static double stored_value(const struct gz_volume *volume, size_t i)
-{
-	switch (volume->type) {
-	case GZ_VOXEL_U8:
-		return ((const uint8_t *)volume->voxels)[i];
-	case GZ_VOXEL_U16:
-		return ((const uint16_t *)volume->voxels)[i];
-	case GZ_VOXEL_F32:
-	case GZ_VOXEL_TYPE_COUNT:
-		break;
-	}
-	return (double)((const float *)volume->voxels)[i];
-}
-
 /* Values as `form` has them. Negative ones keep their two's complement. */
 static void convert_to_form(const struct gz_volume *volume, const struct nrrd_form *form,
 			    size_t first, size_t count, uint8_t *out)
 {
 	for (size_t i = 0; i < count; i++) {
 		const double value =
-			volume->slope * stored_value(volume, first + i) + volume->intercept;
+			volume->slope * gz_voxel_stored(volume->type, volume->voxels, first + i) +
+			volume->intercept;
 		const float real = (float)value;
 		const uint16_t word = form == &floats ? 0 : (uint16_t)(int32_t)value;
 		if (form == &floats)

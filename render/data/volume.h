@@ -64,6 +64,15 @@ enum gz_voxel_type {
 /** Size of a voxel, bytes; 0 for an unknown type. */
 size_t gz_voxel_size(enum gz_voxel_type type);
 
+/** A voxel as it is stored, without the volume's slope and intercept. `voxels` is an array of
+ * `type` with more than `index` elements. Exact. */
+static inline double gz_voxel_stored(enum gz_voxel_type type, const void *voxels, size_t index)
+{
+	return type == GZ_VOXEL_U8    ? ((const uint8_t *)voxels)[index]
+	       : type == GZ_VOXEL_U16 ? ((const uint16_t *)voxels)[index]
+				      : (double)((const float *)voxels)[index];
+}
+
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 

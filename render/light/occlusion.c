@@ -129,7 +129,7 @@ static void fill_part(void *user, size_t part, int worker)
 		cells[cell[0]] = fill_cell(job, cell);
 }
 
-static void find_weights(struct job *job, int axis, double radius)
+static void find_tent_weights(struct job *job, int axis, double radius)
 {
 	const struct gz_volume *volume = job->volume;
 	const double cell =
@@ -204,7 +204,7 @@ static void make_grid(struct job *job, double radius, struct gz_workers *workers
 	const int *dims = job->occlusion->dims;
 	run_parts(workers, fill_part, job, (size_t)dims[1] * (size_t)dims[2]);
 	for (int axis = 0; axis < 3; axis++) {
-		find_weights(job, axis, radius);
+		find_tent_weights(job, axis, radius);
 		run_parts(workers, weight_part, job, (size_t)dims[axis == 2 ? 1 : 2]);
 	}
 }

@@ -19,7 +19,8 @@ struct parser {
 	struct gz_transfer transfer;
 };
 
-static enum gz_result refuse_line(const struct parser *parser, const char *key, const char *what)
+static enum gz_result refuse_transfer_line(const struct parser *parser, const char *key,
+					   const char *what)
 {
 	gz_err(parser->log, "%s:%d: %.40s: %s", parser->name, parser->line, key, what);
 	return GZ_ERR_FORMAT;
@@ -40,9 +41,10 @@ static enum gz_result take_range(struct parser *parser, char *rest)
 {
 	double range[2];
 	if (parser->transfer.has_range)
-		return refuse_line(parser, "range", "given twice; keep one");
+		return refuse_transfer_line(parser, "range", "given twice; keep one");
 	if (!take_line_numbers(rest, range, 2) || !(range[0] < range[1]))
-		return refuse_line(parser, "range", "write two finite numbers, the lower first");
+		return refuse_transfer_line(parser, "range",
+					    "write two finite numbers, the lower first");
 	parser->transfer.has_range = true;
 	memcpy(parser->transfer.range, range, sizeof range);
 	return GZ_OK;
@@ -52,15 +54,15 @@ static enum gz_result take_interpolation(struct parser *parser, char *rest)
 {
 	char *word = gz_number_next_word(&rest, BLANKS);
 	if (parser->has_interpolation)
-		return refuse_line(parser, "interpolation", "given twice; keep one");
+		return refuse_transfer_line(parser, "interpolation", "given twice; keep one");
 	if (!word || gz_number_next_word(&rest, BLANKS))
-		return refuse_line(parser, "interpolation", "write linear or quadratic");
+		return refuse_transfer_line(parser, "interpolation", "write linear or quadratic");
 	if (strcmp(word, "linear") == 0)
 		parser->transfer.interpolation = GZ_TRANSFER_LINEAR;
 	else if (strcmp(word, "quadratic") == 0)
 		parser->transfer.interpolation = GZ_TRANSFER_QUADRATIC;
 	else
-		return refuse_line(parser, word, "unknown; write linear or quadratic");
+		return refuse_transfer_line(parser, word, "unknown; write linear or quadratic");
 	parser->has_interpolation = true;
 	return GZ_OK;
 }
@@ -70,12 +72,13 @@ static enum gz_result append_point(struct parser *parser, const double numbers[5
 	struct gz_transfer *transfer = &parser->transfer;
 	size_t count = transfer->count;
 	if (count == GZ_TRANSFER_POINTS_MAX)
-		return refuse_line(parser, "point", "one too many; at most 256 are read");
+		return refuse_transfer_line(parser, "point", "one too many; at most 256 are read");
 	if (count > 0 && numbers[0] < transfer->points[count - 1].value)
-		return refuse_line(parser, "value",
-				   "below that of the point above; let values rise");
+		return refuse_transfer_line(parser, "value",
+					    "below that of the point above; let values rise");
 	if (count > 1 && numbers[0] <= transfer->points[count - 2].value)
-		return refuse_line(parser, "value", "given a third time; two points make a step");
+		return refuse_transfer_line(parser, "value",
+					    "given a third time; two points make a step");
 	transfer->points[transfer->count++] = (struct gz_transfer_point) {
 		.value = numbers[0],
 		.rgb = { numbers[1], numbers[2], numbers[3] },
@@ -89,15 +92,17 @@ static enum gz_result take_point_line(struct parser *parser, const char *value, 
 	static const char *const names[5] = { "value", "red", "green", "blue", "opacity" };
 	double numbers[5];
 	if (!gz_number_parse(value, &numbers[0]))
-		return refuse_line(parser, value,
-				   "unknown word; write a point \"value r g b a\", range or "
-				   "interpolation");
+		return refuse_transfer_line(
+			parser, value,
+			"unknown word; write a point \"value r g b a\", range or "
+			"interpolation");
 	if (!take_line_numbers(rest, numbers + 1, 4))
-		return refuse_line(parser, "point",
-				   "write five numbers from 0 to 1: value r g b a");
+		return refuse_transfer_line(parser, "point",
+					    "write five numbers from 0 to 1: value r g b a");
 	for (int i = 0; i < 5; i++)
 		if (!(numbers[i] >= 0 && numbers[i] <= 1))
-			return refuse_line(parser, names[i], "out of range; allowed: 0 to 1");
+			return refuse_transfer_line(parser, names[i],
+						    "out of range; allowed: 0 to 1");
 	return append_point(parser, numbers);
 }
 
@@ -122,9 +127,9 @@ static enum gz_result copy_line(const struct parser *parser, const char *text, s
 	const char *comment = memchr(text, '#', size);
 	size_t used = comment ? (size_t)(comment - text) : size;
 	if (memchr(text, '\0', used))
-		return refuse_line(parser, "line", "has a NUL byte; is this a text file?");
+		return refuse_transfer_line(parser, "line", "has a NUL byte; is this a text file?");
 	if (used >= LINE_SIZE)
-		return refuse_line(parser, "line", "longer than 255 bytes; shorten it");
+		return refuse_transfer_line(parser, "line", "longer than 255 bytes; shorten it");
 	memcpy(out_line, text, used);
 	out_line[used] = '\0';
 	return GZ_OK;

@@ -48,20 +48,7 @@ static double voxel_at(const struct gz_volume *volume, const int at[3])
 		const int i = at[axis] < 0 ? 0 : at[axis] > last ? last : at[axis];
 		index = index * (size_t)volume->dims[axis] + (size_t)i;
 	}
-	if (volume->type == GZ_VOXEL_U8)
-		return ((const uint8_t *)volume->voxels)[index];
-	if (volume->type == GZ_VOXEL_U16)
-		return ((const uint16_t *)volume->voxels)[index];
-	return (double)((const float *)volume->voxels)[index];
-}
-
-static double stored_at(enum gz_voxel_type type, const void *voxels, int i)
-{
-	if (type == GZ_VOXEL_U8)
-		return ((const uint8_t *)voxels)[i];
-	if (type == GZ_VOXEL_U16)
-		return ((const uint16_t *)voxels)[i];
-	return (double)((const float *)voxels)[i];
+	return gz_voxel_stored(volume->type, volume->voxels, index);
 }
 
 /* Every stored voxel of every brick of one level, against the volume that the level is. */
@@ -82,7 +69,7 @@ static void check_level(const struct gz_brick_file *file, int level, const struc
 			const int at[3] = { brick[0] * 32 + i % e - 1,
 					    brick[1] * 32 + i / e % e - 1,
 					    brick[2] * 32 + i / e / e - 1 };
-			const double got = stored_at(volume->type, voxels, i);
+			const double got = gz_voxel_stored(volume->type, voxels, (size_t)i);
 			const double wanted = voxel_at(volume, at);
 			if (got != wanted)
 				fail_msg("level %d brick %zu voxel %d: %g instead of %g", level,

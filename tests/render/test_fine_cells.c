@@ -11,13 +11,6 @@
 #include "render/raycast/cpu/fine_cells.h"
 #include "small_scene.h"
 
-static double voxel_of(const struct gz_volume *volume, const void *values, size_t i)
-{
-	return volume->type == GZ_VOXEL_U8    ? ((const uint8_t *)values)[i]
-	       : volume->type == GZ_VOXEL_U16 ? ((const uint16_t *)values)[i]
-					      : (double)((const float *)values)[i];
-}
-
 /* The least and the greatest of the voxels from, to edge beyond, along each axis. */
 static void search_voxels(const struct gz_volume *volume, const int from[3], double out[2])
 {
@@ -30,7 +23,8 @@ static void search_voxels(const struct gz_volume *volume, const int from[3], dou
 				const size_t i = ((size_t)z * (size_t)volume->dims[1] + (size_t)y) *
 							 (size_t)volume->dims[0] +
 						 (size_t)x;
-				const double value = voxel_of(volume, volume->voxels, i);
+				const double value =
+					gz_voxel_stored(volume->type, volume->voxels, i);
 				out[0] = fmin(out[0], value);
 				out[1] = fmax(out[1], value);
 			}
@@ -45,8 +39,10 @@ static void check_ranges(const struct gz_volume *volume, const struct gz_fine_ce
 			for (int x = 0; x < dims[0]; x++, cell++) {
 				const int from[3] = { GZ_FINE_EDGE * x, GZ_FINE_EDGE * y,
 						      GZ_FINE_EDGE * z };
-				const double found[2] = { voxel_of(volume, cells->least, cell),
-							  voxel_of(volume, cells->greatest, cell) };
+				const double found[2] = {
+					gz_voxel_stored(volume->type, cells->least, cell),
+					gz_voxel_stored(volume->type, cells->greatest, cell)
+				};
 				double wanted[2];
 				search_voxels(volume, from, wanted);
 				if (found[0] < wanted[0] || found[0] > wanted[0] ||
@@ -127,8 +123,9 @@ static bool any_shows(const struct small_scene *scene, const struct classified *
 						 (size_t)x;
 				if (gz_transfer_table_shows(
 					    &classified->table,
-					    voxel_of(&scene->volume, cells->least, i),
-					    voxel_of(&scene->volume, cells->greatest, i)))
+					    gz_voxel_stored(scene->volume.type, cells->least, i),
+					    gz_voxel_stored(scene->volume.type, cells->greatest,
+							    i)))
 					return true;
 			}
 	return false;

@@ -16,11 +16,7 @@ static double voxel(const struct gz_volume *volume, int x, int y, int z)
 	const size_t index =
 		((size_t)z * (size_t)volume->dims[1] + (size_t)y) * (size_t)volume->dims[0] +
 		(size_t)x;
-	if (volume->type == GZ_VOXEL_U8)
-		return ((const uint8_t *)volume->voxels)[index];
-	if (volume->type == GZ_VOXEL_U16)
-		return ((const uint16_t *)volume->voxels)[index];
-	return (double)((const float *)volume->voxels)[index];
+	return gz_voxel_stored(volume->type, volume->voxels, index);
 }
 
 /* Mean of the voxels of the full volume that a voxel of the half stands for. */

@@ -29,13 +29,6 @@ static void put(struct gz_volume *volume, size_t i, double value)
 		((float *)volume->voxels)[i] = (float)value;
 }
 
-static double stored(const struct gz_volume *volume, size_t i)
-{
-	return volume->type == GZ_VOXEL_U8    ? ((const uint8_t *)volume->voxels)[i]
-	       : volume->type == GZ_VOXEL_U16 ? ((const uint16_t *)volume->voxels)[i]
-					      : (double)((const float *)volume->voxels)[i];
-}
-
 /* Values from a generator of its own (Marsaglia's xorshift, 2003), from least to greatest. */
 static struct gz_volume noise(int x, int y, int z, enum gz_voxel_type type, double least,
 			      double greatest)
@@ -69,7 +62,9 @@ static void assert_as_counted_one_by_one(const struct gz_volume *volume,
 	assert_non_null(counts);
 	const size_t voxels = gz_volume_voxel_count(volume);
 	for (size_t i = 0; i < voxels; i++) {
-		const double value = volume->slope * stored(volume, i) + volume->intercept;
+		const double value =
+			volume->slope * gz_voxel_stored(volume->type, volume->voxels, i) +
+			volume->intercept;
 		const int bin = histogram->width > 0
 					? (int)((value - histogram->low) / histogram->width)
 					: 0;

@@ -126,19 +126,12 @@ static const struct expectation expectations[] = {
 	  .voxels = { 79, 48, 54 } },
 };
 
-static double stored_at(const struct gz_volume *v, size_t i)
-{
-	return v->type == GZ_VOXEL_U8    ? ((const uint8_t *)v->voxels)[i]
-	       : v->type == GZ_VOXEL_U16 ? ((const uint16_t *)v->voxels)[i]
-					 : (double)((const float *)v->voxels)[i];
-}
-
 static double sum_of(const struct gz_volume *v)
 {
 	size_t count = gz_volume_voxel_count(v);
 	double sum = 0;
 	for (size_t i = 0; i < count; i++)
-		sum += v->slope * stored_at(v, i) + v->intercept;
+		sum += v->slope * gz_voxel_stored(v->type, v->voxels, i) + v->intercept;
 	return sum;
 }
 
@@ -150,7 +143,7 @@ static double voxel_of(const struct gz_volume *v, int which)
 			       { 2 * d[0] / 3, d[1] / 4, d[2] / 2 } };
 	const int *p = at[which];
 	size_t i = ((size_t)p[2] * (size_t)d[1] + (size_t)p[1]) * (size_t)d[0] + (size_t)p[0];
-	return v->slope * stored_at(v, i) + v->intercept;
+	return v->slope * gz_voxel_stored(v->type, v->voxels, i) + v->intercept;
 }
 
 static bool near(double a, double b)

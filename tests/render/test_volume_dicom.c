@@ -33,10 +33,7 @@ static double value_at(const struct gz_volume *volume, int x, int y, int z)
 	const size_t i =
 		((size_t)z * (size_t)volume->dims[1] + (size_t)y) * (size_t)volume->dims[0] +
 		(size_t)x;
-	const double stored = volume->type == GZ_VOXEL_U8 ? ((const uint8_t *)volume->voxels)[i]
-			      : volume->type == GZ_VOXEL_U16
-				      ? ((const uint16_t *)volume->voxels)[i]
-				      : (double)((const float *)volume->voxels)[i];
+	const double stored = gz_voxel_stored(volume->type, volume->voxels, i);
 	return volume->slope * stored + volume->intercept;
 }
 

@@ -87,8 +87,8 @@ struct sums {
 	double steps, step_square;
 };
 
-static void add_point(const struct gz_quality_input *input, struct gz_point point,
-		      struct sums *sums)
+static void add_target_point(const struct gz_quality_input *input, struct gz_point point,
+			     struct sums *sums)
 {
 	double offset[2];
 	gz_quality_offset_deg(input->display, input->target, point, offset);
@@ -130,7 +130,7 @@ static void add_samples(const struct gz_quality_input *input, enum gz_trace trac
 			last = NULL;
 			continue;
 		}
-		add_point(input, sample->point[trace], sums);
+		add_target_point(input, sample->point[trace], sums);
 		if (last && are_successive(input, last, sample))
 			add_step(input, last->point[trace], sample->point[trace], sums);
 		last = sample;

@@ -45,7 +45,7 @@ static bool split_words(char *line, struct words *words)
 	return words->count > 0;
 }
 
-static bool parse_whole_word(const struct words *words, int i, int64_t max, int64_t *out_value)
+static bool parse_word_number(const struct words *words, int i, int64_t max, int64_t *out_value)
 {
 	long long value;
 	if (!gz_number_parse_whole(words->word[i], &value) || value < 0 || value > max)
@@ -57,8 +57,8 @@ static bool parse_whole_word(const struct words *words, int i, int64_t max, int6
 static bool parse_screen(const struct words *words, struct gz_viewer_event *event)
 {
 	int64_t px[2];
-	if (words->count != 3 || !parse_whole_word(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
-	    !parse_whole_word(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]))
+	if (words->count != 3 || !parse_word_number(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
+	    !parse_word_number(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]))
 		return false;
 	event->px[0] = (int)px[0];
 	event->px[1] = (int)px[1];
@@ -69,10 +69,10 @@ static bool parse_shown(const struct words *words, struct gz_viewer_event *event
 {
 	int64_t index, count;
 	double x, y;
-	if (words->count != 6 || !parse_whole_word(words, 1, INT32_MAX, &index) ||
-	    !parse_whole_word(words, 2, INT32_MAX, &count) || index >= count ||
+	if (words->count != 6 || !parse_word_number(words, 1, INT32_MAX, &index) ||
+	    !parse_word_number(words, 2, INT32_MAX, &count) || index >= count ||
 	    !gz_number_parse(words->word[3], &x) || !gz_number_parse(words->word[4], &y) ||
-	    !parse_whole_word(words, 5, INT64_MAX, &event->time_ns))
+	    !parse_word_number(words, 5, INT64_MAX, &event->time_ns))
 		return false;
 	event->index = (size_t)index;
 	event->count = (size_t)count;
@@ -83,8 +83,8 @@ static bool parse_shown(const struct words *words, struct gz_viewer_event *event
 static bool parse_hidden(const struct words *words, struct gz_viewer_event *event)
 {
 	int64_t index;
-	if (words->count != 3 || !parse_whole_word(words, 1, INT32_MAX, &index) ||
-	    !parse_whole_word(words, 2, INT64_MAX, &event->time_ns))
+	if (words->count != 3 || !parse_word_number(words, 1, INT32_MAX, &index) ||
+	    !parse_word_number(words, 2, INT64_MAX, &event->time_ns))
 		return false;
 	event->index = (size_t)index;
 	return true;
@@ -92,7 +92,7 @@ static bool parse_hidden(const struct words *words, struct gz_viewer_event *even
 
 static bool parse_end(const struct words *words, struct gz_viewer_event *event)
 {
-	return words->count == 2 && parse_whole_word(words, 1, INT64_MAX, &event->time_ns);
+	return words->count == 2 && parse_word_number(words, 1, INT64_MAX, &event->time_ns);
 }
 
 enum gz_result gz_viewer_event_parse(const char *line, struct gz_viewer_event *out_event)

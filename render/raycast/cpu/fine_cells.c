@@ -87,13 +87,6 @@ struct fine_classifying {
 	const struct gz_transfer_table *table;
 };
 
-static double stored_value(enum gz_voxel_type type, const void *values, size_t index)
-{
-	return type == GZ_VOXEL_U8    ? ((const uint8_t *)values)[index]
-	       : type == GZ_VOXEL_U16 ? ((const uint16_t *)values)[index]
-				      : (double)((const float *)values)[index];
-}
-
 /* Find which cells of a row show something by themselves. Only those in macrocells that show can,
  * since a macrocell has all voxels of its fine cells. */
 static void classify_fine_row(const struct fine_classifying *job, int y, int z, size_t first)
@@ -107,8 +100,8 @@ static void classify_fine_row(const struct fine_classifying *job, int y, int z, 
 		const size_t index = first + (size_t)x;
 		flags[x] = coarse->distance[above + (size_t)(x / 2)] == 0 &&
 			   gz_transfer_table_shows(
-				   job->table, stored_value(cells->type, cells->least, index),
-				   stored_value(cells->type, cells->greatest, index));
+				   job->table, gz_voxel_stored(cells->type, cells->least, index),
+				   gz_voxel_stored(cells->type, cells->greatest, index));
 	}
 }
 

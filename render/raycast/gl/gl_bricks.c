@@ -289,7 +289,7 @@ static void end_uploads(void)
 
 /* Upload the coarse levels for good, coarsest first; where a finer brick is missing the coarser one
  * is shown. */
-static void pin_coarse_levels(struct gz_gl_bricks *bricks)
+static void pin_coarse_textures(struct gz_gl_bricks *bricks)
 {
 	const struct gz_brick_layout *layout = bricks->source.layout;
 	const int finest = gz_brick_rooms_pinned_level(layout, bricks->rooms.count);
@@ -326,7 +326,7 @@ enum gz_result gz_gl_bricks_open(struct gz_gl_bricks *bricks, const struct gz_gl
 	if (result == GZ_OK)
 		result = make_table(bricks, device);
 	if (result == GZ_OK) {
-		pin_coarse_levels(bricks);
+		pin_coarse_textures(bricks);
 		result = gz_gl_device_errors(device);
 	}
 	if (result != GZ_OK)

@@ -111,9 +111,7 @@ struct macrocell_building {
 static void voxels_to_floats(enum gz_voxel_type type, const void *values, int count, float *out)
 {
 	for (int i = 0; i < count; i++)
-		out[i] = type == GZ_VOXEL_U8    ? ((const uint8_t *)values)[i]
-			 : type == GZ_VOXEL_U16 ? ((const uint16_t *)values)[i]
-						: ((const float *)values)[i];
+		out[i] = (float)gz_voxel_stored(type, values, (size_t)i);
 }
 
 static void find_macrocell_slice(void *user, size_t part, int worker)

@@ -355,5 +355,5 @@ static void settle_stores(void)
 		.name = set, .double_cubic = double_cubic, .double_mean = double_mean,           \
 		.quincunx_cubic = quincunx_cubic, .quincunx_mean = quincunx_mean,                \
 		.all_are = all_are, .fill = fill_points, .copy = copy_points, .span = fill_span, \
-		.weights = find_weights, .blend = blend_points, .settle = settle_stores,         \
+		.weights = find_region_shares, .blend = blend_points, .settle = settle_stores,   \
 	}

@@ -259,7 +259,8 @@ static double greatest_of(double a, double b)
 
 /* gz_region_weight() without its divisions. The difference is far below 1/512, the distance between
  * a full share and the least that is rounded to it. */
-static void find_weights(const struct gz_region *region, int y, int x0, int count, uint32_t *out)
+static void find_region_shares(const struct gz_region *region, int y, int x0, int count,
+			       uint32_t *out)
 {
 	const double centre = region->centre_px[0], per_px = 1 / region->half_px[0];
 	const double v = (y - region->centre_px[1]) / region->half_px[1];
