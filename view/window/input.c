@@ -165,6 +165,7 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 static void move_mouse_gaze(struct gz_window *window)
 {
 	int width, height;
+	window->cursor_held = false;
 	glfwGetWindowSize(window->glfw, &width, &height);
 	if (width < 1 || height < 1)
 		return;
@@ -183,8 +184,14 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 		window->grabber->drag(window, right, down);
 	window->cursor_known = true;
 	gz_window_wake_panels(window);
+	window->cursor_held = true;
+	gz_window_follow_cursor(window);
+}
+
+void gz_window_follow_cursor(struct gz_window *window)
+{
 	/* While a setting is changed, its effect is shown at the previous gaze. */
-	if (!gz_widgets_have_mouse())
+	if (window->cursor_held && !gz_widgets_have_mouse())
 		move_mouse_gaze(window);
 }
 

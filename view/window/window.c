@@ -202,6 +202,7 @@ static enum gz_result refresh_window(struct gz_window *window)
 {
 	struct gz_window_gaze gaze = { 0 };
 	int width, height;
+	gz_window_follow_cursor(window);
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->turn)
 			(*part)->turn(window);

@@ -95,6 +95,7 @@ struct gz_window {
 	int camera_drag; /**< of part camera: what dragging does */
 	bool cursor_known;
 	bool cursor_inside;    /**< the mouse is over the window's content */
+	bool cursor_held;      /**< the mouse has moved, and its gaze has not followed yet */
 	double cursor[2];      /**< screen coordinates of the window */
 	int size_px[2];        /**< size of a new window */
 	int windowed_place[4]; /**< x y w h to return to from full screen */
@@ -170,6 +171,10 @@ void gz_window_fill_monitor(struct gz_window *window, struct GLFWmonitor *monito
 /** Set callbacks for keys, buttons, cursor, wheel and size. Before gz_widgets_init(), which chains
  *  them. */
 void gz_window_input_attach(struct gz_window *window);
+
+/** Let the mouse's gaze follow a mouse that panels had when it moved and have no longer. Panels
+ * only know while they draw whether they have it: each turn of the loop asks again. */
+void gz_window_follow_cursor(struct gz_window *window);
 
 /** Draw panels for a few frames: something has happened that they may have to answer. */
 void gz_window_wake_panels(struct gz_window *window);
