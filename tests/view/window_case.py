@@ -115,13 +115,16 @@ class WindowCase(unittest.TestCase):
 
     def ticks(self):
         """Processor time of the viewer so far, clock ticks."""
-        with open("/proc/%d/stat" % self.viewer.pid, encoding="ascii") as stat:
+        return self.ticks_of(self.viewer)
+
+    def ticks_of(self, process):
+        with open("/proc/%d/stat" % process.pid, encoding="ascii") as stat:
             fields = stat.read().rsplit(")", 1)[1].split()
         return int(fields[11]) + int(fields[12])
 
-    def waits(self):
-        """Whether all threads of the viewer wait, however busy the machine is."""
-        threads = "/proc/%d/task" % self.viewer.pid
+    def waits(self, process):
+        """Whether all threads of a process wait, however busy the machine is."""
+        threads = "/proc/%d/task" % process.pid
         for thread in os.listdir(threads):
             try:
                 with open("%s/%s/stat" % (threads, thread), encoding="ascii") as stat:
@@ -132,16 +135,17 @@ class WindowCase(unittest.TestCase):
         return True
 
     def until_idle(self):
-        """Wait until the viewer has nothing more to do."""
+        """Wait until the server has passed everything on and the viewer has nothing more to do."""
+        both = (self.server, self.viewer)
         deadline = time.monotonic() + PATIENCE_S
         still = 0
-        before = self.ticks()
+        before = None
         while still < 6:
             self.assertIsNone(self.viewer.poll(), "gazeview has ended")
             self.assertLess(time.monotonic(), deadline, "it never rests")
             time.sleep(0.02)
-            now = self.ticks()
-            still = still + 1 if now == before and self.waits() else 0
+            now = [self.ticks_of(process) for process in both]
+            still = still + 1 if now == before and all(map(self.waits, both)) else 0
             before = now
 
     def rest(self):

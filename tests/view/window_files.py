@@ -98,7 +98,7 @@ class Files(WindowCase):
 
     def test_dropped_volume_is_shown(self):
         self.start("--gaze", "mouse", "--method", "standard")
-        before = self.grab()
+        before = self.rest()
         self.drop(self.write_nrrd("a ball, 100%.nrrd"))
         self.until_changed(before, "the ball")
         self.until(self.bright_in_the_middle, "the ball in the middle")
@@ -123,13 +123,13 @@ class Files(WindowCase):
 
     def test_dropped_picture_brings_back_what_it_shows(self):
         self.start("--gaze", "mouse", "--method", "standard", "--pictures", self.folder)
-        first = self.grab()
+        first = self.rest()
         self.move(240, 160)
         self.tool("mousedown", 1)
         self.move(320, 190)
         self.until_changed(first, "turned")
         self.tool("mouseup", 1)
-        shown = self.until_still()
+        shown = self.below_line(self.rest())
         self.tool("key", "F12")
         deadline = time.monotonic() + PATIENCE_S
         while not glob.glob(os.path.join(self.folder, "*.png")):
@@ -144,7 +144,7 @@ class Files(WindowCase):
 
     def test_dropped_file_that_cannot_be_shown_is_a_message_and_the_picture_stays(self):
         self.start("--gaze", "mouse", "--method", "standard")
-        before = self.below_line(self.grab())
+        before = self.below_line(self.rest())
         self.drop(self.write("notes.txt", "milk, bread\n"))
         self.drop(self.write("half.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\n"
                              b"sizes: 9 9 9\nencoding: raw\n\nabc"))
@@ -171,7 +171,7 @@ class Files(WindowCase):
 
     def test_escape_closes_the_dialog_but_not_the_window(self):
         self.start("--gaze", "mouse", "--method", "standard")
-        before = self.below_line(self.grab())
+        before = self.below_line(self.rest())
         self.keys("ctrl+o")
         self.until(self.dialog_there, "the dialog")
         self.press("Escape")
@@ -179,13 +179,13 @@ class Files(WindowCase):
 
     def test_saved_scene_gives_the_same_picture_without_a_window(self):
         self.start("--gaze", "mouse", "--method", "standard")
-        before = self.grab()
+        before = self.rest()
         self.move(240, 160)
         self.tool("mousedown", 1)
         self.move(300, 190)
         self.until_changed(before, "turned")
         self.tool("mouseup", 1)
-        shown = self.until_still()
+        shown = self.below_line(self.rest())
         path = os.path.join(self.folder, "deep", "saved.scene")
         os.makedirs(os.path.dirname(path))
         self.keys("ctrl+shift+s")
@@ -195,15 +195,6 @@ class Files(WindowCase):
         text = self.until_there(path)
         self.assertIn("eye = ", text)
         self.assertTrue(self.headless(path) == shown, "another picture")
-
-    def until_still(self):
-        """A screenshot once two in a row are equal."""
-        last = self.below_line(self.grab())
-        while True:
-            now = self.below_line(self.grab())
-            if now == last:
-                return now
-            last = now
 
     def test_saving_over_another_scene_is_asked_and_keeps_its_comments(self):
         other = "; mine\n[volume]\nprocedural = supernova ; big\n[camera]\nfov_deg = 33 ; narrow\n"
@@ -249,7 +240,7 @@ class Files(WindowCase):
         path = self.write("ball_%dx%dx%d_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")
         self.until(self.bright_in_the_middle, "the ball in the middle")
-        shown = self.until_still()
+        shown = self.below_line(self.rest())
         self.assertTrue(self.headless(path, "--method", "standard") == shown, "another picture")
 
 
