@@ -482,6 +482,28 @@ static enum gz_result read_cells(struct gz_brick_file *file)
 	return check_cells(file);
 }
 
+/* Scale what is in memory if kernels cannot draw the values as they are; bricks follow when they
+ * are read. */
+static void scale_brick_file(struct gz_brick_file *file)
+{
+	struct gz_brick_header *header = &file->header;
+	file->scaled =
+		header->type == GZ_VOXEL_F32 &&
+		gz_float_scaling_find(header->stored_min, header->stored_max, &file->scaling);
+	if (!file->scaled)
+		return;
+	for (size_t i = 0; i < file->layout.brick_count; i++) {
+		struct gz_brick_entry *entry = &file->entries[i];
+		entry->least = gz_float_scaled(&file->scaling, entry->least);
+		entry->greatest = gz_float_scaled(&file->scaling, entry->greatest);
+	}
+	gz_float_scaling_apply(&file->scaling, file->cells,
+			       finest_count(file) * GZ_BRICK_CELLS * 2);
+	const struct gz_stored_values values = { &header->slope, &header->intercept,
+						 &header->stored_min, &header->stored_max };
+	gz_float_scaling_take_back(&file->scaling, &values);
+}
+
 enum gz_result gz_brick_file_open(const char *path, const struct gz_log *log,
 				  struct gz_brick_file **out_file)
 {
@@ -503,6 +525,8 @@ enum gz_result gz_brick_file_open(const char *path, const struct gz_log *log,
 		result = read_brick_index(file);
 	if (result == GZ_OK)
 		result = read_cells(file);
+	if (result == GZ_OK)
+		scale_brick_file(file);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(log, "%s: no memory for the index of %zu bricks", path,
 		       file->layout.brick_count);
@@ -550,7 +574,11 @@ enum gz_result gz_brick_file_read(const struct gz_brick_file *file, size_t brick
 	if ((uint32_t)crc32_z(0, out_voxels, bytes) != entry->crc)
 		return GZ_ERR_FORMAT;
 	gz_brick_host_order(type, GZ_BRICK_VOXELS, out_voxels);
-	return type != GZ_VOXEL_F32 || brick_all_finite(out_voxels) ? GZ_OK : GZ_ERR_FORMAT;
+	if (type == GZ_VOXEL_F32 && !brick_all_finite(out_voxels))
+		return GZ_ERR_FORMAT;
+	if (file->scaled)
+		gz_float_scaling_apply(&file->scaling, out_voxels, GZ_BRICK_VOXELS);
+	return GZ_OK;
 }
 
 void gz_brick_file_complain(const struct gz_brick_file *file, size_t brick, enum gz_result why)

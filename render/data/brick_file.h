@@ -20,6 +20,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "base/sizes.h"
+#include "render/data/float_scaling.h"
 #include "render/data/volume.h"
 
 #define GZ_BRICK_EDGE        32 /**< voxels; a power of two */
@@ -142,15 +143,18 @@ struct gz_brick_file {
 	char path[GZ_PATH_SIZE];
 	const struct gz_log *log;
 	int fd;
+	/** Header, entries, cells and bricks have values scaled by `scaling`, if `scaled`. */
 	struct gz_brick_header header;
 	struct gz_brick_layout layout;
+	bool scaled;
+	struct gz_float_scaling scaling;
 	struct gz_brick_entry *entries; /**< by a brick's number */
 	void *cells; /**< least and greatest voxel of each cell of each brick of level 0 */
 };
 
 /**
  * Open a file and check its header, index and cells: every offset is within the file, every range
- * is valid.
+ * is valid. Floats that need it are scaled (render/data/float_scaling.h).
  *
  * @param log            borrowed until it is closed
  * @param[out] out_file  owned by the caller: gz_brick_file_close()

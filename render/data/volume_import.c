@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "render/data/float_scaling.h"
 #include "render/data/voxel_place.h"
 
 #define GZ_LOG_MODULE "volume"
@@ -324,6 +325,20 @@ static enum gz_result make_finite(const struct import *import)
 	return GZ_OK;
 }
 
+/* Warn if the file may tell values apart that single precision does not. */
+static void warn_rounded_flat(const struct import *import)
+{
+	const struct gz_volume *volume = import->volume;
+	const enum gz_raw_type type = import->layout->type;
+	if (volume->type != GZ_VOXEL_F32 || type == GZ_RAW_FLOAT32 ||
+	    volume->stored_min < volume->stored_max || gz_volume_voxel_count(volume) == 1)
+		return;
+	gz_warn(import->file->log,
+		"%s: all values are %g in single precision; if the file's %s values differ, scale "
+		"and shift them before",
+		import->file->path, volume->stored_min, gz_raw_type_names[type]);
+}
+
 static enum gz_result check_value_range(const struct import *import)
 {
 	const struct gz_volume *volume = import->volume;
@@ -368,6 +383,10 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	if (result == GZ_OK) {
 		gz_volume_find_range(&volume);
 		result = check_value_range(&import);
+	}
+	if (result == GZ_OK) {
+		warn_rounded_flat(&import);
+		gz_volume_scale_floats(&volume);
 	}
 	if (result != GZ_OK) {
 		gz_volume_free(&volume);

@@ -118,6 +118,16 @@ static struct raycast_drawer *raycast_of(struct gz_drawer *drawer)
 	return (struct raycast_drawer *)drawer;
 }
 
+static void warn_narrow_range(const struct gz_object *object, const struct gz_log *log)
+{
+	const struct gz_transfer *transfer = object->transfer;
+	if (!gz_transfer_range_divides(transfer, object->volume))
+		gz_warn(log,
+			"the transfer function's range %g to %g is too narrow for the volume's "
+			"values in single precision: it is shown as a step; widen it",
+			transfer->range[0], transfer->range[1]);
+}
+
 static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_object *objects,
 				   size_t count)
 {
@@ -139,6 +149,8 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 		result = gz_raycaster_set_volume(self->raycaster, object->volume);
 	if (result == GZ_OK && !same_transfer)
 		result = gz_raycaster_set_transfer(self->raycaster, object->transfer);
+	if (result == GZ_OK && !same_transfer)
+		warn_narrow_range(object, self->log);
 	if (result == GZ_OK)
 		self->shown = *object;
 	self->prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);

@@ -12,9 +12,30 @@ static uint32_t pack_double_colour(const double rgba[4])
 	return red << 21 | green << 10 | blue;
 }
 
+/* The least span of stored values that single precision can divide, as a share of the values at its
+ * ends and of the greatest value in the volume: below the first, neighbouring floats lie farther
+ * apart; below the second (chosen), the number of entries times a value may be infinite. */
+#define SPAN_OF_ENDS 0x1p-24
+#define SPAN_OF_DATA 0x1p-100
+
+/* Widen a span within the data that single precision cannot divide. Returns whether it did. */
+static bool widen_span(const struct gz_volume *volume, double *low, double *high)
+{
+	const double least = volume->stored_min, greatest = volume->stored_max;
+	const double ends = fmax(fabs(*low), fabs(*high));
+	const double data = fmax(fabs(least), fabs(greatest));
+	const double width = fmax(ends * SPAN_OF_ENDS, data * SPAN_OF_DATA);
+	if (*high - *low >= width || (*low == *high && (*low == least || *low == greatest)))
+		return false;
+	*high = fmin(*low + width, greatest);
+	*low = fmax(*high - width, least);
+	return true;
+}
+
 /* The stored values at the ends of the table: the overlap of the function's range and the data. If
- * they do not overlap, both ends are the data's end next to the range. */
-static void table_span(const double range[2], const struct gz_volume *volume, double *out_low,
+ * they do not overlap, both ends are the data's end next to the range. Returns false if the table
+ * is wider than the overlap because single precision cannot divide that. */
+static bool table_span(const double range[2], const struct gz_volume *volume, double *out_low,
 		       double *out_high)
 {
 	double low = (range[0] - volume->intercept) / volume->slope;
@@ -26,25 +47,40 @@ static void table_span(const double range[2], const struct gz_volume *volume, do
 	}
 	low = fmin(fmax(low, volume->stored_min), volume->stored_max);
 	high = fmin(fmax(high, volume->stored_min), volume->stored_max);
+	const bool widened = widen_span(volume, &low, &high);
 	*out_low = low;
 	*out_high = high;
+	return !widened;
+}
+
+/* The data values that 0 and 1 of the function stand for. */
+static void function_range(const struct gz_transfer *transfer, const struct gz_volume *volume,
+			   double out_range[2])
+{
+	const double a = volume->slope * volume->stored_min + volume->intercept;
+	const double b = volume->slope * volume->stored_max + volume->intercept;
+	out_range[0] = transfer->has_range ? transfer->range[0] : volume->slope > 0 ? a : b;
+	out_range[1] = transfer->has_range ? transfer->range[1] : volume->slope > 0 ? b : a;
+}
+
+bool gz_transfer_range_divides(const struct gz_transfer *transfer, const struct gz_volume *volume)
+{
+	double range[2], low, high;
+	function_range(transfer, volume, range);
+	return table_span(range, volume, &low, &high);
 }
 
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table)
 {
-	const double data[2] = {
-		volume->slope * (volume->slope > 0 ? volume->stored_min : volume->stored_max) +
-			volume->intercept,
-		volume->slope * (volume->slope > 0 ? volume->stored_max : volume->stored_min) +
-			volume->intercept,
-	};
-	const double *range = transfer->has_range ? transfer->range : data;
-	double low, high;
-	table_span(range, volume, &low, &high);
+	double range[2], low, high;
+	function_range(transfer, volume, range);
+	const bool divides = table_span(range, volume, &low, &high);
 
 	out_table->value_per_stored =
 		range[1] != range[0] ? volume->slope / (range[1] - range[0]) : 0;
+	if (!divides)
+		out_table->value_per_stored = copysign(1 / (high - low), volume->slope);
 	out_table->scale = high > low ? LAST / (high - low) : 0;
 	out_table->bias = -low * out_table->scale;
 	out_table->visible_before[0] = 0;

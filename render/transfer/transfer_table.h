@@ -38,6 +38,10 @@ struct gz_transfer_table {
 	uint16_t visible_before[GZ_TRANSFER_TABLE_SIZE + 1];
 };
 
+/** Whether single precision can divide the part of the function's range that the data have. If it
+ * cannot, the table spans the least range that it can, and the function looks like a step there. */
+bool gz_transfer_range_divides(const struct gz_transfer *transfer, const struct gz_volume *volume);
+
 /** Make the table of @p transfer for the stored values of @p volume; entries hold extinction. */
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table);
