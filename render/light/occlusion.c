@@ -41,7 +41,7 @@ struct job {
 	const struct gz_transfer_table *table;
 	struct gz_occlusion *occlusion;
 	int from[3], to[3];                        /* voxels within the clip box, [from, to) */
-	uint16_t by_entry[GZ_TRANSFER_TABLE_SIZE]; /* how much a voxel fills, by its table entry */
+	uint16_t by_entry[GZ_TRANSFER_TABLE_MOST]; /* how much a voxel fills, by its table entry */
 	uint16_t by_value[INTEGER_VALUES];         /* how much a voxel fills, by its stored value */
 	int axis;                                  /* along which cells are weighted */
 	float weights[2 * REACH_MAX + 1]; /* from the cell at -reach to the one at +reach */
@@ -50,14 +50,14 @@ struct job {
 
 static int nearest_entry(const struct gz_transfer_table *table, float stored)
 {
-	const float last = GZ_TRANSFER_TABLE_SIZE - 1;
+	const float last = (float)(table->count - 1);
 	const float entry = stored * (float)table->scale + (float)table->bias + 0.5F;
 	return entry > 0 ? (int)(entry < last ? entry : last) : 0;
 }
 
 static void find_filled(struct job *job, double radius)
 {
-	for (int i = 0; i < GZ_TRANSFER_TABLE_SIZE; i++) {
+	for (int i = 0; i < job->table->count; i++) {
 		const double extinction = (double)job->table->entries[i].extinction;
 		job->by_entry[i] = (uint16_t)lround(FULL * (1 - exp2(extinction * radius / 2)));
 	}
@@ -219,7 +219,7 @@ enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 		const int edge = occlusion->edge[axis];
 		occlusion->dims[axis] = (volume->dims[axis] + edge - 1) / edge;
 	}
-	struct job *job = malloc(sizeof *job);
+	struct job *job = calloc(1, sizeof *job);
 	if (!job || reserve(occlusion) != GZ_OK) {
 		free(job);
 		gz_occlusion_free(occlusion);

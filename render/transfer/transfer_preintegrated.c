@@ -3,26 +3,27 @@
 #include <math.h>
 
 enum {
-	STRIDE = GZ_PREINTEGRATED_STRIDE,
 	PARTS = 4, /* of a segment, whose order is kept */
-	/* Sums at the ends of quarters are taken between entries. */
-	QUARTER = STRIDE / PARTS,
 	BLOCK_ROWS = 64 / sizeof(struct gz_transfer_entry),
 };
-_Static_assert(QUARTER *PARTS == STRIDE, "quarters of a segment end between entries");
+/* Sums at the ends of quarters are taken between entries. */
+_Static_assert(GZ_PREINTEGRATED_STRIDE(GZ_TRANSFER_TABLE_SIZE) % PARTS == 0,
+	       "quarters of a segment end between entries");
 
-/* Extinction that stands for opaque. Chosen: a segment of 1/32 voxel length over all values, of
- * which one entry is opaque, transmits 2^-76; and rounding errors of sums in double precision stay
- * far below what is visible. */
+/* Extinction that stands for opaque, times the entries of the usual table over those of the table.
+ * Chosen: a segment of 1/32 voxel length over all values, of which one entry is opaque, transmits
+ * 2^-76; and rounding errors of sums in double precision stay far below what is visible. */
 static const double OPAQUE = 1e7;
 
 void gz_transfer_sums_make(const struct gz_transfer_table *table, struct gz_transfer_sums *out_sums)
 {
+	const double opaque = OPAQUE * (table->count / GZ_TRANSFER_TABLE_SIZE);
+	out_sums->count = table->count;
 	for (int channel = 0; channel < 4; channel++)
 		out_sums->sum[0][channel] = 0;
-	for (int i = 0; i < GZ_TRANSFER_TABLE_SIZE; i++) {
+	for (int i = 0; i < table->count; i++) {
 		const uint32_t colour = table->entries[i].colour;
-		const double extinction = fmin(-(double)table->entries[i].extinction, OPAQUE);
+		const double extinction = fmin(-(double)table->entries[i].extinction, opaque);
 		const double rgb[3] = {
 			(colour >> 21) / 2047.0,
 			(colour >> 10 & 2047) / 2047.0,
@@ -39,6 +40,7 @@ void gz_transfer_sums_make(const struct gz_transfer_table *table, struct gz_tran
 /* The job that the workers share. */
 struct baking {
 	const struct gz_transfer_sums *sums;
+	int stride;   /* entries in a cell */
 	float length; /* of a part of a segment, voxel lengths */
 	bool extinction;
 	struct gz_transfer_entry *entries;
@@ -102,10 +104,10 @@ static inline void average_stretch(const struct gz_transfer_sums *sums, int from
 /* Extinction, opacity and colour of each part of the segments of a row. */
 static void fill_segment_row(const struct baking *job, int low, int count, struct row *row)
 {
-	const int from = low * STRIDE + STRIDE / 2;
+	const int from = low * job->stride + job->stride / 2;
 	for (int part = 0; part < PARTS; part++) {
 		for (int i = 0; i < count; i++) {
-			const int width = (i + 1) * QUARTER;
+			const int width = (i + 1) * (job->stride / PARTS);
 			float rgb[3];
 			average_stretch(job->sums, from + part * width, from + (part + 1) * width,
 					&row->extinction[part][i], rgb);
@@ -142,10 +144,10 @@ static void blend_row(const struct row *row, int count, int first, int step,
 static void average_row(const struct baking *job, int low, int count,
 			struct gz_transfer_entry *out_entries)
 {
-	const int from = low * STRIDE + STRIDE / 2;
+	const int from = low * job->stride + job->stride / 2;
 	for (int i = 0; i < count; i++) {
 		float extinction, rgb[3];
-		average_stretch(job->sums, from, from + (i + 1) * STRIDE, &extinction, rgb);
+		average_stretch(job->sums, from, from + (i + 1) * job->stride, &extinction, rgb);
 		out_entries[i].extinction = -extinction;
 		out_entries[i].colour = pack_float_colour(rgb[0], rgb[1], rgb[2]);
 	}
@@ -155,7 +157,7 @@ static void average_row(const struct baking *job, int low, int count,
 static struct gz_transfer_entry segment_in_cell(const struct baking *job, int cell)
 {
 	float extinction, rgb[3];
-	average_stretch(job->sums, cell * STRIDE, (cell + 1) * STRIDE, &extinction, rgb);
+	average_stretch(job->sums, cell * job->stride, (cell + 1) * job->stride, &extinction, rgb);
 	struct gz_transfer_entry entry = { .colour = pack_float_colour(rgb[0], rgb[1], rgb[2]) };
 	if (job->extinction)
 		entry.extinction = -extinction;
@@ -210,6 +212,7 @@ void gz_transfer_preintegrate(const struct gz_transfer_sums *sums, double length
 {
 	struct baking job = {
 		.sums = sums,
+		.stride = GZ_PREINTEGRATED_STRIDE(sums->count),
 		.length = (float)(length / PARTS),
 		.entries = out_entries,
 	};
@@ -220,6 +223,11 @@ void gz_transfer_preintegrate_extinction(const struct gz_transfer_sums *sums,
 					 struct gz_workers *workers,
 					 struct gz_transfer_entry *out_entries)
 {
-	struct baking job = { .sums = sums, .extinction = true, .entries = out_entries };
+	struct baking job = {
+		.sums = sums,
+		.stride = GZ_PREINTEGRATED_STRIDE(sums->count),
+		.extinction = true,
+		.entries = out_entries,
+	};
 	bake(&job, workers);
 }

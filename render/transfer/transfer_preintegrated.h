@@ -6,10 +6,12 @@
  * backends use them with `integration = preintegrated`.
  *
  * Cell c of GZ_PREINTEGRATED_SIZE stands for the entries [c * S, (c + 1) * S) of the transfer
- * table, S = GZ_PREINTEGRATED_STRIDE. A segment between two cells runs from the middle of one to
- * the middle of the other; a segment within one cell has the mean of that cell's entries. No entry
- * is left out between cells: a ray that passes a spike includes it, and a segment that ends in the
- * spike's cell shares it with the next segment, which begins there.
+ * table, S = GZ_PREINTEGRATED_STRIDE(its count). A segment between two cells runs from the middle
+ * of one to the middle of the other; a segment within one cell has the mean of that cell's entries.
+ * No entry is left out between cells: a ray that passes a spike includes it, and a segment that
+ * ends in the spike's cell shares it with the next segment, which begins there. With a finer
+ * transfer table than usual, the backends take segments within a few entries from the table of
+ * samples instead (GZ_CLOSE_ENTRIES).
  *
  * Opacity comes from the integral of the extinction over the values, exact to the entry: 1 -
  * exp2(length * mean extinction). The order of colours is kept in quarters of a segment: each
@@ -26,8 +28,8 @@
 #include "render/transfer/transfer_constants.h"
 #include "render/transfer/transfer_table.h"
 
-/** Entries of the transfer table in a cell. */
-#define GZ_PREINTEGRATED_STRIDE (GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE)
+/** Entries in a cell, for a transfer table of @p count entries. A power of two. */
+#define GZ_PREINTEGRATED_STRIDE(count) ((count) / GZ_PREINTEGRATED_SIZE)
 
 /** Entries of one table: the entry of front cell f and back cell b is number f *
  * GZ_PREINTEGRATED_SIZE + b. */
@@ -36,7 +38,8 @@
 /** Sums over the entries before i: extinction, and extinction times colour. Extinction is -log2 of
  *  the transparency of a voxel length here, 0 or more. */
 struct gz_transfer_sums {
-	double sum[GZ_TRANSFER_TABLE_SIZE + 1]
+	int count; /**< entries of the table; the rest of the array is not touched */
+	double sum[GZ_TRANSFER_TABLE_MOST + 1]
 		  [4]; /**< extinction; extinction times red, green, blue */
 };
 

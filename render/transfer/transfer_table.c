@@ -2,7 +2,16 @@
 
 #include <math.h>
 
-enum { LAST = GZ_TRANSFER_TABLE_SIZE - 1 };
+/* A peak of fewer entries than the first may fall between two of them; a finer table then gives it
+ * the second. Chosen: a peak of 1.5 entries has at least a third of its height somewhere, one of 4
+ * three quarters. */
+#define PEAK_LEAST  1.5
+#define PEAK_WANTED 4.0
+
+/* Rounding errors of interpolation and look-up, as a share of the values: eight roundings. */
+#define ROUNDING 0x1p-21
+
+_Static_assert(GZ_TRANSFER_TABLE_MOST % GZ_TRANSFER_TABLE_SIZE == 0, "sizes are powers of two");
 
 static uint32_t pack_double_colour(const double rgba[4])
 {
@@ -70,6 +79,60 @@ bool gz_transfer_range_divides(const struct gz_transfer *transfer, const struct 
 	return table_span(range, volume, &low, &high);
 }
 
+static double point_channel(const struct gz_transfer_point *point, int channel)
+{
+	return channel < 3 ? point->rgb[channel] : point->opacity;
+}
+
+/* Whether anything shows between two points. */
+static bool stretch_shows(const struct gz_transfer *transfer, size_t from, size_t to)
+{
+	for (size_t i = from; i <= to; i++)
+		if (transfer->points[i].opacity > 0)
+			return true;
+	return false;
+}
+
+/* The narrowest peak or gap of a channel that lies at least partly within [low, high] of the
+ * function's values: from the point before to the point after. INFINITY if there is none. */
+static double narrowest_peak(const struct gz_transfer *transfer, int channel, double low,
+			     double high)
+{
+	const struct gz_transfer_point *points = transfer->points;
+	double narrowest = INFINITY;
+	for (size_t first = 1, last; first + 1 < transfer->count; first = last + 1) {
+		const double level = point_channel(&points[first], channel);
+		for (last = first; last + 1 < transfer->count &&
+				   point_channel(&points[last + 1], channel) == level;)
+			last++;
+		if (last + 1 == transfer->count)
+			break;
+		const double before = point_channel(&points[first - 1], channel) - level;
+		const double after = point_channel(&points[last + 1], channel) - level;
+		const double from = points[first - 1].value, to = points[last + 1].value;
+		/* Of three points of one value the middle one is never seen. */
+		if (before * after > 0 && to > from && to >= low && from <= high &&
+		    stretch_shows(transfer, first - 1, last + 1))
+			narrowest = fmin(narrowest, to - from);
+	}
+	return narrowest;
+}
+
+/* How many entries a table from low to high needs, in values of the function. */
+static int count_entries(const struct gz_transfer *transfer, double low, double high)
+{
+	double narrowest = INFINITY;
+	for (int channel = 0; channel < 4; channel++)
+		narrowest = fmin(narrowest, narrowest_peak(transfer, channel, low, high));
+	const double share = high > low ? narrowest / (high - low) : 1;
+	int count = GZ_TRANSFER_TABLE_SIZE;
+	if (share * (count - 1) >= PEAK_LEAST)
+		return count;
+	while (count < GZ_TRANSFER_TABLE_MOST && share * (count - 1) < PEAK_WANTED)
+		count *= 2;
+	return count;
+}
+
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table)
 {
@@ -81,26 +144,34 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 		range[1] != range[0] ? volume->slope / (range[1] - range[0]) : 0;
 	if (!divides)
 		out_table->value_per_stored = copysign(1 / (high - low), volume->slope);
-	out_table->scale = high > low ? LAST / (high - low) : 0;
+	const double width = range[1] - range[0];
+	const double ends[2] = { (volume->slope * low + volume->intercept - range[0]) / width,
+				 (volume->slope * high + volume->intercept - range[0]) / width };
+	out_table->count =
+		width != 0 ? count_entries(transfer, fmin(ends[0], ends[1]), fmax(ends[0], ends[1]))
+			   : GZ_TRANSFER_TABLE_SIZE;
+	const int last = out_table->count - 1;
+	out_table->scale = high > low ? last / (high - low) : 0;
 	out_table->bias = -low * out_table->scale;
+	out_table->rounding = out_table->count > GZ_TRANSFER_TABLE_SIZE
+				      ? ROUNDING * fmax(fabs(low), fabs(high)) * out_table->scale
+				      : 0;
 	out_table->visible_before[0] = 0;
-	for (int i = 0; i <= LAST; i++) {
-		const double stored = low + i * (high - low) / LAST;
+	for (int i = 0; i <= last; i++) {
+		const double stored = low + i * (high - low) / last;
 		const double value = volume->slope * stored + volume->intercept;
-		const double width = range[1] - range[0];
 		double rgba[4];
 		gz_transfer_evaluate(transfer, width != 0 ? (value - range[0]) / width : 0, rgba);
 		out_table->entries[i].extinction = (float)log2(1 - rgba[3]);
 		out_table->entries[i].colour = pack_double_colour(rgba);
-		out_table->visible_before[i + 1] =
-			(uint16_t)(out_table->visible_before[i] + (rgba[3] > 0));
+		out_table->visible_before[i + 1] = out_table->visible_before[i] + (rgba[3] > 0);
 	}
 }
 
 void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
-			    struct gz_transfer_entry out_entries[GZ_TRANSFER_TABLE_SIZE])
+			    struct gz_transfer_entry *out_entries)
 {
-	for (int i = 0; i <= LAST; i++) {
+	for (int i = 0; i < table->count; i++) {
 		const double extinction = (double)table->entries[i].extinction;
 		out_entries[i] = (struct gz_transfer_entry) {
 			.opacity = extinction < 0 ? (float)-expm1(length * extinction * M_LN2) : 0,
@@ -112,13 +183,14 @@ void gz_transfer_table_step(const struct gz_transfer_table *table, double length
 static int entry_at_or_below(const struct gz_transfer_table *table, double stored, double rounding)
 {
 	const double entry = floor(stored * table->scale + table->bias + rounding);
-	return entry < 0 ? 0 : entry > LAST ? LAST : (int)entry;
+	const int last = table->count - 1;
+	return entry < 0 ? 0 : entry > last ? last : (int)entry;
 }
 
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest)
 {
 	/* One entry wider than rounding needs, because kernels compute in single precision. */
-	const int from = entry_at_or_below(table, least, -0.5);
-	const int to = entry_at_or_below(table, greatest, 1.5);
+	const int from = entry_at_or_below(table, least, -0.5 - table->rounding);
+	const int to = entry_at_or_below(table, greatest, 1.5 + table->rounding);
 	return table->visible_before[to + 1] > table->visible_before[from];
 }

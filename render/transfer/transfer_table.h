@@ -26,16 +26,25 @@ struct gz_transfer_entry {
 	uint32_t colour; /**< 11 bits of red, 11 of green, 10 of blue, from the top */
 };
 
-/** Entry i stands for the stored value low + i * (high - low) / (SIZE - 1); values outside [low,
- *  high] take the first or last entry. */
+/**
+ * Entry i stands for the stored value low + i * (high - low) / (count - 1); values outside [low,
+ * high] take the first or last entry.
+ *
+ * The arrays have room for the finest table. What is beyond `count` is never touched, so a
+ * zero-initialised table takes no more memory than it uses.
+ */
 struct gz_transfer_table {
+	/** Entries in use: GZ_TRANSFER_TABLE_SIZE, or for a function with a peak that would fall
+	 *  between two of these, that times a power of two, up to GZ_TRANSFER_TABLE_MOST. */
+	int count;
 	double scale, bias;      /**< entry = stored * scale + bias */
 	double value_per_stored; /**< growth of the function's value (0 to 1 over its range)
 				    per stored value; 0 for a range without width */
-	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE]; /**< with extinction */
+	double rounding; /**< by which kernels, in single precision, may miss an entry, entries */
+	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_MOST]; /**< with extinction */
 	/** Number of entries before i with any opacity: a range of values is visible if and only
-	 *  if the count grows over it. */
-	uint16_t visible_before[GZ_TRANSFER_TABLE_SIZE + 1];
+	 *  if the number grows over it. */
+	uint32_t visible_before[GZ_TRANSFER_TABLE_MOST + 1];
 };
 
 /** Whether single precision can divide the part of the function's range that the data have. If it
@@ -46,9 +55,9 @@ bool gz_transfer_range_divides(const struct gz_transfer *transfer, const struct 
 void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_volume *volume,
 			    struct gz_transfer_table *out_table);
 
-/** The entries with the opacity of a step of @p length voxel lengths. */
+/** The entries with the opacity of a step of @p length voxel lengths: as many as the table has. */
 void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
-			    struct gz_transfer_entry out_entries[GZ_TRANSFER_TABLE_SIZE]);
+			    struct gz_transfer_entry *out_entries);
 
 /** Whether any stored value from @p least to @p greatest has opacity. */
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest);

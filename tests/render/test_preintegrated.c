@@ -14,7 +14,7 @@
 #include "render/transfer/transfer_preintegrated.h"
 #include "small_scene.h"
 
-enum { SIZE = GZ_PREINTEGRATED_SIZE, STRIDE = GZ_PREINTEGRATED_STRIDE };
+enum { SIZE = GZ_PREINTEGRATED_SIZE, STRIDE = GZ_PREINTEGRATED_STRIDE(GZ_TRANSFER_TABLE_SIZE) };
 
 static const char *const sets[] = { "portable", "avx2", "avx512" };
 
@@ -38,6 +38,7 @@ static struct tables *make_tables(void)
 {
 	struct tables *tables = calloc(1, sizeof *tables);
 	assert_non_null(tables);
+	tables->table.count = GZ_TRANSFER_TABLE_SIZE;
 	tables->entries = calloc(GZ_PREINTEGRATED_ENTRIES, sizeof *tables->entries);
 	assert_non_null(tables->entries);
 	return tables;

@@ -55,6 +55,9 @@ struct gz_cast {
 	struct gz_cast_grid fine[GZ_FINE_GRIDS]; /* flags are NULL if there are none */
 	/* transfer function */
 	float entry_scale, entry_bias;
+	float entry_last;            /**< greatest number of an entry */
+	int32_t preintegrated_shift; /**< log2 of the entries in a cell of a pre-integrated table */
+	bool fine_entries;           /**< the table has more than GZ_TRANSFER_TABLE_SIZE entries */
 	const struct gz_transfer_entry *extinction; /**< per voxel length */
 	const struct gz_transfer_entry
 		*step_table[GZ_PLAN_STEPS_MAX]; /**< for each step of the plan */

@@ -178,11 +178,23 @@ SIMD vf sample_at(const struct gz_cast *cast, enum gz_voxel_type type, int neare
 		       : sample_trilinear(cast, type, at, mask);
 }
 
+/* From values to entries of the transfer function. */
+struct look_up {
+	vf scale, bias, last;
+};
+
 /* The transfer function's entry for a value. */
-SIMD vi entry_of(vf scale, vf bias, vf value)
+SIMD vi entry_of(const struct look_up *look_up, vf value)
 {
-	const vf last = vf_set(GZ_TRANSFER_TABLE_SIZE - 1);
-	return vi_round(vf_min(vf_max(vf_fma(value, scale, bias), vf_set(0)), last));
+	const vf entry = vf_fma(value, look_up->scale, look_up->bias);
+	return vi_round(vf_min(vf_max(entry, vf_set(0)), look_up->last));
+}
+
+/* For values as they are stored. */
+SIMD struct look_up stored_look_up(const struct gz_cast *cast)
+{
+	return (struct look_up) { vf_set(cast->entry_scale), vf_set(cast->entry_bias),
+				  vf_set(cast->entry_last) };
 }
 
 /* fetch_sample() returns trilinear values less FETCH_OFFSET, in units of 1 / FETCH_UNIT. */
@@ -201,11 +213,7 @@ SIMD vf fetch_sample(const struct march *m, vf k, vm mask)
 }
 #endif
 
-/* From values as fetch_sample() returns them to entries of the transfer function: entry_of(). */
-struct look_up {
-	vf scale, bias;
-};
-
+/* For values as fetch_sample() returns them. */
 SIMD struct look_up look_up_of(const struct gz_cast *cast, struct reading reading)
 {
 	float scale = cast->entry_scale, bias = cast->entry_bias;
@@ -213,7 +221,7 @@ SIMD struct look_up look_up_of(const struct gz_cast *cast, struct reading readin
 		bias += FETCH_OFFSET(reading.type) * scale;
 		scale /= FETCH_UNIT(reading.type);
 	}
-	return (struct look_up) { vf_set(scale), vf_set(bias) };
+	return (struct look_up) { vf_set(scale), vf_set(bias), vf_set(cast->entry_last) };
 }
 
 #endif

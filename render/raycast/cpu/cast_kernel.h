@@ -69,7 +69,7 @@ SIMD uint32_t march_apart(const struct march *m, const struct look_up *look_up, 
 		}
 		samples += vm_count(needed);
 		const vf value = fetch_sample(m, k, needed);
-		const vi entry = entry_of(look_up->scale, look_up->bias, value);
+		const vi entry = entry_of(look_up, value);
 		const vf at = k;
 		k = vf_select(takes, k + vf_set(1), k);
 		vf opacity;
@@ -104,8 +104,7 @@ SIMD uint32_t march_fine(const struct march *m, const struct look_up *look_up, v
 		}
 		const vf value = fetch_sample(m, k, shows);
 		samples += settle_waiting(m, &before, &alive, light);
-		before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-					    shows };
+		before = (struct waiting) { k, entry_of(look_up, value), shows };
 		k = vf_select(running, k + vf_set(1), k);
 	}
 	return samples + settle_waiting(m, &before, &alive, light);
@@ -145,9 +144,9 @@ SIMD uint32_t march_part(const struct march *m, vf k, vf steps, struct light *li
 	mask = vm_but(mask, look_up_cell(cast, rays, k, mask, &leave));
 	if (!vm_any(mask))
 		return 0;
-	const vi entry =
-		entry_of(vf_set(cast->entry_scale), vf_set(cast->entry_bias),
-			 sample_at(cast, m->reading.type, m->reading.nearest, rays, k, mask));
+	const struct look_up look_up = stored_look_up(cast);
+	const vi entry = entry_of(
+		&look_up, sample_at(cast, m->reading.type, m->reading.nearest, rays, k, mask));
 	vf extinction;
 	vi colour;
 	gather_pair(cast->extinction, entry, mask, &extinction, &colour);

@@ -13,15 +13,32 @@
 #include "render/transfer/transfer_preintegrated.h"
 
 /* From an entry of the transfer function to a row or column of the pre-integrated table. */
-SIMD vi preintegrated_cell(vi entry)
+SIMD vi preintegrated_cell(const struct gz_cast *cast, vi entry)
 {
-	return vi_shift_right(entry, __builtin_ctz(GZ_PREINTEGRATED_STRIDE));
+	return vi_shift_right_by(entry, cast->preintegrated_shift);
 }
 
-/* The place of a pair in the pre-integrated table. */
-SIMD vi preintegrated_pair(vi front, vi back)
+/* The place of a pair of entries in the pre-integrated table. */
+SIMD vi preintegrated_pair(const struct gz_cast *cast, vi front, vi back)
 {
-	return vi_or(vi_shift_left(front, __builtin_ctz(GZ_PREINTEGRATED_SIZE)), back);
+	const vi row = preintegrated_cell(cast, front);
+	return vi_or(vi_shift_left(row, __builtin_ctz(GZ_PREINTEGRATED_SIZE)),
+		     preintegrated_cell(cast, back));
+}
+
+/* Cells of a fine transfer table are wide beside its narrowest peaks. So a segment between two
+ * close entries takes the entry in the middle instead, from a table of samples. */
+SIMD void take_close_entries(const struct gz_transfer_entry *samples, vi front, vi back, vm mask,
+			     vf *opacity, vi *colour)
+{
+	const vf from = vf_from_i(front), to = vf_from_i(back);
+	const vm close = vm_and(mask, vf_less(vf_abs(to - from), vf_set(GZ_CLOSE_ENTRIES)));
+	vf own_opacity;
+	vi own_colour;
+	gather_pair(samples, vi_trunc((from + to) * vf_set(0.5F)), close, &own_opacity,
+		    &own_colour);
+	*opacity = vf_select(close, own_opacity, *opacity);
+	*colour = vi_select(close, own_colour, *colour);
 }
 
 /*
@@ -66,20 +83,20 @@ SIMD uint32_t march_segments(const struct march *m, struct light *light)
 		const vm lacks = vm_but(takes, known);
 		if (vm_any(lacks)) {
 			const vf value = fetch_sample(m, k, lacks);
-			front = vi_select(
-				lacks,
-				preintegrated_cell(entry_of(look_up.scale, look_up.bias, value)),
-				front);
+			front = vi_select(lacks, entry_of(&look_up, value), front);
 			samples += vm_count(lacks);
 		}
 		k = vf_select(takes, k + vf_set(1), k);
 		const vf value = fetch_sample(m, k, takes);
-		const vi back = preintegrated_cell(entry_of(look_up.scale, look_up.bias, value));
+		const vi back = entry_of(&look_up, value);
 		samples += vm_count(takes);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->preintegrated[m->step], preintegrated_pair(front, back), takes,
-			    &opacity, &colour);
+		gather_pair(cast->preintegrated[m->step], preintegrated_pair(cast, front, back),
+			    takes, &opacity, &colour);
+		if (__builtin_expect(cast->fine_entries, 0))
+			take_close_entries(cast->step_table[m->step], front, back, takes, &opacity,
+					   &colour);
 		composite_at(m, k - vf_set(0.5F), colour, opacity, takes, light);
 		front = back;
 		known = takes;
@@ -104,19 +121,19 @@ SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, stru
 	mask = vm_but(mask, vm_but(empty, vf_less(leave, back)));
 	if (!vm_any(mask))
 		return 0;
-	const vf scale = vf_set(cast->entry_scale), bias = vf_set(cast->entry_bias);
-	const vi cells[2] = {
-		preintegrated_cell(entry_of(
-			scale, bias,
-			sample_at(cast, reading.type, reading.nearest, rays, front, mask))),
-		preintegrated_cell(
-			entry_of(scale, bias,
-				 sample_at(cast, reading.type, reading.nearest, rays, back, mask))),
+	const struct look_up look_up = stored_look_up(cast);
+	const vi ends[2] = {
+		entry_of(&look_up,
+			 sample_at(cast, reading.type, reading.nearest, rays, front, mask)),
+		entry_of(&look_up,
+			 sample_at(cast, reading.type, reading.nearest, rays, back, mask)),
 	};
 	vf extinction;
 	vi colour;
-	gather_pair(cast->preintegrated_extinction, preintegrated_pair(cells[0], cells[1]), mask,
-		    &extinction, &colour);
+	gather_pair(cast->preintegrated_extinction, preintegrated_pair(cast, ends[0], ends[1]),
+		    mask, &extinction, &colour);
+	if (__builtin_expect(cast->fine_entries, 0))
+		take_close_entries(cast->extinction, ends[0], ends[1], mask, &extinction, &colour);
 	const vf length = steps * vf_set(cast->voxel_lengths[m->step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
 	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));

@@ -215,8 +215,7 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
 		const vf value = fetch_together(m, wide, k, vm_and(within, on->alive), &block);
 		samples += settle_waiting(m, &on->before, &on->alive, on->light);
-		on->before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-						within };
+		on->before = (struct waiting) { k, entry_of(look_up, value), within };
 		block = next;
 	}
 	return samples;
@@ -289,8 +288,7 @@ SIMD uint32_t take_scattered(const struct march *m, const struct look_up *look_u
 			prefetch_voxels(m->cast, m->reading.type, showing.first[i + LEVELS_AHEAD]);
 		const vf value = fetch_sample(m, k, vm_and(showing.rays[i], on->alive));
 		samples += settle_waiting(m, &on->before, &on->alive, on->light);
-		on->before = (struct waiting) { k, entry_of(look_up->scale, look_up->bias, value),
-						showing.rays[i] };
+		on->before = (struct waiting) { k, entry_of(look_up, value), showing.rays[i] };
 	}
 	return samples;
 }

@@ -66,10 +66,11 @@ struct cpu_raycaster {
 	size_t bricks_coming;                     /* after the last picture */
 	bool wait_for_bricks;
 	bool has_transfer;
-	struct gz_transfer_table table;
-	/* step tables and their lengths, voxel lengths; 0 = no table yet */
+	struct gz_transfer_table *table;
+	/* step tables, each with as many entries as the table, and their lengths, voxel lengths; 0
+	 * = no table yet */
 	double step_length[GZ_PLAN_STEPS_MAX];
-	struct gz_transfer_entry (*step_table)[GZ_TRANSFER_TABLE_SIZE];
+	struct gz_transfer_entry *step_tables;
 	struct gz_preintegration preintegration;
 	struct gz_lighting lighting;
 	struct gz_lattices lattices;
@@ -117,7 +118,8 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_brick_stream_free(&cpu->stream);
 	gz_lighting_free(&cpu->lighting);
 	gz_lattices_free(&cpu->lattices);
-	free(cpu->step_table);
+	free(cpu->step_tables);
+	free(cpu->table);
 	gz_preintegration_free(&cpu->preintegration);
 	free(cpu);
 }
@@ -160,8 +162,12 @@ static enum gz_result cpu_create(const struct gz_backend_params *params, const s
 	memset(cpu, 0, sizeof *cpu);
 	cpu->base = (struct gz_raycaster) { .ops = &gz_cpu_raycaster_ops, .log = log };
 	cpu->wait_for_bricks = params->wait_for_bricks;
-	cpu->step_table = calloc(GZ_PLAN_STEPS_MAX, sizeof *cpu->step_table);
-	const enum gz_result result = cpu->step_table ? start_workers(cpu, params) : GZ_ERR_NO_MEM;
+	/* Room for the finest tables; the system gives memory to what is used of it. */
+	cpu->table = calloc(1, sizeof *cpu->table);
+	cpu->step_tables = calloc((size_t)GZ_PLAN_STEPS_MAX * GZ_TRANSFER_TABLE_MOST,
+				  sizeof *cpu->step_tables);
+	const enum gz_result result =
+		cpu->table && cpu->step_tables ? start_workers(cpu, params) : GZ_ERR_NO_MEM;
 	if (result != GZ_OK) {
 		cpu_destroy(&cpu->base);
 		return result;
@@ -200,7 +206,7 @@ static enum gz_result cpu_set_volume(struct gz_raycaster *raycaster, const struc
 static void classify_fine_cells(struct cpu_raycaster *cpu, int level)
 {
 	if (cpu->fine[level].least)
-		gz_fine_cells_classify(&cpu->fine[level], &cpu->detail.cells[level], &cpu->table,
+		gz_fine_cells_classify(&cpu->fine[level], &cpu->detail.cells[level], cpu->table,
 				       cpu->workers);
 }
 
@@ -208,7 +214,7 @@ static void classify_fine_cells(struct cpu_raycaster *cpu, int level)
  * use macrocells. */
 static void make_levels(struct cpu_raycaster *cpu)
 {
-	gz_detail_make_levels(&cpu->detail, cpu->workers, &cpu->table, cpu->base.log);
+	gz_detail_make_levels(&cpu->detail, cpu->workers, cpu->table, cpu->base.log);
 	for (int i = 1; i < cpu->detail.levels.count && !cpu->volume->bricks; i++)
 		if (!cpu->fine[i].least &&
 		    gz_fine_cells_build(&cpu->detail.levels.level[i].volume, cpu->workers,
@@ -222,8 +228,8 @@ static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
 	if (!cpu->volume)
 		return GZ_ERR_INVAL;
-	gz_transfer_table_bake(transfer, cpu->volume, &cpu->table);
-	gz_detail_classify(&cpu->detail, &cpu->table);
+	gz_transfer_table_bake(transfer, cpu->volume, cpu->table);
+	gz_detail_classify(&cpu->detail, cpu->table);
 	for (int i = 0; i < cpu->detail.levels.count; i++)
 		classify_fine_cells(cpu, i);
 	gz_brick_stream_forget(&cpu->stream);
@@ -301,16 +307,22 @@ static void fill_cast_rays(const struct cpu_raycaster *cpu, int index,
 static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *plan,
 			       const struct gz_ray_params *rays, struct gz_cast *cast)
 {
-	cast->entry_scale = (float)cpu->table.scale;
-	cast->entry_bias = (float)cpu->table.bias;
-	cast->extinction = cpu->table.entries;
+	const struct gz_transfer_table *table = cpu->table;
+	cast->entry_scale = (float)table->scale;
+	cast->entry_bias = (float)table->bias;
+	cast->entry_last = (float)(table->count - 1);
+	cast->preintegrated_shift = __builtin_ctz(GZ_PREINTEGRATED_STRIDE((unsigned)table->count));
+	cast->fine_entries = table->count > GZ_TRANSFER_TABLE_SIZE;
+	cast->extinction = table->entries;
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
+		struct gz_transfer_entry *entries =
+			cpu->step_tables + (size_t)i * (size_t)table->count;
 		if (cpu->step_length[i] != length) {
-			gz_transfer_table_step(&cpu->table, length, cpu->step_table[i]);
+			gz_transfer_table_step(table, length, entries);
 			cpu->step_length[i] = length;
 		}
-		cast->step_table[i] = cpu->step_table[i];
+		cast->step_table[i] = entries;
 		cast->voxel_lengths[i] = (float)length;
 		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
 	}
@@ -328,7 +340,7 @@ static enum gz_result fill_preintegration(struct cpu_raycaster *cpu, const struc
 		return GZ_OK;
 	struct gz_preintegration *preintegration = &cpu->preintegration;
 	const enum gz_result result = gz_preintegration_make(
-		preintegration, &cpu->table, cpu->step_length, plan->step_count, cpu->workers);
+		preintegration, cpu->table, cpu->step_length, plan->step_count, cpu->workers);
 	if (result != GZ_OK)
 		return result;
 	cast->preintegrated_extinction = preintegration->extinction;
@@ -398,7 +410,7 @@ static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_cam
 		.detail = &cpu->detail,
 		.layout = &file->layout,
 		.entries = file->entries,
-		.table = &cpu->table,
+		.table = cpu->table,
 		.plan = job->plan,
 		.key = gz_brick_stream_key_of(camera, rays, job->plan, job->pixel_lengths),
 		.tile_level = job->pixel_lengths > 0 ? tile_level : NULL,
@@ -494,7 +506,7 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 		return result;
 
 	const int64_t start_ns = gz_clock_now_ns();
-	result = gz_lighting_prepare(&cpu->lighting, cpu->volume, &cpu->table, rays, cpu->workers,
+	result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays, cpu->workers,
 				     raycaster->log);
 	if (result != GZ_OK)
 		return result;

@@ -109,8 +109,9 @@ SIMD vi vi_min(vi a, vi b)
 {
 	return _mm256_min_epi32(a, b);
 }
-#define vi_shift_right(a, n) _mm256_srli_epi32((a), (n))
-#define vi_shift_left(a, n)  _mm256_slli_epi32((a), (n))
+#define vi_shift_right(a, n)    _mm256_srli_epi32((a), (n))
+#define vi_shift_right_by(a, n) _mm256_srl_epi32((a), _mm_cvtsi32_si128(n))
+#define vi_shift_left(a, n)     _mm256_slli_epi32((a), (n))
 SIMD vm vf_less(vf a, vf b)
 {
 	return _mm256_cmp_ps(a, b, _CMP_LT_OQ);

@@ -112,8 +112,9 @@ SIMD vi vi_min(vi a, vi b)
 {
 	return _mm512_min_epi32(a, b);
 }
-#define vi_shift_right(a, n) _mm512_srli_epi32((a), (n))
-#define vi_shift_left(a, n)  _mm512_slli_epi32((a), (n))
+#define vi_shift_right(a, n)    _mm512_srli_epi32((a), (n))
+#define vi_shift_right_by(a, n) _mm512_srl_epi32((a), _mm_cvtsi32_si128(n))
+#define vi_shift_left(a, n)     _mm512_slli_epi32((a), (n))
 SIMD vm vf_less(vf a, vf b)
 {
 	return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);

@@ -119,7 +119,9 @@ SIMD vi vi_min(vi a, vi b)
 	return (m & a) | (~m & b);
 }
 #define vi_shift_right(a, n) ((vi)((vu)(a) >> (n)))
-#define vi_shift_left(a, n)  ((vi)((vu)(a) << (n)))
+/* By a number that is not a constant. */
+#define vi_shift_right_by(a, n) vi_shift_right((a), (n))
+#define vi_shift_left(a, n)     ((vi)((vu)(a) << (n)))
 SIMD vm vf_less(vf a, vf b)
 {
 	return a < b;

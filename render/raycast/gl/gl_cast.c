@@ -57,10 +57,11 @@ struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
 	struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
 				       .name = "cast.comp",
 				       .defines = defines };
-	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s",
+	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), texels[kind.texels],
 		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
-		 kind.shaded ? "#define SHADED\n" : "", gz_gl_device_defines(device));
+		 kind.shaded ? "#define SHADED\n" : "", kind.fine ? "#define FINE_TABLE\n" : "",
+		 gz_gl_device_defines(device));
 	memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
 	memcpy(&shader.parts[GZ_GL_PLAN_PARTS], parts, sizeof parts);
 	return shader;
@@ -86,8 +87,8 @@ void gz_gl_cast_set_block(struct gz_gl_cast *cast, int level, const struct gz_gl
 static enum gz_result use_cast_program(struct gz_gl_cast *cast, const struct gz_gl_cast_job *job)
 {
 	const struct gz_gl_cast_kind kind = job->kind;
-	unsigned *program =
-		&cast->programs[kind.texels][kind.type][kind.nearest][kind.segments][kind.shaded];
+	unsigned *program = &cast->programs[kind.texels][kind.type][kind.nearest][kind.segments]
+					   [kind.shaded][kind.fine];
 	if (!*program) {
 		char defines[GZ_GL_CAST_DEFINES_SIZE];
 		const struct gz_gl_shader shader = gz_gl_cast_shader(kind, job->device, defines);
@@ -127,7 +128,7 @@ uint64_t gz_gl_cast_samples(struct gz_gl_cast *cast, const struct gz_gl_device *
 
 void gz_gl_cast_free(struct gz_gl_cast *cast)
 {
-	const GLuint *programs = &cast->programs[0][0][0][0][0];
+	const GLuint *programs = &cast->programs[0][0][0][0][0][0];
 	for (size_t i = 0; i < sizeof cast->programs / sizeof(GLuint); i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);

@@ -58,7 +58,7 @@ struct gz_gl_cast_block {
 	float cell_counts[4];                  /**< macrocells */
 	float background[4];                   /**< [0, 1] */
 	float transfer[4];       /**< scale and bias from stored value to share of the table; the
-				    share of light with which a ray ends */
+				    share of light with which a ray ends; the last entry's number */
 	float light_towards[4];  /**< world directions; share of the ambient light that can be kept
 				    away */
 	float light_terms[4];    /**< ambient, diffuse, specular, shininess */
@@ -81,18 +81,19 @@ struct gz_gl_cast_kind {
 	bool nearest;
 	bool segments; /**< pre-integrated */
 	bool shaded;
+	bool fine; /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
 };
 
 /** Programs, made when first needed, and buffers. Zero-initialised has none. */
 struct gz_gl_cast {
 	/** OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2];
 	struct gz_gl_buffer blocks; /**< one for each level of detail */
 	struct gz_gl_buffer counts, staging;
 };
 
 /** Room for the text of gz_gl_cast_shader()'s defines. */
-#define GZ_GL_CAST_DEFINES_SIZE 200
+#define GZ_GL_CAST_DEFINES_SIZE 240
 
 /** The shader of a kind of cast. @p defines is filled and borrowed by the shader. */
 struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,

@@ -121,8 +121,9 @@ static enum gz_result gl_set_transfer(struct gz_raycaster *raycaster,
 	enum gz_result result = enter_device(gl);
 	if (result != GZ_OK)
 		return result;
-	gz_gl_scene_set_transfer(&gl->scene, transfer);
-	result = gz_gl_device_errors(&gl->device);
+	result = gz_gl_scene_set_transfer(&gl->scene, transfer);
+	if (result == GZ_OK)
+		result = gz_gl_device_errors(&gl->device);
 	gz_gl_device_leave(&gl->device);
 	if (result != GZ_OK)
 		gz_err(raycaster->log, "the graphics device did not take the transfer function: %s",
@@ -176,7 +177,8 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 		.kind = { .type = gl->scene.volume->type,
 			  .nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
 			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
-			  .shaded = rays->shading == GZ_SHADING_GRADIENT },
+			  .shaded = rays->shading == GZ_SHADING_GRADIENT,
+			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE },
 		.log = gl->base.log,
 	};
 	enum gz_result result = GZ_OK;

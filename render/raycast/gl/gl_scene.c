@@ -1,6 +1,7 @@
 #include "render/raycast/gl/gl_scene.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <GL/glew.h>
@@ -108,10 +109,15 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 	return result;
 }
 
-void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer)
+enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
+					const struct gz_transfer *transfer)
 {
-	gz_transfer_table_bake(transfer, scene->volume, &scene->table);
-	gz_detail_classify(&scene->detail, &scene->table);
+	if (!scene->table)
+		scene->table = calloc(1, sizeof *scene->table);
+	if (!scene->table)
+		return GZ_ERR_NO_MEM;
+	gz_transfer_table_bake(transfer, scene->volume, scene->table);
+	gz_detail_classify(&scene->detail, scene->table);
 	for (int i = 0; i < scene->level_count; i++)
 		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
 	gz_preintegration_forget(&scene->preintegration);
@@ -119,22 +125,28 @@ void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfe
 	gz_gl_tables_forget(&scene->tables);
 	gz_gl_bricks_forget(&scene->bricks);
 	scene->has_transfer = true;
+	return GZ_OK;
 }
 
 static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
 				     const struct gz_plan *plan, const struct gz_log *log)
 {
 	double lengths[GZ_PLAN_STEPS_MAX];
-	for (int i = 0; i < plan->step_count; i++) {
+	enum gz_result result =
+		gz_gl_tables_samples(&scene->tables, scene->table, GZ_PLAN_STEPS_MAX, 1);
+	for (int i = 0; i < plan->step_count && result == GZ_OK; i++) {
 		lengths[i] = plan->steps[i] / rays->ray_sampling_rate;
-		gz_gl_tables_samples(&scene->tables, &scene->table, i, lengths[i]);
+		result = gz_gl_tables_samples(&scene->tables, scene->table, i, lengths[i]);
 	}
-	gz_gl_tables_samples(&scene->tables, &scene->table, GZ_PLAN_STEPS_MAX, 1);
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for tables of the transfer function");
+		return result;
+	}
 	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
 		return GZ_OK;
 	struct gz_preintegration *preintegration = &scene->preintegration;
-	const enum gz_result result = gz_preintegration_make(preintegration, &scene->table, lengths,
-							     plan->step_count, workers_of(scene));
+	result = gz_preintegration_make(preintegration, scene->table, lengths, plan->step_count,
+					workers_of(scene));
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for pre-integrated tables: take sampled");
 		return result;
@@ -172,7 +184,7 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_r
 	const bool was_current = lighting->current;
 	const double radius = lighting->radius;
 	const struct gz_clip_box clip = lighting->clip;
-	const enum gz_result result = gz_lighting_prepare(lighting, scene->volume, &scene->table,
+	const enum gz_result result = gz_lighting_prepare(lighting, scene->volume, scene->table,
 							  rays, workers_of(scene), log);
 	if (result == GZ_OK && lighting->current &&
 	    (!was_current || radius != lighting->radius ||
@@ -187,7 +199,7 @@ static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device 
 {
 	if (scene->level_count > 1 || scene->detail.failed || scene->bricked)
 		return;
-	gz_detail_make_levels(&scene->detail, workers_of(scene), &scene->table, log);
+	gz_detail_make_levels(&scene->detail, workers_of(scene), scene->table, log);
 	const int count = scene->detail.levels.count;
 	for (int i = 1; i < count; i++) {
 		if (gz_gl_volume_load(&scene->levels[i], device,
@@ -239,7 +251,7 @@ static enum gz_result prepare_bricks(struct gz_gl_scene *scene, const struct gz_
 {
 	const struct gz_brick_stream_frame wanted = {
 		.detail = &scene->detail,
-		.table = &scene->table,
+		.table = scene->table,
 		.plan = frame->plan,
 		.key = gz_brick_stream_key_of(frame->camera, frame->rays, frame->plan,
 					      pixel_lengths),
@@ -355,9 +367,11 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	block->jitter[0] = (uint32_t)rays->jitter;
 	block->jitter[1] = (uint32_t)plan->view.shift[0];
 	block->jitter[2] = (uint32_t)plan->view.shift[1];
-	block->transfer[0] = (float)(scene->table.scale / (GZ_TRANSFER_TABLE_SIZE - 1));
-	block->transfer[1] = (float)(scene->table.bias / (GZ_TRANSFER_TABLE_SIZE - 1));
+	const int last = scene->table->count - 1;
+	block->transfer[0] = (float)(scene->table->scale / last);
+	block->transfer[1] = (float)(scene->table->bias / last);
 	block->transfer[2] = gz_ray_end_transmittance(rays);
+	block->transfer[3] = (float)last;
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		block->steps[i][0] = (float)(length * voxel_length);
@@ -374,6 +388,7 @@ void gz_gl_scene_forget(struct gz_gl_scene *scene)
 	gz_preintegration_free(&scene->preintegration);
 	gz_lighting_free(&scene->lighting);
 	gz_workers_destroy(&scene->workers);
+	free(scene->table);
 	*scene = (struct gz_gl_scene) { 0 };
 }
 

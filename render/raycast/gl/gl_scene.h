@@ -25,7 +25,7 @@
 struct gz_gl_scene {
 	const struct gz_volume *volume; /**< borrowed; NULL: none */
 	bool has_transfer;
-	struct gz_transfer_table table;
+	struct gz_transfer_table *table; /**< NULL: none yet */
 	struct gz_detail detail;
 	struct gz_preintegration preintegration;
 	struct gz_workers *workers;                /**< NULL until needed */
@@ -51,8 +51,9 @@ struct gz_gl_scene {
 enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				      const struct gz_volume *volume, const struct gz_log *log);
 
-/** Use @p transfer, which is copied. Needs a volume. */
-void gz_gl_scene_set_transfer(struct gz_gl_scene *scene, const struct gz_transfer *transfer);
+/** Use @p transfer, which is copied. Needs a volume. GZ_ERR_NO_MEM: out of memory; not logged. */
+enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
+					const struct gz_transfer *transfer);
 
 /** One frame. What it points to is borrowed. */
 struct gz_gl_frame {

@@ -196,28 +196,43 @@ void gz_gl_tables_forget(struct gz_gl_tables *tables)
 	memset(tables->segment_length, 0, sizeof tables->segment_length);
 }
 
-/* An entry is two words of 32 bits: a float and a colour. */
-void gz_gl_tables_samples(struct gz_gl_tables *tables, const struct gz_transfer_table *table,
-			  int row, double length)
+/* Make the texture of samples, or another one if the table has changed its size. */
+static void prepare_samples(struct gz_gl_tables *tables, int rows)
 {
-	struct gz_transfer_entry entries[GZ_TRANSFER_TABLE_SIZE];
-	if (tables->sample_length[row] == length)
+	if (tables->samples && tables->sample_rows == rows)
 		return;
-	if (!tables->samples) {
-		tables->samples = gz_gl_texture(GL_TEXTURE_2D);
-		glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
-			       GZ_GL_TABLE_ROWS);
-	}
-	const struct gz_transfer_entry *source = table->entries;
-	if (row < GZ_PLAN_STEPS_MAX) {
+	if (tables->samples)
+		glDeleteTextures(1, &tables->samples);
+	tables->samples = gz_gl_texture(GL_TEXTURE_2D);
+	tables->sample_rows = rows;
+	glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
+		       GZ_GL_TABLE_ROWS * rows);
+	memset(tables->sample_length, 0, sizeof tables->sample_length);
+}
+
+/* An entry is two words of 32 bits: a float and a colour. */
+enum gz_result gz_gl_tables_samples(struct gz_gl_tables *tables,
+				    const struct gz_transfer_table *table, int row, double length)
+{
+	const int rows = table->count / GZ_TRANSFER_TABLE_SIZE;
+	prepare_samples(tables, rows);
+	if (tables->sample_length[row] == length)
+		return GZ_OK;
+	const size_t count = (size_t)table->count;
+	struct gz_transfer_entry *entries = malloc(count * sizeof *entries);
+	if (!entries)
+		return GZ_ERR_NO_MEM;
+	if (row < GZ_PLAN_STEPS_MAX)
 		gz_transfer_table_step(table, length, entries);
-		source = entries;
-	}
+	else
+		memcpy(entries, table->entries, count * sizeof *entries);
 	glBindTexture(GL_TEXTURE_2D, tables->samples);
-	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, row, GZ_TRANSFER_TABLE_SIZE, 1, GL_RG_INTEGER,
-			GL_UNSIGNED_INT, source);
+	glTexSubImage2D(GL_TEXTURE_2D, 0, 0, row * rows, GZ_TRANSFER_TABLE_SIZE, rows,
+			GL_RG_INTEGER, GL_UNSIGNED_INT, entries);
 	glBindTexture(GL_TEXTURE_2D, 0);
+	free(entries);
 	tables->sample_length[row] = length;
+	return GZ_OK;
 }
 
 void gz_gl_tables_segments(struct gz_gl_tables *tables, int layer, double length,

@@ -71,6 +71,8 @@ void gz_gl_volume_free(struct gz_gl_volume *gl);
  * holds nothing. */
 struct gz_gl_tables {
 	unsigned samples, segments;
+	int sample_rows; /**< of the texture for each step: a finer table takes several of
+			    GZ_TRANSFER_TABLE_SIZE entries, one after the other */
 	/** Step length of each row or layer, voxel lengths; 0 = not yet filled. */
 	double sample_length[GZ_GL_TABLE_ROWS], segment_length[GZ_GL_TABLE_ROWS];
 };
@@ -79,9 +81,10 @@ struct gz_gl_tables {
 void gz_gl_tables_forget(struct gz_gl_tables *tables);
 
 /** Make sure that row @p row holds @p table for steps of @p length voxel lengths; row
- *  GZ_PLAN_STEPS_MAX holds the extinction, for a length of 1. */
-void gz_gl_tables_samples(struct gz_gl_tables *tables, const struct gz_transfer_table *table,
-			  int row, double length);
+ *  GZ_PLAN_STEPS_MAX holds the extinction, for a length of 1. A row is sample_rows rows of the
+ *  texture. GZ_ERR_NO_MEM: out of memory; not logged. */
+enum gz_result gz_gl_tables_samples(struct gz_gl_tables *tables,
+				    const struct gz_transfer_table *table, int row, double length);
 
 /** Make sure that layer @p layer holds pre-integrated @p entries, which are for @p length. */
 void gz_gl_tables_segments(struct gz_gl_tables *tables, int layer, double length,

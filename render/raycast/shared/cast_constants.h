@@ -21,6 +21,11 @@
  *  changes a pixel. */
 #define GZ_LAST_SEGMENT_LEAST 1e-4F
 
+/** With a transfer table of more entries than usual, a pre-integrated segment between entries less
+ * than this apart takes the entry in the middle. Chosen: a peak of such a table has four entries.
+ */
+#define GZ_CLOSE_ENTRIES 5.0F
+
 /** The linear congruential step of gz_ray_jitter()'s hash (Press et al., Numerical Recipes, 7.1).
  */
 #define GZ_JITTER_MULTIPLIER 1664525U

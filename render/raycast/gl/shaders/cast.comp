@@ -111,16 +111,29 @@ void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light 
 
 #ifdef SEGMENTS
 // Segments instead of samples: render/raycast/cpu/cast_preintegrated.h explains them.
-int cell_at(Ray ray, float k)
+int entry_at(Ray ray, float k)
 {
-	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start))) / (GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE);
+	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
+}
+
+// A segment between two entries, from the table of a step's segments, or from that of its samples.
+uvec2 look_up_segment(int front, int back, int step_index)
+{
+#ifdef FINE_TABLE
+	if (float(abs(back - front)) < GZ_CLOSE_ENTRIES)
+		return look_up_entry((front + back) / 2, step_index);
+	int stride = (int(last_entry) + 1) / GZ_PREINTEGRATED_SIZE;
+#else
+	const int stride = GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE;
+#endif
+	return FETCH(segments, ivec3(back / stride, front / stride, step_index)).rg;
 }
 
 uint march_segments(Ray ray, int step_index, inout Light light)
 {
 	uint samples = 0U;
 	float k = ray.first, until = -1.0;
-	int front = -1; // cell at k; -1 = not known
+	int front = -1; // entry at k; -1 = not known
 	while (k < ray.end) {
 		if (k >= until) {
 			float leave;
@@ -132,13 +145,13 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 		}
 		if (k < ray.end) {
 			if (front < 0) {
-				front = cell_at(ray, k);
+				front = entry_at(ray, k);
 				samples++;
 			}
 			k += 1.0;
-			int back = cell_at(ray, k);
+			int back = entry_at(ray, k);
 			samples++;
-			uvec2 look = FETCH(segments, ivec3(back, front, step_index)).rg;
+			uvec2 look = look_up_segment(front, back, step_index);
 			composite(ray, k - 0.5, look.y, uintBitsToFloat(look.x), light);
 			front = back;
 			if (light.through <= transfer_map.z)
@@ -156,7 +169,7 @@ uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Li
 		return 0U;
 	if (look_up_cell(ray, from, leave) && leave >= to)
 		return 0U;
-	uvec2 look = FETCH(segments, ivec3(cell_at(ray, to), cell_at(ray, from), GZ_PLAN_STEPS_MAX)).rg;
+	uvec2 look = look_up_segment(entry_at(ray, from), entry_at(ray, to), GZ_PLAN_STEPS_MAX);
 	float extinction = uintBitsToFloat(look.x);
 	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
 	composite(ray, fma(part, 0.5, from), look.y, opacity, light);
@@ -166,7 +179,7 @@ uint segment_part(Ray ray, float from, float part, float voxel_lengths, inout Li
 uvec2 look_up(Ray ray, float k, int step_index)
 {
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
-	return FETCH(transfer, ivec2(entry, step_index)).rg;
+	return look_up_entry(entry, step_index);
 }
 
 // Takes up to BATCH samples from k on, and moves k past them.
@@ -220,7 +233,7 @@ uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light l
 		look_up_cell(ray, k, until))
 		return 0U;
 	int entry = entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
-	uvec2 look = FETCH(transfer, ivec2(entry, GZ_PLAN_STEPS_MAX)).rg;
+	uvec2 look = look_up_entry(entry, GZ_PLAN_STEPS_MAX);
 	float extinction = uintBitsToFloat(look.x);
 	float opacity = extinction < 0.0 ? 1.0 - exp2(extinction * part * voxel_lengths) : 0.0;
 	composite(ray, k, look.y, opacity, light);

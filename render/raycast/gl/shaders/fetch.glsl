@@ -41,13 +41,21 @@ vec3 top_voxel;    // greatest index
 ivec3 lower_voxel; // greatest index of the lower of two neighbours
 vec3 top_cell;
 vec2 entry_map;    // scale and bias from stored value to entry and a half
+#ifdef FINE_TABLE
+float last_entry;  // more than GZ_TRANSFER_TABLE_SIZE - 1
+#endif
 
 void read_frame()
 {
 	top_voxel = dims.xyz - 1.0;
 	lower_voxel = max(ivec3(dims.xyz) - 2, 0);
 	top_cell = cell_counts.xyz - 1.0;
+#ifdef FINE_TABLE
+	last_entry = transfer_map.w + 0.0;
+	entry_map = transfer_map.xy * last_entry + vec2(0.0, 0.5);
+#else
 	entry_map = transfer_map.xy * float(GZ_TRANSFER_TABLE_SIZE - 1) + vec2(0.0, 0.5);
+#endif
 }
 
 #ifdef BRICKS
@@ -132,7 +140,23 @@ float sample_at(vec3 at)
 int entry_of(float stored)
 {
 	float entry = fma(stored, entry_map.x, entry_map.y);
+#ifdef FINE_TABLE
+	return int(clamp(entry, 0.5, last_entry + 0.5));
+#else
 	return int(clamp(entry, 0.5, float(GZ_TRANSFER_TABLE_SIZE) - 0.5));
+#endif
+}
+
+// What a table of samples says of an entry. A finer table takes several rows for each step.
+uvec2 look_up_entry(int entry, int step_index)
+{
+#ifdef FINE_TABLE
+	int rows = int(last_entry) / GZ_TRANSFER_TABLE_SIZE + 1;
+	return FETCH(transfer, ivec2(entry % GZ_TRANSFER_TABLE_SIZE,
+		step_index * rows + entry / GZ_TRANSFER_TABLE_SIZE)).rg;
+#else
+	return FETCH(transfer, ivec2(entry, step_index)).rg;
+#endif
 }
 
 vec3 unpack_colour(uint colour)
