@@ -30,6 +30,7 @@ struct daemon {
 	struct gz_network network;
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
+	struct gz_inlet_counts inlet_counts;
 	struct gz_pointer_feed *pointer;
 	struct gz_requests *requests;
 	struct gz_service *service;
@@ -96,6 +97,7 @@ static enum gz_result open_daemon_sockets(struct daemon *daemon)
 		.network = &daemon->network,
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
+		.inlet_counts = &daemon->inlet_counts,
 		.pointer = daemon->pointer,
 		.log = &daemon->log,
 	};
@@ -141,7 +143,9 @@ static enum gz_result start_daemon(struct daemon *daemon)
 		.context = daemon->context,
 		.publisher = daemon->publisher,
 		.recorder = daemon->recorder,
+		.inlet_counts = &daemon->inlet_counts,
 		.pointer = daemon->pointer,
+		.guard = daemon->network.guard,
 		.notify = &daemon->notify,
 		.log = &daemon->log,
 	};

@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "daemon/admission.h"
+#include "daemon/quota.h"
 
 #define GZ_LOG_MODULE "security"
 
@@ -40,7 +41,8 @@ struct peer {
 struct gz_connections {
 	struct gz_guard *guard;
 	const char *name;
-	void *monitor; /* PAIR */
+	void *monitor;   /* PAIR */
+	bool of_readers; /* its clients may only subscribe */
 	_Atomic uint32_t count;
 	bool failing; /* a handshake has failed; the next event ends its connection */
 	enum notice failure;
@@ -57,6 +59,7 @@ struct gz_guard {
 	bool has_thread;
 	size_t socket_count;
 	struct gz_connections sockets[GZ_GUARD_SOCKETS_MAX];
+	struct gz_quota *quota; /* NULL until the start */
 	struct gz_authorized_keys authorized;
 	struct gz_address_limit told;
 };
@@ -175,6 +178,8 @@ static bool peer_address(int fd, char *text, size_t size)
 static void peer_arrived(struct gz_connections *connections, int fd)
 {
 	atomic_fetch_add_explicit(&connections->count, 1, memory_order_relaxed);
+	gz_quota_arrived(connections->guard->quota, fd, connections, connections->of_readers,
+			 gz_clock_now_ns());
 	if (!connections->guard->zap)
 		return;
 	char address[GZ_ADDRESS_SIZE];
@@ -214,6 +219,7 @@ static void log_handshake_failure(struct gz_connections *connections, const char
 static void peer_left(struct gz_connections *connections, int fd)
 {
 	struct peer *peer = find_peer(connections, fd);
+	gz_quota_left(connections->guard->quota, fd, connections);
 	if (gz_connections_count(connections) > 0)
 		atomic_fetch_sub_explicit(&connections->count, 1, memory_order_relaxed);
 	if (connections->failing)
@@ -276,19 +282,22 @@ static void *guard_run(void *user)
 {
 	struct gz_guard *guard = user;
 	pthread_setname_np(pthread_self(), "gazed-guard");
-	zmq_pollitem_t items[2 + GZ_GUARD_SOCKETS_MAX];
+	zmq_pollitem_t items[3 + GZ_GUARD_SOCKETS_MAX];
 	int count = 0;
 	items[count++] = (zmq_pollitem_t) { .fd = guard->quit_fd, .events = ZMQ_POLLIN };
+	items[count++] = (zmq_pollitem_t) { .fd = gz_quota_fd(guard->quota), .events = ZMQ_POLLIN };
 	for (size_t i = 0; i < guard->socket_count; i++)
 		items[count++] = (zmq_pollitem_t) { .socket = guard->sockets[i].monitor,
 						    .events = ZMQ_POLLIN };
 	if (guard->zap)
 		items[count++] = (zmq_pollitem_t) { .socket = guard->zap, .events = ZMQ_POLLIN };
 	for (;;) {
-		if (zmq_poll(items, count, -1) < 0 && errno != EINTR)
+		long wait_ms = gz_quota_count(guard->quota) > 0 ? GZ_QUOTA_CHECK_MS : -1;
+		if (zmq_poll(items, count, wait_ms) < 0 && errno != EINTR)
 			return NULL;
 		if (items[0].revents)
 			return NULL;
+		gz_quota_check(guard->quota, gz_clock_now_ns());
 		take_pending(guard);
 	}
 }
@@ -333,6 +342,14 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 	return GZ_OK;
 }
 
+static bool publishes(void *socket)
+{
+	int type = 0;
+	size_t size = sizeof type;
+	return zmq_getsockopt(socket, ZMQ_TYPE, &type, &size) == 0 &&
+	       (type == ZMQ_PUB || type == ZMQ_XPUB);
+}
+
 /* The monitor reports connections; it must listen before the socket is bound. */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
 			      const struct gz_connections **out_connections)
@@ -343,6 +360,7 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 	struct gz_connections *connections = &guard->sockets[guard->socket_count++];
 	connections->guard = guard;
 	connections->name = name;
+	connections->of_readers = publishes(socket);
 	for (int i = 0; i < PEERS_MAX; i++)
 		connections->peers[i].fd = -1;
 	connections->monitor = zmq_socket(guard->context, ZMQ_PAIR);
@@ -368,12 +386,22 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 
 enum gz_result gz_guard_start(struct gz_guard *guard)
 {
+	uint32_t connections = gz_quota_connections_possible();
+	if (gz_quota_create(connections, guard->log, &guard->quota) != GZ_OK) {
+		gz_err(guard->log, "no memory for %u connections", connections);
+		return GZ_ERR_NO_MEM;
+	}
 	if (pthread_create(&guard->thread, NULL, guard_run, guard) != 0) {
 		gz_err(guard->log, "cannot start the authentication thread: %s", strerror(errno));
 		return GZ_ERR_NO_MEM;
 	}
 	guard->has_thread = true;
 	return GZ_OK;
+}
+
+uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reason)
+{
+	return guard->quota ? gz_quota_ended(guard->quota, reason) : 0;
 }
 
 void gz_guard_destroy(struct gz_guard **guard)
@@ -392,6 +420,7 @@ void gz_guard_destroy(struct gz_guard **guard)
 		zmq_close(g->zap);
 	if (g->quit_fd >= 0)
 		close(g->quit_fd);
+	gz_quota_destroy(&g->quota);
 	free(g);
 	*guard = NULL;
 }

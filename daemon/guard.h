@@ -1,7 +1,8 @@
 /**
  * @file
  * The authentication thread. It answers libzmq's question whether a client may connect (ZeroMQ
- * RFC 27/ZAP), counts connections, and logs refused clients, once a minute per address.
+ * RFC 27/ZAP), counts connections, ends those beyond the quota (quota.h), and logs refused clients,
+ * once a minute per address.
  *
  * A client with an unknown key is refused by that answer. A client with a wrong server key, or
  * without keys, fails earlier, in the handshake: only the sockets' monitors report it.
@@ -13,6 +14,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "daemon/quota.h"
 
 /** Most sockets that can be watched. */
 #define GZ_GUARD_SOCKETS_MAX 4
@@ -40,7 +42,7 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 
 /**
  * Watch the connections of a socket. Call it before the socket is bound and before
- * gz_guard_start().
+ * gz_guard_start(). What the clients of a publishing socket send is limited (quota.h).
  *
  * @param name  of the socket, for messages; static
  * @param[out] out_connections  valid until the guard is destroyed
@@ -50,8 +52,16 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
 			      const struct gz_connections **out_connections);
 
-/** Start the thread. @retval GZ_ERR_NO_MEM  no thread can be started; logged */
+/**
+ * Start the thread. How many connections it allows depends on the files that may still be opened:
+ * see gz_quota_connections_possible().
+ *
+ * @retval GZ_ERR_NO_MEM  no memory, or no thread can be started; logged
+ */
 enum gz_result gz_guard_start(struct gz_guard *guard);
+
+/** How many connections were ended for @p reason since the start. Threads: any. */
+uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reason);
 
 /** How many connections the socket has now, local ones and those over TCP. Threads: any. */
 uint32_t gz_connections_count(const struct gz_connections *connections);

@@ -7,19 +7,28 @@
 #include <zmq.h>
 
 #include "base/clock.h"
+#include "daemon/message_queue.h"
 #include "protocol/endpoint.h"
 #include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "inlet"
 
-/* Messages kept while the daemon is busy; libzmq drops further ones. */
-enum { QUEUE = 256 };
+/* Messages that libzmq keeps of one client until they are collected. It reads no more from that
+ * client meanwhile, and the client's libzmq drops what it cannot send. */
+enum { SOCKET_QUEUE = 1024 };
+
+/* Most messages collected at once, so that requests are answered in time. Chosen: a millisecond's.
+ */
+enum { COLLECTED_AT_ONCE = 1024 };
 
 struct gz_inlet {
 	const struct gz_log *log;
 	void *socket;
 	int port;
+	struct gz_message_queue *queue;
+	struct gz_inlet_counts *counts;
 	struct gz_ratelimit complaints;
+	struct gz_ratelimit overflows;
 };
 
 static bool topic_begins_with(const char *text, const char *beginning)
@@ -27,16 +36,41 @@ static bool topic_begins_with(const char *text, const char *beginning)
 	return strncmp(text, beginning, strlen(beginning)) == 0;
 }
 
-static bool is_own_topic(const char *topic)
+static bool begins_with_one_of(const char *text, const char *const *beginnings, size_t count)
 {
-	static const char *const own[] = { GZ_TOPIC_GAZE,   GZ_TOPIC_SURFACES, GZ_TOPIC_FIXATIONS,
-					   GZ_TOPIC_BLINKS, GZ_TOPIC_SACCADES, GZ_TOPIC_STATUS,
-					   "pupil." };
-	for (size_t i = 0; i < sizeof own / sizeof *own; i++) {
-		if (topic_begins_with(topic, own[i]))
+	for (size_t i = 0; i < count; i++) {
+		if (topic_begins_with(text, beginnings[i]))
 			return true;
 	}
 	return false;
+}
+
+/* A reader subscribes to the beginning of a topic, so a client's topic must not begin with what
+ * readers of the daemon's messages ask for: the first word, and that without its plural. */
+static bool is_reserved_topic(const char *topic)
+{
+	static const char *const reserved[] = { "gaze",  "pupil",   "surface", "fixation",
+						"blink", "saccade", "status" };
+	return begins_with_one_of(topic, reserved, sizeof reserved / sizeof *reserved);
+}
+
+/* What the daemon, or Pupil Capture in its place, reports: how calibrations and recordings go. */
+static bool is_reserved_subject(const char *subject)
+{
+	static const char *const reserved[] = {
+		"calibration.started",        "calibration.stopped",
+		"calibration.successful",     "calibration.failed",
+		"calibration.setup",          "calibration.result",
+		GZ_SUBJECT_RECORDING_STARTED, GZ_SUBJECT_RECORDING_STOPPED,
+	};
+	return begins_with_one_of(subject, reserved, sizeof reserved / sizeof *reserved);
+}
+
+static bool is_reserved(const char *topic)
+{
+	static const size_t prefix = sizeof GZ_TOPIC_NOTIFY - 1;
+	return is_reserved_topic(topic) ||
+	       (topic_begins_with(topic, GZ_TOPIC_NOTIFY) && is_reserved_subject(topic + prefix));
 }
 
 static enum gz_result read_annotation(const void *body, size_t size, int64_t now_ns,
@@ -83,7 +117,7 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 		return GZ_ERR_PROTOCOL;
 	memcpy(text, topic, topic_size);
 	text[topic_size] = '\0';
-	if (is_own_topic(text))
+	if (is_reserved(text))
 		return GZ_ERR_ACCESS;
 	if (topic_begins_with(text, GZ_TOPIC_ANNOTATION)) {
 		struct gz_inlet_message mark;
@@ -96,6 +130,8 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 	if (is_notification &&
 	    gz_wire_decode_notification(body, body_size, &out_message->notification) != GZ_OK)
 		return GZ_ERR_PROTOCOL;
+	if (is_notification && is_reserved_subject(out_message->notification.subject))
+		return GZ_ERR_ACCESS;
 	enum gz_result viewer = read_viewer_report(text, body, body_size, out_message);
 	if (viewer != GZ_OK)
 		return viewer;
@@ -109,21 +145,33 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 
 const char *gz_inlet_refusal(enum gz_result result)
 {
-	return result == GZ_ERR_ACCESS ? "refused: this topic is reserved for the daemon"
+	return result == GZ_ERR_ACCESS ? "refused: this topic or subject is reserved for the daemon"
 				       : "refused: a message must be a topic and one MessagePack "
 					 "map; an annotation "
 					 "needs a label, a notification a subject";
 }
 
-static void warn_of_refusal(struct gz_inlet *inlet, enum gz_result result)
+static void note_refusal(struct gz_inlet *inlet, enum gz_result result)
 {
 	uint64_t held_back;
+	atomic_fetch_add_explicit(&inlet->counts->refused, 1, memory_order_relaxed);
 	if (!gz_ratelimit_pass(&inlet->complaints, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
 		return;
 	gz_warn(inlet->log, "client bug: a message %s; dropped (%llu more since the last message)",
-		result == GZ_ERR_ACCESS ? "has a topic that is reserved for the daemon"
+		result == GZ_ERR_ACCESS ? "has a topic or subject that is reserved for the daemon"
 					: "is not a topic and a MessagePack map",
 		(unsigned long long)held_back);
+}
+
+static void note_overflow(struct gz_inlet *inlet)
+{
+	uint64_t held_back;
+	atomic_fetch_add_explicit(&inlet->counts->overflow, 1, memory_order_relaxed);
+	if (gz_ratelimit_pass(&inlet->overflows, gz_clock_now_ns(), GZ_NS_PER_S, &held_back))
+		gz_warn(inlet->log,
+			"clients publish faster than their messages can be passed on; one is "
+			"dropped (%llu more since the last message)",
+			(unsigned long long)held_back);
 }
 
 int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
@@ -140,34 +188,66 @@ int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
 	return count;
 }
 
-enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message *out_message)
+/* Put a message with two frames into the queue. */
+static void keep_message(struct gz_inlet *inlet, zmq_msg_t frames[2])
 {
-	zmq_msg_t frame[2];
-	zmq_msg_init(&frame[0]);
-	zmq_msg_init(&frame[1]);
-	enum gz_result result = GZ_ERR_TIMEOUT;
-	/* Skip at most a queue full of refused messages in one call. */
-	for (int i = 0; i < QUEUE && result != GZ_OK; i++) {
-		int frames = gz_inlet_receive_frames(inlet->socket, frame);
-		if (frames == 0)
-			break;
-		result = frames != 2
-				 ? GZ_ERR_PROTOCOL
-				 : gz_inlet_judge(zmq_msg_data(&frame[0]), zmq_msg_size(&frame[0]),
-						  zmq_msg_data(&frame[1]), zmq_msg_size(&frame[1]),
-						  gz_clock_now_ns(), out_message);
-		if (result != GZ_OK)
-			warn_of_refusal(inlet, result);
+	const struct gz_queued_message message = {
+		.topic = zmq_msg_data(&frames[0]),
+		.topic_size = zmq_msg_size(&frames[0]),
+		.body = zmq_msg_data(&frames[1]),
+		.body_size = zmq_msg_size(&frames[1]),
+	};
+	if (!gz_message_queue_push(inlet->queue, &message))
+		note_overflow(inlet);
+}
+
+void gz_inlet_collect(struct gz_inlet *inlet)
+{
+	zmq_msg_t frames[2];
+	zmq_msg_init(&frames[0]);
+	zmq_msg_init(&frames[1]);
+	int count = 1;
+	for (int i = 0; i < COLLECTED_AT_ONCE && count > 0; i++) {
+		count = gz_inlet_receive_frames(inlet->socket, frames);
+		if (count == 2)
+			keep_message(inlet, frames);
+		else if (count > 0)
+			note_refusal(inlet, GZ_ERR_PROTOCOL);
 	}
-	zmq_msg_close(&frame[0]);
-	zmq_msg_close(&frame[1]);
-	return result == GZ_OK ? GZ_OK : GZ_ERR_TIMEOUT;
+	zmq_msg_close(&frames[0]);
+	zmq_msg_close(&frames[1]);
+}
+
+enum gz_result gz_inlet_next(struct gz_inlet *inlet, struct gz_inlet_message *out_message)
+{
+	struct gz_queued_message message;
+	while (gz_message_queue_front(inlet->queue, &message)) {
+		enum gz_result result =
+			gz_inlet_judge(message.topic, message.topic_size, message.body,
+				       message.body_size, gz_clock_now_ns(), out_message);
+		if (result == GZ_OK)
+			return GZ_OK;
+		note_refusal(inlet, result);
+		gz_message_queue_pop(inlet->queue);
+	}
+	return GZ_ERR_TIMEOUT;
+}
+
+void gz_inlet_done(struct gz_inlet *inlet)
+{
+	gz_message_queue_pop(inlet->queue);
+}
+
+bool gz_inlet_waits(const struct gz_inlet *inlet)
+{
+	struct gz_queued_message message;
+	return gz_message_queue_front(inlet->queue, &message);
 }
 
 static enum gz_result open_inlet_socket(struct gz_inlet *inlet, const struct gz_network *network)
 {
 	char endpoint[GZ_ENDPOINT_SIZE];
-	int queue = QUEUE, linger = 0;
+	int queue = SOCKET_QUEUE, linger = 0;
 	int64_t size_max = GZ_INLET_SIZE_MAX;
 	inlet->socket = zmq_socket(network->context, ZMQ_SUB);
 	if (!inlet->socket ||
@@ -182,13 +262,17 @@ static enum gz_result open_inlet_socket(struct gz_inlet *inlet, const struct gz_
 	return gz_network_bind(network, inlet->socket, "inlet", endpoint, &inlet->port, NULL);
 }
 
-enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet **out_inlet)
+enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet_counts *counts,
+			       struct gz_inlet **out_inlet)
 {
 	struct gz_inlet *inlet = calloc(1, sizeof *inlet);
 	if (!inlet)
 		return GZ_ERR_NO_MEM;
 	inlet->log = network->log;
-	enum gz_result result = open_inlet_socket(inlet, network);
+	inlet->counts = counts;
+	enum gz_result result = gz_message_queue_create(GZ_INLET_QUEUE_SIZE, &inlet->queue);
+	if (result == GZ_OK)
+		result = open_inlet_socket(inlet, network);
 	if (result != GZ_OK) {
 		gz_inlet_destroy(&inlet);
 		return result;
@@ -215,6 +299,7 @@ void gz_inlet_destroy(struct gz_inlet **inlet)
 		zmq_socket_monitor((*inlet)->socket, NULL, 0);
 		zmq_close((*inlet)->socket);
 	}
+	gz_message_queue_destroy(&(*inlet)->queue);
 	free(*inlet);
 	*inlet = NULL;
 }

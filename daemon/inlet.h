@@ -8,6 +8,7 @@
 #ifndef GZ_DAEMON_INLET_H
 #define GZ_DAEMON_INLET_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <zmq.h>
@@ -24,6 +25,17 @@
 
 /** Longest topic with its NUL, bytes. */
 #define GZ_INLET_TOPIC_SIZE 256
+
+/** Room for messages that wait to be passed on, bytes. Chosen: some ten thousand annotations, so
+ * that a program may send all of an experiment at once. */
+#define GZ_INLET_QUEUE_SIZE (16 * 1024 * 1024)
+
+/** How many messages of clients were dropped, at the inlet and the control socket. Threads: any may
+ * read. */
+struct gz_inlet_counts {
+	_Atomic uint64_t refused;  /**< invalid, or of a topic that is reserved */
+	_Atomic uint64_t overflow; /**< valid, but there was no room for them */
+};
 
 /** The inlet. One thread. */
 struct gz_inlet;
@@ -48,12 +60,14 @@ struct gz_inlet_message {
  * Create the inlet and bind the channel "inlet".
  *
  * @param network         how sockets are bound; its context, guard and log outlive the inlet
+ * @param counts          borrowed; the inlet counts there
  * @param[out] out_inlet  owned by the caller: gz_inlet_destroy()
  * @retval GZ_ERR_NO_MEM  no memory
  * @retval GZ_ERR_IO      no socket; logged
  * @return else as gz_network_bind()
  */
-enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet **out_inlet);
+enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet_counts *counts,
+			       struct gz_inlet **out_inlet);
 
 /** The TCP port, 0 without TCP. */
 int gz_inlet_port(const struct gz_inlet *inlet);
@@ -68,7 +82,8 @@ void *gz_inlet_socket(const struct gz_inlet *inlet);
  * @param body, body_size    second frame, untrusted
  * @param now_ns             host time, for a mark whose annotation has no time
  * @param[out] out_message   its topic, size and body are written on success only
- * @retval GZ_ERR_ACCESS    the topic is one of the daemon's own
+ * @retval GZ_ERR_ACCESS    the topic, or a notification's subject, is reserved for what only the
+ *                          daemon can know (docs/protocol.md)
  * @retval GZ_ERR_PROTOCOL  the topic is empty or a frame too long; the body is not MessagePack; an
  *                          annotation has no label, a notification no subject; a pointer or window
  *                          is invalid
@@ -93,12 +108,24 @@ const char *gz_inlet_refusal(enum gz_result result);
 int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2]);
 
 /**
- * Receive the next message that is accepted. Others are dropped and logged, at most once a second.
- * Never waits.
- *
- * @retval GZ_ERR_TIMEOUT  there is no message now
+ * Take what clients have sent into the queue. If that is full, the message is dropped, counted, and
+ * logged at most once a second. Takes a limited number of messages; never waits.
  */
-enum gz_result gz_inlet_receive(struct gz_inlet *inlet, struct gz_inlet_message *out_message);
+void gz_inlet_collect(struct gz_inlet *inlet);
+
+/**
+ * The oldest message of the queue that is accepted. Those before it are dropped, counted, and
+ * logged at most once a second. The message stays the oldest until gz_inlet_done().
+ *
+ * @retval GZ_ERR_TIMEOUT  there is none
+ */
+enum gz_result gz_inlet_next(struct gz_inlet *inlet, struct gz_inlet_message *out_message);
+
+/** Remove the oldest message from the queue. */
+void gz_inlet_done(struct gz_inlet *inlet);
+
+/** Whether messages wait in the queue. */
+bool gz_inlet_waits(const struct gz_inlet *inlet);
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_inlet_destroy(struct gz_inlet **inlet);

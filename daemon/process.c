@@ -68,8 +68,9 @@ void gz_open_files_allow(const struct gz_log *log)
 	struct rlimit limit;
 	if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
 		return;
-	struct rlimit highest = { .rlim_cur = limit.rlim_max, .rlim_max = limit.rlim_max };
-	if (limit.rlim_cur < limit.rlim_max && setrlimit(RLIMIT_NOFILE, &highest) == 0)
+	rlim_t wanted = limit.rlim_max < GZ_OPEN_FILES_MAX ? limit.rlim_max : GZ_OPEN_FILES_MAX;
+	struct rlimit highest = { .rlim_cur = wanted, .rlim_max = limit.rlim_max };
+	if (limit.rlim_cur < wanted && setrlimit(RLIMIT_NOFILE, &highest) == 0)
 		limit = highest;
 	if (limit.rlim_cur < GZ_OPEN_FILES_ENOUGH)
 		gz_warn(log,

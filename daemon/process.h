@@ -27,13 +27,19 @@
 enum gz_result gz_lock_take(const char *directory, const struct gz_log *log, int *out_fd);
 
 /** A lower limit of open files is warned about: a client that does not close its connections, or an
- * attacker, would soon use them up. Chosen: some hundred times what a laboratory's programs use. */
-#define GZ_OPEN_FILES_ENOUGH 16384
+ * attacker, would soon use them up. Chosen: more than all connections that are allowed (quota.h).
+ */
+#define GZ_OPEN_FILES_ENOUGH 8192
+
+/** The limit of open files is not raised beyond this. Chosen: far more than the connections that
+ * are allowed (quota.h). */
+#define GZ_OPEN_FILES_MAX 65536
 
 /**
- * Raise the limit of open files to what the system allows this process, and warn if that is less
- * than GZ_OPEN_FILES_ENOUGH. Each connection is an open file, and libzmq 4.3.4 ends the program if
- * it cannot accept a connection at a local socket. Call it before the first thread starts.
+ * Raise the limit of open files to what the system allows this process, at most GZ_OPEN_FILES_MAX,
+ * and warn if that is less than GZ_OPEN_FILES_ENOUGH. Each connection is an open file, and libzmq
+ * 4.3.4 ends the program if it cannot accept a connection at a local socket; the quota (quota.h)
+ * keeps the connections below the limit. Call it before the first thread starts.
  */
 void gz_open_files_allow(const struct gz_log *log);
 

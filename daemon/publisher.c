@@ -6,6 +6,10 @@
 #include <string.h>
 #include <zmq.h>
 
+#include "base/clock.h"
+#include "daemon/quota.h"
+#include "daemon/readers.h"
+
 #define GZ_LOG_MODULE "publisher"
 
 void gz_message_maker_init(struct gz_message_maker *maker, const struct gz_config *config,
@@ -72,6 +76,13 @@ static const int64_t SUBSCRIPTION_SIZE_MAX = 1024;
  * rest; reading them takes a millisecond. */
 enum { SUBSCRIPTIONS_AT_ONCE = 8192 };
 
+/* Subscriptions that libzmq reads from one connection before the publisher looks at them. Chosen:
+ * as many as one reader may have. */
+enum { SUBSCRIPTION_QUEUE = GZ_READER_SUBSCRIPTIONS };
+
+/* A message about a reader with too many subscriptions is logged once a minute. */
+#define REFUSAL_NS (60 * GZ_NS_PER_S)
+
 /* A socket and its connections. */
 struct channel {
 	void *socket;
@@ -81,9 +92,12 @@ struct channel {
 struct gz_publisher {
 	struct channel stream;
 	struct channel latest;
-	uint32_t subscriptions;
+	const struct gz_log *log;
+	struct gz_readers *readers;
+	struct gz_readers_sums sums; /* at the last update */
 	uint64_t arrivals;
-	uint32_t pupil_subscriptions; /* those of them that include pupil messages */
+	uint64_t refused; /* readers with too many subscriptions */
+	struct gz_ratelimit complaints;
 	int port;
 	int latest_port;
 };
@@ -102,6 +116,7 @@ static enum gz_result open_channel(const struct gz_network *network, struct chan
 		return GZ_ERR_NO_MEM;
 	}
 	set_channel_option(channel->socket, ZMQ_LINGER, GZ_STREAM_LINGER_MS);
+	set_channel_option(channel->socket, ZMQ_RCVHWM, SUBSCRIPTION_QUEUE);
 	zmq_setsockopt(channel->socket, ZMQ_MAXMSGSIZE, &SUBSCRIPTION_SIZE_MAX,
 		       sizeof SUBSCRIPTION_SIZE_MAX);
 	return GZ_OK;
@@ -142,7 +157,10 @@ enum gz_result gz_publisher_create(const struct gz_network *network,
 	struct gz_publisher *publisher = calloc(1, sizeof *publisher);
 	if (!publisher)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = open_channels(publisher, network);
+	publisher->log = network->log;
+	enum gz_result result = gz_readers_create(GZ_QUOTA_DESCRIPTORS, &publisher->readers);
+	if (result == GZ_OK)
+		result = open_channels(publisher, network);
 	if (result != GZ_OK) {
 		gz_publisher_destroy(&publisher);
 		return result;
@@ -189,13 +207,13 @@ void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_
 	/* Without readers the system calls are saved. A new reader is seen at the next update; its
 	 * connection and its subscription may be seen in either order. */
 	bool listened = gz_connections_count(publisher->stream.connections) > 0 ||
-			publisher->subscriptions > 0;
+			publisher->sums.subscriptions > 0;
 	for (size_t i = 0; listened && i < batch->count; i++) {
 		const struct gz_outgoing *item = &batch->item[i];
 		gz_publisher_send_one(publisher, item->topic, item->body.bytes, item->body.size);
 	}
 	const struct gz_wire_message *gaze = &batch->item[0].body;
-	if (publisher->pupil_subscriptions > 0)
+	if (publisher->sums.pupils > 0)
 		send_pupils(publisher, gaze);
 	if (gz_connections_count(publisher->latest.connections) > 0)
 		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
@@ -209,36 +227,57 @@ static void accept_connections(void *socket)
 	zmq_getsockopt(socket, ZMQ_EVENTS, &events, &size);
 }
 
-static bool takes_pupils(const unsigned char *topic, size_t size)
+/* libzmq disconnects no reader by itself, however much the reader subscribes to. */
+static void refuse_reader(struct gz_publisher *publisher, int fd, uint64_t identity)
 {
-	return (size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
-		memcmp(topic, GZ_TOPIC_PUPIL_RIGHT, size) == 0) ||
-	       (size < sizeof GZ_TOPIC_PUPIL_LEFT && memcmp(topic, GZ_TOPIC_PUPIL_LEFT, size) == 0);
+	uint64_t more;
+	gz_connection_end(fd, identity);
+	publisher->refused++;
+	if (gz_ratelimit_pass(&publisher->complaints, gz_clock_now_ns(), REFUSAL_NS, &more))
+		gz_warn(publisher->log,
+			"client bug: the connection of a reader is closed, because it has more "
+			"than %d subscriptions, or all readers together more than %d (%llu more "
+			"since the last message)",
+			GZ_READER_SUBSCRIPTIONS, GZ_READERS_SUBSCRIPTIONS,
+			(unsigned long long)more);
 }
 
-static void count_subscription(uint32_t *counter, bool more)
+/* @p frame is the byte 1 and a topic for a new subscription, 0 and the topic for its end.
+ * @param fd  of the connection; -1 if libzmq reports the end of a connection
+ * @return whether a connection has ended */
+static bool take_subscription(struct gz_publisher *publisher, const unsigned char *frame,
+			      size_t size, int fd)
 {
-	if (more)
-		++*counter;
-	else if (*counter > 0)
-		--*counter;
+	if (size == 0 || frame[0] > 1)
+		return false;
+	publisher->arrivals += frame[0] == 1;
+	uint64_t identity = gz_connection_identity(fd);
+	if (identity == 0)
+		return true;
+	if (frame[0] == 0)
+		gz_readers_unsubscribe(publisher->readers, fd, identity, frame + 1, size - 1);
+	else if (gz_readers_subscribe(publisher->readers, fd, identity, frame + 1, size - 1) ==
+		 GZ_ERR_FULL)
+		refuse_reader(publisher, fd, identity);
+	return false;
 }
 
-/* A frame is the byte 1 and a topic for a new subscription, 0 and the topic for its end. */
 static void update_subscriptions(struct gz_publisher *publisher)
 {
-	unsigned char frame[1 + sizeof GZ_TOPIC_PUPIL_RIGHT];
+	bool some_left = false;
+	zmq_msg_t frame;
+	zmq_msg_init(&frame);
 	for (int i = 0; i < SUBSCRIPTIONS_AT_ONCE; i++) {
-		int size = zmq_recv(publisher->stream.socket, frame, sizeof frame, ZMQ_DONTWAIT);
-		if (size < 0)
-			return;
-		if (size == 0 || frame[0] > 1)
-			continue;
-		count_subscription(&publisher->subscriptions, frame[0] == 1);
-		publisher->arrivals += frame[0] == 1;
-		if (takes_pupils(frame + 1, (size_t)size - 1))
-			count_subscription(&publisher->pupil_subscriptions, frame[0] == 1);
+		if (zmq_msg_recv(&frame, publisher->stream.socket, ZMQ_DONTWAIT) < 0)
+			break;
+		some_left |=
+			take_subscription(publisher, zmq_msg_data(&frame), zmq_msg_size(&frame),
+					  zmq_msg_get(&frame, ZMQ_SRCFD));
 	}
+	zmq_msg_close(&frame);
+	if (some_left)
+		gz_readers_sweep(publisher->readers, gz_connection_identity);
+	publisher->sums = gz_readers_sums(publisher->readers);
 }
 
 void gz_publisher_update(struct gz_publisher *publisher)
@@ -256,12 +295,17 @@ uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher)
 
 uint32_t gz_publisher_subscriptions(const struct gz_publisher *publisher)
 {
-	return publisher->subscriptions;
+	return publisher->sums.subscriptions;
 }
 
 uint64_t gz_publisher_arrivals(const struct gz_publisher *publisher)
 {
 	return publisher->arrivals;
+}
+
+uint64_t gz_publisher_refused(const struct gz_publisher *publisher)
+{
+	return publisher->refused;
 }
 
 static void close_channel(struct channel *channel)
@@ -278,6 +322,7 @@ void gz_publisher_destroy(struct gz_publisher **publisher)
 		return;
 	close_channel(&(*publisher)->stream);
 	close_channel(&(*publisher)->latest);
+	gz_readers_destroy(&(*publisher)->readers);
 	free(*publisher);
 	*publisher = NULL;
 }

@@ -131,6 +131,10 @@ uint32_t gz_publisher_subscriptions(const struct gz_publisher *publisher);
 /** All subscriptions of the stream from the start to the last update, ended ones included. */
 uint64_t gz_publisher_arrivals(const struct gz_publisher *publisher);
 
+/** Connections of readers that were ended because of too many subscriptions (readers.h), from the
+ * start to the last update. The quota (quota.h) ends others. */
+uint64_t gz_publisher_refused(const struct gz_publisher *publisher);
+
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_publisher_destroy(struct gz_publisher **publisher);
 

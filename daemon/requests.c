@@ -206,15 +206,25 @@ static void stop_recording(struct gz_requests *requests)
 		await_service(requests, PENDING_STOP);
 }
 
-/* Send a message to all readers of the stream. If the service does not keep up with the clients,
- * their messages are dropped: samples have priority. */
-static void send_to_readers(struct gz_requests *requests, const char *topic, const void *body,
-			    size_t size)
+/* Send a message to all readers of the stream, and its mark, if it has one, to the gaze log.
+ * @return whether there was room for it in the queue to the service: samples have priority */
+static bool forward_message(struct gz_requests *requests, const struct gz_command *command,
+			    const void *body, size_t size)
+{
+	/* What is sent with ZMQ_SNDMORE has room for its last frame too. */
+	return zmq_send(requests->commands, command, sizeof *command, ZMQ_SNDMORE | ZMQ_DONTWAIT) >=
+		       0 &&
+	       zmq_send(requests->commands, body, size, ZMQ_DONTWAIT) >= 0;
+}
+
+/* Send a message of the daemon's own to all readers. */
+static void send_to_readers(struct gz_requests *requests, const char *topic,
+			    const struct gz_wire_message *message)
 {
 	struct gz_command command = { .kind = GZ_COMMAND_SEND };
-	snprintf(command.text, sizeof command.text, "%s", topic);
-	if (zmq_send(requests->commands, &command, sizeof command, ZMQ_SNDMORE | ZMQ_DONTWAIT) >= 0)
-		zmq_send(requests->commands, body, size, ZMQ_DONTWAIT);
+	snprintf(command.topic, sizeof command.topic, "%s", topic);
+	if (!forward_message(requests, &command, message->bytes, message->size))
+		gz_warn(requests->parts.log, "%s is not sent: the daemon is busy", topic);
 }
 
 static const char no_calibration[] = "this tracker is calibrated by its own software, not by gazed";
@@ -224,16 +234,14 @@ static void send_calibration_failed(struct gz_requests *requests)
 {
 	struct gz_wire_message message;
 	if (gz_wire_encode_calibration_failed(no_calibration, gz_clock_now_ns(), &message) == GZ_OK)
-		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_CALIBRATION_FAILED,
-				message.bytes, message.size);
+		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_CALIBRATION_FAILED, &message);
 }
 
 static void send_doc(struct gz_requests *requests)
 {
 	struct gz_wire_message message;
 	if (gz_wire_encode_doc("gazed", gz_remote_doc(), &message) == GZ_OK)
-		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_DOC, message.bytes,
-				message.size);
+		send_to_readers(requests, GZ_TOPIC_NOTIFY GZ_SUBJECT_DOC, &message);
 }
 
 /* Make the service read the stored correction again; its file may have changed. */
@@ -438,31 +446,38 @@ static void report_window(struct gz_requests *requests, const struct gz_viewer_w
 }
 
 /* Pass a client's message on to all readers, and into the gaze log if it is an annotation or a
- * window. Act on it if it is a notification for the daemon. */
-static void pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
+ * window. @return whether there was room for it; if not, nothing has happened */
+static bool pass_on(struct gz_requests *requests, const struct gz_inlet_message *message)
 {
-	struct gz_command command = { .kind = GZ_COMMAND_MARK, .host_ns = message->mark_ns };
+	struct gz_command command = { .kind = GZ_COMMAND_SEND,
+				      .host_ns = message->mark_ns,
+				      .has_mark = message->is_mark };
 	if (message->is_pointer) {
 		feed_pointer_driver(requests, &message->pointer);
-		return;
+		return true;
 	}
-	if (message->is_window)
-		report_window(requests, &message->window);
-	if (message->is_mark) {
+	memcpy(command.topic, message->topic, sizeof command.topic);
+	if (message->is_mark)
 		memcpy(command.text, message->mark, sizeof command.text);
-		send_command(requests, &command);
-	}
-	send_to_readers(requests, message->topic, message->body, message->size);
-	if (message->is_notification)
-		act_on_notification(requests, &message->notification);
+	if (!forward_message(requests, &command, message->body, message->size))
+		return false;
+	if (message->is_window) /* the viewer repeats it, so it may be dropped */
+		report_window(requests, &message->window);
+	return true;
 }
 
 static void pass_on_messages(struct gz_requests *requests)
 {
-	for (int i = 0;
-	     i < MESSAGES_AT_ONCE && gz_inlet_receive(requests->inlet, &requests->message) == GZ_OK;
-	     i++)
-		pass_on(requests, &requests->message);
+	struct gz_inlet_message *message = &requests->message;
+	gz_inlet_collect(requests->inlet);
+	for (int i = 0; i < MESSAGES_AT_ONCE && gz_inlet_next(requests->inlet, message) == GZ_OK;
+	     i++) {
+		if (!pass_on(requests, message))
+			return; /* it stays in the queue */
+		gz_inlet_done(requests->inlet);
+		if (message->is_notification)
+			act_on_notification(requests, &message->notification);
+	}
 }
 
 /* Whether a notification that asks for a recording gives a valid name, or none. */
@@ -480,7 +495,9 @@ static void serve_client_message(struct gz_requests *requests, zmq_msg_t *topic,
 	enum gz_result result =
 		gz_inlet_judge(zmq_msg_data(topic), zmq_msg_size(topic), zmq_msg_data(body),
 			       zmq_msg_size(body), gz_clock_now_ns(), message);
+	struct gz_inlet_counts *counts = requests->parts.inlet_counts;
 	if (result != GZ_OK) {
+		atomic_fetch_add_explicit(&counts->refused, 1, memory_order_relaxed);
 		reply(requests, gz_inlet_refusal(result));
 		return;
 	}
@@ -489,8 +506,14 @@ static void serve_client_message(struct gz_requests *requests, zmq_msg_t *topic,
 				"64 of A-Z a-z 0-9 . _ -");
 		return;
 	}
+	if (!pass_on(requests, message)) {
+		atomic_fetch_add_explicit(&counts->overflow, 1, memory_order_relaxed);
+		reply(requests, "the daemon is busy; try again");
+		return;
+	}
 	reply(requests, message->is_notification ? "Notification received" : "Message forwarded.");
-	pass_on(requests, message);
+	if (message->is_notification)
+		act_on_notification(requests, &message->notification);
 }
 
 /* Receive and serve one request: a frame of text, or a topic and a MessagePack map. */
@@ -534,6 +557,8 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd)
 	};
 	for (;;) {
 		long timeout_ms = milliseconds_left(requests);
+		bool waits = gz_inlet_waits(requests->inlet);
+		items[2].events = (short)(ZMQ_POLLIN | (waits ? ZMQ_POLLOUT : 0));
 		/* One request at a time: the next waits until this one is answered. */
 		int count = requests->pending == PENDING_NONE ? 5 : 4;
 		if (zmq_poll(items, count, timeout_ms) < 0 && errno != EINTR)
@@ -593,7 +618,7 @@ enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 	requests->latest_port = gz_publisher_latest_port(parts->publisher);
 	enum gz_result result = open_request_sockets(requests);
 	if (result == GZ_OK)
-		result = gz_inlet_create(parts->network, &requests->inlet);
+		result = gz_inlet_create(parts->network, parts->inlet_counts, &requests->inlet);
 	if (result != GZ_OK) {
 		gz_requests_destroy(&requests);
 		return result;

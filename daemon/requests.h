@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/config.h"
+#include "daemon/inlet.h"
 #include "daemon/network.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
@@ -27,6 +28,7 @@ struct gz_requests_parts {
 	const struct gz_network *network;     /**< how sockets are bound; used at creation only */
 	const struct gz_publisher *publisher; /**< for its ports; used at creation only */
 	const struct gz_recorder *recorder;
+	struct gz_inlet_counts *inlet_counts;
 	struct gz_pointer_feed *pointer; /**< receives the pointer positions that viewers send */
 	const struct gz_log *log;
 };

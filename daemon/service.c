@@ -19,7 +19,7 @@
 #define GZ_LOG_MODULE "service"
 
 /* Most commands between two samples, so that a flood of them does not delay the stream. */
-enum { COMMANDS_AT_ONCE = 8 };
+enum { COMMANDS_AT_ONCE = 16 };
 
 struct gz_service {
 	struct gz_service_parts parts;
@@ -38,6 +38,8 @@ struct gz_service {
 	uint64_t rejected[GZ_REJECT_COUNT];
 	int64_t host_ns;     /* newest sample's */
 	int64_t commands_ns; /* when commands are read next */
+	bool hurry;          /* there are more commands than were read at once */
+	bool held;           /* a command that waits for the recorder */
 	int64_t care_ns;     /* when the periodic work is due */
 	int64_t status_ns;   /* when the next status is due */
 	/* From the last status sent; a change is sent at once. */
@@ -252,7 +254,6 @@ static void follow_viewer_window(struct gz_service *service, const struct gz_com
 
 static void obey_command(struct gz_service *service, const struct gz_command *command)
 {
-	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
 	enum gz_result result = GZ_OK;
 	switch (command->kind) {
 	case GZ_COMMAND_RECORD:
@@ -262,10 +263,6 @@ static void obey_command(struct gz_service *service, const struct gz_command *co
 	case GZ_COMMAND_STOP:
 		gz_recorder_stop(service->parts.recorder);
 		send_notice(service, GZ_NOTICE_ANSWER, command->number, result);
-		return;
-	case GZ_COMMAND_MARK:
-		memcpy(mark.text, command->text, sizeof mark.text);
-		gz_recorder_push(service->parts.recorder, &mark);
 		return;
 	case GZ_COMMAND_CORRECT:
 		if (service->tracker.opened > 0)
@@ -285,32 +282,75 @@ static void obey_command(struct gz_service *service, const struct gz_command *co
 	}
 }
 
-/* Send a message from the inlet: its topic came in the command, its body is the next frame. */
+/* Write the mark of a client's message into the gaze log. */
+static void record_mark(struct gz_service *service, const struct gz_command *command)
+{
+	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
+	memcpy(mark.text, command->text, sizeof mark.text);
+	gz_recorder_push(service->parts.recorder, &mark);
+}
+
+/* Send a message from the inlet: its body is the next frame. */
 static void resend_client_message(struct gz_service *service)
 {
 	zmq_msg_t body;
 	zmq_msg_init(&body);
+	if (service->command.has_mark)
+		record_mark(service, &service->command);
 	if (zmq_msg_recv(&body, service->commands, ZMQ_DONTWAIT) >= 0)
-		gz_publisher_send_one(service->parts.publisher, service->command.text,
+		gz_publisher_send_one(service->parts.publisher, service->command.topic,
 				      zmq_msg_data(&body), zmq_msg_size(&body));
 	zmq_msg_close(&body);
 }
 
+/* Whether a mark must wait until the recorder has room, because the disk is slow. Samples cannot
+ * wait, so half of the room is theirs. */
+static bool mark_must_wait(const struct gz_service *service, const struct gz_command *command)
+{
+	const struct gz_recorder *recorder = service->parts.recorder;
+	return command->kind == GZ_COMMAND_SEND && command->has_mark &&
+	       gz_recorder_running(recorder) && !gz_recorder_has_room(recorder);
+}
+
+/* Take the next command, unless it must wait. @return whether one was taken */
+static bool take_command(struct gz_service *service)
+{
+	struct gz_command *command = &service->command;
+	if (!service->held && zmq_recv(service->commands, command, sizeof *command, ZMQ_DONTWAIT) !=
+				      (int)sizeof *command)
+		return false;
+	service->held = mark_must_wait(service, command);
+	if (service->held)
+		return false;
+	if (command->kind == GZ_COMMAND_SEND)
+		resend_client_message(service);
+	else
+		obey_command(service, command);
+	return true;
+}
+
 static void take_commands(struct gz_service *service, int64_t now_ns)
 {
+	int taken = 0;
 	if (now_ns < service->commands_ns)
 		return;
-	service->commands_ns = now_ns + GZ_SERVICE_COMMANDS_MS * GZ_NS_PER_MS;
-	for (int i = 0; i < COMMANDS_AT_ONCE; i++) {
-		int size = zmq_recv(service->commands, &service->command, sizeof service->command,
-				    ZMQ_DONTWAIT);
-		if (size != (int)sizeof service->command)
-			return;
-		if (service->command.kind == GZ_COMMAND_SEND)
-			resend_client_message(service);
-		else
-			obey_command(service, &service->command);
-	}
+	while (taken < COMMANDS_AT_ONCE && take_command(service))
+		taken++;
+	service->hurry = taken == COMMANDS_AT_ONCE;
+	int wait_ms = service->hurry ? GZ_SERVICE_HURRY_MS : GZ_SERVICE_COMMANDS_MS;
+	service->commands_ns = now_ns + wait_ms * GZ_NS_PER_MS;
+}
+
+static void fill_refusals(const struct gz_service *service, uint64_t refused[GZ_REFUSAL_COUNT])
+{
+	const struct gz_guard *guard = service->parts.guard;
+	refused[GZ_REFUSAL_CONNECTIONS] = gz_guard_ended(guard, GZ_QUOTA_TOO_MANY);
+	refused[GZ_REFUSAL_SUBSCRIPTIONS] = gz_guard_ended(guard, GZ_QUOTA_TOO_LARGE) +
+					    gz_publisher_refused(service->parts.publisher);
+	const struct gz_inlet_counts *counts = service->parts.inlet_counts;
+	refused[GZ_REFUSAL_MESSAGES] = atomic_load_explicit(&counts->refused, memory_order_relaxed);
+	refused[GZ_REFUSAL_OVERFLOW] =
+		atomic_load_explicit(&counts->overflow, memory_order_relaxed);
 }
 
 static void fill_status(struct gz_service *service, struct gz_status *status)
@@ -342,6 +382,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		 open && tracker->counters.trouble ? tracker->counters.trouble : tracker->reason);
 	memcpy(status->rejected, service->rejected, sizeof status->rejected);
 	memcpy(status->malformed, tracker->counters.malformed, sizeof status->malformed);
+	fill_refusals(service, status->refused);
 	status->recording.state = recorder.state;
 	status->recording.samples = recorder.samples;
 	memcpy(status->recording.error, recorder.error, sizeof status->recording.error);
@@ -433,7 +474,8 @@ static void serve_tracker(struct gz_service *service)
 {
 	struct gz_sample sample;
 	enum gz_tracker_state before = service->tracker.state;
-	enum gz_result result = gz_tracker_read(&service->tracker, GZ_SERVICE_WAIT_MS, &sample);
+	int wait_ms = service->hurry ? GZ_SERVICE_HURRY_MS : GZ_SERVICE_WAIT_MS;
+	enum gz_result result = gz_tracker_read(&service->tracker, wait_ms, &sample);
 	follow_tracker(service, before);
 	if (service->quit)
 		return;

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "daemon/config.h"
+#include "daemon/inlet.h"
 #include "daemon/process.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
@@ -31,10 +32,9 @@
 enum gz_command_kind {
 	GZ_COMMAND_RECORD,  /**< begin a recording into fd and path */
 	GZ_COMMAND_STOP,    /**< end the recording */
-	GZ_COMMAND_MARK,    /**< write text into the gaze log */
 	GZ_COMMAND_CORRECT, /**< read the stored correction again; it may have changed */
-	GZ_COMMAND_SEND,    /**< send a message on the stream: the topic is in text, the body in the
-			       frame after this struct */
+	GZ_COMMAND_SEND,    /**< send a message on the stream, whose body is in the frame after this
+			       struct; if has_mark, write text into the gaze log */
 	GZ_COMMAND_WINDOW,  /**< a viewer's window has moved or is closed */
 	GZ_COMMAND_QUIT,
 };
@@ -44,11 +44,13 @@ struct gz_command {
 	enum gz_command_kind kind;
 	uint32_t number;  /**< RECORD, STOP, CORRECT: repeated in the answer */
 	int fd;           /**< RECORD: owned by the receiver, unless it refuses */
-	int64_t host_ns;  /**< MARK, WINDOW */
+	int64_t host_ns;  /**< SEND with a mark, WINDOW */
+	bool has_mark;    /**< SEND */
 	bool has_window;  /**< WINDOW: false once it is closed */
 	int window_px[4]; /**< WINDOW: x y w h on the display */
 	char path[GZ_PATH_SIZE];
-	char text[GZ_GAZE_LOG_TEXT_SIZE];
+	char topic[GZ_INLET_TOPIC_SIZE];  /**< SEND */
+	char text[GZ_GAZE_LOG_TEXT_SIZE]; /**< SEND with a mark */
 };
 
 /** Notices to the requests' thread. */
@@ -77,6 +79,10 @@ struct gz_notice {
  * would be too much for every sample of a fast tracker. */
 #define GZ_SERVICE_COMMANDS_MS 5
 
+/** The same while more of them wait, ms. Chosen: together with the commands that are taken at once
+ * (service.c), 16 000 messages of clients a second, which readers can still follow. */
+#define GZ_SERVICE_HURRY_MS 1
+
 /** How often connections and states are checked, ms. */
 #define GZ_SERVICE_CARE_MS 50
 
@@ -90,7 +96,9 @@ struct gz_service_parts {
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
 	struct gz_pointer_feed *pointer; /**< lent to the driver */
-	struct gz_notify *notify;        /**< told that samples are served */
+	const struct gz_guard *guard;    /**< for its counts */
+	const struct gz_inlet_counts *inlet_counts;
+	struct gz_notify *notify; /**< told that samples are served */
 	const struct gz_log *log;
 };
 

@@ -65,6 +65,23 @@ const char *gz_malformed_name(enum gz_malformed malformed)
 	return "unknown";
 }
 
+const char *gz_refusal_name(enum gz_refusal refusal)
+{
+	switch (refusal) {
+	case GZ_REFUSAL_CONNECTIONS:
+		return "connections";
+	case GZ_REFUSAL_SUBSCRIPTIONS:
+		return "subscriptions";
+	case GZ_REFUSAL_MESSAGES:
+		return "messages";
+	case GZ_REFUSAL_OVERFLOW:
+		return "overflow";
+	case GZ_REFUSAL_COUNT:
+		break;
+	}
+	return "unknown";
+}
+
 const char *gz_tracker_state_name(enum gz_tracker_state state)
 {
 	switch (state) {

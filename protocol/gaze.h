@@ -165,6 +165,19 @@ enum gz_malformed {
 /** The key in status.malformed: "short", "long", "stale", "syntax" or "value". Static text. */
 const char *gz_malformed_name(enum gz_malformed malformed);
 
+/** What the daemon refused its clients. */
+enum gz_refusal {
+	GZ_REFUSAL_CONNECTIONS,   /**< connections ended, because there were too many */
+	GZ_REFUSAL_SUBSCRIPTIONS, /**< connections ended, because they subscribed to too much */
+	GZ_REFUSAL_MESSAGES,      /**< messages that were not valid or had a reserved topic */
+	GZ_REFUSAL_OVERFLOW,      /**< valid messages for which there was no room */
+	GZ_REFUSAL_COUNT,
+};
+
+/** The key in status.refused: "connections", "subscriptions", "messages" or "overflow". Static
+ * text. */
+const char *gz_refusal_name(enum gz_refusal refusal);
+
 /** State of the tracker. */
 enum gz_tracker_state {
 	GZ_TRACKER_ABSENT, /**< not found so far */
@@ -224,6 +237,7 @@ struct gz_status {
 	uint64_t lost;           /**< lost by the device or on the way to the daemon */
 	uint64_t rejected[GZ_REJECT_COUNT];
 	uint64_t malformed[GZ_MALFORMED_COUNT]; /**< reports from which no sample could be made */
+	uint64_t refused[GZ_REFUSAL_COUNT];     /**< to clients */
 	struct gz_clock_status clock;
 	double noise_deg; /**< RMS of sample-to-sample distances in fixations; NaN before the first
 			   */

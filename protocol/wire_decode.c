@@ -320,6 +320,10 @@ static void take_sample_counts(struct gz_unpack *unpack, struct gz_status *statu
 	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
 		gz_unpack_uint64(unpack, malformed, gz_malformed_name((enum gz_malformed)i),
 				 &status->malformed[i]);
+	const msgpack_object *refused = gz_unpack_map(unpack, unpack->map, "refused");
+	for (int i = 0; i < GZ_REFUSAL_COUNT; i++)
+		gz_unpack_uint64(unpack, refused, gz_refusal_name((enum gz_refusal)i),
+				 &status->refused[i]);
 }
 
 static void take_clock_status(struct gz_unpack *unpack, struct gz_clock_status *clock)

@@ -276,6 +276,9 @@ static void pack_sample_counts(struct gz_pack *pack, const struct gz_status *sta
 	gz_pack_map(pack, "malformed", GZ_MALFORMED_COUNT);
 	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
 		gz_pack_uint(pack, gz_malformed_name((enum gz_malformed)i), status->malformed[i]);
+	gz_pack_map(pack, "refused", GZ_REFUSAL_COUNT);
+	for (int i = 0; i < GZ_REFUSAL_COUNT; i++)
+		gz_pack_uint(pack, gz_refusal_name((enum gz_refusal)i), status->refused[i]);
 }
 
 static void pack_clock_status(struct gz_pack *pack, const struct gz_clock_status *clock)
@@ -318,9 +321,10 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 13);
+	gz_pack_map(&pack, NULL, 14);
 	pack_tracker_status(&pack, status);
-	pack_sample_counts(&pack, status); /* rate_hz, samples, lost, rejected, malformed */
+	/* rate_hz, samples, lost, rejected, malformed, refused */
+	pack_sample_counts(&pack, status);
 	pack_clock_status(&pack, &status->clock);
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
 	pack_display_geometry(&pack, &status->display);

@@ -66,6 +66,11 @@ static const char *malformed_name(int reason)
 	return gz_malformed_name((enum gz_malformed)reason);
 }
 
+static const char *refusal_name(int refusal)
+{
+	return gz_refusal_name((enum gz_refusal)refusal);
+}
+
 /* Print the sum of @p counts, and the name and value of each that is not 0. */
 static void print_reasons(const char *name, const uint64_t *counts, int first, int count,
 			  const char *(*reason_name)(int reason))
@@ -136,6 +141,7 @@ static void print_status_table(const struct gz_status *status, const char *endpo
 	print_reasons("rejected", status->rejected, GZ_REJECT_NONE + 1, GZ_REJECT_COUNT,
 		      rejection_name);
 	print_reasons("malformed", status->malformed, 0, GZ_MALFORMED_COUNT, malformed_name);
+	print_reasons("refused", status->refused, 0, GZ_REFUSAL_COUNT, refusal_name);
 	print_clock(&status->clock);
 	if (isfinite(status->noise_deg))
 		row("noise", "%.3f deg from sample to sample (RMS within fixations)",
@@ -187,13 +193,14 @@ static json_t *json_recording(const struct gz_status *status)
 static json_t *json_status(const struct gz_status *status, const char *endpoint)
 {
 	return json_pack(
-		"{so so so so so so so so so s{so so} so sI so so}", "tracker",
+		"{so so so so so so so so so so s{so so} so sI so so}", "tracker",
 		json_tracker(status), "rate_hz",
 		gz_output_json_rate(status->rate_hz_nominal, status->rate_hz_measured), "samples",
 		gz_output_json_count(status->samples), "lost", gz_output_json_count(status->lost),
 		"rejected",
 		json_reasons(status->rejected, GZ_REJECT_NONE + 1, GZ_REJECT_COUNT, rejection_name),
 		"malformed", json_reasons(status->malformed, 0, GZ_MALFORMED_COUNT, malformed_name),
+		"refused", json_reasons(status->refused, 0, GZ_REFUSAL_COUNT, refusal_name),
 		"clock", json_clock(&status->clock), "noise_deg",
 		gz_output_json_number(status->noise_deg), "display",
 		gz_output_json_display(&status->display), "correction", "x",

@@ -79,6 +79,7 @@ static struct gz_status some_status(void)
 	};
 	status.rejected[GZ_REJECT_VELOCITY] = 3;
 	status.malformed[GZ_MALFORMED_SHORT] = 2;
+	status.refused[GZ_REFUSAL_OVERFLOW] = 9;
 	return status;
 }
 
@@ -215,6 +216,7 @@ static void status_is_a_table(void **state)
 		"lost         5\n",
 		"rejected     3 (velocity 3)\n",
 		"malformed    2 (short 2)\n",
+		"refused      9 (overflow 9)\n",
 		"clock        declared tick",
 		"noise        0.125 deg",
 		"display      1920x1080 px",
@@ -240,6 +242,7 @@ static void status_is_json_on_demand(void **state)
 	assert_contains(program.out_text, "\"state\": \"running\"");
 	assert_contains(program.out_text, "\"measured\": 199.5");
 	assert_contains(program.out_text, "\"velocity\": 3");
+	assert_contains(program.out_text, "\"overflow\": 9");
 	assert_contains(program.out_text, "\"noise_deg\": null");
 }
 

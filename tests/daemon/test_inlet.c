@@ -48,12 +48,59 @@ static void inlet_notification_passes_and_is_no_mark(void **state)
 	assert_false(message.is_notification);
 }
 
+/* Readers subscribe to all notifications and then look at the subject. */
+static void inlet_subjects_of_the_daemon_are_refused(void **state)
+{
+	(void)state;
+	static const char successful[] = "\x81\xa7subject\xb6"
+					 "calibration.successful";
+	static const char stopped[] = "\x81\xa7subject\xb1"
+				      "recording.stopped";
+	assert_int_equal(judge("notify.x", successful, sizeof successful - 1), GZ_ERR_ACCESS);
+	assert_int_equal(judge("notify.x", stopped, sizeof stopped - 1), GZ_ERR_ACCESS);
+	assert_int_equal(judge("x", successful, sizeof successful - 1), GZ_OK);
+}
+
+static void inlet_topics_that_only_resemble_the_daemons_pass(void **state)
+{
+	(void)state;
+	static const char *const topics[] = { "gaz",
+					      "my.gaze",
+					      "notify.gaze",
+					      "notify.calibration.should_start",
+					      "notify.calibration.add_ref_data",
+					      "notify.recording.should_stop",
+					      "notify.record" };
+	for (size_t i = 0; i < sizeof topics / sizeof *topics; i++)
+		assert_int_equal(judge(topics[i], notification, sizeof notification - 1), GZ_OK);
+}
+
 static void inlet_topics_of_the_daemon_are_refused(void **state)
 {
 	(void)state;
-	static const char *const topics[] = { "gaze.3d.01.", "gaze.",     "surfaces.screen",
-					      "fixations",   "blinks",    "saccades",
-					      "status",      "pupil.0.3d" };
+	static const char *const topics[] = {
+		"gaze.3d.01.",
+		"gaze.",
+		"gaze",
+		"gazeX",
+		"surfaces.screen",
+		"surfaces",
+		"surface",
+		"fixations",
+		"fixation",
+		"blinks",
+		"saccades",
+		"status",
+		"statusX",
+		"pupil.0.3d",
+		"pupil",
+		"notify.calibration.successful",
+		"notify.calibration.failed",
+		"notify.calibration.stopped.x",
+		"notify.calibration.result.v2",
+		"notify.recording.started",
+		"notify.recording.stopped",
+	};
 	for (size_t i = 0; i < sizeof topics / sizeof *topics; i++)
 		assert_int_equal(judge(topics[i], notification, sizeof notification - 1),
 				 GZ_ERR_ACCESS);
@@ -113,6 +160,8 @@ TEST_SUITE(inlet)
 		cmocka_unit_test(inlet_annotation_becomes_a_mark),
 		cmocka_unit_test(inlet_notification_passes_and_is_no_mark),
 		cmocka_unit_test(inlet_topics_of_the_daemon_are_refused),
+		cmocka_unit_test(inlet_subjects_of_the_daemon_are_refused),
+		cmocka_unit_test(inlet_topics_that_only_resemble_the_daemons_pass),
 		cmocka_unit_test(inlet_viewer_tells_its_pointer_and_its_window),
 		cmocka_unit_test(inlet_anything_else_is_refused_and_writes_nothing),
 	};

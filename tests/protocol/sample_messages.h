@@ -84,6 +84,7 @@ static inline struct gz_status sample_status(void)
 		.lost = 3,
 		.rejected = { 0, 1, 2, 3, 4, 5, 6, 7 },
 		.malformed = { 11, 12, 13, 14, 15 },
+		.refused = { 21, 22, 23, 24 },
 		.clock = { -123456789, 12.5, 800.25, GZ_CLOCK_ESTIMATED },
 		.noise_deg = 0.05,
 		.display = sample_display(),

@@ -164,6 +164,7 @@ static void status_comes_back_as_it_was_sent(void **state)
 	assert_true(back.samples == status.samples && back.lost == status.lost);
 	assert_memory_equal(back.rejected, status.rejected, sizeof back.rejected);
 	assert_memory_equal(back.malformed, status.malformed, sizeof back.malformed);
+	assert_memory_equal(back.refused, status.refused, sizeof back.refused);
 	assert_true(back.clock.offset_ns == status.clock.offset_ns);
 	assert_true(back.clock.skew_ppm == status.clock.skew_ppm);
 	assert_true(back.clock.sigma_ns == status.clock.sigma_ns);

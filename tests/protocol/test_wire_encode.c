@@ -368,8 +368,8 @@ static void status_has_the_documented_keys(void **state)
 	msgpack_unpacked unpacked;
 	assert_int_equal(gz_wire_encode_status(&status, &message), GZ_OK);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
-	assert_keys(map, "tracker rate_hz samples lost rejected malformed clock noise_deg display "
-			 "correction recording "
+	assert_keys(map, "tracker rate_hz samples lost rejected malformed refused clock noise_deg "
+			 "display correction recording "
 			 "subscribers version");
 	assert_keys(value_of(map, "tracker"), "name serial state reason");
 	assert_keys(value_of(map, "rate_hz"), "nominal measured");
@@ -384,6 +384,8 @@ static void status_has_the_documented_keys(void **state)
 	assert_keys(value_of(map, "malformed"), "short long stale syntax value");
 	assert_number(value_of(value_of(map, "malformed"), "short"), 11);
 	assert_number(value_of(value_of(map, "malformed"), "value"), 15);
+	assert_keys(value_of(map, "refused"), "connections subscriptions messages overflow");
+	assert_number(value_of(value_of(map, "refused"), "overflow"), 24);
 	assert_numbers(value_of(value_of(map, "display"), "px"), (double[]) { 1920, 1080 }, 2);
 	assert_text(value_of(value_of(map, "recording"), "file"), "/data/a.gzl");
 	msgpack_unpacked_destroy(&unpacked);
@@ -455,6 +457,8 @@ static void longest_messages_fit(void **state)
 		status.rejected[i] = UINT64_MAX;
 	for (int i = 0; i < GZ_MALFORMED_COUNT; i++)
 		status.malformed[i] = UINT64_MAX;
+	for (int i = 0; i < GZ_REFUSAL_COUNT; i++)
+		status.refused[i] = UINT64_MAX;
 	status.samples = status.lost = status.recording.samples = UINT64_MAX;
 	status.clock.offset_ns = INT64_MIN;
 	status.subscribers = UINT32_MAX;

@@ -2,6 +2,7 @@
 import bisect
 import ctypes
 import os
+import resource
 import shutil
 import signal
 import socket
@@ -32,10 +33,18 @@ def die_with_parent():
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-class Gazed:
-    """Runs until close(); its recordings are in .place."""
+def prepare_child(files):
+    die_with_parent()
+    if files:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
 
-    def __init__(self, program, *arguments, awaited="delivers samples", **variables):
+
+class Gazed:
+    """Runs until close(); its recordings are in .place.
+
+    files: its limit of open files."""
+
+    def __init__(self, program, *arguments, awaited="delivers samples", files=None, **variables):
         self.place = tempfile.mkdtemp(prefix="gz_pupil_")
         self.port = free_port()
         self.log_path = os.path.join(self.place, "stderr")
@@ -44,7 +53,7 @@ class Gazed:
             self.process = subprocess.Popen(
                 [program, "--control", f"tcp://127.0.0.1:{self.port}",
                  "--recording.directory", self.place, *arguments],
-                env=environment, stderr=log, preexec_fn=die_with_parent)
+                env=environment, stderr=log, preexec_fn=lambda: prepare_child(files))
         try:
             wait_for(lambda: awaited in self.log() or self.process.poll() is not None,
                      "gazed does not begin")
@@ -56,6 +65,11 @@ class Gazed:
     def log(self):
         with open(self.log_path) as file:
             return file.read()
+
+    def memory_mib(self):
+        """What it has in memory."""
+        with open(f"/proc/{self.process.pid}/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
     def recordings(self):
         return sorted(name for name in os.listdir(self.place) if name.endswith(".gzl"))

@@ -470,11 +470,150 @@ class RudeTest(ClientTest):
                        [b"x" * 300, b"\x80"], [b"notify.x", b"\x80", b"\x80"]):
             remote.send_multipart(frames)
             self.assertTrue(remote.recv_string().startswith("refused:"), frames)
-        for topic in ("gaze.3d.01.", "status", "pupil.0.3d", "surfaces.screen", "blinks"):
+        for topic in ("gaze.3d.01.", "gaze", "gazeX", "status", "pupil.0.3d", "pupil",
+                      "surfaces.screen", "surfaces", "blinks", "notify.calibration.successful"):
             remote.send_multipart([topic.encode(), b"\x80"])
             self.assertIn("reserved for the daemon", remote.recv_string())
+        self.assertIn("reserved", self.client.notify({"subject": "calibration.successful"}))
+        remote.send_multipart([b"notify.x", msgpack.dumps({"subject": "calibration.successful"})])
+        self.assertIn("reserved for the daemon", remote.recv_string())
         for text in ("", "x", "R\0", "t t", "\n", "SUB_PORT "):
             self.assertEqual(self.client.ask(text), "unknown command")
+
+    def longest_gap_s(self, until):
+        """The longest time between two samples on the stream until a status meets a condition."""
+        both = self.client.subscribe("gaze.", "status")
+        longest, last_ns = 0, receive_topic(both, "gaze.3d.01.")["publish_ns"]
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            self.assertLess(time.monotonic(), deadline, "the condition is never met")
+            topic, payload = receive(both)
+            if topic == "status":
+                if until(payload):
+                    both.close()
+                    return longest * 1e-9
+            else:
+                longest = max(longest, payload["publish_ns"] - last_ns)
+                last_ns = payload["publish_ns"]
+
+    def refused(self, what):
+        return receive_topic(self.status, "status")["refused"][what]
+
+    def check_flood_of_subscriptions(self, count, size, over_tcp):
+        """One reader with very many subscriptions delays nobody and fills no memory."""
+        self.status = self.client.subscribe("status")
+        before, known = self.gazed.memory_mib(), self.refused("subscriptions")
+        flood = self.client.socket(zmq.SUB)
+        for i in range(count):
+            flood.setsockopt(zmq.SUBSCRIBE, b"%0*d" % (size, i * 7919))
+        flood.connect("tcp://127.0.0.1:" + self.client.ask("SUB_PORT") if over_tcp else
+                      f"ipc://{self.gazed.place}/stream")
+        gap = self.longest_gap_s(lambda status: status["refused"]["subscriptions"] > known)
+        flood.close()
+        self.assertLess(gap, 3)
+        self.assertLess(self.gazed.memory_mib() - before, 100)
+        # By what it sent, and perhaps by what was read of it.
+        self.assertIn(self.gazed.log().count("client bug: the connection of a reader"), (1, 2))
+        self.assert_answers()
+
+    def test_many_long_subscriptions(self):
+        self.check_flood_of_subscriptions(300000, 200, True)
+
+    def test_many_short_subscriptions(self):
+        self.check_flood_of_subscriptions(200000, 7, True)
+
+    def test_many_local_subscriptions(self):
+        self.check_flood_of_subscriptions(100000, 200, False)
+
+    def test_subscriptions_slowly_added(self):
+        """Few bytes at a time, and more topics than are allowed."""
+        self.status = self.client.subscribe("status")
+        reader = self.client.subscribe("")
+        for i in range(300):
+            reader.setsockopt_string(zmq.SUBSCRIBE, f"{i}")
+            if i == 200:
+                self.assertEqual(self.refused("subscriptions"), 0)
+        wait_for(lambda: self.refused("subscriptions") > 0, "it is not refused")
+
+    def flood_inlet(self, frames, count):
+        """Publish the same message many times; nothing is dropped on this side."""
+        publisher = self.client.socket(zmq.PUB)
+        publisher.setsockopt(zmq.SNDHWM, 0)
+        publisher.connect("tcp://127.0.0.1:" + self.client.ask("PUB_PORT"))
+        echo = self.client.subscribe("notify.are_you_there")
+        deadline = time.monotonic() + PATIENCE_S
+        while not echo.poll(20):
+            publisher.send_multipart([b"notify.are_you_there",
+                                      msgpack.dumps({"subject": "are_you_there"})])
+            self.assertLess(time.monotonic(), deadline, "nothing that is published comes back")
+        for _ in range(count):
+            publisher.send_multipart(frames)
+        return publisher
+
+    def test_burst_of_messages_comes_back_whole(self):
+        count = 50000
+        monitor = self.client.subscribe("burst")
+        monitor.setsockopt(zmq.RCVHWM, 0)
+        frames = [b"burst", msgpack.dumps({"subject": "burst"})]
+        self.flood_inlet(frames, count)
+        for _ in range(count):
+            receive(monitor)
+        self.assert_answers()
+
+    def test_burst_of_annotations_is_recorded_whole(self):
+        count = 5000
+        self.assertEqual(self.client.ask("R burst"), "OK")
+        monitor = self.client.subscribe("annotation")
+        self.flood_inlet([b"annotation", msgpack.dumps({"label": "here", "duration": 0.0})], count)
+        for _ in range(count):
+            receive(monitor)
+        self.assertEqual(self.client.ask("r"), "OK")
+        wait_for(lambda: "#end" in open(os.path.join(self.gazed.place, "burst.gzl")).read(),
+                 "the recording does not end")
+        self.assertEqual(len(self.gazed.marks("burst.gzl")), count)
+
+    def test_messages_without_room_are_counted(self):
+        """More than the queue holds, faster than messages are passed on."""
+        self.status = self.client.subscribe("status")
+        publisher = self.flood_inlet([b"large", msgpack.dumps({"x": b"x" * 8000})], 20000)
+        wait_for(lambda: self.refused("overflow") > 0, "all have room")
+        self.assertIn("faster than their messages can be passed on", self.gazed.log())
+        self.assert_answers()
+        # Once there is room again, messages come back.
+        monitor = self.client.subscribe("small")
+        deadline = time.monotonic() + PATIENCE_S
+        while not monitor.poll(20):
+            publisher.send_multipart([b"small", msgpack.dumps({})])
+            self.assertLess(time.monotonic(), deadline, "nothing comes back")
+        publisher.send_multipart([b"gazeX", msgpack.dumps({})])
+        wait_for(lambda: self.refused("messages") == 1, "the reserved topic is not counted")
+
+    def test_more_connections_than_files(self):
+        self.gazed.close()
+        self.gazed = Gazed(GAZED, *self.arguments, files=128)
+        self.addCleanup(self.gazed.close)
+        local = self.client.context.socket(zmq.REQ)
+        self.addCleanup(local.close, 0)
+        local.setsockopt(zmq.RCVTIMEO, PATIENCE_S * 1000)
+        idle = []
+        for _ in range(300):
+            idle.append(socket.create_connection(("127.0.0.1", self.gazed.port)))
+        for _ in range(3):
+            local.connect(f"ipc://{self.gazed.place}/control")
+            local.send_string("t")
+            self.assertGreater(float(local.recv_string()), 0)
+            local.disconnect(f"ipc://{self.gazed.place}/control")
+        status = local.context.socket(zmq.SUB)
+        self.addCleanup(status.close, 0)
+        status.setsockopt(zmq.RCVTIMEO, PATIENCE_S * 1000)
+        status.setsockopt_string(zmq.SUBSCRIBE, "status")
+        status.connect(f"ipc://{self.gazed.place}/stream")
+        self.assertGreater(receive(status)[1]["refused"]["connections"], 100)
+        for connection in idle:
+            connection.close()
+        again = Client(self.gazed)
+        self.addCleanup(again.close)
+        self.assertGreater(float(again.ask("t")), 0)
 
     def test_many_clients_at_once(self):
         clients = [Client(self.gazed) for _ in range(32)]

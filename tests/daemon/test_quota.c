@@ -1,0 +1,241 @@
+#include "suite.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "daemon/quota.h"
+
+/* A connection: our end, and the client's. */
+struct pair {
+	int ours;
+	int client;
+};
+
+static struct gz_quota *quota;
+static const char stream[] = "stream", control[] = "control";
+
+static struct pair connect_locally(void)
+{
+	int fds[2];
+	assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, fds), 0);
+	return (struct pair) { fds[0], fds[1] };
+}
+
+static struct pair connect_over_tcp(void)
+{
+	struct sockaddr_in address = { .sin_family = AF_INET,
+				       .sin_addr = { htonl(INADDR_LOOPBACK) } };
+	socklen_t size = sizeof address;
+	struct pair pair;
+	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_int_equal(bind(listener, (struct sockaddr *)&address, size), 0);
+	assert_int_equal(listen(listener, 1), 0);
+	assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &size), 0);
+	pair.client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_int_equal(connect(pair.client, (struct sockaddr *)&address, size), 0);
+	pair.ours = accept(listener, NULL, NULL);
+	assert_true(pair.ours >= 0);
+	close(listener);
+	return pair;
+}
+
+static void disconnect(struct pair *pair)
+{
+	close(pair->ours);
+	close(pair->client);
+}
+
+/* Whether the quota has ended the connection. */
+static bool has_ended(const struct pair *pair)
+{
+	char byte;
+	struct pollfd poll_fd = { .fd = pair->client, .events = POLLIN };
+	return poll(&poll_fd, 1, 0) == 1 && recv(pair->client, &byte, 1, MSG_DONTWAIT) <= 0;
+}
+
+static void send_bytes(const struct pair *pair, size_t size)
+{
+	static const char bytes[65536];
+	assert_true(size <= sizeof bytes);
+	assert_int_equal(send(pair->client, bytes, size, MSG_NOSIGNAL), size);
+	struct pollfd poll_fd = { .fd = pair->ours, .events = POLLIN };
+	assert_int_equal(poll(&poll_fd, 1, PATIENCE_MS), 1);
+}
+
+static void create_quota(uint32_t connections)
+{
+	assert_int_equal(gz_quota_create(connections, NULL, &quota), GZ_OK);
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	gz_quota_destroy(&quota);
+	gz_quota_destroy(&quota);
+	return quota != NULL;
+}
+
+static void quota_newest_of_too_many_connections_is_ended(void **state)
+{
+	(void)state;
+	struct pair pairs[5];
+	create_quota(4);
+	for (int i = 0; i < 5; i++) {
+		pairs[i] = connect_locally();
+		gz_quota_arrived(quota, pairs[i].ours, control, false, 0);
+		assert_int_equal(has_ended(&pairs[i]), i == 4);
+	}
+	assert_int_equal(gz_quota_count(quota), 5);
+	assert_int_equal(gz_quota_ended(quota, GZ_QUOTA_TOO_MANY), 1);
+	gz_quota_left(quota, pairs[4].ours, control);
+	gz_quota_left(quota, pairs[0].ours, control);
+	gz_quota_left(quota, pairs[0].ours, control);
+	assert_int_equal(gz_quota_count(quota), 3);
+	for (int i = 0; i < 5; i++)
+		disconnect(&pairs[i]);
+}
+
+static void quota_tcp_leaves_a_quarter_to_local_connections(void **state)
+{
+	(void)state;
+	struct pair pairs[5];
+	create_quota(4);
+	for (int i = 0; i < 5; i++) {
+		pairs[i] = i < 4 ? connect_over_tcp() : connect_locally();
+		gz_quota_arrived(quota, pairs[i].ours, control, false, 0);
+		assert_int_equal(has_ended(&pairs[i]), i == 3);
+		if (i == 3)
+			gz_quota_left(quota, pairs[i].ours, control);
+	}
+	for (int i = 0; i < 5; i++)
+		disconnect(&pairs[i]);
+}
+
+/* Two sockets report in any order that one closed a connection and the other got its number. */
+static void quota_end_of_a_connection_of_another_socket_is_not_its_own(void **state)
+{
+	(void)state;
+	struct pair pair = connect_locally();
+	create_quota(4);
+	gz_quota_arrived(quota, pair.ours, stream, true, 0);
+	gz_quota_arrived(quota, pair.ours, control, false, 0);
+	assert_int_equal(gz_quota_count(quota), 1);
+	gz_quota_left(quota, pair.ours, stream);
+	assert_int_equal(gz_quota_count(quota), 1);
+	gz_quota_left(quota, pair.ours, control);
+	assert_int_equal(gz_quota_count(quota), 0);
+	disconnect(&pair);
+	gz_quota_arrived(quota, pair.ours, control, false, 0);
+	assert_int_equal(gz_quota_count(quota), 0);
+}
+
+static void check_flood(struct pair pair)
+{
+	struct pollfd poll_fd = { .events = POLLIN };
+	create_quota(4);
+	gz_quota_arrived(quota, pair.ours, stream, true, 0);
+	send_bytes(&pair, GZ_QUOTA_HANDSHAKE);
+	gz_quota_check(quota, 0);
+	assert_false(has_ended(&pair));
+	for (int i = 0; i < 2; i++)
+		send_bytes(&pair, GZ_QUOTA_READER_BYTES);
+	poll_fd.fd = gz_quota_fd(quota);
+	assert_int_equal(poll(&poll_fd, 1, PATIENCE_MS), 1);
+	gz_quota_check(quota, 0);
+	assert_true(has_ended(&pair));
+	assert_int_equal(gz_quota_ended(quota, GZ_QUOTA_TOO_LARGE), 1);
+	char byte; /* nothing of it is left to be read */
+	assert_int_equal(recv(pair.ours, &byte, 1, MSG_DONTWAIT), 0);
+	disconnect(&pair);
+	gz_quota_destroy(&quota);
+}
+
+static void quota_reader_that_floods_is_ended_and_what_it_sent_is_discarded(void **state)
+{
+	(void)state;
+	check_flood(connect_over_tcp());
+	check_flood(connect_locally());
+}
+
+/* What libzmq has read counts too, over TCP. With time a reader may send more. */
+static void quota_reader_may_send_a_little_without_an_end(void **state)
+{
+	(void)state;
+	char bytes[GZ_QUOTA_READER_BYTES];
+	struct pair pair = connect_over_tcp();
+	create_quota(4);
+	gz_quota_arrived(quota, pair.ours, stream, true, 0);
+	const int64_t enough_ns = GZ_QUOTA_READER_BYTES / GZ_QUOTA_READER_BYTES_PER_S * GZ_NS_PER_S;
+	for (int i = 0; i < 8; i++) {
+		send_bytes(&pair, sizeof bytes);
+		assert_int_equal(recv(pair.ours, bytes, sizeof bytes, MSG_WAITALL), sizeof bytes);
+		gz_quota_check(quota, i * enough_ns);
+		assert_false(has_ended(&pair));
+	}
+	send_bytes(&pair, sizeof bytes);
+	gz_quota_check(quota, 7 * enough_ns);
+	assert_true(has_ended(&pair));
+	disconnect(&pair);
+}
+
+static void quota_readers_together_are_limited(void **state)
+{
+	(void)state;
+	enum { ENOUGH = GZ_QUOTA_ALL_BYTES / GZ_QUOTA_READER_BYTES };
+	static struct pair pairs[ENOUGH + 1];
+	static char bytes[GZ_QUOTA_HANDSHAKE + GZ_QUOTA_READER_BYTES];
+	create_quota(2 * ENOUGH);
+	for (int i = 0; i <= ENOUGH; i++) {
+		pairs[i] = connect_over_tcp();
+		gz_quota_arrived(quota, pairs[i].ours, stream, true, 0);
+		send_bytes(&pairs[i], sizeof bytes);
+		gz_quota_check(quota, 0);
+		assert_int_equal(has_ended(&pairs[i]), i == ENOUGH);
+		recv(pairs[i].ours, bytes, sizeof bytes, MSG_DONTWAIT);
+	}
+	for (int i = 0; i <= ENOUGH; i++)
+		disconnect(&pairs[i]);
+}
+
+static void quota_end_of_another_file_changes_nothing(void **state)
+{
+	(void)state;
+	struct pair pair = connect_locally();
+	uint64_t identity = gz_connection_identity(pair.ours);
+	assert_true(identity != 0);
+	assert_int_equal(gz_connection_identity(-1), 0);
+	assert_int_equal(gz_connection_identity(STDIN_FILENO), 0);
+	gz_connection_end(pair.ours, identity + 1);
+	assert_false(has_ended(&pair));
+	gz_connection_end(pair.ours, identity);
+	assert_true(has_ended(&pair));
+	disconnect(&pair);
+}
+
+static void quota_depends_on_the_limit_of_files(void **state)
+{
+	(void)state;
+	assert_in_range(gz_quota_connections_possible(), 4, GZ_QUOTA_CONNECTIONS);
+}
+
+#define TEST(function) cmocka_unit_test_teardown(function, tear_down)
+
+TEST_SUITE(quota)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(quota_newest_of_too_many_connections_is_ended),
+		TEST(quota_tcp_leaves_a_quarter_to_local_connections),
+		TEST(quota_end_of_a_connection_of_another_socket_is_not_its_own),
+		TEST(quota_reader_that_floods_is_ended_and_what_it_sent_is_discarded),
+		TEST(quota_reader_may_send_a_little_without_an_end),
+		TEST(quota_readers_together_are_limited),
+		TEST(quota_end_of_another_file_changes_nothing),
+		TEST(quota_depends_on_the_limit_of_files),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
