@@ -54,12 +54,14 @@ void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sampl
 	out->rejection = step.rejection;
 	gz_wire_encode_gaze(&step.gaze, &maker->pipeline.display,
 			    append_message(out, gz_wire_gaze_topic(&step.gaze), ""));
-	for (size_t i = 0; i < maker->surface_count; i++)
-		gz_wire_encode_surface(&step.gaze, maker->surface[i],
-				       append_message(out, GZ_TOPIC_SURFACES, maker->surface[i]));
 	for (size_t i = 0; i < step.fixation_count; i++)
 		gz_wire_encode_fixation(&step.fixations[i],
 					append_message(out, GZ_TOPIC_FIXATIONS, ""));
+	/* After the messages to which they refer. */
+	for (size_t i = 0; i < maker->surface_count; i++)
+		gz_wire_encode_surface(&step.gaze, step.fixations, step.fixation_count,
+				       maker->surface[i],
+				       append_message(out, GZ_TOPIC_SURFACES, maker->surface[i]));
 	for (size_t i = 0; i < step.blink_count; i++)
 		gz_wire_encode_blink(&step.blinks[i], append_message(out, GZ_TOPIC_BLINKS, ""));
 	for (size_t i = 0; i < step.saccade_count; i++)

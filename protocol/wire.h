@@ -81,11 +81,14 @@ enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_d
 				   struct gz_wire_message *out_message);
 
 /**
- * Encode the gaze on the screen as gaze on a surface.
+ * Encode the gaze on the screen, and fixations, as those on a surface.
  *
+ * @param fixations, fixation_count  those whose messages are sent together with @p gaze
  * @param surface_name  the <name> of "surfaces.<name>"
  */
-enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *surface_name,
+enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze,
+				      const struct gz_fixation *fixations, size_t fixation_count,
+				      const char *surface_name,
 				      struct gz_wire_message *out_message);
 
 /** Encode a fixation. */

@@ -107,6 +107,47 @@ static void pack_pupil_map(struct gz_pack *pack, const struct gz_gaze *gaze, enu
 	pack->message->pupil[index].size = pack->message->size - begin;
 }
 
+/* Whether the tracker gave the position and direction of every eye of the message. Pupil's readers
+ * take one only together with the other. */
+static bool has_lines_of_sight(const struct gz_gaze *gaze, const struct eyes *eyes)
+{
+	for (size_t i = 0; i < eyes->count; i++) {
+		const struct gz_gaze_eye *eye = &gaze->eye[eyes->index[i]];
+		if (!is_finite_vector(eye->origin_mm) || !is_finite_vector(eye->direction))
+			return false;
+	}
+	return true;
+}
+
+static void pack_vector(struct gz_pack *pack, const char *key, const float vector[3])
+{
+	gz_pack_array(pack, key, 3);
+	for (int i = 0; i < 3; i++)
+		gz_pack_float(pack, NULL, vector[i]);
+}
+
+/* Centres and directions of the eyes, in the tracker's coordinates. The keys and their forms are
+ * those of Pupil Core 3 (gaze_mapping/gazer_3d/gazer_headset.py): by the eye's number as text, or
+ * of one eye alone. */
+static void pack_lines_of_sight(struct gz_pack *pack, const struct gz_gaze *gaze,
+				const struct eyes *eyes)
+{
+	const struct gz_gaze_eye *right = &gaze->eye[GZ_EYE_RIGHT];
+	const struct gz_gaze_eye *left = &gaze->eye[GZ_EYE_LEFT];
+	if (eyes->count == 1) {
+		const struct gz_gaze_eye *eye = &gaze->eye[eyes->index[0]];
+		pack_vector(pack, "eye_center_3d", eye->origin_mm);
+		pack_vector(pack, "gaze_normal_3d", eye->direction);
+		return;
+	}
+	gz_pack_map(pack, "eye_centers_3d", 2);
+	pack_vector(pack, "0", right->origin_mm);
+	pack_vector(pack, "1", left->origin_mm);
+	gz_pack_map(pack, "gaze_normals_3d", 2);
+	pack_vector(pack, "0", right->direction);
+	pack_vector(pack, "1", left->direction);
+}
+
 /* The keys of Pupil's gaze map. */
 static void pack_pupil_core_keys(struct gz_pack *pack, const struct gz_gaze *gaze,
 				 const struct gz_display *display)
@@ -119,6 +160,8 @@ static void pack_pupil_core_keys(struct gz_pack *pack, const struct gz_gaze *gaz
 	gz_pack_float(pack, "confidence", gaze->confidence);
 	gz_pack_time(pack, "timestamp", gaze->host_ns);
 	gz_pack_doubles(pack, "gaze_point_3d", mm, 3);
+	if (has_lines_of_sight(gaze, &eyes))
+		pack_lines_of_sight(pack, gaze, &eyes);
 	gz_pack_array(pack, "base_data", eyes.count);
 	for (size_t i = 0; i < eyes.count; i++)
 		pack_pupil_map(pack, gaze, eyes.index[i], display);
@@ -163,7 +206,11 @@ enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_d
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, gaze->final_known ? 18 : 17);
+	const struct eyes eyes = participating_eyes(gaze);
+	size_t keys = 17;
+	keys += gaze->final_known ? 1 : 0;
+	keys += has_lines_of_sight(gaze, &eyes) ? 2 : 0;
+	gz_pack_map(&pack, NULL, keys);
 	pack_pupil_core_keys(&pack, gaze, display);
 	pack_own_keys(&pack, gaze);
 	return gz_pack_end(&pack);
@@ -174,30 +221,59 @@ static bool is_on_surface(struct gz_point point)
 	return point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1;
 }
 
-enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze, const char *surface_name,
-				      struct gz_wire_message *out_message)
+/* What a surface message says about a gaze or a fixation, as Pupil's surface.py forms it: the topic
+ * with a suffix, and under base_data the topic and time of the original. */
+struct mapped {
+	const char *topic;
+	struct gz_point point;
+	float confidence;
+	int64_t time_ns;
+};
+
+static void pack_mapped(struct gz_pack *pack, const struct mapped *mapped)
 {
-	/* The topic of the gaze on a surface, as Pupil forms it. */
-	char topic[32], surface_topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
-	snprintf(topic, sizeof topic, "%s_on_surface", gz_wire_gaze_topic(gaze));
+	char topic[32];
+	snprintf(topic, sizeof topic, "%s_on_surface", mapped->topic);
+	gz_pack_text(pack, "topic", topic);
+	gz_pack_norm_pos(pack, mapped->point);
+	gz_pack_float(pack, "confidence", mapped->confidence);
+	gz_pack_bool(pack, "on_surf", is_on_surface(mapped->point));
+	gz_pack_array(pack, "base_data", 2);
+	gz_pack_text(pack, NULL, mapped->topic);
+	gz_pack_time(pack, NULL, mapped->time_ns);
+	gz_pack_time(pack, "timestamp", mapped->time_ns);
+}
+
+static void pack_mapped_fixation(struct gz_pack *pack, const struct gz_fixation *fixation)
+{
+	gz_pack_map(pack, NULL, 9);
+	pack_mapped(pack, &(struct mapped) { GZ_TOPIC_FIXATIONS, fixation->point,
+					     fixation->confidence, fixation->onset_ns });
+	gz_pack_uint(pack, "id", fixation->id);
+	gz_pack_double(pack, "duration", gz_ns_to_ms(fixation->duration_ns));
+	gz_pack_float(pack, "dispersion", fixation->dispersion_deg);
+}
+
+enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze,
+				      const struct gz_fixation *fixations, size_t fixation_count,
+				      const char *surface_name, struct gz_wire_message *out_message)
+{
+	char surface_topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
 	snprintf(surface_topic, sizeof surface_topic, GZ_TOPIC_SURFACES "%s", surface_name);
 
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 4);
+	gz_pack_map(&pack, NULL, 5);
 	gz_pack_text(&pack, "topic", surface_topic);
 	gz_pack_text(&pack, "name", surface_name);
 	gz_pack_time(&pack, "timestamp", gaze->host_ns);
 	gz_pack_array(&pack, "gaze_on_surfaces", 1);
 	gz_pack_map(&pack, NULL, 6);
-	gz_pack_text(&pack, "topic", topic);
-	gz_pack_norm_pos(&pack, gaze->point);
-	gz_pack_float(&pack, "confidence", gaze->confidence);
-	gz_pack_bool(&pack, "on_surf", is_on_surface(gaze->point));
-	gz_pack_array(&pack, "base_data", 2);
-	gz_pack_text(&pack, NULL, gz_wire_gaze_topic(gaze));
-	gz_pack_time(&pack, NULL, gaze->host_ns);
-	gz_pack_time(&pack, "timestamp", gaze->host_ns);
+	pack_mapped(&pack, &(struct mapped) { gz_wire_gaze_topic(gaze), gaze->point,
+					      gaze->confidence, gaze->host_ns });
+	gz_pack_array(&pack, "fixations_on_surfaces", fixation_count);
+	for (size_t i = 0; i < fixation_count; i++)
+		pack_mapped_fixation(&pack, &fixations[i]);
 	return gz_pack_end(&pack);
 }
 

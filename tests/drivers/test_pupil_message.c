@@ -118,7 +118,7 @@ static void entry_without_its_gaze_is_only_a_point(void **state)
 	struct gz_wire_message message;
 	struct gz_pupil_gaze read;
 	enum gz_malformed reason;
-	assert_int_equal(gz_wire_encode_surface(&gaze, "screen", &message), GZ_OK);
+	assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, "screen", &message), GZ_OK);
 	assert_int_equal(gz_pupil_read_surface(message.bytes, message.size, &entries, &reason),
 			 GZ_OK);
 	assert_int_equal(gz_pupil_next_entry(&entries, &memory, CONFIDENCE, &read), GZ_OK);

@@ -36,8 +36,9 @@ int main(int argc, char **argv)
 	int failed = 0;
 	failed |= write_message(folder, "gaze", gz_wire_encode_gaze(&gaze, &display, &message),
 				&message);
-	failed |= write_message(folder, "surface",
-				gz_wire_encode_surface(&gaze, "screen", &message), &message);
+	failed |=
+		write_message(folder, "surface",
+			      gz_wire_encode_surface(&gaze, NULL, 0, "screen", &message), &message);
 	gaze.eye[GZ_EYE_LEFT].valid = false;
 	gaze.raw = (struct gz_point) { NAN, NAN };
 	gaze.device_ns = GZ_NO_DEVICE_TIME;

@@ -330,7 +330,7 @@ static void surface_entries_decode(void **state)
 	struct gz_wire_message message;
 	struct gz_surface_gaze entries[2];
 	size_t count = 77;
-	assert_int_equal(gz_wire_encode_surface(&gaze, "screen", &message), GZ_OK);
+	assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, "screen", &message), GZ_OK);
 	assert_int_equal(gz_wire_decode_surface(message.bytes, message.size, entries, 0, &count),
 			 GZ_ERR_FULL);
 	assert_int_equal(count, 77);

@@ -252,11 +252,12 @@ static void surface_refers_to_its_gaze_by_topic_and_time(void **state)
 	msgpack_unpacked unpacked, gaze_unpacked;
 	gaze.eye[GZ_EYE_RIGHT].valid = false;
 	encode_gaze(&gaze, &gaze_message);
-	assert_int_equal(gz_wire_encode_surface(&gaze, "screen", &message), GZ_OK);
+	assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, "screen", &message), GZ_OK);
 	const msgpack_object *gaze_map = unpack_map(&gaze_message, &gaze_unpacked);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
 	double time_s = value_of(gaze_map, "timestamp")->via.f64;
-	assert_keys(map, "topic name timestamp gaze_on_surfaces");
+	assert_keys(map, "topic name timestamp gaze_on_surfaces fixations_on_surfaces");
+	assert_int_equal(value_of(map, "fixations_on_surfaces")->via.array.size, 0);
 	assert_text(value_of(map, "topic"), "surfaces.screen");
 	assert_text(value_of(map, "name"), "screen");
 	assert_number(value_of(map, "timestamp"), time_s);
@@ -272,6 +273,74 @@ static void surface_refers_to_its_gaze_by_topic_and_time(void **state)
 	assert_number(&base->via.array.ptr[1], time_s);
 	msgpack_unpacked_destroy(&unpacked);
 	msgpack_unpacked_destroy(&gaze_unpacked);
+}
+
+/* As map_gaze_and_fixation_events() of Pupil's surface_tracker/surface.py makes them. */
+static void surface_has_the_fixations_too(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze = sample_gaze();
+	struct gz_fixation fixations[2] = { sample_fixation(), sample_fixation() };
+	struct gz_wire_message message;
+	msgpack_unpacked unpacked;
+	fixations[1].id = 4712;
+	fixations[1].point = (struct gz_point) { 0.5f, 1.5f };
+	assert_int_equal(gz_wire_encode_surface(&gaze, fixations, 2, "screen", &message), GZ_OK);
+	const msgpack_object *map = unpack_map(&message, &unpacked);
+	const msgpack_object *on = value_of(map, "fixations_on_surfaces");
+	assert_int_equal(on->via.array.size, 2);
+	on = &on->via.array.ptr[0];
+	assert_keys(on, "topic norm_pos confidence on_surf base_data timestamp id duration "
+			"dispersion");
+	assert_text(value_of(on, "topic"), "fixations_on_surface");
+	assert_numbers(value_of(on, "norm_pos"), (double[]) { 0.125, 0.75 }, 2);
+	assert_number(value_of(on, "confidence"), 0.5);
+	assert_true(value_of(on, "on_surf")->via.boolean);
+	assert_text(&value_of(on, "base_data")->via.array.ptr[0], "fixations");
+	assert_near(value_of(on, "base_data")->via.array.ptr[1].via.f64, 123456.789012345, 1e-9);
+	assert_near(value_of(on, "timestamp")->via.f64, 123456.789012345, 1e-9);
+	assert_number(value_of(on, "id"), 4711);
+	assert_near(value_of(on, "duration")->via.f64, 250.833333, 1e-9); /* ms */
+	assert_number(value_of(on, "dispersion"), 0.4f);
+	on = &value_of(map, "fixations_on_surfaces")->via.array.ptr[1];
+	assert_number(value_of(on, "id"), 4712);
+	assert_false(value_of(on, "on_surf")->via.boolean);
+	msgpack_unpacked_destroy(&unpacked);
+}
+
+static void gaze_has_the_lines_of_sight_that_were_measured(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze = sample_gaze();
+	struct gz_wire_message message;
+	msgpack_unpacked unpacked;
+	const float right[3] = { 0.25f, 0, -0.5f }, left[3] = { 0.125f, 0, -0.75f };
+	memcpy(gaze.eye[GZ_EYE_RIGHT].direction, right, sizeof right);
+	encode_gaze(&gaze, &message); /* only one eye's */
+	assert_false(has_key(unpack_map(&message, &unpacked), "eye_centers_3d"));
+	msgpack_unpacked_destroy(&unpacked);
+
+	memcpy(gaze.eye[GZ_EYE_LEFT].direction, left, sizeof left);
+	encode_gaze(&gaze, &message);
+	const msgpack_object *map = unpack_map(&message, &unpacked);
+	const msgpack_object *centres = value_of(map, "eye_centers_3d");
+	const msgpack_object *normals = value_of(map, "gaze_normals_3d");
+	assert_keys(centres, "0 1");
+	assert_keys(normals, "0 1");
+	assert_numbers(value_of(centres, "0"), (double[]) { 31, -2, 480 }, 3);
+	assert_numbers(value_of(centres, "1"), (double[]) { -31, -2, 481 }, 3);
+	assert_numbers(value_of(normals, "0"), (double[]) { 0.25, 0, -0.5 }, 3);
+	assert_numbers(value_of(normals, "1"), (double[]) { 0.125, 0, -0.75 }, 3);
+	assert_false(has_key(map, "eye_center_3d"));
+	msgpack_unpacked_destroy(&unpacked);
+
+	gaze.eye[GZ_EYE_RIGHT].valid = false;
+	encode_gaze(&gaze, &message);
+	map = unpack_map(&message, &unpacked);
+	assert_numbers(value_of(map, "eye_center_3d"), (double[]) { -31, -2, 481 }, 3);
+	assert_numbers(value_of(map, "gaze_normal_3d"), (double[]) { 0.125, 0, -0.75 }, 3);
+	assert_false(has_key(map, "eye_centers_3d"));
+	msgpack_unpacked_destroy(&unpacked);
 }
 
 static void surface_is_left_past_any_edge(void **state)
@@ -290,7 +359,7 @@ static void surface_is_left_past_any_edge(void **state)
 		struct gz_wire_message message;
 		msgpack_unpacked unpacked;
 		gaze.point = cases[i].point;
-		assert_int_equal(gz_wire_encode_surface(&gaze, "s", &message), GZ_OK);
+		assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, "s", &message), GZ_OK);
 		const msgpack_object *map = unpack_map(&message, &unpacked);
 		const msgpack_object *on = &value_of(map, "gaze_on_surfaces")->via.array.ptr[0];
 		assert_int_equal(value_of(on, "on_surf")->type, MSGPACK_OBJECT_BOOLEAN);
@@ -468,12 +537,14 @@ static void longest_messages_fit(void **state)
 	gaze.seq = gaze.final_seq = UINT64_MAX;
 	gaze.event = gaze.final_event = GZ_EVENT_FIXATION;
 	gaze.device_ns = gaze.host_ns = gaze.publish_ns = INT64_MIN + 1;
+	for (int i = 0; i < GZ_EYE_COUNT; i++)
+		memset(gaze.eye[i].direction, 0, sizeof gaze.eye[i].direction);
 	encode_gaze(&gaze, &message);
 	assert_in_range(message.size, 1,
 			1024); /* far below the size that a connection sends at once */
 	char name[GZ_NAME_SIZE];
 	fill(name, sizeof name);
-	assert_int_equal(gz_wire_encode_surface(&gaze, name, &message), GZ_OK);
+	assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, name, &message), GZ_OK);
 }
 
 static void surface_name_too_long_for_a_message_leaves_it_empty(void **state)
@@ -483,7 +554,7 @@ static void surface_name_too_long_for_a_message_leaves_it_empty(void **state)
 	struct gz_gaze gaze = sample_gaze();
 	struct gz_wire_message message;
 	fill(name, sizeof name);
-	assert_int_equal(gz_wire_encode_surface(&gaze, name, &message), GZ_ERR_FULL);
+	assert_int_equal(gz_wire_encode_surface(&gaze, NULL, 0, name, &message), GZ_ERR_FULL);
 	assert_int_equal(message.size, 0);
 }
 
@@ -512,6 +583,8 @@ TEST_SUITE(wire_encode)
 		cmocka_unit_test(gaze_ends_in_publish_time_of_fixed_width),
 		cmocka_unit_test(gaze_shows_where_its_pupil_maps_stand),
 		cmocka_unit_test(surface_refers_to_its_gaze_by_topic_and_time),
+		cmocka_unit_test(surface_has_the_fixations_too),
+		cmocka_unit_test(gaze_has_the_lines_of_sight_that_were_measured),
 		cmocka_unit_test(surface_is_left_past_any_edge),
 		cmocka_unit_test(fixation_has_the_documented_keys_and_units),
 		cmocka_unit_test(blink_has_the_documented_keys),

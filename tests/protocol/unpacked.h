@@ -41,6 +41,18 @@ static inline const msgpack_object *value_of(const msgpack_object *map, const ch
 	return NULL;
 }
 
+static inline bool has_key(const msgpack_object *map, const char *key)
+{
+	assert_int_equal(map->type, MSGPACK_OBJECT_MAP);
+	for (uint32_t i = 0; i < map->via.map.size; i++) {
+		const msgpack_object *name = &map->via.map.ptr[i].key;
+		if (name->via.str.size == strlen(key) &&
+		    memcmp(name->via.str.ptr, key, strlen(key)) == 0)
+			return true;
+	}
+	return false;
+}
+
 /** Check that the keys in order, separated by blanks, are @p expected. */
 static inline void assert_keys(const msgpack_object *map, const char *expected)
 {
