@@ -49,8 +49,10 @@ static bool begins_with_one_of(const char *text, const char *const *beginnings, 
  * readers of the daemon's messages ask for: the first word, and that without its plural. */
 static bool is_reserved_topic(const char *topic)
 {
-	static const char *const reserved[] = { "gaze",  "pupil",   "surface", "fixation",
-						"blink", "saccade", "status" };
+	static const char *const reserved[] = {
+		"gaze",  "pupil",   "surface", "fixation",
+		"blink", "saccade", "status",  GZ_TOPIC_EVENT_FINAL
+	};
 	return begins_with_one_of(topic, reserved, sizeof reserved / sizeof *reserved);
 }
 

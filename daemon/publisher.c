@@ -69,6 +69,15 @@ void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sampl
 				       append_message(out, GZ_TOPIC_SACCADES, ""));
 }
 
+bool gz_message_maker_flush(struct gz_message_maker *maker, struct gz_outgoing *out)
+{
+	struct gz_gaze gaze;
+	if (!gz_pipeline_flush(&maker->pipeline, &gaze))
+		return false;
+	snprintf(out->topic, sizeof out->topic, "%s", GZ_TOPIC_EVENT_FINAL);
+	return gz_wire_encode_event_final(&gaze, &out->body) == GZ_OK;
+}
+
 /* Longest message accepted from a reader, bytes. Readers send subscriptions only. Chosen: longer
  * than any topic. */
 static const int64_t SUBSCRIPTION_SIZE_MAX = 1024;

@@ -77,6 +77,15 @@ void gz_message_maker_reset(struct gz_message_maker *maker);
 void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sample *sample,
 			   int64_t publish_ns, struct gz_outgoing_batch *out);
 
+/**
+ * After the last sample of a replay: make a message of events that have become certain. Call it
+ * until it returns false. The maker must be reset before the next sample.
+ *
+ * @param[out] out  written on true
+ * @return whether there was one. Does not allocate
+ */
+bool gz_message_maker_flush(struct gz_message_maker *maker, struct gz_outgoing *out);
+
 /*
  * The channels.
  */

@@ -109,8 +109,8 @@ void gz_quota_arrived(struct gz_quota *quota, int fd, const void *socket, bool i
 /** libzmq has closed a connection of @p socket. */
 void gz_quota_left(struct gz_quota *quota, int fd, const void *socket);
 
-/** A descriptor that becomes readable when a reader has sent something that libzmq has not read yet:
- * call gz_quota_check(). Owned by the quota. */
+/** A descriptor that becomes readable when a reader has sent something that libzmq has not read
+ * yet: call gz_quota_check(). Owned by the quota. */
 int gz_quota_fd(const struct gz_quota *quota);
 
 /** End the connections of readers that have sent too much. Never waits. Call it every

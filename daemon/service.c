@@ -449,8 +449,18 @@ static void do_periodic_work(struct gz_service *service, int64_t now_ns)
 	}
 }
 
+/* Each sample gets its certain event, the last ones too. */
+static void send_last_events(struct gz_service *service)
+{
+	struct gz_outgoing *last = &service->batch.item[0];
+	while (gz_message_maker_flush(&service->maker, last))
+		gz_publisher_send_one(service->parts.publisher, last->topic, last->body.bytes,
+				      last->body.size);
+}
+
 static void end_replay(struct gz_service *service)
 {
+	send_last_events(service);
 	gz_info(service->parts.log, "the replay is over after %llu samples",
 		(unsigned long long)service->tracker.samples);
 	gz_recorder_stop(service->parts.recorder);

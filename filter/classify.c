@@ -337,13 +337,13 @@ static bool is_label_due(struct gz_classify_state *state, const struct gz_classi
 	       gz_ns_to_ms(now_ns - time_ns) > params->final_delay_ms;
 }
 
-/* Decide the certain labels that are due, as long as they are equal. */
+/* Decide the certain labels that are due, or all, as long as they are equal. */
 static void emit_certain_labels(struct gz_classify_state *state,
-				const struct gz_classify_params *params,
+				const struct gz_classify_params *params, bool all,
 				struct gz_classify_output *out)
 {
 	while (state->certain < state->count && out->final_count < GZ_CLASSIFY_FINALS_MAX &&
-	       is_label_due(state, params)) {
+	       (all || is_label_due(state, params))) {
 		const struct gz_classify_entry *entry = gz_classify_at(state, state->certain);
 		if (!state->decided) {
 			measure_speeds(state, params, state->certain + 1, true);
@@ -386,10 +386,23 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 		state->valid_ns = entry->time_ns;
 	}
 	measure_speeds(state, params, state->count, false);
-	emit_certain_labels(state, params, &out);
+	emit_certain_labels(state, params, false, &out);
 	state->now = immediate_label(state, params, entry);
 	if (out.final_count > 0 && out.final[out.final_count - 1].seq == entry->seq)
 		state->now = out.final[out.final_count - 1].event;
 	out.event = state->now;
+	return out;
+}
+
+struct gz_classify_output gz_classify_flush(struct gz_classify_state *state,
+					    const struct gz_classify_params *params)
+{
+	struct gz_classify_output out;
+	out.event = state->now;
+	out.velocity_deg_s = 0;
+	out.resumed = false;
+	out.last_valid_ns = state->valid_ns;
+	out.final_count = 0;
+	emit_certain_labels(state, params, true, &out);
 	return out;
 }

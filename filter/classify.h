@@ -192,4 +192,14 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 					   const struct gz_display *display,
 					   const struct gz_classify_input *input);
 
+/**
+ * Make labels certain that wait for later samples, because none will come. Call it until it gives
+ * no more; then only zero-initialising the state starts again.
+ *
+ * @return final_count and final as from a step; 0: every sample has its certain label. The other
+ *         fields are those of the newest sample, resumed false
+ */
+struct gz_classify_output gz_classify_flush(struct gz_classify_state *state,
+					    const struct gz_classify_params *params);
+
 #endif

@@ -290,6 +290,17 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	pipeline->point = out->gaze.point;
 }
 
+bool gz_pipeline_flush(struct gz_pipeline *pipeline, struct gz_gaze *out)
+{
+	struct gz_classify_output label =
+		gz_classify_flush(&pipeline->classify, &pipeline->params.classify);
+	if (label.final_count == 0)
+		return false;
+	*out = (struct gz_gaze) { .host_ns = pipeline->host_ns };
+	set_gaze_label(&label, out);
+	return true;
+}
+
 double gz_pipeline_noise_deg(const struct gz_pipeline *pipeline)
 {
 	return pipeline->noise.count > 0 ? sqrt(pipeline->noise.mean_square_deg2) : NAN;

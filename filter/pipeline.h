@@ -175,6 +175,19 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
 void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *sample,
 		      struct gz_pipeline_output *out);
 
+/**
+ * Make events certain that wait for later samples, at the end of a recording, where none will come.
+ * Call it until it returns false; then gz_pipeline_init() starts again. No other messages are made
+ * of them, because a pipeline that goes on would make those later.
+ *
+ * @param[out] out  written on true: final_known, final_seq, final_span and final_event, and
+ * host_ns, the time of the newest sample; the other fields are 0
+ * @return whether there were any
+ *
+ * Does not allocate.
+ */
+bool gz_pipeline_flush(struct gz_pipeline *pipeline, struct gz_gaze *out);
+
 /** RMS of the sample-to-sample distances in fixations so far, degrees; NaN before the first one. */
 double gz_pipeline_noise_deg(const struct gz_pipeline *pipeline);
 

@@ -317,10 +317,11 @@ static bool take_device_ns(struct line_fields *fields, int64_t *out_value)
 	return field && gz_field_int64(field, out_value);
 }
 
-static bool take_bool_field(struct line_fields *fields, bool *out_value)
+/* An empty field was not measured, so nothing says that it is valid. */
+static bool take_valid_field(struct line_fields *fields, bool *out_value)
 {
 	const char *field = cut_off_field(fields);
-	if (!field || (strcmp(field, "0") != 0 && strcmp(field, "1") != 0))
+	if (!field || (field[0] && strcmp(field, "0") != 0 && strcmp(field, "1") != 0))
 		return false;
 	*out_value = field[0] == '1';
 	return true;
@@ -349,7 +350,8 @@ static bool take_text_field(struct line_fields *fields, char *out_text)
 static bool take_eye_fields(struct line_fields *fields, struct gz_eye_sample *eye)
 {
 	return take_float_field(fields, &eye->point.x) && take_float_field(fields, &eye->point.y) &&
-	       take_bool_field(fields, &eye->valid) && take_float_field(fields, &eye->confidence) &&
+	       take_valid_field(fields, &eye->valid) &&
+	       take_float_field(fields, &eye->confidence) &&
 	       take_float_field(fields, &eye->pupil_mm) &&
 	       take_float_fields(fields, eye->origin_mm, 3) &&
 	       take_float_fields(fields, eye->direction, 3);
@@ -363,7 +365,7 @@ static bool take_sample_fields(struct line_fields *fields, struct gz_sample *sam
 	       take_int64_field(fields, &sample->host_ns) &&
 	       take_float_field(fields, &sample->point.x) &&
 	       take_float_field(fields, &sample->point.y) &&
-	       take_bool_field(fields, &sample->valid) &&
+	       take_valid_field(fields, &sample->valid) &&
 	       take_eye_fields(fields, &sample->eye[GZ_EYE_RIGHT]) &&
 	       take_eye_fields(fields, &sample->eye[GZ_EYE_LEFT]) && !fields->next;
 }

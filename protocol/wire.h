@@ -26,6 +26,7 @@
 #define GZ_TOPIC_BLINKS      "blinks"
 #define GZ_TOPIC_SACCADES    "saccades"
 #define GZ_TOPIC_STATUS      "status"
+#define GZ_TOPIC_EVENT_FINAL "event_final"
 #define GZ_TOPIC_ANNOTATION  "annotation"
 #define GZ_TOPIC_POINTER     "pointer"
 #define GZ_TOPIC_WINDOW      "window"
@@ -79,6 +80,11 @@ const char *gz_wire_gaze_topic(const struct gz_gaze *gaze);
  */
 enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_display *display,
 				   struct gz_wire_message *out_message);
+
+/** Encode the certain event of earlier samples alone, when no sample follows: the fields final_ and
+ * host_ns of @p gaze. */
+enum gz_result gz_wire_encode_event_final(const struct gz_gaze *gaze,
+					  struct gz_wire_message *out_message);
 
 /**
  * Encode the gaze on the screen, and fixations, as those on a surface.

@@ -175,19 +175,23 @@ static void pack_eye_map(struct gz_pack *pack, const char *key, const struct gz_
 	gz_pack_bool(pack, "valid", eye->valid);
 }
 
+static void pack_event_final(struct gz_pack *pack, const struct gz_gaze *gaze)
+{
+	gz_pack_map(pack, "event_final", gaze->final_span > 0 ? 3 : 2);
+	gz_pack_uint(pack, "seq", gaze->final_seq);
+	gz_pack_text(pack, "event", gz_event_name(gaze->final_event));
+	if (gaze->final_span > 0)
+		gz_pack_uint(pack, "first", gaze->final_seq - gaze->final_span);
+}
+
 /* The keys of this project. publish_ns is last and has a fixed width, as wire.h promises. */
 static void pack_own_keys(struct gz_pack *pack, const struct gz_gaze *gaze)
 {
 	gz_pack_point(pack, "point", gaze->point);
 	gz_pack_point(pack, "raw", gaze->raw);
 	gz_pack_text(pack, "event", gz_event_name(gaze->event));
-	if (gaze->final_known) {
-		gz_pack_map(pack, "event_final", gaze->final_span > 0 ? 3 : 2);
-		gz_pack_uint(pack, "seq", gaze->final_seq);
-		gz_pack_text(pack, "event", gz_event_name(gaze->final_event));
-		if (gaze->final_span > 0)
-			gz_pack_uint(pack, "first", gaze->final_seq - gaze->final_span);
-	}
+	if (gaze->final_known)
+		pack_event_final(pack, gaze);
 	gz_pack_float(pack, "velocity_deg_s", gaze->velocity_deg_s);
 	gz_pack_uint(pack, "seq", gaze->seq);
 	if (gaze->device_ns == GZ_NO_DEVICE_TIME)
@@ -213,6 +217,18 @@ enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_d
 	gz_pack_map(&pack, NULL, keys);
 	pack_pupil_core_keys(&pack, gaze, display);
 	pack_own_keys(&pack, gaze);
+	return gz_pack_end(&pack);
+}
+
+enum gz_result gz_wire_encode_event_final(const struct gz_gaze *gaze,
+					  struct gz_wire_message *out_message)
+{
+	struct gz_pack pack;
+	gz_pack_begin(&pack, out_message);
+	gz_pack_map(&pack, NULL, 3);
+	gz_pack_text(&pack, "topic", GZ_TOPIC_EVENT_FINAL);
+	gz_pack_time(&pack, "timestamp", gaze->host_ns);
+	pack_event_final(&pack, gaze);
 	return gz_pack_end(&pack);
 }
 

@@ -124,6 +124,27 @@ static void eyelink_samples_marks_and_pauses_are_read(void **state)
 	assert_near((double)sample(5)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* beyond the edge */
 }
 
+/* In some files the message comes between START and the first sample, at START's time. */
+static void eyelink_mark_at_the_start_of_a_block_is_kept(void **state)
+{
+	(void)state;
+	static const char text[] =
+		"MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
+		"MSG\t99 !MODE RECORD of no block\n"
+		"START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
+		"PRESCALER\t1\n"
+		"SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
+		"MSG\t100 !MODE RECORD CR 500 2 1 R\n"
+		"100\t  512.0\t  384.0\t 1037.0\t...\n";
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, text), GZ_OK);
+	assert_int_equal(taken.count, 2);
+	assert_int_equal(taken.record[0].kind, GZ_GAZE_LOG_MARK);
+	assert_int_equal(taken.record[0].host_ns, 100 * GZ_NS_PER_MS);
+	assert_string_equal(taken.record[0].text, "!MODE RECORD CR 500 2 1 R");
+	assert_near(taken.header.rate_hz, 500);
+	assert_int_equal(sample(1)->host_ns, 100 * GZ_NS_PER_MS);
+}
+
 static void eyelink_display_is_complete_with_what_the_user_knows(void **state)
 {
 	(void)state;
@@ -239,6 +260,19 @@ static void tobii_studio_and_the_matlab_matrices_are_read(void **state)
 	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].pupil_mm, 4.1);
 	assert_false(sample(1)->eye[GZ_EYE_LEFT].valid);
 	set_up(NULL);
+	settings.display_px[0] = 1000;
+	settings.display_px[1] = 500;
+	/* An empty validity was not measured: a sample, and nothing to complain about. */
+	assert_int_equal(
+		read_text(&gz_recording_reader_tobii,
+			  "RecordingTimestamp\tGazePointLeftX (ADCSpx)\tGazePointLeftY (ADCSpx)\t"
+			  "ValidityLeft\n12\t100\t50\t\n13\t100\t50\t0\n"),
+		GZ_OK);
+	assert_int_equal(counts.samples, 2);
+	assert_int_equal(counts.skipped, 0);
+	assert_false(sample(0)->eye[GZ_EYE_LEFT].valid);
+	assert_true(sample(1)->eye[GZ_EYE_LEFT].valid);
+	set_up(NULL);
 	assert_int_equal(
 		read_text(&gz_recording_reader_tobii,
 			  "Time\tRGazePos2dx\tRGazePos2dy\tRValidity\tRPupilDm\tRelTimestamp\n"
@@ -328,6 +362,7 @@ TEST_SUITE(convert)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(eyelink_samples_marks_and_pauses_are_read),
+		TEST(eyelink_mark_at_the_start_of_a_block_is_kept),
 		TEST(eyelink_display_is_complete_with_what_the_user_knows),
 		TEST(eyelink_of_no_gaze_or_no_screen_is_refused_with_the_remedy),
 		TEST(pupil_points_are_turned_and_eyes_told_apart),

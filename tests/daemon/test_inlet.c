@@ -90,6 +90,7 @@ static void inlet_topics_of_the_daemon_are_refused(void **state)
 		"fixation",
 		"blinks",
 		"saccades",
+		"event_final",
 		"status",
 		"statusX",
 		"pupil.0.3d",

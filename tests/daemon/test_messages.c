@@ -80,6 +80,65 @@ static void messages_of_a_sample_are_gaze_then_surfaces(void **state)
 	assert_int_equal(gaze.seq, samples[0].seq);
 }
 
+/* Note the label that a message makes certain; no sample may get a second one. */
+static void note_label(const struct gz_gaze *gaze, bool labelled[SAMPLES])
+{
+	if (!gaze->final_known)
+		return;
+	for (uint64_t k = 0; k <= gaze->final_span; k++) {
+		uint64_t index = gaze->final_seq - k - samples[0].seq;
+		assert_true(index < SAMPLES && !labelled[index]);
+		labelled[index] = true;
+	}
+}
+
+/* However many samples there are, the last ones get their certain label from the flush. */
+static void messages_give_every_sample_one_certain_label(void **state)
+{
+	(void)state;
+	static struct gz_pipeline pipeline;
+	static struct gz_pipeline_output out;
+	static bool labelled[SAMPLES];
+	struct gz_display display = gz_display_default(1920, 1080);
+	const int counts[] = { 1, 2, 3, 50, 51, 700, SAMPLES };
+	int waiting = 0;
+	for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+		struct gz_gaze last;
+		memset(labelled, 0, sizeof labelled);
+		gz_pipeline_init(&pipeline, &config.pipeline, &display);
+		for (int i = 0; i < counts[c]; i++) {
+			gz_pipeline_step(&pipeline, &samples[i], &out);
+			note_label(&out.gaze, labelled);
+		}
+		while (gz_pipeline_flush(&pipeline, &last)) {
+			assert_true(last.final_known);
+			assert_int_equal(last.host_ns, samples[counts[c] - 1].host_ns);
+			note_label(&last, labelled);
+			waiting++;
+		}
+		for (int i = 0; i < counts[c]; i++)
+			assert_true(labelled[i]);
+	}
+	assert_true(waiting > 0);
+}
+
+static void messages_of_the_end_are_event_final(void **state)
+{
+	(void)state;
+	static struct gz_message_maker maker;
+	static struct gz_outgoing_batch batch;
+	static struct gz_outgoing last;
+	make(&maker);
+	assert_false(gz_message_maker_flush(&maker, &last));
+	for (int i = 0; i < 100; i++)
+		gz_message_maker_step(&maker, &samples[i], i, &batch);
+	assert_true(gz_message_maker_flush(&maker, &last));
+	assert_string_equal(last.topic, "event_final");
+	assert_int_equal(gz_wire_check(last.body.bytes, last.body.size), GZ_OK);
+	while (gz_message_maker_flush(&maker, &last))
+		;
+}
+
 static void messages_of_twenty_seconds_hold_every_kind(void **state)
 {
 	(void)state;
@@ -148,6 +207,8 @@ TEST_SUITE(messages)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(messages_of_a_sample_are_gaze_then_surfaces),
+		cmocka_unit_test(messages_give_every_sample_one_certain_label),
+		cmocka_unit_test(messages_of_the_end_are_event_final),
 		cmocka_unit_test(messages_of_twenty_seconds_hold_every_kind),
 		cmocka_unit_test(
 			messages_of_the_same_samples_are_the_same_bytes_but_for_publish_ns),

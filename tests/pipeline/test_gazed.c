@@ -246,10 +246,12 @@ static void gazed_latest_is_one_frame_and_the_newest(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* The next message of the pipeline from @p i on: neither a status nor a notification. */
+/* The next message of the pipeline from @p i on: neither a status nor a notification, nor what only
+ * the end of a replay has. */
 static size_t skip_others(const struct reader *reader, size_t i)
 {
 	while (i < reader->count && (strcmp(reader->messages[i].topic, "status") == 0 ||
+				     strcmp(reader->messages[i].topic, "event_final") == 0 ||
 				     strncmp(reader->messages[i].topic, "notify.", 7) == 0))
 		i++;
 	return i;
@@ -331,6 +333,8 @@ static void gazed_replay_gives_the_live_messages_bit_for_bit(void **state)
 	compare(&live, 0, &replay);
 	/* Conversely, the live stream had no more messages. */
 	compare(&replay, 0, &live);
+	assert_true(count_topic(&replay, "event_final") > 0);
+	assert_int_equal(count_topic(&live, "event_final"), 0);
 	reader_close(&live);
 	reader_close(&replay);
 }

@@ -198,7 +198,6 @@ static void line_malformed_is_skipped_with_its_number(void **state)
 		"1\t\t2\t 1\t0.5\t1\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t\t\t",
 		"1\t\t2\t1-\t0.5\t1\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t\t\t",
 		"1\t\t2\t0.5\t0.5\t2\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t\t\t",
-		"1\t\t2\t0.5\t0.5\t\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t\t\t",
 		"1\t9223372036854775808\t2\t0.5\t0.5\t1\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t"
 		"\t\t",
 		"18446744073709551616\t\t2\t0.5\t0.5\t1\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t"
@@ -224,6 +223,8 @@ static void line_malformed_is_skipped_with_its_number(void **state)
 		check_line(malformed[i], false);
 	check_line(SAMPLE, true);
 	check_line("!mark\t1\t", true);
+	/* An empty field was not measured, whether something is valid included. */
+	check_line("1\t\t2\t0.5\t0.5\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t", true);
 }
 
 static void line_of_the_longest_length_is_read_and_one_longer_is_not(void **state)

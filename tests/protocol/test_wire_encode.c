@@ -275,6 +275,27 @@ static void surface_refers_to_its_gaze_by_topic_and_time(void **state)
 	msgpack_unpacked_destroy(&gaze_unpacked);
 }
 
+static void event_final_has_the_documented_keys(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze = sample_gaze();
+	struct gz_wire_message message;
+	msgpack_unpacked unpacked;
+	assert_int_equal(gz_wire_encode_event_final(&gaze, &message), GZ_OK);
+	const msgpack_object *map = unpack_map(&message, &unpacked);
+	assert_keys(map, "topic timestamp event_final");
+	assert_text(value_of(map, "topic"), "event_final");
+	assert_near(value_of(map, "timestamp")->via.f64, 123456.789012345, 1e-9);
+	assert_keys(value_of(map, "event_final"), "seq event first");
+	assert_number(value_of(value_of(map, "event_final"), "first"), 1099511627697);
+	assert_text(value_of(value_of(map, "event_final"), "event"), "pursuit");
+	msgpack_unpacked_destroy(&unpacked);
+	gaze.final_span = 0;
+	assert_int_equal(gz_wire_encode_event_final(&gaze, &message), GZ_OK);
+	assert_keys(value_of(unpack_map(&message, &unpacked), "event_final"), "seq event");
+	msgpack_unpacked_destroy(&unpacked);
+}
+
 /* As map_gaze_and_fixation_events() of Pupil's surface_tracker/surface.py makes them. */
 static void surface_has_the_fixations_too(void **state)
 {
@@ -583,6 +604,7 @@ TEST_SUITE(wire_encode)
 		cmocka_unit_test(gaze_ends_in_publish_time_of_fixed_width),
 		cmocka_unit_test(gaze_shows_where_its_pupil_maps_stand),
 		cmocka_unit_test(surface_refers_to_its_gaze_by_topic_and_time),
+		cmocka_unit_test(event_final_has_the_documented_keys),
 		cmocka_unit_test(surface_has_the_fixations_too),
 		cmocka_unit_test(gaze_has_the_lines_of_sight_that_were_measured),
 		cmocka_unit_test(surface_is_left_past_any_edge),

@@ -86,6 +86,12 @@ static void take_rectangle(struct eyelink *eyelink, const char *text)
 	eyelink->has_rectangle = true;
 }
 
+/* Whether the lines at the beginning of a block have come, so that a header can be made. */
+static bool knows_header(const struct eyelink *eyelink)
+{
+	return eyelink->recording && eyelink->rate_hz > 0 && eyelink->has_rectangle;
+}
+
 /* Take "MSG <time> <text>": screen coordinates, or a mark. */
 static enum gz_result take_eyelink_message(struct eyelink *eyelink, const char *text)
 {
@@ -93,9 +99,9 @@ static enum gz_result take_eyelink_message(struct eyelink *eyelink, const char *
 	if (!gz_text_take_number(&text, &ms) || !is_time_ms(ms))
 		return GZ_OK;
 	take_rectangle(eyelink, text);
-	/* Marks before the first sample are dropped: the header, which must come before them, needs
-	 * the rate. */
-	if (!eyelink->sent_header)
+	/* Marks before the first block are dropped: the header, which must come before them, needs
+	 * the rate and the size of the screen. */
+	if (!eyelink->sent_header && !knows_header(eyelink))
 		return GZ_OK;
 	eyelink->record.kind = GZ_GAZE_LOG_MARK;
 	eyelink->record.host_ns = ns_of_ms(ms);
