@@ -297,31 +297,69 @@ static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct
 	return GZ_OK;
 }
 
-/* Replace values that are not finite by the least finite value. */
+/* Whether the data value of a voxel is finite as float, in which it is drawn and written. */
+static bool is_value_finite(const struct gz_volume *volume, double stored)
+{
+	return fabs(volume->slope * stored + volume->intercept) <= (double)FLT_MAX;
+}
+
+/* Sets the volume's range too. */
+static bool are_values_finite(struct gz_volume *volume)
+{
+	const float *v = volume->voxels;
+	const size_t count = volume->type == GZ_VOXEL_F32 ? gz_volume_voxel_count(volume) : 0;
+	size_t bad = 0;
+	for (size_t i = 0; i < count; i++)
+		bad += !isfinite(v[i]);
+	if (bad > 0)
+		return false;
+	gz_volume_find_range(volume);
+	return is_value_finite(volume, volume->stored_min) &&
+	       is_value_finite(volume, volume->stored_max);
+}
+
+static void store_voxel(struct gz_volume *volume, size_t index, double stored)
+{
+	if (volume->type == GZ_VOXEL_U8)
+		((uint8_t *)volume->voxels)[index] = (uint8_t)stored;
+	else if (volume->type == GZ_VOXEL_U16)
+		((uint16_t *)volume->voxels)[index] = (uint16_t)stored;
+	else
+		((float *)volume->voxels)[index] = (float)stored;
+}
+
+/* Replace values that are not finite by the least finite value, and find the range. */
 static enum gz_result make_finite(const struct import *import)
 {
-	if (import->volume->type != GZ_VOXEL_F32)
+	struct gz_volume *volume = import->volume;
+	const size_t count = gz_volume_voxel_count(volume);
+	size_t bad = 0;
+	double least = 0, least_value = INFINITY;
+	if (are_values_finite(volume))
 		return GZ_OK;
-	float *v = import->volume->voxels;
-	size_t count = gz_volume_voxel_count(import->volume), bad = 0;
-	float least = FLT_MAX;
 	for (size_t i = 0; i < count; i++) {
-		bool good = isfinite(v[i]);
-		bad += !good;
-		least = good && v[i] < least ? v[i] : least;
+		const double stored = gz_voxel_stored(volume->type, volume->voxels, i);
+		const double value = volume->slope * stored + volume->intercept;
+		if (!is_value_finite(volume, stored)) {
+			bad++;
+		} else if (value < least_value) {
+			least_value = value;
+			least = stored;
+		}
 	}
-	if (bad == 0)
-		return GZ_OK;
 	if (bad == count) {
-		gz_err(import->file->log, "%s: no finite value in it; are type and endian right?",
+		gz_err(import->file->log,
+		       "%s: no finite value in it; are type, endian and scaling right?",
 		       import->file->path);
 		return GZ_ERR_FORMAT;
 	}
 	for (size_t i = 0; i < count; i++)
-		v[i] = isfinite(v[i]) ? v[i] : least;
+		if (!is_value_finite(volume, gz_voxel_stored(volume->type, volume->voxels, i)))
+			store_voxel(volume, i, least);
 	gz_warn(import->file->log,
 		"%s: %zu values are NaN or infinite as float; shown as the least, %g",
-		import->file->path, bad, (double)least);
+		import->file->path, bad, least_value);
+	gz_volume_find_range(volume);
 	return GZ_OK;
 }
 
@@ -337,19 +375,6 @@ static void warn_rounded_flat(const struct import *import)
 		"%s: all values are %g in single precision; if the file's %s values differ, scale "
 		"and shift them before",
 		import->file->path, volume->stored_min, gz_raw_type_names[type]);
-}
-
-static enum gz_result check_value_range(const struct import *import)
-{
-	const struct gz_volume *volume = import->volume;
-	double low = volume->slope * volume->stored_min + volume->intercept;
-	double high = volume->slope * volume->stored_max + volume->intercept;
-	if (isfinite(low) && isfinite(high))
-		return GZ_OK;
-	gz_err(import->file->log,
-	       "%s: values scaled by %g and %g are not finite; correct its header",
-	       import->file->path, import->layout->slope, import->layout->intercept);
-	return GZ_ERR_FORMAT;
 }
 
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
@@ -380,10 +405,6 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 		result = check_data_end(stream, &import, count * import.conversion->size);
 	if (result == GZ_OK)
 		result = make_finite(&import);
-	if (result == GZ_OK) {
-		gz_volume_find_range(&volume);
-		result = check_value_range(&import);
-	}
 	if (result == GZ_OK) {
 		warn_rounded_flat(&import);
 		gz_volume_scale_floats(&volume);

@@ -235,6 +235,61 @@ static void what_is_not_finite_becomes_the_least_with_one_warning(void **state)
 	gz_volume_free(&v);
 }
 
+static void check_scaled(enum gz_voxel_type type, const struct gz_volume *v,
+			 const double expected[4])
+{
+	assert_int_equal(v->type, type);
+	for (int i = 0; i < 4; i++)
+		if (fabs(value_at(v, i, 0, 0) - expected[i]) > 1e-6 * fabs(expected[i]))
+			fail_msg("voxel %d is %g, expected %g", i, value_at(v, i, 0, 0),
+				 expected[i]);
+	assert_true(isfinite((float)(v->slope * v->stored_min + v->intercept)));
+	assert_true(isfinite((float)(v->slope * v->stored_max + v->intercept)));
+}
+
+/* Values that the header scales beyond the range of float, of each type of voxels. */
+static void values_that_scaling_overflows_become_the_least_with_one_warning(void **state)
+{
+	(void)state;
+	static const uint8_t bytes[4] = { 3, 255, 1, 2 };
+	static const uint16_t words[4] = { 3, 65535, 1, 2 };
+	static const float reals[4] = { 3, 1e30f, 1, -1e30f };
+	static const struct {
+		const void *voxels;
+		size_t size;
+		int16_t datatype;
+		enum gz_voxel_type type;
+		float slope;
+		double expected[4];
+		const char *told;
+	} cases[] = {
+		{ bytes, 1, 2, GZ_VOXEL_U8, 1e38f, { 3e38, 1e38, 1e38, 2e38 }, "1 values are" },
+		{ words, 2, 512, GZ_VOXEL_U16, 1e38f, { 3e38, 1e38, 1e38, 2e38 }, "1 values are" },
+		{ reals, 4, 16, GZ_VOXEL_F32, 1e38f, { 3e38, 1e38, 1e38, 1e38 }, "2 values are" },
+		/* the least value is of the greatest number */
+		{ bytes, 1, 2, GZ_VOXEL_U8, -1e38f, { -3e38, -3e38, -1e38, -2e38 }, "1 values" },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct nifti_sample sample = nifti_sample_make(4, 1, 1);
+		struct captured_log log;
+		struct gz_volume v;
+		uint8_t file[352 + 16];
+		sample.datatype = cases[i].datatype;
+		sample.bitpix = (int16_t)(8 * cases[i].size);
+		sample.slope = cases[i].slope;
+		nifti_sample_bytes(&sample, file);
+		memcpy(file + 352, cases[i].voxels, 4 * cases[i].size);
+		captured_log_init(&log, "*:warn");
+		assert_int_equal(gz_volume_load(files_write("i.nii", file, 352 + 4 * cases[i].size),
+						NULL, NULL, &log.log, &v),
+				 GZ_OK);
+		assert_int_equal(log.messages, 1);
+		assert_non_null(strstr(log.last, cases[i].told));
+		check_scaled(cases[i].type, &v, cases[i].expected);
+		gz_volume_free(&v);
+	}
+}
+
 static void trailing_data_are_left_out_with_a_warning(void **state)
 {
 	(void)state;
@@ -620,6 +675,7 @@ TEST_SUITE(volume_load)
 		cmocka_unit_test(large_compressed_volume_is_read_whole),
 		cmocka_unit_test(every_type_keeps_its_values_in_both_byte_orders),
 		cmocka_unit_test(what_is_not_finite_becomes_the_least_with_one_warning),
+		cmocka_unit_test(values_that_scaling_overflows_become_the_least_with_one_warning),
 		cmocka_unit_test(trailing_data_are_left_out_with_a_warning),
 		cmocka_unit_test(nifti_without_orientation_is_as_stored),
 		cmocka_unit_test(nifti_scaling_is_kept_unless_its_slope_is_zero_or_nan),
