@@ -251,7 +251,8 @@ static enum gz_result read_meta_tags(struct metaimage *meta)
 }
 
 /* Each letter is where an axis comes from: "RAI" runs from right, anterior and inferior, which is
- * LPS. */
+ * LPS. So MetaIO reads them ('R' is its MET_ORIENTATION_RL), and ITK writes RAI for the identity.
+ */
 static enum gz_result use_letters(struct metaimage *meta)
 {
 	static const char from[3][2] = { { 'R', 'L' }, { 'A', 'P' }, { 'I', 'S' } };
@@ -270,6 +271,24 @@ static enum gz_result use_letters(struct metaimage *meta)
 	return GZ_OK;
 }
 
+/* The matrix first, then the letters, which ITK passes over. Without both the matrix is the
+ * identity, as in MetaIO (MetaObject::Clear): the axes run to left, posterior, superior. */
+static enum gz_result orient_meta(struct metaimage *meta)
+{
+	static const double identity_in_ras[3][3] = { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 } };
+	meta->layout.oriented = true;
+	if (meta->has_matrix)
+		return GZ_OK;
+	if (meta->anatomical[0])
+		return use_letters(meta);
+	memcpy(meta->layout.direction, identity_in_ras, sizeof identity_in_ras);
+	gz_info(meta->head.log,
+		"%s: says nothing of its orientation; its axes are taken to run to left, "
+		"posterior, superior, as in ITK",
+		meta->head.path);
+	return GZ_OK;
+}
+
 static enum gz_result finish_meta_layout(struct metaimage *meta)
 {
 	memcpy(meta->layout.dims, meta->sizes, sizeof meta->layout.dims);
@@ -279,8 +298,7 @@ static enum gz_result finish_meta_layout(struct metaimage *meta)
 		gz_warn(meta->head.log, "%s: a series of volumes; the first is shown",
 			meta->head.path);
 	meta->source.skip = meta->header_size;
-	meta->layout.oriented = meta->has_matrix || meta->anatomical[0];
-	return !meta->has_matrix && meta->anatomical[0] ? use_letters(meta) : GZ_OK;
+	return orient_meta(meta);
 }
 
 static enum gz_result load_metaimage(const struct gz_volume_file *file,

@@ -123,7 +123,7 @@ static const struct expectation expectations[] = {
 	  .spacing = { 4, 4, 4 },
 	  .high = 255,
 	  .sum = 3058332,
-	  .voxels = { 79, 48, 54 } },
+	  .voxels = { 91, 62, 62 } },
 };
 
 static double sum_of(const struct gz_volume *v)
@@ -182,7 +182,7 @@ static void every_volume_has_the_values_of_its_file(void **state)
 			raw.dims[axis] = e->dims[axis];
 			raw.spacing[axis] = e->spacing[axis];
 		}
-		captured_log_init(&log, NULL);
+		captured_log_init(&log, "*:warn");
 		snprintf(path, sizeof path, "%s/volumes/%s", getenv("GAZECAST_DATA"), e->file);
 		if (access(path, F_OK) != 0) {
 			print_message("not there: %s\n", path);

@@ -539,6 +539,9 @@ static void nrrd_with_a_leading_axis_of_one_is_a_volume(void **state)
 
 #define META_HEAD "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\n"
 
+/* The file's axes run to left, posterior, superior. */
+static const int lps[3] = { -1, -2, 3 };
+
 static void metaimage_local_and_detached_are_read(void **state)
 {
 	(void)state;
@@ -550,23 +553,44 @@ static void metaimage_local_and_detached_are_read(void **state)
 						     voxels, COUNT),
 				    NULL);
 	assert_true(v.spacing[1] == 2);
-	assert_false(v.oriented);
-	check_straight(&v);
+	check_turned(&v, lps);
 	files_write("a.zraw", packed, size);
 	v = loaded(files_write_text("z.mhd",
 				    META_HEAD "CompressedData = True\nElementDataFile = a.zraw\n",
 				    NULL, 0),
 		   NULL);
-	check_straight(&v);
+	check_turned(&v, lps);
 	files_write_text("h.raw", "header", voxels, COUNT);
 	v = loaded(files_write_text("h.mhd", META_HEAD "HeaderSize = 6\nElementDataFile = h.raw\n",
 				    NULL, 0),
 		   NULL);
-	check_straight(&v);
+	check_turned(&v, lps);
 	v = loaded(files_write_text("m.mhd", META_HEAD "HeaderSize = -1\nElementDataFile = h.raw\n",
 				    NULL, 0),
 		   NULL);
-	check_straight(&v);
+	check_turned(&v, lps);
+}
+
+/* ITK's meaning: the identity in a frame that runs to left, posterior, superior. */
+static void metaimage_without_orientation_is_the_identity_and_says_so(void **state)
+{
+	(void)state;
+	static const char *const tags[] = { "", "AnatomicalOrientation = ???\n" };
+	for (size_t i = 0; i < 2; i++) {
+		char head[512];
+		struct captured_log log;
+		struct gz_volume v;
+		snprintf(head, sizeof head, "%s%sElementDataFile = LOCAL\n", META_HEAD, tags[i]);
+		captured_log_init(&log, "*:info");
+		assert_int_equal(gz_volume_load(files_write_text("n.mha", head, voxels, COUNT),
+						NULL, NULL, &log.log, &v),
+				 GZ_OK);
+		assert_int_equal(log.messages, 1);
+		assert_int_equal(log.level, GZ_LOG_INFO);
+		assert_non_null(strstr(log.last, "says nothing of its orientation"));
+		assert_true(v.oriented);
+		check_turned(&v, lps);
+	}
 }
 
 static void metaimage_byte_order_is_honoured(void **state)
@@ -579,8 +603,8 @@ static void metaimage_byte_order_is_honoured(void **state)
 					"BinaryDataByteOrderMSB = True\nElementDataFile = LOCAL\n",
 					big, sizeof big),
 		       NULL);
-	assert_int_equal((int)value_at(&v, 0, 0, 0), 258);
-	assert_int_equal((int)value_at(&v, 1, 0, 0), -2);
+	assert_int_equal((int)value_at(&v, 1, 0, 0), 258);
+	assert_int_equal((int)value_at(&v, 0, 0, 0), -2);
 	gz_volume_free(&v);
 }
 
@@ -689,6 +713,7 @@ TEST_SUITE(volume_load)
 		cmocka_unit_test(nrrd_spacing_is_the_length_of_its_directions),
 		cmocka_unit_test(nrrd_with_a_leading_axis_of_one_is_a_volume),
 		cmocka_unit_test(metaimage_local_and_detached_are_read),
+		cmocka_unit_test(metaimage_without_orientation_is_the_identity_and_says_so),
 		cmocka_unit_test(metaimage_byte_order_is_honoured),
 		cmocka_unit_test(metaimage_frame_is_left_posterior_superior),
 	};
