@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/log.h"
+#include "render/data/format.h"
 #include "view/experiment/sitting.h"
 #include "view/headless/headless.h"
 #include "view/options/options.h"
@@ -56,6 +57,8 @@ static int show(int argc, char **argv, struct gz_view_options *options, struct g
 		gz_view_options_print_help(stdout);
 	else if (options->version)
 		puts("gazeview " GAZECAST_VERSION);
+	else if (options->formats)
+		gz_volume_formats_print(stdout);
 	else
 		return run_mode(options, &log, notices);
 	return EXIT_SUCCESS;

@@ -6,8 +6,8 @@
 #define GZ_LOG_MODULE "volume"
 
 const struct gz_volume_format *const gz_volume_formats[] = {
-	&gz_format_nifti, &gz_format_nrrd, &gz_format_metaimage,     &gz_format_bricks,
-	&gz_format_dicom, &gz_format_raw,  &gz_format_raw_by_layout,
+	&gz_format_nifti, &gz_format_nrrd,    &gz_format_metaimage, &gz_format_bricks,
+	&gz_format_dicom, &gz_format_foreign, &gz_format_raw,       &gz_format_raw_by_layout,
 };
 const size_t gz_volume_format_count = sizeof gz_volume_formats / sizeof gz_volume_formats[0];
 
@@ -29,14 +29,41 @@ const struct gz_volume_format *gz_volume_format_by_name(const char *path)
 	return NULL;
 }
 
-const struct gz_volume_format *gz_volume_format_by_content(const char *path)
+static const struct gz_volume_format *format_by_start(const struct gz_file_start *start)
 {
 	for (size_t i = 0; i < gz_volume_format_count; i++) {
 		const struct gz_volume_format *format = gz_volume_formats[i];
-		if (format->recognise && format->recognise(path))
+		if (format->knows_start && format->knows_start(start))
 			return format;
 	}
 	return NULL;
+}
+
+const struct gz_volume_format *gz_volume_format_by_content(const char *path)
+{
+	struct gz_file_start start;
+	const struct gz_volume_format *found =
+		gz_file_start_read(path, &start) ? format_by_start(&start) : NULL;
+	for (size_t i = 0; i < gz_volume_format_count && !found; i++) {
+		const struct gz_volume_format *format = gz_volume_formats[i];
+		if (format->recognise && format->recognise(path))
+			found = format;
+	}
+	return found;
+}
+
+static void print_format(const struct gz_volume_format *format, FILE *out)
+{
+	fprintf(out, "%s", format->name);
+	for (size_t i = 0; i < GZ_FORMAT_ENDINGS_MAX && format->endings[i]; i++)
+		fprintf(out, " %s", format->endings[i]);
+	fprintf(out, "\n    %s\n", format->limits);
+}
+
+void gz_volume_formats_print(FILE *out)
+{
+	for (size_t i = 0; i < gz_volume_format_count; i++)
+		print_format(gz_volume_formats[i], out);
 }
 
 gz_volume_writer *gz_volume_writer_by_name(const char *path)
@@ -64,17 +91,28 @@ static enum gz_result refuse_unknown_format(const struct gz_volume_file *file)
 	return GZ_ERR_UNSUPPORTED;
 }
 
+/* By the content; only if that tells nothing, by the name. Whoever gives a layout says by that what
+ * the content is. */
+static const struct gz_volume_format *choose_format(const struct gz_volume_file *file)
+{
+	const struct gz_volume_format *named = gz_volume_format_by_name(file->path);
+	if (file->raw)
+		return named;
+	const struct gz_volume_format *found = gz_volume_format_by_content(file->path);
+	if (!found)
+		return named && named->layout == GZ_LAYOUT_IF_GIVEN ? NULL : named;
+	if (named && named != found && named->layout != GZ_LAYOUT_IF_GIVEN)
+		gz_info(file->log, "%s: named as %s, opened as %s, which its content is",
+			file->path, named->name, found->name);
+	return found;
+}
+
 enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 			      const struct gz_loading *loading, const struct gz_log *log,
 			      struct gz_volume *out_volume)
 {
 	const struct gz_volume_file file = { path, raw, loading, log };
-	const struct gz_volume_format *format = gz_volume_format_by_name(path);
-	if (format && format->layout == GZ_LAYOUT_IF_GIVEN && !raw)
-		format = NULL;
-	/* Names of DICOM files often say nothing. */
-	if (!format && !raw)
-		format = gz_volume_format_by_content(path);
+	const struct gz_volume_format *format = choose_format(&file);
 	if (!format)
 		return refuse_unknown_format(&file);
 	if (raw && format->layout == GZ_LAYOUT_IN_FILE) {

@@ -8,9 +8,11 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/data/file_start.h"
 #include "render/data/volume.h"
 #include "render/data/volume_import.h"
 
@@ -22,7 +24,7 @@ enum gz_layout_source {
 };
 
 /** Most endings of a format's file names. */
-#define GZ_FORMAT_ENDINGS_MAX 6
+#define GZ_FORMAT_ENDINGS_MAX 10
 
 /** Writes a volume to @p path; as gz_bricks_write(). */
 typedef enum gz_result gz_volume_writer(const struct gz_volume *volume, const char *path,
@@ -35,8 +37,12 @@ struct gz_volume_format {
 	const char *endings[GZ_FORMAT_ENDINGS_MAX];
 	enum gz_layout_source layout;
 
-	/** Optional: whether @p path is of the format by its content. Called for names whose ending
-	 *  no format has. */
+	/** Optional: whether a file that begins so is of the format. Must be sure: it decides
+	 * before the name does. */
+	bool (*knows_start)(const struct gz_file_start *start);
+
+	/** Optional: whether @p path is of the format, for what its first bytes do not tell: a
+	 *  folder, a file beside it, a guess. Called if no format knows the start. */
 	bool (*recognise)(const char *path);
 
 	/**
@@ -50,7 +56,7 @@ struct gz_volume_format {
 	/** Optional: writes files that end in endings[0]. */
 	gz_volume_writer *write;
 
-	const char *limits; /**< what is not read, for people */
+	const char *limits; /**< what is not read, for people: gz_volume_formats_print() */
 };
 
 /** All formats. If several have an ending of a name, the first counts: ".nii.gz" before ".gz". */
@@ -60,15 +66,20 @@ extern const size_t gz_volume_format_count;
 /** The format of a file by the ending of its name; NULL if no format has it. */
 const struct gz_volume_format *gz_volume_format_by_name(const char *path);
 
-/** The format of a file by its content; NULL if no format recognises it. Opens the file. */
+/** The format of a file by its content; NULL if no format recognises it. Opens the file. Logs
+ *  nothing. */
 const struct gz_volume_format *gz_volume_format_by_content(const char *path);
+
+/** Print all formats for people: names, endings and what is not read of each. */
+void gz_volume_formats_print(FILE *out);
 
 /** The writer for files that end as @p path does; NULL if there is none. */
 gz_volume_writer *gz_volume_writer_by_name(const char *path);
 
 /** The rows. */
-extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_format_metaimage,
-	gz_format_nifti, gz_format_nrrd, gz_format_raw, gz_format_raw_by_layout;
+extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_format_foreign,
+	gz_format_metaimage, gz_format_nifti, gz_format_nrrd, gz_format_raw,
+	gz_format_raw_by_layout;
 
 /**
  * Write @p volume and its coarser levels as a file of bricks. It gets its name when it is complete.

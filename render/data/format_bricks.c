@@ -1,8 +1,15 @@
 /* Files of bricks: volumes whose voxels are read when they are visible. */
 #include <string.h>
 
+#include "render/data/brick_file.h"
 #include "render/data/brick_pool.h"
 #include "render/data/format.h"
+
+static bool bricks_know_start(const struct gz_file_start *start)
+{
+	return start->coding == GZ_CODING_PLAIN &&
+	       gz_file_start_has(start, 0, GZ_BRICK_MAGIC, sizeof GZ_BRICK_MAGIC - 1);
+}
 
 static enum gz_result load_bricks(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
@@ -31,6 +38,7 @@ const struct gz_volume_format gz_format_bricks = {
 	.name = "bricks",
 	.endings = { ".gzb" },
 	.layout = GZ_LAYOUT_IN_FILE,
+	.knows_start = bricks_know_start,
 	.load = load_bricks,
 	.write = gz_bricks_write,
 	.limits = "version 1 of the format only",

@@ -1,5 +1,6 @@
 /* MetaImage (.mha, .mhd): the tags of itk.org/Wiki/MetaIO/Documentation. Its coordinates are LPS,
  * as ITK takes them. MetaIO itself is C++, comes with ITK or VTK only and reads whole arrays. */
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -316,10 +317,42 @@ static enum gz_result load_metaimage(const struct gz_volume_file *file,
 	return result;
 }
 
+static bool is_meta_tag(const char *name)
+{
+	const char *at = name;
+	while (isalpha((unsigned char)*at))
+		at++;
+	return at > name && !*at;
+}
+
+/* Lines "Tag = value" up to NDims, which every MetaImage has before its sizes. */
+static bool metaimage_knows_start(const struct gz_file_start *start)
+{
+	char text[GZ_FILE_START_SIZE + 1];
+	memcpy(text, start->bytes, start->size);
+	text[start->size] = '\0';
+	char *line = start->coding == GZ_CODING_PLAIN ? text : NULL;
+	while (line) {
+		char *end = strchr(line, '\n');
+		char *equals = strchr(line, '=');
+		if (!equals || (end && equals > end))
+			return false;
+		*equals = '\0';
+		const char *name = gz_text_trim(line);
+		if (!is_meta_tag(name))
+			return false;
+		if (strcasecmp(name, "NDims") == 0)
+			return true;
+		line = end ? end + 1 : NULL;
+	}
+	return false;
+}
+
 const struct gz_volume_format gz_format_metaimage = {
 	.name = "MetaImage",
 	.endings = { ".mhd", ".mha" },
 	.layout = GZ_LAYOUT_IN_FILE,
+	.knows_start = metaimage_knows_start,
 	.load = load_metaimage,
 	.limits = "one number a voxel, data in one file, no data as text; of a series the first "
 		  "volume",

@@ -526,10 +526,16 @@ enum gz_result gz_nrrd_write(const struct gz_volume *volume, const char *path,
 	return gz_part_file_close(&file, result);
 }
 
+static bool nrrd_knows_start(const struct gz_file_start *start)
+{
+	return start->coding == GZ_CODING_PLAIN && gz_file_start_has(start, 0, "NRRD000", 7);
+}
+
 const struct gz_volume_format gz_format_nrrd = {
 	.name = "NRRD",
 	.endings = { ".nrrd", ".nhdr" },
 	.layout = GZ_LAYOUT_IN_FILE,
+	.knows_start = nrrd_knows_start,
 	.load = load_nrrd,
 	.write = gz_nrrd_write,
 	.limits =

@@ -37,11 +37,20 @@ enum gz_file_kind gz_file_kind_by_name(const char *path)
 	return format->layout == GZ_LAYOUT_IN_FILE ? GZ_FILE_VOLUME : GZ_FILE_RAW;
 }
 
+/* A text has no zero byte. */
+static bool is_binary_file(const char *path)
+{
+	struct gz_file_start start;
+	return gz_file_start_read(path, &start) && memchr(start.bytes, 0, start.size);
+}
+
 enum gz_file_kind gz_file_kind_of(const char *path)
 {
 	const enum gz_file_kind kind = gz_file_kind_by_name(path);
 	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
-	return looked_into && gz_volume_format_by_content(path) ? GZ_FILE_VOLUME : kind;
+	if (looked_into && gz_volume_format_by_content(path))
+		return GZ_FILE_VOLUME;
+	return kind == GZ_FILE_OTHER && is_binary_file(path) ? GZ_FILE_VOLUME : kind;
 }
 
 enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_raw_layout *raw,

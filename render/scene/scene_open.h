@@ -24,7 +24,8 @@ enum gz_file_kind {
 /** The kind by the name alone. Folders are GZ_FILE_OTHER. */
 enum gz_file_kind gz_file_kind_by_name(const char *path);
 
-/** The kind by the name and, if that does not decide, by looking at the file. It need not exist. */
+/** The kind by the name and, if that does not decide, by looking at the file. It need not exist. A
+ *  binary file that nothing recognises is GZ_FILE_VOLUME: the loader then lists what is read. */
 enum gz_file_kind gz_file_kind_of(const char *path);
 
 /** What to open, and how. All pointers are borrowed until the call returns. */

@@ -68,6 +68,15 @@ static void kind_of_a_file_follows_from_its_name(void **state)
 	assert_int_equal(gz_file_kind_of(files_folder()), GZ_FILE_VOLUME);
 }
 
+/* Of a scene nobody expects zero bytes: such a file is refused as a volume, with all endings. */
+static void binary_file_is_no_scene(void **state)
+{
+	(void)state;
+	assert_int_equal(gz_file_kind_of(files_write("unknown", "a\0b", 3)), GZ_FILE_VOLUME);
+	assert_refused(files_path("unknown"), NULL, GZ_ERR_UNSUPPORTED, "unknown kind of volume");
+	assert_int_equal(gz_file_kind_of(files_write("unknown", "[a]\n", 4)), GZ_FILE_OTHER);
+}
+
 static void volume_without_a_scene_is_seen_whole(void **state)
 {
 	(void)state;
@@ -222,6 +231,7 @@ TEST_SUITE(scene_open)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
+		cmocka_unit_test(binary_file_is_no_scene),
 		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
 		cmocka_unit_test(camera_of_the_request_is_kept),

@@ -110,3 +110,42 @@ void nifti_sample_bytes(const struct nifti_sample *s, uint8_t out[352])
 		put(out + 280 + 4 * i, &s->srow[i / 4][i % 4], 4, s->swapped);
 	memcpy(out + 344, s->magic, 4);
 }
+
+static void put_double(uint8_t *out, float value, bool swapped)
+{
+	const double wide = (double)value;
+	put(out, &wide, sizeof wide, swapped);
+}
+
+static void put_wide(uint8_t *out, int64_t value, bool swapped)
+{
+	put(out, &value, sizeof value, swapped);
+}
+
+static void put_code(uint8_t *out, int32_t value, bool swapped)
+{
+	put(out, &value, sizeof value, swapped);
+}
+
+/* Offsets are those of nifti2.h. */
+void nifti2_sample_bytes(const struct nifti_sample *s, bool pair, uint8_t out[544])
+{
+	memset(out, 0, 544);
+	put_code(out, 540, s->swapped);
+	memcpy(out + 4, pair ? "ni2\0\r\n\032\n" : "n+2\0\r\n\032\n", 8);
+	put(out + 12, &s->datatype, 2, s->swapped);
+	put(out + 14, &s->bitpix, 2, s->swapped);
+	for (size_t i = 0; i < 8; i++)
+		put_wide(out + 16 + 8 * i, s->dim[i], s->swapped);
+	for (size_t i = 0; i < 8; i++)
+		put_double(out + 104 + 8 * i, s->pixdim[i], s->swapped);
+	put_wide(out + 168, pair ? 0 : 544, s->swapped);
+	put_double(out + 176, s->slope, s->swapped);
+	put_double(out + 184, s->intercept, s->swapped);
+	put_code(out + 344, s->qform_code, s->swapped);
+	put_code(out + 348, s->sform_code, s->swapped);
+	for (size_t i = 0; i < 3; i++)
+		put_double(out + 352 + 8 * i, s->quatern[i], s->swapped);
+	for (size_t i = 0; i < 12; i++)
+		put_double(out + 400 + 8 * i, s->srow[i / 4][i % 4], s->swapped);
+}

@@ -45,4 +45,8 @@ struct nifti_sample nifti_sample_make(int x, int y, int z);
 /** The 352 bytes before the voxels. */
 void nifti_sample_bytes(const struct nifti_sample *sample, uint8_t out[352]);
 
+/** The same numbers as the 544 bytes before the voxels of a NIfTI-2, whose vox_offset is 544, or 0
+ *  for a pair. */
+void nifti2_sample_bytes(const struct nifti_sample *sample, bool pair, uint8_t out[544]);
+
 #endif

@@ -431,8 +431,8 @@ class Headless(unittest.TestCase):
         self.assertEqual(ended, -signal.SIGTERM)
         self.assertEqual(self.frames(), [])
 
-    def test_help_and_version_go_to_stdout(self):
-        for word, said in (("--help", "--gaze"), ("--version", "gazeview ")):
+    def test_help_version_and_formats_go_to_stdout(self):
+        for word, said in (("--help", "--gaze"), ("--version", "gazeview "), ("--formats", "NRRD .nrrd")):
             done = run(GAZEVIEW, word)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn(said, done.stdout)

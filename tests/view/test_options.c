@@ -351,13 +351,15 @@ static void help_lists_all_options_and_scene_keys(void **state)
 	free(text);
 }
 
-static void help_and_version_need_no_scene(void **state)
+static void help_version_and_formats_need_no_scene(void **state)
 {
 	(void)state;
 	assert_int_equal(read_line("--help"), GZ_OK);
 	assert_true(options.help);
 	assert_int_equal(read_line("--version"), GZ_OK);
 	assert_true(options.version);
+	assert_int_equal(read_line("--formats"), GZ_OK);
+	assert_true(options.formats);
 }
 
 TEST_SUITE(options)
@@ -381,7 +383,7 @@ TEST_SUITE(options)
 		cmocka_unit_test(pattern_that_does_not_fit_is_refused),
 		cmocka_unit_test(given_display_fields_override_known_ones),
 		cmocka_unit_test(help_lists_all_options_and_scene_keys),
-		cmocka_unit_test(help_and_version_need_no_scene),
+		cmocka_unit_test(help_version_and_formats_need_no_scene),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,6 +100,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "voxel spacing along x, y, z, mm; default: 1" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
+	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
+	  .help = "print the formats of volumes that are read, and exit" },
 	{ "help", GZ_OPTION_BOOL, AT(help), .preset = "false", .help = "print this and exit" },
 	{ "version", GZ_OPTION_BOOL, AT(version), .preset = "false",
 	  .help = "print the version and exit" },
@@ -477,6 +479,12 @@ static void apply_short_names(const struct gz_view_options *options, struct gz_v
 		       sizeof view->tracker_display);
 }
 
+/* Whether the program prints something and ends. */
+static bool only_prints(const struct gz_view_options *options)
+{
+	return options->help || options->version || options->formats;
+}
+
 static enum gz_result read_arguments(int argc, char *const *argv,
 				     struct gz_view_scene_tables *tables, const struct gz_log *log,
 				     struct gz_view_options *options)
@@ -503,7 +511,7 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 	if (r == GZ_OK)
 		r = gz_options_read_arguments(bindings, OWN_BINDINGS + GZ_VIEW_SCENE_TABLES, argc,
 					      argv, &operands, log);
-	if (r == GZ_OK && !options->help && !options->version)
+	if (r == GZ_OK && !only_prints(options))
 		r = take_positional(options, operands.items, operands.count, log);
 	return r;
 }
@@ -516,7 +524,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
-	if (r != GZ_OK || out_options->help || out_options->version)
+	if (r != GZ_OK || only_prints(out_options))
 		return r;
 	const char *gaze = out_options->gaze_text;
 	if (!gaze[0])

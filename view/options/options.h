@@ -50,6 +50,7 @@ struct gz_gaze_choice {
 struct gz_view_options {
 	bool help;
 	bool version;
+	bool formats;
 	bool headless;
 	char scene[GZ_PATH_SIZE];
 	int size_px[2];

@@ -1,0 +1,146 @@
+"""Volume files as gazeview reads them, compared with an independent reader: nibabel.
+
+volumes.py GAZEVIEW
+
+nibabel writes the files and reads them again. gazeview turns each to RAS+ and writes it as a raw
+NRRD, which is read here with numpy. Exits 77 if nibabel is not installed.
+"""
+
+import itertools
+import os
+import sys
+import tempfile
+import unittest
+import warnings
+
+try:
+    import nibabel
+    import numpy
+except ImportError as missing:
+    print(f"skipped: {missing}; it is in the package python3-nibabel")
+    sys.exit(77)
+
+from picture import run
+
+GAZEVIEW = sys.argv[1]
+TYPES = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "float": "f4"}
+SHAPE = (5, 4, 3)
+SPACING = (1.5, 2.0, 3.25)
+
+
+def read_nrrd(path):
+    """Voxels [x, y, z] and spacing of an attached raw NRRD."""
+    with open(path, "rb") as source:
+        head, data = source.read().split(b"\n\n", 1)
+    fields = dict(line.split(": ", 1) for line in head.decode().splitlines()[1:])
+    sizes = [int(size) for size in fields["sizes"].split()]
+    kind = numpy.dtype(("<" if fields["endian"] == "little" else ">") + TYPES[fields["type"]])
+    vectors = [vector.strip("()").split(",") for vector in fields["space directions"].split()]
+    spacing = [max(abs(float(number)) for number in vector) for vector in vectors]
+    voxels = numpy.frombuffer(data, kind).reshape(sizes, order="F")
+    return voxels.astype("f8"), spacing, fields.get("space")
+
+
+def affines():
+    """All turns of the axes, and an oblique one."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            affine = numpy.zeros((4, 4))
+            affine[3, 3] = 1
+            for axis in range(3):
+                affine[order[axis], axis] = signs[axis] * SPACING[axis]
+            yield affine
+    turn = numpy.diag((*SPACING, 1.0))
+    angle = numpy.radians(20)
+    rotation = numpy.array([[numpy.cos(angle), -numpy.sin(angle)], [numpy.sin(angle), numpy.cos(angle)]])
+    turn[:2, :2] = rotation @ turn[:2, :2]
+    yield turn
+
+
+def data_of(kind):
+    """Numbers of all magnitudes that fit."""
+    count = int(numpy.prod(SHAPE))
+    if numpy.dtype(kind).kind == "f":
+        return (numpy.linspace(-3, 7, count) ** 3).astype(kind).reshape(SHAPE)
+    info = numpy.iinfo(kind)
+    return numpy.linspace(max(info.min, -2**24), min(info.max, 2**24), count).astype(kind).reshape(SHAPE)
+
+
+class Volumes(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory(prefix="gazecast-test-volumes-")
+        self.addCleanup(self.place.cleanup)
+
+    def path(self, name):
+        return os.path.join(self.place.name, name)
+
+    def check(self, name, sided=True):
+        """What gazeview reads of a file is what nibabel reads, along the nearest axes of RAS+."""
+        image = nibabel.load(self.path(name))
+        wanted = nibabel.as_closest_canonical(image)
+        done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        voxels, spacing, space = read_nrrd(self.path("read.nrrd"))
+        values = numpy.asarray(wanted.dataobj, "f8")
+        self.assertEqual(voxels.shape, values.shape[:3], name)
+        scale = max(1, abs(values).max())
+        self.assertLess(abs(voxels - values.reshape(voxels.shape)).max(), 2e-7 * scale, name)
+        zooms = nibabel.affines.voxel_sizes(wanted.affine)
+        self.assertLess(abs(numpy.array(spacing) - zooms).max(), 1e-5, name)
+        self.assertEqual(space, "right-anterior-superior" if sided else None, name)
+        return done.stderr
+
+    def test_nifti_of_every_orientation(self):
+        for number, affine in enumerate(affines()):
+            for name, kind in (("one.nii", nibabel.Nifti1Image), ("two.nii", nibabel.Nifti2Image)):
+                with self.subTest(number=number, name=name):
+                    nibabel.save(kind(data_of("int16"), affine), self.path(name))
+                    self.check(name)
+
+    def test_nifti_qform_alone(self):
+        for number, affine in enumerate(affines()):
+            with self.subTest(number=number):
+                image = nibabel.Nifti1Image(data_of("uint8"), affine)
+                image.set_qform(affine, 1)
+                image.set_sform(None, 0)
+                nibabel.save(image, self.path("q.nii"))
+                self.check("q.nii")
+
+    def test_nifti_types_and_scaling(self):
+        kinds = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+        for kind, slope in itertools.product(kinds, (None, 0.5, -3)):
+            for order in "<>":
+                with self.subTest(kind=kind, slope=slope, order=order):
+                    header = nibabel.Nifti1Header(endianness=order)
+                    header.set_data_dtype(kind)
+                    image = nibabel.Nifti1Image(data_of(kind), numpy.diag((-1, 1, 2, 1)), header)
+                    if slope:
+                        image.header.set_slope_inter(slope, 7)
+                    nibabel.save(image, self.path("t.nii"))
+                    self.check("t.nii")
+
+    def test_nifti_pairs_and_compressed(self):
+        affine = next(itertools.islice(affines(), 13, 14))
+        pairs = (nibabel.Nifti1Pair, nibabel.Nifti2Pair)
+        for kind, ending in itertools.product(pairs, ("", ".gz")):
+            with self.subTest(kind=kind, ending=ending):
+                nibabel.save(kind(data_of("int16"), affine), self.path("p.img" + ending))
+                self.check("p.img" + ending)
+                self.check("p.hdr" + ending)
+        nibabel.save(nibabel.Nifti1Image(data_of("int16"), affine), self.path("g.nii.gz"))
+        self.check("g.nii.gz")
+
+    def test_analyze_is_left_last(self):
+        for kind in (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage):
+            with self.subTest(kind=kind):
+                affine = numpy.diag((-2.0, 2.0, 3.0, 1.0))
+                nibabel.save(kind(data_of("int16"), affine), self.path("a.img"))
+                if os.path.exists(self.path("a.mat")):  # of SPM, which would say more
+                    os.unlink(self.path("a.mat"))
+                told = self.check("a.img", sided=False)
+                self.assertIn("does not say where left is", told)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore")
+    unittest.main(argv=sys.argv[:1], verbosity=1)
