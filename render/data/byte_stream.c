@@ -1,5 +1,6 @@
 #include "render/data/byte_stream.h"
 
+#include <bzlib.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -168,6 +169,10 @@ void gz_byte_ahead_end(struct gz_byte_ahead **ahead)
 /* Best ratio of zstd: a block of 128 KiB from a header of 3 bytes and one byte to repeat, RFC 8878,
  * 3.1.1.2. */
 #define ZSTD_RATIO 32768
+/* Best ratio of bzip2: a block holds 900000 bytes after its first step, which turns 259 equal bytes
+ * into 5 (bzip2 and libbzip2, "Memory management"; compress.c), and takes at least 24 bytes: its
+ * magic number, checksum, and tables. */
+#define BZIP2_RATIO (900000 / 5 * 259 / 24)
 /* Added to the window bits, it makes zlib accept both zlib and gzip headers (zlib.h,
  * inflateInit2). */
 #define ZLIB_AUTOMATIC 32
@@ -184,6 +189,8 @@ struct gz_byte_stream {
 	size_t input_at, input_size;
 	z_stream zlib;
 	bool zlib_ready;
+	bz_stream bzip2;
+	bool bzip2_ready;
 	ZSTD_DCtx *zstd;
 	bool began;  /* the first member */
 	bool inside; /* a member or frame has begun and not ended */
@@ -244,9 +251,11 @@ static enum gz_result open_decoder(struct gz_byte_stream *stream)
 	if (stream->coding == GZ_CODING_ZLIB)
 		stream->zlib_ready =
 			inflateInit2(&stream->zlib, MAX_WBITS + ZLIB_AUTOMATIC) == Z_OK;
+	else if (stream->coding == GZ_CODING_BZIP2)
+		stream->bzip2_ready = BZ2_bzDecompressInit(&stream->bzip2, 0, 0) == BZ_OK;
 	else
 		stream->zstd = ZSTD_createDCtx();
-	if (stream->input && (stream->zlib_ready || stream->zstd))
+	if (stream->input && (stream->zlib_ready || stream->bzip2_ready || stream->zstd))
 		return GZ_OK;
 	gz_err(stream->log, "%s: no memory to decompress it", stream->path);
 	return GZ_ERR_NO_MEM;
@@ -301,7 +310,7 @@ enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t 
 
 uint64_t gz_byte_stream_bound(const struct gz_byte_stream *stream)
 {
-	static const uint64_t ratios[] = { 1, ZLIB_RATIO, ZSTD_RATIO };
+	static const uint64_t ratios[] = { 1, ZLIB_RATIO, ZSTD_RATIO, BZIP2_RATIO };
 	uint64_t ratio = ratios[stream->coding];
 	return stream->stored > UINT64_MAX / ratio ? UINT64_MAX : stream->stored * ratio;
 }
@@ -388,6 +397,54 @@ static enum gz_result step_zstd(struct gz_byte_stream *stream, uint8_t *buffer, 
 	return GZ_OK;
 }
 
+/* Begin the next of several streams. False if what follows is none, or there is no memory. */
+static bool restart_bzip2(struct gz_byte_stream *stream)
+{
+	if (stream->input[stream->input_at] != 'B')
+		return false;
+	BZ2_bzDecompressEnd(&stream->bzip2);
+	stream->bzip2 = (bz_stream) { 0 };
+	stream->bzip2_ready = BZ2_bzDecompressInit(&stream->bzip2, 0, 0) == BZ_OK;
+	return stream->bzip2_ready;
+}
+
+/* One step of bzip2 into [*got, size) of the buffer. */
+static enum gz_result step_bzip2(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				 size_t *got)
+{
+	bz_stream *b = &stream->bzip2;
+	const size_t room = size - *got;
+	if (!stream->inside && stream->began) {
+		stream->ended = !restart_bzip2(stream);
+		if (stream->ended)
+			return GZ_OK;
+	}
+	stream->inside = stream->began = true;
+	b->next_in = (char *)stream->input + stream->input_at;
+	b->avail_in = (unsigned)(stream->input_size - stream->input_at);
+	b->next_out = (char *)buffer + *got;
+	b->avail_out = (unsigned)(room < (1u << 30) ? room : 1u << 30);
+	const int status = BZ2_bzDecompress(b);
+	*got = (size_t)((uint8_t *)b->next_out - buffer);
+	stream->input_at = stream->input_size - b->avail_in;
+	if (status != BZ_OK && status != BZ_STREAM_END)
+		return refuse_damaged(stream, status == BZ_DATA_ERROR
+						      ? "wrong bzip2 data or checksum"
+						      : "no bzip2 data");
+	stream->inside = status != BZ_STREAM_END;
+	return GZ_OK;
+}
+
+/* One step of the stream's decoder. */
+static enum gz_result step_decoder(struct gz_byte_stream *stream, uint8_t *buffer, size_t size,
+				   size_t *got)
+{
+	if (stream->coding == GZ_CODING_ZLIB)
+		return step_zlib(stream, buffer, size, got);
+	return stream->coding == GZ_CODING_BZIP2 ? step_bzip2(stream, buffer, size, got)
+						 : step_zstd(stream, buffer, size, got);
+}
+
 static enum gz_result decode_bytes(void *user, void *buffer, size_t size, size_t *out_got)
 {
 	struct gz_byte_stream *stream = user;
@@ -395,9 +452,7 @@ static enum gz_result decode_bytes(void *user, void *buffer, size_t size, size_t
 	while (got < size) {
 		enum gz_result result = stream->hungry ? fill_input(stream) : GZ_OK;
 		if (result == GZ_OK && !stream->ended)
-			result = stream->coding == GZ_CODING_ZLIB
-					 ? step_zlib(stream, buffer, size, &got)
-					 : step_zstd(stream, buffer, size, &got);
+			result = step_decoder(stream, buffer, size, &got);
 		if (result != GZ_OK)
 			return result;
 		if (stream->ended)
@@ -473,6 +528,8 @@ void gz_byte_stream_close(struct gz_byte_stream **stream)
 		close(s->fd);
 	if (s->zlib_ready)
 		inflateEnd(&s->zlib);
+	if (s->bzip2_ready)
+		BZ2_bzDecompressEnd(&s->bzip2);
 	ZSTD_freeDCtx(s->zstd);
 	free(s->input);
 	free(s);

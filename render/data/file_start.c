@@ -4,14 +4,17 @@
 
 enum gz_coding gz_coding_of_bytes(const uint8_t *bytes, size_t size)
 {
-	/* RFC 1952, section 2.3.1; RFC 8878, sections 3.1.1 and 3.1.2 (skippable frames, which
-	 * parallel compressors write first). */
+	/* bzip2 by its header and the magic number of its first block. RFC 1952, section 2.3.1; RFC
+	 * 8878, sections 3.1.1 and 3.1.2 (skippable frames, which parallel compressors write
+	 * first). */
 	static const uint8_t gzip[] = { 0x1f, 0x8b }, zstd[] = { 0x28, 0xb5, 0x2f, 0xfd },
 			     skippable[] = { 0x2a, 0x4d, 0x18 };
 	if (size >= sizeof gzip && memcmp(bytes, gzip, sizeof gzip) == 0)
 		return GZ_CODING_ZLIB;
 	if (size >= sizeof zstd && memcmp(bytes, zstd, sizeof zstd) == 0)
 		return GZ_CODING_ZSTD;
+	if (size >= 10 && memcmp(bytes, "BZh", 3) == 0 && memcmp(bytes + 4, "1AY&SY", 6) == 0)
+		return GZ_CODING_BZIP2;
 	if (size >= 1 + sizeof skippable && bytes[0] >> 4 == 5 &&
 	    memcmp(bytes + 1, skippable, sizeof skippable) == 0)
 		return GZ_CODING_ZSTD;
@@ -32,7 +35,7 @@ static bool read_file_start(const char *path, enum gz_coding coding, uint8_t *by
 
 enum gz_coding gz_coding_of_file(const char *path)
 {
-	uint8_t bytes[8];
+	uint8_t bytes[16];
 	size_t got = 0;
 	if (!read_file_start(path, GZ_CODING_PLAIN, bytes, sizeof bytes, &got))
 		return GZ_CODING_PLAIN;

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "render/data/format.h"
 #include "render/data/text_head.h"
+#include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -22,6 +23,7 @@ struct metaimage {
 	bool has_sizes, has_type, has_spacing, has_matrix, has_data;
 	char anatomical[4]; /* "RAI", or empty */
 	int header_size;
+	int file_axes; /* that each of several files holds; 0: not given */
 };
 
 static enum gz_result refuse_meta(struct metaimage *meta, const char *tag, const char *what)
@@ -145,8 +147,7 @@ static enum gz_result take_meta_binary(struct metaimage *meta, char *value)
 	bool binary = true;
 	if (!parse_meta_bool(value, &binary))
 		return refuse_meta(meta, "BinaryData", "write True or False");
-	if (!binary)
-		return refuse_meta_unsupported(meta, "BinaryData", "data as text are not read");
+	meta->source.spelling = binary ? GZ_SPELLING_BINARY : GZ_SPELLING_TEXT;
 	return GZ_OK;
 }
 
@@ -175,19 +176,20 @@ static enum gz_result take_meta_header_size(struct metaimage *meta, char *value)
 	return GZ_OK;
 }
 
-/* The last tag: LOCAL data begin on the next line. */
+/* The last tag. LOCAL data, or the names of several files, begin on the next line. */
 static enum gz_result take_meta_data_file(struct metaimage *meta, char *value)
 {
-	bool local = strcasecmp(value, "LOCAL") == 0;
-	if (strncmp(value, "LIST", 4) == 0 || strchr(value, '%'))
-		return refuse_meta_unsupported(meta, "ElementDataFile",
-					       "several files are not read; join them into one");
-	if (!*value || gz_path_beside(local ? "" : meta->head.path, local ? meta->head.path : value,
+	const bool local = strcasecmp(value, "LOCAL") == 0;
+	const bool several = !local && gz_voxel_files_named(value);
+	const char *name = local || several ? meta->head.path : value;
+	meta->has_data = true;
+	if (!*value || gz_path_beside(local || several ? "" : meta->head.path, name,
 				      meta->source.path, sizeof meta->source.path) != GZ_OK)
 		return refuse_meta(meta, "ElementDataFile", "no name, or one too long");
 	meta->source.offset = local ? meta->head.at : 0;
-	meta->has_data = true;
-	return GZ_OK;
+	return several ? gz_voxel_files_take(&meta->source.files, &meta->head, value,
+					     "ElementDataFile", &meta->file_axes)
+		       : GZ_OK;
 }
 
 struct tag {
@@ -299,7 +301,9 @@ static enum gz_result finish_meta_layout(struct metaimage *meta)
 		gz_warn(meta->head.log, "%s: a series of volumes; the first is shown",
 			meta->head.path);
 	meta->source.skip = meta->header_size;
-	return orient_meta(meta);
+	const enum gz_result result = gz_voxel_source_share(&meta->source, &meta->head, meta->sizes,
+							    meta->dimension, meta->file_axes);
+	return result == GZ_OK ? orient_meta(meta) : result;
 }
 
 static enum gz_result load_metaimage(const struct gz_volume_file *file,
@@ -313,6 +317,7 @@ static enum gz_result load_metaimage(const struct gz_volume_file *file,
 		result = finish_meta_layout(&meta);
 	if (result == GZ_OK)
 		result = gz_voxel_source_import(&meta.source, &meta.layout, file, out_volume);
+	gz_voxel_source_free(&meta.source);
 	gz_text_head_free(&meta.head);
 	return result;
 }
@@ -354,6 +359,5 @@ const struct gz_volume_format gz_format_metaimage = {
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = metaimage_knows_start,
 	.load = load_metaimage,
-	.limits = "one number a voxel, data in one file, no data as text; of a series the first "
-		  "volume",
+	.limits = "one number a voxel, integers of up to 32 bits; of a series the first volume",
 };

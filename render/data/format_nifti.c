@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "render/data/format.h"
+#include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -190,7 +191,7 @@ static bool nifti_knows_start(const struct gz_file_start *start)
 /* ---- pairs ---- */
 
 /* Endings of compressed files, in the order of enum gz_coding. */
-static const char *const pair_codings[] = { "", ".gz", ".zst" };
+static const char *const pair_codings[] = { "", ".gz", ".zst", ".bz2" };
 enum { PAIR_CODINGS = sizeof pair_codings / sizeof pair_codings[0] };
 
 /* Where the ending `ending`, with a dot, begins in a name that may have a coding's ending behind
@@ -466,7 +467,8 @@ static enum gz_result load_nifti(const struct gz_volume_file *file, struct gz_vo
 
 const struct gz_volume_format gz_format_nifti = {
 	.name = "NIfTI, ANALYZE",
-	.endings = { ".nii", ".nii.gz", ".nii.zst", ".hdr", ".hdr.gz", ".hdr.zst" },
+	.endings = { ".nii", ".nii.gz", ".nii.zst", ".nii.bz2", ".hdr", ".hdr.gz", ".hdr.zst",
+		     ".hdr.bz2" },
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = nifti_knows_start,
 	.recognise = is_nifti_image,

@@ -14,6 +14,7 @@
 #include "base/vector.h"
 #include "render/data/format.h"
 #include "render/data/text_head.h"
+#include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -32,7 +33,7 @@ struct nrrd {
 	bool has_type, has_sizes, has_encoding, has_endian, has_spacings, has_directions;
 	bool anatomical, values_first; /* the first axis holds the parts of a value */
 	bool detached;
-	int line_skip;
+	int file_axes; /* that each of several files holds; 0: not given */
 };
 
 static enum gz_result refuse_nrrd(struct nrrd *nrrd, const char *key, const char *what)
@@ -204,34 +205,52 @@ static enum gz_result take_nrrd_endian(struct nrrd *nrrd, char *value)
 	return GZ_OK;
 }
 
+/* Section 5.1, "encoding". */
 static enum gz_result take_nrrd_encoding(struct nrrd *nrrd, char *value)
 {
-	nrrd->has_encoding = true;
-	if (strcasecmp(value, "raw") == 0)
-		nrrd->source.coding = GZ_CODING_PLAIN;
-	else if (strcasecmp(value, "gzip") == 0 || strcasecmp(value, "gz") == 0)
-		nrrd->source.coding = GZ_CODING_ZLIB;
-	else
-		return refuse_nrrd_unsupported(nrrd, "encoding",
-					       "not read; convert the file to raw or gzip");
-	return GZ_OK;
+	static const struct {
+		const char *name;
+		enum gz_coding coding;
+		enum gz_spelling spelling;
+	} encodings[] = {
+		{ "raw", GZ_CODING_PLAIN, GZ_SPELLING_BINARY },
+		{ "txt", GZ_CODING_PLAIN, GZ_SPELLING_TEXT },
+		{ "text", GZ_CODING_PLAIN, GZ_SPELLING_TEXT },
+		{ "ascii", GZ_CODING_PLAIN, GZ_SPELLING_TEXT },
+		{ "hex", GZ_CODING_PLAIN, GZ_SPELLING_HEX },
+		{ "gz", GZ_CODING_ZLIB, GZ_SPELLING_BINARY },
+		{ "gzip", GZ_CODING_ZLIB, GZ_SPELLING_BINARY },
+		{ "bz2", GZ_CODING_BZIP2, GZ_SPELLING_BINARY },
+		{ "bzip2", GZ_CODING_BZIP2, GZ_SPELLING_BINARY },
+	};
+	for (size_t i = 0; i < sizeof encodings / sizeof encodings[0]; i++) {
+		if (strcasecmp(value, encodings[i].name) != 0)
+			continue;
+		nrrd->has_encoding = true;
+		nrrd->source.coding = encodings[i].coding;
+		nrrd->source.spelling = encodings[i].spelling;
+		return GZ_OK;
+	}
+	return refuse_nrrd_unsupported(nrrd, "encoding",
+				       "not read; raw, txt, hex, gzip and bzip2 are");
 }
 
+/* Section 6, "data file": one, a pattern, or a list, which is the rest of the header. */
 static enum gz_result take_nrrd_data_file(struct nrrd *nrrd, char *value)
 {
-	if (strncmp(value, "LIST", 4) == 0 || strchr(value, '%'))
-		return refuse_nrrd_unsupported(nrrd, "data file",
-					       "several files are not read; join them into one");
+	nrrd->detached = true;
+	if (gz_voxel_files_named(value))
+		return gz_voxel_files_take(&nrrd->source.files, &nrrd->head, value, "data file",
+					   &nrrd->file_axes);
 	if (!*value || gz_path_beside(nrrd->head.path, value, nrrd->source.path,
 				      sizeof nrrd->source.path) != GZ_OK)
 		return refuse_nrrd(nrrd, "data file", "no name, or one too long");
-	nrrd->detached = true;
 	return GZ_OK;
 }
 
 static enum gz_result take_nrrd_line_skip(struct nrrd *nrrd, char *value)
 {
-	if (!gz_text_wholes(value, &nrrd->line_skip, 1) || nrrd->line_skip < 0)
+	if (!gz_text_wholes(value, &nrrd->source.line_skip, 1) || nrrd->source.line_skip < 0)
 		return refuse_nrrd(nrrd, "line skip", "must be a whole number, 0 or more");
 	return GZ_OK;
 }
@@ -327,7 +346,8 @@ static enum gz_result check_nrrd_complete(struct nrrd *nrrd)
 	if (!nrrd->dimension || !nrrd->has_type || !nrrd->has_sizes || !nrrd->has_encoding)
 		return refuse_nrrd(nrrd, "header",
 				   "type, dimension, sizes and encoding must be given");
-	if (gz_raw_type_size(nrrd->layout.type) > 1 && !nrrd->has_endian)
+	if (gz_raw_type_size(nrrd->layout.type) > 1 && !nrrd->has_endian &&
+	    nrrd->source.spelling != GZ_SPELLING_TEXT)
 		return refuse_nrrd(nrrd, "header", "endian must be given for this type");
 	return GZ_OK;
 }
@@ -372,23 +392,20 @@ static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 	return GZ_OK;
 }
 
-/* Lines are skipped before decoding, bytes after it (section 4, "line skip"). */
-static enum gz_result skip_nrrd_lines(struct nrrd *nrrd)
+/* Where the voxels are: behind the header, in a file, or in several files beside the header. */
+static enum gz_result place_nrrd_data(struct nrrd *nrrd)
 {
-	struct gz_text_head data = { 0 };
-	if (nrrd->line_skip == 0)
-		return GZ_OK;
-	enum gz_result result = gz_text_head_open(&data, nrrd->source.path, nrrd->head.log);
-	if (result == GZ_OK) {
-		data.at = (size_t)nrrd->source.offset;
-		for (int i = 0; i < nrrd->line_skip && result == GZ_OK; i++)
-			if (!gz_text_head_line(&data))
-				result = refuse_nrrd(nrrd, "line skip",
-						     "more lines than the file has");
-		nrrd->source.offset = data.at;
+	struct gz_voxel_source *source = &nrrd->source;
+	if (!nrrd->detached)
+		source->offset = nrrd->head.at;
+	if (!nrrd->detached || source->files.count > 0) {
+		const enum gz_result result =
+			gz_path_beside("", nrrd->head.path, source->path, sizeof source->path);
+		if (result != GZ_OK)
+			return result;
 	}
-	gz_text_head_free(&data);
-	return result;
+	return gz_voxel_source_share(source, &nrrd->head, nrrd->sizes, nrrd->dimension,
+				     nrrd->file_axes);
 }
 
 static enum gz_result load_nrrd(const struct gz_volume_file *file, struct gz_volume *out_volume)
@@ -401,14 +418,11 @@ static enum gz_result load_nrrd(const struct gz_volume_file *file, struct gz_vol
 		result = check_nrrd_complete(&nrrd);
 	if (result == GZ_OK)
 		result = choose_nrrd_axes(&nrrd);
-	if (result == GZ_OK && !nrrd.detached) {
-		nrrd.source.offset = nrrd.head.at;
-		result = gz_path_beside("", file->path, nrrd.source.path, sizeof nrrd.source.path);
-	}
 	if (result == GZ_OK)
-		result = skip_nrrd_lines(&nrrd);
+		result = place_nrrd_data(&nrrd);
 	if (result == GZ_OK)
 		result = gz_voxel_source_import(&nrrd.source, &nrrd.layout, file, out_volume);
+	gz_voxel_source_free(&nrrd.source);
 	gz_text_head_free(&nrrd.head);
 	return result;
 }
@@ -538,7 +552,5 @@ const struct gz_volume_format gz_format_nrrd = {
 	.knows_start = nrrd_knows_start,
 	.load = load_nrrd,
 	.write = gz_nrrd_write,
-	.limits =
-		"encodings raw and gzip only, one number a voxel, data in one file; of a series the"
-		" first volume",
+	.limits = "one number a voxel, integers of up to 32 bits; of a series the first volume",
 };

@@ -14,7 +14,6 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "base/sizes.h"
 #include "render/data/byte_stream.h"
 #include "render/data/volume.h"
 
@@ -60,24 +59,5 @@ size_t gz_raw_type_size(enum gz_raw_type type);
 enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				const struct gz_import_layout *layout,
 				const struct gz_volume_file *file, struct gz_volume *out_volume);
-
-/** A skip that puts the voxels at the end of the file. */
-#define GZ_SKIP_TO_END (-1)
-
-/** Where a header says that the voxels are. */
-struct gz_voxel_source {
-	char path[GZ_PATH_SIZE];
-	enum gz_coding coding;
-	uint64_t offset; /**< bytes of the file before the data */
-	int64_t skip;    /**< bytes to skip after that, of the decoded data; or, for plain data
-			    only, GZ_SKIP_TO_END */
-};
-
-/** Open the source and import its voxels; messages name the source's path. Errors of
- *  gz_byte_stream_open(), gz_byte_stream_skip() and gz_volume_import(), all logged. */
-enum gz_result gz_voxel_source_import(const struct gz_voxel_source *source,
-				      const struct gz_import_layout *layout,
-				      const struct gz_volume_file *file,
-				      struct gz_volume *out_volume);
 
 #endif
