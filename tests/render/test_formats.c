@@ -115,6 +115,16 @@ static const char *write_nifti2(const char *name)
 	return write_nifti_packed(name, 2, GZ_CODING_PLAIN);
 }
 
+static const char *write_mgh(const char *name)
+{
+	uint8_t bytes[284 + 8] = { 0 };
+	bytes[3] = 1;                         /* version */
+	bytes[7] = bytes[11] = bytes[15] = 2; /* voxels */
+	bytes[19] = 1;                        /* frames */
+	memcpy(bytes + 284, eight, sizeof eight);
+	return files_write(name, bytes, sizeof bytes);
+}
+
 static const char *write_nrrd(const char *name)
 {
 	return files_write_text(
@@ -163,7 +173,7 @@ static const struct sample_file sample_files[] = {
 	{ &gz_format_nifti, write_nifti1_zstd }, { &gz_format_nifti, write_nifti2 },
 	{ &gz_format_nrrd, write_nrrd },         { &gz_format_metaimage, write_metaimage },
 	{ &gz_format_bricks, write_bricks },     { &gz_format_dicom, write_dicom },
-	{ &gz_format_foreign, write_hdf5 },
+	{ &gz_format_foreign, write_hdf5 },      { &gz_format_mgh, write_mgh },
 };
 enum { SAMPLE_FILES = sizeof sample_files / sizeof sample_files[0] };
 

@@ -11,7 +11,6 @@ import os
 import sys
 import tempfile
 import unittest
-import warnings
 
 try:
     import nibabel
@@ -76,7 +75,7 @@ class Volumes(unittest.TestCase):
 
     def check(self, name, sided=True):
         """What gazeview reads of a file is what nibabel reads, along the nearest axes of RAS+."""
-        image = nibabel.load(self.path(name))
+        image = nibabel.load(self.path(name), mmap=False)
         wanted = nibabel.as_closest_canonical(image)
         done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"))
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -130,6 +129,19 @@ class Volumes(unittest.TestCase):
         nibabel.save(nibabel.Nifti1Image(data_of("int16"), affine), self.path("g.nii.gz"))
         self.check("g.nii.gz")
 
+    def test_mgh_of_every_orientation(self):
+        for number, affine in enumerate(affines()):
+            name = ("m.mgh", "m.mgz")[number % 2]
+            with self.subTest(number=number):
+                nibabel.save(nibabel.MGHImage(data_of("int16"), affine), self.path(name))
+                self.check(name)
+
+    def test_mgh_types(self):
+        for kind in ("uint8", "int16", "int32", "float32"):
+            with self.subTest(kind=kind):
+                nibabel.save(nibabel.MGHImage(data_of(kind), numpy.diag((2, 3, 4, 1))), self.path("t.mgh"))
+                self.check("t.mgh")
+
     def test_analyze_is_left_last(self):
         for kind in (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage):
             with self.subTest(kind=kind):
@@ -142,5 +154,4 @@ class Volumes(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore")
-    unittest.main(argv=sys.argv[:1], verbosity=1)
+    unittest.main(argv=sys.argv[:1], verbosity=1, warnings="ignore")
