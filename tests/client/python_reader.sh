@@ -16,9 +16,9 @@ expect() {
 	cat "$place/out"
 	[ "$(head -n 3 "$place/out" | grep -c 'x 0\.250  y 0\.750  fixation$')" -eq 3 ]
 }
-timeout 20 "$python" "$reader" "ipc://$place/gazecast/latest" 3 >"$place/out"
+timeout "${GZ_TEST_PATIENCE_S:-60}" "$python" "$reader" "ipc://$place/gazecast/latest" 3 >"$place/out"
 expect
 # The reader runs until it is stopped: head ends it by closing the pipe.
 unset GAZECAST_RUNTIME_DIR
-XDG_RUNTIME_DIR=$place timeout 20 "$python" "$reader" 2>/dev/null | head -n 3 >"$place/out"
+XDG_RUNTIME_DIR=$place timeout "${GZ_TEST_PATIENCE_S:-60}" "$python" "$reader" 2>/dev/null | head -n 3 >"$place/out"
 expect

@@ -19,7 +19,7 @@ except ImportError:
     sys.exit(77)
 
 # Longest wait for a condition; as PATIENCE_S in tests/suite.h.
-PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "30"))
+PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "60"))
 
 
 def free_port():

@@ -9,7 +9,7 @@ import zlib
 SKIPPED = 77
 
 # The longest wait for a condition, s: longer under sanitizers (cmake/GzTargets.cmake).
-PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "30"))
+PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "60"))
 
 
 def skip(reason):

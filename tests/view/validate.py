@@ -124,7 +124,7 @@ class Validate(unittest.TestCase):
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )
         self.addCleanup(lambda: gazectl.poll() is None and gazectl.kill())
-        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
+        found = run("timeout", PATIENCE_S, "xdotool", "search", "--sync", "--onlyvisible", "--name",
                     "^gazeview targets$", env=self.environment)
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]

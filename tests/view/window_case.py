@@ -88,7 +88,7 @@ class WindowCase(unittest.TestCase):
             [GAZEVIEW, "--size", "%dx%d" % SIZE, *words], env=self.environment,
             stderr=subprocess.PIPE, text=True,
         )
-        found = run("timeout", 20, "xdotool", "search", "--sync", "--onlyvisible", "--name",
+        found = run("timeout", PATIENCE_S, "xdotool", "search", "--sync", "--onlyvisible", "--name",
                     "^gazeview$", env=self.environment)
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]

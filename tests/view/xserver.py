@@ -11,7 +11,7 @@ def start_server(size):
     read, write = os.pipe()
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), "-screen", "0", "%dx%dx24" % size, "-nolisten", "tcp",
-         "-noreset"],
+         "-noreset", "-r"],  # no key repeats itself while a slow program is waited for
         pass_fds=(write,), stderr=subprocess.DEVNULL,
     )
     os.close(write)

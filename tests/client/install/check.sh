@@ -39,6 +39,6 @@ done
 
 "$publisher" "ipc://$place/latest" &
 publisher_id=$!
-LD_LIBRARY_PATH=$(dirname "$library") timeout 20 "$place/reader" "ipc://$place/latest" >"$place/out"
+LD_LIBRARY_PATH=$(dirname "$library") timeout "${GZ_TEST_PATIENCE_S:-60}" "$place/reader" "ipc://$place/latest" >"$place/out"
 cat "$place/out"
 grep -q '^0.250 0.750, [0-9.]* ms ago$' "$place/out" || fail "the program did not print the gaze"
