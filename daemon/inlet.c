@@ -84,11 +84,9 @@ static enum gz_result read_annotation(const void *body, size_t size, int64_t now
 		return result;
 	out_message->is_mark = true;
 	out_message->mark_ns = annotation.has_time ? annotation.time_ns : now_ns;
-	if (annotation.duration_ns > 0)
-		snprintf(out_message->mark, sizeof out_message->mark, "%s, duration %.9g s",
-			 annotation.label, gz_ns_to_s(annotation.duration_ns));
-	else
-		snprintf(out_message->mark, sizeof out_message->mark, "%s", annotation.label);
+	out_message->mark_duration_ns = annotation.duration_ns;
+	snprintf(out_message->mark, sizeof out_message->mark, "%s", annotation.label);
+	snprintf(out_message->mark_keys, sizeof out_message->mark_keys, "%s", annotation.keys);
 	return GZ_OK;
 }
 
@@ -126,7 +124,9 @@ enum gz_result gz_inlet_judge(const void *topic, size_t topic_size, const void *
 		if (read_annotation(body, body_size, now_ns, &mark) != GZ_OK)
 			return GZ_ERR_PROTOCOL;
 		out_message->mark_ns = mark.mark_ns;
+		out_message->mark_duration_ns = mark.mark_duration_ns;
 		memcpy(out_message->mark, mark.mark, sizeof mark.mark);
+		memcpy(out_message->mark_keys, mark.mark_keys, sizeof mark.mark_keys);
 	}
 	bool is_notification = topic_begins_with(text, GZ_TOPIC_NOTIFY);
 	if (is_notification &&

@@ -45,10 +45,12 @@ struct gz_inlet_message {
 	char topic[GZ_INLET_TOPIC_SIZE];
 	size_t size;
 	unsigned char body[GZ_INLET_SIZE_MAX];
-	bool is_mark;                     /**< mark_ns and mark are set */
-	int64_t mark_ns;                  /**< host time */
-	char mark[GZ_GAZE_LOG_TEXT_SIZE]; /**< text for the gaze log */
-	bool is_notification;             /**< notification is set */
+	bool is_mark;                          /**< the fields mark_ and mark are set */
+	int64_t mark_ns;                       /**< host time */
+	int64_t mark_duration_ns;              /**< 0 for a moment */
+	char mark[GZ_GAZE_LOG_TEXT_SIZE];      /**< text for the gaze log */
+	char mark_keys[GZ_GAZE_LOG_KEYS_SIZE]; /**< further keys for the gaze log, JSON */
+	bool is_notification;                  /**< notification is set */
 	struct gz_notification notification;
 	bool is_pointer; /**< pointer is set */
 	struct gz_viewer_pointer pointer;

@@ -457,8 +457,11 @@ static bool pass_on(struct gz_requests *requests, const struct gz_inlet_message 
 		return true;
 	}
 	memcpy(command.topic, message->topic, sizeof command.topic);
-	if (message->is_mark)
+	if (message->is_mark) {
+		command.duration_ns = message->mark_duration_ns;
 		memcpy(command.text, message->mark, sizeof command.text);
+		memcpy(command.keys, message->mark_keys, sizeof command.keys);
+	}
 	if (!forward_message(requests, &command, message->body, message->size))
 		return false;
 	if (message->is_window) /* the viewer repeats it, so it may be dropped */

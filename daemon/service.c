@@ -285,8 +285,11 @@ static void obey_command(struct gz_service *service, const struct gz_command *co
 /* Write the mark of a client's message into the gaze log. */
 static void record_mark(struct gz_service *service, const struct gz_command *command)
 {
-	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK, .host_ns = command->host_ns };
+	struct gz_gaze_log_record mark = { .kind = GZ_GAZE_LOG_MARK,
+					   .host_ns = command->host_ns,
+					   .duration_ns = command->duration_ns };
 	memcpy(mark.text, command->text, sizeof mark.text);
+	memcpy(mark.keys, command->keys, sizeof mark.keys);
 	gz_recorder_push(service->parts.recorder, &mark);
 }
 

@@ -51,6 +51,8 @@ struct gz_command {
 	char path[GZ_PATH_SIZE];
 	char topic[GZ_INLET_TOPIC_SIZE];  /**< SEND */
 	char text[GZ_GAZE_LOG_TEXT_SIZE]; /**< SEND with a mark */
+	int64_t duration_ns;              /**< SEND with a mark */
+	char keys[GZ_GAZE_LOG_KEYS_SIZE]; /**< SEND with a mark */
 };
 
 /** Notices to the requests' thread. */

@@ -23,6 +23,13 @@
 				   */
 #define GZ_GAZE_LOG_TEXT_SIZE 512 /**< a mark's or gap's text, unescaped, with its NUL, bytes */
 
+/** What the header line "#coordinates" says if it is there. */
+#define GZ_GAZE_LOG_SCENE_CAMERA "scene camera"
+
+/** Further keys of a mark, as JSON, unescaped, with their NUL, bytes. Chosen: with the text they
+ * fit into GZ_GAZE_LOG_LINE_SIZE, however many of their bytes are escaped. */
+#define GZ_GAZE_LOG_KEYS_SIZE 448
+
 /** Size of a buffer for any header, with its NUL, bytes. */
 #define GZ_GAZE_LOG_HEADER_SIZE 49152
 
@@ -41,6 +48,12 @@ struct gz_gaze_log_header {
 	struct gz_display display;   /**< set if has_display */
 	char started[GZ_NAME_SIZE];  /**< UTC, ISO 8601 */
 	char software[GZ_NAME_SIZE]; /**< "gazed 0.1.0" */
+	/** The unit of every pupil_mm in the log if it is not mm, as "arbitrary (EyeLink area)";
+	 * empty: mm. */
+	char pupil_unit[GZ_NAME_SIZE];
+	/** The points are in the picture of a scene camera, not on a display; (0, 0) is its upper
+	 * left corner, (1, 1) its lower right one. */
+	bool scene_camera;
 	size_t setting_count;
 	struct gz_gaze_log_setting settings[GZ_GAZE_LOG_SETTINGS_MAX];
 };
@@ -49,7 +62,7 @@ struct gz_gaze_log_header {
 enum gz_gaze_log_kind {
 	GZ_GAZE_LOG_SAMPLE,
 	GZ_GAZE_LOG_GAP,    /**< samples are missing */
-	GZ_GAZE_LOG_MARK,   /**< a label for a moment */
+	GZ_GAZE_LOG_MARK,   /**< a label for a moment or a stretch of time */
 	GZ_GAZE_LOG_WINDOW, /**< the position of the renderer's window */
 };
 
@@ -61,6 +74,8 @@ struct gz_gaze_log_record {
 	int64_t host_ns;  /**< GAP, MARK, WINDOW */
 	uint64_t missing; /**< GAP: how many samples */
 	char text[GZ_GAZE_LOG_TEXT_SIZE]; /**< GAP: reason; MARK: label; unescaped */
+	int64_t duration_ns;              /**< MARK: 0 for a moment */
+	char keys[GZ_GAZE_LOG_KEYS_SIZE]; /**< MARK: further keys as a JSON object; empty: none */
 	int window_px[4];                 /**< WINDOW: x, y, width and height on the display, px */
 };
 

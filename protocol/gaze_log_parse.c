@@ -203,12 +203,25 @@ static const char *parse_pipeline_setting(const char *key, const char *value,
 }
 
 /* Header lines that may come once; each is a bit of gz_gaze_log_header_state.seen. */
-enum header_key { TRACKER, SERIAL, RATE, PX, MM, DISTANCE, STARTED, SOFTWARE, KEY_COUNT };
+enum header_key {
+	TRACKER,
+	SERIAL,
+	RATE,
+	PX,
+	MM,
+	DISTANCE,
+	STARTED,
+	SOFTWARE,
+	PUPIL_UNIT,
+	COORDINATES,
+	KEY_COUNT
+};
 
 static const char *const key_names[KEY_COUNT] = {
-	[TRACKER] = "tracker", [SERIAL] = "serial",     [RATE] = "rate_hz",
-	[PX] = "display_px",   [MM] = "display_mm",     [DISTANCE] = "distance_mm",
-	[STARTED] = "started", [SOFTWARE] = "software",
+	[TRACKER] = "tracker",         [SERIAL] = "serial",     [RATE] = "rate_hz",
+	[PX] = "display_px",           [MM] = "display_mm",     [DISTANCE] = "distance_mm",
+	[STARTED] = "started",         [SOFTWARE] = "software", [PUPIL_UNIT] = "pupil_unit",
+	[COORDINATES] = "coordinates",
 };
 
 static const char *parse_header_value(enum header_key key, char *value, locale_t c_locale,
@@ -232,6 +245,13 @@ static const char *parse_header_value(enum header_key key, char *value, locale_t
 		return parse_header_name(value, header->started);
 	case SOFTWARE:
 		return parse_header_name(value, header->software);
+	case PUPIL_UNIT:
+		return parse_header_name(value, header->pupil_unit);
+	case COORDINATES:
+		header->scene_camera = strcmp(value, GZ_GAZE_LOG_SCENE_CAMERA) == 0;
+		return header->scene_camera ? NULL
+					    : "the only coordinates that are named are those "
+					      "of a scene camera";
 	case KEY_COUNT:
 		break;
 	}
@@ -377,10 +397,23 @@ static bool take_gap_fields(struct line_fields *fields, struct gz_gaze_log_recor
 	       take_text_field(fields, record->text) && !fields->next;
 }
 
+static bool take_mark_keys(struct line_fields *fields, char *out_keys)
+{
+	const char *field = cut_off_field(fields);
+	return field && field[0] && gz_field_text(field, out_keys, GZ_GAZE_LOG_KEYS_SIZE);
+}
+
+/* A mark may have a duration, and then further keys. */
 static bool take_mark_fields(struct line_fields *fields, struct gz_gaze_log_record *record)
 {
-	return take_int64_field(fields, &record->host_ns) &&
-	       take_text_field(fields, record->text) && !fields->next;
+	record->duration_ns = 0;
+	record->keys[0] = '\0';
+	if (!take_int64_field(fields, &record->host_ns) || !take_text_field(fields, record->text))
+		return false;
+	if (fields->next &&
+	    (!take_int64_field(fields, &record->duration_ns) || record->duration_ns < 0))
+		return false;
+	return !fields->next || (take_mark_keys(fields, record->keys) && !fields->next);
 }
 
 static bool take_window_fields(struct line_fields *fields, struct gz_gaze_log_record *record)

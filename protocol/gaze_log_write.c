@@ -128,6 +128,10 @@ enum gz_result gz_gaze_log_print_header(const struct gz_gaze_log_header *header,
 		print_display_lines(&out, &header->display);
 	print_text_line(&out, "started", header->started);
 	print_text_line(&out, "software", header->software);
+	if (header->pupil_unit[0])
+		print_text_line(&out, "pupil_unit", header->pupil_unit);
+	if (header->scene_camera)
+		print_text_line(&out, "coordinates", GZ_GAZE_LOG_SCENE_CAMERA);
 	for (size_t i = 0; i < header->setting_count; i++) {
 		gz_gaze_log_text_print(&out, "#pipeline.%s ", header->settings[i].key);
 		gz_gaze_log_text_print_escaped(&out, header->settings[i].value);
@@ -169,6 +173,22 @@ static void print_sample_fields(struct gz_gaze_log_text *text, const struct gz_s
 	print_eye_fields(text, &sample->eye[GZ_EYE_LEFT]);
 }
 
+/* The duration and the keys come only if there are any, so that a plain mark is as short as ever.
+ */
+static void print_mark_fields(struct gz_gaze_log_text *text,
+			      const struct gz_gaze_log_record *record)
+{
+	gz_gaze_log_text_print(text, "!mark\t%" PRId64 "\t", record->host_ns);
+	gz_gaze_log_text_print_escaped(text, record->text);
+	if (record->duration_ns == 0 && !record->keys[0])
+		return;
+	gz_gaze_log_text_print(text, "\t%" PRId64, record->duration_ns);
+	if (!record->keys[0])
+		return;
+	gz_gaze_log_text_print(text, "\t");
+	gz_gaze_log_text_print_escaped(text, record->keys);
+}
+
 enum gz_result gz_gaze_log_print_record(const struct gz_gaze_log_record *record, char *text,
 					size_t size, size_t *out_length)
 {
@@ -185,8 +205,7 @@ enum gz_result gz_gaze_log_print_record(const struct gz_gaze_log_record *record,
 		gz_gaze_log_text_print_escaped(&out, record->text);
 		break;
 	case GZ_GAZE_LOG_MARK:
-		gz_gaze_log_text_print(&out, "!mark\t%" PRId64 "\t", record->host_ns);
-		gz_gaze_log_text_print_escaped(&out, record->text);
+		print_mark_fields(&out, record);
 		break;
 	case GZ_GAZE_LOG_WINDOW:
 		gz_gaze_log_text_print(&out, "!window\t%" PRId64 "\t%d\t%d\t%d\t%d",

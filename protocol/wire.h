@@ -185,12 +185,19 @@ enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_s
  * What clients send to the inlet. Encoders and decoders as above.
  */
 
+/** Room for the other keys of an annotation as JSON, with a NUL, bytes; more are left out, and a
+ * key "truncated" says so. That of a mark in the gaze log. */
+#define GZ_ANNOTATION_KEYS_SIZE 448
+
 /** A client's label for a moment or a stretch of time, as in Pupil's annotations. */
 struct gz_annotation {
 	char label[GZ_ANNOTATION_LABEL_SIZE];
 	bool has_time;
 	int64_t time_ns;     /**< set if has_time */
 	int64_t duration_ns; /**< 0 for a moment */
+	/** All other keys as a JSON object; empty: none. Set by the decoder; the encoder ignores
+	 * it. */
+	char keys[GZ_ANNOTATION_KEYS_SIZE];
 };
 
 /** Encode {"topic": "annotation", "label", "timestamp" s if it has one, "duration" s}, as Pupil's

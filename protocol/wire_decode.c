@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "protocol/wire_json.h"
 #include "protocol/wire_values.h"
 
 static const char *event_name(int event)
@@ -442,6 +443,7 @@ enum gz_result gz_wire_decode_surface(const void *bytes, size_t size,
 enum gz_result gz_wire_decode_annotation(const void *bytes, size_t size,
 					 struct gz_annotation *out_annotation)
 {
+	static const char *const known[] = { "topic", "label", "timestamp", "duration", NULL };
 	struct gz_annotation annotation = { 0 };
 	struct gz_unpack unpack;
 	gz_unpack_begin(&unpack, bytes, size);
@@ -452,6 +454,8 @@ enum gz_result gz_wire_decode_annotation(const void *bytes, size_t size,
 	gz_unpack_time(&unpack, map, "duration", GZ_NS_PER_S, &annotation.duration_ns);
 	if (annotation.label[0] == '\0' || annotation.duration_ns < 0)
 		unpack.refused = true;
+	if (!unpack.refused)
+		gz_wire_print_json(map, known, annotation.keys, sizeof annotation.keys);
 	enum gz_result result = gz_unpack_end(&unpack);
 	if (result == GZ_OK)
 		*out_annotation = annotation;

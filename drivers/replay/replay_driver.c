@@ -3,6 +3,7 @@
  * A recorded gaze log, delivered through the interface of a tracker: the samples as they were
  * recorded, with their numbers and times.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -98,6 +99,10 @@ static int64_t recorded_due_ns(struct replay_device *replay, int64_t now_ns)
 static void deliver_recorded(struct replay_device *replay, struct gz_sample *out_sample)
 {
 	*out_sample = replay->record.sample;
+	/* A pupil in another unit is not a diameter in mm, which readers expect. */
+	if (gz_gaze_log_header(replay->reader)->pupil_unit[0])
+		out_sample->eye[GZ_EYE_RIGHT].pupil_mm = out_sample->eye[GZ_EYE_LEFT].pupil_mm =
+			NAN;
 	out_sample->lost_before = replay->gap > UINT32_MAX ? UINT32_MAX : (uint32_t)replay->gap;
 	replay->lost += replay->gap;
 	replay->gap = 0;

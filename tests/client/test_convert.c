@@ -81,6 +81,7 @@ static const char eyelink_text[] =
 	"MSG\t90 !CAL before anything\n"
 	"MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
 	"START\t100 \tLEFT\tRIGHT\tSAMPLES\tEVENTS\n"
+	"PUPIL\tAREA\n"
 	"SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t2000.00\tTRACKING\tCR\tFILTER\t2\n"
 	"100\t  512.0\t  384.0\t 1037.0\t  102.4\t  76.8\t 900.0\t.....\n"
 	"100\t  512.0\t  384.0\t 1037.0\t   .\t   .\t    0.0\t.....\n"
@@ -104,7 +105,7 @@ static void eyelink_samples_marks_and_pauses_are_read(void **state)
 	assert_string_equal(taken.header.tracker, "EyeLink");
 	assert_near(taken.header.rate_hz, 2000);
 	assert_false(taken.header.has_display); /* its size is unknown */
-	assert_int_equal(taken.count, 6);
+	assert_int_equal(taken.count, 7);
 	assert_int_equal(sample(0)->host_ns, 100 * GZ_NS_PER_MS);
 	assert_int_equal(sample(1)->host_ns, 100 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
 	assert_true(sample(0)->eye[GZ_EYE_LEFT].valid && sample(0)->eye[GZ_EYE_RIGHT].valid);
@@ -112,30 +113,66 @@ static void eyelink_samples_marks_and_pauses_are_read(void **state)
 	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.y, 0.5);
 	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].point.x, 0.1);
 	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].point.y, 0.1);
-	assert_true(isnan(sample(0)->eye[GZ_EYE_LEFT].pupil_mm)); /* no unit of length */
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].pupil_mm, 1037);
+	assert_string_equal(taken.header.pupil_unit, "arbitrary (EyeLink area)");
 	assert_false(sample(1)->eye[GZ_EYE_RIGHT].valid);
+	assert_true(isnan(sample(1)->eye[GZ_EYE_RIGHT].pupil_mm)); /* 0: there was none */
 	assert_int_equal(taken.record[2].kind, GZ_GAZE_LOG_MARK);
-	assert_string_equal(taken.record[2].text, "a mark with\ta tab");
-	assert_string_equal(taken.record[3].text, "between");
-	assert_int_equal(taken.record[4].kind, GZ_GAZE_LOG_GAP);
-	assert_int_equal(taken.record[4].host_ns, 300 * GZ_NS_PER_MS);
-	assert_int_equal(sample(5)->host_ns, 300 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
-	assert_false(sample(5)->eye[GZ_EYE_LEFT].valid);
-	assert_near((double)sample(5)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* beyond the edge */
+	assert_string_equal(taken.record[2].text, "fixation");
+	assert_int_equal(taken.record[2].host_ns, 100 * GZ_NS_PER_MS);
+	assert_true(taken.record[2].duration_ns == 2 * GZ_NS_PER_MS);
+	assert_string_equal(taken.record[2].keys, "{\"source\":\"EyeLink\",\"eye\":\"left\","
+						  "\"x_px\":512,\"y_px\":384,\"pupil\":1037}");
+	assert_string_equal(taken.record[3].text, "a mark with\ta tab");
+	assert_true(taken.record[3].duration_ns == 0);
+	assert_string_equal(taken.record[3].keys, "");
+	assert_string_equal(taken.record[4].text, "between");
+	assert_int_equal(taken.record[5].kind, GZ_GAZE_LOG_GAP);
+	assert_int_equal(taken.record[5].host_ns, 300 * GZ_NS_PER_MS);
+	assert_int_equal(sample(6)->host_ns, 300 * GZ_NS_PER_MS + GZ_NS_PER_MS / 2);
+	assert_false(sample(6)->eye[GZ_EYE_LEFT].valid);
+	assert_near((double)sample(6)->eye[GZ_EYE_RIGHT].point.x, -0.01); /* beyond the edge */
 }
 
 /* In some files the message comes between START and the first sample, at START's time. */
-static void eyelink_mark_at_the_start_of_a_block_is_kept(void **state)
+static void eyelink_events_of_the_parser_become_marks(void **state)
 {
 	(void)state;
 	static const char text[] =
+		"ESACC R  90 95 6 1 2 3 4 5 6\n"
 		"MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
-		"MSG\t99 !MODE RECORD of no block\n"
 		"START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
-		"PRESCALER\t1\n"
+		"PUPIL\tDIAMETER\n"
 		"SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
-		"MSG\t100 !MODE RECORD CR 500 2 1 R\n"
-		"100\t  512.0\t  384.0\t 1037.0\t...\n";
+		"100\t  512.0\t  384.0\t 1037.0\t...\n"
+		"SSACC R  100\n"
+		"ESACC R  100\t110\t12\t  512.0\t  384.5\t   .\t   .\t   5.25\t    300\n"
+		"EBLINK L 120\t130\t12\n"
+		"EFIX R   nonsense\n";
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, text), GZ_OK);
+	assert_string_equal(taken.header.pupil_unit, "arbitrary (EyeLink diameter)");
+	assert_int_equal(counts.skipped, 2); /* before the first block, and nonsense */
+	assert_int_equal(taken.count, 3);
+	assert_string_equal(taken.record[1].text, "saccade");
+	assert_string_equal(taken.record[1].keys,
+			    "{\"source\":\"EyeLink\",\"eye\":\"right\",\"start_x_px\":512,"
+			    "\"start_y_px\":384.5,\"amplitude_deg\":5.25,"
+			    "\"peak_velocity_deg_s\":300}");
+	assert_string_equal(taken.record[2].text, "blink");
+	assert_int_equal(taken.record[2].host_ns, 120 * GZ_NS_PER_MS);
+	assert_string_equal(taken.record[2].keys, "{\"source\":\"EyeLink\",\"eye\":\"left\"}");
+}
+
+static void eyelink_mark_at_the_start_of_a_block_is_kept(void **state)
+{
+	(void)state;
+	static const char text[] = "MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
+				   "MSG\t99 !MODE RECORD of no block\n"
+				   "START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
+				   "PRESCALER\t1\n"
+				   "SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
+				   "MSG\t100 !MODE RECORD CR 500 2 1 R\n"
+				   "100\t  512.0\t  384.0\t 1037.0\t...\n";
 	assert_int_equal(read_text(&gz_recording_reader_eyelink, text), GZ_OK);
 	assert_int_equal(taken.count, 2);
 	assert_int_equal(taken.record[0].kind, GZ_GAZE_LOG_MARK);
@@ -186,6 +223,7 @@ static void pupil_points_are_turned_and_eyes_told_apart(void **state)
 	assert_int_equal(counts.samples, 2);
 	assert_int_equal(counts.skipped, 2);
 	assert_non_null(strstr(captured.last, "scene camera"));
+	assert_true(taken.header.scene_camera);
 	const struct gz_eye_sample *right = &sample(0)->eye[GZ_EYE_RIGHT];
 	const struct gz_eye_sample *left = &sample(0)->eye[GZ_EYE_LEFT];
 	assert_int_equal(sample(0)->host_ns, 1216218711000);
@@ -362,6 +400,7 @@ TEST_SUITE(convert)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(eyelink_samples_marks_and_pauses_are_read),
+		TEST(eyelink_events_of_the_parser_become_marks),
 		TEST(eyelink_mark_at_the_start_of_a_block_is_kept),
 		TEST(eyelink_display_is_complete_with_what_the_user_knows),
 		TEST(eyelink_of_no_gaze_or_no_screen_is_refused_with_the_remedy),

@@ -29,9 +29,9 @@ static int tear_down(void **state)
 
 static const char *in_directory(const char *name)
 {
-	static char paths[4][128];
+	static char paths[16][128];
 	static int next;
-	char *path = paths[next++ % 4];
+	char *path = paths[next++ % 16];
 	snprintf(path, sizeof paths[0], "%s/%s", directory, name);
 	return path;
 }
@@ -120,7 +120,8 @@ static void log_becomes_tables_with_every_sample_and_mark(void **state)
 	char *samples = contents(to), *events = contents(in_directory("a_events.csv"));
 	assert_int_equal(count(samples, "\n"), 1 + 2000);
 	assert_non_null(strstr(samples, "\n0,10.000000000,"));
-	assert_string_equal(events, "host_s,kind,text\n11.000000000,mark,\"half \"\"way\"\"\"\n");
+	assert_string_equal(events, "host_s,kind,text,duration_s,keys\n"
+				    "11.000000000,mark,\"half \"\"way\"\"\",,\n");
 	free(samples);
 	free(events);
 }
@@ -139,12 +140,82 @@ static void log_becomes_bids_files_of_the_eyes_that_were_measured(void **state)
 	assert_int_equal(strncmp(left, "10000000000\t", 12), 0);
 	assert_non_null(strstr(about, "\"RecordedEye\": \"left\""));
 	assert_non_null(strstr(about, "\"SamplingFrequency\": 1000"));
-	assert_string_equal(events, "11000000000\tn/a\tmark\thalf \"way\"\n");
+	assert_string_equal(events, "11000000000\tn/a\tmark\thalf \"way\"\tn/a\n");
 	assert_int_equal(access(in_directory("sub-1_recording-eye3_physio.json"), F_OK), 0);
 	assert_int_equal(access(in_directory("sub-1_recording-eye3_physio.tsv.gz.part"), F_OK), -1);
 	free(left);
 	free(about);
 	free(events);
+}
+
+static void write_text(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	assert_true(fputs(text, file) >= 0);
+	assert_int_equal(fclose(file), 0);
+}
+
+/* A unit that is not mm, and marks with a duration and keys, through a gaze log into every format.
+ */
+static void eyelink_pupils_and_events_survive_all_conversions(void **state)
+{
+	(void)state;
+	const char *from = in_directory("e.asc"), *log = in_directory("e.gzl");
+	write_text(from, "** CONVERTED FROM e.edf\n"
+			 "MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
+			 "START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
+			 "PUPIL\tAREA\n"
+			 "SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
+			 "100\t  512.0\t  384.0\t 1037.0\t...\n"
+			 "102\t  512.0\t  384.0\t 1038.0\t...\n"
+			 "EFIX R   100\t102\t4\t  512.0\t  384.0\t   1037\n");
+	struct program program = GAZECTL_RUN("convert", from, log);
+	assert_done(&program);
+	program = GAZECTL_RUN("convert", log, in_directory("e.csv"));
+	assert_done(&program);
+	program = GAZECTL_RUN("convert", log, in_directory("e_physio.tsv.gz"));
+	assert_done(&program);
+	char *text = contents(log), *table = contents(in_directory("e.csv"));
+	char *table_events = contents(in_directory("e_events.csv"));
+	char *about = contents(in_directory("e_recording-eye2_physio.json"));
+	char *events = contents(in_directory("e_recording-eye2_physioevents.tsv.gz"));
+	assert_non_null(strstr(text, "\n#pupil_unit arbitrary (EyeLink area)\n"));
+	assert_non_null(strstr(text, "\n!mark\t100000000\tfixation\t4000000\t{\"source\":"));
+	assert_non_null(strstr(table, "eye0_pupil_size"));
+	assert_non_null(strstr(table, ",1037,"));
+	assert_non_null(strstr(table_events, "mark,\"fixation\",0.004000000,\"{\"\"source\"\":"));
+	assert_non_null(strstr(about, "unit: arbitrary (EyeLink area)"));
+	assert_null(strstr(about, "\"mm\""));
+	assert_non_null(strstr(events, "100000000\t0.004\tmark\tfixation\t{\"source\":"));
+	free(text);
+	free(table);
+	free(table_events);
+	free(about);
+	free(events);
+}
+
+static void pupil_points_are_no_gaze_on_a_screen(void **state)
+{
+	(void)state;
+	const char *from = in_directory("p.csv"), *log = in_directory("p.gzl");
+	write_text(from, "gaze_timestamp,confidence,norm_pos_x,norm_pos_y,base_data\n"
+			 "10,1,0.25,0.75,10-0\n10.1,1,0.25,0.75,10.1-0\n");
+	struct program program = GAZECTL_RUN("convert", "--display.px", "1920x1080", "--display.mm",
+					     "500 300", "--display.distance_mm", "600", from, log);
+	assert_done(&program);
+	program = GAZECTL_RUN("convert", log, in_directory("p_physio.tsv.gz"));
+	assert_done(&program);
+	char *text = contents(log), *about = contents(in_directory("p_recording-eye2_physio.json"));
+	char *samples = contents(in_directory("p_recording-eye2_physio.tsv.gz"));
+	assert_non_null(strstr(text, "\n#coordinates scene camera\n"));
+	assert_non_null(strstr(about, "\"gaze-in-world\""));
+	assert_null(strstr(about, "screen"));
+	assert_null(strstr(about, "StimulusPresentation"));
+	assert_non_null(strstr(samples, "10000000000\t0.25\t0.25\t"));
+	free(text);
+	free(about);
+	free(samples);
 }
 
 static void files_that_are_there_are_kept_unless_forced(void **state)
@@ -259,6 +330,8 @@ TEST_SUITE(convert_files)
 		TEST(log_converted_to_a_log_is_the_same_log),
 		TEST(log_becomes_tables_with_every_sample_and_mark),
 		TEST(log_becomes_bids_files_of_the_eyes_that_were_measured),
+		TEST(eyelink_pupils_and_events_survive_all_conversions),
+		TEST(pupil_points_are_no_gaze_on_a_screen),
 		TEST(files_that_are_there_are_kept_unless_forced),
 		TEST(what_cannot_be_converted_is_refused_and_leaves_nothing),
 		TEST(picture_shows_each_fixation_and_the_path),

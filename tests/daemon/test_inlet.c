@@ -11,6 +11,8 @@ static const char annotation[] =
 /* {"label": "go", "duration": 2} */
 static const char lasting[] = "\x82\xa5label\xa2go\xa8"
 			      "duration\x02";
+/* {"label": "go", "trial": 7} */
+static const char with_keys[] = "\x82\xa5label\xa2go\xa5trial\x07";
 /* {"subject": "x"} */
 static const char notification[] = "\x81\xa7subject\xa1x";
 
@@ -33,7 +35,13 @@ static void inlet_annotation_becomes_a_mark(void **state)
 	assert_memory_equal(message.body, annotation, message.size);
 	assert_int_equal(judge("annotation.player", lasting, sizeof lasting - 1), GZ_OK);
 	assert_int_equal(message.mark_ns, 77);
-	assert_string_equal(message.mark, "go, duration 2 s");
+	assert_string_equal(message.mark, "go");
+	assert_true(message.mark_duration_ns == 2 * GZ_NS_PER_S);
+	assert_string_equal(message.mark_keys, "");
+	assert_int_equal(judge("annotation", with_keys, sizeof with_keys - 1), GZ_OK);
+	assert_string_equal(message.mark, "go");
+	assert_true(message.mark_duration_ns == 0);
+	assert_string_equal(message.mark_keys, "{\"trial\":7}");
 }
 
 static void inlet_notification_passes_and_is_no_mark(void **state)

@@ -158,6 +158,8 @@ static inline void assert_same_record(const struct gz_gaze_log_record *a,
 	assert_true(a->host_ns == b->host_ns);
 	assert_true(a->missing == b->missing);
 	assert_string_equal(a->text, b->text);
+	assert_true(a->duration_ns == b->duration_ns);
+	assert_string_equal(a->keys, b->keys);
 	assert_memory_equal(a->window_px, b->window_px, sizeof a->window_px);
 }
 

@@ -209,6 +209,10 @@ static void line_malformed_is_skipped_with_its_number(void **state)
 		"!gap\t1\t2\tlost\tmore",
 		"!mark\t1",
 		"!mark\tnow\ttext",
+		"!mark\t1\ttext\tlong",
+		"!mark\t1\ttext\t-1",
+		"!mark\t1\ttext\t1\t",
+		"!mark\t1\ttext\t1\t{}\tmore",
 		"!mark\t1\tan unknown \\escape",
 		"!mark\t1\tends in \\",
 		"!mark \t1\ttext",
@@ -223,6 +227,8 @@ static void line_malformed_is_skipped_with_its_number(void **state)
 		check_line(malformed[i], false);
 	check_line(SAMPLE, true);
 	check_line("!mark\t1\t", true);
+	check_line("!mark\t1\ttext\t1500000000", true);
+	check_line("!mark\t1\ttext\t0\t{\"trial\":7}", true);
 	/* An empty field was not measured, whether something is valid included. */
 	check_line("1\t\t2\t0.5\t0.5\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t\t", true);
 }

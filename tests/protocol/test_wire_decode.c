@@ -635,6 +635,101 @@ static void gaze_cut_anywhere_is_refused(void **state)
 		assert_int_equal(gz_wire_decode_gaze(message.bytes, size, &back), GZ_ERR_PROTOCOL);
 }
 
+/* What the other keys of an annotation become; @p pairs are @p count pairs after the label. */
+static void check_annotation_keys(int count, const char *pairs, size_t size, const char *expected)
+{
+	static const char label[] = "\xa5label\xa1x";
+	unsigned char bytes[2048];
+	struct gz_annotation back;
+	size_t used = 0;
+	bytes[used++] = (unsigned char)(0x80 + count + 1);
+	memcpy(bytes + used, label, sizeof label - 1);
+	used += sizeof label - 1;
+	memcpy(bytes + used, pairs, size);
+	used += size;
+	assert_int_equal(gz_wire_decode_annotation(bytes, used, &back), GZ_OK);
+	assert_string_equal(back.label, "x");
+	assert_string_equal(back.keys, expected);
+}
+
+#define KEYS(count, pairs, expected) \
+	check_annotation_keys((count), (pairs), sizeof(pairs) - 1, (expected))
+
+static void annotation_keeps_its_other_keys_as_json(void **state)
+{
+	(void)state;
+	KEYS(0, "", "");
+	KEYS(1,
+	     "\xa5topic\xaa"
+	     "annotation",
+	     "");
+	KEYS(3,
+	     "\xa1"
+	     "a\x07\xa1"
+	     "b\xd0\xfe\xa1"
+	     "c\xcb\x3f\xb9\x99\x99\x99\x99\x99\x9a",
+	     "{\"a\":7,\"b\":-2,\"c\":0.1}");
+	KEYS(3,
+	     "\xa1"
+	     "a\xc3\xa1"
+	     "b\xc0\xa1"
+	     "c\xc4\x01x",
+	     "{\"a\":true,\"b\":null,\"c\":null}");
+	KEYS(1,
+	     "\xa1"
+	     "a\xcb\x7f\xf0\x00\x00\x00\x00\x00\x00",
+	     "{\"a\":null}");
+	KEYS(1,
+	     "\xa1"
+	     "a\x92\x01\x81\xa1"
+	     "b\x90",
+	     "{\"a\":[1,{\"b\":[]}]}");
+	KEYS(1,
+	     "\xa3"
+	     "q\"\\\xa4"
+	     "\t\x7f\xc3\xa9",
+	     "{\"q\\\"\\\\\":\"\\u0009\x7f\xc3\xa9\"}");
+	KEYS(1,
+	     "\xa1"
+	     "a\xa5\xff\xc3(\xe2\x82",
+	     "{\"a\":\"?\?(?\?\"}");
+	KEYS(2,
+	     "\x01\x02\xa1"
+	     "a\x03",
+	     "{\"a\":3}"); /* a key that is no text */
+}
+
+static void annotation_keys_without_room_are_left_out_and_said_so(void **state)
+{
+	(void)state;
+	char pairs[1024], expected[GZ_ANNOTATION_KEYS_SIZE];
+	/* "a": 400 letters has room, "b": 200 letters has not, "c": 1 has again. */
+	size_t used;
+	static const char a[] = "\xa1"
+				"a\xda\x01\x90";
+	static const char b[] = "\xa1"
+				"b\xd9\xc8";
+	used = 0;
+	memcpy(pairs, a, sizeof a - 1);
+	used += sizeof a - 1;
+	memset(pairs + used, 'k', 400);
+	used += 400;
+	memcpy(pairs + used, b, sizeof b - 1);
+	used += sizeof b - 1;
+	memset(pairs + used, 'k', 200);
+	used += 200;
+	memcpy(pairs + used,
+	       "\xa1"
+	       "c\x01",
+	       3);
+	used += 3;
+	char letters[401];
+	memset(letters, 'k', 400);
+	letters[400] = '\0';
+	snprintf(expected, sizeof expected, "{\"a\":\"%s\",\"c\":1,\"truncated\":true}", letters);
+	check_annotation_keys(3, pairs, used, expected);
+}
+
 static void annotation_comes_back_as_it_was_sent(void **state)
 {
 	(void)state;
@@ -660,6 +755,8 @@ TEST_SUITE(wire_decode)
 		cmocka_unit_test(gaze_comes_back_as_it_was_sent),
 		cmocka_unit_test(gaze_of_each_event_comes_back),
 		cmocka_unit_test(annotation_comes_back_as_it_was_sent),
+		cmocka_unit_test(annotation_keeps_its_other_keys_as_json),
+		cmocka_unit_test(annotation_keys_without_room_are_left_out_and_said_so),
 		cmocka_unit_test(gaze_unmeasured_comes_back_as_nan),
 		cmocka_unit_test(fixation_comes_back_as_it_was_sent),
 		cmocka_unit_test(blink_comes_back_as_it_was_sent),

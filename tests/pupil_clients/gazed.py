@@ -74,11 +74,14 @@ class Gazed:
     def recordings(self):
         return sorted(name for name in os.listdir(self.place) if name.endswith(".gzl"))
 
+    def mark_fields(self, name):
+        """The fields of every mark of a recording."""
+        with open(os.path.join(self.place, name)) as file:
+            return [line.rstrip("\n").split("\t") for line in file if line.startswith("!mark")]
+
     def marks(self, name):
         """(time in s, text) of every mark of a recording."""
-        with open(os.path.join(self.place, name)) as file:
-            lines = [line.rstrip("\n").split("\t") for line in file if line.startswith("!mark")]
-        return [(int(line[1]) * 1e-9, line[2]) for line in lines]
+        return [(int(fields[1]) * 1e-9, fields[2]) for fields in self.mark_fields(name)]
 
     def close(self):
         if self.process.poll() is None:

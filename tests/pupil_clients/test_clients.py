@@ -313,7 +313,7 @@ class NetworkClientTest(ClientTest):
         receive(sub)
         self.assertEqual(self.client.ask("R named-session"), "OK")
         annotation = {"topic": "annotation", "label": "by request",
-                      "timestamp": float(self.client.ask("t")), "custom": 7}
+                      "timestamp": float(self.client.ask("t")), "duration": 1.5, "custom": 7}
         self.client.remote.send_string("annotation", flags=zmq.SNDMORE)
         self.client.remote.send(msgpack.packb(annotation, use_bin_type=True))
         self.assertEqual(self.client.remote.recv_string(), "Message forwarded.")
@@ -323,6 +323,9 @@ class NetworkClientTest(ClientTest):
         (mark_time, text), = self.gazed.marks("named-session.gzl")
         self.assertEqual(text, "by request")
         self.assertAlmostEqual(mark_time, annotation["timestamp"], places=6)
+        (*_, duration_ns, keys), = self.gazed.mark_fields("named-session.gzl")
+        self.assertEqual(int(duration_ns), 1500000000)
+        self.assertEqual(keys, '{"custom":7}')
 
 
 class NetworkApiTest(ClientTest):

@@ -1,12 +1,14 @@
 /* The reader of EyeLink recordings of gaze positions as edf2asc writes them (.asc): SR Research,
  * "EyeLink 1000 User Manual", section "ASC file format". A sample line has a time in ms and, for
  * each tracked eye, left before right, x and y in pixels and the size of the pupil in a unit of its
- * own. The fields after them (velocities, resolution, head target, flags) are ignored. */
+ * own. The fields after them (velocities, resolution, head target, flags) are ignored. Lines of
+ * events that the tracker's parser found (EFIX, ESACC, EBLINK) follow their last sample. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/text.h"
 #include "client/gazectl/convert/recording_format.h"
 
 #define GZ_LOG_MODULE "eyelink"
@@ -18,6 +20,7 @@ struct eyelink {
 	struct gz_convert_counts *counts;
 	bool eye[GZ_EYE_COUNT];
 	double rate_hz;
+	char pupil_unit[GZ_NAME_SIZE];
 	double rectangle_px[4]; /* left, top, right, bottom of the screen's pixels, inclusive */
 	bool has_rectangle;
 	bool sent_header;
@@ -57,6 +60,8 @@ static enum gz_result send_eyelink_header(struct eyelink *eyelink)
 			settings.display_px[i] =
 				(int)(eyelink->rectangle_px[2 + i] - eyelink->rectangle_px[i] + 1);
 	struct gz_gaze_log_header header = gz_recording_header(&settings, "EyeLink");
+	snprintf(header.pupil_unit, sizeof header.pupil_unit, "%s",
+		 eyelink->pupil_unit[0] ? eyelink->pupil_unit : "arbitrary (EyeLink)");
 	return eyelink->sink->header(eyelink->sink->user, &header);
 }
 
@@ -105,8 +110,74 @@ static enum gz_result take_eyelink_message(struct eyelink *eyelink, const char *
 		return GZ_OK;
 	eyelink->record.kind = GZ_GAZE_LOG_MARK;
 	eyelink->record.host_ns = ns_of_ms(ms);
+	eyelink->record.duration_ns = 0;
+	eyelink->record.keys[0] = '\0';
 	gz_text_copy(eyelink->record.text, sizeof eyelink->record.text, text);
 	return send_eyelink_record(eyelink);
+}
+
+/* An event of the tracker's parser, and the names of the numbers after its duration. */
+struct parsed_event {
+	const char *line; /* how its line begins */
+	const char *text; /* of the mark */
+	const char *keys[6];
+};
+
+static const struct parsed_event parsed_events[] = {
+	{ "EFIX", "fixation", { "x_px", "y_px", "pupil" } },
+	{ "ESACC",
+	  "saccade",
+	  { "start_x_px", "start_y_px", "end_x_px", "end_y_px", "amplitude_deg",
+	    "peak_velocity_deg_s" } },
+	{ "EBLINK", "blink", { NULL } },
+};
+
+static void print_event_keys(const struct parsed_event *event, const struct gz_text_fields *fields,
+			     char *keys, size_t size)
+{
+	char number[32];
+	size_t used = (size_t)snprintf(keys, size, "{\"source\":\"EyeLink\",\"eye\":\"%s\"",
+				       fields->field[1][0] == 'L' ? "left" : "right");
+	for (size_t i = 0; i < sizeof event->keys / sizeof *event->keys && event->keys[i]; i++) {
+		double value = gz_text_field_number(fields, 5 + i);
+		if (!isfinite(value))
+			continue;
+		snprintf(number, sizeof number, "%.9g", value);
+		gz_number_normalise_point(number);
+		used += (size_t)snprintf(keys + used, size - used, ",\"%s\":%s", event->keys[i],
+					 number);
+	}
+	snprintf(keys + used, size - used, "}");
+}
+
+/* Take "EFIX L <start> <end> <duration> …" as a mark with a duration; all in ms. */
+static enum gz_result take_parsed_event(struct eyelink *eyelink, const struct parsed_event *event,
+					char *line)
+{
+	struct gz_text_fields fields;
+	gz_text_split(line, ' ', &fields);
+	double start_ms = gz_text_field_number(&fields, 2);
+	double duration_ms = gz_text_field_number(&fields, 4);
+	if (!eyelink->sent_header || fields.count < 5 || !is_time_ms(start_ms) ||
+	    !is_time_ms(duration_ms)) {
+		eyelink->counts->skipped++;
+		return GZ_OK;
+	}
+	struct gz_gaze_log_record *record = &eyelink->record;
+	record->kind = GZ_GAZE_LOG_MARK;
+	record->host_ns = ns_of_ms(start_ms);
+	record->duration_ns = ns_of_ms(duration_ms);
+	snprintf(record->text, sizeof record->text, "%s", event->text);
+	print_event_keys(event, &fields, record->keys, sizeof record->keys);
+	return send_eyelink_record(eyelink);
+}
+
+/* Take "PUPIL AREA" or "PUPIL DIAMETER": what the size of the pupil is, in a unit of its own. */
+static void take_pupil_line(struct eyelink *eyelink, const char *text)
+{
+	bool diameter = strstr(text, "DIAMETER") != NULL;
+	snprintf(eyelink->pupil_unit, sizeof eyelink->pupil_unit, "arbitrary (EyeLink %s)",
+		 diameter ? "diameter" : "area");
 }
 
 /* Take "SAMPLES GAZE LEFT RIGHT … RATE 500.00 …": the eyes and the rate of the next block. */
@@ -169,6 +240,9 @@ static void take_eyelink_eye(const struct eyelink *eyelink, const struct gz_text
 	eye->point = gz_recording_point((x_px - r[0]) / (r[2] - r[0] + 1),
 					(y_px - r[1]) / (r[3] - r[1] + 1));
 	eye->valid = isfinite(eye->point.x);
+	double pupil = gz_text_field_number(fields, first + 2); /* 0: no pupil was found */
+	if (pupil > 0 && pupil < 1e9)
+		eye->pupil_mm = (float)pupil; /* the header says that it is not mm */
 }
 
 static enum gz_result take_eyelink_sample(struct eyelink *eyelink, char *line)
@@ -209,13 +283,18 @@ static enum gz_result take_eyelink_line(struct eyelink *eyelink, char *line)
 		return eyelink->recording ? take_eyelink_sample(eyelink, line) : GZ_OK;
 	if (strncmp(line, "MSG", 3) == 0)
 		return take_eyelink_message(eyelink, line + 3);
+	if (strncmp(line, "PUPIL", 5) == 0)
+		take_pupil_line(eyelink, line);
 	if (strncmp(line, "SAMPLES", 7) == 0)
 		return take_samples_line(eyelink, line);
 	if (strncmp(line, "START", 5) == 0)
 		return begin_block(eyelink, line + 5);
 	if (strncmp(line, "END", 3) == 0)
 		eyelink->recording = false;
-	/* Other lines are settings, or events that the tracker derived from its samples. */
+	for (size_t i = 0; i < sizeof parsed_events / sizeof *parsed_events; i++)
+		if (strncmp(line, parsed_events[i].line, strlen(parsed_events[i].line)) == 0)
+			return take_parsed_event(eyelink, &parsed_events[i], line);
+	/* Other lines are settings, or beginnings of events, whose end says all. */
 	return GZ_OK;
 }
 

@@ -129,10 +129,10 @@ static enum gz_result read_pupil_export(struct gz_text_lines *lines,
 	if (result != GZ_OK)
 		return result;
 	gz_warn(settings->log,
-		"%s: the points are in the picture of the scene camera, not on a display, unless "
-		"they were exported from a surface",
+		"%s: the points are in the picture of the scene camera, not on a display",
 		settings->name);
 	struct gz_gaze_log_header header = gz_recording_header(settings, "Pupil");
+	header.scene_camera = true;
 	char *line;
 	result = sink->header(sink->user, &header);
 	while (result == GZ_OK || result == GZ_ERR_FULL) {

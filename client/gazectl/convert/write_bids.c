@@ -53,7 +53,13 @@ static enum gz_result bids_begin(void *user, const struct gz_gaze_log_header *he
 {
 	struct gz_recording_output *output = user;
 	output->header = *header;
-	if (!header->has_display)
+	if (header->scene_camera)
+		gz_warn(output->log,
+			"%s: the gaze is in the picture of a scene camera, not on a screen; "
+			"positions "
+			"are fractions of that picture",
+			output->path);
+	else if (!header->has_display)
 		gz_warn(output->log,
 			"%s: the display is not known; positions are fractions of it, not pixels",
 			output->path);
@@ -64,6 +70,12 @@ static enum gz_result bids_begin(void *user, const struct gz_gaze_log_header *he
 			return result;
 	}
 	return GZ_OK;
+}
+
+/* Whether positions are written in pixels of the display, not as fractions. */
+static bool in_pixels(const struct gz_gaze_log_header *header)
+{
+	return header->has_display && !header->scene_camera;
 }
 
 static void format_number(char text[32], double value, int digits)
@@ -83,7 +95,7 @@ static enum gz_result write_bids_sample(struct gz_recording_output *output,
 {
 	char x[32], y[32], pupil[32];
 	const struct gz_display *display = &output->header.display;
-	bool known = output->header.has_display;
+	bool known = in_pixels(&output->header);
 	format_number(x, (double)point.x * (known ? display->px[0] : 1), 9);
 	format_number(y, (double)point.y * (known ? display->px[1] : 1), 9);
 	format_number(pupil, pupil_mm, 6);
@@ -122,23 +134,28 @@ static enum gz_result add_bids_sample(struct gz_recording_output *output,
 	return result;
 }
 
-/* Write onset, duration, kind and text. Tabs and line ends in the text become blanks. */
+/* Write onset, duration, kind, text and keys. JSON has no tabs and line ends. Tabs and line ends in
+ * the text become blanks. */
 static enum gz_result add_bids_event(struct gz_recording_output *output, int number,
 				     const struct gz_gaze_log_record *record, const char *kind)
 {
 	struct gz_output_file *file = &output->recording[number].events;
-	char text[GZ_GAZE_LOG_TEXT_SIZE];
+	char text[GZ_GAZE_LOG_TEXT_SIZE], duration[32];
 	if (!file->open) {
 		enum gz_result result = begin_eye_file(output, number, "_physioevents.tsv.gz",
 						       GZ_OUTPUT_GZIP, file);
 		if (result != GZ_OK)
 			return result;
 	}
+	bool mark = record->kind == GZ_GAZE_LOG_MARK;
 	snprintf(text, sizeof text, "%s", record->text[0] ? record->text : "n/a");
 	for (char *c = text; *c; c++)
 		if (*c == '\t' || *c == '\n' || *c == '\r')
 			*c = ' ';
-	if (gzprintf(file->gzip, "%" PRId64 "\tn/a\t%s\t%s\n", record->host_ns, kind, text) > 0)
+	format_number(duration,
+		      mark && record->duration_ns > 0 ? gz_ns_to_s(record->duration_ns) : NAN, 9);
+	if (gzprintf(file->gzip, "%" PRId64 "\t%s\t%s\t%s\t%s\n", record->host_ns, duration, kind,
+		     text, mark && record->keys[0] ? record->keys : "n/a") > 0)
 		return GZ_OK;
 	gz_err(output->log, "cannot write %s; is the disk full?", file->path);
 	return GZ_ERR_IO;
@@ -184,13 +201,24 @@ static double sampling_rate_hz(const struct gz_recording_output *output,
 	return (double)(recording->samples - 1) / seconds;
 }
 
+static json_t *json_pupil(const struct gz_gaze_log_header *header)
+{
+	char text[GZ_NAME_SIZE + 64];
+	if (!header->pupil_unit[0])
+		return json_column("Diameter of the pupil.", "mm");
+	snprintf(text, sizeof text, "Size of the pupil; unit: %s.", header->pupil_unit);
+	return json_column(text, "arbitrary");
+}
+
 static json_t *json_sample_table(const struct gz_recording_output *output, int number)
 {
 	const struct gz_gaze_log_header *header = &output->header;
-	const char *units = header->has_display ? "pixel" : "arbitrary";
+	const bool scene = header->scene_camera;
+	const char *units = in_pixels(header) ? "pixel" : "arbitrary";
 	json_t *json = json_pack(
 		"{ss ss ss so si so}", "PhysioType", "eyetrack", "RecordedEye", eye_texts[number],
-		"SampleCoordinateSystem", "gaze-on-screen", "SamplingFrequency",
+		"SampleCoordinateSystem", scene ? "gaze-in-world" : "gaze-on-screen",
+		"SamplingFrequency",
 		gz_output_json_number(sampling_rate_hz(output, &output->recording[number])),
 		"StartTime", 0, "ManufacturersModelName", gz_output_json_text(header->tracker));
 	if (header->serial[0])
@@ -203,11 +231,17 @@ static json_t *json_sample_table(const struct gz_recording_output *output, int n
 	json_object_set_new(json, "timestamp",
 			    json_column("Time of the sample by the recording host's clock.", "ns"));
 	json_object_set_new(json, "x_coordinate",
-			    json_column("Gaze position from the screen's left edge.", units));
+			    json_column(scene ? "Gaze position from the left edge of the scene "
+						"camera's picture, as a fraction of its width."
+					      : "Gaze position from the screen's left edge.",
+					units));
 	json_object_set_new(json, "y_coordinate",
-			    json_column("Gaze position from the screen's top edge.", units));
-	json_object_set_new(json, "pupil_size", json_column("Diameter of the pupil.", "mm"));
-	if (header->has_display)
+			    json_column(scene ? "Gaze position from the top edge of the scene "
+						"camera's picture, as a fraction of its height."
+					      : "Gaze position from the screen's top edge.",
+					units));
+	json_object_set_new(json, "pupil_size", json_pupil(header));
+	if (header->has_display && !scene)
 		json_object_set_new(json, "StimulusPresentation", json_stimulus(&header->display));
 	return json;
 }
@@ -216,12 +250,16 @@ static json_t *json_event_table(const struct gz_recording_output *output, int nu
 {
 	(void)output;
 	(void)number;
-	return json_pack("{ss ss s[ssss] so so}", "Description", "Marks and gaps of the recording.",
-			 "OnsetSource", "timestamp", "Columns", "onset", "duration", "trial_type",
-			 "message", "trial_type",
-			 json_column("mark: set by a program; gap: samples are missing.", NULL),
-			 "message",
-			 json_column("The mark's text, or the reason of the gap.", NULL));
+	return json_pack(
+		"{ss ss s[sssss] so so so so}", "Description", "Marks and gaps of the recording.",
+		"OnsetSource", "timestamp", "Columns", "onset", "duration", "trial_type", "message",
+		"keys", "duration", json_column("How long it lasts; n/a: a moment.", "s"),
+		"trial_type",
+		json_column("mark: set by a program or by the tracker's parser; gap: samples are "
+			    "missing.",
+			    NULL),
+		"message", json_column("The mark's text, or the reason of the gap.", NULL), "keys",
+		json_column("Everything else that is known of the mark, a JSON object.", NULL));
 }
 
 /* Write the description of a table beside it. */

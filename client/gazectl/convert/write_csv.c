@@ -91,8 +91,8 @@ static enum gz_result check_csv_file(const struct gz_recording_output *output,
 
 static enum gz_result csv_begin(void *user, const struct gz_gaze_log_header *header)
 {
-	(void)header;
 	struct gz_recording_output *output = user;
+	const char *pupil = header->pupil_unit[0] ? "size" : "mm";
 	enum gz_result result = gz_output_begin(&output->samples, output->path, output->overwrite,
 						GZ_OUTPUT_TEXT, output->log);
 	if (result != GZ_OK)
@@ -101,10 +101,10 @@ static enum gz_result csv_begin(void *user, const struct gz_gaze_log_header *hea
 	fputs("seq,host_s,device_s,gaze_x,gaze_y,gaze_valid", out);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		fprintf(out,
-			",eye%d_x,eye%d_y,eye%d_valid,eye%d_confidence,eye%d_pupil_mm"
+			",eye%d_x,eye%d_y,eye%d_valid,eye%d_confidence,eye%d_pupil_%s"
 			",eye%d_origin_x_mm,eye%d_origin_y_mm,eye%d_origin_z_mm"
 			",eye%d_dir_x,eye%d_dir_y,eye%d_dir_z",
-			eye, eye, eye, eye, eye, eye, eye, eye, eye, eye, eye);
+			eye, eye, eye, eye, eye, pupil, eye, eye, eye, eye, eye, eye);
 	fputc('\n', out);
 	return check_csv_file(output, &output->samples);
 }
@@ -118,7 +118,7 @@ static enum gz_result begin_csv_events(struct gz_recording_output *output)
 	enum gz_result result = gz_output_begin(&output->events, path, output->overwrite,
 						GZ_OUTPUT_TEXT, output->log);
 	if (result == GZ_OK)
-		fputs("host_s,kind,text\n", output->events.text);
+		fputs("host_s,kind,text,duration_s,keys\n", output->events.text);
 	return result;
 }
 
@@ -144,6 +144,12 @@ static enum gz_result add_csv_event(struct gz_recording_output *output,
 		snprintf(text, sizeof text, "%s", record->text);
 	}
 	write_quoted(out, text);
+	fputc(',', out);
+	if (record->kind == GZ_GAZE_LOG_MARK && record->duration_ns > 0)
+		write_seconds(out, record->duration_ns);
+	fputc(',', out);
+	if (record->kind == GZ_GAZE_LOG_MARK && record->keys[0])
+		write_quoted(out, record->keys);
 	fputc('\n', out);
 	return check_csv_file(output, &output->events);
 }
