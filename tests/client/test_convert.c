@@ -337,6 +337,216 @@ static void tobii_without_a_display_or_times_is_refused_with_the_remedy(void **s
 	assert_int_equal(taken.headers, 0);
 }
 
+static const char arff_text[] = "%@METADATA distance_mm 450.0\n"
+				"%@METADATA height_mm 225.0\n"
+				"%@METADATA width_mm 400.0\n"
+				"%@METADATA width_px 1280.0\n"
+				"%@METADATA height_px 720.0\n"
+				"@RELATION gaze_recording\n"
+				"\n"
+				"@attribute time INTEGER\n"
+				"@ATTRIBUTE x NUMERIC\n"
+				"@ATTRIBUTE y NUMERIC\n"
+				"@ATTRIBUTE confidence NUMERIC\n"
+				"@ATTRIBUTE handlabeller1 {FIX,SACCADE}\n"
+				"@DATA\n"
+				"1000,640.0,180.0,1.0,FIX\n"
+				"% a remark\n"
+				"5000,-12.8,720.0,0.0,FIX\n"
+				"?,1,2,1,FIX\n"
+				"9000,?,180.0,1.0,SACCADE\n";
+
+static void arff_has_its_display_and_points_of_both_eyes(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_arff, arff_text), GZ_OK);
+	assert_int_equal(counts.samples, 3);
+	assert_int_equal(counts.skipped, 1);
+	assert_true(taken.header.has_display);
+	assert_int_equal(taken.header.display.px[0], 1280);
+	assert_near(taken.header.display.mm[1], 225);
+	assert_near(taken.header.display.distance_mm, 450);
+	assert_int_equal(sample(0)->host_ns, GZ_NS_PER_MS);
+	assert_int_equal(sample(0)->device_ns, GZ_NO_DEVICE_TIME);
+	assert_near((double)sample(0)->point.x, 0.5);
+	assert_near((double)sample(0)->point.y, 0.25);
+	assert_true(sample(0)->valid && gz_sample_combined_only(sample(0)));
+	assert_near((double)sample(1)->point.x, -0.01);
+	assert_false(sample(1)->valid); /* confidence 0 */
+	assert_false(sample(2)->valid);
+	set_up(NULL);
+	settings.distance_mm = 700;
+	assert_int_equal(read_text(&gz_recording_reader_arff, arff_text), GZ_OK);
+	assert_near(taken.header.display.distance_mm, 700); /* the user knows better */
+}
+
+static void arff_without_a_display_or_columns_is_refused(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_arff,
+				   "@RELATION r\n@ATTRIBUTE time INTEGER\n@ATTRIBUTE x NUMERIC\n"
+				   "@ATTRIBUTE y NUMERIC\n@DATA\n1,2,3\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "--display.px"));
+	assert_int_equal(read_text(&gz_recording_reader_arff,
+				   "@RELATION r\n@ATTRIBUTE time INTEGER\n@ATTRIBUTE xy NUMERIC\n"
+				   "@DATA\n1,2\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "file:4"));
+	assert_int_equal(taken.headers, 0);
+}
+
+static const char smi_text[] =
+	"## [iView]\n"
+	"## Sample Rate:\t50\n"
+	"## Calibration Area:\t1000\t500\n"
+	"## Stimulus Dimension [mm]:\t300\t200\n"
+	"## Head Distance [mm]:\t800\n"
+	"## Format:\tLEFT, RAW, DIAMETER, CR, POR, QUALITY, MSG\n"
+	"## \n"
+	"Time\tType\tTrial\tL Raw X [px]\tL Raw Y [px]\tL Dia X [px]\tL POR X [px]\tL POR Y [px]\n"
+	"2152080664\tMSG\t1\t# Message: a picture.bmp\n"
+	"2152092084\tSMP\t1\t212.15\t75.65\t33.39\t0.00\t0.00\n"
+	"2152112047\tSMP\t1\t212.28\t75.82\t0.00\t250.00\t125.00\n"
+	"2152112050\tXYZ\t1\t212.28\t75.82\t32.90\t250.00\t125.00\n"
+	"2226853655\tSMP\t2\t212.28\t75.82\t32.90\t1000.00\t125.00\n";
+
+static void smi_samples_messages_and_trials_are_read(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_smi, smi_text), GZ_OK);
+	assert_int_equal(counts.samples, 3);
+	assert_int_equal(counts.skipped, 1);
+	assert_int_equal(taken.count, 5);
+	assert_near(taken.header.rate_hz, 50);
+	assert_true(taken.header.has_display);
+	assert_int_equal(taken.header.display.px[1], 500);
+	assert_near(taken.header.display.mm[0], 300);
+	assert_near(taken.header.display.distance_mm, 800);
+	assert_string_equal(taken.header.pupil_unit, "arbitrary (SMI px of the eye camera)");
+	assert_int_equal(taken.record[0].kind, GZ_GAZE_LOG_MARK);
+	assert_string_equal(taken.record[0].text, "a picture.bmp");
+	assert_int_equal(taken.record[0].host_ns, 2152080664 * GZ_NS_PER_US);
+	const struct gz_eye_sample *left = &sample(1)->eye[GZ_EYE_LEFT];
+	assert_false(left->valid); /* 0 0 */
+	assert_near((double)left->pupil_mm, 33.39f);
+	left = &sample(2)->eye[GZ_EYE_LEFT];
+	assert_true(left->valid && isnan(left->pupil_mm));
+	assert_near((double)left->point.x, 0.25);
+	assert_near((double)left->point.y, 0.25);
+	assert_false(sample(2)->eye[GZ_EYE_RIGHT].valid);
+	assert_int_equal(taken.record[3].kind, GZ_GAZE_LOG_GAP);
+	assert_int_equal(sample(4)->device_ns, 2226853655 * GZ_NS_PER_US);
+}
+
+static void smi_pupils_in_mm_are_preferred(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_smi,
+				   "## [BeGaze]\n## Calibration Area:\t1000\t500\n"
+				   "Time\tType\tTrial\tR Dia X [px]\tR Mapped Diameter [mm]\t"
+				   "R POR X [px]\tR POR Y [px]\n"
+				   "1\tSMP\t1\t33\t3.5\t100\t100\n"),
+			 GZ_OK);
+	assert_string_equal(taken.header.pupil_unit, "");
+	assert_near((double)sample(0)->eye[GZ_EYE_RIGHT].pupil_mm, 3.5);
+}
+
+static void smi_without_points_or_a_display_is_refused(void **state)
+{
+	(void)state;
+	assert_int_equal(read_text(&gz_recording_reader_smi,
+				   "## [iView]\nTime\tType\tTrial\tL Raw X [px]\n1\tSMP\t1\t2\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "POR"));
+	assert_int_equal(read_text(&gz_recording_reader_smi,
+				   "## [iView]\nTime\tType\tTrial\tL POR X [px]\tL POR Y [px]\n"
+				   "1\tSMP\t1\t2\t3\n"),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, "--display.px"));
+}
+
+static void table_columns_are_those_that_the_user_names(void **state)
+{
+	(void)state;
+	settings.display_px[0] = 1000;
+	settings.display_px[1] = 500;
+	settings.table = (struct gz_convert_table) {
+		.columns =
+			"time=t [ms];left_x=lx;left_y=ly;left_pupil_mm=d;left_confidence=c;mark=m",
+		.time_unit = GZ_TABLE_MS,
+		.points = GZ_TABLE_PX,
+	};
+	assert_int_equal(read_text(&gz_recording_reader_table, "m;t [ms];lx;ly;d;c\n"
+							       ";12,5;100;50;3,5;1\n"
+							       "go;14;100;50;;0\n"
+							       ";;100;50;3;1\n"
+							       ";15;;50;3;1\n"),
+			 GZ_OK);
+	assert_int_equal(counts.samples, 3);
+	assert_int_equal(counts.skipped, 1);
+	assert_int_equal(sample(0)->host_ns, 12500 * GZ_NS_PER_US);
+	assert_true(sample(0)->eye[GZ_EYE_LEFT].valid);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.x, 0.1);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].point.y, 0.1);
+	assert_near((double)sample(0)->eye[GZ_EYE_LEFT].pupil_mm, 3.5);
+	assert_false(sample(0)->valid || sample(0)->eye[GZ_EYE_RIGHT].valid);
+	assert_string_equal(taken.record[1].text, "go");
+	assert_int_equal(taken.record[1].host_ns, 14 * GZ_NS_PER_MS);
+	assert_false(sample(2)->eye[GZ_EYE_LEFT].valid); /* confidence 0 */
+	assert_false(sample(3)->eye[GZ_EYE_LEFT].valid);
+}
+
+/* As the tables of GazeCom in OEMC: no times, several observers, 0 0 with confidence 0. */
+static void table_lines_of_one_observer_at_equal_intervals(void **state)
+{
+	(void)state;
+	settings.rate_hz = 250;
+	settings.table = (struct gz_convert_table) { .columns = "x=x;y=y;confidence=confidence",
+						     .where = "observer=B" };
+	assert_int_equal(read_text(&gz_recording_reader_table, "observer\tx\ty\tconfidence\tlabel\n"
+							       "A\t0.1\t0.2\t1\tF\n"
+							       "B\t0.25\t0.75\t1\tF\n"
+							       "B\t0\t0\t0\tB\n"
+							       "C\t0.3\t0.2\t1\tF\n"),
+			 GZ_OK);
+	assert_int_equal(counts.samples, 2);
+	assert_near(taken.header.rate_hz, 250);
+	assert_true(sample(0)->valid);
+	assert_int_equal(sample(0)->host_ns, 0);
+	assert_near((double)sample(0)->point.y, 0.75);
+	assert_false(sample(1)->valid);
+	assert_int_equal(sample(1)->host_ns, 4 * GZ_NS_PER_MS);
+}
+
+static void table_that_is_not_told_enough_is_refused_with_the_remedy(void **state)
+{
+	(void)state;
+	static const struct {
+		struct gz_convert_table table;
+		const char *said;
+	} cases[] = {
+		{ { 0 }, "--table.columns" },
+		{ { .columns = "time=t;x=a;y=nowhere" }, "no column \"nowhere\"" },
+		{ { .columns = "time=t;z=a;y=b" }, "\"z=a\" is not MEANING=COLUMN" },
+		{ { .columns = "time" }, "MEANING=COLUMN" },
+		{ { .columns = "x=a;y=b" }, "--rate-hz" },
+		{ { .columns = "time=t;x=a;y=b", .points = GZ_TABLE_PX }, "--display.px" },
+		{ { .columns = "time=t;x=a;y=b", .points = GZ_TABLE_MM }, "--display.mm" },
+		{ { .columns = "time=t;x=a;y=b", .where = "c=1" }, "--table.where" },
+		{ { .columns = "time=t;x=a;y=b", .where = "a" }, "--table.where" },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		settings.table = cases[i].table;
+		assert_int_equal(read_text(&gz_recording_reader_table, "t,a,b\n1,2,3\n"),
+				 GZ_ERR_FORMAT);
+		if (!strstr(captured.last, cases[i].said))
+			fail_msg("\"%s\" lacks \"%s\"", captured.last, cases[i].said);
+	}
+	assert_int_equal(read_text(&gz_recording_reader_table, ""), GZ_ERR_FORMAT);
+	assert_int_equal(taken.headers, 0);
+}
+
 static void formats_are_recognised_by_their_first_line(void **state)
 {
 	(void)state;
@@ -348,6 +558,11 @@ static void formats_are_recognised_by_their_first_line(void **state)
 	assert_ptr_equal(gz_recording_reader_recognise(
 				 "Recording timestamp [ms]\tGaze point left X [DACS px]"),
 			 &gz_recording_reader_tobii);
+	assert_ptr_equal(gz_recording_reader_recognise("@RELATION gaze"),
+			 &gz_recording_reader_arff);
+	assert_ptr_equal(gz_recording_reader_recognise("%@METADATA width_px 1280"),
+			 &gz_recording_reader_arff);
+	assert_ptr_equal(gz_recording_reader_recognise("## [iView]"), &gz_recording_reader_smi);
 	assert_null(gz_recording_reader_recognise("time,x,y"));
 	assert_null(gz_recording_reader_recognise(""));
 	assert_ptr_equal(gz_recording_reader_find("tobii"), &gz_recording_reader_tobii);
@@ -409,6 +624,14 @@ TEST_SUITE(convert)
 		TEST(tobii_pro_lab_is_read_by_the_names_of_its_columns),
 		TEST(tobii_studio_and_the_matlab_matrices_are_read),
 		TEST(tobii_without_a_display_or_times_is_refused_with_the_remedy),
+		TEST(arff_has_its_display_and_points_of_both_eyes),
+		TEST(arff_without_a_display_or_columns_is_refused),
+		TEST(smi_samples_messages_and_trials_are_read),
+		TEST(smi_pupils_in_mm_are_preferred),
+		TEST(smi_without_points_or_a_display_is_refused),
+		TEST(table_columns_are_those_that_the_user_names),
+		TEST(table_lines_of_one_observer_at_equal_intervals),
+		TEST(table_that_is_not_told_enough_is_refused_with_the_remedy),
 		TEST(formats_are_recognised_by_their_first_line),
 		TEST(line_too_long_is_skipped_and_the_next_one_read),
 		TEST(text_that_is_no_utf_8_is_mended_and_cut_between_characters),

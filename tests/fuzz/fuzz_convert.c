@@ -54,7 +54,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		struct seen seen = { 0 };
 		struct gz_text_lines *lines = NULL;
 		struct gz_convert_counts counts = { 0 };
-		const struct gz_convert_settings settings = { .name = "fuzz" };
+		const struct gz_convert_settings settings = {
+			.name = "fuzz",
+			.rate_hz = 100,
+			.table = { "x=x;y=y;left_x=lx;left_y=ly;left_pupil_mm=lp;mark=m", "",
+				   GZ_TABLE_S, GZ_TABLE_FRACTION },
+		};
 		const struct gz_recording_sink sink = { &seen, take_header, take_record };
 		if (gz_text_lines_open_memory(data, size, &lines) != GZ_OK)
 			return 0;

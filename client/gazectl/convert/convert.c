@@ -18,14 +18,24 @@ struct convert_settings {
 	double display_mm[2];
 	double distance_mm;
 	double rate_hz;
+	char table_columns[1024];
+	char table_where[256];
+	int table_time_unit; /* enum gz_table_time_unit */
+	int table_points;    /* enum gz_table_points */
 };
+
+/* In the order of the enums. */
+static const char *const time_unit_names[] = { "s", "ms", "us", "ns", NULL };
+static const char *const points_names[] = { "fraction", "px", "mm", NULL };
 
 #define AT(field) offsetof(struct convert_settings, field)
 
 static const struct gz_option convert_options[] = {
 	GZ_COMMAND_HELP_OPTION,
 	{ "from", GZ_OPTION_STRING, AT(from), 0, 16, 0, NULL, "",
-	  "format of INPUT: gzl, pupil, eyelink or tobii; empty: recognised by its content" },
+	  "format of INPUT: gzl, pupil, eyelink, tobii, smi, arff or table; empty: recognised by "
+	  "its "
+	  "content" },
 	{ "to", GZ_OPTION_STRING, AT(to), 0, 16, 0, NULL, "",
 	  "format of OUTPUT: gzl, csv or bids; empty: by the ending of its name" },
 	{ "force", GZ_OPTION_BOOL, AT(force), 0, 0, 0, NULL, "false", "replace existing files" },
@@ -37,6 +47,15 @@ static const struct gz_option convert_options[] = {
 	  "distance from the eyes to the centre of the display, mm; 0: from the file" },
 	{ "rate-hz", GZ_OPTION_DOUBLE, AT(rate_hz), 0, 100000, 0, NULL, "0",
 	  "nominal rate of the tracker, Hz; 0: from the file" },
+	{ "table.columns", GZ_OPTION_STRING, AT(table_columns), 0, 1024, 0, NULL, "",
+	  "for --from table: MEANING=COLUMN;... with time, x, y, confidence, left_x, left_y, "
+	  "left_confidence, left_pupil_mm, the same with right_, and mark" },
+	{ "table.where", GZ_OPTION_STRING, AT(table_where), 0, 256, 0, NULL, "",
+	  "for --from table: COLUMN=VALUE; only lines with this value" },
+	{ "table.time-unit", GZ_OPTION_CHOICE, AT(table_time_unit), 0, 0, 0, time_unit_names, "s",
+	  "for --from table: unit of the times" },
+	{ "table.points", GZ_OPTION_CHOICE, AT(table_points), 0, 0, 0, points_names, "px",
+	  "for --from table: what x and y are in, from the top left corner of the display" },
 };
 
 /* One conversion. */
@@ -116,6 +135,9 @@ static enum gz_result read_foreign(struct conversion *conversion, struct gz_text
 		.display_mm = { given->display_mm[0], given->display_mm[1] },
 		.distance_mm = given->distance_mm,
 		.rate_hz = given->rate_hz,
+		.table = { given->table_columns, given->table_where,
+			   (enum gz_table_time_unit)given->table_time_unit,
+			   (enum gz_table_points)given->table_points },
 		.name = slash ? slash + 1 : conversion->input,
 		.log = conversion->log,
 	};
@@ -140,7 +162,9 @@ static bool choose_reader(const struct conversion *conversion, struct gz_text_li
 		*out_reader = gz_recording_reader_find(from);
 		if (!*out_reader)
 			gz_err(conversion->log,
-			       "--from %s: unknown format; allowed: gzl, pupil, eyelink, tobii",
+			       "--from %s: unknown format; allowed: gzl, pupil, eyelink, tobii, "
+			       "smi, "
+			       "arff, table",
 			       from);
 		return *out_reader != NULL;
 	}
@@ -157,7 +181,8 @@ static bool choose_reader(const struct conversion *conversion, struct gz_text_li
 			return true;
 	}
 	gz_err(conversion->log,
-	       "%s: the format is not recognised; give it with --from pupil, eyelink, tobii or gzl",
+	       "%s: the format is not recognised; give it with --from, or name its columns with "
+	       "--from table --table.columns",
 	       conversion->input);
 	return false;
 }
@@ -254,7 +279,9 @@ const struct gz_command gazectl_convert = {
 	.summary = "convert recordings from and to gaze logs",
 	.details =
 		"Reads gaze logs, and, plain or gzip, Pupil's gaze_positions.csv, EyeLink's .asc "
-		"and Tobii's .tsv.\nWrites gaze logs (.gzl), tables (.csv) and BIDS "
+		"and Tobii's .tsv, text exports of SMI, .arff, and any table whose columns are "
+		"named.\n"
+		"Writes gaze logs (.gzl), tables (.csv) and BIDS "
 		"(_physio.tsv.gz). If a file does not contain the\nsize of its display, give it "
 		"here: it is needed to compute angles.\n",
 	.options = convert_options,

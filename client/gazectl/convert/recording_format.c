@@ -15,6 +15,9 @@ const struct gz_recording_reader *const gz_recording_readers[] = {
 	&gz_recording_reader_pupil,
 	&gz_recording_reader_eyelink,
 	&gz_recording_reader_tobii,
+	&gz_recording_reader_smi,
+	&gz_recording_reader_arff,
+	&gz_recording_reader_table,
 	NULL,
 };
 

@@ -24,13 +24,28 @@ struct gz_recording_sink {
 	enum gz_result (*record)(void *user, const struct gz_gaze_log_record *record);
 };
 
+/** Unit of the times of a table. */
+enum gz_table_time_unit { GZ_TABLE_S, GZ_TABLE_MS, GZ_TABLE_US, GZ_TABLE_NS };
+
+/** What the points of a table are in: fractions of the display, pixels or mm, from its top left. */
+enum gz_table_points { GZ_TABLE_FRACTION, GZ_TABLE_PX, GZ_TABLE_MM };
+
+/** What the columns of a table mean, for the reader "table". Zero-initialised: no columns. */
+struct gz_convert_table {
+	const char *columns; /**< "MEANING=COLUMN;…"; see read_table.c */
+	const char *where;   /**< "COLUMN=VALUE": only lines with this value; empty: all */
+	enum gz_table_time_unit time_unit;
+	enum gz_table_points points;
+};
+
 /** What the user gives because the file may not contain it. */
 struct gz_convert_settings {
 	int display_px[2];    /**< 0: from the file */
 	double display_mm[2]; /**< 0: from the file */
 	double distance_mm;   /**< 0: from the file */
 	double rate_hz;       /**< nominal; 0: from the file */
-	const char *name;     /**< of the file, for messages */
+	struct gz_convert_table table;
+	const char *name; /**< of the file, for messages */
 	const struct gz_log *log;
 };
 
@@ -63,7 +78,7 @@ struct gz_recording_reader {
 			       struct gz_convert_counts *counts);
 };
 
-/** All readers, NULL-terminated: pupil, eyelink, tobii. */
+/** All readers, NULL-terminated: pupil, eyelink, tobii, smi, arff, table. */
 extern const struct gz_recording_reader *const gz_recording_readers[];
 
 /** Find a reader by name, or NULL. */
@@ -75,6 +90,9 @@ const struct gz_recording_reader *gz_recording_reader_recognise(const char *line
 extern const struct gz_recording_reader gz_recording_reader_pupil;
 extern const struct gz_recording_reader gz_recording_reader_eyelink;
 extern const struct gz_recording_reader gz_recording_reader_tobii;
+extern const struct gz_recording_reader gz_recording_reader_smi;
+extern const struct gz_recording_reader gz_recording_reader_arff;
+extern const struct gz_recording_reader gz_recording_reader_table;
 
 /** A recording being written. */
 struct gz_recording_output;
