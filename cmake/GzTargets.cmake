@@ -50,7 +50,7 @@ endfunction()
 function(gz_note_room name)
 	set(uses ${ARGN})
 	list(FILTER uses INCLUDE REGEX "^gz_")
-	list(REMOVE_ITEM uses gz_nifti gz_dcmtk)
+	list(REMOVE_ITEM uses gz_nifti gz_gdcm)
 	list(JOIN uses "," uses)
 	if(uses STREQUAL "")
 		set(uses -)
@@ -70,15 +70,22 @@ function(gz_module name)
 	target_link_libraries(gz_${name} PUBLIC ${M_USES} PRIVATE ${M_PRIVATE_USES} gz_settings)
 endfunction()
 
-# gz_program(NAME SOURCES file... [USES target...]): an installed program.
+# gz_program(NAME [IN_LIBEXEC] SOURCES file... [USES target...]): an installed program. IN_LIBEXEC: it is
+# not for users; other programs start it, and find it in the tree of a build as in an installation.
 function(gz_program name)
-	cmake_parse_arguments(P "" "" "SOURCES;USES" ${ARGN})
+	cmake_parse_arguments(P "IN_LIBEXEC" "" "SOURCES;USES" ${ARGN})
 	gz_note_room(${name} ${P_USES})
 	add_executable(${name} ${P_SOURCES})
 	target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 	target_link_libraries(${name} PRIVATE ${P_USES} gz_settings)
 	target_compile_definitions(${name} PRIVATE GAZECAST_VERSION="${PROJECT_VERSION}")
-	install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+	if(P_IN_LIBEXEC)
+		set_target_properties(${name} PROPERTIES
+			RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBEXECDIR}/gazecast")
+		install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/gazecast)
+	else()
+		install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+	endif()
 endfunction()
 
 # gz_probe(NAME SOURCES file... [USES target...]): a program that measures, not installed.

@@ -1,88 +1,79 @@
-/* DICOM series: a folder, one file of it, or a file with several frames. Slices are decoded one
- * after the other and turned to RAS+ like those of every other format. */
-#include <stdlib.h>
+/* DICOM series: a folder, one file of it, or a file with several frames. A process of its own reads
+ * them (render/decode/dicom/). */
+#include <ctype.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
-#include "render/data/dicom_series.h"
+#include "render/data/decoded_volume.h"
+#include "render/data/dicom_name.h"
 #include "render/data/format.h"
-#include "render/data/volume_import.h"
 
-#define GZ_LOG_MODULE "volume"
+/* Bytes that are looked at: a preamble and its word, or a few elements. */
+#define LOOK_BYTES 512
 
-/* The slices as a stream of bytes, one slice in memory. */
-struct stack {
-	struct gz_dicom_series *series;
-	uint8_t *slice;
-	size_t slice_size, at; /* bytes of it that are taken */
-	int left;              /* slices not decoded yet */
-};
+/* The first elements of a file without a preamble are that short, bytes (chosen: UIDs have 64). */
+#define ELEMENT_MAX 128
 
-static enum gz_result read_slices(void *user, void *buffer, size_t size, size_t *out_got)
+#define ELEMENTS_NEEDED 3
+
+static unsigned number_u16(const uint8_t *bytes)
 {
-	struct stack *stack = user;
-	size_t got = 0;
-	while (got < size) {
-		if (stack->at == stack->slice_size) {
-			if (stack->left == 0)
-				break;
-			const enum gz_result result =
-				gz_dicom_series_read(stack->series, stack->slice);
-			if (result != GZ_OK)
-				return result;
-			stack->left--;
-			stack->at = 0;
-		}
-		const size_t rest = stack->slice_size - stack->at;
-		const size_t run = size - got < rest ? size - got : rest;
-		memcpy((char *)buffer + got, stack->slice + stack->at, run);
-		stack->at += run;
-		got += run;
-	}
-	*out_got = got;
-	return GZ_OK;
+	return bytes[0] | (unsigned)bytes[1] << 8;
 }
 
-static enum gz_result import_slices(struct stack *stack, const struct gz_volume_file *file,
-				    struct gz_volume *out_volume)
+/* Bytes of the element at the beginning of `bytes`, explicit or implicit (PS3.5, 7.1); 0 if it is
+ * not one that a file begins with. */
+static size_t element_length(const uint8_t *bytes, size_t size)
 {
-	const struct gz_dicom_geometry *geometry = gz_dicom_series_geometry(stack->series);
-	struct gz_import_layout layout = {
-		.oriented = geometry->oriented,
-		.type = geometry->type,
-		.big_endian = gz_host_big_endian(),
-		.slope = geometry->slope,
-		.intercept = geometry->intercept,
-	};
-	memcpy(layout.dims, geometry->dims, sizeof layout.dims);
-	memcpy(layout.spacing, geometry->spacing, sizeof layout.spacing);
-	memcpy(layout.direction, geometry->direction, sizeof layout.direction);
-	stack->slice_size =
-		(size_t)layout.dims[0] * (size_t)layout.dims[1] * gz_raw_type_size(layout.type);
-	stack->at = stack->slice_size;
-	stack->left = layout.dims[2];
-	stack->slice = malloc(stack->slice_size);
-	if (!stack->slice) {
-		gz_err(file->log, "%s: no memory to read it", file->path);
-		return GZ_ERR_NO_MEM;
+	if (size < 8)
+		return 0;
+	const bool explicit_vr = isupper(bytes[4]) && isupper(bytes[5]);
+	const size_t value = number_u16(bytes + (explicit_vr ? 6 : 4));
+	if (!explicit_vr && number_u16(bytes + 6) != 0)
+		return 0;
+	return value <= ELEMENT_MAX ? 8 + value : 0;
+}
+
+static bool begins_with_elements(const uint8_t *bytes, size_t size)
+{
+	unsigned before = 0;
+	size_t at = 0;
+	for (int i = 0; i < ELEMENTS_NEEDED; i++) {
+		const size_t length = element_length(bytes + at, size - at);
+		if (length == 0 || length > size - at)
+			return false;
+		const unsigned group = number_u16(bytes + at), element = number_u16(bytes + at + 2);
+		const unsigned tag = group << 16 | element;
+		if ((group != 2 && group != 8) || (i > 0 && tag <= before))
+			return false;
+		before = tag;
+		at += length;
 	}
-	struct gz_byte_stream *stream = NULL;
-	enum gz_result result = gz_byte_stream_from(read_slices, stack, geometry->bytes_bound,
-						    file->path, file->log, &stream);
-	if (result == GZ_OK)
-		result = gz_volume_import(stream, &layout, file, out_volume);
-	gz_byte_stream_close(&stream);
-	return result;
+	return true;
+}
+
+bool gz_dicom_is(const char *path)
+{
+	uint8_t bytes[LOOK_BYTES];
+	struct stat status;
+	if (stat(path, &status) != 0)
+		return false;
+	if (!S_ISREG(status.st_mode))
+		return S_ISDIR(status.st_mode);
+	FILE *in = fopen(path, "rbe");
+	if (!in)
+		return false;
+	const size_t got = fread(bytes, 1, sizeof bytes, in);
+	(void)fclose(in);
+	return (got >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) ||
+	       begins_with_elements(bytes, got);
 }
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
-	struct stack stack = { 0 };
-	enum gz_result result = gz_dicom_series_open(file->path, file->log, &stack.series);
-	if (result == GZ_OK)
-		result = import_slices(&stack, file, out_volume);
-	free(stack.slice);
-	gz_dicom_series_close(&stack.series);
-	return result;
+	return gz_volume_decode(file, "dicom", NULL, out_volume);
 }
 
 const struct gz_volume_format gz_format_dicom = {

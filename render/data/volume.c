@@ -1,9 +1,6 @@
 #include "render/data/volume.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -11,6 +8,7 @@
 #include <zlib.h>
 
 #include "render/data/brick_pool.h"
+#include "render/data/scratch.h"
 
 /* Chosen: volumes from HUGE_FROM bytes on use pages of 2 MiB, which avoids most address translation
  * misses while rendering. */
@@ -46,7 +44,7 @@ double gz_volume_edge_lengths(const int dims[3], const double spacing[3])
 		    fmax(dims[1] * (spacing[1] / least), dims[2] * (spacing[2] / least)));
 }
 
-static bool layout_valid(const struct gz_volume *volume)
+bool gz_volume_layout_valid(const struct gz_volume *volume)
 {
 	for (int axis = 0; axis < 3; axis++) {
 		if (volume->dims[axis] < 1 || volume->dims[axis] > GZ_VOLUME_DIM_MAX)
@@ -60,56 +58,36 @@ static bool layout_valid(const struct gz_volume *volume)
 	       gz_voxel_size(volume->type) != 0;
 }
 
-/* Whether the machine has so much memory. On a kernel that overcommits, allocating more would
- * succeed here and end in a signal later. */
-static bool fits_machine(size_t bytes)
+bool gz_memory_fits_machine(size_t bytes)
 {
 	long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
 	return pages <= 0 || page <= 0 || bytes / (size_t)page < (size_t)pages;
 }
 
-/* A file without a name, or, if the file system does not support that, one whose name is removed at
- * once. */
-static int open_nameless(const char *folder)
-{
-	char path[4096];
-	int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-	if (fd >= 0 || errno == ENOENT)
-		return fd;
-	const int length = snprintf(path, sizeof path, "%s/gazecast-XXXXXX", folder);
-	if (length < 0 || (size_t)length >= sizeof path)
-		return -1;
-	fd = mkostemp(path, O_CLOEXEC);
-	if (fd >= 0)
-		unlink(path);
-	return fd;
-}
-
-/* Map a new nameless file in @p folder, zeroed. Its blocks are reserved first, so that a full disk
- * is an error here and not a signal later. GZ_ERR_NOT_FOUND: no such folder. */
+/* Map a new nameless file in @p folder, zeroed. GZ_ERR_NOT_FOUND: no such folder. */
 static enum gz_result map_scratch(const char *folder, size_t bytes, void **out_memory)
 {
-	int fd = open_nameless(folder);
-	if (fd < 0)
-		return errno == ENOENT ? GZ_ERR_NOT_FOUND : GZ_ERR_IO;
-	const int reserved = posix_fallocate(fd, 0, (off_t)bytes);
-	if (reserved != 0) {
-		close(fd);
-		return reserved == ENOSPC || reserved == EFBIG ? GZ_ERR_FULL : GZ_ERR_IO;
-	}
-	void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+	int fd = -1;
+	enum gz_result result = gz_scratch_open(folder, &fd);
+	if (result != GZ_OK)
+		return result;
+	result = gz_scratch_reserve(fd, bytes);
+	void *memory = result == GZ_OK
+			       ? mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0)
+			       : MAP_FAILED;
 	close(fd);
-	if (memory == MAP_FAILED)
-		return GZ_ERR_NO_MEM;
-	*out_memory = memory;
-	return GZ_OK;
+	if (result == GZ_OK && memory == MAP_FAILED)
+		result = GZ_ERR_NO_MEM;
+	if (result == GZ_OK)
+		*out_memory = memory;
+	return result;
 }
 
 static enum gz_result allocate_memory(size_t used, void **out_voxels)
 {
 	size_t align = used >= HUGE_FROM ? HUGE_PAGE : SMALL_ALIGN;
 	size_t bytes = (used + GZ_VOLUME_PADDING + align - 1) / align * align;
-	if (!fits_machine(bytes))
+	if (!gz_memory_fits_machine(bytes))
 		return GZ_ERR_NO_MEM;
 	void *voxels = aligned_alloc(align, bytes);
 	if (!voxels)
@@ -123,10 +101,16 @@ static enum gz_result allocate_memory(size_t used, void **out_voxels)
 
 enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading)
 {
-	if (!layout_valid(volume))
+	if (!gz_volume_layout_valid(volume))
 		return GZ_ERR_INVAL;
 	/* At most 2^42 voxels of 4 bytes: no overflow. */
 	const size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
+	if (loading && loading->give_memory) {
+		volume->voxels =
+			loading->give_memory(loading->user, volume, used + GZ_VOLUME_PADDING);
+		volume->mapped = volume->voxels ? used + GZ_VOLUME_PADDING : 0;
+		return volume->voxels ? GZ_OK : GZ_ERR_NO_MEM;
+	}
 	const char *scratch = loading && used >= loading->scratch_from ? loading->scratch : NULL;
 	const size_t mapped = scratch ? used + GZ_VOLUME_PADDING : 0;
 	const enum gz_result result = scratch ? map_scratch(scratch, mapped, &volume->voxels)

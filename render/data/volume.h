@@ -22,6 +22,8 @@ static inline bool gz_host_big_endian(void)
 	return *(const uint8_t *)&one == 0;
 }
 
+struct gz_volume;
+
 /** How a volume is loaded, made or written. Zero-initialised, or NULL in its place: no reports,
  *  voxels in memory, no way to stop. */
 struct gz_loading {
@@ -41,6 +43,16 @@ struct gz_loading {
 	size_t scratch_from; /**< bytes; smaller volumes are kept in memory in any case */
 	/** Memory for the bricks of a file of bricks, bytes; 0: a quarter of the machine's. */
 	size_t brick_bytes;
+	/**
+	 * Optional: gives the memory of the voxels, instead of the above.
+	 *
+	 * @param user    the member user
+	 * @param volume  all but its voxels and their range is set
+	 * @param bytes   of the voxels, with GZ_VOLUME_PADDING
+	 * @return zeroed, aligned to a page; gz_volume_free() unmaps it. NULL: none; the loader
+	 * then returns GZ_ERR_NO_MEM
+	 */
+	void *(*give_memory)(void *user, const struct gz_volume *volume, size_t bytes);
 };
 
 /** Report the share of the work that is done, 0 to 1. Returns false if the loader must stop. */
@@ -100,7 +112,8 @@ struct gz_volume {
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels */
 	bool oriented;                 /**< it is known where right, front and up are */
-	size_t mapped; /**< bytes of the scratch file that holds the voxels; 0: memory */
+	size_t mapped; /**< bytes of the file that holds the voxels, on the disk or in memory, which
+			  may be mapped to be read only; 0: memory of the program */
 };
 
 /** Type names of raw files. */
@@ -210,6 +223,13 @@ enum gz_result gz_volume_allocate(struct gz_volume *volume);
  * @retval GZ_ERR_IO         no file can be created there; not logged
  */
 enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading);
+
+/** Whether dims, spacing and type of @p volume are such that gz_volume_allocate() takes them. */
+bool gz_volume_layout_valid(const struct gz_volume *volume);
+
+/** Whether the machine has so much memory. On a kernel that overcommits, allocating more would
+ *  succeed at first and end in a signal later. */
+bool gz_memory_fits_machine(size_t bytes);
 
 /** Set stored_min and stored_max to the least and greatest voxel. */
 void gz_volume_find_range(struct gz_volume *volume);

@@ -173,6 +173,11 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 		volume->spacing[map->world[axis]] = layout->spacing[axis];
 	}
 	volume->type = import->conversion->type;
+	volume->oriented = layout->oriented;
+	const double slope = layout->slope;
+	const double intercept = layout->intercept + layout->slope * import->conversion->offset;
+	volume->slope = slope;
+	volume->intercept = intercept;
 	const char *scratch = import->file->loading ? import->file->loading->scratch : NULL;
 	const enum gz_result result = gz_volume_allocate_in(volume, import->file->loading);
 	if (result != GZ_OK) {
@@ -189,9 +194,8 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 			       import->file->path, mib);
 		return result;
 	}
-	volume->oriented = layout->oriented;
-	volume->slope = layout->slope;
-	volume->intercept = layout->intercept + layout->slope * import->conversion->offset;
+	volume->slope = slope;
+	volume->intercept = intercept;
 
 	const ptrdiff_t step[3] = { 1, volume->dims[0],
 				    (ptrdiff_t)volume->dims[0] * volume->dims[1] };

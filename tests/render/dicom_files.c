@@ -6,6 +6,8 @@
 
 #include "volume_files.h"
 
+#define EXPLICIT_LITTLE "1.2.840.10008.1.2.1"
+
 /* Bytes of a file in the making. */
 struct writer {
 	uint8_t bytes[1 << 16];
@@ -60,7 +62,7 @@ static void put_long_head(struct writer *writer, uint32_t tag, const char *vr, s
 	put_number(writer, (uint32_t)size, 4);
 }
 
-static void put_meta(struct writer *writer, const char *instance)
+static void put_meta(struct writer *writer, const char *instance, const char *transfer_syntax)
 {
 	static const uint8_t preamble[128];
 	static const uint8_t version[2] = { 0, 1 };
@@ -74,7 +76,7 @@ static void put_meta(struct writer *writer, const char *instance)
 	put(writer, version, 2);
 	put_text(writer, 0x00020002, "UI", "1.2.840.10008.5.1.4.1.1.2"); /* CT image */
 	put_text(writer, 0x00020003, "UI", instance);
-	put_text(writer, 0x00020010, "UI", "1.2.840.10008.1.2.1"); /* Explicit VR Little Endian */
+	put_text(writer, 0x00020010, "UI", transfer_syntax);
 	put_text(writer, 0x00020012, "UI", "1.2.3.4");
 	const uint32_t length = (uint32_t)(writer->size - length_at - 4);
 	for (int i = 0; i < 4; i++)
@@ -102,6 +104,30 @@ struct dicom_sample dicom_sample_make(const char *series, int number, const int1
 	};
 }
 
+static void put_pixels(struct writer *writer, const struct dicom_sample *sample)
+{
+	put_long_head(writer, 0x7FE00010, sample->bits_allocated == 8 ? "OB" : "OW",
+		      sample->claimed_bytes ? sample->claimed_bytes : sample->pixel_bytes);
+	put(writer, sample->pixels, sample->pixel_bytes);
+}
+
+static void put_item(struct writer *writer, uint32_t tag, size_t size)
+{
+	put_number(writer, tag >> 16, 2);
+	put_number(writer, tag & 0xFFFF, 2);
+	put_number(writer, (uint32_t)size, 4);
+}
+
+/* An empty table of offsets, and one fragment (PS3.5, A.4). */
+static void put_fragment(struct writer *writer, const struct dicom_sample *sample)
+{
+	put_long_head(writer, 0x7FE00010, "OB", 0xFFFFFFFF);
+	put_item(writer, 0xFFFEE000, 0);
+	put_item(writer, 0xFFFEE000, sample->pixel_bytes);
+	put(writer, sample->pixels, sample->pixel_bytes);
+	put_item(writer, 0xFFFEE0DD, 0);
+}
+
 const char *dicom_sample_write(const struct dicom_sample *sample, const char *name)
 {
 	static struct writer writer;
@@ -110,7 +136,10 @@ const char *dicom_sample_write(const struct dicom_sample *sample, const char *na
 	snprintf(instance, sizeof instance, "%s.%d", sample->series, sample->number);
 	snprintf(number, sizeof number, "%d", sample->number);
 	snprintf(frames, sizeof frames, "%d", sample->frames);
-	put_meta(&writer, instance);
+	if (!sample->bare)
+		put_meta(&writer, instance,
+			 sample->transfer_syntax ? sample->transfer_syntax : EXPLICIT_LITTLE);
+	put_text(&writer, 0x00080008, "CS", sample->image_type);
 	put_text(&writer, 0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2");
 	put_text(&writer, 0x00080018, "UI", instance);
 	put_text(&writer, 0x00080060, "CS", "CT");
@@ -133,8 +162,14 @@ const char *dicom_sample_write(const struct dicom_sample *sample, const char *na
 	put_short(&writer, 0x00280103, sample->is_signed);
 	put_text(&writer, 0x00281052, "DS", sample->intercept);
 	put_text(&writer, 0x00281053, "DS", sample->slope);
-	put_long_head(&writer, 0x7FE00010, sample->bits_allocated == 8 ? "OB" : "OW",
-		      sample->claimed_bytes ? sample->claimed_bytes : sample->pixel_bytes);
-	put(&writer, sample->pixels, sample->pixel_bytes);
+	if (sample->csa) {
+		put_text(&writer, 0x00290010, "LO", "SIEMENS CSA HEADER");
+		put_long_head(&writer, 0x00291010, "OB", sample->csa_bytes);
+		put(&writer, sample->csa, sample->csa_bytes);
+	}
+	if (sample->encapsulated)
+		put_fragment(&writer, sample);
+	else
+		put_pixels(&writer, sample);
 	return files_write(name, writer.bytes, writer.size);
 }

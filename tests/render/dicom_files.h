@@ -6,6 +6,7 @@
 #ifndef GZ_TESTS_RENDER_DICOM_FILES_H
 #define GZ_TESTS_RENDER_DICOM_FILES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,7 +23,13 @@ struct dicom_sample {
 	const char *slope, *intercept;
 	const void *pixels; /**< little-endian */
 	size_t pixel_bytes;
-	size_t claimed_bytes; /**< length of the pixel element, if not pixel_bytes */
+	size_t claimed_bytes;        /**< length of the pixel element, if not pixel_bytes */
+	const char *transfer_syntax; /**< UID; NULL: Explicit VR Little Endian */
+	bool encapsulated;           /**< the pixels are one fragment of such an element */
+	bool bare;                   /**< without preamble and meta header */
+	const char *image_type;
+	const void *csa; /**< Siemens' private header of the image (0029,1010) */
+	size_t csa_bytes;
 };
 
 /** A 3 x 2 image of 16 signed bits at the origin, axial, 1 mm, no scale. */

@@ -6,7 +6,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/data/dicom_series.h"
+#include "render/data/dicom_name.h"
 #include "render/scene/scene_open.h"
 #include "view/files/scene_save.h"
 #include "view/panels/file_dialogs.h"

@@ -1,13 +1,13 @@
 /**
  * @file
- * One DICOM series as a stack of slices in order: DCMTK behind a C interface.
+ * One DICOM series as a stack of slices in order: GDCM behind a C interface.
  *
  * The slices are the files of one series in one folder, or the frames of one file. They are ordered
  * by where they lie along the normal of their planes (DICOM PS3.3, C.7.6.2.1.1), not by name or
  * number.
  */
-#ifndef GZ_RENDER_DATA_DICOM_SERIES_H
-#define GZ_RENDER_DATA_DICOM_SERIES_H
+#ifndef GZ_RENDER_DECODE_DICOM_SERIES_H
+#define GZ_RENDER_DECODE_DICOM_SERIES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,7 +19,7 @@ extern "C" {
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/data/volume.h"
+#include "render/data/volume_import.h"
 
 struct gz_dicom_series;
 
@@ -37,23 +37,25 @@ struct gz_dicom_geometry {
 /**
  * Find the slices.
  *
- * @param path  a folder that holds one series, or one file of a series (its folder is looked
- * through for the others), or a file with several frames
+ * @param file  its path is a folder that holds one series, or one file of a series (its folder is
+ * looked through for the others), or a file with several frames. Borrowed until the series is
+ * closed. Its loading is asked after each file of a folder whether to go on.
  * @param[out] out_series  owned by the caller: gz_dicom_series_close()
  * @retval GZ_ERR_NOT_FOUND    no such file or folder; logged
  * @retval GZ_ERR_FORMAT       no DICOM image there, several series, slices that do not fit
  *                             together or lie unevenly; logged with the remedy
  * @retval GZ_ERR_UNSUPPORTED  colour, or a compression that is not read; logged with the remedy
  * @retval GZ_ERR_NO_MEM       logged
+ * @retval GZ_ERR_CANCELLED    not logged
  */
-enum gz_result gz_dicom_series_open(const char *path, const struct gz_log *log,
+enum gz_result gz_dicom_series_open(const struct gz_volume_file *file,
 				    struct gz_dicom_series **out_series);
 
 /** What was found. */
 const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_series *series);
 
 /**
- * Decode the next slice.
+ * Get the next slice. Threads decode a few ahead.
  *
  * @param[out] voxels  columns * rows numbers of the geometry's type
  * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
@@ -62,9 +64,6 @@ enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_dicom_series_close(struct gz_dicom_series **series);
-
-/** Whether a path is a folder, or a file that says it is DICOM by its preamble (PS3.10, 7.1). */
-bool gz_dicom_is(const char *path);
 
 #ifdef __cplusplus
 }

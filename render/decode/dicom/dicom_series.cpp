@@ -1,5 +1,5 @@
-/* DCMTK is C++, so this file is. Nothing it throws leaves it. */
-#include "render/data/dicom_series.h"
+/* GDCM is C++, so this file is. Nothing it throws leaves it. */
+#include "render/decode/dicom/dicom_series.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -9,17 +9,15 @@
 #include <dirent.h>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <string>
 #include <sys/stat.h>
 #include <vector>
 
-#include "render/data/dicom_head.hpp"
-
-#include <dcmtk/dcmdata/dcrledrg.h>
-#include <dcmtk/dcmjpeg/djdecode.h>
-#include <dcmtk/dcmjpls/djdecode.h>
+#include "render/data/dicom_name.h"
+#include "render/decode/dicom/dicom_file.hpp"
+#include "render/decode/dicom/dicom_frame.hpp"
+#include "render/decode/dicom/dicom_pool.hpp"
 
 #define GZ_LOG_MODULE "dicom"
 
@@ -37,21 +35,14 @@ const size_t files_max = 65536;
 const double uneven = 0.05;
 const double tilt_deg = 1.0;
 
-void prepare_library()
-{
-	static std::once_flag once;
-	std::call_once(once, [] {
-		OFLog::configure(OFLogger::OFF_LOG_LEVEL); /* this program tells what is wrong */
-		DJDecoderRegistration::registerCodecs();
-		DJLSDecoderRegistration::registerCodecs();
-		DcmRLEDecoderRegistration::registerCodecs();
-	});
-}
+/* Memory that a codec takes for a pixel beside what it gives, bytes (JPEG 2000 works on integers of
+ * 32 bits, and keeps a few). */
+const uint64_t codec_bytes_a_pixel = 16;
 
 class reader
 {
       public:
-	reader(const char *name, const gz_log *sink) : path(name), log(sink)
+	explicit reader(const gz_volume_file *of) : file(of), path(of->path), log(of->log)
 	{
 	}
 	gz_result open();
@@ -61,6 +52,7 @@ class reader
       private:
 	gz_result collect();
 	gz_result collect_folder(const std::string &folder);
+	bool look_at(const std::string &name);
 	gz_result choose(const std::string &wanted);
 	gz_result check_head(const head &h) const;
 	gz_result join();
@@ -69,20 +61,21 @@ class reader
 	gz_result measure();
 	void note_tilt(const vector3 &normal) const;
 	void finish();
-	gz_result decode(const slice &s);
-	void widen(const slice &s, void *voxels) const;
+	decoded_slice decode(size_t index) const;
+	void widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
+	size_t slice_bytes() const;
 
+	const gz_volume_file *file;
 	std::string path;
 	const gz_log *log;
 	std::vector<head> heads;
+	size_t damaged = 0;  /* files of the folder */
+	std::string example; /* one of them */
 	format numbers;
 	std::vector<slice> slices;
 	bool scaled_apart = false; /* slices have scales of their own */
 	size_t next = 0;
-	std::unique_ptr<DcmFileFormat> file; /* of the slice read last */
-	std::string file_path;
-	Uint32 fragment = 0;
-	std::vector<Uint16> pixels;
+	std::unique_ptr<slice_pool> pool;
 };
 
 gz_result reader::collect()
@@ -114,6 +107,17 @@ gz_result reader::collect()
 	return r == GZ_OK ? choose(wanted) : r;
 }
 
+/* Read one head; false if loading shall stop. */
+bool reader::look_at(const std::string &name)
+{
+	head h;
+	if (read_head(name, h))
+		heads.push_back(std::move(h));
+	else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
+		example = name;
+	return gz_loading_goes_on(file->loading, 0, path.c_str());
+}
+
 /* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
 gz_result reader::collect_folder(const std::string &folder)
 {
@@ -123,18 +127,10 @@ gz_result reader::collect_folder(const std::string &folder)
 		       strerror(errno));
 		return GZ_ERR_IO;
 	}
-	size_t seen = 0, damaged = 0;
-	std::string example;
-	for (dirent *entry; (entry = readdir(entries.get())) && seen < files_max; seen++) {
-		head h;
-		if (entry->d_name[0] == '.')
-			continue;
-		const std::string name = folder + "/" + entry->d_name;
-		if (read_head(name, h))
-			heads.push_back(std::move(h));
-		else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
-			example = name;
-	}
+	size_t seen = 0;
+	for (dirent *entry; (entry = readdir(entries.get())) && seen < files_max; seen++)
+		if (entry->d_name[0] != '.' && !look_at(folder + "/" + entry->d_name))
+			return GZ_ERR_CANCELLED;
 	if (damaged > 0)
 		gz_warn(log,
 			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
@@ -177,9 +173,9 @@ gz_result reader::choose(const std::string &wanted)
 gz_result reader::check_head(const head &h) const
 {
 	const format &f = h.numbers;
-	if (f.bits_allocated < 0) {
+	if (h.samples != 1) {
 		gz_err(log, "%s: colour, %d values a pixel; only one is shown as a volume",
-		       h.path.c_str(), -f.bits_allocated);
+		       h.path.c_str(), h.samples);
 		return GZ_ERR_UNSUPPORTED;
 	}
 	if ((f.bits_allocated != 8 && f.bits_allocated != 16) || f.bits_stored < 1 ||
@@ -196,8 +192,7 @@ gz_result reader::check_head(const head &h) const
 		       GZ_VOLUME_DIM_MAX);
 		return GZ_ERR_FORMAT;
 	}
-	const uint64_t frame_bytes =
-		(uint64_t)f.columns * (uint64_t)f.rows * (uint64_t)(f.bits_allocated / 8);
+	const uint64_t frame_bytes = f.frame_bytes();
 	if (h.frames > GZ_VOLUME_DIM_MAX || h.frames * frame_bytes > h.bytes) {
 		gz_err(log,
 		       "%s: truncated: %llu frames of %llu bytes are more than it can hold, or "
@@ -255,14 +250,14 @@ gz_result reader::place()
 	const vector3 normal = cross(first.row, first.column);
 	if (std::fabs(dot(normal, normal) - 1) > 0.02) {
 		gz_err(log, "%s: the directions of its rows and columns are no right angle",
-		       first.path.c_str());
+		       first.path().c_str());
 		return GZ_ERR_FORMAT;
 	}
 	for (slice &s : slices) {
 		if (dot(s.row, first.row) < 0.999 || dot(s.column, first.column) < 0.999) {
 			gz_err(log,
 			       "%s: lies in another plane than %s; keep one stack in the folder",
-			       s.path.c_str(), first.path.c_str());
+			       s.path().c_str(), first.path().c_str());
 			return GZ_ERR_FORMAT;
 		}
 		s.along = dot(s.position, normal);
@@ -324,7 +319,7 @@ gz_result reader::measure()
 			gz_err(log,
 			       "%s: %g mm to the next slice where others have %g; is a file "
 			       "missing?",
-			       slices[i].path.c_str(), gaps[i], usual);
+			       slices[i].path().c_str(), gaps[i], usual);
 			return GZ_ERR_FORMAT;
 		}
 	geometry.spacing[2] =
@@ -379,88 +374,75 @@ gz_result reader::open()
 	return result;
 }
 
-/* One frame into `pixels`, as it is stored. */
-gz_result reader::decode(const slice &s)
+size_t reader::slice_bytes() const
 {
-	if (!file || file_path != s.path) {
-		file.reset(new DcmFileFormat);
-		file_path = s.path;
-		fragment = 0;
-		if (file->loadFile(s.path.c_str(), EXS_Unknown, EGL_noChange, head_element_max,
-				   ERM_fileOnly)
-			    .bad()) {
-			gz_err(log, "%s: cannot be read again; was it moved?", s.path.c_str());
-			return GZ_ERR_IO;
-		}
-	}
-	DcmDataset &data = *file->getDataset();
-	if (!(format_of(data) == numbers)) {
-		gz_err(log, "%s: changed while it was read", s.path.c_str());
-		return GZ_ERR_FORMAT;
-	}
-	DcmElement *element = nullptr;
-	DcmPixelData *pixel_data = nullptr;
-	if (data.findAndGetElement(DCM_PixelData, element).good())
-		pixel_data = dynamic_cast<DcmPixelData *>(element); /* a VR may lie */
-	OFString colour;
-	const OFCondition done =
-		pixel_data ? pixel_data->getUncompressedFrame(
-				     &data, s.frame, fragment, pixels.data(),
-				     (Uint32)(pixels.size() * sizeof pixels[0]), colour)
-			   : EC_CorruptedData;
-	if (done.good())
-		return GZ_OK;
-	const DcmXfer coding(data.getOriginalXfer());
-	const bool unknown = done == EC_CannotChangeRepresentation ||
-			     done == EC_UnsupportedEncoding || done == EC_RepresentationNotFound;
-	gz_err(log, "%s: its pixels, %s, cannot be decoded: %s; %s", s.path.c_str(),
-	       coding.getXferName(), done.text(),
-	       unknown ? "convert it, for instance with gdcmconv --raw" : "fetch it again");
-	return unknown ? GZ_ERR_UNSUPPORTED : GZ_ERR_FORMAT;
+	return (size_t)numbers.columns * (size_t)numbers.rows * gz_raw_type_size(geometry.type);
 }
 
 /* Stored bits to numbers of the geometry's type: other bits, overlays of old, are masked out. */
-void reader::widen(const slice &s, void *voxels) const
+void reader::widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const
 {
-	const size_t count = (size_t)numbers.columns * (size_t)numbers.rows;
 	const int shift = numbers.high_bit + 1 - numbers.bits_stored;
 	const uint32_t mask = (1U << numbers.bits_stored) - 1;
 	const uint32_t sign = numbers.is_signed ? 1U << (numbers.bits_stored - 1) : 0;
-	const uint8_t *narrow = (const uint8_t *)pixels.data();
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t raw = numbers.bits_allocated == 8 ? narrow[i] : pixels[i];
-		const int32_t value = (int32_t)(((raw >> shift & mask) ^ sign)) - (int32_t)sign;
-		switch (geometry.type) {
-		case GZ_RAW_UINT8:
-			((uint8_t *)voxels)[i] = (uint8_t)value;
-			break;
-		case GZ_RAW_INT8:
-			((int8_t *)voxels)[i] = (int8_t)value;
-			break;
-		case GZ_RAW_UINT16:
-			((uint16_t *)voxels)[i] = (uint16_t)value;
-			break;
-		case GZ_RAW_INT16:
-			((int16_t *)voxels)[i] = (int16_t)value;
-			break;
-		default:
-			((float *)voxels)[i] = (float)(value * s.slope + s.intercept);
-			break;
+	const auto *wide = (const uint16_t *)frame.data();
+	size_t i = 0;
+	for (int y = 0; y < numbers.rows; y++) {
+		size_t at = (size_t)(s.first_row + y) * (size_t)numbers.frame_columns +
+			    (size_t)s.first_column;
+		for (int x = 0; x < numbers.columns; x++, i++, at++) {
+			const uint32_t raw = numbers.bits_allocated == 8 ? frame[at] : wide[at];
+			const int32_t value =
+				(int32_t)((raw >> shift & mask) ^ sign) - (int32_t)sign;
+			switch (geometry.type) {
+			case GZ_RAW_UINT8:
+				((uint8_t *)voxels)[i] = (uint8_t)value;
+				break;
+			case GZ_RAW_INT8:
+				((int8_t *)voxels)[i] = (int8_t)value;
+				break;
+			case GZ_RAW_UINT16:
+				((uint16_t *)voxels)[i] = (uint16_t)value;
+				break;
+			case GZ_RAW_INT16:
+				((int16_t *)voxels)[i] = (int16_t)value;
+				break;
+			default:
+				((float *)voxels)[i] = (float)(value * s.slope + s.intercept);
+				break;
+			}
 		}
 	}
+}
+
+decoded_slice reader::decode(size_t index) const
+{
+	const slice &s = slices[index];
+	decoded_slice made;
+	std::vector<uint8_t> frame;
+	made.result = decode_frame(*s.pixels, s.frame, frame, made.why);
+	if (made.result == GZ_OK) {
+		made.voxels.resize(slice_bytes());
+		widen(s, frame, made.voxels.data());
+	}
+	return made;
 }
 
 gz_result reader::read(void *voxels)
 {
-	const slice &s = slices[next];
-	pixels.resize(((size_t)numbers.columns * (size_t)numbers.rows *
-			       (size_t)(numbers.bits_allocated / 8) +
-		       1) /
-		      2);
-	const gz_result result = decode(s);
-	if (result != GZ_OK)
-		return result;
-	widen(s, voxels);
+	if (!pool)
+		pool.reset(new slice_pool(slices.size(),
+					  numbers.frame_bytes() +
+						  codec_bytes_a_pixel *
+							  (uint64_t)numbers.frame_columns *
+							  (uint64_t)numbers.frame_rows,
+					  [this](size_t index) { return decode(index); }));
+	const decoded_slice made = pool->take();
+	if (made.result != GZ_OK) {
+		gz_err(log, "%s: %s", slices[next].path().c_str(), made.why.c_str());
+		return made.result;
+	}
+	std::memcpy(voxels, made.voxels.data(), made.voxels.size());
 	next++;
 	return GZ_OK;
 }
@@ -472,13 +454,14 @@ struct gz_dicom_series {
 	const gz_log *log;
 };
 
-extern "C" enum gz_result gz_dicom_series_open(const char *path, const struct gz_log *log,
+extern "C" enum gz_result gz_dicom_series_open(const struct gz_volume_file *file,
 					       struct gz_dicom_series **out_series)
 {
+	const char *path = file->path;
+	const gz_log *log = file->log;
 	try {
-		prepare_library();
-		std::unique_ptr<gz_dicom_series> series(
-			new gz_dicom_series { reader(path, log), log });
+		silence_library();
+		std::unique_ptr<gz_dicom_series> series(new gz_dicom_series { reader(file), log });
 		const gz_result result = series->slices.open();
 		if (result == GZ_OK)
 			*out_series = series.release();
@@ -515,18 +498,4 @@ extern "C" void gz_dicom_series_close(struct gz_dicom_series **series)
 {
 	delete *series;
 	*series = nullptr;
-}
-
-extern "C" bool gz_dicom_is(const char *path)
-{
-	struct stat status;
-	if (stat(path, &status) != 0)
-		return false;
-	if (S_ISDIR(status.st_mode))
-		return true;
-	char preamble[132];
-	std::unique_ptr<FILE, int (*)(FILE *)> in(
-		S_ISREG(status.st_mode) ? fopen(path, "rb") : nullptr, fclose);
-	return in && fread(preamble, 1, sizeof preamble, in.get()) == sizeof preamble &&
-	       memcmp(preamble + 128, "DICM", 4) == 0;
 }

@@ -1,0 +1,144 @@
+#include "render/data/decoded_volume.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "render/data/scratch.h"
+#include "render/decode/decode.h"
+
+#define GZ_LOG_MODULE "volume"
+
+/* One decoding. */
+struct decoding {
+	const struct gz_volume_file *file;
+	int scratch_fd;                /* -1: none */
+	enum gz_result scratch_result; /* why there is none */
+};
+
+static struct gz_volume volume_of_header(const struct gz_decode_header *header)
+{
+	struct gz_volume volume = {
+		.type = header->type < GZ_VOXEL_TYPE_COUNT ? (enum gz_voxel_type)header->type
+							   : GZ_VOXEL_TYPE_COUNT,
+		.slope = header->slope,
+		.intercept = header->intercept,
+		.oriented = header->oriented == 1,
+	};
+	for (int axis = 0; axis < 3; axis++) {
+		volume.dims[axis] = header->dims[axis];
+		volume.spacing[axis] = header->spacing[axis];
+	}
+	return volume;
+}
+
+static enum gz_result refuse_room(const struct decoding *decoding, size_t bytes,
+				  enum gz_result result)
+{
+	const struct gz_volume_file *file = decoding->file;
+	if (result == GZ_ERR_NO_MEM)
+		gz_err(file->log,
+		       "%s: no memory for %zu MiB of voxels; write it as bricks (gazeview "
+		       "--write-volume) or use a smaller volume",
+		       file->path, bytes >> 20);
+	else
+		gz_err(file->log, "%s: no %zu MiB for voxels in %s: %s; make room there",
+		       file->path, bytes >> 20, file->loading->scratch, gz_result_text(result));
+	return result;
+}
+
+static enum gz_result accept_header(void *user, const struct gz_decode_header *header,
+				    struct gz_decode_place *out_place)
+{
+	const struct decoding *decoding = user;
+	const struct gz_loading *loading = decoding->file->loading;
+	const struct gz_volume volume = volume_of_header(header);
+	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 || !isfinite(volume.slope) ||
+	    volume.slope == 0 || !isfinite(volume.intercept)) {
+		gz_err(decoding->file->log,
+		       "%s: its decoder made a volume of %d x %d x %d voxels of kind %u that "
+		       "cannot be; the file was not read",
+		       decoding->file->path, volume.dims[0], volume.dims[1], volume.dims[2],
+		       header->type);
+		return GZ_ERR_FORMAT;
+	}
+	/* At most 2^42 voxels of 4 bytes: no overflow. */
+	const size_t used = gz_volume_voxel_count(&volume) * gz_voxel_size(volume.type);
+	out_place->bytes = used + GZ_VOLUME_PADDING;
+	out_place->in_scratch = loading && loading->scratch && used >= loading->scratch_from;
+	if (!out_place->in_scratch)
+		return gz_memory_fits_machine(out_place->bytes)
+			       ? GZ_OK
+			       : refuse_room(decoding, out_place->bytes, GZ_ERR_NO_MEM);
+	const enum gz_result result =
+		decoding->scratch_fd < 0
+			? decoding->scratch_result
+			: gz_scratch_reserve(decoding->scratch_fd, out_place->bytes);
+	return result == GZ_OK ? GZ_OK : refuse_room(decoding, out_place->bytes, result);
+}
+
+static bool decoding_goes_on(void *user, double share)
+{
+	const struct decoding *decoding = user;
+	return gz_loading_goes_on(decoding->file->loading, share, decoding->file->path);
+}
+
+static bool voxels_finite(const struct gz_volume *volume)
+{
+	const float *voxels = volume->voxels;
+	const size_t count = gz_volume_voxel_count(volume);
+	size_t bad = 0;
+	for (size_t i = 0; i < count; i++)
+		bad += !isfinite(voxels[i]);
+	return bad == 0;
+}
+
+/* What the decoder promises of the voxels is found out again. */
+static enum gz_result check_voxels(const struct gz_volume_file *file, struct gz_volume *volume)
+{
+	if (volume->type != GZ_VOXEL_F32 || voxels_finite(volume)) {
+		gz_volume_find_range(volume);
+		if (isfinite(volume->slope * volume->stored_min + volume->intercept) &&
+		    isfinite(volume->slope * volume->stored_max + volume->intercept))
+			return GZ_OK;
+	}
+	gz_err(file->log, "%s: its decoder made values that are not finite; it was not read",
+	       file->path);
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *format,
+				const char *choice, struct gz_volume *out_volume)
+{
+	struct decoding decoding = { .file = file, .scratch_fd = -1 };
+	if (file->loading && file->loading->scratch)
+		decoding.scratch_result =
+			gz_scratch_open(file->loading->scratch, &decoding.scratch_fd);
+	const struct gz_decode_job job = {
+		.format = format,
+		.path = file->path,
+		.choice = choice,
+		.scratch_fd = decoding.scratch_fd,
+		.user = &decoding,
+		.goes_on = decoding_goes_on,
+		.accept = accept_header,
+		.log = file->log,
+	};
+	struct gz_decoded decoded;
+	enum gz_result result = gz_decode_run(&job, &decoded);
+	if (decoding.scratch_fd >= 0)
+		close(decoding.scratch_fd);
+	if (result != GZ_OK)
+		return result;
+	struct gz_volume volume = volume_of_header(&decoded.header);
+	volume.voxels = decoded.voxels;
+	volume.mapped = decoded.mapped;
+	result = check_voxels(file, &volume);
+	if (result != GZ_OK) {
+		gz_volume_free(&volume);
+		return result;
+	}
+	*out_volume = volume;
+	return GZ_OK;
+}

@@ -1,0 +1,90 @@
+#include "render/decode/child/decoder.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "render/decode/decode_protocol.h"
+
+/* Least time between two steps, ns. */
+#define STEP_NS (50 * GZ_NS_PER_MS)
+
+static void send_message(const struct gz_decode_message *message)
+{
+	/* If nobody reads any more, the process has been killed. */
+	(void)gz_write_all(GZ_DECODE_FD_MESSAGES, message, sizeof *message);
+}
+
+static void send_line(void *user, enum gz_log_level level, const char *module, const char *text)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_LINE, .detail = (int32_t)level };
+	(void)user;
+	(void)module;
+	snprintf(message.text, sizeof message.text, "%s", text);
+	send_message(&message);
+}
+
+static bool send_step(void *user, double share, const char *what)
+{
+	struct gz_decoder *decoder = user;
+	const int64_t now_ns = gz_clock_now_ns();
+	(void)what;
+	decoder->steps += decoder->steps < INT32_MAX;
+	if (now_ns - decoder->sent_ns < STEP_NS)
+		return true;
+	const struct gz_decode_message message = { .kind = GZ_DECODE_STEP,
+						   .detail = decoder->steps,
+						   .share = share };
+	decoder->sent_ns = now_ns;
+	send_message(&message);
+	return true;
+}
+
+static struct gz_decode_header header_of(const struct gz_volume *volume)
+{
+	struct gz_decode_header header = { .type = (uint32_t)volume->type,
+					   .oriented = volume->oriented,
+					   .slope = volume->slope,
+					   .intercept = volume->intercept };
+	for (int axis = 0; axis < 3; axis++) {
+		header.dims[axis] = volume->dims[axis];
+		header.spacing[axis] = volume->spacing[axis];
+	}
+	return header;
+}
+
+static void *ask_for_memory(void *user, const struct gz_volume *volume, size_t bytes)
+{
+	const struct gz_decode_message message = { .kind = GZ_DECODE_HEADER,
+						   .header = header_of(volume) };
+	char answer = 0;
+	(void)user;
+	send_message(&message);
+	if (read(GZ_DECODE_FD_ANSWERS, &answer, 1) != 1)
+		return NULL;
+	const int fd =
+		answer == GZ_DECODE_INTO_SCRATCH ? GZ_DECODE_FD_SCRATCH : GZ_DECODE_FD_MEMORY;
+	void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+	return memory == MAP_FAILED ? NULL : memory;
+}
+
+void gz_decoder_init(struct gz_decoder *decoder)
+{
+	*decoder = (struct gz_decoder) { 0 };
+	gz_log_init(&decoder->log, send_line, NULL, "*:debug");
+	decoder->loading.report = send_step;
+	decoder->loading.user = decoder;
+	decoder->loading.give_memory = ask_for_memory;
+}
+
+_Noreturn void gz_decoder_end(enum gz_result result, const struct gz_volume *volume)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_ENDED, .detail = (int32_t)result };
+	if (result == GZ_OK)
+		message.header = header_of(volume);
+	send_message(&message);
+	_exit(0);
+}

@@ -1,0 +1,323 @@
+#include "render/decode/decode.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "render/decode/decode_process.h"
+
+#define GZ_LOG_MODULE "decode"
+
+/* How often goes_on() is asked, ms. */
+#define POLL_MS 50
+
+/* How long and how often sealing is tried, ms (chosen). */
+#define SEAL_PATIENCE_MS 500
+#define SEAL_RETRY_MS    5
+
+/* One decoding. */
+struct run {
+	const struct gz_decode_job *job;
+	struct gz_decode_process process;
+	struct gz_decode_message message; /* the first `filled` bytes of the next one */
+	size_t filled;
+	uint64_t messages;
+	int lines, errors;    /* of the log */
+	double share;         /* of the newest step */
+	int32_t steps;        /* of the newest step */
+	int64_t moved_ns;     /* when it last made progress */
+	bool accepted, ended; /* header and end have come */
+	enum gz_result result;
+	struct gz_decode_header header;
+	struct gz_decode_place place;
+};
+
+static enum gz_result refuse_decoder(const struct run *run, enum gz_result result, const char *what)
+{
+	gz_err(run->job->log, "%s: its decoder %s; the file was not read", run->job->path, what);
+	return result;
+}
+
+/* Bytes of the UTF-8 character that begins here, 1 to 4; 0 if it is none, or a control character
+ * (RFC 3629, 4). */
+static size_t character_length(const unsigned char *text)
+{
+	if (text[0] < 0x80)
+		return text[0] >= 0x20 && text[0] != 0x7f;
+	const size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
+	if (text[0] < 0xc2 || text[0] > 0xf4)
+		return 0;
+	for (size_t i = 1; i < length; i++)
+		if ((text[i] & 0xc0) != 0x80)
+			return 0;
+	const bool control = text[0] == 0xc2 && text[1] < 0xa0;
+	const bool overlong =
+		(text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xf0 && text[1] < 0x90);
+	const bool beyond =
+		(text[0] == 0xed && text[1] > 0x9f) || (text[0] == 0xf4 && text[1] > 0x8f);
+	return control || overlong || beyond ? 0 : length;
+}
+
+void gz_decode_clean_text(char *text)
+{
+	for (unsigned char *at = (unsigned char *)text; *at;) {
+		const size_t length = character_length(at);
+		if (length == 0)
+			*at = '?';
+		at += length ? length : 1;
+	}
+}
+
+static enum gz_result take_line(struct run *run)
+{
+	struct gz_decode_message *message = &run->message;
+	if (message->detail < GZ_LOG_DEBUG || message->detail > GZ_LOG_ERROR ||
+	    !memchr(message->text, 0, sizeof message->text))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a line that is none");
+	const enum gz_log_level level = (enum gz_log_level)message->detail;
+	if (run->lines++ >= GZ_DECODE_LINES_MAX)
+		return GZ_OK;
+	run->errors += level == GZ_LOG_ERROR;
+	gz_decode_clean_text(message->text);
+	if (gz_log_wants(run->job->log, level, GZ_LOG_MODULE))
+		gz_log_write(run->job->log, level, GZ_LOG_MODULE, "%s", message->text);
+	return GZ_OK;
+}
+
+static enum gz_result take_step(struct run *run)
+{
+	const struct gz_decode_message *message = &run->message;
+	if (!(message->share >= 0 && message->share <= 1))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a step outside of 0 to 1");
+	if (message->share > run->share || message->detail > run->steps)
+		run->moved_ns = gz_clock_now_ns();
+	run->share = message->share > run->share ? message->share : run->share;
+	run->steps = message->detail > run->steps ? message->detail : run->steps;
+	return GZ_OK;
+}
+
+/* Give the memfd its size for good, and the decoder the address space for it. */
+static enum gz_result make_room(const struct run *run)
+{
+	const pid_t pid = run->process.pid;
+	struct rlimit limit;
+	if (!run->place.in_scratch &&
+	    (ftruncate(run->process.memory, (off_t)run->place.bytes) != 0 ||
+	     fcntl(run->process.memory, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0)) {
+		gz_err(run->job->log, "%s: no memory for %zu MiB of voxels: %s", run->job->path,
+		       run->place.bytes >> 20, strerror(errno));
+		return GZ_ERR_NO_MEM;
+	}
+	if (prlimit(pid, RLIMIT_AS, NULL, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+		return GZ_OK; /* none: the decoder has said so, or has just died */
+	limit.rlim_cur = GZ_DECODE_WORK_BYTES + run->place.bytes;
+	if (limit.rlim_max != RLIM_INFINITY && limit.rlim_cur > limit.rlim_max)
+		limit.rlim_cur = limit.rlim_max;
+	(void)prlimit(pid, RLIMIT_AS, &limit, NULL); /* without it the decoder says: no memory */
+	return GZ_OK;
+}
+
+static enum gz_result take_header(struct run *run)
+{
+	const struct gz_decode_header *header = &run->message.header;
+	if (run->accepted || header->unused != 0)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a header that is none");
+	enum gz_result result = run->job->accept(run->job->user, header, &run->place);
+	if (result == GZ_OK)
+		result = make_room(run);
+	if (result != GZ_OK)
+		return result;
+	run->accepted = true;
+	run->header = *header;
+	run->moved_ns = gz_clock_now_ns();
+	const char answer = run->place.in_scratch ? GZ_DECODE_INTO_SCRATCH : GZ_DECODE_INTO_MEMORY;
+	/* If it has died in the meantime, its pipe of messages tells that. */
+	(void)gz_write_all(run->process.answers, &answer, 1);
+	return GZ_OK;
+}
+
+/* Whether two headers agree in all that the memory of the voxels depends on. */
+static bool same_voxels(const struct gz_decode_header *a, const struct gz_decode_header *b)
+{
+	return memcmp(a->dims, b->dims, sizeof a->dims) == 0 && a->type == b->type &&
+	       a->oriented == b->oriented && a->unused == b->unused &&
+	       memcmp(a->spacing, b->spacing, sizeof a->spacing) == 0;
+}
+
+static enum gz_result take_good_end(struct run *run)
+{
+	const struct gz_decode_header *header = &run->message.header;
+	if (!run->accepted)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "ended without voxels");
+	if (!same_voxels(header, &run->header) || !isfinite(header->slope) || header->slope == 0 ||
+	    !isfinite(header->intercept))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "ended with another header");
+	run->header = *header;
+	return GZ_OK;
+}
+
+/* The decoder's own result. */
+static enum gz_result take_end(struct run *run)
+{
+	static const enum gz_result allowed[] = { GZ_ERR_NOT_FOUND,   GZ_ERR_IO,     GZ_ERR_FORMAT,
+						  GZ_ERR_UNSUPPORTED, GZ_ERR_NO_MEM, GZ_ERR_INVAL };
+	run->ended = true;
+	if (run->message.detail == GZ_OK)
+		return take_good_end(run);
+	for (size_t i = 0; i < sizeof allowed / sizeof allowed[0]; i++) {
+		if (run->message.detail != (int32_t)allowed[i])
+			continue;
+		if (run->errors == 0)
+			refuse_decoder(run, allowed[i], gz_result_text(allowed[i]));
+		return allowed[i];
+	}
+	return refuse_decoder(run, GZ_ERR_PROTOCOL, "ended with an unknown result");
+}
+
+static enum gz_result take_message(struct run *run)
+{
+	if (++run->messages > GZ_DECODE_MESSAGES_MAX || run->lines > 100 * GZ_DECODE_LINES_MAX)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "floods with messages");
+	switch (run->message.kind) {
+	case GZ_DECODE_STEP:
+		return take_step(run);
+	case GZ_DECODE_LINE:
+		return take_line(run);
+	case GZ_DECODE_HEADER:
+		return take_header(run);
+	case GZ_DECODE_ENDED:
+		return take_end(run);
+	default:
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent what is no message");
+	}
+}
+
+/* The pipe ended before the decoder said that it did: why. */
+static enum gz_result explain_death(struct run *run)
+{
+	char what[128];
+	const int status = gz_decode_process_stop(&run->process);
+	if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+		return refuse_decoder(run, GZ_ERR_TIMEOUT, "took too much processor time");
+	if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "was killed");
+	if (WIFSIGNALED(status))
+		snprintf(what, sizeof what, "crashed (%s)", strsignal(WTERMSIG(status)));
+	else
+		snprintf(what, sizeof what, "ended without a result (status %d)",
+			 WEXITSTATUS(status));
+	return refuse_decoder(run, GZ_ERR_PROTOCOL, what);
+}
+
+/* Take what the pipe holds, up to one message. */
+static enum gz_result read_message(struct run *run)
+{
+	const ssize_t got = read(run->process.messages, (char *)&run->message + run->filled,
+				 sizeof run->message - run->filled);
+	if (got < 0)
+		return errno == EAGAIN || errno == EINTR ? GZ_OK : explain_death(run);
+	if (got == 0)
+		return explain_death(run);
+	run->filled += (size_t)got;
+	if (run->filled < sizeof run->message)
+		return GZ_OK;
+	run->filled = 0;
+	return take_message(run);
+}
+
+static enum gz_result check_patience(const struct run *run)
+{
+	const int patience_ms =
+		run->job->patience_ms > 0 ? run->job->patience_ms : GZ_DECODE_PATIENCE_MS;
+	char what[96];
+	if (gz_clock_now_ns() - run->moved_ns <= patience_ms * GZ_NS_PER_MS)
+		return GZ_OK;
+	snprintf(what, sizeof what, "made no progress for %g s", patience_ms / 1e3);
+	return refuse_decoder(run, GZ_ERR_TIMEOUT, what);
+}
+
+static enum gz_result watch_decoder(struct run *run)
+{
+	int64_t asked_ns = 0;
+	while (!run->ended) {
+		const int64_t now_ns = gz_clock_now_ns();
+		if (now_ns - asked_ns >= POLL_MS * GZ_NS_PER_MS) {
+			if (!run->job->goes_on(run->job->user, run->share))
+				return GZ_ERR_CANCELLED;
+			asked_ns = now_ns;
+		}
+		struct pollfd pipe_end = { .fd = run->process.messages, .events = POLLIN };
+		const int ready = poll(&pipe_end, 1, POLL_MS);
+		enum gz_result result = ready > 0 ? read_message(run) : GZ_OK;
+		if (result == GZ_OK && !run->ended)
+			result = check_patience(run);
+		if (result != GZ_OK)
+			return result;
+	}
+	return GZ_OK;
+}
+
+/* Seal the memfd against writing. A process that looks at the decoder in /proc keeps its memory for
+ * a moment after its end. */
+static bool seal_voxels(int fd)
+{
+	const int64_t until_ns = gz_clock_now_ns() + SEAL_PATIENCE_MS * GZ_NS_PER_MS;
+	while (fcntl(fd, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_SEAL) != 0) {
+		if (errno != EBUSY || gz_clock_now_ns() > until_ns)
+			return false;
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + SEAL_RETRY_MS * GZ_NS_PER_MS);
+	}
+	return true;
+}
+
+/* Once no process has it, nobody writes to it any more: sealed, and mapped to be read. */
+static enum gz_result map_voxels(struct run *run, struct gz_decoded *out_decoded)
+{
+	const struct gz_decode_job *job = run->job;
+	const int fd = run->place.in_scratch ? job->scratch_fd : run->process.memory;
+	(void)gz_decode_process_stop(&run->process);
+	if (!run->place.in_scratch && !seal_voxels(fd))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "left its memory to another process");
+	/* A private mapping that is only read is the pages of the file itself. */
+	void *voxels = mmap(NULL, run->place.bytes, PROT_READ, MAP_PRIVATE, fd, 0);
+	if (voxels == MAP_FAILED) {
+		gz_err(job->log, "%s: cannot map its %zu MiB of voxels: %s", job->path,
+		       run->place.bytes >> 20, strerror(errno));
+		return GZ_ERR_NO_MEM;
+	}
+	out_decoded->header = run->header;
+	out_decoded->voxels = voxels;
+	out_decoded->mapped = run->place.bytes;
+	return GZ_OK;
+}
+
+static void report_dropped_lines(const struct run *run)
+{
+	if (run->lines > GZ_DECODE_LINES_MAX)
+		gz_warn(run->job->log, "%s: %d further lines of its decoder are left out",
+			run->job->path, run->lines - GZ_DECODE_LINES_MAX);
+}
+
+enum gz_result gz_decode_run(const struct gz_decode_job *job, struct gz_decoded *out_decoded)
+{
+	struct run run = { .job = job, .moved_ns = gz_clock_now_ns() };
+	enum gz_result result = gz_decode_process_start(job, &run.process);
+	if (result == GZ_OK)
+		result = watch_decoder(&run);
+	if (result == GZ_OK)
+		result = map_voxels(&run, out_decoded);
+	gz_decode_process_end(&run.process);
+	if (result != GZ_ERR_CANCELLED)
+		report_dropped_lines(&run);
+	return result;
+}

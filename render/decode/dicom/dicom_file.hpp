@@ -1,0 +1,111 @@
+/* What the head of one DICOM file tells of its images, and where their pixels lie. Inside the DICOM
+ * reader; not for users of render/. */
+#ifndef GZ_RENDER_DECODE_DICOM_FILE_HPP
+#define GZ_RENDER_DECODE_DICOM_FILE_HPP
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gdcmTransferSyntax.h>
+
+namespace gz_dicom
+{
+
+struct vector3 {
+	double x[3];
+};
+
+inline double dot(const vector3 &a, const vector3 &b)
+{
+	return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
+}
+
+inline vector3 cross(const vector3 &a, const vector3 &b)
+{
+	return { { a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2],
+		   a.x[0] * b.x[1] - a.x[1] * b.x[0] } };
+}
+
+/* Bytes of a file. */
+struct span {
+	uint64_t offset, length;
+};
+
+/* What every slice must agree in. */
+struct format {
+	int columns = 0, rows = 0;             /* of a slice */
+	int frame_columns = 0, frame_rows = 0; /* of a frame, which may be a mosaic of slices */
+	int bits_allocated = 0, bits_stored = 0, high_bit = 0;
+	bool is_signed = false;
+	double spacing[2] = { 1, 1 }; /* between columns, between rows */
+	double thickness = 0;         /* or spacing between slices, if told */
+
+	bool operator==(const format &other) const
+	{
+		return columns == other.columns && rows == other.rows &&
+		       bits_allocated == other.bits_allocated && bits_stored == other.bits_stored &&
+		       high_bit == other.high_bit && is_signed == other.is_signed &&
+		       std::fabs(spacing[0] - other.spacing[0]) < 1e-4 * spacing[0] &&
+		       std::fabs(spacing[1] - other.spacing[1]) < 1e-4 * spacing[1];
+	}
+
+	uint64_t frame_bytes() const
+	{
+		return (uint64_t)frame_columns * (uint64_t)frame_rows *
+		       (uint64_t)(bits_allocated / 8);
+	}
+};
+
+/* The pixels of one file. */
+struct pixels_of_file {
+	std::string path;
+	format numbers;
+	gdcm::TransferSyntax::TSType coding = gdcm::TransferSyntax::TS_END;
+	bool encapsulated = false;
+	bool deflated = false;                 /* the whole file is: it is read as a whole */
+	bool swap_bytes = false;               /* two by two, of plain pixels */
+	span plain {};                         /* all frames, one after the other */
+	std::vector<std::vector<span>> frames; /* fragments of each, if encapsulated */
+};
+
+/* Where one slice lies and how its numbers read. */
+struct slice {
+	std::shared_ptr<const pixels_of_file> pixels;
+	uint32_t frame = 0;
+	int first_column = 0, first_row = 0; /* in the frame */
+	int number = 0;                      /* of the instance, then of the frame */
+	bool placed = false;
+	vector3 position {}, row {}, column {};
+	double along = 0; /* the stack */
+	double slope = 1, intercept = 0;
+
+	const std::string &path() const
+	{
+		return pixels->path;
+	}
+};
+
+/* One file's head. */
+struct head {
+	std::string path, series_uid, description;
+	format numbers;
+	int samples = 1; /* a pixel */
+	std::vector<slice> slices;
+	uint64_t frames = 0;     /* claimed */
+	uint64_t bytes = 0;      /* that its pixel data can hold */
+	bool unreadable = false; /* damaged or cut off, though it may begin like DICOM */
+};
+
+/* Read the head of a file; false if it holds no DICOM image. A file that claims more frames than
+ * GZ_VOLUME_DIM_MAX gives one more than that. */
+bool read_head(const std::string &name, head &out);
+
+/* Let the library keep its messages for itself. */
+void silence_library();
+
+} // namespace gz_dicom
+
+#endif

@@ -1,0 +1,198 @@
+#include "render/decode/dicom/dicom_frame.hpp"
+
+#include <cstring>
+#include <fstream>
+
+#include <gdcmDataElement.h>
+#include <gdcmFragment.h>
+#include <gdcmImage.h>
+#include <gdcmReader.h>
+#include <gdcmSequenceOfFragments.h>
+
+#include "render/decode/dicom/dicom_guard.hpp"
+
+namespace gz_dicom
+{
+
+namespace
+{
+
+const gdcm::Tag pixel_data(0x7fe0, 0x0010);
+
+/* What a frame in RLE begins with: the number of segments and where each lies
+ * (PS3.5, G.5). The library believes them. */
+bool rle_head_valid(const std::vector<char> &bytes, int bytes_a_pixel)
+{
+	const size_t head = 64;
+	if (bytes.size() < head)
+		return false;
+	uint32_t numbers[16], before = 0;
+	for (size_t i = 0; i < 16; i++) {
+		const auto *at = (const unsigned char *)&bytes[4 * i];
+		numbers[i] = at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 |
+			     (uint32_t)at[3] << 24;
+	}
+	if (numbers[0] != (uint32_t)bytes_a_pixel || numbers[1] != head)
+		return false;
+	for (uint32_t i = 1; i <= numbers[0]; i++) {
+		if (numbers[i] <= before || numbers[i] >= bytes.size())
+			return false;
+		before = numbers[i];
+	}
+	return true;
+}
+
+/* Swap bytes two by two. */
+void swap_pairs(std::vector<uint8_t> &bytes)
+{
+	for (size_t i = 0; i + 1 < bytes.size(); i += 2)
+		std::swap(bytes[i], bytes[i + 1]);
+}
+
+bool read_spans(const std::string &path, const std::vector<span> &spans, std::vector<char> &out)
+{
+	std::ifstream file(path, std::ios::binary);
+	uint64_t size = 0;
+	for (const span &s : spans)
+		size += s.length;
+	out.resize(size);
+	size_t at = 0;
+	for (const span &s : spans) {
+		file.seekg((std::streamoff)s.offset);
+		if (s.length > 0 && !file.read(&out[at], (std::streamsize)s.length))
+			return false;
+		at += s.length;
+	}
+	return (bool)file;
+}
+
+gdcm::DataElement element_of(const std::vector<char> &bytes)
+{
+	gdcm::Fragment fragment;
+	fragment.SetByteValue(bytes.data(), gdcm::VL((uint32_t)bytes.size()));
+	gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+	fragments->AddFragment(fragment);
+	gdcm::DataElement element(pixel_data);
+	element.SetVR(gdcm::VR::OB);
+	element.SetValue(*fragments);
+	return element;
+}
+
+/* One frame, told to the library as an image of its own. */
+bool decode_picture(const pixels_of_file &pixels, const std::vector<char> &bytes,
+		    std::vector<uint8_t> &out)
+{
+	const format &n = pixels.numbers;
+	gdcm::Image image;
+	image.SetNumberOfDimensions(2);
+	image.SetDimension(0, (unsigned)n.frame_columns);
+	image.SetDimension(1, (unsigned)n.frame_rows);
+	const gdcm::PixelFormat stored(1, (uint16_t)n.bits_allocated, (uint16_t)n.bits_stored,
+				       (uint16_t)n.high_bit, n.is_signed ? 1 : 0);
+	image.SetPixelFormat(stored);
+	image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+	image.SetTransferSyntax(gdcm::TransferSyntax(pixels.coding));
+	image.SetDataElement(element_of(bytes));
+	if (image.GetBufferLength() != out.size() || !image.GetBuffer((char *)out.data()))
+		return false;
+	/* A codec may correct what the head says of the numbers. */
+	return image.GetPixelFormat().GetBitsAllocated() == n.bits_allocated &&
+	       image.GetPixelFormat().GetSamplesPerPixel() == 1;
+}
+
+bool is_supported(gdcm::TransferSyntax::TSType coding)
+{
+	using ts = gdcm::TransferSyntax;
+	switch (coding) {
+	case ts::JPEGBaselineProcess1:
+	case ts::JPEGExtendedProcess2_4:
+	case ts::JPEGExtendedProcess3_5:
+	case ts::JPEGSpectralSelectionProcess6_8:
+	case ts::JPEGFullProgressionProcess10_12:
+	case ts::JPEGLosslessProcess14:
+	case ts::JPEGLosslessProcess14_1:
+	case ts::JPEGLSLossless:
+	case ts::JPEGLSNearLossless:
+	case ts::JPEG2000Lossless:
+	case ts::JPEG2000:
+	case ts::JPEG2000Part2Lossless:
+	case ts::JPEG2000Part2:
+	case ts::RLELossless:
+		return true;
+	default:
+		return false;
+	}
+}
+
+gz_result decode_fragments(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
+			   std::string &why)
+{
+	const gdcm::TransferSyntax coding(pixels.coding);
+	const char *name = coding.GetString();
+	const std::string kind = name ? name : "of an unknown kind";
+	std::vector<char> bytes;
+	if (!is_supported(pixels.coding)) {
+		why = "its pixels, " + kind +
+		      ", cannot be decoded; convert it, for instance with "
+		      "gdcmconv --raw";
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (frame < pixels.frames.size() && !read_spans(pixels.path, pixels.frames[frame], bytes)) {
+		why = "cannot be read again; was it moved?";
+		return GZ_ERR_IO;
+	}
+	const bool rle = pixels.coding == gdcm::TransferSyntax::RLELossless;
+	if (bytes.empty() || (rle && !rle_head_valid(bytes, pixels.numbers.bits_allocated / 8)) ||
+	    !guarded([&] { return decode_picture(pixels, bytes, out); })) {
+		why = "its pixels, " + kind + ", are damaged; fetch it again";
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
+}
+
+/* A deflated file has no places: it is read again as a whole. */
+bool read_deflated(const pixels_of_file &pixels, uint64_t at, std::vector<uint8_t> &out)
+{
+	gdcm::Reader reader;
+	reader.SetFileName(pixels.path.c_str());
+	if (!reader.Read() || !reader.GetFile().GetDataSet().FindDataElement(pixel_data))
+		return false;
+	const gdcm::ByteValue *value =
+		reader.GetFile().GetDataSet().GetDataElement(pixel_data).GetByteValue();
+	if (!value || at > value->GetLength() || out.size() > value->GetLength() - at)
+		return false;
+	std::memcpy(out.data(), value->GetPointer() + at, out.size());
+	return true;
+}
+
+bool read_plain(const pixels_of_file &pixels, uint64_t at, std::vector<uint8_t> &out)
+{
+	std::ifstream file(pixels.path, std::ios::binary);
+	if (at > pixels.plain.length || out.size() > pixels.plain.length - at)
+		return false;
+	file.seekg((std::streamoff)(pixels.plain.offset + at));
+	return (bool)file.read((char *)out.data(), (std::streamsize)out.size());
+}
+
+} // namespace
+
+gz_result decode_frame(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
+		       std::string &why)
+{
+	const uint64_t size = pixels.numbers.frame_bytes();
+	out.assign(size, 0);
+	if (pixels.encapsulated)
+		return decode_fragments(pixels, frame, out, why);
+	const uint64_t at = frame * size;
+	const bool read = pixels.deflated ? guarded([&] { return read_deflated(pixels, at, out); })
+					  : read_plain(pixels, at, out);
+	if (!read) {
+		why = "cannot be read again; was it moved or changed?";
+		return GZ_ERR_IO;
+	}
+	if (pixels.swap_bytes)
+		swap_pairs(out);
+	return GZ_OK;
+}
+
+} // namespace gz_dicom

@@ -1,0 +1,21 @@
+/**
+ * @file
+ * DICOM series as volumes, in the process that calls: the decoder's.
+ */
+#ifndef GZ_RENDER_DECODE_DICOM_LOAD_H
+#define GZ_RENDER_DECODE_DICOM_LOAD_H
+
+#include "render/data/volume_import.h"
+
+/**
+ * Load a series: a folder, one file of it, or a file with several frames. Slices are decoded by
+ * several threads and turned to RAS+ like those of every other format.
+ *
+ * @param choice           not used yet
+ * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
+ * @return as gz_dicom_series_open() and gz_volume_import()
+ */
+enum gz_result gz_dicom_load(const struct gz_volume_file *file, const char *choice,
+			     struct gz_volume *out_volume);
+
+#endif

@@ -1,0 +1,57 @@
+/* gazedecode: decodes one file with a library of another project and gives its voxels to the
+ * program that started it. It is not for users: the arguments are those of
+ * render/decode/decode_protocol.h. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "render/decode/child/confine.h"
+#include "render/decode/child/decoder.h"
+#include "render/decode/dicom/dicom_load.h"
+
+#define GZ_LOG_MODULE "decode"
+
+/* One decoder. */
+struct decoder_row {
+	const char *name;
+	enum gz_result (*load)(const struct gz_volume_file *file, const char *choice,
+			       struct gz_volume *out_volume);
+};
+
+static const struct decoder_row decoders[] = {
+	{ "dicom", gz_dicom_load },
+};
+
+static const struct decoder_row *decoder_named(const char *name)
+{
+	for (size_t i = 0; i < sizeof decoders / sizeof decoders[0]; i++)
+		if (strcmp(decoders[i].name, name) == 0)
+			return &decoders[i];
+	return NULL;
+}
+
+int main(int argc, char **argv)
+{
+	struct gz_decoder decoder;
+	struct gz_volume volume = { 0 };
+	char protection[GZ_CONFINE_TEXT_SIZE];
+	long long parent = 0;
+	const struct decoder_row *row = argc == 5 ? decoder_named(argv[2]) : NULL;
+	if (!row || !gz_number_parse_whole(argv[1], &parent)) {
+		fprintf(stderr, "gazedecode is started by gazeview and has no use of its own\n");
+		return 2;
+	}
+	gz_decoder_init(&decoder);
+	if (gz_confine((pid_t)parent, argv[3], protection) != GZ_OK) {
+		gz_err(&decoder.log, "%s: its decoder cannot be confined; it was not read",
+		       argv[3]);
+		gz_decoder_end(GZ_ERR_IO, NULL);
+	}
+	gz_debug(&decoder.log, "%s: its decoder is confined by: %s", argv[3], protection);
+	const struct gz_volume_file file = { argv[3], NULL, &decoder.loading, &decoder.log };
+	/* The voxels are the parent's: they are not freed here. */
+	const enum gz_result result = row->load(&file, argv[4][0] ? argv[4] : NULL, &volume);
+	gz_decoder_end(result, &volume);
+}

@@ -1,0 +1,311 @@
+/* A decoder that does what its last argument says, mostly wrong: for the tests of who watches it.
+ */
+#include <math.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "render/decode/decode_protocol.h"
+
+static void say(const struct gz_decode_message *message)
+{
+	if (write(GZ_DECODE_FD_MESSAGES, message, sizeof *message) != sizeof *message)
+		_exit(9);
+}
+
+static void say_line(int level, const char *text)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_LINE, .detail = level };
+	snprintf(message.text, sizeof message.text, "%s", text);
+	say(&message);
+}
+
+/* A volume of 3 x 2 x 2 bytes. */
+static struct gz_decode_message good_header(void)
+{
+	return (struct gz_decode_message) {
+		.kind = GZ_DECODE_HEADER,
+		.header = { .dims = { 3, 2, 2 },
+			    .spacing = { 1, 1, 2 },
+			    .slope = 2,
+			    .intercept = -1 },
+	};
+}
+
+static void say_end(int result)
+{
+	struct gz_decode_message message = good_header();
+	message.kind = GZ_DECODE_ENDED;
+	message.detail = result;
+	say(&message);
+}
+
+static void *wait_for_memory(size_t bytes)
+{
+	char answer = 0;
+	if (read(GZ_DECODE_FD_ANSWERS, &answer, 1) != 1)
+		_exit(8);
+	const int fd =
+		answer == GZ_DECODE_INTO_SCRATCH ? GZ_DECODE_FD_SCRATCH : GZ_DECODE_FD_MEMORY;
+	void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+	if (memory == MAP_FAILED)
+		_exit(7);
+	return memory;
+}
+
+static uint8_t *make_good(void)
+{
+	const struct gz_decode_message header = good_header();
+	say(&header);
+	uint8_t *voxels = wait_for_memory(12);
+	for (int i = 0; i < 12; i++)
+		voxels[i] = (uint8_t)(10 + i);
+	return voxels;
+}
+
+static void do_good(void)
+{
+	make_good();
+	say_end(0);
+}
+
+static void do_good_but_stay(void)
+{
+	do_good();
+	pause();
+}
+
+static void do_leave_writer(void)
+{
+	make_good();
+	if (fork() == 0) {
+		close(GZ_DECODE_FD_MESSAGES);
+		sleep(3);
+		_exit(0);
+	}
+	say_end(0);
+}
+
+static void do_crash(void)
+{
+	signal(SIGSEGV, SIG_DFL); /* a sanitizer would exit */
+	raise(SIGSEGV);
+}
+
+static void do_crash_with_voxels(void)
+{
+	make_good();
+	do_crash();
+}
+
+static void do_exit(void)
+{
+	_exit(5);
+}
+
+static void do_hang(void)
+{
+	pause();
+}
+
+static void do_repeat_step(void)
+{
+	for (;;) {
+		say(&(struct gz_decode_message) {
+			.kind = GZ_DECODE_STEP, .detail = 3, .share = 0.5 });
+		usleep(1000);
+	}
+}
+
+static void do_flood_lines(void)
+{
+	for (;;)
+		say_line(2, "again");
+}
+
+static void do_flood_steps(void)
+{
+	for (int i = 0;; i++)
+		say(&(struct gz_decode_message) { .kind = GZ_DECODE_STEP, .detail = i });
+}
+
+static void do_many_lines(void)
+{
+	for (int i = 0; i < 100; i++)
+		say_line(1, "one of many");
+	do_good();
+}
+
+static void do_dirty_line(void)
+{
+	say_line(3, "bell \a escape \x1b[31m next \n c1 \xc2\x9b half \xe2\x82 good \xc3\xa9");
+	say_end(-9);
+}
+
+static void do_endless_line(void)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_LINE };
+	memset(message.text, 'a', sizeof message.text);
+	say(&message);
+	pause();
+}
+
+static void do_quiet_failure(void)
+{
+	say_end(-10);
+}
+
+static void do_unknown_result(void)
+{
+	say_end(-14);
+}
+
+static void do_end_without_voxels(void)
+{
+	say_end(0);
+	pause();
+}
+
+/* A good volume, and at the end a header with one fault. */
+static void end_otherwise(int first_dim, double slope)
+{
+	struct gz_decode_message message = good_header();
+	make_good();
+	message.kind = GZ_DECODE_ENDED;
+	message.header.dims[0] = first_dim;
+	message.header.slope = slope;
+	say(&message);
+	pause();
+}
+
+static void do_end_larger(void)
+{
+	end_otherwise(4, 2);
+}
+
+static void do_end_flat(void)
+{
+	end_otherwise(3, 0);
+}
+
+static void do_end_rescaled(void)
+{
+	end_otherwise(3, 8);
+}
+
+static void do_unknown_kind(void)
+{
+	say(&(struct gz_decode_message) { .kind = 77 });
+	pause();
+}
+
+static void do_step_nan(void)
+{
+	say(&(struct gz_decode_message) { .kind = GZ_DECODE_STEP, .share = NAN });
+	pause();
+}
+
+static void do_two_headers(void)
+{
+	make_good();
+	const struct gz_decode_message header = good_header();
+	say(&header);
+	pause();
+}
+
+/* A header with one fault. */
+static void say_faulty(const char *fault)
+{
+	struct gz_decode_message message = good_header();
+	struct gz_decode_header *header = &message.header;
+	if (strcmp(fault, "dims") == 0)
+		header->dims[1] = -2;
+	else if (strcmp(fault, "type") == 0)
+		header->type = 3;
+	else if (strcmp(fault, "spacing") == 0)
+		header->spacing[2] = NAN;
+	else if (strcmp(fault, "slope") == 0)
+		header->slope = 0;
+	else if (strcmp(fault, "oriented") == 0)
+		header->oriented = 2;
+	else if (strcmp(fault, "unused") == 0)
+		header->unused = 1;
+	else if (strcmp(fault, "huge") == 0)
+		header->dims[0] = header->dims[1] = header->dims[2] = 16384;
+	say(&message);
+	pause();
+}
+
+static void do_not_finite(void)
+{
+	struct gz_decode_message message = good_header();
+	message.header.type = 2;
+	say(&message);
+	float *voxels = wait_for_memory(48);
+	voxels[5] = INFINITY;
+	message.kind = GZ_DECODE_ENDED;
+	say(&message);
+}
+
+static void do_half_message(void)
+{
+	uint8_t half[100] = { GZ_DECODE_LINE };
+	if (write(GZ_DECODE_FD_MESSAGES, half, sizeof half) < 0)
+		_exit(9);
+}
+
+static const struct {
+	const char *name;
+	void (*act)(void);
+} deeds[] = {
+	{ "good", do_good },
+	{ "good but stay", do_good_but_stay },
+	{ "leave writer", do_leave_writer },
+	{ "crash", do_crash },
+	{ "crash with voxels", do_crash_with_voxels },
+	{ "exit", do_exit },
+	{ "hang", do_hang },
+	{ "repeat step", do_repeat_step },
+	{ "flood lines", do_flood_lines },
+	{ "flood steps", do_flood_steps },
+	{ "many lines", do_many_lines },
+	{ "dirty line", do_dirty_line },
+	{ "endless line", do_endless_line },
+	{ "quiet failure", do_quiet_failure },
+	{ "unknown result", do_unknown_result },
+	{ "end without voxels", do_end_without_voxels },
+	{ "end larger", do_end_larger },
+	{ "end flat", do_end_flat },
+	{ "end rescaled", do_end_rescaled },
+	{ "unknown kind", do_unknown_kind },
+	{ "step nan", do_step_nan },
+	{ "two headers", do_two_headers },
+	{ "not finite", do_not_finite },
+	{ "half a message", do_half_message },
+};
+
+int main(int argc, char **argv)
+{
+	const char *deed = argc > 4 && argv[4][0] ? argv[4] : NULL;
+	/* Through gz_volume_load() there is no choice: the name of the file says what to do. */
+	const char *name = argc > 3 ? strrchr(argv[3], '/') : NULL;
+	char from_name[64];
+	if (!deed && name) {
+		snprintf(from_name, sizeof from_name, "%s", name + 1);
+		from_name[strcspn(from_name, ".")] = 0;
+		for (char *c = from_name; *c; c++)
+			*c = *c == '_' ? ' ' : *c;
+		deed = from_name;
+	}
+	for (size_t i = 0; deed && i < sizeof deeds / sizeof deeds[0]; i++)
+		if (strcmp(deed, deeds[i].name) == 0) {
+			deeds[i].act();
+			return 0;
+		}
+	if (deed)
+		say_faulty(deed);
+	return 4;
+}

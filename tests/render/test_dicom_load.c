@@ -1,0 +1,58 @@
+/* The DICOM reader without the process that protects the viewer: damaged files, one after the
+ * other. */
+#include "suite.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "dicom_files.h"
+#include "render/decode/dicom/dicom_load.h"
+#include "volume_files.h"
+
+/* A file of 16 signed bits, read into memory; its size. */
+static size_t whole_file(uint8_t *bytes, size_t room, bool bare)
+{
+	const int16_t pixels[6] = { 5, 6, 7, 8, 9, 10 };
+	struct dicom_sample sample = dicom_sample_make("1.2.3.4.5", 1, pixels);
+	sample.bare = bare;
+	const char *path = dicom_sample_write(&sample, "whole.dcm");
+	FILE *in = fopen(path, "rb");
+	assert_non_null(in);
+	const size_t size = fread(bytes, 1, room, in);
+	fclose(in);
+	unlink(path);
+	assert_true(size > 200 && size < room);
+	return size;
+}
+
+static enum gz_result load_bytes(const uint8_t *bytes, size_t size, struct gz_volume *out_volume)
+{
+	const struct gz_volume_file file = { .path = files_write("changed.dcm", bytes, size) };
+	return gz_dicom_load(&file, NULL, out_volume);
+}
+
+static void file_cut_anywhere_is_refused(void **state)
+{
+	(void)state;
+	uint8_t bytes[4096];
+	for (int bare = 0; bare < 2; bare++) {
+		const size_t size = whole_file(bytes, sizeof bytes, bare);
+		for (size_t cut = 0; cut < size; cut++) {
+			struct gz_volume volume = { 0 };
+			if (load_bytes(bytes, cut, &volume) == GZ_OK)
+				fail_msg("%zu of %zu bytes made a volume", cut, size);
+		}
+		struct gz_volume volume = { 0 };
+		assert_int_equal(load_bytes(bytes, size, &volume), GZ_OK);
+		gz_volume_free(&volume);
+	}
+}
+
+TEST_SUITE(dicom_load)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(file_cut_anywhere_is_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
