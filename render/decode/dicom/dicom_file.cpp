@@ -15,6 +15,7 @@
 
 #include "render/data/volume.h"
 #include "render/decode/dicom/dicom_guard.hpp"
+#include "render/decode/dicom/dicom_lengths.hpp"
 
 namespace gz_dicom
 {
@@ -451,7 +452,10 @@ bool read_head_of(std::istream &file, uint64_t file_size, head &out)
 {
 	gdcm::Reader reader;
 	bool deflated = false;
-	if (!read_data_set(reader, file, deflated)) {
+	const bool sound = lengths_fit(file, file_size);
+	file.clear();
+	file.seekg(0);
+	if (!sound || !read_data_set(reader, file, deflated)) {
 		out.unreadable = true;
 		return false;
 	}
