@@ -282,8 +282,14 @@ static enum gz_result orient_meta(struct metaimage *meta)
 	meta->layout.oriented = true;
 	if (meta->has_matrix)
 		return GZ_OK;
-	if (meta->anatomical[0])
+	if (meta->anatomical[0]) {
+		if (strcmp(meta->anatomical, "RAI") != 0)
+			gz_info(meta->head.log,
+				"%s: no TransformMatrix; its axes are those of "
+				"AnatomicalOrientation = %s, which ITK passes over",
+				meta->head.path, meta->anatomical);
 		return use_letters(meta);
+	}
 	memcpy(meta->layout.direction, identity_in_ras, sizeof identity_in_ras);
 	gz_info(meta->head.log,
 		"%s: says nothing of its orientation; its axes are taken to run to left, "

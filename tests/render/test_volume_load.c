@@ -539,6 +539,35 @@ static void nrrd_with_a_leading_axis_of_one_is_a_volume(void **state)
 
 #define META_HEAD "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\n"
 
+/* ITK shows the first otherwise, so that it is said. */
+static void metaimage_letters_that_itk_passes_over_are_told(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *tags;
+		int messages;
+	} rows[] = {
+		{ "AnatomicalOrientation = LPI\n", 1 },
+		{ "AnatomicalOrientation = RAI\n", 0 },
+		{ "AnatomicalOrientation = LPI\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n", 0 },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		char head[512];
+		struct captured_log log;
+		struct gz_volume v;
+		snprintf(head, sizeof head, "%s%sElementDataFile = LOCAL\n", META_HEAD,
+			 rows[i].tags);
+		captured_log_init(&log, "*:info");
+		assert_int_equal(gz_volume_load(files_write_text("l.mha", head, voxels, COUNT),
+						NULL, NULL, &log.log, &v),
+				 GZ_OK);
+		assert_int_equal(log.messages, rows[i].messages);
+		if (rows[i].messages)
+			assert_non_null(strstr(log.last, "LPI, which ITK passes over"));
+		gz_volume_free(&v);
+	}
+}
+
 /* The file's axes run to left, posterior, superior. */
 static const int lps[3] = { -1, -2, 3 };
 
@@ -714,6 +743,7 @@ TEST_SUITE(volume_load)
 		cmocka_unit_test(nrrd_with_a_leading_axis_of_one_is_a_volume),
 		cmocka_unit_test(metaimage_local_and_detached_are_read),
 		cmocka_unit_test(metaimage_without_orientation_is_the_identity_and_says_so),
+		cmocka_unit_test(metaimage_letters_that_itk_passes_over_are_told),
 		cmocka_unit_test(metaimage_byte_order_is_honoured),
 		cmocka_unit_test(metaimage_frame_is_left_posterior_superior),
 	};
