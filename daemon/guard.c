@@ -13,6 +13,7 @@
 #include <zmq.h>
 
 #include "base/clock.h"
+#include "daemon/accept.h"
 #include "daemon/admission.h"
 #include "daemon/quota.h"
 
@@ -387,6 +388,9 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
 enum gz_result gz_guard_start(struct gz_guard *guard)
 {
 	uint32_t connections = gz_quota_connections_possible();
+	if (!gz_accept_is_found())
+		gz_warn(guard->log, "libzmq does not find the program's accept4(); if file "
+				    "descriptors run out, it may end the program");
 	if (gz_quota_create(connections, guard->log, &guard->quota) != GZ_OK) {
 		gz_err(guard->log, "no memory for %u connections", connections);
 		return GZ_ERR_NO_MEM;

@@ -4,10 +4,12 @@
 #include <errno.h>
 #include <poll.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "daemon/accept.h"
 #include "daemon/quota.h"
 
 /* A connection: our end, and the client's. */
@@ -26,18 +28,25 @@ static struct pair connect_locally(void)
 	return (struct pair) { fds[0], fds[1] };
 }
 
-static struct pair connect_over_tcp(void)
+/* A socket with one connection that waits to be accepted. @param[out] out_client  the other end */
+static int listen_with_one_waiting(int *out_client)
 {
 	struct sockaddr_in address = { .sin_family = AF_INET,
 				       .sin_addr = { htonl(INADDR_LOOPBACK) } };
 	socklen_t size = sizeof address;
-	struct pair pair;
 	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	assert_int_equal(bind(listener, (struct sockaddr *)&address, size), 0);
 	assert_int_equal(listen(listener, 1), 0);
 	assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &size), 0);
-	pair.client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-	assert_int_equal(connect(pair.client, (struct sockaddr *)&address, size), 0);
+	*out_client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_int_equal(connect(*out_client, (struct sockaddr *)&address, size), 0);
+	return listener;
+}
+
+static struct pair connect_over_tcp(void)
+{
+	struct pair pair;
+	int listener = listen_with_one_waiting(&pair.client);
 	pair.ours = accept(listener, NULL, NULL);
 	assert_true(pair.ours >= 0);
 	close(listener);
@@ -217,6 +226,33 @@ static void quota_end_of_another_file_changes_nothing(void **state)
 	disconnect(&pair);
 }
 
+/* What libzmq calls: it would end the program with EMFILE at a local socket. */
+static void accept_without_a_free_descriptor_is_told_to_try_again(void **state)
+{
+	(void)state;
+	int client, listener = listen_with_one_waiting(&client);
+	struct rlimit before, none;
+	assert_true(gz_accept_is_found());
+	assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+	none = (struct rlimit) { .rlim_cur = 0, .rlim_max = before.rlim_max };
+	assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+	int refused = accept4(listener, NULL, NULL, SOCK_CLOEXEC), error = errno;
+	int old_refused = accept(listener, NULL, NULL), old_error = errno;
+	assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0);
+	assert_int_equal(refused, -1);
+	assert_int_equal(error, EAGAIN);
+	assert_int_equal(old_refused, -1);
+	assert_int_equal(old_error, EAGAIN);
+	int accepted = accept4(listener, NULL, NULL, SOCK_CLOEXEC);
+	assert_true(accepted >= 0);
+	errno = 0;
+	assert_int_equal(accept4(-1, NULL, NULL, 0), -1);
+	assert_int_equal(errno, EBADF);
+	close(accepted);
+	close(client);
+	close(listener);
+}
+
 static void quota_depends_on_the_limit_of_files(void **state)
 {
 	(void)state;
@@ -235,6 +271,7 @@ TEST_SUITE(quota)
 		TEST(quota_reader_may_send_a_little_without_an_end),
 		TEST(quota_readers_together_are_limited),
 		TEST(quota_end_of_another_file_changes_nothing),
+		TEST(accept_without_a_free_descriptor_is_told_to_try_again),
 		TEST(quota_depends_on_the_limit_of_files),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -397,6 +397,22 @@ class NetworkApiTest(ClientTest):
             receive_topic(monitor, "notify.pingback_test")
 
 
+# Connects as fast as it can for two seconds.
+HAMMER = """
+import socket, sys, time
+until, idle = time.monotonic() + 2, []
+while time.monotonic() < until:
+    try:
+        idle.append(socket.create_connection(("127.0.0.1", int(sys.argv[1])), timeout=0.2))
+    except OSError:
+        pass
+    if len(idle) > 300:
+        for connection in idle:
+            connection.close()
+        idle = []
+"""
+
+
 class RudeTest(ClientTest):
     """Clients that end, flood the daemon or send nonsense do not delay answers to the others."""
 
@@ -617,6 +633,27 @@ class RudeTest(ClientTest):
         again = Client(self.gazed)
         self.addCleanup(again.close)
         self.assertGreater(float(again.ask("t")), 0)
+
+    def test_connections_faster_than_they_are_counted(self):
+        """Several processes use up all files while a local client asks."""
+        self.gazed.close()
+        self.gazed = Gazed(GAZED, *self.arguments, files=128)
+        self.addCleanup(self.gazed.close)
+        hammers = [subprocess.Popen([sys.executable, "-c", HAMMER, str(self.gazed.port)])
+                   for _ in range(3)]
+        answers = 0
+        while any(hammer.poll() is None for hammer in hammers):
+            local = self.client.context.socket(zmq.REQ)
+            local.setsockopt(zmq.RCVTIMEO, 500)
+            local.connect(f"ipc://{self.gazed.place}/control")
+            local.send_string("t")
+            try:
+                answers += float(local.recv_string()) > 0
+            except zmq.Again:
+                pass  # it was one connection too many
+            local.close(0)
+            self.assertIsNone(self.gazed.process.poll(), self.gazed.log())
+        self.assertGreater(answers, 0)
 
     def test_many_clients_at_once(self):
         clients = [Client(self.gazed) for _ in range(32)]
