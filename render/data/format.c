@@ -97,9 +97,14 @@ static enum gz_result refuse_unknown_format(const struct gz_volume_file *file)
 static const struct gz_volume_format *choose_format(const struct gz_volume_file *file)
 {
 	const struct gz_volume_format *named = gz_volume_format_by_name(file->path);
-	if (file->raw)
-		return named;
 	const struct gz_volume_format *found = gz_volume_format_by_content(file->path);
+	if (file->raw) {
+		if (found && named && named->layout != GZ_LAYOUT_IN_FILE)
+			gz_warn(file->log,
+				"%s: its content is %s; taken as raw, because a layout is given",
+				file->path, found->name);
+		return named;
+	}
 	if (!found)
 		return named && named->layout == GZ_LAYOUT_IF_GIVEN ? NULL : named;
 	if (named && named != found && named->layout != GZ_LAYOUT_IF_GIVEN)

@@ -231,7 +231,9 @@ static enum gz_result open_picture(const struct gz_scene_request *request, const
 enum gz_result gz_scene_open(const struct gz_scene_request *request, const struct gz_log *log,
 			     struct gz_scene *out_scene)
 {
-	const enum gz_file_kind kind = gz_file_kind_of(request->path);
+	/* Whoever gives a layout says what the content is. */
+	const enum gz_file_kind kind =
+		request->raw ? gz_file_kind_by_name(request->path) : gz_file_kind_of(request->path);
 	const struct gz_scene_source source = {
 		.path = request->path,
 		.change = request->change,

@@ -243,8 +243,12 @@ static void layout_that_is_given_beats_the_content(void **state)
 	(void)state;
 	const struct gz_raw_layout raw = { .dims = { 4, 2, 1 }, .spacing = { 1, 1, 1 } };
 	struct gz_volume v = { 0 };
+	struct captured_log log;
+	captured_log_init(&log, "*:warn");
 	const char *path = files_write("given.raw", "NRRD0004", 8);
-	assert_int_equal(gz_volume_load(path, &raw, NULL, NULL, &v), GZ_OK);
+	assert_int_equal(gz_volume_load(path, &raw, NULL, &log.log, &v), GZ_OK);
+	assert_int_equal(log.messages, 1);
+	assert_non_null(strstr(log.last, "its content is NRRD; taken as raw"));
 	assert_memory_equal(v.voxels, "NRRD0004", 8);
 	gz_volume_free(&v);
 }

@@ -169,6 +169,16 @@ static void layout_for_a_file_with_a_header_is_refused(void **state)
 	assert_refused("a.scene", &layout, GZ_ERR_INVAL, "not a raw file");
 }
 
+static void layout_for_a_raw_file_beats_its_content(void **state)
+{
+	(void)state;
+	const struct gz_raw_layout layout = { .dims = { 4, 4, 4 }, .spacing = { 1, 1, 1 } };
+	struct gz_scene scene = opened(write_nrrd("n.raw"), &layout);
+	assert_int_equal(scene.volume.dims[2], 4);
+	assert_memory_equal(scene.volume.voxels, "NRRD0004", 8);
+	gz_scene_free(&scene);
+}
+
 static void files_that_show_nothing_are_refused(void **state)
 {
 	(void)state;
@@ -237,6 +247,7 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(camera_of_the_request_is_kept),
 		cmocka_unit_test(raw_file_opens_with_a_given_or_a_certain_layout),
 		cmocka_unit_test(layout_for_a_file_with_a_header_is_refused),
+		cmocka_unit_test(layout_for_a_raw_file_beats_its_content),
 		cmocka_unit_test(files_that_show_nothing_are_refused),
 		cmocka_unit_test(picture_opens_the_scene_that_it_shows),
 		cmocka_unit_test(scene_without_a_transfer_function_gets_one),
