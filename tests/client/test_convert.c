@@ -167,7 +167,7 @@ static void eyelink_mark_at_the_start_of_a_block_is_kept(void **state)
 {
 	(void)state;
 	static const char text[] = "MSG\t99 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
-				   "MSG\t99 !MODE RECORD of no block\n"
+				   "MSG\t80 !MODE RECORD of no block\n"
 				   "START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
 				   "PRESCALER\t1\n"
 				   "SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
@@ -180,6 +180,29 @@ static void eyelink_mark_at_the_start_of_a_block_is_kept(void **state)
 	assert_string_equal(taken.record[0].text, "!MODE RECORD CR 500 2 1 R");
 	assert_near(taken.header.rate_hz, 500);
 	assert_int_equal(sample(1)->host_ns, 100 * GZ_NS_PER_MS);
+}
+
+/* In other files it comes just before START. */
+static void eyelink_mark_just_before_the_first_block_is_kept(void **state)
+{
+	(void)state;
+	static const char text[] = "MSG\t90 GAZE_COORDS 0.00 0.00 1023.00 767.00\n"
+				   "MSG\t%d !MODE RECORD CR 500 2 1 R\n"
+				   "START\t100 \tRIGHT\tSAMPLES\tEVENTS\n"
+				   "SAMPLES\tGAZE\tRIGHT\tRATE\t 500.00\tTRACKING\tCR\n"
+				   "100\t  512.0\t  384.0\t 1037.0\t...\n"
+				   "102\t  512.0\t  384.0\t 1037.0\t...\n";
+	char file[sizeof text + 16];
+	snprintf(file, sizeof file, text, 99);
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, file), GZ_OK);
+	assert_int_equal(taken.count, 3);
+	assert_int_equal(taken.record[0].kind, GZ_GAZE_LOG_MARK);
+	assert_int_equal(taken.record[0].host_ns, 99 * GZ_NS_PER_MS);
+	assert_string_equal(taken.record[0].text, "!MODE RECORD CR 500 2 1 R");
+	set_up(NULL);
+	snprintf(file, sizeof file, text, 91);
+	assert_int_equal(read_text(&gz_recording_reader_eyelink, file), GZ_OK);
+	assert_int_equal(taken.count, 2); /* it belongs to nothing that was recorded */
 }
 
 static void eyelink_display_is_complete_with_what_the_user_knows(void **state)
@@ -617,6 +640,7 @@ TEST_SUITE(convert)
 		TEST(eyelink_samples_marks_and_pauses_are_read),
 		TEST(eyelink_events_of_the_parser_become_marks),
 		TEST(eyelink_mark_at_the_start_of_a_block_is_kept),
+		TEST(eyelink_mark_just_before_the_first_block_is_kept),
 		TEST(eyelink_display_is_complete_with_what_the_user_knows),
 		TEST(eyelink_of_no_gaze_or_no_screen_is_refused_with_the_remedy),
 		TEST(pupil_points_are_turned_and_eyes_told_apart),

@@ -13,6 +13,10 @@
 
 #define GZ_LOG_MODULE "eyelink"
 
+/* A mode ("!MODE RECORD …") that comes at most this long before the first block belongs to it.
+ * Chosen: in some files it comes 1 to 3 ms before START, in others after it. */
+static const double EARLY_MS = 5;
+
 struct eyelink {
 	struct gz_text_lines *lines;
 	const struct gz_convert_settings *settings;
@@ -24,6 +28,9 @@ struct eyelink {
 	double rectangle_px[4]; /* left, top, right, bottom of the screen's pixels, inclusive */
 	bool has_rectangle;
 	bool sent_header;
+	bool has_early; /* the mode came before the first block */
+	double early_ms;
+	char early_text[GZ_GAZE_LOG_TEXT_SIZE];
 	bool recording; /* inside a block of samples */
 	double last_ms;
 	int same_ms; /* samples before this one with the same whole millisecond */
@@ -91,6 +98,34 @@ static void take_rectangle(struct eyelink *eyelink, const char *text)
 	eyelink->has_rectangle = true;
 }
 
+static enum gz_result send_plain_mark(struct eyelink *eyelink, double ms, const char *text)
+{
+	eyelink->record.kind = GZ_GAZE_LOG_MARK;
+	eyelink->record.host_ns = ns_of_ms(ms);
+	eyelink->record.duration_ns = 0;
+	eyelink->record.keys[0] = '\0';
+	gz_text_copy(eyelink->record.text, sizeof eyelink->record.text, text);
+	return send_eyelink_record(eyelink);
+}
+
+static void keep_early_mode(struct eyelink *eyelink, double ms, const char *text)
+{
+	if (eyelink->recording || !gz_text_begins(text, "!MODE"))
+		return;
+	eyelink->has_early = true;
+	eyelink->early_ms = ms;
+	gz_text_copy(eyelink->early_text, sizeof eyelink->early_text, text);
+}
+
+/* Send the mode of the first block, if it came before the block, as its first mark. */
+static enum gz_result send_early_mark(struct eyelink *eyelink)
+{
+	if (!eyelink->has_early)
+		return GZ_OK;
+	eyelink->has_early = false;
+	return send_plain_mark(eyelink, eyelink->early_ms, eyelink->early_text);
+}
+
 /* Whether the lines at the beginning of a block have come, so that a header can be made. */
 static bool knows_header(const struct eyelink *eyelink)
 {
@@ -104,16 +139,14 @@ static enum gz_result take_eyelink_message(struct eyelink *eyelink, const char *
 	if (!gz_text_take_number(&text, &ms) || !is_time_ms(ms))
 		return GZ_OK;
 	take_rectangle(eyelink, text);
-	/* Marks before the first block are dropped: the header, which must come before them, needs
-	 * the rate and the size of the screen. */
-	if (!eyelink->sent_header && !knows_header(eyelink))
+	/* Marks before the first block are dropped but for its mode: the header, which must come
+	 * before them, needs the rate and the size of the screen. */
+	if (!eyelink->sent_header && !knows_header(eyelink)) {
+		keep_early_mode(eyelink, ms, text);
 		return GZ_OK;
-	eyelink->record.kind = GZ_GAZE_LOG_MARK;
-	eyelink->record.host_ns = ns_of_ms(ms);
-	eyelink->record.duration_ns = 0;
-	eyelink->record.keys[0] = '\0';
-	gz_text_copy(eyelink->record.text, sizeof eyelink->record.text, text);
-	return send_eyelink_record(eyelink);
+	}
+	enum gz_result result = send_early_mark(eyelink);
+	return result == GZ_OK ? send_plain_mark(eyelink, ms, text) : result;
 }
 
 /* An event of the tracker's parser, and the names of the numbers after its duration. */
@@ -213,8 +246,10 @@ static enum gz_result begin_block(struct eyelink *eyelink, const char *text)
 		ms = eyelink->last_ms;
 	eyelink->recording = true;
 	eyelink->last_ms = -1;
-	if (first)
+	if (first) {
+		eyelink->has_early &= fabs(ms - eyelink->early_ms) <= EARLY_MS;
 		return GZ_OK;
+	}
 	eyelink->record.kind = GZ_GAZE_LOG_GAP;
 	eyelink->record.host_ns = ns_of_ms(ms);
 	eyelink->record.missing = 0;
@@ -261,6 +296,9 @@ static enum gz_result take_eyelink_sample(struct eyelink *eyelink, char *line)
 		       eyelink->settings->name);
 		return GZ_ERR_FORMAT;
 	}
+	enum gz_result result = send_early_mark(eyelink);
+	if (result != GZ_OK)
+		return result;
 	struct gz_sample *sample = &eyelink->record.sample;
 	*sample = gz_sample_unmeasured();
 	sample->seq = eyelink->seq++;
