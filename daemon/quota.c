@@ -133,11 +133,21 @@ static bool is_over_tcp(int fd)
 	return getsockopt(fd, SOL_SOCKET, SO_DOMAIN, &domain, &size) == 0 && domain != AF_UNIX;
 }
 
-static void forget_connection(struct gz_quota *quota, struct held *held)
+/* A connection that was ended no longer counts, although libzmq may take a moment to close it:
+ * otherwise a burst over TCP would keep local connections out. */
+static void stop_counting(struct gz_quota *quota, struct held *held)
 {
+	if (held->ended)
+		return;
 	quota->count--;
 	quota->tcp_count -= held->is_tcp;
 	quota->spent -= held->spent;
+	held->spent = 0;
+}
+
+static void forget_connection(struct gz_quota *quota, struct held *held)
+{
+	stop_counting(quota, held);
 	*held = (struct held) { 0 };
 }
 
@@ -151,9 +161,8 @@ static void end_connection(struct gz_quota *quota, int fd, enum gz_quota_reason 
 	};
 	struct held *held = &quota->held[fd];
 	uint64_t more;
+	stop_counting(quota, held);
 	held->ended = true;
-	quota->spent -= held->spent;
-	held->spent = 0;
 	epoll_ctl(quota->epoll_fd, EPOLL_CTL_DEL, fd, NULL);
 	gz_connection_end(fd, held->identity);
 	atomic_fetch_add_explicit(&quota->ended[reason], 1, memory_order_relaxed);

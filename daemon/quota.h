@@ -117,7 +117,7 @@ int gz_quota_fd(const struct gz_quota *quota);
  * GZ_QUOTA_CHECK_MS too: what libzmq has read at once does not make the descriptor readable. */
 void gz_quota_check(struct gz_quota *quota, int64_t now_ns);
 
-/** Present connections. */
+/** Present connections, without those that were ended. */
 uint32_t gz_quota_count(const struct gz_quota *quota);
 
 /** How many connections were ended for @p reason. Threads: any. */

@@ -99,13 +99,31 @@ static void quota_newest_of_too_many_connections_is_ended(void **state)
 		gz_quota_arrived(quota, pairs[i].ours, control, false, 0);
 		assert_int_equal(has_ended(&pairs[i]), i == 4);
 	}
-	assert_int_equal(gz_quota_count(quota), 5);
+	assert_int_equal(gz_quota_count(quota), 4);
 	assert_int_equal(gz_quota_ended(quota, GZ_QUOTA_TOO_MANY), 1);
 	gz_quota_left(quota, pairs[4].ours, control);
 	gz_quota_left(quota, pairs[0].ours, control);
 	gz_quota_left(quota, pairs[0].ours, control);
 	assert_int_equal(gz_quota_count(quota), 3);
 	for (int i = 0; i < 5; i++)
+		disconnect(&pairs[i]);
+}
+
+/* A burst over TCP, which libzmq has not closed yet, does not keep a local connection out. */
+static void quota_ended_connections_do_not_count(void **state)
+{
+	(void)state;
+	struct pair pairs[9];
+	create_quota(4);
+	for (int i = 0; i < 9; i++) {
+		pairs[i] = i < 8 ? connect_over_tcp() : connect_locally();
+		gz_quota_arrived(quota, pairs[i].ours, control, false, 0);
+		assert_int_equal(has_ended(&pairs[i]), i >= 3 && i < 8);
+	}
+	for (int i = 0; i < 9; i++)
+		gz_quota_left(quota, pairs[i].ours, control);
+	assert_int_equal(gz_quota_count(quota), 0);
+	for (int i = 0; i < 9; i++)
 		disconnect(&pairs[i]);
 }
 
@@ -118,8 +136,6 @@ static void quota_tcp_leaves_a_quarter_to_local_connections(void **state)
 		pairs[i] = i < 4 ? connect_over_tcp() : connect_locally();
 		gz_quota_arrived(quota, pairs[i].ours, control, false, 0);
 		assert_int_equal(has_ended(&pairs[i]), i == 3);
-		if (i == 3)
-			gz_quota_left(quota, pairs[i].ours, control);
 	}
 	for (int i = 0; i < 5; i++)
 		disconnect(&pairs[i]);
@@ -265,6 +281,7 @@ TEST_SUITE(quota)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(quota_newest_of_too_many_connections_is_ended),
+		TEST(quota_ended_connections_do_not_count),
 		TEST(quota_tcp_leaves_a_quarter_to_local_connections),
 		TEST(quota_end_of_a_connection_of_another_socket_is_not_its_own),
 		TEST(quota_reader_that_floods_is_ended_and_what_it_sent_is_discarded),
