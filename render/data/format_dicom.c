@@ -54,6 +54,17 @@ static bool begins_with_elements(const uint8_t *bytes, size_t size)
 	return true;
 }
 
+static bool has_preamble(const uint8_t *bytes, size_t size)
+{
+	return size >= 132 && memcmp(bytes + 128, "DICM", 4) == 0;
+}
+
+/* The preamble may be the head of another format, of TIFF for one (PS3.10, 7.1). */
+static bool dicom_knows_start(const struct gz_file_start *start)
+{
+	return start->coding == GZ_CODING_PLAIN && has_preamble(start->bytes, start->size);
+}
+
 bool gz_dicom_is(const char *path)
 {
 	uint8_t bytes[LOOK_BYTES];
@@ -67,8 +78,7 @@ bool gz_dicom_is(const char *path)
 		return false;
 	const size_t got = fread(bytes, 1, sizeof bytes, in);
 	(void)fclose(in);
-	return (got >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) ||
-	       begins_with_elements(bytes, got);
+	return has_preamble(bytes, got) || begins_with_elements(bytes, got);
 }
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
@@ -80,6 +90,7 @@ const struct gz_volume_format gz_format_dicom = {
 	.name = "DICOM",
 	.endings = { ".dcm" },
 	.layout = GZ_LAYOUT_IN_FILE,
+	.knows_start = dicom_knows_start,
 	.recognise = gz_dicom_is,
 	.load = load_dicom,
 	.limits =

@@ -276,6 +276,16 @@ static void formats_that_are_not_read_are_named_with_a_remedy(void **state)
 				     rows[i].words);
 }
 
+/* A slide scanner writes files that are both, with a TIFF header for a preamble. */
+static void dicom_with_a_preamble_of_tiff_is_dicom(void **state)
+{
+	(void)state;
+	char bytes[132] = "II*";
+	memcpy(bytes + 128, "DICM", 4);
+	const char *path = files_write("both", bytes, sizeof bytes);
+	assert_ptr_equal(gz_volume_format_by_content(path), &gz_format_dicom);
+}
+
 static void content_of_no_format_is_refused_with_the_endings(void **state)
 {
 	(void)state;
@@ -321,6 +331,7 @@ TEST_SUITE(formats)
 		cmocka_unit_test(content_that_is_not_as_named_is_told_in_one_line),
 		cmocka_unit_test(layout_that_is_given_beats_the_content),
 		cmocka_unit_test(formats_that_are_not_read_are_named_with_a_remedy),
+		cmocka_unit_test(dicom_with_a_preamble_of_tiff_is_dicom),
 		cmocka_unit_test(content_of_no_format_is_refused_with_the_endings),
 		cmocka_unit_test(start_that_is_cut_is_no_harm),
 	};
