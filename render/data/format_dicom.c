@@ -83,7 +83,8 @@ bool gz_dicom_is(const char *path)
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
-	return gz_volume_decode(file, "dicom", NULL, out_volume);
+	const char *series = file->loading ? file->loading->series : NULL;
+	return gz_volume_decode(file, "dicom", series, out_volume);
 }
 
 const struct gz_volume_format gz_format_dicom = {

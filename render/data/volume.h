@@ -43,6 +43,9 @@ struct gz_loading {
 	size_t scratch_from; /**< bytes; smaller volumes are kept in memory in any case */
 	/** Memory for the bricks of a file of bricks, bytes; 0: a quarter of the machine's. */
 	size_t brick_bytes;
+	/** UID of the DICOM series wanted; NULL or empty: the file's own, or the only one.
+	 * Borrowed; other formats ignore it. */
+	const char *series;
 	/**
 	 * Optional: gives the memory of the voxels, instead of the above.
 	 *

@@ -74,6 +74,7 @@ static enum gz_result load_volume(const struct scene_loader *loader, struct gz_v
 		return result;
 	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
 	loading.brick_bytes = (size_t)settings->memory_mib << 20;
+	loading.series = settings->volume_series;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
 				     .big_endian = settings->endian == 1 };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);

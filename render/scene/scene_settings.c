@@ -20,6 +20,8 @@ static const struct gz_option volume_options[] = {
 	  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, DICOM (.dcm or a folder), "
 		  ".gzb, "
 		  "or raw data; searched beside the scene, then under $GAZECAST_DATA" },
+	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE, .preset = "",
+	  .help = "UID of the series of a DICOM folder; without it there must be only one" },
 	{ "volume.procedural", GZ_OPTION_CHOICE, AT(volume_procedural), .choices = procedural_names,
 	  .preset = "none", .help = "volume computed by a formula; needs no file" },
 	{ "volume.dims", GZ_OPTION_INT, AT(dims), 1, GZ_VOLUME_DIM_MAX, .count = 3,

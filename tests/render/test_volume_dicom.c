@@ -126,6 +126,75 @@ static void file_stands_for_its_series_among_others(void **state)
 	check_refused(files_folder(), GZ_ERR_FORMAT, "holds 2 series; name one file");
 }
 
+/* Two series, each in a folder two levels down. */
+static void write_tree(void)
+{
+	char command[1024];
+	write_series(SERIES, "a", 4);
+	write_series("1.2.3.4.6", "b.", 2);
+	snprintf(command, sizeof command,
+		 "cd %s && mkdir -p t/one/x t/two && mv a? t/one/x && mv b.? t/two",
+		 files_folder());
+	assert_int_equal(system(command), 0);
+}
+
+static void remove_tree(void)
+{
+	char command[1024];
+	snprintf(command, sizeof command, "rm -r %s/t", files_folder());
+	assert_int_equal(system(command), 0);
+}
+
+static void sub_folders_are_looked_through(void **state)
+{
+	(void)state;
+	write_tree();
+	check_refused(files_path("t"), GZ_ERR_FORMAT, "holds 2 series");
+	struct gz_volume volume = load(files_path("t/one"));
+	check_series(&volume);
+	gz_volume_free(&volume);
+	files_write("t/two/DICOMDIR", "", 0);
+	volume = load(files_path("t/two"));
+	assert_int_equal(volume.dims[2], 2);
+	gz_volume_free(&volume);
+	remove_tree();
+}
+
+static void uid_chooses_one_of_several_series(void **state)
+{
+	(void)state;
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	struct gz_loading loading = { .series = SERIES };
+	write_tree();
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_volume_load(files_path("t"), NULL, &loading, &log.log, &volume), GZ_OK);
+	check_series(&volume);
+	gz_volume_free(&volume);
+	loading.series = "9.9";
+	assert_int_equal(gz_volume_load(files_path("t"), NULL, &loading, &log.log, &volume),
+			 GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "no series 9.9 here"));
+	assert_int_equal(log.messages, 3); /* two series are listed */
+	remove_tree();
+}
+
+static void dicomdir_stands_for_its_medium(void **state)
+{
+	(void)state;
+	char command[1024];
+	write_tree();
+	snprintf(command, sizeof command,
+		 "cd %s/t && rm -r two && head -c 128 /dev/zero >DICOMDIR && "
+		 "printf DICM >>DICOMDIR",
+		 files_folder());
+	assert_int_equal(system(command), 0);
+	struct gz_volume volume = load(files_path("t/DICOMDIR"));
+	check_series(&volume);
+	gz_volume_free(&volume);
+	remove_tree();
+}
+
 static void rescale_is_kept_as_slope_and_intercept(void **state)
 {
 	(void)state;
@@ -453,6 +522,9 @@ TEST_SUITE(volume_dicom)
 		cmocka_unit_test_setup(folder_of_one_series_is_ordered_by_place_and_turned,
 				       empty_folder),
 		cmocka_unit_test_setup(file_stands_for_its_series_among_others, empty_folder),
+		cmocka_unit_test_setup(sub_folders_are_looked_through, empty_folder),
+		cmocka_unit_test_setup(uid_chooses_one_of_several_series, empty_folder),
+		cmocka_unit_test_setup(dicomdir_stands_for_its_medium, empty_folder),
 		cmocka_unit_test_setup(rescale_is_kept_as_slope_and_intercept, empty_folder),
 		cmocka_unit_test_setup(slices_with_scales_of_their_own_become_float, empty_folder),
 		cmocka_unit_test_setup(tiny_scales_of_their_own_keep_their_values, empty_folder),

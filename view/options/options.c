@@ -98,6 +98,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "byte order of the raw file's voxels; default: little" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(volume_spacing), 1e-9, 1e9, .count = 3,
 	  .help = "voxel spacing along x, y, z, mm; default: 1" },
+	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE,
+	  .help = "UID of the series of a DICOM folder to show" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
 	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
@@ -127,9 +129,10 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",         "size",        "gaze",        "frames",        "turn",
-		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
-		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
+		"scene",        "size",          "gaze",           "frames",
+		"turn",         "display-px",    "display-mm",     "distance-mm",
+		"write-volume", "record",        "transfer.file",  "volume.dims",
+		"volume.type",  "volume.endian", "volume.spacing", "volume.series",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)
@@ -569,6 +572,9 @@ static void apply_transfer(const struct gz_view_options *options,
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings)
 {
+	if (options->volume_series[0])
+		memcpy(settings->volume_series, options->volume_series,
+		       sizeof settings->volume_series);
 	struct gz_scene_settings given = options->scene_settings;
 	struct gz_view_scene_tables from, to;
 	gz_view_pick_scene_tables(&given, &from);

@@ -84,11 +84,12 @@ struct gz_view_options {
 	double display_mm[2];               /**< 0: not given */
 	double display_distance_mm;         /**< 0: not given */
 
-	int volume_dims[3];               /**< of a raw file; 0: not given */
-	int volume_type;                  /**< enum gz_raw_type; -1: not given */
-	int volume_endian;                /**< 0 little, 1 big; -1: not given */
-	double volume_spacing[3];         /**< 0: not given */
-	char transfer_file[GZ_PATH_SIZE]; /**< replaces the scene's; empty: not given */
+	int volume_dims[3];                 /**< of a raw file; 0: not given */
+	int volume_type;                    /**< enum gz_raw_type; -1: not given */
+	int volume_endian;                  /**< 0 little, 1 big; -1: not given */
+	char volume_series[GZ_SERIES_SIZE]; /**< empty: not given */
+	double volume_spacing[3];           /**< 0: not given */
+	char transfer_file[GZ_PATH_SIZE];   /**< replaces the scene's; empty: not given */
 
 	struct gz_target_options target; /**< targets instead of a scene, if any are named */
 

@@ -36,7 +36,8 @@ const int tiles_max = 1024;
 const gdcm::Tag pixel_data(0x7fe0, 0x0010);
 const gdcm::Tag item_tag(0xfffe, 0xe000), sequence_end(0xfffe, 0xe0dd);
 
-const gdcm::Tag image_type(0x0008, 0x0008), series_description(0x0008, 0x103e),
+const gdcm::Tag image_type(0x0008, 0x0008), study_date(0x0008, 0x0020),
+	patient_name(0x0010, 0x0010), series_description(0x0008, 0x103e),
 	slice_thickness(0x0018, 0x0050), spacing_between_slices(0x0018, 0x0088),
 	series_instance_uid(0x0020, 0x000e), instance_number(0x0020, 0x0013),
 	image_position(0x0020, 0x0032), image_orientation(0x0020, 0x0037),
@@ -431,6 +432,8 @@ void fill_head(const gdcm::DataSet &data, head &out)
 {
 	const groups functional(data);
 	out.series_uid = text_of(data, series_instance_uid);
+	out.patient = text_of(data, patient_name);
+	out.date = text_of(data, study_date);
 	out.description = text_of(data, series_description);
 	out.numbers = format_of(data, functional);
 	out.samples = short_of(data, samples_per_pixel, 1);

@@ -90,7 +90,7 @@ struct slice {
 
 /* One file's head. */
 struct head {
-	std::string path, series_uid, description;
+	std::string path, series_uid, patient, date, description;
 	format numbers;
 	int samples = 1; /* a pixel */
 	std::vector<slice> slices;

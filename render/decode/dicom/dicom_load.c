@@ -76,8 +76,7 @@ enum gz_result gz_dicom_load(const struct gz_volume_file *file, const char *choi
 			     struct gz_volume *out_volume)
 {
 	struct stack stack = { 0 };
-	(void)choice;
-	enum gz_result result = gz_dicom_series_open(file, &stack.series);
+	enum gz_result result = gz_dicom_series_open(file, choice, &stack.series);
 	if (result == GZ_OK)
 		result = import_slices(&stack, file, out_volume);
 	free(stack.slice);

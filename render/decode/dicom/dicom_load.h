@@ -11,7 +11,7 @@
  * Load a series: a folder, one file of it, or a file with several frames. Slices are decoded by
  * several threads and turned to RAS+ like those of every other format.
  *
- * @param choice           not used yet
+ * @param choice           UID of the series wanted; NULL: the file's, or the only one
  * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
  * @return as gz_dicom_series_open() and gz_volume_import()
  */

@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <strings.h>
 #include <sys/stat.h>
 #include <vector>
 
@@ -29,6 +30,12 @@ using namespace gz_dicom;
 /* Files of a folder that are looked at. Chosen: a long perfusion study has some ten thousand. */
 const size_t files_max = 65536;
 
+/* Folders within folders that are looked into (chosen: a DICOM medium has four levels). */
+const int depth_max = 8;
+
+/* Series of a folder that are listed one by one. */
+const size_t listed_max = 40;
+
 /* How far the distance of two slices may be from that of most, as a share (chosen: beyond it a file
  * is missing), and how far a slice may be shifted within its plane against the next before the log
  * says that the gantry was tilted, degrees. */
@@ -42,7 +49,8 @@ const uint64_t codec_bytes_a_pixel = 16;
 class reader
 {
       public:
-	explicit reader(const gz_volume_file *of) : file(of), path(of->path), log(of->log)
+	reader(const gz_volume_file *of, const char *series)
+	    : file(of), choice(series ? series : ""), path(of->path), log(of->log)
 	{
 	}
 	gz_result open();
@@ -51,7 +59,12 @@ class reader
 
       private:
 	gz_result collect();
+	gz_result collect_file(std::string &out_series);
 	gz_result collect_folder(const std::string &folder);
+	gz_result collect_tree(const std::string &folder, int depth);
+	gz_result collect_where_images_are(const std::string &folder);
+	void note_damaged() const;
+	void list_series(const std::map<std::string, size_t> &count) const;
 	bool look_at(const std::string &name);
 	gz_result choose(const std::string &wanted);
 	gz_result check_head(const head &h) const;
@@ -66,10 +79,12 @@ class reader
 	size_t slice_bytes() const;
 
 	const gz_volume_file *file;
+	const std::string choice; /* UID of a series; empty: none */
 	std::string path;
 	const gz_log *log;
 	std::vector<head> heads;
-	size_t damaged = 0;  /* files of the folder */
+	size_t seen = 0;     /* files that were looked at */
+	size_t damaged = 0;  /* of them */
 	std::string example; /* one of them */
 	format numbers;
 	std::vector<slice> slices;
@@ -86,25 +101,84 @@ gz_result reader::collect()
 		       strerror(errno));
 		return GZ_ERR_NOT_FOUND;
 	}
-	std::string folder = path, wanted;
-	if (!S_ISDIR(status.st_mode)) {
-		head h;
-		if (!read_head(path, h)) {
-			gz_err(log, "%s: no DICOM image; name a file that holds one, or its folder",
-			       path.c_str());
-			return GZ_ERR_FORMAT;
-		}
-		wanted = h.series_uid;
-		const bool alone = h.slices.size() > 1;
-		heads.push_back(h);
-		if (alone)
-			return GZ_OK;
-		heads.clear();
-		const size_t slash = path.rfind('/');
-		folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+	if (S_ISDIR(status.st_mode)) {
+		const gz_result r = collect_where_images_are(path);
+		return r == GZ_OK ? choose(choice) : r;
 	}
+	std::string wanted;
+	const gz_result r = collect_file(wanted);
+	return r == GZ_OK && !wanted.empty() ? choose(wanted) : r;
+}
+
+bool is_directory_file(const std::string &name)
+{
+	const size_t slash = name.rfind('/');
+	return strcasecmp(name.c_str() + (slash == std::string::npos ? 0 : slash + 1),
+			  "DICOMDIR") == 0;
+}
+
+/* A file stands for the others of its series in its folder; a DICOMDIR for all that lies below. One
+ * with several slices stands for itself: then there is no series to choose. */
+gz_result reader::collect_file(std::string &out_series)
+{
+	const size_t slash = path.rfind('/');
+	const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+	if (is_directory_file(path)) {
+		const gz_result r = collect_tree(folder, 0);
+		note_damaged();
+		return r == GZ_OK ? choose(choice) : r;
+	}
+	head h;
+	if (!read_head(path, h)) {
+		gz_err(log, "%s: no DICOM image; name a file that holds one, or its folder",
+		       path.c_str());
+		return GZ_ERR_FORMAT;
+	}
+	if (h.slices.size() > 1) {
+		heads.push_back(h);
+		return GZ_OK;
+	}
+	out_series = choice.empty() ? h.series_uid : choice;
 	const gz_result r = collect_folder(folder);
-	return r == GZ_OK ? choose(wanted) : r;
+	note_damaged();
+	return r;
+}
+
+/* The folder's own images; if it has none, those in its sub-folders. */
+gz_result reader::collect_where_images_are(const std::string &folder)
+{
+	gz_result r = collect_folder(folder);
+	if (r == GZ_OK && heads.empty() && damaged == 0)
+		r = collect_tree(folder, 0);
+	note_damaged();
+	return r;
+}
+
+/* All images in a folder and its sub-folders. */
+gz_result reader::collect_tree(const std::string &folder, int depth)
+{
+	gz_result r = collect_folder(folder);
+	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
+	if (depth >= depth_max || !entries)
+		return r;
+	for (dirent *entry; r == GZ_OK && seen < files_max && (entry = readdir(entries.get()));) {
+		const std::string name = folder + "/" + entry->d_name;
+		struct stat status;
+		if (entry->d_name[0] != '.' && lstat(name.c_str(), &status) == 0 &&
+		    S_ISDIR(status.st_mode))
+			r = collect_tree(name, depth + 1);
+	}
+	return r;
+}
+
+/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
+void reader::note_damaged() const
+{
+	if (damaged > 0)
+		gz_warn(log,
+			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
+			"again",
+			example.c_str(), damaged);
 }
 
 /* Read one head; false if loading shall stop. */
@@ -118,7 +192,6 @@ bool reader::look_at(const std::string &name)
 	return gz_loading_goes_on(file->loading, 0, path.c_str());
 }
 
-/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
 gz_result reader::collect_folder(const std::string &folder)
 {
 	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
@@ -127,16 +200,30 @@ gz_result reader::collect_folder(const std::string &folder)
 		       strerror(errno));
 		return GZ_ERR_IO;
 	}
-	size_t seen = 0;
-	for (dirent *entry; (entry = readdir(entries.get())) && seen < files_max; seen++)
-		if (entry->d_name[0] != '.' && !look_at(folder + "/" + entry->d_name))
+	for (dirent *entry; seen < files_max && (entry = readdir(entries.get()));) {
+		if (entry->d_name[0] == '.')
+			continue;
+		seen++;
+		if (!look_at(folder + "/" + entry->d_name))
 			return GZ_ERR_CANCELLED;
-	if (damaged > 0)
-		gz_warn(log,
-			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
-			"again",
-			example.c_str(), damaged);
+	}
 	return GZ_OK;
+}
+
+/* One line a series: what people know it by, and its UID. */
+void reader::list_series(const std::map<std::string, size_t> &count) const
+{
+	size_t listed = 0;
+	for (const auto &series : count) {
+		const auto first = std::find_if(heads.begin(), heads.end(), [&](const head &h) {
+			return h.series_uid == series.first;
+		});
+		if (listed++ == listed_max)
+			break;
+		gz_info(log, "series %s: %s, %s, %s, %zu files, such as %s", series.first.c_str(),
+			first->patient.c_str(), first->date.c_str(), first->description.c_str(),
+			series.second, first->path.c_str());
+	}
 }
 
 /* Keep one series; with none wanted there must be only one. */
@@ -150,6 +237,7 @@ gz_result reader::choose(const std::string &wanted)
 		return GZ_ERR_FORMAT;
 	}
 	if (count.size() > 1 && wanted.empty()) {
+		list_series(count);
 		std::string names;
 		for (const auto &series : count) {
 			const auto first =
@@ -159,9 +247,17 @@ gz_result reader::choose(const std::string &wanted)
 			names += (names.empty() ? "" : ", ") + first->path + " (" +
 				 first->description + ", " + std::to_string(series.second) + ")";
 		}
-		gz_err(log, "%s: holds %zu series; name one file of the one wanted: %s",
+		gz_err(log,
+		       "%s: holds %zu series; name one file of the one wanted, or give its UID as "
+		       "volume.series: %s",
 		       path.c_str(), count.size(), names.c_str());
 		return GZ_ERR_FORMAT;
+	}
+	if (!wanted.empty() && count.find(wanted) == count.end()) {
+		list_series(count);
+		gz_err(log, "%s: no series %s here; volume.series can be one of %zu others",
+		       path.c_str(), wanted.c_str(), count.size());
+		return GZ_ERR_NOT_FOUND;
 	}
 	if (!wanted.empty() || count.size() > 1)
 		heads.erase(std::remove_if(heads.begin(), heads.end(),
@@ -455,13 +551,15 @@ struct gz_dicom_series {
 };
 
 extern "C" enum gz_result gz_dicom_series_open(const struct gz_volume_file *file,
+					       const char *choice,
 					       struct gz_dicom_series **out_series)
 {
 	const char *path = file->path;
 	const gz_log *log = file->log;
 	try {
 		silence_library();
-		std::unique_ptr<gz_dicom_series> series(new gz_dicom_series { reader(file), log });
+		std::unique_ptr<gz_dicom_series> series(
+			new gz_dicom_series { reader(file, choice), log });
 		const gz_result result = series->slices.open();
 		if (result == GZ_OK)
 			*out_series = series.release();

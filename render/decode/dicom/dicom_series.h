@@ -38,17 +38,19 @@ struct gz_dicom_geometry {
  * Find the slices.
  *
  * @param file  its path is a folder that holds one series, or one file of a series (its folder is
- * looked through for the others), or a file with several frames. Borrowed until the series is
- * closed. Its loading is asked after each file of a folder whether to go on.
+ * looked through for the others), a file with several frames, or a DICOMDIR, which stands for all
+ * that lies in its folder and below. A folder without images stands for its sub-folders. Borrowed
+ * until the series is closed. Its loading is asked after each file of a folder whether to go on.
+ * @param choice  UID of the series wanted; NULL: the file's, or the only one
  * @param[out] out_series  owned by the caller: gz_dicom_series_close()
- * @retval GZ_ERR_NOT_FOUND    no such file or folder; logged
+ * @retval GZ_ERR_NOT_FOUND    no such file, folder or series; logged
  * @retval GZ_ERR_FORMAT       no DICOM image there, several series, slices that do not fit
  *                             together or lie unevenly; logged with the remedy
  * @retval GZ_ERR_UNSUPPORTED  colour, or a compression that is not read; logged with the remedy
  * @retval GZ_ERR_NO_MEM       logged
  * @retval GZ_ERR_CANCELLED    not logged
  */
-enum gz_result gz_dicom_series_open(const struct gz_volume_file *file,
+enum gz_result gz_dicom_series_open(const struct gz_volume_file *file, const char *choice,
 				    struct gz_dicom_series **out_series);
 
 /** What was found. */
