@@ -35,8 +35,8 @@ as() {
 	shift
 	setpriv --reuid 54321 --regid "$group" --clear-groups --no-new-privs "$@"
 }
-for ((i = 0; i < 200; i++)); do
-	as "$group" "$gazectl" status >/run/status 2>&1 && break
+for ((i = 0; i < 10 * ${GZ_TEST_PATIENCE_S:-60}; i++)); do
+	as "$group" "$gazectl" status >/run/status 2>&1 && grep -q "sim, running" /run/status && break
 	kill -0 $daemon 2>/dev/null || fail "the daemon has ended"
 	sleep 0.1
 done

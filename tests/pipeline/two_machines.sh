@@ -39,7 +39,7 @@ status() {
 }
 # wait_until COMMAND...: at most 20 s.
 wait_until() {
-	for ((i = 0; i < 200; i++)); do
+	for ((i = 0; i < 10 * ${GZ_TEST_PATIENCE_S:-60}; i++)); do
 		"$@" && return
 		sleep 0.1
 	done

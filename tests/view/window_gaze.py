@@ -50,7 +50,7 @@ class Gaze(WindowCase):
         self.until(lambda p: self.cross_at(p, 60, 200), "led by the mouse")
         # Over the pointer to the log again, from its start.
         self.tool("key", "m", "m")
-        self.until(lambda p: self.plain(p) and not self.amber(p), "led by the log")
+        self.until(lambda p: not self.cross_at(p, 60, 200), "led by the log")
         self.until(self.amber, "its end again")
 
     def test_m_goes_from_the_daemon_to_the_mouse_to_a_fixed_point_and_back(self):
