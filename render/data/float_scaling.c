@@ -55,8 +55,9 @@ void gz_float_scaling_take_back(const struct gz_float_scaling *scaling,
 {
 	*values->intercept += *values->slope * scaling->offset;
 	*values->slope /= scaling->scale;
-	*values->stored_min = (*values->stored_min - scaling->offset) * scaling->scale;
-	*values->stored_max = (*values->stored_max - scaling->offset) * scaling->scale;
+	/* rounded as the voxels are */
+	*values->stored_min = (double)gz_float_scaled(scaling, (float)*values->stored_min);
+	*values->stored_max = (double)gz_float_scaled(scaling, (float)*values->stored_max);
 }
 
 void gz_volume_scale_floats(struct gz_volume *volume)
@@ -69,6 +70,4 @@ void gz_volume_scale_floats(struct gz_volume *volume)
 	const struct gz_stored_values values = { &volume->slope, &volume->intercept,
 						 &volume->stored_min, &volume->stored_max };
 	gz_float_scaling_take_back(&scaling, &values);
-	/* of the voxels as rounded */
-	gz_volume_find_range(volume);
 }

@@ -262,11 +262,14 @@ static enum gz_result take_nifti_dims(struct nifti_file *file)
 		}
 		if (i <= 3)
 			file->layout.dims[i - 1] = (int)dim[i];
+		else if (i == 4)
+			file->layout.time_points =
+				(int)fmin(dim[i], (double)GZ_TIME_POINTS_MAX + 1);
 		else if (dim[i] > 1)
 			file->layout.more_follows = true;
 	}
 	if (file->layout.more_follows)
-		gz_warn(file->log, "%s: a series of volumes; the first is shown", file->path);
+		gz_warn(file->log, "%s: several series of volumes; the first is shown", file->path);
 	return GZ_OK;
 }
 
@@ -474,6 +477,6 @@ const struct gz_volume_format gz_format_nifti = {
 	.recognise = is_nifti_image,
 	.load = load_nifti,
 	.limits =
-		"one number a voxel, integers of up to 32 bits; of a series the first volume; .img "
+		"one number a voxel, integers of up to 32 bits; of several series the first; .img "
 		"by its .hdr",
 };

@@ -372,10 +372,11 @@ static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 	if (first + 3 > nrrd->dimension)
 		return refuse_nrrd_unsupported(nrrd, "sizes",
 					       "fewer than three axes through space");
-	for (int i = first + 3; i < nrrd->dimension; i++)
+	nrrd->layout.time_points = first + 3 < nrrd->dimension ? nrrd->sizes[first + 3] : 1;
+	for (int i = first + 4; i < nrrd->dimension; i++)
 		nrrd->layout.more_follows |= nrrd->sizes[i] != 1;
 	if (nrrd->layout.more_follows)
-		gz_warn(nrrd->head.log, "%s: a series of volumes; the first is shown",
+		gz_warn(nrrd->head.log, "%s: several series of volumes; the first is shown",
 			nrrd->head.path);
 	memcpy(nrrd->layout.dims, nrrd->sizes + first, sizeof nrrd->layout.dims);
 	if (nrrd->has_spacings)
@@ -552,5 +553,5 @@ const struct gz_volume_format gz_format_nrrd = {
 	.knows_start = nrrd_knows_start,
 	.load = load_nrrd,
 	.write = gz_nrrd_write,
-	.limits = "one number a voxel, integers of up to 32 bits; of a series the first volume",
+	.limits = "one number a voxel, integers of up to 32 bits; of several series the first",
 };

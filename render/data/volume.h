@@ -46,6 +46,10 @@ struct gz_loading {
 	/** UID of the DICOM series wanted; NULL or empty: the file's own, or the only one.
 	 * Borrowed; other formats ignore it. */
 	const char *series;
+	int time_point; /**< of a file that holds several, from 0; other files have only 0 */
+	/** Least and greatest number of all time points, from the member series of a volume that
+	 *  was loaded before. Borrowed. NULL: found by reading all of them. */
+	const double *series_range;
 	/**
 	 * Optional: gives the memory of the voxels, instead of the above.
 	 *
@@ -97,6 +101,10 @@ static inline double gz_voxel_stored(enum gz_voxel_type type, const void *voxels
  * precision. */
 #define GZ_VOLUME_EDGE_LENGTHS_MAX 65536
 
+/** Most time points of a file. Chosen: more than NIfTI can have, and the bytes of all of them can
+ * be counted in 64 bits. */
+#define GZ_TIME_POINTS_MAX 65536
+
 /** Readable bytes after the last voxel, so that wide loads need no special case at the end. */
 #define GZ_VOLUME_PADDING 64
 
@@ -113,10 +121,13 @@ struct gz_volume {
 					 visible, by one renderer at a time; else NULL */
 	double slope;                 /**< data value = slope * stored + intercept; not 0 */
 	double intercept;
-	double stored_min, stored_max; /**< over all voxels */
+	double stored_min, stored_max; /**< over all voxels; of a series, over all time points */
 	bool oriented;                 /**< it is known where right, front and up are */
 	size_t mapped; /**< bytes of the file that holds the voxels, on the disk or in memory, which
 			  may be mapped to be read only; 0: memory of the program */
+	int time_points;  /**< of its file, which hold volumes of one layout; 0 or 1: no series */
+	int time_point;   /**< which of them this is, from 0 */
+	double series[2]; /**< of a series: see series_range of struct gz_loading */
 };
 
 /** Type names of raw files. */
@@ -152,7 +163,8 @@ struct gz_raw_layout {
  * @param loading  progress, cancelling, and where voxels are kept; may be NULL
  * @param log      may be NULL
  * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
- * @retval GZ_ERR_INVAL        @p raw is missing or must not be given; logged
+ * @retval GZ_ERR_INVAL        @p raw is missing or must not be given, or there is no such time
+ *                             point; logged
  * @retval GZ_ERR_NOT_FOUND    no such file; logged
  * @retval GZ_ERR_IO           it cannot be read; logged
  * @retval GZ_ERR_FORMAT       truncated, too large, contradictory or of a wrong type; logged with

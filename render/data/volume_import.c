@@ -52,6 +52,8 @@ struct import {
 	struct gz_volume *volume;
 	bool swap;
 	struct gz_voxel_place place;
+	int time_points, time_point;
+	uint64_t begun, all; /* voxels read of time points before, and to be read in all */
 };
 
 static enum gz_result check_layout(const struct gz_import_layout *layout,
@@ -218,6 +220,14 @@ static enum gz_result refuse_short_data(const struct import *import, uint64_t go
 	return GZ_ERR_FORMAT;
 }
 
+/* Report what share is read. @p at counts voxels of the present time point. */
+static bool import_goes_on(const struct import *import, uint64_t at)
+{
+	return gz_loading_goes_on(import->file->loading,
+				  (double)(import->begun + at) / (double)import->all,
+				  import->file->path);
+}
+
 /* Voxels that are read and not placed yet. */
 struct slab {
 	uint8_t *numbers; /* room for CHUNK_NUMBERS of the file */
@@ -237,8 +247,7 @@ static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct impo
 		const size_t left = count - slab->filled;
 		const size_t wanted = left < CHUNK_NUMBERS ? left : CHUNK_NUMBERS;
 		size_t got = 0;
-		if (!gz_loading_goes_on(import->file->loading, (double)at / (double)all,
-					import->file->path))
+		if (!import_goes_on(import, at))
 			return GZ_ERR_CANCELLED;
 		const enum gz_result result =
 			gz_byte_stream_read(stream, slab->numbers, wanted * size, &got);
@@ -263,7 +272,6 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
 	if (result != GZ_OK)
 		gz_err(import->file->log, "%s: no memory to read it", import->file->path);
-	gz_byte_stream_read_ahead(stream, count * import->conversion->size);
 	for (uint64_t index = 0; index < count && result == GZ_OK;) {
 		const size_t next = gz_voxel_place_next(&import->place, type, index);
 		result = fill_slab(stream, import, index, next, &slab);
@@ -276,6 +284,121 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 	return result;
 }
 
+/* Widen a range by the finite ones among voxels. */
+static void widen_range(enum gz_voxel_type type, const void *voxels, size_t count, double range[2])
+{
+	for (size_t i = 0; i < count; i++) {
+		const double stored = gz_voxel_stored(type, voxels, i);
+		if (!isfinite(stored))
+			continue;
+		range[0] = fmin(range[0], stored);
+		range[1] = fmax(range[1], stored);
+	}
+}
+
+/* Read a time point for its range alone. */
+static enum gz_result scan_voxels(struct gz_byte_stream *stream, const struct import *import,
+				  uint64_t count, double range[2])
+{
+	const enum gz_voxel_type type = import->volume->type;
+	struct slab slab = { .numbers = malloc(CHUNK_NUMBERS * import->conversion->size),
+			     .voxels = malloc(CHUNK_NUMBERS * gz_voxel_size(type)) };
+	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result != GZ_OK)
+		gz_err(import->file->log, "%s: no memory to read it", import->file->path);
+	for (uint64_t index = 0; index < count && result == GZ_OK;) {
+		const uint64_t left = count - index;
+		const size_t next = left < CHUNK_NUMBERS ? (size_t)left : CHUNK_NUMBERS;
+		result = fill_slab(stream, import, index, next, &slab);
+		if (result == GZ_OK)
+			widen_range(type, slab.voxels, next, range);
+		index += next;
+	}
+	free(slab.numbers);
+	free(slab.voxels);
+	return result;
+}
+
+static bool is_data_missing(enum gz_result result)
+{
+	return result == GZ_ERR_FORMAT || result == GZ_ERR_IO || result == GZ_ERR_NOT_FOUND;
+}
+
+/* Read all time points, of which one is kept. The volume's series becomes the range of the others.
+ */
+static enum gz_result read_whole_series(struct gz_byte_stream *stream, struct import *import,
+					uint64_t count)
+{
+	double *range = import->volume->series;
+	enum gz_result result = GZ_OK;
+	range[0] = INFINITY;
+	range[1] = -INFINITY;
+	import->all = count * (uint64_t)import->time_points;
+	gz_byte_stream_read_ahead(stream, import->all * import->conversion->size);
+	for (int point = 0; point < import->time_points && result == GZ_OK; point++) {
+		result = point == import->time_point ? read_voxels(stream, import, count)
+						     : scan_voxels(stream, import, count, range);
+		if (point > import->time_point && is_data_missing(result)) {
+			gz_warn(import->file->log,
+				"%s: of its %d time points only the first %d can be read",
+				import->file->path, import->time_points, point);
+			import->time_points = point;
+			return GZ_OK;
+		}
+		import->begun += count;
+	}
+	return result;
+}
+
+/* Read the time point that is asked for. */
+static enum gz_result read_time_point(struct gz_byte_stream *stream, struct import *import,
+				      uint64_t count)
+{
+	const struct gz_loading *loading = import->file->loading;
+	const double *known = loading ? loading->series_range : NULL;
+	if (import->time_points > 1 && !known)
+		return read_whole_series(stream, import, count);
+	const uint64_t bytes = count * import->conversion->size;
+	enum gz_result result = GZ_OK;
+	if (import->time_point > 0)
+		result = gz_byte_stream_skip(stream, (uint64_t)import->time_point * bytes);
+	import->all = count;
+	if (known)
+		memcpy(import->volume->series, known, sizeof import->volume->series);
+	gz_byte_stream_read_ahead(stream, bytes);
+	return result == GZ_OK ? read_voxels(stream, import, count) : result;
+}
+
+/* Join the range of the volume and that of the other time points. */
+static void take_series_range(const struct import *import)
+{
+	struct gz_volume *volume = import->volume;
+	if (import->time_points <= 1)
+		return;
+	volume->time_points = import->time_points;
+	volume->time_point = import->time_point;
+	volume->stored_min = volume->series[0] = fmin(volume->series[0], volume->stored_min);
+	volume->stored_max = volume->series[1] = fmax(volume->series[1], volume->stored_max);
+}
+
+static enum gz_result choose_time_point(struct import *import)
+{
+	const struct gz_loading *loading = import->file->loading;
+	const int points = import->layout->time_points;
+	import->time_points = points > 1 ? points : 1;
+	import->time_point = loading ? loading->time_point : 0;
+	if (points > GZ_TIME_POINTS_MAX) {
+		gz_err(import->file->log, "%s: %d time points; allowed: 1 to %d",
+		       import->file->path, points, GZ_TIME_POINTS_MAX);
+		return GZ_ERR_FORMAT;
+	}
+	if (import->time_point >= 0 && import->time_point < import->time_points)
+		return GZ_OK;
+	gz_err(import->file->log, "%s: no time point %d: it has %d; correct volume.time_point",
+	       import->file->path, import->time_point + 1, import->time_points);
+	return GZ_ERR_INVAL;
+}
+
 /* Read on after the voxels: the decoder then checks its checksum, and extra bytes are often the
  * first sign of damage. At most as many bytes again as the voxels are read. */
 static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct import *import,
@@ -284,7 +407,9 @@ static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct
 	uint8_t scrap[4096];
 	uint64_t more = 0;
 	size_t got = 0;
-	if (import->layout->more_follows)
+	/* Of a series whose range is known, the rest is not read. */
+	const bool to_end = import->begun == import->all;
+	if (import->layout->more_follows || (import->layout->time_points > 1 && !to_end))
 		return GZ_OK;
 	do {
 		enum gz_result result = gz_byte_stream_read(stream, scrap, sizeof scrap, &got);
@@ -394,23 +519,28 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				 .swap = layout->big_endian != gz_host_big_endian() };
 
 	enum gz_result result = check_layout(layout, file);
+	if (result == GZ_OK)
+		result = choose_time_point(&import);
 	/* At most 2^42 numbers of 8 bytes: no overflow. */
 	uint64_t count =
 		(uint64_t)layout->dims[0] * (uint64_t)layout->dims[1] * (uint64_t)layout->dims[2];
 	if (result == GZ_OK)
-		result = check_claimed_size(stream, &import, count * import.conversion->size);
+		result = check_claimed_size(stream, &import,
+					    count * import.conversion->size *
+						    (uint64_t)(import.time_point + 1));
 	if (result == GZ_OK)
 		result = map_axes(layout, file, &map);
 	if (result == GZ_OK)
 		result = allocate_voxels(&import, &map);
 	if (result == GZ_OK)
-		result = read_voxels(stream, &import, count);
+		result = read_time_point(stream, &import, count);
 	if (result == GZ_OK)
 		result = check_data_end(stream, &import, count * import.conversion->size);
 	if (result == GZ_OK)
 		result = make_finite(&import);
 	if (result == GZ_OK) {
 		warn_rounded_flat(&import);
+		take_series_range(&import);
 		gz_volume_scale_floats(&volume);
 	}
 	if (result != GZ_OK) {

@@ -34,6 +34,7 @@ struct gz_import_layout {
 	enum gz_raw_type type;
 	bool big_endian;
 	double slope, intercept; /**< data value = slope * number in the file + intercept */
+	int time_points;         /**< volumes of this layout, one behind the other; 0 means 1 */
 	bool more_follows;       /**< more bytes after the voxels are no reason for a warning */
 };
 
@@ -45,12 +46,14 @@ size_t gz_raw_type_size(enum gz_raw_type type);
 
 /**
  * Read the voxels of a file into a volume. Signed integers become unsigned ones with an offset in
- * the intercept; 32-bit integers and doubles become float.
+ * the intercept; 32-bit integers and doubles become float. Of a series, the time point that the
+ * file's loading names is kept, and unless the range of the series is known, all are read for it.
  *
- * @param stream  at the first voxel
+ * @param stream  at the first voxel of the first time point
  * @param layout  all of it is checked here
  * @param file    its path is for messages and progress
  * @param[out] out_volume  the caller frees it with gz_volume_free()
+ * @retval GZ_ERR_INVAL   there is no such time point; logged
  * @retval GZ_ERR_FORMAT  wrong dims, spacing, directions, slope or length of the data; logged
  * @retval GZ_ERR_IO      logged
  * @retval GZ_ERR_NO_MEM  logged with the size asked for

@@ -366,9 +366,10 @@ static enum gz_result bound_chain(const struct file_chain *model, uint64_t neede
 
 /* ---- import ---- */
 
-static uint64_t layout_numbers(const struct gz_import_layout *layout)
+/* Of so many time points. */
+static uint64_t layout_numbers(const struct gz_import_layout *layout, int points)
 {
-	uint64_t numbers = 1;
+	uint64_t numbers = points > 1 && points <= GZ_TIME_POINTS_MAX ? (uint64_t)points : 1;
 	for (int axis = 0; axis < 3; axis++) {
 		const int dim = layout->dims[axis];
 		/* What is out of range is refused by gz_volume_import(). */
@@ -389,8 +390,10 @@ static enum gz_result import_chain(const struct gz_voxel_source *source,
 		return GZ_ERR_NO_MEM;
 	}
 	*chain = (struct file_chain) { .source = source, .log = file->log, .type = layout->type };
-	enum gz_result result =
-		bound_chain(chain, layout_numbers(layout) * gz_raw_type_size(layout->type), &bound);
+	/* Without the files of later time points, those before them can be shown. */
+	const uint64_t needed =
+		layout_numbers(layout, file->loading ? file->loading->time_point + 1 : 1);
+	enum gz_result result = bound_chain(chain, needed * gz_raw_type_size(layout->type), &bound);
 	if (result == GZ_OK)
 		result = gz_byte_stream_from(read_chain, chain, bound, source->path, file->log,
 					     &stream);
@@ -413,7 +416,8 @@ static enum gz_result import_single(const struct gz_voxel_source *source,
 	}
 	memcpy(single->path, source->path, sizeof single->path);
 	enum gz_result result =
-		open_voxel_file(single, source, layout_numbers(layout), layout->type, file->log);
+		open_voxel_file(single, source, layout_numbers(layout, layout->time_points),
+				layout->type, file->log);
 	if (result == GZ_OK)
 		result = gz_volume_import(voxel_stream(single), layout, file, out_volume);
 	close_voxel_file(single);

@@ -143,13 +143,15 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 				 self->shown.data_revision == object->data_revision;
 	const bool same_transfer = same_volume && self->shown.transfer == object->transfer &&
 				   self->shown.transfer_revision == object->transfer_revision;
+	const bool new_function = self->shown.transfer != object->transfer ||
+				  self->shown.transfer_revision != object->transfer_revision;
 	enum gz_result result = GZ_OK;
 	self->shown.volume = NULL; /* until all of it is set */
 	if (!same_volume)
 		result = gz_raycaster_set_volume(self->raycaster, object->volume);
 	if (result == GZ_OK && !same_transfer)
 		result = gz_raycaster_set_transfer(self->raycaster, object->transfer);
-	if (result == GZ_OK && !same_transfer)
+	if (result == GZ_OK && new_function)
 		warn_narrow_range(object, self->log);
 	if (result == GZ_OK)
 		self->shown = *object;

@@ -63,24 +63,54 @@ static enum gz_result make_procedural(const struct scene_loader *loader,
 		loader->loading, loader->log, out_volume);
 }
 
-static enum gz_result load_volume(const struct scene_loader *loader, struct gz_volume *out_volume)
+static enum gz_result load_volume_file(const struct scene_loader *loader,
+				       struct gz_volume *out_volume)
 {
 	const struct gz_scene_settings *settings = loader->settings;
 	char path[GZ_PATH_SIZE];
-	if (settings->volume_procedural)
-		return make_procedural(loader, out_volume);
 	const enum gz_result result = find_volume(loader, path);
 	if (result != GZ_OK)
 		return result;
 	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
 	loading.brick_bytes = (size_t)settings->memory_mib << 20;
 	loading.series = settings->volume_series;
+	loading.time_point = settings->time_point - 1;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
 				     .big_endian = settings->endian == 1 };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
 	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, loader->log,
 			      out_volume);
+}
+
+static enum gz_result load_volume(const struct scene_loader *loader, struct gz_volume *out_volume)
+{
+	const struct gz_scene_settings *settings = loader->settings;
+	const enum gz_result result = settings->volume_procedural
+					      ? make_procedural(loader, out_volume)
+					      : load_volume_file(loader, out_volume);
+	if (result != GZ_OK || settings->time_point == 1 || out_volume->time_points > 1)
+		return result;
+	gz_err(loader->log,
+	       "%s: volume.time_point is %d, but the volume is not a series; leave it "
+	       "out",
+	       loader->name, settings->time_point);
+	gz_volume_free(out_volume);
+	return GZ_ERR_INVAL;
+}
+
+enum gz_result gz_scene_load_time_point(const struct gz_scene_time_point *which,
+					const struct gz_loading *loading, const struct gz_log *log,
+					struct gz_volume *out_volume)
+{
+	struct gz_scene_settings settings = *which->settings;
+	struct gz_loading of_series = loading ? *loading : (struct gz_loading) { 0 };
+	const struct scene_loader loader = {
+		.name = which->name, .loading = &of_series, .log = log, .settings = &settings
+	};
+	settings.time_point = which->time_point + 1;
+	of_series.series_range = which->series;
+	return load_volume(&loader, out_volume);
 }
 
 static enum gz_result load_transfer(const struct scene_loader *loader, const char *key,

@@ -55,6 +55,27 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 				   const struct gz_loading *loading, const struct gz_log *log,
 				   struct gz_scene *out_scene);
 
+/** Which time point of a scene's series to load. All pointers are borrowed until the call returns.
+ */
+struct gz_scene_time_point {
+	const char *name; /**< path beside which the scene's files are searched first */
+	const struct gz_scene_settings
+		*settings;    /**< of the scene; their own time point is ignored */
+	int time_point;       /**< from 0 */
+	const double *series; /**< the member series of a time point that was loaded before */
+};
+
+/**
+ * Load another time point of the volume of a scene. It has the value range of the whole series.
+ *
+ * @return what gz_volume_load() returns; logged
+ *
+ * Threads: any.
+ */
+enum gz_result gz_scene_load_time_point(const struct gz_scene_time_point *which,
+					const struct gz_loading *loading, const struct gz_log *log,
+					struct gz_volume *out_volume);
+
 /** Make the transfer function of a volume that comes without one: GZ_PRESET_DEFAULT, by the
  * volume's histogram. @return what gz_histogram_count() returns; logged */
 enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struct gz_log *log,

@@ -32,6 +32,9 @@ static const struct gz_option volume_options[] = {
 	  .preset = "little", .help = "byte order; raw files" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(spacing), 1e-9, 1e9, .count = 3, .preset = "1 1 1",
 	  .help = "voxel spacing x y z, mm; raw files and procedural volumes" },
+	{ "volume.time_point", GZ_OPTION_INT, AT(time_point), 1, GZ_TIME_POINTS_MAX, .preset = "1",
+	  .help = "which volume of a series is shown, from 1; NIfTI's fourth dimension, NRRD's "
+		  "fourth axis" },
 	{ "volume.memory_mib", GZ_OPTION_INT, AT(memory_mib), 0, 1 << 20, .preset = "0",
 	  .help = "memory for the bricks that are shown, MiB; 0 = a quarter of the machine's" },
 };
@@ -194,7 +197,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 }
 
 /* Most options of a table of which the reader must know whether they are given. */
-enum { GIVEN_MAX = 8 };
+enum { GIVEN_MAX = 9 };
 
 _Static_assert(sizeof volume_options / sizeof volume_options[0] <= GIVEN_MAX &&
 		       sizeof camera_options / sizeof camera_options[0] <= GIVEN_MAX,

@@ -323,9 +323,25 @@ static void first_volume_of_a_series_needs_its_files_alone(void **state)
 		"data file: f%d 0 8 1\n",
 		NULL, 0);
 	assert_int_equal(gz_volume_load(path, NULL, NULL, &log.log, &v), GZ_OK);
-	assert_int_equal(log.messages, 1);
-	assert_non_null(strstr(log.last, "the first is shown"));
+	assert_int_equal(log.messages, 2);
+	assert_non_null(strstr(log.last, "of its 9 time points only the first 1 can be read"));
 	assert_memory_equal(v.voxels, voxels, COUNT);
+	gz_volume_free(&v);
+	/* Each time point in a file of its own. */
+	uint8_t other[COUNT];
+	for (size_t i = 0; i < COUNT; i++)
+		other[i] = (uint8_t)(100 + i);
+	for (int i = 1; i < 9; i++) {
+		char name[8];
+		snprintf(name, sizeof name, "f%d", i);
+		files_write(name, i == 5 ? other : voxels, COUNT);
+	}
+	const struct gz_loading loading = { .time_point = 5 };
+	path = files_path("f.nhdr"); /* the names above took its place */
+	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &v), GZ_OK);
+	assert_int_equal(log.messages, 2);
+	assert_int_equal(v.time_points, 9);
+	assert_memory_equal(v.voxels, other, COUNT);
 	gz_volume_free(&v);
 }
 

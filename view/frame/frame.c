@@ -1,10 +1,12 @@
 #include "view/frame/frame.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/data/time_steps.h"
 #include "render/frame/picture_maker.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
@@ -16,9 +18,23 @@
  * and hides little. */
 enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
 
+/* The time points of a series. The thread that loads them reads the first members. */
+struct time_points {
+	char path[GZ_PATH_SIZE]; /* of the scene */
+	struct gz_scene_settings settings;
+	double series[2];
+	const struct gz_log *log;
+	void (*finished)(void *user);
+	struct gz_time_steps *steps;
+	struct gz_volume *taken; /* ready to be shown; NULL: none */
+};
+
 struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
+	char path[GZ_PATH_SIZE];           /* of the scene */
+	struct time_points *time_points;   /* NULL until another one is asked for */
+	uint64_t data_revision;            /* of the scene's volume */
 	struct gz_picture_maker *pictures; /* NULL: not started */
 	uint64_t transfer_revision;        /* of the scene's transfer function */
 	struct gz_attention attention;
@@ -108,6 +124,7 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	if (!maker)
 		return GZ_ERR_NO_MEM;
 	maker->log = log;
+	snprintf(maker->path, sizeof maker->path, "%s", scene->path);
 	const struct gz_attention_params attention = gz_attention_default();
 	gz_attention_init(&maker->attention, &attention);
 	maker->focus = maker->attention.focus;
@@ -126,8 +143,10 @@ static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
 	const size_t count =
 		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; i < count; i++) {
 		objects[i].transfer_revision = maker->transfer_revision;
+		objects[i].data_revision = maker->data_revision;
+	}
 	return gz_picture_maker_show(maker->pictures, objects, count);
 }
 
@@ -220,6 +239,151 @@ enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 	const enum gz_result r = show_scene_objects(maker);
 	if (r != GZ_OK)
 		gz_err(maker->log, "cannot use the transfer function: %s", gz_result_text(r));
+	return r;
+}
+
+int gz_frame_time_points(const struct gz_frame_maker *maker)
+{
+	const int points = maker->scene.volume.time_points;
+	return points > 1 ? points : 1;
+}
+
+int gz_frame_time_point(const struct gz_frame_maker *maker)
+{
+	return maker->scene.volume.time_point;
+}
+
+static enum gz_result load_time_point(void *user, int step, const struct gz_loading *loading,
+				      void **out_data)
+{
+	const struct time_points *points = user;
+	const struct gz_scene_time_point which = {
+		.name = points->path,
+		.settings = &points->settings,
+		.time_point = step,
+		.series = points->series,
+	};
+	struct gz_volume *volume = calloc(1, sizeof *volume);
+	if (!volume) {
+		gz_err(points->log, "no memory for time point %d", step + 1);
+		return GZ_ERR_NO_MEM;
+	}
+	const enum gz_result r = gz_scene_load_time_point(&which, loading, points->log, volume);
+	if (r != GZ_OK) {
+		free(volume);
+		return r;
+	}
+	*out_data = volume;
+	return GZ_OK;
+}
+
+static void release_time_point(void *user, void *data)
+{
+	struct gz_volume *volume = data;
+	(void)user;
+	if (!volume)
+		return;
+	gz_volume_free(volume);
+	free(volume);
+}
+
+static void tell_time_point_finished(void *user)
+{
+	const struct time_points *points = user;
+	if (points->finished)
+		points->finished(NULL);
+}
+
+static void free_time_points(struct time_points *points)
+{
+	if (!points)
+		return;
+	gz_time_steps_destroy(&points->steps);
+	release_time_point(NULL, points->taken);
+	free(points);
+}
+
+/* Start the thread that loads time points, if it does not run. NULL: it cannot; logged. */
+static struct gz_time_steps *time_steps_of(struct gz_frame_maker *maker,
+					   void (*finished)(void *user))
+{
+	if (maker->time_points)
+		return maker->time_points->steps;
+	struct time_points *points = calloc(1, sizeof *points);
+	enum gz_result r = points ? GZ_OK : GZ_ERR_NO_MEM;
+	if (r == GZ_OK) {
+		memcpy(points->path, maker->path, sizeof points->path);
+		points->settings = maker->scene.settings;
+		memcpy(points->series, maker->scene.volume.series, sizeof points->series);
+		points->log = maker->log;
+		points->finished = finished;
+		const struct gz_time_step_source source = {
+			.count = gz_frame_time_points(maker),
+			.user = points,
+			.load = load_time_point,
+			.release = release_time_point,
+			.finished = tell_time_point_finished,
+		};
+		r = gz_time_steps_create(&source, &points->steps);
+	}
+	if (r != GZ_OK) {
+		gz_err(maker->log, "cannot load further time points: %s", gz_result_text(r));
+		free(points);
+		return NULL;
+	}
+	maker->time_points = points;
+	return points->steps;
+}
+
+void gz_frame_expect_time_point(struct gz_frame_maker *maker, int time_point,
+				void (*finished)(void *user))
+{
+	struct gz_time_steps *steps = time_steps_of(maker, finished);
+	if (steps && time_point != gz_frame_time_point(maker))
+		gz_time_steps_expect(steps, time_point);
+}
+
+enum gz_result gz_frame_take_time_point(struct gz_frame_maker *maker, int time_point, bool wait)
+{
+	struct gz_time_steps *steps = time_steps_of(maker, NULL);
+	void *data = NULL;
+	if (!steps)
+		return GZ_ERR_NO_MEM;
+	const enum gz_result r = gz_time_steps_take(steps, time_point, wait, &data);
+	if (r != GZ_OK)
+		return r;
+	release_time_point(NULL, maker->time_points->taken);
+	maker->time_points->taken = data;
+	return GZ_OK;
+}
+
+/* Exchange the volume shown and the one taken. */
+static void exchange_time_points(struct gz_frame_maker *maker)
+{
+	struct gz_volume *taken = maker->time_points->taken;
+	const struct gz_volume shown = maker->scene.volume;
+	maker->scene.volume = *taken;
+	*taken = shown;
+	maker->scene.settings.time_point = maker->scene.volume.time_point + 1;
+	maker->data_revision++;
+}
+
+enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker)
+{
+	if (!maker->time_points || !maker->time_points->taken)
+		return GZ_ERR_INVAL;
+	exchange_time_points(maker);
+	maker->any_made = false;
+	enum gz_result r = maker->pictures ? show_scene_objects(maker) : GZ_OK;
+	if (r != GZ_OK) {
+		gz_err(maker->log, "cannot show time point %d: %s",
+		       maker->scene.volume.time_point + 1, gz_result_text(r));
+		exchange_time_points(maker);
+		(void)show_scene_objects(maker);
+	}
+	/* The renderer has let go of it. */
+	release_time_point(NULL, maker->time_points->taken);
+	maker->time_points->taken = NULL;
 	return r;
 }
 
@@ -440,6 +604,7 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 	if (!maker || !*maker)
 		return;
 	gz_picture_maker_destroy(&(*maker)->pictures);
+	free_time_points((*maker)->time_points);
 	gz_scene_free(&(*maker)->scene);
 	free(*maker);
 	*maker = NULL;

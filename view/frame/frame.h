@@ -99,6 +99,39 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer);
 
+/** How many time points the scene's volume has; 1: it is not a series. */
+int gz_frame_time_points(const struct gz_frame_maker *maker);
+
+/** The time point that is shown, from 0. */
+int gz_frame_time_point(const struct gz_frame_maker *maker);
+
+/**
+ * Take a time point from where gz_frame_expect_time_point() loads it. It is shown by
+ * gz_frame_show_taken(), so that threads can stop using the present one in between.
+ *
+ * @param time_point  from 0
+ * @param wait        wait until it is loaded
+ * @retval GZ_OK           it is ready to be shown
+ * @retval GZ_ERR_TIMEOUT  it is being loaded
+ * @return otherwise what gz_scene_load_time_point() returns; logged
+ */
+enum gz_result gz_frame_take_time_point(struct gz_frame_maker *maker, int time_point, bool wait);
+
+/**
+ * Show the time point that was taken from the next frame on, and drop what earlier frames
+ * accumulated. The volume of gz_frame_maker_scene() changes: no thread may use it meanwhile. If it
+ * cannot be shown, the present one stays.
+ *
+ * @retval GZ_ERR_INVAL  none was taken
+ * @return otherwise the results of gz_picture_maker_show(); logged
+ */
+enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker);
+
+/** Load a time point ahead on a thread; those outside the series are ignored. @p finished is called
+ *  on the thread when it is loaded; may be NULL; the same in each call for a maker. */
+void gz_frame_expect_time_point(struct gz_frame_maker *maker, int time_point,
+				void (*finished)(void *user));
+
 /**
  * Pass the gaze of the next frame to the attention (render/attention/attention.h).
  *

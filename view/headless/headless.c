@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "render/data/format.h"
+#include "render/data/time_steps.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
 #include "view/capture/output.h"
@@ -127,7 +128,8 @@ struct headless {
 	struct gz_replay *replay;
 	struct gz_scene_settings settings; /* of the next frame; the camera turns */
 	int64_t start_ns;
-	bool silence_told; /* the warning about a silent daemon was logged */
+	int first_time_point; /* from 0 */
+	bool silence_told;    /* the warning about a silent daemon was logged */
 };
 
 static void on_end_signal(int number)
@@ -343,6 +345,26 @@ static enum gz_result make_headless_frame(struct headless *self,
 	return r == GZ_OK ? write_headless_picture(self, image, &record, frame) : r;
 }
 
+/* Show the time point of a frame, and load the next one ahead. */
+static enum gz_result show_time_point(struct headless *self, int frame)
+{
+	const int count = gz_frame_time_points(self->maker);
+	if (self->options->play <= 0 || count < 2)
+		return GZ_OK;
+	const int wanted = gz_playback_step_of_frame(
+		self->first_time_point, count, self->options->play, frame / self->options->fps);
+	enum gz_result r = GZ_OK;
+	if (wanted != gz_frame_time_point(self->maker)) {
+		r = gz_frame_take_time_point(self->maker, wanted, true);
+		if (r == GZ_OK)
+			r = gz_frame_show_taken(self->maker);
+		self->settings.time_point = gz_frame_time_point(self->maker) + 1;
+	}
+	if (r == GZ_OK)
+		gz_frame_expect_time_point(self->maker, (wanted + 1) % count, NULL);
+	return r;
+}
+
 static enum gz_result render_frame(struct headless *self, int frame)
 {
 	if (self->source->ops->live)
@@ -357,8 +379,8 @@ static enum gz_result render_frame(struct headless *self, int frame)
 	};
 	gz_frame_attend(self->maker, &self->settings.attention, &gaze, &display,
 			self->source->ops->live ? gz_clock_now_ns() : frame_time_ns(self, frame));
-	enum gz_result r = GZ_OK;
-	if (self->options->record[0] && !self->session)
+	enum gz_result r = show_time_point(self, frame);
+	if (r == GZ_OK && self->options->record[0] && !self->session)
 		r = begin_session(self, &display);
 	if (r == GZ_OK && self->session)
 		r = gz_session_writer_gaze(self->session, &gaze,
@@ -461,6 +483,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 		r = gz_stats_open(options->stats, log, &self.stats);
 	if (r == GZ_OK) {
 		self.settings = gz_frame_maker_scene(self.maker)->settings;
+		self.first_time_point = gz_frame_time_point(self.maker);
 		warn_of_budget(&self);
 		if (self.settings.view.letters)
 			gz_frame_tell_unoriented(self.maker);

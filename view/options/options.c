@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/data/time_steps.h"
 #include "render/picture/image.h"
 #include "render/plan/method.h"
 
@@ -68,6 +69,12 @@ const struct gz_option gz_view_option_table[] = {
 	{ "bricks", GZ_OPTION_CHOICE, AT(bricks), .choices = bricks_names, .preset = "auto",
 	  .help = "pictures of a volume in bricks: wait for all visible bricks, or stream: coarse "
 		  "first, sharper later; auto: wait if headless" },
+	{ "time-point", GZ_OPTION_INT, AT(time_point), 1, GZ_TIME_POINTS_MAX,
+	  .help = "which volume of a series to show, from 1; default: the "
+		  "scene's" },
+	{ "play", GZ_OPTION_DOUBLE, AT(play), 0, GZ_PLAYBACK_RATE_MAX, .preset = "0",
+	  .help = "play the volumes of a series in turn, steps per second; headless, each picture "
+		  "shows that of its time by --fps" },
 	{ "turn", GZ_OPTION_DOUBLE, AT(turn_deg), -360, 360, .preset = "0",
 	  .help = "turn the camera by this angle each frame, degrees" },
 	{ "cross", GZ_OPTION_BOOL, AT(cross), .preset = "false",
@@ -129,10 +136,10 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",        "size",          "gaze",           "frames",
-		"turn",         "display-px",    "display-mm",     "distance-mm",
-		"write-volume", "record",        "transfer.file",  "volume.dims",
-		"volume.type",  "volume.endian", "volume.spacing", "volume.series",
+		"scene",         "size",        "gaze",        "frames",        "turn",
+		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
+		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
+		"volume.series", "time-point",  "play",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)
@@ -188,6 +195,8 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->scene[0]         ? "a scene"
 			    : options->method >= 0      ? "--method"
 			    : options->turn_deg != 0    ? "--turn"
+			    : options->time_point > 0   ? "--time-point"
+			    : options->play > 0         ? "--play"
 			    : options->write_volume[0]  ? "--write-volume"
 			    : options->out[0]           ? "--out"
 			    : options->video[0]         ? "--video"
@@ -233,6 +242,15 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 	}
 	if (check_raw(options, log) != GZ_OK)
 		return GZ_ERR_INVAL;
+	if (options->play > 0 && options->record[0]) {
+		gz_err(log, "--record: a session has one time point; remove --play");
+		return GZ_ERR_INVAL;
+	}
+	if (options->play > 0 && options->play < GZ_PLAYBACK_RATE_MIN) {
+		gz_err(log, "--play %g: the slowest rate is %g steps per second; 0 stands still",
+		       options->play, GZ_PLAYBACK_RATE_MIN);
+		return GZ_ERR_INVAL;
+	}
 	const char *file = options->out[0]     ? "out"
 			   : options->video[0] ? "video"
 			   : options->stats[0] ? "stats"
@@ -596,6 +614,8 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	}
 	if (options->method >= 0)
 		settings->foveation.method = options->method;
+	if (options->time_point > 0)
+		settings->time_point = options->time_point;
 	apply_short_names(options, &settings->view);
 	apply_transfer(options, settings);
 	return GZ_OK;

@@ -71,6 +71,8 @@ struct gz_view_options {
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	int bricks;                      /**< enum gz_bricks_rule */
+	int time_point;                  /**< of a series, from 1; 0: the scene's */
+	double play; /**< rate of its time points, steps per second; 0: the picture stays */
 	double turn_deg;
 	bool cross;
 	bool letters;

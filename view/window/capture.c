@@ -273,6 +273,12 @@ static void leave_pictured_scene(struct gz_window *window)
 	finish_picture(window->capture);
 }
 
+static bool leave_pictured_data(struct gz_window *window)
+{
+	finish_picture(window->capture);
+	return true;
+}
+
 /* ---- the part ---- */
 
 static void turn_capture(struct gz_window *window)
@@ -323,6 +329,7 @@ const struct gz_window_part gz_window_capture_part = {
 	GZ_PART_ACTIONS(capture_actions),
 	GZ_PART_STATE(capture),
 	.scene_leaving = leave_pictured_scene,
+	.data_leaving = leave_pictured_data,
 	.turn = turn_capture,
 	.paint = paint_capture,
 	.panels = draw_capture_mark,

@@ -183,6 +183,12 @@ static void leave_compared_scene(struct gz_window *window)
 	drop_standard(window->compare);
 }
 
+static bool leave_compared_data(struct gz_window *window)
+{
+	drop_standard(window->compare);
+	return true;
+}
+
 static void paint_compare(struct gz_window *window, int width, int height)
 {
 	const struct gz_window_compare *self = window->compare;
@@ -296,6 +302,7 @@ const struct gz_window_part gz_window_compare_part = {
 	GZ_PART_STATE(compare),
 	.gl_open = open_compare_drawing,
 	.scene_leaving = leave_compared_scene,
+	.data_leaving = leave_compared_data,
 	.turn = turn_compare,
 	.frame_made = ask_for_standard,
 	.paint = paint_compare,

@@ -60,6 +60,9 @@ struct gz_window_part {
 	void (*scene_shown)(struct gz_window *window);
 	/** The scene is about to be freed: stop using it, on every thread. */
 	void (*scene_leaving)(struct gz_window *window);
+	/** Another time point is about to replace the data of the scene: stop using them, on every
+	 *  thread. @return whether the part lets them go; if not, they stay */
+	bool (*data_leaving)(struct gz_window *window);
 	/** First in each turn of the loop: check threads and clocks, and ask for a frame by
 	 *  window->cast_needed or window->present_needed. */
 	void (*turn)(struct gz_window *window);
@@ -127,6 +130,7 @@ struct gz_window_part {
 	ROW(files)         /* opens and saves */ \
 	ROW(notices)       /* shows messages */ \
 	ROW(transfer)      /* edits the transfer function */ \
+	ROW(time)          /* shows the time points of a series */ \
 	ROW(replay)        /* shows a session again; behind all that change the gaze */ \
 	ROW(session)       /* records sessions; behind all that change the gaze */ \
 	ROW(capture)       /* writes pictures and videos; behind all that paint */ \

@@ -38,6 +38,11 @@ static void close_replay(struct gz_window *window)
 	gz_replay_close(&window->replay->replay);
 }
 
+static bool leave_replayed_data(struct gz_window *window)
+{
+	return !window->replay->replay;
+}
+
 static void read_next_frame(struct gz_window *window)
 {
 	struct gz_window_replay *self = window->replay;
@@ -133,6 +138,7 @@ const struct gz_window_part gz_window_replay_part = {
 	GZ_PART_STATE(replay),
 	.scene_shown = open_replay,
 	.scene_leaving = close_replay,
+	.data_leaving = leave_replayed_data,
 	.turn = turn_replay,
 	.gaze = replay_gaze,
 	.frame_made = compare_frame,

@@ -86,6 +86,12 @@ static void leave_recorded_scene(struct gz_window *window)
 	end_session(window);
 }
 
+/* And one time point. */
+static bool leave_recorded_data(struct gz_window *window)
+{
+	return !window->session->writer;
+}
+
 static void record_first_scene(struct gz_window *window)
 {
 	window->session->wanted = window->session->wanted || window->session->named;
@@ -161,6 +167,7 @@ const struct gz_window_part gz_window_session_part = {
 	.open = open_session,
 	.scene_shown = record_first_scene,
 	.scene_leaving = leave_recorded_scene,
+	.data_leaving = leave_recorded_data,
 	.turn = turn_session,
 	.gaze = record_gaze,
 	.frame_made = record_frame,

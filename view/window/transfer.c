@@ -180,6 +180,14 @@ static void leave_counted_scene(struct gz_window *window)
 	stop_counting(window->transfer);
 }
 
+/* All time points have one range of values, so a histogram that is counted stays useful. */
+static bool leave_counted_data(struct gz_window *window)
+{
+	if (window->transfer->count.running)
+		stop_counting(window->transfer);
+	return true;
+}
+
 /* Edit a transfer function that another part has set, such as a replay. */
 static void follow_other_parts(struct gz_window *window)
 {
@@ -293,6 +301,7 @@ const struct gz_window_part gz_window_transfer_part = {
 	GZ_PART_STATE(transfer),
 	.scene_shown = edit_scene_transfer,
 	.scene_leaving = leave_counted_scene,
+	.data_leaving = leave_counted_data,
 	.turn = turn_transfer,
 	.panels = draw_transfer_editor,
 	.patience_s = transfer_patience_s,

@@ -63,6 +63,7 @@ struct gz_window {
 	struct gz_window_session *session;
 	struct gz_window_sources *sources;
 	struct gz_window_status *status;
+	struct gz_window_time *time;
 	struct gz_window_trail *trail;
 	struct gz_window_transfer *transfer;
 	/** Of part experiment, which makes it itself; NULL: there is no experiment. */
