@@ -95,5 +95,5 @@ def read_png(path):
 
 def run(*command, **options):
     return subprocess.run(
-        [str(word) for word in command], capture_output=True, text=True, timeout=50, **options
+        [str(word) for word in command], capture_output=True, text=True, timeout=2 * PATIENCE_S, **options
     )

@@ -96,6 +96,12 @@ class Files(WindowCase):
         self.tool("type", "--delay", "20", text)
         self.until_idle()  # the field takes it before Enter counts
 
+    def pressed_until(self, done):
+        """Press Return unless @done. -> @done"""
+        if not done:
+            self.press("Return")
+        return done
+
     def test_dropped_volume_is_shown(self):
         self.start("--gaze", "mouse", "--method", "standard")
         before = self.rest()
@@ -203,10 +209,11 @@ class Files(WindowCase):
         self.keys("ctrl+shift+s")
         self.until(self.dialog_there, "the dialog")
         self.enter_text(path)
-        self.press("Return")
+        dialog = self.below_line(self.rest())
+        self.until(lambda p: self.pressed_until(self.below_line(p) != dialog), "a question")
         with open(path, encoding="utf-8") as file:
             self.assertEqual(file.read(), other)
-        self.press("Return")
+        self.until(lambda p: self.pressed_until(not self.dialog_there(p)), "saved")
         text = self.until_there(path, lambda text: text != other)
         self.assertTrue(text.startswith("; mine\n"), text)
         self.assertIn("procedural = shells ; big", text)
