@@ -27,7 +27,7 @@ enum gz_result gz_file_open(const char *path, const struct gz_log *log, int *out
 /** How bytes are compressed. */
 enum gz_coding {
 	GZ_CODING_PLAIN,
-	GZ_CODING_ZLIB, /**< a zlib stream, or gzip members one after the other */
+	GZ_CODING_ZLIB,  /**< a zlib stream, or gzip members one after the other */
 	GZ_CODING_ZSTD,  /**< zstd frames one after the other */
 	GZ_CODING_BZIP2, /**< bzip2 streams one after the other */
 };

@@ -24,8 +24,8 @@ struct gz_file_start {
 };
 
 /**
- * The coding of a file that begins with @p bytes: gzip, zstd or bzip2 by their magic numbers, otherwise
- * plain. A plain file may begin with these numbers by chance.
+ * The coding of a file that begins with @p bytes: gzip, zstd or bzip2 by their magic numbers,
+ * otherwise plain. A plain file may begin with these numbers by chance.
  */
 enum gz_coding gz_coding_of_bytes(const uint8_t *bytes, size_t size);
 
