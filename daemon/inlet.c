@@ -191,7 +191,7 @@ int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
 }
 
 /* Put a message with two frames into the queue. */
-static void keep_message(struct gz_inlet *inlet, zmq_msg_t frames[2])
+static void queue_message(struct gz_inlet *inlet, zmq_msg_t frames[2])
 {
 	const struct gz_queued_message message = {
 		.topic = zmq_msg_data(&frames[0]),
@@ -212,7 +212,7 @@ void gz_inlet_collect(struct gz_inlet *inlet)
 	for (int i = 0; i < COLLECTED_AT_ONCE && count > 0; i++) {
 		count = gz_inlet_receive_frames(inlet->socket, frames);
 		if (count == 2)
-			keep_message(inlet, frames);
+			queue_message(inlet, frames);
 		else if (count > 0)
 			note_refusal(inlet, GZ_ERR_PROTOCOL);
 	}

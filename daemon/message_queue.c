@@ -26,7 +26,7 @@ enum gz_result gz_message_queue_create(size_t size, struct gz_message_queue **ou
 }
 
 /* Find room for @p needed bytes in one piece. @return false if there is none */
-static bool make_room(struct gz_message_queue *queue, size_t needed)
+static bool find_queue_place(struct gz_message_queue *queue, size_t needed)
 {
 	if (queue->wrap > 0)
 		return needed <= queue->first - queue->last;
@@ -44,7 +44,7 @@ bool gz_message_queue_push(struct gz_message_queue *queue, const struct gz_queue
 	const uint32_t sizes[2] = { (uint32_t)message->topic_size, (uint32_t)message->body_size };
 	_Static_assert(sizeof sizes == GZ_MESSAGE_QUEUE_EXTRA, "two sizes of four bytes");
 	if (message->topic_size > queue->size || message->body_size > queue->size ||
-	    !make_room(queue, sizeof sizes + message->topic_size + message->body_size))
+	    !find_queue_place(queue, sizeof sizes + message->topic_size + message->body_size))
 		return false;
 	unsigned char *place = queue->bytes + queue->last;
 	memcpy(place, sizes, sizeof sizes);

@@ -135,7 +135,7 @@ static bool is_over_tcp(int fd)
 
 /* A connection that was ended no longer counts, although libzmq may take a moment to close it:
  * otherwise a burst over TCP would keep local connections out. */
-static void stop_counting(struct gz_quota *quota, struct held *held)
+static void release_quota_slot(struct gz_quota *quota, struct held *held)
 {
 	if (held->ended)
 		return;
@@ -147,7 +147,7 @@ static void stop_counting(struct gz_quota *quota, struct held *held)
 
 static void forget_connection(struct gz_quota *quota, struct held *held)
 {
-	stop_counting(quota, held);
+	release_quota_slot(quota, held);
 	*held = (struct held) { 0 };
 }
 
@@ -161,7 +161,7 @@ static void end_connection(struct gz_quota *quota, int fd, enum gz_quota_reason 
 	};
 	struct held *held = &quota->held[fd];
 	uint64_t more;
-	stop_counting(quota, held);
+	release_quota_slot(quota, held);
 	held->ended = true;
 	epoll_ctl(quota->epoll_fd, EPOLL_CTL_DEL, fd, NULL);
 	gz_connection_end(fd, held->identity);

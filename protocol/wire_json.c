@@ -19,7 +19,7 @@ struct json_text {
 	bool full;
 };
 
-static void add_json(struct json_text *json, const char *bytes, size_t count)
+static void append_json_bytes(struct json_text *json, const char *bytes, size_t count)
 {
 	if (json->full || count > json->size - json->used) {
 		json->full = true;
@@ -31,7 +31,7 @@ static void add_json(struct json_text *json, const char *bytes, size_t count)
 
 static void add_json_text(struct json_text *json, const char *text)
 {
-	add_json(json, text, strlen(text));
+	append_json_bytes(json, text, strlen(text));
 }
 
 /* The length of the UTF-8 sequence at @p bytes (RFC 3629), 0 if it is none. */
@@ -65,12 +65,13 @@ static void add_json_string(struct json_text *json, const msgpack_object_str *st
 		if (length == 0)
 			add_json_text(json, "?");
 		else if (bytes[i] == '"' || bytes[i] == '\\')
-			add_json(json, (char[]) { '\\', (char)bytes[i] }, 2);
+			append_json_bytes(json, (char[]) { '\\', (char)bytes[i] }, 2);
 		else if (bytes[i] < ' ')
-			add_json(json, escape,
-				 (size_t)snprintf(escape, sizeof escape, "\\u%04x", bytes[i]));
+			append_json_bytes(
+				json, escape,
+				(size_t)snprintf(escape, sizeof escape, "\\u%04x", bytes[i]));
 		else
-			add_json(json, string->ptr + i, length);
+			append_json_bytes(json, string->ptr + i, length);
 		i += length ? length : 1;
 	}
 	add_json_text(json, "\"");

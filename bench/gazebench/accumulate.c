@@ -335,8 +335,9 @@ static json_t *error_number(double value)
 	return isfinite(value) ? json_real(value) : isnan(value) ? json_null() : json_string("inf");
 }
 
-static void add_json(const struct session *session, const struct accumulation_request *at,
-		     const struct accumulation_row *row)
+static void add_accumulation_json(const struct session *session,
+				  const struct accumulation_request *at,
+				  const struct accumulation_row *row)
 {
 	const struct gz_study *study = &session->study;
 	const struct gz_study_errors *errors = &row->errors;
@@ -379,7 +380,7 @@ static enum gz_result accumulate_variant(struct session *session,
 		       "frames", "ms", "PSNR, dB", "FLIP", "perceived FLIP");
 	for (int i = 0; i < ROWS; i++)
 		if (session->list)
-			add_json(session, at, &rows[i]);
+			add_accumulation_json(session, at, &rows[i]);
 		else
 			print_row(&rows[i]);
 	fflush(stdout);

@@ -161,7 +161,7 @@ static bool is_glued(const char *text, size_t start, size_t end)
 	       strncmp(text + end, "mm", 2) != 0;
 }
 
-static void take_name_numbers(struct raw_name *name)
+static void take_numbers_of_name(struct raw_name *name)
 {
 	const char *text = name->text;
 	for (size_t at = 0; text[at] && name->number_count < NUMBERS_MAX;) {
@@ -293,7 +293,7 @@ static void read_raw_name(const char *path, struct raw_name *out_name)
 {
 	*out_name = (struct raw_name) { .spacing = { 1, 1, 1 } };
 	take_name_text(path, out_name->text);
-	take_name_numbers(out_name);
+	take_numbers_of_name(out_name);
 	take_name_type(out_name);
 	take_name_order(out_name);
 	take_name_spacing(out_name);

@@ -82,7 +82,7 @@ static bool take_name_pattern(struct gz_voxel_files *files, const char *pattern)
 	return true;
 }
 
-static bool take_name_numbers(struct gz_voxel_files *files, char **text)
+static bool take_number_range(struct gz_voxel_files *files, char **text)
 {
 	long long number[3];
 	for (int i = 0; i < 3; i++) {
@@ -110,7 +110,7 @@ enum gz_result gz_voxel_files_take(struct gz_voxel_files *files, struct gz_text_
 						   "after LIST: the number of axes of a file");
 		return take_name_list(files, head, key);
 	}
-	if (!word || !take_name_pattern(files, word) || !take_name_numbers(files, &value) ||
+	if (!word || !take_name_pattern(files, word) || !take_number_range(files, &value) ||
 	    !take_file_axes(value, out_axes))
 		return gz_text_head_refuse(head, key,
 					   "write LIST, or \"name%03d.raw FIRST LAST STEP\"");

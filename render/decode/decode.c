@@ -107,7 +107,7 @@ static enum gz_result take_step(struct run *run)
 }
 
 /* Give the memfd its size for good, and the decoder the address space for it. */
-static enum gz_result make_room(const struct run *run)
+static enum gz_result size_voxel_memory(const struct run *run)
 {
 	const pid_t pid = run->process.pid;
 	struct rlimit limit;
@@ -134,7 +134,7 @@ static enum gz_result take_header(struct run *run)
 		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a header that is none");
 	enum gz_result result = run->job->accept(run->job->user, header, &run->place);
 	if (result == GZ_OK)
-		result = make_room(run);
+		result = size_voxel_memory(run);
 	if (result != GZ_OK)
 		return result;
 	run->accepted = true;

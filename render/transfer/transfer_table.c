@@ -63,8 +63,8 @@ static bool table_span(const double range[2], const struct gz_volume *volume, do
 }
 
 /* The data values that 0 and 1 of the function stand for. */
-static void function_range(const struct gz_transfer *transfer, const struct gz_volume *volume,
-			   double out_range[2])
+static void data_range_of_function(const struct gz_transfer *transfer,
+				   const struct gz_volume *volume, double out_range[2])
 {
 	const double a = volume->slope * volume->stored_min + volume->intercept;
 	const double b = volume->slope * volume->stored_max + volume->intercept;
@@ -75,7 +75,7 @@ static void function_range(const struct gz_transfer *transfer, const struct gz_v
 bool gz_transfer_range_divides(const struct gz_transfer *transfer, const struct gz_volume *volume)
 {
 	double range[2], low, high;
-	function_range(transfer, volume, range);
+	data_range_of_function(transfer, volume, range);
 	return table_span(range, volume, &low, &high);
 }
 
@@ -137,7 +137,7 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 			    struct gz_transfer_table *out_table)
 {
 	double range[2], low, high;
-	function_range(transfer, volume, range);
+	data_range_of_function(transfer, volume, range);
 	const bool divides = table_span(range, volume, &low, &high);
 
 	out_table->value_per_stored =

@@ -40,7 +40,7 @@ static void data_range(const struct gz_volume *volume, double out_range[2])
 	out_range[1] = fmax(a, b);
 }
 
-static void function_range(const struct gz_transfer_panel *panel, double out_range[2])
+static void shown_range(const struct gz_transfer_panel *panel, double out_range[2])
 {
 	data_range(panel->volume, out_range);
 	if (edited(panel)->has_range) {
@@ -56,7 +56,7 @@ static void whole_axis(const struct gz_transfer_panel *panel, double out_range[2
 {
 	double range[2];
 	data_range(panel->volume, out_range);
-	function_range(panel, range);
+	shown_range(panel, range);
 	out_range[0] = fmin(out_range[0], range[0]);
 	out_range[1] = fmax(out_range[1], range[1]);
 }
@@ -243,7 +243,7 @@ static void prepare_plot(struct gz_transfer_panel *panel, const struct gz_canvas
 	gz_transfer_plot_lay_out(&panel->plot, canvas);
 	panel->plot.opacity_logarithmic = !panel->opacity_linear;
 	panel->plot.counts_logarithmic = !panel->counts_linear;
-	function_range(panel, panel->plot.range);
+	shown_range(panel, panel->plot.range);
 	if (!panel->whole_lost)
 		whole_axis(panel, panel->plot.shown);
 }
@@ -303,7 +303,7 @@ static void draw_point_fields(struct gz_transfer_panel *panel)
 {
 	const struct gz_transfer_point point = edited(panel)->points[panel->selected];
 	double range[2], rgb[3] = { point.rgb[0], point.rgb[1], point.rgb[2] };
-	function_range(panel, range);
+	shown_range(panel, range);
 	const double wide = range[1] - range[0];
 	double value = range[0] + point.value * wide, opacity = point.opacity;
 	const struct gz_number_range values = { range[0], range[1],   false,
@@ -406,7 +406,7 @@ static void draw_range_fields(struct gz_transfer_panel *panel)
 {
 	bool own = edited(panel)->has_range;
 	double range[2];
-	function_range(panel, range);
+	shown_range(panel, range);
 	if (gz_widget_checkbox("range", &own)) {
 		begin_step(panel);
 		gz_transfer_edit_range(panel->edit, own ? range : NULL);

@@ -35,8 +35,8 @@ struct gz_window_files {
 };
 
 /* Sink of that log. */
-static void keep_message(void *user, enum gz_log_level level, const char *module,
-			 const char *message)
+static void keep_last_error(void *user, enum gz_log_level level, const char *module,
+			    const char *message)
 {
 	struct gz_window_files *state = user;
 	if (level == GZ_LOG_ERROR)
@@ -48,7 +48,7 @@ static enum gz_result open_files(struct gz_window *window)
 {
 	struct gz_window_files *state = window->files;
 	state->outer = window->log;
-	gz_log_init(&state->log, keep_message, state, window->log->rules);
+	gz_log_init(&state->log, keep_last_error, state, window->log->rules);
 	if (gz_recent_file(state->recent_file) == GZ_OK)
 		gz_recent_read(state->recent_file, &state->recent);
 	else

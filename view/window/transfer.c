@@ -66,7 +66,7 @@ static void start_counting(struct gz_window *window)
 		gz_err(window->log, "no thread for the histogram; the editor has none");
 }
 
-static void stop_counting(struct gz_window_transfer *transfer)
+static void stop_histogram(struct gz_window_transfer *transfer)
 {
 	struct histogram_job *count = &transfer->count;
 	transfer->panel.histogram = NULL;
@@ -177,14 +177,14 @@ static void edit_scene_transfer(struct gz_window *window)
 
 static void leave_counted_scene(struct gz_window *window)
 {
-	stop_counting(window->transfer);
+	stop_histogram(window->transfer);
 }
 
 /* All time points have one range of values, so a histogram that is counted stays useful. */
 static bool leave_counted_data(struct gz_window *window)
 {
 	if (window->transfer->count.running)
-		stop_counting(window->transfer);
+		stop_histogram(window->transfer);
 	return true;
 }
 
@@ -262,7 +262,7 @@ static double transfer_patience_s(const struct gz_window *window)
 
 static void close_transfer(struct gz_window *window)
 {
-	stop_counting(window->transfer);
+	stop_histogram(window->transfer);
 	gz_transfer_edit_destroy(&window->transfer->edit);
 }
 
