@@ -2,16 +2,11 @@
  * them (render/decode/dicom/). */
 #include <ctype.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "render/data/decoded_volume.h"
 #include "render/data/dicom_name.h"
 #include "render/data/format.h"
-
-/* Bytes that are looked at: a preamble and its word, or a few elements. */
-#define LOOK_BYTES 512
 
 /* The first elements of a file without a preamble are that short, bytes (chosen: UIDs have 64). */
 #define ELEMENT_MAX 128
@@ -54,31 +49,21 @@ static bool begins_with_elements(const uint8_t *bytes, size_t size)
 	return true;
 }
 
-static bool has_preamble(const uint8_t *bytes, size_t size)
-{
-	return size >= 132 && memcmp(bytes + 128, "DICM", 4) == 0;
-}
-
 /* The preamble may be the head of another format, of TIFF for one (PS3.10, 7.1). */
 static bool dicom_knows_start(const struct gz_file_start *start)
 {
-	return start->coding == GZ_CODING_PLAIN && has_preamble(start->bytes, start->size);
+	return start->coding == GZ_CODING_PLAIN && gz_file_start_has(start, 128, "DICM", 4);
 }
 
 bool gz_dicom_is(const char *path)
 {
-	uint8_t bytes[LOOK_BYTES];
+	struct gz_file_start start;
 	struct stat status;
-	if (stat(path, &status) != 0)
-		return false;
-	if (!S_ISREG(status.st_mode))
-		return S_ISDIR(status.st_mode);
-	FILE *in = fopen(path, "rbe");
-	if (!in)
-		return false;
-	const size_t got = fread(bytes, 1, sizeof bytes, in);
-	(void)fclose(in);
-	return has_preamble(bytes, got) || begins_with_elements(bytes, got);
+	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
+		return true;
+	return gz_file_start_read(path, &start) &&
+	       (dicom_knows_start(&start) ||
+		(start.coding == GZ_CODING_PLAIN && begins_with_elements(start.bytes, start.size)));
 }
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
