@@ -86,37 +86,48 @@ static struct gz_point pixel_at(int x, int y, int width, int height)
 				   ((float)y + 0.5F) / (float)height };
 }
 
+/* The weight of a pixel at an angle from the gaze, degrees. */
+typedef float (*weight_at)(double angle_deg, const double ring_deg[2]);
+
+static float weight_of_ring(double angle_deg, const double ring_deg[2])
+{
+	return angle_deg >= ring_deg[0] && angle_deg < ring_deg[1] ? 1 : 0;
+}
+
+static float weight_of_acuity(double angle_deg, const double ring_deg[2])
+{
+	(void)ring_deg;
+	const double share = E2_DEG / (angle_deg + E2_DEG);
+	return (float)(share * share);
+}
+
+static void fill_weights(const struct gz_display *display, struct gz_point gaze, struct gz_map *map,
+			 weight_at weight, const double ring_deg[2])
+{
+	float *value = map->values;
+	for (int y = 0; y < map->height; y++)
+		for (int x = 0; x < map->width; x++) {
+			const struct gz_point pixel = pixel_at(x, y, map->width, map->height);
+			*value++ = weight(gz_display_angle_deg(display, gaze, pixel), ring_deg);
+		}
+}
+
 enum gz_result gz_weights_ring(const struct gz_display *display, struct gz_point gaze, int width,
 			       int height, const double ring_deg[2], struct gz_map *out_map)
 {
 	const enum gz_result result = gz_map_resize(out_map, width, height);
-	if (result != GZ_OK)
-		return result;
-	float *value = out_map->values;
-	for (int y = 0; y < height; y++)
-		for (int x = 0; x < width; x++) {
-			const double angle =
-				gz_display_angle_deg(display, gaze, pixel_at(x, y, width, height));
-			*value++ = angle >= ring_deg[0] && angle < ring_deg[1] ? 1 : 0;
-		}
-	return GZ_OK;
+	if (result == GZ_OK)
+		fill_weights(display, gaze, out_map, weight_of_ring, ring_deg);
+	return result;
 }
 
 enum gz_result gz_weights_acuity(const struct gz_display *display, struct gz_point gaze, int width,
 				 int height, struct gz_map *out_map)
 {
 	const enum gz_result result = gz_map_resize(out_map, width, height);
-	if (result != GZ_OK)
-		return result;
-	float *value = out_map->values;
-	for (int y = 0; y < height; y++)
-		for (int x = 0; x < width; x++) {
-			const double angle =
-				gz_display_angle_deg(display, gaze, pixel_at(x, y, width, height));
-			const double share = E2_DEG / (angle + E2_DEG);
-			*value++ = (float)(share * share);
-		}
-	return GZ_OK;
+	if (result == GZ_OK)
+		fill_weights(display, gaze, out_map, weight_of_acuity, NULL);
+	return result;
 }
 
 /* ---- SSIM ---- */
