@@ -6,7 +6,6 @@ window.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 import os
 import sys
 import tempfile
-import time
 import unittest
 
 from picture import PATIENCE_S, run
@@ -147,11 +146,7 @@ class Window(WindowCase):
         open(self.lost, "w", encoding="utf-8").close()
         # Wakes a viewer that waits; another one may have no window by now.
         self.tool("mousemove", 200 + int(self.window) % 2, 100)
-        deadline = time.monotonic() + PATIENCE_S
-        while os.path.exists(self.lost):
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            self.assertLess(time.monotonic(), deadline, "nobody asks whether it is lost")
-            time.sleep(0.02)
+        self.wait_for(lambda: not os.path.exists(self.lost), "the question whether it is lost")
 
     def test_lost_context_is_replaced_and_the_picture_is_there_again(self):
         for backend in ("cpu", "gl"):
@@ -231,10 +226,8 @@ class Window(WindowCase):
         return [line[2:] for line in self.log_lines(path, "!window")]
 
     def until_logged(self, path, rect):
-        deadline = time.monotonic() + PATIENCE_S
-        while rect not in self.rects(path):
-            self.assertLess(time.monotonic(), deadline, "never logged: %r" % rect)
-            time.sleep(0.05)
+        self.wait_for(lambda: rect in self.rects(path), "a record of %r" % rect)
+
     def test_pointer_goes_through_the_daemon_and_leads_the_gaze(self):
         self.start_daemon("--driver=pointer")
         self.start("--gaze", "pointer", "--cross")

@@ -13,7 +13,7 @@ import time
 import unittest
 
 from picture import PATIENCE_S, Picture, run, skip, write_scene
-from xserver import start_server
+from xserver import Screen, start_server
 
 GAZEVIEW, GAZED, SCENES = sys.argv[1:4]
 SHOTS = sys.argv[4] if len(sys.argv) > 4 else None
@@ -26,7 +26,7 @@ CROSS = (255, 64, 64)
 LINE_HEIGHT = 40  # the caption at the top
 CORNER_HEIGHT = 64  # the caption of the gaze at the bottom
 
-for tool in ("Xvfb", "xdotool", "ffmpeg"):
+for tool in ("Xvfb", "xdotool"):
     if not shutil.which(tool):
         skip(tool + " is not installed")
 
@@ -35,6 +35,7 @@ class WindowCase(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server, display = start_server(SCREEN)
+        cls.screen = Screen(display, SCREEN)
         cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
         cls.environment = dict(
             os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
@@ -47,6 +48,7 @@ class WindowCase(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
+        cls.screen.close()
         cls.server.terminate()
         cls.server.wait()
         cls.place.cleanup()
@@ -102,15 +104,10 @@ class WindowCase(unittest.TestCase):
         return len({picture.at(x, y) for x in range(100, 380, 4) for y in range(60, 300, 4)}) > 20
 
     def grab(self):
-        done = subprocess.run(
-            ["ffmpeg", "-loglevel", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
-             "%dx%d" % SCREEN, "-i", self.environment["DISPLAY"], "-frames:v", "1", "-f",
-             "rawvideo", "-pix_fmt", "rgb24", "-"],
-            capture_output=True, timeout=PATIENCE_S, env=self.environment,
-        )
         width, height = SCREEN
-        self.assertEqual(len(done.stdout), 3 * width * height, done.stderr)
-        rows = [done.stdout[3 * width * y : 3 * width * (y + 1)] for y in range(height)]
+        pixels = bytearray(3 * width * height)
+        pixels[0::3], pixels[1::3], pixels[2::3] = self.screen.grab()
+        rows = [bytes(pixels[3 * width * y : 3 * width * (y + 1)]) for y in range(height)]
         return Picture(width, height, rows)
 
     def ticks(self):
@@ -137,16 +134,16 @@ class WindowCase(unittest.TestCase):
     def until_idle(self):
         """Wait until the server has passed everything on and the viewer has nothing more to do."""
         both = (self.server, self.viewer)
-        deadline = time.monotonic() + PATIENCE_S
-        still = 0
-        before = None
-        while still < 6:
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            self.assertLess(time.monotonic(), deadline, "it never rests")
-            time.sleep(0.02)
+        still, before = 0, None
+
+        def rests():
+            nonlocal still, before
             now = [self.ticks_of(process) for process in both]
             still = still + 1 if now == before and all(map(self.waits, both)) else 0
             before = now
+            return still == 6
+
+        self.wait_for(rests, "a viewer at rest", pause_s=0.02)
 
     def rest(self):
         """A screenshot once the viewer has nothing more to do."""
@@ -161,15 +158,25 @@ class WindowCase(unittest.TestCase):
             self.tool("keyup", *reversed(key.split("+")))
             self.until_idle()
 
-    def until(self, good, what):
-        """The first screenshot that @good accepts; fails after PATIENCE_S."""
+    def wait_for(self, condition, what, pause_s=0.05):
+        """The first true value of @condition; fails if it does not come, or if gazeview ends."""
         deadline = time.monotonic() + PATIENCE_S
         while True:
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            picture = self.grab()
-            if good(picture):
-                break
+            value = condition()
+            if value:
+                return value
+            if self.viewer:
+                self.assertIsNone(self.viewer.poll(), "gazeview has ended")
             self.assertLess(time.monotonic(), deadline, "never came: " + what)
+            time.sleep(pause_s)
+
+    def until(self, good, what):
+        """The first screenshot that @good accepts."""
+        def accepted():
+            picture = self.grab()
+            return good(picture) and picture
+
+        picture = self.wait_for(accepted, what, pause_s=0.02)
         if SHOTS:
             name = "%s-%s.png" % (self.id().rsplit("_test_", 1)[-1].split(".")[-1], what)
             subprocess.run(
@@ -201,17 +208,13 @@ class WindowCase(unittest.TestCase):
 
     def found(self, than=None):
         """Wait for a window of the viewer, other than @than."""
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
+        def others():
             # A search also fails if a window is closed meanwhile.
             found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
                         env=self.environment)
-            others = [name for name in found.stdout.split() if name != than]
-            if found.returncode == 0 and others:
-                self.window = others[-1]
-                return
-            self.assertLess(time.monotonic(), deadline, "no window appears")
-            time.sleep(0.05)
+            return found.returncode == 0 and [n for n in found.stdout.split() if n != than]
+
+        self.window = self.wait_for(others, "a window")[-1]
 
     def messages(self):
         """The viewer's messages, once it has ended."""

@@ -141,10 +141,8 @@ class Experiment(WindowCase):
     def test_recording_has_the_marks_of_trials_and_answers_in_order(self):
         self.start_daemon("--driver=sim", "--sim.blinks_per_min=0",
                           "--recording.directory=" + self.folder)
-        deadline = time.monotonic() + PATIENCE_S
-        while run(GAZECTL, "record", "e", env=self.environment).returncode != 0:
-            self.assertLess(time.monotonic(), deadline, "no recording")
-            time.sleep(0.1)
+        self.wait_for(lambda: run(GAZECTL, "record", "e", env=self.environment).returncode == 0,
+                      "a recording")
         self.write(gaze="required")
         self.begin()
         self.answer(self.ended, "space", "1")

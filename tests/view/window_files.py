@@ -7,10 +7,9 @@ that drops files
 import glob
 import os
 import shutil
-import time
 import unittest
 
-from picture import PATIENCE_S, read_png, run
+from picture import read_png, run
 from window_case import GAZEVIEW, LINE_HEIGHT, SCENE, SCENES, SIZE, WindowCase
 
 DROP_FILES = os.environ["DROP_FILES"]
@@ -53,16 +52,15 @@ class Files(WindowCase):
         self.tool("key", key)
 
     def until_there(self, path, is_good=lambda text: True):
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            if os.path.exists(path):
-                with open(path, encoding="utf-8") as file:
-                    text = file.read()
-                if is_good(text):
-                    return text
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            self.assertLess(time.monotonic(), deadline, "never written: " + path)
-            time.sleep(0.05)
+        """The text of a file, once it is there and @is_good."""
+        def good_text():
+            if not os.path.exists(path):
+                return None
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+            return (text,) if is_good(text) else None
+
+        return self.wait_for(good_text, path)[0]
 
     def below_line(self, picture, width=SIZE[0], height=SIZE[1]):
         """The part of a picture without captions and messages."""
@@ -137,10 +135,7 @@ class Files(WindowCase):
         self.tool("mouseup", 1)
         shown = self.below_line(self.rest())
         self.tool("key", "F12")
-        deadline = time.monotonic() + PATIENCE_S
-        while not glob.glob(os.path.join(self.folder, "*.png")):
-            self.assertLess(time.monotonic(), deadline, "no picture is written")
-            time.sleep(0.05)
+        self.wait_for(lambda: glob.glob(os.path.join(self.folder, "*.png")), "a picture's file")
         self.tool("key", "r")
         self.until(lambda p: self.below_line(p) == self.below_line(first), "as at first")
         (picture,) = glob.glob(os.path.join(self.folder, "*.png"))

@@ -16,7 +16,7 @@ from picture import PATIENCE_S, run
 from window_case import (
     CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
 )
-from xserver import start_server
+from xserver import Screen, start_server
 
 GROUND = (23, 26, 31)
 CORNER = (60, 200, SIZE[0], SIZE[1])
@@ -240,11 +240,15 @@ class WindowLoading(WindowCase):
     def test_lost_display_is_a_message_and_an_exit_status(self):
         kept = self.environment
         self.addCleanup(setattr, self, "environment", kept)
+        self.addCleanup(setattr, self, "screen", self.screen)
         for words in ([SCENE, "--turn", "1"], [SCENE, "--gaze", "0.5,0.5"], [SLOW], []):
             server, display = start_server(SCREEN)
+            self.addCleanup(server.kill)
             self.environment = dict(kept, DISPLAY=display)
+            self.screen = Screen(display, SCREEN)
             self.launch(*words)
             self.until(self.shows_something if words and words[0] == SCENE else self.bar, "a window")
+            self.screen.close()
             server.kill()
             server.wait()
             status = self.viewer.wait(timeout=PATIENCE_S)
@@ -274,9 +278,8 @@ class WindowLoading(WindowCase):
         # As a window manager does.
         for state, rests in ((ICONIC, True), (NORMAL, False)):
             set_state(self.environment["DISPLAY"], int(self.window), state)
-            deadline = time.monotonic() + PATIENCE_S
-            while (self.ticks_in(0.5) <= 1) != rests:
-                self.assertLess(time.monotonic(), deadline, "at rest: %s" % rests)
+            self.wait_for(lambda wanted=rests: (self.ticks_in(0.5) <= 1) == wanted,
+                          "at rest: %s" % rests, pause_s=0)
 
     def ticks_in(self, seconds):
         before = self.ticks()

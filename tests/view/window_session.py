@@ -47,16 +47,16 @@ class Leaves(WindowCase):
 
     def appears(self, pattern, count=1):
         """The files with a name, once all are there and no longer grow."""
-        deadline, before = time.monotonic() + PATIENCE_S, None
-        while True:
+        before = None
+
+        def whole():
+            nonlocal before
             found = sorted(glob.glob(self.path(pattern)))
             sizes = [os.path.getsize(name) for name in found]
-            if len(found) == count and sizes == before and 0 not in sizes:
-                return found
-            before = sizes
-            self.assertIsNone(self.viewer.poll(), "gazeview has ended")
-            self.assertLess(time.monotonic(), deadline, "never came: " + pattern)
-            time.sleep(0.1)
+            grows, before = sizes != before, sizes
+            return len(found) == count and not grows and 0 not in sizes and found
+
+        return self.wait_for(whole, pattern, pause_s=0.1)
 
     def red_dot(self, picture):
         width, height = SIZE

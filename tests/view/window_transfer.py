@@ -7,10 +7,9 @@ import math
 import os
 import shutil
 import sys
-import time
 import unittest
 
-from picture import PATIENCE_S, read_png, run, write_scene
+from picture import read_png, run, write_scene
 from window_case import GAZEVIEW, PLACE, SCENE, SCENES, SCREEN, WindowCase
 
 # Width and height of the plot at scale 1.
@@ -159,10 +158,7 @@ class TransferWindow(WindowCase):
         changed = self.rest()
         self.tool("key", "ctrl+s")
         written = os.path.splitext(SCENE)[0] + ".tf"
-        deadline = time.monotonic() + PATIENCE_S
-        while not os.path.exists(written):
-            self.assertLess(time.monotonic(), deadline, "never saved")
-            time.sleep(0.05)
+        self.wait_for(lambda: os.path.exists(written), written)
         self.addCleanup(os.remove, written)
         self.until_idle()
         with open(SCENE, encoding="utf-8") as file:
@@ -191,10 +187,7 @@ class TransferWindow(WindowCase):
         before = read_function()
         self.move(left + 380, bottom + 105)
         self.tool("click", 1)
-        deadline = time.monotonic() + PATIENCE_S
-        while read_function() == before:
-            self.assertLess(time.monotonic(), deadline, "never saved")
-            time.sleep(0.05)
+        self.wait_for(lambda: read_function() != before, "the preset's file")
         out = os.path.join(PLACE.name, "saved.png")
         done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED, "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
