@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "render/data/voxel_colour.h"
+
 static int halved(int count)
 {
 	return (count + 1) / 2;
@@ -109,6 +111,28 @@ enum gz_result gz_volume_halve_begin(const struct gz_volume *volume, const bool 
 	return GZ_OK;
 }
 
+/* Halve one slice of colours, as gz_halve_slices() halves one of values. */
+static void halve_colours(const struct gz_volume *volume, const bool halves[2], const int pair[2],
+			  uint32_t *out)
+{
+	const size_t width = (size_t)volume->dims[0], height = (size_t)volume->dims[1];
+	const int out_dims[2] = { halves[0] ? halved(volume->dims[0]) : volume->dims[0],
+				  halves[1] ? halved(volume->dims[1]) : volume->dims[1] };
+	for (int y = 0; y < out_dims[1]; y++)
+		for (int x = 0; x < out_dims[0]; x++) {
+			int columns[2], rows[2];
+			uint32_t eight[8];
+			partners(x, volume->dims[0], halves[0], columns);
+			partners(y, volume->dims[1], halves[1], rows);
+			for (int i = 0; i < 8; i++) {
+				const size_t row =
+					(size_t)pair[i >> 2] * height + (size_t)rows[i >> 1 & 1];
+				eight[i] = volume->colours[row * width + (size_t)columns[i & 1]];
+			}
+			*out++ = gz_colour_mean(eight);
+		}
+}
+
 void gz_volume_halve_slice(const struct gz_volume *volume, const struct gz_volume *half, int z)
 {
 	const size_t size = gz_voxel_size(volume->type);
@@ -124,6 +148,10 @@ void gz_volume_halve_slice(const struct gz_volume *volume, const struct gz_volum
 			(const char *)volume->voxels + (size_t)pair[0] * slice,
 			(const char *)volume->voxels + (size_t)pair[1] * slice,
 			(char *)half->voxels + (size_t)z * out_slice);
+	if (volume->colours)
+		halve_colours(volume, halves, pair,
+			      half->colours +
+				      (size_t)z * (size_t)half->dims[0] * (size_t)half->dims[1]);
 }
 
 enum gz_result gz_volume_halve(const struct gz_volume *volume, const bool axes[3],

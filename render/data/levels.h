@@ -36,7 +36,8 @@ void gz_halve_axes(const int dims[3], const double spacing[3], bool out_axes[3])
  * Make the half of @p volume.
  *
  * @param axes  the axes to halve; NULL for those of gz_halve_axes(). An axis of one voxel stays
- * @param[out] out_half  owned by the caller: gz_volume_free(). Type, slope, intercept, stored_min
+ * @param[out] out_half  owned by the caller: gz_volume_free(). Colours are means by their weights
+ * (gz_colour_mean()). Type, slope, intercept, stored_min
  * and stored_max are the volume's, so that a transfer function means the same for both. The spacing
  * of halved axes is doubled
  * @retval GZ_ERR_INVAL   no axis can be halved; not logged

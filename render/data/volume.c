@@ -55,7 +55,32 @@ bool gz_volume_layout_valid(const struct gz_volume *volume)
 	}
 	return gz_volume_edge_lengths(volume->dims, volume->spacing) <=
 		       GZ_VOLUME_EDGE_LENGTHS_MAX &&
-	       gz_voxel_size(volume->type) != 0;
+	       gz_voxel_size(volume->type) != 0 &&
+	       (volume->colour == GZ_COLOUR_NONE || volume->type == GZ_VOXEL_U8);
+}
+
+/* Where colours begin behind the voxels, bytes. */
+static size_t colours_offset(const struct gz_volume *volume)
+{
+	const size_t padded =
+		gz_volume_voxel_count(volume) * gz_voxel_size(volume->type) + GZ_VOLUME_PADDING;
+	return (padded + SMALL_ALIGN - 1) / SMALL_ALIGN * SMALL_ALIGN;
+}
+
+/* At most 2^42 voxels of 5 bytes: no overflow. */
+size_t gz_volume_bytes(const struct gz_volume *volume)
+{
+	const size_t count = gz_volume_voxel_count(volume);
+	return volume->colour == GZ_COLOUR_NONE
+		       ? count * gz_voxel_size(volume->type)
+		       : colours_offset(volume) + count * sizeof *volume->colours;
+}
+
+void gz_volume_place_colours(struct gz_volume *volume)
+{
+	volume->colours = NULL;
+	if (volume->colour != GZ_COLOUR_NONE)
+		volume->colours = (uint32_t *)((char *)volume->voxels + colours_offset(volume));
 }
 
 bool gz_memory_fits_machine(size_t bytes)
@@ -103,13 +128,15 @@ enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_l
 {
 	if (!gz_volume_layout_valid(volume))
 		return GZ_ERR_INVAL;
-	/* At most 2^42 voxels of 4 bytes: no overflow. */
-	const size_t used = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
+	const size_t used = gz_volume_bytes(volume);
 	if (loading && loading->give_memory) {
 		volume->voxels =
 			loading->give_memory(loading->user, volume, used + GZ_VOLUME_PADDING);
 		volume->mapped = volume->voxels ? used + GZ_VOLUME_PADDING : 0;
-		return volume->voxels ? GZ_OK : GZ_ERR_NO_MEM;
+		if (!volume->voxels)
+			return GZ_ERR_NO_MEM;
+		gz_volume_place_colours(volume);
+		return GZ_OK;
 	}
 	const char *scratch = loading && used >= loading->scratch_from ? loading->scratch : NULL;
 	const size_t mapped = scratch ? used + GZ_VOLUME_PADDING : 0;
@@ -120,6 +147,11 @@ enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_l
 	volume->mapped = mapped;
 	volume->slope = 1;
 	volume->intercept = 0;
+	gz_volume_place_colours(volume);
+	if (volume->colours) {
+		const size_t count = gz_volume_voxel_count(volume);
+		memset((char *)volume->voxels + count, 0, colours_offset(volume) - count);
+	}
 	return GZ_OK;
 }
 
@@ -213,16 +245,24 @@ double gz_volume_voxel_length(const struct gz_volume *volume)
 /* Runs of bytes that the checksum of a volume takes, see gz_volume_identify(). */
 enum { RUNS = 4096, RUN_BYTES = 64 };
 
-static uint32_t sum_samples(const struct gz_volume *volume)
+static uLong sum_runs(uLong crc, const unsigned char *bytes, size_t size)
 {
-	const unsigned char *bytes = volume->voxels;
-	const size_t size = gz_volume_voxel_count(volume) * gz_voxel_size(volume->type);
 	const size_t stride = size / RUNS > RUN_BYTES ? size / RUNS : RUN_BYTES;
-	uLong crc = crc32(0, NULL, 0);
 	for (size_t at = 0; at < size; at += stride) {
 		const size_t left = size - at;
 		crc = crc32(crc, bytes + at, (uInt)(left < RUN_BYTES ? left : RUN_BYTES));
 	}
+	return crc;
+}
+
+static uint32_t sum_samples(const struct gz_volume *volume)
+{
+	const size_t count = gz_volume_voxel_count(volume);
+	uLong crc =
+		sum_runs(crc32(0, NULL, 0), volume->voxels, count * gz_voxel_size(volume->type));
+	if (volume->colours)
+		crc = sum_runs(crc, (const unsigned char *)volume->colours,
+			       count * sizeof *volume->colours);
 	return (uint32_t)crc;
 }
 

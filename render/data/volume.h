@@ -1,6 +1,7 @@
 /**
  * @file
- * A scalar volume in memory, turned to RAS+, and how it is loaded, made and identified.
+ * A volume in memory, turned to RAS+, and how it is loaded, made and identified: scalar values, and
+ * for some files a colour beside each (render/data/voxel_colour.h).
  *
  * World frame: the box has the edges dims * spacing / max(dims * spacing), centred at the origin;
  * data sit at voxel centres; z is up. The voxel length is the smallest spacing.
@@ -23,6 +24,14 @@ static inline bool gz_host_big_endian(void)
 }
 
 struct gz_volume;
+
+/** What the values of voxels with colours of their own are to be: scene key volume.opacity. */
+enum gz_opacity_source {
+	GZ_OPACITY_AUTO, /**< alpha if the file has one, and in a file of one time point if it is
+			    not the same everywhere; else luminance */
+	GZ_OPACITY_LUMINANCE,
+	GZ_OPACITY_ALPHA, /**< colours without alpha are refused */
+};
 
 /** How a volume is loaded, made or written. Zero-initialised, or NULL in its place: no reports,
  *  voxels in memory, no way to stop. */
@@ -47,6 +56,7 @@ struct gz_loading {
 	 * Borrowed; other formats ignore it. */
 	const char *series;
 	int time_point; /**< of a file that holds several, from 0; other files have only 0 */
+	enum gz_opacity_source opacity; /**< of a file of colours; others ignore it */
 	/** Least and greatest number of all time points, from the member series of a volume that
 	 *  was loaded before. Borrowed. NULL: found by reading all of them. */
 	const double *series_range;
@@ -55,7 +65,7 @@ struct gz_loading {
 	 *
 	 * @param user    the member user
 	 * @param volume  all but its voxels and their range is set
-	 * @param bytes   of the voxels, with GZ_VOLUME_PADDING
+	 * @param bytes   of the voxels and their colours, with GZ_VOLUME_PADDING
 	 * @return zeroed, aligned to a page; gz_volume_free() unmaps it. NULL: none; the loader
 	 * then returns GZ_ERR_NO_MEM
 	 */
@@ -92,6 +102,13 @@ static inline double gz_voxel_stored(enum gz_voxel_type type, const void *voxels
 				      : (double)((const float *)voxels)[index];
 }
 
+/** What the values of a volume are if its voxels have colours of their own. */
+enum gz_volume_colour {
+	GZ_COLOUR_NONE, /**< no colours: they follow from the values by the transfer function */
+	GZ_COLOUR_LUMINANCE, /**< the luminance of the colours */
+	GZ_COLOUR_ALPHA,     /**< the alpha of the colours */
+};
+
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 
@@ -119,7 +136,12 @@ struct gz_volume {
 			 if the volume has bricks */
 	struct gz_brick_pool *bricks; /**< of a file of bricks, whose voxels are read when they are
 					 visible, by one renderer at a time; else NULL */
-	double slope;                 /**< data value = slope * stored + intercept; not 0 */
+	/** With colours, type is GZ_VOXEL_U8, slope 1 and intercept 0, and there are no bricks. */
+	enum gz_volume_colour colour;
+	/** As many words as voxels, see gz_colour_pack(), and GZ_VOLUME_PADDING bytes; in the
+	 * memory of the voxels. NULL without colours. */
+	uint32_t *colours;
+	double slope; /**< data value = slope * stored + intercept; not 0 */
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels; of a series, over all time points */
 	bool oriented;                 /**< it is known where right, front and up are */
@@ -152,6 +174,8 @@ struct gz_raw_layout {
 	enum gz_raw_type type;
 	bool big_endian;
 	double spacing[3];
+	int channels; /**< numbers of a voxel: 0 or 1 its value, 3 red, green and blue, 4 and alpha
+		       */
 };
 
 /**
@@ -163,8 +187,8 @@ struct gz_raw_layout {
  * @param loading  progress, cancelling, and where voxels are kept; may be NULL
  * @param log      may be NULL
  * @param[out] out_volume  written on GZ_OK; the caller frees it with gz_volume_free()
- * @retval GZ_ERR_INVAL        @p raw is missing or must not be given, or there is no such time
- *                             point; logged
+ * @retval GZ_ERR_INVAL        @p raw is missing or must not be given, there is no such time point,
+ *                             or opacity is to be alpha and there is none; logged
  * @retval GZ_ERR_NOT_FOUND    no such file; logged
  * @retval GZ_ERR_IO           it cannot be read; logged
  * @retval GZ_ERR_FORMAT       truncated, too large, contradictory or of a wrong type; logged with
@@ -218,12 +242,22 @@ enum gz_result gz_volume_generate(const struct gz_procedural_request *request,
 				  const struct gz_loading *loading, const struct gz_log *log,
 				  struct gz_volume *out_volume);
 
+/** Bytes of the voxels of a volume with a valid layout, and of their colours, which follow after
+ *  padding. The padding at the end does not count. */
+size_t gz_volume_bytes(const struct gz_volume *volume);
+
+/** Set the member colours to where it belongs, after the voxels, which are there; NULL if the
+ * volume has no colours. */
+void gz_volume_place_colours(struct gz_volume *volume);
+
 /**
- * Allocate the voxels of a volume whose dims, spacing and type are set, and clear the padding. What
- * the voxels hold is undefined; they are aligned to 64 bytes. slope becomes 1, intercept 0.
+ * Allocate the voxels of a volume whose dims, spacing, type and colour are set, and clear the
+ * padding. What voxels and colours hold is undefined; they are aligned to 64 bytes. slope becomes
+ * 1, intercept 0.
  *
- * @retval GZ_ERR_INVAL   dims out of range, spacing not finite or not above 0, or an edge longer
- *                        than GZ_VOLUME_EDGE_LENGTHS_MAX; not logged
+ * @retval GZ_ERR_INVAL   dims out of range, spacing not finite or not above 0, an edge longer than
+ *                        GZ_VOLUME_EDGE_LENGTHS_MAX, or colours beside another type than
+ *                        GZ_VOXEL_U8; not logged
  * @retval GZ_ERR_NO_MEM  not logged
  */
 enum gz_result gz_volume_allocate(struct gz_volume *volume);
@@ -239,7 +273,8 @@ enum gz_result gz_volume_allocate(struct gz_volume *volume);
  */
 enum gz_result gz_volume_allocate_in(struct gz_volume *volume, const struct gz_loading *loading);
 
-/** Whether dims, spacing and type of @p volume are such that gz_volume_allocate() takes them. */
+/** Whether dims, spacing, type and colour of @p volume are such that gz_volume_allocate() takes
+ * them. */
 bool gz_volume_layout_valid(const struct gz_volume *volume);
 
 /** Whether the machine has so much memory. On a kernel that overcommits, allocating more would
@@ -281,7 +316,8 @@ struct gz_volume_identity {
 
 /**
  * Identify a volume. The CRC covers 4096 runs of 64 bytes, evenly spaced over the voxels, or all
- * voxels if there are fewer: enough to distinguish volumes, and quick for any size.
+ * voxels if there are fewer, and as many of their colours: enough to distinguish volumes, and quick
+ * for any size.
  */
 struct gz_volume_identity gz_volume_identify(const struct gz_volume *volume);
 
