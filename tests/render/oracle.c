@@ -141,6 +141,36 @@ static void light_segment(const struct oracle_ray *ray, double distance, double 
 			     ray->occlusion, at, ray->direction, rgb);
 }
 
+/* The colour of the voxels at a distance along the ray, each by its weight. */
+static void own_colour_at(const struct oracle_ray *ray, double distance, double rgb[3])
+{
+	const struct gz_volume *volume = &ray->level->volume;
+	const bool nearest = ray->rays->interpolation == GZ_INTERPOLATION_NEAREST;
+	double at[3], sums[4] = { 0 };
+	int low[3];
+	place_at(ray, distance, at);
+	for (int axis = 0; axis < 3; axis++)
+		low[axis] = (int)floor(nearest ? at[axis] : at[axis] - 0.5);
+	for (int corner = 0; corner < (nearest ? 1 : 8); corner++) {
+		size_t index = 0;
+		double share = 1;
+		for (int axis = 2; axis >= 0; axis--) {
+			const int dim = volume->dims[axis], upper = corner >> axis & 1;
+			const int i = low[axis] + upper;
+			const double beyond = at[axis] - 0.5 - low[axis];
+			index = index * (size_t)dim + (size_t)(i < 0 ? 0 : i < dim ? i : dim - 1);
+			share *= nearest ? 1 : upper ? beyond : 1 - beyond;
+		}
+		const uint32_t word = volume->colours[index];
+		const double weight = share * ((word >> 24) + 1.0 / 64);
+		for (int channel = 0; channel < 3; channel++)
+			sums[channel] += weight * (word >> 8 * channel & 255);
+		sums[3] += weight;
+	}
+	for (int channel = 0; channel < 3; channel++)
+		rgb[channel] = sums[channel] / sums[3] / 255;
+}
+
 /* From one distance along the ray to another: by the value in the middle, or by all between those
  * at both ends; light is that of the middle. */
 static void integrate(struct oracle_ray *ray, double from, double to)
@@ -163,6 +193,8 @@ static void integrate(struct oracle_ray *ray, double from, double to)
 	double rgb[3];
 	for (int channel = 0; channel < 3; channel++)
 		rgb[channel] = segment.rgb[channel] / opacity;
+	if (ray->level->volume.colours)
+		own_colour_at(ray, (from + to) / 2, rgb);
 	light_segment(ray, (from + to) / 2, rgb);
 	for (int channel = 0; channel < 3; channel++)
 		ray->rgb[channel] += ray->through * opacity * rgb[channel];

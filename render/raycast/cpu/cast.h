@@ -75,6 +75,7 @@ struct gz_cast {
 	float background[3];
 	float end_transmittance; /**< a ray ends when less than this share of light comes through */
 	struct gz_cast_light light;
+	const uint32_t *colours; /**< of voxels in memory, see gz_colour_pack(); NULL without */
 };
 
 /** The rays of a tile. */
@@ -100,10 +101,13 @@ typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct 
 enum gz_cast_variant {
 	GZ_CAST_PLAIN,
 	GZ_CAST_RICH, /**< light, pre-integration */
+	/** what GZ_CAST_RICH can, and colours of voxels; only for GZ_VOXEL_U8 */
+	GZ_CAST_COLOURED,
 	GZ_CAST_VARIANT_COUNT,
 };
 
-/** One instruction set's kernels, by variant, voxel type and interpolation. */
+/** One instruction set's kernels, by variant, voxel type and interpolation; NULL where a variant
+ * does not take a type. */
 struct gz_cast_kernels {
 	const char *name;
 	gz_cast_tile_function *tile[GZ_CAST_VARIANT_COUNT][GZ_VOXEL_TYPE_COUNT][2];

@@ -153,18 +153,24 @@ SIMD vf sample_trilinear(const struct gz_cast *cast, enum gz_voxel_type type, co
 	return mix_rows(cast, type, first, cast->stride, share, mask);
 }
 
-SIMD vf sample_nearest(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
+/* Index of the voxel at places counted from the first datum. */
+SIMD vi nearest_voxel(const struct gz_cast *cast, const vf at[3])
 {
 	vi index = vi_set(0);
-	if (__builtin_expect(cast->bricks.table != NULL, 0))
-		return sample_bricks(cast, type, 1, at, mask);
 	for (int axis = 0; axis < 3; axis++) {
 		const vf top = vf_set(cast->dims[axis] - 1);
 		const vf place = vf_min(vf_max(vf_floor(at[axis] + vf_set(0.5F)), vf_set(0)), top);
 		index = vi_add(index, vi_mul(vi_trunc(place), vi_set(cast->stride[axis])));
 	}
+	return index;
+}
+
+SIMD vf sample_nearest(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3], vm mask)
+{
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return sample_bricks(cast, type, 1, at, mask);
 	vf low, high;
-	load_pair(cast, type, index, mask, &low, &high);
+	load_pair(cast, type, nearest_voxel(cast, at), mask, &low, &high);
 	return low;
 }
 

@@ -167,8 +167,10 @@ SIMD uint32_t cast_by_samples(const struct march *m, struct light *light)
 }
 
 SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile,
-			     uint32_t out_pixels[GZ_TILE_RAYS], struct reading reading, int rich)
+			     uint32_t out_pixels[GZ_TILE_RAYS], struct reading reading,
+			     enum gz_cast_variant variant)
 {
+	const int rich = variant != GZ_CAST_PLAIN, coloured = variant == GZ_CAST_COLOURED;
 	uint32_t samples = 0;
 	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
 		struct rays rays;
@@ -183,7 +185,7 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 			set_up_view(cast, tile->step, &rays, &view);
 			rays.view = &view;
 		}
-		const struct march march = { cast, reading, tile->step, &rays };
+		const struct march march = { cast, reading, tile->step, &rays, coloured };
 		samples += rich && cast->preintegrated_extinction ? cast_by_segments(&march, &light)
 								  : cast_by_samples(&march, &light);
 		vi_store(out_pixels + first, to_pixel(cast, &light));
@@ -191,26 +193,28 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 	return samples;
 }
 
-#define DEFINE_TILE(name, type, nearest, rich)                                                    \
+#define DEFINE_TILE(name, type, nearest, variant)                                                 \
 	static uint32_t name(const struct gz_cast *cast, const struct gz_cast_tile *tile,         \
 			     uint32_t out_pixels[GZ_TILE_RAYS])                                   \
 	{                                                                                         \
 		return cast_tile_rays(cast, tile, out_pixels, (struct reading) { type, nearest }, \
-				      rich);                                                      \
+				      variant);                                                   \
 	}
 
-DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0, 0)
-DEFINE_TILE(tile_u16, GZ_VOXEL_U16, 0, 0)
-DEFINE_TILE(tile_f32, GZ_VOXEL_F32, 0, 0)
-DEFINE_TILE(tile_u8_nearest, GZ_VOXEL_U8, 1, 0)
-DEFINE_TILE(tile_u16_nearest, GZ_VOXEL_U16, 1, 0)
-DEFINE_TILE(tile_f32_nearest, GZ_VOXEL_F32, 1, 0)
-DEFINE_TILE(rich_u8, GZ_VOXEL_U8, 0, 1)
-DEFINE_TILE(rich_u16, GZ_VOXEL_U16, 0, 1)
-DEFINE_TILE(rich_f32, GZ_VOXEL_F32, 0, 1)
-DEFINE_TILE(rich_u8_nearest, GZ_VOXEL_U8, 1, 1)
-DEFINE_TILE(rich_u16_nearest, GZ_VOXEL_U16, 1, 1)
-DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, 1)
+DEFINE_TILE(tile_u8, GZ_VOXEL_U8, 0, GZ_CAST_PLAIN)
+DEFINE_TILE(tile_u16, GZ_VOXEL_U16, 0, GZ_CAST_PLAIN)
+DEFINE_TILE(tile_f32, GZ_VOXEL_F32, 0, GZ_CAST_PLAIN)
+DEFINE_TILE(tile_u8_nearest, GZ_VOXEL_U8, 1, GZ_CAST_PLAIN)
+DEFINE_TILE(tile_u16_nearest, GZ_VOXEL_U16, 1, GZ_CAST_PLAIN)
+DEFINE_TILE(tile_f32_nearest, GZ_VOXEL_F32, 1, GZ_CAST_PLAIN)
+DEFINE_TILE(rich_u8, GZ_VOXEL_U8, 0, GZ_CAST_RICH)
+DEFINE_TILE(rich_u16, GZ_VOXEL_U16, 0, GZ_CAST_RICH)
+DEFINE_TILE(rich_f32, GZ_VOXEL_F32, 0, GZ_CAST_RICH)
+DEFINE_TILE(rich_u8_nearest, GZ_VOXEL_U8, 1, GZ_CAST_RICH)
+DEFINE_TILE(rich_u16_nearest, GZ_VOXEL_U16, 1, GZ_CAST_RICH)
+DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, GZ_CAST_RICH)
+DEFINE_TILE(coloured_u8, GZ_VOXEL_U8, 0, GZ_CAST_COLOURED)
+DEFINE_TILE(coloured_u8_nearest, GZ_VOXEL_U8, 1, GZ_CAST_COLOURED)
 
 #define GZ_CAST_KERNELS(set)                                                       \
 	{                                                                          \
@@ -225,6 +229,9 @@ DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, 1)
 				[GZ_VOXEL_U8] = { rich_u8, rich_u8_nearest },    \
 				[GZ_VOXEL_U16] = { rich_u16, rich_u16_nearest }, \
 				[GZ_VOXEL_F32] = { rich_f32, rich_f32_nearest }, \
+			},                                                       \
+			[GZ_CAST_COLOURED] = {                                   \
+				[GZ_VOXEL_U8] = { coloured_u8, coloured_u8_nearest }, \
 			},                                                       \
 		}, \
 	}

@@ -45,6 +45,7 @@ struct march {
 	struct reading reading;
 	int step; /* of the plan */
 	const struct rays *rays;
+	int coloured; /* voxels have colours; a constant of each kernel, too */
 };
 
 /* Steps from the origin to where the rays enter the whole box, and to where they enter and leave

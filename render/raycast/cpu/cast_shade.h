@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 
+#include "render/data/voxel_colour.h"
 #include "render/light/light_constants.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
@@ -303,16 +304,72 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 	};
 }
 
-/* Add the colour of a sample at k of the lanes of mask, lit if the scene has light. */
+/* Add a voxel's colour to sums of colours by weight, and of weights. */
+SIMD void add_colour(const struct gz_cast *cast, vi index, vf share, vm mask, vf sums[4])
+{
+	const vi word = vi_gather(cast->colours, index, 4, mask);
+	const vf weight = share * (vf_from_i(vi_shift_right(word, 24)) +
+				   vf_set(1.0F / GZ_COLOUR_WEIGHT_SHARE));
+	sums[0] = vf_fma(weight, vf_from_i(vi_and(word, vi_set(0xFF))), sums[0]);
+	sums[1] = vf_fma(weight, vf_from_i(vi_and(vi_shift_right(word, 8), vi_set(0xFF))), sums[1]);
+	sums[2] =
+		vf_fma(weight, vf_from_i(vi_and(vi_shift_right(word, 16), vi_set(0xFF))), sums[2]);
+	sums[3] = sums[3] + weight;
+}
+
+/* The sums of the eight voxels around places counted from the first datum. */
+SIMD void sum_colours(const struct gz_cast *cast, const vf at[3], vm mask, vf sums[4])
+{
+	vf shares[3][2];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++) {
+		index[axis] = clamp_place(cast, axis, at[axis], &shares[axis][1]);
+		shares[axis][0] = vf_set(1) - shares[axis][1];
+	}
+	const vi up_y = vi_set(cast->stride[1]), up_z = vi_set(cast->stride[2]);
+	const vi first = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
+	for (int corner = 0; corner < 8; corner++) {
+		const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+		vi voxel = vi_add(first, vi_set(x));
+		voxel = y ? vi_add(voxel, up_y) : voxel;
+		voxel = z ? vi_add(voxel, up_z) : voxel;
+		add_colour(cast, voxel, shares[0][x] * shares[1][y] * shares[2][z], mask, sums);
+	}
+}
+
+/* The colour of the voxels at k, of the lanes of mask. Not inlined, for the reasons of shade(). */
+static __attribute__((noinline)) struct colour own_colour(const struct gz_cast *cast, int nearest,
+							  const struct rays *rays, vf k, vm mask)
+{
+	vf at[3], sums[4] = { vf_set(0), vf_set(0), vf_set(0), vf_set(0) };
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	if (nearest)
+		add_colour(cast, nearest_voxel(cast, at), vf_set(1), mask, sums);
+	else
+		sum_colours(cast, at, mask, sums);
+	const vf inverse = vf_set(1.0F / 255) / sums[3];
+	return (struct colour) {
+		sums[0] * (inverse * vf_set(2047)),
+		sums[1] * (inverse * vf_set(2047)),
+		sums[2] * (inverse * vf_set(1023)),
+	};
+}
+
+/* Add the colour of a sample at k of the lanes of mask, lit if the scene has light. Voxels' own
+ * colours replace those of the transfer function. */
 SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm mask,
 		       struct light *light)
 {
 	struct colour colour = unpack_colour(packed);
-	if (m->rays->view) {
+	if (m->rays->view || m->coloured) {
 		const vm visible = vm_and(mask, vf_less(vf_set(0), opacity));
 		if (!vm_any(visible))
 			return;
-		colour = shade(m->cast, m->reading, m->rays, k, visible, colour);
+		if (m->coloured)
+			colour = own_colour(m->cast, m->reading.nearest, m->rays, k, visible);
+		if (!m->coloured || m->rays->view)
+			colour = shade(m->cast, m->reading, m->rays, k, visible, colour);
 	}
 	composite_colour(colour, opacity, mask, light);
 }

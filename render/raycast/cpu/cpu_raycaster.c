@@ -256,6 +256,7 @@ static void fill_cast_volume(const struct cpu_raycaster *cpu, int index,
 	double half[3];
 	gz_volume_half_extent(cpu->volume, half);
 	cast->voxels = volume->voxels;
+	cast->colours = volume->colours;
 	cast->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
 		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
@@ -513,7 +514,9 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
 	const bool rich = rays->shading != GZ_SHADING_NONE ||
 			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
-	const enum gz_cast_variant variant = rich ? GZ_CAST_RICH : GZ_CAST_PLAIN;
+	const enum gz_cast_variant variant = cpu->volume->colours ? GZ_CAST_COLOURED
+					     : rich               ? GZ_CAST_RICH
+								  : GZ_CAST_PLAIN;
 	struct cast_job job = {
 		.plan = plan,
 		.lattices = &cpu->lattices,
