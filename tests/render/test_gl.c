@@ -437,7 +437,11 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 		skip();
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
 		for (int texels = 0; texels < GZ_GL_TEXELS_COUNT; texels++)
-			for (int variant = 0; variant < 32; variant++) {
+			for (int variant = 0; variant < 64; variant++) {
+				/* Colours are those of bytes, and never in bricks. */
+				if (variant & 32 &&
+				    (type != GZ_VOXEL_U8 || texels == GZ_GL_TEXELS_BRICKS))
+					continue;
 				const struct gz_gl_cast_kind kind = {
 					.texels = (enum gz_gl_texels)texels,
 					.type = (enum gz_voxel_type)type,
@@ -445,6 +449,7 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 					.segments = variant & 2,
 					.shaded = variant & 4,
 					.fine = variant & 16,
+					.coloured = variant & 32,
 				};
 				const struct gz_gl_device device = { .software = variant & 8 };
 				char defines[GZ_GL_CAST_DEFINES_SIZE];

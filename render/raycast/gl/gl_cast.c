@@ -6,6 +6,7 @@
 #include <GL/glew.h>
 
 #include "render/data/levels.h"
+#include "render/data/voxel_colour.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"
 
 #define GZ_LOG_MODULE "gl"
@@ -26,7 +27,10 @@ static const char cast_sizes[] = DEFINE("COUNT_SLOTS", GZ_GL_COUNT_SLOTS)
 	DEFINE("BRICK_EDGE", GZ_GL_BRICK_EDGE) DEFINE("BRICK_STORED_EDGE", GZ_GL_BRICK_STORED_EDGE)
 		DEFINE("BRICK_LEVELS", GZ_GL_BRICK_LEVELS)
 			DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
-				DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS);
+				DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS)
+					DEFINE("COLOUR_WEIGHT_SHARE", GZ_GL_COLOUR_WEIGHT_SHARE);
+
+_Static_assert(GZ_GL_COLOUR_WEIGHT_SHARE == GZ_COLOUR_WEIGHT_SHARE, "shaders weigh as C does");
 
 /* Uniform location of the level of detail, and tiles of a work-group. */
 enum { LEVEL = 2, TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
@@ -57,11 +61,11 @@ struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
 	struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
 				       .name = "cast.comp",
 				       .defines = defines };
-	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s",
+	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), texels[kind.texels],
 		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
 		 kind.shaded ? "#define SHADED\n" : "", kind.fine ? "#define FINE_TABLE\n" : "",
-		 gz_gl_device_defines(device));
+		 kind.coloured ? "#define COLOURED\n" : "", gz_gl_device_defines(device));
 	memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
 	memcpy(&shader.parts[GZ_GL_PLAN_PARTS], parts, sizeof parts);
 	return shader;
@@ -88,7 +92,7 @@ static enum gz_result use_cast_program(struct gz_gl_cast *cast, const struct gz_
 {
 	const struct gz_gl_cast_kind kind = job->kind;
 	unsigned *program = &cast->programs[kind.texels][kind.type][kind.nearest][kind.segments]
-					   [kind.shaded][kind.fine];
+					   [kind.shaded][kind.fine][kind.coloured];
 	if (!*program) {
 		char defines[GZ_GL_CAST_DEFINES_SIZE];
 		const struct gz_gl_shader shader = gz_gl_cast_shader(kind, job->device, defines);
@@ -128,7 +132,7 @@ uint64_t gz_gl_cast_samples(struct gz_gl_cast *cast, const struct gz_gl_device *
 
 void gz_gl_cast_free(struct gz_gl_cast *cast)
 {
-	const GLuint *programs = &cast->programs[0][0][0][0][0][0];
+	const GLuint *programs = &cast->programs[0][0][0][0][0][0][0];
 	for (size_t i = 0; i < sizeof cast->programs / sizeof(GLuint); i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);

@@ -31,13 +31,17 @@
 #define GZ_GL_BRICK_LEVEL_BITS  4
 #define GZ_GL_BRICK_PLACE_BITS  9
 
+/** GZ_COLOUR_WEIGHT_SHARE of render/data/voxel_colour.h. */
+#define GZ_GL_COLOUR_WEIGHT_SHARE 64
+
 /** Texture and image units. */
 enum gz_gl_texture_unit {
 	GZ_GL_UNIT_VOXELS,
 	GZ_GL_UNIT_REACH,
 	GZ_GL_UNIT_TRANSFER,
 	GZ_GL_UNIT_SEGMENTS,
-	GZ_GL_UNIT_OCCLUSION
+	GZ_GL_UNIT_OCCLUSION,
+	GZ_GL_UNIT_COLOURS,
 };
 
 /** Storage buffers, besides those of the plan. */
@@ -81,19 +85,20 @@ struct gz_gl_cast_kind {
 	bool nearest;
 	bool segments; /**< pre-integrated */
 	bool shaded;
-	bool fine; /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
+	bool fine;     /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
+	bool coloured; /**< voxels have colours of their own */
 };
 
 /** Programs, made when first needed, and buffers. Zero-initialised has none. */
 struct gz_gl_cast {
 	/** OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2];
 	struct gz_gl_buffer blocks; /**< one for each level of detail */
 	struct gz_gl_buffer counts, staging;
 };
 
 /** Room for the text of gz_gl_cast_shader()'s defines. */
-#define GZ_GL_CAST_DEFINES_SIZE 240
+#define GZ_GL_CAST_DEFINES_SIZE 260
 
 /** The shader of a kind of cast. @p defines is filled and borrowed by the shader. */
 struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,

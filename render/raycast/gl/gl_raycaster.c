@@ -178,7 +178,8 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 			  .nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
 			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 			  .shaded = rays->shading == GZ_SHADING_GRADIENT,
-			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE },
+			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
+			  .coloured = gl->scene.volume->colours != NULL },
 		.log = gl->base.log,
 	};
 	enum gz_result result = GZ_OK;

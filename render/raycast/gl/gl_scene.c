@@ -94,6 +94,13 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 		gz_err(log, "the context is lost");
 		return whole;
 	}
+	if (whole != GZ_OK && volume->colours) {
+		gz_err(log,
+		       "a volume of colours of %d x %d x %d voxels is beyond the graphics device, "
+		       "and bricks hold no colours; take --backend cpu",
+		       volume->dims[0], volume->dims[1], volume->dims[2]);
+		return whole;
+	}
 	enum gz_result result = gz_detail_start(&scene->detail, volume);
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for the macrocells of the volume");

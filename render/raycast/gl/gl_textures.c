@@ -134,6 +134,27 @@ static enum gz_result load_texels(struct gz_gl_volume *gl, const struct gz_gl_de
 	return result;
 }
 
+/* Upload the colours of a volume. On failure nothing of it is left. */
+static enum gz_result load_colours(struct gz_gl_volume *gl, const struct gz_gl_device *device,
+				   const struct gz_volume *volume)
+{
+	const int *dims = volume->dims;
+	const size_t slice = (size_t)dims[0] * (size_t)dims[1];
+	const size_t bytes = gz_volume_voxel_count(volume) * sizeof *volume->colours;
+	if (device->memory_known && bytes > (size_t)device->memory_max)
+		return GZ_ERR_NO_MEM;
+	gl->colours = gz_gl_texture(GL_TEXTURE_3D);
+	glTexStorage3D(GL_TEXTURE_3D, 1, GL_R32UI, dims[0], dims[1], dims[2]);
+	enum gz_result result = gz_gl_device_errors(device);
+	for (int z = 0; z < dims[2] && result == GZ_OK; z++)
+		glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, z, dims[0], dims[1], 1, GL_RED_INTEGER,
+				GL_UNSIGNED_INT, volume->colours + (size_t)z * slice);
+	if (result == GZ_OK)
+		result = gz_gl_device_errors(device);
+	glBindTexture(GL_TEXTURE_3D, 0);
+	return result;
+}
+
 enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_device *device,
 				 const struct gz_volume *volume)
 {
@@ -143,6 +164,10 @@ enum gz_result gz_gl_volume_load(struct gz_gl_volume *gl, const struct gz_gl_dev
 	enum gz_result result = load_texels(gl, device, volume, GZ_GL_TEXELS_PACKED);
 	if (result == GZ_ERR_NO_MEM && volume->type != GZ_VOXEL_F32)
 		result = load_texels(gl, device, volume, GZ_GL_TEXELS_SINGLE);
+	if (result == GZ_OK && volume->colours)
+		result = load_colours(gl, device, volume);
+	if (result != GZ_OK)
+		gz_gl_volume_free(gl);
 	return result;
 }
 
@@ -175,6 +200,10 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 	glBindImageTexture(GZ_GL_UNIT_REACH, gl->reach, 0, GL_TRUE, 0, GL_READ_ONLY, GL_R8UI);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_REACH);
 	glBindTexture(GL_TEXTURE_3D, gl->reach);
+	if (gl->colours) {
+		glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_COLOURS);
+		glBindTexture(GL_TEXTURE_3D, gl->colours);
+	}
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_VOXELS);
 	glBindTexture(GL_TEXTURE_3D, gl->voxels);
 }
@@ -182,7 +211,7 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type)
 void gz_gl_volume_free(struct gz_gl_volume *gl)
 {
 	const bool lent = gl->texels == GZ_GL_TEXELS_BRICKS;
-	const GLuint textures[] = { lent ? 0 : gl->voxels, gl->reach };
+	const GLuint textures[] = { lent ? 0 : gl->voxels, gl->reach, gl->colours };
 	/* GLEW has no functions before a context was opened, and then there is nothing to delete.
 	 */
 	if (gl->voxels || gl->reach)

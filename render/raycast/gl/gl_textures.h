@@ -38,12 +38,13 @@ const struct gz_gl_texel_format *gz_gl_texel_format(enum gz_gl_texels texels,
  * nothing. */
 struct gz_gl_volume {
 	unsigned voxels, reach;
+	unsigned colours;         /**< of a volume that has such: a word for each voxel */
 	enum gz_gl_texels texels; /**< GZ_GL_TEXELS_BRICKS: voxels is borrowed */
 };
 
 /**
- * Upload a whole volume in memory in place of the earlier one: packed, or if there is no room for
- * that, as single voxels. Nothing is logged.
+ * Upload a whole volume in memory, with its colours, in place of the earlier one: packed, or if
+ * there is no room for that, as single voxels. Nothing is logged.
  *
  * @retval GZ_ERR_UNSUPPORTED  an edge is beyond the device's 3D textures
  * @retval GZ_ERR_NO_MEM       the device has no room for it

@@ -21,9 +21,9 @@ struct Light {
 	float through;
 };
 
-// Samples that are looked up before the first of them is composited, so that their fetches overlap. A lit
-// sample has enough fetches of its own.
-#ifdef SHADED
+// Samples that are looked up before the first of them is composited, so that their fetches overlap. A lit or
+// coloured sample has enough fetches of its own.
+#if defined(SHADED) || defined(COLOURED)
 #define BATCH 1
 #else
 #define BATCH 4
@@ -100,6 +100,10 @@ bool look_up_cell(Ray ray, float k, out float until)
 void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light light)
 {
 	vec3 colour = unpack_colour(packed_colour);
+#ifdef COLOURED
+	if (opacity > 0.0)
+		colour = own_colour(fma(vec3(k), ray.delta, ray.start));
+#endif
 #ifdef SHADED
 	if (opacity > 0.0)
 		colour = shade(colour, fma(vec3(k), ray.delta, ray.start));

@@ -136,6 +136,39 @@ float sample_at(vec3 at)
 }
 #endif
 
+#ifdef COLOURED
+layout(binding = 5) uniform usampler3D colours; // gz_colour_pack() of render/data/voxel_colour.h
+
+// Red, green and blue of a voxel by its weight, and the weight, times a share.
+vec4 weighted_colour(ivec3 place, float share)
+{
+	uint word = texelFetch(colours, place, 0).r;
+	float weight = share * (float(word >> 24) + 1.0 / float(COLOUR_WEIGHT_SHARE));
+	return weight * vec4(uvec3(word, word >> 8, word >> 16) & 255U, 1.0);
+}
+
+// The colour of the voxels at a place, in the units of unpack_colour().
+vec3 own_colour(vec3 at)
+{
+#ifdef NEAREST
+	vec4 sum = weighted_colour(ivec3(clamp(floor(at), vec3(0.0), top_voxel)), 1.0);
+#else
+	vec3 place = clamp(at - 0.5, vec3(0.0), top_voxel);
+	ivec3 low = min(ivec3(place), lower_voxel);
+	ivec3 high = min(low + 1, ivec3(top_voxel));
+	vec3 share = place - vec3(low);
+	vec4 sum = vec4(0.0);
+	for (int corner = 0; corner < 8; corner++) {
+		bvec3 upper = bvec3(corner & 1, corner & 2, corner & 4);
+		vec3 shares = mix(1.0 - share, share, upper);
+		sum += weighted_colour(ivec3(upper.x ? high.x : low.x, upper.y ? high.y : low.y,
+			upper.z ? high.z : low.z), shares.x * shares.y * shares.z);
+	}
+#endif
+	return sum.rgb / sum.a * (vec3(2047.0, 2047.0, 1023.0) / 255.0);
+}
+#endif
+
 // The transfer function's entry for a stored value.
 int entry_of(float stored)
 {
