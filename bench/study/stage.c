@@ -87,6 +87,9 @@ static void hash_voxels(struct gz_hash *hash, const struct gz_volume *volume)
 	if (!volume->bricks) {
 		gz_hash_add(hash, volume->voxels,
 			    gz_volume_voxel_count(volume) * gz_voxel_size(volume->type));
+		if (volume->colours)
+			gz_hash_add(hash, volume->colours,
+				    gz_volume_voxel_count(volume) * sizeof *volume->colours);
 		return;
 	}
 	/* The index holds a checksum of every brick. */

@@ -304,6 +304,10 @@ enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 	};
 	if (!volume->voxels)
 		return GZ_ERR_INVAL;
+	if (volume->colour != GZ_COLOUR_NONE) {
+		gz_err(log, "%s: bricks hold no colours; write the volume as .nrrd", path);
+		return GZ_ERR_UNSUPPORTED;
+	}
 	enum gz_result result = begin_bricks(&writer, volume);
 	if (result == GZ_OK)
 		result = write_levels(&writer, volume);

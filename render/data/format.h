@@ -89,6 +89,7 @@ extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_forma
  * @param loading  progress and cancelling; coarser levels are kept in its scratch folder, or in
  * memory without one: an eighth of the volume, and an eighth of that; may be NULL
  * @retval GZ_ERR_INVAL      @p volume has no voxels
+ * @retval GZ_ERR_UNSUPPORTED  it has colours, which bricks do not hold; logged
  * @retval GZ_ERR_IO         @p path cannot be written; logged
  * @retval GZ_ERR_FULL       the disk is full; logged
  * @retval GZ_ERR_NO_MEM     no memory for the levels; logged
@@ -102,7 +103,8 @@ enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 /**
  * Write @p volume as NRRD, encoding raw. The file gets its name when it is complete. NRRD cannot
  * store a slope and an intercept, so data values are written: as integers of 8 or 16 bits if all of
- * them are such, signed if the intercept is negative, otherwise as floats.
+ * them are such, signed if the intercept is negative, otherwise as floats. Colours are written as
+ * RGB, with alpha if that is what the values are.
  *
  * @param loading  progress and cancelling; may be NULL
  * @retval GZ_ERR_INVAL        @p volume has no voxels

@@ -163,9 +163,12 @@ static enum gz_result take_meta_compressed(struct metaimage *meta, char *value)
 static enum gz_result take_meta_channels(struct metaimage *meta, char *value)
 {
 	int channels = 0;
-	if (!gz_text_wholes(value, &channels, 1) || channels != 1)
+	if (!gz_text_wholes(value, &channels, 1) ||
+	    (channels != 1 && channels != 3 && channels != 4))
 		return refuse_meta_unsupported(meta, "ElementNumberOfChannels",
-					       "one number a voxel is read");
+					       "one number a voxel is read, and 3 or 4 as a "
+					       "colour");
+	meta->layout.channels = channels;
 	return GZ_OK;
 }
 
@@ -309,6 +312,8 @@ static enum gz_result finish_meta_layout(struct metaimage *meta)
 	meta->source.skip = meta->header_size;
 	const enum gz_result result = gz_voxel_source_share(&meta->source, &meta->head, meta->sizes,
 							    meta->dimension, meta->file_axes);
+	meta->source.numbers_per_file *=
+		meta->layout.channels > 1 ? (uint64_t)meta->layout.channels : 1;
 	return result == GZ_OK ? orient_meta(meta) : result;
 }
 
@@ -365,5 +370,6 @@ const struct gz_volume_format gz_format_metaimage = {
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = metaimage_knows_start,
 	.load = load_metaimage,
-	.limits = "one number a voxel, integers of up to 32 bits; of a series the first volume",
+	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits; of a "
+		  "series the first volume",
 };

@@ -278,16 +278,19 @@ static enum gz_result take_nifti_type(struct nifti_file *file)
 	static const struct {
 		int code;
 		enum gz_raw_type type;
+		int channels;
 	} types[] = {
-		{ DT_UINT8, GZ_RAW_UINT8 },     { DT_INT8, GZ_RAW_INT8 },
-		{ DT_UINT16, GZ_RAW_UINT16 },   { DT_INT16, GZ_RAW_INT16 },
-		{ DT_UINT32, GZ_RAW_UINT32 },   { DT_INT32, GZ_RAW_INT32 },
-		{ DT_FLOAT32, GZ_RAW_FLOAT32 }, { DT_FLOAT64, GZ_RAW_FLOAT64 },
+		{ DT_UINT8, GZ_RAW_UINT8, 1 },     { DT_INT8, GZ_RAW_INT8, 1 },
+		{ DT_UINT16, GZ_RAW_UINT16, 1 },   { DT_INT16, GZ_RAW_INT16, 1 },
+		{ DT_UINT32, GZ_RAW_UINT32, 1 },   { DT_INT32, GZ_RAW_INT32, 1 },
+		{ DT_FLOAT32, GZ_RAW_FLOAT32, 1 }, { DT_FLOAT64, GZ_RAW_FLOAT64, 1 },
+		{ DT_RGB24, GZ_RAW_UINT8, 3 },     { DT_RGBA32, GZ_RAW_UINT8, 4 },
 	};
 	const int code = (int)file->head.datatype;
 	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
 		if (types[i].code == code) {
 			file->layout.type = types[i].type;
+			file->layout.channels = types[i].channels;
 			return GZ_OK;
 		}
 	}
@@ -476,7 +479,7 @@ const struct gz_volume_format gz_format_nifti = {
 	.knows_start = nifti_knows_start,
 	.recognise = is_nifti_image,
 	.load = load_nifti,
-	.limits =
-		"one number a voxel, integers of up to 32 bits; of several series the first; .img "
-		"by its .hdr",
+	.limits = "one number a voxel, integers of up to 32 bits, or RGB24 and RGBA32; of several "
+		  "series "
+		  "the first; .img by its .hdr",
 };

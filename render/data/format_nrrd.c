@@ -14,6 +14,7 @@
 #include "base/vector.h"
 #include "render/data/format.h"
 #include "render/data/text_head.h"
+#include "render/data/voxel_colour.h"
 #include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
@@ -32,6 +33,9 @@ struct nrrd {
 	double sign[3];                 /* of the written space in RAS+ */
 	bool has_type, has_sizes, has_encoding, has_endian, has_spacings, has_directions;
 	bool anatomical, values_first; /* the first axis holds the parts of a value */
+	bool has_first_kind;           /* what the first axis holds is known */
+	int colour_channels;           /* of a first axis that holds colours; else 0 */
+	bool colour_later;             /* another axis holds colours */
 	bool detached;
 	int file_axes; /* that each of several files holds; 0: not given */
 };
@@ -266,15 +270,47 @@ static enum gz_result take_nrrd_byte_skip(struct nrrd *nrrd, char *value)
 	return GZ_OK;
 }
 
+/* Numbers of a kind of colours that is read; 0 for other kinds. */
+static int colour_channels_of(const char *kind)
+{
+	static const struct {
+		const char *kind;
+		int channels;
+	} colours[] = {
+		{ "RGB-color", 3 },
+		{ "RGBA-color", 4 },
+		{ "3-color", 3 },
+		{ "4-color", 4 },
+	};
+	for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++)
+		if (strcasecmp(kind, colours[i].kind) == 0)
+			return colours[i].channels;
+	return 0;
+}
+
+static void take_first_kind(struct nrrd *nrrd, const char *kind)
+{
+	static const char *const through_space[] = { "domain", "space", "none", "???" };
+	enum { KNOWN = 2 }; /* of these */
+	nrrd->values_first = nrrd->has_first_kind = true;
+	nrrd->colour_channels = colour_channels_of(kind);
+	for (size_t i = 0; i < sizeof through_space / sizeof through_space[0]; i++)
+		if (strcasecmp(kind, through_space[i]) == 0) {
+			nrrd->values_first = false;
+			nrrd->has_first_kind = i < KNOWN;
+		}
+}
+
 /* Section 5.1, "kinds": whether the first axis runs within a value rather than through space. */
 static enum gz_result take_nrrd_kinds(struct nrrd *nrrd, char *value)
 {
-	static const char *const through_space[] = { "domain", "space", "none", "???" };
-	char *first = gz_number_next_word(&value, BLANKS);
-	nrrd->values_first = first != NULL;
-	for (size_t i = 0; first && i < sizeof through_space / sizeof through_space[0]; i++)
-		if (strcasecmp(first, through_space[i]) == 0)
-			nrrd->values_first = false;
+	const char *kind = gz_number_next_word(&value, BLANKS);
+	nrrd->values_first = nrrd->has_first_kind = nrrd->colour_later = false;
+	nrrd->colour_channels = 0;
+	if (kind)
+		take_first_kind(nrrd, kind);
+	while (kind && (kind = gz_number_next_word(&value, BLANKS)))
+		nrrd->colour_later |= colour_channels_of(kind) > 0;
 	return GZ_OK;
 }
 
@@ -355,20 +391,55 @@ static enum gz_result check_nrrd_complete(struct nrrd *nrrd)
 /* The first of the three axes that run through space. */
 static int first_space_axis(const struct nrrd *nrrd)
 {
-	int first = nrrd->values_first ? 1 : 0;
+	const bool placeless = nrrd->has_spacings && isnan(nrrd->spacings[0]);
+	int first = nrrd->values_first || (placeless && nrrd->dimension > 3) ? 1 : 0;
 	if (nrrd->has_directions)
 		for (first = 0; first < nrrd->dimension && isnan(nrrd->directions[first][0]);)
 			first++;
 	return first;
 }
 
+/* Numbers of a colour, if the first axis holds colours: it says so, or three or four bytes are not
+ * said to be anything else. Else 0. */
+static int nrrd_colour_axis(const struct nrrd *nrrd)
+{
+	const int size = nrrd->sizes[0];
+	if (nrrd->colour_channels > 0)
+		return size == nrrd->colour_channels ? size : 0;
+	const bool maybe = !nrrd->has_first_kind && nrrd->layout.type == GZ_RAW_UINT8;
+	if (!maybe || (size != 3 && size != 4))
+		return 0;
+	gz_info(nrrd->head.log,
+		"%s: its first axis has %d numbers and no place in space; taken as colours",
+		nrrd->head.path, size);
+	return size;
+}
+
+/* What comes before the axes through space: nothing, axes of one number, or a colour. */
+static enum gz_result take_nrrd_values(struct nrrd *nrrd, int first)
+{
+	if (nrrd->colour_later || (nrrd->colour_channels > 0 && first == 0))
+		return refuse_nrrd_unsupported(
+			nrrd, "kinds",
+			"colours must be the first axis, which has no direction in space; unu "
+			"permute moves axes");
+	if (first > 0 && nrrd->dimension > 3)
+		nrrd->layout.channels = nrrd_colour_axis(nrrd);
+	for (int i = nrrd->layout.channels > 0 ? 1 : 0; i < first && i < nrrd->dimension; i++)
+		if (nrrd->sizes[i] != 1)
+			return refuse_nrrd_unsupported(
+				nrrd, "sizes",
+				"several numbers a voxel; read are one, and three or four as a "
+				"colour");
+	return GZ_OK;
+}
+
 static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 {
-	int first = first_space_axis(nrrd);
-	for (int i = 0; i < first && i < nrrd->dimension; i++)
-		if (nrrd->sizes[i] != 1)
-			return refuse_nrrd_unsupported(nrrd, "sizes",
-						       "several numbers a voxel; one is read");
+	const int first = first_space_axis(nrrd);
+	const enum gz_result values = take_nrrd_values(nrrd, first);
+	if (values != GZ_OK)
+		return values;
 	if (first + 3 > nrrd->dimension)
 		return refuse_nrrd_unsupported(nrrd, "sizes",
 					       "fewer than three axes through space");
@@ -467,18 +538,46 @@ static const struct nrrd_form *nrrd_form_of(const struct gz_volume *volume)
 	return &floats;
 }
 
+/* Numbers of a voxel. Alpha is written only if values are alpha; it is not kept otherwise. */
+static size_t written_channels(const struct gz_volume *volume)
+{
+	return volume->colour == GZ_COLOUR_NONE ? 1 : volume->colour == GZ_COLOUR_ALPHA ? 4 : 3;
+}
+
 static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_form *form,
 			     char *out, size_t size)
 {
+	static const struct {
+		const char *dimension, *kinds, *size, *direction;
+	} axes[] = {
+		[1] = { "3", "", "", "" },
+		[3] = { "4", "kinds: RGB-color domain domain domain\n", "3 ", "none " },
+		[4] = { "4", "kinds: RGBA-color domain domain domain\n", "4 ", "none " },
+	};
+	const size_t channels = written_channels(volume);
 	const int *dims = volume->dims;
 	const double *s = volume->spacing;
 	return snprintf(out, size,
-			"NRRD0005\ntype: %s\ndimension: 3\n%s: %s\nsizes: %d %d %d\n"
-			"space directions: (%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n"
+			"NRRD0005\ntype: %s\ndimension: %s\n%s: %s\nsizes: %s%d %d %d\n"
+			"space directions: %s(%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n%s"
 			"endian: %s\nencoding: raw\n\n",
-			form->name, volume->oriented ? "space" : "space dimension",
-			volume->oriented ? "right-anterior-superior" : "3", dims[0], dims[1],
-			dims[2], s[0], s[1], s[2], gz_host_big_endian() ? "big" : "little");
+			form->name, axes[channels].dimension,
+			volume->oriented ? "space" : "space dimension",
+			volume->oriented ? "right-anterior-superior" : "3", axes[channels].size,
+			dims[0], dims[1], dims[2], axes[channels].direction, s[0], s[1], s[2],
+			axes[channels].kinds, gz_host_big_endian() ? "big" : "little");
+}
+
+static void convert_to_colours(const struct gz_volume *volume, size_t first, size_t count,
+			       uint8_t *out)
+{
+	const uint8_t *alpha = volume->voxels;
+	for (size_t i = first; i < first + count; i++) {
+		for (int channel = 0; channel < 3; channel++)
+			*out++ = gz_colour_byte(volume->colours[i], channel);
+		if (volume->colour == GZ_COLOUR_ALPHA)
+			*out++ = alpha[i];
+	}
 }
 
 /* Values as `form` has them. Negative ones keep their two's complement. */
@@ -506,7 +605,8 @@ static enum gz_result write_nrrd_voxels(const struct gz_part_file *file,
 					const struct gz_loading *loading)
 {
 	const size_t count = gz_volume_voxel_count(volume);
-	uint8_t *chunk = malloc(CHUNK_VOXELS * form->size);
+	const size_t size = form->size * written_channels(volume);
+	uint8_t *chunk = malloc(CHUNK_VOXELS * size);
 	enum gz_result result = chunk ? GZ_OK : GZ_ERR_NO_MEM;
 	for (size_t at = 0; at < count && result == GZ_OK; at += CHUNK_VOXELS) {
 		const size_t part = count - at < CHUNK_VOXELS ? count - at : CHUNK_VOXELS;
@@ -514,9 +614,11 @@ static enum gz_result write_nrrd_voxels(const struct gz_part_file *file,
 			result = GZ_ERR_CANCELLED;
 			break;
 		}
-		convert_to_form(volume, form, at, part, chunk);
-		result = gz_part_file_write(file, chunk, part * form->size,
-					    offset + at * form->size);
+		if (volume->colour == GZ_COLOUR_NONE)
+			convert_to_form(volume, form, at, part, chunk);
+		else
+			convert_to_colours(volume, at, part, chunk);
+		result = gz_part_file_write(file, chunk, part * size, offset + at * size);
 	}
 	free(chunk);
 	return result;
@@ -553,5 +655,7 @@ const struct gz_volume_format gz_format_nrrd = {
 	.knows_start = nrrd_knows_start,
 	.load = load_nrrd,
 	.write = gz_nrrd_write,
-	.limits = "one number a voxel, integers of up to 32 bits; of several series the first",
+	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits along "
+		  "the "
+		  "first axis; of several series the first",
 };

@@ -25,6 +25,7 @@ static enum gz_result load_raw(const struct gz_volume_file *file, struct gz_volu
 	memcpy(layout.dims, raw->dims, sizeof layout.dims);
 	memcpy(layout.spacing, raw->spacing, sizeof layout.spacing);
 	layout.type = raw->type;
+	layout.channels = raw->channels;
 	layout.big_endian = raw->big_endian;
 
 	struct gz_byte_stream *stream = NULL;

@@ -2,11 +2,13 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
 #include "render/data/float_scaling.h"
+#include "render/data/voxel_colour.h"
 #include "render/data/voxel_place.h"
 
 #define GZ_LOG_MODULE "volume"
@@ -38,6 +40,16 @@ size_t gz_raw_type_size(enum gz_raw_type type)
 	return (unsigned)type < GZ_RAW_TYPE_COUNT ? gz_voxel_conversions[type].size : 0;
 }
 
+static int channels_of(const struct gz_import_layout *layout)
+{
+	return layout->channels > 1 ? layout->channels : 1;
+}
+
+size_t gz_import_voxel_size(const struct gz_import_layout *layout)
+{
+	return (size_t)channels_of(layout) * gz_raw_type_size(layout->type);
+}
+
 /* Which axes of the volume the file's axes become. */
 struct axis_map {
 	int world[3]; /* the world axis nearest to each file axis */
@@ -50,6 +62,7 @@ struct import {
 	const struct gz_voxel_conversion *conversion;
 	const struct gz_volume_file *file;
 	struct gz_volume *volume;
+	size_t voxel_size; /* in the file, bytes */
 	bool swap;
 	struct gz_voxel_place place;
 	int time_points, time_point;
@@ -89,6 +102,42 @@ static enum gz_result check_layout(const struct gz_import_layout *layout,
 		       file->path, layout->slope, layout->intercept);
 		return GZ_ERR_FORMAT;
 	}
+	return GZ_OK;
+}
+
+/* Choose what the values of colours are. */
+static enum gz_result choose_colour(const struct import *import)
+{
+	const struct gz_import_layout *layout = import->layout;
+	const struct gz_loading *loading = import->file->loading;
+	const enum gz_opacity_source source = loading ? loading->opacity : GZ_OPACITY_AUTO;
+	const int channels = channels_of(layout);
+	if (channels == 1)
+		return GZ_OK;
+	if (channels != 3 && channels != 4) {
+		gz_err(import->file->log,
+		       "%s: %d numbers a voxel; read are 1, and 3 or 4 as a colour",
+		       import->file->path, channels);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (layout->type != GZ_RAW_UINT8 && layout->type != GZ_RAW_UINT16) {
+		gz_err(import->file->log,
+		       "%s: colours of type %s are not read; convert them to uint8 or uint16",
+		       import->file->path, gz_raw_type_names[layout->type]);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (channels == 3 && source == GZ_OPACITY_ALPHA) {
+		gz_err(import->file->log,
+		       "%s: its colours have no alpha; set volume.opacity to luminance",
+		       import->file->path);
+		return GZ_ERR_INVAL;
+	}
+	if (layout->type == GZ_RAW_UINT16)
+		gz_info(import->file->log, "%s: of its colours of 16 bits the higher 8 are shown",
+			import->file->path);
+	import->volume->colour = channels == 4 && source != GZ_OPACITY_LUMINANCE
+					 ? GZ_COLOUR_ALPHA
+					 : GZ_COLOUR_LUMINANCE;
 	return GZ_OK;
 }
 
@@ -157,10 +206,13 @@ static enum gz_result check_claimed_size(const struct gz_byte_stream *stream,
 	if (bytes <= bound)
 		return GZ_OK;
 	const int *dims = import->layout->dims;
+	char each[32] = "";
+	if (channels_of(import->layout) > 1)
+		snprintf(each, sizeof each, "%d x ", channels_of(import->layout));
 	gz_err(import->file->log,
-	       "%s: truncated: %d x %d x %d voxels of %s are %llu bytes, the file can hold %llu; "
+	       "%s: truncated: %d x %d x %d voxels of %s%s are %llu bytes, the file can hold %llu; "
 	       "correct dims and type, or fetch it again",
-	       import->file->path, dims[0], dims[1], dims[2],
+	       import->file->path, dims[0], dims[1], dims[2], each,
 	       gz_raw_type_names[import->layout->type], (unsigned long long)bytes,
 	       (unsigned long long)bound);
 	return GZ_ERR_FORMAT;
@@ -174,17 +226,18 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 		volume->dims[map->world[axis]] = layout->dims[axis];
 		volume->spacing[map->world[axis]] = layout->spacing[axis];
 	}
-	volume->type = import->conversion->type;
+	const bool coloured = volume->colour != GZ_COLOUR_NONE;
+	volume->type = coloured ? GZ_VOXEL_U8 : import->conversion->type;
 	volume->oriented = layout->oriented;
-	const double slope = layout->slope;
-	const double intercept = layout->intercept + layout->slope * import->conversion->offset;
+	const double slope = coloured ? 1 : layout->slope;
+	const double intercept =
+		coloured ? 0 : layout->intercept + layout->slope * import->conversion->offset;
 	volume->slope = slope;
 	volume->intercept = intercept;
 	const char *scratch = import->file->loading ? import->file->loading->scratch : NULL;
 	const enum gz_result result = gz_volume_allocate_in(volume, import->file->loading);
 	if (result != GZ_OK) {
-		double mib = (double)gz_volume_voxel_count(volume) *
-			     (double)gz_voxel_size(volume->type) / (1 << 20);
+		const double mib = (double)gz_volume_bytes(volume) / (1 << 20);
 		if (scratch)
 			gz_err(import->file->log,
 			       "%s: no %.0f MiB for voxels in %s: %s; make room there",
@@ -230,17 +283,58 @@ static bool import_goes_on(const struct import *import, uint64_t at)
 
 /* Voxels that are read and not placed yet. */
 struct slab {
-	uint8_t *numbers; /* room for CHUNK_NUMBERS of the file */
-	uint8_t *voxels;  /* converted numbers */
+	uint8_t *numbers;  /* room for CHUNK_NUMBERS voxels of the file */
+	uint8_t *voxels;   /* converted numbers */
+	uint32_t *colours; /* of each voxel; NULL if there are none */
 	size_t filled;
 };
+
+static void free_slab(struct slab *slab)
+{
+	free(slab->numbers);
+	free(slab->voxels);
+	free(slab->colours);
+}
+
+/* Make room for so many voxels. */
+static enum gz_result make_slab(const struct import *import, size_t voxels, struct slab *out_slab)
+{
+	const bool coloured = import->volume->colour != GZ_COLOUR_NONE;
+	struct slab slab = {
+		.numbers = malloc(CHUNK_NUMBERS * import->voxel_size),
+		.voxels = malloc(voxels * gz_voxel_size(import->volume->type)),
+		.colours = coloured ? malloc(voxels * sizeof *slab.colours) : NULL,
+	};
+	*out_slab = slab;
+	if (slab.numbers && slab.voxels && (slab.colours || !coloured))
+		return GZ_OK;
+	gz_err(import->file->log, "%s: no memory to read it", import->file->path);
+	return GZ_ERR_NO_MEM;
+}
+
+/* Convert `count` voxels behind those that the slab has. */
+static void convert_numbers(const struct import *import, size_t count, struct slab *slab)
+{
+	const struct gz_volume *volume = import->volume;
+	uint8_t *voxels = slab->voxels + slab->filled * gz_voxel_size(volume->type);
+	if (volume->colour == GZ_COLOUR_NONE) {
+		import->conversion->convert(slab->numbers, count, import->swap, voxels);
+		return;
+	}
+	const struct gz_colour_conversion conversion = {
+		.channels = import->layout->channels,
+		.bytes = (int)import->conversion->size,
+		.swap = import->swap,
+		.colour = volume->colour,
+	};
+	gz_colours_convert(&conversion, slab->numbers, count, voxels, slab->colours + slab->filled);
+}
 
 /* Read `count` voxels into the slab, beginning with number `index` of the file. */
 static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct import *import,
 				uint64_t index, size_t count, struct slab *slab)
 {
-	const size_t size = import->conversion->size;
-	const size_t voxel_size = gz_voxel_size(import->volume->type);
+	const size_t size = import->voxel_size;
 	const uint64_t all = gz_volume_voxel_count(import->volume);
 	for (slab->filled = 0; slab->filled < count;) {
 		const uint64_t at = index + slab->filled;
@@ -255,32 +349,41 @@ static enum gz_result fill_slab(struct gz_byte_stream *stream, const struct impo
 			return result;
 		if (got < wanted * size)
 			return refuse_short_data(import, at * size + got, all * size);
-		import->conversion->convert(slab->numbers, wanted, import->swap,
-					    slab->voxels + slab->filled * voxel_size);
+		convert_numbers(import, wanted, slab);
 		slab->filled += wanted;
 	}
 	return GZ_OK;
 }
 
+static void place_slab(const struct import *import, const struct slab *slab, uint64_t index,
+		       size_t count)
+{
+	const struct gz_volume *volume = import->volume;
+	gz_voxel_place(&import->place, volume, slab->voxels, index, count);
+	if (volume->colour == GZ_COLOUR_NONE)
+		return;
+	/* Colours are words of 32 bits, which are moved as floats are. */
+	struct gz_volume words = *volume;
+	words.type = GZ_VOXEL_F32;
+	words.voxels = volume->colours;
+	gz_voxel_place(&import->place, &words, slab->colours, index, count);
+}
+
 static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct import *import,
 				  uint64_t count)
 {
-	const enum gz_voxel_type type = import->volume->type;
-	const size_t most = gz_voxel_place_most(&import->place, type);
-	struct slab slab = { .numbers = malloc(CHUNK_NUMBERS * import->conversion->size),
-			     .voxels = malloc(most * gz_voxel_size(type)) };
-	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
-	if (result != GZ_OK)
-		gz_err(import->file->log, "%s: no memory to read it", import->file->path);
+	const enum gz_voxel_type type =
+		import->volume->colour != GZ_COLOUR_NONE ? GZ_VOXEL_F32 : import->volume->type;
+	struct slab slab;
+	enum gz_result result = make_slab(import, gz_voxel_place_most(&import->place, type), &slab);
 	for (uint64_t index = 0; index < count && result == GZ_OK;) {
 		const size_t next = gz_voxel_place_next(&import->place, type, index);
 		result = fill_slab(stream, import, index, next, &slab);
 		if (result == GZ_OK)
-			gz_voxel_place(&import->place, import->volume, slab.voxels, index, next);
+			place_slab(import, &slab, index, next);
 		index += next;
 	}
-	free(slab.numbers);
-	free(slab.voxels);
+	free_slab(&slab);
 	return result;
 }
 
@@ -300,22 +403,17 @@ static void widen_range(enum gz_voxel_type type, const void *voxels, size_t coun
 static enum gz_result scan_voxels(struct gz_byte_stream *stream, const struct import *import,
 				  uint64_t count, double range[2])
 {
-	const enum gz_voxel_type type = import->volume->type;
-	struct slab slab = { .numbers = malloc(CHUNK_NUMBERS * import->conversion->size),
-			     .voxels = malloc(CHUNK_NUMBERS * gz_voxel_size(type)) };
-	enum gz_result result = slab.numbers && slab.voxels ? GZ_OK : GZ_ERR_NO_MEM;
-	if (result != GZ_OK)
-		gz_err(import->file->log, "%s: no memory to read it", import->file->path);
+	struct slab slab;
+	enum gz_result result = make_slab(import, CHUNK_NUMBERS, &slab);
 	for (uint64_t index = 0; index < count && result == GZ_OK;) {
 		const uint64_t left = count - index;
 		const size_t next = left < CHUNK_NUMBERS ? (size_t)left : CHUNK_NUMBERS;
 		result = fill_slab(stream, import, index, next, &slab);
 		if (result == GZ_OK)
-			widen_range(type, slab.voxels, next, range);
+			widen_range(import->volume->type, slab.voxels, next, range);
 		index += next;
 	}
-	free(slab.numbers);
-	free(slab.voxels);
+	free_slab(&slab);
 	return result;
 }
 
@@ -334,7 +432,7 @@ static enum gz_result read_whole_series(struct gz_byte_stream *stream, struct im
 	range[0] = INFINITY;
 	range[1] = -INFINITY;
 	import->all = count * (uint64_t)import->time_points;
-	gz_byte_stream_read_ahead(stream, import->all * import->conversion->size);
+	gz_byte_stream_read_ahead(stream, import->all * import->voxel_size);
 	for (int point = 0; point < import->time_points && result == GZ_OK; point++) {
 		result = point == import->time_point ? read_voxels(stream, import, count)
 						     : scan_voxels(stream, import, count, range);
@@ -358,7 +456,7 @@ static enum gz_result read_time_point(struct gz_byte_stream *stream, struct impo
 	const double *known = loading ? loading->series_range : NULL;
 	if (import->time_points > 1 && !known)
 		return read_whole_series(stream, import, count);
-	const uint64_t bytes = count * import->conversion->size;
+	const uint64_t bytes = count * import->voxel_size;
 	enum gz_result result = GZ_OK;
 	if (import->time_point > 0)
 		result = gz_byte_stream_skip(stream, (uint64_t)import->time_point * bytes);
@@ -492,6 +590,37 @@ static enum gz_result make_finite(const struct import *import)
 	return GZ_OK;
 }
 
+/* Alpha that is the same everywhere says nothing; many programs write such. Time points share one
+ * choice, so that of a series it is only told. */
+static void check_alpha(const struct import *import)
+{
+	struct gz_volume *volume = import->volume;
+	const struct gz_loading *loading = import->file->loading;
+	if (volume->colour != GZ_COLOUR_ALPHA || (loading && loading->opacity != GZ_OPACITY_AUTO) ||
+	    volume->stored_min < volume->stored_max)
+		return;
+	if (import->time_points > 1) {
+		gz_warn(import->file->log,
+			"%s: alpha is %g in all of this time point; volume.opacity = luminance "
+			"would show its colours",
+			import->file->path, volume->stored_min);
+		return;
+	}
+	gz_info(import->file->log, "%s: alpha is %g everywhere, so it is passed over",
+		import->file->path, volume->stored_min);
+	gz_volume_take_luminance(volume);
+}
+
+/* Say what the values of colours are; of a series once. */
+static void tell_colour(const struct import *import)
+{
+	const struct gz_loading *loading = import->file->loading;
+	if (import->volume->colour != GZ_COLOUR_NONE && !(loading && loading->series_range))
+		gz_info(import->file->log,
+			"%s: voxels have colours; the transfer function gives opacity by %s",
+			import->file->path, gz_volume_colour_text(import->volume->colour));
+}
+
 /* Warn if the file may tell values apart that single precision does not. */
 static void warn_rounded_flat(const struct import *import)
 {
@@ -516,17 +645,21 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 				 .conversion = &gz_voxel_conversions[layout->type],
 				 .file = file,
 				 .volume = &volume,
+				 .voxel_size = (size_t)channels_of(layout) *
+					       gz_voxel_conversions[layout->type].size,
 				 .swap = layout->big_endian != gz_host_big_endian() };
 
 	enum gz_result result = check_layout(layout, file);
 	if (result == GZ_OK)
 		result = choose_time_point(&import);
-	/* At most 2^42 numbers of 8 bytes: no overflow. */
+	if (result == GZ_OK)
+		result = choose_colour(&import);
+	/* At most 2^42 voxels of 8 bytes and 2^16 time points: no overflow. */
 	uint64_t count =
 		(uint64_t)layout->dims[0] * (uint64_t)layout->dims[1] * (uint64_t)layout->dims[2];
 	if (result == GZ_OK)
 		result = check_claimed_size(stream, &import,
-					    count * import.conversion->size *
+					    count * import.voxel_size *
 						    (uint64_t)(import.time_point + 1));
 	if (result == GZ_OK)
 		result = map_axes(layout, file, &map);
@@ -535,11 +668,13 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 	if (result == GZ_OK)
 		result = read_time_point(stream, &import, count);
 	if (result == GZ_OK)
-		result = check_data_end(stream, &import, count * import.conversion->size);
+		result = check_data_end(stream, &import, count * import.voxel_size);
 	if (result == GZ_OK)
 		result = make_finite(&import);
 	if (result == GZ_OK) {
 		warn_rounded_flat(&import);
+		check_alpha(&import);
+		tell_colour(&import);
 		take_series_range(&import);
 		gz_volume_scale_floats(&volume);
 	}

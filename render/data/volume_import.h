@@ -33,7 +33,10 @@ struct gz_import_layout {
 	bool oriented;          /**< direction is anatomical */
 	enum gz_raw_type type;
 	bool big_endian;
-	double slope, intercept; /**< data value = slope * number in the file + intercept */
+	int channels; /**< numbers of a voxel: 0 or 1 its value, 3 red, green and blue, 4 and alpha;
+			 interleaved */
+	double slope, intercept; /**< data value = slope * number in the file + intercept; colours
+				    are not scaled */
 	int time_points;         /**< volumes of this layout, one behind the other; 0 means 1 */
 	bool more_follows;       /**< more bytes after the voxels are no reason for a warning */
 };
@@ -41,19 +44,26 @@ struct gz_import_layout {
 /** A loader's starting point: one voxel, spacing 1, unsigned bytes, axes as stored, slope 1. */
 struct gz_import_layout gz_import_layout_default(void);
 
-/** Bytes of one voxel of @p type in a file. */
+/** Bytes of one number of @p type in a file. */
 size_t gz_raw_type_size(enum gz_raw_type type);
+
+/** Bytes of one voxel of @p layout in a file. */
+size_t gz_import_voxel_size(const struct gz_import_layout *layout);
 
 /**
  * Read the voxels of a file into a volume. Signed integers become unsigned ones with an offset in
  * the intercept; 32-bit integers and doubles become float. Of a series, the time point that the
  * file's loading names is kept, and unless the range of the series is known, all are read for it.
+ * Of colours, which may have 8 or 16 bits, 8 are kept; the file's loading says what their values
+ * are.
  *
  * @param stream  at the first voxel of the first time point
  * @param layout  all of it is checked here
  * @param file    its path is for messages and progress
  * @param[out] out_volume  the caller frees it with gz_volume_free()
- * @retval GZ_ERR_INVAL   there is no such time point; logged
+ * @retval GZ_ERR_INVAL   there is no such time point, or values are to be alpha and there is none;
+ *                        logged
+ * @retval GZ_ERR_UNSUPPORTED  colours of another type, or another number of channels; logged
  * @retval GZ_ERR_FORMAT  wrong dims, spacing, directions, slope or length of the data; logged
  * @retval GZ_ERR_IO      logged
  * @retval GZ_ERR_NO_MEM  logged with the size asked for

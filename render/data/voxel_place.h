@@ -60,7 +60,8 @@ size_t gz_voxel_place_most(const struct gz_voxel_place *place, enum gz_voxel_typ
  *
  * @param voxels  in the order of the file, already converted
  * @param index   number of the first voxel in the file
- * @param count   the result of gz_voxel_place_next() for @p index
+ * @param count   the result of gz_voxel_place_next() for @p index and the volume's type, or one of
+ *                more bytes
  */
 void gz_voxel_place(const struct gz_voxel_place *place, const struct gz_volume *volume,
 		    const void *voxels, uint64_t index, size_t count);

@@ -370,6 +370,7 @@ static enum gz_result bound_chain(const struct file_chain *model, uint64_t neede
 static uint64_t layout_numbers(const struct gz_import_layout *layout, int points)
 {
 	uint64_t numbers = points > 1 && points <= GZ_TIME_POINTS_MAX ? (uint64_t)points : 1;
+	numbers *= layout->channels > 1 ? (uint64_t)layout->channels : 1;
 	for (int axis = 0; axis < 3; axis++) {
 		const int dim = layout->dims[axis];
 		/* What is out of range is refused by gz_volume_import(). */

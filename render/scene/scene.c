@@ -75,8 +75,10 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 	loading.brick_bytes = (size_t)settings->memory_mib << 20;
 	loading.series = settings->volume_series;
 	loading.time_point = settings->time_point - 1;
+	loading.opacity = (enum gz_opacity_source)settings->opacity;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
-				     .big_endian = settings->endian == 1 };
+				     .big_endian = settings->endian == 1,
+				     .channels = settings->channels };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
 	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, loader->log,

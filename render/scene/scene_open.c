@@ -75,6 +75,7 @@ enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_ra
 			memcpy(settings.spacing, raw->spacing, sizeof settings.spacing);
 			settings.type = (int)raw->type;
 			settings.endian = raw->big_endian ? 1 : 0;
+			settings.channels = raw->channels > 1 ? raw->channels : 1;
 		}
 		*out_settings = settings;
 	}

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "render/data/voxel_colour.h"
+
 #define GZ_LOG_MODULE "scene"
 
 _Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_RAYS + 2 &&
@@ -32,6 +34,14 @@ static const struct gz_option volume_options[] = {
 	  .preset = "little", .help = "byte order; raw files" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(spacing), 1e-9, 1e9, .count = 3, .preset = "1 1 1",
 	  .help = "voxel spacing x y z, mm; raw files and procedural volumes" },
+	{ "volume.channels", GZ_OPTION_INT, AT(channels), 1, 4, .preset = "1",
+	  .help = "numbers of a voxel: 1 is its value, 3 red, green and blue, 4 alpha too; raw "
+		  "files" },
+	{ "volume.opacity", GZ_OPTION_CHOICE, AT(opacity), .choices = gz_opacity_source_names,
+	  .preset = "auto",
+	  .help = "what the transfer function takes as the value of a coloured voxel; auto is "
+		  "alpha "
+		  "if there is one that varies, else luminance" },
 	{ "volume.time_point", GZ_OPTION_INT, AT(time_point), 1, GZ_TIME_POINTS_MAX, .preset = "1",
 	  .help = "which volume of a series is shown, from 1; NIfTI's fourth dimension, NRRD's "
 		  "fourth axis" },
@@ -197,7 +207,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 }
 
 /* Most options of a table of which the reader must know whether they are given. */
-enum { GIVEN_MAX = 9 };
+enum { GIVEN_MAX = 12 };
 
 _Static_assert(sizeof volume_options / sizeof volume_options[0] <= GIVEN_MAX &&
 		       sizeof camera_options / sizeof camera_options[0] <= GIVEN_MAX,
@@ -256,9 +266,10 @@ static enum gz_result check_procedural(const struct scene_reader *reader)
 	enum gz_voxel_type type;
 	if (!key_given(reader, "volume.type"))
 		settings->type = gz_scene_procedural_type(settings->volume_procedural);
-	if (key_given(reader, "volume.endian"))
-		return refuse_key(reader, "volume.procedural",
-				  "takes dims, type and spacing only; leave out endian");
+	if (key_given(reader, "volume.endian") || key_given(reader, "volume.channels"))
+		return refuse_key(
+			reader, "volume.procedural",
+			"takes dims, type and spacing only; leave out endian and channels");
 	if (!gz_scene_made_type(settings, &type))
 		return refuse_key(reader, "volume.type",
 				  "a procedural volume has uint8, uint16 or float32");
@@ -270,7 +281,8 @@ static enum gz_result check_raw_layout(const struct scene_reader *reader)
 {
 	const bool dims = key_given(reader, "volume.dims"), type = key_given(reader, "volume.type");
 	const bool any = dims || type || key_given(reader, "volume.endian") ||
-			 key_given(reader, "volume.spacing");
+			 key_given(reader, "volume.spacing") ||
+			 key_given(reader, "volume.channels");
 	if (!any || (dims && type))
 		return GZ_OK;
 	return refuse_key(reader, "volume.dims",

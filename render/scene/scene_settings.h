@@ -36,6 +36,8 @@ struct gz_scene_settings {
 	int type;                         /**< enum gz_raw_type; raw files and procedural volumes */
 	int endian;                       /**< raw files: 0 little, 1 big */
 	double spacing[3];                /**< mm; raw files and procedural volumes */
+	int channels;                     /**< numbers of a voxel; raw files */
+	int opacity;                      /**< enum gz_opacity_source */
 	int time_point;                   /**< of a series, from 1 */
 	int memory_mib;                   /**< for bricks; 0 = a quarter of the machine's memory */
 	char transfer_file[GZ_PATH_SIZE]; /**< empty: the object's, or one made for the volume */

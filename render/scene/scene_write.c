@@ -95,8 +95,8 @@ static bool is_key(const struct scene_key *key, const char *name)
 	return strcmp(key->option->key, name) == 0;
 }
 
-/* Dims, type, endian and spacing: only raw files and procedural volumes have them, and raw files
- * must have the first two. */
+/* Dims, type, endian, spacing and channels: only raw files and procedural volumes have them, and
+ * raw files must have the first two. */
 static bool wants_layout(const struct scene_writer *writer, const struct scene_key *key,
 			 bool differs)
 {
@@ -114,7 +114,7 @@ static bool wants_layout(const struct scene_writer *writer, const struct scene_k
 static bool key_is_written(const struct scene_writer *writer, const struct scene_key *key)
 {
 	static const char *const layout[] = { "volume.dims", "volume.type", "volume.endian",
-					      "volume.spacing" };
+					      "volume.spacing", "volume.channels" };
 	const bool differs = !format_same(key->option, key->target, key->preset_target);
 	if (strcmp(key->section, "display") == 0)
 		return writer->saved->has_display;

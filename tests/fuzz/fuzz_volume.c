@@ -113,7 +113,10 @@ static void check_volume(const struct gz_volume *v)
 	require(isfinite(v->stored_max));
 	if (!v->voxels) /* bricks, which have a target of their own */
 		return;
-	size_t size = gz_volume_voxel_count(v) * gz_voxel_size(v->type);
+	size_t size = gz_volume_bytes(v);
+	for (size_t i = 0; v->colours && i < gz_volume_voxel_count(v); i++)
+		require(v->colours[i] >> 24 ==
+			(v->colour == GZ_COLOUR_ALPHA ? ((const uint8_t *)v->voxels)[i] : 255));
 	for (size_t i = 0; i < size + GZ_VOLUME_PADDING; i++)
 		sum = (uint8_t)(sum + ((const uint8_t *)v->voxels)[i]);
 }
@@ -123,6 +126,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	static const struct gz_raw_layout raw = { .dims = { 9, 7, 5 },
 						  .type = GZ_RAW_FLOAT32,
 						  .spacing = { 1, 1, 1 } };
+	/* The size says what values of colours are, too: all of it can be reached. */
+	const struct gz_loading loading = { .opacity = (enum gz_opacity_source)(size % 3) };
 	struct gz_volume volume;
 	char path[128];
 	if (size < 1)
@@ -133,7 +138,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	write_bytes(name, data + 1, size - 1);
 	write_other_half(name);
 	bool headerless = strstr(name, ".raw") != NULL;
-	if (gz_volume_load(path, headerless ? &raw : NULL, NULL, NULL, &volume) == GZ_OK) {
+	if (gz_volume_load(path, headerless ? &raw : NULL, &loading, NULL, &volume) == GZ_OK) {
 		check_volume(&volume);
 		gz_volume_free(&volume);
 	}

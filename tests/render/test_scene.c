@@ -44,10 +44,12 @@ static void choices_are_in_the_order_of_their_enums(void **state)
 	assert_int_equal(s.volume_procedural, GZ_PROCEDURAL_SUPERNOVA + 1);
 	assert_int_equal(s.camera.projection, GZ_PROJECTION_ORTHOGRAPHIC);
 	assert_int_equal(s.rays.interpolation, GZ_INTERPOLATION_NEAREST);
-	s = scene_of_text(
-		"[volume]\nfile = a.raw\ndims = 1 2 3\ntype = float64\nendian = big\n" TRANSFER,
-		&display);
+	s = scene_of_text("[volume]\nfile = a.raw\ndims = 1 2 3\ntype = float64\nendian = big\n"
+			  "channels = 4\nopacity = alpha\n" TRANSFER,
+			  &display);
 	assert_int_equal(s.type, GZ_RAW_FLOAT64);
+	assert_int_equal(s.channels, 4);
+	assert_int_equal(s.opacity, GZ_OPACITY_ALPHA);
 	assert_int_equal(s.endian, 1);
 	assert_int_equal(s.dims[2], 3);
 	assert_false(display);
@@ -85,6 +87,10 @@ static const struct refusal refusals[] = {
 	  "s.scene: volume.file: given with volume.procedural; keep one" },
 	{ "[volume]\nprocedural = shells\nendian = big\n" TRANSFER,
 	  "s.scene: volume.procedural: takes dims, type and spacing only" },
+	{ "[volume]\nprocedural = shells\nchannels = 3\n" TRANSFER,
+	  "s.scene: volume.procedural: takes dims, type and spacing only" },
+	{ "[volume]\nfile = a.nii\nchannels = 3\n" TRANSFER,
+	  "s.scene: volume.dims: a raw file needs both dims and type" },
 	{ "[volume]\nprocedural = shells\ntype = int16\n" TRANSFER,
 	  "s.scene: volume.type: a procedural volume has uint8, uint16 or float32" },
 	{ "[volume]\nfile = a.raw\ndims = 1 1 1\n" TRANSFER,

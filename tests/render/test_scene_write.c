@@ -94,7 +94,8 @@ static void make_right(struct gz_scene_settings *settings, const char *changed)
 {
 	if (strcmp(changed, "volume.procedural") != 0 && !settings->volume_file[0])
 		strcpy(settings->volume_file, "a.raw");
-	const char *layout[] = { "volume.dims", "volume.type", "volume.endian", "volume.spacing" };
+	const char *layout[] = { "volume.dims", "volume.type", "volume.endian", "volume.spacing",
+				 "volume.channels" };
 	for (size_t i = 0; i < sizeof layout / sizeof layout[0]; i++)
 		if (strcmp(changed, layout[i]) == 0 && settings->dims[0] == 0)
 			settings->dims[0] = settings->dims[1] = settings->dims[2] = 5;

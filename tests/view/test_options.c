@@ -183,6 +183,26 @@ static void raw_file_gets_the_layout_in_the_options(void **state)
 	assert_true(gz_view_options_raw(&options, &raw));
 	assert_true(raw.big_endian);
 	assert_true(raw.spacing[2] == 2.5);
+	assert_int_equal(
+		read_line("a.raw --volume.dims=2@3@4 --volume.type uint8 --volume.channels 3"),
+		GZ_OK);
+	assert_true(gz_view_options_raw(&options, &raw));
+	assert_int_equal(raw.channels, 3);
+}
+
+static void opacity_of_colours_replaces_the_scenes(void **state)
+{
+	(void)state;
+	static struct gz_scene_settings settings;
+	assert_int_equal(gz_scene_settings_preset(&settings), GZ_OK);
+	settings.opacity = GZ_OPACITY_ALPHA;
+	assert_int_equal(read_line("a.nii"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.opacity, GZ_OPACITY_ALPHA);
+	assert_int_equal(read_line("a.nii --volume.opacity luminance"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.opacity, GZ_OPACITY_LUMINANCE);
+	assert_refused("a.nii --volume.opacity red", "auto, luminance or alpha");
 }
 
 static void half_a_layout_is_refused(void **state)
@@ -192,6 +212,7 @@ static void half_a_layout_is_refused(void **state)
 	assert_refused("a.raw --volume.type uint8", "volume.dims: missing");
 	assert_refused("a.raw --volume.endian big", "volume.dims: missing");
 	assert_refused("a.raw --volume.spacing=1@1@1", "volume.dims: missing");
+	assert_refused("a.raw --volume.channels 3", "volume.dims: missing");
 }
 
 static void transfer_function_on_the_command_line_is_made_absolute(void **state)
@@ -374,6 +395,7 @@ TEST_SUITE(options)
 		cmocka_unit_test(contradictory_options_are_refused),
 		cmocka_unit_test(data_of_a_scene_cannot_be_overridden),
 		cmocka_unit_test(raw_file_gets_the_layout_in_the_options),
+		cmocka_unit_test(opacity_of_colours_replaces_the_scenes),
 		cmocka_unit_test(half_a_layout_is_refused),
 		cmocka_unit_test(transfer_function_on_the_command_line_is_made_absolute),
 		cmocka_unit_test(given_scene_keys_override_the_scene),

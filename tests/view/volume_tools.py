@@ -70,6 +70,24 @@ class VolumeTools(unittest.TestCase):
                         self.call(UNU, "save", "-f", "nrrd", "-e", encoding, "-i", "own.nrrd", "-o", name)
                         self.assertEqual(self.read(name), wanted)
 
+    def test_nrrd_of_colours_is_what_teem_makes_of_it(self):
+        for count, kind in ((3, "RGB-color"), (4, "RGBA-color")):
+            head = f"NRRD0005\ntype: uchar\ndimension: 4\nsizes: {count} 5 4 3\nspacings: nan 2 3 1.5\n"
+            data = bytes((41 * i) % 253 for i in range(COUNT * count))
+            self.write("own.nrrd", head + f"kinds: {kind} domain domain domain\nencoding: raw\n\n", data)
+            wanted = self.read("own.nrrd")
+            self.assertIn(f"kinds: {kind} domain".encode(), wanted)
+            # Teem splits them into channels and joins these again.
+            for channel in range(count):
+                self.call(UNU, "slice", "-a", "0", "-p", str(channel), "-i", "own.nrrd", "-o", f"{channel}.nrrd")
+            parts = [f"{channel}.nrrd" for channel in range(count)]
+            self.call(UNU, "join", "-a", "0", "-incr", "-i", *parts, "-o", "joined.nrrd")
+            self.call(UNU, "axinfo", "-a", "0", "-k", kind, "-i", "joined.nrrd", "-o", "teem.nrrd")
+            for encoding in ("raw", "ascii", "hex", "gzip"):
+                with self.subTest(count=count, encoding=encoding):
+                    self.call(UNU, "save", "-f", "nrrd", "-e", encoding, "-i", "teem.nrrd", "-o", "saved.nrrd")
+                    self.assertEqual(self.read("saved.nrrd"), wanted)
+
     def test_nrrd_of_several_files_is_what_teem_reads(self):
         for slab in range(3):
             self.write(f"s{slab:02d}.raw", "head\n??", WORDS[slab * 40 : (slab + 1) * 40])

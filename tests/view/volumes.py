@@ -105,6 +105,26 @@ class Volumes(unittest.TestCase):
                     nibabel.save(image, self.path("t.nii"))
                     self.check("t.nii")
 
+    def test_nifti_of_colours_in_every_orientation(self):
+        for channels, names in ((3, "RGB"), (4, "RGBA")):
+            kind = numpy.dtype([(name, "u1") for name in names])
+            count = int(numpy.prod(SHAPE))
+            numbers = (numpy.arange(count * channels) * 37 % 251).astype("u1").reshape((*SHAPE, channels))
+            for number, affine in enumerate(affines()):
+                with self.subTest(channels=channels, number=number):
+                    data = numpy.ascontiguousarray(numbers).view(kind).reshape(SHAPE)
+                    nibabel.save(nibabel.Nifti1Image(data, affine), self.path("c.nii"))
+                    wanted = nibabel.as_closest_canonical(nibabel.load(self.path("c.nii")))
+                    done = run(GAZEVIEW, self.path("c.nii"), "--write-volume", self.path("read.nrrd"))
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    voxels, spacing, _ = read_nrrd(self.path("read.nrrd"))
+                    read = numpy.asarray(wanted.dataobj)
+                    self.assertEqual(voxels.shape, (channels, *read.shape))
+                    for channel, name in enumerate(names):
+                        self.assertTrue((voxels[channel] == read[name]).all(), name)
+                    zooms = nibabel.affines.voxel_sizes(wanted.affine)
+                    self.assertLess(abs(numpy.array(spacing) - zooms).max(), 1e-5)
+
     def test_nifti_pairs_and_compressed(self):
         affine = next(itertools.islice(affines(), 13, 14))
         pairs = (nibabel.Nifti1Pair, nibabel.Nifti2Pair)

@@ -513,6 +513,11 @@ static gz_volume_writer *writer_of(const char *path, const struct gz_log *log)
 	return NULL;
 }
 
+static enum gz_result apply_options(void *user, struct gz_scene_settings *settings)
+{
+	return gz_view_options_apply(user, settings);
+}
+
 static enum gz_result load_volume_to_write(const struct gz_view_options *options,
 					   const struct gz_loading *where, const struct gz_log *log,
 					   struct gz_scene *out_scene)
@@ -525,6 +530,8 @@ static enum gz_result load_volume_to_write(const struct gz_view_options *options
 	const struct gz_scene_request request = {
 		.path = options->scene,
 		.raw = gz_view_options_raw(options, &raw) ? &raw : NULL,
+		.change = apply_options,
+		.user = (void *)options, /* which is only read */
 		.loading = &bar.loading,
 		.volume_alone = true,
 	};

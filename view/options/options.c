@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "render/data/time_steps.h"
+#include "render/data/voxel_colour.h"
 #include "render/picture/image.h"
 #include "render/plan/method.h"
 
@@ -105,6 +106,12 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "byte order of the raw file's voxels; default: little" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(volume_spacing), 1e-9, 1e9, .count = 3,
 	  .help = "voxel spacing along x, y, z, mm; default: 1" },
+	{ "volume.channels", GZ_OPTION_INT, AT(volume_channels), 1, 4,
+	  .help = "numbers of a voxel of the raw file: 1, or 3 or 4 for a colour; default: 1" },
+	{ "volume.opacity", GZ_OPTION_CHOICE, AT(volume_opacity),
+	  .choices = gz_opacity_source_names,
+	  .help = "what gives a coloured voxel its opacity, by the transfer function; replaces the "
+		  "scene's" },
 	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE,
 	  .help = "UID of the series of a DICOM folder to show" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
@@ -136,10 +143,10 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",         "size",        "gaze",        "frames",        "turn",
-		"display-px",    "display-mm",  "distance-mm", "write-volume",  "record",
-		"transfer.file", "volume.dims", "volume.type", "volume.endian", "volume.spacing",
-		"volume.series", "time-point",  "play",
+		"scene",         "size",        "gaze",        "frames",          "turn",
+		"display-px",    "display-mm",  "distance-mm", "write-volume",    "record",
+		"transfer.file", "volume.dims", "volume.type", "volume.endian",   "volume.spacing",
+		"volume.series", "time-point",  "play",        "volume.channels", "volume.opacity",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)
@@ -160,7 +167,8 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 static enum gz_result check_raw(const struct gz_view_options *options, const struct gz_log *log)
 {
 	const bool dims = options->volume_dims[0] > 0, type = options->volume_type >= 0;
-	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0;
+	const bool more = options->volume_endian >= 0 || options->volume_spacing[0] > 0 ||
+			  options->volume_channels > 0;
 	if (dims == type && (dims || !more))
 		return GZ_OK;
 	gz_err(log, "--volume.%s: missing; a raw file needs both dims and type",
@@ -543,6 +551,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	struct gz_view_scene_tables tables;
 	memset(out_options, 0, sizeof *out_options);
 	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
+	out_options->volume_opacity = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
 	if (r != GZ_OK || only_prints(out_options))
@@ -561,6 +570,7 @@ bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_la
 	struct gz_raw_layout raw = {
 		.type = (enum gz_raw_type)options->volume_type,
 		.big_endian = options->volume_endian == 1,
+		.channels = options->volume_channels,
 	};
 	if (options->volume_dims[0] < 1 || options->volume_type < 0)
 		return false;
@@ -593,6 +603,8 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	if (options->volume_series[0])
 		memcpy(settings->volume_series, options->volume_series,
 		       sizeof settings->volume_series);
+	if (options->volume_opacity >= 0)
+		settings->opacity = options->volume_opacity;
 	struct gz_scene_settings given = options->scene_settings;
 	struct gz_view_scene_tables from, to;
 	gz_view_pick_scene_tables(&given, &from);

@@ -89,6 +89,8 @@ struct gz_view_options {
 	int volume_dims[3];                 /**< of a raw file; 0: not given */
 	int volume_type;                    /**< enum gz_raw_type; -1: not given */
 	int volume_endian;                  /**< 0 little, 1 big; -1: not given */
+	int volume_channels;                /**< of a raw file; 0: not given */
+	int volume_opacity;                 /**< enum gz_opacity_source; -1: not given */
 	char volume_series[GZ_SERIES_SIZE]; /**< empty: not given */
 	double volume_spacing[3];           /**< 0: not given */
 	char transfer_file[GZ_PATH_SIZE];   /**< replaces the scene's; empty: not given */

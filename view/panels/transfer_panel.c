@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "render/data/voxel_colour.h"
 #include "render/transfer/transfer_presets.h"
 #include "view/panels/widgets.h"
 
@@ -451,9 +452,21 @@ static enum gz_transfer_wish draw_file_row(struct gz_transfer_panel *panel)
 	return wish;
 }
 
+/* Colours of the curve have no effect if voxels have their own. */
+static void draw_colour_note(const struct gz_transfer_panel *panel)
+{
+	char note[96];
+	if (!panel->volume || panel->volume->colour == GZ_COLOUR_NONE)
+		return;
+	snprintf(note, sizeof note, "Voxels have colours: the curve gives opacity by %s",
+		 gz_volume_colour_text(panel->volume->colour));
+	gz_widget_label(note);
+}
+
 static enum gz_transfer_wish draw_transfer_content(struct gz_transfer_panel *panel)
 {
 	keep_selection(panel);
+	draw_colour_note(panel);
 	draw_preset_choice(panel);
 	draw_undo_buttons(panel);
 	draw_interpolation_choice(panel);
