@@ -22,6 +22,7 @@ static struct gz_volume volume_of_header(const struct gz_decode_header *header)
 	struct gz_volume volume = {
 		.type = header->type < GZ_VOXEL_TYPE_COUNT ? (enum gz_voxel_type)header->type
 							   : GZ_VOXEL_TYPE_COUNT,
+		.colour = header->colour == GZ_COLOUR_NONE ? GZ_COLOUR_NONE : GZ_COLOUR_LUMINANCE,
 		.slope = header->slope,
 		.intercept = header->intercept,
 		.oriented = header->oriented == 1,
@@ -54,8 +55,9 @@ static enum gz_result accept_header(void *user, const struct gz_decode_header *h
 	const struct decoding *decoding = user;
 	const struct gz_loading *loading = decoding->file->loading;
 	const struct gz_volume volume = volume_of_header(header);
-	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 || !isfinite(volume.slope) ||
-	    volume.slope == 0 || !isfinite(volume.intercept)) {
+	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 ||
+	    header->colour > GZ_COLOUR_LUMINANCE || !isfinite(volume.slope) || volume.slope == 0 ||
+	    !isfinite(volume.intercept)) {
 		gz_err(decoding->file->log,
 		       "%s: its decoder made a volume of %d x %d x %d voxels of kind %u that "
 		       "cannot be; the file was not read",
@@ -63,8 +65,7 @@ static enum gz_result accept_header(void *user, const struct gz_decode_header *h
 		       header->type);
 		return GZ_ERR_FORMAT;
 	}
-	/* At most 2^42 voxels of 4 bytes: no overflow. */
-	const size_t used = gz_volume_voxel_count(&volume) * gz_voxel_size(volume.type);
+	const size_t used = gz_volume_bytes(&volume);
 	out_place->bytes = used + GZ_VOLUME_PADDING;
 	out_place->in_scratch = loading && loading->scratch && used >= loading->scratch_from;
 	if (!out_place->in_scratch)
@@ -94,9 +95,24 @@ static bool voxels_finite(const struct gz_volume *volume)
 	return bad == 0;
 }
 
+/* Whether colours are such as they are loaded from files: of weight 255. */
+static bool colours_valid(const struct gz_volume *volume)
+{
+	const size_t count = gz_volume_voxel_count(volume);
+	size_t bad = 0;
+	for (size_t i = 0; i < count; i++)
+		bad += volume->colours[i] >> 24 != 255;
+	return bad == 0 && volume->slope == 1 && volume->intercept == 0;
+}
+
 /* What the decoder promises of the voxels is found out again. */
 static enum gz_result check_voxels(const struct gz_volume_file *file, struct gz_volume *volume)
 {
+	if (volume->colours && !colours_valid(volume)) {
+		gz_err(file->log, "%s: its decoder made colours that cannot be; it was not read",
+		       file->path);
+		return GZ_ERR_FORMAT;
+	}
 	if (volume->type != GZ_VOXEL_F32 || voxels_finite(volume)) {
 		gz_volume_find_range(volume);
 		if (isfinite(volume->slope * volume->stored_min + volume->intercept) &&
@@ -134,6 +150,7 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 	struct gz_volume volume = volume_of_header(&decoded.header);
 	volume.voxels = decoded.voxels;
 	volume.mapped = decoded.mapped;
+	gz_volume_place_colours(&volume);
 	result = check_voxels(file, &volume);
 	if (result != GZ_OK) {
 		gz_volume_free(&volume);

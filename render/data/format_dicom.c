@@ -79,7 +79,7 @@ const struct gz_volume_format gz_format_dicom = {
 	.knows_start = dicom_knows_start,
 	.recognise = gz_dicom_is,
 	.load = load_dicom,
-	.limits =
-		"no colour, 8 and 16 bits only, evenly spaced parallel slices, one series a folder;"
-		" of a series over time the first volume",
+	.limits = "8 and 16 bits only, colours of 8 bits, evenly spaced parallel slices, one "
+		  "series a folder;"
+		  " of a series over time the first volume",
 };

@@ -130,7 +130,7 @@ static enum gz_result size_voxel_memory(const struct run *run)
 static enum gz_result take_header(struct run *run)
 {
 	const struct gz_decode_header *header = &run->message.header;
-	if (run->accepted || header->unused != 0)
+	if (run->accepted)
 		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a header that is none");
 	enum gz_result result = run->job->accept(run->job->user, header, &run->place);
 	if (result == GZ_OK)
@@ -150,7 +150,7 @@ static enum gz_result take_header(struct run *run)
 static bool same_voxels(const struct gz_decode_header *a, const struct gz_decode_header *b)
 {
 	return memcmp(a->dims, b->dims, sizeof a->dims) == 0 && a->type == b->type &&
-	       a->oriented == b->oriented && a->unused == b->unused &&
+	       a->oriented == b->oriented && a->colour == b->colour &&
 	       memcmp(a->spacing, b->spacing, sizeof a->spacing) == 0;
 }
 

@@ -48,8 +48,7 @@ struct gz_decode_job {
 	void *user;          /**< passed to the functions below */
 	/** Reports progress, about 20 times a second. Returns false to stop. */
 	bool (*goes_on)(void *user, double share);
-	/** Checks a header in full and says where its voxels go. Logs why it refuses one. Only that
-	 *  `unused` is 0 is checked before. */
+	/** Checks a header in full and says where its voxels go. Logs why it refuses one. */
 	enum gz_result (*accept)(void *user, const struct gz_decode_header *header,
 				 struct gz_decode_place *out_place);
 	const struct gz_log *log;

@@ -43,7 +43,8 @@ struct gz_decode_header {
 	int32_t dims[3];
 	uint32_t type;     /**< enum gz_voxel_type */
 	uint32_t oriented; /**< 1: it is known where right, front and up are; else 0 */
-	uint32_t unused;   /**< 0 */
+	uint32_t colour;   /**< enum gz_volume_colour; the colours follow the voxels as
+			      gz_volume_place_colours() says */
 	double spacing[3];
 	double slope, intercept;
 };

@@ -231,8 +231,10 @@ static void say_faulty(const char *fault)
 		header->slope = 0;
 	else if (strcmp(fault, "oriented") == 0)
 		header->oriented = 2;
-	else if (strcmp(fault, "unused") == 0)
-		header->unused = 1;
+	else if (strcmp(fault, "colour") == 0)
+		header->colour = 2; /* alpha, which no decoder gives */
+	else if (strcmp(fault, "wide colour") == 0)
+		header->colour = header->type = 1;
 	else if (strcmp(fault, "huge") == 0)
 		header->dims[0] = header->dims[1] = header->dims[2] = 16384;
 	say(&message);
@@ -248,6 +250,31 @@ static void do_not_finite(void)
 	voxels[5] = INFINITY;
 	message.kind = GZ_DECODE_ENDED;
 	say(&message);
+}
+
+/* Twelve colours behind the voxels and their padding, of which the last has this weight. */
+static void say_colours(uint32_t last_weight)
+{
+	struct gz_decode_message message = good_header();
+	message.header.colour = 1;
+	message.header.slope = 1;
+	message.header.intercept = 0;
+	say(&message);
+	uint32_t *colours = (uint32_t *)(void *)((char *)wait_for_memory(128 + 48) + 128);
+	for (uint32_t i = 0; i < 12; i++)
+		colours[i] = i | (i < 11 ? 255 : last_weight) << 24;
+	message.kind = GZ_DECODE_ENDED;
+	say(&message);
+}
+
+static void do_good_colours(void)
+{
+	say_colours(255);
+}
+
+static void do_light_colours(void)
+{
+	say_colours(254);
 }
 
 static void do_half_message(void)
@@ -285,6 +312,8 @@ static const struct {
 	{ "two headers", do_two_headers },
 	{ "not finite", do_not_finite },
 	{ "half a message", do_half_message },
+	{ "good colours", do_good_colours },
+	{ "light colours", do_light_colours },
 };
 
 int main(int argc, char **argv)

@@ -128,6 +128,26 @@ static void put_fragment(struct writer *writer, const struct dicom_sample *sampl
 	put_item(writer, 0xFFFEE0DD, 0);
 }
 
+/* Descriptors of three tables, then the tables (PS3.3, C.7.6.3.1.5). */
+static void put_palette(struct writer *writer, const struct dicom_sample *sample)
+{
+	for (uint32_t i = 0; i < 3; i++) {
+		put_number(writer, 0x0028, 2);
+		put_number(writer, 0x1101 + i, 2);
+		put(writer, "US", 2);
+		put_number(writer, 6, 2);
+		put_number(writer, (uint32_t)sample->palette_count & 0xFFFF, 2);
+		put_number(writer, (uint32_t)sample->palette_first & 0xFFFF, 2);
+		put_number(writer, (uint32_t)sample->palette_bits, 2);
+	}
+	const size_t count = (size_t)sample->palette_count;
+	for (uint32_t i = 0; i < 3; i++) {
+		put_long_head(writer, 0x00281201 + i, "OW", 2 * count);
+		for (size_t k = 0; k < count; k++)
+			put_number(writer, sample->palette[i * count + k], 2);
+	}
+}
+
 const char *dicom_sample_write(const struct dicom_sample *sample, const char *name)
 {
 	static struct writer writer;
@@ -150,7 +170,12 @@ const char *dicom_sample_write(const struct dicom_sample *sample, const char *na
 	put_text(&writer, 0x00200032, "DS", sample->position);
 	put_text(&writer, 0x00200037, "DS", sample->orientation);
 	put_short(&writer, 0x00280002, sample->samples_per_pixel);
-	put_text(&writer, 0x00280004, "CS", sample->samples_per_pixel == 1 ? "MONOCHROME2" : "RGB");
+	put_text(&writer, 0x00280004, "CS",
+		 sample->photometric              ? sample->photometric
+		 : sample->samples_per_pixel == 1 ? "MONOCHROME2"
+						  : "RGB");
+	if (sample->samples_per_pixel > 1)
+		put_short(&writer, 0x00280006, sample->planar);
 	if (sample->frames)
 		put_text(&writer, 0x00280008, "IS", frames);
 	put_short(&writer, 0x00280010, sample->rows);
@@ -162,6 +187,8 @@ const char *dicom_sample_write(const struct dicom_sample *sample, const char *na
 	put_short(&writer, 0x00280103, sample->is_signed);
 	put_text(&writer, 0x00281052, "DS", sample->intercept);
 	put_text(&writer, 0x00281053, "DS", sample->slope);
+	if (sample->palette)
+		put_palette(&writer, sample);
 	if (sample->csa) {
 		put_text(&writer, 0x00290010, "LO", "SIEMENS CSA HEADER");
 		put_long_head(&writer, 0x00291010, "OB", sample->csa_bytes);

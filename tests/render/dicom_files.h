@@ -28,6 +28,10 @@ struct dicom_sample {
 	bool encapsulated;           /**< the pixels are one fragment of such an element */
 	bool bare;                   /**< without preamble and meta header */
 	const char *image_type;
+	const char *photometric; /**< NULL: MONOCHROME2, or RGB of several samples */
+	bool planar;             /**< the samples are in planes */
+	const uint16_t *palette; /**< red, green and blue of palette_count entries each */
+	int palette_count, palette_first, palette_bits;
 	const void *csa; /**< Siemens' private header of the image (0029,1010) */
 	size_t csa_bytes;
 };

@@ -171,7 +171,6 @@ static void messages_that_are_none_are_refused(void **state)
 	check_decode_refused("two headers", GZ_ERR_PROTOCOL, "header that is none");
 	check_decode_refused("end larger", GZ_ERR_PROTOCOL, "another header");
 	check_decode_refused("end flat", GZ_ERR_PROTOCOL, "another header");
-	check_decode_refused("unused", GZ_ERR_PROTOCOL, "header that is none");
 }
 
 static void memory_that_someone_can_still_write_is_refused(void **state)
@@ -235,8 +234,10 @@ static enum gz_result load_by_stand_in(const char *name, const struct gz_loading
 static void headers_that_cannot_be_are_refused(void **state)
 {
 	(void)state;
-	const char *const names[] = { "dims.dcm",     "type.dcm", "spacing.dcm",   "slope.dcm",
-				      "oriented.dcm", "huge.dcm", "not_finite.dcm" };
+	const char *const names[] = { "dims.dcm",         "type.dcm",   "spacing.dcm",
+				      "slope.dcm",        "huge.dcm",   "oriented.dcm",
+				      "not_finite.dcm",   "colour.dcm", "wide_colour.dcm",
+				      "light_colours.dcm" };
 	const int descriptors = descriptors_open();
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		struct captured_log log;
@@ -282,6 +283,23 @@ static void voxels_go_into_the_scratch_folder(void **state)
 	check_nothing_is_left(descriptors);
 }
 
+static void colours_follow_the_voxels(void **state)
+{
+	(void)state;
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	const struct gz_loading kinds[] = { { .scratch = NULL }, { .scratch = files_folder() } };
+	for (size_t i = 0; i < 2; i++) {
+		if (load_by_stand_in("good_colours.dcm", &kinds[i], &log, &volume) != GZ_OK)
+			fail_msg("%zu: %s", i, log.last);
+		assert_int_equal(volume.colour, GZ_COLOUR_LUMINANCE);
+		assert_int_equal(volume.mapped, 128 + 48 + GZ_VOLUME_PADDING);
+		for (uint32_t k = 0; k < 12; k++)
+			assert_int_equal(volume.colours[k], k | 0xFF000000);
+		gz_volume_free(&volume);
+	}
+}
+
 static void confined_process_cannot_do_more(void **state)
 {
 	(void)state;
@@ -317,6 +335,7 @@ TEST_SUITE(decode)
 		cmocka_unit_test(missing_decoder_is_told),
 		cmocka_unit_test(headers_that_cannot_be_are_refused),
 		cmocka_unit_test(voxels_go_into_the_scratch_folder),
+		cmocka_unit_test(colours_follow_the_voxels),
 		cmocka_unit_test(confined_process_cannot_do_more),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

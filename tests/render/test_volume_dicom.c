@@ -11,6 +11,7 @@
 #include "base/captured_log.h"
 #include "dicom_files.h"
 #include "render/data/volume.h"
+#include "render/data/voxel_colour.h"
 #include "volume_files.h"
 
 #define SERIES "1.2.3.4.5"
@@ -362,6 +363,170 @@ static void run_lengths_beyond_the_frame_are_refused(void **state)
 	}
 }
 
+/* A 3 x 2 image of three bytes a pixel; pixel i is voxel 2 - i % 3, 1 - i / 3. */
+static struct dicom_sample colour_sample(const uint8_t pixels[18])
+{
+	struct dicom_sample sample = dicom_sample_make(SERIES, 1, NULL);
+	sample.samples_per_pixel = 3;
+	sample.bits_allocated = sample.bits_stored = 8;
+	sample.high_bit = 7;
+	sample.is_signed = 0;
+	sample.pixels = pixels;
+	sample.pixel_bytes = 18;
+	return sample;
+}
+
+static void check_colours(const char *path, const uint8_t rgb[18])
+{
+	struct gz_volume volume = load(path);
+	assert_int_equal(volume.colour, GZ_COLOUR_LUMINANCE);
+	assert_true(volume.dims[0] == 3 && volume.dims[1] == 2 && volume.dims[2] == 1);
+	for (int i = 0; i < 6; i++) {
+		const int at = (1 - i / 3) * 3 + 2 - i % 3;
+		for (int c = 0; c < 3; c++)
+			assert_int_equal(gz_colour_byte(volume.colours[at], c), rgb[3 * i + c]);
+		assert_int_equal(((const uint8_t *)volume.voxels)[at],
+				 gz_colour_luminance(rgb + 3 * i));
+	}
+	gz_volume_free(&volume);
+	unlink(path);
+}
+
+static const uint8_t made_rgb[18] = { 255, 0, 0,  0,   255, 0,   0,   0, 255,
+				      9,   8, 70, 255, 255, 255, 200, 1, 128 };
+
+static void colours_are_read_pixel_by_pixel_and_in_planes(void **state)
+{
+	(void)state;
+	uint8_t planes[18];
+	for (int i = 0; i < 18; i++)
+		planes[i % 3 * 6 + i / 3] = made_rgb[i];
+	struct dicom_sample sample = colour_sample(made_rgb);
+	sample.slope = "2"; /* which colours do not have */
+	check_colours(dicom_sample_write(&sample, "rgb"), made_rgb);
+	sample = colour_sample(planes);
+	sample.planar = true;
+	check_colours(dicom_sample_write(&sample, "planes"), made_rgb);
+}
+
+/* By the formula of PS3.3, C.7.6.3.1.2. */
+static void colour_differences_become_colours(void **state)
+{
+	(void)state;
+	static const uint8_t ybr[18] = { 76, 85, 255, 150, 44,  21,  29,  255, 107,
+					 0,  0,  0,   255, 128, 128, 255, 255, 255 };
+	static const uint8_t rgb[18] = { 254, 0,   0, 0,   255, 1,   0,   0,   254,
+					 0,   135, 0, 255, 255, 255, 255, 121, 255 };
+	struct dicom_sample sample = colour_sample(ybr);
+	sample.photometric = "YBR_FULL";
+	check_colours(dicom_sample_write(&sample, "ybr"), rgb);
+}
+
+static void table_of_colours_is_looked_up(void **state)
+{
+	(void)state;
+	static const uint8_t stored[18] = { 0, 10, 11, 12, 13, 255 }; /* six of them */
+	static const uint16_t wide[12] = { 0x1000, 0x2080, 0x30FF, 0xFF00, 0x0500, 0x0600,
+					   0x0700, 0x0800, 0xA000, 0xB000, 0xC000, 0xD000 };
+	static const uint16_t narrow[12] = { 0x10, 0x20, 0x30, 0xFF, 0x05, 0x06,
+					     0x07, 0x08, 0xA0, 0xB0, 0xC0, 0xD0 };
+	static const int entries[6] = { 0, 0, 1, 2, 3, 3 }; /* of stored, from 10 on */
+	const struct {
+		const uint16_t *palette;
+		int bits;
+	} tables[] = { { wide, 16 }, { narrow, 8 }, { narrow, 16 } };
+	uint8_t rgb[18];
+	for (int i = 0; i < 18; i++)
+		rgb[i] = (uint8_t)narrow[i % 3 * 4 + entries[i / 3]];
+	struct dicom_sample sample = colour_sample(stored);
+	sample.samples_per_pixel = 1;
+	sample.pixel_bytes = 6;
+	sample.photometric = "PALETTE COLOR";
+	sample.palette_count = 4;
+	sample.palette_first = 10;
+	for (size_t i = 0; i < 3; i++) {
+		sample.palette = tables[i].palette;
+		sample.palette_bits = tables[i].bits;
+		check_colours(dicom_sample_write(&sample, "palette"), rgb);
+	}
+	sample.palette = NULL;
+	check_refused(dicom_sample_write(&sample, "none"), GZ_ERR_UNSUPPORTED,
+		      "table of colours is missing");
+	sample.palette = wide;
+	sample.palette_bits = 12;
+	check_refused(dicom_sample_write(&sample, "none"), GZ_ERR_UNSUPPORTED,
+		      "table of colours is missing, damaged");
+}
+
+static void colours_of_other_kinds_are_refused(void **state)
+{
+	(void)state;
+	struct dicom_sample sample = colour_sample(made_rgb);
+	sample.photometric = "YBR_FULL_422";
+	check_refused(dicom_sample_write(&sample, "x"), GZ_ERR_UNSUPPORTED, "without compression");
+	sample.photometric = "CMYK";
+	check_refused(dicom_sample_write(&sample, "x"), GZ_ERR_UNSUPPORTED, "CMYK; read are");
+	sample.photometric = "MONOCHROME2";
+	check_refused(dicom_sample_write(&sample, "x"), GZ_ERR_UNSUPPORTED, "colour, 3 values");
+	sample = colour_sample(made_rgb);
+	sample.frames = 2;
+	check_refused(dicom_sample_write(&sample, "x"), GZ_ERR_FORMAT, "truncated");
+}
+
+/* What DCMTK compresses, and what it makes of that again. */
+static void compressed_colours_are_those_that_dcmtk_decodes(void **state)
+{
+	(void)state;
+	enum { EDGE = 32 };
+	static const struct {
+		const char *pack, *unpack;
+	} ways[] = {
+		{ "dcmcrle", "dcmdrle" },
+		{ "dcmcjpls", "dcmdjpls" },
+		{ "dcmcjpeg +e1", "dcmdjpeg" },
+		{ "dcmcjpeg +eb +s4", "dcmdjpeg +cn" },
+		{ "dcmcjpeg +eb +s2", "dcmdjpeg +cn" },
+		{ "dcmcjpeg +eb +cr", "dcmdjpeg" },
+		{ "gdcmconv --j2k", "sh -c 'cp plain.dcm again'" }, /* lossless */
+	};
+	static uint8_t pixels[3 * EDGE * EDGE];
+	char command[2048];
+	for (int i = 0; i < EDGE * EDGE; i++) {
+		pixels[3 * i] = (uint8_t)(8 * (i % EDGE));
+		pixels[3 * i + 1] = (uint8_t)(8 * (i / EDGE));
+		pixels[3 * i + 2] = (uint8_t)(i % EDGE * (i / EDGE) / 4);
+	}
+	struct dicom_sample sample = colour_sample(pixels);
+	sample.columns = sample.rows = EDGE;
+	sample.pixel_bytes = sizeof pixels;
+	for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+		(void)dicom_sample_write(&sample, "plain.dcm");
+		snprintf(command, sizeof command,
+			 "cd %s && %s plain.dcm packed 2>err && %s packed again 2>err && "
+			 "rm plain.dcm err && mkdir -p a b && mv packed a && mv again b",
+			 files_folder(), ways[i].pack, ways[i].unpack);
+		if (system(command) != 0) {
+			print_message("%s is not there; install dcmtk\n", ways[i].pack);
+			skip();
+		}
+		struct gz_volume packed = load(files_path("a/packed"));
+		struct gz_volume wanted = load(files_path("b/again"));
+		assert_int_equal(packed.colour, GZ_COLOUR_LUMINANCE);
+		for (int k = 0; k < EDGE * EDGE; k++)
+			for (int c = 0; c < 3; c++) {
+				const int got = gz_colour_byte(packed.colours[k], c);
+				const int it_has = gz_colour_byte(wanted.colours[k], c);
+				if (got != it_has)
+					fail_msg("%s: pixel %d channel %d: %d, not %d",
+						 ways[i].pack, k, c, got, it_has);
+			}
+		gz_volume_free(&packed);
+		gz_volume_free(&wanted);
+	}
+	snprintf(command, sizeof command, "cd %s && rm -r a b", files_folder());
+	assert_int_equal(system(command), 0);
+}
+
 static void file_without_preamble_is_read(void **state)
 {
 	(void)state;
@@ -533,6 +698,12 @@ TEST_SUITE(volume_dicom)
 		cmocka_unit_test_setup(compressed_series_is_that_of_its_plain_one, empty_folder),
 		cmocka_unit_test_setup(run_lengths_are_decoded, empty_folder),
 		cmocka_unit_test_setup(run_lengths_beyond_the_frame_are_refused, empty_folder),
+		cmocka_unit_test_setup(colours_are_read_pixel_by_pixel_and_in_planes, empty_folder),
+		cmocka_unit_test_setup(colour_differences_become_colours, empty_folder),
+		cmocka_unit_test_setup(table_of_colours_is_looked_up, empty_folder),
+		cmocka_unit_test_setup(colours_of_other_kinds_are_refused, empty_folder),
+		cmocka_unit_test_setup(compressed_colours_are_those_that_dcmtk_decodes,
+				       empty_folder),
 		cmocka_unit_test_setup(file_without_preamble_is_read, empty_folder),
 		cmocka_unit_test_setup(mosaic_is_split_into_its_slices, empty_folder),
 		cmocka_unit_test_setup(missing_slice_is_refused, empty_folder),

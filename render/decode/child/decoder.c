@@ -47,6 +47,7 @@ static struct gz_decode_header header_of(const struct gz_volume *volume)
 {
 	struct gz_decode_header header = { .type = (uint32_t)volume->type,
 					   .oriented = volume->oriented,
+					   .colour = (uint32_t)volume->colour,
 					   .slope = volume->slope,
 					   .intercept = volume->intercept };
 	for (int axis = 0; axis < 3; axis++) {

@@ -41,13 +41,14 @@ const gdcm::Tag image_type(0x0008, 0x0008), study_date(0x0008, 0x0020),
 	slice_thickness(0x0018, 0x0050), spacing_between_slices(0x0018, 0x0088),
 	series_instance_uid(0x0020, 0x000e), instance_number(0x0020, 0x0013),
 	image_position(0x0020, 0x0032), image_orientation(0x0020, 0x0037),
-	samples_per_pixel(0x0028, 0x0002), number_of_frames(0x0028, 0x0008), rows(0x0028, 0x0010),
-	columns(0x0028, 0x0011), pixel_spacing(0x0028, 0x0030), bits_allocated(0x0028, 0x0100),
-	bits_stored(0x0028, 0x0101), high_bit(0x0028, 0x0102), pixel_representation(0x0028, 0x0103),
-	rescale_intercept(0x0028, 0x1052), rescale_slope(0x0028, 0x1053),
-	shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230), plane_position(0x0020, 0x9113),
-	plane_orientation(0x0020, 0x9116), pixel_measures(0x0028, 0x9110),
-	value_transformation(0x0028, 0x9145);
+	samples_per_pixel(0x0028, 0x0002), photometric_interpretation(0x0028, 0x0004),
+	planar_configuration(0x0028, 0x0006), number_of_frames(0x0028, 0x0008),
+	rows(0x0028, 0x0010), columns(0x0028, 0x0011), pixel_spacing(0x0028, 0x0030),
+	bits_allocated(0x0028, 0x0100), bits_stored(0x0028, 0x0101), high_bit(0x0028, 0x0102),
+	pixel_representation(0x0028, 0x0103), rescale_intercept(0x0028, 0x1052),
+	rescale_slope(0x0028, 0x1053), shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230),
+	plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116),
+	pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145);
 
 const gdcm::ByteValue *value_of(const gdcm::DataSet &data, const gdcm::Tag &tag)
 {
@@ -160,6 +161,8 @@ format format_of(const gdcm::DataSet &data, const groups &functional)
 	f.bits_stored = short_of(data, bits_stored, f.bits_allocated);
 	f.high_bit = short_of(data, high_bit, f.bits_stored - 1);
 	f.is_signed = short_of(data, pixel_representation, 0) == 1;
+	f.samples = short_of(data, samples_per_pixel, 1);
+	f.colours = colour_kind_of(text_of(data, photometric_interpretation));
 	functional.in(0, pixel_measures, [&f](const gdcm::DataSet &measures) {
 		double rows_columns[2], thickness;
 		/* Between rows comes first (PS3.3, 10.7.1.3). */
@@ -436,7 +439,7 @@ void fill_head(const gdcm::DataSet &data, head &out)
 	out.date = text_of(data, study_date);
 	out.description = text_of(data, series_description);
 	out.numbers = format_of(data, functional);
-	out.samples = short_of(data, samples_per_pixel, 1);
+	out.photometric = text_of(data, photometric_interpretation);
 	const int claimed = decimal_of(data, number_of_frames, 1);
 	out.frames = claimed < 1 ? 1 : (uint64_t)claimed;
 	for (uint64_t frame = 0; frame < out.frames && frame <= GZ_VOLUME_DIM_MAX; frame++)
@@ -472,6 +475,10 @@ bool read_head_of(std::istream &file, uint64_t file_size, head &out)
 	pixels->path = out.path;
 	pixels->numbers = out.numbers;
 	pixels->deflated = deflated;
+	pixels->planar = short_of(data, planar_configuration, 0) == 1;
+	pixels->halved = out.photometric == "YBR_FULL_422";
+	if (out.numbers.colours == colour_kind::palette)
+		pixels->table = palette_of(data, out.numbers.is_signed);
 	pixels->coding = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
 	if (deflated) {
 		const gdcm::ByteValue *value = value_of(data, pixel_data);

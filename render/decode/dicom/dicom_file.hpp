@@ -11,6 +11,8 @@
 
 #include <gdcmTransferSyntax.h>
 
+#include "render/decode/dicom/dicom_colour.hpp"
+
 namespace gz_dicom
 {
 
@@ -40,6 +42,8 @@ struct format {
 	int frame_columns = 0, frame_rows = 0; /* of a frame, which may be a mosaic of slices */
 	int bits_allocated = 0, bits_stored = 0, high_bit = 0;
 	bool is_signed = false;
+	int samples = 1; /* numbers of a pixel */
+	colour_kind colours = colour_kind::none;
 	double spacing[2] = { 1, 1 }; /* between columns, between rows */
 	double thickness = 0;         /* or spacing between slices, if told */
 
@@ -48,13 +52,14 @@ struct format {
 		return columns == other.columns && rows == other.rows &&
 		       bits_allocated == other.bits_allocated && bits_stored == other.bits_stored &&
 		       high_bit == other.high_bit && is_signed == other.is_signed &&
+		       samples == other.samples && colours == other.colours &&
 		       std::fabs(spacing[0] - other.spacing[0]) < 1e-4 * spacing[0] &&
 		       std::fabs(spacing[1] - other.spacing[1]) < 1e-4 * spacing[1];
 	}
 
 	uint64_t frame_bytes() const
 	{
-		return (uint64_t)frame_columns * (uint64_t)frame_rows *
+		return (uint64_t)frame_columns * (uint64_t)frame_rows * (uint64_t)samples *
 		       (uint64_t)(bits_allocated / 8);
 	}
 };
@@ -65,9 +70,12 @@ struct pixels_of_file {
 	format numbers;
 	gdcm::TransferSyntax::TSType coding = gdcm::TransferSyntax::TS_END;
 	bool encapsulated = false;
-	bool deflated = false;                 /* the whole file is: it is read as a whole */
-	bool swap_bytes = false;               /* two by two, of plain pixels */
-	span plain {};                         /* all frames, one after the other */
+	bool deflated = false;   /* the whole file is: it is read as a whole */
+	bool swap_bytes = false; /* two by two, of plain pixels */
+	bool planar = false;     /* plain pixels of colours are in three planes */
+	bool halved = false;     /* plain pixels have half the colours: YBR_FULL_422 */
+	palette table;           /* of an image that needs one */
+	span plain {};           /* all frames, one after the other */
 	std::vector<std::vector<span>> frames; /* fragments of each, if encapsulated */
 };
 
@@ -92,7 +100,7 @@ struct slice {
 struct head {
 	std::string path, series_uid, patient, date, description;
 	format numbers;
-	int samples = 1; /* a pixel */
+	std::string photometric;
 	std::vector<slice> slices;
 	uint64_t frames = 0;     /* claimed */
 	uint64_t bytes = 0;      /* that its pixel data can hold */

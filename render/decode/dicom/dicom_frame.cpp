@@ -78,6 +78,15 @@ gdcm::DataElement element_of(const std::vector<char> &bytes)
 	return element;
 }
 
+/* What the library is told of the numbers: it leaves all of them as they are. */
+gdcm::PhotometricInterpretation photometric_of(const format &n)
+{
+	using kinds = gdcm::PhotometricInterpretation;
+	return n.samples == 1                  ? kinds::MONOCHROME2
+	       : n.colours == colour_kind::ybr ? kinds::YBR_FULL
+					       : kinds::RGB;
+}
+
 /* One frame, told to the library as an image of its own. */
 bool decode_picture(const pixels_of_file &pixels, const std::vector<char> &bytes,
 		    std::vector<uint8_t> &out)
@@ -87,17 +96,18 @@ bool decode_picture(const pixels_of_file &pixels, const std::vector<char> &bytes
 	image.SetNumberOfDimensions(2);
 	image.SetDimension(0, (unsigned)n.frame_columns);
 	image.SetDimension(1, (unsigned)n.frame_rows);
-	const gdcm::PixelFormat stored(1, (uint16_t)n.bits_allocated, (uint16_t)n.bits_stored,
-				       (uint16_t)n.high_bit, n.is_signed ? 1 : 0);
+	const gdcm::PixelFormat stored((uint16_t)n.samples, (uint16_t)n.bits_allocated,
+				       (uint16_t)n.bits_stored, (uint16_t)n.high_bit,
+				       n.is_signed ? 1 : 0);
 	image.SetPixelFormat(stored);
-	image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+	image.SetPhotometricInterpretation(photometric_of(n));
 	image.SetTransferSyntax(gdcm::TransferSyntax(pixels.coding));
 	image.SetDataElement(element_of(bytes));
 	if (image.GetBufferLength() != out.size() || !image.GetBuffer((char *)out.data()))
 		return false;
 	/* A codec may correct what the head says of the numbers. */
 	return image.GetPixelFormat().GetBitsAllocated() == n.bits_allocated &&
-	       image.GetPixelFormat().GetSamplesPerPixel() == 1;
+	       image.GetPixelFormat().GetSamplesPerPixel() == n.samples;
 }
 
 bool is_supported(gdcm::TransferSyntax::TSType coding)
@@ -142,7 +152,8 @@ gz_result decode_fragments(const pixels_of_file &pixels, uint32_t frame, std::ve
 		return GZ_ERR_IO;
 	}
 	const bool rle = pixels.coding == gdcm::TransferSyntax::RLELossless;
-	if (bytes.empty() || (rle && !rle_head_valid(bytes, pixels.numbers.bits_allocated / 8)) ||
+	const int bytes_a_pixel = pixels.numbers.samples * pixels.numbers.bits_allocated / 8;
+	if (bytes.empty() || (rle && !rle_head_valid(bytes, bytes_a_pixel)) ||
 	    !guarded([&] { return decode_picture(pixels, bytes, out); })) {
 		why = "its pixels, " + kind + ", are damaged; fetch it again";
 		return GZ_ERR_FORMAT;
@@ -174,10 +185,9 @@ bool read_plain(const pixels_of_file &pixels, uint64_t at, std::vector<uint8_t> 
 	return (bool)file.read((char *)out.data(), (std::streamsize)out.size());
 }
 
-} // namespace
-
-gz_result decode_frame(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
-		       std::string &why)
+/* Decode the numbers of a frame. */
+gz_result decode_numbers(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
+			 std::string &why)
 {
 	const uint64_t size = pixels.numbers.frame_bytes();
 	out.assign(size, 0);
@@ -193,6 +203,18 @@ gz_result decode_frame(const pixels_of_file &pixels, uint32_t frame, std::vector
 	if (pixels.swap_bytes)
 		swap_pairs(out);
 	return GZ_OK;
+}
+
+} // namespace
+
+gz_result decode_frame(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
+		       std::string &why)
+{
+	const gz_result result = decode_numbers(pixels, frame, out, why);
+	/* Decoded colours are pixel by pixel, as the library was told. */
+	if (result == GZ_OK && pixels.numbers.colours != colour_kind::none)
+		out = colours_of(pixels, out, pixels.planar && !pixels.encapsulated);
+	return result;
 }
 
 } // namespace gz_dicom

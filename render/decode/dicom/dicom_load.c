@@ -47,6 +47,7 @@ static enum gz_result import_slices(struct stack *stack, const struct gz_volume_
 	struct gz_import_layout layout = {
 		.oriented = geometry->oriented,
 		.type = geometry->type,
+		.channels = geometry->channels,
 		.big_endian = gz_host_big_endian(),
 		.slope = geometry->slope,
 		.intercept = geometry->intercept,
@@ -55,7 +56,7 @@ static enum gz_result import_slices(struct stack *stack, const struct gz_volume_
 	memcpy(layout.spacing, geometry->spacing, sizeof layout.spacing);
 	memcpy(layout.direction, geometry->direction, sizeof layout.direction);
 	stack->slice_size =
-		(size_t)layout.dims[0] * (size_t)layout.dims[1] * gz_raw_type_size(layout.type);
+		(size_t)layout.dims[0] * (size_t)layout.dims[1] * gz_import_voxel_size(&layout);
 	stack->at = stack->slice_size;
 	stack->left = layout.dims[2];
 	stack->slice = malloc(stack->slice_size);

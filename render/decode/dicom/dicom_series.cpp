@@ -43,7 +43,7 @@ const double uneven = 0.05;
 const double tilt_deg = 1.0;
 
 /* Memory that a codec takes for a pixel beside what it gives, bytes (JPEG 2000 works on integers of
- * 32 bits, and keeps a few). */
+ * 32 bits, and keeps a few), of one number. */
 const uint64_t codec_bytes_a_pixel = 16;
 
 class reader
@@ -67,6 +67,7 @@ class reader
 	void list_series(const std::map<std::string, size_t> &count) const;
 	bool look_at(const std::string &name);
 	gz_result choose(const std::string &wanted);
+	gz_result check_colour(const head &h) const;
 	gz_result check_head(const head &h) const;
 	gz_result join();
 	gz_result place();
@@ -75,6 +76,7 @@ class reader
 	void note_tilt(const vector3 &normal) const;
 	void finish();
 	decoded_slice decode(size_t index) const;
+	void cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	void widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	size_t slice_bytes() const;
 
@@ -266,14 +268,43 @@ gz_result reader::choose(const std::string &wanted)
 	return GZ_OK;
 }
 
+/* Colours are of 3 x 8 bits, or in a table. */
+gz_result reader::check_colour(const head &h) const
+{
+	const format &f = h.numbers;
+	const bool three = f.colours == colour_kind::rgb || f.colours == colour_kind::ybr;
+	const auto &pixels = h.slices[0].pixels;
+	if (three ? f.samples != 3 || f.bits_allocated != 8 || f.bits_stored != 8 || f.is_signed
+		  : f.samples != 1 || f.colours == colour_kind::other) {
+		gz_err(log,
+		       "%s: colour, %d values of %d bits a pixel, %s; read are 3 of 8 bits, as RGB "
+		       "or YBR_FULL, and PALETTE COLOR",
+		       h.path.c_str(), f.samples, f.bits_stored, h.photometric.c_str());
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (three && pixels->halved && !pixels->encapsulated) {
+		gz_err(log,
+		       "%s: colour, YBR_FULL_422 without compression, is not read; convert it to "
+		       "RGB",
+		       h.path.c_str());
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (f.colours == colour_kind::palette && pixels->table.rgb.empty()) {
+		gz_err(log,
+		       "%s: its table of colours is missing, damaged or segmented; convert it to "
+		       "RGB, for instance with gdcmconv --apply-lut",
+		       h.path.c_str());
+		return GZ_ERR_UNSUPPORTED;
+	}
+	return GZ_OK;
+}
+
 gz_result reader::check_head(const head &h) const
 {
 	const format &f = h.numbers;
-	if (h.samples != 1) {
-		gz_err(log, "%s: colour, %d values a pixel; only one is shown as a volume",
-		       h.path.c_str(), h.samples);
-		return GZ_ERR_UNSUPPORTED;
-	}
+	const gz_result colour = check_colour(h);
+	if (colour != GZ_OK)
+		return colour;
 	if ((f.bits_allocated != 8 && f.bits_allocated != 16) || f.bits_stored < 1 ||
 	    f.bits_stored > f.bits_allocated || f.high_bit < f.bits_stored - 1 ||
 	    f.high_bit >= f.bits_allocated) {
@@ -440,13 +471,16 @@ void reader::finish()
 	geometry.dims[2] = (int)slices.size();
 	geometry.spacing[0] = numbers.spacing[0];
 	geometry.spacing[1] = numbers.spacing[1];
-	scaled_apart = std::any_of(slices.begin(), slices.end(), [&](const slice &s) {
+	const bool coloured = numbers.colours != colour_kind::none;
+	geometry.channels = coloured ? 3 : 1;
+	scaled_apart = !coloured && std::any_of(slices.begin(), slices.end(), [&](const slice &s) {
 		return s.slope != slices[0].slope || s.intercept != slices[0].intercept;
 	});
 	geometry.slope = scaled_apart ? 1 : slices[0].slope;
 	geometry.intercept = scaled_apart ? 0 : slices[0].intercept;
 	const bool bytes = numbers.bits_stored <= 8;
-	geometry.type = scaled_apart        ? GZ_RAW_FLOAT32
+	geometry.type = coloured            ? GZ_RAW_UINT8
+			: scaled_apart      ? GZ_RAW_FLOAT32
 			: numbers.is_signed ? bytes ? GZ_RAW_INT8 : GZ_RAW_INT16
 			: bytes             ? GZ_RAW_UINT8
 					    : GZ_RAW_UINT16;
@@ -472,7 +506,19 @@ gz_result reader::open()
 
 size_t reader::slice_bytes() const
 {
-	return (size_t)numbers.columns * (size_t)numbers.rows * gz_raw_type_size(geometry.type);
+	return (size_t)numbers.columns * (size_t)numbers.rows * (size_t)geometry.channels *
+	       gz_raw_type_size(geometry.type);
+}
+
+/* The colours of a slice out of those of its frame. */
+void reader::cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const
+{
+	const size_t row = 3 * (size_t)numbers.columns;
+	for (int y = 0; y < numbers.rows; y++) {
+		const size_t at = (size_t)(s.first_row + y) * (size_t)numbers.frame_columns +
+				  (size_t)s.first_column;
+		std::memcpy((uint8_t *)voxels + (size_t)y * row, &frame[3 * at], row);
+	}
 }
 
 /* Stored bits to numbers of the geometry's type: other bits, overlays of old, are masked out. */
@@ -519,7 +565,10 @@ decoded_slice reader::decode(size_t index) const
 	made.result = decode_frame(*s.pixels, s.frame, frame, made.why);
 	if (made.result == GZ_OK) {
 		made.voxels.resize(slice_bytes());
-		widen(s, frame, made.voxels.data());
+		if (numbers.colours != colour_kind::none)
+			cut_colours(s, frame, made.voxels.data());
+		else
+			widen(s, frame, made.voxels.data());
 	}
 	return made;
 }
@@ -527,12 +576,12 @@ decoded_slice reader::decode(size_t index) const
 gz_result reader::read(void *voxels)
 {
 	if (!pool)
-		pool.reset(new slice_pool(slices.size(),
-					  numbers.frame_bytes() +
-						  codec_bytes_a_pixel *
-							  (uint64_t)numbers.frame_columns *
-							  (uint64_t)numbers.frame_rows,
-					  [this](size_t index) { return decode(index); }));
+		pool.reset(new slice_pool(
+			slices.size(),
+			numbers.frame_bytes() + codec_bytes_a_pixel * (uint64_t)geometry.channels *
+							(uint64_t)numbers.frame_columns *
+							(uint64_t)numbers.frame_rows,
+			[this](size_t index) { return decode(index); }));
 	const decoded_slice made = pool->take();
 	if (made.result != GZ_OK) {
 		gz_err(log, "%s: %s", slices[next].path().c_str(), made.why.c_str());

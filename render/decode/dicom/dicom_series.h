@@ -30,6 +30,7 @@ struct gz_dicom_geometry {
 	double direction[3][3]; /**< [axis][x, y, z] in RAS+ */
 	bool oriented;          /**< the files told where they lie */
 	enum gz_raw_type type;  /**< of what gz_dicom_series_read() gives, in host byte order */
+	int channels;           /**< numbers of a voxel: 1, or 3 for red, green and blue */
 	double slope, intercept;
 	uint64_t bytes_bound; /**< the most bytes that the files' pixel data can hold */
 };
@@ -46,7 +47,8 @@ struct gz_dicom_geometry {
  * @retval GZ_ERR_NOT_FOUND    no such file, folder or series; logged
  * @retval GZ_ERR_FORMAT       no DICOM image there, several series, slices that do not fit
  *                             together or lie unevenly; logged with the remedy
- * @retval GZ_ERR_UNSUPPORTED  colour, or a compression that is not read; logged with the remedy
+ * @retval GZ_ERR_UNSUPPORTED  a kind of colour or a compression that is not read; logged with the
+ *                             remedy
  * @retval GZ_ERR_NO_MEM       logged
  * @retval GZ_ERR_CANCELLED    not logged
  */
@@ -59,7 +61,7 @@ const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_s
 /**
  * Get the next slice. Threads decode a few ahead.
  *
- * @param[out] voxels  columns * rows numbers of the geometry's type
+ * @param[out] voxels  columns * rows voxels, of the geometry's type and channels
  * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
  */
 enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels);
