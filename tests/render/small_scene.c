@@ -1,5 +1,7 @@
 #include "small_scene.h"
 
+#include "render/data/voxel_colour.h"
+
 struct gz_foveation small_scene_foveation(void)
 {
 	struct gz_foveation foveation = gz_foveation_default();
@@ -72,6 +74,31 @@ struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type 
 			{ 1, { 1, 1, 0.8 }, 0.3 },
 		},
 	};
+	return scene;
+}
+
+struct small_scene small_scene_coloured(int nx, int ny, int nz, enum gz_volume_colour colour)
+{
+	struct small_scene scene = small_scene_waves(nx, ny, nz, GZ_VOXEL_U8);
+	struct gz_volume coloured = scene.volume;
+	coloured.colour = colour;
+	assert_int_equal(gz_volume_allocate(&coloured), GZ_OK);
+	const size_t count = gz_volume_voxel_count(&coloured);
+	const uint8_t *values = scene.volume.voxels;
+	memcpy(coloured.voxels, values, count);
+	for (size_t i = 0; i < count; i++) {
+		const double x = (double)(i % (size_t)nx) / nx;
+		const double y = (double)(i / (size_t)nx % (size_t)ny) / ny;
+		const double z = (double)(i / ((size_t)nx * (size_t)ny)) / nz;
+		const uint8_t rgb[3] = { (uint8_t)lround(127 + 127 * sin(11 * x + 3 * z)),
+					 (uint8_t)lround(127 + 127 * cos(7 * y - 5 * x)),
+					 (uint8_t)lround(255 * z * (1 - y)) };
+		coloured.colours[i] =
+			gz_colour_pack(rgb, colour == GZ_COLOUR_ALPHA ? values[i] : 255);
+	}
+	gz_volume_free(&scene.volume);
+	gz_volume_find_range(&coloured);
+	scene.volume = coloured;
 	return scene;
 }
 

@@ -25,6 +25,10 @@ struct small_scene {
 /** Waves in a box: smooth, without symmetry, with empty space on one side. */
 struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type type);
 
+/** The waves of 8 bits, with colours that have nothing to do with them: their weights are the
+ * values if these are alpha, else equal. */
+struct small_scene small_scene_coloured(int nx, int ny, int nz, enum gz_volume_colour colour);
+
 /** Every voxel the same, @p opacity per voxel length. */
 struct small_scene small_scene_constant(int edge, double opacity);
 

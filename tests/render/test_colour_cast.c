@@ -13,39 +13,13 @@
 #include "render/plan/method.h"
 #include "small_scene.h"
 
-/* Waves with colours that have nothing to do with the values, and weights as of alpha or equal. */
-static struct small_scene coloured_waves(int nx, int ny, int nz, enum gz_volume_colour colour)
-{
-	struct small_scene scene = small_scene_waves(nx, ny, nz, GZ_VOXEL_U8);
-	struct gz_volume coloured = scene.volume;
-	coloured.colour = colour;
-	assert_int_equal(gz_volume_allocate(&coloured), GZ_OK);
-	const size_t count = gz_volume_voxel_count(&coloured);
-	const uint8_t *values = scene.volume.voxels;
-	memcpy(coloured.voxels, values, count);
-	for (size_t i = 0; i < count; i++) {
-		const double x = (double)(i % (size_t)nx) / nx;
-		const double y = (double)(i / (size_t)nx % (size_t)ny) / ny;
-		const double z = (double)(i / ((size_t)nx * (size_t)ny)) / nz;
-		const uint8_t rgb[3] = { (uint8_t)lround(127 + 127 * sin(11 * x + 3 * z)),
-					 (uint8_t)lround(127 + 127 * cos(7 * y - 5 * x)),
-					 (uint8_t)lround(255 * z * (1 - y)) };
-		coloured.colours[i] =
-			gz_colour_pack(rgb, colour == GZ_COLOUR_ALPHA ? values[i] : 255);
-	}
-	gz_volume_free(&scene.volume);
-	gz_volume_find_range(&coloured);
-	scene.volume = coloured;
-	return scene;
-}
-
 static const enum gz_volume_colour colours[] = { GZ_COLOUR_LUMINANCE, GZ_COLOUR_ALPHA };
 
 static void cast_of_colours_equals_the_oracle(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < 2; i++) {
-		struct small_scene scene = coloured_waves(40, 33, 27, colours[i]);
+		struct small_scene scene = small_scene_coloured(40, 33, 27, colours[i]);
 		oracle_check(&scene, 61, 47);
 	}
 }
@@ -53,7 +27,7 @@ static void cast_of_colours_equals_the_oracle(void **state)
 static void cast_of_colours_over_a_background_and_clipped_equals_the_oracle(void **state)
 {
 	(void)state;
-	struct small_scene scene = coloured_waves(24, 31, 24, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(24, 31, 24, GZ_COLOUR_ALPHA);
 	scene.rays.background[0] = 1;
 	scene.rays.background[2] = 0.3;
 	scene.rays.clip.least[0] = 0.37;
@@ -64,7 +38,7 @@ static void cast_of_colours_over_a_background_and_clipped_equals_the_oracle(void
 static void cast_of_colours_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces(void **state)
 {
 	(void)state;
-	struct small_scene scene = coloured_waves(20, 20, 20, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(20, 20, 20, GZ_COLOUR_ALPHA);
 	scene.rays.interpolation = GZ_INTERPOLATION_NEAREST;
 	oracle_check_but(&scene, 64, 64, 4);
 	small_scene_free(&scene);
@@ -76,7 +50,7 @@ static void cast_of_colours_of_rays_any_distance_apart_equals_the_oracle(void **
 	/* What blocks, wide blocks and neither hold. */
 	static const int sizes[][2] = { { 24, 470 }, { 30, 170 }, { 60, 60 }, { 17, 13 } };
 	for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-		struct small_scene scene = coloured_waves(230, 70, 50, GZ_COLOUR_ALPHA);
+		struct small_scene scene = small_scene_coloured(230, 70, 50, GZ_COLOUR_ALPHA);
 		oracle_check(&scene, sizes[i][0], sizes[i][1]);
 	}
 }
@@ -84,7 +58,7 @@ static void cast_of_colours_of_rays_any_distance_apart_equals_the_oracle(void **
 static void cast_of_colours_with_light_equals_the_oracle(void **state)
 {
 	(void)state;
-	struct small_scene scene = coloured_waves(30, 28, 26, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(30, 28, 26, GZ_COLOUR_ALPHA);
 	scene.rays.shading = GZ_SHADING_GRADIENT;
 	oracle_check(&scene, 48, 40);
 }
@@ -94,7 +68,7 @@ static void pre_integrated_cast_of_colours_equals_the_oracle(void **state)
 {
 	(void)state;
 	for (size_t i = 0; i < 2; i++) {
-		struct small_scene scene = coloured_waves(30, 28, 26, colours[i]);
+		struct small_scene scene = small_scene_coloured(30, 28, 26, colours[i]);
 		scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
 		oracle_check(&scene, 48, 40);
 	}
@@ -107,7 +81,7 @@ static void cast_of_colours_of_flat_and_single_voxels_equals_the_oracle(void **s
 				       { 1, 40, 40 }, { 40, 40, 1 }, { 2, 2, 2 } };
 	for (size_t i = 0; i < sizeof dims / sizeof dims[0]; i++) {
 		struct small_scene scene =
-			coloured_waves(dims[i][0], dims[i][1], dims[i][2], GZ_COLOUR_ALPHA);
+			small_scene_coloured(dims[i][0], dims[i][1], dims[i][2], GZ_COLOUR_ALPHA);
 		scene.transfer.points[0].opacity = 0.2;
 		oracle_check(&scene, 37, 31);
 	}
@@ -118,7 +92,7 @@ static void colour_of_transparent_voxels_does_not_show(void **state)
 {
 	(void)state;
 	enum { EDGE = 24 };
-	struct small_scene scene = coloured_waves(EDGE, EDGE, EDGE, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(EDGE, EDGE, EDGE, GZ_COLOUR_ALPHA);
 	const uint8_t red[3] = { 255, 0, 0 }, black[3] = { 0, 0, 0 };
 	for (int i = 0; i < EDGE * EDGE * EDGE; i++) {
 		const double x = i % EDGE - 11.5, y = i / EDGE % EDGE - 11.5;
@@ -153,7 +127,7 @@ static void colour_of_transparent_voxels_does_not_show(void **state)
 static void colours_are_the_same_bits_for_any_number_of_threads(void **state)
 {
 	(void)state;
-	struct small_scene scene = coloured_waves(50, 41, 60, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(50, 41, 60, GZ_COLOUR_ALPHA);
 	scene.foveation.method = GZ_METHOD_ACUITY;
 	struct gz_image images[2] = { 0 };
 	for (int i = 0; i < 2; i++) {
@@ -170,7 +144,7 @@ static void colours_are_the_same_bits_for_any_number_of_threads(void **state)
 static void colours_by_every_instruction_set_agree_within_one_grey_level(void **state)
 {
 	(void)state;
-	struct small_scene scene = coloured_waves(50, 41, 60, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(50, 41, 60, GZ_COLOUR_ALPHA);
 	scene.rays.shading = GZ_SHADING_GRADIENT;
 	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
 		struct gz_image first = { 0 };
@@ -200,7 +174,7 @@ static void colours_at_the_gaze_point_equal_those_of_standard(void **state)
 {
 	(void)state;
 	enum { WIDTH = 900, HEIGHT = 700, REACH = 12 };
-	struct small_scene scene = coloured_waves(48, 48, 48, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(48, 48, 48, GZ_COLOUR_ALPHA);
 	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
 	struct gz_image full = { 0 }, image = { 0 };
 	scene.foveation.method = GZ_METHOD_STANDARD;
@@ -226,7 +200,7 @@ static void colours_of_a_coarser_level_equal_the_oracle(void **state)
 {
 	(void)state;
 	enum { WIDTH = 24, HEIGHT = 20 };
-	struct small_scene scene = coloured_waves(96, 90, 100, GZ_COLOUR_ALPHA);
+	struct small_scene scene = small_scene_coloured(96, 90, 100, GZ_COLOUR_ALPHA);
 	struct gz_levels levels = { 0 };
 	struct gz_image image = { 0 };
 	scene.foveation.method = GZ_METHOD_STANDARD;

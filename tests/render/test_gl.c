@@ -145,6 +145,32 @@ static void pictures_of_float_data_equal_the_cpus_by_every_method(void **state)
 	check_every_method(&scene, "float");
 }
 
+static void pictures_of_colours_equal_the_cpus_by_every_method(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_coloured(50, 41, 60, GZ_COLOUR_ALPHA);
+	check_every_method(&scene, "colours");
+}
+
+static void pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus(void **state)
+{
+	(void)state;
+	const struct raycaster_params params = { .hooks.as_hardware = true };
+	struct small_scene scene = small_scene_coloured(50, 41, 60, GZ_COLOUR_LUMINANCE);
+	struct pair pair = { .cpu = renderer_of("cpu", &scene),
+			     .gl = renderer_with("gl", &params, &scene) };
+	scene.foveation.method = GZ_METHOD_ACUITY;
+	for (int variant = 0; variant < 8; variant++) {
+		scene.rays.levels = variant & 1;
+		scene.rays.integration =
+			variant & 2 ? GZ_INTEGRATION_PREINTEGRATED : GZ_INTEGRATION_SAMPLED;
+		scene.rays.shading = variant & 4 ? GZ_SHADING_GRADIENT : GZ_SHADING_NONE;
+		check_pair(&pair, &scene, 320, 240, "colours as on a device");
+	}
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
 static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -353,6 +379,28 @@ static void volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line(void 
 	small_scene_free(&small);
 }
 
+static void colours_beyond_the_texture_limit_are_refused_because_bricks_have_none(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_coloured(8, 40, 8, GZ_COLOUR_ALPHA);
+	struct small_scene small = small_scene_coloured(8, 39, 8, GZ_COLOUR_ALPHA);
+	struct heard heard = { "" };
+	struct gz_log log;
+	gz_log_init(&log, hear, &heard, NULL);
+	const struct raycaster_params params = { .hooks.volume_edge_max = 39 };
+	struct gz_raycaster *renderer = NULL;
+	assert_int_equal(raycaster_with("gl", &params, &log, &renderer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(renderer, &scene.volume), GZ_ERR_UNSUPPORTED);
+	if (!strstr(heard.text, "bricks hold no colours") || !strstr(heard.text, "--backend cpu"))
+		fail_msg("'%s' names neither reason nor remedy", heard.text);
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_ERR_INVAL);
+	/* What fits is taken afterwards. */
+	assert_int_equal(gz_raycaster_set_volume(renderer, &small.volume), GZ_OK);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&scene);
+	small_scene_free(&small);
+}
+
 /* What a process with another environment says of a backend: 0 and how it describes it, or 1 and
  * why not. */
 static int probe(const char *backend)
@@ -492,6 +540,9 @@ TEST_SUITE(gl)
 		cmocka_unit_test(pictures_of_8_bit_data_equal_the_cpus_by_every_method),
 		cmocka_unit_test(pictures_of_16_bit_data_equal_the_cpus_by_every_method),
 		cmocka_unit_test(pictures_of_float_data_equal_the_cpus_by_every_method),
+		cmocka_unit_test(pictures_of_colours_equal_the_cpus_by_every_method),
+		cmocka_unit_test(
+			pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),
 		cmocka_unit_test(pictures_of_any_size_equal_the_cpus),
@@ -502,6 +553,8 @@ TEST_SUITE(gl)
 		cmocka_unit_test(lost_context_is_told_and_the_renderer_can_be_destroyed),
 		cmocka_unit_test(pictures_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(volume_beyond_the_texture_limit_is_shown_by_bricks_with_a_line),
+		cmocka_unit_test(
+			colours_beyond_the_texture_limit_are_refused_because_bricks_have_none),
 		cmocka_unit_test(old_or_missing_opengl_is_refused_with_reason_and_remedy),
 		cmocka_unit_test(software_opengl_is_not_what_auto_takes),
 		cmocka_unit_test(cast_shaders_are_valid_for_the_reference_compiler),
