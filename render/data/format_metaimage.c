@@ -304,10 +304,13 @@ static enum gz_result orient_meta(struct metaimage *meta)
 static enum gz_result finish_meta_layout(struct metaimage *meta)
 {
 	memcpy(meta->layout.dims, meta->sizes, sizeof meta->layout.dims);
-	for (int i = 3; i < meta->dimension; i++)
+	if (meta->dimension > 3 && meta->sizes[3] < 1)
+		return refuse_meta(meta, "DimSize", "write whole numbers of 1 or more");
+	meta->layout.time_points = meta->dimension > 3 ? meta->sizes[3] : 1;
+	for (int i = 4; i < meta->dimension; i++)
 		meta->layout.more_follows |= meta->sizes[i] != 1;
 	if (meta->layout.more_follows)
-		gz_warn(meta->head.log, "%s: a series of volumes; the first is shown",
+		gz_warn(meta->head.log, "%s: several series of volumes; the first is shown",
 			meta->head.path);
 	meta->source.skip = meta->header_size;
 	const enum gz_result result = gz_voxel_source_share(&meta->source, &meta->head, meta->sizes,
@@ -370,6 +373,6 @@ const struct gz_volume_format gz_format_metaimage = {
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = metaimage_knows_start,
 	.load = load_metaimage,
-	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits; of a "
-		  "series the first volume",
+	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits; of "
+		  "several series the first",
 };

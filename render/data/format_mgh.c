@@ -92,8 +92,7 @@ static enum gz_result take_mgh_size(struct mgh_file *file)
 		       file->path, code);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	if (frames > 1)
-		gz_warn(file->log, "%s: a series of volumes; the first is shown", file->path);
+	file->layout.time_points = frames;
 	return GZ_OK;
 }
 
@@ -166,5 +165,5 @@ const struct gz_volume_format gz_format_mgh = {
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = mgh_knows_start,
 	.load = load_mgh,
-	.limits = "integers of 8, 16 and 32 bits and floats; of several frames the first",
+	.limits = "integers of 8, 16 and 32 bits and floats",
 };

@@ -167,7 +167,7 @@ static void header_without_orientation_is_coronal_and_says_so(void **state)
 	gz_volume_free(&v);
 }
 
-static void first_of_several_frames_is_shown_and_said(void **state)
+static void frames_are_time_points(void **state)
 {
 	(void)state;
 	uint8_t twice[2 * COUNT];
@@ -175,8 +175,16 @@ static void first_of_several_frames_is_shown_and_said(void **state)
 	memcpy(twice, voxels, COUNT);
 	memset(twice + COUNT, 99, COUNT);
 	sample.dims[3] = 2;
-	struct gz_volume v = load_mgh_file(write_mgh("f.mgz", &sample, twice, sizeof twice), 1);
+	const char *path = write_mgh("f.mgz", &sample, twice, sizeof twice);
+	struct gz_volume v = load_mgh_file(path, 0);
 	assert_memory_equal(v.voxels, voxels, COUNT);
+	assert_int_equal(v.time_points, 2);
+	assert_true(v.stored_max == 112);
+	gz_volume_free(&v);
+	const struct gz_loading second = { .time_point = 1 };
+	assert_int_equal(gz_volume_load(path, NULL, &second, NULL, &v), GZ_OK);
+	assert_memory_equal(v.voxels, twice + COUNT, COUNT);
+	assert_true(v.stored_min == 0 && v.stored_max == 112);
 	gz_volume_free(&v);
 }
 
@@ -273,7 +281,7 @@ TEST_SUITE(mgh)
 		cmocka_unit_test(every_type_keeps_its_values),
 		cmocka_unit_test(directions_turn_to_right_anterior_superior),
 		cmocka_unit_test(header_without_orientation_is_coronal_and_says_so),
-		cmocka_unit_test(first_of_several_frames_is_shown_and_said),
+		cmocka_unit_test(frames_are_time_points),
 		cmocka_unit_test(tags_behind_the_voxels_are_passed_over),
 		cmocka_unit_test(headers_that_are_wrong_are_refused),
 		cmocka_unit_test(header_with_any_byte_changed_is_read_or_refused),

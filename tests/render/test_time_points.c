@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,6 +89,54 @@ static void check_all_time_points(const char *path, double unit)
 	gz_volume_free(&first);
 }
 
+/* The voxels in the header's file, or in a file for each time point. */
+static const char *write_metaimage_series(const char *name, const char *data_file)
+{
+	static int16_t numbers[POINTS * COUNT];
+	char head[512], file[32];
+	for (size_t i = 0; i < POINTS * COUNT; i++)
+		numbers[i] = number_of((int)(i / COUNT), i % COUNT);
+	for (int point = 0; point < POINTS; point++) {
+		snprintf(file, sizeof file, "point%d.raw", point);
+		files_write(file, numbers + (size_t)point * COUNT, COUNT * sizeof numbers[0]);
+	}
+	snprintf(head, sizeof head,
+		 "ObjectType = Image\nNDims = 4\nBinaryData = True\n"
+		 "BinaryDataByteOrderMSB = False\nCompressedData = False\n"
+		 "TransformMatrix = -1 0 0 0 0 -1 0 0 0 0 1 0 0 0 0 1\n"
+		 "ElementSpacing = 1 1 1 0.04\nDimSize = 5 4 3 4\nElementType = MET_SHORT\n"
+		 "ElementDataFile = %s\n",
+		 data_file);
+	const bool local = strcmp(data_file, "LOCAL") == 0;
+	return files_write_text(name, head, numbers, local ? sizeof numbers : 0);
+}
+
+/* Big-endian, as MGH has it. */
+static const char *write_mgh_series(const char *name)
+{
+	enum { HEADER = 284 };
+	static uint8_t bytes[HEADER + POINTS * COUNT * 2], packed[2 * sizeof bytes];
+	static const uint8_t one[4] = { 0x3f, 0x80 };
+	memset(bytes, 0, HEADER);
+	const int sizes[4] = { X, Y, Z, POINTS };
+	bytes[3] = 1;
+	for (int i = 0; i < 4; i++)
+		bytes[7 + 4 * i] = (uint8_t)sizes[i];
+	bytes[23] = 4; /* 16 signed bits */
+	bytes[29] = 1;
+	for (int i = 0; i < 3; i++) {
+		memcpy(bytes + 30 + 4 * i, one, 4);
+		memcpy(bytes + 42 + 16 * i, one, 4);
+	}
+	for (size_t i = 0; i < POINTS * COUNT; i++) {
+		const uint16_t bits = (uint16_t)number_of((int)(i / COUNT), i % COUNT);
+		bytes[HEADER + 2 * i] = (uint8_t)(bits >> 8);
+		bytes[HEADER + 2 * i + 1] = (uint8_t)bits;
+	}
+	const size_t size = files_deflate(bytes, sizeof bytes, 31, packed, sizeof packed);
+	return files_write(name, packed, size);
+}
+
 static void time_points_of_nrrd_have_their_voxels_and_one_range(void **state)
 {
 	(void)state;
@@ -98,6 +147,19 @@ static void time_points_of_compressed_nifti_floats_are_scaled_alike(void **state
 {
 	(void)state;
 	check_all_time_points(write_nifti_series("series.nii.gz"), 1e-36);
+}
+
+static void time_points_of_metaimage_have_their_voxels_and_one_range(void **state)
+{
+	(void)state;
+	check_all_time_points(write_metaimage_series("series.mha", "LOCAL"), 1);
+	check_all_time_points(write_metaimage_series("series.mhd", "point%d.raw 0 3 1"), 1);
+}
+
+static void time_points_of_mgz_have_their_voxels_and_one_range(void **state)
+{
+	(void)state;
+	check_all_time_points(write_mgh_series("series.mgz"), 1);
 }
 
 static void check_refused_point(const char *path, int point, const char *words)
@@ -338,6 +400,8 @@ TEST_SUITE(time_points)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(time_points_of_nrrd_have_their_voxels_and_one_range),
 		cmocka_unit_test(time_points_of_compressed_nifti_floats_are_scaled_alike),
+		cmocka_unit_test(time_points_of_metaimage_have_their_voxels_and_one_range),
+		cmocka_unit_test(time_points_of_mgz_have_their_voxels_and_one_range),
 		cmocka_unit_test(time_points_outside_a_series_are_refused),
 		cmocka_unit_test(scene_shows_the_time_point_that_it_names),
 		cmocka_unit_test(scene_without_a_series_refuses_a_time_point),

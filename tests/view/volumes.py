@@ -60,14 +60,17 @@ class Volumes(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.place.name, name)
 
-    def check(self, name, sided=True):
-        """What gazeview reads of a file is what nibabel reads, along the nearest axes of RAS+."""
+    def check(self, name, sided=True, point=None):
+        """What gazeview reads of a file is what nibabel reads, along the nearest axes of RAS+; of a
+        series the time point, from 0."""
         image = nibabel.load(self.path(name), mmap=False)
         wanted = nibabel.as_closest_canonical(image)
-        done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"))
+        chosen = [] if point is None else ["--time-point", point + 1]
+        done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"), *chosen)
         self.assertEqual(done.returncode, 0, done.stderr)
         voxels, spacing, space = read_nrrd(self.path("read.nrrd"))
         values = numpy.asarray(wanted.dataobj, "f8")
+        values = values if point is None else values[..., point]
         self.assertEqual(voxels.shape, values.shape[:3], name)
         scale = max(1, abs(values).max())
         self.assertLess(abs(voxels - values.reshape(voxels.shape)).max(), 2e-7 * scale, name)
@@ -148,6 +151,15 @@ class Volumes(unittest.TestCase):
             with self.subTest(kind=kind):
                 nibabel.save(nibabel.MGHImage(data_of(kind), numpy.diag((2, 3, 4, 1))), self.path("t.mgh"))
                 self.check("t.mgh")
+
+    def test_series(self):
+        affine = next(itertools.islice(affines(), 21, 22))
+        data = numpy.stack([data_of("int16") // (point + 1) for point in range(3)], axis=-1)
+        for name, kind in (("s.nii.gz", nibabel.Nifti1Image), ("s.mgz", nibabel.MGHImage)):
+            nibabel.save(kind(data, affine), self.path(name))
+            for point in range(3):
+                with self.subTest(name=name, point=point):
+                    self.check(name, point=point)
 
     def test_analyze_is_left_last(self):
         for kind in (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage):
