@@ -183,6 +183,7 @@ struct gz_byte_stream {
 	enum gz_coding coding;
 	gz_byte_source *source; /* of plain bytes, instead of the file */
 	void *source_user;
+	gz_byte_skipper *skip; /* optional, of the source */
 	int fd;
 	uint64_t stored; /* bytes from the offset to the end of the file */
 	uint8_t *input;  /* compressed bytes read, of which [input_at, input_size) are left */
@@ -306,6 +307,11 @@ enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t 
 	stream->stored = bound;
 	*out_stream = stream;
 	return GZ_OK;
+}
+
+void gz_byte_stream_skip_by(struct gz_byte_stream *stream, gz_byte_skipper *skip)
+{
+	stream->skip = skip;
 }
 
 uint64_t gz_byte_stream_bound(const struct gz_byte_stream *stream)
@@ -501,6 +507,8 @@ enum gz_result gz_byte_stream_read(struct gz_byte_stream *stream, void *buffer, 
 enum gz_result gz_byte_stream_skip(struct gz_byte_stream *stream, uint64_t count)
 {
 	uint8_t scrap[4096];
+	if (stream->skip)
+		return stream->skip(stream->source_user, count);
 	while (count > 0) {
 		size_t wanted = count < sizeof scrap ? (size_t)count : sizeof scrap, got = 0;
 		enum gz_result result = gz_byte_stream_read(stream, scrap, wanted, &got);

@@ -67,6 +67,13 @@ enum gz_result gz_byte_stream_from(gz_byte_source *source, void *user, uint64_t 
 				   const char *path, const struct gz_log *log,
 				   struct gz_byte_stream **out_stream);
 
+/** A function that passes over bytes. Contract as gz_byte_stream_skip(); it logs its own errors. */
+typedef enum gz_result gz_byte_skipper(void *user, uint64_t count);
+
+/** Let gz_byte_stream_skip() of a stream of a function call @p skip with that function's user,
+ *  where passing over bytes takes less than reading them. */
+void gz_byte_stream_skip_by(struct gz_byte_stream *stream, gz_byte_skipper *skip);
+
 /**
  * The most bytes that the whole stream can give: exact for GZ_CODING_PLAIN, otherwise the
  * compressed size times the best ratio of the coding. With it a claimed size can be refused before

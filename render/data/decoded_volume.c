@@ -1,10 +1,12 @@
 #include "render/data/decoded_volume.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "render/data/float_scaling.h"
 #include "render/data/scratch.h"
 #include "render/decode/decode.h"
 
@@ -105,8 +107,45 @@ static bool colours_valid(const struct gz_volume *volume)
 	return bad == 0 && volume->slope == 1 && volume->intercept == 0;
 }
 
+/* Whether voxels of a type can have these values. */
+static bool are_stored_values(enum gz_voxel_type type, double least, double greatest)
+{
+	const double most = type == GZ_VOXEL_U8    ? UINT8_MAX
+			    : type == GZ_VOXEL_U16 ? UINT16_MAX
+						   : (double)FLT_MAX;
+	return least >= (type == GZ_VOXEL_F32 ? -most : 0) && greatest <= most;
+}
+
+/* The range of a series, which the voxels alone do not tell: it must hold that of the voxels. */
+static bool take_series(const struct gz_volume_file *file, const struct gz_decode_header *header,
+			struct gz_volume *volume)
+{
+	const int time_point = file->loading ? file->loading->time_point : 0;
+	struct gz_float_scaling scaling;
+	double least = header->series[0], greatest = header->series[1];
+	if (header->time_points <= 1)
+		return time_point == 0;
+	if (header->time_points > GZ_TIME_POINTS_MAX || time_point < 0 ||
+	    time_point >= header->time_points || !are_stored_values(volume->type, least, greatest))
+		return false;
+	volume->time_points = header->time_points;
+	volume->time_point = time_point;
+	memcpy(volume->series, header->series, sizeof volume->series);
+	/* As gz_volume_scale_floats() has scaled the voxels. */
+	if (volume->type == GZ_VOXEL_F32 && gz_float_scaling_find(least, greatest, &scaling)) {
+		least = (double)gz_float_scaled(&scaling, (float)least);
+		greatest = (double)gz_float_scaled(&scaling, (float)greatest);
+	}
+	if (!(least <= volume->stored_min && greatest >= volume->stored_max))
+		return false;
+	volume->stored_min = least;
+	volume->stored_max = greatest;
+	return true;
+}
+
 /* What the decoder promises of the voxels is found out again. */
-static enum gz_result check_voxels(const struct gz_volume_file *file, struct gz_volume *volume)
+static enum gz_result check_voxels(const struct gz_volume_file *file,
+				   const struct gz_decode_header *header, struct gz_volume *volume)
 {
 	if (volume->colours && !colours_valid(volume)) {
 		gz_err(file->log, "%s: its decoder made colours that cannot be; it was not read",
@@ -115,6 +154,13 @@ static enum gz_result check_voxels(const struct gz_volume_file *file, struct gz_
 	}
 	if (volume->type != GZ_VOXEL_F32 || voxels_finite(volume)) {
 		gz_volume_find_range(volume);
+		if (!take_series(file, header, volume)) {
+			gz_err(file->log,
+			       "%s: its decoder made a series of %d time points that cannot be; "
+			       "it was not read",
+			       file->path, header->time_points);
+			return GZ_ERR_FORMAT;
+		}
 		if (isfinite(volume->slope * volume->stored_min + volume->intercept) &&
 		    isfinite(volume->slope * volume->stored_max + volume->intercept))
 			return GZ_OK;
@@ -135,6 +181,8 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 		.format = format,
 		.path = file->path,
 		.choice = choice,
+		.time_point = file->loading ? file->loading->time_point : 0,
+		.series_range = file->loading ? file->loading->series_range : NULL,
 		.scratch_fd = decoding.scratch_fd,
 		.user = &decoding,
 		.goes_on = decoding_goes_on,
@@ -151,7 +199,7 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 	volume.voxels = decoded.voxels;
 	volume.mapped = decoded.mapped;
 	gz_volume_place_colours(&volume);
-	result = check_voxels(file, &volume);
+	result = check_voxels(file, &decoded.header, &volume);
 	if (result != GZ_OK) {
 		gz_volume_free(&volume);
 		return result;

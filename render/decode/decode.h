@@ -42,6 +42,9 @@ struct gz_decode_job {
 	const char *format;  /**< "dicom" */
 	const char *path;    /**< a file or a folder */
 	const char *choice;  /**< what to choose of it; NULL: nothing */
+	int time_point;      /**< of a series, from 0 */
+	/** Least and greatest number of the series, finite. Borrowed; NULL: not known. */
+	const double *series_range;
 	const char *program; /**< the decoder's path; NULL: gz_decode_find_program() */
 	int patience_ms;     /**< 0: GZ_DECODE_PATIENCE_MS */
 	int scratch_fd;      /**< a writable file for the voxels; -1: none. Borrowed */
@@ -56,7 +59,8 @@ struct gz_decode_job {
 
 /** What was decoded. */
 struct gz_decoded {
-	/** As it was accepted, but for slope and intercept: finite, the first not 0. */
+	/** As it was accepted, but for slope and intercept: finite, the first not 0. What it says
+	 *  of a series is not checked. */
 	struct gz_decode_header header;
 	void *voxels;  /**< the bytes asked for, mapped to be read; munmap() frees them */
 	size_t mapped; /**< bytes */

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/sizes.h"
+#include "base/text.h"
 
 #define GZ_LOG_MODULE "decode"
 
@@ -106,12 +107,24 @@ static void keep_environment(char texts[KEPT_COUNT][GZ_PATH_SIZE], char *out[KEP
 	out[count] = NULL;
 }
 
+static void print_range(const double range[2], char *text, size_t size)
+{
+	char least[GZ_NUMBER_SIZE], greatest[GZ_NUMBER_SIZE];
+	gz_number_print(range[0], least);
+	gz_number_print(range[1], greatest);
+	snprintf(text, size, "%s %s", least, greatest);
+}
+
 static int spawn_with(const char *program, const struct gz_decode_job *job,
 		      const posix_spawn_file_actions_t *actions,
 		      const posix_spawnattr_t *attributes, pid_t *out_pid)
 {
-	char self[32], texts[KEPT_COUNT][GZ_PATH_SIZE], *environment[KEPT_COUNT + 1];
+	char self[32], time_point[32], range[2 * GZ_NUMBER_SIZE] = "";
+	char texts[KEPT_COUNT][GZ_PATH_SIZE], *environment[KEPT_COUNT + 1];
 	snprintf(self, sizeof self, "%ld", (long)getpid());
+	snprintf(time_point, sizeof time_point, "%d", job->time_point);
+	if (job->series_range)
+		print_range(job->series_range, range, sizeof range);
 	keep_environment(texts, environment);
 	/* posix_spawn() does not write to them. */
 	char *const arguments[] = { (char *)"gazedecode",
@@ -119,6 +132,8 @@ static int spawn_with(const char *program, const struct gz_decode_job *job,
 				    (char *)job->format,
 				    (char *)job->path,
 				    (char *)(job->choice ? job->choice : ""),
+				    time_point,
+				    range,
 				    NULL };
 	return posix_spawn(out_pid, program, actions, attributes, arguments, environment);
 }

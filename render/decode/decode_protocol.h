@@ -3,10 +3,11 @@
  * What a decoder process says to the program that started it, and in which descriptors.
  *
  * Decoders of other projects run in a process of their own. Its arguments are the process id of the
- * program that started it, the name of the format, the path, and what to choose of it (may be
- * empty). It writes messages of one size to GZ_DECODE_FD_MESSAGES: any number of lines and steps,
- * a header, more of them, one end. After the header it waits for an answer of one byte, then writes
- * the voxels into the file that the answer names.
+ * program that started it, the name of the format, the path, what to choose of it (may be empty),
+ * the time point from 0, and the range of the series: its least and greatest number with a blank
+ * between, or empty if it is not known. It writes messages of one size to GZ_DECODE_FD_MESSAGES:
+ * any number of lines and steps, a header, more of them, one end. After the header it waits for an
+ * answer of one byte, then writes the voxels into the file that the answer names.
  */
 #ifndef GZ_RENDER_DECODE_PROTOCOL_H
 #define GZ_RENDER_DECODE_PROTOCOL_H
@@ -35,7 +36,8 @@ enum gz_decode_kind {
 	GZ_DECODE_LINE = 2,   /**< a line for the log: text; detail is its enum gz_log_level */
 	GZ_DECODE_HEADER = 3, /**< header; once */
 	GZ_DECODE_ENDED = 4,  /**< the last one; detail is an enum gz_result. If it is GZ_OK, header
-				 again, whose slope and intercept may have changed */
+				 again, whose slope, intercept, time points and range of the series
+				 may have changed */
 };
 
 /** The volume that follows. Its voxels are turned to RAS+, x varies fastest. */
@@ -47,10 +49,13 @@ struct gz_decode_header {
 			      gz_volume_place_colours() says */
 	double spacing[3];
 	double slope, intercept;
+	double series[2];    /**< of a series: its range as in struct gz_volume; known at the end */
+	int32_t time_points; /**< 0 or 1: no series; known at the end */
+	uint32_t unused;     /**< 0 */
 };
 
 /** Size of a line with its NUL, bytes. */
-#define GZ_DECODE_TEXT_SIZE 944
+#define GZ_DECODE_TEXT_SIZE 920
 
 /** One message, in the byte order of the machine. What a kind does not use is 0. A pipe takes it
  *  whole or not at all, whichever thread writes it (pipe(7), PIPE_BUF). */

@@ -181,6 +181,44 @@ static void end_otherwise(int first_dim, double slope)
 	pause();
 }
 
+/* A good volume, at the end with what is no series. */
+static void end_as_series(int time_points, double least, double greatest)
+{
+	struct gz_decode_message message = good_header();
+	make_good();
+	message.kind = GZ_DECODE_ENDED;
+	message.header.time_points = time_points;
+	message.header.series[0] = least;
+	message.header.series[1] = greatest;
+	say(&message);
+	pause();
+}
+
+static void do_series(void)
+{
+	end_as_series(3, 5, 200);
+}
+
+static void do_series_too_long(void)
+{
+	end_as_series(1000000, 5, 200);
+}
+
+static void do_series_beside_its_voxels(void)
+{
+	end_as_series(3, 15, 200);
+}
+
+static void do_series_beyond_its_type(void)
+{
+	end_as_series(3, 5, 300);
+}
+
+static void do_series_without_range(void)
+{
+	end_as_series(3, NAN, 200);
+}
+
 static void do_end_larger(void)
 {
 	end_otherwise(4, 2);
@@ -304,6 +342,11 @@ static const struct {
 	{ "quiet failure", do_quiet_failure },
 	{ "unknown result", do_unknown_result },
 	{ "end without voxels", do_end_without_voxels },
+	{ "series", do_series },
+	{ "series too long", do_series_too_long },
+	{ "series beside its voxels", do_series_beside_its_voxels },
+	{ "series beyond its type", do_series_beyond_its_type },
+	{ "series without range", do_series_without_range },
 	{ "end larger", do_end_larger },
 	{ "end flat", do_end_flat },
 	{ "end rescaled", do_end_rescaled },

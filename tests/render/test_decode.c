@@ -234,10 +234,20 @@ static enum gz_result load_by_stand_in(const char *name, const struct gz_loading
 static void headers_that_cannot_be_are_refused(void **state)
 {
 	(void)state;
-	const char *const names[] = { "dims.dcm",         "type.dcm",   "spacing.dcm",
-				      "slope.dcm",        "huge.dcm",   "oriented.dcm",
-				      "not_finite.dcm",   "colour.dcm", "wide_colour.dcm",
-				      "light_colours.dcm" };
+	const char *const names[] = { "dims.dcm",
+				      "type.dcm",
+				      "spacing.dcm",
+				      "slope.dcm",
+				      "huge.dcm",
+				      "oriented.dcm",
+				      "not_finite.dcm",
+				      "colour.dcm",
+				      "wide_colour.dcm",
+				      "light_colours.dcm",
+				      "series_too_long.dcm",
+				      "series_beside_its_voxels.dcm",
+				      "series_beyond_its_type.dcm",
+				      "series_without_range.dcm" };
 	const int descriptors = descriptors_open();
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		struct captured_log log;
@@ -251,6 +261,23 @@ static void headers_that_cannot_be_are_refused(void **state)
 		assert_null(volume.voxels);
 	}
 	check_nothing_is_left(descriptors);
+}
+
+static void series_has_the_range_that_the_decoder_found(void **state)
+{
+	(void)state;
+	const struct gz_loading last = { .time_point = 2 }, beyond = { .time_point = 3 };
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	if (load_by_stand_in("series.dcm", &last, &log, &volume) != GZ_OK)
+		fail_msg("%s", log.last);
+	assert_int_equal(volume.time_points, 3);
+	assert_int_equal(volume.time_point, 2);
+	assert_true(volume.stored_min == 5 && volume.stored_max == 200);
+	assert_true(volume.series[0] == 5 && volume.series[1] == 200);
+	gz_volume_free(&volume);
+	assert_int_equal(load_by_stand_in("series.dcm", &beyond, &log, &volume), GZ_ERR_FORMAT);
+	assert_int_equal(load_by_stand_in("good.dcm", &last, &log, &volume), GZ_ERR_FORMAT);
 }
 
 static void voxels_go_into_the_scratch_folder(void **state)
@@ -334,6 +361,7 @@ TEST_SUITE(decode)
 		cmocka_unit_test(cancelled_decoder_is_killed),
 		cmocka_unit_test(missing_decoder_is_told),
 		cmocka_unit_test(headers_that_cannot_be_are_refused),
+		cmocka_unit_test(series_has_the_range_that_the_decoder_found),
 		cmocka_unit_test(voxels_go_into_the_scratch_folder),
 		cmocka_unit_test(colours_follow_the_voxels),
 		cmocka_unit_test(confined_process_cannot_do_more),

@@ -1,5 +1,6 @@
 #include "render/decode/child/decoder.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -7,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "render/decode/decode_protocol.h"
 
 /* Least time between two steps, ns. */
@@ -48,8 +50,10 @@ static struct gz_decode_header header_of(const struct gz_volume *volume)
 	struct gz_decode_header header = { .type = (uint32_t)volume->type,
 					   .oriented = volume->oriented,
 					   .colour = (uint32_t)volume->colour,
+					   .time_points = volume->time_points,
 					   .slope = volume->slope,
-					   .intercept = volume->intercept };
+					   .intercept = volume->intercept,
+					   .series = { volume->series[0], volume->series[1] } };
 	for (int axis = 0; axis < 3; axis++) {
 		header.dims[axis] = volume->dims[axis];
 		header.spacing[axis] = volume->spacing[axis];
@@ -79,6 +83,23 @@ void gz_decoder_init(struct gz_decoder *decoder)
 	decoder->loading.report = send_step;
 	decoder->loading.user = decoder;
 	decoder->loading.give_memory = ask_for_memory;
+}
+
+bool gz_decoder_take_series(struct gz_decoder *decoder, const char *time_point, char *range)
+{
+	long long point = 0;
+	if (!gz_number_parse_whole(time_point, &point) || point < INT_MIN || point > INT_MAX)
+		return false;
+	decoder->loading.time_point = (int)point;
+	if (!range[0])
+		return true;
+	for (int i = 0; i < 2; i++) {
+		const char *word = gz_number_next_word(&range, " ");
+		if (!word || !gz_number_parse(word, &decoder->series_range[i]))
+			return false;
+	}
+	decoder->loading.series_range = decoder->series_range;
+	return true;
 }
 
 _Noreturn void gz_decoder_end(enum gz_result result, const struct gz_volume *volume)

@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_DECODE_CHILD_H
 #define GZ_RENDER_DECODE_CHILD_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -15,12 +16,21 @@
 struct gz_decoder {
 	struct gz_log log;         /**< its lines become messages; thread-safe */
 	struct gz_loading loading; /**< reports steps, and gets the voxels' memory */
+	double series_range[2];    /**< what the loading points to, if it is known */
 	int32_t steps;             /**< reports so far */
 	int64_t sent_ns;           /**< when a step was sent last */
 };
 
 /** Prepare @p decoder, which must not be moved afterwards. */
 void gz_decoder_init(struct gz_decoder *decoder);
+
+/**
+ * Take the arguments that say what of a series is wanted (render/decode/decode_protocol.h).
+ *
+ * @param range  changed
+ * @return false if they are not as the protocol says
+ */
+bool gz_decoder_take_series(struct gz_decoder *decoder, const char *time_point, char *range);
 
 /** Say how it ended, and end the process without running anything else of its libraries.
  *  @param volume  what was decoded; not used unless @p result is GZ_OK */

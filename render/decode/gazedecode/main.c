@@ -38,12 +38,13 @@ int main(int argc, char **argv)
 	struct gz_volume volume = { 0 };
 	char protection[GZ_CONFINE_TEXT_SIZE];
 	long long parent = 0;
-	const struct decoder_row *row = argc == 5 ? decoder_named(argv[2]) : NULL;
-	if (!row || !gz_number_parse_whole(argv[1], &parent)) {
+	const struct decoder_row *row = argc == 7 ? decoder_named(argv[2]) : NULL;
+	gz_decoder_init(&decoder);
+	if (!row || !gz_number_parse_whole(argv[1], &parent) ||
+	    !gz_decoder_take_series(&decoder, argv[5], argv[6])) {
 		fprintf(stderr, "gazedecode is started by gazeview and has no use of its own\n");
 		return 2;
 	}
-	gz_decoder_init(&decoder);
 	if (gz_confine((pid_t)parent, argv[3], protection) != GZ_OK) {
 		gz_err(&decoder.log, "%s: its decoder cannot be confined; it was not read",
 		       argv[3]);
