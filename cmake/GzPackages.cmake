@@ -33,6 +33,9 @@ add_library(gz_nifti INTERFACE)
 target_include_directories(gz_nifti SYSTEM INTERFACE "${NIFTI_INCLUDE_DIR}")
 target_link_libraries(gz_nifti INTERFACE "${NIFTI_IO_LIBRARY}" "${NIFTI_ZNZ_LIBRARY}" ZLIB::ZLIB m)
 
+# HDF5, by which MINC 2 is read, is optional. Debian calls its variant without MPI hdf5-serial.
+pkg_search_module(HDF5 IMPORTED_TARGET hdf5-serial>=1.10.7 hdf5>=1.10.7)
+
 # GDCM's own CMake package wants VTK too, where that was built with it; reading is enough.
 find_path(GDCM_INCLUDE_DIR gdcmReader.h PATH_SUFFIXES gdcm-3.0 gdcm-3.2 gdcm REQUIRED)
 add_library(gz_gdcm INTERFACE)

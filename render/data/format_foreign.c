@@ -15,14 +15,13 @@ struct foreign_magic {
 };
 
 #define MAGIC(text)   (text), sizeof(text) - 1
-#define FROM_MINC     "convert it with: mnc2nii FILE out.nii (minc-tools)"
+#define FROM_MINC     "convert it with: mincconvert -2 FILE out.mnc (minc-tools)"
 #define FROM_ITK      "convert it with ITK or 3D Slicer to NRRD"
 #define FROM_PARAVIEW "save it as MetaImage with ParaView, or as NRRD with ITK"
 
 static const struct foreign_magic foreign_magics[] = {
 	{ MAGIC("CDF\001"), "MINC 1 (netCDF)", FROM_MINC },
 	{ MAGIC("CDF\002"), "MINC 1 (netCDF)", FROM_MINC },
-	{ MAGIC("\211HDF\r\n\032\n"), "MINC 2 or other HDF5", FROM_MINC },
 	{ MAGIC("# vtk DataFile"), "VTK", FROM_PARAVIEW },
 	{ MAGIC("<VTKFile"), "VTK XML", FROM_PARAVIEW },
 	{ MAGIC("<?xml version=\"1.0\"?>\n<VTKFile"), "VTK XML", FROM_PARAVIEW },
@@ -58,7 +57,7 @@ static enum gz_result refuse_foreign(const struct gz_volume_file *file,
 }
 
 const struct gz_volume_format gz_format_foreign = {
-	.name = "MINC, VTK, TIFF",
+	.name = "MINC 1, VTK, TIFF",
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = foreign_knows_start,
 	.load = refuse_foreign,

@@ -39,10 +39,10 @@ struct gz_decode_place {
 
 /** One file to decode. */
 struct gz_decode_job {
-	const char *format;  /**< "dicom" */
-	const char *path;    /**< a file or a folder */
-	const char *choice;  /**< what to choose of it; NULL: nothing */
-	int time_point;      /**< of a series, from 0 */
+	const char *format; /**< "dicom" */
+	const char *path;   /**< a file or a folder */
+	const char *choice; /**< what to choose of it; NULL: nothing */
+	int time_point;     /**< of a series, from 0 */
 	/** Least and greatest number of the series, finite. Borrowed; NULL: not known. */
 	const double *series_range;
 	const char *program; /**< the decoder's path; NULL: gz_decode_find_program() */

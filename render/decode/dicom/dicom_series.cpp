@@ -54,7 +54,7 @@ class reader
 	{
 	}
 	gz_result open();
-	gz_result read(void *voxels);
+	gz_result read(uint64_t index, void *voxels);
 	gz_dicom_geometry geometry {};
 
       private:
@@ -91,7 +91,7 @@ class reader
 	format numbers;
 	std::vector<slice> slices;
 	bool scaled_apart = false; /* slices have scales of their own */
-	size_t next = 0;
+	uint64_t pool_begin = 0; /* its first slice */
 	std::unique_ptr<slice_pool> pool;
 };
 
@@ -573,22 +573,23 @@ decoded_slice reader::decode(size_t index) const
 	return made;
 }
 
-gz_result reader::read(void *voxels)
+gz_result reader::read(uint64_t index, void *voxels)
 {
-	if (!pool)
+	if (!pool) {
+		pool_begin = index;
 		pool.reset(new slice_pool(
-			slices.size(),
+			slices.size() - pool_begin,
 			numbers.frame_bytes() + codec_bytes_a_pixel * (uint64_t)geometry.channels *
 							(uint64_t)numbers.frame_columns *
 							(uint64_t)numbers.frame_rows,
-			[this](size_t index) { return decode(index); }));
+			[this](size_t at) { return decode(pool_begin + at); }));
+	}
 	const decoded_slice made = pool->take();
 	if (made.result != GZ_OK) {
-		gz_err(log, "%s: %s", slices[next].path().c_str(), made.why.c_str());
+		gz_err(log, "%s: %s", slices[index].path().c_str(), made.why.c_str());
 		return made.result;
 	}
 	std::memcpy(voxels, made.voxels.data(), made.voxels.size());
-	next++;
 	return GZ_OK;
 }
 
@@ -628,10 +629,11 @@ extern "C" const struct gz_dicom_geometry *gz_dicom_series_geometry(
 	return &series->slices.geometry;
 }
 
-extern "C" enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels)
+extern "C" enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, uint64_t index,
+					       void *voxels)
 {
 	try {
-		return series->slices.read(voxels);
+		return series->slices.read(index, voxels);
 	} catch (const std::bad_alloc &) {
 		gz_err(series->log, "no memory to decode a DICOM image");
 		return GZ_ERR_NO_MEM;

@@ -59,12 +59,13 @@ enum gz_result gz_dicom_series_open(const struct gz_volume_file *file, const cha
 const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_series *series);
 
 /**
- * Get the next slice. Threads decode a few ahead.
+ * Get a slice. Threads decode a few ahead.
  *
+ * @param index  any first; then the one behind that of the call before
  * @param[out] voxels  columns * rows voxels, of the geometry's type and channels
  * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
  */
-enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, void *voxels);
+enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, uint64_t index, void *voxels);
 
 /** Close and set to NULL. Accepts a pointer to NULL. */
 void gz_dicom_series_close(struct gz_dicom_series **series);

@@ -10,6 +10,7 @@
 #include "render/decode/child/confine.h"
 #include "render/decode/child/decoder.h"
 #include "render/decode/dicom/dicom_load.h"
+#include "render/decode/minc/minc_load.h"
 
 #define GZ_LOG_MODULE "decode"
 
@@ -22,6 +23,7 @@ struct decoder_row {
 
 static const struct decoder_row decoders[] = {
 	{ "dicom", gz_dicom_load },
+	{ "minc", gz_minc_load },
 };
 
 static const struct decoder_row *decoder_named(const char *name)
