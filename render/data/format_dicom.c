@@ -79,7 +79,7 @@ const struct gz_volume_format gz_format_dicom = {
 	.knows_start = dicom_knows_start,
 	.recognise = gz_dicom_is,
 	.load = load_dicom,
-	.limits = "8 and 16 bits only, colours of 8 bits, evenly spaced parallel slices, one "
-		  "series a folder;"
-		  " of a series over time the first volume",
+	.limits = "integers of 8, 16 and 32 bits, colours of 8 bits, evenly spaced parallel "
+		  "slices, one "
+		  "series a folder; also dose (RTDOSE) and segmentations (SEG)",
 };

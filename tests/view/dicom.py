@@ -116,6 +116,20 @@ def stored_values(image):
     return (bits ^ sign) - sign
 
 
+def turn_to_ras(values, orientation, spacing):
+    """Values [slice, row, column] of a stack, and its spacing along columns, rows and slices, as
+    [x, y, z] in RAS+."""
+    directions = numpy.array(orientation, "f8").reshape(2, 3)
+    values = values.transpose(2, 1, 0)  # column, row, slice
+    axes = numpy.array([*directions, numpy.cross(*directions)]) * (-1, -1, 1)  # LPS to RAS
+    order = [int(numpy.argmax(abs(axes[:, world]))) for world in range(3)]
+    values = values.transpose(order)
+    for world, axis in enumerate(order):
+        if axes[axis, world] < 0:
+            values = numpy.flip(values, world)
+    return values, [float(spacing[axis]) for axis in order]
+
+
 def volume_of(folder):
     """The values [x, y, z] in RAS+ and the spacing, from what pydicom reads."""
     images = [pydicom.dcmread(os.path.join(folder, name), force=True) for name in os.listdir(folder)]
@@ -124,15 +138,8 @@ def volume_of(folder):
     images.sort(key=lambda image: numpy.dot(normal, numpy.array(image.ImagePositionPatient, "f8")))
     values = numpy.stack([stored_values(image) * float(image.RescaleSlope) + float(image.RescaleIntercept)
                           for image in images])
-    values = values.transpose(2, 1, 0)  # column, row, slice
-    axes = numpy.array([directions[0], directions[1], normal]) * (-1, -1, 1)  # LPS to RAS
     spacing = [images[0].PixelSpacing[1], images[0].PixelSpacing[0], 2.5]
-    order = [int(numpy.argmax(abs(axes[:, world]))) for world in range(3)]
-    values = values.transpose(order)
-    for world, axis in enumerate(order):
-        if axes[axis, world] < 0:
-            values = numpy.flip(values, world)
-    return values, [float(spacing[axis]) for axis in order]
+    return turn_to_ras(values, images[0].ImageOrientationPatient, spacing)
 
 
 class Dicom(unittest.TestCase):

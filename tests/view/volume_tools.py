@@ -53,9 +53,9 @@ class VolumeTools(unittest.TestCase):
         done = subprocess.run(words, cwd=self.place.name, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def read(self, name):
+    def read(self, name, *more):
         """The whole volume as gazeview writes it: header and voxels."""
-        done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"))
+        done = run(GAZEVIEW, self.path(name), "--write-volume", self.path("read.nrrd"), *more)
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.path("read.nrrd"), "rb") as source:
             return source.read()
@@ -103,6 +103,16 @@ class VolumeTools(unittest.TestCase):
                     self.write("many.nhdr", HEAD.format(type="short") + "encoding: raw\n" + skips + field)
                     self.call(UNU, "save", "-f", "nrrd", "-e", "raw", "-i", "many.nhdr", "-o", "one.nrrd")
                     self.assertEqual(self.read("many.nhdr"), self.read("one.nrrd"))
+
+    def test_time_points_of_nrrd_are_what_teem_slices(self):
+        head = HEAD.replace("dimension: 3", "dimension: 4").replace("sizes: 5 4 3", "sizes: 5 4 3 3")
+        head = head.replace("(1.5,0,0)", "(1.5,0,0) none").format(type="short")
+        other, third = (WORDS[2 * shift :] + WORDS[: 2 * shift] for shift in (7, 31))
+        self.write("series.nrrd", head + "encoding: raw\n\n", WORDS + other + third)
+        for point in range(3):
+            with self.subTest(point=point):
+                self.call(UNU, "slice", "-a", "3", "-p", str(point), "-i", "series.nrrd", "-o", "one.nrrd")
+                self.assertEqual(self.read("series.nrrd", "--time-point", point + 1), self.read("one.nrrd"))
 
     def test_metaimage_is_where_itk_puts_it(self):
         for number, tags in enumerate(

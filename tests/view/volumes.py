@@ -137,8 +137,9 @@ class Volumes(AgainstNibabel):
                 nibabel.save(kind(data_of("int16"), affine), self.path("p.img" + ending))
                 self.check("p.img" + ending)
                 self.check("p.hdr" + ending)
-        nibabel.save(nibabel.Nifti1Image(data_of("int16"), affine), self.path("g.nii.gz"))
-        self.check("g.nii.gz")
+        for name in ("g.nii.gz", "b.nii.bz2"):
+            nibabel.save(nibabel.Nifti1Image(data_of("int16"), affine), self.path(name))
+            self.check(name)
 
     def test_mgh_of_every_orientation(self):
         for number, affine in enumerate(affines()):

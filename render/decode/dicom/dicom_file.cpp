@@ -10,12 +10,14 @@
 #include <gdcmCSAHeader.h>
 #include <gdcmMediaStorage.h>
 #include <gdcmReader.h>
-#include <gdcmSequenceOfItems.h>
 #include <gdcmTrace.h>
 
 #include "render/data/volume.h"
+#include "render/decode/dicom/dicom_dose.hpp"
+#include "render/decode/dicom/dicom_elements.hpp"
 #include "render/decode/dicom/dicom_guard.hpp"
 #include "render/decode/dicom/dicom_lengths.hpp"
+#include "render/decode/dicom/dicom_segments.hpp"
 
 namespace gz_dicom
 {
@@ -48,77 +50,8 @@ const gdcm::Tag image_type(0x0008, 0x0008), study_date(0x0008, 0x0020),
 	pixel_representation(0x0028, 0x0103), rescale_intercept(0x0028, 0x1052),
 	rescale_slope(0x0028, 0x1053), shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230),
 	plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116),
-	pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145);
-
-const gdcm::ByteValue *value_of(const gdcm::DataSet &data, const gdcm::Tag &tag)
-{
-	return data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
-}
-
-/* A text without the blanks and NULs at its end. */
-std::string text_of(const gdcm::DataSet &data, const gdcm::Tag &tag)
-{
-	const gdcm::ByteValue *value = value_of(data, tag);
-	std::string text = value ? std::string(value->GetPointer(), value->GetLength()) : "";
-	const size_t end = text.find_last_not_of(std::string(" \0", 2));
-	text.resize(end == std::string::npos ? 0 : end + 1);
-	return text;
-}
-
-/* The first `count` numbers of a text such as "1\2.5" (PS3.5, 6.2: DS and IS). */
-bool numbers_in(const std::string &text, double *out, int count)
-{
-	const char *at = text.c_str();
-	for (int i = 0; i < count; i++) {
-		char *end = nullptr;
-		const double value = std::strtod(at, &end);
-		if (end == at || !std::isfinite(value))
-			return false;
-		out[i] = value;
-		end += std::strspn(end, " ");
-		if (i + 1 < count && *end != '\\')
-			return false;
-		at = end + (*end == '\\');
-	}
-	return true;
-}
-
-bool numbers_of(const gdcm::DataSet &data, const gdcm::Tag &tag, double *out, int count)
-{
-	return numbers_in(text_of(data, tag), out, count);
-}
-
-/* A number of 16 bits; the library has turned it into the host's byte order. */
-int short_of(const gdcm::DataSet &data, const gdcm::Tag &tag, int otherwise)
-{
-	const gdcm::ByteValue *value = value_of(data, tag);
-	uint16_t number;
-	if (!value || value->GetLength() < sizeof number)
-		return otherwise;
-	std::memcpy(&number, value->GetPointer(), sizeof number);
-	return number;
-}
-
-int decimal_of(const gdcm::DataSet &data, const gdcm::Tag &tag, int otherwise)
-{
-	double number;
-	return numbers_of(data, tag, &number, 1) && std::fabs(number) < 2147483648.0 ? (int)number
-										     : otherwise;
-}
-
-using items = gdcm::SmartPointer<gdcm::SequenceOfItems>;
-
-items sequence_of(const gdcm::DataSet &data, const gdcm::Tag &tag)
-{
-	return data.FindDataElement(tag) ? data.GetDataElement(tag).GetValueAsSQ() : items();
-}
-
-const gdcm::DataSet *item_of(const items &sequence, size_t index)
-{
-	if (!sequence || index >= sequence->GetNumberOfItems())
-		return nullptr;
-	return &sequence->GetItem(index + 1).GetNestedDataSet(); /* counted from 1 */
-}
+	pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
+	frame_content(0x0020, 0x9111), temporal_position_index(0x0020, 0x9128);
 
 /* The functional groups of an enhanced image (PS3.3, C.7.6.16). */
 class groups
@@ -173,8 +106,31 @@ format format_of(const gdcm::DataSet &data, const groups &functional)
 		if (numbers_of(measures, spacing_between_slices, &thickness, 1) ||
 		    numbers_of(measures, slice_thickness, &thickness, 1))
 			f.thickness = std::fabs(thickness);
+		if (numbers_of(measures, spacing_between_slices, &thickness, 1))
+			f.between = std::fabs(thickness);
 	});
 	return f;
+}
+
+/* When a frame was taken. */
+void take_times(const gdcm::DataSet &data, const groups &functional, slice &s)
+{
+	static const gdcm::Tag tags[TIME_KEYS] = { { 0x0020, 0x0100 },
+						   { 0x0020, 0x0012 },
+						   { 0x0018, 0x1060 },
+						   { 0x0008, 0x0033 },
+						   { 0x0008, 0x0032 } };
+	for (int key = 0; key < TIME_KEYS; key++)
+		if (!numbers_of(data, tags[key], &s.when[key], 1))
+			s.when[key] = std::nan("");
+	functional.in(s.frame, frame_content, [&s](const gdcm::DataSet &group) {
+		uint32_t index;
+		const gdcm::ByteValue *value = value_of(group, temporal_position_index);
+		if (!value || value->GetLength() < sizeof index)
+			return;
+		std::memcpy(&index, value->GetPointer(), sizeof index);
+		s.when[TIME_POSITION] = index;
+	});
 }
 
 slice slice_of(const gdcm::DataSet &data, const groups &functional, uint32_t frame)
@@ -183,6 +139,7 @@ slice slice_of(const gdcm::DataSet &data, const groups &functional, uint32_t fra
 	double directions[6];
 	s.frame = frame;
 	s.number = decimal_of(data, instance_number, 0);
+	take_times(data, functional, s);
 	s.placed = functional.in(frame, plane_position, [&s](const gdcm::DataSet &group) {
 		return numbers_of(group, image_position, s.position.x, 3);
 	}) && functional.in(frame, plane_orientation, [&](const gdcm::DataSet &group) {
@@ -401,10 +358,10 @@ bool locate_pixels(std::istream &file, uint64_t file_size, uint64_t frames, pixe
 		return share_out(file, found, frames, out.frames) || frames > found.all.size();
 	}
 	out.plain = { at, length };
-	const bool two_bytes = out.numbers.bits_allocated == 16;
+	const bool several_bytes = out.numbers.bits_allocated > 8;
 	const bool numbers_big =
 		big_endian || out.coding == gdcm::TransferSyntax::ImplicitVRBigEndianPrivateGE;
-	out.swap_bytes = two_bytes ? numbers_big != gz_host_big_endian() : big_endian && words;
+	out.swap_bytes = several_bytes ? numbers_big != gz_host_big_endian() : big_endian && words;
 	return length <= file_size - at;
 }
 
@@ -442,8 +399,10 @@ void fill_head(const gdcm::DataSet &data, head &out)
 	out.photometric = text_of(data, photometric_interpretation);
 	const int claimed = decimal_of(data, number_of_frames, 1);
 	out.frames = claimed < 1 ? 1 : (uint64_t)claimed;
-	for (uint64_t frame = 0; frame < out.frames && frame <= GZ_VOLUME_DIM_MAX; frame++)
+	for (uint64_t frame = 0; frame < out.frames && frame <= frames_max; frame++)
 		out.slices.push_back(slice_of(data, functional, (uint32_t)frame));
+	place_dose(data, out);
+	take_segments(data, out);
 	/* If the private header is odd, the image stays whole. */
 	mosaic m;
 	(void)guarded([&] {
@@ -483,7 +442,7 @@ bool read_head_of(std::istream &file, uint64_t file_size, head &out)
 	if (deflated) {
 		const gdcm::ByteValue *value = value_of(data, pixel_data);
 		pixels->plain = { 0, value ? (uint64_t)value->GetLength() : 0 };
-		pixels->swap_bytes = out.numbers.bits_allocated == 16 && gz_host_big_endian();
+		pixels->swap_bytes = out.numbers.bits_allocated > 8 && gz_host_big_endian();
 	} else if (!locate_pixels(file, file_size, out.frames, *pixels)) {
 		out.unreadable = true;
 		return false;

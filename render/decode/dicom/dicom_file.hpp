@@ -46,6 +46,7 @@ struct format {
 	colour_kind colours = colour_kind::none;
 	double spacing[2] = { 1, 1 }; /* between columns, between rows */
 	double thickness = 0;         /* or spacing between slices, if told */
+	double between = 0;           /* spacing between slices, if told */
 
 	bool operator==(const format &other) const
 	{
@@ -57,10 +58,22 @@ struct format {
 		       std::fabs(spacing[1] - other.spacing[1]) < 1e-4 * spacing[1];
 	}
 
+	uint64_t frame_pixels() const
+	{
+		return (uint64_t)frame_columns * (uint64_t)frame_rows;
+	}
+
+	/* Of a frame in memory, where a single bit has a byte. */
 	uint64_t frame_bytes() const
 	{
-		return (uint64_t)frame_columns * (uint64_t)frame_rows * (uint64_t)samples *
-		       (uint64_t)(bits_allocated / 8);
+		return frame_pixels() * (uint64_t)samples * (uint64_t)((bits_allocated + 7) / 8);
+	}
+
+	/* Of so many frames in the file, where single bits follow each other (PS3.5, 8.1.1). */
+	uint64_t stored_bytes(uint64_t frames) const
+	{
+		return bits_allocated == 1 ? (frames * frame_pixels() + 7) / 8
+					   : frames * frame_bytes();
 	}
 };
 
@@ -71,13 +84,31 @@ struct pixels_of_file {
 	gdcm::TransferSyntax::TSType coding = gdcm::TransferSyntax::TS_END;
 	bool encapsulated = false;
 	bool deflated = false;   /* the whole file is: it is read as a whole */
-	bool swap_bytes = false; /* two by two, of plain pixels */
+	bool swap_bytes = false; /* of plain pixels */
 	bool planar = false;     /* plain pixels of colours are in three planes */
 	bool halved = false;     /* plain pixels have half the colours: YBR_FULL_422 */
 	palette table;           /* of an image that needs one */
 	span plain {};           /* all frames, one after the other */
 	std::vector<std::vector<span>> frames; /* fragments of each, if encapsulated */
 };
+
+/* What tells when an image was taken, the most certain first. */
+enum time_key {
+	TIME_POSITION,    /* Temporal Position Identifier, or Index of an enhanced image */
+	TIME_ACQUISITION, /* Acquisition Number */
+	TIME_TRIGGER,     /* Trigger Time */
+	TIME_CONTENT,     /* Content Time */
+	TIME_ACQUIRED,    /* Acquisition Time */
+	TIME_KEYS,
+};
+
+/* A frame of a segmentation, and the number of its segment. */
+struct segment_frame {
+	uint32_t frame;
+	int number;
+};
+
+struct segmentation;
 
 /* Where one slice lies and how its numbers read. */
 struct slice {
@@ -89,6 +120,8 @@ struct slice {
 	vector3 position {}, row {}, column {};
 	double along = 0; /* the stack */
 	double slope = 1, intercept = 0;
+	double when[TIME_KEYS] = {};      /* not a number: not told */
+	std::vector<segment_frame> parts; /* that make it, in a segmentation */
 
 	const std::string &path() const
 	{
@@ -96,19 +129,23 @@ struct slice {
 	}
 };
 
+/* Frames of one file. Chosen: a hundred time points or segments of a hundred slices, and more. */
+const uint64_t frames_max = 262144;
+
 /* One file's head. */
 struct head {
 	std::string path, series_uid, patient, date, description;
 	format numbers;
 	std::string photometric;
 	std::vector<slice> slices;
-	uint64_t frames = 0;     /* claimed */
-	uint64_t bytes = 0;      /* that its pixel data can hold */
+	std::shared_ptr<const segmentation> segments; /* if it is a segmentation */
+	uint64_t frames = 0;                          /* claimed */
+	uint64_t bytes = 0;                           /* that its pixel data can hold */
 	bool unreadable = false; /* damaged or cut off, though it may begin like DICOM */
 };
 
 /* Read the head of a file; false if it holds no DICOM image. A file that claims more frames than
- * GZ_VOLUME_DIM_MAX gives one more than that. */
+ * frames_max gives one more than that. */
 bool read_head(const std::string &name, head &out);
 
 /* Let the library keep its messages for itself. */

@@ -1,5 +1,6 @@
 #include "render/decode/dicom/dicom_frame.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 
@@ -42,11 +43,13 @@ bool rle_head_valid(const std::vector<char> &bytes, int bytes_a_pixel)
 	return true;
 }
 
-/* Swap bytes two by two. */
-void swap_pairs(std::vector<uint8_t> &bytes)
+/* Turn the bytes of each number round; bytes that are numbers by themselves, two by two, because
+ * they are stored in words. */
+void swap_numbers(std::vector<uint8_t> &bytes, int bits)
 {
-	for (size_t i = 0; i + 1 < bytes.size(); i += 2)
-		std::swap(bytes[i], bytes[i + 1]);
+	const size_t size = bits == 32 ? 4 : 2;
+	for (size_t i = 0; i + size <= bytes.size(); i += size)
+		std::reverse(&bytes[i], &bytes[i] + size);
 }
 
 bool read_spans(const std::string &path, const std::vector<span> &spans, std::vector<char> &out)
@@ -185,6 +188,44 @@ bool read_plain(const pixels_of_file &pixels, uint64_t at, std::vector<uint8_t> 
 	return (bool)file.read((char *)out.data(), (std::streamsize)out.size());
 }
 
+/* Single bits, the first in the lowest place of its byte, as bytes of 0 and 1. Frames follow each
+ * other without a gap. */
+void unpack_bits(const std::vector<uint8_t> &bytes, uint64_t first, std::vector<uint8_t> &out)
+{
+	for (size_t i = 0; i < out.size(); i++)
+		out[i] = bytes[(first + i) / 8] >> (first + i) % 8 & 1;
+}
+
+/* A frame of single bits: the words that hold it. */
+bool read_bits(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out)
+{
+	const uint64_t bit = frame * pixels.numbers.frame_pixels();
+	const uint64_t first = bit / 16 * 2;
+	const uint64_t end = std::min((bit + out.size() + 15) / 16 * 2, pixels.plain.length);
+	if (end <= first || bit + out.size() > 8 * end)
+		return false;
+	std::vector<uint8_t> bytes(end - first);
+	const bool read = pixels.deflated
+				  ? guarded([&] { return read_deflated(pixels, first, bytes); })
+				  : read_plain(pixels, first, bytes);
+	if (!read)
+		return false;
+	if (pixels.swap_bytes)
+		swap_numbers(bytes, 16);
+	unpack_bits(bytes, bit - 8 * first, out);
+	return true;
+}
+
+bool read_numbers(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out)
+{
+	const uint64_t at = frame * pixels.numbers.frame_bytes();
+	const bool read = pixels.deflated ? guarded([&] { return read_deflated(pixels, at, out); })
+					  : read_plain(pixels, at, out);
+	if (read && pixels.swap_bytes)
+		swap_numbers(out, pixels.numbers.bits_allocated);
+	return read;
+}
+
 /* Decode the numbers of a frame. */
 gz_result decode_numbers(const pixels_of_file &pixels, uint32_t frame, std::vector<uint8_t> &out,
 			 std::string &why)
@@ -193,15 +234,11 @@ gz_result decode_numbers(const pixels_of_file &pixels, uint32_t frame, std::vect
 	out.assign(size, 0);
 	if (pixels.encapsulated)
 		return decode_fragments(pixels, frame, out, why);
-	const uint64_t at = frame * size;
-	const bool read = pixels.deflated ? guarded([&] { return read_deflated(pixels, at, out); })
-					  : read_plain(pixels, at, out);
-	if (!read) {
+	const bool bits = pixels.numbers.bits_allocated == 1;
+	if (!(bits ? read_bits(pixels, frame, out) : read_numbers(pixels, frame, out))) {
 		why = "cannot be read again; was it moved or changed?";
 		return GZ_ERR_IO;
 	}
-	if (pixels.swap_bytes)
-		swap_pairs(out);
 	return GZ_OK;
 }
 

@@ -23,6 +23,7 @@ static enum gz_result import_dicom_slices(struct gz_dicom_series *series,
 		.big_endian = gz_host_big_endian(),
 		.slope = geometry->slope,
 		.intercept = geometry->intercept,
+		.time_points = geometry->time_points,
 	};
 	memcpy(layout.dims, geometry->dims, sizeof layout.dims);
 	memcpy(layout.spacing, geometry->spacing, sizeof layout.spacing);

@@ -20,6 +20,7 @@ namespace gz_dicom
 struct decoded_slice {
 	gz_result result = GZ_OK;
 	std::string why;
+	bool overlap = false; /* of segments */
 	std::vector<uint8_t> voxels;
 };
 

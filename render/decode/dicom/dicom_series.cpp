@@ -19,6 +19,8 @@
 #include "render/decode/dicom/dicom_file.hpp"
 #include "render/decode/dicom/dicom_frame.hpp"
 #include "render/decode/dicom/dicom_pool.hpp"
+#include "render/decode/dicom/dicom_segments.hpp"
+#include "render/decode/dicom/dicom_time.hpp"
 
 #define GZ_LOG_MODULE "dicom"
 
@@ -77,6 +79,7 @@ class reader
 	void finish();
 	decoded_slice decode(size_t index) const;
 	void cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
+	decoded_slice decode_segments(const slice &s) const;
 	void widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	size_t slice_bytes() const;
 
@@ -89,9 +92,13 @@ class reader
 	size_t damaged = 0;  /* of them */
 	std::string example; /* one of them */
 	format numbers;
-	std::vector<slice> slices;
+	std::vector<slice> slices; /* of the first time point */
+	std::vector<slice> stacks; /* of all, one behind the other */
+	size_t time_points = 1;
+	std::shared_ptr<const segmentation> segments; /* NULL: an image */
+	bool told_overlap = false;
 	bool scaled_apart = false; /* slices have scales of their own */
-	uint64_t pool_begin = 0; /* its first slice */
+	uint64_t pool_begin = 0;   /* its first slice */
 	std::unique_ptr<slice_pool> pool;
 };
 
@@ -305,10 +312,14 @@ gz_result reader::check_head(const head &h) const
 	const gz_result colour = check_colour(h);
 	if (colour != GZ_OK)
 		return colour;
-	if ((f.bits_allocated != 8 && f.bits_allocated != 16) || f.bits_stored < 1 ||
+	const bool bits = f.bits_allocated == 1 && h.segments && !h.segments->fractional;
+	if ((!bits && f.bits_allocated != 8 && f.bits_allocated != 16 && f.bits_allocated != 32) ||
+	    (h.segments &&
+	     (f.bits_allocated > 8 || f.samples != 1 || f.colours != colour_kind::none)) ||
+	    (f.colours != colour_kind::none && f.bits_allocated > 16) || f.bits_stored < 1 ||
 	    f.bits_stored > f.bits_allocated || f.high_bit < f.bits_stored - 1 ||
 	    f.high_bit >= f.bits_allocated) {
-		gz_err(log, "%s: pixels of %d bits in %d up to bit %d; 8 and 16 are read",
+		gz_err(log, "%s: pixels of %d bits in %d up to bit %d; 8, 16 and 32 are read",
 		       h.path.c_str(), f.bits_stored, f.bits_allocated, f.high_bit);
 		return GZ_ERR_UNSUPPORTED;
 	}
@@ -319,14 +330,13 @@ gz_result reader::check_head(const head &h) const
 		       GZ_VOLUME_DIM_MAX);
 		return GZ_ERR_FORMAT;
 	}
-	const uint64_t frame_bytes = f.frame_bytes();
-	if (h.frames > GZ_VOLUME_DIM_MAX || h.frames * frame_bytes > h.bytes) {
+	if (h.frames > frames_max || f.stored_bytes(h.frames) > h.bytes) {
 		gz_err(log,
 		       "%s: truncated: %llu frames of %llu bytes are more than it can hold, or "
 		       "more "
-		       "than %d; fetch it again",
+		       "than %llu; fetch it again",
 		       h.path.c_str(), (unsigned long long)h.frames,
-		       (unsigned long long)frame_bytes, GZ_VOLUME_DIM_MAX);
+		       (unsigned long long)f.frame_bytes(), (unsigned long long)frames_max);
 		return GZ_ERR_FORMAT;
 	}
 	return GZ_OK;
@@ -338,10 +348,20 @@ gz_result reader::join()
 	std::sort(heads.begin(), heads.end(),
 		  [](const head &a, const head &b) { return a.path < b.path; });
 	numbers = heads[0].numbers;
-	for (const head &h : heads) {
-		const gz_result result = check_head(h);
+	segments = heads[0].segments;
+	if (segments && heads.size() > 1) {
+		gz_err(log, "%s: holds %zu segmentations in one series; name one of its files",
+		       path.c_str(), heads.size());
+		return GZ_ERR_FORMAT;
+	}
+	for (head &h : heads) {
+		gz_result result = check_head(h);
+		if (result == GZ_OK && h.segments)
+			result = stack_segments(h, log);
 		if (result != GZ_OK)
 			return result;
+		if (h.segments)
+			numbers.thickness = h.numbers.thickness;
 		if (!(h.numbers == numbers)) {
 			gz_err(log,
 			       "%s: its pixels are not as those of %s; keep one kind in the folder",
@@ -351,7 +371,7 @@ gz_result reader::join()
 		geometry.bytes_bound += h.bytes;
 		slices.insert(slices.end(), h.slices.begin(), h.slices.end());
 	}
-	if (slices.size() > (size_t)GZ_VOLUME_DIM_MAX * 16) {
+	if (slices.size() > frames_max) {
 		gz_err(log, "%s: %zu slices; name a folder with fewer", path.c_str(),
 		       slices.size());
 		return GZ_ERR_FORMAT;
@@ -392,25 +412,29 @@ gz_result reader::place()
 	return GZ_OK;
 }
 
-/* Sort, and keep the first of several at one place: a series over time. */
+/* Sort by place, and at each place by time. */
 gz_result reader::order()
 {
 	std::stable_sort(slices.begin(), slices.end(), [](const slice &a, const slice &b) {
 		return a.along < b.along || (a.along == b.along && a.number < b.number);
 	});
-	const size_t all = slices.size();
-	slices.erase(std::unique(slices.begin(), slices.end(),
-				 [](const slice &a, const slice &b) {
-					 return b.along - a.along < 1e-3;
-				 }),
-		     slices.end());
-	if (slices.size() < all)
+	const time_order found = order_in_time(slices);
+	time_points = found.points;
+	if (time_points > 1)
+		gz_info(log, "%s: %zu images at each place: time points, in the order of their %s",
+			path.c_str(), time_points, found.by);
+	if (found.left_out > 0)
 		gz_warn(log,
-			"%s: several images at one place; the first of each is shown (%zu of %zu)",
-			path.c_str(), slices.size(), all);
-	if (slices.size() <= GZ_VOLUME_DIM_MAX)
+			"%s: some places have more images than others; only %zu of each are shown "
+			"(%zu left out)",
+			path.c_str(), time_points, found.left_out);
+	if (slices.size() / time_points <= GZ_VOLUME_DIM_MAX) {
+		stacks = slices;
+		slices.resize(slices.size() / time_points);
 		return GZ_OK;
-	gz_err(log, "%s: %zu slices; allowed: %d", path.c_str(), slices.size(), GZ_VOLUME_DIM_MAX);
+	}
+	gz_err(log, "%s: %zu slices; allowed: %d", path.c_str(), slices.size() / time_points,
+	       GZ_VOLUME_DIM_MAX);
 	return GZ_ERR_FORMAT;
 }
 
@@ -455,6 +479,15 @@ gz_result reader::measure()
 	return GZ_OK;
 }
 
+gz_raw_type stored_type(const format &f)
+{
+	if (f.bits_stored <= 8)
+		return f.is_signed ? GZ_RAW_INT8 : GZ_RAW_UINT8;
+	if (f.bits_stored <= 16)
+		return f.is_signed ? GZ_RAW_INT16 : GZ_RAW_UINT16;
+	return f.is_signed ? GZ_RAW_INT32 : GZ_RAW_UINT32;
+}
+
 /* Patient coordinates of DICOM go left and to the back, ours right and to the front. */
 void reader::finish()
 {
@@ -471,21 +504,24 @@ void reader::finish()
 	geometry.dims[2] = (int)slices.size();
 	geometry.spacing[0] = numbers.spacing[0];
 	geometry.spacing[1] = numbers.spacing[1];
+	geometry.time_points = (int)time_points;
 	const bool coloured = numbers.colours != colour_kind::none;
 	geometry.channels = coloured ? 3 : 1;
-	scaled_apart = !coloured && std::any_of(slices.begin(), slices.end(), [&](const slice &s) {
+	scaled_apart = !coloured && std::any_of(stacks.begin(), stacks.end(), [&](const slice &s) {
 		return s.slope != slices[0].slope || s.intercept != slices[0].intercept;
 	});
 	geometry.slope = scaled_apart ? 1 : slices[0].slope;
 	geometry.intercept = scaled_apart ? 0 : slices[0].intercept;
-	const bool bytes = numbers.bits_stored <= 8;
-	geometry.type = coloured            ? GZ_RAW_UINT8
-			: scaled_apart      ? GZ_RAW_FLOAT32
-			: numbers.is_signed ? bytes ? GZ_RAW_INT8 : GZ_RAW_INT16
-			: bytes             ? GZ_RAW_UINT8
-					    : GZ_RAW_UINT16;
-	/* Numbers may be wider in memory than in the file. */
+	geometry.type = coloured ? GZ_RAW_UINT8
+			: segments
+				? segments->greatest_number() < 256 ? GZ_RAW_UINT8 : GZ_RAW_UINT16
+			: scaled_apart ? GZ_RAW_FLOAT32
+				       : stored_type(numbers);
+	/* Numbers may be wider in memory than in the file, and empty slices may be left out of it.
+	 */
 	geometry.bytes_bound *= 4;
+	if (segments)
+		geometry.bytes_bound = slice_bytes() * slices.size();
 }
 
 gz_result reader::open()
@@ -521,45 +557,95 @@ void reader::cut_colours(const slice &s, const std::vector<uint8_t> &frame, void
 	}
 }
 
+/* A pixel as it is allocated. */
+uint32_t raw_pixel(const format &f, const std::vector<uint8_t> &frame, size_t at)
+{
+	uint16_t two;
+	uint32_t four;
+	switch (f.bits_allocated) {
+	case 8:
+		return frame[at];
+	case 16:
+		std::memcpy(&two, &frame[2 * at], sizeof two);
+		return two;
+	default:
+		std::memcpy(&four, &frame[4 * at], sizeof four);
+		return four;
+	}
+}
+
+/* Put a number at a place of an array of a type. */
+void put_number(gz_raw_type type, int64_t value, size_t at, void *voxels)
+{
+	switch (type) {
+	case GZ_RAW_UINT8:
+		((uint8_t *)voxels)[at] = (uint8_t)value;
+		break;
+	case GZ_RAW_INT8:
+		((int8_t *)voxels)[at] = (int8_t)value;
+		break;
+	case GZ_RAW_UINT16:
+		((uint16_t *)voxels)[at] = (uint16_t)value;
+		break;
+	case GZ_RAW_INT16:
+		((int16_t *)voxels)[at] = (int16_t)value;
+		break;
+	case GZ_RAW_UINT32:
+		((uint32_t *)voxels)[at] = (uint32_t)value;
+		break;
+	default:
+		((int32_t *)voxels)[at] = (int32_t)value;
+		break;
+	}
+}
+
 /* Stored bits to numbers of the geometry's type: other bits, overlays of old, are masked out. */
 void reader::widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const
 {
 	const int shift = numbers.high_bit + 1 - numbers.bits_stored;
-	const uint32_t mask = (1U << numbers.bits_stored) - 1;
-	const uint32_t sign = numbers.is_signed ? 1U << (numbers.bits_stored - 1) : 0;
-	const auto *wide = (const uint16_t *)frame.data();
+	const uint32_t mask = (uint32_t)((UINT64_C(1) << numbers.bits_stored) - 1);
+	const int64_t sign = numbers.is_signed ? INT64_C(1) << (numbers.bits_stored - 1) : 0;
 	size_t i = 0;
 	for (int y = 0; y < numbers.rows; y++) {
 		size_t at = (size_t)(s.first_row + y) * (size_t)numbers.frame_columns +
 			    (size_t)s.first_column;
 		for (int x = 0; x < numbers.columns; x++, i++, at++) {
-			const uint32_t raw = numbers.bits_allocated == 8 ? frame[at] : wide[at];
-			const int32_t value =
-				(int32_t)((raw >> shift & mask) ^ sign) - (int32_t)sign;
-			switch (geometry.type) {
-			case GZ_RAW_UINT8:
-				((uint8_t *)voxels)[i] = (uint8_t)value;
-				break;
-			case GZ_RAW_INT8:
-				((int8_t *)voxels)[i] = (int8_t)value;
-				break;
-			case GZ_RAW_UINT16:
-				((uint16_t *)voxels)[i] = (uint16_t)value;
-				break;
-			case GZ_RAW_INT16:
-				((int16_t *)voxels)[i] = (int16_t)value;
-				break;
-			default:
-				((float *)voxels)[i] = (float)(value * s.slope + s.intercept);
-				break;
-			}
+			const uint32_t raw = raw_pixel(numbers, frame, at) >> shift & mask;
+			const int64_t value = ((int64_t)raw ^ sign) - sign;
+			if (geometry.type == GZ_RAW_FLOAT32)
+				((float *)voxels)[i] =
+					(float)((double)value * s.slope + s.intercept);
+			else
+				put_number(geometry.type, value, i, voxels);
 		}
 	}
 }
 
+/* A slice of labels, of all frames that lie there. */
+decoded_slice reader::decode_segments(const slice &s) const
+{
+	decoded_slice made;
+	const size_t count = (size_t)numbers.columns * (size_t)numbers.rows;
+	std::vector<uint16_t> labels(count);
+	std::vector<uint8_t> frame, fractions(segments->fractional ? count : 0);
+	for (const segment_frame &part : s.parts) {
+		made.result = decode_frame(*s.pixels, part.frame, frame, made.why);
+		if (made.result != GZ_OK)
+			return made;
+		if (put_segment(*segments, part.number, frame, labels, fractions))
+			made.overlap = true;
+	}
+	made.voxels.resize(slice_bytes());
+	for (size_t i = 0; i < count; i++)
+		put_number(geometry.type, labels[i], i, made.voxels.data());
+	return made;
+}
+
 decoded_slice reader::decode(size_t index) const
 {
-	const slice &s = slices[index];
+	const slice &s = stacks[index];
+	if (segments)
+		return decode_segments(s);
 	decoded_slice made;
 	std::vector<uint8_t> frame;
 	made.result = decode_frame(*s.pixels, s.frame, frame, made.why);
@@ -578,7 +664,7 @@ gz_result reader::read(uint64_t index, void *voxels)
 	if (!pool) {
 		pool_begin = index;
 		pool.reset(new slice_pool(
-			slices.size() - pool_begin,
+			stacks.size() - pool_begin,
 			numbers.frame_bytes() + codec_bytes_a_pixel * (uint64_t)geometry.channels *
 							(uint64_t)numbers.frame_columns *
 							(uint64_t)numbers.frame_rows,
@@ -586,8 +672,14 @@ gz_result reader::read(uint64_t index, void *voxels)
 	}
 	const decoded_slice made = pool->take();
 	if (made.result != GZ_OK) {
-		gz_err(log, "%s: %s", slices[index].path().c_str(), made.why.c_str());
+		gz_err(log, "%s: %s", stacks[index].path().c_str(), made.why.c_str());
 		return made.result;
+	}
+	if (made.overlap && !told_overlap) {
+		told_overlap = true;
+		gz_warn(log, "%s: segments overlap; where they do, %s is shown", path.c_str(),
+			segments->fractional ? "the one with the greatest fraction"
+					     : "the one whose frame comes later");
 	}
 	std::memcpy(voxels, made.voxels.data(), made.voxels.size());
 	return GZ_OK;

@@ -32,6 +32,7 @@ struct gz_dicom_geometry {
 	enum gz_raw_type type;  /**< of what gz_dicom_series_read() gives, in host byte order */
 	int channels;           /**< numbers of a voxel: 1, or 3 for red, green and blue */
 	double slope, intercept;
+	int time_points;      /**< stacks of slices, one behind the other; 1 or more */
 	uint64_t bytes_bound; /**< the most bytes that the files' pixel data can hold */
 };
 
@@ -61,7 +62,8 @@ const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_s
 /**
  * Get a slice. Threads decode a few ahead.
  *
- * @param index  any first; then the one behind that of the call before
+ * @param index  of all time points, one behind the other: any first; then the one behind that of
+ * the call before
  * @param[out] voxels  columns * rows voxels, of the geometry's type and channels
  * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
  */
