@@ -122,7 +122,7 @@ static bool take_series(const struct gz_volume_file *file, const struct gz_decod
 {
 	const int time_point = file->loading ? file->loading->time_point : 0;
 	struct gz_float_scaling scaling;
-	double least = header->series[0], greatest = header->series[1];
+	double least = header->number_range[0], greatest = header->number_range[1];
 	if (header->time_points <= 1)
 		return time_point == 0;
 	if (header->time_points > GZ_TIME_POINTS_MAX || time_point < 0 ||
@@ -130,7 +130,7 @@ static bool take_series(const struct gz_volume_file *file, const struct gz_decod
 		return false;
 	volume->time_points = header->time_points;
 	volume->time_point = time_point;
-	memcpy(volume->series, header->series, sizeof volume->series);
+	memcpy(volume->number_range, header->number_range, sizeof volume->number_range);
 	/* As gz_volume_scale_floats() has scaled the voxels. */
 	if (volume->type == GZ_VOXEL_F32 && gz_float_scaling_find(least, greatest, &scaling)) {
 		least = (double)gz_float_scaled(&scaling, (float)least);
@@ -182,7 +182,7 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 		.path = file->path,
 		.choice = choice,
 		.time_point = file->loading ? file->loading->time_point : 0,
-		.series_range = file->loading ? file->loading->series_range : NULL,
+		.number_range = file->loading ? file->loading->number_range : NULL,
 		.scratch_fd = decoding.scratch_fd,
 		.user = &decoding,
 		.goes_on = decoding_goes_on,

@@ -68,7 +68,7 @@ bool gz_dicom_is(const char *path)
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
-	const char *series = file->loading ? file->loading->series : NULL;
+	const char *series = file->loading ? file->loading->series_uid : NULL;
 	return gz_volume_decode(file, "dicom", series, out_volume);
 }
 

@@ -54,12 +54,12 @@ struct gz_loading {
 	size_t brick_bytes;
 	/** UID of the DICOM series wanted; NULL or empty: the file's own, or the only one.
 	 * Borrowed; other formats ignore it. */
-	const char *series;
+	const char *series_uid;
 	int time_point; /**< of a file that holds several, from 0; other files have only 0 */
 	enum gz_opacity_source opacity; /**< of a file of colours; others ignore it */
-	/** Least and greatest number of all time points, from the member series of a volume that
-	 *  was loaded before. Borrowed. NULL: found by reading all of them. */
-	const double *series_range;
+	/** The member number_range of another time point that was loaded before. Borrowed. NULL:
+	 *  found by reading all of them. */
+	const double *number_range;
 	/**
 	 * Optional: gives the memory of the voxels, instead of the above.
 	 *
@@ -147,9 +147,10 @@ struct gz_volume {
 	bool oriented;                 /**< it is known where right, front and up are */
 	size_t mapped; /**< bytes of the file that holds the voxels, on the disk or in memory, which
 			  may be mapped to be read only; 0: memory of the program */
-	int time_points;  /**< of its file, which hold volumes of one layout; 0 or 1: no series */
-	int time_point;   /**< which of them this is, from 0 */
-	double series[2]; /**< of a series: see series_range of struct gz_loading */
+	int time_points; /**< of its file, which hold volumes of one layout; 0 or 1: no series */
+	int time_point;  /**< which of them this is, from 0 */
+	/** With several time points: least and greatest number of all of them in the file */
+	double number_range[2];
 };
 
 /** Type names of raw files. */

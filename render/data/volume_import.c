@@ -422,12 +422,12 @@ static bool is_data_missing(enum gz_result result)
 	return result == GZ_ERR_FORMAT || result == GZ_ERR_IO || result == GZ_ERR_NOT_FOUND;
 }
 
-/* Read all time points, of which one is kept. The volume's series becomes the range of the others.
+/* Read all time points, of which one is kept. The volume's number_range becomes that of the others.
  */
 static enum gz_result read_whole_series(struct gz_byte_stream *stream, struct import *import,
 					uint64_t count)
 {
-	double *range = import->volume->series;
+	double *range = import->volume->number_range;
 	enum gz_result result = GZ_OK;
 	range[0] = INFINITY;
 	range[1] = -INFINITY;
@@ -453,7 +453,7 @@ static enum gz_result read_time_point(struct gz_byte_stream *stream, struct impo
 				      uint64_t count)
 {
 	const struct gz_loading *loading = import->file->loading;
-	const double *known = loading ? loading->series_range : NULL;
+	const double *known = loading ? loading->number_range : NULL;
 	if (import->time_points > 1 && !known)
 		return read_whole_series(stream, import, count);
 	const uint64_t bytes = count * import->voxel_size;
@@ -462,21 +462,23 @@ static enum gz_result read_time_point(struct gz_byte_stream *stream, struct impo
 		result = gz_byte_stream_skip(stream, (uint64_t)import->time_point * bytes);
 	import->all = count;
 	if (known)
-		memcpy(import->volume->series, known, sizeof import->volume->series);
+		memcpy(import->volume->number_range, known, sizeof import->volume->number_range);
 	gz_byte_stream_read_ahead(stream, bytes);
 	return result == GZ_OK ? read_voxels(stream, import, count) : result;
 }
 
 /* Join the range of the volume and that of the other time points. */
-static void take_series_range(const struct import *import)
+static void take_number_range(const struct import *import)
 {
 	struct gz_volume *volume = import->volume;
 	if (import->time_points <= 1)
 		return;
 	volume->time_points = import->time_points;
 	volume->time_point = import->time_point;
-	volume->stored_min = volume->series[0] = fmin(volume->series[0], volume->stored_min);
-	volume->stored_max = volume->series[1] = fmax(volume->series[1], volume->stored_max);
+	volume->stored_min = volume->number_range[0] =
+		fmin(volume->number_range[0], volume->stored_min);
+	volume->stored_max = volume->number_range[1] =
+		fmax(volume->number_range[1], volume->stored_max);
 }
 
 static enum gz_result choose_time_point(struct import *import)
@@ -615,7 +617,7 @@ static void check_alpha(const struct import *import)
 static void tell_colour(const struct import *import)
 {
 	const struct gz_loading *loading = import->file->loading;
-	if (import->volume->colour != GZ_COLOUR_NONE && !(loading && loading->series_range))
+	if (import->volume->colour != GZ_COLOUR_NONE && !(loading && loading->number_range))
 		gz_info(import->file->log,
 			"%s: voxels have colours; the transfer function gives opacity by %s",
 			import->file->path, gz_volume_colour_text(import->volume->colour));
@@ -675,7 +677,7 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 		warn_rounded_flat(&import);
 		check_alpha(&import);
 		tell_colour(&import);
-		take_series_range(&import);
+		take_number_range(&import);
 		gz_volume_scale_floats(&volume);
 	}
 	if (result != GZ_OK) {

@@ -44,7 +44,7 @@ struct gz_decode_job {
 	const char *choice; /**< what to choose of it; NULL: nothing */
 	int time_point;     /**< of a series, from 0 */
 	/** Least and greatest number of the series, finite. Borrowed; NULL: not known. */
-	const double *series_range;
+	const double *number_range;
 	const char *program; /**< the decoder's path; NULL: gz_decode_find_program() */
 	int patience_ms;     /**< 0: GZ_DECODE_PATIENCE_MS */
 	int scratch_fd;      /**< a writable file for the voxels; -1: none. Borrowed */

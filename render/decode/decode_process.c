@@ -123,8 +123,8 @@ static int spawn_with(const char *program, const struct gz_decode_job *job,
 	char texts[KEPT_COUNT][GZ_PATH_SIZE], *environment[KEPT_COUNT + 1];
 	snprintf(self, sizeof self, "%ld", (long)getpid());
 	snprintf(time_point, sizeof time_point, "%d", job->time_point);
-	if (job->series_range)
-		print_range(job->series_range, range, sizeof range);
+	if (job->number_range)
+		print_range(job->number_range, range, sizeof range);
 	keep_environment(texts, environment);
 	/* posix_spawn() does not write to them. */
 	char *const arguments[] = { (char *)"gazedecode",

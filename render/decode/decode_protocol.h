@@ -49,9 +49,10 @@ struct gz_decode_header {
 			      gz_volume_place_colours() says */
 	double spacing[3];
 	double slope, intercept;
-	double series[2];    /**< of a series: its range as in struct gz_volume; known at the end */
-	int32_t time_points; /**< 0 or 1: no series; known at the end */
-	uint32_t unused;     /**< 0 */
+	double number_range[2]; /**< of a series: its range as in struct gz_volume; known at the end
+				 */
+	int32_t time_points;    /**< 0 or 1: no series; known at the end */
+	uint32_t unused;        /**< 0 */
 };
 
 /** Size of a line with its NUL, bytes. */

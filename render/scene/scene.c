@@ -73,7 +73,7 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 		return result;
 	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
 	loading.brick_bytes = (size_t)settings->memory_mib << 20;
-	loading.series = settings->volume_series;
+	loading.series_uid = settings->volume_series;
 	loading.time_point = settings->time_point - 1;
 	loading.opacity = (enum gz_opacity_source)settings->opacity;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
@@ -111,7 +111,7 @@ enum gz_result gz_scene_load_time_point(const struct gz_scene_time_point *which,
 		.name = which->name, .loading = &of_series, .log = log, .settings = &settings
 	};
 	settings.time_point = which->time_point + 1;
-	of_series.series_range = which->series;
+	of_series.number_range = which->number_range;
 	return load_volume(&loader, out_volume);
 }
 

@@ -60,9 +60,9 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 struct gz_scene_time_point {
 	const char *name; /**< path beside which the scene's files are searched first */
 	const struct gz_scene_settings
-		*settings;    /**< of the scene; their own time point is ignored */
-	int time_point;       /**< from 0 */
-	const double *series; /**< the member series of a time point that was loaded before */
+		*settings;          /**< of the scene; their own time point is ignored */
+	int time_point;             /**< from 0 */
+	const double *number_range; /**< of a time point that was loaded before */
 };
 
 /**

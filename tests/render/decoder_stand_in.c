@@ -188,8 +188,8 @@ static void end_as_series(int time_points, double least, double greatest)
 	make_good();
 	message.kind = GZ_DECODE_ENDED;
 	message.header.time_points = time_points;
-	message.header.series[0] = least;
-	message.header.series[1] = greatest;
+	message.header.number_range[0] = least;
+	message.header.number_range[1] = greatest;
 	say(&message);
 	pause();
 }

@@ -358,7 +358,7 @@ static void series_of_colours_has_one_range(void **state)
 					    bytes, sizeof bytes);
 	struct gz_volume first = loaded(path, GZ_OPACITY_AUTO), second;
 	struct captured_log log;
-	const struct gz_loading loading = { .time_point = 1, .series_range = first.series };
+	const struct gz_loading loading = { .time_point = 1, .number_range = first.number_range };
 	captured_log_init(&log, "*:warn");
 	assert_int_equal(first.time_points, 2);
 	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &second), GZ_OK);

@@ -274,7 +274,7 @@ static void series_has_the_range_that_the_decoder_found(void **state)
 	assert_int_equal(volume.time_points, 3);
 	assert_int_equal(volume.time_point, 2);
 	assert_true(volume.stored_min == 5 && volume.stored_max == 200);
-	assert_true(volume.series[0] == 5 && volume.series[1] == 200);
+	assert_true(volume.number_range[0] == 5 && volume.number_range[1] == 200);
 	gz_volume_free(&volume);
 	assert_int_equal(load_by_stand_in("series.dcm", &beyond, &log, &volume), GZ_ERR_FORMAT);
 	assert_int_equal(load_by_stand_in("good.dcm", &last, &log, &volume), GZ_ERR_FORMAT);

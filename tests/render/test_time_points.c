@@ -55,7 +55,7 @@ static const char *write_nifti_series(const char *name)
 
 static void check_time_point(const char *path, int point, double unit, const double *range)
 {
-	const struct gz_loading loading = { .time_point = point, .series_range = range };
+	const struct gz_loading loading = { .time_point = point, .number_range = range };
 	struct captured_log log;
 	struct gz_volume v;
 	captured_log_init(&log, "*:warn");
@@ -82,7 +82,7 @@ static void check_all_time_points(const char *path, double unit)
 {
 	struct gz_volume first;
 	assert_int_equal(gz_volume_load(path, NULL, NULL, NULL, &first), GZ_OK);
-	const double range[2] = { first.series[0], first.series[1] };
+	const double range[2] = { first.number_range[0], first.number_range[1] };
 	for (int point = 0; point < POINTS; point++) {
 		check_time_point(path, point, unit, NULL);
 		check_time_point(path, point, unit, range);
@@ -234,7 +234,7 @@ static void scene_shows_the_time_point_that_it_names(void **state)
 	const struct gz_scene_time_point which = { .name = files_path("time.scene"),
 						   .settings = &scene.settings,
 						   .time_point = 1,
-						   .series = scene.volume.series };
+						   .number_range = scene.volume.number_range };
 	assert_int_equal(gz_scene_load_time_point(&which, NULL, NULL, &other), GZ_OK);
 	assert_int_equal(other.time_point, 1);
 	assert_true(other.stored_max == scene.volume.stored_max);

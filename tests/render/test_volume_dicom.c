@@ -166,13 +166,13 @@ static void uid_chooses_one_of_several_series(void **state)
 	(void)state;
 	struct captured_log log;
 	struct gz_volume volume = { 0 };
-	struct gz_loading loading = { .series = SERIES };
+	struct gz_loading loading = { .series_uid = SERIES };
 	write_tree();
 	captured_log_init(&log, NULL);
 	assert_int_equal(gz_volume_load(files_path("t"), NULL, &loading, &log.log, &volume), GZ_OK);
 	check_series(&volume);
 	gz_volume_free(&volume);
-	loading.series = "9.9";
+	loading.series_uid = "9.9";
 	assert_int_equal(gz_volume_load(files_path("t"), NULL, &loading, &log.log, &volume),
 			 GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "no series 9.9 here"));

@@ -22,7 +22,7 @@ enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
 struct time_points {
 	char path[GZ_PATH_SIZE]; /* of the scene */
 	struct gz_scene_settings settings;
-	double series[2];
+	double number_range[2];
 	const struct gz_log *log;
 	void (*finished)(void *user);
 	struct gz_time_steps *steps;
@@ -261,7 +261,7 @@ static enum gz_result load_time_point(void *user, int step, const struct gz_load
 		.name = points->path,
 		.settings = &points->settings,
 		.time_point = step,
-		.series = points->series,
+		.number_range = points->number_range,
 	};
 	struct gz_volume *volume = calloc(1, sizeof *volume);
 	if (!volume) {
@@ -314,7 +314,8 @@ static struct gz_time_steps *time_steps_of(struct gz_frame_maker *maker,
 	if (r == GZ_OK) {
 		memcpy(points->path, maker->path, sizeof points->path);
 		points->settings = maker->scene.settings;
-		memcpy(points->series, maker->scene.volume.series, sizeof points->series);
+		memcpy(points->number_range, maker->scene.volume.number_range,
+		       sizeof points->number_range);
 		points->log = maker->log;
 		points->finished = finished;
 		const struct gz_time_step_source source = {

@@ -212,7 +212,7 @@ static void draw_time_panel(struct gz_window *window, const struct gz_window_gaz
 	const struct gz_number_range points = {
 		.least = 1, .greatest = count, .slider = true, .format = format
 	};
-	if (gz_panel_begin("Series", &place, &self->open)) {
+	if (gz_panel_begin("Time points", &place, &self->open)) {
 		int number = time_point_in_view(window) + 1;
 		gz_widgets_next_width(0);
 		if (gz_widget_ints("##time point", &number, 1, &points)) {

@@ -53,7 +53,8 @@ static struct gz_decode_header header_of(const struct gz_volume *volume)
 					   .time_points = volume->time_points,
 					   .slope = volume->slope,
 					   .intercept = volume->intercept,
-					   .series = { volume->series[0], volume->series[1] } };
+					   .number_range = { volume->number_range[0],
+							     volume->number_range[1] } };
 	for (int axis = 0; axis < 3; axis++) {
 		header.dims[axis] = volume->dims[axis];
 		header.spacing[axis] = volume->spacing[axis];
@@ -95,10 +96,10 @@ bool gz_decoder_take_series(struct gz_decoder *decoder, const char *time_point, 
 		return true;
 	for (int i = 0; i < 2; i++) {
 		const char *word = gz_number_next_word(&range, " ");
-		if (!word || !gz_number_parse(word, &decoder->series_range[i]))
+		if (!word || !gz_number_parse(word, &decoder->number_range[i]))
 			return false;
 	}
-	decoder->loading.series_range = decoder->series_range;
+	decoder->loading.number_range = decoder->number_range;
 	return true;
 }
 

@@ -16,7 +16,7 @@
 struct gz_decoder {
 	struct gz_log log;         /**< its lines become messages; thread-safe */
 	struct gz_loading loading; /**< reports steps, and gets the voxels' memory */
-	double series_range[2];    /**< what the loading points to, if it is known */
+	double number_range[2];    /**< what the loading points to, if it is known */
 	int32_t steps;             /**< reports so far */
 	int64_t sent_ns;           /**< when a step was sent last */
 };
