@@ -33,6 +33,8 @@ const char *gz_result_text(enum gz_result result)
 		return "no space left";
 	case GZ_ERR_CANCELLED:
 		return "stopped on request";
+	case GZ_ERR_CHOICE:
+		return "one of several must be chosen";
 	}
 	return "unknown result";
 }

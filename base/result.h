@@ -22,6 +22,7 @@ enum gz_result {
 	GZ_ERR_END = -12,         /**< the stream or file has ended; not an error */
 	GZ_ERR_FULL = -13,        /**< no room left: disk, buffer, queue */
 	GZ_ERR_CANCELLED = -14,   /**< the caller asked to stop early */
+	GZ_ERR_CHOICE = -15,      /**< there are several; the caller must choose one */
 };
 
 /**

@@ -8,6 +8,7 @@
 
 #include "render/data/float_scaling.h"
 #include "render/data/scratch.h"
+#include "render/data/series_list.h"
 #include "render/decode/decode.h"
 
 #define GZ_LOG_MODULE "volume"
@@ -177,6 +178,8 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 	if (file->loading && file->loading->scratch)
 		decoding.scratch_result =
 			gz_scratch_open(file->loading->scratch, &decoding.scratch_fd);
+	struct gz_series_list *list = file->loading ? file->loading->series_list : NULL;
+	const struct gz_decode_listener listener = gz_series_list_listener(list);
 	const struct gz_decode_job job = {
 		.format = format,
 		.path = file->path,
@@ -187,6 +190,7 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 		.user = &decoding,
 		.goes_on = decoding_goes_on,
 		.accept = accept_header,
+		.listener = list ? &listener : NULL,
 		.log = file->log,
 	};
 	struct gz_decoded decoded;

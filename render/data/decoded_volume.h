@@ -18,6 +18,7 @@
  * @return as gz_decode_run(), and
  * @retval GZ_ERR_FORMAT  the decoder's volume breaks a promise of struct gz_volume; logged
  * @retval GZ_ERR_FULL    no room in the scratch folder; logged
+ * @retval GZ_ERR_CHOICE  series were listed in the series_list of the file's loading; not logged
  */
 enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *format,
 				const char *choice, struct gz_volume *out_volume);

@@ -12,7 +12,8 @@ extern "C" {
 #endif
 
 /** Whether a path is a folder, or a file that is DICOM by its preamble (PS3.10, 7.1), or, without
- *  one, by its first three elements: of group 2 or 8, little-endian, one after the other. */
+ *  one, by its first three elements: of group 2 or 8, little-endian, one after the other; or that
+ *  is named DICOMDIR, even if it is damaged. */
 bool gz_dicom_is(const char *path);
 
 #ifdef __cplusplus

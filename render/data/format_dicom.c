@@ -2,6 +2,8 @@
  * them (render/decode/dicom/). */
 #include <ctype.h>
 #include <stdint.h>
+#include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "render/data/decoded_volume.h"
@@ -49,6 +51,12 @@ static bool begins_with_elements(const uint8_t *bytes, size_t size)
 	return true;
 }
 
+static bool is_directory_name(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return strcasecmp(slash ? slash + 1 : path, "DICOMDIR") == 0;
+}
+
 /* The preamble may be the head of another format, of TIFF for one (PS3.10, 7.1). */
 static bool dicom_knows_start(const struct gz_file_start *start)
 {
@@ -62,14 +70,16 @@ bool gz_dicom_is(const char *path)
 	if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
 		return true;
 	return gz_file_start_read(path, &start) &&
-	       (dicom_knows_start(&start) ||
+	       (is_directory_name(path) || dicom_knows_start(&start) ||
 		(start.coding == GZ_CODING_PLAIN && begins_with_elements(start.bytes, start.size)));
 }
 
 static enum gz_result load_dicom(const struct gz_volume_file *file, struct gz_volume *out_volume)
 {
 	const char *series = file->loading ? file->loading->series_uid : NULL;
-	return gz_volume_decode(file, "dicom", series, out_volume);
+	const bool chosen = series && series[0];
+	const bool listed = !chosen && file->loading && file->loading->series_list;
+	return gz_volume_decode(file, listed ? "dicom-choose" : "dicom", series, out_volume);
 }
 
 const struct gz_volume_format gz_format_dicom = {
@@ -80,6 +90,5 @@ const struct gz_volume_format gz_format_dicom = {
 	.recognise = gz_dicom_is,
 	.load = load_dicom,
 	.limits = "integers of 8, 16 and 32 bits, colours of 8 bits, evenly spaced parallel "
-		  "slices, one "
-		  "series a folder; also dose (RTDOSE) and segmentations (SEG)",
+		  "slices; also dose (RTDOSE) and segmentations (SEG)",
 };

@@ -24,6 +24,7 @@ static inline bool gz_host_big_endian(void)
 }
 
 struct gz_volume;
+struct gz_series_list;
 
 /** What the values of voxels with colours of their own are to be: scene key volume.opacity. */
 enum gz_opacity_source {
@@ -55,6 +56,9 @@ struct gz_loading {
 	/** UID of the DICOM series wanted; NULL or empty: the file's own, or the only one.
 	 * Borrowed; other formats ignore it. */
 	const char *series_uid;
+	/** What to do where several series are meant: list them in it (render/data/series_list.h)
+	 *  and return GZ_ERR_CHOICE, without a line in the log. NULL: refuse with GZ_ERR_FORMAT. */
+	struct gz_series_list *series_list;
 	int time_point; /**< of a file that holds several, from 0; other files have only 0 */
 	enum gz_opacity_source opacity; /**< of a file of colours; others ignore it */
 	/** The member number_range of another time point that was loaded before. Borrowed. NULL:
@@ -197,6 +201,7 @@ struct gz_raw_layout {
  * @retval GZ_ERR_UNSUPPORTED  a format, dimension or encoding that is not read; logged
  * @retval GZ_ERR_NO_MEM       logged with the size asked for
  * @retval GZ_ERR_CANCELLED    @p loading stopped it; not logged
+ * @retval GZ_ERR_CHOICE       several series, and @p loading has a list for them; not logged
  *
  * Peak memory is the volume and a small buffer: slices are converted and turned as they are read.
  */

@@ -37,6 +37,8 @@ struct run {
 	int32_t steps;        /* of the newest step */
 	int64_t moved_ns;     /* when it last made progress */
 	bool accepted, ended; /* header and end have come */
+	uint32_t series;      /* of the list so far */
+	uint32_t remarks;     /* pictures' rows and refusals so far */
 	enum gz_result result;
 	struct gz_decode_header header;
 	struct gz_decode_place place;
@@ -130,7 +132,7 @@ static enum gz_result size_voxel_memory(const struct run *run)
 static enum gz_result take_header(struct run *run)
 {
 	const struct gz_decode_header *header = &run->message.header;
-	if (run->accepted)
+	if (run->accepted || run->series > 0)
 		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a header that is none");
 	enum gz_result result = run->job->accept(run->job->user, header, &run->place);
 	if (result == GZ_OK)
@@ -184,6 +186,72 @@ static enum gz_result take_end(struct run *run)
 	return refuse_decoder(run, GZ_ERR_PROTOCOL, "ended with an unknown result");
 }
 
+/* Whether a text of a message ends within its room; it is cleaned then. */
+static bool clean_field(char *text, size_t size)
+{
+	if (!memchr(text, 0, size))
+		return false;
+	gz_decode_clean_text(text);
+	return true;
+}
+
+static enum gz_result take_series(struct run *run)
+{
+	struct gz_decode_series *series = &run->message.series;
+	const bool whole = clean_field(series->uid, sizeof series->uid) &&
+			   clean_field(series->date, sizeof series->date) &&
+			   clean_field(series->modality, sizeof series->modality) &&
+			   clean_field(series->patient, sizeof series->patient) &&
+			   clean_field(series->description, sizeof series->description) &&
+			   clean_field(series->reason, sizeof series->reason);
+	if (!run->job->listener || run->accepted || !whole || series->slices < 0 ||
+	    run->series >= GZ_DECODE_SERIES_MAX)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a series that is none");
+	run->series++;
+	run->moved_ns = gz_clock_now_ns();
+	const enum gz_result result = run->job->listener->series(run->job->listener->user, series);
+	return result == GZ_OK ? GZ_OK : refuse_decoder(run, result, gz_result_text(result));
+}
+
+/* Whether the number in a message is that of a series, of which it is not told without end. */
+static bool remark_allowed(struct run *run)
+{
+	const int32_t index = run->message.detail;
+	const uint32_t most = run->series * (GZ_DECODE_PICTURE_BANDS + 1);
+	if (index < 0 || (uint32_t)index >= run->series || run->remarks >= most)
+		return false;
+	run->remarks++;
+	run->moved_ns = gz_clock_now_ns();
+	return true;
+}
+
+static enum gz_result take_picture(struct run *run)
+{
+	const struct gz_decode_picture *picture = &run->message.picture;
+	if (picture->band >= GZ_DECODE_PICTURE_BANDS || !remark_allowed(run))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a picture that is none");
+	run->job->listener->picture(run->job->listener->user, (uint32_t)run->message.detail,
+				    picture);
+	return GZ_OK;
+}
+
+static enum gz_result take_refusal(struct run *run)
+{
+	char *why = run->message.text;
+	if (!clean_field(why, sizeof run->message.text) || !remark_allowed(run))
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a refusal that is none");
+	run->job->listener->refused(run->job->listener->user, (uint32_t)run->message.detail, why);
+	return GZ_OK;
+}
+
+static enum gz_result take_list_end(struct run *run)
+{
+	if (run->series == 0)
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "ended an empty list");
+	run->ended = true;
+	return GZ_ERR_CHOICE;
+}
+
 static enum gz_result take_message(struct run *run)
 {
 	if (++run->messages > GZ_DECODE_MESSAGES_MAX || run->lines > 100 * GZ_DECODE_LINES_MAX)
@@ -197,6 +265,14 @@ static enum gz_result take_message(struct run *run)
 		return take_header(run);
 	case GZ_DECODE_ENDED:
 		return take_end(run);
+	case GZ_DECODE_SERIES:
+		return take_series(run);
+	case GZ_DECODE_PICTURE:
+		return take_picture(run);
+	case GZ_DECODE_REFUSED:
+		return take_refusal(run);
+	case GZ_DECODE_LISTED:
+		return take_list_end(run);
 	default:
 		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent what is no message");
 	}

@@ -12,6 +12,10 @@
 #include <stddef.h>
 #include <sys/types.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #include "base/log.h"
 #include "base/result.h"
 #include "render/decode/decode_protocol.h"
@@ -30,6 +34,22 @@
 /** Messages after which a decoder counts as broken. Chosen: it sends 20 steps a second at most, so
  *  this is nearly three hours. */
 #define GZ_DECODE_MESSAGES_MAX 200000
+
+/** Most series of a list. Chosen: a medium holds some hundreds. */
+#define GZ_DECODE_SERIES_MAX 1024
+
+/** Who takes a list. Its functions are called on the thread of gz_decode_run(), with messages that
+ *  have been checked: texts end and are clean, and numbers are in range. */
+struct gz_decode_listener {
+	void *user; /**< passed to the functions below */
+	/** Takes the next series. @return GZ_OK, or why decoding ends */
+	enum gz_result (*series)(void *user, const struct gz_decode_series *series);
+	/** Takes rows of the picture of a series that was sent before: band below
+	 *  GZ_DECODE_PICTURE_BANDS. A hostile decoder may leave some out, or send them twice. */
+	void (*picture)(void *user, uint32_t index, const struct gz_decode_picture *picture);
+	/** Takes why a series that was sent before cannot be shown after all. */
+	void (*refused)(void *user, uint32_t index, const char *why);
+};
 
 /** Where the voxels of a header go. */
 struct gz_decode_place {
@@ -54,6 +74,8 @@ struct gz_decode_job {
 	/** Checks a header in full and says where its voxels go. Logs why it refuses one. */
 	enum gz_result (*accept)(void *user, const struct gz_decode_header *header,
 				 struct gz_decode_place *out_place);
+	/** Takes a list, if the format makes one; NULL: a list is refused. Borrowed. */
+	const struct gz_decode_listener *listener;
 	const struct gz_log *log;
 };
 
@@ -77,7 +99,9 @@ struct gz_decoded {
  * @retval GZ_ERR_NO_MEM     memory or descriptors ran out; logged
  * @retval GZ_ERR_ACCESS     the decoder is not installed or cannot be started; logged
  * @retval GZ_ERR_CANCELLED  goes_on() said so; not logged
- * @return else what accept() returned
+ * @retval GZ_ERR_CHOICE     the listener has a list of at least one series, and there are no
+ *                           voxels; not logged
+ * @return else what accept() or the listener returned
  *
  * Threads: any, several at a time. The calling thread must live until it returns: if it ends, the
  * decoder is killed.
@@ -97,5 +121,9 @@ enum gz_result gz_decode_find_program(char *out_path, size_t size);
 /** Replace what could disturb a terminal by '?': control characters, and bytes that are no UTF-8.
  */
 void gz_decode_clean_text(char *text);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The last value of the enum. Change this when a value is added, so that it is checked below. */
-enum { LAST = GZ_ERR_CANCELLED };
+enum { LAST = GZ_ERR_CHOICE };
 
 static void result_text_each_value_has_its_own_phrase(void **state)
 {

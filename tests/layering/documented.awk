@@ -10,7 +10,7 @@ within {
 	next
 }
 
-/^[a-z_].*[a-z0-9_]+\(/ && !/^(extern "C"|_Static_assert)/ {
+/^[a-z_].*[a-z0-9_]+\(/ && !/^(extern "C"|_Static_assert|static_assert)/ {
 	functions++
 	if (!covered) {
 		name = $0

@@ -254,6 +254,163 @@ static void do_two_headers(void)
 	pause();
 }
 
+/* A series of a list. */
+static struct gz_decode_message good_series(void)
+{
+	return (struct gz_decode_message) {
+		.kind = GZ_DECODE_SERIES,
+		.series = { .slices = 240,
+			    .uid = "1.2.3",
+			    .date = "2024-03-31",
+			    .modality = "CT",
+			    .patient = "M\xc3\xbcller",
+			    .description = "chest" },
+	};
+}
+
+static void say_series(void)
+{
+	const struct gz_decode_message message = good_series();
+	say(&message);
+}
+
+static void say_picture(int32_t index, uint32_t band)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_PICTURE, .detail = index };
+	message.picture.band = band;
+	memset(message.picture.pixels, (int)(10 + band), sizeof message.picture.pixels);
+	say(&message);
+}
+
+static void say_refused(int32_t index, const char *why)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_REFUSED, .detail = index };
+	snprintf(message.text, sizeof message.text, "%s", why);
+	say(&message);
+}
+
+static void end_list(void)
+{
+	say(&(struct gz_decode_message) { .kind = GZ_DECODE_LISTED });
+}
+
+static void do_list(void)
+{
+	say_series();
+	say_series();
+	for (uint32_t band = 0; band < GZ_DECODE_PICTURE_BANDS; band++)
+		say_picture(0, band);
+	say_refused(1, "not \x1b[31m today");
+	end_list();
+}
+
+static void do_dirty_series(void)
+{
+	struct gz_decode_message message = good_series();
+	snprintf(message.series.patient, sizeof message.series.patient, "a\nb \xc2\x9b half \xe2");
+	say(&message);
+	end_list();
+}
+
+static void do_crash_in_list(void)
+{
+	say_series();
+	say_picture(0, 0);
+	do_crash();
+}
+
+static void do_stall_in_list(void)
+{
+	say_series();
+	pause();
+}
+
+static void do_flood_series(void)
+{
+	for (;;)
+		say_series();
+}
+
+static void do_flood_pictures(void)
+{
+	say_series();
+	for (;;)
+		say_picture(0, 0);
+}
+
+static void do_flood_refusals(void)
+{
+	say_series();
+	for (;;)
+		say_refused(0, "again");
+}
+
+static void do_empty_list(void)
+{
+	end_list();
+	pause();
+}
+
+static void do_endless_series(void)
+{
+	struct gz_decode_message message = good_series();
+	memset(message.series.uid, '1', sizeof message.series.uid);
+	say(&message);
+	pause();
+}
+
+static void do_negative_series(void)
+{
+	struct gz_decode_message message = good_series();
+	message.series.slices = -1;
+	say(&message);
+	pause();
+}
+
+static void do_picture_of_none(void)
+{
+	say_series();
+	say_picture(1, 0);
+	pause();
+}
+
+static void do_picture_before_all(void)
+{
+	say_picture(-1, 0);
+	pause();
+}
+
+static void do_band_of_none(void)
+{
+	say_series();
+	say_picture(0, GZ_DECODE_PICTURE_BANDS);
+	pause();
+}
+
+static void do_endless_refusal(void)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_REFUSED };
+	memset(message.text, 'a', sizeof message.text);
+	say_series();
+	say(&message);
+	pause();
+}
+
+static void do_series_with_voxels(void)
+{
+	make_good();
+	say_series();
+	pause();
+}
+
+static void do_voxels_with_series(void)
+{
+	const struct gz_decode_message header = good_header();
+	say_series();
+	say(&header);
+	pause();
+}
+
 /* A header with one fault. */
 static void say_faulty(const char *fault)
 {
@@ -357,6 +514,22 @@ static const struct {
 	{ "half a message", do_half_message },
 	{ "good colours", do_good_colours },
 	{ "light colours", do_light_colours },
+	{ "list", do_list },
+	{ "dirty series", do_dirty_series },
+	{ "crash in list", do_crash_in_list },
+	{ "stall in list", do_stall_in_list },
+	{ "flood series", do_flood_series },
+	{ "flood pictures", do_flood_pictures },
+	{ "flood refusals", do_flood_refusals },
+	{ "empty list", do_empty_list },
+	{ "endless series", do_endless_series },
+	{ "negative series", do_negative_series },
+	{ "picture of none", do_picture_of_none },
+	{ "picture before all", do_picture_before_all },
+	{ "band of none", do_band_of_none },
+	{ "endless refusal", do_endless_refusal },
+	{ "series with voxels", do_series_with_voxels },
+	{ "voxels with series", do_voxels_with_series },
 };
 
 int main(int argc, char **argv)

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "render/data/series_list.h"
 #include "render/data/volume.h"
 #include "render/decode/decode.h"
 #include "volume_files.h"
@@ -42,6 +43,7 @@ static void check_nothing_is_left(int descriptors)
 struct attempt {
 	int asked, stop_after; /* stop_after: calls of goes_on(); 0: never */
 	size_t bytes;
+	struct gz_series_list *list; /* NULL: none is taken */
 	struct captured_log log;
 };
 
@@ -67,7 +69,9 @@ static enum gz_result decode(const char *deed, struct attempt *attempt,
 			     struct gz_decoded *out_decoded)
 {
 	captured_log_init(&attempt->log, NULL);
+	const struct gz_decode_listener listener = gz_series_list_listener(attempt->list);
 	const struct gz_decode_job job = {
+		.listener = attempt->list ? &listener : NULL,
 		.format = "dicom",
 		.path = "some/file",
 		.choice = deed,
@@ -82,9 +86,9 @@ static enum gz_result decode(const char *deed, struct attempt *attempt,
 	return gz_decode_run(&job, out_decoded);
 }
 
-static void check_decode_refused(const char *deed, enum gz_result result, const char *words)
+static void check_attempt_refused(struct attempt attempt, const char *deed, enum gz_result result,
+				  const char *words)
 {
-	struct attempt attempt = { 0 };
 	struct gz_decoded decoded = { 0 };
 	const int descriptors = descriptors_open();
 	const enum gz_result got = decode(deed, &attempt, &decoded);
@@ -94,6 +98,22 @@ static void check_decode_refused(const char *deed, enum gz_result result, const 
 	assert_null(decoded.voxels);
 	assert_non_null(strstr(attempt.log.last, "some/file"));
 	check_nothing_is_left(descriptors);
+}
+
+static void check_decode_refused(const char *deed, enum gz_result result, const char *words)
+{
+	check_attempt_refused((struct attempt) { 0 }, deed, result, words);
+}
+
+/* Number of series that it sent. */
+static size_t check_list_refused(const char *deed, enum gz_result result, const char *words)
+{
+	struct attempt attempt = { 0 };
+	assert_int_equal(gz_series_list_create(NULL, &attempt.list), GZ_OK);
+	check_attempt_refused(attempt, deed, result, words);
+	const size_t count = gz_series_list_count(attempt.list);
+	gz_series_list_free(&attempt.list);
+	return count;
 }
 
 static void good_decoder_gives_its_voxels(void **state)
@@ -190,6 +210,104 @@ static void lines_are_cleaned(void **state)
 	assert_int_equal(decode("dirty line", &attempt, &decoded), GZ_ERR_FORMAT);
 	assert_string_equal(attempt.log.last,
 			    "bell ? escape ?[31m next ? c1 ?? half ?? good \xc3\xa9");
+}
+
+static void list_of_series_is_taken_with_its_pictures(void **state)
+{
+	(void)state;
+	struct attempt attempt = { 0 };
+	struct gz_decoded decoded = { 0 };
+	struct gz_series_row row = { 0 }, other = { 0 };
+	const int descriptors = descriptors_open();
+	assert_int_equal(gz_series_list_create(NULL, &attempt.list), GZ_OK);
+	assert_int_equal(decode("list", &attempt, &decoded), GZ_ERR_CHOICE);
+	assert_int_equal(attempt.log.messages, 0);
+	assert_null(decoded.voxels);
+	assert_int_equal(gz_series_list_count(attempt.list), 2);
+	assert_true(gz_series_list_update(attempt.list, 0, &row));
+	assert_false(gz_series_list_update(attempt.list, 0, &row));
+	assert_string_equal(row.series.patient, "M\xc3\xbcller");
+	assert_int_equal(row.series.slices, 240);
+	assert_string_equal(row.series.reason, "");
+	assert_true(row.has_picture);
+	assert_int_equal(row.picture[0], 10);
+	assert_int_equal(row.picture[sizeof row.picture - 1], 9 + GZ_DECODE_PICTURE_BANDS);
+	assert_true(gz_series_list_update(attempt.list, 1, &other));
+	assert_string_equal(other.series.reason, "not ?[31m today");
+	assert_false(other.has_picture);
+	assert_false(gz_series_list_update(attempt.list, 2, &other));
+	gz_series_list_free(&attempt.list);
+	check_nothing_is_left(descriptors);
+}
+
+static void texts_of_a_list_are_cleaned(void **state)
+{
+	(void)state;
+	struct attempt attempt = { 0 };
+	struct gz_decoded decoded = { 0 };
+	struct gz_series_row row = { 0 };
+	assert_int_equal(gz_series_list_create(NULL, &attempt.list), GZ_OK);
+	assert_int_equal(decode("dirty series", &attempt, &decoded), GZ_ERR_CHOICE);
+	assert_true(gz_series_list_update(attempt.list, 0, &row));
+	assert_string_equal(row.series.patient, "a?b ?? half ?");
+	gz_series_list_free(&attempt.list);
+}
+
+static void list_that_nobody_asked_for_is_refused(void **state)
+{
+	(void)state;
+	check_decode_refused("list", GZ_ERR_PROTOCOL, "series that is none");
+	check_decode_refused("empty list", GZ_ERR_PROTOCOL, "empty list");
+	check_decode_refused("picture before all", GZ_ERR_PROTOCOL, "picture that is none");
+}
+
+static void decoder_that_fails_within_a_list_leaves_what_it_sent(void **state)
+{
+	(void)state;
+	assert_int_equal(check_list_refused("crash in list", GZ_ERR_PROTOCOL, "crashed"), 1);
+	assert_int_equal(check_list_refused("stall in list", GZ_ERR_TIMEOUT, "no progress"), 1);
+}
+
+static void decoder_that_floods_a_list_is_ended(void **state)
+{
+	(void)state;
+	assert_int_equal(check_list_refused("flood series", GZ_ERR_PROTOCOL, "series that is none"),
+			 GZ_DECODE_SERIES_MAX);
+	(void)check_list_refused("flood pictures", GZ_ERR_PROTOCOL, "picture that is none");
+	(void)check_list_refused("flood refusals", GZ_ERR_PROTOCOL, "refusal that is none");
+}
+
+static void messages_of_a_list_that_are_none_are_refused(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *deed, *words;
+	} faults[] = {
+		{ "empty list", "empty list" },
+		{ "endless series", "series that is none" },
+		{ "negative series", "series that is none" },
+		{ "picture of none", "picture that is none" },
+		{ "picture before all", "picture that is none" },
+		{ "band of none", "picture that is none" },
+		{ "endless refusal", "refusal that is none" },
+		{ "series with voxels", "series that is none" },
+		{ "voxels with series", "header that is none" },
+	};
+	for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++)
+		(void)check_list_refused(faults[i].deed, GZ_ERR_PROTOCOL, faults[i].words);
+}
+
+static void cancelled_list_is_ended(void **state)
+{
+	(void)state;
+	struct attempt attempt = { .stop_after = 2 };
+	struct gz_decoded decoded = { 0 };
+	const int descriptors = descriptors_open();
+	assert_int_equal(gz_series_list_create(NULL, &attempt.list), GZ_OK);
+	assert_int_equal(decode("stall in list", &attempt, &decoded), GZ_ERR_CANCELLED);
+	assert_int_equal(attempt.log.messages, 0);
+	gz_series_list_free(&attempt.list);
+	check_nothing_is_left(descriptors);
 }
 
 static void cancelled_decoder_is_killed(void **state)
@@ -358,6 +476,13 @@ TEST_SUITE(decode)
 		cmocka_unit_test(messages_that_are_none_are_refused),
 		cmocka_unit_test(memory_that_someone_can_still_write_is_refused),
 		cmocka_unit_test(lines_are_cleaned),
+		cmocka_unit_test(list_of_series_is_taken_with_its_pictures),
+		cmocka_unit_test(texts_of_a_list_are_cleaned),
+		cmocka_unit_test(list_that_nobody_asked_for_is_refused),
+		cmocka_unit_test(decoder_that_fails_within_a_list_leaves_what_it_sent),
+		cmocka_unit_test(decoder_that_floods_a_list_is_ended),
+		cmocka_unit_test(messages_of_a_list_that_are_none_are_refused),
+		cmocka_unit_test(cancelled_list_is_ended),
 		cmocka_unit_test(cancelled_decoder_is_killed),
 		cmocka_unit_test(missing_decoder_is_told),
 		cmocka_unit_test(headers_that_cannot_be_are_refused),

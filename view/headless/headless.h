@@ -1,7 +1,7 @@
 /**
  * @file
- * gazeview without a window: renders a sequence of frames into files, or writes a volume. At a
- * terminal, a bar shows the progress of loading.
+ * gazeview without a window: renders a sequence of frames into files, writes a volume or lists
+ * series. At a terminal, a bar shows the progress of loading.
  */
 #ifndef GZ_VIEW_HEADLESS_HEADLESS_H
 #define GZ_VIEW_HEADLESS_HEADLESS_H
@@ -40,6 +40,14 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
  */
 enum gz_result gz_view_write_volume(const struct gz_view_options *options,
 				    const struct gz_log *log);
+
+/**
+ * gazeview --list-series: print the DICOM series of the folder or file that the options name as
+ * their scene, one a line, on stdout.
+ *
+ * @return what gz_series_list_read() returns; logged except GZ_ERR_CANCELLED, which a signal causes
+ */
+enum gz_result gz_view_list_series(const struct gz_view_options *options, const struct gz_log *log);
 
 /** The bar. Pass its loading to gz_scene_open(); it must not move until gz_loading_bar_end(). */
 struct gz_loading_bar {

@@ -113,7 +113,9 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "what gives a coloured voxel its opacity, by the transfer function; replaces the "
 		  "scene's" },
 	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE,
-	  .help = "UID of the series of a DICOM folder to show" },
+	  .help = "UID of the series of a DICOM folder to show; --list-series prints them" },
+	{ "list-series", GZ_OPTION_BOOL, AT(list_series), .preset = "false",
+	  .help = "print the series of a DICOM folder or DICOMDIR with their UIDs, and exit" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
 	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
@@ -128,11 +130,12 @@ const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view
 /* Nothing else is shown together with targets. */
 static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
 {
-	const char *other = options->scene[0]    ? "a scene"
-			    : options->headless  ? "--headless"
-			    : options->record[0] ? "--record"
-			    : options->replay[0] ? "--replay"
-						 : NULL;
+	const char *other = options->scene[0]      ? "a scene"
+			    : options->headless    ? "--headless"
+			    : options->record[0]   ? "--record"
+			    : options->replay[0]   ? "--replay"
+			    : options->list_series ? "--list-series"
+						   : NULL;
 	if (!other)
 		return GZ_OK;
 	gz_err(log, "--targets: %s cannot be combined with it; remove one of them", other);
@@ -147,6 +150,7 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 		"display-px",    "display-mm",  "distance-mm", "write-volume",    "record",
 		"transfer.file", "volume.dims", "volume.type", "volume.endian",   "volume.spacing",
 		"volume.series", "time-point",  "play",        "volume.channels", "volume.opacity",
+		"list-series",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)
@@ -206,6 +210,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->time_point > 0   ? "--time-point"
 			    : options->play > 0         ? "--play"
 			    : options->write_volume[0]  ? "--write-volume"
+			    : options->list_series      ? "--list-series"
 			    : options->out[0]           ? "--out"
 			    : options->video[0]         ? "--video"
 			    : options->transfer_file[0] ? "--transfer.file"
@@ -237,7 +242,7 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 	if (options->replay[0] && check_replay(options, log) != GZ_OK)
 		return GZ_ERR_INVAL;
 	if (!options->scene[0] && !options->replay[0] &&
-	    (options->headless || options->write_volume[0])) {
+	    (options->headless || options->write_volume[0] || options->list_series)) {
 		gz_err(log, "no scene; name one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}
@@ -647,6 +652,7 @@ void gz_view_options_print_help(FILE *out)
 	      "  gazeview SCENE\n"
 	      "  gazeview VOLUME\n"
 	      "  gazeview --headless --scene SCENE --out frame.png\n"
+	      "  gazeview --list-series FOLDER\n"
 	      "  gazeview --targets 9\n"
 	      "  gazeview --replay NAME.session\n"
 	      "  gazeview --experiment FILE --participant 07\n\n",

@@ -70,6 +70,7 @@ struct gz_view_options {
 	char pictures[GZ_PATH_SIZE];     /**< folder for the files a window writes */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
+	bool list_series;                /**< of the folder or file in scene, and exit */
 	int bricks;                      /**< enum gz_bricks_rule */
 	int time_point;                  /**< of a series, from 1; 0: the scene's */
 	double play; /**< rate of its time points, steps per second; 0: the picture stays */

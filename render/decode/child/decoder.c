@@ -77,6 +77,31 @@ static void *ask_for_memory(void *user, const struct gz_volume *volume, size_t b
 	return memory == MAP_FAILED ? NULL : memory;
 }
 
+static enum gz_result send_series(void *user, const struct gz_decode_series *series)
+{
+	const struct gz_decode_message message = { .kind = GZ_DECODE_SERIES, .series = *series };
+	(void)user;
+	send_message(&message);
+	return GZ_OK;
+}
+
+static void send_picture_rows(void *user, uint32_t index, const struct gz_decode_picture *picture)
+{
+	const struct gz_decode_message message = { .kind = GZ_DECODE_PICTURE,
+						   .detail = (int32_t)index,
+						   .picture = *picture };
+	(void)user;
+	send_message(&message);
+}
+
+static void send_refusal(void *user, uint32_t index, const char *why)
+{
+	struct gz_decode_message message = { .kind = GZ_DECODE_REFUSED, .detail = (int32_t)index };
+	(void)user;
+	snprintf(message.text, sizeof message.text, "%s", why);
+	send_message(&message);
+}
+
 void gz_decoder_init(struct gz_decoder *decoder)
 {
 	*decoder = (struct gz_decoder) { 0 };
@@ -84,6 +109,11 @@ void gz_decoder_init(struct gz_decoder *decoder)
 	decoder->loading.report = send_step;
 	decoder->loading.user = decoder;
 	decoder->loading.give_memory = ask_for_memory;
+	decoder->listener = (struct gz_decode_listener) {
+		.series = send_series,
+		.picture = send_picture_rows,
+		.refused = send_refusal,
+	};
 }
 
 bool gz_decoder_take_series(struct gz_decoder *decoder, const char *time_point, char *range)
@@ -108,6 +138,8 @@ _Noreturn void gz_decoder_end(enum gz_result result, const struct gz_volume *vol
 	struct gz_decode_message message = { .kind = GZ_DECODE_ENDED, .detail = (int32_t)result };
 	if (result == GZ_OK)
 		message.header = header_of(volume);
+	if (result == GZ_ERR_CHOICE)
+		message = (struct gz_decode_message) { .kind = GZ_DECODE_LISTED };
 	send_message(&message);
 	_exit(0);
 }

@@ -18,6 +18,7 @@
 #include "render/decode/dicom/dicom_guard.hpp"
 #include "render/decode/dicom/dicom_lengths.hpp"
 #include "render/decode/dicom/dicom_segments.hpp"
+#include "render/decode/dicom/dicom_text.hpp"
 
 namespace gz_dicom
 {
@@ -38,8 +39,9 @@ const int tiles_max = 1024;
 const gdcm::Tag pixel_data(0x7fe0, 0x0010);
 const gdcm::Tag item_tag(0xfffe, 0xe000), sequence_end(0xfffe, 0xe0dd);
 
-const gdcm::Tag image_type(0x0008, 0x0008), study_date(0x0008, 0x0020),
-	patient_name(0x0010, 0x0010), series_description(0x0008, 0x103e),
+const gdcm::Tag character_set(0x0008, 0x0005), image_type(0x0008, 0x0008),
+	study_date(0x0008, 0x0020), modality(0x0008, 0x0060), patient_name(0x0010, 0x0010),
+	series_number(0x0020, 0x0011), series_description(0x0008, 0x103e),
 	slice_thickness(0x0018, 0x0050), spacing_between_slices(0x0018, 0x0088),
 	series_instance_uid(0x0020, 0x000e), instance_number(0x0020, 0x0013),
 	image_position(0x0020, 0x0032), image_orientation(0x0020, 0x0037),
@@ -391,10 +393,13 @@ bool read_data_set(gdcm::Reader &reader, std::istream &file, bool &deflated)
 void fill_head(const gdcm::DataSet &data, head &out)
 {
 	const groups functional(data);
+	const std::string charset = text_of(data, character_set);
 	out.series_uid = text_of(data, series_instance_uid);
-	out.patient = text_of(data, patient_name);
-	out.date = text_of(data, study_date);
-	out.description = text_of(data, series_description);
+	out.patient = utf8_of(text_of(data, patient_name), charset, text_kind::name);
+	out.date = utf8_of(text_of(data, study_date), "", text_kind::plain);
+	out.description = utf8_of(text_of(data, series_description), charset, text_kind::plain);
+	out.modality = utf8_of(text_of(data, modality), "", text_kind::plain);
+	out.series_number = decimal_of(data, series_number, 0);
 	out.numbers = format_of(data, functional);
 	out.photometric = text_of(data, photometric_interpretation);
 	const int claimed = decimal_of(data, number_of_frames, 1);

@@ -134,7 +134,9 @@ const uint64_t frames_max = 262144;
 
 /* One file's head. */
 struct head {
-	std::string path, series_uid, patient, date, description;
+	std::string path, series_uid;                     /* as in the file */
+	std::string patient, date, description, modality; /* UTF-8 */
+	int series_number = 0;
 	format numbers;
 	std::string photometric;
 	std::vector<slice> slices;

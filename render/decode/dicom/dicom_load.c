@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "render/data/slice_import.h"
+#include "render/decode/dicom/dicom_list.h"
 #include "render/decode/dicom/dicom_series.h"
 
 static enum gz_result read_dicom_slice(void *user, uint64_t index, void *numbers)
@@ -31,13 +32,28 @@ static enum gz_result import_dicom_slices(struct gz_dicom_series *series,
 	return gz_volume_import_slices(&source, &layout, file, out_volume);
 }
 
+/* Closes the series. */
+static enum gz_result load_series(struct gz_dicom_series *series, const struct gz_volume_file *file,
+				  struct gz_volume *out_volume)
+{
+	const enum gz_result result = import_dicom_slices(series, file, out_volume);
+	gz_dicom_series_close(&series);
+	return result;
+}
+
 enum gz_result gz_dicom_load(const struct gz_volume_file *file, const char *choice,
 			     struct gz_volume *out_volume)
 {
 	struct gz_dicom_series *series = NULL;
-	enum gz_result result = gz_dicom_series_open(file, choice, &series);
-	if (result == GZ_OK)
-		result = import_dicom_slices(series, file, out_volume);
-	gz_dicom_series_close(&series);
-	return result;
+	const enum gz_result result = gz_dicom_series_open(file, choice, &series);
+	return result == GZ_OK ? load_series(series, file, out_volume) : result;
+}
+
+enum gz_result gz_dicom_load_or_list(const struct gz_volume_file *file,
+				     const struct gz_decode_listener *listener,
+				     struct gz_volume *out_volume)
+{
+	struct gz_dicom_series *series = NULL;
+	const enum gz_result result = gz_dicom_list(file, listener, &series);
+	return result == GZ_OK ? load_series(series, file, out_volume) : result;
 }

@@ -6,6 +6,7 @@
 #define GZ_RENDER_DECODE_DICOM_LOAD_H
 
 #include "render/data/volume_import.h"
+#include "render/decode/decode.h"
 
 /**
  * Load a series: a folder, one file of it, or a file with several frames. Slices are decoded by
@@ -17,5 +18,16 @@
  */
 enum gz_result gz_dicom_load(const struct gz_volume_file *file, const char *choice,
 			     struct gz_volume *out_volume);
+
+/**
+ * Load the only series of a path, or list those that there are.
+ *
+ * @param out_volume  as above
+ * @retval GZ_ERR_CHOICE  series were listed; not logged
+ * @return else as gz_dicom_list() and gz_volume_import()
+ */
+enum gz_result gz_dicom_load_or_list(const struct gz_volume_file *file,
+				     const struct gz_decode_listener *listener,
+				     struct gz_volume *out_volume);
 
 #endif

@@ -2,24 +2,19 @@
 #include "render/decode/dicom/dicom_series.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <dirent.h>
-#include <map>
 #include <memory>
 #include <new>
 #include <string>
-#include <strings.h>
-#include <sys/stat.h>
 #include <vector>
 
-#include "render/data/dicom_name.h"
 #include "render/decode/dicom/dicom_file.hpp"
+#include "render/decode/dicom/dicom_folder.hpp"
 #include "render/decode/dicom/dicom_frame.hpp"
 #include "render/decode/dicom/dicom_pool.hpp"
 #include "render/decode/dicom/dicom_segments.hpp"
+#include "render/decode/dicom/dicom_stack.hpp"
 #include "render/decode/dicom/dicom_time.hpp"
 
 #define GZ_LOG_MODULE "dicom"
@@ -28,15 +23,6 @@ namespace
 {
 
 using namespace gz_dicom;
-
-/* Files of a folder that are looked at. Chosen: a long perfusion study has some ten thousand. */
-const size_t files_max = 65536;
-
-/* Folders within folders that are looked into (chosen: a DICOM medium has four levels). */
-const int depth_max = 8;
-
-/* Series of a folder that are listed one by one. */
-const size_t listed_max = 40;
 
 /* How far the distance of two slices may be from that of most, as a share (chosen: beyond it a file
  * is missing), and how far a slice may be shifted within its plane against the next before the log
@@ -51,24 +37,16 @@ const uint64_t codec_bytes_a_pixel = 16;
 class reader
 {
       public:
-	reader(const gz_volume_file *of, const char *series)
-	    : file(of), choice(series ? series : ""), path(of->path), log(of->log)
+	reader(std::string of, const gz_log *to, std::vector<head> images)
+	    : path(std::move(of)), log(to), heads(std::move(images))
 	{
 	}
 	gz_result open();
 	gz_result read(uint64_t index, void *voxels);
+	decoded_slice decode(size_t index) const;
 	gz_dicom_geometry geometry {};
 
       private:
-	gz_result collect();
-	gz_result collect_file(std::string &out_series);
-	gz_result collect_folder(const std::string &folder);
-	gz_result collect_tree(const std::string &folder, int depth);
-	gz_result collect_where_images_are(const std::string &folder);
-	void note_damaged() const;
-	void list_series(const std::map<std::string, size_t> &count) const;
-	bool look_at(const std::string &name);
-	gz_result choose(const std::string &wanted);
 	gz_result check_colour(const head &h) const;
 	gz_result check_head(const head &h) const;
 	gz_result join();
@@ -77,20 +55,14 @@ class reader
 	gz_result measure();
 	void note_tilt(const vector3 &normal) const;
 	void finish();
-	decoded_slice decode(size_t index) const;
 	void cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	decoded_slice decode_segments(const slice &s) const;
 	void widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	size_t slice_bytes() const;
 
-	const gz_volume_file *file;
-	const std::string choice; /* UID of a series; empty: none */
-	std::string path;
+	const std::string path;
 	const gz_log *log;
 	std::vector<head> heads;
-	size_t seen = 0;     /* files that were looked at */
-	size_t damaged = 0;  /* of them */
-	std::string example; /* one of them */
 	format numbers;
 	std::vector<slice> slices; /* of the first time point */
 	std::vector<slice> stacks; /* of all, one behind the other */
@@ -101,179 +73,6 @@ class reader
 	uint64_t pool_begin = 0;   /* its first slice */
 	std::unique_ptr<slice_pool> pool;
 };
-
-gz_result reader::collect()
-{
-	struct stat status;
-	if (stat(path.c_str(), &status) != 0) {
-		gz_err(log, "%s: cannot open it: %s; check its name and permissions", path.c_str(),
-		       strerror(errno));
-		return GZ_ERR_NOT_FOUND;
-	}
-	if (S_ISDIR(status.st_mode)) {
-		const gz_result r = collect_where_images_are(path);
-		return r == GZ_OK ? choose(choice) : r;
-	}
-	std::string wanted;
-	const gz_result r = collect_file(wanted);
-	return r == GZ_OK && !wanted.empty() ? choose(wanted) : r;
-}
-
-bool is_directory_file(const std::string &name)
-{
-	const size_t slash = name.rfind('/');
-	return strcasecmp(name.c_str() + (slash == std::string::npos ? 0 : slash + 1),
-			  "DICOMDIR") == 0;
-}
-
-/* A file stands for the others of its series in its folder; a DICOMDIR for all that lies below. One
- * with several slices stands for itself: then there is no series to choose. */
-gz_result reader::collect_file(std::string &out_series)
-{
-	const size_t slash = path.rfind('/');
-	const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-	if (is_directory_file(path)) {
-		const gz_result r = collect_tree(folder, 0);
-		note_damaged();
-		return r == GZ_OK ? choose(choice) : r;
-	}
-	head h;
-	if (!read_head(path, h)) {
-		gz_err(log, "%s: no DICOM image; name a file that holds one, or its folder",
-		       path.c_str());
-		return GZ_ERR_FORMAT;
-	}
-	if (h.slices.size() > 1) {
-		heads.push_back(h);
-		return GZ_OK;
-	}
-	out_series = choice.empty() ? h.series_uid : choice;
-	const gz_result r = collect_folder(folder);
-	note_damaged();
-	return r;
-}
-
-/* The folder's own images; if it has none, those in its sub-folders. */
-gz_result reader::collect_where_images_are(const std::string &folder)
-{
-	gz_result r = collect_folder(folder);
-	if (r == GZ_OK && heads.empty() && damaged == 0)
-		r = collect_tree(folder, 0);
-	note_damaged();
-	return r;
-}
-
-/* All images in a folder and its sub-folders. */
-gz_result reader::collect_tree(const std::string &folder, int depth)
-{
-	gz_result r = collect_folder(folder);
-	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
-	if (depth >= depth_max || !entries)
-		return r;
-	for (dirent *entry; r == GZ_OK && seen < files_max && (entry = readdir(entries.get()));) {
-		const std::string name = folder + "/" + entry->d_name;
-		struct stat status;
-		if (entry->d_name[0] != '.' && lstat(name.c_str(), &status) == 0 &&
-		    S_ISDIR(status.st_mode))
-			r = collect_tree(name, depth + 1);
-	}
-	return r;
-}
-
-/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
-void reader::note_damaged() const
-{
-	if (damaged > 0)
-		gz_warn(log,
-			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
-			"again",
-			example.c_str(), damaged);
-}
-
-/* Read one head; false if loading shall stop. */
-bool reader::look_at(const std::string &name)
-{
-	head h;
-	if (read_head(name, h))
-		heads.push_back(std::move(h));
-	else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
-		example = name;
-	return gz_loading_goes_on(file->loading, 0, path.c_str());
-}
-
-gz_result reader::collect_folder(const std::string &folder)
-{
-	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
-	if (!entries) {
-		gz_err(log, "%s: cannot read the folder: %s; check its permissions", folder.c_str(),
-		       strerror(errno));
-		return GZ_ERR_IO;
-	}
-	for (dirent *entry; seen < files_max && (entry = readdir(entries.get()));) {
-		if (entry->d_name[0] == '.')
-			continue;
-		seen++;
-		if (!look_at(folder + "/" + entry->d_name))
-			return GZ_ERR_CANCELLED;
-	}
-	return GZ_OK;
-}
-
-/* One line a series: what people know it by, and its UID. */
-void reader::list_series(const std::map<std::string, size_t> &count) const
-{
-	size_t listed = 0;
-	for (const auto &series : count) {
-		const auto first = std::find_if(heads.begin(), heads.end(), [&](const head &h) {
-			return h.series_uid == series.first;
-		});
-		if (listed++ == listed_max)
-			break;
-		gz_info(log, "series %s: %s, %s, %s, %zu files, such as %s", series.first.c_str(),
-			first->patient.c_str(), first->date.c_str(), first->description.c_str(),
-			series.second, first->path.c_str());
-	}
-}
-
-/* Keep one series; with none wanted there must be only one. */
-gz_result reader::choose(const std::string &wanted)
-{
-	std::map<std::string, size_t> count;
-	for (const head &h : heads)
-		count[h.series_uid]++;
-	if (count.empty()) {
-		gz_err(log, "%s: no DICOM image in this folder; name another", path.c_str());
-		return GZ_ERR_FORMAT;
-	}
-	if (count.size() > 1 && wanted.empty()) {
-		list_series(count);
-		std::string names;
-		for (const auto &series : count) {
-			const auto first =
-				std::find_if(heads.begin(), heads.end(), [&](const head &h) {
-					return h.series_uid == series.first;
-				});
-			names += (names.empty() ? "" : ", ") + first->path + " (" +
-				 first->description + ", " + std::to_string(series.second) + ")";
-		}
-		gz_err(log,
-		       "%s: holds %zu series; name one file of the one wanted, or give its UID as "
-		       "volume.series: %s",
-		       path.c_str(), count.size(), names.c_str());
-		return GZ_ERR_FORMAT;
-	}
-	if (!wanted.empty() && count.find(wanted) == count.end()) {
-		list_series(count);
-		gz_err(log, "%s: no series %s here; volume.series can be one of %zu others",
-		       path.c_str(), wanted.c_str(), count.size());
-		return GZ_ERR_NOT_FOUND;
-	}
-	if (!wanted.empty() || count.size() > 1)
-		heads.erase(std::remove_if(heads.begin(), heads.end(),
-					   [&](const head &h) { return h.series_uid != wanted; }),
-			    heads.end());
-	return GZ_OK;
-}
 
 /* Colours are of 3 x 8 bits, or in a table. */
 gz_result reader::check_colour(const head &h) const
@@ -526,9 +325,7 @@ void reader::finish()
 
 gz_result reader::open()
 {
-	gz_result result = collect();
-	if (result == GZ_OK)
-		result = join();
+	gz_result result = join();
 	if (result == GZ_OK)
 		result = place();
 	if (result == GZ_OK)
@@ -692,27 +489,55 @@ struct gz_dicom_series {
 	const gz_log *log;
 };
 
+namespace gz_dicom
+{
+
+gz_result open_stack(const gz_volume_file &file, std::vector<head> images, const gz_log *log,
+		     stack &out)
+{
+	stack made(new gz_dicom_series { reader(file.path, log, std::move(images)), log });
+	const gz_result result = made->slices.open();
+	if (result == GZ_OK)
+		out = std::move(made);
+	return result;
+}
+
+gz_result explain_exception(const gz_volume_file &file)
+{
+	try {
+		throw;
+	} catch (const std::bad_alloc &) {
+		gz_err(file.log, "%s: no memory to read it", file.path);
+		return GZ_ERR_NO_MEM;
+	} catch (const std::exception &e) {
+		gz_err(file.log, "%s: cannot be read: %s", file.path, e.what());
+		return GZ_ERR_FORMAT;
+	}
+}
+
+decoded_slice decode_of_stack(const gz_dicom_series &of, size_t index)
+{
+	return of.slices.decode(index);
+}
+
+} // namespace gz_dicom
+
 extern "C" enum gz_result gz_dicom_series_open(const struct gz_volume_file *file,
 					       const char *choice,
 					       struct gz_dicom_series **out_series)
 {
-	const char *path = file->path;
-	const gz_log *log = file->log;
-	try {
-		silence_library();
-		std::unique_ptr<gz_dicom_series> series(
-			new gz_dicom_series { reader(file, choice), log });
-		const gz_result result = series->slices.open();
+	return without_throwing(*file, [&] {
+		found_images images;
+		stack series;
+		gz_result result = find_images(*file, choice ? choice : "", images);
+		if (result == GZ_OK)
+			result = keep_one_series(*file, images);
+		if (result == GZ_OK)
+			result = open_stack(*file, std::move(images.heads), file->log, series);
 		if (result == GZ_OK)
 			*out_series = series.release();
 		return result;
-	} catch (const std::bad_alloc &) {
-		gz_err(log, "%s: no memory to read it", path);
-		return GZ_ERR_NO_MEM;
-	} catch (const std::exception &e) {
-		gz_err(log, "%s: cannot be read: %s", path, e.what());
-		return GZ_ERR_FORMAT;
-	}
+	});
 }
 
 extern "C" const struct gz_dicom_geometry *gz_dicom_series_geometry(

@@ -9,21 +9,53 @@
 #include "base/text.h"
 #include "render/decode/child/confine.h"
 #include "render/decode/child/decoder.h"
+#include "render/decode/dicom/dicom_list.h"
 #include "render/decode/dicom/dicom_load.h"
 #include "render/decode/minc/minc_load.h"
 
 #define GZ_LOG_MODULE "decode"
 
+/* What is to be decoded. */
+struct task {
+	struct gz_volume_file file;
+	const char *choice; /* NULL: none */
+	const struct gz_decode_listener *listener;
+};
+
+static enum gz_result load_dicom_series(const struct task *task, struct gz_volume *out_volume)
+{
+	return gz_dicom_load(&task->file, task->choice, out_volume);
+}
+
+static enum gz_result load_or_list_dicom(const struct task *task, struct gz_volume *out_volume)
+{
+	return gz_dicom_load_or_list(&task->file, task->listener, out_volume);
+}
+
+static enum gz_result list_dicom(const struct task *task, struct gz_volume *out_volume)
+{
+	(void)out_volume;
+	return gz_dicom_list(&task->file, task->listener, NULL);
+}
+
+static enum gz_result load_minc(const struct task *task, struct gz_volume *out_volume)
+{
+	return gz_minc_load(&task->file, task->choice, out_volume);
+}
+
 /* One decoder. */
 struct decoder_row {
 	const char *name;
-	enum gz_result (*load)(const struct gz_volume_file *file, const char *choice,
-			       struct gz_volume *out_volume);
+	void (*prepare)(void); /* before the process is confined: opens what its libraries need;
+				  NULL: nothing */
+	enum gz_result (*load)(const struct task *task, struct gz_volume *out_volume);
 };
 
 static const struct decoder_row decoders[] = {
-	{ "dicom", gz_dicom_load },
-	{ "minc", gz_minc_load },
+	{ "dicom", gz_dicom_prepare_texts, load_dicom_series },
+	{ "dicom-choose", gz_dicom_prepare_texts, load_or_list_dicom },
+	{ "dicom-list", gz_dicom_prepare_texts, list_dicom },
+	{ "minc", NULL, load_minc },
 };
 
 static const struct decoder_row *decoder_named(const char *name)
@@ -47,14 +79,20 @@ int main(int argc, char **argv)
 		fprintf(stderr, "gazedecode is started by gazeview and has no use of its own\n");
 		return 2;
 	}
+	if (row->prepare)
+		row->prepare();
 	if (gz_confine((pid_t)parent, argv[3], protection) != GZ_OK) {
 		gz_err(&decoder.log, "%s: its decoder cannot be confined; it was not read",
 		       argv[3]);
 		gz_decoder_end(GZ_ERR_IO, NULL);
 	}
 	gz_debug(&decoder.log, "%s: its decoder is confined by: %s", argv[3], protection);
-	const struct gz_volume_file file = { argv[3], NULL, &decoder.loading, &decoder.log };
+	const struct task task = {
+		.file = { argv[3], NULL, &decoder.loading, &decoder.log },
+		.choice = argv[4][0] ? argv[4] : NULL,
+		.listener = &decoder.listener,
+	};
 	/* The voxels are the parent's: they are not freed here. */
-	const enum gz_result result = row->load(&file, argv[4][0] ? argv[4] : NULL, &volume);
+	const enum gz_result result = row->load(&task, &volume);
 	gz_decoder_end(result, &volume);
 }
