@@ -263,6 +263,8 @@ static void print_plot_note(const struct gz_transfer_panel *panel, const struct 
 		snprintf(text, size, "counting voxels");
 	else if (panel->histogram->approximate)
 		snprintf(text, size, "histogram of a coarser level");
+	else if (panel->volume->time_points > 1)
+		snprintf(text, size, "histogram of time point %d", panel->histogram_point + 1);
 }
 
 static void draw_colour_popup(struct gz_transfer_panel *panel, bool open)

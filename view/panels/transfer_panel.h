@@ -28,6 +28,7 @@ struct gz_transfer_panel {
 	/* set before each drawing */
 	struct gz_transfer_edit *edit;
 	const struct gz_histogram *histogram; /**< of volume; NULL while it is being counted */
+	int histogram_point; /**< time point of the volume that it counts, from 0 */
 	const struct gz_volume *volume;
 	float margin_top, margin_bottom; /**< kept free above and below it, screen coordinates */
 

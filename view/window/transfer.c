@@ -28,6 +28,7 @@ struct histogram_job {
 	pthread_t thread;
 	bool running;
 	atomic_bool cancelled, done;
+	int time_point; /* of the volume, from 0 */
 	enum gz_result result;
 	struct gz_histogram histogram;
 };
@@ -58,6 +59,7 @@ static void start_counting(struct gz_window *window)
 	struct histogram_job *count = &transfer->count;
 	transfer->counted = true;
 	count->volume = &gz_frame_maker_scene(window->maker)->volume;
+	count->time_point = count->volume->time_point;
 	count->log = window->log;
 	atomic_store(&count->cancelled, false);
 	atomic_store(&count->done, false);
@@ -85,8 +87,10 @@ static void take_histogram(struct gz_window *window)
 		return;
 	pthread_join(count->thread, NULL);
 	count->running = false;
-	if (count->result == GZ_OK)
+	if (count->result == GZ_OK) {
 		window->transfer->panel.histogram = &count->histogram;
+		window->transfer->panel.histogram_point = count->time_point;
+	}
 	gz_window_wake_panels(window);
 }
 
@@ -180,7 +184,8 @@ static void leave_counted_scene(struct gz_window *window)
 	stop_histogram(window->transfer);
 }
 
-/* All time points have one range of values, so a histogram that is counted stays useful. */
+/* All time points have one range of values, so a histogram that is counted stays useful. The panel
+ * says which of them it counts. */
 static bool leave_counted_data(struct gz_window *window)
 {
 	if (window->transfer->count.running)
