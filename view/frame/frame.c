@@ -85,6 +85,9 @@ static enum gz_result override_settings(void *user, struct gz_scene_settings *se
 		r = gz_view_options_apply(options, settings);
 	if (r == GZ_OK && change->scene->kept)
 		keep_settings(change->scene->kept, settings);
+	if (r == GZ_OK && change->scene->series_uid)
+		snprintf(settings->volume_series, sizeof settings->volume_series, "%s",
+			 change->scene->series_uid);
 	if (r == GZ_OK && options->headless)
 		r = gz_picture_count_rays(options->size_px, settings->image_sampling_rate,
 					  change->log, rays);

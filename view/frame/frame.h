@@ -34,6 +34,8 @@ struct gz_frame_scene {
 	const char *path;
 	/** Layout of a raw file; NULL: from the options, otherwise from the file's name. */
 	const struct gz_raw_layout *raw;
+	/** UID of the DICOM series to show in place of what scene and options say; NULL: theirs. */
+	const char *series_uid;
 	/** The command line's keys replace the scene's. */
 	bool by_options;
 	/** Settings that replace both, except volume, transfer function, camera, clip box, display
@@ -51,7 +53,8 @@ struct gz_frame_scene gz_frame_scene_of_options(const struct gz_view_options *op
  * @param loading  receives the progress and may cancel; NULL: none
  * @param log      outlives the maker
  * @param[out] out_maker  the caller frees it with gz_frame_maker_destroy()
- * @return the results of gz_scene_open(); logged except GZ_ERR_CANCELLED, which @p loading causes
+ * @return the results of gz_scene_open(); logged except GZ_ERR_CANCELLED and GZ_ERR_CHOICE, which
+ *         @p loading causes
  *
  * Threads: any.
  */

@@ -87,6 +87,11 @@ static bool take_typed_path(struct gz_open_panel *panel, char out_path[GZ_PATH_S
 	return take_entry(panel, panel->typed, out_path);
 }
 
+static bool take_whole_folder(const struct gz_open_panel *panel, char out_path[GZ_PATH_SIZE])
+{
+	return (size_t)snprintf(out_path, GZ_PATH_SIZE, "%s", panel->folder.path) < GZ_PATH_SIZE;
+}
+
 static void print_file_size(uint64_t bytes, char *text, size_t size)
 {
 	static const char *const units[] = { "B", "KiB", "MiB", "GiB", "TiB" };
@@ -230,6 +235,10 @@ bool gz_open_panel_draw(struct gz_open_panel *panel, char out_path[GZ_PATH_SIZE]
 			gz_widget_text(gz_paint_amber, panel->message);
 		if (gz_widget_button("Open") && !chosen)
 			chosen = take_typed_path(panel, out_path);
+		gz_widgets_same_line(0);
+		if (gz_widget_button("Open folder") && !chosen)
+			chosen = take_whole_folder(panel, out_path);
+		gz_widget_tooltip("the DICOM series in this folder, or in those below");
 		gz_widgets_same_line(0);
 		if (gz_widget_button("Cancel") || gz_dialog_escaped())
 			panel->open = false;

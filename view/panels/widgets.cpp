@@ -46,9 +46,9 @@ const char *const FONT_FILES[] = {
 	"/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
 };
 
-/* From and to: Latin, Greek, dashes and dots, primes, arrows, signs of comparison. */
-const ImWchar GLYPHS[] = { 0x20,   0xff,   0x391,  0x3c9,  0x2010, 0x2026, 0x2032,
-			   0x2033, 0x2190, 0x2193, 0x2248, 0x2265, 0 };
+/* From and to: Latin, Greek, Cyrillic, dashes and dots, primes, arrows, signs of comparison. */
+const ImWchar GLYPHS[] = { 0x20,   0x17f,  0x386,  0x3ce,  0x400,  0x45f,  0x2010, 0x2026,
+			   0x2032, 0x2033, 0x2190, 0x2193, 0x2248, 0x2265, 0 };
 
 /* Size of the longest text that can be typed, a path with its NUL, bytes. */
 constexpr size_t TEXT_SIZE = 4096;
@@ -480,6 +480,12 @@ void gz_draw_circle(gz_layer layer, gz_place centre, float radius, gz_paint pain
 				  thickness * scale);
 }
 
+void gz_draw_icon(gz_layer layer, gz_place corner, gz_place opposite, unsigned icon)
+{
+	list_of(layer)->AddImage((ImTextureID)(intptr_t)icon, vector_of(corner),
+				 vector_of(opposite));
+}
+
 void gz_draw_text(gz_layer layer, gz_place at, float size, gz_paint paint, const char *text)
 {
 	list_of(layer)->AddText(font_for(size), size * ImGui::GetFontSize(), vector_of(at),
@@ -628,6 +634,16 @@ bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked)
 		entered_by_keys();
 	if (out_double_clicked)
 		*out_double_clicked = chosen && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+	return chosen;
+}
+
+bool gz_widget_tall_row(const char *id, gz_tall_row *row)
+{
+	const ImVec2 size(0, row->height * gz_widgets_scale());
+	row->corner = place_of(ImGui::GetCursorScreenPos());
+	const bool chosen = ImGui::Selectable(id, row->selected, 0, size) || entered_by_keys();
+	row->size = place_of(ImGui::GetItemRectSize());
+	row->focused = ImGui::GetIO().NavVisible && ImGui::IsItemFocused();
 	return chosen;
 }
 

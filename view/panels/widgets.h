@@ -166,6 +166,10 @@ void gz_draw_disc(enum gz_layer layer, struct gz_place centre, float radius, str
 void gz_draw_circle(enum gz_layer layer, struct gz_place centre, float radius,
 		    struct gz_paint paint, float thickness);
 
+/** Draw a picture, the texture @p icon of view/draw/icon.h, between two corners. */
+void gz_draw_icon(enum gz_layer layer, struct gz_place corner, struct gz_place opposite,
+		  unsigned icon);
+
 /** Draw a line of text, @p size times the usual size, its top left corner at @p at. */
 void gz_draw_text(enum gz_layer layer, struct gz_place at, float size, struct gz_paint paint,
 		  const char *text);
@@ -245,6 +249,17 @@ bool gz_widget_choice(const char *id, int *value, const char *const names[]);
 
 /** A row of a list. @return whether it was clicked or Enter pressed on it */
 bool gz_widget_row(const char *id, bool selected, bool *out_double_clicked);
+
+/** A row of a list that its owner draws on, with GZ_LAYER_PANEL. */
+struct gz_tall_row {
+	float height;                 /**< unscaled */
+	bool selected;                /**< it is marked */
+	bool focused;                 /**< out: arrow keys have reached it */
+	struct gz_place corner, size; /**< out: its area */
+};
+
+/** Such a row. @return whether it was clicked or Enter pressed on it */
+bool gz_widget_tall_row(const char *id, struct gz_tall_row *row);
 
 /** A row of two texts, the second @p width (unscaled) from the left. @return whether it was clicked
  *  or Enter pressed on it */

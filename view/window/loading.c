@@ -44,8 +44,9 @@ struct load_job {
 	struct load_progress progress; /* under the lock */
 	atomic_bool cancelled;         /* it is to stop */
 	atomic_bool finished;          /* the thread has ended its work */
+	struct gz_series_list *series; /* to choose from; NULL: several are an error */
 	/* Once it has finished: */
-	enum gz_result result;        /* logged, except GZ_ERR_CANCELLED */
+	enum gz_result result;        /* logged, except GZ_ERR_CANCELLED and GZ_ERR_CHOICE */
 	struct gz_frame_maker *maker; /* only with GZ_OK; the owner may take it */
 };
 
@@ -87,10 +88,13 @@ static enum gz_result load_job_scene(struct load_job *job)
 	const struct gz_frame_scene scene = {
 		.path = request->path,
 		.raw = request->has_raw ? &request->raw : NULL,
+		.series_uid = request->series_uid[0] ? request->series_uid : NULL,
 		.by_options = request->by_options,
 		.kept = job->keep ? &job->kept : NULL,
 	};
-	const struct gz_loading loading = { .report = report_progress, .user = job };
+	const struct gz_loading loading = { .report = report_progress,
+					    .user = job,
+					    .series_list = job->series };
 	enum gz_result r =
 		gz_frame_maker_create(job->options, &scene, &loading, job->log, &job->maker);
 	if (r == GZ_OK && job->cpu)
@@ -111,25 +115,34 @@ static void *run_load_job(void *user)
 	return NULL;
 }
 
-/* Begin to load; wakes the window's loop when it has finished. kept: settings that stay, or NULL.
- * cpu: takes_cpu(). GZ_ERR_NO_MEM: no memory, or no thread; logged. */
+/* How a job is begun. */
+struct load_plan {
+	const struct gz_scene_settings *kept; /* settings that stay; NULL: none */
+	bool cpu;                             /* takes_cpu() */
+	bool offers;                          /* series to choose from */
+};
+
+/* Begin to load; wakes the window's loop when it has finished. GZ_ERR_NO_MEM: no memory, or no
+ * thread; logged. */
 static enum gz_result load_job_begin(const struct gz_window_load_request *request,
-				     const struct gz_scene_settings *kept, bool cpu,
+				     const struct load_plan *plan,
 				     const struct gz_view_options *options,
 				     const struct gz_log *log, struct load_job **out_job)
 {
 	struct load_job *job = calloc(1, sizeof *job);
-	if (!job) {
+	if (!job ||
+	    (plan->offers && gz_series_list_create(glfwPostEmptyEvent, &job->series) != GZ_OK)) {
 		gz_err(log, "no memory to load %s", request->path);
+		free(job);
 		return GZ_ERR_NO_MEM;
 	}
 	job->options = options;
 	job->log = log;
 	job->request = *request;
-	job->keep = kept != NULL;
-	if (kept)
-		job->kept = *kept;
-	job->cpu = cpu;
+	job->keep = plan->kept != NULL;
+	if (plan->kept)
+		job->kept = *plan->kept;
+	job->cpu = plan->cpu;
 	job->begin_ns = gz_clock_now_ns();
 	snprintf(job->progress.what, sizeof job->progress.what, "%.*s", LOAD_WHAT_SIZE - 1,
 		 request->path);
@@ -137,6 +150,7 @@ static enum gz_result load_job_begin(const struct gz_window_load_request *reques
 	if (pthread_create(&job->thread, NULL, run_load_job, job) != 0) {
 		gz_err(log, "no thread to load %s; end other programs", request->path);
 		pthread_mutex_destroy(&job->lock);
+		gz_series_list_free(&job->series);
 		free(job);
 		return GZ_ERR_NO_MEM;
 	}
@@ -172,6 +186,7 @@ static void load_job_destroy(struct load_job **job)
 	load_job_cancel(*job);
 	pthread_join((*job)->thread, NULL);
 	gz_frame_maker_destroy(&(*job)->maker);
+	gz_series_list_free(&(*job)->series);
 	pthread_mutex_destroy(&(*job)->lock);
 	free(*job);
 	*job = NULL;
@@ -335,9 +350,9 @@ enum gz_result gz_window_preload(struct gz_window *window,
 		return GZ_ERR_NO_MEM;
 	}
 	snprintf(held->path, sizeof held->path, "%s", request->path);
-	const bool cpu = takes_cpu(window);
+	const struct load_plan plan = { .cpu = takes_cpu(window) };
 	const enum gz_result r =
-		load_job_begin(request, NULL, cpu, window->options, window->log, &held->job);
+		load_job_begin(request, &plan, window->options, window->log, &held->job);
 	if (r != GZ_OK) {
 		free(held);
 		return r;
@@ -424,20 +439,54 @@ void gz_window_cancel_loading(struct gz_window *window)
 {
 	if (!gz_window_is_loading(window))
 		return;
-	gz_info(window->log, "%s: loading was cancelled", window->loading->job->request.path);
+	if (!gz_window_offered_series(window))
+		gz_info(window->log, "%s: loading was cancelled",
+			window->loading->job->request.path);
 	end_loading_job(window);
+}
+
+struct gz_series_list *gz_window_offered_series(const struct gz_window *window)
+{
+	const struct load_job *job = window->loading->job;
+	return job && job->series && gz_series_list_count(job->series) > 0 ? job->series : NULL;
+}
+
+const char *gz_window_offering_path(const struct gz_window *window)
+{
+	return window->loading->job->request.path;
+}
+
+enum gz_result gz_window_choose_series(struct gz_window *window, const char *uid)
+{
+	struct gz_window_load_request *request = malloc(sizeof *request);
+	if (!request) {
+		gz_err(window->log, "no memory to load series %s", uid);
+		return GZ_ERR_NO_MEM;
+	}
+	*request = window->loading->job->request;
+	snprintf(request->series_uid, sizeof request->series_uid, "%s", uid);
+	const enum gz_result r = gz_window_load(window, request);
+	free(request);
+	return r;
+}
+
+/* A measurement has nobody who could choose. */
+static bool offers_series(const struct gz_window *window)
+{
+	return window->options->measure_window == 0 && !window->alone;
 }
 
 enum gz_result gz_window_load(struct gz_window *window,
 			      const struct gz_window_load_request *request)
 {
 	struct load_job *job;
-	const bool cpu = takes_cpu(window);
-	/* Without a scene there is nothing to keep. */
-	const struct gz_scene_settings *kept =
-		request->keep && window->maker ? &window->settings : NULL;
-	const enum gz_result r =
-		load_job_begin(request, kept, cpu, window->options, window->log, &job);
+	const struct load_plan plan = {
+		/* Without a scene there is nothing to keep. */
+		.kept = request->keep && window->maker ? &window->settings : NULL,
+		.cpu = takes_cpu(window),
+		.offers = offers_series(window),
+	};
+	const enum gz_result r = load_job_begin(request, &plan, window->options, window->log, &job);
 	if (r != GZ_OK)
 		return r;
 	end_loading_job(window);
@@ -457,8 +506,11 @@ static bool try_again(struct gz_window *window, struct load_job *job)
 		"%s: no memory for it beside the scene shown, which is closed; loading it again",
 		job->request.path);
 	gz_window_close_scene(window);
-	if (load_job_begin(&job->request, job->keep ? &job->kept : NULL, job->cpu, window->options,
-			   window->log, &state->job) != GZ_OK)
+	const struct load_plan plan = { .kept = job->keep ? &job->kept : NULL,
+					.cpu = job->cpu,
+					.offers = job->series != NULL };
+	if (load_job_begin(&job->request, &plan, window->options, window->log, &state->job) !=
+	    GZ_OK)
 		return false;
 	state->again = true;
 	return true;
@@ -503,12 +555,13 @@ static void turn_loading(struct gz_window *window)
 {
 	struct gz_window_loading *state = window->loading;
 	struct load_job *job = state->job;
-	if (job && load_job_finished(job)) {
+	if (job && load_job_finished(job) && job->result != GZ_ERR_CHOICE) {
 		state->job = NULL;
 		finish_loading(window, job);
 		load_job_destroy(&job);
 	}
-	if (state->job && progress_due(state->job, window->maker != NULL))
+	if (state->job && !load_job_finished(state->job) &&
+	    progress_due(state->job, window->maker != NULL))
 		window->present_needed = true;
 	look_after_held(window);
 	free_ended(state, false);
@@ -520,7 +573,7 @@ static void draw_loading_panels(struct gz_window *window, const struct gz_window
 	(void)gaze;
 	if (!window->maker && !job)
 		gz_marks_draw_welcome();
-	if (!job || !progress_due(job, window->maker != NULL))
+	if (!job || gz_window_offered_series(window) || !progress_due(job, window->maker != NULL))
 		return;
 	const struct load_progress progress = load_job_progress(job);
 	const double spent_s = gz_ns_to_s(gz_clock_now_ns() - job->begin_ns);
@@ -542,7 +595,8 @@ static void log_first_picture(struct gz_window *window)
 
 static double loading_patience_s(const struct gz_window *window)
 {
-	return window->loading->job ? PANEL_EVERY_S : INFINITY;
+	const struct load_job *job = window->loading->job;
+	return job && !load_job_finished(job) ? PANEL_EVERY_S : INFINITY;
 }
 
 static void cancel_by_key(struct gz_window *window, int number)

@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "protocol/gaze.h"
+#include "render/data/series_list.h"
 #include "render/scene/scene.h"
 
 struct gz_window;
@@ -21,6 +22,8 @@ struct gz_window_load_request {
 	char path[GZ_PATH_SIZE];
 	bool has_raw; /**< path is a raw file with layout raw */
 	struct gz_raw_layout raw;
+	/** UID of the DICOM series; empty: what scene and options say. */
+	char series_uid[GZ_SERIES_SIZE];
 	/** Keys of the command line replace the scene's; for what was named there. */
 	bool by_options;
 	/** Keep the user's settings of method, rays, light, attention and view. Volume, transfer
@@ -44,8 +47,20 @@ struct gz_window_load_request {
 enum gz_result gz_window_load(struct gz_window *window,
 			      const struct gz_window_load_request *request);
 
-/** Whether a gz_window_load() goes on. */
+/** Whether a gz_window_load() goes on, or waits for a series to be chosen. */
 bool gz_window_is_loading(const struct gz_window *window);
+
+/** The series that the path which is being loaded stands for, from when the first is known until
+ * one is chosen or the loading is cancelled; NULL: there is nothing to choose. Rows and pictures
+ * still come. */
+struct gz_series_list *gz_window_offered_series(const struct gz_window *window);
+
+/** Path of what holds those series. */
+const char *gz_window_offering_path(const struct gz_window *window);
+
+/** Load one of the series that are offered. @param uid  shorter than GZ_SERIES_SIZE @return as
+ *  gz_window_load() */
+enum gz_result gz_window_choose_series(struct gz_window *window, const char *uid);
 
 /** Cancel the loading, if one goes on. */
 void gz_window_cancel_loading(struct gz_window *window);

@@ -128,6 +128,7 @@ struct gz_window_part {
 	ROW(gaze_panel)    /* the panel of the gaze */ \
 	ROW(latency)       /* from gaze to light on the display; V-sync */ \
 	ROW(files)         /* opens and saves */ \
+	ROW(series)        /* asks which of several series is to be shown */ \
 	ROW(notices)       /* shows messages */ \
 	ROW(transfer)      /* edits the transfer function */ \
 	ROW(time)          /* shows the time points of a series */ \

@@ -60,6 +60,7 @@ struct gz_window {
 	struct gz_window_notices *notices_state;
 	struct gz_overlay *overlay;
 	struct gz_window_replay *replay;
+	struct gz_window_series *series;
 	struct gz_window_session *session;
 	struct gz_window_sources *sources;
 	struct gz_window_status *status;
