@@ -48,6 +48,7 @@ KINDS = {  # type of numpy, bits stored
     "twelve": ("<u2", 12),
     "signed-twelve": ("<i2", 12),
     "bytes": ("u1", 8),
+    "wide-bytes": ("<u2", 8),
 }
 
 ORIENTATIONS = (

@@ -7,6 +7,7 @@
 #include <gdcmDataElement.h>
 #include <gdcmFragment.h>
 #include <gdcmImage.h>
+#include <gdcmJPEG2000Codec.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfFragments.h>
 
@@ -19,6 +20,10 @@ namespace
 {
 
 const gdcm::Tag pixel_data(0x7fe0, 0x0010);
+
+/* Frames up to this size are decoded by one thread. Chosen: the memory limit of slice_pool still
+ * lets eight of them be decoded at a time. */
+const uint64_t alone_pixels = (uint64_t)1 << 22;
 
 /* What a frame in RLE begins with: the number of segments and where each lies
  * (PS3.5, G.5). The library believes them. */
@@ -90,27 +95,72 @@ gdcm::PhotometricInterpretation photometric_of(const format &n)
 					       : kinds::RGB;
 }
 
+gdcm::PixelFormat stored_format(const format &n)
+{
+	return gdcm::PixelFormat((uint16_t)n.samples, (uint16_t)n.bits_allocated,
+				 (uint16_t)n.bits_stored, (uint16_t)n.high_bit,
+				 n.is_signed ? 1 : 0);
+}
+
+/* Whether the numbers that a codec gave are as the head says: it may find others in the stream. */
+bool numbers_agree(const gdcm::PixelFormat &found, const format &n)
+{
+	return found.GetBitsAllocated() == n.bits_allocated &&
+	       found.GetSamplesPerPixel() == n.samples;
+}
+
+bool is_jpeg_2000(gdcm::TransferSyntax::TSType coding)
+{
+	using ts = gdcm::TransferSyntax;
+	return coding == ts::JPEG2000Lossless || coding == ts::JPEG2000 ||
+	       coding == ts::JPEG2000Part2Lossless || coding == ts::JPEG2000Part2;
+}
+
+/* One grey frame by the codec itself: an image would start a thread for each processor, for each of
+ * the frames that are decoded side by side. Large frames get them: memory limits how many of those
+ * are decoded at a time. */
+bool decode_jpeg_2000(const format &n, const std::vector<char> &bytes, std::vector<uint8_t> &out)
+{
+	const unsigned dims[3] = { (unsigned)n.frame_columns, (unsigned)n.frame_rows, 1 };
+	gdcm::JPEG2000Codec codec;
+	codec.SetNumberOfThreadsForDecompression(n.frame_pixels() > alone_pixels ? -1 : 0);
+	codec.SetPixelFormat(stored_format(n));
+	codec.SetNumberOfDimensions(2);
+	codec.SetDimensions(dims);
+	codec.SetPhotometricInterpretation(photometric_of(n));
+	gdcm::DataElement decoded;
+	if (!codec.Decode(element_of(bytes), decoded))
+		return false;
+	const gdcm::ByteValue *value = decoded.GetByteValue();
+	if (!value || value->GetLength() < out.size() || !numbers_agree(codec.GetPixelFormat(), n))
+		return false;
+	const auto *numbers = (const uint8_t *)value->GetPointer();
+	/* Of up to 8 bits the codec gives bytes, even if 16 are allocated. */
+	if (n.bits_allocated == 16 && codec.GetPixelFormat().GetBitsStored() <= 8)
+		std::copy_n(numbers, out.size() / 2, (uint16_t *)(void *)out.data());
+	else
+		std::memcpy(out.data(), numbers, out.size());
+	return true;
+}
+
 /* One frame, told to the library as an image of its own. */
 bool decode_picture(const pixels_of_file &pixels, const std::vector<char> &bytes,
 		    std::vector<uint8_t> &out)
 {
 	const format &n = pixels.numbers;
+	if (is_jpeg_2000(pixels.coding) && n.samples == 1 && n.bits_allocated <= 16)
+		return decode_jpeg_2000(n, bytes, out);
 	gdcm::Image image;
 	image.SetNumberOfDimensions(2);
 	image.SetDimension(0, (unsigned)n.frame_columns);
 	image.SetDimension(1, (unsigned)n.frame_rows);
-	const gdcm::PixelFormat stored((uint16_t)n.samples, (uint16_t)n.bits_allocated,
-				       (uint16_t)n.bits_stored, (uint16_t)n.high_bit,
-				       n.is_signed ? 1 : 0);
-	image.SetPixelFormat(stored);
+	image.SetPixelFormat(stored_format(n));
 	image.SetPhotometricInterpretation(photometric_of(n));
 	image.SetTransferSyntax(gdcm::TransferSyntax(pixels.coding));
 	image.SetDataElement(element_of(bytes));
 	if (image.GetBufferLength() != out.size() || !image.GetBuffer((char *)out.data()))
 		return false;
-	/* A codec may correct what the head says of the numbers. */
-	return image.GetPixelFormat().GetBitsAllocated() == n.bits_allocated &&
-	       image.GetPixelFormat().GetSamplesPerPixel() == n.samples;
+	return numbers_agree(image.GetPixelFormat(), n);
 }
 
 bool is_supported(gdcm::TransferSyntax::TSType coding)
