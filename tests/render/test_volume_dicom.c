@@ -248,6 +248,44 @@ static void tiny_scales_of_their_own_keep_their_values(void **state)
 	gz_volume_free(&volume);
 }
 
+/* Floats this small have few bits, so that they are scaled before they are rounded. */
+static void denormal_scales_keep_their_digits(void **state)
+{
+	(void)state;
+	const int16_t pixels[6] = { 1, 2, 3, 4, 5, 6 };
+	const char *const slopes[2] = { "1.25e-43", "3.5e-43" };
+	for (int k = 0; k < 2; k++) {
+		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
+		sample.position = k ? "0\\0\\1" : "0\\0\\0";
+		sample.slope = slopes[k];
+		dicom_sample_write(&sample, k ? "b" : "a");
+	}
+	struct gz_volume volume = load(files_folder());
+	assert_true(fabs(value_at(&volume, 2, 1, 0) - 1.25e-43) < 1e-49);
+	assert_true(fabs(value_at(&volume, 0, 0, 1) - 21e-43) < 1e-48);
+	gz_volume_free(&volume);
+}
+
+/* Far from 0, single precision would round the differences away. */
+static void scales_far_from_zero_keep_differences(void **state)
+{
+	(void)state;
+	const int16_t pixels[6] = { 1, 2, 3, 4, 5, 6 };
+	const char *const slopes[2] = { "0.001", "0.002" };
+	for (int k = 0; k < 2; k++) {
+		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
+		sample.position = k ? "0\\0\\1" : "0\\0\\0";
+		sample.slope = slopes[k];
+		sample.intercept = "1e9";
+		dicom_sample_write(&sample, k ? "b" : "a");
+	}
+	struct gz_volume volume = load(files_folder());
+	for (int k = 0; k < 2; k++)
+		if (fabs(value_at(&volume, 0, 0, k) - 1e9 - 0.006 * (k + 1)) > 1e-4)
+			fail_msg("slice %d: %.9g", k, value_at(&volume, 0, 0, k) - 1e9);
+	gz_volume_free(&volume);
+}
+
 static void twelve_bits_are_taken_from_among_others(void **state)
 {
 	(void)state;
@@ -693,6 +731,8 @@ TEST_SUITE(volume_dicom)
 		cmocka_unit_test_setup(rescale_is_kept_as_slope_and_intercept, empty_folder),
 		cmocka_unit_test_setup(slices_with_scales_of_their_own_become_float, empty_folder),
 		cmocka_unit_test_setup(tiny_scales_of_their_own_keep_their_values, empty_folder),
+		cmocka_unit_test_setup(denormal_scales_keep_their_digits, empty_folder),
+		cmocka_unit_test_setup(scales_far_from_zero_keep_differences, empty_folder),
 		cmocka_unit_test_setup(twelve_bits_are_taken_from_among_others, empty_folder),
 		cmocka_unit_test_setup(frames_of_one_file_are_slices, empty_folder),
 		cmocka_unit_test_setup(compressed_series_is_that_of_its_plain_one, empty_folder),

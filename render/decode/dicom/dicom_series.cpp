@@ -17,6 +17,10 @@
 #include "render/decode/dicom/dicom_stack.hpp"
 #include "render/decode/dicom/dicom_time.hpp"
 
+extern "C" {
+#include "render/data/float_scaling.h"
+}
+
 #define GZ_LOG_MODULE "dicom"
 
 namespace
@@ -54,6 +58,7 @@ class reader
 	gz_result order();
 	gz_result measure();
 	void note_tilt(const vector3 &normal) const;
+	void scale_floats();
 	void finish();
 	void cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	decoded_slice decode_segments(const slice &s) const;
@@ -69,8 +74,9 @@ class reader
 	size_t time_points = 1;
 	std::shared_ptr<const segmentation> segments; /* NULL: an image */
 	bool told_overlap = false;
-	bool scaled_apart = false; /* slices have scales of their own */
-	uint64_t pool_begin = 0;   /* its first slice */
+	bool scaled_apart = false;         /* slices have scales of their own */
+	gz_float_scaling scaling { 0, 1 }; /* of their values */
+	uint64_t pool_begin = 0;           /* its first slice */
 	std::unique_ptr<slice_pool> pool;
 };
 
@@ -287,6 +293,24 @@ gz_raw_type stored_type(const format &f)
 	return f.is_signed ? GZ_RAW_INT32 : GZ_RAW_UINT32;
 }
 
+/* Values of slices with scales of their own are rounded to floats once, so that those outside of
+ * their range, and differences far from 0, are scaled before. Which values there are is not known
+ * yet: those that the stored bits can have count. */
+void reader::scale_floats()
+{
+	const double range = std::ldexp(1, numbers.bits_stored);
+	const double first = numbers.is_signed ? -range / 2 : 0;
+	double least = HUGE_VAL, greatest = -HUGE_VAL;
+	for (const slice &s : stacks)
+		for (const double stored : { first, first + range - 1 }) {
+			least = std::min(least, stored * s.slope + s.intercept);
+			greatest = std::max(greatest, stored * s.slope + s.intercept);
+		}
+	(void)gz_float_scaling_find(least, greatest, &scaling);
+	geometry.slope = 1 / scaling.scale;
+	geometry.intercept = scaling.offset;
+}
+
 /* Patient coordinates of DICOM go left and to the back, ours right and to the front. */
 void reader::finish()
 {
@@ -309,8 +333,10 @@ void reader::finish()
 	scaled_apart = !coloured && std::any_of(stacks.begin(), stacks.end(), [&](const slice &s) {
 		return s.slope != slices[0].slope || s.intercept != slices[0].intercept;
 	});
-	geometry.slope = scaled_apart ? 1 : slices[0].slope;
-	geometry.intercept = scaled_apart ? 0 : slices[0].intercept;
+	geometry.slope = slices[0].slope;
+	geometry.intercept = slices[0].intercept;
+	if (scaled_apart)
+		scale_floats();
 	geometry.type = coloured ? GZ_RAW_UINT8
 			: segments
 				? segments->greatest_number() < 256 ? GZ_RAW_UINT8 : GZ_RAW_UINT16
@@ -410,8 +436,9 @@ void reader::widen(const slice &s, const std::vector<uint8_t> &frame, void *voxe
 			const uint32_t raw = raw_pixel(numbers, frame, at) >> shift & mask;
 			const int64_t value = ((int64_t)raw ^ sign) - sign;
 			if (geometry.type == GZ_RAW_FLOAT32)
-				((float *)voxels)[i] =
-					(float)((double)value * s.slope + s.intercept);
+				((float *)voxels)[i] = (float)(((double)value * s.slope +
+								s.intercept - scaling.offset) *
+							       scaling.scale);
 			else
 				put_number(geometry.type, value, i, voxels);
 		}
