@@ -118,8 +118,8 @@ static bool are_stored_values(enum gz_voxel_type type, double least, double grea
 }
 
 /* The range of a series, which the voxels alone do not tell: it must hold that of the voxels. */
-static bool take_series(const struct gz_volume_file *file, const struct gz_decode_header *header,
-			struct gz_volume *volume)
+static bool take_time_points(const struct gz_volume_file *file,
+			     const struct gz_decode_header *header, struct gz_volume *volume)
 {
 	const int time_point = file->loading ? file->loading->time_point : 0;
 	struct gz_float_scaling scaling;
@@ -155,7 +155,7 @@ static enum gz_result check_voxels(const struct gz_volume_file *file,
 	}
 	if (volume->type != GZ_VOXEL_F32 || voxels_finite(volume)) {
 		gz_volume_find_range(volume);
-		if (!take_series(file, header, volume)) {
+		if (!take_time_points(file, header, volume)) {
 			gz_err(file->log,
 			       "%s: its decoder made a series of %d time points that cannot be; "
 			       "it was not read",

@@ -10,7 +10,8 @@ static bool minc_knows_start(const struct gz_file_start *start)
 	       gz_file_start_has(start, 0, "\211HDF\r\n\032\n", 8);
 }
 
-static enum gz_result load_minc(const struct gz_volume_file *file, struct gz_volume *out_volume)
+static enum gz_result load_minc_by_decoder(const struct gz_volume_file *file,
+					   struct gz_volume *out_volume)
 {
 	return gz_volume_decode(file, "minc", NULL, out_volume);
 }
@@ -20,6 +21,6 @@ const struct gz_volume_format gz_format_minc = {
 	.endings = { ".mnc" },
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = minc_knows_start,
-	.load = load_minc,
+	.load = load_minc_by_decoder,
 	.limits = "one number a voxel, integers of up to 32 bits, regular samples",
 };

@@ -468,7 +468,7 @@ static enum gz_result read_time_point(struct gz_byte_stream *stream, struct impo
 }
 
 /* Join the range of the volume and that of the other time points. */
-static void take_number_range(const struct import *import)
+static void take_stored_range(const struct import *import)
 {
 	struct gz_volume *volume = import->volume;
 	if (import->time_points <= 1)
@@ -677,7 +677,7 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 		warn_rounded_flat(&import);
 		check_alpha(&import);
 		tell_colour(&import);
-		take_number_range(&import);
+		take_stored_range(&import);
 		gz_volume_scale_floats(&volume);
 	}
 	if (result != GZ_OK) {

@@ -195,7 +195,7 @@ static bool clean_field(char *text, size_t size)
 	return true;
 }
 
-static enum gz_result take_series(struct run *run)
+static enum gz_result take_listed_series(struct run *run)
 {
 	struct gz_decode_series *series = &run->message.series;
 	const bool whole = clean_field(series->uid, sizeof series->uid) &&
@@ -225,7 +225,7 @@ static bool remark_allowed(struct run *run)
 	return true;
 }
 
-static enum gz_result take_picture(struct run *run)
+static enum gz_result take_series_picture(struct run *run)
 {
 	const struct gz_decode_picture *picture = &run->message.picture;
 	if (picture->band >= GZ_DECODE_PICTURE_BANDS || !remark_allowed(run))
@@ -266,9 +266,9 @@ static enum gz_result take_message(struct run *run)
 	case GZ_DECODE_ENDED:
 		return take_end(run);
 	case GZ_DECODE_SERIES:
-		return take_series(run);
+		return take_listed_series(run);
 	case GZ_DECODE_PICTURE:
-		return take_picture(run);
+		return take_series_picture(run);
 	case GZ_DECODE_REFUSED:
 		return take_refusal(run);
 	case GZ_DECODE_LISTED:
