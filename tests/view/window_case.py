@@ -23,6 +23,7 @@ SCENE = write_scene(PLACE.name, SCENES)
 SCREEN = (900, 700)
 SIZE = (480, 320)
 CROSS = (255, 64, 64)
+GROUND = (23, 26, 31)  # of a window without a scene
 LINE_HEIGHT = 40  # the caption at the top
 CORNER_HEIGHT = 64  # the caption of the gaze at the bottom
 
@@ -101,7 +102,8 @@ class WindowCase(unittest.TestCase):
         return self.until(self.shows_something, "a first picture")
 
     def shows_something(self, picture):
-        return len({picture.at(x, y) for x in range(100, 380, 4) for y in range(60, 300, 4)}) > 20
+        """Whether a scene is shown, not the progress of its loading."""
+        return picture.at(5, 5) != GROUND and len({picture.at(x, y) for x in range(100, 380, 4) for y in range(60, 300, 4)}) > 20
 
     def grab(self):
         width, height = SCREEN

@@ -14,11 +14,10 @@ import unittest
 
 from picture import PATIENCE_S, run
 from window_case import (
-    CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
+    CORNER_HEIGHT, GAZEVIEW, GROUND, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
 )
 from xserver import Screen, start_server
 
-GROUND = (23, 26, 31)
 CORNER = (60, 200, SIZE[0], SIZE[1])
 MIDDLE = (60, 80, 420, 260)
 
@@ -119,8 +118,11 @@ class WindowLoading(WindowCase):
             return (picture.part(*place) != empty.part(*place) and
                     picture.part(*place) == seen[-2].part(*place))
 
-        self.until(typed, "typed")
-        self.tool("key", "Return")
+        whole = self.until(typed, "typed")
+        # Held until the dialog reacts: Dear ImGui asks once a frame which keys are down.
+        self.tool("keydown", "Return")
+        self.until(lambda p: p.part(*place) != whole.part(*place), "accepted")
+        self.tool("keyup", "Return")
 
     def test_window_without_a_scene_shows_a_welcome_and_exits_with_0(self):
         self.launch()
