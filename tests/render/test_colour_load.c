@@ -119,7 +119,7 @@ static void nrrd_of_several_files_of_colours_is_read(void **state)
 	uint8_t bytes[3 * COUNT];
 	make_bytes(3, bytes);
 	for (int z = 0; z < Z; z++) {
-		char name[16];
+		char name[32];
 		snprintf(name, sizeof name, "c%d.raw", z);
 		(void)files_write(name, bytes + z * 3 * X * Y, (size_t)3 * X * Y);
 	}
