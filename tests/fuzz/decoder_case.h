@@ -15,6 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "fuzz/fuzz_folder.h"
 #include "render/data/volume_import.h"
 
 /** A loader of the decoder process. */
@@ -39,11 +40,7 @@ static void make_folder(const char *name)
 {
 	if (folder[0])
 		return;
-	strcpy(folder, "/dev/shm/gazecast-fuzz-XXXXXX");
-	if (!mkdtemp(folder)) {
-		strcpy(folder, "/tmp/gazecast-fuzz-XXXXXX");
-		require(mkdtemp(folder) != NULL);
-	}
+	fuzz_folder_make(folder);
 	snprintf(path, sizeof path, "%s/%s", folder, name);
 	atexit(remove_folder);
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "fuzz/fuzz_folder.h"
 #include "render/decode/dicom/dicom_list.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -32,11 +33,7 @@ static void make_medium(void)
 {
 	if (folder[0])
 		return;
-	strcpy(folder, "/dev/shm/gazecast-fuzz-XXXXXX");
-	if (!mkdtemp(folder)) {
-		strcpy(folder, "/tmp/gazecast-fuzz-XXXXXX");
-		require(mkdtemp(folder) != NULL);
-	}
+	fuzz_folder_make(folder);
 	snprintf(paths[0], sizeof paths[0], "%s/DICOMDIR", folder);
 	snprintf(paths[1], sizeof paths[1], "%s/IM1", folder);
 	atexit(remove_medium);

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "fuzz/fuzz_folder.h"
 #include "render/data/volume.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -89,11 +90,7 @@ static void make_folder(void)
 {
 	if (folder[0])
 		return;
-	strcpy(folder, "/dev/shm/gazecast-fuzz-XXXXXX");
-	if (!mkdtemp(folder)) {
-		strcpy(folder, "/tmp/gazecast-fuzz-XXXXXX");
-		require(mkdtemp(folder) != NULL);
-	}
+	fuzz_folder_make(folder);
 	/* DICOM is read by another process: fuzz_dicom looks at it. */
 	setenv("GAZECAST_DECODER", "/nowhere/gazedecode", 1);
 	atexit(remove_folder);
