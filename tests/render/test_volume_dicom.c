@@ -211,18 +211,25 @@ static void rescale_is_kept_as_slope_and_intercept(void **state)
 	gz_volume_free(&volume);
 }
 
-static void slices_with_scales_of_their_own_become_float(void **state)
+/* Two slices, each with a slope of its own; `intercept` NULL: that of dicom_sample_make(). */
+static void write_scaled_slices(const int16_t pixels[6], const char *const slopes[2],
+				const char *intercept)
 {
-	(void)state;
-	const int16_t pixels[6] = { 10, 10, 10, 10, 10, 10 };
-	const char *const slopes[2] = { "0.5", "3" };
 	for (int k = 0; k < 2; k++) {
 		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
 		sample.position = k ? "0\\0\\1" : "0\\0\\0";
 		sample.slope = slopes[k];
-		sample.intercept = "1";
+		if (intercept)
+			sample.intercept = intercept;
 		dicom_sample_write(&sample, k ? "b" : "a");
 	}
+}
+
+static void slices_with_scales_of_their_own_become_float(void **state)
+{
+	(void)state;
+	const int16_t pixels[6] = { 10, 10, 10, 10, 10, 10 };
+	write_scaled_slices(pixels, (const char *[]) { "0.5", "3" }, "1");
 	struct gz_volume volume = load(files_folder());
 	assert_int_equal(volume.type, GZ_VOXEL_F32);
 	assert_true(value_at(&volume, 0, 0, 0) == 6);
@@ -235,13 +242,7 @@ static void tiny_scales_of_their_own_keep_their_values(void **state)
 {
 	(void)state;
 	const int16_t pixels[6] = { 1, 2, 3, 4, 5, 6 };
-	const char *const slopes[2] = { "1e-30", "3e-30" };
-	for (int k = 0; k < 2; k++) {
-		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
-		sample.position = k ? "0\\0\\1" : "0\\0\\0";
-		sample.slope = slopes[k];
-		dicom_sample_write(&sample, k ? "b" : "a");
-	}
+	write_scaled_slices(pixels, (const char *[]) { "1e-30", "3e-30" }, NULL);
 	struct gz_volume volume = load(files_folder());
 	assert_true(fabs(value_at(&volume, 2, 1, 0) - 1e-30) < 1e-36);
 	assert_true(fabs(value_at(&volume, 0, 0, 1) - 18e-30) < 1e-35);
@@ -253,13 +254,7 @@ static void denormal_scales_keep_their_digits(void **state)
 {
 	(void)state;
 	const int16_t pixels[6] = { 1, 2, 3, 4, 5, 6 };
-	const char *const slopes[2] = { "1.25e-43", "3.5e-43" };
-	for (int k = 0; k < 2; k++) {
-		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
-		sample.position = k ? "0\\0\\1" : "0\\0\\0";
-		sample.slope = slopes[k];
-		dicom_sample_write(&sample, k ? "b" : "a");
-	}
+	write_scaled_slices(pixels, (const char *[]) { "1.25e-43", "3.5e-43" }, NULL);
 	struct gz_volume volume = load(files_folder());
 	assert_true(fabs(value_at(&volume, 2, 1, 0) - 1.25e-43) < 1e-49);
 	assert_true(fabs(value_at(&volume, 0, 0, 1) - 21e-43) < 1e-48);
@@ -271,14 +266,7 @@ static void scales_far_from_zero_keep_differences(void **state)
 {
 	(void)state;
 	const int16_t pixels[6] = { 1, 2, 3, 4, 5, 6 };
-	const char *const slopes[2] = { "0.001", "0.002" };
-	for (int k = 0; k < 2; k++) {
-		struct dicom_sample sample = dicom_sample_make(SERIES, k, pixels);
-		sample.position = k ? "0\\0\\1" : "0\\0\\0";
-		sample.slope = slopes[k];
-		sample.intercept = "1e9";
-		dicom_sample_write(&sample, k ? "b" : "a");
-	}
+	write_scaled_slices(pixels, (const char *[]) { "0.001", "0.002" }, "1e9");
 	struct gz_volume volume = load(files_folder());
 	for (int k = 0; k < 2; k++)
 		if (fabs(value_at(&volume, 0, 0, k) - 1e9 - 0.006 * (k + 1)) > 1e-4)

@@ -6,7 +6,6 @@ program that drops files
 
 import os
 import sys
-import time
 import unittest
 
 from dicom_made import EDGE, ROOT, Series, write_medium
@@ -145,14 +144,14 @@ class Choice(WindowCase):
         wanted = self.below_line(first)
         self.until(lambda p: self.below_line(p) == wanted, "series 1 again")
         recent = os.path.join(self.place.name, "gazecast", "recent")
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            if os.path.exists(recent):
-                with open(recent, encoding="utf-8") as file:
-                    if file.readline().rstrip("\n") == self.folder:
-                        break
-            self.assertLess(time.monotonic(), deadline, "never a recent file")
-            time.sleep(0.05)
+
+        def names_folder():
+            if not os.path.exists(recent):
+                return False
+            with open(recent, encoding="utf-8") as file:
+                return file.readline().rstrip("\n") == self.folder
+
+        self.wait_for(names_folder, "a recent file")
 
     def test_folder_is_opened_by_the_dialog(self):
         self.start(*FIXED)
