@@ -31,6 +31,7 @@ struct lab {
 	struct gazed_process gazed;
 	struct gz_gaze gaze; /**< the newest one received */
 	uint64_t compared;   /**< gaze messages compared so far */
+	int64_t pushed_ns;   /**< host time of the newest sample that came behind its fillers */
 };
 
 /** The lab of this program. */
