@@ -554,14 +554,23 @@ class RudeTest(ClientTest):
                 self.assertEqual(self.refused("subscriptions"), 0)
         wait_for(lambda: self.refused("subscriptions") > 0, "it is not refused")
 
-    def flood_inlet(self, frames, count):
-        """Publish the same message many times; nothing is dropped on this side."""
+    def watch(self, *topics):
+        """A subscriber without a limit. The echo, which is subscribed to last, shows that all
+        subscriptions are in force."""
+        monitor = self.client.socket(zmq.SUB)
+        monitor.setsockopt(zmq.RCVHWM, 0)  # it counts for connections made afterwards
+        monitor.connect("tcp://127.0.0.1:" + self.client.ask("SUB_PORT"))
+        for topic in (*topics, "notify.are_you_there"):
+            monitor.setsockopt_string(zmq.SUBSCRIBE, topic)
+        return monitor
+
+    def flood_inlet(self, monitor, frames, count):
+        """Publish the same message many times once @monitor hears; nothing is dropped on this side."""
         publisher = self.client.socket(zmq.PUB)
         publisher.setsockopt(zmq.SNDHWM, 0)
         publisher.connect("tcp://127.0.0.1:" + self.client.ask("PUB_PORT"))
-        echo = self.client.subscribe("notify.are_you_there")
         deadline = time.monotonic() + PATIENCE_S
-        while not echo.poll(20):
+        while not monitor.poll(20):
             publisher.send_multipart([b"notify.are_you_there",
                                       msgpack.dumps({"subject": "are_you_there"})])
             self.assertLess(time.monotonic(), deadline, "nothing that is published comes back")
@@ -571,21 +580,21 @@ class RudeTest(ClientTest):
 
     def test_burst_of_messages_comes_back_whole(self):
         count = 50000
-        monitor = self.client.subscribe("burst")
-        monitor.setsockopt(zmq.RCVHWM, 0)
         frames = [b"burst", msgpack.dumps({"subject": "burst"})]
-        self.flood_inlet(frames, count)
+        monitor = self.watch("burst")
+        self.flood_inlet(monitor, frames, count)
         for _ in range(count):
-            receive(monitor)
+            receive_topic(monitor, "burst")
         self.assert_answers()
 
     def test_burst_of_annotations_is_recorded_whole(self):
         count = 5000
         self.assertEqual(self.client.ask("R burst"), "OK")
-        monitor = self.client.subscribe("annotation")
-        self.flood_inlet([b"annotation", msgpack.dumps({"label": "here", "duration": 0.0})], count)
+        frames = [b"annotation", msgpack.dumps({"label": "here", "duration": 0.0})]
+        monitor = self.watch("annotation")
+        self.flood_inlet(monitor, frames, count)
         for _ in range(count):
-            receive(monitor)
+            receive_topic(monitor, "annotation")
         self.assertEqual(self.client.ask("r"), "OK")
         wait_for(lambda: "#end" in open(os.path.join(self.gazed.place, "burst.gzl")).read(),
                  "the recording does not end")
@@ -594,7 +603,7 @@ class RudeTest(ClientTest):
     def test_messages_without_room_are_counted(self):
         """More than the queue holds, faster than messages are passed on."""
         self.status = self.client.subscribe("status")
-        publisher = self.flood_inlet([b"large", msgpack.dumps({"x": b"x" * 8000})], 20000)
+        publisher = self.flood_inlet(self.watch(), [b"large", msgpack.dumps({"x": b"x" * 8000})], 20000)
         wait_for(lambda: self.refused("overflow") > 0, "all have room")
         self.assertIn("faster than their messages can be passed on", self.gazed.log())
         self.assert_answers()
