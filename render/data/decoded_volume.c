@@ -186,6 +186,8 @@ enum gz_result gz_volume_decode(const struct gz_volume_file *file, const char *f
 		.choice = choice,
 		.time_point = file->loading ? file->loading->time_point : 0,
 		.number_range = file->loading ? file->loading->number_range : NULL,
+		.resampling = gz_resampling_names[file->loading ? file->loading->resampling
+								: GZ_RESAMPLING_OFF],
 		.scratch_fd = decoding.scratch_fd,
 		.user = &decoding,
 		.goes_on = decoding_goes_on,

@@ -89,6 +89,6 @@ const struct gz_volume_format gz_format_dicom = {
 	.knows_start = dicom_knows_start,
 	.recognise = gz_dicom_is,
 	.load = load_dicom,
-	.limits = "integers of 8, 16 and 32 bits, colours of 8 bits, evenly spaced parallel "
-		  "slices; also dose (RTDOSE) and segmentations (SEG)",
+	.limits = "integers of 8, 16 and 32 bits, colours of 8 bits, parallel slices, evenly "
+		  "spaced unless --resample is given; also dose (RTDOSE) and segmentations (SEG)",
 };

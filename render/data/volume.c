@@ -20,6 +20,8 @@
 const char *const gz_raw_type_names[] = { "uint8", "int8",    "uint16",  "int16", "uint32",
 					  "int32", "float32", "float64", NULL };
 
+const char *const gz_resampling_names[] = { "off", "linear", "nearest", NULL };
+
 size_t gz_voxel_size(enum gz_voxel_type type)
 {
 	static const size_t sizes[GZ_VOXEL_TYPE_COUNT] = { 1, 2, 4 };

@@ -34,6 +34,18 @@ enum gz_opacity_source {
 	GZ_OPACITY_ALPHA, /**< colours without alpha are refused */
 };
 
+/** How slices that do not lie evenly become voxels. */
+enum gz_resampling {
+	GZ_RESAMPLING_OFF,     /**< not at all: missing slices and uneven ones are refused */
+	GZ_RESAMPLING_LINEAR,  /**< interpolated between the two nearest slices and voxels */
+	GZ_RESAMPLING_NEAREST, /**< taken from the nearest: for labels, whose numbers mean nothing
+				  between each other */
+	GZ_RESAMPLING_COUNT,
+};
+
+/** "off", "linear", "nearest"; NULL-terminated, in the order of enum gz_resampling. */
+extern const char *const gz_resampling_names[];
+
 /** How a volume is loaded, made or written. Zero-initialised, or NULL in its place: no reports,
  *  voxels in memory, no way to stop. */
 struct gz_loading {
@@ -59,6 +71,8 @@ struct gz_loading {
 	/** What to do where several series are meant: list them in it (render/data/series_list.h)
 	 *  and return GZ_ERR_CHOICE, without a line in the log. NULL: refuse with GZ_ERR_FORMAT. */
 	struct gz_series_list *series_list;
+	/** Of DICOM series whose slices do not lie evenly; other formats ignore it. */
+	enum gz_resampling resampling;
 	int time_point; /**< of a file that holds several, from 0; other files have only 0 */
 	enum gz_opacity_source opacity; /**< of a file of colours; others ignore it */
 	/** The member number_range of another time point that was loaded before. Borrowed. NULL:

@@ -65,6 +65,9 @@ struct gz_decode_job {
 	int time_point;     /**< of a series, from 0 */
 	/** Least and greatest number of the series, finite. Borrowed; NULL: not known. */
 	const double *number_range;
+	/** What to do with slices that do not lie evenly: a name of gz_resampling_names[]; NULL:
+	 *  "off" */
+	const char *resampling;
 	const char *program; /**< the decoder's path; NULL: gz_decode_find_program() */
 	int patience_ms;     /**< 0: GZ_DECODE_PATIENCE_MS */
 	int scratch_fd;      /**< a writable file for the voxels; -1: none. Borrowed */

@@ -134,6 +134,7 @@ static int spawn_with(const char *program, const struct gz_decode_job *job,
 				    (char *)(job->choice ? job->choice : ""),
 				    time_point,
 				    range,
+				    (char *)(job->resampling ? job->resampling : "off"),
 				    NULL };
 	return posix_spawn(out_pid, program, actions, attributes, arguments, environment);
 }

@@ -4,10 +4,11 @@
  *
  * Decoders of other projects run in a process of their own. Its arguments are the process id of the
  * program that started it, the name of the format, the path, what to choose of it (may be empty),
- * the time point from 0, and the range of the series: its least and greatest number with a blank
- * between, or empty if it is not known. It writes messages of one size to GZ_DECODE_FD_MESSAGES:
- * any number of lines and steps, a header, more of them, one end. After the header it waits for an
- * answer of one byte, then writes the voxels into the file that the answer names.
+ * the time point from 0, the range of the series: its least and greatest number with a blank
+ * between, or empty if it is not known, and how to resample it ("off", "linear", "nearest"). It
+ * writes messages of one size to GZ_DECODE_FD_MESSAGES: any number of lines and steps, a header,
+ * more of them, one end. After the header it waits for an answer of one byte, then writes the
+ * voxels into the file that the answer names.
  *
  * Some formats list instead what there is to choose from: "dicom-list" always does, "dicom-choose"
  * if there are several series. Such a decoder sends no header but all series first, then what it

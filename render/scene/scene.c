@@ -74,6 +74,7 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
 	loading.brick_bytes = (size_t)settings->memory_mib << 20;
 	loading.series_uid = settings->volume_series;
+	loading.resampling = (enum gz_resampling)settings->resample;
 	loading.time_point = settings->time_point - 1;
 	loading.opacity = (enum gz_opacity_source)settings->opacity;
 	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,

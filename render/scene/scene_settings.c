@@ -42,6 +42,10 @@ static const struct gz_option volume_options[] = {
 	  .help = "what the transfer function takes as the value of a coloured voxel; auto is "
 		  "alpha "
 		  "if there is one that varies, else luminance" },
+	{ "volume.resample", GZ_OPTION_CHOICE, AT(resample), .choices = gz_resampling_names,
+	  .preset = "off",
+	  .help = "DICOM slices that are missing, lie unevenly or are shifted by a tilted gantry: "
+		  "interpolate linearly, or take the nearest (labels)" },
 	{ "volume.time_point", GZ_OPTION_INT, AT(time_point), 1, GZ_TIME_POINTS_MAX, .preset = "1",
 	  .help = "which volume of a series is shown, from 1; NIfTI's fourth dimension, NRRD's "
 		  "fourth axis" },
@@ -207,7 +211,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 }
 
 /* Most options of a table of which the reader must know whether they are given. */
-enum { GIVEN_MAX = 12 };
+enum { GIVEN_MAX = 13 };
 
 _Static_assert(sizeof volume_options / sizeof volume_options[0] <= GIVEN_MAX &&
 		       sizeof camera_options / sizeof camera_options[0] <= GIVEN_MAX,

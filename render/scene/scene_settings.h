@@ -38,6 +38,7 @@ struct gz_scene_settings {
 	double spacing[3];                /**< mm; raw files and procedural volumes */
 	int channels;                     /**< numbers of a voxel; raw files */
 	int opacity;                      /**< enum gz_opacity_source */
+	int resample;                     /**< enum gz_resampling; DICOM */
 	int time_point;                   /**< of a series, from 1 */
 	int memory_mib;                   /**< for bricks; 0 = a quarter of the machine's memory */
 	char transfer_file[GZ_PATH_SIZE]; /**< empty: the object's, or one made for the volume */

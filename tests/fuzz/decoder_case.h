@@ -55,17 +55,21 @@ static void check_volume(const struct gz_volume *volume)
 	require(volume->stored_min <= volume->stored_max);
 }
 
-/** Load the bytes as a file of this name, alone in its folder. */
-static inline void run_decoder_case(decoder_loader *load, const char *name, const uint8_t *data,
-				    size_t size)
+/** Make the bytes a file of this name, alone in its folder. */
+static inline void write_decoder_case(const char *name, const uint8_t *data, size_t size)
 {
-	struct gz_volume volume = { 0 };
 	make_folder(name);
 	FILE *out = fopen(path, "wb");
 	require(out != NULL);
 	require(fwrite(data, 1, size, out) == size);
 	require(fclose(out) == 0);
-	const struct gz_volume_file file = { .path = path };
+}
+
+/** Load the file. */
+static inline void run_decoder_case(decoder_loader *load, const struct gz_loading *loading)
+{
+	struct gz_volume volume = { 0 };
+	const struct gz_volume_file file = { .path = path, .loading = loading };
 	if (load(&file, NULL, &volume) != GZ_OK)
 		return;
 	check_volume(&volume);

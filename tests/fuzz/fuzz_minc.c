@@ -6,6 +6,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	run_decoder_case(gz_minc_load, "a.mnc", data, size);
+	write_decoder_case("a.mnc", data, size);
+	run_decoder_case(gz_minc_load, NULL);
 	return 0;
 }

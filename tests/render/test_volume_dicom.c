@@ -49,6 +49,20 @@ static struct gz_volume load(const char *path)
 	return volume;
 }
 
+/* Load with slices resampled, and one line that says so. */
+static struct gz_volume load_resampled(const char *path, enum gz_resampling how, const char *words)
+{
+	const struct gz_loading loading = { .resampling = how };
+	struct gz_volume volume = { 0 };
+	struct captured_log log;
+	captured_log_init(&log, "*:warn");
+	const enum gz_result result = gz_volume_load(path, NULL, &loading, &log.log, &volume);
+	if (result != GZ_OK || log.messages != 1 || !strstr(log.last, words))
+		fail_msg("%s: result %d, %d lines, \"%s\" lacks \"%s\"", path, result, log.messages,
+			 log.last, words);
+	return volume;
+}
+
 static void check_refused(const char *path, enum gz_result result, const char *words)
 {
 	struct captured_log log;
@@ -640,7 +654,134 @@ static void missing_slice_is_refused(void **state)
 	(void)state;
 	write_series(SERIES, "s", 4);
 	unlink(files_path("s3"));
-	check_refused(files_folder(), GZ_ERR_FORMAT, "is a file missing?");
+	check_refused(
+		files_folder(), GZ_ERR_FORMAT,
+		"1 of its 4 slices are missing, which lie 2.5 mm apart: 1 between 0 and 5 mm; "
+		"fetch them, or open it with --resample (scene key volume.resample)");
+}
+
+static void missing_slice_is_interpolated_on_request(void **state)
+{
+	(void)state;
+	write_series(SERIES, "s", 4);
+	unlink(files_path("s3"));
+	struct gz_volume volume =
+		load_resampled(files_folder(), GZ_RESAMPLING_LINEAR,
+			       "resampled (linear) from 3 slices to 4, 2.5 mm apart");
+	assert_int_equal(volume.type, GZ_VOXEL_U16);
+	assert_true(volume.slope == 1);
+	check_series(&volume); /* its numbers grow evenly along the stack */
+	gz_volume_free(&volume);
+	volume = load_resampled(files_folder(), GZ_RESAMPLING_NEAREST, "resampled (nearest)");
+	assert_int_equal(volume.dims[2], 4);
+	assert_true(value_at(&volume, 2, 1, 1) == value_at(&volume, 2, 1, 0));
+	gz_volume_free(&volume);
+}
+
+/* Slice k of those at 0, 2.5, 5 and 6 mm holds 100 k - 50 and on. */
+static void uneven_slices_are_refused_or_interpolated(void **state)
+{
+	(void)state;
+	for (int k = 0; k < 4; k++) {
+		int16_t pixels[6];
+		char position[64], name[16];
+		struct dicom_sample sample = slice_of(SERIES, k, pixels, position);
+		if (k == 3)
+			sample.position = "-10\\-20\\6";
+		sample.slope = "3";
+		snprintf(name, sizeof name, "u%d", k);
+		dicom_sample_write(&sample, name);
+	}
+	check_refused(
+		files_folder(), GZ_ERR_FORMAT,
+		"its slices lie 1 to 2.5 mm apart, most 2.5: 1 mm between 5 and 6 mm; open it "
+		"with --resample (scene key volume.resample)");
+	struct gz_volume volume = load_resampled(files_folder(), GZ_RESAMPLING_LINEAR,
+						 "from 4 slices to 7, 1 mm apart");
+	static const double whole[7] = { -50, -10, 30, 70, 110, 150, 250 };
+	for (int z = 0; z < 7; z++)
+		if (fabs(value_at(&volume, 2, 1, z) - 3 * whole[z]) > 1e-9)
+			fail_msg("slice %d: %g, not %g", z, value_at(&volume, 2, 1, z),
+				 3 * whole[z]);
+	gz_volume_free(&volume);
+}
+
+/* Each slice lies 1.5 mm, two rows, further down than the one 2.5 mm below it: atan(1.5 / 2.5). */
+static void write_tilted(void)
+{
+	for (int k = 0; k < 4; k++) {
+		int16_t pixels[6];
+		char position[64], name[16];
+		struct dicom_sample sample = slice_of(SERIES, k, pixels, position);
+		snprintf(position, sizeof position, "-10\\%g\\%g", 1.5 * k, 2.5 * k);
+		snprintf(name, sizeof name, "t%d", k);
+		dicom_sample_write(&sample, name);
+	}
+}
+
+static void tilted_gantry_is_said_and_straightened_on_request(void **state)
+{
+	(void)state;
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	write_tilted();
+	captured_log_init(&log, "*:warn");
+	assert_int_equal(gz_volume_load(files_folder(), NULL, NULL, &log.log, &volume), GZ_OK);
+	check_series(&volume);
+	gz_volume_free(&volume);
+	if (log.messages != 1 || !strstr(log.last, "tilted by 31.0 degrees") ||
+	    !strstr(log.last, "--resample (scene key volume.resample)"))
+		fail_msg("%d lines, %s", log.messages, log.last);
+	volume = load_resampled(files_folder(), GZ_RESAMPLING_LINEAR, "tilted by 31.0 degrees");
+	assert_int_equal(volume.dims[1], 8);
+	assert_int_equal(volume.dims[2], 4);
+	for (int z = 0; z < 4; z++)
+		for (int y = 0; y < 8; y++) {
+			const int row = 7 - y - 2 * z; /* of the slice, from its front */
+			const double expected = row < 0 || row > 1 ? -50 : 100 * z + 10 * row - 50;
+			if (value_at(&volume, 2, y, z) != expected)
+				fail_msg("slice %d, row %d: %g, not %g", z, y,
+					 value_at(&volume, 2, y, z), expected);
+		}
+	gz_volume_free(&volume);
+}
+
+/* An even stack stays as it is, without a word. */
+static void even_slices_are_not_resampled(void **state)
+{
+	(void)state;
+	const struct gz_loading loading = { .resampling = GZ_RESAMPLING_LINEAR };
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	write_series(SERIES, "e", 4);
+	captured_log_init(&log, "*:info");
+	assert_int_equal(gz_volume_load(files_folder(), NULL, &loading, &log.log, &volume), GZ_OK);
+	assert_int_equal(log.messages, 0);
+	check_series(&volume);
+	gz_volume_free(&volume);
+}
+
+static void slices_that_wander_are_said_and_moved_on_request(void **state)
+{
+	(void)state;
+	struct captured_log log;
+	struct gz_volume volume = { 0 };
+	write_series(SERIES, "w", 4);
+	int16_t pixels[6];
+	char position[64];
+	struct dicom_sample sample = slice_of(SERIES, 1, pixels, position);
+	sample.position = "-11.5\\-20\\2.5"; /* three columns to the left */
+	dicom_sample_write(&sample, "w3");
+	captured_log_init(&log, "*:warn");
+	assert_int_equal(gz_volume_load(files_folder(), NULL, NULL, &log.log, &volume), GZ_OK);
+	gz_volume_free(&volume);
+	if (!strstr(log.last, "shifted by up to 1.5 mm off one line"))
+		fail_msg("%s", log.last);
+	volume = load_resampled(files_folder(), GZ_RESAMPLING_LINEAR, "off one line");
+	assert_int_equal(volume.dims[0], 6);
+	assert_true(value_at(&volume, 5, 1, 1) == 50 && value_at(&volume, 2, 1, 1) == -50);
+	assert_true(value_at(&volume, 5, 1, 0) == -50 && value_at(&volume, 2, 1, 0) == -50);
+	gz_volume_free(&volume);
 }
 
 /* Without the last slice the others lie evenly: only a line tells that one is missing. */
@@ -735,6 +876,13 @@ TEST_SUITE(volume_dicom)
 		cmocka_unit_test_setup(file_without_preamble_is_read, empty_folder),
 		cmocka_unit_test_setup(mosaic_is_split_into_its_slices, empty_folder),
 		cmocka_unit_test_setup(missing_slice_is_refused, empty_folder),
+		cmocka_unit_test_setup(missing_slice_is_interpolated_on_request, empty_folder),
+		cmocka_unit_test_setup(uneven_slices_are_refused_or_interpolated, empty_folder),
+		cmocka_unit_test_setup(tilted_gantry_is_said_and_straightened_on_request,
+				       empty_folder),
+		cmocka_unit_test_setup(even_slices_are_not_resampled, empty_folder),
+		cmocka_unit_test_setup(slices_that_wander_are_said_and_moved_on_request,
+				       empty_folder),
 		cmocka_unit_test_setup(damaged_file_of_a_series_is_named, empty_folder),
 		cmocka_unit_test_setup(what_is_no_grey_stack_is_refused, empty_folder),
 		cmocka_unit_test_setup(file_that_lies_is_refused, empty_folder),

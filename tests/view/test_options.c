@@ -205,6 +205,33 @@ static void opacity_of_colours_replaces_the_scenes(void **state)
 	assert_refused("a.nii --volume.opacity red", "auto, luminance or alpha");
 }
 
+static void resampling_replaces_the_scenes(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *line;
+		enum gz_resampling expected;
+	} lines[] = {
+		{ "a.scene", GZ_RESAMPLING_NEAREST },
+		{ "a.scene --resample", GZ_RESAMPLING_LINEAR },
+		{ "a.scene --volume.resample off", GZ_RESAMPLING_OFF },
+		{ "a.scene --volume.resample nearest --resample", GZ_RESAMPLING_NEAREST },
+	};
+	static struct gz_scene_settings settings;
+	for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+		assert_int_equal(gz_scene_settings_preset(&settings), GZ_OK);
+		assert_int_equal(settings.resample, GZ_RESAMPLING_OFF);
+		settings.resample = GZ_RESAMPLING_NEAREST;
+		assert_int_equal(read_line(lines[i].line), GZ_OK);
+		assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+		assert_int_equal(settings.resample, lines[i].expected);
+	}
+	assert_refused("a.scene --volume.resample cubic", "off, linear or nearest");
+	assert_refused("--experiment a.exp --participant p --resample", "--resample");
+	assert_refused("--experiment a.exp --participant p --volume.resample off",
+		       "--volume.resample");
+}
+
 static void half_a_layout_is_refused(void **state)
 {
 	(void)state;
@@ -396,6 +423,7 @@ TEST_SUITE(options)
 		cmocka_unit_test(data_of_a_scene_cannot_be_overridden),
 		cmocka_unit_test(raw_file_gets_the_layout_in_the_options),
 		cmocka_unit_test(opacity_of_colours_replaces_the_scenes),
+		cmocka_unit_test(resampling_replaces_the_scenes),
 		cmocka_unit_test(half_a_layout_is_refused),
 		cmocka_unit_test(transfer_function_on_the_command_line_is_made_absolute),
 		cmocka_unit_test(given_scene_keys_override_the_scene),

@@ -60,6 +60,8 @@ enum gz_result gz_view_list_series(const struct gz_view_options *options, const 
 		return r;
 	}
 	gz_loading_bar_begin(&bar, log);
+	if (options->volume_resample >= 0)
+		bar.loading.resampling = (enum gz_resampling)options->volume_resample;
 	r = gz_series_list_read(options->scene, &bar.loading, log, list);
 	gz_loading_bar_end(&bar);
 	if (r == GZ_OK)

@@ -116,6 +116,11 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "UID of the series of a DICOM folder to show; --list-series prints them" },
 	{ "list-series", GZ_OPTION_BOOL, AT(list_series), .preset = "false",
 	  .help = "print the series of a DICOM folder or DICOMDIR with their UIDs, and exit" },
+	{ "volume.resample", GZ_OPTION_CHOICE, AT(volume_resample), .choices = gz_resampling_names,
+	  .help = "DICOM slices that are missing, lie unevenly or are shifted by a tilted gantry: "
+		  "refuse (off), interpolate (linear) or take the nearest" },
+	{ "resample", GZ_OPTION_BOOL, AT(resample), .preset = "false",
+	  .help = "short for --volume.resample linear" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
 	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
@@ -146,11 +151,29 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",         "size",        "gaze",        "frames",          "turn",
-		"display-px",    "display-mm",  "distance-mm", "write-volume",    "record",
-		"transfer.file", "volume.dims", "volume.type", "volume.endian",   "volume.spacing",
-		"volume.series", "time-point",  "play",        "volume.channels", "volume.opacity",
+		"scene",
+		"size",
+		"gaze",
+		"frames",
+		"turn",
+		"display-px",
+		"display-mm",
+		"distance-mm",
+		"write-volume",
+		"record",
+		"transfer.file",
+		"volume.dims",
+		"volume.type",
+		"volume.endian",
+		"volume.spacing",
+		"volume.series",
+		"time-point",
+		"play",
+		"volume.channels",
+		"volume.opacity",
 		"list-series",
+		"resample",
+		"volume.resample",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t i = 0; i < gz_view_option_count && !other; i++)
@@ -203,24 +226,26 @@ static bool any_scene_key(const struct gz_view_options *options)
 static enum gz_result check_experiment(const struct gz_view_options *options,
 				       const struct gz_log *log)
 {
-	const char *other = options->target.targets[0]  ? "--targets"
-			    : options->scene[0]         ? "a scene"
-			    : options->method >= 0      ? "--method"
-			    : options->turn_deg != 0    ? "--turn"
-			    : options->time_point > 0   ? "--time-point"
-			    : options->play > 0         ? "--play"
-			    : options->write_volume[0]  ? "--write-volume"
-			    : options->list_series      ? "--list-series"
-			    : options->out[0]           ? "--out"
-			    : options->video[0]         ? "--video"
-			    : options->transfer_file[0] ? "--transfer.file"
-			    : options->record[0]        ? "--record"
-			    : options->replay[0]        ? "--replay"
-			    : options->stats[0]         ? "--stats"
-			    : options->cross            ? "--cross"
-			    : options->letters          ? "--letters"
-			    : any_scene_key(options)    ? "a key of a scene"
-							: NULL;
+	const char *other = options->target.targets[0]      ? "--targets"
+			    : options->scene[0]             ? "a scene"
+			    : options->method >= 0          ? "--method"
+			    : options->turn_deg != 0        ? "--turn"
+			    : options->time_point > 0       ? "--time-point"
+			    : options->play > 0             ? "--play"
+			    : options->resample             ? "--resample"
+			    : options->volume_resample >= 0 ? "--volume.resample"
+			    : options->write_volume[0]      ? "--write-volume"
+			    : options->list_series          ? "--list-series"
+			    : options->out[0]               ? "--out"
+			    : options->video[0]             ? "--video"
+			    : options->transfer_file[0]     ? "--transfer.file"
+			    : options->record[0]            ? "--record"
+			    : options->replay[0]            ? "--replay"
+			    : options->stats[0]             ? "--stats"
+			    : options->cross                ? "--cross"
+			    : options->letters              ? "--letters"
+			    : any_scene_key(options)        ? "a key of a scene"
+							    : NULL;
 	if (!other)
 		return gz_sitting_options_check(&options->sitting, log);
 	gz_err(log,
@@ -557,10 +582,13 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	memset(out_options, 0, sizeof *out_options);
 	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
 	out_options->volume_opacity = -1;
+	out_options->volume_resample = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
 	if (r != GZ_OK || only_prints(out_options))
 		return r;
+	if (out_options->resample && out_options->volume_resample < 0)
+		out_options->volume_resample = GZ_RESAMPLING_LINEAR;
 	const char *gaze = out_options->gaze_text;
 	if (!gaze[0])
 		gaze = out_options->headless ? "centre" : "daemon";
@@ -610,6 +638,8 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 		       sizeof settings->volume_series);
 	if (options->volume_opacity >= 0)
 		settings->opacity = options->volume_opacity;
+	if (options->volume_resample >= 0)
+		settings->resample = options->volume_resample;
 	struct gz_scene_settings given = options->scene_settings;
 	struct gz_view_scene_tables from, to;
 	gz_view_pick_scene_tables(&given, &from);

@@ -93,6 +93,8 @@ struct gz_view_options {
 	int volume_channels;                /**< of a raw file; 0: not given */
 	int volume_opacity;                 /**< enum gz_opacity_source; -1: not given */
 	char volume_series[GZ_SERIES_SIZE]; /**< empty: not given */
+	int volume_resample;                /**< enum gz_resampling; -1: not given */
+	bool resample;                      /**< short for volume_resample GZ_RESAMPLING_LINEAR */
 	double volume_spacing[3];           /**< 0: not given */
 	char transfer_file[GZ_PATH_SIZE];   /**< replaces the scene's; empty: not given */
 

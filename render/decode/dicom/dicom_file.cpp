@@ -87,6 +87,22 @@ class groups
 	items shared, frames;
 };
 
+/* What one group says of the sizes of pixels. */
+void take_measures(const gdcm::DataSet &measures, format &f)
+{
+	double rows_columns[2], thickness;
+	/* Between rows comes first (PS3.3, 10.7.1.3). */
+	if (numbers_of(measures, pixel_spacing, rows_columns, 2)) {
+		f.spacing[0] = rows_columns[1];
+		f.spacing[1] = rows_columns[0];
+	}
+	if (numbers_of(measures, spacing_between_slices, &thickness, 1) ||
+	    numbers_of(measures, slice_thickness, &thickness, 1))
+		f.thickness = std::fabs(thickness);
+	if (numbers_of(measures, spacing_between_slices, &thickness, 1))
+		f.between = std::fabs(thickness);
+}
+
 format format_of(const gdcm::DataSet &data, const groups &functional)
 {
 	format f;
@@ -98,19 +114,8 @@ format format_of(const gdcm::DataSet &data, const groups &functional)
 	f.is_signed = short_of(data, pixel_representation, 0) == 1;
 	f.samples = short_of(data, samples_per_pixel, 1);
 	f.colours = colour_kind_of(text_of(data, photometric_interpretation));
-	functional.in(0, pixel_measures, [&f](const gdcm::DataSet &measures) {
-		double rows_columns[2], thickness;
-		/* Between rows comes first (PS3.3, 10.7.1.3). */
-		if (numbers_of(measures, pixel_spacing, rows_columns, 2)) {
-			f.spacing[0] = rows_columns[1];
-			f.spacing[1] = rows_columns[0];
-		}
-		if (numbers_of(measures, spacing_between_slices, &thickness, 1) ||
-		    numbers_of(measures, slice_thickness, &thickness, 1))
-			f.thickness = std::fabs(thickness);
-		if (numbers_of(measures, spacing_between_slices, &thickness, 1))
-			f.between = std::fabs(thickness);
-	});
+	functional.in(0, pixel_measures,
+		      [&f](const gdcm::DataSet &measures) { take_measures(measures, f); });
 	return f;
 }
 
@@ -404,8 +409,14 @@ void fill_head(const gdcm::DataSet &data, head &out)
 	out.photometric = text_of(data, photometric_interpretation);
 	const int claimed = decimal_of(data, number_of_frames, 1);
 	out.frames = claimed < 1 ? 1 : (uint64_t)claimed;
-	for (uint64_t frame = 0; frame < out.frames && frame <= frames_max; frame++)
+	for (uint64_t frame = 0; frame < out.frames && frame <= frames_max; frame++) {
+		format of_frame = out.numbers;
 		out.slices.push_back(slice_of(data, functional, (uint32_t)frame));
+		functional.in((uint32_t)frame, pixel_measures, [&](const gdcm::DataSet &measures) {
+			take_measures(measures, of_frame);
+		});
+		out.of_one_size = out.of_one_size && of_frame == out.numbers;
+	}
 	place_dose(data, out);
 	take_segments(data, out);
 	/* If the private header is odd, the image stays whole. */

@@ -143,6 +143,7 @@ struct head {
 	std::shared_ptr<const segmentation> segments; /* if it is a segmentation */
 	uint64_t frames = 0;                          /* claimed */
 	uint64_t bytes = 0;                           /* that its pixel data can hold */
+	bool of_one_size = true;                      /* the pixels of all its frames */
 	bool unreadable = false; /* damaged or cut off, though it may begin like DICOM */
 };
 

@@ -141,7 +141,7 @@ listed_series::listed_series(const gz_volume_file &file, std::vector<head> image
 	const gz_result result = open_stack(file, std::move(images), &error->log, slices);
 	if (result != GZ_OK && !row.reason[0])
 		put_text(row.reason, without_path(error->text, paths));
-	row.slices = result == GZ_OK ? gz_dicom_series_geometry(slices.get())->dims[2]
+	row.slices = result == GZ_OK ? geometry_of_files(*slices).dims[2]
 				     : (int32_t)std::min<size_t>(count, INT32_MAX);
 	if (row.reason[0])
 		slices.reset();
@@ -208,7 +208,7 @@ void lister::refuse(uint32_t index, const std::string &why) const
 void lister::send_picture(uint32_t index) const
 {
 	const gz_dicom_series &slices = *all[index].slices;
-	const gz_dicom_geometry &geometry = *gz_dicom_series_geometry(&slices);
+	const gz_dicom_geometry geometry = geometry_of_files(slices);
 	uint8_t pixels[GZ_DECODE_PICTURE_EDGE * GZ_DECODE_PICTURE_EDGE];
 	const decoded_slice middle = decode_of_stack(slices, (size_t)geometry.dims[2] / 2);
 	if (middle.result != GZ_OK) {

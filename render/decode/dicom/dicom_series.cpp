@@ -14,6 +14,7 @@
 #include "render/decode/dicom/dicom_frame.hpp"
 #include "render/decode/dicom/dicom_pool.hpp"
 #include "render/decode/dicom/dicom_segments.hpp"
+#include "render/decode/dicom/dicom_spacing.hpp"
 #include "render/decode/dicom/dicom_stack.hpp"
 #include "render/decode/dicom/dicom_time.hpp"
 
@@ -28,12 +29,6 @@ namespace
 
 using namespace gz_dicom;
 
-/* How far the distance of two slices may be from that of most, as a share (chosen: beyond it a file
- * is missing), and how far a slice may be shifted within its plane against the next before the log
- * says that the gantry was tilted, degrees. */
-const double uneven = 0.05;
-const double tilt_deg = 1.0;
-
 /* Memory that a codec takes for a pixel beside what it gives, bytes (JPEG 2000 works on integers of
  * 32 bits, and keeps a few), of one number. */
 const uint64_t codec_bytes_a_pixel = 16;
@@ -41,13 +36,14 @@ const uint64_t codec_bytes_a_pixel = 16;
 class reader
 {
       public:
-	reader(std::string of, const gz_log *to, std::vector<head> images)
-	    : path(std::move(of)), log(to), heads(std::move(images))
+	reader(const gz_volume_file &of, const gz_log *to, std::vector<head> images)
+	    : path(of.path), loading(of.loading), log(to), heads(std::move(images))
 	{
 	}
 	gz_result open();
 	gz_result read(uint64_t index, void *voxels);
 	decoded_slice decode(size_t index) const;
+	gz_dicom_geometry geometry_of_files() const;
 	gz_dicom_geometry geometry {};
 
       private:
@@ -57,15 +53,17 @@ class reader
 	gz_result place();
 	gz_result order();
 	gz_result measure();
-	void note_tilt(const vector3 &normal) const;
 	void scale_floats();
 	void finish();
+	gz_result read_slice(size_t index, void *voxels);
+	gz_result find_least(double &out_least);
 	void cut_colours(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	decoded_slice decode_segments(const slice &s) const;
 	void widen(const slice &s, const std::vector<uint8_t> &frame, void *voxels) const;
 	size_t slice_bytes() const;
 
 	const std::string path;
+	const gz_loading *loading; /* NULL: none */
 	const gz_log *log;
 	std::vector<head> heads;
 	format numbers;
@@ -76,7 +74,9 @@ class reader
 	bool told_overlap = false;
 	bool scaled_apart = false;         /* slices have scales of their own */
 	gz_float_scaling scaling { 0, 1 }; /* of their values */
-	uint64_t pool_begin = 0;           /* its first slice */
+	even_grid even;                    /* what the slices are resampled onto, if they are */
+	std::unique_ptr<resampler> resampled;
+	uint64_t pool_begin = 0; /* its first slice */
 	std::unique_ptr<slice_pool> pool;
 };
 
@@ -134,6 +134,11 @@ gz_result reader::check_head(const head &h) const
 		       h.path.c_str(), f.columns, f.rows, f.spacing[0], f.spacing[1],
 		       GZ_VOLUME_DIM_MAX);
 		return GZ_ERR_FORMAT;
+	}
+	if (!h.of_one_size) {
+		gz_err(log, "%s: its frames have pixels of several sizes; only one size is read",
+		       h.path.c_str());
+		return GZ_ERR_UNSUPPORTED;
 	}
 	if (h.frames > frames_max || f.stored_bytes(h.frames) > h.bytes) {
 		gz_err(log,
@@ -243,45 +248,16 @@ gz_result reader::order()
 	return GZ_ERR_FORMAT;
 }
 
-void reader::note_tilt(const vector3 &normal) const
-{
-	vector3 shift {};
-	for (int i = 0; i < 3; i++)
-		shift.x[i] = slices.back().position.x[i] - slices.front().position.x[i];
-	const double length = std::sqrt(dot(shift, shift));
-	const double angle =
-		std::acos(std::min(1.0, dot(shift, normal) / length)) * 180 / 3.14159265358979;
-	if (angle > tilt_deg)
-		gz_warn(log,
-			"%s: slices are shifted against each other, a gantry tilted by %.1f "
-			"degrees; shown as if it were not",
-			path.c_str(), angle);
-}
-
-/* The distance of most slices, which must be that of all. */
+/* The distance of slices, and the grid for those that do not lie evenly. */
 gz_result reader::measure()
 {
 	geometry.spacing[2] = numbers.thickness > 0 ? numbers.thickness : numbers.spacing[0];
 	if (!geometry.oriented || slices.size() < 2)
 		return GZ_OK;
-	std::vector<double> gaps;
-	for (size_t i = 1; i < slices.size(); i++)
-		gaps.push_back(slices[i].along - slices[i - 1].along);
-	std::vector<double> sorted = gaps;
-	std::sort(sorted.begin(), sorted.end());
-	const double usual = sorted[sorted.size() / 2];
-	for (size_t i = 0; i < gaps.size(); i++)
-		if (std::fabs(gaps[i] - usual) > uneven * usual) {
-			gz_err(log,
-			       "%s: %g mm to the next slice where others have %g; is a file "
-			       "missing?",
-			       slices[i].path().c_str(), gaps[i], usual);
-			return GZ_ERR_FORMAT;
-		}
-	geometry.spacing[2] =
-		(slices.back().along - slices.front().along) / (double)(slices.size() - 1);
-	note_tilt(cross(slices[0].row, slices[0].column));
-	return GZ_OK;
+	const gz_volume_file file = { path.c_str(), nullptr, loading, log };
+	const placed_stack stack = { stacks, slices.size(), numbers,
+				     numbers.colours != colour_kind::none ? 3 : 1 };
+	return measure_stack(stack, file, even, geometry.spacing[2]);
 }
 
 gz_raw_type stored_type(const format &f)
@@ -322,9 +298,8 @@ void reader::finish()
 			geometry.direction[axis][i] = !geometry.oriented ? identity[axis].x[i]
 						      : i < 2            ? -axes[axis].x[i]
 									 : axes[axis].x[i];
-	geometry.dims[0] = numbers.columns;
-	geometry.dims[1] = numbers.rows;
-	geometry.dims[2] = (int)slices.size();
+	const int dims[3] = { numbers.columns, numbers.rows, (int)slices.size() };
+	std::copy_n(even ? even.grid.dims : dims, 3, geometry.dims);
 	geometry.spacing[0] = numbers.spacing[0];
 	geometry.spacing[1] = numbers.spacing[1];
 	geometry.time_points = (int)time_points;
@@ -343,10 +318,24 @@ void reader::finish()
 			: scaled_apart ? GZ_RAW_FLOAT32
 				       : stored_type(numbers);
 	/* Numbers may be wider in memory than in the file, and empty slices may be left out of it.
-	 */
+	 * The files hold all that is resampled. */
 	geometry.bytes_bound *= 4;
 	if (segments)
 		geometry.bytes_bound = slice_bytes() * slices.size();
+	if (even)
+		geometry.bytes_bound = (uint64_t)geometry.dims[0] * (uint64_t)geometry.dims[1] *
+				       (uint64_t)geometry.dims[2] * (uint64_t)time_points *
+				       (uint64_t)geometry.channels *
+				       gz_raw_type_size(geometry.type);
+}
+
+gz_dicom_geometry reader::geometry_of_files() const
+{
+	gz_dicom_geometry of_files = geometry;
+	of_files.dims[0] = numbers.columns;
+	of_files.dims[1] = numbers.rows;
+	of_files.dims[2] = (int)slices.size();
+	return of_files;
 }
 
 gz_result reader::open()
@@ -483,7 +472,7 @@ decoded_slice reader::decode(size_t index) const
 	return made;
 }
 
-gz_result reader::read(uint64_t index, void *voxels)
+gz_result reader::read_slice(size_t index, void *voxels)
 {
 	if (!pool) {
 		pool_begin = index;
@@ -509,6 +498,44 @@ gz_result reader::read(uint64_t index, void *voxels)
 	return GZ_OK;
 }
 
+/* The least number of the first time point, whose slices are decoded for it. */
+gz_result reader::find_least(double &out_least)
+{
+	const size_t count = (size_t)numbers.columns * (size_t)numbers.rows;
+	std::vector<uint8_t> voxels(slice_bytes());
+	double least = HUGE_VAL;
+	for (size_t i = 0; i < slices.size(); i++) {
+		if (!gz_loading_goes_on(loading, 0, path.c_str()))
+			return GZ_ERR_CANCELLED;
+		const gz_result result = read_slice(i, voxels.data());
+		if (result != GZ_OK)
+			return result;
+		least = std::min(least, gz_slice_least(geometry.type, voxels.data(), count));
+	}
+	pool.reset();
+	out_least = least;
+	return GZ_OK;
+}
+
+/* Where slices are moved, voxels that lie in none get the least number, as dcm2niix does (air in
+ * CT); colours get black. */
+gz_result reader::read(uint64_t index, void *voxels)
+{
+	if (!even)
+		return read_slice(index, voxels);
+	if (!resampled) {
+		double fill = 0;
+		const bool finds = even.grid.shifted && geometry.channels == 1;
+		const gz_result result = finds ? find_least(fill) : GZ_OK;
+		if (result != GZ_OK)
+			return result;
+		resampled.reset(new resampler(
+			even.grid, geometry.type, fill,
+			[this](size_t slice, void *to) { return read_slice(slice, to); }));
+	}
+	return resampled->read(index, voxels);
+}
+
 } // namespace
 
 struct gz_dicom_series {
@@ -522,7 +549,7 @@ namespace gz_dicom
 gz_result open_stack(const gz_volume_file &file, std::vector<head> images, const gz_log *log,
 		     stack &out)
 {
-	stack made(new gz_dicom_series { reader(file.path, log, std::move(images)), log });
+	stack made(new gz_dicom_series { reader(file, log, std::move(images)), log });
 	const gz_result result = made->slices.open();
 	if (result == GZ_OK)
 		out = std::move(made);
@@ -540,6 +567,11 @@ gz_result explain_exception(const gz_volume_file &file)
 		gz_err(file.log, "%s: cannot be read: %s", file.path, e.what());
 		return GZ_ERR_FORMAT;
 	}
+}
+
+gz_dicom_geometry geometry_of_files(const gz_dicom_series &of)
+{
+	return of.slices.geometry_of_files();
 }
 
 decoded_slice decode_of_stack(const gz_dicom_series &of, size_t index)

@@ -4,7 +4,7 @@
  *
  * The slices are the files of one series in one folder, or the frames of one file. They are ordered
  * by where they lie along the normal of their planes (DICOM PS3.3, C.7.6.2.1.1), not by name or
- * number.
+ * number. Slices that do not lie evenly are resampled if that is asked for (slice_grid.h).
  */
 #ifndef GZ_RENDER_DECODE_DICOM_SERIES_H
 #define GZ_RENDER_DECODE_DICOM_SERIES_H
@@ -42,12 +42,13 @@ struct gz_dicom_geometry {
  * @param file  its path is a folder that holds one series, or one file of a series (its folder is
  * looked through for the others), a file with several frames, or a DICOMDIR, which stands for all
  * that lies in its folder and below. A folder without images stands for its sub-folders. Borrowed
- * until the series is closed. Its loading is asked after each file of a folder whether to go on.
+ * until the series is closed. Its loading is asked after each file of a folder whether to go on,
+ * and says whether slices that do not lie evenly are resampled.
  * @param choice  UID of the series wanted; NULL: the file's, or the only one
  * @param[out] out_series  owned by the caller: gz_dicom_series_close()
  * @retval GZ_ERR_NOT_FOUND    no such file, folder or series; logged
  * @retval GZ_ERR_FORMAT       no DICOM image there, several series, slices that do not fit
- *                             together or lie unevenly; logged with the remedy
+ *                             together, are missing or lie unevenly; logged with the remedy
  * @retval GZ_ERR_UNSUPPORTED  a kind of colour or a compression that is not read; logged with the
  *                             remedy
  * @retval GZ_ERR_NO_MEM       logged
@@ -60,12 +61,15 @@ enum gz_result gz_dicom_series_open(const struct gz_volume_file *file, const cha
 const struct gz_dicom_geometry *gz_dicom_series_geometry(const struct gz_dicom_series *series);
 
 /**
- * Get a slice. Threads decode a few ahead.
+ * Get a slice. Threads decode a few ahead. If slices are moved within their planes, the first call
+ * decodes those of the first time point for their least number before.
  *
  * @param index  of all time points, one behind the other: any first; then the one behind that of
  * the call before
  * @param[out] voxels  columns * rows voxels, of the geometry's type and channels
  * @retval GZ_ERR_FORMAT, GZ_ERR_IO  its pixels are damaged, or the file is gone; logged
+ * @retval GZ_ERR_NO_MEM             logged
+ * @retval GZ_ERR_CANCELLED          the file's loading says so; not logged
  */
 enum gz_result gz_dicom_series_read(struct gz_dicom_series *series, uint64_t index, void *voxels);
 

@@ -30,8 +30,12 @@ using stack = std::unique_ptr<gz_dicom_series, close_stack>;
 gz_result open_stack(const gz_volume_file &file, std::vector<head> images, const gz_log *log,
 		     stack &out);
 
-/* Decode one slice, counted from the bottom: voxels as of gz_dicom_series_read(). Throws. Threads:
- * any. */
+/* As gz_dicom_series_geometry(), but with the columns, rows and slices that the files have: those
+ * before slices are resampled. */
+gz_dicom_geometry geometry_of_files(const gz_dicom_series &of);
+
+/* Decode one slice of the files, counted from the bottom: voxels of geometry_of_files(). Throws.
+ * Threads: any. */
 decoded_slice decode_of_stack(const gz_dicom_series &of, size_t index);
 
 /* Log the exception that is being caught. Returns GZ_ERR_NO_MEM or GZ_ERR_FORMAT. */

@@ -1,6 +1,7 @@
 /* gazedecode: decodes one file with a library of another project and gives its voxels to the
  * program that started it. It is not for users: the arguments are those of
  * render/decode/decode_protocol.h. */
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,6 +59,16 @@ static const struct decoder_row decoders[] = {
 	{ "minc", NULL, load_minc },
 };
 
+static bool resampling_named(const char *name, enum gz_resampling *out_resampling)
+{
+	for (int i = 0; gz_resampling_names[i]; i++)
+		if (strcmp(gz_resampling_names[i], name) == 0) {
+			*out_resampling = (enum gz_resampling)i;
+			return true;
+		}
+	return false;
+}
+
 static const struct decoder_row *decoder_named(const char *name)
 {
 	for (size_t i = 0; i < sizeof decoders / sizeof decoders[0]; i++)
@@ -72,10 +83,11 @@ int main(int argc, char **argv)
 	struct gz_volume volume = { 0 };
 	char protection[GZ_CONFINE_TEXT_SIZE];
 	long long parent = 0;
-	const struct decoder_row *row = argc == 7 ? decoder_named(argv[2]) : NULL;
+	const struct decoder_row *row = argc == 8 ? decoder_named(argv[2]) : NULL;
 	gz_decoder_init(&decoder);
 	if (!row || !gz_number_parse_whole(argv[1], &parent) ||
-	    !gz_decoder_take_series(&decoder, argv[5], argv[6])) {
+	    !gz_decoder_take_series(&decoder, argv[5], argv[6]) ||
+	    !resampling_named(argv[7], &decoder.loading.resampling)) {
 		fprintf(stderr, "gazedecode is started by gazeview and has no use of its own\n");
 		return 2;
 	}
