@@ -194,6 +194,8 @@ const char *dicom_sample_write(const struct dicom_sample *sample, const char *na
 		put_long_head(&writer, 0x00291010, "OB", sample->csa_bytes);
 		put(&writer, sample->csa, sample->csa_bytes);
 	}
+	if (sample->more)
+		put(&writer, sample->more, sample->more_bytes);
 	if (sample->encapsulated)
 		put_fragment(&writer, sample);
 	else

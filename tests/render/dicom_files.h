@@ -34,6 +34,8 @@ struct dicom_sample {
 	int palette_count, palette_first, palette_bits;
 	const void *csa; /**< Siemens' private header of the image (0029,1010) */
 	size_t csa_bytes;
+	const void *more; /**< elements right before the pixels */
+	size_t more_bytes;
 };
 
 /** A 3 x 2 image of 16 signed bits at the origin, axial, 1 mm, no scale. */
