@@ -29,6 +29,7 @@ static struct gz_volume volume_of_header(const struct gz_decode_header *header)
 		.slope = header->slope,
 		.intercept = header->intercept,
 		.oriented = header->oriented == 1,
+		.labels = header->labels == 1,
 	};
 	for (int axis = 0; axis < 3; axis++) {
 		volume.dims[axis] = header->dims[axis];
@@ -58,7 +59,7 @@ static enum gz_result accept_header(void *user, const struct gz_decode_header *h
 	const struct decoding *decoding = user;
 	const struct gz_loading *loading = decoding->file->loading;
 	const struct gz_volume volume = volume_of_header(header);
-	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 ||
+	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 || header->labels > 1 ||
 	    header->colour > GZ_COLOUR_LUMINANCE || !isfinite(volume.slope) || volume.slope == 0 ||
 	    !isfinite(volume.intercept)) {
 		gz_err(decoding->file->log,

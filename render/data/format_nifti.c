@@ -36,8 +36,8 @@ struct nifti_field {
 struct nifti_version {
 	size_t size;
 	size_t magic_at;
-	struct nifti_field dim, datatype, bitpix, pixdim, vox_offset, slope, intercept, qform_code,
-		sform_code, quatern, srow;
+	struct nifti_field dim, intent_code, datatype, bitpix, pixdim, vox_offset, slope, intercept,
+		qform_code, sform_code, quatern, srow;
 };
 
 #define FIELD1(member, type)                                     \
@@ -53,6 +53,7 @@ static const struct nifti_version nifti1 = {
 	.size = HEADER1_SIZE,
 	.magic_at = offsetof(nifti_1_header, magic),
 	.dim = FIELD1(dim, I16),
+	.intent_code = FIELD1(intent_code, I16),
 	.datatype = FIELD1(datatype, I16),
 	.bitpix = FIELD1(bitpix, I16),
 	.pixdim = FIELD1(pixdim, F32),
@@ -69,6 +70,7 @@ static const struct nifti_version nifti2 = {
 	.size = HEADER2_SIZE,
 	.magic_at = offsetof(nifti_2_header, magic),
 	.dim = FIELD2(dim, I64),
+	.intent_code = FIELD2(intent_code, I32),
 	.datatype = FIELD2(datatype, I16),
 	.bitpix = FIELD2(bitpix, I16),
 	.pixdim = FIELD2(pixdim, F64),
@@ -103,7 +105,7 @@ enum { NIFTI_KINDS = sizeof nifti_kinds / sizeof nifti_kinds[0] };
 /* The numbers of a header. */
 struct nifti_head {
 	double dim[8], pixdim[8];
-	double datatype, bitpix, vox_offset, slope, intercept, qform_code, sform_code;
+	double intent_code, datatype, bitpix, vox_offset, slope, intercept, qform_code, sform_code;
 	double quatern[3];
 	double srow[3][4];
 };
@@ -138,6 +140,7 @@ static void take_nifti_head(const uint8_t *bytes, const struct nifti_version *ve
 			    bool big_endian, struct nifti_head *out)
 {
 	take_field(bytes, &version->dim, big_endian, 8, out->dim);
+	take_field(bytes, &version->intent_code, big_endian, 1, &out->intent_code);
 	take_field(bytes, &version->datatype, big_endian, 1, &out->datatype);
 	take_field(bytes, &version->bitpix, big_endian, 1, &out->bitpix);
 	take_field(bytes, &version->pixdim, big_endian, 8, out->pixdim);
@@ -403,6 +406,9 @@ static enum gz_result take_nifti_numbers(struct nifti_file *file, const uint8_t 
 	if (result == GZ_OK) {
 		take_nifti_scaling(file);
 		take_nifti_orientation(file);
+		/* ANALYZE has other fields there. */
+		file->layout.labels =
+			file->kind->magic && (int)file->head.intent_code == NIFTI_INTENT_LABEL;
 	}
 	return result;
 }

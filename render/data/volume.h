@@ -163,6 +163,7 @@ struct gz_volume {
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels; of a series, over all time points */
 	bool oriented;                 /**< it is known where right, front and up are */
+	bool labels;   /**< the file says that values are numbers of things, with nothing between */
 	size_t mapped; /**< bytes of the file that holds the voxels, on the disk or in memory, which
 			  may be mapped to be read only; 0: memory of the program */
 	int time_points; /**< of its file, which hold volumes of one layout; 0 or 1: no series */

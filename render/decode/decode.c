@@ -152,7 +152,7 @@ static enum gz_result take_header(struct run *run)
 static bool same_voxels(const struct gz_decode_header *a, const struct gz_decode_header *b)
 {
 	return memcmp(a->dims, b->dims, sizeof a->dims) == 0 && a->type == b->type &&
-	       a->oriented == b->oriented && a->colour == b->colour &&
+	       a->oriented == b->oriented && a->labels == b->labels && a->colour == b->colour &&
 	       memcmp(a->spacing, b->spacing, sizeof a->spacing) == 0;
 }
 

@@ -24,7 +24,7 @@ except ImportError as missing:
     sys.exit(77)
 
 from dicom import GAZEVIEW, ORIENTATIONS, turn_to_ras
-from picture import run
+from picture import run, shows_between
 from raw_nrrd import read_nrrd
 
 SERIES = "1.2.826.0.1.3680043.2.1125.8"
@@ -175,6 +175,13 @@ class Kinds(AgainstNumpy):
                 self.assertIn("segment 1 is Organ 1, #", told)
                 self.assertIn("segment 3 is Organ 3, #", told)
                 self.assertNotIn("overlap", told)
+
+    def test_nothing_lies_between_segments(self):
+        masks = {1: ball((4, 5, 4), 2.5), 3: ball((4, 5, 9), 2.5)}
+        write_segmentation(self.path("seg.dcm"), frames_of(masks), ORIENTATIONS[0])
+        self.assertFalse(shows_between(GAZEVIEW, self.path("seg.dcm"), 2))
+        self.assertTrue(shows_between(GAZEVIEW, self.path("seg.dcm"), 3))
+        self.assertTrue(shows_between(GAZEVIEW, self.path("seg.dcm"), 2, "--render.interpolation", "trilinear"))
 
     def test_grey_of_the_recommended_colour_is_grey(self):
         write_segmentation(self.path("seg.dcm"), frames_of({1: ball((4, 5, 6), 3)}), ORIENTATIONS[0])

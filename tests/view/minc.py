@@ -19,7 +19,7 @@ except ImportError as missing:
     print(f"skipped: {missing}; it is in the packages python3-nibabel and python3-h5py")
     sys.exit(77)
 
-from picture import run
+from picture import run, shows_between
 from volumes import GAZEVIEW, SHAPE, SPACING, AgainstNibabel, data_of
 
 SPACE = ("xspace", "yspace", "zspace")
@@ -152,6 +152,16 @@ class Minc(AgainstNibabel):
         with h5py.File(self.path("l.mnc"), "a") as out:
             out["minc-2.0"].attrs["class"] = "label__"  # of variable length
         self.check_values("l.mnc", labels)
+
+    def test_nothing_lies_between_labels(self):
+        labels = numpy.zeros((12, 10, 8), "uint8")
+        labels[2:6, 2:8, 2:6], labels[6:10, 2:8, 2:6] = 1, 3
+        write_minc(self.path("n.mnc"), labels, SPACE[::-1], scales=None)
+        self.assertTrue(shows_between(GAZEVIEW, self.path("n.mnc"), 2))
+        with h5py.File(self.path("n.mnc"), "a") as out:
+            out["minc-2.0"].attrs["class"] = "label__"
+        self.assertFalse(shows_between(GAZEVIEW, self.path("n.mnc"), 2))
+        self.assertTrue(shows_between(GAZEVIEW, self.path("n.mnc"), 3))
 
     def test_numbers_without_a_real_range_are_values(self):
         write_minc(self.path("n.mnc"), data_of("int16"), SPACE[::-1], scales=None)

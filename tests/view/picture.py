@@ -97,3 +97,17 @@ def run(*command, **options):
     return subprocess.run(
         [str(word) for word in command], capture_output=True, text=True, timeout=2 * PATIENCE_S, **options
     )
+
+
+def shows_between(gazeview, volume, value, *more):
+    """Whether a picture of a volume of labels 0 to 4 has anything of the values around @value."""
+    function = str(volume) + ".tf"
+    with open(function, "w", encoding="ascii") as out:
+        out.write("range 0 4\n")
+        for at, opacity in ((-0.3, 0), (-0.3, 0.9), (0.3, 0.9), (0.3, 0)):
+            out.write(f"{(value + at) / 4} 1 1 1 {opacity}\n")
+    picture = str(volume) + ".png"
+    done = run(gazeview, volume, "--headless", "--size", "160x120", "--method", "standard", "--out", picture,
+               "--transfer.file", function, *more)
+    assert done.returncode == 0, done.stderr
+    return any(any(row) for row in read_png(picture).rows)

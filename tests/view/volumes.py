@@ -19,7 +19,7 @@ except ImportError as missing:
     print(f"skipped: {missing}; it is in the package python3-nibabel")
     sys.exit(77)
 
-from picture import run
+from picture import run, shows_between
 from raw_nrrd import read_nrrd
 
 GAZEVIEW = sys.argv[1]
@@ -86,6 +86,23 @@ class Volumes(AgainstNibabel):
                 with self.subTest(number=number, name=name):
                     nibabel.save(kind(data_of("int16"), affine), self.path(name))
                     self.check(name)
+
+    def test_nothing_lies_between_labels(self):
+        labels = numpy.zeros((12, 10, 8), "uint8")
+        labels[2:6, 2:8, 2:6], labels[6:10, 2:8, 2:6] = 1, 3
+        for name, kind in (("one.nii", nibabel.Nifti1Image), ("two.nii", nibabel.Nifti2Image)):
+            image = kind(labels, numpy.diag((1, 1, 1, 1)))
+            nibabel.save(image, self.path(name))
+            self.assertTrue(shows_between(GAZEVIEW, self.path(name), 2), "values are interpolated")
+            image.header.set_intent("label")
+            nibabel.save(image, self.path(name))
+            for backend in ("cpu", "gl"):
+                with self.subTest(name=name, backend=backend):
+                    use = ("--backend", backend)
+                    self.assertFalse(shows_between(GAZEVIEW, self.path(name), 2, *use))
+                    self.assertTrue(shows_between(GAZEVIEW, self.path(name), 3, *use))
+                    self.assertTrue(shows_between(GAZEVIEW, self.path(name), 2, *use,
+                                                  "--render.interpolation", "trilinear"))
 
     def test_nifti_qform_alone(self):
         for number, affine in enumerate(affines()):

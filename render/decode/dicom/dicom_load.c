@@ -19,6 +19,7 @@ static enum gz_result import_dicom_slices(struct gz_dicom_series *series,
 	const struct gz_slice_source source = { read_dicom_slice, series, geometry->bytes_bound };
 	struct gz_import_layout layout = {
 		.oriented = geometry->oriented,
+		.labels = geometry->labels,
 		.type = geometry->type,
 		.channels = geometry->channels,
 		.big_endian = gz_host_big_endian(),

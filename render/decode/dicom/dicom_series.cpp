@@ -159,6 +159,7 @@ gz_result reader::join()
 		  [](const head &a, const head &b) { return a.path < b.path; });
 	numbers = heads[0].numbers;
 	segments = heads[0].segments;
+	geometry.labels = segments != nullptr;
 	if (segments && heads.size() > 1) {
 		gz_err(log, "%s: holds %zu segmentations in one series; name one of its files",
 		       path.c_str(), heads.size());

@@ -29,6 +29,7 @@ struct gz_dicom_geometry {
 	double spacing[3];      /**< mm between columns, rows, slices */
 	double direction[3][3]; /**< [axis][x, y, z] in RAS+ */
 	bool oriented;          /**< the files told where they lie */
+	bool labels;            /**< they are a segmentation */
 	enum gz_raw_type type;  /**< of what gz_dicom_series_read() gives, in host byte order */
 	int channels;           /**< numbers of a voxel: 1, or 3 for red, green and blue */
 	double slope, intercept;

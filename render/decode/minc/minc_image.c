@@ -426,6 +426,7 @@ static enum gz_result take_minc_values(struct gz_minc_image *image)
 {
 	bool labels = false;
 	enum gz_result result = take_minc_type(image, &labels);
+	image->layout.labels = labels;
 	if (result != GZ_OK || is_float_type(image->stored) || labels) {
 		image->layout.type = image->stored;
 		return result;

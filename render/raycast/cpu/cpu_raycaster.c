@@ -465,7 +465,7 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 {
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(cpu->volume, camera, job->plan->view.height);
-	const bool coarser = gz_detail_wanted(job->plan, rays, pixel_lengths);
+	const bool coarser = gz_detail_wanted(cpu->volume, job->plan, rays, pixel_lengths);
 	if (coarser)
 		make_levels(cpu);
 	job->detail = &cpu->detail;
@@ -511,7 +511,7 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 				     raycaster->log);
 	if (result != GZ_OK)
 		return result;
-	const bool nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST;
+	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
 	const bool rich = rays->shading != GZ_SHADING_NONE ||
 			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
 	const enum gz_cast_variant variant = cpu->volume->colours ? GZ_CAST_COLOURED

@@ -175,7 +175,7 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 		.device = &gl->device,
 		.gl_plan = &gl->plan,
 		.kind = { .type = gl->scene.volume->type,
-			  .nearest = rays->interpolation == GZ_INTERPOLATION_NEAREST,
+			  .nearest = gz_ray_samples_nearest(rays, gl->scene.volume),
 			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 			  .shaded = rays->shading == GZ_SHADING_GRADIENT,
 			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE,

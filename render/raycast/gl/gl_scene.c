@@ -279,7 +279,7 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 	const double pixel_lengths =
 		gz_levels_pixel_lengths(scene->volume, frame->camera, plan->view.height);
 	memset(out_levels, 0, sizeof *out_levels);
-	const bool coarser = gz_detail_wanted(plan, frame->rays, pixel_lengths);
+	const bool coarser = gz_detail_wanted(scene->volume, plan, frame->rays, pixel_lengths);
 	if (coarser) {
 		prepare_levels(scene, device, log);
 		choose_levels(scene, plan, frame->rays, pixel_lengths, out_levels);

@@ -87,11 +87,11 @@ static double pixels_apart(const struct gz_plan *plan, int layer, int pattern)
 	return (pattern == GZ_TILE_QUINCUNX ? M_SQRT2 : 1) * plan->layers[layer].spacing;
 }
 
-bool gz_detail_wanted(const struct gz_plan *plan, const struct gz_ray_params *rays,
-		      double pixel_lengths)
+bool gz_detail_wanted(const struct gz_volume *volume, const struct gz_plan *plan,
+		      const struct gz_ray_params *rays, double pixel_lengths)
 {
 	double across = 0, along = 0;
-	if (!rays->levels || rays->interpolation != GZ_INTERPOLATION_TRILINEAR)
+	if (!rays->levels || gz_ray_samples_nearest(rays, volume))
 		return false;
 	for (int i = 0; i < plan->layer_count; i++)
 		across = fmax(across, pixels_apart(plan, i, GZ_TILE_QUINCUNX) * pixel_lengths);

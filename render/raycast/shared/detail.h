@@ -38,12 +38,12 @@ void gz_detail_make_levels(struct gz_detail *detail, struct gz_workers *workers,
 			   const struct gz_transfer_table *table, const struct gz_log *log);
 
 /**
- * Whether spacings and steps of a plan allow any tile to take a coarser level.
+ * Whether spacings and steps of a plan allow any tile to take a coarser level of a volume.
  *
  * @param pixel_lengths  from gz_levels_pixel_lengths()
  */
-bool gz_detail_wanted(const struct gz_plan *plan, const struct gz_ray_params *rays,
-		      double pixel_lengths);
+bool gz_detail_wanted(const struct gz_volume *volume, const struct gz_plan *plan,
+		      const struct gz_ray_params *rays, double pixel_lengths);
 
 /**
  * The level that a tile takes: gz_levels_choose() for the distances between its rays and between

@@ -5,7 +5,7 @@
 
 #include "render/raycast/shared/cast_constants.h"
 
-static const char *const interpolation_names[] = { "trilinear", "nearest", NULL };
+static const char *const interpolation_names[] = { "trilinear", "nearest", "auto", NULL };
 static const char *const integration_names[] = { "sampled", "preintegrated", NULL };
 static const char *const shading_names[] = { "none", "gradient", NULL };
 
@@ -18,8 +18,9 @@ const struct gz_option gz_ray_options[] = {
 	  GZ_RAY_SAMPLING_RATE_MIN, GZ_RAY_SAMPLING_RATE_MAX, .preset = "1.5",
 	  .help = "samples per voxel length" },
 	{ "render.interpolation", GZ_OPTION_CHOICE, AT(interpolation),
-	  .choices = interpolation_names, .preset = "trilinear",
-	  .help = "how values between voxels are made" },
+	  .choices = interpolation_names, .preset = "auto",
+	  .help = "how values between voxels are made; auto: nearest for labels, else "
+		  "trilinear" },
 	{ "render.integration", GZ_OPTION_CHOICE, AT(integration), .choices = integration_names,
 	  .preset = "sampled",
 	  .help = "preintegrated: a step takes in all values between its ends, so that no thin "
@@ -68,6 +69,12 @@ bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_param
 	return gz_options_same(gz_ray_options, gz_ray_option_count, a, b) &&
 	       gz_options_same(gz_light_options, gz_light_option_count, &a->light, &b->light) &&
 	       gz_clip_box_same(&a->clip, &b->clip);
+}
+
+bool gz_ray_samples_nearest(const struct gz_ray_params *rays, const struct gz_volume *volume)
+{
+	return rays->interpolation == GZ_INTERPOLATION_NEAREST ||
+	       (rays->interpolation == GZ_INTERPOLATION_AUTO && volume->labels);
 }
 
 float gz_ray_end_transmittance(const struct gz_ray_params *rays)

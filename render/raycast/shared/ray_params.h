@@ -20,7 +20,11 @@
 #define GZ_RAY_SAMPLING_RATE_MIN 0.05
 #define GZ_RAY_SAMPLING_RATE_MAX 32
 
-enum gz_interpolation { GZ_INTERPOLATION_TRILINEAR, GZ_INTERPOLATION_NEAREST };
+enum gz_interpolation {
+	GZ_INTERPOLATION_TRILINEAR,
+	GZ_INTERPOLATION_NEAREST,
+	GZ_INTERPOLATION_AUTO, /**< nearest for volumes of labels, else trilinear */
+};
 
 enum gz_shading {
 	GZ_SHADING_NONE,     /**< the transfer function's colour */
@@ -71,6 +75,9 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays);
 
 /** Whether every option has equal values. */
 bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b);
+
+/** Whether a sample is the voxel that it lies in, not a mean of eight. */
+bool gz_ray_samples_nearest(const struct gz_ray_params *rays, const struct gz_volume *volume);
 
 /** The share of light with which a ray ends: GZ_TRANSMITTANCE_END, or 0 without early termination.
  */
