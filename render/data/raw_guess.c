@@ -13,6 +13,7 @@
 #include <zstd.h>
 
 #include "base/file.h"
+#include "render/data/volume_import.h"
 
 enum { NAME_SIZE = 256, NUMBERS_MAX = 24, NAMED_TYPES = 3 };
 
@@ -349,15 +350,13 @@ struct shape {
 	const char *from;
 };
 
-static const int type_bytes[GZ_RAW_TYPE_COUNT] = {
-	[GZ_RAW_UINT8] = 1,  [GZ_RAW_INT8] = 1,  [GZ_RAW_UINT16] = 2,  [GZ_RAW_INT16] = 2,
-	[GZ_RAW_UINT32] = 4, [GZ_RAW_INT32] = 4, [GZ_RAW_FLOAT32] = 4, [GZ_RAW_FLOAT64] = 8,
-};
-
 uint64_t gz_raw_layout_bytes(const struct gz_raw_layout *layout)
 {
-	uint64_t bytes =
-		(unsigned)layout->type < GZ_RAW_TYPE_COUNT ? (uint64_t)type_bytes[layout->type] : 0;
+	const int channels = layout->channels == 0 ? 1 : layout->channels;
+	const bool known = channels == 1 || channels == 3 || channels == 4;
+	uint64_t bytes = known && (unsigned)layout->type < GZ_RAW_TYPE_COUNT
+				 ? (uint64_t)channels * gz_raw_type_size(layout->type)
+				 : 0;
 	for (int axis = 0; axis < 3; axis++) {
 		const int edge = layout->dims[axis];
 		bytes *= edge >= 1 && edge <= GZ_VOLUME_DIM_MAX ? (uint64_t)edge : 0;
@@ -404,7 +403,7 @@ static void add_guess(struct guesses *guesses, const struct shape *shape,
 	const struct raw_name *name = guesses->name;
 	struct gz_raw_guess guess = {
 		.layout = { .type = (enum gz_raw_type)type->type,
-			    .big_endian = name->big_endian && type_bytes[type->type] > 1 },
+			    .big_endian = name->big_endian && gz_raw_type_size(type->type) > 1 },
 	};
 	memcpy(guess.layout.dims, shape->dims, sizeof guess.layout.dims);
 	memcpy(guess.layout.spacing, name->spacing, sizeof guess.layout.spacing);

@@ -44,7 +44,7 @@ struct gz_raw_guess {
 size_t gz_raw_guess(const char *name, uint64_t bytes, struct gz_raw_guess *out_guesses,
 		    size_t room);
 
-/** Bytes of the voxels of a layout; 0 if an edge or the type is out of range. */
+/** Bytes of the voxels of a layout; 0 if an edge, the type or the channels are out of range. */
 uint64_t gz_raw_layout_bytes(const struct gz_raw_layout *layout);
 
 /**

@@ -242,6 +242,22 @@ static void nothing_is_offered_that_does_not_fit_or_twice(void **state)
 	}
 }
 
+static void layout_of_colours_has_bytes_for_each_channel(void **state)
+{
+	(void)state;
+	struct gz_raw_layout layout = { .dims = { 5, 4, 3 }, .type = GZ_RAW_UINT16 };
+	static const struct {
+		int channels;
+		uint64_t bytes;
+	} cases[] = {
+		{ 0, 120 }, { 1, 120 }, { 2, 0 }, { 3, 360 }, { 4, 480 }, { 5, 0 }, { -1, 0 }
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		layout.channels = cases[i].channels;
+		assert_int_equal(gz_raw_layout_bytes(&layout), cases[i].bytes);
+	}
+}
+
 static void what_no_layout_fits_is_left_to_the_user(void **state)
 {
 	(void)state;
@@ -309,6 +325,7 @@ TEST_SUITE(raw_guess)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(name_and_size_tell_the_layout),
 		cmocka_unit_test(nothing_is_offered_that_does_not_fit_or_twice),
+		cmocka_unit_test(layout_of_colours_has_bytes_for_each_channel),
 		cmocka_unit_test(what_no_layout_fits_is_left_to_the_user),
 		cmocka_unit_test(of_unknown_size_only_a_name_that_says_all_is_understood),
 		cmocka_unit_test(certain_is_only_what_the_name_says_in_full),

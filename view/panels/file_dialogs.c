@@ -322,6 +322,8 @@ static void draw_layout_label(const char *text, const char *tip)
 static void draw_layout_fields(struct gz_raw_panel *panel)
 {
 	static const char *const orders[] = { "little endian", "big endian", NULL };
+	static const char *const contents[] = { "a value", "red green blue", "red green blue alpha",
+						NULL };
 	const struct gz_number_range voxels = {
 		.least = 1, .greatest = GZ_VOLUME_DIM_MAX, .speed = 0.25, .format = "%d"
 	};
@@ -329,16 +331,20 @@ static void draw_layout_fields(struct gz_raw_panel *panel)
 		.least = 1e-9, .greatest = 1e9, .speed = 0.005, .format = "%.6g"
 	};
 	int type = (int)panel->layout.type, order = panel->layout.big_endian;
+	int content = panel->layout.channels > 1 ? panel->layout.channels - 2 : 0;
 	draw_layout_label("voxels x y z",
 			  "along each axis, x fastest in the file; Ctrl+click to type");
 	gz_widget_ints("##dims", panel->layout.dims, 3, &voxels);
-	draw_layout_label("type", "of a voxel");
+	draw_layout_label("a voxel is", "one number, or a colour of three or four");
+	gz_widget_choice("##content", &content, contents);
+	draw_layout_label("type", "of a number");
 	gz_widget_choice("##type", &type, gz_raw_type_names);
-	draw_layout_label("byte order", "of voxels of more than one byte");
+	draw_layout_label("byte order", "of numbers of more than one byte");
 	gz_widget_choice("##order", &order, orders);
 	draw_layout_label("spacing x y z", "between voxels, mm");
 	gz_widget_doubles("##spacing", panel->layout.spacing, 3, &spacing);
 	panel->layout.type = (enum gz_raw_type)type;
+	panel->layout.channels = content > 0 ? content + 2 : 1;
 	panel->layout.big_endian = order == 1;
 }
 
