@@ -1,6 +1,7 @@
 """What the tests of gazeview share: reading its PNGs without a library, and running it."""
 
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -94,9 +95,12 @@ def read_png(path):
 
 
 def run(*command, **options):
-    return subprocess.run(
+    """Run a command. Its messages are without the progress that gazeview reports when it is slow."""
+    done = subprocess.run(
         [str(word) for word in command], capture_output=True, text=True, timeout=2 * PATIENCE_S, **options
     )
+    done.stderr = re.sub(r"(?m)^gazecast: info: gazeview: loading .*\n", "", done.stderr)
+    return done
 
 
 def shows_between(gazeview, volume, value, *more):
