@@ -1,0 +1,197 @@
+/* The cubes between four rows of voxels: how many triangles they have, and which. */
+#include "render/data/volume.h"
+#include "render/mesh/cube_tables.h"
+#include "render/mesh/isosurface_rows.h"
+
+struct gz_iso_beam gz_iso_beam_at(const struct gz_iso_job *job, size_t row)
+{
+	const size_t rows = (size_t)job->volume->dims[1], slices = (size_t)job->volume->dims[2];
+	const bool more_y = row % rows + 1 < rows, more_z = row / rows + 1 < slices;
+	struct gz_iso_beam beam = { .cubes = more_y && more_z };
+	for (size_t r = 0; r < 4; r++) {
+		beam.row[r] = row + (more_y ? r & 1 : 0) + (more_z ? (r >> 1) * rows : 0);
+		beam.bits[r] = job->bits + beam.row[r] * job->words;
+	}
+	return beam;
+}
+
+/* The cubes of a word whose corners are not all alike. */
+static uint32_t find_active(const struct gz_iso_windows *windows, uint32_t inner)
+{
+	const uint64_t *row = windows->row;
+	const uint64_t any = row[0] | row[1] | row[2] | row[3];
+	const uint64_t all = row[0] & row[1] & row[2] & row[3];
+	return (uint32_t)((any | any >> 1) & ~(all & all >> 1)) & inner;
+}
+
+/* The case of cube @p i of a word: cube_tables.h. */
+static unsigned case_at(const struct gz_iso_windows *windows, unsigned i)
+{
+	unsigned found = 0;
+	for (unsigned r = 0; r < 4; r++)
+		found |= (unsigned)(windows->row[r] >> i & 3) << 2 * r;
+	return found;
+}
+
+/* How far the corners' values are above the isovalue. */
+static void corner_heights(const struct gz_iso_job *job, const struct gz_iso_beam *beam, size_t x,
+			   double out_heights[8])
+{
+	const struct gz_volume *volume = job->volume;
+	for (size_t corner = 0; corner < 8; corner++) {
+		const size_t index =
+			beam->row[corner >> 1] * (size_t)volume->dims[0] + x + (corner & 1);
+		out_heights[corner] = gz_voxel_stored(volume->type, volume->voxels, index) -
+				      (double)job->isovalue;
+	}
+}
+
+/*
+ * Whether the surface on a face separates the other two corners, so that the lowest and the highest
+ * corner are joined. The saddle of a bilinear interpolation has the height (lowest * highest - one
+ * * other) / (lowest + highest - one - other), and the sign of the denominator is that of `lowest`.
+ * The cubes beside the face compute the same products; NaN makes both say no.
+ */
+static bool lowest_joined(const double heights[8], unsigned face)
+{
+	const unsigned axis = face >> 1, lowest = (face & 1) << axis;
+	const unsigned u = 1U << (axis == 0 ? 1 : 0), v = 1U << (axis == 2 ? 1 : 2);
+	return heights[lowest] * heights[lowest | u | v] >=
+	       heights[lowest | u] * heights[lowest | v];
+}
+
+static __attribute__((noinline)) unsigned decide_variant(const struct gz_iso_job *job,
+							 const struct gz_iso_beam *beam, size_t x,
+							 unsigned set)
+{
+	double heights[8];
+	corner_heights(job, beam, x, heights);
+	unsigned variant = gz_cube_first[set], bit = 1;
+	for (unsigned face = 0; face < 6; face++) {
+		if (!(gz_cube_ambiguous[set] >> face & 1))
+			continue;
+		variant += lowest_joined(heights, face) ? bit : 0;
+		bit <<= 1;
+	}
+	return variant;
+}
+
+static inline unsigned variant_of(const struct gz_iso_job *job, const struct gz_iso_beam *beam,
+				  size_t x, unsigned set)
+{
+	return gz_cube_ambiguous[set] ? decide_variant(job, beam, x, set) : gz_cube_first[set];
+}
+
+static uint32_t count_triangles(const struct gz_iso_job *job, const struct gz_iso_beam *beam,
+				const struct gz_iso_windows *windows, size_t at)
+{
+	uint32_t count = 0;
+	uint32_t active = find_active(windows, gz_iso_inner(job, at));
+	for (; active; active &= active - 1) {
+		const unsigned i = (unsigned)__builtin_ctz(active);
+		const unsigned variant =
+			variant_of(job, beam, at * GZ_ISO_WORD + i, case_at(windows, i));
+		count += (uint32_t)gz_cube_offset[variant + 1] - gz_cube_offset[variant];
+	}
+	return count;
+}
+
+void gz_iso_count_row(const struct gz_iso_job *job, size_t row)
+{
+	const struct gz_iso_beam beam = gz_iso_beam_at(job, row);
+	int edges[3] = { 0 };
+	uint32_t triangles = 0;
+	for (size_t at = 0; at + 1 < job->words; at++) {
+		struct gz_iso_windows windows;
+		if (!gz_iso_windows_read(&beam, at, &windows))
+			continue;
+		for (int axis = 0; axis < 3; axis++)
+			edges[axis] += __builtin_popcount(
+				gz_iso_crossed(&windows, axis, gz_iso_inner(job, at)));
+		if (beam.cubes)
+			triangles += count_triangles(job, &beam, &windows, at);
+	}
+	job->rows[row] = (struct gz_iso_row) {
+		.vertex = (uint32_t)(edges[0] + edges[1] + edges[2]),
+		.triangle = triangles,
+		.x_edges = (uint16_t)edges[0],
+		.y_edges = (uint16_t)edges[1],
+	};
+}
+
+/* The vertices of the next crossed edges of each row, and where the next triangle goes. */
+struct cube_walk {
+	uint32_t x[4]; /* of each row of the beam */
+	uint32_t y[2]; /* at z and z + 1 */
+	uint32_t z[2]; /* at y and y + 1 */
+	uint32_t *triangle;
+	int second, third; /* places of a triangle's corners: exchanged if data values fall */
+};
+
+static struct cube_walk start_walk(const struct gz_iso_job *job, const struct gz_iso_beam *beam)
+{
+	const struct gz_iso_row *first = &job->rows[beam->row[0]];
+	struct cube_walk walk = {
+		.triangle = job->mesh->triangles[0] + 3 * (size_t)first->triangle,
+		.second = job->falling ? 2 : 1,
+		.third = job->falling ? 1 : 2,
+	};
+	for (int r = 0; r < 4; r++)
+		walk.x[r] = job->rows[beam->row[r]].vertex;
+	for (int i = 0; i < 2; i++) {
+		const struct gz_iso_row *upper = &job->rows[beam->row[2 * i]];
+		const struct gz_iso_row *behind = &job->rows[beam->row[i]];
+		walk.y[i] = upper->vertex + upper->x_edges;
+		walk.z[i] = behind->vertex + behind->x_edges + behind->y_edges;
+	}
+	return walk;
+}
+
+/* Write the triangles of a cube and walk on to the next one. */
+static inline void write_cube(struct cube_walk *walk, unsigned set, unsigned variant)
+{
+	/* A bit for each edge along x, at its lower corner; likewise y and z. */
+	const unsigned xs = set ^ set >> 1, ys = set ^ set >> 2, zs = set ^ set >> 4;
+	const uint32_t vertex[12] = {
+		walk->x[0], walk->x[1],
+		walk->x[2], walk->x[3],
+		walk->y[0], walk->y[0] + (ys & 1),
+		walk->y[1], walk->y[1] + (ys >> 4 & 1),
+		walk->z[0], walk->z[0] + (zs & 1),
+		walk->z[1], walk->z[1] + (zs >> 2 & 1),
+	};
+	const uint8_t *corner = gz_cube_corners + 3 * (size_t)gz_cube_offset[variant];
+	const uint8_t *end = gz_cube_corners + 3 * (size_t)gz_cube_offset[variant + 1];
+	uint32_t *triangle = walk->triangle;
+	for (; corner < end; corner += 3, triangle += 3) {
+		triangle[0] = vertex[corner[0]];
+		triangle[walk->second] = vertex[corner[1]];
+		triangle[walk->third] = vertex[corner[2]];
+	}
+	walk->triangle = triangle;
+	for (unsigned r = 0; r < 4; r++)
+		walk->x[r] += xs >> 2 * r & 1;
+	walk->y[0] += ys & 1;
+	walk->y[1] += ys >> 4 & 1;
+	walk->z[0] += zs & 1;
+	walk->z[1] += zs >> 2 & 1;
+}
+
+void gz_iso_write_triangles(const struct gz_iso_job *job, size_t row)
+{
+	if (job->rows[row].triangle == job->rows[row + 1].triangle)
+		return;
+	const struct gz_iso_beam beam = gz_iso_beam_at(job, row);
+	struct cube_walk walk = start_walk(job, &beam);
+	for (size_t at = 0; at + 1 < job->words; at++) {
+		struct gz_iso_windows windows;
+		if (!gz_iso_windows_read(&beam, at, &windows))
+			continue;
+		uint32_t active = find_active(&windows, gz_iso_inner(job, at));
+		for (; active; active &= active - 1) {
+			const unsigned i = (unsigned)__builtin_ctz(active);
+			const unsigned set = case_at(&windows, i);
+			write_cube(&walk, set, variant_of(job, &beam, at * GZ_ISO_WORD + i, set));
+		}
+	}
+}

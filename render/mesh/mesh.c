@@ -1,0 +1,49 @@
+#include "render/mesh/mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/data/volume.h"
+
+static void *allocate_elements(size_t count, size_t size)
+{
+	const size_t used = count * size;
+	char *elements = malloc(used + GZ_MESH_PADDING);
+	if (elements)
+		memset(elements + used, 0, GZ_MESH_PADDING);
+	return elements;
+}
+
+enum gz_result gz_mesh_allocate(uint64_t vertex_count, uint64_t triangle_count,
+				struct gz_mesh *out_mesh)
+{
+	if (vertex_count > GZ_MESH_COUNT_MAX || triangle_count > GZ_MESH_COUNT_MAX)
+		return GZ_ERR_FULL;
+	struct gz_mesh mesh = { .vertex_count = (size_t)vertex_count,
+				.triangle_count = (size_t)triangle_count };
+	const size_t vertex_bytes = sizeof *mesh.positions + sizeof *mesh.normals;
+	if (!gz_memory_fits_machine(mesh.vertex_count * vertex_bytes +
+				    mesh.triangle_count * sizeof *mesh.triangles))
+		return GZ_ERR_NO_MEM;
+	if (vertex_count > 0) {
+		mesh.positions = allocate_elements(mesh.vertex_count, sizeof *mesh.positions);
+		mesh.normals = allocate_elements(mesh.vertex_count, sizeof *mesh.normals);
+	}
+	if (triangle_count > 0)
+		mesh.triangles = allocate_elements(mesh.triangle_count, sizeof *mesh.triangles);
+	if ((vertex_count > 0 && (!mesh.positions || !mesh.normals)) ||
+	    (triangle_count > 0 && !mesh.triangles)) {
+		gz_mesh_free(&mesh);
+		return GZ_ERR_NO_MEM;
+	}
+	*out_mesh = mesh;
+	return GZ_OK;
+}
+
+void gz_mesh_free(struct gz_mesh *mesh)
+{
+	free(mesh->positions);
+	free(mesh->normals);
+	free(mesh->triangles);
+	*mesh = (struct gz_mesh) { 0 };
+}
