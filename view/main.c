@@ -40,6 +40,8 @@ static int run_mode(struct gz_view_options *options, const struct gz_log *log,
 		return gz_view_list_series(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->write_volume[0])
 		return gz_view_write_volume(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options->write_mesh[0])
+		return gz_view_write_mesh(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->replay[0] && gz_replay_adopt(options, log) != GZ_OK)
 		return EXIT_FAILURE;
 	enum gz_result r = options->headless ? gz_view_headless(options, log, &signal_number)

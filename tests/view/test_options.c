@@ -73,6 +73,25 @@ static void scene_may_stand_alone(void **state)
 	assert_refused("--headless", "--scene");
 }
 
+static void mesh_needs_its_isovalue_and_no_other_work(void **state)
+{
+	(void)state;
+	assert_int_equal(read_line("--write-mesh a.ply --isovalue -500 a.scene"), GZ_OK);
+	assert_string_equal(options.write_mesh, "a.ply");
+	assert_true(options.isovalue == -500);
+	assert_int_equal(read_line("--write-mesh a.ply --isovalue 0 a.scene"), GZ_OK);
+	assert_refused("--write-mesh a.ply a.scene", "--isovalue");
+	assert_refused("--isovalue 0 a.scene", "--write-mesh");
+	assert_refused("--write-mesh a.ply --isovalue 3", "no scene");
+	assert_refused("--write-mesh a.ply --isovalue nan a.scene", "isovalue");
+	assert_refused("--write-mesh a.ply --isovalue 3 --write-volume a.gzb a.scene",
+		       "--write-volume");
+	assert_refused("--replay a.session --write-mesh a.ply --isovalue 3", "--write-mesh");
+	assert_refused("--replay a.session --isovalue 3", "--isovalue");
+	assert_refused("--targets 5 --write-mesh a.ply --isovalue 3", "--write-mesh");
+	assert_refused("--experiment a.experiment --write-mesh a.ply --isovalue 3", "--write-mesh");
+}
+
 static void default_gaze_is_centre_headless_and_daemon_in_a_window(void **state)
 {
 	(void)state;
@@ -415,6 +434,7 @@ TEST_SUITE(options)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(command_line_of_the_manual_is_read),
 		cmocka_unit_test(scene_may_stand_alone),
+		cmocka_unit_test(mesh_needs_its_isovalue_and_no_other_work),
 		cmocka_unit_test(default_gaze_is_centre_headless_and_daemon_in_a_window),
 		cmocka_unit_test(gaze_texts_choose_their_sources),
 		cmocka_unit_test(gaze_that_is_not_a_finite_pair_is_refused),

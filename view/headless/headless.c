@@ -518,14 +518,16 @@ static enum gz_result apply_options(void *user, struct gz_scene_settings *settin
 	return gz_view_options_apply(user, settings);
 }
 
-static enum gz_result load_volume_to_write(const struct gz_view_options *options,
-					   const struct gz_loading *where, const struct gz_log *log,
-					   struct gz_scene *out_scene)
+enum gz_result gz_view_load_volume(const struct gz_view_options *options,
+				   const struct gz_loading *where, const struct gz_log *log,
+				   struct gz_scene *out_scene)
 {
 	struct gz_loading_bar bar;
 	gz_loading_bar_begin(&bar, log);
-	bar.loading.scratch = where->scratch;
-	bar.loading.scratch_from = where->scratch_from;
+	if (where) {
+		bar.loading.scratch = where->scratch;
+		bar.loading.scratch_from = where->scratch_from;
+	}
 	struct gz_raw_layout raw;
 	const struct gz_scene_request request = {
 		.path = options->scene,
@@ -570,7 +572,7 @@ enum gz_result gz_view_write_volume(const struct gz_view_options *options, const
 	gz_output_folder(options->write_volume, folder, sizeof folder);
 	const struct gz_loading where = { .scratch = folder,
 					  .scratch_from = gz_volume_memory_bytes() };
-	r = load_volume_to_write(options, &where, log, &scene);
+	r = gz_view_load_volume(options, &where, log, &scene);
 	if (r != GZ_OK)
 		return r;
 	r = write_to(options, &where, writer, &scene.volume, log);

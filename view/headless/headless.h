@@ -1,7 +1,7 @@
 /**
  * @file
- * gazeview without a window: renders a sequence of frames into files, writes a volume or lists
- * series. At a terminal, a bar shows the progress of loading.
+ * gazeview without a window: renders a sequence of frames into files, writes a volume or a
+ * mesh, or lists series. At a terminal, a bar shows the progress of loading.
  */
 #ifndef GZ_VIEW_HEADLESS_HEADLESS_H
 #define GZ_VIEW_HEADLESS_HEADLESS_H
@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/volume.h"
+#include "render/scene/scene.h"
 #include "view/options/options.h"
 
 /**
@@ -40,6 +41,28 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
  */
 enum gz_result gz_view_write_volume(const struct gz_view_options *options,
 				    const struct gz_log *log);
+
+/**
+ * gazeview --write-mesh: make the surface of the scene's volume at options->isovalue, write it, and
+ * print a line about it on stdout. An isovalue that the data do not reach gives an empty mesh and a
+ * warning.
+ *
+ * @retval GZ_ERR_UNSUPPORTED  another ending, or the volume is stored in bricks; logged
+ * @return otherwise the results of gz_scene_open(), gz_isosurface_make() and gz_mesh_write();
+ * logged except GZ_ERR_CANCELLED, which a signal causes
+ */
+enum gz_result gz_view_write_mesh(const struct gz_view_options *options, const struct gz_log *log);
+
+/**
+ * Load or generate the volume of the scene that the options name, with a bar.
+ *
+ * @param where  the folder for a large volume, as in gz_volume_load(); NULL: in memory
+ * @param[out] out_scene  written on GZ_OK: its volume and settings; gz_scene_free()
+ * @return the results of gz_scene_open()
+ */
+enum gz_result gz_view_load_volume(const struct gz_view_options *options,
+				   const struct gz_loading *where, const struct gz_log *log,
+				   struct gz_scene *out_scene);
 
 /**
  * gazeview --list-series: print the DICOM series of the folder or file that the options name as

@@ -67,6 +67,11 @@ const struct gz_option gz_view_option_table[] = {
 	{ "write-volume", GZ_OPTION_STRING, AT(write_volume), .max = GZ_PATH_SIZE,
 	  .help = "write the scene's volume to this file and exit: .gzb (bricks, for volumes "
 		  "larger than memory) or .nrrd" },
+	{ "write-mesh", GZ_OPTION_STRING, AT(write_mesh), .max = GZ_PATH_SIZE,
+	  .help = "write the surface of the scene's volume at --isovalue to this file, in mm, and "
+		  "exit: .ply, .obj or .stl" },
+	{ "isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -1e30, 1e30,
+	  .help = "data value of the surface that --write-mesh writes" },
 	{ "bricks", GZ_OPTION_CHOICE, AT(bricks), .choices = bricks_names, .preset = "auto",
 	  .help = "pictures of a volume in bricks: wait for all visible bricks, or stream: coarse "
 		  "first, sharper later; auto: wait if headless" },
@@ -132,15 +137,24 @@ const struct gz_option gz_view_option_table[] = {
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
 
+static bool is_given(const struct gz_view_options *options, const char *key)
+{
+	for (size_t i = 0; i < gz_view_option_count; i++)
+		if (strcmp(gz_view_option_table[i].key, key) == 0)
+			return options->given[i];
+	return false;
+}
+
 /* Nothing else is shown together with targets. */
 static enum gz_result check_targets(const struct gz_view_options *options, const struct gz_log *log)
 {
-	const char *other = options->scene[0]      ? "a scene"
-			    : options->headless    ? "--headless"
-			    : options->record[0]   ? "--record"
-			    : options->replay[0]   ? "--replay"
-			    : options->list_series ? "--list-series"
-						   : NULL;
+	const char *other = options->scene[0]        ? "a scene"
+			    : options->headless      ? "--headless"
+			    : options->record[0]     ? "--record"
+			    : options->replay[0]     ? "--replay"
+			    : options->list_series   ? "--list-series"
+			    : options->write_mesh[0] ? "--write-mesh"
+						     : NULL;
 	if (!other)
 		return GZ_OK;
 	gz_err(log, "--targets: %s cannot be combined with it; remove one of them", other);
@@ -174,19 +188,37 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 		"list-series",
 		"resample",
 		"volume.resample",
+		"write-mesh",
+		"isovalue",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
-	for (size_t i = 0; i < gz_view_option_count && !other; i++)
-		for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
-			if (options->given[i] &&
-			    strcmp(gz_view_option_table[i].key, others[k]) == 0)
-				other = others[k];
+	for (size_t k = 0; k < sizeof others / sizeof others[0] && !other; k++)
+		if (is_given(options, others[k]))
+			other = others[k];
 	if (!other)
 		return GZ_OK;
 	gz_err(log,
 	       "--replay: --%s cannot be combined with it, as the session sets it; remove one of "
 	       "them",
 	       other);
+	return GZ_ERR_INVAL;
+}
+
+/* A mesh needs its isovalue, and nothing else does. */
+static enum gz_result check_mesh(const struct gz_view_options *options, const struct gz_log *log)
+{
+	const bool value = is_given(options, "isovalue"), mesh = options->write_mesh[0];
+	if (mesh && options->write_volume[0])
+		gz_err(log,
+		       "--write-mesh: --write-volume cannot be combined with it; remove one of "
+		       "them");
+	else if (mesh && !value)
+		gz_err(log, "--write-mesh: --isovalue is missing; give the data value where the "
+			    "surface lies");
+	else if (value && !mesh)
+		gz_err(log, "--isovalue: only a mesh has one; add --write-mesh FILE");
+	else
+		return GZ_OK;
 	return GZ_ERR_INVAL;
 }
 
@@ -235,6 +267,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->resample             ? "--resample"
 			    : options->volume_resample >= 0 ? "--volume.resample"
 			    : options->write_volume[0]      ? "--write-volume"
+			    : options->write_mesh[0]        ? "--write-mesh"
 			    : options->list_series          ? "--list-series"
 			    : options->out[0]               ? "--out"
 			    : options->video[0]             ? "--video"
@@ -267,7 +300,8 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 	if (options->replay[0] && check_replay(options, log) != GZ_OK)
 		return GZ_ERR_INVAL;
 	if (!options->scene[0] && !options->replay[0] &&
-	    (options->headless || options->write_volume[0] || options->list_series)) {
+	    (options->headless || options->write_volume[0] || options->write_mesh[0] ||
+	     options->list_series)) {
 		gz_err(log, "no scene; name one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}
@@ -278,7 +312,7 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 		       options->gaze_text);
 		return GZ_ERR_INVAL;
 	}
-	if (check_raw(options, log) != GZ_OK)
+	if (check_raw(options, log) != GZ_OK || check_mesh(options, log) != GZ_OK)
 		return GZ_ERR_INVAL;
 	if (options->play > 0 && options->record[0]) {
 		gz_err(log, "--record: a session has one time point; remove --play");

@@ -70,6 +70,8 @@ struct gz_view_options {
 	char pictures[GZ_PATH_SIZE];     /**< folder for the files a window writes */
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
+	char write_mesh[GZ_PATH_SIZE];   /**< empty: none */
+	double isovalue;                 /**< of that mesh */
 	bool list_series;                /**< of the folder or file in scene, and exit */
 	int bricks;                      /**< enum gz_bricks_rule */
 	int time_point;                  /**< of a series, from 1; 0: the scene's */
