@@ -30,8 +30,7 @@ struct gz_value_blocks {
 	int edge;    /**< of a block, voxels; above 0 */
 	int dims[3]; /**< blocks along x, y, z: dims of the volume / edge, rounded up */
 	/** Of each block (i, j, k): bounds of the voxels from edge * i, edge * j, edge * k on.
-	 * Wider ones are right too. NaN belongs to no range: a block with NaN has the range of its
-	 *  other voxels. Borrowed. */
+	 * Wider ones are right too. Volumes with NaN have no such bounds. Borrowed. */
 	const float *least, *greatest;
 };
 

@@ -119,62 +119,66 @@ void gz_iso_count_row(const struct gz_iso_job *job, size_t row)
 	};
 }
 
-/* The vertices of the next crossed edges of each row, and where the next triangle goes. */
+/* Four numbers of vertices; compilers make one register of them. */
+typedef uint32_t four_vertices __attribute__((vector_size(16)));
+
+/* The vertices of the next crossed edges, and where the next triangle goes. */
 struct cube_walk {
-	uint32_t x[4]; /* of each row of the beam */
-	uint32_t y[2]; /* at z and z + 1 */
-	uint32_t z[2]; /* at y and y + 1 */
+	four_vertices x;    /* of each row of the beam */
+	four_vertices y, z; /* twice that of the first pair of rows, twice that of the second */
 	uint32_t *triangle;
 	int second, third; /* places of a triangle's corners: exchanged if data values fall */
 };
 
 static struct cube_walk start_walk(const struct gz_iso_job *job, const struct gz_iso_beam *beam)
 {
-	const struct gz_iso_row *first = &job->rows[beam->row[0]];
 	struct cube_walk walk = {
-		.triangle = job->mesh->triangles[0] + 3 * (size_t)first->triangle,
+		.triangle = job->mesh->triangles[0] + 3 * (size_t)job->rows[beam->row[0]].triangle,
 		.second = job->falling ? 2 : 1,
 		.third = job->falling ? 1 : 2,
 	};
-	for (int r = 0; r < 4; r++)
+	for (int r = 0; r < 4; r++) {
+		const struct gz_iso_row *above = &job->rows[beam->row[r & 2]];
+		const struct gz_iso_row *behind = &job->rows[beam->row[r >> 1]];
 		walk.x[r] = job->rows[beam->row[r]].vertex;
-	for (int i = 0; i < 2; i++) {
-		const struct gz_iso_row *upper = &job->rows[beam->row[2 * i]];
-		const struct gz_iso_row *behind = &job->rows[beam->row[i]];
-		walk.y[i] = upper->vertex + upper->x_edges;
-		walk.z[i] = behind->vertex + behind->x_edges + behind->y_edges;
+		walk.y[r] = above->vertex + above->x_edges;
+		walk.z[r] = behind->vertex + behind->x_edges + behind->y_edges;
 	}
 	return walk;
+}
+
+/* For each edge that starts at a corner in @p corners and is crossed according to @p edges: all
+ * bits, else none. */
+static inline four_vertices crossed_at(unsigned edges, four_vertices corners)
+{
+	const four_vertices all = { edges, edges, edges, edges };
+	return (four_vertices)((all & corners) == corners);
 }
 
 /* Write the triangles of a cube and walk on to the next one. */
 static inline void write_cube(struct cube_walk *walk, unsigned set, unsigned variant)
 {
-	/* A bit for each edge along x, at its lower corner; likewise y and z. */
-	const unsigned xs = set ^ set >> 1, ys = set ^ set >> 2, zs = set ^ set >> 4;
-	const uint32_t vertex[12] = {
-		walk->x[0], walk->x[1],
-		walk->x[2], walk->x[3],
-		walk->y[0], walk->y[0] + (ys & 1),
-		walk->y[1], walk->y[1] + (ys >> 4 & 1),
-		walk->z[0], walk->z[0] + (zs & 1),
-		walk->z[1], walk->z[1] + (zs >> 2 & 1),
-	};
+	/* A bit for each edge along an axis, at the corner where it starts. The first two edges
+	 * along y, and the last two, are of the same rows, and so are those along z. */
+	const four_vertices x = crossed_at(set ^ set >> 1, (four_vertices) { 1, 4, 16, 64 });
+	const four_vertices y = crossed_at(set ^ set >> 2, (four_vertices) { 1, 1, 16, 16 });
+	const four_vertices z = crossed_at(set ^ set >> 4, (four_vertices) { 1, 1, 4, 4 });
+	const four_vertices later = { 0, UINT32_MAX, 0, UINT32_MAX };
+	/* subtracting all bits adds 1 */
+	const four_vertices vertex[3] = { walk->x, walk->y - (y & later), walk->z - (z & later) };
+	const uint32_t *number = (const uint32_t *)vertex;
 	const uint8_t *corner = gz_cube_corners + 3 * (size_t)gz_cube_offset[variant];
 	const uint8_t *end = gz_cube_corners + 3 * (size_t)gz_cube_offset[variant + 1];
 	uint32_t *triangle = walk->triangle;
 	for (; corner < end; corner += 3, triangle += 3) {
-		triangle[0] = vertex[corner[0]];
-		triangle[walk->second] = vertex[corner[1]];
-		triangle[walk->third] = vertex[corner[2]];
+		triangle[0] = number[corner[0]];
+		triangle[walk->second] = number[corner[1]];
+		triangle[walk->third] = number[corner[2]];
 	}
 	walk->triangle = triangle;
-	for (unsigned r = 0; r < 4; r++)
-		walk->x[r] += xs >> 2 * r & 1;
-	walk->y[0] += ys & 1;
-	walk->y[1] += ys >> 4 & 1;
-	walk->z[0] += zs & 1;
-	walk->z[1] += zs >> 2 & 1;
+	walk->x -= x;
+	walk->y -= y;
+	walk->z -= z;
 }
 
 void gz_iso_write_triangles(const struct gz_iso_job *job, size_t row)

@@ -2,15 +2,25 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "render/data/volume.h"
 
+/* Arrays of HUGE_PAGE bytes or more use such pages: writing a mesh for the first time would
+ * otherwise spend much of its time on page faults. */
+#define HUGE_PAGE   ((size_t)2 << 20)
+#define SMALL_ALIGN ((size_t)64)
+
 static void *allocate_elements(size_t count, size_t size)
 {
-	const size_t used = count * size;
-	char *elements = malloc(used + GZ_MESH_PADDING);
-	if (elements)
-		memset(elements + used, 0, GZ_MESH_PADDING);
+	const size_t used = count * size, align = used >= HUGE_PAGE ? HUGE_PAGE : SMALL_ALIGN;
+	const size_t bytes = (used + GZ_MESH_PADDING + align - 1) / align * align;
+	char *elements = aligned_alloc(align, bytes);
+	if (!elements)
+		return NULL;
+	if (align == HUGE_PAGE)
+		(void)madvise(elements, bytes, MADV_HUGEPAGE); /* only a hint */
+	memset(elements + used, 0, GZ_MESH_PADDING);
 	return elements;
 }
 
