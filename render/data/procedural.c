@@ -264,7 +264,11 @@ static enum gz_result fill_with(struct making *making)
 		return result;
 	gz_workers_run(workers, fill_slice, making, (size_t)making->volume->dims[2]);
 	gz_workers_destroy(&workers);
-	return atomic_load(&making->stopped) ? GZ_ERR_CANCELLED : GZ_OK;
+	/* The other threads may have made all slices of a small volume. */
+	const bool goes_on =
+		!atomic_load(&making->stopped) &&
+		gz_loading_goes_on(making->loading, 1, gz_procedural_names[making->which]);
+	return goes_on ? GZ_OK : GZ_ERR_CANCELLED;
 }
 
 static enum gz_result fill_volume(struct making *making)
