@@ -69,27 +69,34 @@ def pixels_of(kind, number):
     return (wave if signed else wave + most).astype(dtype)
 
 
+def new_image(sop_class, series, instance, shape):
+    """An image of `shape` rows and columns without a place and without pixels."""
+    meta = FileMetaDataset()
+    meta.MediaStorageSOPClassUID = sop_class
+    meta.MediaStorageSOPInstanceUID = f"{series}.{instance}"
+    meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
+    meta.ImplementationClassUID = "1.2.3.4"
+    image = FileDataset("", {}, file_meta=meta, preamble=bytes(128))
+    image.is_little_endian, image.is_implicit_VR = True, False
+    image.SOPClassUID, image.SOPInstanceUID = sop_class, f"{series}.{instance}"
+    image.StudyInstanceUID, image.SeriesInstanceUID = f"{series}.1.1", series
+    image.InstanceNumber = instance
+    image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
+    image.Rows, image.Columns = shape
+    return image
+
+
 def write_series(folder, kind, orientation):
     dtype, stored = KINDS[kind]
     signed = numpy.dtype(dtype).kind == "i"
     normal = numpy.cross(orientation[:3], orientation[3:])
     for number in range(SLICES):
-        meta = FileMetaDataset()
-        meta.MediaStorageSOPClassUID = CT
-        meta.MediaStorageSOPInstanceUID = f"{SERIES}.{number}"
-        meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
-        meta.ImplementationClassUID = "1.2.3.4"
-        image = FileDataset("", {}, file_meta=meta, preamble=bytes(128))
-        image.is_little_endian, image.is_implicit_VR = True, False
-        image.SOPClassUID, image.SOPInstanceUID = CT, f"{SERIES}.{number}"
-        image.StudyInstanceUID, image.SeriesInstanceUID = f"{SERIES}.1.1", SERIES
+        image = new_image(CT, SERIES, number, (ROWS, COLUMNS))
         image.Modality, image.InstanceNumber = "CT", SLICES - number
         image.ImageOrientationPatient = list(orientation)
         image.ImagePositionPatient = [float(x) for x in normal * 2.5 * number - 30]
         image.PixelSpacing, image.SliceThickness = [0.75, 0.5], 9
         image.RescaleSlope, image.RescaleIntercept = 1, -24
-        image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
-        image.Rows, image.Columns = ROWS, COLUMNS
         image.BitsAllocated, image.BitsStored = numpy.dtype(dtype).itemsize * 8, stored
         image.HighBit, image.PixelRepresentation = stored - 1, int(signed)
         pixels = pixels_of(kind, number)

@@ -14,17 +14,17 @@ import unittest
 try:
     import numpy
     import pydicom
-    from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
+    from pydicom.dataset import Dataset
     from pydicom.sequence import Sequence
 except ImportError as missing:
     print(f"skipped: {missing}; it is in the package python3-pydicom")
     sys.exit(77)
 
+from dicom import CT, GAZEVIEW, new_image
 from picture import run
 from raw_nrrd import read_nrrd
 
-GAZEVIEW = sys.argv[1]
-CT, ENHANCED_CT = "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1"
+ENHANCED_CT = "1.2.840.10008.5.1.4.1.1.2.1"
 ENHANCED_MR = "1.2.840.10008.5.1.4.1.1.4.1"
 SERIES = "1.2.826.0.1.3680043.2.1125.8"
 ROWS, COLUMNS = 24, 20
@@ -52,18 +52,8 @@ class Slices:
         self.pixels = [pixels_of(number) for number in range(len(along))]
 
 
-def new_image(kind, number):
-    meta = FileMetaDataset()
-    meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID = kind, f"{SERIES}.{number}"
-    meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
-    meta.ImplementationClassUID = "1.2.3.4"
-    image = FileDataset("", {}, file_meta=meta, preamble=bytes(128))
-    image.is_little_endian, image.is_implicit_VR = True, False
-    image.SOPClassUID, image.SOPInstanceUID = kind, f"{SERIES}.{number}"
-    image.StudyInstanceUID, image.SeriesInstanceUID = f"{SERIES}.1.1", SERIES
-    image.InstanceNumber = number
-    image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
-    image.Rows, image.Columns = ROWS, COLUMNS
+def new_wide_image(kind, number):
+    image = new_image(kind, SERIES, number, (ROWS, COLUMNS))
     image.BitsAllocated = image.BitsStored = 16
     image.HighBit, image.PixelRepresentation = 15, 1
     return image
@@ -75,7 +65,7 @@ def numbers(values):
 
 def write_series(folder, slices, series=SERIES):
     for number, position in enumerate(slices.positions):
-        image = new_image(CT, number + 1)
+        image = new_wide_image(CT, number + 1)
         image.Modality, image.SeriesInstanceUID = "CT", series
         image.ImageOrientationPatient = numbers(slices.directions.flat)
         image.ImagePositionPatient = numbers(position)
@@ -96,7 +86,7 @@ def group(**elements):
 def write_enhanced(path, slices, kind=ENHANCED_CT, order=None, scales=None):
     """One file of several frames, in any order, each with its place and, if given, its scale."""
     order = range(len(slices.positions)) if order is None else order
-    image = new_image(kind, 1)
+    image = new_wide_image(kind, 1)
     image.Modality, image.NumberOfFrames = "CT" if kind == ENHANCED_CT else "MR", len(slices.positions)
     shared = Dataset()
     shared.PlaneOrientationSequence = group(ImageOrientationPatient=numbers(slices.directions.flat))

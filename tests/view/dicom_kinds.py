@@ -17,13 +17,13 @@ import unittest
 try:
     import numpy
     import pydicom
-    from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
+    from pydicom.dataset import Dataset
     from pydicom.sequence import Sequence
 except ImportError as missing:
     print(f"skipped: {missing}; it is in the package python3-pydicom")
     sys.exit(77)
 
-from dicom import GAZEVIEW, ORIENTATIONS, turn_to_ras
+from dicom import GAZEVIEW, ORIENTATIONS, new_image, turn_to_ras
 from picture import run, shows_between
 from raw_nrrd import read_nrrd
 
@@ -42,19 +42,9 @@ def normal_of(orientation):
     return numpy.cross(orientation[:3], orientation[3:])
 
 
-def new_image(modality, instance, orientation):
-    meta = FileMetaDataset()
-    meta.MediaStorageSOPClassUID = CLASSES[modality]
-    meta.MediaStorageSOPInstanceUID = f"{SERIES}.{instance}"
-    meta.TransferSyntaxUID = pydicom.uid.ExplicitVRLittleEndian
-    meta.ImplementationClassUID = "1.2.3.4"
-    image = FileDataset("", {}, file_meta=meta, preamble=bytes(128))
-    image.is_little_endian, image.is_implicit_VR = True, False
-    image.SOPClassUID, image.SOPInstanceUID = CLASSES[modality], f"{SERIES}.{instance}"
-    image.StudyInstanceUID, image.SeriesInstanceUID = f"{SERIES}.1.1", SERIES
-    image.Modality, image.InstanceNumber = modality, instance
-    image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
-    image.Rows, image.Columns = ROWS, COLUMNS
+def new_image_of(modality, instance, orientation):
+    image = new_image(CLASSES[modality], SERIES, instance, (ROWS, COLUMNS))
+    image.Modality = modality
     if modality != "SEG":
         image.ImageOrientationPatient = list(orientation)
         image.ImagePositionPatient = list(ORIGIN)
@@ -72,7 +62,7 @@ def set_pixels(image, pixels, bits=None):
 
 def write_dose(path, numbers, orientation, scaling, places):
     """places: the offsets are z coordinates instead of distances."""
-    image = new_image("RTDOSE", 1, orientation)
+    image = new_image_of("RTDOSE", 1, orientation)
     offsets = SPACING[2] * numpy.arange(len(numbers))
     if places:
         offsets = ORIGIN[2] + offsets * normal_of(orientation)[2]
@@ -86,7 +76,7 @@ def write_dose(path, numbers, orientation, scaling, places):
 def write_segmentation(path, frames, orientation, **more):
     """frames: (segment number, slice number, pixels); between: told distance of slices."""
     fractional = more.get("fractional", 0)
-    image = new_image("SEG", 1, orientation)
+    image = new_image_of("SEG", 1, orientation)
     image.SegmentationType = "FRACTIONAL" if fractional else "BINARY"
     if fractional:
         image.MaximumFractionalValue = fractional
@@ -278,7 +268,7 @@ class OverTime(AgainstNumpy):
         for number, (t, k) in zip(numbers, itertools.product(range(self.points), range(SLICES))):
             if (t, k) in skip:
                 continue
-            image = new_image("MR", number, ORIENTATIONS[0])
+            image = new_image_of("MR", number, ORIENTATIONS[0])
             image.ImagePositionPatient = [float(x) for x in ORIGIN + (0, 0, SPACING[2] * k)]
             for key, value in keys.items():
                 setattr(image, key, value(t, k))
@@ -309,7 +299,7 @@ class OverTime(AgainstNumpy):
         self.assertIn("no time point 4: it has 3", done.stderr)
 
     def test_frames_of_one_enhanced_image(self):
-        image = new_image("MR", 1, ORIENTATIONS[0])
+        image = new_image_of("MR", 1, ORIENTATIONS[0])
         image.PerFrameFunctionalGroupsSequence = Sequence()
         order = list(itertools.product(range(SLICES), range(self.points)))
         random.Random(8).shuffle(order)
