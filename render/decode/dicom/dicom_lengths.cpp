@@ -62,6 +62,7 @@ class walk
 	verdict item_inside(const element &e, const element &sequence, const room &within,
 			    int depth);
 	verdict value(const element &e, const room &within, int depth);
+	verdict beyond(verdict inside, uint64_t end);
 	uint64_t place();
 	bool fits(uint32_t length, uint64_t limit);
 	bool item_follows(const encoding &as);
@@ -150,6 +151,16 @@ bool walk::read_element(const encoding &as, element &out)
 	return true;
 }
 
+/* What is unclear within something that says where it ends is left out. */
+verdict walk::beyond(verdict inside, uint64_t end)
+{
+	if (inside != verdict::unclear)
+		return inside;
+	file.clear();
+	file.seekg((std::streamoff)end);
+	return verdict::fits;
+}
+
 /* What lies in an item of a sequence. An item that says its size may be wrong in it, as those of
  * some makers are: the library knows them. Its elements must fit into the sequence. */
 verdict walk::item_inside(const element &e, const element &sequence, const room &within, int depth)
@@ -160,11 +171,7 @@ verdict walk::item_inside(const element &e, const element &sequence, const room 
 		return elements(sequence.inside, { within.end, within.limit, false }, depth + 1);
 	const uint64_t end = place() + e.length;
 	const verdict inside = elements(sequence.inside, { end, within.limit, true }, depth + 1);
-	if (inside != verdict::unclear)
-		return inside;
-	file.clear();
-	file.seekg((std::streamoff)end);
-	return verdict::fits;
+	return beyond(inside, end);
 }
 
 verdict walk::items(const element &sequence, const room &within, int depth)
@@ -208,11 +215,7 @@ verdict walk::value(const element &e, const room &within, int depth)
 	}
 	const uint64_t end = place() + e.length;
 	const verdict inside = items(sequence, { end, end, true }, depth);
-	if (inside != verdict::unclear)
-		return inside;
-	file.clear();
-	file.seekg((std::streamoff)end);
-	return verdict::fits;
+	return beyond(inside, end);
 }
 
 verdict walk::elements(const encoding &as, const room &within, int depth)
