@@ -11,8 +11,8 @@ namespace gz_dicom
 
 /* Whether no element up to the pixels claims more bytes than the file, or the sequence that it lies
  * in, has left, and sequences are no deeper within each other than 32: the library takes memory for
- * what an element claims. Where the file is not as the standard says otherwise, the library may know
- * better, and the answer is true. Leaves the stream anywhere. */
+ * what an element claims. Where the file is not as the standard says otherwise, the library may
+ * know better, and the answer is true. Leaves the stream anywhere. */
 bool lengths_fit(std::istream &file, uint64_t file_size);
 
 } // namespace gz_dicom
