@@ -130,6 +130,21 @@ class Choice(WindowCase):
         self.press("Escape")
         self.until(lambda p: self.below_line(p) == before, "as before")
 
+    def test_missing_slice_is_refused_and_resampled_by_a_key(self):
+        for path in self.files[1] + self.files[2] + self.files[0][9:10]:
+            os.remove(path)
+        self.start(*FIXED)
+        before = self.rest()
+        self.drop(self.folder)
+        refused = self.until(lambda p: p != before, "the refusal")
+        self.assertEqual(self.below_line(self.rest()), self.below_line(before))
+        self.press("ctrl+shift+o")
+        self.until(lambda p: self.below_line(p) != self.below_line(refused), "the series")
+        status, said = self.quit()
+        self.assertEqual(status, 0)
+        self.assertIn("open it with --resample", said)
+        self.assertIn("resampled (linear) from 23 slices to 24", said)
+
     def test_dropped_folder_is_shown_and_becomes_a_recent_file(self):
         # Volumes that are dropped keep the settings of the scene before.
         before = self.start(*FIXED)

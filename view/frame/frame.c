@@ -88,6 +88,8 @@ static enum gz_result override_settings(void *user, struct gz_scene_settings *se
 	if (r == GZ_OK && change->scene->series_uid)
 		snprintf(settings->volume_series, sizeof settings->volume_series, "%s",
 			 change->scene->series_uid);
+	if (r == GZ_OK && change->scene->resample && settings->resample == GZ_RESAMPLING_OFF)
+		settings->resample = GZ_RESAMPLING_LINEAR;
 	if (r == GZ_OK && options->headless)
 		r = gz_picture_count_rays(options->size_px, settings->image_sampling_rate,
 					  change->log, rays);

@@ -36,6 +36,9 @@ struct gz_frame_scene {
 	const struct gz_raw_layout *raw;
 	/** UID of the DICOM series to show in place of what scene and options say; NULL: theirs. */
 	const char *series_uid;
+	/** Slices that do not lie evenly are interpolated, if scene and options do not resample
+	 * them. */
+	bool resample;
 	/** The command line's keys replace the scene's. */
 	bool by_options;
 	/** Settings that replace both, except volume, transfer function, camera, clip box, display

@@ -65,7 +65,8 @@ struct gz_window_loading {
 	struct gz_window_held *held;
 	/* Holds window->maker; NULL: the window owns the maker. */
 	const struct gz_window_held *shown;
-	char path[GZ_PATH_SIZE]; /* of the scene shown */
+	char path[GZ_PATH_SIZE];             /* of the scene shown */
+	struct gz_window_load_request asked; /* the latest; without a path: none */
 	bool any_shown;
 	enum gz_result outcome;
 };
@@ -89,6 +90,7 @@ static enum gz_result load_job_scene(struct load_job *job)
 		.path = request->path,
 		.raw = request->has_raw ? &request->raw : NULL,
 		.series_uid = request->series_uid[0] ? request->series_uid : NULL,
+		.resample = request->resample,
 		.by_options = request->by_options,
 		.kept = job->keep ? &job->kept : NULL,
 	};
@@ -491,6 +493,7 @@ enum gz_result gz_window_load(struct gz_window *window,
 		return r;
 	end_loading_job(window);
 	window->loading->job = job;
+	window->loading->asked = job->request;
 	window->loading->again = false;
 	gz_window_wake_panels(window);
 	return GZ_OK;
@@ -605,6 +608,24 @@ static void cancel_by_key(struct gz_window *window, int number)
 	gz_window_cancel_loading(window);
 }
 
+/* What was refused, or is shown shifted, with its slices at even distances. */
+static void load_again_resampled(struct gz_window *window, int number)
+{
+	struct gz_window_load_request *request = &window->loading->asked;
+	(void)number;
+	if (!request->path[0]) {
+		gz_warn(window->log, "nothing to resample: no file was opened");
+		return;
+	}
+	request->resample = true;
+	gz_window_load(window, request);
+}
+
+static bool may_open_files(const struct gz_window *window)
+{
+	return !window->alone; /* an experiment shows its own scenes */
+}
+
 enum gz_result gz_window_loading_outcome(const struct gz_window *window)
 {
 	return window->loading->outcome;
@@ -622,6 +643,12 @@ static const struct gz_window_action loading_actions[] = {
 	  .help = "cancel loading",
 	  .applies = gz_window_is_loading,
 	  .run = cancel_by_key },
+	{ .letter = 'o',
+	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
+	  .keys = "Ctrl+Shift+O",
+	  .help = "open it again, resample uneven slices",
+	  .applies = may_open_files,
+	  .run = load_again_resampled },
 };
 
 const struct gz_window_part gz_window_loading_part = {

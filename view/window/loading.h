@@ -24,6 +24,9 @@ struct gz_window_load_request {
 	struct gz_raw_layout raw;
 	/** UID of the DICOM series; empty: what scene and options say. */
 	char series_uid[GZ_SERIES_SIZE];
+	/** Slices that do not lie evenly are interpolated, if scene and options do not resample
+	 * them. */
+	bool resample;
 	/** Keys of the command line replace the scene's; for what was named there. */
 	bool by_options;
 	/** Keep the user's settings of method, rays, light, attention and view. Volume, transfer
