@@ -40,24 +40,37 @@ static gzFile open_labelled(const char *data, size_t file, int coder)
 	return length < (int)sizeof path ? gzopen(path, "rb") : NULL;
 }
 
-static bool grow(struct gz_labelled_recording *recording, size_t *capacity)
+static bool make_room(struct gz_labelled_recording *recording)
 {
-	if (recording->count < *capacity)
+	if (recording->count < recording->room)
 		return true;
-	*capacity = *capacity ? 2 * *capacity : 4096;
-	struct gz_sample *sample = realloc(recording->sample, *capacity * sizeof *sample);
+	const size_t room = recording->room ? 2 * recording->room : 4096;
+	struct gz_sample *sample = realloc(recording->sample, room * sizeof *sample);
 	if (sample)
 		recording->sample = sample;
-	int *label = realloc(recording->label, *capacity * sizeof *label);
+	int *label = realloc(recording->label, room * sizeof *label);
 	if (label)
 		recording->label = label;
-	return sample && label;
+	if (!sample || !label)
+		return false;
+	recording->room = room;
+	return true;
 }
 
-static void add_labelled(struct gz_labelled_recording *recording, double x_px, double y_px,
+bool gz_labelled_recording_add(struct gz_labelled_recording *recording,
+			       const struct gz_sample *sample, int label)
+{
+	if (!make_room(recording))
+		return false;
+	recording->sample[recording->count] = *sample;
+	recording->label[recording->count++] = label;
+	return true;
+}
+
+static bool add_labelled(struct gz_labelled_recording *recording, double x_px, double y_px,
 			 int label)
 {
-	size_t i = recording->count++;
+	size_t i = recording->count;
 	struct gz_sample sample = gz_sample_unmeasured();
 	sample.seq = i;
 	sample.host_ns = 1000000000 + (int64_t)i * 2000000; /* some files have no times: 500 Hz */
@@ -67,8 +80,7 @@ static void add_labelled(struct gz_labelled_recording *recording, double x_px, d
 		sample.point = (struct gz_point) { (float)(x_px / recording->display.px[0]),
 						   (float)(y_px / recording->display.px[1]) };
 	}
-	recording->sample[i] = sample;
-	recording->label[i] = label;
+	return gz_labelled_recording_add(recording, &sample, label);
 }
 
 bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
@@ -79,7 +91,6 @@ bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
 	if (!file)
 		return false;
 	char line[256];
-	size_t capacity = 0;
 	bool good = true;
 	while (good && gzgets(file, line, sizeof line)) {
 		double time_us, pupil_h, pupil_v, x_px, y_px;
@@ -88,9 +99,7 @@ bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
 			continue;
 		good = sscanf(line, "%lf %lf %lf %lf %lf %d", &time_us, &pupil_h, &pupil_v, &x_px,
 			      &y_px, &label) == 6 &&
-		       grow(out, &capacity);
-		if (good)
-			add_labelled(out, x_px, y_px, label);
+		       add_labelled(out, x_px, y_px, label);
 	}
 	gzclose(file);
 	return good && out->count > 0;

@@ -27,7 +27,7 @@ enum gz_human_label {
 /** One recording as one person labelled it. */
 struct gz_labelled_recording {
 	struct gz_display display;
-	size_t count;
+	size_t count, room; /**< samples, and how many there is memory for */
 	struct gz_sample *sample;
 	int *label;
 };
@@ -63,6 +63,15 @@ extern const struct gz_labelled_file {
  */
 bool gz_labelled_recording_read(const char *data, size_t file, int coder,
 				struct gz_labelled_recording *out);
+
+/**
+ * Add a sample behind the last one.
+ *
+ * @param recording  zero-initialised but for the display before the first one
+ * @return false if there is no memory
+ */
+bool gz_labelled_recording_add(struct gz_labelled_recording *recording,
+			       const struct gz_sample *sample, int label);
 
 /** Samples for Cohen's kappa, one label against the rest. */
 struct gz_agreement {
