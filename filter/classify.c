@@ -290,11 +290,31 @@ static void update_quick_saccade(struct gz_classify_state *state,
 	gz_median_follow(&quick->noise_deg_s, speed_deg_s, gain);
 }
 
+/* Ask the forests what the newest sample is, and what the one was whose certain label is due. */
+static void ask_forests(struct gz_classify_state *state, const struct gz_classify_params *params,
+			const struct gz_display *display, const struct gz_classify_input *input)
+{
+	float features[GZ_MOVEMENT_FEATURES];
+	int32_t scores[GZ_FOREST_CLASSES];
+	const struct gz_movement_input measured = { input->time_ns, input->valid, input->raw };
+	if (!gz_movement_step(&state->movement, display, &measured, features))
+		return;
+	uint64_t newest = state->count - 1, delay = gz_classify_delay(state, params);
+	if (input->valid) {
+		gz_forest_score(&gz_forest_at_once, features, scores);
+		gz_classify_at(state, newest)->learned = gz_forest_best(scores);
+	}
+	if (delay == 0 || delay > newest)
+		return;
+	gz_forest_score(&gz_forest_certain, features, scores);
+	gz_classify_at(state, newest - delay)->learned = gz_forest_best(scores);
+}
+
 static enum gz_event immediate_label(const struct gz_classify_state *state,
 				     const struct gz_classify_params *params,
 				     const struct gz_classify_entry *entry)
 {
-	if (!entry->valid) {
+	if (!gz_classify_is_good(params, entry)) {
 		if (!state->any_valid)
 			return GZ_EVENT_LOST;
 		int64_t since_ns = entry->time_ns - state->valid_ns;
@@ -303,6 +323,8 @@ static enum gz_event immediate_label(const struct gz_classify_state *state,
 		return gz_ns_to_ms(since_ns) <= params->blink_max_ms ? GZ_EVENT_BLINK
 								     : GZ_EVENT_LOST;
 	}
+	if (params->source == GZ_CLASSIFY_LEARNED)
+		return gz_classify_event_of(entry->learned);
 	if (state->quick.saccade)
 		return GZ_EVENT_SACCADE;
 	if (entry->after_loss || state->machine.event != GZ_EVENT_PURSUIT)
@@ -358,7 +380,7 @@ static void emit_certain_labels(struct gz_classify_state *state,
 			.seq = entry->seq,
 			.time_ns = entry->time_ns,
 			.event = event,
-			.valid = entry->valid,
+			.valid = gz_classify_is_good(params, entry),
 			.after_loss = entry->after_loss,
 			.point = entry->point,
 			.confidence = entry->confidence,
@@ -377,9 +399,13 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 	out.last_valid_ns = state->valid_ns;
 	out.velocity_deg_s = 0;
 	out.final_count = 0; /* entries beyond this are not read, so they stay unset */
-	const struct gz_classify_entry *entry = add_entry(state, params, display, input);
+	struct gz_classify_entry *entry = add_entry(state, params, display, input);
+	if (params->source == GZ_CLASSIFY_LEARNED)
+		ask_forests(state, params, display, input);
+	bool good = gz_classify_is_good(params, entry);
+	entry->after_loss = entry->after_loss && good;
 	out.resumed = entry->after_loss && state->any_valid;
-	if (entry->valid) {
+	if (good) {
 		double speed_deg_s = trailing_speed(state, params, &out.velocity_deg_s);
 		update_quick_saccade(state, params, entry, speed_deg_s);
 		state->any_valid = true;

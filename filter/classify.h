@@ -17,6 +17,10 @@
  * Between saccades, the slow movement distinguishes pursuit from fixation (classify_decide.c).
  * Samples without a good measurement are a blink up to blink_max_ms and lost after that, on sample
  * time.
+ *
+ * Instead of these rules, the labels can come from what was learned from recordings that people
+ * labelled (classifier/forest.h). Its noise, such as a lid in front of the pupil, counts as a
+ * sample without a good measurement.
  */
 #ifndef GZ_FILTER_CLASSIFY_H
 #define GZ_FILTER_CLASSIFY_H
@@ -25,9 +29,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "filter/classifier/forest.h"
+#include "filter/classifier/movement.h"
 #include "filter/median.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
+
+/** Where labels come from. */
+enum gz_classify_source {
+	GZ_CLASSIFY_RULES,   /**< thresholds and Bayes' rule, as above */
+	GZ_CLASSIFY_LEARNED, /**< forests */
+};
 
 /** Settings. pipeline_options.c has the presets and their sources. */
 struct gz_classify_params {
@@ -59,6 +71,7 @@ struct gz_classify_params {
 	double pursuit_hysteresis; /**< odds needed to change the label, 1 or more */
 	double dropout_ms;         /**< shorter losses are not blinks, ms */
 	double blink_max_ms;       /**< longer losses are not blinks but lost gaze, ms */
+	int source;                /**< enum gz_classify_source */
 };
 
 /** Samples that are kept: more than the final delay and half a window at 2000 Hz. A power of two.
@@ -79,9 +92,10 @@ struct gz_classify_entry {
 	struct gz_point point;
 	float confidence;
 	bool valid;
-	bool after_loss;          /**< good, and the first after a blink, a loss or the start */
-	double velocity_deg_s[3]; /**< less the slow movement; set once measured */
-	double fast_deg_s;        /**< length of velocity_deg_s */
+	bool after_loss;              /**< good, and the first after a blink, a loss or the start */
+	enum gz_forest_class learned; /**< what the forests say: at once, then for certain */
+	double velocity_deg_s[3];     /**< less the slow movement; set once measured */
+	double fast_deg_s;            /**< length of velocity_deg_s */
 };
 
 /** State of the certain labels. */
@@ -143,6 +157,7 @@ struct gz_classify_state {
 	struct gz_classify_quick quick;
 	struct gz_classify_machine machine;
 	struct gz_classify_slow slow;
+	struct gz_movement movement; /**< used if the labels are learned */
 };
 
 /** One sample to label. */
@@ -151,6 +166,7 @@ struct gz_classify_input {
 	int64_t time_ns;       /**< newer than that of the last sample */
 	bool valid;            /**< whether point was measured and is plausible */
 	struct gz_point point; /**< ignored unless valid */
+	struct gz_point raw;   /**< the same before spikes were removed; ignored unless valid */
 	float confidence;      /**< [0, 1] */
 };
 

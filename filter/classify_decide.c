@@ -312,6 +312,21 @@ static void take_between_saccades(struct gz_classify_state *state,
 		weigh_pursuit(state, params);
 }
 
+/* Take the learned label of a sample. */
+static void take_learned_label(struct gz_classify_state *state,
+			       const struct gz_classify_entry *entry)
+{
+	struct gz_classify_machine *machine = &state->machine;
+	enum gz_event event = gz_classify_event_of(entry->learned);
+	bool begins = machine->event != GZ_EVENT_SACCADE || entry->after_loss;
+	if (event != GZ_EVENT_SACCADE)
+		machine->event = event;
+	else if (begins)
+		begin_certain_saccade(state, entry);
+	else
+		update_saccade_peak(machine, entry);
+}
+
 static void decide_good_sample(struct gz_classify_state *state,
 			       const struct gz_classify_params *params, uint64_t index)
 {
@@ -339,6 +354,19 @@ static void decide_good_sample(struct gz_classify_state *state,
 	}
 }
 
+/* Whether a good sample is the first one after a blink or loss. Learned labels need this anew: the
+ * certain label may find that a sample shows the eye, or does not, after the immediate one said
+ * otherwise. */
+static bool ends_loss(const struct gz_classify_state *state,
+		      const struct gz_classify_params *params,
+		      const struct gz_classify_entry *entry)
+{
+	const struct gz_classify_machine *machine = &state->machine;
+	return !machine->any_valid ||
+	       (double)(entry->time_ns - machine->valid_ns) >
+		       gz_classify_dropout_ns(state, params) + state->period_ns;
+}
+
 /* Whether a sample without a measurement belongs to a blink or loss, not to a short dropout. */
 static bool is_within_loss(struct gz_classify_state *state, const struct gz_classify_params *params,
 			   uint64_t index)
@@ -347,8 +375,10 @@ static bool is_within_loss(struct gz_classify_state *state, const struct gz_clas
 		return true;
 	for (uint64_t i = index + 1; i < state->count; i++) {
 		const struct gz_classify_entry *entry = gz_classify_at(state, i);
-		if (entry->valid)
-			return entry->after_loss;
+		if (gz_classify_is_good(params, entry))
+			return params->source == GZ_CLASSIFY_LEARNED
+				       ? ends_loss(state, params, entry)
+				       : entry->after_loss;
 	}
 	int64_t newest_ns = gz_classify_at(state, state->count - 1)->time_ns;
 	return (double)(newest_ns - state->machine.valid_ns) >
@@ -369,12 +399,16 @@ static void decide_missing_sample(struct gz_classify_state *state,
 void gz_classify_decide(struct gz_classify_state *state, const struct gz_classify_params *params,
 			uint64_t index)
 {
-	const struct gz_classify_entry *entry = gz_classify_at(state, index);
-	if (!entry->valid) {
+	struct gz_classify_entry *entry = gz_classify_at(state, index);
+	if (!gz_classify_is_good(params, entry)) {
 		decide_missing_sample(state, params, index);
 		return;
 	}
-	decide_good_sample(state, params, index);
+	if (params->source == GZ_CLASSIFY_LEARNED) {
+		entry->after_loss = ends_loss(state, params, entry);
+		take_learned_label(state, entry);
+	} else
+		decide_good_sample(state, params, index);
 	state->machine.any_valid = true;
 	state->machine.valid_ns = entry->time_ns;
 }

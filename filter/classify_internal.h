@@ -14,6 +14,22 @@ static inline struct gz_classify_entry *gz_classify_at(struct gz_classify_state 
 	return &state->ring[index % GZ_CLASSIFY_RING];
 }
 
+/** Whether a sample was measured and shows the eye. */
+static inline bool gz_classify_is_good(const struct gz_classify_params *params,
+				       const struct gz_classify_entry *entry)
+{
+	return entry->valid &&
+	       !(params->source == GZ_CLASSIFY_LEARNED && entry->learned == GZ_FOREST_NOISE);
+}
+
+/** The event of a class other than noise. */
+static inline enum gz_event gz_classify_event_of(enum gz_forest_class learned)
+{
+	return learned == GZ_FOREST_SACCADE   ? GZ_EVENT_SACCADE
+	       : learned == GZ_FOREST_PURSUIT ? GZ_EVENT_PURSUIT
+					      : GZ_EVENT_FIXATION;
+}
+
 /** Longest time without a good sample that is not a blink, from the last good sample to one without
  * a measurement, ns. From good sample to good sample it is one period longer. */
 double gz_classify_dropout_ns(const struct gz_classify_state *state,

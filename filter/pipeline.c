@@ -239,7 +239,7 @@ static struct gz_classify_input reduce_sample(struct gz_pipeline *pipeline,
 	input.valid = true;
 	struct gz_combine_output combined = gz_combine_step(
 		&pipeline->combine, &pipeline->params.combine, &pipeline->display, sample, valid);
-	*out_raw = combined.point;
+	input.raw = *out_raw = combined.point;
 	input.confidence = combined.confidence;
 	bool restart = pipeline->event == GZ_EVENT_BLINK || pipeline->event == GZ_EVENT_LOST;
 	input.point = gz_despike_step(&pipeline->despike, &pipeline->params.despike,
@@ -280,7 +280,8 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	make_messages(pipeline, &label, input.time_ns, out);
 	set_gaze_label(&label, &out->gaze);
 	measure_fixation_noise(pipeline, label.event, input.valid, out->gaze.raw);
-	out->gaze.confidence = input.valid ? input.confidence : 0;
+	bool hidden = label.event == GZ_EVENT_BLINK || label.event == GZ_EVENT_LOST;
+	out->gaze.confidence = input.valid && !hidden ? input.confidence : 0;
 	const struct gz_smooth_input smooth_input = { label.event, input.time_ns, input.valid,
 						      input.point };
 	out->gaze.point =

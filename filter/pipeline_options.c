@@ -13,6 +13,7 @@
 #define SMOOTH(field)   offsetof(struct gz_pipeline_params, smooth.field)
 
 static const char *const eye_names[] = { "both", "left", "right", NULL };
+static const char *const source_names[] = { "rules", "learned", NULL };
 
 /* Sources of the presets, if the help does not give them:
  *
@@ -110,6 +111,9 @@ const struct gz_option gz_pipeline_options[] = {
 	  .help = "shorter losses are not blinks, ms" },
 	{ "pipeline.blink_max_ms", GZ_OPTION_DOUBLE, CLASSIFY(blink_max_ms), 10, 10000,
 	  .preset = "500", .help = "longer losses are not blinks but lost gaze, ms" },
+	{ "pipeline.labels", GZ_OPTION_CHOICE, CLASSIFY(source), .choices = source_names,
+	  .preset = "rules",
+	  .help = "what labels come from: rules, or forests learned from labelled recordings" },
 	{ "pipeline.smooth_window_ms", GZ_OPTION_DOUBLE, SMOOTH(window_ms), 0, 1000,
 	  .preset = "100", .help = "longest window of the mean in a fixation, ms" },
 	{ "pipeline.smooth_start_ms", GZ_OPTION_DOUBLE, SMOOTH(start_ms), 0, 1000, .preset = "15",

@@ -5,6 +5,7 @@
 #include "suite.h"
 
 #include "filter/check.h"
+#include "filter/tested_params.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,7 +39,7 @@ static enum gz_result begin(void *user, const struct gz_gaze_log_header *header)
 	struct gz_display display = gz_display_default(1920, 1080);
 	if (header->has_display && gz_display_valid(&header->display))
 		display = header->display;
-	gz_pipeline_init(&run->pipeline, NULL, &display);
+	gz_pipeline_init(&run->pipeline, &tested_params, &display);
 	return GZ_OK;
 }
 
@@ -230,6 +231,8 @@ static void poor_recordings_give_what_eyes_do(void **state)
 
 TEST_SUITE(any_recording)
 {
+	if (!read_tested_params(argc, argv))
+		return 2;
 	if (!getenv("GAZECAST_DATA")) {
 		printf("GAZECAST_DATA is not set\n");
 		return SKIPPED;

@@ -122,7 +122,7 @@ static void a_loss_over_500_ms_is_lost_gaze(void **state)
 	(void)state;
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_pipeline pipeline;
-	gz_pipeline_init(&pipeline, NULL, &display);
+	gz_pipeline_init(&pipeline, &tested_params, &display);
 	uint64_t seq = 0;
 	int64_t time_ns = VIEWING_START_NS;
 	struct tally tally;
@@ -151,7 +151,7 @@ static void a_gap_in_time_is_a_blink_up_to_500_ms(void **state)
 	(void)state;
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_pipeline pipeline;
-	gz_pipeline_init(&pipeline, NULL, &display);
+	gz_pipeline_init(&pipeline, &tested_params, &display);
 	uint64_t seq = 0;
 	int64_t time_ns = VIEWING_START_NS;
 	struct tally tally;
@@ -172,7 +172,7 @@ static void a_dropout_of_few_ms_is_no_blink(void **state)
 	(void)state;
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_pipeline pipeline;
-	gz_pipeline_init(&pipeline, NULL, &display);
+	gz_pipeline_init(&pipeline, &tested_params, &display);
 	uint64_t seq = 0;
 	int64_t time_ns = VIEWING_START_NS;
 	struct tally tally;
@@ -278,6 +278,8 @@ static void saccades_are_reported_as_they_were(void **state)
 
 TEST_SUITE(messages)
 {
+	if (!read_tested_params(argc, argv))
+		return 2;
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_fixation_lasts_across_a_blink),
 		cmocka_unit_test(a_loss_over_500_ms_is_lost_gaze),

@@ -80,7 +80,7 @@ static void wild_samples_give_finite_numbers(void **state)
 	struct gz_random random = gz_random_seeded(3, 3);
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_pipeline pipeline;
-	gz_pipeline_init(&pipeline, NULL, &display);
+	gz_pipeline_init(&pipeline, &tested_params, &display);
 	struct viewing viewing = { .tracker = NULL };
 	int64_t time_ns = VIEWING_START_NS, last_ns = 0;
 	for (uint64_t k = 0; k < 300000; k++) {
@@ -109,7 +109,7 @@ static void before_any_good_sample_gaze_is_lost_at_the_centre(void **state)
 	(void)state;
 	struct gz_display display = gz_display_default(1920, 1080);
 	struct gz_pipeline pipeline;
-	gz_pipeline_init(&pipeline, NULL, &display);
+	gz_pipeline_init(&pipeline, &tested_params, &display);
 	for (uint64_t k = 0; k < 100; k++) {
 		struct gz_sample sample = gz_sample_unmeasured();
 		sample.seq = k;
@@ -412,6 +412,8 @@ static void every_preset_parses_and_prints_the_same(void **state)
 
 TEST_SUITE(pipeline)
 {
+	if (!read_tested_params(argc, argv))
+		return 2;
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(any_rate_gives_finite_numbers_and_time_forwards),
 		cmocka_unit_test(wild_samples_give_finite_numbers),

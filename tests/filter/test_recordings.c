@@ -14,6 +14,7 @@
 #include "bench/filter/labelled_recording.h"
 #include "filter/angle.h"
 #include "filter/pipeline.h"
+#include "filter/tested_params.h"
 
 enum { SKIPPED = 77, LIST_MAX = 4096 };
 
@@ -304,18 +305,13 @@ TEST_SUITE(recordings)
 		printf("GAZECAST_DATA is not set\n");
 		return SKIPPED;
 	}
-	struct gz_log log;
-	gz_log_init(&log, NULL, NULL, NULL);
-	struct gz_pipeline_params params = gz_pipeline_default_params();
-	struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count, &params,
-					     NULL };
-	if (gz_options_read_arguments(&binding, 1, argc, argv, NULL, &log) != GZ_OK)
+	if (!read_tested_params(argc, argv))
 		return 2;
 	int failures = 0;
 	for (int i = 0; i < GZ_LABELLED_STIMULI; i++) {
 		static struct measures m;
 		m = (struct measures) { .raw_step2 = 0 };
-		if (!measure_stimulus(i, data, &params, &m))
+		if (!measure_stimulus(i, data, &tested_params, &m))
 			return SKIPPED;
 		print_measures(&STIMULI[i], &m);
 		failures += !good_enough(&STIMULI[i], &m);

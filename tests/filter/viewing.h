@@ -6,6 +6,7 @@
 #define GZ_TESTS_FILTER_VIEWING_H
 
 #include "filter/check.h"
+#include "filter/tested_params.h"
 
 #include "base/clock.h"
 #include "filter/pipeline.h"
@@ -32,7 +33,7 @@ static inline void viewing_open(struct viewing *viewing, const struct gz_sim_par
 	assert_int_equal(gz_sim_tracker_create(params, VIEWING_START_NS, NULL, &viewing->tracker),
 			 GZ_OK);
 	struct gz_display display = gz_sim_tracker_display(viewing->tracker);
-	gz_pipeline_init(&viewing->pipeline, NULL, &display);
+	gz_pipeline_init(&viewing->pipeline, &tested_params, &display);
 }
 
 /** Pass the next sample through the pipeline. */

@@ -1,0 +1,186 @@
+/*
+ * Writes the features of all labelled recordings, for gaze_forest_fit.c.
+ *
+ * usage: gaze_features FOLDER    (GAZECAST_DATA names the folder of recordings)
+ *
+ * FOLDER/features.f32: GZ_MOVEMENT_FEATURES floats a sample
+ * FOLDER/labels.i16: five numbers a sample: track, labels of both people (enum gz_human_label; the
+ *                    same where there is only one), whether it was measured, and reserved 0
+ * FOLDER/tracks.tsv: a line a track: number, data set, stimulus or film, name, period in us
+ * FOLDER/names.txt: the names of the features
+ *
+ * Each recording is also written at lower rates: every second, fourth and eighth sample.
+ */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/filter/gazecom.h"
+#include "bench/filter/labelled_recording.h"
+#include "filter/classifier/movement.h"
+#include "filter/pipeline.h"
+
+enum { SKIPPED = 77, LABEL_NUMBERS = 5 };
+
+struct output {
+	FILE *features, *labels, *tracks;
+	int track_count;
+	bool failed;
+};
+
+/* One recording at one rate. */
+struct track {
+	const struct gz_labelled_recording *recording;
+	const int *second_label; /* of the other person; NULL: there is none */
+	size_t step, phase;      /* every step-th sample from phase on */
+};
+
+static void write_row(struct output *out, const float features[GZ_MOVEMENT_FEATURES],
+		      const int16_t numbers[LABEL_NUMBERS])
+{
+	const bool good =
+		fwrite(features, sizeof features[0], GZ_MOVEMENT_FEATURES, out->features) ==
+			GZ_MOVEMENT_FEATURES &&
+		fwrite(numbers, sizeof numbers[0], LABEL_NUMBERS, out->labels) == LABEL_NUMBERS;
+	out->failed = out->failed || !good;
+}
+
+/* The input of the classifier, by the steps that come before it. */
+static struct gz_movement_input prepare(struct gz_pipeline *pipeline,
+					const struct gz_sample *sample)
+{
+	const struct gz_pipeline_params *params = &pipeline->params;
+	struct gz_movement_input input = { .time_ns = sample->host_ns };
+	const struct gz_validate_output valid = gz_validate_step(
+		&pipeline->validate, &params->validate, &pipeline->display, sample);
+	input.valid = valid.rejection == GZ_REJECT_NONE;
+	if (input.valid)
+		input.point = gz_combine_step(&pipeline->combine, &params->combine,
+					      &pipeline->display, sample, &valid)
+				      .point;
+	return input;
+}
+
+static void write_track(struct output *out, const struct track *track)
+{
+	static struct gz_pipeline pipeline;
+	static struct gz_movement movement;
+	const struct gz_labelled_recording *recording = track->recording;
+	gz_pipeline_init(&pipeline, NULL, &recording->display);
+	memset(&movement, 0, sizeof movement);
+	for (size_t i = track->phase; i < recording->count; i += track->step) {
+		float features[GZ_MOVEMENT_FEATURES];
+		const struct gz_movement_input input = prepare(&pipeline, &recording->sample[i]);
+		(void)gz_movement_step(&movement, &recording->display, &input, features);
+		const int label = recording->label[i];
+		const int second = track->second_label ? track->second_label[i] : label;
+		write_row(out, features,
+			  (int16_t[]) { (int16_t)out->track_count, (int16_t)label, (int16_t)second,
+					input.valid, 0 });
+	}
+	out->track_count++;
+}
+
+static void write_rates(struct output *out, const char *set, const char *kind, const char *name,
+			const struct gz_labelled_recording *recording, const int *second_label)
+{
+	for (size_t step = 1; step <= 8; step *= 2) {
+		const struct track track = { recording, second_label, step, 0 };
+		const double period_us = recording->count > 1
+						 ? (double)(recording->sample[1].host_ns -
+							    recording->sample[0].host_ns) *
+							   1e-3 * (double)step
+						 : 0;
+		fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\n", out->track_count, set, kind, name,
+			period_us);
+		write_track(out, &track);
+	}
+}
+
+static bool write_andersson(struct output *out, const char *data)
+{
+	for (size_t i = 0; i < GZ_LABELLED_FILES; i++) {
+		struct gz_labelled_recording first, second = { .count = 0 };
+		const bool good = gz_labelled_recording_read(data, i, 0, &first) &&
+				  gz_labelled_recording_read(data, i, 1, &second);
+		if (good && second.count < first.count) /* some end a sample or two earlier */
+			first.count = second.count;
+		if (good)
+			write_rates(out, "andersson",
+				    gz_labelled_stimulus_names[gz_labelled_files[i].stimulus],
+				    gz_labelled_files[i].name, &first, second.label);
+		gz_labelled_recording_free(&first);
+		gz_labelled_recording_free(&second);
+		if (!good)
+			return false;
+	}
+	return true;
+}
+
+static bool write_gazecom(struct output *out, const char *data)
+{
+	for (size_t film = 0; film < GZ_GAZECOM_FILMS; film++) {
+		struct gz_gazecom gazecom;
+		const bool good = gz_gazecom_read(data, film, &gazecom);
+		for (size_t i = 0; good && i < gazecom.count; i++)
+			write_rates(out, "gazecom", gz_gazecom_films[film], "-",
+				    &gazecom.recording[i], NULL);
+		gz_gazecom_free(&gazecom);
+		if (!good)
+			return false;
+	}
+	return true;
+}
+
+static FILE *open_in(const char *folder, const char *name)
+{
+	char path[1024];
+	const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *file = length < (int)sizeof path ? fopen(path, "wb") : NULL;
+	if (!file)
+		fprintf(stderr, "gaze_features: cannot write %s/%s\n", folder, name);
+	return file;
+}
+
+static bool close_written(FILE *file)
+{
+	return !file || fclose(file) == 0;
+}
+
+static bool write_names(const char *folder)
+{
+	FILE *file = open_in(folder, "names.txt");
+	if (!file)
+		return false;
+	for (size_t i = 0; i < GZ_MOVEMENT_FEATURES; i++)
+		fprintf(file, "%s\n", gz_movement_feature_names[i]);
+	return close_written(file);
+}
+
+int main(int argc, char **argv)
+{
+	const char *data = getenv("GAZECAST_DATA");
+	if (!data) {
+		printf("GAZECAST_DATA is not set\n");
+		return SKIPPED;
+	}
+	if (argc != 2) {
+		fprintf(stderr, "usage: gaze_features FOLDER\n");
+		return 2;
+	}
+	struct output out = {
+		.features = open_in(argv[1], "features.f32"),
+		.labels = open_in(argv[1], "labels.i16"),
+		.tracks = open_in(argv[1], "tracks.tsv"),
+	};
+	bool good = out.features && out.labels && out.tracks && write_names(argv[1]);
+	if (good && !(write_andersson(&out, data) && write_gazecom(&out, data))) {
+		fprintf(stderr, "%s: a labelled recording is missing or damaged\n", data);
+		good = false;
+	}
+	good = close_written(out.features) && good;
+	good = close_written(out.labels) && good;
+	good = close_written(out.tracks) && good;
+	return good && !out.failed ? 0 : 1;
+}

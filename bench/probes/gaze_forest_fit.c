@@ -1,0 +1,935 @@
+/*
+ * Trains the forests that label eye movements (filter/classifier), and measures them on recordings
+ * that were kept out.
+ *
+ * usage: gaze_forest_fit FOLDER [KEY=NUMBER...]
+ *
+ * FOLDER holds what gaze_features wrote. Writes FOLDER/TAG.forest, and for each row that a fold
+ * kept out its scores into FOLDER/TAG.scores.
+ *
+ * Gradient boosting with trees whose leaves have one value for each class: Friedman, "Greedy
+ * function approximation: a gradient boosting machine", Annals of Statistics 29, 2001, with
+ * histograms of quantised features (Ke et al., "LightGBM", NIPS 2017), Newton steps for softmax,
+ * and a random part of rows and features for each tree (Friedman, "Stochastic gradient boosting",
+ * 2002).
+ */
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/filter/labelled_recording.h"
+#include "filter/classifier/forest.h"
+#include "sim/random.h"
+
+enum { FEATURES = GZ_MOVEMENT_FEATURES, CLASSES = 4, BINS_MAX = 256, LEAVES_MAX = 64 };
+enum { NODES_MAX = 2 * LEAVES_MAX, TREES_MAX = 1024, TRACKS_MAX = 2048, FOLDS_MAX = 32 };
+enum { FOLDS_WITHOUT_FILMS = 6 };
+enum { LABEL_NUMBERS = 5, UNUSED = -1 };
+
+/* Gradients of the classes, the Hessian and the weight of a row or of a bin's rows. */
+typedef float sums __attribute__((vector_size(32)));
+enum { HESSIAN = CLASSES, WEIGHT = CLASSES + 1 };
+
+struct settings {
+	double certain; /* 1: learn the label of 8 ms ago, 0: that of the sample itself */
+	double trees, leaves, depth, rate, lambda, bins;
+	double rows, columns; /* parts for each tree */
+	double least;         /* least weight of a leaf */
+	double andersson;     /* weight of a sample of that set, against one of GazeCom */
+	double slow;          /* weight of recordings at lower rates */
+	double ringing;       /* weight of samples in which the eye rings after a saccade */
+	double folds;         /* 0: train on all; 1: by film and person; 2: by data set */
+	double saccade, pursuit, noise; /* added to the scores of these classes */
+	double seed, tag, only_fold;
+};
+
+static const struct {
+	const char *key;
+	size_t offset;
+	double preset;
+} KEYS[] = {
+#define KEY(name, preset)                                      \
+	{                                                      \
+#name, offsetof(struct settings, name), preset \
+	}
+	KEY(certain, 0),   KEY(trees, 100), KEY(leaves, 32), KEY(depth, 8),     KEY(rate, 0.1),
+	KEY(lambda, 1),    KEY(bins, 64),   KEY(rows, 0.25), KEY(columns, 0.4), KEY(least, 20),
+	KEY(andersson, 5), KEY(slow, 0),    KEY(ringing, 1), KEY(folds, 1),     KEY(seed, 1),
+	KEY(saccade, 0),   KEY(pursuit, 0), KEY(noise, 0),   KEY(tag, 0),       KEY(only_fold, -1),
+};
+enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
+
+static double *setting_at(struct settings *settings, int key)
+{
+	return (double *)(void *)((char *)settings + KEYS[key].offset);
+}
+
+struct track {
+	bool andersson;
+	char kind[64], name[64];
+	double period_ms;
+	int fold;
+};
+
+struct row {
+	float *features;
+	int index; /* place in the file */
+	int16_t track;
+	int8_t label[2]; /* classes by both people; UNUSED */
+	int8_t human[2]; /* the same as enum gz_human_label; 0: unknown */
+	bool valid;      /* whether the labelled sample was measured */
+	float weight;
+};
+
+struct node {
+	int feature; /* -1: a leaf */
+	int bin;     /* left if the feature's bin is at most this */
+	int left, right;
+	float value[CLASSES];
+	int begin, end; /* its rows in the order of the tree */
+	int depth;
+	double gain;
+	sums total;
+	sums *histogram; /* FEATURES x bins */
+};
+
+struct tree {
+	int node_count;
+	struct node node[NODES_MAX];
+};
+
+struct training {
+	struct settings settings;
+	struct track track[TRACKS_MAX];
+	int track_count;
+	struct row *row;
+	int row_count;
+	uint8_t *bins; /* row_count x FEATURES */
+	int bin_count;
+	float edges[FEATURES][BINS_MAX];
+	int edge_count[FEATURES];
+	struct gz_random random;
+	/* of the present forest */
+	float (*score)[CLASSES];
+	sums *gradient;
+	bool *kept_out;
+	float base[CLASSES];
+	struct tree *tree;
+	int tree_count;
+	int *order, *spare;
+	bool column[FEATURES];
+	sums *pool; /* histograms of the leaves of the present tree */
+};
+
+/* ---- reading ---- */
+
+static void *read_all(const char *folder, const char *name, size_t *out_size)
+{
+	char path[1024];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *file = fopen(path, "rb");
+	if (!file || fseek(file, 0, SEEK_END) != 0) {
+		fprintf(stderr, "%s: cannot read it\n", path);
+		exit(1);
+	}
+	*out_size = (size_t)ftell(file);
+	rewind(file);
+	char *bytes = malloc(*out_size + 1);
+	if (!bytes || fread(bytes, 1, *out_size, file) != *out_size)
+		exit(1);
+	bytes[*out_size] = 0;
+	fclose(file);
+	return bytes;
+}
+
+static void read_tracks(struct training *t, const char *folder)
+{
+	size_t size;
+	char *text = read_all(folder, "tracks.tsv", &size), *save = NULL;
+	for (char *line = strtok_r(text, "\n", &save); line; line = strtok_r(NULL, "\n", &save)) {
+		struct track *track = &t->track[t->track_count++];
+		char set[32];
+		double period_us;
+		int number;
+		if (sscanf(line, "%d\t%31[^\t]\t%63[^\t]\t%63[^\t]\t%lf", &number, set, track->kind,
+			   track->name, &period_us) != 5)
+			exit(1);
+		track->andersson = strcmp(set, "andersson") == 0;
+		track->period_ms = period_us * 1e-3;
+	}
+	free(text);
+}
+
+static int8_t class_of(int label)
+{
+	switch (label) {
+	case GZ_HUMAN_FIXATION:
+		return 0;
+	case GZ_HUMAN_SACCADE:
+		return 1;
+	case GZ_HUMAN_PURSUIT:
+		return 2;
+	case GZ_HUMAN_BLINK:
+	case GZ_HUMAN_UNDEFINED:
+		return 3;
+	default:
+		return UNUSED;
+	}
+}
+
+/* The class of a sample; while the eye rings after a saccade, that of what follows. */
+static int8_t class_at(const int16_t *numbers, size_t index, size_t count, int person)
+{
+	const int16_t *here = numbers + index * LABEL_NUMBERS;
+	size_t i = index;
+	while (i < count && numbers[i * LABEL_NUMBERS] == here[0] &&
+	       numbers[i * LABEL_NUMBERS + 1 + person] == GZ_HUMAN_GLISSADE)
+		i++;
+	if (i == count || numbers[i * LABEL_NUMBERS] != here[0])
+		return UNUSED;
+	int8_t found = class_of(numbers[i * LABEL_NUMBERS + 1 + person]);
+	return i > index && (found == 1 || found == 3) ? UNUSED : found;
+}
+
+/* Native rates of the recordings. */
+static double native_ms(const struct track *track)
+{
+	return track->andersson ? 2 : 4;
+}
+
+static float weight_of(const struct training *t, const struct track *track)
+{
+	const struct settings *s = &t->settings;
+	double weight = track->andersson ? s->andersson : 1;
+	if (track->period_ms > native_ms(track))
+		weight *= s->slow * track->period_ms / native_ms(track);
+	if (s->certain > 0 && track->period_ms > 8)
+		weight = 0;
+	return (float)weight;
+}
+
+static void read_rows(struct training *t, const char *folder)
+{
+	size_t label_size, size;
+	float *features = read_all(folder, "features.f32", &size);
+	int16_t *numbers = read_all(folder, "labels.i16", &label_size);
+	size_t count = label_size / (LABEL_NUMBERS * sizeof *numbers);
+	t->row = calloc(count, sizeof *t->row);
+	for (size_t i = 0; i < count; i++) {
+		const int16_t *n = numbers + i * LABEL_NUMBERS;
+		const struct track *track = &t->track[n[0]];
+		struct row *row = &t->row[t->row_count];
+		size_t back = t->settings.certain > 0 ? (size_t)(8 / track->period_ms + 0.1) : 0;
+		row->features = features + i * FEATURES;
+		row->index = (int)i;
+		row->track = n[0];
+		row->weight = weight_of(t, track);
+		if (row->weight <= 0)
+			continue;
+		bool known = i >= back && numbers[(i - back) * LABEL_NUMBERS] == n[0];
+		for (int p = 0; p < 2; p++) {
+			row->label[p] = known ? class_at(numbers, i - back, count, p) : UNUSED;
+			row->human[p] =
+				known ? (int8_t)numbers[(i - back) * LABEL_NUMBERS + 1 + (size_t)p]
+				      : 0;
+		}
+		row->valid = known && numbers[(i - back) * LABEL_NUMBERS + 3] != 0;
+		if (known && numbers[(i - back) * LABEL_NUMBERS + 1] == GZ_HUMAN_GLISSADE)
+			row->weight *= (float)t->settings.ringing;
+		t->row_count++;
+	}
+	free(numbers);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+	float x = *(const float *)a, y = *(const float *)b;
+	return (x > y) - (x < y);
+}
+
+/* To four digits, so that thresholds are short to write. */
+static float rounded(float x)
+{
+	char text[32];
+	snprintf(text, sizeof text, "%.3e", (double)x);
+	return strtof(text, NULL);
+}
+
+static void make_bins(struct training *t)
+{
+	enum { PROBES = 60000 };
+	float *probe = malloc(PROBES * sizeof *probe);
+	t->bin_count = (int)t->settings.bins;
+	t->bins = malloc((size_t)t->row_count * FEATURES);
+	for (int f = 0; f < FEATURES; f++) {
+		for (int i = 0; i < PROBES; i++)
+			probe[i] = t->row[gz_random_bits(&t->random) % (uint64_t)t->row_count]
+					   .features[f];
+		qsort(probe, PROBES, sizeof *probe, compare_floats);
+		int n = 0;
+		for (int b = 1; b < t->bin_count; b++) {
+			float edge = rounded(probe[(size_t)b * PROBES / (size_t)t->bin_count]);
+			if (edge > probe[0] && (n == 0 || edge > t->edges[f][n - 1]))
+				t->edges[f][n++] = edge;
+		}
+		t->edge_count[f] = n;
+	}
+	for (int i = 0; i < t->row_count; i++)
+		for (int f = 0; f < FEATURES; f++) {
+			int low = 0, high = t->edge_count[f];
+			float x = t->row[i].features[f];
+			while (low < high) {
+				int middle = (low + high) / 2;
+				if (x >= t->edges[f][middle])
+					low = middle + 1;
+				else
+					high = middle;
+			}
+			t->bins[(size_t)i * FEATURES + (size_t)f] = (uint8_t)low;
+		}
+	free(probe);
+}
+
+/* ---- one tree ---- */
+
+static sums *histogram_of(struct training *t, int leaf)
+{
+	return t->pool + (size_t)leaf * FEATURES * (size_t)t->bin_count;
+}
+
+static void fill_histogram(struct training *t, const struct node *node)
+{
+	size_t bins = (size_t)t->bin_count;
+	int column[FEATURES] = { 0 }, columns = 0;
+	for (int f = 0; f < FEATURES; f++)
+		if (t->column[f])
+			column[columns++] = f;
+	memset(node->histogram, 0, FEATURES * bins * sizeof *node->histogram);
+	for (int i = node->begin; i < node->end; i++) {
+		int row = t->order[i];
+		const uint8_t *bin = t->bins + (size_t)row * FEATURES;
+		sums g = t->gradient[row];
+		for (int c = 0; c < columns; c++)
+			node->histogram[(size_t)column[c] * bins + bin[column[c]]] += g;
+	}
+}
+
+static double score_sums(const sums *s, double lambda)
+{
+	double g2 = 0;
+	for (int k = 0; k < CLASSES; k++)
+		g2 += (double)(*s)[k] * (*s)[k];
+	return g2 / ((*s)[HESSIAN] + lambda);
+}
+
+static void find_split(struct training *t, struct node *node)
+{
+	const struct settings *s = &t->settings;
+	size_t bins = (size_t)t->bin_count;
+	node->gain = 0;
+	if (node->depth >= (int)s->depth)
+		return;
+	double whole = score_sums(&node->total, s->lambda);
+	for (int f = 0; f < FEATURES; f++) {
+		if (!t->column[f])
+			continue;
+		sums left = { 0 };
+		for (int b = 0; b < t->edge_count[f]; b++) {
+			left += node->histogram[(size_t)f * bins + (size_t)b];
+			sums right = node->total - left;
+			if (left[WEIGHT] < s->least || right[WEIGHT] < s->least)
+				continue;
+			double gain = score_sums(&left, s->lambda) + score_sums(&right, s->lambda) -
+				      whole;
+			if (gain > node->gain) {
+				node->gain = gain;
+				node->feature = f;
+				node->bin = b;
+			}
+		}
+	}
+}
+
+static void split_rows(struct training *t, struct node *node, struct node *left, struct node *right)
+{
+	int a = node->begin, spare = 0;
+	for (int i = node->begin; i < node->end; i++) {
+		int row = t->order[i];
+		if (t->bins[(size_t)row * FEATURES + (size_t)node->feature] <= node->bin)
+			t->order[a++] = row;
+		else
+			t->spare[spare++] = row;
+	}
+	memcpy(t->order + a, t->spare, (size_t)spare * sizeof *t->order);
+	left->begin = node->begin;
+	left->end = right->begin = a;
+	right->end = node->end;
+}
+
+static void total_rows(struct training *t, struct node *node)
+{
+	sums total = { 0 };
+	for (int i = node->begin; i < node->end; i++)
+		total += t->gradient[t->order[i]];
+	node->total = total;
+}
+
+/* Split a leaf into two: the smaller one's histogram is filled, the other's is the difference. */
+static void split_leaf(struct training *t, struct tree *tree, int leaf, int *pool_used)
+{
+	struct node *node = &tree->node[leaf];
+	node->left = tree->node_count++;
+	node->right = tree->node_count++;
+	struct node *child[2] = { &tree->node[node->left], &tree->node[node->right] };
+	for (int i = 0; i < 2; i++)
+		*child[i] = (struct node) { .feature = -1, .depth = node->depth + 1 };
+	split_rows(t, node, child[0], child[1]);
+	int small = child[0]->end - child[0]->begin > child[1]->end - child[1]->begin;
+	child[small]->histogram = histogram_of(t, (*pool_used)++);
+	fill_histogram(t, child[small]);
+	child[!small]->histogram = node->histogram;
+	size_t cells = FEATURES * (size_t)t->bin_count;
+	for (size_t i = 0; i < cells; i++)
+		node->histogram[i] -= child[small]->histogram[i];
+	for (int i = 0; i < 2; i++) {
+		total_rows(t, child[i]);
+		find_split(t, child[i]);
+		child[i]->feature = child[i]->gain > 0 ? child[i]->feature : -1;
+	}
+}
+
+static void set_leaf_value(struct training *t, struct node *node)
+{
+	double g[CLASSES] = { 0 }, h[CLASSES] = { 0 };
+	for (int i = node->begin; i < node->end; i++) {
+		int row = t->order[i];
+		const float *score = t->score[row];
+		double p[CLASSES], sum = 0;
+		for (int k = 0; k < CLASSES; k++)
+			sum += p[k] = exp((double)score[k]);
+		for (int k = 0; k < CLASSES; k++) {
+			p[k] /= sum;
+			g[k] += (double)t->gradient[row][k];
+			h[k] += p[k] * (1 - p[k]) * (double)t->gradient[row][WEIGHT];
+		}
+	}
+	double mean = 0, value[CLASSES];
+	for (int k = 0; k < CLASSES; k++) {
+		value[k] = -g[k] / (h[k] + t->settings.lambda);
+		value[k] = t->settings.rate * fmax(-4, fmin(4, value[k]));
+		mean += value[k] / CLASSES;
+	}
+	for (int k = 0; k < CLASSES; k++)
+		node->value[k] = (float)(value[k] - mean);
+}
+
+static void grow_tree(struct training *t, struct tree *tree, int rows)
+{
+	int leaves = 1, pool_used = 1;
+	for (int f = 0; f < FEATURES; f++)
+		t->column[f] = gz_random_uniform(&t->random) < t->settings.columns;
+	tree->node_count = 1;
+	tree->node[0] =
+		(struct node) { .feature = -1, .end = rows, .histogram = histogram_of(t, 0) };
+	fill_histogram(t, &tree->node[0]);
+	total_rows(t, &tree->node[0]);
+	find_split(t, &tree->node[0]);
+	bool split[NODES_MAX] = { false };
+	while (leaves < (int)t->settings.leaves) {
+		int best = -1;
+		for (int i = 0; i < tree->node_count; i++)
+			if (!split[i] && tree->node[i].gain > 0 &&
+			    (best < 0 || tree->node[i].gain > tree->node[best].gain))
+				best = i;
+		if (best < 0)
+			break;
+		split[best] = true;
+		split_leaf(t, tree, best, &pool_used);
+		leaves++;
+	}
+	for (int i = 0; i < tree->node_count; i++)
+		if (!split[i]) {
+			tree->node[i].feature = -1;
+			set_leaf_value(t, &tree->node[i]);
+		}
+}
+
+static const struct node *leaf_of(const struct tree *tree, const uint8_t *bins)
+{
+	const struct node *node = &tree->node[0];
+	while (node->feature >= 0)
+		node = &tree->node[bins[node->feature] <= node->bin ? node->left : node->right];
+	return node;
+}
+
+/* ---- what the folds give on the recordings that they kept out, at their native rates ---- */
+
+enum { KINDS = GZ_LABELLED_STIMULI, FIGURES_EVERY = 20 };
+
+struct figures {
+	struct gz_agreement film[CLASSES];      /* GazeCom */
+	struct gz_agreement coder[KINDS][2][2]; /* Andersson; of each person: saccade, fixation */
+};
+
+static int kind_of(const struct track *track)
+{
+	for (int k = 0; k < KINDS; k++)
+		if (strcmp(track->kind, gz_labelled_stimulus_names[k]) == 0)
+			return k;
+	return 0;
+}
+
+static int decide_class(const struct training *t, int row)
+{
+	const double more[CLASSES] = { 0, t->settings.saccade, t->settings.pursuit,
+				       t->settings.noise };
+	int best = 0;
+	if (!t->row[row].valid)
+		return GZ_FOREST_NOISE;
+	for (int k = 1; k < CLASSES; k++)
+		if ((double)t->score[row][k] + more[k] > (double)t->score[row][best] + more[best])
+			best = k;
+	return best;
+}
+
+static void add_figures(const struct training *t, struct figures *figures)
+{
+	for (int i = 0; i < t->row_count; i++) {
+		const struct row *row = &t->row[i];
+		const struct track *track = &t->track[row->track];
+		if (!t->kept_out[row->track] || track->period_ms > native_ms(track) ||
+		    !row->human[0])
+			continue;
+		const int class = decide_class(t, i);
+		for (int k = 0; k < CLASSES && !track->andersson; k++)
+			gz_agreement_add(&figures->film[k], class == k, row->label[0] == k);
+		for (int p = 0; p < 2 && track->andersson; p++) {
+			struct gz_agreement *coder = figures->coder[kind_of(track)][p];
+			gz_agreement_add(&coder[0], class == GZ_FOREST_SACCADE,
+					 row->human[p] == GZ_HUMAN_SACCADE);
+			gz_agreement_add(&coder[1], class == GZ_FOREST_FIXATION,
+					 row->human[p] == GZ_HUMAN_FIXATION);
+		}
+	}
+}
+
+static void print_figures(const struct figures *figures)
+{
+	printf("GazeCom F1");
+	static const char *const names[CLASSES] = { "fixation", "saccade", "pursuit", "noise" };
+	for (int k = 0; k < CLASSES; k++) {
+		const struct gz_agreement *a = &figures->film[k];
+		printf(" %s %.3f", names[k], 2 * a->both / fmax(a->ours + a->theirs, 1));
+	}
+	printf("\nAndersson kappa");
+	for (int kind = 0; kind < KINDS; kind++) {
+		double kappa[2];
+		for (int k = 0; k < 2; k++)
+			kappa[k] = (gz_agreement_kappa(&figures->coder[kind][0][k]) +
+				    gz_agreement_kappa(&figures->coder[kind][1][k])) /
+				   2;
+		printf(" %s saccade %.3f fixation %.3f", gz_labelled_stimulus_names[kind], kappa[0],
+		       kappa[1]);
+	}
+	printf("\n");
+}
+
+static void write_scores(const struct training *t, FILE *file)
+{
+	for (int i = 0; i < t->row_count; i++) {
+		if (!t->kept_out[t->row[i].track])
+			continue;
+		float out[6] = { (float)t->row[i].index, t->row[i].track };
+		memcpy(out + 2, t->score[i], sizeof t->score[i]);
+		fwrite(out, sizeof out, 1, file);
+	}
+}
+
+/* ---- a forest ---- */
+
+static void set_gradient(struct training *t, int row)
+{
+	const struct row *r = &t->row[row];
+	double p[CLASSES], sum = 0, h = 0;
+	sums g = { 0 };
+	for (int k = 0; k < CLASSES; k++)
+		sum += p[k] = exp((double)t->score[row][k]);
+	double weight = 0;
+	for (int n = 0; n < 2; n++)
+		if (r->label[n] != UNUSED) {
+			weight += 0.5 * r->weight;
+			g[r->label[n]] -= 0.5f * r->weight;
+		}
+	for (int k = 0; k < CLASSES; k++) {
+		p[k] /= sum;
+		g[k] += (float)(weight * p[k]);
+		h += 0.5 * weight * p[k] * (1 - p[k]);
+	}
+	g[HESSIAN] = (float)h;
+	g[WEIGHT] = (float)weight;
+	t->gradient[row] = g;
+}
+
+static int choose_rows(struct training *t)
+{
+	int n = 0;
+	for (int i = 0; i < t->row_count; i++) {
+		const struct row *row = &t->row[i];
+		if (t->kept_out[row->track] ||
+		    (row->label[0] == UNUSED && row->label[1] == UNUSED) ||
+		    gz_random_uniform(&t->random) >= t->settings.rows)
+			continue;
+		set_gradient(t, i);
+		t->order[n++] = i;
+	}
+	return n;
+}
+
+/* @p figures: of the rows kept out, after each FIGURES_EVERY trees; or NULL */
+static void grow_forest(struct training *t, struct figures *figures)
+{
+	double prior[CLASSES] = { 0 };
+	for (int i = 0; i < t->row_count; i++)
+		for (int n = 0; n < 2; n++)
+			if (!t->kept_out[t->row[i].track] && t->row[i].label[n] != UNUSED)
+				prior[t->row[i].label[n]] += t->row[i].weight;
+	double mean = 0;
+	for (int k = 0; k < CLASSES; k++)
+		mean += log(prior[k]) / CLASSES;
+	for (int k = 0; k < CLASSES; k++)
+		t->base[k] = (float)(log(prior[k]) - mean);
+	for (int i = 0; i < t->row_count; i++)
+		memcpy(t->score[i], t->base, sizeof t->base);
+	t->tree_count = (int)t->settings.trees;
+	for (int n = 0; n < t->tree_count; n++) {
+		struct tree *tree = &t->tree[n];
+		grow_tree(t, tree, choose_rows(t));
+		for (int i = 0; i < t->row_count; i++) {
+			const struct node *leaf = leaf_of(tree, t->bins + (size_t)i * FEATURES);
+			for (int k = 0; k < CLASSES; k++)
+				t->score[i][k] += leaf->value[k];
+		}
+		if (figures && (n + 1) % FIGURES_EVERY == 0)
+			add_figures(t, &figures[n / FIGURES_EVERY]);
+	}
+}
+
+/* The score of a leaf or of the base, in GZ_FOREST_UNIT. */
+static int quantised(float value)
+{
+	return (int)lrint((double)value / GZ_FOREST_UNIT);
+}
+
+/* What a class's sum begins with, GZ_FOREST_UNIT. */
+static int base_of(const struct training *t, int class)
+{
+	const double more[CLASSES] = { 0, t->settings.saccade, t->settings.pursuit,
+				       t->settings.noise };
+	return (int)lrint(((double)t->base[class] + more[class]) / GZ_FOREST_UNIT);
+}
+
+/* A hash of the scores of all samples at their native rates: FNV-1a (Fowler, Noll and Vo), 64 bits.
+ * The test filter.classifier compares it with what the filter makes of the recordings. */
+static uint64_t hash_scores(const struct training *t)
+{
+	uint64_t hash = UINT64_C(14695981039346656037);
+	for (int i = 0; i < t->row_count; i++) {
+		int32_t score[CLASSES];
+		const struct track *track = &t->track[t->row[i].track];
+		if (track->period_ms > native_ms(track))
+			continue;
+		for (int k = 0; k < CLASSES; k++)
+			score[k] = base_of(t, k);
+		for (int n = 0; n < t->tree_count; n++) {
+			const struct node *leaf =
+				leaf_of(&t->tree[n], t->bins + (size_t)i * FEATURES);
+			for (int k = 0; k < CLASSES; k++)
+				score[k] += quantised(leaf->value[k]);
+		}
+		for (int k = 0; k < CLASSES; k++)
+			for (int shift = 0; shift < 32; shift += 8)
+				hash = (hash ^ ((uint32_t)score[k] >> shift & 0xff)) *
+				       UINT64_C(1099511628211);
+	}
+	return hash;
+}
+
+static const char *name_of(const struct training *t)
+{
+	return t->settings.certain > 0 ? "certain" : "at_once";
+}
+
+static void write_provenance(const struct training *t, FILE *file)
+{
+	struct settings settings = t->settings;
+	fprintf(file, "/*\n * Made by bench/probes/gaze_forest_fit.c; do not edit. Settings:");
+	for (int k = 0; k < KEY_COUNT; k++)
+		fprintf(file, "%s%s=%g", k % 6 == 0 ? "\n * " : " ", KEYS[k].key,
+			*setting_at(&settings, k));
+	fprintf(file, "\n * from %d samples of these recordings:\n", t->row_count);
+	const char *last = "";
+	for (int i = 0; i < t->track_count; i++) {
+		const struct track *track = &t->track[i];
+		const char *name = track->andersson ? track->name : track->kind;
+		if (strcmp(name, last) != 0)
+			fprintf(file, " *   %s %s\n", track->andersson ? "andersson" : "gazecom",
+				name);
+		last = name;
+	}
+	fprintf(file, " */\n/* clang-format off */\n");
+}
+
+static int depth_below(const struct tree *tree, int node)
+{
+	if (tree->node[node].feature < 0)
+		return 0;
+	const int left = depth_below(tree, tree->node[node].left);
+	const int right = depth_below(tree, tree->node[node].right);
+	return 1 + (left > right ? left : right);
+}
+
+/* Begin a new line of a table where the last one is full. */
+static void wrap_line(FILE *file, long *line_start)
+{
+	if (ftell(file) - *line_start < 88)
+		return;
+	fputc('\n', file);
+	*line_start = ftell(file);
+}
+
+static void write_nodes(const struct training *t, FILE *file)
+{
+	fprintf(file, "static const struct gz_forest_node %s_nodes[] = {\n", name_of(t));
+	long line_start = ftell(file);
+	for (int n = 0; n < t->tree_count; n++) {
+		int leaves = 0;
+		for (int i = 0; i < t->tree[n].node_count; i++) {
+			const struct node *node = &t->tree[n].node[i];
+			if (node->feature < 0)
+				fprintf(file, "L(%d,%d)", i, leaves++);
+			else
+				fprintf(file, "N(%d,%.3e,%d,%d)", node->feature,
+					(double)t->edges[node->feature][node->bin], node->left,
+					node->right);
+			wrap_line(file, &line_start);
+		}
+	}
+	fprintf(file, "\n};\n");
+}
+
+static void write_leaves(const struct training *t, FILE *file)
+{
+	fprintf(file, "static const int16_t %s_leaves[][GZ_FOREST_CLASSES] = {\n", name_of(t));
+	long line_start = ftell(file);
+	for (int n = 0; n < t->tree_count; n++)
+		for (int i = 0; i < t->tree[n].node_count; i++) {
+			const struct node *node = &t->tree[n].node[i];
+			if (node->feature >= 0)
+				continue;
+			fprintf(file, "{%d,%d,%d,%d},", quantised(node->value[0]),
+				quantised(node->value[1]), quantised(node->value[2]),
+				quantised(node->value[3]));
+			wrap_line(file, &line_start);
+		}
+	fprintf(file, "\n};\n");
+}
+
+static void write_trees(const struct training *t, FILE *file)
+{
+	fprintf(file, "static const struct gz_forest_tree %s_trees[] = {\n", name_of(t));
+	long line_start = ftell(file);
+	int node = 0, leaf = 0;
+	for (int n = 0; n < t->tree_count; n++) {
+		const struct tree *tree = &t->tree[n];
+		fprintf(file, "{%d,%d,%d},", node, leaf, depth_below(tree, 0));
+		wrap_line(file, &line_start);
+		node += tree->node_count;
+		leaf += (tree->node_count + 1) / 2;
+	}
+	fprintf(file, "\n};\n");
+}
+
+static void write_forest(const struct training *t, const char *folder)
+{
+	char path[1024];
+	snprintf(path, sizeof path, "%s/forest_%s.inc", folder, name_of(t));
+	FILE *file = fopen(path, "w");
+	if (!file) {
+		fprintf(stderr, "%s: cannot write it\n", path);
+		exit(1);
+	}
+	write_provenance(t, file);
+	write_nodes(t, file);
+	write_leaves(t, file);
+	write_trees(t, file);
+	fprintf(file, "static const int32_t %s_base[GZ_FOREST_CLASSES] = { %d, %d, %d, %d };\n",
+		name_of(t), base_of(t, 0), base_of(t, 1), base_of(t, 2), base_of(t, 3));
+	fprintf(file, "#define %s_hash UINT64_C(0x%016llx)\n", name_of(t),
+		(unsigned long long)hash_scores(t));
+	fclose(file);
+}
+
+/* ---- folds ---- */
+
+static int set_folds(struct training *t)
+{
+	static char names[FOLDS_MAX][64];
+	int films = 0;
+	if (t->settings.folds == 2) {
+		for (int i = 0; i < t->track_count; i++)
+			t->track[i].fold = t->track[i].andersson;
+		return 2;
+	}
+	for (int i = 0; i < t->track_count; i++) {
+		struct track *track = &t->track[i];
+		if (track->andersson)
+			continue;
+		int f = 0;
+		while (f < films && strcmp(names[f], track->kind) != 0)
+			f++;
+		if (f == films)
+			strcpy(names[films++], track->kind);
+		track->fold = f;
+	}
+	const int folds = films > 0 ? films : FOLDS_WITHOUT_FILMS;
+	/* Persons: the letters and digits after the stimulus, e.g. "UH21". */
+	int persons = 0;
+	static char person[FOLDS_MAX][5];
+	for (int i = 0; i < t->track_count; i++) {
+		struct track *track = &t->track[i];
+		if (!track->andersson)
+			continue;
+		const char *name = strchr(track->name, '_') + 1;
+		int p = 0;
+		while (p < persons && strncmp(person[p], name, 4) != 0)
+			p++;
+		if (p == persons)
+			memcpy(person[persons++], name, 4);
+		track->fold = p % folds;
+	}
+	return folds;
+}
+
+/* Print how much each feature has lowered the loss of the training, the best first. */
+static void print_worth(const struct training *t)
+{
+	double worth[FEATURES] = { 0 }, whole = 0;
+	for (int n = 0; n < t->tree_count; n++)
+		for (int i = 0; i < t->tree[n].node_count; i++) {
+			const struct node *node = &t->tree[n].node[i];
+			if (node->feature < 0)
+				continue;
+			worth[node->feature] += node->gain;
+			whole += node->gain;
+		}
+	for (int shown = 0; shown < FEATURES; shown++) {
+		int best = 0;
+		for (int f = 1; f < FEATURES; f++)
+			best = worth[f] > worth[best] ? f : best;
+		printf("%-16s %5.2f %%\n", gz_movement_feature_names[best],
+		       100 * worth[best] / whole);
+		worth[best] = -1;
+	}
+}
+
+/* ---- the command ---- */
+
+/* @return whether all arguments are settings */
+static bool read_settings(int argc, char **argv, struct settings *out)
+{
+	for (int k = 0; k < KEY_COUNT; k++)
+		*setting_at(out, k) = KEYS[k].preset;
+	for (int i = 2; i < argc; i++) {
+		const size_t length = strcspn(argv[i], "=");
+		bool found = false;
+		for (int k = 0; k < KEY_COUNT && argv[i][length]; k++) {
+			if (strncmp(KEYS[k].key, argv[i], length) != 0 || KEYS[k].key[length])
+				continue;
+			*setting_at(out, k) = strtod(argv[i] + length + 1, NULL);
+			found = true;
+		}
+		if (!found) {
+			fprintf(stderr, "gaze_forest_fit: no such setting: %s\n", argv[i]);
+			return false;
+		}
+	}
+	return out->leaves <= LEAVES_MAX && out->bins <= BINS_MAX && out->trees <= TREES_MAX;
+}
+
+/* Vectors need memory at multiples of their size. */
+static void *new_array(size_t count, size_t size)
+{
+	const size_t bytes = (count * size + 31) / 32 * 32;
+	void *array = aligned_alloc(32, bytes);
+	if (!array) {
+		fprintf(stderr, "gaze_forest_fit: no memory\n");
+		exit(1);
+	}
+	return memset(array, 0, bytes);
+}
+
+static void make_room(struct training *t)
+{
+	const size_t rows = (size_t)t->row_count;
+	t->score = new_array(rows, sizeof *t->score);
+	t->gradient = new_array(rows, sizeof *t->gradient);
+	t->order = new_array(rows, sizeof *t->order);
+	t->spare = new_array(rows, sizeof *t->spare);
+	t->tree = new_array(TREES_MAX, sizeof *t->tree);
+	t->kept_out = new_array(TRACKS_MAX, sizeof *t->kept_out);
+	t->pool = new_array((LEAVES_MAX + 1) * FEATURES * (size_t)t->bin_count, sizeof *t->pool);
+}
+
+static void train_on_all(struct training *t, const char *folder)
+{
+	grow_forest(t, NULL);
+	write_forest(t, folder);
+	print_worth(t);
+}
+
+static void train_on_folds(struct training *t, const char *folder)
+{
+	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1];
+	const int folds = set_folds(t);
+	char path[1024];
+	snprintf(path, sizeof path, "%s/%.0f.scores", folder, t->settings.tag);
+	FILE *scores = fopen(path, "wb");
+	if (!scores) {
+		fprintf(stderr, "%s: cannot write it\n", path);
+		exit(1);
+	}
+	for (int fold = 0; fold < folds; fold++) {
+		if (t->settings.only_fold >= 0 && fold != (int)t->settings.only_fold)
+			continue;
+		for (int i = 0; i < t->track_count; i++)
+			t->kept_out[i] = t->track[i].fold == fold;
+		grow_forest(t, figures);
+		write_scores(t, scores);
+	}
+	fclose(scores);
+	for (int n = 0; n < t->tree_count / FIGURES_EVERY; n++) {
+		printf("%d trees: ", (n + 1) * FIGURES_EVERY);
+		print_figures(&figures[n]);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	static struct training t;
+	if (argc < 2 || !read_settings(argc, argv, &t.settings)) {
+		fprintf(stderr, "usage: gaze_forest_fit FOLDER [KEY=NUMBER...]\n");
+		return 2;
+	}
+	t.random = gz_random_seeded((uint64_t)t.settings.seed, 0);
+	read_tracks(&t, argv[1]);
+	read_rows(&t, argv[1]);
+	make_bins(&t);
+	make_room(&t);
+	if (t.settings.folds > 0)
+		train_on_folds(&t, argv[1]);
+	else
+		train_on_all(&t, argv[1]);
+	return 0;
+}

@@ -1,0 +1,20 @@
+/* The trained forests. */
+#include "filter/classifier/forest.h"
+
+/* A question: the feature, its threshold, and the nodes below and not below it. */
+#define N(feature, threshold, below, above) { threshold##F, feature, { below, above }, 0 },
+
+/* A leaf, which is its own successor: its place among the nodes and among the leaves. */
+#define L(node, leaf) { 0, 0, { node, node }, leaf },
+
+#include "filter/classifier/forest_at_once.inc"
+#include "filter/classifier/forest_certain.inc"
+
+#define FOREST(name)                                                                      \
+	{                                                                                 \
+		sizeof name##_trees / sizeof name##_trees[0], name##_trees, name##_nodes, \
+			name##_leaves, name##_base, name##_hash,                          \
+	}
+
+const struct gz_forest gz_forest_at_once = FOREST(at_once);
+const struct gz_forest gz_forest_certain = FOREST(certain);

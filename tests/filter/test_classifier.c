@@ -1,0 +1,272 @@
+/* The features of eye movements and the forests that read them. */
+#include "suite.h"
+
+#include "filter/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "bench/filter/gazecom.h"
+#include "bench/filter/labelled_recording.h"
+#include "filter/classifier/forest.h"
+#include "filter/pipeline.h"
+#include "sim/tracker.h"
+
+static const double RATES_HZ[] = { 60, 120, 250, 300, 500, 1000, 2000 };
+enum { RATE_COUNT = sizeof RATES_HZ / sizeof RATES_HZ[0] };
+
+static size_t feature_named(const char *name)
+{
+	for (size_t i = 0; i < GZ_MOVEMENT_FEATURES; i++)
+		if (strcmp(gz_movement_feature_names[i], name) == 0)
+			return i;
+	fail_msg("no feature %s", name);
+	return 0;
+}
+
+/* A display on which one degree near the centre is a hundredth of its width. */
+static struct gz_display wide_display(void)
+{
+	return (struct gz_display) { { 1000, 1000 },
+				     { 100 * 1000 / 57.295779513, 100 * 1000 / 57.295779513 },
+				     1000 };
+}
+
+/* Feeds points at a constant rate; x and y in degrees from the centre. */
+struct feed {
+	struct gz_movement movement;
+	struct gz_display display;
+	double period_s, time_s;
+	float features[GZ_MOVEMENT_FEATURES];
+};
+
+static void feed_open(struct feed *feed, double rate_hz)
+{
+	*feed = (struct feed) { .display = wide_display(), .period_s = 1 / rate_hz };
+}
+
+static void feed_point(struct feed *feed, double x_deg, double y_deg, bool valid)
+{
+	const struct gz_movement_input input = {
+		.time_ns = GZ_NS_PER_S + (int64_t)(feed->time_s * 1e9),
+		.valid = valid,
+		.point = { (float)(0.5 + x_deg / 100), (float)(0.5 + y_deg / 100) },
+	};
+	(void)gz_movement_step(&feed->movement, &feed->display, &input, feed->features);
+	feed->time_s += feed->period_s;
+}
+
+static double feature_of(const struct feed *feed, const char *name)
+{
+	return (double)feed->features[feature_named(name)];
+}
+
+static void every_feature_has_a_name_of_its_own(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < GZ_MOVEMENT_FEATURES; i++) {
+		assert_non_null(gz_movement_feature_names[i]);
+		assert_int_equal(feature_named(gz_movement_feature_names[i]), i);
+	}
+}
+
+static void steady_movement_gives_the_same_features_at_any_rate(void **state)
+{
+	(void)state;
+	for (int i = 0; i < RATE_COUNT; i++) {
+		static struct feed feed;
+		feed_open(&feed, RATES_HZ[i]);
+		while (feed.time_s < 2) /* 6 degrees right and 8 down each second */
+			feed_point(&feed, 6 * (feed.time_s - 2), 8 * (feed.time_s - 2), true);
+		CHECK_BETWEEN(feature_of(&feed, "speed_0"), 9.8, 10.2);
+		CHECK_BETWEEN(feature_of(&feed, "speed_7"), 9.8, 10.2);
+		CHECK_BETWEEN(feature_of(&feed, "distance_16"), 0.157, 0.163);
+		CHECK_BETWEEN(feature_of(&feed, "distance_448"), 4.4, 4.5);
+		CHECK_BETWEEN(feature_of(&feed, "way_448"), 4.3, 4.7);
+		CHECK_BETWEEN(feature_of(&feed, "down_64"), 0.50, 0.52);
+		CHECK_BETWEEN(feature_of(&feed, "across_64"), 0.37, 0.39);
+		CHECK_BETWEEN(feature_of(&feed, "turn_32"), 0.99, 1.0);
+		CHECK_BETWEEN(feature_of(&feed, "slope"), 9.8, 10.2);
+		CHECK_BETWEEN(feature_of(&feed, "residual"), 0, 0.02);
+		CHECK_BETWEEN(feature_of(&feed, "noise"), 9.5, 10.5);
+		CHECK_BETWEEN(feature_of(&feed, "since_fast_ms"), 1000, 1000);
+	}
+}
+
+static void a_resting_eye_has_no_movement(void **state)
+{
+	(void)state;
+	static struct feed feed;
+	feed_open(&feed, 500);
+	while (feed.time_s < 1)
+		feed_point(&feed, 3, -2, true);
+	for (size_t i = 0; i < feature_named("noise"); i++)
+		assert_true(feed.features[i] == 0);
+	assert_true(feature_of(&feed, "slope") == 0);
+}
+
+/* A step of 5 degrees to the left within 20 ms. */
+static void a_burst_is_measured(void **state)
+{
+	(void)state;
+	for (int i = 2; i < RATE_COUNT; i++) {
+		static struct feed feed;
+		feed_open(&feed, RATES_HZ[i]);
+		while (feed.time_s < 1)
+			feed_point(&feed, -5 * fmax(0, fmin(1, (feed.time_s - 0.5) / 0.02)), 1,
+				   true);
+		CHECK_BETWEEN(feature_of(&feed, "burst_peak"), 225, 255);
+		CHECK_BETWEEN(feature_of(&feed, "burst_deg"), 4.9, 5.1);
+		CHECK_BETWEEN(feature_of(&feed, "burst_ms"), 14, 28);
+		CHECK_BETWEEN(feature_of(&feed, "since_fast_ms"), 470, 482);
+		CHECK_BETWEEN(feature_of(&feed, "stretch_ms"), 440, 460);
+	}
+}
+
+static void a_loss_is_measured_and_holds_the_place(void **state)
+{
+	(void)state;
+	static struct feed feed;
+	feed_open(&feed, 250);
+	while (feed.time_s < 1)
+		feed_point(&feed, 1, 1, feed.time_s < 0.5 || feed.time_s > 0.6);
+	CHECK_BETWEEN(feature_of(&feed, "lost_ms"), 100, 108);
+	CHECK_BETWEEN(feature_of(&feed, "since_lost_ms"), 385, 400);
+	CHECK_BETWEEN(feature_of(&feed, "lost_448"), 0.10, 0.13);
+	assert_true(feature_of(&feed, "distance_448") == 0);
+}
+
+static void any_samples_give_finite_features_and_the_same_again(void **state)
+{
+	(void)state;
+	static struct feed feed, copy;
+	struct gz_random random = gz_random_seeded(1, 1);
+	feed_open(&feed, 500);
+	for (int k = 0; k < 200000; k++) {
+		uint64_t bits = gz_random_bits(&random);
+		feed.period_s = bits % 5 == 0     ? 1e-9
+				: bits % 101 == 0 ? 3
+						  : 1e-3 * (double)(bits % 7);
+		double x = gz_random_between(&random, -60, 60);
+		double y = gz_random_between(&random, -60, 60);
+		copy = feed;
+		feed_point(&feed, x, y, bits & 1 << 20);
+		feed_point(&copy, x, y, bits & 1 << 20);
+		for (size_t i = 0; i < GZ_MOVEMENT_FEATURES; i++)
+			assert_true(isfinite(feed.features[i]));
+		assert_memory_equal(feed.features, copy.features, sizeof feed.features);
+	}
+}
+
+/* FNV-1a, as gaze_forest_fit computes it. */
+static uint64_t hash_scores(uint64_t hash, const int32_t scores[GZ_FOREST_CLASSES])
+{
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+		for (int shift = 0; shift < 32; shift += 8)
+			hash = (hash ^ ((uint32_t)scores[k] >> shift & 0xff)) *
+			       UINT64_C(1099511628211);
+	return hash;
+}
+
+struct hashes {
+	uint64_t at_once, certain;
+};
+
+static void hash_recording(const struct gz_labelled_recording *recording, struct hashes *hashes)
+{
+	static struct gz_pipeline pipeline;
+	static struct gz_movement movement;
+	gz_pipeline_init(&pipeline, NULL, &recording->display);
+	memset(&movement, 0, sizeof movement);
+	for (size_t i = 0; i < recording->count; i++) {
+		const struct gz_sample *sample = &recording->sample[i];
+		const struct gz_validate_output valid = gz_validate_step(
+			&pipeline.validate, &pipeline.params.validate, &recording->display, sample);
+		const struct gz_movement_input input = {
+			.time_ns = sample->host_ns,
+			.valid = valid.rejection == GZ_REJECT_NONE,
+			.point = sample->point,
+		};
+		float features[GZ_MOVEMENT_FEATURES];
+		int32_t scores[GZ_FOREST_CLASSES];
+		(void)gz_movement_step(&movement, &recording->display, &input, features);
+		gz_forest_score(&gz_forest_at_once, features, scores);
+		hashes->at_once = hash_scores(hashes->at_once, scores);
+		gz_forest_score(&gz_forest_certain, features, scores);
+		hashes->certain = hash_scores(hashes->certain, scores);
+	}
+}
+
+/* What the training computed from its own copy of the features and trees is what the filter gives.
+ */
+static void scores_are_those_of_the_training(void **state)
+{
+	(void)state;
+	const char *data = getenv("GAZECAST_DATA");
+	if (!data)
+		skip();
+	struct hashes hashes = { UINT64_C(14695981039346656037), UINT64_C(14695981039346656037) };
+	for (size_t i = 0; i < GZ_LABELLED_FILES; i++) {
+		struct gz_labelled_recording first, second = { .count = 0 };
+		assert_true(gz_labelled_recording_read(data, i, 0, &first));
+		assert_true(gz_labelled_recording_read(data, i, 1, &second));
+		if (second.count < first.count)
+			first.count = second.count;
+		hash_recording(&first, &hashes);
+		gz_labelled_recording_free(&first);
+		gz_labelled_recording_free(&second);
+	}
+	for (size_t film = 0; film < GZ_GAZECOM_FILMS; film++) {
+		static struct gz_gazecom gazecom;
+		assert_true(gz_gazecom_read(data, film, &gazecom));
+		for (size_t i = 0; i < gazecom.count; i++)
+			hash_recording(&gazecom.recording[i], &hashes);
+		gz_gazecom_free(&gazecom);
+	}
+	assert_true(hashes.at_once == gz_forest_at_once.training_hash);
+	assert_true(hashes.certain == gz_forest_certain.training_hash);
+}
+
+static void features_and_forests_cost_a_few_microseconds(void **state)
+{
+	(void)state;
+	static struct feed feed;
+	struct gz_random random = gz_random_seeded(2, 2);
+	enum { SAMPLES = 20000 };
+	static double places[SAMPLES][2];
+	for (int k = 0; k < SAMPLES; k++)
+		for (int i = 0; i < 2; i++)
+			places[k][i] = gz_random_normal(&random) * (k % 400 < 20 ? 5 : 0.05);
+	feed_open(&feed, 2000);
+	int32_t scores[GZ_FOREST_CLASSES];
+	int64_t sum = 0;
+	clock_t begin = clock();
+	for (int k = 0; k < SAMPLES; k++) {
+		feed_point(&feed, places[k][0], places[k][1], true);
+		gz_forest_score(&gz_forest_at_once, feed.features, scores);
+		sum += scores[0];
+		gz_forest_score(&gz_forest_certain, feed.features, scores);
+		sum += scores[0];
+	}
+	double step_us = (double)(clock() - begin) / CLOCKS_PER_SEC * 1e6 / SAMPLES;
+	print_message("%.2f us a sample (%lld)\n", step_us, (long long)sum);
+	CHECK_BETWEEN(step_us, 0, 100); /* also holds with sanitizers on a busy machine */
+}
+
+TEST_SUITE(classifier)
+{
+	static const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_feature_has_a_name_of_its_own),
+		cmocka_unit_test(steady_movement_gives_the_same_features_at_any_rate),
+		cmocka_unit_test(a_resting_eye_has_no_movement),
+		cmocka_unit_test(a_burst_is_measured),
+		cmocka_unit_test(a_loss_is_measured_and_holds_the_place),
+		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
+		cmocka_unit_test(scores_are_those_of_the_training),
+		cmocka_unit_test(features_and_forests_cost_a_few_microseconds),
+	};
+	return cmocka_run_group_tests_name("filter.classifier", tests, NULL, NULL);
+}
