@@ -9,13 +9,8 @@
 
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
+#include "render/raycast/cpu/simd_light.h"
 #include "render/raycast/shared/macrocells.h"
-
-/* Unit vectors towards the eye, and halfway between eye and light: the same for all samples of a
- * ray. */
-struct view {
-	vf eye[3], half[3];
-};
 
 /* The rays of one register. After k steps a ray is at start + k * delta in voxel coordinates, which
  * is datum + k * delta counted from the first datum. */

@@ -1,39 +1,21 @@
 /*
- * Colour: light on a sample (struct gz_light has the formulas), gathering front to back, and the
- * pixel that it becomes. A part of the kernel: see cast_kernel.h.
+ * Colour: light on a sample, gathering front to back, and the pixel that it becomes. A part of the
+ * kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 
 #include "render/data/voxel_colour.h"
-#include "render/light/light_constants.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
 #include "render/raycast/cpu/cast_rays.h"
+#include "render/raycast/cpu/simd_light.h"
 #include "render/raycast/shared/cast_constants.h"
 
 /* Colour gathered so far, front to back, and the share of light that still comes through. */
 struct light {
 	vf red, green, blue, through;
 };
-
-/* 2^x for x <= 0, to 2e-7: the fraction in [-1/2, 1/2] by a polynomial (Taylor of exp(f ln 2),
- * degree 6), the whole part into the exponent. */
-SIMD vf exp2_negative(vf x)
-{
-	x = vf_max(x, vf_set(-126));
-	const vf whole = vf_floor(x + vf_set(0.5F));
-	const vf f = (x - whole) * vf_set(0.693147180559945F);
-	vf p = vf_set(1.0F / 720);
-	p = vf_fma(p, f, vf_set(1.0F / 120));
-	p = vf_fma(p, f, vf_set(1.0F / 24));
-	p = vf_fma(p, f, vf_set(1.0F / 6));
-	p = vf_fma(p, f, vf_set(0.5F));
-	p = vf_fma(p, f, vf_set(1));
-	p = vf_fma(p, f, vf_set(1));
-	/* whole + 127 is 1 to 127, so the sign bit stays 0 */
-	return p * vf_bits(vi_shift_left(vi_trunc(whole + vf_set(127)), 23));
-}
 
 /* A sample's colour: red and green up to 2047, blue up to 1023. */
 struct colour {
@@ -56,11 +38,6 @@ SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct 
 	light->green = vf_fma(weight, colour.green, light->green);
 	light->blue = vf_fma(weight, colour.blue, light->blue);
 	light->through = light->through - weight;
-}
-
-SIMD vi to_byte(vf x)
-{
-	return vi_trunc(vf_fma(vf_min(vf_max(x, vf_set(0)), vf_set(1)), vf_set(255), vf_set(0.5F)));
 }
 
 SIMD vi to_pixel(const struct gz_cast *cast, const struct light *light)
@@ -90,35 +67,6 @@ SIMD void set_up_view(const struct gz_cast *cast, int step, const struct rays *r
 	const vf inverse = vf_set(1) / vf_sqrt(length2);
 	for (int axis = 0; axis < 3; axis++)
 		view->half[axis] = view->half[axis] * inverse;
-}
-
-/* log2 of x > 0, to 2e-7: x = 2^whole * m with m around 1, and log m = 2 artanh((m - 1) / (m + 1))
- * by its series, to the 9th power. */
-SIMD vf log2_positive(vf x)
-{
-	const int32_t root_half = 0x3F3504F3; /* bits of sqrt(1/2), the least m */
-	const vi bits = vi_add(vi_bits(x), vi_set(0x3F800000 - root_half));
-	const vf whole = vf_from_i(vi_add(vi_shift_right(bits, 23), vi_set(-127)));
-	const vf m = vf_bits(vi_add(vi_and(bits, vi_set(0x7FFFFF)), vi_set(root_half)));
-	const vf z = (m - vf_set(1)) / (m + vf_set(1));
-	const vf z2 = z * z;
-	vf p = vf_set(1.0F / 9);
-	p = vf_fma(p, z2, vf_set(1.0F / 7));
-	p = vf_fma(p, z2, vf_set(1.0F / 5));
-	p = vf_fma(p, z2, vf_set(1.0F / 3));
-	p = vf_fma(p, z2, vf_set(1));
-	return vf_fma(p * z, vf_set(2.88539008177793F), whole); /* 2 / ln 2 */
-}
-
-/* The scalar product of unit vectors, or of 0. */
-SIMD vf dot_lanes(const vf a[3], const vf b[3])
-{
-	return vf_fma(a[2], b[2], vf_fma(a[1], b[1], a[0] * b[0]));
-}
-
-SIMD vf clamp_lanes(vf x, vf least, vf greatest)
-{
-	return vf_min(vf_max(x, least), greatest);
 }
 
 /* The gradient's differences at places counted from the first datum, from two samples along each
@@ -245,28 +193,6 @@ SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mas
 	const vf filled =
 		mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
 	return clamp_lanes(vf_fma(filled, vf_set(2.0F / 65535), vf_set(-1)), vf_set(0), vf_set(1));
-}
-
-/* The factor of a colour, and the white to add to it. */
-struct shine {
-	vf factor, white;
-};
-
-SIMD struct shine find_shine(const struct gz_cast_light *light, const struct view *view,
-			     const vf normal[3], vf occlusion)
-{
-	const vf facing = vf_set(1 / GZ_LIGHT_FACING);
-	const vf towards[3] = { vf_set(light->towards[0]), vf_set(light->towards[1]),
-				vf_set(light->towards[2]) };
-	const vf side = clamp_lanes(dot_lanes(normal, view->eye) * facing, vf_set(-1), vf_set(1));
-	const vf diffuse = vf_max(side * dot_lanes(normal, towards), vf_set(0));
-	const vf cosine =
-		clamp_lanes(vf_abs(dot_lanes(normal, view->half)), vf_set(1e-12F), vf_set(1));
-	const vf gloss = exp2_negative(vf_set(light->shininess) * log2_positive(cosine)) *
-			 vf_min(diffuse * facing, vf_set(1));
-	const vf ambient = vf_set(light->ambient) * (vf_set(1) - occlusion);
-	return (struct shine) { vf_fma(diffuse, vf_set(light->diffuse), ambient),
-				gloss * vf_set(light->specular) };
 }
 
 /* Light one channel of a colour, 0 to `full`. */
