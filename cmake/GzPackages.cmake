@@ -36,6 +36,22 @@ target_link_libraries(gz_nifti INTERFACE "${NIFTI_IO_LIBRARY}" "${NIFTI_ZNZ_LIBR
 # HDF5, by which MINC 2 is read, is optional. Debian calls its variant without MPI hdf5-serial.
 pkg_search_module(HDF5 IMPORTED_TARGET hdf5-serial>=1.10.7 hdf5>=1.10.7)
 
+# Embree, which finds the triangles that rays meet, is optional: the technique isosurface needs it.
+foreach(major 4 3)
+	if(NOT GZ_EMBREE)
+		find_package(embree ${major} CONFIG QUIET)
+		if(embree_FOUND)
+			set(GZ_EMBREE_MAJOR ${major})
+			set(GZ_EMBREE embree)
+		endif()
+	endif()
+endforeach()
+if(GZ_EMBREE)
+	message(STATUS "Found Embree ${embree_VERSION}")
+else()
+	message(STATUS "Embree not found: the technique isosurface is left out (libembree-dev)")
+endif()
+
 # GDCM's own CMake package wants VTK too, where that was built with it; reading is enough.
 find_path(GDCM_INCLUDE_DIR gdcmReader.h PATH_SUFFIXES gdcm-3.0 gdcm-3.2 gdcm REQUIRED)
 add_library(gz_gdcm INTERFACE)

@@ -247,7 +247,7 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 	const bool visible = !object || object->visible;
 	if (visible && room > 0)
 		out_objects[0] = (struct gz_object) {
-			.technique = gz_techniques[object ? object->technique : 0],
+			.technique = gz_scene_technique(&scene->settings, object),
 			.id = 1,
 			.volume = &scene->volume,
 			.transfer = &scene->transfer,

@@ -3,12 +3,13 @@
 #include <string.h>
 
 #include "render/data/voxel_colour.h"
+#include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "scene"
 
 _Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_RAYS + 2 &&
-		       GZ_RAY_BINDINGS == 3,
-	       "gz_ray_params_bind() fills three tables");
+		       GZ_SCENE_ISOSURFACE == GZ_SCENE_RAYS + 3 && GZ_RAY_BINDINGS == 4,
+	       "gz_ray_params_bind() fills four tables");
 _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
 
 static const char *const procedural_names[] = { "none", "shells", "supernova", "chameleon", NULL };
@@ -77,6 +78,10 @@ static const struct gz_option camera_options[] = {
 };
 
 static const struct gz_option image_options[] = {
+	{ "render.technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_choices,
+	  .preset = "auto",
+	  .help = "how everything is drawn; auto: each object by its own technique, a [volume] by "
+		  "raycast" },
 	{ "render.image_sampling_rate", GZ_OPTION_DOUBLE, AT(image_sampling_rate), 0.1, 4,
 	  .preset = "1", .help = "rays per pixel edge" },
 };
@@ -171,6 +176,14 @@ const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_setti
 		if (settings->objects.items[i].volume[0])
 			return &settings->objects.items[i];
 	return NULL;
+}
+
+const struct gz_technique *gz_scene_technique(const struct gz_scene_settings *settings,
+					      const struct gz_scene_object *object)
+{
+	if (settings->technique > 0)
+		return gz_techniques[settings->technique - 1];
+	return gz_techniques[object ? object->technique : 0];
 }
 
 const char *gz_scene_transfer_name(const struct gz_scene_settings *settings)

@@ -22,6 +22,7 @@
 #include "render/raycast/shared/ray_params.h"
 #include "render/scene/scene_objects.h"
 #include "render/scene/view_settings.h"
+#include "render/technique/technique.h"
 
 /** Size of a DICOM UID with its NUL (PS3.5, 9.1), bytes. */
 #define GZ_SERIES_SIZE 65
@@ -46,6 +47,8 @@ struct gz_scene_settings {
 	struct gz_scene_objects objects;  /**< sections [object NAME] */
 	struct gz_camera camera;
 	struct gz_ray_params rays;
+	int technique;              /**< of all objects: index into gz_techniques + 1; 0: each
+				       object's own */
 	double image_sampling_rate; /**< rays per pixel edge, may exceed 1 */
 	struct gz_foveation foveation;
 	struct gz_attention_params attention;
@@ -65,6 +68,7 @@ enum gz_scene_table {
 	GZ_SCENE_RAYS,
 	GZ_SCENE_LIGHT,
 	GZ_SCENE_CLIP,
+	GZ_SCENE_ISOSURFACE,
 	GZ_SCENE_FOVEATION,
 	GZ_SCENE_ATTENTION,
 	GZ_SCENE_TEMPORAL,
@@ -102,6 +106,11 @@ bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_
 
 /** The object whose volume the scene shows; NULL if section [volume] names it. Borrowed. */
 const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings);
+
+/** The technique that draws an object: render.technique, or the object's own. @param object  NULL:
+ *  the volume of section [volume]. Static. */
+const struct gz_technique *gz_scene_technique(const struct gz_scene_settings *settings,
+					      const struct gz_scene_object *object);
 
 /** The file of the transfer function that is used: transfer.file if given, else that of the
  * volume's object. "" = one is made for the volume. Borrowed. */

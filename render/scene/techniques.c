@@ -3,7 +3,14 @@
 #include <stddef.h>
 
 #include "render/raycast/raycast.h"
+#include "render/surface/isosurface_technique.h"
 
-const struct gz_technique *const gz_techniques[] = { &gz_raycast_technique, NULL };
+const struct gz_technique *const gz_techniques[] = {
+	&gz_raycast_technique,
+	&gz_isosurface_technique,
+	NULL,
+};
 
-const char *const gz_technique_names[] = { "raycast", NULL };
+const char *const gz_technique_choices[] = { "auto", "raycast", "isosurface", NULL };
+
+const char *const gz_technique_names[] = { "raycast", "isosurface", NULL };

@@ -14,4 +14,7 @@ extern const struct gz_technique *const gz_techniques[];
 /** The techniques' names in the same order, NULL-terminated. */
 extern const char *const gz_technique_names[];
 
+/** "auto", then the names. */
+extern const char *const gz_technique_choices[];
+
 #endif

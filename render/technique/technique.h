@@ -15,6 +15,7 @@
 #include "base/option.h"
 #include "base/result.h"
 #include "render/data/volume.h"
+#include "render/mesh/mesh.h"
 #include "render/picture/camera.h"
 #include "render/picture/image.h"
 #include "render/plan/plan.h"
@@ -38,6 +39,8 @@ struct gz_object {
 	uint32_t id;                          /**< in planes of object ids: 1 or more */
 	const struct gz_volume *volume;       /**< NULL: none */
 	const struct gz_transfer *transfer;   /**< of the volume */
+	const struct gz_mesh *mesh;           /**< shown in place of the volume; NULL: none */
+	double mesh_world_mm;                 /**< without a volume: mm of a world unit; above 0 */
 	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };

@@ -7,6 +7,7 @@
 
 #include "base/captured_log.h"
 #include "render/plan/method.h"
+#include "render/scene/techniques.h"
 #include "view/options/options.h"
 
 enum { ARGUMENTS_MAX = 24 };
@@ -73,6 +74,32 @@ static void scene_may_stand_alone(void **state)
 	assert_refused("--headless", "--scene");
 }
 
+static void technique_and_isovalue_are_short_for_scene_keys(void **state)
+{
+	(void)state;
+	struct gz_scene_settings settings;
+	assert_int_equal(gz_scene_settings_preset(&settings), GZ_OK);
+	assert_int_equal(read_line("a.scene"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.technique, 0);
+	settings.technique = 1;
+	settings.rays.surface.isovalue = 9;
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.technique, 1);
+	assert_true(settings.rays.surface.isovalue == 9);
+	assert_int_equal(read_line("--technique isosurface --isovalue -2.5 a.scene"), GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_string_equal(gz_technique_choices[settings.technique], "isosurface");
+	assert_true(settings.rays.surface.isovalue == -2.5);
+	assert_refused("--technique isosurface --render.technique raycast a.scene",
+		       "--render.technique");
+	assert_refused("--isovalue 3 --isosurface.isovalue 3 a.scene", "--isosurface.isovalue");
+	assert_refused("--technique slices a.scene", "technique");
+	assert_refused("--replay a.session --technique raycast", "--technique");
+	assert_refused("--experiment a.experiment --isovalue 3", "--isovalue");
+	assert_refused("--experiment a.experiment --technique raycast", "--technique");
+}
+
 static void mesh_needs_its_isovalue_and_no_other_work(void **state)
 {
 	(void)state;
@@ -81,7 +108,6 @@ static void mesh_needs_its_isovalue_and_no_other_work(void **state)
 	assert_true(options.isovalue == -500);
 	assert_int_equal(read_line("--write-mesh a.ply --isovalue 0 a.scene"), GZ_OK);
 	assert_refused("--write-mesh a.ply a.scene", "--isovalue");
-	assert_refused("--isovalue 0 a.scene", "--write-mesh");
 	assert_refused("--write-mesh a.ply --isovalue 3", "no scene");
 	assert_refused("--write-mesh a.ply --isovalue nan a.scene", "isovalue");
 	assert_refused("--write-mesh a.ply --isovalue 3 --write-volume a.gzb a.scene",
@@ -434,6 +460,7 @@ TEST_SUITE(options)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(command_line_of_the_manual_is_read),
 		cmocka_unit_test(scene_may_stand_alone),
+		cmocka_unit_test(technique_and_isovalue_are_short_for_scene_keys),
 		cmocka_unit_test(mesh_needs_its_isovalue_and_no_other_work),
 		cmocka_unit_test(default_gaze_is_centre_headless_and_daemon_in_a_window),
 		cmocka_unit_test(gaze_texts_choose_their_sources),

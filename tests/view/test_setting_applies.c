@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "render/plan/method.h"
+#include "render/scene/techniques.h"
 #include "view/settings/scene_keys.h"
 
 static struct gz_scene_settings settings_of(int method)
@@ -76,11 +77,29 @@ static void keys_behind_a_switch_apply_once_it_is_on(void **state)
 	assert_true(gz_setting_applies(&settings, "foveation.acuity_slope"));
 }
 
+static void keys_of_a_technique_apply_where_it_draws(void **state)
+{
+	(void)state;
+	struct gz_scene_settings settings = settings_of(GZ_METHOD_STANDARD);
+	assert_true(gz_setting_applies(&settings, "render.technique"));
+	assert_true(gz_setting_applies(&settings, "render.ray_sampling_rate"));
+	assert_false(gz_setting_applies(&settings, "isosurface.isovalue"));
+	settings.technique = 2;
+	assert_string_equal(gz_technique_choices[settings.technique], "isosurface");
+	assert_true(gz_setting_applies(&settings, "isosurface.isovalue"));
+	assert_true(gz_setting_applies(&settings, "render.background"));
+	assert_true(gz_setting_applies(&settings, "light.ambient")); /* always lit */
+	assert_false(gz_setting_applies(&settings, "light.occlusion"));
+	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
+	assert_false(gz_setting_applies(&settings, "render.shading"));
+}
+
 TEST_SUITE(setting_applies)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(foveation_keys_apply_to_the_methods_that_use_them),
 		cmocka_unit_test(keys_behind_a_switch_apply_once_it_is_on),
+		cmocka_unit_test(keys_of_a_technique_apply_where_it_draws),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

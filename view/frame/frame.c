@@ -45,7 +45,8 @@ struct gz_frame_maker {
 		int method, width, height;
 	} spent; /* method and size the budget's times belong to */
 	bool any_made;
-	bool standard_told; /* the warning that standard ignores the budget was logged */
+	int refused_technique; /* render.technique that failed; 0: none */
+	bool standard_told;    /* the warning that standard ignores the budget was logged */
 };
 
 /* Overrides of the scene's settings; contradictions are found before large files are read. */
@@ -62,6 +63,7 @@ static void keep_settings(const struct gz_scene_settings *kept, struct gz_scene_
 	const struct gz_clip_box clip = settings->rays.clip;
 	settings->rays = kept->rays;
 	settings->rays.clip = clip;
+	settings->technique = kept->technique;
 	settings->image_sampling_rate = kept->image_sampling_rate;
 	settings->foveation = kept->foveation;
 	settings->foveation.table = own.table;
@@ -449,6 +451,24 @@ bool gz_frame_settling(const struct gz_frame_maker *maker)
 	return gz_picture_maker_settling(maker->pictures);
 }
 
+/* Draw by another technique if the settings ask for it. If that fails, the present one stays. */
+static enum gz_result follow_technique(struct gz_frame_maker *maker, int technique)
+{
+	int *shown = &maker->scene.settings.technique;
+	const int before = *shown;
+	if (technique == before || technique == maker->refused_technique)
+		return GZ_OK;
+	maker->refused_technique = 0;
+	*shown = technique;
+	if (show_scene_objects(maker) == GZ_OK)
+		return GZ_OK;
+	maker->refused_technique = technique;
+	*shown = before;
+	gz_warn(maker->log, "render.technique = %s: refused; %s goes on",
+		gz_technique_choices[technique], gz_technique_choices[before]);
+	return show_scene_objects(maker);
+}
+
 static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 					 const struct gz_frame_request *request,
 					 struct gz_image **out_image,
@@ -469,7 +489,9 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 		.loss_returned = request->loss_is_callers,
 	};
 	struct gz_picture_cost cost;
-	const enum gz_result r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
+	enum gz_result r = follow_technique(maker, settings->technique);
+	if (r == GZ_OK)
+		r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
 	if (r != GZ_OK)
 		return r;
 	record->total_ms = cost.total_ms;

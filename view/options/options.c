@@ -11,6 +11,7 @@
 #include "render/data/voxel_colour.h"
 #include "render/picture/image.h"
 #include "render/plan/method.h"
+#include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -35,6 +36,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "frames per second of gaze time" },
 	{ "method", GZ_OPTION_CHOICE, AT(method), .choices = gz_method_names,
 	  .help = "foveation method; default: the scene's" },
+	{ "technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_choices,
+	  .help = "short for --render.technique: how everything is drawn" },
 	{ "backend", GZ_OPTION_STRING, AT(backend), .max = GZ_NAME_SIZE, .preset = "auto",
 	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it)" },
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
@@ -71,7 +74,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "write the surface of the scene's volume at --isovalue to this file, in mm, and "
 		  "exit: .ply, .obj or .stl" },
 	{ "isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -1e30, 1e30,
-	  .help = "data value of the surface that --write-mesh writes" },
+	  .help = "data value of the surface that --write-mesh writes or --technique isosurface "
+		  "shows; short for --isosurface.isovalue" },
 	{ "bricks", GZ_OPTION_CHOICE, AT(bricks), .choices = bricks_names, .preset = "auto",
 	  .help = "pictures of a volume in bricks: wait for all visible bricks, or stream: coarse "
 		  "first, sharper later; auto: wait if headless" },
@@ -190,6 +194,7 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 		"volume.resample",
 		"write-mesh",
 		"isovalue",
+		"technique",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t k = 0; k < sizeof others / sizeof others[0] && !other; k++)
@@ -204,7 +209,7 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 	return GZ_ERR_INVAL;
 }
 
-/* A mesh needs its isovalue, and nothing else does. */
+/* A mesh that is written needs its isovalue. */
 static enum gz_result check_mesh(const struct gz_view_options *options, const struct gz_log *log)
 {
 	const bool value = is_given(options, "isovalue"), mesh = options->write_mesh[0];
@@ -215,8 +220,6 @@ static enum gz_result check_mesh(const struct gz_view_options *options, const st
 	else if (mesh && !value)
 		gz_err(log, "--write-mesh: --isovalue is missing; give the data value where the "
 			    "surface lies");
-	else if (value && !mesh)
-		gz_err(log, "--isovalue: only a mesh has one; add --write-mesh FILE");
 	else
 		return GZ_OK;
 	return GZ_ERR_INVAL;
@@ -261,6 +264,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 	const char *other = options->target.targets[0]      ? "--targets"
 			    : options->scene[0]             ? "a scene"
 			    : options->method >= 0          ? "--method"
+			    : options->technique >= 0       ? "--technique"
 			    : options->turn_deg != 0        ? "--turn"
 			    : options->time_point > 0       ? "--time-point"
 			    : options->play > 0             ? "--play"
@@ -268,6 +272,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->volume_resample >= 0 ? "--volume.resample"
 			    : options->write_volume[0]      ? "--write-volume"
 			    : options->write_mesh[0]        ? "--write-mesh"
+			    : is_given(options, "isovalue") ? "--isovalue"
 			    : options->list_series          ? "--list-series"
 			    : options->out[0]               ? "--out"
 			    : options->video[0]             ? "--video"
@@ -540,22 +545,35 @@ static enum gz_result take_positional(struct gz_view_options *options, const cha
 	return GZ_OK;
 }
 
-/* --method is short for --foveation.method; both at once contradict each other. */
-static enum gz_result check_method_once(const struct gz_view_options *options,
-					const struct gz_view_scene_tables *tables,
-					const struct gz_log *log)
+/* Whether a key of the scene's tables is given. */
+static bool scene_key_given(const struct gz_view_options *options,
+			    const struct gz_view_scene_tables *tables, const char *key)
 {
 	const bool *given = options->scene_given;
-	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES && options->method >= 0; i++) {
-		for (size_t k = 0; k < tables->bindings[i].count; k++) {
-			if (*given++ &&
-			    strcmp(tables->bindings[i].options[k].key, "foveation.method") == 0) {
-				gz_err(log, "--method: --foveation.method sets the same; give one "
-					    "of them");
-				return GZ_ERR_INVAL;
-			}
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++)
+		for (size_t k = 0; k < tables->bindings[i].count; k++)
+			if (*given++ && strcmp(tables->bindings[i].options[k].key, key) == 0)
+				return true;
+	return false;
+}
+
+/* Options that are short for a scene's keys; both at once contradict each other. */
+static enum gz_result check_given_once(const struct gz_view_options *options,
+				       const struct gz_view_scene_tables *tables,
+				       const struct gz_log *log)
+{
+	static const char *const pairs[][2] = {
+		{ "method", "foveation.method" },
+		{ "technique", "render.technique" },
+		{ "isovalue", "isosurface.isovalue" },
+	};
+	for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+		if (is_given(options, pairs[i][0]) &&
+		    scene_key_given(options, tables, pairs[i][1])) {
+			gz_err(log, "--%s: --%s sets the same; give one of them", pairs[i][0],
+			       pairs[i][1]);
+			return GZ_ERR_INVAL;
 		}
-	}
 	return GZ_OK;
 }
 
@@ -615,7 +633,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	struct gz_view_scene_tables tables;
 	memset(out_options, 0, sizeof *out_options);
 	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
-	out_options->volume_opacity = -1;
+	out_options->volume_opacity = out_options->technique = -1;
 	out_options->volume_resample = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
@@ -628,7 +646,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 		gaze = out_options->headless ? "centre" : "daemon";
 	r = gz_gaze_choice_parse(gaze, log, &out_options->gaze);
 	if (r == GZ_OK)
-		r = check_method_once(out_options, &tables, log);
+		r = check_given_once(out_options, &tables, log);
 	return r == GZ_OK ? check_options(out_options, log) : r;
 }
 
@@ -679,11 +697,11 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	gz_view_pick_scene_tables(&given, &from);
 	gz_view_pick_scene_tables(settings, &to);
 	char text[GZ_PATH_SIZE];
-	const bool *is_given = options->scene_given;
+	const bool *key_given = options->scene_given;
 	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
 		for (size_t k = 0; k < from.bindings[i].count; k++) {
 			const struct gz_option *option = &from.bindings[i].options[k];
-			if (!*is_given++)
+			if (!*key_given++)
 				continue;
 			enum gz_result r = gz_option_format(option, from.bindings[i].target, text,
 							    sizeof text);
@@ -695,6 +713,10 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 	}
 	if (options->method >= 0)
 		settings->foveation.method = options->method;
+	if (options->technique >= 0)
+		settings->technique = options->technique;
+	if (is_given(options, "isovalue"))
+		settings->rays.surface.isovalue = options->isovalue;
 	if (options->time_point > 0)
 		settings->time_point = options->time_point;
 	apply_short_names(options, &settings->view);

@@ -57,7 +57,8 @@ struct gz_view_options {
 	char gaze_text[GZ_PATH_SIZE];
 	struct gz_gaze_choice gaze;
 	double fps;
-	int method; /**< enum gz_method; -1: the scene's */
+	int method;    /**< enum gz_method; -1: the scene's */
+	int technique; /**< as in struct gz_scene_settings; -1: the scene's */
 	char backend[GZ_NAME_SIZE];
 	int threads;
 	char simd[GZ_NAME_SIZE];
@@ -71,7 +72,7 @@ struct gz_view_options {
 	char stats[GZ_PATH_SIZE];        /**< empty: none */
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	char write_mesh[GZ_PATH_SIZE];   /**< empty: none */
-	double isovalue;                 /**< of that mesh */
+	double isovalue;                 /**< of that mesh, or of the surface shown; see given */
 	bool list_series;                /**< of the folder or file in scene, and exit */
 	int bricks;                      /**< enum gz_bricks_rule */
 	int time_point;                  /**< of a series, from 1; 0: the scene's */

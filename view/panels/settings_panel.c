@@ -97,7 +97,8 @@ static bool draw_setting_widget(const struct gz_option *option, void *field)
 		range = range_of(option, *(int *)field);
 		return gz_widget_ints("##value", field, count_of_values(option), &range);
 	case GZ_OPTION_DOUBLE:
-		if (strcmp(option->key, "render.background") == 0)
+		if (strcmp(option->key, "render.background") == 0 ||
+		    strcmp(option->key, "isosurface.colour") == 0)
 			return gz_widget_colour("##value", field);
 		range = range_of(option, *(double *)field);
 		return gz_widget_doubles("##value", field, count_of_values(option), &range);

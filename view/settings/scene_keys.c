@@ -3,10 +3,12 @@
 #include <string.h>
 
 #include "render/plan/method.h"
+#include "render/raycast/raycast.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
-	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,     GZ_SCENE_RAYS,     GZ_SCENE_LIGHT, GZ_SCENE_CLIP,
-	GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION, GZ_SCENE_TEMPORAL, GZ_SCENE_VIEW,
+	GZ_SCENE_CAMERA,   GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,      GZ_SCENE_LIGHT,
+	GZ_SCENE_CLIP,     GZ_SCENE_ISOSURFACE, GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,
+	GZ_SCENE_TEMPORAL, GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -38,14 +40,32 @@ static bool in_parallel(const struct gz_scene_settings *settings)
 	return !in_perspective(settings);
 }
 
+/* Whether the volume, or whatever there is, is drawn by ray casting. */
+static bool by_raycast(const struct gz_scene_settings *settings)
+{
+	return gz_scene_technique(settings, gz_scene_volume_object(settings)) ==
+	       &gz_raycast_technique;
+}
+
+static bool by_isosurface(const struct gz_scene_settings *settings)
+{
+	return !by_raycast(settings);
+}
+
+/* Surfaces are always lit. */
 static bool with_light(const struct gz_scene_settings *settings)
 {
-	return settings->rays.shading == GZ_SHADING_GRADIENT;
+	return by_isosurface(settings) || settings->rays.shading == GZ_SHADING_GRADIENT;
+}
+
+static bool with_lit_samples(const struct gz_scene_settings *settings)
+{
+	return by_raycast(settings) && with_light(settings);
 }
 
 static bool with_occlusion(const struct gz_scene_settings *settings)
 {
-	return with_light(settings) && settings->rays.light.occlusion > 0;
+	return with_lit_samples(settings) && settings->rays.light.occlusion > 0;
 }
 
 static bool with_borders(const struct gz_scene_settings *settings)
@@ -100,12 +120,27 @@ static const struct {
 	const char *key;
 	applies_function *applies;
 } conditions[] = {
-	{ "camera.fov_deg", in_perspective },           { "camera.height", in_parallel },
-	{ "light.occlusion_radius", with_occlusion },   { "light.", with_light },
-	{ "foveation.reconstruction", with_a_pyramid }, { "foveation.acuity_", by_acuity },
-	{ "foveation.blend_px", with_borders },         { "foveation.step_floor", by_distance },
-	{ "attention.budget_ms", with_a_scale },        { "attention.", with_the_gaze },
-	{ "temporal.weight", with_the_past },           { "view.split", with_a_split },
+	{ "camera.fov_deg", in_perspective },
+	{ "camera.height", in_parallel },
+	{ "light.occlusion_radius", with_occlusion },
+	{ "light.occlusion", with_lit_samples },
+	{ "light.", with_light },
+	{ "isosurface.", by_isosurface },
+	{ "render.ray_sampling_rate", by_raycast },
+	{ "render.interpolation", by_raycast },
+	{ "render.integration", by_raycast },
+	{ "render.shading", by_raycast },
+	{ "render.levels", by_raycast },
+	{ "render.jitter", by_raycast },
+	{ "render.early_termination", by_raycast },
+	{ "foveation.reconstruction", with_a_pyramid },
+	{ "foveation.acuity_", by_acuity },
+	{ "foveation.blend_px", with_borders },
+	{ "foveation.step_floor", by_distance },
+	{ "attention.budget_ms", with_a_scale },
+	{ "attention.", with_the_gaze },
+	{ "temporal.weight", with_the_past },
+	{ "view.split", with_a_split },
 	{ "view.difference_gain", with_a_difference },
 };
 

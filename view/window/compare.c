@@ -4,7 +4,6 @@
 
 #include <GLFW/glfw3.h>
 
-#include "render/scene/techniques.h"
 #include "view/draw/quad.h"
 #include "view/frame/reference.h"
 #include "view/panels/widgets.h"
@@ -29,8 +28,9 @@
 struct gz_window_compare {
 	struct gz_compare drawing;
 	struct gz_reference_worker *worker;
-	struct gz_image image; /* the last standard picture */
-	bool any;              /* it is in the texture */
+	const struct gz_technique *technique; /* of the worker */
+	struct gz_image image;                /* the last standard picture */
+	bool any;                             /* it is in the texture */
 	bool busy;
 	double share, share_shown;
 };
@@ -112,16 +112,24 @@ static void drop_standard(struct gz_window_compare *self)
 	self->any = self->busy = false;
 }
 
+/* What draws the volume in the picture on the screen. */
+static const struct gz_technique *shown_technique(const struct gz_window *window)
+{
+	const struct gz_scene_settings *settings = &gz_frame_maker_scene(window->maker)->settings;
+	return gz_scene_technique(settings, gz_scene_volume_object(settings));
+}
+
 static void start_standard_worker(struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	const struct gz_reference_source source = {
-		.technique = gz_techniques[0],
+		.technique = shown_technique(window),
 		.volume = &scene->volume,
 		.threads = (window->options->threads + 1) / 2,
 		.finished = wake_loop_for_standard,
 		.log = window->log,
 	};
+	window->compare->technique = source.technique;
 	const enum gz_result r =
 		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
 	if (r == GZ_OK)
@@ -170,6 +178,8 @@ static void turn_compare(struct gz_window *window)
 		drop_standard(self);
 		return;
 	}
+	if (self->worker && self->technique != shown_technique(window))
+		drop_standard(self);
 	if (!self->worker)
 		start_standard_worker(window);
 	if (!self->worker)

@@ -13,6 +13,7 @@
 #include "render/data/clip_box.h"
 #include "render/data/volume.h"
 #include "render/light/light.h"
+#include "render/light/surface_look.h"
 #include "render/picture/camera.h"
 
 /** Limits of ray_sampling_rate. Chosen: a step of 20 voxels shows nothing, one of 1/32 changes no
@@ -52,17 +53,18 @@ struct gz_ray_params {
 	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
 	struct gz_clip_box clip;
+	struct gz_surface_look surface; /**< for techniques that show surfaces */
 };
 
-/** Table over struct gz_ray_params without its light and clip box: "render.…". */
+/** Table over struct gz_ray_params without its light, clip box and surface: "render.…". */
 extern const struct gz_option gz_ray_options[];
 extern const size_t gz_ray_option_count;
 
-/** Tables that gz_ray_params_bind() gives. */
-#define GZ_RAY_BINDINGS 3
+/** Tables that gz_ray_params_bind() gives. All but the last are of the ray caster. */
+#define GZ_RAY_BINDINGS 4
 
-/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…". The bindings have no
- *  flags and borrow @p rays. */
+/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "isosurface.…". The
+ * bindings have no flags and borrow @p rays. */
 void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
 

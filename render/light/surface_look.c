@@ -1,0 +1,14 @@
+#include "render/light/surface_look.h"
+
+#define AT(field) offsetof(struct gz_surface_look, field)
+
+const struct gz_option gz_surface_look_options[] = {
+	{ "isosurface.isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -GZ_ISOVALUE_MAX, GZ_ISOVALUE_MAX,
+	  .preset = "0", .help = "data value of a volume's surface, such as Hounsfield units" },
+	{ "isosurface.colour", GZ_OPTION_DOUBLE, AT(colour), 0, 1, .count = 3,
+	  .preset = "0.9 0.85 0.75", .help = "red, green and blue of surfaces" },
+	{ "isosurface.shadows", GZ_OPTION_BOOL, AT(shadows), .preset = "no",
+	  .help = "hard shadows" },
+};
+const size_t gz_surface_look_option_count =
+	sizeof gz_surface_look_options / sizeof gz_surface_look_options[0];

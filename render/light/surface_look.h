@@ -1,0 +1,27 @@
+/**
+ * @file
+ * How surfaces look and which one a volume has: section [isosurface] of a scene.
+ */
+#ifndef GZ_RENDER_LIGHT_SURFACE_LOOK_H
+#define GZ_RENDER_LIGHT_SURFACE_LOOK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/option.h"
+
+/** Greatest magnitude of an isovalue. Chosen: data in single precision lie below 3.5e38. */
+#define GZ_ISOVALUE_MAX 1e30
+
+/** The surface of a volume, and how surfaces look. The light is that of struct gz_light. */
+struct gz_surface_look {
+	double isovalue;  /**< data value of a volume's surface: slope and intercept applied */
+	double colour[3]; /**< [0, 1] each; of all surfaces */
+	bool shadows;     /**< what does not see the light has ambient light only */
+};
+
+/** Table over struct gz_surface_look: "isosurface.…". */
+extern const struct gz_option gz_surface_look_options[];
+extern const size_t gz_surface_look_option_count;
+
+#endif

@@ -1,0 +1,82 @@
+/**
+ * @file
+ * One tile of rays through triangle meshes: what the kernels of all instruction sets share.
+ */
+#ifndef GZ_RENDER_SURFACE_CPU_SURFACE_CAST_H
+#define GZ_RENDER_SURFACE_CPU_SURFACE_CAST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "render/plan/plan.h"
+#include "render/raycast/shared/lighting.h"
+#include "render/surface/cpu/embree.h"
+
+/** Rays of a tile, which are one packet. */
+#define GZ_SURFACE_RAYS 16
+
+_Static_assert(GZ_TILE_EDGE *GZ_TILE_EDGE == GZ_SURFACE_RAYS, "a tile is a packet");
+
+/** One mesh as the kernels read it. All pointers are borrowed. */
+struct gz_surface_mesh {
+	const float *positions, *normals; /**< three numbers for each vertex; mm */
+	const uint32_t *triangles;        /**< three vertices each */
+	uint32_t id;                      /**< of its object */
+};
+
+/** What all rays of a frame share. Lengths and places are in mm, in the frame of struct gz_mesh. */
+struct gz_surface_cast {
+	RTCScene tree;
+	const struct gz_surface_mesh *meshes; /**< by the tree's numbers of geometries */
+	unsigned mesh_count;
+	/** The ray of pixel (x, y), as in struct gz_ray_frame. */
+	float origin00[3], origin_dx[3], origin_dy[3];
+	float direction00[3], direction_dx[3], direction_dy[3];
+	bool clipped;
+	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
+	struct gz_cast_light light;            /**< without occlusion */
+	bool shadows;
+	float lift; /**< how far above a surface its shadow rays begin */
+	float colour[3];
+	uint32_t background; /**< as a pixel */
+	float world_per_mm;
+};
+
+/** The rays of a tile. */
+struct gz_surface_tile {
+	float x[GZ_SURFACE_RAYS], y[GZ_SURFACE_RAYS]; /**< pixels of its rays */
+	uint32_t active;                              /**< bit i: cast ray i */
+	bool coherent_shadows; /**< shadow rays lie close together: a hint that changes nothing */
+};
+
+/** What the rays of a tile found; valid for active rays. */
+struct gz_surface_hits {
+	uint32_t pixels[GZ_SURFACE_RAYS];  /**< R, G, B, 255 in memory order */
+	float depth[GZ_SURFACE_RAYS];      /**< along the ray, world units; INFINITY: nothing */
+	uint32_t ids[GZ_SURFACE_RAYS];     /**< of the objects; 0: nothing */
+	float normals[3][GZ_SURFACE_RAYS]; /**< interpolated, of length 1; undefined for nothing */
+};
+
+/**
+ * Cast a tile.
+ *
+ * Threads: any number. What a ray finds depends only on its pixel.
+ */
+typedef void gz_surface_tile_function(const struct gz_surface_cast *cast,
+				      const struct gz_surface_tile *tile,
+				      struct gz_surface_hits *out_hits);
+
+/** The kernel of one instruction set. */
+struct gz_surface_kernel {
+	const char *name; /**< as in struct gz_cast_kernels */
+	const char *isa;  /**< the same set in the configuration of Embree's devices */
+	gz_surface_tile_function *tile;
+};
+
+extern const struct gz_surface_kernel gz_surface_portable;
+#ifdef GZ_CAST_X86
+extern const struct gz_surface_kernel gz_surface_avx2;
+extern const struct gz_surface_kernel gz_surface_avx512;
+#endif
+
+#endif

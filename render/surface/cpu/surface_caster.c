@@ -1,0 +1,483 @@
+#include "render/surface/cpu/surface_caster.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/workers.h"
+#include "render/mesh/isosurface.h"
+#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/cpu_raycaster.h"
+#include "render/reconstruct/cpu/lattice.h"
+#include "render/reconstruct/cpu/reconstruct.h"
+#include "render/surface/cpu/surface_cast.h"
+#include "render/surface/cpu/surface_tree.h"
+
+#define GZ_LOG_MODULE "isosurface"
+
+/* Tiles that a thread takes at a time, as in the ray caster. */
+enum { TILES_A_PART = 16 };
+
+/* Greatest spacing of rays whose shadow rays lie close together, px. Chosen: farther apart, it is
+ * faster to follow each by itself. */
+enum { COHERENT_SPACING = 2 };
+
+/* Most vertices and triangles of a mesh: kernels count their numbers in 31 bits. */
+#define ELEMENTS_MAX ((size_t)INT32_MAX / 3)
+
+/* How far above a surface its shadow rays begin, as a share of the distances in the picture.
+ * Chosen: 40 times the error of places in single precision. */
+#define LIFT_SHARE 2.5e-6
+
+/* Planes that one casting can fill. */
+enum picture_plane { PLANE_COLOURS, PLANE_DEPTH, PLANE_IDS, PLANE_COUNT };
+
+/* One object, and the mesh that was made for it. */
+struct surface {
+	struct gz_object object;
+	struct gz_mesh made; /* of the object's volume */
+	double isovalue;     /* of it */
+	bool current;        /* it is made */
+};
+
+struct gz_surface_caster {
+	const struct gz_log *log;
+	struct gz_workers *workers;
+	const struct gz_surface_kernel *kernel;
+	struct surface *surfaces;
+	struct gz_mesh *shown; /* the meshes in the tree; borrowed */
+	struct gz_surface_mesh *meshes;
+	size_t surface_count;
+	double world_mm; /* mm of a world unit */
+	struct gz_surface_tree tree;
+	bool tree_current;
+	struct gz_lattices lattices[PLANE_COUNT];
+	char description[64];
+};
+
+/* What the workers of a frame share. */
+struct surface_job {
+	struct gz_surface_cast cast;
+	gz_surface_tile_function *tile;
+	const struct gz_plan *plan;
+	struct gz_lattices *lattices; /* PLANE_COUNT; those without a plane are not filled */
+	uint32_t *words[PLANE_COUNT]; /* NULL: not wanted */
+};
+
+static const struct gz_surface_kernel *find_surface_kernel(const char *simd)
+{
+	static const struct gz_surface_kernel *const kernels[] = {
+#ifdef GZ_CAST_X86
+		&gz_surface_avx512,
+		&gz_surface_avx2,
+#endif
+		&gz_surface_portable,
+	};
+	const struct gz_cast_kernels *found = gz_cast_kernels_find(simd);
+	for (size_t i = 0; found && i < sizeof kernels / sizeof kernels[0]; i++)
+		if (strcmp(kernels[i]->name, found->name) == 0)
+			return kernels[i];
+	return NULL;
+}
+
+enum gz_result gz_surface_caster_check(const struct gz_backend_params *params,
+				       const struct gz_log *log)
+{
+	return gz_cpu_raycaster_check(params, log);
+}
+
+static enum gz_result start_surface_workers(struct gz_surface_caster *caster,
+					    const struct gz_backend_params *params)
+{
+	enum gz_result result = gz_surface_caster_check(params, caster->log);
+	if (result != GZ_OK)
+		return result;
+	caster->kernel = find_surface_kernel(params->simd);
+	result = gz_workers_create(params->threads, &caster->workers);
+	if (result != GZ_OK) {
+		gz_err(caster->log, "cannot start %d threads: %s", params->threads,
+		       gz_result_text(result));
+		return result;
+	}
+	snprintf(caster->description, sizeof caster->description, "%s, %d threads",
+		 caster->kernel->name, gz_workers_count(caster->workers));
+	return gz_surface_tree_open(&caster->tree, caster->kernel->isa, caster->log);
+}
+
+enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
+					const struct gz_log *log,
+					struct gz_surface_caster **out_caster)
+{
+	static const struct gz_backend_params defaults = { 0 };
+	struct gz_surface_caster *caster = calloc(1, sizeof *caster);
+	if (!caster)
+		return GZ_ERR_NO_MEM;
+	caster->log = log;
+	const enum gz_result result = start_surface_workers(caster, params ? params : &defaults);
+	if (result != GZ_OK) {
+		gz_surface_caster_destroy(&caster);
+		return result;
+	}
+	*out_caster = caster;
+	return GZ_OK;
+}
+
+static void free_surfaces(struct gz_surface_caster *caster)
+{
+	for (size_t i = 0; i < caster->surface_count; i++)
+		gz_mesh_free(&caster->surfaces[i].made);
+	free(caster->surfaces);
+	free(caster->shown);
+	free(caster->meshes);
+	caster->surfaces = NULL;
+	caster->shown = NULL;
+	caster->meshes = NULL;
+	caster->surface_count = 0;
+}
+
+static enum gz_result check_surface_object(const struct gz_surface_caster *caster,
+					   const struct gz_object *object)
+{
+	if (!object->volume && !object->mesh) {
+		gz_err(caster->log, "isosurface shows volumes and meshes; object %u is neither",
+		       (unsigned)object->id);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (!object->mesh && object->volume->bricks) {
+		gz_err(caster->log, "isosurface does not show volumes stored in bricks; show the "
+				    "file that they were made from, or take the technique raycast");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	return GZ_OK;
+}
+
+/* The longest edge of a volume's box, mm. */
+static double world_mm_of(const struct gz_volume *volume)
+{
+	double half[3];
+	gz_volume_half_extent(volume, half);
+	return volume->dims[0] * volume->spacing[0] / (2 * half[0]);
+}
+
+/* Take what is already made for the same data from the present list. */
+static void take_made(struct gz_surface_caster *caster, struct surface *surface)
+{
+	for (size_t i = 0; i < caster->surface_count; i++) {
+		struct surface *old = &caster->surfaces[i];
+		if (!old->current || old->object.volume != surface->object.volume ||
+		    old->object.data_revision != surface->object.data_revision ||
+		    old->object.mesh != surface->object.mesh)
+			continue;
+		const struct gz_object object = surface->object;
+		*surface = *old;
+		surface->object = object;
+		*old = (struct surface) { 0 };
+		return;
+	}
+}
+
+enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
+				      const struct gz_object *objects, size_t count)
+{
+	enum gz_result result = count > 0 ? GZ_OK : GZ_ERR_INVAL;
+	for (size_t i = 0; i < count && result == GZ_OK; i++)
+		result = check_surface_object(caster, &objects[i]);
+	if (result != GZ_OK)
+		return result;
+	struct surface *surfaces = calloc(count, sizeof *surfaces);
+	struct gz_mesh *shown = calloc(count, sizeof *shown);
+	struct gz_surface_mesh *meshes = calloc(count, sizeof *meshes);
+	if (!surfaces || !shown || !meshes) {
+		free(surfaces);
+		free(shown);
+		free(meshes);
+		return GZ_ERR_NO_MEM;
+	}
+	for (size_t i = 0; i < count; i++) {
+		surfaces[i].object = objects[i];
+		take_made(caster, &surfaces[i]);
+	}
+	free_surfaces(caster);
+	caster->surfaces = surfaces;
+	caster->shown = shown;
+	caster->meshes = meshes;
+	caster->surface_count = count;
+	caster->tree_current = false;
+	caster->world_mm =
+		objects[0].volume ? world_mm_of(objects[0].volume) : objects[0].mesh_world_mm;
+	return GZ_OK;
+}
+
+/* Make the mesh of an object if it is not there. */
+static enum gz_result make_surface(struct gz_surface_caster *caster, struct surface *surface,
+				   double isovalue)
+{
+	if (surface->object.mesh || (surface->current && surface->isovalue == isovalue))
+		return GZ_OK;
+	const struct gz_isosurface_request request = {
+		.volume = surface->object.volume,
+		.isovalue = isovalue,
+	};
+	caster->tree_current = false;
+	surface->current = false;
+	gz_mesh_free(&surface->made);
+	const enum gz_result result =
+		gz_isosurface_make(&request, caster->workers, caster->log, &surface->made);
+	if (result != GZ_OK)
+		return result;
+	surface->isovalue = isovalue;
+	surface->current = true;
+	return GZ_OK;
+}
+
+static enum gz_result list_mesh(struct gz_surface_caster *caster, size_t index)
+{
+	const struct surface *surface = &caster->surfaces[index];
+	const struct gz_mesh *mesh = surface->object.mesh ? surface->object.mesh : &surface->made;
+	if (mesh->vertex_count > ELEMENTS_MAX || mesh->triangle_count > ELEMENTS_MAX) {
+		gz_err(caster->log,
+		       "isosurface draws at most %zu vertices and triangles of an object, not %zu "
+		       "and %zu; write the mesh to a file instead (gazeview --write-mesh)",
+		       ELEMENTS_MAX, mesh->vertex_count, mesh->triangle_count);
+		return GZ_ERR_FULL;
+	}
+	caster->shown[index] = *mesh;
+	caster->meshes[index] = (struct gz_surface_mesh) {
+		.positions = (const float *)mesh->positions,
+		.normals = (const float *)mesh->normals,
+		.triangles = (const uint32_t *)mesh->triangles,
+		.id = surface->object.id,
+	};
+	return GZ_OK;
+}
+
+/* Make what the picture shows: meshes and their tree. */
+static enum gz_result prepare_surfaces(struct gz_surface_caster *caster, double isovalue)
+{
+	enum gz_result result = GZ_OK;
+	const int64_t start_ns = gz_clock_now_ns();
+	for (size_t i = 0; i < caster->surface_count && result == GZ_OK; i++)
+		result = make_surface(caster, &caster->surfaces[i], isovalue);
+	if (result != GZ_OK || caster->tree_current)
+		return result;
+	const int64_t made_ns = gz_clock_now_ns();
+	for (size_t i = 0; i < caster->surface_count && result == GZ_OK; i++)
+		result = list_mesh(caster, i);
+	if (result == GZ_OK)
+		result = gz_surface_tree_build(&caster->tree, caster->shown, caster->surface_count);
+	if (result != GZ_OK)
+		return result;
+	caster->tree_current = true;
+	const struct gz_surface_size size = gz_surface_caster_size(caster);
+	gz_debug(caster->log, "%zu triangles: surfaces %.0f ms, %zu bytes; tree %.0f ms, %zu bytes",
+		 size.triangles, gz_ns_to_ms(made_ns - start_ns), size.mesh_bytes,
+		 gz_ns_to_ms(gz_clock_now_ns() - made_ns), size.tree_bytes);
+	return GZ_OK;
+}
+
+struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
+{
+	struct gz_surface_size size = { .tree_bytes = (size_t)caster->tree.bytes };
+	for (size_t i = 0; caster->tree_current && i < caster->surface_count; i++) {
+		const struct gz_mesh *made = &caster->surfaces[i].made;
+		size.triangles += caster->shown[i].triangle_count;
+		size.mesh_bytes +=
+			made->vertex_count * (sizeof made->positions[0] + sizeof made->normals[0]) +
+			made->triangle_count * sizeof made->triangles[0];
+	}
+	return size;
+}
+
+/* The corner of the world's box along an axis, world units: 1/2 without a volume. */
+static void half_extent(const struct gz_surface_caster *caster, double out_half[3])
+{
+	const struct gz_volume *volume = caster->surfaces[0].object.volume;
+	for (int axis = 0; axis < 3; axis++)
+		out_half[axis] = 0.5;
+	if (volume)
+		gz_volume_half_extent(volume, out_half);
+}
+
+static void fill_clip(const struct gz_surface_caster *caster, const struct gz_clip_box *clip,
+		      struct gz_surface_cast *cast)
+{
+	double half[3];
+	half_extent(caster, half);
+	for (int axis = 0; axis < 3; axis++) {
+		const double edge = 2 * half[axis] * caster->world_mm;
+		cast->clipped = cast->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
+		cast->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
+		cast->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
+	}
+}
+
+static void fill_rays(const struct gz_surface_caster *caster, const struct gz_ray_frame *frame,
+		      struct gz_surface_cast *cast)
+{
+	double farthest = 1; /* world units from the centre */
+	for (int axis = 0; axis < 3; axis++) {
+		cast->origin00[axis] = (float)(frame->origin00[axis] * caster->world_mm);
+		cast->origin_dx[axis] = (float)(frame->origin_dx[axis] * caster->world_mm);
+		cast->origin_dy[axis] = (float)(frame->origin_dy[axis] * caster->world_mm);
+		cast->direction00[axis] = (float)frame->direction00[axis];
+		cast->direction_dx[axis] = (float)frame->direction_dx[axis];
+		cast->direction_dy[axis] = (float)frame->direction_dy[axis];
+		farthest = fmax(farthest, fabs(frame->origin00[axis]));
+	}
+	cast->lift = (float)(LIFT_SHARE * farthest * caster->world_mm);
+	cast->world_per_mm = (float)(1 / caster->world_mm);
+}
+
+static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_frame *frame,
+		      struct gz_surface_cast *cast)
+{
+	const struct gz_light *light = &rays->light;
+	double towards[3];
+	gz_light_direction(light, frame, towards);
+	cast->light = (struct gz_cast_light) {
+		.on = true,
+		.ambient = (float)light->ambient,
+		.diffuse = (float)light->diffuse,
+		.specular = (float)light->specular,
+		.shininess = (float)light->shininess,
+	};
+	cast->background = UINT32_C(0xFF000000);
+	for (int i = 0; i < 3; i++) {
+		cast->light.towards[i] = (float)towards[i];
+		cast->colour[i] = (float)rays->surface.colour[i];
+		cast->background |= (uint32_t)(rays->background[i] * 255 + 0.5) << (8 * i);
+	}
+	cast->shadows = rays->surface.shadows;
+}
+
+static void cast_surface_part(void *user, size_t part, int worker)
+{
+	const struct surface_job *job = user;
+	const struct gz_plan *plan = job->plan;
+	const size_t from = part * TILES_A_PART;
+	const size_t end = from + TILES_A_PART;
+	(void)worker;
+	for (size_t i = from; i < end && i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		const int spacing = plan->layers[tile->layer].spacing;
+		struct gz_surface_tile rays = { .active = gz_plan_tile_active(plan, tile),
+						.coherent_shadows = spacing <= COHERENT_SPACING };
+		struct gz_surface_hits hits;
+		uint32_t depth[GZ_SURFACE_RAYS];
+		for (int k = 0; k < GZ_SURFACE_RAYS; k++) {
+			const int column = gz_tile_columns[tile->pattern][k];
+			rays.x[k] = (float)(tile->x - plan->view.shift[0] + column * spacing);
+			rays.y[k] =
+				(float)(tile->y - plan->view.shift[1] + gz_tile_rows[k] * spacing);
+		}
+		job->tile(&job->cast, &rays, &hits);
+		memcpy(depth, hits.depth, sizeof depth);
+		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
+		for (int plane = 0; plane < PLANE_COUNT; plane++)
+			if (job->words[plane])
+				gz_lattices_store(&job->lattices[plane], plan, tile, rays.active,
+						  found[plane]);
+	}
+}
+
+/* Make room for the picture and the planes that are wanted. */
+static enum gz_result prepare_planes(struct gz_surface_caster *caster, const struct gz_plan *plan,
+				     struct gz_image *image, const struct gz_surface_planes *planes,
+				     uint32_t *out_words[PLANE_COUNT])
+{
+	enum gz_result result = gz_image_resize(image, plan->width, plan->height);
+	if (result == GZ_OK)
+		out_words[PLANE_COLOURS] = gz_image_words(image);
+	if (result == GZ_OK && planes && planes->depth) {
+		result = gz_plane_resize(planes->depth, GZ_PLANE_VALUE, plan->width, plan->height);
+		out_words[PLANE_DEPTH] = planes->depth->words;
+	}
+	if (result == GZ_OK && planes && planes->ids) {
+		result = gz_plane_resize(planes->ids, GZ_PLANE_ID, plan->width, plan->height);
+		out_words[PLANE_IDS] = planes->ids->words;
+	}
+	for (int i = 0; i < PLANE_COUNT && result == GZ_OK; i++)
+		if (out_words[i])
+			result = gz_lattices_prepare(&caster->lattices[i], plan, out_words[i]);
+	return result;
+}
+
+static void reconstruct_planes(struct gz_surface_caster *caster, const struct surface_job *job)
+{
+	static const enum gz_plane_kind kinds[PLANE_COUNT] = { GZ_PLANE_COLOUR, GZ_PLANE_VALUE,
+							       GZ_PLANE_ID };
+	const struct gz_row_filters *colours = gz_row_filters_find(caster->kernel->name);
+	for (int i = 0; i < PLANE_COUNT; i++) {
+		const struct gz_row_filters filters = gz_row_filters_of_plane(kinds[i], colours);
+		if (job->words[i])
+			gz_reconstruct(job->plan, &caster->lattices[i],
+				       i == PLANE_COLOURS ? colours : &filters, caster->workers,
+				       job->words[i]);
+	}
+}
+
+enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot, struct gz_image *image,
+				      const struct gz_surface_planes *planes,
+				      struct gz_frame_stats *out_stats)
+{
+	const struct gz_plan *plan = shot->plan;
+	struct surface_job job = {
+		.tile = caster->kernel->tile,
+		.plan = plan,
+		.lattices = caster->lattices,
+	};
+	struct gz_ray_frame frame;
+	if (caster->surface_count < 1 || !gz_ray_params_valid(shot->rays) || plan->layer_count < 1)
+		return GZ_ERR_INVAL;
+	enum gz_result result =
+		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, &frame);
+	if (result == GZ_OK)
+		result = prepare_planes(caster, plan, image, planes, job.words);
+	const int64_t start_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = prepare_surfaces(caster, shot->rays->surface.isovalue);
+	if (result != GZ_OK)
+		return result;
+	const int64_t prepared_ns = gz_clock_now_ns();
+	job.cast.tree = caster->tree.scene;
+	job.cast.meshes = caster->meshes;
+	job.cast.mesh_count = (unsigned)caster->surface_count;
+	fill_clip(caster, &shot->rays->clip, &job.cast);
+	fill_rays(caster, &frame, &job.cast);
+	fill_look(shot->rays, &frame, &job.cast);
+	gz_workers_run(caster->workers, cast_surface_part, &job,
+		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
+	const int64_t cast_ns = gz_clock_now_ns();
+	reconstruct_planes(caster, &job);
+	if (out_stats)
+		*out_stats = (struct gz_frame_stats) {
+			.rays = plan->ray_count,
+			.prepare_ms = gz_ns_to_ms(prepared_ns - start_ns),
+			.cast_ms = gz_ns_to_ms(cast_ns - prepared_ns),
+			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.gpu_ms = NAN,
+		};
+	return GZ_OK;
+}
+
+const char *gz_surface_caster_describe(const struct gz_surface_caster *caster)
+{
+	return caster->description;
+}
+
+void gz_surface_caster_destroy(struct gz_surface_caster **caster)
+{
+	struct gz_surface_caster *self = *caster;
+	if (!self)
+		return;
+	gz_workers_destroy(&self->workers);
+	gz_surface_tree_close(&self->tree);
+	free_surfaces(self);
+	for (int i = 0; i < PLANE_COUNT; i++)
+		gz_lattices_free(&self->lattices[i]);
+	free(self);
+	*caster = NULL;
+}

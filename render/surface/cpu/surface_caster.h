@@ -1,0 +1,97 @@
+/**
+ * @file
+ * Casting the rays of a plan through surfaces: those of volumes where the data have one value, and
+ * meshes.
+ */
+#ifndef GZ_RENDER_SURFACE_CPU_SURFACE_CASTER_H
+#define GZ_RENDER_SURFACE_CPU_SURFACE_CASTER_H
+
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/picture/image.h"
+#include "render/picture/plane.h"
+#include "render/raycast/shared/ray_params.h"
+#include "render/technique/technique.h"
+
+/** Surfaces, their tree, and the threads that cast. One thread at a time may use it. */
+struct gz_surface_caster;
+
+/** Check parameters. @retval GZ_ERR_UNSUPPORTED  this processor lacks the instruction set; logged
+ */
+enum gz_result gz_surface_caster_check(const struct gz_backend_params *params,
+				       const struct gz_log *log);
+
+/**
+ * Make a caster that shows nothing.
+ *
+ * @param log  outlives the caster
+ * @param[out] out_caster  owned by the caller; gz_surface_caster_destroy()
+ * @retval GZ_ERR_UNSUPPORTED  this processor lacks the instruction set; logged
+ * @retval GZ_ERR_INVAL        the number of threads is out of range; logged
+ * @retval GZ_ERR_NO_MEM       out of memory
+ */
+enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
+					const struct gz_log *log,
+					struct gz_surface_caster **out_caster);
+
+/**
+ * Show these objects from the next picture on. Surfaces are made when that picture is drawn, as its
+ * settings have the isovalue.
+ *
+ * @param objects  volumes in memory, or meshes of one scale; what they point to is borrowed until
+ *                 the next call
+ * @retval GZ_ERR_INVAL        no objects
+ * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume or mesh; logged
+ * @retval GZ_ERR_NO_MEM       out of memory
+ */
+enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
+				      const struct gz_object *objects, size_t count);
+
+/** Planes beside the colours of a picture; NULL: not wanted. */
+struct gz_surface_planes {
+	/** GZ_PLANE_VALUE: distance from where the ray begins, along the ray, world units. */
+	struct gz_plane *depth;
+	struct gz_plane *ids; /**< GZ_PLANE_ID: numbers of objects */
+};
+
+/** One picture to cast. All pointers are borrowed. */
+struct gz_surface_shot {
+	const struct gz_camera *camera;
+	const struct gz_ray_params *rays; /**< background, light, clip box and surface count */
+	const struct gz_plan *plan;
+};
+
+/**
+ * Cast a picture of the plan's size and write every pixel. Makes the surfaces first if the isovalue
+ * or the objects have changed. The same bits for any number of threads.
+ *
+ * @param planes     NULL: only colours
+ * @param out_stats  may be NULL; its prepare_ms is the time for surfaces and tree
+ * @retval GZ_ERR_INVAL   the settings or the camera are not valid, or nothing is shown
+ * @retval GZ_ERR_FULL    the surface has too many triangles; logged
+ * @retval GZ_ERR_NO_MEM  out of memory; logged
+ */
+enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot, struct gz_image *image,
+				      const struct gz_surface_planes *planes,
+				      struct gz_frame_stats *out_stats);
+
+/** How much the surfaces of the last picture take. */
+struct gz_surface_size {
+	size_t triangles;
+	size_t mesh_bytes; /**< of meshes that the caster has made */
+	size_t tree_bytes;
+};
+
+/** See struct gz_surface_size. */
+struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster);
+
+/** One line for reports, such as "avx512, 2 threads"; owned by the caster. */
+const char *gz_surface_caster_describe(const struct gz_surface_caster *caster);
+
+/** Destroy the caster and set the pointer to NULL. Accepts a pointer to NULL. */
+void gz_surface_caster_destroy(struct gz_surface_caster **caster);
+
+#endif

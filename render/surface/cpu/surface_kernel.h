@@ -1,0 +1,316 @@
+/*
+ * The kernel: one tile of rays through triangle meshes, compiled once for each instruction set as
+ * render/raycast/cpu/cast_kernel.h explains. Embree finds the triangles; the rest is here.
+ */
+#ifndef GZ_RENDER_SURFACE_CPU_SURFACE_KERNEL_H
+#define GZ_RENDER_SURFACE_CPU_SURFACE_KERNEL_H
+
+#include <math.h>
+#include <stdalign.h>
+#include <string.h>
+
+#include "render/raycast/cpu/simd_light.h"
+#include "render/surface/cpu/surface_cast.h"
+
+/* A tile on its way. The arrays of Embree's structs are in memory. */
+struct packet {
+	struct RTCRayHit16 hit;
+	struct RTCRay16 shadow;
+	alignas(64) int valid[GZ_SURFACE_RAYS]; /* -1: cast this ray */
+	alignas(64) float factor[GZ_SURFACE_RAYS];
+	float white[GZ_SURFACE_RAYS];
+};
+
+SIMD vi vi_load(const void *x)
+{
+	vi a;
+	memcpy(&a, x, sizeof a);
+	return a;
+}
+
+SIMD void store_mask(vm mask, int *out)
+{
+	vi_store((uint32_t *)out, vi_select(mask, vi_set(-1), vi_set(0)));
+}
+
+SIMD vm load_mask(const int *mask)
+{
+	return vi_nonzero(vi_load(mask));
+}
+
+/* Store the lanes of the mask. */
+SIMD void put_lanes(vm mask, vf a, float *out)
+{
+	vf_store(out, vf_select(mask, a, vf_load(out)));
+}
+
+/* Cut rays by the clip box. Returns the lanes of which something is left. */
+SIMD vm clip_lanes(const struct gz_surface_cast *cast, const vf origin[3], const vf direction[3],
+		   vf *from, vf *to)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		const vf least = vf_set(1e-12F);
+		const vf along =
+			vf_select(vf_less(vf_abs(direction[axis]), least), least, direction[axis]);
+		const vf low = (vf_set(cast->clip_least[axis]) - origin[axis]) / along;
+		const vf high = (vf_set(cast->clip_greatest[axis]) - origin[axis]) / along;
+		*from = vf_max(*from, vf_min(low, high));
+		*to = vf_min(*to, vf_max(low, high));
+	}
+	return vf_less(*from, *to);
+}
+
+/* Set up the rays of SIMD_LANES pixels from number `first` on. */
+SIMD void aim_lanes(const struct gz_surface_cast *cast, const struct gz_surface_tile *tile,
+		    int first, struct packet *packet)
+{
+	struct RTCRay16 *ray = &packet->hit.ray;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
+	const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
+	vf origin[3], direction[3], from = vf_set(0), to = vf_set(INFINITY);
+	vm valid = vm_from_bits(tile->active >> first);
+	for (int axis = 0; axis < 3; axis++) {
+		origin[axis] = vf_fma(
+			y, vf_set(cast->origin_dy[axis]),
+			vf_fma(x, vf_set(cast->origin_dx[axis]), vf_set(cast->origin00[axis])));
+		direction[axis] = vf_fma(y, vf_set(cast->direction_dy[axis]),
+					 vf_fma(x, vf_set(cast->direction_dx[axis]),
+						vf_set(cast->direction00[axis])));
+	}
+	const vf inverse = vf_set(1) / vf_sqrt(dot_lanes(direction, direction));
+	for (int axis = 0; axis < 3; axis++) {
+		direction[axis] = direction[axis] * inverse;
+		vf_store(origins[axis] + first, origin[axis]);
+		vf_store(directions[axis] + first, direction[axis]);
+	}
+	if (cast->clipped)
+		valid = vm_and(valid, clip_lanes(cast, origin, direction, &from, &to));
+	vf_store(ray->tnear + first, from);
+	vf_store(ray->tfar + first, to);
+	vf_store(ray->time + first, vf_set(0));
+	vi_store(ray->mask + first, vi_set(-1));
+	vi_store(ray->flags + first, vi_set(0));
+	struct RTCHit16 *hit = &packet->hit.hit;
+	vi_store(hit->geomID + first, vi_set(-1)); /* RTC_INVALID_GEOMETRY_ID */
+	vi_store(hit->instID[0] + first, vi_set(-1));
+	store_mask(valid, packet->valid + first);
+}
+
+/* Some of SIMD_LANES lanes, from ray `first` on. */
+struct lanes {
+	int first;
+	vm mask;
+};
+
+/* Where rays meet a mesh. */
+struct meeting {
+	vi vertices[3];          /* three times the numbers of the corners */
+	vf corner_normals[3][3]; /* [corner][axis] */
+	vf shares[3];            /* of the corners */
+	vf normal[3];            /* of length 1 */
+	vf place[3];
+};
+
+SIMD void load_vertices(const float *vertices, const vi corners[3], vm mask, vf out[3][3])
+{
+	for (int corner = 0; corner < 3; corner++)
+		for (int axis = 0; axis < 3; axis++)
+			out[corner][axis] = vf_gather(vertices + axis, corners[corner], mask);
+}
+
+/* Read the triangles that the lanes of the mask have met, all of one mesh; not the places. */
+SIMD struct meeting read_triangles(const struct gz_surface_mesh *mesh, const struct packet *packet,
+				   struct lanes lanes)
+{
+	const vi three = vi_set(3);
+	const vi triangle = vi_mul(vi_load(packet->hit.hit.primID + lanes.first), three);
+	const vf u = vf_load(packet->hit.hit.u + lanes.first);
+	const vf v = vf_load(packet->hit.hit.v + lanes.first);
+	struct meeting at = { .shares = { vf_set(1) - u - v, u, v } };
+	for (int corner = 0; corner < 3; corner++)
+		at.vertices[corner] =
+			vi_mul(vi_gather(mesh->triangles + corner, triangle, 4, lanes.mask), three);
+	load_vertices(mesh->normals, at.vertices, lanes.mask, at.corner_normals);
+	for (int axis = 0; axis < 3; axis++)
+		at.normal[axis] = vf_fma(v, at.corner_normals[2][axis],
+					 vf_fma(u, at.corner_normals[1][axis],
+						at.shares[0] * at.corner_normals[0][axis]));
+	const vf length2 = dot_lanes(at.normal, at.normal);
+	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
+	for (int axis = 0; axis < 3; axis++)
+		at.normal[axis] = at.normal[axis] * inverse;
+	return at;
+}
+
+/*
+ * Begin the shadow rays. A ray that began on its triangle would meet the neighbours of a surface
+ * that is meant to be round: the place is lifted to where the planes of the corners' normals would
+ * have it (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021, chapter 4), and a
+ * little more because places are rounded.
+ */
+SIMD void aim_shadows(const struct gz_surface_cast *cast, const struct gz_surface_mesh *mesh,
+		      const struct meeting *at, const struct view *view, struct lanes lanes,
+		      struct packet *packet)
+{
+	const int first = lanes.first;
+	const vm mask = lanes.mask;
+	vf corners[3][3];
+	load_vertices(mesh->positions, at->vertices, mask, corners);
+	struct RTCRay16 *ray = &packet->shadow;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
+	const vm behind = vf_less(dot_lanes(at->normal, view->eye), vf_set(0));
+	const vf side = vf_select(behind, vf_set(-1), vf_set(1));
+	vf place[3];
+	for (int axis = 0; axis < 3; axis++)
+		place[axis] = vf_fma(side * vf_set(cast->lift), at->normal[axis], at->place[axis]);
+	for (int corner = 0; corner < 3; corner++) {
+		vf from[3];
+		for (int axis = 0; axis < 3; axis++)
+			from[axis] = at->place[axis] - corners[corner][axis];
+		const vf below = side * dot_lanes(from, at->corner_normals[corner]);
+		const vf lift = vf_max(vf_set(0) - below, vf_set(0)) * at->shares[corner] * side;
+		for (int axis = 0; axis < 3; axis++)
+			place[axis] = vf_fma(lift, at->corner_normals[corner][axis], place[axis]);
+	}
+	const vf towards[3] = { vf_set(cast->light.towards[0]), vf_set(cast->light.towards[1]),
+				vf_set(cast->light.towards[2]) };
+	vf from = vf_set(0), to = vf_set(INFINITY);
+	if (cast->clipped)
+		(void)clip_lanes(cast, place, towards, &from, &to);
+	put_lanes(mask, to, ray->tfar + first);
+	for (int axis = 0; axis < 3; axis++) {
+		put_lanes(mask, place[axis], origins[axis] + first);
+		vf_store(directions[axis] + first, towards[axis]);
+	}
+}
+
+/* Light what the lanes of the mask have met, all of one mesh. Returns the lanes that the light
+ * would reach if nothing stood between. */
+SIMD vm light_lanes(const struct gz_surface_cast *cast, const struct gz_surface_mesh *mesh,
+		    int first, vm mask, struct packet *packet, struct gz_surface_hits *hits)
+{
+	const struct RTCRay16 *ray = &packet->hit.ray;
+	const float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	const float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
+	struct meeting at = read_triangles(mesh, packet, (struct lanes) { first, mask });
+	struct view view;
+	const vf distance = vf_load(ray->tfar + first);
+	vf length2 = vf_set(1e-12F); /* not 0 where eye and light are opposite */
+	for (int axis = 0; axis < 3; axis++) {
+		const vf direction = vf_load(directions[axis] + first);
+		at.place[axis] = vf_fma(distance, direction, vf_load(origins[axis] + first));
+		view.eye[axis] = vf_set(0) - direction;
+		view.half[axis] = view.eye[axis] + vf_set(cast->light.towards[axis]);
+		length2 = vf_fma(view.half[axis], view.half[axis], length2);
+	}
+	const vf inverse = vf_set(1) / vf_sqrt(length2);
+	for (int axis = 0; axis < 3; axis++)
+		view.half[axis] = view.half[axis] * inverse;
+	const struct shine shine = find_shine(&cast->light, &view, at.normal, vf_set(0));
+	const vi id = vi_load(hits->ids + first);
+	vi_store(hits->ids + first, vi_select(mask, vi_set((int32_t)mesh->id), id));
+	put_lanes(mask, shine.factor, packet->factor + first);
+	put_lanes(mask, shine.white, packet->white + first);
+	for (int axis = 0; axis < 3; axis++)
+		put_lanes(mask, at.normal[axis], hits->normals[axis] + first);
+	if (!cast->shadows)
+		return mask;
+	aim_shadows(cast, mesh, &at, &view, (struct lanes) { first, mask }, packet);
+	return vm_and(mask, vf_less(vf_set(cast->light.ambient), shine.factor));
+}
+
+/* Light what SIMD_LANES rays from number `first` on have met. packet->valid becomes the rays that
+ * the light would reach if nothing stood between. Returns whether there are any. */
+SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet *packet,
+		    struct gz_surface_hits *hits)
+{
+	const vi number = vi_load(packet->hit.hit.geomID + first);
+	const vm valid = load_mask(packet->valid + first);
+	const vm met = vm_and(valid, vi_nonzero(vi_add(number, vi_set(1))));
+	vm lit = vm_but(met, met);
+	vi_store(hits->ids + first, vi_set(0));
+	for (int axis = 0; axis < 3; axis++)
+		vf_store(hits->normals[axis] + first, vf_set(0));
+	vf_store(packet->factor + first, vf_set(0));
+	vf_store(packet->white + first, vf_set(0));
+	for (unsigned i = 0; i < cast->mesh_count; i++) {
+		const vi other = vi_add(number, vi_set(-(int32_t)i));
+		const vm mask = vm_but(met, vi_nonzero(other));
+		if (vm_any(mask))
+			lit = vm_or(lit,
+				    light_lanes(cast, &cast->meshes[i], first, mask, packet, hits));
+	}
+	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->world_per_mm);
+	vf_store(hits->depth + first, vf_select(met, depth, vf_set(INFINITY)));
+	store_mask(lit, packet->valid + first);
+	return vm_any(lit);
+}
+
+/* What the shadow rays of all lanes share. */
+SIMD void begin_shadows(int first, struct packet *packet)
+{
+	struct RTCRay16 *ray = &packet->shadow;
+	vf_store(ray->tnear + first, vf_set(0));
+	vf_store(ray->tfar + first, vf_set(INFINITY));
+	vf_store(ray->time + first, vf_set(0));
+	vi_store(ray->mask + first, vi_set(-1));
+	vi_store(ray->flags + first, vi_set(0));
+	for (int axis = 0; axis < 3; axis++)
+		vf_store((axis == 0   ? ray->org_x
+			  : axis == 1 ? ray->org_y
+				      : ray->org_z) +
+				 first,
+			 vf_set(0));
+}
+
+/* Take the light from the rays whose shadow ray has met something: it ends at -INFINITY. */
+SIMD void darken_lanes(const struct gz_surface_cast *cast, int first, struct packet *packet)
+{
+	const vm lit = load_mask(packet->valid + first);
+	const vm dark = vm_and(lit, vf_less(vf_load(packet->shadow.tfar + first), vf_set(0)));
+	put_lanes(dark, vf_set(cast->light.ambient), packet->factor + first);
+	put_lanes(dark, vf_set(0), packet->white + first);
+}
+
+SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const struct packet *packet,
+		       struct gz_surface_hits *hits)
+{
+	const vm met = vi_nonzero(vi_load(hits->ids + first));
+	const vf factor = vf_load(packet->factor + first), white = vf_load(packet->white + first);
+	vi pixel = vi_set((int32_t)0xFF000000);
+	for (int channel = 0; channel < 3; channel++) {
+		const vi byte = to_byte(vf_fma(vf_set(cast->colour[channel]), factor, white));
+		pixel = vi_or(pixel, channel == 0   ? byte
+				     : channel == 1 ? vi_shift_left(byte, 8)
+						    : vi_shift_left(byte, 16));
+	}
+	vi_store(hits->pixels + first, vi_select(met, pixel, vi_set((int32_t)cast->background)));
+}
+
+#define EACH_REGISTER for (int first = 0; first < GZ_SURFACE_RAYS; first += SIMD_LANES)
+
+/* Cast a tile: gz_surface_tile_function. */
+static void cast_surface_tile(const struct gz_surface_cast *cast,
+			      const struct gz_surface_tile *tile, struct gz_surface_hits *out_hits)
+{
+	struct packet packet;
+	int any_lit = 0;
+	EACH_REGISTER
+	{
+		aim_lanes(cast, tile, first, &packet);
+		if (cast->shadows)
+			begin_shadows(first, &packet);
+	}
+	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
+	EACH_REGISTER any_lit |= light_hits(cast, first, &packet, out_hits);
+	if (cast->shadows && any_lit) {
+		gz_embree_occluded(packet.valid, cast->tree, tile->coherent_shadows,
+				   &packet.shadow);
+		EACH_REGISTER darken_lanes(cast, first, &packet);
+	}
+	EACH_REGISTER colour_lanes(cast, first, &packet, out_hits);
+}
+
+#endif

@@ -1,0 +1,31 @@
+#include "render/surface/isosurface_technique.h"
+
+#include <string.h>
+
+#include "render/raycast/shared/ray_params.h"
+
+/* Most objects of a picture. Chosen: an atlas of the brain has 116 regions. */
+enum { SURFACES_MAX = 1024 };
+
+static size_t isosurface_bind(void *settings, struct gz_option_binding *out_bindings, size_t room)
+{
+	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
+	gz_ray_params_bind(settings, bindings);
+	const size_t count = room < GZ_RAY_BINDINGS ? room : GZ_RAY_BINDINGS;
+	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
+	return GZ_RAY_BINDINGS;
+}
+
+static const char *const isosurface_backends[] = { "cpu", NULL };
+
+const struct gz_technique gz_isosurface_technique = {
+	.name = "isosurface",
+	.help = "casts rays at the surface where a volume has one value",
+	.shows = GZ_OBJECT_VOLUME,
+	.objects_max = SURFACES_MAX,
+	.backends = isosurface_backends,
+	.check = gz_isosurface_check,
+	.create = gz_isosurface_create,
+	.settings_size = sizeof(struct gz_ray_params),
+	.bind = isosurface_bind,
+};

@@ -1,0 +1,113 @@
+/* The technique changes between two frames, as the settings panel does it. */
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/captured_log.h"
+#include "protocol/display.h"
+#include "render/scene/techniques.h"
+#include "view/frame/frame.h"
+
+enum { WIDTH = 64, HEIGHT = 48 };
+
+/* A frame maker over a small scene. */
+struct switching {
+	char path[64];
+	struct captured_log captured;
+	struct gz_view_options options;
+	struct gz_frame_maker *maker;
+	struct gz_scene_settings settings;
+};
+
+static void begin_switching(struct switching *all)
+{
+	static const char text[] = "[volume]\nprocedural = shells\ndims = 32 32 32\n"
+				   "[isosurface]\nisovalue = 90\n";
+	snprintf(all->path, sizeof all->path, "/tmp/gazecast-test-XXXXXX.scene");
+	const int file = mkstemps(all->path, 6);
+	assert_true(file >= 0);
+	assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
+	close(file);
+	captured_log_init(&all->captured, "*:warn");
+	const char *const arguments[] = { "gazeview", "--headless", "--backend", "cpu",
+					  "--size",   "64x48",      all->path,   NULL };
+	assert_int_equal(gz_view_options_read(7, (char *const *)arguments, NULL, &all->options),
+			 GZ_OK);
+	const struct gz_frame_scene scene = gz_frame_scene_of_options(&all->options);
+	assert_int_equal(
+		gz_frame_maker_create(&all->options, &scene, NULL, &all->captured.log, &all->maker),
+		GZ_OK);
+	assert_int_equal(gz_frame_maker_start(all->maker, &all->options, NULL), GZ_OK);
+	all->settings = gz_frame_maker_scene(all->maker)->settings;
+}
+
+static void end_switching(struct switching *all)
+{
+	gz_frame_maker_destroy(&all->maker);
+	unlink(all->path);
+}
+
+/* The picture with a technique of gz_technique_choices. */
+static void make_with(struct switching *all, int technique, uint8_t out_pixels[4 * WIDTH * HEIGHT])
+{
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	const struct gz_frame_request request = {
+		.settings = &all->settings,
+		.display = &display,
+		.width = WIDTH,
+		.height = HEIGHT,
+	};
+	struct gz_image *image = NULL;
+	struct gz_frame_record record;
+	all->settings.technique = technique;
+	assert_int_equal(gz_frame_make(all->maker, &request, &image, &record), GZ_OK);
+	memcpy(out_pixels, image->pixels, (size_t)4 * WIDTH * HEIGHT);
+}
+
+static int choice_of(const char *name)
+{
+	int choice = 0;
+	while (strcmp(gz_technique_choices[choice], name) != 0)
+		choice++;
+	return choice;
+}
+
+static void technique_follows_the_settings_and_a_refused_one_changes_nothing(void **state)
+{
+	(void)state;
+	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT],
+		third[4 * WIDTH * HEIGHT];
+	struct switching all = { 0 };
+	begin_switching(&all);
+	const struct gz_backend_params params = { 0 };
+	const int surface = choice_of("isosurface");
+	const bool there = gz_techniques[surface - 1]->check("cpu", &params, NULL) == GZ_OK;
+	make_with(&all, 0, first);
+	make_with(&all, surface, second);
+	make_with(&all, choice_of("raycast"), third);
+	assert_memory_equal(first, third, sizeof first);
+	if (there) {
+		assert_int_equal(all.captured.messages, 0);
+		assert_memory_not_equal(first, second, sizeof first);
+		make_with(&all, surface, third);
+		assert_memory_equal(second, third, sizeof first);
+	} else {
+		assert_memory_equal(first, second, sizeof first);
+		const int told = all.captured.messages;
+		make_with(&all, surface, second);
+		make_with(&all, surface, second);
+		assert_in_range(all.captured.messages, told, told + 3); /* not in each frame */
+	}
+	end_switching(&all);
+}
+
+TEST_SUITE(technique_switch)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(technique_follows_the_settings_and_a_refused_one_changes_nothing),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
