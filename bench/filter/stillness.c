@@ -1,6 +1,8 @@
 #include "bench/filter/stillness.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* Sums over fixations and over saccades. */
 struct sums {
@@ -174,7 +176,7 @@ static void add_pipeline_point(struct gz_gaze_track *tracks, size_t count,
 	for (size_t i = 0; i < count; i++)
 		gz_gaze_track_run_pipeline(&tracks[i], &params, true);
 	sweep->point[sweep->count++] = (struct gz_sweep_point) {
-		.setting = pass_deg,
+		.pass_deg = pass_deg,
 		.as_given = pass_deg == given->smooth.pass_deg,
 		.stillness = gz_stillness_of(tracks, count),
 	};
@@ -197,19 +199,80 @@ struct gz_sweep gz_sweep_pipeline(struct gz_gaze_track *tracks, size_t count,
 	return sweep;
 }
 
+/* Settings of the 1 euro filter that are combined. Chosen: the paper's first guess of 1 Hz and what
+ * lies around it, up to cutoffs of the derivative at which it hardly smooths any more. */
+static const double MIN_CUTOFFS_HZ[] = { 0.3, 1, 3, 10 };
+static const double DERIVATIVE_CUTOFFS_HZ[] = { 1, 5, 20, 50, 200 };
+static const double BETA_LEAST = 1e-3, BETA_STEP = 1.5;
+
+enum {
+	MIN_CUTOFFS = sizeof MIN_CUTOFFS_HZ / sizeof MIN_CUTOFFS_HZ[0],
+	DERIVATIVE_CUTOFFS = sizeof DERIVATIVE_CUTOFFS_HZ / sizeof DERIVATIVE_CUTOFFS_HZ[0],
+	BETAS = 30,
+	COMBINATIONS = MIN_CUTOFFS * DERIVATIVE_CUTOFFS * BETAS,
+};
+
+static struct gz_one_euro_params combination(size_t i)
+{
+	return (struct gz_one_euro_params) {
+		.min_cutoff_hz = MIN_CUTOFFS_HZ[i / BETAS % MIN_CUTOFFS],
+		.derivative_cutoff_hz = DERIVATIVE_CUTOFFS_HZ[i / BETAS / MIN_CUTOFFS],
+		.beta = BETA_LEAST * pow(BETA_STEP, (double)(i % BETAS)),
+	};
+}
+
+/* NaN, as without a saccade, last. */
+static int by_lag(const void *a, const void *b)
+{
+	const struct gz_stillness *left = &((const struct gz_sweep_point *)a)->stillness;
+	const struct gz_stillness *right = &((const struct gz_sweep_point *)b)->stillness;
+	if (left->lag_ms != right->lag_ms && !(isnan(left->lag_ms) && isnan(right->lag_ms)))
+		return left->lag_ms < right->lag_ms || isnan(right->lag_ms) ? -1 : 1;
+	return (left->jitter > right->jitter) - (left->jitter < right->jitter);
+}
+
+/* Keep those that no other one beats, of points by lag. @return how many stay */
+static size_t keep_unbeaten(struct gz_sweep_point *points, size_t count)
+{
+	double least = INFINITY;
+	size_t kept = 0;
+	for (size_t i = 0; i < count; i++) {
+		if (!(points[i].stillness.jitter < least))
+			continue;
+		least = points[i].stillness.jitter;
+		points[kept++] = points[i];
+	}
+	return kept;
+}
+
 struct gz_sweep gz_sweep_one_euro(struct gz_gaze_track *tracks, size_t count)
 {
-	struct gz_sweep sweep = { .count = 0 };
-	double beta = 1e-4;
-	for (; beta < 200 && sweep.count < GZ_SWEEP_MAX; beta *= 1.6) {
-		for (size_t i = 0; i < count; i++)
-			gz_gaze_track_run_one_euro(&tracks[i], beta);
-		sweep.point[sweep.count++] = (struct gz_sweep_point) {
-			.setting = beta,
-			.stillness = gz_stillness_of(tracks, count),
-		};
+	struct gz_sweep_point points[COMBINATIONS];
+	for (size_t i = 0; i < COMBINATIONS; i++) {
+		points[i] = (struct gz_sweep_point) { .one_euro = combination(i) };
+		for (size_t track = 0; track < count; track++)
+			gz_gaze_track_run_one_euro(&tracks[track], &points[i].one_euro);
+		points[i].stillness = gz_stillness_of(tracks, count);
 	}
+	qsort(points, COMBINATIONS, sizeof points[0], by_lag);
+	const size_t unbeaten = keep_unbeaten(points, COMBINATIONS);
+	struct gz_sweep sweep = { .count = unbeaten < GZ_SWEEP_MAX ? unbeaten : GZ_SWEEP_MAX };
+	for (size_t i = 0; i < sweep.count; i++)
+		sweep.point[i] = points[(sweep.count - 1 - i) * (unbeaten - 1) /
+					(sweep.count > 1 ? sweep.count - 1 : 1)];
 	return sweep;
+}
+
+void gz_sweep_name_point(const struct gz_sweep_point *point, bool one_euro,
+			 char out_name[GZ_SWEEP_NAME_SIZE])
+{
+	const struct gz_one_euro_params *params = &point->one_euro;
+	if (one_euro)
+		snprintf(out_name, GZ_SWEEP_NAME_SIZE, "1 euro, %.3g Hz, %.3g Hz, beta %.3g",
+			 params->min_cutoff_hz, params->derivative_cutoff_hz, params->beta);
+	else
+		snprintf(out_name, GZ_SWEEP_NAME_SIZE, "pipeline, smooth_pass_deg %.4g",
+			 point->pass_deg);
 }
 
 /* Jitter on the line between two points at a lag; infinite beside it. */

@@ -43,12 +43,13 @@ struct gz_stillness gz_stillness_of(const struct gz_gaze_track *tracks, size_t c
 
 /** A point of a curve. */
 struct gz_sweep_point {
-	double setting;
-	bool as_given; /**< of a pipeline: pass_deg as its settings have it */
+	double pass_deg;                    /**< of a pipeline */
+	bool as_given;                      /**< of a pipeline: pass_deg as its settings have it */
+	struct gz_one_euro_params one_euro; /**< of a 1 euro filter */
 	struct gz_stillness stillness;
 };
 
-/** A curve, by its setting. */
+/** A curve: of a pipeline by pass_deg, of a 1 euro filter from the greatest lag to the least. */
 struct gz_sweep {
 	struct gz_sweep_point point[GZ_SWEEP_MAX];
 	size_t count;
@@ -59,8 +60,20 @@ struct gz_sweep {
 struct gz_sweep gz_sweep_pipeline(struct gz_gaze_track *tracks, size_t count,
 				  const struct gz_pipeline_params *params);
 
-/** The 1 euro filter, by beta: from a cutoff that hardly rises to one that lets everything pass. */
+/**
+ * The 1 euro filter at its best: beta, from a cutoff that hardly rises to one that lets everything
+ * pass, and both cutoffs, from 0.3 to 10 Hz and from 1 to 200 Hz, are combined. Settings for which
+ * another one has less jitter at no more lag are left out, and so are some between others when
+ * there are more than GZ_SWEEP_MAX.
+ */
 struct gz_sweep gz_sweep_one_euro(struct gz_gaze_track *tracks, size_t count);
+
+enum { GZ_SWEEP_NAME_SIZE = 64 };
+
+/** Name a point of a curve by its settings, for a line of text. @param one_euro  of a 1 euro
+ * filter, else of a pipeline */
+void gz_sweep_name_point(const struct gz_sweep_point *point, bool one_euro,
+			 char out_name[GZ_SWEEP_NAME_SIZE]);
 
 /** Least jitter that a curve gives for a lag, by straight lines between its points; infinite where
  *  it gives none. Points without jitter or lag do not count. */

@@ -117,9 +117,9 @@ void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
 	}
 }
 
-void gz_gaze_track_run_one_euro(struct gz_gaze_track *track, double beta)
+void gz_gaze_track_run_one_euro(struct gz_gaze_track *track,
+				const struct gz_one_euro_params *params)
 {
-	const struct gz_one_euro_params params = { 1, 1, beta };
 	const struct gz_display *display = &track->display;
 	const double deg[2] = { display->mm[0] / display->distance_mm * DEG,
 				display->mm[1] / display->distance_mm * DEG };
@@ -130,10 +130,8 @@ void gz_gaze_track_run_one_euro(struct gz_gaze_track *track, double beta)
 		const struct gz_point raw = track->raw[i];
 		if (isfinite(raw.x) && isfinite(raw.y)) {
 			const double step_s = gz_gaze_track_elapsed_ms(track, last, i) / 1000;
-			const double x =
-				gz_one_euro_step(&axis[0], &params, step_s, raw.x * deg[0]);
-			const double y =
-				gz_one_euro_step(&axis[1], &params, step_s, raw.y * deg[1]);
+			const double x = gz_one_euro_step(&axis[0], params, step_s, raw.x * deg[0]);
+			const double y = gz_one_euro_step(&axis[1], params, step_s, raw.y * deg[1]);
 			point = (struct gz_point) { (float)(x / deg[0]), (float)(y / deg[1]) };
 			last = i;
 		}

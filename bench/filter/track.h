@@ -58,14 +58,20 @@ double gz_gaze_track_interval_ms(const struct gz_gaze_track *track);
 void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
 				const struct gz_pipeline_params *params, bool certain);
 
+/** Settings of the 1 euro filter: Casiez, Roussel and Vogel, "1 euro filter: a simple speed-based
+ *  low-pass filter for noisy input in interactive systems", CHI 2012. */
+struct gz_one_euro_params {
+	double min_cutoff_hz;
+	double derivative_cutoff_hz;
+	double beta; /**< cutoff gained with speed, Hz over degrees a second */
+};
+
 /**
- * Run the 1 euro filter over @p raw, in degrees on each axis, with its paper's first guess of 1 Hz
- * for both cutoffs: fills @p point, and @p event stays. Where nothing was measured the last point
- * is held, (0.5, 0.5) before any.
- *
- * @param beta  cutoff gained with speed, Hz over degrees a second
+ * Run the 1 euro filter over @p raw, in degrees on each axis: fills @p point, and @p event stays.
+ * Where nothing was measured the last point is held, (0.5, 0.5) before any.
  */
-void gz_gaze_track_run_one_euro(struct gz_gaze_track *track, double beta);
+void gz_gaze_track_run_one_euro(struct gz_gaze_track *track,
+				const struct gz_one_euro_params *params);
 
 /** A recording of anybody. */
 struct gz_gaze_log_track {
@@ -85,14 +91,6 @@ struct gz_gaze_log_track {
  */
 enum gz_result gz_gaze_track_read_log(const char *path, const struct gz_log *log,
 				      struct gz_gaze_log_track *out_log);
-
-/** Settings of the 1 euro filter: Casiez, Roussel and Vogel, "1 euro filter: a simple speed-based
- *  low-pass filter for noisy input in interactive systems", CHI 2012. */
-struct gz_one_euro_params {
-	double min_cutoff_hz;
-	double derivative_cutoff_hz;
-	double beta; /**< cutoff gained with speed, Hz over degrees a second */
-};
 
 /** Its state on one axis; zero-initialised is the start state. */
 struct gz_one_euro {

@@ -54,14 +54,14 @@ static bool lag_known(const struct findings *found)
 	return found->given->saccades > 0;
 }
 
-static void print_sweep(const struct findings *found, const char *name,
-			const struct gz_sweep *sweep)
+static void print_sweep(const struct findings *found, const struct gz_sweep *sweep, bool one_euro)
 {
+	char name[GZ_SWEEP_NAME_SIZE];
 	for (size_t i = 0; i < sweep->count; i++) {
 		const struct gz_sweep_point *point = &sweep->point[i];
 		const struct gz_stillness *still = &point->stillness;
-		printf("%-26s%-8.4g  jitter %.3f  distance %.3f", name, point->setting,
-		       still->jitter, still->distance);
+		gz_sweep_name_point(point, one_euro, name);
+		printf("%-42s  jitter %.3f  distance %.3f", name, still->jitter, still->distance);
 		if (lag_known(found))
 			printf("  lag %6.2f samples %7.2f ms", still->lag_ms / found->interval_ms,
 			       still->lag_ms);
@@ -86,10 +86,10 @@ static void print_lines(const struct findings *found)
 	       "%d degrees\n",
 	       found->path, track->count, found->interval_ms, 1000 / found->interval_ms,
 	       found->given->fixations, found->given->saccades, GZ_LAG_LEAST_DEG);
-	printf("%-34s  jitter %.3f  distance %.3f  lag %6.2f samples %7.2f ms\n", "raw signal", 1.0,
+	printf("%-42s  jitter %.3f  distance %.3f  lag %6.2f samples %7.2f ms\n", "raw signal", 1.0,
 	       1.0, 0.0, 0.0);
-	print_sweep(found, "pipeline, smooth_pass_deg ", &found->pipeline);
-	print_sweep(found, "1 euro, beta ", &found->one_euro);
+	print_sweep(found, &found->pipeline, false);
+	print_sweep(found, &found->one_euro, true);
 	if (lag_known(found))
 		print_equal_lags(found);
 }
@@ -100,20 +100,30 @@ static json_t *filter_number(double value)
 	return isfinite(value) ? json_real(value) : json_null();
 }
 
-static json_t *sweep_json(const struct findings *found, const char *setting,
-			  const struct gz_sweep *sweep)
+/* The settings of a point, to which its results are added. */
+static json_t *settings_json(const struct gz_sweep_point *point, bool one_euro)
+{
+	const struct gz_one_euro_params *params = &point->one_euro;
+	if (!one_euro)
+		return json_pack("{s:f, s:b}", "smooth_pass_deg", point->pass_deg, "as_recorded",
+				 point->as_given);
+	return json_pack("{s:f, s:f, s:f}", "min_cutoff_hz", params->min_cutoff_hz,
+			 "derivative_cutoff_hz", params->derivative_cutoff_hz, "beta",
+			 params->beta);
+}
+
+static json_t *sweep_json(const struct findings *found, const struct gz_sweep *sweep, bool one_euro)
 {
 	json_t *points = json_array();
 	for (size_t i = 0; i < sweep->count; i++) {
-		const struct gz_sweep_point *point = &sweep->point[i];
-		const struct gz_stillness *still = &point->stillness;
-		json_array_append_new(
-			points,
-			json_pack("{s:f, s:o, s:o, s:o, s:o, s:b}", setting, point->setting,
-				  "jitter", filter_number(still->jitter), "distance",
-				  filter_number(still->distance), "lag_samples",
-				  filter_number(still->lag_ms / found->interval_ms), "lag_ms",
-				  filter_number(still->lag_ms), "as_recorded", point->as_given));
+		const struct gz_stillness *still = &sweep->point[i].stillness;
+		json_t *point = settings_json(&sweep->point[i], one_euro);
+		json_object_set_new(point, "jitter", filter_number(still->jitter));
+		json_object_set_new(point, "distance", filter_number(still->distance));
+		json_object_set_new(point, "lag_samples",
+				    filter_number(still->lag_ms / found->interval_ms));
+		json_object_set_new(point, "lag_ms", filter_number(still->lag_ms));
+		json_array_append_new(points, point);
 	}
 	return points;
 }
@@ -142,8 +152,8 @@ static enum gz_result print_filter_json(const struct findings *found, bool drawn
 		"rate_hz", 1000 / found->interval_ms, "display_known", found->log.display_known,
 		"fixations", (json_int_t)found->given->fixations, "saccades",
 		(json_int_t)found->given->saccades, "pipeline",
-		sweep_json(found, "smooth_pass_deg", &found->pipeline), "one_euro",
-		sweep_json(found, "beta", &found->one_euro), "equal_lag", equal_lag_json(found),
+		sweep_json(found, &found->pipeline, false), "one_euro",
+		sweep_json(found, &found->one_euro, true), "equal_lag", equal_lag_json(found),
 		"drawn", drawn);
 	const bool printed =
 		json && json_dumpf(json, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) == 0;

@@ -108,13 +108,14 @@ static void compare_labels(struct tracks *tracks)
 	}
 }
 
-static void print_curve(const char *name, const struct gz_sweep *sweep)
+static void print_curve(const struct gz_sweep *sweep, bool one_euro)
 {
+	char name[GZ_SWEEP_NAME_SIZE];
 	for (size_t i = 0; i < sweep->count; i++) {
 		const struct gz_stillness *still = &sweep->point[i].stillness;
-		printf("%-26s %-8.4g  jitter %.3f  distance %.3f  lag %5.2f samples\n", name,
-		       sweep->point[i].setting, still->jitter, still->distance,
-		       still->lag_ms / SAMPLE_MS);
+		gz_sweep_name_point(&sweep->point[i], one_euro, name);
+		printf("%-42s  jitter %.3f  distance %.3f  lag %5.2f samples\n", name,
+		       still->jitter, still->distance, still->lag_ms / SAMPLE_MS);
 	}
 }
 
@@ -133,8 +134,8 @@ static bool compare_curves(struct tracks *tracks, const char *folder)
 	const struct gz_pipeline_params params = gz_pipeline_default_params();
 	const struct gz_sweep ours = gz_sweep_pipeline(tracks->track, tracks->count, &params);
 	const struct gz_sweep theirs = gz_sweep_one_euro(tracks->track, tracks->count);
-	print_curve("pipeline, smooth_pass_deg", &ours);
-	print_curve("1 euro, beta", &theirs);
+	print_curve(&ours, false);
+	print_curve(&theirs, true);
 	const double lag_ms =
 		gz_sweep_first_not_below(&ours, &theirs, SAMPLE_MS, 20 * SAMPLE_MS, SAMPLE_MS / 4);
 	const bool below = isnan(lag_ms);

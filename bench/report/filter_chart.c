@@ -12,7 +12,7 @@
 enum { RAW, ONE_EURO, BEST, PIPELINE, CURVES };
 
 /* Which of the 1 euro filter's points have their setting beside them. */
-enum { LABEL_EACH = 3 };
+enum { LABEL_EACH = 6 };
 
 /* A filter that adds noise is of no use, and neither is more of its curve. */
 static const double MOST_JITTER = 1.2;
@@ -59,6 +59,12 @@ static void cut(const struct gz_plot_point *from, double most_ms, struct gz_plot
 	to->y = from->y + part * (to->y - from->y);
 }
 
+static void print_one_euro(const struct gz_one_euro_params *params, struct gz_plot_point *point)
+{
+	snprintf(point->label, sizeof point->label, "%.3g, %.3g Hz, %.2g", params->min_cutoff_hz,
+		 params->derivative_cutoff_hz, params->beta);
+}
+
 /* From the least lag to the cut. */
 static bool add_one_euro(const struct gz_sweep *sweep, double most_ms, struct gz_plot_curve *curve)
 {
@@ -79,8 +85,7 @@ static bool add_one_euro(const struct gz_sweep *sweep, double most_ms, struct gz
 			break;
 		}
 		if (i % LABEL_EACH == 0)
-			snprintf(point->label, sizeof point->label, "beta %.3g",
-				 sweep->point[i].setting);
+			print_one_euro(&sweep->point[i].one_euro, point);
 	}
 	return true;
 }

@@ -169,14 +169,51 @@ static void slow_filter_is_late_also_where_a_saccade_has_a_single_sample(void **
 	struct gz_gaze_log_track log;
 	write_log(place, &making);
 	read_track(place, &log);
+	const struct gz_one_euro_params slow = { 1, 1, 1e-4 };
+	gz_gaze_track_run_one_euro(&log.track, &slow);
+	const struct gz_stillness still = gz_stillness_of(&log.track, 1);
 	const struct gz_sweep sweep = gz_sweep_one_euro(&log.track, 1);
 	gz_gaze_track_free(&log.track);
-	assert_true(sweep.point[0].stillness.saccades > 10);
-	assert_true(sweep.point[0].stillness.lag_ms > 50);
+	assert_true(still.saccades > 10);
+	assert_true(still.lag_ms > 50);
 	for (size_t i = 0; i < sweep.count; i++)
 		if (!(sweep.point[i].stillness.lag_ms > 0))
-			fail_msg("beta %g: a lag of %g ms", sweep.point[i].setting,
-				 sweep.point[i].stillness.lag_ms);
+			fail_msg("point %zu: a lag of %g ms", i, sweep.point[i].stillness.lag_ms);
+}
+
+/* Whether a point has no more jitter and no more lag than another. */
+static bool beats(const struct gz_stillness *one, const struct gz_stillness *other)
+{
+	return one->jitter <= other->jitter && one->lag_ms <= other->lag_ms;
+}
+
+static void no_setting_of_the_1_euro_filter_beats_its_curve(void **state)
+{
+	const struct place *place = *state;
+	const struct making making = { .rate_hz = 250, .count = 5000 };
+	/* Around the paper's first guess, and with a derivative that gaze needs. */
+	const struct gz_one_euro_params guesses[] = { { 1, 1, 0.5 },
+						      { 1, 1, 0.007 },
+						      { 1, 50, 0.2 } };
+	struct gz_gaze_log_track log;
+	write_log(place, &making);
+	read_track(place, &log);
+	const struct gz_sweep sweep = gz_sweep_one_euro(&log.track, 1);
+	assert_in_range(sweep.count, 10, GZ_SWEEP_MAX);
+	for (size_t i = 1; i < sweep.count; i++)
+		if (beats(&sweep.point[i].stillness, &sweep.point[i - 1].stillness) ||
+		    beats(&sweep.point[i - 1].stillness, &sweep.point[i].stillness))
+			fail_msg("point %zu and the one before: one beats the other", i);
+	for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++) {
+		gz_gaze_track_run_one_euro(&log.track, &guesses[i]);
+		const struct gz_stillness still = gz_stillness_of(&log.track, 1);
+		/* Between points of the curve there may be a little more. */
+		if (still.jitter < 0.97 * gz_sweep_jitter_at(&sweep, still.lag_ms))
+			fail_msg("beta %g: jitter %g at %g ms, the curve has %g", guesses[i].beta,
+				 still.jitter, still.lag_ms,
+				 gz_sweep_jitter_at(&sweep, still.lag_ms));
+	}
+	gz_gaze_track_free(&log.track);
 }
 
 static void sweep_of_the_pipeline_has_the_recorded_setting_once(void **state)
@@ -190,8 +227,8 @@ static void sweep_of_the_pipeline_has_the_recorded_setting_once(void **state)
 	gz_gaze_track_free(&log.track);
 	int given = 0;
 	for (size_t i = 0; i < sweep.count; i++) {
-		assert_true(i == 0 || sweep.point[i].setting > sweep.point[i - 1].setting);
-		given += sweep.point[i].as_given && sweep.point[i].setting == 1.3;
+		assert_true(i == 0 || sweep.point[i].pass_deg > sweep.point[i - 1].pass_deg);
+		given += sweep.point[i].as_given && sweep.point[i].pass_deg == 1.3;
 	}
 	assert_int_equal(given, 1);
 }
@@ -214,7 +251,7 @@ static void log_is_measured_in_samples_and_ms_and_drawn(void **state)
 	check_close(json_number_value(json_object_get(json, "rate_hz")), 250, 0.5);
 	assert_int_equal(json_array_size(json_object_get(json, "equal_lag")), 6);
 	assert_int_equal(json_array_size(json_object_get(json, "pipeline")), 11);
-	const json_t *point = json_array_get(json_object_get(json, "one_euro"), 20);
+	const json_t *point = json_array_get(json_object_get(json, "one_euro"), 5);
 	const double interval_ms = json_number_value(json_object_get(json, "interval_ms"));
 	check_close(json_number_value(json_object_get(point, "lag_samples")) * interval_ms,
 		    json_number_value(json_object_get(point, "lag_ms")), 1e-6);
@@ -237,7 +274,7 @@ static void without_gnuplot_the_numbers_are_printed(void **state)
 	place_run(place, (const char *[]) { "filter", "viewer.gzl", "--out", "out", NULL });
 	setenv("PATH", kept, 1);
 	assert_said(place, 0, "gnuplot is not installed: there are no charts");
-	assert_said(place, 0, "1 euro, beta");
+	assert_said(place, 0, "1 euro, ");
 	assert_false(is_there(place, "out/jitter-over-lag.svg"));
 }
 
@@ -295,6 +332,7 @@ TEST_SUITE(filter)
 		cmocka_unit_test(comparison_of_curves_that_cross_names_the_lag),
 		IN_A_PLACE(raw_signal_has_jitter_1_and_lag_0_and_a_late_one_its_delay),
 		IN_A_PLACE(slow_filter_is_late_also_where_a_saccade_has_a_single_sample),
+		IN_A_PLACE(no_setting_of_the_1_euro_filter_beats_its_curve),
 		IN_A_PLACE(sweep_of_the_pipeline_has_the_recorded_setting_once),
 		IN_A_PLACE(log_is_measured_in_samples_and_ms_and_drawn),
 		IN_A_PLACE(without_gnuplot_the_numbers_are_printed),
