@@ -33,7 +33,8 @@ static inline double gz_length3(const double a[3])
 static inline bool gz_normalise3(double v[3])
 {
 	const double scale = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-	if (!(scale > 0) || !isfinite(scale))
+	/* fmax() passes over NaN */
+	if (!(scale > 0) || !isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
 		return false;
 	for (int i = 0; i < 3; i++)
 		v[i] /= scale;

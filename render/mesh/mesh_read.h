@@ -1,0 +1,48 @@
+/**
+ * @file
+ * Reading meshes from files of other programs.
+ */
+#ifndef GZ_RENDER_MESH_MESH_READ_H
+#define GZ_RENDER_MESH_MESH_READ_H
+
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/mesh/mesh.h"
+
+/** Greatest magnitude of a coordinate in a file. Chosen: no body is a light year of millimetres
+ *  large, and differences of such numbers are finite in single precision. */
+#define GZ_MESH_COORDINATE_MAX 1e18
+
+/**
+ * Read a mesh from a PLY file: text, or binary of either byte order (Turk, "The PLY polygon file
+ * format", 1994). It needs an element `vertex` with x, y and z of any number type, and an element
+ * `face` with a list `vertex_indices` or `vertex_index`. Polygons are cut into fans of triangles;
+ * faces of fewer than three corners, further properties and further elements are skipped. Vertices
+ * without a normal of some length get the mean of their triangles' by area.
+ *
+ * Positions are taken as they are written, in mm, in the frame of struct gz_mesh.
+ *
+ * @param[out] out_mesh  written on GZ_OK; the caller frees it with gz_mesh_free(). May have no
+ *                       triangles
+ * @retval GZ_ERR_NOT_FOUND    no such file; logged, as the others
+ * @retval GZ_ERR_IO           the file cannot be read
+ * @retval GZ_ERR_UNSUPPORTED  the name does not end in .ply
+ * @retval GZ_ERR_FORMAT       no PLY, cut off, or a number that is out of range
+ * @retval GZ_ERR_FULL         more than GZ_MESH_COUNT_MAX vertices or triangles
+ * @retval GZ_ERR_NO_MEM       out of memory
+ */
+enum gz_result gz_mesh_read(const char *path, const struct gz_log *log, struct gz_mesh *out_mesh);
+
+/** gz_mesh_read() of @p size bytes in memory. @param name  their source in messages */
+enum gz_result gz_mesh_parse_ply(const char *name, const void *bytes, size_t size,
+				 const struct gz_log *log, struct gz_mesh *out_mesh);
+
+/** Move a mesh so that a point becomes the origin, mm. */
+void gz_mesh_move(struct gz_mesh *mesh, const double origin[3]);
+
+/** Widen a box by the vertices of a mesh, mm. Start with INFINITY and -INFINITY. */
+void gz_mesh_bound(const struct gz_mesh *mesh, double least[3], double greatest[3]);
+
+#endif
