@@ -133,6 +133,10 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 {
 	struct raycast_drawer *self = raycast_of(drawer);
 	const struct gz_object *object = &objects[0];
+	if (object->mesh) {
+		gz_err(self->log, "raycast does not show meshes; take the technique isosurface");
+		return GZ_ERR_UNSUPPORTED;
+	}
 	if (count != 1 || !object->volume || !object->transfer) {
 		gz_err(self->log, "raycast shows one volume in a picture; %zu objects are given",
 		       count);

@@ -1,8 +1,10 @@
 #include "render/scene/scene.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/mesh/mesh_read.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_files.h"
 #include "render/scene/techniques.h"
@@ -84,6 +86,92 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
 	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, loader->log,
 			      out_volume);
+}
+
+static void free_meshes(struct gz_scene *scene)
+{
+	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++)
+		gz_mesh_free(&scene->meshes[i]);
+	free(scene->meshes);
+	scene->meshes = NULL;
+}
+
+static enum gz_result load_mesh(const struct scene_loader *loader,
+				const struct gz_scene_object *object, struct gz_mesh *out_mesh)
+{
+	char path[GZ_PATH_SIZE];
+	const enum gz_result result = find_named_file(loader, object->section, object->mesh, path);
+	return result == GZ_OK ? gz_mesh_read(path, loader->log, out_mesh) : result;
+}
+
+static enum gz_result load_meshes(const struct scene_loader *loader, struct gz_scene *scene)
+{
+	const struct gz_scene_objects *objects = &loader->settings->objects;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < objects->count && result == GZ_OK; i++) {
+		if (!objects->items[i].mesh[0])
+			continue;
+		if (!scene->meshes)
+			scene->meshes = calloc(objects->count, sizeof *scene->meshes);
+		if (!scene->meshes) {
+			gz_err(loader->log, "%s: no memory for its meshes", loader->name);
+			return GZ_ERR_NO_MEM;
+		}
+		result = load_mesh(loader, &objects->items[i], &scene->meshes[i]);
+	}
+	return result;
+}
+
+/* Voxels along each edge of the empty space of a scene without a volume, and its shortest edge as a
+ * share of the longest, so that flat meshes have a box. Chosen: the least that has corners. */
+enum { EMPTY_EDGE = 2 };
+#define EMPTY_SHARE 0.01
+
+/* Lay out the empty space around all meshes, which have some extent. */
+static void lay_out_empty_space(const double least[3], const double greatest[3],
+				struct gz_volume *volume)
+{
+	double longest = 0;
+	for (int axis = 0; axis < 3; axis++)
+		longest = fmax(longest, greatest[axis] - least[axis]);
+	*volume = (struct gz_volume) { .type = GZ_VOXEL_U8 };
+	for (int axis = 0; axis < 3; axis++) {
+		const double edge = fmax(greatest[axis] - least[axis], EMPTY_SHARE * longest);
+		volume->dims[axis] = EMPTY_EDGE;
+		volume->spacing[axis] = edge / EMPTY_EDGE;
+	}
+}
+
+/* Make the empty space around all meshes, and move them so that its centre is the origin. */
+static enum gz_result make_empty_space(const struct scene_loader *loader, struct gz_scene *scene)
+{
+	const size_t count = loader->settings->objects.count;
+	double least[3] = { INFINITY, INFINITY, INFINITY };
+	double greatest[3] = { -INFINITY, -INFINITY, -INFINITY }, centre[3];
+	struct gz_volume *volume = &scene->volume;
+	for (size_t i = 0; i < count; i++)
+		gz_mesh_bound(&scene->meshes[i], least, greatest);
+	if (!(greatest[0] > least[0] || greatest[1] > least[1] || greatest[2] > least[2])) {
+		gz_err(loader->log,
+		       "%s: its meshes have no extent, so nothing can be seen; name one with "
+		       "triangles",
+		       loader->name);
+		return GZ_ERR_FORMAT;
+	}
+	lay_out_empty_space(least, greatest, volume);
+	const enum gz_result result = gz_volume_allocate(volume);
+	if (result != GZ_OK) {
+		gz_err(loader->log, "%s: no box for its meshes: %s", loader->name,
+		       gz_result_text(result));
+		return result;
+	}
+	memset(volume->voxels, 0, gz_volume_voxel_count(volume));
+	gz_volume_find_range(volume);
+	for (int axis = 0; axis < 3; axis++)
+		centre[axis] = 0.5 * (least[axis] + greatest[axis]);
+	for (size_t i = 0; i < count; i++)
+		gz_mesh_move(&scene->meshes[i], centre);
+	return GZ_OK;
 }
 
 static enum gz_result load_volume(const struct scene_loader *loader, struct gz_volume *out_volume)
@@ -207,7 +295,10 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 	else if (result == GZ_OK)
 		result = load_named_transfer(&loader, &scene.transfer);
 	if (result == GZ_OK)
-		result = load_volume(&loader, &scene.volume);
+		result = load_meshes(&loader, &scene);
+	if (result == GZ_OK)
+		result = gz_scene_has_volume(&scene.settings) ? load_volume(&loader, &scene.volume)
+							      : make_empty_space(&loader, &scene);
 	if (result == GZ_OK && !given && !parts->volume_alone)
 		result = gz_transfer_of_volume(&scene.volume, log, &scene.transfer);
 	if (result != GZ_OK) {
@@ -226,37 +317,61 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 	const struct scene_loader loader = { .name = source->path,
 					     .log = log,
 					     .settings = &settings };
-	char volume[GZ_PATH_SIZE];
+	char path[GZ_PATH_SIZE];
 	bool has_display;
 	enum gz_result result = gz_scene_read(source, log, &settings, &has_display);
 	if (result == GZ_OK)
 		result = gz_scene_load_table(source->path, log, &settings.foveation);
 	if (result == GZ_OK)
 		result = load_named_transfer(&loader, &transfer);
-	if (result == GZ_OK && !settings.volume_procedural)
-		result = find_volume(&loader, volume);
+	if (result == GZ_OK && !settings.volume_procedural && gz_scene_has_volume(&settings))
+		result = find_volume(&loader, path);
+	for (size_t i = 0; i < settings.objects.count && result == GZ_OK; i++)
+		if (settings.objects.items[i].mesh[0])
+			result = find_named_file(&loader, settings.objects.items[i].section,
+						 settings.objects.items[i].mesh, path);
 	if (result == GZ_OK)
 		*out_settings = settings;
 	return result;
 }
 
+/* Append an object to a list of at most @p room. */
+static void list_object(const struct gz_object *object, struct gz_object *out_objects, size_t room,
+			size_t *count)
+{
+	if (*count < room)
+		out_objects[*count] = *object;
+	++*count;
+}
+
 size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out_objects,
 			     size_t room)
 {
-	const struct gz_scene_object *object = gz_scene_volume_object(&scene->settings);
-	const bool visible = !object || object->visible;
-	if (visible && room > 0)
-		out_objects[0] = (struct gz_object) {
-			.technique = gz_scene_technique(&scene->settings, object),
-			.id = 1,
-			.volume = &scene->volume,
-			.transfer = &scene->transfer,
-		};
-	return visible;
+	const struct gz_scene_settings *settings = &scene->settings;
+	const struct gz_scene_object *shown = gz_scene_volume_object(settings);
+	struct gz_object object = {
+		.technique = gz_scene_technique(settings, shown),
+		.id = 1,
+		.volume = &scene->volume,
+		.transfer = &scene->transfer,
+	};
+	size_t count = 0;
+	if (gz_scene_has_volume(settings) && (!shown || shown->visible))
+		list_object(&object, out_objects, room, &count);
+	for (size_t i = 0; scene->meshes && i < settings->objects.count; i++) {
+		const struct gz_scene_object *item = &settings->objects.items[i];
+		object.technique = gz_scene_technique(settings, item);
+		object.id = (uint32_t)i + 2;
+		object.mesh = &scene->meshes[i];
+		if (item->mesh[0] && item->visible)
+			list_object(&object, out_objects, room, &count);
+	}
+	return count;
 }
 
 void gz_scene_free(struct gz_scene *scene)
 {
+	free_meshes(scene);
 	gz_volume_free(&scene->volume);
 	*scene = (struct gz_scene) { 0 };
 }

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/volume.h"
+#include "render/mesh/mesh.h"
 #include "render/scene/scene_settings.h"
 #include "render/technique/technique.h"
 #include "render/transfer/transfer.h"
@@ -20,6 +21,9 @@ struct gz_scene {
 	bool has_display; /**< the scene describes the display */
 	struct gz_volume volume;
 	struct gz_transfer transfer;
+	/** Of each of the settings' objects; empty for those of other kinds. NULL: no object has a
+	 *  mesh. Of a scene of meshes alone, the volume is empty space: the box of all meshes. */
+	struct gz_mesh *meshes;
 };
 
 /**
@@ -115,7 +119,8 @@ enum gz_result gz_scene_load_transfer(const char *scene, const char *file, const
 				      struct gz_transfer *out_transfer);
 
 /**
- * List the visible objects of a scene for gz_picture_maker_show().
+ * List the visible objects of a scene for gz_picture_maker_show(): the volume, number 1, and the
+ * meshes, whose numbers are 2 and their place among the settings' objects.
  *
  * @param scene  loaded; the list borrows from it
  * @param[out] out_objects  the first @p room of them; their revisions are 0

@@ -132,6 +132,12 @@ static unsigned kinds_of(const struct gz_scene_object *object, const char **out_
 	return kinds;
 }
 
+unsigned gz_scene_object_kinds(const struct gz_scene_object *object)
+{
+	const char *key;
+	return kinds_of(object, &key);
+}
+
 /* The first technique that shows a kind of data; NULL if none does. */
 static const struct gz_technique *technique_for(unsigned kind)
 {

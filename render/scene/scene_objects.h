@@ -90,6 +90,9 @@ enum gz_result gz_scene_objects_scan(const char *name, const char *text, size_t 
 enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, const char *name,
 				      const struct gz_log *log);
 
+/** The kinds of data that an object is given, as bits of enum gz_object_data. */
+unsigned gz_scene_object_kinds(const struct gz_scene_object *object);
+
 /** Whether both have the same sections with equal values. */
 bool gz_scene_objects_same(const struct gz_scene_objects *a, const struct gz_scene_objects *b);
 

@@ -186,12 +186,42 @@ const struct gz_technique *gz_scene_technique(const struct gz_scene_settings *se
 	return gz_techniques[object ? object->technique : 0];
 }
 
+bool gz_scene_has_volume(const struct gz_scene_settings *settings)
+{
+	return settings->volume_procedural || settings->volume_file[0] ||
+	       gz_scene_volume_object(settings);
+}
+
+const struct gz_technique *gz_scene_main_technique(const struct gz_scene_settings *settings)
+{
+	const struct gz_scene_object *object = gz_scene_volume_object(settings);
+	if (!gz_scene_has_volume(settings) && settings->objects.count > 0)
+		object = &settings->objects.items[0];
+	return gz_scene_technique(settings, object);
+}
+
 const char *gz_scene_transfer_name(const struct gz_scene_settings *settings)
 {
 	const struct gz_scene_object *object = gz_scene_volume_object(settings);
 	if (settings->transfer_file[0] || !object)
 		return settings->transfer_file;
 	return object->transfer;
+}
+
+/* render.technique must show what every object has. */
+static enum gz_result check_technique(const struct gz_scene_settings *settings, const char *name,
+				      const struct gz_log *log)
+{
+	for (size_t i = 0; settings->technique > 0 && i < settings->objects.count; i++) {
+		const struct gz_scene_object *object = &settings->objects.items[i];
+		const struct gz_technique *technique = gz_scene_technique(settings, object);
+		if (technique->shows & gz_scene_object_kinds(object))
+			continue;
+		gz_err(log, "%s: render.technique: %s does not show what [%s] has; set it to auto",
+		       name, technique->name, object->section);
+		return GZ_ERR_FORMAT;
+	}
+	return GZ_OK;
 }
 
 enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
@@ -202,7 +232,8 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 		gz_err(log, "%s: camera.eye: is where camera.look_at is; move one of them", name);
 		return GZ_ERR_FORMAT;
 	}
-	if (gz_saved_views_check(settings->view.saved, name, log) != GZ_OK)
+	if (gz_saved_views_check(settings->view.saved, name, log) != GZ_OK ||
+	    check_technique(settings, name, log) != GZ_OK)
 		return GZ_ERR_FORMAT;
 	if (gz_ray_params_valid(&settings->rays)) {
 		if (!gz_camera_up_counts(&settings->camera))

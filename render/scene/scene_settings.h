@@ -112,6 +112,12 @@ const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_setti
 const struct gz_technique *gz_scene_technique(const struct gz_scene_settings *settings,
 					      const struct gz_scene_object *object);
 
+/** Whether the scene has a volume; otherwise it shows meshes alone. */
+bool gz_scene_has_volume(const struct gz_scene_settings *settings);
+
+/** The technique that draws the volume, or the first object of a scene without one. Static. */
+const struct gz_technique *gz_scene_main_technique(const struct gz_scene_settings *settings);
+
 /** The file of the transfer function that is used: transfer.file if given, else that of the
  * volume's object. "" = one is made for the volume. Borrowed. */
 const char *gz_scene_transfer_name(const struct gz_scene_settings *settings);

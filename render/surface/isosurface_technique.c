@@ -20,8 +20,8 @@ static const char *const isosurface_backends[] = { "cpu", NULL };
 
 const struct gz_technique gz_isosurface_technique = {
 	.name = "isosurface",
-	.help = "casts rays at the surface where a volume has one value",
-	.shows = GZ_OBJECT_VOLUME,
+	.help = "casts rays at the surface where a volume has one value, and at meshes",
+	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_MESH,
 	.objects_max = SURFACES_MAX,
 	.backends = isosurface_backends,
 	.check = gz_isosurface_check,

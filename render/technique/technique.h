@@ -37,10 +37,11 @@ struct gz_technique;
 struct gz_object {
 	const struct gz_technique *technique; /**< draws the object */
 	uint32_t id;                          /**< in planes of object ids: 1 or more */
-	const struct gz_volume *volume;       /**< NULL: none */
-	const struct gz_transfer *transfer;   /**< of the volume */
-	const struct gz_mesh *mesh;           /**< shown in place of the volume; NULL: none */
-	double mesh_world_mm;                 /**< without a volume: mm of a world unit; above 0 */
+	/** NULL: none. Its box is the world: the longest edge is 1. */
+	const struct gz_volume *volume;
+	const struct gz_transfer *transfer; /**< of the volume */
+	const struct gz_mesh *mesh;         /**< shown in place of the volume, in whose frame it
+						 is; NULL: none */
 	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };

@@ -122,9 +122,10 @@ static const struct refusal refusals[] = {
 	{ "[object a.b]\nvolume = a.nii\n", "s.scene:1: an object has a name" },
 	{ "[object a]\n", "s.scene: object a: give one of volume, labels, mesh and particles" },
 	{ "[object a]\nvolume = a.nii\nmesh = a.ply\n", "s.scene: object a: give one of" },
-	{ "[object a]\nmesh = a.ply\n", "s.scene: object a: no technique of this version shows "
-					"mesh; an object may have: volume" },
-	{ "[object a]\nlabels = a.nii\n", "no technique of this version shows labels" },
+	{ "[object a]\nmesh = a.ply\n", "s.scene: object a: the technique raycast does not show "
+					"mesh; set technique = isosurface" },
+	{ "[object a]\nlabels = a.nii\n", "s.scene: object a: no technique of this version shows "
+					  "labels; an object may have: volume, mesh" },
 	{ "[object a]\nparticles = a.csv\n", "no technique of this version shows particles" },
 	{ "[object a]\nvolume = a.raw\n[volume]\ndims = 1 2 3\n",
 	  "s.scene: volume.dims: a raw file needs both dims and type" },

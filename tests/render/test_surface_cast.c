@@ -10,6 +10,7 @@
 #include "mesh_fields.h"
 #include "oracle.h"
 #include "render/frame/picture_maker.h"
+#include "render/mesh/isosurface.h"
 #include "render/plan/method.h"
 #include "render/surface/cpu/surface_caster.h"
 #include "render/surface/isosurface_technique.h"
@@ -441,6 +442,28 @@ static void nearest_of_several_objects_shows(void **state)
 	gz_volume_free(&ring);
 }
 
+static void mesh_looks_like_the_surface_it_was_made_of(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ring, BALL_DIMS, EVEN, GZ_VOXEL_F32);
+	const struct gz_isosurface_request request = { .volume = &volume };
+	struct gz_mesh mesh;
+	assert_int_equal(gz_isosurface_make(&request, NULL, NULL, &mesh), GZ_OK);
+	const struct gz_object objects[2] = { object_of(&volume),
+					      { .id = 7, .volume = &volume, .mesh = &mesh } };
+	struct stage stages[2];
+	for (int i = 0; i < 2; i++) {
+		set_up_stage(&stages[i]);
+		stages[i].rays.surface.isovalue = i == 1 ? 5 : 0; /* nothing to a mesh */
+		draw_objects(&objects[i], 1, &stages[i]);
+	}
+	assert_same_stage(&stages[0], &stages[1]);
+	for (int i = 0; i < 2; i++)
+		take_down_stage(&stages[i]);
+	gz_mesh_free(&mesh);
+	gz_volume_free(&volume);
+}
+
 static void isovalue_outside_the_data_shows_the_background_and_says_so(void **state)
 {
 	(void)state;
@@ -635,6 +658,7 @@ TEST_SUITE(surface_cast)
 		cmocka_unit_test(plan_casts_the_same_rays_as_every_pixel),
 		cmocka_unit_test(ball_casts_a_round_shadow_and_none_on_its_lit_side),
 		cmocka_unit_test(nearest_of_several_objects_shows),
+		cmocka_unit_test(mesh_looks_like_the_surface_it_was_made_of),
 		cmocka_unit_test(isovalue_outside_the_data_shows_the_background_and_says_so),
 		cmocka_unit_test(clip_box_cuts_what_is_outside),
 		cmocka_unit_test(first_hit_of_the_data_lies_within_a_voxel),

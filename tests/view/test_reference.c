@@ -32,9 +32,14 @@ static void start(struct bench *bench)
 	bench->scene.foveation.method = GZ_METHOD_STANDARD;
 	bench->scene.display = gz_display_default(WIDTH, HEIGHT);
 	assert_int_equal(sem_init(&bench->finished, 0, 0), 0);
-	const struct gz_reference_source source = {
+	const struct gz_object object = {
 		.technique = gz_techniques[0],
+		.id = 1,
 		.volume = &bench->scene.volume,
+	};
+	const struct gz_reference_source source = {
+		.objects = &object,
+		.object_count = 1,
 		.threads = 2,
 		.finished = finish,
 		.user = bench,

@@ -20,7 +20,8 @@
 #define NICENESS 10
 
 struct gz_reference_worker {
-	struct gz_reference_source source;
+	struct gz_reference_source source; /* its objects are the worker's own */
+	struct gz_object *objects;
 	pthread_t thread;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -104,21 +105,19 @@ static enum gz_result make_reference(struct gz_reference_worker *worker,
 	return r;
 }
 
-/* Show the volume with the newest transfer function. */
+/* Show the objects with the newest transfer function. */
 static enum gz_result show_newest(struct gz_reference_worker *worker)
 {
 	pthread_mutex_lock(&worker->lock);
 	worker->shown = worker->transfer;
 	worker->shown_revision = worker->revision;
 	pthread_mutex_unlock(&worker->lock);
-	const struct gz_object object = {
-		.technique = worker->source.technique,
-		.id = 1,
-		.volume = worker->source.volume,
-		.transfer = &worker->shown,
-		.transfer_revision = worker->shown_revision,
-	};
-	return gz_picture_maker_show(worker->pictures, &object, 1);
+	for (size_t i = 0; i < worker->source.object_count; i++) {
+		worker->objects[i].transfer = &worker->shown;
+		worker->objects[i].transfer_revision = worker->shown_revision;
+	}
+	return gz_picture_maker_show(worker->pictures, worker->objects,
+				     worker->source.object_count);
 }
 
 /* Wait for a request. @return false: the thread must end */
@@ -174,22 +173,37 @@ static void *reference_thread(void *user)
 	return NULL;
 }
 
+static struct gz_object *copy_objects(const struct gz_reference_source *source)
+{
+	struct gz_object *copy = calloc(source->object_count, sizeof *copy);
+	if (copy)
+		memcpy(copy, source->objects, source->object_count * sizeof *copy);
+	return copy;
+}
+
 enum gz_result gz_reference_worker_start(const struct gz_reference_source *source,
 					 const struct gz_transfer *transfer,
 					 struct gz_reference_worker **out_worker)
 {
-	if (source->volume->bricks)
-		return GZ_ERR_UNSUPPORTED;
+	if (source->object_count < 1)
+		return GZ_ERR_INVAL;
+	for (size_t i = 0; i < source->object_count; i++)
+		if (source->objects[i].volume->bricks)
+			return GZ_ERR_UNSUPPORTED;
 	struct gz_reference_worker *worker = calloc(1, sizeof *worker);
 	if (!worker)
 		return GZ_ERR_NO_MEM;
 	worker->source = *source;
+	worker->objects = copy_objects(source);
+	worker->source.objects = worker->objects;
 	worker->transfer = *transfer;
 	const struct gz_picture_maker_params params = {
 		.backend = "cpu",
 		.backend_params = { .threads = reference_threads(source) },
 	};
-	if (gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
+	if (!worker->objects ||
+	    gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
+		free(worker->objects);
 		free(worker);
 		return GZ_ERR_NO_MEM;
 	}
@@ -200,6 +214,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 		pthread_cond_destroy(&worker->wake);
 		pthread_mutex_destroy(&worker->lock);
 		gz_picture_maker_destroy(&worker->pictures);
+		free(worker->objects);
 		free(worker);
 		return GZ_ERR_NO_MEM;
 	}
@@ -285,6 +300,7 @@ void gz_reference_worker_stop(struct gz_reference_worker **worker)
 	pthread_mutex_destroy(&(*worker)->lock);
 	gz_image_free(&(*worker)->finished);
 	gz_picture_maker_destroy(&(*worker)->pictures);
+	free((*worker)->objects);
 	free(*worker);
 	*worker = NULL;
 }

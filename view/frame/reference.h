@@ -30,9 +30,11 @@ struct gz_reference_view {
 
 /** What the worker needs. */
 struct gz_reference_source {
-	const struct gz_technique *technique;
-	const struct gz_volume *volume; /**< in memory; borrowed until gz_reference_worker_stop() */
-	int threads;                    /**< threads to cast with; 0: half of the processors */
+	/** What is shown, at least one, in memory. The list is copied; what it points to is
+	 *  borrowed until gz_reference_worker_stop(), but for transfer functions. */
+	const struct gz_object *objects;
+	size_t object_count;
+	int threads; /**< threads to cast with; 0: half of the processors */
 	/** Called on the worker's thread when a picture is finished or has failed. */
 	void (*finished)(void *user);
 	void *user;
@@ -44,7 +46,8 @@ struct gz_reference_source {
  *
  * @param transfer  copied
  * @param[out] out_worker  owned by the caller: gz_reference_worker_stop()
- * @retval GZ_ERR_UNSUPPORTED  the volume is stored in bricks, which one renderer at a time can use;
+ * @retval GZ_ERR_INVAL        the source has no objects; not logged
+ * @retval GZ_ERR_UNSUPPORTED  a volume is stored in bricks, which one renderer at a time can use;
  *                             not logged
  * @retval GZ_ERR_NO_MEM       out of memory, or no thread
  */

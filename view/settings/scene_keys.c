@@ -40,11 +40,9 @@ static bool in_parallel(const struct gz_scene_settings *settings)
 	return !in_perspective(settings);
 }
 
-/* Whether the volume, or whatever there is, is drawn by ray casting. */
 static bool by_raycast(const struct gz_scene_settings *settings)
 {
-	return gz_scene_technique(settings, gz_scene_volume_object(settings)) ==
-	       &gz_raycast_technique;
+	return gz_scene_main_technique(settings) == &gz_raycast_technique;
 }
 
 static bool by_isosurface(const struct gz_scene_settings *settings)

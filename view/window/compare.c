@@ -112,24 +112,26 @@ static void drop_standard(struct gz_window_compare *self)
 	self->any = self->busy = false;
 }
 
-/* What draws the volume in the picture on the screen. */
+/* What draws the picture on the screen. */
 static const struct gz_technique *shown_technique(const struct gz_window *window)
 {
-	const struct gz_scene_settings *settings = &gz_frame_maker_scene(window->maker)->settings;
-	return gz_scene_technique(settings, gz_scene_volume_object(settings));
+	return gz_scene_main_technique(&gz_frame_maker_scene(window->maker)->settings);
 }
 
 static void start_standard_worker(struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	const size_t count =
+		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
 	const struct gz_reference_source source = {
-		.technique = shown_technique(window),
-		.volume = &scene->volume,
+		.objects = objects,
+		.object_count = count,
 		.threads = (window->options->threads + 1) / 2,
 		.finished = wake_loop_for_standard,
 		.log = window->log,
 	};
-	window->compare->technique = source.technique;
+	window->compare->technique = shown_technique(window);
 	const enum gz_result r =
 		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
 	if (r == GZ_OK)

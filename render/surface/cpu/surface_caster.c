@@ -140,7 +140,7 @@ static void free_surfaces(struct gz_surface_caster *caster)
 static enum gz_result check_surface_object(const struct gz_surface_caster *caster,
 					   const struct gz_object *object)
 {
-	if (!object->volume && !object->mesh) {
+	if (!object->volume) {
 		gz_err(caster->log, "isosurface shows volumes and meshes; object %u is neither",
 		       (unsigned)object->id);
 		return GZ_ERR_UNSUPPORTED;
@@ -205,8 +205,7 @@ enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 	caster->meshes = meshes;
 	caster->surface_count = count;
 	caster->tree_current = false;
-	caster->world_mm =
-		objects[0].volume ? world_mm_of(objects[0].volume) : objects[0].mesh_world_mm;
+	caster->world_mm = world_mm_of(objects[0].volume);
 	return GZ_OK;
 }
 
@@ -290,21 +289,11 @@ struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *ca
 	return size;
 }
 
-/* The corner of the world's box along an axis, world units: 1/2 without a volume. */
-static void half_extent(const struct gz_surface_caster *caster, double out_half[3])
-{
-	const struct gz_volume *volume = caster->surfaces[0].object.volume;
-	for (int axis = 0; axis < 3; axis++)
-		out_half[axis] = 0.5;
-	if (volume)
-		gz_volume_half_extent(volume, out_half);
-}
-
 static void fill_clip(const struct gz_surface_caster *caster, const struct gz_clip_box *clip,
 		      struct gz_surface_cast *cast)
 {
 	double half[3];
-	half_extent(caster, half);
+	gz_volume_half_extent(caster->surfaces[0].object.volume, half);
 	for (int axis = 0; axis < 3; axis++) {
 		const double edge = 2 * half[axis] * caster->world_mm;
 		cast->clipped = cast->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;

@@ -40,10 +40,10 @@ enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
  * Show these objects from the next picture on. Surfaces are made when that picture is drawn, as its
  * settings have the isovalue.
  *
- * @param objects  volumes in memory, or meshes of one scale; what they point to is borrowed until
- *                 the next call
+ * @param objects  volumes in memory, and meshes; all of one world, the first one's volume's box.
+ *                 What they point to is borrowed until the next call
  * @retval GZ_ERR_INVAL        no objects
- * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume or mesh; logged
+ * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume; logged
  * @retval GZ_ERR_NO_MEM       out of memory
  */
 enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
