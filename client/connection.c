@@ -9,11 +9,6 @@
 
 #define GZ_LOG_MODULE "client"
 
-/* Pause before libzmq tries to reconnect, ms; the pause is lengthened at random up to twofold.
- * Chosen: a daemon that returns is found within 0.1 s, at the cost of some twenty attempts a second
- * while it is away. */
-enum { RECONNECT_MS = 50 };
-
 /* A peer can vanish from the network without a word: a connection over TCP is closed after three
  * seconds of silence. Chosen. */
 enum { HEARTBEAT_MS = 1000, HEARTBEAT_TIMEOUT_MS = 3000 };
@@ -169,7 +164,7 @@ static bool set_options(const struct gz_subscriber *subscriber, bool conflate)
 {
 	void *socket = subscriber->socket;
 	bool set = set_subscriber_option(socket, ZMQ_LINGER, 0) &&
-		   set_subscriber_option(socket, ZMQ_RECONNECT_IVL, RECONNECT_MS) &&
+		   set_subscriber_option(socket, ZMQ_RECONNECT_IVL, GZ_RECONNECT_MS) &&
 		   set_subscriber_option(socket, ZMQ_RCVHWM, RECEIVE_MESSAGES_MAX) &&
 		   zmq_setsockopt(socket, ZMQ_MAXMSGSIZE, &message_bytes_max,
 				  sizeof message_bytes_max) == 0;

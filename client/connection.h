@@ -15,6 +15,11 @@
 #include "client/keys.h"
 #include "protocol/endpoint.h"
 
+/** Pause before libzmq tries to reconnect, ms; the pause is lengthened at random up to twofold.
+ *  Chosen: a daemon that returns is found within 0.1 s, at the cost of some twenty attempts a
+ * second while it is away. */
+enum { GZ_RECONNECT_MS = 50 };
+
 /**
  * Find the endpoint to connect to.
  *

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <zmq.h>
 
+#include "client/connection.h"
 #include "protocol/endpoint.h"
 
 #define GZ_LOG_MODULE "viewer"
@@ -16,9 +17,6 @@ enum { QUEUE = 64 };
 
 /* Longest wait at the end, ms. Chosen: enough for the last message to leave. */
 enum { LINGER_MS = 100 };
-
-/* Pause before a new attempt to connect, ms. Chosen: the same as for subscriptions. */
-enum { RECONNECT_MS = 50 };
 
 struct gz_viewer_link {
 	void *context;
@@ -47,7 +45,7 @@ static enum gz_result find_inlet(const char *latest, char *text, size_t size)
 static enum gz_result connect_to_inlet(struct gz_viewer_link *link, const char *endpoint,
 				       const struct gz_log *log)
 {
-	int queue = QUEUE, linger = LINGER_MS, reconnect = RECONNECT_MS;
+	int queue = QUEUE, linger = LINGER_MS, reconnect = GZ_RECONNECT_MS;
 	link->context = zmq_ctx_new();
 	link->socket = link->context ? zmq_socket(link->context, ZMQ_PUB) : NULL;
 	if (!link->socket || zmq_setsockopt(link->socket, ZMQ_SNDHWM, &queue, sizeof queue) != 0 ||

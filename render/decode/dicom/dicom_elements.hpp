@@ -12,6 +12,10 @@
 namespace gz_dicom
 {
 
+inline const gdcm::Tag pixel_data(0x7fe0, 0x0010);
+/* The functional groups of all frames together, and of each (PS3.3, C.7.6.16). */
+inline const gdcm::Tag shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230);
+
 /* The bytes of an element; NULL: it is missing or empty. */
 const gdcm::ByteValue *value_of(const gdcm::DataSet &data, const gdcm::Tag &tag);
 

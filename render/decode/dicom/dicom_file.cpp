@@ -36,7 +36,6 @@ const size_t fragments_max = 65536;
 /* Slices of a mosaic (chosen: scanners make up to 144). */
 const int tiles_max = 1024;
 
-const gdcm::Tag pixel_data(0x7fe0, 0x0010);
 const gdcm::Tag item_tag(0xfffe, 0xe000), sequence_end(0xfffe, 0xe0dd);
 
 const gdcm::Tag character_set(0x0008, 0x0005), image_type(0x0008, 0x0008),
@@ -50,10 +49,10 @@ const gdcm::Tag character_set(0x0008, 0x0005), image_type(0x0008, 0x0008),
 	rows(0x0028, 0x0010), columns(0x0028, 0x0011), pixel_spacing(0x0028, 0x0030),
 	bits_allocated(0x0028, 0x0100), bits_stored(0x0028, 0x0101), high_bit(0x0028, 0x0102),
 	pixel_representation(0x0028, 0x0103), rescale_intercept(0x0028, 0x1052),
-	rescale_slope(0x0028, 0x1053), shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230),
-	plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116),
-	pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
-	frame_content(0x0020, 0x9111), temporal_position_index(0x0020, 0x9128);
+	rescale_slope(0x0028, 0x1053), plane_position(0x0020, 0x9113),
+	plane_orientation(0x0020, 0x9116), pixel_measures(0x0028, 0x9110),
+	value_transformation(0x0028, 0x9145), frame_content(0x0020, 0x9111),
+	temporal_position_index(0x0020, 0x9128);
 
 /* The functional groups of an enhanced image (PS3.3, C.7.6.16). */
 class groups
@@ -249,8 +248,6 @@ gdcm::Tag tag_at(const unsigned char *bytes, bool big_endian)
 	return { (uint16_t)number_at(bytes, 2, big_endian),
 		 (uint16_t)number_at(bytes + 2, 2, big_endian) };
 }
-
-const uint32_t undefined_length = 0xffffffff;
 
 bool read_item(std::istream &file, element_head &out)
 {

@@ -11,6 +11,7 @@
 #include <gdcmReader.h>
 #include <gdcmSequenceOfFragments.h>
 
+#include "render/decode/dicom/dicom_elements.hpp"
 #include "render/decode/dicom/dicom_guard.hpp"
 
 namespace gz_dicom
@@ -18,8 +19,6 @@ namespace gz_dicom
 
 namespace
 {
-
-const gdcm::Tag pixel_data(0x7fe0, 0x0010);
 
 /* Frames up to this size are decoded by one thread. Chosen: the memory limit of slice_pool still
  * lets eight of them be decoded at a time. */

@@ -11,13 +11,11 @@ namespace gz_dicom
 namespace
 {
 
-const uint32_t undefined_length = 0xffffffff;
-
 /* Sequences within each other (chosen: files have a few). */
 const int depth_max = 32;
 
-const uint32_t pixel_data = 0x7fe00010, item = 0xfffee000, item_end = 0xfffee00d,
-	       sequence_end = 0xfffee0dd, transfer_syntax = 0x00020010;
+const uint32_t tag_of_pixels = 0x7fe00010, tag_of_item = 0xfffee000, tag_of_item_end = 0xfffee00d,
+	       tag_of_sequence_end = 0xfffee0dd, tag_of_transfer_syntax = 0x00020010;
 
 /* Bytes of the head of an item. */
 const uint32_t item_head = 8;
@@ -104,8 +102,8 @@ bool walk::item_follows(const encoding &as)
 	unsigned char bytes[4];
 	const std::streamoff at = file.tellg();
 	const bool found = read(bytes, sizeof bytes) &&
-			   number(bytes, 2, as.big_endian) == item >> 16 &&
-			   number(bytes + 2, 2, as.big_endian) == (item & 0xffff);
+			   number(bytes, 2, as.big_endian) == tag_of_item >> 16 &&
+			   number(bytes + 2, 2, as.big_endian) == (tag_of_item & 0xffff);
 	file.clear();
 	file.seekg(at);
 	return found;
@@ -127,7 +125,7 @@ bool walk::read_element(const encoding &as, element &out)
 	out.tag = number(bytes, 2, as.big_endian) << 16 | number(bytes + 2, 2, as.big_endian);
 	out.length = number(bytes + 4, 4, as.big_endian);
 	out.inside = as;
-	out.sequence = out.length == undefined_length && out.tag != pixel_data;
+	out.sequence = out.length == undefined_length && out.tag != tag_of_pixels;
 	out.maybe = !as.explicit_vr;
 	if (!as.explicit_vr || out.tag >> 16 == 0xfffe)
 		return true;
@@ -180,9 +178,9 @@ verdict walk::items(const element &sequence, const room &within, int depth)
 		element e {};
 		if (!read_element(sequence.inside, e))
 			return verdict::unclear;
-		if (e.tag == sequence_end && !within.of_own_size)
+		if (e.tag == tag_of_sequence_end && !within.of_own_size)
 			return verdict::fits;
-		if (e.tag != item)
+		if (e.tag != tag_of_item)
 			return verdict::unclear;
 		if (e.length != undefined_length && !fits(e.length, within.limit))
 			return verdict::too_long;
@@ -224,9 +222,9 @@ verdict walk::elements(const encoding &as, const room &within, int depth)
 		element e {};
 		if (!read_element(as, e))
 			return verdict::unclear;
-		if (depth > 0 && !within.of_own_size && e.tag == item_end)
+		if (depth > 0 && !within.of_own_size && e.tag == tag_of_item_end)
 			return verdict::fits;
-		if (depth == 0 && e.tag >= pixel_data)
+		if (depth == 0 && e.tag >= tag_of_pixels)
 			return verdict::fits; /* where the pixels lie is checked later */
 		const verdict inside = value(e, within, depth);
 		if (inside != verdict::fits)
@@ -250,7 +248,7 @@ verdict walk::meta(std::string &out_syntax)
 		}
 		if (!fits(e.length, file_size))
 			return verdict::too_long;
-		if (e.tag == transfer_syntax && e.length <= 64) {
+		if (e.tag == tag_of_transfer_syntax && e.length <= 64) {
 			out_syntax.resize(e.length);
 			if (!read((unsigned char *)&out_syntax[0], e.length))
 				return verdict::unclear;

@@ -9,6 +9,9 @@
 namespace gz_dicom
 {
 
+/* A length that an element does not tell (PS3.5, 7.1.1). */
+inline const uint32_t undefined_length = 0xffffffff;
+
 /* Whether no element up to the pixels claims more bytes than the file, or the sequence that it lies
  * in, has left, and sequences are no deeper within each other than 32: the library takes memory for
  * what an element claims. Where the file is not as the standard says otherwise, the library may

@@ -20,8 +20,7 @@ namespace
 const gdcm::Tag segmentation_type(0x0062, 0x0001), segment_sequence(0x0062, 0x0002),
 	segment_number(0x0062, 0x0004), segment_label(0x0062, 0x0005),
 	identification(0x0062, 0x000a), referenced_number(0x0062, 0x000b),
-	display_value(0x0062, 0x000d), maximum_fraction(0x0062, 0x000e),
-	shared_groups(0x5200, 0x9229), frame_groups(0x5200, 0x9230);
+	display_value(0x0062, 0x000d), maximum_fraction(0x0062, 0x000e);
 
 /* How far a frame may be from an even distance, and within its plane from the first, as a share of
  * the distance of slices or pixels (chosen: positions are rounded far below it). */
