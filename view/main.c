@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "render/data/format.h"
+#include "render/particles/particles.h"
 #include "view/experiment/sitting.h"
 #include "view/headless/headless.h"
 #include "view/options/options.h"
@@ -51,6 +52,12 @@ static int run_mode(struct gz_view_options *options, const struct gz_log *log,
 	return r == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+static void print_formats(void)
+{
+	gz_volume_formats_print(stdout);
+	gz_particle_formats_print(stdout);
+}
+
 static int show(int argc, char **argv, struct gz_view_options *options, struct gz_notices *notices)
 {
 	struct gz_log log;
@@ -62,7 +69,7 @@ static int show(int argc, char **argv, struct gz_view_options *options, struct g
 	else if (options->version)
 		puts("gazeview " GAZECAST_VERSION);
 	else if (options->formats)
-		gz_volume_formats_print(stdout);
+		print_formats();
 	else
 		return run_mode(options, &log, notices);
 	return EXIT_SUCCESS;

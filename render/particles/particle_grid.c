@@ -26,6 +26,32 @@
 
 const char *const gz_particle_gridding_names[] = { "sph", "nearest", NULL };
 
+_Static_assert(sizeof(enum gz_particle_gridding) == sizeof(int) &&
+		       sizeof(enum gz_particle_value) == sizeof(int),
+	       "a CHOICE option writes an int");
+
+#define AT(field) offsetof(struct gz_particle_grid, field)
+
+const struct gz_option gz_particle_grid_options[GZ_PARTICLE_GRID_OPTIONS] = {
+	{ "particles.grid", GZ_OPTION_CHOICE, AT(gridding), .choices = gz_particle_gridding_names,
+	  .preset = "sph",
+	  .help = "how particles become voxels: sph, a sum of smooth kernels, or the value of the "
+		  "nearest particle" },
+	{ "particles.value", GZ_OPTION_CHOICE, AT(value), .choices = gz_particle_value_names,
+	  .preset = "fill",
+	  .help = "what voxels hold: fill (1 in the liquid, 0 outside), or the particles' density, "
+		  "pressure or speed" },
+	{ "particles.cells", GZ_OPTION_INT, AT(cells), GZ_PARTICLE_CELLS_MIN, GZ_PARTICLE_CELLS_MAX,
+	  .preset = "256", .help = "voxels along the longest edge" },
+	{ "particles.radius", GZ_OPTION_DOUBLE, AT(radius), 0, 1e30, .preset = "0",
+	  .help = "radius of a particle, in the file's unit; 0: estimated from the particles" },
+	{ "particles.smoothing", GZ_OPTION_DOUBLE, AT(smoothing), 0.1, 100, .preset = "2",
+	  .help = "sph: smoothing length, in radii; a kernel reaches twice as far" },
+	{ "particles.reach", GZ_OPTION_DOUBLE, AT(reach), 0, 1000, .preset = "0",
+	  .help = "nearest: voxels farther than this from every particle are empty, in voxels; 0: "
+		  "one, or two radii if that is more" },
+};
+
 struct gz_particle_grid gz_particle_grid_preset(void)
 {
 	return (struct gz_particle_grid) { .cells = 256, .smoothing = 2 };

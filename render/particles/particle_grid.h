@@ -19,6 +19,7 @@
 #define GZ_RENDER_PARTICLES_PARTICLE_GRID_H
 
 #include "base/log.h"
+#include "base/option.h"
 #include "base/result.h"
 #include "render/data/volume.h"
 #include "render/particles/particles.h"
@@ -52,7 +53,14 @@ struct gz_particle_grid {
 	int threads;      /**< 0: one per processor; else as for gz_workers_create() */
 };
 
-/** The presets: SPH, fill, 256 cells, radius 0, smoothing 2, reach 0, all processors. */
+/** Number of options of particles. */
+#define GZ_PARTICLE_GRID_OPTIONS 6
+
+/** Table over struct gz_particle_grid: keys "particles.grid", "particles.value", … */
+extern const struct gz_option gz_particle_grid_options[GZ_PARTICLE_GRID_OPTIONS];
+
+/** The presets of the table: SPH, fill, 256 cells, radius 0, smoothing 2, reach 0; on all
+ *  processors. */
 struct gz_particle_grid gz_particle_grid_preset(void);
 
 /**

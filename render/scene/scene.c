@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "render/mesh/mesh_read.h"
+#include "render/particles/particles.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_files.h"
 #include "render/scene/techniques.h"
@@ -45,7 +46,9 @@ static enum gz_result find_named_file(const struct scene_loader *loader, const c
 static enum gz_result find_volume(const struct scene_loader *loader, char out_path[GZ_PATH_SIZE])
 {
 	const struct gz_scene_object *object = gz_scene_volume_object(loader->settings);
-	return object ? find_named_file(loader, object->section, object->volume, out_path)
+	return object ? find_named_file(loader, object->section,
+					object->volume[0] ? object->volume : object->particles,
+					out_path)
 		      : find_named_file(loader, "volume.file", loader->settings->volume_file,
 					out_path);
 }
@@ -84,6 +87,11 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 				     .channels = settings->channels };
 	memcpy(raw.dims, settings->dims, sizeof raw.dims);
 	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
+	const struct gz_scene_object *object = gz_scene_volume_object(settings);
+	if ((object && object->particles[0]) ||
+	    (settings->dims[0] == 0 && gz_particle_format_of(path)))
+		return gz_particle_volume_load(path, &settings->particles, &loading, loader->log,
+					       out_volume);
 	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, loader->log,
 			      out_volume);
 }

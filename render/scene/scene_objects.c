@@ -19,14 +19,16 @@ const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
 	  .help = "volume file, searched as volume.file is" },
 	{ "object.transfer", GZ_OPTION_STRING, AT(transfer), .max = GZ_SCENE_FILE_SIZE,
 	  .preset = "",
-	  .help = "transfer function of the volume; transfer.file replaces it; without both one is "
+	  .help = "transfer function of the volume or the particles; transfer.file replaces it; "
+		  "without both one is "
 		  "made" },
 	{ "object.labels", GZ_OPTION_STRING, AT(labels), .max = GZ_SCENE_FILE_SIZE, .preset = "",
 	  .help = "label volume: a whole number for each region" },
 	{ "object.mesh", GZ_OPTION_STRING, AT(mesh), .max = GZ_SCENE_FILE_SIZE, .preset = "",
 	  .help = "triangle mesh" },
 	{ "object.particles", GZ_OPTION_STRING, AT(particles), .max = GZ_SCENE_FILE_SIZE,
-	  .preset = "", .help = "particles of a liquid" },
+	  .preset = "",
+	  .help = "file of particles; section [particles] says how they become a volume" },
 	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
 	  .help = "whether the object is shown" },
 	{ "object.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0.5",
@@ -180,9 +182,11 @@ static enum gz_result check_object(const struct gz_scene_object *object, const c
 		       object->section);
 		return GZ_ERR_FORMAT;
 	}
-	if (object->transfer[0] && kinds != GZ_OBJECT_VOLUME) {
-		gz_err(log, "%s: %s: only a volume has a transfer function; remove transfer", name,
-		       object->section);
+	if (object->transfer[0] && kinds != GZ_OBJECT_VOLUME && kinds != GZ_OBJECT_PARTICLES) {
+		gz_err(log,
+		       "%s: %s: only a volume and particles have a transfer function; remove "
+		       "transfer",
+		       name, object->section);
 		return GZ_ERR_FORMAT;
 	}
 	if (technique->shows & kinds)

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "render/data/format.h"
 #include "render/data/raw_guess.h"
+#include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -31,6 +32,9 @@ enum gz_file_kind gz_file_kind_by_name(const char *path)
 	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
 		if (gz_path_ends(path, kinds[i].ending))
 			return kinds[i].kind;
+	/* Before the volumes, of which raw ones may end in ".gz" whatever stands before that. */
+	if (gz_particle_format_by_name(path))
+		return GZ_FILE_VOLUME;
 	const struct gz_volume_format *format = gz_volume_format_by_name(path);
 	if (!format)
 		return GZ_FILE_OTHER;
@@ -48,7 +52,8 @@ enum gz_file_kind gz_file_kind_of(const char *path)
 {
 	const enum gz_file_kind kind = gz_file_kind_by_name(path);
 	const bool looked_into = kind == GZ_FILE_OTHER || kind == GZ_FILE_RAW;
-	if (looked_into && gz_volume_format_by_content(path))
+	if (looked_into &&
+	    (gz_volume_format_by_content(path) || gz_particle_format_by_content(path)))
 		return GZ_FILE_VOLUME;
 	return kind == GZ_FILE_OTHER && is_binary_file(path) ? GZ_FILE_VOLUME : kind;
 }

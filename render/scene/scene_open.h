@@ -13,7 +13,7 @@
 /** The kinds of files that gazeview opens. */
 enum gz_file_kind {
 	GZ_FILE_SCENE,    /**< .scene */
-	GZ_FILE_VOLUME,   /**< with a header; also a folder of DICOM */
+	GZ_FILE_VOLUME,   /**< with a header; also a folder of DICOM, and particles */
 	GZ_FILE_RAW,      /**< a volume without a header */
 	GZ_FILE_PICTURE,  /**< .png */
 	GZ_FILE_TRANSFER, /**< .tf */

@@ -21,8 +21,8 @@ static const char *const projection_names[] = { "perspective", "orthographic", N
 static const struct gz_option volume_options[] = {
 	{ "volume.file", GZ_OPTION_STRING, AT(volume_file), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "volume: .nii, .nii.gz, .nrrd, .nhdr, .mhd, .mha, DICOM (.dcm or a folder), "
-		  ".gzb, "
-		  "or raw data; searched beside the scene, then under $GAZECAST_DATA" },
+		  ".gzb, raw data, or particles (.particles, .bgeo, .vtk, .ply, .xyz); searched "
+		  "beside the scene, then under $GAZECAST_DATA" },
 	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE, .preset = "",
 	  .help = "UID of the series of a DICOM folder; without it there must be only one" },
 	{ "volume.procedural", GZ_OPTION_CHOICE, AT(volume_procedural), .choices = procedural_names,
@@ -105,6 +105,8 @@ void gz_scene_bind(struct gz_scene_settings *settings,
 {
 	const struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT] = {
 		[GZ_SCENE_VOLUME] = BIND(volume_options),
+		[GZ_SCENE_PARTICLES] = { gz_particle_grid_options, GZ_PARTICLE_GRID_OPTIONS,
+					 &settings->particles, NULL },
 		[GZ_SCENE_TRANSFER] = BIND(transfer_options),
 		[GZ_SCENE_CAMERA] = BIND(camera_options),
 		[GZ_SCENE_IMAGE] = BIND(image_options),
@@ -173,7 +175,7 @@ bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_
 const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings)
 {
 	for (size_t i = 0; i < settings->objects.count; i++)
-		if (settings->objects.items[i].volume[0])
+		if (settings->objects.items[i].volume[0] || settings->objects.items[i].particles[0])
 			return &settings->objects.items[i];
 	return NULL;
 }
@@ -357,7 +359,8 @@ static enum gz_result check_one_volume(const struct scene_reader *reader)
 	const struct gz_scene_settings *settings = reader->settings;
 	size_t volumes = settings->volume_file[0] || settings->volume_procedural;
 	for (size_t i = 0; i < settings->objects.count; i++)
-		volumes += settings->objects.items[i].volume[0] != '\0';
+		volumes += settings->objects.items[i].volume[0] ||
+			   settings->objects.items[i].particles[0];
 	if (volumes <= 1)
 		return GZ_OK;
 	gz_err(reader->log, "%s: %zu volumes are given, and a scene shows one; keep one",

@@ -17,6 +17,7 @@
 #include "render/accumulate/temporal.h"
 #include "render/attention/attention.h"
 #include "render/data/volume.h"
+#include "render/particles/particle_grid.h"
 #include "render/picture/camera.h"
 #include "render/plan/foveation.h"
 #include "render/raycast/shared/ray_params.h"
@@ -34,17 +35,18 @@ struct gz_scene_settings {
 	char volume_series[GZ_SERIES_SIZE]; /**< UID of a DICOM series; empty: the only one */
 	int volume_procedural;              /**< enum gz_procedural + 1; 0 = none */
 	int dims[3];                        /**< raw files and procedural volumes; 0 = not given */
-	int type;                         /**< enum gz_raw_type; raw files and procedural volumes */
-	int endian;                       /**< raw files: 0 little, 1 big */
-	double spacing[3];                /**< mm; raw files and procedural volumes */
-	int channels;                     /**< numbers of a voxel; raw files */
-	int opacity;                      /**< enum gz_opacity_source */
-	int resample;                     /**< enum gz_resampling; DICOM */
-	int time_point;                   /**< of a series, from 1 */
-	int memory_mib;                   /**< for bricks; 0 = a quarter of the machine's memory */
-	char transfer_file[GZ_PATH_SIZE]; /**< empty: the object's, or one made for the volume */
-	char transfer_also[GZ_PATH_SIZE]; /**< further ones for studies, separated by blanks */
-	struct gz_scene_objects objects;  /**< sections [object NAME] */
+	int type;          /**< enum gz_raw_type; raw files and procedural volumes */
+	int endian;        /**< raw files: 0 little, 1 big */
+	double spacing[3]; /**< mm; raw files and procedural volumes */
+	int channels;      /**< numbers of a voxel; raw files */
+	int opacity;       /**< enum gz_opacity_source */
+	int resample;      /**< enum gz_resampling; DICOM */
+	int time_point;    /**< of a series, from 1 */
+	int memory_mib;    /**< for bricks; 0 = a quarter of the machine's memory */
+	struct gz_particle_grid particles; /**< how a file of particles becomes a volume */
+	char transfer_file[GZ_PATH_SIZE];  /**< empty: the object's, or one made for the volume */
+	char transfer_also[GZ_PATH_SIZE];  /**< further ones for studies, separated by blanks */
+	struct gz_scene_objects objects;   /**< sections [object NAME] */
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	int technique;              /**< of all objects: index into gz_techniques + 1; 0: each
@@ -61,6 +63,7 @@ struct gz_scene_settings {
  *  addition (gz_scene_object_bind()). */
 enum gz_scene_table {
 	GZ_SCENE_VOLUME,
+	GZ_SCENE_PARTICLES,
 	GZ_SCENE_TRANSFER,
 	GZ_SCENE_CAMERA,
 	GZ_SCENE_IMAGE,
@@ -104,7 +107,8 @@ int gz_scene_procedural_type(int volume_procedural);
  */
 bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_type *out_type);
 
-/** The object whose volume the scene shows; NULL if section [volume] names it. Borrowed. */
+/** The object whose volume or particles the scene shows; NULL if section [volume] names them.
+ * Borrowed. */
 const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings);
 
 /** The technique that draws an object: render.technique, or the object's own. @param object  NULL:

@@ -60,6 +60,8 @@ static void kind_of_a_file_follows_from_its_name(void **state)
 		{ "a.gzb", GZ_FILE_VOLUME },        { "a.dcm", GZ_FILE_VOLUME },
 		{ "a.raw", GZ_FILE_RAW },           { "a.raw.zst", GZ_FILE_RAW },
 		{ "a_u8.dat.gz", GZ_FILE_RAW },     { "a.bin", GZ_FILE_RAW },
+		{ "a.bgeo", GZ_FILE_VOLUME },       { "a.particles", GZ_FILE_VOLUME },
+		{ "a.ply", GZ_FILE_VOLUME },        { "a.xyz.gz", GZ_FILE_VOLUME },
 		{ "nothing known", GZ_FILE_OTHER }, { "a.ini", GZ_FILE_OTHER },
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
@@ -98,6 +100,71 @@ static void volume_without_a_scene_is_seen_whole(void **state)
 	if (!(widest > 0.44 && widest < 0.46))
 		fail_msg("the box takes %g of half the picture", 2 * widest);
 	gz_scene_free(&scene);
+}
+
+/* Two steps of 27 particles, which lie on a lattice and then closer together. */
+static const char *write_liquid(const char *name)
+{
+	static unsigned char bytes[8 + 2 * 27 * 44];
+	const uint32_t head[2] = { 2, 27 };
+	memcpy(bytes, head, sizeof head); /* tests run on little-endian machines */
+	for (int i = 0; i < 2 * 27; i++) {
+		const float scale = i < 27 ? 0.1F : 0.05F;
+		float numbers[11] = { 0 };
+		numbers[0] = 0.5F + scale * (float)(i % 3);
+		numbers[1] = 0.5F + scale * (float)(i / 3 % 3);
+		numbers[2] = 0.5F + scale * (float)(i / 9 % 3);
+		memcpy(bytes + 8 + 44 * i, numbers, sizeof numbers);
+	}
+	return files_write(name, bytes, sizeof bytes);
+}
+
+static void particles_open_as_a_volume(void **state)
+{
+	static const char *const texts[] = {
+		"[volume]\nfile = a.particles\n[particles]\ncells = 40\n",
+		"[object water]\nparticles = a.particles\n[particles]\ncells = 40\n",
+	};
+	(void)state;
+	struct gz_scene scene = opened(write_liquid("a.particles"), NULL);
+	assert_int_equal(scene.volume.dims[0], 256);
+	assert_int_equal(scene.volume.time_points, 2);
+	assert_true(scene.volume.stored_min == 0 && scene.volume.stored_max == 2);
+	assert_true(scene.transfer.count >= 1);
+	gz_scene_free(&scene);
+	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+		struct gz_object object;
+		struct gz_volume second;
+		const char *path = files_write("a.scene", texts[i], strlen(texts[i]));
+		scene = opened(path, NULL);
+		assert_int_equal(scene.volume.dims[2], 40);
+		assert_int_equal(gz_scene_list_objects(&scene, &object, 1), 1);
+		assert_ptr_equal(object.volume, &scene.volume);
+		const struct gz_scene_time_point which = {
+			.name = path,
+			.settings = &scene.settings,
+			.time_point = 1,
+			.number_range = scene.volume.number_range,
+		};
+		assert_int_equal(gz_scene_load_time_point(&which, NULL, NULL, &second), GZ_OK);
+		assert_memory_equal(second.spacing, scene.volume.spacing, sizeof second.spacing);
+		assert_true(memcmp(second.voxels, scene.volume.voxels, gz_volume_bytes(&second)) !=
+			    0);
+		gz_volume_free(&second);
+		gz_scene_free(&scene);
+	}
+	/* Without a name of its own a file is known by its content; of another content it is not.
+	 */
+	assert_int_equal(gz_file_kind_of(write_liquid("unnamed")), GZ_FILE_VOLUME);
+	const char text[] = "[object water]\nparticles = n.nrrd\n";
+	write_nrrd("n.nrrd");
+	assert_refused(files_write("a.scene", text, sizeof text - 1), NULL, GZ_ERR_UNSUPPORTED,
+		       "unknown kind of particles");
+	assert_refused(files_write_text("g.vtk",
+					"# vtk DataFile Version 3.0\na grid\nASCII\nDATASET "
+					"STRUCTURED_POINTS\n",
+					NULL, 0),
+		       NULL, GZ_ERR_UNSUPPORTED, "VTK is not read");
 }
 
 static void fitted_camera_sees_the_box_in_either_projection(void **state)
@@ -243,6 +310,7 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(binary_file_is_no_scene),
 		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
+		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
 		cmocka_unit_test(camera_of_the_request_is_kept),
 		cmocka_unit_test(raw_file_opens_with_a_given_or_a_certain_layout),

@@ -250,6 +250,26 @@ static void opacity_of_colours_replaces_the_scenes(void **state)
 	assert_refused("a.nii --volume.opacity red", "auto, luminance or alpha");
 }
 
+static void particle_keys_replace_the_scenes(void **state)
+{
+	(void)state;
+	static struct gz_scene_settings settings;
+	assert_int_equal(gz_scene_settings_preset(&settings), GZ_OK);
+	settings.particles.cells = 100;
+	settings.particles.radius = 0.5;
+	assert_int_equal(read_line("a.bgeo --particles.grid nearest --particles.radius 0.025"),
+			 GZ_OK);
+	assert_int_equal(gz_view_options_apply(&options, &settings), GZ_OK);
+	assert_int_equal(settings.particles.gridding, GZ_GRIDDING_NEAREST);
+	assert_int_equal(settings.particles.value, GZ_PARTICLE_FILL);
+	assert_int_equal(settings.particles.cells, 100);
+	assert_true(settings.particles.radius == 0.025 && settings.particles.smoothing == 2);
+	assert_refused("a.bgeo --particles.grid octree", "sph or nearest");
+	assert_refused("a.bgeo --particles.cells 4", "8 to 16384");
+	assert_refused("--experiment a.exp --participant p --particles.cells 64",
+		       "a key of a scene");
+}
+
 static void resampling_replaces_the_scenes(void **state)
 {
 	(void)state;
@@ -470,6 +490,7 @@ TEST_SUITE(options)
 		cmocka_unit_test(data_of_a_scene_cannot_be_overridden),
 		cmocka_unit_test(raw_file_gets_the_layout_in_the_options),
 		cmocka_unit_test(opacity_of_colours_replaces_the_scenes),
+		cmocka_unit_test(particle_keys_replace_the_scenes),
 		cmocka_unit_test(resampling_replaces_the_scenes),
 		cmocka_unit_test(half_a_layout_is_refused),
 		cmocka_unit_test(transfer_function_on_the_command_line_is_made_absolute),

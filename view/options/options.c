@@ -22,8 +22,8 @@ static const char *const endian_names[] = { "little", "big", NULL };
 
 const struct gz_option gz_view_option_table[] = {
 	{ "scene", GZ_OPTION_STRING, AT(scene), .max = GZ_PATH_SIZE,
-	  .help = "what to show: a scene, a volume, or a picture saved by gazeview; --scene may be "
-		  "left out" },
+	  .help = "what to show: a scene, a volume, a file of particles, or a picture saved by "
+		  "gazeview; --scene may be left out" },
 	{ "headless", GZ_OPTION_BOOL, AT(headless), .preset = "false",
 	  .help = "render without a window" },
 	{ "size", GZ_OPTION_SIZE, AT(size_px), 1, GZ_IMAGE_SIDE_MAX, .preset = "1280x720",
@@ -133,7 +133,7 @@ const struct gz_option gz_view_option_table[] = {
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
 	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
-	  .help = "print the formats of volumes that are read, and exit" },
+	  .help = "print the formats of volumes and particles that are read, and exit" },
 	{ "help", GZ_OPTION_BOOL, AT(help), .preset = "false", .help = "print this and exit" },
 	{ "version", GZ_OPTION_BOOL, AT(version), .preset = "false",
 	  .help = "print the version and exit" },
@@ -244,6 +244,8 @@ static bool any_scene_key(const struct gz_view_options *options)
 	struct gz_scene_settings settings;
 	struct gz_view_scene_tables tables;
 	bool any = false;
+	for (size_t i = 0; i < GZ_PARTICLE_GRID_OPTIONS; i++)
+		any = any || options->particles_given[i];
 	const bool *given = options->scene_given;
 	gz_view_pick_scene_tables(&settings, &tables);
 	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
@@ -427,7 +429,7 @@ enum gz_result gz_pattern_format(const char *pattern, int number, char *path, si
 }
 
 /* Tables of the command line itself: its own, that of the targets and that of experiments. */
-enum { OWN_BINDINGS = 3 };
+enum { OWN_BINDINGS = 4 };
 
 static bool starts_with(const char *text, const char *start)
 {
@@ -604,6 +606,8 @@ static enum gz_result read_arguments(int argc, char *const *argv,
 		{ gz_view_option_table, gz_view_option_count, options, options->given },
 		{ gz_target_option_table, gz_target_option_count, &options->target, NULL },
 		{ gz_sitting_option_table, gz_sitting_option_count, &options->sitting, NULL },
+		{ gz_particle_grid_options, GZ_PARTICLE_GRID_OPTIONS, &options->particles,
+		  options->particles_given },
 	};
 	bool *given = options->scene_given;
 	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
@@ -682,6 +686,25 @@ static void apply_transfer(const struct gz_view_options *options,
 	free(real);
 }
 
+/* Copy the value of an option from one struct to another. */
+static enum gz_result copy_option(const struct gz_option *option, const void *from, void *to)
+{
+	char text[GZ_PATH_SIZE];
+	const enum gz_result r = gz_option_format(option, from, text, sizeof text);
+	return r == GZ_OK ? gz_option_parse(option, text, to, NULL, 0) : r;
+}
+
+static enum gz_result apply_particles(const struct gz_view_options *options,
+				      struct gz_particle_grid *particles)
+{
+	enum gz_result r = GZ_OK;
+	for (size_t i = 0; i < GZ_PARTICLE_GRID_OPTIONS && r == GZ_OK; i++)
+		if (options->particles_given[i])
+			r = copy_option(&gz_particle_grid_options[i], &options->particles,
+					particles);
+	return r;
+}
+
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings)
 {
@@ -692,23 +715,23 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 		settings->opacity = options->volume_opacity;
 	if (options->volume_resample >= 0)
 		settings->resample = options->volume_resample;
+	const enum gz_result r = apply_particles(options, &settings->particles);
+	if (r != GZ_OK)
+		return r;
 	struct gz_scene_settings given = options->scene_settings;
 	struct gz_view_scene_tables from, to;
 	gz_view_pick_scene_tables(&given, &from);
 	gz_view_pick_scene_tables(settings, &to);
-	char text[GZ_PATH_SIZE];
 	const bool *key_given = options->scene_given;
 	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
 		for (size_t k = 0; k < from.bindings[i].count; k++) {
 			const struct gz_option *option = &from.bindings[i].options[k];
 			if (!*key_given++)
 				continue;
-			enum gz_result r = gz_option_format(option, from.bindings[i].target, text,
-							    sizeof text);
-			if (r == GZ_OK)
-				r = gz_option_parse(option, text, to.bindings[i].target, NULL, 0);
-			if (r != GZ_OK)
-				return r;
+			const enum gz_result copied =
+				copy_option(option, from.bindings[i].target, to.bindings[i].target);
+			if (copied != GZ_OK)
+				return copied;
 		}
 	}
 	if (options->method >= 0)
@@ -730,6 +753,7 @@ void gz_view_options_print_help(FILE *out)
 		{ gz_view_option_table, gz_view_option_count, NULL, NULL },
 		{ gz_target_option_table, gz_target_option_count, NULL, NULL },
 		{ gz_sitting_option_table, gz_sitting_option_count, NULL, NULL },
+		{ gz_particle_grid_options, GZ_PARTICLE_GRID_OPTIONS, NULL, NULL },
 	};
 	struct gz_scene_settings settings;
 	struct gz_view_scene_tables tables;

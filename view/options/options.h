@@ -98,8 +98,10 @@ struct gz_view_options {
 	char volume_series[GZ_SERIES_SIZE]; /**< empty: not given */
 	int volume_resample;                /**< enum gz_resampling; -1: not given */
 	bool resample;                      /**< short for volume_resample GZ_RESAMPLING_LINEAR */
-	double volume_spacing[3];           /**< 0: not given */
-	char transfer_file[GZ_PATH_SIZE];   /**< replaces the scene's; empty: not given */
+	struct gz_particle_grid particles;  /**< those that are given replace the scene's */
+	bool particles_given[GZ_PARTICLE_GRID_OPTIONS];
+	double volume_spacing[3];         /**< 0: not given */
+	char transfer_file[GZ_PATH_SIZE]; /**< replaces the scene's; empty: not given */
 
 	struct gz_target_options target; /**< targets instead of a scene, if any are named */
 
