@@ -9,6 +9,10 @@
 #define RADIX_BITS 11
 #define RADIX      (1U << RADIX_BITS)
 
+/* A search does not look into nodes of so few points. Chosen: looking costs more than the points
+ * that may lie outside. */
+#define RUN_UNDIVIDED 8
+
 /* A point on its way into the tree. */
 struct coded_point {
 	uint64_t code;
@@ -248,7 +252,8 @@ bool gz_octree_walk_next(struct gz_octree_walk *walk, uint32_t *out_first, uint3
 			&walk->tree->nodes[walk->nodes[--walk->waiting]];
 		if (node_outside(walk, node))
 			continue;
-		if (node->children == 0 || node_inside(walk, node)) {
+		if (node->count <= RUN_UNDIVIDED || node->children == 0 ||
+		    node_inside(walk, node)) {
 			*out_first = node->first;
 			*out_count = node->count;
 			return true;

@@ -13,6 +13,7 @@
 #include "render/data/volume.h"
 #include "render/particles/octree.h"
 #include "render/particles/particle_grid.h"
+#include "render/particles/particle_kernels.h"
 
 /** Particles and their grid, in units of the box: its longest edge is 1. */
 struct gz_particle_cells {
@@ -26,7 +27,8 @@ struct gz_particle_cells {
 	float support;   /**< how far a particle reaches */
 	float *weights;  /**< SPH: 1 / sum of kernels at each particle, in the tree's order, times
 			    its value */
-	float *voxels;   /**< of the volume that is filled */
+	const struct gz_particle_kernels *kernels;
+	float *voxels;               /**< of the volume that is filled */
 	double share_from, share_to; /**< of progress that the present work stands for */
 	atomic_size_t parts_done;
 	size_t parts;

@@ -402,7 +402,10 @@ enum gz_result gz_particles_to_volume(const struct gz_particles *particles,
 		.loading = loading,
 		.log = log,
 		.box = find_box(particles),
-		.cells = { .particles = particles, .name = name, .loading = loading },
+		.cells = { .particles = particles,
+			   .name = name,
+			   .loading = loading,
+			   .kernels = gz_particle_kernels_find(grid->portable) },
 	};
 	const double least_edge = fmin(1.0 / grid->cells, edge_of_one(particles));
 	enum gz_result result = build_tree(particles, &making.box, least_edge, &making.cells.tree);

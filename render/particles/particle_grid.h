@@ -18,6 +18,8 @@
 #ifndef GZ_RENDER_PARTICLES_PARTICLE_GRID_H
 #define GZ_RENDER_PARTICLES_PARTICLE_GRID_H
 
+#include <stdbool.h>
+
 #include "base/log.h"
 #include "base/option.h"
 #include "base/result.h"
@@ -50,6 +52,7 @@ struct gz_particle_grid {
 	double smoothing; /**< SPH: smoothing length in radii, above 0; splashsurf's preset is 2 */
 	double reach;     /**< nearest: a particle farther away than this many voxels counts as
 			     none; 0: a voxel, or two radii if that is more */
+	bool portable;    /**< without the instructions that only some processors have; same bits */
 	int threads;      /**< 0: one per processor; else as for gz_workers_create() */
 };
 

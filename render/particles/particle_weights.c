@@ -8,7 +8,6 @@
 #include "render/particles/particle_cells.h"
 
 enum {
-	LANES = 16, /* sums of one particle, so that the order of additions is fixed */
 	BATCH = 64, /* runs of one part */
 	FIRST_ROOM = 4096,
 };
@@ -78,41 +77,19 @@ static bool gather_near(const struct gz_particle_cells *cells, const struct gz_o
 	near->count = 0;
 	gz_octree_walk_begin(&walk, &cells->tree, least, greatest);
 	while (gz_octree_walk_next(&walk, &first, &count)) {
-		if (!make_room(near, near->count + count + LANES))
+		if (!make_room(near, near->count + count + GZ_PARTICLE_SUM_LANES))
 			return false;
 		for (int axis = 0; axis < 3; axis++)
 			memcpy(near->at[axis] + near->count, cells->tree.at[axis] + first,
 			       count * sizeof(float));
 		near->count += count;
 	}
-	while (near->count % LANES != 0) {
+	while (near->count % GZ_PARTICLE_SUM_LANES != 0) {
 		for (int axis = 0; axis < 3; axis++)
 			near->at[axis][near->count] = FAR_AWAY;
 		near->count++;
 	}
 	return true;
-}
-
-/* The sum of kernels at a point, each 1 at its centre. */
-static double sum_kernels(const struct near_particles *near, const float point[3],
-			  float per_support)
-{
-	float sums[LANES] = { 0 };
-	const float px = point[0], py = point[1], pz = point[2];
-	for (size_t i = 0; i < near->count; i += LANES) {
-		const float *x = near->at[0] + i, *y = near->at[1] + i, *z = near->at[2] + i;
-		for (size_t k = 0; k < LANES; k++) {
-			const float dx = x[k] - px, dy = y[k] - py, dz = z[k] - pz;
-			const float q = sqrtf(dx * dx + dy * dy + dz * dz) * per_support;
-			const float outer = 1 - q > 0 ? 1 - q : 0;
-			const float inner = 0.5F - q > 0 ? 0.5F - q : 0;
-			sums[k] += outer * outer * outer - 4 * (inner * inner * inner);
-		}
-	}
-	double sum = 0;
-	for (size_t k = 0; k < LANES; k++)
-		sum += (double)sums[k];
-	return 2 * sum;
 }
 
 static void weigh_run(struct gz_particle_cells *cells, const struct gz_octree_node *run,
@@ -122,7 +99,8 @@ static void weigh_run(struct gz_particle_cells *cells, const struct gz_octree_no
 	const struct gz_octree *tree = &cells->tree;
 	for (uint32_t i = run->first; i < run->first + run->count; i++) {
 		const float point[3] = { tree->at[0][i], tree->at[1][i], tree->at[2][i] };
-		const double sum = sum_kernels(near, point, 1 / cells->support);
+		const double sum =
+			cells->kernels->sum(near->at, near->count, point, 1 / cells->support);
 		const double value = values ? (double)values[tree->order[i]] : 1;
 		cells->weights[i] = (float)(value / sum);
 	}
