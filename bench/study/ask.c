@@ -292,6 +292,19 @@ static enum gz_result hash_variants(const struct asking *asking, struct gz_hash 
 	return result;
 }
 
+/* Of the meshes' places and triangles. */
+static void hash_meshes(struct gz_hash *hash, const struct gz_scene *scene)
+{
+	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++) {
+		const struct gz_mesh *mesh = &scene->meshes[i];
+		if (mesh->triangle_count == 0 || !scene->settings.objects.items[i].visible)
+			continue;
+		gz_hash_add(hash, mesh->positions, mesh->vertex_count * sizeof mesh->positions[0]);
+		gz_hash_add(hash, mesh->triangles,
+			    mesh->triangle_count * sizeof mesh->triangles[0]);
+	}
+}
+
 /* Of the data and of what the scene says of how they are shown; names of files do not count, what
  * is in them does. The camera stands in the study itself. */
 static enum gz_result hash_scene(const struct asking *asking, struct gz_study_scene *scene)
@@ -304,6 +317,8 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 		return result;
 	foveation.table_file[0] = '\0';
 	gz_hash_add_text(hash, scene->data_hash);
+	gz_hash_add_text(hash, gz_scene_main_technique(settings)->name);
+	hash_meshes(hash, &asking->stage->scene);
 	gz_hash_add_rays(hash, &settings->rays);
 	gz_hash_add_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);
 	hash_table(hash, &foveation.table);

@@ -30,7 +30,7 @@ void gz_hash_add_number(struct gz_hash *hash, double number);
 void gz_hash_add_options(struct gz_hash *hash, const struct gz_option *options, size_t count,
 			 const void *target);
 
-/** Go on with all options of how rays are integrated, light and clip box included. */
+/** Go on with all options of how rays are integrated: light, clip box and surface included. */
 void gz_hash_add_rays(struct gz_hash *hash, const struct gz_ray_params *rays);
 
 /**

@@ -51,10 +51,9 @@ struct gz_surface_tile {
 
 /** What the rays of a tile found; valid for active rays. */
 struct gz_surface_hits {
-	uint32_t pixels[GZ_SURFACE_RAYS];  /**< R, G, B, 255 in memory order */
-	float depth[GZ_SURFACE_RAYS];      /**< along the ray, world units; INFINITY: nothing */
-	uint32_t ids[GZ_SURFACE_RAYS];     /**< of the objects; 0: nothing */
-	float normals[3][GZ_SURFACE_RAYS]; /**< interpolated, of length 1; undefined for nothing */
+	uint32_t pixels[GZ_SURFACE_RAYS]; /**< R, G, B, 255 in memory order */
+	float depth[GZ_SURFACE_RAYS];     /**< along the ray, world units; INFINITY: nothing */
+	uint32_t ids[GZ_SURFACE_RAYS];    /**< of the objects; 0: nothing */
 };
 
 /**

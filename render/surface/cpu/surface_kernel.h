@@ -213,8 +213,6 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 	vi_store(hits->ids + first, vi_select(mask, vi_set((int32_t)mesh->id), id));
 	put_lanes(mask, shine.factor, packet->factor + first);
 	put_lanes(mask, shine.white, packet->white + first);
-	for (int axis = 0; axis < 3; axis++)
-		put_lanes(mask, at.normal[axis], hits->normals[axis] + first);
 	if (!cast->shadows)
 		return mask;
 	aim_shadows(cast, mesh, &at, &view, (struct lanes) { first, mask }, packet);
@@ -231,8 +229,6 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 	const vm met = vm_and(valid, vi_nonzero(vi_add(number, vi_set(1))));
 	vm lit = vm_but(met, met);
 	vi_store(hits->ids + first, vi_set(0));
-	for (int axis = 0; axis < 3; axis++)
-		vf_store(hits->normals[axis] + first, vf_set(0));
 	vf_store(packet->factor + first, vf_set(0));
 	vf_store(packet->white + first, vf_set(0));
 	for (unsigned i = 0; i < cast->mesh_count; i++) {
