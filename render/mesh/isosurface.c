@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/mesh/isosurface_kernels.h"
 #include "render/mesh/isosurface_rows.h"
 
 #define GZ_LOG_MODULE "mesh"
@@ -43,8 +44,8 @@ static void do_all_rows(const struct gz_iso_job *job, struct gz_workers *workers
 
 static void write_row(const struct gz_iso_job *job, size_t row)
 {
-	gz_iso_write_vertices(job, row);
-	gz_iso_write_triangles(job, row);
+	job->kernels->write_vertices(job, row);
+	job->kernels->write_triangles(job, row);
 }
 
 /* Where the voxels of an axis are, mm; the origin is the centre of the box. */
@@ -136,7 +137,7 @@ static enum gz_result extract(struct gz_iso_job *job, struct gz_workers *workers
 	if (job->blocks)
 		do_all_rows(job, workers, block_rows(job->blocks), gz_iso_find_known);
 	do_all_rows(job, workers, job->row_count, gz_iso_classify_row);
-	do_all_rows(job, workers, job->row_count, gz_iso_count_row);
+	do_all_rows(job, workers, job->row_count, job->kernels->count_row);
 	sum_rows(job, &vertices, &triangles);
 	const enum gz_result result = gz_mesh_allocate(vertices, triangles, mesh);
 	if (result != GZ_OK)
@@ -200,6 +201,7 @@ enum gz_result gz_isosurface_make(const struct gz_isosurface_request *request,
 		return GZ_ERR_UNSUPPORTED;
 	}
 	struct gz_iso_job job = {
+		.kernels = request->portable ? &gz_iso_kernels_portable : gz_iso_kernels_find(),
 		.volume = volume,
 		.blocks = request->blocks,
 		.isovalue = (float)((request->isovalue - volume->intercept) / volume->slope),

@@ -18,6 +18,8 @@
 #ifndef GZ_RENDER_MESH_ISOSURFACE_H
 #define GZ_RENDER_MESH_ISOSURFACE_H
 
+#include <stdbool.h>
+
 #include "base/log.h"
 #include "base/result.h"
 #include "base/workers.h"
@@ -39,6 +41,7 @@ struct gz_isosurface_request {
 	const struct gz_volume *volume;       /**< in memory; borrowed */
 	double isovalue;                      /**< data value: slope and intercept applied */
 	const struct gz_value_blocks *blocks; /**< optional: makes skipping faster; borrowed */
+	bool portable; /**< without the loops for AVX2, which give the same bits: for comparison */
 };
 
 /**

@@ -16,6 +16,8 @@
 /** Voxels of a word. */
 #define GZ_ISO_WORD 32
 
+struct gz_iso_kernels;
+
 /** What a row of voxels owns: the crossed edges that start at its voxels, along x, then along y to
  *  the next row, then along z to the next slice; and the triangles of the cubes whose lowest
  * corners are its voxels. */
@@ -27,6 +29,7 @@ struct gz_iso_row {
 
 /** One extraction, shared by all threads. */
 struct gz_iso_job {
+	const struct gz_iso_kernels *kernels;
 	const struct gz_volume *volume;
 	const struct gz_value_blocks *blocks; /**< may be NULL */
 	float isovalue;                       /**< stored value */
@@ -50,15 +53,6 @@ void gz_iso_find_known(const struct gz_iso_job *job, size_t block_row);
 /** Fill the bits of a row of voxels. Threads: any, for different rows. */
 void gz_iso_classify_row(const struct gz_iso_job *job, size_t row);
 
-/** Count a row's edges and triangles; all bits are known. Threads: any, for different rows. */
-void gz_iso_count_row(const struct gz_iso_job *job, size_t row);
-
-/** Write a row's triangles; all rows are summed. Threads: any, for different rows. */
-void gz_iso_write_triangles(const struct gz_iso_job *job, size_t row);
-
-/** Write a row's vertices; all rows are summed. Threads: any, for different rows. */
-void gz_iso_write_vertices(const struct gz_iso_job *job, size_t row);
-
 /** The bits of four neighbouring rows: those of (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1).
  *  At the end of the volume a row stands for the missing one behind it: no edge is crossed there.
  */
@@ -67,9 +61,6 @@ struct gz_iso_beam {
 	size_t row[4];
 	bool cubes; /**< none is missing: there are cubes between them */
 };
-
-/** Find the four rows from @p row on. */
-struct gz_iso_beam gz_iso_beam_at(const struct gz_iso_job *job, size_t row);
 
 /** Bits of 64 voxels from word @p at on. */
 static inline uint64_t gz_iso_window(const uint32_t *bits, size_t at)

@@ -81,6 +81,43 @@ static void assert_sound(const struct gz_mesh *mesh)
 		assert_true(mesh->triangles[i / 3][i % 3] < mesh->vertex_count);
 }
 
+static void all_instruction_sets_make_the_same_mesh(void **state)
+{
+	(void)state;
+	static const int dims[3] = { 70, 33, 21 };
+	static const double uneven[3] = { 0.8, 1.1, 0.6 };
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+		for (int noise = 0; noise < 2; noise++) {
+			struct gz_volume volume =
+				noise ? field_noise(dims, (enum gz_voxel_type)type, 5, 0)
+				      : field_volume(field_ring, dims, uneven,
+						     (enum gz_voxel_type)type);
+			struct gz_isosurface_request request = {
+				.volume = &volume,
+				.isovalue = !noise                 ? 0.1
+					    : type == GZ_VOXEL_F32 ? 0.4
+								   : 100,
+			};
+			struct gz_mesh best, portable;
+			assert_int_equal(gz_isosurface_make(&request, NULL, NULL, &best), GZ_OK);
+			request.portable = true;
+			assert_int_equal(gz_isosurface_make(&request, NULL, NULL, &portable),
+					 GZ_OK);
+			assert_int_equal(best.vertex_count, portable.vertex_count);
+			assert_int_equal(best.triangle_count, portable.triangle_count);
+			assert_true(best.triangle_count > 1000);
+			assert_memory_equal(best.positions, portable.positions,
+					    best.vertex_count * sizeof best.positions[0]);
+			assert_memory_equal(best.normals, portable.normals,
+					    best.vertex_count * sizeof best.normals[0]);
+			assert_memory_equal(best.triangles, portable.triangles,
+					    best.triangle_count * sizeof best.triangles[0]);
+			gz_mesh_free(&best);
+			gz_mesh_free(&portable);
+			gz_volume_free(&volume);
+		}
+}
+
 static void ball_has_the_area_and_volume_of_a_ball(void **state)
 {
 	(void)state;
@@ -492,6 +529,7 @@ static void what_has_no_surface_is_refused(void **state)
 TEST_SUITE(isosurface)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(all_instruction_sets_make_the_same_mesh),
 		cmocka_unit_test(ball_has_the_area_and_volume_of_a_ball),
 		cmocka_unit_test(ring_has_the_area_and_volume_of_a_torus_and_one_handle),
 		cmocka_unit_test(surface_of_falling_values_faces_outwards),

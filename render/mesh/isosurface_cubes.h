@@ -1,9 +1,14 @@
-/* The cubes between four rows of voxels: how many triangles they have, and which. */
+/* The cubes between four rows of voxels: how many triangles they have, and which. Compiled once for
+ * each instruction set: isosurface_kernels.h. */
+#ifndef GZ_RENDER_MESH_ISOSURFACE_CUBES_H
+#define GZ_RENDER_MESH_ISOSURFACE_CUBES_H
+
 #include "render/data/volume.h"
 #include "render/mesh/cube_tables.h"
 #include "render/mesh/isosurface_rows.h"
 
-struct gz_iso_beam gz_iso_beam_at(const struct gz_iso_job *job, size_t row)
+/* Find the four rows from @p row on. */
+static struct gz_iso_beam beam_at(const struct gz_iso_job *job, size_t row)
 {
 	const size_t rows = (size_t)job->volume->dims[1], slices = (size_t)job->volume->dims[2];
 	const bool more_y = row % rows + 1 < rows, more_z = row / rows + 1 < slices;
@@ -60,6 +65,8 @@ static bool lowest_joined(const double heights[8], unsigned face)
 	       heights[lowest | u] * heights[lowest | v];
 }
 
+/* The variant of a case with ambiguous faces, by the values at the corners. Not inlined: most cubes
+ * have none. */
 static __attribute__((noinline)) unsigned decide_variant(const struct gz_iso_job *job,
 							 const struct gz_iso_beam *beam, size_t x,
 							 unsigned set)
@@ -76,12 +83,14 @@ static __attribute__((noinline)) unsigned decide_variant(const struct gz_iso_job
 	return variant;
 }
 
+/* The variant of a cube of case @p set. */
 static inline unsigned variant_of(const struct gz_iso_job *job, const struct gz_iso_beam *beam,
 				  size_t x, unsigned set)
 {
 	return gz_cube_ambiguous[set] ? decide_variant(job, beam, x, set) : gz_cube_first[set];
 }
 
+/* The triangles of the cubes of a word. */
 static uint32_t count_triangles(const struct gz_iso_job *job, const struct gz_iso_beam *beam,
 				const struct gz_iso_windows *windows, size_t at)
 {
@@ -96,9 +105,10 @@ static uint32_t count_triangles(const struct gz_iso_job *job, const struct gz_is
 	return count;
 }
 
-void gz_iso_count_row(const struct gz_iso_job *job, size_t row)
+/* gz_iso_kernels.count_row */
+static void count_iso_row(const struct gz_iso_job *job, size_t row)
 {
-	const struct gz_iso_beam beam = gz_iso_beam_at(job, row);
+	const struct gz_iso_beam beam = beam_at(job, row);
 	int edges[3] = { 0 };
 	uint32_t triangles = 0;
 	for (size_t at = 0; at + 1 < job->words; at++) {
@@ -130,6 +140,7 @@ struct cube_walk {
 	int second, third; /* places of a triangle's corners: exchanged if data values fall */
 };
 
+/* At the first cube of a beam. */
 static struct cube_walk start_walk(const struct gz_iso_job *job, const struct gz_iso_beam *beam)
 {
 	struct cube_walk walk = {
@@ -181,11 +192,12 @@ static inline void write_cube(struct cube_walk *walk, unsigned set, unsigned var
 	walk->z -= z;
 }
 
-void gz_iso_write_triangles(const struct gz_iso_job *job, size_t row)
+/* gz_iso_kernels.write_triangles */
+static void write_iso_triangles(const struct gz_iso_job *job, size_t row)
 {
 	if (job->rows[row].triangle == job->rows[row + 1].triangle)
 		return;
-	const struct gz_iso_beam beam = gz_iso_beam_at(job, row);
+	const struct gz_iso_beam beam = beam_at(job, row);
 	struct cube_walk walk = start_walk(job, &beam);
 	for (size_t at = 0; at + 1 < job->words; at++) {
 		struct gz_iso_windows windows;
@@ -199,3 +211,5 @@ void gz_iso_write_triangles(const struct gz_iso_job *job, size_t row)
 		}
 	}
 }
+
+#endif

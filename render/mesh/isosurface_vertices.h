@@ -1,7 +1,12 @@
-/* The vertices on the crossed edges of a row of voxels: where they are, and their normals. */
+/* The vertices on the crossed edges of a row of voxels: where they are, and their normals. Compiled
+ * once for each instruction set: isosurface_kernels.h. */
+#ifndef GZ_RENDER_MESH_ISOSURFACE_VERTICES_H
+#define GZ_RENDER_MESH_ISOSURFACE_VERTICES_H
+
 #include <math.h>
 
 #include "render/data/volume.h"
+#include "render/mesh/isosurface_cubes.h"
 #include "render/mesh/isosurface_rows.h"
 
 /* Vertices that are computed together, so that the loops over them become SIMD. Chosen: what they
@@ -38,6 +43,7 @@ struct edge_row {
 	struct difference across[2][2];
 };
 
+/* How the difference is taken along an axis at voxel @p at of it. */
 static struct difference difference_at(const struct gz_iso_job *job, int axis, size_t at,
 				       ptrdiff_t stride)
 {
@@ -49,6 +55,7 @@ static struct difference difference_at(const struct gz_iso_job *job, int axis, s
 	};
 }
 
+/* The edges along an axis that start in a row. */
 static struct edge_row edge_row_at(const struct gz_iso_job *job, size_t row, int axis)
 {
 	const struct gz_volume *volume = job->volume;
@@ -104,6 +111,7 @@ DEFINE_READ(read_u8, uint8_t, int)
 DEFINE_READ(read_u16, uint16_t, int)
 DEFINE_READ(read_f32, float, float)
 
+/* Read what a batch needs, of both ends of its edges. */
 static void read_batch(const struct edge_row *at, struct edge_batch *batch)
 {
 	static void (*const readers[GZ_VOXEL_TYPE_COUNT])(const struct edge_row *, int,
@@ -127,6 +135,7 @@ static void find_shares(struct edge_batch *batch, float isovalue)
 	}
 }
 
+/* The greater of two numbers; b if one is NaN. */
 static float greater_of(float a, float b)
 {
 	return a > b ? a : b;
@@ -158,6 +167,7 @@ static void find_normals(const struct edge_row *at, struct edge_batch *batch)
 	}
 }
 
+/* Write the vertices of a batch. */
 static void store_batch(const struct edge_row *at, const struct edge_batch *batch)
 {
 	const struct gz_iso_job *job = at->job;
@@ -188,6 +198,7 @@ static void finish_batch(const struct edge_row *at, struct edge_batch *batch)
 	batch->count = 0;
 }
 
+/* Add the crossed edges of a word to a batch. */
 static void add_to_batch(const struct edge_row *at, struct edge_batch *batch, size_t word,
 			 uint32_t crossed)
 {
@@ -198,6 +209,7 @@ static void add_to_batch(const struct edge_row *at, struct edge_batch *batch, si
 			(uint32_t)(word * GZ_ISO_WORD) + (uint32_t)__builtin_ctz(crossed);
 }
 
+/* Write the vertices of all crossed edges along the three axes that start in a row. */
 static void write_edges(const struct gz_iso_job *job, const struct gz_iso_beam *beam,
 			const struct edge_row at[3], struct edge_batch batch[3])
 {
@@ -214,12 +226,13 @@ static void write_edges(const struct gz_iso_job *job, const struct gz_iso_beam *
 		finish_batch(&at[axis], &batch[axis]);
 }
 
-void gz_iso_write_vertices(const struct gz_iso_job *job, size_t row)
+/* gz_iso_kernels.write_vertices */
+static void write_iso_vertices(const struct gz_iso_job *job, size_t row)
 {
 	const struct gz_iso_row *own = &job->rows[row];
 	if (own->vertex == own[1].vertex)
 		return;
-	const struct gz_iso_beam beam = gz_iso_beam_at(job, row);
+	const struct gz_iso_beam beam = beam_at(job, row);
 	struct edge_row at[3];
 	struct edge_batch batch[3];
 	for (int axis = 0; axis < 3; axis++) {
@@ -231,3 +244,5 @@ void gz_iso_write_vertices(const struct gz_iso_job *job, size_t row)
 	batch[2].first = batch[1].first + own->y_edges;
 	write_edges(job, &beam, at, batch);
 }
+
+#endif
