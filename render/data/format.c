@@ -1,7 +1,8 @@
 #include "render/data/format.h"
 
+#include <string.h>
+
 #include "base/file.h"
-#include "base/text.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -78,18 +79,21 @@ gz_volume_writer *gz_volume_writer_by_name(const char *path)
 
 static enum gz_result refuse_unknown_format(const struct gz_volume_file *file)
 {
-	struct gz_text endings = { 0 };
-	for (size_t i = 0; i < gz_volume_format_count; i++) {
-		const struct gz_volume_format *format = gz_volume_formats[i];
-		if (format->layout == GZ_LAYOUT_IF_GIVEN)
-			continue;
-		for (size_t k = 0; k < GZ_FORMAT_ENDINGS_MAX && format->endings[k]; k++)
-			gz_text_add(&endings, "%s, ", format->endings[k]);
-	}
-	gz_err(file->log, "%s: unknown kind of volume; %sDICOM files and their folders are read",
-	       file->path, endings.bytes ? endings.bytes : "");
-	gz_text_free(&endings);
+	gz_err(file->log, "%s: unknown format; gazeview --formats lists what is read", file->path);
 	return GZ_ERR_UNSUPPORTED;
+}
+
+/* Tell that the content is of another format than the name says; of each the one that it is. */
+static void tell_wrong_name(const struct gz_volume_file *file, const struct gz_volume_format *named,
+			    const struct gz_volume_format *found)
+{
+	struct gz_file_start start;
+	const bool by_start = found->name_start && gz_file_start_read(file->path, &start) &&
+			      found->knows_start(&start);
+	/* A name stands for the first format of its row. */
+	gz_info(file->log, "%s: its name says %.*s, its content is %s", file->path,
+		(int)strcspn(named->name, ","), named->name,
+		by_start ? found->name_start(&start) : found->name);
 }
 
 /* By the content; only if that tells nothing, by the name. Whoever gives a layout says by that what
@@ -108,8 +112,7 @@ static const struct gz_volume_format *choose_format(const struct gz_volume_file 
 	if (!found)
 		return named && named->layout == GZ_LAYOUT_IF_GIVEN ? NULL : named;
 	if (named && named != found && named->layout != GZ_LAYOUT_IF_GIVEN)
-		gz_info(file->log, "%s: named as %s, opened as %s, which its content is",
-			file->path, named->name, found->name);
+		tell_wrong_name(file, named, found);
 	return found;
 }
 
@@ -126,7 +129,8 @@ enum gz_result gz_volume_load(const char *path, const struct gz_raw_layout *raw,
 		return GZ_ERR_INVAL;
 	}
 	if (!raw && format->layout == GZ_LAYOUT_GIVEN) {
-		gz_err(log, "%s: has no header; give dims, type, endian and spacing", path);
+		gz_err(log, "%s: raw data without a header; give dims, type, endian and spacing",
+		       path);
 		return GZ_ERR_INVAL;
 	}
 	return format->load(&file, out_volume);

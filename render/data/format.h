@@ -41,6 +41,10 @@ struct gz_volume_format {
 	 * before the name does. */
 	bool (*knows_start)(const struct gz_file_start *start);
 
+	/** Optional, of rows for several formats: which of them a start is that knows_start has
+	 *  accepted, "NIfTI-2". Static storage. */
+	const char *(*name_start)(const struct gz_file_start *start);
+
 	/** Optional: whether @p path is of the format, for what its first bytes do not tell: a
 	 *  folder, a file beside it, a guess. Called if no format knows the start. */
 	bool (*recognise)(const char *path);

@@ -310,7 +310,7 @@ static enum gz_result finish_meta_layout(struct metaimage *meta)
 	for (int i = 4; i < meta->dimension; i++)
 		meta->layout.more_follows |= meta->sizes[i] != 1;
 	if (meta->layout.more_follows)
-		gz_warn(meta->head.log, "%s: several series of volumes; the first is shown",
+		gz_warn(meta->head.log, "%s: has a fifth dimension; only its first part is shown",
 			meta->head.path);
 	meta->source.skip = meta->header_size;
 	const enum gz_result result = gz_voxel_source_share(&meta->source, &meta->head, meta->sizes,
@@ -373,6 +373,6 @@ const struct gz_volume_format gz_format_metaimage = {
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = metaimage_knows_start,
 	.load = load_metaimage,
-	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits; of "
-		  "several series the first",
+	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits; of a "
+		  "fifth dimension only the first",
 };

@@ -191,6 +191,12 @@ static bool nifti_knows_start(const struct gz_file_start *start)
 	return nifti_kind_of(start->bytes, start->size, &big_endian) != NULL;
 }
 
+static const char *nifti_name_start(const struct gz_file_start *start)
+{
+	bool big_endian;
+	return nifti_kind_of(start->bytes, start->size, &big_endian)->name;
+}
+
 /* ---- pairs ---- */
 
 /* Endings of compressed files, in the order of enum gz_coding. */
@@ -272,7 +278,8 @@ static enum gz_result take_nifti_dims(struct nifti_file *file)
 			file->layout.more_follows = true;
 	}
 	if (file->layout.more_follows)
-		gz_warn(file->log, "%s: several series of volumes; the first is shown", file->path);
+		gz_warn(file->log, "%s: has a fifth dimension; only its first part is shown",
+			file->path);
 	return GZ_OK;
 }
 
@@ -483,9 +490,9 @@ const struct gz_volume_format gz_format_nifti = {
 		     ".hdr.bz2" },
 	.layout = GZ_LAYOUT_IN_FILE,
 	.knows_start = nifti_knows_start,
+	.name_start = nifti_name_start,
 	.recognise = is_nifti_image,
 	.load = load_nifti,
-	.limits = "one number a voxel, integers of up to 32 bits, or RGB24 and RGBA32; of several "
-		  "series "
-		  "the first; .img by its .hdr",
+	.limits = "one number a voxel, integers of up to 32 bits, or RGB24 and RGBA32; of a fifth "
+		  "dimension only the first; .img by its .hdr",
 };

@@ -447,7 +447,7 @@ static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 	for (int i = first + 4; i < nrrd->dimension; i++)
 		nrrd->layout.more_follows |= nrrd->sizes[i] != 1;
 	if (nrrd->layout.more_follows)
-		gz_warn(nrrd->head.log, "%s: several series of volumes; the first is shown",
+		gz_warn(nrrd->head.log, "%s: has a fifth dimension; only its first part is shown",
 			nrrd->head.path);
 	memcpy(nrrd->layout.dims, nrrd->sizes + first, sizeof nrrd->layout.dims);
 	if (nrrd->has_spacings)
@@ -656,6 +656,5 @@ const struct gz_volume_format gz_format_nrrd = {
 	.load = load_nrrd,
 	.write = gz_nrrd_write,
 	.limits = "one number a voxel, integers of up to 32 bits, or colours of 8 or 16 bits along "
-		  "the "
-		  "first axis; of several series the first",
+		  "the first axis; of a fifth dimension only the first",
 };

@@ -41,7 +41,7 @@ static enum gz_result next_character(struct gz_spelled_numbers *numbers, int *ou
 
 static enum gz_result refuse_word(const struct gz_spelled_numbers *numbers, const char *word)
 {
-	gz_err(numbers->log, "%s: number %llu: \"%.20s\" is no %s", numbers->path,
+	gz_err(numbers->log, "%s: number %llu, \"%.20s\", does not fit %s", numbers->path,
 	       (unsigned long long)numbers->count + 1, word, gz_raw_type_names[numbers->type]);
 	return GZ_ERR_FORMAT;
 }

@@ -198,6 +198,15 @@ static enum gz_result map_axes(const struct gz_import_layout *layout,
 	return GZ_OK;
 }
 
+/* What to do about a file that is too short. Only files without a header have a layout to correct.
+ */
+static const char *short_data_remedy(const struct import *import)
+{
+	return import->file->raw
+		       ? "correct dims and type, or fetch it again"
+		       : "the header claims more than the file holds; fetch the file again";
+}
+
 /* Refuse a size that the file cannot hold, before memory is allocated for it. */
 static enum gz_result check_claimed_size(const struct gz_byte_stream *stream,
 					 const struct import *import, uint64_t bytes)
@@ -206,15 +215,17 @@ static enum gz_result check_claimed_size(const struct gz_byte_stream *stream,
 	if (bytes <= bound)
 		return GZ_OK;
 	const int *dims = import->layout->dims;
-	char each[32] = "";
+	char each[32] = "", points[48] = "";
 	if (channels_of(import->layout) > 1)
 		snprintf(each, sizeof each, "%d x ", channels_of(import->layout));
+	if (import->time_point > 0)
+		snprintf(points, sizeof points, "%d time points of ", import->time_point + 1);
 	gz_err(import->file->log,
-	       "%s: truncated: %d x %d x %d voxels of %s%s are %llu bytes, the file can hold %llu; "
-	       "correct dims and type, or fetch it again",
-	       import->file->path, dims[0], dims[1], dims[2], each,
+	       "%s: truncated: %s%d x %d x %d voxels of %s%s are %llu bytes, the file can hold "
+	       "%llu; %s",
+	       import->file->path, points, dims[0], dims[1], dims[2], each,
 	       gz_raw_type_names[import->layout->type], (unsigned long long)bytes,
-	       (unsigned long long)bound);
+	       (unsigned long long)bound, short_data_remedy(import));
 	return GZ_ERR_FORMAT;
 }
 
@@ -267,10 +278,9 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 
 static enum gz_result refuse_short_data(const struct import *import, uint64_t got, uint64_t wanted)
 {
-	gz_err(import->file->log,
-	       "%s: truncated: %llu of %llu bytes of voxels; correct dims and type, or fetch it "
-	       "again",
-	       import->file->path, (unsigned long long)got, (unsigned long long)wanted);
+	gz_err(import->file->log, "%s: truncated: %llu of %llu bytes of voxels; %s",
+	       import->file->path, (unsigned long long)got, (unsigned long long)wanted,
+	       short_data_remedy(import));
 	return GZ_ERR_FORMAT;
 }
 
@@ -586,9 +596,8 @@ static enum gz_result make_finite(const struct import *import)
 	for (size_t i = 0; i < count; i++)
 		if (!is_value_finite(volume, gz_voxel_stored(volume->type, volume->voxels, i)))
 			store_voxel(volume, i, least);
-	gz_warn(import->file->log,
-		"%s: %zu values are NaN or infinite as float; shown as the least, %g",
-		import->file->path, bad, least_value);
+	gz_warn(import->file->log, "%s: %zu %s NaN or infinite as float; shown as the least, %g",
+		import->file->path, bad, bad == 1 ? "value is" : "values are", least_value);
 	gz_volume_find_range(volume);
 	return GZ_OK;
 }

@@ -197,13 +197,14 @@ static enum gz_result open_raw(const struct gz_scene_request *request, const str
 	}
 	if (count > 0)
 		gz_err(log,
-		       "%s: has no header; tell its layout: --volume.dims \"%d %d %d\" "
+		       "%s: raw data without a header; give its layout: --volume.dims \"%d %d %d\" "
 		       "--volume.type %s would fit (%s)",
 		       request->path, layout->dims[0], layout->dims[1], layout->dims[2],
 		       gz_raw_type_names[layout->type], guess.reason);
 	else
 		gz_err(log,
-		       "%s: has no header; tell its layout, as in --volume.dims \"256 256 128\" "
+		       "%s: raw data without a header; give its layout, as in "
+		       "--volume.dims \"256 256 128\" "
 		       "--volume.type uint8",
 		       request->path);
 	return GZ_ERR_INVAL;

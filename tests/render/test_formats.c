@@ -236,12 +236,46 @@ static void content_that_is_not_as_named_is_told_in_one_line(void **state)
 	assert_int_equal(gz_volume_load(write_nrrd("n.mha"), NULL, NULL, &log.log, &v), GZ_OK);
 	assert_int_equal(log.messages, 1);
 	assert_int_equal(log.level, GZ_LOG_INFO);
-	assert_non_null(strstr(log.last, "named as MetaImage, opened as NRRD"));
+	assert_non_null(strstr(log.last, "its name says MetaImage, its content is NRRD"));
 	gz_volume_free(&v);
 	captured_log_init(&log, "*:info");
 	assert_int_equal(gz_volume_load(write_nrrd("n.nrrd"), NULL, NULL, &log.log, &v), GZ_OK);
 	assert_int_equal(log.messages, 0);
 	gz_volume_free(&v);
+}
+
+/* A sink that keeps the first line. */
+static void keep_first(void *user, enum gz_log_level level, const char *module, const char *message)
+{
+	const struct captured_log *log = user;
+	if (log->messages == 0)
+		capture(user, level, module, message);
+}
+
+static void one_format_of_several_is_told(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *name, *bytes;
+		size_t size;
+		const char *words;
+	} rows[] = {
+		{ "c.mnc", "CDF\001\0\0", 6,
+		  "its name says MINC 2, its content is MINC 1 (netCDF)" },
+		{ "c.mgz", "II*\0\010\0\0\0", 8, "its name says MGH, its content is TIFF" },
+		{ "c.hdr", "<VTKFile type", 13, "its name says NIfTI, its content is VTK XML" },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		struct captured_log log;
+		struct gz_volume v;
+		captured_log_init(&log, "*:info");
+		log.log.sink = keep_first; /* the refusal comes after it */
+		const char *path = files_write(rows[i].name, rows[i].bytes, rows[i].size);
+		assert_int_equal(gz_volume_load(path, NULL, NULL, &log.log, &v),
+				 GZ_ERR_UNSUPPORTED);
+		if (!strstr(log.last, rows[i].words))
+			fail_msg("%s lacks %s", log.last, rows[i].words);
+	}
 }
 
 static void layout_that_is_given_beats_the_content(void **state)
@@ -292,16 +326,30 @@ static void dicom_with_a_preamble_of_tiff_is_dicom(void **state)
 	assert_ptr_equal(gz_volume_format_by_content(path), &gz_format_dicom);
 }
 
-static void content_of_no_format_is_refused_with_the_endings(void **state)
+static void content_of_no_format_is_refused(void **state)
 {
 	(void)state;
-	load_refused(files_write("unknown", "\0\1\2\3", 4), "unknown kind of volume; .nii, ");
-	load_refused(files_write("e", NULL, 0), "unknown kind of volume");
+	load_refused(files_write("unknown", "\0\1\2\3", 4),
+		     "unknown format; gazeview --formats lists what is read");
+	load_refused(files_write("e", NULL, 0), "unknown format");
 	/* compressed, of nothing known, and cut off */
 	uint8_t packed[256];
 	const size_t size = files_deflate("text", 4, 31, packed, sizeof packed);
-	load_refused(files_write("unknown", packed, size), "unknown kind of volume");
-	load_refused(files_write("unknown", packed, size - 9), "unknown kind of volume");
+	load_refused(files_write("unknown", packed, size), "unknown format");
+	load_refused(files_write("unknown", packed, size - 9), "unknown format");
+}
+
+static void compressed_dicom_is_to_be_unpacked(void **state)
+{
+	(void)state;
+	char bytes[160] = { 0 };
+	uint8_t packed[1024];
+	memcpy(bytes + 128, "DICM", 4);
+	const size_t size = files_deflate(bytes, sizeof bytes, 31, packed, sizeof packed);
+	load_refused(files_write("one.dcm.gz", packed, size),
+		     "a compressed DICOM file is not read; unpack it");
+	load_refused(files_write("one", packed, size),
+		     "a compressed DICOM file is not read; unpack it");
 }
 
 /* Beginnings of magic words, and each file cut anywhere: nothing is recognised that is not there.
@@ -337,8 +385,10 @@ TEST_SUITE(formats)
 		cmocka_unit_test(content_that_is_not_as_named_is_told_in_one_line),
 		cmocka_unit_test(layout_that_is_given_beats_the_content),
 		cmocka_unit_test(formats_that_are_not_read_are_named_with_a_remedy),
+		cmocka_unit_test(compressed_dicom_is_to_be_unpacked),
+		cmocka_unit_test(one_format_of_several_is_told),
 		cmocka_unit_test(dicom_with_a_preamble_of_tiff_is_dicom),
-		cmocka_unit_test(content_of_no_format_is_refused_with_the_endings),
+		cmocka_unit_test(content_of_no_format_is_refused),
 		cmocka_unit_test(start_that_is_cut_is_no_harm),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

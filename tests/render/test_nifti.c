@@ -184,7 +184,7 @@ static void pair_without_its_other_half_is_refused(void **state)
 	files_write("alone.img", voxels, COUNT - 1);
 	check_refusal(files_path("alone.hdr"), GZ_ERR_FORMAT, "alone.img: truncated");
 	unlink(files_path("alone.hdr"));
-	check_refusal(files_path("alone.img"), GZ_ERR_UNSUPPORTED, "unknown kind of volume");
+	check_refusal(files_path("alone.img"), GZ_ERR_UNSUPPORTED, "unknown format");
 	check_refusal(files_write("odd.hdr", "ENVI\nsamples = 3\n", 17), GZ_ERR_FORMAT,
 		      "truncated");
 }

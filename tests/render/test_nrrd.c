@@ -108,6 +108,13 @@ static void text_that_is_not_finite_becomes_the_least(void **state)
 	assert_non_null(strstr(log.last, "3 values are NaN or infinite"));
 	assert_true(((float *)v.voxels)[0] == 1 && ((float *)v.voxels)[2] == 2);
 	gz_volume_free(&v);
+	path = files_write_text("n.nrrd",
+				"NRRD0004\ntype: float\ndimension: 3\nsizes: 2 1 1\n"
+				"encoding: txt\n\nnan 2",
+				NULL, 0);
+	assert_int_equal(gz_volume_load(path, NULL, NULL, &log.log, &v), GZ_OK);
+	assert_non_null(strstr(log.last, "1 value is NaN or infinite"));
+	gz_volume_free(&v);
 }
 
 /* More characters than are read at once, numbers across the border. */

@@ -75,7 +75,7 @@ static void binary_file_is_no_scene(void **state)
 {
 	(void)state;
 	assert_int_equal(gz_file_kind_of(files_write("unknown", "a\0b", 3)), GZ_FILE_VOLUME);
-	assert_refused(files_path("unknown"), NULL, GZ_ERR_UNSUPPORTED, "unknown kind of volume");
+	assert_refused(files_path("unknown"), NULL, GZ_ERR_UNSUPPORTED, "unknown format");
 	assert_int_equal(gz_file_kind_of(files_write("unknown", "[a]\n", 4)), GZ_FILE_OTHER);
 }
 
@@ -223,7 +223,8 @@ static void raw_file_opens_with_a_given_or_a_certain_layout(void **state)
 	scene = opened(files_write("a_4x4x8_uint8.raw", voxels, sizeof voxels), NULL);
 	assert_int_equal(scene.volume.dims[2], 8);
 	gz_scene_free(&scene);
-	assert_refused(told, NULL, GZ_ERR_INVAL, "told.raw: has no header; tell its layout");
+	assert_refused(told, NULL, GZ_ERR_INVAL,
+		       "told.raw: raw data without a header; give its layout");
 	assert_refused(files_write("a_4x4x4.raw", voxels, sizeof voxels), NULL, GZ_ERR_INVAL,
 		       "--volume.dims \"4 4 4\" --volume.type uint16 would fit");
 }

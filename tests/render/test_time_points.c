@@ -215,6 +215,25 @@ static void time_points_outside_a_series_are_refused(void **state)
 			    1, "it has 1");
 }
 
+/* The message names the time points that its bytes are of. */
+static void time_point_beyond_the_end_is_told_with_its_bytes(void **state)
+{
+	(void)state;
+	const uint8_t voxels[8] = { 1, 2, 3 };
+	const struct gz_loading loading = { .time_point = 2 };
+	struct captured_log log;
+	struct gz_volume v;
+	captured_log_init(&log, NULL);
+	const char *path = files_write_text("beyond.nrrd",
+					    "NRRD0005\ntype: uchar\ndimension: 4\n"
+					    "sizes: 2 2 2 3\nencoding: raw\n\n",
+					    voxels, sizeof voxels);
+	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &v), GZ_ERR_FORMAT);
+	assert_non_null(strstr(log.last,
+			       "3 time points of 2 x 2 x 2 voxels of uint8 are 24 bytes, the file "
+			       "can hold 8; the header claims more than the file holds"));
+}
+
 static enum gz_result open_scene(const char *keys, const struct gz_log *log,
 				 struct gz_scene *out_scene)
 {
@@ -433,6 +452,7 @@ TEST_SUITE(time_points)
 		cmocka_unit_test(time_points_of_mgz_have_their_voxels_and_one_range),
 		cmocka_unit_test(time_points_of_dicom_have_their_voxels_and_one_range),
 		cmocka_unit_test(time_points_outside_a_series_are_refused),
+		cmocka_unit_test(time_point_beyond_the_end_is_told_with_its_bytes),
 		cmocka_unit_test(scene_shows_the_time_point_that_it_names),
 		cmocka_unit_test(scene_without_a_series_refuses_a_time_point),
 		cmocka_unit_test(steps_come_in_any_order_and_are_released_once),

@@ -579,7 +579,7 @@ static void file_without_preamble_is_read(void **state)
 	gz_volume_free(&volume);
 	unlink(path);
 	files_write("other.img", "\b\0\5\0 this begins only a little like DICOM", 40);
-	check_refused(files_path("other.img"), GZ_ERR_UNSUPPORTED, "unknown kind of volume");
+	check_refused(files_path("other.img"), GZ_ERR_UNSUPPORTED, "unknown format");
 }
 
 /* An element of Siemens' header as GDCM and others describe it: name, VM, VR, type, items, each of

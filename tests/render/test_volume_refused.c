@@ -60,10 +60,10 @@ static void kind_must_be_known_and_fit_the_layout(void **state)
 {
 	(void)state;
 	struct gz_raw_layout raw = layout_of(2, 2, 2, GZ_RAW_UINT8);
-	check_refused("a.txt", &raw, GZ_ERR_UNSUPPORTED, "unknown kind of volume");
-	check_refused("raw", &raw, GZ_ERR_UNSUPPORTED, "unknown kind of volume");
+	check_refused("a.txt", &raw, GZ_ERR_UNSUPPORTED, "unknown format");
+	check_refused("raw", &raw, GZ_ERR_UNSUPPORTED, "unknown format");
 	check_refused("a.nii.gz", &raw, GZ_ERR_INVAL, "has a header");
-	check_refused("a.raw", NULL, GZ_ERR_INVAL, "has no header");
+	check_refused("a.raw", NULL, GZ_ERR_INVAL, "raw data without a header");
 	raw.type = GZ_RAW_TYPE_COUNT;
 	check_refused(files_write("t.raw", zeros, 8), &raw, GZ_ERR_INVAL, "unknown type");
 }
@@ -315,12 +315,16 @@ static void nrrd_headers_that_are_wrong_are_refused_by_line(void **state)
 		  ":3: sizes" },
 		{ NRRD "encoding: zrl\n\n", GZ_ERR_UNSUPPORTED, ":5: encoding: not read" },
 		{ NRRD "encoding: bzip2\n\n", GZ_ERR_FORMAT, "damaged compressed data" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 8x", GZ_ERR_FORMAT, "number 8: \"8x" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 256", GZ_ERR_FORMAT, "is no uint8" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 -1", GZ_ERR_FORMAT, "is no uint8" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 1.5", GZ_ERR_FORMAT, "is no uint8" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 nan", GZ_ERR_FORMAT, "is no uint8" },
-		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7", GZ_ERR_FORMAT, "number 7: \"7" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 8x", GZ_ERR_FORMAT, "number 8, \"8x" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 256", GZ_ERR_FORMAT,
+		  ", does not fit uint8" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 -1", GZ_ERR_FORMAT,
+		  ", does not fit uint8" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 1.5", GZ_ERR_FORMAT,
+		  ", does not fit uint8" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7 nan", GZ_ERR_FORMAT,
+		  ", does not fit uint8" },
+		{ NRRD "encoding: ascii\n\n1 2 3 4 5 6 7", GZ_ERR_FORMAT, "number 7, \"7" },
 		{ NRRD "encoding: hex\n\n01020304050607 0g", GZ_ERR_FORMAT, "byte 8: not two hex" },
 		{ NRRD "encoding: hex\nbyte skip: -1\n\n", GZ_ERR_FORMAT, "from the end" },
 		{ NRRD "no field\n\n", GZ_ERR_FORMAT, ":5: no field: neither a field" },
@@ -420,7 +424,7 @@ static void metaimage_headers_that_are_wrong_are_refused_by_line(void **state)
 		{ META "TransformMatrix = 1 0 0\n", GZ_ERR_FORMAT, ":4: TransformMatrix" },
 		{ META "ElementByteOrderMSB = maybe\n", GZ_ERR_FORMAT, ":4: ElementByteOrder" },
 		{ META "BinaryData = False\nElementDataFile = LOCAL\n1 2 3 4 5 6 7 x",
-		  GZ_ERR_FORMAT, "number 8: \"x" },
+		  GZ_ERR_FORMAT, "number 8, \"x" },
 		{ META "BinaryData = 7\n", GZ_ERR_FORMAT, ":4: BinaryData" },
 		{ META "CompressedData = 7\n", GZ_ERR_FORMAT, ":4: CompressedData" },
 		{ META "ElementNumberOfChannels = 5\n", GZ_ERR_UNSUPPORTED, ":4: ElementNumber" },

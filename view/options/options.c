@@ -80,11 +80,10 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "pictures of a volume in bricks: wait for all visible bricks, or stream: coarse "
 		  "first, sharper later; auto: wait if headless" },
 	{ "time-point", GZ_OPTION_INT, AT(time_point), 1, GZ_TIME_POINTS_MAX,
-	  .help = "which volume of a series to show, from 1; default: the "
-		  "scene's" },
+	  .help = "which time point of a volume to show, from 1; default: the scene's" },
 	{ "play", GZ_OPTION_DOUBLE, AT(play), 0, GZ_PLAYBACK_RATE_MAX, .preset = "0",
-	  .help = "play the volumes of a series in turn, steps per second; headless, each picture "
-		  "shows that of its time by --fps" },
+	  .help = "play the time points of a volume in turn, this many per second; without a "
+		  "window, the picture at time t shows time point t x N" },
 	{ "turn", GZ_OPTION_DOUBLE, AT(turn_deg), -360, 360, .preset = "0",
 	  .help = "turn the camera by this angle each frame, degrees" },
 	{ "cross", GZ_OPTION_BOOL, AT(cross), .preset = "false",
@@ -127,7 +126,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "print the series of a DICOM folder or DICOMDIR with their UIDs, and exit" },
 	{ "volume.resample", GZ_OPTION_CHOICE, AT(volume_resample), .choices = gz_resampling_names,
 	  .help = "DICOM slices that are missing, lie unevenly or are shifted by a tilted gantry: "
-		  "refuse (off), interpolate (linear) or take the nearest" },
+		  "off refuses gaps and shows a tilt with a warning, linear interpolates, nearest "
+		  "takes the nearest" },
 	{ "resample", GZ_OPTION_BOOL, AT(resample), .preset = "false",
 	  .help = "short for --volume.resample linear" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,

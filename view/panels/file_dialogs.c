@@ -353,15 +353,15 @@ static bool draw_layout_bytes(const struct gz_raw_panel *panel)
 {
 	const uint64_t expected = gz_raw_layout_bytes(&panel->layout);
 	const bool fits = panel->bytes == 0 || expected == panel->bytes;
+	const char *bytes = expected == 1 ? "byte" : "bytes";
 	char line[LAYOUT_LINE_SIZE];
 	if (panel->bytes == 0)
 		snprintf(line, sizeof line,
-			 "%" PRIu64
-			 " bytes expected; the size of the file is known once it is read",
-			 expected);
+			 "%" PRIu64 " %s expected; the size of the file is known once it is read",
+			 expected, bytes);
 	else
-		snprintf(line, sizeof line, "%" PRIu64 " bytes expected, %" PRIu64 " there%s",
-			 expected, panel->bytes, fits ? "" : ": wrong layout");
+		snprintf(line, sizeof line, "%" PRIu64 " %s expected, %" PRIu64 " there%s",
+			 expected, bytes, panel->bytes, fits ? "" : ": wrong layout");
 	gz_widget_text(fits ? gz_paint_plain : gz_paint_amber, line);
 	return fits;
 }

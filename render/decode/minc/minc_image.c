@@ -88,7 +88,7 @@ static enum gz_result open_minc_file(struct gz_minc_image *image)
 	image->hdf = gz_hdf_open(path);
 	if (image->hdf < 0)
 		return refuse_minc(image, GZ_ERR_FORMAT,
-				   "no HDF5, damaged or cut off; fetch it again");
+				   "not a complete HDF5 file; fetch it again");
 	image->access = gz_hdf_access();
 	if (image->access < 0)
 		return refuse_no_memory(image);
