@@ -27,6 +27,11 @@ static size_t element_length(const uint8_t *bytes, size_t size)
 	if (size < 8)
 		return 0;
 	const bool explicit_vr = isupper(bytes[4]) && isupper(bytes[5]);
+	if (explicit_vr && memcmp(bytes + 4, "OB", 2) == 0) /* the version in the meta header */
+		return size >= 12 && number_u16(bytes + 10) == 0 &&
+				       number_u16(bytes + 8) <= ELEMENT_MAX
+			       ? 12 + (size_t)number_u16(bytes + 8)
+			       : 0;
 	const size_t value = number_u16(bytes + (explicit_vr ? 6 : 4));
 	if (!explicit_vr && number_u16(bytes + 6) != 0)
 		return 0;

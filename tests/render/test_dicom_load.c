@@ -92,7 +92,7 @@ static void file_with_a_wrong_byte_is_refused_or_read(void **state)
 
 /* Elements in the making. */
 struct elements {
-	uint8_t bytes[2048];
+	uint8_t bytes[8192];
 	size_t size;
 };
 
@@ -241,6 +241,31 @@ static void length_beyond_what_encloses_it_takes_no_memory(void **state)
 	}
 }
 
+/* Where the kind of value is none of the standard's, the library guesses what follows it. */
+static void length_of_a_value_of_no_kind_takes_no_memory(void **state)
+{
+	(void)state;
+	const char *const kinds[] = { "??", "zz", "@F", "ox" };
+	const uint32_t claims[] = { 0x50000000, 0xF0000000, 0xFFFFFFFE };
+	for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
+		for (size_t k = 0; k < sizeof claims / sizeof claims[0]; k++) {
+			struct elements more = { .size = 0 };
+			struct gz_volume volume = { 0 };
+			add_number(&more, 0x0011, 2);
+			add_number(&more, 0x1001, 2);
+			add_bytes(&more, kinds[i], 2);
+			add_number(&more, 0, 2);
+			add_number(&more, claims[k], 4);
+			add_bytes(&more, "abcd", 4);
+			const long before = memory_peak_kib();
+			load_with(&more, false, &volume);
+			const long taken = memory_peak_kib() - before;
+			if (taken > 64 * 1024)
+				fail_msg("%s, %u bytes: %ld KiB", kinds[i], claims[k], taken);
+			gz_volume_free(&volume);
+		}
+}
+
 /* What fits into the file need not fit into the sequence. */
 static void length_beyond_its_sequence_is_refused(void **state)
 {
@@ -265,14 +290,14 @@ static void length_beyond_its_sequence_is_refused(void **state)
 static void sequences_within_each_other_have_a_limit(void **state)
 {
 	(void)state;
-	for (int depth = 2; depth <= 40; depth += 19) {
+	for (int depth = 2; depth <= 162; depth += 40) {
 		const struct nesting how = { .vr = "SQ", .sequence_ends = true, .item_ends = true };
 		struct elements more = { .size = 0 };
 		struct gz_volume volume = { 0 };
 		for (int i = 0; i < depth; i++)
 			nest(&more, &how);
 		const enum gz_result result = load_with(&more, false, &volume);
-		if ((result == GZ_OK) != (depth <= 32))
+		if ((result == GZ_OK) != (depth <= 128))
 			fail_msg("%d sequences: result %d", depth, result);
 		gz_volume_free(&volume);
 	}
@@ -301,6 +326,7 @@ TEST_SUITE(dicom_load)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(length_beyond_what_encloses_it_takes_no_memory),
+		cmocka_unit_test(length_of_a_value_of_no_kind_takes_no_memory),
 		cmocka_unit_test(length_beyond_its_sequence_is_refused),
 		cmocka_unit_test(sequences_within_each_other_have_a_limit),
 		cmocka_unit_test(fragments_within_a_sequence_are_passed_over),

@@ -654,10 +654,9 @@ static void missing_slice_is_refused(void **state)
 	(void)state;
 	write_series(SERIES, "s", 4);
 	unlink(files_path("s3"));
-	check_refused(
-		files_folder(), GZ_ERR_FORMAT,
-		"1 of its 4 slices are missing, which lie 2.5 mm apart: 1 between 0 and 5 mm; "
-		"fetch them, or open it with --resample (scene key volume.resample)");
+	check_refused(files_folder(), GZ_ERR_FORMAT,
+		      "1 of 4 slices, 2.5 mm apart, is missing: 1 between 0 and 5 mm; add what is "
+		      "missing, or open it with --resample (scene key volume.resample)");
 }
 
 static void missing_slice_is_interpolated_on_request(void **state)

@@ -74,7 +74,7 @@ def write_dose(path, numbers, orientation, scaling, places):
 
 
 def write_segmentation(path, frames, orientation, **more):
-    """frames: (segment number, slice number, pixels); between: told distance of slices."""
+    """frames: (segment number, slice number, pixels); between: told distance of slices; thickness."""
     fractional = more.get("fractional", 0)
     image = new_image_of("SEG", 1, orientation)
     image.SegmentationType = "FRACTIONAL" if fractional else "BINARY"
@@ -88,7 +88,7 @@ def write_segmentation(path, frames, orientation, **more):
         image.SegmentSequence.append(segment)
     shared, orient, measures = Dataset(), Dataset(), Dataset()
     orient.ImageOrientationPatient = list(orientation)
-    measures.PixelSpacing, measures.SliceThickness = [SPACING[1], SPACING[0]], 7
+    measures.PixelSpacing, measures.SliceThickness = [SPACING[1], SPACING[0]], more.get("thickness", 7)
     if more.get("between"):
         measures.SpacingBetweenSlices = more["between"]
     shared.PlaneOrientationSequence, shared.PixelMeasuresSequence = Sequence([orient]), Sequence([measures])
@@ -193,6 +193,15 @@ class Kinds(AgainstNumpy):
         write_segmentation(self.path("seg.dcm"), frames, ORIENTATIONS[0], between=SPACING[2])
         self.check(self.path("seg.dcm"), mask, ORIENTATIONS[0])
 
+    def test_frames_are_as_thick_as_they_say_where_nothing_else_tells(self):
+        for kept in ((0, 3), (0, 2, 4, 6), (0, 3, 5)):
+            mask = numpy.zeros((SLICES, ROWS, COLUMNS), "u1")
+            mask[list(kept)] = ball((4, 5, 5), 9)[list(kept)]
+            frames = [(1, k, mask[k]) for k in kept]
+            write_segmentation(self.path("seg.dcm"), frames, ORIENTATIONS[0], thickness=SPACING[2])
+            said = self.check(self.path("seg.dcm"), mask[: kept[-1] + 1], ORIENTATIONS[0])
+            self.assertIn(f"{kept[-1] + 1 - len(kept)} between its frames are empty", said)
+
     def test_overlapping_segments_are_said_and_the_later_frame_wins(self):
         first, second = ball((4, 5, 5), 3), ball((4, 5, 8), 3)
         frames = [(5, k, first[k].astype("u1")) for k in range(SLICES) if first[k].any()]
@@ -294,7 +303,8 @@ class OverTime(AgainstNumpy):
         folder = self.write({"TemporalPositionIdentifier": lambda t, k: t + 1}, skip=[(1, 5)])
         for point, t in enumerate((0, 2, 3)):
             told = self.check(folder, self.volume(t), ORIENTATIONS[0], "--time-point", point + 1)
-            self.assertIn("only 3 of each are shown (8 left out)", told)
+            self.assertIn("temporal position 2 lacks images at some places", told)
+            self.assertIn("left out (8)", told)
         done = run(GAZEVIEW, folder, "--write-volume", self.path("none.nrrd"), "--time-point", 4)
         self.assertIn("no time point 4: it has 3", done.stderr)
 

@@ -6,13 +6,14 @@ pydicom makes the series. Exits 77 if it is not installed.
 """
 
 import os
+import shutil
 import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
-from dicom_made import AXIAL, CORONAL, EDGE, ROOT, Series, write_medium
+from dicom_made import AXIAL, CORONAL, EDGE, ROOT, Series, pydicom, write_medium
 from picture import run
 from raw_nrrd import read_nrrd
 
@@ -196,6 +197,59 @@ class SeveralSeries(unittest.TestCase):
             lines, said = self.list(path)
             self.assertEqual([line.split()[1] for line in lines], [f"{ROOT}.1"])
             self.assertIn("missing: 1", said)
+
+    def test_copies_are_no_time_points(self):
+        folder = self.path("twice")
+        files = Series(1).write(folder)
+        wanted = self.load(folder)
+        for path in files:
+            shutil.copy(path, path + " (copy).dcm")
+        done = run(GAZEVIEW, folder, "--write-volume", self.path("out.nrrd"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"{len(files)} files are copies of others", done.stderr)
+        self.assertNotIn("time points", done.stderr)
+        self.assertTrue((read_nrrd(self.path("out.nrrd"))[0] == wanted).all())
+
+    def test_meta_header_without_a_preamble_is_recognised(self):
+        path = Series(1, slices=1).write(self.path("one"))[0]
+        with open(path, "rb") as file:
+            data = file.read()
+        os.remove(path)
+        with open(self.path("one", "slice"), "wb") as file:
+            file.write(data[132:])
+        for at in (self.path("one"), self.path("one", "slice")):
+            self.assertEqual(self.load(at).shape, (EDGE, EDGE, 1))
+
+    def test_named_file_has_the_reason(self):
+        path = Series(1, slices=1).write(self.path("one"))[0]
+        with open(path, "rb") as file:
+            data = file.read()
+        cut = self.path("one", "cut.dcm")
+        with open(cut, "wb") as file:
+            file.write(data[:-1])
+        self.refused("damaged or cut off; fetch it again", cut, "--write-volume",
+                     self.path("none.nrrd"))
+        image = pydicom.dcmread(path)
+        pixels = image.pixel_array.astype("<f4").tobytes()
+        del image.PixelData
+        image.FloatPixelData, image.BitsAllocated = pixels, 32
+        image.save_as(path)
+        self.refused("its pixels are floating-point numbers", path, "--write-volume",
+                     self.path("none.nrrd"))
+
+    @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "nobody else can be asked")
+    def test_file_that_cannot_be_read_has_the_reason(self):
+        os.chmod(self.folder, 0o777)
+        folder = self.path("closed")
+        files = Series(1, slices=5).write(folder)
+        os.chmod(files[2], 0)
+        as_nobody = ["setpriv", "--reuid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+        for path in (files[2], folder):
+            done = subprocess.run([*as_nobody, GAZEVIEW, path, "--write-volume",
+                                   self.path("none.nrrd")], capture_output=True, encoding="utf-8",
+                                  timeout=60, check=False)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn(f"{files[2]}: cannot be read: Permission denied", done.stderr)
 
     def test_what_holds_no_series_is_refused(self):
         text = self.path("text.txt")

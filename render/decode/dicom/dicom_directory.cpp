@@ -94,7 +94,7 @@ bool read_records(std::istream &file, uint64_t file_size, const std::string &fol
 	file.seekg(0);
 	gdcm::Reader reader;
 	reader.SetStream(file);
-	if (!reader.Read())
+	if (!guarded_within(most_for_reading(file_size), [&] { return reader.Read(); }))
 		return false;
 	const items records = sequence_of(reader.GetFile().GetDataSet(), directory_records);
 	if (!records)

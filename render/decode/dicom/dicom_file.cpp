@@ -1,6 +1,7 @@
 #include "render/decode/dicom/dicom_file.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <gdcmReader.h>
 #include <gdcmTrace.h>
 
+#include "render/data/dicom_name.h"
 #include "render/data/volume.h"
 #include "render/decode/dicom/dicom_dose.hpp"
 #include "render/decode/dicom/dicom_elements.hpp"
@@ -30,6 +32,9 @@ namespace
  * of up to 32768 pixels, but the head of its file is longer than the rest by then. */
 const uint64_t compression_ratio = 4096;
 
+/* Most bytes that a byte of a deflated file becomes (zlib's technical notes: 1032). */
+const uint64_t deflate_ratio = 1032;
+
 /* Fragments of one file (chosen: four for each of the most frames). */
 const size_t fragments_max = 65536;
 
@@ -38,21 +43,23 @@ const int tiles_max = 1024;
 
 const gdcm::Tag item_tag(0xfffe, 0xe000), sequence_end(0xfffe, 0xe0dd);
 
-const gdcm::Tag character_set(0x0008, 0x0005), image_type(0x0008, 0x0008),
-	study_date(0x0008, 0x0020), modality(0x0008, 0x0060), patient_name(0x0010, 0x0010),
-	series_number(0x0020, 0x0011), series_description(0x0008, 0x103e),
-	slice_thickness(0x0018, 0x0050), spacing_between_slices(0x0018, 0x0088),
-	series_instance_uid(0x0020, 0x000e), instance_number(0x0020, 0x0013),
-	image_position(0x0020, 0x0032), image_orientation(0x0020, 0x0037),
-	samples_per_pixel(0x0028, 0x0002), photometric_interpretation(0x0028, 0x0004),
-	planar_configuration(0x0028, 0x0006), number_of_frames(0x0028, 0x0008),
-	rows(0x0028, 0x0010), columns(0x0028, 0x0011), pixel_spacing(0x0028, 0x0030),
-	bits_allocated(0x0028, 0x0100), bits_stored(0x0028, 0x0101), high_bit(0x0028, 0x0102),
-	pixel_representation(0x0028, 0x0103), rescale_intercept(0x0028, 0x1052),
-	rescale_slope(0x0028, 0x1053), plane_position(0x0020, 0x9113),
-	plane_orientation(0x0020, 0x9116), pixel_measures(0x0028, 0x9110),
-	value_transformation(0x0028, 0x9145), frame_content(0x0020, 0x9111),
-	temporal_position_index(0x0020, 0x9128);
+const gdcm::Tag float_pixels(0x7fe0, 0x0008), double_pixels(0x7fe0, 0x0009);
+
+const gdcm::Tag character_set(0x0008, 0x0005), image_instance_uid(0x0008, 0x0018),
+	image_type(0x0008, 0x0008), study_date(0x0008, 0x0020), modality(0x0008, 0x0060),
+	patient_name(0x0010, 0x0010), series_number(0x0020, 0x0011),
+	series_description(0x0008, 0x103e), slice_thickness(0x0018, 0x0050),
+	spacing_between_slices(0x0018, 0x0088), series_instance_uid(0x0020, 0x000e),
+	instance_number(0x0020, 0x0013), image_position(0x0020, 0x0032),
+	image_orientation(0x0020, 0x0037), samples_per_pixel(0x0028, 0x0002),
+	photometric_interpretation(0x0028, 0x0004), planar_configuration(0x0028, 0x0006),
+	number_of_frames(0x0028, 0x0008), rows(0x0028, 0x0010), columns(0x0028, 0x0011),
+	pixel_spacing(0x0028, 0x0030), bits_allocated(0x0028, 0x0100), bits_stored(0x0028, 0x0101),
+	high_bit(0x0028, 0x0102), pixel_representation(0x0028, 0x0103),
+	rescale_intercept(0x0028, 0x1052), rescale_slope(0x0028, 0x1053),
+	plane_position(0x0020, 0x9113), plane_orientation(0x0020, 0x9116),
+	pixel_measures(0x0028, 0x9110), value_transformation(0x0028, 0x9145),
+	frame_content(0x0020, 0x9111), temporal_position_index(0x0020, 0x9128);
 
 /* The functional groups of an enhanced image (PS3.3, C.7.6.16). */
 class groups
@@ -378,10 +385,12 @@ bool is_of_images(const gdcm::File &file)
 
 /* Read a file up to its pixels; all of it if it is deflated, because then no place in it is known.
  */
-bool read_data_set(gdcm::Reader &reader, std::istream &file, bool &deflated)
+bool read_data_set(gdcm::Reader &reader, std::istream &file, uint64_t file_size, bool &deflated)
 {
 	reader.SetStream(file);
-	const bool read = reader.ReadUpToTag(pixel_data, { pixel_data });
+	const bool read = guarded_within(most_for_reading(file_size), [&] {
+		return reader.ReadUpToTag(pixel_data, { pixel_data });
+	});
 	deflated = reader.GetFile().GetHeader().GetDataSetTransferSyntax() ==
 		   gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
 	if (!deflated)
@@ -389,7 +398,8 @@ bool read_data_set(gdcm::Reader &reader, std::istream &file, bool &deflated)
 	file.clear();
 	file.seekg(0);
 	reader.SetFile(*new gdcm::File);
-	return reader.Read();
+	return guarded_within(most_for_reading(file_size * deflate_ratio),
+			      [&] { return reader.Read(); });
 }
 
 void fill_head(const gdcm::DataSet &data, head &out)
@@ -397,6 +407,7 @@ void fill_head(const gdcm::DataSet &data, head &out)
 	const groups functional(data);
 	const std::string charset = text_of(data, character_set);
 	out.series_uid = text_of(data, series_instance_uid);
+	out.image_uid = text_of(data, image_instance_uid);
 	out.patient = utf8_of(text_of(data, patient_name), charset, text_kind::name);
 	out.date = utf8_of(text_of(data, study_date), "", text_kind::plain);
 	out.description = utf8_of(text_of(data, series_description), charset, text_kind::plain);
@@ -433,14 +444,15 @@ bool read_head_of(std::istream &file, uint64_t file_size, head &out)
 	const bool sound = lengths_fit(file, file_size);
 	file.clear();
 	file.seekg(0);
-	if (!sound || !read_data_set(reader, file, deflated)) {
-		out.unreadable = true;
+	if (!sound || !read_data_set(reader, file, file_size, deflated)) {
+		out.fault = head_fault::damaged;
 		return false;
 	}
 	const gdcm::DataSet &data = reader.GetFile().GetDataSet();
 	if (data.IsEmpty() || !data.FindDataElement(columns) || !data.FindDataElement(rows)) {
-		out.unreadable = is_of_images(reader.GetFile());
-		return false; /* a DICOMDIR, a report, or no DICOM at all */
+		out.fault =
+			is_of_images(reader.GetFile()) ? head_fault::damaged : head_fault::no_image;
+		return false;
 	}
 	fill_head(data, out);
 	auto pixels = std::make_shared<pixels_of_file>();
@@ -457,7 +469,9 @@ bool read_head_of(std::istream &file, uint64_t file_size, head &out)
 		pixels->plain = { 0, value ? (uint64_t)value->GetLength() : 0 };
 		pixels->swap_bytes = out.numbers.bits_allocated > 8 && gz_host_big_endian();
 	} else if (!locate_pixels(file, file_size, out.frames, *pixels)) {
-		out.unreadable = true;
+		const bool floats =
+			data.FindDataElement(float_pixels) || data.FindDataElement(double_pixels);
+		out.fault = floats ? head_fault::of_floats : head_fault::damaged;
 		return false;
 	}
 	out.bytes = pixels->encapsulated ? file_size * compression_ratio : pixels->plain.length;
@@ -478,15 +492,33 @@ void silence_library()
 	});
 }
 
+std::string text_of_fault(head_fault fault)
+{
+	switch (fault) {
+	case head_fault::closed:
+		return std::string("cannot be read: ") + strerror(EACCES) +
+		       "; check its permissions";
+	case head_fault::damaged:
+		return "damaged or cut off; fetch it again";
+	case head_fault::of_floats:
+		return "its pixels are floating-point numbers, which are not read; convert it";
+	default:
+		return "no DICOM image; name a file that holds one, or its folder";
+	}
+}
+
 bool read_head(const std::string &name, head &out)
 {
 	struct stat status;
+	out.fault = head_fault::no_image;
 	if (stat(name.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
 		return false;
 	std::ifstream file(name, std::ios::binary);
-	if (!file)
-		return false;
 	out.path = name;
+	if (!file) {
+		out.fault = head_fault::closed;
+		return false;
+	}
 	/* What is false without a word is no image; else it may be half read. */
 	bool ended = false, found = false;
 	try {
@@ -498,9 +530,15 @@ bool read_head(const std::string &name, head &out)
 	} catch (const std::bad_alloc &) {
 		ended = false; /* a length that nothing can hold */
 	}
+	if (ended && found) {
+		out.fault = head_fault::none;
+		return true;
+	}
 	if (!ended)
-		out.unreadable = true;
-	return ended && found;
+		out.fault = head_fault::damaged;
+	if (out.fault == head_fault::damaged && !gz_dicom_is(name.c_str()))
+		out.fault = head_fault::no_image;
+	return false;
 }
 
 } // namespace gz_dicom

@@ -132,9 +132,21 @@ struct slice {
 /* Frames of one file. Chosen: a hundred time points or segments of a hundred slices, and more. */
 const uint64_t frames_max = 262144;
 
+/* Why a file gives no images. */
+enum class head_fault {
+	none,
+	no_image, /* a DICOMDIR, a report, or no DICOM at all */
+	closed,   /* it cannot be read */
+	damaged,  /* or cut off, though it may begin like DICOM */
+	of_floats /* its pixels are floating-point numbers (PS3.3, C.7.6.24) */
+};
+
+/* The fault in words, for a message. */
+std::string text_of_fault(head_fault fault);
+
 /* One file's head. */
 struct head {
-	std::string path, series_uid;                     /* as in the file */
+	std::string path, series_uid, image_uid;          /* as in the file */
 	std::string patient, date, description, modality; /* UTF-8 */
 	int series_number = 0;
 	format numbers;
@@ -144,11 +156,11 @@ struct head {
 	uint64_t frames = 0;                          /* claimed */
 	uint64_t bytes = 0;                           /* that its pixel data can hold */
 	bool of_one_size = true;                      /* the pixels of all its frames */
-	bool unreadable = false; /* damaged or cut off, though it may begin like DICOM */
+	head_fault fault = head_fault::none;
 };
 
-/* Read the head of a file; false if it holds no DICOM image. A file that claims more frames than
- * frames_max gives one more than that. */
+/* Read the head of a file; false if it gives no images, with the fault. A file that claims more
+ * frames than frames_max gives one more than that. */
 bool read_head(const std::string &name, head &out);
 
 /* Let the library keep its messages for itself. */

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <dirent.h>
 #include <map>
 #include <memory>
+#include <set>
 #include <sys/stat.h>
 #include <tuple>
 
@@ -45,15 +47,20 @@ class collector
 	gz_result collect_tree(const std::string &folder, int depth);
 	gz_result collect_where_images_are(const std::string &folder);
 	bool look_at(const std::string &name);
-	void note_damaged() const;
+	void note_left_out() const;
 
 	const gz_volume_file &file;
 	const std::string path;
 	const gz_log *log;
 	found_images &out;
-	size_t seen = 0;     /* files that were looked at */
-	size_t damaged = 0;  /* of them */
-	std::string example; /* one of them */
+	/* Files that give no images, though they may be of the series. */
+	struct left_out {
+		size_t count = 0;
+		std::string example; /* one of them */
+	};
+
+	size_t seen = 0; /* files that were looked at */
+	std::map<head_fault, left_out> faulty;
 };
 
 gz_result collector::collect(const std::string &choice)
@@ -70,7 +77,7 @@ gz_result collector::collect(const std::string &choice)
 		S_ISDIR(status.st_mode) ? collect_where_images_are(path) : collect_file(choice);
 	if (r != GZ_OK)
 		return r;
-	note_damaged();
+	note_left_out();
 	if (!out.heads.empty())
 		return GZ_OK;
 	gz_err(log, "%s: no DICOM image in this folder; name another", path.c_str());
@@ -89,8 +96,7 @@ gz_result collector::collect_file(const std::string &choice)
 		return collect_directory(folder);
 	head h;
 	if (!read_head(path, h)) {
-		gz_err(log, "%s: no DICOM image; name a file that holds one, or its folder",
-		       path.c_str());
+		gz_err(log, "%s: %s", path.c_str(), text_of_fault(h.fault).c_str());
 		return GZ_ERR_FORMAT;
 	}
 	if (h.slices.size() > 1) {
@@ -132,7 +138,7 @@ gz_result collector::collect_directory(const std::string &folder)
 gz_result collector::collect_where_images_are(const std::string &folder)
 {
 	const gz_result r = collect_folder(folder);
-	return r == GZ_OK && out.heads.empty() && damaged == 0 ? collect_tree(folder, 0) : r;
+	return r == GZ_OK && out.heads.empty() && faulty.empty() ? collect_tree(folder, 0) : r;
 }
 
 /* All images in a folder and its sub-folders. */
@@ -152,14 +158,12 @@ gz_result collector::collect_tree(const std::string &folder, int depth)
 	return r;
 }
 
-/* A damaged file may be a slice at the end of the series, which nobody would miss: it is told. */
-void collector::note_damaged() const
+/* Such a file may be a slice at the end of the series, which nobody would miss: it is told. */
+void collector::note_left_out() const
 {
-	if (damaged > 0)
-		gz_warn(log,
-			"%s: damaged or cut off, left out (such DICOM files here: %zu); fetch it "
-			"again",
-			example.c_str(), damaged);
+	for (const auto &kind : faulty)
+		gz_warn(log, "%s: %s; left out (such files here: %zu)", kind.second.example.c_str(),
+			text_of_fault(kind.first).c_str(), kind.second.count);
 }
 
 /* Read one head; false if loading shall stop. */
@@ -170,8 +174,8 @@ bool collector::look_at(const std::string &name)
 		return true;
 	if (read_head(name, h))
 		out.heads.push_back(std::move(h));
-	else if (h.unreadable && gz_dicom_is(name.c_str()) && damaged++ == 0)
-		example = name;
+	else if (h.fault != head_fault::no_image && faulty[h.fault].count++ == 0)
+		faulty[h.fault].example = name;
 	return gz_loading_goes_on(file.loading, 0, path.c_str());
 }
 
@@ -230,6 +234,26 @@ std::string names_of_series(const found_images &images, const std::vector<std::s
 	return names;
 }
 
+/* A folder may hold a file twice; its copies are no further time points. */
+void leave_out_copies(const gz_volume_file &file, std::vector<head> &heads)
+{
+	using identity = std::tuple<std::string, int, std::vector<double>>;
+	std::set<identity> seen;
+	const size_t all = heads.size();
+	const auto is_copy = [&](const head &h) {
+		const slice &s = h.slices[0];
+		std::vector<double> where(s.position.x, s.position.x + 3);
+		for (const double when : s.when)
+			where.push_back(std::isnan(when) ? -1 : when);
+		return !h.image_uid.empty() &&
+		       !seen.emplace(h.image_uid, s.number, std::move(where)).second;
+	};
+	heads.erase(std::remove_if(heads.begin(), heads.end(), is_copy), heads.end());
+	if (heads.size() < all)
+		gz_info(file.log, "%s: %zu files are copies of others, by their UIDs; left out",
+			file.path, all - heads.size());
+}
+
 } // namespace
 
 gz_result find_images(const gz_volume_file &file, const std::string &choice, found_images &out)
@@ -283,6 +307,7 @@ gz_result keep_one_series(const gz_volume_file &file, found_images &images)
 			std::remove_if(images.heads.begin(), images.heads.end(),
 				       [&](const head &h) { return h.series_uid != wanted; }),
 			images.heads.end());
+	leave_out_copies(file, images.heads);
 	return GZ_OK;
 }
 

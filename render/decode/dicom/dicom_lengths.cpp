@@ -12,7 +12,7 @@ namespace
 {
 
 /* Sequences within each other (chosen: files have a few). */
-const int depth_max = 32;
+const int depth_max = 128;
 
 const uint32_t tag_of_pixels = 0x7fe00010, tag_of_item = 0xfffee000, tag_of_item_end = 0xfffee00d,
 	       tag_of_sequence_end = 0xfffee0dd, tag_of_transfer_syntax = 0x00020010;

@@ -13,8 +13,8 @@ namespace gz_dicom
 inline const uint32_t undefined_length = 0xffffffff;
 
 /* Whether no element up to the pixels claims more bytes than the file, or the sequence that it lies
- * in, has left, and sequences are no deeper within each other than 32: the library takes memory for
- * what an element claims. Where the file is not as the standard says otherwise, the library may
+ * in, has left, and sequences are no deeper within each other than 128: the library takes memory
+ * for what an element claims. Where the file is not as the standard says otherwise, the library may
  * know better, and the answer is true. Leaves the stream anywhere. */
 bool lengths_fit(std::istream &file, uint64_t file_size);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <numeric>
 
 #include "render/data/volume.h"
 #include "render/decode/dicom/dicom_elements.hpp"
@@ -95,28 +96,51 @@ std::vector<double> gaps_of(const std::vector<slice> &frames)
 	return gaps;
 }
 
-/* Distance of slices: that of neighbours, unless the file says that some between all of them were
- * left out. Positions are rounded, so that it is made to fit the whole stack. */
-double distance_of_slices(const std::vector<slice> &frames, const format &numbers)
+/* Whether all gaps are whole multiples of a distance. */
+bool are_multiples(const std::vector<double> &gaps, double distance)
 {
-	const std::vector<double> gaps = gaps_of(frames);
+	return distance > 0 && std::all_of(gaps.begin(), gaps.end(), [&](double gap) {
+		       const double times = gap / distance;
+		       return times > 0.9 && std::fabs(times - std::round(times)) < off_most;
+	       });
+}
+
+/* The usual gap: the mean of those near the least. */
+double usual_gap(const std::vector<double> &gaps)
+{
+	const double least = *std::min_element(gaps.begin(), gaps.end());
+	double sum = 0;
+	size_t near = 0;
+	for (const double gap : gaps)
+		if (gap < 1.5 * least) {
+			sum += gap;
+			near++;
+		}
+	return sum / (double)near;
+}
+
+/* Distance of slices: what the file says, as slices without a segment may be left out; else a frame
+ * is as thick as it says, if the gaps allow it; else that of neighbours. Positions are rounded, so
+ * that it is made to fit the whole stack. */
+double distance_of_slices(const head &image, const gz_log *log)
+{
+	const format &numbers = image.numbers;
+	const std::vector<double> gaps = gaps_of(image.slices);
 	if (gaps.empty())
 		return numbers.between > 0     ? numbers.between
 		       : numbers.thickness > 0 ? numbers.thickness
 					       : numbers.spacing[0];
-	const double least = *std::min_element(gaps.begin(), gaps.end());
-	double sum = 0, stack = 0;
-	size_t near = 0;
-	for (const double gap : gaps) {
-		stack += gap;
-		sum += gap < 1.5 * least ? gap : 0;
-		near += gap < 1.5 * least;
-	}
-	const double usual = sum / (double)near;
-	const double times = numbers.between > 0 ? usual / numbers.between : 0;
-	const bool told = times > 0.9 && std::fabs(times - std::round(times)) < off_most;
-	const double guess = told ? numbers.between : usual;
-	return stack / std::max(1.0, std::round(stack / guess));
+	const double stack = std::accumulate(gaps.begin(), gaps.end(), 0.0);
+	const bool told = are_multiples(gaps, numbers.between);
+	const bool thick = !told && are_multiples(gaps, numbers.thickness);
+	const double guess = told ? numbers.between : thick ? numbers.thickness : usual_gap(gaps);
+	const double count = std::max(1.0, std::round(stack / guess));
+	if (thick && count > (double)gaps.size())
+		gz_warn(log,
+			"%s: does not say how far apart its slices lie; taken to be their "
+			"thickness, %g mm, so that %.0f between its frames are empty",
+			image.path.c_str(), numbers.thickness, count - (double)gaps.size());
+	return stack / count;
 }
 
 /* How far a frame lies beside the first within the plane, in pixels. */
@@ -246,7 +270,7 @@ gz_result stack_segments(head &image, const gz_log *log)
 	const vector3 normal = cross(image.slices[0].row, image.slices[0].column);
 	for (slice &s : image.slices)
 		s.along = dot(s.position, normal);
-	const double distance = distance_of_slices(image.slices, image.numbers);
+	const double distance = distance_of_slices(image, log);
 	result = collect_frames(image, distance, slices, log);
 	if (result != GZ_OK)
 		return result;

@@ -234,7 +234,13 @@ gz_result reader::order()
 	if (time_points > 1)
 		gz_info(log, "%s: %zu images at each place: time points, in the order of their %s",
 			path.c_str(), time_points, found.by);
-	if (found.left_out > 0)
+	if (!found.incomplete.empty())
+		gz_warn(log,
+			"%s: temporal position %g%s lacks images at some places; its others are "
+			"left out (%zu)",
+			path.c_str(), found.incomplete[0],
+			found.incomplete.size() > 1 ? ", like others," : "", found.left_out);
+	else if (found.left_out > 0)
 		gz_warn(log,
 			"%s: some places have more images than others; only %zu of each are shown "
 			"(%zu left out)",

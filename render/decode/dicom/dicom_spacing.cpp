@@ -34,6 +34,7 @@ struct lie {
 	gz_slice_gaps gaps {};
 	double tilt_deg = 0;  /* of the line from the first to the last slice against the normal */
 	double wander_mm = 0; /* greatest distance of a slice from that line */
+	double wander_most_mm = 0; /* above it, the slices lie on no line */
 	bool shifted = false;
 };
 
@@ -56,9 +57,8 @@ void measure_shift(const format &numbers, lie &stack)
 		stack.wander_mm = std::max(stack.wander_mm, std::hypot(shift[0] - share * last[0],
 								       shift[1] - share * last[1]));
 	}
-	stack.shifted =
-		stack.tilt_deg > tilt_most_deg ||
-		stack.wander_mm > wander_most_px * std::min(numbers.spacing[0], numbers.spacing[1]);
+	stack.wander_most_mm = wander_most_px * std::min(numbers.spacing[0], numbers.spacing[1]);
+	stack.shifted = stack.tilt_deg > tilt_most_deg || stack.wander_mm > stack.wander_most_mm;
 }
 
 gz_result measure_lie(const placed_stack &stack, lie &out)
@@ -110,9 +110,9 @@ std::string describe_gaps(const lie &stack)
 	const gz_slice_gaps &gaps = stack.gaps;
 	const std::string usual = text_of_number(gaps.usual_mm), where = name_gaps(stack);
 	if (gaps.fault == GZ_SLICES_MISSING)
-		return std::to_string(gaps.missing) + " of its " +
-		       std::to_string(stack.along.size() + gaps.missing) +
-		       " slices are missing, which lie " + usual + " mm apart: " + where;
+		return std::to_string(gaps.missing) + " of " +
+		       std::to_string(stack.along.size() + gaps.missing) + " slices, " + usual +
+		       " mm apart, " + (gaps.missing == 1 ? "is" : "are") + " missing: " + where;
 	return "its slices lie " + text_of_number(gaps.least_mm) + " to " +
 	       text_of_number(gaps.greatest_mm) + " mm apart, most " + usual + ": " + where;
 }
@@ -120,12 +120,12 @@ std::string describe_gaps(const lie &stack)
 std::string describe_shift(const lie &stack)
 {
 	char text[128];
-	if (stack.tilt_deg > tilt_most_deg)
-		snprintf(text, sizeof text, "slices are shifted, a gantry tilted by %.1f degrees",
-			 stack.tilt_deg);
-	else
+	if (stack.wander_mm > stack.wander_most_mm)
 		snprintf(text, sizeof text, "slices are shifted by up to %.1f mm off one line",
 			 stack.wander_mm);
+	else
+		snprintf(text, sizeof text, "the gantry was tilted by %.1f degrees",
+			 stack.tilt_deg);
 	return text;
 }
 
@@ -133,7 +133,7 @@ gz_result tell(const lie &stack, const gz_volume_file &file)
 {
 	if (stack.gaps.fault != GZ_SLICES_EVEN) {
 		const char *remedy = stack.gaps.fault == GZ_SLICES_MISSING
-					     ? "fetch them, or open it with --resample"
+					     ? "add what is missing, or open it with --resample"
 					     : "open it with --resample";
 		gz_err(file.log, "%s: %s; %s (scene key volume.resample), which interpolates",
 		       file.path, describe_gaps(stack).c_str(), remedy);
@@ -141,8 +141,8 @@ gz_result tell(const lie &stack, const gz_volume_file &file)
 	}
 	if (stack.shifted)
 		gz_warn(file.log,
-			"%s: %s, and shown as if they were not; --resample (scene key "
-			"volume.resample) moves them back",
+			"%s: %s; the slices are shown straight above each other; --resample (scene "
+			"key volume.resample) puts them where they belong",
 			file.path, describe_shift(stack).c_str());
 	return GZ_OK;
 }

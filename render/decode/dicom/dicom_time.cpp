@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace gz_dicom
@@ -58,8 +59,9 @@ void sort_place(place &images, int key)
 }
 
 /* Of places with different numbers of images only the temporal positions that all have are kept:
- * otherwise an image that is missing in the middle would move those behind it. */
-void keep_common_positions(std::vector<place> &places)
+ * otherwise an image that is missing in the middle would move those behind it. Returns those that
+ * are not. */
+std::vector<double> keep_common_positions(std::vector<place> &places)
 {
 	const auto has = [](const place &images, double position) {
 		return std::any_of(images.begin(), images.end(), [position](const slice &s) {
@@ -73,7 +75,13 @@ void keep_common_positions(std::vector<place> &places)
 		    }))
 			common.push_back(s.when[TIME_POSITION]);
 	if (common.empty())
-		return;
+		return {};
+	std::set<double> others;
+	for (const place &images : places)
+		for (const slice &s : images)
+			if (std::find(common.begin(), common.end(), s.when[TIME_POSITION]) ==
+			    common.end())
+				others.insert(s.when[TIME_POSITION]);
 	for (place &images : places)
 		images.erase(std::remove_if(images.begin(), images.end(),
 					    [&](const slice &s) {
@@ -82,6 +90,7 @@ void keep_common_positions(std::vector<place> &places)
 							   common.end();
 					    }),
 			     images.end());
+	return { others.begin(), others.end() };
 }
 
 size_t fewest(const std::vector<place> &places)
@@ -114,7 +123,7 @@ time_order order_in_time(std::vector<slice> &slices)
 	const bool uneven =
 		all != places.size() * places[0].size() || fewest(places) != places[0].size();
 	if (uneven && key == TIME_POSITION)
-		keep_common_positions(places);
+		order.incomplete = keep_common_positions(places);
 	order.points = fewest(places);
 	order.by = names[key];
 	slices.clear();

@@ -15,6 +15,7 @@ struct time_order {
 	size_t points = 1;        /* images at each place that are kept */
 	const char *by = nullptr; /* what tells their order, for people; NULL: one image a place */
 	size_t left_out = 0;      /* images */
+	std::vector<double> incomplete; /* temporal positions that some places lack */
 };
 
 /*
