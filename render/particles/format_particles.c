@@ -118,7 +118,7 @@ static enum gz_result scan_step(struct gz_particle_reader *reader, uint64_t part
 		if (result != GZ_OK)
 			return result;
 		const double value = (double)(float)value_of(bytes, reader->request->value);
-		if (isfinite(value)) {
+		if (fabs(value) <= GZ_PARTICLE_VALUE_MAX) {
 			range[0] = fmin(range[0], value);
 			range[1] = fmax(range[1], value);
 		}

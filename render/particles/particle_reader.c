@@ -381,8 +381,7 @@ enum gz_result gz_particle_add(struct gz_particle_reader *reader, const double p
 {
 	struct gz_particles *particles = &reader->particles;
 	const bool valued = reader->request->value != GZ_PARTICLE_FILL;
-	const float stored = (float)value;
-	if (!position_usable(position) || (valued && !isfinite(stored))) {
+	if (!position_usable(position) || (valued && !(fabs(value) <= GZ_PARTICLE_VALUE_MAX))) {
 		reader->lost++;
 		return GZ_OK;
 	}
@@ -399,6 +398,7 @@ enum gz_result gz_particle_add(struct gz_particle_reader *reader, const double p
 		return result;
 	memcpy(particles->positions[particles->count], position, sizeof *particles->positions);
 	if (valued) {
+		const float stored = (float)value;
 		particles->values[particles->count] = stored;
 		particles->value_range[0] = fmin(particles->value_range[0], (double)stored);
 		particles->value_range[1] = fmax(particles->value_range[1], (double)stored);

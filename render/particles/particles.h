@@ -22,6 +22,9 @@
  *  exponents once positions are scaled to the box. */
 #define GZ_PARTICLE_COORDINATE_MAX 1e30
 
+/** Largest value of a particle. Chosen: sums of as many as there may be stay finite floats. */
+#define GZ_PARTICLE_VALUE_MAX 1e30
+
 /** A quantity that particles carry: scene key particles.value. */
 enum gz_particle_value {
 	GZ_PARTICLE_FILL,     /**< 1 for each particle: where the liquid is. Needs no data */
@@ -39,7 +42,8 @@ struct gz_particles {
 	size_t count;           /**< 1 or more */
 	double (*positions)[3]; /**< x, y, z in the file's unit; |each| is at most
 				   GZ_PARTICLE_COORDINATE_MAX */
-	float *values;          /**< finite, one for each; NULL for GZ_PARTICLE_FILL */
+	float *values;          /**< one for each, |it| is at most GZ_PARTICLE_VALUE_MAX; NULL for
+				   GZ_PARTICLE_FILL */
 	size_t left_out; /**< particles of the file that are not here: without a finite position or
 			    value, or outside the box that the format promises */
 	bool has_box;    /**< the format promises where particles are */

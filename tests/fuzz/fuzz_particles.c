@@ -1,6 +1,6 @@
 /* Particle files from anywhere: the first byte chooses the name, the time point and the value, the
  * rest is the file. Whatever the bytes, loading ends, takes no more memory than the file can fill,
- * and what is loaded keeps the promises of particles.h. */
+ * and what is loaded keeps the promises of particles.h and becomes volumes. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "fuzz/fuzz_folder.h"
-#include "render/particles/particles.h"
+#include "render/particles/particle_grid.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -62,6 +62,29 @@ static void check_particles(const struct gz_particles *particles,
 	}
 }
 
+/* A volume of them is finite and keeps its range. */
+static void check_gridding(const struct gz_particles *particles, enum gz_particle_value value)
+{
+	for (int i = 0; i < GZ_GRIDDING_COUNT; i++) {
+		struct gz_particle_grid grid = gz_particle_grid_preset();
+		struct gz_volume volume;
+		grid.gridding = (enum gz_particle_gridding)i;
+		grid.value = value;
+		grid.cells = 12;
+		grid.threads = 1;
+		if (gz_particles_to_volume(particles, &grid, "fuzz", NULL, NULL, &volume) != GZ_OK)
+			continue;
+		require(isfinite(volume.stored_min) && isfinite(volume.stored_max));
+		for (size_t k = 0; k < gz_volume_voxel_count(&volume); k++) {
+			const double voxel = (double)((const float *)volume.voxels)[k];
+			require(voxel >= volume.stored_min && voxel <= volume.stored_max);
+		}
+		for (int axis = 0; axis < 3; axis++)
+			require(volume.spacing[axis] > 0 && isfinite(volume.spacing[axis]));
+		gz_volume_free(&volume);
+	}
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct gz_particles particles;
@@ -84,6 +107,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	};
 	if (gz_particles_load(&request, &particles) == GZ_OK) {
 		check_particles(&particles, &request);
+		check_gridding(&particles, request.value);
 		gz_particles_free(&particles);
 	}
 	return 0;

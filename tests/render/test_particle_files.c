@@ -502,6 +502,14 @@ static void particles_without_numbers_are_counted(void **state)
 	assert_non_null(strstr(log.last, "1 of 3 particles are left out"));
 	assert_true(particles.value_range[0] == 998.5);
 	gz_particles_free(&particles);
+	/* Sums of so large values would not be finite. */
+	file.size = 0;
+	make_liquid(&file, 1);
+	memcpy(file.bytes + 8 + 36, &(float) { 3e38F }, 4);
+	path = write_made("a.particles", &file);
+	assert_int_equal(load_file(path, GZ_PARTICLE_DENSITY, 0, &log, &particles), GZ_OK);
+	assert_int_equal(particles.left_out, 1);
+	gz_particles_free(&particles);
 }
 
 static void particles_outside_their_box_are_counted(void **state)
