@@ -61,10 +61,16 @@ bool run_guarded(bool (*call)(void *), void *user, size_t most)
 	return done;
 }
 
-static void *take_memory(size_t size)
+/* Memory as new gives it; NULL: there is none, or less is allowed. */
+static void *take_memory(size_t size) noexcept
 {
 	refused_more = size > most_at_once;
-	void *memory = refused_more ? nullptr : std::malloc(size > 0 ? size : 1);
+	return refused_more ? nullptr : std::malloc(size > 0 ? size : 1);
+}
+
+static void *take_memory_or_throw(size_t size)
+{
+	void *memory = take_memory(size);
 	if (!memory)
 		throw std::bad_alloc();
 	return memory;
@@ -75,6 +81,21 @@ static void *take_memory(size_t size)
 /* These stand in for those of the C++ library in the whole program, also for the DICOM library. */
 void *operator new(size_t size)
 {
+	return gz_dicom::take_memory_or_throw(size);
+}
+
+void *operator new[](size_t size)
+{
+	return gz_dicom::take_memory_or_throw(size);
+}
+
+void *operator new(size_t size, const std::nothrow_t &) noexcept
+{
+	return gz_dicom::take_memory(size);
+}
+
+void *operator new[](size_t size, const std::nothrow_t &) noexcept
+{
 	return gz_dicom::take_memory(size);
 }
 
@@ -83,7 +104,17 @@ void operator delete(void *memory) noexcept
 	std::free(memory);
 }
 
+void operator delete[](void *memory) noexcept
+{
+	std::free(memory);
+}
+
 void operator delete(void *memory, size_t) noexcept
+{
+	std::free(memory);
+}
+
+void operator delete[](void *memory, size_t) noexcept
 {
 	std::free(memory);
 }
