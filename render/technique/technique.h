@@ -65,9 +65,10 @@ struct gz_backend_params {
 
 /** What one frame cost. */
 struct gz_frame_stats {
-	uint64_t rays;     /**< cast, including those that miss everything */
-	uint64_t samples;  /**< interpolations of data */
-	double prepare_ms; /**< work that later frames reuse; 0 = none was due */
+	uint64_t rays;            /**< cast, including those that miss everything */
+	uint64_t samples;         /**< interpolations of data */
+	double prepare_ms;        /**< work that later frames reuse; 0 = none was due */
+	double prepare_within_ms; /**< the part of prepare_ms that draw() itself took */
 	double cast_ms;
 	double reconstruct_ms;
 	double gpu_ms; /**< gl: cast and reconstruction by the device's clock; NaN if the device has

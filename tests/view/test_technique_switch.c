@@ -20,6 +20,7 @@ struct switching {
 	struct gz_view_options options;
 	struct gz_frame_maker *maker;
 	struct gz_scene_settings settings;
+	struct gz_frame_record record; /* of the last picture */
 };
 
 static void begin_switching(struct switching *all)
@@ -61,9 +62,8 @@ static void make_with(struct switching *all, int technique, uint8_t out_pixels[4
 		.height = HEIGHT,
 	};
 	struct gz_image *image = NULL;
-	struct gz_frame_record record;
 	all->settings.technique = technique;
-	assert_int_equal(gz_frame_make(all->maker, &request, &image, &record), GZ_OK);
+	assert_int_equal(gz_frame_make(all->maker, &request, &image, &all->record), GZ_OK);
 	memcpy(out_pixels, image->pixels, (size_t)4 * WIDTH * HEIGHT);
 }
 
@@ -94,6 +94,11 @@ static void technique_follows_the_settings_and_a_refused_one_changes_nothing(voi
 		assert_memory_not_equal(first, second, sizeof first);
 		make_with(&all, surface, third);
 		assert_memory_equal(second, third, sizeof first);
+		/* the budget does not pay for the surface, which is made once */
+		assert_true(all.record.prepare_ms > 0);
+		assert_true(all.record.prepare_ms < all.record.total_ms);
+		make_with(&all, surface, third);
+		assert_true(all.record.prepare_ms == 0);
 	} else {
 		assert_memory_equal(first, second, sizeof first);
 		const int told = all.captured.messages;

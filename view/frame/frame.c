@@ -495,6 +495,7 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 	if (r != GZ_OK)
 		return r;
 	record->total_ms = cost.total_ms;
+	record->prepare_ms = cost.stats.prepare_within_ms;
 	record->plan_ms = cost.plan_ms;
 	record->cast_ms = cost.stats.cast_ms;
 	record->reconstruct_ms = cost.stats.reconstruct_ms;
@@ -534,8 +535,8 @@ static const char *budget_state(const struct gz_frame_maker *maker,
 	return gz_budget_state_name(budget->state);
 }
 
-/* The budget covers rays and pixels only, not what is drawn or written afterwards. Times of another
- * method or size do not count. */
+/* The budget covers rays and pixels only, not what later frames reuse, and not what is drawn or
+ * written afterwards. Times of another method or size do not count. */
 static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 		       double total_ms)
 {
@@ -587,7 +588,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 		return r;
 	maker->made = maker->focus;
 	maker->any_made = true;
-	tell_spent(maker, request, record.total_ms);
+	tell_spent(maker, request, record.total_ms - record.prepare_ms);
 	record.budget = budget_state(maker, &record);
 	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
 	*out_record = record;

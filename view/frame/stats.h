@@ -27,6 +27,7 @@ struct gz_frame_record {
 	double cast_ms;
 	double reconstruct_ms; /**< with the resampling for image_sampling_rate */
 	double total_ms;       /**< wall time from the gaze to the finished picture */
+	double prepare_ms;     /**< of it, what later frames reuse, such as a new surface */
 	bool gaze_known;
 	struct gz_point gaze;
 	bool age_known;
