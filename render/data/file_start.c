@@ -62,7 +62,7 @@ bool gz_file_start_has(const struct gz_file_start *start, size_t at, const void 
 
 double gz_head_number(const uint8_t *bytes, enum gz_head_number type, bool big_endian)
 {
-	static const size_t sizes[] = { 2, 4, 8, 4, 8 };
+	static const size_t sizes[] = { 1, 2, 4, 8, 4, 8 };
 	const size_t size = sizes[type];
 	uint64_t bits = 0;
 	for (size_t i = 0; i < size; i++)
@@ -73,6 +73,8 @@ double gz_head_number(const uint8_t *bytes, enum gz_head_number type, bool big_e
 	memcpy(&real, &word, sizeof real);
 	memcpy(&number, &bits, sizeof number);
 	switch (type) {
+	case GZ_HEAD_U8:
+		return (uint8_t)bits;
 	case GZ_HEAD_I16:
 		return (int16_t)bits;
 	case GZ_HEAD_I32:

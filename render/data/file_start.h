@@ -46,6 +46,7 @@ bool gz_file_start_has(const struct gz_file_start *start, size_t at, const void 
 
 /** Types of numbers in binary headers. */
 enum gz_head_number {
+	GZ_HEAD_U8,
 	GZ_HEAD_I16,
 	GZ_HEAD_I32,
 	GZ_HEAD_I64,

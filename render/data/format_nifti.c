@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "render/data/format.h"
+#include "render/data/length_unit.h"
 #include "render/data/voxel_source.h"
 
 #define GZ_LOG_MODULE "volume"
@@ -37,7 +38,7 @@ struct nifti_version {
 	size_t size;
 	size_t magic_at;
 	struct nifti_field dim, intent_code, datatype, bitpix, pixdim, vox_offset, slope, intercept,
-		qform_code, sform_code, quatern, srow;
+		xyzt_units, qform_code, sform_code, quatern, srow;
 };
 
 #define FIELD1(member, type)                                     \
@@ -60,6 +61,7 @@ static const struct nifti_version nifti1 = {
 	.vox_offset = FIELD1(vox_offset, F32),
 	.slope = FIELD1(scl_slope, F32),
 	.intercept = FIELD1(scl_inter, F32),
+	.xyzt_units = FIELD1(xyzt_units, U8),
 	.qform_code = FIELD1(qform_code, I16),
 	.sform_code = FIELD1(sform_code, I16),
 	.quatern = FIELD1(quatern_b, F32),
@@ -77,6 +79,7 @@ static const struct nifti_version nifti2 = {
 	.vox_offset = FIELD2(vox_offset, I64),
 	.slope = FIELD2(scl_slope, F64),
 	.intercept = FIELD2(scl_inter, F64),
+	.xyzt_units = FIELD2(xyzt_units, I32),
 	.qform_code = FIELD2(qform_code, I32),
 	.sform_code = FIELD2(sform_code, I32),
 	.quatern = FIELD2(quatern_b, F64),
@@ -105,7 +108,8 @@ enum { NIFTI_KINDS = sizeof nifti_kinds / sizeof nifti_kinds[0] };
 /* The numbers of a header. */
 struct nifti_head {
 	double dim[8], pixdim[8];
-	double intent_code, datatype, bitpix, vox_offset, slope, intercept, qform_code, sform_code;
+	double intent_code, datatype, bitpix, vox_offset, slope, intercept, xyzt_units, qform_code,
+		sform_code;
 	double quatern[3];
 	double srow[3][4];
 };
@@ -129,9 +133,9 @@ static bool header_size_is(const uint8_t *bytes, size_t size, bool big_endian)
 static void take_field(const uint8_t *bytes, const struct nifti_field *field, bool big_endian,
 		       size_t count, double *out)
 {
-	const size_t size = field->type == GZ_HEAD_I16                                 ? 2
-			    : field->type == GZ_HEAD_I32 || field->type == GZ_HEAD_F32 ? 4
-										       : 8;
+	static const size_t sizes[] = { [GZ_HEAD_U8] = 1,  [GZ_HEAD_I16] = 2, [GZ_HEAD_I32] = 4,
+					[GZ_HEAD_I64] = 8, [GZ_HEAD_F32] = 4, [GZ_HEAD_F64] = 8 };
+	const size_t size = sizes[field->type];
 	for (size_t i = 0; i < count; i++)
 		out[i] = gz_head_number(bytes + field->at + i * size, field->type, big_endian);
 }
@@ -147,6 +151,7 @@ static void take_nifti_head(const uint8_t *bytes, const struct nifti_version *ve
 	take_field(bytes, &version->vox_offset, big_endian, 1, &out->vox_offset);
 	take_field(bytes, &version->slope, big_endian, 1, &out->slope);
 	take_field(bytes, &version->intercept, big_endian, 1, &out->intercept);
+	take_field(bytes, &version->xyzt_units, big_endian, 1, &out->xyzt_units);
 	take_field(bytes, &version->qform_code, big_endian, 1, &out->qform_code);
 	take_field(bytes, &version->sform_code, big_endian, 1, &out->sform_code);
 	take_field(bytes, &version->quatern, big_endian, 3, out->quatern);
@@ -381,6 +386,25 @@ static void take_nifti_orientation(struct nifti_file *file)
 		file->layout.oriented = false;
 }
 
+/* "UNITS OF SPATIAL AND TEMPORAL DIMENSIONS". ANALYZE has the beginning of a text there. */
+static void take_nifti_units(struct nifti_file *file)
+{
+	static const char *const names[] = { [NIFTI_UNITS_UNKNOWN] = "",
+					     [NIFTI_UNITS_METER] = "m",
+					     [NIFTI_UNITS_MM] = "mm",
+					     [NIFTI_UNITS_MICRON] = "um" };
+	enum { KNOWN = sizeof names / sizeof names[0] };
+	const int code = XYZT_TO_SPACE((int)file->head.xyzt_units);
+	char number[16];
+	if (!file->kind->magic)
+		return;
+	(void)gz_text_print(number, sizeof number, "code %d", code);
+	const double mm =
+		gz_length_unit_take(code < KNOWN ? names[code] : number, file->path, file->log);
+	for (int axis = 0; axis < 3; axis++)
+		file->layout.spacing[axis] *= mm;
+}
+
 static enum gz_result take_nifti_offset(struct nifti_file *file)
 {
 	const double offset = file->head.vox_offset;
@@ -413,6 +437,7 @@ static enum gz_result take_nifti_numbers(struct nifti_file *file, const uint8_t 
 	if (result == GZ_OK) {
 		take_nifti_scaling(file);
 		take_nifti_orientation(file);
+		take_nifti_units(file);
 		/* ANALYZE has other fields there. */
 		file->layout.labels =
 			file->kind->magic && (int)file->head.intent_code == NIFTI_INTENT_LABEL;

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/vector.h"
 #include "render/data/format.h"
+#include "render/data/length_unit.h"
 #include "render/data/text_head.h"
 #include "render/data/voxel_colour.h"
 #include "render/data/voxel_source.h"
@@ -21,6 +22,9 @@
 
 #define AXES_MAX 16 /* NRRD_DIM_MAX */
 #define BLANKS   " \t"
+
+/* Of the name of a unit with its NUL, bytes. Chosen: more than "micrometres" has. */
+#define UNIT_SIZE 24
 
 struct nrrd {
 	struct gz_text_head head;
@@ -32,10 +36,12 @@ struct nrrd {
 	double directions[AXES_MAX][3]; /* as written; NaN: none */
 	double sign[3];                 /* of the written space in RAS+ */
 	bool has_type, has_sizes, has_encoding, has_endian, has_spacings, has_directions;
-	bool anatomical, values_first; /* the first axis holds the parts of a value */
-	bool has_first_kind;           /* what the first axis holds is known */
-	int colour_channels;           /* of a first axis that holds colours; else 0 */
-	bool colour_later;             /* another axis holds colours */
+	bool anatomical, values_first;   /* the first axis holds the parts of a value */
+	bool has_first_kind;             /* what the first axis holds is known */
+	int colour_channels;             /* of a first axis that holds colours; else 0 */
+	bool colour_later;               /* another axis holds colours */
+	char units[AXES_MAX][UNIT_SIZE]; /* of the axes; empty: not given */
+	char space_units[3][UNIT_SIZE];  /* of x, y, z in the written space */
 	bool detached;
 	int file_axes; /* that each of several files holds; 0: not given */
 };
@@ -314,13 +320,43 @@ static enum gz_result take_nrrd_kinds(struct nrrd *nrrd, char *value)
 	return GZ_OK;
 }
 
+/* Section 5.1, "units", and 5.2, "space units": names in quotes; without them, words. */
+static void take_quoted_names(char *value, char (*names)[UNIT_SIZE], int count)
+{
+	for (int i = 0; i < count; i++) {
+		const char *name;
+		value += strspn(value, BLANKS);
+		if (*value == '"') {
+			name = value + 1;
+			value += 1 + strcspn(name, "\"");
+			if (*value)
+				*value++ = '\0';
+		} else {
+			name = gz_number_next_word(&value, BLANKS);
+		}
+		snprintf(names[i], UNIT_SIZE, "%s", name ? name : "");
+	}
+}
+
+static enum gz_result take_nrrd_units(struct nrrd *nrrd, char *value)
+{
+	take_quoted_names(value, nrrd->units, nrrd->dimension);
+	return GZ_OK;
+}
+
+static enum gz_result take_nrrd_space_units(struct nrrd *nrrd, char *value)
+{
+	take_quoted_names(value, nrrd->space_units, 3);
+	return GZ_OK;
+}
+
 struct field {
 	const char *names[2];
 	bool needs_dimension;
 	enum gz_result (*take)(struct nrrd *nrrd, char *value);
 };
 
-/* Fields that say nothing of layout (content, units, labels, …) are passed over. */
+/* Fields that say nothing of layout (content, labels, …) are passed over. */
 static const struct field fields[] = {
 	{ { "type", "type" }, false, take_nrrd_type },
 	{ { "dimension", "dimension" }, false, take_nrrd_dimension },
@@ -329,6 +365,8 @@ static const struct field fields[] = {
 	{ { "space", "space" }, false, take_nrrd_space },
 	{ { "space dimension", "space dimension" }, false, take_nrrd_space_dimension },
 	{ { "space directions", "space directions" }, true, take_nrrd_directions },
+	{ { "units", "units" }, true, take_nrrd_units },
+	{ { "space units", "space units" }, false, take_nrrd_space_units },
 	{ { "kinds", "kinds" }, false, take_nrrd_kinds },
 	{ { "endian", "endian" }, false, take_nrrd_endian },
 	{ { "encoding", "encoding" }, false, take_nrrd_encoding },
@@ -434,6 +472,40 @@ static enum gz_result take_nrrd_values(struct nrrd *nrrd, int first)
 	return GZ_OK;
 }
 
+/* What turns lengths in three units into mm. A unit is told once. */
+static void take_lengths(const struct nrrd *nrrd, const char (*units)[UNIT_SIZE], double mm[3])
+{
+	for (int i = 0; i < 3; i++) {
+		const bool told = i > 0 && strcmp(units[i], units[i - 1]) == 0;
+		mm[i] = told ? mm[i - 1]
+			     : gz_length_unit_take(units[i], nrrd->head.path, nrrd->head.log);
+	}
+}
+
+/* Spacing and directions of the three axes from `first` on. */
+static void place_nrrd_axes(struct nrrd *nrrd, int first)
+{
+	struct gz_import_layout *layout = &nrrd->layout;
+	double mm[3];
+	if (!nrrd->has_directions) {
+		take_lengths(nrrd, (const char(*)[UNIT_SIZE])nrrd->units + first, mm);
+		for (int axis = 0; axis < 3; axis++)
+			layout->spacing[axis] =
+				(nrrd->has_spacings ? nrrd->spacings[first + axis] : 1) * mm[axis];
+		return;
+	}
+	take_lengths(nrrd, (const char(*)[UNIT_SIZE])nrrd->space_units, mm);
+	for (int axis = 0; axis < 3; axis++) {
+		double d[3];
+		for (int i = 0; i < 3; i++)
+			d[i] = mm[i] * nrrd->directions[first + axis][i];
+		layout->spacing[axis] = gz_length3(d);
+		for (int i = 0; i < 3; i++)
+			layout->direction[axis][i] = nrrd->sign[i] * d[i];
+	}
+	layout->oriented = nrrd->anatomical;
+}
+
 static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 {
 	const int first = first_space_axis(nrrd);
@@ -450,17 +522,7 @@ static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
 		gz_warn(nrrd->head.log, "%s: has a fifth dimension; only its first part is shown",
 			nrrd->head.path);
 	memcpy(nrrd->layout.dims, nrrd->sizes + first, sizeof nrrd->layout.dims);
-	if (nrrd->has_spacings)
-		memcpy(nrrd->layout.spacing, nrrd->spacings + first, sizeof nrrd->layout.spacing);
-	if (!nrrd->has_directions)
-		return GZ_OK;
-	for (int axis = 0; axis < 3; axis++) {
-		const double *d = nrrd->directions[first + axis];
-		nrrd->layout.spacing[axis] = gz_length3(d);
-		for (int i = 0; i < 3; i++)
-			nrrd->layout.direction[axis][i] = nrrd->sign[i] * d[i];
-	}
-	nrrd->layout.oriented = nrrd->anatomical;
+	place_nrrd_axes(nrrd, first);
 	return GZ_OK;
 }
 

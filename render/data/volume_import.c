@@ -19,7 +19,9 @@
 /* Unit vectors with a determinant below this do not span space (chosen). */
 #define SINGULAR 1e-3
 
-/* From this angle on the log says that a volume is oblique (chosen: less is not visible). */
+/* From this angle on the log says that a volume is oblique or sheared (chosen: less is not
+ * visible).
+ */
 #define OBLIQUE_DEG 1.0
 
 #define DEG_PER_RAD (180.0 / 3.14159265358979323846)
@@ -177,6 +179,15 @@ static void nearest_axes(const double unit[3][3], struct axis_map *out_map)
 		out_map->flip[axis] = unit[axis][out_map->world[axis]] < 0;
 }
 
+/* How far the axes are from right angles, degrees: the worst pair. */
+static double shear_of(const double unit[3][3])
+{
+	double worst = 0;
+	for (int axis = 0; axis < 3; axis++)
+		worst = fmax(worst, fabs(gz_dot3(unit[axis], unit[(axis + 1) % 3])));
+	return asin(fmin(1, worst)) * DEG_PER_RAD;
+}
+
 static enum gz_result map_axes(const struct gz_import_layout *layout,
 			       const struct gz_volume_file *file, struct axis_map *out_map)
 {
@@ -192,7 +203,13 @@ static enum gz_result map_axes(const struct gz_import_layout *layout,
 		double cosine = fmin(1, fabs(unit[axis][out_map->world[axis]]));
 		worst_deg = fmax(worst_deg, acos(cosine) * DEG_PER_RAD);
 	}
-	if (worst_deg > OBLIQUE_DEG)
+	const double shear_deg = shear_of((const double(*)[3])unit);
+	if (shear_deg > OBLIQUE_DEG)
+		gz_warn(file->log,
+			"%s: its axes are sheared by %.1f degrees and up to %.1f degrees off the "
+			"anatomical ones; drawn without the shear, along the nearest axes",
+			file->path, shear_deg, worst_deg);
+	else if (worst_deg > OBLIQUE_DEG)
 		gz_info(file->log, "%s: oblique by %.1f degrees; shown along the nearest axes",
 			file->path, worst_deg);
 	return GZ_OK;

@@ -172,6 +172,77 @@ static void pairs_are_read_by_either_name(void **state)
 	}
 }
 
+/* "UNITS OF SPATIAL AND TEMPORAL DIMENSIONS" of nifti1.h; 8 is seconds. */
+static void lengths_are_converted_to_mm(void **state)
+{
+	(void)state;
+	static const struct {
+		int code;
+		double mm;
+		const char *words; /* NULL: nothing is said */
+	} rows[] = {
+		{ 0, 1, NULL },
+		{ 2 + 8, 1, NULL },
+		{ 1 + 8, 1000, "its lengths are in m; converted to mm" },
+		{ 3 + 8, 1e-3, "its lengths are in um; converted to mm" },
+		{ 5, 1, "its unit of length \"code 5\" is unknown; taken as mm" },
+	};
+	for (size_t i = 0; i < 4 * sizeof rows / sizeof rows[0]; i++) {
+		const bool second = i % 2 == 1, sform = i / 2 % 2 == 1;
+		struct nifti_sample sample = nifti_sample_make(3, 2, 2);
+		uint8_t bytes[544 + COUNT] = { 0 };
+		struct captured_log log;
+		struct gz_volume v;
+		sample.pixdim[1] = 500;
+		if (sform) {
+			sample.sform_code = 1;
+			sample.srow[0][0] = 500;
+			sample.srow[1][1] = sample.srow[2][2] = 1;
+		}
+		if (second)
+			nifti2_sample_bytes(&sample, false, bytes);
+		else
+			nifti_sample_bytes(&sample, bytes);
+		bytes[second ? 500 : 123] = (uint8_t)rows[i / 4].code;
+		memcpy(bytes + (second ? 544 : 352), voxels, COUNT);
+		captured_log_init(&log, "*:info");
+		assert_int_equal(
+			gz_volume_load(files_write("u.nii", bytes, (second ? 544 : 352) + COUNT),
+				       NULL, NULL, &log.log, &v),
+			GZ_OK);
+		assert_int_equal(log.messages, rows[i / 4].words ? 1 : 0);
+		if (rows[i / 4].words && !strstr(log.last, rows[i / 4].words))
+			fail_msg("\"%s\" lacks \"%s\"", log.last, rows[i / 4].words);
+		assert_true(v.spacing[0] == 500 * rows[i / 4].mm);
+		assert_true(v.spacing[1] == rows[i / 4].mm);
+		gz_volume_free(&v);
+	}
+}
+
+/* y leans by 31 degrees towards x. */
+static void shear_is_told_and_not_called_oblique(void **state)
+{
+	(void)state;
+	struct nifti_sample sample = nifti_sample_make(3, 2, 2);
+	uint8_t bytes[352 + COUNT];
+	struct captured_log log;
+	struct gz_volume v;
+	sample.sform_code = 1;
+	sample.srow[0][0] = sample.srow[1][1] = sample.srow[2][2] = 1;
+	sample.srow[0][1] = 0.6f;
+	nifti_sample_bytes(&sample, bytes);
+	memcpy(bytes + 352, voxels, COUNT);
+	captured_log_init(&log, "*:info");
+	assert_int_equal(
+		gz_volume_load(files_write("s.nii", bytes, sizeof bytes), NULL, NULL, &log.log, &v),
+		GZ_OK);
+	assert_int_equal(log.messages, 1);
+	assert_int_equal(log.level, GZ_LOG_WARN);
+	assert_non_null(strstr(log.last, "sheared by 31.0 degrees"));
+	assert_non_null(strstr(log.last, "drawn without the shear"));
+	gz_volume_free(&v);
+}
+
 static void pair_without_its_other_half_is_refused(void **state)
 {
 	(void)state;
@@ -275,6 +346,8 @@ TEST_SUITE(nifti)
 		cmocka_unit_test(nifti_2_qform_is_used_without_sform),
 		cmocka_unit_test(nifti_2_that_is_wrong_is_refused),
 		cmocka_unit_test(pairs_are_read_by_either_name),
+		cmocka_unit_test(lengths_are_converted_to_mm),
+		cmocka_unit_test(shear_is_told_and_not_called_oblique),
 		cmocka_unit_test(pair_without_its_other_half_is_refused),
 		cmocka_unit_test(analyze_is_taken_as_left_last_with_a_warning),
 		cmocka_unit_test(file_that_is_not_compressed_as_named_is_read),

@@ -45,6 +45,52 @@ static const char *write_nrrd_with(const char *name, const char *fields, const v
 	return files_write_text(name, head, data, size);
 }
 
+/* Units of axes count for spacings, those of space for directions; a unit is told once. */
+static void units_of_length_are_converted_to_mm(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *fields, *words; /* NULL: nothing is said */
+		double spacing[3];
+	} rows[] = {
+		{ "spacings: 2 3 4\nunits: \"mm\" \"mm\" \"mm\"\n", NULL, { 2, 3, 4 } },
+		{ "spacings: 2 3 4\nunits: \"um\" \"um\" \"um\"\n",
+		  "are in um",
+		  { 2e-3, 3e-3, 4e-3 } },
+		{ "spacings: 2 3 4\nunits: \"\" \"\" cm\n", "are in cm", { 2, 3, 40 } },
+		{ "spacings: 2 3 4\nunits: \"ell\" \"ell\" \"ell\"\n",
+		  "unit of length \"ell\" is unknown; taken as mm",
+		  { 2, 3, 4 } },
+		{ "space: LPS\nspace units: \"\xc2\xb5m\" \"Micron\" \"mm\"\n"
+		  "space directions: (0,2,0) (0,0,3) (4,0,0)\n",
+		  "are in Micron;",
+		  { 4e-3, 2e-3, 3 } },
+		{ "space: RAS\nspace units: \"um\" \"um\" \"um\"\n"
+		  "space directions: (2,0,0) (0,3,0) (0,0,4)\nunits: \"m\" \"m\" \"m\"\n",
+		  "are in um",
+		  { 2e-3, 3e-3, 4e-3 } },
+		/* cut off */
+		{ "spacings: 2 3 4\nunits: \"mm\" \"um\n", "are in um", { 2, 3e-3, 4 } },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		char fields[512];
+		struct captured_log log;
+		struct gz_volume v;
+		snprintf(fields, sizeof fields, "%sencoding: raw\n\n", rows[i].fields);
+		captured_log_init(&log, "*:info");
+		if (gz_volume_load(write_nrrd_with("u.nrrd", fields, voxels, COUNT), NULL, NULL,
+				   &log.log, &v) != GZ_OK)
+			fail_msg("%s: %s", rows[i].fields, log.last);
+		if ((rows[i].words == NULL) != (log.messages == 0) ||
+		    (rows[i].words && !strstr(log.last, rows[i].words)))
+			fail_msg("%s: %d messages: %s", rows[i].fields, log.messages, log.last);
+		for (int k = 0; k < 3; k++)
+			if (fabs(v.spacing[k] - rows[i].spacing[k]) > 1e-9 * rows[i].spacing[k])
+				fail_msg("%s: spacing %g", rows[i].fields, v.spacing[k]);
+		gz_volume_free(&v);
+	}
+}
+
 static void text_is_read_by_each_of_its_names(void **state)
 {
 	(void)state;
@@ -385,6 +431,7 @@ static void metaimage_text_and_several_files_are_read(void **state)
 TEST_SUITE(nrrd)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(units_of_length_are_converted_to_mm),
 		cmocka_unit_test(text_is_read_by_each_of_its_names),
 		cmocka_unit_test(text_keeps_the_values_of_every_type),
 		cmocka_unit_test(text_that_is_not_finite_becomes_the_least),

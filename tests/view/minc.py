@@ -20,6 +20,7 @@ except ImportError as missing:
     sys.exit(77)
 
 from picture import run, shows_between
+from raw_nrrd import read_nrrd
 from volumes import GAZEVIEW, SHAPE, SPACING, AgainstNibabel, data_of
 
 SPACE = ("xspace", "yspace", "zspace")
@@ -31,7 +32,7 @@ COSINES = {
 }
 
 
-def write_minc(path, values, names, steps=None, cosines=None, valid=None, scales=(0, 1), **storage):
+def write_minc(path, values, names, steps=None, cosines=None, valid=None, scales=(0, 1), units=None, **storage):
     """A file whose image has `values`, axes of these names, the slowest first."""
     if os.path.exists(path):  # nibabel may have it open
         os.unlink(path)
@@ -41,6 +42,8 @@ def write_minc(path, values, names, steps=None, cosines=None, valid=None, scales
             axis.attrs["length"] = numpy.uint32(size)
             axis.attrs["spacing"] = numpy.bytes_("regular__")
             axis.attrs["start"] = -17.5
+            if units:
+                axis.attrs["units"] = numpy.bytes_(units)
             if steps and name in steps:
                 axis.attrs["step"] = float(steps[name])
             if cosines and name in cosines:
@@ -76,6 +79,18 @@ class Minc(AgainstNibabel):
     def test_what_is_left_out_is_one(self):
         write_minc(self.path("d.mnc"), data_of("uint8"), SPACE[::-1])
         self.check("d.mnc")
+
+    def test_units_of_length(self):
+        steps = dict(zip(SPACE, SPACING))
+        for units, factor, told in (("mm", 1, ""), ("um", 1e-3, "are in um; converted"), ("m", 1000, "are in m;"),
+                                    ("ell", 1, '"ell" is unknown; taken as mm')):
+            with self.subTest(units=units):
+                write_minc(self.path("u.mnc"), data_of("int16"), SPACE[::-1], steps, units=units)
+                done = run(GAZEVIEW, self.path("u.mnc"), "--write-volume", self.path("read.nrrd"))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(told, done.stderr)
+                spacing = read_nrrd(self.path("read.nrrd"))[1]
+                self.assertLess(abs(numpy.array(spacing) / factor - SPACING).max(), 1e-9)
 
     def test_types(self):
         names = SPACE[::-1]

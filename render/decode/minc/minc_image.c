@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "render/data/length_unit.h"
 #include "render/decode/minc/minc_hdf.h"
 
 #define GZ_LOG_MODULE "minc"
@@ -34,6 +35,7 @@ struct minc_axis {
 	char name[32];
 	size_t size;
 	double step;
+	char unit[GZ_HDF_TEXT_SIZE]; /* of the step; empty: not given */
 	double cosines[3];
 };
 
@@ -140,6 +142,7 @@ static enum gz_result take_minc_axis(struct gz_minc_image *image, struct minc_ax
 	char path[96], text[GZ_HDF_TEXT_SIZE];
 	const int world = space_axis_named(axis->name);
 	axis->step = 1;
+	axis->unit[0] = '\0';
 	for (int i = 0; i < 3; i++)
 		axis->cosines[i] = i == world;
 	snprintf(path, sizeof path, "/minc-2.0/dimensions/%s", axis->name);
@@ -148,6 +151,7 @@ static enum gz_result take_minc_axis(struct gz_minc_image *image, struct minc_ax
 		return GZ_OK;
 	(void)gz_hdf_numbers(object, "step", &axis->step, 1);
 	(void)gz_hdf_numbers(object, "direction_cosines", axis->cosines, 3);
+	(void)gz_hdf_text(object, "units", axis->unit);
 	(void)gz_hdf_text(object, "spacing", text);
 	H5Oclose(object);
 	if (world == NO_AXIS || strncmp(text, "irregular", 9) != 0)
@@ -209,10 +213,15 @@ static enum gz_result take_minc_axes(struct gz_minc_image *image)
 static void lay_out_axes(struct gz_minc_image *image)
 {
 	struct gz_import_layout *layout = &image->layout;
+	const char *unit = NULL;
+	double mm = 1;
 	for (int i = 0; i < 3; i++) {
 		const struct minc_axis *axis = &image->axes[image->space[2 - i]];
 		layout->dims[i] = (int)axis->size;
-		layout->spacing[i] = fabs(axis->step);
+		const bool told = i > 0 && strcmp(axis->unit, unit) == 0;
+		unit = axis->unit;
+		mm = told ? mm : gz_length_unit_take(unit, image->file->path, image->file->log);
+		layout->spacing[i] = fabs(axis->step) * mm;
 		for (int k = 0; k < 3; k++)
 			layout->direction[i][k] =
 				axis->step < 0 ? -axis->cosines[k] : axis->cosines[k];
