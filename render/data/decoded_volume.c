@@ -133,7 +133,12 @@ static bool take_time_points(const struct gz_volume_file *file,
 	volume->time_points = header->time_points;
 	volume->time_point = time_point;
 	memcpy(volume->number_range, header->number_range, sizeof volume->number_range);
-	/* As gz_volume_scale_floats() has scaled the voxels. */
+	/* Whole numbers are rounded as the voxels are, then all are scaled as
+	 * gz_volume_scale_floats() has scaled the voxels. */
+	if (volume->type == GZ_VOXEL_F32) {
+		least = (double)(float)least;
+		greatest = (double)(float)greatest;
+	}
 	if (volume->type == GZ_VOXEL_F32 && gz_float_scaling_find(least, greatest, &scaling)) {
 		least = (double)gz_float_scaled(&scaling, (float)least);
 		greatest = (double)gz_float_scaled(&scaling, (float)greatest);

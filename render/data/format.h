@@ -106,8 +106,9 @@ enum gz_result gz_bricks_write(const struct gz_volume *volume, const char *path,
 
 /**
  * Write @p volume as NRRD, encoding raw. The file gets its name when it is complete. NRRD cannot
- * store a slope and an intercept, so data values are written: as integers of 8 or 16 bits if all of
- * them are such, signed if the intercept is negative, otherwise as floats. Colours are written as
+ * store a slope and an intercept, so data values are written: as integers of 8 or 16 bits, or of 32
+ * where floats would round them, if all of them are such, signed if the intercept is negative,
+ * otherwise as floats. Colours are written as
  * RGB, with alpha if that is what the values are.
  *
  * @param loading  progress and cancelling; may be NULL

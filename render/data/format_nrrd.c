@@ -574,28 +574,45 @@ struct nrrd_form {
 };
 
 static const struct nrrd_form integers[] = {
-	{ "int8", 1, INT8_MIN, INT8_MAX },
-	{ "uint8", 1, 0, UINT8_MAX },
-	{ "int16", 2, INT16_MIN, INT16_MAX },
-	{ "uint16", 2, 0, UINT16_MAX },
+	{ "int8", 1, INT8_MIN, INT8_MAX },    { "uint8", 1, 0, UINT8_MAX },
+	{ "int16", 2, INT16_MIN, INT16_MAX }, { "uint16", 2, 0, UINT16_MAX },
+	{ "int32", 4, INT32_MIN, INT32_MAX }, { "uint32", 4, 0, UINT32_MAX },
 };
+
+/* Integers up to this magnitude are floats. */
+#define FLOAT_EXACT_MOST 0x1p24
+
 static const struct nrrd_form floats = { "float", sizeof(float), -DBL_MAX, DBL_MAX };
 
+/* Whether every stored number is whole. */
+static bool are_stored_whole(const struct gz_volume *volume)
+{
+	const float *voxels = volume->voxels;
+	const size_t count = volume->type == GZ_VOXEL_F32 ? gz_volume_voxel_count(volume) : 0;
+	size_t broken = 0;
+	for (size_t i = 0; i < count; i++)
+		broken += voxels[i] != rintf(voxels[i]);
+	return broken == 0;
+}
+
 /* NRRD cannot say that values are scaled, so that they are written as they are: as integers of the
- * width they are stored in, or a greater one, where all of them are such, else as floats. */
+ * width they are stored in, or a greater one, where all of them are such, else as floats. Integers
+ * of 32 bits are written only where floats would round them. */
 static const struct nrrd_form *nrrd_form_of(const struct gz_volume *volume)
 {
 	const double low = volume->stored_min + volume->intercept;
 	const double high = volume->stored_max + volume->intercept;
-	if (volume->type == GZ_VOXEL_F32 || volume->slope != 1 ||
-	    volume->intercept != rint(volume->intercept))
+	const bool needs_32 = fmax(fabs(low), fabs(high)) > FLOAT_EXACT_MOST;
+	if ((volume->type == GZ_VOXEL_F32 && (!needs_32 || volume->intercept == 0)) ||
+	    volume->slope != 1 || volume->intercept != rint(volume->intercept))
 		return &floats;
 	for (size_t i = 0; i < sizeof integers / sizeof integers[0]; i++) {
 		const struct nrrd_form *form = &integers[i];
-		const bool is_signed = form->least < 0;
+		const bool is_signed = form->least<0, wide = form->size> 2;
 		if (form->size >= gz_voxel_size(volume->type) && low >= form->least &&
-		    high <= form->greatest && is_signed == (volume->intercept < 0))
-			return form;
+		    high <= form->greatest && is_signed == (volume->intercept < 0) &&
+		    wide == needs_32)
+			return are_stored_whole(volume) ? form : &floats;
 	}
 	return &floats;
 }
@@ -651,11 +668,14 @@ static void convert_to_form(const struct gz_volume *volume, const struct nrrd_fo
 			volume->slope * gz_voxel_stored(volume->type, volume->voxels, first + i) +
 			volume->intercept;
 		const float real = (float)value;
-		const uint16_t word = form == &floats ? 0 : (uint16_t)(int32_t)value;
+		const uint32_t word = form == &floats ? 0 : (uint32_t)(int64_t)value;
+		const uint16_t half = (uint16_t)word;
 		if (form == &floats)
 			memcpy(out + i * sizeof real, &real, sizeof real);
 		else if (form->size == sizeof word)
 			memcpy(out + i * sizeof word, &word, sizeof word);
+		else if (form->size == sizeof half)
+			memcpy(out + i * sizeof half, &half, sizeof half);
 		else
 			out[i] = (uint8_t)word;
 	}

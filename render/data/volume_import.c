@@ -10,6 +10,7 @@
 #include "render/data/float_scaling.h"
 #include "render/data/voxel_colour.h"
 #include "render/data/voxel_place.h"
+#include "render/data/whole_numbers.h"
 
 #define GZ_LOG_MODULE "volume"
 
@@ -67,6 +68,8 @@ struct import {
 	size_t voxel_size; /* in the file, bytes */
 	bool swap;
 	struct gz_voxel_place place;
+	bool whole; /* integers of 32 bits, which are words until all are read */
+	double whole_range[2], whole_shift; /* of their numbers, once they are stored */
 	int time_points, time_point;
 	uint64_t begun, all; /* voxels read of time points before, and to be read in all */
 };
@@ -259,8 +262,9 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 	volume->oriented = layout->oriented;
 	volume->labels = layout->labels;
 	const double slope = coloured ? 1 : layout->slope;
-	const double intercept =
-		coloured ? 0 : layout->intercept + layout->slope * import->conversion->offset;
+	/* The offset of words goes when they are stored. */
+	const double offset = import->whole ? 0 : import->conversion->offset;
+	const double intercept = coloured ? 0 : layout->intercept + layout->slope * offset;
 	volume->slope = slope;
 	volume->intercept = intercept;
 	const char *scratch = import->file->loading ? import->file->loading->scratch : NULL;
@@ -416,8 +420,14 @@ static enum gz_result read_voxels(struct gz_byte_stream *stream, const struct im
 }
 
 /* Widen a range by the finite ones among voxels. */
-static void widen_range(enum gz_voxel_type type, const void *voxels, size_t count, double range[2])
+static void widen_range(const struct import *import, const void *voxels, size_t count,
+			double range[2])
 {
+	const enum gz_voxel_type type = import->volume->type;
+	if (import->whole) {
+		gz_whole_numbers_widen(voxels, count, import->conversion->offset, range);
+		return;
+	}
 	for (size_t i = 0; i < count; i++) {
 		const double stored = gz_voxel_stored(type, voxels, i);
 		if (!isfinite(stored))
@@ -438,7 +448,7 @@ static enum gz_result scan_voxels(struct gz_byte_stream *stream, const struct im
 		const size_t next = left < CHUNK_NUMBERS ? (size_t)left : CHUNK_NUMBERS;
 		result = fill_slab(stream, import, index, next, &slab);
 		if (result == GZ_OK)
-			widen_range(import->volume->type, slab.voxels, next, range);
+			widen_range(import, slab.voxels, next, range);
 		index += next;
 	}
 	free_slab(&slab);
@@ -503,6 +513,14 @@ static void take_stored_range(const struct import *import)
 		return;
 	volume->time_points = import->time_points;
 	volume->time_point = import->time_point;
+	if (import->whole) {
+		const double *range = import->whole_range;
+		memcpy(volume->number_range, range, sizeof volume->number_range);
+		/* rounded as the voxels are */
+		volume->stored_min = (double)(float)(range[0] - import->whole_shift);
+		volume->stored_max = (double)(float)(range[1] - import->whole_shift);
+		return;
+	}
 	volume->stored_min = volume->number_range[0] =
 		fmin(volume->number_range[0], volume->stored_min);
 	volume->stored_max = volume->number_range[1] =
@@ -552,6 +570,33 @@ static enum gz_result check_data_end(struct gz_byte_stream *stream, const struct
 			"right?",
 			import->file->path);
 	return GZ_OK;
+}
+
+/* Store words as floats, now that their range is known. Of a series all time points are shifted
+ * alike. */
+static void store_whole_numbers(struct import *import)
+{
+	struct gz_volume *volume = import->volume;
+	const struct gz_loading *loading = import->file->loading;
+	const size_t count = gz_volume_voxel_count(volume);
+	struct gz_whole_storing storing = { .offset = import->conversion->offset };
+	double *range = import->whole_range;
+	if (!import->whole)
+		return;
+	range[0] = import->time_points > 1 ? volume->number_range[0] : INFINITY;
+	range[1] = import->time_points > 1 ? volume->number_range[1] : -INFINITY;
+	gz_whole_numbers_widen(volume->voxels, count, storing.offset, range);
+	/* A program that has a series decoded knows its range, but not the shift. */
+	if (import->time_points <= 1 || !loading || !loading->give_memory)
+		import->whole_shift = storing.shift = gz_whole_numbers_shift(range);
+	volume->intercept += volume->slope * storing.shift;
+	gz_whole_numbers_store(volume->voxels, count, &storing);
+	/* Scaled values are seldom whole numbers; of a series it is said once. */
+	if (storing.rounded > 0 && volume->slope == 1 && !(loading && loading->number_range))
+		gz_warn(import->file->log,
+			"%s: %zu of its numbers need more than the 24 bits of single precision; "
+			"they are rounded, by up to %g",
+			import->file->path, storing.rounded, storing.worst);
 }
 
 /* Whether the data value of a voxel is finite as float, in which it is drawn and written. */
@@ -655,7 +700,7 @@ static void warn_rounded_flat(const struct import *import)
 {
 	const struct gz_volume *volume = import->volume;
 	const enum gz_raw_type type = import->layout->type;
-	if (volume->type != GZ_VOXEL_F32 || type == GZ_RAW_FLOAT32 ||
+	if (volume->type != GZ_VOXEL_F32 || type == GZ_RAW_FLOAT32 || import->whole ||
 	    volume->stored_min < volume->stored_max || gz_volume_voxel_count(volume) == 1)
 		return;
 	gz_warn(import->file->log,
@@ -670,8 +715,10 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 {
 	struct gz_volume volume = { 0 };
 	struct axis_map map;
+	const struct gz_voxel_conversion *words = gz_whole_number_words(layout->type);
 	struct import import = { .layout = layout,
-				 .conversion = &gz_voxel_conversions[layout->type],
+				 .conversion = words ? words : &gz_voxel_conversions[layout->type],
+				 .whole = words != NULL,
 				 .file = file,
 				 .volume = &volume,
 				 .voxel_size = (size_t)channels_of(layout) *
@@ -698,8 +745,10 @@ enum gz_result gz_volume_import(struct gz_byte_stream *stream,
 		result = read_time_point(stream, &import, count);
 	if (result == GZ_OK)
 		result = check_data_end(stream, &import, count * import.voxel_size);
-	if (result == GZ_OK)
+	if (result == GZ_OK) {
+		store_whole_numbers(&import);
 		result = make_finite(&import);
+	}
 	if (result == GZ_OK) {
 		warn_rounded_flat(&import);
 		check_alpha(&import);

@@ -53,10 +53,11 @@ size_t gz_import_voxel_size(const struct gz_import_layout *layout);
 
 /**
  * Read the voxels of a file into a volume. Signed integers become unsigned ones with an offset in
- * the intercept; 32-bit integers and doubles become float. Of a series, the time point that the
- * file's loading names is kept, and unless the range of the series is known, all are read for it.
- * Of colours, which may have 8 or 16 bits, 8 are kept; the file's loading says what their values
- * are.
+ * the intercept; doubles become float, and 32-bit integers too: where floats do not hold them
+ * exactly, with an offset in the intercept, and where that does not help, rounded with a warning.
+ * Of a series, the time point that the file's loading names is kept, and unless the range of the
+ * series is known, all are read for it. Of colours, which may have 8 or 16 bits, 8 are kept; the
+ * file's loading says what their values are.
  *
  * @param stream  at the first voxel of the first time point
  * @param layout  all of it is checked here

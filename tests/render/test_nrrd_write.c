@@ -89,6 +89,10 @@ static void scaled_values_are_written_as_they_are_in_the_least_type_that_holds_t
 		{ GZ_VOXEL_U8, 0.5, 0, 0, 255, "float" },
 		{ GZ_VOXEL_U16, 1, 0.5, 0, 255, "float" },
 		{ GZ_VOXEL_F32, 2, -3, -50, 50, "float" },
+		{ GZ_VOXEL_F32, 1, 0x1p26, 0, 104000, "uint32" },
+		{ GZ_VOXEL_F32, 1, -0x1p31, 0, 104, "int32" },
+		{ GZ_VOXEL_U16, 1, 0x1p31, 0, 65535, "uint32" },
+		{ GZ_VOXEL_F32, 1, -3, 0, 104, "float" },
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		struct gz_volume volume = made(cases[k].type), read;

@@ -235,6 +235,101 @@ static void what_is_not_finite_becomes_the_least_with_one_warning(void **state)
 	gz_volume_free(&v);
 }
 
+/* Integers of 32 bits as a series of two time points, 4 numbers each; `swapped` is big-endian. */
+static const char *write_whole_numbers(const int64_t numbers[8], bool is_signed, bool swapped)
+{
+	uint8_t file[352 + 32];
+	struct nifti_sample sample = nifti_sample_make(2, 2, 1);
+	sample.dim[0] = 4;
+	sample.dim[4] = 2;
+	sample.datatype = is_signed ? 8 : 768;
+	sample.bitpix = 32;
+	sample.swapped = swapped;
+	nifti_sample_bytes(&sample, file);
+	for (int i = 0; i < 8; i++)
+		for (int k = 0; k < 4; k++)
+			file[352 + 4 * i + (swapped ? 3 - k : k)] =
+				(uint8_t)((uint64_t)numbers[i] >> 8 * k);
+	return files_write("whole.nii", file, sizeof file);
+}
+
+static void check_whole_numbers(const char *path, int point, const double *range,
+				const int64_t numbers[8], double worst)
+{
+	const struct gz_loading loading = { .time_point = point, .number_range = range };
+	struct captured_log log;
+	struct gz_volume v;
+	captured_log_init(&log, "*:warn");
+	assert_int_equal(gz_volume_load(path, NULL, &loading, &log.log, &v), GZ_OK);
+	for (int i = 0; i < 4; i++) {
+		const double wanted = (double)numbers[4 * point + i];
+		const double value =
+			v.slope * gz_voxel_stored(v.type, v.voxels, (size_t)i) + v.intercept;
+		if (fabs(value - wanted) > worst)
+			fail_msg("point %d, voxel %d: %.0f, not %.0f", point, i, value, wanted);
+		assert_true(value >= v.slope * v.stored_min + v.intercept);
+		assert_true(value <= v.slope * v.stored_max + v.intercept);
+	}
+	assert_int_equal(log.messages, worst > 0 && !range ? 1 : 0);
+	if (log.messages)
+		assert_non_null(strstr(log.last, "they are rounded, by up to"));
+	gz_volume_free(&v);
+}
+
+/* Beyond 2^24 a float skips integers. Time points share the offset, whether the range is known or
+ * not. */
+static void integers_of_32_bits_are_exact_or_told_to_be_rounded(void **state)
+{
+	(void)state;
+	enum { P26 = 1 << 26, P30 = 1 << 30 };
+	static const struct {
+		int64_t numbers[8];
+		bool is_unsigned;
+		double worst; /* 0: exact */
+	} rows[] = {
+		{ { P26, P26 + 1, P26 + 2, P26 + 3, P26 + 999, P26 + 998, P26, P26 + 1 },
+		  false,
+		  0 },
+		{ { P30 + 5, P30, P30 + 1, P30 + 189, P30 + 188, P30, P30 + 7, P30 + 3 },
+		  false,
+		  0 },
+		{ { -P30 - 5, -P30 - 1, -P30, -P30, -P30 - 3, -P30 - 65535, -P30, -P30 },
+		  false,
+		  0 },
+		/* more than 16 bits, far less than 1/1024 of them */
+		{ { P26, P26 + 1, P26 + 70001, P26 + 3, P26 + 5, P26 + 4999999, P26, P26 },
+		  false,
+		  0 },
+		{ { INT32_MIN, INT32_MIN + 1, INT32_MIN, INT32_MIN, INT32_MIN + (1 << 24),
+		    INT32_MIN + 77777, INT32_MIN, INT32_MIN },
+		  false,
+		  0 },
+		{ { UINT32_MAX, UINT32_MAX - 1, UINT32_MAX - 2, UINT32_MAX - 3, UINT32_MAX - 4,
+		    UINT32_MAX - 70001, UINT32_MAX, UINT32_MAX },
+		  true,
+		  0 },
+		{ { 7, 7, 7, 7, 7, 7, 7, 7 }, false, 0 },
+		{ { P26 + 1, P26 + 1, P26 + 1, P26 + 1, P26 + 1, P26 + 1, P26 + 1, P26 + 1 },
+		  false,
+		  0 },
+		{ { 0, 1, 2, P26 + 1, 0, 1, P26 + 3, P26 + 7 }, false, 4 },
+		{ { 0, UINT32_MAX, 1, 2, 0, 1, 2, UINT32_MAX - 1 }, true, 128 },
+	};
+	for (size_t i = 0; i < 2 * sizeof rows / sizeof rows[0]; i++) {
+		const int64_t *numbers = rows[i / 2].numbers;
+		struct gz_volume first;
+		const char *path =
+			write_whole_numbers(numbers, !rows[i / 2].is_unsigned, i % 2 == 1);
+		assert_int_equal(gz_volume_load(path, NULL, NULL, NULL, &first), GZ_OK);
+		for (int point = 0; point < 2; point++) {
+			check_whole_numbers(path, point, NULL, numbers, rows[i / 2].worst);
+			check_whole_numbers(path, point, first.number_range, numbers,
+					    rows[i / 2].worst);
+		}
+		gz_volume_free(&first);
+	}
+}
+
 static void check_scaled(enum gz_voxel_type type, const struct gz_volume *v,
 			 const double expected[4])
 {
@@ -728,6 +823,7 @@ TEST_SUITE(volume_load)
 		cmocka_unit_test(gzip_members_and_zstd_frames_are_joined),
 		cmocka_unit_test(large_compressed_volume_is_read_whole),
 		cmocka_unit_test(every_type_keeps_its_values_in_both_byte_orders),
+		cmocka_unit_test(integers_of_32_bits_are_exact_or_told_to_be_rounded),
 		cmocka_unit_test(what_is_not_finite_becomes_the_least_with_one_warning),
 		cmocka_unit_test(values_that_scaling_overflows_become_the_least_with_one_warning),
 		cmocka_unit_test(trailing_data_are_left_out_with_a_warning),
