@@ -210,6 +210,13 @@ class SeveralSeries(unittest.TestCase):
         self.assertNotIn("time points", done.stderr)
         self.assertTrue((read_nrrd(self.path("out.nrrd"))[0] == wanted).all())
 
+    def test_links_to_folders_are_followed_once(self):
+        Series(1).write(self.path("folder", "real", "deep"))
+        os.symlink("real", self.path("folder", "link"))
+        os.symlink("..", self.path("folder", "real", "back"))
+        lines, said = self.list(self.path("folder"))
+        self.assertEqual((len(lines), lines[0].split()[2], said), (1, "4", ""))
+
     def test_meta_header_without_a_preamble_is_recognised(self):
         path = Series(1, slices=1).write(self.path("one"))[0]
         with open(path, "rb") as file:

@@ -10,6 +10,7 @@
 #include <set>
 #include <sys/stat.h>
 #include <tuple>
+#include <utility>
 
 #include "render/data/dicom_name.h"
 #include "render/decode/dicom/dicom_directory.hpp"
@@ -61,6 +62,7 @@ class collector
 
 	size_t seen = 0; /* files that were looked at */
 	std::map<head_fault, left_out> faulty;
+	std::set<std::pair<dev_t, ino_t>> entered; /* folders, to which links may lead back */
 };
 
 gz_result collector::collect(const std::string &choice)
@@ -141,9 +143,12 @@ gz_result collector::collect_where_images_are(const std::string &folder)
 	return r == GZ_OK && out.heads.empty() && faulty.empty() ? collect_tree(folder, 0) : r;
 }
 
-/* All images in a folder and its sub-folders. */
+/* All images in a folder and its sub-folders, each folder once. */
 gz_result collector::collect_tree(const std::string &folder, int depth)
 {
+	struct stat here;
+	if (stat(folder.c_str(), &here) != 0 || !entered.emplace(here.st_dev, here.st_ino).second)
+		return GZ_OK;
 	gz_result r = collect_folder(folder);
 	std::unique_ptr<DIR, int (*)(DIR *)> entries(opendir(folder.c_str()), closedir);
 	if (depth >= depth_max || !entries)
@@ -151,7 +156,7 @@ gz_result collector::collect_tree(const std::string &folder, int depth)
 	for (dirent *entry; r == GZ_OK && seen < files_max && (entry = readdir(entries.get()));) {
 		const std::string name = folder + "/" + entry->d_name;
 		struct stat status;
-		if (entry->d_name[0] != '.' && lstat(name.c_str(), &status) == 0 &&
+		if (entry->d_name[0] != '.' && stat(name.c_str(), &status) == 0 &&
 		    S_ISDIR(status.st_mode))
 			r = collect_tree(name, depth + 1);
 	}
