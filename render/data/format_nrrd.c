@@ -475,8 +475,9 @@ static enum gz_result take_nrrd_values(struct nrrd *nrrd, int first)
 /* What turns lengths in three units into mm. A unit is told once. */
 static void take_lengths(const struct nrrd *nrrd, const char (*units)[UNIT_SIZE], double mm[3])
 {
-	for (int i = 0; i < 3; i++) {
-		const bool told = i > 0 && strcmp(units[i], units[i - 1]) == 0;
+	mm[0] = gz_length_unit_take(units[0], nrrd->head.path, nrrd->head.log);
+	for (int i = 1; i < 3; i++) {
+		const bool told = strcmp(units[i], units[i - 1]) == 0;
 		mm[i] = told ? mm[i - 1]
 			     : gz_length_unit_take(units[i], nrrd->head.path, nrrd->head.log);
 	}

@@ -213,12 +213,12 @@ static enum gz_result take_minc_axes(struct gz_minc_image *image)
 static void lay_out_axes(struct gz_minc_image *image)
 {
 	struct gz_import_layout *layout = &image->layout;
-	const char *unit = NULL;
-	double mm = 1;
+	const char *unit = image->axes[image->space[2]].unit;
+	double mm = gz_length_unit_take(unit, image->file->path, image->file->log);
 	for (int i = 0; i < 3; i++) {
 		const struct minc_axis *axis = &image->axes[image->space[2 - i]];
 		layout->dims[i] = (int)axis->size;
-		const bool told = i > 0 && strcmp(axis->unit, unit) == 0;
+		const bool told = strcmp(axis->unit, unit) == 0;
 		unit = axis->unit;
 		mm = told ? mm : gz_length_unit_take(unit, image->file->path, image->file->log);
 		layout->spacing[i] = fabs(axis->step) * mm;
