@@ -1,5 +1,5 @@
 /*
- * Writes the features of all labelled recordings, for gaze_forest_fit.c.
+ * Writes the features of all labelled recordings and of simulated viewers, for gaze_forest_fit.c.
  *
  * usage: gaze_features FOLDER    (GAZECAST_DATA names the folder of recordings)
  *
@@ -9,17 +9,20 @@
  * FOLDER/tracks.tsv: a line a track: number, data set, stimulus or film, name, period in us
  * FOLDER/names.txt: the names of the features
  *
- * Each recording is also written at lower rates: every second, fourth and eighth sample.
+ * Each recording is also written at lower rates: every second, fourth and eighth sample. The
+ * simulated viewers stand for trackers that are faster or noisier.
  */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
 #include "filter/classifier/movement.h"
 #include "filter/pipeline.h"
+#include "sim/tracker.h"
 
 enum { SKIPPED = 77, LABEL_NUMBERS = 5 };
 
@@ -133,6 +136,78 @@ static bool write_gazecom(struct output *out, const char *data)
 	return true;
 }
 
+/* The label that a person would give to what a simulated eye does. */
+static int human_label(enum gz_event event)
+{
+	switch (event) {
+	case GZ_EVENT_SACCADE:
+		return GZ_HUMAN_SACCADE;
+	case GZ_EVENT_PURSUIT:
+		return GZ_HUMAN_PURSUIT;
+	case GZ_EVENT_FIXATION:
+		return GZ_HUMAN_FIXATION;
+	default:
+		return GZ_HUMAN_BLINK;
+	}
+}
+
+/* Simulated viewers and trackers. Without microsaccades: people call those that they see saccades,
+ * and the simulator calls all of them fixation. */
+static const struct simulation {
+	double noise_deg, pursuits_per_min, pursuit_deg_s, blinks_per_min;
+} SIMULATIONS[] = {
+	{ 0.02, 0, 10, 20 }, { 0.05, 20, 5, 20 }, { 0.10, 20, 10, 40 }, { 0.25, 10, 20, 20 }
+};
+enum { SIMULATIONS_COUNT = sizeof SIMULATIONS / sizeof SIMULATIONS[0] };
+static const double SIMULATED_HZ[] = { 60, 125, 250, 500, 1000, 2000 };
+enum { SIMULATED_RATES = sizeof SIMULATED_HZ / sizeof SIMULATED_HZ[0] };
+static const double SIMULATED_S = 20;
+
+static bool simulate(const struct simulation *simulation, double rate_hz, int seed,
+		     struct gz_labelled_recording *out)
+{
+	struct gz_sim_params params = gz_sim_default_params();
+	struct gz_sim_tracker *tracker = NULL;
+	params.seed = seed;
+	params.rate_hz = rate_hz;
+	params.noise_deg = simulation->noise_deg;
+	params.viewer.pursuits_per_min = simulation->pursuits_per_min;
+	params.viewer.pursuit_deg_s = simulation->pursuit_deg_s;
+	params.viewer.blinks_per_min = simulation->blinks_per_min;
+	params.viewer.microsaccades_per_s = 0;
+	bool good = gz_sim_tracker_create(&params, GZ_NS_PER_S, NULL, &tracker) == GZ_OK;
+	*out = (struct gz_labelled_recording) { .count = 0 };
+	if (good)
+		out->display = gz_sim_tracker_display(tracker);
+	for (int i = 0; good && i < (int)(SIMULATED_S * rate_hz); i++) {
+		struct gz_sim_sample sample;
+		gz_sim_tracker_next(tracker, &sample);
+		good = gz_labelled_recording_add(out, &sample.sample,
+						 human_label(sample.truth.event));
+	}
+	gz_sim_tracker_destroy(&tracker);
+	return good;
+}
+
+static bool write_simulated(struct output *out)
+{
+	for (int i = 0; i < SIMULATIONS_COUNT * SIMULATED_RATES; i++) {
+		const double rate_hz = SIMULATED_HZ[i / SIMULATIONS_COUNT];
+		struct gz_labelled_recording recording;
+		const bool good =
+			simulate(&SIMULATIONS[i % SIMULATIONS_COUNT], rate_hz, i + 1, &recording);
+		const struct track track = { &recording, NULL, 1, 0 };
+		fprintf(out->tracks, "%d\tsimulated\t%.0f\t-\t%.0f\n", out->track_count, rate_hz,
+			1e6 / rate_hz);
+		if (good)
+			write_track(out, &track);
+		gz_labelled_recording_free(&recording);
+		if (!good)
+			return false;
+	}
+	return true;
+}
+
 static FILE *open_in(const char *folder, const char *name)
 {
 	char path[1024];
@@ -179,6 +254,7 @@ int main(int argc, char **argv)
 		fprintf(stderr, "%s: a labelled recording is missing or damaged\n", data);
 		good = false;
 	}
+	good = good && write_simulated(&out);
 	good = close_written(out.features) && good;
 	good = close_written(out.labels) && good;
 	good = close_written(out.tracks) && good;

@@ -2,10 +2,10 @@
  * Trains the forests that label eye movements (filter/classifier), and measures them on recordings
  * that were kept out.
  *
- * usage: gaze_forest_fit FOLDER [KEY=NUMBER...]
+ * usage: gaze_forest_fit FOLDER [KEY=NUMBER...] [without=NAME,NAME...]
  *
  * FOLDER holds what gaze_features wrote. Writes FOLDER/TAG.forest, and for each row that a fold
- * kept out its scores into FOLDER/TAG.scores.
+ * kept out its scores into FOLDER/TAG.scores. Features whose names begin with a NAME are not used.
  *
  * Gradient boosting with trees whose leaves have one value for each class: Friedman, "Greedy
  * function approximation: a gradient boosting machine", Annals of Statistics 29, 2001, with
@@ -39,6 +39,7 @@ struct settings {
 	double least;         /* least weight of a leaf */
 	double andersson;     /* weight of a sample of that set, against one of GazeCom */
 	double slow;          /* weight of recordings at lower rates */
+	double simulated;     /* weight of 4 ms of a simulated viewer */
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
 	double folds;         /* 0: train on all; 1: by film and person; 2: by data set */
 	double saccade, pursuit, noise; /* added to the scores of these classes */
@@ -54,10 +55,11 @@ static const struct {
 	{                                                      \
 #name, offsetof(struct settings, name), preset \
 	}
-	KEY(certain, 0),   KEY(trees, 100), KEY(leaves, 32), KEY(depth, 8),     KEY(rate, 0.1),
-	KEY(lambda, 1),    KEY(bins, 64),   KEY(rows, 0.25), KEY(columns, 0.4), KEY(least, 20),
-	KEY(andersson, 5), KEY(slow, 0),    KEY(ringing, 1), KEY(folds, 1),     KEY(seed, 1),
-	KEY(saccade, 0),   KEY(pursuit, 0), KEY(noise, 0),   KEY(tag, 0),       KEY(only_fold, -1),
+	KEY(certain, 0),    KEY(trees, 100), KEY(leaves, 32),   KEY(depth, 8),     KEY(rate, 0.1),
+	KEY(lambda, 1),     KEY(bins, 64),   KEY(rows, 0.25),   KEY(columns, 0.4), KEY(least, 20),
+	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0), KEY(ringing, 1),   KEY(folds, 1),
+	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),   KEY(noise, 0),     KEY(tag, 0),
+	KEY(only_fold, -1),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -67,7 +69,7 @@ static double *setting_at(struct settings *settings, int key)
 }
 
 struct track {
-	bool andersson;
+	bool andersson, simulated;
 	char kind[64], name[64];
 	double period_ms;
 	int fold;
@@ -120,7 +122,9 @@ struct training {
 	int tree_count;
 	int *order, *spare;
 	bool column[FEATURES];
-	sums *pool; /* histograms of the leaves of the present tree */
+	bool unused[FEATURES];
+	const char *without; /* the argument that says so; NULL: none */
+	sums *pool;          /* histograms of the leaves of the present tree */
 };
 
 /* ---- reading ---- */
@@ -157,6 +161,7 @@ static void read_tracks(struct training *t, const char *folder)
 			   track->name, &period_us) != 5)
 			exit(1);
 		track->andersson = strcmp(set, "andersson") == 0;
+		track->simulated = strcmp(set, "simulated") == 0;
 		track->period_ms = period_us * 1e-3;
 	}
 	free(text);
@@ -193,17 +198,19 @@ static int8_t class_at(const int16_t *numbers, size_t index, size_t count, int p
 	return i > index && (found == 1 || found == 3) ? UNUSED : found;
 }
 
-/* Native rates of the recordings. */
+/* Native rates of the recordings; simulated viewers are not among those that are measured. */
 static double native_ms(const struct track *track)
 {
-	return track->andersson ? 2 : 4;
+	return track->simulated ? 0 : track->andersson ? 2 : 4;
 }
 
 static float weight_of(const struct training *t, const struct track *track)
 {
 	const struct settings *s = &t->settings;
-	double weight = track->andersson ? s->andersson : 1;
-	if (track->period_ms > native_ms(track))
+	double weight = track->simulated   ? s->simulated * track->period_ms / 4
+			: track->andersson ? s->andersson
+					   : 1;
+	if (!track->simulated && track->period_ms > native_ms(track))
 		weight *= s->slow * track->period_ms / native_ms(track);
 	if (s->certain > 0 && track->period_ms > 8)
 		weight = 0;
@@ -429,7 +436,7 @@ static void grow_tree(struct training *t, struct tree *tree, int rows)
 {
 	int leaves = 1, pool_used = 1;
 	for (int f = 0; f < FEATURES; f++)
-		t->column[f] = gz_random_uniform(&t->random) < t->settings.columns;
+		t->column[f] = gz_random_uniform(&t->random) < t->settings.columns && !t->unused[f];
 	tree->node_count = 1;
 	tree->node[0] =
 		(struct node) { .feature = -1, .end = rows, .histogram = histogram_of(t, 0) };
@@ -668,13 +675,18 @@ static void write_provenance(const struct training *t, FILE *file)
 	for (int k = 0; k < KEY_COUNT; k++)
 		fprintf(file, "%s%s=%g", k % 6 == 0 ? "\n * " : " ", KEYS[k].key,
 			*setting_at(&settings, k));
+	if (t->without)
+		fprintf(file, "\n * %s", t->without);
 	fprintf(file, "\n * from %d samples of these recordings:\n", t->row_count);
 	const char *last = "";
 	for (int i = 0; i < t->track_count; i++) {
 		const struct track *track = &t->track[i];
 		const char *name = track->andersson ? track->name : track->kind;
 		if (strcmp(name, last) != 0)
-			fprintf(file, " *   %s %s\n", track->andersson ? "andersson" : "gazecom",
+			fprintf(file, " *   %s %s\n",
+				track->simulated   ? "simulated"
+				: track->andersson ? "andersson"
+						   : "gazecom",
 				name);
 		last = name;
 	}
@@ -779,12 +791,12 @@ static int set_folds(struct training *t)
 	int films = 0;
 	if (t->settings.folds == 2) {
 		for (int i = 0; i < t->track_count; i++)
-			t->track[i].fold = t->track[i].andersson;
+			t->track[i].fold = t->track[i].simulated ? UNUSED : t->track[i].andersson;
 		return 2;
 	}
 	for (int i = 0; i < t->track_count; i++) {
 		struct track *track = &t->track[i];
-		if (track->andersson)
+		if (track->andersson || track->simulated)
 			continue;
 		int f = 0;
 		while (f < films && strcmp(names[f], track->kind) != 0)
@@ -799,6 +811,8 @@ static int set_folds(struct training *t)
 	static char person[FOLDS_MAX][5];
 	for (int i = 0; i < t->track_count; i++) {
 		struct track *track = &t->track[i];
+		if (track->simulated)
+			track->fold = UNUSED; /* always learned from */
 		if (!track->andersson)
 			continue;
 		const char *name = strchr(track->name, '_') + 1;
@@ -836,6 +850,22 @@ static void print_worth(const struct training *t)
 
 /* ---- the command ---- */
 
+static const char WITHOUT[] = "without=";
+
+/* Do not use the features whose names begin with one of these. */
+static void ban_features(struct training *t, const char *names)
+{
+	for (; *names; names += strcspn(names, ","), names += *names == ',')
+		for (int f = 0; f < FEATURES; f++)
+			if (strncmp(gz_movement_feature_names[f], names, strcspn(names, ",")) == 0)
+				t->unused[f] = true;
+}
+
+static bool is_ban(const char *argument)
+{
+	return strncmp(argument, WITHOUT, strlen(WITHOUT)) == 0;
+}
+
 /* @return whether all arguments are settings */
 static bool read_settings(int argc, char **argv, struct settings *out)
 {
@@ -843,7 +873,7 @@ static bool read_settings(int argc, char **argv, struct settings *out)
 		*setting_at(out, k) = KEYS[k].preset;
 	for (int i = 2; i < argc; i++) {
 		const size_t length = strcspn(argv[i], "=");
-		bool found = false;
+		bool found = is_ban(argv[i]);
 		for (int k = 0; k < KEY_COUNT && argv[i][length]; k++) {
 			if (strncmp(KEYS[k].key, argv[i], length) != 0 || KEYS[k].key[length])
 				continue;
@@ -919,9 +949,15 @@ int main(int argc, char **argv)
 {
 	static struct training t;
 	if (argc < 2 || !read_settings(argc, argv, &t.settings)) {
-		fprintf(stderr, "usage: gaze_forest_fit FOLDER [KEY=NUMBER...]\n");
+		fprintf(stderr,
+			"usage: gaze_forest_fit FOLDER [KEY=NUMBER...] [without=NAME,NAME...]\n");
 		return 2;
 	}
+	for (int i = 2; i < argc; i++)
+		if (is_ban(argv[i])) {
+			ban_features(&t, argv[i] + strlen(WITHOUT));
+			t.without = argv[i];
+		}
 	t.random = gz_random_seeded((uint64_t)t.settings.seed, 0);
 	read_tracks(&t, argv[1]);
 	read_rows(&t, argv[1]);
