@@ -152,6 +152,8 @@ struct gz_classify_state {
 	double period_ns;             /**< time between samples, measured; 0 before the second */
 	int64_t valid_ns;             /**< time of the newest good sample */
 	bool any_valid;               /**< whether there was one */
+	int64_t measured_ns;          /**< time of the newest measured sample, good or not */
+	bool lost;                    /**< whether there was a loss after the newest good sample */
 	enum gz_event now;            /**< immediate label of the newest sample */
 	struct gz_median noise_deg_s; /**< median of the speed outside saccades */
 	struct gz_classify_quick quick;
@@ -189,7 +191,7 @@ struct gz_classify_final {
 struct gz_classify_output {
 	enum gz_event event;   /**< immediate label of this sample */
 	double velocity_deg_s; /**< speed of the eye; finite, 0 or more */
-	bool resumed;          /**< first good sample after a blink or loss */
+	bool resumed;          /**< first good sample after a time without a measurement */
 	int64_t last_valid_ns; /**< time of the good sample before that; during a blink, of the last
 				  good one */
 	size_t final_count; /**< number of entries in final[]: this and earlier samples, in order,

@@ -149,14 +149,18 @@ static void send_blink(struct gz_pipeline_output *out, bool onset, int64_t time_
 	};
 }
 
+/* A blink is announced once nothing is measured; it has begun before that if a lid moved the point.
+ * Movement of that kind alone is not announced. */
 static void update_blink_message(struct gz_messages_state *state,
 				 const struct gz_classify_params *params,
-				 const struct gz_classify_output *label, int64_t time_ns,
+				 const struct gz_classify_output *label,
+				 const struct gz_classify_input *input,
 				 struct gz_pipeline_output *out)
 {
+	int64_t time_ns = input->time_ns;
 	bool short_enough = gz_ns_to_ms(time_ns - label->last_valid_ns) <= params->blink_max_ms;
-	if (!state->in_blink &&
-	    (label->event == GZ_EVENT_BLINK || (label->resumed && short_enough))) {
+	if (!state->in_blink && ((label->event == GZ_EVENT_BLINK && !input->valid) ||
+				 (label->resumed && short_enough))) {
 		send_blink(out, true, label->last_valid_ns, 1);
 		state->in_blink = true;
 	}
@@ -167,17 +171,18 @@ static void update_blink_message(struct gz_messages_state *state,
 }
 
 static void make_messages(struct gz_pipeline *pipeline, const struct gz_classify_output *label,
-			  int64_t time_ns, struct gz_pipeline_output *out)
+			  const struct gz_classify_input *input, struct gz_pipeline_output *out)
 {
 	struct gz_messages_state *state = &pipeline->messages;
 	const struct gz_classify_params *params = &pipeline->params.classify;
 	const struct gz_display *display = &pipeline->display;
 	for (size_t i = 0; i < label->final_count; i++) {
 		const struct gz_classify_final *final = &label->final[i];
-		update_fixation_message(&state->fixation, params, display, final, time_ns, out);
+		update_fixation_message(&state->fixation, params, display, final, input->time_ns,
+					out);
 		update_saccade_message(&state->saccade, display, final, out);
 	}
-	update_blink_message(state, params, label, time_ns, out);
+	update_blink_message(state, params, label, input, out);
 }
 
 static struct gz_gaze_eye eye_message(const struct gz_eye_sample *eye, bool good)
@@ -277,7 +282,7 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 		reduce_sample(pipeline, &corrected, &valid, &out->gaze.raw);
 	struct gz_classify_output label =
 		gz_classify_step(&pipeline->classify, &params->classify, display, &input);
-	make_messages(pipeline, &label, input.time_ns, out);
+	make_messages(pipeline, &label, &input, out);
 	set_gaze_label(&label, &out->gaze);
 	measure_fixation_noise(pipeline, label.event, input.valid, out->gaze.raw);
 	bool hidden = label.event == GZ_EVENT_BLINK || label.event == GZ_EVENT_LOST;

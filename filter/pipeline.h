@@ -56,7 +56,8 @@ enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params,
 
 /**
  * The settings that a gaze log was recorded with: those in its header, and the defaults for the
- * rest. A setting that this version does not have is ignored, with a warning.
+ * rest. If it has settings but not the source of labels, it is older than the choice, and labels
+ * come from the rules. A setting that this version does not have is ignored, with a warning.
  *
  * @param path  of the log, for messages
  * @param[out] out_params  passes gz_pipeline_check_params(); written on success only

@@ -112,7 +112,7 @@ const struct gz_option gz_pipeline_options[] = {
 	{ "pipeline.blink_max_ms", GZ_OPTION_DOUBLE, CLASSIFY(blink_max_ms), 10, 10000,
 	  .preset = "500", .help = "longer losses are not blinks but lost gaze, ms" },
 	{ "pipeline.labels", GZ_OPTION_CHOICE, CLASSIFY(source), .choices = source_names,
-	  .preset = "rules",
+	  .preset = "learned",
 	  .help = "what labels come from: rules, or forests learned from labelled recordings" },
 	{ "pipeline.smooth_window_ms", GZ_OPTION_DOUBLE, SMOOTH(window_ms), 0, 1000,
 	  .preset = "100", .help = "longest window of the mean in a fixation, ms" },
@@ -197,6 +197,8 @@ enum gz_result gz_pipeline_recorded_params(const struct gz_gaze_log_header *head
 					   struct gz_pipeline_params *out_params)
 {
 	struct gz_pipeline_params params = gz_pipeline_default_params();
+	if (header->setting_count > 0) /* recorded before there was a choice, unless it says so */
+		params.classify.source = GZ_CLASSIFY_RULES;
 	for (size_t i = 0; i < header->setting_count; i++) {
 		const enum gz_result result =
 			parse_recorded_setting(&header->settings[i], path, log, &params);
