@@ -47,25 +47,24 @@ _Static_assert(sizeof GZ_TOPIC_SURFACES - 1 + GZ_NAME_SIZE <= GZ_TOPIC_SIZE,
 void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sample *sample,
 			   int64_t publish_ns, struct gz_outgoing_batch *out)
 {
-	struct gz_pipeline_output step;
-	gz_pipeline_step(&maker->pipeline, sample, &step);
-	step.gaze.publish_ns = publish_ns;
+	struct gz_pipeline_output *step = &out->step;
+	gz_pipeline_step(&maker->pipeline, sample, step);
+	step->gaze.publish_ns = publish_ns;
 	out->count = 0;
-	out->rejection = step.rejection;
-	gz_wire_encode_gaze(&step.gaze, &maker->pipeline.display,
-			    append_message(out, gz_wire_gaze_topic(&step.gaze), ""));
-	for (size_t i = 0; i < step.fixation_count; i++)
-		gz_wire_encode_fixation(&step.fixations[i],
+	gz_wire_encode_gaze(&step->gaze, &maker->pipeline.display,
+			    append_message(out, gz_wire_gaze_topic(&step->gaze), ""));
+	for (size_t i = 0; i < step->fixation_count; i++)
+		gz_wire_encode_fixation(&step->fixations[i],
 					append_message(out, GZ_TOPIC_FIXATIONS, ""));
 	/* After the messages to which they refer. */
 	for (size_t i = 0; i < maker->surface_count; i++)
-		gz_wire_encode_surface(&step.gaze, step.fixations, step.fixation_count,
+		gz_wire_encode_surface(&step->gaze, step->fixations, step->fixation_count,
 				       maker->surface[i],
 				       append_message(out, GZ_TOPIC_SURFACES, maker->surface[i]));
-	for (size_t i = 0; i < step.blink_count; i++)
-		gz_wire_encode_blink(&step.blinks[i], append_message(out, GZ_TOPIC_BLINKS, ""));
-	for (size_t i = 0; i < step.saccade_count; i++)
-		gz_wire_encode_saccade(&step.saccades[i],
+	for (size_t i = 0; i < step->blink_count; i++)
+		gz_wire_encode_blink(&step->blinks[i], append_message(out, GZ_TOPIC_BLINKS, ""));
+	for (size_t i = 0; i < step->saccade_count; i++)
+		gz_wire_encode_saccade(&step->saccades[i],
 				       append_message(out, GZ_TOPIC_SACCADES, ""));
 }
 

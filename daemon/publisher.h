@@ -43,7 +43,7 @@ struct gz_outgoing {
 /** The messages of one sample, in the order in which they are sent; the first is the gaze. */
 struct gz_outgoing_batch {
 	size_t count;
-	enum gz_rejection rejection; /**< why the sample was rejected, or NONE */
+	struct gz_pipeline_output step; /**< what the messages were made of */
 	struct gz_outgoing item[GZ_MESSAGES_MAX];
 };
 

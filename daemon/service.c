@@ -231,7 +231,7 @@ static void serve_sample(struct gz_service *service, const struct gz_sample *sam
 {
 	gz_message_maker_step(&service->maker, sample, gz_clock_now_ns(), &service->batch);
 	gz_publisher_send(service->parts.publisher, &service->batch);
-	service->rejected[service->batch.rejection]++;
+	service->rejected[service->batch.step.rejection]++;
 	record_sample(service, sample);
 	gz_rate_meter_step(&service->rate, sample->host_ns);
 	service->host_ns = sample->host_ns;

@@ -49,7 +49,7 @@ static void make(struct gz_message_maker *maker)
 static bool same_but_publish_ns(const struct gz_outgoing_batch *a,
 				const struct gz_outgoing_batch *b)
 {
-	if (a->count != b->count || a->rejection != b->rejection)
+	if (a->count != b->count || a->step.rejection != b->step.rejection)
 		return false;
 	for (size_t i = 0; i < a->count; i++) {
 		size_t size = a->item[i].body.size - (i == 0 ? GZ_WIRE_PUBLISH_SIZE : 0);
