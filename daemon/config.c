@@ -72,6 +72,13 @@ static const struct gz_option options[] = {
 	{ "stream.surfaces", GZ_OPTION_STRING, AT(surfaces), 0, 256, 0, NULL,
 	  "screen psychopy_iohub_surface",
 	  "surface names under which the screen is published; at most 8" },
+	{ "lsl.outlet", GZ_OPTION_BOOL, AT(lsl), 0, 0, 0, NULL, "false",
+	  "offer the gaze and its events as streams of the Lab Streaming Layer, which every "
+	  "machine on the network can read" },
+	{ "lsl.library", GZ_OPTION_STRING, AT(lsl_library), 0, GZ_PATH_SIZE, 0, NULL, "liblsl.so",
+	  "liblsl: a file, or a name that the dynamic linker looks up" },
+	{ "lsl.name", GZ_OPTION_STRING, AT(lsl_name), 0, GZ_NAME_SIZE, 0, NULL, "Gazecast",
+	  "name of the stream of gaze; that of events is this name and \"events\"" },
 	{ "recording.directory", GZ_OPTION_STRING, AT(recording_directory), 0, GZ_PATH_SIZE, 0,
 	  NULL, "", "directory for recordings; empty: gazecast in the user's data directory" },
 	{ "display.px", GZ_OPTION_SIZE, AT(display_px), 0, 32768, 0, NULL, "0x0",
@@ -420,6 +427,17 @@ static enum gz_result check_pupil(const struct check *check)
 		address);
 }
 
+static enum gz_result check_lsl(const struct check *check)
+{
+	if (!check->config->lsl)
+		return GZ_OK;
+	if (!check->config->lsl_name[0])
+		return refuse_setting(check, "lsl.name", "empty; give the stream of gaze a name");
+	if (!check->config->lsl_library[0])
+		return refuse_setting(check, "lsl.library", "empty; name liblsl");
+	return GZ_OK;
+}
+
 /* Check all settings, and fill those that follow from others. */
 static enum gz_result check_config(struct gz_config *config, const struct gz_log *log)
 {
@@ -431,6 +449,8 @@ static enum gz_result check_config(struct gz_config *config, const struct gz_log
 		result = check_pupil(&check);
 	if (result == GZ_OK)
 		result = check_display_sizes(&check);
+	if (result == GZ_OK)
+		result = check_lsl(&check);
 	if (result == GZ_OK)
 		result = check_pipeline(&check);
 	return result == GZ_OK ? split_surfaces(&check) : result;

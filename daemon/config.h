@@ -63,6 +63,9 @@ struct gz_config {
 	char key_directory[GZ_PATH_SIZE]; /**< empty: the user's, else the system's configuration */
 	char user[GZ_NAME_SIZE]; /**< user to become when root starts the daemon; empty: none */
 	char surfaces[256];      /**< names, separated by blanks */
+	bool lsl;                /**< offer streams of the Lab Streaming Layer */
+	char lsl_library[GZ_PATH_SIZE];         /**< file, or a name for the dynamic linker */
+	char lsl_name[GZ_NAME_SIZE];            /**< of the stream of gaze */
 	char recording_directory[GZ_PATH_SIZE]; /**< empty: the user's data directory */
 	int display_px[2];                      /**< 0 0: as the tracker reports */
 	double display_mm[2];                   /**< 0 0: as the tracker reports */

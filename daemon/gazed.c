@@ -10,6 +10,7 @@
 #include <zmq.h>
 
 #include "daemon/config.h"
+#include "daemon/lsl/lsl_outlet.h"
 #include "daemon/process.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
@@ -32,6 +33,7 @@ struct daemon {
 	struct gz_recorder *recorder;
 	struct gz_inlet_counts inlet_counts;
 	struct gz_pointer_feed *pointer;
+	struct gz_lsl_outlet *lsl; /* NULL: switched off */
 	struct gz_requests *requests;
 	struct gz_service *service;
 };
@@ -136,6 +138,9 @@ static enum gz_result start_daemon(struct daemon *daemon)
 		result = take_runtime_directory(daemon);
 	if (result == GZ_OK)
 		result = open_daemon_sockets(daemon);
+	if (result == GZ_OK && daemon->config.lsl)
+		result = gz_lsl_outlet_create(daemon->config.lsl_library, daemon->config.lsl_name,
+					      &daemon->log, &daemon->lsl);
 	if (result != GZ_OK)
 		return result;
 	const struct gz_service_parts parts = {
@@ -145,6 +150,7 @@ static enum gz_result start_daemon(struct daemon *daemon)
 		.recorder = daemon->recorder,
 		.inlet_counts = &daemon->inlet_counts,
 		.pointer = daemon->pointer,
+		.lsl = daemon->lsl,
 		.guard = daemon->network.guard,
 		.notify = &daemon->notify,
 		.log = &daemon->log,
@@ -174,6 +180,8 @@ static void stop_daemon(struct daemon *daemon)
 {
 	gz_service_destroy(&daemon->service);
 	gz_recorder_destroy(&daemon->recorder);
+	/* After the recording is complete, because this calls a library of others. */
+	gz_lsl_outlet_destroy(&daemon->lsl);
 	gz_requests_destroy(&daemon->requests);
 	gz_pointer_feed_destroy(&daemon->pointer);
 	gz_publisher_destroy(&daemon->publisher);

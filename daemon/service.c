@@ -92,6 +92,18 @@ static enum gz_result adopt_device(struct gz_service *service)
 	return GZ_OK;
 }
 
+/* Describe the stream of the Lab Streaming Layer with the tracker and its display. */
+static void tell_lsl_of_device(struct gz_service *service)
+{
+	const struct gz_device_info *info = &service->tracker.info;
+	struct gz_lsl_device device = { .rate_hz = info->rate_hz,
+					.display = service->maker.pipeline.display };
+	memcpy(device.tracker, info->name, sizeof device.tracker);
+	memcpy(device.serial, info->serial, sizeof device.serial);
+	if (service->tracker.opened > 0)
+		gz_lsl_outlet_set_device(service->parts.lsl, &device);
+}
+
 enum gz_result gz_service_create(const struct gz_service_parts *parts,
 				 struct gz_service **out_service)
 {
@@ -122,6 +134,7 @@ enum gz_result gz_service_create(const struct gz_service_parts *parts,
 		gz_service_destroy(&service);
 		return result;
 	}
+	tell_lsl_of_device(service);
 	*out_service = service;
 	return GZ_OK;
 }
@@ -231,6 +244,7 @@ static void serve_sample(struct gz_service *service, const struct gz_sample *sam
 {
 	gz_message_maker_step(&service->maker, sample, gz_clock_now_ns(), &service->batch);
 	gz_publisher_send(service->parts.publisher, &service->batch);
+	gz_lsl_outlet_step(service->parts.lsl, &service->batch.step);
 	service->rejected[service->batch.step.rejection]++;
 	record_sample(service, sample);
 	gz_rate_meter_step(&service->rate, sample->host_ns);
@@ -298,8 +312,11 @@ static void resend_client_message(struct gz_service *service)
 {
 	zmq_msg_t body;
 	zmq_msg_init(&body);
-	if (service->command.has_mark)
+	if (service->command.has_mark) {
 		record_mark(service, &service->command);
+		gz_lsl_outlet_annotate(service->parts.lsl, service->command.host_ns,
+				       service->command.text);
+	}
 	if (zmq_msg_recv(&body, service->commands, ZMQ_DONTWAIT) >= 0)
 		gz_publisher_send_one(service->parts.publisher, service->command.topic,
 				      zmq_msg_data(&body), zmq_msg_size(&body));
@@ -354,6 +371,7 @@ static void fill_refusals(const struct gz_service *service, uint64_t refused[GZ_
 	refused[GZ_REFUSAL_MESSAGES] = atomic_load_explicit(&counts->refused, memory_order_relaxed);
 	refused[GZ_REFUSAL_OVERFLOW] =
 		atomic_load_explicit(&counts->overflow, memory_order_relaxed);
+	refused[GZ_REFUSAL_LSL] = gz_lsl_outlet_lost(service->parts.lsl);
 }
 
 static void fill_status(struct gz_service *service, struct gz_status *status)
@@ -474,10 +492,13 @@ static void end_replay(struct gz_service *service)
 static void follow_tracker(struct gz_service *service, enum gz_tracker_state before)
 {
 	enum gz_tracker_state state = service->tracker.state;
-	if (service->tracker.opened != service->opened && adopt_device(service) != GZ_OK) {
-		send_notice(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
-		service->quit = true;
-		return;
+	if (service->tracker.opened != service->opened) {
+		if (adopt_device(service) != GZ_OK) {
+			send_notice(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
+			service->quit = true;
+			return;
+		}
+		tell_lsl_of_device(service);
 	}
 	if (state != before && state == GZ_TRACKER_LOST)
 		record_gap(service, service->host_ns, 0, service->tracker.reason);

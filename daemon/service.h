@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "daemon/config.h"
 #include "daemon/inlet.h"
+#include "daemon/lsl/lsl_outlet.h"
 #include "daemon/process.h"
 #include "daemon/publisher.h"
 #include "daemon/recorder.h"
@@ -97,6 +98,7 @@ struct gz_service_parts {
 	void *context; /**< ZeroMQ; GZ_COMMAND_ENDPOINT is bound in it */
 	struct gz_publisher *publisher;
 	struct gz_recorder *recorder;
+	struct gz_lsl_outlet *lsl;       /**< NULL: no outlet to the Lab Streaming Layer */
 	struct gz_pointer_feed *pointer; /**< lent to the driver */
 	const struct gz_guard *guard;    /**< for its counts */
 	const struct gz_inlet_counts *inlet_counts;

@@ -76,6 +76,8 @@ const char *gz_refusal_name(enum gz_refusal refusal)
 		return "messages";
 	case GZ_REFUSAL_OVERFLOW:
 		return "overflow";
+	case GZ_REFUSAL_LSL:
+		return "lsl";
 	case GZ_REFUSAL_COUNT:
 		break;
 	}

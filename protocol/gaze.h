@@ -171,11 +171,12 @@ enum gz_refusal {
 	GZ_REFUSAL_SUBSCRIPTIONS, /**< connections ended, because they subscribed to too much */
 	GZ_REFUSAL_MESSAGES,      /**< messages that were not valid or had a reserved topic */
 	GZ_REFUSAL_OVERFLOW,      /**< valid messages for which there was no room */
+	GZ_REFUSAL_LSL,           /**< samples and events that liblsl did not take */
 	GZ_REFUSAL_COUNT,
 };
 
-/** The key in status.refused: "connections", "subscriptions", "messages" or "overflow". Static
- * text. */
+/** The key in status.refused: "connections", "subscriptions", "messages", "overflow" or "lsl".
+ * Static text. */
 const char *gz_refusal_name(enum gz_refusal refusal);
 
 /** State of the tracker. */

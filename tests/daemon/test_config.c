@@ -89,6 +89,8 @@ static void config_refusals_say_what_and_what_to_do(void **state)
 		  "pupil.address: tcp://127.0.0.1:50020 is this daemon" },
 		{ "--driver=pupil", "--pupil.address=tcp://localhost:7",
 		  "--control=tcp://127.0.0.1:7", "--pupil.address: tcp://localhost:7 is this" },
+		{ "--lsl.outlet", "--lsl.name=", NULL, "--lsl.name: empty" },
+		{ "--lsl.outlet", "--lsl.library=", NULL, "--lsl.library: empty" },
 		{ "file.gzl", NULL, NULL, "file.gzl" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {

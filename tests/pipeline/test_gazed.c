@@ -15,6 +15,7 @@
 
 #include "base/clock.h"
 #include "gazed_process.h"
+#include "lsl_stand_in.h"
 #include "protocol/gaze_log.h"
 #include "protocol/wire.h"
 
@@ -377,16 +378,12 @@ static size_t count_marks(const char *name, const char *text)
 	return count;
 }
 
-static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void **state)
+/* Send a forged gaze, which the daemon drops, and then the annotation "go"; wait until it comes
+ * back. */
+static void annotate(struct reader *reader)
 {
-	(void)state;
 	static const char go[] = "\x81\xa5label\xa2go"; /* {"label": "go"} */
 	char endpoint[128];
-	struct reader reader;
-	struct gazed_process gazed =
-		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "marked");
-	reader_open(&reader, &place, "");
-	reader_receive_gaze(&reader, 10);
 	snprintf(endpoint, sizeof endpoint, "ipc://%s/inlet", place.directory);
 	void *context = zmq_ctx_new(), *socket = zmq_socket(context, ZMQ_XPUB);
 	int timeout_ms = PATIENCE_MS;
@@ -395,19 +392,72 @@ static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void *
 	assert_int_equal(zmq_connect(socket, endpoint), 0);
 	/* Messages sent before the daemon has subscribed would be lost. */
 	assert_true(zmq_recv(socket, subscription, sizeof subscription, 0) >= 0);
-	/* A forged gaze, which is dropped, and then the annotation. */
 	zmq_send(socket, "gaze.forged", 11, ZMQ_SNDMORE);
 	zmq_send(socket, go, sizeof go - 1, 0);
 	zmq_send(socket, "annotation", 10, ZMQ_SNDMORE);
 	zmq_send(socket, go, sizeof go - 1, 0);
-	while (count_topic(&reader, "annotation") == 0)
-		assert_true(reader_receive(&reader, PATIENCE_MS));
+	while (count_topic(reader, "annotation") == 0)
+		assert_true(reader_receive(reader, PATIENCE_MS));
 	zmq_close(socket);
 	zmq_ctx_term(context);
+}
+
+static void gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers(void **state)
+{
+	(void)state;
+	struct reader reader;
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "marked");
+	reader_open(&reader, &place, "");
+	reader_receive_gaze(&reader, 10);
+	annotate(&reader);
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 	assert_int_equal(count_topic(&reader, "gaze.forged"), 0);
 	assert_non_null(strstr(gazed_said(&gazed), "reserved for the daemon"));
 	assert_int_equal(count_marks("marked.gzl", "go"), 1);
+	reader_close(&reader);
+}
+
+/* The sum of the numbers behind @p what in the file that the fake liblsl writes. */
+static int sum_of_lsl(const char *path, const char *what)
+{
+	char line[256];
+	int sum = 0;
+	FILE *file = fopen(path, "r");
+	assert_non_null(file);
+	while (fgets(line, sizeof line, file)) {
+		char *number = strrchr(line, ' ');
+		if (!number || (size_t)(number - line) != strlen(what) ||
+		    strncmp(line, what, strlen(what)) != 0)
+			continue;
+		sum += (int)strtol(number, NULL, 10);
+	}
+	fclose(file);
+	return sum;
+}
+
+static void gazed_lsl_readers_get_every_sample_event_and_annotation(void **state)
+{
+	(void)state;
+	char path[128];
+	struct reader reader;
+	snprintf(path, sizeof path, "%s/lsl", place.recordings);
+	setenv(LSL_STAND_IN_FILE, path, 1);
+	struct gazed_process gazed =
+		SPAWN("--sim.rate_hz", "500", "--wait-readers", "1", "--record", "beside",
+		      "--lsl.outlet", "--lsl.library", LSL_STAND_IN);
+	unsetenv(LSL_STAND_IN_FILE);
+	reader_open(&reader, &place, "");
+	reader_receive_gaze(&reader, 1000);
+	annotate(&reader);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_int_equal(sum_of_lsl(path, "Gaze"), read_log("beside.gzl").samples);
+	assert_int_equal(sum_of_lsl(path, "go"), 1);
+	int onsets = sum_of_lsl(path, "fixation_onset");
+	assert_in_range(onsets, 3, 20); /* in two seconds */
+	assert_in_range(sum_of_lsl(path, "fixation_offset"), onsets - 1, onsets);
+	assert_true(sum_of_lsl(path, "saccade_onset") > 0);
+	assert_true(reader.status.refused[GZ_REFUSAL_LSL] == 0);
 	reader_close(&reader);
 }
 
@@ -467,6 +517,7 @@ static void gazed_refuses_bad_configuration_in_one_line(void **state)
 		{ "--driver", "replay", "--replay.file" },
 		{ "--record", "a/b", "this is not a valid name" },
 		{ "--sim.targets", "/nonexistent", "/nonexistent" },
+		{ "--lsl.outlet", "--lsl.library=/nonexistent.so", "lsl.outlet: /nonexistent.so" },
 	};
 	for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
 		struct gazed_process gazed = SPAWN(refusals[i][0], refusals[i][1]);
@@ -611,6 +662,7 @@ TEST_SUITE(gazed)
 		TEST(gazed_replay_gives_the_live_messages_bit_for_bit),
 		TEST(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
 		TEST(gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers),
+		TEST(gazed_lsl_readers_get_every_sample_event_and_annotation),
 		TEST(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),
 		TEST(gazed_taken_endpoint_is_refused_with_the_remedy),
 		TEST(gazed_refuses_bad_configuration_in_one_line),

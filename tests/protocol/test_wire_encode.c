@@ -474,7 +474,7 @@ static void status_has_the_documented_keys(void **state)
 	assert_keys(value_of(map, "malformed"), "short long stale syntax value");
 	assert_number(value_of(value_of(map, "malformed"), "short"), 11);
 	assert_number(value_of(value_of(map, "malformed"), "value"), 15);
-	assert_keys(value_of(map, "refused"), "connections subscriptions messages overflow");
+	assert_keys(value_of(map, "refused"), "connections subscriptions messages overflow lsl");
 	assert_number(value_of(value_of(map, "refused"), "overflow"), 24);
 	assert_numbers(value_of(value_of(map, "display"), "px"), (double[]) { 1920, 1080 }, 2);
 	assert_text(value_of(value_of(map, "recording"), "file"), "/data/a.gzl");
