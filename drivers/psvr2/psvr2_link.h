@@ -1,8 +1,8 @@
 /**
  * @file
- * The USB side of a PlayStation VR2's gaze stream: several transfers in flight, each submitted
- * again from its callback; the repeated request that keeps the stream on; the reset of a stalled
- * endpoint. Callbacks run only within gz_psvr2_link_next(), on the reading thread.
+ * The USB side of a PlayStation VR2's gaze stream: the packets of its endpoint, and the repeated
+ * request that keeps the stream on. Callbacks run only within gz_psvr2_link_next(), on the reading
+ * thread.
  */
 #ifndef GZ_DRIVERS_PSVR2_LINK_H
 #define GZ_DRIVERS_PSVR2_LINK_H
@@ -33,12 +33,6 @@
 
 /** Time between two requests for the stream, ms. Chosen: Monado's second. */
 #define GZ_PSVR2_KEEPALIVE_MS 1000
-
-/** First pause before a stalled endpoint is used again, ms; it doubles with each attempt. After
- * GZ_PSVR2_RECOVERIES attempts without a packet the device counts as gone. Chosen: 10 ms go
- * unnoticed, and all attempts last 0.6 s. */
-#define GZ_PSVR2_RECOVERY_MS 10
-#define GZ_PSVR2_RECOVERIES  6
 
 /** A received packet. */
 struct gz_psvr2_arrival {

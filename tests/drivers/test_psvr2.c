@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "driver_stage.h"
 #include "drivers/psvr2/psvr2_link.h"
+#include "drivers/usb/usb_stream.h"
 #include "fake_libusb.h"
 #include "psvr2_made.h"
 
@@ -279,7 +280,7 @@ static void psvr2_endpoint_that_stays_stalled_counts_as_gone(void **state)
 		fake_usb_fail(LIBUSB_TRANSFER_STALL);
 	int64_t begin_ns = gz_clock_now_ns();
 	assert_int_equal(gz_device_read(device, 5000, &sample), GZ_ERR_NO_DEVICE);
-	assert_int_equal(fake_usb.halts_cleared, GZ_PSVR2_RECOVERIES);
+	assert_int_equal(fake_usb.halts_cleared, GZ_USB_STREAM_RECOVERIES);
 	assert_in_range(gz_clock_now_ns() - begin_ns, 630 * GZ_NS_PER_MS, GZ_NS_PER_S);
 	assert_int_equal(gz_device_read(device, 10, &sample), GZ_ERR_NO_DEVICE);
 	finish(&device);
