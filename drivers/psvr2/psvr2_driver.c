@@ -3,8 +3,6 @@
  * The eye tracker of a PlayStation VR2 on a USB port: a vendor-specific interface, read with
  * libusb. Its gaze is relative to the head; the configuration says where the screen is.
  */
-#include <libusb.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,11 +11,23 @@
 #include "drivers/device/device.h"
 #include "drivers/psvr2/psvr2_link.h"
 #include "drivers/psvr2/psvr2_packet.h"
-#include "drivers/usb/usb_device.h"
+#include "drivers/usb/usb_open.h"
 
 #define GZ_LOG_MODULE "psvr2"
 
-static const char fallback_name[] = "PlayStation VR2";
+static const struct gz_usb_product psvr2_product = {
+	.vendor = GZ_PSVR2_VENDOR,
+	.product = GZ_PSVR2_PRODUCT,
+	.name = "PlayStation VR2",
+	.is_named = true,
+};
+
+static const struct gz_usb_kind psvr2_kind = {
+	.name = "PlayStation VR2",
+	.products = &psvr2_product,
+	.product_count = 1,
+	.interface_number = GZ_PSVR2_INTERFACE,
+};
 
 struct psvr2_settings {
 	struct gz_psvr2_screen_params screen;
@@ -51,13 +61,10 @@ static const size_t psvr2_option_count = sizeof psvr2_options / sizeof *psvr2_op
 
 struct psvr2_device {
 	struct gz_device base;
-	libusb_context *context;
-	libusb_device_handle *handle;
-	bool claimed;
+	struct gz_usb_opened opened;
 	struct gz_psvr2_link *link;
 	struct gz_psvr2_screen screen;
 	struct gz_display display;
-	struct gz_usb_device usb;
 	struct gz_clock_model clock;
 	struct gz_ratelimit jumps;
 	int64_t device_ns; /* of the newest packet */
@@ -75,8 +82,8 @@ static struct psvr2_device *psvr2_device_of(struct gz_device *device)
 static enum gz_result psvr2_start(struct gz_device *base)
 {
 	struct psvr2_device *device = psvr2_device_of(base);
-	enum gz_result result =
-		gz_psvr2_link_create(device->context, device->handle, base->log, &device->link);
+	enum gz_result result = gz_psvr2_link_create(device->opened.context, device->opened.handle,
+						     base->log, &device->link);
 	return result == GZ_OK ? gz_psvr2_link_start(device->link) : result;
 }
 
@@ -129,7 +136,7 @@ static void psvr2_packet_to_sample(struct psvr2_device *device,
 	if (jumped)
 		gz_warn_limited(device->base.log, &device->jumps,
 				"%s: the clock jumped; the clock fit starts again",
-				device->usb.name);
+				device->opened.usb.name);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		fill_psvr2_eye(device, &packet->eye[eye], &sample.eye[eye]);
 	bool both_shut = packet->eye[0].blink && packet->eye[1].blink;
@@ -168,8 +175,8 @@ static void psvr2_info(const struct gz_device *base, struct gz_device_info *out_
 {
 	const struct psvr2_device *device = (const struct psvr2_device *)base;
 	*out_info = (struct gz_device_info) { .has_display = true, .display = device->display };
-	memcpy(out_info->name, device->usb.name, sizeof out_info->name);
-	memcpy(out_info->serial, device->usb.serial, sizeof out_info->serial);
+	memcpy(out_info->name, device->opened.usb.name, sizeof out_info->name);
+	memcpy(out_info->serial, device->opened.usb.serial, sizeof out_info->serial);
 }
 
 static void psvr2_counters(const struct gz_device *base, struct gz_device_counters *out_counters)
@@ -185,23 +192,11 @@ static void psvr2_counters(const struct gz_device *base, struct gz_device_counte
 	out_counters->malformed[GZ_MALFORMED_STALE] = device->stale;
 }
 
-static void close_psvr2_handle(struct psvr2_device *device)
-{
-	if (device->claimed)
-		libusb_release_interface(device->handle, GZ_PSVR2_INTERFACE);
-	if (device->handle)
-		libusb_close(device->handle);
-	device->claimed = false;
-	device->handle = NULL;
-}
-
 static void psvr2_destroy(struct gz_device *base)
 {
 	struct psvr2_device *device = psvr2_device_of(base);
 	gz_psvr2_link_destroy(&device->link);
-	close_psvr2_handle(device);
-	if (device->context)
-		libusb_exit(device->context);
+	gz_usb_close(&device->opened);
 	free(device);
 }
 
@@ -212,111 +207,6 @@ static const struct gz_device_ops psvr2_ops = {
 	.counters = psvr2_counters,
 	.destroy = psvr2_destroy,
 };
-
-static void describe_psvr2(libusb_device *usb, struct gz_usb_device *out_device)
-{
-	gz_usb_describe(usb, out_device);
-	if (!out_device->name[0])
-		snprintf(out_device->name, sizeof out_device->name, "%s", fallback_name);
-}
-
-static bool is_psvr2(const struct gz_usb_device *usb)
-{
-	return usb->vendor == GZ_PSVR2_VENDOR && usb->product == GZ_PSVR2_PRODUCT;
-}
-
-static enum gz_result refuse_psvr2(const struct psvr2_device *device, const char *what, int error)
-{
-	const struct gz_log *log = device->base.log;
-	enum gz_result result = gz_usb_result(error);
-	switch (result) {
-	case GZ_ERR_ACCESS:
-		gz_err(log, "%s at %s: no permission for %s; %s", device->usb.name,
-		       device->usb.place, device->usb.node, GZ_DEVICE_PERMISSION_REMEDY);
-		return result;
-	case GZ_ERR_BUSY:
-		gz_err(log, "%s at %s: another program uses its eye tracker; close that program",
-		       device->usb.name, device->usb.place);
-		return result;
-	default:
-		gz_err(log, "%s at %s: cannot %s: %s; plug it in again", device->usb.name,
-		       device->usb.place, what, libusb_error_name(error));
-		return result;
-	}
-}
-
-static enum gz_result open_psvr2_device(struct psvr2_device *device, libusb_device *usb)
-{
-	int error = libusb_open(usb, &device->handle);
-	if (error != LIBUSB_SUCCESS) {
-		device->handle = NULL;
-		return refuse_psvr2(device, "open it", error);
-	}
-	/* Not supported everywhere, and needed only if a kernel driver uses the interface. */
-	libusb_set_auto_detach_kernel_driver(device->handle, 1);
-	error = libusb_claim_interface(device->handle, GZ_PSVR2_INTERFACE);
-	if (error == LIBUSB_SUCCESS) {
-		device->claimed = true;
-		return GZ_OK;
-	}
-	enum gz_result result = refuse_psvr2(device, "claim its interface", error);
-	close_psvr2_handle(device);
-	return result;
-}
-
-/* Open the first headset that can be opened. Log the others, so that the user knows what to choose
- * from. */
-static enum gz_result open_first_psvr2(struct psvr2_device *device, libusb_device *const *list,
-				       const char *choice)
-{
-	const struct gz_log *log = device->base.log;
-	enum gz_result first = GZ_ERR_NO_DEVICE;
-	struct gz_usb_device other;
-	int seen = 0;
-	for (size_t i = 0; list[i]; i++) {
-		describe_psvr2(list[i], &other);
-		if (!is_psvr2(&other))
-			continue;
-		seen++;
-		if (device->handle || !gz_device_is_chosen(choice, other.name, other.serial)) {
-			gz_info(log, "not used: %s %s at %s", other.name, other.serial,
-				other.place);
-			continue;
-		}
-		device->usb = other;
-		enum gz_result result = open_psvr2_device(device, list[i]);
-		if (result != GZ_OK && first == GZ_ERR_NO_DEVICE)
-			first = result;
-	}
-	if (device->handle)
-		return GZ_OK;
-	if (seen == 0)
-		gz_err(log, "no %s on USB; plug one in", fallback_name);
-	else if (first == GZ_ERR_NO_DEVICE)
-		gz_err(log, "no %s is called %s; see gazectl devices", fallback_name,
-		       choice ? choice : "");
-	return first;
-}
-
-static enum gz_result find_and_open_psvr2(struct psvr2_device *device, const char *choice)
-{
-	libusb_device **list;
-	int error = libusb_init(&device->context);
-	if (error != LIBUSB_SUCCESS) {
-		device->context = NULL;
-		gz_err(device->base.log, "cannot access USB: %s", libusb_error_name(error));
-		return gz_usb_result(error);
-	}
-	ssize_t count = libusb_get_device_list(device->context, &list);
-	if (count < 0) {
-		gz_err(device->base.log, "cannot list USB devices: %s",
-		       libusb_error_name((int)count));
-		return gz_usb_result((int)count);
-	}
-	enum gz_result result = open_first_psvr2(device, list, choice);
-	libusb_free_device_list(list, 1);
-	return result;
-}
 
 /* The screen: from its own settings, else the configured display, else the default display. */
 static struct gz_psvr2_screen_params psvr2_screen_params(const struct psvr2_settings *wanted,
@@ -346,7 +236,7 @@ static enum gz_result psvr2_create(const void *settings, const struct gz_driver_
 		.mm = { screen.size_mm[0], screen.size_mm[1] },
 		.distance_mm = screen.distance_mm,
 	};
-	enum gz_result result = find_and_open_psvr2(device, host->choice);
+	enum gz_result result = gz_usb_open(&psvr2_kind, host->choice, host->log, &device->opened);
 	if (result != GZ_OK) {
 		psvr2_destroy(&device->base);
 		return result;
@@ -358,26 +248,8 @@ static enum gz_result psvr2_create(const void *settings, const struct gz_driver_
 static size_t psvr2_list(const void *settings, const struct gz_driver_host *host,
 			 struct gz_device_entry *out_entries)
 {
-	libusb_context *context;
-	libusb_device **list;
-	struct gz_usb_device usb;
-	size_t count = 0;
 	(void)settings;
-	int error = libusb_init(&context);
-	if (error != LIBUSB_SUCCESS) {
-		gz_warn(host->log, "cannot access USB: %s", libusb_error_name(error));
-		return 0;
-	}
-	if (libusb_get_device_list(context, &list) >= 0) {
-		for (size_t i = 0; list[i] && count < GZ_DEVICE_ENTRIES_MAX; i++) {
-			describe_psvr2(list[i], &usb);
-			if (is_psvr2(&usb))
-				gz_usb_list_entry(&usb, GZ_PSVR2_INTERFACE, &out_entries[count++]);
-		}
-		libusb_free_device_list(list, 1);
-	}
-	libusb_exit(context);
-	return count;
+	return gz_usb_list(&psvr2_kind, host->log, out_entries);
 }
 
 _Static_assert(sizeof(struct psvr2_settings) <= GZ_DRIVER_SETTINGS_SIZE, "settings fit");
