@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clock.h"
+
 /* Bins that a line needs before its slope means anything: 2 s. Chosen: a delay that scatters by 0.1
  * ms then tilts the line by 50 ppm at most, which is 0.1 ms over the window. */
 enum { BINS_FOR_SLOPE = 4 };
@@ -140,6 +142,13 @@ static int64_t answer_in_order(struct gz_clock_model *model, bool first, int64_t
 {
 	model->host_ns = gz_clock_in_order(host_ns, arrival_ns, first ? NULL : &model->host_ns);
 	return model->host_ns;
+}
+
+bool gz_clock_is_behind(int64_t device_ns, int64_t newest_ns)
+{
+	int64_t back_ns;
+	return !__builtin_sub_overflow(newest_ns, device_ns, &back_ns) && back_ns >= 0 &&
+	       back_ns < GZ_NS_PER_S;
 }
 
 int64_t gz_clock_model_step(struct gz_clock_model *model, int64_t device_ns, int64_t arrival_ns,

@@ -75,6 +75,10 @@ struct gz_clock_model {
 int64_t gz_clock_model_step(struct gz_clock_model *model, int64_t device_ns, int64_t arrival_ns,
 			    bool *out_jumped);
 
+/** Whether device time @p device_ns is that of the newest sample or up to a second before it, so
+ * that its sample is an old one. A clock that goes back further has restarted. Takes any values. */
+bool gz_clock_is_behind(int64_t device_ns, int64_t newest_ns);
+
 /** Begin a new segment with the next sample, because device times have a new meaning. Host times
  * continue. */
 void gz_clock_model_restart(struct gz_clock_model *model);

@@ -97,8 +97,7 @@ static bool is_psvr2_packet_stale(const struct psvr2_device *device,
 		return false;
 	if (ahead == 0)
 		return true;
-	int64_t back_ns = device->device_ns - packet->device_ns;
-	return ahead > INT32_MAX && back_ns >= 0 && back_ns < GZ_NS_PER_S;
+	return ahead > INT32_MAX && gz_clock_is_behind(packet->device_ns, device->device_ns);
 }
 
 static uint32_t psvr2_frames_lost(const struct psvr2_device *device, uint32_t frame)

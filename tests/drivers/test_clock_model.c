@@ -179,6 +179,18 @@ static void clock_model_accepts_any_times(void **state)
 	gz_clock_model_status(&model, GZ_CLOCK_NONE);
 }
 
+static void clock_that_is_behind_by_up_to_a_second_has_not_restarted(void **state)
+{
+	(void)state;
+	assert_true(gz_clock_is_behind(5, 5));
+	assert_true(gz_clock_is_behind(-1, GZ_NS_PER_S - 2));
+	assert_false(gz_clock_is_behind(-1, GZ_NS_PER_S - 1));
+	assert_false(gz_clock_is_behind(6, 5));
+	/* The difference of these is not an int64_t. */
+	assert_false(gz_clock_is_behind(INT64_MAX, INT64_MIN));
+	assert_false(gz_clock_is_behind(INT64_MIN, INT64_MAX));
+}
+
 static void clock_unwrap_follows_wraps_and_small_steps_back(void **state)
 {
 	(void)state;
@@ -198,6 +210,7 @@ TEST_SUITE(clock_model)
 		cmocka_unit_test(clock_model_small_step_back_of_the_device_is_a_jump_once_it_lasts),
 		cmocka_unit_test(clock_model_burst_after_a_stall_keeps_the_device_times),
 		cmocka_unit_test(clock_model_accepts_any_times),
+		cmocka_unit_test(clock_that_is_behind_by_up_to_a_second_has_not_restarted),
 		cmocka_unit_test(clock_unwrap_follows_wraps_and_small_steps_back),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
