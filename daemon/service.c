@@ -488,11 +488,21 @@ static void end_replay(struct gz_service *service)
 	send_notice(service, GZ_NOTICE_ENDED, 0, GZ_OK);
 }
 
+/* Whether the tracker has told its display only now. */
+static bool is_display_late(const struct gz_service *service)
+{
+	struct gz_display display =
+		gz_config_display(service->parts.config, &service->tracker.info);
+	return !gz_display_same(&display, &service->maker.pipeline.display);
+}
+
 /* Adapt the pipeline to a new device, and record the loss of one in the gaze log. */
 static void follow_tracker(struct gz_service *service, enum gz_tracker_state before)
 {
 	enum gz_tracker_state state = service->tracker.state;
-	if (service->tracker.opened != service->opened) {
+	bool is_new = service->tracker.opened != service->opened;
+	bool begins = state != before && state == GZ_TRACKER_RUNNING;
+	if (is_new || (begins && is_display_late(service))) {
 		if (adopt_device(service) != GZ_OK) {
 			send_notice(service, GZ_NOTICE_FAILED, 0, GZ_ERR_INVAL);
 			service->quit = true;

@@ -96,6 +96,27 @@ static void gazepoint_server_may_die_and_return_and_numbers_go_on(void **state)
 	gazepoint_server_stop(&server);
 }
 
+static void tracker_that_tells_its_display_with_its_samples_is_believed(void **state)
+{
+	(void)state;
+	char port[16];
+	const struct gazepoint_play play = {
+		.refuses = "SCREEN_SIZE",
+		.script = "<ACK ID=\"SCREEN_SIZE\" X=\"0\" Y=\"0\" WIDTH=\"1280\" HEIGHT=\"720\" "
+			  "/>\r\n",
+		.stream = true,
+	};
+	gazepoint_server_start(&server, &play, 0);
+	snprintf(port, sizeof port, "%d", server.port);
+	struct gazed_process gazed = SPAWN("--driver", "gazepoint", "--gazepoint.port", port);
+	reader_receive_gaze(&reader, 50);
+	wait_for_state(GZ_TRACKER_RUNNING);
+	assert_int_equal(reader.status.display.px[0], 1280);
+	assert_int_equal(reader.status.display.px[1], 720);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	gazepoint_server_stop(&server);
+}
+
 static void gazepoint_that_is_absent_is_waited_for(void **state)
 {
 	(void)state;
@@ -258,6 +279,7 @@ TEST_SUITE(trackers)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(gazepoint_server_may_die_and_return_and_numbers_go_on),
+		TEST(tracker_that_tells_its_display_with_its_samples_is_believed),
 		TEST(gazepoint_that_is_absent_is_waited_for),
 		TEST(gazepoint_that_says_nothing_is_given_up_and_tried_again),
 		TEST(tobii_library_is_played_and_its_absence_refused),
