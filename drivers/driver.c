@@ -2,13 +2,15 @@
 
 #include <string.h>
 
-/* clang-format off: one driver a line. */
+/* One driver a line. */
+/* clang-format off */
 const struct gz_driver *const gz_drivers[] = {
 	&gz_driver_sim,
 	&gz_driver_replay,
 	&gz_driver_auto,
 	&gz_driver_hid,
 	&gz_driver_psvr2,
+	&gz_driver_tobii5,
 	&gz_driver_tobii,
 	&gz_driver_gazepoint,
 	&gz_driver_pupil,

@@ -14,6 +14,7 @@ extern const struct gz_driver gz_driver_replay;
 extern const struct gz_driver gz_driver_auto;
 extern const struct gz_driver gz_driver_hid;
 extern const struct gz_driver gz_driver_psvr2;
+extern const struct gz_driver gz_driver_tobii5;
 extern const struct gz_driver gz_driver_tobii;
 extern const struct gz_driver gz_driver_gazepoint;
 extern const struct gz_driver gz_driver_pupil;

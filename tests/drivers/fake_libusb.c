@@ -7,7 +7,7 @@
 #include "suite.h"
 
 /* Most transfers in flight. */
-enum { FLIGHTS_MAX = 32, PACKET_MAX = 1024 };
+enum { FLIGHTS_MAX = 32, PACKET_MAX = 4096 };
 
 struct libusb_context {
 	int nothing;
@@ -51,8 +51,16 @@ struct fake_usb_device *fake_usb_plug(uint16_t vendor, uint16_t product)
 	return device;
 }
 
+static bool is_in(const struct libusb_transfer *transfer)
+{
+	return transfer->type == LIBUSB_TRANSFER_TYPE_BULK &&
+	       (transfer->endpoint & LIBUSB_ENDPOINT_IN) != 0;
+}
+
 static struct completion *add(enum libusb_transfer_status status)
 {
+	if (script_first == script_end)
+		script_first = script_end = 0;
 	assert_true(script_end < FAKE_USB_SCRIPT_MAX);
 	struct completion *completion = &script[script_end++];
 	completion->status = status;
@@ -210,7 +218,7 @@ int libusb_submit_transfer(struct libusb_transfer *transfer)
 	assert_true(flight_count < FLIGHTS_MAX);
 	cancelled[flight_count] = false;
 	flights[flight_count++] = transfer;
-	if (transfer->type != LIBUSB_TRANSFER_TYPE_BULK)
+	if (!is_in(transfer))
 		return LIBUSB_SUCCESS;
 	fake_usb.submitted++;
 	fake_usb.in_flight++;
@@ -238,16 +246,34 @@ static void count_request(const unsigned char *payload, int size)
 	fake_usb.switched_off += payload[2] == 2;
 }
 
+/* A request that opens or closes a session. */
+static int control_session(uint8_t type, uint8_t request, uint16_t value, uint16_t length)
+{
+	assert_int_equal(type, 0x41);
+	assert_in_range(request, 0x41, 0x42);
+	assert_int_equal(value, 0);
+	assert_int_equal(length, 0);
+	if (fake_usb.unplugged)
+		return LIBUSB_ERROR_NO_DEVICE;
+	if (fake_usb.control_error)
+		return fake_usb.control_error;
+	fake_usb.opened += request == 0x41;
+	fake_usb.closed += request == 0x42;
+	return 0;
+}
+
 int libusb_control_transfer(libusb_device_handle *handle, uint8_t type, uint8_t request,
 			    uint16_t value, uint16_t index, unsigned char *data, uint16_t length,
 			    unsigned timeout_ms)
 {
 	(void)handle;
 	assert_int_equal(type & LIBUSB_ENDPOINT_IN, 0);
-	assert_int_equal(request, 0x09);
-	assert_int_equal(value, 0x0c);
 	assert_int_equal(index, 0);
 	assert_in_range(timeout_ms, 1, 200);
+	if (fake_usb.has_sessions)
+		return control_session(type, request, value, length);
+	assert_int_equal(request, 0x09);
+	assert_int_equal(value, 0x0c);
 	if (fake_usb.unplugged)
 		return LIBUSB_ERROR_NO_DEVICE;
 	if (fake_usb.control_error)
@@ -266,7 +292,7 @@ static void complete(int index, enum libusb_transfer_status status, const unsign
 		sizeof *flights * (size_t)(flight_count - index));
 	memmove(cancelled + index, cancelled + index + 1,
 		sizeof *cancelled * (size_t)(flight_count - index));
-	if (transfer->type == LIBUSB_TRANSFER_TYPE_BULK)
+	if (is_in(transfer))
 		fake_usb.in_flight--;
 	transfer->status = status;
 	transfer->actual_length = (int)size;
@@ -277,20 +303,35 @@ static void complete(int index, enum libusb_transfer_status status, const unsign
 	transfer->callback(transfer);
 }
 
-/* Complete one transfer that does not need the device. */
+/* What the device does with the bytes of a transfer to it. */
+static enum libusb_transfer_status receive(const struct libusb_transfer *transfer)
+{
+	unsigned char reply[PACKET_MAX];
+	if (transfer->type == LIBUSB_TRANSFER_TYPE_CONTROL) {
+		count_request(transfer->buffer + LIBUSB_CONTROL_SETUP_SIZE,
+			      transfer->length - LIBUSB_CONTROL_SETUP_SIZE);
+		return LIBUSB_TRANSFER_COMPLETED;
+	}
+	assert_non_null(fake_usb.request);
+	if (fake_usb.request_status != LIBUSB_TRANSFER_COMPLETED)
+		return fake_usb.request_status;
+	size_t size = fake_usb.request(fake_usb.request_user, transfer->buffer,
+				       (size_t)transfer->length, reply, sizeof reply);
+	if (size > 0)
+		fake_usb_deliver(reply, size);
+	return LIBUSB_TRANSFER_COMPLETED;
+}
+
+/* Complete one transfer that does not wait for the device to send. */
 static bool complete_ended(void)
 {
 	for (int i = 0; i < flight_count; i++) {
-		bool is_control = flights[i]->type == LIBUSB_TRANSFER_TYPE_CONTROL;
-		if (!cancelled[i] && !fake_usb.unplugged && !is_control)
+		if (!cancelled[i] && !fake_usb.unplugged && is_in(flights[i]))
 			continue;
-		if (is_control && !cancelled[i] && !fake_usb.unplugged)
-			count_request(flights[i]->buffer + LIBUSB_CONTROL_SETUP_SIZE,
-				      flights[i]->length - LIBUSB_CONTROL_SETUP_SIZE);
 		complete(i,
 			 cancelled[i]         ? LIBUSB_TRANSFER_CANCELLED
 			 : fake_usb.unplugged ? LIBUSB_TRANSFER_NO_DEVICE
-					      : LIBUSB_TRANSFER_COMPLETED,
+					      : receive(flights[i]),
 			 NULL, 0);
 		return true;
 	}
@@ -300,7 +341,7 @@ static bool complete_ended(void)
 static int oldest_bulk(void)
 {
 	for (int i = 0; i < flight_count; i++)
-		if (flights[i]->type == LIBUSB_TRANSFER_TYPE_BULK)
+		if (is_in(flights[i]))
 			return i;
 	return -1;
 }

@@ -34,6 +34,16 @@ struct fake_usb {
 	size_t (*packet)(void *user, unsigned char *bytes, size_t room);
 	void *user;
 	int64_t period_ns, due_ns;
+	/** Receives what is sent to a bulk OUT endpoint; the answer of @p room bytes at most, which
+	 * it writes to @p reply, arrives on the IN endpoint. NULL: nothing may be sent. */
+	size_t (*request)(void *user, const unsigned char *bytes, size_t size, unsigned char *reply,
+			  size_t room);
+	void *request_user;
+	enum libusb_transfer_status request_status; /**< of what is sent */
+	/** Vendor requests without data to interface 0, in place of those of the PS VR2: of each
+	 * bRequest in turn, how many came. */
+	int opened, closed;
+	bool has_sessions;
 	/* What the driver did. */
 	int submitted, in_flight, most_in_flight;
 	int switched_on, switched_off; /**< requests, synchronous or not */

@@ -26,6 +26,7 @@
 #include "psvr2_made.h"
 #include "pupil_capture.h"
 #include "template_made.h"
+#include "tobii5_made.h"
 #include "tobii_stand_in.h"
 
 /* Samples read from each driver. */
@@ -175,6 +176,45 @@ static void prepare_hid(struct played *played)
 	played->plays_hid = true;
 }
 
+/* Play a tracker at 500 Hz. Every 50th sample is lost, every 70th is damaged. */
+static size_t play_tobii5(void *user, unsigned char *bytes, size_t room)
+{
+	static unsigned char frame[TOBII5_MADE_MAX];
+	uint32_t *number = user;
+	struct tobii5_made_gaze gaze = tobii5_made_looking(*number, 0.5, 0.5);
+	gaze.time_us = 2000 * (int64_t)*number;
+	size_t size = tobii5_made_gaze(&gaze, frame);
+	assert_true(room >= size);
+	memcpy(bytes, frame, size);
+	if (*number % 70 == 69)
+		bytes[0] ^= 0xff;
+	return (*number)++ % 50 == 49 ? 0 : size;
+}
+
+static size_t answer_tobii5(void *user, const unsigned char *bytes, size_t size,
+			    unsigned char *reply, size_t room)
+{
+	assert_true(room >= TOBII5_MADE_MAX);
+	return tobii5_played_answer(user, bytes, size, reply);
+}
+
+static void prepare_tobii5(void)
+{
+	static struct tobii5_played tracker;
+	static uint32_t number;
+	number = 0;
+	tracker = (struct tobii5_played) { 0 };
+	tobii5_played_set_screen(&tracker);
+	fake_usb_plug(0x2104, 0x0313);
+	fake_usb.has_sessions = true;
+	fake_usb.request = answer_tobii5;
+	fake_usb.request_user = &tracker;
+	fake_usb.packet = play_tobii5;
+	fake_usb.user = &number;
+	fake_usb.period_ns = 2 * GZ_NS_PER_MS;
+	fake_usb.due_ns = gz_clock_now_ns();
+}
+
 static void prepare_pointer(struct played *played)
 {
 	stage_set(&played->stage, "pointer.rate_hz", "500");
@@ -218,6 +258,8 @@ static void set_up(struct played *played, const struct gz_driver *driver)
 		prepare_pointer(played);
 	else if (strcmp(driver->name, "tobii") == 0)
 		prepare_tobii(played);
+	else if (strcmp(driver->name, "tobii5") == 0)
+		prepare_tobii5();
 	else if (strcmp(driver->name, "psvr2") == 0)
 		prepare_psvr2();
 	else if (strcmp(driver->name, "hid") == 0)
@@ -489,6 +531,8 @@ static void driver_refuses_missing_devices_and_bad_settings(void **state)
 		{ "template", "template.path", "", GZ_ERR_INVAL },
 		{ "template", "template.path", "/nonexistent", GZ_ERR_NO_DEVICE },
 		{ "psvr2", "psvr2.screen_distance_mm", "600", GZ_ERR_NO_DEVICE },
+		{ "tobii5", "tobii5.screen_tilt_deg", "10", GZ_ERR_NO_DEVICE },
+		{ "tobii5", "tobii5.screen_mm", "500 4", GZ_ERR_INVAL },
 	};
 	static struct driver_stage stage;
 	fake_usb_reset();
