@@ -70,6 +70,7 @@ int lab_tear_down(void **state)
 	hid_gadget_remove(&lab.second);
 	hid_function_remove(&lab.function);
 	psvr2_gadget_remove(&lab.headset);
+	tobii5_gadget_remove(&lab.desk);
 	return 0;
 }
 

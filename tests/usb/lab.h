@@ -15,6 +15,7 @@
 #include "pipeline/gazed_process.h"
 #include "protocol/gaze.h"
 #include "psvr2_gadget.h"
+#include "tobii5_gadget.h"
 
 /** The ordinary user of the guest, and the group whose members may use trackers. */
 #define LAB_USER  1000
@@ -25,6 +26,7 @@ struct lab {
 	struct hid_gadget tracker, second;
 	struct hid_function function;
 	struct psvr2_gadget headset;
+	struct tobii5_gadget desk;
 
 	struct gazed_place place;
 	struct reader reader;
