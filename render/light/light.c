@@ -25,6 +25,11 @@ const struct gz_option gz_light_options[] = {
 	  .help = "ambient occlusion, the share of ambient light that surroundings can block" },
 	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(occlusion_radius), 2, 64, .preset = "8",
 	  .help = "radius of ambient occlusion, voxel lengths" },
+	{ "light.shadow_steps", GZ_OPTION_INT, AT(shadow_steps), 0, GZ_SHADOW_STEPS_MAX,
+	  .preset = "0",
+	  .help = "soft shadows: steps from each sample towards the light; 0 = off" },
+	{ "light.shadow_reach", GZ_OPTION_DOUBLE, AT(shadow_reach), 4, 1e5, .preset = "256",
+	  .help = "how far the steps of shadows go at most, voxel lengths" },
 };
 const size_t gz_light_option_count = sizeof gz_light_options / sizeof gz_light_options[0];
 

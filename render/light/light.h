@@ -14,6 +14,9 @@
 #include "render/picture/camera.h"
 #include "render/transfer/transfer_table.h"
 
+/** Greatest number of steps towards the light. Chosen: twice as many change no picture. */
+#define GZ_SHADOW_STEPS_MAX 64
+
 /** The axes that a light's direction refers to. */
 enum gz_light_frame {
 	GZ_LIGHT_CAMERA, /**< x right, y up, z towards the viewer */
@@ -38,6 +41,25 @@ enum gz_light_frame {
  * direction, c does not change. Lighting never changes opacity. f and s are ramps, not steps,
  * because a surface seen edge-on would otherwise be bright or dark by chance. The constants are in
  * render/light/light_constants.h.
+ *
+ * Shadows are single in-scattering: of the light that goes straight to the sample, the share T
+ * arrives, and the rest is kept back on its way through the volume (Beer and Lambert). d and s are
+ * multiplied by T, and c itself by ambient + (1 - ambient) T before the step to lit, so that smoke,
+ * which has no gradient, has shadows too. With n steps, s = GZ_SHADOW_START, and R = shadow_reach
+ * or, if that is less, the longest way through the box along the light, step i goes from
+ * s + (R - s) (i / n)^2 to s + (R - s) ((i + 1) / n)^2 voxel lengths from the sample, as far as the
+ * clip box reaches. So the first steps are fine and show where things touch, and far shadows are
+ * soft. A step of length l and its middle at p
+ * multiplies T by
+ *
+ *   2^(l e(p))                   if it is planned shorter than GZ_SHADOW_DIRECT voxel lengths, with
+ *                                e the extinction of the value there
+ *   2^(-l m(p) / 2^(i + 1))      if longer, with m what the cells of level i keep back there
+ *                                (render/raycast/shared/shadow_cells.h), interpolated trilinearly
+ *                                between their middles, and i the greatest whole number with
+ *                                GZ_SHADOW_DIRECT 2^i up to the planned length, or the last level
+ *
+ * so that cells are about as large as steps are long.
  */
 struct gz_light {
 	double direction[3];               /**< towards the light; any length but 0 */
@@ -47,6 +69,8 @@ struct gz_light {
 	double occlusion;        /**< share of ambient light that surroundings can block, [0, 1];
 				    0 turns ambient occlusion off */
 	double occlusion_radius; /**< voxel lengths */
+	int shadow_steps;        /**< towards the light from each sample; 0 turns shadows off */
+	double shadow_reach;     /**< how far they go at most, voxel lengths */
 };
 
 /** Table over struct gz_light: "light.…". */

@@ -14,5 +14,15 @@
  * voxel length. Chosen by eye: below it, cut faces speckle from the noise of CT scans; edges of
  * solid objects have five times as much and more. */
 #define GZ_LIGHT_GRADIENT 0.02F
+/** Steps towards the light begin this far from the sample, voxel lengths. Chosen by eye: the first
+ *  block then reaches no farther back than to the sample, and slices of a CT scan cast no stripes
+ *  on their own surface. */
+#define GZ_SHADOW_START 3.0F
+/** Steps towards the light that are shorter, voxel lengths, read voxels, longer ones blocks of
+ * them. Chosen: at twice its length the tent of the first blocks, of two voxels, spans the step. */
+#define GZ_SHADOW_DIRECT 3.0F
+/** A sample is black once less than 1 / 2^this of the light arrives. Chosen: a quarter of a grey
+ *  level. */
+#define GZ_SHADOW_BLACK 10.0F
 
 #endif

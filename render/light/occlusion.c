@@ -48,13 +48,6 @@ struct job {
 	int reach;
 };
 
-static int nearest_entry(const struct gz_transfer_table *table, float stored)
-{
-	const float last = (float)(table->count - 1);
-	const float entry = stored * (float)table->scale + (float)table->bias + 0.5F;
-	return entry > 0 ? (int)(entry < last ? entry : last) : 0;
-}
-
 static void find_filled(struct job *job, double radius)
 {
 	for (int i = 0; i < job->table->count; i++) {
@@ -65,7 +58,8 @@ static void find_filled(struct job *job, double radius)
 		return;
 	const int values = job->volume->type == GZ_VOXEL_U8 ? 256 : INTEGER_VALUES;
 	for (int value = 0; value < values; value++)
-		job->by_value[value] = job->by_entry[nearest_entry(job->table, (float)value)];
+		job->by_value[value] =
+			job->by_entry[gz_transfer_table_nearest(job->table, (float)value)];
 }
 
 /* The voxels whose centres lie in the clip box. */
@@ -91,7 +85,7 @@ static uint32_t sum_row(const struct job *job, size_t from, int count)
 			sum += job->by_value[((const uint16_t *)volume->voxels)[from + (size_t)i]];
 	else
 		for (int i = 0; i < count; i++)
-			sum += job->by_entry[nearest_entry(
+			sum += job->by_entry[gz_transfer_table_nearest(
 				job->table, ((const float *)volume->voxels)[from + (size_t)i])];
 	return sum;
 }

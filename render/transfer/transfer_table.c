@@ -187,6 +187,13 @@ static int entry_at_or_below(const struct gz_transfer_table *table, double store
 	return entry < 0 ? 0 : entry > last ? last : (int)entry;
 }
 
+int gz_transfer_table_nearest(const struct gz_transfer_table *table, float stored)
+{
+	const float last = (float)(table->count - 1);
+	const float entry = stored * (float)table->scale + (float)table->bias + 0.5F;
+	return entry > 0 ? (int)(entry < last ? entry : last) : 0;
+}
+
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest)
 {
 	/* One entry wider than rounding needs, because kernels compute in single precision. */

@@ -59,6 +59,9 @@ void gz_transfer_table_bake(const struct gz_transfer *transfer, const struct gz_
 void gz_transfer_table_step(const struct gz_transfer_table *table, double length,
 			    struct gz_transfer_entry *out_entries);
 
+/** The entry nearest to a stored value. */
+int gz_transfer_table_nearest(const struct gz_transfer_table *table, float stored);
+
 /** Whether any stored value from @p least to @p greatest has opacity. */
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest);
 

@@ -136,7 +136,7 @@ static void light_segment(const struct oracle_ray *ray, double distance, double 
 {
 	double at[3];
 	place_at(ray, distance, at);
-	if (ray->rays->shading == GZ_SHADING_GRADIENT)
+	if (ray->rays->shading == GZ_SHADING_GRADIENT || ray->rays->light.shadow_steps > 0)
 		oracle_shade(ray->volume, ray->level, ray->transfer, ray->camera, ray->rays,
 			     ray->occlusion, at, ray->direction, rgb);
 }

@@ -9,7 +9,6 @@
 #include <cmocka.h>
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "oracle.h"
 #include "oracle_light.h"
@@ -52,12 +51,16 @@ void oracle_check_but(struct small_scene *scene, int width, int height, int pixe
 {
 	scene->foveation.method = GZ_METHOD_STANDARD;
 	const bool occluded = scene->rays.light.occlusion > 0;
+	const bool shadowed = scene->rays.light.shadow_steps > 0;
 	struct oracle_occlusion occlusion = { 0 };
 	if (occluded)
 		occlusion = oracle_occlusion_make(&scene->volume, &scene->transfer, &scene->rays);
+	if (shadowed)
+		oracle_shadows_make(&scene->volume, &scene->transfer, &scene->rays, &occlusion);
 	for (const char *const *set = small_scene_simd_sets(); *set; set++)
-		check_set(scene, occluded ? &occlusion : NULL, *set, width, height, pixels_off);
-	free(occlusion.cells);
+		check_set(scene, occluded || shadowed ? &occlusion : NULL, *set, width, height,
+			  pixels_off);
+	oracle_occlusion_free(&occlusion);
 }
 
 void oracle_check(struct small_scene *scene, int width, int height)

@@ -96,6 +96,78 @@ static double occlusion_at(const struct gz_level *level, const struct oracle_occ
 	return clamp(2 * sum - 1, 0, 1);
 }
 
+/* Powers of two that a voxel length keeps back at a place in voxel coordinates of the level. */
+static double kept_by_volume(const struct gz_volume *volume, const struct gz_level *level,
+			     const struct gz_transfer *transfer, int interpolation,
+			     const double at[3])
+{
+	double rgba[4];
+	const double stored = oracle_sample(&level->volume, interpolation, at);
+	gz_transfer_evaluate(transfer, value_of(volume, transfer, stored), rgba);
+	return -log2(fmax(1 - rgba[3], 1e-9));
+}
+
+static double kept_by_cells(const struct gz_level *level, const struct oracle_occlusion *shadows,
+			    int number, const double at[3])
+{
+	const int *dims = shadows->level_dims[number];
+	double place[3], sum = 0;
+	for (int axis = 0; axis < 3; axis++)
+		place[axis] =
+			at[axis] * level->factor[axis] / shadows->level_edge[number][axis] - 0.5;
+	for (int corner = 0; corner < 8; corner++) {
+		double weight = 1;
+		int cell[3];
+		for (int axis = 0; axis < 3; axis++) {
+			const double up = place[axis] - floor(place[axis]);
+			weight *= corner >> axis & 1 ? up : 1 - up;
+			cell[axis] = (int)clamp(floor(place[axis]) + (corner >> axis & 1), 0,
+						dims[axis] - 1);
+		}
+		sum += weight *
+		       shadows->kept[number][(cell[2] * dims[1] + cell[1]) * dims[0] + cell[0]];
+	}
+	return sum / exp2(number + 1);
+}
+
+/* The share of light that arrives at a place in voxel coordinates of the level. */
+static double arriving(const struct gz_volume *volume, const struct gz_level *level,
+		       const struct gz_transfer *transfer, const struct gz_ray_params *rays,
+		       const struct oracle_occlusion *shadows, const double to_light[3],
+		       const double at[3])
+{
+	const double start = 3, direct = 3;
+	double towards[3], leave = INFINITY, across = INFINITY, kept = 0;
+	for (int axis = 0; axis < 3; axis++) {
+		const double size = (double)volume->dims[axis] / level->factor[axis];
+		const double end =
+			(to_light[axis] > 0 ? rays->clip.greatest : rays->clip.least)[axis];
+		towards[axis] = to_light[axis] * least_spacing(volume) / volume->spacing[axis] /
+				level->factor[axis];
+		if (fabs(towards[axis]) < 1e-9)
+			continue;
+		leave = fmin(leave, (end * size - at[axis]) / towards[axis]);
+		across = fmin(across, size / fabs(towards[axis]));
+	}
+	const double reach = fmax(fmin(rays->light.shadow_reach, across), start);
+	const int steps = shadows->exact_shadows ? 2000 : rays->light.shadow_steps;
+	for (int i = 0; i < steps; i++) {
+		const double from = start + (reach - start) * i * i / steps / steps;
+		const double planned = (reach - start) * (2 * i + 1) / steps / steps;
+		const double length = fmin(planned, leave - from);
+		if (length <= 0)
+			break;
+		double there[3];
+		for (int axis = 0; axis < 3; axis++)
+			there[axis] = at[axis] + (from + length / 2) * towards[axis];
+		const int number = (int)fmin(floor(log2(planned / direct)), shadows->levels - 1);
+		kept += length * (planned < direct ? kept_by_volume(volume, level, transfer,
+								    rays->interpolation, there)
+						   : kept_by_cells(level, shadows, number, there));
+	}
+	return exp2(-kept);
+}
+
 void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 		  const struct gz_transfer *transfer, const struct gz_camera *camera,
 		  const struct gz_ray_params *rays, const struct oracle_occlusion *occlusion,
@@ -116,11 +188,21 @@ void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 	const double facing = clamp(gz_dot3(normal, to_eye) / edge, -1, 1);
 	const double d = fmax(facing * gz_dot3(normal, to_light), 0);
 	const double s = pow(fabs(gz_dot3(normal, half)), light->shininess) * fmin(d / edge, 1);
-	const double o = occlusion ? light->occlusion * occlusion_at(level, occlusion, at) : 0;
-	const double weight = gz_dot3(g, g) / (gz_dot3(g, g) + weak * weak);
+	const double o = occlusion && occlusion->cells
+				 ? light->occlusion * occlusion_at(level, occlusion, at)
+				 : 0;
+	const double t = light->shadow_steps > 0 && occlusion
+				 ? arriving(volume, level, transfer, rays, occlusion, to_light, at)
+				 : 1;
+	const double weight = rays->shading == GZ_SHADING_GRADIENT
+				      ? gz_dot3(g, g) / (gz_dot3(g, g) + weak * weak)
+				      : 0;
 	for (int channel = 0; channel < 3; channel++) {
-		const double lit = rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d) +
-				   light->specular * s;
+		const double lit =
+			rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d * t) +
+			light->specular * s * t;
+		rgb[channel] *=
+			light->shadow_steps > 0 ? light->ambient + (1 - light->ambient) * t : 1;
 		rgb[channel] += weight * (clamp(lit, 0, 1) - rgb[channel]);
 	}
 }
@@ -187,11 +269,87 @@ static double mean_around(const struct oracle_occlusion *grid, const double *fil
 	return sum / weights;
 }
 
+/* The share of light that comes through the nominal length of a voxel (number -1) or a cell. */
+static double comes_through(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			    const struct gz_ray_params *rays,
+			    const struct oracle_occlusion *shadows, int number, const int at[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		const int dim = number < 0 ? volume->dims[axis] : shadows->level_dims[number][axis];
+		const double share = (at[axis] + 0.5) / dim;
+		if (at[axis] >= dim || (number < 0 && (share < rays->clip.least[axis] ||
+						       share > rays->clip.greatest[axis])))
+			return 1;
+	}
+	if (number >= 0) {
+		const int *dims = shadows->level_dims[number];
+		return exp2(-shadows->kept[number][(at[2] * dims[1] + at[1]) * dims[0] + at[0]]);
+	}
+	const double middle[3] = { at[0] + 0.5, at[1] + 0.5, at[2] + 0.5 };
+	const struct gz_level whole = { .volume = *volume, .factor = { 1, 1, 1 } };
+	return exp2(-kept_by_volume(volume, &whole, transfer, GZ_INTERPOLATION_NEAREST, middle));
+}
+
+static double cell_keeps(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			 const struct gz_ray_params *rays, const struct oracle_occlusion *shadows,
+			 int number, const int cell[3])
+{
+	double through[2][2][2], sum = 0;
+	for (int i = 0; i < 8; i++) {
+		const int up[3] = { i & 1, i >> 1 & 1, i >> 2 };
+		int child[3];
+		for (int axis = 0; axis < 3; axis++) {
+			const int edge = shadows->level_edge[number][axis];
+			const int before = number > 0 ? shadows->level_edge[number - 1][axis] : 1;
+			child[axis] = edge == before ? cell[axis] : 2 * cell[axis] + up[axis];
+		}
+		through[up[2]][up[1]][up[0]] =
+			comes_through(volume, transfer, rays, shadows, number - 1, child);
+	}
+	for (int a = 0; a < 2; a++)
+		for (int b = 0; b < 2; b++)
+			sum += through[a][b][0] * through[a][b][1] +
+			       through[a][0][b] * through[a][1][b] +
+			       through[0][a][b] * through[1][a][b];
+	return fmin(-log2(sum / 12), 16);
+}
+
+void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			 const struct gz_ray_params *rays, struct oracle_occlusion *occlusion)
+{
+	int cells = 0;
+	for (int n = 0; n < ORACLE_SHADOW_LEVELS && cells != 1; n++) {
+		int *dims = occlusion->level_dims[n];
+		for (int axis = 0; axis < 3; axis++) {
+			const double ratio = volume->spacing[axis] / least_spacing(volume);
+			const int edge = (int)fmax(1, exp2(floor(log2(exp2(n + 1) / ratio))));
+			occlusion->level_edge[n][axis] = edge;
+			dims[axis] = (volume->dims[axis] - 1) / edge + 1;
+		}
+		cells = dims[0] * dims[1] * dims[2];
+		occlusion->kept[n] = malloc((size_t)cells * sizeof *occlusion->kept[n]);
+		for (int i = 0; i < cells; i++)
+			occlusion->kept[n][i] =
+				cell_keeps(volume, transfer, rays, occlusion, n,
+					   (const int[3]) { i % dims[0], i / dims[0] % dims[1],
+							    i / dims[0] / dims[1] });
+		occlusion->levels = n + 1;
+	}
+}
+
+void oracle_occlusion_free(struct oracle_occlusion *occlusion)
+{
+	free(occlusion->cells);
+	for (int n = 0; n < occlusion->levels; n++)
+		free(occlusion->kept[n]);
+	*occlusion = (struct oracle_occlusion) { 0 };
+}
+
 struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
 					      const struct gz_transfer *transfer,
 					      const struct gz_ray_params *rays)
 {
-	struct oracle_occlusion grid;
+	struct oracle_occlusion grid = { 0 };
 	const double radius = rays->light.occlusion_radius;
 	double lengths[3];
 	for (int axis = 0; axis < 3; axis++) {

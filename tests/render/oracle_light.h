@@ -9,20 +9,35 @@
 #include "render/data/levels.h"
 #include "render/raycast/shared/raycaster.h"
 
-/** What lies around each cell. */
+/** Most levels of shadow cells. */
+#define ORACLE_SHADOW_LEVELS 8
+
+/** What lies around each cell, and what blocks of voxels keep back of the light. */
 struct oracle_occlusion {
 	int dims[3], edge[3];
 	double *cells;
+	bool exact_shadows; /**< many small steps through the volume itself, not those of the
+			       scene */
+	int levels;
+	int level_dims[ORACLE_SHADOW_LEVELS][3], level_edge[ORACLE_SHADOW_LEVELS][3];
+	double *kept[ORACLE_SHADOW_LEVELS]; /**< powers of two, for a cell's nominal length */
 };
 
-/** Make it for the radius and the clip box of @p rays; free() its cells. */
+/** Make the blocks of shadows for the clip box of @p rays. */
+void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			 const struct gz_ray_params *rays, struct oracle_occlusion *occlusion);
+
+/** Free what both hold. */
+void oracle_occlusion_free(struct oracle_occlusion *occlusion);
+
+/** Make it for the radius and the clip box of @p rays: oracle_occlusion_free(). */
 struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
 					      const struct gz_transfer *transfer,
 					      const struct gz_ray_params *rays);
 
 /** Light a colour.
  *
- *  @param occlusion  NULL where none is asked for
+ *  @param occlusion  NULL where neither occlusion nor shadows are asked for
  *  @param at         voxel coordinates of the level
  *  @param direction  of the ray, world, unit length */
 void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,

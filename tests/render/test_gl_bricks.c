@@ -173,30 +173,50 @@ static void every_way_of_casting_works_by_bricks(void **state)
 	small_scene_free(&scene);
 }
 
-static void occlusion_of_a_file_of_bricks_is_refused(void **state)
+/* Whether a backend refuses the rays of a scene with a line that names a key. */
+static void check_refused(const char *backend, const struct small_scene *scene, const char *key)
 {
-	(void)state;
-	struct small_scene scene = small_scene_waves(40, 40, 35, GZ_VOXEL_U8);
-	struct small_scene bricks = as_bricks(&scene, 0);
 	struct captured_log log;
 	captured_log_init(&log, NULL);
 	struct gz_raycaster *renderer =
-		renderer_of("gl", &bricks, (struct raycaster_params) { 0 }, &log.log);
+		renderer_of(backend, scene, (struct raycaster_params) { 0 }, &log.log);
 	struct gz_plan plan = { 0 };
 	struct gz_image image = { 0 };
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
-	assert_int_equal(gz_plan_make(&scene.foveation, &display, scene.gaze, WIDTH, HEIGHT, &plan),
-			 GZ_OK);
-	scene.rays.shading = GZ_SHADING_GRADIENT;
-	scene.rays.light.occlusion = 0.5;
 	assert_int_equal(
-		gz_raycaster_render(renderer, &scene.camera, &scene.rays, &plan, &image, NULL),
+		gz_plan_make(&scene->foveation, &display, scene->gaze, WIDTH, HEIGHT, &plan),
+		GZ_OK);
+	assert_int_equal(
+		gz_raycaster_render(renderer, &scene->camera, &scene->rays, &plan, &image, NULL),
 		GZ_ERR_UNSUPPORTED);
-	assert_non_null(strstr(log.last, "occlusion"));
+	assert_non_null(strstr(log.last, key));
 	gz_raycaster_destroy(&renderer);
 	gz_plan_free(&plan);
 	gz_image_free(&image);
+}
+
+static void occlusion_and_shadows_of_a_file_of_bricks_are_refused(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(40, 40, 40, GZ_VOXEL_U8);
+	struct small_scene bricks = as_bricks(&scene, 0);
+	bricks.rays.shading = GZ_SHADING_GRADIENT;
+	bricks.rays.light.occlusion = 0.5;
+	check_refused("gl", &bricks, "light.occlusion");
+	check_refused("cpu", &bricks, "light.occlusion");
+	bricks.rays.light.occlusion = 0;
+	bricks.rays.light.shadow_steps = 8;
+	check_refused("cpu", &bricks, "light.shadow_steps");
 	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
+static void shadows_are_refused(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	scene.rays.light.shadow_steps = 8;
+	check_refused("gl", &scene, "light.shadow_steps");
 	small_scene_free(&scene);
 }
 
@@ -443,7 +463,8 @@ TEST_SUITE(gl_bricks)
 		cmocka_unit_test(every_brick_of_the_coarsest_level_is_looked_into),
 		cmocka_unit_test(anisotropic_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(every_way_of_casting_works_by_bricks),
-		cmocka_unit_test(occlusion_of_a_file_of_bricks_is_refused),
+		cmocka_unit_test(occlusion_and_shadows_of_a_file_of_bricks_are_refused),
+		cmocka_unit_test(shadows_are_refused),
 		cmocka_unit_test(levels_of_detail_are_those_of_the_cpu),
 		cmocka_unit_test(eye_inside_sees_the_same),
 		cmocka_unit_test(streamed_picture_is_whole_at_once_and_ends_as_the_one_waited_for),

@@ -380,6 +380,7 @@ static void inside_of_a_ball_is_lit_as_its_outside(void **state)
 		.diffuse = 1,
 		.shininess = 1,
 		.occlusion_radius = 8,
+		.shadow_reach = 4,
 	};
 	/* cut open: what is left of it is a bowl, thin as a wall */
 	scene.transfer = (struct gz_transfer) {

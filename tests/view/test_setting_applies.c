@@ -65,6 +65,16 @@ static void keys_behind_a_switch_apply_once_it_is_on(void **state)
 	settings.rays.light.occlusion = 0.5;
 	assert_true(gz_setting_applies(&settings, "light.occlusion_radius"));
 
+	settings.rays.shading = GZ_SHADING_NONE;
+	assert_true(gz_setting_applies(&settings, "light.shadow_steps"));
+	assert_false(gz_setting_applies(&settings, "light.shadow_reach"));
+	assert_false(gz_setting_applies(&settings, "light.direction"));
+	settings.rays.light.shadow_steps = 8;
+	assert_true(gz_setting_applies(&settings, "light.shadow_reach"));
+	assert_true(gz_setting_applies(&settings, "light.direction"));
+	assert_true(gz_setting_applies(&settings, "light.ambient"));
+	assert_false(gz_setting_applies(&settings, "light.diffuse"));
+
 	assert_false(gz_setting_applies(&settings, "temporal.weight"));
 	settings.temporal.accumulate = true;
 	assert_true(gz_setting_applies(&settings, "temporal.weight"));
@@ -90,6 +100,7 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_true(gz_setting_applies(&settings, "render.background"));
 	assert_true(gz_setting_applies(&settings, "light.ambient")); /* always lit */
 	assert_false(gz_setting_applies(&settings, "light.occlusion"));
+	assert_false(gz_setting_applies(&settings, "light.shadow_steps"));
 	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
 	assert_false(gz_setting_applies(&settings, "render.shading"));
 }

@@ -66,6 +66,17 @@ static bool with_occlusion(const struct gz_scene_settings *settings)
 	return with_lit_samples(settings) && settings->rays.light.occlusion > 0;
 }
 
+static bool with_shadows(const struct gz_scene_settings *settings)
+{
+	return by_raycast(settings) && settings->rays.light.shadow_steps > 0;
+}
+
+/* Shadows alone know how much light is ambient and where the rest comes from. */
+static bool with_a_lamp(const struct gz_scene_settings *settings)
+{
+	return with_light(settings) || with_shadows(settings);
+}
+
 static bool with_borders(const struct gz_scene_settings *settings)
 {
 	return gz_method_of(&settings->foveation)->has_borders;
@@ -122,6 +133,11 @@ static const struct {
 	{ "camera.height", in_parallel },
 	{ "light.occlusion_radius", with_occlusion },
 	{ "light.occlusion", with_lit_samples },
+	{ "light.shadow_reach", with_shadows },
+	{ "light.shadow_steps", by_raycast },
+	{ "light.direction", with_a_lamp },
+	{ "light.frame", with_a_lamp },
+	{ "light.ambient", with_a_lamp },
 	{ "light.", with_light },
 	{ "isosurface.", by_isosurface },
 	{ "render.ray_sampling_rate", by_raycast },

@@ -75,6 +75,7 @@ struct gz_cast {
 	float background[3];
 	float end_transmittance; /**< a ray ends when less than this share of light comes through */
 	struct gz_cast_light light;
+	int shadow_steps[GZ_PLAN_STEPS_MAX]; /**< for each step of the plan; 0: no shadows */
 	const uint32_t *colours; /**< of voxels in memory, see gz_colour_pack(); NULL without */
 };
 

@@ -67,6 +67,7 @@ SIMD void set_up_view(const struct gz_cast *cast, int step, const struct rays *r
 	const vf inverse = vf_set(1) / vf_sqrt(length2);
 	for (int axis = 0; axis < 3; axis++)
 		view->half[axis] = view->half[axis] * inverse;
+	view->shadow_steps = cast->shadow_steps[step];
 }
 
 /* The gradient's differences at places counted from the first datum, from two samples along each
@@ -167,40 +168,132 @@ SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int
 		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }
 
-/* The occlusion at places counted from the first datum, trilinear in its grid. */
-SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mask)
+/* What cells say at places counted from the first datum, trilinear in their grid. */
+SIMD vf find_in_cells(const struct gz_cast_cells *grid, const vf at[3], vm mask)
 {
 	vf share[3];
 	vi index[3];
 	for (int axis = 0; axis < 3; axis++) {
-		const vf place = vf_fma(at[axis], vf_set(light->cell_scale[axis]),
-					vf_set(light->cell_bias[axis]));
-		const vf inside = clamp_lanes(place, vf_set(0), vf_set(light->cell_greatest[axis]));
-		index[axis] = vi_min(vi_trunc(inside), vi_set(light->cell_last[axis]));
+		const vf place =
+			vf_fma(at[axis], vf_set(grid->scale[axis]), vf_set(grid->bias[axis]));
+		const vf inside = clamp_lanes(place, vf_set(0), vf_set(grid->greatest[axis]));
+		index[axis] = vi_min(vi_trunc(inside), vi_set(grid->last[axis]));
 		share[axis] = inside - vf_from_i(index[axis]);
 	}
-	const vi up_y = vi_set(light->cell_stride[1]), up_z = vi_set(light->cell_stride[2]);
+	const vi up_y = vi_set(grid->stride[1]), up_z = vi_set(grid->stride[2]);
 	const vi first = vi_add(vi_add(index[0], vi_mul(index[1], up_y)), vi_mul(index[2], up_z));
 	vf rows[4];
 	for (int i = 0; i < 4; i++) {
 		vi row = first;
 		row = i & 1 ? vi_add(row, up_y) : row;
 		row = i & 2 ? vi_add(row, up_z) : row;
-		const vi pair = vi_gather(light->cells, row, 2, mask);
+		const vi pair = vi_gather(grid->cells, row, 2, mask);
 		rows[i] = mix(vf_from_i(vi_and(pair, vi_set(0xFFFF))),
 			      vf_from_i(vi_shift_right(pair, 16)), share[0]);
 	}
-	const vf filled =
-		mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+}
+
+/* The occlusion at places counted from the first datum. */
+SIMD vf find_occlusion(const struct gz_cast_light *light, const vf at[3], vm mask)
+{
+	const vf filled = find_in_cells(&light->occluded, at, mask);
 	return clamp_lanes(vf_fma(filled, vf_set(2.0F / 65535), vf_set(-1)), vf_set(0), vf_set(1));
 }
 
-/* Light one channel of a colour, 0 to `full`. */
-SIMD vf shade_channel(vf colour, float full, const struct shine *shine, vf weight)
+/* How many powers of two of light a voxel length keeps back at places counted from the first datum:
+ * of the volume itself for steps planned that long, or of blocks of voxels. */
+SIMD vf find_kept(const struct gz_cast *cast, struct reading reading, float planned, const vf at[3],
+		  vm mask)
 {
+	const struct gz_cast_shadow *shadow = &cast->light.shadow;
+	if (planned >= GZ_SHADOW_DIRECT) {
+		int level = 0;
+		while (level + 1 < shadow->levels &&
+		       planned >= GZ_SHADOW_DIRECT * (float)(2 << level))
+			level++;
+		return find_in_cells(&shadow->level[level], at, mask) *
+		       vf_set(shadow->kept_per_length[level]);
+	}
+	const struct look_up look_up = stored_look_up(cast);
+	const vf value = reading.nearest ? sample_nearest(cast, reading.type, at, mask)
+					 : sample_trilinear(cast, reading.type, at, mask);
+	vf extinction;
+	vi colour;
+	gather_pair(cast->extinction, entry_of(&look_up, value), mask, &extinction, &colour);
+	return vf_set(0) - extinction;
+}
+
+/* The share of light that arrives at places counted from the first datum: struct gz_light has the
+ * formulas. Not inlined, for the reasons of shade(). */
+static __attribute__((noinline)) vf find_arriving(const struct gz_cast *cast,
+						  struct reading reading, int steps, const vf at[3],
+						  vm mask)
+{
+	const struct gz_cast_shadow *shadow = &cast->light.shadow;
+	vf leave = vf_set(shadow->reach), kept = vf_set(0);
+	for (int axis = 0; axis < 3; axis++)
+		leave = vf_min(leave, (vf_set(shadow->exit[axis]) - at[axis]) *
+					      vf_set(shadow->inverse[axis]));
+	const float unit = (shadow->reach - GZ_SHADOW_START) / (float)(steps * steps);
+	for (int i = 0; i < steps; i++) {
+		const float from = GZ_SHADOW_START + unit * (float)(i * i),
+			    planned = unit * (float)(2 * i + 1);
+		const vf length = vf_min(leave - vf_set(from), vf_set(planned));
+		const vm within = vm_and(vm_and(mask, vf_less(vf_set(0), length)),
+					 vf_less(kept, vf_set(GZ_SHADOW_BLACK)));
+		if (!vm_any(within))
+			break;
+		vf place[3];
+		const vf middle = vf_fma(length, vf_set(0.5F), vf_set(from));
+		for (int axis = 0; axis < 3; axis++)
+			place[axis] = vf_fma(middle, vf_set(shadow->towards[axis]), at[axis]);
+		const vf here = find_kept(cast, reading, planned, place, within);
+		kept = vf_select(within, vf_fma(length, here, kept), kept);
+	}
+	return exp2_negative(vf_set(0) - kept);
+}
+
+/* How light changes a colour without regard to its surface: the factor, and what follows from the
+ * surface, with its weight. */
+struct lighting {
+	vf even;
+	struct shine shine;
+	vf weight;
+};
+
+/* Light one channel of a colour, 0 to `full`. */
+SIMD vf shade_channel(vf colour, float full, const struct lighting *lighting)
+{
+	const struct shine *shine = &lighting->shine;
+	const vf even = colour * lighting->even;
 	const vf lit =
 		vf_min(vf_fma(colour, shine->factor, shine->white * vf_set(full)), vf_set(full));
-	return vf_fma(weight, lit - colour, colour);
+	return vf_fma(lighting->weight, lit - even, even);
+}
+
+/* Surfaces at places counted from the first datum, of which this share sees the light. */
+SIMD void light_surfaces(const struct gz_cast *cast, struct reading reading,
+			 const struct view *view, const vf at[3], vm mask, vf arriving,
+			 struct lighting *lighting)
+{
+	vf gradient[3];
+	find_gradient(cast, reading.type, reading.nearest, at, mask, gradient);
+	const vf length2 = dot_lanes(gradient, gradient);
+	lighting->weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
+	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
+	for (int axis = 0; axis < 3; axis++)
+		gradient[axis] = gradient[axis] * inverse;
+	vf occlusion = vf_set(0);
+	if (cast->light.occluded.cells)
+		occlusion = find_occlusion(&cast->light, at, mask) * vf_set(cast->light.occlusion);
+	lighting->shine = find_shine(&cast->light, view, gradient, occlusion);
+	if (view->shadow_steps) {
+		const vf ambient = vf_set(cast->light.ambient) * (vf_set(1) - occlusion);
+		struct shine *shine = &lighting->shine;
+		shine->factor = vf_fma(arriving, shine->factor - ambient, ambient);
+		shine->white = shine->white * arriving;
+	}
 }
 
 /* Light a colour at k. Not inlined: only visible samples need it, which are few, and one function
@@ -210,23 +303,24 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 						     const struct rays *rays, vf k, vm mask,
 						     struct colour colour)
 {
-	vf at[3], gradient[3];
+	const struct view *view = rays->view;
+	struct lighting lighting = { .even = vf_set(1),
+				     .shine = { vf_set(0), vf_set(0) },
+				     .weight = vf_set(0) };
+	vf at[3], arriving = vf_set(1);
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	find_gradient(cast, reading.type, reading.nearest, at, mask, gradient);
-	const vf length2 = dot_lanes(gradient, gradient);
-	const vf weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
-	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
-	for (int axis = 0; axis < 3; axis++)
-		gradient[axis] = gradient[axis] * inverse;
-	vf occlusion = vf_set(0);
-	if (cast->light.cells)
-		occlusion = find_occlusion(&cast->light, at, mask) * vf_set(cast->light.occlusion);
-	const struct shine shine = find_shine(&cast->light, rays->view, gradient, occlusion);
+	if (view->shadow_steps) {
+		const vf ambient = vf_set(cast->light.ambient);
+		arriving = find_arriving(cast, reading, view->shadow_steps, at, mask);
+		lighting.even = vf_fma(arriving, vf_set(1) - ambient, ambient);
+	}
+	if (cast->light.gradient)
+		light_surfaces(cast, reading, view, at, mask, arriving, &lighting);
 	return (struct colour) {
-		shade_channel(colour.red, 2047, &shine, weight),
-		shade_channel(colour.green, 2047, &shine, weight),
-		shade_channel(colour.blue, 1023, &shine, weight),
+		shade_channel(colour.red, 2047, &lighting),
+		shade_channel(colour.green, 2047, &lighting),
+		shade_channel(colour.blue, 1023, &lighting),
 	};
 }
 

@@ -326,6 +326,7 @@ static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *
 		cast->step_table[i] = entries;
 		cast->voxel_lengths[i] = (float)length;
 		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
+		cast->shadow_steps[i] = gz_lighting_shadow_steps(rays, plan->steps[i]);
 	}
 	for (int channel = 0; channel < 3; channel++)
 		cast->background[channel] = (float)rays->background[channel];
@@ -512,8 +513,8 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 	if (result != GZ_OK)
 		return result;
 	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
-	const bool rich = rays->shading != GZ_SHADING_NONE ||
-			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
+	const bool rich =
+		gz_ray_params_lit(rays) || rays->integration == GZ_INTEGRATION_PREINTEGRATED;
 	const enum gz_cast_variant variant = cpu->volume->colours ? GZ_CAST_COLOURED
 					     : rich               ? GZ_CAST_RICH
 								  : GZ_CAST_PLAIN;

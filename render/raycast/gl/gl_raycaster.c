@@ -254,6 +254,11 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 	struct gz_ray_frame world;
 	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
+	if (rays->light.shadow_steps > 0) {
+		gz_err(raycaster->log, "only the backend cpu casts shadows in volumes: take it, or "
+				       "set light.shadow_steps to 0");
+		return GZ_ERR_UNSUPPORTED;
+	}
 	enum gz_result result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
 	if (result == GZ_OK)
 		shift_rays(plan->view.shift, &world);

@@ -338,11 +338,11 @@ static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3
 	for (int axis = 0; axis < 3; axis++) {
 		block->light_towards[axis] = light.towards[axis];
 		block->gradient_scale[axis] = light.gradient_scale[axis];
-		block->occlusion_scale[axis] = light.cell_scale[axis];
-		block->occlusion_bias[axis] = light.cell_bias[axis];
-		block->occlusion_last[axis] = light.cell_greatest[axis];
+		block->occlusion_scale[axis] = light.occluded.scale[axis];
+		block->occlusion_bias[axis] = light.occluded.bias[axis];
+		block->occlusion_last[axis] = light.occluded.greatest[axis];
 	}
-	block->light_towards[3] = light.cells ? light.occlusion : 0;
+	block->light_towards[3] = light.occluded.cells ? light.occlusion : 0;
 	block->light_terms[0] = light.ambient;
 	block->light_terms[1] = light.diffuse;
 	block->light_terms[2] = light.specular;

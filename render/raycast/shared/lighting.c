@@ -1,14 +1,16 @@
 #include "render/raycast/shared/lighting.h"
 
-#include <string.h>
+#include <math.h>
 
 #include "render/light/light.h"
+#include "render/light/light_constants.h"
 
 #define GZ_LOG_MODULE "render"
 
 void gz_lighting_forget(struct gz_lighting *lighting)
 {
 	lighting->current = false;
+	lighting->shadows_current = false;
 }
 
 static bool wants_occlusion(const struct gz_ray_params *rays)
@@ -17,17 +19,12 @@ static bool wants_occlusion(const struct gz_ray_params *rays)
 	       rays->light.ambient > 0;
 }
 
-enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz_volume *volume,
-				   const struct gz_transfer_table *table,
-				   const struct gz_ray_params *rays, struct gz_workers *workers,
-				   const struct gz_log *log)
+static enum gz_result prepare_occlusion(struct gz_lighting *lighting,
+					const struct gz_ray_params *rays,
+					struct gz_workers *workers, const struct gz_log *log)
 {
 	const double radius = rays->light.occlusion_radius;
-	lighting->volume = volume;
-	lighting->table = table;
-	if (!wants_occlusion(rays))
-		return GZ_OK;
-	if (volume->bricks) {
+	if (lighting->volume->bricks) {
 		gz_err(log, "ambient occlusion reads all voxels, but a volume of bricks is not "
 			    "wholly in memory: set light.occlusion to 0");
 		return GZ_ERR_UNSUPPORTED;
@@ -36,8 +33,8 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 	    gz_clip_box_same(&lighting->clip, &rays->clip))
 		return GZ_OK;
 	lighting->current = false;
-	const enum gz_result result = gz_occlusion_make(volume, table, radius, &rays->clip, workers,
-							&lighting->occlusion);
+	const enum gz_result result = gz_occlusion_make(lighting->volume, lighting->table, radius,
+							&rays->clip, workers, &lighting->occlusion);
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for ambient occlusion: set light.occlusion to 0");
 		return result;
@@ -48,21 +45,95 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 	return GZ_OK;
 }
 
-static void fill_occlusion(const struct gz_occlusion *occlusion, const int factor[3],
-			   struct gz_cast_light *light)
+static enum gz_result prepare_shadows(struct gz_lighting *lighting,
+				      const struct gz_ray_params *rays, struct gz_workers *workers,
+				      const struct gz_log *log)
 {
-	const int *dims = occlusion->dims;
+	if (lighting->volume->bricks) {
+		gz_err(log, "shadows read all voxels, but a volume of bricks is not wholly in "
+			    "memory: set light.shadow_steps to 0");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	if (lighting->shadows_current && gz_clip_box_same(&lighting->shadow_clip, &rays->clip))
+		return GZ_OK;
+	lighting->shadows_current = false;
+	const enum gz_result result = gz_shadow_cells_make(
+		lighting->volume, lighting->table, &rays->clip, workers, &lighting->shadows);
+	if (result != GZ_OK) {
+		gz_err(log, "no memory for shadows: set light.shadow_steps to 0");
+		return result;
+	}
+	lighting->shadow_clip = rays->clip;
+	lighting->shadows_current = true;
+	return GZ_OK;
+}
+
+enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz_volume *volume,
+				   const struct gz_transfer_table *table,
+				   const struct gz_ray_params *rays, struct gz_workers *workers,
+				   const struct gz_log *log)
+{
+	enum gz_result result = GZ_OK;
+	lighting->volume = volume;
+	lighting->table = table;
+	if (wants_occlusion(rays))
+		result = prepare_occlusion(lighting, rays, workers, log);
+	if (result == GZ_OK && rays->light.shadow_steps > 0)
+		result = prepare_shadows(lighting, rays, workers, log);
+	return result;
+}
+
+/* Cells of these edges, in voxels of the full volume, from a level of detail. */
+static void fill_cells(const uint16_t *cells, const int dims[3], const int edge[3],
+		       const int factor[3], struct gz_cast_cells *out_cells)
+{
 	const int32_t strides[3] = { 1, dims[0], dims[0] * dims[1] };
-	light->cells = occlusion->cells;
+	out_cells->cells = cells;
 	for (int axis = 0; axis < 3; axis++) {
 		/* The first datum lies half a voxel in, the first cell's middle half a cell. */
-		const double scale = (double)factor[axis] / occlusion->edge[axis];
-		light->cell_scale[axis] = (float)scale;
-		light->cell_bias[axis] = (float)(0.5 * scale - 0.5);
-		light->cell_greatest[axis] = (float)(dims[axis] - 1);
-		light->cell_last[axis] = dims[axis] > 1 ? dims[axis] - 2 : 0;
-		light->cell_stride[axis] = dims[axis] > 1 ? strides[axis] : 0;
+		const double scale = (double)factor[axis] / edge[axis];
+		out_cells->scale[axis] = (float)scale;
+		out_cells->bias[axis] = (float)(0.5 * scale - 0.5);
+		out_cells->greatest[axis] = (float)(dims[axis] - 1);
+		out_cells->last[axis] = dims[axis] > 1 ? dims[axis] - 2 : 0;
+		out_cells->stride[axis] = dims[axis] > 1 ? strides[axis] : 0;
 	}
+}
+
+static void fill_shadow_levels(const struct gz_shadow_cells *shadows, const int factor[3],
+			       struct gz_cast_shadow *shadow)
+{
+	shadow->levels = shadows->count;
+	for (int i = 0; i < shadows->count; i++) {
+		const struct gz_shadow_level *level = &shadows->level[i];
+		fill_cells(shadows->cells + level->first, level->dims, level->edge, factor,
+			   &shadow->level[i]);
+		shadow->kept_per_length[i] = 1.0F / (float)(GZ_SHADOW_UNIT * (2 << i));
+	}
+}
+
+/* Where steps towards the light go, for a light's direction in the world. */
+static void fill_shadow(const struct gz_volume *volume, const int factor[3],
+			const struct gz_ray_params *rays, const double towards[3],
+			struct gz_cast_shadow *shadow)
+{
+	double half[3], through = INFINITY;
+	const double voxel_length = gz_volume_voxel_length(volume);
+	gz_volume_half_extent(volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		const double box = (double)volume->dims[axis] / factor[axis];
+		const double clip[2] = { rays->clip.least[axis] * box,
+					 rays->clip.greatest[axis] * box };
+		const double raw = towards[axis] * voxel_length * box / (2 * half[axis]);
+		const double step = fabs(raw) < 1e-9 ? 1e-9 : raw;
+		shadow->towards[axis] = (float)step;
+		shadow->inverse[axis] = (float)(1 / step);
+		shadow->exit[axis] = (float)(clip[step > 0] - 0.5);
+		through = fmin(through, box / fabs(step));
+	}
+	shadow->steps = rays->light.shadow_steps;
+	shadow->reach =
+		(float)fmax(fmin(rays->light.shadow_reach, through), (double)GZ_SHADOW_START);
 }
 
 void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
@@ -74,7 +145,8 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 	gz_light_direction(light, ray_frame, towards);
 	gz_light_gradient_scale(lighting->volume, lighting->table, scale);
 	*out_light = (struct gz_cast_light) {
-		.on = rays->shading == GZ_SHADING_GRADIENT,
+		.on = gz_ray_params_lit(rays),
+		.gradient = rays->shading == GZ_SHADING_GRADIENT,
 		.ambient = (float)light->ambient,
 		.diffuse = (float)light->diffuse,
 		.specular = (float)light->specular,
@@ -86,11 +158,22 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		out_light->gradient_scale[axis] = (float)(scale[axis] / factor[axis]);
 	}
 	if (wants_occlusion(rays))
-		fill_occlusion(&lighting->occlusion, factor, out_light);
+		fill_cells(lighting->occlusion.cells, lighting->occlusion.dims,
+			   lighting->occlusion.edge, factor, &out_light->occluded);
+	if (light->shadow_steps > 0) {
+		fill_shadow(lighting->volume, factor, rays, towards, &out_light->shadow);
+		fill_shadow_levels(&lighting->shadows, factor, &out_light->shadow);
+	}
+}
+
+int gz_lighting_shadow_steps(const struct gz_ray_params *rays, double step)
+{
+	return rays->light.shadow_steps > 0 ? (int)ceil(rays->light.shadow_steps / step) : 0;
 }
 
 void gz_lighting_free(struct gz_lighting *lighting)
 {
 	gz_occlusion_free(&lighting->occlusion);
+	gz_shadow_cells_free(&lighting->shadows);
 	*lighting = (struct gz_lighting) { 0 };
 }

@@ -1,7 +1,7 @@
 /**
  * @file
- * Light in the form that the backends take, and the grid of ambient occlusion, which is made again
- * when something that it depends on has changed.
+ * Light in the form that the backends take, with the grid of ambient occlusion and the cells of
+ * shadows, which are made again when something that they depend on has changed.
  */
 #ifndef GZ_RENDER_RAYCAST_SHARED_LIGHTING_H
 #define GZ_RENDER_RAYCAST_SHARED_LIGHTING_H
@@ -11,20 +11,42 @@
 #include "render/light/occlusion.h"
 #include "render/picture/camera.h"
 #include "render/raycast/shared/ray_params.h"
+#include "render/raycast/shared/shadow_cells.h"
+
+/** A grid of cells around the volume's voxels, of one level of detail. */
+struct gz_cast_cells {
+	const uint16_t *cells;   /**< NULL: there are none */
+	float scale[3], bias[3]; /**< cell = datum * scale + bias, both counted from the first
+				    one's middle */
+	float greatest[3];       /**< greatest index of a cell */
+	int32_t last[3];         /**< greatest index of the lower of two: max(dims - 2, 0) */
+	int32_t stride[3];       /**< 0 along an axis of one cell, x excepted */
+};
+
+/** Shadows ready for the kernels; lengths in voxel lengths, places in voxels of the level of detail
+ *  counted from the first datum. */
+struct gz_cast_shadow {
+	int steps;        /**< 0: no shadows */
+	float reach;      /**< of the last step's end */
+	float towards[3]; /**< one voxel length towards the light; no component is 0 */
+	float inverse[3]; /**< 1 / towards */
+	float exit[3];    /**< the faces of the clip box that face the light */
+	int levels;
+	struct gz_cast_cells level[GZ_SHADOW_LEVELS];
+	float kept_per_length[GZ_SHADOW_LEVELS]; /**< turns a cell of the level into powers of two
+						    per voxel length */
+};
 
 /** struct gz_light ready for the kernels: one light, and how surfaces reflect it. */
 struct gz_cast_light {
-	bool on;
+	bool on;          /**< by gradients or with shadows */
+	bool gradient;    /**< surfaces are lit */
 	float towards[3]; /**< unit vector in world directions */
 	float ambient, diffuse, specular, shininess;
-	float gradient_scale[3]; /**< see gz_light_gradient_scale(); of the level of detail */
-	float occlusion;         /**< greatest share of the ambient light that is blocked */
-	const uint16_t *cells;   /**< of struct gz_occlusion; NULL without occlusion */
-	float cell_scale[3], cell_bias[3]; /**< cell = datum * scale + bias, both
-					      counted from the first one's middle */
-	float cell_greatest[3];            /**< greatest index of a cell */
-	int32_t cell_last[3];   /**< greatest index of the lower of two: max(dims - 2, 0) */
-	int32_t cell_stride[3]; /**< 0 along an axis of one cell, x excepted */
+	float gradient_scale[3];       /**< see gz_light_gradient_scale(); of the level of detail */
+	float occlusion;               /**< greatest share of the ambient light that is blocked */
+	struct gz_cast_cells occluded; /**< of struct gz_occlusion */
+	struct gz_cast_shadow shadow;
 };
 
 /** Zero-initialised holds nothing. */
@@ -33,6 +55,9 @@ struct gz_lighting {
 	bool current; /**< occlusion is for the present transfer function, radius and clip */
 	double radius;
 	struct gz_clip_box clip;
+	struct gz_shadow_cells shadows;
+	bool shadows_current; /**< shadows are for the present transfer function and shadow_clip */
+	struct gz_clip_box shadow_clip;
 	const struct gz_volume *volume;        /**< of gz_lighting_prepare(), borrowed */
 	const struct gz_transfer_table *table; /**< of gz_lighting_prepare(), borrowed */
 };
@@ -41,13 +66,14 @@ struct gz_lighting {
 void gz_lighting_forget(struct gz_lighting *lighting);
 
 /**
- * Prepare a frame: make the grid of occlusion if the frame needs one that is not there.
+ * Prepare a frame: make the grid of occlusion and the cells of shadows if the frame needs some that
+ * are not there.
  *
  * @param volume, table  borrowed until the next call
  * @param workers        share the work; NULL for the calling thread alone
  * @retval GZ_ERR_NO_MEM       out of memory; logged
- * @retval GZ_ERR_UNSUPPORTED  occlusion of a volume of bricks, not all of whose voxels are in
- * memory; logged
+ * @retval GZ_ERR_UNSUPPORTED  occlusion or shadows of a volume of bricks, not all of whose voxels
+ * are in memory; logged
  */
 enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz_volume *volume,
 				   const struct gz_transfer_table *table,
@@ -63,6 +89,12 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		      const struct gz_ray_params *rays, const struct gz_ray_frame *ray_frame,
 		      struct gz_cast_light *out_light);
+
+/**
+ * How many steps towards the light samples take that lie @p step times as far apart as the scene
+ * says: as many times fewer, but at least one. 0 without shadows.
+ */
+int gz_lighting_shadow_steps(const struct gz_ray_params *rays, double step);
 
 /** Free and zero. */
 void gz_lighting_free(struct gz_lighting *lighting);

@@ -67,6 +67,11 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 			       &rays->surface);
 }
 
+bool gz_ray_params_lit(const struct gz_ray_params *rays)
+{
+	return rays->shading == GZ_SHADING_GRADIENT || rays->light.shadow_steps > 0;
+}
+
 bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b)
 {
 	return gz_options_same(gz_ray_options, gz_ray_option_count, a, b) &&

@@ -75,6 +75,9 @@ struct gz_ray_params gz_ray_params_default(void);
  *  something. */
 bool gz_ray_params_valid(const struct gz_ray_params *rays);
 
+/** Whether samples are lit: by gradients, or with shadows. */
+bool gz_ray_params_lit(const struct gz_ray_params *rays);
+
 /** Whether every option has equal values. */
 bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b);
 

@@ -1,0 +1,281 @@
+/* Soft shadows on the kernels: against the oracle, against light that is followed in small steps,
+ * and against what a formula says of even matter. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "oracle.h"
+#include "oracle_check.h"
+#include "oracle_light.h"
+#include "render/plan/method.h"
+#include "render/raycast/shared/lighting.h"
+
+static struct small_scene shadowed_waves(int nx, int ny, int nz, enum gz_voxel_type type)
+{
+	struct small_scene scene = small_scene_waves(nx, ny, nz, type);
+	scene.rays.shading = GZ_SHADING_GRADIENT;
+	scene.rays.light.shadow_steps = 5;
+	scene.rays.light.direction[0] = -0.8;
+	return scene;
+}
+
+static void shadows_of_every_voxel_type_equal_the_oracle(void **state)
+{
+	(void)state;
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
+		struct small_scene scene = shadowed_waves(30, 33, 27, (enum gz_voxel_type)type);
+		oracle_check(&scene, 31, 27);
+	}
+}
+
+static void shadows_without_surfaces_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = shadowed_waves(30, 33, 27, GZ_VOXEL_U8);
+	scene.rays.shading = GZ_SHADING_NONE;
+	scene.rays.light.ambient = 0;
+	oracle_check(&scene, 31, 27);
+}
+
+static void shadows_of_any_number_of_steps_equal_the_oracle(void **state)
+{
+	(void)state;
+	/* from steps that all read voxels to one that reads the coarsest cells */
+	static const int steps[] = { 1, 2, 8, 64 };
+	for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+		struct small_scene scene = shadowed_waves(34, 30, 27, GZ_VOXEL_U16);
+		scene.rays.light.shadow_steps = steps[i];
+		scene.rays.light.occlusion = i == 2 ? 0.7 : 0;
+		scene.rays.light.shadow_reach = i == 2 ? 12 : 256;
+		oracle_check(&scene, 23, 21);
+	}
+}
+
+static void shadows_by_a_light_along_an_axis_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = shadowed_waves(24, 20, 27, GZ_VOXEL_U8);
+	scene.rays.light.frame = GZ_LIGHT_WORLD;
+	memcpy(scene.rays.light.direction, (double[3]) { 0, 0, 2 }, 3 * sizeof(double));
+	oracle_check(&scene, 31, 27);
+}
+
+static void shadows_with_clip_and_jitter_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = shadowed_waves(24, 24, 24, GZ_VOXEL_U8);
+	memcpy(scene.rays.clip.least, (double[3]) { 0.2, 0.1, 0.2 }, 3 * sizeof(double));
+	memcpy(scene.rays.clip.greatest, (double[3]) { 0.8, 0.9, 0.7 }, 3 * sizeof(double));
+	scene.rays.jitter = 3;
+	oracle_check(&scene, 31, 27);
+}
+
+static void shadows_of_anisotropic_and_flat_volumes_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = shadowed_waves(32, 30, 8, GZ_VOXEL_U8);
+	scene.volume.spacing[2] = 3;
+	oracle_check(&scene, 31, 27);
+	static const int dims[][3] = { { 1, 1, 1 }, { 1, 1, 40 }, { 40, 1, 1 }, { 1, 40, 40 } };
+	for (size_t i = 0; i < sizeof dims / sizeof dims[0]; i++) {
+		struct small_scene flat =
+			shadowed_waves(dims[i][0], dims[i][1], dims[i][2], GZ_VOXEL_U8);
+		flat.transfer.points[0].opacity = 0.2;
+		oracle_check(&flat, 23, 21);
+	}
+}
+
+static void shadows_of_segments_colours_and_nearest_voxels_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene segments = shadowed_waves(30, 33, 27, GZ_VOXEL_F32);
+	segments.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	oracle_check(&segments, 23, 21);
+	struct small_scene nearest = shadowed_waves(20, 23, 17, GZ_VOXEL_U8);
+	nearest.rays.interpolation = GZ_INTERPOLATION_NEAREST;
+	oracle_check_but(&nearest, 23, 21, 8); /* a sample on a voxel's face goes either way */
+	small_scene_free(&nearest);
+	struct small_scene coloured = small_scene_coloured(20, 23, 17, GZ_COLOUR_ALPHA);
+	coloured.rays.light.shadow_steps = 4;
+	oracle_check(&coloured, 23, 21);
+}
+
+static void render_shadows(const struct small_scene *scene, int side, struct gz_image *image)
+{
+	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, NULL);
+	small_scene_render(renderer, scene, side, side, image, NULL);
+	gz_raycaster_destroy(&renderer);
+}
+
+/* Mean difference, in grey levels, to a picture with light followed in small steps. */
+static double error_of_steps(struct small_scene *scene, int steps)
+{
+	enum { SIDE = 24 };
+	struct gz_image image = { 0 };
+	const struct oracle_occlusion exact = { .exact_shadows = true };
+	double sum = 0;
+	scene->rays.light.shadow_steps = steps;
+	render_shadows(scene, SIDE, &image);
+	scene->rays.light.shadow_steps = 1; /* for the oracle: on */
+	for (int y = 0; y < SIDE; y++)
+		for (int x = 0; x < SIDE; x++) {
+			double rgb[3];
+			oracle_pixel_occluded(&scene->volume, &scene->transfer, &scene->camera,
+					      &scene->rays, &exact, SIDE, SIDE, x, y, rgb);
+			for (int channel = 0; channel < 3; channel++)
+				sum += fabs(image.pixels[4 * (y * SIDE + x) + channel] -
+					    255 * rgb[channel]);
+		}
+	gz_image_free(&image);
+	return sum / (SIDE * SIDE * 3);
+}
+
+static void more_steps_come_closer_to_light_followed_in_small_steps(void **state)
+{
+	(void)state;
+	struct small_scene scene = shadowed_waves(30, 33, 27, GZ_VOXEL_U8);
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.rays.ray_sampling_rate = 0.5;
+	scene.rays.light.ambient = 0;
+	const double off = error_of_steps(&scene, 0), few = error_of_steps(&scene, 3);
+	const double eight = error_of_steps(&scene, 8), many = error_of_steps(&scene, 64);
+	printf("mean error of 0, 3, 8 and 64 steps: %.2f %.2f %.2f %.2f grey levels\n", off, few,
+	       eight, many);
+	assert_true(many < 0.5);
+	assert_true(eight < 2 && many < eight && eight < few && few < off);
+	small_scene_free(&scene);
+}
+
+/* Seen along the light, matter that keeps back s of the light per voxel length has the colour
+ *
+ *   c * integral over depth d of s e^(-s d) (ambient + (1 - ambient) e^(-s max(d - 3, 0)))
+ */
+static void even_matter_is_as_dark_as_the_formula_says(void **state)
+{
+	(void)state;
+	enum { EDGE = 40, SIDE = 16 };
+	const double opacity = 0.05, ambient = 0.2;
+	struct small_scene scene = small_scene_constant(EDGE, opacity);
+	struct gz_image image = { 0 };
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	scene.camera.height = 0.5;
+	memcpy(scene.camera.eye, (double[3]) { 0, -2, 0 }, 3 * sizeof(double));
+	memcpy(scene.rays.light.direction, (double[3]) { 0, 0, 1 }, 3 * sizeof(double));
+	scene.rays.light.ambient = ambient;
+	scene.rays.ray_sampling_rate = 2;
+	const double s = -log(1 - opacity), first = exp(-s * 3);
+	const double shaded = 1 - first + (first - exp(-s * (2 * EDGE - 3))) / 2;
+	const double all = 1 - exp(-s * EDGE);
+	const double expected = ambient * all + (1 - ambient) * shaded;
+	/* Even matter is the same to any number of steps. */
+	for (int steps = 1; steps <= 16; steps *= 4) {
+		scene.rays.light.shadow_steps = steps;
+		render_shadows(&scene, SIDE, &image);
+		const uint8_t *pixel = image.pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2);
+		const double colour[3] = { 0.9, 0.6, 0.3 };
+		for (int channel = 0; channel < 3; channel++)
+			if (fabs(pixel[channel] - 255 * colour[channel] * expected) > 1.5)
+				fail_msg("%d steps: %d, not %.2f", steps, pixel[channel],
+					 255 * colour[channel] * expected);
+	}
+	gz_image_free(&image);
+	small_scene_free(&scene);
+}
+
+static void shadows_are_the_same_bits_for_any_number_of_threads_and_any_tile(void **state)
+{
+	(void)state;
+	enum { SIDE = 96 };
+	struct small_scene scene = shadowed_waves(50, 41, 60, GZ_VOXEL_U8);
+	struct gz_raycaster *one = small_scene_renderer(&scene, 1, NULL);
+	struct gz_raycaster *five = small_scene_renderer(&scene, 5, NULL);
+	struct gz_image full = { 0 }, other = { 0 };
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(one, &scene, SIDE, SIDE, &full, NULL);
+	small_scene_render(five, &scene, SIDE, SIDE, &other, NULL);
+	assert_memory_equal(full.pixels, other.pixels, (size_t)SIDE * SIDE * 4);
+	scene.foveation.method = GZ_METHOD_UNIFORM;
+	scene.foveation.uniform_spacing = 3;
+	small_scene_render(one, &scene, SIDE, SIDE, &other, NULL);
+	for (int y = 0; y < SIDE; y += 3)
+		for (int x = 0; x < SIDE; x += 3)
+			assert_memory_equal(full.pixels + 4 * (y * SIDE + x),
+					    other.pixels + 4 * (y * SIDE + x), 4);
+	gz_image_free(&full);
+	gz_image_free(&other);
+	gz_raycaster_destroy(&one);
+	gz_raycaster_destroy(&five);
+	small_scene_free(&scene);
+}
+
+static void shadows_follow_a_new_transfer_function_and_clip_box(void **state)
+{
+	(void)state;
+	enum { SIDE = 32 };
+	struct small_scene scene = shadowed_waves(30, 33, 27, GZ_VOXEL_U8);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image changed = { 0 }, fresh = { 0 };
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(renderer, &scene, SIDE, SIDE, &changed, NULL);
+	scene.transfer.points[2].opacity = 0.9;
+	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene.transfer), GZ_OK);
+	small_scene_render(renderer, &scene, SIDE, SIDE, &changed, NULL);
+	render_shadows(&scene, SIDE, &fresh);
+	assert_memory_equal(changed.pixels, fresh.pixels, (size_t)SIDE * SIDE * 4);
+	scene.rays.clip.greatest[2] = 0.6;
+	small_scene_render(renderer, &scene, SIDE, SIDE, &changed, NULL);
+	render_shadows(&scene, SIDE, &fresh);
+	assert_memory_equal(changed.pixels, fresh.pixels, (size_t)SIDE * SIDE * 4);
+	gz_image_free(&changed);
+	gz_image_free(&fresh);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+static void samples_farther_apart_take_fewer_steps(void **state)
+{
+	(void)state;
+	struct gz_ray_params rays = gz_ray_params_default();
+	assert_int_equal(gz_lighting_shadow_steps(&rays, 1), 0);
+	rays.light.shadow_steps = 8;
+	assert_int_equal(gz_lighting_shadow_steps(&rays, 1), 8);
+	assert_int_equal(gz_lighting_shadow_steps(&rays, 1.5), 6);
+	assert_int_equal(gz_lighting_shadow_steps(&rays, 4), 2);
+	assert_int_equal(gz_lighting_shadow_steps(&rays, 20), 1);
+}
+
+static void shadows_beyond_their_range_are_refused(void **state)
+{
+	(void)state;
+	struct gz_ray_params rays = gz_ray_params_default();
+	rays.light.shadow_steps = GZ_SHADOW_STEPS_MAX + 1;
+	assert_false(gz_ray_params_valid(&rays));
+	rays = gz_ray_params_default();
+	rays.light.shadow_reach = 3;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.light.shadow_reach = NAN;
+	assert_false(gz_ray_params_valid(&rays));
+}
+
+TEST_SUITE(shadows)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(shadows_of_every_voxel_type_equal_the_oracle),
+		cmocka_unit_test(shadows_without_surfaces_equal_the_oracle),
+		cmocka_unit_test(shadows_of_any_number_of_steps_equal_the_oracle),
+		cmocka_unit_test(shadows_by_a_light_along_an_axis_equal_the_oracle),
+		cmocka_unit_test(shadows_with_clip_and_jitter_equal_the_oracle),
+		cmocka_unit_test(shadows_of_anisotropic_and_flat_volumes_equal_the_oracle),
+		cmocka_unit_test(shadows_of_segments_colours_and_nearest_voxels_equal_the_oracle),
+		cmocka_unit_test(more_steps_come_closer_to_light_followed_in_small_steps),
+		cmocka_unit_test(even_matter_is_as_dark_as_the_formula_says),
+		cmocka_unit_test(shadows_are_the_same_bits_for_any_number_of_threads_and_any_tile),
+		cmocka_unit_test(shadows_follow_a_new_transfer_function_and_clip_box),
+		cmocka_unit_test(samples_farther_apart_take_fewer_steps),
+		cmocka_unit_test(shadows_beyond_their_range_are_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
