@@ -67,7 +67,11 @@ static void draw_with(struct gz_surface_caster *caster, struct stage *stage)
 {
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	const struct gz_point gaze = { 0.4F, 0.55F };
-	const struct gz_surface_shot shot = { &stage->camera, &stage->rays, &stage->plan };
+	const struct gz_surface_shot shot = {
+		.camera = &stage->camera,
+		.rays = &stage->rays,
+		.plan = &stage->plan,
+	};
 	const struct gz_surface_planes planes = { &stage->depth, &stage->ids };
 	assert_int_equal(
 		gz_plan_make(&stage->foveation, &display, gaze, WIDTH, HEIGHT, &stage->plan),
@@ -356,6 +360,40 @@ static double field_ball_above_plate(const double place[3])
 	const double ball = BALL_RADIUS - sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
 	const double plate = fmin(PLATE_TOP - p[2], p[2] + 22);
 	return fmax(ball, fmin(plate, 28 - fmax(fabs(p[0]), fabs(p[1]))));
+}
+
+/* Leave NaN where later calls have their variables. */
+static __attribute__((noinline)) void litter_stack(void)
+{
+	volatile uint32_t words[1 << 14];
+	for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+		words[i] = UINT32_MAX;
+}
+
+/* Embree checks each packet that it is given, also those that it makes of a larger one. */
+static void shadow_rays_that_are_not_cast_are_valid_with_every_instruction_set(void **state)
+{
+	(void)state;
+	struct gz_volume volume =
+		field_volume(field_ball_above_plate, BALL_DIMS, EVEN, GZ_VOXEL_F32);
+	const struct gz_object object = object_of(&volume);
+	const char *const *sets = small_scene_simd_sets();
+	struct stage first, other;
+	set_up_stage(&first);
+	set_up_stage(&other);
+	first.rays.surface.shadows = other.rays.surface.shadows = true;
+	for (int i = 0; sets[i]; i++) {
+		struct stage *stage = i == 0 ? &first : &other;
+		struct gz_surface_caster *caster = caster_of(&object, 1, 1, sets[i]);
+		litter_stack();
+		draw_with(caster, stage);
+		gz_surface_caster_destroy(&caster);
+		/* Few rays meet a surface, or the rim of a shadow, by chance. */
+		assert_true(i == 0 || image_pixels_apart(&first.image, &other.image) < 10);
+	}
+	take_down_stage(&first);
+	take_down_stage(&other);
+	gz_volume_free(&volume);
 }
 
 static void ball_casts_a_round_shadow_and_none_on_its_lit_side(void **state)
@@ -656,6 +694,8 @@ TEST_SUITE(surface_cast)
 		cmocka_unit_test(ball_and_ring_have_the_depth_and_normals_of_their_formulas),
 		cmocka_unit_test(any_number_of_threads_makes_the_same_picture),
 		cmocka_unit_test(plan_casts_the_same_rays_as_every_pixel),
+		cmocka_unit_test(
+			shadow_rays_that_are_not_cast_are_valid_with_every_instruction_set),
 		cmocka_unit_test(ball_casts_a_round_shadow_and_none_on_its_lit_side),
 		cmocka_unit_test(nearest_of_several_objects_shows),
 		cmocka_unit_test(mesh_looks_like_the_surface_it_was_made_of),

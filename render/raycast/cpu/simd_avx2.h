@@ -2,6 +2,7 @@
  * lane. */
 #include <immintrin.h>
 #include <stdint.h>
+#include <string.h>
 
 #define SIMD_LANES   8
 #define SIMD_GATHERS /* a look-up for each sample is cheap: fine_cells.h */
@@ -71,6 +72,12 @@ SIMD vi vi_set(int32_t x)
 SIMD void vf_store(float *x, vf a)
 {
 	_mm256_storeu_ps(x, a);
+}
+SIMD vi vi_load(const void *x)
+{
+	vi a;
+	memcpy(&a, x, sizeof a);
+	return a;
 }
 SIMD void vi_store(uint32_t *x, vi a)
 {

@@ -76,6 +76,12 @@ SIMD void vf_store(float *x, vf a)
 {
 	_mm512_storeu_ps(x, a);
 }
+SIMD vi vi_load(const void *x)
+{
+	vi a;
+	memcpy(&a, x, sizeof a);
+	return a;
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	_mm512_storeu_si512(x, a);

@@ -33,6 +33,12 @@ SIMD void vf_store(float *x, vf a)
 {
 	memcpy(x, &a, sizeof a);
 }
+SIMD vi vi_load(const void *x)
+{
+	vi a;
+	memcpy(&a, x, sizeof a);
+	return a;
+}
 SIMD void vi_store(uint32_t *x, vi a)
 {
 	memcpy(x, &a, sizeof a);

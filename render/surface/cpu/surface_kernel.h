@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdalign.h>
-#include <string.h>
 
 #include "render/raycast/cpu/simd_light.h"
 #include "render/surface/cpu/surface_cast.h"
@@ -20,13 +19,6 @@ struct packet {
 	alignas(64) float factor[GZ_SURFACE_RAYS];
 	float white[GZ_SURFACE_RAYS];
 };
-
-SIMD vi vi_load(const void *x)
-{
-	vi a;
-	memcpy(&a, x, sizeof a);
-	return a;
-}
 
 SIMD void store_mask(vm mask, int *out)
 {
@@ -159,7 +151,6 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, const struct gz_surfac
 	load_vertices(mesh->positions, at->vertices, mask, corners);
 	struct RTCRay16 *ray = &packet->shadow;
 	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
-	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
 	const vm behind = vf_less(dot_lanes(at->normal, view->eye), vf_set(0));
 	const vf side = vf_select(behind, vf_set(-1), vf_set(1));
 	vf place[3];
@@ -180,10 +171,8 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, const struct gz_surfac
 	if (cast->clipped)
 		(void)clip_lanes(cast, place, towards, &from, &to);
 	put_lanes(mask, to, ray->tfar + first);
-	for (int axis = 0; axis < 3; axis++) {
+	for (int axis = 0; axis < 3; axis++)
 		put_lanes(mask, place[axis], origins[axis] + first);
-		vf_store(directions[axis] + first, towards[axis]);
-	}
 }
 
 /* Light what the lanes of the mask have met, all of one mesh. Returns the lanes that the light
@@ -244,21 +233,22 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 	return vm_any(lit);
 }
 
-/* What the shadow rays of all lanes share. */
-SIMD void begin_shadows(int first, struct packet *packet)
+/* What the shadow rays of all lanes share. Those that are not cast are valid, too, and have ended:
+ * where Embree cuts a packet into smaller ones, it looks at all of their rays. */
+SIMD void begin_shadows(const struct gz_surface_cast *cast, int first, struct packet *packet)
 {
 	struct RTCRay16 *ray = &packet->shadow;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
 	vf_store(ray->tnear + first, vf_set(0));
-	vf_store(ray->tfar + first, vf_set(INFINITY));
+	vf_store(ray->tfar + first, vf_set(-INFINITY));
 	vf_store(ray->time + first, vf_set(0));
 	vi_store(ray->mask + first, vi_set(-1));
 	vi_store(ray->flags + first, vi_set(0));
-	for (int axis = 0; axis < 3; axis++)
-		vf_store((axis == 0   ? ray->org_x
-			  : axis == 1 ? ray->org_y
-				      : ray->org_z) +
-				 first,
-			 vf_set(0));
+	for (int axis = 0; axis < 3; axis++) {
+		vf_store(origins[axis] + first, vf_set(0));
+		vf_store(directions[axis] + first, vf_set(cast->light.towards[axis]));
+	}
 }
 
 /* Take the light from the rays whose shadow ray has met something: it ends at -INFINITY. */
@@ -297,7 +287,7 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 	{
 		aim_lanes(cast, tile, first, &packet);
 		if (cast->shadows)
-			begin_shadows(first, &packet);
+			begin_shadows(cast, first, &packet);
 	}
 	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
 	EACH_REGISTER any_lit |= light_hits(cast, first, &packet, out_hits);
