@@ -305,6 +305,19 @@ static void hash_meshes(struct gz_hash *hash, const struct gz_scene *scene)
 	}
 }
 
+/* The technique of the volume, and others beside it. */
+static void hash_techniques(struct gz_hash *hash, const struct gz_scene *scene)
+{
+	const struct gz_technique *first = gz_scene_main_technique(&scene->settings);
+	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	const size_t count =
+		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
+	gz_hash_add_text(hash, first->name);
+	for (size_t i = 0; i < count; i++)
+		if (objects[i].technique != first)
+			gz_hash_add_text(hash, objects[i].technique->name);
+}
+
 /* Of the data and of what the scene says of how they are shown; names of files do not count, what
  * is in them does. The camera stands in the study itself. */
 static enum gz_result hash_scene(const struct asking *asking, struct gz_study_scene *scene)
@@ -317,7 +330,7 @@ static enum gz_result hash_scene(const struct asking *asking, struct gz_study_sc
 		return result;
 	foveation.table_file[0] = '\0';
 	gz_hash_add_text(hash, scene->data_hash);
-	gz_hash_add_text(hash, gz_scene_main_technique(settings)->name);
+	hash_techniques(hash, &asking->stage->scene);
 	hash_meshes(hash, &asking->stage->scene);
 	gz_hash_add_rays(hash, &settings->rays);
 	gz_hash_add_options(hash, gz_foveation_options, gz_foveation_option_count, &foveation);

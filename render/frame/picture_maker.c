@@ -5,24 +5,19 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "render/frame/drawers.h"
 
 #define GZ_LOG_MODULE "picture"
-
-/* Objects of a picture. Chosen: an atlas of the brain has 116 regions. */
-enum { OBJECTS_MAX = 1024 };
 
 struct gz_picture_maker {
 	const struct gz_log *log;
 	struct gz_picture_maker_params params;
-	const struct gz_technique *technique; /* NULL before anything is shown */
-	struct gz_drawer *drawer;
-	struct gz_object *objects;
-	size_t object_count;
+	struct gz_drawers drawers;
 	struct gz_plan plan;
 	struct gz_temporal temporal;
 	struct gz_temporal_content content; /* of the current picture */
 	struct {
-		void *settings; /* a copy of the technique's; NULL before the first */
+		void *settings; /* a copy; NULL before the first */
 		struct gz_foveation foveation;
 	} kept_by;            /* what the accumulated pictures were made with */
 	struct gz_image cast; /* at the rays' resolution, if that is not the picture's */
@@ -53,6 +48,11 @@ enum gz_result gz_picture_maker_create(const struct gz_picture_maker_params *par
 		return GZ_ERR_NO_MEM;
 	maker->log = log;
 	maker->params = *params;
+	maker->drawers = (struct gz_drawers) {
+		.log = log,
+		.backend = maker->params.backend,
+		.backend_params = &maker->params.backend_params,
+	};
 	*out_maker = maker;
 	return GZ_OK;
 }
@@ -65,107 +65,38 @@ static bool chooses_backend(const struct gz_picture_maker *maker)
 
 static bool draws_by_cpu(const struct gz_picture_maker *maker)
 {
-	return maker->drawer && strcmp(maker->drawer->ops->backend(maker->drawer), "cpu") == 0;
+	return strcmp(gz_picture_maker_backend(maker), "cpu") == 0;
 }
 
 /* Whether cpu may draw in place of a backend that has failed. */
 static bool cpu_may_take_over(const struct gz_picture_maker *maker, enum gz_result failure)
 {
-	if (!maker->params.cpu_takes_over || !maker->drawer || draws_by_cpu(maker))
+	if (!maker->params.cpu_takes_over || !gz_drawers_last(&maker->drawers) ||
+	    draws_by_cpu(maker))
 		return false;
 	return failure == GZ_ERR_NO_DEVICE || failure == GZ_ERR_NO_MEM ||
 	       (failure == GZ_ERR_UNSUPPORTED && chooses_backend(maker));
 }
 
-static enum gz_result show_on_drawer(struct gz_picture_maker *maker)
-{
-	return maker->drawer->ops->show(maker->drawer, maker->objects, maker->object_count);
-}
-
 static enum gz_result let_cpu_take_over(struct gz_picture_maker *maker)
 {
 	gz_warn(maker->log, "the cpu backend draws from now on");
-	gz_drawer_destroy(&maker->drawer);
-	enum gz_result result = maker->technique->create("cpu", &maker->params.backend_params,
-							 maker->log, &maker->drawer);
-	if (result == GZ_OK)
-		result = show_on_drawer(maker);
-	return result;
-}
-
-/* Check that one drawer can show all the objects. */
-static enum gz_result check_objects(const struct gz_picture_maker *maker,
-				    const struct gz_object *objects, size_t count)
-{
-	if (count < 1) {
-		gz_err(maker->log,
-		       "no object is visible; set visible = yes for one of the scene's");
-		return GZ_ERR_UNSUPPORTED;
-	}
-	if (count > OBJECTS_MAX) {
-		gz_err(maker->log, "a picture shows at most %d objects, not %zu", OBJECTS_MAX,
-		       count);
-		return GZ_ERR_UNSUPPORTED;
-	}
-	for (size_t i = 1; i < count; i++)
-		if (objects[i].technique != objects[0].technique) {
-			gz_err(maker->log,
-			       "one technique draws all objects of a picture; here are %s and %s",
-			       objects[0].technique->name, objects[i].technique->name);
-			return GZ_ERR_UNSUPPORTED;
-		}
-	if (count > objects[0].technique->objects_max) {
-		gz_err(maker->log, "%s draws at most %zu objects in a picture, not %zu",
-		       objects[0].technique->name, objects[0].technique->objects_max, count);
-		return GZ_ERR_UNSUPPORTED;
-	}
-	return GZ_OK;
-}
-
-static enum gz_result keep_objects(struct gz_picture_maker *maker, const struct gz_object *objects,
-				   size_t count)
-{
-	struct gz_object *copy = malloc(count * sizeof *copy);
-	if (!copy)
-		return GZ_ERR_NO_MEM;
-	memcpy(copy, objects, count * sizeof *copy);
-	free(maker->objects);
-	maker->objects = copy;
-	maker->object_count = count;
-	return GZ_OK;
-}
-
-static enum gz_result open_drawer(struct gz_picture_maker *maker,
-				  const struct gz_technique *technique)
-{
-	if (maker->technique == technique && maker->drawer)
-		return GZ_OK;
-	gz_drawer_destroy(&maker->drawer);
-	free(maker->kept_by.settings);
-	maker->kept_by.settings = NULL;
-	maker->technique = technique;
-	return technique->create(maker->params.backend, &maker->params.backend_params, maker->log,
-				 &maker->drawer);
+	return gz_drawers_take_cpu(&maker->drawers);
 }
 
 enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 				     const struct gz_object *objects, size_t count)
 {
-	enum gz_result result = check_objects(maker, objects, count);
 	gz_picture_maker_forget(maker);
-	if (result == GZ_OK)
-		result = keep_objects(maker, objects, count);
-	if (result == GZ_OK)
-		result = open_drawer(maker, objects[0].technique);
-	if (result == GZ_OK) {
-		result = show_on_drawer(maker);
-		if (chooses_backend(maker) && cpu_may_take_over(maker, result))
-			result = let_cpu_take_over(maker);
-	}
+	free(maker->kept_by.settings);
+	maker->kept_by.settings = NULL;
+	enum gz_result result = gz_drawers_show(&maker->drawers, objects, count);
+	if (chooses_backend(maker) && cpu_may_take_over(maker, result))
+		result = let_cpu_take_over(maker);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(maker->log, "no memory to draw with; close other programs, or show less");
 	if (result != GZ_OK)
-		gz_drawer_destroy(&maker->drawer);
+		gz_drawers_close(&maker->drawers);
 	return result;
 }
 
@@ -202,10 +133,10 @@ static enum gz_result note_content(struct making *making)
 {
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_picture_request *request = making->request;
-	const size_t size = maker->technique->settings_size;
+	const size_t size = maker->drawers.items[0].technique->settings_size;
 	const bool same = maker->kept_by.settings &&
-			  gz_technique_settings_same(maker->technique, maker->kept_by.settings,
-						     request->settings) &&
+			  gz_drawers_settings_same(&maker->drawers, maker->kept_by.settings,
+						   request->settings) &&
 			  gz_foveation_same(&maker->kept_by.foveation, request->foveation);
 	if (!maker->kept_by.settings)
 		maker->kept_by.settings = malloc(size);
@@ -221,9 +152,13 @@ static enum gz_result note_content(struct making *making)
 
 static bool shows_bricks(const struct gz_picture_maker *maker)
 {
-	for (size_t i = 0; i < maker->object_count; i++)
-		if (maker->objects[i].volume && maker->objects[i].volume->bricks)
-			return true;
+	const struct gz_drawers *drawers = &maker->drawers;
+	for (size_t i = 0; i < drawers->count; i++)
+		for (size_t k = 0; k < drawers->items[i].object_count; k++) {
+			const struct gz_volume *volume = drawers->items[i].objects[k].volume;
+			if (volume && volume->bricks)
+				return true;
+		}
 	return false;
 }
 
@@ -274,7 +209,7 @@ static enum gz_result plan_request_of(const struct making *making,
 	plan.rays_per_px = rate;
 	plan.scale = request->focus.scale;
 	plan.widen = request->focus.widen;
-	const struct gz_drawer *drawer = making->maker->drawer;
+	const struct gz_drawer *drawer = gz_drawers_last(&making->maker->drawers);
 	const struct gz_shot shot = shot_of(making);
 	if (drawer->ops->bound_plan)
 		drawer->ops->bound_plan(drawer, &shot, &plan);
@@ -312,16 +247,17 @@ static enum gz_result draw_or_take_over(struct making *making, struct gz_image *
 {
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_shot shot = shot_of(making);
-	making->on_device = making->on_device && maker->drawer->ops->keeps_on_device(maker->drawer);
-	enum gz_result result = maker->drawer->ops->draw(
-		maker->drawer, &shot, making->on_device ? NULL : image, &making->cost.stats);
+	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	making->on_device = making->on_device && drawer->ops->keeps_on_device(drawer);
+	enum gz_result result = gz_drawers_draw(
+		&maker->drawers, &shot, making->on_device ? NULL : image, &making->cost.stats);
 	if (!cpu_may_take_over(maker, result) ||
 	    (result == GZ_ERR_NO_DEVICE && making->request->loss_returned))
 		return result;
 	making->on_device = false;
 	result = let_cpu_take_over(maker);
 	if (result == GZ_OK)
-		result = maker->drawer->ops->draw(maker->drawer, &shot, image, &making->cost.stats);
+		result = gz_drawers_draw(&maker->drawers, &shot, image, &making->cost.stats);
 	return result;
 }
 
@@ -372,7 +308,7 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 			       const struct gz_picture_request *request,
 			       struct gz_image **out_image, struct gz_picture_cost *out_cost)
 {
-	if (!maker->drawer)
+	if (!gz_drawers_last(&maker->drawers))
 		return GZ_ERR_INVAL;
 	struct making making = {
 		.maker = maker,
@@ -400,7 +336,8 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker)
 {
-	return maker->drawer ? maker->drawer->ops->picture_texture(maker->drawer) : 0;
+	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	return drawer ? drawer->ops->picture_texture(drawer) : 0;
 }
 
 const struct gz_plan *gz_picture_maker_plan(const struct gz_picture_maker *maker)
@@ -410,12 +347,14 @@ const struct gz_plan *gz_picture_maker_plan(const struct gz_picture_maker *maker
 
 const char *gz_picture_maker_backend(const struct gz_picture_maker *maker)
 {
-	return maker->drawer ? maker->drawer->ops->backend(maker->drawer) : "";
+	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	return drawer ? drawer->ops->backend(drawer) : "";
 }
 
 const char *gz_picture_maker_describe(const struct gz_picture_maker *maker)
 {
-	return maker->drawer ? maker->drawer->ops->describe(maker->drawer) : "";
+	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	return drawer ? drawer->ops->describe(drawer) : "";
 }
 
 bool gz_picture_maker_settling(const struct gz_picture_maker *maker)
@@ -433,13 +372,12 @@ void gz_picture_maker_destroy(struct gz_picture_maker **maker)
 	struct gz_picture_maker *self = *maker;
 	if (!self)
 		return;
-	gz_drawer_destroy(&self->drawer);
+	gz_drawers_free(&self->drawers);
 	gz_plan_free(&self->plan);
 	gz_temporal_free(&self->temporal);
 	gz_image_free(&self->cast);
 	gz_image_free(&self->image);
 	free(self->kept_by.settings);
-	free(self->objects);
 	free(self);
 	*maker = NULL;
 }

@@ -24,7 +24,7 @@ struct gz_picture_maker;
 
 /** How a maker draws. Texts are borrowed and outlive the maker. */
 struct gz_picture_maker_params {
-	const char *backend; /**< "auto", or a name of the technique's backends */
+	const char *backend; /**< "auto", or a name of the techniques' backends */
 	struct gz_backend_params backend_params;
 	/** Let cpu replace a backend that fails for good: its device is lost or out of memory, or
 	 *  "auto" chose it and it does not support what is shown. Logged as a warning. */
@@ -47,9 +47,12 @@ enum gz_result gz_picture_maker_create(const struct gz_picture_maker_params *par
  * borrowed until another list is shown or the maker is destroyed. Only data whose revision has
  * changed are prepared again.
  *
+ * Objects of several techniques hide each other as their depths say. Each ray of the plan meets all
+ * of them before the picture is reconstructed.
+ *
  * @param count  1 to 1024
- * @retval GZ_ERR_UNSUPPORTED  no objects, too many, objects of several techniques, or something
- * that the technique or its backend cannot show; logged
+ * @retval GZ_ERR_UNSUPPORTED  no objects, too many, techniques that do not share a picture (enum
+ * gz_sharing), or something that a technique or its backend cannot show; logged
  * @return otherwise the failures of gz_technique.create and gz_drawer_ops.show; logged
  */
 enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
@@ -58,7 +61,7 @@ enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 /** One picture to make. All pointers are borrowed until the call returns. */
 struct gz_picture_request {
 	const struct gz_camera *camera;
-	const void *settings; /**< of the technique */
+	const void *settings; /**< of the techniques, which share one struct */
 	const struct gz_foveation *foveation;
 	const struct gz_display *display; /**< of the picture, which fills it */
 	struct gz_focus focus;            /**< where the plan is sharp: gz_focus_at() */
@@ -126,7 +129,8 @@ unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker);
 /** The maker's own plan, as of the last picture; without tiles before the first. */
 const struct gz_plan *gz_picture_maker_plan(const struct gz_picture_maker *maker);
 
-/** Name of the backend that draws: "cpu", "gl"; "" before anything is shown. Static text. */
+/** Name of the backend that draws, of several techniques the last: "cpu", "gl"; "" before anything
+ * is shown. Static text. */
 const char *gz_picture_maker_backend(const struct gz_picture_maker *maker);
 
 /** One line for reports, such as "avx512, 2 threads"; "" before anything is shown. Valid until

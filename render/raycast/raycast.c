@@ -76,14 +76,21 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
 	return raycaster->ops->set_transfer(raycaster, transfer);
 }
 
+enum gz_result gz_raycaster_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				 struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	if (!gz_ray_params_valid(shot->settings) || shot->plan->layer_count < 1 ||
+	    (!image && !raycaster->ops->picture_texture))
+		return GZ_ERR_INVAL;
+	return raycaster->ops->draw(raycaster, shot, image, out_stats);
+}
+
 enum gz_result gz_raycaster_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
 				   const struct gz_ray_params *rays, const struct gz_plan *plan,
 				   struct gz_image *image, struct gz_frame_stats *out_stats)
 {
-	if (!gz_ray_params_valid(rays) || plan->layer_count < 1 ||
-	    (!image && !raycaster->ops->picture_texture))
-		return GZ_ERR_INVAL;
-	return raycaster->ops->render(raycaster, camera, rays, plan, image, out_stats);
+	const struct gz_shot shot = { .camera = camera, .settings = rays, .plan = plan };
+	return gz_raycaster_draw(raycaster, &shot, image, out_stats);
 }
 
 unsigned gz_raycaster_picture_texture(const struct gz_raycaster *raycaster)
@@ -176,8 +183,7 @@ static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_sho
 				   struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	struct raycast_drawer *self = raycast_of(drawer);
-	const enum gz_result result = gz_raycaster_render(
-		self->raycaster, shot->camera, shot->settings, shot->plan, image, out_stats);
+	const enum gz_result result = gz_raycaster_draw(self->raycaster, shot, image, out_stats);
 	if (result == GZ_OK && out_stats)
 		out_stats->prepare_ms = self->prepare_ms;
 	if (result == GZ_OK)
@@ -258,6 +264,7 @@ const struct gz_technique gz_raycast_technique = {
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_PARTICLES,
 	.objects_max = 1,
 	.backends = raycast_backends,
+	.sharing = GZ_SHARES_AS_CLEAR,
 	.check = gz_raycaster_check,
 	.create = raycast_create,
 	.settings_size = sizeof(struct gz_ray_params),

@@ -230,7 +230,7 @@ static enum gz_result load_named_transfer(const struct scene_loader *loader,
 	const bool own_key = name == loader->settings->transfer_file;
 	return load_transfer(loader,
 			     own_key ? "transfer.file"
-				     : gz_scene_volume_object(loader->settings)->section,
+				     : gz_scene_transfer_object(loader->settings)->section,
 			     name, out_transfer);
 }
 
@@ -352,8 +352,9 @@ static void list_object(const struct gz_object *object, struct gz_object *out_ob
 	++*count;
 }
 
-size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out_objects,
-			     size_t room)
+/* Append the volume once for each technique that shows it. The first has the id 1. */
+static void list_volumes(const struct gz_scene *scene, struct gz_object *out_objects, size_t room,
+			 size_t *count)
 {
 	const struct gz_scene_settings *settings = &scene->settings;
 	const struct gz_scene_object *shown = gz_scene_volume_object(settings);
@@ -363,14 +364,36 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 		.volume = &scene->volume,
 		.transfer = &scene->transfer,
 	};
+	if (!shown && gz_scene_has_volume(settings))
+		list_object(&object, out_objects, room, count);
+	for (size_t i = 0; i < settings->objects.count; i++) {
+		const struct gz_scene_object *item = &settings->objects.items[i];
+		if (!gz_scene_shows_volume(item) || !item->visible)
+			continue;
+		/* render.technique may draw all of them by one. */
+		if (*count > 0 && settings->technique > 0)
+			continue;
+		object.technique = gz_scene_technique(settings, item);
+		object.id = item == shown ? 1 : (uint32_t)i + 2;
+		list_object(&object, out_objects, room, count);
+	}
+}
+
+size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out_objects,
+			     size_t room)
+{
+	const struct gz_scene_settings *settings = &scene->settings;
 	size_t count = 0;
-	if (gz_scene_has_volume(settings) && (!shown || shown->visible))
-		list_object(&object, out_objects, room, &count);
+	list_volumes(scene, out_objects, room, &count);
 	for (size_t i = 0; scene->meshes && i < settings->objects.count; i++) {
 		const struct gz_scene_object *item = &settings->objects.items[i];
-		object.technique = gz_scene_technique(settings, item);
-		object.id = (uint32_t)i + 2;
-		object.mesh = &scene->meshes[i];
+		const struct gz_object object = {
+			.technique = gz_scene_technique(settings, item),
+			.id = (uint32_t)i + 2,
+			.volume = &scene->volume,
+			.transfer = &scene->transfer,
+			.mesh = &scene->meshes[i],
+		};
 		if (item->mesh[0] && item->visible)
 			list_object(&object, out_objects, room, &count);
 	}

@@ -172,10 +172,23 @@ bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_
 	return *out_type != GZ_VOXEL_F32 || settings->type == GZ_RAW_FLOAT32;
 }
 
+bool gz_scene_shows_volume(const struct gz_scene_object *object)
+{
+	return object->volume[0] || object->particles[0];
+}
+
 const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings)
 {
 	for (size_t i = 0; i < settings->objects.count; i++)
-		if (settings->objects.items[i].volume[0] || settings->objects.items[i].particles[0])
+		if (gz_scene_shows_volume(&settings->objects.items[i]))
+			return &settings->objects.items[i];
+	return NULL;
+}
+
+const struct gz_scene_object *gz_scene_transfer_object(const struct gz_scene_settings *settings)
+{
+	for (size_t i = 0; i < settings->objects.count; i++)
+		if (settings->objects.items[i].transfer[0])
 			return &settings->objects.items[i];
 	return NULL;
 }
@@ -202,12 +215,22 @@ const struct gz_technique *gz_scene_main_technique(const struct gz_scene_setting
 	return gz_scene_technique(settings, object);
 }
 
+bool gz_scene_draws_by(const struct gz_scene_settings *settings,
+		       const struct gz_technique *technique)
+{
+	bool draws = gz_scene_main_technique(settings) == technique;
+	for (size_t i = 0; i < settings->objects.count; i++) {
+		const struct gz_scene_object *object = &settings->objects.items[i];
+		draws = draws ||
+			(object->visible && gz_scene_technique(settings, object) == technique);
+	}
+	return draws;
+}
+
 const char *gz_scene_transfer_name(const struct gz_scene_settings *settings)
 {
-	const struct gz_scene_object *object = gz_scene_volume_object(settings);
-	if (settings->transfer_file[0] || !object)
-		return settings->transfer_file;
-	return object->transfer;
+	const struct gz_scene_object *object = gz_scene_transfer_object(settings);
+	return settings->transfer_file[0] || !object ? settings->transfer_file : object->transfer;
 }
 
 /* render.technique must show what every object has. */
@@ -353,19 +376,60 @@ static enum gz_result check_volume_keys(const struct scene_reader *reader)
 	return check_raw_layout(reader);
 }
 
-/* No technique draws two volumes into one picture. */
+/* Whether two objects show the same data. */
+static bool is_same_volume(const struct gz_scene_object *a, const struct gz_scene_object *b)
+{
+	return strcmp(a->volume, b->volume) == 0 && strcmp(a->particles, b->particles) == 0;
+}
+
+/* Refuse an object that shows the volume of an earlier one, unless by another technique. */
+static enum gz_result check_volume_again(const struct scene_reader *reader,
+					 const struct gz_scene_object *object)
+{
+	const struct gz_scene_objects *objects = &reader->settings->objects;
+	for (const struct gz_scene_object *other = objects->items; other < object; other++) {
+		if (!gz_scene_shows_volume(other))
+			continue;
+		if (other->technique == object->technique) {
+			gz_err(reader->log,
+			       "%s: [%s] and [%s] show one volume by one technique; remove one, or "
+			       "give it another technique",
+			       reader->name, other->section, object->section);
+			return GZ_ERR_FORMAT;
+		}
+		if (other->transfer[0] && object->transfer[0] &&
+		    strcmp(other->transfer, object->transfer) != 0) {
+			gz_err(reader->log,
+			       "%s: %s: transfer: not that of [%s], and a scene has one transfer "
+			       "function; keep one",
+			       reader->name, object->section, other->section);
+			return GZ_ERR_FORMAT;
+		}
+	}
+	return GZ_OK;
+}
+
+/* A scene has one volume, which several techniques may show. */
 static enum gz_result check_one_volume(const struct scene_reader *reader)
 {
 	const struct gz_scene_settings *settings = reader->settings;
-	size_t volumes = settings->volume_file[0] || settings->volume_procedural;
-	for (size_t i = 0; i < settings->objects.count; i++)
-		volumes += settings->objects.items[i].volume[0] ||
-			   settings->objects.items[i].particles[0];
-	if (volumes <= 1)
-		return GZ_OK;
-	gz_err(reader->log, "%s: %zu volumes are given, and a scene shows one; keep one",
-	       reader->name, volumes);
-	return GZ_ERR_FORMAT;
+	const struct gz_scene_object *first = gz_scene_volume_object(settings);
+	size_t volumes =
+		(settings->volume_file[0] || settings->volume_procedural) + (first != NULL);
+	for (size_t i = 0; i < settings->objects.count; i++) {
+		const struct gz_scene_object *object = &settings->objects.items[i];
+		volumes += gz_scene_shows_volume(object) && first && !is_same_volume(first, object);
+	}
+	if (volumes > 1) {
+		gz_err(reader->log, "%s: %zu volumes are given, and a scene shows one; keep one",
+		       reader->name, volumes);
+		return GZ_ERR_FORMAT;
+	}
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++)
+		if (gz_scene_shows_volume(&settings->objects.items[i]))
+			result = check_volume_again(reader, &settings->objects.items[i]);
+	return result;
 }
 
 static enum gz_result check_display_keys(const struct scene_reader *reader, bool *out_has_display)

@@ -107,9 +107,15 @@ int gz_scene_procedural_type(int volume_procedural);
  */
 bool gz_scene_made_type(const struct gz_scene_settings *settings, enum gz_voxel_type *out_type);
 
-/** The object whose volume or particles the scene shows; NULL if section [volume] names them.
- * Borrowed. */
+/** Whether an object shows the volume, or the one made of particles. */
+bool gz_scene_shows_volume(const struct gz_scene_object *object);
+
+/** The first object whose volume or particles the scene shows; others show the same data by other
+ * techniques. NULL if section [volume] names them. Borrowed. */
 const struct gz_scene_object *gz_scene_volume_object(const struct gz_scene_settings *settings);
+
+/** The object that names the transfer function; NULL: none does. Borrowed. */
+const struct gz_scene_object *gz_scene_transfer_object(const struct gz_scene_settings *settings);
 
 /** The technique that draws an object: render.technique, or the object's own. @param object  NULL:
  *  the volume of section [volume]. Static. */
@@ -119,11 +125,16 @@ const struct gz_technique *gz_scene_technique(const struct gz_scene_settings *se
 /** Whether the scene has a volume; otherwise it shows meshes alone. */
 bool gz_scene_has_volume(const struct gz_scene_settings *settings);
 
-/** The technique that draws the volume, or the first object of a scene without one. Static. */
+/** The technique that draws the volume (of several objects, the first), or the first object of a
+ * scene without one. Static. */
 const struct gz_technique *gz_scene_main_technique(const struct gz_scene_settings *settings);
 
-/** The file of the transfer function that is used: transfer.file if given, else that of the
- * volume's object. "" = one is made for the volume. Borrowed. */
+/** Whether a technique draws anything of the scene. */
+bool gz_scene_draws_by(const struct gz_scene_settings *settings,
+		       const struct gz_technique *technique);
+
+/** The file of the transfer function that is used: transfer.file if given, else that of
+ * gz_scene_transfer_object(). "" = one is made for the volume. Borrowed. */
 const char *gz_scene_transfer_name(const struct gz_scene_settings *settings);
 
 /**

@@ -23,16 +23,29 @@ static enum gz_result isosurface_show(struct gz_drawer *drawer, const struct gz_
 	return gz_surface_caster_show(caster_of(drawer), objects, count);
 }
 
-static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
-				      struct gz_image *image, struct gz_frame_stats *out_stats)
+static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 {
-	const struct gz_surface_shot surfaces = {
+	return (struct gz_surface_shot) {
 		.camera = shot->camera,
 		.rays = shot->settings,
 		.plan = shot->plan,
+		.hits = shot->hits,
 	};
+}
+
+static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
+				      struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	const struct gz_surface_shot surfaces = surface_shot_of(shot);
 	return image ? gz_surface_caster_draw(caster_of(drawer), &surfaces, image, NULL, out_stats)
 		     : GZ_ERR_INVAL;
+}
+
+static enum gz_result isosurface_cast_hits(struct gz_drawer *drawer, const struct gz_shot *shot,
+					   struct gz_frame_stats *out_stats)
+{
+	const struct gz_surface_shot surfaces = surface_shot_of(shot);
+	return gz_surface_caster_draw(caster_of(drawer), &surfaces, NULL, NULL, out_stats);
 }
 
 static bool isosurface_keeps_on_device(const struct gz_drawer *drawer)
@@ -68,6 +81,7 @@ static void isosurface_destroy(struct gz_drawer *drawer)
 static const struct gz_drawer_ops isosurface_ops = {
 	.show = isosurface_show,
 	.draw = isosurface_draw,
+	.cast_hits = isosurface_cast_hits,
 	.keeps_on_device = isosurface_keeps_on_device,
 	.picture_texture = isosurface_picture_texture,
 	.backend = isosurface_backend,

@@ -24,6 +24,7 @@ const struct gz_technique gz_isosurface_technique = {
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
 	.objects_max = SURFACES_MAX,
 	.backends = isosurface_backends,
+	.sharing = GZ_SHARES_AS_OPAQUE,
 	.check = gz_isosurface_check,
 	.create = gz_isosurface_create,
 	.settings_size = sizeof(struct gz_ray_params),

@@ -19,6 +19,7 @@
 #include "render/picture/camera.h"
 #include "render/picture/image.h"
 #include "render/plan/plan.h"
+#include "render/technique/ray_hits.h"
 #include "render/transfer/transfer.h"
 
 struct gz_gl_context;
@@ -82,6 +83,9 @@ struct gz_shot {
 	const struct gz_camera *camera;
 	const void *settings; /**< the struct that the technique's options describe */
 	const struct gz_plan *plan;
+	/** What others have drawn into the picture; NULL: nothing. GZ_SHARES_AS_OPAQUE: put in what
+	 *  lies nearer. GZ_SHARES_AS_CLEAR: end the rays there, in front of these pixels. */
+	struct gz_ray_hits *hits;
 };
 
 struct gz_drawer;
@@ -102,9 +106,15 @@ struct gz_drawer_ops {
 			   struct gz_plan_request *request);
 	/** Draw a picture of the plan's size and write every pixel. @p image NULL leaves the
 	 * picture on the device (see picture_texture). @p out_stats may be NULL.
-	 * GZ_ERR_NO_DEVICE: the device is lost. Every failure is logged. */
+	 * GZ_ERR_NO_DEVICE: the device is lost. Every failure is logged. GZ_SHARES_AS_CLEAR:
+	 * shot->hits may be there, and GZ_ERR_UNSUPPORTED says that the backend cannot end rays
+	 * at them. */
 	enum gz_result (*draw)(struct gz_drawer *drawer, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats);
+	/** Of techniques with GZ_SHARES_AS_OPAQUE, else NULL. Cast the plan's rays, and put what
+	 *  lies nearer into shot->hits, which is there. Fails as draw does. */
+	enum gz_result (*cast_hits)(struct gz_drawer *drawer, const struct gz_shot *shot,
+				    struct gz_frame_stats *out_stats);
 	/** Whether pictures can stay on the device. If not, draw needs an image. */
 	bool (*keeps_on_device)(const struct gz_drawer *drawer);
 	/** OpenGL's name of the texture (RGBA8, row 0 on top) that holds the last picture drawn
@@ -123,6 +133,13 @@ struct gz_drawer {
 	const struct gz_drawer_ops *ops;
 };
 
+/** How a technique shares a picture with others. */
+enum gz_sharing {
+	GZ_SHARES_NOT,
+	GZ_SHARES_AS_OPAQUE, /**< what it shows hides everything behind; drawn first */
+	GZ_SHARES_AS_CLEAR,  /**< its rays gather colour up to what others show; one of a picture */
+};
+
 /** Most option tables of one technique. Chosen: a scene has a dozen. */
 #define GZ_TECHNIQUE_BINDINGS_MAX 16
 
@@ -133,6 +150,7 @@ struct gz_technique {
 	unsigned shows;              /**< enum gz_object_data: the kinds of data it can show */
 	size_t objects_max;          /**< most objects of one picture */
 	const char *const *backends; /**< names, NULL-terminated, best first on a graphics device */
+	enum gz_sharing sharing;     /**< those that share have settings of one struct */
 	/**
 	 * Check a backend's name and parameters before there is anything to show. Logged. Returns
 	 * the failures of create() but GZ_ERR_NO_MEM.

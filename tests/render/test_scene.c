@@ -145,6 +145,13 @@ static const struct refusal refusals[] = {
 	{ "[object a]\nvolume = a.nii\n[object b]\nvolume = b.nii\n",
 	  "s.scene: 2 volumes are given, and a scene shows one" },
 	{ SCENE "[object a]\nvolume = a.nii\n", "s.scene: 2 volumes are given" },
+	{ "[object a]\nvolume = a.nii\n[object b]\nvolume = a.nii\n",
+	  "s.scene: [object a] and [object b] show one volume by one technique; remove one" },
+	{ "[object a]\nvolume = a.nii\ntransfer = a.tf\n"
+	  "[object b]\nvolume = a.nii\ntransfer = b.tf\ntechnique = isosurface\n",
+	  "s.scene: object b: transfer: not that of [object a]" },
+	{ "[object a]\nvolume = a.nii\n[object b]\nvolume = b.nii\ntechnique = isosurface\n",
+	  "s.scene: 2 volumes are given" },
 };
 
 static void each_refusal_names_place_and_remedy(void **state)
@@ -216,6 +223,41 @@ static void object_with_a_volume_is_loaded_and_listed(void **state)
 	path = files_write_text("p.scene", "[object tiny]\nvolume = none.nrrd\n", NULL, 0);
 	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
 	assert_non_null(strstr(log.last, "object tiny: none.nrrd is neither beside the scene"));
+}
+
+static void two_objects_show_one_volume_by_two_techniques(void **state)
+{
+	(void)state;
+	struct gz_scene scene;
+	struct captured_log log;
+	struct gz_object objects[3];
+	const uint8_t voxels[4] = { 0, 1, 2, 3 };
+	captured_log_init(&log, NULL);
+	files_write_text("ramp.tf", "0 0 0 0 0\n1 1 1 1 1\n", NULL, 0);
+	files_write_text("v.nrrd",
+			 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n\n",
+			 voxels, sizeof voxels);
+	const char *path =
+		files_write_text("o.scene",
+				 "[object bone]\nvolume = v.nrrd\ntechnique = isosurface\n"
+				 "[object skin]\nvolume = v.nrrd\ntransfer = ramp.tf\n",
+				 NULL, 0);
+	if (gz_scene_load(path, NULL, &log.log, &scene) != GZ_OK)
+		fail_msg("%s", log.last);
+	assert_int_equal(scene.transfer.count, 2); /* of the second object */
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 3), 2);
+	assert_string_equal(objects[0].technique->name, "isosurface");
+	assert_string_equal(objects[1].technique->name, "raycast");
+	assert_true(objects[0].id == 1 && objects[1].id == 3);
+	assert_ptr_equal(objects[1].volume, &scene.volume);
+	scene.settings.objects.items[0].visible = false;
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 3), 1);
+	assert_string_equal(objects[0].technique->name, "raycast");
+	scene.settings.objects.items[0].visible = true;
+	scene.settings.technique = 1; /* one draws both */
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 3), 1);
+	assert_string_equal(objects[0].technique->name, "raycast");
+	gz_scene_free(&scene);
 }
 
 static void transfer_file_replaces_that_of_the_object(void **state)
@@ -406,6 +448,7 @@ TEST_SUITE(scene)
 		cmocka_unit_test(each_refusal_names_place_and_remedy),
 		cmocka_unit_test(object_sections_are_read_with_their_presets),
 		cmocka_unit_test(object_with_a_volume_is_loaded_and_listed),
+		cmocka_unit_test(two_objects_show_one_volume_by_two_techniques),
 		cmocka_unit_test(transfer_file_replaces_that_of_the_object),
 		cmocka_unit_test(settings_differ_by_every_key),
 		cmocka_unit_test(every_key_is_documented),

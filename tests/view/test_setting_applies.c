@@ -103,6 +103,18 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_false(gz_setting_applies(&settings, "light.shadow_steps"));
 	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
 	assert_false(gz_setting_applies(&settings, "render.shading"));
+	/* two objects of two techniques */
+	settings.technique = 0;
+	settings.rays.shading = GZ_SHADING_NONE;
+	settings.objects.count = 2;
+	settings.objects.items[1].technique = 1;
+	settings.objects.items[1].visible = true;
+	assert_true(gz_setting_applies(&settings, "isosurface.isovalue"));
+	assert_true(gz_setting_applies(&settings, "light.ambient"));
+	assert_true(gz_setting_applies(&settings, "render.shading"));
+	assert_false(gz_setting_applies(&settings, "light.occlusion"));
+	settings.objects.items[1].visible = false;
+	assert_false(gz_setting_applies(&settings, "isosurface.isovalue"));
 }
 
 TEST_SUITE(setting_applies)

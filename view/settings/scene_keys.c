@@ -4,6 +4,7 @@
 
 #include "render/plan/method.h"
 #include "render/raycast/raycast.h"
+#include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
 	GZ_SCENE_CAMERA,   GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,      GZ_SCENE_LIGHT,
@@ -42,12 +43,12 @@ static bool in_parallel(const struct gz_scene_settings *settings)
 
 static bool by_raycast(const struct gz_scene_settings *settings)
 {
-	return gz_scene_main_technique(settings) == &gz_raycast_technique;
+	return gz_scene_draws_by(settings, &gz_raycast_technique);
 }
 
 static bool by_isosurface(const struct gz_scene_settings *settings)
 {
-	return !by_raycast(settings);
+	return gz_scene_draws_by(settings, &gz_isosurface_technique);
 }
 
 /* Surfaces are always lit. */
@@ -58,7 +59,7 @@ static bool with_light(const struct gz_scene_settings *settings)
 
 static bool with_lit_samples(const struct gz_scene_settings *settings)
 {
-	return by_raycast(settings) && with_light(settings);
+	return by_raycast(settings) && settings->rays.shading == GZ_SHADING_GRADIENT;
 }
 
 static bool with_occlusion(const struct gz_scene_settings *settings)

@@ -28,9 +28,9 @@
 struct gz_window_compare {
 	struct gz_compare drawing;
 	struct gz_reference_worker *worker;
-	const struct gz_technique *technique; /* of the worker */
-	struct gz_image image;                /* the last standard picture */
-	bool any;                             /* it is in the texture */
+	int technique;         /* render.technique of the worker */
+	struct gz_image image; /* the last standard picture */
+	bool any;              /* it is in the texture */
 	bool busy;
 	double share, share_shown;
 };
@@ -112,10 +112,10 @@ static void drop_standard(struct gz_window_compare *self)
 	self->any = self->busy = false;
 }
 
-/* What draws the picture on the screen. */
-static const struct gz_technique *shown_technique(const struct gz_window *window)
+/* render.technique of the picture on the screen. */
+static int shown_technique(const struct gz_window *window)
 {
-	return gz_scene_main_technique(&gz_frame_maker_scene(window->maker)->settings);
+	return gz_frame_maker_scene(window->maker)->settings.technique;
 }
 
 static void start_standard_worker(struct gz_window *window)

@@ -14,6 +14,7 @@
 #include "render/raycast/cpu/fine_cells.h"
 #include "render/raycast/shared/cast_constants.h"
 #include "render/raycast/shared/lighting.h"
+#include "render/technique/ray_hits.h"
 #include "render/transfer/transfer_table.h"
 
 #define GZ_TILE_RAYS (GZ_TILE_EDGE * GZ_TILE_EDGE)
@@ -85,6 +86,10 @@ struct gz_cast_tile {
 	float jitter[GZ_TILE_RAYS];             /**< see gz_ray_jitter() */
 	int step;
 	uint32_t active; /**< bit i: cast ray i */
+	/** What the rays meet: they end at these depths, in front of these pixels, as in struct
+	 *  gz_ray_hits. NULL: nothing. */
+	const float *hit_depth;
+	const uint32_t *hit_pixels;
 };
 
 /**

@@ -178,6 +178,8 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
 		set_up_rays(cast, tile, first, &rays);
 		if (!vm_any(rays.hit)) {
+			if (__builtin_expect(tile->hit_depth != NULL, 0))
+				composite_hits(tile, first, &light);
 			vi_store(out_pixels + first, to_pixel(cast, &light));
 			continue;
 		}
@@ -188,6 +190,8 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		const struct march march = { cast, reading, tile->step, &rays, coloured };
 		samples += rich && cast->preintegrated_extinction ? cast_by_segments(&march, &light)
 								  : cast_by_samples(&march, &light);
+		if (__builtin_expect(tile->hit_depth != NULL, 0))
+			composite_hits(tile, first, &light);
 		vi_store(out_pixels + first, to_pixel(cast, &light));
 	}
 	return samples;

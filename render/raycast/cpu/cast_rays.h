@@ -109,7 +109,10 @@ SIMD void set_up_rays(const struct gz_cast *cast, const struct gz_cast_tile *til
 		rays->inverse[axis] = vf_set(1) / delta;
 	}
 	rays->view = NULL;
-	const struct cuts cuts = cut_rays(cast, origin, rays);
+	struct cuts cuts = cut_rays(cast, origin, rays);
+	if (__builtin_expect(tile->hit_depth != NULL, 0))
+		cuts.leave = vf_min(cuts.leave, vf_load(tile->hit_depth + first) *
+							vf_set(1 / cast->step[tile->step]));
 	rays->hit = vm_and(active, vf_less(cuts.enter, cuts.leave));
 	count_segments(cuts, shift, rays);
 	const vf zero = cuts.box - shift;

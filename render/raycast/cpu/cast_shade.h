@@ -5,6 +5,8 @@
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_SHADE_H
 
+#include <math.h>
+
 #include "render/data/voxel_colour.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
@@ -38,6 +40,20 @@ SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct 
 	light->green = vf_fma(weight, colour.green, light->green);
 	light->blue = vf_fma(weight, colour.blue, light->blue);
 	light->through = light->through - weight;
+}
+
+/* Add what the rays of a register meet: it is opaque, so nothing comes through. */
+SIMD void composite_hits(const struct gz_cast_tile *tile, int first, struct light *light)
+{
+	const vm met = vf_less(vf_load(tile->hit_depth + first), vf_set(INFINITY));
+	const vi pixels = vi_load(tile->hit_pixels + first);
+	const vi byte = vi_set(0xFF);
+	const struct colour colour = {
+		vf_from_i(vi_and(pixels, byte)) * vf_set(2047.0F / 255),
+		vf_from_i(vi_and(vi_shift_right(pixels, 8), byte)) * vf_set(2047.0F / 255),
+		vf_from_i(vi_and(vi_shift_right(pixels, 16), byte)) * vf_set(1023.0F / 255),
+	};
+	composite_colour(colour, vf_set(1), met, light);
 }
 
 SIMD vi to_pixel(const struct gz_cast *cast, const struct light *light)

@@ -91,6 +91,7 @@ struct cast_job {
 	const struct gz_ray_params *rays;
 	double pixel_lengths; /* from gz_levels_pixel_lengths(); 0 if all take the full volume */
 	const struct gz_plan *plan;
+	const struct gz_ray_hits *hits; /* where rays end; NULL: nowhere */
 	struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
 	struct sample_count *counts;
@@ -365,6 +366,15 @@ static void fill_tile_offsets(struct cast_job *job)
 		}
 }
 
+/* Let a tile's rays end where they meet something. */
+static void fill_cast_hits(const struct cast_job *job, const struct gz_tile *tile,
+			   struct gz_cast_tile *out_rays)
+{
+	const ptrdiff_t first = (tile - job->plan->tiles) * GZ_TILE_RAYS;
+	out_rays->hit_depth = job->hits ? job->hits->depth + first : NULL;
+	out_rays->hit_pixels = job->hits ? job->hits->pixels + first : NULL;
+}
+
 /* Fill in a tile's rays, in pixels of the picture that the camera frames. */
 static void fill_cast_tile(const struct cast_job *job, const struct gz_tile *tile,
 			   struct gz_cast_tile *out_rays)
@@ -435,6 +445,7 @@ static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, in
 	struct gz_cast_tile rays;
 	uint32_t pixels[GZ_TILE_RAYS];
 	fill_cast_tile(job, tile, &rays);
+	fill_cast_hits(job, tile, &rays);
 	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
 	gz_lattices_store(job->lattices, job->plan, tile, rays.active, pixels);
 }
@@ -490,11 +501,13 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 	return GZ_OK;
 }
 
-static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
-				 const struct gz_ray_params *rays, const struct gz_plan *plan,
-				 struct gz_image *image, struct gz_frame_stats *out_stats)
+static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+			       struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	const struct gz_camera *camera = shot->camera;
+	const struct gz_ray_params *rays = shot->settings;
+	const struct gz_plan *plan = shot->plan;
 	if (!cpu->volume || !cpu->has_transfer)
 		return GZ_ERR_INVAL;
 	struct gz_ray_frame ray_frame;
@@ -520,6 +533,7 @@ static enum gz_result cpu_render(struct gz_raycaster *raycaster, const struct gz
 								  : GZ_CAST_PLAIN;
 	struct cast_job job = {
 		.plan = plan,
+		.hits = shot->hits,
 		.lattices = &cpu->lattices,
 		.tile = cpu->kernels->tile[variant][cpu->volume->type][nearest],
 		.counts = cpu->counts,
@@ -557,7 +571,7 @@ const struct gz_raycaster_ops gz_cpu_raycaster_ops = {
 	.create = cpu_create,
 	.set_volume = cpu_set_volume,
 	.set_transfer = cpu_set_transfer,
-	.render = cpu_render,
+	.draw = cpu_draw,
 	.describe = cpu_describe,
 	.destroy = cpu_destroy,
 };

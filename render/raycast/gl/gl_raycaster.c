@@ -246,11 +246,12 @@ static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
 	}
 }
 
-static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
-				const struct gz_ray_params *rays, const struct gz_plan *plan,
-				struct gz_image *image, struct gz_frame_stats *out_stats)
+static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+			      struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	struct gl_raycaster *gl = gl_of(raycaster);
+	const struct gz_ray_params *rays = shot->settings;
+	const struct gz_plan *plan = shot->plan;
 	struct gz_ray_frame world;
 	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
@@ -259,7 +260,13 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 				       "set light.shadow_steps to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
-	enum gz_result result = gz_camera_rays(camera, plan->view.width, plan->view.height, &world);
+	if (shot->hits) {
+		gz_err(raycaster->log, "the backend gl does not end rays at surfaces; use "
+				       "--backend cpu for objects of several techniques");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	enum gz_result result =
+		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, &world);
 	if (result == GZ_OK)
 		shift_rays(plan->view.shift, &world);
 	if (result == GZ_OK && image)
@@ -269,7 +276,7 @@ static enum gz_result gl_render(struct gz_raycaster *raycaster, const struct gz_
 	if (result != GZ_OK)
 		return result;
 	const struct gz_gl_frame frame = {
-		.camera = camera,
+		.camera = shot->camera,
 		.world = &world,
 		.rays = rays,
 		.plan = plan,
@@ -311,7 +318,7 @@ const struct gz_raycaster_ops gz_gl_raycaster_ops = {
 	.create = gl_create,
 	.set_volume = gl_set_volume,
 	.set_transfer = gl_set_transfer,
-	.render = gl_render,
+	.draw = gl_draw,
 	.picture_texture = gl_picture_texture,
 	.describe = gl_describe,
 	.destroy = gl_destroy,

@@ -30,10 +30,9 @@ struct gz_raycaster_ops {
 	/** Copy @p transfer; needs a volume. */
 	enum gz_result (*set_transfer)(struct gz_raycaster *raycaster,
 				       const struct gz_transfer *transfer);
-	/** See gz_raycaster_render(). */
-	enum gz_result (*render)(struct gz_raycaster *raycaster, const struct gz_camera *camera,
-				 const struct gz_ray_params *rays, const struct gz_plan *plan,
-				 struct gz_image *image, struct gz_frame_stats *out_stats);
+	/** See gz_raycaster_draw(). */
+	enum gz_result (*draw)(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+			       struct gz_image *image, struct gz_frame_stats *out_stats);
 	/** Optional: see gz_drawer_ops. */
 	unsigned (*picture_texture)(const struct gz_raycaster *raycaster);
 	/** One line for reports, as in "avx512, 2 threads". */
@@ -84,17 +83,23 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
 /**
  * Cast the plan's rays and reconstruct the picture. Every pixel is written.
  *
+ * @param shot   its settings are a struct gz_ray_params. A ray ends at its hit, if hits are there:
+ *               the pixel of the hit takes the place of the background
  * @param image  resized to the plan's size; NULL leaves the picture on the device
  * @param[out] out_stats  may be NULL
  * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
  * @retval GZ_ERR_NO_MEM  no room for the picture; gl: on the graphics device, logged
- * @retval GZ_ERR_UNSUPPORTED  gl: the device or driver cannot do this; logged
+ * @retval GZ_ERR_UNSUPPORTED  gl: the device or driver cannot do this, or hits are given; logged
  * @retval GZ_ERR_NO_DEVICE    gl: the context is lost; logged. Destroy the ray caster; cpu still
  *                             works
  *
  * The same inputs give the same bits, for any number of threads; gl: on the same device and driver.
  * Threads: one at a time for each ray caster.
  */
+enum gz_result gz_raycaster_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				 struct gz_image *image, struct gz_frame_stats *out_stats);
+
+/** gz_raycaster_draw() of a shot without hits. */
 enum gz_result gz_raycaster_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
 				   const struct gz_ray_params *rays, const struct gz_plan *plan,
 				   struct gz_image *image, struct gz_frame_stats *out_stats);

@@ -62,6 +62,7 @@ struct surface_job {
 	struct gz_surface_cast cast;
 	gz_surface_tile_function *tile;
 	const struct gz_plan *plan;
+	struct gz_ray_hits *hits;     /* NULL: not wanted */
 	struct gz_lattices *lattices; /* PLANE_COUNT; those without a plane are not filled */
 	uint32_t *words[PLANE_COUNT]; /* NULL: not wanted */
 };
@@ -344,6 +345,18 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 	cast->shadows = rays->surface.shadows;
 }
 
+/* Put into the hits of all techniques what lies nearer. */
+static void merge_hits(const struct gz_surface_hits *own, size_t tile, struct gz_ray_hits *all)
+{
+	float *depth = all->depth + tile * GZ_HITS_A_TILE;
+	uint32_t *pixels = all->pixels + tile * GZ_HITS_A_TILE;
+	for (int k = 0; k < GZ_HITS_A_TILE; k++)
+		if (own->depth[k] < depth[k]) {
+			depth[k] = own->depth[k];
+			pixels[k] = own->pixels[k];
+		}
+}
+
 static void cast_surface_part(void *user, size_t part, int worker)
 {
 	const struct surface_job *job = user;
@@ -365,6 +378,8 @@ static void cast_surface_part(void *user, size_t part, int worker)
 				(float)(tile->y - plan->view.shift[1] + gz_tile_rows[k] * spacing);
 		}
 		job->tile(&job->cast, &rays, &hits);
+		if (job->hits)
+			merge_hits(&hits, i, job->hits);
 		memcpy(depth, hits.depth, sizeof depth);
 		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
 		for (int plane = 0; plane < PLANE_COUNT; plane++)
@@ -379,8 +394,8 @@ static enum gz_result prepare_planes(struct gz_surface_caster *caster, const str
 				     struct gz_image *image, const struct gz_surface_planes *planes,
 				     uint32_t *out_words[PLANE_COUNT])
 {
-	enum gz_result result = gz_image_resize(image, plan->width, plan->height);
-	if (result == GZ_OK)
+	enum gz_result result = image ? gz_image_resize(image, plan->width, plan->height) : GZ_OK;
+	if (result == GZ_OK && image)
 		out_words[PLANE_COLOURS] = gz_image_words(image);
 	if (result == GZ_OK && planes && planes->depth) {
 		result = gz_plane_resize(planes->depth, GZ_PLANE_VALUE, plan->width, plan->height);
@@ -419,6 +434,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	struct surface_job job = {
 		.tile = caster->kernel->tile,
 		.plan = plan,
+		.hits = shot->hits,
 		.lattices = caster->lattices,
 	};
 	struct gz_ray_frame frame;

@@ -61,12 +61,14 @@ struct gz_surface_shot {
 	const struct gz_camera *camera;
 	const struct gz_ray_params *rays; /**< background, light, clip box and surface count */
 	const struct gz_plan *plan;
+	struct gz_ray_hits *hits; /**< takes what lies nearer than what it has; NULL: not wanted */
 };
 
 /**
  * Cast a picture of the plan's size and write every pixel. Makes the surfaces first if the isovalue
  * or the objects have changed. The same bits for any number of threads.
  *
+ * @param image      NULL: only hits are wanted
  * @param planes     NULL: only colours
  * @param out_stats  may be NULL; its prepare_ms is the time for surfaces and tree
  * @retval GZ_ERR_INVAL   the settings or the camera are not valid, or nothing is shown
