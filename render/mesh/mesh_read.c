@@ -16,6 +16,9 @@
 /* Longest number of a text, bytes with its NUL. Chosen: a double needs 24. */
 enum { NUMBER_SIZE = 64 };
 
+/* Longest header that is looked at before a file is read, bytes. Chosen: comments fit. */
+enum { HEAD_MOST = 1 << 16 };
+
 /* Numbers of a PLY file, in turn. */
 struct ply_numbers {
 	enum gz_ply_format format;
@@ -394,6 +397,26 @@ enum gz_result gz_mesh_read(const char *path, const struct gz_log *log, struct g
 					   out_mesh);
 	gz_text_free(&text);
 	return result;
+}
+
+bool gz_mesh_has_faces(const char *path)
+{
+	FILE *file = gz_path_ends(path, ".ply") ? fopen(path, "rb") : NULL;
+	struct gz_ply_head *head = malloc(sizeof *head);
+	char *bytes = malloc(HEAD_MOST);
+	bool faces = false;
+	if (file && head && bytes) {
+		const size_t size = fread(bytes, 1, HEAD_MOST, file);
+		const bool known = gz_ply_head_read(path, bytes, size, NULL, head) == GZ_OK;
+		for (size_t i = 0; known && i < head->element_count; i++)
+			faces = faces || (head->elements[i].kind == GZ_PLY_FACE &&
+					  head->elements[i].count > 0);
+	}
+	if (file)
+		fclose(file);
+	free(head);
+	free(bytes);
+	return faces;
 }
 
 void gz_mesh_move(struct gz_mesh *mesh, const double origin[3])

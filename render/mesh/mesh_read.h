@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_MESH_MESH_READ_H
 #define GZ_RENDER_MESH_MESH_READ_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/log.h"
@@ -38,6 +39,10 @@ enum gz_result gz_mesh_read(const char *path, const struct gz_log *log, struct g
 /** gz_mesh_read() of @p size bytes in memory. @param name  their source in messages */
 enum gz_result gz_mesh_parse_ply(const char *name, const void *bytes, size_t size,
 				 const struct gz_log *log, struct gz_mesh *out_mesh);
+
+/** Whether a file is a PLY with faces, by its name and its header; one without them has points.
+ * Logs nothing. */
+bool gz_mesh_has_faces(const char *path);
 
 /** Move a mesh so that a point becomes the origin, mm. */
 void gz_mesh_move(struct gz_mesh *mesh, const double origin[3]);

@@ -203,6 +203,24 @@ enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, co
 	return result;
 }
 
+enum gz_result gz_scene_objects_of_mesh(const char *file, struct gz_scene_objects *out_objects)
+{
+	const struct gz_technique *technique = technique_for(GZ_OBJECT_MESH);
+	*out_objects = (struct gz_scene_objects) { .count = 1 };
+	struct gz_scene_object *object = &out_objects->items[0];
+	const struct gz_option_binding binding = { gz_scene_object_options, GZ_SCENE_OBJECT_OPTIONS,
+						   object, NULL };
+	const enum gz_result result = gz_options_preset(&binding);
+	if (result != GZ_OK || strlen(file) >= sizeof object->mesh)
+		return result == GZ_OK ? GZ_ERR_FULL : result;
+	snprintf(object->section, sizeof object->section, "%s mesh", object_word);
+	memcpy(object->mesh, file, strlen(file) + 1);
+	for (int i = 0; gz_techniques[i]; i++)
+		if (gz_techniques[i] == technique)
+			object->technique = i;
+	return GZ_OK;
+}
+
 bool gz_scene_objects_same(const struct gz_scene_objects *a, const struct gz_scene_objects *b)
 {
 	if (a->count != b->count)

@@ -90,6 +90,14 @@ enum gz_result gz_scene_objects_scan(const char *name, const char *text, size_t 
 enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, const char *name,
 				      const struct gz_log *log);
 
+/**
+ * Make the only object of a scene: a mesh, by the technique that shows meshes.
+ *
+ * @param file  the mesh's path
+ * @retval GZ_ERR_FULL  the path is too long; not logged
+ */
+enum gz_result gz_scene_objects_of_mesh(const char *file, struct gz_scene_objects *out_objects);
+
 /** The kinds of data that an object is given, as bits of enum gz_object_data. */
 unsigned gz_scene_object_kinds(const struct gz_scene_object *object);
 

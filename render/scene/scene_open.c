@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "render/data/format.h"
 #include "render/data/raw_guess.h"
+#include "render/mesh/mesh_read.h"
 #include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
 
@@ -88,6 +89,23 @@ enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_ra
 	return result;
 }
 
+/* Make the settings that show a mesh: every key's preset, and the file by its absolute path. */
+static enum gz_result settings_for_mesh(const char *path, const struct gz_log *log,
+					struct gz_scene_settings *out_settings)
+{
+	char *real = realpath(path, NULL);
+	enum gz_result result = real ? gz_scene_settings_preset(out_settings) : GZ_ERR_NOT_FOUND;
+	if (result == GZ_OK)
+		result = gz_scene_objects_of_mesh(real, &out_settings->objects);
+	if (result == GZ_ERR_FULL)
+		gz_err(log, "%s: the path of a mesh has at most %d bytes; move the file", path,
+		       GZ_SCENE_FILE_SIZE - 1);
+	else if (result != GZ_OK)
+		gz_err(log, "%s: cannot be opened: %s", path, gz_result_text(result));
+	free(real);
+	return result;
+}
+
 /* Unit vectors to the right, upwards and along the view. */
 static void view_axes(const struct gz_camera *camera, double axes[3][3])
 {
@@ -142,10 +160,11 @@ static bool same_camera_place(const struct gz_camera *a, const struct gz_camera 
 	return same;
 }
 
-/* From the front, the right and above. In an oriented volume y points to the front. */
-static void choose_first_view(struct gz_camera *camera, const struct gz_volume *volume)
+/* From the front, the right and above. In an oriented volume and a mesh y points to the front. */
+static void choose_first_view(struct gz_camera *camera, const struct gz_volume *volume,
+			      bool to_front)
 {
-	const double eye[3] = { 0.8, volume->oriented ? 1.3 : -1.3, 0.5 };
+	const double eye[3] = { 0.8, to_front ? 1.3 : -1.3, 0.5 };
 	memcpy(camera->eye, eye, sizeof eye);
 	gz_camera_fit(camera, volume);
 }
@@ -163,7 +182,10 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 				  struct gz_scene *out_scene)
 {
 	struct gz_scene_settings settings;
-	enum gz_result result = gz_scene_settings_for_volume(request->path, raw, log, &settings);
+	const bool mesh = !request->volume_alone && gz_mesh_has_faces(request->path);
+	enum gz_result result =
+		mesh ? settings_for_mesh(request->path, log, &settings)
+		     : gz_scene_settings_for_volume(request->path, raw, log, &settings);
 	if (result != GZ_OK)
 		return result;
 	const struct gz_camera preset = settings.camera;
@@ -176,7 +198,8 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result == GZ_OK)
 		result = gz_scene_load_parts(&parts, request->loading, log, out_scene);
 	if (result == GZ_OK && same_camera_place(&settings.camera, &preset))
-		choose_first_view(&out_scene->settings.camera, &out_scene->volume);
+		choose_first_view(&out_scene->settings.camera, &out_scene->volume,
+				  out_scene->volume.oriented || !gz_scene_has_volume(&settings));
 	return result;
 }
 

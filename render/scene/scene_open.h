@@ -1,7 +1,7 @@
 /**
  * @file
- * Opening anything that can be shown: a scene, a volume without a scene, or a picture that holds
- * its scene.
+ * Opening anything that can be shown: a scene, a volume or a mesh without a scene, or a picture
+ * that holds its scene.
  */
 #ifndef GZ_RENDER_SCENE_SCENE_OPEN_H
 #define GZ_RENDER_SCENE_SCENE_OPEN_H
@@ -13,7 +13,7 @@
 /** The kinds of files that gazeview opens. */
 enum gz_file_kind {
 	GZ_FILE_SCENE,    /**< .scene */
-	GZ_FILE_VOLUME,   /**< with a header; also a folder of DICOM, and particles */
+	GZ_FILE_VOLUME,   /**< with a header; also a folder of DICOM, particles and meshes */
 	GZ_FILE_RAW,      /**< a volume without a header */
 	GZ_FILE_PICTURE,  /**< .png */
 	GZ_FILE_TRANSFER, /**< .tf */
@@ -41,9 +41,10 @@ struct gz_scene_request {
 };
 
 /**
- * Open a scene, or make one from a volume or a picture. A volume gets the preset of every key, the
- * transfer function of gz_transfer_of_volume() and, unless @p request changes the camera, a camera
- * that sees all of it. A picture gives the scene and the transfer function that it holds; if the
+ * Open a scene, or make one from a volume, a mesh or a picture. A volume gets the preset of every
+ * key, the transfer function of gz_transfer_of_volume() and, unless @p request changes the camera,
+ * a camera that sees all of it; so does a PLY with faces, unless volume_alone asks for its points.
+ * A picture gives the scene and the transfer function that it holds; if the
  * volume has changed since, a warning is logged.
  *
  * @param[out] out_scene  owned by the caller: gz_scene_free(). Unless the file is a scene, the file

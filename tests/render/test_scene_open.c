@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/captured_log.h"
+#include "render/mesh/mesh_read.h"
 #include "render/scene/scene_open.h"
 #include "render/scene/scene_picture.h"
 #include "volume_files.h"
@@ -117,6 +118,47 @@ static const char *write_liquid(const char *name)
 		memcpy(bytes + 8 + 44 * i, numbers, sizeof numbers);
 	}
 	return files_write(name, bytes, sizeof bytes);
+}
+
+#define PLY_POINTS                                                    \
+	"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n" \
+	"property float y\nproperty float z\n"
+#define PLY_NUMBERS "0 0 0\n8 0 0\n0 4 0\n0 0 2\n"
+
+static void ply_opens_as_a_mesh_if_it_has_faces(void **state)
+{
+	(void)state;
+	struct gz_object object;
+	const char *path =
+		files_write_text("face.ply",
+				 PLY_POINTS "element face 1\nproperty list uchar int "
+					    "vertex_indices\nend_header\n" PLY_NUMBERS "3 1 2 3\n",
+				 NULL, 0);
+	assert_true(gz_mesh_has_faces(path));
+	struct gz_scene scene = opened(path, NULL);
+	assert_false(gz_scene_has_volume(&scene.settings));
+	assert_int_equal(gz_scene_list_objects(&scene, &object, 1), 1);
+	assert_string_equal(object.technique->name, "isosurface");
+	assert_int_equal(object.mesh->triangle_count, 1);
+	assert_true(scene.settings.objects.items[0].mesh[0] == '/');
+	assert_true(scene.settings.camera.eye[1] > 0.5); /* y points to the front */
+	gz_scene_free(&scene);
+	/* Its points still make a volume for those who ask for one. */
+	const struct gz_scene_request alone = { .path = path, .volume_alone = true };
+	assert_int_equal(gz_scene_open(&alone, NULL, &scene), GZ_OK);
+	assert_true(gz_scene_has_volume(&scene.settings));
+	gz_scene_free(&scene);
+	path = files_write_text("points.ply", PLY_POINTS "end_header\n" PLY_NUMBERS, NULL, 0);
+	assert_false(gz_mesh_has_faces(path));
+	scene = opened(path, NULL);
+	assert_true(gz_scene_has_volume(&scene.settings));
+	gz_scene_free(&scene);
+	assert_false(gz_mesh_has_faces("none.ply"));
+	path = files_write_text("broken.ply",
+				PLY_POINTS "element face 1\nproperty list uchar int "
+					   "vertex_indices\nend_header\n" PLY_NUMBERS "3 1 2 9\n",
+				NULL, 0);
+	assert_refused(path, NULL, GZ_ERR_FORMAT, "a corner that is not a vertex");
 }
 
 static void particles_open_as_a_volume(void **state)
@@ -311,6 +353,7 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(binary_file_is_no_scene),
 		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
+		cmocka_unit_test(ply_opens_as_a_mesh_if_it_has_faces),
 		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
 		cmocka_unit_test(camera_of_the_request_is_kept),
