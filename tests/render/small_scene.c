@@ -51,19 +51,42 @@ static struct small_scene base_scene(int nx, int ny, int nz, enum gz_voxel_type 
 	return scene;
 }
 
+/* What a wave has of x and y alone: `cosine` and `sine` of the angle that z adds to. */
+struct column_wave {
+	double amplitude, cosine, sine, u;
+};
+
+static struct column_wave *column_waves(int nx, int ny)
+{
+	struct column_wave *waves = malloc((size_t)nx * (size_t)ny * sizeof *waves);
+	assert_non_null(waves);
+	for (int y = 0; y < ny; y++)
+		for (int x = 0; x < nx; x++) {
+			const double u = (x + 0.5) / nx, v = (y + 0.5) / ny;
+			waves[(size_t)y * (size_t)nx + (size_t)x] =
+				(struct column_wave) { sin(9 * u + 4 * v * v), cos(3 * u * v),
+						       sin(3 * u * v), u };
+		}
+	return waves;
+}
+
+/* sin(9 u + 4 v v) cos(7 w - 3 u v) on one side of a plane, nothing on the other. */
 struct small_scene small_scene_waves(int nx, int ny, int nz, enum gz_voxel_type type)
 {
 	struct small_scene scene = base_scene(nx, ny, nz, type);
+	struct column_wave *waves = column_waves(nx, ny);
+	const size_t columns = (size_t)nx * (size_t)ny;
 	size_t index = 0;
-	for (int z = 0; z < nz; z++)
-		for (int y = 0; y < ny; y++)
-			for (int x = 0; x < nx; x++) {
-				const double u = (x + 0.5) / nx, v = (y + 0.5) / ny,
-					     w = (z + 0.5) / nz;
-				const double wave = sin(9 * u + 4 * v * v) * cos(7 * w - 3 * u * v);
-				const double inside = u + 0.4 * w > 0.6 ? 1 : 0;
-				put(&scene.volume, index++, inside * (0.5 + 0.5 * wave));
-			}
+	for (int z = 0; z < nz; z++) {
+		const double w = (z + 0.5) / nz, cosine = cos(7 * w), sine = sin(7 * w);
+		for (size_t i = 0; i < columns; i++) {
+			const struct column_wave *at = &waves[i];
+			const double wave = at->amplitude * (cosine * at->cosine + sine * at->sine);
+			const double inside = at->u + 0.4 * w > 0.6 ? 1 : 0;
+			put(&scene.volume, index++, inside * (0.5 + 0.5 * wave));
+		}
+	}
+	free(waves);
 	gz_volume_find_range(&scene.volume);
 	scene.transfer = (struct gz_transfer){
 		.count = 4,

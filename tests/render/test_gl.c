@@ -460,29 +460,48 @@ static void software_opengl_is_not_what_auto_takes(void **state)
 extern const char gz_glsl_pyramid_glsl[], gz_glsl_fill_comp[], gz_glsl_quincunx_comp[],
 	gz_glsl_regions_comp[];
 
-/* Drivers forgive what the reference compiler does not. */
-static void check_shader(const struct gz_gl_shader *shader)
+/* Drivers forgive what the reference compiler does not. It is asked once for all shaders, which are
+ * files of a folder. */
+struct shader_folder {
+	char path[40];
+	int count;
+};
+
+static struct shader_folder shader_folder_make(void)
 {
-	char path[] = "/tmp/gazecast-shader-XXXXXX.comp", command[128];
-	const int file = mkstemps(path, 5);
-	assert_true(file >= 0);
-	FILE *out = fdopen(file, "w");
+	struct shader_folder folder = { .path = "/tmp/gazecast-shaders-XXXXXX" };
+	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
+		skip();
+	assert_non_null(mkdtemp(folder.path));
+	return folder;
+}
+
+static void shader_folder_add(struct shader_folder *folder, const struct gz_gl_shader *shader)
+{
+	char path[64];
 	const char *pieces[GZ_GL_PIECES_MAX];
 	const int count = gz_gl_shader_source(shader, pieces);
+	snprintf(path, sizeof path, "%s/%d.comp", folder->path, folder->count++);
+	FILE *out = fopen(path, "w");
+	assert_non_null(out);
 	for (int i = 0; i < count; i++)
 		fputs(pieces[i], out);
 	assert_int_equal(fclose(out), 0);
-	snprintf(command, sizeof command, "glslangValidator -S comp %s", path);
-	const int status = system(command);
-	unlink(path);
-	assert_int_equal(status, 0);
+}
+
+static void shader_folder_check(const struct shader_folder *folder)
+{
+	char command[128];
+	snprintf(command, sizeof command, "glslangValidator %s/*.comp", folder->path);
+	assert_int_equal(system(command), 0);
+	snprintf(command, sizeof command, "rm -r %s", folder->path);
+	assert_int_equal(system(command), 0);
 }
 
 static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 {
 	(void)state;
-	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
-		skip();
+	struct shader_folder folder = shader_folder_make();
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
 		for (int texels = 0; texels < GZ_GL_TEXELS_COUNT; texels++)
 			for (int variant = 0; variant < 64; variant++) {
@@ -503,8 +522,9 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 				char defines[GZ_GL_CAST_DEFINES_SIZE];
 				const struct gz_gl_shader shader =
 					gz_gl_cast_shader(kind, &device, defines);
-				check_shader(&shader);
+				shader_folder_add(&folder, &shader);
 			}
+	shader_folder_check(&folder);
 }
 
 static void reconstruction_shaders_are_valid_for_the_reference_compiler(void **state)
@@ -516,8 +536,7 @@ static void reconstruction_shaders_are_valid_for_the_reference_compiler(void **s
 		{ gz_glsl_pyramid_glsl, gz_glsl_quincunx_comp },
 		{ gz_glsl_regions_comp, NULL },
 	};
-	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
-		skip();
+	struct shader_folder folder = shader_folder_make();
 	for (size_t plane = 0; plane < sizeof planes / sizeof planes[0]; plane++)
 		for (size_t file = 0; file < sizeof files / sizeof files[0]; file++)
 			for (int variant = 0; variant < 4; variant++) {
@@ -530,8 +549,9 @@ static void reconstruction_shaders_are_valid_for_the_reference_compiler(void **s
 				memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
 				shader.parts[GZ_GL_PLAN_PARTS] = files[file][0];
 				shader.parts[GZ_GL_PLAN_PARTS + 1] = files[file][1];
-				check_shader(&shader);
+				shader_folder_add(&folder, &shader);
 			}
+	shader_folder_check(&folder);
 }
 
 TEST_SUITE(gl)
