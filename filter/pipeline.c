@@ -284,6 +284,10 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 		gz_classify_step(&pipeline->classify, &params->classify, display, &input);
 	make_messages(pipeline, &label, &input, out);
 	set_gaze_label(&label, &out->gaze);
+	const struct gz_landing_input landing_input = { label.event, input.time_ns, input.valid,
+							input.point };
+	out->gaze.landing =
+		gz_landing_step(&pipeline->landing, &gz_landing_model, display, &landing_input);
 	measure_fixation_noise(pipeline, label.event, input.valid, out->gaze.raw);
 	bool hidden = label.event == GZ_EVENT_BLINK || label.event == GZ_EVENT_LOST;
 	out->gaze.confidence = input.valid && !hidden ? input.confidence : 0;

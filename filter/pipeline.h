@@ -19,6 +19,7 @@
 #include "filter/classify.h"
 #include "filter/combine.h"
 #include "filter/despike.h"
+#include "filter/landing.h"
 #include "filter/smooth.h"
 #include "filter/validate.h"
 #include "protocol/display.h"
@@ -124,6 +125,7 @@ struct gz_pipeline {
 	struct gz_despike_state despike;
 	struct gz_classify_state classify;
 	struct gz_smooth_state smooth;
+	struct gz_landing_state landing;
 	struct gz_messages_state messages;
 	struct gz_pipeline_noise noise;
 	int64_t host_ns;       /**< of the newest output; 0 before it */

@@ -83,6 +83,14 @@ struct gz_gaze_eye {
 	float direction[3];
 };
 
+/** Where and when the running saccade will probably land. */
+struct gz_landing {
+	bool known; /**< whether the other fields are set */
+	struct gz_point point;
+	int64_t time_ns; /**< host time */
+	float sigma_deg; /**< 68 % of landings are at most this far from point, degrees */
+};
+
 /** One gaze message. The stream and the channel "latest" carry one for each sample. */
 struct gz_gaze {
 	uint64_t seq;
@@ -99,8 +107,9 @@ struct gz_gaze {
 	uint64_t final_span; /**< the event applies from sample final_seq - final_span on; above 0
 				only after a gap, when several events become certain at once */
 	enum gz_event final_event;
-	float velocity_deg_s; /**< finite, 0 or more */
-	bool combined;        /**< the device gives one point for both eyes */
+	float velocity_deg_s;      /**< finite, 0 or more */
+	struct gz_landing landing; /**< may be known during a saccade */
+	bool combined;             /**< the device gives one point for both eyes */
 	struct gz_gaze_eye eye[GZ_EYE_COUNT];
 };
 
@@ -122,16 +131,13 @@ struct gz_blink {
 	float confidence; /**< [0, 1] */
 };
 
-/** A finished saccade, or a running one with a prediction of its end. */
+/** A finished saccade. */
 struct gz_saccade {
 	int64_t start_ns;
 	int64_t duration_ns;
 	float amplitude_deg;
 	float peak_velocity_deg_s;
 	struct gz_point start, end;
-	bool has_prediction; /**< it is still running; predicted_end and sigma_deg are set */
-	struct gz_point predicted_end;
-	float sigma_deg; /**< standard deviation of predicted_end, degrees */
 };
 
 /** Why the pipeline rejected a sample. */

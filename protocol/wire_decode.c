@@ -39,6 +39,22 @@ static void take_final_event(struct gz_unpack *unpack, struct gz_gaze *gaze)
 		gaze->final_span = gaze->final_seq - first;
 }
 
+static const double ANGLE_MAX_DEG = 360;
+
+/* All of it or none. */
+static void take_landing(struct gz_unpack *unpack, struct gz_landing *landing)
+{
+	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "landing");
+	if (!map)
+		return;
+	landing->known = gz_unpack_point(unpack, map, "point", &landing->point) &&
+			 gz_unpack_time(unpack, map, "timestamp", GZ_NS_PER_S, &landing->time_ns) &&
+			 gz_unpack_find(map, "sigma_deg");
+	gz_unpack_float(unpack, map, "sigma_deg", 0, ANGLE_MAX_DEG, &landing->sigma_deg);
+	if (!landing->known)
+		unpack->refused = true;
+}
+
 /* This project's map of an eye. @return whether it is there */
 static bool take_own_eye(struct gz_unpack *unpack, const char *key, struct gz_gaze_eye *eye)
 {
@@ -167,6 +183,7 @@ enum gz_result gz_wire_decode_gaze(const void *bytes, size_t size, struct gz_gaz
 	take_gaze_event(&unpack, map, &gaze.event);
 	take_final_event(&unpack, &gaze);
 	gz_unpack_float(&unpack, map, "velocity_deg_s", 0, FLT_MAX, &gaze.velocity_deg_s);
+	take_landing(&unpack, &gaze.landing);
 	gz_unpack_uint64(&unpack, map, "seq", &gaze.seq);
 	gz_unpack_int64(&unpack, map, "device_ns", &gaze.device_ns);
 	gz_unpack_int64(&unpack, map, "publish_ns", &gaze.publish_ns);
@@ -178,8 +195,6 @@ enum gz_result gz_wire_decode_gaze(const void *bytes, size_t size, struct gz_gaz
 		*out_gaze = gaze;
 	return result;
 }
-
-static const double ANGLE_MAX_DEG = 360;
 
 /* Refuse the message unless a value is @p there. */
 static void require_value(struct gz_unpack *unpack, bool there)
@@ -253,8 +268,6 @@ enum gz_result gz_wire_decode_saccade(const void *bytes, size_t size,
 		.peak_velocity_deg_s = NAN,
 		.start = { NAN, NAN },
 		.end = { NAN, NAN },
-		.predicted_end = { NAN, NAN },
-		.sigma_deg = NAN,
 	};
 	struct gz_unpack unpack;
 	gz_unpack_begin(&unpack, bytes, size);
@@ -267,9 +280,6 @@ enum gz_result gz_wire_decode_saccade(const void *bytes, size_t size,
 			&saccade.peak_velocity_deg_s);
 	gz_unpack_point(&unpack, map, "start", &saccade.start);
 	gz_unpack_point(&unpack, map, "end", &saccade.end);
-	saccade.has_prediction =
-		gz_unpack_point(&unpack, map, "predicted_end", &saccade.predicted_end);
-	gz_unpack_float(&unpack, map, "sigma_deg", 0, ANGLE_MAX_DEG, &saccade.sigma_deg);
 
 	enum gz_result result = gz_unpack_end(&unpack);
 	if (result == GZ_OK)

@@ -184,6 +184,14 @@ static void pack_event_final(struct gz_pack *pack, const struct gz_gaze *gaze)
 		gz_pack_uint(pack, "first", gaze->final_seq - gaze->final_span);
 }
 
+static void pack_landing(struct gz_pack *pack, const struct gz_landing *landing)
+{
+	gz_pack_map(pack, "landing", 3);
+	gz_pack_point(pack, "point", landing->point);
+	gz_pack_time(pack, "timestamp", landing->time_ns);
+	gz_pack_float(pack, "sigma_deg", landing->sigma_deg);
+}
+
 /* The keys of this project. publish_ns is last and has a fixed width, as wire.h promises. */
 static void pack_own_keys(struct gz_pack *pack, const struct gz_gaze *gaze)
 {
@@ -193,6 +201,8 @@ static void pack_own_keys(struct gz_pack *pack, const struct gz_gaze *gaze)
 	if (gaze->final_known)
 		pack_event_final(pack, gaze);
 	gz_pack_float(pack, "velocity_deg_s", gaze->velocity_deg_s);
+	if (gaze->landing.known)
+		pack_landing(pack, &gaze->landing);
 	gz_pack_uint(pack, "seq", gaze->seq);
 	if (gaze->device_ns == GZ_NO_DEVICE_TIME)
 		gz_pack_nil(pack, "device_ns");
@@ -214,6 +224,7 @@ enum gz_result gz_wire_encode_gaze(const struct gz_gaze *gaze, const struct gz_d
 	size_t keys = 17;
 	keys += gaze->final_known ? 1 : 0;
 	keys += has_lines_of_sight(gaze, &eyes) ? 2 : 0;
+	keys += gaze->landing.known ? 1 : 0;
 	gz_pack_map(&pack, NULL, keys);
 	pack_pupil_core_keys(&pack, gaze, display);
 	pack_own_keys(&pack, gaze);
@@ -332,17 +343,13 @@ enum gz_result gz_wire_encode_saccade(const struct gz_saccade *saccade,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, saccade->has_prediction ? 8 : 6);
+	gz_pack_map(&pack, NULL, 6);
 	gz_pack_time(&pack, "timestamp", saccade->start_ns);
 	gz_pack_double(&pack, "duration", gz_ns_to_ms(saccade->duration_ns));
 	gz_pack_float(&pack, "amplitude_deg", saccade->amplitude_deg);
 	gz_pack_float(&pack, "peak_velocity_deg_s", saccade->peak_velocity_deg_s);
 	gz_pack_point(&pack, "start", saccade->start);
 	gz_pack_point(&pack, "end", saccade->end);
-	if (saccade->has_prediction) {
-		gz_pack_point(&pack, "predicted_end", saccade->predicted_end);
-		gz_pack_float(&pack, "sigma_deg", saccade->sigma_deg);
-	}
 	return gz_pack_end(&pack);
 }
 

@@ -8,8 +8,6 @@ const char *const gz_gazecom_films[GZ_GAZECOM_FILMS] = { "beach",      "bridge_2
 							 "ducks_boat", "holsten_gate",
 							 "puppies",    "st_petri_mcdonalds" };
 
-enum { OBSERVER_SIZE = 16 };
-
 /* The label of a letter; 0 if there is no such label. */
 static int label_of_letter(char letter)
 {
@@ -28,9 +26,9 @@ static int label_of_letter(char letter)
 }
 
 /* Add a line to the recording of its observer, whose lines are consecutive. */
-static bool add_line(const char *line, char last_observer[OBSERVER_SIZE], struct gz_gazecom *out)
+static bool add_line(const char *line, char last_observer[GZ_OBSERVER_SIZE], struct gz_gazecom *out)
 {
-	char observer[OBSERVER_SIZE], letter;
+	char observer[GZ_OBSERVER_SIZE], letter;
 	double x, y, confidence;
 	if (sscanf(line, "%15s %lf %lf %lf %c", observer, &x, &y, &confidence, &letter) != 5 ||
 	    !label_of_letter(letter))
@@ -41,6 +39,7 @@ static bool add_line(const char *line, char last_observer[OBSERVER_SIZE], struct
 		out->recording[out->count++] = (struct gz_labelled_recording) {
 			.display = { { 1280, 720 }, { 400, 225 }, 450 },
 		};
+		strcpy(out->recording[out->count - 1].observer, observer);
 		strcpy(last_observer, observer);
 	}
 	struct gz_labelled_recording *recording = &out->recording[out->count - 1];
@@ -56,7 +55,7 @@ static bool add_line(const char *line, char last_observer[OBSERVER_SIZE], struct
 bool gz_gazecom_read(const char *data, size_t film, struct gz_gazecom *out)
 {
 	*out = (struct gz_gazecom) { .count = 0 };
-	char path[1024], line[256], observer[OBSERVER_SIZE] = "";
+	char path[1024], line[256], observer[GZ_OBSERVER_SIZE] = "";
 	if (!data || snprintf(path, sizeof path, "%s/gaze/gazecom/%s.tsv.gz", data,
 			      gz_gazecom_films[film]) >= (int)sizeof path)
 		return false;

@@ -87,6 +87,8 @@ bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
 				struct gz_labelled_recording *out)
 {
 	*out = (struct gz_labelled_recording) { .display = { { 1024, 768 }, { 380, 300 }, 670 } };
+	/* As in img_TH34_img_Europe. */
+	(void)sscanf(gz_labelled_files[recording].name, "%*[^_]_%15[^_]", out->observer);
 	gzFile file = data ? open_labelled(data, recording, coder) : NULL;
 	if (!file)
 		return false;

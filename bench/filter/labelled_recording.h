@@ -24,10 +24,14 @@ enum gz_human_label {
 	GZ_HUMAN_UNDEFINED = 6,
 };
 
+/** Room for the name of who was recorded, with its NUL. */
+#define GZ_OBSERVER_SIZE 16
+
 /** One recording as one person labelled it. */
 struct gz_labelled_recording {
 	struct gz_display display;
-	size_t count, room; /**< samples, and how many there is memory for */
+	char observer[GZ_OBSERVER_SIZE]; /**< who was recorded */
+	size_t count, room;              /**< samples, and how many there is memory for */
 	struct gz_sample *sample;
 	int *label;
 };

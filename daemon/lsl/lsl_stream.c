@@ -202,8 +202,6 @@ size_t gz_lsl_events_step(struct gz_lsl_events *events, const struct gz_pipeline
 				  step->blinks[i].onset ? "blink_onset" : "blink_offset");
 	for (size_t i = 0; i < step->saccade_count; i++) {
 		const struct gz_saccade *saccade = &step->saccades[i];
-		if (saccade->has_prediction)
-			continue; /* it is told again when it has ended */
 		count = add_event(out_events, count, saccade->start_ns, "saccade_onset");
 		count = add_event(out_events, count, saccade->start_ns + saccade->duration_ns,
 				  "saccade_offset");

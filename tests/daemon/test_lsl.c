@@ -278,13 +278,12 @@ static void lsl_events_come_once_with_their_own_times(void **state)
 					   .duration_ns = 80 * GZ_NS_PER_MS };
 	gz_lsl_outlet_step(outlet, &step);
 	fixation->duration_ns = 120 * GZ_NS_PER_MS; /* it lasts */
-	step.saccade_count = 1;
-	step.saccades[0] = (struct gz_saccade) { .has_prediction = true }; /* not finished */
 	gz_lsl_outlet_step(outlet, &step);
 	gz_lsl_outlet_annotate(outlet, 2500 * GZ_NS_PER_MS, "trial 7");
 	gz_lsl_outlet_annotate(outlet, 2500 * GZ_NS_PER_MS, "");
 	fixation->duration_ns = 300 * GZ_NS_PER_MS;
 	fixation->final = true;
+	step.saccade_count = 1;
 	step.saccades[0] = (struct gz_saccade) { .start_ns = 1300 * GZ_NS_PER_MS,
 						 .duration_ns = 40 * GZ_NS_PER_MS };
 	gz_lsl_outlet_step(outlet, &step);

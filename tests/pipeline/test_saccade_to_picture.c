@@ -102,7 +102,7 @@ static void take(const struct gz_message *message)
 			messages[message_count++] = message->gaze;
 		break;
 	case GZ_MESSAGE_SACCADE:
-		if (saccade_count < SACCADES_MAX && !message->saccade.has_prediction)
+		if (saccade_count < SACCADES_MAX)
 			saccades[saccade_count++] = message->saccade;
 		break;
 	case GZ_MESSAGE_STATUS:

@@ -51,7 +51,8 @@ def main():
         check([pupil["id"] for pupil in right["base_data"]], [0], "eyes")
         check(read(folder, "fixation")["id"], 4711, "fixation")
         check(read(folder, "blink")["type"], "onset", "blink")
-        check("predicted_end" in read(folder, "saccade"), True, "saccade")
+        check(read(folder, "gaze")["landing"]["sigma_deg"], 1.5, "landing")
+        check(read(folder, "saccade")["amplitude_deg"], 8.5, "saccade")
         check(read(folder, "status")["tracker"]["reason"], "unplugged", "status")
 
 

@@ -31,6 +31,7 @@ static inline struct gz_gaze sample_gaze(void)
 		.final_span = 3,
 		.final_event = GZ_EVENT_PURSUIT,
 		.velocity_deg_s = 123.4f,
+		.landing = { true, { 0.8f, 0.2f }, 123456809012345, 1.5f },
 		.eye = { { { 0.74f, 0.24f }, 3.5f, true, 0.9f, { 31, -2, 480 }, { NAN, NAN, NAN } },
 			 { { 0.76f, 0.26f },
 			   3.25f,
@@ -68,9 +69,6 @@ static inline struct gz_saccade sample_saccade(void)
 		.peak_velocity_deg_s = 340,
 		.start = { 0.1f, 0.2f },
 		.end = { 0.3f, 0.4f },
-		.has_prediction = true,
-		.predicted_end = { 0.35f, 0.45f },
-		.sigma_deg = 0.6f,
 	};
 }
 

@@ -33,6 +33,11 @@ static void assert_same_gaze(const struct gz_gaze *a, const struct gz_gaze *b)
 	assert_true(a->final_span == b->final_span);
 	assert_int_equal(a->final_event, b->final_event);
 	assert_float_same(a->velocity_deg_s, b->velocity_deg_s);
+	assert_int_equal(a->landing.known, b->landing.known);
+	assert_float_same(a->landing.point.x, b->landing.point.x);
+	assert_float_same(a->landing.point.y, b->landing.point.y);
+	assert_true(a->landing.time_ns == b->landing.time_ns);
+	assert_float_same(a->landing.sigma_deg, b->landing.sigma_deg);
 	assert_int_equal(a->combined, b->combined);
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		assert_float_same(a->eye[i].point.x, b->eye[i].point.x);
@@ -130,22 +135,16 @@ static void blink_comes_back_as_it_was_sent(void **state)
 static void saccade_comes_back_as_it_was_sent(void **state)
 {
 	(void)state;
-	for (int running = 0; running < 2; running++) {
-		struct gz_saccade saccade = sample_saccade(), back;
-		struct gz_wire_message message;
-		saccade.has_prediction = running;
-		assert_int_equal(gz_wire_encode_saccade(&saccade, &message), GZ_OK);
-		assert_int_equal(gz_wire_decode_saccade(message.bytes, message.size, &back), GZ_OK);
-		assert_int_equal(back.start_ns, saccade.start_ns);
-		assert_int_equal(back.duration_ns, saccade.duration_ns);
-		assert_float_same(back.amplitude_deg, saccade.amplitude_deg);
-		assert_float_same(back.peak_velocity_deg_s, saccade.peak_velocity_deg_s);
-		assert_float_same(back.start.y, saccade.start.y);
-		assert_float_same(back.end.x, saccade.end.x);
-		assert_int_equal(back.has_prediction, running);
-		assert_float_same(back.predicted_end.x, running ? saccade.predicted_end.x : NAN);
-		assert_float_same(back.sigma_deg, running ? saccade.sigma_deg : NAN);
-	}
+	struct gz_saccade saccade = sample_saccade(), back;
+	struct gz_wire_message message;
+	assert_int_equal(gz_wire_encode_saccade(&saccade, &message), GZ_OK);
+	assert_int_equal(gz_wire_decode_saccade(message.bytes, message.size, &back), GZ_OK);
+	assert_int_equal(back.start_ns, saccade.start_ns);
+	assert_int_equal(back.duration_ns, saccade.duration_ns);
+	assert_float_same(back.amplitude_deg, saccade.amplitude_deg);
+	assert_float_same(back.peak_velocity_deg_s, saccade.peak_velocity_deg_s);
+	assert_float_same(back.start.y, saccade.start.y);
+	assert_float_same(back.end.x, saccade.end.x);
 }
 
 static void status_comes_back_as_it_was_sent(void **state)
@@ -432,6 +431,20 @@ static void event_final_first_after_last(struct built *b)
 	text(b, "event", "blink");
 	msgpack_pack_int(key(b, "first"), 2);
 }
+static void landing_without_a_time(struct built *b)
+{
+	msgpack_pack_map(key(b, "landing"), 2);
+	msgpack_pack_array(key(b, "point"), 2);
+	msgpack_pack_double(&b->packer, 0.5);
+	msgpack_pack_double(&b->packer, 0.5);
+	number(b, "sigma_deg", 1);
+}
+static void landing_without_a_place(struct built *b)
+{
+	msgpack_pack_map(key(b, "landing"), 2);
+	number(b, "timestamp", 1);
+	number(b, "sigma_deg", 1);
+}
 static void velocity_negative(struct built *b)
 {
 	number(b, "velocity_deg_s", -1);
@@ -492,6 +505,8 @@ static void gaze_with_a_wrong_value_is_refused_and_nothing_written(void **state)
 		event_final_without_seq,
 		event_final_without_event,
 		event_final_first_after_last,
+		landing_without_a_time,
+		landing_without_a_place,
 		velocity_negative,
 		velocity_infinite,
 		seq_negative,

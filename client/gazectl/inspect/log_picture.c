@@ -109,8 +109,7 @@ static void add_events(struct picture *picture, const struct gz_pipeline_output 
 		if (picture->fixation_count < GZ_LOG_PICTURE_FIXATIONS)
 			picture->fixation[picture->fixation_count++] = output->fixations[i];
 	}
-	for (size_t i = 0; i < output->saccade_count; i++)
-		picture->saccades += !output->saccades[i].has_prediction;
+	picture->saccades += output->saccade_count;
 	for (size_t i = 0; i < output->blink_count; i++)
 		picture->blinks += output->blinks[i].onset;
 }

@@ -111,8 +111,7 @@ static void add_to_pipeline(struct summarizer *s, const struct gz_sample *sample
 	s->summary.rejected[output.rejection]++;
 	for (size_t i = 0; i < output.fixation_count; i++)
 		s->summary.fixations += output.fixations[i].final;
-	for (size_t i = 0; i < output.saccade_count; i++)
-		s->summary.saccades += !output.saccades[i].has_prediction;
+	s->summary.saccades += output.saccade_count;
 	for (size_t i = 0; i < output.blink_count; i++)
 		s->summary.blinks += output.blinks[i].onset;
 }
