@@ -58,6 +58,14 @@ void gz_viewer_link_pointer(struct gz_viewer_link *link, const struct gz_point *
 void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], int64_t now_ns);
 
 /**
+ * The monitor that is the tracker's display. It is reported with the window from then on, so that
+ * the daemon can tell whether it has changed since the tracker was validated.
+ *
+ * @param monitor  copied; NULL: unknown
+ */
+void gz_viewer_link_monitor(struct gz_viewer_link *link, const struct gz_monitor_place *monitor);
+
+/**
  * Send an annotation to all readers; in a running recording it becomes a mark.
  *
  * @param label    at most GZ_ANNOTATION_LABEL_SIZE - 1 bytes; a longer one is not sent

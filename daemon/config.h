@@ -17,6 +17,7 @@
 #include "protocol/endpoint.h"
 #include "protocol/gaze.h"
 #include "protocol/gaze_log.h"
+#include "protocol/validated_file.h"
 
 /** Most surface names under which the screen is published. */
 #define GZ_SURFACES_MAX 8
@@ -112,6 +113,16 @@ enum gz_result gz_config_read(int argc, char *const *argv, const struct gz_log *
 void gz_config_correction(const struct gz_config *config, const struct gz_device_info *info,
 			  const struct gz_display *display, const struct gz_log *log,
 			  struct gz_pipeline_params *params);
+
+/**
+ * Look up what a tracker was last validated on, in the directories of corrections. A file that
+ * cannot be used is logged and ignored.
+ *
+ * @param[out] out_validated  written on true only
+ * @return whether it is known; never for a recording
+ */
+bool gz_config_validated(const struct gz_config *config, const struct gz_device_info *info,
+			 const struct gz_log *log, struct gz_validated *out_validated);
 
 /** Print every option with its meaning, for --help. */
 void gz_config_print_help(struct gz_config *config, FILE *out);

@@ -7,6 +7,7 @@
 
 #include "daemon/config.h"
 #include "protocol/correction_file.h"
+#include "protocol/validated_file.h"
 
 #define GZ_LOG_MODULE "config"
 
@@ -162,6 +163,38 @@ void gz_config_correction(const struct gz_config *config, const struct gz_device
 		return;
 	take_correction_from(GAZECAST_SYSCONFDIR "/gazecast/corrections", info, display, log,
 			     params);
+}
+
+static bool read_validated_from(const char *directory, const struct gz_device_info *info,
+				const struct gz_log *log, struct gz_validated *out_validated)
+{
+	char path[2 * GZ_PATH_SIZE];
+	struct gz_validated validated;
+	if (gz_validated_path(directory, info->name, info->serial, path, sizeof path) != GZ_OK ||
+	    gz_validated_read(path, log, &validated) != GZ_OK)
+		return false;
+	if (!gz_validated_fits(&validated, info->name, info->serial)) {
+		gz_err(log, "%s: it is of another tracker, so it is ignored; run gazectl validate",
+		       path);
+		return false;
+	}
+	*out_validated = validated;
+	return true;
+}
+
+bool gz_config_validated(const struct gz_config *config, const struct gz_device_info *info,
+			 const struct gz_log *log, struct gz_validated *out_validated)
+{
+	char directory[GZ_PATH_SIZE];
+	if (info->recorded || strcmp(config->corrections, "none") == 0)
+		return false;
+	if (config->corrections[0])
+		return read_validated_from(config->corrections, info, log, out_validated);
+	if (gz_correction_directory(directory, sizeof directory) == GZ_OK &&
+	    read_validated_from(directory, info, log, out_validated))
+		return true;
+	return read_validated_from(GAZECAST_SYSCONFDIR "/gazecast/corrections", info, log,
+				   out_validated);
 }
 
 /* The user's data directory (XDG base directory specification). */

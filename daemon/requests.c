@@ -442,6 +442,7 @@ static void report_window(struct gz_requests *requests, const struct gz_viewer_w
 		.has_window = window->known,
 	};
 	memcpy(command.window_px, window->rect_px, sizeof command.window_px);
+	command.monitor = window->monitor;
 	send_command(requests, &command);
 }
 

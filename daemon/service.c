@@ -1,6 +1,7 @@
 #include "daemon/service.h"
 
 #include <errno.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,6 +36,10 @@ struct gz_service {
 	struct gz_message_maker maker;
 	struct gz_rate_meter rate;
 	struct gz_viewer_place viewer;
+	struct gz_monitor_place monitor; /* that the viewer reported last */
+	bool has_validated;
+	struct gz_validated validated;     /* set if has_validated */
+	char told_changed[GZ_REASON_SIZE]; /* how the display has changed; logged */
 	uint64_t rejected[GZ_REJECT_COUNT];
 	int64_t host_ns;     /* newest sample's */
 	int64_t commands_ns; /* when commands are read next */
@@ -76,6 +81,8 @@ static enum gz_result adopt_device(struct gz_service *service)
 	if (result != GZ_OK)
 		return result;
 	gz_config_correction(parts->config, info, &display, parts->log, &params);
+	service->has_validated =
+		gz_config_validated(parts->config, info, parts->log, &service->validated);
 	const struct gz_pipeline *pipeline = &service->maker.pipeline;
 	bool same = service->opened > 0 &&
 		    memcmp(&display, &pipeline->display, sizeof display) == 0 &&
@@ -262,6 +269,7 @@ static void follow_viewer_window(struct gz_service *service, const struct gz_com
 {
 	struct gz_gaze_log_record window;
 	const int *rect_px = command->has_window ? command->window_px : NULL;
+	service->monitor = command->monitor;
 	if (gz_viewer_place_step(&service->viewer, rect_px, command->host_ns, &window))
 		gz_recorder_push(service->parts.recorder, &window);
 }
@@ -374,6 +382,22 @@ static void fill_refusals(const struct gz_service *service, uint64_t refused[GZ_
 	refused[GZ_REFUSAL_LSL] = gz_lsl_outlet_lost(service->parts.lsl);
 }
 
+/* Say what the tracker was validated on, and how that has changed since. */
+static void fill_validation(const struct gz_service *service, struct gz_status *status)
+{
+	const struct gz_monitor_place unknown = { .scale = 0 };
+	bool seen = service->viewer.known &&
+		    gz_clock_now_ns() - service->viewer.heard_ns <= GZ_VIEWER_WINDOW_NS;
+	status->validation.accuracy_deg = NAN;
+	if (!service->has_validated)
+		return;
+	memcpy(status->validation.measured, service->validated.measured,
+	       sizeof status->validation.measured);
+	status->validation.accuracy_deg = service->validated.accuracy_deg;
+	gz_validated_changed(&service->validated, &status->display,
+			     seen ? &service->monitor : &unknown, status->validation.changed);
+}
+
 static void fill_status(struct gz_service *service, struct gz_status *status)
 {
 	const struct gz_tracker *tracker = &service->tracker;
@@ -404,6 +428,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 	memcpy(status->rejected, service->rejected, sizeof status->rejected);
 	memcpy(status->malformed, tracker->counters.malformed, sizeof status->malformed);
 	fill_refusals(service, status->refused);
+	fill_validation(service, status);
 	status->recording.state = recorder.state;
 	status->recording.samples = recorder.samples;
 	memcpy(status->recording.error, recorder.error, sizeof status->recording.error);
@@ -421,11 +446,26 @@ static void notify_manager(const struct gz_service *service, const struct gz_sta
 	gz_notify_status(service->parts.notify, text);
 }
 
+/* Log how the display has changed since the validation, once. */
+static void log_changed_display(struct gz_service *service, const struct gz_status *status)
+{
+	const char *changed = status->validation.changed;
+	if (strcmp(service->told_changed, changed) == 0)
+		return;
+	memcpy(service->told_changed, changed, sizeof service->told_changed);
+	if (changed[0])
+		gz_warn(service->parts.log,
+			"the display has changed since %s was validated (%s): %s; run gazectl "
+			"validate again",
+			status->tracker.name, status->validation.measured, changed);
+}
+
 static void send_status(struct gz_service *service)
 {
 	struct gz_status status;
 	gz_tracker_update_counters(&service->tracker);
 	fill_status(service, &status);
+	log_changed_display(service, &status);
 	struct gz_wire_message *message = &service->batch.item[0].body;
 	if (gz_wire_encode_status(&status, message) == GZ_OK)
 		gz_publisher_send_one(service->parts.publisher, GZ_TOPIC_STATUS, message->bytes,

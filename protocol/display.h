@@ -26,6 +26,19 @@ struct gz_display {
 	double distance_mm; /**< from the eye to the centre of the display; above 0 */
 };
 
+/** Farthest corner of a monitor from the desktop's, px. Chosen: many displays side by side. */
+#define GZ_MONITOR_PLACE_MAX_PX 1000000
+
+/** Largest scale of a desktop. Chosen: none comes near it. */
+#define GZ_MONITOR_SCALE_MAX 100
+
+/** Where a monitor is on the desktop. Zero-initialised: unknown. */
+struct gz_monitor_place {
+	int at[2];    /**< its upper left corner, px */
+	int px[2];    /**< width and height; 0: all is unknown */
+	double scale; /**< of what the desktop shows on it: 1, 1.5, 2; 0: unknown */
+};
+
 /**
  * The geometry that is assumed if no other is known: 50.4 degrees wide at 600 mm, with square
  * pixels, for any number of pixels. It is the display of Bauer 2018, section 2.4: 2263 pixels

@@ -254,6 +254,13 @@ struct gz_status {
 	struct {
 		double x[3], y[3];
 	} correction;
+	/** The last check of the tracker's calibration, by gazectl validate. */
+	struct {
+		char measured[GZ_NAME_SIZE];  /**< UTC, ISO 8601; empty: none is known */
+		double accuracy_deg;          /**< NaN if none is known */
+		char changed[GZ_REASON_SIZE]; /**< how the display has changed since; empty: it has
+						   not */
+	} validation;
 	struct {
 		enum gz_recording_state state;
 		char file[GZ_PATH_SIZE];

@@ -224,6 +224,7 @@ struct gz_viewer_pointer {
 struct gz_viewer_window {
 	bool known;     /**< false: it is closed */
 	int rect_px[4]; /**< x, y, width and height of its content on the display; set if known */
+	struct gz_monitor_place monitor; /**< the tracker's display; zeroed: unknown */
 	bool has_time;
 	int64_t time_ns; /**< host time; set if has_time */
 };
@@ -232,7 +233,8 @@ struct gz_viewer_window {
 enum gz_result gz_wire_encode_pointer(const struct gz_viewer_pointer *pointer,
 				      struct gz_wire_message *out_message);
 
-/** Encode {"rect": [x, y, w, h] or nil, "timestamp": s or nil}. */
+/** Encode {"rect": [x, y, w, h] or nil, "timestamp": s or nil}, and if the monitor is known,
+ * "monitor": [x, y, w, h] and "scale". */
 enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 				     struct gz_wire_message *out_message);
 
@@ -240,8 +242,9 @@ enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 enum gz_result gz_wire_decode_pointer(const void *bytes, size_t size,
 				      struct gz_viewer_pointer *out_pointer);
 
-/** Decode a window. Numbers that are not whole or beyond GZ_WINDOW_PX_MAX are refused, and so is an
- *  empty rectangle. */
+/** Decode a window. Numbers that are not whole or beyond GZ_WINDOW_PX_MAX are refused, and so are
+ * an empty rectangle, a monitor of more than GZ_DISPLAY_SIDE_MAX_PX and a scale above
+ * GZ_MONITOR_SCALE_MAX. */
 enum gz_result gz_wire_decode_window(const void *bytes, size_t size,
 				     struct gz_viewer_window *out_window);
 

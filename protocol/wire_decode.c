@@ -371,6 +371,16 @@ static void take_gaze_correction(struct gz_unpack *unpack, struct gz_status *sta
 	gz_unpack_doubles(unpack, map, "y", status->correction.y, 3);
 }
 
+static void take_validation(struct gz_unpack *unpack, struct gz_status *status)
+{
+	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "validation");
+	gz_unpack_text(unpack, map, "measured", status->validation.measured,
+		       sizeof status->validation.measured);
+	gz_unpack_double(unpack, map, "accuracy_deg", 0, 360, &status->validation.accuracy_deg);
+	gz_unpack_text(unpack, map, "changed", status->validation.changed,
+		       sizeof status->validation.changed);
+}
+
 static void take_recording_status(struct gz_unpack *unpack, struct gz_status *status)
 {
 	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "recording");
@@ -389,6 +399,7 @@ enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_s
 	struct gz_status status = {
 		.noise_deg = NAN,
 		.correction = { .x = { 0, 1, 0 }, .y = { 0, 0, 1 } },
+		.validation = { .accuracy_deg = NAN },
 	};
 	uint64_t subscribers = 0;
 	struct gz_unpack unpack;
@@ -399,6 +410,7 @@ enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_s
 	gz_unpack_double(&unpack, unpack.map, "noise_deg", 0, DBL_MAX, &status.noise_deg);
 	take_display_geometry(&unpack, &status.display);
 	take_gaze_correction(&unpack, &status);
+	take_validation(&unpack, &status);
 	take_recording_status(&unpack, &status);
 	gz_unpack_uint64(&unpack, unpack.map, "subscribers", &subscribers);
 	if (subscribers > UINT32_MAX)
@@ -498,6 +510,22 @@ static bool take_window_rect(const double numbers[4], int out_px[4])
 	return out_px[2] > 0 && out_px[3] > 0;
 }
 
+static void take_monitor_place(struct gz_unpack *unpack, struct gz_monitor_place *monitor)
+{
+	double numbers[4];
+	int rect_px[4];
+	if (!gz_unpack_doubles(unpack, unpack->map, "monitor", numbers, 4))
+		return;
+	if (!take_window_rect(numbers, rect_px) || rect_px[2] > GZ_DISPLAY_SIDE_MAX_PX ||
+	    rect_px[3] > GZ_DISPLAY_SIDE_MAX_PX) {
+		unpack->refused = true;
+		return;
+	}
+	memcpy(monitor->at, rect_px, sizeof monitor->at);
+	memcpy(monitor->px, rect_px + 2, sizeof monitor->px);
+	gz_unpack_double(unpack, unpack->map, "scale", 0, GZ_MONITOR_SCALE_MAX, &monitor->scale);
+}
+
 enum gz_result gz_wire_decode_window(const void *bytes, size_t size,
 				     struct gz_viewer_window *out_window)
 {
@@ -508,6 +536,8 @@ enum gz_result gz_wire_decode_window(const void *bytes, size_t size,
 	window.known = gz_unpack_doubles(&unpack, unpack.map, "rect", numbers, 4);
 	if (window.known && !take_window_rect(numbers, window.rect_px))
 		unpack.refused = true;
+	if (window.known)
+		take_monitor_place(&unpack, &window.monitor);
 	window.has_time =
 		gz_unpack_time(&unpack, unpack.map, "timestamp", GZ_NS_PER_S, &window.time_ns);
 	enum gz_result result = gz_unpack_end(&unpack);

@@ -406,6 +406,14 @@ static void pack_gaze_correction(struct gz_pack *pack, const struct gz_status *s
 	gz_pack_doubles(pack, "y", status->correction.y, 3);
 }
 
+static void pack_validation(struct gz_pack *pack, const struct gz_status *status)
+{
+	gz_pack_map(pack, "validation", 3);
+	gz_pack_text(pack, "measured", status->validation.measured);
+	gz_pack_double(pack, "accuracy_deg", status->validation.accuracy_deg);
+	gz_pack_text(pack, "changed", status->validation.changed);
+}
+
 static void pack_recording_status(struct gz_pack *pack, const struct gz_status *status)
 {
 	gz_pack_map(pack, "recording", 4);
@@ -420,7 +428,7 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 14);
+	gz_pack_map(&pack, NULL, 15);
 	pack_tracker_status(&pack, status);
 	/* rate_hz, samples, lost, rejected, malformed, refused */
 	pack_sample_counts(&pack, status);
@@ -428,6 +436,7 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
 	pack_display_geometry(&pack, &status->display);
 	pack_gaze_correction(&pack, status);
+	pack_validation(&pack, status);
 	pack_recording_status(&pack, status);
 	gz_pack_uint(&pack, "subscribers", status->subscribers);
 	gz_pack_text(&pack, "version", status->version);
@@ -470,12 +479,23 @@ enum gz_result gz_wire_encode_pointer(const struct gz_viewer_pointer *pointer,
 	return gz_pack_end(&pack);
 }
 
+static void pack_monitor_place(struct gz_pack *pack, const struct gz_monitor_place *monitor)
+{
+	gz_pack_array(pack, "monitor", 4);
+	for (int i = 0; i < 2; i++)
+		gz_pack_int(pack, NULL, monitor->at[i]);
+	for (int i = 0; i < 2; i++)
+		gz_pack_int(pack, NULL, monitor->px[i]);
+	gz_pack_double(pack, "scale", monitor->scale);
+}
+
 enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 				     struct gz_wire_message *out_message)
 {
 	struct gz_pack pack;
+	bool has_monitor = window->monitor.px[0] > 0;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 2);
+	gz_pack_map(&pack, NULL, has_monitor ? 4 : 2);
 	if (window->known) {
 		gz_pack_array(&pack, "rect", 4);
 		for (int i = 0; i < 4; i++)
@@ -484,6 +504,8 @@ enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 		gz_pack_nil(&pack, "rect");
 	}
 	pack_optional_time(&pack, window->has_time, window->time_ns);
+	if (has_monitor)
+		pack_monitor_place(&pack, &window->monitor);
 	return gz_pack_end(&pack);
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "client/gazectl/output.h"
@@ -119,6 +120,22 @@ static void print_correction(const struct gz_status *status)
 		    x[1], x[2], y[0], y[1], y[2]);
 }
 
+static void print_validation(const struct gz_status *status)
+{
+	char measured[GZ_NAME_SIZE], changed[GZ_REASON_SIZE];
+	memcpy(measured, status->validation.measured, sizeof measured);
+	memcpy(changed, status->validation.changed, sizeof changed);
+	gazectl_make_printable(measured);
+	gazectl_make_printable(changed);
+	if (!measured[0]) {
+		row("validated", "never, or by another user; run gazectl validate");
+		return;
+	}
+	row("validated", "%s, %.2f deg", measured, status->validation.accuracy_deg);
+	if (changed[0])
+		row("", "the display has changed since: %s; run gazectl validate again", changed);
+}
+
 static void print_recording(const struct gz_status *status)
 {
 	const char *state = gz_recording_state_name(status->recording.state);
@@ -150,6 +167,7 @@ static void print_status_table(const struct gz_status *status, const char *endpo
 		row("noise", "unknown: no fixation yet");
 	print_display_row(&status->display);
 	print_correction(status);
+	print_validation(status);
 	print_recording(status);
 	row("subscribers", "%" PRIu32, status->subscribers);
 	row("version", "%s", status->version);
@@ -182,6 +200,13 @@ static json_t *json_clock(const struct gz_clock_status *clock)
 			 gz_clock_tick_name(clock->tick));
 }
 
+static json_t *json_validation(const struct gz_status *status)
+{
+	return json_pack("{so so so}", "measured", gz_output_json_text(status->validation.measured),
+			 "accuracy_deg", gz_output_json_number(status->validation.accuracy_deg),
+			 "changed", gz_output_json_text(status->validation.changed));
+}
+
 static json_t *json_recording(const struct gz_status *status)
 {
 	return json_pack("{ss so so so}", "state", gz_recording_state_name(status->recording.state),
@@ -193,7 +218,7 @@ static json_t *json_recording(const struct gz_status *status)
 static json_t *json_status(const struct gz_status *status, const char *endpoint)
 {
 	return json_pack(
-		"{so so so so so so so so so so s{so so} so sI so so}", "tracker",
+		"{so so so so so so so so so so s{so so} so so sI so so}", "tracker",
 		json_tracker(status), "rate_hz",
 		gz_output_json_rate(status->rate_hz_nominal, status->rate_hz_measured), "samples",
 		gz_output_json_count(status->samples), "lost", gz_output_json_count(status->lost),
@@ -205,9 +230,10 @@ static json_t *json_status(const struct gz_status *status, const char *endpoint)
 		gz_output_json_number(status->noise_deg), "display",
 		gz_output_json_display(&status->display), "correction", "x",
 		gz_output_json_numbers(status->correction.x, 3), "y",
-		gz_output_json_numbers(status->correction.y, 3), "recording",
-		json_recording(status), "subscribers", (json_int_t)status->subscribers, "version",
-		gz_output_json_text(status->version), "stream", gz_output_json_text(endpoint));
+		gz_output_json_numbers(status->correction.y, 3), "validation",
+		json_validation(status), "recording", json_recording(status), "subscribers",
+		(json_int_t)status->subscribers, "version", gz_output_json_text(status->version),
+		"stream", gz_output_json_text(endpoint));
 }
 
 static enum gazectl_exit show_status(const struct status_settings *settings,

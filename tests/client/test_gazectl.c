@@ -74,6 +74,7 @@ static struct gz_status some_status(void)
 		.clock = { .tick = GZ_CLOCK_DECLARED, .skew_ppm = 1.5 },
 		.noise_deg = 0.125,
 		.display = gz_display_default(1920, 1080),
+		.validation = { "2026-01-31T12:00:00Z", 0.75, "500 mm away, was \t600 mm" },
 		.subscribers = 2,
 		.version = "0.1.0",
 	};
@@ -220,6 +221,9 @@ static void status_is_a_table(void **state)
 		"clock        declared tick",
 		"noise        0.125 deg",
 		"display      1920x1080 px",
+		"validated    2026-01-31T12:00:00Z, 0.75 deg\n             the display has changed "
+		"since: "
+		"500 mm away, was ?600 mm; run gazectl validate again\n",
 		"recording    off\n",
 		"subscribers  2\n",
 		"version      0.1.0\n",

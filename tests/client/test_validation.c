@@ -155,9 +155,11 @@ static void lines_of_gazeview_are_understood(void **state)
 {
 	(void)state;
 	struct gz_viewer_event event;
-	assert_int_equal(gz_viewer_event_parse("screen 1920 1080", &event), GZ_OK);
+	assert_int_equal(gz_viewer_event_parse("screen 1920 1080 -1280 40 1.25", &event), GZ_OK);
 	assert_int_equal(event.kind, GZ_VIEWER_SCREEN);
-	assert_true(event.px[0] == 1920 && event.px[1] == 1080);
+	assert_true(event.monitor.px[0] == 1920 && event.monitor.px[1] == 1080);
+	assert_true(event.monitor.at[0] == -1280 && event.monitor.at[1] == 40);
+	assert_true(event.monitor.scale == 1.25);
 	assert_int_equal(gz_viewer_event_parse("shown 3 9 0.1 0.9 123456789", &event), GZ_OK);
 	assert_int_equal(event.kind, GZ_VIEWER_SHOWN);
 	assert_true(event.index == 3 && event.count == 9 && event.time_ns == 123456789);
@@ -177,6 +179,11 @@ static void other_lines_are_refused(void **state)
 		"",
 		" ",
 		"shown",
+		"screen 1920 1080",
+		"screen 1920 -1 0 0 1",
+		"screen 1920 1080 0 9999999 1",
+		"screen 1920 1080 0 0 -1",
+		"screen 1920 1080 0 0 101",
 		"shown 9 9 0.1 0.9 1",
 		"shown 0 9 nan 0.9 1",
 		"shown 0 9 0.1 inf 1",

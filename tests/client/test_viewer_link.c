@@ -132,6 +132,26 @@ static void window_is_sent_when_it_changes_each_second_and_when_it_closes(void *
 	assert_false(receive(50));
 }
 
+static void monitor_is_sent_with_the_window_when_it_changes(void **state)
+{
+	(void)state;
+	static const int rect_px[4] = { 0, 0, 640, 480 };
+	const struct gz_monitor_place desk = { { 1920, 0 }, { 1920, 1080 }, 1.5 };
+	struct gz_viewer_window window;
+	gz_viewer_link_monitor(viewer, &desk);
+	gz_viewer_link_window(viewer, rect_px, begin_ns);
+	gz_viewer_link_window(viewer, rect_px, begin_ns + 1);
+	gz_viewer_link_monitor(viewer, NULL);
+	gz_viewer_link_window(viewer, rect_px, begin_ns + 2);
+	assert_true(receive(PATIENCE_MS));
+	assert_int_equal(gz_wire_decode_window(bytes, (size_t)size, &window), GZ_OK);
+	assert_memory_equal(&window.monitor, &desk, sizeof desk);
+	assert_true(receive(PATIENCE_MS));
+	assert_int_equal(gz_wire_decode_window(bytes, (size_t)size, &window), GZ_OK);
+	assert_true(window.known && window.monitor.px[0] == 0);
+	assert_false(receive(50));
+}
+
 static void endpoints_whose_inlet_is_not_known_are_refused(void **state)
 {
 	(void)state;
@@ -173,6 +193,8 @@ TEST_SUITE(viewer_link)
 		cmocka_unit_test_setup_teardown(
 			window_is_sent_when_it_changes_each_second_and_when_it_closes, set_up,
 			tear_down),
+		cmocka_unit_test_setup_teardown(monitor_is_sent_with_the_window_when_it_changes,
+						set_up, tear_down),
 		cmocka_unit_test(endpoints_whose_inlet_is_not_known_are_refused),
 		cmocka_unit_test(nobody_who_listens_costs_nothing),
 	};

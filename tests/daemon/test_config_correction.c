@@ -9,6 +9,7 @@
 #include "base/captured_log.h"
 #include "daemon/config.h"
 #include "protocol/correction_file.h"
+#include "protocol/validated_file.h"
 
 static struct gz_config config;
 static struct captured_log captured;
@@ -172,6 +173,34 @@ static void map_without_area_is_refused(void **state)
 	assert_non_null(strstr(captured.last, "to a line or a point"));
 }
 
+static void validation_of_this_tracker_is_known(void **state)
+{
+	(void)state;
+	static const struct gz_gaze_log_header header;
+	char file[512];
+	struct gz_device_info info = info_of("Eye 5", "S1"), other = info_of("Eye 5", "S2");
+	struct gz_validated found,
+		written = { .tracker = "Eye_5", .serial = "S1", .display = display };
+	captured_log_init(&captured, "*:debug");
+	assert_int_equal(gz_validated_path(place, "Eye 5", "S1", file, sizeof file), GZ_OK);
+	configure(NULL, NULL);
+	assert_false(gz_config_validated(&config, &info, &captured.log, &found));
+	assert_int_equal(gz_validated_write(file, &written, NULL), GZ_OK);
+	assert_true(gz_config_validated(&config, &info, &captured.log, &found));
+	assert_true(gz_display_same(&found.display, &display));
+	assert_false(gz_config_validated(&config, &other, &captured.log, &found));
+	info.recorded = &header;
+	assert_false(gz_config_validated(&config, &info, &captured.log, &found));
+	assert_int_equal(captured.messages, 0);
+	/* Another tracker's under this one's name. */
+	info.recorded = NULL;
+	snprintf(written.serial, sizeof written.serial, "S3");
+	assert_int_equal(gz_validated_write(file, &written, NULL), GZ_OK);
+	assert_false(gz_config_validated(&config, &info, &captured.log, &found));
+	assert_non_null(strstr(captured.last, "it is of another tracker"));
+	unlink(file);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
 TEST_SUITE(config_correction)
@@ -182,6 +211,7 @@ TEST_SUITE(config_correction)
 		TEST(recording_keeps_its_own),
 		TEST(command_line_has_the_last_word),
 		TEST(corrections_can_be_turned_off),
+		TEST(validation_of_this_tracker_is_known),
 		TEST(file_of_another_display_under_this_name_is_refused),
 		TEST(map_without_area_is_refused),
 	};

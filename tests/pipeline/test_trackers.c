@@ -13,6 +13,7 @@
 #include "gazed_process.h"
 #include "gazepoint_server.h"
 #include "protocol/gaze_log.h"
+#include "protocol/validated_file.h"
 #include "protocol/wire.h"
 
 static struct gazed_place place;
@@ -273,6 +274,55 @@ static void window_is_recorded_at_once_and_at_the_start_of_a_later_recording(voi
 	assert_int_equal(before, 0);
 }
 
+/* Report the monitor until the status tells of a change that contains @p wanted; NULL: of none. */
+static void report_until_told(struct gz_viewer_link *link, const struct gz_monitor_place *monitor,
+			      const char *wanted)
+{
+	static const int rect_px[4] = { 0, 0, 640, 480 };
+	const char *changed = reader.status.validation.changed;
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	gz_viewer_link_monitor(link, monitor);
+	while (reader.status_count == 0 || !reader.status.validation.measured[0] ||
+	       (wanted ? !strstr(changed, wanted) : changed[0] != '\0')) {
+		gz_viewer_link_window(link, rect_px, gz_clock_now_ns());
+		reader_receive(&reader, 20);
+		if (gz_clock_now_ns() > deadline_ns)
+			fail_msg("waited for \"%s\", was told \"%s\"", wanted ? wanted : "",
+				 changed);
+	}
+}
+
+static void monitor_that_changed_since_the_validation_is_told_in_the_status(void **state)
+{
+	(void)state;
+	char path[160], latest[128];
+	struct gz_viewer_link *link;
+	struct gz_validated validated = {
+		.tracker = "sim",
+		.display = gz_display_default(1920, 1080),
+		.monitor = { .px = { 1920, 1080 }, .scale = 1 },
+		.measured = "2026-01-31T12:00:00Z",
+		.accuracy_deg = 0.5,
+	};
+	assert_int_equal(
+		gz_validated_path(place.recordings, validated.tracker, "", path, sizeof path),
+		GZ_OK);
+	assert_int_equal(gz_validated_write(path, &validated, NULL), GZ_OK);
+	struct gazed_process gazed =
+		SPAWN("--driver", "sim", "--tracker.corrections", place.recordings);
+	snprintf(latest, sizeof latest, "ipc://%s/latest", place.directory);
+	assert_int_equal(gz_viewer_link_open(latest, NULL, &link), GZ_OK);
+	report_until_told(link, &validated.monitor, NULL);
+	assert_true(reader.status.validation.accuracy_deg == 0.5);
+	const struct gz_monitor_place scaled = { { 0, 0 }, { 1920, 1080 }, 2 };
+	report_until_told(link, &scaled, "scale of the desktop 2, was 1");
+	assert_non_null(strstr(gazed_said(&gazed), "the display has changed since sim"));
+	/* What is not known any more has not changed. */
+	report_until_told(link, NULL, NULL);
+	gz_viewer_link_close(&link);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 TEST_SUITE(trackers)
@@ -285,6 +335,7 @@ TEST_SUITE(trackers)
 		TEST(tobii_library_is_played_and_its_absence_refused),
 		TEST(pointer_leads_the_gaze_and_is_let_go),
 		TEST(window_is_recorded_at_once_and_at_the_start_of_a_later_recording),
+		TEST(monitor_that_changed_since_the_validation_is_told_in_the_status),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

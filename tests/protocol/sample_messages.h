@@ -87,6 +87,7 @@ static inline struct gz_status sample_status(void)
 		.noise_deg = 0.05,
 		.display = sample_display(),
 		.correction = { { 0.01, 1.02, -0.003 }, { 0.004, 0.005, 0.98 } },
+		.validation = { "2026-01-31T12:00:00Z", 0.75, "500 mm away, was 600 mm" },
 		.recording = { GZ_RECORDING_FAILED, "/data/a.gzl", 999, "disk full" },
 		.subscribers = 2,
 		.version = "0.1.0",

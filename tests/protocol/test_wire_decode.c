@@ -171,6 +171,9 @@ static void status_comes_back_as_it_was_sent(void **state)
 	assert_true(back.noise_deg == status.noise_deg);
 	assert_memory_equal(&back.display, &status.display, sizeof back.display);
 	assert_memory_equal(&back.correction, &status.correction, sizeof back.correction);
+	assert_string_equal(back.validation.measured, status.validation.measured);
+	assert_true(back.validation.accuracy_deg == status.validation.accuracy_deg);
+	assert_string_equal(back.validation.changed, status.validation.changed);
 	assert_int_equal(back.recording.state, status.recording.state);
 	assert_string_equal(back.recording.file, status.recording.file);
 	assert_string_equal(back.recording.error, status.recording.error);

@@ -458,7 +458,7 @@ static void status_has_the_documented_keys(void **state)
 	assert_int_equal(gz_wire_encode_status(&status, &message), GZ_OK);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
 	assert_keys(map, "tracker rate_hz samples lost rejected malformed refused clock noise_deg "
-			 "display correction recording "
+			 "display correction validation recording "
 			 "subscribers version");
 	assert_keys(value_of(map, "tracker"), "name serial state reason");
 	assert_keys(value_of(map, "rate_hz"), "nominal measured");
@@ -466,6 +466,7 @@ static void status_has_the_documented_keys(void **state)
 		    "tracker not_finite off_screen velocity disparity time confidence");
 	assert_keys(value_of(map, "clock"), "offset_ns skew_ppm sigma_ns tick");
 	assert_keys(value_of(map, "display"), "px mm distance_mm");
+	assert_keys(value_of(map, "validation"), "measured accuracy_deg changed");
 	assert_keys(value_of(map, "recording"), "state file samples error");
 	assert_text(value_of(value_of(map, "tracker"), "state"), "lost");
 	assert_number(value_of(value_of(map, "rejected"), "tracker"), 1);
@@ -539,6 +540,8 @@ static void longest_messages_fit(void **state)
 	fill(status.tracker.name, sizeof status.tracker.name);
 	fill(status.tracker.serial, sizeof status.tracker.serial);
 	fill(status.tracker.reason, sizeof status.tracker.reason);
+	fill(status.validation.measured, sizeof status.validation.measured);
+	fill(status.validation.changed, sizeof status.validation.changed);
 	fill(status.recording.file, sizeof status.recording.file);
 	fill(status.recording.error, sizeof status.recording.error);
 	fill(status.version, sizeof status.version);

@@ -46,6 +46,15 @@ static void window_comes_back_as_it_was_sent(void **state)
 	assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
 	assert_true(back.known && back.has_time && back.time_ns == sent.time_ns);
 	assert_memory_equal(back.rect_px, sent.rect_px, sizeof sent.rect_px);
+	assert_int_equal(back.monitor.px[0], 0);
+	const struct gz_viewer_window placed = {
+		.known = true,
+		.rect_px = { 0, 0, 1280, 720 },
+		.monitor = { .at = { -1920, 40 }, .px = { 1920, 1080 }, .scale = 1.25 },
+	};
+	assert_int_equal(gz_wire_encode_window(&placed, &message), GZ_OK);
+	assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
+	assert_memory_equal(&back.monitor, &placed.monitor, sizeof placed.monitor);
 	assert_int_equal(gz_wire_encode_window(&closed, &message), GZ_OK);
 	assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
 	assert_false(back.known);
@@ -53,6 +62,8 @@ static void window_comes_back_as_it_was_sent(void **state)
 
 #define POINT(bytes)     "\x81\xa5point" bytes
 #define RECT(a, b, c, d) "\x81\xa4rect\x94" a b c d
+/* A window of 1 1 1 1 on a monitor at 0 0; its size and perhaps its scale follow. */
+#define MONITOR(map, rest) map "\xa4rect\x94\x01\x01\x01\x01\xa7monitor\x94\x00\x00" rest
 
 static void impossible_values_are_refused_and_nothing_is_written(void **state)
 {
@@ -77,6 +88,9 @@ static void impossible_values_are_refused_and_nothing_is_written(void **state)
 		{ RECT("\x01", "\x01", "\x01", "\xca\x3f\x00\x00\x00"), 15 }, /* half a pixel */
 		{ RECT("\x01", "\x01", "\x01", "\xce\xff\xff\xff\xff"), 15 }, /* too far */
 		{ "\x81\xa4rect\x93\x01\x01\x01", 10 },
+		{ MONITOR("\x82", "\x01\x00"), 24 },              /* no height */
+		{ MONITOR("\x82", "\xcd\x80\x01\x01"), 26 },      /* too wide */
+		{ MONITOR("\x83", "\x01\x01\xa5scale\x65"), 31 }, /* 101 times */
 	};
 	struct gz_viewer_pointer pointer = { .time_ns = 77 };
 	struct gz_viewer_window window = { .time_ns = 77 };
@@ -90,6 +104,12 @@ static void impossible_values_are_refused_and_nothing_is_written(void **state)
 	assert_true(pointer.time_ns == 77 && window.time_ns == 77);
 	assert_int_equal(gz_wire_decode_window(RECT("\x01", "\x01", "\x01", "\x01"), 11, &window),
 			 GZ_OK);
+	assert_int_equal(gz_wire_decode_window(MONITOR("\x82", "\x01\x02"), 24, &window), GZ_OK);
+	assert_true(window.monitor.px[1] == 2 && window.monitor.scale == 0);
+	assert_int_equal(
+		gz_wire_decode_window(MONITOR("\x83", "\x01\x02\xa5scale\x64"), 31, &window),
+		GZ_OK);
+	assert_true(window.monitor.scale == 100);
 }
 
 TEST_SUITE(wire_viewer)

@@ -130,6 +130,27 @@ static void loss_and_another_display_are_amber(void **state)
 	judged(&signs, GZ_GAZE_LEVEL_GOOD, "");
 }
 
+static void display_that_changed_since_the_validation_is_amber(void **state)
+{
+	(void)state;
+	static struct gz_status status;
+	struct gz_gaze_signs signs = good_daemon();
+	struct gz_gaze_state told;
+	memset(&status, 0, sizeof status);
+	status.tracker.state = GZ_TRACKER_RUNNING;
+	signs.status = &status;
+	judged(&signs, GZ_GAZE_LEVEL_GOOD, "");
+	strcpy(status.validation.changed, "500 mm away, was 600 mm");
+	judged(&signs, GZ_GAZE_LEVEL_WARN, "DISPLAY CHANGED");
+	gz_gaze_state_of(&signs, &told);
+	assert_non_null(strstr(told.reason, "500 mm away, was 600 mm; validate again"));
+	signs.losing = true; /* what hurts the gaze more comes first */
+	judged(&signs, GZ_GAZE_LEVEL_WARN, "LOSING");
+	signs.losing = false;
+	signs.from_daemon = false;
+	judged(&signs, GZ_GAZE_LEVEL_GOOD, "");
+}
+
 static void ended_log_is_reported_and_mouse_is_always_good(void **state)
 {
 	(void)state;
@@ -223,6 +244,7 @@ TEST_SUITE(gaze_state)
 		cmocka_unit_test(daemon_without_tracker_gives_its_reason),
 		cmocka_unit_test(other_tracker_than_the_pointer_is_reported),
 		cmocka_unit_test(loss_and_another_display_are_amber),
+		cmocka_unit_test(display_that_changed_since_the_validation_is_amber),
 		cmocka_unit_test(ended_log_is_reported_and_mouse_is_always_good),
 		cmocka_unit_test(rate_counts_unread_samples),
 		cmocka_unit_test(rate_covers_the_last_second_only),

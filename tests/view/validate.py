@@ -219,11 +219,22 @@ class Validate(unittest.TestCase):
         return json.loads(done.stdout)
 
     def stored(self):
-        return glob.glob(os.path.join(self.place, "config/gazecast/corrections/*"))
+        return glob.glob(os.path.join(self.place, "config/gazecast/corrections/sim-*"))
+
+    def check_noted(self):
+        """The daemon knows what the tracker was validated on, and that nothing has changed."""
+        validation = self.status()["validation"]
+        self.assertRegex(validation["measured"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.assertGreater(validation["accuracy_deg"], 0)
+        self.assertEqual(validation["changed"], "")
+        noted = os.path.join(self.place, "config/gazecast/corrections/validated-sim.ini")
+        with open(noted, encoding="utf-8") as text:
+            self.assertIn("monitor_px = %d %d\n" % tuple(SCREEN), text.read())
 
     def check_stored(self):
         """A daemon that starts anew applies it; one with another display does not."""
         self.assertEqual(len(self.stored()), 1)
+        self.check_noted()
         in_force = self.status()["correction"]
         self.stop_daemon()
         self.start_simulator()
@@ -232,6 +243,9 @@ class Validate(unittest.TestCase):
         self.stop_daemon()
         self.start_simulator("--display.distance_mm=700")
         self.assertEqual(self.status()["correction"]["x"], [0, 1, 0])
+        self.assertEqual(self.status()["validation"]["changed"], "700 mm away, was 600 mm")
+        self.assertTrue(any("the display has changed since sim was validated" in line
+                            for line in self.said), self.said)
         self.stop_daemon()
         self.start_simulator("--tracker.corrections=none")
         self.assertEqual(self.status()["correction"]["x"], [0, 1, 0])
@@ -287,7 +301,9 @@ class Validate(unittest.TestCase):
         )
         self.addCleanup(viewer.communicate)
         self.addCleanup(viewer.kill)
-        self.assertEqual(viewer.stdout.readline().split(), ["screen", *map(str, SCREEN)])
+        screen = viewer.stdout.readline().split()
+        self.assertEqual(screen[:5], ["screen", *map(str, SCREEN), "0", "0"])
+        self.assertGreater(float(screen[5]), 0)
         shown = viewer.stdout.readline().split()
         self.assertEqual(shown[:5], ["shown", "0", "5", "0.5", "0.5"])
         self.assertLess(abs(int(shown[5]) - time.monotonic_ns()), 10e9)

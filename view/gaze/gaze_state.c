@@ -87,6 +87,17 @@ static void judge_age(const struct gz_gaze_signs *signs, struct gz_gaze_state *s
 			   "");
 }
 
+/* The least verdict: the gaze is there, but perhaps at another place. */
+static void judge_validation(const struct gz_status *status, struct gz_gaze_state *state)
+{
+	char text[GZ_REASON_SIZE];
+	if (!status || !status->validation.changed[0])
+		return;
+	snprintf(text, sizeof text, "DISPLAY CHANGED since gazectl validate: %.100s",
+		 status->validation.changed);
+	set_reason(state, GZ_GAZE_LEVEL_WARN, text, "; validate again");
+}
+
 void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *out_state)
 {
 	struct gz_gaze_state state = { .level = GZ_GAZE_LEVEL_GOOD };
@@ -98,6 +109,8 @@ void gz_gaze_state_of(const struct gz_gaze_signs *signs, struct gz_gaze_state *o
 		set_reason(&state, GZ_GAZE_LEVEL_WARN,
 			   "OTHER DISPLAY: the window is not on the tracker's display",
 			   "; press D to move it");
+	if (state.level == GZ_GAZE_LEVEL_GOOD && signs->from_daemon)
+		judge_validation(signs->status, &state);
 	*out_state = state;
 }
 

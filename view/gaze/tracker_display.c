@@ -8,6 +8,16 @@
 /* Relative tolerance of a side in mm: see gz_tracker_display_choose(). */
 #define SIDE_TOLERANCE 0.05
 
+struct gz_monitor_place gz_monitor_place_of(const struct gz_monitor *monitor)
+{
+	const int *rect = monitor->rect_px;
+	return (struct gz_monitor_place) {
+		.at = { rect[0], rect[1] },
+		.px = { rect[2], rect[3] },
+		.scale = monitor->scale,
+	};
+}
+
 int gz_monitor_at(const struct gz_monitor_list *list, const int rect_px[4])
 {
 	const int x = rect_px[0] + rect_px[2] / 2, y = rect_px[1] + rect_px[3] / 2;

@@ -25,6 +25,7 @@ struct gz_monitor {
 	int rect_px[4];          /**< x y w h on the desktop; w and h above 0 */
 	double mm[2];            /**< width and height; 0: unknown */
 	double refresh_hz;       /**< 0: unknown */
+	double scale;            /**< of the desktop on it; 0: unknown */
 };
 
 /** All monitors, the primary one first. */
@@ -40,6 +41,9 @@ enum gz_tracker_display_reason {
 	GZ_TRACKER_DISPLAY_DESCRIBED, /**< it has the size that the daemon reports */
 	GZ_TRACKER_DISPLAY_WINDOW,    /**< the window is on it, and nothing else is known */
 };
+
+/** Where a monitor is, as the daemon is told of it. */
+struct gz_monitor_place gz_monitor_place_of(const struct gz_monitor *monitor);
 
 /** The choice. */
 struct gz_tracker_display {

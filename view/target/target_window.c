@@ -278,11 +278,21 @@ static void advance_targets(struct target_window *window)
 	window->space = false;
 }
 
-static enum gz_result show_targets(struct target_window *window)
+static void tell_screen(const struct target_window *window)
 {
 	const GLFWvidmode *mode = mode_of(window->glfw);
-	printf("screen %d %d\n", mode ? mode->width : 0, mode ? mode->height : 0);
+	GLFWmonitor *monitor = gz_glfw_monitor_of(window->glfw);
+	int left = 0, top = 0;
+	if (monitor)
+		glfwGetMonitorPos(monitor, &left, &top);
+	printf("screen %d %d %d %d %.6g\n", mode ? mode->width : 0, mode ? mode->height : 0, left,
+	       top, monitor ? gz_glfw_monitor_scale(monitor) : 0);
 	fflush(stdout);
+}
+
+static enum gz_result show_targets(struct target_window *window)
+{
+	tell_screen(window);
 	while (window->index < window->targets.count) {
 		draw_target(window);
 		swap_target(window);

@@ -11,7 +11,8 @@
  * Events are printed on standard output, one a line. Times are CLOCK_MONOTONIC, ns, taken when the
  * buffers were swapped and the GPU had finished:
  *
- *     screen WIDTH HEIGHT               size of the display, px
+ *     screen WIDTH HEIGHT LEFT TOP SCALE  the monitor: its size and place on the desktop, px, and
+ *                                       the desktop's scale on it; 0 where unknown
  *     shown INDEX COUNT X Y TIME        a target appeared; INDEX from 0; X, Y on the display
  *     hidden INDEX TIME                 the target is about to disappear
  *     finished TIME                     all targets were shown

@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/clock.h"
+#include "view/window/glfw.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -41,6 +42,7 @@ static bool describe_monitor(GLFWmonitor *handle, struct gz_monitor *out_monitor
 	monitor.mm[0] = mm[0] > 0 ? mm[0] : 0;
 	monitor.mm[1] = mm[1] > 0 ? mm[1] : 0;
 	monitor.refresh_hz = mode->refreshRate > 0 ? mode->refreshRate : 0;
+	monitor.scale = gz_glfw_monitor_scale(handle);
 	snprintf(monitor.name, sizeof monitor.name, "%s", name ? name : "");
 	*out_monitor = monitor;
 	return true;

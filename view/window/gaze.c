@@ -303,6 +303,18 @@ double gz_window_gaze_patience_s(const struct gz_window *window)
 
 /* ---- reports ---- */
 
+/* A monitor that was chosen only because the window is on it may be another one. */
+static void report_monitor(struct gz_window *window, const struct gz_monitor *monitor)
+{
+	const struct gz_tracker_display chosen = gz_window_tracker_display(window);
+	if (monitor && chosen.reason != GZ_TRACKER_DISPLAY_WINDOW) {
+		const struct gz_monitor_place place = gz_monitor_place_of(monitor);
+		gz_viewer_link_monitor(window->link, &place);
+	} else {
+		gz_viewer_link_monitor(window->link, NULL);
+	}
+}
+
 /* The window's content in pixels of the tracker's display. */
 static void report_rect(struct gz_window *window, int64_t now_ns)
 {
@@ -313,6 +325,7 @@ static void report_rect(struct gz_window *window, int64_t now_ns)
 		rect_px[0] -= monitor->rect_px[0];
 		rect_px[1] -= monitor->rect_px[1];
 	}
+	report_monitor(window, monitor);
 	if (rect_px[2] > 0 && rect_px[3] > 0)
 		gz_viewer_link_window(window->link, rect_px, now_ns);
 }

@@ -10,6 +10,7 @@
 #include <GLFW/glfw3.h>
 
 #include "base/log.h"
+#include "protocol/display.h"
 
 /* Longest wait for a reset, and interval of asking, s. */
 #define RESET_S    2.0
@@ -63,6 +64,13 @@ GLFWmonitor *gz_glfw_monitor_of(GLFWwindow *glfw)
 			return monitors[i];
 	}
 	return glfwGetPrimaryMonitor();
+}
+
+double gz_glfw_monitor_scale(GLFWmonitor *monitor)
+{
+	float across = 0, down = 0;
+	glfwGetMonitorContentScale(monitor, &across, &down);
+	return across > 0 && (double)across <= GZ_MONITOR_SCALE_MAX ? (double)across : 0;
 }
 
 bool gz_glfw_context_lost(void)

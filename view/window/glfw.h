@@ -27,6 +27,9 @@ const char *gz_glfw_load_opengl(struct GLFWwindow *glfw);
 /** The monitor that holds the middle of the window, else the primary one; NULL: there is none. */
 struct GLFWmonitor *gz_glfw_monitor_of(struct GLFWwindow *glfw);
 
+/** The scale of the desktop on a monitor, to GZ_MONITOR_SCALE_MAX; 0: unknown. */
+double gz_glfw_monitor_scale(struct GLFWmonitor *monitor);
+
 /** Whether the driver has lost the current context, as it does when the device hangs and is reset.
  *  False if the driver does not tell. */
 bool gz_glfw_context_lost(void);

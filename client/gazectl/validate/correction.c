@@ -11,6 +11,7 @@
 #include "base/order.h"
 #include "client/gazectl/validate/validation.h"
 #include "protocol/correction_file.h"
+#include "protocol/validated_file.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
@@ -261,24 +262,46 @@ struct gz_correct_params gz_fit_compose(const struct gz_correct_params *first,
  * once a second. */
 #define STATUS_PATIENCE_NS (3 * GZ_NS_PER_S)
 
-static enum gz_result find_correction_path(const struct gazectl_correction *correction,
-					   const struct gz_status *status, char *path, size_t size)
+static enum gz_result report_directory(const struct gazectl_correction *correction,
+				       enum gz_result result)
 {
-	char directory[GZ_PATH_SIZE];
-	enum gz_result result = GZ_OK;
-	if (correction->directory[0])
-		snprintf(directory, sizeof directory, "%s", correction->directory);
-	else
-		result = gz_correction_directory(directory, sizeof directory);
-	if (result == GZ_OK)
-		result = gz_correction_path(directory, status->tracker.name, status->tracker.serial,
-					    &status->display, path, size);
 	if (result != GZ_OK)
 		gz_err(correction->log,
 		       "there is no directory for corrections: %s; give one with "
 		       "--corrections DIR",
 		       gz_result_text(result));
 	return result;
+}
+
+static enum gz_result find_directory(const struct gazectl_correction *correction,
+				     char directory[GZ_PATH_SIZE])
+{
+	if (!correction->directory[0])
+		return gz_correction_directory(directory, GZ_PATH_SIZE);
+	snprintf(directory, GZ_PATH_SIZE, "%s", correction->directory);
+	return GZ_OK;
+}
+
+static enum gz_result find_correction_path(const struct gazectl_correction *correction,
+					   const struct gz_status *status, char *path, size_t size)
+{
+	char directory[GZ_PATH_SIZE];
+	enum gz_result result = find_directory(correction, directory);
+	if (result == GZ_OK)
+		result = gz_correction_path(directory, status->tracker.name, status->tracker.serial,
+					    &status->display, path, size);
+	return report_directory(correction, result);
+}
+
+static enum gz_result find_validated_path(const struct gazectl_correction *correction,
+					  const struct gz_status *status, char *path, size_t size)
+{
+	char directory[GZ_PATH_SIZE];
+	enum gz_result result = find_directory(correction, directory);
+	if (result == GZ_OK)
+		result = gz_validated_path(directory, status->tracker.name, status->tracker.serial,
+					   path, size);
+	return report_directory(correction, result);
 }
 
 static bool is_in_force(const struct gz_status *status, const struct gz_correct_params *map)
@@ -354,6 +377,34 @@ enum gazectl_exit gazectl_correction_store(const struct gazectl_correction *corr
 	if (status == GAZECTL_DONE)
 		gz_info(correction->log, "the correction is stored in %s and in force", path);
 	return status;
+}
+
+static struct gz_validated validated_of(const struct gz_validation *validation)
+{
+	const struct gz_status *status = &validation->status;
+	struct gz_validated validated = {
+		.display = status->display,
+		.monitor = validation->monitor,
+		.accuracy_deg = validation->summary[GZ_TRACE_BOTH].accuracy_deg,
+	};
+	gz_correction_name(status->tracker.name, validated.tracker);
+	gz_correction_name(status->tracker.serial, validated.serial);
+	memcpy(validated.measured, validation->started, sizeof validation->started);
+	return validated;
+}
+
+void gazectl_validated_store(const struct gazectl_correction *correction,
+			     const struct gz_validation *validation)
+{
+	char path[2 * GZ_PATH_SIZE], reply[GZ_CONTROL_REPLY_SIZE];
+	const struct gz_validated validated = validated_of(validation);
+	if (!isfinite(validated.accuracy_deg) ||
+	    find_validated_path(correction, &validation->status, path, sizeof path) != GZ_OK ||
+	    gz_validated_write(path, &validated, correction->log) != GZ_OK)
+		return;
+	/* In a recording, another correction that is found meanwhile would end it. */
+	if (validation->status.recording.state != GZ_RECORDING_ON)
+		(void)gazectl_request(correction->control, "CORRECTION", correction->log, reply);
 }
 
 enum gazectl_exit gazectl_correction_forget(const struct gazectl_correction *correction,

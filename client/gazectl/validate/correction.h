@@ -111,6 +111,14 @@ enum gazectl_exit gazectl_correction_store(const struct gazectl_correction *corr
 					   const struct gz_validation *validation);
 
 /**
+ * Store what the tracker was validated on, so that the daemon can say when that changes; it is
+ * asked to look, unless a recording is running. Nothing is stored if no target was fixated. What
+ * fails is logged.
+ */
+void gazectl_validated_store(const struct gazectl_correction *correction,
+			     const struct gz_validation *validation);
+
+/**
  * Remove the correction stored for the tracker and display of @p status, and wait until the daemon
  * no longer applies it.
  *

@@ -201,6 +201,7 @@ static enum gazectl_exit take_viewer_event(struct check_run *check,
 	struct gz_validation_target *target = newest_target(check);
 	switch (event->kind) {
 	case GZ_VIEWER_SCREEN:
+		check->result->monitor = event->monitor;
 		return GAZECTL_DONE;
 	case GZ_VIEWER_SHOWN:
 		return add_target(check, event);
@@ -473,6 +474,8 @@ static enum gazectl_exit evaluate_and_report(const struct check_run *check)
 		return GAZECTL_FAILED;
 	}
 	enum gazectl_exit status = report_check(check);
+	if (status == GAZECTL_DONE)
+		gazectl_validated_store(&correction, check->result);
 	if (status == GAZECTL_DONE && wants_correction(check))
 		status = gazectl_correction_store(&correction, check->result);
 	return status;

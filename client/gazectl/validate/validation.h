@@ -39,8 +39,9 @@ struct gz_validation_target {
 
 /** A whole check. */
 struct gz_validation {
-	struct gz_status status; /**< of the daemon: tracker, rate, display, correction */
-	char started[32];        /**< UTC, ISO 8601 */
+	struct gz_status status;         /**< of the daemon: tracker, rate, display, correction */
+	char started[32];                /**< UTC, ISO 8601 */
+	struct gz_monitor_place monitor; /**< that showed the targets; zeroed if unknown */
 	size_t target_count;
 	struct gz_validation_target target[GZ_FIT_TARGETS_MAX];
 	struct gz_gaze_trace trace;

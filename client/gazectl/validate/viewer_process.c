@@ -54,15 +54,30 @@ static bool parse_word_number(const struct words *words, int i, int64_t max, int
 	return true;
 }
 
+/* A place on the desktop may be negative. */
+static bool parse_word_place(const struct words *words, int i, int *out_px)
+{
+	long long value;
+	if (!gz_number_parse_whole(words->word[i], &value) || value < -GZ_MONITOR_PLACE_MAX_PX ||
+	    value > GZ_MONITOR_PLACE_MAX_PX)
+		return false;
+	*out_px = (int)value;
+	return true;
+}
+
 static bool parse_screen(const struct words *words, struct gz_viewer_event *event)
 {
+	struct gz_monitor_place *monitor = &event->monitor;
 	int64_t px[2];
-	if (words->count != 3 || !parse_word_number(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
-	    !parse_word_number(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]))
+	if (words->count != 6 || !parse_word_number(words, 1, GZ_DISPLAY_SIDE_MAX_PX, &px[0]) ||
+	    !parse_word_number(words, 2, GZ_DISPLAY_SIDE_MAX_PX, &px[1]) ||
+	    !parse_word_place(words, 3, &monitor->at[0]) ||
+	    !parse_word_place(words, 4, &monitor->at[1]) ||
+	    !gz_number_parse(words->word[5], &monitor->scale))
 		return false;
-	event->px[0] = (int)px[0];
-	event->px[1] = (int)px[1];
-	return true;
+	monitor->px[0] = (int)px[0];
+	monitor->px[1] = (int)px[1];
+	return monitor->scale >= 0 && monitor->scale <= GZ_MONITOR_SCALE_MAX;
 }
 
 static bool parse_shown(const struct words *words, struct gz_viewer_event *event)

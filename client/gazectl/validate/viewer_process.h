@@ -19,7 +19,7 @@
 
 /** What a line reports. */
 enum gz_viewer_event_kind {
-	GZ_VIEWER_SCREEN,    /**< the size of the display, pixels */
+	GZ_VIEWER_SCREEN,    /**< the monitor that shows the targets */
 	GZ_VIEWER_SHOWN,     /**< a target has appeared */
 	GZ_VIEWER_HIDDEN,    /**< a target has vanished */
 	GZ_VIEWER_FINISHED,  /**< all targets were shown */
@@ -30,10 +30,10 @@ enum gz_viewer_event_kind {
 /** A parsed line. */
 struct gz_viewer_event {
 	enum gz_viewer_event_kind kind;
-	int px[2];             /**< SCREEN; 0 0 if unknown */
-	size_t index, count;   /**< SHOWN, HIDDEN (index only) */
-	struct gz_point point; /**< SHOWN: on the display */
-	int64_t time_ns;       /**< host time; not in SCREEN and GONE */
+	struct gz_monitor_place monitor; /**< SCREEN; zeroed if unknown */
+	size_t index, count;             /**< SHOWN, HIDDEN (index only) */
+	struct gz_point point;           /**< SHOWN: on the display */
+	int64_t time_ns;                 /**< host time; not in SCREEN and GONE */
 };
 
 /**
