@@ -9,6 +9,8 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/vector.h"
+#include "render/mesh/mesh_file.h"
+#include "render/mesh/mesh_parse.h"
 #include "render/mesh/ply_head.h"
 
 #define GZ_LOG_MODULE "mesh"
@@ -242,22 +244,10 @@ static enum gz_result check_element_room(const struct ply_reader *reader,
 			  "too short for the items that its header claims:", element->count);
 }
 
-static enum gz_result take_elements(struct ply_reader *reader, uint64_t vertices,
-				    uint64_t triangles, struct gz_mesh *out_mesh)
-{
-	const enum gz_result result = gz_mesh_allocate(vertices, triangles, out_mesh);
-	if (result == GZ_ERR_FULL)
-		gz_err(reader->log, "%s: more than %d vertices or triangles; make the mesh coarser",
-		       reader->name, GZ_MESH_COUNT_MAX);
-	else if (result != GZ_OK)
-		gz_err(reader->log, "%s: no memory for %llu vertices and %llu triangles",
-		       reader->name, (unsigned long long)vertices, (unsigned long long)triangles);
-	return result;
-}
-
 static enum gz_result read_vertices(struct ply_reader *reader, const struct gz_ply_element *element)
 {
-	enum gz_result result = take_elements(reader, element->count, 0, &reader->mesh);
+	enum gz_result result =
+		gz_mesh_take(reader->name, element->count, 0, reader->log, &reader->mesh);
 	for (size_t i = 0; i < element->count && result == GZ_OK; i++)
 		result = read_vertex(reader, element, i);
 	return result;
@@ -270,8 +260,8 @@ static enum gz_result read_faces(struct ply_reader *reader, const struct gz_ply_
 	struct gz_mesh whole;
 	enum gz_result result = read_all_faces(reader, element, false);
 	if (result == GZ_OK)
-		result =
-			take_elements(reader, reader->mesh.vertex_count, reader->triangles, &whole);
+		result = gz_mesh_take(reader->name, reader->mesh.vertex_count, reader->triangles,
+				      reader->log, &whole);
 	if (result != GZ_OK)
 		return result;
 	if (reader->mesh.vertex_count > 0) {
@@ -294,52 +284,6 @@ static enum gz_result skip_elements(struct ply_reader *reader, const struct gz_p
 	return GZ_OK;
 }
 
-/* Twice the area of a triangle, as a vector along its normal. */
-static void area_vector(const struct gz_mesh *mesh, const uint32_t corners[3], double out[3])
-{
-	double sides[2][3];
-	for (int side = 0; side < 2; side++)
-		for (int axis = 0; axis < 3; axis++)
-			sides[side][axis] = (double)mesh->positions[corners[side + 1]][axis] -
-					    (double)mesh->positions[corners[0]][axis];
-	gz_cross3(sides[0], sides[1], out);
-}
-
-/* Give the vertices without a normal the sum of their triangles'. */
-static enum gz_result fill_normals(struct ply_reader *reader)
-{
-	struct gz_mesh *mesh = &reader->mesh;
-	size_t missing = 0;
-	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		const float *n = mesh->normals[v];
-		missing += n[0] == 0 && n[1] == 0 && n[2] == 0;
-	}
-	if (missing == 0)
-		return GZ_OK;
-	double(*sums)[3] = calloc(mesh->vertex_count, sizeof *sums);
-	if (!sums) {
-		gz_err(reader->log, "%s: no memory for normals", reader->name);
-		return GZ_ERR_NO_MEM;
-	}
-	for (size_t t = 0; t < mesh->triangle_count; t++) {
-		double area[3];
-		area_vector(mesh, mesh->triangles[t], area);
-		for (int i = 0; i < 9; i++)
-			sums[mesh->triangles[t][i / 3]][i % 3] += area[i % 3];
-	}
-	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		float *n = mesh->normals[v];
-		if (n[0] != 0 || n[1] != 0 || n[2] != 0)
-			continue;
-		if (!gz_normalise3(sums[v]))
-			sums[v][2] = 1; /* in no triangle with an area */
-		for (int axis = 0; axis < 3; axis++)
-			n[axis] = (float)sums[v][axis];
-	}
-	free(sums);
-	return GZ_OK;
-}
-
 static enum gz_result read_elements(struct ply_reader *reader)
 {
 	enum gz_result result = GZ_OK;
@@ -352,7 +296,8 @@ static enum gz_result read_elements(struct ply_reader *reader)
 			 : element->kind == GZ_PLY_FACE ? read_faces(reader, element)
 							: skip_elements(reader, element);
 	}
-	return result == GZ_OK ? fill_normals(reader) : result;
+	return result == GZ_OK ? gz_mesh_fill_normals(reader->name, reader->log, &reader->mesh)
+			       : result;
 }
 
 enum gz_result gz_mesh_parse_ply(const char *name, const void *bytes, size_t size,
@@ -382,26 +327,45 @@ enum gz_result gz_mesh_parse_ply(const char *name, const void *bytes, size_t siz
 	return result;
 }
 
+/* The formats, by the endings of names. */
+static const struct {
+	const char *ending;
+	gz_mesh_parser *parse;
+} mesh_formats[] = {
+	{ ".ply", gz_mesh_parse_ply },
+	{ ".obj", gz_mesh_parse_obj },
+	{ ".stl", gz_mesh_parse_stl },
+};
+
+static gz_mesh_parser *mesh_parser_of(const char *path)
+{
+	for (size_t i = 0; i < sizeof mesh_formats / sizeof mesh_formats[0]; i++)
+		if (gz_path_ends(path, mesh_formats[i].ending))
+			return mesh_formats[i].parse;
+	return NULL;
+}
+
 enum gz_result gz_mesh_read(const char *path, const struct gz_log *log, struct gz_mesh *out_mesh)
 {
+	gz_mesh_parser *parse = mesh_parser_of(path);
 	struct gz_text text = { 0 };
-	if (!gz_path_ends(path, ".ply")) {
-		gz_err(log, "%s: meshes are read from .ply files; convert it", path);
+	if (!parse) {
+		gz_err(log, "%s: meshes are read from " GZ_MESH_ENDINGS " files; convert it", path);
 		return GZ_ERR_UNSUPPORTED;
 	}
 	enum gz_result result = gz_text_add_file(&text, path);
 	if (result != GZ_OK)
 		gz_err(log, "%s: cannot be read: %s", path, gz_result_text(result));
 	else
-		result = gz_mesh_parse_ply(path, text.bytes ? text.bytes : "", text.length, log,
-					   out_mesh);
+		result = parse(path, text.bytes ? text.bytes : "", text.length, log, out_mesh);
 	gz_text_free(&text);
 	return result;
 }
 
-bool gz_mesh_has_faces(const char *path)
+/* Whether a file is a PLY whose header has faces. */
+static bool ply_has_faces(const char *path)
 {
-	FILE *file = gz_path_ends(path, ".ply") ? fopen(path, "rb") : NULL;
+	FILE *file = fopen(path, "rb");
 	struct gz_ply_head *head = malloc(sizeof *head);
 	char *bytes = malloc(HEAD_MOST);
 	bool faces = false;
@@ -417,6 +381,12 @@ bool gz_mesh_has_faces(const char *path)
 	free(head);
 	free(bytes);
 	return faces;
+}
+
+bool gz_mesh_has_faces(const char *path)
+{
+	gz_mesh_parser *parse = mesh_parser_of(path);
+	return parse == gz_mesh_parse_ply ? ply_has_faces(path) : parse != NULL;
 }
 
 void gz_mesh_move(struct gz_mesh *mesh, const double origin[3])

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "render/data/format.h"
 #include "render/data/raw_guess.h"
+#include "render/mesh/mesh_file.h"
 #include "render/mesh/mesh_read.h"
 #include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
@@ -34,7 +35,7 @@ enum gz_file_kind gz_file_kind_by_name(const char *path)
 		if (gz_path_ends(path, kinds[i].ending))
 			return kinds[i].kind;
 	/* Before the volumes, of which raw ones may end in ".gz" whatever stands before that. */
-	if (gz_particle_format_by_name(path))
+	if (gz_particle_format_by_name(path) || gz_mesh_file_named(path))
 		return GZ_FILE_VOLUME;
 	const struct gz_volume_format *format = gz_volume_format_by_name(path);
 	if (!format)

@@ -43,7 +43,7 @@ struct gz_scene_request {
 /**
  * Open a scene, or make one from a volume, a mesh or a picture. A volume gets the preset of every
  * key, the transfer function of gz_transfer_of_volume() and, unless @p request changes the camera,
- * a camera that sees all of it; so does a PLY with faces, unless volume_alone asks for its points.
+ * a camera that sees all of it; so does a mesh, unless volume_alone asks for the points of a PLY.
  * A picture gives the scene and the transfer function that it holds; if the
  * volume has changed since, a warning is logged.
  *

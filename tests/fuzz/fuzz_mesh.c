@@ -15,11 +15,11 @@ static void require(bool holds)
 		abort();
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void check_parser(gz_mesh_parser *parse, const uint8_t *data, size_t size)
 {
 	struct gz_mesh mesh;
-	if (gz_mesh_parse_ply("fuzz", data, size, NULL, &mesh) != GZ_OK)
-		return 0;
+	if (parse("fuzz", data, size, NULL, &mesh) != GZ_OK)
+		return;
 	for (size_t v = 0; v < mesh.vertex_count; v++) {
 		double length2 = 0;
 		for (int axis = 0; axis < 3; axis++) {
@@ -32,5 +32,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	for (size_t i = 0; i < 3 * mesh.triangle_count; i++)
 		require(mesh.triangles[i / 3][i % 3] < mesh.vertex_count);
 	gz_mesh_free(&mesh);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	check_parser(gz_mesh_parse_ply, data, size);
+	check_parser(gz_mesh_parse_obj, data, size);
+	check_parser(gz_mesh_parse_stl, data, size);
 	return 0;
 }

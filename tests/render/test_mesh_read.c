@@ -1,4 +1,4 @@
-/* Meshes of any PLY file, and what is refused. */
+/* Meshes of PLY, OBJ and STL files, and what is refused. */
 #include "suite.h"
 
 #include <math.h>
@@ -268,6 +268,151 @@ static void each_fault_is_refused_with_its_place(void **state)
 	}
 }
 
+static enum gz_result parse_obj(const char *text, const struct gz_log *log,
+				struct gz_mesh *out_mesh)
+{
+	return gz_mesh_parse_obj("a.obj", text, strlen(text), log, out_mesh);
+}
+
+static void obj_is_read_with_polygons_and_numbers_from_the_end(void **state)
+{
+	(void)state;
+	static const char text[] = "# made by hand\r\n"
+				   "v 0 0 2\r\n"
+				   "v 1 0 2 0.5 0.5 0.5\r\n" /* a colour */
+				   "vn 0 0 7\n"
+				   "v 1 1 \\\n  2\n"
+				   "f -3//1 2/9/1 3//-1 4//1\n"
+				   "v\t0 1 2\n"
+				   "usemtl shine\n"
+				   "f 1 2\n"
+				   "v 5 5 5";
+	struct gz_mesh mesh;
+	assert_int_equal(parse_obj(text, NULL, &mesh), GZ_OK);
+	assert_int_equal(mesh.vertex_count, 5);
+	assert_int_equal(mesh.triangle_count, 2);
+	assert_memory_equal(mesh.triangles, ((uint32_t[2][3]) { { 0, 1, 2 }, { 0, 2, 3 } }),
+			    sizeof(uint32_t[2][3]));
+	assert_memory_equal(mesh.positions[2], ((float[3]) { 1, 1, 2 }), sizeof(float[3]));
+	for (int v = 0; v < 5; v++)
+		assert_memory_equal(mesh.normals[v], ((float[3]) { 0, 0, 1 }), sizeof(float[3]));
+	gz_mesh_free(&mesh);
+}
+
+static void each_fault_of_an_obj_is_refused_with_its_line(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *words;
+	} faults[] = {
+		{ "", ": no line begins with v" },
+		{ "v 0 0\n", "a.obj:1: no three numbers" },
+		{ "v 0 0 nan\n", "a.obj:1: no three numbers" },
+		{ "\nv 0 0 2e18\n", "a.obj:2: no three numbers up to 1e18" },
+		{ "v 0 0 0\nf 1 1 2\n", "a.obj:2: a corner that is not a vertex" },
+		{ "v 0 0 0\nf 1 1 0\n", "a corner that is not a vertex" },
+		{ "v 0 0 0\nf 1 1 -2\n", "a corner that is not a vertex" },
+		{ "f 1 1 -1\nv 0 0 0\n", "a.obj:1: a corner that is not a vertex" },
+		{ "v 0 0 0\nf 1 1 -9223372036854775808\n", "a corner that is not a vertex" },
+		{ "v 0 0 0\nf 1 1 x\n", "a corner that is not a vertex" },
+		{ "v 0 0 0\nvn 0 0 1\nf 1//1 1//2 1//1\n", "a corner whose normal is not there" },
+		{ "v 0 0 0\nvn 0 0 1\nf 1//1 1// 1//1\n", "a corner whose normal is not there" },
+	};
+	for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+		struct captured_log log;
+		struct gz_mesh mesh = { .vertex_count = 77 };
+		captured_log_init(&log, NULL);
+		if (parse_obj(faults[i].text, &log.log, &mesh) != GZ_ERR_FORMAT ||
+		    !strstr(log.last, faults[i].words) || log.messages != 1)
+			fail_msg("%s: '%s' lacks '%s'", faults[i].text, log.last, faults[i].words);
+		assert_int_equal(mesh.vertex_count, 77);
+	}
+}
+
+/* A mesh written as OBJ and STL comes back, from STL with its vertices joined again. */
+static void written_obj_and_stl_are_read_back(void **state)
+{
+	(void)state;
+	static const char *const names[] = { "ball.obj", "ball.stl" };
+	static const int dims[3] = { 50, 50, 50 };
+	static const double spacing[3] = { 1, 0.9, 1.2 };
+	struct gz_volume volume = field_volume(field_ball, dims, spacing, GZ_VOXEL_F32);
+	const struct gz_isosurface_request request = { .volume = &volume, .isovalue = 0.3 };
+	struct gz_mesh mesh, read;
+	assert_int_equal(gz_isosurface_make(&request, NULL, NULL, &mesh), GZ_OK);
+	for (int i = 0; i < 2; i++) {
+		const char *path = files_path(names[i]);
+		assert_int_equal(gz_mesh_write(&mesh, path, NULL), GZ_OK);
+		assert_int_equal(gz_mesh_read(path, NULL, &read), GZ_OK);
+		assert_int_equal(read.vertex_count, mesh.vertex_count);
+		assert_int_equal(read.triangle_count, mesh.triangle_count);
+		for (size_t t = 0; t < 3 * mesh.triangle_count; t++) {
+			const uint32_t a = mesh.triangles[t / 3][t % 3];
+			const uint32_t b = read.triangles[t / 3][t % 3];
+			assert_memory_equal(mesh.positions[a], read.positions[b],
+					    sizeof mesh.positions[0]);
+			for (int axis = 0; axis < 3; axis++)
+				assert_float_equal(mesh.normals[a][axis], read.normals[b][axis],
+						   i == 0 ? 1e-6 : 0.1);
+		}
+		gz_mesh_free(&read);
+	}
+	gz_mesh_free(&mesh);
+	gz_volume_free(&volume);
+}
+
+#define STL_FACET(a, b, c)                                                      \
+	"facet normal 0 0 0\nouter loop\nvertex " a "\nvertex " b "\nvertex " c \
+	"\nendloop\nendfacet\n"
+
+static void text_stl_is_read_and_its_corners_joined(void **state)
+{
+	(void)state;
+	static const char text[] = "solid a vertex of a name\n" STL_FACET("0 0 0", "1 0 0", "0 1 0")
+		STL_FACET("1 0 0", "1 1 -0", "0 1 0") "endsolid\n";
+	struct gz_mesh mesh;
+	assert_int_equal(gz_mesh_parse_stl("a.stl", text, strlen(text), NULL, &mesh), GZ_OK);
+	assert_int_equal(mesh.vertex_count, 4);
+	assert_int_equal(mesh.triangle_count, 2);
+	assert_memory_equal(mesh.triangles, ((uint32_t[2][3]) { { 0, 1, 2 }, { 1, 3, 2 } }),
+			    sizeof(uint32_t[2][3]));
+	for (int v = 0; v < 4; v++)
+		assert_memory_equal(mesh.normals[v], ((float[3]) { 0, 0, 1 }), sizeof(float[3]));
+	gz_mesh_free(&mesh);
+}
+
+static void each_fault_of_an_stl_is_refused(void **state)
+{
+	(void)state;
+	static const char claims[84] = { 's', 'o', 'l', 'i', 'd', [80] = 1 };
+	static const char infinite[134] = { [80] = 1,
+					    [84 + 12 + 2] = (char)0x80,
+					    [84 + 12 + 3] = 0x7F };
+	static const struct {
+		const char *bytes;
+		size_t size;
+		const char *words;
+	} faults[] = {
+		{ "stl", 3, "neither begins with solid nor has the bytes of a head" },
+		{ claims, sizeof claims, "cut off: its head claims triangles: 1" },
+		{ infinite, sizeof infinite, "coordinates beyond 1e18 in triangle 0" },
+		{ "solid\nvertex 0 0 0\nendfacet\n", 28,
+		  "no three corners in the facet before line 3" },
+		{ "solid\nvertex 0 0 0\n", 19, "cut off in line" },
+		{ "solid\nvertex 0 0\n", 17, "no three numbers up to 1e18 in line 2" },
+	};
+	for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+		struct captured_log log;
+		struct gz_mesh mesh = { .vertex_count = 77 };
+		captured_log_init(&log, NULL);
+		if (gz_mesh_parse_stl("a.stl", faults[i].bytes, faults[i].size, &log.log, &mesh) !=
+			    GZ_ERR_FORMAT ||
+		    !strstr(log.last, faults[i].words) || log.messages != 1)
+			fail_msg("'%s' lacks '%s'", log.last, faults[i].words);
+		assert_int_equal(mesh.vertex_count, 77);
+	}
+}
+
 static void missing_file_and_other_endings_are_refused(void **state)
 {
 	(void)state;
@@ -307,6 +452,11 @@ TEST_SUITE(mesh_read)
 		cmocka_unit_test(normal_that_is_no_number_is_made_again),
 		cmocka_unit_test(points_without_faces_are_a_mesh_without_triangles),
 		cmocka_unit_test(each_fault_is_refused_with_its_place),
+		cmocka_unit_test(obj_is_read_with_polygons_and_numbers_from_the_end),
+		cmocka_unit_test(each_fault_of_an_obj_is_refused_with_its_line),
+		cmocka_unit_test(written_obj_and_stl_are_read_back),
+		cmocka_unit_test(text_stl_is_read_and_its_corners_joined),
+		cmocka_unit_test(each_fault_of_an_stl_is_refused),
 		cmocka_unit_test(missing_file_and_other_endings_are_refused),
 		cmocka_unit_test(mesh_is_moved_and_bounded),
 	};

@@ -125,7 +125,7 @@ static const char *write_liquid(const char *name)
 	"property float y\nproperty float z\n"
 #define PLY_NUMBERS "0 0 0\n8 0 0\n0 4 0\n0 0 2\n"
 
-static void ply_opens_as_a_mesh_if_it_has_faces(void **state)
+static void mesh_opens_without_a_scene(void **state)
 {
 	(void)state;
 	struct gz_object object;
@@ -152,6 +152,11 @@ static void ply_opens_as_a_mesh_if_it_has_faces(void **state)
 	assert_false(gz_mesh_has_faces(path));
 	scene = opened(path, NULL);
 	assert_true(gz_scene_has_volume(&scene.settings));
+	gz_scene_free(&scene);
+	path = files_write_text("face.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n", NULL, 0);
+	assert_int_equal(gz_file_kind_of(path), GZ_FILE_VOLUME);
+	scene = opened(path, NULL);
+	assert_int_equal(scene.meshes[0].triangle_count, 1);
 	gz_scene_free(&scene);
 	assert_false(gz_mesh_has_faces("none.ply"));
 	path = files_write_text("broken.ply",
@@ -353,7 +358,7 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(binary_file_is_no_scene),
 		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
-		cmocka_unit_test(ply_opens_as_a_mesh_if_it_has_faces),
+		cmocka_unit_test(mesh_opens_without_a_scene),
 		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
 		cmocka_unit_test(camera_of_the_request_is_kept),
