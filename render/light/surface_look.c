@@ -1,5 +1,7 @@
 #include "render/light/surface_look.h"
 
+static const char *const material_names[] = { "matte", "glass", NULL };
+
 #define AT(field) offsetof(struct gz_surface_look, field)
 
 const struct gz_option gz_surface_look_options[] = {
@@ -7,6 +9,12 @@ const struct gz_option gz_surface_look_options[] = {
 	  .preset = "0", .help = "data value of a volume's surface, such as Hounsfield units" },
 	{ "isosurface.colour", GZ_OPTION_DOUBLE, AT(colour), 0, 1, .count = 3,
 	  .preset = "0.9 0.85 0.75", .help = "red, green and blue of surfaces" },
+	{ "isosurface.material", GZ_OPTION_CHOICE, AT(material), .choices = material_names,
+	  .preset = "matte", .help = "matte, or glass: reflects and refracts the surroundings" },
+	{ "isosurface.refractive_index", GZ_OPTION_DOUBLE, AT(refractive_index), 1, 4,
+	  .preset = "1.333", .help = "refractive index of glass; 1.333 is water" },
+	{ "isosurface.bounces", GZ_OPTION_INT, AT(bounces), 1, 32, .preset = "4",
+	  .help = "surfaces of glass that a ray meets at most" },
 	{ "isosurface.shadows", GZ_OPTION_BOOL, AT(shadows), .preset = "no",
 	  .help = "hard shadows" },
 };

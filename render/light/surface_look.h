@@ -13,11 +13,21 @@
 /** Greatest magnitude of an isovalue. Chosen: data in single precision lie below 3.5e38. */
 #define GZ_ISOVALUE_MAX 1e30
 
+/** What surfaces are made of. */
+enum gz_material {
+	GZ_MATERIAL_MATTE, /**< opaque, lit as struct gz_light says */
+	GZ_MATERIAL_GLASS, /**< reflects and refracts the surroundings: struct gz_environment */
+};
+
 /** The surface of a volume, and how surfaces look. The light is that of struct gz_light. */
 struct gz_surface_look {
 	double isovalue;  /**< data value of a volume's surface: slope and intercept applied */
-	double colour[3]; /**< [0, 1] each; of all surfaces */
-	bool shadows;     /**< what does not see the light has ambient light only */
+	double colour[3]; /**< [0, 1] each; of all surfaces. Of glass: what is left of white light
+			     after one world unit */
+	int material;     /**< enum gz_material */
+	double refractive_index; /**< of glass; 1.333 is water */
+	int bounces;             /**< surfaces of glass that a ray meets at most */
+	bool shadows;            /**< what does not see the light has ambient light only */
 };
 
 /** Table over struct gz_surface_look: "isosurface.…". */

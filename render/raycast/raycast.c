@@ -250,7 +250,7 @@ static size_t raycast_bind(void *settings, struct gz_option_binding *out_binding
 {
 	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
 	gz_ray_params_bind(settings, bindings);
-	const size_t own = GZ_RAY_BINDINGS - 1; /* the last one is of surfaces */
+	const size_t own = GZ_RAYCAST_BINDINGS;
 	const size_t count = room < own ? room : own;
 	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
 	return own;

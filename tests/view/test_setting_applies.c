@@ -97,6 +97,16 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	settings.technique = 2;
 	assert_string_equal(gz_technique_choices[settings.technique], "isosurface");
 	assert_true(gz_setting_applies(&settings, "isosurface.isovalue"));
+	assert_true(gz_setting_applies(&settings, "isosurface.shadows"));
+	assert_false(gz_setting_applies(&settings, "isosurface.refractive_index"));
+	settings.rays.surface.material = GZ_MATERIAL_GLASS;
+	assert_false(gz_setting_applies(&settings, "isosurface.shadows"));
+	assert_true(gz_setting_applies(&settings, "isosurface.refractive_index"));
+	assert_true(gz_setting_applies(&settings, "environment.kind"));
+	assert_false(gz_setting_applies(&settings, "environment.tile"));
+	settings.rays.environment.kind = GZ_SURROUNDINGS_SKY;
+	settings.rays.environment.floor = true;
+	assert_true(gz_setting_applies(&settings, "environment.tile"));
 	assert_true(gz_setting_applies(&settings, "render.background"));
 	assert_true(gz_setting_applies(&settings, "light.ambient")); /* always lit */
 	assert_false(gz_setting_applies(&settings, "light.occlusion"));

@@ -7,9 +7,9 @@
 #include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
-	GZ_SCENE_CAMERA,   GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,      GZ_SCENE_LIGHT,
-	GZ_SCENE_CLIP,     GZ_SCENE_ISOSURFACE, GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,
-	GZ_SCENE_TEMPORAL, GZ_SCENE_VIEW,
+	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,        GZ_SCENE_LIGHT,
+	GZ_SCENE_CLIP,      GZ_SCENE_ISOSURFACE, GZ_SCENE_ENVIRONMENT, GZ_SCENE_FOVEATION,
+	GZ_SCENE_ATTENTION, GZ_SCENE_TEMPORAL,   GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -49,6 +49,26 @@ static bool by_raycast(const struct gz_scene_settings *settings)
 static bool by_isosurface(const struct gz_scene_settings *settings)
 {
 	return gz_scene_draws_by(settings, &gz_isosurface_technique);
+}
+
+static bool by_glass(const struct gz_scene_settings *settings)
+{
+	return by_isosurface(settings) && settings->rays.surface.material == GZ_MATERIAL_GLASS;
+}
+
+static bool by_matte(const struct gz_scene_settings *settings)
+{
+	return by_isosurface(settings) && !by_glass(settings);
+}
+
+static bool under_the_sky(const struct gz_scene_settings *settings)
+{
+	return by_isosurface(settings) && settings->rays.environment.kind == GZ_SURROUNDINGS_SKY;
+}
+
+static bool on_the_floor(const struct gz_scene_settings *settings)
+{
+	return under_the_sky(settings) && settings->rays.environment.floor;
 }
 
 /* Surfaces are always lit. */
@@ -140,7 +160,15 @@ static const struct {
 	{ "light.frame", with_a_lamp },
 	{ "light.ambient", with_a_lamp },
 	{ "light.", with_light },
+	{ "isosurface.refractive_index", by_glass },
+	{ "isosurface.bounces", by_glass },
+	{ "isosurface.shadows", by_matte },
 	{ "isosurface.", by_isosurface },
+	{ "environment.tile", on_the_floor },
+	{ "environment.bright", on_the_floor },
+	{ "environment.dark", on_the_floor },
+	{ "environment.kind", by_isosurface },
+	{ "environment.", under_the_sky },
 	{ "render.ray_sampling_rate", by_raycast },
 	{ "render.interpolation", by_raycast },
 	{ "render.integration", by_raycast },

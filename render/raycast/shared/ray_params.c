@@ -45,6 +45,7 @@ void gz_ray_params_bind(struct gz_ray_params *rays,
 		{ gz_light_options, gz_light_option_count, &rays->light, NULL },
 		{ gz_clip_options, gz_clip_option_count, &rays->clip, NULL },
 		{ gz_surface_look_options, gz_surface_look_option_count, &rays->surface, NULL },
+		{ gz_environment_options, gz_environment_option_count, &rays->environment, NULL },
 	};
 	memcpy(out_bindings, bindings, sizeof bindings);
 }
@@ -64,7 +65,8 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 	return gz_options_hold(gz_ray_options, gz_ray_option_count, rays) &&
 	       gz_light_valid(&rays->light) && gz_clip_box_valid(&rays->clip) &&
 	       gz_options_hold(gz_surface_look_options, gz_surface_look_option_count,
-			       &rays->surface);
+			       &rays->surface) &&
+	       gz_environment_valid(&rays->environment);
 }
 
 bool gz_ray_params_lit(const struct gz_ray_params *rays)
@@ -78,7 +80,9 @@ bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_param
 	       gz_options_same(gz_light_options, gz_light_option_count, &a->light, &b->light) &&
 	       gz_clip_box_same(&a->clip, &b->clip) &&
 	       gz_options_same(gz_surface_look_options, gz_surface_look_option_count, &a->surface,
-			       &b->surface);
+			       &b->surface) &&
+	       gz_options_same(gz_environment_options, gz_environment_option_count, &a->environment,
+			       &b->environment);
 }
 
 bool gz_ray_samples_nearest(const struct gz_ray_params *rays, const struct gz_volume *volume)

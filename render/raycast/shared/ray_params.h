@@ -12,6 +12,7 @@
 #include "base/option.h"
 #include "render/data/clip_box.h"
 #include "render/data/volume.h"
+#include "render/light/environment.h"
 #include "render/light/light.h"
 #include "render/light/surface_look.h"
 #include "render/picture/camera.h"
@@ -53,18 +54,22 @@ struct gz_ray_params {
 	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
 	struct gz_clip_box clip;
-	struct gz_surface_look surface; /**< for techniques that show surfaces */
+	struct gz_surface_look surface;    /**< for techniques that show surfaces */
+	struct gz_environment environment; /**< for techniques that show surfaces */
 };
 
-/** Table over struct gz_ray_params without its light, clip box and surface: "render.…". */
+/** Table over struct gz_ray_params without its light, clip box, surface and environment:
+ *  "render.…". */
 extern const struct gz_option gz_ray_options[];
 extern const size_t gz_ray_option_count;
 
-/** Tables that gz_ray_params_bind() gives. All but the last are of the ray caster. */
-#define GZ_RAY_BINDINGS 4
+/** Tables that gz_ray_params_bind() gives, and how many of them, the first ones, are of the ray
+ *  caster. */
+#define GZ_RAY_BINDINGS     5
+#define GZ_RAYCAST_BINDINGS 3
 
-/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "isosurface.…". The
- * bindings have no flags and borrow @p rays. */
+/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "isosurface.…",
+ *  "environment.…". The bindings have no flags and borrow @p rays. */
 void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
 

@@ -24,6 +24,17 @@ struct gz_surface_mesh {
 	uint32_t id;                      /**< of its object */
 };
 
+/** The surroundings: struct gz_environment for the kernels. Places and lengths are in mm. */
+struct gz_surface_environment {
+	bool sky;         /**< else everything is the horizon's colour */
+	bool floor;       /**< there is one */
+	float axes[3][3]; /**< up, and two along the floor; unit vectors */
+	float floor_mm;   /**< height of the floor */
+	float tiles_per_mm, fade_per_mm;
+	float horizon[3], zenith[3];
+	float bright[3], dark[3]; /**< of tiles, lit */
+};
+
 /** What all rays of a frame share. Lengths and places are in mm, in the frame of struct gz_mesh. */
 struct gz_surface_cast {
 	RTCScene tree;
@@ -39,6 +50,11 @@ struct gz_surface_cast {
 	float lift; /**< how far above a surface its shadow rays begin */
 	float colour[3];
 	uint32_t background; /**< as a pixel */
+	struct gz_surface_environment around;
+	int bounces;              /**< surfaces of glass that a ray meets at most; 0: no glass */
+	float refractive_index;   /**< of glass */
+	float least_reflection;   /**< share that glass reflects along its normal */
+	float absorbed_per_mm[3]; /**< by glass: log2 of what is left, 0 or less */
 	float world_per_mm;
 };
 

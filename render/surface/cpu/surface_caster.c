@@ -1,5 +1,6 @@
 #include "render/surface/cpu/surface_caster.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +31,9 @@ enum { COHERENT_SPACING = 2 };
 /* How far above a surface its shadow rays begin, as a share of the distances in the picture.
  * Chosen: 40 times the error of places in single precision. */
 #define LIFT_SHARE 2.5e-6
+
+/* Least colour of glass, so that its logarithm is finite. Chosen: no pixel shows less. */
+#define BLACKEST 1e-6
 
 /* Planes that one casting can fill. */
 enum picture_plane { PLANE_COLOURS, PLANE_DEPTH, PLANE_IDS, PLANE_COUNT };
@@ -345,16 +349,61 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 	cast->shadows = rays->surface.shadows;
 }
 
-/* Put into the hits of all techniques what lies nearer. */
-static void merge_hits(const struct gz_surface_hits *own, size_t tile, struct gz_ray_hits *all)
+/* Put into the hits of all techniques what lies nearer. A sky lies behind everything, farther than
+ * any depth, so that it shows behind translucent objects too. */
+static void merge_hits(const struct gz_surface_hits *own, bool sky, size_t tile,
+		       struct gz_ray_hits *all)
 {
+	const float behind = sky ? FLT_MAX : INFINITY;
 	float *depth = all->depth + tile * GZ_HITS_A_TILE;
 	uint32_t *pixels = all->pixels + tile * GZ_HITS_A_TILE;
 	for (int k = 0; k < GZ_HITS_A_TILE; k++)
-		if (own->depth[k] < depth[k]) {
-			depth[k] = own->depth[k];
+		if (fminf(own->depth[k], behind) < depth[k]) {
+			depth[k] = fminf(own->depth[k], behind);
 			pixels[k] = own->pixels[k];
 		}
+}
+
+static void fill_glass(const struct gz_surface_caster *caster, const struct gz_surface_look *look,
+		       struct gz_surface_cast *cast)
+{
+	const double root = (look->refractive_index - 1) / (look->refractive_index + 1);
+	cast->bounces = look->material == GZ_MATERIAL_GLASS ? look->bounces : 0;
+	cast->refractive_index = (float)look->refractive_index;
+	cast->least_reflection = (float)(root * root);
+	for (int i = 0; i < 3; i++)
+		cast->absorbed_per_mm[i] =
+			(float)(log2(fmax(look->colour[i], BLACKEST)) / caster->world_mm);
+}
+
+/* After fill_look(), which knows the light. */
+static void fill_surroundings(const struct gz_surface_caster *caster,
+			      const struct gz_ray_params *rays, struct gz_surface_cast *cast)
+{
+	const struct gz_environment *environment = &rays->environment;
+	struct gz_surface_environment *around = &cast->around;
+	double axes[3][3], half[3], lowest = 0, overhead = 0;
+	around->sky = environment->kind == GZ_SURROUNDINGS_SKY;
+	around->floor = environment->floor;
+	gz_environment_axes(environment, axes);
+	gz_volume_half_extent(caster->surfaces[0].object.volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		lowest -= fabs(axes[0][axis]) * half[axis] * caster->world_mm;
+		overhead += axes[0][axis] * (double)cast->light.towards[axis];
+		for (int i = 0; i < 3; i++)
+			around->axes[i][axis] = (float)axes[i][axis];
+	}
+	const double lamp = rays->light.ambient + rays->light.diffuse * fmax(overhead, 0);
+	around->floor_mm = (float)lowest;
+	around->tiles_per_mm = (float)(1 / (environment->tile * caster->world_mm));
+	around->fade_per_mm = (float)(1 / ((double)GZ_FLOOR_HALF * caster->world_mm));
+	for (int i = 0; i < 3; i++) {
+		around->horizon[i] =
+			(float)(around->sky ? environment->horizon[i] : rays->background[i]);
+		around->zenith[i] = (float)environment->zenith[i];
+		around->bright[i] = (float)(environment->bright[i] * lamp);
+		around->dark[i] = (float)(environment->dark[i] * lamp);
+	}
 }
 
 static void cast_surface_part(void *user, size_t part, int worker)
@@ -379,7 +428,7 @@ static void cast_surface_part(void *user, size_t part, int worker)
 		}
 		job->tile(&job->cast, &rays, &hits);
 		if (job->hits)
-			merge_hits(&hits, i, job->hits);
+			merge_hits(&hits, job->cast.around.sky, i, job->hits);
 		memcpy(depth, hits.depth, sizeof depth);
 		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
 		for (int plane = 0; plane < PLANE_COUNT; plane++)
@@ -456,6 +505,8 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	fill_clip(caster, &shot->rays->clip, &job.cast);
 	fill_rays(caster, &frame, &job.cast);
 	fill_look(shot->rays, &frame, &job.cast);
+	fill_glass(caster, &shot->rays->surface, &job.cast);
+	fill_surroundings(caster, shot->rays, &job.cast);
 	gz_workers_run(caster->workers, cast_surface_part, &job,
 		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 	const int64_t cast_ns = gz_clock_now_ns();
