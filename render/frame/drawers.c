@@ -106,13 +106,9 @@ static void sort_objects(const struct gz_object *objects, size_t count, struct g
 	}
 }
 
-/* Keep the drawer of a technique that stays. A backend that auto has chosen may be another in
- * company. */
-static void keep_drawer(struct gz_drawers *drawers, bool in_company,
-			struct gz_technique_drawer *item)
+/* Keep the drawer of a technique that stays. */
+static void keep_drawer(struct gz_drawers *drawers, struct gz_technique_drawer *item)
 {
-	if (in_company != (drawers->count > 1))
-		return;
 	for (size_t i = 0; i < drawers->count; i++)
 		if (drawers->items[i].technique == item->technique) {
 			item->drawer = drawers->items[i].drawer;
@@ -120,21 +116,27 @@ static void keep_drawer(struct gz_drawers *drawers, bool in_company,
 		}
 }
 
-static bool is_backend_free(const struct gz_drawers *drawers)
+/* The backend of an item: the one that is asked for. Of several techniques, those that lack it
+ * choose for themselves; the last one makes the picture and has no choice. */
+static const char *backend_of(const struct gz_drawers *drawers,
+			      const struct gz_technique_drawer *item)
 {
-	return !drawers->backend || strcmp(drawers->backend, "auto") == 0;
+	const struct gz_technique_drawer *last = &drawers->items[drawers->count - 1];
+	if (!drawers->backend || item == last)
+		return drawers->backend;
+	for (const char *const *name = item->technique->backends; *name; name++)
+		if (strcmp(*name, drawers->backend) == 0)
+			return drawers->backend;
+	return "auto";
 }
 
-/* Open the drawer of an item if it is not, and show its objects. In company, rays end at what
- * others show, which only the backend cpu can do. */
+/* Open the drawer of an item if it is not, and show its objects. */
 static enum gz_result show_item(const struct gz_drawers *drawers, struct gz_technique_drawer *item)
 {
-	const bool by_cpu = drawers->count > 1 && is_backend_free(drawers);
 	enum gz_result result = GZ_OK;
 	if (!item->drawer)
-		result = item->technique->create(by_cpu ? "cpu" : drawers->backend,
-						 drawers->backend_params, drawers->log,
-						 &item->drawer);
+		result = item->technique->create(backend_of(drawers, item), drawers->backend_params,
+						 drawers->log, &item->drawer);
 	return result == GZ_OK
 		       ? item->drawer->ops->show(item->drawer, item->objects, item->object_count)
 		       : result;
@@ -154,7 +156,7 @@ enum gz_result gz_drawers_show(struct gz_drawers *drawers, const struct gz_objec
 	}
 	for (size_t i = 0; i < item_count; i++) {
 		items[i].technique = techniques[i];
-		keep_drawer(drawers, item_count > 1, &items[i]);
+		keep_drawer(drawers, &items[i]);
 	}
 	sort_objects(objects, count, sorted, items, item_count);
 	gz_drawers_close(drawers);

@@ -107,8 +107,7 @@ struct gz_drawer_ops {
 	/** Draw a picture of the plan's size and write every pixel. @p image NULL leaves the
 	 * picture on the device (see picture_texture). @p out_stats may be NULL.
 	 * GZ_ERR_NO_DEVICE: the device is lost. Every failure is logged. GZ_SHARES_AS_CLEAR:
-	 * shot->hits may be there, and GZ_ERR_UNSUPPORTED says that the backend cannot end rays
-	 * at them. */
+	 * shot->hits may be there. */
 	enum gz_result (*draw)(struct gz_drawer *drawer, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats);
 	/** Of techniques with GZ_SHARES_AS_OPAQUE, else NULL. Cast the plan's rays, and put what

@@ -504,7 +504,7 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 	struct shader_folder folder = shader_folder_make();
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
 		for (int texels = 0; texels < GZ_GL_TEXELS_COUNT; texels++)
-			for (int variant = 0; variant < 64; variant++) {
+			for (int variant = 0; variant < 128; variant++) {
 				/* Colours are those of bytes, and never in bricks. */
 				if (variant & 32 &&
 				    (type != GZ_VOXEL_U8 || texels == GZ_GL_TEXELS_BRICKS))
@@ -517,6 +517,7 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 					.shaded = variant & 4,
 					.fine = variant & 16,
 					.coloured = variant & 32,
+					.hits = variant & 64,
 				};
 				const struct gz_gl_device device = { .software = variant & 8 };
 				char defines[GZ_GL_CAST_DEFINES_SIZE];

@@ -1,5 +1,6 @@
 #include "render/raycast/gl/gl_cast.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -39,6 +40,9 @@ enum { LEVEL = 2, TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDG
  * demand (GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT is at most 256). */
 enum { BLOCK_STRIDE = (sizeof(struct gz_gl_cast_block) + 255) / 256 * 256 };
 
+/* The depth of a ray that meets nothing: shaders need not know infinity. As in cast.comp. */
+#define FARTHEST_HIT 1e30F
+
 enum { COUNTS_SIZE = GZ_GL_COUNT_SLOTS * sizeof(uint32_t) };
 
 _Static_assert(GZ_LEVELS_MAX <= GZ_GL_TILE_LEVELS_MAX, "a tile's level of detail fits its bits");
@@ -61,11 +65,12 @@ struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
 	struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
 				       .name = "cast.comp",
 				       .defines = defines };
-	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s",
+	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), texels[kind.texels],
 		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
 		 kind.shaded ? "#define SHADED\n" : "", kind.fine ? "#define FINE_TABLE\n" : "",
-		 kind.coloured ? "#define COLOURED\n" : "", gz_gl_device_defines(device));
+		 kind.coloured ? "#define COLOURED\n" : "", kind.hits ? "#define HITS\n" : "",
+		 gz_gl_device_defines(device));
 	memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
 	memcpy(&shader.parts[GZ_GL_PLAN_PARTS], parts, sizeof parts);
 	return shader;
@@ -87,12 +92,35 @@ void gz_gl_cast_set_block(struct gz_gl_cast *cast, int level, const struct gz_gl
 	glBufferSubData(GL_UNIFORM_BUFFER, (GLintptr)level * BLOCK_STRIDE, sizeof *block, block);
 }
 
+enum gz_result gz_gl_cast_set_hits(struct gz_gl_cast *cast, const struct gz_gl_plan *gl_plan,
+				   const struct gz_plan *plan, const struct gz_ray_hits *hits)
+{
+	struct gz_gl_tiles_placed placed = { 0 };
+	const size_t bytes = (plan->tile_count + 1) * GZ_HITS_A_TILE * sizeof(uint32_t[2]);
+	uint32_t(*words)[2] = gz_gl_buffer_map_new(&cast->hits, bytes);
+	if (!words)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const size_t place = gz_gl_plan_place(gl_plan, &plan->tiles[i], &placed);
+		for (int k = 0; k < GZ_HITS_A_TILE; k++) {
+			const size_t from = i * GZ_HITS_A_TILE + (size_t)k;
+			const float depth = fminf(hits->depth[from], FARTHEST_HIT);
+			uint32_t *to = words[place * GZ_HITS_A_TILE + (size_t)k];
+			memcpy(&to[0], &depth, sizeof depth);
+			to[1] = depth < FARTHEST_HIT ? hits->pixels[from] : 0;
+		}
+	}
+	glUnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_GL_STORAGE_HITS, cast->hits.name);
+	return GZ_OK;
+}
+
 /* Use the program of a kind of cast; compile it the first time. */
 static enum gz_result use_cast_program(struct gz_gl_cast *cast, const struct gz_gl_cast_job *job)
 {
 	const struct gz_gl_cast_kind kind = job->kind;
 	unsigned *program = &cast->programs[kind.texels][kind.type][kind.nearest][kind.segments]
-					   [kind.shaded][kind.fine][kind.coloured];
+					   [kind.shaded][kind.fine][kind.coloured][kind.hits];
 	if (!*program) {
 		char defines[GZ_GL_CAST_DEFINES_SIZE];
 		const struct gz_gl_shader shader = gz_gl_cast_shader(kind, job->device, defines);
@@ -132,12 +160,13 @@ uint64_t gz_gl_cast_samples(struct gz_gl_cast *cast, const struct gz_gl_device *
 
 void gz_gl_cast_free(struct gz_gl_cast *cast)
 {
-	const GLuint *programs = &cast->programs[0][0][0][0][0][0][0];
+	const GLuint *programs = &cast->programs[0][0][0][0][0][0][0][0];
 	for (size_t i = 0; i < sizeof cast->programs / sizeof(GLuint); i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);
 	gz_gl_buffer_free(&cast->blocks);
 	gz_gl_buffer_free(&cast->counts);
+	gz_gl_buffer_free(&cast->hits);
 	gz_gl_buffer_free(&cast->staging);
 	*cast = (struct gz_gl_cast) { 0 };
 }

@@ -16,6 +16,7 @@
 #include "render/opengl/gl_program.h"
 #include "render/raycast/gl/gl_textures.h"
 #include "render/reconstruct/gl/gl_plan.h"
+#include "render/technique/ray_hits.h"
 
 /* Literal numbers, since they are pasted into the shaders' text. */
 
@@ -48,6 +49,7 @@ enum gz_gl_texture_unit {
 enum gz_gl_cast_storage {
 	GZ_GL_STORAGE_COUNTS = GZ_GL_STORAGE_TECHNIQUE,
 	GZ_GL_STORAGE_BRICKS,
+	GZ_GL_STORAGE_HITS,
 };
 
 /** What the casting shaders know of a frame: the uniform block of shaders/cast_block.glsl, byte for
@@ -87,18 +89,20 @@ struct gz_gl_cast_kind {
 	bool shaded;
 	bool fine;     /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
 	bool coloured; /**< voxels have colours of their own */
+	bool hits;     /**< rays end at hits: gz_gl_cast_set_hits() */
 };
 
 /** Programs, made when first needed, and buffers. Zero-initialised has none. */
 struct gz_gl_cast {
 	/** OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2];
 	struct gz_gl_buffer blocks; /**< one for each level of detail */
 	struct gz_gl_buffer counts, staging;
+	struct gz_gl_buffer hits; /**< depth and pixel of each ray, by the place of its tile */
 };
 
 /** Room for the text of gz_gl_cast_shader()'s defines. */
-#define GZ_GL_CAST_DEFINES_SIZE 260
+#define GZ_GL_CAST_DEFINES_SIZE 280
 
 /** The shader of a kind of cast. @p defines is filled and borrowed by the shader. */
 struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
@@ -110,6 +114,11 @@ enum gz_result gz_gl_cast_prepare(struct gz_gl_cast *cast, const struct gz_gl_de
 
 /** Upload the block of a level of detail. */
 void gz_gl_cast_set_block(struct gz_gl_cast *cast, int level, const struct gz_gl_cast_block *block);
+
+/** Upload and bind where the rays of a plan end. After gz_gl_plan_prepare(). GZ_ERR_NO_MEM: not
+ *  logged. */
+enum gz_result gz_gl_cast_set_hits(struct gz_gl_cast *cast, const struct gz_gl_plan *gl_plan,
+				   const struct gz_plan *plan, const struct gz_ray_hits *hits);
 
 /** What one pass of gz_gl_cast_tiles() casts. */
 struct gz_gl_cast_job {

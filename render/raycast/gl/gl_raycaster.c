@@ -169,7 +169,8 @@ static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_gl_
 	return GZ_OK;
 }
 
-static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_params *rays)
+static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_params *rays,
+				  bool hits)
 {
 	struct gz_gl_cast_job job = {
 		.device = &gl->device,
@@ -179,7 +180,8 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 			  .shaded = rays->shading == GZ_SHADING_GRADIENT,
 			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
-			  .coloured = gl->scene.volume->colours != NULL },
+			  .coloured = gl->scene.volume->colours != NULL,
+			  .hits = hits },
 		.log = gl->base.log,
 	};
 	enum gz_result result = GZ_OK;
@@ -195,9 +197,9 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 }
 
 /* All passes of a frame. */
-static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_ray_params *rays,
-				 const struct gz_plan *plan)
+static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *shot)
 {
+	const struct gz_plan *plan = shot->plan;
 	const struct gz_gl_reconstruct_job job = {
 		.device = &gl->device,
 		.gl_plan = &gl->plan,
@@ -207,7 +209,11 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_ray_pa
 		.log = gl->base.log,
 	};
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
-	enum gz_result result = cast_levels(gl, rays);
+	enum gz_result result = GZ_OK;
+	if (shot->hits)
+		result = gz_gl_cast_set_hits(&gl->cast, &gl->plan, plan, shot->hits);
+	if (result == GZ_OK)
+		result = cast_levels(gl, shot->settings, shot->hits != NULL);
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
 	if (result == GZ_OK)
 		result = gz_gl_reconstruct(&gl->reconstruct, &job);
@@ -260,11 +266,6 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 				       "set light.shadow_steps to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
-	if (shot->hits) {
-		gz_err(raycaster->log, "the backend gl does not end rays at surfaces; use "
-				       "--backend cpu for objects of several techniques");
-		return GZ_ERR_UNSUPPORTED;
-	}
 	enum gz_result result =
 		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, &world);
 	if (result == GZ_OK)
@@ -284,7 +285,7 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 	};
 	result = prepare_frame(gl, &frame);
 	if (result == GZ_OK)
-		result = draw_frame(gl, rays, plan);
+		result = draw_frame(gl, shot);
 	if (result == GZ_OK)
 		result = deliver_picture(gl, plan, image);
 	if (result == GZ_OK && out_stats)

@@ -89,7 +89,7 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
  * @param[out] out_stats  may be NULL
  * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
  * @retval GZ_ERR_NO_MEM  no room for the picture; gl: on the graphics device, logged
- * @retval GZ_ERR_UNSUPPORTED  gl: the device or driver cannot do this, or hits are given; logged
+ * @retval GZ_ERR_UNSUPPORTED  gl: the device or driver cannot do this; logged
  * @retval GZ_ERR_NO_DEVICE    gl: the context is lost; logged. Destroy the ray caster; cpu still
  *                             works
  *

@@ -86,18 +86,22 @@ static void extend_tile_range(struct gz_gl_tile_range *range, size_t item)
 	range->first = first;
 }
 
+size_t gz_gl_plan_place(const struct gz_gl_plan *gl_plan, const struct gz_tile *tile,
+			struct gz_gl_tiles_placed *placed)
+{
+	return gl_plan->ranges[tile->layer][tile->pattern].first +
+	       placed->count[tile->layer][tile->pattern]++;
+}
+
 /* Pack tiles into their ranges, each with its level of detail. */
 static void pack_tiles(struct gz_gl_plan *gl_plan, const struct gz_plan *plan,
 		       const struct gz_gl_tile_levels *levels, uint32_t (*out_words)[2])
 {
-	size_t next[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
-	for (int layer = 0; layer < GZ_PLAN_LAYERS_MAX; layer++)
-		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
-			next[layer][pattern] = gl_plan->ranges[layer][pattern].first;
+	struct gz_gl_tiles_placed placed = { 0 };
 	memset(gl_plan->level_ranges, 0, sizeof gl_plan->level_ranges);
 	for (size_t i = 0; i < plan->tile_count; i++) {
 		const struct gz_tile *tile = &plan->tiles[i];
-		const size_t place = next[tile->layer][tile->pattern]++;
+		const size_t place = gz_gl_plan_place(gl_plan, tile, &placed);
 		const unsigned level = levels->of[tile->layer][tile->pattern][tile->step];
 		uint32_t *words = out_words[place];
 		words[0] = (uint32_t)tile->x | (uint32_t)tile->y << 16;

@@ -93,6 +93,15 @@ enum gz_result gz_gl_plan_prepare(struct gz_gl_plan *gl_plan, const struct gz_gl
 /** Bind the block and the tiles, for casting and reconstruction. */
 void gz_gl_plan_bind(const struct gz_gl_plan *gl_plan);
 
+/** How many tiles of each layer and pattern have been placed. Zero-initialised: none. */
+struct gz_gl_tiles_placed {
+	size_t count[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
+};
+
+/** The place of a tile in the buffer of tiles. Call it for each tile of the plan, in its order. */
+size_t gz_gl_plan_place(const struct gz_gl_plan *gl_plan, const struct gz_tile *tile,
+			struct gz_gl_tiles_placed *placed);
+
 /** Upload each region's columns in each row (gz_region_columns()), unless the device has them, and
  *  bind them. GZ_ERR_NO_MEM: logged. */
 enum gz_result gz_gl_plan_bind_spans(struct gz_gl_plan *gl_plan, const struct gz_plan *plan,

@@ -9,6 +9,15 @@ layout(std430, binding = 3) buffer Counts
 	uint counts[];
 };
 
+#ifdef HITS
+// Depth of what each ray meets, as bits, and its pixel, by the place of its tile: gz_gl_cast_set_hits().
+layout(std430, binding = 5) readonly buffer Hits
+{
+	uvec2 hits[];
+};
+#define FARTHEST_HIT 1e30 // nothing is met
+#endif
+
 struct Ray {
 	vec3 start, delta, inverse; // voxel coordinates; position = start + k * delta
 	float first, end;           // whole segments: from k = first to k = end
@@ -54,7 +63,11 @@ float jitter_of(uvec2 pixel)
 }
 
 // Cuts a ray by the whole box and by the shown part of it. Segments are counted from a jitter before the box.
+#ifdef HITS
+Ray set_up_ray(uvec2 at, float step_length, float hit_depth)
+#else
 Ray set_up_ray(uvec2 at, float step_length)
+#endif
 {
 	vec2 pixel = vec2(at);
 	vec3 origin = fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
@@ -70,6 +83,9 @@ Ray set_up_ray(uvec2 at, float step_length)
 	float box_at = max(max(whole.x, whole.y), max(whole.z, 0.0));
 	float enter = max(max(near.x, near.y), max(near.z, 0.0));
 	float leave = min(min(far.x, far.y), far.z);
+#ifdef HITS
+	leave = min(leave, hit_depth / step_length);
+#endif
 	float shift = jitter_of(at);
 	bool hit = enter < leave;
 	float from = hit ? enter - box_at + shift : 0.0, to = hit ? leave - box_at + shift : 0.0;
@@ -279,7 +295,12 @@ void main()
 	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
 	read_frame();
 	vec2 step_lengths = steps[tile.step].xy;
+#ifdef HITS
+	uvec2 met = hits[index * uint(TILE_RAYS) + ray_index];
+	Ray ray = set_up_ray(at, step_lengths.x, uintBitsToFloat(met.x));
+#else
 	Ray ray = set_up_ray(at, step_lengths.x);
+#endif
 	Light light = Light(vec3(0.0), 1.0);
 #ifdef SHADED
 	set_up_view(ray.delta, step_lengths.x);
@@ -292,6 +313,13 @@ void main()
 	uint samples = march_part(ray, ray.head_at, ray.head, step_lengths.y, light);
 	samples += march(ray, int(tile.step), light);
 	samples += march_part(ray, fma(ray.rest, 0.5, ray.end), ray.rest, step_lengths.y, light);
+#endif
+#ifdef HITS
+	if (uintBitsToFloat(met.x) < FARTHEST_HIT) { // it is opaque
+		vec3 bytes = vec3(met.y & 255U, met.y >> 8 & 255U, met.y >> 16 & 255U);
+		light.colour += light.through * bytes * (vec3(2047.0, 2047.0, 1023.0) / 255.0);
+		light.through = 0.0;
+	}
 #endif
 	store(tile, at, to_pixel(light));
 	if (samples > 0U)
