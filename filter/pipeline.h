@@ -56,9 +56,16 @@ enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params,
 					size_t message_size);
 
 /**
- * The settings that a gaze log was recorded with: those in its header, and the defaults for the
- * rest. If it has settings but not the source of labels, it is older than the choice, and labels
- * come from the rules. A setting that this version does not have is ignored, with a warning.
+ * The settings that a gaze log was recorded with as far as its header does not name them: the
+ * presets. If it names settings but not the source of labels, it is older than the choice, and
+ * labels come from the rules.
+ */
+struct gz_pipeline_params gz_pipeline_unnamed_params(const struct gz_gaze_log_header *header);
+
+/**
+ * The settings that a gaze log was recorded with: those in its header, and
+ * gz_pipeline_unnamed_params() for the rest. A setting that this version does not have is ignored,
+ * with a warning.
  *
  * @param path  of the log, for messages
  * @param[out] out_params  passes gz_pipeline_check_params(); written on success only

@@ -192,13 +192,19 @@ static enum gz_result parse_recorded_setting(const struct gz_gaze_log_setting *s
 	return GZ_ERR_FORMAT;
 }
 
+struct gz_pipeline_params gz_pipeline_unnamed_params(const struct gz_gaze_log_header *header)
+{
+	struct gz_pipeline_params params = gz_pipeline_default_params();
+	if (header->setting_count > 0) /* a source of labels that it names comes later */
+		params.classify.source = GZ_CLASSIFY_RULES;
+	return params;
+}
+
 enum gz_result gz_pipeline_recorded_params(const struct gz_gaze_log_header *header,
 					   const char *path, const struct gz_log *log,
 					   struct gz_pipeline_params *out_params)
 {
-	struct gz_pipeline_params params = gz_pipeline_default_params();
-	if (header->setting_count > 0) /* recorded before there was a choice, unless it says so */
-		params.classify.source = GZ_CLASSIFY_RULES;
+	struct gz_pipeline_params params = gz_pipeline_unnamed_params(header);
 	for (size_t i = 0; i < header->setting_count; i++) {
 		const enum gz_result result =
 			parse_recorded_setting(&header->settings[i], path, log, &params);

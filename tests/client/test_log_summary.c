@@ -226,6 +226,26 @@ static void times_at_the_ends_of_their_range_overflow_nothing(void **state)
 	assert_true(isfinite(summary.rate_hz) && summary.duration_s >= 0);
 }
 
+/* What finds the labels if the header has this one setting. */
+static int source_of_labels(const char *key, const char *value)
+{
+	static struct gz_gaze_log_header header;
+	static struct gz_pipeline pipeline;
+	memset(&header, 0, sizeof header);
+	header.setting_count = 1;
+	strcpy(header.settings[0].key, key);
+	strcpy(header.settings[0].value, value);
+	gz_log_pipeline_init(&pipeline, &header, NULL);
+	return pipeline.params.classify.source;
+}
+
+static void logs_older_than_the_forests_are_summarized_by_rules(void **state)
+{
+	(void)state;
+	assert_int_equal(source_of_labels("dropout_ms", "10"), GZ_CLASSIFY_RULES);
+	assert_int_equal(source_of_labels("labels", "learned"), GZ_CLASSIFY_LEARNED);
+}
+
 TEST_SUITE(log_summary)
 {
 	const struct CMUnitTest tests[] = {
@@ -240,6 +260,7 @@ TEST_SUITE(log_summary)
 		cmocka_unit_test(changed_log_is_called_corrupted),
 		cmocka_unit_test(malformed_lines_are_counted_and_left_out),
 		cmocka_unit_test(times_at_the_ends_of_their_range_overflow_nothing),
+		cmocka_unit_test(logs_older_than_the_forests_are_summarized_by_rules),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,7 +15,7 @@
 static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header *header,
 						 const struct gz_log *log)
 {
-	struct gz_pipeline_params params = gz_pipeline_default_params();
+	struct gz_pipeline_params params = gz_pipeline_unnamed_params(header);
 	const struct gz_option_binding binding = {
 		.options = gz_pipeline_options,
 		.count = gz_pipeline_option_count,
