@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/order.h"
+#include "filter/offline.h"
 #include "filter/pipeline.h"
 #include "protocol/gaze_log.h"
 
@@ -201,12 +202,36 @@ static enum gz_result read_samples(struct gz_gaze_log_reader *reader,
 	return result == GZ_ERR_END ? GZ_OK : result;
 }
 
+/* Label all samples with the whole recording in view. */
+static enum gz_result label_offline(struct gz_gaze_track *track,
+				    const struct gz_pipeline_params *params)
+{
+	static const enum gz_event events[GZ_OFFLINE_LABELS] = {
+		[GZ_OFFLINE_FIXATION] = GZ_EVENT_FIXATION, [GZ_OFFLINE_SACCADE] = GZ_EVENT_SACCADE,
+		[GZ_OFFLINE_OSCILLATION] = GZ_EVENT_LOST, /* neither a fixation nor a saccade */
+		[GZ_OFFLINE_PURSUIT] = GZ_EVENT_PURSUIT,   [GZ_OFFLINE_BLINK] = GZ_EVENT_BLINK,
+		[GZ_OFFLINE_LOST] = GZ_EVENT_LOST,
+	};
+	struct gz_offline *offline = NULL;
+	struct gz_offline_labels labels = { .count = 0 };
+	enum gz_result result = gz_offline_create(params, &track->display, &offline);
+	for (size_t i = 0; i < track->count && result == GZ_OK; i++)
+		result = gz_offline_add(offline, &track->sample[i]);
+	if (result == GZ_OK)
+		result = gz_offline_finish(offline, &labels);
+	for (size_t i = 0; i < labels.count; i++)
+		track->label[i] = events[labels.label[i]];
+	gz_offline_labels_free(&labels);
+	gz_offline_destroy(&offline);
+	return result;
+}
+
 /* Takes over the samples. */
 static enum gz_result take_samples(struct samples *samples, struct gz_gaze_log_track *log)
 {
 	struct gz_gaze_track *track = &log->track;
 	const struct gz_display display = track->display;
-	const enum gz_result result = gz_gaze_track_start(samples->count, &display, track);
+	enum gz_result result = gz_gaze_track_start(samples->count, &display, track);
 	if (result != GZ_OK)
 		return result;
 	free(track->sample);
@@ -214,10 +239,10 @@ static enum gz_result take_samples(struct samples *samples, struct gz_gaze_log_t
 	track->sample = samples->sample;
 	track->raw = samples->raw;
 	*samples = (struct samples) { .count = 0 };
-	gz_gaze_track_run_pipeline(track, &log->params, true);
-	for (size_t i = 0; i < track->count; i++)
-		track->label[i] = track->event[i];
-	return GZ_OK;
+	result = label_offline(track, &log->params);
+	if (result != GZ_OK)
+		gz_gaze_track_free(track);
+	return result;
 }
 
 static enum gz_result read_log(struct gz_gaze_log_reader *reader, const char *path,

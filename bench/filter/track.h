@@ -23,7 +23,8 @@ struct gz_gaze_track {
 	size_t count;
 	struct gz_sample *sample; /**< seq is the place in the array */
 	struct gz_point *raw;     /**< the common point as a filter gets it; NaN where none is */
-	enum gz_event *label;     /**< what the eye did: by people, or by the pipeline in the end */
+	enum gz_event *label;     /**< what the eye did: by people, or as filter/offline.h finds it;
+				     ringing after a saccade is GZ_EVENT_LOST */
 	struct gz_point *point;   /**< what a filter made of it, always finite */
 	enum gz_event *event;     /**< what a filter called it */
 };
@@ -75,13 +76,13 @@ void gz_gaze_track_run_one_euro(struct gz_gaze_track *track,
 
 /** A recording of anybody. */
 struct gz_gaze_log_track {
-	struct gz_gaze_track track;       /**< label is the pipeline's certain one */
+	struct gz_gaze_track track;       /**< label is by filter/offline.h */
 	struct gz_pipeline_params params; /**< that it was recorded with */
 	bool display_known;               /**< else the default is assumed */
 };
 
 /**
- * Read a gaze log and label it by the pipeline with the recorded settings. Samples whose time does
+ * Read a gaze log and label it offline with the recorded settings. Samples whose time does
  * not advance are left out, as the pipeline does. @p raw is both eyes joined and corrected, before
  * anything is taken for a spike.
  *

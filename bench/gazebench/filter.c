@@ -263,8 +263,9 @@ const struct gz_command gazebench_filter = {
 	.operands_max = 1,
 	.summary = "measure jitter and lag of the gaze filter on a recording",
 	.details = "LOG is a gaze log (.gzl). It runs through the pipeline with its recorded "
-		   "settings; the pipeline's\n"
-		   "final labels distinguish fixations and saccades. Prints, for the pipeline "
+		   "settings; the\n"
+		   "labels of gazectl label distinguish fixations and saccades. Prints, for the "
+		   "pipeline "
 		   "swept over\n"
 		   "smooth_pass_deg and for the 1 euro filter swept over beta, relative to the raw "
 		   "signal (1, 1, 0):\n"

@@ -3,9 +3,9 @@
  *
  * usage: gaze_features FOLDER    (GAZECAST_DATA names the folder of recordings)
  *
- * FOLDER/features.f32: GZ_MOVEMENT_FEATURES floats a sample
- * FOLDER/labels.i16: five numbers a sample: track, labels of both people (enum gz_human_label; the
- *                    same where there is only one), whether it was measured, and reserved 0
+ * FOLDER/features.f32: GZ_WHOLE_FEATURES floats a sample; the first half of them is of earlier
+ * samples FOLDER/labels.i16: five numbers a sample: track, labels of both people (enum
+ * gz_human_label; the same where there is only one), whether it was measured, and reserved 0
  * FOLDER/tracks.tsv: a line a track: number, data set, stimulus or film, name, period in us
  * FOLDER/names.txt: the names of the features
  *
@@ -15,12 +15,11 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/clock.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
-#include "filter/classifier/movement.h"
+#include "filter/classifier/whole.h"
 #include "filter/pipeline.h"
 #include "sim/tracker.h"
 
@@ -39,14 +38,19 @@ struct track {
 	size_t step, phase;      /* every step-th sample from phase on */
 };
 
-static void write_row(struct output *out, const float features[GZ_MOVEMENT_FEATURES],
-		      const int16_t numbers[LABEL_NUMBERS])
+static void write_features(void *user, size_t index, const float features[GZ_WHOLE_FEATURES])
 {
-	const bool good =
-		fwrite(features, sizeof features[0], GZ_MOVEMENT_FEATURES, out->features) ==
-			GZ_MOVEMENT_FEATURES &&
-		fwrite(numbers, sizeof numbers[0], LABEL_NUMBERS, out->labels) == LABEL_NUMBERS;
-	out->failed = out->failed || !good;
+	struct output *out = user;
+	(void)index;
+	if (fwrite(features, sizeof features[0], GZ_WHOLE_FEATURES, out->features) !=
+	    GZ_WHOLE_FEATURES)
+		out->failed = true;
+}
+
+static void write_labels(struct output *out, const int16_t numbers[LABEL_NUMBERS])
+{
+	if (fwrite(numbers, sizeof numbers[0], LABEL_NUMBERS, out->labels) != LABEL_NUMBERS)
+		out->failed = true;
 }
 
 /* The input of the classifier, by the steps that come before it. */
@@ -68,20 +72,22 @@ static struct gz_movement_input prepare(struct gz_pipeline *pipeline,
 static void write_track(struct output *out, const struct track *track)
 {
 	static struct gz_pipeline pipeline;
-	static struct gz_movement movement;
 	const struct gz_labelled_recording *recording = track->recording;
+	struct gz_movement_input *input = calloc(recording->count, sizeof *input);
+	const struct gz_whole_rows rows = { out, write_features };
+	size_t count = 0;
 	gz_pipeline_init(&pipeline, NULL, &recording->display);
-	memset(&movement, 0, sizeof movement);
-	for (size_t i = track->phase; i < recording->count; i += track->step) {
-		float features[GZ_MOVEMENT_FEATURES];
-		const struct gz_movement_input input = prepare(&pipeline, &recording->sample[i]);
-		(void)gz_movement_step(&movement, &recording->display, &input, features);
+	for (size_t i = track->phase; input && i < recording->count; i += track->step) {
 		const int label = recording->label[i];
 		const int second = track->second_label ? track->second_label[i] : label;
-		write_row(out, features,
-			  (int16_t[]) { (int16_t)out->track_count, (int16_t)label, (int16_t)second,
-					input.valid, 0 });
+		input[count] = prepare(&pipeline, &recording->sample[i]);
+		write_labels(out, (int16_t[]) { (int16_t)out->track_count, (int16_t)label,
+						(int16_t)second, input[count].valid, 0 });
+		count++;
 	}
+	if (!input || gz_whole_features(&recording->display, input, count, &rows) != GZ_OK)
+		out->failed = true;
+	free(input);
 	out->track_count++;
 }
 

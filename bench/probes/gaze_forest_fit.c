@@ -5,7 +5,8 @@
  * usage: gaze_forest_fit FOLDER [KEY=NUMBER...] [without=NAME,NAME...]
  *
  * FOLDER holds what gaze_features wrote. Writes FOLDER/TAG.forest, and for each row that a fold
- * kept out its scores into FOLDER/TAG.scores. Features whose names begin with a NAME are not used.
+ * kept out its scores into FOLDER/TAG.scores; again=1 measures these scores with other settings.
+ * Features whose names begin with a NAME are not used.
  *
  * Gradient boosting with trees whose leaves have one value for each class: Friedman, "Greedy
  * function approximation: a gradient boosting machine", Annals of Statistics 29, 2001, with
@@ -20,20 +21,23 @@
 #include <string.h>
 
 #include "bench/filter/labelled_recording.h"
-#include "filter/classifier/forest.h"
+#include "filter/classifier/whole.h"
 #include "sim/random.h"
 
-enum { FEATURES = GZ_MOVEMENT_FEATURES, CLASSES = 4, BINS_MAX = 256, LEAVES_MAX = 64 };
+enum { FEATURES_MAX = GZ_WHOLE_FEATURES, CLASSES_MAX = GZ_WHOLE_CLASSES };
+enum { BINS_MAX = 256, LEAVES_MAX = 64 };
 enum { NODES_MAX = 2 * LEAVES_MAX, TREES_MAX = 1024, TRACKS_MAX = 2048, FOLDS_MAX = 32 };
 enum { FOLDS_WITHOUT_FILMS = 6 };
 enum { LABEL_NUMBERS = 5, UNUSED = -1 };
 
 /* Gradients of the classes, the Hessian and the weight of a row or of a bin's rows. */
 typedef float sums __attribute__((vector_size(32)));
-enum { HESSIAN = CLASSES, WEIGHT = CLASSES + 1 };
+enum { HESSIAN = CLASSES_MAX, WEIGHT = CLASSES_MAX + 1 };
 
 struct settings {
 	double certain; /* 1: learn the label of 8 ms ago, 0: that of the sample itself */
+	double again;   /* 1: measure the scores of an earlier run with this tag */
+	double whole;   /* 1: learn from later samples too, and the ringing after a saccade */
 	double trees, leaves, depth, rate, lambda, bins;
 	double rows, columns; /* parts for each tree */
 	double least;         /* least weight of a leaf */
@@ -41,7 +45,9 @@ struct settings {
 	double slow;          /* weight of recordings at lower rates */
 	double simulated;     /* weight of 4 ms of a simulated viewer */
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
-	double folds;         /* 0: train on all; 1: by film and person; 2: by data set */
+	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
+			 each of several films and persons */
+	double thin;  /* learn from every so many samples only: neighbours are alike */
 	double saccade, pursuit, noise; /* added to the scores of these classes */
 	double seed, tag, only_fold;
 };
@@ -59,7 +65,7 @@ static const struct {
 	KEY(lambda, 1),     KEY(bins, 64),   KEY(rows, 0.25),   KEY(columns, 0.4), KEY(least, 20),
 	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0), KEY(ringing, 1),   KEY(folds, 1),
 	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),   KEY(noise, 0),     KEY(tag, 0),
-	KEY(only_fold, -1),
+	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),     KEY(thin, 1),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -80,8 +86,10 @@ struct row {
 	int index; /* place in the file */
 	int16_t track;
 	int8_t label[2]; /* classes by both people; UNUSED */
+	bool either;     /* a saccade may as well be the ringing after it */
 	int8_t human[2]; /* the same as enum gz_human_label; 0: unknown */
 	bool valid;      /* whether the labelled sample was measured */
+	bool learned;    /* whether it is learned from, where it is not kept out */
 	float weight;
 };
 
@@ -89,12 +97,12 @@ struct node {
 	int feature; /* -1: a leaf */
 	int bin;     /* left if the feature's bin is at most this */
 	int left, right;
-	float value[CLASSES];
+	float value[CLASSES_MAX];
 	int begin, end; /* its rows in the order of the tree */
 	int depth;
 	double gain;
 	sums total;
-	sums *histogram; /* FEATURES x bins */
+	sums *histogram; /* features x bins */
 };
 
 struct tree {
@@ -108,21 +116,22 @@ struct training {
 	int track_count;
 	struct row *row;
 	int row_count;
-	uint8_t *bins; /* row_count x FEATURES */
+	int feature_count, class_count;
+	uint8_t *bins; /* row_count x feature_count */
 	int bin_count;
-	float edges[FEATURES][BINS_MAX];
-	int edge_count[FEATURES];
+	float edges[FEATURES_MAX][BINS_MAX];
+	int edge_count[FEATURES_MAX];
 	struct gz_random random;
 	/* of the present forest */
-	float (*score)[CLASSES];
+	float (*score)[CLASSES_MAX];
 	sums *gradient;
 	bool *kept_out;
-	float base[CLASSES];
+	float base[CLASSES_MAX];
 	struct tree *tree;
 	int tree_count;
 	int *order, *spare;
-	bool column[FEATURES];
-	bool unused[FEATURES];
+	bool column[FEATURES_MAX];
+	bool unused[FEATURES_MAX];
 	const char *without; /* the argument that says so; NULL: none */
 	sums *pool;          /* histograms of the leaves of the present tree */
 };
@@ -184,10 +193,14 @@ static int8_t class_of(int label)
 	}
 }
 
-/* The class of a sample; while the eye rings after a saccade, that of what follows. */
-static int8_t class_at(const int16_t *numbers, size_t index, size_t count, int person)
+/* The class of a sample. While the eye rings after a saccade, it is that of what follows, unless
+ * ringing is a class of its own. */
+static int8_t class_at(const struct training *t, const int16_t *numbers, size_t index, size_t count,
+		       int person)
 {
 	const int16_t *here = numbers + index * LABEL_NUMBERS;
+	if (t->settings.whole > 0 && here[1 + person] == GZ_HUMAN_GLISSADE)
+		return GZ_WHOLE_RINGING;
 	size_t i = index;
 	while (i < count && numbers[i * LABEL_NUMBERS] == here[0] &&
 	       numbers[i * LABEL_NUMBERS + 1 + person] == GZ_HUMAN_GLISSADE)
@@ -229,19 +242,22 @@ static void read_rows(struct training *t, const char *folder)
 		const struct track *track = &t->track[n[0]];
 		struct row *row = &t->row[t->row_count];
 		size_t back = t->settings.certain > 0 ? (size_t)(8 / track->period_ms + 0.1) : 0;
-		row->features = features + i * FEATURES;
+		row->features = features + i * FEATURES_MAX;
 		row->index = (int)i;
 		row->track = n[0];
 		row->weight = weight_of(t, track);
-		if (row->weight <= 0)
+		row->learned = i % (size_t)t->settings.thin == 0;
+		if (row->weight <= 0 || (!row->learned && track->period_ms > native_ms(track)))
 			continue;
 		bool known = i >= back && numbers[(i - back) * LABEL_NUMBERS] == n[0];
 		for (int p = 0; p < 2; p++) {
-			row->label[p] = known ? class_at(numbers, i - back, count, p) : UNUSED;
+			row->label[p] = known ? class_at(t, numbers, i - back, count, p) : UNUSED;
 			row->human[p] =
 				known ? (int8_t)numbers[(i - back) * LABEL_NUMBERS + 1 + (size_t)p]
 				      : 0;
 		}
+		/* The coders of GazeCom call both a saccade. */
+		row->either = t->settings.whole > 0 && !track->andersson && !track->simulated;
 		row->valid = known && numbers[(i - back) * LABEL_NUMBERS + 3] != 0;
 		if (known && numbers[(i - back) * LABEL_NUMBERS + 1] == GZ_HUMAN_GLISSADE)
 			row->weight *= (float)t->settings.ringing;
@@ -264,13 +280,18 @@ static float rounded(float x)
 	return strtof(text, NULL);
 }
 
+static uint8_t *bins_of(const struct training *t, int row)
+{
+	return t->bins + (size_t)row * (size_t)t->feature_count;
+}
+
 static void make_bins(struct training *t)
 {
 	enum { PROBES = 60000 };
 	float *probe = malloc(PROBES * sizeof *probe);
 	t->bin_count = (int)t->settings.bins;
-	t->bins = malloc((size_t)t->row_count * FEATURES);
-	for (int f = 0; f < FEATURES; f++) {
+	t->bins = malloc((size_t)t->row_count * (size_t)t->feature_count);
+	for (int f = 0; f < t->feature_count; f++) {
 		for (int i = 0; i < PROBES; i++)
 			probe[i] = t->row[gz_random_bits(&t->random) % (uint64_t)t->row_count]
 					   .features[f];
@@ -284,7 +305,7 @@ static void make_bins(struct training *t)
 		t->edge_count[f] = n;
 	}
 	for (int i = 0; i < t->row_count; i++)
-		for (int f = 0; f < FEATURES; f++) {
+		for (int f = 0; f < t->feature_count; f++) {
 			int low = 0, high = t->edge_count[f];
 			float x = t->row[i].features[f];
 			while (low < high) {
@@ -294,7 +315,7 @@ static void make_bins(struct training *t)
 				else
 					high = middle;
 			}
-			t->bins[(size_t)i * FEATURES + (size_t)f] = (uint8_t)low;
+			bins_of(t, i)[f] = (uint8_t)low;
 		}
 	free(probe);
 }
@@ -303,20 +324,20 @@ static void make_bins(struct training *t)
 
 static sums *histogram_of(struct training *t, int leaf)
 {
-	return t->pool + (size_t)leaf * FEATURES * (size_t)t->bin_count;
+	return t->pool + (size_t)leaf * (size_t)t->feature_count * (size_t)t->bin_count;
 }
 
 static void fill_histogram(struct training *t, const struct node *node)
 {
 	size_t bins = (size_t)t->bin_count;
-	int column[FEATURES] = { 0 }, columns = 0;
-	for (int f = 0; f < FEATURES; f++)
+	int column[FEATURES_MAX] = { 0 }, columns = 0;
+	for (int f = 0; f < t->feature_count; f++)
 		if (t->column[f])
 			column[columns++] = f;
-	memset(node->histogram, 0, FEATURES * bins * sizeof *node->histogram);
+	memset(node->histogram, 0, (size_t)t->feature_count * bins * sizeof *node->histogram);
 	for (int i = node->begin; i < node->end; i++) {
 		int row = t->order[i];
-		const uint8_t *bin = t->bins + (size_t)row * FEATURES;
+		const uint8_t *bin = bins_of(t, row);
 		sums g = t->gradient[row];
 		for (int c = 0; c < columns; c++)
 			node->histogram[(size_t)column[c] * bins + bin[column[c]]] += g;
@@ -326,7 +347,7 @@ static void fill_histogram(struct training *t, const struct node *node)
 static double score_sums(const sums *s, double lambda)
 {
 	double g2 = 0;
-	for (int k = 0; k < CLASSES; k++)
+	for (int k = 0; k < CLASSES_MAX; k++) /* those that are not there are 0 */
 		g2 += (double)(*s)[k] * (*s)[k];
 	return g2 / ((*s)[HESSIAN] + lambda);
 }
@@ -339,7 +360,7 @@ static void find_split(struct training *t, struct node *node)
 	if (node->depth >= (int)s->depth)
 		return;
 	double whole = score_sums(&node->total, s->lambda);
-	for (int f = 0; f < FEATURES; f++) {
+	for (int f = 0; f < t->feature_count; f++) {
 		if (!t->column[f])
 			continue;
 		sums left = { 0 };
@@ -364,7 +385,7 @@ static void split_rows(struct training *t, struct node *node, struct node *left,
 	int a = node->begin, spare = 0;
 	for (int i = node->begin; i < node->end; i++) {
 		int row = t->order[i];
-		if (t->bins[(size_t)row * FEATURES + (size_t)node->feature] <= node->bin)
+		if (bins_of(t, row)[node->feature] <= node->bin)
 			t->order[a++] = row;
 		else
 			t->spare[spare++] = row;
@@ -397,7 +418,7 @@ static void split_leaf(struct training *t, struct tree *tree, int leaf, int *poo
 	child[small]->histogram = histogram_of(t, (*pool_used)++);
 	fill_histogram(t, child[small]);
 	child[!small]->histogram = node->histogram;
-	size_t cells = FEATURES * (size_t)t->bin_count;
+	size_t cells = (size_t)t->feature_count * (size_t)t->bin_count;
 	for (size_t i = 0; i < cells; i++)
 		node->histogram[i] -= child[small]->histogram[i];
 	for (int i = 0; i < 2; i++) {
@@ -409,33 +430,33 @@ static void split_leaf(struct training *t, struct tree *tree, int leaf, int *poo
 
 static void set_leaf_value(struct training *t, struct node *node)
 {
-	double g[CLASSES] = { 0 }, h[CLASSES] = { 0 };
+	double g[CLASSES_MAX] = { 0 }, h[CLASSES_MAX] = { 0 };
 	for (int i = node->begin; i < node->end; i++) {
 		int row = t->order[i];
 		const float *score = t->score[row];
-		double p[CLASSES], sum = 0;
-		for (int k = 0; k < CLASSES; k++)
+		double p[CLASSES_MAX], sum = 0;
+		for (int k = 0; k < t->class_count; k++)
 			sum += p[k] = exp((double)score[k]);
-		for (int k = 0; k < CLASSES; k++) {
+		for (int k = 0; k < t->class_count; k++) {
 			p[k] /= sum;
 			g[k] += (double)t->gradient[row][k];
 			h[k] += p[k] * (1 - p[k]) * (double)t->gradient[row][WEIGHT];
 		}
 	}
-	double mean = 0, value[CLASSES];
-	for (int k = 0; k < CLASSES; k++) {
+	double mean = 0, value[CLASSES_MAX];
+	for (int k = 0; k < t->class_count; k++) {
 		value[k] = -g[k] / (h[k] + t->settings.lambda);
 		value[k] = t->settings.rate * fmax(-4, fmin(4, value[k]));
-		mean += value[k] / CLASSES;
+		mean += value[k] / t->class_count;
 	}
-	for (int k = 0; k < CLASSES; k++)
+	for (int k = 0; k < t->class_count; k++)
 		node->value[k] = (float)(value[k] - mean);
 }
 
 static void grow_tree(struct training *t, struct tree *tree, int rows)
 {
 	int leaves = 1, pool_used = 1;
-	for (int f = 0; f < FEATURES; f++)
+	for (int f = 0; f < t->feature_count; f++)
 		t->column[f] = gz_random_uniform(&t->random) < t->settings.columns && !t->unused[f];
 	tree->node_count = 1;
 	tree->node[0] =
@@ -475,9 +496,22 @@ static const struct node *leaf_of(const struct tree *tree, const uint8_t *bins)
 
 enum { KINDS = GZ_LABELLED_STIMULI, FIGURES_EVERY = 20 };
 
+/* What is compared with each person. */
+static const struct {
+	const char *name;
+	int class, human;
+} COMPARED[] = {
+	{ "saccade", GZ_FOREST_SACCADE, GZ_HUMAN_SACCADE },
+	{ "fixation", GZ_FOREST_FIXATION, GZ_HUMAN_FIXATION },
+	{ "pursuit", GZ_FOREST_PURSUIT, GZ_HUMAN_PURSUIT },
+	{ "blink", GZ_FOREST_NOISE, GZ_HUMAN_BLINK },
+	{ "ringing", GZ_WHOLE_RINGING, GZ_HUMAN_GLISSADE },
+};
+enum { COMPARED_COUNT = sizeof COMPARED / sizeof COMPARED[0] };
+
 struct figures {
-	struct gz_agreement film[CLASSES];      /* GazeCom */
-	struct gz_agreement coder[KINDS][2][2]; /* Andersson; of each person: saccade, fixation */
+	struct gz_agreement film[GZ_FOREST_CLASSES]; /* GazeCom */
+	struct gz_agreement coder[KINDS][2][COMPARED_COUNT];
 };
 
 static int kind_of(const struct track *track)
@@ -488,70 +522,171 @@ static int kind_of(const struct track *track)
 	return 0;
 }
 
-static int decide_class(const struct training *t, int row)
+/* Whether a row is of a recording that was kept out and is measured. */
+static bool is_measured_row(const struct training *t, int row)
 {
-	const double more[CLASSES] = { 0, t->settings.saccade, t->settings.pursuit,
-				       t->settings.noise };
-	int best = 0;
-	if (!t->row[row].valid)
-		return GZ_FOREST_NOISE;
-	for (int k = 1; k < CLASSES; k++)
-		if ((double)t->score[row][k] + more[k] > (double)t->score[row][best] + more[best])
-			best = k;
-	return best;
+	const struct track *track = &t->track[t->row[row].track];
+	return t->kept_out[t->row[row].track] && track->period_ms <= native_ms(track);
 }
 
-static void add_figures(const struct training *t, struct figures *figures)
+/* What is added to the score of a class. */
+static double added_score(const struct training *t, int class)
+{
+	const double more[CLASSES_MAX] = { 0, t->settings.saccade, t->settings.pursuit,
+					   t->settings.noise };
+	return more[class];
+}
+
+/* The class of each row by its own score. */
+static void decide_classes(const struct training *t, uint8_t *out_class)
+{
+	for (int i = 0; i < t->row_count; i++) {
+		const float *score = t->score[i];
+		int best = 0;
+		for (int k = 1; k < t->class_count; k++)
+			if ((double)score[k] + added_score(t, k) >
+			    (double)score[best] + added_score(t, best))
+				best = k;
+		out_class[i] = (uint8_t)(t->row[i].valid ? best : GZ_FOREST_NOISE);
+	}
+}
+
+/* Count the rows whose class is in @p class. The coders of GazeCom call ringing a saccade. */
+static void add_figures(const struct training *t, const uint8_t *class, struct figures *figures)
 {
 	for (int i = 0; i < t->row_count; i++) {
 		const struct row *row = &t->row[i];
 		const struct track *track = &t->track[row->track];
-		if (!t->kept_out[row->track] || track->period_ms > native_ms(track) ||
-		    !row->human[0])
+		if (!is_measured_row(t, i) || !row->human[0])
 			continue;
-		const int class = decide_class(t, i);
-		for (int k = 0; k < CLASSES && !track->andersson; k++)
-			gz_agreement_add(&figures->film[k], class == k, row->label[0] == k);
-		for (int p = 0; p < 2 && track->andersson; p++) {
-			struct gz_agreement *coder = figures->coder[kind_of(track)][p];
-			gz_agreement_add(&coder[0], class == GZ_FOREST_SACCADE,
-					 row->human[p] == GZ_HUMAN_SACCADE);
-			gz_agreement_add(&coder[1], class == GZ_FOREST_FIXATION,
-					 row->human[p] == GZ_HUMAN_FIXATION);
-		}
+		const int named =
+			class[i] == GZ_WHOLE_RINGING ? (int)GZ_FOREST_SACCADE : (int)class[i];
+		for (int k = 0; k < GZ_FOREST_CLASSES && !track->andersson; k++)
+			gz_agreement_add(&figures->film[k], named == k, row->label[0] == k);
+		for (int p = 0; p < 2 && track->andersson; p++)
+			for (int c = 0; c < COMPARED_COUNT; c++)
+				gz_agreement_add(&figures->coder[kind_of(track)][p][c],
+						 class[i] == COMPARED[c].class,
+						 row->human[p] == COMPARED[c].human);
 	}
 }
 
 static void print_figures(const struct figures *figures)
 {
 	printf("GazeCom F1");
-	static const char *const names[CLASSES] = { "fixation", "saccade", "pursuit", "noise" };
-	for (int k = 0; k < CLASSES; k++) {
+	static const char *const names[GZ_FOREST_CLASSES] = { "fixation", "saccade", "pursuit",
+							      "noise" };
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++) {
 		const struct gz_agreement *a = &figures->film[k];
 		printf(" %s %.3f", names[k], 2 * a->both / fmax(a->ours + a->theirs, 1));
 	}
 	printf("\nAndersson kappa");
 	for (int kind = 0; kind < KINDS; kind++) {
-		double kappa[2];
-		for (int k = 0; k < 2; k++)
-			kappa[k] = (gz_agreement_kappa(&figures->coder[kind][0][k]) +
-				    gz_agreement_kappa(&figures->coder[kind][1][k])) /
-				   2;
-		printf(" %s saccade %.3f fixation %.3f", gz_labelled_stimulus_names[kind], kappa[0],
-		       kappa[1]);
+		printf(" %s", gz_labelled_stimulus_names[kind]);
+		for (int c = 0; c < COMPARED_COUNT; c++)
+			printf(" %s %.3f", COMPARED[c].name,
+			       (gz_agreement_kappa(&figures->coder[kind][0][c]) +
+				gz_agreement_kappa(&figures->coder[kind][1][c])) /
+				       2);
 	}
 	printf("\n");
+}
+
+/* ---- labels of whole recordings ---- */
+
+/* Costs that are tried, ms; all are combined. */
+static const int CHANGE_MS[] = { 0, 5, 10, 20, 40 }, PURSUIT_MS[] = { 10, 20, 40, 80, 160, 320 };
+enum {
+	CHANGES = sizeof CHANGE_MS / sizeof CHANGE_MS[0],
+	PURSUITS = sizeof PURSUIT_MS / sizeof PURSUIT_MS[0],
+};
+
+static int quantised(float value);
+
+/* Decode the rows from @p begin to @p end, which are one recording. */
+static void decode_track(const struct training *t, int begin, int end,
+			 const struct gz_whole_costs *costs, uint8_t *out_class)
+{
+	const size_t count = (size_t)(end - begin);
+	struct gz_movement_input *input = calloc(count, sizeof *input);
+	int32_t(*scores)[GZ_WHOLE_CLASSES] = calloc(count, sizeof *scores);
+	if (!input || !scores)
+		exit(1);
+	for (size_t i = 0; i < count; i++) {
+		const int row = begin + (int)i;
+		input[i].time_ns =
+			(int64_t)(t->track[t->row[row].track].period_ms * 1e6) * (int64_t)i;
+		input[i].valid = t->row[row].valid;
+		for (int k = 0; k < GZ_WHOLE_CLASSES; k++)
+			scores[i][k] = quantised(t->score[row][k]);
+	}
+	if (gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count, costs,
+			    out_class + begin) != GZ_OK)
+		exit(1);
+	free(input);
+	free(scores);
+}
+
+static void try_costs(const struct training *t, uint8_t *class, struct figures *figures)
+{
+	for (int c = 0; c < CHANGES * PURSUITS; c++) {
+		struct gz_whole_costs costs = { CHANGE_MS[c / PURSUITS] * 1000,
+						PURSUIT_MS[c % PURSUITS] * 1000,
+						{ 0 } };
+		for (int k = 0; k < GZ_WHOLE_CLASSES; k++)
+			costs.added[k] = quantised((float)added_score(t, k));
+		for (int i = 0, end; i < t->row_count; i = end) {
+			for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
+				end++;
+			if (is_measured_row(t, i))
+				decode_track(t, i, end, &costs, class);
+		}
+		add_figures(t, class, &figures[c]);
+	}
 }
 
 static void write_scores(const struct training *t, FILE *file)
 {
 	for (int i = 0; i < t->row_count; i++) {
-		if (!t->kept_out[t->row[i].track])
+		if (!is_measured_row(t, i))
 			continue;
-		float out[6] = { (float)t->row[i].index, t->row[i].track };
+		float out[2 + CLASSES_MAX] = { (float)t->row[i].index, t->row[i].track };
 		memcpy(out + 2, t->score[i], sizeof t->score[i]);
-		fwrite(out, sizeof out, 1, file);
+		fwrite(out, sizeof *out, 2 + (size_t)t->class_count, file);
 	}
+}
+
+static void print_decoded(const struct training *t, const struct figures *decoded)
+{
+	for (int c = 0; c < CHANGES * PURSUITS && t->settings.whole > 0; c++) {
+		printf("change %d ms, pursuit %d ms: ", CHANGE_MS[c / PURSUITS],
+		       PURSUIT_MS[c % PURSUITS]);
+		print_figures(&decoded[c]);
+	}
+}
+
+/* Read what write_scores() wrote. The recordings in it are those that were kept out. */
+static void read_scores(struct training *t, const char *folder)
+{
+	char name[64];
+	size_t size, record = (2 + (size_t)t->class_count) * sizeof(float);
+	snprintf(name, sizeof name, "%.0f.scores", t->settings.tag);
+	char *bytes = read_all(folder, name, &size);
+	int row = 0;
+	for (size_t at = 0; at + record <= size; at += record) {
+		float in[2 + CLASSES_MAX];
+		memcpy(in, bytes + at, record);
+		/* The rows of a fold are in order; the next fold may begin before. */
+		if (row == t->row_count || t->row[row].index > (int)in[0])
+			row = 0;
+		while (row < t->row_count && t->row[row].index < (int)in[0])
+			row++;
+		if (row == t->row_count)
+			break;
+		memcpy(t->score[row], in + 2, (size_t)t->class_count * sizeof(float));
+		t->kept_out[t->row[row].track] = true;
+	}
+	free(bytes);
 }
 
 /* ---- a forest ---- */
@@ -559,9 +694,9 @@ static void write_scores(const struct training *t, FILE *file)
 static void set_gradient(struct training *t, int row)
 {
 	const struct row *r = &t->row[row];
-	double p[CLASSES], sum = 0, h = 0;
+	double p[CLASSES_MAX] = { 0 }, sum = 0, h = 0;
 	sums g = { 0 };
-	for (int k = 0; k < CLASSES; k++)
+	for (int k = 0; k < t->class_count; k++)
 		sum += p[k] = exp((double)t->score[row][k]);
 	double weight = 0;
 	for (int n = 0; n < 2; n++)
@@ -569,7 +704,12 @@ static void set_gradient(struct training *t, int row)
 			weight += 0.5 * r->weight;
 			g[r->label[n]] -= 0.5f * r->weight;
 		}
-	for (int k = 0; k < CLASSES; k++) {
+	if (r->either && r->label[0] == GZ_FOREST_SACCADE) {
+		const double saccade = p[GZ_FOREST_SACCADE], ringing = p[GZ_WHOLE_RINGING];
+		g[GZ_FOREST_SACCADE] = (float)(-weight * saccade / (saccade + ringing));
+		g[GZ_WHOLE_RINGING] = (float)(-weight * ringing / (saccade + ringing));
+	}
+	for (int k = 0; k < t->class_count; k++) {
 		p[k] /= sum;
 		g[k] += (float)(weight * p[k]);
 		h += 0.5 * weight * p[k] * (1 - p[k]);
@@ -584,7 +724,7 @@ static int choose_rows(struct training *t)
 	int n = 0;
 	for (int i = 0; i < t->row_count; i++) {
 		const struct row *row = &t->row[i];
-		if (t->kept_out[row->track] ||
+		if (t->kept_out[row->track] || !row->learned ||
 		    (row->label[0] == UNUSED && row->label[1] == UNUSED) ||
 		    gz_random_uniform(&t->random) >= t->settings.rows)
 			continue;
@@ -594,32 +734,47 @@ static int choose_rows(struct training *t)
 	return n;
 }
 
-/* @p figures: of the rows kept out, after each FIGURES_EVERY trees; or NULL */
-static void grow_forest(struct training *t, struct figures *figures)
+static void add_leaf(struct training *t, const struct tree *tree, int row)
 {
-	double prior[CLASSES] = { 0 };
+	const struct node *leaf = leaf_of(tree, bins_of(t, row));
+	for (int k = 0; k < t->class_count; k++)
+		t->score[row][k] += leaf->value[k];
+}
+
+/* @p figures: of the rows kept out, after each FIGURES_EVERY trees; or NULL. @p class: room */
+static void grow_forest(struct training *t, struct figures *figures, uint8_t *class)
+{
+	double prior[CLASSES_MAX] = { 0 };
 	for (int i = 0; i < t->row_count; i++)
 		for (int n = 0; n < 2; n++)
 			if (!t->kept_out[t->row[i].track] && t->row[i].label[n] != UNUSED)
 				prior[t->row[i].label[n]] += t->row[i].weight;
 	double mean = 0;
-	for (int k = 0; k < CLASSES; k++)
-		mean += log(prior[k]) / CLASSES;
-	for (int k = 0; k < CLASSES; k++)
+	for (int k = 0; k < t->class_count; k++)
+		mean += log(prior[k]) / t->class_count;
+	for (int k = 0; k < t->class_count; k++)
 		t->base[k] = (float)(log(prior[k]) - mean);
 	for (int i = 0; i < t->row_count; i++)
 		memcpy(t->score[i], t->base, sizeof t->base);
 	t->tree_count = (int)t->settings.trees;
+	const bool late = t->settings.thin > 1; /* what was kept out gets its scores in the end */
 	for (int n = 0; n < t->tree_count; n++) {
 		struct tree *tree = &t->tree[n];
 		grow_tree(t, tree, choose_rows(t));
-		for (int i = 0; i < t->row_count; i++) {
-			const struct node *leaf = leaf_of(tree, t->bins + (size_t)i * FEATURES);
-			for (int k = 0; k < CLASSES; k++)
-				t->score[i][k] += leaf->value[k];
-		}
-		if (figures && (n + 1) % FIGURES_EVERY == 0)
-			add_figures(t, &figures[n / FIGURES_EVERY]);
+		for (int i = 0; i < t->row_count; i++)
+			if (!late || (t->row[i].learned && !t->kept_out[t->row[i].track]))
+				add_leaf(t, tree, i);
+		if (late || !figures || (n + 1) % FIGURES_EVERY != 0)
+			continue;
+		decide_classes(t, class);
+		add_figures(t, class, &figures[n / FIGURES_EVERY]);
+	}
+	for (int i = 0; late && figures && i < t->row_count; i++)
+		for (int n = 0; is_measured_row(t, i) && n < t->tree_count; n++)
+			add_leaf(t, &t->tree[n], i);
+	if (late && figures) {
+		decide_classes(t, class);
+		add_figures(t, class, &figures[t->tree_count / FIGURES_EVERY - 1]);
 	}
 }
 
@@ -632,30 +787,29 @@ static int quantised(float value)
 /* What a class's sum begins with, GZ_FOREST_UNIT. */
 static int base_of(const struct training *t, int class)
 {
-	const double more[CLASSES] = { 0, t->settings.saccade, t->settings.pursuit,
-				       t->settings.noise };
-	return (int)lrint(((double)t->base[class] + more[class]) / GZ_FOREST_UNIT);
+	return (int)lrint(((double)t->base[class] + added_score(t, class)) / GZ_FOREST_UNIT);
 }
 
-/* A hash of the scores of all samples at their native rates: FNV-1a (Fowler, Noll and Vo), 64 bits.
- * The test filter.classifier compares it with what the filter makes of the recordings. */
+/* A hash of the scores of all samples at their native rates, of a whole recording only of Andersson
+ * et al., so that the test is short: FNV-1a (Fowler, Noll and Vo), 64 bits. The test
+ * filter.training compares it with what the filter makes of the recordings. */
 static uint64_t hash_scores(const struct training *t)
 {
 	uint64_t hash = UINT64_C(14695981039346656037);
 	for (int i = 0; i < t->row_count; i++) {
-		int32_t score[CLASSES];
+		int32_t score[CLASSES_MAX];
 		const struct track *track = &t->track[t->row[i].track];
-		if (track->period_ms > native_ms(track))
+		if (track->period_ms > native_ms(track) ||
+		    (t->settings.whole > 0 && !track->andersson))
 			continue;
-		for (int k = 0; k < CLASSES; k++)
+		for (int k = 0; k < t->class_count; k++)
 			score[k] = base_of(t, k);
 		for (int n = 0; n < t->tree_count; n++) {
-			const struct node *leaf =
-				leaf_of(&t->tree[n], t->bins + (size_t)i * FEATURES);
-			for (int k = 0; k < CLASSES; k++)
+			const struct node *leaf = leaf_of(&t->tree[n], bins_of(t, i));
+			for (int k = 0; k < t->class_count; k++)
 				score[k] += quantised(leaf->value[k]);
 		}
-		for (int k = 0; k < CLASSES; k++)
+		for (int k = 0; k < t->class_count; k++)
 			for (int shift = 0; shift < 32; shift += 8)
 				hash = (hash ^ ((uint32_t)score[k] >> shift & 0xff)) *
 				       UINT64_C(1099511628211);
@@ -665,7 +819,12 @@ static uint64_t hash_scores(const struct training *t)
 
 static const char *name_of(const struct training *t)
 {
-	return t->settings.certain > 0 ? "certain" : "at_once";
+	return t->settings.whole > 0 ? "whole" : t->settings.certain > 0 ? "certain" : "at_once";
+}
+
+static const char *classes_of(const struct training *t)
+{
+	return t->settings.whole > 0 ? "GZ_WHOLE_CLASSES" : "GZ_FOREST_CLASSES";
 }
 
 static void write_provenance(const struct training *t, FILE *file)
@@ -733,16 +892,16 @@ static void write_nodes(const struct training *t, FILE *file)
 
 static void write_leaves(const struct training *t, FILE *file)
 {
-	fprintf(file, "static const int16_t %s_leaves[][GZ_FOREST_CLASSES] = {\n", name_of(t));
+	fprintf(file, "static const int16_t %s_leaves[][%s] = {\n", name_of(t), classes_of(t));
 	long line_start = ftell(file);
 	for (int n = 0; n < t->tree_count; n++)
 		for (int i = 0; i < t->tree[n].node_count; i++) {
 			const struct node *node = &t->tree[n].node[i];
 			if (node->feature >= 0)
 				continue;
-			fprintf(file, "{%d,%d,%d,%d},", quantised(node->value[0]),
-				quantised(node->value[1]), quantised(node->value[2]),
-				quantised(node->value[3]));
+			for (int k = 0; k < t->class_count; k++)
+				fprintf(file, "%c%d", k > 0 ? ',' : '{', quantised(node->value[k]));
+			fprintf(file, "},");
 			wrap_line(file, &line_start);
 		}
 	fprintf(file, "\n};\n");
@@ -776,8 +935,10 @@ static void write_forest(const struct training *t, const char *folder)
 	write_nodes(t, file);
 	write_leaves(t, file);
 	write_trees(t, file);
-	fprintf(file, "static const int32_t %s_base[GZ_FOREST_CLASSES] = { %d, %d, %d, %d };\n",
-		name_of(t), base_of(t, 0), base_of(t, 1), base_of(t, 2), base_of(t, 3));
+	fprintf(file, "static const int32_t %s_base[%s] = {", name_of(t), classes_of(t));
+	for (int k = 0; k < t->class_count; k++)
+		fprintf(file, "%s %d", k > 0 ? "," : "", base_of(t, k));
+	fprintf(file, " };\n");
 	fprintf(file, "#define %s_hash UINT64_C(0x%016llx)\n", name_of(t),
 		(unsigned long long)hash_scores(t));
 	fclose(file);
@@ -805,7 +966,11 @@ static int set_folds(struct training *t)
 			strcpy(names[films++], track->kind);
 		track->fold = f;
 	}
-	const int folds = films > 0 ? films : FOLDS_WITHOUT_FILMS;
+	int folds = films > 0 ? films : FOLDS_WITHOUT_FILMS;
+	if (t->settings.folds > 2 && t->settings.folds < folds)
+		folds = (int)t->settings.folds;
+	for (int i = 0; i < t->track_count; i++)
+		t->track[i].fold %= folds;
 	/* Persons: the letters and digits after the stimulus, e.g. "UH21". */
 	int persons = 0;
 	static char person[FOLDS_MAX][5];
@@ -829,7 +994,7 @@ static int set_folds(struct training *t)
 /* Print how much each feature has lowered the loss of the training, the best first. */
 static void print_worth(const struct training *t)
 {
-	double worth[FEATURES] = { 0 }, whole = 0;
+	double worth[FEATURES_MAX] = { 0 }, whole = 0;
 	for (int n = 0; n < t->tree_count; n++)
 		for (int i = 0; i < t->tree[n].node_count; i++) {
 			const struct node *node = &t->tree[n].node[i];
@@ -838,11 +1003,12 @@ static void print_worth(const struct training *t)
 			worth[node->feature] += node->gain;
 			whole += node->gain;
 		}
-	for (int shown = 0; shown < FEATURES; shown++) {
+	for (int shown = 0; shown < t->feature_count; shown++) {
 		int best = 0;
-		for (int f = 1; f < FEATURES; f++)
+		for (int f = 1; f < t->feature_count; f++)
 			best = worth[f] > worth[best] ? f : best;
-		printf("%-16s %5.2f %%\n", gz_movement_feature_names[best],
+		printf("%s%-16s %5.2f %%\n", best < GZ_MOVEMENT_FEATURES ? "" : "later ",
+		       gz_movement_feature_names[best % GZ_MOVEMENT_FEATURES],
 		       100 * worth[best] / whole);
 		worth[best] = -1;
 	}
@@ -856,8 +1022,9 @@ static const char WITHOUT[] = "without=";
 static void ban_features(struct training *t, const char *names)
 {
 	for (; *names; names += strcspn(names, ","), names += *names == ',')
-		for (int f = 0; f < FEATURES; f++)
-			if (strncmp(gz_movement_feature_names[f], names, strcspn(names, ",")) == 0)
+		for (int f = 0; f < t->feature_count; f++)
+			if (strncmp(gz_movement_feature_names[f % GZ_MOVEMENT_FEATURES], names,
+				    strcspn(names, ",")) == 0)
 				t->unused[f] = true;
 }
 
@@ -909,19 +1076,36 @@ static void make_room(struct training *t)
 	t->spare = new_array(rows, sizeof *t->spare);
 	t->tree = new_array(TREES_MAX, sizeof *t->tree);
 	t->kept_out = new_array(TRACKS_MAX, sizeof *t->kept_out);
-	t->pool = new_array((LEAVES_MAX + 1) * FEATURES * (size_t)t->bin_count, sizeof *t->pool);
+	t->pool = new_array((LEAVES_MAX + 1) * (size_t)t->feature_count * (size_t)t->bin_count,
+			    sizeof *t->pool);
 }
 
 static void train_on_all(struct training *t, const char *folder)
 {
-	grow_forest(t, NULL);
+	grow_forest(t, NULL, NULL);
 	write_forest(t, folder);
 	print_worth(t);
 }
 
+/* Measure the scores of an earlier run. */
+static void measure_again(struct training *t, const char *folder)
+{
+	static struct figures figures, decoded[CHANGES * PURSUITS];
+	uint8_t *class = new_array((size_t)t->row_count, 1);
+	read_scores(t, folder);
+	decide_classes(t, class);
+	add_figures(t, class, &figures);
+	print_figures(&figures);
+	if (t->settings.whole > 0)
+		try_costs(t, class, decoded);
+	print_decoded(t, decoded);
+	free(class);
+}
+
 static void train_on_folds(struct training *t, const char *folder)
 {
-	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1];
+	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1], decoded[CHANGES * PURSUITS];
+	uint8_t *class = new_array((size_t)t->row_count, 1);
 	const int folds = set_folds(t);
 	char path[1024];
 	snprintf(path, sizeof path, "%s/%.0f.scores", folder, t->settings.tag);
@@ -935,14 +1119,20 @@ static void train_on_folds(struct training *t, const char *folder)
 			continue;
 		for (int i = 0; i < t->track_count; i++)
 			t->kept_out[i] = t->track[i].fold == fold;
-		grow_forest(t, figures);
+		grow_forest(t, figures, class);
 		write_scores(t, scores);
+		if (t->settings.whole > 0)
+			try_costs(t, class, decoded);
 	}
 	fclose(scores);
-	for (int n = 0; n < t->tree_count / FIGURES_EVERY; n++) {
+	free(class);
+	const int last =
+		t->tree_count / FIGURES_EVERY - 1; /* the only one if samples are thinned */
+	for (int n = t->settings.thin > 1 ? last : 0; n <= last; n++) {
 		printf("%d trees: ", (n + 1) * FIGURES_EVERY);
 		print_figures(&figures[n]);
 	}
+	print_decoded(t, decoded);
 }
 
 int main(int argc, char **argv)
@@ -953,6 +1143,8 @@ int main(int argc, char **argv)
 			"usage: gaze_forest_fit FOLDER [KEY=NUMBER...] [without=NAME,NAME...]\n");
 		return 2;
 	}
+	t.feature_count = t.settings.whole > 0 ? GZ_WHOLE_FEATURES : GZ_MOVEMENT_FEATURES;
+	t.class_count = t.settings.whole > 0 ? GZ_WHOLE_CLASSES : GZ_FOREST_CLASSES;
 	for (int i = 2; i < argc; i++)
 		if (is_ban(argv[i])) {
 			ban_features(&t, argv[i] + strlen(WITHOUT));
@@ -961,9 +1153,12 @@ int main(int argc, char **argv)
 	t.random = gz_random_seeded((uint64_t)t.settings.seed, 0);
 	read_tracks(&t, argv[1]);
 	read_rows(&t, argv[1]);
-	make_bins(&t);
+	if (!(t.settings.again > 0))
+		make_bins(&t);
 	make_room(&t);
-	if (t.settings.folds > 0)
+	if (t.settings.again > 0)
+		measure_again(&t, argv[1]);
+	else if (t.settings.folds > 0)
 		train_on_folds(&t, argv[1]);
 	else
 		train_on_all(&t, argv[1]);

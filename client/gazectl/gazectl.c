@@ -2,8 +2,9 @@
 #include "client/gazectl/gazectl.h"
 
 static const struct gz_command *const commands[] = {
-	&gazectl_devices, &gazectl_status,   &gazectl_watch,  &gazectl_record,  &gazectl_stop,
-	&gazectl_inspect, &gazectl_validate, &gazectl_keygen, &gazectl_convert, NULL,
+	&gazectl_devices, &gazectl_status,  &gazectl_watch, &gazectl_record,
+	&gazectl_stop,    &gazectl_inspect, &gazectl_label, &gazectl_validate,
+	&gazectl_keygen,  &gazectl_convert, NULL,
 };
 
 int main(int argc, char **argv)
@@ -12,7 +13,7 @@ int main(int argc, char **argv)
 		.name = "gazectl",
 		.version = GAZECAST_VERSION,
 		.purpose = "Show the state of the gaze daemon and its stream, check the tracker, "
-			   "make recordings, inspect and convert them.",
+			   "make recordings, inspect, label and convert them.",
 		.exits = "0 done, 1 failed or refused, 2 usage, 3 no daemon answers, "
 			 "4 the log is cut or corrupted, 5 the check was cancelled",
 		.commands = commands,

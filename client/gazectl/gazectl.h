@@ -23,7 +23,7 @@ enum gazectl_exit {
 	GAZECTL_FAILED = GZ_EXIT_FAILED,
 	GAZECTL_USAGE = GZ_EXIT_USAGE,
 	GAZECTL_NO_DAEMON = 3, /**< no daemon answers at the endpoint */
-	GAZECTL_DAMAGED = 4,   /**< inspect, convert: the log is cut or corrupted */
+	GAZECTL_DAMAGED = 4,   /**< inspect, label, convert: the log is cut or corrupted */
 	GAZECTL_CANCELLED = 5, /**< validate: cancelled by the Escape key or a signal */
 };
 
@@ -33,6 +33,7 @@ extern const struct gz_command gazectl_watch;
 extern const struct gz_command gazectl_record;
 extern const struct gz_command gazectl_stop;
 extern const struct gz_command gazectl_inspect;
+extern const struct gz_command gazectl_label;
 extern const struct gz_command gazectl_validate;
 extern const struct gz_command gazectl_keygen;
 extern const struct gz_command gazectl_convert;

@@ -5,7 +5,7 @@
  * over all trees wins. The numbers are integers and the thresholds are compared exactly, so the
  * result is the same on every machine.
  *
- * The forests are in forest_at_once.inc and forest_certain.inc, which
+ * The forests are in forest_at_once.inc, forest_certain.inc and forest_whole.inc (whole.h), which
  * bench/probes/gaze_forest_fit.c made from recordings that people labelled; the files say from
  * which.
  */
@@ -49,8 +49,8 @@ struct gz_forest {
 	size_t tree_count;
 	const struct gz_forest_tree *tree;
 	const struct gz_forest_node *node;
-	const int16_t (*leaf)[GZ_FOREST_CLASSES]; /**< scores, GZ_FOREST_UNIT */
-	const int32_t *base;    /**< GZ_FOREST_CLASSES scores, added to the sums of the leaves */
+	const int16_t *leaf;    /**< for each leaf the scores of all classes, GZ_FOREST_UNIT */
+	const int32_t *base;    /**< a score for each class, added to the sums of the leaves */
 	uint64_t training_hash; /**< of the scores that the training gave, for a test */
 };
 

@@ -1,6 +1,7 @@
 /* gazectl convert and the picture of gazectl inspect, on files. */
 #include "suite.h"
 
+#include "filter/check.h"
 #include "log_text.h"
 #include "program.h"
 
@@ -146,6 +147,76 @@ static void log_becomes_bids_files_of_the_eyes_that_were_measured(void **state)
 	free(left);
 	free(about);
 	free(events);
+}
+
+static void labels_are_in_tables_and_bids_files_if_asked_for(void **state)
+{
+	(void)state;
+	const char *from = in_directory("a.gzl"), *to = in_directory("l.csv");
+	write_log(from);
+	struct program program = GAZECTL_RUN("convert", "--labels", from, to);
+	assert_done(&program);
+	char *samples = contents(to);
+	assert_non_null(strstr(samples, ",eye1_dir_z,label\n"));
+	assert_int_equal(count(samples, ",fixation\n") + count(samples, ",saccade\n") +
+				 count(samples, ",oscillation\n"),
+			 2000);
+	CHECK_BETWEEN((double)count(samples, ",saccade\n"), 20, 60);
+	free(samples);
+	program = GAZECTL_RUN("convert", "--labels", from, in_directory("l_physio.tsv.gz"));
+	assert_done(&program);
+	char *events = contents(in_directory("l_recording-eye1_physioevents.tsv.gz"));
+	assert_int_equal(strncmp(events, "10000000000\t", 12), 0);
+	assert_int_equal(count(events, "\tsaccade\tn/a\tn/a\n"), 1);
+	assert_int_equal(count(events, "\tmark\thalf \"way\"\tn/a\n"), 1);
+	free(events);
+	program = GAZECTL_RUN("convert", "--labels", from, in_directory("l.gzl"));
+	assert_int_equal(program.status, 2);
+	assert_non_null(strstr(program.err_text, "gzl has no labels"));
+	assert_int_not_equal(access(in_directory("l.gzl"), F_OK), 0);
+}
+
+static void gazectl_label_lists_what_the_eye_did(void **state)
+{
+	(void)state;
+	const char *from = in_directory("a.gzl"), *to = in_directory("labels.csv");
+	write_log(from);
+	struct program program = GAZECTL_RUN("label", from);
+	assert_done(&program);
+	const char *saccade = strstr(program.out_text, ",saccade,");
+	assert_int_equal(count(program.out_text, ",saccade,"), 1);
+	assert_int_equal(count(program.out_text, ",fixation,"), 2);
+	assert_int_equal(strncmp(strstr(program.out_text, "\n"), "\n10.000000000,", 14), 0);
+	double amplitude_deg = 0, peak_deg_s = 0;
+	for (int commas = 0; *saccade && commas < 8; saccade++) /* label, samples, three points */
+		commas += *saccade == ',';
+	(void)sscanf(saccade, "%*f,%lf,%lf", &amplitude_deg, &peak_deg_s);
+	CHECK_BETWEEN(amplitude_deg, 15, 21.4); /* the whole way is 21.3 deg */
+	CHECK_BETWEEN(peak_deg_s, 450, 600);
+	program = GAZECTL_RUN("label", "--out", to, from);
+	assert_done(&program);
+	program = GAZECTL_RUN("label", "--out", to, from);
+	assert_int_equal(program.status, 1); /* it is there */
+	program = GAZECTL_RUN("label", in_directory("nothing.gzl"));
+	assert_int_equal(program.status, 1);
+	program = GAZECTL_RUN("label");
+	assert_int_equal(program.status, 2);
+}
+
+static void a_cut_log_is_labelled_to_its_end(void **state)
+{
+	(void)state;
+	struct log_text text;
+	log_text_begin(&text);
+	log_text_look_right(&text, 0); /* and no end line */
+	FILE *file = fopen(in_directory("cut.gzl"), "we");
+	assert_non_null(file);
+	assert_int_equal(fwrite(text.bytes, 1, text.size, file), text.size);
+	assert_int_equal(fclose(file), 0);
+	log_text_free(&text);
+	struct program program = GAZECTL_RUN("label", in_directory("cut.gzl"));
+	assert_int_equal(program.status, 4);
+	assert_int_equal(count(program.out_text, ",saccade,"), 1);
 }
 
 static void write_text(const char *path, const char *text)
@@ -330,6 +401,9 @@ TEST_SUITE(convert_files)
 		TEST(log_converted_to_a_log_is_the_same_log),
 		TEST(log_becomes_tables_with_every_sample_and_mark),
 		TEST(log_becomes_bids_files_of_the_eyes_that_were_measured),
+		TEST(labels_are_in_tables_and_bids_files_if_asked_for),
+		TEST(gazectl_label_lists_what_the_eye_did),
+		TEST(a_cut_log_is_labelled_to_its_end),
 		TEST(eyelink_pupils_and_events_survive_all_conversions),
 		TEST(pupil_points_are_no_gaze_on_a_screen),
 		TEST(files_that_are_there_are_kept_unless_forced),

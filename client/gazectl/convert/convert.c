@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "client/gazectl/convert/recording_format.h"
+#include "client/gazectl/label/label_recording.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
@@ -14,6 +15,7 @@ struct convert_settings {
 	char from[16];
 	char to[16];
 	bool force;
+	bool labels;
 	int display_px[2];
 	double display_mm[2];
 	double distance_mm;
@@ -39,6 +41,8 @@ static const struct gz_option convert_options[] = {
 	{ "to", GZ_OPTION_STRING, AT(to), 0, 16, 0, NULL, "",
 	  "format of OUTPUT: gzl, csv or bids; empty: by the ending of its name" },
 	{ "force", GZ_OPTION_BOOL, AT(force), 0, 0, 0, NULL, "false", "replace existing files" },
+	{ "labels", GZ_OPTION_BOOL, AT(labels), 0, 0, 0, NULL, "false",
+	  "write what the eye did too, as gazectl label finds it; for .csv and BIDS" },
 	{ "display.px", GZ_OPTION_SIZE, AT(display_px), 0, GZ_DISPLAY_SIDE_MAX_PX, 0, NULL, "0x0",
 	  "size of the display, pixels; 0x0: from the file" },
 	{ "display.mm", GZ_OPTION_DOUBLE, AT(display_mm), 0, 100000, 2, NULL, "0 0",
@@ -232,15 +236,31 @@ static void print_result(const struct conversion *conversion, const char *output
 	putchar('\n');
 }
 
-static enum gazectl_exit convert_recording(struct conversion *conversion, const char *output)
+/* Read the input once and label it. */
+static enum gz_result label_input(struct conversion *conversion, struct gz_offline_labels *out)
 {
-	const struct convert_settings *settings = conversion->settings;
-	const struct gz_recording_writer *writer =
-		choose_writer(settings->to, output, conversion->log);
-	if (!writer)
+	struct gz_label_recording recording = { .name = conversion->input, .log = conversion->log };
+	conversion->sink = (struct gz_recording_sink) { &recording, gz_label_take_header,
+							gz_label_take_record };
+	enum gz_result result = read_input(conversion);
+	if (result == GZ_OK)
+		result = gz_label_finish(&recording, out);
+	gz_offline_destroy(&recording.offline);
+	conversion->counts = (struct gz_convert_counts) { .samples = 0 };
+	conversion->gaps = conversion->marks = 0;
+	return result;
+}
+
+/* Read the input and write it. @param labels  NULL: without */
+static enum gazectl_exit write_recording(struct conversion *conversion, const char *output,
+					 const struct gz_recording_writer *writer,
+					 const struct gz_offline_labels *labels)
+{
+	const bool force = conversion->settings->force;
+	if (writer->open(output, force, conversion->log, &conversion->sink) != GZ_OK)
 		return GAZECTL_USAGE;
-	if (writer->open(output, settings->force, conversion->log, &conversion->sink) != GZ_OK)
-		return GAZECTL_USAGE;
+	if (labels)
+		writer->label(&conversion->sink, labels);
 	enum gz_result result = read_input(conversion);
 	if (result == GZ_OK && conversion->counts.samples == 0) {
 		gz_err(conversion->log, "%s has no samples", conversion->input);
@@ -251,6 +271,29 @@ static enum gazectl_exit convert_recording(struct conversion *conversion, const 
 		return GAZECTL_FAILED;
 	print_result(conversion, output);
 	return conversion->damaged ? GAZECTL_DAMAGED : GAZECTL_DONE;
+}
+
+static enum gazectl_exit convert_recording(struct conversion *conversion, const char *output)
+{
+	const struct convert_settings *settings = conversion->settings;
+	const struct gz_recording_writer *writer =
+		choose_writer(settings->to, output, conversion->log);
+	if (!writer)
+		return GAZECTL_USAGE;
+	if (!settings->labels)
+		return write_recording(conversion, output, writer, NULL);
+	if (!writer->label) {
+		gz_err(conversion->log,
+		       "--labels: the format %s has no labels; write .csv or _physio.tsv.gz",
+		       writer->name);
+		return GAZECTL_USAGE;
+	}
+	struct gz_offline_labels labels;
+	if (label_input(conversion, &labels) != GZ_OK)
+		return GAZECTL_FAILED;
+	enum gazectl_exit status = write_recording(conversion, output, writer, &labels);
+	gz_offline_labels_free(&labels);
+	return status;
 }
 
 static int convert_run(int argc, char *const *argv, const struct gz_log *log)

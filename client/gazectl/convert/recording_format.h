@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "client/gazectl/convert/text_lines.h"
+#include "filter/offline.h"
 #include "protocol/gaze_log.h"
 
 /** The destination of a recording. The header comes once, before the first record. */
@@ -113,6 +114,12 @@ struct gz_recording_writer {
 	 */
 	enum gz_result (*open)(const char *path, bool overwrite, const struct gz_log *log,
 			       struct gz_recording_sink *out_sink);
+	/**
+	 * Optional: write what the eye did too. Called before the header comes.
+	 *
+	 * @param labels  of the samples that will come; stay valid until close()
+	 */
+	void (*label)(struct gz_recording_sink *sink, const struct gz_offline_labels *labels);
 	/**
 	 * End writing and free the sink's user.
 	 *

@@ -37,6 +37,8 @@ struct gz_recording_output {
 	char path[GZ_PATH_SIZE];
 	struct gz_gaze_log_header header;
 	struct eye_recording recording[RECORDING_COUNT];
+	const struct gz_offline_labels *labels; /* NULL: none */
+	size_t labelled;                        /* intervals written */
 };
 
 static enum gz_result begin_eye_file(struct gz_recording_output *output, int number,
@@ -161,20 +163,48 @@ static enum gz_result add_bids_event(struct gz_recording_output *output, int num
 	return GZ_ERR_IO;
 }
 
-static enum gz_result bids_add(void *user, const struct gz_gaze_log_record *record)
+/* Write an event to all recordings. */
+static enum gz_result add_bids_events(struct gz_recording_output *output,
+				      const struct gz_gaze_log_record *record, const char *kind)
 {
-	struct gz_recording_output *output = user;
-	if (record->kind == GZ_GAZE_LOG_SAMPLE)
-		return add_bids_sample(output, &record->sample);
-	if (record->kind == GZ_GAZE_LOG_WINDOW)
-		return GZ_OK;
-	const char *kind = record->kind == GZ_GAZE_LOG_GAP ? "gap" : "mark";
 	for (int i = 0; i < RECORDING_COUNT; i++) {
 		enum gz_result result = add_bids_event(output, i, record, kind);
 		if (result != GZ_OK)
 			return result;
 	}
 	return GZ_OK;
+}
+
+/* Write what the eye did from this time on. */
+static enum gz_result add_bids_labels(struct gz_recording_output *output, int64_t time_ns)
+{
+	const struct gz_offline_labels *labels = output->labels;
+	while (labels && output->labelled < labels->interval_count &&
+	       labels->interval[output->labelled].start_ns <= time_ns) {
+		const struct gz_offline_interval *interval = &labels->interval[output->labelled++];
+		const struct gz_gaze_log_record record = {
+			.kind = GZ_GAZE_LOG_MARK,
+			.host_ns = interval->start_ns,
+			.duration_ns = interval->end_ns - interval->start_ns,
+		};
+		enum gz_result result =
+			add_bids_events(output, &record, gz_offline_label_name(interval->label));
+		if (result != GZ_OK)
+			return result;
+	}
+	return GZ_OK;
+}
+
+static enum gz_result bids_add(void *user, const struct gz_gaze_log_record *record)
+{
+	struct gz_recording_output *output = user;
+	if (record->kind == GZ_GAZE_LOG_SAMPLE) {
+		enum gz_result result = add_bids_labels(output, record->sample.host_ns);
+		return result == GZ_OK ? add_bids_sample(output, &record->sample) : result;
+	}
+	if (record->kind == GZ_GAZE_LOG_WINDOW)
+		return GZ_OK;
+	return add_bids_events(output, record, record->kind == GZ_GAZE_LOG_GAP ? "gap" : "mark");
 }
 
 static json_t *json_column(const char *description, const char *units)
@@ -248,15 +278,20 @@ static json_t *json_sample_table(const struct gz_recording_output *output, int n
 
 static json_t *json_event_table(const struct gz_recording_output *output, int number)
 {
-	(void)output;
 	(void)number;
 	return json_pack(
-		"{ss ss s[sssss] so so so so}", "Description", "Marks and gaps of the recording.",
+		"{ss ss s[sssss] so so so so}", "Description",
+		output->labels ? "Marks and gaps of the recording, and what the eye did."
+			       : "Marks and gaps of the recording.",
 		"OnsetSource", "timestamp", "Columns", "onset", "duration", "trial_type", "message",
 		"keys", "duration", json_column("How long it lasts; n/a: a moment.", "s"),
 		"trial_type",
-		json_column("mark: set by a program or by the tracker's parser; gap: samples are "
-			    "missing.",
+		json_column(output->labels
+				    ? "mark: set by a program or by the tracker's parser; gap: "
+				      "samples are missing; fixation, saccade, oscillation after a "
+				      "saccade, pursuit, blink, lost: found by gazectl."
+				    : "mark: set by a program or by the tracker's parser; gap: "
+				      "samples are missing.",
 			    NULL),
 		"message", json_column("The mark's text, or the reason of the gap.", NULL), "keys",
 		json_column("Everything else that is known of the mark, a JSON object.", NULL));
@@ -299,6 +334,12 @@ static enum gz_result bids_open(const char *path, bool overwrite, const struct g
 	return GZ_OK;
 }
 
+static void bids_label(struct gz_recording_sink *sink, const struct gz_offline_labels *labels)
+{
+	struct gz_recording_output *output = sink->user;
+	output->labels = labels;
+}
+
 /* Close the files of an eye. If nothing was ever measured, they are removed. */
 static enum gz_result close_recording(struct gz_recording_output *output, int number, bool complete)
 {
@@ -335,5 +376,6 @@ const struct gz_recording_writer gz_recording_writer_bids = {
 	.ending = "_physio.tsv.gz",
 	.help = "BIDS: _recording-eyeN_physio.tsv.gz and .json; marks in _physioevents",
 	.open = bids_open,
+	.label = bids_label,
 	.close = bids_close,
 };

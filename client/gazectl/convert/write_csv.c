@@ -19,6 +19,8 @@ struct gz_recording_output {
 	char path[GZ_PATH_SIZE];
 	struct gz_output_file samples;
 	struct gz_output_file events;
+	const struct gz_offline_labels *labels; /* NULL: none */
+	size_t count;                           /* samples written */
 };
 
 static void write_float(FILE *out, float value)
@@ -53,8 +55,9 @@ static void write_csv_eye(FILE *out, const struct gz_eye_sample *eye)
 		write_float(out, eye->direction[i]);
 }
 
-static void write_csv_sample(FILE *out, const struct gz_sample *sample)
+static void write_csv_sample(struct gz_recording_output *output, const struct gz_sample *sample)
 {
+	FILE *out = output->samples.text;
 	fprintf(out, "%" PRIu64 ",", sample->seq);
 	write_seconds(out, sample->host_ns);
 	fputc(',', out);
@@ -65,6 +68,11 @@ static void write_csv_sample(FILE *out, const struct gz_sample *sample)
 	fprintf(out, ",%d", sample->valid);
 	for (int eye = 0; eye < GZ_EYE_COUNT; eye++)
 		write_csv_eye(out, &sample->eye[eye]);
+	if (output->labels && output->count < output->labels->count)
+		fprintf(out, ",%s",
+			gz_offline_label_name(
+				(enum gz_offline_label)output->labels->label[output->count]));
+	output->count++;
 	fputc('\n', out);
 }
 
@@ -105,6 +113,8 @@ static enum gz_result csv_begin(void *user, const struct gz_gaze_log_header *hea
 			",eye%d_origin_x_mm,eye%d_origin_y_mm,eye%d_origin_z_mm"
 			",eye%d_dir_x,eye%d_dir_y,eye%d_dir_z",
 			eye, eye, eye, eye, eye, pupil, eye, eye, eye, eye, eye, eye);
+	if (output->labels)
+		fputs(",label", out);
 	fputc('\n', out);
 	return check_csv_file(output, &output->samples);
 }
@@ -159,7 +169,7 @@ static enum gz_result csv_add(void *user, const struct gz_gaze_log_record *recor
 	struct gz_recording_output *output = user;
 	if (record->kind != GZ_GAZE_LOG_SAMPLE)
 		return add_csv_event(output, record);
-	write_csv_sample(output->samples.text, &record->sample);
+	write_csv_sample(output, &record->sample);
 	return check_csv_file(output, &output->samples);
 }
 
@@ -182,6 +192,12 @@ static enum gz_result csv_open(const char *path, bool overwrite, const struct gz
 	return GZ_OK;
 }
 
+static void csv_label(struct gz_recording_sink *sink, const struct gz_offline_labels *labels)
+{
+	struct gz_recording_output *output = sink->user;
+	output->labels = labels;
+}
+
 static enum gz_result csv_close(struct gz_recording_sink *sink, bool complete)
 {
 	struct gz_recording_output *output = sink->user;
@@ -198,5 +214,6 @@ const struct gz_recording_writer gz_recording_writer_csv = {
 	.ending = ".csv",
 	.help = "table of samples; marks and gaps are in a second table, _events.csv",
 	.open = csv_open,
+	.label = csv_label,
 	.close = csv_close,
 };
