@@ -409,6 +409,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		.lost = tracker->counters.lost,
 		.clock = tracker->counters.clock,
 		.noise_deg = gz_pipeline_noise_deg(&service->maker.pipeline),
+		.still_scene = service->maker.pipeline.params.classify.still_scene,
 		.display = service->maker.pipeline.display,
 		.subscribers = gz_publisher_subscribers(service->parts.publisher),
 		.version = GAZECAST_VERSION,

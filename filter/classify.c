@@ -299,7 +299,8 @@ static void update_quick_saccade(struct gz_classify_state *state,
 static const int32_t CHANGE_LEAD = 1661;
 
 /* Label sample @p index by what a forest makes of the newest features. */
-static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
+static void label_by_forest(struct gz_classify_state *state,
+			    const struct gz_classify_params *params, const struct gz_forest *forest,
 			    const float features[GZ_MOVEMENT_FEATURES], uint64_t index)
 {
 	int32_t scores[GZ_FOREST_CLASSES];
@@ -309,6 +310,8 @@ static void label_by_forest(struct gz_classify_state *state, const struct gz_for
 		return;
 	gz_forest_score(forest, features, scores);
 	entry->learned = gz_forest_best(scores);
+	if (params->still_scene && entry->learned == GZ_FOREST_PURSUIT)
+		entry->learned = GZ_FOREST_FIXATION;
 	enum gz_forest_class last =
 		index > 0 ? gz_classify_at(state, index - 1)->learned : entry->learned;
 	bool changes = (entry->learned == GZ_FOREST_FIXATION && last == GZ_FOREST_PURSUIT) ||
@@ -326,9 +329,9 @@ static void ask_forests(struct gz_classify_state *state, const struct gz_classif
 	if (!gz_movement_step(&state->movement, display, &measured, features))
 		return;
 	uint64_t newest = state->count - 1, delay = gz_classify_delay(state, params);
-	label_by_forest(state, &gz_forest_at_once, features, newest);
+	label_by_forest(state, params, &gz_forest_at_once, features, newest);
 	if (delay > 0 && delay <= newest)
-		label_by_forest(state, &gz_forest_certain, features, newest - delay);
+		label_by_forest(state, params, &gz_forest_certain, features, newest - delay);
 }
 
 static enum gz_event immediate_label(const struct gz_classify_state *state,

@@ -72,6 +72,7 @@ struct gz_classify_params {
 	double dropout_ms;         /**< shorter losses are not blinks, ms */
 	double blink_max_ms;       /**< longer losses are not blinks but lost gaze, ms */
 	int source;                /**< enum gz_classify_source */
+	bool still_scene;          /**< nothing moves in the scene: there is no pursuit */
 };
 
 /** Samples that are kept: more than the final delay and half a window at 2000 Hz. A power of two.

@@ -179,14 +179,15 @@ static void begin_stretch(struct gz_classify_state *state, const struct gz_class
 	}
 	machine->believes = true;
 	machine->pursuit_factor = 1;
-	machine->event = odds_before(machine) > 1 ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
+	bool pursues = !params->still_scene && odds_before(machine) > 1;
+	machine->event = pursues ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
 }
 
 /* Decide between fixation and pursuit after the slow movement was measured again. */
 static void weigh_pursuit(struct gz_classify_state *state, const struct gz_classify_params *params)
 {
 	struct gz_classify_machine *machine = &state->machine;
-	if (state->slow.span_s <= 0)
+	if (params->still_scene || state->slow.span_s <= 0)
 		return;
 	struct pursuit_factors factors = pursuit_factors(state, params);
 	machine->pursuit_factor = factors.next;

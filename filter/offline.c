@@ -178,6 +178,14 @@ static void add_to_interval(struct intervals *intervals, const struct gz_movemen
 	intervals->points++;
 }
 
+/* In a still scene there is nothing to follow. */
+static void allow_classes(const struct gz_offline *offline, uint8_t *class)
+{
+	for (size_t i = 0; offline->params.classify.still_scene && i < offline->newer; i++)
+		if (class[i] == GZ_FOREST_PURSUIT)
+			class[i] = GZ_FOREST_FIXATION;
+}
+
 static enum gz_result make_intervals(struct intervals *intervals, const uint8_t *class)
 {
 	const struct gz_movement_input *input = intervals->offline->input;
@@ -254,8 +262,10 @@ enum gz_result gz_offline_finish(const struct gz_offline *offline,
 	enum gz_result result = class && labels.label ? GZ_OK : GZ_ERR_NO_MEM;
 	if (result == GZ_OK)
 		result = gz_whole_label(&offline->display, offline->input, offline->newer, class);
-	if (result == GZ_OK)
+	if (result == GZ_OK) {
+		allow_classes(offline, class);
 		result = make_intervals(&intervals, class);
+	}
 	free(class);
 	labels.interval = intervals.interval;
 	labels.interval_count = intervals.count;

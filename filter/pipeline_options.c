@@ -114,6 +114,8 @@ const struct gz_option gz_pipeline_options[] = {
 	{ "pipeline.labels", GZ_OPTION_CHOICE, CLASSIFY(source), .choices = source_names,
 	  .preset = "learned",
 	  .help = "what labels come from: rules, or forests learned from labelled recordings" },
+	{ "pipeline.still_scene", GZ_OPTION_BOOL, CLASSIFY(still_scene), .preset = "false",
+	  .help = "nothing moves in the scene, so there is no pursuit" },
 	{ "pipeline.smooth_window_ms", GZ_OPTION_DOUBLE, SMOOTH(window_ms), 0, 1000,
 	  .preset = "100", .help = "longest window of the mean in a fixation, ms" },
 	{ "pipeline.smooth_start_ms", GZ_OPTION_DOUBLE, SMOOTH(start_ms), 0, 1000, .preset = "15",

@@ -248,6 +248,7 @@ struct gz_status {
 	struct gz_clock_status clock;
 	double noise_deg; /**< RMS of sample-to-sample distances in fixations; NaN before the first
 			   */
+	bool still_scene; /**< the pipeline takes it that nothing moves: there is no pursuit */
 	struct gz_display display;
 	/** The affine correction of the tracker's points: a b c of x' = a + b x + c y, and of y' =
 	 * a + b x + c y, in display sides. 0 1 0 and 0 0 1 change nothing. */

@@ -408,6 +408,7 @@ enum gz_result gz_wire_decode_status(const void *bytes, size_t size, struct gz_s
 	take_sample_counts(&unpack, &status);
 	take_clock_status(&unpack, &status.clock);
 	gz_unpack_double(&unpack, unpack.map, "noise_deg", 0, DBL_MAX, &status.noise_deg);
+	gz_unpack_bool(&unpack, unpack.map, "still_scene", &status.still_scene);
 	take_display_geometry(&unpack, &status.display);
 	take_gaze_correction(&unpack, &status);
 	take_validation(&unpack, &status);

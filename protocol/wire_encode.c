@@ -428,12 +428,13 @@ enum gz_result gz_wire_encode_status(const struct gz_status *status,
 {
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, 15);
+	gz_pack_map(&pack, NULL, 16);
 	pack_tracker_status(&pack, status);
 	/* rate_hz, samples, lost, rejected, malformed, refused */
 	pack_sample_counts(&pack, status);
 	pack_clock_status(&pack, &status->clock);
 	gz_pack_double(&pack, "noise_deg", status->noise_deg);
+	gz_pack_bool(&pack, "still_scene", status->still_scene);
 	pack_display_geometry(&pack, &status->display);
 	pack_gaze_correction(&pack, status);
 	pack_validation(&pack, status);

@@ -165,6 +165,8 @@ static void print_status_table(const struct gz_status *status, const char *endpo
 		    status->noise_deg);
 	else
 		row("noise", "unknown: no fixation yet");
+	if (status->still_scene)
+		row("scene", "still: no pursuit");
 	print_display_row(&status->display);
 	print_correction(status);
 	print_validation(status);
@@ -218,7 +220,7 @@ static json_t *json_recording(const struct gz_status *status)
 static json_t *json_status(const struct gz_status *status, const char *endpoint)
 {
 	return json_pack(
-		"{so so so so so so so so so so s{so so} so so sI so so}", "tracker",
+		"{so so so so so so so so so sb so s{so so} so so sI so so}", "tracker",
 		json_tracker(status), "rate_hz",
 		gz_output_json_rate(status->rate_hz_nominal, status->rate_hz_measured), "samples",
 		gz_output_json_count(status->samples), "lost", gz_output_json_count(status->lost),
@@ -227,8 +229,8 @@ static json_t *json_status(const struct gz_status *status, const char *endpoint)
 		"malformed", json_reasons(status->malformed, 0, GZ_MALFORMED_COUNT, malformed_name),
 		"refused", json_reasons(status->refused, 0, GZ_REFUSAL_COUNT, refusal_name),
 		"clock", json_clock(&status->clock), "noise_deg",
-		gz_output_json_number(status->noise_deg), "display",
-		gz_output_json_display(&status->display), "correction", "x",
+		gz_output_json_number(status->noise_deg), "still_scene", status->still_scene,
+		"display", gz_output_json_display(&status->display), "correction", "x",
 		gz_output_json_numbers(status->correction.x, 3), "y",
 		gz_output_json_numbers(status->correction.y, 3), "validation",
 		json_validation(status), "recording", json_recording(status), "subscribers",

@@ -73,6 +73,7 @@ static struct gz_status some_status(void)
 		.lost = 5,
 		.clock = { .tick = GZ_CLOCK_DECLARED, .skew_ppm = 1.5 },
 		.noise_deg = 0.125,
+		.still_scene = true,
 		.display = gz_display_default(1920, 1080),
 		.validation = { "2026-01-31T12:00:00Z", 0.75, "500 mm away, was \t600 mm" },
 		.subscribers = 2,
@@ -220,6 +221,7 @@ static void status_is_a_table(void **state)
 		"refused      9 (overflow 9)\n",
 		"clock        declared tick",
 		"noise        0.125 deg",
+		"scene        still: no pursuit\n",
 		"display      1920x1080 px",
 		"validated    2026-01-31T12:00:00Z, 0.75 deg\n             the display has changed "
 		"since: "
@@ -248,6 +250,7 @@ static void status_is_json_on_demand(void **state)
 	assert_contains(program.out_text, "\"velocity\": 3");
 	assert_contains(program.out_text, "\"overflow\": 9");
 	assert_contains(program.out_text, "\"noise_deg\": null");
+	assert_contains(program.out_text, "\"still_scene\": true");
 }
 
 static void status_of_what_is_no_daemon_is_refused(void **state)

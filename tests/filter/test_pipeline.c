@@ -329,6 +329,34 @@ static void saccades_are_found_at_any_rate(void **state)
 	}
 }
 
+/* The events of a viewer who follows something half of the time. */
+static void watch_pursuits(bool still_scene, size_t counts[GZ_EVENT_LOST + 1])
+{
+	struct gz_sim_params params = sim_params(250);
+	struct viewing viewing;
+	params.viewer.pursuits_per_min = 30;
+	viewing_open(&viewing, &params);
+	viewing.pipeline.params.classify.still_scene = still_scene;
+	for (int k = 0; k < 20 * 250; k++) {
+		viewing_step(&viewing);
+		counts[viewing.out.gaze.event]++;
+		if (viewing.out.gaze.final_known)
+			counts[viewing.out.gaze.final_event]++;
+	}
+	viewing_close(&viewing);
+}
+
+static void in_a_still_scene_there_is_no_pursuit(void **state)
+{
+	(void)state;
+	size_t moving[GZ_EVENT_LOST + 1] = { 0 }, still[GZ_EVENT_LOST + 1] = { 0 };
+	watch_pursuits(false, moving);
+	watch_pursuits(true, still);
+	assert_true(moving[GZ_EVENT_PURSUIT] > 1000);
+	assert_int_equal(still[GZ_EVENT_PURSUIT], 0);
+	assert_true(still[GZ_EVENT_FIXATION] > moving[GZ_EVENT_FIXATION] + 1000);
+}
+
 static void a_resting_eye_gives_a_resting_point(void **state)
 {
 	(void)state;
@@ -402,9 +430,10 @@ static void every_preset_parses_and_prints_the_same(void **state)
 			fail_msg("%s: %s", option->key, message);
 		assert_int_equal(gz_option_format(option, &params, text, sizeof text), GZ_OK);
 		assert_string_equal(text, option->preset);
-		covered += option->type == GZ_OPTION_DOUBLE
-				   ? sizeof(double) * (size_t)(option->count ? option->count : 1)
-				   : sizeof(double); /* an int and the padding after it */
+		if (option->type == GZ_OPTION_DOUBLE)
+			covered += sizeof(double) * (size_t)(option->count ? option->count : 1);
+		else if (option->type != GZ_OPTION_BOOL) /* which lies in the padding of an int */
+			covered += sizeof(double);       /* an int and the padding after it */
 	}
 	/* Every field has an option: the table covers the whole struct. */
 	assert_int_equal(covered, sizeof params);
@@ -450,6 +479,7 @@ TEST_SUITE(pipeline)
 		cmocka_unit_test(each_sample_gets_one_certain_label_whatever_the_gaps),
 		cmocka_unit_test(an_eye_dropping_out_does_not_move_the_point),
 		cmocka_unit_test(saccades_are_found_at_any_rate),
+		cmocka_unit_test(in_a_still_scene_there_is_no_pursuit),
 		cmocka_unit_test(a_resting_eye_gives_a_resting_point),
 		cmocka_unit_test(a_step_costs_a_few_microseconds),
 		cmocka_unit_test(every_preset_parses_and_prints_the_same),

@@ -85,6 +85,7 @@ static inline struct gz_status sample_status(void)
 		.refused = { 21, 22, 23, 24 },
 		.clock = { -123456789, 12.5, 800.25, GZ_CLOCK_ESTIMATED },
 		.noise_deg = 0.05,
+		.still_scene = true,
 		.display = sample_display(),
 		.correction = { { 0.01, 1.02, -0.003 }, { 0.004, 0.005, 0.98 } },
 		.validation = { "2026-01-31T12:00:00Z", 0.75, "500 mm away, was 600 mm" },

@@ -169,6 +169,7 @@ static void status_comes_back_as_it_was_sent(void **state)
 	assert_true(back.clock.sigma_ns == status.clock.sigma_ns);
 	assert_int_equal(back.clock.tick, status.clock.tick);
 	assert_true(back.noise_deg == status.noise_deg);
+	assert_true(back.still_scene == status.still_scene);
 	assert_memory_equal(&back.display, &status.display, sizeof back.display);
 	assert_memory_equal(&back.correction, &status.correction, sizeof back.correction);
 	assert_string_equal(back.validation.measured, status.validation.measured);

@@ -458,7 +458,7 @@ static void status_has_the_documented_keys(void **state)
 	assert_int_equal(gz_wire_encode_status(&status, &message), GZ_OK);
 	const msgpack_object *map = unpack_map(&message, &unpacked);
 	assert_keys(map, "tracker rate_hz samples lost rejected malformed refused clock noise_deg "
-			 "display correction validation recording "
+			 "still_scene display correction validation recording "
 			 "subscribers version");
 	assert_keys(value_of(map, "tracker"), "name serial state reason");
 	assert_keys(value_of(map, "rate_hz"), "nominal measured");
