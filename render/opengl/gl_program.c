@@ -9,12 +9,13 @@
 
 enum { MESSAGE_SIZE = 400 };
 
-/* Shaders work without the extension, which drivers may not know. */
-static const char *const heads[] = {
-	[GZ_GL_VERTEX] = "#version 330 core\n",
-	[GZ_GL_FRAGMENT] = "#version 330 core\n",
-	[GZ_GL_COMPUTE] = "#version 430 core\n#extension GL_ARB_shader_group_vote : enable\n",
-};
+/* Compute shaders work without the extension, which drivers may not know. */
+static const char *head_of(const struct gz_gl_shader *shader)
+{
+	if (shader->stage == GZ_GL_COMPUTE)
+		return "#version 430 core\n#extension GL_ARB_shader_group_vote : enable\n";
+	return shader->with_430 ? "#version 430 core\n" : "#version 330 core\n";
+}
 
 static const GLenum stages[] = {
 	[GZ_GL_VERTEX] = GL_VERTEX_SHADER,
@@ -25,7 +26,7 @@ static const GLenum stages[] = {
 int gz_gl_shader_source(const struct gz_gl_shader *shader, const char *out_pieces[GZ_GL_PIECES_MAX])
 {
 	int count = 0;
-	out_pieces[count++] = heads[shader->stage];
+	out_pieces[count++] = head_of(shader);
 	if (shader->defines)
 		out_pieces[count++] = shader->defines;
 	for (int i = 0; i < GZ_GL_PARTS_MAX && shader->parts[i]; i++)

@@ -6,6 +6,8 @@
 #ifndef GZ_RENDER_OPENGL_GL_PROGRAM_H
 #define GZ_RENDER_OPENGL_GL_PROGRAM_H
 
+#include <stdbool.h>
+
 #include "base/log.h"
 
 /** Kinds of shader. */
@@ -20,6 +22,7 @@ struct gz_gl_shader {
 	const char *name;                   /**< for messages: the last file's */
 	const char *defines;                /**< lines of #define before all files; may be NULL */
 	const char *parts[GZ_GL_PARTS_MAX]; /**< the files in order; NULL ends them */
+	bool with_430; /**< vertex and fragment shaders: GLSL 4.30 instead of 3.30 */
 };
 
 /** Most pieces of one shader's source: version, defines, parts. */
@@ -27,7 +30,7 @@ struct gz_gl_shader {
 
 /**
  * The pieces of a shader's source, in the order in which the driver gets them: the version (430 for
- * compute shaders, 330 for others), the defines, the parts.
+ * compute shaders and where with_430 asks for it, else 330), the defines, the parts.
  *
  * @param[out] out_pieces  borrowed from @p shader, or static
  * @return number of pieces

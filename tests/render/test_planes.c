@@ -318,8 +318,8 @@ static void draw_triangles(const struct gz_gl_target *target)
 {
 	static const float background[4] = { 0, 0, 1, 1 };
 	const struct gz_gl_shader shaders[2] = {
-		{ GZ_GL_VERTEX, "triangles.vert", NULL, { triangles_vert } },
-		{ GZ_GL_FRAGMENT, "triangles.frag", NULL, { triangles_frag } },
+		{ .stage = GZ_GL_VERTEX, .name = "triangles.vert", .parts = { triangles_vert } },
+		{ .stage = GZ_GL_FRAGMENT, .name = "triangles.frag", .parts = { triangles_frag } },
 	};
 	const unsigned program = gz_gl_program(shaders, 2, "use --backend cpu", NULL);
 	GLuint vertices = 0;

@@ -15,8 +15,8 @@ enum gz_result gz_fill_init(struct gz_fill *fill, const char *name, const char *
 			    const struct gz_log *log)
 {
 	const struct gz_gl_shader shaders[2] = {
-		{ GZ_GL_VERTEX, "quad.vert", NULL, { gz_glsl_quad_vert } },
-		{ GZ_GL_FRAGMENT, name, NULL, { fragment } },
+		{ .stage = GZ_GL_VERTEX, .name = "quad.vert", .parts = { gz_glsl_quad_vert } },
+		{ .stage = GZ_GL_FRAGMENT, .name = name, .parts = { fragment } },
 	};
 	*fill = (struct gz_fill) { .program = gz_gl_program(shaders, 2, "use --headless", log) };
 	if (!fill->program)

@@ -112,8 +112,10 @@ static enum gz_result create_target_window(struct target_window *window)
 static enum gz_result open_target_drawing(struct target_window *window)
 {
 	const struct gz_gl_shader shaders[2] = {
-		{ GZ_GL_VERTEX, "quad.vert", NULL, { gz_glsl_quad_vert } },
-		{ GZ_GL_FRAGMENT, "target.frag", NULL, { gz_glsl_target_frag } },
+		{ .stage = GZ_GL_VERTEX, .name = "quad.vert", .parts = { gz_glsl_quad_vert } },
+		{ .stage = GZ_GL_FRAGMENT,
+		  .name = "target.frag",
+		  .parts = { gz_glsl_target_frag } },
 	};
 	window->program = gz_gl_program(shaders, 2, "use --headless", window->log);
 	if (!window->program)

@@ -47,32 +47,41 @@ enum { COUNTS_SIZE = GZ_GL_COUNT_SLOTS * sizeof(uint32_t) };
 
 _Static_assert(GZ_LEVELS_MAX <= GZ_GL_TILE_LEVELS_MAX, "a tile's level of detail fits its bits");
 
-struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
-				      const struct gz_gl_device *device,
-				      char defines[GZ_GL_CAST_DEFINES_SIZE])
+const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS] = {
+	gz_glsl_transfer_constants_h, gz_glsl_light_constants_h,
+	gz_glsl_cast_constants_h,     cast_sizes,
+	gz_glsl_cast_block_glsl,      gz_glsl_fetch_glsl,
+	gz_glsl_shade_glsl,
+};
+
+void gz_gl_cast_defines(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,
+			char out_defines[GZ_GL_CAST_DEFINES_SIZE])
 {
 	static const char *const texels[GZ_GL_TEXELS_COUNT] = {
 		[GZ_GL_TEXELS_PACKED] = "",
 		[GZ_GL_TEXELS_SINGLE] = "#define SINGLE\n",
 		[GZ_GL_TEXELS_BRICKS] = "#define SINGLE\n#define BRICKS\n",
 	};
-	static const char *const parts[] = {
-		gz_glsl_transfer_constants_h, gz_glsl_light_constants_h,
-		gz_glsl_cast_constants_h,     cast_sizes,
-		gz_glsl_cast_block_glsl,      gz_glsl_fetch_glsl,
-		gz_glsl_shade_glsl,           gz_glsl_cast_comp,
-	};
-	struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
-				       .name = "cast.comp",
-				       .defines = defines };
-	snprintf(defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s%s",
+	snprintf(out_defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s%s",
 		 8 * gz_voxel_size(kind.type), texels[kind.texels],
 		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
 		 kind.shaded ? "#define SHADED\n" : "", kind.fine ? "#define FINE_TABLE\n" : "",
 		 kind.coloured ? "#define COLOURED\n" : "", kind.hits ? "#define HITS\n" : "",
 		 gz_gl_device_defines(device));
+}
+
+struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
+				      const struct gz_gl_device *device,
+				      char defines[GZ_GL_CAST_DEFINES_SIZE])
+{
+	struct gz_gl_shader shader = { .stage = GZ_GL_COMPUTE,
+				       .name = "cast.comp",
+				       .defines = defines };
+	const char **parts = &shader.parts[GZ_GL_PLAN_PARTS];
+	gz_gl_cast_defines(kind, device, defines);
 	memcpy(shader.parts, gz_gl_plan_parts, sizeof gz_gl_plan_parts);
-	memcpy(&shader.parts[GZ_GL_PLAN_PARTS], parts, sizeof parts);
+	memcpy(parts, gz_gl_sample_parts, sizeof gz_gl_sample_parts);
+	parts[GZ_GL_SAMPLE_PARTS] = gz_glsl_cast_comp;
 	return shader;
 }
 

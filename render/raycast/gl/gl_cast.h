@@ -101,8 +101,19 @@ struct gz_gl_cast {
 	struct gz_gl_buffer hits; /**< depth and pixel of each ray, by the place of its tile */
 };
 
-/** Room for the text of gz_gl_cast_shader()'s defines. */
+/** Room for the text of gz_gl_cast_defines(). */
 #define GZ_GL_CAST_DEFINES_SIZE 280
+
+/** The source parts that give a shader samples of the volume, their colours and their light:
+ *  constants, the uniform block, fetches and shading. They follow the constants of the plan
+ *  (gz_gl_plan_parts[0]) and need gz_gl_cast_defines(). */
+#define GZ_GL_SAMPLE_PARTS     7
+#define GZ_GL_SAMPLE_CONSTANTS 2 /**< the part that is cast_constants.h */
+extern const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS];
+
+/** Lines of #define for a kind of cast on a device. */
+void gz_gl_cast_defines(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,
+			char out_defines[GZ_GL_CAST_DEFINES_SIZE]);
 
 /** The shader of a kind of cast. @p defines is filled and borrowed by the shader. */
 struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,

@@ -240,18 +240,6 @@ static enum gz_result deliver_picture(struct gl_raycaster *gl, const struct gz_p
 	return result;
 }
 
-/* Move rays of the picture's pixels to those of the plan, whose pixel (0, 0) is the picture's
- * -shift. */
-static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
-{
-	for (int axis = 0; axis < 3; axis++) {
-		rays->origin00[axis] -=
-			shift[0] * rays->origin_dx[axis] + shift[1] * rays->origin_dy[axis];
-		rays->direction00[axis] -=
-			shift[0] * rays->direction_dx[axis] + shift[1] * rays->direction_dy[axis];
-	}
-}
-
 static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 			      struct gz_image *image, struct gz_frame_stats *out_stats)
 {
@@ -266,10 +254,7 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 				       "set light.shadow_steps to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
-	enum gz_result result =
-		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, &world);
-	if (result == GZ_OK)
-		shift_rays(plan->view.shift, &world);
+	enum gz_result result = gz_gl_scene_rays(shot->camera, plan, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)

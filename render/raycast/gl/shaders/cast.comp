@@ -136,19 +136,6 @@ int entry_at(Ray ray, float k)
 	return entry_of(sample_at(fma(vec3(k), ray.delta, ray.start)));
 }
 
-// A segment between two entries, from the table of a step's segments, or from that of its samples.
-uvec2 look_up_segment(int front, int back, int step_index)
-{
-#ifdef FINE_TABLE
-	if (float(abs(back - front)) < GZ_CLOSE_ENTRIES)
-		return look_up_entry((front + back) / 2, step_index);
-	int stride = (int(last_entry) + 1) / GZ_PREINTEGRATED_SIZE;
-#else
-	const int stride = GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE;
-#endif
-	return FETCH(segments, ivec3(back / stride, front / stride, step_index)).rg;
-}
-
 uint march_segments(Ray ray, int step_index, inout Light light)
 {
 	uint samples = 0U;

@@ -192,6 +192,21 @@ uvec2 look_up_entry(int entry, int step_index)
 #endif
 }
 
+#ifdef SEGMENTS
+// A segment between two entries, from the table of a step's segments, or from that of its samples.
+uvec2 look_up_segment(int front, int back, int step_index)
+{
+#ifdef FINE_TABLE
+	if (float(abs(back - front)) < GZ_CLOSE_ENTRIES)
+		return look_up_entry((front + back) / 2, step_index);
+	int stride = (int(last_entry) + 1) / GZ_PREINTEGRATED_SIZE;
+#else
+	const int stride = GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE;
+#endif
+	return FETCH(segments, ivec3(back / stride, front / stride, step_index)).rg;
+}
+#endif
+
 vec3 unpack_colour(uint colour)
 {
 	return vec3(float(colour >> 21), float(colour >> 10 & 2047U), float(colour & 1023U));
