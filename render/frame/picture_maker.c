@@ -71,8 +71,9 @@ static bool draws_by_cpu(const struct gz_picture_maker *maker)
 /* Whether cpu may draw in place of a backend that has failed. */
 static bool cpu_may_take_over(const struct gz_picture_maker *maker, enum gz_result failure)
 {
-	if (!maker->params.cpu_takes_over || !gz_drawers_last(&maker->drawers) ||
-	    draws_by_cpu(maker))
+	const struct gz_drawers *drawers = &maker->drawers;
+	if (!maker->params.cpu_takes_over || !gz_drawers_last(drawers) || draws_by_cpu(maker) ||
+	    !gz_technique_has_backend(drawers->items[drawers->count - 1].technique, "cpu"))
 		return false;
 	return failure == GZ_ERR_NO_DEVICE || failure == GZ_ERR_NO_MEM ||
 	       (failure == GZ_ERR_UNSUPPORTED && chooses_backend(maker));

@@ -250,10 +250,9 @@ static size_t raycast_bind(void *settings, struct gz_option_binding *out_binding
 {
 	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
 	gz_ray_params_bind(settings, bindings);
-	const size_t own = GZ_RAYCAST_BINDINGS;
-	const size_t count = room < own ? room : own;
+	const size_t count = room < GZ_RAY_SAMPLE_BINDINGS ? room : GZ_RAY_SAMPLE_BINDINGS;
 	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
-	return own;
+	return GZ_RAY_SAMPLE_BINDINGS;
 }
 
 static const char *const raycast_backends[] = { "gl", "cpu", NULL };

@@ -3,14 +3,16 @@
 #include <stddef.h>
 
 #include "render/raycast/raycast.h"
+#include "render/slices/slices_technique.h"
 #include "render/surface/isosurface_technique.h"
 
 const struct gz_technique *const gz_techniques[] = {
 	&gz_raycast_technique,
 	&gz_isosurface_technique,
+	&gz_slices_technique,
 	NULL,
 };
 
-const char *const gz_technique_choices[] = { "auto", "raycast", "isosurface", NULL };
+const char *const gz_technique_choices[] = { "auto", "raycast", "isosurface", "slices", NULL };
 
-const char *const gz_technique_names[] = { "raycast", "isosurface", NULL };
+const char *const gz_technique_names[] = { "raycast", "isosurface", "slices", NULL };

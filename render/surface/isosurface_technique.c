@@ -11,9 +11,10 @@ static size_t isosurface_bind(void *settings, struct gz_option_binding *out_bind
 {
 	struct gz_option_binding bindings[GZ_RAY_BINDINGS];
 	gz_ray_params_bind(settings, bindings);
-	const size_t count = room < GZ_RAY_BINDINGS ? room : GZ_RAY_BINDINGS;
+	const size_t own = GZ_RAY_SURFACE_BINDINGS;
+	const size_t count = room < own ? room : own;
 	memcpy(out_bindings, bindings, count * sizeof bindings[0]);
-	return GZ_RAY_BINDINGS;
+	return own;
 }
 
 static const char *const isosurface_backends[] = { "cpu", NULL };

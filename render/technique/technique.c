@@ -1,5 +1,15 @@
 #include "render/technique/technique.h"
 
+#include <string.h>
+
+bool gz_technique_has_backend(const struct gz_technique *technique, const char *name)
+{
+	for (size_t i = 0; technique->backends[i]; i++)
+		if (strcmp(technique->backends[i], name) == 0)
+			return true;
+	return false;
+}
+
 void gz_drawer_destroy(struct gz_drawer **drawer)
 {
 	if (*drawer)

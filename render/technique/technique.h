@@ -178,6 +178,9 @@ struct gz_technique {
 	size_t (*bind)(void *settings, struct gz_option_binding *out_bindings, size_t room);
 };
 
+/** Whether a technique has a backend of that name; "auto" is none. */
+bool gz_technique_has_backend(const struct gz_technique *technique, const char *name);
+
 /** Destroy the drawer and set the pointer to NULL. Accepts a pointer to NULL. */
 void gz_drawer_destroy(struct gz_drawer **drawer);
 

@@ -94,7 +94,9 @@ static void technique_and_isovalue_are_short_for_scene_keys(void **state)
 	assert_refused("--technique isosurface --render.technique raycast a.scene",
 		       "--render.technique");
 	assert_refused("--isovalue 3 --isosurface.isovalue 3 a.scene", "--isosurface.isovalue");
-	assert_refused("--technique slices a.scene", "technique");
+	assert_refused("--technique slices --slices.count 0 a.scene", "1 to 4096");
+	assert_refused("--slices.count 4097 a.scene", "1 to 4096");
+	assert_refused("--technique slabs a.scene", "technique");
 	assert_refused("--replay a.session --technique raycast", "--technique");
 	assert_refused("--experiment a.experiment --isovalue 3", "--isovalue");
 	assert_refused("--experiment a.experiment --technique raycast", "--technique");

@@ -113,6 +113,18 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_false(gz_setting_applies(&settings, "light.shadow_steps"));
 	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
 	assert_false(gz_setting_applies(&settings, "render.shading"));
+	assert_false(gz_setting_applies(&settings, "slices.count"));
+	settings.technique = 3;
+	assert_string_equal(gz_technique_choices[settings.technique], "slices");
+	assert_true(gz_setting_applies(&settings, "slices.count"));
+	assert_true(gz_setting_applies(&settings, "render.shading"));
+	assert_true(gz_setting_applies(&settings, "render.integration"));
+	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
+	assert_false(gz_setting_applies(&settings, "isosurface.isovalue"));
+	settings.rays.light.shadow_steps = 4; /* slices cast none */
+	assert_false(gz_setting_applies(&settings, "light.shadow_steps"));
+	assert_false(gz_setting_applies(&settings, "light.ambient")); /* without shading */
+	settings.rays.light.shadow_steps = 0;
 	/* two objects of two techniques */
 	settings.technique = 0;
 	settings.rays.shading = GZ_SHADING_NONE;

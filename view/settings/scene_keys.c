@@ -4,12 +4,13 @@
 
 #include "render/plan/method.h"
 #include "render/raycast/raycast.h"
+#include "render/slices/slices_technique.h"
 #include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
 	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,        GZ_SCENE_LIGHT,
-	GZ_SCENE_CLIP,      GZ_SCENE_ISOSURFACE, GZ_SCENE_ENVIRONMENT, GZ_SCENE_FOVEATION,
-	GZ_SCENE_ATTENTION, GZ_SCENE_TEMPORAL,   GZ_SCENE_VIEW,
+	GZ_SCENE_CLIP,      GZ_SCENE_ISOSURFACE, GZ_SCENE_ENVIRONMENT, GZ_SCENE_SLICES,
+	GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,  GZ_SCENE_TEMPORAL,    GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -46,6 +47,17 @@ static bool by_raycast(const struct gz_scene_settings *settings)
 	return gz_scene_draws_by(settings, &gz_raycast_technique);
 }
 
+static bool by_slices(const struct gz_scene_settings *settings)
+{
+	return gz_scene_draws_by(settings, &gz_slices_technique);
+}
+
+/* Samples of a volume, coloured by its transfer function. */
+static bool by_samples(const struct gz_scene_settings *settings)
+{
+	return by_raycast(settings) || by_slices(settings);
+}
+
 static bool by_isosurface(const struct gz_scene_settings *settings)
 {
 	return gz_scene_draws_by(settings, &gz_isosurface_technique);
@@ -79,7 +91,7 @@ static bool with_light(const struct gz_scene_settings *settings)
 
 static bool with_lit_samples(const struct gz_scene_settings *settings)
 {
-	return by_raycast(settings) && settings->rays.shading == GZ_SHADING_GRADIENT;
+	return by_samples(settings) && settings->rays.shading == GZ_SHADING_GRADIENT;
 }
 
 static bool with_occlusion(const struct gz_scene_settings *settings)
@@ -169,13 +181,14 @@ static const struct {
 	{ "environment.dark", on_the_floor },
 	{ "environment.kind", by_isosurface },
 	{ "environment.", under_the_sky },
+	{ "slices.", by_slices },
 	{ "render.ray_sampling_rate", by_raycast },
-	{ "render.interpolation", by_raycast },
-	{ "render.integration", by_raycast },
-	{ "render.shading", by_raycast },
-	{ "render.levels", by_raycast },
+	{ "render.interpolation", by_samples },
+	{ "render.integration", by_samples },
+	{ "render.shading", by_samples },
+	{ "render.levels", by_samples },
 	{ "render.jitter", by_raycast },
-	{ "render.early_termination", by_raycast },
+	{ "render.early_termination", by_samples },
 	{ "foveation.reconstruction", with_a_pyramid },
 	{ "foveation.acuity_", by_acuity },
 	{ "foveation.blend_px", with_borders },

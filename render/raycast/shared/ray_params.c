@@ -41,11 +41,18 @@ void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS])
 {
 	const struct gz_option_binding bindings[GZ_RAY_BINDINGS] = {
-		{ gz_ray_options, gz_ray_option_count, rays, NULL },
-		{ gz_light_options, gz_light_option_count, &rays->light, NULL },
-		{ gz_clip_options, gz_clip_option_count, &rays->clip, NULL },
-		{ gz_surface_look_options, gz_surface_look_option_count, &rays->surface, NULL },
-		{ gz_environment_options, gz_environment_option_count, &rays->environment, NULL },
+		[GZ_RAY_BINDING_RENDER] = { gz_ray_options, gz_ray_option_count, rays, NULL },
+		[GZ_RAY_BINDING_LIGHT] = { gz_light_options, gz_light_option_count, &rays->light,
+					   NULL },
+		[GZ_RAY_BINDING_CLIP] = { gz_clip_options, gz_clip_option_count, &rays->clip,
+					  NULL },
+		[GZ_RAY_BINDING_SURFACE] = { gz_surface_look_options, gz_surface_look_option_count,
+					     &rays->surface, NULL },
+		[GZ_RAY_BINDING_ENVIRONMENT] = { gz_environment_options,
+						 gz_environment_option_count, &rays->environment,
+						 NULL },
+		[GZ_RAY_BINDING_SLICES] = { gz_slicing_options, gz_slicing_option_count,
+					    &rays->slicing, NULL },
 	};
 	memcpy(out_bindings, bindings, sizeof bindings);
 }
@@ -66,7 +73,8 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 	       gz_light_valid(&rays->light) && gz_clip_box_valid(&rays->clip) &&
 	       gz_options_hold(gz_surface_look_options, gz_surface_look_option_count,
 			       &rays->surface) &&
-	       gz_environment_valid(&rays->environment);
+	       gz_environment_valid(&rays->environment) &&
+	       gz_options_hold(gz_slicing_options, gz_slicing_option_count, &rays->slicing);
 }
 
 bool gz_ray_params_lit(const struct gz_ray_params *rays)
@@ -82,7 +90,9 @@ bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_param
 	       gz_options_same(gz_surface_look_options, gz_surface_look_option_count, &a->surface,
 			       &b->surface) &&
 	       gz_options_same(gz_environment_options, gz_environment_option_count, &a->environment,
-			       &b->environment);
+			       &b->environment) &&
+	       gz_options_same(gz_slicing_options, gz_slicing_option_count, &a->slicing,
+			       &b->slicing);
 }
 
 bool gz_ray_samples_nearest(const struct gz_ray_params *rays, const struct gz_volume *volume)

@@ -16,6 +16,7 @@
 #include "render/light/light.h"
 #include "render/light/surface_look.h"
 #include "render/picture/camera.h"
+#include "render/raycast/shared/slicing.h"
 
 /** Limits of ray_sampling_rate. Chosen: a step of 20 voxels shows nothing, one of 1/32 changes no
  *  picture. */
@@ -56,20 +57,29 @@ struct gz_ray_params {
 	struct gz_clip_box clip;
 	struct gz_surface_look surface;    /**< for techniques that show surfaces */
 	struct gz_environment environment; /**< for techniques that show surfaces */
+	struct gz_slicing slicing;         /**< for techniques that draw slices */
 };
 
-/** Table over struct gz_ray_params without its light, clip box, surface and environment:
- *  "render.…". */
+/** Table over the members of struct gz_ray_params that are no structs: "render.…". */
 extern const struct gz_option gz_ray_options[];
 extern const size_t gz_ray_option_count;
 
-/** Tables that gz_ray_params_bind() gives, and how many of them, the first ones, are of the ray
- *  caster. */
-#define GZ_RAY_BINDINGS     5
-#define GZ_RAYCAST_BINDINGS 3
+/** The tables that gz_ray_params_bind() gives. Those of samples of a volume come first: the ray
+ *  caster has them and no others. Those of surfaces follow, then those of slices. */
+enum gz_ray_binding {
+	GZ_RAY_BINDING_RENDER,
+	GZ_RAY_BINDING_LIGHT,
+	GZ_RAY_BINDING_CLIP,
+	GZ_RAY_SAMPLE_BINDINGS,
+	GZ_RAY_BINDING_SURFACE = GZ_RAY_SAMPLE_BINDINGS,
+	GZ_RAY_BINDING_ENVIRONMENT,
+	GZ_RAY_SURFACE_BINDINGS,
+	GZ_RAY_BINDING_SLICES = GZ_RAY_SURFACE_BINDINGS,
+	GZ_RAY_BINDINGS,
+};
 
 /** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "isosurface.…",
- *  "environment.…". The bindings have no flags and borrow @p rays. */
+ *  "environment.…", "slices.…". The bindings have no flags and borrow @p rays. */
 void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
 

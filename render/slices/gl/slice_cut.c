@@ -1,0 +1,226 @@
+#include "render/slices/gl/slice_cut.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A polygon of n corners becomes n - 2 triangles. */
+enum { TRIANGLE_CORNERS_MAX = 3 * (GZ_SLICE_CORNERS_MAX - 2) };
+
+/* From a point of the world to pixel and depth. */
+struct projection {
+	double inverse[3][3]; /* of the matrix whose columns are the rays' differences */
+	double origin[3];
+	bool orthographic;
+};
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Perspective: P - origin = depth (x dx + y dy + d00). Orthographic: = x ox + y oy + depth d00.
+ * Both are a matrix times a vector. */
+static bool projection_make(const struct gz_ray_frame *rays, struct projection *out_projection)
+{
+	struct projection projection = { .orthographic =
+						 dot(rays->direction_dx, rays->direction_dx) == 0 };
+	const double *x = projection.orthographic ? rays->origin_dx : rays->direction_dx;
+	const double *y = projection.orthographic ? rays->origin_dy : rays->direction_dy;
+	double rows[3][3];
+	cross(y, rays->direction00, rows[0]);
+	cross(rays->direction00, x, rows[1]);
+	cross(x, y, rows[2]);
+	const double determinant = dot(x, rows[0]);
+	if (!(fabs(determinant) > 0) || !isfinite(1 / determinant))
+		return false;
+	for (int row = 0; row < 3; row++)
+		for (int column = 0; column < 3; column++)
+			projection.inverse[row][column] = rows[row][column] / determinant;
+	memcpy(projection.origin, rays->origin00, sizeof projection.origin);
+	*out_projection = projection;
+	return true;
+}
+
+/* x, y, w and depth of a point. */
+static void project(const struct projection *projection, const double world[3], double out[4])
+{
+	double from[3];
+	for (int axis = 0; axis < 3; axis++)
+		from[axis] = world[axis] - projection->origin[axis];
+	out[0] = dot(projection->inverse[0], from);
+	out[1] = dot(projection->inverse[1], from);
+	out[3] = dot(projection->inverse[2], from);
+	out[2] = projection->orthographic ? 1 : out[3];
+}
+
+static void project_box(const struct projection *projection, const double least[3],
+			const double greatest[3], double out_corners[8][4])
+{
+	for (int i = 0; i < 8; i++) {
+		const double world[3] = {
+			i & 1 ? greatest[0] : least[0],
+			i & 2 ? greatest[1] : least[1],
+			i & 4 ? greatest[2] : least[2],
+		};
+		project(projection, world, out_corners[i]);
+	}
+}
+
+/* Order corners by the angle at which their centre sees them. */
+static void order_corners(double polygon[GZ_SLICE_CORNERS_MAX][4], int count)
+{
+	double centre[2] = { 0, 0 }, angles[GZ_SLICE_CORNERS_MAX];
+	for (int i = 0; i < count; i++)
+		for (int axis = 0; axis < 2; axis++)
+			centre[axis] += polygon[i][axis] / count;
+	for (int i = 0; i < count; i++) {
+		double corner[4];
+		const double angle = atan2(polygon[i][1] - centre[1], polygon[i][0] - centre[0]);
+		int place = i;
+		memcpy(corner, polygon[i], sizeof corner);
+		for (; place > 0 && angles[place - 1] > angle; place--) {
+			angles[place] = angles[place - 1];
+			memcpy(polygon[place], polygon[place - 1], sizeof corner);
+		}
+		angles[place] = angle;
+		memcpy(polygon[place], corner, sizeof corner);
+	}
+}
+
+int gz_slice_polygon(const double corners[8][4], double depth,
+		     double out_polygon[GZ_SLICE_CORNERS_MAX][4])
+{
+	int count = 0;
+	for (int axis = 0; axis < 3; axis++)
+		for (int i = 0; i < 8; i++) {
+			const double *a = corners[i], *b = corners[i | 1 << axis];
+			/* A corner on the plane counts as behind it, for all its edges. */
+			if (i >> axis & 1 || (a[3] < depth) == (b[3] < depth) ||
+			    count == GZ_SLICE_CORNERS_MAX)
+				continue;
+			const double share = (depth - a[3]) / (b[3] - a[3]);
+			for (int k = 0; k < 4; k++)
+				out_polygon[count][k] = a[k] + share * (b[k] - a[k]);
+			count++;
+		}
+	order_corners(out_polygon, count);
+	return count;
+}
+
+static struct gz_slice_corner corner_of(const double from[4], double near)
+{
+	return (struct gz_slice_corner) {
+		.x = (float)from[0],
+		.y = (float)from[1],
+		.w = (float)from[2],
+		.depth = (float)(from[3] - near),
+	};
+}
+
+/* Append the triangles of a polygon: a fan around its first corner. */
+static void append_polygon(struct gz_slice_cut *cut, int *corner_count,
+			   const double polygon[GZ_SLICE_CORNERS_MAX][4], int count)
+{
+	for (int i = 1; i + 1 < count; i++) {
+		const int fan[3] = { 0, i, i + 1 };
+		for (int k = 0; k < 3; k++)
+			cut->corners[(*corner_count)++] = corner_of(polygon[fan[k]], cut->near);
+	}
+}
+
+static void cut_shown_part(struct gz_slice_cut *cut, const double shown[8][4])
+{
+	int corner_count = 0;
+	for (int i = 0; i < cut->count; i++) {
+		double polygon[GZ_SLICE_CORNERS_MAX][4];
+		const double depth = cut->near + (i + 0.5) * cut->distance;
+		cut->first[i] = corner_count;
+		const int count = gz_slice_polygon(shown, depth, polygon);
+		append_polygon(cut, &corner_count, polygon, count);
+	}
+	cut->first[cut->count] = corner_count;
+}
+
+static enum gz_result reserve_slices(struct gz_slice_cut *cut, int count)
+{
+	const size_t slices = (size_t)count;
+	free(cut->corners);
+	free(cut->first);
+	cut->corners = malloc(slices * TRIANGLE_CORNERS_MAX * sizeof *cut->corners);
+	cut->first = malloc((slices + 1) * sizeof *cut->first);
+	return cut->corners && cut->first ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+static bool same_numbers(const double *a, const double *b, size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		if (!(a[i] == b[i]))
+			return false;
+	return true;
+}
+
+static bool same_request(const struct gz_slice_request *a, const struct gz_slice_request *b)
+{
+	return same_numbers(a->rays.origin00, b->rays.origin00, 3) &&
+	       same_numbers(a->rays.origin_dx, b->rays.origin_dx, 3) &&
+	       same_numbers(a->rays.origin_dy, b->rays.origin_dy, 3) &&
+	       same_numbers(a->rays.direction00, b->rays.direction00, 3) &&
+	       same_numbers(a->rays.direction_dx, b->rays.direction_dx, 3) &&
+	       same_numbers(a->rays.direction_dy, b->rays.direction_dy, 3) &&
+	       same_numbers(a->half, b->half, 3) && same_numbers(a->least, b->least, 3) &&
+	       same_numbers(a->greatest, b->greatest, 3) && a->count == b->count;
+}
+
+/* From the nearest to the farthest corner, but not behind the eye. */
+static void find_depths(const double box[8][4], double *out_near, double *out_far)
+{
+	double near = INFINITY, far = 0;
+	for (int i = 0; i < 8; i++) {
+		near = fmin(near, box[i][3]);
+		far = fmax(far, box[i][3]);
+	}
+	*out_near = fmax(near, 0);
+	*out_far = far;
+}
+
+enum gz_result gz_slice_cut_make(const struct gz_slice_request *request, struct gz_slice_cut *cut)
+{
+	struct projection projection;
+	double whole[8][4], shown[8][4], far;
+	if (cut->valid && same_request(&cut->made_for, request))
+		return GZ_OK;
+	cut->valid = false;
+	cut->count = 0;
+	if (request->count < 1 || !projection_make(&request->rays, &projection))
+		return GZ_ERR_INVAL;
+	const enum gz_result result = reserve_slices(cut, request->count);
+	if (result != GZ_OK)
+		return result;
+	const double opposite[3] = { -request->half[0], -request->half[1], -request->half[2] };
+	project_box(&projection, opposite, request->half, whole);
+	project_box(&projection, request->least, request->greatest, shown);
+	find_depths(whole, &cut->near, &far);
+	cut->distance = (far - cut->near) / request->count;
+	if (cut->distance > 0)
+		cut->count = request->count;
+	cut_shown_part(cut, shown);
+	cut->made_for = *request;
+	cut->valid = true;
+	cut->revision++;
+	return GZ_OK;
+}
+
+void gz_slice_cut_free(struct gz_slice_cut *cut)
+{
+	free(cut->corners);
+	free(cut->first);
+	*cut = (struct gz_slice_cut) { 0 };
+}
