@@ -51,9 +51,6 @@ static const int64_t HEADING_US = 200000;
 /* Longer times are all the same. Chosen: beyond the longest window. */
 static const double TIME_MAX_MS = 1000;
 
-/* A time without any sample that is a loss: more than a period at 30 Hz. */
-static const int64_t GAP_US = 50000;
-
 /* Time constant of the noise estimate, s, and of the running means. Chosen. */
 static const double NOISE_S = 1;
 static const double MEAN_S[GZ_MOVEMENT_MEANS] = { 2, 10 };
@@ -331,11 +328,12 @@ static void fit_line(const struct window_sums *sums, struct gz_movement_stretch 
  * The step.
  */
 
+/* A time without samples is no loss: the recordings that the forests learned from have samples that
+ * tell of every blink, and what follows a pause of the device is not what follows a lid. */
 static void note_loss(struct gz_movement *state, const struct gz_movement_entry *entry,
 		      int64_t step_us)
 {
-	bool gap = step_us > GAP_US;
-	if (!state->losing && (gap || !entry->valid)) {
+	if (!state->losing && !entry->valid) {
 		state->losing = state->any_lost = true;
 		state->loss_begin_us = entry->time_us - step_us;
 	}
@@ -364,7 +362,7 @@ static struct gz_movement_entry *add_movement_entry(struct gz_movement *state,
 	int64_t step_us = state->count > 0 ? entry.time_us - last_us : 0;
 	entry.valid = input->valid;
 	note_loss(state, &entry, step_us);
-	if (!input->valid || step_us > GAP_US)
+	if (!input->valid)
 		entry.lost_us += (uint64_t)step_us;
 	struct gz_movement_entry *kept = entry_at(state, state->count++);
 	*kept = entry;

@@ -393,6 +393,28 @@ static void a_resting_eye_gives_a_resting_point(void **state)
 	}
 }
 
+/* As when the computer is busy: the device goes on, and nothing is known of a blink. */
+static void a_pause_of_the_device_is_no_blink(void **state)
+{
+	(void)state;
+	struct gz_sim_params params = sim_params(500);
+	struct viewing viewing;
+	int hidden = 0, pauses = 0;
+	params.viewer.blinks_per_min = 0;
+	params.viewer.pursuits_per_min = 0;
+	viewing_open(&viewing, &params);
+	for (int i = 0; i < 20000; i++) {
+		gz_sim_tracker_next(viewing.tracker, &viewing.in);
+		pauses += i % 500 == 0;
+		if (i % 500 >= 45) { /* a pause of 90 ms in each second */
+			gz_pipeline_step(&viewing.pipeline, &viewing.in.sample, &viewing.out);
+			hidden += i > 500 && !(viewing.out.gaze.confidence > 0);
+		}
+	}
+	viewing_close(&viewing);
+	assert_true(hidden < pauses); /* of 455 samples behind each */
+}
+
 static void a_step_costs_a_few_microseconds(void **state)
 {
 	(void)state;
@@ -481,6 +503,7 @@ TEST_SUITE(pipeline)
 		cmocka_unit_test(saccades_are_found_at_any_rate),
 		cmocka_unit_test(in_a_still_scene_there_is_no_pursuit),
 		cmocka_unit_test(a_resting_eye_gives_a_resting_point),
+		cmocka_unit_test(a_pause_of_the_device_is_no_blink),
 		cmocka_unit_test(a_step_costs_a_few_microseconds),
 		cmocka_unit_test(every_preset_parses_and_prints_the_same),
 		cmocka_unit_test(logs_older_than_the_forests_replay_with_rules),
