@@ -165,15 +165,17 @@ static enum gz_result start_daemon(struct daemon *daemon)
 
 static void say_hello(const struct daemon *daemon)
 {
-	int port = gz_publisher_port(daemon->publisher);
+	const int port = gz_publisher_port(daemon->publisher);
+	const char *control = daemon->config.control_endpoint, *colon = strrchr(control, ':');
 	gz_privileges_advise(&daemon->log);
 	gz_info(&daemon->log, "gazed %s with %s, stream at ipc://%s/stream", GAZECAST_VERSION,
 		daemon->config.driver, daemon->directory);
 	if (port > 0)
-		gz_info(&daemon->log, "%s: control at %s, stream at tcp://%s:%d",
+		gz_info(&daemon->log, "%s: control at %.*s:%d, stream at tcp://%s:%d",
 			daemon->config.tcp == GZ_TCP_CURVE ? "for clients with a key"
 							   : "for Pupil clients",
-			daemon->config.control_endpoint, daemon->config.address, port);
+			colon ? (int)(colon - control) : 0, control,
+			gz_requests_port(daemon->requests), daemon->config.address, port);
 }
 
 static void stop_daemon(struct daemon *daemon)

@@ -51,6 +51,7 @@ struct gz_requests {
 	void *commands; /* PAIR, to the service */
 	struct gz_inlet *inlet;
 	struct gz_inlet_message message; /* the message being served; large */
+	int port;
 	int stream_port;
 	int latest_port;
 	enum pending pending;
@@ -606,9 +607,8 @@ static enum gz_result open_request_sockets(struct gz_requests *requests)
 		       zmq_strerror(errno));
 		return GZ_ERR_IO;
 	}
-	int port;
 	return gz_network_bind(requests->parts.network, requests->control, "control",
-			       requests->parts.config->control_endpoint, &port, NULL);
+			       requests->parts.config->control_endpoint, &requests->port, NULL);
 }
 
 enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
@@ -629,6 +629,11 @@ enum gz_result gz_requests_create(const struct gz_requests_parts *parts,
 	}
 	*out_requests = requests;
 	return GZ_OK;
+}
+
+int gz_requests_port(const struct gz_requests *requests)
+{
+	return requests->port;
 }
 
 void gz_requests_destroy(struct gz_requests **requests)

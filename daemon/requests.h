@@ -62,6 +62,10 @@ enum gz_result gz_requests_run(struct gz_requests *requests, int signal_fd);
 /** Tell the service to quit. Waits while the queue of commands is full. */
 void gz_requests_quit_service(struct gz_requests *requests);
 
+/** The control socket's TCP port, 0 without TCP. If the settings ask for port 0, it is the one that
+ * the system chose. */
+int gz_requests_port(const struct gz_requests *requests);
+
 /** Close the sockets, free and set *requests to NULL. Accepts a pointer to NULL. */
 void gz_requests_destroy(struct gz_requests **requests);
 

@@ -67,17 +67,24 @@ static const char *read_key(const char *directory, const char *name)
 
 #define GAZECTL_RUN(...) program_run(&program, (const char *const[]) { GAZECTL, __VA_ARGS__, NULL })
 
-/* A port that was free a moment ago. */
+/* A port that was free a moment ago, below those that the system gives to whoever asks for any
+ * (ip(7), ip_local_port_range): other tests connect while this one waits. */
 static int free_port(void)
 {
-	struct sockaddr_in address = { .sin_family = AF_INET };
-	socklen_t size = sizeof address;
-	address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-	int fd = socket(AF_INET, SOCK_STREAM, 0);
-	assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
-	assert_int_equal(getsockname(fd, (struct sockaddr *)&address, &size), 0);
-	close(fd);
-	return ntohs(address.sin_port);
+	static unsigned turn;
+	for (int i = 0; i < 1000; i++) {
+		struct sockaddr_in address = { .sin_family = AF_INET };
+		const int port = 10240 + (int)(((unsigned)getpid() * 31 + 97 * turn++) % 20000);
+		address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+		address.sin_port = htons((uint16_t)port);
+		int fd = socket(AF_INET, SOCK_STREAM, 0);
+		const bool is_free = bind(fd, (struct sockaddr *)&address, sizeof address) == 0;
+		close(fd);
+		if (is_free)
+			return port;
+	}
+	fail_msg("no port is free");
+	return 0;
 }
 
 static int set_up(void **state)

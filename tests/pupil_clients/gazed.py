@@ -2,10 +2,10 @@
 import bisect
 import ctypes
 import os
+import re
 import resource
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -20,12 +20,6 @@ except ImportError:
 
 # Longest wait for a condition; as PATIENCE_S in tests/suite.h.
 PATIENCE_S = int(os.environ.get("GZ_TEST_PATIENCE_S", "60"))
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def die_with_parent():
@@ -46,18 +40,19 @@ class Gazed:
 
     def __init__(self, program, *arguments, awaited="delivers samples", files=None, **variables):
         self.place = tempfile.mkdtemp(prefix="gz_pupil_")
-        self.port = free_port()
         self.log_path = os.path.join(self.place, "stderr")
         environment = dict(os.environ, GAZECAST_RUNTIME_DIR=self.place, **variables)
         with open(self.log_path, "w") as log:
             self.process = subprocess.Popen(
-                [program, "--control", f"tcp://127.0.0.1:{self.port}",
+                [program, "--control", "tcp://127.0.0.1:0",
                  "--recording.directory", self.place, *arguments],
                 env=environment, stderr=log, preexec_fn=lambda: prepare_child(files))
         try:
             wait_for(lambda: awaited in self.log() or self.process.poll() is not None,
                      "gazed does not begin")
             assert self.process.poll() is None, self.log()
+            told = re.search(r"control at tcp://127\.0\.0\.1:([1-9]\d*),", self.log())
+            self.port = int(told[1]) if told else None
         except BaseException:
             self.close()
             raise
