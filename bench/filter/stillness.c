@@ -167,18 +167,41 @@ static const double PASSES_DEG[] = { 0, 0.3, 0.6, 0.9, 1, 1.1, 1.2, 1.4, 1.6, 2 
 
 enum { PASSES = sizeof PASSES_DEG / sizeof PASSES_DEG[0] };
 
-static void add_pipeline_point(struct gz_gaze_track *tracks, size_t count,
-			       const struct gz_pipeline_params *given, double pass_deg,
+/* What the smoothing takes of every sample of every track. */
+struct smoothed_tracks {
+	struct gz_gaze_track *tracks;
+	size_t count;
+	struct gz_smooth_input *inputs;
+	const struct gz_smooth_params *given;
+};
+
+static bool take_smoothing(struct smoothed_tracks *smoothed,
+			   const struct gz_pipeline_params *params)
+{
+	size_t samples = 0;
+	for (size_t i = 0; i < smoothed->count; i++)
+		samples += smoothed->tracks[i].count;
+	smoothed->inputs = malloc((samples + 1) * sizeof *smoothed->inputs);
+	if (!smoothed->inputs)
+		return false;
+	struct gz_smooth_input *inputs = smoothed->inputs;
+	for (size_t i = 0; i < smoothed->count; inputs += smoothed->tracks[i++].count)
+		gz_gaze_track_take_smoothing(&smoothed->tracks[i], params, inputs);
+	return true;
+}
+
+static void add_pipeline_point(const struct smoothed_tracks *smoothed, double pass_deg,
 			       struct gz_sweep *sweep)
 {
-	struct gz_pipeline_params params = *given;
-	params.smooth.pass_deg = pass_deg;
-	for (size_t i = 0; i < count; i++)
-		gz_gaze_track_run_pipeline(&tracks[i], &params, true);
+	struct gz_smooth_params params = *smoothed->given;
+	params.pass_deg = pass_deg;
+	const struct gz_smooth_input *inputs = smoothed->inputs;
+	for (size_t i = 0; i < smoothed->count; inputs += smoothed->tracks[i++].count)
+		gz_gaze_track_smooth(&smoothed->tracks[i], &params, inputs);
 	sweep->point[sweep->count++] = (struct gz_sweep_point) {
 		.pass_deg = pass_deg,
-		.as_given = pass_deg == given->smooth.pass_deg,
-		.stillness = gz_stillness_of(tracks, count),
+		.as_given = pass_deg == smoothed->given->pass_deg,
+		.stillness = gz_stillness_of(smoothed->tracks, smoothed->count),
 	};
 }
 
@@ -186,16 +209,20 @@ struct gz_sweep gz_sweep_pipeline(struct gz_gaze_track *tracks, size_t count,
 				  const struct gz_pipeline_params *params)
 {
 	struct gz_sweep sweep = { .count = 0 };
+	struct smoothed_tracks smoothed = { tracks, count, NULL, &params->smooth };
+	if (!take_smoothing(&smoothed, params))
+		return sweep;
 	const double given_deg = params->smooth.pass_deg;
 	double last_deg = -INFINITY;
 	for (size_t i = 0; i <= PASSES; i++) {
 		const double next_deg = i < PASSES ? PASSES_DEG[i] : INFINITY;
 		if (given_deg > last_deg && given_deg < next_deg)
-			add_pipeline_point(tracks, count, params, given_deg, &sweep);
+			add_pipeline_point(&smoothed, given_deg, &sweep);
 		if (i < PASSES)
-			add_pipeline_point(tracks, count, params, next_deg, &sweep);
+			add_pipeline_point(&smoothed, next_deg, &sweep);
 		last_deg = next_deg;
 	}
+	free(smoothed.inputs);
 	return sweep;
 }
 

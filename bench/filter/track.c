@@ -118,6 +118,38 @@ void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
 	}
 }
 
+void gz_gaze_track_take_smoothing(const struct gz_gaze_track *track,
+				  const struct gz_pipeline_params *params,
+				  struct gz_smooth_input *out_inputs)
+{
+	struct gz_pipeline pipeline;
+	const struct gz_classify_state *classify = &pipeline.classify;
+	gz_pipeline_init(&pipeline, params, &track->display);
+	for (size_t i = 0; i < track->count; i++) {
+		struct gz_pipeline_output out;
+		gz_pipeline_step(&pipeline, &track->sample[i], &out);
+		out_inputs[i] = (struct gz_smooth_input) { .time_ns = INT64_MIN };
+		if (out.rejection == GZ_REJECT_TIME)
+			continue;
+		const struct gz_classify_entry *newest =
+			&classify->ring[(classify->count - 1) % GZ_CLASSIFY_RING];
+		out_inputs[i] = (struct gz_smooth_input) { out.gaze.event, newest->time_ns,
+							   newest->valid, newest->point };
+	}
+}
+
+void gz_gaze_track_smooth(struct gz_gaze_track *track, const struct gz_smooth_params *params,
+			  const struct gz_smooth_input *inputs)
+{
+	struct gz_smooth_state state = { .started = false };
+	struct gz_point point = { 0.5F, 0.5F };
+	for (size_t i = 0; i < track->count; i++) {
+		if (inputs[i].time_ns != INT64_MIN)
+			point = gz_smooth_step(&state, params, &track->display, &inputs[i]);
+		track->point[i] = point;
+	}
+}
+
 void gz_gaze_track_run_one_euro(struct gz_gaze_track *track,
 				const struct gz_one_euro_params *params)
 {

@@ -59,6 +59,23 @@ double gz_gaze_track_interval_ms(const struct gz_gaze_track *track);
 void gz_gaze_track_run_pipeline(struct gz_gaze_track *track,
 				const struct gz_pipeline_params *params, bool certain);
 
+/**
+ * Run the pipeline over it and keep what its smoothing takes, because the labels cost much more
+ * than the smoothing does.
+ *
+ * @param params  NULL for the defaults
+ * @param[out] out_inputs  one a sample; time_ns is INT64_MIN where the pipeline passes over a
+ * sample
+ */
+void gz_gaze_track_take_smoothing(const struct gz_gaze_track *track,
+				  const struct gz_pipeline_params *params,
+				  struct gz_smooth_input *out_inputs);
+
+/** Smooth what gz_gaze_track_take_smoothing() kept: fills @p point as the pipeline with these
+ * settings of its smoothing would. @p event stays. */
+void gz_gaze_track_smooth(struct gz_gaze_track *track, const struct gz_smooth_params *params,
+			  const struct gz_smooth_input *inputs);
+
 /** Settings of the 1 euro filter: Casiez, Roussel and Vogel, "1 euro filter: a simple speed-based
  *  low-pass filter for noisy input in interactive systems", CHI 2012. */
 struct gz_one_euro_params {

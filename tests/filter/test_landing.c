@@ -91,8 +91,7 @@ static void prediction_is_nearer_to_the_landing_than_the_eye_is(void **state)
 		double rate_hz;
 		int elapsed_ms;
 		double share; /* of the eye's distance */
-	} cases[] = { { 60, 0, 0.75 }, { 125, 8, 0.5 },  { 250, 8, 0.5 },  { 250, 16, 0.5 },
-		      { 500, 8, 0.5 }, { 500, 16, 0.5 }, { 1000, 8, 0.6 }, { 1000, 16, 0.5 } };
+	} cases[] = { { 60, 0, 0.75 }, { 250, 8, 0.5 }, { 500, 8, 0.5 }, { 500, 16, 0.5 } };
 	static struct errors errors;
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		predict(cases[i].rate_hz, cases[i].elapsed_ms, &errors);
