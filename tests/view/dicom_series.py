@@ -251,6 +251,9 @@ class SeveralSeries(unittest.TestCase):
         files = Series(1, slices=5).write(folder)
         os.chmod(files[2], 0)
         as_nobody = ["setpriv", "--reuid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+        # As under /root: setpriv may start the program there, but it does not find its decoder.
+        if subprocess.run([*as_nobody, "test", "-x", GAZEVIEW], check=False).returncode != 0:
+            self.skipTest("nobody else may run it here")
         for path in (files[2], folder):
             done = subprocess.run([*as_nobody, GAZEVIEW, path, "--write-volume",
                                    self.path("none.nrrd")], capture_output=True, encoding="utf-8",
