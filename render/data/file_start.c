@@ -60,10 +60,15 @@ bool gz_file_start_has(const struct gz_file_start *start, size_t at, const void 
 	return start->size >= at + size && memcmp(start->bytes + at, magic, size) == 0;
 }
 
-double gz_head_number(const uint8_t *bytes, enum gz_head_number type, bool big_endian)
+size_t gz_file_number_size(enum gz_file_number type)
 {
-	static const size_t sizes[] = { 1, 2, 4, 8, 4, 8 };
-	const size_t size = sizes[type];
+	static const size_t sizes[GZ_FILE_NUMBER_COUNT] = { 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 };
+	return sizes[type];
+}
+
+double gz_file_number_at(const uint8_t *bytes, enum gz_file_number type, bool big_endian)
+{
+	const size_t size = gz_file_number_size(type);
 	uint64_t bits = 0;
 	for (size_t i = 0; i < size; i++)
 		bits |= (uint64_t)bytes[big_endian ? size - 1 - i : i] << 8 * i;
@@ -73,17 +78,23 @@ double gz_head_number(const uint8_t *bytes, enum gz_head_number type, bool big_e
 	memcpy(&real, &word, sizeof real);
 	memcpy(&number, &bits, sizeof number);
 	switch (type) {
-	case GZ_HEAD_U8:
-		return (uint8_t)bits;
-	case GZ_HEAD_I16:
+	case GZ_FILE_I8:
+		return (int8_t)bits;
+	case GZ_FILE_I16:
 		return (int16_t)bits;
-	case GZ_HEAD_I32:
+	case GZ_FILE_I32:
 		return (int32_t)bits;
-	case GZ_HEAD_I64:
+	case GZ_FILE_I64:
 		return (double)(int64_t)bits;
-	case GZ_HEAD_F32:
+	case GZ_FILE_U8:
+	case GZ_FILE_U16:
+	case GZ_FILE_U32:
+	case GZ_FILE_U64:
+		return (double)bits;
+	case GZ_FILE_F32:
 		return (double)real;
-	case GZ_HEAD_F64:
+	case GZ_FILE_F64:
+	case GZ_FILE_NUMBER_COUNT:
 		break;
 	}
 	return number;

@@ -44,18 +44,26 @@ bool gz_file_start_read(const char *path, struct gz_file_start *out_start);
 bool gz_file_start_has(const struct gz_file_start *start, size_t at, const void *magic,
 		       size_t size);
 
-/** Types of numbers in binary headers. */
-enum gz_head_number {
-	GZ_HEAD_U8,
-	GZ_HEAD_I16,
-	GZ_HEAD_I32,
-	GZ_HEAD_I64,
-	GZ_HEAD_F32,
-	GZ_HEAD_F64,
+/** Types of binary numbers in files. */
+enum gz_file_number {
+	GZ_FILE_I8,
+	GZ_FILE_U8,
+	GZ_FILE_I16,
+	GZ_FILE_U16,
+	GZ_FILE_I32,
+	GZ_FILE_U32,
+	GZ_FILE_I64,
+	GZ_FILE_U64,
+	GZ_FILE_F32,
+	GZ_FILE_F64,
+	GZ_FILE_NUMBER_COUNT,
 };
 
-/** A number of a binary header at @p bytes, which has as many bytes as @p type. Exact, except for
- *  GZ_HEAD_I64 beyond 2^53. */
-double gz_head_number(const uint8_t *bytes, enum gz_head_number type, bool big_endian);
+/** Size of a binary number, bytes. */
+size_t gz_file_number_size(enum gz_file_number type);
+
+/** A binary number at @p bytes, which has as many bytes as @p type. Exact, except for 64-bit
+ *  integers beyond 2^53. */
+double gz_file_number_at(const uint8_t *bytes, enum gz_file_number type, bool big_endian);
 
 #endif

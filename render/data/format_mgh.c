@@ -41,12 +41,12 @@ struct mgh_file {
 
 static int mgh_int(const uint8_t *bytes, size_t at)
 {
-	return (int)gz_head_number(bytes + at, GZ_HEAD_I32, true);
+	return (int)gz_file_number_at(bytes + at, GZ_FILE_I32, true);
 }
 
 static double mgh_real(const uint8_t *bytes, size_t at)
 {
-	return gz_head_number(bytes + at, GZ_HEAD_F32, true);
+	return gz_file_number_at(bytes + at, GZ_FILE_F32, true);
 }
 
 static bool take_mgh_type(int code, enum gz_raw_type *out_type)
@@ -101,7 +101,7 @@ static enum gz_result take_mgh_size(struct mgh_file *file)
 static void take_mgh_orientation(struct mgh_file *file)
 {
 	static const double coronal[3][3] = { { -1, 0, 0 }, { 0, 0, -1 }, { 0, 1, 0 } };
-	const bool good = gz_head_number(file->bytes + AT_GOOD_RAS, GZ_HEAD_I16, true) > 0;
+	const bool good = gz_file_number_at(file->bytes + AT_GOOD_RAS, GZ_FILE_I16, true) > 0;
 	for (size_t axis = 0; axis < 3; axis++) {
 		for (size_t i = 0; i < 3; i++)
 			file->layout.direction[axis][i] =

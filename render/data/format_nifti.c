@@ -30,7 +30,7 @@ _Static_assert(sizeof(nifti_2_header) == HEADER2_SIZE, "nifti2.h describes the h
 /* Numbers in a row in a header. */
 struct nifti_field {
 	size_t at; /* bytes from the header's beginning */
-	enum gz_head_number type;
+	enum gz_file_number type;
 };
 
 /* Where a version of the format has what is read of a header. */
@@ -43,11 +43,11 @@ struct nifti_version {
 
 #define FIELD1(member, type)                                     \
 	{                                                        \
-		offsetof(nifti_1_header, member), GZ_HEAD_##type \
+		offsetof(nifti_1_header, member), GZ_FILE_##type \
 	}
 #define FIELD2(member, type)                                     \
 	{                                                        \
-		offsetof(nifti_2_header, member), GZ_HEAD_##type \
+		offsetof(nifti_2_header, member), GZ_FILE_##type \
 	}
 
 static const struct nifti_version nifti1 = {
@@ -127,17 +127,15 @@ struct nifti_file {
 
 static bool header_size_is(const uint8_t *bytes, size_t size, bool big_endian)
 {
-	return gz_head_number(bytes, GZ_HEAD_I32, big_endian) == (double)size;
+	return gz_file_number_at(bytes, GZ_FILE_I32, big_endian) == (double)size;
 }
 
 static void take_field(const uint8_t *bytes, const struct nifti_field *field, bool big_endian,
 		       size_t count, double *out)
 {
-	static const size_t sizes[] = { [GZ_HEAD_U8] = 1,  [GZ_HEAD_I16] = 2, [GZ_HEAD_I32] = 4,
-					[GZ_HEAD_I64] = 8, [GZ_HEAD_F32] = 4, [GZ_HEAD_F64] = 8 };
-	const size_t size = sizes[field->type];
+	const size_t size = gz_file_number_size(field->type);
 	for (size_t i = 0; i < count; i++)
-		out[i] = gz_head_number(bytes + field->at + i * size, field->type, big_endian);
+		out[i] = gz_file_number_at(bytes + field->at + i * size, field->type, big_endian);
 }
 
 static void take_nifti_head(const uint8_t *bytes, const struct nifti_version *version,

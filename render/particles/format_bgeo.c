@@ -34,9 +34,9 @@ static bool recognise_bgeo(const char *path, const struct gz_file_start *start)
 	       gz_file_start_has(start, 0, "\177NSJb", 5);
 }
 
-static uint64_t big_number(const uint8_t *bytes, enum gz_particle_number type)
+static uint64_t big_number(const uint8_t *bytes, enum gz_file_number type)
 {
-	const double number = gz_particle_number_at(bytes, type, true);
+	const double number = gz_file_number_at(bytes, type, true);
 	return number > 0 ? (uint64_t)number : 0;
 }
 
@@ -55,14 +55,14 @@ static enum gz_result read_bgeo_head(struct gz_particle_reader *reader, struct b
 	}
 	if (bytes[0] != 'B' || bytes[4] != 'V')
 		return gz_particle_refuse(reader, "does not begin as a .bgeo does");
-	const uint64_t version = big_number(bytes + AT_VERSION, GZ_PARTICLE_I32);
+	const uint64_t version = big_number(bytes + AT_VERSION, GZ_FILE_I32);
 	if (version != BGEO_VERSION) {
 		gz_err(reader->request->log, "%s: .bgeo of version %" PRIu64 "; 5 is read",
 		       reader->request->path, version);
 		return GZ_ERR_UNSUPPORTED;
 	}
-	layout->points = big_number(bytes + AT_POINTS, GZ_PARTICLE_I32);
-	layout->attributes = big_number(bytes + AT_POINT_ATTRIBUTES, GZ_PARTICLE_I32);
+	layout->points = big_number(bytes + AT_POINTS, GZ_FILE_I32);
+	layout->attributes = big_number(bytes + AT_POINT_ATTRIBUTES, GZ_FILE_I32);
 	layout->words = POSITION_WORDS;
 	return gz_particle_check_claim(reader, layout->points, POSITION_WORDS * WORD_BYTES,
 				       "points");
@@ -73,11 +73,11 @@ static enum gz_result pass_names(struct gz_particle_reader *reader)
 {
 	uint8_t bytes[4];
 	enum gz_result result = gz_particle_take(reader, bytes, 4);
-	const uint64_t count = result == GZ_OK ? big_number(bytes, GZ_PARTICLE_I32) : 0;
+	const uint64_t count = result == GZ_OK ? big_number(bytes, GZ_FILE_I32) : 0;
 	for (uint64_t i = 0; i < count && result == GZ_OK; i++) {
 		result = gz_particle_take(reader, bytes, 2);
 		if (result == GZ_OK)
-			result = gz_particle_take(reader, NULL, big_number(bytes, GZ_PARTICLE_U16));
+			result = gz_particle_take(reader, NULL, big_number(bytes, GZ_FILE_U16));
 	}
 	return result;
 }
@@ -103,7 +103,7 @@ static enum gz_result read_attribute(struct gz_particle_reader *reader, struct b
 	enum gz_result result = gz_particle_take(reader, bytes, 2);
 	if (result != GZ_OK)
 		return result;
-	const uint64_t length = big_number(bytes, GZ_PARTICLE_U16);
+	const uint64_t length = big_number(bytes, GZ_FILE_U16);
 	const uint64_t kept = length < sizeof name ? length : 0; /* longer ones mean nothing here */
 	result = gz_particle_take(reader, name, kept);
 	if (result == GZ_OK)
@@ -112,8 +112,8 @@ static enum gz_result read_attribute(struct gz_particle_reader *reader, struct b
 		result = gz_particle_take(reader, bytes, 6);
 	if (result != GZ_OK)
 		return result;
-	const uint64_t size = big_number(bytes, GZ_PARTICLE_U16);
-	const int type = (int)gz_particle_number_at(bytes + 2, GZ_PARTICLE_I32, true);
+	const uint64_t size = big_number(bytes, GZ_FILE_U16);
+	const int type = (int)gz_file_number_at(bytes + 2, GZ_FILE_I32, true);
 	if (type == TYPE_INDEX)
 		result = pass_names(reader);
 	else if (type == TYPE_FLOAT || type == TYPE_INT || type == TYPE_VECTOR)
@@ -133,11 +133,11 @@ static enum gz_result add_point(struct gz_particle_reader *reader, const struct 
 	double position[POSITION_WORDS], value[3] = { 0 };
 	uint64_t used = POSITION_WORDS;
 	enum gz_result result =
-		gz_particle_read_numbers(reader, GZ_PARTICLE_F32, position, POSITION_WORDS);
+		gz_particle_read_numbers(reader, GZ_FILE_F32, position, POSITION_WORDS);
 	if (result == GZ_OK && layout->value_words > 0) {
 		result = gz_particle_take(reader, NULL, (layout->value_at - used) * WORD_BYTES);
 		if (result == GZ_OK)
-			result = gz_particle_read_numbers(reader, GZ_PARTICLE_F32, value,
+			result = gz_particle_read_numbers(reader, GZ_FILE_F32, value,
 							  (uint64_t)layout->value_words);
 		used = layout->value_at + (uint64_t)layout->value_words;
 	}

@@ -21,7 +21,7 @@ struct particles_head {
 
 static uint64_t head_number(const uint8_t *bytes)
 {
-	return (uint64_t)gz_particle_number_at(bytes, GZ_PARTICLE_U32, false);
+	return (uint64_t)gz_file_number_at(bytes, GZ_FILE_U32, false);
 }
 
 static struct particles_head head_at(const uint8_t *bytes)
@@ -43,7 +43,7 @@ static bool recognise_liquid(const char *path, const struct gz_file_start *start
 
 static double real_at(const uint8_t *bytes, size_t at)
 {
-	return gz_particle_number_at(bytes + at, GZ_PARTICLE_F32, false);
+	return gz_file_number_at(bytes + at, GZ_FILE_F32, false);
 }
 
 static double value_of(const uint8_t *bytes, enum gz_particle_value value)

@@ -35,7 +35,7 @@ static const char *const role_names[ROLE_COUNT] = { "x",        "y",  "z",  "den
 
 struct ply_property {
 	bool list;
-	enum gz_particle_number count_type, type;
+	enum gz_file_number count_type, type;
 	enum ply_role role;
 };
 
@@ -58,20 +58,16 @@ static bool recognise_ply(const char *path, const struct gz_file_start *start)
 	return gz_file_start_has(start, 0, "ply\n", 4) || gz_file_start_has(start, 0, "ply\r\n", 5);
 }
 
-static bool ply_type(const char *word, enum gz_particle_number *out_type)
+static bool ply_type(const char *word, enum gz_file_number *out_type)
 {
 	static const struct {
 		const char *names[2];
-		enum gz_particle_number type;
+		enum gz_file_number type;
 	} types[] = {
-		{ { "char", "int8" }, GZ_PARTICLE_I8 },
-		{ { "uchar", "uint8" }, GZ_PARTICLE_U8 },
-		{ { "short", "int16" }, GZ_PARTICLE_I16 },
-		{ { "ushort", "uint16" }, GZ_PARTICLE_U16 },
-		{ { "int", "int32" }, GZ_PARTICLE_I32 },
-		{ { "uint", "uint32" }, GZ_PARTICLE_U32 },
-		{ { "float", "float32" }, GZ_PARTICLE_F32 },
-		{ { "double", "float64" }, GZ_PARTICLE_F64 },
+		{ { "char", "int8" }, GZ_FILE_I8 },      { { "uchar", "uint8" }, GZ_FILE_U8 },
+		{ { "short", "int16" }, GZ_FILE_I16 },   { { "ushort", "uint16" }, GZ_FILE_U16 },
+		{ { "int", "int32" }, GZ_FILE_I32 },     { { "uint", "uint32" }, GZ_FILE_U32 },
+		{ { "float", "float32" }, GZ_FILE_F32 }, { { "double", "float64" }, GZ_FILE_F64 },
 	};
 	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
 		for (int k = 0; k < 2; k++)
@@ -251,8 +247,8 @@ static unsigned roles_of(const struct gz_particle_reader *reader, const struct p
 		there |= 1U << property->role;
 		bytes += reader->coding == GZ_PARTICLE_TEXT
 				 ? 2
-				 : gz_particle_number_size(property->list ? property->count_type
-									  : property->type);
+				 : gz_file_number_size(property->list ? property->count_type
+								      : property->type);
 	}
 	/* The last number of a text may have nothing behind it. */
 	*out_bytes = reader->coding == GZ_PARTICLE_TEXT && bytes > 0 ? bytes - 1 : bytes;

@@ -74,19 +74,19 @@ static bool recognise_vtk(const char *path, const struct gz_file_start *start)
 	return false;
 }
 
-static bool vtk_type(const char *word, enum gz_particle_number *out_type)
+static bool vtk_type(const char *word, enum gz_file_number *out_type)
 {
 	static const struct {
 		const char *name;
-		enum gz_particle_number type;
+		enum gz_file_number type;
 	} types[] = {
-		{ "char", GZ_PARTICLE_I8 },          { "unsigned_char", GZ_PARTICLE_U8 },
-		{ "short", GZ_PARTICLE_I16 },        { "unsigned_short", GZ_PARTICLE_U16 },
-		{ "int", GZ_PARTICLE_I32 },          { "unsigned_int", GZ_PARTICLE_U32 },
-		{ "long", GZ_PARTICLE_I64 },         { "unsigned_long", GZ_PARTICLE_U64 },
-		{ "vtktypeint64", GZ_PARTICLE_I64 }, { "vtktypeuint64", GZ_PARTICLE_U64 },
-		{ "vtkidtype", GZ_PARTICLE_I32 },    { "float", GZ_PARTICLE_F32 },
-		{ "double", GZ_PARTICLE_F64 },
+		{ "char", GZ_FILE_I8 },          { "unsigned_char", GZ_FILE_U8 },
+		{ "short", GZ_FILE_I16 },        { "unsigned_short", GZ_FILE_U16 },
+		{ "int", GZ_FILE_I32 },          { "unsigned_int", GZ_FILE_U32 },
+		{ "long", GZ_FILE_I64 },         { "unsigned_long", GZ_FILE_U64 },
+		{ "vtktypeint64", GZ_FILE_I64 }, { "vtktypeuint64", GZ_FILE_U64 },
+		{ "vtkidtype", GZ_FILE_I32 },    { "float", GZ_FILE_F32 },
+		{ "double", GZ_FILE_F64 },
 	};
 	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
 		if (strcasecmp(word, types[i].name) == 0) {
@@ -113,24 +113,23 @@ static bool next_count(char **rest, uint64_t *out_count)
 	return true;
 }
 
-static bool next_type(char **rest, enum gz_particle_number *out_type)
+static bool next_type(char **rest, enum gz_file_number *out_type)
 {
 	const char *word = gz_number_next_word(rest, BLANKS);
 	return word && vtk_type(word, out_type);
 }
 
 /* Pass over numbers, after a look whether the file can hold them. */
-static enum gz_result pass_numbers(struct vtk_file *file, enum gz_particle_number type,
-				   uint64_t count)
+static enum gz_result pass_numbers(struct vtk_file *file, enum gz_file_number type, uint64_t count)
 {
 	const bool text = file->reader->coding == GZ_PARTICLE_TEXT;
 	const enum gz_result result = gz_particle_check_claim(
-		file->reader, count, text ? 1 : gz_particle_number_size(type), "numbers");
+		file->reader, count, text ? 1 : gz_file_number_size(type), "numbers");
 	return result == GZ_OK ? gz_particle_read_numbers(file->reader, type, NULL, count) : result;
 }
 
 /* Keep the points until their values are read. */
-static enum gz_result keep_points(struct vtk_file *file, enum gz_particle_number type)
+static enum gz_result keep_points(struct vtk_file *file, enum gz_file_number type)
 {
 	const uint64_t count = file->points;
 	enum gz_result result = GZ_OK;
@@ -153,13 +152,13 @@ static enum gz_result keep_points(struct vtk_file *file, enum gz_particle_number
 static enum gz_result read_points(struct vtk_file *file, char *rest)
 {
 	struct gz_particle_reader *reader = file->reader;
-	enum gz_particle_number type;
+	enum gz_file_number type;
 	double position[3];
 	if (!next_count(&rest, &file->points) || !next_type(&rest, &type) || file->positions)
 		return refuse_section(file, "POINTS");
 	const bool text = reader->coding == GZ_PARTICLE_TEXT;
 	enum gz_result result = gz_particle_check_claim(
-		reader, file->points, text ? 5 : 3 * gz_particle_number_size(type), "points");
+		reader, file->points, text ? 5 : 3 * gz_file_number_size(type), "points");
 	if (result == GZ_OK && reader->request->value != GZ_PARTICLE_FILL)
 		return keep_points(file, type);
 	for (uint64_t i = 0; i < file->points && result == GZ_OK; i++) {
@@ -174,7 +173,7 @@ static enum gz_result read_points(struct vtk_file *file, char *rest)
 static enum gz_result pass_cell_array(struct vtk_file *file, uint64_t count)
 {
 	char line[GZ_PARTICLE_LINE_MAX], *rest = line;
-	enum gz_particle_number type;
+	enum gz_file_number type;
 	const enum gz_result result = take_full_line(file->reader, line);
 	if (result != GZ_OK)
 		return result;
@@ -189,7 +188,7 @@ static enum gz_result pass_cells(struct vtk_file *file, const char *section, cha
 	if (!next_count(&rest, &count) || !next_count(&rest, &size))
 		return refuse_section(file, section);
 	if (!file->offsets)
-		return pass_numbers(file, GZ_PARTICLE_I32, size);
+		return pass_numbers(file, GZ_FILE_I32, size);
 	const enum gz_result result = pass_cell_array(file, count);
 	return result == GZ_OK ? pass_cell_array(file, size) : result;
 }
@@ -197,7 +196,7 @@ static enum gz_result pass_cells(struct vtk_file *file, const char *section, cha
 static enum gz_result pass_cell_types(struct vtk_file *file, const char *section, char *rest)
 {
 	uint64_t count = 0;
-	return next_count(&rest, &count) ? pass_numbers(file, GZ_PARTICLE_I32, count)
+	return next_count(&rest, &count) ? pass_numbers(file, GZ_FILE_I32, count)
 					 : refuse_section(file, section);
 }
 
@@ -205,7 +204,7 @@ static enum gz_result pass_cell_types(struct vtk_file *file, const char *section
 struct vtk_array {
 	char name[64];
 	uint64_t components, tuples;
-	enum gz_particle_number type;
+	enum gz_file_number type;
 };
 
 static enum gz_result take_vtk_values(struct vtk_file *file, const struct vtk_array *array)
@@ -275,7 +274,7 @@ static enum gz_result pass_colours(struct vtk_file *file, const char *section, c
 	uint64_t components = 0;
 	if (!gz_number_next_word(&rest, BLANKS) || !next_count(&rest, &components))
 		return refuse_section(file, section);
-	return pass_numbers(file, GZ_PARTICLE_U8, components * file->tuples);
+	return pass_numbers(file, GZ_FILE_U8, components * file->tuples);
 }
 
 static enum gz_result pass_lookup_table(struct vtk_file *file, const char *section, char *rest)
@@ -283,7 +282,7 @@ static enum gz_result pass_lookup_table(struct vtk_file *file, const char *secti
 	uint64_t size = 0;
 	if (!gz_number_next_word(&rest, BLANKS) || !next_count(&rest, &size))
 		return refuse_section(file, section);
-	return pass_numbers(file, GZ_PARTICLE_U8, 4 * size);
+	return pass_numbers(file, GZ_FILE_U8, 4 * size);
 }
 
 /* Lines up to a blank one. */

@@ -187,46 +187,6 @@ enum gz_result gz_particle_take_line(struct gz_particle_reader *reader,
 	return GZ_OK;
 }
 
-size_t gz_particle_number_size(enum gz_particle_number type)
-{
-	static const size_t sizes[GZ_PARTICLE_NUMBER_COUNT] = { 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 };
-	return sizes[type];
-}
-
-double gz_particle_number_at(const uint8_t *bytes, enum gz_particle_number type, bool big_endian)
-{
-	const size_t size = gz_particle_number_size(type);
-	uint64_t bits = 0;
-	for (size_t i = 0; i < size; i++)
-		bits |= (uint64_t)bytes[big_endian ? size - 1 - i : i] << 8 * i;
-	const uint32_t word = (uint32_t)bits;
-	float real;
-	double number;
-	memcpy(&real, &word, sizeof real);
-	memcpy(&number, &bits, sizeof number);
-	switch (type) {
-	case GZ_PARTICLE_I8:
-		return (int8_t)bits;
-	case GZ_PARTICLE_I16:
-		return (int16_t)bits;
-	case GZ_PARTICLE_I32:
-		return (int32_t)bits;
-	case GZ_PARTICLE_I64:
-		return (double)(int64_t)bits;
-	case GZ_PARTICLE_U8:
-	case GZ_PARTICLE_U16:
-	case GZ_PARTICLE_U32:
-	case GZ_PARTICLE_U64:
-		return (double)bits;
-	case GZ_PARTICLE_F32:
-		return (double)real;
-	case GZ_PARTICLE_F64:
-	case GZ_PARTICLE_NUMBER_COUNT:
-		break;
-	}
-	return number;
-}
-
 bool gz_particle_word_number(const char *word, double *out_number)
 {
 	static const char *const not_finite[] = { "nan", "inf", "infinity" };
@@ -290,12 +250,11 @@ static enum gz_result read_text_numbers(struct gz_particle_reader *reader, doubl
 	return GZ_OK;
 }
 
-enum gz_result gz_particle_read_numbers(struct gz_particle_reader *reader,
-					enum gz_particle_number type, double *out_numbers,
-					uint64_t count)
+enum gz_result gz_particle_read_numbers(struct gz_particle_reader *reader, enum gz_file_number type,
+					double *out_numbers, uint64_t count)
 {
 	uint8_t bytes[8] = { 0 };
-	const size_t size = gz_particle_number_size(type);
+	const size_t size = gz_file_number_size(type);
 	if (reader->coding == GZ_PARTICLE_TEXT)
 		return read_text_numbers(reader, out_numbers, count);
 	if (!out_numbers)
@@ -304,8 +263,8 @@ enum gz_result gz_particle_read_numbers(struct gz_particle_reader *reader,
 		const enum gz_result result = gz_particle_take(reader, bytes, size);
 		if (result != GZ_OK)
 			return result;
-		out_numbers[i] = gz_particle_number_at(bytes, type,
-						       reader->coding == GZ_PARTICLE_BIG_ENDIAN);
+		out_numbers[i] =
+			gz_file_number_at(bytes, type, reader->coding == GZ_PARTICLE_BIG_ENDIAN);
 	}
 	return GZ_OK;
 }

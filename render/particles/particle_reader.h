@@ -21,21 +21,6 @@ enum gz_particle_coding {
 	GZ_PARTICLE_BIG_ENDIAN,
 };
 
-/** Types of binary numbers. */
-enum gz_particle_number {
-	GZ_PARTICLE_I8,
-	GZ_PARTICLE_U8,
-	GZ_PARTICLE_I16,
-	GZ_PARTICLE_U16,
-	GZ_PARTICLE_I32,
-	GZ_PARTICLE_U32,
-	GZ_PARTICLE_I64,
-	GZ_PARTICLE_U64,
-	GZ_PARTICLE_F32,
-	GZ_PARTICLE_F64,
-	GZ_PARTICLE_NUMBER_COUNT,
-};
-
 /** Longest line of a header or a word of text, bytes with the NUL. Chosen: more than any writer
  *  makes. */
 #define GZ_PARTICLE_LINE_MAX 1024
@@ -83,12 +68,6 @@ enum gz_result gz_particle_take(struct gz_particle_reader *reader, void *buffer,
 enum gz_result gz_particle_take_line(struct gz_particle_reader *reader,
 				     char line[GZ_PARTICLE_LINE_MAX]);
 
-/** Size of a binary number, bytes. */
-size_t gz_particle_number_size(enum gz_particle_number type);
-
-/** A binary number at @p bytes. Exact, except for 64-bit integers beyond 2^53. */
-double gz_particle_number_at(const uint8_t *bytes, enum gz_particle_number type, bool big_endian);
-
 /** Read a word of text as a number; "nan" and "inf" give NaN. Returns false for anything else. */
 bool gz_particle_word_number(const char *word, double *out_number);
 
@@ -99,9 +78,8 @@ bool gz_particle_word_number(const char *word, double *out_number);
  * @param out_numbers NULL passes over them
  * @retval GZ_ERR_FORMAT  the file ends, or a word is no number; logged
  */
-enum gz_result gz_particle_read_numbers(struct gz_particle_reader *reader,
-					enum gz_particle_number type, double *out_numbers,
-					uint64_t count);
+enum gz_result gz_particle_read_numbers(struct gz_particle_reader *reader, enum gz_file_number type,
+					double *out_numbers, uint64_t count);
 
 /**
  * Refuse a number of items that the rest of the file cannot hold, before anything is allocated.
