@@ -163,6 +163,13 @@ struct gz_classify_state {
 	struct gz_movement movement; /**< used if the labels are learned */
 };
 
+/** The newest sample as the steps after this one get it; there must have been one. */
+static inline const struct gz_classify_entry *gz_classify_newest(
+	const struct gz_classify_state *state)
+{
+	return &state->ring[(state->count - 1) % GZ_CLASSIFY_RING];
+}
+
 /** One sample to label. */
 struct gz_classify_input {
 	uint64_t seq;

@@ -123,7 +123,6 @@ void gz_gaze_track_take_smoothing(const struct gz_gaze_track *track,
 				  struct gz_smooth_input *out_inputs)
 {
 	struct gz_pipeline pipeline;
-	const struct gz_classify_state *classify = &pipeline.classify;
 	gz_pipeline_init(&pipeline, params, &track->display);
 	for (size_t i = 0; i < track->count; i++) {
 		struct gz_pipeline_output out;
@@ -131,8 +130,7 @@ void gz_gaze_track_take_smoothing(const struct gz_gaze_track *track,
 		out_inputs[i] = (struct gz_smooth_input) { .time_ns = INT64_MIN };
 		if (out.rejection == GZ_REJECT_TIME)
 			continue;
-		const struct gz_classify_entry *newest =
-			&classify->ring[(classify->count - 1) % GZ_CLASSIFY_RING];
+		const struct gz_classify_entry *newest = gz_classify_newest(&pipeline.classify);
 		out_inputs[i] = (struct gz_smooth_input) { out.gaze.event, newest->time_ns,
 							   newest->valid, newest->point };
 	}

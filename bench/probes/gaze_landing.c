@@ -181,13 +181,11 @@ static void run_pipeline(const struct gz_labelled_recording *recording, size_t s
 	gz_pipeline_init(&pipeline, NULL, &recording->display);
 	for (size_t i = 0; i < recording->count; i += step) {
 		gz_pipeline_step(&pipeline, &recording->sample[i], &out);
-		const struct gz_classify_state *classify = &pipeline.classify;
 		track->input = grow(track->input, track->count, &room, sizeof *track->input);
-		track->input[track->count++] = (struct gz_landing_input) {
-			out.gaze.event, recording->sample[i].host_ns,
-			out.rejection == GZ_REJECT_NONE,
-			classify->ring[(classify->count - 1) % GZ_CLASSIFY_RING].point
-		};
+		track->input[track->count++] =
+			(struct gz_landing_input) { out.gaze.event, recording->sample[i].host_ns,
+						    out.rejection == GZ_REJECT_NONE,
+						    gz_classify_newest(&pipeline.classify)->point };
 	}
 }
 
