@@ -267,6 +267,28 @@ int gz_plan_rectangles(const struct gz_plan *plan,
 	return count;
 }
 
+/* Move rays of the picture's pixels to those of the plan, whose pixel (0, 0) is the picture's
+ * -shift. */
+static void shift_rays(const int shift[2], struct gz_ray_frame *rays)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		rays->origin00[axis] -=
+			shift[0] * rays->origin_dx[axis] + shift[1] * rays->origin_dy[axis];
+		rays->direction00[axis] -=
+			shift[0] * rays->direction_dx[axis] + shift[1] * rays->direction_dy[axis];
+	}
+}
+
+enum gz_result gz_plan_rays(const struct gz_plan *plan, const struct gz_camera *camera,
+			    struct gz_ray_frame *out_rays)
+{
+	const enum gz_result result =
+		gz_camera_rays(camera, plan->view.width, plan->view.height, out_rays);
+	if (result == GZ_OK)
+		shift_rays(plan->view.shift, out_rays);
+	return result;
+}
+
 void gz_plan_free(struct gz_plan *plan)
 {
 	free(plan->tiles);

@@ -26,6 +26,7 @@
 #include "base/result.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
+#include "render/picture/camera.h"
 #include "render/plan/foveation.h"
 #include "render/plan/plan_constants.h"
 
@@ -212,6 +213,15 @@ struct gz_plan_rectangle {
  */
 int gz_plan_rectangles(const struct gz_plan *plan,
 		       struct gz_plan_rectangle out_rectangles[GZ_PLAN_RECTANGLES_MAX]);
+
+/**
+ * The rays of a plan's pixels: those of the picture that the camera frames, shifted as plan->view
+ * says.
+ *
+ * @retval GZ_ERR_INVAL  the camera is not valid, or the plan is empty; not logged
+ */
+enum gz_result gz_plan_rays(const struct gz_plan *plan, const struct gz_camera *camera,
+			    struct gz_ray_frame *out_rays);
 
 /** Free the tiles and zero the plan. */
 void gz_plan_free(struct gz_plan *plan);

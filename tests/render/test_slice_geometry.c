@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/layers/raster_layers.h"
 #include "render/plan/method.h"
 #include "render/slices/gl/slice_cut.h"
-#include "render/slices/gl/slice_layers.h"
 #include "small_scene.h"
 
 enum { WIDTH = 200, HEIGHT = 150 };
@@ -186,13 +186,13 @@ static bool is_within(int value, int from, int to)
 }
 
 /* How much of a layer a pixel shows: as join.comp has it, but without the ramp. */
-static bool is_solid(const struct gz_slice_layer *layer, int x, int y)
+static bool is_solid(const struct gz_raster_layer *layer, int x, int y)
 {
 	return is_within(x, layer->solid[0][0], layer->solid[1][0]) &&
 	       is_within(y, layer->solid[0][1], layer->solid[1][1]);
 }
 
-static bool is_shown(const struct gz_slice_layer *layer, int x, int y)
+static bool is_shown(const struct gz_raster_layer *layer, int x, int y)
 {
 	const int band = layer->band;
 	return is_within(x, layer->solid[0][0] - band, layer->solid[1][0] + band) &&
@@ -200,7 +200,7 @@ static bool is_shown(const struct gz_slice_layer *layer, int x, int y)
 }
 
 /* The points around a pixel are drawn. */
-static void check_points(const struct gz_slice_layer *layer, int x, int y, const char *what)
+static void check_points(const struct gz_raster_layer *layer, int x, int y, const char *what)
 {
 	for (int corner = 0; corner < 4; corner++) {
 		int point[2];
@@ -225,8 +225,8 @@ static void check_points(const struct gz_slice_layer *layer, int x, int y, const
 
 static void check_layers(const struct gz_plan *plan, const char *what, uint64_t *out_drawn)
 {
-	struct gz_slice_layer layers[GZ_PLAN_RECTANGLES_MAX];
-	const int count = gz_slice_layers_make(plan, layers);
+	struct gz_raster_layer layers[GZ_PLAN_RECTANGLES_MAX];
+	const int count = gz_raster_layers_make(plan, layers);
 	assert_in_range(count, 1, GZ_PLAN_RECTANGLES_MAX);
 	for (int y = 0; y < plan->height; y++)
 		for (int x = 0; x < plan->width; x++) {
@@ -238,7 +238,7 @@ static void check_layers(const struct gz_plan *plan, const char *what, uint64_t 
 					check_points(&layers[i], x, y, what);
 		}
 	for (int i = 0; i < count; i++)
-		*out_drawn += gz_slice_layer_drawn(&layers[i]);
+		*out_drawn += gz_raster_layer_drawn(&layers[i]);
 }
 
 static void every_pixel_lies_between_points_that_are_drawn(void **state)

@@ -11,6 +11,7 @@
 
 #include "base/captured_log.h"
 #include "lent_context.h"
+#include "render/layers/gl_layers.h"
 #include "render/plan/method.h"
 #include "render/slices/gl/gl_slicer.h"
 #include "render/slices/slices_technique.h"

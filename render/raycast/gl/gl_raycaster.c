@@ -254,7 +254,7 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 				       "set light.shadow_steps to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
-	enum gz_result result = gz_gl_scene_rays(shot->camera, plan, &world);
+	enum gz_result result = gz_plan_rays(plan, shot->camera, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)

@@ -55,10 +55,6 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
 					const struct gz_transfer *transfer);
 
-/** The rays of a plan's pixels. GZ_ERR_INVAL: the camera is not valid; not logged. */
-enum gz_result gz_gl_scene_rays(const struct gz_camera *camera, const struct gz_plan *plan,
-				struct gz_ray_frame *out_rays);
-
 /** One frame. What it points to is borrowed. */
 struct gz_gl_frame {
 	const struct gz_camera *camera;   /**< valid */

@@ -1,6 +1,7 @@
 /* The texts of the slicer's shaders. */
 #include <string.h>
 
+#include "render/layers/gl_layers.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"
 #include "render/slices/gl/gl_slice_units.h"
 #include "render/slices/gl/gl_slicer.h"
@@ -10,20 +11,14 @@ extern const char gz_glsl_slices_vert[];
 extern const char gz_glsl_slices_frag[];
 extern const char gz_glsl_cover_vert[];
 extern const char gz_glsl_hide_frag[];
-extern const char gz_glsl_join_comp[];
 
 #define TEXT_OF(number)      #number
 #define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
 
-static const char slice_units[] = DEFINE("BLENDED", GZ_GL_UNIT_BLENDED)
-	DEFINE("STORAGE_POINTS", GZ_GL_SLICE_STORAGE_POINTS) DEFINE("LATTICES", GZ_GL_JOIN_LATTICES)
-		DEFINE("POINTS", GZ_GL_JOIN_POINTS) DEFINE("SOLIDS", GZ_GL_JOIN_SOLIDS);
+static const char slice_units[] = DEFINE("BLENDED", GZ_GL_UNIT_BLENDED);
 
-_Static_assert(GZ_GL_SLICE_STORAGE_POINTS == GZ_GL_STORAGE_POINTS, "the picture is bound there");
-_Static_assert(GZ_GL_JOIN_POINTS == GZ_GL_JOIN_LATTICES + GZ_PLAN_LAYERS_MAX &&
-		       GZ_GL_JOIN_SOLIDS == GZ_GL_JOIN_POINTS + GZ_PLAN_LAYERS_MAX,
-	       "arrays lie one behind the other");
-_Static_assert(GZ_GL_UNIT_BLENDED > GZ_GL_UNIT_COLOURS, "units of samples stay bound");
+_Static_assert(GZ_GL_UNIT_BLENDED > GZ_GL_UNIT_COLOURS && GZ_GL_UNIT_LAYERS > GZ_GL_UNIT_COLOURS,
+	       "units of samples stay bound");
 
 void gz_gl_slice_shaders(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,
 			 char defines[GZ_GL_CAST_DEFINES_SIZE], struct gz_gl_shader out_shaders[2])
@@ -60,14 +55,5 @@ void gz_gl_hide_shaders(struct gz_gl_shader out_shaders[2])
 		.parts = { gz_gl_sample_parts[GZ_GL_SAMPLE_CONSTANTS], slice_units,
 			   gz_glsl_hide_frag },
 		.with_430 = true,
-	};
-}
-
-struct gz_gl_shader gz_gl_join_shader(void)
-{
-	return (struct gz_gl_shader) {
-		.stage = GZ_GL_COMPUTE,
-		.name = "join.comp",
-		.parts = { gz_gl_plan_parts[0], slice_units, gz_glsl_join_comp },
 	};
 }

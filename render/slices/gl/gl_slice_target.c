@@ -4,6 +4,8 @@
 
 #include <GL/glew.h>
 
+#include "render/layers/gl_layers.h"
+
 #define GZ_LOG_MODULE "slices"
 
 static unsigned texture_of(GLenum format, int width, int height)
@@ -41,7 +43,7 @@ static bool make_framebuffers(struct gz_gl_slice_target *target)
 
 enum gz_result gz_gl_slice_target_reserve(struct gz_gl_slice_target *target,
 					  const struct gz_gl_device *device,
-					  const struct gz_slice_layer *layer,
+					  const struct gz_raster_layer *layer,
 					  const struct gz_log *log)
 {
 	if (target->blended && target->width >= layer->points[0] &&
@@ -66,30 +68,13 @@ enum gz_result gz_gl_slice_target_reserve(struct gz_gl_slice_target *target,
 	return result;
 }
 
-/* Close the points that the layer does not draw. */
-static void close_hidden(const struct gz_slice_layer *layer)
-{
-	static const GLfloat nearest = 0;
-	const int width = layer->hidden[1][0] - layer->hidden[0][0];
-	const int height = layer->hidden[1][1] - layer->hidden[0][1];
-	if (width <= 0 || height <= 0)
-		return;
-	glEnable(GL_SCISSOR_TEST);
-	glScissor(layer->hidden[0][0], layer->hidden[0][1], width, height);
-	glClearBufferfv(GL_DEPTH, 0, &nearest);
-	glDisable(GL_SCISSOR_TEST);
-}
-
 void gz_gl_slice_target_begin(const struct gz_gl_slice_target *target,
-			      const struct gz_slice_layer *layer)
+			      const struct gz_raster_layer *layer)
 {
-	static const GLfloat nothing[4] = { 0 }, farthest = 1;
+	static const GLfloat nothing[4] = { 0 };
 	glBindFramebuffer(GL_FRAMEBUFFER, target->drawing);
-	glViewport(0, 0, layer->points[0], layer->points[1]);
-	glDepthMask(GL_TRUE);
 	glClearBufferfv(GL_COLOR, 0, nothing);
-	glClearBufferfv(GL_DEPTH, 0, &farthest);
-	close_hidden(layer);
+	gz_gl_layer_begin(layer);
 	glEnable(GL_DEPTH_TEST);
 	glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
 	glBlendEquation(GL_FUNC_ADD);

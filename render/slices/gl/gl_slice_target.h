@@ -9,8 +9,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/layers/raster_layers.h"
 #include "render/opengl/gl_device.h"
-#include "render/slices/gl/slice_layers.h"
 
 /** Zero-initialised is empty; keep it from frame to frame. */
 struct gz_gl_slice_target {
@@ -26,13 +26,13 @@ struct gz_gl_slice_target {
  */
 enum gz_result gz_gl_slice_target_reserve(struct gz_gl_slice_target *target,
 					  const struct gz_gl_device *device,
-					  const struct gz_slice_layer *layer,
+					  const struct gz_raster_layer *layer,
 					  const struct gz_log *log);
 
 /** Clear all points of a layer, and close those that are hidden. Slices are drawn from now on, with
  *  the layer's points as the viewport: front to back, each under those before it. */
 void gz_gl_slice_target_begin(const struct gz_gl_slice_target *target,
-			      const struct gz_slice_layer *layer);
+			      const struct gz_raster_layer *layer);
 
 /** What is drawn from now on closes points, until gz_gl_slice_target_open(). */
 void gz_gl_slice_target_close(const struct gz_gl_slice_target *target);

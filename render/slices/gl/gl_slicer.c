@@ -6,12 +6,11 @@
 
 #include <GL/glew.h>
 
+#include "render/layers/gl_layers.h"
 #include "render/raycast/gl/gl_scene.h"
-#include "render/reconstruct/gl/gl_reconstruct.h"
 #include "render/slices/gl/gl_slice_target.h"
 #include "render/slices/gl/gl_slice_units.h"
 #include "render/slices/gl/slice_cut.h"
-#include "render/slices/gl/slice_layers.h"
 
 #define GZ_LOG_MODULE "slices"
 
@@ -22,9 +21,6 @@ enum { MARK_START, MARK_DRAWN, MARK_END };
  * Chosen: closing then costs a hundredth of 512 slices. */
 enum { PARTS = 16, QUERIES = PARTS * GZ_PLAN_RECTANGLES_MAX };
 
-/* Work-group edge of join.comp. */
-enum { JOIN_EDGE = 8 };
-
 static const char remedy[] = "use --technique raycast";
 
 struct gz_gl_slicer {
@@ -33,15 +29,13 @@ struct gz_gl_slicer {
 	struct gz_gl_scene scene;
 	struct gz_slice_cut cut;
 	uint64_t corners_revision; /* of the cut whose corners the device has; 0 = none */
-	struct gz_slice_layer layers[GZ_PLAN_RECTANGLES_MAX];
-	int layer_count;
+	struct gz_gl_layers layers;
 	struct gz_gl_slice_target targets[GZ_PLAN_RECTANGLES_MAX];
-	struct gz_gl_points picture;
 	struct gz_gl_buffer corners, block;
 	unsigned vertices, no_vertices; /* vertex arrays: of the corners, and of nothing */
 	/* OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
 	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2];
-	unsigned hide, join;
+	unsigned hide;
 	unsigned queries[QUERIES]; /* samples of each part; 0 = none made yet */
 	int query_count;           /* of this frame */
 	struct gz_gl_timer timer;
@@ -75,15 +69,13 @@ static void delete_programs(struct gz_gl_slicer *slicer)
 			glDeleteProgram(programs[i]);
 	if (slicer->hide)
 		glDeleteProgram(slicer->hide);
-	if (slicer->join)
-		glDeleteProgram(slicer->join);
 }
 
 static void delete_objects(struct gz_gl_slicer *slicer)
 {
 	delete_programs(slicer);
 	gz_gl_scene_free(&slicer->scene);
-	gz_gl_points_free(&slicer->picture);
+	gz_gl_layers_free(&slicer->layers);
 	gz_gl_buffer_free(&slicer->corners);
 	gz_gl_buffer_free(&slicer->block);
 	gz_gl_timer_free(&slicer->timer);
@@ -199,13 +191,11 @@ static unsigned slice_program(const struct slicing *slicing, int level)
 	return *program;
 }
 
-static bool make_fixed_programs(struct gz_gl_slicer *slicer)
+static bool make_hide_program(struct gz_gl_slicer *slicer)
 {
 	struct gz_gl_shader hide[2];
-	const struct gz_gl_shader join = gz_gl_join_shader();
 	gz_gl_hide_shaders(hide);
-	return make_program(&slicer->hide, hide, 2, slicer->log) &&
-	       make_program(&slicer->join, &join, 1, slicer->log);
+	return make_program(&slicer->hide, hide, 2, slicer->log);
 }
 
 /* Cut the box for the camera, and move the rays' origins to its first depth: places along rays are
@@ -258,24 +248,19 @@ static void upload_corners(struct gz_gl_slicer *slicer)
 	slicer->corners_revision = cut->revision;
 }
 
-/* Make room on the device for the layers and the picture. */
-static enum gz_result reserve_targets(struct gz_gl_slicer *slicer, const struct gz_plan *plan)
+/* Make room on the device for the layers. */
+static enum gz_result reserve_targets(struct gz_gl_slicer *slicer)
 {
 	enum gz_result result = GZ_OK;
-	for (int i = 0; i < slicer->layer_count && result == GZ_OK; i++)
+	for (int i = 0; i < slicer->layers.count && result == GZ_OK; i++)
 		result = gz_gl_slice_target_reserve(&slicer->targets[i], &slicer->device,
-						    &slicer->layers[i], slicer->log);
+						    &slicer->layers.items[i], slicer->log);
 	if (result != GZ_OK)
 		return result;
 	gz_gl_buffer_reserve(&slicer->block, sizeof(struct gz_gl_cast_block), GL_STREAM_DRAW);
 	if (!slicer->queries[0])
 		glGenQueries(QUERIES, slicer->queries);
-	result = gz_gl_points_prepare(&slicer->picture, &slicer->device,
-				      (size_t)plan->width * (size_t)plan->height);
-	if (result != GZ_OK)
-		gz_err(slicer->log, "the graphics device has no room for a picture of %d x %d px",
-		       plan->width, plan->height);
-	return result;
+	return GZ_OK;
 }
 
 static enum gz_result prepare_slices(struct slicing *slicing, const struct gz_ray_frame *world)
@@ -284,13 +269,15 @@ static enum gz_result prepare_slices(struct slicing *slicing, const struct gz_ra
 	enum gz_result result = cut_volume(slicing, world);
 	if (result != GZ_OK)
 		return result;
-	slicer->layer_count = gz_slice_layers_make(slicing->plan, slicer->layers);
 	slicer->query_count = 0;
-	result = gz_gl_scene_prepare(&slicer->scene, &slicer->device, &slicing->frame,
-				     &slicing->levels, slicer->log);
+	result = gz_gl_layers_prepare(&slicer->layers, &slicer->device, slicing->plan, remedy,
+				      slicer->log);
 	if (result == GZ_OK)
-		result = reserve_targets(slicer, slicing->plan);
-	if (result == GZ_OK && !make_fixed_programs(slicer))
+		result = gz_gl_scene_prepare(&slicer->scene, &slicer->device, &slicing->frame,
+					     &slicing->levels, slicer->log);
+	if (result == GZ_OK)
+		result = reserve_targets(slicer);
+	if (result == GZ_OK && !make_hide_program(slicer))
 		result = GZ_ERR_UNSUPPORTED;
 	if (result == GZ_OK)
 		upload_corners(slicer);
@@ -298,7 +285,7 @@ static enum gz_result prepare_slices(struct slicing *slicing, const struct gz_ra
 }
 
 /* The level of detail of a layer: that of rays with its spacing and the plan's shortest step. */
-static int level_of(const struct slicing *slicing, const struct gz_slice_layer *layer)
+static int level_of(const struct slicing *slicing, const struct gz_raster_layer *layer)
 {
 	const struct gz_plan *plan = slicing->plan;
 	int level = 0, spacing = 0;
@@ -312,7 +299,7 @@ static int level_of(const struct slicing *slicing, const struct gz_slice_layer *
 }
 
 /* Use the program and the data of a layer. */
-static enum gz_result bind_layer(const struct slicing *slicing, const struct gz_slice_layer *layer,
+static enum gz_result bind_layer(const struct slicing *slicing, const struct gz_raster_layer *layer,
 				 unsigned *out_program)
 {
 	struct gz_gl_slicer *slicer = slicing->slicer;
@@ -357,10 +344,10 @@ static enum gz_result draw_layer(const struct slicing *slicing, int index)
 	const struct gz_slice_cut *cut = &slicer->cut;
 	const struct gz_gl_slice_target *target = &slicer->targets[index];
 	unsigned program = 0;
-	const enum gz_result result = bind_layer(slicing, &slicer->layers[index], &program);
+	const enum gz_result result = bind_layer(slicing, &slicer->layers.items[index], &program);
 	if (result != GZ_OK)
 		return result;
-	gz_gl_slice_target_begin(target, &slicer->layers[index]);
+	gz_gl_slice_target_begin(target, &slicer->layers.items[index]);
 	for (int part = 0; part < PARTS; part++) {
 		const int first = cut->first[cut->count * part / PARTS];
 		const int end = cut->first[cut->count * (part + 1) / PARTS];
@@ -377,93 +364,24 @@ static enum gz_result draw_layer(const struct slicing *slicing, int index)
 	return GZ_OK;
 }
 
-/* What the window, or the next technique, expects. */
-struct outer_state {
-	GLint framebuffer, viewport[4];
-};
-
-static struct outer_state leave_outer_state(void)
-{
-	struct outer_state outer;
-	glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &outer.framebuffer);
-	glGetIntegerv(GL_VIEWPORT, outer.viewport);
-	return outer;
-}
-
-static void return_to_outer_state(const struct outer_state *outer)
-{
-	glDisable(GL_BLEND);
-	glDisable(GL_DEPTH_TEST);
-	glDepthMask(GL_TRUE);
-	glBindVertexArray(0);
-	glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)outer->framebuffer);
-	glViewport(outer->viewport[0], outer->viewport[1], outer->viewport[2], outer->viewport[3]);
-}
-
 static enum gz_result draw_layers(const struct slicing *slicing)
 {
-	const struct outer_state outer = leave_outer_state();
+	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
 	enum gz_result result = GZ_OK;
-	for (int i = 0; i < slicing->slicer->layer_count && result == GZ_OK; i++)
+	for (int i = 0; i < slicing->slicer->layers.count && result == GZ_OK; i++)
 		result = draw_layer(slicing, i);
-	return_to_outer_state(&outer);
+	gz_gl_outer_state_return(&outer);
 	return result;
-}
-
-static void set_join_uniforms(const struct slicing *slicing)
-{
-	const struct gz_gl_slicer *slicer = slicing->slicer;
-	const double *background = slicing->rays->background;
-	glUniform3i(GZ_GL_JOIN_PICTURE, slicer->layer_count, slicing->plan->width,
-		    slicing->plan->height);
-	glUniform3f(GZ_GL_JOIN_BACKGROUND, (float)background[0], (float)background[1],
-		    (float)background[2]);
-	for (int i = 0; i < slicer->layer_count; i++) {
-		const struct gz_slice_layer *layer = &slicer->layers[i];
-		glUniform4i(GZ_GL_JOIN_LATTICES + i, layer->from[0], layer->from[1], layer->spacing,
-			    layer->band);
-		glUniform2i(GZ_GL_JOIN_POINTS + i, layer->points[0], layer->points[1]);
-		glUniform4i(GZ_GL_JOIN_SOLIDS + i, layer->solid[0][0], layer->solid[0][1],
-			    layer->solid[1][0], layer->solid[1][1]);
-	}
 }
 
 /* Join the layers into the picture. */
 static void join_layers(const struct slicing *slicing)
 {
 	const struct gz_gl_slicer *slicer = slicing->slicer;
-	const int width = slicing->plan->width, height = slicing->plan->height;
-	for (int i = 0; i < slicer->layer_count; i++) {
-		glActiveTexture((GLenum)(GL_TEXTURE0 + GZ_GL_UNIT_BLENDED + i));
-		glBindTexture(GL_TEXTURE_2D, slicer->targets[i].blended);
-	}
-	glActiveTexture(GL_TEXTURE0);
-	glUseProgram(slicer->join);
-	set_join_uniforms(slicing);
-	gz_gl_points_bind(&slicer->picture);
-	glDispatchCompute((GLuint)((width + JOIN_EDGE - 1) / JOIN_EDGE),
-			  (GLuint)((height + JOIN_EDGE - 1) / JOIN_EDGE), 1);
-	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
-	glUseProgram(0);
-}
-
-/* Copy the picture to where it is wanted, and check for errors. */
-static enum gz_result deliver_picture(struct gz_gl_slicer *slicer, const struct gz_plan *plan,
-				      struct gz_image *image)
-{
-	enum gz_result result = GZ_OK;
-	if (image)
-		result = gz_gl_points_read(&slicer->picture, &slicer->device,
-					   (size_t)plan->width * (size_t)plan->height,
-					   gz_image_words(image));
-	else
-		gz_gl_points_to_texture(&slicer->picture, plan->width, plan->height);
-	if (result == GZ_OK)
-		result = gz_gl_device_errors(&slicer->device);
-	if (result != GZ_OK)
-		gz_err(slicer->log, "%s failed a frame: %s", slicer->device.description,
-		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result));
-	return result;
+	unsigned textures[GZ_PLAN_RECTANGLES_MAX] = { 0 };
+	for (int i = 0; i < slicer->layers.count; i++)
+		textures[i] = slicer->targets[i].blended;
+	gz_gl_layers_join(&slicer->layers, textures, slicing->rays->background);
 }
 
 static enum gz_result draw_frame(const struct slicing *slicing)
@@ -501,9 +419,8 @@ static struct gz_frame_stats frame_stats(const struct gz_gl_slicer *slicer)
 		.gpu_ms = device->software ? NAN
 					   : gz_gl_timer_ms(timer, device, MARK_START, MARK_END),
 		.bricks_coming = slicer->scene.bricks.coming,
+		.rays = gz_gl_layers_drawn(&slicer->layers),
 	};
-	for (int i = 0; i < slicer->layer_count; i++)
-		stats.rays += gz_slice_layer_drawn(&slicer->layers[i]);
 	return stats;
 }
 
@@ -518,7 +435,7 @@ enum gz_result gz_gl_slicer_draw(struct gz_gl_slicer *slicer, const struct gz_sh
 	    plan->layer_count < 1)
 		return GZ_ERR_INVAL;
 	rays.light.shadow_steps = 0; /* slices cast no shadows: none are prepared */
-	enum gz_result result = gz_gl_scene_rays(shot->camera, plan, &world);
+	enum gz_result result = gz_plan_rays(plan, shot->camera, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
 	if (result == GZ_OK)
@@ -536,7 +453,7 @@ enum gz_result gz_gl_slicer_draw(struct gz_gl_slicer *slicer, const struct gz_sh
 	if (result == GZ_OK)
 		result = draw_frame(&slicing);
 	if (result == GZ_OK)
-		result = deliver_picture(slicer, plan, image);
+		result = gz_gl_layers_deliver(&slicer->layers, &slicer->device, image, slicer->log);
 	if (result == GZ_OK && out_stats)
 		*out_stats = frame_stats(slicer);
 	gz_gl_device_leave(&slicer->device);
@@ -545,7 +462,7 @@ enum gz_result gz_gl_slicer_draw(struct gz_gl_slicer *slicer, const struct gz_sh
 
 unsigned gz_gl_slicer_picture_texture(const struct gz_gl_slicer *slicer)
 {
-	return slicer->picture.picture;
+	return slicer->layers.picture.picture;
 }
 
 const char *gz_gl_slicer_describe(const struct gz_gl_slicer *slicer)

@@ -1,7 +1,7 @@
 /**
  * @file
  * Draws a volume as slices by OpenGL: the polygons of slice_cut.h on the lattices of
- * slice_layers.h, nearest first, with the samples, colours and light of the ray caster
+ * raster_layers.h, nearest first, with the samples, colours and light of the ray caster
  * (render/raycast/gl/).
  */
 #ifndef GZ_RENDER_SLICES_GL_GL_SLICER_H
@@ -61,8 +61,5 @@ void gz_gl_slice_shaders(struct gz_gl_cast_kind kind, const struct gz_gl_device 
 
 /** The shaders that close points hardly any light comes through. */
 void gz_gl_hide_shaders(struct gz_gl_shader out_shaders[2]);
-
-/** The shader that joins layers into the picture. */
-struct gz_gl_shader gz_gl_join_shader(void);
 
 #endif

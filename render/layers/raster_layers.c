@@ -1,4 +1,4 @@
-#include "render/slices/gl/slice_layers.h"
+#include "render/layers/raster_layers.h"
 
 #include <string.h>
 
@@ -13,7 +13,7 @@ static int lesser(int a, int b)
 }
 
 /* The lattice that covers a rectangle and its band, along one axis of a picture of `size` px. */
-static void cover_axis(struct gz_slice_layer *layer, int axis, int size)
+static void cover_axis(struct gz_raster_layer *layer, int axis, int size)
 {
 	const int spacing = layer->spacing;
 	const int least = greater(layer->solid[0][axis] - layer->band, 0);
@@ -25,7 +25,7 @@ static void cover_axis(struct gz_slice_layer *layer, int axis, int size)
 
 /* A point colours the pixels less than a spacing away. Those within the solid rectangle of the
  * finer layer do not show it. */
-static void hide_axis(struct gz_slice_layer *layer, const struct gz_slice_layer *finer, int axis,
+static void hide_axis(struct gz_raster_layer *layer, const struct gz_raster_layer *finer, int axis,
 		      int size)
 {
 	const int spacing = layer->spacing;
@@ -40,17 +40,17 @@ static void hide_axis(struct gz_slice_layer *layer, const struct gz_slice_layer 
 	*hidden_to = lesser(*hidden_to, layer->points[axis]);
 }
 
-int gz_slice_layers_make(const struct gz_plan *plan,
-			 struct gz_slice_layer out_layers[GZ_PLAN_RECTANGLES_MAX])
+int gz_raster_layers_make(const struct gz_plan *plan,
+			  struct gz_raster_layer out_layers[GZ_PLAN_RECTANGLES_MAX])
 {
 	struct gz_plan_rectangle rectangles[GZ_PLAN_RECTANGLES_MAX];
 	const int count = gz_plan_rectangles(plan, rectangles);
 	const int size[2] = { plan->width, plan->height };
 	for (int i = 0; i < count; i++) {
-		struct gz_slice_layer *layer = &out_layers[i];
-		*layer = (struct gz_slice_layer) {
+		struct gz_raster_layer *layer = &out_layers[i];
+		*layer = (struct gz_raster_layer) {
 			.spacing = rectangles[i].spacing,
-			.band = i > 0 ? GZ_SLICE_BAND_SPACINGS * rectangles[i - 1].spacing : 0,
+			.band = i > 0 ? GZ_RASTER_BAND_SPACINGS * rectangles[i - 1].spacing : 0,
 		};
 		memcpy(layer->solid[0], rectangles[i].from, sizeof layer->solid[0]);
 		memcpy(layer->solid[1], rectangles[i].to, sizeof layer->solid[1]);
@@ -63,7 +63,7 @@ int gz_slice_layers_make(const struct gz_plan *plan,
 	return count;
 }
 
-uint64_t gz_slice_layer_drawn(const struct gz_slice_layer *layer)
+uint64_t gz_raster_layer_drawn(const struct gz_raster_layer *layer)
 {
 	uint64_t hidden = 1;
 	for (int axis = 0; axis < 2; axis++)

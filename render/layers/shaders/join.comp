@@ -7,7 +7,7 @@ layout(location = LATTICES) uniform ivec4 lattices[GZ_PLAN_LAYERS_MAX]; // from,
 layout(location = POINTS) uniform ivec2 points[GZ_PLAN_LAYERS_MAX];     // columns, rows
 layout(location = SOLIDS) uniform ivec4 solids[GZ_PLAN_LAYERS_MAX];     // from, to
 
-layout(binding = BLENDED) uniform sampler2D blended[GZ_PLAN_LAYERS_MAX];
+layout(binding = UNIT_LAYERS) uniform sampler2D layers[GZ_PLAN_LAYERS_MAX];
 
 layout(std430, binding = STORAGE_POINTS) writeonly buffer Picture
 {
@@ -28,10 +28,10 @@ vec4 interpolated(int layer, ivec2 pixel)
 	ivec2 offset = pixel - lattices[layer].xy, place = offset / lattices[layer].z;
 	ivec2 next = min(place + 1, points[layer] - 1);
 	vec2 along = vec2(offset - place * lattices[layer].z) / float(lattices[layer].z);
-	vec4 upper = mix(texelFetch(blended[layer], place, 0),
-		texelFetch(blended[layer], ivec2(next.x, place.y), 0), along.x);
-	vec4 lower = mix(texelFetch(blended[layer], ivec2(place.x, next.y), 0),
-		texelFetch(blended[layer], next, 0), along.x);
+	vec4 upper = mix(texelFetch(layers[layer], place, 0),
+		texelFetch(layers[layer], ivec2(next.x, place.y), 0), along.x);
+	vec4 lower = mix(texelFetch(layers[layer], ivec2(place.x, next.y), 0),
+		texelFetch(layers[layer], next, 0), along.x);
 	return mix(upper, lower, along.y);
 }
 

@@ -1,21 +1,21 @@
 /**
  * @file
- * The lattices on which slices are drawn: the rectangles of a plan (gz_plan_rectangles()), each
- * wider by a band in which it fades into the coarser one behind it (Guenter et al. 2012, Foveated
- * 3D Graphics).
+ * The lattices on which rasterised pictures are drawn: the rectangles of a plan
+ * (gz_plan_rectangles()), each wider by a band in which it fades into the coarser one behind it
+ * (Guenter et al. 2012, Foveated 3D Graphics).
  */
-#ifndef GZ_RENDER_SLICES_GL_SLICE_LAYERS_H
-#define GZ_RENDER_SLICES_GL_SLICE_LAYERS_H
+#ifndef GZ_RENDER_LAYERS_RASTER_LAYERS_H
+#define GZ_RENDER_LAYERS_RASTER_LAYERS_H
 
 #include "render/plan/plan.h"
 
 /** Width of the band, in spacings of the coarser layer. Chosen: the interpolated points of the
  *  coarser layer are seen as blocks if the layers change within one of them. */
-#define GZ_SLICE_BAND_SPACINGS 2
+#define GZ_RASTER_BAND_SPACINGS 2
 
 /** One lattice. Point (i, j) is the ray of the plan's pixel (from[0] + i * spacing, from[1] + j *
  *  spacing), which may lie beyond the picture. */
-struct gz_slice_layer {
+struct gz_raster_layer {
 	int from[2];
 	int spacing;     /**< px */
 	int points[2];   /**< columns and rows */
@@ -32,10 +32,10 @@ struct gz_slice_layer {
  * @param[out] out_layers  the first so many are written
  * @return how many, 1 to GZ_PLAN_RECTANGLES_MAX
  */
-int gz_slice_layers_make(const struct gz_plan *plan,
-			 struct gz_slice_layer out_layers[GZ_PLAN_RECTANGLES_MAX]);
+int gz_raster_layers_make(const struct gz_plan *plan,
+			  struct gz_raster_layer out_layers[GZ_PLAN_RECTANGLES_MAX]);
 
 /** Points of a lattice that are drawn. */
-uint64_t gz_slice_layer_drawn(const struct gz_slice_layer *layer);
+uint64_t gz_raster_layer_drawn(const struct gz_raster_layer *layer);
 
 #endif
