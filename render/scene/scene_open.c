@@ -50,6 +50,25 @@ static bool is_binary_file(const char *path)
 	return gz_file_start_read(path, &start) && memchr(start.bytes, 0, start.size);
 }
 
+/* A file that is there and whose first line that says something begins no section. */
+static bool is_other_text(const char *path)
+{
+	struct gz_file_start start;
+	if (!gz_file_start_read(path, &start))
+		return false;
+	bool comment = false;
+	for (size_t i = 0; i < start.size; i++) {
+		const char c = (char)start.bytes[i];
+		if (c == '\n')
+			comment = false;
+		else if (c == ';' || c == '#')
+			comment = true;
+		else if (!comment && !strchr(" \t\r\xef\xbb\xbf", c))
+			return c != '[';
+	}
+	return start.size < GZ_FILE_START_SIZE;
+}
+
 enum gz_file_kind gz_file_kind_of(const char *path)
 {
 	const enum gz_file_kind kind = gz_file_kind_by_name(path);
@@ -204,6 +223,27 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	return result;
 }
 
+/* Whether the name tells a layout of another size than the file has; logged. */
+static bool has_other_size_than_named(const char *path, uint64_t bytes, const struct gz_log *log)
+{
+	struct gz_raw_guess named = { 0 };
+	if (bytes == 0 || gz_raw_guess(path, 0, &named, 1) == 0)
+		return false;
+	const struct gz_raw_layout *layout = &named.layout;
+	const uint64_t wanted = gz_raw_layout_bytes(layout);
+	if (wanted == bytes)
+		return false;
+	gz_err(log,
+	       "%s: the name tells %d x %d x %d %s, which are %llu bytes, but it holds %llu; fetch "
+	       "it "
+	       "again, or give the layout that it has, as in --volume.dims \"256 256 128\" "
+	       "--volume.type uint8",
+	       path, layout->dims[0], layout->dims[1], layout->dims[2],
+	       gz_raw_type_names[layout->type], (unsigned long long)wanted,
+	       (unsigned long long)bytes);
+	return true;
+}
+
 static enum gz_result open_raw(const struct gz_scene_request *request, const struct gz_log *log,
 			       struct gz_scene *out_scene)
 {
@@ -219,6 +259,8 @@ static enum gz_result open_raw(const struct gz_scene_request *request, const str
 			gz_raw_type_names[layout->type], guess.reason);
 		return open_volume(request, layout, log, out_scene);
 	}
+	if (has_other_size_than_named(request->path, bytes, log))
+		return GZ_ERR_INVAL;
 	if (count > 0)
 		gz_err(log,
 		       "%s: raw data without a header; give its layout: --volume.dims \"%d %d %d\" "
@@ -276,8 +318,16 @@ enum gz_result gz_scene_open(const struct gz_scene_request *request, const struc
 		return GZ_ERR_INVAL;
 	}
 	switch (kind) {
-	case GZ_FILE_SCENE:
 	case GZ_FILE_OTHER:
+		if (is_other_text(request->path)) {
+			gz_err(log,
+			       "%s: neither a scene nor a volume, a mesh or particles; gazeview "
+			       "--formats lists what can be opened",
+			       request->path);
+			return GZ_ERR_FORMAT;
+		}
+		return gz_scene_load_changed(&source, request->loading, log, out_scene);
+	case GZ_FILE_SCENE:
 		return gz_scene_load_changed(&source, request->loading, log, out_scene);
 	case GZ_FILE_VOLUME:
 		return open_volume(request, NULL, log, out_scene);

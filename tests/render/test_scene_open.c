@@ -272,6 +272,8 @@ static void raw_file_opens_with_a_given_or_a_certain_layout(void **state)
 	gz_scene_free(&scene);
 	assert_refused(told, NULL, GZ_ERR_INVAL,
 		       "told.raw: raw data without a header; give its layout");
+	assert_refused(files_write("cut_2048x2048x2048_uint8.raw", voxels, sizeof voxels), NULL,
+		       GZ_ERR_INVAL, "2048 x 2048 x 2048 uint8, which are 8589934592 bytes");
 	assert_refused(files_write("a_4x4x4.raw", voxels, sizeof voxels), NULL, GZ_ERR_INVAL,
 		       "--volume.dims \"4 4 4\" --volume.type uint16 would fit");
 }
@@ -301,7 +303,13 @@ static void files_that_show_nothing_are_refused(void **state)
 	assert_refused("a.gzl", NULL, GZ_ERR_INVAL, "a gaze log shows nothing by itself");
 	assert_refused(files_path("none.nii"), NULL, GZ_ERR_NOT_FOUND, "check the path");
 	assert_refused(files_path("none.scene"), NULL, GZ_ERR_NOT_FOUND, "no such file");
-	assert_refused(files_write("notes.txt", "milk\n", 5), NULL, GZ_ERR_FORMAT, "notes.txt:1: ");
+	assert_refused(files_write("notes.txt", "milk\n", 5), NULL, GZ_ERR_FORMAT,
+		       "notes.txt: neither a scene nor a volume");
+	assert_refused(files_write("late.txt", "; a\n# b\n \nx\n[a]\n", 16), NULL, GZ_ERR_FORMAT,
+		       "neither");
+	/* What begins like a scene is read as one. */
+	assert_refused(files_write("some.ini", "; a\n\n[a]\nb\n", 11), NULL, GZ_ERR_FORMAT,
+		       "some.ini:4: ");
 }
 
 static void picture_opens_the_scene_that_it_shows(void **state)

@@ -129,7 +129,7 @@ class Headless(unittest.TestCase):
     def test_cross_is_drawn_at_the_gaze(self):
         self.good("--gaze", "0.25,0.75", "--cross", "--out", self.path("cross.png"))
         self.assertEqual(read_png(self.path("cross.png")).at(24, 48), (255, 64, 64))
-        for gaze in ("0,0", "1,1", "-5,0.5", "1e9,-1e9"):
+        for gaze in ("0,0", "1,1", "-5,0.5", "10,-10"):
             self.good("--gaze", gaze, "--cross", "--out", self.path("edge.png"))
 
     def test_gaze_outside_the_picture_is_not_clamped(self):
@@ -241,7 +241,14 @@ class Headless(unittest.TestCase):
         done = self.good("--method", "standard", "--attention.budget_ms", 10000, "--stats",
                          self.path("stats.json"))
         self.assertEqual(self.frames()[0]["budget"], "within")
-        self.assertEqual(self.good("--method", "standard").stderr, "")
+        done = self.good("--method", "standard", "--out", self.path("one.png"))
+        self.assertEqual(done.stderr, "")
+
+    def test_picture_without_a_file_is_told(self):
+        done = self.good()
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("--out FILE.png", done.stderr)
+        self.assertEqual(self.good("--frames", 2).stderr, "")
 
     def test_budget_that_is_kept_changes_nothing(self):
         self.good(

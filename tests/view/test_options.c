@@ -160,10 +160,10 @@ static void gaze_texts_choose_their_sources(void **state)
 static void gaze_that_is_not_a_finite_pair_is_refused(void **state)
 {
 	(void)state;
-	const char *const bad[] = { "nan,0.5", "0.5,nan", "inf,0",     "0,-inf",  "0.5",
-				    "0.5,",    ",0.5",    "0.5,0.5,",  "0.5;0.5", "0x1,0.5",
-				    "1e99,0",  "a,b",     "0.5,0.5 x", "",        "udp://1",
-				    "center",  "log.gzl2" };
+	const char *const bad[] = { "nan,0.5", "0.5,nan",  "inf,0",     "0,-inf",  "0.5",
+				    "0.5,",    ",0.5",     "0.5,0.5,",  "0.5;0.5", "0x1,0.5",
+				    "1e99,0",  "a,b",      "0.5,0.5 x", "",        "udp://1",
+				    "center",  "log.gzl2", "960,540",   "0.5,-11" };
 	for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
 		struct gz_gaze_choice choice = { .kind = GZ_GAZE_LOG };
 		captured_log_init(&captured, "*:debug");
@@ -399,6 +399,7 @@ static void pattern_with_anything_but_one_number_is_refused(void **state)
 	assert_int_equal(gz_pattern_check("one.png", 1, NULL), GZ_OK);
 	assert_int_equal(gz_pattern_check("%d.png", 2, NULL), GZ_OK);
 	assert_refused("a.scene --headless --frames 2 --out one.png", "one.png");
+	assert_refused("a.scene --headless --out one.jpg", "end the name in .png");
 }
 
 static void pattern_that_does_not_fit_is_refused(void **state)

@@ -453,6 +453,14 @@ static void warn_of_budget(const struct headless *self)
 			self->settings.attention.budget_ms);
 }
 
+/* Several frames without a file measure the time; a single one is a picture that somebody wants. */
+static void tell_of_lost_picture(const struct gz_view_options *options, const struct gz_log *log)
+{
+	if (!options->out[0] && !options->video[0] && !options->stats[0] && !options->record[0] &&
+	    !options->replay[0] && options->frames == 1)
+		gz_info(log, "the picture is not kept; --out FILE.png writes it");
+}
+
 static enum gz_result load_scene_shown(struct headless *self)
 {
 	const struct gz_frame_scene scene = gz_frame_scene_of_options(self->options);
@@ -492,6 +500,8 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	}
 	if (r == GZ_OK && self.replay)
 		r = replay_frames(&self);
+	if (r == GZ_OK && !signal_seen)
+		tell_of_lost_picture(options, log);
 	gz_replay_close(&self.replay);
 	gz_stats_close(&self.stats);
 	gz_frame_maker_destroy(&self.maker);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "render/data/time_steps.h"
 #include "render/data/voxel_colour.h"
 #include "render/picture/image.h"
@@ -295,6 +296,20 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 	return GZ_ERR_INVAL;
 }
 
+/* A picture is a PNG, whatever its name. A name that promises another format is refused. */
+static enum gz_result check_picture_ending(const char *path, const struct gz_log *log)
+{
+	static const char *const others[] = { ".jpg", ".jpeg", ".tif", ".tiff", ".bmp",
+					      ".gif", ".webp", ".ppm", ".exr",  ".pdf" };
+	for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+		if (gz_path_ends(path, others[i])) {
+			gz_err(log, "--out %s: pictures are written as PNG; end the name in .png",
+			       path);
+			return GZ_ERR_INVAL;
+		}
+	return GZ_OK;
+}
+
 static enum gz_result check_options(const struct gz_view_options *options, const struct gz_log *log)
 {
 	if (options->sitting.file[0])
@@ -338,6 +353,8 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 		gz_err(log, "--%s: is written headless only; add --headless", file);
 		return GZ_ERR_INVAL;
 	}
+	if (check_picture_ending(options->out, log) != GZ_OK)
+		return GZ_ERR_INVAL;
 	/* A session usually has several frames. */
 	const int frames = options->replay[0] ? INT_MAX : options->frames;
 	return options->out[0] ? gz_pattern_check(options->out, frames, log) : GZ_OK;
@@ -467,6 +484,12 @@ static bool parse_point(const char *text, struct gz_point *out_point)
 	return true;
 }
 
+/* Whoever gives a place farther away means pixels. Chosen: ten pictures to each side. */
+static bool is_near_picture(struct gz_point point)
+{
+	return fabsf(point.x) <= 10 && fabsf(point.y) <= 10;
+}
+
 enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 				    struct gz_gaze_choice *out_choice)
 {
@@ -490,6 +513,13 @@ enum gz_result gz_gaze_choice_parse(const char *text, const struct gz_log *log,
 		memcpy(choice.text, text, strlen(text) + 1);
 	} else if (parse_point(text, &choice.point)) {
 		choice.kind = GZ_GAZE_FIXED;
+		if (!is_near_picture(choice.point)) {
+			gz_err(log,
+			       "--gaze %s: far outside the picture; give shares of its width and "
+			       "height instead of pixels, as in 0.5,0.5 for its middle",
+			       text);
+			return GZ_ERR_INVAL;
+		}
 	} else if (strcmp(text, "centre") != 0) {
 		gz_err(log,
 		       "--gaze %s: not a gaze source; give two finite numbers such as 0.5,0.5, or "
