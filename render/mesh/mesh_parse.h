@@ -41,4 +41,7 @@ enum gz_result gz_mesh_take(const char *name, uint64_t vertices, uint64_t triang
 enum gz_result gz_mesh_fill_normals(const char *name, const struct gz_log *log,
 				    struct gz_mesh *mesh);
 
+/** Whether a file is a PLY whose header has faces. Logs nothing. */
+bool gz_mesh_ply_has_faces(const char *path);
+
 #endif

@@ -1,20 +1,14 @@
 /* PLY: a text header of elements and their properties, then the elements as text or binary. The
  * points are the element "vertex"; elements before it are passed over, those behind it not read.
  * Turk, "The PLY Polygon File Format", 1994. */
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/text.h"
+#include "render/data/ply_head.h"
 #include "render/particles/particle_reader.h"
 
 #define GZ_LOG_MODULE "particles"
-
-#define BLANKS " \t"
-
-/* Chosen: more than scanners and simulations write. */
-enum { ELEMENTS_MAX = 32, PROPERTIES_MAX = 256 };
 
 /* What a property of a vertex is for. */
 enum ply_role {
@@ -33,23 +27,10 @@ enum ply_role {
 static const char *const role_names[ROLE_COUNT] = { "x",        "y",  "z",  "density",
 						    "pressure", "vx", "vy", "vz" };
 
-struct ply_property {
-	bool list;
-	enum gz_file_number count_type, type;
-	enum ply_role role;
-};
-
-struct ply_element {
-	bool vertices;
-	uint64_t count;
-	size_t first, properties;
-};
-
-struct ply_head {
-	size_t element_count, property_count;
-	struct ply_element elements[ELEMENTS_MAX];
-	struct ply_property properties[PROPERTIES_MAX];
-	bool coded; /* the line "format" was there */
+/* A header, and what its properties are for. */
+struct ply_points {
+	struct gz_ply_head head;
+	enum ply_role roles[GZ_PLY_PROPERTIES_MAX];
 };
 
 static bool recognise_ply(const char *path, const struct gz_file_start *start)
@@ -58,59 +39,20 @@ static bool recognise_ply(const char *path, const struct gz_file_start *start)
 	return gz_file_start_has(start, 0, "ply\n", 4) || gz_file_start_has(start, 0, "ply\r\n", 5);
 }
 
-static bool ply_type(const char *word, enum gz_file_number *out_type)
+static enum gz_result read_ply_lines(struct gz_particle_reader *reader, struct gz_ply_head *head)
 {
-	static const struct {
-		const char *names[2];
-		enum gz_file_number type;
-	} types[] = {
-		{ { "char", "int8" }, GZ_FILE_I8 },      { { "uchar", "uint8" }, GZ_FILE_U8 },
-		{ { "short", "int16" }, GZ_FILE_I16 },   { { "ushort", "uint16" }, GZ_FILE_U16 },
-		{ { "int", "int32" }, GZ_FILE_I32 },     { { "uint", "uint32" }, GZ_FILE_U32 },
-		{ { "float", "float32" }, GZ_FILE_F32 }, { { "double", "float64" }, GZ_FILE_F64 },
-	};
-	for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
-		for (int k = 0; k < 2; k++)
-			if (strcmp(word, types[i].names[k]) == 0) {
-				*out_type = types[i].type;
-				return true;
-			}
-	return false;
-}
-
-static enum gz_result take_ply_format(struct gz_particle_reader *reader, struct ply_head *head,
-				      char *rest)
-{
-	static const char *const names[] = { "ascii", "binary_little_endian", "binary_big_endian" };
-	const char *word = gz_number_next_word(&rest, BLANKS);
-	for (int i = 0; word && i < 3; i++)
-		if (strcmp(word, names[i]) == 0) {
-			reader->coding = (enum gz_particle_coding)i;
-			head->coded = true;
-			return GZ_OK;
-		}
-	return gz_particle_refuse(reader,
-				  "format %.40s; ascii, binary_little_endian and "
-				  "binary_big_endian are read",
-				  word ? word : "is missing");
-}
-
-static enum gz_result take_element(struct gz_particle_reader *reader, struct ply_head *head,
-				   char *rest)
-{
-	const char *name = gz_number_next_word(&rest, BLANKS);
-	const char *count = name ? gz_number_next_word(&rest, BLANKS) : NULL;
-	long long number = -1;
-	if (!count || !gz_number_parse_whole(count, &number) || number < 0)
-		return gz_particle_refuse(reader, "a PLY element without a number of items");
-	if (head->element_count == ELEMENTS_MAX)
-		return gz_particle_refuse(reader, "more than %d PLY elements are not read",
-					  ELEMENTS_MAX);
-	head->elements[head->element_count++] =
-		(struct ply_element) { .vertices = strcmp(name, "vertex") == 0,
-				       .count = (uint64_t)number,
-				       .first = head->property_count };
-	return GZ_OK;
+	char line[GZ_PARTICLE_LINE_MAX];
+	enum gz_result result = GZ_OK;
+	for (bool end = false; !end && result == GZ_OK;) {
+		result = gz_particle_take_line(reader, line);
+		const char *fault =
+			result == GZ_OK ? gz_ply_head_take_line(head, line, &end) : NULL;
+		if (fault)
+			return gz_particle_refuse(reader, "%s", fault);
+	}
+	return result == GZ_ERR_NOT_FOUND
+		       ? gz_particle_refuse(reader, "truncated: its PLY header has no end")
+		       : result;
 }
 
 static enum ply_role role_named(const char *name)
@@ -121,75 +63,40 @@ static enum ply_role role_named(const char *name)
 	return (enum ply_role)role;
 }
 
-static enum gz_result take_property(struct gz_particle_reader *reader, struct ply_head *head,
-				    char *rest)
+static bool has_vertices(const struct gz_ply_element *element)
 {
-	struct ply_property property = { .role = ROLE_NONE };
-	const char *word = gz_number_next_word(&rest, BLANKS);
-	property.list = word && strcmp(word, "list") == 0;
-	bool known = word != NULL;
-	if (property.list) {
-		word = gz_number_next_word(&rest, BLANKS);
-		known = word && ply_type(word, &property.count_type);
-		word = gz_number_next_word(&rest, BLANKS);
-	}
-	known = known && word && ply_type(word, &property.type);
-	const char *name = known ? gz_number_next_word(&rest, BLANKS) : NULL;
-	if (!name || head->element_count == 0)
-		return gz_particle_refuse(reader, "a PLY property without a known type and a name");
-	if (head->property_count == PROPERTIES_MAX)
-		return gz_particle_refuse(reader, "more than %d PLY properties are not read",
-					  PROPERTIES_MAX);
-	struct ply_element *element = &head->elements[head->element_count - 1];
-	if (element->vertices && !property.list)
-		property.role = role_named(name);
-	head->properties[head->property_count++] = property;
-	element->properties++;
-	return GZ_OK;
+	return strcmp(element->name, "vertex") == 0;
 }
 
-static enum gz_result take_head_line(struct gz_particle_reader *reader, struct ply_head *head,
-				     char *line, bool *out_end)
+static enum gz_result read_ply_head(struct gz_particle_reader *reader, struct ply_points *points)
 {
-	char *rest = line;
-	const char *word = gz_number_next_word(&rest, BLANKS);
-	*out_end = word && strcmp(word, "end_header") == 0;
-	if (!word || *out_end || strcmp(word, "comment") == 0 || strcmp(word, "obj_info") == 0)
-		return GZ_OK;
-	if (strcmp(word, "format") == 0)
-		return take_ply_format(reader, head, rest);
-	if (strcmp(word, "element") == 0)
-		return take_element(reader, head, rest);
-	if (strcmp(word, "property") == 0)
-		return take_property(reader, head, rest);
-	return gz_particle_refuse(reader, "%.40s is no line of a PLY header", word);
-}
-
-static enum gz_result read_ply_head(struct gz_particle_reader *reader, struct ply_head *head)
-{
-	char line[GZ_PARTICLE_LINE_MAX];
-	bool end = false;
-	enum gz_result result = gz_particle_take_line(reader, line);
-	if (result == GZ_OK && strcmp(line, "ply") != 0)
-		return gz_particle_refuse(reader, "does not begin as a PLY does");
-	while (result == GZ_OK && !end) {
-		result = gz_particle_take_line(reader, line);
-		if (result == GZ_OK)
-			result = take_head_line(reader, head, line, &end);
+	static const enum gz_particle_coding codings[] = {
+		[GZ_PLY_TEXT] = GZ_PARTICLE_TEXT,
+		[GZ_PLY_LITTLE_ENDIAN] = GZ_PARTICLE_LITTLE_ENDIAN,
+		[GZ_PLY_BIG_ENDIAN] = GZ_PARTICLE_BIG_ENDIAN,
+	};
+	const struct gz_ply_head *head = &points->head;
+	const enum gz_result result = read_ply_lines(reader, &points->head);
+	for (size_t i = 0; i < head->property_count; i++)
+		points->roles[i] = ROLE_NONE;
+	for (size_t i = 0; i < head->element_count; i++) {
+		const struct gz_ply_element *element = &head->elements[i];
+		for (size_t k = 0; has_vertices(element) && k < element->property_count; k++) {
+			const size_t number = element->first_property + k;
+			if (!head->properties[number].is_list)
+				points->roles[number] = role_named(head->properties[number].name);
+		}
 	}
-	if (result == GZ_ERR_NOT_FOUND)
-		return gz_particle_refuse(reader, "truncated: its PLY header has no end");
-	if (result == GZ_OK && !head->coded)
-		return gz_particle_refuse(reader, "its PLY header has no line format");
+	reader->coding = codings[head->format];
 	return result;
 }
 
 /* Pass over a list, or read one number. */
 static enum gz_result read_property(struct gz_particle_reader *reader,
-				    const struct ply_property *property, double *out_number)
+				    const struct gz_ply_property *property, double *out_number)
 {
 	double count = 0;
-	if (!property->list)
+	if (!property->is_list)
 		return gz_particle_read_numbers(reader, property->type, out_number, 1);
 	const enum gz_result result =
 		gz_particle_read_numbers(reader, property->count_type, &count, 1);
@@ -200,17 +107,18 @@ static enum gz_result read_property(struct gz_particle_reader *reader,
 	return gz_particle_read_numbers(reader, property->type, NULL, (uint64_t)count);
 }
 
-static enum gz_result pass_element(struct gz_particle_reader *reader, const struct ply_head *head,
-				   const struct ply_element *element)
+static enum gz_result pass_element(struct gz_particle_reader *reader,
+				   const struct gz_ply_head *head,
+				   const struct gz_ply_element *element)
 {
+	const struct gz_ply_property *properties = &head->properties[element->first_property];
 	enum gz_result result = GZ_OK;
 	double number;
-	if (element->properties == 0)
+	if (element->property_count == 0)
 		return GZ_OK;
 	for (uint64_t i = 0; i < element->count && result == GZ_OK; i++)
-		for (size_t k = 0; k < element->properties && result == GZ_OK; k++)
-			result = read_property(reader, &head->properties[element->first + k],
-					       &number);
+		for (size_t k = 0; k < element->property_count && result == GZ_OK; k++)
+			result = read_property(reader, &properties[k], &number);
 	return result;
 }
 
@@ -222,36 +130,26 @@ static double ply_value(const double roles[ROLE_COUNT], enum gz_particle_value v
 	return value == GZ_PARTICLE_PRESSURE ? roles[ROLE_PRESSURE] : roles[ROLE_DENSITY];
 }
 
-static enum gz_result add_vertex(struct gz_particle_reader *reader, const struct ply_head *head,
-				 const struct ply_element *element)
+static enum gz_result add_vertex(struct gz_particle_reader *reader, const struct ply_points *points,
+				 const struct gz_ply_element *element)
 {
 	double roles[ROLE_COUNT + 1] = { 0 };
-	for (size_t k = 0; k < element->properties; k++) {
-		const struct ply_property *property = &head->properties[element->first + k];
-		const enum gz_result result =
-			read_property(reader, property, &roles[property->role]);
+	for (size_t k = 0; k < element->property_count; k++) {
+		const size_t number = element->first_property + k;
+		const enum gz_result result = read_property(
+			reader, &points->head.properties[number], &roles[points->roles[number]]);
 		if (result != GZ_OK)
 			return result;
 	}
 	return gz_particle_add(reader, roles, ply_value(roles, reader->request->value));
 }
 
-/* Which roles the vertices have, as bits, and the least bytes of a vertex. */
-static unsigned roles_of(const struct gz_particle_reader *reader, const struct ply_head *head,
-			 const struct ply_element *element, uint64_t *out_bytes)
+/* Which roles the vertices have, as bits. */
+static unsigned roles_of(const struct ply_points *points, const struct gz_ply_element *element)
 {
 	unsigned there = 0;
-	uint64_t bytes = 0;
-	for (size_t k = 0; k < element->properties; k++) {
-		const struct ply_property *property = &head->properties[element->first + k];
-		there |= 1U << property->role;
-		bytes += reader->coding == GZ_PARTICLE_TEXT
-				 ? 2
-				 : gz_file_number_size(property->list ? property->count_type
-								      : property->type);
-	}
-	/* The last number of a text may have nothing behind it. */
-	*out_bytes = reader->coding == GZ_PARTICLE_TEXT && bytes > 0 ? bytes - 1 : bytes;
+	for (size_t k = 0; k < element->property_count; k++)
+		there |= 1U << points->roles[element->first_property + k];
 	return there;
 }
 
@@ -275,32 +173,35 @@ static enum gz_result check_roles(const struct gz_particle_reader *reader, unsig
 		       : gz_particle_refuse_value(reader, values);
 }
 
-static enum gz_result read_vertices(struct gz_particle_reader *reader, const struct ply_head *head,
-				    const struct ply_element *element)
+static enum gz_result read_vertices(struct gz_particle_reader *reader,
+				    const struct ply_points *points,
+				    const struct gz_ply_element *element)
 {
-	uint64_t bytes = 0;
-	const unsigned there = roles_of(reader, head, element, &bytes);
-	enum gz_result result = check_roles(reader, there);
+	/* The last number of a text may have nothing behind it. */
+	const uint64_t blank = reader->coding == GZ_PARTICLE_TEXT ? 1 : 0;
+	const uint64_t bytes = gz_ply_item_bytes(&points->head, element);
+	enum gz_result result = check_roles(reader, roles_of(points, element));
 	if (result == GZ_OK)
-		result = gz_particle_check_claim(reader, element->count, bytes, "vertices");
+		result = gz_particle_check_claim(reader, element->count, bytes - blank, "vertices");
 	for (uint64_t i = 0; i < element->count && result == GZ_OK; i++)
-		result = add_vertex(reader, head, element);
+		result = add_vertex(reader, points, element);
 	return result;
 }
 
 static enum gz_result read_ply(struct gz_particle_reader *reader)
 {
-	struct ply_head *head = calloc(1, sizeof *head);
-	enum gz_result result = head ? read_ply_head(reader, head) : GZ_ERR_NO_MEM;
+	struct ply_points *points = calloc(1, sizeof *points);
+	enum gz_result result = points ? read_ply_head(reader, points) : GZ_ERR_NO_MEM;
 	bool found = false;
-	for (size_t i = 0; result == GZ_OK && i < head->element_count && !found; i++) {
-		found = head->elements[i].vertices;
-		result = found ? read_vertices(reader, head, &head->elements[i])
-			       : pass_element(reader, head, &head->elements[i]);
+	for (size_t i = 0; result == GZ_OK && i < points->head.element_count && !found; i++) {
+		const struct gz_ply_element *element = &points->head.elements[i];
+		found = has_vertices(element);
+		result = found ? read_vertices(reader, points, element)
+			       : pass_element(reader, &points->head, element);
 	}
 	if (result == GZ_OK && !found)
 		result = gz_particle_refuse(reader, "a PLY without the element vertex");
-	free(head);
+	free(points);
 	return result;
 }
 
