@@ -1,8 +1,7 @@
 /**
  * @file
- * Random numbers and elementary functions that give the same bits on every machine. They use only
- * integer arithmetic, + - * / and sqrt, because the last bit of log or sin depends on the C
- * library.
+ * Random numbers that give the same bits on every machine. They use only integer arithmetic, + - *
+ * / and sqrt, and functions made of these (base/portable.h).
  */
 #ifndef GZ_SIM_RANDOM_H
 #define GZ_SIM_RANDOM_H
@@ -43,18 +42,5 @@ double gz_random_gamma(struct gz_random *random, int shape);
 /** Shuffle @p count items of @p size bytes. All orders are equally likely (Fisher and Yates;
  * Durstenfeld, Communications of the ACM 7, 1964). */
 void gz_random_shuffle(struct gz_random *random, void *items, size_t count, size_t size);
-
-/** Natural logarithm of x > 0; relative error below 1e-14. */
-double gz_portable_log(double x);
-
-/** e to the power of x for |x| <= 700; relative error below 1e-14. */
-double gz_portable_exp(double x);
-
-/** Sine and cosine of an angle, radians, up to 1e6 either way; error below 1e-10. */
-double gz_portable_sin(double angle);
-double gz_portable_cos(double angle);
-
-/** Angle of (x, y) from the x axis, radians, -pi to pi; error below 1e-12. 0 for (0, 0). */
-double gz_portable_atan2(double y, double x);
 
 #endif

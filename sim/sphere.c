@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sim/random.h"
+#include "base/portable.h"
 
 #define RAD_PER_DEG 0.017453292519943295769
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/portable.h"
 #include "sim/sphere.h"
 
 #define GZ_LOG_MODULE "sim"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/portable.h"
 #include "sim/sphere.h"
 
 #define DEG_PER_RAD 57.295779513082320877

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/portable.h"
 #include "base/text.h"
 #include "filter/pipeline.h"
 #include "protocol/gaze_log.h"

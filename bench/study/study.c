@@ -8,6 +8,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "base/portable.h"
 #include "bench/study/hash.h"
 #include "sim/random.h"
 

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/portable.h"
 #include "sim/random.h"
 
 #define CHECK_NEAR(got, wanted, tolerance)                                       \
