@@ -150,7 +150,8 @@ struct gz_display gz_config_display(const struct gz_config *config,
 /**
  * The settings of the pipeline: the configured ones; or for a recording those of its header, except
  * settings given on the command line. A setting of the header that this version does not know is
- * ignored with a warning.
+ * ignored with a warning; warns too if gz_pipeline_other_forests(). A recording that names no
+ * source of labels gets them from what gz_pipeline_unnamed_params() says.
  *
  * @param recorded         header of the recording; NULL if the tracker is none
  * @param[out] out_params  written on success only
@@ -161,7 +162,8 @@ enum gz_result gz_config_pipeline(const struct gz_config *config,
 				  const struct gz_gaze_log_header *recorded,
 				  const struct gz_log *log, struct gz_pipeline_params *out_params);
 
-/** Write every setting of @p params into the settings of @p header. */
+/** Write every setting of @p params, and the name of the forests, into the settings of @p header.
+ */
 void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
 				 struct gz_gaze_log_header *header);
 

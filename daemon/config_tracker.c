@@ -46,6 +46,8 @@ static enum gz_result apply_recorded_setting(const struct gz_config *config,
 {
 	char key[GZ_NAME_SIZE + sizeof "pipeline."];
 	char message[256];
+	if (strcmp(setting->key, GZ_PIPELINE_FORESTS_KEY) == 0)
+		return GZ_OK;
 	snprintf(key, sizeof key, "pipeline.%s", setting->key);
 	struct gz_option_binding binding = { gz_pipeline_options, gz_pipeline_option_count, params,
 					     NULL };
@@ -65,11 +67,23 @@ static enum gz_result apply_recorded_setting(const struct gz_config *config,
 	return GZ_ERR_FORMAT;
 }
 
+/* Whether the command line gives a setting; it then overrides the recorded or stored one. */
+static bool given_on_command_line(const struct gz_config *config, const char *key)
+{
+	for (size_t i = 0; i < gz_pipeline_option_count; i++)
+		if (config->pipeline_given[i] && strcmp(gz_pipeline_options[i].key, key) == 0)
+			return true;
+	return false;
+}
+
 enum gz_result gz_config_pipeline(const struct gz_config *config,
 				  const struct gz_gaze_log_header *recorded,
 				  const struct gz_log *log, struct gz_pipeline_params *out_params)
 {
 	struct gz_pipeline_params params = config->pipeline;
+	if (recorded && recorded->setting_count > 0 &&
+	    !given_on_command_line(config, "pipeline.labels"))
+		params.classify.source = gz_pipeline_unnamed_params(recorded).classify.source;
 	for (size_t i = 0; recorded && i < recorded->setting_count; i++) {
 		enum gz_result result =
 			apply_recorded_setting(config, &recorded->settings[i], log, &params);
@@ -82,6 +96,8 @@ enum gz_result gz_config_pipeline(const struct gz_config *config,
 		gz_err(log, "%s", message);
 		return checked;
 	}
+	if (recorded)
+		(void)gz_pipeline_other_forests(recorded, &params, "the recording", log);
 	*out_params = params;
 	return GZ_OK;
 }
@@ -91,7 +107,7 @@ void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
 {
 	static const char prefix[] = "pipeline.";
 	header->setting_count = 0;
-	for (size_t i = 0; i < gz_pipeline_option_count && i < GZ_GAZE_LOG_SETTINGS_MAX; i++) {
+	for (size_t i = 0; i < gz_pipeline_option_count && i + 1 < GZ_GAZE_LOG_SETTINGS_MAX; i++) {
 		const struct gz_option *option = &gz_pipeline_options[i];
 		struct gz_gaze_log_setting *setting = &header->settings[header->setting_count];
 		snprintf(setting->key, sizeof setting->key, "%s", option->key + sizeof prefix - 1);
@@ -99,18 +115,9 @@ void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
 		    GZ_OK)
 			header->setting_count++;
 	}
-}
-
-/* Whether the command line gives the correction; it then overrides the stored one. */
-static bool correction_given_on_command_line(const struct gz_config *config)
-{
-	for (size_t i = 0; i < gz_pipeline_option_count; i++) {
-		const char *key = gz_pipeline_options[i].key;
-		if (config->pipeline_given[i] && (strcmp(key, "pipeline.correction.x") == 0 ||
-						  strcmp(key, "pipeline.correction.y") == 0))
-			return true;
-	}
-	return false;
+	struct gz_gaze_log_setting *forests = &header->settings[header->setting_count++];
+	snprintf(forests->key, sizeof forests->key, "%s", GZ_PIPELINE_FORESTS_KEY);
+	gz_pipeline_name_forests(forests->value);
 }
 
 /* Take the correction from its file in @p directory. @return whether it is used */
@@ -151,7 +158,9 @@ void gz_config_correction(const struct gz_config *config, const struct gz_device
 			  struct gz_pipeline_params *params)
 {
 	char directory[GZ_PATH_SIZE];
-	if (info->recorded || correction_given_on_command_line(config) ||
+	if (info->recorded ||
+	    (given_on_command_line(config, "pipeline.correction.x") ||
+	     given_on_command_line(config, "pipeline.correction.y")) ||
 	    strcmp(config->corrections, "none") == 0)
 		return;
 	if (config->corrections[0]) {

@@ -62,10 +62,31 @@ enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params,
  */
 struct gz_pipeline_params gz_pipeline_unnamed_params(const struct gz_gaze_log_header *header);
 
+/** Key of the header's line that names the forests whose labels were shown while a log was
+ *  recorded: no setting, because a program has only its own forests. */
+#define GZ_PIPELINE_FORESTS_KEY "forests"
+
+/** Bytes of a name of forests with its NUL: 16 hexadecimal digits. */
+#define GZ_PIPELINE_FORESTS_SIZE 17
+
+/** The name of this version's forests for immediate and certain labels. */
+void gz_pipeline_name_forests(char out_name[GZ_PIPELINE_FORESTS_SIZE]);
+
+/**
+ * Whether a replay may label samples otherwise than when the log was recorded: its labels come from
+ * forests, and not from those of this version. Then also warns.
+ *
+ * @param params  the settings of the replay
+ * @param path    of the log, for messages
+ */
+bool gz_pipeline_other_forests(const struct gz_gaze_log_header *header,
+			       const struct gz_pipeline_params *params, const char *path,
+			       const struct gz_log *log);
+
 /**
  * The settings that a gaze log was recorded with: those in its header, and
  * gz_pipeline_unnamed_params() for the rest. A setting that this version does not have is ignored,
- * with a warning.
+ * with a warning; warns too if gz_pipeline_other_forests().
  *
  * @param path  of the log, for messages
  * @param[out] out_params  passes gz_pipeline_check_params(); written on success only

@@ -1,6 +1,9 @@
 /* The settings of the pipeline: presets and their sources, and the settings of a recording. */
+#include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "filter/classifier/forest.h"
 #include "filter/pipeline.h"
 
 #define GZ_LOG_MODULE "pipeline"
@@ -172,6 +175,33 @@ enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params,
 	return GZ_ERR_INVAL;
 }
 
+void gz_pipeline_name_forests(char out_name[GZ_PIPELINE_FORESTS_SIZE])
+{
+	/* A factor, so that it matters which is which. */
+	const uint64_t name = gz_forest_at_once.training_hash + 3 * gz_forest_certain.training_hash;
+	snprintf(out_name, GZ_PIPELINE_FORESTS_SIZE, "%016" PRIx64, name);
+}
+
+bool gz_pipeline_other_forests(const struct gz_gaze_log_header *header,
+			       const struct gz_pipeline_params *params, const char *path,
+			       const struct gz_log *log)
+{
+	char ours[GZ_PIPELINE_FORESTS_SIZE];
+	const char *theirs = "of an earlier version";
+	gz_pipeline_name_forests(ours);
+	for (size_t i = 0; i < header->setting_count; i++)
+		if (strcmp(header->settings[i].key, GZ_PIPELINE_FORESTS_KEY) == 0)
+			theirs = header->settings[i].value;
+	if (header->setting_count == 0 || params->classify.source != GZ_CLASSIFY_LEARNED ||
+	    strcmp(theirs, ours) == 0)
+		return false;
+	gz_warn(log,
+		"%s: recorded with the forests %s, and this version has %s; labels may differ from "
+		"those that were shown",
+		path, theirs, ours);
+	return true;
+}
+
 /* Parse one "#pipeline." line. A setting that this version does not have is ignored. */
 static enum gz_result parse_recorded_setting(const struct gz_gaze_log_setting *setting,
 					     const char *path, const struct gz_log *log,
@@ -181,6 +211,8 @@ static enum gz_result parse_recorded_setting(const struct gz_gaze_log_setting *s
 						   params, NULL };
 	char key[GZ_NAME_SIZE + sizeof "pipeline."];
 	char message[256];
+	if (strcmp(setting->key, GZ_PIPELINE_FORESTS_KEY) == 0)
+		return GZ_OK;
 	snprintf(key, sizeof key, "pipeline.%s", setting->key);
 	const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
 	if (!option) {
@@ -218,6 +250,7 @@ enum gz_result gz_pipeline_recorded_params(const struct gz_gaze_log_header *head
 		gz_err(log, "%s: %s", path, message);
 		return GZ_ERR_FORMAT;
 	}
+	(void)gz_pipeline_other_forests(header, &params, path, log);
 	*out_params = params;
 	return GZ_OK;
 }

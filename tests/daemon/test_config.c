@@ -258,11 +258,51 @@ static void config_pipeline_described_in_a_header_reads_back_the_same(void **sta
 			      "--pipeline.noise_memory_s", "1.7"),
 			 GZ_OK);
 	gz_config_describe_pipeline(&config.pipeline, &header);
-	assert_int_equal(header.setting_count, gz_pipeline_option_count);
+	assert_int_equal(header.setting_count, gz_pipeline_option_count + 1); /* and the forests */
 	struct gz_pipeline_params wanted = config.pipeline;
 	assert_int_equal(READ("--config", "/dev/null"), GZ_OK);
+	captured.last[0] = 0;
 	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
 	assert_memory_equal(&params, &wanted, sizeof params);
+	assert_string_equal(captured.last, ""); /* no warning of other forests */
+}
+
+static void config_replay_of_a_recording_tells_of_other_forests(void **state)
+{
+	(void)state;
+	static struct gz_gaze_log_header header;
+	struct gz_pipeline_params params;
+	assert_int_equal(READ("--config", "/dev/null"), GZ_OK);
+	header.setting_count = 2;
+	header.settings[0] = (struct gz_gaze_log_setting) { "labels", "learned" };
+	header.settings[1] = (struct gz_gaze_log_setting) { "forests", "0123456789abcdef" };
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_int_equal(captured.level, GZ_LOG_WARN);
+	assert_non_null(strstr(captured.last, "forests 0123456789abcdef"));
+	header.setting_count = 1;
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_non_null(strstr(captured.last, "forests of an earlier version"));
+	captured.last[0] = 0;
+	header.settings[0] = (struct gz_gaze_log_setting) { "labels", "rules" };
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_string_equal(captured.last, "");
+}
+
+static void config_recordings_older_than_the_forests_are_labelled_by_rules(void **state)
+{
+	(void)state;
+	static struct gz_gaze_log_header header;
+	struct gz_pipeline_params params;
+	assert_int_equal(READ("--config", "/dev/null"), GZ_OK);
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_int_equal(params.classify.source, GZ_CLASSIFY_LEARNED);
+	header.setting_count = 1;
+	header.settings[0] = (struct gz_gaze_log_setting) { "margin", "0.5" };
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_int_equal(params.classify.source, GZ_CLASSIFY_RULES);
+	assert_int_equal(READ("--config", "/dev/null", "--pipeline.labels", "learned"), GZ_OK);
+	assert_int_equal(gz_config_pipeline(&config, &header, &captured.log, &params), GZ_OK);
+	assert_int_equal(params.classify.source, GZ_CLASSIFY_LEARNED);
 }
 
 static void config_correction_without_area_is_refused(void **state)
@@ -371,6 +411,8 @@ TEST_SUITE(config)
 		cmocka_unit_test(config_pipeline_of_a_recording_comes_from_its_header),
 		cmocka_unit_test(config_correction_without_area_is_refused),
 		cmocka_unit_test(config_pipeline_described_in_a_header_reads_back_the_same),
+		cmocka_unit_test(config_replay_of_a_recording_tells_of_other_forests),
+		cmocka_unit_test(config_recordings_older_than_the_forests_are_labelled_by_rules),
 		cmocka_unit_test(
 			config_installed_file_is_the_printed_one_and_parses_to_the_presets),
 		cmocka_unit_test(config_help_names_every_option),

@@ -23,6 +23,8 @@ static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header
 	};
 	for (size_t i = 0; i < header->setting_count; i++) {
 		char key[GZ_NAME_SIZE + 16], message[256] = "unknown";
+		if (strcmp(header->settings[i].key, GZ_PIPELINE_FORESTS_KEY) == 0)
+			continue;
 		snprintf(key, sizeof key, "pipeline.%s", header->settings[i].key);
 		const struct gz_option *option = gz_options_find(&binding, 1, key, NULL);
 		if (!option || gz_option_parse(option, header->settings[i].value, &params, message,
@@ -35,6 +37,7 @@ static struct gz_pipeline_params recorded_params(const struct gz_gaze_log_header
 		gz_warn(log, "%s; using the default", reason);
 		params.correct = gz_pipeline_default_params().correct;
 	}
+	(void)gz_pipeline_other_forests(header, &params, "the log", log);
 	return params;
 }
 
