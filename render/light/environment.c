@@ -4,13 +4,17 @@
 
 #include "base/vector.h"
 
-static const char *const surroundings_names[] = { "none", "sky", NULL };
+static const char *const surroundings_names[] = { "none", "sky", "cube", NULL };
 
 #define AT(field) offsetof(struct gz_environment, field)
 
 const struct gz_option gz_environment_options[] = {
 	{ "environment.kind", GZ_OPTION_CHOICE, AT(kind), .choices = surroundings_names,
-	  .preset = "none", .help = "surroundings: none (render.background) or sky, with a sun" },
+	  .preset = "none",
+	  .help = "surroundings: none (render.background), sky, with a sun, or cube" },
+	{ "environment.cube", GZ_OPTION_STRING, AT(cube), .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "cube: folder of right, left, front, back, up and down.png; searched beside the "
+		  "scene, then under $GAZECAST_DATA" },
 	{ "environment.up", GZ_OPTION_DOUBLE, AT(up), -1e6, 1e6, .count = 3, .preset = "0 0 1",
 	  .help = "direction of the zenith, any length" },
 	{ "environment.horizon", GZ_OPTION_DOUBLE, AT(horizon), 0, 1, .count = 3,

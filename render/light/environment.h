@@ -1,7 +1,8 @@
 /**
  * @file
  * What surrounds the picture's objects: section [environment] of a scene. Surfaces of glass and
- * water show it, and so does what is behind everything.
+ * water show it, and so does what is behind everything. It is a sky, or six pictures
+ * (render/light/cube.h).
  *
  * The sky in the unit direction d, with U the unit vector up and L the one towards the light:
  *
@@ -27,6 +28,7 @@
 #include <stddef.h>
 
 #include "base/option.h"
+#include "base/sizes.h"
 
 /** Cosines of the angles from the light where the sun's halo begins and where its disc is white.
  *  Chosen by eye: 5 and 2 degrees, so that coarse rays meet it too. */
@@ -39,11 +41,16 @@
 enum gz_surroundings {
 	GZ_SURROUNDINGS_NONE, /**< render.background on all sides */
 	GZ_SURROUNDINGS_SKY,  /**< a sky with a sun where the light comes from */
+	GZ_SURROUNDINGS_CUBE, /**< six pictures; without their folder as GZ_SURROUNDINGS_NONE */
 };
 
 /** The surroundings. */
 struct gz_environment {
-	int kind;          /**< enum gz_surroundings */
+	int kind;                /**< enum gz_surroundings */
+	char cube[GZ_PATH_SIZE]; /**< folder of six pictures, as the scene names it; "": none */
+	/** Where that folder is: gz_scene_find_cube(). "": none. No option, as it follows from the
+	 *  name. Techniques read the pictures when they draw. */
+	char cube_path[GZ_PATH_SIZE];
 	double up[3];      /**< any length but 0 */
 	double horizon[3]; /**< colours, [0, 1] each */
 	double zenith[3];

@@ -62,7 +62,8 @@ enum gz_result gz_image_write_png_with(const struct gz_image *image,
 				       const char *path, const struct gz_log *log);
 
 /**
- * Read any PNG as RGBA; alpha becomes 255.
+ * Read any PNG as RGBA; alpha becomes 255. A gamma that the file states is followed; without one it
+ * is sRGB, with 16 bits too.
  *
  * @param[out] out_image  what it held is freed; zero-initialised is empty
  * @retval GZ_ERR_NOT_FOUND  the file cannot be opened; logged
@@ -71,6 +72,14 @@ enum gz_result gz_image_write_png_with(const struct gz_image *image,
  */
 enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 				 struct gz_image *out_image);
+
+/**
+ * Read the width and the height of a PNG, not its pixels.
+ *
+ * @param[out] out_size  width and height, px; written on success only
+ * @return as gz_image_read_png(), without GZ_ERR_NO_MEM
+ */
+enum gz_result gz_image_measure_png(const char *path, const struct gz_log *log, int out_size[2]);
 
 /** Longest text that is read from a PNG, bytes. Chosen: as long as the longest scene. */
 #define GZ_IMAGE_TEXT_MAX ((size_t)1 << 20)

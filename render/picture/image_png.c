@@ -153,15 +153,22 @@ enum gz_result gz_image_write_png_with(const struct gz_image *image,
 	return GZ_ERR_IO;
 }
 
+static enum gz_result check_png_size(const png_image *png, const char *path,
+				     const struct gz_log *log)
+{
+	if (png->width <= GZ_IMAGE_SIDE_MAX && png->height <= GZ_IMAGE_SIDE_MAX)
+		return GZ_OK;
+	gz_err(log, "%s: %u x %u pixels; at most %d a side are read", path, png->width, png->height,
+	       GZ_IMAGE_SIDE_MAX);
+	return GZ_ERR_FORMAT;
+}
+
 static enum gz_result read_pixels(png_image *png, const char *path, const struct gz_log *log,
 				  struct gz_image *out_image)
 {
 	struct gz_image image = { 0 };
-	if (png->width > GZ_IMAGE_SIDE_MAX || png->height > GZ_IMAGE_SIDE_MAX) {
-		gz_err(log, "%s: %u x %u pixels; at most %d a side are read", path, png->width,
-		       png->height, GZ_IMAGE_SIDE_MAX);
+	if (check_png_size(png, path, log) != GZ_OK)
 		return GZ_ERR_FORMAT;
-	}
 	if (gz_image_resize(&image, (int)png->width, (int)png->height) != GZ_OK) {
 		gz_err(log, "%s: no memory for %u x %u pixels", path, png->width, png->height);
 		return GZ_ERR_NO_MEM;
@@ -180,20 +187,53 @@ static enum gz_result read_pixels(png_image *png, const char *path, const struct
 	return GZ_OK;
 }
 
-enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
-				 struct gz_image *out_image)
+/* Open a PNG and read its head. On success the caller frees the struct and closes the file. */
+static enum gz_result begin_png(const char *path, const struct gz_log *log, png_image *png,
+				FILE **out_file)
 {
-	png_image png = { .version = PNG_IMAGE_VERSION };
 	FILE *file = fopen(path, "rb");
 	if (!file) {
 		gz_err(log, "%s: cannot open the picture: %s", path, strerror(errno));
 		return GZ_ERR_NOT_FOUND;
 	}
-	enum gz_result result = GZ_ERR_FORMAT;
-	if (png_image_begin_read_from_stdio(&png, file))
-		result = read_pixels(&png, path, log, out_image);
-	else
-		gz_err(log, "%s: not a PNG picture: %s", path, png.message);
+	*png = (png_image) { .version = PNG_IMAGE_VERSION };
+	if (png_image_begin_read_from_stdio(png, file)) {
+		*out_file = file;
+		return GZ_OK;
+	}
+	gz_err(log, "%s: not a PNG picture: %s", path, png->message);
+	png_image_free(png);
+	fclose(file);
+	return GZ_ERR_FORMAT;
+}
+
+enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
+				 struct gz_image *out_image)
+{
+	png_image png;
+	FILE *file;
+	enum gz_result result = begin_png(path, log, &png, &file);
+	if (result != GZ_OK)
+		return result;
+	png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB; /* else libpng takes 16 bits as linear */
+	result = read_pixels(&png, path, log, out_image);
+	png_image_free(&png);
+	fclose(file);
+	return result;
+}
+
+enum gz_result gz_image_measure_png(const char *path, const struct gz_log *log, int out_size[2])
+{
+	png_image png;
+	FILE *file;
+	enum gz_result result = begin_png(path, log, &png, &file);
+	if (result != GZ_OK)
+		return result;
+	result = check_png_size(&png, path, log);
+	if (result == GZ_OK) {
+		out_size[0] = (int)png.width;
+		out_size[1] = (int)png.height;
+	}
 	png_image_free(&png);
 	fclose(file);
 	return result;

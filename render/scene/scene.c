@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/light/cube.h"
 #include "render/mesh/mesh_read.h"
 #include "render/particles/particles.h"
 #include "render/plan/method.h"
@@ -260,6 +261,30 @@ enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
 	return result == GZ_OK ? gz_spacing_table_load(path, log, &foveation->table) : result;
 }
 
+enum gz_result gz_scene_find_cube(const char *scene, const struct gz_log *log,
+				  struct gz_environment *environment)
+{
+	static const char key[] = "environment.cube";
+	const struct scene_loader loader = { .name = scene, .log = log };
+	char path[GZ_PATH_SIZE];
+	if (!environment->cube[0]) {
+		environment->cube_path[0] = '\0';
+		if (environment->kind != GZ_SURROUNDINGS_CUBE)
+			return GZ_OK;
+		gz_err(log,
+		       "%s: %s: not given, and environment.kind is cube; name a folder of six "
+		       "pictures (docs/surfaces.md lists them)",
+		       scene, key);
+		return GZ_ERR_FORMAT;
+	}
+	enum gz_result result = find_named_file(&loader, key, environment->cube, path);
+	if (result == GZ_OK)
+		result = gz_cube_check(path, log);
+	if (result == GZ_OK)
+		memcpy(environment->cube_path, path, strlen(path) + 1);
+	return result;
+}
+
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene)
 {
@@ -298,6 +323,8 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 	};
 	const bool given = parts->transfer || gz_scene_transfer_name(&scene.settings)[0];
 	enum gz_result result = gz_scene_load_table(parts->name, log, &scene.settings.foveation);
+	if (result == GZ_OK)
+		result = gz_scene_find_cube(parts->name, log, &scene.settings.rays.environment);
 	if (parts->transfer)
 		scene.transfer = *parts->transfer;
 	else if (result == GZ_OK)
@@ -330,6 +357,8 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 	enum gz_result result = gz_scene_read(source, log, &settings, &has_display);
 	if (result == GZ_OK)
 		result = gz_scene_load_table(source->path, log, &settings.foveation);
+	if (result == GZ_OK)
+		result = gz_scene_find_cube(source->path, log, &settings.rays.environment);
 	if (result == GZ_OK)
 		result = load_named_transfer(&loader, &transfer);
 	if (result == GZ_OK && !settings.volume_procedural && gz_scene_has_volume(&settings))

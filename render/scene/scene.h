@@ -109,6 +109,21 @@ enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
 				   struct gz_foveation *foveation);
 
 /**
+ * Find the folder that environment.cube names, and check its pictures without reading their pixels.
+ * gz_scene_load() does this for a scene's own settings; call it for settings that something else
+ * has changed.
+ *
+ * @param scene  path of the scene beside which the folder is searched first
+ * @param[in,out] environment  its cube_path is written; "" if none is named
+ * @retval GZ_OK             found, or none is named and the surroundings are others
+ * @retval GZ_ERR_FORMAT     environment.kind is cube and no folder is named, or a picture is
+ *                           refused; logged
+ * @retval GZ_ERR_NOT_FOUND  no such folder, or a picture is missing; logged
+ */
+enum gz_result gz_scene_find_cube(const char *scene, const struct gz_log *log,
+				  struct gz_environment *environment);
+
+/**
  * Read one of the transfer functions that transfer.also names.
  *
  * @param scene  path of the scene beside which the file is searched first

@@ -214,6 +214,8 @@ static enum gz_result move_files(struct gz_scene_settings *settings, const struc
 	if (result == GZ_OK)
 		result = move_field(move, "foveation.table", settings->foveation.table_file);
 	if (result == GZ_OK)
+		result = move_field(move, "environment.cube", settings->rays.environment.cube);
+	if (result == GZ_OK)
 		result = move_log(move, settings->view.gaze);
 	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++)
 		result = move_object_files(move, &settings->objects.items[i]);

@@ -104,6 +104,11 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_true(gz_setting_applies(&settings, "isosurface.refractive_index"));
 	assert_true(gz_setting_applies(&settings, "environment.kind"));
 	assert_false(gz_setting_applies(&settings, "environment.tile"));
+	assert_true(gz_setting_applies(&settings, "environment.cube"));
+	assert_false(gz_setting_applies(&settings, "environment.up"));
+	settings.rays.environment.kind = GZ_SURROUNDINGS_CUBE;
+	assert_true(gz_setting_applies(&settings, "environment.up"));
+	assert_false(gz_setting_applies(&settings, "environment.horizon"));
 	settings.rays.environment.kind = GZ_SURROUNDINGS_SKY;
 	settings.rays.environment.floor = true;
 	assert_true(gz_setting_applies(&settings, "environment.tile"));

@@ -56,13 +56,20 @@ struct change {
 	const struct gz_log *log;
 };
 
-/* The spacing table stays the scene's own, as its file is found beside the scene. */
+/* The spacing table and the pictures of the surroundings stay the scene's own, as their files are
+ * found beside the scene. */
 static void keep_settings(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
 {
 	const struct gz_foveation own = settings->foveation;
 	const struct gz_clip_box clip = settings->rays.clip;
+	struct gz_environment *environment = &settings->rays.environment;
+	const struct gz_environment around = *environment;
 	settings->rays = kept->rays;
 	settings->rays.clip = clip;
+	memcpy(environment->cube, around.cube, sizeof around.cube);
+	memcpy(environment->cube_path, around.cube_path, sizeof around.cube_path);
+	if (environment->kind == GZ_SURROUNDINGS_CUBE)
+		environment->kind = around.kind;
 	settings->technique = kept->technique;
 	settings->image_sampling_rate = kept->image_sampling_rate;
 	settings->foveation = kept->foveation;

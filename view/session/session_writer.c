@@ -272,7 +272,7 @@ static void print_change(const struct gz_option *option, const void *before, con
 	gz_text_add(lines, GZ_SESSION_SET_WORD "\t%s\t%s\n", option->key, new);
 }
 
-/* Keep the names of the copies in the session's folder. */
+/* Keep the names that are right in the session's folder. */
 static void keep_names(const struct gz_scene_settings *from, struct gz_scene_settings *to)
 {
 	memcpy(to->volume_file, from->volume_file, sizeof to->volume_file);
@@ -280,6 +280,8 @@ static void keep_names(const struct gz_scene_settings *from, struct gz_scene_set
 	memcpy(to->transfer_also, from->transfer_also, sizeof to->transfer_also);
 	memcpy(to->foveation.table_file, from->foveation.table_file,
 	       sizeof to->foveation.table_file);
+	memcpy(to->rays.environment.cube, from->rays.environment.cube,
+	       sizeof to->rays.environment.cube);
 }
 
 /* Append lines for what changed; the writer's settings become the new ones. */

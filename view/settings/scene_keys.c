@@ -78,6 +78,11 @@ static bool under_the_sky(const struct gz_scene_settings *settings)
 	return by_isosurface(settings) && settings->rays.environment.kind == GZ_SURROUNDINGS_SKY;
 }
 
+static bool with_a_zenith(const struct gz_scene_settings *settings)
+{
+	return by_isosurface(settings) && settings->rays.environment.kind != GZ_SURROUNDINGS_NONE;
+}
+
 static bool on_the_floor(const struct gz_scene_settings *settings)
 {
 	return under_the_sky(settings) && settings->rays.environment.floor;
@@ -180,6 +185,8 @@ static const struct {
 	{ "environment.bright", on_the_floor },
 	{ "environment.dark", on_the_floor },
 	{ "environment.kind", by_isosurface },
+	{ "environment.cube", by_isosurface },
+	{ "environment.up", with_a_zenith },
 	{ "environment.", under_the_sky },
 	{ "slices.", by_slices },
 	{ "render.ray_sampling_rate", by_raycast },

@@ -55,8 +55,8 @@ bool gz_experiment_scenes_ready(const struct gz_window_experiment *state);
 /** Progress of loading, 0 to 1; 1: nothing is loading. */
 double gz_experiment_loaded_share(const struct gz_window_experiment *state);
 
-/** Make the picture of an alternative, whose scene is ready. @return what gz_window_show() and
- *  gz_scene_load_table() return; logged */
+/** Make the picture of an alternative, whose scene is ready. @return what gz_window_show(),
+ *  gz_scene_load_table() and gz_scene_find_cube() return; logged */
 enum gz_result gz_experiment_show(struct gz_window *window,
 				  const struct gz_alternative *alternative);
 

@@ -212,6 +212,8 @@ enum gz_result gz_experiment_show(struct gz_window *window,
 	r = gz_alternative_apply(alternative, &settings);
 	if (r == GZ_OK)
 		r = gz_scene_load_table(alternative->scene, window->log, &settings.foveation);
+	if (r == GZ_OK)
+		r = gz_scene_find_cube(alternative->scene, window->log, &settings.rays.environment);
 	if (r != GZ_OK)
 		return r;
 	window->settings = settings;

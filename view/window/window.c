@@ -100,10 +100,21 @@ static bool take_table(struct gz_window *window, const struct gz_scene_settings 
 	return gz_scene_load_table(gz_window_scene_path(window), window->log, foveation) == GZ_OK;
 }
 
+/* Find the pictures of the surroundings before anything shows them. What is wrong with them is
+ * logged. */
+static bool take_cube(struct gz_window *window, const struct gz_scene_settings *before)
+{
+	struct gz_environment *environment = &window->settings.rays.environment;
+	const struct gz_environment *old = &before->rays.environment;
+	return (environment->kind == old->kind && strcmp(environment->cube, old->cube) == 0) ||
+	       gz_scene_find_cube(gz_window_scene_path(window), window->log, environment) == GZ_OK;
+}
+
 /* Values that contradict each other are not taken. */
 static void take_changes(struct gz_window *window, const struct gz_scene_settings *before)
 {
-	if (!take_table(window, before) || !settings_valid(&window->settings))
+	if (!take_table(window, before) || !take_cube(window, before) ||
+	    !settings_valid(&window->settings))
 		window->settings = *before;
 	window->cast_needed = true;
 	gz_window_wake_panels(window);

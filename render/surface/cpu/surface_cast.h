@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "render/light/environment.h"
 #include "render/plan/plan.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/surface/cpu/embree.h"
@@ -26,10 +27,13 @@ struct gz_surface_mesh {
 
 /** The surroundings: struct gz_environment for the kernels. Places and lengths are in mm. */
 struct gz_surface_environment {
-	bool sky;         /**< else everything is the horizon's colour */
-	bool floor;       /**< there is one */
-	float axes[3][3]; /**< up, and two along the floor; unit vectors */
-	float floor_mm;   /**< height of the floor */
+	enum gz_surroundings kind; /**< NONE: everything is the horizon's colour */
+	const uint32_t *texels;    /**< CUBE: as in struct gz_cube */
+	int edge;
+	bool floor; /**< SKY: there is one */
+	/** Unit vectors. SKY: up, and two along the floor. CUBE: right, front and up. */
+	float axes[3][3];
+	float floor_mm; /**< height of the floor */
 	float tiles_per_mm, fade_per_mm;
 	float horizon[3], zenith[3];
 	float bright[3], dark[3]; /**< of tiles, lit */

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
+#include "render/light/cube.h"
 #include "render/mesh/isosurface.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
@@ -57,6 +58,8 @@ struct gz_surface_caster {
 	double world_mm; /* mm of a world unit */
 	struct gz_surface_tree tree;
 	bool tree_current;
+	struct gz_cube cube;          /* the surroundings' pictures, if they are wanted */
+	char cube_path[GZ_PATH_SIZE]; /* their folder */
 	struct gz_lattices lattices[PLANE_COUNT];
 	char description[64];
 };
@@ -349,12 +352,12 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 	cast->shadows = rays->surface.shadows;
 }
 
-/* Put into the hits of all techniques what lies nearer. A sky lies behind everything, farther than
- * any depth, so that it shows behind translucent objects too. */
-static void merge_hits(const struct gz_surface_hits *own, bool sky, size_t tile,
+/* Put into the hits of all techniques what lies nearer. Surroundings lie behind everything, farther
+ * than any depth, so that it shows behind translucent objects too. */
+static void merge_hits(const struct gz_surface_hits *own, enum gz_surroundings around, size_t tile,
 		       struct gz_ray_hits *all)
 {
-	const float behind = sky ? FLT_MAX : INFINITY;
+	const float behind = around == GZ_SURROUNDINGS_NONE ? INFINITY : FLT_MAX;
 	float *depth = all->depth + tile * GZ_HITS_A_TILE;
 	uint32_t *pixels = all->pixels + tile * GZ_HITS_A_TILE;
 	for (int k = 0; k < GZ_HITS_A_TILE; k++)
@@ -376,6 +379,24 @@ static void fill_glass(const struct gz_surface_caster *caster, const struct gz_s
 			(float)(log2(fmax(look->colour[i], BLACKEST)) / caster->world_mm);
 }
 
+/* Read the pictures of the surroundings if they are wanted and others than those that are there. */
+static enum gz_result prepare_cube(struct gz_surface_caster *caster,
+				   const struct gz_environment *environment, double *prepare_ms)
+{
+	const bool wanted = environment->kind == GZ_SURROUNDINGS_CUBE && environment->cube_path[0];
+	if (caster->cube.edge && strcmp(environment->cube_path, caster->cube_path) != 0)
+		gz_cube_free(&caster->cube);
+	if (!wanted || caster->cube.edge)
+		return GZ_OK;
+	const int64_t start_ns = gz_clock_now_ns();
+	const enum gz_result result =
+		gz_cube_load(environment->cube_path, caster->log, &caster->cube);
+	if (result == GZ_OK)
+		memcpy(caster->cube_path, environment->cube_path, sizeof caster->cube_path);
+	*prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return result;
+}
+
 /* After fill_look(), which knows the light. */
 static void fill_surroundings(const struct gz_surface_caster *caster,
 			      const struct gz_ray_params *rays, struct gz_surface_cast *cast)
@@ -383,9 +404,16 @@ static void fill_surroundings(const struct gz_surface_caster *caster,
 	const struct gz_environment *environment = &rays->environment;
 	struct gz_surface_environment *around = &cast->around;
 	double axes[3][3], half[3], lowest = 0, overhead = 0;
-	around->sky = environment->kind == GZ_SURROUNDINGS_SKY;
+	const bool pictures = environment->kind == GZ_SURROUNDINGS_CUBE;
+	around->kind = pictures && !caster->cube.edge ? GZ_SURROUNDINGS_NONE
+						      : (enum gz_surroundings)environment->kind;
+	around->texels = caster->cube.texels;
+	around->edge = caster->cube.edge;
 	around->floor = environment->floor;
-	gz_environment_axes(environment, axes);
+	if (pictures)
+		gz_cube_axes(environment->up, axes);
+	else
+		gz_environment_axes(environment, axes);
 	gz_volume_half_extent(caster->surfaces[0].object.volume, half);
 	for (int axis = 0; axis < 3; axis++) {
 		lowest -= fabs(axes[0][axis]) * half[axis] * caster->world_mm;
@@ -399,7 +427,8 @@ static void fill_surroundings(const struct gz_surface_caster *caster,
 	around->fade_per_mm = (float)(1 / ((double)GZ_FLOOR_HALF * caster->world_mm));
 	for (int i = 0; i < 3; i++) {
 		around->horizon[i] =
-			(float)(around->sky ? environment->horizon[i] : rays->background[i]);
+			(float)(around->kind == GZ_SURROUNDINGS_SKY ? environment->horizon[i]
+								    : rays->background[i]);
 		around->zenith[i] = (float)environment->zenith[i];
 		around->bright[i] = (float)(environment->bright[i] * lamp);
 		around->dark[i] = (float)(environment->dark[i] * lamp);
@@ -428,7 +457,7 @@ static void cast_surface_part(void *user, size_t part, int worker)
 		}
 		job->tile(&job->cast, &rays, &hits);
 		if (job->hits)
-			merge_hits(&hits, job->cast.around.sky, i, job->hits);
+			merge_hits(&hits, job->cast.around.kind, i, job->hits);
 		memcpy(depth, hits.depth, sizeof depth);
 		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
 		for (int plane = 0; plane < PLANE_COUNT; plane++)
@@ -496,6 +525,8 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	double prepare_ms = 0;
 	if (result == GZ_OK)
 		result = prepare_surfaces(caster, shot->rays->surface.isovalue, &prepare_ms);
+	if (result == GZ_OK)
+		result = prepare_cube(caster, &shot->rays->environment, &prepare_ms);
 	if (result != GZ_OK)
 		return result;
 	const int64_t prepared_ns = gz_clock_now_ns();
@@ -536,6 +567,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	gz_workers_destroy(&self->workers);
 	gz_surface_tree_close(&self->tree);
 	free_surfaces(self);
+	gz_cube_free(&self->cube);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
 	free(self);

@@ -19,9 +19,9 @@
 #ifndef GZ_RENDER_SURFACE_CPU_SURFACE_GLASS_H
 #define GZ_RENDER_SURFACE_CPU_SURFACE_GLASS_H
 
-#include "render/light/environment.h"
 #include "render/surface/cpu/surface_cast.h"
 #include "render/surface/cpu/surface_packet.h"
+#include "render/surface/cpu/surface_surroundings.h"
 
 /* Rays on their way through glass. */
 struct glass {
@@ -29,74 +29,6 @@ struct glass {
 	alignas(64) float weight[3][GZ_SURFACE_RAYS]; /* of what is still to come */
 	alignas(64) int inside[GZ_SURFACE_RAYS];      /* -1: within glass */
 };
-
-struct rgb {
-	vf channel[3];
-};
-
-SIMD vi pack_rgb(const struct rgb *rgb)
-{
-	const vi red = to_byte(rgb->channel[0]), green = to_byte(rgb->channel[1]);
-	const vi blue = to_byte(rgb->channel[2]), opaque = vi_set((int32_t)0xFF000000);
-	return vi_or(vi_or(red, vi_shift_left(green, 8)), vi_or(vi_shift_left(blue, 16), opaque));
-}
-
-/* The floor, or the sky where the floor is not met. */
-SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const vf origin[3],
-			     const vf direction[3], vf rise, struct rgb sky)
-{
-	vf height = vf_set(-around->floor_mm), tiles = vf_set(0);
-	for (int axis = 0; axis < 3; axis++)
-		height = vf_fma(origin[axis], vf_set(around->axes[0][axis]), height);
-	const vm meets = vm_and(vf_less(vf_set(0), height), vf_less(rise, vf_set(-1e-4F)));
-	const vf distance = height / vf_max(vf_set(0) - rise, vf_set(1e-4F));
-	for (int side = 1; side < 3; side++) {
-		vf place = vf_set(0);
-		for (int axis = 0; axis < 3; axis++)
-			place = vf_fma(vf_fma(distance, direction[axis], origin[axis]),
-				       vf_set(around->axes[side][axis]), place);
-		tiles = tiles + vf_floor(place * vf_set(around->tiles_per_mm));
-	}
-	const vf half = tiles * vf_set(0.5F);
-	const vm odd = vf_less(vf_set(0.25F), half - vf_floor(half));
-	const vf share = exp2_negative(distance * vf_set(-around->fade_per_mm));
-	for (int i = 0; i < 3; i++) {
-		const vf horizon = vf_set(around->horizon[i]);
-		const vf tile = vf_select(odd, vf_set(around->dark[i]), vf_set(around->bright[i]));
-		const vf floor = vf_fma(share, tile - horizon, horizon);
-		sky.channel[i] = vf_select(meets, floor, sky.channel[i]);
-	}
-	return sky;
-}
-
-/* What rays from here see of the surroundings. */
-SIMD struct rgb see_surroundings(const struct gz_surface_cast *cast, const vf origin[3],
-				 const vf direction[3])
-{
-	const struct gz_surface_environment *around = &cast->around;
-	struct rgb seen;
-	vf rise = vf_set(0), cosine = vf_set(0);
-	if (!around->sky) {
-		for (int i = 0; i < 3; i++)
-			seen.channel[i] = vf_set(around->horizon[i]);
-		return seen;
-	}
-	for (int axis = 0; axis < 3; axis++) {
-		rise = vf_fma(direction[axis], vf_set(around->axes[0][axis]), rise);
-		cosine = vf_fma(direction[axis], vf_set(cast->light.towards[axis]), cosine);
-	}
-	const vf up = vf_min(vf_max(rise, vf_set(0)), vf_set(1));
-	const vf blue = up * (vf_set(2) - up);
-	const vf sun =
-		clamp_lanes((cosine - vf_set(GZ_SUN_RIM)) * vf_set(1 / (GZ_SUN_DISC - GZ_SUN_RIM)),
-			    vf_set(0), vf_set(1));
-	for (int i = 0; i < 3; i++) {
-		const vf horizon = vf_set(around->horizon[i]);
-		const vf sky = vf_fma(blue, vf_set(around->zenith[i]) - horizon, horizon);
-		seen.channel[i] = vf_fma(sun * sun, vf_set(1) - sky, sky);
-	}
-	return around->floor ? floor_or_sky(around, origin, direction, rise, seen) : seen;
-}
 
 /* The origins and directions of SIMD_LANES rays. */
 struct ways {

@@ -148,7 +148,7 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 						    : vi_shift_left(byte, 16));
 	}
 	vi behind = vi_set((int32_t)cast->background);
-	if (cast->around.sky) {
+	if (cast->around.kind != GZ_SURROUNDINGS_NONE) {
 		const struct ways way = load_ways(&packet->hit.ray, first);
 		const struct rgb seen = see_surroundings(cast, way.origin, way.direction);
 		behind = pack_rgb(&seen);
