@@ -16,6 +16,7 @@ static const struct gz_command *const commands[] = {
 	&gazebench_report,
 	&gazebench_suggest,
 	&gazebench_accumulate,
+	&gazebench_techniques,
 	&gazebench_compare,
 	&gazebench_filter,
 	&gazebench_stability,

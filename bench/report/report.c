@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "bench/report/advice.h"
 #include "bench/report/names.h"
+#include "bench/report/page_parts.h"
 #include "bench/report/study_charts.h"
 #include "bench/report/summary_json.h"
 #include "bench/report/template.h"
@@ -22,37 +23,12 @@ extern const char gz_report_html[];
  * so texts are not checked for UTF-8.
  */
 
-static void set_member_text(json_t *object, const char *key, const char *text)
-{
-	json_object_set_new(object, key, json_string_nocheck(text));
-}
-
 static json_t *member(const json_t *object, const char *key, const char *inner)
 {
 	return json_object_get(json_object_get(object, key), inner);
 }
 
 /* ---- figures ---- */
-
-/* A chart as a figure; NULL if it was not drawn. @p class_name is one of report.html: "small" ones
- * say their caption in their title. */
-static json_t *make_figure(const struct gz_charts *charts, const char *name, const char *class_name,
-			   const char *caption)
-{
-	const struct gz_chart *chart = gz_charts_find(charts, name);
-	if (!chart || !chart->svg[GZ_CANVAS_WIDE])
-		return NULL;
-	const bool small = strcmp(class_name, "small") == 0;
-	const char *wide = chart->svg[GZ_CANVAS_WIDE];
-	const char *narrow = chart->svg[GZ_CANVAS_NARROW]; /* maps are the same on both */
-	json_t *figure = json_object();
-	set_member_text(figure, "class", class_name);
-	set_member_text(figure, "caption", caption);
-	set_member_text(figure, "narrow", narrow ? narrow : wide);
-	set_member_text(figure, "shown", small && narrow ? narrow : wide);
-	json_object_set_new(figure, "small", json_boolean(small));
-	return figure;
-}
 
 static void append_figure(json_t *list, json_t *figure)
 {
@@ -74,7 +50,7 @@ static json_t *make_pareto(const struct gz_summary *summary, const struct gz_gro
 			"broad line: the front, which no variant beats in both. Dashed: the time "
 			"of the rays that the eye can resolve, if each cost what it costs standard."
 		      : "");
-	return make_figure(charts, name, class_name, caption);
+	return gz_page_figure(charts, name, class_name, caption);
 }
 
 static json_t *make_boxes(const struct gz_summary *summary, const struct gz_group *group,
@@ -82,9 +58,10 @@ static json_t *make_boxes(const struct gz_summary *summary, const struct gz_grou
 {
 	char name[GZ_NAMES_SIZE];
 	gz_chart_name(summary, "boxes", group, name);
-	return make_figure(charts, name, class_name,
-			   "Times of frames. The box holds the middle half of them, the bar is the "
-			   "median, the line goes from the least to the 99th of 100.");
+	return gz_page_figure(
+		charts, name, class_name,
+		"Times of frames. The box holds the middle half of them, the bar is the "
+		"median, the line goes from the least to the 99th of 100.");
 }
 
 /* The maps of time and of error of one series. */
@@ -97,7 +74,7 @@ static void append_maps(const struct gz_summary *summary, const struct gz_group 
 		gz_map_chart_name(summary, group, series, of_error, name);
 		snprintf(caption, sizeof caption, "%s: %s over the gaze", words,
 			 of_error ? "error" : "time");
-		append_figure(list, make_figure(charts, name, "small", caption));
+		append_figure(list, gz_page_figure(charts, name, "small", caption));
 	}
 }
 
@@ -123,7 +100,7 @@ static json_t *make_maps(const struct gz_summary *summary, const struct gz_group
 static json_t *make_report_table(const char *caption)
 {
 	json_t *table = json_object(), *rows = json_array(), *headings = json_array();
-	set_member_text(table, "caption", caption);
+	gz_page_set_text(table, "caption", caption);
 	json_object_set_new(table, "headings", headings);
 	json_object_set_new(table, "rows", rows);
 	return table;
@@ -138,7 +115,7 @@ static void add_heading(json_t *table, const char *text)
 static json_t *add_table_row(json_t *table, const char *name)
 {
 	json_t *row = json_object(), *cells = json_array();
-	set_member_text(row, "name", name);
+	gz_page_set_text(row, "name", name);
 	json_object_set_new(row, "cells", cells);
 	json_array_append_new(json_object_get(table, "rows"), row);
 	return cells;
@@ -148,8 +125,8 @@ static json_t *add_table_row(json_t *table, const char *name)
 static void add_cell(json_t *cells, const char *text, const char *near)
 {
 	json_t *cell = json_object();
-	set_member_text(cell, "text", text);
-	set_member_text(cell, "near", near ? near : "");
+	gz_page_set_text(cell, "text", text);
+	gz_page_set_text(cell, "near", near ? near : "");
 	json_array_append_new(cells, cell);
 }
 
@@ -309,10 +286,11 @@ static json_t *make_growth(const struct gz_summary *summary, const struct gz_cha
 	for (size_t i = 0; i < summary->scaling_count; i++) {
 		const struct gz_scaling *scaling = &summary->scalings[i];
 		if (gz_growth_chart_name(summary, i, name))
-			append_figure(figures,
-				      make_figure(charts, name, "wide",
-						  "How the time of a frame grows, both axes "
-						  "logarithmic. Before each name its exponent."));
+			append_figure(
+				figures,
+				gz_page_figure(charts, name, "wide",
+					       "How the time of a frame grows, both axes "
+					       "logarithmic. Before each name its exponent."));
 		gz_variant_words(&summary->study->variants[scaling->variant], words);
 		json_t *cells = add_table_row(growth, words);
 		add_cell(cells, kinds[scaling->kind], NULL);
@@ -338,7 +316,7 @@ static void add_series(const struct gz_summary *summary, const struct gz_group *
 	json_t *means = json_array();
 	char words[GZ_NAMES_SIZE];
 	gz_variant_words(&summary->study->variants[series->variant], words);
-	set_member_text(variant, "words", words);
+	gz_page_set_text(variant, "words", words);
 	json_object_set(variant, "perceived",
 			json_object_get(errors, gz_error_metrics[GZ_PERCEIVED_FLIP].key));
 	json_object_set_new(variant, "rays_share",
@@ -360,7 +338,7 @@ static void add_answer(const struct gz_summary *summary, const struct gz_group *
 	struct gz_text text = { 0 };
 	gz_advice_tell(summary->study, group, &question, gz_advice_find(group, &question), true,
 		       &text);
-	set_member_text(out, "answer", text.bytes ? text.bytes : "");
+	gz_page_set_text(out, "answer", text.bytes ? text.bytes : "");
 	gz_text_free(&text);
 	json_object_set_new(out, "first_chart",
 			    gz_group_measure(group, &measure)
@@ -393,7 +371,7 @@ static void add_group(const struct gz_summary *summary, size_t place,
 	enum gz_error_measure measure;
 	char words[GZ_NAMES_SIZE];
 	gz_group_words(summary->study, group, words);
-	set_member_text(out, "title", words);
+	gz_page_set_text(out, "title", words);
 	json_object_set_new(out, "number", json_integer((json_int_t)place + 1));
 	json_object_set_new(out, "is_first", json_boolean(place == 0)); /* in the page's header */
 	add_answer(summary, group, charts, out);
@@ -413,22 +391,11 @@ static void add_group(const struct gz_summary *summary, size_t place,
 
 /* ---- the machine and the command ---- */
 
-static void add_fact(json_t *facts, const char *name, const char *text)
-{
-	json_t *fact = json_object();
-	if (text[0]) {
-		set_member_text(fact, "name", name);
-		set_member_text(fact, "text", text);
-		json_array_append(facts, fact);
-	}
-	json_decref(fact);
-}
-
 static void add_number_fact(json_t *facts, const char *name, unsigned long long number)
 {
 	char text[32];
 	snprintf(text, sizeof text, "%llu", number);
-	add_fact(facts, name, text);
+	gz_page_add_fact(facts, name, text);
 }
 
 static void add_scene_fact(json_t *facts, const struct gz_study_scene *scene)
@@ -441,28 +408,28 @@ static void add_scene_fact(json_t *facts, const struct gz_study_scene *scene)
 		 words, scene->dims[0], scene->dims[1], scene->dims[2], scene->display.px[0],
 		 scene->display.px[1], scene->display.mm[0], scene->display.mm[1],
 		 scene->display.distance_mm, scene->hash);
-	add_fact(facts, "scene", text);
+	gz_page_add_fact(facts, "scene", text);
 }
 
 static json_t *make_facts(const struct gz_study *study)
 {
 	const struct gz_study_machine *machine = &study->machine;
 	json_t *facts = json_array();
-	add_fact(facts, "processor", machine->host_cpu);
-	add_fact(facts, "memory", machine->memory);
-	add_fact(facts, "system", machine->system);
+	gz_page_add_fact(facts, "processor", machine->host_cpu);
+	gz_page_add_fact(facts, "memory", machine->memory);
+	gz_page_add_fact(facts, "system", machine->system);
 	for (size_t i = 0; i < study->backend_count; i++) {
 		char name[GZ_NAMES_SIZE];
 		snprintf(name, sizeof name, "backend %.100s", study->backends[i]);
-		add_fact(facts, name, machine->backends[i]);
+		gz_page_add_fact(facts, name, machine->backends[i]);
 	}
-	add_fact(facts, "compiler", machine->compiler);
-	add_fact(facts, "program", machine->program);
-	add_fact(facts, "commit", machine->commit);
+	gz_page_add_fact(facts, "compiler", machine->compiler);
+	gz_page_add_fact(facts, "program", machine->program);
+	gz_page_add_fact(facts, "commit", machine->commit);
 	for (size_t i = 0; i < study->scene_count; i++)
 		add_scene_fact(facts, &study->scenes[i]);
-	add_fact(facts, "path of the gaze", study->path);
-	add_fact(facts, "its points, SHA-256", study->path_hash);
+	gz_page_add_fact(facts, "path of the gaze", study->path);
+	gz_page_add_fact(facts, "its points, SHA-256", study->path_hash);
 	add_number_fact(facts, "points", study->point_count);
 	add_number_fact(facts, "frames counted at each",
 			(unsigned long long)study->frames_per_point);
@@ -586,6 +553,7 @@ void gz_page_write(const struct gz_summary *summary, const struct gz_charts *cha
 {
 	json_t *page = gz_summary_to_json(summary), *groups = json_object_get(page, "groups");
 	struct gz_text command = { 0 };
+	gz_page_set_style(page);
 	add_banners(summary->study, charts, page);
 	add_time_titles(page);
 	for (size_t i = 0; i < summary->group_count; i++)
@@ -597,7 +565,7 @@ void gz_page_write(const struct gz_summary *summary, const struct gz_charts *cha
 		json_object_set_new(page, "growth", make_growth(summary, charts));
 	json_object_set_new(page, "facts", make_facts(summary->study));
 	add_command(summary->study, &command);
-	set_member_text(page, "command", command.bytes ? command.bytes : "");
+	gz_page_set_text(page, "command", command.bytes ? command.bytes : "");
 	if (!page || !gz_template_fill(gz_report_html, page, out) || command.failed)
 		out->failed = true;
 	gz_text_free(&command);
