@@ -7,6 +7,7 @@
 #include <zmq.h>
 
 #include "base/clock.h"
+#include "daemon/board_server.h"
 #include "daemon/quota.h"
 #include "daemon/readers.h"
 
@@ -102,9 +103,13 @@ struct channel {
 struct gz_publisher {
 	struct channel stream;
 	struct channel latest;
+	struct gz_board_server *board_server; /* NULL: the system offers none */
+	struct gz_board *board;               /* the server's */
 	const struct gz_log *log;
 	struct gz_readers *readers;
 	struct gz_readers_sums sums; /* at the last update */
+	uint32_t settled;            /* connections to the stream at the last update */
+	int64_t now_ns;              /* of what is being sent, host time */
 	uint64_t arrivals;
 	uint64_t refused; /* readers with too many subscriptions */
 	struct gz_ratelimit complaints;
@@ -161,6 +166,16 @@ static enum gz_result open_channels(struct gz_publisher *publisher,
 	return result;
 }
 
+/* Readers do without the board where there is none. */
+static void open_board(struct gz_publisher *publisher, const char *directory)
+{
+	enum gz_result result = gz_board_server_create(directory, &publisher->board_server);
+	if (result == GZ_OK)
+		publisher->board = gz_board_server_board(publisher->board_server);
+	else
+		gz_info(publisher->log, "no stream in shared memory: %s", gz_result_text(result));
+}
+
 enum gz_result gz_publisher_create(const struct gz_network *network,
 				   struct gz_publisher **out_publisher)
 {
@@ -175,6 +190,7 @@ enum gz_result gz_publisher_create(const struct gz_network *network,
 		gz_publisher_destroy(&publisher);
 		return result;
 	}
+	open_board(publisher, network->directory);
 	*out_publisher = publisher;
 	return GZ_OK;
 }
@@ -189,17 +205,72 @@ int gz_publisher_latest_port(const struct gz_publisher *publisher)
 	return publisher->latest_port;
 }
 
-void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, const void *bytes,
-			   size_t size)
+/* A subscription is seen at the next update, after its connection; until then a connection counts
+ * as a reader of either kind. */
+static uint32_t connected_readers(const struct gz_publisher *publisher)
+{
+	return gz_connections_count(publisher->stream.connections);
+}
+
+/* Whether the stream has readers that do not read the board. Without them, system calls are saved.
+ */
+static bool has_remote_readers(const struct gz_publisher *publisher)
+{
+	return connected_readers(publisher) > publisher->sums.boards ||
+	       publisher->sums.subscriptions > publisher->sums.boards;
+}
+
+/* Whether readers may be waiting at the board. */
+static bool has_board_readers(const struct gz_publisher *publisher)
+{
+	return publisher->sums.boards > 0 || connected_readers(publisher) != publisher->settled;
+}
+
+static void write_board(struct gz_publisher *publisher, const char *topic, const void *bytes,
+			size_t size)
+{
+	const struct gz_board_message message = {
+		.topic = topic,
+		.topic_size = strlen(topic),
+		.body = bytes,
+		.body_size = size,
+		.time_ns = publisher->now_ns,
+		.is_gaze = strncmp(topic, GZ_TOPIC_GAZE, sizeof GZ_TOPIC_GAZE - 1) == 0,
+	};
+	if (publisher->board)
+		gz_board_write(publisher->board, &message);
+}
+
+static void show_board(struct gz_publisher *publisher)
+{
+	if (publisher->board)
+		gz_board_show(publisher->board, has_board_readers(publisher));
+}
+
+static void send_remote(struct gz_publisher *publisher, const char *topic, const void *bytes,
+			size_t size)
 {
 	/* A publishing socket never returns EAGAIN: it drops messages for slow readers. */
 	zmq_send(publisher->stream.socket, topic, strlen(topic), ZMQ_SNDMORE | ZMQ_DONTWAIT);
 	zmq_send(publisher->stream.socket, bytes, size, ZMQ_DONTWAIT);
 }
 
-/* Send Pupil's "pupil." messages, which are parts of the gaze message, to readers that subscribed
- * to them. */
-static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_message *gaze)
+void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, const void *bytes,
+			   size_t size)
+{
+	publisher->now_ns = gz_clock_now_ns();
+	write_board(publisher, topic, bytes, size);
+	show_board(publisher);
+	send_remote(publisher, topic, bytes, size);
+}
+
+/* How a message is sent: write_board() or send_remote(). */
+typedef void send_way(struct gz_publisher *publisher, const char *topic, const void *bytes,
+		      size_t size);
+
+/* Send Pupil's "pupil." messages, which are parts of the gaze message. */
+static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_message *gaze,
+			send_way *send)
 {
 	static const char *const topics[GZ_EYE_COUNT] = {
 		[GZ_EYE_RIGHT] = GZ_TOPIC_PUPIL_RIGHT,
@@ -207,24 +278,31 @@ static void send_pupils(struct gz_publisher *publisher, const struct gz_wire_mes
 	};
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		if (gaze->pupil[i].size > 0)
-			gz_publisher_send_one(publisher, topics[i], gaze->bytes + gaze->pupil[i].at,
-					      gaze->pupil[i].size);
+			send(publisher, topics[i], gaze->bytes + gaze->pupil[i].at,
+			     gaze->pupil[i].size);
 	}
+}
+
+static void send_batch(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch,
+		       send_way *send)
+{
+	for (size_t i = 0; i < batch->count; i++) {
+		const struct gz_outgoing *item = &batch->item[i];
+		send(publisher, item->topic, item->body.bytes, item->body.size);
+	}
+	/* They are made only for readers that subscribed to them. */
+	if (publisher->sums.pupils > 0)
+		send_pupils(publisher, &batch->item[0].body, send);
 }
 
 void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_batch *batch)
 {
-	/* Without readers the system calls are saved. A new reader is seen at the next update; its
-	 * connection and its subscription may be seen in either order. */
-	bool listened = gz_connections_count(publisher->stream.connections) > 0 ||
-			publisher->sums.subscriptions > 0;
-	for (size_t i = 0; listened && i < batch->count; i++) {
-		const struct gz_outgoing *item = &batch->item[i];
-		gz_publisher_send_one(publisher, item->topic, item->body.bytes, item->body.size);
-	}
 	const struct gz_wire_message *gaze = &batch->item[0].body;
-	if (publisher->sums.pupils > 0)
-		send_pupils(publisher, gaze);
+	publisher->now_ns = batch->step.gaze.publish_ns;
+	send_batch(publisher, batch, write_board);
+	show_board(publisher);
+	if (has_remote_readers(publisher))
+		send_batch(publisher, batch, send_remote);
 	if (gz_connections_count(publisher->latest.connections) > 0)
 		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
 }
@@ -294,6 +372,7 @@ void gz_publisher_update(struct gz_publisher *publisher)
 {
 	accept_connections(publisher->stream.socket);
 	accept_connections(publisher->latest.socket);
+	publisher->settled = connected_readers(publisher);
 	update_subscriptions(publisher);
 }
 
@@ -332,6 +411,7 @@ void gz_publisher_destroy(struct gz_publisher **publisher)
 		return;
 	close_channel(&(*publisher)->stream);
 	close_channel(&(*publisher)->latest);
+	gz_board_server_destroy(&(*publisher)->board_server);
 	gz_readers_destroy(&(*publisher)->readers);
 	free(*publisher);
 	*publisher = NULL;

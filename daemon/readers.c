@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "protocol/board/board.h"
 #include "protocol/wire.h"
 
 /* A reader's topics lie one after the other, each after its length. */
@@ -56,10 +57,28 @@ static size_t find_topic(const struct reader *reader, const void *topic, size_t 
 	return at;
 }
 
+static bool is_topic(const unsigned char *topic, size_t size, const char *other, size_t other_size)
+{
+	return size == other_size && memcmp(topic, other, size) == 0;
+}
+
+static bool is_for_board_with_pupils(const unsigned char *topic, size_t size)
+{
+	return is_topic(topic, size, GZ_BOARD_PUPILS_TOPIC, GZ_BOARD_PUPILS_TOPIC_SIZE);
+}
+
+/* Whether this is the subscription of a reader of the board. */
+static bool is_for_board(const unsigned char *topic, size_t size)
+{
+	return is_topic(topic, size, GZ_BOARD_TOPIC, GZ_BOARD_TOPIC_SIZE) ||
+	       is_for_board_with_pupils(topic, size);
+}
+
 /* Whether the subscription includes messages about a pupil: it is the beginning of their topic. */
 static bool takes_pupils(const unsigned char *topic, size_t size)
 {
-	return (size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
+	return is_for_board_with_pupils(topic, size) ||
+	       (size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
 		memcmp(topic, GZ_TOPIC_PUPIL_RIGHT, size) == 0) ||
 	       (size < sizeof GZ_TOPIC_PUPIL_LEFT && memcmp(topic, GZ_TOPIC_PUPIL_LEFT, size) == 0);
 }
@@ -75,6 +94,7 @@ static void add_topic(struct gz_readers *readers, struct reader *reader, const v
 	reader->count++;
 	readers->sums.subscriptions++;
 	readers->sums.pupils += takes_pupils(topic, size);
+	readers->sums.boards += is_for_board(topic, size);
 	readers->sums.topics_size += (uint32_t)(GZ_READER_TOPIC_EXTRA + size);
 }
 
@@ -82,8 +102,10 @@ static void remove_topic(struct gz_readers *readers, struct reader *reader, size
 {
 	size_t size = topic_size_at(reader, at);
 	size_t whole = GZ_READER_TOPIC_EXTRA + size;
+	const unsigned char *topic = reader->topics + at + GZ_READER_TOPIC_EXTRA;
 	readers->sums.subscriptions--;
-	readers->sums.pupils -= takes_pupils(reader->topics + at + GZ_READER_TOPIC_EXTRA, size);
+	readers->sums.pupils -= takes_pupils(topic, size);
+	readers->sums.boards -= is_for_board(topic, size);
 	readers->sums.topics_size -= (uint32_t)whole;
 	memmove(reader->topics + at, reader->topics + at + whole, reader->used - at - whole);
 	reader->used = (uint16_t)(reader->used - whole);

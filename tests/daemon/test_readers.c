@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "daemon/readers.h"
+#include "protocol/board/board.h"
 
 enum { SIZE = 128 };
 
@@ -57,6 +58,26 @@ static void readers_topics_are_counted_once_each(void **state)
 	gz_readers_unsubscribe(readers, 6, 2, "pupil.1", 7);
 	gz_readers_unsubscribe(readers, 5, 1, "never", 5);
 	assert_sums(4, 1, 2 * 7 + 2 + 9);
+}
+
+static void readers_of_the_board_are_counted(void **state)
+{
+	(void)state;
+	const char *plain = GZ_BOARD_TOPIC, *pupils = GZ_BOARD_PUPILS_TOPIC;
+	assert_int_equal(gz_readers_subscribe(readers, 5, 1, plain, GZ_BOARD_TOPIC_SIZE), GZ_OK);
+	assert_int_equal(gz_readers_subscribe(readers, 6, 2, pupils, GZ_BOARD_PUPILS_TOPIC_SIZE),
+			 GZ_OK);
+	assert_int_equal(gz_readers_subscribe(readers, 7, 3, plain, GZ_BOARD_TOPIC_SIZE - 1),
+			 GZ_OK);
+	assert_int_equal(subscribe(7, 3, ""), GZ_OK);
+	assert_int_equal(gz_readers_sums(readers).subscriptions, 4);
+	assert_int_equal(gz_readers_sums(readers).boards, 2);
+	assert_int_equal(gz_readers_sums(readers).pupils, 2);
+	gz_readers_unsubscribe(readers, 6, 2, pupils, GZ_BOARD_PUPILS_TOPIC_SIZE);
+	assert_int_equal(gz_readers_sums(readers).boards, 1);
+	assert_int_equal(gz_readers_sums(readers).pupils, 1);
+	gz_readers_unsubscribe(readers, 5, 1, plain, GZ_BOARD_TOPIC_SIZE);
+	assert_int_equal(gz_readers_sums(readers).boards, 0);
 }
 
 static void readers_beyond_their_number_are_refused_once(void **state)
@@ -131,6 +152,7 @@ TEST_SUITE(readers)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(readers_topics_are_counted_once_each),
+		TEST(readers_of_the_board_are_counted),
 		TEST(readers_beyond_their_number_are_refused_once),
 		TEST(readers_beyond_their_room_are_refused),
 		TEST(readers_beyond_the_number_of_all_are_refused),
