@@ -79,20 +79,38 @@ static void keep_newest_gaze(struct gz_client *client, const struct gz_gaze *gaz
 	client->has_gaze = true;
 }
 
-static void receive_latest(struct gz_client *client)
+static void take_latest(struct gz_client *client, const void *bytes, size_t size)
+{
+	struct gz_gaze gaze;
+	client->counters.received++;
+	if (gz_wire_decode_gaze(bytes, size, &gaze) == GZ_OK)
+		keep_newest_gaze(client, &gaze);
+	else
+		count_malformed_gaze(client);
+}
+
+static void receive_latest_from_socket(struct gz_client *client)
 {
 	zmq_msg_t message;
 	zmq_msg_init(&message);
-	if (zmq_msg_recv(&message, client->subscriber.socket, ZMQ_DONTWAIT) >= 0) {
-		struct gz_gaze gaze;
-		client->counters.received++;
-		if (gz_wire_decode_gaze(zmq_msg_data(&message), zmq_msg_size(&message), &gaze) ==
-		    GZ_OK)
-			keep_newest_gaze(client, &gaze);
-		else
-			count_malformed_gaze(client);
-	}
+	/* A conflated socket holds one message at most. */
+	if (zmq_msg_recv(&message, client->subscriber.socket, ZMQ_DONTWAIT) >= 0)
+		take_latest(client, zmq_msg_data(&message), zmq_msg_size(&message));
 	zmq_msg_close(&message);
+}
+
+static void receive_latest(struct gz_client *client)
+{
+	struct gz_board_link *board = &client->subscriber.board;
+	struct gz_board_reader *reader = gz_board_link_reader(board);
+	struct gz_board_record record;
+	enum gz_result result = reader ? gz_board_newest(reader, &record) : GZ_ERR_TIMEOUT;
+	if (result == GZ_OK)
+		take_latest(client, record.body, record.body_size);
+	else if (result == GZ_ERR_PROTOCOL)
+		gz_board_link_give_up(board);
+	else if (gz_board_link_reads_socket(board))
+		receive_latest_from_socket(client);
 }
 
 int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
@@ -110,7 +128,6 @@ int64_t gz_gaze_age_ns(const struct gz_gaze *gaze, int64_t now_ns)
 enum gz_result gz_client_latest(struct gz_client *client, struct gz_gaze *out_gaze,
 				int64_t *out_age_ns)
 {
-	/* A conflated socket holds one message at most. */
 	receive_latest(client);
 	gz_subscriber_take_events(&client->subscriber);
 	if (!client->has_gaze)

@@ -179,14 +179,16 @@ static bool set_options(const struct gz_subscriber *subscriber, bool conflate)
 	return set;
 }
 
-static bool subscribe(void *socket, const char *const *topics)
+/* Subscribe to the topics, or find the daemon's board. */
+static bool subscribe(struct gz_subscriber *subscriber, const struct gz_subscriber_params *params)
 {
-	if (!topics)
-		return zmq_setsockopt(socket, ZMQ_SUBSCRIBE, "", 0) == 0;
-	for (; *topics; topics++)
-		if (zmq_setsockopt(socket, ZMQ_SUBSCRIBE, *topics, strlen(*topics)) != 0)
-			return false;
-	return true;
+	const struct gz_board_link_params link = {
+		.socket = subscriber->socket,
+		.endpoint = subscriber->endpoint,
+		.channel = params->channel,
+		.topics = params->topics,
+	};
+	return gz_board_link_open(&subscriber->board, &link) == GZ_OK;
 }
 
 static bool open_subscriber_monitor(struct gz_subscriber *subscriber)
@@ -239,8 +241,7 @@ enum gz_result gz_subscriber_open(struct gz_subscriber *subscriber,
 	if (!subscriber->socket || !set_options(subscriber, params->conflate) ||
 	    !gz_handshake_use_keys(subscriber->socket,
 				   subscriber->has_keys ? &subscriber->keys : NULL) ||
-	    !subscribe(subscriber->socket, params->topics) ||
-	    !open_subscriber_monitor(subscriber)) {
+	    !subscribe(subscriber, params) || !open_subscriber_monitor(subscriber)) {
 		gz_err(log, "cannot open a socket for %s: %s", subscriber->endpoint,
 		       zmq_strerror(errno));
 		return GZ_ERR_NO_MEM;
@@ -277,8 +278,25 @@ static void log_fault(struct gz_subscriber *subscriber, enum gz_handshake_fault 
 				 subscriber->has_keys ? &subscriber->keys : NULL, subscriber->log);
 }
 
+/* libzmq subscribes again after a reconnection, but only when the socket is used. While the board
+ * is read, nothing is received from it. */
+static void use_socket(struct gz_subscriber *subscriber)
+{
+	int events;
+	size_t size = sizeof events;
+	if (!gz_board_link_reads_socket(&subscriber->board))
+		zmq_getsockopt(subscriber->socket, ZMQ_EVENTS, &events, &size);
+}
+
+uint64_t gz_subscriber_origin(const struct gz_subscriber *subscriber)
+{
+	const struct gz_board_link *board = &subscriber->board;
+	return board->reader ? UINT64_MAX - board->boards : subscriber->connections;
+}
+
 void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 {
+	use_socket(subscriber);
 	for (;;) {
 		struct gz_monitor_event event = gz_handshake_next_event(subscriber->monitor);
 		enum gz_handshake_fault fault = gz_handshake_fault_of(&event, subscriber->has_keys);
@@ -296,12 +314,15 @@ void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 			if (subscriber->connections > 1)
 				gz_info(subscriber->log, "%s: connected again",
 					subscriber->endpoint);
+			gz_board_link_connected(&subscriber->board);
 		} else if (subscriber->connected) {
 			gz_info(subscriber->log, "%s: connection lost, waiting for it to return",
 				subscriber->endpoint);
+			gz_board_link_disconnected(&subscriber->board);
 		}
 		subscriber->connected = connected;
 	}
+	gz_board_link_step(&subscriber->board);
 	reconnect_if_due(subscriber);
 }
 
@@ -311,6 +332,7 @@ void gz_subscriber_close(struct gz_subscriber *subscriber)
 		zmq_socket_monitor(subscriber->socket, NULL, 0);
 	if (subscriber->monitor)
 		zmq_close(subscriber->monitor);
+	gz_board_link_close(&subscriber->board);
 	if (subscriber->socket)
 		zmq_close(subscriber->socket);
 	if (subscriber->context)

@@ -12,6 +12,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "client/board_link.h"
 #include "client/keys.h"
 #include "protocol/endpoint.h"
 
@@ -91,9 +92,10 @@ struct gz_subscriber_params {
 
 /** A subscriber. One thread at a time. All zero: closed. */
 struct gz_subscriber {
-	void *context; /**< ZeroMQ context, its own */
-	void *socket;  /**< SUB */
-	void *monitor; /**< PAIR: reports events of the connection */
+	void *context;              /**< ZeroMQ context, its own */
+	void *socket;               /**< SUB */
+	void *monitor;              /**< PAIR: reports events of the connection */
+	struct gz_board_link board; /**< from where messages come */
 	const struct gz_log *log;
 	char endpoint[GZ_ENDPOINT_SIZE];
 	bool has_keys;
@@ -123,6 +125,9 @@ enum { GZ_SUBSCRIBER_EVENTS_MS = 500 };
 enum gz_result gz_subscriber_open(struct gz_subscriber *subscriber,
 				  const struct gz_subscriber_params *params,
 				  const struct gz_log *log);
+
+/** A number that changes when further messages may come from another daemon than earlier ones. */
+uint64_t gz_subscriber_origin(const struct gz_subscriber *subscriber);
 
 /**
  * Process the connection's events since the last call, and reconnect if libzmq has given up: it

@@ -73,7 +73,8 @@ enum gz_result gz_stream_open_with_keys(const char *endpoint, const char *const 
 
 /**
  * Wait for the next message. Malformed messages are dropped and counted. Up to 4096 unread messages
- * are kept in memory; the publisher drops further ones.
+ * are kept in memory; the publisher drops further ones. Of a daemon on this machine, whose messages
+ * are read in shared memory (docs/protocol.md), the last 4 MiB are kept.
  *
  * @param timeout_ms        longest wait, ms; 0 polls, negative is refused
  * @param[out] out_message  written only on GZ_OK
