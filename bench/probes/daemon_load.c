@@ -3,6 +3,10 @@
  * at which the simulated tracker's sample was due at the driver to the moment at which a reader has
  * its message.
  *
+ * The daemon's share of a core is compared with that of a thread that wakes as often as there are
+ * samples and does nothing else. Both are measured in turn, several times, and the medians of all
+ * rounds are printed, because the speed of a machine varies.
+ *
  * usage: daemon_load [OPTION]..., see --help */
 #include <dirent.h>
 #include <pthread.h>
@@ -20,10 +24,12 @@
 #include "base/log.h"
 #include "base/option.h"
 #include "base/order.h"
+#include "client/client.h"
+#include "client/stream.h"
 #include "protocol/wire.h"
 
-/* Targets, printed beside the results: part of a core, ms, KiB, ms. */
-static const double CPU_TARGET = 0.05;
+/* Targets, printed beside the results: times a thread that only wakes, ms, KiB, ms. */
+static const double CPU_TARGET = 1.8;
 static const double LATENCY_TARGET_MS = 0.25;
 static const long MEMORY_TARGET_KIB = 20 * 1024;
 static const double START_TARGET_MS = 100;
@@ -31,10 +37,12 @@ static const double START_TARGET_MS = 100;
 /* How often a reader of latest polls, like a renderer at each frame. */
 enum { FRAMES_HZ = 60 };
 
-enum { READERS_MAX = 256, TASKS_MAX = 32 };
+enum { READERS_MAX = 256, TASKS_MAX = 32, ROUNDS_MAX = 64 };
 
 struct settings {
 	double seconds;
+	int rounds;
+	bool library;
 	int rate_hz;
 	int streams;
 	int latest;
@@ -45,8 +53,12 @@ struct settings {
 #define AT(field) offsetof(struct settings, field)
 
 static const struct gz_option options[] = {
-	{ "seconds", GZ_OPTION_DOUBLE, AT(seconds), 1, 36000, 0, NULL, "10",
-	  "how long to measure, s" },
+	{ "seconds", GZ_OPTION_DOUBLE, AT(seconds), 1, 36000, 0, NULL, "4",
+	  "how long to measure in each round, s" },
+	{ "rounds", GZ_OPTION_INT, AT(rounds), 1, ROUNDS_MAX, 0, NULL, "5",
+	  "how often to measure; medians are printed" },
+	{ "library", GZ_OPTION_BOOL, AT(library), 0, 0, 0, NULL, "true",
+	  "readers use the client library, which reads the board; false: sockets of ZeroMQ" },
 	{ "rate-hz", GZ_OPTION_INT, AT(rate_hz), 30, 4000, 0, NULL, "1200",
 	  "of the simulated tracker" },
 	{ "streams", GZ_OPTION_INT, AT(streams), 1, READERS_MAX, 0, NULL, "4",
@@ -108,19 +120,53 @@ static void close_socket(void *socket)
 	zmq_close(socket);
 }
 
-static void take(struct reader *reader, const void *bytes, size_t size, int64_t now_ns)
+static void take(struct reader *reader, const struct gz_gaze *gaze, int64_t now_ns)
 {
-	struct gz_gaze gaze;
-	if (gz_wire_decode_gaze(bytes, size, &gaze) != GZ_OK)
-		return;
 	/* Caches, queues and the processor's clock settle first. */
-	if (gaze.seq < (uint64_t)reader->settings->rate_hz)
+	if (gaze->seq < (uint64_t)reader->settings->rate_hz)
 		return;
 	if (reader->count == 0)
-		reader->first_seq = gaze.seq;
-	reader->last_seq = gaze.seq;
+		reader->first_seq = gaze->seq;
+	reader->last_seq = gaze->seq;
 	/* The simulator delivers at the moment of exposure: no latency and no skew are set. */
-	reader->latency_ms[reader->count++] = gz_ns_to_ms(now_ns - gaze.host_ns);
+	reader->latency_ms[reader->count++] = gz_ns_to_ms(now_ns - gaze->host_ns);
+}
+
+static void *read_stream_by_library(void *user)
+{
+	struct reader *reader = user;
+	char endpoint[256];
+	const char *const topics[] = { reader->settings->topic, NULL };
+	struct gz_stream *stream = NULL;
+	struct gz_message message;
+	snprintf(endpoint, sizeof endpoint, "ipc://%s/stream", reader->directory);
+	if (gz_stream_open_with_keys(endpoint, topics, NULL, NULL, &stream) != GZ_OK)
+		abort();
+	while (reader->count < reader->wanted && gz_stream_read(stream, 5000, &message) == GZ_OK)
+		if (message.kind == GZ_MESSAGE_GAZE)
+			take(reader, &message.gaze, message.received_ns);
+	gz_stream_close(&stream);
+	return NULL;
+}
+
+static void *read_latest_by_library(void *user)
+{
+	struct reader *reader = user;
+	char endpoint[256];
+	struct gz_client *client = NULL;
+	struct gz_gaze gaze;
+	snprintf(endpoint, sizeof endpoint, "ipc://%s/latest", reader->directory);
+	if (gz_client_open_with_keys(endpoint, NULL, NULL, &client) != GZ_OK)
+		abort();
+	int64_t begin_ns = gz_clock_now_ns();
+	size_t frames = (size_t)((reader->settings->seconds + 1) * FRAMES_HZ);
+	for (size_t i = 1; i <= frames; i++) {
+		gz_clock_sleep_until_ns(begin_ns + (int64_t)i * GZ_NS_PER_S / FRAMES_HZ);
+		if (gz_client_latest(client, &gaze, NULL) == GZ_OK)
+			reader->count++;
+	}
+	gz_client_close(&client);
+	return NULL;
 }
 
 static void *read_stream(void *user)
@@ -129,14 +175,16 @@ static void *read_stream(void *user)
 	void *socket = open_socket(reader, "stream", reader->settings->topic);
 	char topic[80];
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
+	struct gz_gaze gaze;
 	while (reader->count < reader->wanted) {
 		int length = zmq_recv(socket, topic, sizeof topic, 0);
 		int size = length < 0 ? -1 : zmq_recv(socket, bytes, sizeof bytes, 0);
 		int64_t now_ns = gz_clock_now_ns();
 		if (size < 0)
 			break;
-		if (length >= 5 && memcmp(topic, GZ_TOPIC_GAZE, 5) == 0)
-			take(reader, bytes, (size_t)size, now_ns);
+		if (length >= 5 && memcmp(topic, GZ_TOPIC_GAZE, 5) == 0 &&
+		    gz_wire_decode_gaze(bytes, (size_t)size, &gaze) == GZ_OK)
+			take(reader, &gaze, now_ns);
 	}
 	close_socket(socket);
 	return NULL;
@@ -147,13 +195,14 @@ static void *read_latest(void *user)
 	struct reader *reader = user;
 	void *socket = open_socket(reader, "latest", "");
 	unsigned char bytes[GZ_WIRE_MESSAGE_SIZE];
+	struct gz_gaze gaze;
 	int64_t begin_ns = gz_clock_now_ns();
 	size_t frames = (size_t)((reader->settings->seconds + 1) * FRAMES_HZ);
 	for (size_t i = 1; i <= frames; i++) {
 		gz_clock_sleep_until_ns(begin_ns + (int64_t)i * GZ_NS_PER_S / FRAMES_HZ);
 		int size = zmq_recv(socket, bytes, sizeof bytes, ZMQ_DONTWAIT);
-		if (size > 0 && reader->count < reader->wanted)
-			take(reader, bytes, (size_t)size, gz_clock_now_ns());
+		if (size > 0 && gz_wire_decode_gaze(bytes, (size_t)size, &gaze) == GZ_OK)
+			reader->count++;
 	}
 	close_socket(socket);
 	return NULL;
@@ -247,10 +296,30 @@ static void read_usage(pid_t pid, struct usage *usage)
 	closedir(directory);
 }
 
-static void print_usage(const struct settings *settings, const struct usage *before,
-			const struct usage *after)
+/* A thread of the daemon, over a round. */
+struct thread_share {
+	char name[32];
+	double share; /* of a core */
+	double wakes; /* for each sample */
+};
+
+/* What one round gave. */
+struct round {
+	double share; /* of a core, all threads of the daemon */
+	double bare;  /* the same for a thread that only wakes */
+	size_t thread_count;
+	struct thread_share thread[TASKS_MAX];
+	double p50_ms[READERS_MAX], p99_ms[READERS_MAX], worst_ms[READERS_MAX];
+	uint64_t samples, missing; /* all readers of the stream */
+	uint64_t frames;           /* all readers of latest: reads that gave a gaze */
+	long memory_kib;
+	double started_ms;
+};
+
+static void take_shares(const struct settings *settings, const struct usage *before,
+			const struct usage *after, struct round *round)
 {
-	double seconds = gz_ns_to_s(after->time_ns - before->time_ns), sum = 0;
+	double seconds = gz_ns_to_s(after->time_ns - before->time_ns);
 	for (size_t i = 0; i < after->count; i++) {
 		double cpu_s = after->task[i].cpu_s;
 		uint64_t switches = after->task[i].switches;
@@ -260,31 +329,28 @@ static void print_usage(const struct settings *settings, const struct usage *bef
 			cpu_s -= before->task[j].cpu_s;
 			switches -= before->task[j].switches;
 		}
-		sum += cpu_s / seconds;
-		if (cpu_s > 0)
-			printf("  thread %-16s %5.2f %% of a core, wakes %.2f times a sample\n",
-			       after->task[i].name, 100 * cpu_s / seconds,
-			       (double)switches / seconds / settings->rate_hz);
+		struct thread_share *thread = &round->thread[round->thread_count++];
+		memcpy(thread->name, after->task[i].name, sizeof thread->name);
+		thread->share = cpu_s / seconds;
+		thread->wakes = (double)switches / seconds / settings->rate_hz;
+		round->share += thread->share;
 	}
-	printf("gazed at %d Hz, %d readers of '%s', %d of latest: %.2f %% of a core (target %.0f "
-	       "%%: %s)\n",
-	       settings->rate_hz, settings->streams, settings->topic, settings->latest, 100 * sum,
-	       100 * CPU_TARGET, sum < CPU_TARGET ? "met" : "missed");
 }
 
-/* What the machine takes for waking a thread as often as there are samples, and nothing else: the
- * floor under the daemon's share, which wakes two. */
-static double bare_wake_share(int rate_hz)
+/* What the machine takes for waking a thread as often as there are samples, and nothing else. */
+static double bare_wake_share(const struct settings *settings)
 {
 	struct timespec before, after;
 	prctl(PR_SET_TIMERSLACK, 1);
 	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &before);
 	int64_t begin_ns = gz_clock_now_ns();
-	for (int i = 1; i <= rate_hz; i++)
-		gz_clock_sleep_until_ns(begin_ns + i * GZ_NS_PER_S / rate_hz);
+	int wakes = (int)(settings->seconds * settings->rate_hz);
+	for (int i = 1; i <= wakes; i++)
+		gz_clock_sleep_until_ns(begin_ns + i * GZ_NS_PER_S / settings->rate_hz);
 	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
-	return (double)(after.tv_sec - before.tv_sec) +
-	       1e-9 * (double)(after.tv_nsec - before.tv_nsec);
+	return ((double)(after.tv_sec - before.tv_sec) +
+		1e-9 * (double)(after.tv_nsec - before.tv_nsec)) /
+	       settings->seconds;
 }
 
 static double percentile(const double *sorted, size_t count, double part)
@@ -292,26 +358,24 @@ static double percentile(const double *sorted, size_t count, double part)
 	return sorted[(size_t)(part * (double)(count - 1) + 0.5)];
 }
 
-static void print_reader(int number, struct reader *reader)
+static void take_latency(struct round *round, int number, struct reader *reader)
 {
 	double *ms = reader->latency_ms;
-	uint64_t gaps = reader->last_seq - reader->first_seq + 1 - reader->count;
+	if (reader->count == 0)
+		return;
+	round->samples += reader->count;
+	round->missing += reader->last_seq - reader->first_seq + 1 - reader->count;
 	qsort(ms, reader->count, sizeof *ms, gz_compare_doubles);
-	double p99_ms = percentile(ms, reader->count, 0.99);
-	printf("stream reader %d: %zu samples, %llu missing; sample to subscriber p50 %.3f ms, "
-	       "p99 %.3f ms, p99.9 %.3f ms, worst %.3f ms (target p99 %.2f ms: %s)\n",
-	       number, reader->count, (unsigned long long)gaps, percentile(ms, reader->count, 0.5),
-	       p99_ms, percentile(ms, reader->count, 0.999), ms[reader->count - 1],
-	       LATENCY_TARGET_MS, p99_ms < LATENCY_TARGET_MS ? "met" : "missed");
+	round->p50_ms[number] = percentile(ms, reader->count, 0.5);
+	round->p99_ms[number] = percentile(ms, reader->count, 0.99);
+	round->worst_ms[number] = ms[reader->count - 1];
 }
 
-static void print_memory(pid_t pid)
+static long most_memory_kib(pid_t pid)
 {
 	char path[64];
 	snprintf(path, sizeof path, "/proc/%d/status", (int)pid);
-	long now_kib = read_number(path, "VmRSS:"), most_kib = read_number(path, "VmHWM:");
-	printf("resident memory %ld KiB, most %ld KiB (target %ld KiB: %s)\n", now_kib, most_kib,
-	       MEMORY_TARGET_KIB, most_kib < MEMORY_TARGET_KIB ? "met" : "missed");
+	return read_number(path, "VmHWM:");
 }
 
 static void start_readers(struct reader *readers, const struct settings *settings,
@@ -327,53 +391,151 @@ static void start_readers(struct reader *readers, const struct settings *setting
 		};
 		snprintf(readers[i].directory, sizeof readers[i].directory, "%s", directory);
 		readers[i].latency_ms = calloc(readers[i].wanted, sizeof(double));
+		void *(*const reads[2][2])(void *) = {
+			{ read_latest, read_stream },
+			{ read_latest_by_library, read_stream_by_library },
+		};
 		if (!readers[i].latency_ms ||
-		    pthread_create(&readers[i].thread, NULL, is_stream ? read_stream : read_latest,
+		    pthread_create(&readers[i].thread, NULL, reads[settings->library][is_stream],
 				   &readers[i]) != 0)
 			abort();
 	}
 }
 
-static int measure_load(const char *directory, const struct settings *settings)
+/* @return whether all samples came */
+static bool measure_round(const char *directory, const struct settings *settings,
+			  struct round *round)
 {
 	static struct reader readers[2 * READERS_MAX];
 	struct usage before, after;
 	bool complete = true;
+	*round = (struct round) { 0 };
 	void *context = zmq_ctx_new();
 	int64_t begin_ns = gz_clock_now_ns();
 	pid_t pid = spawn(directory, settings);
-	double started_ms = start_ms(context, directory, begin_ns);
+	round->started_ms = start_ms(context, directory, begin_ns);
 	start_readers(readers, settings, directory, context);
 	/* Start-up is not counted: from the end of the warm-up, roughly. */
 	gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_S);
 	read_usage(pid, &before);
+	gz_clock_sleep_until_ns(before.time_ns +
+				(int64_t)((settings->seconds - 0.2) * GZ_NS_PER_S));
+	read_usage(pid, &after);
 	for (int i = 0; i < settings->streams; i++) {
 		pthread_join(readers[i].thread, NULL);
 		complete &= readers[i].count == readers[i].wanted;
+		take_latency(round, i, &readers[i]);
 	}
-	read_usage(pid, &after);
-	print_memory(pid);
+	take_shares(settings, &before, &after, round);
+	round->memory_kib = most_memory_kib(pid);
 	kill(pid, SIGTERM);
 	waitpid(pid, NULL, 0);
-	printf("first answer %.1f ms after the start (target %.0f ms: %s)\n", started_ms,
-	       START_TARGET_MS, started_ms < START_TARGET_MS ? "met" : "missed");
-	print_usage(settings, &before, &after);
-	printf("a thread that only wakes %d times a second: %.2f %% of a core here and now\n",
-	       settings->rate_hz, 100 * bare_wake_share(settings->rate_hz));
-	for (int i = 0; i < settings->streams + settings->latest; i++) {
-		if (i >= settings->streams)
-			pthread_join(readers[i].thread, NULL);
-		else if (readers[i].count > 0)
-			print_reader(i + 1, &readers[i]);
-		free(readers[i].latency_ms);
+	for (int i = settings->streams; i < settings->streams + settings->latest; i++) {
+		pthread_join(readers[i].thread, NULL);
+		round->frames += readers[i].count;
 	}
+	for (int i = 0; i < settings->streams + settings->latest; i++)
+		free(readers[i].latency_ms);
 	zmq_ctx_term(context);
+	round->bare = bare_wake_share(settings);
+	return complete;
+}
+
+/* The median over all rounds of the double at @p offset in a round. */
+static double median(const struct round *rounds, int count, size_t offset)
+{
+	double value[ROUNDS_MAX] = { 0 };
+	for (int i = 0; i < count; i++)
+		memcpy(&value[i], (const char *)&rounds[i] + offset, sizeof value[i]);
+	qsort(value, (size_t)count, sizeof *value, gz_compare_doubles);
+	return (value[count / 2] + value[(count - 1) / 2]) / 2;
+}
+
+#define MEDIAN(field) median(rounds, count, offsetof(struct round, field))
+
+static const char *verdict(bool met)
+{
+	return met ? "met" : "missed";
+}
+
+static void print_threads(const struct round *rounds, int count)
+{
+	/* The threads are the same in every round, and listed in the order of their start. */
+	for (size_t i = 0; i < rounds[0].thread_count; i++) {
+		size_t at = offsetof(struct round, thread) + i * sizeof rounds[0].thread[0];
+		double share = median(rounds, count, at + offsetof(struct thread_share, share));
+		if (share > 0)
+			printf("  thread %-16s %5.2f %% of a core, wakes %.2f times a sample\n",
+			       rounds[0].thread[i].name, 100 * share,
+			       median(rounds, count, at + offsetof(struct thread_share, wakes)));
+	}
+}
+
+static void print_cpu(const struct settings *settings, const struct round *rounds, int count)
+{
+	double ratio[ROUNDS_MAX] = { 0 };
+	for (int i = 0; i < count; i++)
+		ratio[i] = rounds[i].share / rounds[i].bare;
+	qsort(ratio, (size_t)count, sizeof *ratio, gz_compare_doubles);
+	double middle = (ratio[count / 2] + ratio[(count - 1) / 2]) / 2;
+	printf("gazed at %d Hz, %d readers of '%s', %d of latest, %s: medians of %d rounds\n",
+	       settings->rate_hz, settings->streams, settings->topic, settings->latest,
+	       settings->library ? "with the client library" : "with sockets of ZeroMQ", count);
+	print_threads(rounds, count);
+	printf("  whole daemon            %5.2f %% of a core\n", 100 * MEDIAN(share));
+	printf("a thread that only wakes  %5.2f %% of a core\n", 100 * MEDIAN(bare));
+	printf("ratio %.2f, in single rounds %.2f to %.2f (target %.1f: %s)\n", middle, ratio[0],
+	       ratio[count - 1], CPU_TARGET, verdict(middle <= CPU_TARGET));
+}
+
+static void print_latency(const struct settings *settings, const struct round *rounds, int count)
+{
+	uint64_t samples = 0, missing = 0, frames = 0;
+	for (int i = 0; i < count; i++) {
+		samples += rounds[i].samples;
+		missing += rounds[i].missing;
+		frames += rounds[i].frames;
+	}
+	for (int i = 0; i < settings->streams; i++) {
+		size_t reader = (size_t)i * sizeof(double);
+		double p99_ms = median(rounds, count, offsetof(struct round, p99_ms) + reader);
+		printf("stream reader %d: sample to subscriber p50 %.3f ms, p99 %.3f ms, worst "
+		       "%.3f ms (target p99 %.2f ms: %s)\n",
+		       i + 1, median(rounds, count, offsetof(struct round, p50_ms) + reader),
+		       p99_ms, median(rounds, count, offsetof(struct round, worst_ms) + reader),
+		       LATENCY_TARGET_MS, verdict(p99_ms <= LATENCY_TARGET_MS));
+	}
+	printf("%llu samples read, %llu missing; latest gave a gaze %llu times\n",
+	       (unsigned long long)samples, (unsigned long long)missing,
+	       (unsigned long long)frames);
+}
+
+static int measure_load(const char *directory, const struct settings *settings)
+{
+	static struct round rounds[ROUNDS_MAX];
+	int count = settings->rounds;
+	bool complete = true;
+	long memory_kib = 0;
+	for (int i = 0; i < count; i++) {
+		complete &= measure_round(directory, settings, &rounds[i]);
+		if (rounds[i].memory_kib > memory_kib)
+			memory_kib = rounds[i].memory_kib;
+	}
+	print_cpu(settings, rounds, count);
+	print_latency(settings, rounds, count);
+	double started_ms = MEDIAN(started_ms);
+	printf("resident memory, most %ld KiB (target %ld KiB: %s)\n", memory_kib,
+	       MEMORY_TARGET_KIB, verdict(memory_kib < MEMORY_TARGET_KIB));
+	printf("first answer %.1f ms after the start (target %.0f ms: %s)\n", started_ms,
+	       START_TARGET_MS, verdict(started_ms < START_TARGET_MS));
 	return complete ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 static void remove_directory(const char *directory)
 {
-	static const char *const names[] = { "stream", "latest", "control", "inlet", "lock" };
+	static const char *const names[] = {
+		"stream", "latest", "control", "inlet", "board", "lock"
+	};
 	char path[128];
 	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
 		snprintf(path, sizeof path, "%s/%s", directory, names[i]);
