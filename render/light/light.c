@@ -26,8 +26,7 @@ const struct gz_option gz_light_options[] = {
 	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(occlusion_radius), 2, 64, .preset = "8",
 	  .help = "radius of ambient occlusion, voxel lengths" },
 	{ "light.shadow_steps", GZ_OPTION_INT, AT(shadow_steps), 0, GZ_SHADOW_STEPS_MAX,
-	  .preset = "0",
-	  .help = "soft shadows: steps from each sample towards the light; 0 = off" },
+	  .preset = "0", .help = "soft shadows: steps towards the light; 0 = off" },
 	{ "light.shadow_reach", GZ_OPTION_DOUBLE, AT(shadow_reach), 4, 1e5, .preset = "256",
 	  .help = "how far the steps of shadows go at most, voxel lengths" },
 };

@@ -17,6 +17,10 @@
 /** Greatest number of steps towards the light. Chosen: twice as many change no picture. */
 #define GZ_SHADOW_STEPS_MAX 64
 
+/** Most cells of the grid of shadows, unless even the coarsest has more. Chosen: half as many as
+ *  voxels along each edge of 320; two cores take some 50 ms for them. */
+#define GZ_LIGHT_GRID_MOST ((size_t)1 << 22)
+
 /** The axes that a light's direction refers to. */
 enum gz_light_frame {
 	GZ_LIGHT_CAMERA, /**< x right, y up, z towards the viewer */
@@ -60,6 +64,11 @@ enum gz_light_frame {
  *                                GZ_SHADOW_DIRECT 2^i up to the planned length, or the last level
  *
  * so that cells are about as large as steps are long.
+ *
+ * Samples do not walk themselves. T is found so in the middles of a grid's cells, kept in units of
+ * 1/65535, and is trilinear between them. The cells are those of the finest level that has at most
+ * GZ_LIGHT_GRID_MOST of them, two voxel lengths long up to 320^3 voxels. Level, steps and T refer
+ * to the full volume for samples of all levels of detail.
  */
 struct gz_light {
 	double direction[3];               /**< towards the light; any length but 0 */
@@ -69,7 +78,7 @@ struct gz_light {
 	double occlusion;        /**< share of ambient light that surroundings can block, [0, 1];
 				    0 turns ambient occlusion off */
 	double occlusion_radius; /**< voxel lengths */
-	int shadow_steps;        /**< towards the light from each sample; 0 turns shadows off */
+	int shadow_steps;        /**< towards the light from each cell; 0 turns shadows off */
 	double shadow_reach;     /**< how far they go at most, voxel lengths */
 };
 

@@ -56,7 +56,8 @@ void oracle_check_but(struct small_scene *scene, int width, int height, int pixe
 	if (occluded)
 		occlusion = oracle_occlusion_make(&scene->volume, &scene->transfer, &scene->rays);
 	if (shadowed)
-		oracle_shadows_make(&scene->volume, &scene->transfer, &scene->rays, &occlusion);
+		oracle_shadows_make(&scene->volume, &scene->transfer, &scene->camera, &scene->rays,
+				    &occlusion);
 	for (const char *const *set = small_scene_simd_sets(); *set; set++)
 		check_set(scene, occluded || shadowed ? &occlusion : NULL, *set, width, height,
 			  pixels_off);

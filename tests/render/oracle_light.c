@@ -107,14 +107,13 @@ static double kept_by_volume(const struct gz_volume *volume, const struct gz_lev
 	return -log2(fmax(1 - rgba[3], 1e-9));
 }
 
-static double kept_by_cells(const struct gz_level *level, const struct oracle_occlusion *shadows,
-			    int number, const double at[3])
+/* What cells of a grid around the volume say at a place in voxel coordinates of the level. */
+static double in_cells(const double *cells, const int dims[3], const int edge[3],
+		       const struct gz_level *level, const double at[3])
 {
-	const int *dims = shadows->level_dims[number];
 	double place[3], sum = 0;
 	for (int axis = 0; axis < 3; axis++)
-		place[axis] =
-			at[axis] * level->factor[axis] / shadows->level_edge[number][axis] - 0.5;
+		place[axis] = at[axis] * level->factor[axis] / edge[axis] - 0.5;
 	for (int corner = 0; corner < 8; corner++) {
 		double weight = 1;
 		int cell[3];
@@ -124,10 +123,9 @@ static double kept_by_cells(const struct gz_level *level, const struct oracle_oc
 			cell[axis] = (int)clamp(floor(place[axis]) + (corner >> axis & 1), 0,
 						dims[axis] - 1);
 		}
-		sum += weight *
-		       shadows->kept[number][(cell[2] * dims[1] + cell[1]) * dims[0] + cell[0]];
+		sum += weight * cells[(cell[2] * dims[1] + cell[1]) * dims[0] + cell[0]];
 	}
-	return sum / exp2(number + 1);
+	return sum;
 }
 
 /* The share of light that arrives at a place in voxel coordinates of the level. */
@@ -161,11 +159,27 @@ static double arriving(const struct gz_volume *volume, const struct gz_level *le
 		for (int axis = 0; axis < 3; axis++)
 			there[axis] = at[axis] + (from + length / 2) * towards[axis];
 		const int number = (int)fmin(floor(log2(planned / direct)), shadows->levels - 1);
-		kept += length * (planned < direct ? kept_by_volume(volume, level, transfer,
-								    rays->interpolation, there)
-						   : kept_by_cells(level, shadows, number, there));
+		kept += length *
+			(planned < direct
+				 ? kept_by_volume(volume, level, transfer, rays->interpolation,
+						  there)
+				 : in_cells(shadows->kept[number], shadows->level_dims[number],
+					    shadows->level_edge[number], level, there) /
+					   exp2(number + 1));
 	}
 	return exp2(-kept);
+}
+
+/* The same from the grid, or by many small steps. */
+static double find_share(const struct gz_volume *volume, const struct gz_level *level,
+			 const struct gz_transfer *transfer, const struct gz_ray_params *rays,
+			 const struct oracle_occlusion *shadows, const double to_light[3],
+			 const double at[3])
+{
+	if (shadows->exact_shadows)
+		return arriving(volume, level, transfer, rays, shadows, to_light, at);
+	return in_cells(shadows->arriving, shadows->level_dims[0], shadows->level_edge[0], level,
+			at);
 }
 
 void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
@@ -191,9 +205,10 @@ void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 	const double o = occlusion && occlusion->cells
 				 ? light->occlusion * occlusion_at(level, occlusion, at)
 				 : 0;
-	const double t = light->shadow_steps > 0 && occlusion
-				 ? arriving(volume, level, transfer, rays, occlusion, to_light, at)
-				 : 1;
+	const double t =
+		light->shadow_steps > 0 && occlusion
+			? find_share(volume, level, transfer, rays, occlusion, to_light, at)
+			: 1;
 	const double weight = rays->shading == GZ_SHADING_GRADIENT
 				      ? gz_dot3(g, g) / (gz_dot3(g, g) + weak * weak)
 				      : 0;
@@ -314,8 +329,29 @@ static double cell_keeps(const struct gz_volume *volume, const struct gz_transfe
 	return fmin(-log2(sum / 12), 16);
 }
 
+/* The share of light that arrives in the middles of the cells of level 0. */
+static void fill_arriving(const struct gz_volume *volume, const struct gz_transfer *transfer,
+			  const struct gz_camera *camera, const struct gz_ray_params *rays,
+			  struct oracle_occlusion *occlusion)
+{
+	const struct gz_level full = { .volume = *volume, .factor = { 1, 1, 1 }, .scale = 1 };
+	const int *dims = occlusion->level_dims[0], *edge = occlusion->level_edge[0];
+	const int count = dims[0] * dims[1] * dims[2];
+	double to_light[3];
+	towards_light(camera, &rays->light, to_light);
+	occlusion->arriving = malloc((size_t)count * sizeof *occlusion->arriving);
+	for (int i = 0; i < count; i++) {
+		const double at[3] = { (i % dims[0] + 0.5) * edge[0],
+				       (i / dims[0] % dims[1] + 0.5) * edge[1],
+				       (i / dims[0] / dims[1] + 0.5) * edge[2] };
+		occlusion->arriving[i] =
+			arriving(volume, &full, transfer, rays, occlusion, to_light, at);
+	}
+}
+
 void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfer *transfer,
-			 const struct gz_ray_params *rays, struct oracle_occlusion *occlusion)
+			 const struct gz_camera *camera, const struct gz_ray_params *rays,
+			 struct oracle_occlusion *occlusion)
 {
 	int cells = 0;
 	for (int n = 0; n < ORACLE_SHADOW_LEVELS && cells != 1; n++) {
@@ -335,11 +371,13 @@ void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfe
 							    i / dims[0] / dims[1] });
 		occlusion->levels = n + 1;
 	}
+	fill_arriving(volume, transfer, camera, rays, occlusion);
 }
 
 void oracle_occlusion_free(struct oracle_occlusion *occlusion)
 {
 	free(occlusion->cells);
+	free(occlusion->arriving);
 	for (int n = 0; n < occlusion->levels; n++)
 		free(occlusion->kept[n]);
 	*occlusion = (struct oracle_occlusion) { 0 };

@@ -21,11 +21,14 @@ struct oracle_occlusion {
 	int levels;
 	int level_dims[ORACLE_SHADOW_LEVELS][3], level_edge[ORACLE_SHADOW_LEVELS][3];
 	double *kept[ORACLE_SHADOW_LEVELS]; /**< powers of two, for a cell's nominal length */
+	double *arriving; /**< shares of the light in the middles of the cells of level 0 */
 };
 
-/** Make the blocks of shadows for the clip box of @p rays. */
+/** Make the blocks of shadows for the clip box of @p rays, and what light arrives for the camera.
+ */
 void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfer *transfer,
-			 const struct gz_ray_params *rays, struct oracle_occlusion *occlusion);
+			 const struct gz_camera *camera, const struct gz_ray_params *rays,
+			 struct oracle_occlusion *occlusion);
 
 /** Free what both hold. */
 void oracle_occlusion_free(struct oracle_occlusion *occlusion);

@@ -10,6 +10,7 @@
 #include "oracle_check.h"
 #include "oracle_light.h"
 #include "render/plan/method.h"
+#include "render/raycast/cpu/light_grid.h"
 #include "render/raycast/shared/lighting.h"
 
 static struct small_scene shadowed_waves(int nx, int ny, int nz, enum gz_voxel_type type)
@@ -102,6 +103,46 @@ static void shadows_of_segments_colours_and_nearest_voxels_equal_the_oracle(void
 	oracle_check(&coloured, 23, 21);
 }
 
+/* Bodies far apart in empty space, where the grid has cells that nobody looks up. */
+static void shadows_of_bodies_far_apart_equal_the_oracle(void **state)
+{
+	(void)state;
+	enum { EDGE = 60, BODY = 9 };
+	struct small_scene scene = shadowed_waves(EDGE, EDGE, EDGE, GZ_VOXEL_U8);
+	uint8_t *voxels = scene.volume.voxels;
+	for (int i = 0; i < EDGE * EDGE * EDGE; i++) {
+		const int at[3] = { i % EDGE, i / EDGE % EDGE, i / EDGE / EDGE };
+		bool first = true, second = true;
+		for (int axis = 0; axis < 3; axis++) {
+			first = first && at[axis] >= 1 && at[axis] < 1 + BODY;
+			second = second && at[axis] >= EDGE - BODY && at[axis] < EDGE;
+		}
+		voxels[i] = first || second ? 100 + voxels[i] / 2 : 0;
+	}
+	gz_volume_find_range(&scene.volume);
+	scene.transfer.points[1].opacity = 0.3;
+	scene.rays.light.frame = GZ_LIGHT_WORLD;
+	memcpy(scene.rays.light.direction, (double[3]) { 1, 1, 1 }, 3 * sizeof(double));
+	scene.rays.light.ambient = 0.1;
+	oracle_check(&scene, 31, 27);
+}
+
+static void grid_of_a_large_volume_has_longer_cells(void **state)
+{
+	(void)state;
+	const struct gz_shadow_cells shadows = {
+		.count = 3,
+		.level = { { { 300, 300, 100 }, { 2, 2, 1 }, 0 },
+			   { { 150, 150, 100 }, { 4, 4, 1 }, 0 },
+			   { { 75, 75, 50 }, { 8, 8, 2 }, 0 } },
+	};
+	struct gz_light_grid grid = { 0 };
+	assert_int_equal(gz_light_grid_lay_out(&shadows, &grid), 150 * 150 * 100);
+	assert_int_equal(grid.dims[2], 100);
+	assert_int_equal(grid.edge[0], 4);
+	assert_int_equal(grid.edge[2], 1);
+}
+
 static void render_shadows(const struct small_scene *scene, int side, struct gz_image *image)
 {
 	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, NULL);
@@ -141,10 +182,11 @@ static void more_steps_come_closer_to_light_followed_in_small_steps(void **state
 	scene.rays.light.ambient = 0;
 	const double off = error_of_steps(&scene, 0), few = error_of_steps(&scene, 3);
 	const double eight = error_of_steps(&scene, 8), many = error_of_steps(&scene, 64);
-	printf("mean error of 0, 3, 8 and 64 steps: %.2f %.2f %.2f %.2f grey levels\n", off, few,
+	printf("mean error of 0, 3, 8 and 64 steps: %.3f %.3f %.3f %.3f grey levels\n", off, few,
 	       eight, many);
-	assert_true(many < 0.5);
-	assert_true(eight < 2 && many < eight && eight < few && few < off);
+	/* what is left is the grid's: it spans a fifteenth of the volume */
+	assert_true(many < 0.7 && eight < 0.7);
+	assert_true(eight < few && few < 1 && off > 5);
 	small_scene_free(&scene);
 }
 
@@ -235,16 +277,48 @@ static void shadows_follow_a_new_transfer_function_and_clip_box(void **state)
 	small_scene_free(&scene);
 }
 
-static void samples_farther_apart_take_fewer_steps(void **state)
+/* How many pixels of a picture change when shadows change, drawn by one ray caster, of which none
+ * may differ from those of a new one. */
+static int count_changed(struct gz_raycaster *renderer, const struct small_scene *scene,
+			 struct gz_image *image)
+{
+	enum { SIDE = 32 };
+	struct gz_image before = *image, fresh = { 0 };
+	int changed = 0;
+	*image = (struct gz_image) { 0 };
+	small_scene_render(renderer, scene, SIDE, SIDE, image, NULL);
+	render_shadows(scene, SIDE, &fresh);
+	assert_memory_equal(image->pixels, fresh.pixels, (size_t)SIDE * SIDE * 4);
+	for (int i = 0; before.pixels && i < SIDE * SIDE; i++)
+		changed += memcmp(before.pixels + 4 * i, image->pixels + 4 * i, 4) != 0;
+	gz_image_free(&before);
+	gz_image_free(&fresh);
+	return changed;
+}
+
+static void shadows_follow_the_light_its_steps_and_their_reach(void **state)
 {
 	(void)state;
-	struct gz_ray_params rays = gz_ray_params_default();
-	assert_int_equal(gz_lighting_shadow_steps(&rays, 1), 0);
-	rays.light.shadow_steps = 8;
-	assert_int_equal(gz_lighting_shadow_steps(&rays, 1), 8);
-	assert_int_equal(gz_lighting_shadow_steps(&rays, 1.5), 6);
-	assert_int_equal(gz_lighting_shadow_steps(&rays, 4), 2);
-	assert_int_equal(gz_lighting_shadow_steps(&rays, 20), 1);
+	struct small_scene scene = shadowed_waves(30, 33, 27, GZ_VOXEL_U8);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image image = { 0 };
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.rays.shading = GZ_SHADING_NONE;
+	(void)count_changed(renderer, &scene, &image);
+	assert_int_equal(count_changed(renderer, &scene, &image), 0);
+	scene.rays.light.direction[0] = 0.6;
+	assert_true(count_changed(renderer, &scene, &image) > 100);
+	scene.rays.light.shadow_steps = 2;
+	assert_true(count_changed(renderer, &scene, &image) > 100);
+	scene.rays.light.shadow_reach = 6;
+	assert_true(count_changed(renderer, &scene, &image) > 100);
+	scene.camera.eye[0] += 0.7; /* and the light turns with the camera */
+	assert_true(count_changed(renderer, &scene, &image) > 100);
+	scene.rays.interpolation = GZ_INTERPOLATION_NEAREST;
+	assert_true(count_changed(renderer, &scene, &image) > 100);
+	gz_image_free(&image);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&scene);
 }
 
 static void shadows_beyond_their_range_are_refused(void **state)
@@ -274,7 +348,9 @@ TEST_SUITE(shadows)
 		cmocka_unit_test(even_matter_is_as_dark_as_the_formula_says),
 		cmocka_unit_test(shadows_are_the_same_bits_for_any_number_of_threads_and_any_tile),
 		cmocka_unit_test(shadows_follow_a_new_transfer_function_and_clip_box),
-		cmocka_unit_test(samples_farther_apart_take_fewer_steps),
+		cmocka_unit_test(shadows_of_bodies_far_apart_equal_the_oracle),
+		cmocka_unit_test(grid_of_a_large_volume_has_longer_cells),
+		cmocka_unit_test(shadows_follow_the_light_its_steps_and_their_reach),
 		cmocka_unit_test(shadows_beyond_their_range_are_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

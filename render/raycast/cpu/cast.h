@@ -76,7 +76,6 @@ struct gz_cast {
 	float background[3];
 	float end_transmittance; /**< a ray ends when less than this share of light comes through */
 	struct gz_cast_light light;
-	int shadow_steps[GZ_PLAN_STEPS_MAX]; /**< for each step of the plan; 0: no shadows */
 	const uint32_t *colours; /**< of voxels in memory, see gz_colour_pack(); NULL without */
 };
 
@@ -103,6 +102,18 @@ struct gz_cast_tile {
 typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct gz_cast_tile *tile,
 				       uint32_t out_pixels[GZ_TILE_RAYS]);
 
+/** Places counted from the first datum of the full volume. */
+struct gz_cast_places {
+	float at[3][GZ_TILE_RAYS];
+	uint32_t active; /**< bit i: place i is asked for */
+};
+
+/** Find which share of the light arrives at some places by walking towards it, as struct gz_light
+ *  says. @param[out] out_shares  written for all places, valid for active ones */
+typedef void gz_cast_arriving_function(const struct gz_cast *cast, enum gz_voxel_type type,
+				       bool nearest, const struct gz_cast_places *places,
+				       float out_shares[GZ_TILE_RAYS]);
+
 /** What a kernel can do. The plain one stays free of what is seldom needed. */
 enum gz_cast_variant {
 	GZ_CAST_PLAIN,
@@ -117,6 +128,7 @@ enum gz_cast_variant {
 struct gz_cast_kernels {
 	const char *name;
 	gz_cast_tile_function *tile[GZ_CAST_VARIANT_COUNT][GZ_VOXEL_TYPE_COUNT][2];
+	gz_cast_arriving_function *arriving;
 };
 
 extern const struct gz_cast_kernels gz_cast_portable;

@@ -220,9 +220,23 @@ DEFINE_TILE(rich_f32_nearest, GZ_VOXEL_F32, 1, GZ_CAST_RICH)
 DEFINE_TILE(coloured_u8, GZ_VOXEL_U8, 0, GZ_CAST_COLOURED)
 DEFINE_TILE(coloured_u8_nearest, GZ_VOXEL_U8, 1, GZ_CAST_COLOURED)
 
+/* gz_cast_arriving_function */
+static void arriving_shares(const struct gz_cast *cast, enum gz_voxel_type type, bool nearest,
+			    const struct gz_cast_places *places, float out_shares[GZ_TILE_RAYS])
+{
+	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
+		const vm mask = vm_from_bits(places->active >> first);
+		const vf at[3] = { vf_load(places->at[0] + first), vf_load(places->at[1] + first),
+				   vf_load(places->at[2] + first) };
+		vf_store(out_shares + first,
+			 walk_to_light(cast, (struct reading) { type, nearest }, at, mask));
+	}
+}
+
 #define GZ_CAST_KERNELS(set)                                                       \
 	{                                                                          \
 		.name = set,                                                     \
+		.arriving = arriving_shares,                                     \
 		.tile = {                                                        \
 			[GZ_CAST_PLAIN] = {                                      \
 				[GZ_VOXEL_U8] = { tile_u8, tile_u8_nearest },    \

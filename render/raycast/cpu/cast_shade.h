@@ -83,7 +83,6 @@ SIMD void set_up_view(const struct gz_cast *cast, int step, const struct rays *r
 	const vf inverse = vf_set(1) / vf_sqrt(length2);
 	for (int axis = 0; axis < 3; axis++)
 		view->half[axis] = view->half[axis] * inverse;
-	view->shadow_steps = cast->shadow_steps[step];
 }
 
 /* The gradient's differences at places counted from the first datum, from two samples along each
@@ -240,13 +239,12 @@ SIMD vf find_kept(const struct gz_cast *cast, struct reading reading, float plan
 	return vf_set(0) - extinction;
 }
 
-/* The share of light that arrives at places counted from the first datum: struct gz_light has the
- * formulas. Not inlined, for the reasons of shade(). */
-static __attribute__((noinline)) vf find_arriving(const struct gz_cast *cast,
-						  struct reading reading, int steps, const vf at[3],
-						  vm mask)
+/* The share of light that arrives at places counted from the first datum, by steps towards it:
+ * struct gz_light has the formulas. */
+SIMD vf walk_to_light(const struct gz_cast *cast, struct reading reading, const vf at[3], vm mask)
 {
 	const struct gz_cast_shadow *shadow = &cast->light.shadow;
+	const int steps = shadow->steps;
 	vf leave = vf_set(shadow->reach), kept = vf_set(0);
 	for (int axis = 0; axis < 3; axis++)
 		leave = vf_min(leave, (vf_set(shadow->exit[axis]) - at[axis]) *
@@ -268,6 +266,13 @@ static __attribute__((noinline)) vf find_arriving(const struct gz_cast *cast,
 		kept = vf_select(within, vf_fma(length, here, kept), kept);
 	}
 	return exp2_negative(vf_set(0) - kept);
+}
+
+/* The same from the grid. */
+SIMD vf find_arriving(const struct gz_cast *cast, const vf at[3], vm mask)
+{
+	return find_in_cells(&cast->light.shadow.arriving, at, mask) *
+	       vf_set(1.0F / GZ_LIGHT_GRID_UNIT);
 }
 
 /* How light changes a colour without regard to its surface: the factor, and what follows from the
@@ -304,7 +309,7 @@ SIMD void light_surfaces(const struct gz_cast *cast, struct reading reading,
 	if (cast->light.occluded.cells)
 		occlusion = find_occlusion(&cast->light, at, mask) * vf_set(cast->light.occlusion);
 	lighting->shine = find_shine(&cast->light, view, gradient, occlusion);
-	if (view->shadow_steps) {
+	if (cast->light.shadow.steps) {
 		const vf ambient = vf_set(cast->light.ambient) * (vf_set(1) - occlusion);
 		struct shine *shine = &lighting->shine;
 		shine->factor = vf_fma(arriving, shine->factor - ambient, ambient);
@@ -326,9 +331,9 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 	vf at[3], arriving = vf_set(1);
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-	if (view->shadow_steps) {
+	if (cast->light.shadow.steps) {
 		const vf ambient = vf_set(cast->light.ambient);
-		arriving = find_arriving(cast, reading, view->shadow_steps, at, mask);
+		arriving = find_arriving(cast, at, mask);
 		lighting.even = vf_fma(arriving, vf_set(1) - ambient, ambient);
 	}
 	if (cast->light.gradient)

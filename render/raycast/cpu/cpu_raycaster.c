@@ -10,6 +10,7 @@
 #include "base/workers.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
+#include "render/raycast/cpu/light_grid.h"
 #include "render/raycast/shared/brick_stream.h"
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/lighting.h"
@@ -73,6 +74,7 @@ struct cpu_raycaster {
 	struct gz_transfer_entry *step_tables;
 	struct gz_preintegration preintegration;
 	struct gz_lighting lighting;
+	struct gz_light_grid light_grid;
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -118,6 +120,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	free_fine_cells(cpu);
 	gz_brick_stream_free(&cpu->stream);
 	gz_lighting_free(&cpu->lighting);
+	gz_light_grid_free(&cpu->light_grid);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_tables);
 	free(cpu->table);
@@ -237,6 +240,7 @@ static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	gz_preintegration_forget(&cpu->preintegration);
 	gz_lighting_forget(&cpu->lighting);
+	gz_light_grid_forget(&cpu->light_grid);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
@@ -327,7 +331,6 @@ static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *
 		cast->step_table[i] = entries;
 		cast->voxel_lengths[i] = (float)length;
 		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
-		cast->shadow_steps[i] = gz_lighting_shadow_steps(rays, plan->steps[i]);
 	}
 	for (int channel = 0; channel < 3; channel++)
 		cast->background[channel] = (float)rays->background[channel];
@@ -501,6 +504,38 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 	return GZ_OK;
 }
 
+/* Make the grid of shadows, if the frame has them. */
+static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_ray_params *rays,
+				  struct cast_job *job)
+{
+	if (rays->light.shadow_steps == 0)
+		return GZ_OK;
+	/* What coarser levels show, and segments from end to end, may lie where no voxel does. */
+	const struct gz_light_grid_request request = {
+		.cast = &job->casts[0],
+		.arriving = cpu->kernels->arriving,
+		.type = cpu->volume->type,
+		.nearest = gz_ray_samples_nearest(rays, cpu->volume),
+		.shadows = &cpu->lighting.shadows,
+		.cells = &cpu->detail.cells[0],
+		.everywhere =
+			job->cast_count > 1 || rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+		.clip = &rays->clip,
+		.workers = cpu->workers,
+	};
+	struct gz_light_grid *grid = &cpu->light_grid;
+	const enum gz_result result = gz_light_grid_make(&request, grid);
+	if (result != GZ_OK) {
+		gz_err(cpu->base.log, "no memory for shadows: set light.shadow_steps to 0");
+		return result;
+	}
+	for (int i = 0; i < job->cast_count; i++)
+		gz_cast_cells_fill(grid->cells, grid->dims, grid->edge,
+				   cpu->detail.levels.level[i].factor,
+				   &job->casts[i].light.shadow.arriving);
+	return GZ_OK;
+}
+
 static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats)
 {
@@ -542,6 +577,8 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	result = fill_casts(cpu, camera, &ray_frame, rays, &job);
 	if (result == GZ_OK && cpu->volume->bricks)
 		result = take_bricks(cpu, camera, rays, &job);
+	if (result == GZ_OK)
+		result = light_casts(cpu, rays, &job);
 	if (result != GZ_OK)
 		return result;
 	fill_tile_offsets(&job);

@@ -12,7 +12,6 @@
  * ray. */
 struct view {
 	vf eye[3], half[3];
-	int shadow_steps; /* towards the light from each sample */
 };
 
 /* 2^x for x <= 0, to 2e-7: the fraction in [-1/2, 1/2] by a polynomial (Taylor of exp(f ln 2),

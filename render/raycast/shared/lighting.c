@@ -83,9 +83,8 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 	return result;
 }
 
-/* Cells of these edges, in voxels of the full volume, from a level of detail. */
-static void fill_cells(const uint16_t *cells, const int dims[3], const int edge[3],
-		       const int factor[3], struct gz_cast_cells *out_cells)
+void gz_cast_cells_fill(const uint16_t *cells, const int dims[3], const int edge[3],
+			const int factor[3], struct gz_cast_cells *out_cells)
 {
 	const int32_t strides[3] = { 1, dims[0], dims[0] * dims[1] };
 	out_cells->cells = cells;
@@ -106,8 +105,8 @@ static void fill_shadow_levels(const struct gz_shadow_cells *shadows, const int 
 	shadow->levels = shadows->count;
 	for (int i = 0; i < shadows->count; i++) {
 		const struct gz_shadow_level *level = &shadows->level[i];
-		fill_cells(shadows->cells + level->first, level->dims, level->edge, factor,
-			   &shadow->level[i]);
+		gz_cast_cells_fill(shadows->cells + level->first, level->dims, level->edge, factor,
+				   &shadow->level[i]);
 		shadow->kept_per_length[i] = 1.0F / (float)(GZ_SHADOW_UNIT * (2 << i));
 	}
 }
@@ -158,17 +157,12 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		out_light->gradient_scale[axis] = (float)(scale[axis] / factor[axis]);
 	}
 	if (wants_occlusion(rays))
-		fill_cells(lighting->occlusion.cells, lighting->occlusion.dims,
-			   lighting->occlusion.edge, factor, &out_light->occluded);
+		gz_cast_cells_fill(lighting->occlusion.cells, lighting->occlusion.dims,
+				   lighting->occlusion.edge, factor, &out_light->occluded);
 	if (light->shadow_steps > 0) {
 		fill_shadow(lighting->volume, factor, rays, towards, &out_light->shadow);
 		fill_shadow_levels(&lighting->shadows, factor, &out_light->shadow);
 	}
-}
-
-int gz_lighting_shadow_steps(const struct gz_ray_params *rays, double step)
-{
-	return rays->light.shadow_steps > 0 ? (int)ceil(rays->light.shadow_steps / step) : 0;
 }
 
 void gz_lighting_free(struct gz_lighting *lighting)

@@ -23,6 +23,9 @@ struct gz_cast_cells {
 	int32_t stride[3];       /**< 0 along an axis of one cell, x excepted */
 };
 
+/** A cell's number in the grid of struct gz_cast_shadow where all light arrives. */
+#define GZ_LIGHT_GRID_UNIT 65535
+
 /** Shadows ready for the kernels; lengths in voxel lengths, places in voxels of the level of detail
  *  counted from the first datum. */
 struct gz_cast_shadow {
@@ -35,6 +38,9 @@ struct gz_cast_shadow {
 	struct gz_cast_cells level[GZ_SHADOW_LEVELS];
 	float kept_per_length[GZ_SHADOW_LEVELS]; /**< turns a cell of the level into powers of two
 						    per voxel length */
+	/** The share of the light that arrives, in units of 1 / GZ_LIGHT_GRID_UNIT. Filled by the
+	 *  backend, which makes it. */
+	struct gz_cast_cells arriving;
 };
 
 /** struct gz_light ready for the kernels: one light, and how surfaces reflect it. */
@@ -91,10 +97,15 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		      struct gz_cast_light *out_light);
 
 /**
- * How many steps towards the light samples take that lie @p step times as far apart as the scene
- * says: as many times fewer, but at least one. 0 without shadows.
+ * Fill a grid for the kernels.
+ *
+ * @param cells   x fastest; GZ_VOLUME_PADDING bytes follow; borrowed
+ * @param dims    cells along each axis
+ * @param edge    of a cell, voxels of the full volume
+ * @param factor  as for gz_lighting_fill()
  */
-int gz_lighting_shadow_steps(const struct gz_ray_params *rays, double step);
+void gz_cast_cells_fill(const uint16_t *cells, const int dims[3], const int edge[3],
+			const int factor[3], struct gz_cast_cells *out_cells);
 
 /** Free and zero. */
 void gz_lighting_free(struct gz_lighting *lighting);

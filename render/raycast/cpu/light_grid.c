@@ -1,0 +1,151 @@
+#include "render/raycast/cpu/light_grid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Voxels along the edge of a macrocell. */
+enum { MACROCELL = GZ_MACROCELL_EDGE };
+
+/* The job that the workers share. */
+struct light_grid_job {
+	const struct gz_light_grid_request *request;
+	struct gz_light_grid *grid;
+	bool everywhere; /* make all cells */
+};
+
+void gz_light_grid_forget(struct gz_light_grid *grid)
+{
+	grid->current = false;
+}
+
+size_t gz_light_grid_lay_out(const struct gz_shadow_cells *shadows, struct gz_light_grid *grid)
+{
+	size_t count = 0;
+	for (int i = 0; i < shadows->count; i++) {
+		const struct gz_shadow_level *level = &shadows->level[i];
+		count = (size_t)level->dims[0] * (size_t)level->dims[1] * (size_t)level->dims[2];
+		memcpy(grid->dims, level->dims, sizeof grid->dims);
+		memcpy(grid->edge, level->edge, sizeof grid->edge);
+		if (count <= GZ_LIGHT_GRID_MOST)
+			break;
+	}
+	return count;
+}
+
+/* The number of the macrocell that holds the middle of a cell, along one axis. */
+static size_t macrocell_of(const struct light_grid_job *job, int axis, int cell)
+{
+	const int edge = job->grid->edge[axis];
+	const int number = (cell * edge + edge / 2) / MACROCELL;
+	const int last = job->request->cells->dims[axis] - 1;
+	return (size_t)(number < last ? number : last);
+}
+
+/* Whether a sample that shows something can look up a cell: it reads the cells around it, which
+ * reach no farther than into the next macrocell. */
+static bool is_cell_wanted(const struct light_grid_job *job, const int cell[3])
+{
+	const struct gz_macrocells *cells = job->request->cells;
+	if (job->everywhere)
+		return true;
+	const size_t row = macrocell_of(job, 2, cell[2]) * (size_t)cells->dims[1] +
+			   macrocell_of(job, 1, cell[1]);
+	return cells->distance[row * (size_t)cells->dims[0] + macrocell_of(job, 0, cell[0])] <= 1;
+}
+
+/* Fill some cells of a row, from one on. */
+static void fill_light_cells(const struct light_grid_job *job, const int first[3], int count,
+			     uint16_t *out_cells)
+{
+	const struct gz_light_grid_request *request = job->request;
+	const int *edge = job->grid->edge;
+	struct gz_cast_places places = { .active = 0 };
+	float shares[GZ_TILE_RAYS] = { 0 };
+	for (int i = 0; i < count; i++) {
+		const int cell[3] = { first[0] + i, first[1], first[2] };
+		for (int axis = 0; axis < 3; axis++)
+			places.at[axis][i] = ((float)cell[axis] + 0.5F) * (float)edge[axis] - 0.5F;
+		places.active |= (uint32_t)is_cell_wanted(job, cell) << i;
+	}
+	if (places.active)
+		request->arriving(request->cast, request->type, request->nearest, &places, shares);
+	for (int i = 0; i < count; i++) {
+		const float rounded = shares[i] * GZ_LIGHT_GRID_UNIT + 0.5F;
+		out_cells[i] = places.active >> i & 1 ? (uint16_t)rounded : GZ_LIGHT_GRID_UNIT;
+	}
+}
+
+/* A part is a row of cells. */
+static void light_grid_row(void *user, size_t part, int worker)
+{
+	const struct light_grid_job *job = user;
+	const int *dims = job->grid->dims;
+	uint16_t *row = job->grid->cells + part * (size_t)dims[0];
+	int first[3] = { 0, (int)(part % (size_t)dims[1]), (int)(part / (size_t)dims[1]) };
+	(void)worker;
+	for (; first[0] < dims[0]; first[0] += GZ_TILE_RAYS) {
+		const int rest = dims[0] - first[0];
+		fill_light_cells(job, first, rest < GZ_TILE_RAYS ? rest : GZ_TILE_RAYS,
+				 row + first[0]);
+	}
+}
+
+static struct gz_light_grid_key key_of(const struct gz_light_grid_request *request)
+{
+	const struct gz_cast_shadow *shadow = &request->cast->light.shadow;
+	struct gz_light_grid_key key = {
+		.steps = shadow->steps,
+		.reach = shadow->reach,
+		.clip = *request->clip,
+		.nearest = request->nearest,
+		.everywhere = request->everywhere,
+	};
+	memcpy(key.towards, shadow->towards, sizeof key.towards);
+	return key;
+}
+
+static bool same_key(const struct gz_light_grid_key *a, const struct gz_light_grid_key *b)
+{
+	return a->steps == b->steps && a->reach == b->reach && a->nearest == b->nearest &&
+	       a->everywhere == b->everywhere && a->towards[0] == b->towards[0] &&
+	       a->towards[1] == b->towards[1] && a->towards[2] == b->towards[2] &&
+	       gz_clip_box_same(&a->clip, &b->clip);
+}
+
+static enum gz_result reserve_light_cells(struct gz_light_grid *grid, size_t count)
+{
+	const size_t padding = GZ_VOLUME_PADDING / sizeof *grid->cells;
+	if (count > grid->capacity) {
+		free(grid->cells);
+		grid->cells = calloc(count + padding, sizeof *grid->cells);
+		grid->capacity = grid->cells ? count : 0;
+	}
+	return grid->cells ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
+				  struct gz_light_grid *grid)
+{
+	const struct gz_light_grid_key key = key_of(request);
+	struct light_grid_job job = { request, grid, request->everywhere };
+	if (grid->current && same_key(&grid->key, &key))
+		return GZ_OK;
+	grid->current = false;
+	if (reserve_light_cells(grid, gz_light_grid_lay_out(request->shadows, grid)) != GZ_OK) {
+		gz_light_grid_free(grid);
+		return GZ_ERR_NO_MEM;
+	}
+	for (int axis = 0; axis < 3; axis++) /* else they reach beyond the next macrocell */
+		job.everywhere = job.everywhere || grid->edge[axis] > MACROCELL;
+	gz_workers_run(request->workers, light_grid_row, &job,
+		       (size_t)grid->dims[1] * (size_t)grid->dims[2]);
+	grid->key = key;
+	grid->current = true;
+	return GZ_OK;
+}
+
+void gz_light_grid_free(struct gz_light_grid *grid)
+{
+	free(grid->cells);
+	*grid = (struct gz_light_grid) { 0 };
+}
