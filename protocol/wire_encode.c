@@ -259,8 +259,9 @@ struct mapped {
 
 static void pack_mapped(struct gz_pack *pack, const struct mapped *mapped)
 {
-	char topic[32];
-	snprintf(topic, sizeof topic, "%s_on_surface", mapped->topic);
+	/* Made for each sample, for which printing would take too long. */
+	char topic[64];
+	stpcpy(stpcpy(topic, mapped->topic), "_on_surface");
 	gz_pack_text(pack, "topic", topic);
 	gz_pack_norm_pos(pack, mapped->point);
 	gz_pack_float(pack, "confidence", mapped->confidence);
@@ -286,7 +287,8 @@ enum gz_result gz_wire_encode_surface(const struct gz_gaze *gaze,
 				      const char *surface_name, struct gz_wire_message *out_message)
 {
 	char surface_topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
-	snprintf(surface_topic, sizeof surface_topic, GZ_TOPIC_SURFACES "%s", surface_name);
+	memcpy(surface_topic, GZ_TOPIC_SURFACES, sizeof GZ_TOPIC_SURFACES);
+	strncat(surface_topic, surface_name, GZ_NAME_SIZE - 1);
 
 	struct gz_pack pack;
 	gz_pack_begin(&pack, out_message);

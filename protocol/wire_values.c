@@ -92,18 +92,22 @@ static size_t utf8_character_length(const unsigned char *text)
 void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 {
 	pack_key(pack, key);
-	size_t left = strlen(text);
+	size_t left = strlen(text), good = 0;
 	msgpack_pack_str(&pack->packer, left);
-	while (left > 0) {
+	while (good < left) {
 		/* The final NUL is no continuation byte, so this never reads past it. */
-		size_t length = utf8_character_length((const unsigned char *)text);
-		if (length > 0)
-			append_packed(pack, text, length);
-		else
-			append_packed(pack, "?", length = 1);
-		text += length;
-		left -= length;
+		size_t length = utf8_character_length((const unsigned char *)text + good);
+		if (length > 0) {
+			good += length;
+			continue;
+		}
+		append_packed(pack, text, good);
+		append_packed(pack, "?", 1);
+		text += good + 1;
+		left -= good + 1;
+		good = 0;
 	}
+	append_packed(pack, text, good);
 }
 
 void gz_pack_bool(struct gz_pack *pack, const char *key, bool value)
