@@ -24,6 +24,7 @@ struct gz_viewer_link {
 	struct gz_viewer_pointer pointer; /* as last sent */
 	struct gz_viewer_window window;   /* as last sent */
 	struct gz_monitor_place monitor;  /* for the next one */
+	bool has_still, still_scene;      /* for the next one */
 };
 
 /* The inlet is in the same directory as the latest channel. */
@@ -123,11 +124,17 @@ void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], in
 {
 	const struct gz_viewer_window *sent = &link->window;
 	struct gz_viewer_window window = {
-		.known = true, .monitor = link->monitor, .has_time = true, .time_ns = now_ns
+		.known = true,
+		.monitor = link->monitor,
+		.has_still = link->has_still,
+		.still_scene = link->still_scene,
+		.has_time = true,
+		.time_ns = now_ns,
 	};
 	memcpy(window.rect_px, rect_px, sizeof window.rect_px);
 	bool same = sent->known && memcmp(sent->rect_px, rect_px, sizeof window.rect_px) == 0 &&
-		    memcmp(&sent->monitor, &link->monitor, sizeof link->monitor) == 0;
+		    memcmp(&sent->monitor, &link->monitor, sizeof link->monitor) == 0 &&
+		    sent->has_still == link->has_still && sent->still_scene == link->still_scene;
 	if (!same || now_ns - sent->time_ns >= GZ_VIEWER_LINK_WINDOW_NS)
 		send_viewer_window(link, &window);
 }
@@ -136,6 +143,12 @@ void gz_viewer_link_monitor(struct gz_viewer_link *link, const struct gz_monitor
 {
 	const struct gz_monitor_place unknown = { .scale = 0 };
 	link->monitor = monitor ? *monitor : unknown;
+}
+
+void gz_viewer_link_scene(struct gz_viewer_link *link, bool still)
+{
+	link->has_still = true;
+	link->still_scene = still;
 }
 
 void gz_viewer_link_annotate(struct gz_viewer_link *link, const char *label, int64_t time_ns)

@@ -49,7 +49,8 @@ void gz_viewer_link_pointer(struct gz_viewer_link *link, const struct gz_point *
 			    int64_t now_ns);
 
 /**
- * Report the position of the window's content. Sent if it has changed, or was not sent for
+ * Report the position of the window's content. Sent if it, its monitor or whether its scene is
+ * still has changed, or was not sent for
  * GZ_VIEWER_LINK_WINDOW_NS.
  *
  * @param rect_px  x y w h on the display, px
@@ -64,6 +65,12 @@ void gz_viewer_link_window(struct gz_viewer_link *link, const int rect_px[4], in
  * @param monitor  copied; NULL: unknown
  */
 void gz_viewer_link_monitor(struct gz_viewer_link *link, const struct gz_monitor_place *monitor);
+
+/**
+ * Whether the scene is still: nothing moves that the person looks at. It is reported with the
+ * window from then on. Until the first call nothing is said about it.
+ */
+void gz_viewer_link_scene(struct gz_viewer_link *link, bool still);
 
 /**
  * Send an annotation to all readers; in a running recording it becomes a mark.

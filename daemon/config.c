@@ -72,6 +72,8 @@ static const struct gz_option options[] = {
 	{ "stream.surfaces", GZ_OPTION_STRING, AT(surfaces), 0, 256, 0, NULL,
 	  "screen psychopy_iohub_surface",
 	  "surface names under which the screen is published; at most 8" },
+	{ "viewers.still_scene", GZ_OPTION_BOOL, AT(viewers_still_scene), 0, 0, 0, NULL, "true",
+	  "a viewer may say that nothing moves in its scene; there is no pursuit then" },
 	{ "lsl.outlet", GZ_OPTION_BOOL, AT(lsl), 0, 0, 0, NULL, "false",
 	  "offer the gaze and its events as streams of the Lab Streaming Layer, which every "
 	  "machine on the network can read" },

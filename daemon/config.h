@@ -62,9 +62,10 @@ struct gz_config {
 	char control[GZ_ENDPOINT_SIZE]; /**< as given; empty: see control_endpoint */
 	int stream_port, latest_port, inlet_port; /**< 0: the system chooses */
 	char key_directory[GZ_PATH_SIZE]; /**< empty: the user's, else the system's configuration */
-	char user[GZ_NAME_SIZE]; /**< user to become when root starts the daemon; empty: none */
-	char surfaces[256];      /**< names, separated by blanks */
-	bool lsl;                /**< offer streams of the Lab Streaming Layer */
+	char user[GZ_NAME_SIZE];  /**< user to become when root starts the daemon; empty: none */
+	char surfaces[256];       /**< names, separated by blanks */
+	bool viewers_still_scene; /**< a viewer may say that nothing moves in its scene */
+	bool lsl;                 /**< offer streams of the Lab Streaming Layer */
 	char lsl_library[GZ_PATH_SIZE];         /**< file, or a name for the dynamic linker */
 	char lsl_name[GZ_NAME_SIZE];            /**< of the stream of gaze */
 	char recording_directory[GZ_PATH_SIZE]; /**< empty: the user's data directory */

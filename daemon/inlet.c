@@ -353,3 +353,24 @@ bool gz_viewer_place_at_start(const struct gz_viewer_place *place, int64_t now_n
 	*out_record = window_record(place->rect_px, now_ns);
 	return true;
 }
+
+void gz_viewer_scenes_step(struct gz_viewer_scenes *scenes, const struct gz_viewer_window *window,
+			   int64_t host_ns)
+{
+	if (!window->known) {
+		scenes->any_still = false;
+	} else if (window->has_still && window->still_scene) {
+		scenes->any_still = true;
+		scenes->still_ns = host_ns;
+	} else if (window->has_still) {
+		scenes->any_moving = true;
+		scenes->moving_ns = host_ns;
+	}
+}
+
+bool gz_viewer_scenes_still(const struct gz_viewer_scenes *scenes, int64_t now_ns)
+{
+	bool moves = scenes->any_moving && now_ns - scenes->moving_ns <= GZ_VIEWER_WINDOW_NS;
+	bool still = scenes->any_still && now_ns - scenes->still_ns <= GZ_VIEWER_WINDOW_NS;
+	return still && !moves;
+}

@@ -179,4 +179,26 @@ bool gz_viewer_place_step(struct gz_viewer_place *place, const int *rect_px, int
 bool gz_viewer_place_at_start(const struct gz_viewer_place *place, int64_t now_ns,
 			      struct gz_gaze_log_record *out_record);
 
+/** What viewers have said about their scenes. Zero-initialised: nothing. Viewers are not told
+ * apart: a scene that moves counts against all that are still. */
+struct gz_viewer_scenes {
+	bool any_still, any_moving;
+	int64_t still_ns;  /**< host time of the newest message of a viewer whose scene is still */
+	int64_t moving_ns; /**< of one whose scene moves */
+};
+
+/**
+ * Take note of a message about a window.
+ *
+ * @param window   a closed one takes back that a scene is still: other viewers repeat themselves
+ *                 within a second
+ * @param host_ns  its time, from gz_viewer_time_ns()
+ */
+void gz_viewer_scenes_step(struct gz_viewer_scenes *scenes, const struct gz_viewer_window *window,
+			   int64_t host_ns);
+
+/** Whether, at @p now_ns, a viewer's scene is still and none's moves. What was said counts for
+ * GZ_VIEWER_WINDOW_NS. */
+bool gz_viewer_scenes_still(const struct gz_viewer_scenes *scenes, int64_t now_ns);
+
 #endif

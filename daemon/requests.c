@@ -440,10 +440,8 @@ static void report_window(struct gz_requests *requests, const struct gz_viewer_w
 	struct gz_command command = {
 		.kind = GZ_COMMAND_WINDOW,
 		.host_ns = gz_viewer_time_ns(window->has_time, window->time_ns, gz_clock_now_ns()),
-		.has_window = window->known,
+		.window = *window,
 	};
-	memcpy(command.window_px, window->rect_px, sizeof command.window_px);
-	command.monitor = window->monitor;
 	send_command(requests, &command);
 }
 

@@ -37,6 +37,8 @@ struct gz_service {
 	struct gz_rate_meter rate;
 	struct gz_viewer_place viewer;
 	struct gz_monitor_place monitor; /* that the viewer reported last */
+	struct gz_viewer_scenes scenes;
+	bool still_scene; /* of the newest sample */
 	bool has_validated;
 	struct gz_validated validated;     /* set if has_validated */
 	char told_changed[GZ_REASON_SIZE]; /* how the display has changed; logged */
@@ -51,6 +53,7 @@ struct gz_service {
 	enum gz_tracker_state told_tracker;
 	const char *told_trouble;
 	enum gz_recording_state told_recording;
+	bool told_still;
 	uint32_t told_subscribers;
 	uint64_t told_arrivals;       /* a new reader gets a status at once */
 	char told_path[GZ_PATH_SIZE]; /* of the recording whose start was announced; empty: none */
@@ -268,8 +271,9 @@ static void send_notice(struct gz_service *service, enum gz_notice_kind kind, ui
 static void follow_viewer_window(struct gz_service *service, const struct gz_command *command)
 {
 	struct gz_gaze_log_record window;
-	const int *rect_px = command->has_window ? command->window_px : NULL;
-	service->monitor = command->monitor;
+	const int *rect_px = command->window.known ? command->window.rect_px : NULL;
+	service->monitor = command->window.monitor;
+	gz_viewer_scenes_step(&service->scenes, &command->window, command->host_ns);
 	if (gz_viewer_place_step(&service->viewer, rect_px, command->host_ns, &window))
 		gz_recorder_push(service->parts.recorder, &window);
 }
@@ -398,6 +402,11 @@ static void fill_validation(const struct gz_service *service, struct gz_status *
 			     seen ? &service->monitor : &unknown, status->validation.changed);
 }
 
+static bool is_scene_still(const struct gz_service *service)
+{
+	return service->maker.pipeline.params.classify.still_scene || service->still_scene;
+}
+
 static void fill_status(struct gz_service *service, struct gz_status *status)
 {
 	const struct gz_tracker *tracker = &service->tracker;
@@ -409,7 +418,7 @@ static void fill_status(struct gz_service *service, struct gz_status *status)
 		.lost = tracker->counters.lost,
 		.clock = tracker->counters.clock,
 		.noise_deg = gz_pipeline_noise_deg(&service->maker.pipeline),
-		.still_scene = service->maker.pipeline.params.classify.still_scene,
+		.still_scene = is_scene_still(service),
 		.display = service->maker.pipeline.display,
 		.subscribers = gz_publisher_subscribers(service->parts.publisher),
 		.version = GAZECAST_VERSION,
@@ -476,6 +485,7 @@ static void send_status(struct gz_service *service)
 	service->told_tracker = status.tracker.state;
 	service->told_trouble = service->tracker.counters.trouble;
 	service->told_recording = status.recording.state;
+	service->told_still = status.still_scene;
 	service->told_subscribers = status.subscribers;
 	service->told_arrivals = gz_publisher_arrivals(service->parts.publisher);
 }
@@ -487,6 +497,7 @@ static bool status_changed(const struct gz_service *service)
 	return service->told_tracker != service->tracker.state ||
 	       service->told_trouble != service->tracker.counters.trouble ||
 	       service->told_recording != recorder.state ||
+	       service->told_still != is_scene_still(service) ||
 	       service->told_subscribers != gz_publisher_subscribers(service->parts.publisher) ||
 	       service->told_arrivals != gz_publisher_arrivals(service->parts.publisher);
 }
@@ -555,6 +566,15 @@ static void follow_tracker(struct gz_service *service, enum gz_tracker_state bef
 		record_gap(service, service->host_ns, 0, service->tracker.reason);
 }
 
+/* Note in a new sample what viewers say about their scenes. A recorded one has it already. */
+static void ask_viewers(struct gz_service *service, struct gz_sample *sample)
+{
+	if (!service->tracker.info.recorded)
+		sample->still_scene = service->parts.config->viewers_still_scene &&
+				      gz_viewer_scenes_still(&service->scenes, gz_clock_now_ns());
+	service->still_scene = sample->still_scene;
+}
+
 static void serve_tracker(struct gz_service *service)
 {
 	struct gz_sample sample;
@@ -564,9 +584,10 @@ static void serve_tracker(struct gz_service *service)
 	follow_tracker(service, before);
 	if (service->quit)
 		return;
-	if (result == GZ_OK)
+	if (result == GZ_OK) {
+		ask_viewers(service, &sample);
 		serve_sample(service, &sample);
-	else if (result == GZ_ERR_END)
+	} else if (result == GZ_ERR_END)
 		end_replay(service);
 }
 

@@ -44,13 +44,11 @@ enum gz_command_kind {
 /** A command. */
 struct gz_command {
 	enum gz_command_kind kind;
-	uint32_t number;                 /**< RECORD, STOP, CORRECT: repeated in the answer */
-	int fd;                          /**< RECORD: owned by the receiver, unless it refuses */
-	int64_t host_ns;                 /**< SEND with a mark, WINDOW */
-	bool has_mark;                   /**< SEND */
-	bool has_window;                 /**< WINDOW: false once it is closed */
-	int window_px[4];                /**< WINDOW: x y w h on the display */
-	struct gz_monitor_place monitor; /**< WINDOW: the display; zeroed: unknown */
+	uint32_t number;                /**< RECORD, STOP, CORRECT: repeated in the answer */
+	int fd;                         /**< RECORD: owned by the receiver, unless it refuses */
+	int64_t host_ns;                /**< SEND with a mark, WINDOW */
+	bool has_mark;                  /**< SEND */
+	struct gz_viewer_window window; /**< WINDOW; its time is host_ns */
 	char path[GZ_PATH_SIZE];
 	char topic[GZ_INLET_TOPIC_SIZE];  /**< SEND */
 	char text[GZ_GAZE_LOG_TEXT_SIZE]; /**< SEND with a mark */

@@ -73,6 +73,7 @@ static struct gz_classify_entry *add_entry(struct gz_classify_state *state,
 		.point = input->point,
 		.confidence = input->confidence,
 		.valid = input->valid,
+		.still_scene = params->still_scene || input->still_scene,
 		.after_loss = input->valid && gap,
 	};
 	if (input->valid)
@@ -298,9 +299,15 @@ static void update_quick_saccade(struct gz_classify_state *state,
  * odds of 1.5. Chosen: labels flicker less, and agree as much with those of people. */
 static const int32_t CHANGE_LEAD = 1661;
 
+/* In a still scene there is nothing to follow. */
+static enum gz_forest_class without_pursuit(const struct gz_classify_entry *entry,
+					    enum gz_forest_class learned)
+{
+	return entry->still_scene && learned == GZ_FOREST_PURSUIT ? GZ_FOREST_FIXATION : learned;
+}
+
 /* Label sample @p index by what a forest makes of the newest features. */
-static void label_by_forest(struct gz_classify_state *state,
-			    const struct gz_classify_params *params, const struct gz_forest *forest,
+static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
 			    const float features[GZ_MOVEMENT_FEATURES], uint64_t index)
 {
 	int32_t scores[GZ_FOREST_CLASSES];
@@ -309,11 +316,10 @@ static void label_by_forest(struct gz_classify_state *state,
 	if (!entry->valid)
 		return;
 	gz_forest_score(forest, features, scores);
-	entry->learned = gz_forest_best(scores);
-	if (params->still_scene && entry->learned == GZ_FOREST_PURSUIT)
-		entry->learned = GZ_FOREST_FIXATION;
+	entry->learned = without_pursuit(entry, gz_forest_best(scores));
 	enum gz_forest_class last =
-		index > 0 ? gz_classify_at(state, index - 1)->learned : entry->learned;
+		index > 0 ? without_pursuit(entry, gz_classify_at(state, index - 1)->learned)
+			  : entry->learned;
 	bool changes = (entry->learned == GZ_FOREST_FIXATION && last == GZ_FOREST_PURSUIT) ||
 		       (entry->learned == GZ_FOREST_PURSUIT && last == GZ_FOREST_FIXATION);
 	if (changes && scores[entry->learned] - scores[last] < CHANGE_LEAD)
@@ -329,9 +335,9 @@ static void ask_forests(struct gz_classify_state *state, const struct gz_classif
 	if (!gz_movement_step(&state->movement, display, &measured, features))
 		return;
 	uint64_t newest = state->count - 1, delay = gz_classify_delay(state, params);
-	label_by_forest(state, params, &gz_forest_at_once, features, newest);
+	label_by_forest(state, &gz_forest_at_once, features, newest);
 	if (delay > 0 && delay <= newest)
-		label_by_forest(state, params, &gz_forest_certain, features, newest - delay);
+		label_by_forest(state, &gz_forest_certain, features, newest - delay);
 }
 
 static enum gz_event immediate_label(const struct gz_classify_state *state,
@@ -439,6 +445,8 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 	measure_speeds(state, params, state->count, false);
 	emit_certain_labels(state, params, false, &out);
 	state->now = immediate_label(state, params, entry);
+	if (entry->still_scene && state->now == GZ_EVENT_PURSUIT)
+		state->now = GZ_EVENT_FIXATION; /* the label before a dropout */
 	if (out.final_count > 0 && out.final[out.final_count - 1].seq == entry->seq)
 		state->now = out.final[out.final_count - 1].event;
 	out.event = state->now;

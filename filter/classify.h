@@ -72,7 +72,7 @@ struct gz_classify_params {
 	double dropout_ms;         /**< shorter losses are not blinks, ms */
 	double blink_max_ms;       /**< longer losses are not blinks but lost gaze, ms */
 	int source;                /**< enum gz_classify_source */
-	bool still_scene;          /**< nothing moves in the scene: there is no pursuit */
+	bool still_scene;          /**< nothing moves in any scene: there is no pursuit */
 };
 
 /** Samples that are kept: more than the final delay and half a window at 2000 Hz. A power of two.
@@ -93,6 +93,7 @@ struct gz_classify_entry {
 	struct gz_point point;
 	float confidence;
 	bool valid;
+	bool still_scene;             /**< nothing moves: it is no pursuit */
 	bool after_loss;              /**< good, and the first after a blink, a loss or the start */
 	enum gz_forest_class learned; /**< what the forests say: at once, then for certain */
 	double velocity_deg_s[3];     /**< less the slow movement; set once measured */
@@ -178,6 +179,7 @@ struct gz_classify_input {
 	struct gz_point point; /**< ignored unless valid */
 	struct gz_point raw;   /**< the same before spikes were removed; ignored unless valid */
 	float confidence;      /**< [0, 1] */
+	bool still_scene;      /**< nothing moves in the scene at this moment: it is no pursuit */
 };
 
 /** Most labels that one step makes certain. Chosen: except after a gap it is one. */

@@ -179,15 +179,14 @@ static void begin_stretch(struct gz_classify_state *state, const struct gz_class
 	}
 	machine->believes = true;
 	machine->pursuit_factor = 1;
-	bool pursues = !params->still_scene && odds_before(machine) > 1;
-	machine->event = pursues ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
+	machine->event = odds_before(machine) > 1 ? GZ_EVENT_PURSUIT : GZ_EVENT_FIXATION;
 }
 
 /* Decide between fixation and pursuit after the slow movement was measured again. */
 static void weigh_pursuit(struct gz_classify_state *state, const struct gz_classify_params *params)
 {
 	struct gz_classify_machine *machine = &state->machine;
-	if (params->still_scene || state->slow.span_s <= 0)
+	if (state->slow.span_s <= 0)
 		return;
 	struct pursuit_factors factors = pursuit_factors(state, params);
 	machine->pursuit_factor = factors.next;
@@ -309,7 +308,8 @@ static void take_between_saccades(struct gz_classify_state *state,
 	bool ringing =
 		machine->had_saccade && entry->time_ns - machine->saccade_end_ns < RINGING_NS;
 	bool steady = entry->fast_deg_s < saccade_peak_threshold(state, params, entry->time_ns) / 2;
-	if (!ringing && steady && gz_classify_slow_step(&state->slow, params, entry))
+	if (!ringing && steady && gz_classify_slow_step(&state->slow, params, entry) &&
+	    !entry->still_scene)
 		weigh_pursuit(state, params);
 }
 
@@ -397,8 +397,8 @@ static void decide_missing_sample(struct gz_classify_state *state,
 	machine->event = blink ? GZ_EVENT_BLINK : GZ_EVENT_LOST;
 }
 
-void gz_classify_decide(struct gz_classify_state *state, const struct gz_classify_params *params,
-			uint64_t index)
+static void decide_sample(struct gz_classify_state *state, const struct gz_classify_params *params,
+			  uint64_t index)
 {
 	struct gz_classify_entry *entry = gz_classify_at(state, index);
 	if (!gz_classify_is_good(params, entry)) {
@@ -412,4 +412,13 @@ void gz_classify_decide(struct gz_classify_state *state, const struct gz_classif
 		decide_good_sample(state, params, index);
 	state->machine.any_valid = true;
 	state->machine.valid_ns = entry->time_ns;
+}
+
+void gz_classify_decide(struct gz_classify_state *state, const struct gz_classify_params *params,
+			uint64_t index)
+{
+	decide_sample(state, params, index);
+	/* A pursuit that ran when the scene became still, or a belief in one, goes no further. */
+	if (gz_classify_at(state, index)->still_scene && state->machine.event == GZ_EVENT_PURSUIT)
+		state->machine.event = GZ_EVENT_FIXATION;
 }

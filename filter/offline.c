@@ -20,6 +20,7 @@ struct gz_offline {
 	bool *stale;                     /* whether a sample is not newer than the one before */
 	size_t newer;                    /* samples that are */
 	struct gz_movement_input *input; /* these samples */
+	bool *still_scene;               /* whether nothing moves in the scene, of each of them */
 };
 
 const char *gz_offline_label_name(enum gz_offline_label label)
@@ -47,6 +48,7 @@ void gz_offline_destroy(struct gz_offline **offline)
 		return;
 	free((*offline)->stale);
 	free((*offline)->input);
+	free((*offline)->still_scene);
 	free(*offline);
 	*offline = NULL;
 }
@@ -62,7 +64,10 @@ static enum gz_result make_offline_room(struct gz_offline *offline)
 	struct gz_movement_input *input = realloc(offline->input, room * sizeof *input);
 	if (input)
 		offline->input = input;
-	if (!stale || !input)
+	bool *still_scene = realloc(offline->still_scene, room * sizeof *still_scene);
+	if (still_scene)
+		offline->still_scene = still_scene;
+	if (!stale || !input || !still_scene)
 		return GZ_ERR_NO_MEM;
 	offline->room = room;
 	return GZ_OK;
@@ -82,6 +87,7 @@ enum gz_result gz_offline_add(struct gz_offline *offline, const struct gz_sample
 	offline->stale[offline->count++] = valid.rejection == GZ_REJECT_TIME;
 	if (valid.rejection == GZ_REJECT_TIME)
 		return GZ_OK;
+	offline->still_scene[offline->newer] = params->classify.still_scene || sample->still_scene;
 	struct gz_movement_input *input = &offline->input[offline->newer++];
 	*input = (struct gz_movement_input) { .time_ns = sample->host_ns,
 					      .valid = valid.rejection == GZ_REJECT_NONE };
@@ -181,8 +187,8 @@ static void add_to_interval(struct intervals *intervals, const struct gz_movemen
 /* In a still scene there is nothing to follow. */
 static void allow_classes(const struct gz_offline *offline, uint8_t *class)
 {
-	for (size_t i = 0; offline->params.classify.still_scene && i < offline->newer; i++)
-		if (class[i] == GZ_FOREST_PURSUIT)
+	for (size_t i = 0; i < offline->newer; i++)
+		if (offline->still_scene[i] && class[i] == GZ_FOREST_PURSUIT)
 			class[i] = GZ_FOREST_FIXATION;
 }
 

@@ -238,7 +238,9 @@ static struct gz_classify_input reduce_sample(struct gz_pipeline *pipeline,
 					      const struct gz_validate_output *valid,
 					      struct gz_point *out_raw)
 {
-	struct gz_classify_input input = { .seq = sample->seq, .time_ns = sample->host_ns };
+	struct gz_classify_input input = { .seq = sample->seq,
+					   .time_ns = sample->host_ns,
+					   .still_scene = sample->still_scene };
 	if (valid->rejection != GZ_REJECT_NONE)
 		return input;
 	input.valid = true;

@@ -60,6 +60,8 @@ struct gz_sample {
 	struct gz_eye_sample eye[GZ_EYE_COUNT];
 	uint32_t lost_before; /**< samples that the device lost just before this one; a !gap record
 				 in a gaze log; the pipeline ignores it */
+	bool still_scene; /**< not of the device: viewers say that nothing moves in the scene; in a
+			     gaze log a change is a !scene record */
 };
 
 /** The device_ns of a device without a clock. */

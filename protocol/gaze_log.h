@@ -64,19 +64,22 @@ enum gz_gaze_log_kind {
 	GZ_GAZE_LOG_GAP,    /**< samples are missing */
 	GZ_GAZE_LOG_MARK,   /**< a label for a moment or a stretch of time */
 	GZ_GAZE_LOG_WINDOW, /**< the position of the renderer's window */
+	GZ_GAZE_LOG_SCENE,  /**< from the next sample on, the scene is still or moves */
 };
 
 /** One record. Its kind determines which of the other fields are set. */
 struct gz_gaze_log_record {
 	enum gz_gaze_log_kind kind;
-	struct gz_sample
-		sample;   /**< SAMPLE; its lost_before is 0: a GAP record precedes it instead */
-	int64_t host_ns;  /**< GAP, MARK, WINDOW */
+	/** SAMPLE; its lost_before is 0: a GAP record precedes it instead. A reader sets
+	 * still_scene from the SCENE records; a writer adds these records. */
+	struct gz_sample sample;
+	int64_t host_ns;  /**< GAP, MARK, WINDOW, SCENE: of the sample that comes next */
 	uint64_t missing; /**< GAP: how many samples */
 	char text[GZ_GAZE_LOG_TEXT_SIZE]; /**< GAP: reason; MARK: label; unescaped */
 	int64_t duration_ns;              /**< MARK: 0 for a moment */
 	char keys[GZ_GAZE_LOG_KEYS_SIZE]; /**< MARK: further keys as a JSON object; empty: none */
 	int window_px[4];                 /**< WINDOW: x, y, width and height on the display, px */
+	bool still_scene;                 /**< SCENE: nothing moves */
 };
 
 /**
@@ -94,8 +97,9 @@ enum gz_result gz_gaze_log_print_header(const struct gz_gaze_log_header *header,
 
 /**
  * Print one record as a line with its newline. A SAMPLE whose lost_before is not 0 does not print
- * its gap, which is a record of its own. An infinite number is printed as "inf" or "-inf", a NaN as
- * an empty field. The decimal point is a full stop in every locale. Does not allocate.
+ * its gap, which is a record of its own, and no SAMPLE prints its still_scene. An infinite number
+ * is printed as "inf" or "-inf", a NaN as an empty field. The decimal point is a full stop in every
+ * locale. Does not allocate.
  *
  * @param[out] out_length  bytes of the line without the NUL
  * @retval GZ_ERR_FULL  @p size is too small; GZ_GAZE_LOG_LINE_SIZE always suffices
@@ -123,6 +127,7 @@ struct gz_gaze_log_writer {
 	uint32_t crc;     /**< of all whole lines in the file */
 	uint64_t size;    /**< bytes of these lines */
 	uint64_t samples; /**< samples in these lines */
+	bool still_scene; /**< of the newest sample that was added */
 	size_t used;      /**< bytes in the buffer */
 	unsigned char buffer[GZ_GAZE_LOG_WRITER_BUFFER];
 };
@@ -137,7 +142,8 @@ enum gz_result gz_gaze_log_writer_begin(struct gz_gaze_log_writer *writer, int f
 					const struct gz_gaze_log_header *header);
 
 /**
- * Add a record.
+ * Add a record. Before a sample whose still_scene differs from that of the sample before it (of the
+ * first one: from false), a SCENE record is added, unless the caller has just added that.
  *
  * @retval GZ_ERR_IO  the disk is full or failing; errno has the cause. The file has been cut after
  *                    its last whole line and ended there, if that was still possible

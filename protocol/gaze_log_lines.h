@@ -18,6 +18,10 @@
 #define GZ_GAZE_LOG_ESCAPED        "\\\t\n\r"
 #define GZ_GAZE_LOG_ESCAPE_LETTERS "\\tnr"
 
+/** What a scene record says: nothing moves, or something may. */
+#define GZ_GAZE_LOG_STILL  "still"
+#define GZ_GAZE_LOG_MOVING "moving"
+
 /** Text that is printed into the caller's buffer. Once the buffer is full, nothing more is added.
  */
 struct gz_gaze_log_text {

@@ -426,6 +426,17 @@ static bool take_window_fields(struct line_fields *fields, struct gz_gaze_log_re
 	return !fields->next;
 }
 
+static bool take_scene_fields(struct line_fields *fields, struct gz_gaze_log_record *record)
+{
+	if (!take_int64_field(fields, &record->host_ns))
+		return false;
+	const char *field = cut_off_field(fields);
+	if (!field || fields->next)
+		return false;
+	record->still_scene = strcmp(field, GZ_GAZE_LOG_STILL) == 0;
+	return record->still_scene || strcmp(field, GZ_GAZE_LOG_MOVING) == 0;
+}
+
 const char *gz_gaze_log_parse_record(char *line, locale_t c_locale,
 				     struct gz_gaze_log_record *out_record)
 {
@@ -446,6 +457,10 @@ const char *gz_gaze_log_parse_record(char *line, locale_t c_locale,
 	if (strcmp(kind, "!window") == 0) {
 		out_record->kind = GZ_GAZE_LOG_WINDOW;
 		return take_window_fields(&fields, out_record) ? NULL : "malformed !window";
+	}
+	if (strcmp(kind, "!scene") == 0) {
+		out_record->kind = GZ_GAZE_LOG_SCENE;
+		return take_scene_fields(&fields, out_record) ? NULL : "malformed !scene";
 	}
 	return "unknown record";
 }

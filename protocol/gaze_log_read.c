@@ -44,6 +44,7 @@ struct gz_gaze_log_reader {
 	uint32_t crc_before; /* of all bytes before line */
 
 	uint64_t samples, faults;
+	bool still_scene; /* of the next sample */
 	enum gz_gaze_log_ending ending;
 	struct gz_gaze_log_header header;
 };
@@ -307,6 +308,9 @@ static enum gz_result parse_log_line(struct gz_gaze_log_reader *reader,
 	if (fault)
 		return refuse_log_line(reader, fault);
 	reader->samples += record.kind == GZ_GAZE_LOG_SAMPLE;
+	if (record.kind == GZ_GAZE_LOG_SCENE)
+		reader->still_scene = record.still_scene;
+	record.sample.still_scene = reader->still_scene;
 	*out_record = record;
 	return GZ_OK;
 }

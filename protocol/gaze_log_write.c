@@ -211,6 +211,11 @@ enum gz_result gz_gaze_log_print_record(const struct gz_gaze_log_record *record,
 		gz_gaze_log_text_print(&out, "!window\t%" PRId64 "\t%d\t%d\t%d\t%d",
 				       record->host_ns, window[0], window[1], window[2], window[3]);
 		break;
+	case GZ_GAZE_LOG_SCENE:
+		gz_gaze_log_text_print(&out, "!scene\t%" PRId64 "\t%s", record->host_ns,
+				       record->still_scene ? GZ_GAZE_LOG_STILL
+							   : GZ_GAZE_LOG_MOVING);
+		break;
 	}
 	gz_gaze_log_text_print(&out, "\n");
 	return gz_gaze_log_text_end(&out, out_length);
@@ -280,6 +285,7 @@ enum gz_result gz_gaze_log_writer_begin(struct gz_gaze_log_writer *writer, int f
 	writer->crc = (uint32_t)crc32(0, NULL, 0);
 	writer->size = 0;
 	writer->samples = 0;
+	writer->still_scene = false;
 	writer->used = 0;
 	return gz_gaze_log_print_header(header, (char *)writer->buffer, sizeof writer->buffer,
 					&writer->used);
@@ -302,8 +308,8 @@ enum gz_result gz_gaze_log_writer_flush(struct gz_gaze_log_writer *writer)
 	return GZ_OK;
 }
 
-enum gz_result gz_gaze_log_writer_add(struct gz_gaze_log_writer *writer,
-				      const struct gz_gaze_log_record *record)
+static enum gz_result add_log_line(struct gz_gaze_log_writer *writer,
+				   const struct gz_gaze_log_record *record)
 {
 	if (sizeof writer->buffer - writer->used < GZ_GAZE_LOG_LINE_SIZE) {
 		enum gz_result result = gz_gaze_log_writer_flush(writer);
@@ -317,6 +323,24 @@ enum gz_result gz_gaze_log_writer_add(struct gz_gaze_log_writer *writer,
 	if (result == GZ_OK)
 		writer->used += length;
 	return result;
+}
+
+enum gz_result gz_gaze_log_writer_add(struct gz_gaze_log_writer *writer,
+				      const struct gz_gaze_log_record *record)
+{
+	const struct gz_sample *sample = &record->sample;
+	if (record->kind == GZ_GAZE_LOG_SCENE)
+		writer->still_scene = record->still_scene;
+	if (record->kind == GZ_GAZE_LOG_SAMPLE && sample->still_scene != writer->still_scene) {
+		const struct gz_gaze_log_record scene = { .kind = GZ_GAZE_LOG_SCENE,
+							  .host_ns = sample->host_ns,
+							  .still_scene = sample->still_scene };
+		enum gz_result result = add_log_line(writer, &scene);
+		if (result != GZ_OK)
+			return result;
+		writer->still_scene = sample->still_scene;
+	}
+	return add_log_line(writer, record);
 }
 
 enum gz_result gz_gaze_log_writer_end(struct gz_gaze_log_writer *writer)

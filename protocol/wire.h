@@ -225,6 +225,8 @@ struct gz_viewer_window {
 	bool known;     /**< false: it is closed */
 	int rect_px[4]; /**< x, y, width and height of its content on the display; set if known */
 	struct gz_monitor_place monitor; /**< the tracker's display; zeroed: unknown */
+	bool has_still;                  /**< the viewer says whether its scene is still */
+	bool still_scene; /**< nothing that the person looks at moves; set if has_still */
 	bool has_time;
 	int64_t time_ns; /**< host time; set if has_time */
 };
@@ -233,8 +235,8 @@ struct gz_viewer_window {
 enum gz_result gz_wire_encode_pointer(const struct gz_viewer_pointer *pointer,
 				      struct gz_wire_message *out_message);
 
-/** Encode {"rect": [x, y, w, h] or nil, "timestamp": s or nil}, and if the monitor is known,
- * "monitor": [x, y, w, h] and "scale". */
+/** Encode {"rect": [x, y, w, h] or nil, "timestamp": s or nil}; if the monitor is known,
+ * "monitor": [x, y, w, h] and "scale"; if has_still, "still": bool. */
 enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 				     struct gz_wire_message *out_message);
 

@@ -539,6 +539,9 @@ enum gz_result gz_wire_decode_window(const void *bytes, size_t size,
 		unpack.refused = true;
 	if (window.known)
 		take_monitor_place(&unpack, &window.monitor);
+	if (window.known)
+		window.has_still =
+			gz_unpack_bool(&unpack, unpack.map, "still", &window.still_scene);
 	window.has_time =
 		gz_unpack_time(&unpack, unpack.map, "timestamp", GZ_NS_PER_S, &window.time_ns);
 	enum gz_result result = gz_unpack_end(&unpack);

@@ -498,7 +498,7 @@ enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 	struct gz_pack pack;
 	bool has_monitor = window->monitor.px[0] > 0;
 	gz_pack_begin(&pack, out_message);
-	gz_pack_map(&pack, NULL, has_monitor ? 4 : 2);
+	gz_pack_map(&pack, NULL, 2 + (has_monitor ? 2U : 0U) + (window->has_still ? 1U : 0U));
 	if (window->known) {
 		gz_pack_array(&pack, "rect", 4);
 		for (int i = 0; i < 4; i++)
@@ -509,6 +509,8 @@ enum gz_result gz_wire_encode_window(const struct gz_viewer_window *window,
 	pack_optional_time(&pack, window->has_time, window->time_ns);
 	if (has_monitor)
 		pack_monitor_place(&pack, &window->monitor);
+	if (window->has_still)
+		gz_pack_bool(&pack, "still", window->still_scene);
 	return gz_pack_end(&pack);
 }
 

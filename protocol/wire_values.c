@@ -414,12 +414,13 @@ void gz_unpack_text(struct gz_unpack *unpack, const msgpack_object *map, const c
 	out_text[length] = '\0';
 }
 
-void gz_unpack_bool(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
+bool gz_unpack_bool(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    bool *out_value)
 {
 	const msgpack_object *value = find_type(unpack, map, key, MSGPACK_OBJECT_BOOLEAN);
 	if (value)
 		*out_value = value->via.boolean;
+	return value != NULL;
 }
 
 void gz_unpack_int64(struct gz_unpack *unpack, const msgpack_object *map, const char *key,

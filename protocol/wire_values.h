@@ -82,8 +82,8 @@ const msgpack_object *gz_unpack_array(struct gz_unpack *unpack, const msgpack_ob
 /** Take a text of at most @p size - 1 bytes without a NUL in it. */
 void gz_unpack_text(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    char *out_text, size_t size);
-/** Take true or false; integers are refused. */
-void gz_unpack_bool(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
+/** Take true or false; integers are refused. @return whether it was there */
+bool gz_unpack_bool(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    bool *out_value);
 /** Take an integer that fits into the type; reals are refused. */
 void gz_unpack_int64(struct gz_unpack *unpack, const msgpack_object *map, const char *key,

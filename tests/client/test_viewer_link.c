@@ -152,6 +152,25 @@ static void monitor_is_sent_with_the_window_when_it_changes(void **state)
 	assert_false(receive(50));
 }
 
+static void scene_is_sent_with_the_window_when_it_changes(void **state)
+{
+	(void)state;
+	static const int rect_px[4] = { 0, 0, 640, 480 };
+	struct gz_viewer_window window;
+	gz_viewer_link_window(viewer, rect_px, begin_ns);
+	for (int i = 1; i < 5; i++) {
+		gz_viewer_link_scene(viewer, i < 3);
+		gz_viewer_link_window(viewer, rect_px, begin_ns + i);
+	}
+	for (int i = 0; i < 3; i++) {
+		assert_true(receive(PATIENCE_MS));
+		assert_int_equal(gz_wire_decode_window(bytes, (size_t)size, &window), GZ_OK);
+		assert_int_equal(window.has_still, i > 0);
+		assert_int_equal(window.still_scene, i == 1);
+	}
+	assert_false(receive(50));
+}
+
 static void endpoints_whose_inlet_is_not_known_are_refused(void **state)
 {
 	(void)state;
@@ -194,6 +213,8 @@ TEST_SUITE(viewer_link)
 			window_is_sent_when_it_changes_each_second_and_when_it_closes, set_up,
 			tear_down),
 		cmocka_unit_test_setup_teardown(monitor_is_sent_with_the_window_when_it_changes,
+						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(scene_is_sent_with_the_window_when_it_changes,
 						set_up, tear_down),
 		cmocka_unit_test(endpoints_whose_inlet_is_not_known_are_refused),
 		cmocka_unit_test(nobody_who_listens_costs_nothing),

@@ -71,6 +71,48 @@ static void recording_begins_with_the_window_that_is_there(void **state)
 	assert_false(gz_viewer_place_at_start(&place, now_ns, &record));
 }
 
+static const struct gz_viewer_window still = { .known = true,
+					       .has_still = true,
+					       .still_scene = true },
+				     moving = { .known = true, .has_still = true },
+				     silent = { .known = true }, closed = { .known = false };
+
+static void scene_is_still_while_a_viewer_says_so(void **state)
+{
+	(void)state;
+	struct gz_viewer_scenes scenes = { 0 };
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns));
+	gz_viewer_scenes_step(&scenes, &silent, now_ns);
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns));
+	gz_viewer_scenes_step(&scenes, &still, now_ns);
+	gz_viewer_scenes_step(&scenes, &silent, now_ns);
+	assert_true(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS));
+	/* Killed. */
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS + 1));
+	gz_viewer_scenes_step(&scenes, &still, now_ns + 1);
+	assert_true(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS + 1));
+	gz_viewer_scenes_step(&scenes, &closed, now_ns + 2);
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns + 2));
+}
+
+static void one_scene_that_moves_counts_against_all_that_are_still(void **state)
+{
+	(void)state;
+	struct gz_viewer_scenes scenes = { 0 };
+	gz_viewer_scenes_step(&scenes, &still, now_ns);
+	gz_viewer_scenes_step(&scenes, &moving, now_ns);
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns));
+	/* The one is silent from now on, the other repeats itself. */
+	gz_viewer_scenes_step(&scenes, &still, now_ns + GZ_VIEWER_WINDOW_NS);
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS));
+	assert_true(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS + 1));
+	/* That a viewer closes its window does not make another one's scene still. */
+	gz_viewer_scenes_step(&scenes, &moving, now_ns + GZ_VIEWER_WINDOW_NS);
+	gz_viewer_scenes_step(&scenes, &closed, now_ns + GZ_VIEWER_WINDOW_NS);
+	gz_viewer_scenes_step(&scenes, &still, now_ns + GZ_VIEWER_WINDOW_NS);
+	assert_false(gz_viewer_scenes_still(&scenes, now_ns + GZ_VIEWER_WINDOW_NS));
+}
+
 TEST_SUITE(viewer)
 {
 	const struct CMUnitTest tests[] = {
@@ -78,6 +120,8 @@ TEST_SUITE(viewer)
 		cmocka_unit_test(pointer_is_reported_with_its_time),
 		cmocka_unit_test(log_is_told_of_a_window_when_it_changes),
 		cmocka_unit_test(recording_begins_with_the_window_that_is_there),
+		cmocka_unit_test(scene_is_still_while_a_viewer_says_so),
+		cmocka_unit_test(one_scene_that_moves_counts_against_all_that_are_still),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

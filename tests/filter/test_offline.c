@@ -112,6 +112,25 @@ static void simulated_viewers_are_labelled_at_any_rate(void **state)
 	}
 }
 
+static void in_the_still_part_of_a_recording_there_is_no_pursuit(void **state)
+{
+	(void)state;
+	struct gz_sim_params params = sim_params(250);
+	struct recording recording;
+	size_t pursuits[2] = { 0 };
+	params.viewer.pursuits_per_min = 30;
+	recording_open(&recording, &params, 20);
+	for (size_t i = 0; i < recording.count; i++)
+		recording.sample[i].still_scene = i > recording.count / 2;
+	recording_label(&recording);
+	for (size_t i = 0; i < recording.count; i++)
+		pursuits[i > recording.count / 2] +=
+			recording.labels.label[i] == GZ_OFFLINE_PURSUIT;
+	assert_true(pursuits[false] > 100);
+	assert_int_equal(pursuits[true], 0);
+	recording_close(&recording);
+}
+
 static void a_gap_in_time_is_a_blink_or_lost_by_its_length(void **state)
 {
 	(void)state;
@@ -384,6 +403,7 @@ TEST_SUITE(offline)
 {
 	static const struct CMUnitTest tests[] = {
 		cmocka_unit_test(simulated_viewers_are_labelled_at_any_rate),
+		cmocka_unit_test(in_the_still_part_of_a_recording_there_is_no_pursuit),
 		cmocka_unit_test(a_gap_in_time_is_a_blink_or_lost_by_its_length),
 		cmocka_unit_test(samples_whose_time_stands_still_have_the_label_of_the_last),
 		cmocka_unit_test(without_a_time_that_counts_all_is_lost),

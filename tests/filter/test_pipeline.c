@@ -357,6 +357,44 @@ static void in_a_still_scene_there_is_no_pursuit(void **state)
 	assert_true(still[GZ_EVENT_FIXATION] > moving[GZ_EVENT_FIXATION] + 1000);
 }
 
+/* The scene is still in every second stretch of two seconds. Sample by sample: whether it was when
+ * the label was given, and when the sample that got a certain label was measured. */
+static void watch_changing_scene(int source, size_t pursuits[2][2])
+{
+	enum { RATE_HZ = 250, STRETCH = 2 * RATE_HZ, SECONDS = 40 };
+	struct gz_sim_params params = sim_params(RATE_HZ);
+	struct viewing viewing;
+	params.viewer.pursuits_per_min = 30;
+	params.loss = 0; /* so that the numbers of samples have no gaps */
+	viewing_open(&viewing, &params);
+	viewing.pipeline.params.classify.source = source;
+	for (int k = 0; k < SECONDS * RATE_HZ; k++) {
+		viewing.still_scene = k / STRETCH % 2;
+		viewing_step(&viewing);
+		const struct gz_gaze *gaze = &viewing.out.gaze;
+		assert_int_equal(gaze->seq, k);
+		pursuits[0][viewing.still_scene] += gaze->event == GZ_EVENT_PURSUIT;
+		for (uint64_t seq = gaze->final_seq - gaze->final_span;
+		     gaze->final_known && seq <= gaze->final_seq; seq++)
+			pursuits[1][seq / STRETCH % 2] += gaze->final_event == GZ_EVENT_PURSUIT;
+	}
+	viewing_close(&viewing);
+}
+
+static void scene_may_become_still_and_move_again_in_mid_stream(void **state)
+{
+	(void)state;
+	static const int sources[] = { GZ_CLASSIFY_LEARNED, GZ_CLASSIFY_RULES };
+	for (size_t i = 0; i < 2; i++) {
+		size_t pursuits[2][2] = { { 0 } };
+		watch_changing_scene(sources[i], pursuits);
+		assert_int_equal(pursuits[0][true], 0);
+		assert_int_equal(pursuits[1][true], 0);
+		assert_true(pursuits[0][false] > 500);
+		assert_true(pursuits[1][false] > 500);
+	}
+}
+
 static void a_resting_eye_gives_a_resting_point(void **state)
 {
 	(void)state;
@@ -502,6 +540,7 @@ TEST_SUITE(pipeline)
 		cmocka_unit_test(an_eye_dropping_out_does_not_move_the_point),
 		cmocka_unit_test(saccades_are_found_at_any_rate),
 		cmocka_unit_test(in_a_still_scene_there_is_no_pursuit),
+		cmocka_unit_test(scene_may_become_still_and_move_again_in_mid_stream),
 		cmocka_unit_test(a_resting_eye_gives_a_resting_point),
 		cmocka_unit_test(a_pause_of_the_device_is_no_blink),
 		cmocka_unit_test(a_step_costs_a_few_microseconds),

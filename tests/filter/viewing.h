@@ -25,6 +25,7 @@ struct viewing {
 	struct gz_pipeline pipeline;
 	struct gz_sim_sample in;
 	struct gz_pipeline_output out;
+	bool still_scene; /**< of the next sample */
 };
 
 static inline void viewing_open(struct viewing *viewing, const struct gz_sim_params *params)
@@ -40,6 +41,7 @@ static inline void viewing_open(struct viewing *viewing, const struct gz_sim_par
 static inline void viewing_step(struct viewing *viewing)
 {
 	gz_sim_tracker_next(viewing->tracker, &viewing->in);
+	viewing->in.sample.still_scene = viewing->still_scene;
 	gz_pipeline_step(&viewing->pipeline, &viewing->in.sample, &viewing->out);
 }
 

@@ -14,6 +14,7 @@
 #include <zmq.h>
 
 #include "base/clock.h"
+#include "client/viewer_link.h"
 #include "gazed_process.h"
 #include "lsl_stand_in.h"
 #include "protocol/gaze_log.h"
@@ -247,21 +248,22 @@ static void gazed_latest_is_one_frame_and_the_newest(void **state)
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-/* The next message of the pipeline from @p i on: neither a status nor a notification, nor what only
- * the end of a replay has. */
+/* The next message of the pipeline from @p i on: neither a status nor a notification, nor a
+ * viewer's window, nor what only the end of a replay has. */
 static size_t skip_others(const struct reader *reader, size_t i)
 {
 	while (i < reader->count && (strcmp(reader->messages[i].topic, "status") == 0 ||
 				     strcmp(reader->messages[i].topic, "event_final") == 0 ||
+				     strcmp(reader->messages[i].topic, GZ_TOPIC_WINDOW) == 0 ||
 				     strncmp(reader->messages[i].topic, "notify.", 7) == 0))
 		i++;
 	return i;
 }
 
-/* The index of the gaze message of sample @p seq. */
-static size_t find_gaze(const struct reader *reader, uint64_t seq)
+/* The index of the gaze message of sample @p seq, from index @p from on. */
+static size_t find_gaze(const struct reader *reader, size_t from, uint64_t seq)
 {
-	for (size_t i = 0; i < reader->count; i++) {
+	for (size_t i = from; i < reader->count; i++) {
 		const struct received *message = &reader->messages[i];
 		struct gz_gaze gaze;
 		if (strncmp(message->topic, "gaze.", 5) == 0 &&
@@ -359,9 +361,106 @@ static void gazed_recording_begun_in_mid_stream_replays_bit_for_bit(void **state
 	assert_true(found.first_seq > 300 && found.samples > 800);
 	replay_log("middle.gzl", &replay);
 	assert_int_equal(replay.gaze_count, found.samples);
-	compare(&live, find_gaze(&live, found.first_seq), &replay);
+	compare(&live, find_gaze(&live, 0, found.first_seq), &replay);
 	reader_close(&live);
 	reader_close(&replay);
+}
+
+/* Report a window whose scene is still or moves until the status says so. */
+static void show_scene(struct reader *live, struct gz_viewer_link *link, bool still)
+{
+	static const int rect_px[4] = { 0, 0, 640, 480 };
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	gz_viewer_link_scene(link, still);
+	do {
+		gz_viewer_link_window(link, rect_px, gz_clock_now_ns());
+		reader_receive(live, 20);
+		assert_true(gz_clock_now_ns() < deadline_ns);
+	} while (live->status_count == 0 || live->status.still_scene != still);
+}
+
+/* Samples of a log that are in a still scene, and pursuits among the messages about them. */
+static void count_still(const char *name, const struct reader *reader, size_t *out_still,
+			size_t *out_pursuits)
+{
+	char path[256];
+	struct gz_gaze_log_reader *log;
+	struct gz_gaze_log_record record;
+	struct gz_gaze gaze;
+	snprintf(path, sizeof path, "%s/%s", place.recordings, name);
+	assert_int_equal(gz_gaze_log_open(path, NULL, &log), GZ_OK);
+	size_t at = 0;
+	*out_still = *out_pursuits = 0;
+	while (gz_gaze_log_read(log, &record) == GZ_OK) {
+		if (record.kind != GZ_GAZE_LOG_SAMPLE || !record.sample.still_scene)
+			continue;
+		at = find_gaze(reader, at, record.sample.seq);
+		const struct received *message = &reader->messages[at];
+		assert_int_equal(gz_wire_decode_gaze(message->bytes, message->size, &gaze), GZ_OK);
+		++*out_still;
+		*out_pursuits += gaze.event == GZ_EVENT_PURSUIT;
+	}
+	gz_gaze_log_close(&log);
+}
+
+static void scene_that_becomes_still_in_mid_recording_replays_bit_for_bit(void **state)
+{
+	(void)state;
+	char latest[128];
+	struct reader live, replay;
+	struct gz_viewer_link *link;
+	size_t still, pursuits;
+	reader_open(&live, &place, "");
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "500", "--sim.pursuits_per_min", "60",
+					   "--wait-readers", "1", "--record", "scene");
+	snprintf(latest, sizeof latest, "ipc://%s/latest", place.directory);
+	assert_int_equal(gz_viewer_link_open(latest, NULL, &link), GZ_OK);
+	show_scene(&live, link, true);
+	reader_receive_gaze(&live, live.gaze_count + 500);
+	assert_true(live.status.still_scene);
+	show_scene(&live, link, false);
+	reader_receive_gaze(&live, live.gaze_count + 200);
+	gz_viewer_link_close(&link);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	struct found found = read_log("scene.gzl");
+	reader_receive_gaze(&live, found.samples);
+	reader_drain(&live, 100 * SLOWNESS);
+	reader_hang_up(&live);
+	count_still("scene.gzl", &live, &still, &pursuits);
+	assert_true(still >= 500 && still < found.samples);
+	assert_int_equal(pursuits, 0);
+	replay_log("scene.gzl", &replay);
+	assert_int_equal(replay.gaze_count, found.samples);
+	compare(&live, 0, &replay);
+	reader_close(&live);
+	reader_close(&replay);
+}
+
+static void viewers_may_be_forbidden_to_say_that_a_scene_is_still(void **state)
+{
+	(void)state;
+	static const int rect_px[4] = { 0, 0, 640, 480 };
+	char latest[128];
+	struct reader live;
+	struct gz_viewer_link *link;
+	reader_open(&live, &place, "");
+	struct gazed_process gazed = SPAWN("--viewers.still_scene=false");
+	snprintf(latest, sizeof latest, "ipc://%s/latest", place.directory);
+	assert_int_equal(gz_viewer_link_open(latest, NULL, &link), GZ_OK);
+	gz_viewer_link_scene(link, true);
+	/* The window has come when it is forwarded; a status that is sent after it knows it. */
+	for (int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	     count_topic(&live, GZ_TOPIC_WINDOW) == 0;) {
+		gz_viewer_link_window(link, rect_px, gz_clock_now_ns());
+		reader_receive(&live, 20);
+		assert_true(gz_clock_now_ns() < deadline_ns);
+	}
+	for (size_t before = live.status_count; live.status_count < before + 2;)
+		assert_true(reader_receive(&live, PATIENCE_MS));
+	assert_false(live.status.still_scene);
+	gz_viewer_link_close(&link);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	reader_close(&live);
 }
 
 static size_t count_marks(const char *name, const char *text)
@@ -661,6 +760,8 @@ TEST_SUITE(gazed)
 		TEST(gazed_latest_is_one_frame_and_the_newest),
 		TEST(gazed_replay_gives_the_live_messages_bit_for_bit),
 		TEST(gazed_recording_begun_in_mid_stream_replays_bit_for_bit),
+		TEST(scene_that_becomes_still_in_mid_recording_replays_bit_for_bit),
+		TEST(viewers_may_be_forbidden_to_say_that_a_scene_is_still),
 		TEST(gazed_annotation_is_marked_in_the_log_and_sent_to_all_readers),
 		TEST(gazed_lsl_readers_get_every_sample_event_and_annotation),
 		TEST(gazed_second_one_in_a_directory_is_refused_and_harms_nothing),

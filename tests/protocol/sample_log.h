@@ -13,7 +13,7 @@
 
 #include "protocol/gaze_log.h"
 
-enum { SAMPLE_LOG_RECORDS = 6, SAMPLE_LOG_SAMPLES = 3 };
+enum { SAMPLE_LOG_RECORDS = 7, SAMPLE_LOG_SAMPLES = 3 };
 
 struct sample_log {
 	struct gz_gaze_log_header header;
@@ -79,7 +79,11 @@ static inline void sample_records(struct gz_gaze_log_record records[SAMPLE_LOG_R
 	records[4] = (struct gz_gaze_log_record) { .kind = GZ_GAZE_LOG_WINDOW,
 						   .host_ns = 5,
 						   .window_px = { -10, 0, 1920, 1080 } };
-	records[5] = full_sample(9);
+	records[5] = (struct gz_gaze_log_record) { .kind = GZ_GAZE_LOG_SCENE,
+						   .host_ns = 1000000009,
+						   .still_scene = true };
+	records[6] = full_sample(9);
+	records[6].sample.still_scene = true;
 }
 
 /** Write the whole log, including the line "#end". */
@@ -133,6 +137,7 @@ static inline void assert_same_sample(const struct gz_sample *a, const struct gz
 	assert_same_float(a->point.y, b->point.y);
 	assert_int_equal(a->valid, b->valid);
 	assert_int_equal(a->lost_before, b->lost_before);
+	assert_int_equal(a->still_scene, b->still_scene);
 	for (int i = 0; i < GZ_EYE_COUNT; i++) {
 		const struct gz_eye_sample *ea = &a->eye[i], *eb = &b->eye[i];
 		assert_same_float(ea->point.x, eb->point.x);
@@ -161,6 +166,7 @@ static inline void assert_same_record(const struct gz_gaze_log_record *a,
 	assert_true(a->duration_ns == b->duration_ns);
 	assert_string_equal(a->keys, b->keys);
 	assert_memory_equal(a->window_px, b->window_px, sizeof a->window_px);
+	assert_int_equal(a->still_scene, b->still_scene);
 }
 
 #endif

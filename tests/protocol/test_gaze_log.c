@@ -71,7 +71,8 @@ static void log_lines_are_as_documented(void **state)
 		"!gap\t2\t3\tdevice lost them\n"
 		"18446744073709551615\t\t0\t\t\t0\t\t\t0\t\t\t\t\t\t\t\t\t\t\t0\t\t\t\t\t\t\t\t\n"
 		"!mark\t-9223372036854775808\ta\\tb\\nc\\rd\\\\e \xc3\xa4\n"
-		"!window\t5\t-10\t0\t1920\t1080\n";
+		"!window\t5\t-10\t0\t1920\t1080\n"
+		"!scene\t1000000009\tstill\n9\t-5\t";
 	assert_memory_equal(log.text + log.header_size, records, sizeof records - 1);
 	const char *end = strstr(log.text, "\n#end 3 ");
 	assert_non_null(end);
@@ -282,6 +283,69 @@ static void log_file_of_many_chunks_is_read_whole(void **state)
 	unlink(path);
 }
 
+/* Write samples of which some are in a still scene. @return the file, open at its start */
+static int write_scenes(const bool *still, size_t count, const struct gz_gaze_log_record *first)
+{
+	char path[] = "/tmp/gz-log-XXXXXX";
+	static struct gz_gaze_log_writer writer;
+	const struct gz_gaze_log_header header = sample_header();
+	int fd = mkstemp(path);
+	assert_true(fd >= 0);
+	unlink(path);
+	assert_int_equal(gz_gaze_log_writer_begin(&writer, fd, &header), GZ_OK);
+	if (first)
+		assert_int_equal(gz_gaze_log_writer_add(&writer, first), GZ_OK);
+	for (size_t i = 0; i < count; i++) {
+		struct gz_gaze_log_record record = full_sample(i);
+		record.sample.still_scene = still[i];
+		assert_int_equal(gz_gaze_log_writer_add(&writer, &record), GZ_OK);
+	}
+	assert_int_equal(gz_gaze_log_writer_end(&writer), GZ_OK);
+	return fd;
+}
+
+/* Check that each sample comes back as it was. @return how many scene records there are */
+static size_t read_scenes(int fd, const bool *still, size_t count)
+{
+	char path[64];
+	size_t scenes = 0, samples = 0;
+	struct gz_gaze_log_reader *reader;
+	struct gz_gaze_log_record record;
+	snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+	assert_int_equal(gz_gaze_log_open(path, NULL, &reader), GZ_OK);
+	while (gz_gaze_log_read(reader, &record) == GZ_OK) {
+		scenes += record.kind == GZ_GAZE_LOG_SCENE;
+		if (record.kind == GZ_GAZE_LOG_SCENE)
+			assert_int_equal(record.host_ns, 1000000000 + (int64_t)samples);
+		if (record.kind != GZ_GAZE_LOG_SAMPLE)
+			continue;
+		bool expected = samples < count && still[samples];
+		assert_int_equal(record.sample.seq, samples);
+		assert_int_equal(record.sample.still_scene, expected);
+		samples++;
+	}
+	assert_int_equal(samples, count);
+	assert_int_equal(gz_gaze_log_ending(reader), GZ_GAZE_LOG_WHOLE);
+	gz_gaze_log_close(&reader);
+	close(fd);
+	return scenes;
+}
+
+static void writer_notes_where_the_scene_becomes_still_or_moves(void **state)
+{
+	(void)state;
+	static const bool changing[] = { false, false, true, true, false, true };
+	static const bool moving[] = { false, false }, still[] = { true, true };
+	const struct gz_gaze_log_record first = { .kind = GZ_GAZE_LOG_SCENE,
+						  .host_ns = 1000000000,
+						  .still_scene = true };
+	assert_int_equal(read_scenes(write_scenes(changing, 6, NULL), changing, 6), 3);
+	assert_int_equal(read_scenes(write_scenes(moving, 2, NULL), moving, 2), 0);
+	assert_int_equal(read_scenes(write_scenes(still, 2, NULL), still, 2), 1);
+	/* A record that was read from another log is not written twice. */
+	assert_int_equal(read_scenes(write_scenes(still, 2, &first), still, 2), 1);
+}
+
 static void open_that_fails_logs_the_path(void **state)
 {
 	(void)state;
@@ -310,6 +374,7 @@ TEST_SUITE(gaze_log)
 		cmocka_unit_test(log_of_longest_texts_fits_the_promised_sizes),
 		cmocka_unit_test(print_into_too_little_room_is_refused),
 		cmocka_unit_test(log_file_of_many_chunks_is_read_whole),
+		cmocka_unit_test(writer_notes_where_the_scene_becomes_still_or_moves),
 		cmocka_unit_test(open_that_fails_logs_the_path),
 	};
 	return cmocka_run_group_tests_name("gaze_log", tests, NULL, NULL);

@@ -55,6 +55,15 @@ static void window_comes_back_as_it_was_sent(void **state)
 	assert_int_equal(gz_wire_encode_window(&placed, &message), GZ_OK);
 	assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
 	assert_memory_equal(&back.monitor, &placed.monitor, sizeof placed.monitor);
+	assert_false(back.has_still);
+	struct gz_viewer_window looked_at = placed;
+	looked_at.has_still = true;
+	for (int i = 0; i < 2; i++) {
+		looked_at.still_scene = i;
+		assert_int_equal(gz_wire_encode_window(&looked_at, &message), GZ_OK);
+		assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
+		assert_true(back.has_still && back.still_scene == i && back.monitor.scale == 1.25);
+	}
 	assert_int_equal(gz_wire_encode_window(&closed, &message), GZ_OK);
 	assert_int_equal(gz_wire_decode_window(message.bytes, message.size, &back), GZ_OK);
 	assert_false(back.known);
@@ -91,6 +100,7 @@ static void impossible_values_are_refused_and_nothing_is_written(void **state)
 		{ MONITOR("\x82", "\x01\x00"), 24 },              /* no height */
 		{ MONITOR("\x82", "\xcd\x80\x01\x01"), 26 },      /* too wide */
 		{ MONITOR("\x83", "\x01\x01\xa5scale\x65"), 31 }, /* 101 times */
+		{ "\x82\xa4rect\x94\x01\x01\x01\x01\xa5still\x01", 18 },
 	};
 	struct gz_viewer_pointer pointer = { .time_ns = 77 };
 	struct gz_viewer_window window = { .time_ns = 77 };

@@ -3,6 +3,7 @@
 window_gaze.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
+import json
 import os
 import signal
 import sys
@@ -108,6 +109,18 @@ class Gaze(WindowCase):
         self.assertTrue(after.part(*place) == before, "the plan went with the gaze")
         self.tool("key", "space")
         self.until(lambda p: p.part(*place) != before, "the plan follows")
+
+    def scene_is_still(self):
+        done = run(GAZECTL, "status", "--json", env=self.environment)
+        return done.returncode == 0 and json.loads(done.stdout)["still_scene"]
+
+    def test_daemon_is_told_whether_anything_moves_in_the_scene(self):
+        self.start_daemon("--driver=pointer")
+        self.start("--gaze", "pointer")
+        self.move(200, 150)
+        self.wait_for(self.scene_is_still, "still")
+        self.tool("key", "Left")  # turns the camera
+        self.wait_for(lambda: not self.scene_is_still(), "moving")
 
     def test_trail_comes_by_key_and_fades(self):
         self.start("--gaze", "mouse", "--method", "standard")

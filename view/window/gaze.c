@@ -4,6 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <GLFW/glfw3.h>
+
 #include "base/clock.h"
 #include "client/viewer_link.h"
 #include "view/window/displays.h"
@@ -20,6 +22,9 @@
 #define ABSENT_PATIENCE_S 0.25
 /* Interval without a live source, when only events change the picture, s. */
 #define STILL_PATIENCE_S 10.0
+
+/* How long nothing has moved in a still scene, ns. Chosen: the eye may follow on for as long. */
+#define SCENE_RESTS_NS GZ_NS_PER_S
 
 static enum gz_window_source source_of(const struct gz_gaze_choice *choice)
 {
@@ -251,6 +256,13 @@ static void read_asked_source(struct gz_window *window, const struct gz_window_s
 		gaze->reading.point = gz_window_share_point(share, gaze->asked.point);
 }
 
+/* What is beside the picture may move. */
+static void note_gaze_elsewhere(struct gz_window *window, struct gz_point point)
+{
+	if (!(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1))
+		window->motion_ns = gz_clock_now_ns();
+}
+
 void gz_window_gaze_now(struct gz_window *window, int width, int height,
 			struct gz_window_gaze *out_gaze)
 {
@@ -265,6 +277,7 @@ void gz_window_gaze_now(struct gz_window *window, int width, int height,
 	else if (!gaze.missing && !window->source->ops->live)
 		share = (struct gz_window_share) { 0, 0, 1, 1 };
 	window->source_missing = gaze.missing;
+	note_gaze_elsewhere(window, gaze.reading.point);
 	gaze.display = display_of_picture(window, &share, width, height);
 	*out_gaze = gaze;
 }
@@ -315,6 +328,16 @@ static void report_monitor(struct gz_window *window, const struct gz_monitor *mo
 	}
 }
 
+/* Whether the person looks at a picture in which nothing has moved for a while. Other programs may
+ * cover a window without the focus, and what an experiment shows is its own affair. */
+static bool is_scene_still(const struct gz_window *window, int64_t now_ns)
+{
+	bool looked_at = glfwGetWindowAttrib(window->glfw, GLFW_FOCUSED) &&
+			 !glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED);
+	return window->maker && window->any_shown && !window->alone && !window->picture_hidden &&
+	       looked_at && now_ns - window->motion_ns > SCENE_RESTS_NS;
+}
+
 /* The window's content in pixels of the tracker's display. */
 static void report_rect(struct gz_window *window, int64_t now_ns)
 {
@@ -326,6 +349,7 @@ static void report_rect(struct gz_window *window, int64_t now_ns)
 		rect_px[1] -= monitor->rect_px[1];
 	}
 	report_monitor(window, monitor);
+	gz_viewer_link_scene(window->link, is_scene_still(window, now_ns));
 	if (rect_px[2] > 0 && rect_px[3] > 0)
 		gz_viewer_link_window(window->link, rect_px, now_ns);
 }

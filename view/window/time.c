@@ -147,6 +147,8 @@ static void turn_time(struct gz_window *window)
 	struct gz_window_time *self = window->time;
 	if (!is_series_shown(window))
 		return;
+	if (self->playback.playing || self->wanted != NONE)
+		window->motion_ns = gz_clock_now_ns();
 	const int shown = gz_frame_time_point(window->maker);
 	if (self->wanted == NONE && gz_playback_due(&self->playback, gz_clock_now_ns()))
 		self->wanted = (shown + 1) % gz_frame_time_points(window->maker);

@@ -69,6 +69,8 @@ static enum gz_result cast_picture(struct gz_window *window, const struct gz_win
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
 	if (r != GZ_OK)
 		return r;
+	if (!window->any_shown || !gz_scene_settings_same(&window->shown, &window->settings))
+		window->motion_ns = gz_clock_now_ns();
 	window->shown = window->settings;
 	window->any_shown = true;
 	window->taken_back = false;

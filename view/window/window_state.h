@@ -75,6 +75,7 @@ struct gz_window {
 	bool source_missing;         /**< it gave no gaze when it was last read */
 	bool gaze_frozen;            /**< the plan stays while the gaze goes on */
 	struct gz_viewer_link *link; /**< to the daemon's inlet; NULL: none to be told */
+	int64_t motion_ns; /**< when something moved last that the eye may have followed */
 
 	struct gz_scene_settings settings;  /**< as the user has changed them */
 	struct gz_scene_settings shown;     /**< those of the last frame that could be made */

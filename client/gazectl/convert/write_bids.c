@@ -202,7 +202,7 @@ static enum gz_result bids_add(void *user, const struct gz_gaze_log_record *reco
 		enum gz_result result = add_bids_labels(output, record->sample.host_ns);
 		return result == GZ_OK ? add_bids_sample(output, &record->sample) : result;
 	}
-	if (record->kind == GZ_GAZE_LOG_WINDOW)
+	if (record->kind == GZ_GAZE_LOG_WINDOW || record->kind == GZ_GAZE_LOG_SCENE)
 		return GZ_OK;
 	return add_bids_events(output, record, record->kind == GZ_GAZE_LOG_GAP ? "gap" : "mark");
 }

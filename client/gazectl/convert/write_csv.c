@@ -149,6 +149,9 @@ static enum gz_result add_csv_event(struct gz_recording_output *output,
 		fputs(",window,", out);
 		snprintf(text, sizeof text, "%d %d %d %d", record->window_px[0],
 			 record->window_px[1], record->window_px[2], record->window_px[3]);
+	} else if (record->kind == GZ_GAZE_LOG_SCENE) {
+		fputs(",scene,", out);
+		snprintf(text, sizeof text, "%s", record->still_scene ? "still" : "moving");
 	} else {
 		fputs(",mark,", out);
 		snprintf(text, sizeof text, "%s", record->text);

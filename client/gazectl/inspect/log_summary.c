@@ -153,6 +153,8 @@ static enum gz_result summarise_record(struct summarizer *s,
 		s->summary.windows++;
 		memcpy(s->summary.window_px, record->window_px, sizeof record->window_px);
 		return GZ_OK;
+	case GZ_GAZE_LOG_SCENE: /* the samples have it, too */
+		return GZ_OK;
 	}
 	return GZ_OK;
 }
