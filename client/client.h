@@ -23,7 +23,7 @@ struct gz_client;
 
 /**
  * Connect to a `latest` channel. Succeeds even if no daemon is running. Starts ZeroMQ's two
- * threads.
+ * threads. Waits up to 20 ms for a daemon on this machine that is busy.
  *
  * @param endpoint  ZeroMQ endpoint of a `latest` channel; NULL: that of the local daemon
  * @param log       borrowed, outlives the client; may be NULL

@@ -53,7 +53,8 @@ struct gz_message {
 
 /**
  * Subscribe to a stream. Succeeds even if no daemon is running. Messages sent before the connection
- * is established are not received and do not count as lost.
+ * is established are not received and do not count as lost. Waits up to 20 ms for a daemon on
+ * this machine that is busy.
  *
  * @param endpoint  ZeroMQ endpoint of a stream; NULL: that of the local daemon
  * @param topics    prefixes of topics, NULL-terminated, copied; NULL or an empty list: everything

@@ -219,7 +219,6 @@ struct gz_board_reader {
 	uint64_t mask;
 	uint64_t position;
 	uint64_t newest; /* the gaze that was read last; NO_POSITION: none */
-	int64_t from_ns; /* older messages are not wanted */
 	uint64_t overtaken;
 	dev_t device; /* of the memory */
 	ino_t inode;
@@ -354,22 +353,40 @@ static enum gz_result find_message(struct gz_board_reader *reader, uint64_t *out
 								   : GZ_ERR_TIMEOUT;
 }
 
-/* Whether the message that was copied last was written before those that are wanted. */
-static bool is_too_old(const struct gz_board_reader *reader)
+/* Copy the newest gaze, once. @retval GZ_ERR_END  it has been overwritten */
+static enum gz_result copy_newest(struct gz_board_reader *reader)
 {
-	return (int64_t)reader->copy[1] < reader->from_ns;
+	size_t words;
+	uint64_t newest = atomic_load_explicit(&reader->header->newest, memory_order_acquire);
+	uint64_t head = atomic_load_explicit(&reader->header->head, memory_order_acquire);
+	if (newest == NO_POSITION || newest == reader->newest)
+		return GZ_ERR_TIMEOUT;
+	if (newest >= head)
+		return GZ_ERR_PROTOCOL;
+	reader->newest = newest;
+	return copy_message(reader, newest, head, &words);
+}
+
+/* Whether the message that was copied last was written before @p time_ns. */
+static bool is_older(const struct gz_board_reader *reader, int64_t time_ns)
+{
+	return (int64_t)reader->copy[1] < time_ns;
 }
 
 enum gz_result gz_board_skip(struct gz_board_reader *reader, int64_t time_ns)
 {
-	reader->from_ns = time_ns;
+	enum gz_result result = copy_newest(reader);
+	if (result == GZ_OK && !is_older(reader, time_ns))
+		reader->newest = NO_POSITION; /* read it again */
+	if (result == GZ_ERR_PROTOCOL)
+		return result;
 	for (;;) {
 		uint64_t head;
 		size_t words;
-		enum gz_result result = find_message(reader, &head);
+		result = find_message(reader, &head);
 		if (result == GZ_OK)
 			result = copy_head(reader, reader->position, head, &words);
-		if (result == GZ_ERR_TIMEOUT || (result == GZ_OK && !is_too_old(reader)))
+		if (result == GZ_ERR_TIMEOUT || (result == GZ_OK && !is_older(reader, time_ns)))
 			return GZ_OK;
 		if (result == GZ_OK)
 			reader->position += words;
@@ -395,20 +412,6 @@ enum gz_result gz_board_next(struct gz_board_reader *reader, struct gz_board_rec
 	}
 }
 
-/* Copy the newest gaze, once. @retval GZ_ERR_END  it has been overwritten */
-static enum gz_result copy_newest(struct gz_board_reader *reader)
-{
-	size_t words;
-	uint64_t newest = atomic_load_explicit(&reader->header->newest, memory_order_acquire);
-	uint64_t head = atomic_load_explicit(&reader->header->head, memory_order_acquire);
-	if (newest == NO_POSITION || newest == reader->newest)
-		return GZ_ERR_TIMEOUT;
-	if (newest >= head)
-		return GZ_ERR_PROTOCOL;
-	reader->newest = newest;
-	return copy_message(reader, newest, head, &words);
-}
-
 enum gz_result gz_board_newest(struct gz_board_reader *reader, struct gz_board_record *out_record)
 {
 	enum gz_result result;
@@ -416,12 +419,9 @@ enum gz_result gz_board_newest(struct gz_board_reader *reader, struct gz_board_r
 	do
 		result = copy_newest(reader);
 	while (result == GZ_ERR_END);
-	if (result != GZ_OK)
-		return result;
-	if (is_too_old(reader))
-		return GZ_ERR_TIMEOUT;
-	*out_record = copied_record(reader);
-	return GZ_OK;
+	if (result == GZ_OK)
+		*out_record = copied_record(reader);
+	return result;
 }
 
 bool gz_board_has_next(const struct gz_board_reader *reader)

@@ -137,8 +137,8 @@ enum gz_result gz_board_open(int fd, struct gz_board_reader **out_reader);
 /** Whether @p reader reads the board whose memory is @p fd. */
 bool gz_board_is_same(const struct gz_board_reader *reader, int fd);
 
-/** Go on with the first message that was not written before @p time_ns, host time; the newest gaze
- * is not read either if it is older.
+/** Go on with the first message that was not written before @p time_ns, host time. The present
+ * newest gaze is not read either if it is older.
  * @return GZ_OK or GZ_ERR_PROTOCOL, as gz_board_next() */
 enum gz_result gz_board_skip(struct gz_board_reader *reader, int64_t time_ns);
 
