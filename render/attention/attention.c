@@ -15,6 +15,9 @@ const struct gz_option gz_attention_options[] = {
 		  "one counts" },
 	{ "attention.saccade_scale", GZ_OPTION_DOUBLE, AT(saccade_scale), 1, GZ_BUDGET_SCALE_MAX,
 	  .preset = "2", .help = "factor on spacings outside the fovea in a saccade; 1 = none" },
+	{ "attention.landing_deg", GZ_OPTION_DOUBLE, AT(landing_deg), 0, 180, .preset = "6",
+	  .help = "from this predicted size on, a saccade is met where it will land, degrees; 0 = "
+		  "never" },
 	{ "attention.blink_ms", GZ_OPTION_DOUBLE, AT(blink_ms), 0, 10000, .preset = "500",
 	  .help = "longest blink, and greatest age of a gaze that is used, ms" },
 	{ "attention.hold_ms", GZ_OPTION_DOUBLE, AT(hold_ms), 0, 1e6, .preset = "150",
@@ -94,6 +97,7 @@ void gz_attention_init(struct gz_attention *attention, const struct gz_attention
 	*attention = (struct gz_attention) {
 		.params = *params,
 		.focus = { .point = { NAN, NAN }, .scale = 1, .widen = 0 },
+		.left = { NAN, NAN },
 		.state = GZ_ATTENTION_HOLD,
 	};
 	gz_budget_init(&attention->budget, params->budget_ms);
@@ -163,6 +167,21 @@ static double for_ms(const struct gz_attention *attention)
 	return gz_ns_to_ms(attention->now_ns - attention->said_ns);
 }
 
+/* Where the plan goes in a saccade: with the gaze, or ahead of it to where a large one will land.
+ * The predictions of small ones are no nearer than the gaze itself (docs/gaze-pipeline.md). */
+static struct gz_point aim_of_saccade(const struct gz_attention *attention,
+				      const struct gz_attention_gaze *gaze,
+				      const struct gz_display *display)
+{
+	const struct gz_landing *landing = &gaze->landing;
+	double least_deg = attention->params.landing_deg;
+	if (least_deg <= 0 || !landing->known || !finite_point(landing->point) ||
+	    for_ms(attention) > SACCADE_MAX_MS)
+		return gaze->point;
+	double size_deg = gz_display_angle_deg(display, attention->left, landing->point);
+	return size_deg >= least_deg ? landing->point : gaze->point;
+}
+
 /* Vision is suppressed in a saccade, but the label may be wrong: nothing changes until the eye has
  * left the dead band, and a saccade that is too long gets full detail again. */
 static void follow_saccade(struct gz_attention *attention, struct gz_point point, double distance,
@@ -214,8 +233,10 @@ static void follow_seen_gaze(struct gz_attention *attention, const struct gz_att
 	double distance = distance_deg(attention, gaze, display);
 	bool pursued = attention->state == GZ_ATTENTION_PURSUIT &&
 		       for_ms(attention) >= PURSUIT_MIN_MS && distance < PURSUIT_MAX_BANDS * band;
+	if (attention->state != GZ_ATTENTION_SACCADE)
+		attention->left = gaze->point;
 	if (attention->state == GZ_ATTENTION_SACCADE)
-		follow_saccade(attention, gaze->point, distance, band);
+		follow_saccade(attention, aim_of_saccade(attention, gaze, display), distance, band);
 	else if (!attention->on_way && just_landed(attention))
 		aim_focus(attention, gaze->point, 1);
 	else if (!attention->on_way && pursued)
@@ -241,6 +262,7 @@ static void hold_or_widen(struct gz_attention *attention, bool was_lost)
 	double past_ms = gz_ns_to_ms(attention->now_ns - attention->lost_ns) - params->hold_ms;
 	attention->focus.scale = 1; /* the eye may be open */
 	attention->on_way = attention->landed = false;
+	attention->left = (struct gz_point) { NAN, NAN };
 	if (params->widen_ms <= 0 || past_ms < 0)
 		return;
 	attention->state = GZ_ATTENTION_WIDEN;

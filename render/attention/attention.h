@@ -5,7 +5,8 @@
  * allocation. The caller passes the time, so a replay gives the same plans.
  *
  * - Fixation: the place stays the same while the gaze is within a dead band of it.
- * - Saccade: vision is suppressed, so the plan moves with the gaze and is coarser. The first step
+ * - Saccade: vision is suppressed, so the plan moves with the gaze, or to where a large one will
+ *   probably land, and is coarser. The first step
  *   that knows of the landing is sharp there. For another 60 ms the plan follows every sample,
  * while the tracker settles on the exact place; nobody notices changes in that time.
  * - Blink: nothing changes.
@@ -33,6 +34,8 @@ struct gz_attention_params {
 	double dead_band_deg;   /**< the plan moves when the gaze is farther away than this */
 	double dead_band_noise; /**< and farther than so many times the tracker's noise */
 	double saccade_scale;   /**< factor on spacings outside the fovea in a saccade */
+	double landing_deg;     /**< a saccade of this predicted size is met where it will land; 0:
+				   none */
 	double blink_ms;        /**< longest blink; also the greatest age of a gaze */
 	double hold_ms;         /**< how long the plan of a lost gaze is kept */
 	double widen_ms;        /**< how long the plan then takes to become uniform; 0: it stays */
@@ -51,10 +54,12 @@ struct gz_attention_gaze {
 	bool known;            /**< there is a point */
 	struct gz_point point; /**< on the display, normalised; NaN or infinite means lost */
 	bool has_age;
-	int64_t age_ns;      /**< of the sample that gave the point; only with has_age */
-	bool has_event;      /**< the source says what the eye does */
-	enum gz_event event; /**< only with has_event */
-	double noise_deg;    /**< of the tracker, sample to sample; NaN if unknown */
+	int64_t age_ns;            /**< of the sample that gave the point; only with has_age */
+	bool has_event;            /**< the source says what the eye does */
+	enum gz_event event;       /**< only with has_event */
+	struct gz_landing landing; /**< of the running saccade, on the display; its time is not used
+				    */
+	double noise_deg;          /**< of the tracker, sample to sample; NaN if unknown */
 };
 
 /** What the plan follows. */
@@ -91,6 +96,7 @@ struct gz_attention {
 	enum gz_attention_state said; /**< state by the gaze alone */
 	int64_t said_ns;              /**< since when */
 	int64_t lost_ns;              /**< since when; only in HOLD and WIDEN */
+	struct gz_point left;         /**< the last gaze outside saccades; NaN after a loss */
 	bool on_way;                  /**< the plan is following a saccade */
 	bool landed;                  /**< landed_ns is valid */
 	int64_t landed_ns;            /**< when the plan last came to rest in a new place */

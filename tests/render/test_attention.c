@@ -199,6 +199,65 @@ static void saccade_that_goes_nowhere_changes_nothing(void **state)
 	}
 }
 
+/* A sample of a saccade that is at @p deg and is predicted to land at @p landing_deg. */
+static struct gz_focus step_to_landing(double deg, double landing_deg)
+{
+	struct gz_attention_gaze gaze = gaze_of(GZ_EVENT_SACCADE, at_deg(deg));
+	gaze.landing =
+		(struct gz_landing) { .known = true, .point = at_deg(landing_deg), .sigma_deg = 1 };
+	return step(&gaze);
+}
+
+static void assert_in_saccade_at(const struct gz_focus *focus, double deg)
+{
+	struct gz_point point = at_deg(deg);
+	if (focus->point.x != point.x || focus->point.y != point.y ||
+	    focus->scale != params.saccade_scale)
+		fail_msg("at %g, scale %g; wanted at %g", (double)focus->point.x, focus->scale,
+			 (double)point.x);
+}
+
+static void large_saccade_is_met_where_it_will_land(void **state)
+{
+	(void)state;
+	assert_true(params.landing_deg > 2 && params.landing_deg < 10);
+	go_on(GZ_EVENT_FIXATION, 0, 100);
+	struct gz_focus focus = step_to_landing(2, 10);
+	assert_in_saccade_at(&focus, 10);
+	focus = step_to_landing(7, 9.5); /* the size counts, not what is left */
+	assert_in_saccade_at(&focus, 9.5);
+	focus = step_event(GZ_EVENT_FIXATION, 9);
+	assert_sharp_at(&focus, 9);
+}
+
+static void small_saccade_is_followed_and_so_is_any_without_a_landing(void **state)
+{
+	(void)state;
+	go_on(GZ_EVENT_FIXATION, 0, 100);
+	struct gz_focus focus = step_to_landing(2, params.landing_deg - 0.1);
+	assert_in_saccade_at(&focus, 2);
+	focus = step_to_landing(3, NAN);
+	assert_in_saccade_at(&focus, 3);
+	focus = step_event(GZ_EVENT_SACCADE, 4);
+	assert_in_saccade_at(&focus, 4);
+	struct gz_attention_params never = params;
+	never.landing_deg = 0;
+	gz_attention_set_params(&attention, &never);
+	focus = step_to_landing(5, 20);
+	assert_in_saccade_at(&focus, 5);
+}
+
+static void landing_says_nothing_where_the_start_of_the_saccade_is_not_known(void **state)
+{
+	(void)state;
+	struct gz_focus focus = step_to_landing(2, 20); /* the first gaze of all */
+	assert_in_saccade_at(&focus, 2);
+	go_on(GZ_EVENT_FIXATION, 0, 100);
+	step_event(GZ_EVENT_LOST, 0);
+	focus = step_to_landing(5, 20);
+	assert_in_saccade_at(&focus, 5);
+}
+
 static void saccade_that_lasts_too_long_is_ignored(void **state)
 {
 	(void)state;
@@ -206,6 +265,8 @@ static void saccade_that_lasts_too_long_is_ignored(void **state)
 	struct gz_focus focus = go_on(GZ_EVENT_SACCADE, 12, 200);
 	assert_true(focus.scale == params.saccade_scale);
 	focus = go_on(GZ_EVENT_SACCADE, 12, 100);
+	assert_sharp_at(&focus, 12);
+	focus = step_to_landing(12, 30);
 	assert_sharp_at(&focus, 12);
 }
 
@@ -443,6 +504,11 @@ TEST_SUITE(attention)
 		cmocka_unit_test_setup(landing_within_the_dead_band_of_the_way_is_sharp_too, begin),
 		cmocka_unit_test_setup(saccade_between_two_frames_is_sharp_at_its_end, begin),
 		cmocka_unit_test_setup(saccade_that_goes_nowhere_changes_nothing, begin),
+		cmocka_unit_test_setup(large_saccade_is_met_where_it_will_land, begin),
+		cmocka_unit_test_setup(small_saccade_is_followed_and_so_is_any_without_a_landing,
+				       begin),
+		cmocka_unit_test_setup(
+			landing_says_nothing_where_the_start_of_the_saccade_is_not_known, begin),
 		cmocka_unit_test_setup(saccade_that_lasts_too_long_is_ignored, begin),
 		cmocka_unit_test_setup(pursuit_is_followed_one_dead_band_behind, begin),
 		cmocka_unit_test_setup(blink_holds_the_plan, begin),

@@ -68,6 +68,7 @@ static struct gz_focus frame(struct watch *watch)
 		.age_ns = watch->now_ns - watch->output.gaze.host_ns,
 		.has_event = true,
 		.event = watch->output.gaze.event,
+		.landing = watch->output.gaze.landing,
 		.noise_deg = gz_pipeline_noise_deg(&watch->pipeline),
 	};
 	return gz_attention_step(&watch->attention, &gaze, &watch->display, watch->now_ns);

@@ -118,6 +118,9 @@ static void log_shows_the_last_sample_at_or_before_each_frame(void **state)
 		assert_true(reading.point.x == output.gaze.point.x);
 		assert_true(reading.point.y == output.gaze.point.y);
 		assert_int_equal(reading.event, output.gaze.event);
+		assert_int_equal(reading.landing.known, output.gaze.landing.known);
+		assert_true(reading.landing.point.x == output.gaze.landing.point.x);
+		assert_true(reading.landing.time_ns == output.gaze.landing.time_ns);
 		assert_int_equal(reading.age_ns, START_NS + time_ns - sample_at(next - 1).host_ns);
 	}
 	assert_int_equal(next, SAMPLES);

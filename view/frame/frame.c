@@ -413,6 +413,7 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 		.age_ns = reading->age_ns,
 		.has_event = reading->has_event,
 		.event = reading->event,
+		.landing = reading->landing,
 		.noise_deg = reading->noise_deg,
 	};
 	gz_attention_set_params(&maker->attention, params);

@@ -188,6 +188,7 @@ static void latest_read(struct gz_gaze_source *source, int64_t time_ns,
 		reading.age_ns = age_ns;
 		reading.has_event = true;
 		reading.event = gaze.event;
+		reading.landing = gaze.landing;
 		reading.numbered = true;
 		reading.seq = gaze.seq;
 		reading.sample_ns = gaze.host_ns;
@@ -338,6 +339,7 @@ static void step_log(struct log_source *self)
 		.connected = true,
 		.has_event = true,
 		.event = output.gaze.event,
+		.landing = output.gaze.landing,
 		.noise_deg = gz_pipeline_noise_deg(&self->pipeline),
 		.numbered = true,
 		.seq = self->pending.seq,

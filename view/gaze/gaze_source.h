@@ -26,10 +26,11 @@ struct gz_gaze_reading {
 	bool connected;        /**< the source is reachable; always true for a point and a log */
 	bool has_event;        /**< event is valid */
 	enum gz_event event;   /**< what the eye does */
-	double noise_deg;      /**< sample-to-sample noise of the tracker, degrees; NaN: unknown */
-	bool numbered;         /**< seq and sample_ns are valid */
-	uint64_t seq;          /**< number of the tracker's sample */
-	int64_t sample_ns;     /**< time of the sample, on the host's or the log's clock */
+	struct gz_landing landing; /**< of the running saccade, on the display */
+	double noise_deg;  /**< sample-to-sample noise of the tracker, degrees; NaN: unknown */
+	bool numbered;     /**< seq and sample_ns are valid */
+	uint64_t seq;      /**< number of the tracker's sample */
+	int64_t sample_ns; /**< time of the sample, on the host's or the log's clock */
 };
 
 struct gz_gaze_source;

@@ -252,8 +252,11 @@ static void read_asked_source(struct gz_window *window, const struct gz_window_s
 	gaze->reading = gaze->asked;
 	gaze->source = window->sources->choice.kind == GZ_GAZE_POINTER ? "pointer"
 								       : window->source->ops->name;
-	if (window->source->ops->live)
+	if (window->source->ops->live) {
 		gaze->reading.point = gz_window_share_point(share, gaze->asked.point);
+		gaze->reading.landing.point =
+			gz_window_share_point(share, gaze->asked.landing.point);
+	}
 }
 
 /* What is beside the picture may move. */
