@@ -295,35 +295,16 @@ static void update_quick_saccade(struct gz_classify_state *state,
 	gz_median_follow(&quick->noise_deg_s, speed_deg_s, gain);
 }
 
-/* By how much the score must be greater to change between fixation and pursuit, GZ_FOREST_UNIT:
- * odds of 1.5. Chosen: labels flicker less, and agree as much with those of people. */
-static const int32_t CHANGE_LEAD = 1661;
-
-/* In a still scene there is nothing to follow. */
-static enum gz_forest_class without_pursuit(const struct gz_classify_entry *entry,
-					    enum gz_forest_class learned)
-{
-	return entry->still_scene && learned == GZ_FOREST_PURSUIT ? GZ_FOREST_FIXATION : learned;
-}
-
 /* Label sample @p index by what a forest makes of the newest features. */
 static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
+			    struct gz_forest_memory *memory,
 			    const float features[GZ_MOVEMENT_FEATURES], uint64_t index)
 {
 	int32_t scores[GZ_FOREST_CLASSES];
 	struct gz_classify_entry *entry = gz_classify_at(state, index);
-	entry->learned = GZ_FOREST_NOISE;
-	if (!entry->valid)
-		return;
-	gz_forest_score(forest, features, scores);
-	entry->learned = without_pursuit(entry, gz_forest_best(scores));
-	enum gz_forest_class last =
-		index > 0 ? without_pursuit(entry, gz_classify_at(state, index - 1)->learned)
-			  : entry->learned;
-	bool changes = (entry->learned == GZ_FOREST_FIXATION && last == GZ_FOREST_PURSUIT) ||
-		       (entry->learned == GZ_FOREST_PURSUIT && last == GZ_FOREST_FIXATION);
-	if (changes && scores[entry->learned] - scores[last] < CHANGE_LEAD)
-		entry->learned = last;
+	if (entry->valid)
+		gz_forest_score(forest, features, scores);
+	entry->learned = gz_forest_label(memory, entry->valid ? scores : NULL, entry->still_scene);
 }
 
 /* Ask the forests what the newest sample is, and what the one was whose certain label is due. */
@@ -335,9 +316,10 @@ static void ask_forests(struct gz_classify_state *state, const struct gz_classif
 	if (!gz_movement_step(&state->movement, display, &measured, features))
 		return;
 	uint64_t newest = state->count - 1, delay = gz_classify_delay(state, params);
-	label_by_forest(state, &gz_forest_at_once, features, newest);
+	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, features, newest);
 	if (delay > 0 && delay <= newest)
-		label_by_forest(state, &gz_forest_certain, features, newest - delay);
+		label_by_forest(state, &gz_forest_certain, &state->certain_memory, features,
+				newest - delay);
 }
 
 static enum gz_event immediate_label(const struct gz_classify_state *state,

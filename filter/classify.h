@@ -161,7 +161,9 @@ struct gz_classify_state {
 	struct gz_classify_quick quick;
 	struct gz_classify_machine machine;
 	struct gz_classify_slow slow;
-	struct gz_movement movement; /**< used if the labels are learned */
+	/* Used if the labels are learned: */
+	struct gz_movement movement;
+	struct gz_forest_memory at_once_memory, certain_memory;
 };
 
 /** The newest sample as the steps after this one get it; there must have been one. */

@@ -6,11 +6,13 @@
  * FOLDER/features.f32: GZ_WHOLE_FEATURES floats a sample; the first half of them is of earlier
  * samples FOLDER/labels.i16: five numbers a sample: track, labels of both people (enum
  * gz_human_label; the same where there is only one), whether it was measured, and reserved 0
- * FOLDER/tracks.tsv: a line a track: number, data set, stimulus or film, name, period in us
+ * FOLDER/tracks.tsv: a line a track: number, data set, stimulus or film, name, period in us, and 1
+ * if it is altered
  * FOLDER/names.txt: the names of the features
  *
  * Each recording is also written at lower rates: every second, fourth and eighth sample. The
- * simulated viewers stand for trackers that are faster or noisier.
+ * simulated viewers stand for trackers that are faster or noisier, and an altered copy of each
+ * recording for a tracker that also loses an eye that does not blink.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -21,6 +23,7 @@
 #include "bench/filter/labelled_recording.h"
 #include "filter/classifier/whole.h"
 #include "filter/pipeline.h"
+#include "sim/random.h"
 #include "sim/tracker.h"
 
 enum { SKIPPED = 77, LABEL_NUMBERS = 5 };
@@ -91,20 +94,48 @@ static void write_track(struct output *out, const struct track *track)
 	out->track_count++;
 }
 
-static void write_rates(struct output *out, const char *set, const char *kind, const char *name,
-			const struct gz_labelled_recording *recording, const int *second_label)
+/* Losses in an altered copy. Chosen: as trackers lose an eye that does not blink. */
+static const double LOSSES_PER_S = 0.4, LOSS_S = 0.06;
+
+/* Lose samples now and then, whatever the eye does. */
+static void lose_samples(struct gz_random *random, struct gz_labelled_recording *recording)
 {
+	const double step_s =
+		gz_ns_to_s(recording->sample[1].host_ns - recording->sample[0].host_ns);
+	double lost_s = 0;
+	for (size_t i = 0; i < recording->count; i++, lost_s -= step_s) {
+		const int64_t time_ns = recording->sample[i].host_ns;
+		if (gz_random_uniform(random) < LOSSES_PER_S * step_s)
+			lost_s = LOSS_S * gz_random_exponential(random);
+		if (!(lost_s > 0))
+			continue;
+		recording->sample[i] = gz_sample_unmeasured();
+		recording->sample[i].host_ns = time_ns;
+	}
+}
+
+/* @param recording  is altered afterwards */
+static void write_rates(struct output *out, const char *set, const char *kind, const char *name,
+			struct gz_labelled_recording *recording, const int *second_label)
+{
+	struct gz_random random = gz_random_seeded((uint64_t)out->track_count, 0);
+	if (recording->count < 2) {
+		out->failed = true;
+		return;
+	}
+	const double step_us =
+		(double)(recording->sample[1].host_ns - recording->sample[0].host_ns) * 1e-3;
 	for (size_t step = 1; step <= 8; step *= 2) {
 		const struct track track = { recording, second_label, step, 0 };
-		const double period_us = recording->count > 1
-						 ? (double)(recording->sample[1].host_ns -
-							    recording->sample[0].host_ns) *
-							   1e-3 * (double)step
-						 : 0;
-		fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\n", out->track_count, set, kind, name,
-			period_us);
+		fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\t0\n", out->track_count, set, kind, name,
+			step_us * (double)step);
 		write_track(out, &track);
 	}
+	const struct track track = { recording, second_label, 1, 0 };
+	lose_samples(&random, recording);
+	fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\t1\n", out->track_count, set, kind, name,
+		step_us);
+	write_track(out, &track);
 }
 
 static bool write_andersson(struct output *out, const char *data)
@@ -203,7 +234,7 @@ static bool write_simulated(struct output *out)
 		const bool good =
 			simulate(&SIMULATIONS[i % SIMULATIONS_COUNT], rate_hz, i + 1, &recording);
 		const struct track track = { &recording, NULL, 1, 0 };
-		fprintf(out->tracks, "%d\tsimulated\t%.0f\t-\t%.0f\n", out->track_count, rate_hz,
+		fprintf(out->tracks, "%d\tsimulated\t%.0f\t-\t%.0f\t0\n", out->track_count, rate_hz,
 			1e6 / rate_hz);
 		if (good)
 			write_track(out, &track);

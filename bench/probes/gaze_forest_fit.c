@@ -44,6 +44,7 @@ struct settings {
 	double andersson;     /* weight of a sample of that set, against one of GazeCom */
 	double slow;          /* weight of recordings at lower rates */
 	double simulated;     /* weight of 4 ms of a simulated viewer */
+	double altered;       /* weight of altered copies of recordings */
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
 	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
 			 each of several films and persons */
@@ -65,7 +66,7 @@ static const struct {
 	KEY(lambda, 1),     KEY(bins, 64),   KEY(rows, 0.25),   KEY(columns, 0.4), KEY(least, 20),
 	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0), KEY(ringing, 1),   KEY(folds, 1),
 	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),   KEY(noise, 0),     KEY(tag, 0),
-	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),     KEY(thin, 1),
+	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),     KEY(thin, 1),      KEY(altered, 0),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -75,7 +76,7 @@ static double *setting_at(struct settings *settings, int key)
 }
 
 struct track {
-	bool andersson, simulated;
+	bool andersson, simulated, altered;
 	char kind[64], name[64];
 	double period_ms;
 	int fold;
@@ -138,6 +139,18 @@ struct training {
 
 /* ---- reading ---- */
 
+/* Vectors need memory at multiples of their size. */
+static void *new_array(size_t count, size_t size)
+{
+	const size_t bytes = (count * size + 31) / 32 * 32;
+	void *array = aligned_alloc(32, bytes);
+	if (!array) {
+		fprintf(stderr, "gaze_forest_fit: no memory\n");
+		exit(1);
+	}
+	return memset(array, 0, bytes);
+}
+
 static void *read_all(const char *folder, const char *name, size_t *out_size)
 {
 	char path[1024];
@@ -165,10 +178,11 @@ static void read_tracks(struct training *t, const char *folder)
 		struct track *track = &t->track[t->track_count++];
 		char set[32];
 		double period_us;
-		int number;
-		if (sscanf(line, "%d\t%31[^\t]\t%63[^\t]\t%63[^\t]\t%lf", &number, set, track->kind,
-			   track->name, &period_us) != 5)
+		int number, altered;
+		if (sscanf(line, "%d\t%31[^\t]\t%63[^\t]\t%63[^\t]\t%lf\t%d", &number, set,
+			   track->kind, track->name, &period_us, &altered) != 6)
 			exit(1);
+		track->altered = altered != 0;
 		track->andersson = strcmp(set, "andersson") == 0;
 		track->simulated = strcmp(set, "simulated") == 0;
 		track->period_ms = period_us * 1e-3;
@@ -211,10 +225,15 @@ static int8_t class_at(const struct training *t, const int16_t *numbers, size_t 
 	return i > index && (found == 1 || found == 3) ? UNUSED : found;
 }
 
-/* Native rates of the recordings; simulated viewers are not among those that are measured. */
 static double native_ms(const struct track *track)
 {
-	return track->simulated ? 0 : track->andersson ? 2 : 4;
+	return track->andersson ? 2 : 4;
+}
+
+/* Whether it is a recording as it is, and no copy at another rate, nor altered, nor simulated. */
+static bool is_original(const struct track *track)
+{
+	return !track->simulated && !track->altered && track->period_ms <= native_ms(track);
 }
 
 static float weight_of(const struct training *t, const struct track *track)
@@ -223,6 +242,8 @@ static float weight_of(const struct training *t, const struct track *track)
 	double weight = track->simulated   ? s->simulated * track->period_ms / 4
 			: track->andersson ? s->andersson
 					   : 1;
+	if (track->altered)
+		weight *= s->altered;
 	if (!track->simulated && track->period_ms > native_ms(track))
 		weight *= s->slow * track->period_ms / native_ms(track);
 	if (s->certain > 0 && track->period_ms > 8)
@@ -247,7 +268,7 @@ static void read_rows(struct training *t, const char *folder)
 		row->track = n[0];
 		row->weight = weight_of(t, track);
 		row->learned = i % (size_t)t->settings.thin == 0;
-		if (row->weight <= 0 || (!row->learned && track->period_ms > native_ms(track)))
+		if (row->weight <= 0 || (!row->learned && !is_original(track)))
 			continue;
 		bool known = i >= back && numbers[(i - back) * LABEL_NUMBERS] == n[0];
 		for (int p = 0; p < 2; p++) {
@@ -259,6 +280,7 @@ static void read_rows(struct training *t, const char *folder)
 		/* The coders of GazeCom call both a saccade. */
 		row->either = t->settings.whole > 0 && !track->andersson && !track->simulated;
 		row->valid = known && numbers[(i - back) * LABEL_NUMBERS + 3] != 0;
+		row->learned = row->learned && (row->valid || !track->altered);
 		if (known && numbers[(i - back) * LABEL_NUMBERS + 1] == GZ_HUMAN_GLISSADE)
 			row->weight *= (float)t->settings.ringing;
 		t->row_count++;
@@ -526,7 +548,7 @@ static int kind_of(const struct track *track)
 static bool is_measured_row(const struct training *t, int row)
 {
 	const struct track *track = &t->track[t->row[row].track];
-	return t->kept_out[t->row[row].track] && track->period_ms <= native_ms(track);
+	return t->kept_out[t->row[row].track] && is_original(track);
 }
 
 /* What is added to the score of a class. */
@@ -537,17 +559,23 @@ static double added_score(const struct training *t, int class)
 	return more[class];
 }
 
-/* The class of each row by its own score. */
+static int quantised(float value);
+
+/* The class of each row, as the filter labels one sample after the other. Whole recordings are
+ * decoded further (try_costs()). */
 static void decide_classes(const struct training *t, uint8_t *out_class)
 {
+	struct gz_forest_memory memory = { .any = false };
 	for (int i = 0; i < t->row_count; i++) {
-		const float *score = t->score[i];
-		int best = 0;
-		for (int k = 1; k < t->class_count; k++)
-			if ((double)score[k] + added_score(t, k) >
-			    (double)score[best] + added_score(t, best))
-				best = k;
-		out_class[i] = (uint8_t)(t->row[i].valid ? best : GZ_FOREST_NOISE);
+		const struct row *row = &t->row[i];
+		int32_t scores[GZ_FOREST_CLASSES];
+		if (!is_measured_row(t, i))
+			continue;
+		if (i == 0 || row->track != row[-1].track)
+			memory = (struct gz_forest_memory) { .any = false };
+		for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+			scores[k] = quantised(t->score[i][k] + (float)added_score(t, k));
+		out_class[i] = (uint8_t)gz_forest_label(&memory, row->valid ? scores : NULL, false);
 	}
 }
 
@@ -595,53 +623,56 @@ static void print_figures(const struct figures *figures)
 /* ---- labels of whole recordings ---- */
 
 /* Costs that are tried, ms; all are combined. */
-static const int CHANGE_MS[] = { 0, 5, 10, 20, 40 }, PURSUIT_MS[] = { 10, 20, 40, 80, 160, 320 };
+static const int CHANGE_MS[] = { 0, 5, 10, 20 }, PURSUIT_MS[] = { 20, 40, 80, 160 };
 enum {
 	CHANGES = sizeof CHANGE_MS / sizeof CHANGE_MS[0],
 	PURSUITS = sizeof PURSUIT_MS / sizeof PURSUIT_MS[0],
 };
 
-static int quantised(float value);
-
-/* Decode the rows from @p begin to @p end, which are one recording. */
-static void decode_track(const struct training *t, int begin, int end,
-			 const struct gz_whole_costs *costs, uint8_t *out_class)
+/* Decode the rows from @p begin to @p end, which are one recording, with all costs. */
+static void decode_track(const struct training *t, int begin, int end, uint8_t *class[])
 {
 	const size_t count = (size_t)(end - begin);
 	struct gz_movement_input *input = calloc(count, sizeof *input);
 	int32_t(*scores)[GZ_WHOLE_CLASSES] = calloc(count, sizeof *scores);
-	if (!input || !scores)
-		exit(1);
-	for (size_t i = 0; i < count; i++) {
+	bool good = input && scores;
+	for (size_t i = 0; good && i < count; i++) {
 		const int row = begin + (int)i;
 		input[i].time_ns =
 			(int64_t)(t->track[t->row[row].track].period_ms * 1e6) * (int64_t)i;
 		input[i].valid = t->row[row].valid;
 		for (int k = 0; k < GZ_WHOLE_CLASSES; k++)
-			scores[i][k] = quantised(t->score[row][k]);
+			scores[i][k] = quantised(t->score[row][k] + (float)added_score(t, k));
 	}
-	if (gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count, costs,
-			    out_class + begin) != GZ_OK)
-		exit(1);
+	if (good)
+		gz_whole_adapt(input, scores, count);
+	for (int c = 0; good && c < CHANGES * PURSUITS; c++) {
+		const struct gz_whole_costs costs = { CHANGE_MS[c / PURSUITS] * 1000,
+						      PURSUIT_MS[c % PURSUITS] * 1000,
+						      { 0 } };
+		good = gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count,
+				       &costs, class[c] + begin) == GZ_OK;
+	}
 	free(input);
 	free(scores);
+	if (!good)
+		exit(1);
 }
 
-static void try_costs(const struct training *t, uint8_t *class, struct figures *figures)
+static void try_costs(const struct training *t, struct figures *figures)
 {
+	uint8_t *class[CHANGES * PURSUITS];
+	for (int c = 0; c < CHANGES * PURSUITS; c++)
+		class[c] = new_array((size_t)t->row_count, 1);
+	for (int i = 0, end; i < t->row_count; i = end) {
+		for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
+			end++;
+		if (is_measured_row(t, i))
+			decode_track(t, i, end, class);
+	}
 	for (int c = 0; c < CHANGES * PURSUITS; c++) {
-		struct gz_whole_costs costs = { CHANGE_MS[c / PURSUITS] * 1000,
-						PURSUIT_MS[c % PURSUITS] * 1000,
-						{ 0 } };
-		for (int k = 0; k < GZ_WHOLE_CLASSES; k++)
-			costs.added[k] = quantised((float)added_score(t, k));
-		for (int i = 0, end; i < t->row_count; i = end) {
-			for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
-				end++;
-			if (is_measured_row(t, i))
-				decode_track(t, i, end, &costs, class);
-		}
-		add_figures(t, class, &figures[c]);
+		add_figures(t, class[c], &figures[c]);
+		free(class[c]);
 	}
 }
 
@@ -751,9 +782,9 @@ static void grow_forest(struct training *t, struct figures *figures, uint8_t *cl
 				prior[t->row[i].label[n]] += t->row[i].weight;
 	double mean = 0;
 	for (int k = 0; k < t->class_count; k++)
-		mean += log(prior[k]) / t->class_count;
+		mean += log(fmax(prior[k], 1)) / t->class_count;
 	for (int k = 0; k < t->class_count; k++)
-		t->base[k] = (float)(log(prior[k]) - mean);
+		t->base[k] = (float)(log(fmax(prior[k], 1)) - mean);
 	for (int i = 0; i < t->row_count; i++)
 		memcpy(t->score[i], t->base, sizeof t->base);
 	t->tree_count = (int)t->settings.trees;
@@ -799,8 +830,7 @@ static uint64_t hash_scores(const struct training *t)
 	for (int i = 0; i < t->row_count; i++) {
 		int32_t score[CLASSES_MAX];
 		const struct track *track = &t->track[t->row[i].track];
-		if (track->period_ms > native_ms(track) ||
-		    (t->settings.whole > 0 && !track->andersson))
+		if (!is_original(track) || (t->settings.whole > 0 && !track->andersson))
 			continue;
 		for (int k = 0; k < t->class_count; k++)
 			score[k] = base_of(t, k);
@@ -1055,18 +1085,6 @@ static bool read_settings(int argc, char **argv, struct settings *out)
 	return out->leaves <= LEAVES_MAX && out->bins <= BINS_MAX && out->trees <= TREES_MAX;
 }
 
-/* Vectors need memory at multiples of their size. */
-static void *new_array(size_t count, size_t size)
-{
-	const size_t bytes = (count * size + 31) / 32 * 32;
-	void *array = aligned_alloc(32, bytes);
-	if (!array) {
-		fprintf(stderr, "gaze_forest_fit: no memory\n");
-		exit(1);
-	}
-	return memset(array, 0, bytes);
-}
-
 static void make_room(struct training *t)
 {
 	const size_t rows = (size_t)t->row_count;
@@ -1097,7 +1115,7 @@ static void measure_again(struct training *t, const char *folder)
 	add_figures(t, class, &figures);
 	print_figures(&figures);
 	if (t->settings.whole > 0)
-		try_costs(t, class, decoded);
+		try_costs(t, decoded);
 	print_decoded(t, decoded);
 	free(class);
 }
@@ -1122,7 +1140,7 @@ static void train_on_folds(struct training *t, const char *folder)
 		grow_forest(t, figures, class);
 		write_scores(t, scores);
 		if (t->settings.whole > 0)
-			try_costs(t, class, decoded);
+			try_costs(t, decoded);
 	}
 	fclose(scores);
 	free(class);

@@ -83,3 +83,32 @@ enum gz_forest_class gz_forest_best(const int32_t scores[GZ_FOREST_CLASSES])
 			best = k;
 	return (enum gz_forest_class)best;
 }
+
+/* By how much the score must be greater to change between fixation and pursuit, GZ_FOREST_UNIT:
+ * odds of 1.5. Chosen: labels flicker less, and agree as much with those of people. */
+static const int32_t CHANGE_LEAD = 1661;
+
+static bool is_slow_class(enum gz_forest_class class)
+{
+	return class == GZ_FOREST_FIXATION || class == GZ_FOREST_PURSUIT;
+}
+
+/* In a still scene there is nothing to follow. */
+static enum gz_forest_class without_pursuit(enum gz_forest_class class, bool still_scene)
+{
+	return still_scene && class == GZ_FOREST_PURSUIT ? GZ_FOREST_FIXATION : class;
+}
+
+enum gz_forest_class gz_forest_label(struct gz_forest_memory *memory, const int32_t *scores,
+				     bool still_scene)
+{
+	const enum gz_forest_class best = scores ? gz_forest_best(scores) : GZ_FOREST_NOISE;
+	enum gz_forest_class now = without_pursuit(best, still_scene);
+	const enum gz_forest_class last = without_pursuit(memory->last, still_scene);
+	const bool slow = memory->any && is_slow_class(now) && is_slow_class(last);
+	if (slow && scores[now] - scores[last] < CHANGE_LEAD)
+		now = last;
+	memory->last = now;
+	memory->any = true;
+	return now;
+}

@@ -12,6 +12,7 @@
 #ifndef GZ_FILTER_CLASSIFIER_FOREST_H
 #define GZ_FILTER_CLASSIFIER_FOREST_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -74,5 +75,20 @@ void gz_forest_score(const struct gz_forest *forest, const float features[GZ_MOV
 
 /** The class of the greatest score; the first one of several. */
 enum gz_forest_class gz_forest_best(const int32_t scores[GZ_FOREST_CLASSES]);
+
+/** The newest label of one sample after the other. Zero-initialised is the start. */
+struct gz_forest_memory {
+	enum gz_forest_class last;
+	bool any; /**< whether last is set */
+};
+
+/**
+ * Label one sample by the scores of a forest, without flicker between fixation and pursuit.
+ *
+ * @param scores       gz_forest_score(); NULL if nothing was measured: noise
+ * @param still_scene  nothing moves in the scene, so there is no pursuit
+ */
+enum gz_forest_class gz_forest_label(struct gz_forest_memory *memory, const int32_t *scores,
+				     bool still_scene);
 
 #endif

@@ -1,10 +1,12 @@
 #include "filter/classifier/whole.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/order.h"
+#include "base/portable.h"
 
 /* Samples whose features of what comes after are computed and kept together. Chosen: the state at
  * the end of each block and the rows of one block are a few bytes a sample. */
@@ -85,6 +87,78 @@ enum gz_result gz_whole_features(const struct gz_display *display,
 	free(backward);
 	free(forward);
 	return good ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+/*
+ * The share of pursuit.
+ */
+
+/* The usual share of pursuit in slow movement, and the time of slow movement that says as much as
+ * this knowledge. Chosen on recordings that the forest did not learn from
+ * (docs/gaze-pipeline.md). */
+static const double USUAL_SHARE = 0.1;
+static const double USUAL_S = 4;
+
+/* Rounds of expectation and maximisation. Chosen: more change nothing that is seen. */
+enum { SHARE_ROUNDS = 10 };
+
+/* Whether a sample is likeliest to be a fixation or a pursuit. */
+static bool is_slow(const int32_t scores[GZ_WHOLE_CLASSES])
+{
+	int best = 0;
+	for (int k = 1; k < GZ_WHOLE_CLASSES; k++)
+		best = scores[k] > scores[best] ? k : best;
+	return best == GZ_FOREST_FIXATION || best == GZ_FOREST_PURSUIT;
+}
+
+static int64_t step_before_us(const struct gz_movement_input *input, size_t index)
+{
+	const int64_t step_us =
+		index > 0 ? (input[index].time_ns - input[index - 1].time_ns) / 1000 : 0;
+	return step_us < STEP_MOST_US ? step_us : STEP_MOST_US;
+}
+
+/* Logarithm of the odds of pursuit, GZ_FOREST_UNIT. */
+static double log_odds(double share)
+{
+	return gz_portable_log(share / (1 - share)) / GZ_FOREST_UNIT;
+}
+
+/* How likely a pursuit is, rather than a fixation, if its score is greater by @p lead. */
+static double pursuit_part(const int32_t scores[GZ_WHOLE_CLASSES], int32_t lead)
+{
+	const double ahead = GZ_FOREST_UNIT * ((double)scores[GZ_FOREST_PURSUIT] + lead -
+					       scores[GZ_FOREST_FIXATION]);
+	return 1 / (1 + gz_portable_exp(-fmax(-50, fmin(50, ahead))));
+}
+
+static void lead_pursuit(int32_t scores[GZ_WHOLE_CLASSES], int32_t lead)
+{
+	int32_t *fixation = &scores[GZ_FOREST_FIXATION], *pursuit = &scores[GZ_FOREST_PURSUIT];
+	const int32_t before = *fixation > *pursuit ? *fixation : *pursuit;
+	*pursuit += lead;
+	const int32_t more = (*fixation > *pursuit ? *fixation : *pursuit) - before;
+	*fixation -= more;
+	*pursuit -= more;
+}
+
+void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_WHOLE_CLASSES],
+		    size_t count)
+{
+	int32_t lead = 0;
+	for (int round = 0; round < SHARE_ROUNDS; round++) {
+		double pursuit_s = USUAL_S * USUAL_SHARE, slow_s = USUAL_S;
+		for (size_t i = 0; i < count; i++) {
+			if (!input[i].valid || !is_slow(scores[i]))
+				continue;
+			const double step_s = 1e-6 * (double)step_before_us(input, i);
+			pursuit_s += step_s * pursuit_part(scores[i], lead);
+			slow_s += step_s;
+		}
+		lead = (int32_t)floor(log_odds(pursuit_s / slow_s) - log_odds(USUAL_SHARE) + 0.5);
+	}
+	for (size_t i = 0; i < count; i++)
+		lead_pursuit(scores[i], lead);
 }
 
 /*
@@ -247,9 +321,11 @@ enum gz_result gz_whole_label(const struct gz_display *display,
 		return GZ_ERR_NO_MEM;
 	const struct gz_whole_rows rows = { scores, score_row };
 	enum gz_result result = gz_whole_features(display, input, count, &rows);
-	if (result == GZ_OK)
+	if (result == GZ_OK) {
+		gz_whole_adapt(input, scores, count);
 		result = gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count,
 					 &gz_whole_preset_costs, out_class);
+	}
 	free(scores);
 	return result;
 }

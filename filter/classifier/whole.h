@@ -93,8 +93,20 @@ enum gz_result gz_whole_gap_ns(const struct gz_movement_input *input, size_t cou
 			       int64_t *out_gap_ns);
 
 /**
- * Label all samples: features, scores and the best sequence. Parameters and results as
- * gz_whole_features() and gz_whole_decode().
+ * Move the scores to the share of pursuit that the recording seems to have: in front of one scene
+ * there is much to follow and in front of another nothing. Bayes' rule with a share that is found
+ * by expectation maximisation (Saerens, Latinne and Decaestecker, "Adjusting the outputs of a
+ * classifier to new a priori probabilities", Neural Computation 14, 2002). The better one of
+ * fixation and pursuit stays as likely as it is against the other classes.
+ *
+ * @param input   @p count samples, each newer than the last; places are not read
+ */
+void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_WHOLE_CLASSES],
+		    size_t count);
+
+/**
+ * Label all samples: features, scores, the share of pursuit and the best sequence. Parameters and
+ * results as gz_whole_features() and gz_whole_decode().
  */
 enum gz_result gz_whole_label(const struct gz_display *display,
 			      const struct gz_movement_input *input, size_t count,
